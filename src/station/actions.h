@@ -9,6 +9,7 @@ typedef fg_status fg_action(fg_context *ctx, fg_inspection *station, const fg_re
 
 fg_action fg_action_correct;  /* serial, lot, die, operator of a foil; leaves a trail */
 fg_action fg_action_scan;     /* runs the recipe's scan_command */
+fg_action fg_action_baseline; /* the newest check: what later ones are compared with */
 fg_action fg_action_close;    /* a lot: writes its folder and report */
 fg_action fg_action_download; /* a lot's CSV, QIF, DFQ, report */
 

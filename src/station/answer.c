@@ -37,9 +37,8 @@ static const struct {
   const char *path;
   fg_action *act;
 } actions[] = {
-    {"/correct", fg_action_correct},
-    {"/scan", fg_action_scan},
-    {"/close", fg_action_close},
+    {"/correct", fg_action_correct},   {"/scan", fg_action_scan},
+    {"/baseline", fg_action_baseline}, {"/close", fg_action_close},
     {"/download", fg_action_download},
 };
 

@@ -1,27 +1,44 @@
 #include "station/check.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include "core/text.h"
 #include "foilgauge/measure.h"
+#include "station/actions.h"
 #include "station/check_fit.h"
+#include "station/check_state.h"
 #include "station/keep_parts.h"
+#include "station/news.h"
 
 #define MS_PER_HOUR INT64_C(3600000)
 
-static fg_status insert_check(fg_context *ctx, sqlite3 *writer, const fg_station_file *file,
-                              const char *sha256, const fg_check_fit *fit, const char *words) {
+enum { CHANGES_BYTES = 600 };
+
+/* A check of the plate, before it is kept. */
+typedef struct check_result {
+  const fg_station_file *file;
+  const char *sha256, *words;
+  fg_check_fit fit;
+  fg_check_state state;
+  bool baseline; /* there is none for its resolution: it becomes one */
+  char changes[CHANGES_BYTES];
+} check_result;
+
+static fg_status insert_check(fg_context *ctx, sqlite3 *writer, const check_result *check) {
+  const fg_check_fit *fit = &check->fit;
   fg_query query;
   fg_query_begin(
       writer,
       "INSERT OR IGNORE INTO checks (at, path, sha256, discs, scale_x, u_scale_x, scale_y,"
-      " u_scale_y, shear, u_shear, verdict, words)"
-      " VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+      " u_scale_y, shear, u_shear, verdict, words, baseline, changes)"
+      " VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
       &query);
   fg_query_integer(&query, fg_station_now());
-  fg_query_text(&query, file->name);
-  fg_query_text(&query, sha256);
+  fg_query_text(&query, check->file->name);
+  fg_query_text(&query, check->sha256);
   fg_query_integer(&query, (int64_t)fit->discs);
   fg_query_number(&query, fit->scale[0]);
   fg_query_number(&query, fit->u_scale[0]);
@@ -30,18 +47,27 @@ static fg_status insert_check(fg_context *ctx, sqlite3 *writer, const fg_station
   fg_query_number(&query, fit->shear);
   fg_query_number(&query, fit->u_shear);
   fg_query_text(&query, fit->passes ? "pass" : "fail");
-  fg_query_text(&query, words);
+  fg_query_text(&query, check->words);
+  fg_query_integer(&query, check->baseline);
+  fg_query_text(&query, check->changes);
   fg_query_row(&query);
   return fg_query_end(ctx, &query, "keeping a check");
 }
 
-static fg_status keep_check(fg_context *ctx, fg_inspection *station, const fg_station_file *file,
-                            const char *sha256, const fg_check_fit *fit, const char *words) {
-  FG_TRY(fg_station_database_begin(ctx, &station->database));
-  fg_status status = insert_check(ctx, station->database.writer, file, sha256, fit, words);
+/* The same bytes a second time are no second check. */
+static fg_status insert_state(fg_context *ctx, sqlite3 *writer, const check_result *check) {
+  if (!sqlite3_changes(writer)) return FG_OK;
+  return fg_check_state_keep(ctx, writer, sqlite3_last_insert_rowid(writer), &check->state);
+}
+
+static fg_status keep_check(fg_context *ctx, fg_inspection *station, const check_result *check) {
+  fg_station_database *database = &station->database;
+  FG_TRY(fg_station_database_begin(ctx, database));
+  fg_status status = insert_check(ctx, database->writer, check);
+  if (status == FG_OK) status = insert_state(ctx, database->writer, check);
   if (status == FG_OK)
-    status = fg_station_insert_card(ctx, &station->database, file, FG_CARD_CHECK, words, 0);
-  return fg_station_database_end(ctx, &station->database, status);
+    status = fg_station_insert_card(ctx, database, check->file, FG_CARD_CHECK, check->words, 0);
+  return fg_station_database_end(ctx, database, status);
 }
 
 static fg_status refuse(fg_context *ctx, fg_inspection *station, const fg_station_file *file,
@@ -49,6 +75,43 @@ static fg_status refuse(fg_context *ctx, fg_inspection *station, const fg_statio
   station->outcome->refused++;
   station->outcome->judged.not_measured++;
   return fg_station_keep_card(ctx, &station->database, file, FG_CARD_UNREADABLE, words, 0);
+}
+
+static void put_state_words(const check_result *check, int64_t baseline_at, char *words,
+                            size_t size) {
+  size_t used = strlen(words);
+  time_t seconds = (time_t)(baseline_at / 1000);
+  struct tm local;
+  char day[16] = "?";
+  if (localtime_r(&seconds, &local)) strftime(day, sizeof day, "%Y-%m-%d", &local);
+  if (check->changes[0])
+    fg_text_clip(words + used, size - used,
+                 "; the picture has changed since the baseline of %s: %s", day, check->changes);
+  else if (check->baseline)
+    fg_text_clip(words + used, size - used, "; the baseline of tone, sharpening and blur");
+  else if (baseline_at)
+    fg_text_clip(words + used, size - used, "; tone, sharpening and blur as in the baseline of %s",
+                 day);
+}
+
+/* Scale and shear against what is allowed, the state of the picture against its baseline. */
+static fg_status judge_check(fg_context *ctx, fg_inspection *station,
+                             const fg_measurement *measurement, check_result *check, char *words,
+                             size_t size) {
+  fg_check_state baseline;
+  int64_t at;
+  check->sha256 = measurement->sha256;
+  fg_check_fit_judge(&check->fit, station->settings->check.scale_max_ppm, words, size);
+  fg_check_state_find(measurement, &check->fit, &check->state);
+  pthread_mutex_lock(&station->database.writing);
+  fg_status status =
+      fg_check_state_baseline(ctx, station->database.writer, check->state.dpi, &at, &baseline);
+  pthread_mutex_unlock(&station->database.writing);
+  FG_TRY(status);
+  check->baseline = !at && check->fit.passes;
+  if (at) fg_check_state_compare(&check->state, &baseline, check->changes, sizeof check->changes);
+  put_state_words(check, at, words, size);
+  return FG_OK;
 }
 
 fg_status fg_station_take_check(fg_context *ctx, fg_inspection *station, const char *path,
@@ -63,22 +126,46 @@ fg_status fg_station_take_check(fg_context *ctx, fg_inspection *station, const c
                                       .only_file = true};
   fg_context inner = {.message = ""};
   fg_measurement measurement;
-  fg_check_fit fit;
-  fg_status failure = fg_measure_scan(&inner, path, &station->check_design, &options, &measurement);
+  check_result check = {.file = file, .words = words};
+  fg_status status,
+      failure = fg_measure_scan(&inner, path, &station->check_design, &options, &measurement);
   if (failure == FG_ERR_MEMORY) return fg_fail(ctx, failure, "%s", inner.message);
   if (failure == FG_OK) {
-    failure = fg_check_fit_plate(&inner, &station->check_design, &measurement, &fit);
+    failure = fg_check_fit_plate(&inner, &station->check_design, &measurement, &check.fit);
     if (failure != FG_OK) fg_measurement_free(&measurement);
   }
   if (failure != FG_OK) {
     fg_text_clip(words, size, "the scanner was not checked: %s", inner.message);
     return refuse(ctx, station, file, words);
   }
-  fg_check_fit_judge(&fit, station->settings->check.scale_max_ppm, words, size);
-  fg_status status = keep_check(ctx, station, file, measurement.sha256, &fit, words);
+  status = judge_check(ctx, station, &measurement, &check, words, size);
+  if (status == FG_OK) status = keep_check(ctx, station, &check);
   fg_measurement_free(&measurement);
   station->outcome->measured += status == FG_OK;
   return status;
+}
+
+fg_status fg_action_baseline(fg_context *ctx, fg_inspection *station, const fg_request *request,
+                             fg_answer *answer) {
+  fg_query query;
+  FG_TRY(fg_station_database_begin(ctx, &station->database));
+  sqlite3 *writer = station->database.writer;
+  fg_query_begin(writer,
+                 "UPDATE checks SET baseline = 1, changes = '' WHERE id = ?"
+                 " AND verdict = 'pass' AND id = (SELECT max(id) FROM checks)",
+                 &query);
+  fg_query_integer(&query, strtoll(fg_request_get(request, "id"), NULL, 10));
+  fg_query_row(&query);
+  fg_status status = fg_query_end(ctx, &query, "accepting a baseline");
+  if (status == FG_OK && !sqlite3_changes(writer))
+    status = fg_fail(ctx, FG_ERR_USAGE,
+                     "Only the newest check can become the baseline, and only when scale and shear "
+                     "are as allowed: load the page again.");
+  status = fg_station_database_end(ctx, &station->database, status);
+  if (status != FG_OK) return status;
+  fg_station_tell(station);
+  strcpy(answer->location, "/scanner");
+  return FG_OK;
 }
 
 fg_status fg_station_check_health(fg_context *ctx, sqlite3 *connection,
@@ -86,10 +173,12 @@ fg_status fg_station_check_health(fg_context *ctx, sqlite3 *connection,
   fg_query query;
   *health = (fg_station_health){.asked = check->design[0] != '\0'};
   if (!health->asked) return FG_OK;
-  fg_query_begin(connection, "SELECT at, verdict FROM checks ORDER BY id DESC LIMIT 1", &query);
+  fg_query_begin(connection, "SELECT at, verdict, changes FROM checks ORDER BY id DESC LIMIT 1",
+                 &query);
   if (fg_query_row(&query)) {
     health->last_at = fg_query_get_integer(&query, 0);
     health->failed = strcmp(fg_query_get_text(&query, 1), "pass") != 0;
+    health->changed = fg_query_get_text(&query, 2)[0] != '\0';
   }
   FG_TRY(fg_query_end(ctx, &query, "reading the checks"));
   if (check->every_h > 0 && health->last_at)
@@ -109,12 +198,15 @@ bool fg_station_check_withholds(fg_inspection *station, char *why, size_t size) 
   pthread_mutex_lock(&station->database.writing);
   fg_status status = fg_station_check_health(&inner, station->database.writer, check, &health);
   pthread_mutex_unlock(&station->database.writing);
-  if (status == FG_OK && !health.due && !health.failed) return false;
+  if (status == FG_OK && !health.due && !health.failed && !health.changed) return false;
   fg_text_clip(
       why, size, "%s",
-      status != FG_OK ? inner.message
-      : health.failed ? "The last check of the scanner failed: check it again, or have it "
-                        "seen to, and then scan this foil again."
+      status != FG_OK  ? inner.message
+      : health.failed  ? "The last check of the scanner failed: check it again, or have it "
+                         "seen to, and then scan this foil again."
+      : health.changed ? "The scanner's check shows another tone, sharpening or blur than its "
+                         "baseline: set the driver as it was, scan the plate, and then this foil "
+                         "again."
       : health.clock_back
           ? "The clock was set back, so the scanner's check may be too old: set the clock, "
             "scan the plate, and then this foil again."

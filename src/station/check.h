@@ -15,6 +15,7 @@ typedef struct fg_station_health {
   int64_t last_at; /* 0: never */
   int64_t due_at;  /* 0: no time is set */
   bool due, failed;
+  bool changed;    /* tone, sharpening or blur are not those of the baseline */
   bool clock_back; /* the clock stands before the last check: nobody knows how old that is */
 } fg_station_health;
 fg_status fg_station_check_health(fg_context *ctx, sqlite3 *connection,

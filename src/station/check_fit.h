@@ -10,6 +10,9 @@ typedef struct fg_check_fit {
   size_t discs;
   double scale[2], u_scale[2]; /* measured over true, less 1; x, y */
   double shear, u_shear;       /* rad; a right angle between +x and +y shows as so much less */
+  /* Edges of bright parts lie outwards by this, whatever the size: what the level at which edges
+   * are placed does. NaN: discs of one size do not tell it from the scale. */
+  double level_um, u_level_um;
   bool passes;
 } fg_check_fit;
 

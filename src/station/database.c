@@ -77,6 +77,14 @@ static const char *const migrations[] = {
     "UPDATE arrivals SET message = stored_name(message) WHERE message <> stored_name(message);"
     "UPDATE checks SET path = stored_name(path) WHERE path <> stored_name(path);"
     "UPDATE checks SET words = stored_name(words) WHERE words <> stored_name(words);",
+    /* What a check shows of tone, sharpening and blur, against the last check of this resolution
+     * that was accepted as baseline; changes: in words, '' where there are none. */
+    "ALTER TABLE checks ADD COLUMN dpi INTEGER;"
+    "ALTER TABLE checks ADD COLUMN findings TEXT NOT NULL DEFAULT '';"
+    "ALTER TABLE checks ADD COLUMN baseline INTEGER NOT NULL DEFAULT 0;"
+    "ALTER TABLE checks ADD COLUMN changes TEXT NOT NULL DEFAULT '';"
+    "CREATE TABLE check_values (check_id INTEGER NOT NULL REFERENCES checks, name TEXT NOT NULL,"
+    " value REAL, u REAL, PRIMARY KEY (check_id, name)) WITHOUT ROWID;",
 };
 
 enum { VERSION = sizeof migrations / sizeof *migrations, BUSY_MS = 5000, IN_FILE_EVERY_S = 5 };

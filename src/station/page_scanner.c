@@ -9,10 +9,11 @@
 #include "report/measure/measure_page_parts.h"
 #include "report/plot_marks.h"
 #include "station/check.h"
+#include "station/check_page.h"
 #include "station/trend.h"
 
 /* Checks that are drawn: those of a month, at two a day. */
-enum { DRAWN = 60, LISTED = 10, HISTORY_MAX = 400, WORDS = 300 };
+enum { DRAWN = 60, LISTED = 10, HISTORY_MAX = 400, WORDS = 1000 };
 
 typedef struct check_row {
   int64_t at;
@@ -40,7 +41,7 @@ static fg_status read_history(fg_context *ctx, sqlite3 *reader, size_t most, his
   all->count = 0;
   fg_query_begin(reader,
                  "SELECT at, scale_x, u_scale_x, scale_y, u_scale_y, shear, u_shear, verdict, path,"
-                 " words FROM checks ORDER BY id DESC LIMIT ?",
+                 " words, changes FROM checks ORDER BY id DESC LIMIT ?",
                  &query);
   fg_query_integer(&query, (int64_t)most);
   while (all->count < most && fg_query_row(&query)) {
@@ -50,7 +51,8 @@ static fg_status read_history(fg_context *ctx, sqlite3 *reader, size_t most, his
       row->value[k] = 1e6 * fg_query_get_number(&query, 1 + 2 * k);
       row->u[k] = 1e6 * fg_query_get_number(&query, 2 + 2 * k);
     }
-    row->passed = !strcmp(fg_query_get_text(&query, 7), "pass");
+    row->passed =
+        !strcmp(fg_query_get_text(&query, 7), "pass") && !fg_query_get_text(&query, 10)[0];
     snprintf(row->path, sizeof row->path, "%s", fg_query_get_text(&query, 8));
     snprintf(row->words, sizeof row->words, "%s", fg_query_get_text(&query, 9));
   }
@@ -59,6 +61,7 @@ static fg_status read_history(fg_context *ctx, sqlite3 *reader, size_t most, his
 
 static const char *call_words(const fg_station_health *health) {
   return health->failed                    ? "OUT OF ORDER"
+         : health->changed                 ? "CHANGED"
          : health->due && !health->last_at ? "NOT CHECKED"
          : health->due                     ? "CHECK DUE"
                                            : "IN ORDER";
@@ -66,9 +69,9 @@ static const char *call_words(const fg_station_health *health) {
 
 static void write_call(FILE *out, const fg_station_health *health) {
   fprintf(out, "<div class=\"call %s\" role=\"status\"><b>%s</b><span>",
-          health->failed ? "fail"
-          : health->due  ? "again"
-                         : "pass",
+          health->failed || health->changed ? "fail"
+          : health->due                     ? "again"
+                                            : "pass",
           call_words(health));
   if (health->last_at) {
     fputs("last check ", out);
@@ -91,6 +94,12 @@ static void write_next(FILE *out, const fg_station_check *check, const fg_statio
     fputs("Clean the glass and the plate, let the scanner warm up, and check it again. If it fails "
           "again, have it seen to, or measure a model of it anew. ",
           out);
+  else if (health->changed)
+    fputs(
+        "The plate shows another tone, sharpening or blur than the baseline: set the driver as it "
+        "was (man foilgauge-scanning), clean the glass and the plate, and check again. A change "
+        "that is meant becomes the new baseline with the button below. The plate's name: ",
+        out);
   else if (health->due)
     fputs("Put the plate on the glass and scan it into the folder, under a name as ", out);
   else
@@ -103,7 +112,7 @@ static void write_next(FILE *out, const fg_station_check *check, const fg_statio
     fputs("</b>. ", out);
   }
   if (check->withhold)
-    fputs(health->due || health->failed
+    fputs(health->due || health->failed || health->changed
               ? "Until a check has passed foils are measured, but get no verdict: scan them again "
                 "then."
               : "Past due, or when a check fails, foils get no verdict.",
@@ -206,11 +215,6 @@ static void write_list(FILE *out, const history *all) {
 }
 
 static void write_history(FILE *out, const history *all, double allowed) {
-  if (!all->count) {
-    fputs("<p class=\"note\">There was no check so far.</p>\n", out);
-    return;
-  }
-  write_tiles(out, all, allowed);
   fputs("<div class=\"panels\">", out);
   for (int k = 0; k < AXES; k++)
     draw_history(out, all, k, allowed);
@@ -234,8 +238,22 @@ static void write_button(const fg_inspection *station, FILE *out) {
           scanning ? " disabled" : "", scanning ? "Scanning …" : "Scan the plate");
 }
 
-static fg_status write_checks(fg_context *ctx, const fg_station_check *check, sqlite3 *reader,
+static fg_status write_all(fg_context *ctx, const fg_inspection *station, sqlite3 *reader,
+                           const history *all, FILE *out) {
+  double allowed = station->settings->check.scale_max_ppm;
+  if (!all->count) {
+    fputs("<p class=\"note\">There was no check so far.</p>\n", out);
+    return FG_OK;
+  }
+  write_tiles(out, all, allowed);
+  FG_TRY(fg_page_scanner_state(ctx, station, reader, out));
+  write_history(out, all, allowed);
+  return FG_OK;
+}
+
+static fg_status write_checks(fg_context *ctx, const fg_inspection *station, sqlite3 *reader,
                               size_t most, FILE *out) {
+  const fg_station_check *check = &station->settings->check;
   void *block;
   fg_station_health health;
   FG_TRY(fg_station_check_health(ctx, reader, check, &health));
@@ -245,7 +263,7 @@ static fg_status write_checks(fg_context *ctx, const fg_station_check *check, sq
   if (status == FG_OK) {
     write_call(out, &health);
     write_next(out, check, &health);
-    write_history(out, all, check->scale_max_ppm);
+    status = write_all(ctx, station, reader, all, out);
   }
   free(all);
   return status;
@@ -265,7 +283,7 @@ fg_status fg_page_scanner(fg_context *ctx, fg_inspection *station, sqlite3 *read
           "(man foilgauge-recipe).</p>\n",
           out);
   else
-    FG_TRY(write_checks(ctx, check, reader, all ? HISTORY_MAX : DRAWN, out));
+    FG_TRY(write_checks(ctx, station, reader, all ? HISTORY_MAX : DRAWN, out));
   fputs("</section>\n", out);
   fg_page_end(out);
   return FG_OK;

@@ -51,15 +51,17 @@ static const member check_members[] = {
     TEXT("design", check.design,
          "The plate or ring: the path of a design of form \"discs\" with its calibrated "
          "`diameters_mm`. Discs of different sizes make a check sharper: they tell the scanner's "
-         "scale from the level at which edges are taken."),
+         "scale from the level at which edges are taken, and so show a tone curve."),
     TEXT("file_name", check.file_name, "How scans of it are called, as above."),
     {"every_h", NUMBER, AT(check.every_h), 0, 1e5,
      "Hours from check to check; 0: whenever somebody likes."},
     {"scale_max_ppm", NUMBER, AT(check.scale_max_ppm), 0, 1e6,
      "A scale (ppm) or shear (µrad) that is further off, its 2 u counted, fails."},
     {"withhold", YES, AT(check.withhold), 0, 0,
-     "true: without a check that is in time and passed, foils are measured but get no verdict. A "
-     "clock that was set back makes a check due."},
+     "true: without a check that is in time and passed, foils are measured but get no verdict. Nor "
+     "where the newest check shows another tone, sharpening or blur than its baseline. A clock "
+     "that "
+     "was set back makes a check due."},
 };
 
 enum { MEMBERS = sizeof members / sizeof *members };

@@ -55,6 +55,9 @@ import sqlite3, sys
 database = sqlite3.connect(sys.argv[1])
 for table in "scans", "files", "arrivals":
     database.execute(f"UPDATE {table} SET path = CAST(x'6279746573FFC32E706E67' AS TEXT) WHERE path = 'bytes/FF/C3.png'")
+database.execute("DROP TABLE check_values") # of version 3
+for column in "dpi", "findings", "baseline", "changes":
+    database.execute(f"ALTER TABLE checks DROP COLUMN {column}")
 database.execute("PRAGMA user_version = 1")
 database.commit()
 PY

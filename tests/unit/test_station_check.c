@@ -141,6 +141,44 @@ static void rough_edges_are_in_the_uncertainty(void **state) {
                  &(scanner){0, 300e-6, 0}, 0.3, 1.8, 400);
 }
 
+/* Without a tone curve no level is off; with one all edges of bright parts move by as much, and the
+ * scale does not. */
+static void a_tone_curve_shows_in_the_level_of_the_edges(void **state) {
+  (void)state;
+  const scanner none = {0, 0, 0};
+  fg_check_fit plain = check(&none, 1, "\"noise\":1,\"blur_px\":1.5");
+  assert_true(fabs(plain.level_um) < 4 * plain.u_level_um && plain.u_level_um < 0.1);
+  fg_check_fit brighter =
+      check(&none, 1, "\"noise\":1,\"blur_px\":1.5,\"tone_curve\":[[0,0],[128,160],[255,255]]");
+  assert_true(brighter.level_um > 0.5 && brighter.u_level_um < 0.1);
+  assert_true(fabs(brighter.scale[0]) < 4 * brighter.u_scale[0]);
+}
+
+/* Discs of one size do not tell the level from the scale. */
+static void one_size_tells_no_level(void **state) {
+  (void)state;
+  fg_design design;
+  fg_check_fit fit;
+  fg_context ctx = {0};
+  enum { POINTS = 400 };
+  fg_point edge[POINTS];
+  fg_disc discs[2];
+  for (int i = 0; i < POINTS; i++)
+    edge[i] = (fg_point){0.4002 * cos(2 * M_PI * i / POINTS) + 1e-5 * sin(i * 1.0),
+                         0.4002 * sin(2 * M_PI * i / POINTS)};
+  for (int i = 0; i < 2; i++)
+    discs[i] = (fg_disc){.bright = true,
+                         .diameter_mm = 0.8004,
+                         .coverage_deg = 360,
+                         .points = POINTS,
+                         .edge = edge,
+                         .level_doubt_mm = 1e-4};
+  const fg_measurement measurement = {.discs = discs, .disc_count = 2};
+  design_plate(&design);
+  assert_int_equal(fg_check_fit_plate(&ctx, &design, &measurement, &fit), FG_OK);
+  assert_true(isnan(fit.level_um) && isnan(fit.u_level_um));
+}
+
 /* A limit is held against the value and its uncertainty. */
 static void the_judge_counts_the_uncertainty(void **state) {
   (void)state;
@@ -176,6 +214,8 @@ int main(void) {
       cmocka_unit_test(a_good_scanner_is_not_blamed),
       cmocka_unit_test(a_tone_curve_is_in_the_uncertainty),
       cmocka_unit_test(rough_edges_are_in_the_uncertainty),
+      cmocka_unit_test(a_tone_curve_shows_in_the_level_of_the_edges),
+      cmocka_unit_test(one_size_tells_no_level),
       cmocka_unit_test(the_judge_counts_the_uncertainty),
       cmocka_unit_test(a_plate_of_other_diameters_is_refused),
   };

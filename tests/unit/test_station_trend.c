@@ -341,6 +341,72 @@ static void a_failed_check_and_a_clock_set_back_withhold(void **state) {
   assert_has(why, "The clock was set back");
 }
 
+static void set_state(fixture *f, int check, double level_um, double blur_um) {
+  run_sql(
+      f,
+      "UPDATE checks SET dpi = 2400 WHERE id = %d;"
+      "INSERT INTO check_values VALUES (%d, 'level_um', %.9g, 0.02), (%d, 'blur_um', %.9g, 0.1)",
+      check, check, level_um, check, blur_um);
+}
+
+static void press(fixture *f, const char *path, const char *fields, int code) {
+  fg_request request = {.post = true, .path = path, .last_event = -1};
+  fg_answer answer = {0};
+  char whole[200];
+  strcpy(f->station.form_token, "0123456789abcdef0123456789abcdef");
+  snprintf(whole, sizeof whole, "form=%s&%s", f->station.form_token, fields);
+  request.host = f->station.host;
+  assert_true(fg_request_read_fields(&request, whole, strlen(whole)));
+  fg_station_answer(&f->station, &request, &answer);
+  assert_int_equal(answer.code, code);
+  free(answer.body);
+}
+
+static void a_changed_picture_withholds_until_it_is_accepted(void **state) {
+  fixture *f = *state;
+  char why[400];
+  ask_for_checks(f, true);
+  add_check(f, 1, fg_station_now() - 2 * HOUR_MS, 1e-4, "pass");
+  set_state(f, 1, 0.01, 11.05);
+  assert_has(get(f, "/scanner", "", 200), "There is no baseline yet");
+  run_sql(f, "UPDATE checks SET baseline = 1");
+  const char *page = get(f, "/scanner", "", 200);
+  assert_has(page, "Tone, sharpening and blur at 2400 dpi");
+  assert_has(page, "This check is the baseline");
+  assert_has_not(page, "as the new baseline");
+  assert_false(fg_station_check_withholds(&f->station, why, sizeof why));
+  add_check(f, 2, fg_station_now() - HOUR_MS, 1e-4, "pass");
+  set_state(f, 2, -1.33, 11.1);
+  run_sql(f, "UPDATE checks SET changes = 'edges' WHERE id = 2");
+  assert_true(fg_station_check_withholds(&f->station, why, sizeof why));
+  assert_has(why, "another tone, sharpening or blur than its baseline");
+  page = get(f, "/scanner", "", 200);
+  assert_has(page, "<b>CHANGED</b>");
+  assert_has(page, "<b>-1.34</b></td><td>± 0.25</td><td class=\"words\">tone curve");
+  assert_has(page, "<td>+0.05</td><td>± 1.11</td>");
+  assert_has(page, "Take this check as the new baseline</button>");
+  assert_has(page, "FAILED</span>");
+  assert_has(get(f, "/", "", 200),
+             "The scanner's tone, sharpening or blur has changed.</b> No foil");
+  press(f, "/baseline", "id=1", 404);
+  assert_true(fg_station_check_withholds(&f->station, why, sizeof why));
+  press(f, "/baseline", "id=2", 303);
+  assert_false(fg_station_check_withholds(&f->station, why, sizeof why));
+  assert_has(get(f, "/scanner", "", 200), "<b>IN ORDER</b>");
+}
+
+/* A scale that is out of order cannot be accepted. */
+static void a_failed_check_becomes_no_baseline(void **state) {
+  fixture *f = *state;
+  ask_for_checks(f, true);
+  add_check(f, 1, fg_station_now() - HOUR_MS, 4e-4, "fail");
+  set_state(f, 1, 0.01, 11.05);
+  run_sql(f, "UPDATE checks SET changes = 'edges'");
+  assert_has(get(f, "/scanner", "", 200), "<b>OUT OF ORDER</b>");
+  assert_has_not(get(f, "/scanner", "", 200), "as the new baseline</button>");
+  press(f, "/baseline", "id=1", 404);
+}
+
 static void a_scan_of_the_plate_is_told_by_its_name(void **state) {
   (void)state;
   assert_true(fg_station_is_scanned_check("station-check-20261123-001605-310.png"));
@@ -364,6 +430,8 @@ int main(void) {
       TEST(lots_dies_and_single_bumps_are_chosen),
       TEST(names_cannot_write_the_page),
       TEST(a_check_is_due_and_done_and_due_again),
+      TEST(a_changed_picture_withholds_until_it_is_accepted),
+      TEST(a_failed_check_becomes_no_baseline),
       cmocka_unit_test(a_scan_of_the_plate_is_told_by_its_name),
       TEST(a_failed_check_and_a_clock_set_back_withhold),
   };

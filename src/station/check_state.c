@@ -1,0 +1,223 @@
+#include "station/check_state.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/text.h"
+
+/* Standard deviations by which a change is more than chance: with ten quantities a check, one false
+ * alarm in about 40 checks if they varied by u alone, and the smallest change is beyond that. */
+#define CHANGE_DEVIATIONS 3.0
+
+/* An arc's edges face some directions only. */
+#define COVERAGE_MIN 300.0
+
+static double get_blur(const fg_disc *disc) {
+  return disc->blur_um;
+}
+
+static double get_uneven_blur(const fg_disc *disc) {
+  return disc->picture.blur_px[0] / disc->picture.blur_px[1];
+}
+
+#define OF_PICTURE(member)                                                                         \
+  static double get_##member(const fg_disc *disc) {                                                \
+    return disc->picture.member;                                                                   \
+  }
+OF_PICTURE(overshoot)
+OF_PICTURE(undershoot)
+OF_PICTURE(gamma)
+OF_PICTURE(tone_s)
+OF_PICTURE(sharpen_amount)
+OF_PICTURE(noise)
+
+static double get_noise_along_x(const fg_disc *disc) {
+  return disc->picture.noise_correlation[0];
+}
+
+static double get_noise_along_y(const fg_disc *disc) {
+  return disc->picture.noise_correlation[1];
+}
+
+/* Smallest changes that matter: those that move the thickness of a strip by 0.5 µm at 2400 dpi and
+ * a blur of 1 px. A level q of the contrast moves it by 2 q sqrt(2 pi) px: 0.01 does. Overshoot
+ * stands for as much level; the middle of a power of the light moves by 0.35 per unit of gamma; an
+ * S moves a thin strip's edges by a fifth of its slope's change. A blur that changes by a tenth,
+ * and noise by half or in its correlation, tell of another focus, filter or resolution. */
+const fg_check_quantity fg_check_quantities[FG_CHECK_QUANTITIES] = {
+    {"level_um", "edges of bright parts, outwards", "µm", 2, 0.25, 0, NULL,
+     "tone curve, contrast, brightness"},
+    {"blur_um", "blur", "µm", 2, 0, 0.1, get_blur, "sharpening, dirty glass, focus, interpolation"},
+    {"uneven_blur", "blur along its longest axis over across", "", 3, 0.1, 0, get_uneven_blur,
+     "interpolation, carriage"},
+    {"overshoot", "overshoot", "", 3, 0.01, 0, get_overshoot, "sharpening"},
+    {"undershoot", "undershoot", "", 3, 0.01, 0, get_undershoot, "sharpening"},
+    {"gamma", "gamma", "", 3, 0.03, 0, get_gamma, "gamma"},
+    {"tone_s", "S-shape of the tone curve", "", 3, 0.05, 0, get_tone_s, "contrast, tone curve"},
+    {"sharpen_amount", "unsharp mask", "", 3, 0.05, 0, get_sharpen_amount, "sharpening"},
+    {"noise", "noise", "counts", 2, 0.1, 0.5, get_noise, "noise reduction, lamp, contrast"},
+    {"noise_correlation_x", "correlation of the noise along x", "", 2, 0.1, 0, get_noise_along_x,
+     "noise reduction, interpolation"},
+    {"noise_correlation_y", "correlation of the noise along y", "", 2, 0.1, 0, get_noise_along_y,
+     "noise reduction, interpolation"},
+};
+
+/* Mean over the discs, and their standard deviation: not that of the mean, as discs show how much
+ * the quantity varies over the glass. One disc does not show that: 0. */
+static void find_mean(const fg_measurement *measurement, double (*of_disc)(const fg_disc *),
+                      double *mean, double *sd) {
+  double sum = 0, squares = 0;
+  size_t count = 0;
+  for (size_t i = 0; i < measurement->disc_count; i++) {
+    double value = of_disc(&measurement->discs[i]);
+    if (!isfinite(value) || measurement->discs[i].coverage_deg < COVERAGE_MIN) continue;
+    sum += value;
+    count++;
+  }
+  *mean = count ? sum / (double)count : NAN;
+  for (size_t i = 0; i < measurement->disc_count; i++) {
+    double value = of_disc(&measurement->discs[i]);
+    if (!isfinite(value) || measurement->discs[i].coverage_deg < COVERAGE_MIN) continue;
+    squares += (value - *mean) * (value - *mean);
+  }
+  *sd = count > 1 ? sqrt(squares / (double)(count - 1)) : 0;
+}
+
+void fg_check_state_find(const fg_measurement *measurement, const fg_check_fit *fit,
+                         fg_check_state *state) {
+  *state = (fg_check_state){.dpi = llround(measurement->dpi[0]),
+                            .findings = measurement->picture.findings};
+  for (size_t k = 0; k < FG_CHECK_QUANTITIES; k++) {
+    const fg_check_quantity *row = &fg_check_quantities[k];
+    if (row->of_disc) {
+      find_mean(measurement, row->of_disc, &state->value[k], &state->u[k]);
+    } else {
+      state->value[k] = fit->level_um;
+      state->u[k] = fit->u_level_um;
+    }
+  }
+}
+
+double fg_check_state_allowed(const fg_check_state *state, const fg_check_state *baseline,
+                              size_t k) {
+  const fg_check_quantity *row = &fg_check_quantities[k];
+  double chance = CHANGE_DEVIATIONS * hypot(state->u[k], baseline->u[k]);
+  return fmax(chance, fmax(row->smallest_change, row->share * fabs(baseline->value[k])));
+}
+
+static void put(char *words, size_t size, const char *text) {
+  size_t used = strlen(words);
+  fg_text_clip(words + used, size - used, "%s%s", used ? ", " : "", text);
+}
+
+size_t fg_check_state_compare(const fg_check_state *state, const fg_check_state *baseline,
+                              char *words, size_t size) {
+  size_t count = 0;
+  char text[200];
+  words[0] = '\0';
+  for (size_t k = 0; k < FG_CHECK_QUANTITIES; k++) {
+    const fg_check_quantity *row = &fg_check_quantities[k];
+    double change = fabs(state->value[k] - baseline->value[k]);
+    if (!(change > fg_check_state_allowed(state, baseline, k))) continue;
+    fg_text_clip(text, sizeof text, "%s %.*f%s%s (was %.*f, allowed ± %.*f)", row->words,
+                 row->decimals, state->value[k], row->unit[0] ? " " : "", row->unit, row->decimals,
+                 baseline->value[k], row->decimals, fg_check_state_allowed(state, baseline, k));
+    put(words, size, text);
+    count++;
+  }
+  for (const fg_picture_words *found = fg_picture_finding_words(); found->name; found++) {
+    if (!(state->findings & ~baseline->findings & found->finding)) continue;
+    put(words, size, found->name);
+    count++;
+  }
+  return count;
+}
+
+static void name_findings(unsigned findings, char *names, size_t size) {
+  names[0] = '\0';
+  for (const fg_picture_words *found = fg_picture_finding_words(); found->name; found++)
+    if (findings & found->finding) put(names, size, found->name);
+}
+
+static unsigned read_findings(const char *names) {
+  unsigned findings = 0;
+  for (const fg_picture_words *found = fg_picture_finding_words(); found->name; found++) {
+    size_t length = strlen(found->name);
+    for (const char *at = names; (at = strstr(at, found->name)); at += length)
+      if ((at == names || at[-1] == ' ') && (!at[length] || at[length] == ','))
+        findings |= found->finding;
+  }
+  return findings;
+}
+
+fg_status fg_check_state_keep(fg_context *ctx, sqlite3 *writer, int64_t id,
+                              const fg_check_state *state) {
+  fg_query query;
+  char names[500];
+  name_findings(state->findings, names, sizeof names);
+  fg_query_begin(writer, "UPDATE checks SET dpi = ?, findings = ? WHERE id = ?", &query);
+  fg_query_integer(&query, state->dpi);
+  fg_query_text(&query, names);
+  fg_query_integer(&query, id);
+  fg_query_row(&query);
+  FG_TRY(fg_query_end(ctx, &query, "keeping a check"));
+  fg_query_begin(writer, "INSERT INTO check_values (check_id, name, value, u) VALUES (?, ?, ?, ?)",
+                 &query);
+  for (size_t k = 0; k < FG_CHECK_QUANTITIES; k++) {
+    if (isnan(state->value[k])) continue;
+    fg_query_again(&query);
+    fg_query_integer(&query, id);
+    fg_query_text(&query, fg_check_quantities[k].name);
+    fg_query_number(&query, state->value[k]);
+    fg_query_number(&query, state->u[k]);
+    fg_query_row(&query);
+  }
+  return fg_query_end(ctx, &query, "keeping a check");
+}
+
+static fg_status load_values(fg_context *ctx, sqlite3 *connection, int64_t id,
+                             fg_check_state *state) {
+  fg_query query;
+  fg_query_begin(connection, "SELECT name, value, u FROM check_values WHERE check_id = ?", &query);
+  fg_query_integer(&query, id);
+  while (fg_query_row(&query))
+    for (size_t k = 0; k < FG_CHECK_QUANTITIES; k++)
+      if (!strcmp(fg_query_get_text(&query, 0), fg_check_quantities[k].name)) {
+        state->value[k] = fg_query_get_number(&query, 1);
+        state->u[k] = fg_query_get_number(&query, 2);
+      }
+  return fg_query_end(ctx, &query, "reading the checks");
+}
+
+fg_status fg_check_state_load(fg_context *ctx, sqlite3 *connection, int64_t id,
+                              fg_check_state *state) {
+  fg_query query;
+  *state = (fg_check_state){.dpi = 0};
+  for (size_t k = 0; k < FG_CHECK_QUANTITIES; k++)
+    state->value[k] = state->u[k] = NAN;
+  fg_query_begin(connection, "SELECT dpi, findings FROM checks WHERE id = ?", &query);
+  fg_query_integer(&query, id);
+  if (fg_query_row(&query)) {
+    state->dpi = fg_query_get_integer(&query, 0);
+    state->findings = read_findings(fg_query_get_text(&query, 1));
+  }
+  FG_TRY(fg_query_end(ctx, &query, "reading the checks"));
+  return load_values(ctx, connection, id, state);
+}
+
+fg_status fg_check_state_baseline(fg_context *ctx, sqlite3 *connection, int64_t dpi, int64_t *at,
+                                  fg_check_state *state) {
+  fg_query query;
+  int64_t id = 0;
+  *at = 0;
+  fg_query_begin(
+      connection,
+      "SELECT id, at FROM checks WHERE baseline = 1 AND dpi = ? ORDER BY id DESC LIMIT 1", &query);
+  fg_query_integer(&query, dpi);
+  if (fg_query_row(&query)) {
+    id = fg_query_get_integer(&query, 0);
+    *at = fg_query_get_integer(&query, 1);
+  }
+  FG_TRY(fg_query_end(ctx, &query, "reading the checks"));
+  return id ? fg_check_state_load(ctx, connection, id, state) : FG_OK;
+}

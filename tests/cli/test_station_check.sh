@@ -1,0 +1,144 @@
+#!/bin/bash
+# The scanner's check measures tone, sharpening and blur: with a driver that changes one of them foils
+# get no verdict, until the driver is as it was or the change is accepted; what scatters is no change.
+# Usage: test_station_check.sh PROGRAM
+set -euo pipefail
+program=$1
+renderer=${FOILGAUGE_RENDERER:-$program}
+work=$(mktemp -d)
+station=
+trap '[ -z "$station" ] || kill "$station" 2>/dev/null || true; rm -rf "$work"' EXIT
+fail() {
+  echo "test_station_check: $*" >&2
+  exit 1
+}
+# plate SEED FILE [SCANNER'S MEMBERS]: laid elsewhere each time
+plate() {
+  printf '{"schema": "foilgauge/render/1", "seed": %s, "discs": [
+    {"centre_mm": [2.%s, 2], "radius_mm": 0.5}, {"centre_mm": [6, 2.%s], "radius_mm": 1},
+    {"centre_mm": [2.6, 6.2], "radius_mm": 1.4}],
+    "scanner": {"dpi": 2400, "noise": 1.5, "blur_px": 1.2 %s}}' "$1" "$1" "$1" "${3-}" >"$work/spec.json"
+  "$renderer" render "$work/spec.json" -o "$2"
+}
+foil() { # SEED FILE
+  printf '{"schema": "foilgauge/render/1", "seed": %s, "scanner": {"dpi": 1200},
+    "foils": [{"rotate_deg": -90, "design": {"bump_count": 2}}]}' "$1" >"$work/spec.json"
+  "$renderer" render "$work/spec.json" -o "$2"
+}
+# again SQL: the rows of a query
+ask() {
+  python3 -c 'import sqlite3, sys
+for row in sqlite3.connect(sys.argv[1]).execute(sys.argv[2]): print(*row, sep="|")' "$work/in/foilgauge.sqlite" "$1"
+}
+once() {
+  "$program" station "$work/in" --recipe "$work/recipe.json" --once 2>"$work/said" || [ $? -le 3 ] ||
+    fail "--once: $(cat "$work/said")"
+}
+newest() { ask "SELECT $1 FROM checks ORDER BY id DESC LIMIT 1"; }
+
+mkdir "$work/in"
+echo '{"schema": "foilgauge/design/1", "form": "discs", "diameters_mm": [1, 2, 2.8]}' >"$work/plate.json"
+cat >"$work/recipe.json" <<'R'
+{"schema": "foilgauge/recipe/1",
+ "station": {"file_name": "{serial}", "check": {"design": "plate.json", "file_name": "check*", "every_h": 24,
+   "scale_max_ppm": 500, "withhold": true}},
+ "design": {"schema": "foilgauge/design/1", "bump_count": 2,
+            "tolerances": {"radius_mm": {"min": 0.1, "max": 90}}}}
+R
+plate 1 "$work/in/check_1.png"
+once
+grep -q 'in order.*; the baseline of tone, sharpening and blur' "$work/said" || fail "no baseline: $(cat "$work/said")"
+plate 2 "$work/in/check_2.png"
+foil 1 "$work/in/A.png"
+once
+grep -q 'as in the baseline of ' "$work/said" || fail "the plate laid elsewhere: $(cat "$work/said")"
+[ "$(newest "changes || baseline")" = 0 ] || fail "a change without any: $(newest changes)"
+[ "$(ask "SELECT withheld IS NULL FROM scans WHERE path = 'A.png'")" = 1 ] || fail "withheld without cause"
+
+# changed NAME WORDS SCANNER: a driver that does so is told, and the next foil gets no verdict.
+seed=3
+changed() {
+  plate $seed "$work/in/check_$1.png" ", $3"
+  foil $seed "$work/in/$1.png"
+  once
+  grep -q "check_$1.png scanner in order.*the picture has changed since.*$2" "$work/said" ||
+    fail "$1 is not told: $(cat "$work/said")"
+  [ "$(newest "verdict || baseline")" = pass0 ] || fail "$1: $(newest "verdict, baseline")"
+  foil "1$seed" "$work/in/after_$1.png"
+  once
+  ask "SELECT withheld FROM scans WHERE path = 'after_$1.png'" | grep -q 'another tone, sharpening or blur' ||
+    fail "$1: not withheld: $(ask "SELECT path, withheld FROM scans")"
+  seed=$((seed + 1))
+}
+changed sharpened blur '"unsharp_mask": {"amount_pct": 100, "radius_px": 1}'
+changed brighter 'edges of bright parts, outwards' '"tone_curve": [[0, 0], [128, 160], [255, 255]]'
+changed contrast 'edges of bright parts\|blur' '"tone_curve": [[0, 0], [64, 30], [128, 128], [192, 226], [255, 255]]'
+
+# As it was: foils get their verdicts again.
+plate 8 "$work/in/check_good.png"
+once
+foil 8 "$work/in/B.png"
+once
+[ "$(ask "SELECT withheld IS NULL FROM scans WHERE path = 'B.png'")" = 1 ] || fail "withheld after a good check"
+
+# A change that is meant is accepted on the page, once, and is what later checks are held against.
+plate 9 "$work/in/check_new.png" ', "tone_curve": [[0, 0], [128, 160], [255, 255]]'
+"$program" station "$work/in" --recipe "$work/recipe.json" --port 0 >"$work/address" 2>"$work/err" &
+station=$!
+python3 - "$work" <<'P' || fail "accepting: $(cat "$work/err")"
+import re, sys, time, urllib.error, urllib.parse, urllib.request
+end = time.time() + 30
+def wait(what):
+    while time.time() < end:
+        found = what()
+        if found:
+            return found
+        time.sleep(0.05)
+    sys.exit("waited in vain")
+base = wait(lambda: open(sys.argv[1] + "/address").read().strip())
+page = lambda: urllib.request.urlopen(base + "scanner").read().decode()
+wait(lambda: "CHANGED" in page())
+text = page()
+token = re.search(r'name="form" value="(\w+)"', text).group(1)
+check = re.search(r'name="id" value="(\d+)"', text).group(1)
+def post(fields):
+    try:
+        return urllib.request.urlopen(base + "baseline", urllib.parse.urlencode(fields).encode()).status
+    except urllib.error.HTTPError as error:
+        return error.code
+assert post({"id": check}) == 403, "without the page's token"
+assert "CHANGED" in page()
+assert post({"form": token, "id": str(int(check) - 1)}) == 404
+assert post({"form": token, "id": check}) == 200
+text = page()
+assert "IN ORDER" in text and "This check is the baseline" in text and "as the new baseline" not in text, text
+P
+kill "$station"
+wait "$station" 2>/dev/null || true
+station=
+plate 12 "$work/in/check_like_it.png" ', "tone_curve": [[0, 0], [128, 160], [255, 255]]'
+once
+[ "$(newest changes)" = "" ] || fail "as accepted, and a change: $(newest changes)"
+plate 13 "$work/in/check_as_at_first.png"
+once
+[ "$(newest changes)" != "" ] || fail "no change against what was accepted"
+
+# Another resolution has a baseline of its own; the states of a database of version 2 are not known.
+sed 's/2400/1200/' "$work/spec.json" >"$work/coarse.json"
+"$renderer" render "$work/coarse.json" -o "$work/in/check_1200.png"
+once
+[ "$(newest "baseline || changes")" = 1 ] || fail "at 1200 dpi: $(newest "baseline, changes")"
+python3 - "$work/in/foilgauge.sqlite" <<'P'
+import sqlite3, sys
+database = sqlite3.connect(sys.argv[1])
+database.execute("DROP TABLE check_values")
+for column in "dpi", "findings", "baseline", "changes":
+    database.execute(f"ALTER TABLE checks DROP COLUMN {column}")
+database.execute("PRAGMA user_version = 2")
+database.commit()
+P
+count=$(ask "SELECT count(*) FROM checks")
+plate 14 "$work/in/check_migrated.png" ', "tone_curve": [[0, 0], [128, 160], [255, 255]]'
+once
+[ "$(newest "baseline || changes")" = 1 ] || fail "after a migration: $(newest "baseline, changes")"
+[ "$(ask "SELECT count(*) FROM checks WHERE dpi IS NULL")" = "$count" ] || fail "checks of version 2 are gone"
