@@ -79,7 +79,7 @@
  *         y + gap, the gap itself being taken out as a scanner does it; dx_px, dy_px [0]: by which
  *         it shows everything further right and down; magnification_ppm [0]: along x about the
  *         picture's middle; background, contrast [as above; contrast may be 0]. Noise is each
- *         line's own; the truth has the course along y of red and blue against green. No rough.jpeg
+ *         line's own; the truth has the course along y of red and blue against green
  *     rough:
  *       one_sided_blur_px [0]: blur added (in squares) to edges that go from bright to dark along
  *         the carriage's way, in proportion to the edge normal's share along it; one_sided_way
@@ -93,7 +93,8 @@
  *       halo {fraction, length_px}: that share of the light goes to two Gaussians, 0.6 and 1.6 L
  *       side_wall {amplitude, direction_deg, length_px, gap_px}: a band (negative: a shadow) beside
  *         edges that face the direction, decaying over the length, times the cosine to it
- *       jpeg {quality}: the finished picture, after all the driver did, as JPEG leaves it
+ *       jpeg {quality}: the finished picture, after all the driver did, as JPEG leaves it; 8 bit.
+ *         Colours as luminance and colour differences of half the resolution (4:2:0)
  *   effects[] {id, parameters}: src/render/spec_effects.c holds the table. Free-form curves have
  *     knots [[coordinate, um], ...]: 2 to 64, ascending; natural cubic spline, constant beyond:
  *     free.scan.x, free.scan.y: mm; moves "x" or "y" [the coordinate's]; at most 100 um per mm

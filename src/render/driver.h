@@ -64,7 +64,7 @@ typedef struct fg_driver {
   float *numbers, *smoothed; /* rings of rows, channel after channel; along the row only */
   float *blurred;            /* one row */
   void *sharpened;           /* one row */
-  uint8_t *block;            /* eight rows for JPEG */
+  uint8_t *block;            /* rows for JPEG */
   fg_jpeg jpeg;
 } fg_driver;
 

@@ -7,7 +7,7 @@
 #include "core/memory.h"
 #include "render/driver.h"
 
-enum { JPEG_ROWS = 8 };
+enum { JPEG_ROWS = 16 };                /* two blocks, or one of colours */
 static const double KERNEL_REACH = 4.5; /* sd; beyond it are 7e-6 of a Gaussian */
 
 static size_t row_values(const fg_driver *driver) {
@@ -63,7 +63,8 @@ static fg_status give_block(fg_context *ctx, fg_driver *driver, const void *pixe
   memcpy(driver->block + (size_t)last * bytes, pixels, bytes);
   driver->given++;
   if (last + 1 < JPEG_ROWS && driver->given < driver->picture.height) return FG_OK;
-  fg_jpeg_squeeze(&driver->jpeg, driver->block, driver->picture.width, last + 1, (int64_t)bytes);
+  (driver->picture.channels == 1 ? fg_jpeg_squeeze : fg_jpeg_squeeze_colours)(
+      &driver->jpeg, driver->block, driver->picture.width, last + 1, (int64_t)bytes);
   for (int64_t y = 0; y <= last; y++)
     FG_TRY(driver->row(ctx, driver->user, first + y, driver->block + (size_t)y * bytes));
   return FG_OK;

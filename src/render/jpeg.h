@@ -1,13 +1,14 @@
-/* What JPEG does to gray pixels: every 8 × 8 block through the discrete cosine transform, its
- * coefficients rounded to multiples of the luminance table of ITU-T T.81 annex K. */
+/* What JPEG does to pixels: every 8 × 8 block through the discrete cosine transform, its
+ * coefficients rounded to multiples of the tables of ITU-T T.81 annex K. Colours as luminance and
+ * two colour differences of half the resolution (JFIF, 4:2:0), as most encoders do. */
 #ifndef FG_RENDER_JPEG_H
 #define FG_RENDER_JPEG_H
 
 #include <stdint.h>
 
 typedef struct fg_jpeg {
-  float cosines[8][8]; /* orthonormal: [frequency][place] */
-  float steps[64];
+  float cosines[8][8];                  /* orthonormal: [frequency][place] */
+  float luminance[64], chrominance[64]; /* steps of the coefficients */
 } fg_jpeg;
 
 /* quality from 1 to 100, scaled as the Independent JPEG Group does. */
@@ -16,5 +17,9 @@ void fg_jpeg_init(int quality, fg_jpeg *jpeg);
 /* In place, for rows from a multiple of 8; incomplete blocks repeat their last row or column. */
 void fg_jpeg_squeeze(const fg_jpeg *jpeg, uint8_t *pixels, int64_t width, int64_t rows,
                      int64_t stride);
+
+/* The same of red, green and blue, for rows from a multiple of 16; `stride` is in bytes. */
+void fg_jpeg_squeeze_colours(const fg_jpeg *jpeg, uint8_t *pixels, int64_t width, int64_t rows,
+                             int64_t stride);
 
 #endif

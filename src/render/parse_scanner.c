@@ -160,16 +160,6 @@ static fg_status check_scanner(const fg_place *place, const cJSON *object,
   return FG_OK;
 }
 
-static fg_status read_colour_lines(const fg_place *place, const cJSON *object,
-                                   fg_scanner *scanner) {
-  FG_TRY(fg_colour_lines_read(place, object, scanner->background, scanner->contrast,
-                              &scanner->colour));
-  if (scanner->colour.stated && scanner->jpeg_quality)
-    return fg_member_fail(place, "rough.jpeg", NULL,
-                          "blocks are drawn of gray scans only; leave colour_lines out");
-  return FG_OK;
-}
-
 fg_status fg_spec_read_scanner(const fg_place *place, const cJSON *object, fg_scanner *scanner) {
   static const fg_member table[] = {
       FG_SPEC_INTEGER(fg_scanner, bits, 8, 16),
@@ -206,7 +196,9 @@ fg_status fg_spec_read_scanner(const fg_place *place, const cJSON *object, fg_sc
        0.5},
       FG_SPEC_END,
   };
-  if (!object) return read_colour_lines(place, NULL, scanner);
+  if (!object)
+    return fg_colour_lines_read(place, NULL, scanner->background, scanner->contrast,
+                                &scanner->colour);
   FG_TRY(fg_members_read(place, object, table, scanner));
   FG_TRY(read_axes(place, object, "dpi", 50, 20000, scanner->dpi));
   FG_TRY(read_axes(place, object, "blur_px", LEAST_BLUR_PX, 10, scanner->blur_px));
@@ -222,7 +214,8 @@ fg_status fg_spec_read_scanner(const fg_place *place, const cJSON *object, fg_sc
   FG_TRY(read_rough(&rough, fg_spec_member(object, "rough"), scanner));
   FG_TRY(check_scanner(place, object, scanner));
   FG_TRY(fg_driver_read(place, object, scanner->bits, &scanner->driver));
-  return read_colour_lines(place, object, scanner);
+  return fg_colour_lines_read(place, object, scanner->background, scanner->contrast,
+                              &scanner->colour);
 }
 
 fg_scanner fg_spec_default_scanner(void) {

@@ -115,6 +115,4 @@ bad '{"gap": [8, 0, 8]}' "colour_lines.gap .*no such member"
 bad '{"dx_px": [0, 0, 50]}' "colour_lines.dx_px"
 bad '{"contrast": [175, 240, 175]}' "background \\+ contrast must lie within 0 and 255 for every line"
 bad '3' "must be an object"
-echo '{"schema": "foilgauge/render/1", "scanner": {"rough": {"jpeg": {"quality": 80}}, "colour_lines": {}}}' >bad.json
-expect 65 "blocks are drawn of gray scans only" "$program" render bad.json -o bad.png
 exit $failed

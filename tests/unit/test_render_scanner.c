@@ -177,6 +177,32 @@ static void jpeg_keeps_what_is_flat_and_rounds_the_rest(void **state) {
     assert_true(abs(once[i] - ramp[i]) <= 1);
 }
 
+/* Gray colours come out as gray does; a colour's edge is only known to two pixels. */
+static void jpeg_halves_the_resolution_of_colours(void **state) {
+  (void)state;
+  fg_jpeg jpeg;
+  uint8_t gray[20 * 27], colours[20 * 27 * 3];
+  fg_jpeg_init(70, &jpeg);
+  for (int i = 0; i < 20 * 27; i++)
+    gray[i] = colours[3 * i] = colours[3 * i + 1] = colours[3 * i + 2] =
+        (uint8_t)(90 + 5 * (i % 27) + 7 * (i / 27 % 4));
+  fg_jpeg_squeeze(&jpeg, gray, 27, 20, 27);
+  fg_jpeg_squeeze_colours(&jpeg, colours, 27, 20, 27 * 3);
+  for (int i = 0; i < 20 * 27 * 3; i++)
+    assert_int_equal(colours[i], gray[i / 3]);
+
+  uint8_t edge[16 * 16 * 3]; /* red to blue of one luminance, behind column 4 */
+  fg_jpeg_init(100, &jpeg);
+  for (int i = 0; i < 16 * 16; i++)
+    memcpy(edge + 3 * i, i % 16 < 5 ? (uint8_t[]){180, 90, 100} : (uint8_t[]){60, 130, 209}, 3);
+  fg_jpeg_squeeze_colours(&jpeg, edge, 16, 16, 16 * 3);
+  assert_close(edge[3 * 2], 180, 3);
+  assert_close(edge[3 * 8], 60, 3);
+  assert_close(edge[3 * 8 + 2], 209, 3);
+  assert_close(edge[3 * 4], 120, 4);
+  assert_close(edge[3 * 5], 120, 4);
+}
+
 #define BUSY                                                                                       \
   "{\"schema\":\"foilgauge/render/1\",\"seed\":%d,\"foils\":[{\"design\":{\"bump_count\":1},"      \
   "\"rotate_deg\":15,\"radius_springback\":{\"mean\":0.02,\"sd\":0.01}}],\"scanner\":{"            \
@@ -243,6 +269,7 @@ int main(void) {
       cmocka_unit_test(halo_moves_light),
       cmocka_unit_test(wall_shows_on_one_side),
       cmocka_unit_test(jpeg_keeps_what_is_flat_and_rounds_the_rest),
+      cmocka_unit_test(jpeg_halves_the_resolution_of_colours),
       cmocka_unit_test(same_spec_same_bytes_whatever_the_strip),
       cmocka_unit_test(file_holds_the_rows),
   };
