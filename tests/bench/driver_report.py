@@ -58,6 +58,13 @@ HEADER = ["", "values", "within 2u %", "flagged %", "within 2u or flagged %", "s
           "wrong verdicts, silent", "wrong verdicts", "median u(t) µm", "median u(d) µm"]  # fmt: skip
 
 
+def sentence(rows):
+    silent, wrong = sum(map(is_silent, rows)), sum(r["wrong"] and not r["flagged"] for r in rows)
+    said = per_cent(is_within(r) or r["flagged"] for r in rows)
+    return (f"Of {len(rows):,} values {per_cent(map(is_within, rows))} % are within 2u and {said} % within 2u or flagged; "
+            f"{silent} ({100 * silent / len(rows):.2f} %) are silently beyond 4u, and {wrong} verdicts silently wrong.")  # fmt: skip
+
+
 def kinds_table(rows):
     body = [summary(k.words, own) for k in kinds.KINDS if (own := [r for r in rows if r["kind"] == k.name])]
     for name in kinds.RENDERERS:
@@ -104,11 +111,12 @@ def known_table(rows):
             part = [r for r in own if r["variant"] == variant and r["part"] == "foils"]
             line += thickness_cells(part)
             line += [per_cent(is_within(r) or r["flagged"] for r in part if r["quantity"] in ("thickness", "clearance")),
-                     sum(is_silent(r) for r in part if r["quantity"] in ("thickness", "clearance"))]  # fmt: skip
+                     sum(is_silent(r) for r in part if r["quantity"] in ("thickness", "clearance")),
+                     sum(r["wrong"] for r in part)]  # fmt: skip
         if own:
             body.append(line)
     head = [f"{v}: {c}" for v in variants for c in ("median error µm", "largest error µm", "median u µm",
-            "t, C within 2u or flagged %", "t, C silently beyond 4u")]  # fmt: skip
+            "t, C within 2u or flagged %", "t, C silently beyond 4u", "wrong verdicts")]  # fmt: skip
     return lib.table([""] + head, body)
 
 
@@ -143,6 +151,8 @@ A value is **flagged** where its foil, bump or disc has a flag that the plain sc
 withheld. **Silently beyond 4u**: not flagged. **Wrong verdict**: a limit that the true value keeps is failed, or one that it
 exceeds is passed.
 
+{sentence}
+
 {kinds}
 ## By quantity
 
@@ -166,7 +176,8 @@ def page(rows, clean, missing, options):
     scan = [r for r in rows if r["variant"] == "scan"]
     words = "".join([" --quick" if options.quick else "", f" --kinds {options.kinds}" if options.kinds else "",
                      " --before BEFORE" if options.before else ""])  # fmt: skip
-    text = TEXT.format(words=words, version=version_of(options.program), seeds=options.seeds, kinds=kinds_table(scan),
+    text = TEXT.format(words=words, version=version_of(options.program), seeds=options.seeds, sentence=sentence(scan),
+                       kinds=kinds_table(scan),
                        quick=" (a sixth of all cases)" if options.quick else "", quantities=quantities_table(scan),
                        strengths=strengths_table(scan))  # fmt: skip
     if any(r["variant"] != "scan" for r in rows):

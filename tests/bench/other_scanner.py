@@ -2,12 +2,14 @@
 the two need not agree on. What the loop is worth on data that its makers did not make is judged on these.
 
 Usage: other_scanner.py OUT_DIR --seed S [--name NAME] [--effect ID=VALUE[,MEMBER=VALUE]...]... [--rotate DEG] [--pair DEG]
+       [--scanner JSON]
 
   python3 tests/bench/other_scanner.py out --seed 7 --effect scan.shear=1e-3 --effect scan.carriage_ripple=8,period_mm=3
+  python3 tests/bench/other_scanner.py out --seed 7 --scanner '{"unsharp_mask": {"amount_pct": 100, "radius_px": 1}}'
 
 writes out/other_7.png and out/other_7.truth.json; with --pair 90 other_7a and other_7b: the same foil, turned. VALUE
 is the effect's ratio, or its amplitude in um; members are those of `foilgauge render`. Foil and scanner follow from
-the seed alone.
+the seed alone, but for members of the scanner that --scanner states.
 
 An outline is covered exactly (other_strip.py): pixels are areas of a polygon whose edges scatter by 0.15 to 0.35 px with
 an exponential or a Matern correlation of 5 to 11 px. Then, in this order: the optics' Gaussian and a halo of
@@ -30,6 +32,7 @@ from loop_foil import natural_spline
 from other_strip import bump_of, coverage, disc_outline, leaf_outline, outline_of
 
 STEP_PX = 0.25
+SIZE_STEP = 24  # px: sizes that resampling divides
 BAND = 128  # rows; whole blocks of JPEG
 # ITU T.81, annex K.1: luminance.
 JPEG_TABLE = np.array([
@@ -369,13 +372,14 @@ def render_other(spec, path):
     write_png(path, picture_of(spec), spec["scanner"]["dpi"])
 
 
-def specs_of(seed, effects, rotate_deg=None, pair_deg=None):
+def specs_of(seed, effects, rotate_deg=None, pair_deg=None, members=None):
     rng = np.random.default_rng([seed, 80])
-    scanner, foil = draw_other(rng), draw_foil(rng, GEN2)
+    scanner, foil = {**draw_other(rng), **(members or {})}, draw_foil(rng, GEN2)
     if rotate_deg is not None:
         foil["rotate_deg"] = rotate_deg
     scans = [[foil]] if pair_deg is None else [[foil], [{**foil, "rotate_deg": foil["rotate_deg"] + pair_deg}]]
-    width, height = (int(v / 25.4 * scanner["dpi"]) for v in place(rng, scans))
+    step = SIZE_STEP if "resampled_from_dpi" in scanner else 1
+    width, height = (int(v / 25.4 * scanner["dpi"]) // step * step for v in place(rng, scans))
     return [{"seed": 1000 * seed + k, "width_px": width, "height_px": height, "foils": foils, "scanner": scanner,
              "effects": effects} for k, foils in enumerate(scans)]  # fmt: skip
 
@@ -399,9 +403,10 @@ def main():
     parser.add_argument("--effect", type=parse_effect, action="append", default=[])
     parser.add_argument("--rotate", type=float, help="direction of the foil's middle, degrees")
     parser.add_argument("--pair", type=float, metavar="DEG", help="a second scan of the same foil, turned")
+    parser.add_argument("--scanner", type=json.loads, metavar="JSON", help="members instead of those drawn")
     options = parser.parse_args()
     os.makedirs(options.folder, exist_ok=True)
-    specs = specs_of(options.seed, options.effect, options.rotate, options.pair)
+    specs = specs_of(options.seed, options.effect, options.rotate, options.pair, options.scanner)
     for k, spec in enumerate(specs):
         name = (options.name or f"other_{options.seed}") + ("ab"[k] if len(specs) > 1 else "")
         base = os.path.join(options.folder, name)
