@@ -6,6 +6,7 @@
 #include "core/memory.h"
 #include "core/select.h"
 #include "core/spread.h"
+#include "vision/picture.h"
 
 enum { CENTRE_ROUNDS = 3, TRIM_ROUNDS = 4, SECTORS_LEAST = 12, SECTORS_MOST = 64 };
 #define SECTOR_PX  48.0
@@ -209,6 +210,7 @@ fg_status fg_disc_edge_measure(fg_context *ctx, const fg_tiles *tiles, const fg_
   edge->picture = fg_picture_unknown();
   edge->gamma = tone->gamma;
   fg_status status = run(ctx, &work, candidate, tone, edge);
+  if (status == FG_OK) status = fg_picture_of_ring(ctx, &work, edge, &edge->picture);
   fg_disc_work_free(&work);
   if (status != FG_OK) fg_disc_edge_free(edge);
   return status;

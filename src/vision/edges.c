@@ -7,6 +7,7 @@
 #include "core/memory.h"
 #include "core/select.h"
 #include "vision/ends.h"
+#include "vision/picture.h"
 
 /* Distance of stations, and half window of the reference line. Both are lengths of the foil, whose
  * fillets are 0.2 mm long: a line that is smoothed over more cuts the corner and bends the scale
@@ -178,6 +179,7 @@ fg_status fg_edges_measure(fg_context *ctx, const fg_tiles *tiles,
   strip->facts = trace->facts;
   strip->picture = fg_picture_unknown();
   FG_TRY_EXIT(run(ctx, &work, &strip->facts));
+  FG_TRY_EXIT(fg_picture_of_strip(ctx, &work, &strip->picture));
   strip->count = reference.count;
   fill_stations(&work, dpi, strip);
   find_box(&reference, strip);

@@ -6,6 +6,7 @@
 
 #include "core/memory.h"
 #include "core/select.h"
+#include "vision/picture.h"
 
 enum { SECTORS_MOST = 24, STATIONS_LEAST = 4, PLACES = 9 };
 #define SECTOR_PX   96.0
@@ -302,9 +303,11 @@ fg_status fg_line_edge_measure(fg_context *ctx, const fg_line_view *view, const 
                                const fg_tone *tone, fg_disc_edge *edge, double *next_px) {
   fg_disc_work work = {.tiles = view->tiles, .shape = &view->shape, .gamma = tone->gamma};
   memset(edge, 0, sizeof *edge);
+  edge->picture = fg_picture_unknown();
   edge->gamma = tone->gamma;
   fg_status status = open_band(ctx, stretch, view->middle, &work, next_px);
   if (status == FG_OK) status = solve(ctx, &work, stretch, tone, edge);
+  if (status == FG_OK) status = fg_picture_of_ring(ctx, &work, edge, &edge->picture);
   fg_disc_work_free(&work);
   if (status != FG_OK) fg_disc_edge_free(edge);
   return status;

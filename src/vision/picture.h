@@ -1,0 +1,58 @@
+/* What a scanner's driver or the light has made of a picture, found from the pixels that were
+ * collected around its edges, and from a few tiles beside them. Fills those members of a state that
+ * pixels tell without a model; the others stay as they are. */
+#ifndef FG_VISION_PICTURE_H
+#define FG_VISION_PICTURE_H
+
+#include "foilgauge/picture.h"
+#include "vision/disc_edge.h"
+#include "vision/edges.h"
+
+/* Of a strip whose edges are found. picture_strip.c */
+fg_status fg_picture_of_strip(fg_context *ctx, const fg_edge_work *work, fg_picture_state *state);
+
+/* Of one round or straight edge. picture_ring.c */
+fg_status fg_picture_of_ring(fg_context *ctx, const fg_disc_work *work, const fg_disc_edge *edge,
+                             fg_picture_state *state);
+
+/* Counts of the pixels near edges. picture_levels.c */
+typedef struct fg_value_counts {
+  size_t of[256], total; /* by 8-bit count */
+  int low_byte[256];     /* of the 16-bit values of each count; -1: none, -2: several */
+} fg_value_counts;
+
+void fg_value_counts_clear(fg_value_counts *counts);
+
+static inline void fg_value_counts_add(fg_value_counts *counts, float value) {
+  int raw = (int)(value * 257 + 0.5f), high = raw >> 8, low = raw & 255;
+  if (raw < 0 || high > 255) return;
+  counts->of[high]++;
+  counts->total++;
+  if (counts->low_byte[high] == -1) counts->low_byte[high] = low;
+  if (counts->low_byte[high] != low) counts->low_byte[high] = -2;
+}
+
+/* Gray levels in use, gaps between them, clipping at either end. `levels`: counts inside and
+ * outside of the material; state->noise is used. */
+void fg_picture_inspect_levels(const fg_value_counts *counts, const double levels[2],
+                               fg_picture_state *state);
+
+/* Tiles to look at, all of which are kept. */
+typedef struct fg_tile_choice {
+  const fg_tile *tiles[16];
+  size_t count;
+} fg_tile_choice;
+
+/* Noise and its correlation, from tiles that hold nothing but background. picture_noise.c */
+void fg_picture_inspect_noise(const fg_tile_choice *flat, int bytes_per_pixel,
+                              fg_picture_state *state);
+
+/* Steps across multiples of 8 px, from tiles along the edges. picture_blocks.c */
+void fg_picture_inspect_blocks(const fg_tile_choice *choice, int bytes_per_pixel, double contrast,
+                               fg_picture_state *state);
+
+/* Where both edges of the strip jump along y at one row. picture_rows.c */
+fg_status fg_picture_inspect_rows(fg_context *ctx, const fg_edge_work *work,
+                                  fg_picture_state *state);
+
+#endif

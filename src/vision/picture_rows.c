@@ -1,0 +1,280 @@
+/* Where rows of a picture jump: the edges of a strip do so at one row, wherever they cross it. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/select.h"
+#include "core/small_solve.h"
+#include "core/spread.h"
+#include "vision/picture.h"
+
+/* The edge on either side of a place, as means over two stretches of stations: a step there, and a
+ * straight line along it. */
+enum { STRETCHES = 2, PEAK = 5, ENDS = 24 };
+static const int stretches[STRETCHES][2] = {{1, 3}, {4, 7}};
+/* What bends at a step is a cubic over so many stations. */
+enum { BENDS = 4, FIT_REACH = 12, SHIFT_MOST = 5 };
+/* An edge that runs along the rows does not say where it crosses one. */
+#define CROSSING_LEAST 0.2
+/* A fillet bends both edges at one station, a jump moves them at one row: where these lie so many
+ * rows apart they can be told. An edge that runs across the rows shows no jump. */
+#define FIT_SIGMAS    5.0
+#define TOLD_ROWS     3.5
+#define STEP_SIGMAS   4.0
+#define JUMP_LEAST_PX 0.5
+/* Both edges agree in row and in size, and places that show one jump do. */
+#define SAME_ROWS      2.0
+#define APART_STATIONS 2.0
+#define SAME_SHARE     0.15
+#define SAME_PX        0.2
+
+/* Tiles in which a row must be the same as the next; noise of less than NOISE_LEAST counts would
+ * leave it so. Where more than a tenth of the rows are doubled the driver has enlarged the picture.
+ */
+enum { DOUBLED_TILES = 3 };
+#define NOISE_LEAST   0.4
+#define DOUBLED_SHARE 0.1
+
+typedef struct crossing {
+  double y, jump_px;
+  size_t station;
+  int side;
+} crossing;
+
+typedef struct row_search {
+  const fg_edge_work *work;
+  double weights[STRETCHES];
+  fg_point *sums; /* of the edge's points before a station, count + 1 */
+  double *steps;  /* at each station; NaN: not known */
+  double *scratch;
+  crossing *crossings;
+  size_t crossing_count, capacity;
+} row_search;
+
+/* Weights of what the stretches of both sides differ by: a step counts in full, a line vanishes. */
+static void find_weights(double weights[STRETCHES]) {
+  double middle[STRETCHES];
+  for (int k = 0; k < STRETCHES; k++)
+    middle[k] = 0.5 * (stretches[k][0] + stretches[k][1]);
+  weights[0] = middle[1] / (middle[1] - middle[0]);
+  weights[1] = 1 - weights[0];
+}
+
+/* Where the edge lies at a station. */
+static fg_point edge_at(const row_search *r, size_t i, int side) {
+  const fg_reference_station *at = &r->work->reference->stations[i];
+  double across = (double)r->work->stations[i].edge_px[side];
+  return (fg_point){at->x - across * at->ty, at->y + across * at->tx};
+}
+
+/* The step at one station along its normal, from the edge's own points. */
+static double step_at(const row_search *r, size_t i) {
+  const fg_reference_station *at = &r->work->reference->stations[i];
+  double step = 0;
+  for (int k = 0; k < STRETCHES; k++) {
+    size_t from = (size_t)stretches[k][0], to = (size_t)stretches[k][1];
+    double dx =
+        r->sums[i + to + 1].x - r->sums[i + from].x - r->sums[i - from + 1].x + r->sums[i - to].x;
+    double dy =
+        r->sums[i + to + 1].y - r->sums[i + from].y - r->sums[i - from + 1].y + r->sums[i - to].y;
+    step += r->weights[k] * (dy * at->tx - dx * at->ty) / (double)(to - from + 1);
+  }
+  return step;
+}
+
+/* The step at every station of one side. */
+static void find_steps(row_search *r, int side) {
+  size_t count = r->work->reference->count;
+  r->sums[0] = (fg_point){0, 0};
+  for (size_t i = 0; i < count; i++) {
+    fg_point at = edge_at(r, i, side);
+    r->sums[i + 1] = (fg_point){r->sums[i].x + at.x, r->sums[i].y + at.y};
+    r->steps[i] = NAN;
+  }
+  for (size_t i = ENDS; i + ENDS < count; i++)
+    r->steps[i] = step_at(r, i);
+}
+
+static double steps_sd(row_search *r) {
+  size_t n = 0;
+  for (size_t i = 0; i < r->work->reference->count; i++)
+    if (!isnan(r->steps[i])) r->scratch[n++] = fabs(r->steps[i]);
+  return n ? fg_robust_sd(r->scratch, n) : NAN;
+}
+
+/* A step before station c + 1 beside a bend, a cubic along the strip, from stations around it. */
+typedef struct step_fit {
+  size_t at;
+  double step, sd, misfit;
+} step_fit;
+
+static step_fit fit_step(const row_search *r, size_t c, int side, size_t normal) {
+  const fg_reference_station *at = &r->work->reference->stations[normal];
+  fg_point here = edge_at(r, normal, side);
+  double x[FG_SMALL_MAX], inverse[FG_SMALL_MAX][FG_SMALL_MAX], squares;
+  fg_normal_equations system;
+  size_t n = 0;
+  fg_normal_clear(&system, BENDS + 1);
+  for (size_t k = c - FIT_REACH + 1; k <= c + FIT_REACH; k++) {
+    if (k == c || k == c + 1) continue; /* their pixels are of both sides */
+    fg_point p = edge_at(r, k, side);
+    double s = ((double)k - (double)c - 0.5) / FIT_REACH;
+    const double row[BENDS + 1] = {1, s, s * s, s * s * s, k > c};
+    fg_normal_add(&system, row, (p.y - here.y) * at->tx - (p.x - here.x) * at->ty, 1);
+    n++;
+  }
+  if (!fg_normal_solve(&system, 0, x, inverse)) return (step_fit){.misfit = INFINITY};
+  squares = system.sum_squares;
+  for (int k = 0; k <= BENDS; k++)
+    squares -= x[k] * system.right[k];
+  double variance = fmax(squares, 0) / (double)(n - BENDS - 1);
+  return (step_fit){c, x[BENDS], sqrt(variance * inverse[BENDS][BENDS]), squares};
+}
+
+/* The step that explains the edge around a peak best. */
+static step_fit find_step(const row_search *r, size_t i, int side) {
+  step_fit best = {.misfit = INFINITY};
+  for (size_t c = i - SHIFT_MOST; c <= i + SHIFT_MOST; c++) {
+    step_fit fit = fit_step(r, c, side, i);
+    if (fit.misfit < best.misfit) best = fit;
+  }
+  return best;
+}
+
+static bool is_peak(const row_search *r, size_t i) {
+  double here = fabs(r->steps[i]);
+  for (size_t k = i > PEAK ? i - PEAK : 0; k <= i + PEAK && k < r->work->reference->count; k++)
+    if (fabs(r->steps[k]) > here) return false;
+  return true;
+}
+
+/* Peaks of one side that are more than chance, as jumps of rows. */
+static fg_status find_crossings(fg_context *ctx, row_search *r, int side) {
+  find_steps(r, side);
+  double sd = steps_sd(r);
+  for (size_t i = 0; i < r->work->reference->count; i++) {
+    const fg_reference_station *at = &r->work->reference->stations[i];
+    if (!(fabs(r->steps[i]) > STEP_SIGMAS * sd) || fabs(at->ty) < CROSSING_LEAST ||
+        fabs(at->tx) * r->work->width_px < TOLD_ROWS || !is_peak(r, i))
+      continue;
+    step_fit fit = find_step(r, i, side);
+    double jump = fit.step * (at->ty > 0 ? 1 : -1) / at->tx;
+    if (!(fabs(jump) > JUMP_LEAST_PX && fabs(fit.step) > FIT_SIGMAS * fit.sd)) continue;
+    double y = 0.5 * (edge_at(r, fit.at, side).y + edge_at(r, fit.at + 1, side).y);
+    FG_TRY(fg_memory_reserve(ctx, r->crossing_count + 1, sizeof *r->crossings, &r->capacity,
+                             (void **)&r->crossings));
+    r->crossings[r->crossing_count++] =
+        (crossing){.y = y, .jump_px = jump, .station = fit.at, .side = side};
+  }
+  return FG_OK;
+}
+
+static bool is_same_jump(const crossing *a, const crossing *b) {
+  return fabs(a->y - b->y) <= SAME_ROWS &&
+         fabs(a->jump_px - b->jump_px) <= SAME_PX + SAME_SHARE * fabs(a->jump_px);
+}
+
+/* Whether the other edge of the strip jumps at the same row, beside this crossing. */
+static bool is_paired(const row_search *r, const crossing *a) {
+  double beside = 6 * r->work->width_px / r->work->reference->step_px;
+  for (size_t k = 0; k < r->crossing_count; k++) {
+    const crossing *b = &r->crossings[k];
+    double off = fabs((double)b->station - (double)a->station);
+    if (b->side != a->side && off >= APART_STATIONS && off < beside && is_same_jump(a, b))
+      return true;
+  }
+  return false;
+}
+
+static int compare_rows(const void *a, const void *b) {
+  double p = ((const crossing *)a)->y, q = ((const crossing *)b)->y;
+  return (p > q) - (p < q);
+}
+
+static void count_jumps(row_search *r, fg_picture_state *state) {
+  double last = -INFINITY;
+  fg_sort_items(r->crossings, r->crossing_count, sizeof *r->crossings, compare_rows);
+  state->row_jumps = 0;
+  state->row_jump_px = 0;
+  for (size_t i = 0; i < r->crossing_count; i++) {
+    const crossing *c = &r->crossings[i];
+    if (!is_paired(r, c)) continue;
+    if (c->y - last > 2 * SAME_ROWS) state->row_jumps++;
+    last = c->y;
+    if (fabs(c->jump_px) > fabs(state->row_jump_px)) state->row_jump_px = c->jump_px;
+  }
+  if (state->row_jumps > 0) state->findings |= FG_PICTURE_ROW_JUMPS;
+}
+
+/* Whether a row of a tile is the same as the one below it. */
+static bool is_doubled(const fg_tiles *tiles, int32_t column, int64_t y) {
+  const fg_tile *tile = fg_tiles_at(tiles, column, (int32_t)(y / FG_TILE_PX));
+  const fg_tile *next = fg_tiles_at(tiles, column, (int32_t)((y + 1) / FG_TILE_PX));
+  size_t bytes = (size_t)FG_TILE_PX * (size_t)tiles->bytes_per_pixel;
+  if (!tile || !next) return false;
+  return !memcmp(tile->pixels + (size_t)(y % FG_TILE_PX) * bytes,
+                 next->pixels + (size_t)((y + 1) % FG_TILE_PX) * bytes, bytes);
+}
+
+/* Kept tiles that lie all inside the scan in the row of tiles that holds row y and the next. */
+static size_t tiles_of_row(const fg_tiles *tiles, int64_t y, int32_t columns[DOUBLED_TILES]) {
+  size_t n = 0;
+  for (int32_t c = 0; (int64_t)(c + 1) * FG_TILE_PX <= tiles->width_px && n < DOUBLED_TILES; c++)
+    if (fg_tiles_at(tiles, c, (int32_t)(y / FG_TILE_PX)) &&
+        fg_tiles_at(tiles, c, (int32_t)((y + 1) / FG_TILE_PX)))
+      columns[n++] = c;
+  return n;
+}
+
+/* Rows that are the same as the next one in several tiles, which noise never makes. */
+static double count_doubled(const fg_tiles *tiles, double *rows) {
+  int32_t columns[DOUBLED_TILES];
+  double doubled = 0;
+  size_t n = 0;
+  *rows = 0;
+  for (int64_t y = 0; y + 1 < tiles->height_px; y++) {
+    if (y % FG_TILE_PX == 0 || (y + 1) % FG_TILE_PX == 0 || y % FG_TILE_PX == 1)
+      n = tiles_of_row(tiles, y, columns);
+    size_t same = 0;
+    while (same < n && is_doubled(tiles, columns[same], y))
+      same++;
+    *rows += n == DOUBLED_TILES;
+    doubled += n == DOUBLED_TILES && same == n;
+  }
+  return doubled;
+}
+
+static void inspect_doubled(const fg_tiles *tiles, fg_picture_state *state) {
+  double rows, doubled = count_doubled(tiles, &rows);
+  if (!(state->noise > NOISE_LEAST) || doubled < 1) return;
+  if (doubled > DOUBLED_SHARE * rows) {
+    state->findings |= FG_PICTURE_CORRELATED_NOISE;
+    return;
+  }
+  state->row_jumps = fmax(state->row_jumps, doubled);
+  if (!(fabs(state->row_jump_px) > 1)) state->row_jump_px = 1;
+  state->findings |= FG_PICTURE_ROW_JUMPS;
+}
+
+fg_status fg_picture_inspect_rows(fg_context *ctx, const fg_edge_work *work,
+                                  fg_picture_state *state) {
+  size_t count = work->reference->count;
+  row_search r = {.work = work};
+  double *memory = NULL;
+  fg_status status = FG_OK;
+  if (count <= 2 * ENDS) return FG_OK;
+  FG_TRY_EXIT(fg_memory_allocate(ctx, 4 * count + 2, sizeof *memory, (void **)&memory));
+  r.steps = memory;
+  r.scratch = memory + count;
+  r.sums = (fg_point *)(memory + 2 * count);
+  find_weights(r.weights);
+  for (int side = 0; side < 2; side++)
+    FG_TRY_EXIT(find_crossings(ctx, &r, side));
+  count_jumps(&r, state);
+  inspect_doubled(work->tiles, state);
+exit:
+  free(memory);
+  free(r.crossings);
+  return status;
+}

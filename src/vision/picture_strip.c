@@ -1,0 +1,163 @@
+/* The state of a picture around a strip. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "core/memory.h"
+#include "core/select.h"
+#include "vision/picture.h"
+#include "vision/picture_profile.h"
+
+enum { PIXEL_STEP = 5, TILES_MOST = 12 };
+#define PLATEAU_SHARE 0.15 /* half of the stretch across the strip whose median is its level */
+#define OUTER_PX      2.5
+#define CLIPPED_NOISE 1.0
+
+static double background_at(const fg_edge_work *work, const fg_reference_station *r) {
+  const fg_segmentation *seg = work->segmentation;
+  double x = fmin(fmax(r->x / FG_BLOCK_PX, 0), seg->tiles->block_columns - 1);
+  double y = fmin(fmax(r->y / FG_BLOCK_PX, 0), seg->tiles->block_rows - 1);
+  return (double)fg_segmentation_background(seg, (int32_t)x, (int32_t)y);
+}
+
+/* Profiles of both edges of one segment; how many there are. */
+static size_t take_segment(const fg_edge_work *work, size_t i, fg_edge_profile *profiles) {
+  const fg_segment_profile *s = &work->segments[i];
+  size_t middle = i * FG_SEGMENT_STATIONS + FG_SEGMENT_STATIONS / 2, n = 0;
+  if (middle >= work->reference->count) return 0;
+  const fg_reference_station *r = &work->reference->stations[middle];
+  for (int side = 0; side < 2; side++) {
+    int way = side ? 1 : -1;
+    const fg_profile_source source = {.bins = s->bins,
+                                      .count = work->bin_count,
+                                      .way = way,
+                                      .plateau_px = PLATEAU_SHARE * work->width_px,
+                                      .reach_px = OUTER_PX,
+                                      .bearing = atan2(way * r->tx, -way * r->ty),
+                                      .blur_px = s->fit.good ? s->fit.shape.blur_px[side] : NAN,
+                                      .background = background_at(work, r)};
+    n += fg_edge_profile_take(&source, &profiles[n]);
+  }
+  return n;
+}
+
+static double median_level(const fg_edge_profile *profiles, size_t count, bool inside,
+                           double *scratch) {
+  for (size_t i = 0; i < count; i++)
+    scratch[i] = inside ? profiles[i].inside : profiles[i].outside;
+  return fg_select(scratch, count, count / 2);
+}
+
+static void count_values(const fg_edge_work *work, fg_value_counts *counts) {
+  fg_value_counts_clear(counts);
+  for (size_t c = 0; c < work->chunk_count; c++)
+    for (size_t i = 0; i < work->bands[c].count; i += PIXEL_STEP)
+      fg_value_counts_add(counts, work->bands[c].pixels[i].value);
+}
+
+/* Whether a kept tile lies inside the scan and holds no part of an object. */
+static bool is_flat(const fg_segmentation *seg, int32_t column, int32_t row) {
+  const fg_tiles *tiles = seg->tiles;
+  if ((int64_t)(column + 1) * FG_TILE_PX > tiles->width_px ||
+      (int64_t)(row + 1) * FG_TILE_PX > tiles->height_px || !fg_tiles_at(tiles, column, row))
+    return false;
+  for (int32_t y = -1; y <= FG_BLOCKS_PER_TILE; y++)
+    for (int32_t x = -1; x <= FG_BLOCKS_PER_TILE; x++)
+      if (fg_segmentation_label(seg, column * FG_BLOCKS_PER_TILE + x, row * FG_BLOCKS_PER_TILE + y))
+        return false;
+  return true;
+}
+
+/* Up to TILES_MOST of the flat tiles, spread over all. */
+static void choose_flat(const fg_segmentation *seg, fg_tile_choice *choice) {
+  size_t seen = 0, step = 1;
+  choice->count = 0;
+  for (int32_t row = 0; row < seg->tiles->rows; row++)
+    for (int32_t column = 0; column < seg->tiles->columns; column++) {
+      if (!is_flat(seg, column, row) || seen++ % step) continue;
+      if (choice->count == TILES_MOST) {
+        for (size_t i = 0; 2 * i < TILES_MOST; i++)
+          choice->tiles[i] = choice->tiles[2 * i];
+        choice->count = TILES_MOST / 2;
+        step *= 2;
+      }
+      choice->tiles[choice->count++] = fg_tiles_at(seg->tiles, column, row);
+    }
+}
+
+/* Tiles that the strip runs through, evenly along it. */
+static void choose_along(const fg_edge_work *work, fg_tile_choice *choice) {
+  size_t count = work->reference->count;
+  choice->count = 0;
+  for (size_t k = 0; k < TILES_MOST; k++) {
+    const fg_reference_station *r =
+        &work->reference->stations[(2 * k + 1) * count / (2 * TILES_MOST)];
+    int32_t column = (int32_t)(r->x / FG_TILE_PX), row = (int32_t)(r->y / FG_TILE_PX);
+    if (r->x < 0 || r->y < 0 || (int64_t)(column + 1) * FG_TILE_PX > work->tiles->width_px ||
+        (int64_t)(row + 1) * FG_TILE_PX > work->tiles->height_px)
+      continue;
+    const fg_tile *tile = fg_tiles_at(work->tiles, column, row);
+    if (tile) choice->tiles[choice->count++] = tile;
+  }
+}
+
+/* Range of the background over the strip, as a share of the contrast. */
+static double find_shading(const fg_edge_work *work, double contrast) {
+  double low = INFINITY, high = -INFINITY;
+  for (size_t i = 0; i < work->reference->count; i += FG_SEGMENT_STATIONS) {
+    double at = background_at(work, &work->reference->stations[i]);
+    low = fmin(low, at);
+    high = fmax(high, at);
+  }
+  return (high - low) / contrast;
+}
+
+#define SHADING_SHARE 0.3
+
+/* A picture without noise piles up at both ends without being cut: not one whose edges have noise,
+ * unless that is of levels that are far apart. */
+static bool is_clipped(const fg_edge_work *work, const fg_picture_state *state) {
+  if (work->clipped) return true;
+  return state->clipped_low > 0 && state->clipped_high > 0 && work->noise > CLIPPED_NOISE &&
+         !(state->findings & FG_PICTURE_FEW_LEVELS);
+}
+
+static fg_status inspect(fg_context *ctx, const fg_edge_work *work, fg_edge_profile *profiles,
+                         double *scratch, fg_picture_state *state) {
+  size_t count = 0;
+  for (size_t i = 0; i < work->segment_count; i++)
+    count += take_segment(work, i, profiles + count);
+  if (!count) return FG_OK;
+  const double levels[2] = {median_level(profiles, count, true, scratch),
+                            median_level(profiles, count, false, scratch)};
+  double contrast = fabs(levels[0] - levels[1]);
+  fg_tile_choice choice;
+  fg_value_counts counts;
+  choose_flat(work->segmentation, &choice);
+  fg_picture_inspect_noise(&choice, work->tiles->bytes_per_pixel, state);
+  choose_along(work, &choice);
+  fg_picture_inspect_blocks(&choice, work->tiles->bytes_per_pixel, contrast, state);
+  if (state->findings & FG_PICTURE_BLOCK_NOISE) /* which is why neighbours are alike */
+    state->findings &= ~(unsigned)FG_PICTURE_CORRELATED_NOISE;
+  count_values(work, &counts);
+  fg_picture_inspect_levels(&counts, levels, state);
+  if (is_clipped(work, state)) state->findings |= FG_PICTURE_CLIPPED;
+  state->shading = find_shading(work, contrast);
+  if (state->shading > SHADING_SHARE) state->findings |= FG_PICTURE_SHADING;
+  FG_TRY(fg_picture_inspect_profiles(ctx, profiles, count, state));
+  return fg_picture_inspect_rows(ctx, work, state);
+}
+
+fg_status fg_picture_of_strip(fg_context *ctx, const fg_edge_work *work, fg_picture_state *state) {
+  fg_edge_profile *profiles = NULL;
+  double *scratch = NULL;
+  fg_status status = FG_OK;
+  size_t most = 2 * work->segment_count;
+  if (!most) return FG_OK;
+  FG_TRY_EXIT(fg_memory_allocate(ctx, most, sizeof *profiles, (void **)&profiles));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, most, sizeof *scratch, (void **)&scratch));
+  FG_TRY_EXIT(inspect(ctx, work, profiles, scratch, state));
+exit:
+  free(profiles);
+  free(scratch);
+  return status;
+}
