@@ -207,14 +207,23 @@ static void count_jumps(row_search *r, fg_picture_state *state) {
   if (state->row_jumps > 0) state->findings |= FG_PICTURE_ROW_JUMPS;
 }
 
+/* Whether noise shows in a row of a tile: what lies outside the scan has none. */
+static bool has_noise(const uint8_t *row, size_t bytes) {
+  size_t changes = 0;
+  for (size_t i = 2; i < bytes; i++)
+    changes += row[i] != row[i - 2];
+  return 4 * changes > bytes;
+}
+
 /* Whether a row of a tile is the same as the one below it. */
 static bool is_doubled(const fg_tiles *tiles, int32_t column, int64_t y) {
   const fg_tile *tile = fg_tiles_at(tiles, column, (int32_t)(y / FG_TILE_PX));
   const fg_tile *next = fg_tiles_at(tiles, column, (int32_t)((y + 1) / FG_TILE_PX));
   size_t bytes = (size_t)FG_TILE_PX * (size_t)tiles->bytes_per_pixel;
   if (!tile || !next) return false;
-  return !memcmp(tile->pixels + (size_t)(y % FG_TILE_PX) * bytes,
-                 next->pixels + (size_t)((y + 1) % FG_TILE_PX) * bytes, bytes);
+  const uint8_t *row = tile->pixels + (size_t)(y % FG_TILE_PX) * bytes;
+  return !memcmp(row, next->pixels + (size_t)((y + 1) % FG_TILE_PX) * bytes, bytes) &&
+         has_noise(row, bytes);
 }
 
 /* Kept tiles that lie all inside the scan in the row of tiles that holds row y and the next. */
