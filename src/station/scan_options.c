@@ -159,9 +159,9 @@ static void put_sentence(const struct row *row, const char *value, char *words, 
   size_t used = strlen(words);
   bool quoted = value[strcspn(value, " ()[]")] != '\0';
   const char *quote = quoted ? "'" : "";
-  fg_text_clip(words + used, size - used, "%s%s%s%s%s%s. %s %s%s.", used ? " " : "", row->option,
+  fg_text_clip(words + used, size - used, "%s%s%s%s%s%s: %s %s%s.", used ? " " : "", row->option,
                value[0] ? " " : "", quote, value, quote, find_meaning(row->finding),
-               row->instead ? "Instead: " : "Leave it out", row->instead ? row->instead : "");
+               row->instead ? "Write " : "Leave it out", row->instead ? row->instead : "");
 }
 
 size_t fg_scan_options_inspect(const char *command, char *words, size_t size) {

@@ -137,8 +137,8 @@ for driver in epson2 pixma genesys hpaio; do
   grep -q 'spoils scans' "$work/page" && fail "the page warns of $driver"
 done
 start 'scanimage --mode Lineart --sharpness 2 --format=jpeg >{file}'
-for words in '--mode Lineart. There are so few' 'Instead: --mode Gray.' '--sharpness 2. The picture is sharpened' \
-  'Instead: --sharpness 0.' '--format jpeg.' 'Instead: --format png.'; do
+for words in '--mode Lineart: There are so few' 'Write --mode Gray.' '--sharpness 2: The picture is sharpened' \
+  'Write --sharpness 0.' '--format jpeg: ' 'Write --format png.'; do
   grep -qF -- "$words" "$work/err" || fail "not said at the start: $words: $(cat "$work/err")"
   grep -qF -- "$words" "$work/page" || fail "not on the page: $words"
 done

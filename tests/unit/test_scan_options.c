@@ -36,25 +36,25 @@ static void harmful_options_are_named_with_what_is_right(void **state) {
   static const struct {
     const char *command, *option, *finding, *instead;
   } rows[] = {
-      {"scanimage --mode Lineart > {file}", "--mode Lineart.", "few_levels", "--mode Gray."},
-      {"scanimage --mode=lineart > {file}", "--mode lineart.", "few_levels", "--mode Gray."},
-      {"scanimage --mode 'Color Lineart'", "--mode 'Color Lineart'.", "few_levels", "--mode Gray."},
-      {"scanimage --depth 1", "--depth 1.", "few_levels", "--depth 16, or 8."},
-      {"scanimage --format jpeg", "--format jpeg.", "block_noise", "--format png."},
-      {"scanimage --compression JPEG", "--compression JPEG.", "block_noise", "--compression None."},
-      {"scanimage --gamma 2.2", "--gamma 2.2.", "tone_curve", "--gamma 1."},
-      {"scanimage --gamma=0.99", "--gamma 0.99.", "tone_curve", "--gamma 1."},
+      {"scanimage --mode Lineart > {file}", "--mode Lineart:", "few_levels", "--mode Gray."},
+      {"scanimage --mode=lineart > {file}", "--mode lineart:", "few_levels", "--mode Gray."},
+      {"scanimage --mode 'Color Lineart'", "--mode 'Color Lineart':", "few_levels", "--mode Gray."},
+      {"scanimage --depth 1", "--depth 1:", "few_levels", "--depth 16, or 8."},
+      {"scanimage --format jpeg", "--format jpeg:", "block_noise", "--format png."},
+      {"scanimage --compression JPEG", "--compression JPEG:", "block_noise", "--compression None."},
+      {"scanimage --gamma 2.2", "--gamma 2.2:", "tone_curve", "--gamma 1."},
+      {"scanimage --gamma=0.99", "--gamma 0.99:", "tone_curve", "--gamma 1."},
       {"scanimage --gamma-correction \"High contrast printing\"",
-       "--gamma-correction 'High contrast printing'.", "tone_curve", "(Gamma=1.0)'."},
+       "--gamma-correction 'High contrast printing':", "tone_curve", "(Gamma=1.0)'."},
       {"scanimage --gamma-table [0]0-[128]200-[255]255", "[0]0-[128]200-[255]255", "tone_curve",
        "'[0]0-[255]255'."},
       {"scanimage --gamma-table [0]20-[255]255", "[0]20-[255]255", "tone_curve",
        "'[0]0-[255]255'."},
-      {"scanimage --contrast -10", "--contrast -10.", "tone_curve", "--contrast 0, or without"},
-      {"scanimage --highlight 80", "--highlight 80.", "clipped_levels", "--highlight 100."},
-      {"scanimage --sharpness 2;true", "--sharpness 2.", "sharpened", "--sharpness 0."},
-      {"scanimage --swdeskew > {file}", "--swdeskew.", "correlated_noise", "--swdeskew=no."},
-      {"scanimage | convert - -unsharp 0x1 {file}", "-unsharp.", "sharpened", "Leave it out."},
+      {"scanimage --contrast -10", "--contrast -10:", "tone_curve", "--contrast 0, or without"},
+      {"scanimage --highlight 80", "--highlight 80:", "clipped_levels", "--highlight 100."},
+      {"scanimage --sharpness 2;true", "--sharpness 2:", "sharpened", "--sharpness 0."},
+      {"scanimage --swdeskew > {file}", "--swdeskew:", "correlated_noise", "--swdeskew=no."},
+      {"scanimage | convert - -unsharp 0x1 {file}", "-unsharp:", "sharpened", "Leave it out."},
   };
   char words[1000];
   (void)state;
@@ -75,8 +75,8 @@ static void every_option_of_a_command_is_told_and_clipped_to_the_room(void **sta
   static const char command[] = "scanimage --depth 1 --sharpness 1 --gamma 1.8 --format jpeg";
   (void)state;
   assert_int_equal(fg_scan_options_inspect(command, words, sizeof words), 4);
-  assert_non_null(strstr(words, "--depth 1."));
-  assert_non_null(strstr(words, "--format jpeg."));
+  assert_non_null(strstr(words, "--depth 1:"));
+  assert_non_null(strstr(words, "--format jpeg:"));
   assert_int_equal(fg_scan_options_inspect(command, narrow, sizeof narrow), 4);
   assert_true(strlen(narrow) < sizeof narrow);
 }
