@@ -71,6 +71,9 @@
  *       never read; negative: the carriage stood still, and the row before it is seen as often
  *       again (its noise is new). Whole rows, sharp; the truth has it as scan.row_step of count
  *       × the rows' pitch, half a row before the first row beyond it
+ *     stitches[] {y_mm, rows [0], shift_um [0]}: two pieces of a scan meet there: behind it the
+ *       picture goes on `rows` rows further on (negative: the rows before it come a second time),
+ *       seen at true = nominal + shift along x. In the truth as scan.row_step, with amplitude_x_um
  *     chip_seams[] {x_mm, shift_um, shift_y_um [0]}: what lies behind a seam between two chips of a
  *       contact image sensor is seen at true = nominal + shift; seams add up from left to right.
  *       The truth has each as scan.column_step, with amplitude_y_um where it shifts along y

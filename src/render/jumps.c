@@ -57,8 +57,31 @@ static fg_status read_seams(const fg_place *place, const cJSON *scanner,
   return FG_OK;
 }
 
+static fg_status read_stitches(const fg_place *place, const cJSON *scanner,
+                               fg_jump_requests *requests) {
+  static const fg_member table[] = {
+      {"y_mm", FG_MEMBER_NUMBER, offsetof(fg_stitch, y_mm), 0, 10000},
+      {"rows", FG_MEMBER_INTEGER, offsetof(fg_stitch, rows), -ROWS_MOST, ROWS_MOST},
+      {"shift_um", FG_MEMBER_NUMBER, offsetof(fg_stitch, shift_um), -500, 500},
+      {0}};
+  const cJSON *array, *item;
+  FG_TRY(find_array(place, scanner, "stitches", &array));
+  cJSON_ArrayForEach(item, array) {
+    fg_place inner = fg_place_item(place, "stitches", (int)requests->stitch_count);
+    fg_stitch *stitch = &requests->stitches[requests->stitch_count++];
+    *stitch = (fg_stitch){.y_mm = NAN};
+    FG_TRY(fg_members_read(&inner, item, table, stitch));
+    if (isnan(stitch->y_mm)) return fg_member_fail(&inner, "y_mm", NULL, "say behind which place");
+    if (!stitch->rows && stitch->shift_um == 0)
+      return fg_member_fail(&inner, "rows", cJSON_GetObjectItemCaseSensitive(item, "rows"),
+                            "say how many rows are left out (negative: come twice), or shift_um");
+  }
+  return FG_OK;
+}
+
 fg_status fg_jumps_read(const fg_place *place, const cJSON *scanner, fg_jump_requests *requests) {
   FG_TRY(read_rows(place, scanner, requests));
+  FG_TRY(read_stitches(place, scanner, requests));
   return read_seams(place, scanner, requests);
 }
 
@@ -94,6 +117,16 @@ fg_status fg_jumps_build(const fg_place *place, const fg_jump_requests *requests
     FG_TRY(check_inside(place, "rows_lost", i, requests->rows[i].y_mm, size_mm[1]));
     list->each[list->count++] = rows_jump(&requests->rows[i], pixel_mm[1]);
   }
+  for (size_t i = 0; i < requests->stitch_count; i++) {
+    const fg_stitch *stitch = &requests->stitches[i];
+    FG_TRY(check_inside(place, "stitches", i, stitch->y_mm, size_mm[1]));
+    list->each[list->count++] =
+        (fg_render_jump){.axis = 1,
+                         .at_mm = between_pixels(stitch->y_mm, pixel_mm[1]),
+                         .every_mm = pixel_mm[1],
+                         .repeats = 1,
+                         .d_mm = {1e-3 * stitch->shift_um, stitch->rows * pixel_mm[1]}};
+  }
   for (size_t i = 0; i < requests->seam_count; i++) {
     const fg_chip_seam *seam = &requests->seams[i];
     FG_TRY(check_inside(place, "chip_seams", i, seam->x_mm, size_mm[0]));
@@ -110,6 +143,8 @@ double fg_jumps_rows_more(const fg_jump_requests *requests) {
   double sum = 0;
   for (size_t i = 0; i < requests->row_count; i++)
     sum += fmax(0, -requests->rows[i].count);
+  for (size_t i = 0; i < requests->stitch_count; i++)
+    sum += fmax(0, -requests->stitches[i].rows);
   return sum;
 }
 

@@ -1,11 +1,12 @@
-/* Where the picture of a whole row or column jumps: rows that a scanner lost or read twice, seams
- * between the chips of a contact image sensor. They come after the optics, so they are sharp. */
+/* Where the picture of a whole row or column jumps: rows that a scanner lost or read twice, pieces
+ * of a scan that were stitched, seams between the chips of a contact image sensor. They come after
+ * the optics, so they are sharp. */
 #ifndef FG_RENDER_JUMPS_H
 #define FG_RENDER_JUMPS_H
 
 #include "render/members.h"
 
-enum { FG_RENDER_JUMPS_MAX = 64 /* of rows, and of seams */ };
+enum { FG_RENDER_JUMPS_MAX = 64 /* of each kind */ };
 
 /* Behind the place `count` rows of the glass were never read; negative: the carriage stood still,
  * and the row before it was read as often again. */
@@ -18,10 +19,18 @@ typedef struct fg_chip_seam {
   double x_mm, shift_um, shift_y_um; /* of all that lies at larger x */
 } fg_chip_seam;
 
+/* Behind the place the picture goes on so many rows further on; negative: the rows before it come a
+ * second time. */
+typedef struct fg_stitch {
+  double y_mm, shift_um; /* along x */
+  int rows;
+} fg_stitch;
+
 typedef struct fg_jump_requests {
   fg_rows_lost rows[FG_RENDER_JUMPS_MAX];
   fg_chip_seam seams[FG_RENDER_JUMPS_MAX];
-  size_t row_count, seam_count;
+  fg_stitch stitches[FG_RENDER_JUMPS_MAX];
+  size_t row_count, seam_count, stitch_count;
 } fg_jump_requests;
 
 /* True = nominal + d beyond at_mm; `repeats` times in all, every_mm apart. */
@@ -33,11 +42,11 @@ typedef struct fg_render_jump {
 } fg_render_jump;
 
 typedef struct fg_render_jump_list {
-  fg_render_jump each[2 * FG_RENDER_JUMPS_MAX];
+  fg_render_jump each[3 * FG_RENDER_JUMPS_MAX];
   size_t count;
 } fg_render_jump_list;
 
-/* Members rows_lost and chip_seams of a spec's scanner. */
+/* Members rows_lost, stitches and chip_seams of a spec's scanner. */
 fg_status fg_jumps_read(const fg_place *place, const cJSON *scanner, fg_jump_requests *requests);
 
 /* Puts the jumps between two pixels. FG_ERR_DATA for one outside the picture. */
@@ -45,7 +54,7 @@ fg_status fg_jumps_build(const fg_place *place, const fg_jump_requests *requests
                          const double pixel_mm[2], const double size_mm[2],
                          fg_render_jump_list *list);
 
-/* By how much rows that were read twice push what follows down the picture. */
+/* By how much rows that are seen twice push what follows down the picture. */
 double fg_jumps_rows_more(const fg_jump_requests *requests);
 
 /* Adds to d(x, y); `side_mm` says on which side of a jump we are. */

@@ -180,6 +180,7 @@ fg_status fg_spec_read_scanner(const fg_place *place, const cJSON *object, fg_sc
       FG_SPEC_OTHER("scratches"),
       FG_SPEC_OTHER("rough"),
       FG_SPEC_OTHER("rows_lost"),
+      FG_SPEC_OTHER("stitches"),
       FG_SPEC_OTHER("chip_seams"),
       FG_SPEC_OTHER("colour_lines"),
       FG_SPEC_OTHER("shadow"),

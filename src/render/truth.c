@@ -209,7 +209,7 @@ static void put_curve(fg_json *json, const fg_render_effect *effect) {
   fg_json_array_end(json);
 }
 
-/* Lost rows and seams are effects under the names that reports give them. */
+/* Lost rows, stitches and seams are effects under the names that reports give them. */
 static void put_jump(fg_json *json, const fg_render_jump *jump) {
   fg_json_object(json, NULL);
   double along = jump->repeats * jump->d_mm[jump->axis];
@@ -219,6 +219,7 @@ static void put_jump(fg_json *json, const fg_render_jump *jump) {
   if (jump->axis) fg_json_number(json, "rows", round(along / jump->every_mm));
   if (!jump->axis && jump->d_mm[1] != 0)
     fg_json_number(json, "amplitude_y_um", 1e3 * jump->d_mm[1]);
+  if (jump->axis && jump->d_mm[0] != 0) fg_json_number(json, "amplitude_x_um", 1e3 * jump->d_mm[0]);
   fg_json_object_end(json);
 }
 

@@ -39,6 +39,31 @@ static void rows_are_read_again(void **state) {
   assert_rows(",\"rows_lost\":[{\"y_mm\":0.5,\"count\":-3}]", 250, shows);
 }
 
+/* Four pieces: rows are left out, come twice, and are seen again, between one and four. */
+static void pieces_are_stitched(void **state) {
+  (void)state;
+  int64_t shows[250];
+  for (int64_t y = 0; y < 250; y++)
+    shows[y] = y < 67 ? y : y < 95 ? y - 3 : y < 129 ? y + 1 : y < 131 ? 129 : y - 1;
+  assert_rows(",\"stitches\":[{\"y_mm\":0.35,\"rows\":-3},{\"y_mm\":0.5,\"rows\":4}],"
+              "\"rows_lost\":[{\"y_mm\":0.68,\"count\":-2}]",
+              250, shows);
+}
+
+/* By two columns to the left: true = nominal + d. */
+static void pieces_shift_sideways(void **state) {
+  (void)state;
+  picture plain = draw_format(DISC, 250, "");
+  picture p = draw_format(DISC, 250,
+                          ",\"stitches\":[{\"y_mm\":0.5,\"rows\":-1,\"shift_um\":10.583333333}]");
+  for (int64_t y = 0; y < 250; y++)
+    for (int64_t x = 0; x + 2 < 250; x++)
+      assert_close(p.dn[y * 250 + x], plain.dn[(y < 95 ? y * 250 : (y - 1) * 250 + 2) + x],
+                   1.0 / 256);
+  drop(&plain);
+  drop(&p);
+}
+
 static void assert_truth(const picture *p, const char *words) {
   fg_context ctx = {0};
   char *json = NULL;
@@ -61,6 +86,11 @@ static void truth_names_the_step(void **state) {
   assert_truth(&p, "\"amplitude_um\": 6,");
   assert_truth(&p, "\"x_mm\": 0.70114");
   assert_truth(&p, "\"amplitude_y_um\": -4");
+  drop(&p);
+  p = draw_format(DISC, 250, ",\"stitches\":[{\"y_mm\":0.5,\"rows\":4,\"shift_um\":3}]");
+  assert_truth(&p, "\"id\": \"scan.row_step\"");
+  assert_truth(&p, "\"rows\": 4");
+  assert_truth(&p, "\"amplitude_x_um\": 3");
   drop(&p);
 }
 
@@ -117,6 +147,7 @@ static void seam_is_sharp(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(lost_rows_are_not_there),   cmocka_unit_test(rows_are_read_again),
+      cmocka_unit_test(pieces_are_stitched),       cmocka_unit_test(pieces_shift_sideways),
       cmocka_unit_test(truth_names_the_step),      cmocka_unit_test(fitted_picture_grows),
       cmocka_unit_test(chips_shift_what_they_see), cmocka_unit_test(seam_is_sharp),
   };
