@@ -60,7 +60,8 @@
  *       colour lines, lost rows) is then in the sensor's pixels, everything else in the picture's
  *     what the driver does with the numbers, each channel by itself:
  *       tone_curve [[in, out], ...]: 2 to 256 points in counts of 255, in ascending, out not
- *         falling; straight between points, constant beyond them
+ *         falling; straight between points, constant beyond them; tone_bits [not rounded], 8 to 16:
+ *         to which the numbers are rounded before: 8 leave gaps in the histogram of 8 bits
  *       unsharp_mask {amount_pct, radius_px [1], threshold [0]}: out = in + amount (in -
  *         gaussian(in)) where the two differ by the threshold at least, on the rounded numbers and
  *         clipped to the scale; the Gaussian's sd is the radius, the outermost pixels go on beyond

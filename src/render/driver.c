@@ -32,8 +32,22 @@ static void index_tone(fg_tone_curve *tone) {
   }
 }
 
-static fg_status read_tone(const fg_place *place, const cJSON *array, fg_tone_curve *tone) {
-  if (!array) return FG_OK;
+/* Whole bits of the numbers that the curve gets. */
+static fg_status read_tone_bits(const fg_place *place, const cJSON *scanner, fg_tone_curve *tone) {
+  const cJSON *bits = cJSON_GetObjectItemCaseSensitive(scanner, "tone_bits");
+  double number = 0;
+  if (!bits) return FG_OK;
+  if (!tone->count) return fg_member_fail(place, "tone_bits", bits, "belongs to tone_curve");
+  FG_TRY(fg_member_number(place, "tone_bits", bits, 8, 16, &number));
+  if (number != floor(number))
+    return fg_member_fail(place, "tone_bits", bits, "must be a whole number");
+  tone->bits = (int)number;
+  return FG_OK;
+}
+
+static fg_status read_tone(const fg_place *place, const cJSON *scanner, fg_tone_curve *tone) {
+  const cJSON *array = cJSON_GetObjectItemCaseSensitive(scanner, "tone_curve");
+  if (!array) return read_tone_bits(place, scanner, tone);
   if (!cJSON_IsArray(array) || cJSON_GetArraySize(array) < 2 ||
       cJSON_GetArraySize(array) > FG_TONE_POINTS_MAX)
     return fg_member_fail(place, "tone_curve", array, "must be an array of 2 to 256 points");
@@ -42,7 +56,7 @@ static fg_status read_tone(const fg_place *place, const cJSON *array, fg_tone_cu
   cJSON_ArrayForEach(item, array) FG_TRY(read_tone_point(place, index++, item, tone));
   tone->count = index;
   index_tone(tone);
-  return FG_OK;
+  return read_tone_bits(place, scanner, tone);
 }
 
 static fg_status read_unsharp(const fg_place *place, const cJSON *object, fg_unsharp_mask *mask) {
@@ -76,8 +90,7 @@ static fg_status read_levels(const fg_place *place, const cJSON *scanner, int bi
 
 fg_status fg_driver_read(const fg_place *place, const cJSON *scanner, int bits,
                          fg_driver_settings *settings) {
-  FG_TRY(
-      read_tone(place, cJSON_GetObjectItemCaseSensitive(scanner, "tone_curve"), &settings->tone));
+  FG_TRY(read_tone(place, scanner, &settings->tone));
   FG_TRY(read_unsharp(place, cJSON_GetObjectItemCaseSensitive(scanner, "unsharp_mask"),
                       &settings->unsharp));
   return read_levels(place, scanner, bits, settings);
@@ -98,6 +111,7 @@ void fg_driver_put_truth(fg_json *json, const fg_driver_settings *settings) {
     for (size_t i = 0; i < tone->count; i++)
       fg_json_numbers(json, NULL, (const double[]){tone->in[i], tone->out[i]}, 2);
     fg_json_array_end(json);
+    if (tone->bits) fg_json_number(json, "tone_bits", tone->bits);
   }
   if (settings->unsharp.amount_pct > 0) put_unsharp(json, &settings->unsharp);
   if (settings->levels) fg_json_number(json, "levels", settings->levels);
@@ -105,7 +119,8 @@ void fg_driver_put_truth(fg_json *json, const fg_driver_settings *settings) {
 }
 
 float fg_tone_curve_value(const fg_tone_curve *tone, float count) {
-  double at = (double)count;
+  double at = (double)count, steps = (double)((1 << tone->bits) - 1) / FULL_SCALE;
+  if (tone->bits) at = floor(at * steps + 0.5) / steps;
   size_t last = tone->count - 1;
   if (at <= tone->in[0]) return (float)tone->out[0];
   if (at >= tone->in[last]) return (float)tone->out[last];

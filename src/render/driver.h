@@ -16,6 +16,7 @@ enum { FG_TONE_POINTS_MAX = 256, FG_TONE_COUNTS = 256 };
 /* Straight between its points, constant beyond them. Counts of 8 bit. */
 typedef struct fg_tone_curve {
   size_t count; /* 0: none */
+  int bits;     /* of the numbers that it is applied to; 0: not rounded before */
   double in[FG_TONE_POINTS_MAX], out[FG_TONE_POINTS_MAX];
   size_t first[FG_TONE_COUNTS]; /* the last point at or below a whole count */
 } fg_tone_curve;
@@ -34,7 +35,8 @@ typedef struct fg_driver_settings {
   double threshold; /* of two levels; NaN: half way */
 } fg_driver_settings;
 
-/* Members tone_curve, unsharp_mask, levels and threshold of a spec's scanner with so many bits. */
+/* Members tone_curve, tone_bits, unsharp_mask, levels and threshold of a spec's scanner with so
+ * many bits. */
 fg_status fg_driver_read(const fg_place *place, const cJSON *scanner, int bits,
                          fg_driver_settings *settings);
 

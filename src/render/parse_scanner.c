@@ -185,6 +185,7 @@ fg_status fg_spec_read_scanner(const fg_place *place, const cJSON *object, fg_sc
       FG_SPEC_OTHER("colour_lines"),
       FG_SPEC_OTHER("shadow"),
       FG_SPEC_OTHER("tone_curve"),
+      FG_SPEC_OTHER("tone_bits"),
       FG_SPEC_OTHER("unsharp_mask"),
       FG_SPEC_OTHER("levels"),
       FG_SPEC_OTHER("threshold"),

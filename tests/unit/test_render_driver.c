@@ -46,6 +46,17 @@ static void tone_curve_is_applied_exactly(void **state) {
   drop(&narrow);
 }
 
+/* A slope of 2.5 behind the rounding: most counts never come up. */
+static void tone_of_rounded_numbers_leaves_gaps(void **state) {
+  (void)state;
+  picture plain = draw_format(DISC, 3, EIGHT), bent;
+  bent = draw_format(DISC, 3, EIGHT ",\"tone_curve\":[[60,0],[160,250]],\"tone_bits\":8");
+  for (size_t i = 0; i < pixel_count(&plain); i++)
+    assert_close(bent.dn[i], floor(fmax(0, fmin(250, 2.5 * (plain.dn[i] - 60))) + 0.5), 0);
+  drop(&plain);
+  drop(&bent);
+}
+
 static void straight_tone_curve_changes_nothing(void **state) {
   (void)state;
   picture plain = draw_format(DISC, 4, EIGHT), same;
@@ -303,6 +314,7 @@ static void truth_records_the_driver(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(tone_curve_is_applied_exactly),
+      cmocka_unit_test(tone_of_rounded_numbers_leaves_gaps),
       cmocka_unit_test(straight_tone_curve_changes_nothing),
       cmocka_unit_test(unsharp_mask_is_its_formula),
       cmocka_unit_test(unsharp_mask_overshoots_and_keeps_the_half_level),

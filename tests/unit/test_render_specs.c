@@ -134,6 +134,8 @@ static void bad_specs_are_refused_by_name(void **state) {
       {SCANNER("\"tone_curve\":[[0,0],[300,9]]"), "tone_curve[1].in is 300: must be a number from"},
       {SCANNER("\"tone_curve\":[[0,0],[0,9]]"), "in must ascend and out must not fall"},
       {SCANNER("\"tone_curve\":[[0,20],[9,10]]"), "and the one before is [0, 20]"},
+      {SCANNER("\"tone_bits\":8"), "scanner.tone_bits is 8: belongs to tone_curve"},
+      {SCANNER("\"tone_curve\":[[0,0],[9,9]],\"tone_bits\":7"), "tone_bits is 7: must be a number"},
       {SCANNER("\"unsharp_mask\":150"), "scanner.unsharp_mask is 150: must be an object"},
       {SCANNER("\"unsharp_mask\":{}"), "scanner.unsharp_mask.amount_pct is missing: say how much"},
       {SCANNER("\"unsharp_mask\":{\"amount_pct\":-5}"),
