@@ -28,9 +28,13 @@ void fg_edge_tables_init(fg_edge_tables *tables, double gamma) {
     tables->density[i] = (float)(exp(-0.5 * t * t) / sqrt(2 * M_PI));
     tables->cumulative[i] = (float)(0.5 * erfc(-t * M_SQRT1_2));
   }
-  tables->gamma = gamma;
+  tables->linear = gamma == 1;
   for (int i = 0; i < FG_TONE_STEPS + 2; i++)
     tables->tone[i] = (float)(255 * pow((double)i / FG_TONE_STEPS, 1 / gamma));
+}
+
+double fg_edge_count(double gamma, double light) {
+  return 255 * pow(fmax(light, 0) / 255, 1 / gamma);
 }
 
 double fg_edge_light(double gamma, double count) {

@@ -16,6 +16,7 @@
 #define FG_VISION_EDGE_MODEL_H
 
 #include <math.h>
+#include <stdbool.h>
 #include <stddef.h>
 
 #ifdef __cplusplus
@@ -36,8 +37,8 @@ enum { FG_EDGE_SHAPE_VALUES = 7, FG_NORMAL_STEPS = 64, FG_NORMAL_REACH = 6, FG_T
 typedef struct fg_edge_tables {
   float density[2 * FG_NORMAL_REACH * FG_NORMAL_STEPS + 2];    /* phi */
   float cumulative[2 * FG_NORMAL_REACH * FG_NORMAL_STEPS + 2]; /* Phi */
-  double gamma;
-  float tone[FG_TONE_STEPS + 2]; /* G at 255 i / FG_TONE_STEPS */
+  bool linear;                                                 /* G(u) = u */
+  float tone[FG_TONE_STEPS + 2];                               /* G at 255 i / FG_TONE_STEPS */
 } fg_edge_tables;
 
 void fg_edge_tables_init(fg_edge_tables *tables, double gamma);
@@ -64,7 +65,7 @@ static inline void fg_edge_normal(const fg_edge_tables *tables, float t, float *
 
 /* G and its derivative at u. */
 static inline void fg_edge_tone(const fg_edge_tables *tables, float u, float *value, float *rate) {
-  if (tables->gamma == 1) {
+  if (tables->linear) {
     *value = u;
     *rate = 1;
     return;
@@ -78,7 +79,8 @@ static inline void fg_edge_tone(const fg_edge_tables *tables, float u, float *va
   *rate = step * (FG_TONE_STEPS / 255.0f);
 }
 
-/* Light for a count: the inverse of G. */
+/* G, and light for a count: its inverse. */
+double fg_edge_count(double gamma, double light);
 double fg_edge_light(double gamma, double count);
 
 /* Count at an edge, where the light is the mean of both sides', for sides of given counts. */

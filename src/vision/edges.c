@@ -84,6 +84,7 @@ static fg_status summarise(fg_context *ctx, const fg_edge_work *work, const doub
   strip->blur_right_um = work->blur_px[1] * um;
   strip->contrast = work->contrast / 255;
   strip->noise = work->noise / 255;
+  fg_edges_describe_driver(work, &strip->picture);
   strip->gamma = work->gamma;
   strip->u_gamma = work->u_gamma;
   strip->tone_um = work->tone_px * um;
@@ -125,6 +126,7 @@ static void free_work(fg_edge_work *work) {
   free(work->segments);
   free(work->bins);
   free(work->tables);
+  fg_edges_free_driver(work);
 }
 
 /* What lies on the strip has bent the shape of a whole segment, too. */
@@ -170,6 +172,8 @@ fg_status fg_edges_measure(fg_context *ctx, const fg_tiles *tiles,
                        .width_px = trace->width_px,
                        .reach_px = fmin(BAND_BLURS * trace->blur_px + BAND_MARGIN_PX, BAND_MOST_PX),
                        .noise = 1,
+                       .gamma = 1,
+                       .u_driver_px = NAN,
                        .contrast = trace->contrast};
   fg_status status = FG_OK;
   FG_TRY_EXIT(build_reference(ctx, trace, dpi, &reference));

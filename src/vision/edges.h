@@ -13,7 +13,9 @@
 #ifndef FG_VISION_EDGES_H
 #define FG_VISION_EDGES_H
 
+#include "foilgauge/picture.h"
 #include "foilgauge/strip.h"
+#include "vision/driver_model.h"
 #include "vision/edge_model.h"
 #include "vision/pixel_band.h"
 #include "vision/segment.h"
@@ -44,6 +46,10 @@ typedef struct fg_edge_station {
 
 /* Pixels up to so many blurs beyond an edge tell where the edge is. */
 #define FG_REACH_BLURS 4.0
+
+/* Counts that are farther apart make a staircase of an edge's profile, which noise of a count or
+ * two does not smooth. */
+#define FG_LEVEL_STEP_MOST 5.0
 
 /* Stations are worked on in chunks, each with its own pixels; a chunk is a unit of parallel work,
  * its size is fixed, so sums do not depend on the number of threads. A segment is the stretch of
@@ -82,8 +88,13 @@ typedef struct fg_edge_work {
   bool clipped, side_band;
   double thickness_px, blur_px[2];
   double gamma, u_gamma;
-  double tone_px; /* of thickness per unit of ln gamma, the counts of all levels kept */
-  int round;      /* of Gauss-Newton */
+  double tone_px;    /* of thickness per unit of ln gamma, the counts of all levels kept */
+  fg_driver *driver; /* NULL: a power of the light, which is gamma, is all that it does */
+  fg_driver_tone *driver_tone;
+  double u_driver_px; /* of an edge, outwards: what is left open of the driver; NaN: not asked */
+  double level_step;  /* mean distance of the counts in use */
+  bool unexplained;   /* no driver's model explains the profiles */
+  int round;          /* of Gauss-Newton */
   bool again; /* stations are known: foreign pixels beside the strip are left out of the shape */
 } fg_edge_work;
 
@@ -97,6 +108,22 @@ fg_status fg_edges_collect(fg_context *ctx, fg_edge_work *work);
 /* Step 1 and 2: the tone curve and the shape of every station from its middle. edges_shape.c,
  * edges_smooth.c */
 fg_status fg_edges_find_shape(fg_context *ctx, fg_edge_work *work);
+
+/* Where the plain model misses the segments' profiles: what the driver has made of them. *found:
+ * segments are to be fitted again. edges_driver.c */
+fg_status fg_edges_find_driver(fg_context *ctx, fg_edge_work *work, bool *found);
+void fg_edges_free_driver(fg_edge_work *work);
+
+/* A segment's fit with work->driver held; segment->fit holds the start. */
+fg_status fg_edges_fit_driven(fg_context *ctx, const fg_edge_work *work,
+                              fg_segment_profile *segment);
+
+/* Counts for light, and back, whatever the driver is, before its unsharp mask. */
+double fg_edges_count(const fg_edge_work *work, double light, double *rate);
+double fg_edges_light(const fg_edge_work *work, double count);
+
+/* What was found of tone curve and unsharp mask. */
+void fg_edges_describe_driver(const fg_edge_work *work, fg_picture_state *state);
 
 /* The smoothed shape of every station from the segments' fits; with `local` as much of each
  * segment's own as is more than chance. */
@@ -114,6 +141,10 @@ fg_status fg_edges_repeat_shape(fg_context *ctx, fg_edge_work *work);
 
 /* Step 3: `rounds` of Gauss-Newton on all stations. edges_solve.c */
 fg_status fg_edges_solve(fg_context *ctx, fg_edge_work *work, int rounds);
+
+/* Adds all pixels of a chunk to their stations under work->driver; residuals beyond `limit` are
+ * left out. edges_driven.c */
+fg_status fg_edges_add_driven(fg_context *ctx, const fg_edge_work *work, size_t chunk, float limit);
 
 #ifdef __cplusplus
 }

@@ -18,6 +18,7 @@ enum {
  * and less than that share lies beyond. */
 #define PILE_SHARE  0.05
 #define PILE_BEYOND 0.002
+#define LEVEL_SHARE 1e-4
 
 static fg_status allocate_segments(fg_context *ctx, fg_edge_work *work) {
   if (work->segments) return FG_OK;
@@ -41,7 +42,9 @@ static bool is_foreign(const fg_edge_work *work, const fg_band_pixel *p) {
   float left = s->edge_px[0] - p->across_px, right = p->across_px - s->edge_px[1];
   int side = right > left;
   float d = side ? right : left, model, rate;
-  if (d < (float)FG_REACH_BLURS * s->blur_px[side]) return false;
+  float blur = s->blur_px[side];
+  if (work->driver) blur = hypotf(blur, (float)work->driver->values[FG_DRIVER_RADIUS]);
+  if (d < (float)FG_REACH_BLURS * blur) return false;
   fg_edge_tone(work->tables, s->plateau + s->step[side] + s->slope[side] * d, &model, &rate);
   return fabs(p->value - model) > FOREIGN_SIGMAS * work->noise + FOREIGN_SHARE * work->contrast;
 }
@@ -87,14 +90,13 @@ static void start_fit(const fg_edge_work *work, const fg_segment_profile *s, fg_
   for (int i = 0; i < 3; i++)
     level[i] = weight[i] > 0 ? level[i] / weight[i] : 0;
   memset(fit, 0, sizeof *fit);
-  double gamma = work->tables->gamma;
   fit->shape =
-      (fg_edge_shape){.plateau = fg_edge_light(gamma, level[1]),
-                      .level = {fg_edge_light(gamma, level[0]), fg_edge_light(gamma, level[2])},
+      (fg_edge_shape){.plateau = fg_edges_light(work, level[1]),
+                      .level = {fg_edges_light(work, level[0]), fg_edges_light(work, level[2])},
                       .blur_px = {1.5, 1.5}};
   fit->edge_px[0] = -half;
   fit->edge_px[1] = half;
-  fit->gamma = gamma;
+  fit->gamma = work->gamma;
 }
 
 static fg_status stack_task(fg_context *ctx, void *shared, size_t chunk) {
@@ -104,10 +106,10 @@ static fg_status stack_task(fg_context *ctx, void *shared, size_t chunk) {
 }
 
 static fg_status fit_task(fg_context *ctx, void *shared, size_t i) {
-  (void)ctx;
   fg_edge_work *work = shared;
   fg_segment_profile *s = &work->segments[i];
   start_fit(work, s, &s->fit);
+  if (work->driver) return fg_edges_fit_driven(ctx, work, s);
   fg_profile_fit_model(work->tables, s->bins, work->bin_count, 0, &s->fit);
   return FG_OK;
 }
@@ -169,7 +171,11 @@ static bool piles_up(const fg_edge_work *work, const value_counts *counts, bool 
 
 /* Clipped values pile up at one end of what the strip's pixels have, wherever the scanner's driver
  * cut them off. Both ends do where a picture is without noise. */
-static bool find_clipping(const fg_edge_work *work) {
+static bool find_clipping(const fg_edge_work *work, const value_counts *counts) {
+  return counts->total && piles_up(work, counts, true) != piles_up(work, counts, false);
+}
+
+static value_counts count_values(const fg_edge_work *work) {
   value_counts counts = {.total = 0};
   for (size_t c = 0; c < work->chunk_count; c++)
     for (size_t i = 0; i < work->bands[c].count; i++) {
@@ -177,7 +183,19 @@ static bool find_clipping(const fg_edge_work *work) {
       counts.of[(int)(value + 0.5f)]++;
       counts.total++;
     }
-  return counts.total && piles_up(work, &counts, true) != piles_up(work, &counts, false);
+  return counts;
+}
+
+/* Mean distance of the counts that are in use; fewer pixels than a share are dust's. */
+static double find_level_step(const value_counts *counts) {
+  int first = -1, last = -1, used = 0;
+  for (int i = 0; i < 256; i++) {
+    if (!((double)counts->of[i] > LEVEL_SHARE * (double)counts->total)) continue;
+    if (first < 0) first = i;
+    last = i;
+    used++;
+  }
+  return used > 1 ? (double)(last - first) / (used - 1) : 1;
 }
 
 /* Beside a halo, a wall or a level that is cut off gamma cannot be told: it is taken for 1, which
@@ -201,9 +219,11 @@ static fg_status find_gamma(fg_context *ctx, fg_edge_work *work) {
   }
   work->gamma = 1;
   work->u_gamma = GAMMA_DOUBT;
-  /* A level that is cut off looks like a tone curve. */
-  work->clipped = find_clipping(work);
-  if (count >= 3 && !work->clipped) {
+  value_counts pixels = count_values(work);
+  /* A level that is cut off looks like a tone curve, and so does a staircase. */
+  work->clipped = find_clipping(work, &pixels);
+  work->level_step = find_level_step(&pixels);
+  if (count >= 3 && !work->clipped && work->level_step < FG_LEVEL_STEP_MOST) {
     double gamma = values[count / 2], spread = values[count * 3 / 4] - values[count / 4];
     double doubt = fmax(u / count, spread) / sqrt(count);
     if (fabs(gamma - 1) > fmax(3 * doubt, 0.02)) work->gamma = fmin(fmax(gamma, 0.33), 3.5);
@@ -229,7 +249,7 @@ static void move_middles(fg_edge_work *work) {
   }
 }
 
-static fg_status fit_segments(fg_context *ctx, fg_edge_work *work) {
+static fg_status fit_all(fg_context *ctx, fg_edge_work *work) {
   size_t good = 0;
   FG_TRY(fg_parallel_run(ctx, work->threads, work->segment_count, fit_task, work));
   for (size_t i = 0; i < work->segment_count; i++)
@@ -237,6 +257,14 @@ static fg_status fit_segments(fg_context *ctx, fg_edge_work *work) {
   if (good < 3 || good * 3 < work->segment_count)
     return fg_fail(ctx, FG_ERR_NUMERIC, "no pair of edges along the strip");
   work->good_segments = good;
+  return FG_OK;
+}
+
+static fg_status fit_segments(fg_context *ctx, fg_edge_work *work) {
+  bool found = false;
+  FG_TRY(fit_all(ctx, work));
+  if (!work->again) FG_TRY(fg_edges_find_driver(ctx, work, &found));
+  if (found) FG_TRY(fit_all(ctx, work));
   return fg_edges_smooth_shape(ctx, work, true);
 }
 

@@ -94,20 +94,12 @@ static void drop_misfits(fg_edge_work *work) {
   }
 }
 
-/* One round on the stations of one chunk. The variance of the pixels is set afterwards. */
-static fg_status solve_task(fg_context *ctx, void *shared, size_t chunk) {
-  (void)ctx;
-  fg_edge_work *work = shared;
-  size_t first, last;
-  fg_edges_chunk(work, chunk, &first, &last);
+/* Adds all pixels of a chunk to their stations. */
+static void add_plain(const fg_edge_work *work, size_t chunk, size_t first, size_t last,
+                      float limit) {
   held holds[FG_CHUNK_STATIONS];
-  for (size_t i = first; i <= last; i++) {
-    clear_sums(&work->stations[i]);
+  for (size_t i = first; i <= last; i++)
     holds[i - first] = hold(&work->stations[i]);
-  }
-  float limit =
-      (float)(work->round == 0 ? 1e9
-                               : OUTLIER_SIGMAS * work->noise + OUTLIER_SHARE * work->contrast);
   const fg_pixel_band *band = &work->bands[chunk];
   for (size_t i = 0; i < band->count; i++) {
     const fg_band_pixel *p = &band->pixels[i];
@@ -115,6 +107,22 @@ static fg_status solve_task(fg_context *ctx, void *shared, size_t chunk) {
     add_pixel(work->tables, &holds[station - first], &work->stations[station], p->across_px,
               p->value, limit);
   }
+}
+
+/* One round on the stations of one chunk. The variance of the pixels is set afterwards. */
+static fg_status solve_task(fg_context *ctx, void *shared, size_t chunk) {
+  fg_edge_work *work = shared;
+  size_t first, last;
+  fg_edges_chunk(work, chunk, &first, &last);
+  for (size_t i = first; i <= last; i++)
+    clear_sums(&work->stations[i]);
+  float limit =
+      (float)(work->round == 0 ? 1e9
+                               : OUTLIER_SIGMAS * work->noise + OUTLIER_SHARE * work->contrast);
+  if (work->driver)
+    FG_TRY(fg_edges_add_driven(ctx, work, chunk, limit));
+  else
+    add_plain(work, chunk, first, last, limit);
   for (size_t i = first; i <= last; i++)
     move_edges(&work->stations[i]);
   return FG_OK;

@@ -121,11 +121,7 @@ static double model_at(const end_view *view, const double *x, double u, double v
   double own = strip_light(view, v), strip = x[GAIN] * own * (1 + x[FALL] * d);
   double beyond = x[LEVEL] + x[SLOPE] * d, blur = x[BLUR];
   double light = fmax(strip + (beyond - strip) * cum + x[SLOPE] * blur * phi, 1e-3);
-  double gamma = view->work->gamma, value = light, rate = 1;
-  if (gamma != 1) {
-    value = 255 * pow(light / 255, 1 / gamma);
-    rate = value / (gamma * light);
-  }
+  double rate, value = fg_edges_count(view->work, light, &rate);
   double fall = x[GAIN] * own * x[FALL];
   double by_d =
       fall * (1 - cum) + x[SLOPE] * cum + (beyond - strip) * phi / blur - x[SLOPE] * phi * t;
@@ -176,7 +172,7 @@ static double background_light(const end_view *view) {
 
 static void take_depth(const end_view *view, double u, double v, double value, void *data) {
   depth *all = data;
-  double light = fg_edge_light(view->work->gamma, value), own = strip_light(view, v);
+  double light = fg_edges_light(view->work, value), own = strip_light(view, v);
   size_t bin = (size_t)(u - all->from);
   if (bin >= all->bins) return;
   all->sum[bin] += (light - own) / (background_light(view) - own);

@@ -108,7 +108,7 @@ def known_table(rows):
         own = [r for r in rows if kind is None or r["kind"] == kind.name]
         line = ["**all**" if kind is None else kind.words]
         for variant in variants:
-            part = [r for r in own if r["variant"] == variant and r["part"] == "foils" and r["known"]]
+            part = [r for r in own if r["variant"] == variant and r["part"] == "foils"]
             line += thickness_cells(part)
             line += [per_cent(is_within(r) or r["flagged"] for r in part if r["quantity"] in ("thickness", "clearance")),
                      sum(is_silent(r) for r in part if r["quantity"] in ("thickness", "clearance")),
@@ -165,7 +165,7 @@ KNOWN = """
 ## With something known
 
 Thickness by the scan alone; with a micrometer's value of u 0.5 µm (`--thickness-measured`); with a feeler leaf of 100 µm,
-u 0.5 µm, beside the foil (`--gauge`). {which} of the cases above.
+u 0.5 µm, beside the foil (`--gauge`).
 
 {known}"""
 
@@ -181,7 +181,7 @@ def page(rows, clean, missing, options):
                        quick=" (a sixth of all cases)" if options.quick else "", quantities=quantities_table(scan),
                        strengths=strengths_table(scan))  # fmt: skip
     if any(r["variant"] != "scan" for r in rows):
-        text += KNOWN.format(known=known_table(rows), which="All" if options.known_all else "A sixth")
+        text += KNOWN.format(known=known_table(rows))
     if clean:
         text += "\n## Plain scans\n\n" + clean
     if missing:

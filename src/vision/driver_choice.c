@@ -1,0 +1,152 @@
+#include "vision/driver_choice.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+
+/* A misfit above so many sd of chance, and this share of the contrast, is one. */
+#define MISSED_SDS   6.0
+#define MISSED_SHARE 0.0004
+/* Cells that lie within a blur of each other miss together. */
+#define CELLS_TOGETHER 2.0
+
+#define FREE(value) (1u << (value))
+#define GAMMA       FREE(FG_DRIVER_LN_GAMMA)
+#define S_CURVE     (FREE(FG_DRIVER_STEEPNESS) | FREE(FG_DRIVER_CENTRE))
+#define HALO        (FREE(FG_DRIVER_HALO) | FREE(FG_DRIVER_HALO_PX))
+#define MASK        (FREE(FG_DRIVER_AMOUNT) | FREE(FG_DRIVER_RADIUS))
+
+/* The models, from the simplest on: what is free, which of two simpler ones it starts from (-1: the
+ * plain fit), and where. Both S and unsharp mask make an edge steeper, so what has both starts from
+ * wider blurs, too. A stage is asked where none before explains the profiles. */
+static const struct family {
+  unsigned free;
+  int stage, from[2];
+  double steepness, amount, halo, blurs;
+} families[] = {
+    {0, 0, {-1, -1}, 0, 0, 0, 1},
+    {GAMMA, 0, {-1, -1}, 0, 0, 0, 1},
+    {HALO, 0, {0, 0}, 0, 0, 0.1, 1},
+    {HALO | GAMMA, 0, {1, 2}, 0, 0, 0.1, 1},
+    {S_CURVE, 1, {0, 0}, 3, 0, 0, 1},
+    {S_CURVE | GAMMA, 1, {1, 4}, 2, 0, 0, 1},
+    {MASK, 1, {0, 0}, 0, 0.5, 0, 1},
+    {MASK | GAMMA, 1, {6, 6}, 0, 0.5, 0, 1},
+    {MASK | S_CURVE, 2, {4, 6}, 2, 0.3, 0, 1},
+    {MASK | S_CURVE, 2, {-1, -1}, 4, 0.5, 0, 1.7},
+    {MASK | S_CURVE, 2, {-1, -1}, 8, 0.5, 0, 2.3},
+};
+enum { FAMILIES = sizeof families / sizeof families[0], STAGES = 3 };
+#define START_RADIUS 1.2
+
+bool fg_driver_is_missed(const fg_driver_misfit *misfit, double contrast) {
+  double chance = misfit->expected * (1 + MISSED_SDS * sqrt(2 / fmax(misfit->cells, 1)));
+  return misfit->squares > chance && misfit->rms > MISSED_SHARE * contrast;
+}
+
+/* What one model does. */
+typedef struct candidate {
+  fg_driver_fit fit;
+  fg_driver_misfit misfit;
+  double score; /* Bayesian information criterion */
+  fg_driven_profile profiles[FG_DRIVER_PROFILES];
+} candidate;
+
+static double count_free(unsigned free) {
+  double n = 0;
+  for (; free; free &= free - 1)
+    n++;
+  return n;
+}
+
+/* The pooled misfit is that of so many independent cells; its own chance stays in it, so that a
+ * model gains nothing below the noise. */
+static double score_of(const fg_driver_misfit *misfit, unsigned free) {
+  double n = misfit->cells / CELLS_TOGETHER;
+  return n * log((misfit->squares + misfit->expected) / n) + count_free(free) * log(n);
+}
+
+/* The better of the simpler models, and what this one has beside it. */
+static void start_family(const struct family *family, const candidate *candidates,
+                         const candidate *start, candidate *c) {
+  const int *from = family->from;
+  if (from[0] >= 0)
+    start = &candidates[candidates[from[1]].score < candidates[from[0]].score ? from[1] : from[0]];
+  unsigned added = family->free & ~start->fit.free;
+  double noise = c->fit.noise;
+  *c = *start;
+  c->fit.noise = noise;
+  c->fit.free = family->free;
+  if (!(family->free & FREE(FG_DRIVER_LN_GAMMA))) c->fit.driver.values[FG_DRIVER_LN_GAMMA] = 0;
+  if (added & FREE(FG_DRIVER_STEEPNESS))
+    c->fit.driver.values[FG_DRIVER_STEEPNESS] = family->steepness;
+  if (added & FREE(FG_DRIVER_HALO)) c->fit.driver.values[FG_DRIVER_HALO] = family->halo;
+  if (added & FREE(FG_DRIVER_AMOUNT)) {
+    c->fit.driver.values[FG_DRIVER_AMOUNT] = family->amount;
+    c->fit.driver.values[FG_DRIVER_RADIUS] = START_RADIUS;
+  }
+  for (size_t i = 0; i < FG_DRIVER_PROFILES; i++)
+    for (int side = 0; side < 2; side++)
+      c->profiles[i].values[FG_DRIVEN_BLUR_L + side] *= family->blurs;
+}
+
+static fg_status try_family(fg_context *ctx, const struct family *family,
+                            const candidate *candidates, const candidate *start, size_t count,
+                            fg_driver_tone *tone, candidate *c) {
+  c->fit.noise = start->fit.noise;
+  start_family(family, candidates, start, c);
+  FG_TRY(fg_driver_fit_profiles(ctx, c->profiles, count, &c->fit));
+  fg_driver_find_misfit(c->profiles, count, &c->fit.driver, tone, &c->misfit);
+  c->score = c->fit.good ? score_of(&c->misfit, family->free) : INFINITY;
+  return FG_OK;
+}
+
+/* The best, and the edges' place over all models, each weighing exp(-score/2). */
+static size_t weigh(const candidate *candidates, double *u_edge_px) {
+  size_t best = 0;
+  double weights = 0, mean = 0, square = 0;
+  for (size_t i = 1; i < FAMILIES; i++)
+    if (candidates[i].fit.good && candidates[i].score < candidates[best].score) best = i;
+  for (size_t i = 0; i < FAMILIES; i++) {
+    const candidate *c = &candidates[i];
+    double weight = exp(-0.5 * (c->score - candidates[best].score));
+    if (!c->fit.good || !isfinite(weight)) continue;
+    double off = c->fit.edge_px - candidates[best].fit.edge_px;
+    weights += weight;
+    mean += weight * off;
+    square += weight * (off * off + c->fit.u_edge_px * c->fit.u_edge_px);
+  }
+  *u_edge_px = sqrt(square / weights);
+  return best;
+}
+
+fg_status fg_driver_choose(fg_context *ctx, fg_driven_profile *profiles, size_t count,
+                           const double ends[2], double gamma, double noise,
+                           fg_driver_choice *choice) {
+  candidate *candidates = NULL;
+  fg_driver_tone *tone = NULL;
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(fg_memory_allocate(ctx, FAMILIES + 1, sizeof *candidates, (void **)&candidates));
+  candidate *start = &candidates[FAMILIES];
+  start->fit = (fg_driver_fit){.driver = fg_driver_none(ends), .noise = noise};
+  start->fit.driver.values[FG_DRIVER_LN_GAMMA] = log(gamma);
+  memcpy(start->profiles, profiles, count * sizeof *profiles);
+  FG_TRY_EXIT(fg_memory_allocate(ctx, 1, sizeof *tone, (void **)&tone));
+  size_t best = 0, i = 0;
+  choice->missed = true;
+  for (int stage = 0; stage < STAGES && choice->missed; stage++) {
+    for (; i < FAMILIES && families[i].stage == stage; i++)
+      FG_TRY_EXIT(try_family(ctx, &families[i], candidates, start, count, tone, &candidates[i]));
+    best = weigh(candidates, &choice->u_edge_px);
+    choice->missed = fg_driver_is_missed(&candidates[best].misfit, ends[1] - ends[0]);
+  }
+  choice->fit = candidates[best].fit;
+  choice->misfit = candidates[best].misfit;
+  memcpy(profiles, candidates[best].profiles, count * sizeof *profiles);
+exit:
+  free(candidates);
+  free(tone);
+  return status;
+}

@@ -1,0 +1,349 @@
+/* Least squares for many profiles and one driver.
+ *
+ * Every profile has unknowns p of its own; the driver's q are common. Of each profile's normal
+ * equations (A B'; B D) only the Schur complement D - B A⁻¹ B' enters the sum over profiles.
+ */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/small_solve.h"
+#include "vision/driver_model.h"
+
+enum { ITERATIONS_MAX = 25, ALL = FG_DRIVEN_VALUES + FG_DRIVER_VALUES };
+#define GAIN_LEAST  1e-4
+#define DAMPING_MAX 1e5
+/* Optics are Gaussian to this share of the contrast: where a tone curve is steep, little light
+ * beside the edge, its blur's tails, moves many counts. */
+#define TAIL_SHARE 0.001
+
+/* Steps of numerical derivatives, ranges, and what is known beforehand (sd 0: nothing). */
+static const struct {
+  double step, low, high, prior, prior_sd;
+} driver_values[FG_DRIVER_VALUES] = {
+    [FG_DRIVER_LN_GAMMA] = {0.005, -1.6, 1.6, 0, 1.5}, [FG_DRIVER_STEEPNESS] = {0.02, 0, 16, 0, 8},
+    [FG_DRIVER_CENTRE] = {0.003, 0, 1, 0.5, 0.2},      [FG_DRIVER_AMOUNT] = {0.01, -0.5, 4, 0, 0},
+    [FG_DRIVER_RADIUS] = {0.01, 0.35, 6, 1, 2},        [FG_DRIVER_HALO] = {0.003, 0, 0.5, 0, 0},
+    [FG_DRIVER_HALO_PX] = {0.1, 2, 60, 10, 10},
+};
+static const struct {
+  double step, low, high;
+} profile_values[FG_DRIVEN_VALUES] = {
+    {0.005, -1e9, 1e9}, {0.005, -1e9, 1e9}, {0.05, 0, 255},    {0.05, 0, 255},    {0.05, 0, 255},
+    {0.005, -9, 9},     {0.005, -9, 9},     {0.005, 0.25, 12}, {0.005, 0.25, 12},
+};
+
+/* The normal equations of one profile, and its sum of squares. */
+typedef struct profile_equations {
+  fg_normal_equations system; /* of the profile's own unknowns */
+  double cross[FG_DRIVER_VALUES][FG_DRIVEN_VALUES];
+  double common[FG_DRIVER_VALUES][FG_DRIVER_VALUES], right[FG_DRIVER_VALUES];
+  double inverse[FG_SMALL_MAX][FG_SMALL_MAX], own[FG_SMALL_MAX];
+} profile_equations;
+
+typedef struct solver {
+  fg_driven_profile *profiles;
+  size_t count;
+  fg_driver_fit *fit;
+  size_t q, index[FG_DRIVER_VALUES]; /* free values of the driver */
+  profile_equations *equations;
+  fg_driver_tone *tone, *moved; /* moved: one per free value */
+  double *counts;               /* of a profile, then of each derivative */
+  double *trial;                /* profiles' values */
+} solver;
+
+static double *column(const solver *s, size_t i) {
+  return s->counts + i * FG_DRIVEN_MOST;
+}
+
+/* The model and its derivatives for one profile. */
+static void differentiate(const solver *s, const fg_driven_profile *p, const fg_driver *driver) {
+  double *base = column(s, 0), values[FG_DRIVEN_VALUES];
+  fg_driven_counts(driver, s->tone, p, p->values, base);
+  for (size_t k = 0; k < FG_DRIVEN_VALUES + s->q; k++) {
+    double *to = column(s, 1 + k), step;
+    if (k < FG_DRIVEN_VALUES) {
+      if (p->held >> k & 1) {
+        memset(to, 0, p->count * sizeof *to);
+        continue;
+      }
+      memcpy(values, p->values, sizeof values);
+      values[k] += step = profile_values[k].step;
+      fg_driven_counts(driver, s->tone, p, values, to);
+    } else {
+      size_t i = s->index[k - FG_DRIVEN_VALUES];
+      fg_driver other = *driver;
+      other.values[i] += step = driver_values[i].step;
+      fg_driven_counts(&other, &s->moved[k - FG_DRIVEN_VALUES], p, p->values, to);
+    }
+    for (size_t i = 0; i < p->count; i++)
+      to[i] = (to[i] - base[i]) / step;
+  }
+}
+
+/* Weight of a bin: what the tails of the optics are in counts adds to its variance. */
+static double weight_of(const fg_driven_profile *p, size_t i, double noise) {
+  const fg_profile_bin *b = &p->bins[i];
+  double tails = p->tails ? TAIL_SHARE * p->tails[i] : 0;
+  return 1 / (noise * noise / b->count + tails * tails);
+}
+
+static double add_profile(const solver *s, const fg_driven_profile *p, profile_equations *part) {
+  double row[FG_DRIVEN_VALUES], common[FG_DRIVER_VALUES], squares = 0;
+  memset(part, 0, sizeof *part);
+  fg_normal_clear(&part->system, FG_DRIVEN_VALUES);
+  for (size_t i = 0; i < p->count; i++) {
+    double residual = p->bins[i].value - column(s, 0)[i];
+    double weight = weight_of(p, i, s->fit->noise);
+    for (size_t k = 0; k < FG_DRIVEN_VALUES; k++)
+      row[k] = column(s, 1 + k)[i];
+    for (size_t k = 0; k < s->q; k++)
+      common[k] = column(s, 1 + FG_DRIVEN_VALUES + k)[i];
+    fg_normal_add(&part->system, row, residual, weight);
+    for (size_t k = 0; k < s->q; k++) {
+      for (size_t j = 0; j < FG_DRIVEN_VALUES; j++)
+        part->cross[k][j] += weight * common[k] * row[j];
+      for (size_t j = 0; j < s->q; j++)
+        part->common[k][j] += weight * common[k] * common[j];
+      part->right[k] += weight * common[k] * residual;
+    }
+    squares += weight * residual * residual;
+  }
+  for (size_t k = 0; k < FG_DRIVEN_VALUES; k++)
+    if (p->held >> k & 1) part->system.matrix[k][k] = 1;
+  return squares;
+}
+
+/* What is known beforehand of the driver, as a sum of squares. */
+static double prior_squares(const solver *s, const fg_driver *driver) {
+  double sum = 0;
+  for (size_t k = 0; k < s->q; k++) {
+    size_t i = s->index[k];
+    if (driver_values[i].prior_sd <= 0) continue;
+    double d = (driver->values[i] - driver_values[i].prior) / driver_values[i].prior_sd;
+    sum += d * d;
+  }
+  return sum;
+}
+
+static double build(const solver *s) {
+  const fg_driver *driver = &s->fit->driver;
+  double squares = prior_squares(s, driver);
+  fg_driver_tone_fill(driver, s->tone);
+  for (size_t k = 0; k < s->q; k++) {
+    fg_driver other = *driver;
+    other.values[s->index[k]] += driver_values[s->index[k]].step;
+    fg_driver_tone_fill(&other, &s->moved[k]);
+  }
+  for (size_t i = 0; i < s->count; i++) {
+    differentiate(s, &s->profiles[i], driver);
+    squares += add_profile(s, &s->profiles[i], &s->equations[i]);
+  }
+  return squares;
+}
+
+static double squares_at(const solver *s, const fg_driver *driver, const double *values) {
+  double squares = prior_squares(s, driver);
+  fg_driver_tone_fill(driver, s->tone);
+  for (size_t i = 0; i < s->count; i++) {
+    const fg_driven_profile *p = &s->profiles[i];
+    fg_driven_counts(driver, s->tone, p, values + i * FG_DRIVEN_VALUES, column(s, 0));
+    for (size_t k = 0; k < p->count; k++) {
+      double residual = p->bins[k].value - column(s, 0)[k];
+      squares += weight_of(p, k, s->fit->noise) * residual * residual;
+    }
+  }
+  return squares;
+}
+
+/* Takes a profile's own unknowns out: B A⁻¹ B' and B A⁻¹ g from the system of the driver. */
+static bool eliminate(const solver *s, profile_equations *part, double damping,
+                      fg_normal_equations *system) {
+  if (!fg_normal_solve(&part->system, damping, part->own, part->inverse)) return false;
+  for (size_t k = 0; k < s->q; k++) {
+    double row[FG_DRIVEN_VALUES] = {0};
+    for (size_t j = 0; j < FG_DRIVEN_VALUES; j++)
+      for (size_t i = 0; i < FG_DRIVEN_VALUES; i++)
+        row[j] += part->cross[k][i] * part->inverse[i][j];
+    system->right[k] += part->right[k];
+    for (size_t j = 0; j < FG_DRIVEN_VALUES; j++)
+      system->right[k] -= part->cross[k][j] * part->own[j];
+    for (size_t l = 0; l <= k; l++) {
+      system->matrix[k][l] += part->common[k][l];
+      for (size_t j = 0; j < FG_DRIVEN_VALUES; j++)
+        system->matrix[k][l] -= row[j] * part->cross[l][j];
+    }
+  }
+  return true;
+}
+
+/* The system of the driver's free values; false where a profile cannot be solved. */
+static bool reduce(const solver *s, double damping, fg_normal_equations *system) {
+  fg_normal_clear(system, s->q);
+  for (size_t k = 0; k < s->q; k++) {
+    size_t i = s->index[k];
+    if (driver_values[i].prior_sd <= 0) continue;
+    double weight = 1 / (driver_values[i].prior_sd * driver_values[i].prior_sd);
+    system->matrix[k][k] += weight;
+    system->right[k] += weight * (driver_values[i].prior - s->fit->driver.values[i]);
+  }
+  for (size_t i = 0; i < s->count; i++)
+    if (!eliminate(s, &s->equations[i], damping, system)) return false;
+  return true;
+}
+
+static double within(double value, double low, double high) {
+  return fmin(fmax(value, low), high);
+}
+
+/* A damped step of everything into s->trial and *driver. */
+static bool propose(const solver *s, double damping, fg_driver *driver) {
+  fg_normal_equations system;
+  double step[FG_SMALL_MAX] = {0};
+  if (!reduce(s, damping, &system)) return false;
+  if (s->q && !fg_normal_solve(&system, damping, step, NULL)) return false;
+  *driver = s->fit->driver;
+  for (size_t k = 0; k < s->q; k++) {
+    size_t i = s->index[k];
+    double to = driver->values[i] + step[k];
+    driver->values[i] = within(to, driver_values[i].low, driver_values[i].high);
+    step[k] = driver->values[i] - s->fit->driver.values[i];
+  }
+  for (size_t i = 0; i < s->count; i++) {
+    const profile_equations *part = &s->equations[i];
+    for (size_t j = 0; j < FG_DRIVEN_VALUES; j++) {
+      double move = part->own[j];
+      for (size_t k = 0; k < s->q; k++)
+        for (size_t l = 0; l < FG_DRIVEN_VALUES; l++)
+          move -= part->inverse[j][l] * part->cross[k][l] * step[k];
+      double to = s->profiles[i].values[j] + (s->profiles[i].held >> j & 1 ? 0 : move);
+      s->trial[i * FG_DRIVEN_VALUES + j] =
+          within(to, profile_values[j].low, profile_values[j].high);
+    }
+  }
+  return true;
+}
+
+static void accept(const solver *s, const fg_driver *driver) {
+  s->fit->driver = *driver;
+  for (size_t i = 0; i < s->count; i++)
+    memcpy(s->profiles[i].values, s->trial + i * FG_DRIVEN_VALUES, sizeof s->profiles[i].values);
+}
+
+/* Mean of the edges' places outwards, and its derivatives by the driver's free values. */
+static double edge_place(const solver *s, double *by_driver) {
+  double sum = 0;
+  memset(by_driver, 0, s->q * sizeof *by_driver);
+  for (size_t i = 0; i < s->count; i++) {
+    const fg_driven_profile *p = &s->profiles[i];
+    const profile_equations *part = &s->equations[i];
+    double right = p->single ? 1 : 0.5, left = p->single ? 0 : -0.5;
+    sum += right * p->values[FG_DRIVEN_RIGHT] + left * p->values[FG_DRIVEN_LEFT];
+    for (size_t k = 0; k < s->q; k++)
+      for (size_t l = 0; l < FG_DRIVEN_VALUES; l++)
+        by_driver[k] -= part->cross[k][l] * (right * part->inverse[FG_DRIVEN_RIGHT][l] +
+                                             left * part->inverse[FG_DRIVEN_LEFT][l]);
+  }
+  for (size_t k = 0; k < s->q; k++)
+    by_driver[k] /= (double)s->count;
+  return sum / (double)s->count;
+}
+
+/* Variance of v' θ from how the profiles differ among each other: the sandwich C J C. */
+static double scattered_variance(const solver *s, double inverse[FG_SMALL_MAX][FG_SMALL_MAX],
+                                 const double *v) {
+  double sum = 0;
+  for (size_t i = 0; i < s->count; i++) {
+    const profile_equations *part = &s->equations[i];
+    double along = 0;
+    for (size_t k = 0; k < s->q; k++) {
+      double score = part->right[k];
+      for (size_t j = 0; j < FG_DRIVEN_VALUES; j++)
+        score -= part->cross[k][j] * part->own[j];
+      for (size_t l = 0; l < s->q; l++)
+        along += v[l] * inverse[l][k] * score;
+    }
+    sum += along * along;
+  }
+  return sum * (double)s->count / fmax(1, (double)s->count - (double)s->q);
+}
+
+static double variance_of(const solver *s, double inverse[FG_SMALL_MAX][FG_SMALL_MAX],
+                          const double *v, double scale) {
+  double own = 0;
+  for (size_t k = 0; k < s->q; k++)
+    for (size_t l = 0; l < s->q; l++)
+      own += v[k] * inverse[k][l] * v[l];
+  return fmax(own * scale, scattered_variance(s, inverse, v));
+}
+
+/* Standard deviations; the squares are in units of fit->noise. */
+static void conclude(const solver *s, double squares) {
+  fg_normal_equations system;
+  double x[FG_SMALL_MAX], inverse[FG_SMALL_MAX][FG_SMALL_MAX], by_driver[FG_DRIVER_VALUES] = {0};
+  double dof = -(double)s->q;
+  fg_driver_fit *fit = s->fit;
+  for (size_t i = 0; i < s->count; i++)
+    dof += (double)s->profiles[i].count - FG_DRIVEN_VALUES;
+  double scale = dof > 0 ? squares / dof : 1;
+  fit->good = reduce(s, 0, &system) && (!s->q || fg_normal_solve(&system, 0, x, inverse));
+  if (!fit->good) return;
+  fit->edge_px = edge_place(s, by_driver);
+  fit->u_edge_px = sqrt(variance_of(s, inverse, by_driver, fmax(scale, 1)));
+  for (size_t k = 0; k < s->q; k++) {
+    double unit[FG_DRIVER_VALUES] = {0};
+    unit[k] = 1;
+    fit->sd[s->index[k]] = sqrt(variance_of(s, inverse, unit, fmax(scale, 1)));
+  }
+  for (size_t i = 0; i < s->count; i++)
+    for (size_t j = 0; j < FG_DRIVEN_VALUES; j++)
+      s->profiles[i].sd[j] =
+          s->profiles[i].held >> j & 1 ? 0 : sqrt(fmax(scale, 1) * s->equations[i].inverse[j][j]);
+  fit->noise *= sqrt(scale);
+}
+
+static void iterate(const solver *s) {
+  double damping = 1e-3, squares = build(s);
+  fg_driver driver;
+  for (int i = 0; i < ITERATIONS_MAX && damping < DAMPING_MAX; i++) {
+    if (!propose(s, damping, &driver)) {
+      damping *= 10;
+      continue;
+    }
+    double next = squares_at(s, &driver, s->trial);
+    if (!(next < squares)) {
+      damping *= 10;
+      continue;
+    }
+    double gain = squares - next;
+    accept(s, &driver);
+    squares = build(s);
+    damping = fmax(damping * 0.1, 1e-9);
+    if (gain < GAIN_LEAST * squares) break;
+  }
+  conclude(s, squares);
+}
+
+fg_status fg_driver_fit_profiles(fg_context *ctx, fg_driven_profile *profiles, size_t count,
+                                 fg_driver_fit *fit) {
+  solver s = {.profiles = profiles, .count = count, .fit = fit};
+  fg_status status = FG_OK;
+  fit->good = false;
+  for (size_t i = 0; i < FG_DRIVER_VALUES; i++)
+    if (fit->free >> i & 1) s.index[s.q++] = i;
+  FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *s.equations, (void **)&s.equations));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, 1 + s.q, sizeof *s.tone, (void **)&s.tone));
+  FG_TRY_EXIT(
+      fg_memory_allocate(ctx, (1 + ALL) * FG_DRIVEN_MOST, sizeof *s.counts, (void **)&s.counts));
+  FG_TRY_EXIT(
+      fg_memory_allocate(ctx, count * FG_DRIVEN_VALUES, sizeof *s.trial, (void **)&s.trial));
+  s.moved = s.tone + 1;
+  iterate(&s);
+exit:
+  free(s.equations);
+  free(s.tone);
+  free(s.counts);
+  free(s.trial);
+  return status;
+}

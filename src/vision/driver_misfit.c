@@ -1,0 +1,68 @@
+/* What a model leaves of many profiles, the same on all of them. */
+#include <math.h>
+#include <string.h>
+
+#include "core/select.h"
+#include "vision/driver_choice.h"
+
+#define CELL_PX     0.5
+#define REACH_BLURS 4.0
+#define REACH_PX    2.0
+enum { CELLS = 64, HALVES_MOST = 2 * FG_DRIVER_PROFILES };
+
+/* Mean residuals by distance outwards from the edge, of each half profile. */
+typedef struct cells {
+  double sum[CELLS], weight[CELLS];
+} cells;
+
+static void add_half(const fg_driven_profile *p, const double *counts, int side, cells *c) {
+  double blur = p->values[FG_DRIVEN_BLUR_L + side], reach = REACH_BLURS * blur + REACH_PX;
+  double edge = p->values[FG_DRIVEN_LEFT + side], other = p->values[FG_DRIVEN_LEFT + !side];
+  double inner = p->single ? reach : fmin(reach, 0.5 * fabs(edge - other));
+  memset(c, 0, sizeof *c);
+  for (size_t i = 0; i < p->count; i++) {
+    double d = (side ? 1 : -1) * (p->bins[i].across_px - edge);
+    if (d < -inner || d > reach) continue;
+    int cell = CELLS / 2 + (int)floor(d / CELL_PX);
+    if (cell < 0 || cell >= CELLS) continue;
+    c->sum[cell] += p->bins[i].count * (p->bins[i].value - counts[i]);
+    c->weight[cell] += p->bins[i].count;
+  }
+}
+
+/* Mean and its standard error over the half profiles: medians, for dust lies on some. */
+static bool pool_cell(const cells *halves, size_t count, int cell, double *mean, double *error) {
+  double values[HALVES_MOST];
+  size_t n = 0;
+  for (size_t i = 0; i < count; i++)
+    if (halves[i].weight[cell] > 0) values[n++] = halves[i].sum[cell] / halves[i].weight[cell];
+  if (2 * n < count || n < 4) return false;
+  *mean = fg_select(values, n, n / 2);
+  for (size_t i = 0; i < n; i++)
+    values[i] = fabs(values[i] - *mean);
+  *error = 1.4826 * fg_select(values, n, n / 2) * 1.2533 / sqrt((double)n);
+  return true;
+}
+
+void fg_driver_find_misfit(const fg_driven_profile *profiles, size_t count, const fg_driver *driver,
+                           fg_driver_tone *tone, fg_driver_misfit *misfit) {
+  cells halves[HALVES_MOST];
+  double counts[FG_DRIVEN_MOST];
+  size_t n = 0;
+  *misfit = (fg_driver_misfit){0};
+  fg_driver_tone_fill(driver, tone);
+  for (size_t i = 0; i < count && n + 2 <= HALVES_MOST; i++) {
+    fg_driven_counts(driver, tone, &profiles[i], profiles[i].values, counts);
+    for (int side = profiles[i].single; side < 2; side++)
+      add_half(&profiles[i], counts, side, &halves[n++]);
+  }
+  for (int cell = 0; cell < CELLS; cell++) {
+    double mean, error;
+    if (!pool_cell(halves, n, cell, &mean, &error)) continue;
+    misfit->squares += mean * mean;
+    misfit->expected += error * error;
+    misfit->cells++;
+  }
+  misfit->rms =
+      misfit->cells ? sqrt(fmax(misfit->squares - misfit->expected, 0) / misfit->cells) : NAN;
+}

@@ -1,0 +1,87 @@
+/* The tone curve of a driver's model as a table. */
+#include <math.h>
+
+#include "vision/driver_model.h"
+
+/* Below this steepness the S is a straight line. */
+#define STEEPNESS_LEAST 1e-3
+
+fg_driver fg_driver_none(const double ends[2]) {
+  return (fg_driver){
+      .values = {[FG_DRIVER_CENTRE] = 0.5, [FG_DRIVER_RADIUS] = 1, [FG_DRIVER_HALO_PX] = 10},
+      .ends = {ends[0], ends[1]}};
+}
+
+static double logistic(double x) {
+  return 1 / (1 + exp(-x));
+}
+
+/* S at x, without and with its ends put to 0 and 1. */
+static double s_curve(double k, double m, double x) {
+  double low = logistic(-k * m), high = logistic(k * (1 - m));
+  return k < STEEPNESS_LEAST ? x : (logistic(k * (x - m)) - low) / (high - low);
+}
+
+bool fg_driver_is_linear(const fg_driver *driver) {
+  return driver->values[FG_DRIVER_LN_GAMMA] == 0 &&
+         driver->values[FG_DRIVER_STEEPNESS] < STEEPNESS_LEAST;
+}
+
+/* Below no light at all a power has nothing; without one light and counts go on. */
+double fg_driver_count(const fg_driver *driver, double light) {
+  double ln_gamma = driver->values[FG_DRIVER_LN_GAMMA];
+  double count = ln_gamma == 0 ? light : 255 * pow(fmax(light, 0) / 255, exp(-ln_gamma));
+  double low = driver->ends[0], range = driver->ends[1] - driver->ends[0];
+  return low + range * s_curve(driver->values[FG_DRIVER_STEEPNESS],
+                               driver->values[FG_DRIVER_CENTRE], (count - low) / range);
+}
+
+/* Light at the table's i-th count. */
+static double light_of(int i) {
+  const double steps = FG_DRIVER_TONE_STEPS;
+  return FG_DRIVER_LIGHT_MOST * ((double)i / steps) * ((double)i / steps);
+}
+
+void fg_driver_tone_fill(const fg_driver *driver, fg_driver_tone *tone) {
+  static const double dark = 32;
+  tone->linear = fg_driver_is_linear(driver);
+  if (tone->linear) return;
+  for (int i = 0; i < FG_DRIVER_TONE_STEPS + 2; i++)
+    tone->count[i] = fg_driver_count(driver, light_of(i));
+  tone->below = (tone->count[0] - fg_driver_count(driver, -dark)) / dark;
+}
+
+double fg_driver_tone_at(const fg_driver_tone *tone, double light, double *rate) {
+  *rate = 1;
+  if (tone->linear) return light;
+  *rate = tone->below;
+  if (light < 0) return tone->count[0] + light * tone->below;
+  double root = sqrt(light / FG_DRIVER_LIGHT_MOST) * FG_DRIVER_TONE_STEPS;
+  int i = root < FG_DRIVER_TONE_STEPS ? (int)root : FG_DRIVER_TONE_STEPS;
+  double from = light_of(i);
+  *rate = (tone->count[i + 1] - tone->count[i]) / (light_of(i + 1) - from);
+  return tone->count[i] + (light - from) * *rate;
+}
+
+double fg_driver_tone_inverse(const fg_driver_tone *tone, double count) {
+  if (tone->linear) return count;
+  int low = 0, high = FG_DRIVER_TONE_STEPS + 1;
+  if (count < tone->count[0])
+    return tone->below > 1e-3 ? (count - tone->count[0]) / tone->below : 0;
+  while (high - low > 1) {
+    int middle = (low + high) / 2;
+    if (tone->count[middle] <= count)
+      low = middle;
+    else
+      high = middle;
+  }
+  double step = tone->count[high] - tone->count[low];
+  double share = step > 0 ? (count - tone->count[low]) / step : 0;
+  return light_of(low) + fmin(fmax(share, 0), 1) * (light_of(high) - light_of(low));
+}
+
+double fg_driver_extra_slope(const fg_driver *driver) {
+  double k = driver->values[FG_DRIVER_STEEPNESS], m = driver->values[FG_DRIVER_CENTRE];
+  if (k < STEEPNESS_LEAST) return 0;
+  return k / 4 / (logistic(k * (1 - m)) - logistic(-k * m)) - 1;
+}

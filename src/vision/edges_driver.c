@@ -1,0 +1,203 @@
+/* What the scanner's driver has made of a strip's edges: asked only where the plain model of
+ * edge_model.h misses the mean profiles. What is found is held for the whole strip. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/parallel.h"
+#include "vision/driver_choice.h"
+#include "vision/edges.h"
+
+/* Less than this is not called sharpening, and less of a slope no tone curve. */
+#define AMOUNT_LEAST 0.05
+#define SLOPE_LEAST  0.05
+/* Profiles one by one do not tell a power beyond this well: all of them are asked together. */
+#define LN_GAMMA_MOST 0.4
+/* Blur that few levels may hide, px. */
+#define HIDDEN_BLUR_PX 1.2
+/* sd of a pixel, counts, that the fits start from. */
+#define START_NOISE 1.5
+
+/* Profiles that are asked, and their bins, none of them empty. */
+typedef struct sample {
+  fg_driven_profile profiles[FG_DRIVER_PROFILES];
+  fg_profile_bin *bins;
+  size_t count;
+  double ends[2];
+} sample;
+
+double fg_edges_count(const fg_edge_work *work, double light, double *rate) {
+  *rate = 1;
+  if (work->driver) return fg_driver_tone_at(work->driver_tone, light, rate);
+  if (work->gamma == 1) return light;
+  double value = fg_edge_count(work->gamma, light);
+  *rate = value / (work->gamma * light);
+  return value;
+}
+
+double fg_edges_light(const fg_edge_work *work, double count) {
+  return work->driver ? fg_driver_tone_inverse(work->driver_tone, count)
+                      : fg_edge_light(work->gamma, count);
+}
+
+/* A fit in counts. Slopes are over the contrast. */
+static fg_driven_profile driven_profile(const fg_edge_work *work, const fg_profile_fit *fit) {
+  const fg_edge_shape *shape = &fit->shape;
+  double rate, plateau = fg_edges_count(work, fmax(shape->plateau, 1e-3), &rate);
+  fg_driven_profile p = {.values = {fit->edge_px[0], fit->edge_px[1], plateau}};
+  for (int side = 0; side < 2; side++) {
+    double count = fg_edges_count(work, fmax(shape->level[side], 1e-3), &rate);
+    double step = shape->level[side] - shape->plateau;
+    p.values[FG_DRIVEN_LEVEL_L + side] = count;
+    p.values[FG_DRIVEN_SLOPE_L + side] = shape->slope[side] * (step ? (count - plateau) / step : 1);
+    p.values[FG_DRIVEN_BLUR_L + side] = shape->blur_px[side];
+  }
+  return p;
+}
+
+/* And back, with the standard deviations. */
+static void take_profile(const fg_edge_work *work, const fg_driven_profile *p,
+                         fg_profile_fit *fit) {
+  fg_edge_shape *shape = &fit->shape;
+  double rate;
+  shape->plateau = fg_edges_light(work, p->values[FG_DRIVEN_PLATEAU]);
+  fg_edges_count(work, shape->plateau, &rate);
+  fit->sd[0] = p->sd[FG_DRIVEN_PLATEAU] / fmax(rate, 1e-3);
+  for (int side = 0; side < 2; side++) {
+    double counts = p->values[FG_DRIVEN_LEVEL_L + side] - p->values[FG_DRIVEN_PLATEAU];
+    shape->level[side] = fg_edges_light(work, p->values[FG_DRIVEN_LEVEL_L + side]);
+    fg_edges_count(work, shape->level[side], &rate);
+    double per_count = (shape->level[side] - shape->plateau) / (counts != 0 ? counts : 1);
+    shape->slope[side] = p->values[FG_DRIVEN_SLOPE_L + side] * per_count;
+    shape->blur_px[side] = p->values[FG_DRIVEN_BLUR_L + side];
+    fit->edge_px[side] = p->values[FG_DRIVEN_LEFT + side];
+    fit->sd[1 + side] = p->sd[FG_DRIVEN_LEVEL_L + side] / fmax(rate, 1e-3);
+    fit->sd[3 + side] = p->sd[FG_DRIVEN_SLOPE_L + side] * fabs(per_count);
+    fit->sd[5 + side] = p->sd[FG_DRIVEN_BLUR_L + side];
+  }
+}
+
+static size_t copy_bins(const fg_edge_work *work, const fg_segment_profile *segment,
+                        fg_profile_bin *bins) {
+  size_t n = 0;
+  for (size_t i = 0; i < work->bin_count && n + 8 < FG_DRIVEN_MOST; i++)
+    if (segment->bins[i].count > 0) bins[n++] = segment->bins[i];
+  return n;
+}
+
+static fg_status draw_sample(fg_context *ctx, const fg_edge_work *work, sample *s) {
+  size_t good = 0;
+  FG_TRY(fg_memory_allocate(ctx, FG_DRIVER_PROFILES * work->bin_count, sizeof *s->bins,
+                            (void **)&s->bins));
+  s->ends[0] = INFINITY;
+  s->ends[1] = -INFINITY;
+  for (size_t i = 0; i < work->segment_count && s->count < FG_DRIVER_PROFILES; i++) {
+    const fg_segment_profile *segment = &work->segments[i];
+    if (!segment->fit.good) continue;
+    if (good++ * FG_DRIVER_PROFILES < s->count * work->good_segments) continue;
+    fg_driven_profile *p = &s->profiles[s->count];
+    fg_profile_bin *bins = s->bins + s->count++ * work->bin_count;
+    *p = driven_profile(work, &segment->fit);
+    p->bins = bins;
+    p->count = copy_bins(work, segment, bins);
+    for (int k = FG_DRIVEN_PLATEAU; k <= FG_DRIVEN_LEVEL_R; k++) {
+      s->ends[0] = fmin(s->ends[0], p->values[k]);
+      s->ends[1] = fmax(s->ends[1], p->values[k]);
+    }
+  }
+  return FG_OK;
+}
+
+/* Whether the plain model leaves more than chance. */
+static bool is_missed(const fg_edge_work *work, const sample *s, fg_driver_tone *tone) {
+  fg_driver plain = fg_driver_none(s->ends);
+  fg_driver_misfit misfit;
+  plain.values[FG_DRIVER_LN_GAMMA] = log(work->gamma);
+  fg_driver_find_misfit(s->profiles, s->count, &plain, tone, &misfit);
+  return fg_driver_is_missed(&misfit, s->ends[1] - s->ends[0]);
+}
+
+/* What was chosen, for all steps to come. */
+static fg_status adopt(fg_context *ctx, fg_edge_work *work, const fg_driver_choice *choice) {
+  const fg_driver *driver = &choice->fit.driver;
+  work->gamma = exp(driver->values[FG_DRIVER_LN_GAMMA]);
+  work->u_gamma = choice->fit.sd[FG_DRIVER_LN_GAMMA] * work->gamma;
+  work->u_driver_px = choice->u_edge_px;
+  work->unexplained = choice->missed;
+  fg_edge_tables_init(work->tables, 1);
+  if (!choice->fit.free) return FG_OK;
+  FG_TRY(fg_memory_allocate(ctx, 1, sizeof *work->driver, (void **)&work->driver));
+  FG_TRY(fg_memory_allocate(ctx, 1, sizeof *work->driver_tone, (void **)&work->driver_tone));
+  *work->driver = *driver;
+  fg_driver_tone_fill(driver, work->driver_tone);
+  work->tables->linear = work->driver_tone->linear;
+  for (int i = 0; i < FG_TONE_STEPS + 2; i++)
+    work->tables->tone[i] = (float)fg_driver_count(driver, 255.0 * i / FG_TONE_STEPS);
+  return FG_OK;
+}
+
+void fg_edges_free_driver(fg_edge_work *work) {
+  free(work->driver);
+  free(work->driver_tone);
+}
+
+fg_status fg_edges_fit_driven(fg_context *ctx, const fg_edge_work *work,
+                              fg_segment_profile *segment) {
+  fg_driven_profile p = driven_profile(work, &segment->fit);
+  fg_driver_fit fit = {.driver = *work->driver, .noise = START_NOISE};
+  fg_profile_bin bins[FG_DRIVEN_MOST];
+  p.bins = bins;
+  p.count = copy_bins(work, segment, bins);
+  FG_TRY(fg_driver_fit_profiles(ctx, &p, 1, &fit));
+  segment->fit.good = fit.good;
+  segment->fit.noise = fit.noise;
+  if (fit.good) take_profile(work, &p, &segment->fit);
+  return FG_OK;
+}
+
+void fg_edges_describe_driver(const fg_edge_work *work, fg_picture_state *state) {
+  double per_level = 0.5 * (work->blur_px[0] + work->blur_px[1]) * sqrt(2 * M_PI);
+  double u_edge_px = work->u_driver_px;
+  if (isnan(u_edge_px)) u_edge_px = 0.5 * work->tone_px * work->u_gamma / work->gamma;
+  if (work->level_step > FG_LEVEL_STEP_MOST) {
+    /* Either level, and with it the half between them, is anywhere within a step. */
+    double share = work->level_step / sqrt(12) / work->contrast;
+    u_edge_px = hypot(u_edge_px, share * per_level);
+    u_edge_px *= fmax(1, HIDDEN_BLUR_PX * sqrt(2 * M_PI) / per_level);
+  }
+  state->gamma = work->gamma;
+  state->u_gamma = work->u_gamma;
+  state->level = 0;
+  state->u_level = u_edge_px / per_level;
+  state->tone_s = state->sharpen_amount = 0;
+  if (work->unexplained) state->findings |= FG_PICTURE_UNKNOWN_PROFILE;
+  if (!work->driver) return;
+  state->tone_s = fg_driver_extra_slope(work->driver);
+  state->sharpen_amount = fmax(work->driver->values[FG_DRIVER_AMOUNT], 0);
+  if (state->tone_s > SLOPE_LEAST) state->findings |= FG_PICTURE_TONE_CURVE;
+  if (!(state->sharpen_amount > AMOUNT_LEAST)) return;
+  state->sharpen_radius_px = work->driver->values[FG_DRIVER_RADIUS];
+  state->findings |= FG_PICTURE_SHARPENED;
+}
+
+fg_status fg_edges_find_driver(fg_context *ctx, fg_edge_work *work, bool *found) {
+  sample s = {.count = 0};
+  fg_driver_tone *tone = NULL;
+  fg_driver_choice choice;
+  fg_status status = FG_OK;
+  *found = false;
+  FG_TRY_EXIT(fg_memory_allocate(ctx, 1, sizeof *tone, (void **)&tone));
+  FG_TRY_EXIT(draw_sample(ctx, work, &s));
+  bool missed = is_missed(work, &s, tone), few = work->level_step > FG_LEVEL_STEP_MOST;
+  work->unexplained = missed && few;
+  *found = !work->clipped && !few && (missed || fabs(log(work->gamma)) > LN_GAMMA_MOST);
+  if (!*found) goto exit;
+  FG_TRY_EXIT(
+      fg_driver_choose(ctx, s.profiles, s.count, s.ends, work->gamma, START_NOISE, &choice));
+  FG_TRY_EXIT(adopt(ctx, work, &choice));
+exit:
+  free(tone);
+  free(s.bins);
+  return status;
+}
