@@ -19,7 +19,7 @@ static const struct argp_option options[] = {
 
 static const char doc[] =
     "Render a scan of foils as SPEC.json describes them, and the truth about it.\v"
-    "samples/render/clean.json, rough.json and harsh.json are specs to start from; "
+    "samples/render/clean.json, rough.json, harsh.json and driver_*.json are specs to start from; "
     "include/foilgauge/render.h lists their members. The same spec gives the same bytes."
     "\n\n@exit_done@";
 
