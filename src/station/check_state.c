@@ -46,20 +46,22 @@ static double get_noise_along_y(const fg_disc *disc) {
  * and noise by half or in its correlation, tell of another focus, filter or resolution. */
 const fg_check_quantity fg_check_quantities[FG_CHECK_QUANTITIES] = {
     {"level_um", "edges of bright parts, outwards", "µm", 2, 0.25, 0, NULL,
-     "tone curve, contrast, brightness"},
-    {"blur_um", "blur", "µm", 2, 0, 0.1, get_blur, "sharpening, dirty glass, focus, interpolation"},
+     "tone curve, contrast, brightness", FG_PICTURE_TONE_CURVE},
+    {"blur_um", "blur", "µm", 2, 0, 0.1, get_blur, "sharpening, dirty glass, focus, interpolation",
+     0},
     {"uneven_blur", "blur along its longest axis over across", "", 3, 0.1, 0, get_uneven_blur,
-     "interpolation, carriage"},
-    {"overshoot", "overshoot", "", 3, 0.01, 0, get_overshoot, "sharpening"},
-    {"undershoot", "undershoot", "", 3, 0.01, 0, get_undershoot, "sharpening"},
-    {"gamma", "gamma", "", 3, 0.03, 0, get_gamma, "gamma"},
-    {"tone_s", "S-shape of the tone curve", "", 3, 0.05, 0, get_tone_s, "contrast, tone curve"},
-    {"sharpen_amount", "unsharp mask", "", 3, 0.05, 0, get_sharpen_amount, "sharpening"},
-    {"noise", "noise", "counts", 2, 0.1, 0.5, get_noise, "noise reduction, lamp, contrast"},
+     "interpolation, carriage", FG_PICTURE_UNEVEN_BLUR},
+    {"overshoot", "overshoot", "", 3, 0.01, 0, get_overshoot, "sharpening", FG_PICTURE_SHARPENED},
+    {"undershoot", "undershoot", "", 3, 0.01, 0, get_undershoot, "sharpening",
+     FG_PICTURE_SHARPENED},
+    {"gamma", "gamma", "", 3, 0.03, 0, get_gamma, "gamma", 0},
+    {"tone_s", "S-shape of the tone curve", "", 3, 0.05, 0, get_tone_s, "contrast, tone curve", 0},
+    {"sharpen_amount", "unsharp mask", "", 3, 0.05, 0, get_sharpen_amount, "sharpening", 0},
+    {"noise", "noise", "counts", 2, 0.1, 0.5, get_noise, "noise reduction, lamp, contrast", 0},
     {"noise_correlation_x", "correlation of the noise along x", "", 2, 0.1, 0, get_noise_along_x,
-     "noise reduction, interpolation"},
+     "noise reduction, interpolation", FG_PICTURE_CORRELATED_NOISE},
     {"noise_correlation_y", "correlation of the noise along y", "", 2, 0.1, 0, get_noise_along_y,
-     "noise reduction, interpolation"},
+     "noise reduction, interpolation", FG_PICTURE_CORRELATED_NOISE},
 };
 
 /* Mean over the discs, and their standard deviation: not that of the mean, as discs show how much
@@ -113,11 +115,13 @@ static void put(char *words, size_t size, const char *text) {
 size_t fg_check_state_compare(const fg_check_state *state, const fg_check_state *baseline,
                               char *words, size_t size) {
   size_t count = 0;
+  unsigned new_findings = state->findings & ~baseline->findings;
   char text[200];
   words[0] = '\0';
   for (size_t k = 0; k < FG_CHECK_QUANTITIES; k++) {
     const fg_check_quantity *row = &fg_check_quantities[k];
     double change = fabs(state->value[k] - baseline->value[k]);
+    if (!isnan(change)) new_findings &= ~row->findings;
     if (!(change > fg_check_state_allowed(state, baseline, k))) continue;
     fg_text_clip(text, sizeof text, "%s %.*f%s%s (was %.*f, allowed ± %.*f)", row->words,
                  row->decimals, state->value[k], row->unit[0] ? " " : "", row->unit, row->decimals,
@@ -126,7 +130,7 @@ size_t fg_check_state_compare(const fg_check_state *state, const fg_check_state 
     count++;
   }
   for (const fg_picture_words *found = fg_picture_finding_words(); found->name; found++) {
-    if (!(state->findings & ~baseline->findings & found->finding)) continue;
+    if (!(new_findings & found->finding)) continue;
     put(words, size, found->name);
     count++;
   }
