@@ -27,6 +27,7 @@ static double get_uneven_blur(const fg_disc *disc) {
 OF_PICTURE(overshoot)
 OF_PICTURE(undershoot)
 OF_PICTURE(gamma)
+OF_PICTURE(u_gamma)
 OF_PICTURE(tone_s)
 OF_PICTURE(sharpen_amount)
 OF_PICTURE(noise)
@@ -45,23 +46,26 @@ static double get_noise_along_y(const fg_disc *disc) {
  * S moves a thin strip's edges by a fifth of its slope's change. A blur that changes by a tenth,
  * and noise by half or in its correlation, tell of another focus, filter or resolution. */
 const fg_check_quantity fg_check_quantities[FG_CHECK_QUANTITIES] = {
-    {"level_um", "edges of bright parts, outwards", "µm", 2, 0.25, 0, NULL,
+    {"level_um", "edges of bright parts, outwards", "µm", 2, 0.25, 0, NULL, NULL,
      "tone curve, contrast, brightness", FG_PICTURE_TONE_CURVE},
-    {"blur_um", "blur", "µm", 2, 0, 0.1, get_blur, "sharpening, dirty glass, focus, interpolation",
-     0},
-    {"uneven_blur", "blur along its longest axis over across", "", 3, 0.1, 0, get_uneven_blur,
+    {"blur_um", "blur", "µm", 2, 0, 0.1, get_blur, NULL,
+     "sharpening, dirty glass, focus, interpolation", 0},
+    {"uneven_blur", "blur along its longest axis over across", "", 3, 0.1, 0, get_uneven_blur, NULL,
      "interpolation, carriage", FG_PICTURE_UNEVEN_BLUR},
-    {"overshoot", "overshoot", "", 3, 0.01, 0, get_overshoot, "sharpening", FG_PICTURE_SHARPENED},
-    {"undershoot", "undershoot", "", 3, 0.01, 0, get_undershoot, "sharpening",
+    {"overshoot", "overshoot", "", 3, 0.01, 0, get_overshoot, NULL, "sharpening",
      FG_PICTURE_SHARPENED},
-    {"gamma", "gamma", "", 3, 0.03, 0, get_gamma, "gamma", 0},
-    {"tone_s", "S-shape of the tone curve", "", 3, 0.05, 0, get_tone_s, "contrast, tone curve", 0},
-    {"sharpen_amount", "unsharp mask", "", 3, 0.05, 0, get_sharpen_amount, "sharpening", 0},
-    {"noise", "noise", "counts", 2, 0.1, 0.5, get_noise, "noise reduction, lamp, contrast", 0},
+    {"undershoot", "undershoot", "", 3, 0.01, 0, get_undershoot, NULL, "sharpening",
+     FG_PICTURE_SHARPENED},
+    {"gamma", "gamma", "", 3, 0.03, 0, get_gamma, get_u_gamma, "gamma", 0},
+    {"tone_s", "S-shape of the tone curve", "", 3, 0.05, 0, get_tone_s, NULL,
+     "contrast, tone curve", 0},
+    {"sharpen_amount", "unsharp mask", "", 3, 0.05, 0, get_sharpen_amount, NULL, "sharpening", 0},
+    {"noise", "noise", "counts", 2, 0.1, 0.5, get_noise, NULL, "noise reduction, lamp, contrast",
+     0},
     {"noise_correlation_x", "correlation of the noise along x", "", 2, 0.1, 0, get_noise_along_x,
-     "noise reduction, interpolation", FG_PICTURE_CORRELATED_NOISE},
+     NULL, "noise reduction, interpolation", FG_PICTURE_CORRELATED_NOISE},
     {"noise_correlation_y", "correlation of the noise along y", "", 2, 0.1, 0, get_noise_along_y,
-     "noise reduction, interpolation", FG_PICTURE_CORRELATED_NOISE},
+     NULL, "noise reduction, interpolation", FG_PICTURE_CORRELATED_NOISE},
 };
 
 /* Mean over the discs, and their standard deviation: not that of the mean, as discs show how much
@@ -92,7 +96,9 @@ void fg_check_state_find(const fg_measurement *measurement, const fg_check_fit *
   for (size_t k = 0; k < FG_CHECK_QUANTITIES; k++) {
     const fg_check_quantity *row = &fg_check_quantities[k];
     if (row->of_disc) {
+      double unused;
       find_mean(measurement, row->of_disc, &state->value[k], &state->u[k]);
+      if (row->u_of_disc) find_mean(measurement, row->u_of_disc, &state->u[k], &unused);
     } else {
       state->value[k] = fit->level_um;
       state->u[k] = fit->u_level_um;

@@ -13,8 +13,10 @@ typedef struct fg_check_quantity {
   int decimals;                       /* of its values on pages */
   double smallest_change, share;      /* that matters: in its unit, or as a share of the baseline */
   double (*of_disc)(const fg_disc *); /* NULL: of all discs together */
-  const char *cause;                  /* what of driver or scanner changes it */
-  unsigned findings;                  /* that say the same by a threshold, without an uncertainty */
+  double (*u_of_disc)(
+      const fg_disc *); /* where all discs share one estimate; NULL: their scatter */
+  const char *cause;    /* what of driver or scanner changes it */
+  unsigned findings;    /* that say the same by a threshold, without an uncertainty */
 } fg_check_quantity;
 
 enum { FG_CHECK_QUANTITIES = 11 };

@@ -48,8 +48,9 @@ typedef struct fg_disc_edge {
 /* The tone curve, G(u) = 255 (u/255)^(1/gamma). */
 typedef struct fg_tone {
   double gamma;
-  double doubt; /* standard deviation; INFINITY: not known */
-  bool slopes;  /* a halo or a wall beside the edge may have made the asymmetry */
+  double doubt;          /* standard deviation; INFINITY: not known */
+  bool slopes;           /* a halo or a wall beside the edge may have made the asymmetry */
+  double found, u_found; /* of a pool: the exponent before it is taken for 1; found 0: not known */
 } fg_tone;
 
 /* What the edge around a candidate says of the tone curve: its asymmetry, where no side is white.

@@ -83,6 +83,7 @@ fg_tone fg_tone_pool(const fg_tone *tones, size_t count) {
   double doubt = sqrt((n > 1 ? fmax(1, spread / (n - 1)) : 1) / weights);
   if (2 * slopes > n || gamma < GAMMA_LOWEST || gamma > GAMMA_HIGHEST)
     return (fg_tone){.gamma = 1, .doubt = GAMMA_DOUBT};
-  if (fabs(gamma - 1) < fmax(GAMMA_DEVIATIONS * doubt, GAMMA_LEAST_CHANGE)) return linear;
-  return (fg_tone){.gamma = gamma, .doubt = doubt};
+  if (fabs(gamma - 1) < fmax(GAMMA_DEVIATIONS * doubt, GAMMA_LEAST_CHANGE))
+    return (fg_tone){.gamma = 1, .found = gamma, .u_found = doubt};
+  return (fg_tone){.gamma = gamma, .doubt = doubt, .found = gamma, .u_found = doubt};
 }

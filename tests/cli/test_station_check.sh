@@ -73,6 +73,7 @@ changed() {
 changed sharpened blur '"unsharp_mask": {"amount_pct": 100, "radius_px": 1}'
 changed brighter 'edges of bright parts, outwards' '"tone_curve": [[0, 0], [128, 160], [255, 255]]'
 changed contrast 'edges of bright parts\|blur' '"tone_curve": [[0, 0], [64, 30], [128, 128], [192, 226], [255, 255]]'
+changed darker gamma '"gamma": 1.8'
 
 # As it was: foils get their verdicts again.
 plate 8 "$work/in/check_good.png"
