@@ -39,13 +39,18 @@ COLUMNS = ("variant renderer part kind strength seed dpi quantity index true val
 # --- cases ----------------------------------------------------------------------------------
 
 
+def is_in_third(kind_index, strength, seed):
+    """Every strength by one seed of three, which differs from kind to kind."""
+    return seed % 3 == (strength + kind_index) % 3
+
+
 def is_in_sample(kind_index, strength, seed, dpi_index, renderer_index):
-    """A sixth: every strength twice, by a seed that differs from kind to kind."""
-    return seed == (strength + kind_index) % 3 and (dpi_index + renderer_index + kind_index) % 2 == 0
+    """Half of the third: either renderer at one resolution."""
+    return is_in_third(kind_index, strength, seed) and (dpi_index + renderer_index + kind_index) % 2 == 0
 
 
 def cases_of(names, seeds, quick, parts):
-    """Of every kind; whole thirds of them are parts too thick."""
+    """Foils of every kind, and pins for a third of them. `sample`: of the sixth."""
     result = []
     for i, kind in enumerate(kinds.KINDS):
         if names and kind.name not in names:
@@ -54,9 +59,11 @@ def cases_of(names, seeds, quick, parts):
             for r, renderer in enumerate(kind.renderers):
                 for d, dpi in enumerate(kinds.DPI):
                     for s, strength in enumerate(kinds.STRENGTHS):
-                        result += [{"kind": kind.name, "part": part, "renderer": renderer, "dpi": dpi, "seed": seed,
-                                    "strength": strength} for seed in range(seeds)
-                                   if not quick or is_in_sample(i, s, seed, d, r + (len(kind.renderers) == 1))]  # fmt: skip
+                        for seed in range(seeds):
+                            sample = is_in_sample(i, s, seed, d, r + (len(kind.renderers) == 1))
+                            if sample or (not quick and (part == "foils" or is_in_third(i, s, seed))):
+                                result.append({"kind": kind.name, "part": part, "renderer": renderer, "dpi": dpi,
+                                               "seed": seed, "strength": strength, "sample": sample})  # fmt: skip
     return result
 
 
@@ -203,7 +210,8 @@ def work(job):
     rows = []
     try:
         with tempfile.TemporaryDirectory() as folder:
-            for variant in options["variants"] if case["part"] == "foils" else ["scan"]:
+            has_variants = case["part"] == "foils" and (case["sample"] or options["known_all"])
+            for variant in options["variants"] if has_variants else ["scan"]:
                 own = {**case, "leaf": variant == "leaf"}
                 specs = [kinds.spec_of(own, is_plain) for is_plain in (False, True)]
                 cache = options["cache"] or folder
@@ -214,7 +222,7 @@ def work(job):
                     plain, _ = measure(options["program"], folder, paths[1], specs[1], words_of(variant, specs[1]))
                     flags = {k: v[2] for k, v in found_in(plain, specs[1], kinds.truth_of(specs[1])).items()}
                 report, _ = measure(options["program"], folder, paths[0], specs[0], words)
-                rows += rows_of(case, variant, specs[0], report, flags)
+                rows += rows_of({**case, "known": has_variants}, variant, specs[0], report, flags)
     except NotDrawn as missing:
         return [], f"{case['kind']} ({case['renderer']}): {str(missing).split(': ', 2)[-1]}"
     return rows, None
@@ -258,6 +266,7 @@ def read_options():
     parser.add_argument("--show", default="", help="as --kinds, and print every value")
     parser.add_argument("--parts", default="foils,discs")
     parser.add_argument("--variants", default="micrometer,leaf", help="beside the scan alone")
+    parser.add_argument("--known-all", action="store_true", help="variants of all cases [of a sixth]")
     parser.add_argument("--seeds", type=int, default=3)
     parser.add_argument("--clean", type=int, default=200, help="plain scans")
     parser.add_argument("--quick", action="store_true", help="a sixth of the cases, a quarter of the plain scans")
@@ -273,7 +282,7 @@ def main():
     names = [n for n in (options.show or options.kinds).split(",") if n]
     cases = cases_of(names, options.seeds, options.quick, options.parts.split(","))
     told = {"program": options.program, "renderer": options.renderer or options.program, "cache": options.cache,
-            "variants": variants_of(options.program, options.variants.split(","))}  # fmt: skip
+            "known_all": options.known_all, "variants": variants_of(options.program, options.variants.split(","))}  # fmt: skip
     if options.cache:
         os.makedirs(options.cache, exist_ok=True)
     rows, missing = run(cases, told, options.jobs)

@@ -13,7 +13,6 @@ import driver
 import driver_kinds as kinds
 
 TIMED, TURNS = 6, 9  # whole foils, and how often each is measured by either program
-NEUTRAL = {"linear"}  # findings that say nothing against a picture
 
 
 def clean_spec(index):
@@ -33,7 +32,7 @@ def flags_of(report):
         return ["not_measured"]
     found = [f for part in report.get("foils", []) + report.get("discs", []) for f in part["flags"]]
     found += [f for foil in report.get("foils", []) for bump in foil.get("bumps") or [] for f in bump["flags"]]
-    found += [f for f in (report.get("picture") or {}).get("findings", []) if f not in NEUTRAL]
+    found += [f["finding"] for f in (report.get("picture") or {}).get("findings", [])]
     return sorted(set(found) - driver.NOT_FLAGS)
 
 

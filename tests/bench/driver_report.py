@@ -108,7 +108,7 @@ def known_table(rows):
         own = [r for r in rows if kind is None or r["kind"] == kind.name]
         line = ["**all**" if kind is None else kind.words]
         for variant in variants:
-            part = [r for r in own if r["variant"] == variant and r["part"] == "foils"]
+            part = [r for r in own if r["variant"] == variant and r["part"] == "foils" and r["known"]]
             line += thickness_cells(part)
             line += [per_cent(is_within(r) or r["flagged"] for r in part if r["quantity"] in ("thickness", "clearance")),
                      sum(is_silent(r) for r in part if r["quantity"] in ("thickness", "clearance")),
@@ -143,7 +143,8 @@ TEXT = """# Scans as drivers make them
 
 Foils of three bumps (strips of 100 µm, a third of them of 108.5 µm where the limit is 105) and pins of 2 to 8 mm (a third
 too large by 8.5 µm) are drawn by two renderers that share no code: `foilgauge render` and tests/bench/other_scanner.py with
-other_driver.py. Each kind comes in three strengths, of {seeds} seeds, at 2400 and 4800 dpi{quick}. A third of the scanners is
+other_driver.py. Each kind comes in three strengths, of {seeds} seeds, at 2400 and 4800 dpi, pins for
+a third of that{quick}. A third of the scanners is
 ideal but for white noise, half have correlated noise, and a sixth edges that scatter by 0.05 px, too, which `rough_edge` says
 of the plain scan. t: thickness, C: clearance, d: diameter.
 
@@ -165,7 +166,7 @@ KNOWN = """
 ## With something known
 
 Thickness by the scan alone; with a micrometer's value of u 0.5 µm (`--thickness-measured`); with a feeler leaf of 100 µm,
-u 0.5 µm, beside the foil (`--gauge`).
+u 0.5 µm, beside the foil (`--gauge`). {which} of the cases above.
 
 {known}"""
 
@@ -181,7 +182,7 @@ def page(rows, clean, missing, options):
                        quick=" (a sixth of all cases)" if options.quick else "", quantities=quantities_table(scan),
                        strengths=strengths_table(scan))  # fmt: skip
     if any(r["variant"] != "scan" for r in rows):
-        text += KNOWN.format(known=known_table(rows))
+        text += KNOWN.format(known=known_table(rows), which="All" if options.known_all else "A sixth")
     if clean:
         text += "\n## Plain scans\n\n" + clean
     if missing:
