@@ -14,13 +14,17 @@
 
 #define FREE(value) (1u << (value))
 #define GAMMA       FREE(FG_DRIVER_LN_GAMMA)
-#define S_CURVE     (FREE(FG_DRIVER_STEEPNESS) | FREE(FG_DRIVER_CENTRE))
+#define CENTRE      FREE(FG_DRIVER_CENTRE)
+#define S_CURVE     (FREE(FG_DRIVER_STEEPNESS) | CENTRE)
 #define HALO        (FREE(FG_DRIVER_HALO) | FREE(FG_DRIVER_HALO_PX))
 #define MASK        (FREE(FG_DRIVER_AMOUNT) | FREE(FG_DRIVER_RADIUS))
 
 /* The models, from the simplest on: what is free, which of two simpler ones it starts from (-1: the
- * plain fit), and where. Both S and unsharp mask make an edge steeper, so what has both starts from
- * wider blurs, too. A stage is asked where none before explains the profiles. */
+ * plain fit), and where. A stage is asked where none before explains the profiles.
+ *
+ * S and unsharp mask make an edge steeper, so they start from wider blurs. A steeper S of a wider
+ * edge looks much like a flatter one of a narrower edge, along a valley that is not straight: the
+ * models of given steepness sum over it, where the free one's standard deviation falls short. */
 static const struct family {
   unsigned free;
   int stage, from[2];
@@ -35,11 +39,16 @@ static const struct family {
     {MASK, 1, {0, 0}, 0, 0.5, 0, 1},
     {MASK | GAMMA, 1, {6, 6}, 0, 0.5, 0, 1},
     {MASK | S_CURVE, 2, {4, 6}, 2, 0.3, 0, 1},
-    {MASK | S_CURVE, 2, {-1, -1}, 4, 0.5, 0, 1.7},
     {MASK | S_CURVE, 2, {-1, -1}, 8, 0.5, 0, 2.3},
+    {MASK | CENTRE, 2, {-1, -1}, 2.5, 0.5, 0, 1.4},
+    {MASK | CENTRE, 2, {-1, -1}, 4, 0.5, 0, 1.6},
+    {MASK | CENTRE, 2, {-1, -1}, 5.5, 0.5, 0, 1.8},
+    {MASK | CENTRE, 2, {-1, -1}, 7.5, 0.5, 0, 2.1},
+    {MASK | CENTRE, 2, {-1, -1}, 10, 0.5, 0, 2.5},
 };
 enum { FAMILIES = sizeof families / sizeof families[0], STAGES = 3 };
-#define START_RADIUS 1.2
+#define START_RADIUS     1.2
+#define VALLEY_SHARPNESS 0.25
 
 bool fg_driver_is_missed(const fg_driver_misfit *misfit, double contrast) {
   double chance = misfit->expected * (1 + MISSED_SDS * sqrt(2 / fmax(misfit->cells, 1)));
@@ -80,8 +89,7 @@ static void start_family(const struct family *family, const candidate *candidate
   c->fit.noise = noise;
   c->fit.free = family->free;
   if (!(family->free & FREE(FG_DRIVER_LN_GAMMA))) c->fit.driver.values[FG_DRIVER_LN_GAMMA] = 0;
-  if (added & FREE(FG_DRIVER_STEEPNESS))
-    c->fit.driver.values[FG_DRIVER_STEEPNESS] = family->steepness;
+  if (added & CENTRE) c->fit.driver.values[FG_DRIVER_STEEPNESS] = family->steepness;
   if (added & FREE(FG_DRIVER_HALO)) c->fit.driver.values[FG_DRIVER_HALO] = family->halo;
   if (added & FREE(FG_DRIVER_AMOUNT)) {
     c->fit.driver.values[FG_DRIVER_AMOUNT] = family->amount;
@@ -103,15 +111,17 @@ static fg_status try_family(fg_context *ctx, const struct family *family,
   return FG_OK;
 }
 
-/* The best, and the edges' place over all models, each weighing exp(-score/2). */
-static size_t weigh(const candidate *candidates, double *u_edge_px) {
+/* The best, and the edges' place over all models, each weighing exp(-score/2). Where S and unsharp
+ * mask are both in play every one of them misses a little, and that little is as large as what
+ * tells them apart: `sharpness` below 1 lets more of them count. */
+static size_t weigh(const candidate *candidates, double sharpness, double *u_edge_px) {
   size_t best = 0;
   double weights = 0, mean = 0, square = 0;
   for (size_t i = 1; i < FAMILIES; i++)
     if (candidates[i].fit.good && candidates[i].score < candidates[best].score) best = i;
   for (size_t i = 0; i < FAMILIES; i++) {
     const candidate *c = &candidates[i];
-    double weight = exp(-0.5 * (c->score - candidates[best].score));
+    double weight = exp(-0.5 * sharpness * (c->score - candidates[best].score));
     if (!c->fit.good || !isfinite(weight)) continue;
     double off = c->fit.edge_px - candidates[best].fit.edge_px;
     weights += weight;
@@ -139,7 +149,7 @@ fg_status fg_driver_choose(fg_context *ctx, fg_driven_profile *profiles, size_t 
   for (int stage = 0; stage < STAGES && choice->missed; stage++) {
     for (; i < FAMILIES && families[i].stage == stage; i++)
       FG_TRY_EXIT(try_family(ctx, &families[i], candidates, start, count, tone, &candidates[i]));
-    best = weigh(candidates, &choice->u_edge_px);
+    best = weigh(candidates, stage == STAGES - 1 ? VALLEY_SHARPNESS : 1, &choice->u_edge_px);
     choice->missed = fg_driver_is_missed(&candidates[best].misfit, ends[1] - ends[0]);
   }
   choice->fit = candidates[best].fit;

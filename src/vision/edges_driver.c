@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "core/parallel.h"
+#include "core/select.h"
 #include "vision/driver_choice.h"
 #include "vision/edges.h"
 
@@ -13,7 +13,8 @@
 #define AMOUNT_LEAST 0.05
 #define SLOPE_LEAST  0.05
 /* Profiles one by one do not tell a power beyond this well: all of them are asked together. */
-#define LN_GAMMA_MOST 0.4
+#define LN_GAMMA_MOST 0.8
+#define NOISE_FACTOR  1.3
 /* Blur that few levels may hide, px. */
 #define HIDDEN_BLUR_PX 1.2
 /* sd of a pixel, counts, that the fits start from. */
@@ -86,26 +87,48 @@ static size_t copy_bins(const fg_edge_work *work, const fg_segment_profile *segm
   return n;
 }
 
+/* A segment with a fillet, an end or dust misses any model, and is not asked. */
+static fg_status find_noise_limit(fg_context *ctx, const fg_edge_work *work, double *limit) {
+  double *noise;
+  size_t n = 0;
+  FG_TRY(fg_memory_allocate(ctx, work->segment_count, sizeof *noise, (void **)&noise));
+  for (size_t i = 0; i < work->segment_count; i++)
+    if (work->segments[i].fit.good) noise[n++] = work->segments[i].fit.noise;
+  *limit = n ? NOISE_FACTOR * fg_select(noise, n, n / 4) : 0;
+  free(noise);
+  return FG_OK;
+}
+
+static bool is_sound(const fg_segment_profile *segment, double limit) {
+  return segment->fit.good && segment->fit.noise <= limit;
+}
+
+static void add_to_sample(const fg_edge_work *work, const fg_segment_profile *segment, sample *s) {
+  fg_driven_profile *p = &s->profiles[s->count];
+  fg_profile_bin *bins = s->bins + s->count++ * work->bin_count;
+  *p = driven_profile(work, &segment->fit);
+  p->bins = bins;
+  p->count = copy_bins(work, segment, bins);
+  for (int k = FG_DRIVEN_PLATEAU; k <= FG_DRIVEN_LEVEL_R; k++) {
+    s->ends[0] = fmin(s->ends[0], p->values[k]);
+    s->ends[1] = fmax(s->ends[1], p->values[k]);
+  }
+}
+
+/* Sound segments, spread along the strip. */
 static fg_status draw_sample(fg_context *ctx, const fg_edge_work *work, sample *s) {
-  size_t good = 0;
+  size_t sound = 0, seen = 0;
+  double limit;
   FG_TRY(fg_memory_allocate(ctx, FG_DRIVER_PROFILES * work->bin_count, sizeof *s->bins,
                             (void **)&s->bins));
+  FG_TRY(find_noise_limit(ctx, work, &limit));
   s->ends[0] = INFINITY;
   s->ends[1] = -INFINITY;
-  for (size_t i = 0; i < work->segment_count && s->count < FG_DRIVER_PROFILES; i++) {
-    const fg_segment_profile *segment = &work->segments[i];
-    if (!segment->fit.good) continue;
-    if (good++ * FG_DRIVER_PROFILES < s->count * work->good_segments) continue;
-    fg_driven_profile *p = &s->profiles[s->count];
-    fg_profile_bin *bins = s->bins + s->count++ * work->bin_count;
-    *p = driven_profile(work, &segment->fit);
-    p->bins = bins;
-    p->count = copy_bins(work, segment, bins);
-    for (int k = FG_DRIVEN_PLATEAU; k <= FG_DRIVEN_LEVEL_R; k++) {
-      s->ends[0] = fmin(s->ends[0], p->values[k]);
-      s->ends[1] = fmax(s->ends[1], p->values[k]);
-    }
-  }
+  for (size_t i = 0; i < work->segment_count; i++)
+    sound += is_sound(&work->segments[i], limit);
+  for (size_t i = 0; i < work->segment_count && s->count < FG_DRIVER_PROFILES; i++)
+    if (is_sound(&work->segments[i], limit) && seen++ * FG_DRIVER_PROFILES >= s->count * sound)
+      add_to_sample(work, &work->segments[i], s);
   return FG_OK;
 }
 
