@@ -47,6 +47,12 @@ typedef enum fg_datum {
  * design file:
  *   "tolerances": { "height_mm": { "min": 0.55, "max": 0.58 }, "radius_error_pct": { "max": 5 } }
  */
+/* What is said of the tone curve, by which a scanner's counts follow the light. */
+typedef enum fg_tone_statement {
+  FG_TONE_UNKNOWN, /* lengths between two edges hold what it may do to them */
+  FG_TONE_LINEAR,  /* the user vouches that counts are proportional to the light */
+} fg_tone_statement;
+
 typedef struct fg_tolerance {
   char quantity[48];
   double lower, upper;
@@ -77,6 +83,9 @@ typedef struct fg_design {
   double pitch_deg;             /* angle from bump to bump about O; default 13 1/3 */
   double fillet_radius_mm;      /* default 0.35 */
   double thickness_mm;          /* t */
+  double thickness_measured_mm; /* of the strip, by a micrometer, at 20 °C; 0: none stated */
+  double u_thickness_measured_mm;
+  fg_tone_statement tone;       /* what is said of the scanner's counts */
   double top_foil_thickness_mm; /* the plain foil between bumps and rotor; 0: none */
   double rotor_diameter_mm;     /* D */
   double subtended_angle_deg;   /* of an arc, from end to end about its centre; else 0 */

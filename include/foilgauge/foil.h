@@ -58,6 +58,9 @@ typedef enum fg_foil_flag {
   FG_FOIL_MISSING_BEAM = 1u << 24, /* "missing_beam": a place where a beam belongs is empty */
   /* "beam_places_unknown": beams are missing, and which cannot be told: numbers are the order */
   FG_FOIL_BEAM_PLACES_UNKNOWN = 1u << 25,
+  /* "thickness_contradicts": the scan's thickness and the one stated as measured */
+  FG_FOIL_THICKNESS_CONTRADICTS = 1u << 26,
+  FG_FOIL_OTHER_THICKNESS = 1u << 27, /* "other_thickness": far from the design's */
 } fg_foil_flag;
 
 typedef enum fg_bump_flag {
@@ -74,9 +77,14 @@ typedef enum fg_bump_flag {
   FG_BUMP_BEYOND_MODEL_REGION = 1u << 20, /* "beyond_model_region": of discs, as of foils */
 } fg_bump_flag;
 
-/* A strip's thickness and its standard uncertainty. */
+/* A strip's thickness and its standard uncertainty. Where an edge is the datum, what is unknown of
+ * the level of the edges moves it, too: outwards by `edge_mm` where the thickness grows by twice
+ * that (`with_edge`; a thickness that was stated does not). Inner edges move towards the overall
+ * centre: R grows and R0 shrinks; of outer edges it is the other way round. */
 typedef struct fg_thickness {
   double mm, u_mm;
+  double edge_mm; /* one standard deviation; 0: the datum is the midline */
+  bool inner, with_edge;
 } fg_thickness;
 
 /* What one standard deviation of each error that a calibration leaves (calibration.h) moves every
@@ -291,8 +299,10 @@ typedef struct fg_foil {
   unsigned flags;     /* fg_foil_flag */
   char error[256];    /* why it was not measured as a foil of the design; empty when it was */
   fg_orientation orientation;
-  double rotation_deg; /* direction of the foil's middle seen from O */
-  double thickness_mm, u_thickness_mm;
+  double rotation_deg;                 /* direction of the foil's middle seen from O */
+  double thickness_mm, u_thickness_mm; /* in force: as stated by a micrometer, else the scan's */
+  double thickness_scan_mm, u_thickness_scan_mm;
+  double u_thickness_tone_mm; /* of it by the level of the edges: alike in all of a scanner */
   fg_overall overall;
   fg_foil_arc arc;
   fg_bump *bumps; /* in order of number; owned */
@@ -339,7 +349,8 @@ typedef struct fg_disc {
   fg_disc_point *stations; /* owned; the edge as it was found, for measuring it again */
   size_t station_count;
   double loss_variance;     /* share by which JPEG's steps raise the variance that the edge tells */
-  double level_doubt_mm;    /* what the level of the edge may move the radius by */
+  double edge_doubt_mm;     /* what the edge's own pixels leave in doubt of its level */
+  double level_doubt_mm;    /* what the level of the edge may move the radius by, all in all */
   fg_picture_state picture; /* beside its edge */
   fg_calibrated calibrated;
 } fg_disc;
@@ -379,7 +390,8 @@ bool fg_foil_is_measured(const fg_foil *foil);
 /* Flags a foil that could not be measured, with the reason; its values become NaN. */
 void fg_foil_give_up(fg_foil *foil, const char *why);
 
-/* The thickness in force: the measured one, the design's (u 0) where none was measured. */
+/* The thickness in force: stated as measured, else the scan's, the design's (u 0) where the scan
+ * shows none. */
 fg_thickness fg_foil_thickness(const fg_design *design, const fg_foil *foil);
 
 /* It differs from the design's by more than U: then both are said. */

@@ -8,6 +8,7 @@
 
 #include "cli/commands.h"
 #include "cli/facts.h"
+#include "cli/known.h"
 #include "cli/loop_outputs.h"
 #include "foilgauge/forming.h"
 #include "foilgauge/memory.h"
@@ -45,6 +46,7 @@ typedef struct arguments {
   bool hold_out[SCANS_MOST];
   size_t count, kept_aside;
   const char *design_path, *form, *form_model;
+  fg_cli_known known;
   fg_output_set outputs;
   fg_scan_loop_options options;
 } arguments;
@@ -53,6 +55,7 @@ static const struct argp_option options[] = {
     {"design", OPTION_DESIGN, "FILE", 0,
      "The design of the foil or of the gauges (default: Gen II)", 0},
     {"form", OPTION_FORM, "FORM", 0, "@forms@; overrules the design", 0},
+    FG_CLI_KNOWN_ROWS(0),
     {"dpi", OPTION_DPI, "N", 0, "Resolution, where the scan does not say it", 0},
     {"allow-lossy", OPTION_ALLOW_LOSSY, NULL, 0, FG_CLI_ALLOW_LOSSY, 0},
     {"same-foil", OPTION_SAME, NULL, 0,
@@ -190,7 +193,7 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
       argp_error(state, "give a scan, or --table DATA.csv, --lot DIR, --doe RUNS.csv");
     return 0;
   default:
-    return ARGP_ERR_UNKNOWN;
+    return fg_cli_take_known(state, key, text, &a->known) ? 0 : ARGP_ERR_UNKNOWN;
   }
 }
 
@@ -269,6 +272,8 @@ static fg_status run(fg_context *ctx, arguments *a, int *code) {
   fg_design_default(&design);
   if (a->design_path) FG_TRY_EXIT(fg_design_load(ctx, a->design_path, &design));
   FG_TRY_EXIT(fg_cli_apply_form(ctx, a->form, &design));
+  fg_cli_apply_known(&a->known, &design);
+  FG_TRY_EXIT(fg_design_check(ctx, &design));
   FG_TRY_EXIT(check_design(ctx, a, &design));
   FG_TRY_EXIT(read_forming(ctx, a->form_model, &prediction));
   FG_TRY_EXIT(fg_output_set_open(ctx, &a->outputs));

@@ -5,6 +5,7 @@
 
 #include "cli/commands.h"
 #include "cli/facts.h"
+#include "cli/known.h"
 #include "cli/output_set.h"
 #include "cli/progress.h"
 #include "foilgauge/measure.h"
@@ -35,6 +36,7 @@ static report_writer *const writers[OUT_COUNT] = {
 typedef struct measure_arguments {
   const char *design_path, *model_path, *scanner;
   const char *form;
+  fg_cli_known known;
   fg_measure_options options;
   char **scans; /* of argv */
   size_t scan_count;
@@ -72,6 +74,7 @@ enum {
 static const struct argp_option options[] = {
     {"design", 'd', "FILE", 0, "What the part should be (default: the Gen II foil)", 0},
     {"form", OPTION_FORM, "FORM", 0, "@forms@; overrules the design", 0},
+    FG_CLI_KNOWN_ROWS(0),
     {"model", OPTION_MODEL, "FILE.json", 0,
      "Correct by what `foilgauge loop --model-out` found of this scanner", 0},
     {"scanner", OPTION_SCANNER, "NAME", 0, "Refuse a model that is of another scanner", 0},
@@ -169,7 +172,7 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
     argp_error(state, "no SCAN was given");
     break;
   default:
-    return ARGP_ERR_UNKNOWN;
+    return fg_cli_take_known(state, key, text, &arguments->known) ? 0 : ARGP_ERR_UNKNOWN;
   }
   return 0;
 }
@@ -204,6 +207,7 @@ static fg_status load_design(fg_context *ctx, measure_run *run) {
   if (run->arguments.design_path)
     FG_TRY(fg_design_load(ctx, run->arguments.design_path, &run->design));
   FG_TRY(fg_cli_apply_form(ctx, run->arguments.form, &run->design));
+  fg_cli_apply_known(&run->arguments.known, &run->design);
   FG_TRY(fg_design_check(ctx, &run->design));
   if (run->design.form != FG_FORM_DISCS) FG_TRY(fg_design_derive(ctx, &run->design, &run->nominal));
   const char *path = run->arguments.design_path;

@@ -158,7 +158,7 @@ static void fill_bump(const fg_layout *layout, size_t i, const fg_design *design
                       const fg_nominal *nominal, const fg_overall *overall, fg_bump *bump) {
   const fg_arc *arc = &layout->bumps[i];
   const fg_station *stations = layout->line.strip->stations;
-  const fg_thickness strip = {design->thickness_mm, 0};
+  const fg_thickness strip = {.mm = design->thickness_mm};
   *bump = (fg_bump){.radius_mm = arc->circle.radius,
                     .centre_mm = {arc->circle.x, arc->circle.y},
                     .rms_um = 1000 * arc->rms_mm,

@@ -188,11 +188,11 @@ static double end_variance(const fg_design *design, const fg_foil *foil, const f
 
 /* What the length is uncertain by because both cuts move outwards or inwards, as the edges of the
  * thickness do, mm. */
-static double cut_doubt(const fg_foil *foil) {
+static double cut_doubt(const fg_design *design, const fg_foil *foil) {
   const fg_strip *strip = &foil->strip;
   double sides = strip->blur_left_um + strip->blur_right_um;
   double ends = strip->ends[0].blur_um + strip->ends[1].blur_um;
-  return fg_foil_width_doubt_um(foil) / 1000 * (sides > 0 ? ends / sides : 1);
+  return fg_foil_width_doubt_um(design, foil) / 1000 * (sides > 0 ? ends / sides : 1);
 }
 
 static void forget(fg_foil_arc *arc) {
@@ -215,7 +215,7 @@ static void fill(const fg_design *design, const fg_layout *layout, fg_foil *foil
   }
   double alpha = sense * (psi[1] - psi[0]), radius = o->radius_mm, angle = 0, length = 0;
   if (alpha < 0) alpha += 2 * M_PI;
-  cuts += pow(cut_doubt(foil), 2);
+  cuts += pow(cut_doubt(design, foil), 2);
   const double by_length[3] = {radius * gradient[0], radius * gradient[1], alpha};
   for (int a = 0; a < 3; a++)
     for (int b = 0; b < 3; b++) {
@@ -250,14 +250,6 @@ static void widen_bend(fg_foil *foil) {
       o->covariance[a][b] += move[a] * move[b];
 }
 
-/* The tone curve moves an edge that is the datum, and its circle with it, by half of what it does
- * to the thickness. */
-static void widen_edge_datum(const fg_design *design, fg_foil *foil) {
-  fg_overall *o = &foil->overall;
-  double shift = fg_foil_tone_doubt_um(foil) / 2000;
-  if (design->datum != FG_DATUM_MID) o->covariance[2][2] += shift * shift;
-}
-
 static void take_uncertainties(const fg_design *design, fg_overall *o) {
   for (int i = 0; i < 2; i++)
     o->u_centre_mm[i] = sqrt(o->covariance[i][i]);
@@ -278,7 +270,6 @@ void fg_arc_foil_derive(const fg_design *design, const fg_layout *layout, fg_foi
   foil->rotation_deg = atan2(s, c) * 180 / M_PI;
   forget(&foil->arc);
   widen_bend(foil);
-  widen_edge_datum(design, foil);
   take_uncertainties(design, &foil->overall);
   bool lip = layout->turning.lip_first || layout->turning.lip_last;
   for (int i = 0; i < 2; i++) {

@@ -2,6 +2,7 @@
 #include <stddef.h>
 
 #include "foilgauge/foil.h"
+#include "geometry/foil_uncertainty.h"
 
 static const double rad_per_deg = 3.14159265358979323846 / 180;
 
@@ -177,17 +178,27 @@ static double by_thickness(double slope, double u_mm) {
   return slope == 0 ? 0 : slope * slope * u_mm * u_mm;
 }
 
+/* What both radii and the thickness have in common: the level of the edges, where one of them is
+ * the datum. It is in the variance of each already; this adds the covariances. A height, which is
+ * between two places of the same edge, is free of it. */
+static double by_edges(const double gradient[BY_COUNT], const fg_thickness *strip) {
+  double sign = strip->inner ? 1 : -1, t = strip->with_edge ? 2 * gradient[BY_T] : 0;
+  double r = sign * gradient[BY_R], r0 = -sign * gradient[BY_R0];
+  return 2 * strip->edge_mm * strip->edge_mm * (r * r0 + r * t + r0 * t);
+}
+
 static void fill(const geometry *g, const along *bump_along, const along *overall_along,
-                 double u_thickness_mm, fg_bump *bump) {
+                 const fg_thickness *strip, fg_bump *bump) {
   for (size_t i = 0; i < sizeof quantities / sizeof *quantities; i++) {
     double gradient[BY_COUNT] = {0};
     double value = quantities[i].value(g, gradient);
     double variance = share(bump_along, gradient[BY_X], gradient[BY_R]) +
                       share(overall_along, -gradient[BY_X], gradient[BY_R0]) +
-                      by_thickness(gradient[BY_T], u_thickness_mm);
+                      by_thickness(gradient[BY_T], strip->u_mm);
+    if (strip->edge_mm > 0) variance += by_edges(gradient, strip);
     bool defined = isfinite(value);
     *(double *)((char *)bump + quantities[i].at) = defined ? value : NAN;
-    *(double *)((char *)bump + quantities[i].uncertainty_at) = defined ? sqrt(variance) : NAN;
+    *(double *)((char *)bump + quantities[i].uncertainty_at) = defined ? root(variance) : NAN;
   }
 }
 
@@ -221,8 +232,13 @@ void fg_bump_widen(const fg_design *design, const fg_nominal *nominal, const fg_
 
 fg_thickness fg_foil_thickness(const fg_design *design, const fg_foil *foil) {
   if (!(foil->thickness_mm > 0) || !isfinite(foil->thickness_mm))
-    return (fg_thickness){design->thickness_mm, 0};
-  return (fg_thickness){foil->thickness_mm, foil->u_thickness_mm};
+    return (fg_thickness){.mm = design->thickness_mm};
+  bool edge = design->datum != FG_DATUM_MID;
+  return (fg_thickness){.mm = foil->thickness_mm,
+                        .u_mm = foil->u_thickness_mm,
+                        .edge_mm = edge ? fg_foil_edge_doubt_mm(design, foil) : 0,
+                        .inner = design->datum == FG_DATUM_INNER,
+                        .with_edge = !(design->thickness_measured_mm > 0)};
 }
 
 bool fg_thickness_differs(const fg_design *design, const fg_thickness *strip) {
@@ -238,7 +254,7 @@ void fg_bump_derive(const fg_design *design, const fg_nominal *nominal, const fg
   along bump_along = project(bump->covariance, dx / g.x, dy / g.x);
   fg_overall land = *overall; /* C has no implicit const for rows of a matrix */
   along overall_along = project(land.covariance, dx / g.x, dy / g.x);
-  fill(&g, &bump_along, &overall_along, strip->u_mm, bump);
+  fill(&g, &bump_along, &overall_along, strip, bump);
   bump->u_radius_mm = root(bump->covariance[2][2]);
   for (int i = 0; i < 2; i++)
     bump->u_centre_mm[i] = root(bump->covariance[i][i]);

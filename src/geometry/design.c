@@ -129,6 +129,36 @@ static fg_status check_top_foil(fg_context *ctx, const fg_design *design) {
                  design->rotor_diameter_mm + 2 * clearance);
 }
 
+/* A thickness this many times the design's, or its inverse, is in another unit. */
+static const double thickness_times = 10;
+
+/* 0: not stated. The scan of what lies flat, or is round, shows no thickness. */
+static fg_status check_thickness_measured(fg_context *ctx, const fg_design *design) {
+  static const char *const name = "thickness_measured";
+  double value = design->thickness_measured_mm, u = design->u_thickness_measured_mm;
+  if (value == 0 && u == 0) return FG_OK;
+  if (design->form == FG_FORM_CANTILEVER)
+    return fg_fail(ctx, FG_ERR_DATA,
+                   "%s belongs to strips that are seen from their edge; of form \"cantilever\" "
+                   "state thickness_mm and u_thickness_mm",
+                   name);
+  if (design->form == FG_FORM_DISCS)
+    return fg_fail(ctx, FG_ERR_DATA, "%s belongs to strips; form is \"discs\"", name);
+  if (!(value > 0) || !isfinite(value))
+    return fg_fail(ctx, FG_ERR_DATA, "%s.value_mm is %g; it must be a number above 0, in mm", name,
+                   value);
+  if (design->thickness_mm > 0 && fabs(log(value / design->thickness_mm)) > log(thickness_times))
+    return fg_fail(ctx, FG_ERR_DATA,
+                   "%s.value_mm is %g, and thickness_mm %g: is it in mm? 100 µm is 0.1 mm", name,
+                   value, design->thickness_mm);
+  if (!(u > 0 && u < value / 2))
+    return fg_fail(ctx, FG_ERR_DATA,
+                   "%s.u_mm is %g; a standard uncertainty, in mm, must be above 0, as no "
+                   "micrometer is exact, and below half of the value %g",
+                   name, u, value);
+  return FG_OK;
+}
+
 static fg_status check_discs(fg_context *ctx, const fg_design *design) {
   if (design->diameter_count > FG_DIAMETERS_MAX)
     return fg_fail(ctx, FG_ERR_DATA, "diameters_mm has %zu values; at most %d",
@@ -242,6 +272,7 @@ static fg_status check_tolerances(fg_context *ctx, const fg_design *design) {
 fg_status fg_design_check(fg_context *ctx, const fg_design *design) {
   FG_TRY(check_tolerances(ctx, design));
   FG_TRY(fg_calibration_check(ctx, &design->calibration));
+  FG_TRY(check_thickness_measured(ctx, design));
   if (design->form != FG_FORM_CANTILEVER) FG_TRY(check_no_beams(ctx, design));
   if (design->form == FG_FORM_DISCS) return check_discs(ctx, design);
   if (design->diameter_count != 0)

@@ -51,6 +51,7 @@ void fg_foil_give_up(fg_foil *foil, const char *why) {
   snprintf(foil->error, sizeof foil->error, "%s", why);
   foil->rotation_deg = NAN;
   foil->thickness_mm = foil->u_thickness_mm = NAN;
+  foil->thickness_scan_mm = foil->u_thickness_scan_mm = foil->u_thickness_tone_mm = NAN;
   foil->noise_um = foil->correlation_mm = foil->edge_model_um = NAN;
   foil->correction = (fg_correction){NAN, NAN, NAN, NAN, NAN, NAN};
   foil->arc = (fg_foil_arc){NAN, NAN, NAN, NAN, NAN, NAN};
@@ -195,8 +196,8 @@ static fg_status fill_foil(fg_context *ctx, const fg_design *design, fg_layout *
   fg_nominal nominal;
   FG_TRY(fg_design_derive(ctx, design, &nominal));
   size_t n = layout->turning.bump_count;
-  FG_TRY(fg_foil_find_uncertainties(ctx, layout, foil));
-  fg_foil_add_width_doubt(foil);
+  FG_TRY(fg_foil_find_uncertainties(ctx, layout, design, foil));
+  fg_foil_find_thickness(design, foil);
   fg_layout_overall(layout, design, &foil->overall);
   FG_TRY(fg_memory_allocate(ctx, n, sizeof *foil->bumps, (void **)&foil->bumps));
   foil->bump_count = n;
@@ -215,8 +216,8 @@ static fg_status fill_foil(fg_context *ctx, const fg_design *design, fg_layout *
 /* A plain strip. */
 static fg_status fill_arc(fg_context *ctx, const fg_design *design, fg_layout *layout,
                           fg_foil *foil) {
-  fg_foil_find_arc_uncertainty(layout, foil);
-  fg_foil_add_width_doubt(foil);
+  fg_foil_find_arc_uncertainty(layout, design, foil);
+  fg_foil_find_thickness(design, foil);
   fg_layout_overall(layout, design, &foil->overall);
   fg_arc_foil_derive(design, layout, foil);
   fg_foil_recognise(design, foil);
@@ -263,8 +264,8 @@ fg_status fg_foil_measure(fg_context *ctx, const fg_design *design, unsigned thr
                           fg_foil *foil) {
   fg_layout layout;
   const char *error;
-  foil->thickness_mm = foil->strip.thickness_mm;
-  foil->u_thickness_mm = foil->strip.u_thickness_mm;
+  foil->thickness_mm = foil->thickness_scan_mm = foil->strip.thickness_mm;
+  foil->u_thickness_mm = foil->u_thickness_scan_mm = foil->strip.u_thickness_mm;
   foil->correction = (fg_correction){NAN, NAN, NAN, NAN, NAN, NAN};
   foil->arc = (fg_foil_arc){NAN, NAN, NAN, NAN, NAN, NAN};
   take_over_facts(foil);

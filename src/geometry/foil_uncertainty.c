@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "geometry/level_doubt.h"
 
 /* The edge model's systematic error counts when chance would show it less often than this. */
 #define EDGE_MODEL_P 0.005
@@ -16,9 +17,6 @@
 /* Where both edges blur into each other that place rests on the shape of the blur: the share grows
  * with the cube of the blur below so many blurs of width (reports/accuracy_hard.md). */
 #define LINE_SHIFT_WIDTHS 3.0
-/* Relative error of gamma where halo, wall or a cut-off level shape the edges: all profiles say the
- * same wrong value. */
-#define HIDDEN_TONE_DOUBT 0.23
 /* Correlation over more stations than this is roughness of the edge. */
 #define ROUGH_STATIONS 3.0
 
@@ -99,14 +97,16 @@ double fg_foil_widths_in_blurs(const fg_foil *foil) {
 }
 
 /* What the edge model itself is worth: a shift of the whole line along its normal. It moves the
- * radius of every circle and the crowns, and nothing else. What the scan has lost moves an edge
- * that is the datum; the middle of two edges it leaves. */
-static void add_line_shift(const fg_layout *layout, const fg_foil *foil, fg_arc *arc) {
+ * radius of every circle and the crowns, and nothing else. What the scan has lost and the level of
+ * the edges move an edge that is the datum; the middle of two edges they leave. */
+static void add_line_shift(const fg_layout *layout, const fg_design *design, const fg_foil *foil,
+                           fg_arc *arc) {
   double blur_um = fmax(foil->strip.blur_left_um, foil->strip.blur_right_um);
   double overlap = fmax(1, LINE_SHIFT_WIDTHS / fg_foil_widths_in_blurs(foil));
   double shift_mm = FG_LINE_SHIFT_BLURS * pow(overlap, 3) * blur_um / 1000;
   double loss_mm = layout->line.is_edge ? foil->strip.loss_um / 1000 : 0;
-  arc->covariance[2][2] += shift_mm * shift_mm + loss_mm * loss_mm;
+  double edge_mm = layout->line.is_edge ? fg_foil_edge_doubt_mm(design, foil) : 0;
+  arc->covariance[2][2] += shift_mm * shift_mm + loss_mm * loss_mm + edge_mm * edge_mm;
 }
 
 /* What JPEG's blocks have in common along an edge is more than the residuals tell. */
@@ -116,7 +116,8 @@ static void widen_by_loss(const fg_foil *foil, fg_arc *arc) {
       arc->covariance[p][q] *= 1 + foil->strip.loss_variance;
 }
 
-static void find_overall_covariance(fg_layout *layout, const fg_foil *foil) {
+static void find_overall_covariance(fg_layout *layout, const fg_design *design,
+                                    const fg_foil *foil) {
   fg_noise_model noise, half_width;
   fg_noise_estimate(&layout->line, &layout->overall, 1, 0, &noise);
   fg_noise_estimate(&layout->line, &layout->overall, 1, 1, &half_width);
@@ -124,7 +125,7 @@ static void find_overall_covariance(fg_layout *layout, const fg_foil *foil) {
   fg_arc_cluster_covariance(&layout->line, EDGE_MODEL_P, &layout->overall);
   widen_by_loss(foil, &layout->overall);
   add_overall_systematic(layout, &half_width);
-  add_line_shift(layout, foil, &layout->overall);
+  add_line_shift(layout, design, foil, &layout->overall);
 }
 
 /* Mean square of the edges' own standard deviation, which the pixels' noise gives, mm². */
@@ -139,7 +140,7 @@ static double pixel_variance(const fg_strip *strip) {
   return count > 0 ? sum / count : 0;
 }
 
-void fg_foil_find_arc_uncertainty(fg_layout *layout, fg_foil *foil) {
+void fg_foil_find_arc_uncertainty(fg_layout *layout, const fg_design *design, fg_foil *foil) {
   fg_noise_model noise, half_width;
   fg_noise_estimate(&layout->line, &layout->overall, 1, 0, &noise);
   fg_noise_estimate(&layout->line, &layout->overall, 1, 1, &half_width);
@@ -149,7 +150,7 @@ void fg_foil_find_arc_uncertainty(fg_layout *layout, fg_foil *foil) {
   foil->edge_rough_um = 1000 * sqrt(fmax(edge - pixel_variance(&foil->strip), 0));
   foil->edge_model_um = 0;
   if (noise.integral_stations > ROUGH_STATIONS) foil->flags |= FG_FOIL_ROUGH_EDGE;
-  find_overall_covariance(layout, foil);
+  find_overall_covariance(layout, design, foil);
 }
 
 static size_t gather_bumps(const fg_layout *layout, fg_arc *arcs) {
@@ -159,7 +160,8 @@ static size_t gather_bumps(const fg_layout *layout, fg_arc *arcs) {
   return n;
 }
 
-fg_status fg_foil_find_uncertainties(fg_context *ctx, fg_layout *layout, fg_foil *foil) {
+fg_status fg_foil_find_uncertainties(fg_context *ctx, fg_layout *layout, const fg_design *design,
+                                     fg_foil *foil) {
   fg_arc *arcs = NULL;
   fg_noise_model noise, half_width;
   double systematic[3][3];
@@ -178,23 +180,54 @@ fg_status fg_foil_find_uncertainties(fg_context *ctx, fg_layout *layout, fg_foil
     fg_arc_covariance(&layout->line, &noise, &layout->bumps[i]);
     widen_by_loss(foil, &layout->bumps[i]);
     if (found) add_systematic(layout, systematic, &layout->bumps[i]);
-    add_line_shift(layout, foil, &layout->bumps[i]);
+    add_line_shift(layout, design, foil, &layout->bumps[i]);
   }
-  find_overall_covariance(layout, foil);
+  find_overall_covariance(layout, design, foil);
   return FG_OK;
 }
 
-double fg_foil_tone_doubt_um(const fg_foil *foil) {
-  const unsigned hidden = FG_FOIL_ROUGH_EDGE | FG_FOIL_SIDE_BAND | FG_FOIL_CLIPPED;
+double fg_foil_tone_doubt_um(const fg_design *design, const fg_foil *foil) {
   const fg_strip *strip = &foil->strip;
-  double doubt = strip->gamma > 0 ? strip->u_gamma / strip->gamma : 0;
-  return strip->tone_um * (foil->flags & hidden ? hypot(doubt, HIDDEN_TONE_DOUBT) : doubt);
+  bool fitted = !strip->picture.level_known && !isfinite(strip->picture.u_level);
+  double by_gamma = fitted && strip->gamma > 0 ? strip->tone_um * strip->u_gamma / strip->gamma : 0;
+  double level = fg_level_doubt(design, &strip->picture, foil->flags);
+  double blurs_um = fg_level_shift(strip->blur_left_um) + fg_level_shift(strip->blur_right_um);
+  return hypot(by_gamma, level * blurs_um);
 }
 
-double fg_foil_width_doubt_um(const fg_foil *foil) {
-  return hypot(fg_foil_tone_doubt_um(foil), 2 * foil->strip.loss_um);
+double fg_foil_edge_doubt_mm(const fg_design *design, const fg_foil *foil) {
+  return fg_foil_tone_doubt_um(design, foil) / 2000;
 }
 
-void fg_foil_add_width_doubt(fg_foil *foil) {
-  foil->u_thickness_mm = hypot(foil->strip.u_thickness_mm, fg_foil_width_doubt_um(foil) / 1000);
+double fg_foil_width_doubt_um(const fg_design *design, const fg_foil *foil) {
+  return hypot(fg_foil_tone_doubt_um(design, foil), 2 * foil->strip.loss_um);
+}
+
+/* A strip this far off the design's, and by more than U, is another material, another setup or a
+ * wrong edge. */
+#define OTHER_THICKNESS_SHARE 0.2
+#define COVERAGE              2.0
+
+static void check_thickness(const fg_design *design, fg_foil *foil) {
+  bool stated = design->thickness_measured_mm > 0;
+  double expected = stated ? design->thickness_measured_mm : design->thickness_mm;
+  double u = stated ? hypot(foil->u_thickness_scan_mm, design->u_thickness_measured_mm)
+                    : foil->u_thickness_scan_mm;
+  double off = fabs(foil->thickness_scan_mm - expected);
+  if (!(off > COVERAGE * u)) return;
+  if (stated)
+    foil->flags |= FG_FOIL_THICKNESS_CONTRADICTS;
+  else if (off > OTHER_THICKNESS_SHARE * expected)
+    foil->flags |= FG_FOIL_OTHER_THICKNESS;
+}
+
+void fg_foil_find_thickness(const fg_design *design, fg_foil *foil) {
+  double doubt_mm = fg_foil_width_doubt_um(design, foil) / 1000;
+  foil->thickness_scan_mm = foil->strip.thickness_mm;
+  foil->u_thickness_scan_mm = hypot(foil->strip.u_thickness_mm, doubt_mm);
+  foil->u_thickness_tone_mm = fg_foil_tone_doubt_um(design, foil) / 1000;
+  bool stated = design->thickness_measured_mm > 0;
+  foil->thickness_mm = stated ? design->thickness_measured_mm : foil->thickness_scan_mm;
+  foil->u_thickness_mm = stated ? design->u_thickness_measured_mm : foil->u_thickness_scan_mm;
+  check_thickness(design, foil);
 }

@@ -9,18 +9,24 @@
 #define FG_LINE_SHIFT_BLURS 0.001
 
 /* Covariances of the overall circle and of every bump's; noise and edge model of the foil. */
-fg_status fg_foil_find_uncertainties(fg_context *ctx, fg_layout *layout, fg_foil *foil);
+fg_status fg_foil_find_uncertainties(fg_context *ctx, fg_layout *layout, const fg_design *design,
+                                     fg_foil *foil);
 
 /* The same of a plain strip: its circle's covariance, noise, roughness of the edges. */
-void fg_foil_find_arc_uncertainty(fg_layout *layout, fg_foil *foil);
+void fg_foil_find_arc_uncertainty(fg_layout *layout, const fg_design *design, fg_foil *foil);
 
-/* What moves both edges outwards or inwards, as u of their distance: the tone curve alone; with
- * what the scan has lost. */
-double fg_foil_tone_doubt_um(const fg_foil *foil);
-double fg_foil_width_doubt_um(const fg_foil *foil);
+/* What moves both edges outwards or inwards, as u of their distance: the level of the edges alone,
+ * which a tone curve moves; with what the scan has lost. */
+double fg_foil_tone_doubt_um(const fg_design *design, const fg_foil *foil);
+double fg_foil_width_doubt_um(const fg_design *design, const fg_foil *foil);
 
-/* Its share of the thickness' uncertainty. */
-void fg_foil_add_width_doubt(fg_foil *foil);
+/* The same as u of the place of one edge, mm: of the level alone. */
+double fg_foil_edge_doubt_mm(const fg_design *design, const fg_foil *foil);
+
+/* The strip's thickness by the scan and the one in force, their uncertainties, and flags of one
+ * that contradicts what is stated or is far from the design's. The foil's flags of its edges are
+ * there. */
+void fg_foil_find_thickness(const fg_design *design, fg_foil *foil);
 
 /* The strip's thickness in units of the edges' blur. */
 double fg_foil_widths_in_blurs(const fg_foil *foil);

@@ -124,7 +124,7 @@ static void make_plan(fg_lot_analysis *analysis) {
 static double moved_clearance(const fg_lot *lot, const fg_bump *bump, double radius_mm) {
   const fg_design *design = &lot->settings.design;
   const fg_overall sleeve = {.radius_mm = design->sleeve_radius_mm};
-  const fg_thickness strip = {design->thickness_mm, 0};
+  const fg_thickness strip = {.mm = design->thickness_mm};
   double clearance[2];
   for (int moved = 0; moved < 2; moved++) {
     double r = moved ? radius_mm : bump->radius_mm;

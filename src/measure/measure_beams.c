@@ -7,6 +7,7 @@
 
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "geometry/level_doubt.h"
 #include "measure/loss.h"
 #include "vision/beam_find.h"
 #include "vision/rims.h"
@@ -104,7 +105,9 @@ static double find_doubt(const flat_work *w, const fg_stretch *side, const fg_di
                          double overlap_px) {
   double contrast = fabs(found->inside - found->outside), ratio = found->blur_px / side->radius;
   double loss_px = fg_loss_edge_px(w->m->jpeg_quality, contrast, found->blur_px);
-  double tone_px = w->tone.gamma == 1 ? 0 : TONE_DOUBT_PX;
+  double level_px =
+      fg_level_doubt(&w->m->design, &found->picture, 0) * fg_level_shift(found->blur_px);
+  double tone_px = hypot(w->tone.gamma == 1 ? 0 : TONE_DOUBT_PX, level_px);
   double curved_px = CURVED_DOUBT * ratio * ratio * 0.5 * ratio * found->blur_px;
   return hypot(hypot(found->level_doubt_px, loss_px), hypot(tone_px, overlap_px)) + curved_px;
 }
@@ -234,8 +237,9 @@ static fg_status measure_places(fg_context *ctx, flat_work *w, unsigned threads)
   size_t count = w->places.count;
   FG_TRY(fg_memory_allocate(ctx, count, sizeof *w->beams, (void **)&w->beams));
   FG_TRY(fg_memory_allocate(ctx, 2 * count, sizeof *w->tones, (void **)&w->tones));
-  FG_TRY(fg_parallel_run(ctx, threads, 2 * count, find_tone, w));
-  w->tone = fg_tone_pool(w->tones, 2 * count);
+  bool linear = w->m->design.tone == FG_TONE_LINEAR;
+  if (!linear) FG_TRY(fg_parallel_run(ctx, threads, 2 * count, find_tone, w));
+  w->tone = linear ? fg_tone_linear() : fg_tone_pool(w->tones, 2 * count);
   return fg_parallel_run(ctx, threads, count, measure_edges, w);
 }
 

@@ -8,6 +8,7 @@
 #include "core/parallel.h"
 #include "core/select.h"
 #include "geometry/disc_fit.h"
+#include "geometry/level_doubt.h"
 #include "measure/loss.h"
 #include "vision/disc_edge.h"
 #include "vision/disc_find.h"
@@ -25,6 +26,7 @@
 
 typedef struct disc_work {
   const fg_tiles *tiles;
+  const fg_design *design;
   int jpeg_quality; /* as in fg_measurement */
   fg_pixel_shape shape;
   const fg_disc_candidates *found;
@@ -62,7 +64,8 @@ static fg_status find_background(fg_context *ctx, const fg_tiles *tiles, double 
   return FG_OK;
 }
 
-/* Stations of the edge as points in mm, and their circle. */
+/* Stations of the edge as points in mm, and their circle. The picture's state and the blur are
+ * there. */
 static fg_status fit_edge(fg_context *ctx, const disc_work *work, const fg_disc_edge *edge,
                           fg_disc *disc) {
   fg_disc_point *points;
@@ -84,7 +87,8 @@ static fg_status fit_edge(fg_context *ctx, const disc_work *work, const fg_disc_
   disc->stations = points;
   disc->station_count = edge->count;
   disc->loss_variance = fg_loss_turn_variance(work->jpeg_quality);
-  disc->level_doubt_mm = hypot(edge->level_doubt_px, loss_px) * mm;
+  disc->edge_doubt_mm = hypot(edge->level_doubt_px, loss_px) * mm;
+  fg_disc_find_level_doubt(work->design, disc);
   return fg_disc_measure_again(ctx, disc);
 }
 
@@ -111,8 +115,8 @@ static fg_status measure_candidate(fg_context *ctx, void *shared, size_t i) {
   fg_disc_edge edge = {0};
   fg_status status = fg_disc_edge_measure(ctx, work->tiles, &work->shape, &work->found->list[i],
                                           &work->tone, &edge);
-  if (status == FG_OK) status = fit_edge(ctx, work, &edge, disc);
   if (status == FG_OK) describe(work, &edge, disc);
+  if (status == FG_OK) status = fit_edge(ctx, work, &edge, disc);
   if (status == FG_OK && disc->rms_um > ROUND_SHARE * 1000 * disc->radius_mm) fg_disc_free(disc);
   if (status != FG_OK) fg_disc_free(disc);
   fg_disc_edge_free(&edge);
@@ -162,8 +166,9 @@ static fg_status measure_candidates(fg_context *ctx, disc_work *work, unsigned t
   FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *work->discs, (void **)&work->discs));
   FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *m->discs, (void **)&m->discs));
   FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *work->tones, (void **)&work->tones));
-  FG_TRY_EXIT(fg_parallel_run(ctx, threads, count, find_tone, work));
-  work->tone = fg_tone_pool(work->tones, count);
+  bool linear = m->design.tone == FG_TONE_LINEAR;
+  if (!linear) FG_TRY_EXIT(fg_parallel_run(ctx, threads, count, find_tone, work));
+  work->tone = linear ? fg_tone_linear() : fg_tone_pool(work->tones, count);
   FG_TRY_EXIT(fg_parallel_run(ctx, threads, count, measure_candidate, work));
   hand_over(work, m);
 exit:
@@ -178,6 +183,7 @@ fg_status fg_measure_discs(fg_context *ctx, const fg_tiles *tiles, unsigned thre
                            fg_measurement *m) {
   fg_disc_candidates found = {0};
   disc_work work = {.tiles = tiles,
+                    .design = &m->design,
                     .jpeg_quality = m->jpeg_quality,
                     .shape = fg_pixel_shape_of(m->dpi),
                     .found = &found};

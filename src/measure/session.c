@@ -95,7 +95,8 @@ static fg_status measure_trace(fg_context *ctx, fg_session *s, const job *j,
                                const fg_segmentation *seg, const fg_trace *trace) {
   const fg_measurement *m = s->measurement;
   fg_foil foil = {0};
-  fg_status status = fg_edges_measure(ctx, &j->view, seg, trace, m->dpi, s->threads, &foil.strip);
+  const fg_edge_options edges = {m->dpi, s->threads, m->design.tone == FG_TONE_LINEAR};
+  fg_status status = fg_edges_measure(ctx, &j->view, seg, trace, &edges, &foil.strip);
   find_loss(m, &foil.strip);
   if (status == FG_OK) status = fg_foil_measure(ctx, &m->design, s->threads, &foil);
   if (status == FG_ERR_NUMERIC) {

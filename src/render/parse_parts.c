@@ -24,6 +24,8 @@ static fg_status read_design(const fg_place *place, const cJSON *object, fg_rend
       FG_SPEC_NUMBER(fg_render_design, clearance_mm, 0.0001, 1000),
       FG_SPEC_OTHER("elastic_modulus_gpa"),
       FG_SPEC_OTHER("u_thickness_mm"),
+      FG_SPEC_OTHER("thickness_measured"),
+      FG_SPEC_OTHER("tone"),
       FG_SPEC_OTHER("schema"),
       FG_SPEC_OTHER("name"),
       FG_SPEC_OTHER("form"),

@@ -42,6 +42,15 @@ static const fg_flag_words foil_flags[] = {
     {FG_FOIL_BEAM_PLACES_UNKNOWN, "beam_places_unknown",
      "Beams are missing, and which of them cannot be told: they are numbered in their order, and "
      "are in no statistics by number."},
+    {FG_FOIL_THICKNESS_CONTRADICTS, "thickness_contradicts",
+     "The scan's thickness and the one stated as measured differ by more than their uncertainty: "
+     "either the statement is not of this strip, or the scan's settings, its resolution or "
+     "something beside the edges make the scan wrong. Measure the strip again; scan without "
+     "sharpening and with a linear tone."},
+    {FG_FOIL_OTHER_THICKNESS, "other_thickness",
+     "The strip is far from the design's thickness: it is another material, its edges are not what "
+     "they seem, or the resolution is wrong. Measure it by a micrometer and state "
+     "thickness_measured."},
     {FG_FOIL_LOSSY, "lossy",
      "The scan was compressed with loss (JPEG), which moves edges: the uncertainties are wider by "
      "what that does. Scan to PNG or TIFF."},

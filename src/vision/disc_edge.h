@@ -60,6 +60,7 @@ fg_status fg_disc_edge_tone(fg_context *ctx, const fg_tiles *tiles, const fg_pix
 
 /* One tone curve for all; gamma is 1, without doubt, unless they agree on another value. Where
  * slopes hide the tone curve it is 1 with a large doubt. */
+fg_tone fg_tone_linear(void);
 fg_tone fg_tone_pool(const fg_tone *tones, size_t count);
 
 /* FG_ERR_NUMERIC when there is no edge around the candidate. */

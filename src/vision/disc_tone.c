@@ -66,6 +66,10 @@ fg_status fg_disc_find_tone(fg_context *ctx, fg_disc_work *work, fg_tone *tone) 
   return FG_OK;
 }
 
+fg_tone fg_tone_linear(void) {
+  return (fg_tone){.gamma = 1};
+}
+
 fg_tone fg_tone_pool(const fg_tone *tones, size_t count) {
   double sum = 0, weights = 0, squares = 0, slopes = 0, n = 0;
   for (size_t i = 0; i < count; i++) {
@@ -77,7 +81,7 @@ fg_tone fg_tone_pool(const fg_tone *tones, size_t count) {
     slopes += tones[i].slopes;
     n++;
   }
-  fg_tone linear = {.gamma = 1};
+  const fg_tone linear = fg_tone_linear();
   if (n < 1) return linear;
   double gamma = sum / weights, spread = fmax(0, squares - sum * gamma);
   double doubt = sqrt((n > 1 ? fmax(1, spread / (n - 1)) : 1) / weights);

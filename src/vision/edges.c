@@ -162,13 +162,15 @@ static fg_status build_reference(fg_context *ctx, const fg_trace *trace, const d
 
 fg_status fg_edges_measure(fg_context *ctx, const fg_tiles *tiles,
                            const fg_segmentation *segmentation, const fg_trace *trace,
-                           const double dpi[2], unsigned threads, fg_strip *strip) {
+                           const fg_edge_options *options, fg_strip *strip) {
+  const double *dpi = options->dpi;
   fg_reference reference = {0};
   fg_edge_work work = {.tiles = tiles,
                        .segmentation = segmentation,
                        .trace = trace,
                        .reference = &reference,
-                       .threads = threads,
+                       .threads = options->threads,
+                       .linear = options->linear,
                        .width_px = trace->width_px,
                        .reach_px = fmin(BAND_BLURS * trace->blur_px + BAND_MARGIN_PX, BAND_MOST_PX),
                        .noise = 1,

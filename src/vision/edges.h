@@ -25,11 +25,17 @@
 extern "C" {
 #endif
 
-/* Fills `strip` (zeroed by the caller; fg_strip_free it). `dpi` is x and y. The result does not
- * depend on `threads` (0: all cores). FG_ERR_NUMERIC when no edges are found along the trace. */
+typedef struct fg_edge_options {
+  const double *dpi; /* x and y */
+  unsigned threads;  /* 0: all cores */
+  bool linear;       /* counts are proportional to the light: no tone curve is fitted */
+} fg_edge_options;
+
+/* Fills `strip` (zeroed by the caller; fg_strip_free it). The result does not depend on the
+ * threads. FG_ERR_NUMERIC when no edges are found along the trace. */
 fg_status fg_edges_measure(fg_context *ctx, const fg_tiles *tiles,
                            const fg_segmentation *segmentation, const fg_trace *trace,
-                           const double dpi[2], unsigned threads, fg_strip *strip);
+                           const fg_edge_options *options, fg_strip *strip);
 
 /* One station at work. */
 typedef struct fg_edge_station {
@@ -86,6 +92,7 @@ typedef struct fg_edge_work {
   double noise;    /* sd of a pixel, counts */
   double contrast; /* |P - b|, counts */
   bool clipped, side_band;
+  bool linear; /* gamma is 1, as was stated */
   double thickness_px, blur_px[2];
   double gamma, u_gamma;
   double tone_px;    /* of thickness per unit of ln gamma, the counts of all levels kept */

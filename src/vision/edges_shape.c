@@ -208,6 +208,12 @@ static fg_status find_gamma(fg_context *ctx, fg_edge_work *work) {
   tone_task task = {.work = work};
   double values[GAMMA_SEGMENTS], u = 0;
   int count = 0;
+  const value_counts pixels = count_values(work);
+  work->gamma = 1;
+  /* A level that is cut off looks like a tone curve, and so does a staircase. */
+  work->clipped = find_clipping(work, &pixels);
+  work->level_step = find_level_step(&pixels);
+  if (work->linear) return FG_OK;
   FG_TRY(fg_parallel_run(ctx, work->threads, GAMMA_SEGMENTS, fit_tone, &task));
   for (int i = 0; i < GAMMA_SEGMENTS; i++) {
     if (!task.fits[i].good) continue;
@@ -217,12 +223,7 @@ static fg_status find_gamma(fg_context *ctx, fg_edge_work *work) {
     values[j] = task.fits[i].gamma;
     u += task.fits[i].u_gamma;
   }
-  work->gamma = 1;
   work->u_gamma = GAMMA_DOUBT;
-  value_counts pixels = count_values(work);
-  /* A level that is cut off looks like a tone curve, and so does a staircase. */
-  work->clipped = find_clipping(work, &pixels);
-  work->level_step = find_level_step(&pixels);
   if (count >= 3 && !work->clipped && work->level_step < FG_LEVEL_STEP_MOST) {
     double gamma = values[count / 2], spread = values[count * 3 / 4] - values[count / 4];
     double doubt = fmax(u / count, spread) / sqrt(count);

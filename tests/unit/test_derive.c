@@ -234,7 +234,7 @@ static void clearance_is_over_the_strip_as_it_is(void **state) {
   derive_case thin = make_case(3.32, 23.48547331077125, 20.73);
   derive_case thick = thin;
   derive(&thin);
-  thick.strip = (fg_thickness){0.105, 0.0003};
+  thick.strip = (fg_thickness){.mm = 0.105, .u_mm = 0.0003};
   derive(&thick);
   assert_near(1000 * thin.bump.clearance_mm, 65.473, 0.001);
   assert_near(1000 * thick.bump.clearance_mm, 60.473, 0.001);

@@ -48,7 +48,7 @@ static void check_bump(const fg_design *design, const fg_nominal *nominal,
                        const fg_overall *overall, const cJSON *truth) {
   fg_bump bump = {.radius_mm = number(truth, "radius_mm")};
   bump.centre_mm.x = -number(truth, "centre_to_centre_mm");
-  const fg_thickness strip = {design->thickness_mm, 0};
+  const fg_thickness strip = {.mm = design->thickness_mm};
   fg_bump_derive(design, nominal, overall, &strip, &bump);
   assert_true(fabs(bump.bump_angle_deg - number(truth, "bump_angle_deg")) < 1e-9);
   assert_true(fabs(bump.intersection_angle_deg - number(truth, "intersection_angle_deg")) < 1e-9);

@@ -161,6 +161,41 @@ static fg_status read_diameters(const reader *r, const char *name, const cJSON *
   return FG_OK;
 }
 
+static fg_status read_tone(const reader *r, const char *name, const cJSON *item, void *out) {
+  static const char *const words[] = {"unknown", "linear", NULL};
+  int place = 0;
+  FG_TRY(read_word(r, name, item, words, "\"unknown\" or \"linear\"", &place));
+  *(fg_tone_statement *)out = (fg_tone_statement)place;
+  return FG_OK;
+}
+
+/* Whether they are plausible is fg_design_check's to say; 0 would be taken for "not stated". */
+static fg_status read_thickness_measured(const reader *r, const char *name, const cJSON *item,
+                                         void *out) {
+  fg_design *design = out;
+  const struct {
+    const char *name;
+    double *value;
+  } parts[] = {{"value_mm", &design->thickness_measured_mm},
+               {"u_mm", &design->u_thickness_measured_mm}};
+  if (!cJSON_IsObject(item)) return fail(r, name, "must be an object with value_mm and u_mm");
+  for (const cJSON *part = item->child; part; part = part->next)
+    if (strcmp(part->string, parts[0].name) != 0 && strcmp(part->string, parts[1].name) != 0)
+      return fail(r, name, "'%.40s' is not known; there are value_mm and u_mm", part->string);
+    else if (earlier_twin(item, part))
+      return fail(r, name, "%s is given twice", part->string);
+  for (size_t i = 0; i < 2; i++) {
+    char full[48];
+    const cJSON *part = cJSON_GetObjectItemCaseSensitive(item, parts[i].name);
+    snprintf(full, sizeof full, "%s.%s", name, parts[i].name);
+    if (!part) return fail(r, full, "is missing; value_mm and u_mm go together");
+    FG_TRY(read_number(r, full, part, parts[i].value));
+    if (!(*parts[i].value > 0))
+      return fail(r, full, "is %g; it must be above 0, in mm", *parts[i].value);
+  }
+  return FG_OK;
+}
+
 static fg_status read_calibration(const reader *r, const char *name, const cJSON *item, void *out) {
   fg_context words = {0};
   (void)name;
@@ -200,6 +235,14 @@ static const member_row member_rows[] = {
     MEMBER(pitch_deg, read_number, "From bump to bump about the overall centre."),
     MEMBER(fillet_radius_mm, read_number, "Between a bump and its lands."),
     MEMBER(thickness_mm, read_number, "Of the strip."),
+    {"thickness_measured", read_thickness_measured, 0,
+     "Of the strip by a micrometer, at 20 °C: an object with `value_mm` and its standard "
+     "uncertainty `u_mm`. It is the thickness in force, of clearances and stiffness, and the "
+     "scan's is held against it."},
+    MEMBER(tone, read_tone,
+           "\"linear\" says that the scanner's counts are proportional to the light, and you vouch "
+           "for it: thickness, diameters and clearances then hold no unknown tone curve. Without "
+           "it, \"unknown\"."),
     MEMBER(top_foil_thickness_mm, read_number,
            "Of the plain foil between bumps and rotor, 0 for none: it is taken off every "
            "clearance, that of the design too; one that leaves no clearance is refused."),

@@ -13,6 +13,15 @@ static void write_row(FILE *out, const char *words, const char *symbol, double v
   fprintf(out, "  %-34s %-9s %12.6f %s\n", words, symbol, value, unit);
 }
 
+/* What is known beside the design, as of the strip that was made. */
+static void write_known(const fg_design *design, FILE *out) {
+  if (design->thickness_measured_mm > 0) {
+    write_row(out, "thickness as measured", "t", design->thickness_measured_mm, "mm");
+    write_row(out, "its standard uncertainty", "u(t)", design->u_thickness_measured_mm, "mm");
+  }
+  if (design->tone == FG_TONE_LINEAR) fputs("  tone of the scanner: linear, as stated\n", out);
+}
+
 static void write_stated(const fg_design *design, FILE *out) {
   write_row(out, "bump radius", "R_D", design->bump_radius_mm, "mm");
   write_row(out, "bump angle", "alpha_D", design->bump_angle_deg, "deg");
@@ -24,6 +33,7 @@ static void write_stated(const fg_design *design, FILE *out) {
   if (design->top_foil_thickness_mm > 0)
     write_row(out, "top foil thickness", "", design->top_foil_thickness_mm, "mm");
   write_row(out, "rotor diameter", "D", design->rotor_diameter_mm, "mm");
+  write_known(design, out);
 }
 
 static void write_derived(const fg_nominal *nominal, FILE *out) {
@@ -41,6 +51,7 @@ static void write_arc(const fg_design *design, const fg_nominal *nominal, FILE *
   write_row(out, "overall radius", "R0", design->overall_radius_mm, "mm");
   write_row(out, "subtended angle", "", design->subtended_angle_deg, "deg");
   write_row(out, "thickness", "t", design->thickness_mm, "mm");
+  write_known(design, out);
   fputs("\nderived\n", out);
   write_row(out, "arc length", "", nominal->arc_length_mm, "mm");
 }

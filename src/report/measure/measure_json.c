@@ -48,6 +48,15 @@ static void write_cantilever(fg_json *json, const fg_design *design) {
   write_stated(json, "clearance_mm", design->clearance_mm);
 }
 
+static void write_known(fg_json *json, const fg_design *design) {
+  if (design->tone == FG_TONE_LINEAR) fg_json_string(json, "tone", "linear");
+  if (!(design->thickness_measured_mm > 0)) return;
+  fg_json_object(json, "thickness_measured");
+  fg_json_number(json, "value_mm", design->thickness_measured_mm);
+  fg_json_number(json, "u_mm", design->u_thickness_measured_mm);
+  fg_json_object_end(json);
+}
+
 void fg_json_design(fg_json *json, const char *name, const fg_design *design) {
   fg_json_object(json, name);
   fg_json_string(json, "schema", "foilgauge/design/1");
@@ -76,6 +85,7 @@ void fg_json_design(fg_json *json, const char *name, const fg_design *design) {
       fg_json_number(json, "top_foil_thickness_mm", design->top_foil_thickness_mm);
     fg_json_number(json, "rotor_diameter_mm", design->rotor_diameter_mm);
   }
+  write_known(json, design);
   write_tolerances(json, design);
   if (design->calibration.stated) fg_json_calibration(json, "calibration", &design->calibration);
   fg_json_object_end(json);
@@ -240,6 +250,7 @@ static void write_foil_values(fg_json *json, const fg_design *design, const fg_f
   fg_json_string(json, "orientation", turns ? fg_orientation_word(foil->orientation) : NULL);
   fg_json_quantities(json, FG_QUANTITY_OF_FOIL, "", foil, true);
   const fg_thickness strip = fg_foil_thickness(design, foil);
+  fg_json_string(json, "thickness_by", design->thickness_measured_mm > 0 ? "statement" : "scan");
   fg_json_number(json, "thickness_design_mm", design->thickness_mm);
   fg_json_bool(json, "thickness_differs", fg_thickness_differs(design, &strip));
   fg_json_object(json, "overall");

@@ -1,0 +1,39 @@
+/* What the user knows of a part or a scanner, on the command line: it overrules the design. */
+#ifndef FG_CLI_KNOWN_H
+#define FG_CLI_KNOWN_H
+
+#include "foilgauge/design.h"
+
+struct argp_state;
+
+typedef struct fg_cli_known {
+  bool tone_given;
+  fg_tone_statement tone;
+  double thickness_mm, u_thickness_mm; /* 0: not given */
+} fg_cli_known;
+
+enum { FG_CLI_TONE = 0x7002, FG_CLI_THICKNESS = 0x7003 };
+
+#define FG_CLI_KNOWN_ROWS(group)                                                                    \
+  {"tone",                                                                                          \
+   FG_CLI_TONE,                                                                                     \
+   "TONE",                                                                                          \
+   0,                                                                                               \
+   "linear: you vouch that the scanner's counts are proportional to the light; thickness and "      \
+   "diameters then hold no unknown tone curve (default: unknown)",                                  \
+   group},                                                                                          \
+  {                                                                                                 \
+    "thickness-measured", FG_CLI_THICKNESS, "MM±U", 0,                                              \
+        "The strip's thickness by a micrometer and its standard uncertainty, as 0.1003±0.0005 or " \
+        "0.1003:0.0005; clearances and stiffness use it, and the scan is held against it",          \
+        group                                                                                       \
+  }
+
+/* Takes an option of these rows; false: it is another one. A wrong argument ends the program. */
+bool fg_cli_take_known(struct argp_state *state, int key, const char *text, fg_cli_known *known);
+
+/* Puts it into the design; what it overrules there is said on standard error. Check the design
+ * afterwards. */
+void fg_cli_apply_known(const fg_cli_known *known, fg_design *design);
+
+#endif
