@@ -19,9 +19,10 @@
 
 #define NOMINAL_DPI 4800.0
 
-/* Measured over true, less 1; rad. */
+/* Measured over true, less 1; rad. What is said of its tone. */
 typedef struct scanner {
   double scale_x, scale_y, shear;
+  fg_tone_statement tone;
 } scanner;
 
 static const double radii_mm[] = {0.4, 0.6, 0.8};
@@ -63,6 +64,7 @@ static fg_check_fit check(const scanner *is, unsigned seed, const char *picture)
   if (fg_render_parse(&ctx, "plate.json", json, &spec) != FG_OK) fail_msg("%s", ctx.message);
   assert_int_equal(fg_render_scan(&ctx, spec, path, NULL), FG_OK);
   design_plate(&design);
+  design.tone = is->tone;
   if (fg_measure_scan(&ctx, path, &design, &options, &measurement) != FG_OK)
     fail_msg("%s", ctx.message);
   if (fg_check_fit_plate(&ctx, &design, &measurement, &fit) != FG_OK) fail_msg("%s", ctx.message);
@@ -121,24 +123,28 @@ static void check_coverage(const char *picture, const scanner *is, double least,
 
 static void scale_and_shear_are_found(void **state) {
   (void)state;
-  check_coverage("\"noise\":2", &(scanner){400e-6, -700e-6, 300e-6}, 0.4, 1.8, 15);
+  check_coverage("\"noise\":2", &(scanner){400e-6, -700e-6, 300e-6, FG_TONE_UNKNOWN}, 0.4, 1.8, 15);
 }
 
 static void a_good_scanner_is_not_blamed(void **state) {
   (void)state;
-  check_coverage("\"noise\":3,\"noise_correlation\":0.5", &(scanner){0, 0, 0}, 0.4, 1.8, 150);
+  check_coverage("\"noise\":3,\"noise_correlation\":0.5", &(scanner){0, 0, 0, FG_TONE_UNKNOWN}, 0.4,
+                 1.8, 150);
 }
 
 static void a_tone_curve_is_in_the_uncertainty(void **state) {
   (void)state;
-  check_coverage("\"noise\":2,\"gamma\":1.8,\"bits\":16", &(scanner){100e-6, 100e-6, -50e-6}, 0,
-                 1.8, 60);
+  check_coverage("\"noise\":2,\"gamma\":1.8,\"bits\":16",
+                 &(scanner){100e-6, 100e-6, -50e-6, FG_TONE_UNKNOWN}, 0, 1.8, 60);
 }
 
+/* Where the tone is not known, the level of the edges is one more unknown. */
 static void rough_edges_are_in_the_uncertainty(void **state) {
   (void)state;
   check_coverage("\"noise\":2,\"rough\":{\"edge_roughness_um\":1,\"correlation_um\":50}",
-                 &(scanner){0, 300e-6, 0}, 0.3, 1.8, 400);
+                 &(scanner){0, 300e-6, 0, FG_TONE_UNKNOWN}, 0.3, 1.8, 800);
+  check_coverage("\"noise\":2,\"rough\":{\"edge_roughness_um\":1,\"correlation_um\":50}",
+                 &(scanner){0, 300e-6, 0, FG_TONE_LINEAR}, 0.3, 1.8, 400);
 }
 
 /* Without a tone curve no level is off; with one all edges of bright parts move by as much, and the
