@@ -48,6 +48,10 @@ typedef enum fg_quantity_use {
   FG_QUANTITY_IS_OWN = 1u << 5,
   FG_QUANTITY_OF_ARC = 1u << 6,  /* of form arc alone */
   FG_QUANTITY_OF_FLAT = 1u << 7, /* of a foil: of form cantilever, too */
+  /* Lengths between two edges of opposite sense, and what follows from them: an unknown tone curve
+   * is in their uncertainty. */
+  FG_QUANTITY_BETWEEN_EDGES = 1u << 8,
+  FG_QUANTITY_OF_DATUM = 1u << 9, /* as well, where an edge is the datum */
 } fg_quantity_use;
 
 #define FG_NO_UNCERTAINTY ((size_t)-1)

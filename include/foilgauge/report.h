@@ -55,6 +55,7 @@ typedef struct fg_judgement {
   bool missing;  /* of a bump that is not there: no value, and a fail */
   bool exceeded; /* the value fails */
   fg_verdict verdict;
+  const char *cure; /* "cannot tell": what would decide it; static; NULL: nothing cheap */
 } fg_judgement;
 
 /* What a foil, a disc, a scan or a run comes to. */

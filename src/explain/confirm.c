@@ -17,6 +17,7 @@
 #include "core/memory.h"
 #include "core/small_solve.h"
 #include "effect/columns.h"
+#include "explain/common_level.h"
 #include "explain/policy.h"
 
 /* Chance of an amplitude like this where there is none (these and those below were tuned on
@@ -260,17 +261,17 @@ static void widen_by_scatter(confirmation *c, fg_effect_found *effect) {
   }
 }
 
-/* All edges may lie a little too far out or in together, by what their level is doubted: a scale
- * follows that as far as the discs are alike. */
+/* All edges may lie a little too far out or in together, by what is left in doubt of their level: a
+ * scale follows that as far as the discs are alike. */
 static void widen_by_level(const confirmation *c, fg_effect_found *effect) {
-  double along = 0, square = 0, doubt = 0;
+  double along = 0, square = 0;
   for (size_t i = 0; i < c->points->row_count; i++) {
     const fg_points_row *row = &c->points->rows[i];
     if (!c->points->parts[row->part].radius_known) continue;
     along += weight_at(c->points, i) * c->columns[i];
     square += weight_at(c->points, i) * c->columns[i] * c->columns[i];
-    doubt = fmax(doubt, 1000 * c->points->views[row->view].disc->level_doubt_mm);
   }
+  double doubt = fg_common_level_left(c->points, c->columns, c->residual);
   if (square > 0)
     effect->u_coefficient_um[0] = hypot(effect->u_coefficient_um[0], doubt * along / square);
 }

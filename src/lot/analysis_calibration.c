@@ -1,6 +1,7 @@
 /* How well the means of a lot are known: what statistics say averages out, what the calibration
  * leaves is the same error in every foil. */
 #include <math.h>
+#include <string.h>
 
 #include "lot/analysis.h"
 #include "quantity/quantity_rows.h"
@@ -28,6 +29,7 @@ static double by_thickness(const reading *r, const fg_foil *foil, const fg_foil_
   fg_quantity_narrow_calibrated(FG_QUANTITY_OF_FOIL, &thick, &foil->calibrated);
   double u = isfinite(thick.u_thickness_mm) ? thick.u_thickness_mm : 0;
   thick.thickness_mm += u;
+  if (thick.u_thickness_scan_mm > 0) thick.thickness_scan_mm += thick.u_thickness_scan_mm;
   if (!part) {
     fg_quantity_take_moves(FG_QUANTITY_OF_FOIL, foil, &thick, moves);
     return moves[r->at];
@@ -41,6 +43,15 @@ static double by_thickness(const reading *r, const fg_foil *foil, const fg_foil_
   return moves[r->at];
 }
 
+/* An unknown tone curve moves edges alike in every scan: what lies between two of them, or rests on
+ * one, errs by it alike. Of what is not by the thickness alone its part is not told: all counts. */
+static bool errs_alike(const fg_design *design, const fg_quantity *row) {
+  bool between = row->uses & FG_QUANTITY_BETWEEN_EDGES && !fg_form_has_bumps(design->form) &&
+                 strncmp(row->name, "thickness", 9) != 0;
+  bool on_edge = row->uses & FG_QUANTITY_OF_DATUM && design->datum != FG_DATUM_MID;
+  return design->tone != FG_TONE_LINEAR && (between || on_edge);
+}
+
 static void add(sums *sum, const reading *r, const fg_foil *foil, const fg_foil_part *part) {
   const fg_quantity *row = r->quantity->row;
   const void *object = part ? part->object : foil;
@@ -48,7 +59,8 @@ static void add(sums *sum, const reading *r, const fg_foil *foil, const fg_foil_
   double u = fg_quantity_uncertainty(row, object);
   double own = fg_quantity_calibration(r->quantity->owner, row, calibrated);
   if (!isfinite(fg_quantity_value(row, object)) || !isfinite(u)) return;
-  double alike = by_thickness(r, foil, part);
+  bool whole = errs_alike(&r->analysis->lot->settings.design, row);
+  double alike = whole ? sqrt(fmax(0, u * u - own * own)) : by_thickness(r, foil, part);
   double statistical = fmax(0, u * u - own * own - alike * alike);
   sum->u += sqrt(statistical);
   sum->squares += statistical;

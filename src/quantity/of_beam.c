@@ -4,6 +4,7 @@
 #include "quantity/rows.h"
 
 enum {
+  EDGES = FG_QUANTITY_BETWEEN_EDGES,
   PAGE = FG_QUANTITY_ON_PAGE,
   TERMINAL = FG_QUANTITY_ON_TERMINAL,
   PICTURE = FG_QUANTITY_ON_PICTURE,
@@ -48,7 +49,7 @@ static const fg_quantity rows[] = {
      .words = "width halfway along it",
      FG_AT_U(fg_beam, width_mm, u_width_mm),
      .decimals = 4,
-     .uses = PAGE | TERMINAL | PICTURE | LOT | OWN,
+     .uses = PAGE | TERMINAL | PICTURE | LOT | OWN | EDGES,
      .rank = 2,
      .characteristic = "Length",
      .nominal = width_of},
@@ -66,7 +67,7 @@ static const fg_quantity rows[] = {
      .words = "width against the design's",
      FG_AT_U(fg_beam, width_error_pct, u_width_error_pct),
      .decimals = 3,
-     .uses = PAGE | OWN,
+     .uses = PAGE | OWN | EDGES,
      .rank = 4},
     {.name = "compliance_error_pct",
      .unit = "%",
@@ -74,7 +75,7 @@ static const fg_quantity rows[] = {
      .words = "compliance against the design's",
      FG_AT_U(fg_beam, follows.compliance_error_pct, follows.u_compliance_error_pct),
      .decimals = 3,
-     .uses = PAGE | TERMINAL | PICTURE | LOT | OWN,
+     .uses = PAGE | TERMINAL | PICTURE | LOT | OWN | EDGES,
      .rank = 5},
     {.name = "compliance_mm_per_n",
      .unit = "mm/N",
@@ -82,7 +83,7 @@ static const fg_quantity rows[] = {
      .words = "compliance, eq 5.10, where the design states the modulus",
      FG_AT_U(fg_beam, follows.compliance_mm_per_n, follows.u_compliance_mm_per_n),
      .decimals = 4,
-     .uses = OWN,
+     .uses = OWN | EDGES,
      .nominal = compliance_of},
     {.name = "sagitta_mm",
      .unit = "mm",

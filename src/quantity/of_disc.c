@@ -4,6 +4,7 @@
 #include "quantity/rows.h"
 
 enum {
+  EDGES = FG_QUANTITY_BETWEEN_EDGES,
   PAGE = FG_QUANTITY_ON_PAGE,
   TERMINAL = FG_QUANTITY_ON_TERMINAL,
   PICTURE = FG_QUANTITY_ON_PICTURE,
@@ -18,7 +19,7 @@ static const fg_quantity rows[] = {
      FG_AT_U(fg_disc, radius_mm, u_radius_mm),
      FG_IN_COVARIANCE(fg_disc, covariance, 2),
      .decimals = 4,
-     .uses = PAGE,
+     .uses = PAGE | EDGES,
      .rank = 2},
     {.name = "diameter_mm",
      .unit = "mm",
@@ -26,7 +27,7 @@ static const fg_quantity rows[] = {
      .words = "diameter",
      FG_AT_U(fg_disc, diameter_mm, u_diameter_mm),
      .decimals = 4,
-     .uses = PAGE | TERMINAL | PICTURE,
+     .uses = PAGE | TERMINAL | PICTURE | EDGES,
      .rank = 1},
     {.name = "centre_mm",
      .unit = "mm",

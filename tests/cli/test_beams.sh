@@ -68,10 +68,17 @@ expect 1 "out_of_tolerance" "$program" measure soft.png --design design.json
 sheet narrow '"layout": "slits", "kerf_mm": 0.1'
 expect 2 'narrow_cut' "$program" measure narrow.png --design design.json
 
-# Calibration widens; a length in doubt by 1e-3 doubts a compliance's error by 2e-3.
-sed 's/"form"/"calibration": {"scale": {"u_rel": 0.001}}, "form"/' design.json >doubted.json
+# Calibration widens; a length in doubt by 1e-3 doubts a compliance's error by 2e-3. A tone curve that is not known moves
+# the two long edges apart, and both ends of a length alike.
+sed 's/"form"/"calibration": {"scale": {"u_rel": 0.001}}, "tone": "linear", "form"/' design.json >doubted.json
 "$program" measure comb.png --design doubted.json -o doubted.json.out
 near "u of a length" "$(value doubted.json.out 'r["foils"][0]["beams"][0]["u_length_mm"]')" 0.004 0.0002
+python3 - <<'P' || fail "an unknown tone curve is in a width, not in a length"
+import json
+known, unknown = (json.load(open(name))["foils"][0]["beams"][0] for name in ("doubted.json.out", "comb.json"))
+assert unknown["u_width_mm"] > 0.005 > 4 * known["u_width_mm"], (unknown["u_width_mm"], known["u_width_mm"])
+assert unknown["u_length_mm"] < 0.0005
+P
 near "u of a compliance" "$(value doubted.json.out 'r["foils"][0]["beams"][0]["u_compliance_error_pct"]')" 0.2 0.02
 
 expect 0 "" "$program" measure slits.png --design design.json --html page.html --overlay picture.png

@@ -17,7 +17,7 @@ scale='"calibration": {"certificate": "K 17 <b>", "date": "2026-03-14", "scale":
 warm='"calibration": {"scale": {"u_rel": 5e-4}, "temperature": {"value_C": 30, "u_K": 1}, "expansion": {"value_per_K": 2e-5, "u_per_K": 2e-6}}'
 limits='"tolerances": {"overall.radius_mm": {"min": 20.71, "max": 20.75}}'
 design() {
-  echo "{\"schema\": \"foilgauge/design/1\", \"name\": \"d\"$1}" >"$2"
+  echo "{\"schema\": \"foilgauge/design/1\", \"name\": \"d\", \"tone\": \"linear\"$1}" >"$2"
 }
 design '' plain.json
 design ", $scale" scale.json

@@ -7,7 +7,7 @@ cat >spec.json <<'J'
 {"schema": "foilgauge/render/1", "seed": 19, "foils": [{"design": {"bump_count": 3}}],
  "scanner": {"dpi": 2400, "blur_px": 1.2, "noise": 1}}
 J
-echo '{"schema": "foilgauge/design/1", "name": "three", "bump_count": 3}' >design.json
+echo '{"schema": "foilgauge/design/1", "name": "three", "bump_count": 3, "tone": "linear"}' >design.json
 echo '{"schema": "foilgauge/recipe/1", "design": "design.json", "allow_lossy": true}' >recipe.json
 "$renderer" render spec.json -o scan.png || fail "render"
 mkdir lot
@@ -46,6 +46,7 @@ near "radius, all the same" "$(value lossy.json "$foil['bumps'][1]['radius_mm']"
   "$(value pixels.json "$foil['bumps'][1]['radius_mm']")" 1e-12
 python3 - <<'P' || fail "the uncertainties are not wider"
 import json
+# The tone is stated: an unknown tone curve would hide what JPEG adds to the thickness.
 lossy, pixels = (json.load(open(f"{name}.json"))["foils"][0] for name in ("lossy", "pixels"))
 wide = [lossy["u_thickness_mm"] / pixels["u_thickness_mm"]]
 wide += [a[n] / b[n] for a, b in zip(lossy["bumps"], pixels["bumps"]) for n in ("u_radius_mm", "u_bump_angle_deg")]

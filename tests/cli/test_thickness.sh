@@ -15,8 +15,8 @@ J
 sed 's/0.105/0.1/' thick.json >plain.json
 "$program" render plain.json -o plain.png || fail "render"
 for scan in thick plain; do
-  "$program" measure "$scan.png" -o "$scan.out" --html "$scan.html" || fail "$scan: $?"
-  script -qec "'$program' measure $scan.png" /dev/null >"$scan.txt" 2>/dev/null
+  "$program" measure "$scan.png" --tone linear -o "$scan.out" --html "$scan.html" || fail "$scan: $?"
+  script -qec "'$program' measure $scan.png --tone linear" /dev/null >"$scan.txt" 2>/dev/null
 done
 python3 - <<'P' || fail "clearances are not over the strip as it is"
 import json
@@ -37,7 +37,7 @@ for text in thick.txt thick.html; do
 done
 grep -q 'the design says' plain.txt plain.html && fail "said of a strip that is as designed"
 [ "$(wc -L <thick.txt)" -le 110 ] || fail "wider than the terminal's table: $(wc -L <thick.txt)"
-"$program" measure thick.png --design limit.json -o never.out
+"$program" measure thick.png --tone linear --design limit.json -o never.out
 [ $? = 1 ] || fail "a thickness beyond its tolerance"
-"$program" measure plain.png --design limit.json -o ok.out || fail "a thickness within its tolerance: $?"
+"$program" measure plain.png --tone linear --design limit.json -o ok.out || fail "a thickness within its tolerance: $?"
 exit $failed

@@ -178,6 +178,7 @@ static void write_judgement(fg_json *json, const fg_judgement *judgement, const 
   fg_json_bool(json, "exceeded", judgement->exceeded);
   if (judgement->missing) fg_json_bool(json, "missing", true);
   fg_json_string(json, "verdict", fg_verdict_word(judgement->verdict));
+  if (judgement->cure) fg_json_string(json, "cure", judgement->cure);
   fg_json_object_end(json);
   fg_json_line_end(json);
 }

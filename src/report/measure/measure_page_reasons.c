@@ -1,6 +1,7 @@
 /* Why a verdict is what it is: which values, at which bump, against which limit. */
 #include <math.h>
 
+#include "report/measure/cures.h"
 #include "report/measure/foil_parts.h"
 #include "report/measure/measure_page_tables.h"
 
@@ -37,16 +38,28 @@ static size_t put_list(FILE *out, const fg_decision *decision, fg_verdict verdic
   return told;
 }
 
+/* " What decides it: ..." */
+static void put_cures(FILE *out, const fg_cures *cures) {
+  for (size_t i = 0; i < cures->count; i++) {
+    fputs(i ? " " : " <b>What decides it:</b> ", out);
+    fg_html_text(out, cures->list[i]);
+  }
+}
+
 /* "Out of tolerance (3 values): bump height: bump 1 (0.53 mm, min 0.54), 8 (…)." */
 void fg_html_reasons(FILE *out, const fg_decision *decision, fg_verdict verdict) {
   size_t values = 0;
+  fg_cures cures = {.count = 0};
   for (size_t i = 0; i < decision->count; i++)
     values += is_told(&decision->judgements[i], verdict);
   if (!values) return;
   fprintf(out, "<p class=\"reasons\"><b>%s (%zu %s):</b> ", fg_html_verdict_title(verdict), values,
           values == 1 ? "value" : "values");
   put_list(out, decision, verdict);
-  fputs(".</p>\n", out);
+  fputs(".", out);
+  if (verdict == FG_VERDICT_UNDECIDED) fg_cures_add(&cures, decision);
+  put_cures(out, &cures);
+  fputs("</p>\n", out);
 }
 
 void fg_html_defect(FILE *out, const fg_design *design, const fg_foil *foil) {
@@ -86,6 +99,7 @@ fg_status fg_html_disc_reasons(fg_context *ctx, FILE *out, const fg_design *desi
   static const fg_verdict told[] = {FG_VERDICT_FAIL, FG_VERDICT_NOT_MEASURED, FG_VERDICT_UNDECIDED};
   for (size_t k = 0; k < sizeof told / sizeof *told; k++) {
     bool any = false;
+    fg_cures cures = {.count = 0};
     for (size_t i = 0; i < measurement->disc_count; i++) {
       fg_decision decision;
       FG_TRY(fg_disc_decide(ctx, design, &measurement->discs[i], &decision));
@@ -97,9 +111,12 @@ fg_status fg_html_disc_reasons(fg_context *ctx, FILE *out, const fg_design *desi
         put_number(out, one);
         any = true;
       }
+      if (told[k] == FG_VERDICT_UNDECIDED) fg_cures_add(&cures, &decision);
       fg_decision_free(&decision);
     }
-    if (any) fputs(".</p>\n", out);
+    if (any) fputs(".", out);
+    put_cures(out, &cures);
+    if (any) fputs("</p>\n", out);
   }
   return FG_OK;
 }

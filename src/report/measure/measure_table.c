@@ -301,6 +301,7 @@ static fg_status put_outcome(fg_context *ctx, FILE *out, const fg_report *report
     fprintf(out, "CANNOT TELL: a limit lies within ± of %zu value(s)", outcome->undecided);
     FG_TRY(fg_report_write_quantities(ctx, report, FG_VERDICT_UNDECIDED, out));
     fputs(outcome->verdict == FG_VERDICT_UNDECIDED ? "; none is beyond a limit.\n" : ".\n", out);
+    FG_TRY(fg_report_write_cures(ctx, report, out));
   }
   if (outcome->verdict == FG_VERDICT_PASS)
     fputs("Within every tolerance, uncertainty included.\n", out);

@@ -1,10 +1,13 @@
 #include "report/measure/outcome_words.h"
 
+#include "report/measure/cures.h"
+
 /* By tolerance of the design. */
 typedef struct tally {
   const fg_design *design;
   fg_verdict verdict;
   size_t count[FG_TOLERANCES_MAX];
+  fg_cures cures;
   const fg_quantity *row[FG_TOLERANCES_MAX];
 } tally;
 
@@ -16,6 +19,7 @@ static void count_decision(tally *sum, fg_decision *decision) {
     sum->count[at]++;
     sum->row[at] = one->row;
   }
+  if (sum->verdict == FG_VERDICT_UNDECIDED) fg_cures_add(&sum->cures, decision);
   fg_decision_free(decision);
 }
 
@@ -29,6 +33,15 @@ static fg_status count_scan(fg_context *ctx, const fg_measurement *measurement, 
     FG_TRY(fg_disc_decide(ctx, sum->design, &measurement->discs[i], &decision));
     count_decision(sum, &decision);
   }
+  return FG_OK;
+}
+
+fg_status fg_report_write_cures(fg_context *ctx, const fg_report *report, FILE *out) {
+  tally sum = {.design = report->design, .verdict = FG_VERDICT_UNDECIDED};
+  for (size_t i = 0; i < report->scan_count; i++)
+    if (report->scans[i].measurement) FG_TRY(count_scan(ctx, report->scans[i].measurement, &sum));
+  for (size_t i = 0; i < sum.cures.count; i++)
+    fprintf(out, "What decides it: %s\n", sum.cures.list[i]);
   return FG_OK;
 }
 

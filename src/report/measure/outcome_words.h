@@ -9,4 +9,7 @@
 fg_status fg_report_write_quantities(fg_context *ctx, const fg_report *report, fg_verdict verdict,
                                      FILE *out);
 
+/* "What decides it: ...", a line per cure of what cannot be told; nothing without one. */
+fg_status fg_report_write_cures(fg_context *ctx, const fg_report *report, FILE *out);
+
 #endif

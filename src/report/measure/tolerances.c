@@ -9,6 +9,7 @@
 #include "foilgauge/report.h"
 #include "quantity/parts.h"
 #include "quantity/quantity_rows.h"
+#include "report/measure/cures.h"
 
 const char *fg_verdict_word(fg_verdict verdict) {
   switch (verdict) {
@@ -111,7 +112,8 @@ static fg_judgement judge(const fg_design *design, const fg_tolerance *tolerance
                         .margin = margin,
                         .severity = severity_of(design, tolerance, row, &margin, u),
                         .exceeded = verdict == FG_VERDICT_FAIL,
-                        .verdict = verdict};
+                        .verdict = verdict,
+                        .cure = verdict == FG_VERDICT_UNDECIDED ? fg_cure_of(design, row) : NULL};
 }
 
 /* Of a bump that the design states and the foil lacks. Behind the last bump that was found nothing

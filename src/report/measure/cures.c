@@ -1,0 +1,39 @@
+/* What would decide a verdict of "cannot tell", the cheapest first. */
+#include "report/measure/cures.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define NOT_KNOWN " U holds a tone curve of the scanner that is not known."
+
+static const char micrometer[] =
+    "State the strip's thickness by a micrometer (thickness_measured)." NOT_KNOWN;
+static const char gauge_diameter[] =
+    "Lay a gauge of known diameter beside it (gauges), or state tone linear where the scanner's "
+    "counts are proportional to the light." NOT_KNOWN;
+static const char gauge_width[] =
+    "Lay a gauge of known width beside it (gauges), or state tone linear where the scanner's "
+    "counts are proportional to the light." NOT_KNOWN;
+static const char midline[] =
+    "Let the datum be the midline (datum mid), which a tone curve does not move, or lay a gauge of "
+    "known width beside it (gauges)." NOT_KNOWN;
+
+const char *fg_cure_of(const fg_design *design, const fg_quantity *row) {
+  bool of_strip = fg_form_has_bumps(design->form) || !strncmp(row->name, "thickness", 9);
+  if (design->tone == FG_TONE_LINEAR) return NULL;
+  if (row->uses & FG_QUANTITY_OF_DATUM && design->datum != FG_DATUM_MID) return midline;
+  if (!(row->uses & FG_QUANTITY_BETWEEN_EDGES)) return NULL;
+  if (design->form == FG_FORM_DISCS) return gauge_diameter;
+  if (!of_strip) return gauge_width;
+  return design->thickness_measured_mm > 0 ? NULL : micrometer;
+}
+
+void fg_cures_add(fg_cures *cures, const fg_decision *decision) {
+  for (size_t i = 0; i < decision->count; i++) {
+    const char *cure = decision->judgements[i].cure;
+    size_t k = 0;
+    while (cure && k < cures->count && cures->list[k] != cure)
+      k++;
+    if (cure && k == cures->count && k < FG_CURES_MAX) cures->list[cures->count++] = cure;
+  }
+}
