@@ -18,6 +18,10 @@
  * Together 0.080: a quarter of a pixel for each edge at a blur of 1.25 px. */
 static const double unknown_tone_half_ranges[] = {0.107, 0.072, 0.05};
 
+/* A sensor that is called linear is so within some 1 % of its scale. T(1/2) of a curve that bends
+ * by that is off by half of it at the most: uniform. */
+#define LINEAR_TONE_SD 0.003
+
 /* What a finding adds, as a standard deviation of T(1/2). A gauge in the same scan goes through the
  * same driver: it knows all of it but what is local. */
 typedef struct level_row {
@@ -74,7 +78,9 @@ static double unknown_tone_variance(void) {
 double fg_level_doubt(const fg_design *design, const fg_picture_state *picture, unsigned flags) {
   bool known = picture->level_known;
   double variance = isfinite(picture->u_level) ? picture->u_level * picture->u_level : 0;
-  if (!known && design->tone != FG_TONE_LINEAR) variance += unknown_tone_variance();
+  if (!known)
+    variance +=
+        design->tone == FG_TONE_LINEAR ? LINEAR_TONE_SD * LINEAR_TONE_SD : unknown_tone_variance();
   variance += add_rows(findings, sizeof findings / sizeof *findings, picture->findings, known);
   /* Halo, wall and clipping mislead the same fit: one of them is as bad as all. */
   double hidden = 0;

@@ -72,7 +72,8 @@ static void assert_disc(const fg_disc *disc, double x, double y, double radius,
 }
 
 /* At 4800 dpi, contrast 175, blur 1.2, noise 2: the bound for R = 0.8 mm is 0.0043 µm. An unknown
- * tone curve moves the edge by 8 % of the contrast, over its slope there: 1.3 µm. */
+ * tone curve moves the edge by 8 % of the contrast, over its slope there: 1.3 µm; one that is
+ * stated as linear by 0.3 %. */
 static void light_discs_have_their_radii(void **state) {
   (void)state;
   for (int linear = 0; linear < 2; linear++) {
@@ -94,7 +95,7 @@ static void light_discs_have_their_radii(void **state) {
       assert_int_equal(m.discs[i].flags, 0);
       assert_true(m.discs[i].coverage_deg > 355);
       assert_true(m.discs[i].u_centre_mm[0] < 2e-5);
-      assert_close(m.discs[i].u_radius_mm, linear ? 1e-5 : 1.3e-3, linear ? 1e-5 : 0.2e-3);
+      assert_close(m.discs[i].u_radius_mm, linear ? 5e-5 : 1.3e-3, linear ? 1e-5 : 0.2e-3);
       assert_close(m.discs[i].blur_um, sqrt(1.2 * 1.2 + 1.0 / 12) * 25400 / 4800, 0.3);
       assert_true(m.discs[i].roundness_um < 0.3);
     }

@@ -151,7 +151,7 @@ static void rough_edges_are_in_the_uncertainty(void **state) {
  * scale does not. */
 static void a_tone_curve_shows_in_the_level_of_the_edges(void **state) {
   (void)state;
-  const scanner none = {0, 0, 0};
+  const scanner none = {0, 0, 0, FG_TONE_UNKNOWN};
   fg_check_fit plain = check(&none, 1, "\"noise\":1,\"blur_px\":1.5");
   assert_true(fabs(plain.level_um) < 4 * plain.u_level_um && plain.u_level_um < 0.1);
   fg_check_fit brighter =
