@@ -148,7 +148,8 @@ fg_status fg_driver_choose(fg_context *ctx, fg_driven_profile *profiles, size_t 
   choice->missed = true;
   for (int stage = 0; stage < STAGES && choice->missed; stage++) {
     for (; i < FAMILIES && families[i].stage == stage; i++)
-      FG_TRY_EXIT(try_family(ctx, &families[i], candidates, start, count, tone, &candidates[i]));
+      if (!choice->linear || !(families[i].free & (GAMMA | S_CURVE)))
+        FG_TRY_EXIT(try_family(ctx, &families[i], candidates, start, count, tone, &candidates[i]));
     best = weigh(candidates, stage == STAGES - 1 ? VALLEY_SHARPNESS : 1, &choice->u_edge_px);
     choice->missed = fg_driver_is_missed(&candidates[best].misfit, ends[1] - ends[0]);
   }

@@ -21,6 +21,7 @@ void fg_driver_find_misfit(const fg_driven_profile *profiles, size_t count, cons
 bool fg_driver_is_missed(const fg_driver_misfit *misfit, double contrast);
 
 typedef struct fg_driver_choice {
+  bool linear; /* set before: counts are proportional to the light, no tone curve is asked */
   fg_driver_fit fit;
   fg_driver_misfit misfit; /* that it leaves */
   double u_edge_px;        /* of its own, and as far as others that do as well differ */

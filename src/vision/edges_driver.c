@@ -207,7 +207,7 @@ void fg_edges_describe_driver(const fg_edge_work *work, fg_picture_state *state)
 fg_status fg_edges_find_driver(fg_context *ctx, fg_edge_work *work, bool *found) {
   sample s = {.count = 0};
   fg_driver_tone *tone = NULL;
-  fg_driver_choice choice;
+  fg_driver_choice choice = {.linear = work->linear};
   fg_status status = FG_OK;
   *found = false;
   FG_TRY_EXIT(fg_memory_allocate(ctx, 1, sizeof *tone, (void **)&tone));
