@@ -367,4 +367,6 @@ def for_other(spec):
     """As other_scanner.py has it."""
     scanner = dict(spec["scanner"])
     scanner.update(common=0.5, form="exponential", lag_px=[1e-3, 1e-3], columns=0.0, grain=max(scanner["grain"], 1e-4))
+    if np.min(scanner["blur_px"]) < 1.3:
+        scanner["oversampling"] = 2
     return {**spec, "scanner": scanner}

@@ -260,7 +260,9 @@ def blurred(covered, blur_px):
 
 def optics(covered, halo, scanner):
     """Blurred rows with their halo, BAND at a time: (first row, light)."""
-    if isinstance(scanner["blur_px"], list):
+    if "oversampling" in scanner:  # was blurred before pixels were made of it
+        bands = ((top, covered[top : top + BAND].copy()) for top in range(0, len(covered), BAND))
+    elif isinstance(scanner["blur_px"], list):
         whole = other_driver.blur_ellipse(covered, scanner["blur_px"], scanner.get("blur_angle_deg", 0))
         bands = ((top, whole[top : top + BAND]) for top in range(0, len(whole), BAND))
     else:
@@ -286,7 +288,7 @@ def finish(numbers, scanner):
 def sensed(covered, scanner, rng):
     """The sensor's numbers, BAND rows at a time: (rows, numbers of 0 to 255)."""
     height, width = covered.shape
-    if "shadow" in scanner:
+    if "shadow" in scanner and "oversampling" not in scanner:
         covered = other_driver.cast_shadow(covered, scanner["shadow"])
     shading = scanner.get("shading", [0, 0])
     gain = 1 + shading[0] * np.linspace(-1, 1, width) + scanner["columns"] * rng.standard_normal(width)
@@ -302,6 +304,24 @@ def sensed(covered, scanner, rng):
         yield rows, tone(light, scanner) * factor + noise
 
 
+def finely_blurred(spec, outlines):
+    """Optics before pixels, as light has it: on a grid that is finer by `oversampling`, whose means are the pixels. A blur
+    under 1.3 px asks for it: pixels that are covered exactly and blurred afterwards have aliases."""
+    scanner, fine = spec["scanner"], spec["scanner"]["oversampling"]
+    grid = {**spec, "width_px": fine * spec["width_px"], "height_px": fine * spec["height_px"],
+            "scanner": {**scanner, "dpi": fine * scanner["dpi"]}}  # fmt: skip
+    light = cover(grid, outlines)
+    if "shadow" in scanner:
+        lengths = {name: fine * scanner["shadow"].get(name, 0) for name in ("length_px", "gap_px")}
+        light = other_driver.cast_shadow(light, {**scanner["shadow"], **lengths})
+    if isinstance(scanner["blur_px"], list):
+        blur = [fine * v for v in scanner["blur_px"]]
+        light = other_driver.blur_ellipse(light, blur, scanner.get("blur_angle_deg", 0))
+    else:
+        light = gaussian(light, fine * scanner["blur_px"])
+    return light.reshape(spec["height_px"], fine, spec["width_px"], fine).mean(axis=(1, 3), dtype=np.float32)
+
+
 def channel_of(spec, outlines, rng, magnification=0.0):
     """One channel of the file: its magnification is about the picture's middle, along x."""
     scanner, size = spec["scanner"], (spec["height_px"], spec["width_px"])
@@ -311,7 +331,7 @@ def channel_of(spec, outlines, rng, magnification=0.0):
         spec["scanner"] = scanner = {**scanner, "dpi": spec["width_px"] / size[1] * scanner["dpi"]}
     middle = np.array([spec["width_px"] / 2 * 25.4 / scanner["dpi"], 0])
     shown = [o + (o - middle) * [magnification, 0] for o in outlines]
-    covered = cover(spec, shown)
+    covered = finely_blurred(spec, shown) if "oversampling" in scanner else cover(spec, shown)
     if not other_driver.is_wanted(scanner):
         result = np.empty(size, np.uint16 if scanner.get("bits", 8) == 16 else np.uint8)
         for rows, numbers in sensed(covered, scanner, rng):
