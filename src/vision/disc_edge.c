@@ -158,6 +158,8 @@ void fg_disc_work_free(fg_disc_work *work) {
   fg_ring_free(&work->ring);
   free(work->bins);
   free(work->sectors);
+  free(work->driver);
+  free(work->driver_tone);
 }
 
 fg_status fg_disc_edge_tone(fg_context *ctx, const fg_tiles *tiles, const fg_pixel_shape *shape,
@@ -178,6 +180,7 @@ exit:
 double fg_disc_level_doubt(const fg_disc_work *work, const fg_tone *tone,
                            const fg_disc_edge *edge) {
   double per_contrast = edge->blur_px * sqrt(2 * M_PI), white = 0, change = 0;
+  if (work->driver) return work->u_driver_px;
   const double lights[2] = {edge->inside, edge->outside};
   double counts[2];
   for (int i = 0; i < 2; i++)
@@ -194,6 +197,8 @@ static fg_status run(fg_context *ctx, fg_disc_work *work, const fg_disc_candidat
                      const fg_tone *tone, fg_disc_edge *edge) {
   FG_TRY(find_ring(ctx, work, candidate, &edge->sector_rms_px));
   FG_TRY(find_shape(ctx, work));
+  FG_TRY(fg_disc_find_driver(ctx, work));
+  edge->gamma = work->gamma;
   edge->circle = work->ring.circle;
   edge->count = work->ring.station_count;
   FG_TRY(fg_memory_allocate(ctx, edge->count, sizeof *edge->stations, (void **)&edge->stations));
@@ -215,6 +220,7 @@ fg_status fg_disc_edge_measure(fg_context *ctx, const fg_tiles *tiles, const fg_
     edge->picture.gamma = tone->found;
     edge->picture.u_gamma = tone->u_found;
   }
+  if (status == FG_OK) fg_disc_describe_driver(&work, edge, &edge->picture);
   fg_disc_work_free(&work);
   if (status != FG_OK) fg_disc_edge_free(edge);
   return status;

@@ -17,6 +17,7 @@
 #include "foilgauge/picture.h"
 
 #include "vision/disc_find.h"
+#include "vision/driver_table.h"
 #include "vision/ring.h"
 #include "vision/step_model.h"
 
@@ -79,8 +80,12 @@ typedef struct fg_disc_work {
   size_t bin_count;
   fg_step_fit *sectors; /* ring.sector_count */
   double gamma;
-  bool white[2]; /* inside, outside is at the end of the scale */
-  bool open;     /* it does not close: stretches */
+  fg_driver *driver; /* NULL: a power of the light, which is gamma, is all that it does; owned */
+  fg_driver_tone *driver_tone;
+  double u_driver_px; /* of an edge, outwards: what is left open of the driver */
+  bool unexplained;   /* no driver's model explains the profiles */
+  bool white[2];      /* inside, outside is at the end of the scale */
+  bool open;          /* it does not close: stretches */
 } fg_disc_work;
 
 void fg_disc_work_free(fg_disc_work *work); /* what was collected and fitted */
@@ -102,6 +107,22 @@ fg_status fg_disc_find_tone(fg_context *ctx, fg_disc_work *work, fg_tone *tone);
 
 /* Whether a slope (FG_STEP_SLOPE_IN or _OUT) is more than the sectors' own scatter. */
 bool fg_disc_has_slope(const fg_disc_work *work, int value);
+
+/* What the driver has made of the edge, where one step without it misses the sectors' profiles:
+ * the sectors are fitted again with it. disc_driver.c */
+fg_status fg_disc_find_driver(fg_context *ctx, fg_disc_work *work);
+void fg_disc_describe_driver(const fg_disc_work *work, const fg_disc_edge *edge,
+                             fg_picture_state *state);
+
+/* A step's values in light as those of a driven profile. */
+void fg_disc_driven_values(const fg_disc_work *work, const double *x, double *values);
+
+/* Profiles of all stations, and one of them at a distance outwards from the edge; false beyond
+ * what tells of the edge. disc_driven.c */
+fg_status fg_disc_fill_tables(fg_context *ctx, const fg_disc_work *work, const fg_disc_edge *edge,
+                              fg_driven_tables *tables);
+bool fg_disc_driven_at(const fg_disc_work *work, const fg_driven_tables *tables, size_t station,
+                       const fg_disc_station *s, float d, float *model, float *by_edge);
 
 /* The edge of every station with its shape held. disc_solve.c */
 fg_status fg_disc_solve(fg_context *ctx, const fg_disc_work *work, fg_disc_edge *edge);

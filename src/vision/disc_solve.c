@@ -1,6 +1,7 @@
 /* The edge of every station of a round feature from its pixels, the shape held. */
 #include "vision/disc_edge.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -22,6 +23,19 @@ static void clear_sums(fg_disc_station *s) {
   s->used = s->seen = 0;
 }
 
+/* Adds one pixel whose model is known. */
+static inline void add_residual(fg_disc_station *s, float value, float model, float by_edge,
+                                bool core, float limit) {
+  s->seen++;
+  if ((model >= 254.5f && value >= 254.5f) || (model <= 0.5f && value <= 0.5f)) return;
+  float residual = value - model;
+  if (fabsf(residual) > limit) return;
+  s->m[!core] += by_edge * by_edge;
+  s->g[!core] += by_edge * residual;
+  s->misfit += residual * residual;
+  s->used++;
+}
+
 static void add_pixel(const fg_edge_tables *tables, fg_disc_station *s, const fg_ring_pixel *p,
                       float limit) {
   float d = p->across_px - s->edge_px, blur = s->shape[FG_STEP_BLUR], t = d / blur;
@@ -34,16 +48,7 @@ static void add_pixel(const fg_edge_tables *tables, fg_disc_station *s, const fg
   float light =
       shape[FG_STEP_INSIDE] + g * d + (step + (h - g) * d) * cumulative + (h - g) * blur * density;
   fg_edge_tone(tables, light, &model, &rate);
-  s->seen++;
-  if ((model >= 254.5f && p->value >= 254.5f) || (model <= 0.5f && p->value <= 0.5f)) return;
-  float residual = p->value - model;
-  if (fabsf(residual) > limit) return;
-  float by_edge = -rate * step * density / blur;
-  int side = fabsf(t) > CORE_BLURS;
-  s->m[side] += by_edge * by_edge;
-  s->g[side] += by_edge * residual;
-  s->misfit += residual * residual;
-  s->used++;
+  add_residual(s, p->value, model, -rate * step * density / blur, fabsf(t) <= CORE_BLURS, limit);
 }
 
 /* u and split are for pixels of unit sd. */
@@ -81,16 +86,38 @@ static double estimate_noise(const fg_disc_edge *edge, double *scratch) {
   return sqrt(sum / count) + 1e-4;
 }
 
-static void solve_round(const fg_disc_work *work, const fg_edge_tables *tables, float limit,
-                        fg_disc_edge *edge) {
+static void add_driven(const fg_disc_work *work, const fg_driven_tables *tables, fg_disc_edge *edge,
+                       float limit) {
+  for (size_t i = 0; i < work->ring.count; i++) {
+    const fg_ring_pixel *p = &work->ring.pixels[i];
+    fg_disc_station *s = &edge->stations[p->station];
+    float d = p->across_px - s->edge_px, model, by_edge;
+    if (!fg_disc_driven_at(work, tables, (size_t)p->station, s, d, &model, &by_edge)) continue;
+    bool core = fabsf(d) <= CORE_BLURS * s->shape[FG_STEP_BLUR];
+    add_residual(s, p->value, model, by_edge, core, limit);
+  }
+}
+
+static void solve_round(const fg_disc_work *work, const fg_edge_tables *tables,
+                        const fg_driven_tables *driven, float limit, fg_disc_edge *edge) {
   for (size_t i = 0; i < edge->count; i++)
     clear_sums(&edge->stations[i]);
-  for (size_t i = 0; i < work->ring.count; i++) {
+  if (work->driver) add_driven(work, driven, edge, limit);
+  for (size_t i = 0; i < work->ring.count && !work->driver; i++) {
     const fg_ring_pixel *p = &work->ring.pixels[i];
     add_pixel(tables, &edge->stations[p->station], p, limit);
   }
   for (size_t i = 0; i < edge->count; i++)
     move_edge(&edge->stations[i]);
+}
+
+/* What a curved edge of radius 1 moves by towards its centre, times 2: s² for a blur s. An unsharp
+ * mask weighs the level at the edge and the slope there alike for its two blurs. */
+static double blur_shift(const fg_disc_work *work, double blur) {
+  double amount = work->driver ? work->driver->values[FG_DRIVER_AMOUNT] : 0;
+  if (amount == 0) return blur * blur;
+  double wide = hypot(blur, work->driver->values[FG_DRIVER_RADIUS]);
+  return ((1 + amount) * blur - amount * wide) / ((1 + amount) / blur - amount / wide);
 }
 
 /* Scales the deviations, drops stations whose pixels miss the model far more than usual or that
@@ -106,20 +133,22 @@ static void conclude(const fg_disc_work *work, fg_disc_edge *edge) {
     if (s->used < 2 || s->misfit > limit * s->used || !work->sectors[i / per_sector].good)
       s->weight = 0;
     float blur = s->shape[FG_STEP_BLUR];
-    s->edge_px += blur * blur / (2 * (float)edge->circle.radius);
+    s->edge_px += (float)blur_shift(work, (double)blur) / (2 * (float)edge->circle.radius);
   }
 }
 
 fg_status fg_disc_solve(fg_context *ctx, const fg_disc_work *work, fg_disc_edge *edge) {
   fg_edge_tables *tables = NULL;
   double *scratch = NULL;
+  fg_driven_tables driven = {0};
   fg_status status = FG_OK;
   FG_TRY_EXIT(fg_memory_allocate(ctx, 1, sizeof *tables, (void **)&tables));
   FG_TRY_EXIT(fg_memory_allocate(ctx, edge->count, sizeof *scratch, (void **)&scratch));
   fg_edge_tables_init(tables, work->gamma);
+  if (work->driver) FG_TRY_EXIT(fg_disc_fill_tables(ctx, work, edge, &driven));
   float limit = 1e9f;
   for (int round = 0; round < ROUNDS; round++) {
-    solve_round(work, tables, limit, edge);
+    solve_round(work, tables, &driven, limit, edge);
     edge->noise = estimate_noise(edge, scratch);
     limit =
         (float)(OUTLIER_SIGMAS * edge->noise + OUTLIER_SHARE * fabs(edge->outside - edge->inside));
@@ -127,6 +156,7 @@ fg_status fg_disc_solve(fg_context *ctx, const fg_disc_work *work, fg_disc_edge 
   conclude(work, edge);
 exit:
   free(tables);
+  fg_driven_tables_free(&driven);
   free(scratch);
   return status;
 }

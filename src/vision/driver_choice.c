@@ -12,6 +12,10 @@
 /* Cells that lie within a blur of each other miss together. */
 #define CELLS_TOGETHER 2.0
 
+/* Less than this is not called sharpening, and less of a slope no tone curve. */
+#define AMOUNT_LEAST 0.05
+#define SLOPE_LEAST  0.05
+
 #define FREE(value) (1u << (value))
 #define GAMMA       FREE(FG_DRIVER_LN_GAMMA)
 #define CENTRE      FREE(FG_DRIVER_CENTRE)
@@ -49,6 +53,16 @@ static const struct family {
 enum { FAMILIES = sizeof families / sizeof families[0], STAGES = 3 };
 #define START_RADIUS     1.2
 #define VALLEY_SHARPNESS 0.25
+
+void fg_driver_describe(const fg_driver *driver, fg_picture_state *state) {
+  state->gamma = exp(driver->values[FG_DRIVER_LN_GAMMA]);
+  state->tone_s = fg_driver_extra_slope(driver);
+  state->sharpen_amount = fmax(driver->values[FG_DRIVER_AMOUNT], 0);
+  if (state->tone_s > SLOPE_LEAST) state->findings |= FG_PICTURE_TONE_CURVE;
+  if (!(state->sharpen_amount > AMOUNT_LEAST)) return;
+  state->sharpen_radius_px = driver->values[FG_DRIVER_RADIUS];
+  state->findings |= FG_PICTURE_SHARPENED;
+}
 
 bool fg_driver_is_missed(const fg_driver_misfit *misfit, double contrast) {
   double chance = misfit->expected * (1 + MISSED_SDS * sqrt(2 / fmax(misfit->cells, 1)));

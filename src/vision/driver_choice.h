@@ -2,6 +2,7 @@
 #ifndef FG_VISION_DRIVER_CHOICE_H
 #define FG_VISION_DRIVER_CHOICE_H
 
+#include "foilgauge/picture.h"
 #include "vision/driver_model.h"
 
 enum { FG_DRIVER_PROFILES = 16 }; /* that are asked */
@@ -16,6 +17,9 @@ typedef struct fg_driver_misfit {
 
 void fg_driver_find_misfit(const fg_driven_profile *profiles, size_t count, const fg_driver *driver,
                            fg_driver_tone *tone, fg_driver_misfit *misfit);
+
+/* What a driver does, and the findings that follow. */
+void fg_driver_describe(const fg_driver *driver, fg_picture_state *state);
 
 /* Whether a misfit is neither chance nor small beside the contrast. */
 bool fg_driver_is_missed(const fg_driver_misfit *misfit, double contrast);

@@ -9,9 +9,6 @@
 #include "vision/driver_choice.h"
 #include "vision/edges.h"
 
-/* Less than this is not called sharpening, and less of a slope no tone curve. */
-#define AMOUNT_LEAST 0.05
-#define SLOPE_LEAST  0.05
 /* Profiles one by one do not tell a power beyond this well: all of them are asked together. */
 #define LN_GAMMA_MOST 0.8
 #define NOISE_FACTOR  1.3
@@ -195,13 +192,7 @@ void fg_edges_describe_driver(const fg_edge_work *work, fg_picture_state *state)
   state->u_level = u_edge_px / per_level;
   state->tone_s = state->sharpen_amount = 0;
   if (work->unexplained) state->findings |= FG_PICTURE_UNKNOWN_PROFILE;
-  if (!work->driver) return;
-  state->tone_s = fg_driver_extra_slope(work->driver);
-  state->sharpen_amount = fmax(work->driver->values[FG_DRIVER_AMOUNT], 0);
-  if (state->tone_s > SLOPE_LEAST) state->findings |= FG_PICTURE_TONE_CURVE;
-  if (!(state->sharpen_amount > AMOUNT_LEAST)) return;
-  state->sharpen_radius_px = work->driver->values[FG_DRIVER_RADIUS];
-  state->findings |= FG_PICTURE_SHARPENED;
+  if (work->driver) fg_driver_describe(work->driver, state);
 }
 
 fg_status fg_edges_find_driver(fg_context *ctx, fg_edge_work *work, bool *found) {

@@ -291,6 +291,8 @@ static fg_status find_shape(fg_context *ctx, fg_disc_work *work) {
 static fg_status solve(fg_context *ctx, fg_disc_work *work, const fg_stretch *stretch,
                        const fg_tone *tone, fg_disc_edge *edge) {
   FG_TRY(find_shape(ctx, work));
+  FG_TRY(fg_disc_find_driver(ctx, work));
+  edge->gamma = work->gamma;
   edge->circle = (fg_circle){.radius = -stretch->radius};
   edge->count = work->ring.station_count;
   FG_TRY(fg_memory_allocate(ctx, edge->count, sizeof *edge->stations, (void **)&edge->stations));
@@ -308,6 +310,7 @@ fg_status fg_line_edge_measure(fg_context *ctx, const fg_line_view *view, const 
   fg_status status = open_band(ctx, stretch, view->middle, &work, next_px);
   if (status == FG_OK) status = solve(ctx, &work, stretch, tone, edge);
   if (status == FG_OK) status = fg_picture_of_ring(ctx, &work, edge, &edge->picture);
+  if (status == FG_OK) fg_disc_describe_driver(&work, edge, &edge->picture);
   fg_disc_work_free(&work);
   if (status != FG_OK) fg_disc_edge_free(edge);
   return status;

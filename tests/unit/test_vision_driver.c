@@ -3,6 +3,10 @@
 #include "support/brief.h"
 #include "support/measured_render.h"
 
+#include <unistd.h>
+
+#include "foilgauge/measure.h"
+
 #include "vision/driver_choice.h"
 
 enum { FINE = 4800, COARSE = 2400 };
@@ -127,6 +131,55 @@ static void an_unsharp_mask_is_measured(void **state) {
   measured_free(&m);
 }
 
+/* Draws a scan into a file and measures it. */
+static fg_measurement measure_drawn(const char *json, const fg_design *design) {
+  char path[] = "/tmp/foilgauge_driver_XXXXXX";
+  fg_context ctx = {0};
+  fg_render_spec *spec = NULL;
+  fg_measure_options options = {0};
+  fg_measurement m;
+  int file = mkstemp(path);
+  assert_true(file >= 0);
+  close(file);
+  if (fg_render_parse(&ctx, "plate", json, &spec) != FG_OK) fail_msg("%s", ctx.message);
+  assert_int_equal(fg_render_scan(&ctx, spec, path, NULL), FG_OK);
+  if (fg_measure_scan(&ctx, path, design, &options, &m) != FG_OK) fail_msg("%s", ctx.message);
+  fg_render_free(spec);
+  unlink(path);
+  return m;
+}
+
+/* Round edges under the same. */
+static void discs_stay_round_and_right(void **state) {
+  (void)state;
+  static const driver_case cases[] = {
+      {",\"unsharp_mask\":{\"amount_pct\":100,\"radius_px\":1}", 0, FG_PICTURE_SHARPENED},
+      {"", 5, FG_PICTURE_TONE_CURVE},
+      {",\"gamma\":3", 0, 0},
+  };
+  fg_design design;
+  fg_design_default(&design);
+  design.form = FG_FORM_DISCS;
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    const driver_case *c = &cases[i];
+    char json[8192], curve[4096] = "";
+    if (c->s_slope > 0) write_s_curve(c->s_slope, curve, sizeof curve);
+    snprintf(json, sizeof json,
+             "{\"schema\":\"foilgauge/render/1\",\"seed\":7,\"discs\":[{\"centre_mm\":[3,3],"
+             "\"radius_mm\":2}],\"scanner\":{\"dpi\":2400,\"noise\":1.2,\"blur_px\":1,%s%s%s}}",
+             lights[i % 2], c->scanner, curve);
+    fg_measurement m = measure_drawn(json, &design);
+    assert_int_equal(m.disc_count, 1);
+    const fg_disc *disc = &m.discs[0];
+    double u = disc->blur_um * sqrt(2 * M_PI) * fmax(disc->picture.u_level, 0.002);
+    if (fabs(1000 * disc->radius_mm - 2000) > 2 * u)
+      fail_msg("%s, S %g: radius off by %.3f um, u %.3f", c->scanner, c->s_slope,
+               1000 * disc->radius_mm - 2000, u);
+    assert_true(!c->finding || (disc->picture.findings & c->finding));
+    fg_measurement_free(&m);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(sharpened_edges_stay_in_place),
@@ -134,6 +187,7 @@ int main(void) {
       cmocka_unit_test(powers_are_held),
       cmocka_unit_test(plain_edges_are_plain),
       cmocka_unit_test(an_unsharp_mask_is_measured),
+      cmocka_unit_test(discs_stay_round_and_right),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,184 @@
+/* What the scanner's driver has made of a round edge: asked only where one step without it misses
+ * the sectors' mean profiles, see driver_choice.h. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "vision/disc_edge.h"
+#include "vision/driver_choice.h"
+
+/* sd of a pixel, counts, that the fits start from. */
+#define START_NOISE   1.5
+#define SECTORS_LEAST 6
+
+static double count_of(const fg_disc_work *work, double light) {
+  double rate;
+  return work->driver ? fg_driver_tone_at(work->driver_tone, light, &rate)
+                      : fg_edge_count(work->gamma, light);
+}
+
+static double light_of(const fg_disc_work *work, double count) {
+  return work->driver ? fg_driver_tone_inverse(work->driver_tone, count)
+                      : fg_edge_light(work->gamma, count);
+}
+
+/* Slopes of a driven profile are over the contrast. */
+static double contrast_ratio(const double *x, double counts) {
+  double light = x[FG_STEP_OUTSIDE] - x[FG_STEP_INSIDE];
+  return light != 0 && counts != 0 ? counts / light : 1;
+}
+
+void fg_disc_driven_values(const fg_disc_work *work, const double *x, double *values) {
+  double inside = count_of(work, x[FG_STEP_INSIDE]), outside = count_of(work, x[FG_STEP_OUTSIDE]);
+  double ratio = contrast_ratio(x, outside - inside);
+  values[FG_DRIVEN_LEFT] = values[FG_DRIVEN_RIGHT] = x[FG_STEP_EDGE];
+  values[FG_DRIVEN_PLATEAU] = inside;
+  values[FG_DRIVEN_LEVEL_L] = values[FG_DRIVEN_LEVEL_R] = outside;
+  values[FG_DRIVEN_SLOPE_L] = x[FG_STEP_SLOPE_IN] * ratio;
+  values[FG_DRIVEN_SLOPE_R] = x[FG_STEP_SLOPE_OUT] * ratio;
+  values[FG_DRIVEN_BLUR_L] = values[FG_DRIVEN_BLUR_R] = x[FG_STEP_BLUR];
+}
+
+/* Of one edge alone the left one is not there. */
+static unsigned held_of(unsigned held) {
+  unsigned driven = 1u << FG_DRIVEN_LEFT | 1u << FG_DRIVEN_LEVEL_L | 1u << FG_DRIVEN_BLUR_L;
+  if (held >> FG_STEP_SLOPE_IN & 1) driven |= 1u << FG_DRIVEN_SLOPE_L;
+  if (held >> FG_STEP_SLOPE_OUT & 1) driven |= 1u << FG_DRIVEN_SLOPE_R;
+  return driven;
+}
+
+static fg_driven_profile profile_of(const fg_disc_work *work, size_t sector, fg_profile_bin *bins) {
+  const fg_profile_bin *from = work->bins + sector * work->bin_count;
+  fg_driven_profile p = {.bins = bins, .single = true, .held = held_of(work->sectors[sector].held)};
+  for (size_t i = 0; i < work->bin_count && p.count + 8 < FG_DRIVEN_MOST; i++)
+    if (from[i].count > 0) bins[p.count++] = from[i];
+  fg_disc_driven_values(work, work->sectors[sector].values, p.values);
+  return p;
+}
+
+/* A sector's fit with the driver held, in light. */
+static void take_profile(const fg_disc_work *work, const fg_driven_profile *p, fg_step_fit *fit) {
+  static const int from[] = {FG_DRIVEN_RIGHT,   FG_DRIVEN_PLATEAU, FG_DRIVEN_LEVEL_R,
+                             FG_DRIVEN_SLOPE_L, FG_DRIVEN_SLOPE_R, FG_DRIVEN_BLUR_R};
+  double *x = fit->values, rate[2];
+  x[FG_STEP_EDGE] = p->values[FG_DRIVEN_RIGHT];
+  x[FG_STEP_INSIDE] = light_of(work, p->values[FG_DRIVEN_PLATEAU]);
+  x[FG_STEP_OUTSIDE] = light_of(work, p->values[FG_DRIVEN_LEVEL_R]);
+  double counts = p->values[FG_DRIVEN_LEVEL_R] - p->values[FG_DRIVEN_PLATEAU];
+  double ratio = contrast_ratio(x, counts);
+  x[FG_STEP_SLOPE_IN] = p->values[FG_DRIVEN_SLOPE_L] / ratio;
+  x[FG_STEP_SLOPE_OUT] = p->values[FG_DRIVEN_SLOPE_R] / ratio;
+  x[FG_STEP_BLUR] = p->values[FG_DRIVEN_BLUR_R];
+  for (int i = FG_STEP_EDGE; i <= FG_STEP_BLUR; i++)
+    fit->sd[i] = p->sd[from[i]];
+  for (int side = 0; side < 2; side++) {
+    fg_driver_tone_at(work->driver_tone, x[FG_STEP_INSIDE + side], &rate[side]);
+    fit->sd[FG_STEP_INSIDE + side] /= fmax(rate[side], 1e-3);
+    fit->sd[FG_STEP_SLOPE_IN + side] /= fabs(ratio);
+  }
+}
+
+/* All sectors again, the driver held. */
+static fg_status fit_driven(fg_context *ctx, fg_disc_work *work) {
+  fg_profile_bin bins[FG_DRIVEN_MOST];
+  for (size_t s = 0; s < work->ring.sector_count; s++) {
+    fg_step_fit *fit = &work->sectors[s];
+    if (!fit->good) continue;
+    fg_driver_fit driven = {.driver = *work->driver, .noise = START_NOISE};
+    fg_driven_profile p = profile_of(work, s, bins);
+    FG_TRY(fg_driver_fit_profiles(ctx, &p, 1, &driven));
+    fit->good = driven.good && fabs(p.values[FG_DRIVEN_RIGHT]) < work->ring.reach_px;
+    if (fit->good) take_profile(work, &p, fit);
+  }
+  return FG_OK;
+}
+
+/* Sectors that are asked, and their bins. */
+typedef struct sample {
+  fg_driven_profile profiles[FG_DRIVER_PROFILES];
+  fg_profile_bin *bins;
+  size_t count;
+  double ends[2];
+} sample;
+
+static fg_status draw_sample(fg_context *ctx, const fg_disc_work *work, sample *s) {
+  size_t good = 0, seen = 0;
+  FG_TRY(fg_memory_allocate(ctx, FG_DRIVER_PROFILES * work->bin_count, sizeof *s->bins,
+                            (void **)&s->bins));
+  s->ends[0] = INFINITY;
+  s->ends[1] = -INFINITY;
+  for (size_t i = 0; i < work->ring.sector_count; i++)
+    good += work->sectors[i].good;
+  for (size_t i = 0; i < work->ring.sector_count && s->count < FG_DRIVER_PROFILES; i++) {
+    if (!work->sectors[i].good || seen++ * FG_DRIVER_PROFILES < s->count * good) continue;
+    fg_driven_profile *p = &s->profiles[s->count];
+    *p = profile_of(work, i, s->bins + s->count++ * work->bin_count);
+    for (int side = 0; side < 2; side++) {
+      double level = p->values[side ? FG_DRIVEN_LEVEL_R : FG_DRIVEN_PLATEAU];
+      s->ends[0] = fmin(s->ends[0], level);
+      s->ends[1] = fmax(s->ends[1], level);
+    }
+  }
+  return FG_OK;
+}
+
+static fg_status adopt(fg_context *ctx, fg_disc_work *work, const fg_driver_choice *choice) {
+  FG_TRY(fg_memory_allocate(ctx, 1, sizeof *work->driver_tone, (void **)&work->driver_tone));
+  FG_TRY(fg_memory_allocate(ctx, 1, sizeof *work->driver, (void **)&work->driver));
+  *work->driver = choice->fit.driver;
+  work->gamma = exp(choice->fit.driver.values[FG_DRIVER_LN_GAMMA]);
+  work->u_driver_px = choice->u_edge_px;
+  work->unexplained = choice->missed;
+  fg_driver_tone_fill(work->driver, work->driver_tone);
+  return FG_OK;
+}
+
+/* The sectors' fits in light of the new tone curve, as a start. */
+static void convert_sectors(fg_disc_work *work, double gamma) {
+  for (size_t s = 0; s < work->ring.sector_count; s++) {
+    double *x = work->sectors[s].values, counts[2];
+    double before = x[FG_STEP_OUTSIDE] - x[FG_STEP_INSIDE];
+    for (int side = 0; side < 2; side++) {
+      counts[side] = fg_edge_count(gamma, x[FG_STEP_INSIDE + side]);
+      x[FG_STEP_INSIDE + side] = light_of(work, counts[side]);
+    }
+    double ratio = before != 0 ? (x[FG_STEP_OUTSIDE] - x[FG_STEP_INSIDE]) / before : 1;
+    x[FG_STEP_SLOPE_IN] *= ratio;
+    x[FG_STEP_SLOPE_OUT] *= ratio;
+  }
+}
+
+fg_status fg_disc_find_driver(fg_context *ctx, fg_disc_work *work) {
+  sample s = {.count = 0};
+  fg_driver_tone *tone = NULL;
+  fg_driver_misfit misfit;
+  fg_driver_choice choice;
+  double gamma = work->gamma;
+  fg_status status = FG_OK;
+  if (work->white[0] || work->white[1]) return FG_OK;
+  FG_TRY_EXIT(fg_memory_allocate(ctx, 1, sizeof *tone, (void **)&tone));
+  FG_TRY_EXIT(draw_sample(ctx, work, &s));
+  if (s.count < SECTORS_LEAST || !(s.ends[1] > s.ends[0])) goto exit;
+  fg_driver plain = fg_driver_none(s.ends);
+  plain.values[FG_DRIVER_LN_GAMMA] = log(gamma);
+  fg_driver_find_misfit(s.profiles, s.count, &plain, tone, &misfit);
+  if (!fg_driver_is_missed(&misfit, s.ends[1] - s.ends[0])) goto exit;
+  FG_TRY_EXIT(fg_driver_choose(ctx, s.profiles, s.count, s.ends, gamma, START_NOISE, &choice));
+  FG_TRY_EXIT(adopt(ctx, work, &choice));
+  convert_sectors(work, gamma);
+  FG_TRY_EXIT(fit_driven(ctx, work));
+exit:
+  free(tone);
+  free(s.bins);
+  return status;
+}
+
+void fg_disc_describe_driver(const fg_disc_work *work, const fg_disc_edge *edge,
+                             fg_picture_state *state) {
+  if (!work->driver) return;
+  fg_driver_describe(work->driver, state);
+  state->level = 0;
+  state->u_level = work->u_driver_px / (edge->blur_px * sqrt(2 * M_PI));
+  if (work->unexplained) state->findings |= FG_PICTURE_UNKNOWN_PROFILE;
+}

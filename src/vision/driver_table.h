@@ -1,0 +1,46 @@
+/* Profiles under a driver's model as tables, for the inner loops over pixels. */
+#ifndef FG_VISION_DRIVER_TABLE_H
+#define FG_VISION_DRIVER_TABLE_H
+
+#include "vision/driver_model.h"
+
+/* One profile about 0, and how it rises there without slopes, which are the least certain part of
+ * an edge's shape. */
+typedef struct fg_driven_table {
+  float *counts, *rates;
+  double from_px;
+  size_t size;
+} fg_driven_table;
+
+typedef struct fg_driven_tables {
+  fg_driven_table *list;
+  float *memory;
+  double *scratch;
+  size_t size; /* of one table */
+} fg_driven_tables;
+
+/* Tables that reach so far on both sides of 0; fg_driven_tables_free them. */
+fg_status fg_driven_tables_create(fg_context *ctx, size_t count, double reach_px,
+                                  fg_driven_tables *tables);
+void fg_driven_tables_free(fg_driven_tables *tables);
+
+/* `values` and `single` as of fg_driven_profile. */
+void fg_driven_tables_fill(const fg_driver *driver, const fg_driver_tone *tone,
+                           const double *values, bool single, fg_driven_tables *tables,
+                           size_t index);
+
+/* Counts at a place and their change per px; false beyond the table. */
+static inline bool fg_driven_table_at(const fg_driven_table *table, float across_px, float *count,
+                                      float *rate) {
+  float at = (across_px - (float)table->from_px) / (float)FG_DRIVEN_STEP_PX;
+  if (!(at >= 1) || at >= (float)(table->size - 3)) return false;
+  size_t i = (size_t)at;
+  float f = at - (float)i;
+  const float *grid = table->counts + i;
+  *count = grid[-1] * (-f * (f - 1) * (f - 2) / 6) + grid[0] * ((f + 1) * (f - 1) * (f - 2) / 2) +
+           grid[1] * (-(f + 1) * f * (f - 2) / 2) + grid[2] * ((f + 1) * f * (f - 1) / 6);
+  *rate = table->rates[i] + f * (table->rates[i + 1] - table->rates[i]);
+  return true;
+}
+
+#endif
