@@ -10,12 +10,16 @@
 enum { PIXELS_LEAST = 4000 };
 /* The ends of what is in use: but for this share of the pixels. */
 #define END_SHARE 0.002
-/* A level is missing when so many pixels were to be expected there. */
-#define EXPECTED_LEAST 12.0
-enum { AROUND = 24 };
+/* Counts that are to be expected at a level tell whether it is missing from here on; they come from
+ * so many levels on either side. */
+#define EXPECTED_LEAST 1.0
+enum { AROUND = 12 };
+/* Shares count beyond so many of their own deviations. */
+#define GAPS_SIGMAS 4.0
 /* A curve that is straight leaves gaps that are alike everywhere, and moves no edge. */
 #define GAPS_SHARE      0.03
 #define GAPS_DIFFERENCE 0.1
+enum { PARTS = 6 };
 /* Pixels are cut when more than this share has the last value, and twice as many as the next. */
 #define PILE_SHARE 0.05
 
@@ -36,39 +40,55 @@ static int find_end(const fg_value_counts *counts, int from, int step) {
   return at;
 }
 
-static double expected_at(const fg_value_counts *counts, int at, int low, int high) {
+/* Mean count of the levels beside one, on one side. */
+static double mean_beside(const fg_value_counts *counts, int at, int step, int low, int high) {
   double sum = 0;
   int n = 0;
-  for (int i = at - AROUND; i <= at + AROUND; i++)
-    if (i > low && i < high) {
-      sum += (double)counts->of[i];
-      n++;
-    }
+  for (int i = at + step; i > low && i < high && n < AROUND; i += step, n++)
+    sum += (double)counts->of[i];
   return n ? sum / n : 0;
 }
 
-/* Share of the levels between two that are missing; NaN where too few pixels tell. */
-static double missing_between(const fg_value_counts *counts, int low, int high) {
-  int known = 0, missing = 0;
+/* The lower of both sides: levels beside a plateau are few however many pixels that has. */
+static double expected_at(const fg_value_counts *counts, int at, int low, int high) {
+  return fmin(mean_beside(counts, at, -1, low, high), mean_beside(counts, at, 1, low, high));
+}
+
+/* Share of levels, and its standard deviation. */
+typedef struct level_share {
+  double share, sd;
+} level_share;
+
+/* Share of the levels between two that are missing, beyond those that few pixels leave out by
+ * chance: with λ expected, exp(-λ) of the levels. NaN where too few levels tell. */
+static level_share missing_between(const fg_value_counts *counts, int low, int high) {
+  double known = 0, missing = 0, variance = 0;
   for (int i = low + 1; i < high; i++) {
-    if (expected_at(counts, i, low, high) < EXPECTED_LEAST) continue;
+    double expected = expected_at(counts, i, low, high), chance = exp(-expected);
+    if (expected < EXPECTED_LEAST) continue;
     known++;
-    missing += !counts->of[i];
+    missing += (counts->of[i] == 0) - chance;
+    variance += chance * (1 - chance);
   }
-  return known > 3 ? (double)missing / known : NAN;
+  if (known <= 3) return (level_share){NAN, NAN};
+  return (level_share){missing / known, sqrt(variance) / known};
 }
 
 static void inspect_gaps(const fg_value_counts *counts, int low, int high,
                          fg_picture_state *state) {
-  double least = INFINITY, most = -INFINITY;
-  state->missing_levels = missing_between(counts, low, high);
-  for (int k = 0; k < 3; k++) {
-    double share =
-        missing_between(counts, low + (high - low) * k / 3, low + (high - low) * (k + 1) / 3);
-    least = fmin(least, share);
-    most = fmax(most, share);
+  level_share least = {INFINITY, 0}, most = {-INFINITY, 0};
+  const level_share all = missing_between(counts, low, high);
+  state->missing_levels = fmax(all.share, 0);
+  if (isnan(all.share)) state->missing_levels = NAN;
+  for (int k = 0; k < PARTS; k++) {
+    const level_share part = missing_between(counts, low + (high - low) * k / PARTS,
+                                             low + (high - low) * (k + 1) / PARTS);
+    if (part.share < least.share) least = part;
+    if (part.share > most.share) most = part;
   }
-  if (state->missing_levels > GAPS_SHARE && most - least > GAPS_DIFFERENCE)
+  double difference = most.share - least.share;
+  if (all.share > fmax(GAPS_SHARE, GAPS_SIGMAS * all.sd) &&
+      difference > fmax(GAPS_DIFFERENCE, GAPS_SIGMAS * hypot(least.sd, most.sd)))
     state->findings |= FG_PICTURE_LEVEL_GAPS;
 }
 
