@@ -24,19 +24,23 @@ enum { PROFILES_LEAST = 8, BLUR_TERMS = 5, BEARINGS = 24, PER_BEARING_LEAST = 3 
 /* Flatbeds blur along the carriage by up to half more than across. */
 #define BLUR_RATIO  1.6
 #define BLUR_SIGMAS 5.0
-/* A band starts where the edge's own blur has ended, and reaches so far. */
+/* A band is sought where the edge's own blur has ended, and so far out. */
 #define BAND_BLURS    2.5
 #define BAND_LEAST_PX 2.0
-#define BAND_MOST_PX  15.0
-#define BAND_SHARE    0.03
-#define BAND_SIGMAS   5.0
+#define BAND_PX       5.0
+/* So much of the contrast moves edges by their u; where the light changes over the picture the
+ * background beside an edge is known less well, by this share of its range. */
+#define BAND_SHARE   0.012
+#define BAND_SHADING 0.015
+#define BAND_SIGMAS  5.0
 
 typedef struct inspection {
   const fg_edge_profile *profiles;
   size_t count;
   double *scratch; /* 2 × count */
   double blur_px;
-  int quarter; /* of the bearings that are looked at, -1: all */
+  double window; /* half of the bearings that are one direction of a shadow, rad */
+  int quarter;   /* of the bearings that are looked at, -1: all */
 } inspection;
 
 /* Whether a profile faces one quarter of all bearings, whose middles are the axes. */
@@ -184,12 +188,13 @@ static void inspect_blur(const inspection *in, fg_picture_state *state) {
     state->findings |= FG_PICTURE_UNEVEN_BLUR;
 }
 
-/* Mean share of the band beside an edge, over the background's. */
+/* Mean share of the band beside an edge, from where its own blur has ended, over the background's.
+ */
 static double band_of(const inspection *in, const fg_edge_profile *p) {
-  double from = fmax(BAND_BLURS * in->blur_px, BAND_LEAST_PX), sum = 0, n = 0;
+  double from = fmax(BAND_BLURS * fmax(in->blur_px, p->blur_px), BAND_LEAST_PX), sum = 0, n = 0;
   for (size_t i = FG_SHARES_INSIDE; i < FG_SHARES; i++) {
     double at = fg_share_px(i);
-    if (at < from || at > BAND_MOST_PX || isnan(p->shares[i])) continue;
+    if (at < from || at > from + BAND_PX || isnan(p->shares[i])) continue;
     sum += (double)p->shares[i];
     n++;
   }
@@ -201,7 +206,7 @@ static double band_at(const inspection *in, const double *bands, double bearing,
   size_t n = 0;
   for (size_t k = 0; k < in->count; k++) {
     double off = remainder(in->profiles[k].bearing - bearing, 2 * M_PI);
-    if (fabs(off) <= 2 * M_PI / BEARINGS && !isnan(bands[k])) in->scratch[n++] = bands[k];
+    if (fabs(off) <= in->window && !isnan(bands[k])) in->scratch[n++] = bands[k];
   }
   if (n < PER_BEARING_LEAST) return NAN;
   double median = fg_select(in->scratch, n, n / 2);
@@ -228,7 +233,9 @@ static void inspect_shadow(const inspection *in, fg_picture_state *state) {
     state->shadow_direction_deg = bearing * 180 / M_PI;
     u = sd;
   }
-  if (fabs(state->shadow) > BAND_SHARE && fabs(state->shadow) > BAND_SIGMAS * u)
+  double shading = isnan(state->shading) ? 0 : state->shading;
+  if (fabs(state->shadow) > BAND_SHARE + BAND_SHADING * shading &&
+      fabs(state->shadow) > BAND_SIGMAS * u)
     state->findings |= FG_PICTURE_SHADOW;
 }
 
@@ -245,6 +252,7 @@ fg_status fg_picture_inspect_profiles(fg_context *ctx, const fg_edge_profile *pr
   if (count < PROFILES_LEAST) return FG_OK;
   FG_TRY(fg_memory_allocate(ctx, 2 * count, sizeof *in.scratch, (void **)&in.scratch));
   in.blur_px = median_blur(&in);
+  in.window = 2 * M_PI * fmax(1.0 / BEARINGS, 1.6 / (double)count);
   inspect_turns(&in, state);
   inspect_blur(&in, state);
   inspect_shadow(&in, state);

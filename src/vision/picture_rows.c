@@ -26,8 +26,11 @@ enum { BENDS = 4, FIT_REACH = 12, SHIFT_MOST = 5 };
 /* Both edges agree in row and in size, and places that show one jump do. */
 #define SAME_ROWS      2.0
 #define APART_STATIONS 2.0
-#define SAME_SHARE     0.15
-#define SAME_PX        0.2
+#define BESIDE_WIDTHS  6.0
+/* A driver loses or doubles whole rows; an edge may run along them, and show a little less. */
+#define WHOLE_SHARE 0.25
+#define SAME_SHARE  0.15
+#define SAME_PX     0.2
 
 /* Tiles in which a row must be the same as the next; noise of less than NOISE_LEAST counts would
  * leave it so. Where more than a tenth of the rows are doubled the driver has enlarged the picture.
@@ -175,16 +178,20 @@ static bool is_same_jump(const crossing *a, const crossing *b) {
          fabs(a->jump_px - b->jump_px) <= SAME_PX + SAME_SHARE * fabs(a->jump_px);
 }
 
-/* Whether the other edge of the strip jumps at the same row, beside this crossing. */
-static bool is_paired(const row_search *r, const crossing *a) {
-  double beside = 6 * r->work->width_px / r->work->reference->step_px;
+/* Whether the strip's edges show the jump of one crossing: both beside it, at one row and so at
+ * stations that differ; and another place as well, where it is not a whole row. */
+static bool is_shown(const row_search *r, const crossing *a) {
+  double beside = BESIDE_WIDTHS * r->work->width_px / r->work->reference->step_px;
+  bool paired = false, elsewhere = false;
   for (size_t k = 0; k < r->crossing_count; k++) {
     const crossing *b = &r->crossings[k];
     double off = fabs((double)b->station - (double)a->station);
-    if (b->side != a->side && off >= APART_STATIONS && off < beside && is_same_jump(a, b))
-      return true;
+    if (!is_same_jump(a, b)) continue;
+    paired |= b->side != a->side && off >= APART_STATIONS && off < beside;
+    elsewhere |= off >= beside;
   }
-  return false;
+  double whole = fmax(1, round(fabs(a->jump_px)));
+  return paired && (elsewhere || fabs(fabs(a->jump_px) - whole) < WHOLE_SHARE * whole);
 }
 
 static int compare_rows(const void *a, const void *b) {
@@ -199,7 +206,7 @@ static void count_jumps(row_search *r, fg_picture_state *state) {
   state->row_jump_px = 0;
   for (size_t i = 0; i < r->crossing_count; i++) {
     const crossing *c = &r->crossings[i];
-    if (!is_paired(r, c)) continue;
+    if (!is_shown(r, c)) continue;
     if (c->y - last > 2 * SAME_ROWS) state->row_jumps++;
     last = c->y;
     if (fabs(c->jump_px) > fabs(state->row_jump_px)) state->row_jump_px = c->jump_px;

@@ -111,7 +111,8 @@ static double find_shading(const fg_edge_work *work, double contrast) {
   return (high - low) / contrast;
 }
 
-#define SHADING_SHARE 0.3
+/* Up to here the background between tiles follows the light. */
+#define SHADING_SHARE 1.0
 
 /* A picture without noise piles up at both ends without being cut: not one whose edges have noise,
  * unless that is of levels that are far apart. */
