@@ -285,6 +285,7 @@ typedef struct fg_beam {
   fg_point
       corners_mm[4]; /* left at the root, left at the tip, right at the tip, right at the root */
   fg_beam_edge edges[FG_BEAM_SIDES]; /* count 0: not there */
+  fg_picture_state picture;          /* beside its edges */
   fg_calibrated calibrated;
 } fg_beam;
 

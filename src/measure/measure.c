@@ -10,6 +10,7 @@
 #include "measure/again.h"
 #include "measure/colour.h"
 #include "measure/measure_discs.h"
+#include "measure/picture_gather.h"
 #include "measure/reader.h"
 #include "measure/session.h"
 
@@ -180,15 +181,6 @@ static fg_status refer(fg_context *ctx, unsigned threads, fg_measurement *m) {
   return FG_OK;
 }
 
-/* The worst of what was measured: one scan has one state. */
-static void gather_picture(fg_measurement *m) {
-  m->picture = fg_picture_unknown();
-  for (size_t i = 0; i < m->foil_count; i++)
-    if (m->foils[i].strip.count) fg_picture_merge(&m->picture, &m->foils[i].strip.picture);
-  for (size_t i = 0; i < m->disc_count; i++)
-    fg_picture_merge(&m->picture, &m->discs[i].picture);
-}
-
 /* A note, where nothing else is odd, and a flag of all that was measured. */
 static void tell_loss(fg_measurement *m) {
   for (size_t i = 0; i < m->foil_count; i++)
@@ -239,12 +231,12 @@ fg_status fg_measure_scan(fg_context *ctx, const char *path, const fg_design *de
     FG_TRY_EXIT(measure_foils(ctx, scan, options, measurement));
   FG_TRY_EXIT(fg_colour_measure(ctx, scan, memory_cap(options), options->threads, measurement));
   FG_TRY_EXIT(refer(ctx, options->threads, measurement));
-  gather_picture(measurement);
   unsigned flags = check_resolution(measurement);
   for (size_t i = 0; i < measurement->foil_count; i++)
     measurement->foils[i].flags |= flags;
   if (measurement->jpeg_quality) tell_loss(measurement);
   if (measurement->colour_lines.apart) tell_apart(measurement);
+  fg_picture_gather(measurement);
 exit:
   if (status != FG_OK) clear_failed(options, scan, measurement);
   fg_scan_close(scan);

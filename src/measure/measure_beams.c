@@ -163,6 +163,7 @@ static fg_status measure_edge(fg_context *ctx, const flat_work *w, const fg_stre
     double overlap_px = fg_line_edge_overlap(next_px, found.blur_px);
     if (overlap_px > NARROW_PX) beam->flags |= FG_BEAM_NARROW_CUT;
     mend_curved(w, side, &beam->edges[FG_BEAM_LEFT], &found);
+    fg_picture_merge(&beam->picture, &found.picture);
     status = take_edge(ctx, w, side, &found, find_doubt(w, side, &found, overlap_px), edge);
   }
   fg_disc_edge_free(&found);
@@ -191,6 +192,7 @@ static fg_status measure_edges(fg_context *ctx, void *shared, size_t i) {
   beam->tip_mm = to_mm(w, place->tip);
   beam->direction_deg =
       atan2(beam->tip_mm.y - beam->root_mm.y, beam->tip_mm.x - beam->root_mm.x) * 180 / M_PI;
+  beam->picture = fg_picture_unknown();
   if (is_at_border(w, place)) beam->flags |= FG_BEAM_TOUCHES_BORDER;
   for (int side = 0; side < FG_BEAM_SIDES; side++)
     if (place->there[side])
@@ -359,6 +361,8 @@ static fg_status make_foil(fg_context *ctx, fg_flat_part *part, fg_measurement *
   place_foil(part, m, foil);
   foil->beams = part->beams;
   foil->beam_count = part->beam_count;
+  for (size_t i = 0; i < foil->beam_count; i++)
+    fg_picture_merge(&foil->strip.picture, &foil->beams[i].picture);
   part->beams = NULL;
   part->beam_count = 0;
   return fg_beams_measure(ctx, &m->design, foil);

@@ -9,6 +9,11 @@
 enum { PIXEL_STEP = 5 };
 #define OUTER_SHARE 0.25 /* of the band's reach: the levels' stretches at its ends */
 
+/* A straight edge has one bearing, which is of no matter here. */
+static double bearing_of(const fg_disc_work *work, size_t sector) {
+  return work->open ? 0 : ((double)sector + 0.5) * 2 * M_PI / (double)work->ring.sector_count;
+}
+
 static size_t take_sectors(const fg_disc_work *work, fg_edge_profile *profiles) {
   const fg_ring *ring = &work->ring;
   double outer = OUTER_SHARE * ring->reach_px;
@@ -22,8 +27,7 @@ static size_t take_sectors(const fg_disc_work *work, fg_edge_profile *profiles) 
                                       .middle_px = -ring->reach_px + outer / 2,
                                       .plateau_px = outer / 2,
                                       .reach_px = outer,
-                                      .bearing =
-                                          ((double)i + 0.5) * 2 * M_PI / (double)ring->sector_count,
+                                      .bearing = bearing_of(work, i),
                                       .blur_px = fit->values[FG_STEP_BLUR],
                                       .background = NAN};
     n += fg_edge_profile_take(&source, &profiles[n]);
@@ -49,7 +53,6 @@ fg_status fg_picture_of_ring(fg_context *ctx, const fg_disc_work *work, const fg
   fg_edge_profile *profiles;
   state->noise = edge->noise;
   inspect_levels(work, edge, state);
-  if (work->open) return FG_OK;
   FG_TRY(fg_memory_allocate(ctx, work->ring.sector_count, sizeof *profiles, (void **)&profiles));
   size_t count = take_sectors(work, profiles);
   fg_status status = fg_picture_inspect_profiles(ctx, profiles, count, state);

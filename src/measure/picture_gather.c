@@ -1,0 +1,67 @@
+#include "measure/picture_gather.h"
+
+#include <math.h>
+#include <stdio.h>
+
+/* A channel whose magnification differs from both others is one that cannot be right; so much makes
+ * a radius of 3 mm wrong by as much as its u. */
+#define MAGNIFICATION_PPM   60.0
+#define MAGNIFICATION_SIGMA 3.0
+
+/* By how much the measured channel differs from the one that is nearest to it, beyond doubt, ppm.
+ */
+static double least_magnification(const fg_colour_lines *lines) {
+  double least = INFINITY;
+  for (int k = 0; k < 2; k++) {
+    const fg_colour_shift *shift = &lines->shifts[k];
+    if (shift->state == FG_COLOUR_IDENTICAL) return 0;
+    if (shift->state != FG_COLOUR_MEASURED) continue;
+    least = fmin(least,
+                 fabs(shift->magnification_ppm) - MAGNIFICATION_SIGMA * shift->u_magnification_ppm);
+  }
+  return isinf(least) ? 0 : least;
+}
+
+static void add_finding(fg_measurement *m, unsigned finding) {
+  for (size_t i = 0; i < m->foil_count; i++)
+    m->foils[i].strip.picture.findings |= finding;
+  for (size_t i = 0; i < m->disc_count; i++)
+    m->discs[i].picture.findings |= finding;
+}
+
+/* A file that says itself that it is a JPEG: its edges' uncertainties hold that already. */
+static void drop_blocks(fg_measurement *m) {
+  for (size_t i = 0; i < m->foil_count; i++)
+    m->foils[i].strip.picture.findings &= ~(unsigned)FG_PICTURE_BLOCK_NOISE;
+  for (size_t i = 0; i < m->disc_count; i++)
+    m->discs[i].picture.findings &= ~(unsigned)FG_PICTURE_BLOCK_NOISE;
+}
+
+static void merge_all(fg_measurement *m) {
+  m->picture = fg_picture_unknown();
+  for (size_t i = 0; i < m->foil_count; i++)
+    if (m->foils[i].strip.count || m->foils[i].beam_count)
+      fg_picture_merge(&m->picture, &m->foils[i].strip.picture);
+  for (size_t i = 0; i < m->disc_count; i++)
+    fg_picture_merge(&m->picture, &m->discs[i].picture);
+}
+
+/* Names of what was found, one after the other. */
+static void tell_findings(fg_measurement *m) {
+  size_t used = (size_t)snprintf(m->warning, sizeof m->warning, "state of the picture:");
+  const char *before = " ";
+  for (const fg_picture_words *words = fg_picture_finding_words(); words->name; words++) {
+    if (!(m->picture.findings & words->finding) || used >= sizeof m->warning) continue;
+    used +=
+        (size_t)snprintf(m->warning + used, sizeof m->warning - used, "%s%s", before, words->name);
+    before = ", ";
+  }
+}
+
+void fg_picture_gather(fg_measurement *m) {
+  if (m->jpeg_quality) drop_blocks(m);
+  if (m->colour_lines.seen && least_magnification(&m->colour_lines) > MAGNIFICATION_PPM)
+    add_finding(m, FG_PICTURE_CHANNEL_SCALE);
+  merge_all(m);
+  if (m->picture.findings && !m->warning[0]) tell_findings(m);
+}
