@@ -7,6 +7,7 @@
  * a radius of 3 mm wrong by as much as its u. */
 #define MAGNIFICATION_PPM   60.0
 #define MAGNIFICATION_SIGMA 3.0
+#define RINGING_SHARE       0.015
 
 /* By how much the measured channel differs from the one that is nearest to it, beyond doubt, ppm.
  */
@@ -29,12 +30,20 @@ static void add_finding(fg_measurement *m, unsigned finding) {
     m->discs[i].picture.findings |= finding;
 }
 
-/* A file that says itself that it is a JPEG: its edges' uncertainties hold that already. */
-static void drop_blocks(fg_measurement *m) {
+/* JPEG makes edges ring, which looks like a little sharpening or an odd tone curve; and a file that
+ * says itself that it is a JPEG needs not be told: its edges' uncertainties hold that already. */
+static void settle_blocks(bool jpeg, fg_picture_state *state) {
+  const unsigned looks = FG_PICTURE_SHARPENED | FG_PICTURE_TONE_CURVE | FG_PICTURE_UNKNOWN_PROFILE;
+  if (!jpeg && !(state->findings & FG_PICTURE_BLOCK_NOISE)) return;
+  if (fmax(state->overshoot, state->undershoot) < RINGING_SHARE) state->findings &= ~looks;
+  if (jpeg) state->findings &= ~(unsigned)FG_PICTURE_BLOCK_NOISE;
+}
+
+static void settle_all_blocks(fg_measurement *m) {
   for (size_t i = 0; i < m->foil_count; i++)
-    m->foils[i].strip.picture.findings &= ~(unsigned)FG_PICTURE_BLOCK_NOISE;
+    settle_blocks(m->jpeg_quality > 0, &m->foils[i].strip.picture);
   for (size_t i = 0; i < m->disc_count; i++)
-    m->discs[i].picture.findings &= ~(unsigned)FG_PICTURE_BLOCK_NOISE;
+    settle_blocks(m->jpeg_quality > 0, &m->discs[i].picture);
 }
 
 static void merge_all(fg_measurement *m) {
@@ -59,7 +68,7 @@ static void tell_findings(fg_measurement *m) {
 }
 
 void fg_picture_gather(fg_measurement *m) {
-  if (m->jpeg_quality) drop_blocks(m);
+  settle_all_blocks(m);
   if (m->colour_lines.seen && least_magnification(&m->colour_lines) > MAGNIFICATION_PPM)
     add_finding(m, FG_PICTURE_CHANNEL_SCALE);
   merge_all(m);

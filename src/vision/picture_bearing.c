@@ -15,8 +15,9 @@ enum { PROFILES_LEAST = 8, BLUR_TERMS = 5, BEARINGS = 24, PER_BEARING_LEAST = 3 
 #define MEDIAN_OVER_MEAN 1.2533
 /* Overshoot turns a profile back; so much of the contrast moves a strip's edges by their u, and is
  * so many standard deviations. */
-#define TURN_SHARE  0.002
-#define TURN_SIGMAS 6.0
+#define TURN_SHARE     0.002
+#define TURN_SIGMAS    6.0
+#define TURN_OF_BLOCKS 0.015 /* JPEG makes edges ring by as much */
 /* Profiles of opposite quarters of the bearings show at least so much of it each. */
 #define QUARTER_SHARE 0.3
 /* Beyond so many px outwards the next thing may lie. */
@@ -30,8 +31,8 @@ enum { PROFILES_LEAST = 8, BLUR_TERMS = 5, BEARINGS = 24, PER_BEARING_LEAST = 3 
 #define BAND_PX       5.0
 /* So much of the contrast moves edges by their u; where the light changes over the picture the
  * background beside an edge is known less well, by this share of its range. */
-#define BAND_SHARE   0.012
-#define BAND_SHADING 0.015
+#define BAND_SHARE   0.015
+#define BAND_SHADING 0.02
 #define BAND_SIGMAS  5.0
 
 typedef struct inspection {
@@ -124,8 +125,9 @@ static void inspect_turns(inspection *in, fg_picture_state *state) {
   bool light = in->profiles[0].inside > in->profiles[0].outside;
   state->overshoot = turns[light ? 0 : 1];
   state->undershoot = turns[light ? 1 : 0];
+  bool blocks = state->findings & FG_PICTURE_BLOCK_NOISE;
   for (int k = 0; k < 2; k++)
-    if (turns[k] > TURN_SHARE && turns[k] > TURN_SIGMAS * u[k] &&
+    if (turns[k] > (blocks ? TURN_OF_BLOCKS : TURN_SHARE) && turns[k] > TURN_SIGMAS * u[k] &&
         is_two_sided(in, turns[k], places[k]))
       state->findings |= FG_PICTURE_SHARPENED;
 }
@@ -201,39 +203,41 @@ static double band_of(const inspection *in, const fg_edge_profile *p) {
   return n > 0 ? sum / n - (isnan(p->background) ? 0 : (double)p->background) : NAN;
 }
 
-/* Median of the bands that face a bearing within one step, and its standard deviation. */
-static double band_at(const inspection *in, const double *bands, double bearing, double *sd) {
+/* Standard deviation of one band by what neighbours differ by: a shadow comes and goes slowly. */
+static double band_noise(const inspection *in, const double *bands) {
   size_t n = 0;
+  for (size_t k = 0; k + 2 < in->count; k++)
+    if (!isnan(bands[k]) && !isnan(bands[k + 2])) in->scratch[n++] = fabs(bands[k + 2] - bands[k]);
+  return n ? M_SQRT1_2 * fg_robust_sd(in->scratch, n) : INFINITY;
+}
+
+/* Median of the bands that face a bearing within one step, and how many they are. */
+static double band_at(const inspection *in, const double *bands, double bearing, size_t *n) {
+  *n = 0;
   for (size_t k = 0; k < in->count; k++) {
     double off = remainder(in->profiles[k].bearing - bearing, 2 * M_PI);
-    if (fabs(off) <= in->window && !isnan(bands[k])) in->scratch[n++] = bands[k];
+    if (fabs(off) <= in->window && !isnan(bands[k])) in->scratch[(*n)++] = bands[k];
   }
-  if (n < PER_BEARING_LEAST) return NAN;
-  double median = fg_select(in->scratch, n, n / 2);
-  for (size_t k = 0; k < n; k++)
-    in->scratch[k] = fabs(in->scratch[k] - median);
-  *sd = MEDIAN_OVER_MEAN * fg_robust_sd(in->scratch, n) / sqrt((double)n);
-  return median;
+  return *n < PER_BEARING_LEAST ? NAN : fg_select(in->scratch, *n, *n / 2);
 }
 
 static void inspect_shadow(const inspection *in, fg_picture_state *state) {
   double *bands = in->scratch + in->count, u = 0;
+  double shading = isnan(state->shading) ? 0 : state->shading;
   size_t n = 0;
   for (size_t k = 0; k < in->count; k++) {
     bands[k] = band_of(in, &in->profiles[k]);
     if (!isnan(bands[k])) in->scratch[n++] = bands[k];
   }
   if (n < PROFILES_LEAST) return;
-  double usual = fg_select(in->scratch, n, n / 2);
+  double usual = fg_select(in->scratch, n, n / 2), noise = band_noise(in, bands);
   for (int i = 0; i < BEARINGS; i++) {
-    double bearing = i * 2 * M_PI / BEARINGS, sd = 0;
-    double depth = band_at(in, bands, bearing, &sd) - usual;
+    double bearing = i * 2 * M_PI / BEARINGS, depth = band_at(in, bands, bearing, &n) - usual;
     if (isnan(depth) || fabs(depth) <= fabs(state->shadow)) continue;
     state->shadow = depth;
     state->shadow_direction_deg = bearing * 180 / M_PI;
-    u = sd;
+    u = MEDIAN_OVER_MEAN * noise / sqrt((double)n);
   }
-  double shading = isnan(state->shading) ? 0 : state->shading;
   if (fabs(state->shadow) > BAND_SHARE + BAND_SHADING * shading &&
       fabs(state->shadow) > BAND_SIGMAS * u)
     state->findings |= FG_PICTURE_SHADOW;
