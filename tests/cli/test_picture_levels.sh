@@ -12,7 +12,7 @@ fail() {
   exit 1
 }
 echo '{"schema": "foilgauge/design/1", "form": "discs", "diameters_mm": [1, 2, 3, 4]}' >"$work/plate.json"
-foil='"foils": [{"rotate_deg": -90, "design": {"bump_count": 1}}]'
+foil='"foils": [{"rotate_deg": -90, "design": {"bump_count": 2}}]'
 plate='"discs": [{"centre_mm": [3.1, 3], "radius_mm": 0.5}, {"centre_mm": [8.2, 3.2], "radius_mm": 1},
   {"centre_mm": [3.3, 8.1], "radius_mm": 1.5}, {"centre_mm": [9, 9], "radius_mm": 2}]'
 # gaps SEED DPI SCENE SCANNER [MEASURE'S OPTIONS]: 1 where they are told, else 0
