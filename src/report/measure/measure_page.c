@@ -10,6 +10,7 @@
 #include "report/measure/measure_page_tables.h"
 #include "report/measure/picture_report.h"
 #include "report/measure/scan_model_words.h"
+#include "report/measure/thickness_budget.h"
 #include "report/measure/uncertainty_budget.h"
 #include "report/provenance.h"
 
@@ -129,6 +130,7 @@ static void put_residuals(FILE *out, const fg_foil *foil, const char *against) {
 
 static void put_arc_details(FILE *out, const fg_design *design, const fg_foil *foil) {
   fg_html_foil_table(out, design, foil);
+  fg_html_thickness_budget(out, design, foil);
   put_residuals(out, foil, "its circle");
   fputs("<h2>What the errors mean</h2>\n<p class=\"note\">Springback of the radius is 100 (design "
         "− actual) / design, that of the angle 100 (actual − design) / design: of a foil that has "
@@ -158,6 +160,7 @@ static void put_foil_details(FILE *out, const fg_design *design, const fg_foil *
   char thickness[200];
   fg_thickness_words(design, foil, thickness, sizeof thickness);
   if (thickness[0]) fprintf(out, "<p class=\"note\">Strip thickness: %s.</p>\n", thickness);
+  fg_html_thickness_budget(out, design, foil);
   fputs("<h2>Springback error per bump</h2>\n<figure>", out);
   fg_html_errors(out, design, foil);
   fputs("</figure>\n", out);

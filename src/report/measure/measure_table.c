@@ -12,6 +12,7 @@
 #include "report/measure/outcome_words.h"
 #include "report/measure/picture_report.h"
 #include "report/measure/scan_model_words.h"
+#include "report/measure/thickness_budget.h"
 
 enum { DECIMALS_FINE = 5, DECIMALS_MAX = 7 };
 
@@ -244,6 +245,7 @@ static void put_foil(FILE *out, const fg_design *design, const fg_foil *foil) {
   if (fg_foil_defect(design, foil, defect, sizeof defect)) fprintf(out, "  REJECTED: %s\n", defect);
   put_place(out, foil);
   put_quantities(out, design, foil);
+  fg_text_thickness_budget(out, design, foil);
   put_correction(out, foil);
   put_foil_flags(out, fg_foil_flags_told(design, foil));
   if (design->form == FG_FORM_CANTILEVER)
