@@ -46,6 +46,8 @@ static double step_light(double d, double step, double slope, double blur) {
 
 /* exp(x) P(X > y), X normal. */
 static double scaled_tail(double x, double y) {
+  if (y > 9) return 0;
+  if (y < -6) return exp(x);
   return 0.5 * exp(x) * erfc(y * M_SQRT1_2);
 }
 
