@@ -1,0 +1,110 @@
+/* What a scanner's driver or the light has made of a picture, found from its pixels: each kind is
+ * found and measured, and nothing is found on plain and on rough scans. */
+#include "support/measured_render.h"
+
+#define PLAIN "\"dpi\":2400,\"blur_px\":1.0,\"noise\":1.5,\"background\":30,\"contrast\":160"
+
+static fg_picture_state state_of(const char *foil, const char *scanner) {
+  char json[4096];
+  small_foil(json, sizeof json, 2, foil, "%s", scanner);
+  measured m = measure_render(json, NULL);
+  assert_int_equal(m.status, FG_OK);
+  assert_int_equal(m.result.foil_count, 1);
+  fg_picture_state state = m.result.foils[0].strip.picture;
+  measured_free(&m);
+  return state;
+}
+
+static fg_picture_state of_scanner(const char *scanner) {
+  return state_of("", scanner);
+}
+
+static void nothing_is_found_on_plain_scans(void **unused) {
+  (void)unused;
+  static const char *const scanners[] = {
+      PLAIN,
+      PLAIN ",\"bits\":16",
+      "\"dpi\":2400,\"blur_px\":2.2,\"noise\":0.5,\"background\":215,\"contrast\":-160,\"gamma\":2."
+      "2",
+      "\"dpi\":2400,\"blur_px\":0.8,\"noise\":0,\"background\":30,\"contrast\":170",
+      "\"dpi\":4800,\"blur_px\":2.0,\"noise\":2,\"noise_correlation\":0.6,\"background\":35,"
+      "\"contrast\":160,\"rough\":{\"one_sided_blur_px\":1.5,\"edge_roughness_um\":1.5,"
+      "\"edge_common_um\":0.5,\"correlation_um\":50,\"halo\":{\"fraction\":0.2,\"length_px\":20}}",
+  };
+  for (size_t i = 0; i < sizeof scanners / sizeof *scanners; i++)
+    assert_int_equal(of_scanner(scanners[i]).findings, 0);
+}
+
+/* One kind and strength, and which findings it must and may have. */
+typedef struct kind {
+  const char *scanner;
+  unsigned must, may;
+} kind;
+
+static void each_kind_is_found(void **unused) {
+  (void)unused;
+  const unsigned model = FG_PICTURE_TONE_CURVE | FG_PICTURE_UNKNOWN_PROFILE;
+  const kind kinds[] = {
+      {PLAIN ",\"unsharp_mask\":{\"amount_pct\":50,\"radius_px\":1}", FG_PICTURE_SHARPENED, model},
+      {PLAIN ",\"unsharp_mask\":{\"amount_pct\":150,\"radius_px\":1}", FG_PICTURE_SHARPENED, model},
+      {PLAIN ",\"levels\":16", FG_PICTURE_FEW_LEVELS, model | FG_PICTURE_CORRELATED_NOISE},
+      {PLAIN ",\"levels\":2,\"threshold\":90", FG_PICTURE_FEW_LEVELS,
+       model | FG_PICTURE_CLIPPED | FG_PICTURE_ROW_JUMPS},
+      {PLAIN ",\"rough\":{\"jpeg\":{\"quality\":60}}", FG_PICTURE_BLOCK_NOISE,
+       model | FG_PICTURE_SHARPENED},
+      {PLAIN ",\"rough\":{\"jpeg\":{\"quality\":90}}", FG_PICTURE_BLOCK_NOISE,
+       model | FG_PICTURE_SHARPENED},
+      {PLAIN ",\"rough\":{\"side_wall\":{\"amplitude\":0.1,\"direction_deg\":-90,"
+             "\"length_px\":10}}",
+       FG_PICTURE_SHADOW, model | FG_PICTURE_SHARPENED},
+  };
+  for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+    unsigned found = of_scanner(kinds[i].scanner).findings;
+    if ((found & kinds[i].must) != kinds[i].must || (found & ~(kinds[i].must | kinds[i].may)))
+      fail_msg("%s: found %#x", kinds[i].scanner, found);
+  }
+}
+
+static void blur_is_an_ellipse(void **unused) {
+  (void)unused;
+  fg_picture_state state =
+      of_scanner("\"dpi\":2400,\"blur_px\":[3,1],\"noise\":1,\"background\":30,\"contrast\":160");
+  assert_true(state.findings & FG_PICTURE_UNEVEN_BLUR);
+  assert_close(state.blur_px[0], 3, 0.4);
+  assert_close(state.blur_px[1], 1, 0.4);
+  assert_close(remainder(state.blur_direction_deg, 180), 0, 5);
+  state = of_scanner(
+      "\"dpi\":2400,\"blur_px\":[1.4,1.1],\"noise\":1,\"background\":30,\"contrast\":160");
+  assert_int_equal(state.findings, 0);
+}
+
+/* A row is lost where the limbs of the bumps are slanted, at several places. */
+static void rows_that_jump_are_counted(void **unused) {
+  (void)unused;
+  fg_picture_state state = state_of(",\"rotate_deg\":40",
+                                    PLAIN ",\"rows_lost\":[{\"y_mm\":2.0,\"count\":2},"
+                                          "{\"y_mm\":3.2,\"count\":2},{\"y_mm\":4.4,\"count\":2}]");
+  assert_true(state.findings & FG_PICTURE_ROW_JUMPS);
+  assert_true(state.row_jumps >= 1 && state.row_jumps <= 3);
+  assert_close(state.row_jump_px, -2, 0.4);
+}
+
+static void noise_is_measured(void **unused) {
+  (void)unused;
+  fg_picture_state state = of_scanner(PLAIN);
+  assert_true(fabs(state.noise_correlation[0]) < 0.2 && fabs(state.noise_correlation[1]) < 0.2);
+  state = of_scanner(PLAIN ",\"noise_correlation\":0.7");
+  assert_close(state.noise_correlation[0], 0.65, 0.2);
+  assert_close(state.noise_correlation[1], 0.65, 0.2);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(nothing_is_found_on_plain_scans),
+      cmocka_unit_test(each_kind_is_found),
+      cmocka_unit_test(blur_is_an_ellipse),
+      cmocka_unit_test(rows_that_jump_are_counted),
+      cmocka_unit_test(noise_is_measured),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
