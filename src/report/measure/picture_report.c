@@ -4,6 +4,7 @@
 
 #include "foilgauge/picture.h"
 #include "report/drawing.h"
+#include "report/measure/measure_page_parts.h"
 
 static double value_of(const fg_picture_state *state, const fg_picture_member *member) {
   return *(const double *)((const char *)state + member->offset);
@@ -38,11 +39,28 @@ void fg_text_picture_state(FILE *out, const fg_measurement *measurement) {
       fprintf(out, "picture: %s: %s %s\n", words->name, words->meaning, words->cure);
 }
 
+/* Which setting of a driver it is, by the names that drivers have for it. */
+static void put_settings(FILE *out, const fg_picture_words *words) {
+  const char *const names[] = {"SANE", "TWAIN", "WIA"};
+  const char *const settings[] = {words->sane, words->twain, words->wia};
+  const char *before = "<br><span class=\"note\">";
+  for (int i = 0; i < 3; i++) {
+    if (!settings[i][0]) continue;
+    fprintf(out, "%s%s: ", before, names[i]);
+    fg_html_text(out, settings[i]);
+    before = " · ";
+  }
+  if (before[0] == ' ') fputs("</span>", out);
+}
+
 static void put_findings(FILE *out, const fg_picture_state *state) {
   fputs("<ul class=\"flags\">\n", out);
-  for (const fg_picture_words *words = fg_picture_finding_words(); words->name; words++)
-    if (state->findings & words->finding)
-      fprintf(out, "<li>%s %s</li>\n", words->meaning, words->cure);
+  for (const fg_picture_words *words = fg_picture_finding_words(); words->name; words++) {
+    if (!(state->findings & words->finding)) continue;
+    fprintf(out, "<li><b>%s</b> %s", words->meaning, words->cure);
+    put_settings(out, words);
+    fputs("</li>\n", out);
+  }
   fputs("</ul>\n", out);
 }
 
@@ -55,12 +73,12 @@ void fg_html_picture_state(FILE *out, const fg_measurement *measurement) {
     fputs("<p class=\"note\">Nothing was found that a scanner's driver or the light has done to "
           "the picture.</p>\n",
           out);
-  fputs("<table>\n<tbody>\n", out);
+  fputs("<details>\n<summary>What was measured of it</summary>\n<table>\n<tbody>\n", out);
   for (const fg_picture_member *member = fg_picture_members(); member->name; member++) {
     double value = value_of(state, member);
     if (!isfinite(value)) continue;
     fprintf(out, "<tr><td class=\"words\">%s</td><td>%.*f</td><td>%s</td></tr>\n", member->words,
             member->decimals, value, member->unit);
   }
-  fputs("</tbody>\n</table>\n", out);
+  fputs("</tbody>\n</table>\n</details>\n", out);
 }
