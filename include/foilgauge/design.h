@@ -10,6 +10,7 @@
 #include <stddef.h>
 
 #include "foilgauge/calibration.h"
+#include "foilgauge/gauge.h"
 #include "foilgauge/status.h"
 
 #ifdef __cplusplus
@@ -99,9 +100,12 @@ typedef struct fg_design {
   double clearance_mm;          /* C_D of the bearing, which s_D belongs to; 0: not stated */
   size_t diameter_count;        /* discs only: known diameters, in any order */
   double diameters_mm[FG_DIAMETERS_MAX];
+  double u_diameters_mm; /* standard uncertainty of each of them; 0: not stated */
   size_t tolerance_count;
   fg_tolerance tolerances[FG_TOLERANCES_MAX];
   fg_calibration calibration; /* of the scanner that measures it, and the part's temperature */
+  size_t gauge_count;
+  fg_gauge gauges[FG_GAUGES_MAX]; /* known widths that lie on the glass in the same scan */
 } fg_design;
 
 /* What follows from a design (thesis eq 5.1, 5.2, 5.5, 5.8). */

@@ -349,10 +349,13 @@ typedef struct fg_disc {
   double radius_range_mm[2];
   fg_disc_point *stations; /* owned; the edge as it was found, for measuring it again */
   size_t station_count;
-  double loss_variance;     /* share by which JPEG's steps raise the variance that the edge tells */
-  double edge_doubt_mm;     /* what the edge's own pixels leave in doubt of its level */
-  double level_doubt_mm;    /* what the level of the edge may move the radius by, all in all */
-  fg_picture_state picture; /* beside its edge */
+  double loss_variance;  /* share by which JPEG's steps raise the variance that the edge tells */
+  double edge_doubt_mm;  /* what the edge's own pixels leave in doubt of its level */
+  double level_doubt_mm; /* what the level of the edge may move the radius by, all in all */
+  double spread_px, asymmetry;    /* of its edge, as vision/edge_spread.h says; NaN: not seen */
+  double plain_mm, plain_blur_um; /* diameter and blur with counts taken for the light */
+  double contrast;                /* bright less dark, counts of 255 */
+  fg_picture_state picture;       /* beside its edge */
   fg_calibrated calibrated;
 } fg_disc;
 
@@ -372,8 +375,11 @@ typedef struct fg_measurement {
   bool colour;        /* the scan holds colours */
   fg_channel channel; /* what of them was measured */
   fg_colour_lines colour_lines;
-  fg_picture_state picture; /* worst of all that was measured */
-  char warning[256];        /* what is odd about the file; empty when nothing is */
+  fg_picture_state picture;               /* worst of all that was measured */
+  fg_gauge_reading gauges[FG_GAUGES_MAX]; /* in the order of the design's */
+  char tone_note[200]; /* why the level of a scanner's model was not applied; "": nothing to say */
+  bool gauges_contradict; /* they differ by more than their u: the level's u holds it */
+  char warning[256];      /* what is odd about the file; empty when nothing is */
   fg_design design;
   fg_nominal nominal;
   bool light_on_dark;

@@ -67,12 +67,18 @@ typedef struct fg_strip {
   double
       u_thickness_mm; /* what it varies by along the strip; the tone curve's doubt is beside it: */
   double blur_left_um, blur_right_um; /* sd of the edge blur found on each side */
-  double contrast; /* strip minus background, in units of the scan's full scale */
-  double noise;    /* pixel noise sd, same unit */
-  double gamma;    /* exponent of the tone curve found */
-  double u_gamma;  /* what its profiles leave in doubt */
-  double loss_um;  /* u of each edge's place, outwards or inwards with the other, by what the scan
-                      has lost by JPEG; 0: nothing */
+  double contrast;             /* strip minus background, in units of the scan's full scale */
+  double noise;                /* pixel noise sd, same unit */
+  bool bright;                 /* brighter than what surrounds it */
+  double spread_px, asymmetry; /* of its edges, as vision/edge_spread.h says; NaN: not seen */
+  /* With counts taken for the light, whatever the edges say of the tone curve: thickness, blur and
+   * contrast (counts of 255). What a gauge is compared by. NaN: not measured. */
+  double plain_mm, plain_blur_um, plain_counts;
+  bool plain_side_band; /* as FG_STRIP_SIDE_BAND */
+  double gamma;   /* exponent of the tone curve found */
+  double u_gamma; /* what its profiles leave in doubt */
+  double loss_um; /* u of each edge's place, outwards or inwards with the other, by what the scan
+                     has lost by JPEG; 0: nothing */
   double loss_variance; /* and share by which it raises the variance that the residuals tell */
   double tone_um; /* of thickness per unit of ln gamma: both edges lie where the light is half */
   unsigned facts; /* fg_strip_fact */

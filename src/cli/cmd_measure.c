@@ -38,6 +38,8 @@ typedef struct measure_arguments {
   const char *form;
   fg_cli_known known;
   fg_measure_options options;
+  const char *gauges[FG_GAUGES_MAX]; /* as given */
+  size_t gauge_count;
   char **scans; /* of argv */
   size_t scan_count;
 } measure_arguments;
@@ -69,6 +71,7 @@ enum {
   OPTION_MAX_MEMORY,
   OPTION_MODEL,
   OPTION_SCANNER,
+  OPTION_GAUGE,
 };
 
 static const struct argp_option options[] = {
@@ -78,6 +81,11 @@ static const struct argp_option options[] = {
     {"model", OPTION_MODEL, "FILE.json", 0,
      "Correct by what `foilgauge loop --model-out` found of this scanner", 0},
     {"scanner", OPTION_SCANNER, "NAME", 0, "Refuse a model that is of another scanner", 0},
+    {"gauge", OPTION_GAUGE, "KIND:WIDTH:U", 0,
+     "A gauge that lies on the glass in the same scan: leaf, pin, ring or hole, its known width "
+     "and the standard uncertainty of that in mm, as leaf:0.1:0.0005; again for each; overrules "
+     "the design's",
+     0},
     {"dpi", OPTION_DPI, "N", 0, "Resolution of the scan; overrules the file", 0},
     {"channel", OPTION_CHANNEL, "CHANNEL", 0,
      "Of a colour scan: @channels@; auto is the one with the most contrast, which takes a second "
@@ -142,6 +150,11 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
   case OPTION_FORM:
     arguments->form = text;
     break;
+  case OPTION_GAUGE:
+    if (arguments->gauge_count == FG_GAUGES_MAX)
+      argp_error(state, "--gauge: more than %d gauges", FG_GAUGES_MAX);
+    arguments->gauges[arguments->gauge_count++] = text;
+    break;
   case OPTION_DPI:
     arguments->options.dpi = fg_cli_number(state, "dpi", text, 1, 1e6);
     break;
@@ -202,12 +215,22 @@ static fg_status check_arguments(fg_context *ctx, measure_run *run) {
   return FG_OK;
 }
 
+static fg_status apply_gauges(fg_context *ctx, const measure_arguments *arguments,
+                              fg_design *design) {
+  if (!arguments->gauge_count) return FG_OK;
+  design->gauge_count = 0;
+  for (size_t i = 0; i < arguments->gauge_count; i++)
+    FG_TRY(fg_gauge_parse(ctx, arguments->gauges[i], &design->gauges[design->gauge_count++]));
+  return FG_OK;
+}
+
 static fg_status load_design(fg_context *ctx, measure_run *run) {
   fg_design_default(&run->design);
   if (run->arguments.design_path)
     FG_TRY(fg_design_load(ctx, run->arguments.design_path, &run->design));
   FG_TRY(fg_cli_apply_form(ctx, run->arguments.form, &run->design));
   fg_cli_apply_known(&run->arguments.known, &run->design);
+  FG_TRY(apply_gauges(ctx, &run->arguments, &run->design));
   FG_TRY(fg_design_check(ctx, &run->design));
   if (run->design.form != FG_FORM_DISCS) FG_TRY(fg_design_derive(ctx, &run->design, &run->nominal));
   const char *path = run->arguments.design_path;

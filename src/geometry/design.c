@@ -158,6 +158,8 @@ static fg_status check_thickness_measured(fg_context *ctx, const fg_design *desi
                    name, u, value);
   return FG_OK;
 }
+/* What is known no better is no gauge. */
+#define U_DIAMETERS_MOST_MM 0.1
 
 static fg_status check_discs(fg_context *ctx, const fg_design *design) {
   if (design->diameter_count > FG_DIAMETERS_MAX)
@@ -168,6 +170,9 @@ static fg_status check_discs(fg_context *ctx, const fg_design *design) {
     snprintf(member, sizeof member, "diameters_mm[%zu]", i);
     FG_TRY(check_positive(ctx, member, design->diameters_mm[i]));
   }
+  if (!(design->u_diameters_mm >= 0 && design->u_diameters_mm <= U_DIAMETERS_MOST_MM))
+    return fg_fail(ctx, FG_ERR_DATA, "u_diameters_mm is %g; it must be from 0 to %g mm",
+                   design->u_diameters_mm, U_DIAMETERS_MOST_MM);
   return FG_OK;
 }
 
@@ -269,13 +274,30 @@ static fg_status check_tolerances(fg_context *ctx, const fg_design *design) {
   return FG_OK;
 }
 
+static fg_status check_gauges(fg_context *ctx, const fg_design *design) {
+  if (design->gauge_count > FG_GAUGES_MAX)
+    return fg_fail(ctx, FG_ERR_DATA, "gauges has %zu entries; at most %d", design->gauge_count,
+                   FG_GAUGES_MAX);
+  if (design->gauge_count && design->form == FG_FORM_CANTILEVER)
+    return fg_fail(ctx, FG_ERR_DATA,
+                   "gauges: a gauge on the glass is not sought beside flat foils, form "
+                   "\"cantilever\": leave it out");
+  for (size_t i = 0; i < design->gauge_count; i++) {
+    char name[48];
+    snprintf(name, sizeof name, "gauges[%zu]", i);
+    FG_TRY(fg_gauge_check(ctx, name, &design->gauges[i]));
+  }
+  return FG_OK;
+}
+
 fg_status fg_design_check(fg_context *ctx, const fg_design *design) {
   FG_TRY(check_tolerances(ctx, design));
   FG_TRY(fg_calibration_check(ctx, &design->calibration));
   FG_TRY(check_thickness_measured(ctx, design));
+  FG_TRY(check_gauges(ctx, design));
   if (design->form != FG_FORM_CANTILEVER) FG_TRY(check_no_beams(ctx, design));
   if (design->form == FG_FORM_DISCS) return check_discs(ctx, design);
-  if (design->diameter_count != 0)
+  if (design->diameter_count != 0 || design->u_diameters_mm != 0)
     return fg_fail(ctx, FG_ERR_DATA, "diameters_mm belongs to form \"discs\" only");
   if (design->form == FG_FORM_ARC) return check_arc(ctx, design);
   if (design->subtended_angle_deg != 0)

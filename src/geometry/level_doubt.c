@@ -50,7 +50,7 @@ static const level_row findings[] = {
     /* A band of unknown depth beside one of two edges is taken for part of the strip. */
     {FG_PICTURE_SHADOW, 0.25, true},
     {FG_PICTURE_SHADING, 0.05, true},
-    {FG_PICTURE_UNKNOWN_PROFILE, 0.2, true},
+    {FG_PICTURE_UNKNOWN_PROFILE, 0.2, false},
 };
 
 /* Of a foil: halo, wall or a cut-off level shape its edges, and all profiles say the same wrong

@@ -3,12 +3,15 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "core/date.h"
 #include "foilgauge/scan.h"
 #include "measure/again.h"
 #include "measure/colour.h"
+#include "measure/gauges.h"
+#include "measure/level.h"
 #include "measure/measure_discs.h"
 #include "measure/picture_gather.h"
 #include "measure/reader.h"
@@ -93,6 +96,16 @@ static fg_status keep_reading(fg_context *ctx, fg_tiles *tiles, void *data) {
   return FG_OK;
 }
 
+/* Gauges of a scan of discs are discs, and stay among them. */
+static fg_status match_discs(fg_context *ctx, fg_measurement *m) {
+  fg_gauge_sightings sightings = {0};
+  if (!m->design.gauge_count) return FG_OK;
+  fg_status status = fg_gauge_see_discs(ctx, m, &sightings);
+  if (status == FG_OK) fg_gauges_match(&sightings, m);
+  free(sightings.list);
+  return status;
+}
+
 static fg_status measure_discs(fg_context *ctx, fg_scan *scan, const fg_measure_options *options,
                                fg_measurement *m) {
   fg_budget budget = {.name = m->scan, .limit = memory_cap(options)};
@@ -100,6 +113,7 @@ static fg_status measure_discs(fg_context *ctx, fg_scan *scan, const fg_measure_
   FG_TRY(fg_budget_take(ctx, &budget, (size_t)fg_scan_get_info(scan)->memory_bytes));
   fg_status status = fg_reader_run(ctx, scan, keep_reading, NULL, &budget, &tiles, m->sha256);
   if (status == FG_OK) status = fg_measure_discs(ctx, &tiles, options->threads, m);
+  if (status == FG_OK) status = match_discs(ctx, m);
   fg_tiles_free(&tiles);
   return status;
 }
@@ -181,6 +195,45 @@ static fg_status refer(fg_context *ctx, unsigned threads, fg_measurement *m) {
   return FG_OK;
 }
 
+/* Gauges' lengths at 20 °C, as the parts'. */
+static void refer_gauges(fg_measurement *m) {
+  double factor = fg_calibration_factor(&m->design.calibration);
+  for (size_t i = 0; i < m->design.gauge_count; i++) {
+    fg_gauge_reading *gauge = &m->gauges[i];
+    gauge->measured_mm *= factor;
+    gauge->u_measured_mm *= factor;
+    gauge->blur_mm *= factor;
+  }
+}
+
+/* What is said of the gauges where nothing else is odd. */
+static void tell_gauges(fg_measurement *m) {
+  size_t found = 0, used = 0;
+  for (size_t i = 0; i < m->design.gauge_count; i++) {
+    found += m->gauges[i].found;
+    used += m->gauges[i].used;
+  }
+  if (m->warning[0] || (used == m->design.gauge_count && !m->gauges_contradict)) return;
+  if (m->gauges_contradict)
+    snprintf(m->warning, sizeof m->warning,
+             "the gauges on the glass contradict each other: uncertainties are wider for it");
+  else
+    snprintf(m->warning, sizeof m->warning, "%zu of %zu stated gauges found, %zu used: %s", found,
+             m->design.gauge_count, used,
+             used ? "the others tell nothing"
+                  : "widths keep the uncertainty of an unknown tone curve");
+}
+
+/* Moves all edges to the level that the gauges on the glass tell. */
+static fg_status use_gauges(fg_context *ctx, unsigned threads, fg_measurement *m) {
+  fg_level level;
+  if (!m->design.gauge_count) return FG_OK;
+  refer_gauges(m);
+  if (fg_level_of_gauges(m, &level)) FG_TRY(fg_level_apply(ctx, &level, threads, m));
+  tell_gauges(m);
+  return FG_OK;
+}
+
 /* A note, where nothing else is odd, and a flag of all that was measured. */
 static void tell_loss(fg_measurement *m) {
   for (size_t i = 0; i < m->foil_count; i++)
@@ -231,6 +284,7 @@ fg_status fg_measure_scan(fg_context *ctx, const char *path, const fg_design *de
     FG_TRY_EXIT(measure_foils(ctx, scan, options, measurement));
   FG_TRY_EXIT(fg_colour_measure(ctx, scan, memory_cap(options), options->threads, measurement));
   FG_TRY_EXIT(refer(ctx, options->threads, measurement));
+  FG_TRY_EXIT(use_gauges(ctx, options->threads, measurement));
   unsigned flags = check_resolution(measurement);
   for (size_t i = 0; i < measurement->foil_count; i++)
     measurement->foils[i].flags |= flags;

@@ -92,12 +92,47 @@ static fg_status fit_edge(fg_context *ctx, const disc_work *work, const fg_disc_
   return fg_disc_measure_again(ctx, disc);
 }
 
+static double count_of(double gamma, double light) {
+  return 255 * pow(fmax(light, 0) / 255, 1 / gamma);
+}
+
+static double mean_radius_px(const fg_disc_edge *edge) {
+  double sum = 0, n = 0;
+  for (size_t i = 0; i < edge->count; i++) {
+    if (!(edge->stations[i].weight > 0)) continue;
+    sum += (double)edge->stations[i].edge_px;
+    n++;
+  }
+  return edge->circle.radius + sum / n;
+}
+
+/* Diameter and blur with counts taken for the light. */
+static fg_status find_plain(fg_context *ctx, const disc_work *work,
+                            const fg_disc_candidate *candidate, const fg_disc_edge *edge,
+                            fg_disc *disc) {
+  static const fg_tone linear = {.gamma = 1, .plain = true};
+  fg_disc_edge plain = {0};
+  double um = work->shape.um;
+  disc->plain_mm = disc->diameter_mm;
+  disc->plain_blur_um = disc->blur_um;
+  if (work->tone.gamma == 1 && !edge->driven) return FG_OK;
+  FG_TRY(fg_disc_edge_measure(ctx, work->tiles, &work->shape, candidate, &linear, &plain));
+  disc->plain_mm += 2 * um / 1000 * (mean_radius_px(&plain) - mean_radius_px(edge));
+  disc->plain_blur_um = plain.blur_px * um;
+  disc->contrast = fabs(plain.inside - plain.outside);
+  fg_disc_edge_free(&plain);
+  return FG_OK;
+}
+
 static void describe(const disc_work *work, const fg_disc_edge *edge, fg_disc *disc) {
   disc->picture = edge->picture;
   double contrast = fabs(edge->inside - edge->outside);
   disc->bright = edge->inside > edge->outside;
   disc->hole = fabs(edge->outside - work->background) > BACKGROUND_SHARE * contrast;
   disc->blur_um = edge->blur_px * work->shape.um;
+  disc->spread_px = edge->spread_px;
+  disc->asymmetry = edge->asymmetry;
+  disc->contrast = fabs(count_of(edge->gamma, edge->inside) - count_of(edge->gamma, edge->outside));
 }
 
 static fg_status find_tone(fg_context *ctx, void *shared, size_t i) {
@@ -117,10 +152,30 @@ static fg_status measure_candidate(fg_context *ctx, void *shared, size_t i) {
                                           &work->tone, &edge);
   if (status == FG_OK) describe(work, &edge, disc);
   if (status == FG_OK) status = fit_edge(ctx, work, &edge, disc);
+  if (status == FG_OK) status = find_plain(ctx, work, &work->found->list[i], &edge, disc);
   if (status == FG_OK && disc->rms_um > ROUND_SHARE * 1000 * disc->radius_mm) fg_disc_free(disc);
   if (status != FG_OK) fg_disc_free(disc);
   fg_disc_edge_free(&edge);
   return status == FG_ERR_NUMERIC ? FG_OK : status;
+}
+
+fg_status fg_measure_disc_near(fg_context *ctx, const fg_tiles *tiles, const fg_pixel_shape *shape,
+                               const fg_measurement *m, const fg_disc_candidate *candidate,
+                               fg_disc *disc) {
+  fg_disc_candidate one = *candidate;
+  const fg_disc_candidates found = {.list = &one, .count = 1};
+  fg_tone tone;
+  disc_work work = {.tiles = tiles,
+                    .design = &m->design,
+                    .jpeg_quality = m->jpeg_quality,
+                    .shape = *shape,
+                    .found = &found,
+                    .tones = &tone,
+                    .discs = disc};
+  memset(disc, 0, sizeof *disc);
+  FG_TRY(find_tone(ctx, &work, 0));
+  work.tone = fg_tone_pool(&tone, 1);
+  return measure_candidate(ctx, &work, 0);
 }
 
 /* Two candidates may have led to one edge: the one that is seen over more of the turn stays. */

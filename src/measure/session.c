@@ -9,6 +9,7 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "core/select.h"
+#include "measure/gauges.h"
 #include "measure/measure_beams.h"
 #include "measure/place.h"
 #include "vision/anchor.h"
@@ -58,6 +59,7 @@ struct fg_session {
   fg_context context;
   size_t light, dark;  /* islands by polarity */
   fg_flat_parts parts; /* form cantilever */
+  fg_gauge_sightings sightings;
   size_t foil_capacity;
 };
 
@@ -81,6 +83,22 @@ static void count_specks(fg_session *s, size_t specks) {
 
 static double expected_width_px(const fg_measurement *m) {
   return m->design.thickness_mm * sqrt(m->dpi[0] * m->dpi[1]) / 25.4;
+}
+
+static double least_object_mm(const fg_design *design) {
+  if (design->form == FG_FORM_CANTILEVER) return BEAM_LEAST * design->beam_length_mm;
+  if (design->form != FG_FORM_ARC) return OBJECT_LEAST * design->bump_radius_mm;
+  return ARC_LEAST * design->overall_radius_mm * fmin(design->subtended_angle_deg * M_PI / 180, 1);
+}
+
+/* Diagonal of the smallest object that may be a foil. */
+static double least_foil_px(const fg_measurement *m) {
+  return least_object_mm(&m->design) * sqrt(m->dpi[0] * m->dpi[1]) / 25.4;
+}
+
+/* Of the smallest that is no dust: a foil or a gauge. */
+static double least_object_px(const fg_measurement *m) {
+  return fmin(least_foil_px(m), fg_gauge_least_px(m));
 }
 
 static void find_loss(const fg_measurement *m, fg_strip *strip) {
@@ -124,46 +142,65 @@ typedef struct traced {
 
 /* A gap parts a strip into two objects, and each one's trace runs over it along the whole strip. */
 static bool is_traced(const traced *done, const fg_trace *trace) {
-  for (size_t i = 0; i < done->count; i++)
+  for (size_t i = 0; i + 1 < done->count; i++) /* the last one is its own object's */
     for (size_t k = 0; k < done->lists[i].count; k++)
       if (fg_trace_is_same(&done->lists[i].traces[k], trace)) return true;
   return false;
 }
 
+static fg_status keep_sightings(fg_context *ctx, fg_session *s, fg_gauge_sightings *seen) {
+  fg_status status = FG_OK;
+  pthread_mutex_lock(&s->lock);
+  for (size_t i = 0; i < seen->count && status == FG_OK; i++)
+    status = fg_gauge_sightings_add(ctx, &s->sightings, &seen->list[i]);
+  pthread_mutex_unlock(&s->lock);
+  seen->count = 0;
+  return status;
+}
+
+/* What a trace shows: a gauge, or a foil. */
+static fg_status measure_gauge_or_foil(fg_context *ctx, fg_session *s, const job *j,
+                                       const fg_gauge_object *object, const fg_trace *trace,
+                                       fg_gauge_sightings *seen) {
+  bool taken;
+  FG_TRY(fg_gauge_see_leaf(ctx, object, trace, s->threads, seen, &taken));
+  return taken ? FG_OK : measure_trace(ctx, s, j, object->segmentation, trace);
+}
+
 static fg_status measure_object(fg_context *ctx, fg_session *s, const job *j,
-                                const fg_segmentation *seg, size_t i, traced *done) {
-  fg_trace_list *list = &done->lists[i];
-  FG_TRY(fg_trace_object(ctx, &j->view, seg, &seg->objects[i], expected_width_px(s->measurement),
-                         list));
-  if (!list->count) count_specks(s, 1);
+                                const fg_segmentation *seg, size_t i, traced *done,
+                                fg_gauge_sightings *seen) {
+  const fg_gauge_object object = {s->measurement, &j->view, seg, &seg->objects[i], j->origin_px};
+  fg_trace_list *list = &done->lists[done->count++];
+  double diagonal = FG_BLOCK_PX * hypot(object.object->width, object.object->height);
+  bool taken = false, sought = s->measurement->design.gauge_count > 0;
+  if (sought) FG_TRY(fg_gauge_see_round(ctx, &object, seen, &taken));
+  if (taken) return FG_OK;
+  if (diagonal >= least_foil_px(s->measurement))
+    FG_TRY(fg_trace_object(ctx, &j->view, seg, object.object, expected_width_px(s->measurement),
+                           list));
   for (size_t k = 0; k < list->count; k++)
-    if (!is_traced(done, &list->traces[k])) FG_TRY(measure_trace(ctx, s, j, seg, &list->traces[k]));
-  done->count++;
+    if (!is_traced(done, &list->traces[k]))
+      FG_TRY(measure_gauge_or_foil(ctx, s, j, &object, &list->traces[k], seen));
+  if (!list->count && sought) FG_TRY(fg_gauge_trace_leaf(ctx, &object, s->threads, seen, &taken));
+  if (!list->count && !taken) count_specks(s, 1);
   return FG_OK;
 }
 
 static fg_status measure_objects(fg_context *ctx, fg_session *s, const job *j,
                                  const fg_segmentation *seg) {
   traced done = {0};
+  fg_gauge_sightings seen = {0};
   fg_status status = FG_OK;
   FG_TRY(fg_memory_allocate(ctx, seg->object_count, sizeof *done.lists, (void **)&done.lists));
   for (size_t i = 0; i < seg->object_count && status == FG_OK; i++)
-    status = measure_object(ctx, s, j, seg, i, &done);
+    status = measure_object(ctx, s, j, seg, i, &done, &seen);
+  if (status == FG_OK) status = keep_sightings(ctx, s, &seen);
+  free(seen.list);
   for (size_t i = 0; i < seg->object_count; i++)
     fg_trace_list_free(&done.lists[i]);
   free(done.lists);
   return status;
-}
-
-static double least_object_mm(const fg_design *design) {
-  if (design->form == FG_FORM_CANTILEVER) return BEAM_LEAST * design->beam_length_mm;
-  if (design->form != FG_FORM_ARC) return OBJECT_LEAST * design->bump_radius_mm;
-  return ARC_LEAST * design->overall_radius_mm * fmin(design->subtended_angle_deg * M_PI / 180, 1);
-}
-
-/* Diagonal of the smallest object that is no dust. */
-static double least_object_px(const fg_measurement *m) {
-  return least_object_mm(&m->design) * sqrt(m->dpi[0] * m->dpi[1]) / 25.4;
 }
 
 static void free_job(job *j) {
@@ -401,6 +438,14 @@ static void end_work(fg_session *s) {
   pthread_mutex_unlock(&s->lock);
 }
 
+/* Strips and discs that are no gauge of the design. */
+static void count_unmatched(fg_session *s) {
+  size_t found = 0;
+  for (size_t i = 0; i < s->measurement->design.gauge_count; i++)
+    found += s->measurement->gauges[i].found;
+  s->measurement->specks += s->sightings.count - found;
+}
+
 fg_status fg_session_finish(fg_context *ctx, fg_session *s) {
   end_work(s);
   while (work_on_one(s, false))
@@ -413,6 +458,8 @@ fg_status fg_session_finish(fg_context *ctx, fg_session *s) {
   if (s->measurement->design.form == FG_FORM_CANTILEVER)
     FG_TRY(fg_flat_foils_assemble(ctx, &s->parts, s->measurement));
   sort_foils(s->measurement);
+  fg_gauges_match(&s->sightings, s->measurement);
+  count_unmatched(s);
   return FG_OK;
 }
 
@@ -429,6 +476,7 @@ void fg_session_free(fg_session *s) {
   free(s->queue);
   fg_islands_free(s->islands);
   fg_flat_parts_free(&s->parts);
+  free(s->sightings.list);
   pthread_mutex_destroy(&s->lock);
   pthread_cond_destroy(&s->changed);
   free(s);

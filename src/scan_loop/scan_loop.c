@@ -207,6 +207,7 @@ static fg_status search(fg_context *ctx, fg_scan_loop *loop) {
   if (loop->tied) fg_scan_loop_put_ranges(loop);
   FG_TRY(search_bumps(ctx, loop));
   FG_TRY(fg_explain_width(ctx, &loop->points, &loop->set, &loop->width));
+  loop->tone = fg_model_tone_find(loop, true);
   loop->verdict = fg_scan_loop_outcome(loop);
   return fg_scan_loop_decide(ctx, loop);
 }
@@ -238,6 +239,26 @@ static fg_status calibrate(fg_context *ctx, fg_scan_loop *loop) {
   return FG_OK;
 }
 
+static fg_status close_loop(fg_context *ctx, fg_scan_loop *loop, fg_scan_loop **result);
+
+/* Anew, with the edges where the known diameters say that they are: a level that all discs
+ * share looks like a scale that falls with their size. */
+static fg_status level_again(fg_context *ctx, fg_scan_loop *loop, fg_scan_loop **result) {
+  fg_scan_loop *next = NULL;
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(create(ctx, loop->hold_out, loop->scan_count, &loop->options, &next));
+  memcpy(next->before, loop->before, loop->scan_count * sizeof *loop->before);
+  memset(loop->before, 0, loop->scan_count * sizeof *loop->before);
+  next->levelled = true;
+  for (size_t i = 0; i < next->scan_count; i++)
+    FG_TRY_EXIT(fg_level_apply(ctx, &loop->tone.level, next->options.threads, &next->before[i]));
+exit:
+  fg_scan_loop_free(loop);
+  if (status == FG_OK) return close_loop(ctx, next, result);
+  fg_scan_loop_free(next);
+  return status;
+}
+
 /* From measured scans to the result; frees the loop when it fails. */
 static fg_status close_loop(fg_context *ctx, fg_scan_loop *loop, fg_scan_loop **result) {
   fg_status status = FG_OK;
@@ -246,7 +267,12 @@ static fg_status close_loop(fg_context *ctx, fg_scan_loop *loop, fg_scan_loop **
   FG_TRY_EXIT(
       fg_scan_loop_bumps_check_forming(ctx, loop->options.forming, loop->before, loop->scan_count));
   FG_TRY_EXIT(build_points(ctx, loop));
+  loop->tone = fg_model_tone_find(loop, false);
+  if (!loop->levelled && fg_model_tone_is_significant(&loop->tone))
+    return level_again(ctx, loop, result);
   FG_TRY_EXIT(search(ctx, loop));
+  if (!loop->levelled && fg_model_tone_is_significant(&loop->tone))
+    return level_again(ctx, loop, result);
   FG_TRY_EXIT(calibrate(ctx, loop));
   *result = loop;
 exit:

@@ -166,6 +166,8 @@ fg_status fg_scanner_model_apply(fg_context *ctx, const fg_scanner_model *model,
                    "belongs into the design's calibration",
                    m->scan);
   FG_TRY(check_place(ctx, model, m, warning));
+  FG_TRY(fg_model_tone_apply(ctx, &model->tone, threads, m));
+  if (!m->warning[0]) snprintf(m->warning, sizeof m->warning, "%s", m->tone_note);
   fg_measurement corrected = {0};
   fg_model_doubt doubt;
   fg_status status = FG_OK;

@@ -6,6 +6,7 @@
 #include "field/field.h"
 #include "foilgauge/scan_loop.h"
 #include "scan_loop/pays.h"
+#include "scan_loop/scanner_model_tone.h"
 
 enum { FG_MODEL_DATE = 32 };
 /* Amplitudes and shapes of all fields. */
@@ -20,6 +21,7 @@ struct fg_scanner_model {
   size_t scans;           /* that it was found on; 0: not said */
   size_t known_diameters; /* gauges of them; 0: its absolute scale is not known */
   bool tied;
+  fg_model_tone tone;
   fg_field_list fields;
   /* What the explanations that were tied with it would correct instead. */
   fg_field_list other[FG_EXPLANATIONS_MAX];

@@ -167,6 +167,7 @@ static fg_status read_model(fg_context *ctx, const cJSON *root, fg_scanner_model
   FG_TRY(read_scanner(ctx, root, model));
   FG_TRY(read_origin(ctx, root, model));
   FG_TRY(read_place(ctx, root, model));
+  FG_TRY(fg_model_tone_read(ctx, root, &model->tone));
   FG_TRY(
       read_fields(ctx, "fields", cJSON_GetObjectItemCaseSensitive(root, "fields"), &model->fields));
   return read_others(ctx, root, model);
@@ -221,7 +222,7 @@ bool fg_scanner_model_is_tied(const fg_scanner_model *model) {
 }
 
 bool fg_scanner_model_is_empty(const fg_scanner_model *model) {
-  return model->fields.count == 0 && model->others == 0;
+  return model->fields.count == 0 && model->others == 0 && !model->tone.gauges;
 }
 
 fg_status fg_scanner_model_check_scanner(fg_context *ctx, const fg_scanner_model *model,

@@ -41,6 +41,7 @@ fg_status fg_scanner_model_of(fg_context *ctx, const fg_scan_loop *loop, fg_scan
     made->dpi[axis] = first->dpi[axis] * fg_calibration_factor(&first->design.calibration);
   made->scans = loop->scan_count;
   made->known_diameters = known_diameters(loop);
+  made->tone = loop->tone;
   fg_effect_set_fields(&loop->points, &loop->set, &made->fields);
   for (size_t k = 0; k < loop->tie_count; k++)
     if (!loop->unlikely[k])
@@ -117,6 +118,7 @@ fg_status fg_scan_loop_write_model(fg_context *ctx, const fg_scan_loop *loop, FI
   write_place(&json, model);
   write_inputs(&json, &loop->result);
   fg_json_integer(&json, "known_diameters", (int64_t)model->known_diameters);
+  fg_model_tone_write(&json, &model->tone);
   fg_json_bool(&json, "tied", model->tied);
   write_fields(&json, "fields", &model->fields);
   fg_json_array(&json, "alternatives");

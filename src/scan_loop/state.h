@@ -10,6 +10,7 @@
 #include "rows/points.h"
 #include "scan_loop/bumps.h"
 #include "scan_loop/pays.h"
+#include "scan_loop/scanner_model_tone.h"
 #include "scan_loop/verdict.h"
 
 /* Lowest and highest value of a dimension over the tied explanations. */
@@ -40,6 +41,8 @@ struct fg_scan_loop {
   fg_pays *pays;           /* per scan: what the explanations would move; NULL: no effects */
   fg_width_findings width; /* what moves the strip's edges apart; with the set in force */
   fg_scan_loop_bumps bumps; /* the bumps of `after` against the declared springback model */
+  fg_model_tone tone;       /* the level of the discs' edges, where their diameters are known */
+  bool levelled;            /* and the edges were moved to it */
   fg_loop_outcome verdict;
   fg_scan_result result; /* what is said of all of it */
 };

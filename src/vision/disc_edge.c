@@ -6,6 +6,7 @@
 #include "core/memory.h"
 #include "core/select.h"
 #include "core/spread.h"
+#include "vision/edge_spread.h"
 #include "vision/picture.h"
 
 enum { CENTRE_ROUNDS = 3, TRIM_ROUNDS = 4, SECTORS_LEAST = 12, SECTORS_MOST = 64 };
@@ -193,12 +194,35 @@ double fg_disc_level_doubt(const fg_disc_work *work, const fg_tone *tone,
   return hypot(white, change);
 }
 
+/* The sectors' mean profiles. */
+static void find_spread(const fg_disc_work *work, fg_disc_edge *edge) {
+  fg_edge_spread spread = {.sum = {0}};
+  for (size_t s = 0; s < work->ring.sector_count; s++) {
+    const fg_step_fit *fit = &work->sectors[s];
+    if (!fit->good) continue;
+    double sides[2];
+    for (int i = 0; i < 2; i++)
+      sides[i] =
+          255 * pow(fmax(fit->values[FG_STEP_INSIDE + i], 0) / 255, 1 / fit->values[FG_STEP_GAMMA]);
+    for (size_t i = 0; i < work->bin_count; i++) {
+      const fg_profile_bin *bin = &work->bins[s * work->bin_count + i];
+      double outwards = bin->across_px - fit->values[FG_STEP_EDGE];
+      double share = (bin->value - fmin(sides[0], sides[1])) / fabs(sides[0] - sides[1]);
+      if (bin->count > 0)
+        fg_edge_spread_add(&spread, sides[1] > sides[0] ? outwards : -outwards, share, bin->count);
+    }
+  }
+  fg_edge_spread_measure(&spread, &edge->spread_px, &edge->asymmetry);
+}
+
 static fg_status run(fg_context *ctx, fg_disc_work *work, const fg_disc_candidate *candidate,
                      const fg_tone *tone, fg_disc_edge *edge) {
   FG_TRY(find_ring(ctx, work, candidate, &edge->sector_rms_px));
   FG_TRY(find_shape(ctx, work));
-  FG_TRY(fg_disc_find_driver(ctx, work));
+  find_spread(work, edge);
+  if (!tone->plain) FG_TRY(fg_disc_find_driver(ctx, work));
   edge->gamma = work->gamma;
+  edge->driven = work->driver != NULL;
   edge->circle = work->ring.circle;
   edge->count = work->ring.station_count;
   FG_TRY(fg_memory_allocate(ctx, edge->count, sizeof *edge->stations, (void **)&edge->stations));

@@ -41,9 +41,11 @@ typedef struct fg_disc_edge {
   double blur_px, noise, gamma;
   double sector_rms_px; /* of the sectors' edges about the circle */
   fg_picture_state picture;
-  double level_doubt_px; /* what all edge_px may be wrong by together: for the tone curve's
-                            doubt, and, where the scale ends at white, for light a tenth of
-                            the contrast beyond it */
+  double spread_px, asymmetry; /* vision/edge_spread.h */
+  bool driven; /* a driver's model is in force */
+  double level_doubt_px;       /* what all edge_px may be wrong by together: for the tone curve's
+                                  doubt, and, where the scale ends at white, for light a tenth of
+                                  the contrast beyond it */
 } fg_disc_edge;
 
 /* The tone curve, G(u) = 255 (u/255)^(1/gamma). */
@@ -52,6 +54,7 @@ typedef struct fg_tone {
   double doubt;          /* standard deviation; INFINITY: not known */
   bool slopes;           /* a halo or a wall beside the edge may have made the asymmetry */
   double found, u_found; /* of a pool: the exponent before it is taken for 1; found 0: not known */
+  bool plain; /* counts are taken for the light, whatever the edge says */
 } fg_tone;
 
 /* What the edge around a candidate says of the tone curve: its asymmetry, where no side is white.

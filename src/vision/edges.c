@@ -6,6 +6,7 @@
 
 #include "core/memory.h"
 #include "core/select.h"
+#include "vision/edge_spread.h"
 #include "vision/ends.h"
 #include "vision/picture.h"
 
@@ -75,6 +76,27 @@ static void fill_stations(const fg_edge_work *work, const double dpi[2], fg_stri
   }
 }
 
+/* The segments' mean profiles, each side up to the strip's middle. */
+static void find_spread(const fg_edge_work *work, fg_strip *strip) {
+  fg_edge_spread spread = {.sum = {0}};
+  for (size_t k = 0; k < work->segment_count; k++) {
+    const fg_profile_fit *fit = &work->segments[k].fit;
+    if (!fit->good) continue;
+    double middle = 0.5 * (fit->edge_px[0] + fit->edge_px[1]), rate;
+    double inside = fg_edges_count(work, fmax(fit->shape.plateau, 0), &rate);
+    for (size_t i = 0; i < work->bin_count; i++) {
+      const fg_profile_bin *bin = &work->segments[k].bins[i];
+      int side = bin->across_px > middle;
+      double outside = fg_edges_count(work, fmax(fit->shape.level[side], 0), &rate);
+      double inwards = side ? fit->edge_px[1] - bin->across_px : bin->across_px - fit->edge_px[0];
+      double share = (bin->value - fmin(inside, outside)) / fabs(inside - outside);
+      if (bin->count > 0)
+        fg_edge_spread_add(&spread, inside > outside ? inwards : -inwards, share, bin->count);
+    }
+  }
+  fg_edge_spread_measure(&spread, &strip->spread_px, &strip->asymmetry);
+}
+
 static fg_status summarise(fg_context *ctx, const fg_edge_work *work, const double dpi[2],
                            fg_strip *strip) {
   double um = 25400 / sqrt(dpi[0] * dpi[1]);
@@ -87,6 +109,8 @@ static fg_status summarise(fg_context *ctx, const fg_edge_work *work, const doub
   fg_edges_describe_driver(work, &strip->picture);
   strip->gamma = work->gamma;
   strip->u_gamma = work->u_gamma;
+  find_spread(work, strip);
+  strip->bright = work->bright;
   strip->tone_um = work->tone_px * um;
   if (work->clipped) strip->facts |= FG_STRIP_CLIPPED;
   if (work->side_band) strip->facts |= FG_STRIP_SIDE_BAND;
@@ -160,23 +184,62 @@ static fg_status build_reference(fg_context *ctx, const fg_trace *trace, const d
   return fg_reference_build(ctx, trace->points, trace->count, smooth_px, step_px, reference);
 }
 
+static fg_edge_work begin_work(const fg_tiles *tiles, const fg_segmentation *segmentation,
+                               const fg_trace *trace, const fg_reference *reference,
+                               const fg_edge_options *options) {
+  return (fg_edge_work){.tiles = tiles,
+                        .segmentation = segmentation,
+                        .trace = trace,
+                        .reference = reference,
+                        .threads = options->threads,
+                        .linear = options->linear,
+                        .width_px = trace->width_px,
+                        .reach_px =
+                            fmin(BAND_BLURS * trace->blur_px + BAND_MARGIN_PX, BAND_MOST_PX),
+                        .noise = 1,
+                        .gamma = 1,
+                        .u_driver_px = NAN,
+                        .contrast = trace->contrast};
+}
+
+static void take_plain(const fg_edge_work *work, const fg_strip *from, const double dpi[2],
+                       fg_strip *strip) {
+  double um = 25400 / sqrt(dpi[0] * dpi[1]);
+  strip->plain_mm = from->thickness_mm;
+  strip->plain_blur_um = 0.5 * (work->blur_px[0] + work->blur_px[1]) * um;
+  strip->plain_counts = work->contrast;
+  strip->plain_side_band = work->side_band;
+}
+
+/* The strip once more with counts taken for the light. */
+static fg_status find_plain(fg_context *ctx, const fg_edge_work *model,
+                            const fg_edge_options *options, fg_strip *strip) {
+  fg_edge_work work =
+      begin_work(model->tiles, model->segmentation, model->trace, model->reference, options);
+  fg_strip plain = {0};
+  unsigned facts = 0;
+  fg_status status = FG_OK;
+  work.linear = work.plain = true;
+  FG_TRY_EXIT(allocate_work(ctx, &work));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, model->reference->count, sizeof *plain.stations,
+                                 (void **)&plain.stations));
+  plain.count = model->reference->count;
+  FG_TRY_EXIT(run(ctx, &work, &facts));
+  fill_stations(&work, options->dpi, &plain);
+  FG_TRY_EXIT(fg_strip_measure_thickness(ctx, &plain));
+  take_plain(&work, &plain, options->dpi, strip);
+exit:
+  free_work(&work);
+  fg_strip_free(&plain);
+  return status == FG_ERR_NUMERIC ? FG_OK : status;
+}
+
 fg_status fg_edges_measure(fg_context *ctx, const fg_tiles *tiles,
                            const fg_segmentation *segmentation, const fg_trace *trace,
                            const fg_edge_options *options, fg_strip *strip) {
   const double *dpi = options->dpi;
   fg_reference reference = {0};
-  fg_edge_work work = {.tiles = tiles,
-                       .segmentation = segmentation,
-                       .trace = trace,
-                       .reference = &reference,
-                       .threads = options->threads,
-                       .linear = options->linear,
-                       .width_px = trace->width_px,
-                       .reach_px = fmin(BAND_BLURS * trace->blur_px + BAND_MARGIN_PX, BAND_MOST_PX),
-                       .noise = 1,
-                       .gamma = 1,
-                       .u_driver_px = NAN,
-                       .contrast = trace->contrast};
+  fg_edge_work work = begin_work(tiles, segmentation, trace, &reference, options);
   fg_status status = FG_OK;
   FG_TRY_EXIT(build_reference(ctx, trace, dpi, &reference));
   FG_TRY_EXIT(allocate_work(ctx, &work));
@@ -191,6 +254,11 @@ fg_status fg_edges_measure(fg_context *ctx, const fg_tiles *tiles,
   find_box(&reference, strip);
   fg_ends_measure(&work, dpi, strip);
   FG_TRY_EXIT(summarise(ctx, &work, dpi, strip));
+  strip->plain_mm = NAN;
+  if (work.gamma != 1 || work.driver)
+    FG_TRY_EXIT(find_plain(ctx, &work, options, strip));
+  else
+    take_plain(&work, strip, dpi, strip);
 exit:
   fg_reference_free(&reference);
   free_work(&work);

@@ -96,11 +96,13 @@ typedef struct fg_edge_work {
   double thickness_px, blur_px[2];
   double gamma, u_gamma;
   double tone_px;    /* of thickness per unit of ln gamma, the counts of all levels kept */
+  bool bright;       /* the strip */
   fg_driver *driver; /* NULL: a power of the light, which is gamma, is all that it does */
   fg_driver_tone *driver_tone;
   double u_driver_px; /* of an edge, outwards: what is left open of the driver; NaN: not asked */
   double level_step;  /* mean distance of the counts in use */
   bool unexplained;   /* no driver's model explains the profiles */
+  bool plain;         /* counts are taken for the light, whatever the profiles say */
   int round;          /* of Gauss-Newton */
   bool again; /* stations are known: foreign pixels beside the strip are left out of the shape */
 } fg_edge_work;

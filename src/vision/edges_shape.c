@@ -264,7 +264,7 @@ static fg_status fit_all(fg_context *ctx, fg_edge_work *work) {
 static fg_status fit_segments(fg_context *ctx, fg_edge_work *work) {
   bool found = false;
   FG_TRY(fit_all(ctx, work));
-  if (!work->again) FG_TRY(fg_edges_find_driver(ctx, work, &found));
+  if (!work->again && !work->plain) FG_TRY(fg_edges_find_driver(ctx, work, &found));
   if (found) FG_TRY(fit_all(ctx, work));
   return fg_edges_smooth_shape(ctx, work, true);
 }

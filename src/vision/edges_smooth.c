@@ -183,7 +183,9 @@ static void summarise(fg_edge_work *work, double *scratch) {
   work->blur_px[1] = median_of(work, scratch, get_blur_right);
   const double level[2] = {median_of(work, scratch, get_level_left),
                            median_of(work, scratch, get_level_right)};
-  work->tone_px = tone_shift(work, median_of(work, scratch, get_plateau), level);
+  double plateau = median_of(work, scratch, get_plateau), around = 0.5 * (level[0] + level[1]);
+  work->tone_px = tone_shift(work, plateau, level);
+  work->bright = plateau > around;
   work->side_band = median_of(work, scratch, get_band) > 0.08 * work->contrast;
   work->clipped |= median_of(work, scratch, get_extreme) > 253.5;
   for (size_t k = 0; k < work->reference->count; k++) {

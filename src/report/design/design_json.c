@@ -204,6 +204,55 @@ static fg_status read_calibration(const reader *r, const char *name, const cJSON
   return fg_fail(r->ctx, status, "%s: %.*s", r->path, MESSAGE_MAX, words.message);
 }
 
+static fg_status read_gauge_kind(const reader *r, const char *name, const cJSON *item,
+                                 fg_gauge_kind *kind) {
+  static const char *const words[] = {"leaf", "pin", "ring", "hole", NULL};
+  int place = 0;
+  FG_TRY(read_word(r, name, item, words, "\"leaf\", \"pin\", \"ring\" or \"hole\"", &place));
+  *kind = (fg_gauge_kind)place;
+  return FG_OK;
+}
+
+static fg_status read_gauge(const reader *r, const char *name, const cJSON *item, fg_gauge *gauge) {
+  static const char *const members[] = {"kind", "width_mm", "u_mm"};
+  unsigned given = 0;
+  if (!cJSON_IsObject(item)) return fail(r, name, "must be an object");
+  for (const cJSON *member = item->child; member; member = member->next) {
+    char full[80];
+    snprintf(full, sizeof full, "%.40s.%.30s", name, member->string);
+    if (earlier_twin(item, member)) return fail(r, full, "is given twice");
+    if (!strcmp(member->string, members[0]))
+      FG_TRY(read_gauge_kind(r, full, member, &gauge->kind));
+    else if (!strcmp(member->string, members[1]))
+      FG_TRY(read_number(r, full, member, &gauge->width_mm));
+    else if (!strcmp(member->string, members[2]))
+      FG_TRY(read_number(r, full, member, &gauge->u_mm));
+    else
+      return fail(r, full, "is not known; a gauge has \"kind\", \"width_mm\" and \"u_mm\"");
+    for (unsigned i = 0; i < 3; i++)
+      if (!strcmp(member->string, members[i])) given |= 1u << i;
+  }
+  for (unsigned i = 0; i < 3; i++)
+    if (!(given & 1u << i)) return fail(r, name, "\"%s\" is missing", members[i]);
+  return FG_OK;
+}
+
+/* A file's gauges replace those that were there. */
+static fg_status read_gauges(const reader *r, const char *name, const cJSON *item, void *out) {
+  fg_design *design = out;
+  if (!cJSON_IsArray(item)) return fail(r, name, "must be an array of gauges");
+  design->gauge_count = 0;
+  for (const cJSON *entry = item->child; entry; entry = entry->next) {
+    char full[48];
+    snprintf(full, sizeof full, "%s[%zu]", name, design->gauge_count);
+    if (design->gauge_count == FG_GAUGES_MAX)
+      return fail(r, name, "more than %d gauges", FG_GAUGES_MAX);
+    FG_TRY(read_gauge(r, full, entry, &design->gauges[design->gauge_count]));
+    design->gauge_count++;
+  }
+  return FG_OK;
+}
+
 /* One row per member; offset 0 hands the whole design to the reader. */
 typedef struct member_row {
   const char *name;
@@ -264,11 +313,19 @@ static const member_row member_rows[] = {
            "Of the bearing with beams of this sagitta; its change is then told in percent, too."),
     {"diameters_mm", read_diameters, 0,
      "Of form \"discs\" alone: known diameters of the gauges, in any order."},
+    MEMBER(u_diameters_mm, read_number,
+           "Standard uncertainty of each of these diameters; without it 0.0005 where the level of "
+           "edges is told from them."),
     {"tolerances", read_tolerances, 0,
      "An object of quantities with \"min\", \"max\" or both; below."},
     MEMBER(calibration, read_calibration,
            "What the statistics of a scan cannot know: how long a pixel is, how warm the part was; "
            "below."),
+    {"gauges", read_gauges, 0,
+     "An array of gauges that lie on the glass in the same scan, as {\"kind\": \"leaf\", "
+     "\"width_mm\": 0.1, \"u_mm\": 0.0005}: a \"leaf\" of a feeler gauge standing on its edge, a "
+     "\"pin\" seen end-on, a \"ring\" of known bore or a \"hole\", with its known width and the "
+     "standard uncertainty of that. They tell at which level edges lie."},
 };
 #undef MEMBER
 

@@ -9,6 +9,7 @@
 #include "report/correction_words.h"
 #include "report/design/calibration_json.h"
 #include "report/measure/colour_lines_report.h"
+#include "report/measure/gauge_report.h"
 #include "report/measure/picture_report.h"
 #include "report/measure/scan_model_words.h"
 #include "report/measure/uncertainty_budget.h"
@@ -64,6 +65,7 @@ void fg_json_design(fg_json *json, const char *name, const fg_design *design) {
   fg_json_string(json, "form", fg_form_word(design->form));
   if (design->form == FG_FORM_DISCS) {
     fg_json_numbers(json, "diameters_mm", design->diameters_mm, design->diameter_count);
+    write_stated(json, "u_diameters_mm", design->u_diameters_mm);
   } else if (design->form == FG_FORM_ARC) {
     fg_json_string(json, "datum", fg_datum_word(design->datum));
     fg_json_number(json, "overall_radius_mm", design->overall_radius_mm);
@@ -88,6 +90,7 @@ void fg_json_design(fg_json *json, const char *name, const fg_design *design) {
   write_known(json, design);
   write_tolerances(json, design);
   if (design->calibration.stated) fg_json_calibration(json, "calibration", &design->calibration);
+  if (design->gauge_count) fg_json_gauges_stated(json, design);
   fg_json_object_end(json);
 }
 
@@ -324,6 +327,8 @@ static fg_status write_scan(fg_context *ctx, fg_json *json, const fg_report *rep
   fg_json_integer(json, "specks", (int64_t)measurement->specks);
   fg_json_colour_lines(json, measurement);
   fg_json_picture_state(json, measurement);
+  fg_json_gauges(json, measurement);
+  if (measurement->tone_note[0]) fg_json_string(json, "tone_note", measurement->tone_note);
   fg_json_array(json, "foils");
   for (size_t i = 0; i < measurement->foil_count; i++)
     FG_TRY(fg_json_foil(ctx, json, report->design, &measurement->foils[i]));

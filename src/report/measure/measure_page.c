@@ -7,6 +7,7 @@
 #include "report/correction_words.h"
 #include "report/drawing.h"
 #include "report/measure/colour_lines_report.h"
+#include "report/measure/gauge_report.h"
 #include "report/measure/measure_page_tables.h"
 #include "report/measure/picture_report.h"
 #include "report/measure/scan_model_words.h"
@@ -251,6 +252,7 @@ static fg_status put_foil_section(fg_context *ctx, FILE *out, const fg_report *r
   if (foil == measurement->foils) {
     fg_html_colour_lines(out, measurement);
     fg_html_picture_state(out, measurement);
+    fg_html_gauges(out, measurement);
   }
   if (measured) put_uncertainty(out, measurement, foil);
   return put_facts(ctx, out, design, measurement);
@@ -306,6 +308,7 @@ static fg_status put_discs(fg_context *ctx, FILE *out, const fg_report *report,
   fg_html_disc_table(out, report->design, measurement);
   fg_html_colour_lines(out, measurement);
   fg_html_picture_state(out, measurement);
+  fg_html_gauges(out, measurement);
   put_uncertainty(out, measurement, NULL);
   FG_TRY(put_facts(ctx, out, report->design, measurement));
   fputs("</section>\n", out);

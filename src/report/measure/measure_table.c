@@ -9,6 +9,7 @@
 #include "quantity/quantity_rows.h"
 #include "report/correction_words.h"
 #include "report/measure/colour_lines_report.h"
+#include "report/measure/gauge_report.h"
 #include "report/measure/outcome_words.h"
 #include "report/measure/picture_report.h"
 #include "report/measure/scan_model_words.h"
@@ -277,6 +278,7 @@ static fg_status put_scan(fg_context *ctx, FILE *out, const fg_design *design,
   fputc('\n', out);
   fg_text_colour_lines(out, measurement);
   fg_text_picture_state(out, measurement);
+  fg_text_gauges(out, measurement);
   FG_TRY(fg_text_scan_model(ctx, out, measurement->model));
   for (size_t i = 0; i < measurement->foil_count; i++)
     put_foil(out, design, &measurement->foils[i]);

@@ -1,0 +1,224 @@
+/* Gauges among the objects of a scan of foils: measured with the edge models of foils and discs. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "measure/gauges.h"
+#include "measure/measure_discs.h"
+#include "vision/edges.h"
+#include "vision/grid.h"
+
+/* A leaf stands straight, or is bent evenly by less than this share of its length; where the foil
+ * itself is a plain arc, by less than this share of what that is. Evenly: a parabola runs within
+ * half its width all along, which no strip with bumps does. */
+#define BEND_MOST      0.1
+#define BEND_ARC_SHARE 0.4
+#define EVEN_WIDTHS    0.5
+/* A round object's box is as wide as high, within this share of it, and as wide as a stated gauge
+ * within that, beside the blocks at its borders. */
+#define ASPECT_SHARE 0.1
+#define SIZE_SHARE   0.1
+/* Blocks that hold part of an edge count to the object: its outline lies so far outside. */
+#define OUTLINE_PX 3.0
+#define DOUBT_PX   8.0
+/* Smallest radius of a disc's edge. */
+#define RADIUS_LEAST_PX 14.0
+
+static bool is_stated(const fg_design *design, fg_gauge_kind from, fg_gauge_kind to) {
+  for (size_t i = 0; i < design->gauge_count; i++)
+    if (design->gauges[i].kind >= from && design->gauges[i].kind <= to) return true;
+  return false;
+}
+
+/* ---- leaves ---- */
+
+/* Distance of a point of the trace from the chord of its ends, px, and how far along it is, -1 to
+ * 1. */
+static double off_chord(const fg_trace *trace, size_t i, double *along) {
+  fg_point a = trace->points[0], b = trace->points[trace->count - 1], p = trace->points[i];
+  double dx = b.x - a.x, dy = b.y - a.y, chord = hypot(dx, dy);
+  *along = 2 * ((p.x - a.x) * dx + (p.y - a.y) * dy) / (chord * chord) - 1;
+  return ((p.x - a.x) * dy - (p.y - a.y) * dx) / chord;
+}
+
+/* Sagitta over the chord of a strip that is bent evenly; INFINITY of any other. */
+static double bend_of(const fg_trace *trace) {
+  fg_point a = trace->points[0], b = trace->points[trace->count - 1];
+  double chord = hypot(b.x - a.x, b.y - a.y), sum = 0, squares = 0, along, off = 0;
+  if (!(chord > trace->width_px)) return INFINITY;
+  for (size_t i = 0; i < trace->count; i++) {
+    double distance = off_chord(trace, i, &along), arch = 1 - along * along;
+    sum += arch * distance;
+    squares += arch * arch;
+  }
+  double sagitta = squares > 0 ? sum / squares : 0;
+  for (size_t i = 0; i < trace->count; i++) {
+    double distance = off_chord(trace, i, &along);
+    off = fmax(off, fabs(distance - sagitta * (1 - along * along)));
+  }
+  return off > EVEN_WIDTHS * trace->width_px ? INFINITY : fabs(sagitta) / chord;
+}
+
+static double bend_most(const fg_design *design) {
+  if (design->form != FG_FORM_ARC) return BEND_MOST;
+  double sagitta = 0.5 * tan(design->subtended_angle_deg * M_PI / 720); /* over the chord */
+  return fmin(BEND_MOST, BEND_ARC_SHARE * sagitta);
+}
+
+static const char *why_spoiled(const fg_strip *strip) {
+  if (strip->facts & FG_STRIP_TOUCHES_OTHER) return "it touches another part: lay it apart";
+  if (!isfinite(strip->u_thickness_mm)) return "too little of its edges can be seen";
+  if (strip->plain_side_band)
+    return "a wall or a shadow shows beside an edge: stand it upright";
+  return NULL;
+}
+
+static fg_gauge_sighting sighting_of(const fg_gauge_object *object, const fg_strip *strip) {
+  const double *dpi = object->measurement->dpi;
+  fg_gauge_sighting one = {.kind = FG_GAUGE_LEAF,
+                           .width_mm = strip->plain_mm,
+                           .u_mm = strip->u_thickness_mm,
+                           .length_mm = strip->stations[strip->count - 1].s_mm,
+                           .blur_mm = strip->plain_blur_um / 1000,
+                           .contrast = strip->plain_counts,
+                           .bright = strip->bright,
+                           .spoiled = why_spoiled(strip)};
+  for (int k = 0; k < 2; k++) {
+    one.place_mm[k] = (double)(strip->box_px[k] + object->origin_px[k]) * 25.4 / dpi[k];
+    one.place_mm[2 + k] = (double)strip->box_px[2 + k] * 25.4 / dpi[k];
+  }
+  return one;
+}
+
+fg_status fg_gauge_see_leaf(fg_context *ctx, const fg_gauge_object *object, const fg_trace *trace,
+                            unsigned threads, fg_gauge_sightings *sightings, bool *taken) {
+  const fg_measurement *m = object->measurement;
+  fg_strip strip = {0};
+  *taken = false;
+  if (!is_stated(&m->design, FG_GAUGE_LEAF, FG_GAUGE_LEAF)) return FG_OK;
+  if (trace->count < 2 || bend_of(trace) > bend_most(&m->design)) return FG_OK;
+  *taken = true;
+  const fg_edge_options options = {
+      .dpi = m->dpi, .threads = threads, .linear = m->design.tone == FG_TONE_LINEAR};
+  fg_status status =
+      fg_edges_measure(ctx, object->tiles, object->segmentation, trace, &options, &strip);
+  if (status == FG_ERR_NUMERIC) return FG_OK;
+  if (status == FG_OK && strip.count && isfinite(strip.plain_mm)) {
+    const fg_gauge_sighting one = sighting_of(object, &strip);
+    status = fg_gauge_sightings_add(ctx, sightings, &one);
+  }
+  fg_strip_free(&strip);
+  return status;
+}
+
+fg_status fg_gauge_trace_leaf(fg_context *ctx, const fg_gauge_object *object, unsigned threads,
+                              fg_gauge_sightings *sightings, bool *taken) {
+  const fg_measurement *m = object->measurement;
+  *taken = false;
+  for (size_t i = 0; i < m->design.gauge_count && !*taken; i++) {
+    const fg_gauge *gauge = &m->design.gauges[i];
+    fg_trace_list list;
+    if (gauge->kind != FG_GAUGE_LEAF) continue;
+    FG_TRY(fg_trace_object(ctx, object->tiles, object->segmentation, object->object,
+                           gauge->width_mm * sqrt(m->dpi[0] * m->dpi[1]) / 25.4, &list));
+    fg_status status = FG_OK;
+    for (size_t k = 0; k < list.count && status == FG_OK && !*taken; k++)
+      status = fg_gauge_see_leaf(ctx, object, &list.traces[k], threads, sightings, taken);
+    fg_trace_list_free(&list);
+    FG_TRY(status);
+  }
+  return FG_OK;
+}
+
+/* ---- discs ---- */
+
+/* A disc wider than a few tiles is seen by its rim alone, as its middle is taken for background:
+ * the box tells its size. */
+static bool is_round(const fg_design *design, const fg_pixel_shape *shape, const fg_blob *blob,
+                     bool hole) {
+  double width = blob->width * shape->scale[0], height = blob->height * shape->scale[1];
+  double diameter_mm = 0.5 * (width + height) * FG_BLOCK_PX * shape->um / 1000;
+  if (fabs(width - height) > ASPECT_SHARE * fmax(width, height) + 1.5) return false;
+  for (size_t i = 0; i < design->gauge_count; i++) {
+    const fg_gauge *gauge = &design->gauges[i];
+    double slack = (2 * FG_BLOCK_PX * shape->um) / 1000 + SIZE_SHARE * gauge->width_mm;
+    if (gauge->kind == FG_GAUGE_LEAF || (gauge->kind == FG_GAUGE_PIN && hole)) continue;
+    if (fabs(diameter_mm - gauge->width_mm) < slack) return true;
+  }
+  return false;
+}
+
+/* The circle in the blob's box, in square pixels. */
+static fg_disc_candidate circle_of(const fg_pixel_shape *shape, const fg_blob *blob, bool hole) {
+  double x = (blob->x + 0.5 * blob->width) * FG_BLOCK_PX - 0.5;
+  double y = (blob->y + 0.5 * blob->height) * FG_BLOCK_PX - 0.5;
+  double size = 0.5 * (blob->width * shape->scale[0] + blob->height * shape->scale[1]);
+  double radius = 0.5 * size * FG_BLOCK_PX + (hole ? OUTLINE_PX : -OUTLINE_PX);
+  return (fg_disc_candidate){{x * shape->scale[0], y * shape->scale[1], radius}, DOUBT_PX, 1};
+}
+
+static fg_status see_blob(fg_context *ctx, const fg_gauge_object *object, const fg_blob *blob,
+                          bool hole, fg_gauge_sightings *sightings, bool *taken) {
+  const fg_measurement *m = object->measurement;
+  const fg_pixel_shape shape = fg_pixel_shape_of(m->dpi);
+  const fg_disc_candidate candidate = circle_of(&shape, blob, hole);
+  fg_measurement one = {.disc_count = 1};
+  fg_disc disc = {0};
+  if (!is_round(&m->design, &shape, blob, hole) || candidate.circle.radius < RADIUS_LEAST_PX)
+    return FG_OK;
+  FG_TRY(fg_measure_disc_near(ctx, object->tiles, &shape, m, &candidate, &disc));
+  if (!disc.points) return FG_OK;
+  disc.hole = hole || !is_stated(&m->design, FG_GAUGE_PIN, FG_GAUGE_PIN);
+  disc.centre_mm.x += (double)object->origin_px[0] * 25.4 / m->dpi[0];
+  disc.centre_mm.y += (double)object->origin_px[1] * 25.4 / m->dpi[1];
+  one.discs = &disc;
+  fg_status status = fg_gauge_see_discs(ctx, &one, sightings);
+  fg_disc_free(&disc);
+  *taken = true;
+  return status;
+}
+
+/* Background that the object encloses. */
+static fg_status see_holes(fg_context *ctx, const fg_gauge_object *object,
+                           fg_gauge_sightings *sightings, bool *taken) {
+  const fg_object *o = object->object;
+  size_t cells = (size_t)o->width * (size_t)o->height;
+  uint8_t *mask = NULL;
+  int32_t *labels = NULL, count = 0;
+  fg_blob *blobs = NULL;
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(fg_memory_allocate(ctx, cells, 1, (void **)&mask));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, cells, sizeof *labels, (void **)&labels));
+  for (size_t i = 0; i < cells; i++)
+    mask[i] = fg_segmentation_label(object->segmentation, o->x + (int32_t)(i % (size_t)o->width),
+                                    o->y + (int32_t)(i / (size_t)o->width)) != o->label;
+  FG_TRY_EXIT(fg_grid_label(ctx, mask, o->width, o->height, labels, &blobs, &count));
+  for (int32_t i = 0; i < count; i++) {
+    fg_blob hole = blobs[i];
+    if (hole.x == 0 || hole.y == 0 || hole.x + hole.width == o->width ||
+        hole.y + hole.height == o->height)
+      continue;
+    hole.x += o->x;
+    hole.y += o->y;
+    FG_TRY_EXIT(see_blob(ctx, object, &hole, true, sightings, taken));
+  }
+exit:
+  free(mask);
+  free(labels);
+  free(blobs);
+  return status;
+}
+
+fg_status fg_gauge_see_round(fg_context *ctx, const fg_gauge_object *object,
+                             fg_gauge_sightings *sightings, bool *taken) {
+  const fg_design *design = &object->measurement->design;
+  const fg_object *o = object->object;
+  const fg_blob blob = {o->x, o->y, o->width, o->height, o->blocks};
+  *taken = false;
+  if (!is_stated(design, FG_GAUGE_PIN, FG_GAUGE_HOLE)) return FG_OK;
+  FG_TRY(see_blob(ctx, object, &blob, false, sightings, taken));
+  if (!*taken && is_stated(design, FG_GAUGE_RING, FG_GAUGE_HOLE))
+    FG_TRY(see_holes(ctx, object, sightings, taken));
+  return FG_OK;
+}

@@ -1,0 +1,213 @@
+#include "scan_loop/scanner_model_tone.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/text.h"
+#include "scan_loop/state.h"
+
+/* Standard uncertainty of a known diameter where the design does not state it: a pin gauge within
+ * 1 um. */
+#define U_DIAMETER_MM 0.0005
+/* Discs tell the level with any scale of the scanner beside it when they are of several sizes: it
+ * is known when half as well again as an unknown tone curve leaves it. */
+#define SCALE_FREE  0.05
+#define LEVEL_KNOWN 0.04
+enum { DISCS_LEAST = 3 };
+/* A level that chance would not show. */
+#define SIGNIFICANT 3.3
+/* A scan is of the settings that the level was found with when its edges are as sharp and as
+ * asymmetric, and its contrast similar. What edge models make of tone curve and sharpening is not
+ * compared: a strip and a disc may be explained by others each. */
+#define BLUR_RATIO     1.25
+#define ASYMMETRY_MOST 0.02 /* of a level that has moved by 0.08 */
+#define CONTRAST_RATIO 1.5
+
+/* ---- finding it ---- */
+
+/* Diameters of the corrected scan, edges as they were found. */
+static void add_disc(const fg_disc *disc, const fg_disc *corrected, double known_mm, double u_mm,
+                     fg_level_sum *sum) {
+  double level = disc->level_doubt_mm;
+  double u = sqrt(fmax(disc->u_radius_mm * disc->u_radius_mm - level * level, 0));
+  const fg_gauge gauge = {disc->hole ? FG_GAUGE_HOLE : FG_GAUGE_PIN, known_mm, u_mm};
+  const fg_gauge_reading reading = {.measured_mm =
+                                        disc->plain_mm + corrected->diameter_mm - disc->diameter_mm,
+                                    .u_measured_mm = 2 * u,
+                                    .blur_mm = disc->plain_blur_um / 1000,
+                                    .contrast = disc->contrast,
+                                    .bright = disc->bright};
+  fg_level_add(sum, &gauge, &reading);
+}
+
+static double mean_of(double sum, double count) {
+  return count > 0 ? sum / count : NAN;
+}
+
+static fg_model_tone find_on(const fg_scan_loop *loop, const fg_measurement *scans) {
+  const fg_points *points = &loop->points;
+  fg_model_tone tone = {.gauges = 0};
+  fg_level_sum sum = {.count = 0};
+  double blur = 0, asymmetry = 0, gamma = 0, gammas = 0, sharpen = 0, radius = 0, sharpened = 0;
+  for (size_t v = 0; points->discs && v < points->view_count; v++) {
+    const fg_points_view *view = &points->views[v];
+    const fg_points_part *part = &points->parts[view->part];
+    const fg_disc *disc = view->disc;
+    if (view->aside || !part->radius_known || disc->flags & FG_BUMP_POOR_FIT) continue;
+    const fg_disc *corrected = &scans[view->scan].discs[disc - view->measurement->discs];
+    double stated = view->measurement->design.u_diameters_mm;
+    add_disc(disc, corrected, 2 * part->overall_radius_mm, stated > 0 ? stated : U_DIAMETER_MM,
+             &sum);
+    blur += disc->spread_px;
+    asymmetry += disc->asymmetry;
+    if (isfinite(disc->picture.gamma)) {
+      gamma += disc->picture.gamma;
+      gammas++;
+    }
+    if (isfinite(disc->picture.sharpen_amount)) {
+      sharpen += disc->picture.sharpen_amount;
+      radius += disc->picture.sharpen_radius_px;
+      sharpened++;
+    }
+  }
+  if (sum.count < DISCS_LEAST) return tone;
+  fg_level_solve(&sum, SCALE_FREE, &tone.level);
+  if (!(tone.level.u < LEVEL_KNOWN)) return tone;
+  tone.gauges = sum.count;
+  tone.blur_px = blur / (double)sum.count;
+  tone.asymmetry = asymmetry / (double)sum.count;
+  tone.gamma = mean_of(gamma, gammas);
+  tone.sharpen_amount = mean_of(sharpen, sharpened);
+  tone.sharpen_radius_px = mean_of(radius, sharpened);
+  return tone;
+}
+
+fg_model_tone fg_model_tone_find(const fg_scan_loop *loop, bool searched) {
+  fg_model_tone plain = find_on(loop, loop->before);
+  if (!searched) return plain;
+  fg_model_tone corrected = find_on(loop, loop->after);
+  if (!plain.gauges || (corrected.gauges && corrected.level.u < plain.level.u)) return corrected;
+  return plain;
+}
+
+bool fg_model_tone_is_significant(const fg_model_tone *tone) {
+  return tone->gauges && fabs(tone->level.half - 0.5) > SIGNIFICANT * tone->level.u;
+}
+
+/* ---- the file ---- */
+
+typedef struct tone_row {
+  const char *name;
+  size_t offset;
+  double low, high;
+  bool needed;
+} tone_row;
+
+#define ROW(name, member, low, high, needed)                                                       \
+  { name, offsetof(fg_model_tone, member), low, high, needed }
+static const tone_row rows[] = {
+    ROW("level", level.half, 0, 1, true),
+    ROW("u_level", level.u, 0, 0.5, true),
+    ROW("contrast", level.contrast, 1, 255, true),
+    ROW("blur_px", blur_px, 0.01, 100, true),
+    ROW("asymmetry", asymmetry, -1, 1, true),
+    ROW("gamma", gamma, 0.1, 10, false),
+    ROW("sharpen_amount", sharpen_amount, 0, 20, false),
+    ROW("sharpen_radius_px", sharpen_radius_px, 0, 100, false),
+};
+#undef ROW
+enum { ROWS = sizeof rows / sizeof *rows, GAUGES_MOST = 1000000 };
+
+static fg_status read_row(fg_context *ctx, const cJSON *object, const tone_row *row,
+                          fg_model_tone *tone) {
+  const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, row->name);
+  double *value = (double *)((char *)tone + row->offset);
+  *value = cJSON_IsNumber(item) ? item->valuedouble : NAN;
+  if (!row->needed && (!item || cJSON_IsNull(item))) return FG_OK;
+  if (*value >= row->low && *value <= row->high) return FG_OK;
+  return fg_fail(ctx, FG_ERR_DATA, "`tone.%s` is %g; %g to %g is allowed", row->name, *value,
+                 row->low, row->high);
+}
+
+fg_status fg_model_tone_read(fg_context *ctx, const cJSON *root, fg_model_tone *tone) {
+  const cJSON *object = cJSON_GetObjectItemCaseSensitive(root, "tone");
+  *tone = (fg_model_tone){.gauges = 0};
+  if (!object || cJSON_IsNull(object)) return FG_OK;
+  if (!cJSON_IsObject(object))
+    return fg_fail(ctx, FG_ERR_DATA, "`tone` is no object; an object or null is allowed");
+  for (size_t i = 0; i < ROWS; i++)
+    FG_TRY(read_row(ctx, object, &rows[i], tone));
+  const cJSON *gauges = cJSON_GetObjectItemCaseSensitive(object, "gauges");
+  double count = cJSON_IsNumber(gauges) ? gauges->valuedouble : NAN;
+  if (!(count >= 1 && count <= GAUGES_MOST && count == floor(count)))
+    return fg_fail(ctx, FG_ERR_DATA, "`tone.gauges` is %g; a whole number, 1 to %d, is allowed",
+                   count, GAUGES_MOST);
+  tone->gauges = (size_t)count;
+  return FG_OK;
+}
+
+void fg_model_tone_write(fg_json *json, const fg_model_tone *tone) {
+  if (!tone->gauges) {
+    fg_json_string(json, "tone", NULL);
+    return;
+  }
+  fg_json_object(json, "tone");
+  for (size_t i = 0; i < ROWS; i++)
+    fg_json_number(json, rows[i].name, *(const double *)((const char *)tone + rows[i].offset));
+  fg_json_integer(json, "gauges", (int64_t)tone->gauges);
+  fg_json_object_end(json);
+}
+
+/* ---- applying it ---- */
+
+/* Means over what a scan shows. */
+typedef struct scan_state {
+  double blur_px, asymmetry, contrast;
+} scan_state;
+
+static void add_part(scan_state *state, const scan_state *part, double *n) {
+  if (!isfinite(part->blur_px) || !isfinite(part->asymmetry)) return;
+  double share = 1 / ++*n;
+  state->blur_px += share * (part->blur_px - state->blur_px);
+  state->asymmetry += share * (part->asymmetry - state->asymmetry);
+  state->contrast += share * (part->contrast - state->contrast);
+}
+
+static bool see_state(const fg_measurement *m, scan_state *state) {
+  double n = 0;
+  *state = (scan_state){.blur_px = 0};
+  for (size_t f = 0; f < m->foil_count; f++) {
+    const fg_strip *s = &m->foils[f].strip;
+    if (s->count) add_part(state, &(scan_state){s->spread_px, s->asymmetry, s->plain_counts}, &n);
+  }
+  for (size_t d = 0; d < m->disc_count; d++) {
+    const fg_disc *disc = &m->discs[d];
+    add_part(state, &(scan_state){disc->spread_px, disc->asymmetry, disc->contrast}, &n);
+  }
+  return n > 0;
+}
+
+/* What of the scan's state is another; NULL: nothing. */
+static const char *difference(const fg_model_tone *tone, const scan_state *scan) {
+  if (fabs(log(scan->blur_px / tone->blur_px)) > log(BLUR_RATIO)) return "edges are not as sharp";
+  if (!(fabs(scan->asymmetry - tone->asymmetry) <= ASYMMETRY_MOST))
+    return "the edges show another tone curve";
+  if (fabs(log(scan->contrast / tone->level.contrast)) > log(CONTRAST_RATIO))
+    return "the contrast is another";
+  return NULL;
+}
+
+fg_status fg_model_tone_apply(fg_context *ctx, const fg_model_tone *tone, unsigned threads,
+                              fg_measurement *m) {
+  scan_state state;
+  m->tone_note[0] = 0;
+  if (!tone->gauges || m->picture.level_known || !see_state(m, &state)) return FG_OK;
+  const char *other = difference(tone, &state);
+  if (!other) return fg_level_apply(ctx, &tone->level, threads, m);
+  fg_text_clip(m->tone_note, sizeof m->tone_note,
+               "the model's level of edges is not applied: %s (blur %.2f px, in the model %.2f; "
+               "asymmetry %.3f, %.3f; contrast %.0f, %.0f): have the scanner's settings changed?",
+               other, state.blur_px, tone->blur_px, state.asymmetry, tone->asymmetry,
+               state.contrast, tone->level.contrast);
+  return FG_OK;
+}
