@@ -26,8 +26,8 @@ static void clear_sums(fg_disc_station *s) {
 /* Adds one pixel whose model is known. */
 static inline void add_residual(fg_disc_station *s, float value, float model, float by_edge,
                                 bool core, float limit) {
-  s->seen++;
   if ((model >= 254.5f && value >= 254.5f) || (model <= 0.5f && value <= 0.5f)) return;
+  s->seen++; /* what is cut off at an end of the scale tells nothing, and is no outlier */
   float residual = value - model;
   if (fabsf(residual) > limit) return;
   s->m[!core] += by_edge * by_edge;

@@ -39,8 +39,8 @@ static void add_pixel(const fg_driven_table *table, double half_px, double radiu
   if (d > (float)FG_REACH_BLURS * hypotf(s->blur_px[side], (float)radius_px)) return;
   float from_middle = (float)half_px + d;
   if (!fg_driven_table_at(table, side ? from_middle : -from_middle, &model, &rate)) return;
-  s->seen++;
   if ((model >= 254.5f && p->value >= 254.5f) || (model <= 0.5f && p->value <= 0.5f)) return;
+  s->seen++; /* what is cut off at an end of the scale tells nothing, and is no outlier */
   float residual = p->value - model;
   if (fabsf(residual) > limit) return;
   float f1 = side ? 0 : -rate, f2 = side ? -rate : 0;

@@ -38,8 +38,8 @@ static inline void add_pixel(const fg_edge_tables *tables, const held *h, fg_edg
                 (h->step[1] + h->slope[1] * d2) * c2 + h->slope_blur[1] * p2;
   float model, rate;
   fg_edge_tone(tables, light, &model, &rate);
-  s->seen++;
   if ((model >= 254.5f && value >= 254.5f) || (model <= 0.5f && value <= 0.5f)) return;
+  s->seen++; /* what is cut off at an end of the scale tells nothing, and is no outlier */
   float residual = value - model;
   if (fabsf(residual) > limit) return;
   /* The filters leave the slopes out: a slope is the least certain part of the shape. */
