@@ -1,0 +1,138 @@
+/* What the level of the edges is uncertain by, and who knows it. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "geometry/foil_uncertainty.h"
+#include "geometry/level_doubt.h"
+
+static void assert_near(double value, double expected, double tolerance) {
+  if (!(fabs(value - expected) <= tolerance))
+    fail_msg("%.9g, not %.9g within %.3g", value, expected, tolerance);
+}
+
+static fg_design design_of(fg_tone_statement tone) {
+  fg_design design;
+  fg_design_default(&design);
+  design.tone = tone;
+  return design;
+}
+
+/* Of 0.37 to 0.59 for an exponent that is wrong by 30 %, S curves and toes: 8 % of the contrast. */
+static void an_unknown_tone_curve_is_eight_percent(void **state) {
+  (void)state;
+  const fg_design unknown = design_of(FG_TONE_UNKNOWN), linear = design_of(FG_TONE_LINEAR);
+  fg_picture_state picture = fg_picture_unknown();
+  assert_near(fg_level_doubt(&unknown, &picture, 0), 0.08, 0.001);
+  assert_near(fg_level_doubt(&linear, &picture, 0), 0.003, 1e-9);
+  picture.u_level = 0.06;
+  assert_near(fg_level_doubt(&unknown, &picture, 0), 0.1, 0.001);
+  assert_near(fg_level_doubt(&linear, &picture, 0), 0.06, 0.001);
+}
+
+/* A gauge goes through the same driver: it knows what is alike all over the scan, and no shadow. */
+static void a_gauge_knows_all_but_what_is_local(void **state) {
+  (void)state;
+  const fg_design unknown = design_of(FG_TONE_UNKNOWN);
+  fg_picture_state picture = fg_picture_unknown();
+  picture.level_known = true;
+  picture.u_level = 0.01;
+  assert_near(fg_level_doubt(&unknown, &picture, 0), 0.01, 1e-9);
+  picture.findings = FG_PICTURE_SHARPENED | FG_PICTURE_TONE_CURVE | FG_PICTURE_FEW_LEVELS;
+  assert_near(fg_level_doubt(&unknown, &picture, 0), 0.01, 1e-9);
+  picture.findings |= FG_PICTURE_SHADOW;
+  assert_near(fg_level_doubt(&unknown, &picture, 0), 0.25, 0.001);
+}
+
+static void a_finding_makes_it_wider(void **state) {
+  (void)state;
+  const fg_design linear = design_of(FG_TONE_LINEAR);
+  for (unsigned bit = 1; bit <= FG_PICTURE_UNKNOWN_PROFILE; bit <<= 1) {
+    fg_picture_state picture = fg_picture_unknown();
+    double before = fg_level_doubt(&linear, &picture, 0);
+    picture.findings = bit;
+    assert_true(fg_level_doubt(&linear, &picture, 0) >= before);
+  }
+  fg_picture_state picture = fg_picture_unknown();
+  double one = fg_level_doubt(&linear, &picture, FG_FOIL_CLIPPED);
+  assert_near(one, 0.08, 0.001);
+  assert_near(fg_level_doubt(&linear, &picture, FG_FOIL_CLIPPED | FG_FOIL_SIDE_BAND), one, 1e-9);
+}
+
+/* Both edges move apart alike: twice the level times the blur times sqrt(2 pi). */
+static void the_thickness_moves_by_both_edges(void **state) {
+  (void)state;
+  fg_design design = design_of(FG_TONE_UNKNOWN);
+  fg_foil foil = {.strip = {.thickness_mm = 0.1,
+                            .u_thickness_mm = 1e-4,
+                            .blur_left_um = 12,
+                            .blur_right_um = 14,
+                            .gamma = 1,
+                            .picture = fg_picture_unknown()}};
+  double level = fg_level_doubt(&design, &foil.strip.picture, 0);
+  double expected = level * sqrt(2 * M_PI) * 26 / 1000;
+  fg_foil_find_thickness(&design, &foil);
+  assert_near(foil.u_thickness_tone_mm, expected, 1e-12);
+  assert_near(foil.u_thickness_mm, hypot(expected, 1e-4), 1e-12);
+  assert_near(fg_foil_edge_doubt_mm(&design, &foil), expected / 2, 1e-12);
+  assert_int_equal(foil.flags, 0);
+  design.thickness_measured_mm = 0.098;
+  design.u_thickness_measured_mm = 0.0005;
+  fg_foil_find_thickness(&design, &foil);
+  assert_near(foil.thickness_mm, 0.098, 0);
+  assert_near(foil.u_thickness_mm, 0.0005, 0);
+  assert_near(foil.thickness_scan_mm, 0.1, 0);
+  assert_int_equal(foil.flags, 0);
+  design.thickness_measured_mm = 0.1 - 2.1 * hypot(expected, 0.0005);
+  fg_foil_find_thickness(&design, &foil);
+  assert_int_equal(foil.flags, FG_FOIL_THICKNESS_CONTRADICTS);
+}
+
+/* Beyond U and beyond a fifth of the design's. */
+static void another_thickness_is_flagged(void **state) {
+  (void)state;
+  const fg_design design = design_of(FG_TONE_LINEAR);
+  static const struct {
+    double mm;
+    unsigned flags;
+  } strips[] = {{0.1, 0},
+                {0.119, 0},
+                {0.121, FG_FOIL_OTHER_THICKNESS},
+                {0.079, FG_FOIL_OTHER_THICKNESS},
+                {0.5, FG_FOIL_OTHER_THICKNESS}};
+  for (size_t i = 0; i < sizeof strips / sizeof *strips; i++) {
+    fg_foil foil = {.strip = {.thickness_mm = strips[i].mm,
+                              .blur_left_um = 7,
+                              .blur_right_um = 7,
+                              .gamma = 1,
+                              .picture = fg_picture_unknown()}};
+    fg_foil_find_thickness(&design, &foil);
+    assert_int_equal(foil.flags, strips[i].flags);
+  }
+}
+
+/* What is not known of the level of a disc's edge is in its radius. */
+static void a_disc_holds_it(void **state) {
+  (void)state;
+  const fg_design design = design_of(FG_TONE_UNKNOWN);
+  fg_disc disc = {.blur_um = 10, .edge_doubt_mm = 0.001, .picture = fg_picture_unknown()};
+  double level = fg_level_doubt(&design, &disc.picture, 0);
+  fg_disc_find_level_doubt(&design, &disc);
+  assert_near(disc.level_doubt_mm, hypot(0.001, level * sqrt(2 * M_PI) / 100), 1e-12);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(an_unknown_tone_curve_is_eight_percent),
+      cmocka_unit_test(a_gauge_knows_all_but_what_is_local),
+      cmocka_unit_test(a_finding_makes_it_wider),
+      cmocka_unit_test(the_thickness_moves_by_both_edges),
+      cmocka_unit_test(another_thickness_is_flagged),
+      cmocka_unit_test(a_disc_holds_it),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
