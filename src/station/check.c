@@ -202,11 +202,11 @@ bool fg_station_check_withholds(fg_inspection *station, char *why, size_t size) 
   fg_text_clip(
       why, size, "%s",
       status != FG_OK  ? inner.message
-      : health.failed  ? "The last check of the scanner failed: check it again, or have it "
-                         "seen to, and then scan this foil again."
       : health.changed ? "The scanner's check shows another tone, sharpening or blur than its "
                          "baseline: set the driver as it was, scan the plate, and then this foil "
                          "again."
+      : health.failed  ? "The last check of the scanner failed: check it again, or have it "
+                         "seen to, and then scan this foil again."
       : health.clock_back
           ? "The clock was set back, so the scanner's check may be too old: set the clock, "
             "scan the plate, and then this foil again."

@@ -95,8 +95,8 @@ static fg_status write_banner(fg_context *ctx, const fg_inspection *station, sql
   if (!health.asked || (!health.due && !health.failed && !health.changed)) return FG_OK;
   fprintf(out,
           "<p class=\"banner\" role=\"alert\"><b>%s</b> %s <a href=\"/scanner\">Scanner</a></p>\n",
-          health.failed       ? "The scanner failed its last check."
-          : health.changed    ? "The scanner's tone, sharpening or blur has changed."
+          health.changed      ? "The scanner's tone, sharpening or blur has changed."
+          : health.failed     ? "The scanner failed its last check."
           : health.clock_back ? "The clock was set back: the scanner's check may be too old."
           : health.last_at    ? "The scanner's check is due."
                               : "The scanner was never checked.",

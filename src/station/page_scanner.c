@@ -60,8 +60,8 @@ static fg_status read_history(fg_context *ctx, sqlite3 *reader, size_t most, his
 }
 
 static const char *call_words(const fg_station_health *health) {
-  return health->failed                    ? "OUT OF ORDER"
-         : health->changed                 ? "CHANGED"
+  return health->changed                   ? "CHANGED"
+         : health->failed                  ? "OUT OF ORDER"
          : health->due && !health->last_at ? "NOT CHECKED"
          : health->due                     ? "CHECK DUE"
                                            : "IN ORDER";
@@ -90,23 +90,24 @@ static void write_next(FILE *out, const fg_station_check *check, const fg_statio
     fputs("The clock of this machine stands before the last check: it was set back, so nobody can "
           "say how old that check is. Set the clock, and check the scanner. ",
           out);
-  if (health->failed)
-    fputs("Clean the glass and the plate, let the scanner warm up, and check it again. If it fails "
-          "again, have it seen to, or measure a model of it anew. ",
-          out);
-  else if (health->changed)
+  if (health->changed)
     fputs(
         "The plate shows another tone, sharpening or blur than the baseline: set the driver as it "
         "was (man foilgauge-scanning), clean the glass and the plate, and check again. A change "
-        "that is meant becomes the new baseline with the button below. The plate's name: ",
+        "that is meant can be taken as the new baseline below, where scale and shear are as "
+        "allowed. ",
         out);
+  else if (health->failed)
+    fputs("Clean the glass and the plate, let the scanner warm up, and check it again. If it fails "
+          "again, have it seen to, or measure a model of it anew. ",
+          out);
   else if (health->due)
     fputs("Put the plate on the glass and scan it into the folder, under a name as ", out);
   else
     fputs("Go on with foils. The next check: put the plate on the glass and scan it into the "
           "folder, under a name as ",
           out);
-  if (!health->failed) {
+  if (!health->failed && !health->changed) {
     fputs("<b>", out);
     fg_html_text(out, check->file_name);
     fputs("</b>. ", out);

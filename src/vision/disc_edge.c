@@ -240,7 +240,7 @@ fg_status fg_disc_edge_measure(fg_context *ctx, const fg_tiles *tiles, const fg_
   edge->gamma = tone->gamma;
   fg_status status = run(ctx, &work, candidate, tone, edge);
   if (status == FG_OK) status = fg_picture_of_ring(ctx, &work, edge, &edge->picture);
-  if (status == FG_OK && tone->found > 0) {
+  if (status == FG_OK && isnan(edge->picture.gamma) && tone->found > 0) {
     edge->picture.gamma = tone->found;
     edge->picture.u_gamma = tone->u_found;
   }

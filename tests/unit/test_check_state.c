@@ -88,12 +88,16 @@ static void a_new_finding_is_a_change_and_one_that_was_there_is_none(void **stat
   assert_int_equal(fg_check_state_compare(&now, &baseline, narrow, sizeof narrow), 2);
   now.findings = 0;
   assert_int_equal(fg_check_state_compare(&now, &baseline, words, sizeof words), 0);
-  /* A finding is a threshold: where its quantity is known, that and its scatter decide. */
+  /* Where the quantity of a threshold is known, that and its scatter decide. */
   baseline.findings = 0;
-  now.findings = FG_PICTURE_SHARPENED;
+  now.findings = FG_PICTURE_UNEVEN_BLUR;
   assert_int_equal(fg_check_state_compare(&now, &baseline, words, sizeof words), 1);
-  set(&baseline, "overshoot", 0.009, 0.001);
-  set(&now, "overshoot", 0.011, 0.001);
+  set(&baseline, "uneven_blur", 1.05, 0.01);
+  set(&now, "uneven_blur", 1.1, 0.01);
+  assert_int_equal(fg_check_state_compare(&now, &baseline, words, sizeof words), 0);
+  /* A quantity without an uncertainty tells nothing. */
+  set(&now, "uneven_blur", 3, NAN);
+  now.findings = 0;
   assert_int_equal(fg_check_state_compare(&now, &baseline, words, sizeof words), 0);
 }
 

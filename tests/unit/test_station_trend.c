@@ -402,7 +402,7 @@ static void a_failed_check_becomes_no_baseline(void **state) {
   add_check(f, 1, fg_station_now() - HOUR_MS, 4e-4, "fail");
   set_state(f, 1, 0.01, 11.05);
   run_sql(f, "UPDATE checks SET changes = 'edges'");
-  assert_has(get(f, "/scanner", "", 200), "<b>OUT OF ORDER</b>");
+  assert_has(get(f, "/scanner", "", 200), "<b>CHANGED</b>");
   assert_has_not(get(f, "/scanner", "", 200), "as the new baseline</button>");
   press(f, "/baseline", "id=1", 404);
 }
