@@ -59,43 +59,51 @@ static double weight_at(const fg_points *points, size_t i) {
   return points->views[row->view].aside ? 0 : row->weight / FG_POINTS_BLOCK;
 }
 
-/* Harmonics 1 to `harmonics` at a row, then 1 unless the radius is known; returns how many. */
-static size_t form_basis(const fg_points *points, size_t i, size_t harmonics, double *basis) {
+/* What is taken out of each disc: harmonics up to this, and its radius unless it is known and
+ * counts. The level of all edges moves known radii as well: of what follows them a scale alone is
+ * told from it (common_level.h), any other effect must show in the discs' shapes. */
+typedef struct form {
+  size_t harmonics;
+  bool radius_counts;
+} form;
+
+/* Harmonics 1 to the last at a row, then 1 unless the radius counts; returns how many. */
+static size_t form_basis(const fg_points *points, size_t i, form of, double *basis) {
   const fg_points_row *row = &points->rows[i];
   size_t n = 0;
-  for (size_t k = 1; k <= harmonics; k++) {
+  for (size_t k = 1; k <= of.harmonics; k++) {
     basis[n++] = cos((double)k * row->normal_rad);
     basis[n++] = sin((double)k * row->normal_rad);
   }
-  if (!points->parts[row->part].radius_known) basis[n++] = 1;
+  if (!of.radius_counts || !points->parts[row->part].radius_known) basis[n++] = 1;
   return n;
 }
 
 /* Takes a disc's circle, or its form up to a harmonic, out of values at its rows [first, last). */
-static void take_form_out(const fg_points *points, size_t first, size_t last, size_t harmonics,
+static void take_form_out(const fg_points *points, size_t first, size_t last, form of,
                           double *values) {
   fg_normal_equations system;
   double x[FG_SMALL_MAX] = {0}, basis[FG_SMALL_MAX];
-  size_t unknowns = form_basis(points, first, harmonics, basis);
+  size_t unknowns = form_basis(points, first, of, basis);
   fg_normal_clear(&system, unknowns);
   for (size_t i = first; i < last; i++) {
-    form_basis(points, i, harmonics, basis);
+    form_basis(points, i, of, basis);
     fg_normal_add(&system, basis, values[i], weight_at(points, i));
   }
   if (!fg_normal_solve(&system, FORM_SINGULAR, x, NULL)) return;
   for (size_t i = first; i < last; i++) {
-    form_basis(points, i, harmonics, basis);
+    form_basis(points, i, of, basis);
     for (size_t k = 0; k < unknowns; k++)
       values[i] -= x[k] * basis[k];
   }
 }
 
-static void take_forms_out(const fg_points *points, size_t harmonics, double *values) {
+static void take_forms_out(const fg_points *points, form of, double *values) {
   for (size_t first = 0; first < points->row_count;) {
     size_t last = first;
     while (last < points->row_count && points->rows[last].view == points->rows[first].view)
       last++;
-    take_form_out(points, first, last, harmonics, values);
+    take_form_out(points, first, last, of, values);
     first = last;
   }
 }
@@ -278,6 +286,7 @@ static void widen_by_level(const confirmation *c, fg_effect_found *effect) {
 
 static void prepare(confirmation *c, const double *residual_um, size_t harmonics) {
   const fg_effect_found *effect = c->effect;
+  const form of = {harmonics, effect->kind->scales};
   size_t rows = c->points->row_count;
   fg_effect_columns(c->points, effect->kind, effect->shape, c->columns);
   memcpy(c->residual, residual_um, rows * sizeof *c->residual);
@@ -286,12 +295,12 @@ static void prepare(confirmation *c, const double *residual_um, size_t harmonics
     double *column = c->columns + k * rows, square = 0;
     for (size_t i = 0; i < rows; i++)
       c->residual[i] += effect->coefficient_um[k] * column[i];
-    take_forms_out(c->points, harmonics, column);
+    take_forms_out(c->points, of, column);
     for (size_t i = 0; i < rows; i++)
       square += weight_at(c->points, i) * column[i] * column[i];
     if (square > NOTHING_UM2) c->index[c->columns_used++] = k;
   }
-  take_forms_out(c->points, harmonics, c->residual);
+  take_forms_out(c->points, of, c->residual);
 }
 
 /* Amplitude in its standard uncertainties. */
