@@ -266,6 +266,8 @@ static fg_status apply_model(fg_context *ctx, const measure_run *run, fg_measure
   if (!run->model) return FG_OK;
   FG_TRY(fg_scanner_model_apply(ctx, run->model, m, run->arguments.options.threads, warning));
   if (warning[0]) fprintf(stderr, "foilgauge: note: %s\n", warning);
+  if (m->tone_note[0] && strncmp(m->warning, m->tone_note, sizeof m->tone_note - 1) != 0)
+    fprintf(stderr, "foilgauge: %s: note: %s\n", m->scan, m->tone_note);
   return FG_OK;
 }
 
