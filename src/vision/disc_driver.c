@@ -153,7 +153,7 @@ fg_status fg_disc_find_driver(fg_context *ctx, fg_disc_work *work) {
   sample s = {.count = 0};
   fg_driver_tone *tone = NULL;
   fg_driver_misfit misfit;
-  fg_driver_choice choice;
+  fg_driver_choice choice = {.linear = work->linear};
   double gamma = work->gamma;
   fg_status status = FG_OK;
   if (work->white[0] || work->white[1]) return FG_OK;
@@ -165,6 +165,7 @@ fg_status fg_disc_find_driver(fg_context *ctx, fg_disc_work *work) {
   fg_driver_find_misfit(s.profiles, s.count, &plain, tone, &misfit);
   if (!fg_driver_is_missed(&misfit, s.ends[1] - s.ends[0])) goto exit;
   FG_TRY_EXIT(fg_driver_choose(ctx, s.profiles, s.count, s.ends, gamma, START_NOISE, &choice));
+  if (!choice.fit.good) goto exit;
   FG_TRY_EXIT(adopt(ctx, work, &choice));
   convert_sectors(work, gamma);
   FG_TRY_EXIT(fit_driven(ctx, work));

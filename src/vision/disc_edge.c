@@ -234,7 +234,8 @@ static fg_status run(fg_context *ctx, fg_disc_work *work, const fg_disc_candidat
 fg_status fg_disc_edge_measure(fg_context *ctx, const fg_tiles *tiles, const fg_pixel_shape *shape,
                                const fg_disc_candidate *candidate, const fg_tone *tone,
                                fg_disc_edge *edge) {
-  fg_disc_work work = {.tiles = tiles, .shape = shape, .gamma = tone->gamma};
+  fg_disc_work work = {
+      .tiles = tiles, .shape = shape, .gamma = tone->gamma, .linear = tone->linear};
   memset(edge, 0, sizeof *edge);
   edge->picture = fg_picture_unknown();
   edge->gamma = tone->gamma;

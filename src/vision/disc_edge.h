@@ -42,7 +42,7 @@ typedef struct fg_disc_edge {
   double sector_rms_px; /* of the sectors' edges about the circle */
   fg_picture_state picture;
   double spread_px, asymmetry; /* vision/edge_spread.h */
-  bool driven; /* a driver's model is in force */
+  bool driven;                 /* a driver's model is in force */
   double level_doubt_px;       /* what all edge_px may be wrong by together: for the tone curve's
                                   doubt, and, where the scale ends at white, for light a tenth of
                                   the contrast beyond it */
@@ -54,7 +54,8 @@ typedef struct fg_tone {
   double doubt;          /* standard deviation; INFINITY: not known */
   bool slopes;           /* a halo or a wall beside the edge may have made the asymmetry */
   double found, u_found; /* of a pool: the exponent before it is taken for 1; found 0: not known */
-  bool plain; /* counts are taken for the light, whatever the edge says */
+  bool plain;            /* counts are taken for the light, whatever the edge says */
+  bool linear;           /* it is stated to be none; an unsharp mask may still be found */
 } fg_tone;
 
 /* What the edge around a candidate says of the tone curve: its asymmetry, where no side is white.
@@ -83,6 +84,7 @@ typedef struct fg_disc_work {
   size_t bin_count;
   fg_step_fit *sectors; /* ring.sector_count */
   double gamma;
+  bool linear;       /* the user vouches that counts are proportional to the light */
   fg_driver *driver; /* NULL: a power of the light, which is gamma, is all that it does; owned */
   fg_driver_tone *driver_tone;
   double u_driver_px; /* of an edge, outwards: what is left open of the driver */

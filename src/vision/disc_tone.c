@@ -67,7 +67,7 @@ fg_status fg_disc_find_tone(fg_context *ctx, fg_disc_work *work, fg_tone *tone) 
 }
 
 fg_tone fg_tone_linear(void) {
-  return (fg_tone){.gamma = 1};
+  return (fg_tone){.gamma = 1, .linear = true};
 }
 
 fg_tone fg_tone_pool(const fg_tone *tones, size_t count) {
@@ -81,8 +81,7 @@ fg_tone fg_tone_pool(const fg_tone *tones, size_t count) {
     slopes += tones[i].slopes;
     n++;
   }
-  const fg_tone linear = fg_tone_linear();
-  if (n < 1) return linear;
+  if (n < 1) return (fg_tone){.gamma = 1};
   double gamma = sum / weights, spread = fmax(0, squares - sum * gamma);
   double doubt = sqrt((n > 1 ? fmax(1, spread / (n - 1)) : 1) / weights);
   if (2 * slopes > n || gamma < GAMMA_LOWEST || gamma > GAMMA_HIGHEST)

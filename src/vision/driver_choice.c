@@ -130,7 +130,7 @@ static fg_status try_family(fg_context *ctx, const struct family *family,
  * tells them apart: `sharpness` below 1 lets more of them count. */
 static size_t weigh(const candidate *candidates, double sharpness, double *u_edge_px) {
   size_t best = 0;
-  double weights = 0, mean = 0, square = 0;
+  double weights = 0, square = 0;
   for (size_t i = 1; i < FAMILIES; i++)
     if (candidates[i].fit.good && candidates[i].score < candidates[best].score) best = i;
   for (size_t i = 0; i < FAMILIES; i++) {
@@ -139,7 +139,6 @@ static size_t weigh(const candidate *candidates, double sharpness, double *u_edg
     if (!c->fit.good || !isfinite(weight)) continue;
     double off = c->fit.edge_px - candidates[best].fit.edge_px;
     weights += weight;
-    mean += weight * off;
     square += weight * (off * off + c->fit.u_edge_px * c->fit.u_edge_px);
   }
   *u_edge_px = sqrt(square / weights);

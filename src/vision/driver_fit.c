@@ -12,7 +12,7 @@
 #include "vision/driver_model.h"
 
 enum { ITERATIONS_MAX = 25, ALL = FG_DRIVEN_VALUES + FG_DRIVER_VALUES };
-#define GAIN_LEAST  5e-4
+#define GAIN_LEAST  1e-4
 #define DAMPING_MAX 1e5
 /* Optics are Gaussian to this share of the contrast: where a tone curve is steep, little light
  * beside the edge, its blur's tails, moves many counts. */

@@ -224,7 +224,10 @@ fg_status fg_edges_find_driver(fg_context *ctx, fg_edge_work *work, bool *found)
   if (!*found) goto exit;
   FG_TRY_EXIT(
       fg_driver_choose(ctx, s.profiles, s.count, s.ends, work->gamma, START_NOISE, &choice));
-  FG_TRY_EXIT(adopt(ctx, work, &choice));
+  if (choice.fit.good)
+    FG_TRY_EXIT(adopt(ctx, work, &choice));
+  else
+    work->unexplained = true;
 exit:
   free(tone);
   free(s.bins);

@@ -303,7 +303,8 @@ static fg_status solve(fg_context *ctx, fg_disc_work *work, const fg_stretch *st
 
 fg_status fg_line_edge_measure(fg_context *ctx, const fg_line_view *view, const fg_stretch *stretch,
                                const fg_tone *tone, fg_disc_edge *edge, double *next_px) {
-  fg_disc_work work = {.tiles = view->tiles, .shape = &view->shape, .gamma = tone->gamma};
+  fg_disc_work work = {
+      .tiles = view->tiles, .shape = &view->shape, .gamma = tone->gamma, .linear = tone->linear};
   memset(edge, 0, sizeof *edge);
   edge->picture = fg_picture_unknown();
   edge->gamma = tone->gamma;
