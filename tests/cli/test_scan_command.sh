@@ -112,7 +112,7 @@ fi
 
 # start COMMAND: a station with this scan_command; what it says is in $work/err, its page in $work/page.
 start() {
-  rm -rf "$work/in"
+  rm -rf "$work/in" "$work/address"
   mkdir "$work/in"
   python3 - "$1" >"$work/recipe.json" <<'P'
 import json, sys
