@@ -176,7 +176,8 @@ def page(rows, clean, missing, options):
         return clean or "nothing to do\n"
     scan = [r for r in rows if r["variant"] == "scan"]
     words = "".join([" --quick" if options.quick else "", f" --kinds {options.kinds}" if options.kinds else "",
-                     " --before BEFORE" if options.before else ""])  # fmt: skip
+                     f" --clean {options.clean}" if options.clean != 200 else "",
+                     " --before OTHER_BUILD" if options.before else ""])  # fmt: skip
     text = TEXT.format(words=words, version=version_of(options.program), seeds=options.seeds, sentence=sentence(scan),
                        kinds=kinds_table(scan),
                        quick=" (a sixth of all cases)" if options.quick else "", quantities=quantities_table(scan),
