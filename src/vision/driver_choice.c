@@ -61,7 +61,9 @@ void fg_driver_describe(const fg_driver *driver, fg_picture_state *state) {
   if (state->tone_s > SLOPE_LEAST) state->findings |= FG_PICTURE_TONE_CURVE;
   if (!(state->sharpen_amount > AMOUNT_LEAST)) return;
   state->sharpen_radius_px = driver->values[FG_DRIVER_RADIUS];
-  state->findings |= FG_PICTURE_SHARPENED;
+  /* Levels that are cut off make an edge as steep as an unsharp mask does, and cut its overshoot
+   * off, too: then a mask is not told from them. */
+  if (!(state->findings & FG_PICTURE_CLIPPED)) state->findings |= FG_PICTURE_SHARPENED;
 }
 
 bool fg_driver_is_missed(const fg_driver_misfit *misfit, double contrast) {
