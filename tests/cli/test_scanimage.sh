@@ -19,7 +19,7 @@ ask() {
   local code=0
   "$program" measure "$@" >"$work/report" 2>"$work/said" || code=$?
   sed -n '/"light_on_dark"/,$p' "$work/report" >"$work/seen"
-  sed 's/^foilgauge: .*: no foil/no foil/' "$work/said" >>"$work/seen"
+  sed -E 's|^foilgauge: [^:]*: ||' "$work/said" >>"$work/seen"
   if [ $code -eq 65 ] && ! grep -q '^no foil in the picture' "$work/seen" || [ $code -gt 65 ]; then
     echo "test_scanimage: measure $*: exit code $code: $(cat "$work/said")" >&2
     exit 1
