@@ -55,4 +55,8 @@ void fg_picture_inspect_blocks(const fg_tile_choice *choice, int bytes_per_pixel
 fg_status fg_picture_inspect_rows(fg_context *ctx, const fg_edge_work *work,
                                   fg_picture_state *state);
 
+/* Where both limbs of a round edge jump at one row, along y or x. picture_ring_rows.c */
+fg_status fg_picture_inspect_ring_rows(fg_context *ctx, const fg_disc_work *work,
+                                       const fg_disc_edge *edge, fg_picture_state *state);
+
 #endif
