@@ -132,3 +132,21 @@ bool fg_arc_half_width_shift(const fg_datum_line *line, const fg_arc *arc, doubl
   memcpy(shift, x, 3 * sizeof *shift);
   return true;
 }
+
+bool fg_arc_shift_by(const fg_datum_line *line, const fg_arc *arc,
+                     double (*move)(const void *user, size_t station), const void *user,
+                     double shift[3]) {
+  fg_normal_equations system;
+  double row[3], x[FG_SMALL_MAX];
+  fg_normal_clear(&system, 3);
+  for (size_t i = 0; i < arc->range_count; i++)
+    for (size_t k = arc->ranges[i].first; k <= arc->ranges[i].last; k++) {
+      if (!fg_arc_used(line, arc, k)) continue;
+      const fg_point *normal = &line->strip->stations[k].normal;
+      jacobian_row(line, arc, k, row);
+      fg_normal_add(&system, row, (normal->x * row[0] + normal->y * row[1]) * move(user, k), 1);
+    }
+  if (!fg_normal_solve(&system, 0, x, NULL)) return false;
+  memcpy(shift, x, 3 * sizeof *shift);
+  return true;
+}

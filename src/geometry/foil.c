@@ -13,6 +13,7 @@
 #include "geometry/foil_uncertainty.h"
 #include "geometry/labels.h"
 #include "geometry/recognise.h"
+#include "geometry/shadow_doubt.h"
 #include "geometry/trouble.h"
 
 /* A bump is crushed when its height or radius is off the sound ones' by this factor. */
@@ -95,6 +96,7 @@ static void fill_bump(const fg_layout *layout, size_t i, const fg_design *design
   bump->flags |= fg_trouble_flags(layout, i);
   const fg_thickness strip = fg_foil_thickness(design, foil);
   fg_bump_derive(design, nominal, &foil->overall, &strip, bump);
+  fg_bump_add_shadow(layout, i, design, nominal, &foil->overall, bump);
   if (!layout->fitted[i]) bump->position_deg = stretch_position_deg(foil, arc->ranges[0]);
 }
 
@@ -203,6 +205,8 @@ static fg_status fill_foil(fg_context *ctx, const fg_design *design, fg_layout *
   foil->bump_count = n;
   for (size_t i = 0; i < n; i++)
     fill_bump(layout, i, design, &nominal, foil, &foil->bumps[i]);
+  fg_arc_add_shadow(&layout->line, &layout->overall);
+  fg_layout_overall(layout, design, &foil->overall);
   order_bumps(layout, foil);
   fg_places_number(layout, design, &nominal, foil);
   flag_bumps(ctx, design, &nominal, foil);

@@ -8,6 +8,7 @@
 
 #include "core/memory.h"
 #include "geometry/level_doubt.h"
+#include "geometry/shadow_doubt.h"
 
 /* The edge model's systematic error counts when chance would show it less often than this. */
 #define EDGE_MODEL_P 0.005
@@ -151,6 +152,7 @@ void fg_foil_find_arc_uncertainty(fg_layout *layout, const fg_design *design, fg
   foil->edge_model_um = 0;
   if (noise.integral_stations > ROUGH_STATIONS) foil->flags |= FG_FOIL_ROUGH_EDGE;
   find_overall_covariance(layout, design, foil);
+  fg_arc_add_shadow(&layout->line, &layout->overall);
 }
 
 static size_t gather_bumps(const fg_layout *layout, fg_arc *arcs) {

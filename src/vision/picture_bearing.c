@@ -9,7 +9,7 @@
 #include "core/small_solve.h"
 #include "core/spread.h"
 
-enum { PROFILES_LEAST = 8, BLUR_TERMS = 5, BEARINGS = 24, PER_BEARING_LEAST = 3 };
+enum { PROFILES_LEAST = 8, BLUR_TERMS = 5, PER_BEARING_LEAST = 3 };
 
 /* A median over n values has this over the mean's standard deviation. */
 #define MEDIAN_OVER_MEAN 1.2533
@@ -204,11 +204,37 @@ static double band_of(const inspection *in, const fg_edge_profile *p) {
 }
 
 /* Standard deviation of one band by what neighbours differ by: a shadow comes and goes slowly. */
-static double band_noise(const inspection *in, const double *bands) {
+static double noise_of_neighbours(const inspection *in, const double *bands) {
   size_t n = 0;
   for (size_t k = 0; k + 2 < in->count; k++)
     if (!isnan(bands[k]) && !isnan(bands[k + 2])) in->scratch[n++] = fabs(bands[k + 2] - bands[k]);
   return n ? M_SQRT1_2 * fg_robust_sd(in->scratch, n) : INFINITY;
+}
+
+/* The same by what is left of a course over the bearing: where a foil is few pixels long its
+ * neighbours face bearings that are far apart. */
+static double noise_about_course(const inspection *in, const double *bands) {
+  fg_normal_equations system;
+  double row[BLUR_TERMS], x[FG_SMALL_MAX];
+  size_t n = 0;
+  fg_normal_clear(&system, BLUR_TERMS);
+  for (size_t k = 0; k < in->count; k++) {
+    if (isnan(bands[k])) continue;
+    fill_blur_row(&in->profiles[k], row);
+    fg_normal_add(&system, row, bands[k], 1);
+    n++;
+  }
+  if (n < 2 * BLUR_TERMS || !fg_normal_solve(&system, 0, x, NULL)) return INFINITY;
+  n = 0;
+  for (size_t k = 0; k < in->count; k++) {
+    double off = bands[k];
+    if (isnan(off)) continue;
+    fill_blur_row(&in->profiles[k], row);
+    for (int i = 0; i < BLUR_TERMS; i++)
+      off -= row[i] * x[i];
+    in->scratch[n++] = fabs(off);
+  }
+  return fg_robust_sd(in->scratch, n) * sqrt((double)n / (double)(n - BLUR_TERMS));
 }
 
 /* Median of the bands that face a bearing within one step, and how many they are. */
@@ -230,17 +256,24 @@ static void inspect_shadow(const inspection *in, fg_picture_state *state) {
     if (!isnan(bands[k])) in->scratch[n++] = bands[k];
   }
   if (n < PROFILES_LEAST) return;
-  double usual = fg_select(in->scratch, n, n / 2), noise = band_noise(in, bands);
-  for (int i = 0; i < BEARINGS; i++) {
-    double bearing = i * 2 * M_PI / BEARINGS, depth = band_at(in, bands, bearing, &n) - usual;
+  double usual = fg_select(in->scratch, n, n / 2), noise = noise_of_neighbours(in, bands);
+  noise = fmin(noise, noise_about_course(in, bands));
+  double depths[FG_PICTURE_BEARINGS];
+  for (int i = 0; i < FG_PICTURE_BEARINGS; i++) {
+    double bearing = i * 2 * M_PI / FG_PICTURE_BEARINGS;
+    double depth = band_at(in, bands, bearing, &n) - usual;
+    depths[i] = isnan(depth) ? 0 : depth;
     if (isnan(depth) || fabs(depth) <= fabs(state->shadow)) continue;
     state->shadow = depth;
     state->shadow_direction_deg = bearing * 180 / M_PI;
     u = MEDIAN_OVER_MEAN * noise / sqrt((double)n);
   }
-  if (fabs(state->shadow) > BAND_SHARE + BAND_SHADING * shading &&
-      fabs(state->shadow) > BAND_SIGMAS * u)
-    state->findings |= FG_PICTURE_SHADOW;
+  if (!(fabs(state->shadow) > BAND_SHARE + BAND_SHADING * shading &&
+        fabs(state->shadow) > BAND_SIGMAS * u))
+    return;
+  state->findings |= FG_PICTURE_SHADOW;
+  for (int i = 0; i < FG_PICTURE_BEARINGS; i++)
+    state->shadow_at[i] = depths[i];
 }
 
 static double median_blur(const inspection *in) {
@@ -256,7 +289,7 @@ fg_status fg_picture_inspect_profiles(fg_context *ctx, const fg_edge_profile *pr
   if (count < PROFILES_LEAST) return FG_OK;
   FG_TRY(fg_memory_allocate(ctx, 2 * count, sizeof *in.scratch, (void **)&in.scratch));
   in.blur_px = median_blur(&in);
-  in.window = 2 * M_PI * fmax(1.0 / BEARINGS, 1.6 / (double)count);
+  in.window = 2 * M_PI * fmax(1.0 / FG_PICTURE_BEARINGS, 1.6 / (double)count);
   inspect_turns(&in, state);
   inspect_blur(&in, state);
   inspect_shadow(&in, state);

@@ -79,6 +79,8 @@ void fg_picture_merge(fg_picture_state *state, const fg_picture_state *other) {
   take_larger(&state->row_jump_px, other->row_jump_px);
   if (take_larger(&state->shadow, other->shadow))
     state->shadow_direction_deg = other->shadow_direction_deg;
+  for (int i = 0; i < FG_PICTURE_BEARINGS; i++)
+    take_larger(&state->shadow_at[i], other->shadow_at[i]);
   merge_blur(state, other);
   merge_tone(state, other);
   state->findings |= other->findings;

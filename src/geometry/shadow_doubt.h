@@ -1,0 +1,18 @@
+/* What a shadow or a lit wall beside edges leaves in doubt of circles. */
+#ifndef FG_GEOMETRY_SHADOW_DOUBT_H
+#define FG_GEOMETRY_SHADOW_DOUBT_H
+
+#include "geometry/layout.h"
+
+/* All of these do nothing where no shadow is found. */
+
+/* Widens the covariance of a circle that was fitted to the line. */
+void fg_arc_add_shadow(const fg_datum_line *line, fg_arc *arc);
+
+/* Widens what was derived of a bump and of the overall circle it was derived with: the shadow moves
+ * both circles at once, so that a height is left nearly alone. The overall circle's own covariance
+ * must not hold it yet. */
+void fg_bump_add_shadow(const fg_layout *layout, size_t i, const fg_design *design,
+                        const fg_nominal *nominal, const fg_overall *overall, fg_bump *bump);
+
+#endif
