@@ -9,7 +9,7 @@
 #include "core/small_solve.h"
 #include "core/spread.h"
 
-enum { PROFILES_LEAST = 8, BLUR_TERMS = 5, PER_BEARING_LEAST = 3 };
+enum { PROFILES_LEAST = 8, BLUR_TERMS = 5 };
 
 /* A median over n values has this over the mean's standard deviation. */
 #define MEDIAN_OVER_MEAN 1.2533
@@ -25,23 +25,13 @@ enum { PROFILES_LEAST = 8, BLUR_TERMS = 5, PER_BEARING_LEAST = 3 };
 /* Flatbeds blur along the carriage by up to half more than across. */
 #define BLUR_RATIO  1.6
 #define BLUR_SIGMAS 5.0
-/* A band is sought where the edge's own blur has ended, and so far out. */
-#define BAND_BLURS    2.5
-#define BAND_LEAST_PX 2.0
-#define BAND_PX       5.0
-/* So much of the contrast moves edges by their u; where the light changes over the picture the
- * background beside an edge is known less well, by this share of its range. */
-#define BAND_SHARE   0.015
-#define BAND_SHADING 0.02
-#define BAND_SIGMAS  5.0
 
 typedef struct inspection {
   const fg_edge_profile *profiles;
   size_t count;
-  double *scratch; /* 2 × count */
+  double *scratch; /* count */
   double blur_px;
-  double window; /* half of the bearings that are one direction of a shadow, rad */
-  int quarter;   /* of the bearings that are looked at, -1: all */
+  int quarter; /* of the bearings that are looked at, -1: all */
 } inspection;
 
 /* Whether a profile faces one quarter of all bearings, whose middles are the axes. */
@@ -193,87 +183,24 @@ static void inspect_blur(const inspection *in, fg_picture_state *state) {
 /* Mean share of the band beside an edge, from where its own blur has ended, over the background's.
  */
 static double band_of(const inspection *in, const fg_edge_profile *p) {
-  double from = fmax(BAND_BLURS * fmax(in->blur_px, p->blur_px), BAND_LEAST_PX), sum = 0, n = 0;
+  double from = fg_band_from(fmax(in->blur_px, p->blur_px)), sum = 0, n = 0;
   for (size_t i = FG_SHARES_INSIDE; i < FG_SHARES; i++) {
     double at = fg_share_px(i);
-    if (at < from || at > from + BAND_PX || isnan(p->shares[i])) continue;
+    if (at < from || at > from + FG_BAND_PX || isnan(p->shares[i])) continue;
     sum += (double)p->shares[i];
     n++;
   }
   return n > 0 ? sum / n - (isnan(p->background) ? 0 : (double)p->background) : NAN;
 }
 
-/* Standard deviation of one band by what neighbours differ by: a shadow comes and goes slowly. */
-static double noise_of_neighbours(const inspection *in, const double *bands) {
-  size_t n = 0;
-  for (size_t k = 0; k + 2 < in->count; k++)
-    if (!isnan(bands[k]) && !isnan(bands[k + 2])) in->scratch[n++] = fabs(bands[k + 2] - bands[k]);
-  return n ? M_SQRT1_2 * fg_robust_sd(in->scratch, n) : INFINITY;
-}
-
-/* The same by what is left of a course over the bearing: where a foil is few pixels long its
- * neighbours face bearings that are far apart. */
-static double noise_about_course(const inspection *in, const double *bands) {
-  fg_normal_equations system;
-  double row[BLUR_TERMS], x[FG_SMALL_MAX];
-  size_t n = 0;
-  fg_normal_clear(&system, BLUR_TERMS);
-  for (size_t k = 0; k < in->count; k++) {
-    if (isnan(bands[k])) continue;
-    fill_blur_row(&in->profiles[k], row);
-    fg_normal_add(&system, row, bands[k], 1);
-    n++;
-  }
-  if (n < 2 * BLUR_TERMS || !fg_normal_solve(&system, 0, x, NULL)) return INFINITY;
-  n = 0;
-  for (size_t k = 0; k < in->count; k++) {
-    double off = bands[k];
-    if (isnan(off)) continue;
-    fill_blur_row(&in->profiles[k], row);
-    for (int i = 0; i < BLUR_TERMS; i++)
-      off -= row[i] * x[i];
-    in->scratch[n++] = fabs(off);
-  }
-  return fg_robust_sd(in->scratch, n) * sqrt((double)n / (double)(n - BLUR_TERMS));
-}
-
-/* Median of the bands that face a bearing within one step, and how many they are. */
-static double band_at(const inspection *in, const double *bands, double bearing, size_t *n) {
-  *n = 0;
-  for (size_t k = 0; k < in->count; k++) {
-    double off = remainder(in->profiles[k].bearing - bearing, 2 * M_PI);
-    if (fabs(off) <= in->window && !isnan(bands[k])) in->scratch[(*n)++] = bands[k];
-  }
-  return *n < PER_BEARING_LEAST ? NAN : fg_select(in->scratch, *n, *n / 2);
-}
-
-static void inspect_shadow(const inspection *in, fg_picture_state *state) {
-  double *bands = in->scratch + in->count, u = 0;
-  double shading = isnan(state->shading) ? 0 : state->shading;
-  size_t n = 0;
-  for (size_t k = 0; k < in->count; k++) {
-    bands[k] = band_of(in, &in->profiles[k]);
-    if (!isnan(bands[k])) in->scratch[n++] = bands[k];
-  }
-  if (n < PROFILES_LEAST) return;
-  double usual = fg_select(in->scratch, n, n / 2), noise = noise_of_neighbours(in, bands);
-  noise = fmin(noise, noise_about_course(in, bands));
-  double depths[FG_PICTURE_BEARINGS];
-  for (int i = 0; i < FG_PICTURE_BEARINGS; i++) {
-    double bearing = i * 2 * M_PI / FG_PICTURE_BEARINGS;
-    double depth = band_at(in, bands, bearing, &n) - usual;
-    depths[i] = isnan(depth) ? 0 : depth;
-    if (isnan(depth) || fabs(depth) <= fabs(state->shadow)) continue;
-    state->shadow = depth;
-    state->shadow_direction_deg = bearing * 180 / M_PI;
-    u = MEDIAN_OVER_MEAN * noise / sqrt((double)n);
-  }
-  if (!(fabs(state->shadow) > BAND_SHARE + BAND_SHADING * shading &&
-        fabs(state->shadow) > BAND_SIGMAS * u))
-    return;
-  state->findings |= FG_PICTURE_SHADOW;
-  for (int i = 0; i < FG_PICTURE_BEARINGS; i++)
-    state->shadow_at[i] = depths[i];
+static fg_status inspect_shadow(fg_context *ctx, const inspection *in, fg_picture_state *state) {
+  fg_edge_band *bands = NULL;
+  FG_TRY(fg_memory_allocate(ctx, in->count, sizeof *bands, (void **)&bands));
+  for (size_t k = 0; k < in->count; k++)
+    bands[k] = (fg_edge_band){in->profiles[k].bearing, band_of(in, &in->profiles[k])};
+  fg_status status = fg_picture_inspect_bands(ctx, bands, in->count, state);
+  free(bands);
+  return status;
 }
 
 static double median_blur(const inspection *in) {
@@ -287,12 +214,11 @@ fg_status fg_picture_inspect_profiles(fg_context *ctx, const fg_edge_profile *pr
                                       size_t count, fg_picture_state *state) {
   inspection in = {.profiles = profiles, .count = count, .quarter = -1};
   if (count < PROFILES_LEAST) return FG_OK;
-  FG_TRY(fg_memory_allocate(ctx, 2 * count, sizeof *in.scratch, (void **)&in.scratch));
+  FG_TRY(fg_memory_allocate(ctx, count, sizeof *in.scratch, (void **)&in.scratch));
   in.blur_px = median_blur(&in);
-  in.window = 2 * M_PI * fmax(1.0 / FG_PICTURE_BEARINGS, 1.6 / (double)count);
   inspect_turns(&in, state);
   inspect_blur(&in, state);
-  inspect_shadow(&in, state);
+  fg_status status = inspect_shadow(ctx, &in, state);
   free(in.scratch);
-  return FG_OK;
+  return status;
 }

@@ -6,6 +6,8 @@
 #ifndef FG_VISION_PICTURE_PROFILE_H
 #define FG_VISION_PICTURE_PROFILE_H
 
+#include <math.h>
+
 #include "foilgauge/picture.h"
 #include "foilgauge/status.h"
 #include "vision/edge_model.h"
@@ -48,5 +50,21 @@ bool fg_edge_profile_take(const fg_profile_source *source, fg_edge_profile *prof
  * Reorders nothing. */
 fg_status fg_picture_inspect_profiles(fg_context *ctx, const fg_edge_profile *profiles,
                                       size_t count, fg_picture_state *state);
+
+/* A band beside an edge is sought where the edge's own blur has ended, and so far out. */
+#define FG_BAND_PX 5.0
+static inline double fg_band_from(double blur_px) {
+  return fmax(2.5 * blur_px, 2.0);
+}
+
+/* The mean share there over the background's. */
+typedef struct fg_edge_band {
+  double bearing; /* as a profile's */
+  double share;   /* NaN: not seen */
+} fg_edge_band;
+
+/* Fills what bands tell of a shadow; left and right edges take turns, in order along the strip. */
+fg_status fg_picture_inspect_bands(fg_context *ctx, const fg_edge_band *bands, size_t count,
+                                   fg_picture_state *state);
 
 #endif

@@ -1,6 +1,7 @@
 /* The state of a picture around a strip. */
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "core/memory.h"
 #include "core/select.h"
@@ -111,6 +112,72 @@ static double find_shading(const fg_edge_work *work, double contrast) {
   return (high - low) / contrast;
 }
 
+/* Stations whose pixels make one band: a bump turns by so little over them that a shadow of a few
+ * bearings does not fade among others. */
+enum { BAND_STATIONS = 16 };
+
+/* Where pixels of the bands beside the edges are added up, left and right of every stretch. */
+typedef struct band_sums {
+  double *sums, *counts;
+} band_sums;
+
+static void add_bands(const fg_edge_work *work, band_sums *b) {
+  const double from[2] = {fg_band_from(work->blur_px[0]), fg_band_from(work->blur_px[1])};
+  for (size_t c = 0; c < work->chunk_count; c++)
+    for (size_t i = 0; i < work->bands[c].count; i++) {
+      const fg_band_pixel *p = &work->bands[c].pixels[i];
+      const fg_edge_station *s = &work->stations[p->station];
+      float left = s->edge_px[0] - p->across_px, right = p->across_px - s->edge_px[1];
+      int side = right > left;
+      double d = (double)(side ? right : left) - from[side];
+      if (!(s->weight > 0) || d < 0 || d > FG_BAND_PX) continue;
+      size_t at = 2 * ((size_t)p->station / BAND_STATIONS) + (size_t)side;
+      b->sums[at] += (double)p->value;
+      b->counts[at]++;
+    }
+}
+
+static fg_edge_band band_of(const fg_edge_work *work, const band_sums *b, size_t at,
+                            double inside) {
+  size_t station = at / 2 * BAND_STATIONS + BAND_STATIONS / 2;
+  if (station >= work->reference->count) station = work->reference->count - 1;
+  const fg_reference_station *r = &work->reference->stations[station];
+  int way = at % 2 ? 1 : -1;
+  double background = background_at(work, r);
+  return (fg_edge_band){
+      .bearing = atan2(way * r->tx, -way * r->ty),
+      .share = b->counts[at] > 0
+                   ? (b->sums[at] / b->counts[at] - background) / (inside - background)
+                   : NAN,
+  };
+}
+
+static fg_status inspect_bands(fg_context *ctx, const fg_edge_work *work, double inside,
+                               fg_picture_state *state) {
+  size_t count = 2 * ((work->reference->count + BAND_STATIONS - 1) / BAND_STATIONS);
+  fg_edge_band *bands = NULL;
+  band_sums sums = {0};
+  fg_picture_state fine = fg_picture_unknown();
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *bands, (void **)&bands));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, 2 * count, sizeof *sums.sums, (void **)&sums.sums));
+  sums.counts = sums.sums + count;
+  add_bands(work, &sums);
+  for (size_t i = 0; i < count; i++)
+    bands[i] = band_of(work, &sums, i, inside);
+  fine.shading = state->shading;
+  FG_TRY_EXIT(fg_picture_inspect_bands(ctx, bands, count, &fine));
+  if (!(fine.findings & FG_PICTURE_SHADOW)) goto exit;
+  state->findings |= FG_PICTURE_SHADOW;
+  state->shadow = fine.shadow;
+  state->shadow_direction_deg = fine.shadow_direction_deg;
+  memcpy(state->shadow_at, fine.shadow_at, sizeof state->shadow_at);
+exit:
+  free(bands);
+  free(sums.sums);
+  return status;
+}
+
 /* Up to here the background between tiles follows the light. */
 #define SHADING_SHARE 1.0
 
@@ -145,6 +212,7 @@ static fg_status inspect(fg_context *ctx, const fg_edge_work *work, fg_edge_prof
   state->shading = find_shading(work, contrast);
   if (state->shading > SHADING_SHARE) state->findings |= FG_PICTURE_SHADING;
   FG_TRY(fg_picture_inspect_profiles(ctx, profiles, count, state));
+  FG_TRY(inspect_bands(ctx, work, levels[0], state));
   return fg_picture_inspect_rows(ctx, work, state);
 }
 

@@ -37,7 +37,7 @@ static const fg_render_bump *drawn(const measured *m, const fg_bump *bump) {
 }
 
 static measured measure_case(int dpi, int degrees, bool dark, const char *scanner) {
-  char json[2048], foil[64];
+  char json[4096], foil[64];
   snprintf(foil, sizeof foil, ",\"rotate_deg\":%d", degrees);
   small_foil(json, sizeof json, 3, foil, "\"dpi\":%d,\"noise\":1.2,\"blur_px\":%g,%s%s", dpi,
              dpi == FINE ? 1.4 : 1.0,
