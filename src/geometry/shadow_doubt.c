@@ -7,15 +7,15 @@
 #include "foilgauge/foil.h"
 #include "geometry/level_doubt.h"
 
-/* An edge moves by so many times its depth × blur × sqrt(2 pi) (sd over renders of known truth,
- * driver.py's kinds shadow and wall): the band is deeper at the edge than where it is seen, and
- * half of what the level errs by counts. */
-#define SHIFT_PER_DEPTH 0.6
-/* Shapes are smoothed over two harmonics of the bearing, which carries this share of the deepest
- * band to edges that have none. */
-#define CARRIED_SHARE 0.2
+/* An edge moves by so many times depth × blur × sqrt(2 pi): half of what the background's level
+ * errs by counts, and that is about the depth. Over renders of known truth errors have at most that
+ * sd (tests/bench/driver.py, kinds shadow and wall). */
+#define SHIFT_PER_DEPTH 0.5
+/* Shapes are smoothed over two harmonics of the bearing and over stretches of a bump that turn by
+ * up to 50 degrees, which carries this share of the deepest band to edges that have none. */
+#define CARRIED_SHARE 0.4
 /* Shifts of bearings this far apart have nothing in common. */
-enum { PARTS = 8 };
+enum { PARTS = 12 };
 
 /* One independent part of the shifts: edges that face the bearing, or, without a part, all. */
 typedef struct shift_part {

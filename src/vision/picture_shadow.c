@@ -79,6 +79,19 @@ static double band_at(const inspection *in, double bearing, size_t *n) {
   return *n < PER_BEARING_LEAST ? NAN : fg_select(in->scratch, *n, *n / 2);
 }
 
+/* Bearings of too few bands take the deeper of the nearest known ones on either side. */
+static double depth_near(const double *depths, int i) {
+  double deepest = 0;
+  for (int way = -1; way <= 1; way += 2)
+    for (int k = 0; k < FG_PICTURE_BEARINGS; k++) {
+      double depth = depths[(i + way * k + FG_PICTURE_BEARINGS) % FG_PICTURE_BEARINGS];
+      if (isnan(depth)) continue;
+      if (fabs(depth) > fabs(deepest)) deepest = depth;
+      break;
+    }
+  return deepest;
+}
+
 static void inspect(const inspection *in, fg_picture_state *state) {
   double depths[FG_PICTURE_BEARINGS], u = 0;
   double shading = isnan(state->shading) ? 0 : state->shading;
@@ -91,7 +104,7 @@ static void inspect(const inspection *in, fg_picture_state *state) {
   for (int i = 0; i < FG_PICTURE_BEARINGS; i++) {
     double bearing = i * 2 * M_PI / FG_PICTURE_BEARINGS;
     double depth = band_at(in, bearing, &n) - usual;
-    depths[i] = isnan(depth) ? 0 : depth;
+    depths[i] = depth;
     if (isnan(depth) || fabs(depth) <= fabs(state->shadow)) continue;
     state->shadow = depth;
     state->shadow_direction_deg = bearing * 180 / M_PI;
@@ -102,7 +115,7 @@ static void inspect(const inspection *in, fg_picture_state *state) {
     return;
   state->findings |= FG_PICTURE_SHADOW;
   for (int i = 0; i < FG_PICTURE_BEARINGS; i++)
-    state->shadow_at[i] = depths[i];
+    state->shadow_at[i] = depth_near(depths, i);
 }
 
 fg_status fg_picture_inspect_bands(fg_context *ctx, const fg_edge_band *bands, size_t count,
