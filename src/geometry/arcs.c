@@ -143,8 +143,45 @@ exit:
   return status;
 }
 
+/* A circle of one line. */
+typedef struct line_arc {
+  const fg_datum_line *line;
+  const fg_arc *arc;
+} line_arc;
+
+/* What a station was moved inwards by beyond what a round blur has: a curved edge is moved by the
+ * blur along it. */
+static double uneven_shift(const void *user, size_t station) {
+  const line_arc *of = user;
+  const fg_picture_state *picture = &of->line->strip->picture;
+  const fg_station *s = &of->line->strip->stations[station];
+  const fg_point *at = &of->line->points[station];
+  const fg_circle *circle = &of->arc->circle;
+  double most = picture->blur_px[0] * picture->blur_px[0];
+  double least = picture->blur_px[1] * picture->blur_px[1];
+  double axis = picture->blur_direction_deg * M_PI / 180;
+  double across = s->normal.x * cos(axis) + s->normal.y * sin(axis);
+  double along = most + (least - most) * across * across;
+  bool outwards = (at->x - circle->x) * s->normal.x + (at->y - circle->y) * s->normal.y > 0;
+  double excess = 2 * along / (most + least) - 1;
+  return (outwards ? 1 : -1) * excess * blur_shift(of->line, circle->radius);
+}
+
+static void put_uneven_blur_back(const fg_datum_line *line, fg_arc *arc) {
+  double shift[3];
+  const line_arc of = {line, arc};
+  if (!(line->strip->picture.findings & FG_PICTURE_UNEVEN_BLUR) ||
+      !fg_arc_shift_by(line, arc, uneven_shift, &of, shift))
+    return;
+  arc->circle.x += shift[0];
+  arc->circle.y += shift[1];
+  arc->circle.radius += shift[2];
+}
+
 fg_status fg_arc_fit(fg_context *ctx, const fg_datum_line *line, fg_arc *arc) {
-  return fit_robustly(ctx, line, by_fit, arc);
+  FG_TRY(fit_robustly(ctx, line, by_fit, arc));
+  put_uneven_blur_back(line, arc);
+  return FG_OK;
 }
 
 fg_status fg_arc_estimate(fg_context *ctx, const fg_datum_line *line, fg_arc *arc) {

@@ -14,14 +14,17 @@
 /* Shapes are smoothed over two harmonics of the bearing and over stretches of a bump that turn by
  * up to 50 degrees, which carries this share of the deepest band to edges that have none. */
 #define CARRIED_SHARE 0.4
+/* A blur that differs over the bearing leaves as much at every edge as a band of this depth: what
+ * smoothing its shape misses. */
+#define UNEVEN_DEPTH 0.005
 /* Shifts of bearings this far apart have nothing in common. */
 enum { PARTS = 12 };
 
 /* One independent part of the shifts: edges that face the bearing, or, without a part, all. */
 typedef struct shift_part {
   const fg_datum_line *line;
-  int part; /* -1: all bearings alike */
-  double deepest;
+  int part;       /* -1: all bearings alike */
+  double carried; /* depth that every edge has beside its own */
 } shift_part;
 
 static double depth_at(const fg_picture_state *picture, double bearing) {
@@ -45,7 +48,7 @@ static double edge_shift(const shift_part *p, const fg_station *s, bool right) {
   double way = right ? 1 : -1, bearing = atan2(way * s->normal.y, way * s->normal.x);
   double blur_mm = (right ? strip->blur_right_um : strip->blur_left_um) / 1000;
   double depth = depth_at(&strip->picture, bearing);
-  depth = p->part < 0 ? depth : hypot(depth, CARRIED_SHARE * p->deepest);
+  depth = p->part < 0 ? depth : hypot(depth, p->carried);
   return SHIFT_PER_DEPTH * depth * fg_level_shift(blur_mm) * weight_at(p, bearing);
 }
 
@@ -61,14 +64,16 @@ static double line_shift(const void *user, size_t station) {
              : -left;
 }
 
-/* What the circle's parameters move by under each part: of how many, 0 without a shadow. */
+/* What the circle's parameters move by under each part: of how many, 0 without shadow and uneven
+ * blur. */
 static size_t find_shifts(const fg_datum_line *line, const fg_arc *arc,
                           double shifts[PARTS + 1][3]) {
   const fg_picture_state *picture = &line->strip->picture;
   shift_part p = {.line = line};
-  if (!(picture->findings & FG_PICTURE_SHADOW)) return 0;
+  if (!(picture->findings & (FG_PICTURE_SHADOW | FG_PICTURE_UNEVEN_BLUR))) return 0;
   for (int i = 0; i < FG_PICTURE_BEARINGS; i++)
-    p.deepest = fmax(p.deepest, fabs(picture->shadow_at[i]));
+    p.carried = fmax(p.carried, CARRIED_SHARE * fabs(picture->shadow_at[i]));
+  if (picture->findings & FG_PICTURE_UNEVEN_BLUR) p.carried = hypot(p.carried, UNEVEN_DEPTH);
   for (p.part = -1; p.part < PARTS; p.part++)
     if (!fg_arc_shift_by(line, arc, line_shift, &p, shifts[p.part + 1])) return 0;
   return PARTS + 1;

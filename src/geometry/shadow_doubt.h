@@ -4,7 +4,8 @@
 
 #include "geometry/layout.h"
 
-/* All of these do nothing where no shadow is found. */
+/* All of these do nothing where neither a shadow nor an uneven blur is found: that, too, moves
+ * edges by their bearing. */
 
 /* Widens the covariance of a circle that was fitted to the line. */
 void fg_arc_add_shadow(const fg_datum_line *line, fg_arc *arc);

@@ -122,14 +122,14 @@ typedef struct band_sums {
 } band_sums;
 
 static void add_bands(const fg_edge_work *work, band_sums *b) {
-  const double from[2] = {fg_band_from(work->blur_px[0]), fg_band_from(work->blur_px[1])};
   for (size_t c = 0; c < work->chunk_count; c++)
     for (size_t i = 0; i < work->bands[c].count; i++) {
       const fg_band_pixel *p = &work->bands[c].pixels[i];
       const fg_edge_station *s = &work->stations[p->station];
       float left = s->edge_px[0] - p->across_px, right = p->across_px - s->edge_px[1];
       int side = right > left;
-      double d = (double)(side ? right : left) - from[side];
+      double blur = fmax(work->blur_px[side], (double)s->blur_px[side]);
+      double d = (double)(side ? right : left) - fg_band_from(blur);
       if (!(s->weight > 0) || d < 0 || d > FG_BAND_PX) continue;
       size_t at = 2 * ((size_t)p->station / BAND_STATIONS) + (size_t)side;
       b->sums[at] += (double)p->value;

@@ -72,7 +72,8 @@ static const fg_picture_words findings[] = {
      "WIA_IPS_XRES = WIA_IPS_OPTICAL_XRES, WIA_IPS_YRES = WIA_IPS_OPTICAL_YRES, "
      "WIA_IPS_AUTO_DESKEW = WIA_AUTO_DESKEW_OFF"},
     {FG_PICTURE_SHADOW, "shadow",
-     "A shadow or the foil's wall shows beside edges of some directions, and moves them.",
+     "A shadow or the foil's wall shows beside edges of some directions, and moves "
+     "them. The uncertainties of radii and angles hold that.",
      "Lay the foil flat on the glass and close the lid; turn the foil and scan it again.", "", "",
      ""},
     {FG_PICTURE_ROW_JUMPS, "row_jumps",
