@@ -41,18 +41,19 @@ typedef struct fg_picture_state {
   double missing_levels;            /* share of those between the ends in use that are empty */
   double clipped_low, clipped_high; /* share of the edges' pixels at either end of the scale */
   double undershoot, overshoot;     /* beyond the dark and the bright level beside edges */
-  double block_noise;          /* steps across multiples of 8 px over those elsewhere, less 1 */
-  double blur_px[2];           /* sd along the axis of most and of least blur */
-  double blur_direction_deg;   /* of the first, from x towards y, 0 to 180 */
-  double noise;                /* sd of a pixel, counts of 255 */
-  double noise_correlation[2]; /* to the next pixel along x and along y */
-  double shadow;               /* deepest band beside edges of one bearing */
-  double shadow_direction_deg; /* bearing of those edges' outward normals, x towards y */
-  double shadow_at[FG_PICTURE_BEARINGS];    /* its depth by that bearing; 0: no shadow is found */
-  double row_jumps, row_jump_px;            /* places where rows jump, and the largest jump */
-  double shading;                           /* range of the background over the picture */
-  double gamma, u_gamma;                    /* exponent of the tone curve that the edges show */
-  double tone_s;                            /* S-shaped part of it: (slope at the middle) - 1 */
+  double block_noise;        /* steps across multiples of 8 px over those elsewhere, less 1 */
+  int block_quality;         /* of the JPEG that its blocks tell, 1 to 100; 0: not known, or none */
+  double blur_px[2];         /* sd along the axis of most and of least blur */
+  double blur_direction_deg; /* of the first, from x towards y, 0 to 180 */
+  double noise;              /* sd of a pixel, counts of 255 */
+  double noise_correlation[2];           /* to the next pixel along x and along y */
+  double shadow;                         /* deepest band beside edges of one bearing */
+  double shadow_direction_deg;           /* bearing of those edges' outward normals, x towards y */
+  double shadow_at[FG_PICTURE_BEARINGS]; /* its depth by that bearing; 0: no shadow is found */
+  double row_jumps, row_jump_px;         /* places where rows jump, and the largest jump */
+  double shading;                        /* range of the background over the picture */
+  double gamma, u_gamma;                 /* exponent of the tone curve that the edges show */
+  double tone_s;                         /* S-shaped part of it: (slope at the middle) - 1 */
   double sharpen_amount, sharpen_radius_px; /* of the unsharp mask that explains the overshoot */
   double level, u_level;                    /* T(1/2) less what the model has, and its sd */
   bool level_known;  /* by a gauge or a scanner's model: u_level is all that is uncertain of it */

@@ -101,11 +101,13 @@ static double least_object_px(const fg_measurement *m) {
   return fmin(least_foil_px(m), fg_gauge_least_px(m));
 }
 
+/* Of a file that says itself that it is a JPEG, or of one whose pixels do. */
 static void find_loss(const fg_measurement *m, fg_strip *strip) {
+  int quality = m->jpeg_quality ? m->jpeg_quality : strip->picture.block_quality;
   double um = 25400 / sqrt(m->dpi[0] * m->dpi[1]);
   double blur_px = 0.5 * (strip->blur_left_um + strip->blur_right_um) / um;
-  strip->loss_variance = fg_loss_arc_variance(m->jpeg_quality);
-  strip->loss_um = um * fg_loss_edge_px(m->jpeg_quality, 255 * strip->contrast, blur_px);
+  strip->loss_variance = fg_loss_arc_variance(quality);
+  strip->loss_um = um * fg_loss_edge_px(quality, 255 * strip->contrast, blur_px);
 }
 
 /* A foil from one trace. What cannot be measured is a flag; what is no foil is a speck. */

@@ -18,16 +18,20 @@ void fg_jpeg_to_zigzag(const uint16_t natural[64], uint16_t zigzag[64]) {
 }
 
 /* A step of the table for a quality, as the IJG scales it. */
-static double step_of(int quality, int i) {
+int fg_jpeg_step_at(int quality, int i) {
   int percent = quality < 50 ? 5000 / quality : 200 - 2 * quality;
   int step = (luminance[i] * percent + 50) / 100;
   return step < 1 ? 1 : step > 255 ? 255 : step;
 }
 
+int fg_jpeg_place_of(int i) {
+  return natural_order[i];
+}
+
 static double square_of_quality(int quality) {
   double sum = 0;
   for (int i = 0; i < FG_JPEG_STEPS; i++)
-    sum += step_of(quality, i) * step_of(quality, i);
+    sum += fg_jpeg_step_at(quality, i) * fg_jpeg_step_at(quality, i);
   return sum;
 }
 

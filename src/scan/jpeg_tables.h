@@ -17,6 +17,11 @@ void fg_jpeg_to_zigzag(const uint16_t natural[64], uint16_t zigzag[64]);
  * root mean square of the steps that count. */
 int fg_jpeg_quality_of(const uint16_t zigzag[64]);
 
+/* The step of that quality at place i < FG_JPEG_STEPS in zigzag order, in gray values of 8 bits,
+ * and its place 8 u + v, u along y. */
+int fg_jpeg_step_at(int quality, int i);
+int fg_jpeg_place_of(int i);
+
 /* Root mean square of the steps that count, in gray values of 8 bits. */
 double fg_jpeg_step_of(int quality);
 

@@ -51,6 +51,18 @@ void fg_picture_inspect_noise(const fg_tile_choice *flat, int bytes_per_pixel,
 void fg_picture_inspect_blocks(const fg_tile_choice *choice, int bytes_per_pixel, double contrast,
                                fg_picture_state *state);
 
+/* A pixel in 8-bit counts. */
+static inline double fg_tile_count(const fg_tile *tile, int bytes_per_pixel, size_t at) {
+  if (bytes_per_pixel == 1) return tile->pixels[at];
+  return ((const uint16_t *)(const void *)tile->pixels)[at] * (1.0 / 257);
+}
+
+/* Quality of the Independent JPEG Group that the coefficients of 8 x 8 blocks were rounded with; 0:
+ * they fit none, as where the picture was changed afterwards. `first`: where the first block of a
+ * tile begins along x and y. picture_jpeg.c */
+int fg_picture_jpeg_quality(const fg_tile_choice *choice, int bytes_per_pixel,
+                            const size_t first[2]);
+
 /* Where both edges of the strip jump along y at one row. picture_rows.c */
 fg_status fg_picture_inspect_rows(fg_context *ctx, const fg_edge_work *work,
                                   fg_picture_state *state);

@@ -15,11 +15,6 @@ typedef struct steps {
   double sum[2][PHASES], squares[2][PHASES], count[2][PHASES];
 } steps;
 
-static double value_at(const fg_tile *tile, int bytes_per_pixel, size_t at) {
-  if (bytes_per_pixel == 1) return tile->pixels[at];
-  return ((const uint16_t *)(const void *)tile->pixels)[at] * (1.0 / 257);
-}
-
 static void add_step(steps *s, int axis, size_t phase, double step) {
   s->sum[axis][phase] += step;
   s->squares[axis][phase] += step * step;
@@ -31,18 +26,18 @@ static void add_tile(const fg_tile *tile, int bytes_per_pixel, double level, dou
   for (size_t y = 0; y + 1 < FG_TILE_PX; y++)
     for (size_t x = 0; x + 1 < FG_TILE_PX; x++) {
       size_t at = y * FG_TILE_PX + x;
-      double value = value_at(tile, bytes_per_pixel, at);
+      double value = fg_tile_count(tile, bytes_per_pixel, at);
       if (fabs(value - level) > limit) continue;
-      double right = value_at(tile, bytes_per_pixel, at + 1);
-      double down = value_at(tile, bytes_per_pixel, at + FG_TILE_PX);
+      double right = fg_tile_count(tile, bytes_per_pixel, at + 1);
+      double down = fg_tile_count(tile, bytes_per_pixel, at + FG_TILE_PX);
       if (fabs(right - level) <= limit) add_step(s, 0, x % PHASES, fabs(right - value));
       if (fabs(down - level) <= limit) add_step(s, 1, y % PHASES, fabs(down - value));
     }
 }
 
 /* The mean step of the phase that has the largest, over the mean of the others, less 1; 0 where it
- * is chance, or where other phases have as much. */
-static double ratio_of(const steps *s, int axis) {
+ * is chance, or where other phases have as much. `first`: where blocks begin. */
+static double ratio_of(const steps *s, int axis, size_t *first) {
   double means[PHASES], sum = 0, most = -1, second = -1, u = 0;
   for (int k = 0; k < PHASES; k++) {
     if (s->count[axis][k] < 100) return NAN;
@@ -51,6 +46,7 @@ static double ratio_of(const steps *s, int axis) {
     if (means[k] > most) {
       second = most;
       most = means[k];
+      *first = (size_t)(k + 1) % PHASES;
       u = sqrt(s->squares[axis][k]) / s->count[axis][k];
     } else {
       second = fmax(second, means[k]);
@@ -70,7 +66,10 @@ void fg_picture_inspect_blocks(const fg_tile_choice *choice, int bytes_per_pixel
     add_tile(choice->tiles[i], bytes_per_pixel, level,
              fmax(FLAT_SHARE * contrast, FLAT_NOISES * noise), &s);
   }
-  double x = ratio_of(&s, 0), y = ratio_of(&s, 1);
+  size_t first[2] = {0, 0};
+  double x = ratio_of(&s, 0, &first[0]), y = ratio_of(&s, 1, &first[1]);
   state->block_noise = isnan(x) || isnan(y) ? NAN : fmin(x, y);
-  if (state->block_noise > RATIO_LEAST) state->findings |= FG_PICTURE_BLOCK_NOISE;
+  if (!(state->block_noise > RATIO_LEAST)) return;
+  state->findings |= FG_PICTURE_BLOCK_NOISE;
+  state->block_quality = fg_picture_jpeg_quality(choice, bytes_per_pixel, first);
 }

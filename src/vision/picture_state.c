@@ -71,6 +71,9 @@ void fg_picture_merge(fg_picture_state *state, const fg_picture_state *other) {
   take_more(&state->undershoot, other->undershoot);
   take_more(&state->overshoot, other->overshoot);
   take_more(&state->block_noise, other->block_noise);
+  if (!state->block_quality ||
+      (other->block_quality && other->block_quality < state->block_quality))
+    state->block_quality = other->block_quality;
   take_more(&state->noise, other->noise);
   take_more(&state->noise_correlation[0], other->noise_correlation[0]);
   take_more(&state->noise_correlation[1], other->noise_correlation[1]);
