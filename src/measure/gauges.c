@@ -80,9 +80,22 @@ static void take(const fg_gauge_sighting *seen, fg_gauge_reading *reading) {
   if (seen->spoiled) fg_text_clip(reading->note, sizeof reading->note, "%s", seen->spoiled);
 }
 
+/* Which sighting each gauge is, by gauge; a gauge that is not found is none. */
+typedef struct matches {
+  size_t of[FG_GAUGES_MAX];
+} matches;
+
+static bool is_taken(const fg_measurement *m, const matches *taken, size_t sighting) {
+  for (size_t k = 0; k < m->design.gauge_count; k++)
+    if (m->gauges[k].found && taken->of[k] == sighting) return true;
+  return false;
+}
+
 /* What lies there of its kind, nearest in width. */
-static void say_missing(const fg_gauge_sightings *sightings, const fg_gauge *gauge,
-                        fg_gauge_reading *reading) {
+static void say_missing(const fg_gauge_sightings *sightings, const matches *taken, size_t missing,
+                        fg_measurement *m) {
+  const fg_gauge *gauge = &m->design.gauges[missing];
+  fg_gauge_reading *reading = &m->gauges[missing];
   const fg_gauge_sighting *nearest = NULL;
   for (size_t i = 0; i < sightings->count; i++)
     if (isfinite(distance(gauge, &sightings->list[i])) &&
@@ -95,12 +108,16 @@ static void say_missing(const fg_gauge_sightings *sightings, const fg_gauge *gau
     fg_text_clip(reading->note, sizeof reading->note, "no %s lies in the scan", what);
   else
     fg_text_clip(reading->note, sizeof reading->note,
-                 "the nearest %s reads %.4f mm, at x %.1f, y %.1f mm", what, nearest->width_mm,
-                 nearest->place_mm[0], nearest->place_mm[1]);
+                 "the nearest %s reads %.4f mm, at x %.1f, y %.1f mm%s", what, nearest->width_mm,
+                 nearest->place_mm[0], nearest->place_mm[1],
+                 is_taken(m, taken, (size_t)(nearest - sightings->list))
+                     ? ", and is taken for another stated gauge"
+                     : "");
 }
 
 void fg_gauges_match(const fg_gauge_sightings *sightings, fg_measurement *m) {
-  size_t count = m->design.gauge_count, taken_by[FG_GAUGES_MAX];
+  matches taken;
+  size_t count = m->design.gauge_count;
   for (size_t round = 0; round < count; round++) {
     size_t gauge = count, sighting = 0;
     double best = INFINITY;
@@ -108,19 +125,16 @@ void fg_gauges_match(const fg_gauge_sightings *sightings, fg_measurement *m) {
       double limit = log(m->design.gauges[g].kind == FG_GAUGE_LEAF ? LEAF_FACTOR : DISC_FACTOR);
       for (size_t i = 0; i < sightings->count && !m->gauges[g].found; i++) {
         double far = distance(&m->design.gauges[g], &sightings->list[i]);
-        bool free = true;
-        for (size_t k = 0; k < count; k++)
-          free = free && !(m->gauges[k].found && taken_by[k] == i);
-        if (!free || far > limit || far >= best) continue;
+        if (is_taken(m, &taken, i) || far > limit || far >= best) continue;
         best = far;
         gauge = g;
         sighting = i;
       }
     }
     if (gauge == count) break;
-    taken_by[gauge] = sighting;
+    taken.of[gauge] = sighting;
     take(&sightings->list[sighting], &m->gauges[gauge]);
   }
   for (size_t g = 0; g < count; g++)
-    if (!m->gauges[g].found) say_missing(sightings, &m->design.gauges[g], &m->gauges[g]);
+    if (!m->gauges[g].found) say_missing(sightings, &taken, g, m);
 }

@@ -6,8 +6,8 @@
 #include "core/memory.h"
 #include "measure/gauges.h"
 #include "measure/measure_discs.h"
+#include "vision/disc_find.h"
 #include "vision/edges.h"
-#include "vision/grid.h"
 
 /* A leaf stands straight, or is bent evenly by less than this share of its length; where the foil
  * itself is a plain arc, by less than this share of what that is. Evenly: a parabola runs within
@@ -22,8 +22,10 @@
 /* Blocks that hold part of an edge count to the object: its outline lies so far outside. */
 #define OUTLINE_PX 3.0
 #define DOUBT_PX   8.0
-/* Smallest radius of a disc's edge. */
-#define RADIUS_LEAST_PX 14.0
+/* Smallest radius of a disc's edge, and share of the smallest gauge's width (vision/disc_find.h).
+ */
+#define RADIUS_LEAST_PX  14.0
+#define DISC_LEAST_SHARE 0.5
 
 static bool is_stated(const fg_design *design, fg_gauge_kind from, fg_gauge_kind to) {
   for (size_t i = 0; i < design->gauge_count; i++)
@@ -69,8 +71,7 @@ static double bend_most(const fg_design *design) {
 static const char *why_spoiled(const fg_strip *strip) {
   if (strip->facts & FG_STRIP_TOUCHES_OTHER) return "it touches another part: lay it apart";
   if (!isfinite(strip->u_thickness_mm)) return "too little of its edges can be seen";
-  if (strip->plain_side_band)
-    return "a wall or a shadow shows beside an edge: stand it upright";
+  if (strip->plain_side_band) return "a wall or a shadow shows beside an edge: stand it upright";
   return NULL;
 }
 
@@ -133,41 +134,43 @@ fg_status fg_gauge_trace_leaf(fg_context *ctx, const fg_gauge_object *object, un
 
 /* ---- discs ---- */
 
+static bool is_square(const fg_pixel_shape *shape, const fg_object *o) {
+  double width = o->width * shape->scale[0], height = o->height * shape->scale[1];
+  return fabs(width - height) <= ASPECT_SHARE * fmax(width, height) + 1.5;
+}
+
 /* A disc wider than a few tiles is seen by its rim alone, as its middle is taken for background:
  * the box tells its size. */
-static bool is_round(const fg_design *design, const fg_pixel_shape *shape, const fg_blob *blob,
-                     bool hole) {
-  double width = blob->width * shape->scale[0], height = blob->height * shape->scale[1];
+static bool is_round(const fg_design *design, const fg_pixel_shape *shape, const fg_object *o) {
+  double width = o->width * shape->scale[0], height = o->height * shape->scale[1];
   double diameter_mm = 0.5 * (width + height) * FG_BLOCK_PX * shape->um / 1000;
-  if (fabs(width - height) > ASPECT_SHARE * fmax(width, height) + 1.5) return false;
+  if (!is_square(shape, o)) return false;
   for (size_t i = 0; i < design->gauge_count; i++) {
     const fg_gauge *gauge = &design->gauges[i];
     double slack = (2 * FG_BLOCK_PX * shape->um) / 1000 + SIZE_SHARE * gauge->width_mm;
-    if (gauge->kind == FG_GAUGE_LEAF || (gauge->kind == FG_GAUGE_PIN && hole)) continue;
-    if (fabs(diameter_mm - gauge->width_mm) < slack) return true;
+    if (gauge->kind != FG_GAUGE_LEAF && fabs(diameter_mm - gauge->width_mm) < slack) return true;
   }
   return false;
 }
 
-/* The circle in the blob's box, in square pixels. */
-static fg_disc_candidate circle_of(const fg_pixel_shape *shape, const fg_blob *blob, bool hole) {
-  double x = (blob->x + 0.5 * blob->width) * FG_BLOCK_PX - 0.5;
-  double y = (blob->y + 0.5 * blob->height) * FG_BLOCK_PX - 0.5;
-  double size = 0.5 * (blob->width * shape->scale[0] + blob->height * shape->scale[1]);
-  double radius = 0.5 * size * FG_BLOCK_PX + (hole ? OUTLINE_PX : -OUTLINE_PX);
+/* The circle in the object's box, in square pixels. */
+static fg_disc_candidate circle_of(const fg_pixel_shape *shape, const fg_object *o) {
+  double x = (o->x + 0.5 * o->width) * FG_BLOCK_PX - 0.5;
+  double y = (o->y + 0.5 * o->height) * FG_BLOCK_PX - 0.5;
+  double size = 0.5 * (o->width * shape->scale[0] + o->height * shape->scale[1]);
+  double radius = 0.5 * size * FG_BLOCK_PX - OUTLINE_PX;
   return (fg_disc_candidate){{x * shape->scale[0], y * shape->scale[1], radius}, DOUBT_PX, 1};
 }
 
-static fg_status see_blob(fg_context *ctx, const fg_gauge_object *object, const fg_blob *blob,
-                          bool hole, fg_gauge_sightings *sightings, bool *taken) {
+/* Measures one round feature; taken: it is one. */
+static fg_status see_circle(fg_context *ctx, const fg_gauge_object *object,
+                            const fg_disc_candidate *candidate, bool hole,
+                            fg_gauge_sightings *sightings, bool *taken) {
   const fg_measurement *m = object->measurement;
   const fg_pixel_shape shape = fg_pixel_shape_of(m->dpi);
-  const fg_disc_candidate candidate = circle_of(&shape, blob, hole);
   fg_measurement one = {.disc_count = 1};
   fg_disc disc = {0};
-  if (!is_round(&m->design, &shape, blob, hole) || candidate.circle.radius < RADIUS_LEAST_PX)
-    return FG_OK;
-  FG_TRY(fg_measure_disc_near(ctx, object->tiles, &shape, m, &candidate, &disc));
+  FG_TRY(fg_measure_disc_near(ctx, object->tiles, &shape, m, candidate, &disc));
   if (!disc.points) return FG_OK;
   disc.hole = hole || !is_stated(&m->design, FG_GAUGE_PIN, FG_GAUGE_PIN);
   disc.centre_mm.x += (double)object->origin_px[0] * 25.4 / m->dpi[0];
@@ -179,46 +182,61 @@ static fg_status see_blob(fg_context *ctx, const fg_gauge_object *object, const 
   return status;
 }
 
-/* Background that the object encloses. */
+static fg_status see_outline(fg_context *ctx, const fg_gauge_object *object,
+                             fg_gauge_sightings *sightings, bool *taken) {
+  const fg_pixel_shape shape = fg_pixel_shape_of(object->measurement->dpi);
+  const fg_object *o = object->object;
+  const fg_disc_candidate candidate = circle_of(&shape, o);
+  if (!is_round(&object->measurement->design, &shape, o) ||
+      candidate.circle.radius < RADIUS_LEAST_PX)
+    return FG_OK;
+  return see_circle(ctx, object, &candidate, false, sightings, taken);
+}
+
+/* A circle inside the object's outline, as wide as a stated ring or hole. */
+static bool is_hole(const fg_gauge_object *object, const fg_pixel_shape *shape,
+                    const fg_circle *circle) {
+  const fg_design *design = &object->measurement->design;
+  const fg_object *o = object->object;
+  double least = fmin(o->width * shape->scale[0], o->height * shape->scale[1]);
+  double width_mm = 2 * circle->radius * shape->um / 1000;
+  fg_circle outline = circle_of(shape, o).circle;
+  if (hypot(circle->x - outline.x, circle->y - outline.y) + circle->radius >
+      0.5 * least * FG_BLOCK_PX - FG_BLOCK_PX)
+    return false;
+  for (size_t i = 0; i < design->gauge_count; i++) {
+    const fg_gauge *gauge = &design->gauges[i];
+    if ((gauge->kind == FG_GAUGE_RING || gauge->kind == FG_GAUGE_HOLE) &&
+        fabs(width_mm - gauge->width_mm) < SIZE_SHARE * gauge->width_mm)
+      return true;
+  }
+  return false;
+}
+
+/* Holes are sought by the outlines of their levels, as in a scan of discs: the middle of a wide
+ * disc, or of its hole, is background to some tiles and none to others, by where tiles begin. */
 static fg_status see_holes(fg_context *ctx, const fg_gauge_object *object,
                            fg_gauge_sightings *sightings, bool *taken) {
-  const fg_object *o = object->object;
-  size_t cells = (size_t)o->width * (size_t)o->height;
-  uint8_t *mask = NULL;
-  int32_t *labels = NULL, count = 0;
-  fg_blob *blobs = NULL;
+  const fg_pixel_shape shape = fg_pixel_shape_of(object->measurement->dpi);
+  double least = DISC_LEAST_SHARE * fg_gauge_least_px(object->measurement);
+  fg_disc_candidates found = {0};
+  if (!is_square(&shape, object->object)) return FG_OK;
+  FG_TRY(fg_discs_find(ctx, object->tiles, &shape, fmax(least, RADIUS_LEAST_PX), 1, &found));
   fg_status status = FG_OK;
-  FG_TRY_EXIT(fg_memory_allocate(ctx, cells, 1, (void **)&mask));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, cells, sizeof *labels, (void **)&labels));
-  for (size_t i = 0; i < cells; i++)
-    mask[i] = fg_segmentation_label(object->segmentation, o->x + (int32_t)(i % (size_t)o->width),
-                                    o->y + (int32_t)(i / (size_t)o->width)) != o->label;
-  FG_TRY_EXIT(fg_grid_label(ctx, mask, o->width, o->height, labels, &blobs, &count));
-  for (int32_t i = 0; i < count; i++) {
-    fg_blob hole = blobs[i];
-    if (hole.x == 0 || hole.y == 0 || hole.x + hole.width == o->width ||
-        hole.y + hole.height == o->height)
-      continue;
-    hole.x += o->x;
-    hole.y += o->y;
-    FG_TRY_EXIT(see_blob(ctx, object, &hole, true, sightings, taken));
-  }
-exit:
-  free(mask);
-  free(labels);
-  free(blobs);
+  for (size_t i = 0; i < found.count && status == FG_OK; i++)
+    if (is_hole(object, &shape, &found.list[i].circle))
+      status = see_circle(ctx, object, &found.list[i], true, sightings, taken);
+  fg_disc_candidates_free(&found);
   return status;
 }
 
 fg_status fg_gauge_see_round(fg_context *ctx, const fg_gauge_object *object,
                              fg_gauge_sightings *sightings, bool *taken) {
   const fg_design *design = &object->measurement->design;
-  const fg_object *o = object->object;
-  const fg_blob blob = {o->x, o->y, o->width, o->height, o->blocks};
   *taken = false;
   if (!is_stated(design, FG_GAUGE_PIN, FG_GAUGE_HOLE)) return FG_OK;
-  FG_TRY(see_blob(ctx, object, &blob, false, sightings, taken));
-  if (!*taken && is_stated(design, FG_GAUGE_RING, FG_GAUGE_HOLE))
+  FG_TRY(see_outline(ctx, object, sightings, taken));
+  if (is_stated(design, FG_GAUGE_RING, FG_GAUGE_HOLE))
     FG_TRY(see_holes(ctx, object, sightings, taken));
   return FG_OK;
 }

@@ -105,6 +105,17 @@ open("arc.design", "w").write(json.dumps({"schema": "foilgauge/design/1", **ARC[
 report = scan("arc", [ARC, leaf(x=4.9, top=24)], options=[*LEAF, "--design", "arc.design"], **LEVEL)
 assert report["gauges"][0]["used"] and len(report["foils"]) == 1, report["gauges"]
 right("arc", report)
+# One leaf where two are stated: the note says that it is taken.
+report = scan("twice", [ARC, leaf(x=4.9, top=24)], options=[*LEAF, *LEAF, "--design", "arc.design"], **LEVEL)
+notes = [gauge["note"] for gauge in report["gauges"] if not gauge["found"]]
+assert len(notes) == 1 and notes[0].endswith(", and is taken for another stated gauge"), notes
+# A ring's hole and the ring itself are found wherever they lie.
+for step in range(8) if LONG else (1, 4, 5):
+    y = 22 - 0.1 * step
+    report = scan("place", [FOIL], [pin(4, y=y), pin(1.6, y=y, hole=True)], options=["--gauge", "hole:1.6:0.0005", "--gauge", "pin:4:0.0005"])
+    for gauge in report["gauges"]:
+        assert gauge["used"] and abs(gauge["measured_mm"] - gauge["width_mm"]) < 0.0003, (step, gauge)
+    assert len(report["foils"]) == 1 and report["specks"] == 0, step
 # Scans of discs: the gauges are among them.
 open("discs.design", "w").write(json.dumps({"schema": "foilgauge/design/1", "form": "discs",
     "gauges": [{"kind": "pin", "width_mm": 1, "u_mm": 0.0003}, {"kind": "pin", "width_mm": 4, "u_mm": 0.0003}]}))
