@@ -56,6 +56,8 @@ typedef struct fg_picture_state {
   double tone_s;                         /* S-shaped part of it: (slope at the middle) - 1 */
   double sharpen_amount, sharpen_radius_px; /* of the unsharp mask that explains the overshoot */
   double level, u_level;                    /* T(1/2) less what the model has, and its sd */
+  double u_cut;      /* of the level: what the ends of the scale may have cut off the edges */
+  double seen_blur;  /* of edges, over what a scanner's optics leave at the least; at most 1 */
   bool level_known;  /* by a gauge or a scanner's model: u_level is all that is uncertain of it */
   unsigned findings; /* fg_picture_finding */
 } fg_picture_state;

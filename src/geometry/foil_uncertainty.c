@@ -217,9 +217,11 @@ static void check_thickness(const fg_design *design, fg_foil *foil) {
                     : foil->u_thickness_scan_mm;
   double off = fabs(foil->thickness_scan_mm - expected);
   if (!(off > COVERAGE * u)) return;
-  if (stated)
+  if (stated) {
     foil->flags |= FG_FOIL_THICKNESS_CONTRADICTS;
-  else if (off > OTHER_THICKNESS_SHARE * expected)
+    /* Which of both is wrong is not known: the value may be off by as much as they differ. */
+    foil->u_thickness_mm = hypot(foil->u_thickness_mm, off);
+  } else if (off > OTHER_THICKNESS_SHARE * expected)
     foil->flags |= FG_FOIL_OTHER_THICKNESS;
 }
 

@@ -35,8 +35,8 @@ static const level_row findings[] = {
     {FG_PICTURE_FEW_LEVELS, 0.29, false},
     /* A curve was applied after rounding: another unknown tone curve. */
     {FG_PICTURE_LEVEL_GAPS, 0.08, false},
-    /* What lies beyond the end of the scale may be a third of the contrast, of which half counts:
-     * uniform. */
+    /* What lies beyond the end of the scale differs by edge: its contrast and the light around it.
+     * How much may be cut off all of them is u_cut, which a gauge knows. */
     {FG_PICTURE_CLIPPED, 0.1, true},
     /* Both lobes of an unsharp mask are symmetric until one of them is cut or meets the strip's
      * other edge; then one side is short of up to a third of the contrast, and half of that counts.
@@ -88,6 +88,20 @@ static unsigned open_findings(const fg_picture_state *picture, double *held) {
   return holds ? picture->findings & ~(unsigned)FG_PICTURE_SHARPENED : picture->findings;
 }
 
+/* What the picture hides of its edges' level. Where only few levels or a part of the profile are
+ * seen, an edge is wider than it is seen, and a share of the level moves it by as much more. */
+static double hidden_variance(const fg_picture_state *picture, bool known) {
+  const unsigned hiding = FG_PICTURE_FEW_LEVELS | FG_PICTURE_CLIPPED;
+  double variance = 0;
+  if (known || !(picture->findings & hiding)) return 0;
+  if (isfinite(picture->u_cut)) variance += picture->u_cut * picture->u_cut;
+  if (picture->findings & FG_PICTURE_FEW_LEVELS && picture->seen_blur < 1) {
+    double seen = add_rows(findings, 1, FG_PICTURE_FEW_LEVELS, known);
+    variance += seen * (1 / (picture->seen_blur * picture->seen_blur) - 1);
+  }
+  return variance;
+}
+
 double fg_level_doubt(const fg_design *design, const fg_picture_state *picture, unsigned flags) {
   double held;
   unsigned open = open_findings(picture, &held);
@@ -98,6 +112,7 @@ double fg_level_doubt(const fg_design *design, const fg_picture_state *picture, 
         design->tone == FG_TONE_LINEAR ? LINEAR_TONE_SD * LINEAR_TONE_SD : unknown_tone_variance();
   variance += held * held;
   variance += add_rows(findings, sizeof findings / sizeof *findings, open, known);
+  variance += hidden_variance(picture, known);
   /* Halo, wall and clipping mislead the same fit: one of them is as bad as all. */
   double hidden = 0;
   for (size_t i = 0; i < sizeof foil_flags / sizeof *foil_flags; i++)

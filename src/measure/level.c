@@ -37,8 +37,21 @@ static double u_scale(const fg_design *design) {
   return c->stated ? fmax(c->u_scale[0], c->u_scale[1]) : SCALE_UNKNOWN;
 }
 
+/* What may move an edge beyond what any tone curve does. */
+#define BEYOND_TONE ((unsigned)FG_PICTURE_CLIPPED | (unsigned)FG_PICTURE_FEW_LEVELS)
+
+static unsigned findings_of(const fg_measurement *m) {
+  unsigned found = 0;
+  for (size_t i = 0; i < m->foil_count; i++)
+    found |= m->foils[i].strip.picture.findings;
+  for (size_t i = 0; i < m->disc_count; i++)
+    found |= m->discs[i].picture.findings;
+  return found;
+}
+
 /* One gauge's own level: h - 1/2. */
-static void read_level(const fg_design *design, const fg_gauge *gauge, fg_gauge_reading *reading) {
+static void read_level(const fg_design *design, const fg_gauge *gauge, unsigned state,
+                       fg_gauge_reading *reading) {
   double slope = per_level(reading);
   double u = hypot(hypot(gauge->u_mm, reading->u_measured_mm), gauge->width_mm * u_scale(design));
   reading->level = (reading->measured_mm - gauge->width_mm) / slope;
@@ -52,9 +65,15 @@ static void read_level(const fg_design *design, const fg_gauge *gauge, fg_gauge_
     return;
   }
   reading->used = false;
-  fg_text_clip(reading->note, sizeof reading->note,
-               "no tone curve makes %g mm read %.4f mm: is the stated width its own?",
-               gauge->width_mm, reading->measured_mm);
+  if (state & BEYOND_TONE)
+    fg_text_clip(reading->note, sizeof reading->note,
+                 "reads %.4f mm, not %g mm: the scan is spoiled (%s): scan again without that",
+                 reading->measured_mm, gauge->width_mm,
+                 state & FG_PICTURE_CLIPPED ? "clipped_levels" : "few_levels");
+  else
+    fg_text_clip(reading->note, sizeof reading->note,
+                 "no tone curve makes %g mm read %.4f mm: is the stated width its own?",
+                 gauge->width_mm, reading->measured_mm);
 }
 
 void fg_level_add(fg_level_sum *sum, const fg_gauge *gauge, const fg_gauge_reading *reading) {
@@ -86,10 +105,11 @@ double fg_level_solve(const fg_level_sum *sum, double u_scale_rel, fg_level *lev
 
 bool fg_level_of_gauges(fg_measurement *m, fg_level *level) {
   fg_level_sum sum = {.count = 0};
+  unsigned state = findings_of(m);
   for (size_t i = 0; i < m->design.gauge_count; i++) {
     fg_gauge_reading *reading = &m->gauges[i];
     if (!reading->found) continue;
-    read_level(&m->design, &m->design.gauges[i], reading);
+    read_level(&m->design, &m->design.gauges[i], state, reading);
     if (reading->used) fg_level_add(&sum, &m->design.gauges[i], reading);
   }
   if (!sum.count) return false;

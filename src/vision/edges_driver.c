@@ -8,13 +8,12 @@
 #include "core/select.h"
 #include "vision/driver_choice.h"
 #include "vision/edges.h"
+#include "vision/picture.h"
 
 /* Profiles one by one do not tell a power beyond this well: all of them are asked together. */
 #define LN_GAMMA_MOST  0.8
 #define NOISE_FACTOR   1.3
 #define MERGED_BLUR_PX 1.6
-/* Blur that few levels may hide, px. */
-#define HIDDEN_BLUR_PX 1.2
 /* sd of a pixel, counts, that the fits start from. */
 #define START_NOISE 1.5
 
@@ -199,7 +198,7 @@ void fg_edges_describe_driver(const fg_edge_work *work, fg_picture_state *state)
     /* Either level, and with it the half between them, is anywhere within a step. */
     double share = work->level_step / sqrt(12) / work->contrast;
     u_edge_px = hypot(u_edge_px, share * per_level);
-    u_edge_px *= fmax(1, HIDDEN_BLUR_PX * sqrt(2 * M_PI) / per_level);
+    u_edge_px *= fmax(1, FG_HIDDEN_BLUR_PX * sqrt(2 * M_PI) / per_level);
   }
   state->gamma = work->gamma;
   state->u_gamma = work->u_gamma;

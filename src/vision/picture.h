@@ -7,6 +7,7 @@
 #include "foilgauge/picture.h"
 #include "vision/disc_edge.h"
 #include "vision/edges.h"
+#include "vision/picture_profile.h"
 
 /* Of a strip whose edges are found. picture_strip.c */
 fg_status fg_picture_of_strip(fg_context *ctx, const fg_edge_work *work, fg_picture_state *state);
@@ -36,6 +37,15 @@ static inline void fg_value_counts_add(fg_value_counts *counts, float value) {
  * outside of the material; state->noise is used. */
 void fg_picture_inspect_levels(const fg_value_counts *counts, const double levels[2],
                                fg_picture_state *state);
+
+/* A scanner's optics blur an edge by this at the least; a picture of few levels, or one that is cut
+ * off, may hide it. */
+#define FG_HIDDEN_BLUR_PX 1.2
+
+/* What the ends of the scale may have cut off: state->u_cut where the finding is there, and
+ * state->seen_blur. `blur_px`: that of the edge's model. picture_cut.c */
+void fg_picture_inspect_cut(const fg_edge_profile *profiles, size_t count, double blur_px,
+                            fg_picture_state *state);
 
 /* Tiles to look at, all of which are kept. */
 typedef struct fg_tile_choice {

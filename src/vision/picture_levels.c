@@ -1,5 +1,6 @@
 /* Gray levels in use, gaps between them, and values that the ends of the scale have cut. */
 #include <math.h>
+#include <stdbool.h>
 
 #include "vision/picture.h"
 
@@ -7,7 +8,8 @@
  * spreads a value over its neighbours, move the place of an edge. */
 #define STEP_SHARE  0.02
 #define STEP_SIGMAS 2.5
-enum { PIXELS_LEAST = 4000 };
+/* A small disc has few pixels; they suffice to tell levels that are very few. */
+enum { PIXELS_LEAST = 4000, PIXELS_FEW = 400, LEVELS_FEW = 16 };
 /* The ends of what is in use: but for this share of the pixels. */
 #define END_SHARE 0.002
 /* Counts that are to be expected at a level tell whether it is missing from here on; they come from
@@ -103,7 +105,11 @@ static void inspect_steps(const fg_value_counts *counts, const double levels[2],
     used += counts->of[i] > 0;
   }
   double step = contrast / (used + 1);
-  if (step > STEP_SHARE * contrast && step > STEP_SIGMAS * noise && counts->total > PIXELS_LEAST)
+  bool enough = counts->total > PIXELS_LEAST || (used < LEVELS_FEW && counts->total > PIXELS_FEW);
+  /* Where noise is what a fit leaves, it holds the steps of two levels: any other noise would have
+   * put more levels between them. */
+  bool two = state->gray_levels <= 2;
+  if (step > STEP_SHARE * contrast && (two || step > STEP_SIGMAS * noise) && enough)
     state->findings |= FG_PICTURE_FEW_LEVELS;
 }
 

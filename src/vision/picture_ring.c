@@ -56,6 +56,7 @@ fg_status fg_picture_of_ring(fg_context *ctx, const fg_disc_work *work, const fg
   if (!work->open) FG_TRY(fg_picture_inspect_ring_rows(ctx, work, edge, state));
   FG_TRY(fg_memory_allocate(ctx, work->ring.sector_count, sizeof *profiles, (void **)&profiles));
   size_t count = take_sectors(work, profiles);
+  fg_picture_inspect_cut(profiles, count, edge->blur_px, state);
   fg_status status = fg_picture_inspect_profiles(ctx, profiles, count, state);
   free(profiles);
   return status;

@@ -28,6 +28,8 @@ fg_picture_state fg_picture_unknown(void) {
       .sharpen_radius_px = NAN,
       .level = NAN,
       .u_level = NAN,
+      .u_cut = NAN,
+      .seen_blur = NAN,
   };
 }
 
@@ -75,6 +77,8 @@ void fg_picture_merge(fg_picture_state *state, const fg_picture_state *other) {
       (other->block_quality && other->block_quality < state->block_quality))
     state->block_quality = other->block_quality;
   take_more(&state->noise, other->noise);
+  take_more(&state->u_cut, other->u_cut);
+  state->seen_blur = fmin(state->seen_blur, other->seen_blur);
   take_more(&state->noise_correlation[0], other->noise_correlation[0]);
   take_more(&state->noise_correlation[1], other->noise_correlation[1]);
   take_more(&state->row_jumps, other->row_jumps);

@@ -211,6 +211,7 @@ static fg_status inspect(fg_context *ctx, const fg_edge_work *work, fg_edge_prof
   if (is_clipped(work, state)) state->findings |= FG_PICTURE_CLIPPED;
   state->shading = find_shading(work, contrast);
   if (state->shading > SHADING_SHARE) state->findings |= FG_PICTURE_SHADING;
+  fg_picture_inspect_cut(profiles, count, 0.5 * (work->blur_px[0] + work->blur_px[1]), state);
   FG_TRY(fg_picture_inspect_profiles(ctx, profiles, count, state));
   FG_TRY(inspect_bands(ctx, work, levels[0], state));
   return fg_picture_inspect_rows(ctx, work, state);

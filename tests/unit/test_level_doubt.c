@@ -63,6 +63,25 @@ static void a_finding_makes_it_wider(void **state) {
   assert_near(fg_level_doubt(&linear, &picture, FG_FOIL_CLIPPED | FG_FOIL_SIDE_BAND), one, 1e-9);
 }
 
+/* An edge that is cut off, or of two levels, is wider than it is seen. A gauge goes through the
+ * same cut. */
+static void what_is_hidden_counts(void **state) {
+  (void)state;
+  const fg_design linear = design_of(FG_TONE_LINEAR);
+  fg_picture_state picture = fg_picture_unknown();
+  picture.u_cut = 0.4;
+  picture.seen_blur = 0.5;
+  assert_near(fg_level_doubt(&linear, &picture, 0), 0.003, 1e-9);
+  picture.findings = FG_PICTURE_CLIPPED;
+  assert_near(fg_level_doubt(&linear, &picture, 0), hypot(0.4, 0.1), 0.001);
+  picture.level_known = true;
+  assert_near(fg_level_doubt(&linear, &picture, 0), 0.1, 0.001);
+  picture = fg_picture_unknown();
+  picture.findings = FG_PICTURE_FEW_LEVELS;
+  picture.seen_blur = 0.25;
+  assert_near(fg_level_doubt(&linear, &picture, 0), 4 * 0.29, 0.001);
+}
+
 /* Both edges move apart alike: twice the level times the blur times sqrt(2 pi). */
 static void the_thickness_moves_by_both_edges(void **state) {
   (void)state;
@@ -90,6 +109,9 @@ static void the_thickness_moves_by_both_edges(void **state) {
   design.thickness_measured_mm = 0.1 - 2.1 * hypot(expected, 0.0005);
   fg_foil_find_thickness(&design, &foil);
   assert_int_equal(foil.flags, FG_FOIL_THICKNESS_CONTRADICTS);
+  double off = 2.1 * hypot(expected, 0.0005); /* which of both is wrong is not known */
+  assert_near(foil.u_thickness_mm, hypot(off, 0.0005), 1e-4);
+  assert_true(foil.u_thickness_mm > off);
 }
 
 /* Beyond U and beyond a fifth of the design's. */
@@ -130,6 +152,7 @@ int main(void) {
       cmocka_unit_test(an_unknown_tone_curve_is_eight_percent),
       cmocka_unit_test(a_gauge_knows_all_but_what_is_local),
       cmocka_unit_test(a_finding_makes_it_wider),
+      cmocka_unit_test(what_is_hidden_counts),
       cmocka_unit_test(the_thickness_moves_by_both_edges),
       cmocka_unit_test(another_thickness_is_flagged),
       cmocka_unit_test(a_disc_holds_it),

@@ -1,0 +1,139 @@
+/* How far an edge may lie off because an end of the scale cuts its profile.
+ *
+ * What is cut off cannot be seen, except by how abruptly the profile ends. Let shares a (towards
+ * the background) and b (towards the material) of a Gaussian edge's contrast be cut. Share v of
+ * what is left is then light a + (1 - a - b) v, and lies at x(v) = c + s z(a + (1 - a - b) v) with
+ * z the normal quantile. Every pair (a, b) that the mean profile allows says where half of the
+ * light is: s z(1/2 + (a - b)/2) off the half of what is left. The doubt is the largest of them. */
+#include <gsl/gsl_cdf.h>
+#include <math.h>
+#include <stdbool.h>
+
+#include "vision/picture.h"
+#include "vision/picture_profile.h"
+
+enum { PLACES = 10, CUTS = 20 };
+/* Less than this of the contrast tells no profile. */
+#define VISIBLE_LEAST 0.01
+/* A profile that misses by this share of its own width, root mean square, beyond the best is still
+ * allowed: lenses and the tone curve before the cut bend it by as much. */
+#define MISFIT_SHARE 0.02
+/* From share 0.05 to 0.95 an uncut edge is so many blurs wide. A picture that shows less than a
+ * quarter of an edge's width is one of few levels. */
+#define WHOLE_WIDTH 3.29
+#define BLURS_MOST  4.0
+/* Of the largest shift that is allowed: uniform up to it would be 1 / 1.73. */
+#define SD_OF_LARGEST 0.6
+
+typedef struct cut_profile {
+  double px[PLACES]; /* where the shares lie, outwards */
+  bool open[2];      /* whether background and material may be cut */
+} cut_profile;
+
+/* One pair of cuts: how far the profile misses, and where half of the light then is. */
+typedef struct cut_fit {
+  double misfit_px, shift_px;
+} cut_fit;
+
+/* Cuts to be tried lie closer where little is left, as blur and shift change most there. */
+static double cut_at(int i) {
+  return 1 - pow(1 - (double)i / CUTS, 1.5);
+}
+
+static double share_at(int place) {
+  return (place + 0.5) / PLACES;
+}
+
+static double mean_share(const fg_edge_profile *profiles, size_t count, size_t i) {
+  double sum = 0, n = 0;
+  for (size_t k = 0; k < count; k++) {
+    if (isnan(profiles[k].shares[i]) || -fg_share_px(i) > profiles[k].inside_px) continue;
+    sum += (double)profiles[k].shares[i];
+    n++;
+  }
+  return n > 0 ? sum / n : NAN;
+}
+
+/* From the edge's middle outwards (way 1) or inwards to where the mean passes a share. */
+static double find_share(const double *shares, double share) {
+  int way = share < 0.5 ? 1 : -1, i = FG_SHARES_INSIDE - (way > 0);
+  while (i - way >= 0 && i - way < FG_SHARES && way * (shares[i] - share) < 0)
+    i -= way;
+  for (; i + way >= 0 && i + way < FG_SHARES; i += way) {
+    double here = shares[i], next = shares[i + way];
+    if (isnan(next)) return NAN;
+    if (way * (next - share) <= 0)
+      return fg_share_px((size_t)i) + way * FG_SHARE_STEP_PX * (here - share) / (here - next);
+  }
+  return NAN;
+}
+
+static bool take_profile(const fg_edge_profile *profiles, size_t count,
+                         const fg_picture_state *state, cut_profile *profile) {
+  double shares[FG_SHARES], bright = 0;
+  for (size_t i = 0; i < FG_SHARES; i++)
+    shares[i] = mean_share(profiles, count, i);
+  for (size_t k = 0; k < count; k++)
+    bright += profiles[k].inside > profiles[k].outside ? 1 : -1;
+  for (int p = 0; p < PLACES; p++) {
+    profile->px[p] = find_share(shares, share_at(p));
+    if (isnan(profile->px[p])) return false;
+  }
+  bool low = state->clipped_low > 0, high = state->clipped_high > 0;
+  profile->open[0] = (bright > 0 ? low : high) || !(low || high);
+  profile->open[1] = (bright > 0 ? high : low) || !(low || high);
+  return true;
+}
+
+/* Regression of the places on the quantiles of the light that they have. */
+static cut_fit fit_cuts(const cut_profile *profile, double a, double b) {
+  double z[PLACES], mean_z = 0, mean_x = 0, zz = 0, zx = 0, misfit = 0;
+  for (int p = 0; p < PLACES; p++) {
+    z[p] = gsl_cdf_ugaussian_Pinv(a + (1 - a - b) * share_at(p));
+    mean_z += z[p] / PLACES;
+    mean_x += profile->px[p] / PLACES;
+  }
+  for (int p = 0; p < PLACES; p++) {
+    zz += (z[p] - mean_z) * (z[p] - mean_z);
+    zx += (z[p] - mean_z) * (profile->px[p] - mean_x);
+  }
+  double slope = zx / zz; /* negative: the light falls outwards */
+  for (int p = 0; p < PLACES; p++) {
+    double miss = profile->px[p] - mean_x - slope * (z[p] - mean_z);
+    misfit += miss * miss / PLACES;
+  }
+  double seen = fabs(profile->px[PLACES - 1] - profile->px[0]) / WHOLE_WIDTH;
+  double blur = fmax(fmin(fabs(slope), BLURS_MOST * seen), FG_HIDDEN_BLUR_PX);
+  return (cut_fit){sqrt(misfit), blur * fabs(gsl_cdf_ugaussian_Pinv(0.5 + 0.5 * (a - b)))};
+}
+
+/* The largest shift, of those cuts that miss by no more than a limit. */
+static double largest_shift(const cut_profile *profile, double limit_px, double *best_px) {
+  double largest = 0;
+  *best_px = INFINITY;
+  for (int i = 0; i < (profile->open[0] ? CUTS : 1); i++)
+    for (int j = 0; j < (profile->open[1] ? CUTS : 1); j++) {
+      double a = cut_at(i), b = cut_at(j);
+      if (1 - a - b < VISIBLE_LEAST) continue;
+      cut_fit fit = fit_cuts(profile, a, b);
+      *best_px = fmin(*best_px, fit.misfit_px);
+      if (fit.misfit_px <= limit_px) largest = fmax(largest, fit.shift_px);
+    }
+  return largest;
+}
+
+void fg_picture_inspect_cut(const fg_edge_profile *profiles, size_t count, double blur_px,
+                            fg_picture_state *state) {
+  cut_profile profile;
+  double per_level = blur_px * sqrt(2 * M_PI), best;
+  state->seen_blur = fmin(1, blur_px / FG_HIDDEN_BLUR_PX);
+  if (!(state->findings & FG_PICTURE_CLIPPED)) return;
+  /* Without a profile that tells: half of the scale or more may be cut. */
+  double shift = FG_HIDDEN_BLUR_PX * gsl_cdf_ugaussian_Pinv(1 - VISIBLE_LEAST / 2);
+  if (take_profile(profiles, count, state, &profile)) {
+    double width = fabs(profile.px[PLACES - 1] - profile.px[0]);
+    largest_shift(&profile, 0, &best);
+    shift = largest_shift(&profile, best + MISFIT_SHARE * width, &best);
+  }
+  state->u_cut = SD_OF_LARGEST * shift / per_level;
+}

@@ -1,0 +1,66 @@
+/* Of an edge whose profile an end of the scale cuts, no edge place is claimed that it hides. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <gsl/gsl_cdf.h>
+
+#include "vision/picture.h"
+
+#define BLUR_PX 1.3
+
+/* A Gaussian edge of which only the light between a and 1 - b is seen. */
+static fg_edge_profile cut_edge(double a, double b, int bright) {
+  fg_edge_profile profile = {.inside = bright ? 255 : 0, .outside = bright ? 0 : 255};
+  double middle = -BLUR_PX * gsl_cdf_ugaussian_Pinv(0.5 * (1 + a - b));
+  profile.inside_px = 12;
+  for (size_t i = 0; i < FG_SHARES; i++) {
+    double light = gsl_cdf_ugaussian_P(-(fg_share_px(i) + middle) / BLUR_PX);
+    profile.shares[i] = (float)fmin(fmax((light - a) / (1 - a - b), 0), 1);
+  }
+  return profile;
+}
+
+/* Standard uncertainty of the edge's place, px. */
+static double doubt_px(double a, double b, int bright) {
+  fg_edge_profile profile = cut_edge(a, b, bright);
+  fg_picture_state state = fg_picture_unknown();
+  state.findings = FG_PICTURE_CLIPPED;
+  state.clipped_low = bright ? a > 0 : b > 0;
+  state.clipped_high = bright ? b > 0 : a > 0;
+  fg_picture_inspect_cut(&profile, 1, 0.7, &state);
+  return state.u_cut * 0.7 * sqrt(2 * M_PI);
+}
+
+static void it_holds_the_edge_and_grows(void **unused) {
+  (void)unused;
+  for (int bright = 0; bright < 2; bright++)
+    for (int both = 0; both < 2; both++) {
+      double before = 0;
+      for (int step = 1; step <= 9; step++) {
+        double a = 0.1 * step, b = both ? 0.08 : 0;
+        double off = BLUR_PX * fabs(gsl_cdf_ugaussian_Pinv(0.5 * (1 + a - b)));
+        double u = doubt_px(a, b, bright), other = doubt_px(b, a, bright);
+        if (!(2 * u >= off) || !(2 * other >= off))
+          fail_msg("cut %.1f and %.1f: %.3f px off at u %.3f, %.3f", a, b, off, u, other);
+        if (!both && !(u >= 0.8 * before)) fail_msg("cut %.1f: u %.3f after %.3f", a, u, before);
+        before = u;
+      }
+    }
+}
+
+static void a_small_cut_is_a_small_doubt(void **unused) {
+  (void)unused;
+  assert_true(doubt_px(0.05, 0, 1) < 0.6);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(it_holds_the_edge_and_grows),
+      cmocka_unit_test(a_small_cut_is_a_small_doubt),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
