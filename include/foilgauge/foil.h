@@ -377,7 +377,7 @@ typedef struct fg_measurement {
   fg_colour_lines colour_lines;
   fg_picture_state picture;               /* worst of all that was measured */
   fg_gauge_reading gauges[FG_GAUGES_MAX]; /* in the order of the design's */
-  char tone_note[200]; /* why the level of a scanner's model was not applied; "": nothing to say */
+  char tone_note[300]; /* why the level of a scanner's model was not applied; "": nothing to say */
   bool gauges_contradict; /* they differ by more than their u: the level's u holds it */
   char warning[256];      /* what is odd about the file; empty when nothing is */
   fg_design design;

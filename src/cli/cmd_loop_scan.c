@@ -236,6 +236,15 @@ static void tell_empty_model(const arguments *a, const fg_scan_result *result) {
             path);
 }
 
+/* As measure says it. */
+static void tell_pictures(const fg_scan_result *result) {
+  for (size_t i = 0; i < result->scans; i++)
+    for (const fg_picture_words *words = fg_picture_finding_words(); words->name; words++)
+      if (result->scan[i].before->picture.findings & words->finding)
+        fprintf(stderr, "foilgauge: note: %s: state of the picture: %s: %s\n",
+                result->scan[i].before->scan, words->name, words->meaning);
+}
+
 static fg_status check_design(fg_context *ctx, const arguments *a, const fg_design *design) {
   if (design->form == FG_FORM_DISCS && a->options.same_foil)
     return fg_fail(ctx, FG_ERR_USAGE,
@@ -281,6 +290,7 @@ static fg_status run(fg_context *ctx, arguments *a, int *code) {
   a->options.forming = prediction;
   FG_TRY_EXIT(fg_scan_loop_run(ctx, a->paths, a->hold_out, a->count, &design, &a->options, &loop));
   *code = fg_scan_loop_result(loop)->left_out ? 2 : 0;
+  tell_pictures(fg_scan_loop_result(loop));
   FG_TRY_EXIT(fg_output_set_write(ctx, &a->outputs, write_output, loop));
   tell_empty_model(a, fg_scan_loop_result(loop));
 exit:

@@ -14,6 +14,8 @@
 #define SCALE_UNKNOWN 0.002
 /* T(1/2) is between the levels of both sides, whatever the tone curve. */
 #define LEVEL_MOST 0.5
+/* Standard deviation of T(1/2) by an unknown tone curve (geometry/level_doubt.c). */
+#define LEVEL_UNKNOWN_SD 0.08
 /* Beyond it few drivers' tone curves put it: a wrong width would look alike. */
 #define LEVEL_UNUSUAL 0.25
 /* What a level found at one edge does not say of another: share of the shift by edges of other
@@ -101,6 +103,11 @@ double fg_level_solve(const fg_level_sum *sum, double u_scale_rel, fg_level *lev
   double chi2 = fmax(0, sum->squares - level->half * sum->h - scale * sum->e);
   level->u *= sqrt(fmax(1, chi2 / (count - 1)));
   return chi2 / (count - 1);
+}
+
+double fg_level_u_scale(const fg_level_sum *sum) {
+  double hh = sum->hh + 1 / (LEVEL_UNKNOWN_SD * LEVEL_UNKNOWN_SD);
+  return sqrt(hh / (hh * sum->ee - sum->he * sum->he));
 }
 
 bool fg_level_of_gauges(fg_measurement *m, fg_level *level) {

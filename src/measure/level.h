@@ -23,6 +23,9 @@ void fg_level_add(fg_level_sum *sum, const fg_gauge *gauge, const fg_gauge_readi
  * added scatters by more than its own u. Returns what chi² / dof is; 0 of one alone. */
 double fg_level_solve(const fg_level_sum *sum, double u_scale, fg_level *level);
 
+/* Standard uncertainty of a relative scale error that is found beside an unknown level. */
+double fg_level_u_scale(const fg_level_sum *sum);
+
 /* From the gauges that were found in the scan: the level, and what each of them says by itself
  * (m->gauges). False where none is to be used. */
 bool fg_level_of_gauges(fg_measurement *m, fg_level *level);

@@ -149,6 +149,15 @@ static fg_status say_lossy(fg_context *ctx, fg_scan_loop *loop) {
   return FG_OK;
 }
 
+static fg_status say_picture(fg_context *ctx, fg_scan_loop *loop) {
+  for (size_t i = 0; i < loop->scan_count; i++)
+    for (const fg_picture_words *words = fg_picture_finding_words(); words->name; words++)
+      if (loop->before[i].picture.findings & words->finding)
+        FG_TRY(fg_scan_loop_bumps_note(ctx, &loop->bumps, "%.80s: %s: %s %s", loop->before[i].scan,
+                                       words->name, words->meaning, words->cure));
+  return FG_OK;
+}
+
 static bool bends_bumps(const fg_effect_set *set) {
   for (size_t e = 0; e < set->count; e++)
     if (set->effects[e].kind->bends) return true;
@@ -173,6 +182,7 @@ static fg_status search_bumps(fg_context *ctx, fg_scan_loop *loop) {
   FG_TRY(fg_scan_loop_say_held_out(ctx, loop));
   FG_TRY(fg_scan_loop_say_left_out(ctx, loop));
   FG_TRY(say_lossy(ctx, loop));
+  FG_TRY(say_picture(ctx, loop));
   return fg_scan_loop_scale_doubt(ctx, loop);
 }
 
@@ -186,6 +196,21 @@ static fg_status correct(fg_context *ctx, fg_scan_loop *loop) {
     status = fg_scan_loop_take_moves(ctx, loop, 0, &fit, loop->after);
   fg_joint_fit_close(&fit);
   return status;
+}
+
+static void widen_scale(double u_scale, fg_effect_set *set) {
+  for (size_t e = 0; e < set->count; e++) {
+    double *u = &set->effects[e].u_coefficient_um[0];
+    if (set->effects[e].kind->scales) *u = hypot(*u, 1000 * FG_FIELD_HALF_MM * u_scale);
+  }
+}
+
+/* Points tell a scale as well as if the diameters were exact and the edges' level known: both are
+ * shared by all points of a disc, and the level by all discs. */
+static void widen_scales(fg_scan_loop *loop) {
+  widen_scale(loop->tone.u_scale, &loop->set);
+  for (size_t k = 0; k < loop->tie_count; k++)
+    widen_scale(loop->tone.u_scale, &loop->tie[k]);
 }
 
 static fg_status search(fg_context *ctx, fg_scan_loop *loop) {
@@ -208,6 +233,7 @@ static fg_status search(fg_context *ctx, fg_scan_loop *loop) {
   FG_TRY(search_bumps(ctx, loop));
   FG_TRY(fg_explain_width(ctx, &loop->points, &loop->set, &loop->width));
   loop->tone = fg_model_tone_find(loop, true);
+  widen_scales(loop);
   loop->verdict = fg_scan_loop_outcome(loop);
   return fg_scan_loop_decide(ctx, loop);
 }

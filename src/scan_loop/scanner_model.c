@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/text.h"
 #include "scan_loop/scanner_model.h"
 #include "scan_loop/state.h"
 
@@ -167,7 +168,7 @@ fg_status fg_scanner_model_apply(fg_context *ctx, const fg_scanner_model *model,
                    m->scan);
   FG_TRY(check_place(ctx, model, m, warning));
   FG_TRY(fg_model_tone_apply(ctx, &model->tone, threads, m));
-  if (!m->warning[0]) snprintf(m->warning, sizeof m->warning, "%s", m->tone_note);
+  if (!m->warning[0]) fg_text_clip(m->warning, sizeof m->warning, "%s", m->tone_note);
   fg_measurement corrected = {0};
   fg_model_doubt doubt;
   fg_status status = FG_OK;

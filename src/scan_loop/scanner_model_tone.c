@@ -17,11 +17,22 @@ enum { DISCS_LEAST = 3 };
 /* A level that chance would not show. */
 #define SIGNIFICANT 3.3
 /* A scan is of the settings that the level was found with when its edges are as sharp and as
- * asymmetric, and its contrast similar. What edge models make of tone curve and sharpening is not
- * compared: a strip and a disc may be explained by others each. */
+ * asymmetric, its contrast similar, and the tone curve that explains them puts half of the light at
+ * the same level: exponent or S, a strip and a disc may be explained by others each, but not by
+ * another level. */
 #define BLUR_RATIO     1.25
-#define ASYMMETRY_MOST 0.02 /* of a level that has moved by 0.08 */
+#define ASYMMETRY_MOST 0.02
 #define CONTRAST_RATIO 1.5
+/* A change of the level shown is one above so many of its deviations, and above what a strip and a
+ * disc of one scan differ by. */
+#define SHOWN_SIGMAS 3.0
+#define SHOWN_LEAST  0.01
+/* By how much T(1/2) moves with ln gamma, from black on; over part of the scale by less. */
+#define LEVEL_PER_LN_GAMMA 0.35
+/* A curve whose middle lies q of the contrast off makes the asymmetry q / 4 (edge_spread.h). */
+#define LEVEL_PER_ASYMMETRY 4.0
+/* Where an edge does not show its exponent, the asymmetry alone tells; it scatters by this. */
+#define U_ASYMMETRY 0.003
 
 /* ---- finding it ---- */
 
@@ -40,6 +51,20 @@ static void add_disc(const fg_disc *disc, const fg_disc *corrected, double known
   fg_level_add(sum, &gauge, &reading);
 }
 
+/* T(1/2) less a half, as the edge model explains the edge. */
+static double shown_level(double model_mm, double plain_mm, double plain_blur_um, bool bright) {
+  double both = 2 * sqrt(2 * M_PI) * plain_blur_um / 1000;
+  return (plain_mm - model_mm) / (bright ? both : -both);
+}
+
+static double shown_by_disc(const fg_disc *disc) {
+  const fg_picture_state *picture = &disc->picture;
+  double moved =
+      picture->level_known ? 2 * picture->level * sqrt(2 * M_PI) * disc->blur_um / 1000 : 0;
+  double as_found = disc->diameter_mm + (disc->bright ? moved : -moved);
+  return shown_level(as_found, disc->plain_mm, disc->plain_blur_um, disc->bright);
+}
+
 static double mean_of(double sum, double count) {
   return count > 0 ? sum / count : NAN;
 }
@@ -48,6 +73,7 @@ static fg_model_tone find_on(const fg_scan_loop *loop, const fg_measurement *sca
   const fg_points *points = &loop->points;
   fg_model_tone tone = {.gauges = 0};
   fg_level_sum sum = {.count = 0};
+  double shown = 0;
   double blur = 0, asymmetry = 0, gamma = 0, gammas = 0, sharpen = 0, radius = 0, sharpened = 0;
   for (size_t v = 0; points->discs && v < points->view_count; v++) {
     const fg_points_view *view = &points->views[v];
@@ -60,6 +86,8 @@ static fg_model_tone find_on(const fg_scan_loop *loop, const fg_measurement *sca
              &sum);
     blur += disc->spread_px;
     asymmetry += disc->asymmetry;
+    shown += shown_by_disc(disc);
+    tone.findings |= disc->picture.findings;
     if (isfinite(disc->picture.gamma)) {
       gamma += disc->picture.gamma;
       gammas++;
@@ -70,12 +98,14 @@ static fg_model_tone find_on(const fg_scan_loop *loop, const fg_measurement *sca
       sharpened++;
     }
   }
+  if (sum.count) tone.u_scale = fg_level_u_scale(&sum);
   if (sum.count < DISCS_LEAST) return tone;
   fg_level_solve(&sum, SCALE_FREE, &tone.level);
   if (!(tone.level.u < LEVEL_KNOWN)) return tone;
   tone.gauges = sum.count;
   tone.blur_px = blur / (double)sum.count;
   tone.asymmetry = asymmetry / (double)sum.count;
+  tone.shown = tone.findings & FG_PICTURE_UNKNOWN_PROFILE ? NAN : shown / (double)sum.count;
   tone.gamma = mean_of(gamma, gammas);
   tone.sharpen_amount = mean_of(sharpen, sharpened);
   tone.sharpen_radius_px = mean_of(radius, sharpened);
@@ -111,6 +141,7 @@ static const tone_row rows[] = {
     ROW("contrast", level.contrast, 1, 255, true),
     ROW("blur_px", blur_px, 0.01, 100, true),
     ROW("asymmetry", asymmetry, -1, 1, true),
+    ROW("shown_level", shown, -0.5, 0.5, false),
     ROW("gamma", gamma, 0.1, 10, false),
     ROW("sharpen_amount", sharpen_amount, 0, 20, false),
     ROW("sharpen_radius_px", sharpen_radius_px, 0, 100, false),
@@ -129,6 +160,22 @@ static fg_status read_row(fg_context *ctx, const cJSON *object, const tone_row *
                  row->low, row->high);
 }
 
+static fg_status read_findings(fg_context *ctx, const cJSON *object, fg_model_tone *tone) {
+  const cJSON *array = cJSON_GetObjectItemCaseSensitive(object, "findings"), *item;
+  if (!array) return FG_OK;
+  if (!cJSON_IsArray(array))
+    return fg_fail(ctx, FG_ERR_DATA, "`tone.findings` must be an array of words");
+  cJSON_ArrayForEach(item, array) {
+    const fg_picture_words *words = fg_picture_finding_words();
+    while (words->name && !(cJSON_IsString(item) && !strcmp(words->name, item->valuestring)))
+      words++;
+    if (!words->name)
+      return fg_fail(ctx, FG_ERR_DATA, "`tone.findings` holds what is no finding of a picture");
+    tone->findings |= words->finding;
+  }
+  return FG_OK;
+}
+
 fg_status fg_model_tone_read(fg_context *ctx, const cJSON *root, fg_model_tone *tone) {
   const cJSON *object = cJSON_GetObjectItemCaseSensitive(root, "tone");
   *tone = (fg_model_tone){.gauges = 0};
@@ -143,7 +190,7 @@ fg_status fg_model_tone_read(fg_context *ctx, const cJSON *root, fg_model_tone *
     return fg_fail(ctx, FG_ERR_DATA, "`tone.gauges` is %g; a whole number, 1 to %d, is allowed",
                    count, GAUGES_MOST);
   tone->gauges = (size_t)count;
-  return FG_OK;
+  return read_findings(ctx, object, tone);
 }
 
 void fg_model_tone_write(fg_json *json, const fg_model_tone *tone) {
@@ -155,6 +202,10 @@ void fg_model_tone_write(fg_json *json, const fg_model_tone *tone) {
   for (size_t i = 0; i < ROWS; i++)
     fg_json_number(json, rows[i].name, *(const double *)((const char *)tone + rows[i].offset));
   fg_json_integer(json, "gauges", (int64_t)tone->gauges);
+  fg_json_array(json, "findings");
+  for (const fg_picture_words *words = fg_picture_finding_words(); words->name; words++)
+    if (tone->findings & words->finding) fg_json_string(json, NULL, words->name);
+  fg_json_array_end(json);
   fg_json_object_end(json);
 }
 
@@ -162,7 +213,7 @@ void fg_model_tone_write(fg_json *json, const fg_model_tone *tone) {
 
 /* Means over what a scan shows. */
 typedef struct scan_state {
-  double blur_px, asymmetry, contrast;
+  double blur_px, asymmetry, contrast, shown, u_gamma;
 } scan_state;
 
 static void add_part(scan_state *state, const scan_state *part, double *n) {
@@ -171,29 +222,68 @@ static void add_part(scan_state *state, const scan_state *part, double *n) {
   state->blur_px += share * (part->blur_px - state->blur_px);
   state->asymmetry += share * (part->asymmetry - state->asymmetry);
   state->contrast += share * (part->contrast - state->contrast);
+  state->shown += share * (part->shown - state->shown);
+  state->u_gamma += share * (part->u_gamma - state->u_gamma);
+}
+
+static double relative_u_gamma(const fg_picture_state *picture) {
+  return picture->u_gamma / picture->gamma;
+}
+
+static scan_state state_of_strip(const fg_strip *s) {
+  return (scan_state){s->spread_px, s->asymmetry, s->plain_counts,
+                      shown_level(s->thickness_mm, s->plain_mm, s->plain_blur_um, s->bright),
+                      relative_u_gamma(&s->picture)};
+}
+
+static scan_state state_of_disc(const fg_disc *disc) {
+  return (scan_state){disc->spread_px, disc->asymmetry, disc->contrast, shown_by_disc(disc),
+                      relative_u_gamma(&disc->picture)};
 }
 
 static bool see_state(const fg_measurement *m, scan_state *state) {
   double n = 0;
   *state = (scan_state){.blur_px = 0};
   for (size_t f = 0; f < m->foil_count; f++) {
-    const fg_strip *s = &m->foils[f].strip;
-    if (s->count) add_part(state, &(scan_state){s->spread_px, s->asymmetry, s->plain_counts}, &n);
+    const scan_state part = state_of_strip(&m->foils[f].strip);
+    if (m->foils[f].strip.count) add_part(state, &part, &n);
   }
   for (size_t d = 0; d < m->disc_count; d++) {
-    const fg_disc *disc = &m->discs[d];
-    add_part(state, &(scan_state){disc->spread_px, disc->asymmetry, disc->contrast}, &n);
+    const scan_state part = state_of_disc(&m->discs[d]);
+    add_part(state, &part, &n);
   }
+  if (m->picture.findings & FG_PICTURE_UNKNOWN_PROFILE) state->shown = NAN;
   return n > 0;
 }
 
+/* Standard deviation of the level that the scan's edges show. */
+static double u_shown(const scan_state *scan) {
+  return scan->u_gamma > 0 ? LEVEL_PER_LN_GAMMA * scan->u_gamma : LEVEL_PER_ASYMMETRY * U_ASYMMETRY;
+}
+
+/* How far the level may have moved since and be taken for the same: what is seen of it, and what
+ * cannot be seen. Where no tone curve explains the edges, of the scan or of the model, the
+ * asymmetry is left to tell it. */
+static double u_sameness(const fg_model_tone *tone, const scan_state *scan) {
+  double seen = fabs(scan->shown - tone->shown);
+  if (!isfinite(seen))
+    seen = LEVEL_PER_ASYMMETRY * hypot(scan->asymmetry - tone->asymmetry, U_ASYMMETRY);
+  return hypot(seen, u_shown(scan));
+}
+
 /* What of the scan's state is another; NULL: nothing. */
-static const char *difference(const fg_model_tone *tone, const scan_state *scan) {
+static const char *difference(const fg_model_tone *tone, const scan_state *scan,
+                              unsigned findings) {
+  const unsigned widening = FG_PICTURE_SHARPENED | FG_PICTURE_TONE_CURVE |
+                            FG_PICTURE_UNKNOWN_PROFILE | FG_PICTURE_CLIPPED | FG_PICTURE_FEW_LEVELS;
   if (fabs(log(scan->blur_px / tone->blur_px)) > log(BLUR_RATIO)) return "edges are not as sharp";
-  if (!(fabs(scan->asymmetry - tone->asymmetry) <= ASYMMETRY_MOST))
+  if (!(fabs(scan->asymmetry - tone->asymmetry) <= ASYMMETRY_MOST) ||
+      fabs(scan->shown - tone->shown) > fmax(SHOWN_SIGMAS * u_shown(scan), SHOWN_LEAST))
     return "the edges show another tone curve";
   if (fabs(log(scan->contrast / tone->level.contrast)) > log(CONTRAST_RATIO))
     return "the contrast is another";
+  if (findings & widening & ~tone->findings)
+    return "the picture shows what the model's scans did not";
   return NULL;
 }
 
@@ -202,12 +292,17 @@ fg_status fg_model_tone_apply(fg_context *ctx, const fg_model_tone *tone, unsign
   scan_state state;
   m->tone_note[0] = 0;
   if (!tone->gauges || m->picture.level_known || !see_state(m, &state)) return FG_OK;
-  const char *other = difference(tone, &state);
-  if (!other) return fg_level_apply(ctx, &tone->level, threads, m);
+  const char *other = difference(tone, &state, m->picture.findings);
+  if (!other) {
+    fg_level level = tone->level;
+    level.u = hypot(level.u, u_sameness(tone, &state));
+    return fg_level_apply(ctx, &level, threads, m);
+  }
   fg_text_clip(m->tone_note, sizeof m->tone_note,
-               "the model's level of edges is not applied: %s (blur %.2f px, in the model %.2f; "
-               "asymmetry %.3f, %.3f; contrast %.0f, %.0f): have the scanner's settings changed?",
+               "the model's level of edges is not applied: %s (blur %.2f px, model %.2f; asymmetry "
+               "%.3f, %.3f; level shown %.3f, %.3f; contrast %.0f, %.0f): have the settings "
+               "changed?",
                other, state.blur_px, tone->blur_px, state.asymmetry, tone->asymmetry,
-               state.contrast, tone->level.contrast);
+               0.5 + state.shown, 0.5 + tone->shown, state.contrast, tone->level.contrast);
   return FG_OK;
 }

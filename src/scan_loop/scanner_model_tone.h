@@ -14,7 +14,10 @@ typedef struct fg_model_tone {
   size_t gauges; /* discs of known diameter that told it; 0: it is not known */
   fg_level level;
   double blur_px, asymmetry; /* of edges, as vision/edge_spread.h says */
+  double shown;              /* T(1/2) less a half, as the edge model explained the edges */
   double gamma, sharpen_amount, sharpen_radius_px;
+  unsigned findings; /* fg_picture_finding of the scans */
+  double u_scale;    /* relative: of a scale that is found with the level; 0: no known diameters */
 } fg_model_tone;
 
 /* From the discs of known diameter of a loop's scans, with any scale beside it; once effects were

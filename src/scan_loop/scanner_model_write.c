@@ -92,6 +92,24 @@ static fg_status check(fg_context *ctx, const fg_scanner_model *model) {
                  inner.message);
 }
 
+/* What spoils edges in a way that no model of a scanner holds: it would be carried to every scan.
+ * Rows that jump are not of them: a step of the carriage is what the loop looks for. Nor is a
+ * profile that no tone curve here explains: it is one for all edges, and known diameters tell its
+ * level. */
+static fg_status check_pictures(fg_context *ctx, const fg_scan_loop *loop) {
+  const unsigned spoiling =
+      FG_PICTURE_CLIPPED | FG_PICTURE_FEW_LEVELS | FG_PICTURE_SHADOW | FG_PICTURE_BLOCK_NOISE;
+  for (size_t i = 0; i < loop->scan_count; i++)
+    for (const fg_picture_words *words = fg_picture_finding_words(); words->name; words++)
+      if (loop->before[i].picture.findings & words->finding & spoiling)
+        return fg_fail(
+            ctx, FG_ERR_DATA,
+            "no model is written: %.120s: %s: %s A model of it would carry that to every "
+            "scan. %s",
+            loop->before[i].scan, words->name, words->meaning, words->cure);
+  return FG_OK;
+}
+
 static void write_place(fg_json *json, const fg_scanner_model *model) {
   const fg_field_frame *frame = &model->fields.frame;
   fg_json_numbers(json, "dpi", model->dpi, 2);
@@ -107,6 +125,7 @@ static void write_place(fg_json *json, const fg_scanner_model *model) {
 fg_status fg_scan_loop_write_model(fg_context *ctx, const fg_scan_loop *loop, FILE *out) {
   const fg_scanner_model *model = loop->result.model;
   fg_json json;
+  FG_TRY(check_pictures(ctx, loop));
   FG_TRY(check(ctx, model));
   fg_json_begin(&json, out);
   json.exact = true; /* a model that is read corrects as the loop did */

@@ -30,10 +30,12 @@ ARC = {"design": {"form": "arc", "overall_radius_mm": 20.73, "subtended_angle_de
        "centre_mm": [24, 30], "rotate_deg": -90}
 
 
-def scan(name, foils, discs=(), dpi=2400, light=True, curve=None, options=(), blur=1.0):
+def scan(name, foils, discs=(), dpi=2400, light=True, curve=None, options=(), blur=1.0, gamma=1):
     scanner = {"dpi": dpi, "background": 31 if light else 205, "contrast": 168 if light else -170, "blur_px": blur, "noise": 1.2}
     if curve:
         scanner["tone_curve"] = curve
+    if gamma != 1:
+        scanner["gamma"] = gamma
     spec = {"schema": "foilgauge/render/1", "seed": 3, "foils": foils, "discs": list(discs), "scanner": scanner}
     json.dump(spec, open(name + ".json", "w"))
     subprocess.run([renderer, "render", name + ".json", "-o", name + ".png"], check=True)
@@ -179,6 +181,29 @@ for name, options in ("linear", {}), ("blurred", {"curve": CURVE, "blur": 1.7}):
     assert "not applied" in with_it["tone_note"] and "not applied" in with_it["said"], name
     assert "not applied" in open(name + ".html").read(), name
     assert with_it["foils"][0]["u_thickness_mm"] > 0.003, name
+# What its edges show tells an exponent that has changed; what they cannot show is in u.
+for gamma in (0.8, 0.97, 1, 1.03, 1.1, 1.3) if LONG else (0.8, 1, 1.03, 1.1):
+    other = scan("exponent", [FOIL], gamma=gamma, options=["--model", "straight.model"])
+    off, u = right(f"gamma {gamma}", other)
+    assert ("tone_note" in other) == (not 0.96 < gamma < 1.04) or gamma in (0.97, 1.03), (gamma, off, u)
+    assert u < 0.0012 if gamma == 1 else "tone_note" not in other or u > 0.003, (gamma, u)
+# Steep tone curve: diameters tell a scale no better than their own u and the edges' level allow.
+# Spoiled picture: said, and no model of it.
+for name, more in (("steep", {"gamma": 2.2}), ("cut", {"tone_curve": [[0, 0], [150, 255], [255, 255]]}),
+                   ("shadow", {"shadow": {"amplitude": 0.2, "direction_deg": 100, "length_px": 8, "gap_px": 2}})):
+    scanner = {"dpi": 2400, "background": 31, "contrast": 168, "blur_px": 1.2, "noise": 1, **more}
+    json.dump({"schema": "foilgauge/render/1", "seed": 3, "discs": [pin(d, x, y) for x, y, d in PINS], "scanner": scanner},
+              open("plate.json", "w"))
+    subprocess.run([renderer, "render", "plate.json", "-o", "plate.png"], check=True)
+    run = subprocess.run([program, "loop", "plate.png", "--design", "plate.design", "--model-out", name + ".model"],
+                         capture_output=True, text=True)
+    if name == "steep":
+        assert run.returncode == 0, run.stderr
+        for field in json.load(open("steep.model"))["fields"]:
+            assert field["id"] == "scan.scale" and abs(field["amplitude_mm"][0]) < 2 * field["u_amplitude_mm"][0], field
+    else:
+        assert run.returncode == 65 and "state of the picture" in run.stderr and "no model is written" in run.stderr, run.stderr
+        assert not os.path.exists(name + ".model"), name
 # A gauge on the glass goes before the model; a model without tone is as it was.
 both = scan("both", [FOIL, leaf()], curve=CURVE, options=["--model", "free.model", *LEAF])
 assert both["gauges"][0]["used"] and "tone_note" not in both
@@ -187,7 +212,7 @@ old = dict(free)
 del old["tone"]
 json.dump(old, open("old.model", "w"))
 assert "tone_note" not in scan("old", [FOIL], options=["--model", "old.model"])
-for wrong in {"level": 2}, {"u_level": None}, {"gauges": 0}, {"blur_px": "x"}:
+for wrong in {"level": 2}, {"u_level": None}, {"gauges": 0}, {"blur_px": "x"}, {"shown_level": 2}, {"findings": ["dust"]}:
     json.dump(dict(free, tone=dict(free["tone"], **wrong)), open("bad.model", "w"))
     run = subprocess.run([program, "measure", "by_model.png", "--model", "bad.model", "-o", "never.out"], capture_output=True, text=True)
     assert run.returncode == 65 and "tone." in run.stderr, (wrong, run.stderr)
