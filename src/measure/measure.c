@@ -263,8 +263,8 @@ static void tell_apart(fg_measurement *m) {
         most);
   else
     snprintf(m->warning, sizeof m->warning,
-             "the colour channels lie %.2f px apart: one was measured, which is right; do not "
-             "average channels or convert the scan to gray",
+             "the colour channels lie %.2f px apart: one was measured; do not average channels or "
+             "convert the scan to gray",
              most);
 }
 

@@ -3,24 +3,25 @@
 #include <math.h>
 #include <stdio.h>
 
-/* A channel whose magnification differs from both others is one that cannot be right; so much makes
- * a radius of 3 mm wrong by as much as its u. */
+/* Of channels that differ in magnification nothing says which is right, nor does their majority: so
+ * much makes a radius of 3 mm wrong by as much as its u. */
 #define MAGNIFICATION_PPM   60.0
 #define MAGNIFICATION_SIGMA 3.0
 #define RINGING_SHARE       0.015
 
-/* By how much the measured channel differs from the one that is nearest to it, beyond doubt, ppm.
- */
-static double least_magnification(const fg_colour_lines *lines) {
-  double least = INFINITY;
-  for (int k = 0; k < 2; k++) {
-    const fg_colour_shift *shift = &lines->shifts[k];
-    if (shift->state == FG_COLOUR_IDENTICAL) return 0;
-    if (shift->state != FG_COLOUR_MEASURED) continue;
-    least = fmin(least,
-                 fabs(shift->magnification_ppm) - MAGNIFICATION_SIGMA * shift->u_magnification_ppm);
-  }
-  return isinf(least) ? 0 : least;
+static double beyond_doubt(double difference, double u) {
+  return fabs(difference) - MAGNIFICATION_SIGMA * u;
+}
+
+/* The largest difference between any two channels' magnifications, beyond doubt, ppm. */
+static double most_magnification(const fg_colour_lines *lines) {
+  const fg_colour_shift *a = &lines->shifts[0], *b = &lines->shifts[1];
+  double most = 0;
+  /* fmax prefers the number to NaN: of a channel that is not measured nothing is known */
+  most = fmax(most, beyond_doubt(a->magnification_ppm, a->u_magnification_ppm));
+  most = fmax(most, beyond_doubt(b->magnification_ppm, b->u_magnification_ppm));
+  double u = hypot(a->u_magnification_ppm, b->u_magnification_ppm);
+  return fmax(most, beyond_doubt(a->magnification_ppm - b->magnification_ppm, u));
 }
 
 static void add_finding(fg_measurement *m, unsigned finding) {
@@ -69,7 +70,7 @@ static void tell_findings(fg_measurement *m) {
 
 void fg_picture_gather(fg_measurement *m) {
   settle_all_blocks(m);
-  if (m->colour_lines.seen && least_magnification(&m->colour_lines) > MAGNIFICATION_PPM)
+  if (m->colour_lines.seen && most_magnification(&m->colour_lines) > MAGNIFICATION_PPM)
     add_finding(m, FG_PICTURE_CHANNEL_SCALE);
   merge_all(m);
   if (m->picture.findings && !m->warning[0]) tell_findings(m);

@@ -15,7 +15,7 @@
 
 #define MS_PER_HOUR INT64_C(3600000)
 
-enum { CHANGES_BYTES = 600 };
+enum { CHANGES_BYTES = 600, JUDGED_BYTES = 400 };
 
 /* A check of the plate, before it is kept. */
 typedef struct check_result {
@@ -84,10 +84,12 @@ static void put_state_words(const check_result *check, int64_t baseline_at, char
   struct tm local;
   char day[16] = "?";
   if (localtime_r(&seconds, &local)) strftime(day, sizeof day, "%Y-%m-%d", &local);
-  if (check->changes[0])
-    fg_text_clip(words + used, size - used,
-                 "; the picture has changed since the baseline of %s: %s", day, check->changes);
-  else if (check->baseline)
+  if (check->changes[0]) {
+    char judged[JUDGED_BYTES];
+    fg_text_clip(judged, sizeof judged, "%s", words);
+    fg_text_clip(words, size, "CHANGED since the baseline of %s: %s; %s", day, check->changes,
+                 judged);
+  } else if (check->baseline)
     fg_text_clip(words + used, size - used, "; the baseline of tone, sharpening and blur");
   else if (baseline_at)
     fg_text_clip(words + used, size - used, "; tone, sharpening and blur as in the baseline of %s",

@@ -15,6 +15,8 @@
 /* Less than this is not called sharpening, and less of a slope no tone curve. */
 #define AMOUNT_LEAST 0.05
 #define SLOPE_LEAST  0.05
+/* Of two information criteria that differ by more, the data speak for one model (exp(-5)). */
+#define SCORE_CLEAR 10.0
 
 #define FREE(value) (1u << (value))
 #define GAMMA       FREE(FG_DRIVER_LN_GAMMA)
@@ -60,6 +62,13 @@ void fg_driver_describe(const fg_driver *driver, fg_picture_state *state) {
   state->sharpen_amount = fmax(driver->values[FG_DRIVER_AMOUNT], 0);
   if (state->tone_s > SLOPE_LEAST) state->findings |= FG_PICTURE_TONE_CURVE;
   if (!(state->sharpen_amount > AMOUNT_LEAST)) return;
+  /* A mask makes up for much that is none: a tone curve of another form, or blocks. Its own mark is
+   * overshoot, or that nothing else does as well. */
+  bool seen = state->findings & FG_PICTURE_SHARPENED;
+  if (!seen && (!driver->sharpens || state->findings & FG_PICTURE_BLOCK_NOISE)) {
+    state->sharpen_amount = NAN;
+    return;
+  }
   state->sharpen_radius_px = driver->values[FG_DRIVER_RADIUS];
   /* Levels that are cut off make an edge as steep as an unsharp mask does, and cut its overshoot
    * off, too: then a mask is not told from them. */
@@ -147,6 +156,16 @@ static size_t weigh(const candidate *candidates, double sharpness, double *u_edg
   return best;
 }
 
+/* Whether the best has a mask, and those without one are far behind: of a model that is missed,
+ * too, the order among models says nothing. */
+static bool is_sharpened(const candidate *candidates, size_t best, bool missed) {
+  double without = INFINITY;
+  for (size_t i = 0; i < FAMILIES; i++)
+    if (candidates[i].fit.good && !(candidates[i].fit.free & FREE(FG_DRIVER_AMOUNT)))
+      without = fmin(without, candidates[i].score);
+  return !missed && candidates[best].score + SCORE_CLEAR < without;
+}
+
 fg_status fg_driver_choose(fg_context *ctx, fg_driven_profile *profiles, size_t count,
                            const double ends[2], double gamma, double noise,
                            fg_driver_choice *choice) {
@@ -169,6 +188,7 @@ fg_status fg_driver_choose(fg_context *ctx, fg_driven_profile *profiles, size_t 
     choice->missed = fg_driver_is_missed(&candidates[best].misfit, ends[1] - ends[0]);
   }
   choice->fit = candidates[best].fit;
+  choice->fit.driver.sharpens = is_sharpened(candidates, best, choice->missed);
   choice->misfit = candidates[best].misfit;
   memcpy(profiles, candidates[best].profiles, count * sizeof *profiles);
 exit:

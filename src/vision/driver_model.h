@@ -38,6 +38,7 @@ enum { FG_DRIVER_TONE_STEPS = 2048, FG_DRIVER_LIGHT_MOST = 330 };
 typedef struct fg_driver {
   double values[FG_DRIVER_VALUES];
   double ends[2]; /* A < B, counts */
+  bool sharpens;  /* no model without an unsharp mask explains the profiles nearly as well */
 } fg_driver;
 
 /* No tone curve, no unsharp mask. */

@@ -6,7 +6,7 @@
 #include "vision/picture.h"
 #include "vision/picture_profile.h"
 
-enum { PIXEL_STEP = 5 };
+enum { PIXEL_STEP = 5, TILES_MOST = 16 };
 #define OUTER_SHARE 0.25 /* of the band's reach: the levels' stretches at its ends */
 
 /* A straight edge has one bearing, which is of no matter here. */
@@ -35,6 +35,10 @@ static size_t take_sectors(const fg_disc_work *work, fg_edge_profile *profiles) 
   return n;
 }
 
+static double count_of(double gamma, double light) {
+  return 255 * pow(fmax(light, 0) / 255, 1 / gamma);
+}
+
 static void inspect_levels(const fg_disc_work *work, const fg_disc_edge *edge,
                            fg_picture_state *state) {
   fg_value_counts counts;
@@ -43,9 +47,41 @@ static void inspect_levels(const fg_disc_work *work, const fg_disc_edge *edge,
   for (size_t i = 0; i < work->ring.count; i += PIXEL_STEP)
     fg_value_counts_add(&counts, work->ring.pixels[i].value);
   for (int side = 0; side < 2; side++)
-    levels[side] = 255 * pow(fmax(side ? edge->outside : edge->inside, 0) / 255, 1 / edge->gamma);
+    levels[side] = count_of(edge->gamma, side ? edge->outside : edge->inside);
   fg_picture_inspect_levels(&counts, levels, state);
   if (work->white[0] || work->white[1]) state->findings |= FG_PICTURE_CLIPPED;
+}
+
+static bool is_chosen(const fg_tile_choice *choice, const fg_tile *tile) {
+  for (size_t i = 0; i < choice->count; i++)
+    if (choice->tiles[i] == tile) return true;
+  return false;
+}
+
+/* Whole tiles that the edge runs through, evenly around it. */
+static void choose_around(const fg_disc_work *work, fg_tile_choice *choice) {
+  const fg_circle *c = &work->ring.circle;
+  choice->count = 0;
+  for (int k = 0; k < TILES_MOST; k++) {
+    double angle = (k + 0.5) * 2 * M_PI / TILES_MOST;
+    double x = (c->x + c->radius * cos(angle)) / work->shape->scale[0];
+    double y = (c->y + c->radius * sin(angle)) / work->shape->scale[1];
+    int32_t column = (int32_t)floor(x / FG_TILE_PX), row = (int32_t)floor(y / FG_TILE_PX);
+    if (column < 0 || row < 0 || (int64_t)(column + 1) * FG_TILE_PX > work->tiles->width_px ||
+        (int64_t)(row + 1) * FG_TILE_PX > work->tiles->height_px)
+      continue;
+    const fg_tile *tile = fg_tiles_at(work->tiles, column, row);
+    if (tile && !is_chosen(choice, tile)) choice->tiles[choice->count++] = tile;
+  }
+}
+
+static void inspect_blocks(const fg_disc_work *work, const fg_disc_edge *edge,
+                           fg_picture_state *state) {
+  fg_tile_choice choice;
+  choose_around(work, &choice);
+  double contrast =
+      fabs(count_of(edge->gamma, edge->inside) - count_of(edge->gamma, edge->outside));
+  fg_picture_inspect_blocks(&choice, work->tiles->bytes_per_pixel, contrast, state);
 }
 
 fg_status fg_picture_of_ring(fg_context *ctx, const fg_disc_work *work, const fg_disc_edge *edge,
@@ -53,6 +89,7 @@ fg_status fg_picture_of_ring(fg_context *ctx, const fg_disc_work *work, const fg
   fg_edge_profile *profiles;
   state->noise = edge->noise;
   inspect_levels(work, edge, state);
+  if (!work->open) inspect_blocks(work, edge, state);
   if (!work->open) FG_TRY(fg_picture_inspect_ring_rows(ctx, work, edge, state));
   FG_TRY(fg_memory_allocate(ctx, work->ring.sector_count, sizeof *profiles, (void **)&profiles));
   size_t count = take_sectors(work, profiles);

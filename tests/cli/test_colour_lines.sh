@@ -37,6 +37,13 @@ expect 0 "" "$program" measure apart.png -o sought.json
 expect 0 "" "$program" measure --channel green - -o streamed.json < <(cat apart.png)
 [ "$(value streamed.json "'colour_lines' in r")" = False ] || fail "a stream was stored"
 
+# Channels that differ in magnification are told, whichever of them was measured, and none is called right.
+for ppm in "1000, 1000, 0" "0, 1000, 0" "0, 0, 1000"; do
+  draw scale "\"magnification_ppm\": [$ppm]"
+  expect 0 "" "$program" measure --channel green scale.png -o scale.report.json
+  value scale.report.json "'channel_scale' in r['foils'][0]['flags']" | grep -q True || fail "magnifications of $ppm ppm are not told"
+done
+
 draw near '"dx_px": [0.04, 0, -0.03], "dy_px": [-0.03, 0, 0.02]'
 expect 0 "" "$program" measure near.png --channel green -o near.report.json
 [ "$(value near.report.json "r['colour_lines']['apart']")" = False ] || fail "0.08 px is flagged"

@@ -62,7 +62,7 @@ changed() {
   plate $seed "$work/in/check_$1.png" "$3"
   foil $seed "$work/in/$1.png"
   once
-  grep -q "check_$1.png scanner .*the picture has changed since.*$2" "$work/said" ||
+  grep -q "check_$1.png CHANGED since the baseline of .*$2.*; scanner " "$work/said" ||
     fail "$1 is not told: $(cat "$work/said")"
   [ "$(newest baseline)" = 0 ] || fail "$1 is a baseline"
   foil "1$seed" "$work/in/after_$1.png"

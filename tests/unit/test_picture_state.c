@@ -50,10 +50,10 @@ static void each_kind_is_found(void **unused) {
       {PLAIN ",\"levels\":16", FG_PICTURE_FEW_LEVELS, model | FG_PICTURE_CORRELATED_NOISE},
       {PLAIN ",\"levels\":2,\"threshold\":90", FG_PICTURE_FEW_LEVELS,
        model | FG_PICTURE_CLIPPED | FG_PICTURE_ROW_JUMPS},
-      {PLAIN ",\"rough\":{\"jpeg\":{\"quality\":60}}", FG_PICTURE_BLOCK_NOISE,
-       model | FG_PICTURE_SHARPENED},
-      {PLAIN ",\"rough\":{\"jpeg\":{\"quality\":90}}", FG_PICTURE_BLOCK_NOISE,
-       model | FG_PICTURE_SHARPENED},
+      {PLAIN ",\"rough\":{\"jpeg\":{\"quality\":60}}", FG_PICTURE_BLOCK_NOISE, model},
+      {PLAIN ",\"rough\":{\"jpeg\":{\"quality\":90}}", FG_PICTURE_BLOCK_NOISE, model},
+      {PLAIN ",\"tone_curve\":[[0,0],[64,20],[128,128],[192,236],[255,255]]", FG_PICTURE_TONE_CURVE,
+       model},
       {PLAIN ",\"rough\":{\"side_wall\":{\"amplitude\":0.1,\"direction_deg\":-90,"
              "\"length_px\":10}}",
        FG_PICTURE_SHADOW, model | FG_PICTURE_SHARPENED},
@@ -63,6 +63,27 @@ static void each_kind_is_found(void **unused) {
     if ((found & kinds[i].must) != kinds[i].must || (found & ~(kinds[i].must | kinds[i].may)))
       fail_msg("%s: found %#x", kinds[i].scanner, found);
   }
+}
+
+/* Few blocks beside a foil step: they are told all the same, and no
+ * mask that would explain the edges as well. */
+static void blocks_are_told_where_few_step(void **unused) {
+  (void)unused;
+  const char *jpeg = "\"dpi\":2400,\"blur_px\":1.2,\"noise\":1,\"background\":30,\"contrast\":175,"
+                     "\"rough\":{\"jpeg\":{\"quality\":60}}";
+  char json[2048];
+  snprintf(json, sizeof json,
+           "{\"schema\":\"foilgauge/render/1\",\"seed\":5,\"foils\":[{\"design\":{\"form\":"
+           "\"classical\",\"bump_count\":3,\"bump_radius_mm\":3.32,\"bump_angle_deg\":63.15,"
+           "\"overall_radius_mm\":20.73,\"thickness_mm\":0.1,\"rotor_diameter_mm\":40},"
+           "\"overall_radius_mm\":20.9,\"rotate_deg\":-77}],\"scanner\":{%s}}",
+           jpeg);
+  measured m = measure_render(json, NULL);
+  assert_int_equal(m.result.foil_count, 1);
+  unsigned foil = m.result.foils[0].strip.picture.findings;
+  measured_free(&m);
+  assert_true(foil & FG_PICTURE_BLOCK_NOISE);
+  assert_false(foil & FG_PICTURE_SHARPENED);
 }
 
 static void blur_is_an_ellipse(void **unused) {
@@ -100,11 +121,9 @@ static void noise_is_measured(void **unused) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(nothing_is_found_on_plain_scans),
-      cmocka_unit_test(each_kind_is_found),
-      cmocka_unit_test(blur_is_an_ellipse),
-      cmocka_unit_test(rows_that_jump_are_counted),
-      cmocka_unit_test(noise_is_measured),
+      cmocka_unit_test(nothing_is_found_on_plain_scans), cmocka_unit_test(each_kind_is_found),
+      cmocka_unit_test(blocks_are_told_where_few_step),  cmocka_unit_test(blur_is_an_ellipse),
+      cmocka_unit_test(rows_that_jump_are_counted),      cmocka_unit_test(noise_is_measured),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -15,15 +15,25 @@
 #include "report/measure/uncertainty_budget.h"
 #include "report/provenance.h"
 
-static void put_flags(FILE *out, const fg_design *design, const fg_foil *foil) {
-  unsigned flags = fg_foil_flags_told(design, foil), findings = foil->strip.picture.findings;
+static void put_flag_list(FILE *out, const fg_flag_words *words, unsigned flags,
+                          unsigned findings) {
   if (!flags && !findings) return;
   fputs("<ul class=\"flags\">\n", out);
-  for (const fg_flag_words *words = fg_foil_flag_words(); words->name; words++)
+  for (; words->name; words++)
     if (flags & words->flag) fprintf(out, "<li>%s</li>\n", words->plain);
   for (const fg_picture_words *found = fg_picture_finding_words(); found->name; found++)
     if (findings & found->finding) fprintf(out, "<li>%s %s</li>\n", found->meaning, found->cure);
   fputs("</ul>\n", out);
+}
+
+static void put_flags(FILE *out, const fg_design *design, const fg_foil *foil) {
+  put_flag_list(out, fg_foil_flag_words(), fg_foil_flags_told(design, foil),
+                foil->strip.picture.findings);
+}
+
+/* Of all discs at once; which disc has what stands in the table. */
+static void put_disc_findings(FILE *out, const fg_measurement *measurement) {
+  put_flag_list(out, fg_bump_flag_words(), 0, measurement->picture.findings);
 }
 
 static fg_status put_facts(fg_context *ctx, FILE *out, const fg_design *design,
@@ -301,6 +311,7 @@ static fg_status put_discs(fg_context *ctx, FILE *out, const fg_report *report,
   fg_html_text(out, fg_html_base_name(measurement->scan));
   fputs("</p></header>\n", out);
   FG_TRY(fg_html_disc_reasons(ctx, out, report->design, measurement));
+  put_disc_findings(out, measurement);
   FG_TRY(put_discs_corrected(ctx, out, measurement));
   fg_html_disc_tiles(out, measurement);
   FG_TRY(put_picture(ctx, out, report, measurement, NULL));

@@ -82,8 +82,9 @@ static const fg_picture_words findings[] = {
      "-l, -t, -x, -y (a smaller window)", "ICAP_FRAMES (a smaller window)",
      "WIA_IPS_XPOS, WIA_IPS_YPOS, WIA_IPS_XEXTENT, WIA_IPS_YEXTENT (a smaller window)"},
     {FG_PICTURE_CHANNEL_SCALE, "channel_scale",
-     "The colour channels differ in magnification: their mean blurs edges and moves them.",
-     "Scan in gray, or measure one channel (--channel green).",
+     "The colour channels differ in magnification, and nothing says which is right: lengths may be "
+     "off by as much; their mean blurs edges, too.",
+     "Scan in gray, or calibrate the channel that is measured by parts of known size.",
      "--mode Gray, --color-filter Green (genesys)", "ICAP_PIXELTYPE = TWPT_GRAY",
      "WIA_IPA_DATATYPE = WIA_DATA_GRAYSCALE"},
     {FG_PICTURE_SHADING, "shading", "The light changes much over the picture.",
