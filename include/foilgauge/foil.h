@@ -263,6 +263,7 @@ typedef struct fg_beam_edge {
   size_t count;
   bool round;        /* an arc about the apex of a floor */
   double blur_mm;    /* of the scan, there */
+  double row_mm;     /* height of a row of the scan; 0: not known */
   double doubt_mm;   /* what the level of the edge may move it by */
   double split_mm;   /* what its flanks and its core differ by, beyond chance; towards the void */
   double loss_share; /* by which JPEG's steps raise the variance that the edge tells */

@@ -9,6 +9,7 @@
 #include "core/select.h"
 #include "geometry/beam_line.h"
 #include "geometry/beam_numbers.h"
+#include "geometry/beam_rows.h"
 
 /* More than this share of stations left out is said. */
 #define OUTLIER_SHARE   0.01
@@ -103,7 +104,7 @@ static fg_point floor_place(const beam_work *w, fg_beam_side side) {
 
 /* Where the root line crosses the axis, and the share that each floor has in it. */
 static double find_root(const beam_work *w, double share[2]) {
-  double along[2], left[2];
+  double along[2] = {0, 0}, left[2] = {0, 0};
   for (int i = 0; i < 2; i++) {
     share[i] = w->fitted[FG_BEAM_ROOT_LEFT + i];
     if (!w->fitted[FG_BEAM_ROOT_LEFT + i]) continue;
@@ -295,13 +296,14 @@ static void put_errors(const fg_design *design, fg_beam *beam) {
   beam->follows = fg_cantilever_of(design, &size);
 }
 
-static fg_status measure_beam(fg_context *ctx, const fg_design *design, fg_beam *beam,
-                              fg_beam_noise *noise) {
+static fg_status measure_beam(fg_context *ctx, const fg_design *design, const fg_beam_jumps *jumps,
+                              fg_beam *beam, fg_beam_noise *noise) {
   beam_work w = {.beam = beam};
   beam->flags &= FG_BEAM_TOUCHES_BORDER | FG_BEAM_NARROW_CUT;
   forget_size(beam);
   fg_status status = fit_lines(ctx, &w);
   if (status == FG_OK) status = measure_lines(ctx, &w);
+  fg_beam_jumps_widen(jumps, beam);
   put_errors(design, beam);
   *noise = w.noise;
   for (int i = 0; i < FG_BEAM_SIDES; i++)
@@ -372,15 +374,28 @@ static void flag_leaning(double *scratch, fg_foil *foil) {
     if (direction_off(&beams[i], direction) > LEANING_DEG) foil->beams[i].flags |= FG_BEAM_BENT;
 }
 
+static void put_jumps(const fg_beam_jumps *jumps, fg_picture_state *picture) {
+  double largest = 0;
+  if (!(jumps->row_mm > 0)) return;
+  for (size_t k = 0; k < jumps->count; k++)
+    if (fabs(jumps->size_mm[k]) > fabs(largest)) largest = jumps->size_mm[k];
+  picture->row_jumps = (double)jumps->count;
+  picture->row_jump_px = largest / jumps->row_mm;
+  if (jumps->count) picture->findings |= FG_PICTURE_ROW_JUMPS;
+}
+
 fg_status fg_beams_measure(fg_context *ctx, const fg_design *design, fg_foil *foil) {
   fg_beam_noise *noises = NULL;
   double *scratch = NULL;
   fg_status status = FG_OK;
+  fg_beam_jumps jumps;
   foil->flags &= ~(unsigned)(FG_FOIL_BEAM_COUNT | FG_FOIL_ROUGH_EDGE);
+  FG_TRY_EXIT(fg_beam_jumps_find(ctx, foil, &jumps));
+  put_jumps(&jumps, &foil->strip.picture);
   FG_TRY_EXIT(fg_memory_allocate(ctx, foil->beam_count, sizeof *noises, (void **)&noises));
   FG_TRY_EXIT(fg_memory_allocate(ctx, foil->beam_count, sizeof *scratch, (void **)&scratch));
   for (size_t i = 0; i < foil->beam_count; i++)
-    FG_TRY_EXIT(measure_beam(ctx, design, &foil->beams[i], &noises[i]));
+    FG_TRY_EXIT(measure_beam(ctx, design, &jumps, &foil->beams[i], &noises[i]));
   put_noise(foil, noises, scratch);
   check_scale(design, scratch, foil);
   FG_TRY_EXIT(fg_beams_number(ctx, design, foil));

@@ -27,6 +27,12 @@
 /* The next edge is too near when its blur may move this one by more, px. */
 #define NARROW_PX 0.01
 
+/* Less of an exponent than this is no finding: edges of a linear scan show as much. */
+#define BENT_LEAST 0.05
+/* Straight edges have no wall or ring about them that looks like a tone curve, so more of one is
+ * believed than of discs. */
+static const double range_of_gamma[2] = {0.25, 3.5};
+
 /* An island at work. */
 typedef struct flat_work {
   fg_line_view view;
@@ -38,7 +44,8 @@ typedef struct flat_work {
   size_t *place_rim; /* which rim a place lies on */
   fg_tone *tones;    /* two per place */
   fg_tone tone;
-  fg_beam *beams; /* one per place */
+  double bent_gamma; /* what the edges show where the tone is stated as linear; 1: they agree */
+  fg_beam *beams;    /* one per place */
 } flat_work;
 
 static double least_px(const fg_measurement *m, const fg_pixel_shape *shape) {
@@ -131,6 +138,7 @@ static fg_status take_edge(fg_context *ctx, const flat_work *w, const fg_stretch
   }
   edge->round = isfinite(side->radius);
   edge->blur_mm = found->blur_px * mm;
+  edge->row_mm = w->view.shape.scale[1] * mm;
   edge->split_mm = find_split(found) * mm;
   edge->doubt_mm = doubt_px * mm;
   edge->loss_share = fg_loss_turn_variance(w->m->jpeg_quality);
@@ -154,20 +162,55 @@ static void mend_curved(const flat_work *w, const fg_stretch *side, const fg_bea
     found->stations[i].edge_px += (float)shift;
 }
 
+/* By how much the count of half the light is off the middle of an edge's levels, as a share. */
+static double level_of(double gamma, const fg_disc_edge *edge) {
+  double light = 0.5 * (fg_edge_light(gamma, edge->inside) + fg_edge_light(gamma, edge->outside));
+  double off = fg_edge_count(gamma, light) - edge->inside;
+  return off / (edge->outside - edge->inside) - 0.5;
+}
+
+/* The tone is stated as linear, and the edges show another one. */
+static void doubt_linear(const flat_work *w, fg_disc_edge *edge) {
+  if (w->bent_gamma == 1) return;
+  edge->picture.level = 0;
+  edge->picture.u_level = hypot(isnan(edge->picture.u_level) ? 0 : edge->picture.u_level,
+                                level_of(w->bent_gamma, edge));
+  edge->picture.gamma = w->bent_gamma;
+  if (fabs(log(w->bent_gamma)) > BENT_LEAST) edge->picture.findings |= FG_PICTURE_TONE_CURVE;
+}
+
 static fg_status measure_edge(fg_context *ctx, const flat_work *w, const fg_stretch *side,
-                              fg_beam *beam, fg_beam_edge *edge) {
-  fg_disc_edge found = {0};
-  double next_px;
-  fg_status status = fg_line_edge_measure(ctx, &w->view, side, &w->tone, &found, &next_px);
+                              const fg_found_driver *driver, fg_line_found *found, fg_beam *beam,
+                              fg_beam_edge *edge) {
+  const fg_line_tone tone = {w->tone, driver};
+  fg_disc_edge *at = &found->edge;
+  *found = (fg_line_found){.next_px = INFINITY};
+  fg_status status = fg_line_edge_measure(ctx, &w->view, side, &tone, found);
   if (status == FG_OK) {
-    double overlap_px = fg_line_edge_overlap(next_px, found.blur_px);
+    double overlap_px = fg_line_edge_overlap(found->next_px, at->blur_px);
     if (overlap_px > NARROW_PX) beam->flags |= FG_BEAM_NARROW_CUT;
-    mend_curved(w, side, &beam->edges[FG_BEAM_LEFT], &found);
-    fg_picture_merge(&beam->picture, &found.picture);
-    status = take_edge(ctx, w, side, &found, find_doubt(w, side, &found, overlap_px), edge);
+    mend_curved(w, side, &beam->edges[FG_BEAM_LEFT], at);
+    doubt_linear(w, at);
+    fg_picture_merge(&beam->picture, &at->picture);
+    status = take_edge(ctx, w, side, at, find_doubt(w, side, at, overlap_px), edge);
   }
-  fg_disc_edge_free(&found);
+  fg_disc_edge_free(at);
   return status == FG_ERR_NUMERIC ? FG_OK : status;
+}
+
+/* Tip and floor are short: both are seen through what a long edge shows of the driver, so that
+ * between them it cancels. */
+static fg_status measure_sides(fg_context *ctx, const flat_work *w, const fg_beam_place *place,
+                               fg_beam *beam) {
+  fg_line_found found;
+  fg_found_driver driver = {.found = false};
+  for (int side = 0; side < FG_BEAM_SIDES; side++) {
+    if (!place->there[side]) continue;
+    const fg_found_driver *known = side >= FG_BEAM_TIP ? &driver : NULL;
+    FG_TRY(measure_edge(ctx, w, &place->sides[side], known, &found, beam, &beam->edges[side]));
+    if (side < FG_BEAM_TIP && !driver.found) driver = found.driver;
+  }
+  return FG_OK;
 }
 
 /* An edge of it ends at the border of the scan: of the view, whose other borders are far away. */
@@ -194,10 +237,7 @@ static fg_status measure_edges(fg_context *ctx, void *shared, size_t i) {
       atan2(beam->tip_mm.y - beam->root_mm.y, beam->tip_mm.x - beam->root_mm.x) * 180 / M_PI;
   beam->picture = fg_picture_unknown();
   if (is_at_border(w, place)) beam->flags |= FG_BEAM_TOUCHES_BORDER;
-  for (int side = 0; side < FG_BEAM_SIDES; side++)
-    if (place->there[side])
-      FG_TRY(measure_edge(ctx, w, &place->sides[side], beam, &beam->edges[side]));
-  return FG_OK;
+  return measure_sides(ctx, w, place, beam);
 }
 
 static fg_status take_part(fg_context *ctx, flat_work *w, size_t r, fg_flat_part *part) {
@@ -235,13 +275,24 @@ static fg_status take_parts(fg_context *ctx, flat_work *w, bool light, fg_flat_p
   return FG_OK;
 }
 
+/* A tone that is stated stays in force; what the edges say against it is their doubt. */
+static void find_common_tone(flat_work *w, size_t count) {
+  const fg_tone shown = fg_tone_pool_within(w->tones, count, range_of_gamma);
+  w->bent_gamma = 1;
+  w->tone = shown;
+  if (w->m->design.tone != FG_TONE_LINEAR) return;
+  w->bent_gamma = shown.gamma;
+  w->tone = fg_tone_linear();
+  w->tone.found = shown.found;
+  w->tone.u_found = shown.u_found;
+}
+
 static fg_status measure_places(fg_context *ctx, flat_work *w, unsigned threads) {
   size_t count = w->places.count;
   FG_TRY(fg_memory_allocate(ctx, count, sizeof *w->beams, (void **)&w->beams));
   FG_TRY(fg_memory_allocate(ctx, 2 * count, sizeof *w->tones, (void **)&w->tones));
-  bool linear = w->m->design.tone == FG_TONE_LINEAR;
-  if (!linear) FG_TRY(fg_parallel_run(ctx, threads, 2 * count, find_tone, w));
-  w->tone = linear ? fg_tone_linear() : fg_tone_pool(w->tones, 2 * count);
+  FG_TRY(fg_parallel_run(ctx, threads, 2 * count, find_tone, w));
+  find_common_tone(w, 2 * count);
   return fg_parallel_run(ctx, threads, count, measure_edges, w);
 }
 

@@ -123,13 +123,13 @@ static fg_status draw_sample(fg_context *ctx, const fg_disc_work *work, sample *
   return FG_OK;
 }
 
-static fg_status adopt(fg_context *ctx, fg_disc_work *work, const fg_driver_choice *choice) {
+static fg_status adopt(fg_context *ctx, fg_disc_work *work, const fg_found_driver *found) {
   FG_TRY(fg_memory_allocate(ctx, 1, sizeof *work->driver_tone, (void **)&work->driver_tone));
   FG_TRY(fg_memory_allocate(ctx, 1, sizeof *work->driver, (void **)&work->driver));
-  *work->driver = choice->fit.driver;
-  work->gamma = exp(choice->fit.driver.values[FG_DRIVER_LN_GAMMA]);
-  work->u_driver_px = choice->u_edge_px;
-  work->unexplained = choice->missed;
+  *work->driver = found->driver;
+  work->gamma = exp(found->driver.values[FG_DRIVER_LN_GAMMA]);
+  work->u_driver_px = found->u_edge_px;
+  work->unexplained = found->unexplained;
   fg_driver_tone_fill(work->driver, work->driver_tone);
   return FG_OK;
 }
@@ -149,6 +149,19 @@ static void convert_sectors(fg_disc_work *work, double gamma) {
   }
 }
 
+fg_found_driver fg_disc_found_driver(const fg_disc_work *work) {
+  if (!work->driver) return (fg_found_driver){.found = false};
+  return (fg_found_driver){true, *work->driver, work->u_driver_px, work->unexplained};
+}
+
+fg_status fg_disc_take_driver(fg_context *ctx, fg_disc_work *work, const fg_found_driver *found) {
+  double gamma = work->gamma;
+  if (!found->found || work->white[0] || work->white[1]) return FG_OK;
+  FG_TRY(adopt(ctx, work, found));
+  convert_sectors(work, gamma);
+  return fit_driven(ctx, work);
+}
+
 fg_status fg_disc_find_driver(fg_context *ctx, fg_disc_work *work) {
   sample s = {.count = 0};
   fg_driver_tone *tone = NULL;
@@ -166,9 +179,8 @@ fg_status fg_disc_find_driver(fg_context *ctx, fg_disc_work *work) {
   if (!fg_driver_is_missed(&misfit, s.ends[1] - s.ends[0])) goto exit;
   FG_TRY_EXIT(fg_driver_choose(ctx, s.profiles, s.count, s.ends, gamma, START_NOISE, &choice));
   if (!choice.fit.good) goto exit;
-  FG_TRY_EXIT(adopt(ctx, work, &choice));
-  convert_sectors(work, gamma);
-  FG_TRY_EXIT(fit_driven(ctx, work));
+  const fg_found_driver found = {true, choice.fit.driver, choice.u_edge_px, choice.missed};
+  FG_TRY_EXIT(fg_disc_take_driver(ctx, work, &found));
 exit:
   free(tone);
   free(s.bins);

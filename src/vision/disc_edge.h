@@ -67,6 +67,7 @@ fg_status fg_disc_edge_tone(fg_context *ctx, const fg_tiles *tiles, const fg_pix
  * slopes hide the tone curve it is 1 with a large doubt. */
 fg_tone fg_tone_linear(void);
 fg_tone fg_tone_pool(const fg_tone *tones, size_t count);
+fg_tone fg_tone_pool_within(const fg_tone *tones, size_t count, const double range[2]);
 
 /* FG_ERR_NUMERIC when there is no edge around the candidate. */
 fg_status fg_disc_edge_measure(fg_context *ctx, const fg_tiles *tiles, const fg_pixel_shape *shape,
@@ -116,6 +117,17 @@ bool fg_disc_has_slope(const fg_disc_work *work, int value);
 /* What the driver has made of the edge, where one step without it misses the sectors' profiles:
  * the sectors are fitted again with it. disc_driver.c */
 fg_status fg_disc_find_driver(fg_context *ctx, fg_disc_work *work);
+
+/* What was found of the driver at one edge, for another that tells too little of it itself. */
+typedef struct fg_found_driver {
+  bool found;
+  fg_driver driver;
+  double u_edge_px;
+  bool unexplained;
+} fg_found_driver;
+
+fg_found_driver fg_disc_found_driver(const fg_disc_work *work);
+fg_status fg_disc_take_driver(fg_context *ctx, fg_disc_work *work, const fg_found_driver *found);
 void fg_disc_describe_driver(const fg_disc_work *work, const fg_disc_edge *edge,
                              fg_picture_state *state);
 

@@ -10,8 +10,7 @@
  * values beyond are a wall or a halo beside the edge. */
 #define GAMMA_DEVIATIONS   4.0
 #define GAMMA_LEAST_CHANGE 0.003
-#define GAMMA_LOWEST       0.4
-#define GAMMA_HIGHEST      2.8
+static const double range_of_gamma[2] = {0.4, 2.8};
 /* Beside a halo or a wall gamma cannot be told: it is taken for 1, which may be wrong by this. */
 #define GAMMA_DOUBT 0.4
 /* Sectors that scatter by more than so many of their own deviations do not show a tone curve. */
@@ -71,6 +70,10 @@ fg_tone fg_tone_linear(void) {
 }
 
 fg_tone fg_tone_pool(const fg_tone *tones, size_t count) {
+  return fg_tone_pool_within(tones, count, range_of_gamma);
+}
+
+fg_tone fg_tone_pool_within(const fg_tone *tones, size_t count, const double range[2]) {
   double sum = 0, weights = 0, squares = 0, slopes = 0, n = 0;
   for (size_t i = 0; i < count; i++) {
     if (!(tones[i].doubt > 0) || !isfinite(tones[i].doubt)) continue;
@@ -84,7 +87,7 @@ fg_tone fg_tone_pool(const fg_tone *tones, size_t count) {
   if (n < 1) return (fg_tone){.gamma = 1};
   double gamma = sum / weights, spread = fmax(0, squares - sum * gamma);
   double doubt = sqrt((n > 1 ? fmax(1, spread / (n - 1)) : 1) / weights);
-  if (2 * slopes > n || gamma < GAMMA_LOWEST || gamma > GAMMA_HIGHEST)
+  if (2 * slopes > n || gamma < range[0] || gamma > range[1])
     return (fg_tone){.gamma = 1, .doubt = GAMMA_DOUBT};
   if (fabs(gamma - 1) < fmax(GAMMA_DEVIATIONS * doubt, GAMMA_LEAST_CHANGE))
     return (fg_tone){.gamma = 1, .found = gamma, .u_found = doubt};

@@ -8,11 +8,14 @@
 #include "core/select.h"
 #include "vision/picture.h"
 
-enum { SECTORS_MOST = 24, STATIONS_LEAST = 4, PLACES = 9 };
-#define SECTOR_PX   96.0
-#define STATION_PX  1.5
-#define REACH_PX    15.0 /* of the band, on either side */
-#define REACH_LEAST 2.5
+/* What the driver has done is asked of so many sectors at the least, so those of a short stretch
+ * are shorter. */
+enum { SECTORS_MOST = 24, SECTORS_WANTED = 10, STATIONS_LEAST = 4, PLACES = 9 };
+#define SECTOR_PX       96.0
+#define SECTOR_LEAST_PX 24.0
+#define STATION_PX      1.5
+#define REACH_PX        15.0 /* of the band, on either side */
+#define REACH_LEAST     2.5
 /* The band ends before the next edge: at this share of the way. */
 #define NEXT_EDGE_SHARE 0.45
 /* An arc's band ends at this share of its radius. */
@@ -238,6 +241,11 @@ static bool drop_dust(fg_disc_work *work) {
   return any;
 }
 
+static size_t count_sectors(double length) {
+  double wanted = fmin(SECTORS_WANTED, floor(length / SECTOR_LEAST_PX));
+  return (size_t)fmin(fmax(fmax(length / SECTOR_PX, wanted), 1), SECTORS_MOST);
+}
+
 /* The band with its profiles, and a step without slopes to each. */
 static fg_status open_band(fg_context *ctx, const fg_stretch *stretch, double middle,
                            fg_disc_work *work, double *next_px) {
@@ -248,7 +256,7 @@ static fg_status open_band(fg_context *ctx, const fg_stretch *stretch, double mi
   work->open = true;
   ring->circle.radius = stretch->radius;
   ring->reach_px = find_reach(work, &f, middle, next_px);
-  ring->sector_count = (size_t)fmin(fmax(f.length / SECTOR_PX, 1), SECTORS_MOST);
+  ring->sector_count = count_sectors(f.length);
   size_t per_sector = (size_t)(f.length / STATION_PX / (double)ring->sector_count);
   ring->station_count = per_sector * ring->sector_count;
   FG_TRY(collect(ctx, work, &f));
@@ -289,29 +297,42 @@ static fg_status find_shape(fg_context *ctx, fg_disc_work *work) {
 
 /* The edge of an open band. */
 static fg_status solve(fg_context *ctx, fg_disc_work *work, const fg_stretch *stretch,
-                       const fg_tone *tone, fg_disc_edge *edge) {
+                       const fg_line_tone *tone, fg_disc_edge *edge) {
   FG_TRY(find_shape(ctx, work));
-  FG_TRY(fg_disc_find_driver(ctx, work));
+  if (tone->driver) {
+    FG_TRY(fg_disc_take_driver(ctx, work, tone->driver));
+    FG_TRY(check_sectors(ctx, work));
+  } else {
+    FG_TRY(fg_disc_find_driver(ctx, work));
+  }
   edge->gamma = work->gamma;
   edge->circle = (fg_circle){.radius = -stretch->radius};
   edge->count = work->ring.station_count;
   FG_TRY(fg_memory_allocate(ctx, edge->count, sizeof *edge->stations, (void **)&edge->stations));
   FG_TRY(fg_disc_smooth_shape(ctx, work, edge));
-  edge->level_doubt_px = fg_disc_level_doubt(work, tone, edge);
+  edge->level_doubt_px = fg_disc_level_doubt(work, &tone->tone, edge);
   return fg_disc_solve(ctx, work, edge);
 }
 
 fg_status fg_line_edge_measure(fg_context *ctx, const fg_line_view *view, const fg_stretch *stretch,
-                               const fg_tone *tone, fg_disc_edge *edge, double *next_px) {
-  fg_disc_work work = {
-      .tiles = view->tiles, .shape = &view->shape, .gamma = tone->gamma, .linear = tone->linear};
+                               const fg_line_tone *tone, fg_line_found *found) {
+  fg_disc_work work = {.tiles = view->tiles,
+                       .shape = &view->shape,
+                       .gamma = tone->tone.gamma,
+                       .linear = tone->tone.linear};
+  fg_disc_edge *edge = &found->edge;
   memset(edge, 0, sizeof *edge);
   edge->picture = fg_picture_unknown();
-  edge->gamma = tone->gamma;
-  fg_status status = open_band(ctx, stretch, view->middle, &work, next_px);
+  edge->gamma = tone->tone.gamma;
+  fg_status status = open_band(ctx, stretch, view->middle, &work, &found->next_px);
   if (status == FG_OK) status = solve(ctx, &work, stretch, tone, edge);
   if (status == FG_OK) status = fg_picture_of_ring(ctx, &work, edge, &edge->picture);
+  if (status == FG_OK && tone->tone.found > 0) {
+    edge->picture.gamma = tone->tone.found;
+    edge->picture.u_gamma = tone->tone.u_found;
+  }
   if (status == FG_OK) fg_disc_describe_driver(&work, edge, &edge->picture);
+  found->driver = fg_disc_found_driver(&work);
   fg_disc_work_free(&work);
   if (status != FG_OK) fg_disc_edge_free(edge);
   return status;

@@ -33,11 +33,22 @@ typedef struct fg_line_view {
 fg_status fg_line_edge_tone(fg_context *ctx, const fg_line_view *view, const fg_stretch *stretch,
                             fg_tone *tone);
 
-/* Fills `edge`; its circle is not used, and edge_px counts towards what surrounds the material.
- * `next_px` is how far the next edge is, on either side: INFINITY, none is near.
- * FG_ERR_NUMERIC when there is no edge. */
+/* What is known before of what the scanner and its driver do to an edge. */
+typedef struct fg_line_tone {
+  fg_tone tone;
+  const fg_found_driver *driver; /* as a longer edge beside it shows it; NULL: this edge is asked */
+} fg_line_tone;
+
+typedef struct fg_line_found {
+  fg_disc_edge edge; /* its circle is not used, and edge_px counts towards what surrounds the
+                        material */
+  double next_px;    /* how far the next edge is, on either side: INFINITY, none is near */
+  fg_found_driver driver;
+} fg_line_found;
+
+/* FG_ERR_NUMERIC when there is no edge. */
 fg_status fg_line_edge_measure(fg_context *ctx, const fg_line_view *view, const fg_stretch *stretch,
-                               const fg_tone *tone, fg_disc_edge *edge, double *next_px);
+                               const fg_line_tone *tone, fg_line_found *found);
 
 /* What all edge_px may be wrong by together because the next edge's blur reaches into the band. */
 double fg_line_edge_overlap(double next_px, double blur_px);

@@ -49,6 +49,36 @@ for k in 0 3; do
     "$(value comb.json "r['foils'][0]['beams'][$k]['length_mm']")" 0.002
 done
 
+# What a scanner's driver has done is seen beside beams that are a few hundred pixels long: a tone curve is held, or said where the
+# tone is stated to be linear; sharpening and rows that jump are said.
+seen() { # NAME FINDINGS UM [OPTION...]: flags of the foil, and every beam within 2 u of its truth and within UM.
+  "$program" measure $1.png --design design.json -o $1.json "${@:4}" >/dev/null
+  [ "$(value $1.json 'sorted(f["finding"] for f in r["picture"]["findings"])')" = "$2" ] ||
+    fail "$1: $(value $1.json '[f["finding"] for f in r["picture"]["findings"]]')"
+  python3 - $1 $3 <<'P' || fail "$1 is farther off than is said"
+import json, sys
+truth, found = json.load(open(sys.argv[1] + ".truth")), json.load(open(sys.argv[1] + ".json"))
+dpi = found["inputs"][0]["dpi"][0]
+for beam in found["foils"][0]["beams"]:
+    near = min(truth["beams"], key=lambda t: sum(abs(a * 25.4 / dpi - b) for a, b in zip(t["tip_px"], beam["tip_mm"])))
+    for name in ("length_mm", "width_mm"):
+        off = abs(beam[name] - near[name])
+        assert off < 2 * beam["u_" + name] + 2e-4 and off < float(sys.argv[2]) / 1000, (beam["number"], name, off, beam["u_" + name])
+P
+}
+for gamma in 0.3 1 2.2 3; do
+  sheet gamma "$spread" ", \"gamma\": $gamma"
+  seen gamma "[]" 1.0
+done
+seen gamma "['edge_profile', 'tone_curve']" 60 --tone linear
+sheet plain "$spread"
+seen plain "[]" 1.0 --tone linear
+sheet sharp "$spread" ', "unsharp_mask": {"amount_pct": 100}'
+seen sharp "['sharpened']" 1.0
+sheet rows "$spread" ', "rows_lost": [{"y_mm": 3.2, "count": 1}]' -80
+seen rows "['row_jumps']" 23
+[ "$(value rows.json 'abs(r["picture"]["row_jump_px"] + 1) < 0.1')" = True ] || fail "one row is lost, and not found so"
+
 # What is wrong with a foil is said, and judged.
 sheet torn '"torn": [{"beam": 2}]'
 expect 2 'torn_tip' "$program" measure torn.png --design design.json
