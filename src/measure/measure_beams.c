@@ -46,6 +46,8 @@ typedef struct flat_work {
   fg_tone tone;
   double bent_gamma; /* what the edges show where the tone is stated as linear; 1: they agree */
   fg_beam *beams;    /* one per place */
+  int *driven;       /* long edges per place that show a driver's model */
+  bool plain;        /* no edge is asked for one */
 } flat_work;
 
 static double least_px(const fg_measurement *m, const fg_pixel_shape *shape) {
@@ -201,13 +203,14 @@ static fg_status measure_edge(fg_context *ctx, const flat_work *w, const fg_stre
 /* Tip and floor are short: both are seen through what a long edge shows of the driver, so that
  * between them it cancels. */
 static fg_status measure_sides(fg_context *ctx, const flat_work *w, const fg_beam_place *place,
-                               fg_beam *beam) {
+                               fg_beam *beam, int *driven) {
   fg_line_found found;
   fg_found_driver driver = {.found = false};
   for (int side = 0; side < FG_BEAM_SIDES; side++) {
     if (!place->there[side]) continue;
-    const fg_found_driver *known = side >= FG_BEAM_TIP ? &driver : NULL;
+    const fg_found_driver *known = w->plain || side >= FG_BEAM_TIP ? &driver : NULL;
     FG_TRY(measure_edge(ctx, w, &place->sides[side], known, &found, beam, &beam->edges[side]));
+    if (side < FG_BEAM_TIP) *driven += found.driver.found;
     if (side < FG_BEAM_TIP && !driver.found) driver = found.driver;
   }
   return FG_OK;
@@ -237,7 +240,7 @@ static fg_status measure_edges(fg_context *ctx, void *shared, size_t i) {
       atan2(beam->tip_mm.y - beam->root_mm.y, beam->tip_mm.x - beam->root_mm.x) * 180 / M_PI;
   beam->picture = fg_picture_unknown();
   if (is_at_border(w, place)) beam->flags |= FG_BEAM_TOUCHES_BORDER;
-  return measure_sides(ctx, w, place, beam);
+  return measure_sides(ctx, w, place, beam, &w->driven[i]);
 }
 
 static fg_status take_part(fg_context *ctx, flat_work *w, size_t r, fg_flat_part *part) {
@@ -291,8 +294,19 @@ static fg_status measure_places(fg_context *ctx, flat_work *w, unsigned threads)
   size_t count = w->places.count;
   FG_TRY(fg_memory_allocate(ctx, count, sizeof *w->beams, (void **)&w->beams));
   FG_TRY(fg_memory_allocate(ctx, 2 * count, sizeof *w->tones, (void **)&w->tones));
+  FG_TRY(fg_memory_allocate(ctx, count, sizeof *w->driven, (void **)&w->driven));
   FG_TRY(fg_parallel_run(ctx, threads, 2 * count, find_tone, w));
   find_common_tone(w, 2 * count);
+  FG_TRY(fg_parallel_run(ctx, threads, count, measure_edges, w));
+  int driven = 0;
+  for (size_t i = 0; i < count; i++)
+    driven += w->driven[i];
+  if (driven == 0 || (size_t)driven > count) return FG_OK;
+  /* A driver works on all edges: what half of them or less show is their own roughness. */
+  w->plain = true;
+  for (size_t i = 0; i < count; i++)
+    fg_beam_free(&w->beams[i]);
+  memset(w->beams, 0, count * sizeof *w->beams);
   return fg_parallel_run(ctx, threads, count, measure_edges, w);
 }
 
@@ -307,6 +321,7 @@ static void free_work(flat_work *w) {
   free(w->place_rim);
   free(w->tones);
   free(w->beams);
+  free(w->driven);
 }
 
 fg_status fg_flat_island_measure(fg_context *ctx, const fg_flat_island *island,
