@@ -48,7 +48,7 @@ typedef enum fg_datum {
  * design file:
  *   "tolerances": { "height_mm": { "min": 0.55, "max": 0.58 }, "radius_error_pct": { "max": 5 } }
  */
-/* What is said of the tone curve, by which a scanner's counts follow the light. */
+/* The stated tone curve, by which a scanner's counts follow the light. */
 typedef enum fg_tone_statement {
   FG_TONE_UNKNOWN, /* lengths between two edges hold what it may do to them */
   FG_TONE_LINEAR,  /* the user vouches that counts are proportional to the light */

@@ -15,7 +15,7 @@
 extern "C" {
 #endif
 
-/* What was found. JSON has the words among the flags of foils and discs, and in `picture`. */
+/* Findings. JSON has the words among the flags of foils and discs, and in `picture`. */
 typedef enum fg_picture_finding {
   FG_PICTURE_FEW_LEVELS = 1u << 0,  /* "few_levels": fewer gray levels than noise and blur need */
   FG_PICTURE_LEVEL_GAPS = 1u << 1,  /* "level_gaps": a tone curve after rounding leaves gaps */

@@ -1,4 +1,4 @@
-/* What the user knows of a part or a scanner, on the command line: it overrules the design. */
+/* The user's knowledge of a part or a scanner, from the command line: it overrules the design. */
 #ifndef FG_CLI_KNOWN_H
 #define FG_CLI_KNOWN_H
 

@@ -4,9 +4,10 @@
 
 #include "rows/points.h"
 
-/* What the level of the edges, which all discs share, may still move every radius by, µm: the doubt
- * that each scan states, or less, where gauges of known and of several sizes tell the level from a
- * scale. `scale` is the column of the scale at the rows, `residual_um` what it is fitted to. */
+/* Shift of every radius that the level of the edges, common to all discs, may still cause, µm: the
+ * doubt that each scan states, or less, where gauges of known and of several sizes tell the level
+ * from a scale. `scale` is the column of the scale at the rows, `residual_um` what it is fitted to.
+ */
 double fg_common_level_left(const fg_points *points, const double *scale,
                             const double *residual_um);
 

@@ -59,7 +59,7 @@ static double weight_at(const fg_points *points, size_t i) {
   return points->views[row->view].aside ? 0 : row->weight / FG_POINTS_BLOCK;
 }
 
-/* What is taken out of each disc: harmonics up to this, and its radius unless it is known and
+/* Nuisance terms of each disc: harmonics up to this, and its radius unless it is known and
  * counts. The level of all edges moves known radii as well: of what follows them a scale alone is
  * told from it (common_level.h), any other effect must show in the discs' shapes. */
 typedef struct form {

@@ -149,7 +149,7 @@ typedef struct line_arc {
   const fg_arc *arc;
 } line_arc;
 
-/* What a station was moved inwards by beyond what a round blur has: a curved edge is moved by the
+/* Inward shift of a station beyond what a round blur has: a curved edge is moved by the
  * blur along it. */
 static double uneven_shift(const void *user, size_t station) {
   const line_arc *of = user;

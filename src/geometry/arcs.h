@@ -85,13 +85,13 @@ void fg_arc_covariance(const fg_datum_line *line, const fg_noise_model *noise, f
  * that covariance when the ratio could come by chance with a probability of less than `p`. */
 double fg_arc_cluster_covariance(const fg_datum_line *line, double p, fg_arc *arc);
 
-/* What the parameters (x, y, R) would move by if every station of the line moved along its normal
+/* Shift of the parameters (x, y, R) if every station of the line moved along its normal
  * by what `move` says, mm. */
 bool fg_arc_shift_by(const fg_datum_line *line, const fg_arc *arc,
                      double (*move)(const void *user, size_t station), const void *user,
                      double shift[3]);
 
-/* What the parameters (x, y, R) would move by if the half width's deviation from its mean were an
+/* Shift of the parameters (x, y, R) if the half width's deviation from its mean were an
  * error of the line: the edge model's own systematic error shows there. */
 bool fg_arc_half_width_shift(const fg_datum_line *line, const fg_arc *arc, double shift[3]);
 

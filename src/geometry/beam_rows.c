@@ -1,9 +1,9 @@
-/* Where rows of a picture jump across the beams of a foil.
+/* Row jumps of a picture across the beams of a foil.
  *
  * Every straight edge is a cubic along itself, and a jump of d at y0 adds d n_y [y > y0] to it,
  * with n its normal. Jumps are added one by one where they explain most over all edges together.
- * What a part itself has is told from them: a step of one edge alone, or steps of several that are
- * not one displacement of the rows. */
+ * Steps of the part itself are told from them: a step of one edge alone, or steps of several that
+ * are not one displacement of the rows. */
 #include "geometry/beam_rows.h"
 
 #include <math.h>
@@ -139,7 +139,7 @@ static void find_variance(row_edge *e) {
   e->variance = fmax(squares + 2 * products, squares) / (double)(e->count - e->columns);
 }
 
-/* What a step of the rows behind a place has in common with an edge's residuals, and with itself.
+/* Products of a step of the rows behind a place with an edge's residuals, and with itself.
  */
 static void ask_edge(const row_edge *e, double y, double sums[2]) {
   size_t low = 0, high = e->count - 1;
@@ -163,7 +163,7 @@ static bool is_beside_another(const fg_beam_jumps *jumps, double y) {
   return false;
 }
 
-/* Whether the edges that would show a jump do: those of a part's own step do not agree. */
+/* True when the edges that would show a jump do: those of a part's own step do not agree. */
 static bool is_shown(const row_search *s, double y, double size) {
   int agree = 0, differ = 0;
   for (size_t i = 0; i < s->count; i++) {

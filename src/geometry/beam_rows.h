@@ -1,4 +1,4 @@
-/* Where rows of a picture jump across beams: behind a row that was lost or doubled all edges are
+/* Row jumps across beams: behind a row that was lost or doubled all edges are
  * displaced along y, so those that cross it obliquely step there, all at one row. */
 #ifndef FG_GEOMETRY_BEAM_ROWS_H
 #define FG_GEOMETRY_BEAM_ROWS_H

@@ -178,7 +178,7 @@ static double by_thickness(double slope, double u_mm) {
   return slope == 0 ? 0 : slope * slope * u_mm * u_mm;
 }
 
-/* What both radii and the thickness have in common: the level of the edges, where one of them is
+/* Common part of both radii and the thickness: the level of the edges, where one of them is
  * the datum. It is in the variance of each already; this adds the covariances. A height, which is
  * between two places of the same edge, is free of it. */
 static double by_edges(const double gradient[BY_COUNT], const fg_thickness *strip) {

@@ -158,7 +158,7 @@ static fg_status check_thickness_measured(fg_context *ctx, const fg_design *desi
                    name, u, value);
   return FG_OK;
 }
-/* What is known no better is no gauge. */
+/* A width that is known no better is no gauge. */
 #define U_DIAMETERS_MOST_MM 0.1
 
 static fg_status check_discs(fg_context *ctx, const fg_design *design) {

@@ -15,8 +15,8 @@ fg_status fg_foil_find_uncertainties(fg_context *ctx, fg_layout *layout, const f
 /* The same of a plain strip: its circle's covariance, noise, roughness of the edges. */
 void fg_foil_find_arc_uncertainty(fg_layout *layout, const fg_design *design, fg_foil *foil);
 
-/* What moves both edges outwards or inwards, as u of their distance: the level of the edges alone,
- * which a tone curve moves; with what the scan has lost. */
+/* Uncertainty of the distance of two edges that move outwards or inwards together: the level of the
+ * edges alone, which a tone curve moves; with what the scan has lost. */
 double fg_foil_tone_doubt_um(const fg_design *design, const fg_foil *foil);
 double fg_foil_width_doubt_um(const fg_design *design, const fg_foil *foil);
 

@@ -22,7 +22,7 @@ static const double unknown_tone_half_ranges[] = {0.107, 0.072, 0.05};
  * by that is off by half of it at the most: uniform. */
 #define LINEAR_TONE_SD 0.003
 
-/* What a finding adds, as a standard deviation of T(1/2). A gauge in the same scan goes through the
+/* Standard deviation of T(1/2) that a finding adds. A gauge in the same scan goes through the
  * same driver: it knows all of it but what is local. */
 typedef struct level_row {
   unsigned bit;
@@ -35,7 +35,7 @@ static const level_row findings[] = {
     {FG_PICTURE_FEW_LEVELS, 0.29, false},
     /* A curve was applied after rounding: another unknown tone curve. */
     {FG_PICTURE_LEVEL_GAPS, 0.08, false},
-    /* What lies beyond the end of the scale differs by edge: its contrast and the light around it.
+    /* Light beyond the end of the scale differs by edge: its contrast and the light around it.
      * How much may be cut off all of them is u_cut, which a gauge knows. */
     {FG_PICTURE_CLIPPED, 0.1, true},
     /* Both lobes of an unsharp mask are symmetric until one of them is cut or meets the strip's
@@ -88,7 +88,7 @@ static unsigned open_findings(const fg_picture_state *picture, double *held) {
   return holds ? picture->findings & ~(unsigned)FG_PICTURE_SHARPENED : picture->findings;
 }
 
-/* What the picture hides of its edges' level. Where only few levels or a part of the profile are
+/* Level of the edges that the picture hides. Where only few levels or a part of the profile are
  * seen, an edge is wider than it is seen, and a share of the level moves it by as much more. */
 static double hidden_variance(const fg_picture_state *picture, bool known) {
   const unsigned hiding = FG_PICTURE_FEW_LEVELS | FG_PICTURE_CLIPPED;

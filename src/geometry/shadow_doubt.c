@@ -42,7 +42,7 @@ static double weight_at(const shift_part *p, double bearing) {
   return off < step ? cos(M_PI / 2 * off / step) : 0;
 }
 
-/* How far an edge of one side moves outwards, mm. */
+/* Outward shift of an edge of one side, mm. */
 static double edge_shift(const shift_part *p, const fg_station *s, bool right) {
   const fg_strip *strip = p->line->strip;
   double way = right ? 1 : -1, bearing = atan2(way * s->normal.y, way * s->normal.x);
@@ -64,7 +64,7 @@ static double line_shift(const void *user, size_t station) {
              : -left;
 }
 
-/* What the circle's parameters move by under each part: of how many, 0 without shadow and uneven
+/* Shift of the circle's parameters under each part: of how many, 0 without shadow and uneven
  * blur. */
 static size_t find_shifts(const fg_datum_line *line, const fg_arc *arc,
                           double shifts[PARTS + 1][3]) {

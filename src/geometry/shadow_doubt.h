@@ -1,4 +1,4 @@
-/* What a shadow or a lit wall beside edges leaves in doubt of circles. */
+/* Uncertainty of circles by a shadow or a lit wall beside edges. */
 #ifndef FG_GEOMETRY_SHADOW_DOUBT_H
 #define FG_GEOMETRY_SHADOW_DOUBT_H
 

@@ -59,7 +59,7 @@ static bool is_of_kind(fg_gauge_kind stated, fg_gauge_kind seen) {
   return stated == seen || (stated == FG_GAUGE_RING && seen == FG_GAUGE_HOLE);
 }
 
-/* How far a sighting is from a gauge: the logarithm of their widths' ratio, INFINITY for another
+/* Distance of a sighting from a gauge: the logarithm of their widths' ratio, INFINITY for another
  * kind. */
 static double distance(const fg_gauge *gauge, const fg_gauge_sighting *seen) {
   return is_of_kind(gauge->kind, seen->kind) ? fabs(log(seen->width_mm / gauge->width_mm))
@@ -91,7 +91,7 @@ static bool is_taken(const fg_measurement *m, const matches *taken, size_t sight
   return false;
 }
 
-/* What lies there of its kind, nearest in width. */
+/* Object of its kind that is nearest in width. */
 static void say_missing(const fg_gauge_sightings *sightings, const matches *taken, size_t missing,
                         fg_measurement *m) {
   const fg_gauge *gauge = &m->design.gauges[missing];

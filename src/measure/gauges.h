@@ -29,7 +29,7 @@ fg_status fg_gauge_sightings_add(fg_context *ctx, fg_gauge_sightings *sightings,
  */
 double fg_gauge_least_px(const fg_measurement *m);
 
-/* Where an object lies: the island's tiles, and their corner in the scan. */
+/* Place of an object: the island's tiles, and their corner in the scan. */
 typedef struct fg_gauge_object {
   const fg_measurement *measurement; /* for design, dpi, jpeg_quality */
   const fg_tiles *tiles;

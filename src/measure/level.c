@@ -18,9 +18,9 @@
 #define LEVEL_UNKNOWN_SD 0.08
 /* Beyond it few drivers' tone curves put it: a wrong width would look alike. */
 #define LEVEL_UNUSUAL 0.25
-/* What a level found at one edge does not say of another: share of the shift by edges of other
- * directions and slopes of the tone curve, and of the contrast by its own ratio: a curve that bends
- * over one range bends by as much less over a part of it. */
+/* Uncertainty of a level that is carried from one edge to another: share of the shift by edges of
+ * other directions and slopes of the tone curve, and of the contrast by its own ratio: a curve that
+ * bends over one range bends by as much less over a part of it. */
 #define CARRY_SHARE          0.05
 #define CARRY_CONTRAST_SHARE 0.1
 /* The same, where the edges' profile is not that of any tone curve here. */
@@ -39,7 +39,7 @@ static double u_scale(const fg_design *design) {
   return c->stated ? fmax(c->u_scale[0], c->u_scale[1]) : SCALE_UNKNOWN;
 }
 
-/* What may move an edge beyond what any tone curve does. */
+/* Limit of an edge's shift: no tone curve does more. */
 #define BEYOND_TONE ((unsigned)FG_PICTURE_CLIPPED | (unsigned)FG_PICTURE_FEW_LEVELS)
 
 static unsigned findings_of(const fg_measurement *m) {
@@ -133,7 +133,7 @@ typedef struct placed_part {
   bool bright;
 } placed_part;
 
-/* How far a part's edges are to be moved, and how well that is known: as a level in units of the
+/* Shift of a part's edges with its u: as a level in units of the
  * edge model's blur. */
 static void set_level(const fg_level *level, const placed_part *part, fg_picture_state *picture) {
   double per_plain = sqrt(2 * M_PI) * part->plain_blur_um / 1000;
@@ -158,7 +158,7 @@ static void set_strip(const fg_level *level, fg_strip *s) {
   set_level(level, &part, &s->picture);
 }
 
-/* What the edge's own pixels left in doubt of its level is known now, but for what JPEG has lost.
+/* The level that the edge's own pixels left uncertain is known now, but for what JPEG has lost.
  */
 static void set_disc(const fg_level *level, const fg_measurement *m, fg_disc *disc) {
   double um = 25400 / sqrt(m->dpi[0] * m->dpi[1]);
@@ -195,7 +195,7 @@ static double mean_blur(const fg_strip *strip) {
   return sum / count;
 }
 
-/* How far an edge is seen towards its dark side, mm. */
+/* Reach of an edge towards its dark side, mm. */
 static double shift_of(const fg_strip *strip, double blur_um) {
   double outwards = strip->picture.level * sqrt(2 * M_PI) * blur_um / 1000;
   return strip->bright ? outwards : -outwards;

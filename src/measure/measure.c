@@ -206,7 +206,7 @@ static void refer_gauges(fg_measurement *m) {
   }
 }
 
-/* What is said of the gauges where nothing else is odd. */
+/* Note on the gauges where nothing else is odd. */
 static void tell_gauges(fg_measurement *m) {
   size_t found = 0, used = 0;
   for (size_t i = 0; i < m->design.gauge_count; i++) {

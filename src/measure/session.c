@@ -160,7 +160,7 @@ static fg_status keep_sightings(fg_context *ctx, fg_session *s, fg_gauge_sightin
   return status;
 }
 
-/* What a trace shows: a gauge, or a foil. */
+/* Object that a trace shows: a gauge, or a foil. */
 static fg_status measure_gauge_or_foil(fg_context *ctx, fg_session *s, const job *j,
                                        const fg_gauge_object *object, const fg_trace *trace,
                                        fg_gauge_sightings *seen) {

@@ -22,7 +22,7 @@ static fg_status read_tone_point(const fg_place *place, size_t index, const cJSO
   return fg_member_fail(place, name, item, what);
 }
 
-/* Where to look for a count: the last point at or below its whole part. */
+/* Place of a count in the table: the last point at or below its whole part. */
 static void index_tone(fg_tone_curve *tone) {
   size_t point = 0;
   for (int i = 0; i < FG_TONE_COUNTS; i++) {

@@ -1,4 +1,4 @@
-/* What a scanner's driver does to the numbers that the sensor gave: tone curve, unsharp mask, gray
+/* Driver stages, applied to the sensor's numbers: tone curve, unsharp mask, gray
  * levels; and JPEG, where the picture once was one.
  *
  * The tone curve bends the sensor's number, with its noise, before it is rounded to the bits of the
@@ -46,7 +46,7 @@ void fg_driver_put_truth(fg_json *json, const fg_driver_settings *settings);
 /* Value of the curve, which has points. */
 float fg_tone_curve_value(const fg_tone_curve *tone, float count);
 
-/* What arrives as finished rows of rounded numbers. */
+/* Receiver of finished rows of rounded numbers. */
 typedef struct fg_driver_picture {
   int64_t width, height;
   int channels;

@@ -1,4 +1,4 @@
-/* What JPEG does to pixels: every 8 × 8 block through the discrete cosine transform, its
+/* JPEG's loss: every 8 × 8 block through the discrete cosine transform, its
  * coefficients rounded to multiples of the tables of ITU-T T.81 annex K. Colours as luminance and
  * two colour differences of half the resolution (JFIF, 4:2:0), as most encoders do. */
 #ifndef FG_RENDER_JPEG_H

@@ -1,4 +1,4 @@
-/* Where the picture of a whole row or column jumps: rows that a scanner lost or read twice, pieces
+/* Jumps of a whole row or column: rows that a scanner lost or read twice, pieces
  * of a scan that were stitched, seams between the chips of a contact image sensor. They come after
  * the optics, so they are sharp. */
 #ifndef FG_RENDER_JUMPS_H

@@ -174,7 +174,7 @@ static void noise_row(picture *p, int line, int64_t y) {
   memcpy(above, p->noise, (size_t)p->width * sizeof *p->noise);
 }
 
-/* What the sensor gives: with noise, within its range. */
+/* Sensor's numbers: with noise, within its range. */
 static void sense_row(picture *p, int line, int64_t y, float *values) {
   const fg_scanner *scanner = &p->spec->scanner;
   float top = isnan(scanner->clip_white) ? 255.0F : (float)scanner->clip_white;

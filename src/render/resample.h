@@ -37,7 +37,7 @@ void fg_resampler_free(fg_resampler *resampler);
 fg_status fg_resampler_take_row(fg_context *ctx, fg_resampler *resampler, const float *values,
                                 int64_t stride);
 
-/* How many pixels of the sensor so many finished ones need. */
+/* Number of the sensor's pixels that so many finished ones need. */
 int64_t fg_resampling_need(int64_t to_px, double step);
 
 #endif

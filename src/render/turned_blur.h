@@ -16,7 +16,7 @@ typedef struct fg_turned_blur {
   int *first, *end; /* of each row, where its weights are not negligible */
 } fg_turned_blur;
 
-/* What is blurred and by how much, in pixels. */
+/* Picture to be blurred, and its blur in pixels. */
 typedef struct fg_blur_ellipse {
   double sd[2];      /* along its own axes */
   double angle_deg;  /* of the first axis, from x (right) towards y (down) */
@@ -24,7 +24,7 @@ typedef struct fg_blur_ellipse {
   double motion;     /* length of a box along y */
 } fg_blur_ellipse;
 
-/* Whether it needs a kernel of its own: an ellipse, not a circle, off the rows and columns. */
+/* True for a kernel of its own: an ellipse, not a circle, off the rows and columns. */
 bool fg_blur_is_turned(const fg_blur_ellipse *ellipse);
 
 fg_status fg_turned_blur_create(fg_context *ctx, const fg_blur_ellipse *ellipse, int samples,

@@ -31,7 +31,7 @@ enum { DISCS_LEAST = 3 };
 #define LEVEL_PER_LN_GAMMA 0.35
 /* A curve whose middle lies q of the contrast off makes the asymmetry q / 4 (edge_spread.h). */
 #define LEVEL_PER_ASYMMETRY 4.0
-/* Where an edge does not show its exponent, the asymmetry alone tells; it scatters by this. */
+/* The asymmetry alone tells of an edge that does not show its exponent; it scatters by this. */
 #define U_ASYMMETRY 0.003
 
 /* ---- finding it ---- */
@@ -261,7 +261,7 @@ static double u_shown(const scan_state *scan) {
   return scan->u_gamma > 0 ? LEVEL_PER_LN_GAMMA * scan->u_gamma : LEVEL_PER_ASYMMETRY * U_ASYMMETRY;
 }
 
-/* How far the level may have moved since and be taken for the same: what is seen of it, and what
+/* Limit within which the level is taken for the same: what is seen of it, and what
  * cannot be seen. Where no tone curve explains the edges, of the scan or of the model, the
  * asymmetry is left to tell it. */
 static double u_sameness(const fg_model_tone *tone, const scan_state *scan) {
@@ -271,7 +271,7 @@ static double u_sameness(const fg_model_tone *tone, const scan_state *scan) {
   return hypot(seen, u_shown(scan));
 }
 
-/* What of the scan's state is another; NULL: nothing. */
+/* The first member of the scan's state that differs; NULL: none. */
 static const char *difference(const fg_model_tone *tone, const scan_state *scan,
                               unsigned findings) {
   const unsigned widening = FG_PICTURE_SHARPENED | FG_PICTURE_TONE_CURVE |

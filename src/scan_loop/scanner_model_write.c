@@ -92,7 +92,7 @@ static fg_status check(fg_context *ctx, const fg_scanner_model *model) {
                  inner.message);
 }
 
-/* What spoils edges in a way that no model of a scanner holds: it would be carried to every scan.
+/* Findings that spoil edges as no model of a scanner holds: it would be carried to every scan.
  * Rows that jump are not of them: a step of the carriage is what the loop looks for. Nor is a
  * profile that no tone curve here explains: it is one for all edges, and known diameters tell its
  * level. */

@@ -1,4 +1,4 @@
-/* What a scan of the plate shows of tone, sharpening and blur, and whether that has changed. */
+/* Tone, sharpening and blur that a scan of the plate shows, and their change. */
 #ifndef FG_STATION_CHECK_STATE_H
 #define FG_STATION_CHECK_STATE_H
 

@@ -77,7 +77,7 @@ static const char *const migrations[] = {
     "UPDATE arrivals SET message = stored_name(message) WHERE message <> stored_name(message);"
     "UPDATE checks SET path = stored_name(path) WHERE path <> stored_name(path);"
     "UPDATE checks SET words = stored_name(words) WHERE words <> stored_name(words);",
-    /* What a check shows of tone, sharpening and blur, against the last check of this resolution
+    /* Tone, sharpening and blur of a check, against the last check of this resolution
      * that was accepted as baseline; changes: in words, '' where there are none. */
     "ALTER TABLE checks ADD COLUMN dpi INTEGER;"
     "ALTER TABLE checks ADD COLUMN findings TEXT NOT NULL DEFAULT '';"

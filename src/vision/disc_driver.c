@@ -1,4 +1,4 @@
-/* What the scanner's driver has made of a round edge: asked only where one step without it misses
+/* Driver model of a round edge: asked only where one step without it misses
  * the sectors' mean profiles, see driver_choice.h. */
 #include <math.h>
 #include <stdlib.h>

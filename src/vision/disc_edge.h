@@ -114,11 +114,11 @@ fg_status fg_disc_find_tone(fg_context *ctx, fg_disc_work *work, fg_tone *tone);
 /* Whether a slope (FG_STEP_SLOPE_IN or _OUT) is more than the sectors' own scatter. */
 bool fg_disc_has_slope(const fg_disc_work *work, int value);
 
-/* What the driver has made of the edge, where one step without it misses the sectors' profiles:
+/* Driver model of the edge, where one step without it misses the sectors' profiles:
  * the sectors are fitted again with it. disc_driver.c */
 fg_status fg_disc_find_driver(fg_context *ctx, fg_disc_work *work);
 
-/* What was found of the driver at one edge, for another that tells too little of it itself. */
+/* Driver model found at one edge, for another that tells too little of it itself. */
 typedef struct fg_found_driver {
   bool found;
   fg_driver driver;

@@ -111,7 +111,7 @@ static void solve_round(const fg_disc_work *work, const fg_edge_tables *tables,
     move_edge(&edge->stations[i]);
 }
 
-/* What a curved edge of radius 1 moves by towards its centre, times 2: s² for a blur s. An unsharp
+/* Twice the shift of a curved edge of radius 1 towards its centre: s² for a blur s. An unsharp
  * mask weighs the level at the edge and the slope there alike for its two blurs. */
 static double blur_shift(const fg_disc_work *work, double blur) {
   double amount = work->driver ? work->driver->values[FG_DRIVER_AMOUNT] : 0;

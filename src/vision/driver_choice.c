@@ -80,7 +80,7 @@ bool fg_driver_is_missed(const fg_driver_misfit *misfit, double contrast) {
   return misfit->squares > chance && misfit->rms > MISSED_SHARE * contrast;
 }
 
-/* What one model does. */
+/* Fit and score of one model. */
 typedef struct candidate {
   fg_driver_fit fit;
   fg_driver_misfit misfit;
@@ -156,7 +156,7 @@ static size_t weigh(const candidate *candidates, double sharpness, double *u_edg
   return best;
 }
 
-/* Whether the best has a mask, and those without one are far behind: of a model that is missed,
+/* True when the best has a mask, and those without one are far behind: of a model that is missed,
  * too, the order among models says nothing. */
 static bool is_sharpened(const candidate *candidates, size_t best, bool missed) {
   double without = INFINITY;

@@ -169,7 +169,7 @@ static fg_status read_tone(const reader *r, const char *name, const cJSON *item,
   return FG_OK;
 }
 
-/* Whether they are plausible is fg_design_check's to say; 0 would be taken for "not stated". */
+/* fg_design_check says whether they are plausible; 0 would be taken for "not stated". */
 static fg_status read_thickness_measured(const reader *r, const char *name, const cJSON *item,
                                          void *out) {
   fg_design *design = out;

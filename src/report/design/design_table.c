@@ -13,7 +13,7 @@ static void write_row(FILE *out, const char *words, const char *symbol, double v
   fprintf(out, "  %-34s %-9s %12.6f %s\n", words, symbol, value, unit);
 }
 
-/* What is known beside the design, as of the strip that was made. */
+/* Knowledge beside the design, as of the strip that was made. */
 static void write_known(const fg_design *design, FILE *out) {
   if (design->thickness_measured_mm > 0) {
     write_row(out, "thickness as measured", "t", design->thickness_measured_mm, "mm");

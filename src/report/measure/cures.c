@@ -1,4 +1,4 @@
-/* What would decide a verdict of "cannot tell", the cheapest first. */
+/* Cures of a verdict of "cannot tell", the cheapest first. */
 #include "report/measure/cures.h"
 
 #include <stdlib.h>

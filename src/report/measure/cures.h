@@ -1,4 +1,4 @@
-/* What would decide a verdict of "cannot tell". */
+/* Cure of a verdict of "cannot tell". */
 #ifndef FG_REPORT_MEASURE_CURES_H
 #define FG_REPORT_MEASURE_CURES_H
 

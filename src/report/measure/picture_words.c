@@ -1,4 +1,4 @@
-/* What is found of a picture, in words, and the members of its state. */
+/* Findings of a picture in words, and the members of its state. */
 #include "foilgauge/picture.h"
 
 #define AT(member) offsetof(fg_picture_state, member)

@@ -1,4 +1,4 @@
-/* What the uncertainty of the strip's thickness is made of: the tone curve, and all else. */
+/* Budget of the strip's thickness: the tone curve, and all else. */
 #include "report/measure/thickness_budget.h"
 
 #include <math.h>

@@ -1,4 +1,4 @@
-/* What the uncertainty of the strip's thickness is made of. */
+/* Budget of the strip's thickness. */
 #ifndef FG_REPORT_MEASURE_THICKNESS_BUDGET_H
 #define FG_REPORT_MEASURE_THICKNESS_BUDGET_H
 
