@@ -11,6 +11,7 @@
 #include "lot/analysis_dies.h"
 #include "lot/writers.h"
 #include "quantity/quantity_rows.h"
+#include "report/flag_names.h"
 
 static void put_text(FILE *out, const char *text) {
   fg_csv_put_text(out, text, fg_utf8_put);
@@ -56,21 +57,6 @@ static void put_values(FILE *out, fg_quantity_owner owner, const void *object) {
   fputc('\n', out);
 }
 
-static void put_flags(FILE *out, const fg_flag_words *words, unsigned flags, unsigned findings) {
-  const char *separator = "";
-  fputc(',', out);
-  for (; words->name; words++) {
-    if (!(flags & words->flag)) continue;
-    fprintf(out, "%s%s", separator, words->name);
-    separator = " ";
-  }
-  for (const fg_picture_words *found = fg_picture_finding_words(); found->name; found++) {
-    if (!(findings & found->finding)) continue;
-    fprintf(out, "%s%s", separator, found->name);
-    separator = " ";
-  }
-}
-
 /* Every cell that the heading names, though empty: a reader counts them. */
 static void put_failed(FILE *out, const fg_lot *lot, size_t item) {
   size_t rows;
@@ -95,7 +81,8 @@ fg_status fg_lot_write_foils_csv(fg_context *ctx, const fg_lot_analysis *analysi
       fprintf(out, ",%d,", foil->foil->number);
       if (analysis->pages && analysis->pages[item]) put_text(out, analysis->pages[item]);
       fprintf(out, ",%s", fg_verdict_word(foil->verdict));
-      put_flags(out, fg_foil_flag_words(), foil->foil->flags, foil->foil->strip.picture.findings);
+      fg_csv_put_flags(out, fg_foil_flag_words(), foil->foil->flags,
+                       foil->foil->strip.picture.findings);
       fputc(',', out);
       put_text(out, foil->foil->error);
       put_values(out, FG_QUANTITY_OF_FOIL, foil->foil);
@@ -128,7 +115,7 @@ fg_status fg_lot_write_bumps_csv(fg_context *ctx, const fg_lot_analysis *analysi
       const fg_bump *bump = &foil->foil->bumps[k];
       put_columns(out, manifest, foil->item);
       fprintf(out, ",%d,%d", foil->foil->number, bump->number);
-      put_flags(out, fg_bump_flag_words(), fg_bump_flags(design, foil->foil, bump), 0);
+      fg_csv_put_flags(out, fg_bump_flag_words(), fg_bump_flags(design, foil->foil, bump), 0);
       fg_csv_put_number(out, stiffness[at++]);
       if (dies) put_to_die(out, analysis->lot, foil, bump);
       fprintf(out, ",%s", fg_verdict_word(fg_bump_verdict(design, foil->foil, bump)));
@@ -148,7 +135,7 @@ fg_status fg_lot_write_beams_csv(fg_context *ctx, const fg_lot_analysis *analysi
       const fg_beam *beam = &foil->beams[k];
       put_columns(out, manifest, analysis->foils[i].item);
       fprintf(out, ",%d,%d", foil->number, beam->number);
-      put_flags(out, fg_beam_flag_words(), fg_beam_flags(design, foil, beam), 0);
+      fg_csv_put_flags(out, fg_beam_flag_words(), fg_beam_flags(design, foil, beam), 0);
       fprintf(out, ",%s", fg_verdict_word(fg_beam_verdict(design, foil, beam)));
       put_values(out, FG_QUANTITY_OF_BEAM, beam);
     }

@@ -9,6 +9,7 @@
 #include "lot/reference_curve.h"
 #include "lot/writers.h"
 #include "report/design/calibration_json.h"
+#include "report/flag_names.h"
 #include "report/measure/measure_json.h"
 #include "report/measure/scan_model_words.h"
 #include "report/quantity_json.h"
@@ -50,10 +51,7 @@ static void write_counts(fg_json *json, const fg_lot_analysis *analysis) {
 
 static void write_flags(fg_json *json, const fg_foil *foil) {
   fg_json_array(json, "flags");
-  for (const fg_flag_words *words = fg_foil_flag_words(); words->name; words++)
-    if (foil->flags & words->flag) fg_json_string(json, NULL, words->name);
-  for (const fg_picture_words *found = fg_picture_finding_words(); found->name; found++)
-    if (foil->strip.picture.findings & found->finding) fg_json_string(json, NULL, found->name);
+  fg_json_flag_names(json, fg_foil_flag_words(), foil->flags, foil->strip.picture.findings);
   fg_json_array_end(json);
 }
 

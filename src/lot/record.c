@@ -14,6 +14,7 @@
 #include "lot/seal.h"
 #include "quantity/parts.h"
 #include "quantity/quantity_rows.h"
+#include "report/flag_names.h"
 
 /* NUMBER_MAX: of a foil or a part of it. No scan holds so many, and what is counted by number stays
  * small.
@@ -55,10 +56,7 @@ static void write_calibrated(fg_json *json, fg_quantity_owner owner,
 static void write_flags(fg_json *json, const fg_flag_words *words, unsigned flags,
                         unsigned findings) {
   fg_json_array(json, "flags");
-  for (; words->name; words++)
-    if (flags & words->flag) fg_json_string(json, NULL, words->name);
-  for (const fg_picture_words *found = fg_picture_finding_words(); found->name; found++)
-    if (findings & found->finding) fg_json_string(json, NULL, found->name);
+  fg_json_flag_names(json, words, flags, findings);
   fg_json_array_end(json);
 }
 

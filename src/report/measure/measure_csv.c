@@ -7,27 +7,13 @@
 #include "core/json_writer.h"
 #include "foilgauge/words.h"
 #include "quantity/quantity_rows.h"
+#include "report/flag_names.h"
 
 static void put_names(FILE *out, const fg_quantity *quantity) {
   for (size_t k = 0; k < fg_quantity_width(quantity); k++) {
     char name[64];
     fg_quantity_column(quantity, k, name, sizeof name);
     fprintf(out, ",%s", name);
-  }
-}
-
-static void put_flags(FILE *out, const fg_flag_words *words, unsigned flags, unsigned findings) {
-  const char *separator = "";
-  fputc(',', out);
-  for (; words->name; words++) {
-    if (!(flags & words->flag)) continue;
-    fprintf(out, "%s%s", separator, words->name);
-    separator = " ";
-  }
-  for (const fg_picture_words *found = fg_picture_finding_words(); found->name; found++) {
-    if (!(findings & found->finding)) continue;
-    fprintf(out, "%s%s", separator, found->name);
-    separator = " ";
   }
 }
 
@@ -66,8 +52,8 @@ static unsigned flags_of_line(const scan_lines *scan, const fg_foil *foil, const
 static void put_bump(FILE *out, const scan_lines *scan, const fg_foil *foil, const fg_bump *bump) {
   fg_csv_put_text(out, scan->path, NULL);
   fprintf(out, ",%d,%d", foil->number, bump->number);
-  put_flags(out, fg_bump_flag_words(), flags_of_line(scan, foil, bump),
-            foil->strip.picture.findings);
+  fg_csv_put_flags(out, fg_bump_flag_words(), flags_of_line(scan, foil, bump),
+                   foil->strip.picture.findings);
   put_values(out, FG_QUANTITY_OF_BUMP, bump);
   put_end(out, scan, fg_bump_verdict(scan->design, foil, bump), foil);
 }
@@ -75,8 +61,8 @@ static void put_bump(FILE *out, const scan_lines *scan, const fg_foil *foil, con
 static void put_beam(FILE *out, const scan_lines *scan, const fg_foil *foil, const fg_beam *beam) {
   fg_csv_put_text(out, scan->path, NULL);
   fprintf(out, ",%d,%d", foil->number, beam->number);
-  put_flags(out, fg_beam_flag_words(), fg_beam_flags(scan->design, foil, beam),
-            foil->strip.picture.findings);
+  fg_csv_put_flags(out, fg_beam_flag_words(), fg_beam_flags(scan->design, foil, beam),
+                   foil->strip.picture.findings);
   put_values(out, FG_QUANTITY_OF_BEAM, beam);
   put_end(out, scan, fg_beam_verdict(scan->design, foil, beam), foil);
 }
@@ -99,7 +85,7 @@ static size_t count_numbers(fg_quantity_owner owner) {
 static void put_bare_foil(FILE *out, const scan_lines *scan, const fg_foil *foil) {
   fg_csv_put_text(out, scan->path, NULL);
   fprintf(out, ",%d,", foil->number);
-  put_flags(out, fg_foil_flag_words(), foil->flags, foil->strip.picture.findings);
+  fg_csv_put_flags(out, fg_foil_flag_words(), foil->flags, foil->strip.picture.findings);
   for (size_t i = count_numbers(owner_of_lines(scan->design->form)); i-- > 0;)
     fputc(',', out);
   put_end(out, scan, FG_VERDICT_NOT_MEASURED, foil);
@@ -110,7 +96,8 @@ static fg_status put_disc(fg_context *ctx, FILE *out, const scan_lines *scan, co
   FG_TRY(fg_disc_decide(ctx, scan->design, disc, &decision));
   fg_csv_put_text(out, scan->path, NULL);
   fprintf(out, ",%d", disc->number);
-  put_flags(out, fg_bump_flag_words(), fg_disc_flags(scan->design, disc), disc->picture.findings);
+  fg_csv_put_flags(out, fg_bump_flag_words(), fg_disc_flags(scan->design, disc),
+                   disc->picture.findings);
   put_values(out, FG_QUANTITY_OF_DISC, disc);
   put_end(out, scan, decision.outcome.verdict, NULL);
   fg_decision_free(&decision);
@@ -123,7 +110,7 @@ static fg_status put_arc(fg_context *ctx, FILE *out, const scan_lines *scan, con
   FG_TRY(fg_foil_decide(ctx, scan->design, foil, &decision));
   fg_csv_put_text(out, scan->path, NULL);
   fprintf(out, ",%d", foil->number);
-  put_flags(out, fg_foil_flag_words(), foil->flags, foil->strip.picture.findings);
+  fg_csv_put_flags(out, fg_foil_flag_words(), foil->flags, foil->strip.picture.findings);
   put_values(out, FG_QUANTITY_OF_FOIL, foil);
   put_end(out, scan, decision.outcome.verdict, foil);
   fg_decision_free(&decision);

@@ -1,4 +1,5 @@
 #include "report/measure/measure_json.h"
+#include "report/flag_names.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -134,10 +135,7 @@ static void write_flags(fg_json *json, const fg_flag_words *words, unsigned flag
                         unsigned findings) {
   fg_json_array(json, "flags");
   fg_json_line(json);
-  for (; words->name; words++)
-    if (flags & words->flag) fg_json_string(json, NULL, words->name);
-  for (const fg_picture_words *found = fg_picture_finding_words(); found->name; found++)
-    if (findings & found->finding) fg_json_string(json, NULL, found->name);
+  fg_json_flag_names(json, words, flags, findings);
   fg_json_array_end(json);
   fg_json_line_end(json);
 }
