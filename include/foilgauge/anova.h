@@ -24,7 +24,7 @@ typedef struct fg_anova_group {
 typedef struct fg_anova_oneway {
   size_t groups, rows;
   fg_anova_group *group;
-  size_t between_freedom, within_freedom;
+  size_t between_dof, within_dof;
   double between_ss, within_ss, between_ms, within_ms;
   double f, p_value; /* NaN without freedom within the groups */
   double r2, residual_sd;

@@ -110,22 +110,22 @@ double fg_bearing_angle_deg(const fg_bearing_layout *layout, size_t pad, size_t 
 
 typedef struct fg_bearing_clearance {
   size_t count; /* known places */
-  double mean_mm, least_mm, most_mm;
-  double least_at_deg;
+  double mean_mm, min_mm, max_mm;
+  double min_at_deg;
   double offset_mm[2];     /* of the least-squares circle through the crowns, about O */
   double circularity_mm;   /* peak to valley about that circle */
-  double centred_least_mm; /* the least clearance of a rotor where it is largest; NaN when
-                              the crowns leave half of the bearing open */
+  double centred_min_mm;   /* the least clearance of a rotor where it is largest; NaN when
+                                the crowns leave half of the bearing open */
   double centred_at_mm[2]; /* where that rotor's axis lies */
   /* Standard uncertainties; NaN where no doubt was given. */
-  double u_mean_mm, u_least_mm, u_most_mm, u_circularity_mm, u_centred_least_mm;
+  double u_mean_mm, u_min_mm, u_max_mm, u_circularity_mm, u_centred_min_mm;
 } fg_bearing_clearance;
 
 /* Standard uncertainty of every clearance: what all share, and the rest. */
-typedef struct fg_bearing_doubt {
+typedef struct fg_bearing_uncertainty {
   const double *shared_mm, *own_mm; /* of each place; finite where the clearance is */
   const size_t *pad;                /* which pad it is of, below FG_BEARING_BUMPS_MAX */
-} fg_bearing_doubt;
+} fg_bearing_uncertainty;
 
 /* `clearance_mm` at directions `angle_deg`; NaN is a place that is not known. FG_ERR_DATA for fewer
  * than three known places or more than FG_BEARING_BUMPS_MAX. */
@@ -133,9 +133,10 @@ fg_status fg_bearing_assess(fg_context *ctx, const double *angle_deg, const doub
                             size_t count, fg_bearing_clearance *result);
 
 /* The same with the uncertainties of what comes out; `doubt` NULL: none. */
-fg_status fg_bearing_assess_doubt(fg_context *ctx, const double *angle_deg,
-                                  const double *clearance_mm, size_t count,
-                                  const fg_bearing_doubt *doubt, fg_bearing_clearance *result);
+fg_status fg_bearing_assess_uncertainty(fg_context *ctx, const double *angle_deg,
+                                        const double *clearance_mm, size_t count,
+                                        const fg_bearing_uncertainty *uncertainty,
+                                        fg_bearing_clearance *result);
 
 #ifdef __cplusplus
 }

@@ -49,9 +49,9 @@ typedef struct fg_capability {
 typedef struct fg_capability_input {
   const double *values;
   size_t count;
-  double lower, upper;  /* -inf, +inf: none */
-  double sigma;         /* within subgroups; NaN: not known */
-  double sigma_freedom; /* its degrees of freedom */
+  double lower, upper; /* -inf, +inf: none */
+  double sigma;        /* within subgroups; NaN: not known */
+  double sigma_dof;    /* its degrees of freedom */
   bool stable;
   double confidence;         /* 0: 0.95 */
   const fg_density *density; /* of the values; NULL: no quantile method */

@@ -22,7 +22,7 @@ typedef struct fg_sample {
 
 typedef struct fg_comparison {
   double difference, low, high; /* of the means, a - b, with its interval */
-  double t, freedom, p_means;
+  double t, dof, p_means;
   double variance_ratio, f_low, f_high, p_variances; /* F */
   double levene, p_levene;
 } fg_comparison;
@@ -33,7 +33,7 @@ fg_status fg_comparison_compute(fg_context *ctx, fg_sample a, fg_sample b, doubl
 
 /* Effective degrees of freedom of a sum of independent contributions u_i with nu_i (Welch and
  * Satterthwaite; GUM eq G.2b). nu may be infinite. */
-double fg_effective_freedom(const double *u, const double *freedom, size_t count);
+double fg_effective_dof(const double *u, const double *dof, size_t count);
 
 /* Gauge repeatability and reproducibility from a crossed study: every operator measures every part
  * `trials` times. By analysis of variance (the interaction is pooled with the repeatability when

@@ -17,16 +17,16 @@
 extern "C" {
 #endif
 
-typedef enum fg_form {
-  FG_FORM_CLASSICAL,  /* bumps, lands between them, a lip at one end */
-  FG_FORM_SINUSOIDAL, /* long fillets, short lands, no lip */
-  FG_FORM_DISCS,      /* no foil: round holes and discs */
-  FG_FORM_ARC,        /* a plain strip, as a top foil: one circle from end to end, no bumps */
-  FG_FORM_CANTILEVER, /* a flat foil with beams cut out of it, measured before they are bent */
-} fg_form;
+typedef enum fg_foil_kind {
+  FG_FOIL_CLASSICAL,  /* bumps, lands between them, a lip at one end */
+  FG_FOIL_SINUSOIDAL, /* long fillets, short lands, no lip */
+  FG_FOIL_DISCS,      /* no foil: round holes and discs */
+  FG_FOIL_ARC,        /* a plain strip, as a top foil: one circle from end to end, no bumps */
+  FG_FOIL_CANTILEVER, /* a flat foil with beams cut out of it, measured before they are bent */
+} fg_foil_kind;
 
-static inline bool fg_form_has_bumps(fg_form form) {
-  return form == FG_FORM_CLASSICAL || form == FG_FORM_SINUSOIDAL;
+static inline bool fg_foil_kind_has_bumps(fg_foil_kind kind) {
+  return kind == FG_FOIL_CLASSICAL || kind == FG_FOIL_SINUSOIDAL;
 }
 
 /* Which line of the strip the lengths belong to: R, R0 (and so alpha, theta) of the design and of
@@ -74,7 +74,7 @@ enum { FG_TOLERANCES_MAX = 32, FG_DIAMETERS_MAX = 256 };
 
 typedef struct fg_design {
   char name[64];
-  fg_form form;
+  fg_foil_kind kind;
   fg_datum datum;
   size_t bump_count;            /* expected; 0: not stated */
   double bump_radius_mm;        /* R_D */

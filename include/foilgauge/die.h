@@ -78,13 +78,13 @@ typedef struct fg_die_station {
 } fg_die_station;
 
 /* Noise along the bumps' arcs by restricted likelihood (src/die/form.h). */
-typedef struct fg_die_form {
+typedef struct fg_die_form_error {
   double sd_mm;       /* of means over a small part of an arc */
   double length_mm;   /* of its correlation: exp(-d/l), where it is `smooth` (1 + d/l + (d/l)²/3)
                          exp(-d/l) */
   double white_share; /* of the variance; the rest is correlated */
   bool smooth;
-} fg_die_form;
+} fg_die_form_error;
 
 /* One trace measured; lengths of the design's datum line, centres of the trace (x, z, mm). */
 typedef struct fg_die_trace {
@@ -103,12 +103,12 @@ typedef struct fg_die_trace {
   int *lost;               /* numbers of bumps that were traced from foot to foot, and whose arc is
                               no circle: dust, a burr, a lost contact; among cut_bumps; owned */
   size_t lost_count;
-  int last_number;    /* the highest number of the bumps whose crown is seen */
-  double noise_um;    /* sd of the bumps' residuals */
-  fg_die_form form;   /* form error: noise model of the residuals */
-  double shift_mm;    /* added to a bump's traced radius by tip and datum */
-  fg_overall overall; /* springback_error_pct is the error with its sign turned round */
-  fg_bump *bumps;     /* in order of number; owned */
+  int last_number;              /* the highest number of the bumps whose crown is seen */
+  double noise_um;              /* sd of the bumps' residuals */
+  fg_die_form_error form_error; /* form error: noise model of the residuals */
+  double shift_mm;              /* added to a bump's traced radius by tip and datum */
+  fg_overall overall;           /* springback_error_pct is the error with its sign turned round */
+  fg_bump *bumps;               /* in order of number; owned */
   size_t bump_count;
   fg_die_station *stations; /* in order of x; owned */
   size_t station_count;

@@ -15,11 +15,11 @@
 extern "C" {
 #endif
 
-double fg_distribution_t_two_sided(double t, double freedom);          /* P(|T| > |t|) */
-double fg_distribution_t_quantile(double probability, double freedom); /* P(T < q) = probability */
-double fg_distribution_f_upper(double f, double freedom_1, double freedom_2);
-double fg_distribution_f_quantile(double probability, double freedom_1, double freedom_2);
-double fg_distribution_chi2_quantile(double probability, double freedom);
+double fg_distribution_t_two_sided(double t, double dof);          /* P(|T| > |t|) */
+double fg_distribution_t_quantile(double probability, double dof); /* P(T < q) = probability */
+double fg_distribution_f_upper(double f, double dof_1, double dof_2);
+double fg_distribution_f_quantile(double probability, double dof_1, double dof_2);
+double fg_distribution_chi2_quantile(double probability, double dof);
 double fg_distribution_normal_quantile(double probability);
 
 typedef struct fg_summary {

@@ -63,7 +63,7 @@ typedef struct fg_lenth {
   double pseudo_standard_error;
   double margin;              /* of error: one effect, at the confidence asked for */
   double simultaneous_margin; /* all effects together */
-  double freedom;             /* count / 3 */
+  double dof;                 /* count / 3 */
 } fg_lenth;
 fg_status fg_lenth_compute(fg_context *ctx, const double *estimates, size_t count,
                            double confidence, fg_lenth *lenth);
@@ -90,7 +90,7 @@ fg_status fg_box_cox_compute(fg_context *ctx, const fg_model *model, const fg_ex
 /* Do the centre points lie on the plane of the corners? One degree of freedom:
  * n_f n_c (mean_f - mean_c)² / (n_f + n_c), against the error within repeated runs. */
 typedef struct fg_curvature {
-  size_t corners, centres, error_freedom;
+  size_t corners, centres, error_dof;
   size_t others; /* runs that are neither: axial ones */
   double corner_mean, centre_mean;
   double sum_of_squares, error_mean_square;
@@ -110,21 +110,21 @@ fg_status fg_curvature_compute(fg_context *ctx, const fg_table *table, const cha
  * degrees of freedom of Kenward and Roger (1997). Then f and p_value of a term are theirs, of the
  * term beside all others, and there are no sums of squares. */
 typedef struct fg_split_plot_term {
-  fg_anova_row row;     /* f and p against its own error; owned by the result */
-  size_t whole_plot;    /* 1: constant within every whole plot */
-  double error_freedom; /* that f is judged by */
+  fg_anova_row row;  /* f and p against its own error; owned by the result */
+  size_t whole_plot; /* 1: constant within every whole plot */
+  double error_dof;  /* that f is judged by */
 } fg_split_plot_term;
 struct fg_mixed_model;
 typedef struct fg_split_plot {
   fg_split_plot_term *term; /* whole-plot terms first, then the others, each sequential */
   size_t terms;
-  size_t plots, plot_freedom, run_freedom;
+  size_t plots, plot_dof, run_dof;
   double plot_ss, plot_ms, run_ss, run_ms; /* of the strata; NaN mean square without dof */
   double plot_variance, run_variance;      /* the first at least 0; NaN: not known */
   size_t balanced;                         /* 1: equal plots */
   bool at_border;                          /* the whole plots' variance is estimated as 0 */
   struct fg_mixed_model *mixed;            /* NULL: by strata; owned */
-  size_t taken_plots, taken_runs;          /* dof that fg_split_plot_pay took from each stratum */
+  size_t taken_plots, taken_runs; /* dof that fg_split_plot_subtract_dof took from each stratum */
 } fg_split_plot;
 /* `plot` is the column that names whole plots. FG_ERR_DATA when it holds one only, or as many as
  * there are runs. Free with fg_split_plot_free. */
@@ -133,8 +133,8 @@ fg_status fg_split_plot_analyse(fg_context *ctx, const fg_table *table, const fg
 /* Lowers the freedom of the error by `freedom` parameters that were estimated from these runs and
  * taken out of the response (`taken`, by row): that of the whole plots where what was taken out is
  * the same within each, else of the runs. FG_ERR_DATA when none is left. */
-fg_status fg_split_plot_pay(fg_context *ctx, const fg_table *table, const char *plot,
-                            size_t freedom, const double *taken, fg_split_plot *result);
+fg_status fg_split_plot_subtract_dof(fg_context *ctx, const fg_table *table, const char *plot,
+                                     size_t dof, const double *taken, fg_split_plot *result);
 void fg_split_plot_free(fg_split_plot *result);
 
 #ifdef __cplusplus

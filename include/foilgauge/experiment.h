@@ -89,7 +89,7 @@ typedef struct fg_factor {
 typedef struct fg_experiment_effect {
   bool block;      /* belongs to the blocks: not an effect of interest */
   bool whole_plot; /* judged by the scatter of whole plots */
-  double freedom;  /* of its error */
+  double dof;      /* of its error */
   double standard_error, t, p_value, low, high;
   double relative_pct;  /* 100 estimate / constant (table 5.2); NaN for the constant */
   double u_measurement; /* part of the standard error that the measurement's uncertainty makes */
@@ -164,8 +164,8 @@ struct fg_experiment {
   double *weight;    /* rows: 1 / (process² + u²) over the typical; NULL: all equal */
   double process_sd; /* scatter beside the measurement's; NaN: not separated */
   fg_experiment_taken *taken;
-  size_t takens, freedom_taken; /* parameters that the residual freedom has paid */
-  double *taken_out;            /* rows; NULL: nothing */
+  size_t takens, dof_taken; /* parameters that the residual freedom has paid */
+  double *taken_out;        /* rows; NULL: nothing */
 
   bool has_lenth, has_box_cox, has_curvature, has_split_plot, has_surface, has_optimum;
   fg_lenth lenth; /* of fg_experiment_effect.contrast */

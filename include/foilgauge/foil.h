@@ -184,7 +184,7 @@ typedef enum fg_corrected {
 
 typedef enum fg_correction_reason {
   FG_CORRECTION_NONE,     /* there was none */
-  FG_CORRECTION_PAYS,     /* it removes more error than it adds */
+  FG_CORRECTION_HELPS,    /* it removes more error than it adds */
   FG_CORRECTION_SMALL,    /* far below the value's own u: it goes with the others */
   FG_CORRECTION_DOUBTFUL, /* it would add more error than it removes */
   FG_CORRECTION_TIED,     /* explanations that cannot be told apart do not agree about it */
@@ -261,10 +261,10 @@ typedef enum fg_beam_flag {
 typedef struct fg_beam_edge {
   fg_disc_point *stations; /* in order, the material to the right as seen; owned */
   size_t count;
-  bool round;        /* an arc about the apex of a floor */
-  double blur_mm;    /* of the scan, there */
-  double row_mm;     /* height of a row of the scan; 0: not known */
-  double doubt_mm;   /* what the level of the edge may move it by */
+  bool round;           /* an arc about the apex of a floor */
+  double blur_mm;       /* of the scan, there */
+  double row_mm;        /* height of a row of the scan; 0: not known */
+  double u_mm_of_level; /* what the level of the edge may move it by */
   double split_mm;   /* what its flanks and its core differ by, beyond chance; towards the void */
   double loss_share; /* by which JPEG's steps raise the variance that the edge tells */
 } fg_beam_edge;
@@ -350,9 +350,9 @@ typedef struct fg_disc {
   double radius_range_mm[2];
   fg_disc_point *stations; /* owned; the edge as it was found, for measuring it again */
   size_t station_count;
-  double loss_variance;  /* share by which JPEG's steps raise the variance that the edge tells */
-  double edge_doubt_mm;  /* what the edge's own pixels leave in doubt of its level */
-  double level_doubt_mm; /* what the level of the edge may move the radius by, all in all */
+  double loss_variance; /* share by which JPEG's steps raise the variance that the edge tells */
+  double edge_u_mm;     /* what the edge's own pixels leave in doubt of its level */
+  double level_u_mm;    /* what the level of the edge may move the radius by, all in all */
   double spread_px, asymmetry;    /* of its edge, as vision/edge_spread.h says; NaN: not seen */
   double plain_mm, plain_blur_um; /* diameter and blur with counts taken for the light */
   double contrast;                /* bright less dark, counts of 255 */

@@ -269,19 +269,19 @@ typedef struct fg_break_away {
 typedef struct fg_load_bearing {
   char name[128];
   size_t directions, measured;
-  double least_mm, most_mm, mean_mm, u_mean_mm, least_measured_at_deg, most_measured_at_deg;
-  fg_load_value least, most; /* of the directions; mm */
+  double min_mm, max_mm, mean_mm, u_mean_mm, min_measured_at_deg, max_measured_at_deg;
+  fg_load_value min, max; /* of the directions; mm */
   bool harmonic[FG_LOAD_ORDER_MAX + 1];
   double cosine_mm[FG_LOAD_ORDER_MAX + 1], sine_mm[FG_LOAD_ORDER_MAX + 1];
   double amplitude_mm[FG_LOAD_ORDER_MAX + 1], u_amplitude_mm[FG_LOAD_ORDER_MAX + 1];
   double p_value; /* of all directions being alike; NaN: too few */
   fg_load_axis axis;
-  double least_at_deg, u_least_at_deg; /* of the fitted curve, 0 to 180; NaN: see `axis` */
-  double birge;                        /* how far cycles differ over what they should */
-  fg_load_value stiffness;             /* mean over the directions */
-  double noise_n, noise_mm, step_mm;   /* of the directions: means, and the largest step */
-  fg_load_value hysteresis_n;          /* a of the directions' mean */
-  double slope, u_slope;               /* b */
+  double min_at_deg, u_min_at_deg;   /* of the fitted curve, 0 to 180; NaN: see `axis` */
+  double birge;                      /* how far cycles differ over what they should */
+  fg_load_value stiffness;           /* mean over the directions */
+  double noise_n, noise_mm, step_mm; /* of the directions: means, and the largest step */
+  fg_load_value hysteresis_n;        /* a of the directions' mean */
+  double slope, u_slope;             /* b */
   fg_break_away break_away;
   fg_load_value preload_n, preload_kpa; /* of the break-away test */
   size_t unknown_places;                /* of the lot's bearing; predicted without them */

@@ -46,12 +46,12 @@ extern "C" {
 #endif
 
 enum {
-  FG_LOOP_SHAPES = 2,    /* non-linear parameters of an effect, at most */
-  FG_LOOP_COLUMNS = 32,  /* linear columns of an effect, at most */
-  FG_LOOP_CLAIMS = 6,    /* effects in one report, at most */
-  FG_LOOP_STARTS = 1024, /* start values of an effect's shape, at most */
-  FG_LOOP_LONE_ROWS = 8, /* wrong rows in one claim, at most */
-  FG_LOOP_ALIASES = 12,  /* members of an alias class that are reported, at most */
+  FG_LOOP_SHAPES = 2,       /* non-linear parameters of an effect, at most */
+  FG_LOOP_COLUMNS = 32,     /* linear columns of an effect, at most */
+  FG_LOOP_CLAIMS = 6,       /* effects in one report, at most */
+  FG_LOOP_STARTS = 1024,    /* start values of an effect's shape, at most */
+  FG_LOOP_OUTLIER_ROWS = 8, /* wrong rows in one claim, at most */
+  FG_LOOP_ALIASES = 12,     /* members of an alias class that are reported, at most */
   FG_LOOP_NAME = 96,
 };
 
@@ -100,7 +100,7 @@ typedef struct fg_loop_problem {
   bool group_level;  /* rows of a group share a random level */
   size_t *series;    /* rows: along equal values noise may be correlated */
   bool correlated;   /* estimate that correlation */
-  bool *aside;       /* rows kept aside, whole groups; NULL: none */
+  bool *held_out;    /* rows kept aside, whole groups; NULL: none */
   bool exchangeable; /* rows are single responses: one may be wrong, two may be exchanged */
   bool few; /* too few groups for curves or the scatter to tell: listed effects of the mean only;
                whoever built the problem tests the claims by other means */
@@ -121,7 +121,7 @@ typedef struct fg_loop_candidate {
   const struct fg_loop_effect *effect;
   size_t a, b; /* coordinates; b = a where there is one */
   size_t rows; /* of wrong or exchanged responses */
-  size_t row[FG_LOOP_LONE_ROWS];
+  size_t row[FG_LOOP_OUTLIER_ROWS];
 } fg_loop_candidate;
 
 typedef bool fg_loop_accepts(const fg_loop_problem *problem, size_t a, size_t b);
@@ -135,11 +135,11 @@ typedef size_t fg_loop_starts(const fg_loop_problem *problem, const fg_loop_cand
                               double starts[FG_LOOP_STARTS][FG_LOOP_SHAPES]);
 
 /* What concerns single rows. */
-typedef enum fg_loop_lone {
-  FG_LOOP_NOT_LONE,
+typedef enum fg_loop_outlier {
+  FG_LOOP_NOT_OUTLIER,
   FG_LOOP_WRONG_ROW,      /* one response is wrong */
   FG_LOOP_EXCHANGED_ROWS, /* two changed places */
-} fg_loop_lone;
+} fg_loop_outlier;
 
 /* What concerns the scatter about the mean. */
 typedef enum fg_loop_scatter {
@@ -190,7 +190,7 @@ typedef struct fg_loop_effect {
                     */
   bool slope;      /* its coefficient is half the change over its coordinate's range */
   bool unattributed; /* a curve of what no listed effect explains */
-  fg_loop_lone lone;
+  fg_loop_outlier outlier;
   fg_loop_scatter scatter;
   fg_loop_over_bumps over_bumps;
   const char *bump_words; /* "a decay from the lip" */
@@ -272,7 +272,7 @@ typedef struct fg_loop_curve {
   double rms, p_value;
   size_t nearest[8]; /* rows with the largest values */
   size_t nearest_count;
-  double freedom; /* effective, of the penalised spline */
+  double dof; /* effective, of the penalised spline */
 } fg_loop_curve;
 
 /* Errors over a set of rows. */
@@ -306,7 +306,7 @@ typedef enum fg_loop_check {
 typedef struct fg_loop_checked {
   bool done, failed; /* not done: nothing repeats, or rows have no order or are too few */
   double statistic;  /* F ratio; sum of squares of normal deviates; the largest of them */
-  double freedom[2]; /* of an F ratio; of a sum, the first */
+  double dof[2];     /* of an F ratio; of a sum, the first */
   double p_value, level;
   size_t lag;
   double correlation; /* at one lag */
@@ -443,7 +443,7 @@ fg_status fg_loop_write_text(fg_context *ctx, const fg_loop_report *report, FILE
 /* One sentence for a process engineer; the caller frees it. */
 fg_status fg_loop_sentence(fg_context *ctx, const fg_loop_report *report, char **text);
 /* What is assumed of the rows' scatter, in words. */
-const char *fg_loop_noise_form(const fg_loop_result *result);
+const char *fg_loop_noise_model(const fg_loop_result *result);
 
 /* ---- the model file: declared model plus what was found ---- */
 

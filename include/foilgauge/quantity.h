@@ -88,7 +88,7 @@ typedef struct fg_quantity {
 const fg_quantity *fg_quantities(fg_quantity_owner owner, size_t *count);
 
 /* Whether parts of that form have it: an arc has no bumps, and ends; a cantilever has beams. */
-bool fg_quantity_applies(fg_quantity_owner owner, const fg_quantity *quantity, fg_form form);
+bool fg_quantity_applies(fg_quantity_owner owner, const fg_quantity *quantity, fg_foil_kind kind);
 
 /* The row of that name, or NULL. */
 const fg_quantity *fg_quantity_find(fg_quantity_owner owner, const char *name);

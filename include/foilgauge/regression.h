@@ -31,7 +31,7 @@ typedef struct fg_regression_options {
    * parameters, which the residual freedom, where there is any, pays; FG_ERR_DATA when nothing is
    * left. `taken` is what was taken out of each row: where it differs between repeated runs, their
    * pure error pays, else the lack of fit. */
-  size_t freedom_taken;
+  size_t dof_taken;
   const double *taken;
 } fg_regression_options;
 
@@ -53,12 +53,12 @@ typedef struct fg_alias {
 
 typedef struct fg_anova_row {
   char *name;
-  size_t freedom;
+  size_t dof;
   double sum_of_squares, mean_square, f, p_value;
 } fg_anova_row;
 
 typedef struct fg_regression {
-  size_t rows, columns, rank, residual_freedom;
+  size_t rows, columns, rank, residual_dof;
   bool constant; /* sums of squares are about the mean */
   double confidence;
 
@@ -76,7 +76,7 @@ typedef struct fg_regression {
   fg_anova_row *partial;    /* terms: each after all others, in this coding (type III) */
   size_t terms;
 
-  size_t lack_freedom, pure_freedom; /* pure_freedom 0: no repeated runs */
+  size_t lack_dof, pure_dof; /* pure_dof 0: no repeated runs */
   double lack_ss, pure_ss, lack_f, lack_p_value;
 
   /* rows each; the first two in units of the response, the others scaled by their sd */

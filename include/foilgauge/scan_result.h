@@ -59,9 +59,9 @@ typedef struct fg_scan_loop_error {
 /* Noise of an edge row, um: white, and what neighbours along the edge share (Patterson and Thompson
  * 1971: restricted likelihood). Every sum of squares was judged by it. */
 typedef struct fg_scan_noise {
-  const char *form; /* "white": rows are independent. Else how the correlation falls with the
+  const char *model; /* "white": rows are independent. Else how the correlation falls with the
                        distance d: "gaussian": exp(-(d / range)²), "exponential": exp(-d / range) */
-  double sd_um;     /* of a row: the root of the squares of the two that follow */
+  double sd_um;      /* of a row: the root of the squares of the two that follow */
   double white_um, correlated_um;
   double correlation; /* share of the variance that rows next to each other have in common */
   double range_mm;
@@ -81,15 +81,15 @@ typedef struct fg_scan_result_parameter {
 
 /* What the colour lines say of an effect of the carriage: between the channels of one scan neither
  * part nor optics shows, but the carriage does. */
-typedef enum fg_scan_witness_verdict {
-  FG_WITNESS_NONE,        /* not the carriage's, or no colour scan */
-  FG_WITNESS_FOR,         /* "for" */
-  FG_WITNESS_AGAINST,     /* "against" */
-  FG_WITNESS_CANNOT_TELL, /* "cannot_tell" */
-} fg_scan_witness_verdict;
+typedef enum fg_channel_check_verdict {
+  FG_CHANNEL_CHECK_NONE,        /* not the carriage's, or no colour scan */
+  FG_CHANNEL_CHECK_FOR,         /* "for" */
+  FG_CHANNEL_CHECK_AGAINST,     /* "against" */
+  FG_CHANNEL_CHECK_CANNOT_TELL, /* "cannot_tell" */
+} fg_channel_check_verdict;
 
-typedef struct fg_scan_witness {
-  fg_scan_witness_verdict verdict;
+typedef struct fg_channel_check {
+  fg_channel_check_verdict verdict;
   const char *reason; /* in words */
   double p_value;     /* that lines which show nothing of it look like that */
   double p_against;   /* the same of lines that show it as it is claimed; NaN: gaps not known */
@@ -97,11 +97,11 @@ typedef struct fg_scan_witness {
   double expected_um;      /* rms of what they must show, about its mean */
   double gap_px[3];        /* of red, green, blue: as stated, or what fits best; NaN: none */
   bool gap_stated;
-} fg_scan_witness;
+} fg_channel_check;
 
 /* An effect that is in the corrected model. */
 typedef struct fg_scan_result_claim {
-  const char *id, *form; /* form: "normal", "radial"; NULL: it has one only */
+  const char *id, *direction; /* form: "normal", "radial"; NULL: it has one only */
   const char *words, *equation;
   const char *says; /* what its sign means; NULL: its words say all */
   bool of_width;    /* of the strip's width: residual and dimensions are without it */
@@ -121,7 +121,7 @@ typedef struct fg_scan_result_claim {
                             likewise */
   double (*shape)[2];    /* coordinate and deviation in um, of curves and of what has a basis */
   size_t shape_points;
-  fg_scan_witness witness;
+  fg_channel_check channel_check;
 } fg_scan_result_claim;
 
 /* One of several sets of effects that explain. */
@@ -221,7 +221,7 @@ typedef struct fg_scan_result_bump_unclaimed {
 typedef struct fg_scan_result_bump {
   size_t part;
   int number;
-  bool aside;
+  bool held_out;
   double before, after; /* off the model, the response's `unit` */
   double effect;        /* what was found, there */
 } fg_scan_result_bump;
@@ -253,7 +253,7 @@ typedef struct fg_scan_result_response {
 } fg_scan_result_response;
 
 typedef struct fg_scan_result_bumps {
-  size_t count, aside, parts;                  /* bumps that are judged, and kept aside; foils */
+  size_t count, held_out, parts;               /* bumps that are judged, and kept aside; foils */
   bool lip;                                    /* their numbers count from a lip */
   const char *coordinate_name;                 /* of those numbers */
   const char *declared_path, *declared_sha256; /* of the forming; NULL: the design's springback */
@@ -299,8 +299,9 @@ typedef struct fg_scan_result {
   size_t unclaimeds;
   const char *advice[FG_SCAN_RESULT_ADVICE]; /* measurements that would part what is tied */
   size_t advices;
-  char witness_words[FG_SCAN_RESULT_WORDS]; /* the last of them, where the colour lines say it */
-  const char *const *note;                  /* what the reader must know */
+  char channel_check_words[FG_SCAN_RESULT_WORDS]; /* the last of them, where the colour lines say it
+                                                   */
+  const char *const *note;                        /* what the reader must know */
   size_t notes;
   size_t left_out; /* foils that could not be measured, or are none of the design's */
   fg_scan_result_bumps bumps;

@@ -60,7 +60,7 @@ fg_arch fg_design_arch(const fg_design *design, double thickness_mm, double radi
 double fg_design_pitch_mm(const fg_design *design);
 
 /* What the models leave out of a form's bumps; NULL: nothing. */
-const char *fg_stiffness_form_note(fg_form form);
+const char *fg_stiffness_kind_note(fg_foil_kind kind);
 
 typedef struct fg_stiffness_model {
   const char *id;      /* in JSON */

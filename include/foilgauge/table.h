@@ -43,7 +43,7 @@ typedef struct fg_column {
   size_t point_row, comma_row; /* from 1, the first number with a decimal point, and with a comma;
                                   0: none */
   bool comma_proven;           /* a decimal comma that cannot separate thousands: 0,5 */
-  char *doubt;                 /* what speaks against its numbers, with the place; NULL: nothing */
+  char *uncertainty;           /* what speaks against its numbers, with the place; NULL: nothing */
   size_t capacity, word_capacity, mark_capacity;
   size_t *slot; /* hash of words[]: index + 1, 0 where free */
   size_t slot_count;
@@ -113,7 +113,7 @@ fg_status fg_table_drop(fg_context *ctx, fg_table *table, const char *name);
  * become days since the earliest of their column; more than `most` different words that differ in
  * the digits at their end only (F001, F002 ...) these digits. `said` (appended to; may be NULL at
  * first) tells which columns and how; the caller frees it. */
-fg_status fg_table_count_words(fg_context *ctx, fg_table *table, size_t most, char **said);
+fg_status fg_table_count_words(fg_context *ctx, fg_table *table, size_t max, char **said);
 
 /* A copy that may be changed. */
 fg_status fg_table_copy(fg_context *ctx, const fg_table *table, fg_table *copy);

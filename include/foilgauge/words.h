@@ -22,7 +22,7 @@ unsigned fg_foil_flags_told(const fg_design *design, const fg_foil *foil);
 const fg_flag_words *fg_bump_flag_words(void);
 const fg_flag_words *fg_beam_flag_words(void);
 
-const char *fg_form_word(fg_form form);
+const char *fg_foil_kind_word(fg_foil_kind kind);
 const char *fg_datum_word(fg_datum datum);
 /* Where the strip is not as thick as the design says: what that does to the clearances; "" where it
  * is, within U. */

@@ -103,12 +103,12 @@ static size_t most_overlapped(const fg_places *p, const double rotor[3], double 
 /* Which of the three gives way to `next`: the first whose weight would reach zero. */
 static int leaving(const fg_places *p, const size_t at[3], const double w[3], size_t next) {
   const double direction[3] = {1, p->x[next], p->y[next]};
-  double v[3], least = INFINITY;
+  double v[3], min = INFINITY;
   int out = -1;
   if (!weigh(p, at, direction, v)) return -1;
   for (int i = 0; i < 3; i++) {
-    if (!(v[i] > tiny) || !(w[i] / v[i] < least)) continue;
-    least = w[i] / v[i];
+    if (!(v[i] > tiny) || !(w[i] / v[i] < min)) continue;
+    min = w[i] / v[i];
     out = i;
   }
   return out;
@@ -131,29 +131,29 @@ static bool exchange(const fg_places *p, size_t at[3], double rotor[3]) {
 
 /* Of the rotor positions that touch three crowns alike the one with the most room. */
 static bool try_all(const fg_places *p, size_t touched[3], double best[3]) {
-  double most = -INFINITY, rotor[3], room;
+  double max = -INFINITY, rotor[3], room;
   for (size_t i = 0; i < p->count; i++)
     for (size_t j = i + 1; j < p->count; j++)
       for (size_t k = j + 1; k < p->count; k++) {
         const size_t at[3] = {i, j, k};
         if (!touch_three(p, at, rotor)) continue;
         most_overlapped(p, rotor, &room);
-        if (!(rotor[0] + room > most)) continue;
-        most = rotor[0] + room;
+        if (!(rotor[0] + room > max)) continue;
+        max = rotor[0] + room;
         for (int n = 0; n < 3; n++) {
           touched[n] = at[n];
           best[n] = rotor[n];
         }
-        best[0] = most;
+        best[0] = max;
       }
-  return isfinite(most);
+  return isfinite(max);
 }
 
 bool fg_places_centre(const fg_places *p, size_t touched[3], fg_bearing_clearance *result) {
   double rotor[3];
-  result->centred_least_mm = result->centred_at_mm[0] = result->centred_at_mm[1] = NAN;
+  result->centred_min_mm = result->centred_at_mm[0] = result->centred_at_mm[1] = NAN;
   if (!surrounded(p) || !(exchange(p, touched, rotor) || try_all(p, touched, rotor))) return false;
-  result->centred_least_mm = rotor[0];
+  result->centred_min_mm = rotor[0];
   result->centred_at_mm[0] = rotor[1];
   result->centred_at_mm[1] = rotor[2];
   return true;

@@ -35,7 +35,7 @@ bool fg_places_solve(double a[3][3], const double b[3], double x[3]) {
 /* By how much each of the results moves with the clearance of every known place. */
 typedef struct gradients {
   double normal[3][3];                /* of the least-squares circle */
-  size_t least, most, low, high;      /* extremes, of the clearances and about the circle */
+  size_t min, max, low, high;         /* extremes, of the clearances and about the circle */
   size_t touched[3];                  /* by the centred rotor */
   double slope[FG_BEARING_BUMPS_MAX]; /* of the one that is looked at */
 } gradients;
@@ -68,16 +68,16 @@ static void fit_circle(const fg_places *p, gradients *g, fg_bearing_clearance *r
 
 static void find_extremes(const fg_places *p, const double *angle_deg, gradients *g,
                           fg_bearing_clearance *result) {
-  result->least_mm = INFINITY;
-  result->most_mm = -INFINITY;
+  result->min_mm = INFINITY;
+  result->max_mm = -INFINITY;
   for (size_t i = 0; i < p->count; i++) {
     result->mean_mm += p->clearance[i] / (double)p->count;
-    if (p->clearance[i] < result->least_mm) g->least = i;
-    if (p->clearance[i] > result->most_mm) g->most = i;
-    result->least_mm = p->clearance[g->least];
-    result->most_mm = p->clearance[g->most];
+    if (p->clearance[i] < result->min_mm) g->min = i;
+    if (p->clearance[i] > result->max_mm) g->max = i;
+    result->min_mm = p->clearance[g->min];
+    result->max_mm = p->clearance[g->max];
   }
-  result->least_at_deg = angle_deg[p->given[g->least]];
+  result->min_at_deg = angle_deg[p->given[g->min]];
 }
 
 /* High minus low about the circle: the circle moves with every clearance, too. */
@@ -114,44 +114,47 @@ static bool slope_of_centred(const fg_places *p, gradients *g) {
   return true;
 }
 
-static double propagate(const fg_places *p, const gradients *g, const fg_bearing_doubt *doubt) {
+static double propagate(const fg_places *p, const gradients *g,
+                        const fg_bearing_uncertainty *uncertainty) {
   double shared = 0, apart = 0, together = 0, of_pad[FG_BEARING_BUMPS_MAX] = {0};
   for (size_t i = 0; i < p->count; i++) {
     size_t at = p->given[i];
-    double own = g->slope[i] * doubt->own_mm[at];
-    shared += g->slope[i] * doubt->shared_mm[at];
+    double own = g->slope[i] * uncertainty->own_mm[at];
+    shared += g->slope[i] * uncertainty->shared_mm[at];
     apart += own * own;
-    of_pad[doubt->pad[at]] += own;
+    of_pad[uncertainty->pad[at]] += own;
   }
   for (size_t i = 0; i < FG_BEARING_BUMPS_MAX; i++)
     together += of_pad[i] * of_pad[i];
   return sqrt(shared * shared + fmax(apart, together));
 }
 
-static void doubt_all(const fg_places *p, gradients *g, bool centred, const fg_bearing_doubt *doubt,
-                      fg_bearing_clearance *result) {
-  slope_of_one(p, g->least, g);
-  result->u_least_mm = propagate(p, g, doubt);
-  slope_of_one(p, g->most, g);
-  result->u_most_mm = propagate(p, g, doubt);
+static void find_all_uncertainties(const fg_places *p, gradients *g, bool centred,
+                                   const fg_bearing_uncertainty *uncertainty,
+                                   fg_bearing_clearance *result) {
+  slope_of_one(p, g->min, g);
+  result->u_min_mm = propagate(p, g, uncertainty);
+  slope_of_one(p, g->max, g);
+  result->u_max_mm = propagate(p, g, uncertainty);
   for (size_t i = 0; i < p->count; i++)
     g->slope[i] = 1 / (double)p->count;
-  result->u_mean_mm = propagate(p, g, doubt);
+  result->u_mean_mm = propagate(p, g, uncertainty);
   if (isfinite(result->circularity_mm) && slope_of_circularity(p, g))
-    result->u_circularity_mm = propagate(p, g, doubt);
-  if (centred && slope_of_centred(p, g)) result->u_centred_least_mm = propagate(p, g, doubt);
+    result->u_circularity_mm = propagate(p, g, uncertainty);
+  if (centred && slope_of_centred(p, g)) result->u_centred_min_mm = propagate(p, g, uncertainty);
 }
 
-fg_status fg_bearing_assess_doubt(fg_context *ctx, const double *angle_deg,
-                                  const double *clearance_mm, size_t count,
-                                  const fg_bearing_doubt *doubt, fg_bearing_clearance *result) {
+fg_status fg_bearing_assess_uncertainty(fg_context *ctx, const double *angle_deg,
+                                        const double *clearance_mm, size_t count,
+                                        const fg_bearing_uncertainty *uncertainty,
+                                        fg_bearing_clearance *result) {
   fg_places p = {.count = 0};
-  gradients g = {.least = 0};
+  gradients g = {.min = 0};
   *result = (fg_bearing_clearance){.u_mean_mm = NAN,
-                                   .u_least_mm = NAN,
-                                   .u_most_mm = NAN,
+                                   .u_min_mm = NAN,
+                                   .u_max_mm = NAN,
                                    .u_circularity_mm = NAN,
-                                   .u_centred_least_mm = NAN};
+                                   .u_centred_min_mm = NAN};
   if (count > FG_BEARING_BUMPS_MAX)
     return fg_fail(ctx, FG_ERR_DATA, "%zu bumps around a bearing; at most %d", count,
                    FG_BEARING_BUMPS_MAX);
@@ -169,11 +172,11 @@ fg_status fg_bearing_assess_doubt(fg_context *ctx, const double *angle_deg,
   find_extremes(&p, angle_deg, &g, result);
   fit_circle(&p, &g, result);
   bool centred = fg_places_centre(&p, g.touched, result);
-  if (doubt) doubt_all(&p, &g, centred, doubt, result);
+  if (uncertainty) find_all_uncertainties(&p, &g, centred, uncertainty, result);
   return FG_OK;
 }
 
 fg_status fg_bearing_assess(fg_context *ctx, const double *angle_deg, const double *clearance_mm,
                             size_t count, fg_bearing_clearance *result) {
-  return fg_bearing_assess_doubt(ctx, angle_deg, clearance_mm, count, NULL, result);
+  return fg_bearing_assess_uncertainty(ctx, angle_deg, clearance_mm, count, NULL, result);
 }

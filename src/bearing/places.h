@@ -18,7 +18,7 @@ bool fg_places_solve(double a[3][3], const double b[3], double x[3]);
 /* The clearance at place i of a rotor shifted by (a, b). */
 double fg_places_shifted(const fg_places *places, size_t i, double a, double b);
 
-/* Where the least clearance of a rotor is largest: fills centred_least_mm and centred_at_mm, and
+/* Where the least clearance of a rotor is largest: fills centred_min_mm and centred_at_mm, and
  * the three places that it touches alike. False, and NaN, where the crowns leave half of the
  * bearing open. */
 bool fg_places_centre(const fg_places *places, size_t touched[3], fg_bearing_clearance *result);

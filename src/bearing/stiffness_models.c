@@ -29,8 +29,8 @@ double fg_design_pitch_mm(const fg_design *design) {
   return design->pitch_deg * rad_per_deg * design->sleeve_radius_mm;
 }
 
-const char *fg_stiffness_form_note(fg_form form) {
-  if (form != FG_FORM_SINUSOIDAL) return NULL;
+const char *fg_stiffness_kind_note(fg_foil_kind kind) {
+  if (kind != FG_FOIL_SINUSOIDAL) return NULL;
   return "The model is the classical bump's: a circular arch on its two feet. The long fillets of "
          "these sinusoidal foils bend too, and are not in it: these bumps are softer.";
 }

@@ -136,12 +136,12 @@ static fg_status show_design(fg_context *ctx, design_arguments *arguments) {
   fg_design_default(&view.design);
   if (arguments->design_path) FG_TRY(fg_design_load(ctx, arguments->design_path, &view.design));
   FG_TRY(fg_design_derive(ctx, &view.design, &view.nominal));
-  if (arguments->curve && !fg_form_has_bumps(view.design.form))
+  if (arguments->curve && !fg_foil_kind_has_bumps(view.design.kind))
     return fg_fail(ctx, FG_ERR_DATA, "%s: form \"%s\" has no bumps, so there is no curve",
-                   arguments->design_path, fg_form_word(view.design.form));
-  if (arguments->outputs.path[OUT_HTML] && !fg_form_has_bumps(view.design.form))
+                   arguments->design_path, fg_foil_kind_word(view.design.kind));
+  if (arguments->outputs.path[OUT_HTML] && !fg_foil_kind_has_bumps(view.design.kind))
     return fg_fail(ctx, FG_ERR_DATA, "%s: form \"%s\" has no bumps, so there is no page of them",
-                   arguments->design_path, fg_form_word(view.design.form));
+                   arguments->design_path, fg_foil_kind_word(view.design.kind));
   if (arguments->curve) arguments->outputs.csv = 1u << OUT_DATA;
   FG_TRY(fg_output_set_open(ctx, &arguments->outputs));
   return fg_output_set_write(ctx, &arguments->outputs, write_view, &view);

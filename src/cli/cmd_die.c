@@ -192,9 +192,9 @@ static fg_status load(fg_context *ctx, die_run *run, fg_design *design) {
                                &(fg_input){run->sources.source[i].path, "the profile"}, 1));
   fg_design_default(design);
   if (run->design_path) FG_TRY(fg_design_load(ctx, run->design_path, design));
-  if (!fg_form_has_bumps(design->form))
+  if (!fg_foil_kind_has_bumps(design->kind))
     return fg_fail(ctx, FG_ERR_DATA, "%s: form \"%s\" has no bumps; a die is measured by its bumps",
-                   run->design_path, fg_form_word(design->form));
+                   run->design_path, fg_foil_kind_word(design->kind));
   return FG_OK;
 }
 

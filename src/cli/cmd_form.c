@@ -11,7 +11,7 @@
 
 enum { OUT_JSON, OUT_HTML, OUT_TEXT, OUT_BUMPS, OUT_STRIP, OUT_MATERIAL, OUT_COUNT };
 
-typedef struct form_run {
+typedef struct forming_run {
   const char *design_path, *die_path, *material_path, *schedule_path, *fit_path;
   const char *response;
   double temperature_C, hours, pressure_bar;
@@ -25,7 +25,7 @@ typedef struct form_run {
   fg_forming_material material;
   fg_forming forming;
   fg_forming_fit fit;
-} form_run;
+} forming_run;
 
 enum {
   OPTION_DIE = 256,
@@ -110,7 +110,7 @@ static const char doc[] =
     "hydrostatic in plane strain: it neither yields nor creeps.\n\n"
     "@exit_done@";
 
-static void take_free(struct argp_state *state, form_run *run, const char *text) {
+static void take_free(struct argp_state *state, forming_run *run, const char *text) {
   run->free_count = 0;
   while (*text) {
     size_t length = strcspn(text, ",");
@@ -129,7 +129,7 @@ static void take_free(struct argp_state *state, form_run *run, const char *text)
   if (!run->free_count) argp_error(state, "--free: no constant");
 }
 
-static void check_end(const form_run *run, struct argp_state *state) {
+static void check_end(const forming_run *run, struct argp_state *state) {
   bool temperature = isfinite(run->temperature_C), hours = isfinite(run->hours);
   bool treated = temperature || hours || run->schedule_path;
   if (temperature != hours) argp_error(state, "--temperature and --time belong together");
@@ -153,7 +153,7 @@ static int choose(struct argp_state *state, const char *option, const char *text
 }
 
 static error_t parse_number(int key, const char *text, struct argp_state *state) {
-  form_run *run = state->input;
+  forming_run *run = state->input;
   switch (key) {
   case OPTION_TEMPERATURE:
     run->temperature_C = fg_cli_number(state, "temperature", text, -273, 3000);
@@ -176,7 +176,7 @@ static error_t parse_number(int key, const char *text, struct argp_state *state)
 }
 
 static error_t parse_option(int key, char *text, struct argp_state *state) {
-  form_run *run = state->input;
+  forming_run *run = state->input;
   const struct {
     int key;
     const char **into;
@@ -226,7 +226,7 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
 }
 
 static fg_status write_form(fg_context *ctx, void *user, size_t kind, FILE *out) {
-  const form_run *run = user;
+  const forming_run *run = user;
   typedef fg_status writer(fg_context *, const fg_forming *, FILE *);
   static writer *const writers[] = {
       [OUT_JSON] = fg_forming_write_json,   [OUT_HTML] = fg_forming_write_html,
@@ -238,14 +238,14 @@ static fg_status write_form(fg_context *ctx, void *user, size_t kind, FILE *out)
 }
 
 static fg_status write_fit(fg_context *ctx, void *user, size_t kind, FILE *out) {
-  const form_run *run = user;
+  const forming_run *run = user;
   if (kind == OUT_MATERIAL) return fg_forming_write_material(ctx, &run->fit.material, out);
   if (kind == OUT_HTML) return fg_forming_fit_write_html(ctx, &run->fit, out);
   return kind == OUT_JSON ? fg_forming_fit_write_json(ctx, &run->fit, out)
                           : fg_forming_fit_write_text(ctx, &run->fit, out);
 }
 
-static fg_status load(fg_context *ctx, form_run *run) {
+static fg_status load(fg_context *ctx, forming_run *run) {
   const fg_input inputs[] = {{run->design_path, "the design"},
                              {run->die_path, "the die"},
                              {run->material_path, "the material"},
@@ -255,10 +255,10 @@ static fg_status load(fg_context *ctx, form_run *run) {
   FG_TRY(fg_output_set_check(ctx, &run->outputs, inputs, sizeof inputs / sizeof *inputs));
   fg_design_default(&run->design);
   if (run->design_path) FG_TRY(fg_design_load(ctx, run->design_path, &run->design));
-  if (run->design.form == FG_FORM_DISCS)
+  if (run->design.kind == FG_FOIL_DISCS)
     return fg_fail(ctx, FG_ERR_DATA, "%s: form \"discs\" has no strip that is bent",
                    run->design_path);
-  if (run->design.form == FG_FORM_CANTILEVER)
+  if (run->design.kind == FG_FOIL_CANTILEVER)
     return fg_fail(
         ctx, FG_ERR_DATA,
         "%s: form \"cantilever\" lies flat, and its die is not stated: there is no strip "
@@ -269,7 +269,7 @@ static fg_status load(fg_context *ctx, form_run *run) {
   return FG_OK;
 }
 
-static fg_status fit_runs(fg_context *ctx, form_run *run) {
+static fg_status fit_runs(fg_context *ctx, forming_run *run) {
   static const fg_forming_constant creep[] = {FG_FORMING_CREEP_RATE, FG_FORMING_CREEP_EXPONENT,
                                               FG_FORMING_CREEP_ENERGY};
   fg_table table = {0};
@@ -290,11 +290,11 @@ static fg_status fit_runs(fg_context *ctx, form_run *run) {
   return fg_output_set_write(ctx, &run->outputs, write_fit, run);
 }
 
-static fg_status form_strip(fg_context *ctx, form_run *run) {
+static fg_status forming_strip(fg_context *ctx, forming_run *run) {
   fg_forming_schedule schedule = {0};
   fg_forming_die die;
   if (run->die_path) {
-    if (run->options.shape == FG_FORMING_SINE || !fg_form_has_bumps(run->design.form))
+    if (run->options.shape == FG_FORMING_SINE || !fg_foil_kind_has_bumps(run->design.kind))
       return fg_fail(ctx, FG_ERR_USAGE, "--die needs bumps of arcs: drop --shape sine");
     FG_TRY(fg_forming_die_load(ctx, run->die_path, &run->design, &die));
     run->options.die = &die;
@@ -310,24 +310,24 @@ static fg_status form_strip(fg_context *ctx, form_run *run) {
   return fg_output_set_write(ctx, &run->outputs, write_form, run);
 }
 
-static fg_status form(fg_context *ctx, form_run *run) {
+static fg_status kind(fg_context *ctx, forming_run *run) {
   FG_TRY(load(ctx, run));
   FG_TRY(fg_output_set_open(ctx, &run->outputs));
-  return run->fit_path ? fit_runs(ctx, run) : form_strip(ctx, run);
+  return run->fit_path ? fit_runs(ctx, run) : forming_strip(ctx, run);
 }
 
-const struct argp fg_form_parser = {options, parse_option, "[DESIGN]", doc,
-                                    NULL,    fg_cli_fill,  NULL};
+const struct argp fg_forming_parser = {options, parse_option, "[DESIGN]", doc,
+                                       NULL,    fg_cli_fill,  NULL};
 
-int fg_cmd_form(int argc, char **argv) {
+int fg_cmd_forming(int argc, char **argv) {
   fg_context ctx = {0};
-  form_run run = {.outputs.count = OUT_COUNT,
-                  .outputs.csv = 1u << OUT_BUMPS | 1u << OUT_STRIP,
-                  .temperature_C = NAN,
-                  .hours = NAN,
-                  .pressure_bar = NAN};
-  fg_status status = fg_cli_parse(&ctx, &fg_form_parser, argc, argv, &run);
-  if (status == FG_OK) status = form(&ctx, &run);
+  forming_run run = {.outputs.count = OUT_COUNT,
+                     .outputs.csv = 1u << OUT_BUMPS | 1u << OUT_STRIP,
+                     .temperature_C = NAN,
+                     .hours = NAN,
+                     .pressure_bar = NAN};
+  fg_status status = fg_cli_parse(&ctx, &fg_forming_parser, argc, argv, &run);
+  if (status == FG_OK) status = kind(&ctx, &run);
   fg_output_set_close(&run.outputs);
   fg_forming_free(&run.forming);
   fg_forming_fit_free(&run.fit);

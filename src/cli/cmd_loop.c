@@ -53,7 +53,7 @@ enum {
   OPTION_ALLOW_LOSSY,
   OPTION_THREADS,
   OPTION_OFFSET,
-  OPTION_FORM_MODEL,
+  OPTION_FORMING_MODEL,
 };
 
 /* A lot's response where none is named. */
@@ -84,7 +84,7 @@ static const struct argp_option options[] = {
      0},
     {"offset", OPTION_OFFSET, "COLUMN", 0,
      "What is predicted of the response besides the model: taken from it, and no candidate", 0},
-    {"form-model", OPTION_FORM_MODEL, "FORM.json", 0,
+    {"form-model", OPTION_FORMING_MODEL, "FORM.json", 0,
      "A report of `foilgauge form -o` as the declared model: what it predicts of the response of "
      "each bump is the offset, a column `declared`; needs a column `bump` (--lot has it)",
      0},
@@ -163,7 +163,7 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
       {OPTION_GROUP, &arguments->spec.group},
       {OPTION_ORDER, &arguments->spec.order},
       {OPTION_OFFSET, &arguments->spec.offset},
-      {OPTION_FORM_MODEL, &arguments->source.form_model},
+      {OPTION_FORMING_MODEL, &arguments->source.forming_model},
       {OPTION_DESIGN, &arguments->design_path},
       {OPTION_DECLARED, &arguments->declared_path},
       {OPTION_HOLD_OUT, &arguments->spec.hold_out},
@@ -207,7 +207,7 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
     return 0;
   case ARGP_KEY_END:
     check_source(state, &arguments->source);
-    if (arguments->source.form_model && arguments->spec.offset)
+    if (arguments->source.forming_model && arguments->spec.offset)
       argp_error(state, "--form-model is the offset: drop --offset");
     return 0;
   default:

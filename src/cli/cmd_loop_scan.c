@@ -15,7 +15,7 @@
 #include "foilgauge/scan.h"
 #include "foilgauge/scan_loop.h"
 
-enum { SCANS_MOST = 64 };
+enum { SCANS_MAX = 64 };
 enum {
   OPTION_DESIGN = 256,
   OPTION_FORM,
@@ -26,7 +26,7 @@ enum {
   OPTION_MODEL_OUT,
   OPTION_HTML,
   OPTION_SCANNER,
-  OPTION_FORM_MODEL,
+  OPTION_FORMING_MODEL,
   OPTION_COLOUR_GAP,
   OPTION_SEED,
   OPTION_THREADS
@@ -42,10 +42,10 @@ static scan_writer *const writers[FG_LOOP_OUTPUTS] = {
 };
 
 typedef struct arguments {
-  const char *paths[SCANS_MOST];
-  bool hold_out[SCANS_MOST];
-  size_t count, kept_aside;
-  const char *design_path, *form, *form_model;
+  const char *paths[SCANS_MAX];
+  bool hold_out[SCANS_MAX];
+  size_t count, held_out;
+  const char *design_path, *kind, *forming_model;
   fg_cli_known known;
   fg_output_set outputs;
   fg_scan_loop_options options;
@@ -62,7 +62,7 @@ static const struct argp_option options[] = {
      "The scans show the same foil, turned or shifted in between: what stays with the glass is the "
      "scanner, what turns is the part",
      0},
-    {"form-model", OPTION_FORM_MODEL, "FORM.json", 0,
+    {"form-model", OPTION_FORMING_MODEL, "FORM.json", 0,
      "A report of `foilgauge form -o` as the declared model of the bumps, in place of one "
      "springback for all: the radius that it predicts of each bump beside one level, and its arc "
      "length",
@@ -100,13 +100,13 @@ static const char doc[] =
     "--doe RUNS.csv on an experiment's scans: `foilgauge loop --table --help`.\n\n"
     "@exit_partly@";
 
-static void add_scan(struct argp_state *state, const char *path, bool aside) {
+static void add_scan(struct argp_state *state, const char *path, bool held_out) {
   arguments *a = state->input;
   for (size_t i = 0; i < a->count; i++)
     if (!strcmp(a->paths[i], path)) argp_error(state, "%s is given twice", path);
-  if (a->count == SCANS_MOST) argp_error(state, "more than %d scans", SCANS_MOST);
-  a->hold_out[a->count] = aside;
-  a->kept_aside += aside;
+  if (a->count == SCANS_MAX) argp_error(state, "more than %d scans", SCANS_MAX);
+  a->hold_out[a->count] = held_out;
+  a->held_out += held_out;
   a->paths[a->count++] = path;
 }
 
@@ -119,7 +119,7 @@ static double parse_number(struct argp_state *state, const char *name, const cha
 }
 
 /* Lines of a sensor lie some rows apart, to a few hundred. */
-#define GAP_MOST_PX 1000.0
+#define GAP_MAX_PX 1000.0
 
 static void parse_gaps(struct argp_state *state, const char *text, double gap_px[2]) {
   char *end;
@@ -132,10 +132,10 @@ static void parse_gaps(struct argp_state *state, const char *text, double gap_px
     fine = end != next;
   }
   for (int i = 0; i < 2; i++)
-    fine = fine && fabs(gap_px[i]) <= GAP_MOST_PX;
+    fine = fine && fabs(gap_px[i]) <= GAP_MAX_PX;
   if (!fine || *end || (gap_px[0] == 0 && gap_px[1] == 0))
     argp_error(state, "--colour-gap %s: one or two numbers of rows from -%g to %g, not both 0",
-               text, GAP_MOST_PX, GAP_MOST_PX);
+               text, GAP_MAX_PX, GAP_MAX_PX);
 }
 
 static error_t parse_option(int key, char *text, struct argp_state *state) {
@@ -145,10 +145,10 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
     a->design_path = text;
     return 0;
   case OPTION_FORM:
-    a->form = text;
+    a->kind = text;
     return 0;
-  case OPTION_FORM_MODEL:
-    a->form_model = text;
+  case OPTION_FORMING_MODEL:
+    a->forming_model = text;
     return 0;
   case OPTION_DPI:
     a->options.dpi = parse_number(state, "dpi", text);
@@ -189,7 +189,7 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
     add_scan(state, text, false);
     return 0;
   case ARGP_KEY_END:
-    if (a->count == a->kept_aside)
+    if (a->count == a->held_out)
       argp_error(state, "give a scan, or --table DATA.csv, --lot DIR, --doe RUNS.csv");
     return 0;
   default:
@@ -202,7 +202,7 @@ static fg_status write_output(fg_context *ctx, void *user, size_t kind, FILE *ou
 }
 
 static fg_status check_outputs(fg_context *ctx, arguments *a) {
-  const fg_input files[] = {{a->design_path, "the design"}, {a->form_model, "the forming"}};
+  const fg_input files[] = {{a->design_path, "the design"}, {a->forming_model, "the forming"}};
   fg_loop_outputs_choose(&a->outputs);
   FG_TRY(fg_output_set_check(ctx, &a->outputs, files, sizeof files / sizeof *files));
   for (size_t i = 0; i < a->count; i++)
@@ -246,18 +246,18 @@ static void tell_pictures(const fg_scan_result *result) {
 }
 
 static fg_status check_design(fg_context *ctx, const arguments *a, const fg_design *design) {
-  if (design->form == FG_FORM_DISCS && a->options.same_foil)
+  if (design->kind == FG_FOIL_DISCS && a->options.same_foil)
     return fg_fail(ctx, FG_ERR_USAGE,
                    "--same-foil is for foils: a disc does not show how far it was turned");
-  if (design->form == FG_FORM_DISCS && a->form_model)
+  if (design->kind == FG_FOIL_DISCS && a->forming_model)
     return fg_fail(ctx, FG_ERR_USAGE, "--form-model is of the bumps of foils: discs have none");
-  if (design->form == FG_FORM_ARC)
+  if (design->kind == FG_FOIL_ARC)
     return fg_fail(ctx, FG_ERR_USAGE,
                    "%s: form is arc, and the loop needs bumps or discs: one circle takes up what a "
                    "scanner does to it. Scan round gauges (--form discs) and apply what they say "
                    "with measure --model",
                    a->design_path);
-  if (design->form == FG_FORM_CANTILEVER)
+  if (design->kind == FG_FOIL_CANTILEVER)
     return fg_fail(ctx, FG_ERR_USAGE,
                    "%s: form is cantilever, and the loop needs bumps or discs. Scan round gauges "
                    "(--form discs) to see what the scanner does to lengths",
@@ -280,11 +280,11 @@ static fg_status run(fg_context *ctx, arguments *a, int *code) {
   FG_TRY_EXIT(check_outputs(ctx, a));
   fg_design_default(&design);
   if (a->design_path) FG_TRY_EXIT(fg_design_load(ctx, a->design_path, &design));
-  FG_TRY_EXIT(fg_cli_apply_form(ctx, a->form, &design));
+  FG_TRY_EXIT(fg_cli_apply_forming(ctx, a->kind, &design));
   fg_cli_apply_known(&a->known, &design);
   FG_TRY_EXIT(fg_design_check(ctx, &design));
   FG_TRY_EXIT(check_design(ctx, a, &design));
-  FG_TRY_EXIT(read_forming(ctx, a->form_model, &prediction));
+  FG_TRY_EXIT(read_forming(ctx, a->forming_model, &prediction));
   FG_TRY_EXIT(fg_output_set_open(ctx, &a->outputs));
   a->options.date = find_date(a);
   a->options.forming = prediction;

@@ -35,7 +35,7 @@ static report_writer *const writers[OUT_COUNT] = {
 
 typedef struct measure_arguments {
   const char *design_path, *model_path, *scanner;
-  const char *form;
+  const char *kind;
   fg_cli_known known;
   fg_measure_options options;
   const char *gauges[FG_GAUGES_MAX]; /* as given */
@@ -148,7 +148,7 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
     run->outputs.path[OUT_HTML] = text;
     break;
   case OPTION_FORM:
-    arguments->form = text;
+    arguments->kind = text;
     break;
   case OPTION_GAUGE:
     if (arguments->gauge_count == FG_GAUGES_MAX)
@@ -228,11 +228,11 @@ static fg_status load_design(fg_context *ctx, measure_run *run) {
   fg_design_default(&run->design);
   if (run->arguments.design_path)
     FG_TRY(fg_design_load(ctx, run->arguments.design_path, &run->design));
-  FG_TRY(fg_cli_apply_form(ctx, run->arguments.form, &run->design));
+  FG_TRY(fg_cli_apply_forming(ctx, run->arguments.kind, &run->design));
   fg_cli_apply_known(&run->arguments.known, &run->design);
   FG_TRY(apply_gauges(ctx, &run->arguments, &run->design));
   FG_TRY(fg_design_check(ctx, &run->design));
-  if (run->design.form != FG_FORM_DISCS) FG_TRY(fg_design_derive(ctx, &run->design, &run->nominal));
+  if (run->design.kind != FG_FOIL_DISCS) FG_TRY(fg_design_derive(ctx, &run->design, &run->nominal));
   const char *path = run->arguments.design_path;
   return name_file(ctx, path ? path : "the built-in design",
                    fg_report_check_tolerances(ctx, &run->design));

@@ -16,19 +16,19 @@ typedef int fg_command_run(int argc, char **argv);
 
 /* One way to call a command. Its parser says everything of its options: to who types them, to
  * --help, the manual page and the shell's completion (src/manual/). */
-typedef struct fg_command_form {
+typedef struct fg_command_usage {
   const char *words; /* after "foilgauge": "doe plan" */
   const struct argp *parser;
   const char *title; /* over its options, where a command has more than one form; else NULL */
-} fg_command_form;
+} fg_command_usage;
 
-enum { FG_COMMAND_FORMS = 2 };
+enum { FG_COMMAND_USAGES = 2 };
 
 typedef struct fg_command {
   const char *name;
   fg_command_run *run;
   const char *summary; /* one line for `foilgauge help` */
-  fg_command_form form[FG_COMMAND_FORMS];
+  fg_command_usage usage[FG_COMMAND_USAGES];
 } fg_command;
 
 extern const fg_command fg_commands[]; /* ends with a row without a name */
@@ -36,7 +36,7 @@ extern const fg_command fg_commands[]; /* ends with a row without a name */
 fg_command_run fg_cmd_measure;
 fg_command_run fg_cmd_doe;
 fg_command_run fg_cmd_design;
-fg_command_run fg_cmd_form;
+fg_command_run fg_cmd_forming;
 fg_command_run fg_cmd_render;
 fg_command_run fg_cmd_loop;
 fg_command_run fg_cmd_loop_scan; /* `loop` without --table */
@@ -46,7 +46,7 @@ fg_command_run fg_cmd_die;
 fg_command_run fg_cmd_stiffness;
 fg_command_run fg_cmd_station;
 
-extern const struct argp fg_form_parser;
+extern const struct argp fg_forming_parser;
 extern const struct argp fg_measure_parser, fg_doe_parser, fg_doe_plan_parser, fg_design_parser,
     fg_render_parser, fg_loop_parser, fg_loop_table_parser, fg_lot_parser, fg_merge_parser,
     fg_die_parser, fg_stiffness_parser, fg_station_parser;
@@ -88,7 +88,7 @@ enum { FG_CLI_DECIMAL_COMMA = 0x7001 };
   "them"
 
 /* --form: overrules the design's; NULL leaves it. */
-fg_status fg_cli_apply_form(fg_context *ctx, const char *form, fg_design *design);
-void fg_cli_write_forms(FILE *out); /* "classical, sinusoidal or discs" */
+fg_status fg_cli_apply_forming(fg_context *ctx, const char *usage, fg_design *design);
+void fg_cli_write_usages(FILE *out); /* "classical, sinusoidal or discs" */
 
 #endif

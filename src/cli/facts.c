@@ -165,7 +165,7 @@ static const fg_fact facts[] = {
     {"exit_partly", write_exit_partly},
     {"exit_done", write_exit_done},
     {"formats", write_formats},
-    {"forms", fg_cli_write_forms},
+    {"forms", fg_cli_write_usages},
     {"channels", write_channels},
     {"pages", write_pages},
     {"pixel_cap", write_pixel_cap},

@@ -11,7 +11,7 @@
 #include "foilgauge/text.h"
 
 /* Beyond, names are no levels that an effect may have: they may count. */
-enum { LEVELS_MOST = FG_LOOP_COLUMNS };
+enum { LEVELS_MAX = FG_LOOP_COLUMNS };
 
 static const char scan_column[] = "scan";
 
@@ -21,7 +21,7 @@ fg_status fg_loop_source_check(fg_context *ctx, const fg_loop_source_request *re
                                       "index.html",    "foils.csv",    "bumps.csv",   "beams.csv"};
   const fg_input tables[] = {{request->table, "the table"},
                              {request->runs, "the table of runs"},
-                             {request->form_model, "the forming"}};
+                             {request->forming_model, "the forming"}};
   FG_TRY(fg_output_set_check(ctx, outputs, tables, sizeof tables / sizeof *tables));
   for (size_t i = 0; request->lot && i < sizeof files / sizeof *files; i++) {
     char *path = NULL;
@@ -129,7 +129,7 @@ static fg_status read_runs(fg_context *ctx, const fg_loop_source_request *reques
   fg_table *table = &source->measured.table;
   source->table = table;
   FG_TRY(fg_table_drop(ctx, table, how.column));
-  FG_TRY(fg_table_count_words(ctx, table, LEVELS_MOST, &source->said));
+  FG_TRY(fg_table_count_words(ctx, table, LEVELS_MAX, &source->said));
   return name_runs(ctx, source);
 }
 
@@ -158,11 +158,11 @@ static fg_status predict_rows(fg_context *ctx, const fg_forming_prediction *pred
 static fg_status note_prediction(fg_context *ctx, const fg_forming_prediction *prediction,
                                  const char *response, double apart, fg_loop_source *source) {
   fg_loop_input *inputs = NULL;
-  FG_TRY(fg_text_print(ctx, &source->form_path, "%s", prediction->path));
-  memcpy(source->form_sha256, prediction->sha256, sizeof source->form_sha256);
+  FG_TRY(fg_text_print(ctx, &source->forming_path, "%s", prediction->path));
+  memcpy(source->forming_sha256, prediction->sha256, sizeof source->forming_sha256);
   FG_TRY(fg_memory_allocate(ctx, source->inputs + 1, sizeof *inputs, (void **)&inputs));
   if (source->inputs) memcpy(inputs, source->input, source->inputs * sizeof *inputs);
-  inputs[source->inputs++] = (fg_loop_input){source->form_path, source->form_sha256};
+  inputs[source->inputs++] = (fg_loop_input){source->forming_path, source->forming_sha256};
   free(source->input);
   source->input = inputs;
   return fg_text_append(ctx, &source->said,
@@ -209,8 +209,8 @@ fg_status fg_loop_source_read(fg_context *ctx, const fg_loop_source_request *req
                               fg_design *design, fg_loop_source *source) {
   *source = (fg_loop_source){0};
   FG_TRY(read_source(ctx, request, has_design, outputs, spec, design, source));
-  if (!request->form_model) return FG_OK;
-  return declare_forming(ctx, request->form_model, table_of(request, source), spec, source);
+  if (!request->forming_model) return FG_OK;
+  return declare_forming(ctx, request->forming_model, table_of(request, source), spec, source);
 }
 
 void fg_loop_source_free(fg_loop_source *source) {
@@ -219,7 +219,7 @@ void fg_loop_source_free(fg_loop_source *source) {
   free(source->name);
   free(source->input);
   free(source->said);
-  free(source->form_path);
+  free(source->forming_path);
   fg_table_free(&source->read);
   fg_lot_table_free(&source->lot);
   fg_run_sheet_free(&source->measured);

@@ -12,7 +12,7 @@ enum { FG_LOOP_WITHOUTS = 100 };
 /* What the command line says of it: one of table, lot and runs. */
 typedef struct fg_loop_source_request {
   const char *table, *lot, *runs;
-  const char *form_model;                /* a report of `form`; NULL: none */
+  const char *forming_model;             /* a report of `form`; NULL: none */
   const char *scans;                     /* of runs: a folder, or a column; NULL: column `scan` */
   const char *without[FG_LOOP_WITHOUTS]; /* columns to leave out */
   size_t withouts;
@@ -35,7 +35,7 @@ typedef struct fg_loop_source {
   fg_lot_table lot;
   fg_run_sheet measured;
   char **name;
-  char *form_path, form_sha256[65];
+  char *forming_path, forming_sha256[65];
 } fg_loop_source;
 
 /* Before anything is read: what the source reads is no output. */

@@ -30,19 +30,19 @@ static int no_command(const char *name) {
   return fg_status_exit_code(FG_ERR_USAGE);
 }
 
-static void help_form(const fg_command_form *form) {
+static void help_usage(const fg_command_usage *usage) {
   char words[64];
-  snprintf(words, sizeof words, "foilgauge %s", form->words);
-  argp_help(form->parser, stdout, ARGP_HELP_STD_HELP, words);
+  snprintf(words, sizeof words, "foilgauge %s", usage->words);
+  argp_help(usage->parser, stdout, ARGP_HELP_STD_HELP, words);
 }
 
 /* Of one form that has words of its own: `help doe plan`. */
 static int help_part(const fg_command *command, const char *part) {
   char words[64];
   snprintf(words, sizeof words, "%s %s", command->name, part);
-  for (size_t i = 0; i < FG_COMMAND_FORMS && command->form[i].parser; i++)
-    if (!strcmp(command->form[i].words, words)) {
-      help_form(&command->form[i]);
+  for (size_t i = 0; i < FG_COMMAND_USAGES && command->usage[i].parser; i++)
+    if (!strcmp(command->usage[i].words, words)) {
+      help_usage(&command->usage[i]);
       return 0;
     }
   return no_command(words);
@@ -53,10 +53,10 @@ static int help_command(const char *name, const char *part) {
   const fg_command *command = find_command(name);
   if (!command) return no_command(name);
   if (part) return help_part(command, part);
-  for (size_t i = 0; i < FG_COMMAND_FORMS && command->form[i].parser; i++) {
-    const fg_command_form *form = &command->form[i];
-    if (form->title) printf("%s%s\n\n", i ? "\n\n" : "", form->title);
-    help_form(form);
+  for (size_t i = 0; i < FG_COMMAND_USAGES && command->usage[i].parser; i++) {
+    const fg_command_usage *usage = &command->usage[i];
+    if (usage->title) printf("%s%s\n\n", i ? "\n\n" : "", usage->title);
+    help_usage(usage);
   }
   return 0;
 }

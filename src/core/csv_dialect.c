@@ -38,7 +38,7 @@ static size_t count_row(const char *text, size_t size, size_t counts[SEPARATORS]
 }
 
 unsigned char fg_csv_separator(const char *text, size_t size) {
-  size_t header[SEPARATORS], counts[SEPARATORS], most = SEPARATORS - 1;
+  size_t header[SEPARATORS], counts[SEPARATORS], max = SEPARATORS - 1;
   bool alike[SEPARATORS];
   size_t at = 0;
   while (at < size && (text[at] == '\n' || text[at] == '\r'))
@@ -54,8 +54,8 @@ unsigned char fg_csv_separator(const char *text, size_t size) {
   for (size_t k = 0; k < SEPARATORS; k++)
     if (alike[k]) return separators[k];
   for (size_t k = SEPARATORS; k-- > 0;)
-    if (header[k] > header[most]) most = k;
-  return separators[most];
+    if (header[k] > header[max]) max = k;
+  return separators[max];
 }
 
 static bool is_digit(char c) {

@@ -13,7 +13,7 @@ typedef struct fg_member_words {
 } fg_member_words;
 
 /* Fills a list and returns how many there are, which may be more than `most`. */
-typedef size_t fg_member_words_list(fg_member_words *list, size_t most);
+typedef size_t fg_member_words_list(fg_member_words *list, size_t max);
 
 fg_member_words_list fg_recipe_members, fg_station_members, fg_design_members;
 

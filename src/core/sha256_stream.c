@@ -6,9 +6,9 @@
 /* ALONE: what is summed before a thread is worth its start. */
 enum { RING_BYTES = 1 << 20, ALONE_BYTES = 1 << 20, PIECE_BYTES = 1 << 17 };
 
-static size_t least(size_t a, size_t b, size_t c) {
-  size_t least = a < b ? a : b;
-  return least < c ? least : c;
+static size_t min(size_t a, size_t b, size_t c) {
+  size_t min = a < b ? a : b;
+  return min < c ? min : c;
 }
 
 static void *sum_ring(void *argument) {
@@ -19,7 +19,7 @@ static void *sum_ring(void *argument) {
       pthread_cond_wait(&s->changed, &s->lock);
     if (s->filled == s->taken) break;
     size_t at = (size_t)(s->taken % RING_BYTES);
-    size_t count = least((size_t)(s->filled - s->taken), RING_BYTES - at, PIECE_BYTES);
+    size_t count = min((size_t)(s->filled - s->taken), RING_BYTES - at, PIECE_BYTES);
     pthread_mutex_unlock(&s->lock);
     sha256_update(&s->sum, count, s->ring + at);
     pthread_mutex_lock(&s->lock);
@@ -62,7 +62,7 @@ static void fill_ring(fg_sha256_stream *s, const uint8_t *bytes, size_t left) {
     while (s->filled - s->taken == RING_BYTES)
       pthread_cond_wait(&s->changed, &s->lock);
     size_t at = (size_t)(s->filled % RING_BYTES);
-    size_t count = least(left, RING_BYTES - at, RING_BYTES - (size_t)(s->filled - s->taken));
+    size_t count = min(left, RING_BYTES - at, RING_BYTES - (size_t)(s->filled - s->taken));
     pthread_mutex_unlock(&s->lock);
     memcpy(s->ring + at, bytes, count);
     bytes += count;

@@ -7,19 +7,19 @@ size_t fg_utf8_length(const char *text) {
   static const struct {
     unsigned char first_low, first_high, second_low, second_high;
     size_t length;
-  } forms[] = {
+  } sequences[] = {
       {0xC2, 0xDF, 0x80, 0xBF, 2}, {0xE0, 0xE0, 0xA0, 0xBF, 3}, {0xE1, 0xEC, 0x80, 0xBF, 3},
       {0xED, 0xED, 0x80, 0x9F, 3}, {0xEE, 0xEF, 0x80, 0xBF, 3}, {0xF0, 0xF0, 0x90, 0xBF, 4},
       {0xF1, 0xF3, 0x80, 0xBF, 4}, {0xF4, 0xF4, 0x80, 0x8F, 4},
   };
   const unsigned char *at = (const unsigned char *)text;
   if (at[0] < 0x80) return 1;
-  for (size_t i = 0; i < sizeof forms / sizeof forms[0]; i++) {
-    if (at[0] < forms[i].first_low || at[0] > forms[i].first_high) continue;
-    if (at[1] < forms[i].second_low || at[1] > forms[i].second_high) return 0;
-    for (size_t k = 2; k < forms[i].length; k++)
+  for (size_t i = 0; i < sizeof sequences / sizeof sequences[0]; i++) {
+    if (at[0] < sequences[i].first_low || at[0] > sequences[i].first_high) continue;
+    if (at[1] < sequences[i].second_low || at[1] > sequences[i].second_high) return 0;
+    for (size_t k = 2; k < sequences[i].length; k++)
       if (at[k] < 0x80 || at[k] > 0xBF) return 0;
-    return forms[i].length;
+    return sequences[i].length;
   }
   return 0;
 }

@@ -51,14 +51,14 @@ static void sum_up(const fg_design *design, const repeats *of, fg_die_quantity q
 
 /* The sd of one repeat over all bumps together, which a few repeats of one bump do not tell. */
 static double pooled_sd(const fg_die_side *side, fg_die_quantity q) {
-  double square = 0, freedom = 0;
+  double square = 0, dof = 0;
   for (size_t i = 0; i < side->bump_count; i++) {
     const fg_die_bump *bump = &side->bumps[i];
     if (bump->count < 2) continue;
     square += bump->value[q].sd * bump->value[q].sd * (double)(bump->count - 1);
-    freedom += (double)(bump->count - 1);
+    dof += (double)(bump->count - 1);
   }
-  return freedom > 0 ? sqrt(square / freedom) : NAN;
+  return dof > 0 ? sqrt(square / dof) : NAN;
 }
 
 /* u of a mean of `count` repeats: what repeats show becomes less with their number; what each

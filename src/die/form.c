@@ -7,7 +7,7 @@
 #include "core/memory.h"
 
 /* Of an arc: enough for lengths of a twentieth of it, few enough to be quick. */
-enum { BINS = 40, BINS_LEAST = 8, PARAMETERS = 3 };
+enum { BINS = 40, BINS_MIN = 8, PARAMETERS = 3 };
 
 /* Tried, relative to the mean arc's length: a wave longer than half of the arc is all but part of
  * the circle. */
@@ -60,10 +60,11 @@ static void bin_arc(const fg_datum_line *line, const fg_arc *arc, binned *out) {
 }
 
 /* Correlation of two bins' means. */
-static double correlation(const binned *b, const fg_die_form *form, size_t i, size_t k) {
-  double d = fabs(b->s[i] - b->s[k]) / form->length_mm;
-  return (1 - form->white_share) * exp(-d) * (form->smooth ? 1 + d + d * d / 3 : 1) +
-         (i == k ? form->white_share : 0);
+static double correlation(const binned *b, const fg_die_form_error *form_error, size_t i,
+                          size_t k) {
+  double d = fabs(b->s[i] - b->s[k]) / form_error->length_mm;
+  return (1 - form_error->white_share) * exp(-d) * (form_error->smooth ? 1 + d + d * d / 3 : 1) +
+         (i == k ? form_error->white_share : 0);
 }
 
 /* Lower Cholesky factor of a matrix of `n` rows, in place; its log determinant. */
@@ -91,17 +92,17 @@ static void solve_lower(size_t n, const double *lower, double *v) {
 
 /* What one arc adds to the restricted likelihood: log determinants, and r'Pr. */
 typedef struct part {
-  double log_determinants, square, freedom;
+  double log_determinants, square, dof;
 } part;
 
-static part restricted(const binned *b, const fg_die_form *form) {
+static part restricted(const binned *b, const fg_die_form_error *form_error) {
   double c[BINS * BINS], columns[PARAMETERS + 1][BINS], gram[PARAMETERS * PARAMETERS];
   double right[PARAMETERS], square = 0;
   size_t n = b->count;
   for (size_t i = 0; i < n; i++)
     for (size_t k = 0; k < n; k++)
-      c[i * n + k] = correlation(b, form, i, k);
-  part sum = {.freedom = (double)n - PARAMETERS};
+      c[i * n + k] = correlation(b, form_error, i, k);
+  part sum = {.dof = (double)n - PARAMETERS};
   sum.log_determinants = factor(n, c);
   for (size_t i = 0; i < n; i++) {
     for (int p = 0; p < PARAMETERS; p++)
@@ -131,30 +132,31 @@ static part restricted(const binned *b, const fg_die_form *form) {
 }
 
 /* -2 log of the restricted likelihood, the sd at its best. */
-static double deviance(const binned *arcs, size_t count, fg_die_form *form) {
+static double deviance(const binned *arcs, size_t count, fg_die_form_error *form_error) {
   part sum = {0, 0, 0};
   for (size_t i = 0; i < count; i++) {
-    if (arcs[i].count < BINS_LEAST) continue;
-    part one = restricted(&arcs[i], form);
+    if (arcs[i].count < BINS_MIN) continue;
+    part one = restricted(&arcs[i], form_error);
     sum.log_determinants += one.log_determinants;
     sum.square += one.square;
-    sum.freedom += one.freedom;
+    sum.dof += one.dof;
   }
-  form->sd_mm = sum.freedom > 0 ? sqrt(sum.square / sum.freedom) : 0;
-  return sum.log_determinants + sum.freedom * log(fmax(sum.square, 1e-300));
+  form_error->sd_mm = sum.dof > 0 ? sqrt(sum.square / sum.dof) : 0;
+  return sum.log_determinants + sum.dof * log(fmax(sum.square, 1e-300));
 }
 
-static void find_form(const binned *arcs, size_t count, double arc_mm, fg_die_form *best) {
-  double least = INFINITY;
+static void find_form_error(const binned *arcs, size_t count, double arc_mm,
+                            fg_die_form_error *best) {
+  double min = INFINITY;
   for (int smooth = 0; smooth < 2; smooth++)
     for (size_t l = 0; l < LENGTHS; l++)
       for (size_t w = 0; w < SHARES; w++) {
-        fg_die_form form = {0, lengths[l] * arc_mm, white_shares[w], smooth};
+        fg_die_form_error form_error = {0, lengths[l] * arc_mm, white_shares[w], smooth};
         if (white_shares[w] == 1 && (l > 0 || smooth)) continue; /* all the same */
-        double d = deviance(arcs, count, &form) + (white_shares[w] < 1 ? CORRELATED_GAIN : 0);
-        if (!(d < least)) continue;
-        least = d;
-        *best = form;
+        double d = deviance(arcs, count, &form_error) + (white_shares[w] < 1 ? CORRELATED_GAIN : 0);
+        if (!(d < min)) continue;
+        min = d;
+        *best = form_error;
       }
 }
 
@@ -173,14 +175,14 @@ static bool invert(double a[PARAMETERS][PARAMETERS], double out[PARAMETERS][PARA
 }
 
 /* Of the unweighted fit: G^-1 X'W C W X G^-1, G = X'W X. */
-static void set_covariance(const binned *b, const fg_die_form *form, fg_arc *arc) {
+static void set_covariance(const binned *b, const fg_die_form_error *form_error, fg_arc *arc) {
   double gram[PARAMETERS][PARAMETERS] = {{0}}, inverse[PARAMETERS][PARAMETERS];
   double gain[PARAMETERS][BINS];
   for (size_t i = 0; i < b->count; i++)
     for (int p = 0; p < PARAMETERS; p++)
       for (int q = 0; q < PARAMETERS; q++)
         gram[p][q] += b->weight[i] * b->x[i][p] * b->x[i][q];
-  if (b->count < BINS_LEAST || !invert(gram, inverse)) return;
+  if (b->count < BINS_MIN || !invert(gram, inverse)) return;
   for (int p = 0; p < PARAMETERS; p++)
     for (size_t i = 0; i < b->count; i++) {
       gain[p][i] = 0;
@@ -192,16 +194,16 @@ static void set_covariance(const binned *b, const fg_die_form *form, fg_arc *arc
       double sum = 0;
       for (size_t i = 0; i < b->count; i++)
         for (size_t k = 0; k < b->count; k++)
-          sum += gain[p][i] * correlation(b, form, i, k) * gain[q][k];
-      arc->covariance[p][q] = form->sd_mm * form->sd_mm * sum;
+          sum += gain[p][i] * correlation(b, form_error, i, k) * gain[q][k];
+      arc->covariance[p][q] = form_error->sd_mm * form_error->sd_mm * sum;
     }
 }
 
-fg_status fg_die_form_find(fg_context *ctx, const fg_datum_line *line, fg_arc *const *arcs,
-                           size_t count, fg_die_form *form) {
+fg_status fg_die_form_error_find(fg_context *ctx, const fg_datum_line *line, fg_arc *const *arcs,
+                                 size_t count, fg_die_form_error *form_error) {
   binned *bins = NULL;
   double arc_mm = 0;
-  *form = (fg_die_form){0, 1, 1, false};
+  *form_error = (fg_die_form_error){0, 1, 1, false};
   FG_TRY(fg_memory_allocate(ctx, count, sizeof *bins, (void **)&bins));
   for (size_t i = 0; i < count; i++) {
     fg_range range = arcs[i]->ranges[0];
@@ -209,9 +211,9 @@ fg_status fg_die_form_find(fg_context *ctx, const fg_datum_line *line, fg_arc *c
     bin_arc(line, arcs[i], &bins[i]);
     arc_mm += (stations[range.last].s_mm - stations[range.first].s_mm) / (double)count;
   }
-  if (count) find_form(bins, count, arc_mm, form);
+  if (count) find_form_error(bins, count, arc_mm, form_error);
   for (size_t i = 0; i < count; i++)
-    set_covariance(&bins[i], form, arcs[i]);
+    set_covariance(&bins[i], form_error, arcs[i]);
   free(bins);
   return FG_OK;
 }

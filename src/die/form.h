@@ -7,14 +7,14 @@
  * are white noise beside noise with a correlation exp(-d/l) or, smooth, (1 + d/l + (d/l)²/3)
  * exp(-d/l). On very smooth form that is on the safe side (reports/thesis/die.md).
  */
-#ifndef FG_DIE_FORM_H
-#define FG_DIE_FORM_H
+#ifndef FG_DIE_FORM_ERROR_H
+#define FG_DIE_FORM_ERROR_H
 
 #include "foilgauge/die.h"
 #include "geometry/arcs.h"
 
 /* Finds it, and the covariance of (x, y, R) of every arc under it. Arcs have one range each. */
-fg_status fg_die_form_find(fg_context *ctx, const fg_datum_line *line, fg_arc *const *arcs,
-                           size_t count, fg_die_form *form);
+fg_status fg_die_form_error_find(fg_context *ctx, const fg_datum_line *line, fg_arc *const *arcs,
+                                 size_t count, fg_die_form_error *form_error);
 
 #endif

@@ -11,7 +11,7 @@
 /* A trace is not longer than the overall circle is wide; a die may have a rim. */
 #define LENGTH_DIAMETERS 1.3
 /* And shows three bumps at least, with the lands between them. */
-enum { BUMPS_LEAST = 3, POINTS_PER_BUMP = 60 };
+enum { BUMPS_MIN = 3, POINTS_PER_BUMP = 60 };
 
 static const double rad_per_deg = 3.14159265358979323846 / 180;
 
@@ -40,8 +40,8 @@ static fg_status fail_length(fg_context *ctx, const fg_design *design, const cha
   return fg_fail(ctx, FG_ERR_DATA,
                  "%s: the trace is %.4g mm long; a trace of this design (%s, R0 %.4g mm) has %d "
                  "bumps or more, %.3g mm: check --design, and trace further",
-                 path, mm, design->name, design->overall_radius_mm, BUMPS_LEAST,
-                 span_mm(design, BUMPS_LEAST) + design->bump_radius_mm);
+                 path, mm, design->name, design->overall_radius_mm, BUMPS_MIN,
+                 span_mm(design, BUMPS_MIN) + design->bump_radius_mm);
 }
 
 /* Heights of a die differ by less than the diameter of its overall circle. A larger difference was
@@ -127,12 +127,12 @@ fg_status fg_die_check_trace(fg_context *ctx, const fg_design *design, const cha
   if (is_far(trace->overall.radius_mm, design->overall_radius_mm))
     return fail_radius(ctx, path, p, "the overall circle", trace->overall.radius_mm,
                        design->overall_radius_mm);
-  if (trace->bump_count < BUMPS_LEAST)
+  if (trace->bump_count < BUMPS_MIN)
     return fg_fail(ctx, FG_ERR_DATA,
                    "%s: %zu bump%s seen whole%s; the overall circle needs %d and the lands between "
                    "them: trace further, or with the die tilted",
                    path, trace->bump_count, trace->bump_count == 1 ? " is" : "s are",
-                   trace->cut_bumps ? " (others are cut off or too steep)" : "", BUMPS_LEAST);
+                   trace->cut_bumps ? " (others are cut off or too steep)" : "", BUMPS_MIN);
   if (design->bump_count && trace->last_number > (int)design->bump_count)
     return fg_fail(ctx, FG_ERR_DATA,
                    "%s: the bumps that are seen would have numbers up to %d, and the design has "

@@ -223,8 +223,8 @@ static fg_status read_text(reader *r, fg_die_profile *p) {
   fg_die_header header;
   fg_die_field fields[FG_DIE_FIELDS_MAX];
   FG_TRY(find_data(r));
-  const char *doubt = fg_die_style_find(r->data, &r->style);
-  if (doubt) return fail_line(r, r->first_line, doubt);
+  const char *uncertainty = fg_die_style_find(r->data, &r->style);
+  if (uncertainty) return fail_line(r, r->first_line, uncertainty);
   r->columns = fg_die_split(r->data, fg_die_line_end(r->data), r->style.separator, fields);
   fg_die_header_read(r->text, r->data, r->style.separator, r->columns, &header);
   FG_TRY(choose_columns(r, &header));

@@ -60,12 +60,12 @@ static fg_status make_strip(fg_context *ctx, const fg_die_profile *p, fg_strip *
 
 /* A bump's arc is no circle where it scatters by this factor more than the median one, and by more
  * than a stylus' own noise. */
-#define POOR_SCATTER  4.0
-#define POOR_LEAST_MM 0.0002
-enum { BUMPS_MOST = 512 };
+#define POOR_SCATTER 4.0
+#define POOR_MIN_MM  0.0002
+enum { BUMPS_MAX = 512 };
 /* A bump's crown is away from the lands by more than this share of its height. */
 #define CROWN_SHARE 0.5
-enum { CROWNS_MOST = 1000 };
+enum { CROWNS_MAX = 1000 };
 
 /* Slope over some stations to both sides, where single points scatter. */
 enum { SLOPE_STATIONS = 4 };
@@ -104,14 +104,14 @@ static bool is_whole(const fg_layout *layout, size_t i, double angle_deg) {
 /* Where the tip's cone or the arm touched, a flank goes on as a straight line, and the arc with it:
  * such a bump stands out by its residuals. */
 static void drop_bent_arcs(double angle_deg, fg_layout *layout) {
-  double rms[BUMPS_MOST];
+  double rms[BUMPS_MAX];
   size_t n = 0;
-  for (size_t i = 0; i < layout->turning.bump_count && n < BUMPS_MOST; i++)
+  for (size_t i = 0; i < layout->turning.bump_count && n < BUMPS_MAX; i++)
     if (is_whole(layout, i, angle_deg)) rms[n++] = layout->bumps[i].rms_mm;
   if (n < 3) return;
   double limit = POOR_SCATTER * fg_select(rms, n, n / 2);
   for (size_t i = 0; i < layout->turning.bump_count; i++)
-    if (layout->bumps[i].rms_mm > fmax(limit, POOR_LEAST_MM)) layout->fitted[i] = false;
+    if (layout->bumps[i].rms_mm > fmax(limit, POOR_MIN_MM)) layout->fitted[i] = false;
 }
 
 static fg_status find_covariances(fg_context *ctx, fg_layout *layout, double angle_deg,
@@ -127,7 +127,7 @@ static fg_status find_covariances(fg_context *ctx, fg_layout *layout, double ang
       square += layout->bumps[i].rms_mm * layout->bumps[i].rms_mm;
     }
   trace->noise_um = 1000 * sqrt(square / (double)n);
-  fg_status status = fg_die_form_find(ctx, &layout->line, whole, n, &trace->form);
+  fg_status status = fg_die_form_error_find(ctx, &layout->line, whole, n, &trace->form_error);
   free(whole);
   fg_noise_estimate(&layout->line, &layout->overall, 1, 0, &noise);
   fg_arc_covariance(&layout->line, &noise, &layout->overall);
@@ -220,7 +220,7 @@ static int crowns_beyond(const fg_design *design, const fg_nominal *nominal,
   double rising = layout->turning.sense < 0 ? 1 : -1; /* of the direction along x: dome, bowl */
   double pitch = rising * way * design->pitch_deg, from = bump_direction_deg(layout, i);
   int count = 0;
-  while (count < CROWNS_MOST && has_crown(layout, from + (count + 1) * pitch, nominal->height_mm))
+  while (count < CROWNS_MAX && has_crown(layout, from + (count + 1) * pitch, nominal->height_mm))
     count++;
   return count;
 }

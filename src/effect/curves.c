@@ -19,7 +19,7 @@ enum { CURVE_DISCS = 8, NORMAL_DISCS = 3 };
 #define OVER_GLASS(name, said, over, to, function)                                                 \
   {                                                                                                \
     .id = name, .words = said, A_CURVE, .coordinate = over, .moves = to,                           \
-    .on_discs = FG_EFFECT_ON_CLEAN_DISCS, .discs_least = CURVE_DISCS, .columns = FG_FIELD_COLUMNS, \
+    .on_discs = FG_EFFECT_ON_CLEAN_DISCS, .discs_min = CURVE_DISCS, .columns = FG_FIELD_COLUMNS,   \
     .glass = function, .coarse = FG_EFFECT_SPLINES, .hold = FREE_HOLD                              \
   }
 
@@ -157,7 +157,7 @@ const fg_effect fg_effects_curves[] = {
     OVER_GLASS("free.scan.y.dx", "a shift in x that varies over y", FG_EFFECT_Y, "x", x_over_y),
     OVER_GLASS("free.scan.y.dy", "a shift in y that varies over y", FG_EFFECT_Y, "y", y_over_y),
     {.id = "free.foil.s",
-     .form = "normal",
+     .direction = "normal",
      .words = "a deviation along the foil",
      A_CURVE,
      .coordinate = FG_EFFECT_FOIL,
@@ -166,7 +166,7 @@ const fg_effect fg_effects_curves[] = {
      .coarse = FG_EFFECT_SPLINES,
      .hold = FREE_HOLD},
     {.id = "free.foil.s",
-     .form = "radial",
+     .direction = "radial",
      .second = true,
      .words = "a deviation along the foil",
      A_CURVE,
@@ -201,7 +201,7 @@ const fg_effect fg_effects_curves[] = {
      .coordinate = FG_EFFECT_NORMAL,
      .moves = "along the normal",
      .on_discs = FG_EFFECT_ON_CLEAN_DISCS,
-     .discs_least = NORMAL_DISCS,
+     .discs_min = NORMAL_DISCS,
      .midline = normal,
      .coarse = FG_EFFECT_SMOOTHER,
      .rough = {12, FG_FIELD_COLUMNS},

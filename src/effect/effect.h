@@ -74,7 +74,7 @@ typedef enum fg_effect_on_discs {
   FG_EFFECT_ON_DISCS,
   FG_EFFECT_ON_ONE_DISC,    /* on several every one has its own */
   FG_EFFECT_ON_KNOWN_DISCS, /* of known diameter */
-  FG_EFFECT_ON_CLEAN_DISCS, /* on `discs_least` clean ones, or more */
+  FG_EFFECT_ON_CLEAN_DISCS, /* on `discs_min` clean ones, or more */
 } fg_effect_on_discs;
 
 /* A midline's deviation of every column at one row, along the row's normal; returns how many. */
@@ -88,10 +88,10 @@ typedef double fg_effect_start(const fg_field_frame *frame, size_t i, size_t cou
 
 typedef struct fg_effect {
   const char *id;
-  const char *form;    /* "normal", "radial": of an effect in two forms; else NULL */
-  bool second;         /* form: the first row speaks for both */
-  const char *words;   /* for people */
-  const char *says[2]; /* what a positive and a negative amplitude mean; NULL: `words` say all */
+  const char *direction; /* "normal", "radial": of an effect in two forms; else NULL */
+  bool second;           /* form: the first row speaks for both */
+  const char *words;     /* for people */
+  const char *says[2];   /* what a positive and a negative amplitude mean; NULL: `words` say all */
   const char *equation;
   fg_effect_sought sought;
   fg_effect_coordinate coordinate;
@@ -100,7 +100,7 @@ typedef struct fg_effect {
   const char *amplitude_name, *amplitude_symbol; /* NULL: "amplitude_um", "a" */
   bool off_foils;                                /* foils cannot show it */
   fg_effect_on_discs on_discs;
-  size_t discs_least;
+  size_t discs_min;
 
   size_t columns, shapes; /* linear, non-linear; of a part's effect the basis says the columns */
   const char *shape_name[FG_FIELD_SHAPES], *shape_symbol[FG_FIELD_SHAPES]; /* mm; for people */

@@ -39,28 +39,28 @@ static bool accepts_spread(const fg_loop_problem *problem, size_t a, size_t b) {
   (void)b;
   if (at->roles & FG_LOOP_LEVEL) return at->distinct >= 3;
   if (by_levels(problem, at)) {
-    size_t levels = fg_loop_form_level_count(at);
+    size_t levels = fg_basis_level_count(at);
     return levels >= 2 && levels <= FG_LOOP_COLUMNS && problem->rows >= ROWS_A_LEVEL * levels;
   }
-  return fg_loop_form_is_number(at) && problem->rows >= 2 * SERIES_ROWS;
+  return fg_basis_is_number(at) && problem->rows >= 2 * SERIES_ROWS;
 }
 
 bool fg_loop_spread_by_levels(const fg_loop_problem *problem, const fg_loop_candidate *candidate) {
-  return by_levels(problem, fg_loop_form_first(problem, candidate));
+  return by_levels(problem, fg_basis_first(problem, candidate));
 }
 
 static size_t spread_columns(const fg_loop_problem *problem, const fg_loop_candidate *candidate) {
-  const fg_loop_coordinate *at = fg_loop_form_first(problem, candidate);
-  return by_levels(problem, at) ? fg_loop_form_level_count(at) - 1 : 1;
+  const fg_loop_coordinate *at = fg_basis_first(problem, candidate);
+  return by_levels(problem, at) ? fg_basis_level_count(at) - 1 : 1;
 }
 
 static void spread_basis(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
                          const double *shape, double *columns) {
-  const fg_loop_coordinate *at = fg_loop_form_first(problem, candidate);
+  const fg_loop_coordinate *at = fg_basis_first(problem, candidate);
   if (by_levels(problem, at))
-    fg_loop_form_level_columns(problem, at, columns);
+    fg_basis_level_columns(problem, at, columns);
   else
-    fg_loop_form_linear_basis(problem, candidate, shape, columns);
+    fg_basis_linear(problem, candidate, shape, columns);
 }
 
 static const fg_loop_effect noise_effects[] = {

@@ -7,16 +7,16 @@
 
 static const double two_pi = 6.28318530717958647692;
 
-static size_t lone_columns(const fg_loop_problem *problem, const fg_loop_candidate *candidate) {
+static size_t outlier_columns(const fg_loop_problem *problem, const fg_loop_candidate *candidate) {
   (void)problem;
-  return candidate->effect->lone == FG_LOOP_EXCHANGED_ROWS ? 1 : candidate->rows;
+  return candidate->effect->outlier == FG_LOOP_EXCHANGED_ROWS ? 1 : candidate->rows;
 }
 
-static void lone_basis(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
-                       const double *shape, double *columns) {
+static void outlier_basis(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
+                          const double *shape, double *columns) {
   (void)shape;
-  memset(columns, 0, lone_columns(problem, candidate) * problem->rows * sizeof *columns);
-  if (candidate->effect->lone == FG_LOOP_EXCHANGED_ROWS) {
+  memset(columns, 0, outlier_columns(problem, candidate) * problem->rows * sizeof *columns);
+  if (candidate->effect->outlier == FG_LOOP_EXCHANGED_ROWS) {
     columns[candidate->row[0]] = 1;
     columns[candidate->row[1]] = -1;
     return;
@@ -25,28 +25,28 @@ static void lone_basis(const fg_loop_problem *problem, const fg_loop_candidate *
     columns[k * problem->rows + candidate->row[k]] = 1;
 }
 
-static const fg_loop_effect lone_effects[] = {
+static const fg_loop_effect outlier_effects[] = {
     {.id = "table.outlier",
      .reads = FG_LOOP_READS_ROWS,
      .sought = "lone wrong values",
-     .lone = FG_LOOP_WRONG_ROW,
+     .outlier = FG_LOOP_WRONG_ROW,
      .level = "runs",
      .frame = "row",
      .words = "wrong responses",
-     .columns = lone_columns,
-     .basis = lone_basis},
+     .columns = outlier_columns,
+     .basis = outlier_basis},
     {.id = "table.exchanged_runs",
      .reads = FG_LOOP_READS_EXCHANGE,
-     .lone = FG_LOOP_EXCHANGED_ROWS,
+     .outlier = FG_LOOP_EXCHANGED_ROWS,
      .level = "runs",
      .frame = "row",
      .words = "two responses that changed places",
-     .columns = lone_columns,
-     .basis = lone_basis},
+     .columns = outlier_columns,
+     .basis = outlier_basis},
 };
 
-const fg_loop_effect *fg_loop_lone_effects(void) {
-  return lone_effects;
+const fg_loop_effect *fg_loop_outlier_effects(void) {
+  return outlier_effects;
 }
 
 /* Curves: natural cubic splines with a few or more knots, and waves. */
@@ -54,7 +54,7 @@ const fg_loop_effect *fg_loop_lone_effects(void) {
 static bool smooth(const fg_loop_problem *problem, size_t a, size_t b) {
   (void)b;
   const fg_loop_coordinate *at = &problem->coordinate[a];
-  return fg_loop_form_is_number(at) && at->distinct >= 8;
+  return fg_basis_is_number(at) && at->distinct >= 8;
 }
 
 static bool smooth_many(const fg_loop_problem *problem, size_t a, size_t b) {
@@ -75,11 +75,11 @@ static double cubed(double x) {
   return x > 0 ? x * x * x : 0;
 }
 
-static bool smooth_most(const fg_loop_problem *problem, size_t a, size_t b) {
+static bool smooth_max(const fg_loop_problem *problem, size_t a, size_t b) {
   return smooth(problem, a, b) && problem->coordinate[a].distinct >= 36;
 }
 
-static size_t most_columns(const fg_loop_problem *problem, const fg_loop_candidate *candidate) {
+static size_t max_columns(const fg_loop_problem *problem, const fg_loop_candidate *candidate) {
   (void)problem, (void)candidate;
   return 11;
 }
@@ -141,9 +141,9 @@ enum { WAVES = 20 };
 static size_t wave_starts(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
                           double starts[FG_LOOP_STARTS][FG_LOOP_SHAPES]) {
   const fg_loop_coordinate *at = &problem->coordinate[candidate->a];
-  double range = at->high - at->low, most = fmin(WAVES, ((double)at->distinct - 1) / 2);
+  double range = at->high - at->low, max = fmin(WAVES, ((double)at->distinct - 1) / 2);
   size_t count = 0;
-  for (double cycles = 1.5; cycles <= most && count < FG_LOOP_STARTS; cycles += 0.5)
+  for (double cycles = 1.5; cycles <= max && count < FG_LOOP_STARTS; cycles += 0.5)
     starts[count++][0] = range / cycles;
   return count;
 }
@@ -205,8 +205,8 @@ static const fg_loop_effect curve_effects[] = {
      .level = "any",
      .frame = "coordinate",
      .words = "a winding curve over",
-     .accepts = smooth_most,
-     .columns = most_columns,
+     .accepts = smooth_max,
+     .columns = max_columns,
      .basis = spline_basis},
     {.id = "unattributed.hump",
      .unattributed = true,

@@ -18,7 +18,7 @@ static bool shows_on_discs(const fg_points *points, const fg_effect *effect) {
   case FG_EFFECT_ON_KNOWN_DISCS:
     return points->known_count > 0;
   case FG_EFFECT_ON_CLEAN_DISCS:
-    return clean_count(points) >= effect->discs_least;
+    return clean_count(points) >= effect->discs_min;
   }
   return false;
 }

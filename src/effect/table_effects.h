@@ -5,8 +5,8 @@
 
 #include "foilgauge/loop.h"
 
-/* A wrong row, and two that were exchanged: in the order of fg_loop_lone. */
-const fg_loop_effect *fg_loop_lone_effects(void);
+/* A wrong row, and two that were exchanged: in the order of fg_loop_outlier. */
+const fg_loop_effect *fg_loop_outlier_effects(void);
 
 /* What noise may lack: serial correlation, unequal spread; ends with id NULL. */
 const fg_loop_effect *fg_loop_noise_effects(void);

@@ -41,16 +41,16 @@ unsigned fg_explain_mask_of(const fg_explanations *out, bool of_free) {
   return mask;
 }
 
-static bool are_twins(const fg_candidate *a, const fg_candidate *b) {
+static bool are_collinear(const fg_candidate *a, const fg_candidate *b) {
   if (!fg_effect_same(a->kind, b->kind)) return false;
   if (b->kind->sought == FG_EFFECT_SMOOTH) return true;
-  return b->kind->second || fabs(a->shape[0] / b->shape[0] - 1) < FG_EXPLAIN_TWIN_SHARE;
+  return b->kind->second || fabs(a->shape[0] / b->shape[0] - 1) < FG_EXPLAIN_COLLINEAR_SHARE;
 }
 
-bool fg_explain_has_twins(const fg_explanations *out, unsigned mask) {
+bool fg_explain_has_collinear(const fg_explanations *out, unsigned mask) {
   for (size_t a = 0; a < out->candidate_count; a++)
     for (size_t b = a + 1; (mask >> a & 1) && b < out->candidate_count; b++)
-      if ((mask >> b & 1) && are_twins(&out->candidates[a], &out->candidates[b])) return true;
+      if ((mask >> b & 1) && are_collinear(&out->candidates[a], &out->candidates[b])) return true;
   return false;
 }
 

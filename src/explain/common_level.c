@@ -10,7 +10,7 @@
 #include <math.h>
 
 /* Gauges: two unknowns, and some to tell their scatter by. */
-enum { GAUGES_LEAST = 5 };
+enum { GAUGES_MIN = 5 };
 
 /* Sums over gauges of weight, scale (x), level (l), residual (r). */
 typedef struct sums {
@@ -19,7 +19,7 @@ typedef struct sums {
 
 static double weight_at(const fg_points *points, size_t i) {
   const fg_points_row *row = &points->rows[i];
-  return points->views[row->view].aside ? 0 : row->weight / FG_POINTS_BLOCK;
+  return points->views[row->view].held_out ? 0 : row->weight / FG_POINTS_BLOCK;
 }
 
 static const fg_disc *disc_at(const fg_points *points, size_t i) {
@@ -53,20 +53,20 @@ static sums sum_up(const fg_points *points, const double *scale, const double *r
   return sum;
 }
 
-static double stated_doubt_um(const fg_points *points) {
-  double doubt = 0;
+static double stated_u_um(const fg_points *points) {
+  double uncertainty = 0;
   for (size_t i = 0; i < points->row_count; i++)
     if (points->parts[points->rows[i].part].radius_known)
-      doubt = fmax(doubt, 1000 * disc_at(points, i)->level_doubt_mm);
-  return doubt;
+      uncertainty = fmax(uncertainty, 1000 * disc_at(points, i)->level_u_mm);
+  return uncertainty;
 }
 
 double fg_common_level_left(const fg_points *points, const double *scale,
                             const double *residual_um) {
-  double stated = stated_doubt_um(points);
+  double stated = stated_u_um(points);
   sums s = sum_up(points, scale, residual_um);
   double determinant = s.xx * s.ll - s.xl * s.xl;
-  if (s.count < GAUGES_LEAST || !(determinant > 1e-9 * s.xx * s.ll)) return stated;
+  if (s.count < GAUGES_MIN || !(determinant > 1e-9 * s.xx * s.ll)) return stated;
   double level = (s.xx * s.lr - s.xl * s.xr) / determinant;
   double of_scale = (s.ll * s.xr - s.xl * s.lr) / determinant;
   double left = fmax(0, s.rr - of_scale * s.xr - level * s.lr) / (s.count - 2);

@@ -32,18 +32,18 @@
  * have shown (describe.c). */
 #define AMPLITUDE_ERRORS 3.5
 /* Groups that share the information, at the least. */
-#define GROUPS_LEAST 1.5
+#define GROUPS_MIN 1.5
 /* Undulations of a disc's form that a step or a ripple is confirmed beside. */
-enum { FORM_HARMONICS = 5 };
+enum { ROUNDNESS_HARMONICS = 5 };
 /* Normal equations are singular where a pivot is this share of its diagonal: of an effect; of a
  * form, whose rows may lie on a short arc. */
-#define SINGULAR      1e-9
-#define FORM_SINGULAR 1e-12
+#define SINGULAR           1e-9
+#define ROUNDNESS_SINGULAR 1e-12
 /* A column with a smaller sum of squares beside the forms is nothing, um². */
 #define NOTHING_UM2 1e-6
 /* Student's t has no fewer degrees of freedom, and no scatter is less. */
-#define FREEDOM_LEAST 0.5
-#define SCATTER_LEAST 1e-300
+#define DOF_MIN     0.5
+#define SCATTER_MIN 1e-300
 
 typedef struct confirmation {
   const fg_points *points;
@@ -56,19 +56,19 @@ typedef struct confirmation {
 
 static double weight_at(const fg_points *points, size_t i) {
   const fg_points_row *row = &points->rows[i];
-  return points->views[row->view].aside ? 0 : row->weight / FG_POINTS_BLOCK;
+  return points->views[row->view].held_out ? 0 : row->weight / FG_POINTS_BLOCK;
 }
 
 /* Nuisance terms of each disc: harmonics up to this, and its radius unless it is known and
  * counts. The level of all edges moves known radii as well: of what follows them a scale alone is
  * told from it (common_level.h), any other effect must show in the discs' shapes. */
-typedef struct form {
+typedef struct roundness {
   size_t harmonics;
   bool radius_counts;
-} form;
+} roundness;
 
 /* Harmonics 1 to the last at a row, then 1 unless the radius counts; returns how many. */
-static size_t form_basis(const fg_points *points, size_t i, form of, double *basis) {
+static size_t roundness_basis(const fg_points *points, size_t i, roundness of, double *basis) {
   const fg_points_row *row = &points->rows[i];
   size_t n = 0;
   for (size_t k = 1; k <= of.harmonics; k++) {
@@ -80,30 +80,30 @@ static size_t form_basis(const fg_points *points, size_t i, form of, double *bas
 }
 
 /* Takes a disc's circle, or its form up to a harmonic, out of values at its rows [first, last). */
-static void take_form_out(const fg_points *points, size_t first, size_t last, form of,
-                          double *values) {
+static void remove_roundness_error(const fg_points *points, size_t first, size_t last, roundness of,
+                                   double *values) {
   fg_normal_equations system;
   double x[FG_SMALL_MAX] = {0}, basis[FG_SMALL_MAX];
-  size_t unknowns = form_basis(points, first, of, basis);
+  size_t unknowns = roundness_basis(points, first, of, basis);
   fg_normal_clear(&system, unknowns);
   for (size_t i = first; i < last; i++) {
-    form_basis(points, i, of, basis);
+    roundness_basis(points, i, of, basis);
     fg_normal_add(&system, basis, values[i], weight_at(points, i));
   }
-  if (!fg_normal_solve(&system, FORM_SINGULAR, x, NULL)) return;
+  if (!fg_normal_solve(&system, ROUNDNESS_SINGULAR, x, NULL)) return;
   for (size_t i = first; i < last; i++) {
-    form_basis(points, i, of, basis);
+    roundness_basis(points, i, of, basis);
     for (size_t k = 0; k < unknowns; k++)
       values[i] -= x[k] * basis[k];
   }
 }
 
-static void take_forms_out(const fg_points *points, form of, double *values) {
+static void remove_roundness_errors(const fg_points *points, roundness of, double *values) {
   for (size_t first = 0; first < points->row_count;) {
     size_t last = first;
     while (last < points->row_count && points->rows[last].view == points->rows[first].view)
       last++;
-    take_form_out(points, first, last, of, values);
+    remove_roundness_error(points, first, last, of, values);
     first = last;
   }
 }
@@ -185,8 +185,8 @@ static double scatter_p(const confirmation *c, const double *x, double groups) {
     scatter += (have - expect) * (have - expect);
     n++;
   }
-  double t = amount / sqrt(fmax(scatter * n / fmax(n - 1, 1), SCATTER_LEAST));
-  return gsl_cdf_tdist_Q(t, fmax(groups - (double)c->columns_used, FREEDOM_LEAST));
+  double t = amount / sqrt(fmax(scatter * n / fmax(n - 1, 1), SCATTER_MIN));
+  return gsl_cdf_tdist_Q(t, fmax(groups - (double)c->columns_used, DOF_MIN));
 }
 
 /* Whole normal equations and their solution; false when there is nothing to solve. */
@@ -206,7 +206,7 @@ static double judge_discs(confirmation *c, double needed_p, double needed_errors
   double x[FG_SMALL_MAX];
   if (!solve_whole(c, false, &whole, x, NULL)) return -INFINITY;
   double groups = effective_groups(c, x);
-  if (groups < GROUPS_LEAST) return -INFINITY;
+  if (groups < GROUPS_MIN) return -INFINITY;
   if (needed_p > 0 && scatter_p(c, x, groups) > needed_p) return -INFINITY;
   return validated_gain(c, &whole) - needed_errors;
 }
@@ -232,7 +232,7 @@ static double judge_sides(confirmation *c) {
   fg_normal_equations whole;
   double x[FG_SMALL_MAX];
   if (!solve_whole(c, true, &whole, x, NULL)) return -INFINITY;
-  if (effective_groups(c, x) < GROUPS_LEAST) return -INFINITY;
+  if (effective_groups(c, x) < GROUPS_MIN) return -INFINITY;
   double gain = validated_gain(c, &whole) - LISTED_ERRORS;
   return quadratic(&whole, x) < fg_explain_policy_of(c->points)->placed_chi2 * rest_variance(c, x)
              ? -INFINITY
@@ -279,14 +279,14 @@ static void widen_by_level(const confirmation *c, fg_effect_found *effect) {
     along += weight_at(c->points, i) * c->columns[i];
     square += weight_at(c->points, i) * c->columns[i] * c->columns[i];
   }
-  double doubt = fg_common_level_left(c->points, c->columns, c->residual);
+  double uncertainty = fg_common_level_left(c->points, c->columns, c->residual);
   if (square > 0)
-    effect->u_coefficient_um[0] = hypot(effect->u_coefficient_um[0], doubt * along / square);
+    effect->u_coefficient_um[0] = hypot(effect->u_coefficient_um[0], uncertainty * along / square);
 }
 
 static void prepare(confirmation *c, const double *residual_um, size_t harmonics) {
   const fg_effect_found *effect = c->effect;
-  const form of = {harmonics, effect->kind->scales};
+  const roundness of = {harmonics, effect->kind->scales};
   size_t rows = c->points->row_count;
   fg_effect_columns(c->points, effect->kind, effect->shape, c->columns);
   memcpy(c->residual, residual_um, rows * sizeof *c->residual);
@@ -295,12 +295,12 @@ static void prepare(confirmation *c, const double *residual_um, size_t harmonics
     double *column = c->columns + k * rows, square = 0;
     for (size_t i = 0; i < rows; i++)
       c->residual[i] += effect->coefficient_um[k] * column[i];
-    take_forms_out(c->points, of, column);
+    remove_roundness_errors(c->points, of, column);
     for (size_t i = 0; i < rows; i++)
       square += weight_at(c->points, i) * column[i] * column[i];
     if (square > NOTHING_UM2) c->index[c->columns_used++] = k;
   }
-  take_forms_out(c->points, of, c->residual);
+  remove_roundness_errors(c->points, of, c->residual);
 }
 
 /* Amplitude in its standard uncertainties. */
@@ -325,7 +325,7 @@ static double judge(confirmation *c, fg_effect_found *effect, const double *resi
   widen_by_scatter(c, effect);
   if (effect->kind->scales) widen_by_level(c, effect);
   if (shaped && !(confirmed > 0)) {
-    prepare(c, residual_um, FORM_HARMONICS);
+    prepare(c, residual_um, ROUNDNESS_HARMONICS);
     confirmed = judge_sides(c);
   }
   if (!free_curve && amplitude_errors(effect) < AMPLITUDE_ERRORS) return -INFINITY;

@@ -10,7 +10,7 @@
 #include "explain/policy.h"
 #include "explain/settle.h"
 
-enum { FOLDS_MOST = 5, FOLDS_LEAST = 2 };
+enum { FOLDS_MAX = 5, FOLDS_MIN = 2 };
 
 /* Several times the length over which neighbours share noise, and less than a curve is fine. */
 #define STRETCH_MM 0.6
@@ -21,10 +21,10 @@ typedef struct cross_fit {
   const fg_explain_bars *barred;
   fg_cross_fit_unit unit;
   size_t folds;
-  size_t *fold;                /* per row */
-  double *before_um;           /* likewise */
-  double *after_um;            /* every row from the search without its fold */
-  bool cannot[FOLDS_MOST + 1]; /* too few rows, or a geometry that they do not hold */
+  size_t *fold;               /* per row */
+  double *before_um;          /* likewise */
+  double *after_um;           /* every row from the search without its fold */
+  bool cannot[FOLDS_MAX + 1]; /* too few rows, or a geometry that they do not hold */
 } cross_fit;
 
 /* A curve over places, or a jump at one, which a single disc or bump may be all that shows. */
@@ -56,7 +56,7 @@ static fg_status deal(fg_context *ctx, cross_fit *c) {
     c->fold[i] = c->unit == FG_CROSS_FIT_STRETCHES ? (size_t)fmax(0, row->s_mm / STRETCH_MM) : own;
   }
   size_t units = c->unit == FG_CROSS_FIT_DISCS ? others : bumps;
-  c->folds = units < FOLDS_MOST && c->unit != FG_CROSS_FIT_STRETCHES ? units : FOLDS_MOST;
+  c->folds = units < FOLDS_MAX && c->unit != FG_CROSS_FIT_STRETCHES ? units : FOLDS_MAX;
   for (size_t i = 0; i < points->row_count && c->folds; i++)
     c->fold[i] %= c->folds;
   return FG_OK;
@@ -95,7 +95,7 @@ static fg_status search_without(fg_context *ctx, const cross_fit *c, size_t fold
   bool *keep = NULL;
   double *residual_um = NULL;
   fg_points others = {0};
-  const fg_settle_request request = {&others, fg_explain_policy_of(points), c->barred};
+  const fg_iterate_request request = {&others, fg_explain_policy_of(points), c->barred};
   fg_status status = FG_OK;
   FG_TRY_EXIT(fg_memory_allocate(ctx, points->row_count, sizeof *keep, (void **)&keep));
   for (size_t i = 0; i < points->row_count; i++)
@@ -103,7 +103,7 @@ static fg_status search_without(fg_context *ctx, const cross_fit *c, size_t fold
   FG_TRY_EXIT(fg_points_subset(ctx, points, keep, &others));
   FG_TRY_EXIT(
       fg_memory_allocate(ctx, others.row_count, sizeof *residual_um, (void **)&residual_um));
-  FG_TRY_EXIT(fg_explain_settle_again(ctx, &request, set, residual_um));
+  FG_TRY_EXIT(fg_explain_iterate_again(ctx, &request, set, residual_um));
   FG_TRY_EXIT(keep_single_bumps(ctx, c, &others, set));
 exit:
   free(keep);
@@ -178,7 +178,7 @@ fg_status fg_explain_cross_fit(fg_context *ctx, const fg_points *points, const f
   bool cannot = false;
   *result = (fg_cross_fit){.before_um = NAN, .after_um = NAN, .gain = NAN, .u_gain = NAN};
   FG_TRY_EXIT(deal(ctx, &c));
-  if (c.folds < FOLDS_LEAST) goto exit;
+  if (c.folds < FOLDS_MIN) goto exit;
   FG_TRY_EXIT(fg_memory_allocate(ctx, rows, sizeof *c.before_um, (void **)&c.before_um));
   FG_TRY_EXIT(fg_memory_allocate(ctx, rows, sizeof *c.after_um, (void **)&c.after_um));
   FG_TRY_EXIT(fg_parallel_run(ctx, threads, c.folds + 1, take_item, &c));

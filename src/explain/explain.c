@@ -30,17 +30,17 @@ static void bar(fg_explain_bars *barred, const fg_explanations *explanations,
 static fg_status bar_unconfirmed(fg_context *ctx, const fg_points *points, fg_effect_set *set,
                                  const fg_explanations *explanations, const double *residual_um,
                                  fg_explain_bars *barred) {
-  double confirmed[FG_EFFECT_SET_MAX], least = 0;
+  double confirmed[FG_EFFECT_SET_MAX], min = 0;
   size_t failing = 0;
   for (size_t e = 0; e < set->count; e++) {
     FG_TRY(fg_explain_confirm(ctx, points, &set->effects[e], residual_um, &confirmed[e]));
     failing += !(confirmed[e] > 0);
-    least = fmin(least, confirmed[e]);
+    min = fmin(min, confirmed[e]);
   }
-  size_t most = failing == set->count ? failing : 1;
-  if (!failing || barred->count + most > FG_EXPLAIN_BARRED_MAX) return FG_OK;
-  for (size_t e = 0, n = 0; e < set->count && n < most; e++) {
-    if (confirmed[e] > least && most == 1) continue;
+  size_t max = failing == set->count ? failing : 1;
+  if (!failing || barred->count + max > FG_EXPLAIN_BARRED_MAX) return FG_OK;
+  for (size_t e = 0, n = 0; e < set->count && n < max; e++) {
+    if (confirmed[e] > min && max == 1) continue;
     bar(barred, explanations, set->effects[e].kind);
     n++;
   }
@@ -92,11 +92,11 @@ static void start_again(fg_points *points, const double *weights) {
 }
 
 /* Settles, bars what is not confirmed, and settles again without it until nothing is barred. */
-static fg_status settle_confirmed(fg_context *ctx, fg_points *points,
-                                  const fg_explain_policy *policy, fg_effect_set *set,
-                                  fg_explanations *explanations, double *residual_um) {
+static fg_status iterate_until_confirmed(fg_context *ctx, fg_points *points,
+                                         const fg_explain_policy *policy, fg_effect_set *set,
+                                         fg_explanations *explanations, double *residual_um) {
   fg_explain_bars barred = {.count = 0};
-  const fg_settle_request request = {points, policy, &barred};
+  const fg_iterate_request request = {points, policy, &barred};
   double *weights = NULL;
   fg_status status = FG_OK;
   FG_TRY(fg_memory_allocate(ctx, points->row_count, sizeof *weights, (void **)&weights));
@@ -106,7 +106,7 @@ static fg_status settle_confirmed(fg_context *ctx, fg_points *points,
   while (more) {
     size_t before = barred.count;
     start_again(points, weights);
-    FG_TRY_EXIT(fg_explain_settle(ctx, &request, set, explanations, residual_um));
+    FG_TRY_EXIT(fg_explain_iterate(ctx, &request, set, explanations, residual_um));
     FG_TRY_EXIT(bar_unconfirmed(ctx, points, set, explanations, residual_um, &barred));
     more = barred.count > before;
   }
@@ -120,9 +120,9 @@ fg_status fg_explain_run(fg_context *ctx, fg_points *points, fg_effect_set *set,
                          fg_explanations *explanations, double *residual_um) {
   const fg_explain_policy *policy = fg_explain_policy_of(points);
   if (policy->confirms && points->part_count > 1)
-    return settle_confirmed(ctx, points, policy, set, explanations, residual_um);
-  const fg_settle_request request = {.points = points, .policy = policy};
-  FG_TRY(fg_explain_settle(ctx, &request, set, explanations, residual_um));
+    return iterate_until_confirmed(ctx, points, policy, set, explanations, residual_um);
+  const fg_iterate_request request = {.points = points, .policy = policy};
+  FG_TRY(fg_explain_iterate(ctx, &request, set, explanations, residual_um));
   if (policy->confirms) add_ring_alias(explanations);
   return FG_OK;
 }

@@ -37,7 +37,7 @@ typedef struct fg_explanation {
   unsigned mask;
   double excess; /* residual sum beyond that of all effects, in units of the noise; chi² of
                     `freedom` when the set is right */
-  double freedom;
+  double dof;
   double width; /* of the same kind: what the strip's width says against it */
   double middle_mm[FG_CANDIDATES_MAX]; /* of the polynomials in it */
 } fg_explanation;

@@ -59,14 +59,13 @@ static void find_support(fg_explain_columns *s, size_t rank) {
 }
 
 /* Adds v to the basis unless it lies in it already, or what it adds has no more than `least`. */
-static bool extend(fg_explain_columns *s, size_t rank, const double *v, double share,
-                   double least) {
+static bool extend(fg_explain_columns *s, size_t rank, const double *v, double share, double min) {
   double *to = s->basis + rank * s->rows, whole = fg_explain_dot(s->rows, v, v);
-  if (!(whole > least)) return false;
+  if (!(whole > min)) return false;
   memcpy(to, v, s->rows * sizeof *to);
   fg_explain_take_out(s, rank, to);
   double left = fg_explain_dot(s->rows, to, to);
-  if (!(left > fmax(share * whole, least))) return false;
+  if (!(left > fmax(share * whole, min))) return false;
   for (size_t i = 0; i < s->rows; i++)
     to[i] /= sqrt(left);
   find_support(s, rank);
@@ -143,7 +142,7 @@ size_t fg_explain_columns_span(fg_explain_columns *s, size_t skip, size_t end) {
         s->left[i] = v[i] + v[i + s->rows];
       v = s->left;
     }
-    if (extend(s, rank, v, DEPENDENT, s->least)) rank++;
+    if (extend(s, rank, v, DEPENDENT, s->min)) rank++;
   }
   memcpy(s->left, s->residual, s->rows * sizeof *s->left);
   fg_explain_take_out(s, rank, s->left);
@@ -152,7 +151,7 @@ size_t fg_explain_columns_span(fg_explain_columns *s, size_t skip, size_t end) {
 
 size_t fg_explain_columns_span_more(fg_explain_columns *s, size_t rank, size_t from, size_t to) {
   for (size_t c = from; c < to; c++)
-    if (extend(s, rank, s->values + c * s->rows, DEPENDENT, s->least)) rank++;
+    if (extend(s, rank, s->values + c * s->rows, DEPENDENT, s->min)) rank++;
   memcpy(s->left, s->residual, s->rows * sizeof *s->left);
   fg_explain_take_out(s, rank, s->left);
   return rank;
@@ -174,7 +173,7 @@ static double term_product(const fg_explain_columns *s, const fg_explain_term *a
  * leave to count. */
 typedef struct target {
   const double *right;
-  double square, least;
+  double square, min;
 } target;
 
 static double term_right(const target *to, const fg_explain_term *a) {
@@ -201,7 +200,7 @@ static double fit_terms(const fg_explain_columns *s, const target *to, const fg_
       right -= lower[n][k] * forward[k];
     }
     if (x) x[a] = 0;
-    if (!(pivot > fmax(DEPENDENT * whole, to->least))) continue;
+    if (!(pivot > fmax(DEPENDENT * whole, to->min))) continue;
     lower[n][n] = sqrt(pivot);
     forward[n] = right / lower[n][n];
     sum -= forward[n] * forward[n];
@@ -220,7 +219,7 @@ static double fit_terms(const fg_explain_columns *s, const target *to, const fg_
 
 double fg_explain_solve(const fg_explain_columns *s, const fg_explain_term *terms, size_t count,
                         double *x, double *last_u, size_t *rank) {
-  const target residual = {s->right, s->square, s->least};
+  const target residual = {s->right, s->square, s->min};
   return fit_terms(s, &residual, terms, count, x, last_u, rank);
 }
 
@@ -297,7 +296,7 @@ static size_t span_more(fg_explain_columns *s, size_t rank, const double *v, siz
 
 /* What of the widths is smooth over place and direction beyond any stretch by the scanner's fields
  * is the edge model's error; the edges' common error is taken to be no larger. */
-fg_status fg_explain_width_doubt(fg_context *ctx, fg_explain_columns *s) {
+fg_status fg_explain_width_uncertainty(fg_context *ctx, fg_explain_columns *s) {
   double *v = NULL, *left = NULL, *kept = NULL;
   fg_status status = FG_OK;
   s->width_part = 0;
@@ -335,16 +334,16 @@ static fg_status list_rows(fg_context *ctx, fg_explain_columns *s) {
   const fg_points *points = s->points;
   FG_TRY(fg_memory_allocate(ctx, points->row_count, sizeof *s->row, (void **)&s->row));
   for (size_t i = 0; i < points->row_count; i++)
-    if (!points->views[points->rows[i].view].aside) s->row[s->rows++] = i;
+    if (!points->views[points->rows[i].view].held_out) s->row[s->rows++] = i;
   return FG_OK;
 }
 
 static fg_status allocate(fg_context *ctx, fg_explain_columns *s) {
   size_t vector = s->rows * sizeof(double), all = FG_EXPLAIN_COLUMNS;
   FG_TRY(fg_memory_allocate(ctx, s->points->parameters + all, vector, (void **)&s->basis));
-  size_t most = s->points->parameters + all;
-  FG_TRY(fg_memory_allocate(ctx, most, sizeof *s->first, (void **)&s->first));
-  FG_TRY(fg_memory_allocate(ctx, most, sizeof *s->last, (void **)&s->last));
+  size_t max = s->points->parameters + all;
+  FG_TRY(fg_memory_allocate(ctx, max, sizeof *s->first, (void **)&s->first));
+  FG_TRY(fg_memory_allocate(ctx, max, sizeof *s->last, (void **)&s->last));
   FG_TRY(fg_memory_allocate(ctx, s->points->row_count, sizeof *s->white, (void **)&s->white));
   FG_TRY(fg_whitening_open(ctx, s->points, &s->whitening));
   FG_TRY(fg_memory_allocate(ctx, all, vector, (void **)&s->values));
@@ -405,7 +404,7 @@ fg_status fg_explain_columns_open(fg_context *ctx, const fg_points *points,
     return status;
   }
   double noise = SEEN_ERRORS * scatter->row_um / LARGEST_UM;
-  s->least = fmax(VANISHED * (double)s->rows, noise * noise * s->integral);
+  s->min = fmax(VANISHED * (double)s->rows, noise * noise * s->integral);
   span_geometry(s, residual_um, jacobian);
   fill_width(s);
   return FG_OK;

@@ -33,7 +33,7 @@ typedef struct fg_explain_columns {
   double *right; /* products with the residual */
   double square; /* of the residual */
   fg_whitening whitening;
-  double least;      /* square of a vector that tells anything */
+  double min;        /* square of a vector that tells anything */
   double integral;   /* of the correlation that it takes out */
   double *work;      /* FG_EFFECT_COLUMNS_MAX × all rows */
   double *white;     /* all rows */
@@ -90,6 +90,6 @@ double fg_explain_share_left(const fg_explain_columns *columns, const fg_explain
 double fg_explain_width_sum(const fg_explain_columns *columns, const fg_explain_term *terms,
                             size_t count, const double *x);
 /* Fills `width_part`; once all effects are there. */
-fg_status fg_explain_width_doubt(fg_context *ctx, fg_explain_columns *columns);
+fg_status fg_explain_width_uncertainty(fg_context *ctx, fg_explain_columns *columns);
 
 #endif

@@ -15,8 +15,8 @@ enum {
   UNKNOWNS_MAX = FG_EFFECT_SET_MAX * (FG_EFFECT_COLUMNS_MAX + FG_FIELD_SHAPES)
 };
 /* A coefficient's step that ends the fit, and its largest one, um. */
-#define STEP_END_UM  1e-5
-#define STEP_MOST_UM 60.0
+#define STEP_END_UM 1e-5
+#define STEP_MAX_UM 60.0
 /* A shape's largest step: this share of itself, and where it is a place as much of a mm; the
  * hundredth part of that ends the fit. */
 #define SHAPE_SHARE 0.02
@@ -24,9 +24,9 @@ enum {
 #define SHAPE_END   100
 /* Half the span of a derivative by a shape, of itself; no shape counts as smaller, mm. */
 #define DERIVE_SHARE 1e-5
-#define SHAPE_LEAST  1e-3
+#define SHAPE_MIN    1e-3
 /* Rows of scans that only confirm weigh so much: enough to fit their own pose. */
-#define ASIDE_WEIGHT 1e-6
+#define HELD_OUT_WEIGHT 1e-6
 /* Size of a free curve, um: what scanners and foils do is of this order (reports/loop_scans.md). */
 #define CURVE_UM 15.0
 /* Damping for what no row tells: of a diagonal, and beside it. */
@@ -35,7 +35,7 @@ enum {
 /* Rows of less than this share of the largest weight, and those whose normal lies farther from the
  * step's direction, do not hold its place. */
 #define ROUGH_WEIGHT 0.1
-#define ALONG_LEAST  0.3
+#define ALONG_MIN    0.3
 
 /* One unknown of the effects: a coefficient, or a shape by its numerical derivative. */
 typedef struct unknown {
@@ -68,7 +68,7 @@ static void effect_design(const fg_points *points, const fg_effect_set *set, con
       continue;
     }
     memset(to, 0, rows * sizeof *to);
-    double step = DERIVE_SHARE * fmax(fabs(effect->shape[list[k].index]), SHAPE_LEAST);
+    double step = DERIVE_SHARE * fmax(fabs(effect->shape[list[k].index]), SHAPE_MIN);
     for (int side = -1; side <= 1; side += 2) {
       memcpy(shape, effect->shape, sizeof shape);
       shape[list[k].index] += side * step;
@@ -100,8 +100,8 @@ static const double *column_of(const refit *r, size_t k) {
 
 /* Rows of scans that only confirm fit their own pose, and nothing else of theirs counts. */
 static double row_weight(const refit *r, size_t i, size_t a, size_t b) {
-  if (!r->points->views[r->points->rows[i].view].aside) return FG_POINTS_BLOCK;
-  return a < r->parameters && b < r->parameters ? FG_POINTS_BLOCK * ASIDE_WEIGHT : 0;
+  if (!r->points->views[r->points->rows[i].view].held_out) return FG_POINTS_BLOCK;
+  return a < r->parameters && b < r->parameters ? FG_POINTS_BLOCK * HELD_OUT_WEIGHT : 0;
 }
 
 static void whiten(const refit *r, double *values) {
@@ -189,13 +189,13 @@ static double move(refit *r) {
     double step = gsl_vector_get(r->right, r->parameters + k);
     if (r->list[k].shape) {
       /* A period moves by its share; the middle of a lens, which may lie at 0, by its size. */
-      double most = SHAPE_SHARE * fabs(effect->shape[r->list[k].index]) +
-                    (effect->columns == 1 ? SHAPE_MM : 0);
-      step = fmax(-most, fmin(most, step));
+      double max = SHAPE_SHARE * fabs(effect->shape[r->list[k].index]) +
+                   (effect->columns == 1 ? SHAPE_MM : 0);
+      step = fmax(-max, fmin(max, step));
       effect->shape[r->list[k].index] += step;
-      largest = fmax(largest, SHAPE_END * fabs(step) / most * STEP_END_UM);
+      largest = fmax(largest, SHAPE_END * fabs(step) / max * STEP_END_UM);
     } else {
-      step = fmax(-STEP_MOST_UM, fmin(STEP_MOST_UM, step));
+      step = fmax(-STEP_MAX_UM, fmin(STEP_MAX_UM, step));
       effect->coefficient_um[r->list[k].index] += step;
       largest = fmax(largest, fabs(step));
     }
@@ -206,15 +206,15 @@ static double move(refit *r) {
 /* Between the rows next to it a step may lie anywhere: the sd of a uniform distribution. Rows that
  * hardly count do not hold it. */
 static double place_u(const fg_points *points, const fg_effect_found *step) {
-  double above = -INFINITY, below = INFINITY, most = 0;
+  double above = -INFINITY, below = INFINITY, max = 0;
   for (size_t i = 0; i < points->row_count; i++)
-    most = fmax(most, points->rows[i].weight);
+    max = fmax(max, points->rows[i].weight);
   for (size_t i = 0; i < points->row_count; i++) {
     const fg_points_row *row = &points->rows[i];
     double at = fg_point_along(row->ideal, step->kind->axis);
     bool rough =
-        row->weight > 0 && row->weight < ROUGH_WEIGHT * most; /* 0: left out for the step itself */
-    if (rough || fabs(fg_point_along(row->normal, step->kind->axis)) < ALONG_LEAST) continue;
+        row->weight > 0 && row->weight < ROUGH_WEIGHT * max; /* 0: left out for the step itself */
+    if (rough || fabs(fg_point_along(row->normal, step->kind->axis)) < ALONG_MIN) continue;
     if (at <= step->shape[0])
       above = fmax(above, at);
     else
@@ -227,13 +227,13 @@ static double place_u(const fg_points *points, const fg_effect_found *step) {
 static double row_variance(const refit *r) {
   double sum = 0, rows = 0;
   for (size_t i = 0; i < r->points->row_count; i++) {
-    if (r->points->views[r->points->rows[i].view].aside) continue;
+    if (r->points->views[r->points->rows[i].view].held_out) continue;
     sum += FG_POINTS_BLOCK * r->white[i] * r->white[i];
     rows++;
   }
-  double freedom = fmax(rows - (double)(r->parameters + r->unknowns), 1);
+  double dof = fmax(rows - (double)(r->parameters + r->unknowns), 1);
   double integral = fg_points_integral(r->points, NULL, r->points->row_count, r->white);
-  return sum / freedom * fmax(r->points->scatter.swell, integral);
+  return sum / dof * fmax(r->points->scatter.swell, integral);
 }
 
 /* What the effects in force add to the covariance of two numbers of the geometry. `whole` is the

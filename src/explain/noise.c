@@ -7,19 +7,19 @@
 /* A curve with all its columns leaves less than this share of what a smoother one does. */
 #define FINER 0.9 /* tuned on reports/loop_scans.md, tier curves */
 /* No row is better known, um: exact data are not of a scanner. */
-#define NOISE_LEAST_UM 1e-4
+#define NOISE_MIN_UM 1e-4
 /* Rows beyond the numbers that are fitted to them: fewer tell no noise. */
-enum { FREEDOM_LEAST = 12 };
+enum { DOF_MIN = 12 };
 
 double fg_explain_chance(const fg_explain_search *s, double chi2, double numbers) {
-  double known = s->columns.points->scatter.freedom;
+  double known = s->columns.points->scatter.dof;
   if (!(numbers > 0)) return 1;
   return known > 0 ? gsl_cdf_fdist_Q(chi2 / numbers, numbers, known)
                    : gsl_cdf_chisq_Q(chi2, numbers);
 }
 
 double fg_explain_chance_limit(const fg_explain_search *s, double p, double numbers) {
-  double known = s->columns.points->scatter.freedom;
+  double known = s->columns.points->scatter.dof;
   if (!(numbers > 0)) return 0;
   return known > 0 ? numbers * gsl_cdf_fdist_Qinv(p, numbers, known)
                    : gsl_cdf_chisq_Qinv(p, numbers);
@@ -32,13 +32,13 @@ double fg_explain_integral(const fg_explain_columns *s) {
 /* A smooth value keeps its size beside correlated noise, which is smaller by the root of its
  * integral. */
 static double noise_of(const fg_explain_columns *c, size_t rank) {
-  double freedom = fmax((double)c->rows - (double)rank, 1) * c->integral;
-  return fmax(sqrt(fg_explain_dot(c->rows, c->left, c->left) / freedom), NOISE_LEAST_UM);
+  double dof = fmax((double)c->rows - (double)rank, 1) * c->integral;
+  return fmax(sqrt(fg_explain_dot(c->rows, c->left, c->left) / dof), NOISE_MIN_UM);
 }
 
 fg_status fg_explain_check_rows(fg_context *ctx, const fg_explain_search *s) {
-  size_t numbers = s->columns.geometry_rank + s->freedom;
-  if (s->columns.rows >= numbers + FREEDOM_LEAST) return FG_OK;
+  size_t numbers = s->columns.geometry_rank + s->dof;
+  if (s->columns.rows >= numbers + DOF_MIN) return FG_OK;
   return fg_fail(ctx, FG_ERR_DATA,
                  "%zu edge rows are too few to look for effects: %zu numbers would be fitted to "
                  "them; scan more bumps, or at a higher resolution",
@@ -47,7 +47,7 @@ fg_status fg_explain_check_rows(fg_context *ctx, const fg_explain_search *s) {
 
 static void take_noise(fg_explain_search *s, size_t rank) {
   s->full = fg_explain_dot(s->columns.rows, s->columns.left, s->columns.left);
-  s->freedom = rank - s->columns.geometry_rank;
+  s->dof = rank - s->columns.geometry_rank;
   s->out->noise_um = noise_of(&s->columns, rank);
   double swell = s->columns.points->scatter.swell;
   s->out->integral = s->columns.integral * fmax(swell, fg_explain_integral(&s->columns));
@@ -70,15 +70,15 @@ static bool is_smoother(const fg_explain_columns *c, const fg_candidate *curve) 
 void fg_explain_refine_noise(fg_explain_search *s) {
   const fg_candidate *best = NULL;
   size_t rank = fg_explain_noise(s, false);
-  double least = FINER * s->out->noise_um;
+  double min = FINER * s->out->noise_um;
   for (size_t e = 0; e < s->out->candidate_count; e++) {
     const fg_candidate *curve = &s->out->candidates[e];
     if (!fg_effect_is_free(curve->kind) || !is_smoother(&s->columns, curve)) continue;
     size_t from = curve->column[0];
     size_t more = fg_explain_columns_span_more(&s->columns, rank, from, from + curve->columns);
     double noise = noise_of(&s->columns, more);
-    if (noise >= least) continue;
-    least = noise;
+    if (noise >= min) continue;
+    min = noise;
     best = curve;
   }
   if (!best) return;

@@ -32,7 +32,7 @@ fg_status fg_explain_add_shaped(fg_context *ctx, fg_explain_search *s, const fg_
   for (size_t e = 0; known && e < known->count; e++)
     if (known->effects[e].kind == kind) fitted = known->effects[e].shape[0];
   if (isfinite(fitted)) fg_explain_add(s, &(fg_candidate){.kind = kind, .shape = {fitted}});
-  if (isfinite(fitted) && fabs(alone / fitted - 1) < FG_EXPLAIN_TWIN_SHARE) return FG_OK;
+  if (isfinite(fitted) && fabs(alone / fitted - 1) < FG_EXPLAIN_COLLINEAR_SHARE) return FG_OK;
   s->unfitted |= 1u << s->out->candidate_count;
   fg_explain_add(s, &(fg_candidate){.kind = kind, .shape = {alone}});
   return FG_OK;
@@ -90,7 +90,7 @@ static bool add_best(fg_explain_search *s, bool listed_only, double *work) {
   for (const fg_effect *kind = fg_effect_first(); kind; kind = fg_effect_next(kind)) {
     if (kind->sought != FG_EFFECT_PLACED || !fg_explain_seeks(s, kind)) continue;
     fg_explain_hit found = fg_explain_find_place(s, rank, kind, work);
-    if (found.gain <= s->policy->placed_chi2 || found.amplitude <= FG_EXPLAIN_SHAPED_LEAST_UM)
+    if (found.gain <= s->policy->placed_chi2 || found.amplitude <= FG_EXPLAIN_SHAPED_MIN_UM)
       continue;
     if (which && found.gain <= best.gain) continue;
     best = found;
@@ -117,12 +117,12 @@ fg_status fg_explain_find_on_foils(fg_context *ctx, fg_explain_search *s) {
 
 /* What the best smooth effect takes by itself. */
 static double best_alone(fg_explain_search *s) {
-  const fg_explain_yardstick y = fg_explain_yardstick_of(s);
-  double least = s->columns.square;
+  const fg_explain_baseline y = fg_explain_find_baseline(s);
+  double min = s->columns.square;
   for (size_t e = 0; e < s->out->candidate_count; e++)
     if (!fg_effect_is_free(s->out->candidates[e].kind))
-      least = fmin(least, fg_explain_lone_sum(s, &y, e));
-  return (s->columns.square - least) / y.unit;
+      min = fmin(min, fg_explain_outlier_sum(s, &y, e));
+  return (s->columns.square - min) / y.unit;
 }
 
 static bool is_there(const fg_explain_search *s, const fg_candidate *placed) {
@@ -130,24 +130,24 @@ static bool is_there(const fg_explain_search *s, const fg_candidate *placed) {
   fg_explanations *out = s->out;
   if (out->candidate_count == FG_CANDIDATES_MAX) return true;
   out->candidates[out->candidate_count++] = *placed; /* on trial */
-  bool twin = false;
+  bool duplicate = false;
   for (size_t e = 0; e + 1 < out->candidate_count; e++)
-    twin = twin || fg_explain_has_twins(out, both | 1u << e);
+    duplicate = duplicate || fg_explain_has_collinear(out, both | 1u << e);
   out->candidate_count--;
-  return twin;
+  return duplicate;
 }
 
 fg_status fg_explain_find_in_place(fg_context *ctx, fg_explain_search *s) {
-  double *work = NULL, most = 0;
+  double *work = NULL, max = 0;
   FG_TRY(fg_memory_allocate(ctx, s->columns.rows, 2 * sizeof *work, (void **)&work));
   fg_explain_noise(s, false);
-  most = best_alone(s);
+  max = best_alone(s);
   memcpy(s->columns.left, s->columns.residual, s->columns.rows * sizeof *s->columns.left);
   for (const fg_effect *kind = fg_effect_first(); kind; kind = fg_effect_next(kind)) {
     if (kind->sought != FG_EFFECT_PLACED || !fg_explain_seeks(s, kind)) continue;
     fg_explain_hit hit = fg_explain_find_place(s, s->columns.geometry_rank, kind, work);
     fg_candidate found = {.kind = kind, .shape = {hit.at}};
-    if (hit.gain < fmax(s->policy->one_more_chi2, most - s->policy->worse_chi2)) continue;
+    if (hit.gain < fmax(s->policy->one_more_chi2, max - s->policy->worse_chi2)) continue;
     if (is_there(s, &found)) continue;
     s->unfitted |= 1u << s->out->candidate_count;
     fg_explain_add(s, &found);
@@ -176,7 +176,7 @@ static double gain_over_rest(fg_explain_search *s, size_t rank, const fg_candida
  * several of the other: the better one. */
 fg_status fg_explain_find_on_discs(fg_context *ctx, fg_explain_search *s) {
   fg_candidate best = {0};
-  double *work = NULL, most = 0;
+  double *work = NULL, max = 0;
   if (s->out->candidate_count >= FG_CANDIDATES_MAX) return FG_OK;
   FG_TRY(fg_memory_allocate(ctx, s->columns.rows, 2 * sizeof *work, (void **)&work));
   for (const fg_effect *kind = fg_effect_first(); kind; kind = fg_effect_next(kind)) {
@@ -184,14 +184,14 @@ fg_status fg_explain_find_on_discs(fg_context *ctx, fg_explain_search *s) {
     size_t rank = fg_explain_noise(s, false);
     fg_explain_hit hit = fg_explain_find_place(s, rank, kind, work);
     fg_candidate found = {.kind = kind, .shape = {hit.at}};
-    if (!(hit.gain > 0) || hit.amplitude <= FG_EXPLAIN_SHAPED_LEAST_UM) continue;
+    if (!(hit.gain > 0) || hit.amplitude <= FG_EXPLAIN_SHAPED_MIN_UM) continue;
     double gain = gain_over_rest(s, rank, &found);
-    if (gain <= fmax(most, s->policy->placed_chi2)) continue;
-    most = gain;
+    if (gain <= fmax(max, s->policy->placed_chi2)) continue;
+    max = gain;
     best = found;
   }
   free(work);
-  if (most > 0) {
+  if (max > 0) {
     fg_explain_add(s, &best);
     s->new_shapes++;
   }

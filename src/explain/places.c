@@ -11,11 +11,11 @@ enum { REFINE_STEPS = 24, REFINE_LEVELS = 4, SIDE_ROWS = 12 };
 /* A quick look takes every so many starts. */
 enum { COARSER = 40 };
 /* A column beside the basis with less than this mean square tells nothing: one row in 64 000. */
-#define COLUMN_LEAST (1e-3 / 64)
+#define COLUMN_MIN (1e-3 / 64)
 /* Its normal equations are singular where a pivot is this share of its diagonal. */
 #define SINGULAR 1e-9
 /* Columns of one grid that are kept: beyond that the rows are many, and memory counts. */
-#define GRID_BYTES_MOST ((size_t)32 << 20)
+#define GRID_BYTES_MAX ((size_t)32 << 20)
 
 /* A step needs rows on both sides that speak of it: one bad row at the foil's end is none. */
 static bool has_both_sides(const fg_explain_columns *c, const fg_effect *kind, double at_mm) {
@@ -52,7 +52,7 @@ static fg_explain_hit gain_of(const fg_explain_search *s, size_t rank, double pl
     }
   }
   for (size_t a = 0; a < count; a++)
-    if (!(system.matrix[a][a] > COLUMN_LEAST * (double)c->rows)) return none;
+    if (!(system.matrix[a][a] > COLUMN_MIN * (double)c->rows)) return none;
   if (!fg_normal_solve(&system, SINGULAR, x, NULL)) return none;
   for (size_t a = 0; a < count; a++) {
     found.gain += x[a] * system.right[a];
@@ -79,7 +79,7 @@ static const fg_explain_grid *grid_of(fg_explain_search *s, const fg_effect *kin
   size_t vector = s->columns.rows * sizeof(double), count = kind->columns;
   for (size_t g = 0; g < s->grids; g++)
     if (s->grid[g].kind == kind) return &s->grid[g];
-  if (s->grids == FG_EXPLAIN_GRIDS || starts * count * vector > GRID_BYTES_MOST) return NULL;
+  if (s->grids == FG_EXPLAIN_GRIDS || starts * count * vector > GRID_BYTES_MAX) return NULL;
   fg_explain_grid *grid = &s->grid[s->grids];
   *grid = (fg_explain_grid){kind, starts, count, malloc(starts * count * vector)};
   if (!grid->values) return NULL;

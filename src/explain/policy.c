@@ -8,7 +8,7 @@ static bool scanned_again(const fg_points *points) {
   return points->view_count > points->part_count;
 }
 
-static size_t most_of_foils(const fg_points *points) {
+static size_t max_effects_of_foils(const fg_points *points) {
   return points->coarse ? 1 : scanned_again(points) ? 3 : 2;
 }
 
@@ -22,7 +22,7 @@ static bool has_lower_score(const fg_explain_search *s, const fg_explanation *ex
 /* ---- discs ---- */
 
 /* How many effects the points can tell apart. */
-static size_t most_of_discs(const fg_points *points) {
+static size_t max_effects_of_discs(const fg_points *points) {
   return points->coarse ? 1 : points->part_count > 2 ? 5 : 2;
 }
 
@@ -35,7 +35,7 @@ static bool leaves_less(const fg_explain_search *s, const fg_explanation *explan
   return explanation->excess < best->excess - ONE_MORE_CHI2;
 }
 
-static bool has_new_shape(const fg_explain_search *s, const fg_explain_yardstick *y,
+static bool has_new_shape(const fg_explain_search *s, const fg_explain_baseline *y,
                           const fg_explanation *best, const fg_explanation *curve) {
   (void)y;
   (void)best;
@@ -48,7 +48,7 @@ static const fg_explain_policy foils = {
     .smoother_curves = true,
     .other_steps = true,
     .find_placed = fg_explain_find_on_foils,
-    .effects_most = most_of_foils,
+    .effects_max = max_effects_of_foils,
     .placed_beside = true,
     .edge_error_um = 0.003, /* clean renders leave at most this (reports/loop_scans.md) */
     /* Edges of a stretched picture are measured a little wrong (reports/loop_scans.md). */
@@ -66,9 +66,9 @@ static const fg_explain_policy foils = {
     .curve_share = 0.03, /* reports/loop_scans.md, tier curves */
     .is_worth_fitting = fg_explain_hopes_for_shape,
     .scatters = true,
-    .manners = {{true, false}, {false, false}, {true, true}},
-    .manner_count = 3,
-    .rest_share = 0.05,
+    .strategies = {{true, false}, {false, false}, {true, true}},
+    .strategy_count = 3,
+    .converged_share = 0.05,
     .drops_nothings = true,
     .drops_ends = true,
     .step_half_mm = 0.08,
@@ -80,11 +80,11 @@ static const fg_explain_policy foils = {
  * that neither the noise along one edge nor the middle of a polynomial needs help. */
 static const fg_explain_policy discs = {
     .find_placed = fg_explain_find_on_discs,
-    .effects_most = most_of_discs,
-    .keeps_twins = true,
+    .effects_max = max_effects_of_discs,
+    .keeps_collinear = true,
     .edge_error_um = 0.01, /* tuned on plates (reports/loop_plate.md) */
     .one_more_chi2 = ONE_MORE_CHI2,
-    .quadratic_chi2 = FG_EXPLAIN_GAIN_LEAST,
+    .quadratic_chi2 = FG_EXPLAIN_GAIN_MIN,
     .placed_chi2 = 45.0,    /* tuned on plates (reports/loop_plate.md) */
     .worse_chi2 = INFINITY, /* none that is much worse is right */
     .is_better = leaves_less,
@@ -92,11 +92,12 @@ static const fg_explain_policy discs = {
     .curves_alone_last = true, /* confirmation drops the effect that does not belong there */
     .is_worth_fitting = has_new_shape,
     .smallest_beside_own = true,
-    .manners = {{true, false}},
-    .manner_count = 1,
-    .rest_share = 1, /* one round without a new effect is rest: confirmation judges what it is */
+    .strategies = {{true, false}},
+    .strategy_count = 1,
+    .converged_share =
+        1, /* one round without a new effect is rest: confirmation judges what it is */
     .falls_back = true,
-    .rests_in_force = true, /* there is one manner only, so no other start follows */
+    .converges_in_force = true, /* there is one manner only, so no other start follows */
     .own_noise = true,
     .step_half_mm = 0.03,
     .confirms = true,

@@ -12,11 +12,11 @@
 /* How one start of the search goes about it. With `eager`, ripples and steps are looked for at
  * once: right for them, while a large smooth effect leaves traces in the first round that look like
  * them. Two curves can be made of nearly anything, so they come last. */
-typedef struct fg_explain_manner {
-  bool eager, two_curves;
-} fg_explain_manner;
+typedef struct fg_explain_strategy {
+  bool seeds_placed_first, two_curves;
+} fg_explain_strategy;
 
-enum { FG_EXPLAIN_MANNERS_MAX = 3 };
+enum { FG_EXPLAIN_STRATEGIES_MAX = 3 };
 
 struct fg_explain_policy {
   /* ---- candidates ---- */
@@ -27,9 +27,9 @@ struct fg_explain_policy {
   fg_status (*find_placed)(fg_context *ctx, fg_explain_search *search); /* new ripples and steps */
 
   /* ---- which sets are tried, and which are right ---- */
-  size_t (*effects_most)(const fg_points *points); /* in a set */
+  size_t (*effects_max)(const fg_points *points); /* in a set */
   bool placed_beside;   /* ripples and steps are not among those: all that stand out may be there */
-  bool keeps_twins;     /* one effect in two forms is a set */
+  bool keeps_collinear; /* one effect in two forms is a set */
   double edge_error_um; /* of the edge model: below it effects are not told apart */
   double effect_error;  /* an effect's form is known to this share of what it does to the rows; */
   double more_error;    /* what one more effect takes beside it may be so much of that */
@@ -55,18 +55,19 @@ struct fg_explain_policy {
                             less */
   /* Whether the best listed set has a shape that is to be fitted with the geometry before any
    * curve is believed. */
-  bool (*is_worth_fitting)(const fg_explain_search *search, const fg_explain_yardstick *yardstick,
+  bool (*is_worth_fitting)(const fg_explain_search *search, const fg_explain_baseline *baseline,
                            const fg_explanation *best, const fg_explanation *curve);
   bool smallest_beside_own; /* the least amplitude of an effect is told beside its other columns */
 
   /* ---- search and fit in turns ---- */
   bool scatters; /* neighbours along an edge share their noise; else what is left says how much */
-  fg_explain_manner manners[FG_EXPLAIN_MANNERS_MAX]; /* the next one where the last is not right */
-  size_t manner_count;
-  double rest_share; /* a set that is not right has come to rest when a round takes no more of what
-                        is left */
-  bool rests_in_force; /* it rests when it finds the set in force again, not the one it found last:
-                          one that the fit gave up is tried again, without its outliers */
+  fg_explain_strategy
+      strategies[FG_EXPLAIN_STRATEGIES_MAX]; /* the next one where the last is not right */
+  size_t strategy_count;
+  double converged_share;  /* a set that is not right has come to rest when a round takes no more of
+                         what  is left */
+  bool converges_in_force; /* it rests when it finds the set in force again, not the one it found
+                          last: one that the fit gave up is tried again, without its outliers */
   bool falls_back; /* of a set that no fit holds the best effect is fitted alone; else the set is
                       not tried again */
   bool drops_nothings; /* what the fit has made nothing of leaves */

@@ -16,7 +16,7 @@
  * five sizes each, 1 in 2000. */
 #define CURVE_P 1e-5
 /* Numbers of a smooth curve, beside its mean. */
-enum { NUMBERS_MOST = 16 };
+enum { NUMBERS_MAX = 16 };
 
 /* Single bumps have no neighbours: a curve over them is judged by itself. */
 static bool is_smooth(const fg_effect *kind) {
@@ -55,20 +55,19 @@ static size_t list_terms(const fg_explain_search *s, const fg_candidate *curve, 
 }
 
 /* What the columns of one candidate come to, which left `sum`. */
-static fg_explanation of_candidate(const fg_explain_yardstick *y, size_t e, double sum,
+static fg_explanation of_candidate(const fg_explain_baseline *y, size_t e, double sum,
                                    size_t rank) {
-  return (fg_explanation){.mask = 1u << e,
-                          .excess = fmax(0, sum - y->full) / y->unit,
-                          .freedom = y->freedom - (double)rank};
+  return (fg_explanation){
+      .mask = 1u << e, .excess = fmax(0, sum - y->full) / y->unit, .dof = y->dof - (double)rank};
 }
 
 /* The curve of as many numbers as Schwarz's criterion says; of those that are right. */
-static fg_explanation smoothest(const fg_explain_search *s, const fg_explain_yardstick *y, size_t e,
+static fg_explanation smoothest(const fg_explain_search *s, const fg_explain_baseline *y, size_t e,
                                 bool right) {
   fg_explanation best = {.excess = INFINITY};
-  fg_explain_term term[NUMBERS_MOST + 1];
-  double x[NUMBERS_MOST + 1];
-  for (size_t numbers = 1; numbers <= NUMBERS_MOST; numbers++) {
+  fg_explain_term term[NUMBERS_MAX + 1];
+  double x[NUMBERS_MAX + 1];
+  for (size_t numbers = 1; numbers <= NUMBERS_MAX; numbers++) {
     size_t count = list_terms(s, &s->out->candidates[e], numbers, term), rank;
     double sum = fg_explain_solve(&s->columns, term, count, x, NULL, &rank);
     fg_explanation m = of_candidate(y, e, sum, rank);
@@ -83,8 +82,8 @@ static fg_explanation smoothest(const fg_explain_search *s, const fg_explain_yar
 
 /* One bump alone that stands out, whose number is sought. `score` becomes Schwarz's criterion of
  * it. */
-static fg_explanation lone_bump(const fg_explain_search *s, const fg_explain_yardstick *y, size_t e,
-                                bool right, double *score) {
+static fg_explanation single_bump(const fg_explain_search *s, const fg_explain_baseline *y,
+                                  size_t e, bool right, double *score) {
   const fg_candidate *curve = &s->out->candidates[e];
   fg_explanation best = {.excess = INFINITY};
   for (size_t k = 0; k < curve->columns; k++) {
@@ -118,15 +117,15 @@ static bool follows(const fg_explain_search *s, const fg_candidate *curve, unsig
 }
 
 /* A free curve of few numbers, or one bump, and its score. */
-static fg_explanation simplest(const fg_explain_search *s, const fg_explain_yardstick *y, size_t e,
+static fg_explanation simplest(const fg_explain_search *s, const fg_explain_baseline *y, size_t e,
                                bool right, double *score) {
-  if (!is_smooth(s->out->candidates[e].kind)) return lone_bump(s, y, e, right, score);
+  if (!is_smooth(s->out->candidates[e].kind)) return single_bump(s, y, e, right, score);
   fg_explanation m = smoothest(s, y, e, right);
   *score = isfinite(m.excess) ? fg_explain_schwarz(s, &m) : INFINITY;
   return m;
 }
 
-fg_explanation fg_explain_best_smooth(const fg_explain_search *s, const fg_explain_yardstick *y,
+fg_explanation fg_explain_best_smooth(const fg_explain_search *s, const fg_explain_baseline *y,
                                       double *score) {
   fg_explanation best = {.excess = INFINITY};
   *score = INFINITY;
@@ -141,12 +140,12 @@ fg_explanation fg_explain_best_smooth(const fg_explain_search *s, const fg_expla
   return best;
 }
 
-bool fg_explain_curve_helps(const fg_explain_search *s, const fg_explain_yardstick *y,
-                            unsigned mask, double known_to) {
-  fg_explain_term term[NUMBERS_MOST + 1];
+bool fg_explain_curve_helps(const fg_explain_search *s, const fg_explain_baseline *y, unsigned mask,
+                            double known_to) {
+  fg_explain_term term[NUMBERS_MAX + 1];
   for (size_t e = 0; e < s->out->candidate_count; e++) {
     if (!is_smooth(s->out->candidates[e].kind)) continue;
-    for (size_t numbers = 1; numbers <= NUMBERS_MOST; numbers *= 2) {
+    for (size_t numbers = 1; numbers <= NUMBERS_MAX; numbers *= 2) {
       size_t count = list_terms(s, &s->out->candidates[e], numbers, term), columns;
       double gain = fg_explain_gain_of_more(s, y, mask, term, count, &columns) - known_to;
       if (columns > 0 && gain > fg_explain_chance_limit(s, CURVE_P, (double)columns)) return true;
@@ -167,7 +166,7 @@ static double listed_score(const fg_explain_search *s, const fg_explanation *m) 
   return score;
 }
 
-void fg_explain_add_curves(fg_explain_search *s, const fg_explain_yardstick *y, double score) {
+void fg_explain_add_curves(fg_explain_search *s, const fg_explain_baseline *y, double score) {
   unsigned first = s->out->each[0].mask;
   for (size_t e = 0; e < s->out->candidate_count; e++) {
     if ((first >> e & 1) || !is_smooth(s->out->candidates[e].kind)) continue;
@@ -177,7 +176,7 @@ void fg_explain_add_curves(fg_explain_search *s, const fg_explain_yardstick *y, 
   }
 }
 
-void fg_explain_add_rivals(fg_explain_search *s, const fg_explain_yardstick *y) {
+void fg_explain_add_rivals(fg_explain_search *s, const fg_explain_baseline *y) {
   fg_explanations *out = s->out;
   const fg_explanation *best = &out->each[0];
   for (size_t m = 1; m < out->count; m++)

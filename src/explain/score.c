@@ -46,7 +46,7 @@ static void list_terms(const fg_explanations *out, unsigned mask, set_terms *set
 }
 
 /* The middle of a cubic: the best of a grid, then finer. */
-static double find_middle(const fg_explain_search *s, const fg_explain_yardstick *y,
+static double find_middle(const fg_explain_search *s, const fg_explain_baseline *y,
                           set_terms *set) {
   fg_explain_term *term = &set->term[set->first[set->cubic]];
   const fg_candidate *effect = &s->out->candidates[set->cubic];
@@ -81,7 +81,7 @@ static bool scanned_again(const fg_explain_search *s) {
 /* Of one view a quadratic gains little over its slope, and its middle may come out anywhere: where
  * that is too far off it is held at the end of its reach, on the side that leaves less. Returns how
  * many numbers that takes. */
-static size_t hold_middles(const fg_explain_search *s, const fg_explain_yardstick *y, unsigned mask,
+static size_t hold_middles(const fg_explain_search *s, const fg_explain_baseline *y, unsigned mask,
                            const double *x, set_terms *set) {
   size_t held = 0;
   if (s->policy->quadratic_chi2 > 0 || scanned_again(s)) return 0;
@@ -107,7 +107,7 @@ static size_t hold_middles(const fg_explain_search *s, const fg_explain_yardstic
 }
 
 /* A quadratic whose middle is far off is a scale; one that gains nothing over it is one. */
-static bool is_quadratic(const fg_explain_search *s, const fg_explain_yardstick *y,
+static bool is_quadratic(const fg_explain_search *s, const fg_explain_baseline *y,
                          const set_terms *set, size_t e, const double *x, double sum, double *t) {
   const double *own = x + set->first[e];
   const fg_explain_term *term = &set->term[set->first[e]];
@@ -122,8 +122,8 @@ static bool is_quadratic(const fg_explain_search *s, const fg_explain_yardstick 
   memmove(&without.term[at], &without.term[at + 1], (set->count - at - 1) * sizeof without.term[0]);
   without.count--;
   double alone = fg_explain_solve(&s->columns, without.term, without.count, NULL, NULL, &rank);
-  double least = scanned_again(s) ? FG_EXPLAIN_GAIN_LEAST : s->policy->quadratic_chi2;
-  return alone - sum >= least * y->unit;
+  double min = scanned_again(s) ? FG_EXPLAIN_GAIN_MIN : s->policy->quadratic_chi2;
+  return alone - sum >= min * y->unit;
 }
 
 /* Crown and skew are led by their lowest polynomial. */
@@ -137,9 +137,9 @@ static bool is_led(const fg_explain_columns *c, const fg_candidate *effect, cons
   return lead > 0 && lead >= LOWEST_SHARE * (lead + rest);
 }
 
-static bool has_form(const fg_explain_search *s, const fg_explain_yardstick *y,
-                     const set_terms *set, size_t e, const double *x, double sum,
-                     fg_explanation *explanation) {
+static bool has_forming(const fg_explain_search *s, const fg_explain_baseline *y,
+                        const set_terms *set, size_t e, const double *x, double sum,
+                        fg_explanation *explanation) {
   const fg_candidate *effect = &s->out->candidates[e];
   double t = 0;
   if (effect->polynomial == FG_EFFECT_QUADRATIC) {
@@ -150,7 +150,7 @@ static bool has_form(const fg_explain_search *s, const fg_explain_yardstick *y,
   return true;
 }
 
-fg_explanation fg_explain_try(const fg_explain_search *s, const fg_explain_yardstick *y,
+fg_explanation fg_explain_try(const fg_explain_search *s, const fg_explain_baseline *y,
                               unsigned mask) {
   const fg_explanations *out = s->out;
   fg_explanation explanation = {.mask = mask};
@@ -166,38 +166,38 @@ fg_explanation fg_explain_try(const fg_explain_search *s, const fg_explain_yards
   if (held) sum = fg_explain_solve(&s->columns, set.term, set.count, x, NULL, &rank);
   rank += held;
   explanation.excess = fmax(0, sum - y->full) / y->unit;
-  explanation.freedom = y->freedom - (double)rank - (set.cubic < FG_CANDIDATES_MAX);
+  explanation.dof = y->dof - (double)rank - (set.cubic < FG_CANDIDATES_MAX);
   for (size_t e = 0; e < out->candidate_count; e++)
-    if ((mask >> e & 1) && !has_form(s, y, &set, e, x, sum, &explanation))
+    if ((mask >> e & 1) && !has_forming(s, y, &set, e, x, sum, &explanation))
       explanation.excess = INFINITY;
   if (s->columns.has_width)
     explanation.width = fg_explain_width_sum(&s->columns, set.term, set.count, x);
   return explanation;
 }
 
-double fg_explain_known_to(const fg_explain_search *s, const fg_explain_yardstick *y,
+double fg_explain_known_to(const fg_explain_search *s, const fg_explain_baseline *y,
                            const fg_explanation *m) {
   double taken = fmax(0, y->none - m->excess);
   double error = m->mask & y->bends ? s->policy->bend_error : s->policy->effect_error;
   return y->allowance + error * error * taken;
 }
 
-bool fg_explain_is_right(const fg_explain_search *s, const fg_explain_yardstick *y,
+bool fg_explain_is_right(const fg_explain_search *s, const fg_explain_baseline *y,
                          const fg_explanation *m) {
-  double chance = fg_explain_chance_limit(s, ACCEPT_P, m->freedom);
+  double chance = fg_explain_chance_limit(s, ACCEPT_P, m->dof);
   return m->excess <= chance + fg_explain_known_to(s, y, m);
 }
 
-bool fg_explain_is_exact(const fg_explain_search *s, const fg_explain_yardstick *y,
+bool fg_explain_is_exact(const fg_explain_search *s, const fg_explain_baseline *y,
                          const fg_explanation *m) {
-  return m->excess <= fg_explain_chance_limit(s, ACCEPT_P, m->freedom) + y->allowance;
+  return m->excess <= fg_explain_chance_limit(s, ACCEPT_P, m->dof) + y->allowance;
 }
 
 double fg_explain_schwarz(const fg_explain_search *s, const fg_explanation *m) {
-  return m->excess - log((double)s->columns.rows / s->out->integral) * m->freedom;
+  return m->excess - log((double)s->columns.rows / s->out->integral) * m->dof;
 }
 
-double fg_explain_gain_of_more(const fg_explain_search *s, const fg_explain_yardstick *y,
+double fg_explain_gain_of_more(const fg_explain_search *s, const fg_explain_baseline *y,
                                unsigned mask, const fg_explain_term *more, size_t count,
                                size_t *numbers) {
   set_terms set;
@@ -212,7 +212,7 @@ double fg_explain_gain_of_more(const fg_explain_search *s, const fg_explain_yard
   return (sum - less) / y->unit;
 }
 
-double fg_explain_lone_sum(const fg_explain_search *s, const fg_explain_yardstick *y, size_t e) {
+double fg_explain_outlier_sum(const fg_explain_search *s, const fg_explain_baseline *y, size_t e) {
   set_terms set;
   size_t rank;
   list_terms(s->out, 1u << e, &set);
@@ -234,16 +234,16 @@ double fg_explain_amplitude_u(const fg_explain_search *s, unsigned others, size_
   return rank == before ? INFINITY : u;
 }
 
-fg_explain_yardstick fg_explain_yardstick_of(fg_explain_search *s) {
+fg_explain_baseline fg_explain_find_baseline(fg_explain_search *s) {
   fg_explanations *out = s->out;
   const fg_field_frame *frame = &s->columns.points->frame;
   double extent = fmax(frame->high_mm[0] - frame->low_mm[0], frame->high_mm[1] - frame->low_mm[1]);
-  fg_explain_yardstick y = {.full = s->full,
-                            .freedom = (double)s->freedom,
-                            .unit = out->noise_um * out->noise_um * out->integral,
-                            .none = (s->columns.square - s->full) /
-                                    (out->noise_um * out->noise_um * out->integral),
-                            .reach = MIDDLE_REACH * extent / FG_FIELD_HALF_MM};
+  fg_explain_baseline y = {.full = s->full,
+                           .dof = (double)s->dof,
+                           .unit = out->noise_um * out->noise_um * out->integral,
+                           .none = (s->columns.square - s->full) /
+                                   (out->noise_um * out->noise_um * out->integral),
+                           .reach = MIDDLE_REACH * extent / FG_FIELD_HALF_MM};
   for (size_t e = 0; e < out->candidate_count; e++)
     if (out->candidates[e].kind->numbers == FG_EFFECT_LED) y.bends |= 1u << e;
   double edge = s->policy->edge_error_um, edge_um = sqrt(edge * edge + s->columns.width_part);

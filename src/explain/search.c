@@ -99,12 +99,12 @@ fg_status fg_explain_find(fg_context *ctx, const fg_points *points,
   FG_TRY_EXIT(add_smooth(ctx, &s, request->known));
   add_known(&s, request->known);
   if (policy->other_steps) FG_TRY_EXIT(fg_explain_add_other_steps(ctx, &s, request->known));
-  FG_TRY_EXIT(fg_explain_width_doubt(ctx, &s.columns));
+  FG_TRY_EXIT(fg_explain_width_uncertainty(ctx, &s.columns));
   if (request->look) FG_TRY_EXIT(policy->find_placed(ctx, &s));
   if (policy->has_rivals) FG_TRY_EXIT(fg_explain_find_in_place(ctx, &s));
   fg_explain_refine_noise(&s);
   FG_TRY_EXIT(fg_explain_check_rows(ctx, &s));
-  const fg_explain_yardstick y = fg_explain_yardstick_of(&s);
+  const fg_explain_baseline y = fg_explain_find_baseline(&s);
   fg_explain_try_sets(&s, &y);
   fg_explain_describe(&s, &y);
 exit:

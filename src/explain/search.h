@@ -26,18 +26,18 @@ typedef struct fg_explain_search {
   bool hopeless;              /* sets whose shapes are not fitted yet had their chance */
   const fg_effect_set *tried; /* was fitted and is not right, or NULL */
   double full;                /* residual sum beside everything */
-  size_t freedom;             /* columns that took it */
+  size_t dof;                 /* columns that took it */
   size_t new_shapes;          /* ripples and steps that were found in this round */
   unsigned unfitted;          /* effects with a shape that was found in this round */
 } fg_explain_search;
 
 /* What the search compares with: everything at once. */
-typedef struct fg_explain_yardstick {
-  double full, freedom, unit, allowance;
+typedef struct fg_explain_baseline {
+  double full, dof, unit, allowance;
   double none;    /* excess of no effect */
   unsigned bends; /* crown and skew */
   double reach;   /* of a polynomial's middle, in units of FG_FIELD_HALF_MM */
-} fg_explain_yardstick;
+} fg_explain_baseline;
 
 /* ---- candidates.c ---- */
 
@@ -52,18 +52,18 @@ size_t fg_explain_bits(unsigned mask);
 /* Of all effects, those that are free curves, or those that are listed. */
 unsigned fg_explain_mask_of(const fg_explanations *out, bool of_free);
 /* Two forms of one effect, and two ripples of one period or two steps at one place. */
-bool fg_explain_has_twins(const fg_explanations *out, unsigned mask);
+bool fg_explain_has_collinear(const fg_explanations *out, unsigned mask);
 /* Puts an explanation into the list, the likeliest first: the one that leaves least, a number more
  * counting two (Akaike 1974). */
 void fg_explain_keep(fg_explanations *out, const fg_explanation *explanation);
 /* What they are sorted by. */
 static inline double fg_explain_akaike(const fg_explanation *m) {
-  return m->excess - 2 * m->freedom;
+  return m->excess - 2 * m->dof;
 }
 
 /* Shapes nearer to each other than this are one: over a foil's 40 mm a ripple of 2 mm turns by as
  * much as a wave then. */
-#define FG_EXPLAIN_TWIN_SHARE 0.05
+#define FG_EXPLAIN_COLLINEAR_SHARE 0.05
 
 /* What causes cost beside Schwarz's criterion: each is there in one part or scan of 20 (-2 ln). One
  * unlisted cause is likelier than several listed ones that happen to make its curve. */
@@ -94,69 +94,69 @@ double fg_explain_integral(const fg_explain_columns *columns);
 /* ---- score.c ---- */
 
 /* What 1 in 1000 gains by chance in one column (chi² of 1). */
-#define FG_EXPLAIN_GAIN_LEAST 10.8
+#define FG_EXPLAIN_GAIN_MIN 10.8
 
-fg_explain_yardstick fg_explain_yardstick_of(fg_explain_search *s);
+fg_explain_baseline fg_explain_find_baseline(fg_explain_search *s);
 
 /* Fits a set; an excess of INFINITY says that it is no set of its own. */
-fg_explanation fg_explain_try(const fg_explain_search *s, const fg_explain_yardstick *y,
+fg_explanation fg_explain_try(const fg_explain_search *s, const fg_explain_baseline *y,
                               unsigned mask);
 /* Excess that edges and the forms of its effects may leave, in chi². */
-double fg_explain_known_to(const fg_explain_search *s, const fg_explain_yardstick *y,
+double fg_explain_known_to(const fg_explain_search *s, const fg_explain_baseline *y,
                            const fg_explanation *m);
 /* Whether it leaves no more than it should. */
-bool fg_explain_is_right(const fg_explain_search *s, const fg_explain_yardstick *y,
+bool fg_explain_is_right(const fg_explain_search *s, const fg_explain_baseline *y,
                          const fg_explanation *m);
 /* Whether it is also without what the forms of effects may leave. */
-bool fg_explain_is_exact(const fg_explain_search *s, const fg_explain_yardstick *y,
+bool fg_explain_is_exact(const fg_explain_search *s, const fg_explain_baseline *y,
                          const fg_explanation *m);
 /* Schwarz's criterion: the smaller one is the better one. */
 double fg_explain_schwarz(const fg_explain_search *s, const fg_explanation *m);
 
 /* What further terms gain beside a set, in chi², with so many numbers. */
-double fg_explain_gain_of_more(const fg_explain_search *s, const fg_explain_yardstick *y,
+double fg_explain_gain_of_more(const fg_explain_search *s, const fg_explain_baseline *y,
                                unsigned mask, const fg_explain_term *more, size_t count,
                                size_t *numbers);
 
 /* Residual sum of one effect alone; the standard deviation of its leading amplitude beside other
  * effects for noise of 1 um, INFINITY when it lies in them. */
-double fg_explain_lone_sum(const fg_explain_search *s, const fg_explain_yardstick *y, size_t e);
+double fg_explain_outlier_sum(const fg_explain_search *s, const fg_explain_baseline *y, size_t e);
 double fg_explain_amplitude_u(const fg_explain_search *s, unsigned others, size_t e);
 
 /* ---- sets.c ---- */
 
 /* Tries sets as the policy says, and fills the explanations. */
-void fg_explain_try_sets(fg_explain_search *s, const fg_explain_yardstick *y);
+void fg_explain_try_sets(fg_explain_search *s, const fg_explain_baseline *y);
 /* A shape that was found just now has not been fitted with the geometry yet: a set that holds one
  * and takes most of what there is to take gets its chance before any curve that is not far better.
  */
-bool fg_explain_hopes_for_shape(const fg_explain_search *s, const fg_explain_yardstick *y,
+bool fg_explain_hopes_for_shape(const fg_explain_search *s, const fg_explain_baseline *y,
                                 const fg_explanation *best, const fg_explanation *curve);
 
 /* ---- rivals.c ---- */
 
 /* Adds free curves that do as well as the best listed explanation, smooth ones of few numbers. */
-void fg_explain_add_rivals(fg_explain_search *s, const fg_explain_yardstick *y);
+void fg_explain_add_rivals(fg_explain_search *s, const fg_explain_baseline *y);
 /* Adds smooth curves over other coordinates that could take the place of the one curve in the list,
  * whose score by Schwarz's criterion is given. */
-void fg_explain_add_curves(fg_explain_search *s, const fg_explain_yardstick *y, double score);
+void fg_explain_add_curves(fg_explain_search *s, const fg_explain_baseline *y, double score);
 /* Whether a smooth free curve beside a set gains more than chance, and more than `known_to`. */
-bool fg_explain_curve_helps(const fg_explain_search *s, const fg_explain_yardstick *y,
-                            unsigned mask, double known_to);
+bool fg_explain_curve_helps(const fg_explain_search *s, const fg_explain_baseline *y, unsigned mask,
+                            double known_to);
 /* The smooth free curve, or the one bump, that Schwarz's criterion prefers, whether it is right or
  * not, and that criterion. */
-fg_explanation fg_explain_best_smooth(const fg_explain_search *s, const fg_explain_yardstick *y,
+fg_explanation fg_explain_best_smooth(const fg_explain_search *s, const fg_explain_baseline *y,
                                       double *score);
 
 /* ---- describe.c ---- */
 
 /* Fills what the report says of every effect, and of the width, beside the best explanation. */
-void fg_explain_describe(fg_explain_search *s, const fg_explain_yardstick *y);
+void fg_explain_describe(fg_explain_search *s, const fg_explain_baseline *y);
 
 /* ---- places.c, placed.c ---- */
 
 /* A size that makes one worth a place in the search, um (tuned on reports/loop_scans.md). */
-#define FG_EXPLAIN_SHAPED_LEAST_UM 0.15
+#define FG_EXPLAIN_SHAPED_MIN_UM 0.15
 
 /* Where one takes most beside the first `rank` vectors of the basis, with `left` beside them: its
  * gain in chi², its size in um. `work` has room for two columns. */

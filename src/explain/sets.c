@@ -45,11 +45,11 @@ static placed_masks find_placed_masks(const fg_explain_search *s) {
 
 /* Few smooth effects, which can stand for each other; ripples and steps stand alone, and all that
  * are there may be. */
-static bool is_small(unsigned mask, placed_masks placed, size_t most) {
+static bool is_small(unsigned mask, placed_masks placed, size_t max) {
   unsigned held = mask & placed.all, more = held & ~placed.known;
   bool one_more = (held & placed.known) == placed.known && fg_explain_bits(more) <= 1;
-  return fg_explain_bits(mask & ~placed.all) <= most &&
-         (fg_explain_bits(mask) <= most || one_more || held == placed.all);
+  return fg_explain_bits(mask & ~placed.all) <= max &&
+         (fg_explain_bits(mask) <= max || one_more || held == placed.all);
 }
 
 /* Whether a mask is a set that is there, of some effects. */
@@ -71,7 +71,7 @@ static bool was_given_up(const fg_explain_search *s, unsigned mask) {
 
 static bool is_set(const fg_explain_search *s, unsigned mask) {
   if (was_given_up(s, mask)) return false;
-  return s->policy->keeps_twins || !fg_explain_has_twins(s->out, mask);
+  return s->policy->keeps_collinear || !fg_explain_has_collinear(s->out, mask);
 }
 
 /* What one more effect gains by chance, with the columns that it adds. One that was sought over
@@ -86,7 +86,7 @@ static double chance_of(const fg_explain_search *s, size_t e, double columns) {
 }
 
 /* Whether one more listed effect, or a smooth curve, takes more than it may. */
-static bool one_more_helps(const fg_explain_search *s, const fg_explain_yardstick *y,
+static bool one_more_helps(const fg_explain_search *s, const fg_explain_baseline *y,
                            const fg_explanation *m) {
   unsigned more = fg_explain_mask_of(s->out, false) & ~m->mask;
   double error = s->policy->more_error, taken = fmax(0, y->none - m->excess);
@@ -95,7 +95,7 @@ static bool one_more_helps(const fg_explain_search *s, const fg_explain_yardstic
     if (!(more >> e & 1)) continue;
     fg_explanation with = fg_explain_try(s, y, m->mask | 1u << e);
     double gain = m->excess - with.excess;
-    if (gain > known_to + chance_of(s, e, m->freedom - with.freedom)) return true;
+    if (gain > known_to + chance_of(s, e, m->dof - with.dof)) return true;
   }
   return s->policy->has_rivals && fg_explain_curve_helps(s, y, m->mask, known_to);
 }
@@ -103,20 +103,20 @@ static bool one_more_helps(const fg_explain_search *s, const fg_explain_yardstic
 /* What a pass over the sets of one size looks for. */
 typedef struct pass {
   placed_masks placed;
-  size_t size, most;
-  bool exact;   /* right without what the forms of effects may leave */
-  double least; /* and with less than this */
+  size_t size, max;
+  bool exact; /* right without what the forms of effects may leave */
+  double min; /* and with less than this */
 } pass;
 
 /* Keeps the sets of one size that are right; `best` becomes the best of those that are tried. */
-static void try_size(fg_explain_search *s, const fg_explain_yardstick *y, const pass *p,
+static void try_size(fg_explain_search *s, const fg_explain_baseline *y, const pass *p,
                      fg_explanation *best) {
   unsigned listed = fg_explain_mask_of(s->out, false);
   for (unsigned mask = 0, first = 1; first || mask; first = 0, mask = next_of(listed, mask)) {
-    if (fg_explain_bits(mask) != p->size || !is_small(mask, p->placed, p->most) || !is_set(s, mask))
+    if (fg_explain_bits(mask) != p->size || !is_small(mask, p->placed, p->max) || !is_set(s, mask))
       continue;
     fg_explanation explanation = fg_explain_try(s, y, mask);
-    bool right = fg_explain_is_right(s, y, &explanation) && explanation.excess < p->least &&
+    bool right = fg_explain_is_right(s, y, &explanation) && explanation.excess < p->min &&
                  (!p->exact || fg_explain_is_exact(s, y, &explanation));
     if (right && !one_more_helps(s, y, &explanation)) fg_explain_keep(s->out, &explanation);
     if (s->policy->is_better(s, &explanation, best)) *best = explanation;
@@ -125,14 +125,14 @@ static void try_size(fg_explain_search *s, const fg_explain_yardstick *y, const 
 
 /* What is right only because forms of effects are not known exactly gives way to one effect more
  * that is right without that, where the difference is more than all that forms leave. */
-static void try_exact(fg_explain_search *s, const fg_explain_yardstick *y, pass p) {
+static void try_exact(fg_explain_search *s, const fg_explain_baseline *y, pass p) {
   fg_explanations *out = s->out;
   fg_explanation each[FG_EXPLANATIONS_MAX], best = {.excess = INFINITY};
   size_t count = out->count, total = out->total;
   memcpy(each, out->each, sizeof each);
   for (size_t m = 0; m < count; m++) {
     if (fg_explain_is_exact(s, y, &each[m])) return;
-    p.least = fmin(p.least, each[m].excess - fg_explain_known_to(s, y, &each[m]));
+    p.min = fmin(p.min, each[m].excess - fg_explain_known_to(s, y, &each[m]));
   }
   p.exact = true;
   p.size++;
@@ -146,12 +146,12 @@ static void try_exact(fg_explain_search *s, const fg_explain_yardstick *y, pass 
 
 /* Listed sets by size; the first size with one that is right ends the search. Returns the best of
  * those that were tried. */
-static fg_explanation try_listed(fg_explain_search *s, const fg_explain_yardstick *y) {
+static fg_explanation try_listed(fg_explain_search *s, const fg_explain_baseline *y) {
   fg_explanation best = {.excess = INFINITY};
   pass p = {.placed = find_placed_masks(s),
-            .most = s->policy->effects_most(s->columns.points),
-            .least = INFINITY};
-  size_t largest = p.most + fg_explain_bits(p.placed.all);
+            .max = s->policy->effects_max(s->columns.points),
+            .min = INFINITY};
+  size_t largest = p.max + fg_explain_bits(p.placed.all);
   if (largest > FG_EFFECT_SET_MAX) largest = FG_EFFECT_SET_MAX;
   for (; p.size <= largest && !s->out->count; p.size++)
     try_size(s, y, &p, &best);
@@ -161,14 +161,14 @@ static fg_explanation try_listed(fg_explain_search *s, const fg_explain_yardstic
 }
 
 /* Members that are worse than the best as far as the data can show leave. */
-static void drop_worse(const fg_explain_search *s, const fg_explain_yardstick *y) {
+static void drop_worse(const fg_explain_search *s, const fg_explain_baseline *y) {
   fg_explanations *out = s->out;
   size_t kept = 0;
-  double least = INFINITY;
+  double min = INFINITY;
   for (size_t m = 0; m < out->count; m++)
-    least = fmin(least, out->each[m].excess);
+    min = fmin(min, out->each[m].excess);
   for (size_t m = 0; m < out->count; m++)
-    if (out->each[m].excess <= least + s->policy->worse_chi2 + y->allowance)
+    if (out->each[m].excess <= min + s->policy->worse_chi2 + y->allowance)
       out->each[kept++] = out->each[m];
   out->total -= out->count - kept;
   out->count = kept;
@@ -210,7 +210,7 @@ static void order_by_width(const fg_explain_search *s) {
 /* ---- free curves ---- */
 
 /* Schwarz's criterion of a set with a free curve, as far as a listed effect beside it goes. */
-static double free_score(const fg_explain_search *s, const fg_explain_yardstick *y,
+static double free_score(const fg_explain_search *s, const fg_explain_baseline *y,
                          fg_explanation m) {
   double share = s->policy->curve_share;
   if (!isfinite(m.excess)) return INFINITY;
@@ -225,7 +225,7 @@ typedef struct curve_trial {
 } curve_trial;
 
 /* Every curve of a mask beside a listed set. Every further effect must be worth its while. */
-static void try_curves(const fg_explain_search *s, const fg_explain_yardstick *y, unsigned curves,
+static void try_curves(const fg_explain_search *s, const fg_explain_baseline *y, unsigned curves,
                        unsigned beside, curve_trial *trial) {
   for (size_t e = 0; e < s->out->candidate_count; e++) {
     if (!(curves >> e & 1) || was_given_up(s, beside | 1u << e)) continue;
@@ -238,38 +238,38 @@ static void try_curves(const fg_explain_search *s, const fg_explain_yardstick *y
   }
 }
 
-static void try_curves_beside(const fg_explain_search *s, const fg_explain_yardstick *y,
+static void try_curves_beside(const fg_explain_search *s, const fg_explain_baseline *y,
                               unsigned curves, size_t size, curve_trial *trial) {
   unsigned listed = fg_explain_mask_of(s->out, false);
   for (unsigned mask = 0, first = 1; first || mask; first = 0, mask = next_of(listed, mask))
-    if (fg_explain_bits(mask) == size && !fg_explain_has_twins(s->out, mask))
+    if (fg_explain_bits(mask) == size && !fg_explain_has_collinear(s->out, mask))
       try_curves(s, y, curves, mask, trial);
 }
 
 /* A free curve, alone or beside few listed effects: the one that leaves least for its columns; the
  * best listed set stands when none does better. */
-static fg_explanation try_free(const fg_explain_search *s, const fg_explain_yardstick *y,
+static fg_explanation try_free(const fg_explain_search *s, const fg_explain_baseline *y,
                                fg_explanation best) {
   unsigned free = fg_explain_mask_of(s->out, true);
-  size_t most = s->columns.points->coarse ? 0 : s->policy->beside_curve;
+  size_t max = s->columns.points->coarse ? 0 : s->policy->beside_curve;
   curve_trial trial = {best, isfinite(best.excess) ? fg_explain_schwarz(s, &best) : INFINITY};
-  for (size_t size = 0; size <= most && !s->policy->curves_alone_last; size++)
+  for (size_t size = 0; size <= max && !s->policy->curves_alone_last; size++)
     try_curves_beside(s, y, free, size, &trial);
   for (size_t e = 0; e < s->out->candidate_count && s->policy->curves_alone_last; e++)
-    for (size_t size = most + 1; size-- > 0;)
+    for (size_t size = max + 1; size-- > 0;)
       try_curves_beside(s, y, free & 1u << e, size, &trial);
   return trial.best;
 }
 
 /* Two curves, alone or beside one listed effect: a carriage that runs unevenly also sways. One view
  * could not tell them. */
-static fg_explanation try_two_free(const fg_explain_search *s, const fg_explain_yardstick *y,
+static fg_explanation try_two_free(const fg_explain_search *s, const fg_explain_baseline *y,
                                    fg_explanation best) {
   const fg_explanations *out = s->out;
   unsigned listed = fg_explain_mask_of(out, false), free = fg_explain_mask_of(out, true);
   if (!s->two_curves || fg_explain_is_right(s, y, &best)) return best;
   for (unsigned two = 0, first = 1; first || two; first = 0, two = next_of(free, two)) {
-    if (fg_explain_bits(two) != 2 || fg_explain_has_twins(out, two)) continue;
+    if (fg_explain_bits(two) != 2 || fg_explain_has_collinear(out, two)) continue;
     for (size_t with = 0; with <= out->candidate_count; with++) {
       unsigned mask = two | (with < out->candidate_count ? 1u << with & listed : 0);
       if (with < out->candidate_count && mask == two) continue;
@@ -282,20 +282,20 @@ static fg_explanation try_two_free(const fg_explain_search *s, const fg_explain_
   return best;
 }
 
-bool fg_explain_hopes_for_shape(const fg_explain_search *s, const fg_explain_yardstick *y,
+bool fg_explain_hopes_for_shape(const fg_explain_search *s, const fg_explain_baseline *y,
                                 const fg_explanation *best, const fg_explanation *curve) {
   double share = s->policy->curve_share;
   bool one_curve = fg_explain_bits(curve->mask) == 1 && curve->excess < share * share * y->none;
   if (one_curve && fg_explain_bits(best->mask) > FEW) return false;
   return (best->mask & s->unfitted) && best->excess < FITTING_SHARE * y->none &&
          !(s->tried && holds(s, s->tried, best->mask)) &&
-         best->excess < FITTING_TIMES * (curve->excess + y->freedom);
+         best->excess < FITTING_TIMES * (curve->excess + y->dof);
 }
 
 /* ---- all of them ---- */
 
 /* What stands in where no listed set is right. */
-static void stand_in(fg_explain_search *s, const fg_explain_yardstick *y, fg_explanation best) {
+static void stand_in(fg_explain_search *s, const fg_explain_baseline *y, fg_explanation best) {
   fg_explanation curve = try_free(s, y, best);
   if (s->policy->has_rivals) {
     double score;
@@ -314,7 +314,7 @@ static void stand_in(fg_explain_search *s, const fg_explain_yardstick *y, fg_exp
     fg_explain_add_curves(s, y, fg_explain_schwarz(s, &curve));
 }
 
-void fg_explain_try_sets(fg_explain_search *s, const fg_explain_yardstick *y) {
+void fg_explain_try_sets(fg_explain_search *s, const fg_explain_baseline *y) {
   fg_explanation best = try_listed(s, y);
   s->out->right = s->out->count > 0;
   if (!s->out->right) {

@@ -21,7 +21,7 @@
 /* Turns of search and fit, at most. */
 enum { ROUNDS = 8, COARSE_ROUNDS = 2 };
 /* Sets that no fit holds, at most: then they come again. */
-enum { GIVEN_UP_MOST = 16 };
+enum { GIVEN_UP_MAX = 16 };
 
 void fg_explain_take(const fg_explanations *explanations, size_t explanation, fg_effect_set *set) {
   memset(set, 0, sizeof *set);
@@ -112,7 +112,7 @@ typedef struct settling {
   const fg_explain_bars *barred;
   fg_effect_set set;
   fg_explanations explanations;
-  fg_effect_set given_up[GIVEN_UP_MOST];
+  fg_effect_set given_up[GIVEN_UP_MAX];
   size_t given_up_count;
   double *residual_um, *jacobian, *geometry; /* per row; parameters × rows; to come back to */
 } settling;
@@ -121,7 +121,7 @@ typedef struct settling {
 static double square_of(const fg_points *points, const double *residual_um) {
   double sum = 0;
   for (size_t i = 0; i < points->row_count; i++)
-    if (!points->views[points->rows[i].view].aside)
+    if (!points->views[points->rows[i].view].held_out)
       sum += points->rows[i].weight * residual_um[i] * residual_um[i];
   return sum;
 }
@@ -150,15 +150,15 @@ static fg_status fit(fg_context *ctx, fg_points *points, double none, settling *
       square_of(points, at->residual_um) <= none)
     return FG_OK;
   fg_points_geometry_load(points, at->geometry);
-  if (at->given_up_count < GIVEN_UP_MOST) at->given_up[at->given_up_count++] = at->set;
+  if (at->given_up_count < GIVEN_UP_MAX) at->given_up[at->given_up_count++] = at->set;
   memset(&at->set, 0, sizeof at->set);
   ctx->message[0] = 0;
   return fg_joint_fit(ctx, points, &at->set, at->residual_um);
 }
 
 /* Whether a round from `before` to `left` took so little that a further one would take nothing. */
-static bool rests(const fg_explain_policy *policy, double before, double left) {
-  return !(left <= (1 - policy->rest_share) * before);
+static bool has_converged(const fg_explain_policy *policy, double before, double left) {
+  return !(left <= (1 - policy->converged_share) * before);
 }
 
 /* What a round came to. */
@@ -187,13 +187,13 @@ static bool was_right_before(const round_end *end, int round) {
 /* Of a set the effect that alone takes the most of what there is. */
 static void take_best_alone(const fg_explanations *explanations, const fg_effect_set *from,
                             fg_effect_set *to) {
-  double most = -1;
+  double max = -1;
   for (size_t e = 0; e < from->count; e++)
     for (size_t c = 0; c < explanations->candidate_count; c++) {
       if (explanations->candidates[c].kind != from->effects[e].kind ||
-          !(explanations->alone[c] > most))
+          !(explanations->alone[c] > max))
         continue;
-      most = explanations->alone[c];
+      max = explanations->alone[c];
       *to = (fg_effect_set){.count = 1, .effects = {from->effects[e]}};
     }
 }
@@ -246,8 +246,8 @@ static fg_status take_turn(fg_context *ctx, fg_points *points, fg_explain_reques
 }
 
 /* Search and fit in turns from a start without effects. */
-static fg_status settle_from(fg_context *ctx, fg_points *points, fg_explain_manner how,
-                             settling *at) {
+static fg_status iterate_from(fg_context *ctx, fg_points *points, fg_explain_strategy how,
+                              settling *at) {
   const fg_explain_policy *policy = at->policy;
   fg_effect_set tried = {.count = 0}, last = {.count = 0};
   double left = INFINITY;
@@ -260,17 +260,17 @@ static fg_status settle_from(fg_context *ctx, fg_points *points, fg_explain_mann
     const fg_effect_set in_force = at->set;
     fg_effect_set next;
     const fg_explain_request request = {.tried = &tried,
-                                        .look = how.eager || round > 0,
+                                        .look = how.seeds_placed_first || round > 0,
                                         .two_curves = how.two_curves,
                                         .hopeless = hopeless};
     FG_TRY(take_turn(ctx, points, request, NULL, none, at, &next));
-    bool same = same_effects(policy->rests_in_force ? &in_force : &last, &next);
+    bool same = same_effects(policy->converges_in_force ? &in_force : &last, &next);
     last = next;
     if (!at->explanations.right) tried = next;
     FG_TRY(fg_explain_drop_outliers(ctx, points, policy->own_noise, at->residual_um));
     double before = left;
     left = square_of(points, at->residual_um);
-    if (same && round > 0 && (at->explanations.right || rests(policy, before, left))) break;
+    if (same && round > 0 && (at->explanations.right || has_converged(policy, before, left))) break;
     end[round] = (round_end){at->set, left, at->explanations.right};
     if (at->explanations.right && comes_again(end, round)) break;
     hopeless = hopeless || was_right_before(end, round);
@@ -287,8 +287,8 @@ static size_t count_free(const fg_effect_set *set) {
 }
 
 /* From a set in force; no turn follows that could fit a shape in hope, so none is. */
-static fg_status settle_from_set(fg_context *ctx, fg_points *points, const fg_effect_set *set,
-                                 settling *at) {
+static fg_status iterate_from_set(fg_context *ctx, fg_points *points, const fg_effect_set *set,
+                                  settling *at) {
   memset(&at->set, 0, sizeof at->set);
   FG_TRY(fg_joint_fit(ctx, points, &at->set, at->residual_um));
   double none = square_of(points, at->residual_um);
@@ -302,7 +302,7 @@ static fg_status settle_from_set(fg_context *ctx, fg_points *points, const fg_ef
 
 /* The manners of the policy, each where the one before does not come to rest at an explanation that
  * is right; the best one stays. */
-static fg_status settle_best(fg_context *ctx, fg_points *points, settling *at) {
+static fg_status iterate_from_best(fg_context *ctx, fg_points *points, settling *at) {
   const fg_explain_policy *policy = at->policy;
   size_t numbers = fg_points_geometry_size(points);
   double best = INFINITY, *geometry = NULL;
@@ -311,13 +311,13 @@ static fg_status settle_best(fg_context *ctx, fg_points *points, settling *at) {
       fg_memory_allocate(ctx, numbers + points->row_count, sizeof *geometry, (void **)&geometry));
   double *residual_um = geometry + numbers;
   fg_status status = FG_OK;
-  for (size_t i = 0; i < policy->manner_count; i++) {
+  for (size_t i = 0; i < policy->strategy_count; i++) {
     if (i > 0 && points->coarse) break;
-    if (policy->manners[i].two_curves && points->view_count < 2) continue;
-    FG_TRY_EXIT(settle_from(ctx, points, policy->manners[i], at));
+    if (policy->strategies[i].two_curves && points->view_count < 2) continue;
+    FG_TRY_EXIT(iterate_from(ctx, points, policy->strategies[i], at));
     double left = square_of(points, at->residual_um);
     if (at->explanations.right) goto exit;
-    if (i && rests(policy, best, left)) continue;
+    if (i && has_converged(policy, best, left)) continue;
     best = left;
     kept = *at;
     fg_points_geometry_save(points, geometry);
@@ -338,7 +338,7 @@ static fg_status drop_ends(fg_context *ctx, fg_points *points, double *residual_
   return fg_explain_drop_ends(ctx, points, residual_um);
 }
 
-static fg_status open_settling(fg_context *ctx, const fg_settle_request *request,
+static fg_status open_settling(fg_context *ctx, const fg_iterate_request *request,
                                double *residual_um, settling *at) {
   const fg_points *points = request->points;
   *at =
@@ -354,15 +354,15 @@ static void close_settling(settling *at) {
   free(at->geometry);
 }
 
-fg_status fg_explain_settle(fg_context *ctx, const fg_settle_request *request, fg_effect_set *set,
-                            fg_explanations *explanations, double *residual_um) {
+fg_status fg_explain_iterate(fg_context *ctx, const fg_iterate_request *request, fg_effect_set *set,
+                             fg_explanations *explanations, double *residual_um) {
   fg_points *points = request->points;
   settling at;
   fg_status status = FG_OK;
   memset(set, 0, sizeof *set);
   if (request->policy->drops_ends) FG_TRY(drop_ends(ctx, points, residual_um));
   FG_TRY_EXIT(open_settling(ctx, request, residual_um, &at));
-  FG_TRY_EXIT(settle_best(ctx, points, &at));
+  FG_TRY_EXIT(iterate_from_best(ctx, points, &at));
   *set = at.set;
   *explanations = at.explanations;
 exit:
@@ -370,12 +370,12 @@ exit:
   return status;
 }
 
-fg_status fg_explain_settle_again(fg_context *ctx, const fg_settle_request *request,
-                                  fg_effect_set *set, double *residual_um) {
+fg_status fg_explain_iterate_again(fg_context *ctx, const fg_iterate_request *request,
+                                   fg_effect_set *set, double *residual_um) {
   settling at;
   fg_status status = FG_OK;
   FG_TRY_EXIT(open_settling(ctx, request, residual_um, &at));
-  FG_TRY_EXIT(settle_from_set(ctx, request->points, set, &at));
+  FG_TRY_EXIT(iterate_from_set(ctx, request->points, set, &at));
   *set = at.set;
 exit:
   close_settling(&at);

@@ -22,7 +22,7 @@
 #define OUTLIER_SIGMAS 5.0
 enum { OUTLIER_ROUNDS = 2 };
 /* With fewer bumps and lands nothing is said. */
-enum { GROUPS_LEAST = 6 };
+enum { GROUPS_MIN = 6 };
 /* Twice and four times the direction of the edge's normal: a strip has two edges that look opposite
  * ways, so odd multiples cancel. One more tells bumps from lands, which bend differently. */
 enum { NUISANCES = 5, UNKNOWNS = FG_WIDTH_EFFECTS_MAX + NUISANCES, AXES = 2 };
@@ -63,7 +63,8 @@ static void list_rows(width_fit *f) {
   const fg_points *points = f->points;
   for (size_t i = 0; i < points->row_count; i++) {
     const fg_points_row *row = &points->rows[i];
-    if (points->views[row->view].aside || !(row->weight > 0) || !(row->half_width_mm > 0)) continue;
+    if (points->views[row->view].held_out || !(row->weight > 0) || !(row->half_width_mm > 0))
+      continue;
     width_row *to = &f->rows[f->count++];
     *to = (width_row){.row = i,
                       .view = row->view,
@@ -247,15 +248,15 @@ static double leans(const width_fit *f, size_t e, size_t axis) {
 static void judge(const width_fit *f, size_t e, double variance, size_t groups,
                   fg_width_effect *one) {
   double square = f->system.matrix[e][e], right = f->system.right[e];
-  double place = PLACE_UM * hypot(leans(f, e, 0), leans(f, e, 1)), freedom = (double)groups - 1;
+  double place = PLACE_UM * hypot(leans(f, e, 0), leans(f, e, 1)), dof = (double)groups - 1;
   double u = sqrt(variance + place * place);
   one->effect.coefficient_um[0] = f->x[e];
   one->effect.u_coefficient_um[0] = u;
-  one->p_value = 2 * gsl_cdf_tdist_Q(fabs(f->x[e]) / u, freedom);
+  one->p_value = 2 * gsl_cdf_tdist_Q(fabs(f->x[e]) / u, dof);
   one->found = one->p_value < CHANCE;
   one->share = 1 / (f->inverse[e][e] * square);
   one->would_explain = right * right / (square * f->system.sum_squares);
-  one->smallest_um = u * gsl_cdf_tdist_Qinv(0.5 * CHANCE, freedom);
+  one->smallest_um = u * gsl_cdf_tdist_Qinv(0.5 * CHANCE, dof);
 }
 
 static double rms_um(const width_fit *f, const fg_width_findings *findings, bool after) {
@@ -279,7 +280,7 @@ static fg_status search(fg_context *ctx, width_fit *f, fg_width_findings *findin
     solved = fit(f);
   }
   size_t groups = solved ? find_variances(f, variance) : 0;
-  if (groups < GROUPS_LEAST) return FG_OK;
+  if (groups < GROUPS_MIN) return FG_OK;
   for (size_t e = 0; e < f->effects; e++) {
     judge(f, e, variance[e], groups, &findings->each[e]);
     findings->found += findings->each[e].found;

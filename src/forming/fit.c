@@ -31,7 +31,7 @@ typedef struct profile {
   double limit;
 } profile;
 
-static fg_status least_at(const profile *p, double step, gsl_vector *others, double *sum) {
+static fg_status min_at(const profile *p, double step, gsl_vector *others, double *sum) {
   fg_forming_search s = *p->whole;
   s.material.value[s.constant[p->held]] = fg_forming_from_step(s.constant[p->held], step);
   s.free--;
@@ -59,7 +59,7 @@ static fg_status find_end(const profile *p, double stride, gsl_vector *others, d
   for (int i = 0; i < STRIDES && isnan(outside); i++) {
     double step = kept_inside(c, inside + stride);
     if (step == inside) return FG_OK;
-    FG_TRY(least_at(p, step, others, &sum));
+    FG_TRY(min_at(p, step, others, &sum));
     if (sum > p->limit)
       outside = step;
     else
@@ -68,7 +68,7 @@ static fg_status find_end(const profile *p, double stride, gsl_vector *others, d
   }
   for (int i = 0; i < HALVINGS && isfinite(outside); i++) {
     double step = 0.5 * (inside + outside);
-    FG_TRY(least_at(p, step, others, &sum));
+    FG_TRY(min_at(p, step, others, &sum));
     *(sum > p->limit ? &outside : &inside) = step;
   }
   if (isfinite(outside)) *end = fg_forming_from_step(c, 0.5 * (inside + outside));
@@ -80,11 +80,11 @@ static void others_of(const gsl_vector *x, size_t held, gsl_vector *others) {
     if (k != held) gsl_vector_set(others, at++, gsl_vector_get(x, k));
 }
 
-static fg_status find_interval(const fg_forming_search *s, const gsl_vector *x, double least,
+static fg_status find_interval(const fg_forming_search *s, const gsl_vector *x, double min,
                                size_t held, fg_forming_found *found) {
-  double freedom = (double)(fg_forming_search_rows(s) - s->free);
-  double t = gsl_cdf_tdist_Pinv(0.5 + confidence / 2, freedom);
-  const profile p = {s, x, held, least * (1 + t * t / freedom)};
+  double dof = (double)(fg_forming_search_rows(s) - s->free);
+  double t = gsl_cdf_tdist_Pinv(0.5 + confidence / 2, dof);
+  const profile p = {s, x, held, min * (1 + t * t / dof)};
   double stride = found->u / (fg_forming_constant_of(found->constant)->by_factors
                                   ? 1
                                   : fg_forming_constant_of(found->constant)->value);
@@ -111,9 +111,9 @@ static bool is_at_bound(fg_forming_constant c, double step) {
   return !(step > low + near && step < high - near);
 }
 
-static fg_status take_found(fg_forming_search *s, const gsl_vector *x, double least,
+static fg_status take_found(fg_forming_search *s, const gsl_vector *x, double min,
                             const gsl_matrix *inverse, fg_forming_fit *fit) {
-  double variance = least / (double)(fg_forming_search_rows(s) - s->free);
+  double variance = min / (double)(fg_forming_search_rows(s) - s->free);
   for (size_t k = 0; k < s->free; k++) {
     const fg_forming_constant_row *row = fg_forming_constant_of(s->constant[k]);
     fg_forming_found *found = &fit->found[k];
@@ -126,7 +126,7 @@ static fg_status take_found(fg_forming_search *s, const gsl_vector *x, double le
     for (size_t j = 0; j < s->free; j++)
       fit->correlation[k][j] = gsl_matrix_get(inverse, k, j) /
                                sqrt(gsl_matrix_get(inverse, k, k) * gsl_matrix_get(inverse, j, j));
-    FG_TRY(find_interval(s, x, least, k, found));
+    FG_TRY(find_interval(s, x, min, k, found));
     fg_text_clip(fit->material.source[s->constant[k]], FG_FORMING_SOURCE,
                  "fitted to %zu runs (%s)%s", fit->runs, fit->response_name,
                  found->at_bound                ? "; at its bound: not identified"
@@ -140,14 +140,14 @@ static fg_status take_found(fg_forming_search *s, const gsl_vector *x, double le
 
 static fg_status fit_all(fg_forming_search *s, gsl_vector *x, gsl_matrix *inverse,
                          fg_forming_fit *fit) {
-  double least;
-  FG_TRY(fg_forming_search_all(s, NULL, x, &least, inverse));
-  if (!(least < INFINITY))
+  double min;
+  FG_TRY(fg_forming_search_all(s, NULL, x, &min, inverse));
+  if (!(min < INFINITY))
     return fg_fail(s->ctx, FG_ERR_DATA, "no values of the constants predict these runs");
-  fit->model = (fg_forming_errors){.residual_sd =
-                                       sqrt(least / (double)(fg_forming_search_rows(s) - s->free)),
-                                   .parameters = s->free};
-  FG_TRY(take_found(s, x, least, inverse, fit));
+  fit->model =
+      (fg_forming_errors){.residual_sd = sqrt(min / (double)(fg_forming_search_rows(s) - s->free)),
+                          .parameters = s->free};
+  FG_TRY(take_found(s, x, min, inverse, fit));
   for (size_t k = 0; k < s->free; k++)
     s->material.value[s->constant[k]] = fit->found[k].value;
   for (size_t i = 0; i < fit->runs; i++)
@@ -156,12 +156,12 @@ static fg_status fit_all(fg_forming_search *s, gsl_vector *x, gsl_matrix *invers
 }
 
 static fg_status leave_out_each(fg_forming_search *s, const gsl_vector *x, fg_forming_fit *fit) {
-  double sum = 0, least;
+  double sum = 0, min;
   gsl_vector *moved = gsl_vector_alloc(s->free);
   fg_status status = moved ? FG_OK : fg_fail(s->ctx, FG_ERR_MEMORY, "out of memory: a fit");
   for (size_t i = 0; i < fit->runs && status == FG_OK; i++) {
     s->left_out = i;
-    status = fg_forming_search_all(s, x, moved, &least, NULL);
+    status = fg_forming_search_all(s, x, moved, &min, NULL);
     for (size_t k = 0; status == FG_OK && k < s->free; k++)
       s->material.value[s->constant[k]] =
           fg_forming_from_step(s->constant[k], gsl_vector_get(moved, k));
@@ -200,12 +200,12 @@ static fg_status fit_surface(fg_context *ctx, const fg_table *table, fg_forming_
   if (status == FG_ERR_MEMORY) return fg_fail(ctx, status, "%s", words.message);
   if (status != FG_OK) return FG_OK;
   fit->surface.parameters = r.rank;
-  if (r.residual_freedom) {
+  if (r.residual_dof) {
     fit->surface.residual_sd = r.residual_sd;
     fit->surface.left_out_rms = sqrt(r.press / (double)r.rows);
   }
-  fit->repeats = r.pure_freedom;
-  if (r.pure_freedom) fit->repeat_sd = sqrt(r.pure_ss / (double)r.pure_freedom);
+  fit->repeats = r.pure_dof;
+  if (r.pure_dof) fit->repeat_sd = sqrt(r.pure_ss / (double)r.pure_dof);
   fg_regression_free(&r);
   fg_model_free(&model);
   return FG_OK;
@@ -275,7 +275,7 @@ static fg_status check_request(fg_context *ctx, const fg_table *table,
   if (table->rows < request->free_count + 2)
     return fg_fail(ctx, FG_ERR_DATA, "%s: %zu runs; to find %zu constants takes %zu at least",
                    table->source, table->rows, request->free_count, request->free_count + 2);
-  if (!fg_form_has_bumps(request->design->form) && request->design->form != FG_FORM_ARC)
+  if (!fg_foil_kind_has_bumps(request->design->kind) && request->design->kind != FG_FOIL_ARC)
     return fg_fail(ctx, FG_ERR_DATA, "the design's form has no strip that is bent");
   return fg_forming_material_check(ctx, request->material);
 }
@@ -283,8 +283,8 @@ static fg_status check_request(fg_context *ctx, const fg_table *table,
 /* The lands for themselves: a plain strip of the same overall circle. */
 static fg_design design_of(const fg_forming_fit_request *request) {
   fg_design design = *request->design;
-  if (request->response == FG_FORMING_OF_FOIL || design.form == FG_FORM_ARC) return design;
-  design.form = FG_FORM_ARC;
+  if (request->response == FG_FORMING_OF_FOIL || design.kind == FG_FOIL_ARC) return design;
+  design.kind = FG_FOIL_ARC;
   design.subtended_angle_deg = 90;
   return design;
 }

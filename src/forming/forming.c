@@ -11,7 +11,7 @@
 #include "forming/strip.h"
 #include "quantity/quantity_rows.h"
 
-enum { LAYERS = 200, STEPS = 200, MOST = 100000 };
+enum { LAYERS = 200, STEPS = 200, MAX = 100000 };
 
 /* ---- one curvature ---- */
 
@@ -42,7 +42,7 @@ static void take_section(const fg_forming *forming, fg_section *section, fg_form
 
 /* A piece of the same curvature was there before: at the same place of an earlier pitch, or in this
  * one. */
-static const fg_forming_piece *find_twin(const fg_forming *forming, size_t at) {
+static const fg_forming_piece *find_duplicate(const fg_forming *forming, size_t at) {
   for (size_t i = 0; i < at; i++)
     if (forming->pieces[i].curvature_die == forming->pieces[at].curvature_die)
       return &forming->pieces[i];
@@ -54,15 +54,15 @@ static fg_status bend_all(fg_context *ctx, fg_forming *forming) {
   FG_TRY(fg_section_make(ctx, forming->design.thickness_mm, forming->options.layers, &section));
   for (size_t i = 0; i < forming->count; i++) {
     fg_forming_piece *piece = &forming->pieces[i];
-    const fg_forming_piece *twin = find_twin(forming, i);
-    if (!twin) {
+    const fg_forming_piece *duplicate = find_duplicate(forming, i);
+    if (!duplicate) {
       take_section(forming, &section, piece, &forming->yields_back);
       continue;
     }
-    piece->curvature = twin->curvature;
-    piece->moment_n = twin->moment_n;
-    piece->share = twin->share;
-    memcpy(piece->stress_mpa, twin->stress_mpa, sizeof piece->stress_mpa);
+    piece->curvature = duplicate->curvature;
+    piece->moment_n = duplicate->moment_n;
+    piece->share = duplicate->share;
+    memcpy(piece->stress_mpa, duplicate->stress_mpa, sizeof piece->stress_mpa);
   }
   fg_section_free(&section);
   return FG_OK;
@@ -208,8 +208,8 @@ static fg_status take_options(fg_context *ctx, const fg_forming_options *options
   fg_forming_options *own = &forming->options;
   if (!own->layers) own->layers = LAYERS;
   if (!own->steps) own->steps = STEPS;
-  if (own->layers > MOST || own->steps > MOST)
-    return fg_fail(ctx, FG_ERR_USAGE, "at most %d layers and steps", MOST);
+  if (own->layers > MAX || own->steps > MAX)
+    return fg_fail(ctx, FG_ERR_USAGE, "at most %d layers and steps", MAX);
   if (own->die) {
     forming->die = *own->die;
     own->die = &forming->die;

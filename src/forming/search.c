@@ -12,7 +12,7 @@ enum {
   ITERATIONS = 200,
   STARTS_KEPT = 3,
   STARTS_EACH = 3,
-  STARTS_MOST = 81, /* 3^FG_FORMING_FREE_MAX */
+  STARTS_MAX = 81, /* 3^FG_FORMING_FREE_MAX */
 };
 static const double tolerance = 1e-10;
 /* What a prediction that is no number counts as, in points: far beyond every run. */
@@ -115,7 +115,7 @@ static void choose_starts(fg_forming_search *s, gsl_vector *x, gsl_vector *f,
   size_t count = 1;
   for (size_t k = 0; k < s->free; k++)
     count *= STARTS_EACH;
-  for (size_t start = 0; start < count && start < STARTS_MOST; start++) {
+  for (size_t start = 0; start < count && start < STARTS_MAX; start++) {
     size_t digit = start;
     for (size_t k = 0; k < s->free; k++, digit /= STARTS_EACH)
       gsl_vector_set(
@@ -138,12 +138,12 @@ static void choose_starts(fg_forming_search *s, gsl_vector *x, gsl_vector *f,
 /* The least sum of squares over the free constants, from `warm` (may be NULL) and from the best of
  * a grid; `x` becomes where it lies. */
 fg_status fg_forming_search_all(fg_forming_search *s, const gsl_vector *warm, gsl_vector *x,
-                                double *least, gsl_matrix *covariance) {
+                                double *min, gsl_matrix *covariance) {
   double best[STARTS_KEPT][FG_FORMING_FREE_MAX] = {{0}};
   gsl_vector *trial = gsl_vector_alloc(s->free), *f = gsl_vector_alloc(fg_forming_search_rows(s));
   gsl_matrix *inverse = gsl_matrix_alloc(s->free, s->free);
   fg_status status = FG_OK;
-  *least = INFINITY;
+  *min = INFINITY;
   if (!trial || !f || !inverse) FG_TRY_EXIT(fg_fail(s->ctx, FG_ERR_MEMORY, "out of memory: a fit"));
   choose_starts(s, trial, f, best);
   for (size_t start = 0; start < STARTS_KEPT + (warm != NULL); start++) {
@@ -151,8 +151,8 @@ fg_status fg_forming_search_all(fg_forming_search *s, const gsl_vector *warm, gs
     for (size_t k = 0; k < s->free; k++)
       gsl_vector_set(trial, k, start < STARTS_KEPT ? best[start][k] : gsl_vector_get(warm, k));
     FG_TRY_EXIT(fg_forming_search_from(s, trial, &sum, inverse));
-    if (!(sum < *least)) continue;
-    *least = sum;
+    if (!(sum < *min)) continue;
+    *min = sum;
     gsl_vector_memcpy(x, trial);
     if (covariance) gsl_matrix_memcpy(covariance, inverse);
   }

@@ -38,6 +38,6 @@ fg_status fg_forming_search_from(fg_forming_search *s, gsl_vector *x, double *su
 /* The least sum of squares over the free constants, from `warm` (may be NULL) and from the best of
  * a grid; `x` becomes where it lies. */
 fg_status fg_forming_search_all(fg_forming_search *s, const gsl_vector *warm, gsl_vector *x,
-                                double *least, gsl_matrix *covariance);
+                                double *min, gsl_matrix *covariance);
 
 #endif

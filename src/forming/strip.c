@@ -136,8 +136,8 @@ static fg_status lay_arc(fg_context *ctx, fg_forming *forming) {
 
 fg_status fg_forming_lay_out(fg_context *ctx, fg_forming *forming) {
   const fg_design *design = &forming->design;
-  if (design->form == FG_FORM_ARC) return lay_arc(ctx, forming);
-  if (!fg_form_has_bumps(design->form))
+  if (design->kind == FG_FOIL_ARC) return lay_arc(ctx, forming);
+  if (!fg_foil_kind_has_bumps(design->kind))
     return fg_fail(ctx, FG_ERR_DATA, "the design's form has no strip that is bent");
   forming->bump_count = design->bump_count ? design->bump_count : FG_FORMING_BUMPS_DEFAULT;
   if (forming->bump_count > FG_FORMING_BUMPS_MAX)

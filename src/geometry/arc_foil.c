@@ -7,7 +7,7 @@
 #include "geometry/foil_uncertainty.h"
 
 /* The circle rests on so many stretches, whose differences say whether it is one. */
-enum { STRETCHES = 12, ROUNDS = 5, STATIONS_LEAST = 64, BUMPS_LEAST = 3 };
+enum { STRETCHES = 12, ROUNDS = 5, STATIONS_MIN = 64, BUMPS_MIN = 3 };
 /* It starts in so much of the middle: a lip is shorter than what is left. */
 #define MIDDLE_SHARE 0.6
 /* What leaves the circle by so many thicknesses is bent away from it. Springback that is no circle
@@ -89,7 +89,7 @@ static fg_status fit(fg_context *ctx, fg_layout *layout) {
   for (int round = 0; round < ROUNDS; round++) {
     layout->turning.lip_first = layout->turning.lip_last = false;
     size_t from = arc_end(layout, false), to = arc_end(layout, true);
-    if (to < from + STATIONS_LEAST)
+    if (to < from + STATIONS_MIN)
       return fg_fail(ctx, FG_ERR_NUMERIC, "too little of the strip lies on one circle");
     cut_stretches(layout, from, to);
     FG_TRY(fg_arc_estimate(ctx, &layout->line, &layout->overall));
@@ -140,12 +140,12 @@ fg_status fg_arc_foil_layout(fg_context *ctx, const fg_design *design, const fg_
   memset(layout, 0, sizeof *layout);
   *error = NULL;
   FG_TRY(count_bumps(ctx, strip, &bumps));
-  if (bumps >= BUMPS_LEAST) {
+  if (bumps >= BUMPS_MIN) {
     *flags |= FG_FOIL_BUMPS_ON_ARC;
     *error = "the strip has bumps, and the design's form is arc: a plain strip without any";
     return FG_OK;
   }
-  if (strip->count < STATIONS_LEAST) {
+  if (strip->count < STATIONS_MIN) {
     *error = "the strip is too short for a circle";
     return FG_OK;
   }
@@ -188,11 +188,11 @@ static double end_variance(const fg_design *design, const fg_foil *foil, const f
 
 /* What the length is uncertain by because both cuts move outwards or inwards, as the edges of the
  * thickness do, mm. */
-static double cut_doubt(const fg_design *design, const fg_foil *foil) {
+static double cut_uncertainty(const fg_design *design, const fg_foil *foil) {
   const fg_strip *strip = &foil->strip;
   double sides = strip->blur_left_um + strip->blur_right_um;
   double ends = strip->ends[0].blur_um + strip->ends[1].blur_um;
-  return fg_foil_width_doubt_um(design, foil) / 1000 * (sides > 0 ? ends / sides : 1);
+  return fg_foil_width_u_um(design, foil) / 1000 * (sides > 0 ? ends / sides : 1);
 }
 
 static void forget(fg_foil_arc *arc) {
@@ -215,7 +215,7 @@ static void fill(const fg_design *design, const fg_layout *layout, fg_foil *foil
   }
   double alpha = sense * (psi[1] - psi[0]), radius = o->radius_mm, angle = 0, length = 0;
   if (alpha < 0) alpha += 2 * M_PI;
-  cuts += pow(cut_doubt(design, foil), 2);
+  cuts += pow(cut_uncertainty(design, foil), 2);
   const double by_length[3] = {radius * gradient[0], radius * gradient[1], alpha};
   for (int a = 0; a < 3; a++)
     for (int b = 0; b < 3; b++) {

@@ -6,7 +6,7 @@
 
 #include "core/correlation.h"
 
-enum { RANGE_MOST = 4096 }; /* stations of one range that are looked at */
+enum { RANGE_MAX = 4096 }; /* stations of one range that are looked at */
 
 /* One residual: of the datum line from its circle, or of the half width from its mean. */
 static double value_at(const fg_datum_line *line, const fg_arc *arc, size_t k, int values,
@@ -30,11 +30,11 @@ typedef struct lag_sums {
   double products[FG_NOISE_LAGS], pairs[FG_NOISE_LAGS];
 } lag_sums;
 
-/* Residuals of one range, NaN where a station is left out; at most RANGE_MOST of them. */
+/* Residuals of one range, NaN where a station is left out; at most RANGE_MAX of them. */
 static size_t list_values(const fg_datum_line *line, const fg_arc *arc, fg_range range, int values,
                           double mean, double *list) {
   size_t n = range.last - range.first + 1;
-  if (n > RANGE_MOST) n = RANGE_MOST;
+  if (n > RANGE_MAX) n = RANGE_MAX;
   for (size_t i = 0; i < n; i++)
     list[i] = value_at(line, arc, range.first + i, values, mean);
   return n;
@@ -42,7 +42,7 @@ static size_t list_values(const fg_datum_line *line, const fg_arc *arc, fg_range
 
 static void add_arc(const fg_datum_line *line, const fg_arc *arc, int values, size_t lags,
                     lag_sums *sums) {
-  double mean = values ? mean_half_width(line, arc) : 0, list[RANGE_MOST];
+  double mean = values ? mean_half_width(line, arc) : 0, list[RANGE_MAX];
   for (size_t r = 0; r < arc->range_count; r++) {
     size_t n = list_values(line, arc, arc->ranges[r], values, mean, list);
     for (size_t i = 0; i < n; i++)

@@ -8,9 +8,9 @@
 #include "core/select.h"
 #include "core/spread.h"
 
-#define OUTLIER_SIGMAS   5.0
-#define OUTLIER_LEAST_MM 0.0003
-enum { POINTS_LEAST = 8, ROUNDS_MAX = 6 };
+#define OUTLIER_SIGMAS 5.0
+#define OUTLIER_MIN_MM 0.0003
+enum { POINTS_MIN = 8, ROUNDS_MAX = 6 };
 
 fg_status fg_datum_line_build(fg_context *ctx, const fg_strip *strip, fg_datum datum,
                               bool inner_is_right, fg_datum_line *line) {
@@ -56,7 +56,7 @@ double fg_arc_residual(const fg_datum_line *line, const fg_circle *circle, size_
 }
 
 static double outlier_limit(const fg_arc *arc) {
-  return fmax(OUTLIER_SIGMAS * arc->scatter_mm, OUTLIER_LEAST_MM);
+  return fmax(OUTLIER_SIGMAS * arc->scatter_mm, OUTLIER_MIN_MM);
 }
 
 bool fg_arc_used(const fg_datum_line *line, const fg_arc *arc, size_t station) {
@@ -109,7 +109,7 @@ static fg_status by_fit(fg_context *ctx, const fg_point *points, size_t count, f
 
 static fg_status fit_once(fg_context *ctx, const fg_datum_line *line, circle_method *method,
                           const fg_point *points, size_t count, fg_arc *arc) {
-  if (count < POINTS_LEAST)
+  if (count < POINTS_MIN)
     return fg_fail(ctx, FG_ERR_NUMERIC, "%zu edge points are too few for a circle", count);
   FG_TRY(method(ctx, points, count, arc));
   arc->circle.radius += blur_shift(line, arc->circle.radius);
@@ -157,13 +157,13 @@ static double uneven_shift(const void *user, size_t station) {
   const fg_station *s = &of->line->strip->stations[station];
   const fg_point *at = &of->line->points[station];
   const fg_circle *circle = &of->arc->circle;
-  double most = picture->blur_px[0] * picture->blur_px[0];
-  double least = picture->blur_px[1] * picture->blur_px[1];
+  double max = picture->blur_px[0] * picture->blur_px[0];
+  double min = picture->blur_px[1] * picture->blur_px[1];
   double axis = picture->blur_direction_deg * M_PI / 180;
   double across = s->normal.x * cos(axis) + s->normal.y * sin(axis);
-  double along = most + (least - most) * across * across;
+  double along = max + (min - max) * across * across;
   bool outwards = (at->x - circle->x) * s->normal.x + (at->y - circle->y) * s->normal.y > 0;
-  double excess = 2 * along / (most + least) - 1;
+  double excess = 2 * along / (max + min) - 1;
   return (outwards ? 1 : -1) * excess * blur_shift(of->line, circle->radius);
 }
 
@@ -208,14 +208,14 @@ static double departure(const fg_datum_line *line, const fg_arc *arc, double sid
 /* The tangent point beyond the core's end, in stations from it: the foot of sqrt(departure). */
 static double find_foot(const fg_datum_line *line, const fg_arc *arc, double side, long end,
                         long step, long low, long high) {
-  double least = fmax(4 * arc->scatter_mm, 0.0004), most = least + 0.02;
+  double min = fmax(4 * arc->scatter_mm, 0.0004), max = min + 0.02;
   double s0 = 0, s1 = 0, s2 = 0, r0 = 0, r1 = 0;
   long k = end;
   for (; k >= low && k <= high; k += step) {
     double d = departure(line, arc, side, k, step, low, high);
-    if (d > most) break;
-    if (d < least) s0 = s1 = s2 = r0 = r1 = 0; /* noise, not yet the fillet */
-    if (!(d >= least)) continue;
+    if (d > max) break;
+    if (d < min) s0 = s1 = s2 = r0 = r1 = 0; /* noise, not yet the fillet */
+    if (!(d >= min)) continue;
     double x = (double)((k - end) * step), y = sqrt(d);
     s0 += 1;
     s1 += x;
@@ -242,7 +242,7 @@ void fg_arc_grow(const fg_datum_line *line, const fg_arc *arc, double side, fg_r
   long first = a - (long)floor(back), last = b + (long)floor(ahead);
   if (first < low) first = low;
   if (last > high) last = high;
-  if (last - first < POINTS_LEAST) return;
+  if (last - first < POINTS_MIN) return;
   range->first = (size_t)first;
   range->last = (size_t)last;
 }

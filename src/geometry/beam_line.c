@@ -10,12 +10,12 @@
 #include "core/small_solve.h"
 #include "core/spread.h"
 
-enum { ROUNDS = 6, LEAST_STATIONS = 4, BLOCK = 64, BLOCKS_LEAST = 6, BESIDE = 2 };
+enum { ROUNDS = 6, MIN_STATIONS = 4, BLOCK = 64, BLOCKS_MIN = 6, BESIDE = 2 };
 /* Stations further off than so many robust deviations, and at least so far, are left out. */
 #define OUTLIER_DEVIATIONS 4.5
-#define OUTLIER_LEAST_MM   0.0004
+#define OUTLIER_MIN_MM     0.0004
 /* Long stretches scatter more than the lags tell when their ratio is above this. */
-#define LONG_RANGE_LEAST 1.5
+#define LONG_RANGE_MIN 1.5
 /* The shape of the edge was fitted to the same pixels (geometry/disc_fit.c). */
 #define SHAPE_VARIANCE 1.12
 
@@ -75,7 +75,7 @@ static double find_limit(const fg_beam_line *line, const double *off, double *sc
   size_t n = 0;
   for (size_t i = 0; i < line->edge->count; i++)
     if (station(line, i)->used) scratch[n++] = fabs(off[i]);
-  return fmax(fg_spread_limit(scratch, n, OUTLIER_DEVIATIONS), OUTLIER_LEAST_MM);
+  return fmax(fg_spread_limit(scratch, n, OUTLIER_DEVIATIONS), OUTLIER_MIN_MM);
 }
 
 /* The circle of a round floor about its apex: q = a + b cos f + c sin f of a station's distance
@@ -133,7 +133,7 @@ static fg_status fit_rounds(fg_context *ctx, fg_point axis, double *off, double 
     for (size_t i = 0; i < line->edge->count && !line->edge->round; i++)
       off[i] = place_across(line, station(line, i)->at);
     if (round + 1 < ROUNDS) take_within(line, off, find_limit(line, off, scratch));
-    if (line->used < LEAST_STATIONS || 2 * line->used < line->edge->count)
+    if (line->used < MIN_STATIONS || 2 * line->used < line->edge->count)
       return fg_fail(ctx, FG_ERR_NUMERIC, "only %zu of %zu stations of an edge are usable",
                      line->used, line->edge->count);
   }
@@ -151,7 +151,7 @@ fg_status fg_beam_line_fit(fg_context *ctx, const fg_beam_edge *edge, fg_point a
   FG_TRY_EXIT(fg_memory_allocate(ctx, edge->count, 2 * sizeof *block, (void **)&block));
   take_within(line, block, INFINITY); /* block is all 0: what is usable */
   line->usable = line->used;
-  if (line->usable < LEAST_STATIONS || 2 * line->usable < edge->count)
+  if (line->usable < MIN_STATIONS || 2 * line->usable < edge->count)
     status = fg_fail(ctx, FG_ERR_NUMERIC, "only %zu of %zu stations of an edge are usable",
                      line->usable, edge->count);
   else
@@ -278,9 +278,9 @@ static double scatter_at(const asked *a, size_t i, double parabola) {
 #define TAIL_SHARE 0.01
 /* Values that lines and parabolas of two edges take out; the least freedom, and the most that is
  * made up for. */
-#define TAKEN_OUT     6.0
-#define FREEDOM_LEAST 4.0
-#define MADE_UP_MOST  2.0
+#define TAKEN_OUT   6.0
+#define DOF_MIN     4.0
+#define MADE_UP_MAX 2.0
 
 typedef struct sums {
   double products[FG_BEAM_LAGS], pairs[FG_BEAM_LAGS];
@@ -320,11 +320,11 @@ static void add_edge(const fg_beam_line *line, double *values, sums *s) {
 /* By what the means over blocks scatter more than the lags alone would have it. */
 static double compare_blocks(const sums *s, const fg_beam_noise *noise) {
   double expected = 0, n = s->block_stations / s->blocks;
-  if (s->blocks < BLOCKS_LEAST) return 1;
+  if (s->blocks < BLOCKS_MIN) return 1;
   for (size_t lag = 0; lag < noise->lags && (double)lag < n; lag++)
     expected += (lag ? 2 : 1) * noise->covariance[lag] * (n - (double)lag) / (n * n);
   double ratio = s->block_squares / s->blocks / expected;
-  return ratio > LONG_RANGE_LEAST ? ratio : 1;
+  return ratio > LONG_RANGE_MIN ? ratio : 1;
 }
 
 /* Values that count for one: the integral of the correlation. */
@@ -350,10 +350,10 @@ static void extend(fg_beam_noise *noise) {
 /* A line and a parabola took three values of those that count out of either edge, and few values
  * do not tell their variance well: Student's factor makes 2 u mean 95 % all the same. */
 static void make_up(double stations, fg_beam_noise *noise) {
-  double count = stations / integral_of(noise), freedom = fmax(count - TAKEN_OUT, FREEDOM_LEAST);
-  double student = gsl_cdf_tdist_Pinv(0.975, freedom) / 1.959964;
+  double count = stations / integral_of(noise), dof = fmax(count - TAKEN_OUT, DOF_MIN);
+  double student = gsl_cdf_tdist_Pinv(0.975, dof) / 1.959964;
   for (size_t lag = 0; lag < noise->lags; lag++)
-    noise->covariance[lag] *= fmin(count / freedom, MADE_UP_MOST) * student * student;
+    noise->covariance[lag] *= fmin(count / dof, MADE_UP_MAX) * student * student;
 }
 
 static double step_of(const fg_beam_line *line) {

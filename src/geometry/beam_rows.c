@@ -13,18 +13,18 @@
 #include "core/memory.h"
 #include "core/spread.h"
 
-enum { CUBIC = 4, COLUMNS = CUBIC + FG_BEAM_JUMPS_MOST, STATIONS_LEAST = 40, REACH = 12 };
+enum { CUBIC = 4, COLUMNS = CUBIC + FG_BEAM_JUMPS_MAX, STATIONS_MIN = 40, REACH = 12 };
 /* Less of a normal along y than this shows nothing. */
-#define CROSSING_LEAST 0.01
+#define CROSSING_MIN 0.01
 /* Of squares, over the variance: one value explains 1 by chance, at the best of a thousand rows 20.
  */
-#define GAIN_LEAST     40.0
-#define JUMP_LEAST_ROW 0.5
-#define CUT_SIGMAS     6.0 /* residuals count as no larger: dust */
+#define GAIN_MIN     40.0
+#define JUMP_MIN_ROW 0.5
+#define CUT_SIGMAS   6.0 /* residuals count as no larger: dust */
 /* An edge is asked where the step would be so many sd of it; it may differ by that share. */
 #define ASKED_SIGMAS 4.0
 #define STEP_SHARE   0.5
-enum { AGREE_LEAST = 2, AGREE_FACTOR = 3 };
+enum { AGREE_MIN = 2, AGREE_FACTOR = 3 };
 /* Pixels of several rows tell where an edge is: jumps so near to each other are one. */
 #define APART_ROWS 12.0
 
@@ -176,7 +176,7 @@ static bool is_shown(const row_search *s, double y, double size) {
     else
       differ++;
   }
-  return agree >= AGREE_LEAST && agree >= AGREE_FACTOR * differ;
+  return agree >= AGREE_MIN && agree >= AGREE_FACTOR * differ;
 }
 
 static void sum_edges(const row_search *s, double y, double sum[2]) {
@@ -191,13 +191,13 @@ static void sum_edges(const row_search *s, double y, double sum[2]) {
 
 /* Adds the jump that explains most beside the others; false when there is none. */
 static bool add_jump(row_search *s) {
-  double best = GAIN_LEAST, at = NAN, size = 0;
+  double best = GAIN_MIN, at = NAN, size = 0;
   for (double y = s->low; y < s->high; y += s->step) {
     double sum[2];
     if (is_beside_another(s->jumps, y)) continue;
     sum_edges(s, y, sum);
     double gain = sum[1] > 0 ? sum[0] * sum[0] / sum[1] : 0;
-    if (gain <= best || fabs(sum[0] / sum[1]) < JUMP_LEAST_ROW * s->jumps->row_mm) continue;
+    if (gain <= best || fabs(sum[0] / sum[1]) < JUMP_MIN_ROW * s->jumps->row_mm) continue;
     best = gain;
     at = y;
     size = sum[0] / sum[1];
@@ -216,7 +216,7 @@ static void refresh(row_search *s, size_t without) {
 /* Leaves out the weakest of those that chance or a part's form explains; false: all stay. */
 static bool drop_weakest(row_search *s) {
   fg_beam_jumps *jumps = s->jumps;
-  double least = INFINITY;
+  double min = INFINITY;
   size_t weakest = 0;
   refresh(s, jumps->count);
   for (size_t i = 0; i < s->count; i++)
@@ -226,14 +226,14 @@ static bool drop_weakest(row_search *s) {
     refresh(s, k);
     sum_edges(s, jumps->y_mm[k], sum);
     double size = sum[1] > 0 ? sum[0] / sum[1] : 0, gain = sum[0] * size;
-    bool stays = gain > GAIN_LEAST && fabs(size) > JUMP_LEAST_ROW * jumps->row_mm &&
+    bool stays = gain > GAIN_MIN && fabs(size) > JUMP_MIN_ROW * jumps->row_mm &&
                  is_shown(s, jumps->y_mm[k], size);
     jumps->size_mm[k] = size;
-    if (stays || gain >= least) continue;
-    least = gain;
+    if (stays || gain >= min) continue;
+    min = gain;
     weakest = k;
   }
-  if (isinf(least)) return false;
+  if (isinf(min)) return false;
   jumps->count--;
   jumps->y_mm[weakest] = jumps->y_mm[jumps->count];
   jumps->size_mm[weakest] = jumps->size_mm[jumps->count];
@@ -244,7 +244,7 @@ static void find_jumps(row_search *s) {
   refresh(s, 0);
   for (size_t i = 0; i < s->count; i++)
     find_noise(&s->edges[i], s->scratch);
-  while (s->jumps->count < FG_BEAM_JUMPS_MOST && add_jump(s))
+  while (s->jumps->count < FG_BEAM_JUMPS_MAX && add_jump(s))
     refresh(s, s->jumps->count);
   while (s->jumps->count && drop_weakest(s))
     continue;
@@ -254,12 +254,12 @@ static void find_jumps(row_search *s) {
  */
 static fg_status take_edge(fg_context *ctx, const fg_beam_edge *from, row_search *s) {
   row_edge *e = &s->edges[s->count];
-  if (from->round || from->count < STATIONS_LEAST || !(from->row_mm > 0)) return FG_OK;
+  if (from->round || from->count < STATIONS_MIN || !(from->row_mm > 0)) return FG_OK;
   fg_point a = from->stations[0].at, b = from->stations[from->count - 1].at;
   double size = hypot(b.x - a.x, b.y - a.y);
   if (b.y < a.y) size = -size;
   fg_point along = {(b.x - a.x) / size, (b.y - a.y) / size};
-  if (fabs(along.x) < CROSSING_LEAST || along.y < CROSSING_LEAST) return FG_OK;
+  if (fabs(along.x) < CROSSING_MIN || along.y < CROSSING_MIN) return FG_OK;
   FG_TRY(fg_memory_allocate(ctx, from->count, sizeof *e->places, (void **)&e->places));
   for (size_t i = 0; i < from->count; i++) {
     const fg_disc_point *p = &from->stations[size > 0 ? i : from->count - 1 - i];
@@ -269,7 +269,7 @@ static fg_status take_edge(fg_context *ctx, const fg_beam_edge *from, row_search
   }
   e->normal_y = along.x;
   s->count++;
-  if (e->count < STATIONS_LEAST) {
+  if (e->count < STATIONS_MIN) {
     free(e->places);
     *e = (row_edge){0};
     s->count--;
@@ -284,7 +284,7 @@ static fg_status take_edge(fg_context *ctx, const fg_beam_edge *from, row_search
 
 fg_status fg_beam_jumps_find(fg_context *ctx, const fg_foil *foil, fg_beam_jumps *jumps) {
   row_search s = {.low = INFINITY, .high = -INFINITY, .jumps = jumps};
-  size_t most = 1;
+  size_t max = 1;
   fg_status status = FG_OK;
   *jumps = (fg_beam_jumps){.count = 0};
   FG_TRY(fg_memory_allocate(ctx, FG_BEAM_SIDES * foil->beam_count + 1, sizeof *s.edges,
@@ -292,11 +292,11 @@ fg_status fg_beam_jumps_find(fg_context *ctx, const fg_foil *foil, fg_beam_jumps
   for (size_t i = 0; i < foil->beam_count; i++)
     for (int side = 0; side < FG_BEAM_SIDES; side++) {
       const fg_beam_edge *edge = &foil->beams[i].edges[side];
-      if (edge->count > most) most = edge->count;
+      if (edge->count > max) max = edge->count;
       FG_TRY_EXIT(take_edge(ctx, edge, &s));
     }
-  FG_TRY_EXIT(fg_memory_allocate(ctx, most, sizeof *s.scratch, (void **)&s.scratch));
-  if (s.count >= AGREE_LEAST) find_jumps(&s);
+  FG_TRY_EXIT(fg_memory_allocate(ctx, max, sizeof *s.scratch, (void **)&s.scratch));
+  if (s.count >= AGREE_MIN) find_jumps(&s);
 exit:
   for (size_t i = 0; i < s.count; i++)
     free(s.edges[i].places);

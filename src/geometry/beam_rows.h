@@ -5,10 +5,10 @@
 
 #include "foilgauge/foil.h"
 
-enum { FG_BEAM_JUMPS_MOST = 6 };
+enum { FG_BEAM_JUMPS_MAX = 6 };
 
 typedef struct fg_beam_jumps {
-  double y_mm[FG_BEAM_JUMPS_MOST], size_mm[FG_BEAM_JUMPS_MOST];
+  double y_mm[FG_BEAM_JUMPS_MAX], size_mm[FG_BEAM_JUMPS_MAX];
   size_t count;
   double row_mm;
 } fg_beam_jumps;

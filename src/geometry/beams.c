@@ -18,7 +18,7 @@
 #define BENT_DEVIATIONS 4.0
 #define BENT_SHARE      0.002
 /* A short edge scatters more than the long ones when its variance is above so many times theirs. */
-#define SPREAD_LEAST 2.0
+#define SPREAD_MIN 2.0
 /* A tip is torn when it scatters so many times more than the long edges, and by more than this
  * share of the width. */
 #define TORN_SPREAD 9.0
@@ -28,7 +28,7 @@
 
 /* Beams are parallel when half of so many at the least are, within this angle; one leans that is
  * further off. */
-enum { PARALLEL_LEAST = 4 };
+enum { PARALLEL_MIN = 4 };
 #define PARALLEL_DEG 0.05
 #define LEANING_DEG  0.25
 
@@ -134,7 +134,7 @@ static double square(double x) {
 
 static fg_status find_length(fg_context *ctx, beam_work *w) {
   fg_beam *beam = w->beam;
-  double share[2], on_tip, variance, split = 0, doubt = 0, sum;
+  double share[2], on_tip, variance, split = 0, uncertainty = 0, sum;
   double root = find_root(w, share), tip = find_tip(w, &on_tip);
   const fg_beam_edge *edges = beam->edges;
   beam->length_mm = tip - root;
@@ -146,12 +146,12 @@ static fg_status find_length(fg_context *ctx, beam_work *w) {
     FG_TRY(fg_beam_line_variance(ctx, &w->lines[side], &w->noise, FG_BEAM_PLACE, 0, &variance));
     sum += square(share[i]) * variance;
     split += share[i] * edges[side].split_mm;
-    doubt += share[i] * edges[side].doubt_mm;
+    uncertainty += share[i] * edges[side].u_mm_of_level;
   }
   /* What moves an edge towards the void makes the beam longer at its tip and shorter at its root.
    */
   beam->u_length_mm = sqrt(sum + square(edges[FG_BEAM_TIP].split_mm - split) +
-                           square(edges[FG_BEAM_TIP].doubt_mm - doubt));
+                           square(edges[FG_BEAM_TIP].u_mm_of_level - uncertainty));
   w->root = on_axis(w, root, 0);
   w->length = beam->length_mm;
   return FG_OK;
@@ -167,7 +167,8 @@ static void take_length_of_edges(beam_work *w) {
 
 static fg_status find_width(fg_context *ctx, beam_work *w) {
   fg_beam *beam = w->beam;
-  double at[2], sum = 0, slopes = 0, variance, left[2], root[2], tip[2], doubt = 0, split = 0, on;
+  double at[2], sum = 0, slopes = 0, variance, left[2], root[2], tip[2], uncertainty = 0, split = 0,
+                on;
   for (int i = 0; i < 2; i++) {
     left[i] = edge_at(w, (fg_beam_side)(FG_BEAM_LEFT + i), 0.5 * w->length, &at[i]);
     root[i] = edge_at(w, (fg_beam_side)(FG_BEAM_LEFT + i), 0, &on);
@@ -177,11 +178,11 @@ static fg_status find_width(fg_context *ctx, beam_work *w) {
     sum += w->noise.long_range * variance;
     FG_TRY(fg_beam_line_variance(ctx, line, &w->noise, FG_BEAM_SLOPE, 0, &variance));
     slopes += w->noise.long_range * variance;
-    doubt += beam->edges[FG_BEAM_LEFT + i].doubt_mm;
+    uncertainty += beam->edges[FG_BEAM_LEFT + i].u_mm_of_level;
     split += beam->edges[FG_BEAM_LEFT + i].split_mm;
   }
   beam->width_mm = left[0] - left[1];
-  beam->u_width_mm = sqrt(sum + square(doubt) + square(split));
+  beam->u_width_mm = sqrt(sum + square(uncertainty) + square(split));
   beam->taper_um_per_mm = 1000 * (root[0] - root[1] - tip[0] + tip[1]) / w->length;
   beam->u_taper_um_per_mm = 1000 * sqrt(slopes);
   beam->root_mm = on_axis(w, 0, 0);
@@ -233,10 +234,10 @@ static void find_spread(beam_work *w) {
   for (int i = FG_BEAM_TIP; i < FG_BEAM_SIDES; i++) {
     fg_beam_line *line = &w->lines[i];
     if (!w->fitted[i]) continue;
-    double freedom = (double)line->used - (line->edge->round ? 3 : 2);
-    if (freedom < 1) continue;
-    double ratio = square(line->rms_mm) * (double)line->used / freedom / w->noise.covariance[0];
-    line->spread = ratio > SPREAD_LEAST ? ratio : 1;
+    double dof = (double)line->used - (line->edge->round ? 3 : 2);
+    if (dof < 1) continue;
+    double ratio = square(line->rms_mm) * (double)line->used / dof / w->noise.covariance[0];
+    line->spread = ratio > SPREAD_MIN ? ratio : 1;
   }
 }
 
@@ -363,7 +364,7 @@ static double direction_off(const fg_beam *beam, double direction_deg) {
 static void flag_leaning(double *scratch, fg_foil *foil) {
   const fg_beam *beams = foil->beams;
   size_t count = foil->beam_count;
-  if (count < PARALLEL_LEAST || isnan(foil->rotation_deg)) return;
+  if (count < PARALLEL_MIN || isnan(foil->rotation_deg)) return;
   for (size_t i = 0; i < count; i++)
     scratch[i] = remainder(beams[i].direction_deg - beams[0].direction_deg, 360);
   double direction = beams[0].direction_deg + fg_select(scratch, count, count / 2);

@@ -4,7 +4,7 @@
 
 #include "core/select.h"
 
-enum { GAPS_MOST = 512 };
+enum { GAPS_MAX = 512 };
 /* A gap is so many pitches when it is within this share of a pitch of it. */
 #define WHOLE_SHARE 0.25
 #define DEG         (180 / M_PI)
@@ -22,9 +22,9 @@ static double gap_before(const fg_foil *foil, size_t i) {
  * are no multiple of it (another foil's design), their median is the pitch. */
 static double find_pitch(const fg_design *design, const fg_foil *foil) {
   double pitch = design->pitch_deg * design->overall_radius_mm / foil->overall.radius_mm;
-  double gaps[GAPS_MOST], units[GAPS_MOST];
+  double gaps[GAPS_MAX], units[GAPS_MAX];
   size_t count = 0, whole = 0;
-  for (size_t i = 1; i < foil->bump_count && count < GAPS_MOST; i++) {
+  for (size_t i = 1; i < foil->bump_count && count < GAPS_MAX; i++) {
     double gap = gap_before(foil, i), places = round(gap / pitch);
     gaps[count++] = gap;
     if (places >= 1 && fabs(gap / pitch - places) < WHOLE_SHARE) units[whole++] = gap / places;

@@ -5,31 +5,31 @@
 
 /* Beyond these a value is in another unit, or no foil's: no scanner's pitch is doubted by 5 %, no
  * alloy expands by more than 1e-4 per K, and a bed below 0 or above 60 °C scans nothing. */
-static const double scale_most = 0.05;
-static const double temperature_least_c = 0, temperature_most_c = 60, u_temperature_most_k = 20;
-static const double expansion_most_per_k = 1e-4;
+static const double scale_max = 0.05;
+static const double temperature_min_c = 0, temperature_max_c = 60, u_temperature_max_k = 20;
+static const double expansion_max_per_k = 1e-4;
 
-static fg_status check_u(fg_context *ctx, const char *member, double u, double most,
+static fg_status check_u(fg_context *ctx, const char *member, double u, double max,
                          const char *hint) {
-  if (u >= 0 && u <= most) return FG_OK;
+  if (u >= 0 && u <= max) return FG_OK;
   return fg_fail(ctx, FG_ERR_DATA,
                  "calibration.%s: a standard uncertainty of %g; it must be from 0 to %g%s", member,
-                 u, most, hint);
+                 u, max, hint);
 }
 
 static fg_status check_temperature(fg_context *ctx, const fg_calibration *c) {
-  if (!(c->temperature_c >= temperature_least_c && c->temperature_c <= temperature_most_c))
+  if (!(c->temperature_c >= temperature_min_c && c->temperature_c <= temperature_max_c))
     return fg_fail(ctx, FG_ERR_DATA,
                    "calibration.temperature.value_C is %g; it must be from %g to %g °C",
-                   c->temperature_c, temperature_least_c, temperature_most_c);
-  FG_TRY(check_u(ctx, "temperature", c->u_temperature_k, u_temperature_most_k, " K"));
-  if (!(fabs(c->expansion_per_k) <= expansion_most_per_k))
+                   c->temperature_c, temperature_min_c, temperature_max_c);
+  FG_TRY(check_u(ctx, "temperature", c->u_temperature_k, u_temperature_max_k, " K"));
+  if (!(fabs(c->expansion_per_k) <= expansion_max_per_k))
     return fg_fail(
         ctx, FG_ERR_DATA,
         "calibration.expansion.value_per_K is %g; it must be from %g to %g per kelvin, as "
         "1.2e-5",
-        c->expansion_per_k, -expansion_most_per_k, expansion_most_per_k);
-  return check_u(ctx, "expansion", c->u_expansion_per_k, expansion_most_per_k, " per kelvin");
+        c->expansion_per_k, -expansion_max_per_k, expansion_max_per_k);
+  return check_u(ctx, "expansion", c->u_expansion_per_k, expansion_max_per_k, " per kelvin");
 }
 
 fg_status fg_calibration_check(fg_context *ctx, const fg_calibration *c) {
@@ -41,7 +41,7 @@ fg_status fg_calibration_check(fg_context *ctx, const fg_calibration *c) {
         "calibration.scale: an uncertainty of 0; no scale is known exactly: state it, as "
         "1e-4 for 0.01 %%, or leave the calibration out");
   for (int axis = 0; axis < 2; axis++)
-    FG_TRY(check_u(ctx, c->per_axis ? axes[axis] : "scale", c->u_scale[axis], scale_most,
+    FG_TRY(check_u(ctx, c->per_axis ? axes[axis] : "scale", c->u_scale[axis], scale_max,
                    " of the length, as 1e-4 for 0.01 %"));
   return c->has_temperature ? check_temperature(ctx, c) : FG_OK;
 }

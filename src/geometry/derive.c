@@ -236,7 +236,7 @@ fg_thickness fg_foil_thickness(const fg_design *design, const fg_foil *foil) {
   bool edge = design->datum != FG_DATUM_MID;
   return (fg_thickness){.mm = foil->thickness_mm,
                         .u_mm = foil->u_thickness_mm,
-                        .edge_mm = edge ? fg_foil_edge_doubt_mm(design, foil) : 0,
+                        .edge_mm = edge ? fg_foil_edge_u_mm(design, foil) : 0,
                         .inner = design->datum == FG_DATUM_INNER,
                         .with_edge = !(design->thickness_measured_mm > 0)};
 }

@@ -9,7 +9,7 @@ static const double rad_per_deg = 3.14159265358979323846 / 180;
 void fg_design_default(fg_design *design) {
   *design = (fg_design){
       .name = "gen2-classical",
-      .form = FG_FORM_CLASSICAL,
+      .kind = FG_FOIL_CLASSICAL,
       .datum = FG_DATUM_MID,
       .bump_count = 9,
       .bump_radius_mm = 3.32,
@@ -85,15 +85,15 @@ static fg_status check_bump(fg_context *ctx, const fg_design *design) {
 }
 
 static fg_status check_pitch(fg_context *ctx, const fg_design *design) {
-  double least_deg = 2 * half_width_rad(design) / rad_per_deg;
-  if (!(design->fillet_radius_mm < design->overall_radius_mm) || !isfinite(least_deg))
+  double min_deg = 2 * half_width_rad(design) / rad_per_deg;
+  if (!(design->fillet_radius_mm < design->overall_radius_mm) || !isfinite(min_deg))
     return fg_fail(ctx, FG_ERR_DATA,
                    "fillet_radius_mm is %g; no such fillet fits between the bump and the land",
                    design->fillet_radius_mm);
-  if (least_deg >= design->pitch_deg)
+  if (min_deg >= design->pitch_deg)
     return fg_fail(ctx, FG_ERR_DATA,
                    "pitch_deg is %g: bumps overlap; with their fillets they need more than %.4g",
-                   design->pitch_deg, least_deg);
+                   design->pitch_deg, min_deg);
   if ((double)design->bump_count * design->pitch_deg > 360 * (1 + 1e-6))
     return fg_fail(ctx, FG_ERR_DATA, "bump_count is %zu: at pitch_deg %g they exceed 360 degrees",
                    design->bump_count, design->pitch_deg);
@@ -137,12 +137,12 @@ static fg_status check_thickness_measured(fg_context *ctx, const fg_design *desi
   static const char *const name = "thickness_measured";
   double value = design->thickness_measured_mm, u = design->u_thickness_measured_mm;
   if (value == 0 && u == 0) return FG_OK;
-  if (design->form == FG_FORM_CANTILEVER)
+  if (design->kind == FG_FOIL_CANTILEVER)
     return fg_fail(ctx, FG_ERR_DATA,
                    "%s belongs to strips that are seen from their edge; of form \"cantilever\" "
                    "state thickness_mm and u_thickness_mm",
                    name);
-  if (design->form == FG_FORM_DISCS)
+  if (design->kind == FG_FOIL_DISCS)
     return fg_fail(ctx, FG_ERR_DATA, "%s belongs to strips; form is \"discs\"", name);
   if (!(value > 0) || !isfinite(value))
     return fg_fail(ctx, FG_ERR_DATA, "%s.value_mm is %g; it must be a number above 0, in mm", name,
@@ -159,7 +159,7 @@ static fg_status check_thickness_measured(fg_context *ctx, const fg_design *desi
   return FG_OK;
 }
 /* A width that is known no better is no gauge. */
-#define U_DIAMETERS_MOST_MM 0.1
+#define U_DIAMETERS_MAX_MM 0.1
 
 static fg_status check_discs(fg_context *ctx, const fg_design *design) {
   if (design->diameter_count > FG_DIAMETERS_MAX)
@@ -170,9 +170,9 @@ static fg_status check_discs(fg_context *ctx, const fg_design *design) {
     snprintf(member, sizeof member, "diameters_mm[%zu]", i);
     FG_TRY(check_positive(ctx, member, design->diameters_mm[i]));
   }
-  if (!(design->u_diameters_mm >= 0 && design->u_diameters_mm <= U_DIAMETERS_MOST_MM))
+  if (!(design->u_diameters_mm >= 0 && design->u_diameters_mm <= U_DIAMETERS_MAX_MM))
     return fg_fail(ctx, FG_ERR_DATA, "u_diameters_mm is %g; it must be from 0 to %g mm",
-                   design->u_diameters_mm, U_DIAMETERS_MOST_MM);
+                   design->u_diameters_mm, U_DIAMETERS_MAX_MM);
   return FG_OK;
 }
 
@@ -278,7 +278,7 @@ static fg_status check_gauges(fg_context *ctx, const fg_design *design) {
   if (design->gauge_count > FG_GAUGES_MAX)
     return fg_fail(ctx, FG_ERR_DATA, "gauges has %zu entries; at most %d", design->gauge_count,
                    FG_GAUGES_MAX);
-  if (design->gauge_count && design->form == FG_FORM_CANTILEVER)
+  if (design->gauge_count && design->kind == FG_FOIL_CANTILEVER)
     return fg_fail(ctx, FG_ERR_DATA,
                    "gauges: a gauge on the glass is not sought beside flat foils, form "
                    "\"cantilever\": leave it out");
@@ -295,14 +295,14 @@ fg_status fg_design_check(fg_context *ctx, const fg_design *design) {
   FG_TRY(fg_calibration_check(ctx, &design->calibration));
   FG_TRY(check_thickness_measured(ctx, design));
   FG_TRY(check_gauges(ctx, design));
-  if (design->form != FG_FORM_CANTILEVER) FG_TRY(check_no_beams(ctx, design));
-  if (design->form == FG_FORM_DISCS) return check_discs(ctx, design);
+  if (design->kind != FG_FOIL_CANTILEVER) FG_TRY(check_no_beams(ctx, design));
+  if (design->kind == FG_FOIL_DISCS) return check_discs(ctx, design);
   if (design->diameter_count != 0 || design->u_diameters_mm != 0)
     return fg_fail(ctx, FG_ERR_DATA, "diameters_mm belongs to form \"discs\" only");
-  if (design->form == FG_FORM_ARC) return check_arc(ctx, design);
+  if (design->kind == FG_FOIL_ARC) return check_arc(ctx, design);
   if (design->subtended_angle_deg != 0)
     return fg_fail(ctx, FG_ERR_DATA, "subtended_angle_deg belongs to form \"arc\" only");
-  if (design->form == FG_FORM_CANTILEVER) return check_cantilever(ctx, design);
+  if (design->kind == FG_FOIL_CANTILEVER) return check_cantilever(ctx, design);
   FG_TRY(check_values(ctx, design));
   FG_TRY(check_bump(ctx, design));
   FG_TRY(check_pitch(ctx, design));
@@ -317,8 +317,8 @@ static fg_nominal no_nominal(void) {
 fg_status fg_design_derive(fg_context *ctx, const fg_design *design, fg_nominal *nominal) {
   FG_TRY(fg_design_check(ctx, design));
   *nominal = no_nominal();
-  if (design->form == FG_FORM_DISCS || design->form == FG_FORM_CANTILEVER) return FG_OK;
-  if (design->form == FG_FORM_ARC) {
+  if (design->kind == FG_FOIL_DISCS || design->kind == FG_FOIL_CANTILEVER) return FG_OK;
+  if (design->kind == FG_FOIL_ARC) {
     nominal->arc_length_mm = design->subtended_angle_deg * rad_per_deg * design->overall_radius_mm;
     return FG_OK;
   }

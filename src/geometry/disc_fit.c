@@ -10,10 +10,10 @@
 #include "core/small_solve.h"
 #include "core/spread.h"
 
-enum { ROUNDS = 4, BAND_FIRST = 12, HARMONICS_MOST = 400 };
+enum { ROUNDS = 4, BAND_FIRST = 12, HARMONICS_MAX = 400 };
 /* Points further off than so many robust deviations, and at least so far, are left out. */
 #define OUTLIER_DEVIATIONS 5.0
-#define OUTLIER_LEAST_MM   0.0003
+#define OUTLIER_MIN_MM     0.0003
 #define OUTLIERS_SHARE     0.01
 /* Neighbouring bands of the spectrum have one level unless chance makes them differ so rarely. */
 #define BAND_P 0.01
@@ -71,16 +71,16 @@ static void weigh(fit_work *w, double scatter) {
 
 static fg_status fit_robust(fg_context *ctx, fit_work *w) {
   double scatter = 0;
-  size_t least = w->count / 2;
+  size_t min = w->count / 2;
   for (int round = 0; round < ROUNDS; round++) {
     weigh(w, scatter);
-    if (w->used < least || w->used < 8)
+    if (w->used < min || w->used < 8)
       return fg_fail(ctx, FG_ERR_NUMERIC, "only %zu of %zu points of the edge are usable", w->used,
                      w->count);
     FG_TRY(fg_circle_fit_geometric(ctx, w->at, w->weights, w->count, NULL, &w->fit));
     find_residuals(w);
     scatter = residual_scatter(w);
-    double limit = fmax(OUTLIER_DEVIATIONS * scatter, OUTLIER_LEAST_MM);
+    double limit = fmax(OUTLIER_DEVIATIONS * scatter, OUTLIER_MIN_MM);
     for (size_t i = 0; i < w->count && round + 1 < ROUNDS; i++)
       w->points[i].used = w->points[i].used && fabs(w->residuals[i]) <= limit;
   }
@@ -108,11 +108,11 @@ static double band_power(const fit_work *w, size_t from, size_t to) {
  * long as the next band (of twice the width) has the same level. The factor of Student's t makes
  * up for the few harmonics, so that twice the deviation still means 95 %. */
 static double low_level(const fit_work *w) {
-  size_t most = w->count / 2 < HARMONICS_MOST ? w->count / 2 : HARMONICS_MOST, first = 2;
-  size_t width = most - first < BAND_FIRST ? most - first : BAND_FIRST;
+  size_t max = w->count / 2 < HARMONICS_MAX ? w->count / 2 : HARMONICS_MAX, first = 2;
+  size_t width = max - first < BAND_FIRST ? max - first : BAND_FIRST;
   double level = band_power(w, first, first + width);
-  while (first + 2 * width <= most) {
-    size_t end = first + 3 * width < most ? first + 3 * width : most;
+  while (first + 2 * width <= max) {
+    size_t end = first + 3 * width < max ? first + 3 * width : max;
     double n1 = 2 * (double)width, n2 = 2 * (double)(end - first - width);
     double next = band_power(w, first + width, end), ratio = next / level;
     if (gsl_cdf_fdist_P(ratio, n2, n1) < BAND_P || gsl_cdf_fdist_Q(ratio, n2, n1) < BAND_P) break;
@@ -155,13 +155,13 @@ static double mean_noise(const fit_work *w) {
   return sum / (double)w->used;
 }
 
-static void fill_circle(const fit_work *w, double level_doubt_mm, fg_disc *disc) {
+static void fill_circle(const fit_work *w, double level_u_mm, fg_disc *disc) {
   double level = SHAPE_VARIANCE * (1 + disc->loss_variance) * low_level(w);
   for (int p = 0; p < 3; p++)
     for (int q = 0; q < 3; q++)
       disc->covariance[p][q] = level * w->fit.covariance[p][q];
   add_split(w, level / mean_noise(w), disc->covariance);
-  disc->covariance[2][2] += level_doubt_mm * level_doubt_mm;
+  disc->covariance[2][2] += level_u_mm * level_u_mm;
   const fg_circle *c = &w->fit.circle;
   disc->centre_mm = (fg_point){c->x, c->y};
   disc->radius_mm = c->radius;
@@ -217,10 +217,10 @@ static fg_status fill_points(fg_context *ctx, const fit_work *w, fg_disc *disc) 
 
 /* Fills the circle, covariance, roundness, rms, coverage, points, edge and residuals of `disc`,
  * FG_BUMP_OUTLIERS and FG_BUMP_POOR_FIT. `points` are in order; what is left out of the fit loses
- * its `used`. `level_doubt_mm` adds to the radius' uncertainty. FG_ERR_NUMERIC when fewer than half
+ * its `used`. `level_u_mm` adds to the radius' uncertainty. FG_ERR_NUMERIC when fewer than half
  * of the points are usable. */
-static fg_status fit_disc(fg_context *ctx, fg_disc_point *points, size_t count,
-                          double level_doubt_mm, fg_disc *disc) {
+static fg_status fit_disc(fg_context *ctx, fg_disc_point *points, size_t count, double level_u_mm,
+                          fg_disc *disc) {
   fit_work w = {.points = points, .count = count};
   double *block = NULL;
   size_t usable = 0;
@@ -236,7 +236,7 @@ static fg_status fit_disc(fg_context *ctx, fg_disc_point *points, size_t count,
   }
   FG_TRY_EXIT(fit_robust(ctx, &w));
   if ((double)(usable - w.used) > OUTLIERS_SHARE * (double)usable) disc->flags |= FG_BUMP_OUTLIERS;
-  fill_circle(&w, level_doubt_mm, disc);
+  fill_circle(&w, level_u_mm, disc);
   disc->radius_correction_mm = disc->u_radius_correction_mm = NAN;
   if (disc->rms_um > POOR_SHARE * 1000 * disc->radius_mm) disc->flags |= FG_BUMP_POOR_FIT;
   FG_TRY_EXIT(fill_points(ctx, &w, disc));
@@ -256,7 +256,7 @@ fg_status fg_disc_measure_again(fg_context *ctx, fg_disc *disc) {
   disc->edge = NULL;
   disc->residual_um = NULL;
   disc->flags &= ~(unsigned)(FG_BUMP_OUTLIERS | FG_BUMP_POOR_FIT);
-  fg_status status = fit_disc(ctx, points, disc->station_count, disc->level_doubt_mm, disc);
+  fg_status status = fit_disc(ctx, points, disc->station_count, disc->level_u_mm, disc);
   free(points);
   return status;
 }

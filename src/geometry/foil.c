@@ -93,7 +93,7 @@ static void fill_bump(const fg_layout *layout, size_t i, const fg_design *design
   bump->rms_um = layout->fitted[i] ? 1000 * arc->rms_mm : NAN;
   bump->points = arc->points;
   if ((double)arc->outliers > OUTLIER_SHARE * (double)arc->points) bump->flags |= FG_BUMP_OUTLIERS;
-  bump->flags |= fg_trouble_flags(layout, i);
+  bump->flags |= fg_defect_flags(layout, i);
   const fg_thickness strip = fg_foil_thickness(design, foil);
   fg_bump_derive(design, nominal, &foil->overall, &strip, bump);
   fg_bump_add_shadow(layout, i, design, nominal, &foil->overall, bump);
@@ -246,7 +246,7 @@ static fg_status hint_at_arc(fg_context *ctx, const fg_design *design, const fg_
 
 static fg_status find_layout(fg_context *ctx, const fg_design *design, unsigned threads,
                              fg_foil *foil, fg_layout *layout, const char **error) {
-  if (design->form == FG_FORM_ARC)
+  if (design->kind == FG_FOIL_ARC)
     return fg_arc_foil_layout(ctx, design, &foil->strip, layout, &foil->flags, error);
   FG_TRY(fg_layout_find(ctx, design, &foil->strip, threads, layout, error));
   if (!*error) return FG_OK;
@@ -287,7 +287,7 @@ fg_status fg_foil_measure(fg_context *ctx, const fg_design *design, unsigned thr
              factor);
     fg_foil_give_up(foil, why);
   } else {
-    status = (design->form == FG_FORM_ARC ? fill_arc : fill_foil)(ctx, design, &layout, foil);
+    status = (design->kind == FG_FOIL_ARC ? fill_arc : fill_foil)(ctx, design, &layout, foil);
   }
   fg_layout_free(&layout);
   return status;

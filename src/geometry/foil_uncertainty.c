@@ -106,7 +106,7 @@ static void add_line_shift(const fg_layout *layout, const fg_design *design, con
   double overlap = fmax(1, LINE_SHIFT_WIDTHS / fg_foil_widths_in_blurs(foil));
   double shift_mm = FG_LINE_SHIFT_BLURS * pow(overlap, 3) * blur_um / 1000;
   double loss_mm = layout->line.is_edge ? foil->strip.loss_um / 1000 : 0;
-  double edge_mm = layout->line.is_edge ? fg_foil_edge_doubt_mm(design, foil) : 0;
+  double edge_mm = layout->line.is_edge ? fg_foil_edge_u_mm(design, foil) : 0;
   arc->covariance[2][2] += shift_mm * shift_mm + loss_mm * loss_mm + edge_mm * edge_mm;
 }
 
@@ -188,21 +188,21 @@ fg_status fg_foil_find_uncertainties(fg_context *ctx, fg_layout *layout, const f
   return FG_OK;
 }
 
-double fg_foil_tone_doubt_um(const fg_design *design, const fg_foil *foil) {
+double fg_foil_tone_u_um(const fg_design *design, const fg_foil *foil) {
   const fg_strip *strip = &foil->strip;
   bool fitted = !strip->picture.level_known && !isfinite(strip->picture.u_level);
   double by_gamma = fitted && strip->gamma > 0 ? strip->tone_um * strip->u_gamma / strip->gamma : 0;
-  double level = fg_level_doubt(design, &strip->picture, foil->flags);
+  double level = fg_level_uncertainty(design, &strip->picture, foil->flags);
   double blurs_um = fg_level_shift(strip->blur_left_um) + fg_level_shift(strip->blur_right_um);
   return hypot(by_gamma, level * blurs_um);
 }
 
-double fg_foil_edge_doubt_mm(const fg_design *design, const fg_foil *foil) {
-  return fg_foil_tone_doubt_um(design, foil) / 2000;
+double fg_foil_edge_u_mm(const fg_design *design, const fg_foil *foil) {
+  return fg_foil_tone_u_um(design, foil) / 2000;
 }
 
-double fg_foil_width_doubt_um(const fg_design *design, const fg_foil *foil) {
-  return hypot(fg_foil_tone_doubt_um(design, foil), 2 * foil->strip.loss_um);
+double fg_foil_width_u_um(const fg_design *design, const fg_foil *foil) {
+  return hypot(fg_foil_tone_u_um(design, foil), 2 * foil->strip.loss_um);
 }
 
 /* A strip this far off the design's, and by more than U, is another material, another setup or a
@@ -226,10 +226,10 @@ static void check_thickness(const fg_design *design, fg_foil *foil) {
 }
 
 void fg_foil_find_thickness(const fg_design *design, fg_foil *foil) {
-  double doubt_mm = fg_foil_width_doubt_um(design, foil) / 1000;
+  double u_mm_of_level = fg_foil_width_u_um(design, foil) / 1000;
   foil->thickness_scan_mm = foil->strip.thickness_mm;
-  foil->u_thickness_scan_mm = hypot(foil->strip.u_thickness_mm, doubt_mm);
-  foil->u_thickness_tone_mm = fg_foil_tone_doubt_um(design, foil) / 1000;
+  foil->u_thickness_scan_mm = hypot(foil->strip.u_thickness_mm, u_mm_of_level);
+  foil->u_thickness_tone_mm = fg_foil_tone_u_um(design, foil) / 1000;
   bool stated = design->thickness_measured_mm > 0;
   foil->thickness_mm = stated ? design->thickness_measured_mm : foil->thickness_scan_mm;
   foil->u_thickness_mm = stated ? design->u_thickness_measured_mm : foil->u_thickness_scan_mm;

@@ -17,11 +17,11 @@ void fg_foil_find_arc_uncertainty(fg_layout *layout, const fg_design *design, fg
 
 /* Uncertainty of the distance of two edges that move outwards or inwards together: the level of the
  * edges alone, which a tone curve moves; with what the scan has lost. */
-double fg_foil_tone_doubt_um(const fg_design *design, const fg_foil *foil);
-double fg_foil_width_doubt_um(const fg_design *design, const fg_foil *foil);
+double fg_foil_tone_u_um(const fg_design *design, const fg_foil *foil);
+double fg_foil_width_u_um(const fg_design *design, const fg_foil *foil);
 
 /* The same as u of the place of one edge, mm: of the level alone. */
-double fg_foil_edge_doubt_mm(const fg_design *design, const fg_foil *foil);
+double fg_foil_edge_u_mm(const fg_design *design, const fg_foil *foil);
 
 /* The strip's thickness by the scan and the one in force, their uncertainties, and flags of one
  * that contradicts what is stated or is far from the design's. The foil's flags of its edges are

@@ -8,9 +8,9 @@
 
 /* No leaf, pin or ring beyond these is on a scanner's bed, and an uncertainty of a tenth of the
  * width tells nothing. */
-#define WIDTH_LEAST_MM 0.005
-#define WIDTH_MOST_MM  200.0
-#define U_SHARE_MOST   0.1
+#define WIDTH_MIN_MM 0.005
+#define WIDTH_MAX_MM 200.0
+#define U_SHARE_MAX  0.1
 
 static const char *const words[] = {"leaf", "pin", "ring", "hole"};
 enum { KINDS = sizeof words / sizeof *words };
@@ -20,15 +20,15 @@ const char *fg_gauge_word(fg_gauge_kind kind) {
 }
 
 fg_status fg_gauge_check(fg_context *ctx, const char *name, const fg_gauge *gauge) {
-  if (!(gauge->width_mm >= WIDTH_LEAST_MM && gauge->width_mm <= WIDTH_MOST_MM))
+  if (!(gauge->width_mm >= WIDTH_MIN_MM && gauge->width_mm <= WIDTH_MAX_MM))
     return fg_fail(ctx, FG_ERR_DATA, "%s: a width of %g mm; it must be from %g to %g mm", name,
-                   gauge->width_mm, WIDTH_LEAST_MM, WIDTH_MOST_MM);
+                   gauge->width_mm, WIDTH_MIN_MM, WIDTH_MAX_MM);
   if (!(gauge->u_mm > 0))
     return fg_fail(ctx, FG_ERR_DATA,
                    "%s: a standard uncertainty of %g mm; no width is known exactly: state it, as "
                    "0.0005",
                    name, gauge->u_mm);
-  if (!(gauge->u_mm <= U_SHARE_MOST * gauge->width_mm))
+  if (!(gauge->u_mm <= U_SHARE_MAX * gauge->width_mm))
     return fg_fail(ctx, FG_ERR_DATA,
                    "%s: a standard uncertainty of %g mm; it must be at most a tenth of the width "
                    "of %g mm",

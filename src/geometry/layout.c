@@ -7,7 +7,7 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 
-enum { GROW_ROUNDS = 3, LAND_POINTS_LEAST = 24 };
+enum { GROW_ROUNDS = 3, LAND_POINTS_MIN = 24 };
 /* How far an arc's end may lie inside and outside the turning point, and where it is put else. */
 #define END_EARLY_MM  0.30
 #define END_LATE_MM   0.12
@@ -68,7 +68,7 @@ static void regrow_lands(fg_layout *layout) {
       if (near && open.last - open.first > best.last - best.first) best = open;
       inside = near || (inside && !isfinite(r));
     }
-    if (best.last - best.first < LAND_POINTS_LEAST / 2) continue;
+    if (best.last - best.first < LAND_POINTS_MIN / 2) continue;
     fg_range grown = middle_part(best, 0.7);
     fg_arc_grow(&layout->line, &layout->overall, -1, gap, &grown);
     if (grown.first < best.first) grown.first = best.first;

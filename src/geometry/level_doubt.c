@@ -102,7 +102,8 @@ static double hidden_variance(const fg_picture_state *picture, bool known) {
   return variance;
 }
 
-double fg_level_doubt(const fg_design *design, const fg_picture_state *picture, unsigned flags) {
+double fg_level_uncertainty(const fg_design *design, const fg_picture_state *picture,
+                            unsigned flags) {
   double held;
   unsigned open = open_findings(picture, &held);
   bool known = picture->level_known;
@@ -124,7 +125,7 @@ double fg_level_shift(double blur) {
   return blur * sqrt(2 * M_PI);
 }
 
-void fg_disc_find_level_doubt(const fg_design *design, fg_disc *disc) {
-  double level = fg_level_doubt(design, &disc->picture, 0);
-  disc->level_doubt_mm = hypot(disc->edge_doubt_mm, level * fg_level_shift(disc->blur_um) / 1000);
+void fg_disc_find_level_uncertainty(const fg_design *design, fg_disc *disc) {
+  double level = fg_level_uncertainty(design, &disc->picture, 0);
+  disc->level_u_mm = hypot(disc->edge_u_mm, level * fg_level_shift(disc->blur_um) / 1000);
 }

@@ -1,6 +1,6 @@
 /* Uncertainty of the level at which edges are placed, and of what lies between two edges. */
-#ifndef FG_GEOMETRY_LEVEL_DOUBT_H
-#define FG_GEOMETRY_LEVEL_DOUBT_H
+#ifndef FG_GEOMETRY_LEVEL_UNCERTAINTY_H
+#define FG_GEOMETRY_LEVEL_UNCERTAINTY_H
 
 #include "foilgauge/foil.h"
 
@@ -8,13 +8,14 @@
  * pixels leave (u_level; NaN counts as 0), an unknown tone curve unless the design vouches for it
  * or a gauge or a scanner's model knows the level, and what the findings do to it. `flags` are
  * those of a foil; 0 for discs. All edges of one scan err alike by it. */
-double fg_level_doubt(const fg_design *design, const fg_picture_state *picture, unsigned flags);
+double fg_level_uncertainty(const fg_design *design, const fg_picture_state *picture,
+                            unsigned flags);
 
 /* By how much an edge of this blur moves per unit of the level, in the unit of the blur. */
 double fg_level_shift(double blur);
 
-/* Sets disc->level_doubt_mm from its blur, its picture and its edge_doubt_mm. Fit the disc
+/* Sets disc->level_u_mm from its blur, its picture and its edge_u_mm. Fit the disc
  * afterwards (fg_disc_measure_again). */
-void fg_disc_find_level_doubt(const fg_design *design, fg_disc *disc);
+void fg_disc_find_level_uncertainty(const fg_design *design, fg_disc *disc);
 
 #endif

@@ -1,6 +1,6 @@
 /* Uncertainty of circles by a shadow or a lit wall beside edges. */
-#ifndef FG_GEOMETRY_SHADOW_DOUBT_H
-#define FG_GEOMETRY_SHADOW_DOUBT_H
+#ifndef FG_GEOMETRY_SHADOW_UNCERTAINTY_H
+#define FG_GEOMETRY_SHADOW_UNCERTAINTY_H
 
 #include "geometry/layout.h"
 

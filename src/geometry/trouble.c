@@ -22,7 +22,7 @@ static bool is_hidden(const fg_layout *layout, const fg_arc *arc) {
   return (double)longest > HIDDEN_RUN * count || (double)hidden > HIDDEN_SHARE * count;
 }
 
-unsigned fg_trouble_flags(const fg_layout *layout, size_t i) {
+unsigned fg_defect_flags(const fg_layout *layout, size_t i) {
   const fg_strip *strip = layout->line.strip;
   const fg_turning *turning = &layout->turning;
   const fg_arc *arc = &layout->bumps[i];

@@ -9,10 +9,10 @@
 
 #define TANGENT_MM     0.12              /* the direction is taken over ± this length */
 #define PROMINENCE_RAD (12 * M_PI / 180) /* smaller turns back are not turning points */
-#define LIP_TURN_LEAST (45 * M_PI / 180)
+#define LIP_TURN_MIN   (45 * M_PI / 180)
 #define LIP_RADIUS     0.4 /* a lip's bend is tighter than this share of the bumps' radius */
 #define SHARP_RADIUS   0.5 /* and fillets are tighter than this share */
-enum { STRETCHES_MAX = 512, PAIRS_LEAST = 8 };
+enum { STRETCHES_MAX = 512, PAIRS_MIN = 8 };
 
 /* The usable station at or next to i, in the direction of `step`; i itself where there is none. */
 static size_t usable(const fg_strip *strip, size_t i, int step) {
@@ -113,15 +113,15 @@ static double get_tightest(const fg_stretch *s) {
 /* Radius where a turn of PROMINENCE_RAD takes the least length: a bump's own, and of a gap that of
  * its fillets, however long the land between them is. */
 static double find_tightest(const fg_strip *strip, const double *direction, const fg_stretch *s) {
-  double least = s->length_mm;
+  double min = s->length_mm;
   double sign = s->turn_rad > 0 ? 1 : -1;
   for (size_t a = s->first, b = s->first; a <= s->last; a++) {
     while (b < s->last && sign * (direction[b] - direction[a]) < PROMINENCE_RAD)
       b++;
     if (sign * (direction[b] - direction[a]) < PROMINENCE_RAD) break;
-    least = fmin(least, strip->stations[b].s_mm - strip->stations[a].s_mm);
+    min = fmin(min, strip->stations[b].s_mm - strip->stations[a].s_mm);
   }
-  return least / PROMINENCE_RAD;
+  return min / PROMINENCE_RAD;
 }
 
 /* How much of a stretch's turn happens on radii below `limit_mm`. */
@@ -143,7 +143,7 @@ static double find_sense(const fg_stretch *stretches, size_t count) {
   size_t n = 0;
   for (size_t i = 1; i + 2 < count; i++)
     sums[n++] = stretches[i].turn_rad + stretches[i + 1].turn_rad;
-  if (n >= PAIRS_LEAST) return fg_select(sums, n, n / 2) < 0 ? 1 : -1;
+  if (n >= PAIRS_MIN) return fg_select(sums, n, n / 2) < 0 ? 1 : -1;
   double up = median_over(stretches, count, 1, get_tightest);
   return up > median_over(stretches, count, -1, get_tightest) ? 1 : -1;
 }
@@ -153,7 +153,7 @@ static double find_sense(const fg_stretch *stretches, size_t count) {
 static size_t bend_middle(const double *direction, const fg_stretch *s, bool from_last) {
   size_t at = from_last ? s->last : s->first, from = at;
   while (at != (from_last ? s->first : s->last) &&
-         fabs(direction[at] - direction[from]) < LIP_TURN_LEAST)
+         fabs(direction[at] - direction[from]) < LIP_TURN_MIN)
     at += from_last ? (size_t)-1 : 1;
   return at;
 }
@@ -168,7 +168,7 @@ static void find_lip_in_gaps(const double *direction, const fg_stretch *all, siz
                              fg_turning *out) {
   const fg_stretch *first = &all[0], *last = &all[count - 1];
   if (out->lip_first || out->lip_last || out->bump_count < 2) return;
-  double limit = 0.5 * median_over(all, count, -out->sense, get_sharp) + LIP_TURN_LEAST;
+  double limit = 0.5 * median_over(all, count, -out->sense, get_sharp) + LIP_TURN_MIN;
   out->lip_first = first->turn_rad * out->sense < 0 && first->sharp_rad > limit;
   out->lip_last = last->turn_rad * out->sense < 0 && last->sharp_rad > limit;
   if (out->lip_first) out->lip_end[0] = bend_middle(direction, first, false);
@@ -177,7 +177,7 @@ static void find_lip_in_gaps(const double *direction, const fg_stretch *all, siz
 
 /* A tight bend in the bumps' sense, the first or last of its kind, is the lip's. */
 static bool is_lip(const fg_stretch *s, double typical_radius) {
-  return fabs(s->turn_rad) > LIP_TURN_LEAST && get_radius(s) < typical_radius;
+  return fabs(s->turn_rad) > LIP_TURN_MIN && get_radius(s) < typical_radius;
 }
 
 static void pick_bumps(const fg_strip *strip, const double *direction, const fg_stretch *all,

@@ -6,7 +6,7 @@
 
 /* How far repeats of one thing lie apart over what their uncertainties say. */
 typedef struct fg_load_scatter {
-  double chi2, freedom;
+  double chi2, dof;
 } fg_load_scatter;
 
 /* max(1, sqrt(chi2 / freedom)) (R. T. Birge, The calculation of errors by the method of least

@@ -83,7 +83,7 @@ static double value_at(const curve *c, double deg, int derivative) {
 static bool fit(const fg_load_test *test, size_t bearing, curve *c, fg_load_scatter *scatter) {
   fg_normal_equations system;
   fg_normal_clear(&system, c->count);
-  scatter->freedom = -(double)c->count;
+  scatter->dof = -(double)c->count;
   for (size_t i = 0; i < test->direction_count; i++) {
     const fg_load_direction *d = &test->directions[i];
     double row[COEFFICIENTS_MAX];
@@ -91,7 +91,7 @@ static bool fit(const fg_load_test *test, size_t bearing, curve *c, fg_load_scat
     for (size_t k = 0; k < c->count; k++)
       row[k] = term(c, k, d->azimuth_deg);
     fg_normal_add(&system, row, d->clearance.value, 1 / pow(d->clearance.u_repeat, 2));
-    scatter->freedom++;
+    scatter->dof++;
   }
   if (!fg_normal_solve(&system, 0, c->x, c->inverse)) return false;
   scatter->chi2 = system.sum_squares;
@@ -143,8 +143,8 @@ static fg_load_axis find_axis(const curve *c, double birge, fg_load_bearing *sum
   double bend = value_at(c, best, 2), u = birge * sqrt(variance) / bend * 180 / M_PI;
   if (!(bend > 0 && u > 0)) return FG_LOAD_AXIS_ROUND;
   if (has_rival(c, best, birge)) return FG_LOAD_AXIS_RIVALS;
-  sum->least_at_deg = best - half_turn_deg * floor(best / half_turn_deg);
-  sum->u_least_at_deg = u;
+  sum->min_at_deg = best - half_turn_deg * floor(best / half_turn_deg);
+  sum->u_min_at_deg = u;
   return FG_LOAD_AXIS_KNOWN;
 }
 
@@ -164,7 +164,7 @@ static void take_harmonics(const curve *c, double birge, fg_load_bearing *sum) {
 
 static void take_extremes(const fg_load_test *test, size_t bearing, fg_load_bearing *sum) {
   double stiffness = 0, u = 0, count = 0;
-  const fg_load_direction *least = NULL, *most = NULL;
+  const fg_load_direction *min = NULL, *max = NULL;
   for (size_t i = 0; i < test->direction_count; i++) {
     const fg_load_direction *d = &test->directions[i];
     if (d->bearing != bearing) continue;
@@ -176,17 +176,17 @@ static void take_extremes(const fg_load_test *test, size_t bearing, fg_load_bear
     }
     if (!is_of(test, i, bearing)) continue;
     sum->measured++;
-    if (!least || d->clearance.value < least->clearance.value) least = d;
-    if (!most || d->clearance.value > most->clearance.value) most = d;
+    if (!min || d->clearance.value < min->clearance.value) min = d;
+    if (!max || d->clearance.value > max->clearance.value) max = d;
   }
   double scale = hypot(test->options.u_force_pct, test->options.u_displacement_pct) / 100;
   double mean = stiffness / count;
   sum->stiffness = (fg_load_value){mean, hypot(u / count, scale * mean), u / count};
-  if (!least) return;
-  sum->least = least->clearance;
-  sum->most = most->clearance;
-  sum->least_measured_at_deg = least->azimuth_deg;
-  sum->most_measured_at_deg = most->azimuth_deg;
+  if (!min) return;
+  sum->min = min->clearance;
+  sum->max = max->clearance;
+  sum->min_measured_at_deg = min->azimuth_deg;
+  sum->max_measured_at_deg = max->azimuth_deg;
 }
 
 static void sum_noise(const fg_load_test *test, size_t bearing, fg_load_bearing *sum) {
@@ -213,8 +213,7 @@ static bool fit_flat(const fg_load_test *test, size_t bearing, fg_load_scatter *
 /* Chi-squared test of equal directions: the uncertainties are taken for known. */
 static void test_alike(const fg_load_scatter *flat, fg_load_bearing *sum) {
   if (sum->measured < 2) return;
-  sum->p_value =
-      fg_distribution_f_upper(fmax(0, flat->chi2) / flat->freedom, flat->freedom, KNOWN_DOF);
+  sum->p_value = fg_distribution_f_upper(fmax(0, flat->chi2) / flat->dof, flat->dof, KNOWN_DOF);
 }
 
 /* Probability that noise alone makes orders this large. */
@@ -237,10 +236,10 @@ const char *fg_load_axis_words(fg_load_axis axis) {
 
 void fg_load_sum_bearing(const fg_load_test *test, size_t bearing, fg_load_bearing *sum) {
   fg_load_scatter scatter, flat;
-  sum->least = sum->most = (fg_load_value){NAN, NAN, NAN};
+  sum->min = sum->max = (fg_load_value){NAN, NAN, NAN};
   sum->mean_mm = sum->u_mean_mm = sum->p_value = NAN;
-  sum->least_measured_at_deg = sum->most_measured_at_deg = NAN;
-  sum->least_at_deg = sum->u_least_at_deg = NAN;
+  sum->min_measured_at_deg = sum->max_measured_at_deg = NAN;
+  sum->min_at_deg = sum->u_min_at_deg = NAN;
   sum->axis = FG_LOAD_AXIS_FEW;
   take_extremes(test, bearing, sum);
   sum_noise(test, bearing, sum);

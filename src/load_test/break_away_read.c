@@ -38,16 +38,16 @@ static fg_status find_bearing(reading *r, size_t row, size_t *index) {
 }
 
 /* A weight or torque; its sign would be a direction, which neither has. */
-static fg_status read_value(const reading *r, fg_load_measured which, const char *words,
-                            double most, size_t row, double *value) {
+static fg_status read_value(const reading *r, fg_load_measured which, const char *words, double max,
+                            size_t row, double *value) {
   *value = r->columns.number[which][row].value * r->columns.scale[which];
   if (*value < 0)
     return fg_fail(r->ctx, FG_ERR_DATA,
                    "%s: row %zu (line %zu): a %s of %.6g; give its size, without a sign",
                    r->table->source, row + 1, r->table->line[row], words, *value);
-  if (!(*value <= most))
+  if (!(*value <= max))
     return fg_fail(r->ctx, FG_ERR_DATA, "%s: row %zu (line %zu): a %s of %.3g; none is beyond %g",
-                   r->table->source, row + 1, r->table->line[row], words, *value, most);
+                   r->table->source, row + 1, r->table->line[row], words, *value, max);
   return FG_OK;
 }
 

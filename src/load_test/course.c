@@ -161,7 +161,7 @@ static void add_scatter(const side *s, size_t at, fg_load_scatter *scatter) {
                          s->fit[WHOLE][at].window_mm, &fit))
       continue;
     double w = 1 / (fit.u_slope * fit.u_slope);
-    scatter->freedom += weight > 0;
+    scatter->dof += weight > 0;
     weight += w;
     sum += w * fit.slope;
     squares += w * fit.slope * fit.slope;

@@ -107,7 +107,7 @@ static double try_way(const between *b, double zero, double way, double ab[2]) {
 }
 
 /* Covariance of a and b with the way free too; neighbouring residuals are alike. */
-static void find_doubt(const between *b, double zero, double step, fg_load_friction *f) {
+static void find_uncertainty(const between *b, double zero, double step, fg_load_friction *f) {
   fg_normal_equations system;
   double unused[FG_SMALL_MAX], inverse[FG_SMALL_MAX][FG_SMALL_MAX], last = 0, sum = 0, cross = 0;
   size_t unknowns = f->way_mm > 0 ? 3 : 2;
@@ -132,14 +132,14 @@ static void find_doubt(const between *b, double zero, double step, fg_load_frict
 
 static fg_load_friction fit(const between *b, double zero) {
   fg_load_friction f = {NAN, NAN, NAN, NAN, NAN};
-  double least = INFINITY, step = way_share_max * (b->high - b->low) / (WAYS - 1), ab[2];
+  double min = INFINITY, step = way_share_max * (b->high - b->low) / (WAYS - 1), ab[2];
   for (int i = 0; i < WAYS; i++) {
     double squares = try_way(b, zero, i * step, ab);
-    if (squares >= least) continue;
-    least = squares;
+    if (squares >= min) continue;
+    min = squares;
     f.a_n = ab[0], f.b = ab[1], f.way_mm = i * step;
   }
-  find_doubt(b, zero, step, &f);
+  find_uncertainty(b, zero, step, &f);
   return f;
 }
 

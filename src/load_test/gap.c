@@ -76,12 +76,12 @@ static branch make_branch(const fg_load_strokes *strokes, int side, fg_load_zero
                zero.friction_n > -friction_noise * strokes->noise_n;
   double friction = known ? fmax(0, zero.friction_n) : 0;
   b.zero_n = known ? zero.force_n : 0;
-  double most = side > 0 ? d->force_high_n - b.zero_n : b.zero_n - d->force_low_n;
+  double max = side > 0 ? d->force_high_n - b.zero_n : b.zero_n - d->force_low_n;
   b.low_n = fmax(fmax(friction_reach * friction, friction + noise_reach * strokes->noise_n),
-                 low_share * most);
-  b.high_n = fmin(fmax(span * b.low_n, high_share_min * most), high_share_max * most);
-  while (!count_samples(&b) && b.high_n < high_share_max * most)
-    b.high_n = fmin(span_growth * b.high_n, high_share_max * most);
+                 low_share * max);
+  b.high_n = fmin(fmax(span * b.low_n, high_share_min * max), high_share_max * max);
+  while (!count_samples(&b) && b.high_n < high_share_max * max)
+    b.high_n = fmin(span_growth * b.high_n, high_share_max * max);
   return b;
 }
 
@@ -123,16 +123,16 @@ typedef struct touched {
 /* Exponents that fit better count more; but friction that turns round at the contact bends the
  * branch as an exponent does, so that half of the weight stays with all of them alike. */
 static touched weigh(const branch *b, const branch_fit fits[EXPONENTS]) {
-  double least = INFINITY, low = INFINITY, high = -INFINITY, weights = 0;
+  double min = INFINITY, low = INFINITY, high = -INFINITY, weights = 0;
   double contact = 0, variance = 0, parted = 0, plain = 0;
   for (int i = 0; i < EXPONENTS; i++) {
-    least = fmin(least, fits[i].squares);
+    min = fmin(min, fits[i].squares);
     low = fmin(low, fits[i].contact), high = fmax(high, fits[i].contact);
     plain += fits[i].contact / EXPONENTS;
   }
-  double noise = least / (b->count[0] + b->count[1] - TERMS);
+  double noise = min / (b->count[0] + b->count[1] - TERMS);
   for (int i = 0; i < EXPONENTS; i++) {
-    double more = fits[i].squares - least, w = more > 0 ? exp(-more / (2 * noise)) : 1;
+    double more = fits[i].squares - min, w = more > 0 ? exp(-more / (2 * noise)) : 1;
     weights += w;
     contact += w * fits[i].contact;
     variance += w * noise * fits[i].variance;

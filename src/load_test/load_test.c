@@ -241,7 +241,7 @@ static void widen(fg_load_value *value, double birge, double scale_pct, double m
 }
 
 /* The instruments' scales are in the area as they are in K X². */
-static void doubt_loss(fg_load_direction *d) {
+static void widen_loss(fg_load_direction *d) {
   double area = d->area.u_repeat / d->area.value, k = d->stiffness.u_repeat / d->stiffness.value;
   d->loss.u = d->loss.u_repeat = fabs(d->loss.value) * hypot(area, k);
   double secant = d->secant.u_repeat / d->secant.value;
@@ -255,8 +255,8 @@ static void finish_bearing(fg_load_test *test, const fg_load_findings *findings,
   fg_load_scatter points = {0}, slopes = {0};
   for (size_t i = 0; i < test->direction_count; i++)
     if (test->directions[i].bearing == bearing) {
-      points.chi2 += findings[i].points.chi2, points.freedom += findings[i].points.freedom;
-      slopes.chi2 += findings[i].slopes.chi2, slopes.freedom += findings[i].slopes.freedom;
+      points.chi2 += findings[i].points.chi2, points.dof += findings[i].points.dof;
+      slopes.chi2 += findings[i].slopes.chi2, slopes.dof += findings[i].slopes.dof;
     }
   double birge = fg_load_birge(&points), steep = fg_load_birge(&slopes);
   double both = hypot(o->u_force_pct, o->u_displacement_pct);
@@ -271,7 +271,7 @@ static void finish_bearing(fg_load_test *test, const fg_load_findings *findings,
     widen(&d->stiffness, steep, both, 0);
     widen(&d->area, 1, both, 0);
     widen(&d->secant, 1, both, 0);
-    doubt_loss(d);
+    widen_loss(d);
     for (int side = 0; side < FG_LOAD_SIDES; side++)
       for (size_t k = 0; k < d->course[side].count; k++)
         d->course[side].point[k].u_stiffness_n_mm *= steep;

@@ -219,9 +219,9 @@ static fg_load_value area_of(const mean_loop *loop, const tip end[FG_LOAD_SIDES]
   work down = integrate(&loop->branch[DOWN], 0, low, high);
   double tips = 0, variance = up.variance + down.variance;
   for (int side = 0; side < FG_LOAD_SIDES; side++) {
-    double most = end[side].apart_n * end[side].rest_mm;
-    tips += most / 2;
-    variance += most * most / 12;
+    double max = end[side].apart_n * end[side].rest_mm;
+    tips += max / 2;
+    variance += max * max / 12;
   }
   double u = hypot(sqrt(variance), up.unsampled + down.unsampled);
   return (fg_load_value){up.value - down.value + tips, NAN, u};

@@ -21,7 +21,7 @@ static int by_value(const void *left, const void *right) {
 
 double fg_load_find_step(const fg_load_sample *samples, size_t count) {
   fg_context ignored = {0};
-  double *x = NULL, least = INFINITY, step = 0;
+  double *x = NULL, min = INFINITY, step = 0;
   size_t n = count < STEP_SAMPLES_MAX ? count : STEP_SAMPLES_MAX, values = 1;
   if (n < STEP_SAMPLES_MIN || fg_memory_allocate(&ignored, n, sizeof *x, (void **)&x) != FG_OK)
     return 0;
@@ -31,15 +31,15 @@ double fg_load_find_step(const fg_load_sample *samples, size_t count) {
   double alike = 1e-9 * (x[n - 1] - x[0]); /* rounding of the numbers themselves */
   for (size_t i = 1; i < n; i++) {
     if (x[i] - x[i - 1] <= alike) continue;
-    least = fmin(least, x[i] - x[i - 1]);
+    min = fmin(min, x[i] - x[i - 1]);
     values++;
   }
-  bool stepped = (double)values < values_share_max * (double)n && isfinite(least);
+  bool stepped = (double)values < values_share_max * (double)n && isfinite(min);
   for (size_t i = 1; i < n && stepped; i++) {
-    double steps = (x[i] - x[i - 1]) / least;
+    double steps = (x[i] - x[i - 1]) / min;
     stepped = fabs(steps - round(steps)) < step_tolerance * fmax(1, steps);
   }
-  if (stepped) step = least;
+  if (stepped) step = min;
   free(x);
   return step;
 }
@@ -112,7 +112,7 @@ static void add_moments(const fg_load_stroke *s, const pilot *p, variances v, mo
 }
 
 /* With the displacement's at least `least`. */
-static variances solve(const moments *m, double least) {
+static variances solve(const moments *m, double min) {
   double determinant = m->one * m->kk - m->k * m->k;
   variances v = {m->q / m->one, 0};
   if (determinant > 1e-9 * m->one * m->kk) {
@@ -120,7 +120,7 @@ static variances solve(const moments *m, double least) {
     v.force = (m->kk * m->q - m->k * m->kq) / determinant;
   }
   if (v.force < 0) v = (variances){0, m->kq / m->kk};
-  if (v.displacement < least) v = (variances){fmax(0, (m->q - least * m->k) / m->one), least};
+  if (v.displacement < min) v = (variances){fmax(0, (m->q - min * m->k) / m->one), min};
   return v;
 }
 
@@ -143,7 +143,7 @@ static fg_status first_variance(fg_context *ctx, const fg_load_strokes *strokes,
 }
 
 static variances find_variances(const fg_load_strokes *strokes, const pilot p[2], double first,
-                                double least) {
+                                double min) {
   variances v = {first, 0};
   for (int turn = 0; turn < TURNS && first > 0; turn++) {
     moments m = {0};
@@ -151,7 +151,7 @@ static variances find_variances(const fg_load_strokes *strokes, const pilot p[2]
     for (size_t i = 0; i < strokes->count; i++)
       add_moments(&strokes->stroke[i], &p[strokes->stroke[i].sense > 0], v, &m);
     if (!(m.one > 0)) break;
-    v = solve(&m, least);
+    v = solve(&m, min);
   }
   return v;
 }

@@ -11,7 +11,7 @@ static const double whole_share = 0.9;
 enum { RECORDS_MAX = FG_SMALL_MAX - 3, PUSH = 0, PULL, DRIFT, OFFSETS };
 
 double fg_load_birge(const fg_load_scatter *scatter) {
-  return scatter->freedom > 0 ? fmax(1, sqrt(scatter->chi2 / scatter->freedom)) : 1;
+  return scatter->dof > 0 ? fmax(1, sqrt(scatter->chi2 / scatter->dof)) : 1;
 }
 
 typedef struct point {
@@ -122,7 +122,7 @@ static bool join(fg_load_strokes *strokes, fg_load_levels levels, joined *out) {
   }
   if (!fg_normal_solve(&system, 0, x, inverse)) return false;
   out->drift = drifts ? x[DRIFT] : NAN;
-  out->scatter.freedom = (double)(all.count[0] + all.count[1]) - (double)unknowns;
+  out->scatter.dof = (double)(all.count[0] + all.count[1]) - (double)unknowns;
   out->scatter.chi2 = system.sum_squares;
   for (size_t k = 0; k < unknowns; k++)
     out->scatter.chi2 -= x[k] * system.right[k];

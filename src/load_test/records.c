@@ -116,12 +116,12 @@ static fg_status check_size(reading *r, const fg_table *table, const fg_load_col
   static const char *const words[] = {"displacement", "force"};
   const double value[] = {value_at(columns, FG_LOAD_DISPLACEMENT, i),
                           value_at(columns, FG_LOAD_FORCE, i)};
-  const double most[] = {displacement_max_mm, force_max_n};
+  const double max[] = {displacement_max_mm, force_max_n};
   for (int k = 0; k < 2; k++)
-    if (!(fabs(value[k]) <= most[k]))
+    if (!(fabs(value[k]) <= max[k]))
       return fg_fail(
           r->ctx, FG_ERR_DATA, "%s: row %zu (line %zu): a %s of %.3g %s; no bearing's is beyond %g",
-          table->source, i + 1, table->line[i], words[k], value[k], k ? "N" : "mm", most[k]);
+          table->source, i + 1, table->line[i], words[k], value[k], k ? "N" : "mm", max[k]);
   return FG_OK;
 }
 

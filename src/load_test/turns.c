@@ -201,17 +201,17 @@ static size_t add_samples(const fg_load_sample *samples, const fg_load_stroke *s
 
 /* Place at the turn's force by the displacement's regression over the force. */
 static bool find_place(const fg_load_sample *samples, const branch *b, fg_load_turn *t) {
-  double most = force_span(samples, b, t->force_n);
+  double max = force_span(samples, b, t->force_n);
   fg_normal_equations system;
   t->place_mm = samples[b->turns[0].at].x_mm; /* datum of the regression */
-  for (double window = fmin(most, window_share * fabs(t->force_n)); window > 0;
-       window = fmin(most, 1.25 * window)) {
+  for (double window = fmin(max, window_share * fabs(t->force_n)); window > 0;
+       window = fmin(max, 1.25 * window)) {
     size_t count = 0;
     parabola p;
     fg_normal_clear(&system, PARAMETERS);
     for (size_t i = 0; i < b->count; i++)
       count += add_samples(samples, b->stroke[i], b->turns[i].at, window, t, &system);
-    if (count < PLACE_SAMPLES_MIN && window < most) continue;
+    if (count < PLACE_SAMPLES_MIN && window < max) continue;
     if (!solve(&system, count, &p)) return false;
     t->place_mm += p.c0;
     t->u_place_mm = p.u_c0;

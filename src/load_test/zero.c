@@ -25,14 +25,14 @@ static bool fit_at(const fg_load_stroke *stroke, double x, double span, fg_local
 
 /* What both say where both are known, and how fast their mean rises. */
 typedef struct course {
-  double x[PLACES], middle[PLACES], half[PLACES], u[PLACES], slope[PLACES], least, most;
+  double x[PLACES], middle[PLACES], half[PLACES], u[PLACES], slope[PLACES], min, max;
   size_t count;
 } course;
 
 static void look(const fg_load_stroke *up, const fg_load_stroke *down, course *c) {
   double low = fmax(up->x[0], down->x[0]);
   double high = fmin(up->x[up->count - 1], down->x[down->count - 1]);
-  *c = (course){.least = INFINITY};
+  *c = (course){.min = INFINITY};
   for (size_t k = 0; k < PLACES && high > low; k++) {
     double share = end_left_out + (1 - 2 * end_left_out) * (double)k / (PLACES - 1);
     double x = low + share * (high - low);
@@ -43,14 +43,14 @@ static void look(const fg_load_stroke *up, const fg_load_stroke *down, course *c
     c->half[c->count] = (a.value - b.value) / 2;
     c->u[c->count] = hypot(a.u_value, b.u_value) / 2;
     c->slope[c->count] = fabs(a.slope + b.slope) / 2;
-    c->least = fmin(c->least, c->slope[c->count]);
-    c->most = fmax(c->most, c->slope[c->count]);
+    c->min = fmin(c->min, c->slope[c->count]);
+    c->max = fmax(c->max, c->slope[c->count]);
     c->count++;
   }
 }
 
 static bool is_flat(const course *c, size_t k) {
-  return c->slope[k] <= c->least + gap_share * c->most;
+  return c->slope[k] <= c->min + gap_share * c->max;
 }
 
 /* Mean over the places where it rises next to nothing, of the middle half of them: windows of the
@@ -59,7 +59,7 @@ static bool is_flat(const course *c, size_t k) {
 static fg_load_zero mean_of_gap(const course *c) {
   fg_load_zero zero = {0, 0, 0, 0};
   double count = 0, first = INFINITY, last = -INFINITY;
-  if (!(c->least < flat_share * c->most)) return (fg_load_zero){NAN, NAN, NAN, NAN};
+  if (!(c->min < flat_share * c->max)) return (fg_load_zero){NAN, NAN, NAN, NAN};
   for (size_t k = 0; k < c->count; k++) {
     if (!is_flat(c, k)) continue;
     first = fmin(first, c->x[k]), last = fmax(last, c->x[k]);

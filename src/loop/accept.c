@@ -68,16 +68,16 @@ static fg_status sharpen(fg_context *ctx, const fg_engine_run *run, fg_engine_no
 }
 
 /* A curve that passes, and the listed effect that would be taken. */
-typedef struct form_choice {
+typedef struct basis_choice {
   size_t winner, curve;
   bool wrong; /* the winner's form is not in the table: the curve is right */
   fg_engine_noise noise;
-} form_choice;
+} basis_choice;
 
 /* Unless another listed effect leaves the curve nothing to explain: levels of a die in turn look
  * like a wave over the foils. */
-static fg_status right_form(fg_context *ctx, const fg_engine_run *run, const fg_engine_step *step,
-                            form_choice *choice) {
+static fg_status right_basis(fg_context *ctx, const fg_engine_run *run, const fg_engine_step *step,
+                             basis_choice *choice) {
   double best = -INFINITY;
   for (size_t c = 0; c < run->means; c++) {
     double p;
@@ -96,8 +96,8 @@ static fg_status right_form(fg_context *ctx, const fg_engine_run *run, const fg_
 
 /* The best curve over the winner's coordinate explains what the winner does not: the form is not in
  * the table, whatever its nearest relative. */
-static fg_status wrong_form(fg_context *ctx, const fg_engine_run *run, const fg_engine_step *step,
-                            form_choice *choice) {
+static fg_status wrong_basis(fg_context *ctx, const fg_engine_run *run, const fg_engine_step *step,
+                             basis_choice *choice) {
   const fg_engine_stand *winner = &step->stand[choice->winner];
   choice->wrong = false;
   if (winner->candidate.effect->pair || run->has_curve) return FG_OK;
@@ -115,7 +115,7 @@ static fg_status wrong_form(fg_context *ctx, const fg_engine_run *run, const fg_
       choice->wrong = true;
     }
   }
-  return choice->wrong ? right_form(ctx, run, step, choice) : FG_OK;
+  return choice->wrong ? right_basis(ctx, run, step, choice) : FG_OK;
 }
 
 static fg_status gate(fg_context *ctx, const fg_engine_run *run, const fg_engine_set *with,
@@ -133,8 +133,8 @@ static fg_status hinges_on_a_row(fg_context *ctx, const fg_engine_run *run,
                                  bool *hinges) {
   double p;
   *hinges = false;
-  if (run->problem->group_level || !step->lone.known) return FG_OK;
-  const fg_engine_stand row = {.candidate = step->lone.first};
+  if (run->problem->group_level || !step->outlier.known) return FG_OK;
+  const fg_engine_stand row = {.candidate = step->outlier.first};
   FG_TRY(fg_engine_beside(ctx, &step->training, noise, &row, &step->stand[stand], &p));
   *hinges = p > HINGE_P;
   return FG_OK;
@@ -194,7 +194,7 @@ static fg_status take_claim(fg_context *ctx, fg_engine_run *run, const fg_engine
   fg_engine_describe_claim(run, step, winner, &claim);
   FG_TRY(noise_beside(ctx, run, &refined, &noise));
   FG_TRY(sharpen(ctx, run, noise, &refined));
-  if (!fg_engine_is_lone(&claim.candidate)) {
+  if (!fg_engine_is_outlier(&claim.candidate)) {
     bool passes, hinges;
     FG_TRY(hinges_on_a_row(ctx, run, step, noise, winner, &hinges));
     if (hinges) return FG_OK;
@@ -215,29 +215,29 @@ static fg_status take_claim(fg_context *ctx, fg_engine_run *run, const fg_engine
 /* The wrong rows are two that changed places, or one of them: the exchange explains as much with
  * nothing to estimate. No heavy tail has them fit in each other's places. */
 static bool is_of_exchange(const fg_engine_run *run, const fg_engine_step *step) {
-  const fg_loop_candidate *wrong = &step->lone.candidate;
+  const fg_loop_candidate *wrong = &step->outlier.candidate;
   const fg_engine_stand *exchange = &step->stand[fg_engine_exchanged_rows(run)];
   if (!isfinite(exchange->z) || wrong->rows > 2) return false;
   for (size_t k = 0; k < wrong->rows; k++)
     if (wrong->row[k] != exchange->candidate.row[0] && wrong->row[k] != exchange->candidate.row[1])
       return false;
-  double freedom = fmax((double)step->bench.freedom - 2, 1);
+  double dof = fmax((double)step->workspace.dof - 2, 1);
   /* Two wrong rows have two numbers of their own. */
-  double slack = 1 + 2 * gsl_cdf_fdist_Qinv(BESIDE_P, 2, freedom) / freedom;
+  double slack = 1 + 2 * gsl_cdf_fdist_Qinv(BESIDE_P, 2, dof) / dof;
   if (wrong->rows < 2) slack = 1;
-  return step->judgement.exchange_ratio <= slack * step->lone.ratio;
+  return step->judgement.exchange_ratio <= slack * step->outlier.ratio;
 }
 
 /* Lone rows that pass, when they explain at least as much as the best candidate. */
-static bool lone_first(const fg_engine_run *run, const fg_engine_step *step, bool listed,
-                       size_t best, size_t *winner) {
+static bool outlier_first(const fg_engine_run *run, const fg_engine_step *step, bool listed,
+                          size_t best, size_t *winner) {
   double ratio = listed ? step->judgement.score[best].ratio : 1;
   size_t wrong = fg_engine_wrong_rows(run), exchange = fg_engine_exchanged_rows(run);
   bool found = false;
-  if (isfinite(step->stand[wrong].z) && step->lone.ratio <= ratio) {
-    bool of_exchange = step->lone.apart_p < bar(run) && is_of_exchange(run, step);
+  if (isfinite(step->stand[wrong].z) && step->outlier.ratio <= ratio) {
+    bool of_exchange = step->outlier.apart_p < bar(run) && is_of_exchange(run, step);
     *winner = of_exchange ? exchange : wrong;
-    if (of_exchange || step->lone.p_value < bar(run)) return true;
+    if (of_exchange || step->outlier.p_value < bar(run)) return true;
   }
   if (isfinite(step->stand[exchange].z) && fg_engine_stand_p(run, step, exchange) < bar(run) &&
       step->judgement.exchange_ratio <= ratio) {
@@ -249,14 +249,14 @@ static bool lone_first(const fg_engine_run *run, const fg_engine_step *step, boo
 
 /* A second form over a coordinate that a claim lives on already: two forms that the table lists
  * make one that it does not. The claim gives way to a curve, where one serves. */
-static fg_status second_form(fg_context *ctx, fg_engine_run *run, const fg_engine_step *step,
-                             size_t winner, bool *accepted) {
+static fg_status second_basis(fg_context *ctx, fg_engine_run *run, const fg_engine_step *step,
+                              size_t winner, bool *accepted) {
   const fg_loop_candidate *candidate = &step->stand[winner].candidate;
   size_t m = 0, best = run->means;
   if (candidate->effect->pair || run->has_curve || !strcmp(candidate->effect->frame, "order"))
     return FG_OK;
   while (m < run->result->claims &&
-         (run->set.candidate[m].effect->pair || fg_engine_is_lone(&run->set.candidate[m]) ||
+         (run->set.candidate[m].effect->pair || fg_engine_is_outlier(&run->set.candidate[m]) ||
           fg_engine_is_noise(&run->set.candidate[m]) || run->set.candidate[m].a != candidate->a ||
           !strcmp(run->set.candidate[m].effect->frame, "order")))
     m++;
@@ -307,11 +307,11 @@ static fg_status prefer_recorded(fg_context *ctx, const fg_engine_run *run,
 /* The listed winner, or what it stands for. */
 static fg_status decide_listed(fg_context *ctx, fg_engine_run *run, fg_engine_step *step,
                                size_t winner, bool *accepted) {
-  form_choice choice = {.winner = winner};
+  basis_choice choice = {.winner = winner};
   FG_TRY(noise_beside(ctx, run, &step->stand[winner], &choice.noise));
   FG_TRY(sharpen(ctx, run, choice.noise, &step->stand[winner]));
   FG_TRY(prefer_recorded(ctx, run, step, choice.noise, &choice.winner));
-  FG_TRY(wrong_form(ctx, run, step, &choice));
+  FG_TRY(wrong_basis(ctx, run, step, &choice));
   size_t stand = choice.wrong ? choice.curve : choice.winner;
   fg_engine_serial_word word;
   FG_TRY(fg_engine_weigh_serial(ctx, run, &step->stand[stand], stand, &word));
@@ -329,7 +329,7 @@ static fg_status decide_listed(fg_context *ctx, fg_engine_run *run, fg_engine_st
   if (choice.wrong && *accepted) return FG_OK;
   FG_TRY(fg_engine_simplify(ctx, &step->training, choice.noise, step->stand, run->means,
                             choice.winner, &choice.winner));
-  FG_TRY(second_form(ctx, run, step, choice.winner, accepted));
+  FG_TRY(second_basis(ctx, run, step, choice.winner, accepted));
   if (*accepted) return FG_OK;
   return take_claim(ctx, run, step, choice.winner, word == FG_ENGINE_EITHER, accepted);
 }
@@ -345,13 +345,13 @@ static fg_status decide_curve(fg_context *ctx, fg_engine_run *run, fg_engine_ste
 }
 
 static fg_status decide(fg_context *ctx, fg_engine_run *run, fg_engine_step *step, bool *accepted) {
-  size_t winner = 0, curve = 0, noise = 0, lone = 0;
+  size_t winner = 0, curve = 0, noise = 0, outlier = 0;
   bool listed = best_passing(run, step, LISTED, &winner);
   bool scatter = best_passing(run, step, NOISE, &noise);
   bool spread = scatter && !fg_engine_is_serial(&run->candidate[noise]);
-  if (lone_first(run, step, listed, winner, &lone) &&
-      !(scatter && step->judgement.p[noise] < fg_engine_stand_p(run, step, lone)))
-    return take_claim(ctx, run, step, lone, false, accepted);
+  if (outlier_first(run, step, listed, winner, &outlier) &&
+      !(scatter && step->judgement.p[noise] < fg_engine_stand_p(run, step, outlier)))
+    return take_claim(ctx, run, step, outlier, false, accepted);
   if (spread && (!listed || step->stand[noise].z > step->stand[winner].z))
     return fg_engine_take_noise(ctx, run, step, noise, 1, accepted);
   if (listed) FG_TRY(decide_listed(ctx, run, step, winner, accepted));

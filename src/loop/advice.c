@@ -43,7 +43,7 @@ static fg_status fit_whole(fg_context *ctx, const fg_engine_run *run, size_t m,
 enum { AXES = 4, STEPS = 7 };
 
 /* At either setting a user makes so many more runs, or half as many as the table has. */
-enum { RUNS_MOST = 50 };
+enum { RUNS_MAX = 50 };
 
 static bool is_order(const fg_loop_coordinate *at) {
   return at->roles & FG_LOOP_ORDER;
@@ -65,8 +65,8 @@ static double nearest_measured(const fg_loop_problem *problem, const fg_loop_coo
 static void add_axis(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
                      size_t coordinate, setting_axes *axes) {
   const fg_loop_coordinate *at = &problem->coordinate[coordinate];
-  size_t most = candidate->effect->own_levels ? FG_LOOP_COLUMNS + 1 : STEPS;
-  bool measured = at->distinct <= most, last = is_order(at);
+  size_t max = candidate->effect->own_levels ? FG_LOOP_COLUMNS + 1 : STEPS;
+  bool measured = at->distinct <= max, last = is_order(at);
   size_t k = 0;
   while (k < axes->count && axes->coordinate[k] != coordinate)
     k++;
@@ -128,7 +128,7 @@ static fg_status open_settings(fg_context *ctx, const fg_engine_run *run, const 
   for (size_t c = 0; c < problem->coordinates; c++)
     if (problem->coordinate[c].roles & FG_LOOP_DECLARED) FG_TRY(hold(ctx, axes, c, grid));
   for (size_t m = 0; m < run->set.count; m++) {
-    if (fg_engine_is_lone(&run->set.candidate[m])) continue;
+    if (fg_engine_is_outlier(&run->set.candidate[m])) continue;
     FG_TRY(hold(ctx, axes, run->set.candidate[m].a, grid));
     FG_TRY(hold(ctx, axes, run->set.candidate[m].b, grid));
   }
@@ -150,7 +150,7 @@ static fg_status predict(fg_context *ctx, const fg_engine_run *run, const whole_
         value[i] += sign * whole->parameter[k] * ldexp(work[k * rows + i], -column[k]);
   }
   for (size_t m = 0; m < whole->members; m++) {
-    if (fg_engine_is_lone(&whole->member[m].candidate)) continue;
+    if (fg_engine_is_outlier(&whole->member[m].candidate)) continue;
     FG_TRY_EXIT(fg_loop_claim_evaluate(ctx, grid, &whole->member[m], work));
     for (size_t i = 0; i < rows; i++)
       value[i] += sign * work[i];
@@ -219,16 +219,16 @@ static void say_pair(const fg_loop_problem *problem, const fg_loop_claim *claim,
 
 static void say_repeats(const fg_loop_problem *problem, const fg_loop_claim *claim,
                         fg_loop_advice *advice) {
-  bool lone = fg_engine_is_lone(&claim->candidate),
-       rival = fg_engine_is_lone(&claim->alias[0].candidate);
+  bool outlier = fg_engine_is_outlier(&claim->candidate),
+       rival = fg_engine_is_outlier(&claim->alias[0].candidate);
   pair_words words;
   say_pair(problem, claim, " together with ", &words);
   fg_text_clip(advice->text, sizeof advice->text,
                "Repeat the rows that are named: a repeat tells a wrong or exchanged response from "
                "%s.",
-               lone && rival ? "a right one"
-               : lone        ? words.rival
-                             : words.claim);
+               outlier && rival ? "a right one"
+               : outlier        ? words.rival
+                                : words.claim);
   advice->runs = 2;
 }
 
@@ -285,14 +285,14 @@ static bool can_be_set(const fg_loop_problem *problem, const setting_axes *axes)
 static void say_settings(const fg_engine_run *run, const fg_loop_claim *claim,
                          const setting_axes *axes, const size_t best[2], double apart,
                          fg_loop_advice *advice) {
-  double most = fmax(RUNS_MOST, (double)run->problem->rows / 2);
+  double max = fmax(RUNS_MAX, (double)run->problem->rows / 2);
   double needed = apart > 0 ? ceil(2 * pow((surplus + power_80) * run->sd / apart, 2)) : INFINITY;
   char first[400], second[400];
   pair_words words;
   say_pair(run->problem, claim, " together with ", &words);
   describe_setting(run->problem, axes, best[0], first, sizeof first);
   describe_setting(run->problem, axes, best[1], second, sizeof second);
-  advice->runs = needed <= most ? fmax(needed, 2) : NAN;
+  advice->runs = needed <= max ? fmax(needed, 2) : NAN;
   if (advice->runs > 0)
     fg_text_clip(advice->text, sizeof advice->text,
                  "%s%.0f %s at %s and as many at %s part %s from %s (from one to the other these "
@@ -335,8 +335,8 @@ static fg_status advise_one(fg_context *ctx, const fg_engine_run *run, size_t m,
                             fg_loop_advice *advice) {
   const fg_loop_claim *claim = &run->result->claim[m];
   const fg_loop_alias *nearest = &claim->alias[0];
-  if (fg_engine_is_lone(&claim->candidate) ||
-      (!nearest->sum && fg_engine_is_lone(&nearest->candidate)))
+  if (fg_engine_is_outlier(&claim->candidate) ||
+      (!nearest->sum && fg_engine_is_outlier(&nearest->candidate)))
     say_repeats(run->problem, claim, advice);
   else if (claim->candidate.effect->scatter == FG_LOOP_SPREAD)
     say_spread(run->problem, claim, advice);

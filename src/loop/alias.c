@@ -17,12 +17,12 @@
 #define SIMPLER_P FG_LOOP_ACCEPT_P
 
 /* A member of a class explains at least this share of what the winner does. */
-#define LEAST_SHARE 0.4
+#define MIN_SHARE 0.4
 /* What a larger form has more is suggested below this. */
 #define SUGGESTED_P 0.1
 
 /* Where rows are many, what explained less than this share of what the winner does is not tried
- * beside it: it would not come up to LEAST_SHARE, and what it leaves to the winner would show. */
+ * beside it: it would not come up to MIN_SHARE, and what it leaves to the winner would show. */
 #define TRIED_SHARE 0.2
 
 static bool far_behind(const fg_engine_training *training, const fg_engine_stand *winner,
@@ -35,73 +35,77 @@ static const double pair_loss = 0.1; /* a sum of two must explain all but this *
 enum { PAIR_POOL = 10 };
 
 /* Whitened residual and columns of a training at one noise. */
-typedef struct alias_bench {
+typedef struct alias_workspace {
   const fg_engine_training *training;
   fg_engine_noise noise;
   size_t n;
   fg_engine_span null; /* with room for more columns */
   double *y, *columns, *unit;
-  double rss, freedom;
+  double rss, dof;
   double *between; /* what groups may differ by beside the null: groups × n */
   size_t groups;
   double groups_rss;
   bool constant; /* in groups: the columns added last */
-} alias_bench;
+} alias_workspace;
 
-static fg_status open_bench(fg_context *ctx, const fg_engine_training *training,
-                            fg_engine_noise noise, alias_bench *bench) {
+static fg_status open_workspace(fg_context *ctx, const fg_engine_training *training,
+                                fg_engine_noise noise, alias_workspace *workspace) {
   size_t n = training->n;
-  *bench = (alias_bench){.training = training, .noise = noise, .n = n};
-  FG_TRY(fg_engine_span_open(ctx, training, noise, 3 * FG_LOOP_COLUMNS, &bench->null));
-  FG_TRY(fg_memory_allocate(ctx, n, sizeof *bench->y, (void **)&bench->y));
-  FG_TRY(
-      fg_memory_allocate(ctx, n, 2 * FG_LOOP_COLUMNS * sizeof *bench->y, (void **)&bench->columns));
-  FG_TRY(fg_memory_allocate(ctx, n, sizeof *bench->y, (void **)&bench->unit));
-  memcpy(bench->y, training->y, n * sizeof *bench->y);
-  fg_engine_whiten(training, noise, bench->y);
-  bench->rss = fg_engine_project_out(n, bench->null.basis, bench->null.rank, bench->y);
-  bench->freedom = (double)n - (double)bench->null.rank;
-  FG_TRY(
-      fg_engine_between_basis(ctx, training, noise, &bench->null, &bench->between, &bench->groups));
-  bench->groups_rss = fg_engine_along(n, bench->between, bench->groups, bench->y);
+  *workspace = (alias_workspace){.training = training, .noise = noise, .n = n};
+  FG_TRY(fg_engine_span_open(ctx, training, noise, 3 * FG_LOOP_COLUMNS, &workspace->null));
+  FG_TRY(fg_memory_allocate(ctx, n, sizeof *workspace->y, (void **)&workspace->y));
+  FG_TRY(fg_memory_allocate(ctx, n, 2 * FG_LOOP_COLUMNS * sizeof *workspace->y,
+                            (void **)&workspace->columns));
+  FG_TRY(fg_memory_allocate(ctx, n, sizeof *workspace->y, (void **)&workspace->unit));
+  memcpy(workspace->y, training->y, n * sizeof *workspace->y);
+  fg_engine_whiten(training, noise, workspace->y);
+  workspace->rss =
+      fg_engine_project_out(n, workspace->null.basis, workspace->null.rank, workspace->y);
+  workspace->dof = (double)n - (double)workspace->null.rank;
+  FG_TRY(fg_engine_between_basis(ctx, training, noise, &workspace->null, &workspace->between,
+                                 &workspace->groups));
+  workspace->groups_rss = fg_engine_along(n, workspace->between, workspace->groups, workspace->y);
   return FG_OK;
 }
 
-static void close_bench(alias_bench *bench) {
-  fg_engine_span_close(&bench->null);
-  free(bench->y);
-  free(bench->columns);
-  free(bench->unit);
-  free(bench->between);
+static void close_workspace(alias_workspace *workspace) {
+  fg_engine_span_close(&workspace->null);
+  free(workspace->y);
+  free(workspace->columns);
+  free(workspace->unit);
+  free(workspace->between);
 }
 
 /* Adds the candidate's columns behind those already there; returns how many are new. */
-static fg_status extend(fg_context *ctx, alias_bench *bench, const fg_engine_stand *stand,
+static fg_status extend(fg_context *ctx, alias_workspace *workspace, const fg_engine_stand *stand,
                         size_t rank, size_t *added) {
-  const fg_loop_problem *problem = bench->training->problem;
+  const fg_loop_problem *problem = workspace->training->problem;
   size_t count = fg_engine_candidate_columns(problem, &stand->candidate);
-  FG_TRY(fg_engine_gather(ctx, bench->training, &stand->candidate, stand->shape, bench->columns));
-  bench->constant =
-      bench->groups > 0 && fg_engine_constant_in_levels(bench->training, bench->columns, count);
+  FG_TRY(fg_engine_gather(ctx, workspace->training, &stand->candidate, stand->shape,
+                          workspace->columns));
+  workspace->constant =
+      workspace->groups > 0 &&
+      fg_engine_constant_in_levels(workspace->training, workspace->columns, count);
   for (size_t k = 0; k < count; k++)
-    fg_engine_whiten(bench->training, bench->noise, bench->columns + k * bench->n);
-  *added = fg_engine_orthonormal(bench->n, bench->null.basis, rank, bench->columns, count,
-                                 bench->null.basis + rank * bench->n, NULL);
+    fg_engine_whiten(workspace->training, workspace->noise, workspace->columns + k * workspace->n);
+  *added = fg_engine_orthonormal(workspace->n, workspace->null.basis, rank, workspace->columns,
+                                 count, workspace->null.basis + rank * workspace->n, NULL);
   return FG_OK;
 }
 
-static double explained(const alias_bench *bench, size_t from, size_t count) {
-  return fg_engine_along(bench->n, bench->null.basis + from * bench->n, count, bench->y);
+static double explained(const alias_workspace *workspace, size_t from, size_t count) {
+  return fg_engine_along(workspace->n, workspace->null.basis + from * workspace->n, count,
+                         workspace->y);
 }
 
-static void fitted(const alias_bench *bench, size_t from, size_t count, double *fit) {
-  memset(fit, 0, bench->n * sizeof *fit);
+static void fitted(const alias_workspace *workspace, size_t from, size_t count, double *fit) {
+  memset(fit, 0, workspace->n * sizeof *fit);
   for (size_t k = from; k < from + count; k++) {
     double along = 0;
-    for (size_t i = 0; i < bench->n; i++)
-      along += bench->null.basis[k * bench->n + i] * bench->y[i];
-    for (size_t i = 0; i < bench->n; i++)
-      fit[i] += along * bench->null.basis[k * bench->n + i];
+    for (size_t i = 0; i < workspace->n; i++)
+      along += workspace->null.basis[k * workspace->n + i] * workspace->y[i];
+    for (size_t i = 0; i < workspace->n; i++)
+      fit[i] += along * workspace->null.basis[k * workspace->n + i];
   }
 }
 
@@ -124,43 +128,43 @@ typedef struct alias_test {
 /* What is left beside the null and `count` columns behind it, before the winner: residual sum and
  * freedom. Of a winner that is constant in groups those of the groups: of the columns only what
  * lies between groups takes from them. */
-static void error_beside(const alias_bench *bench, size_t count, double gain, double *unit,
-                         double *left, double *freedom) {
-  *left = bench->rss - gain;
-  *freedom = bench->freedom - (double)count;
-  if (!bench->constant) return;
-  size_t within =
-      fg_engine_orthonormal(bench->n, bench->between, bench->groups,
-                            bench->null.basis + bench->null.rank * bench->n, count, unit, NULL);
-  *left = bench->groups_rss + fg_engine_along(bench->n, unit, within, bench->y) - gain;
-  *freedom = (double)(bench->groups + within) - (double)count;
+static void error_beside(const alias_workspace *workspace, size_t count, double gain, double *unit,
+                         double *left, double *dof) {
+  *left = workspace->rss - gain;
+  *dof = workspace->dof - (double)count;
+  if (!workspace->constant) return;
+  size_t within = fg_engine_orthonormal(workspace->n, workspace->between, workspace->groups,
+                                        workspace->null.basis + workspace->null.rank * workspace->n,
+                                        count, unit, NULL);
+  *left = workspace->groups_rss + fg_engine_along(workspace->n, unit, within, workspace->y) - gain;
+  *dof = (double)(workspace->groups + within) - (double)count;
 }
 
 /* The winner beside one rival, or a sum of two. */
-static fg_status compare(fg_context *ctx, alias_bench *bench, const fg_engine_stand *winner,
+static fg_status compare(fg_context *ctx, alias_workspace *workspace, const fg_engine_stand *winner,
                          const fg_engine_stand *rival, const fg_engine_stand *second,
                          const double *winner_fit, alias_test *test) {
   size_t more = 0;
   double shapes = (double)rival->candidate.effect->shapes;
-  FG_TRY(extend(ctx, bench, rival, bench->null.rank, &test->rank));
+  FG_TRY(extend(ctx, workspace, rival, workspace->null.rank, &test->rank));
   if (second) {
-    FG_TRY(extend(ctx, bench, second, bench->null.rank + test->rank, &more));
+    FG_TRY(extend(ctx, workspace, second, workspace->null.rank + test->rank, &more));
     test->rank += more;
     shapes += (double)second->candidate.effect->shapes;
   }
-  test->gain = explained(bench, bench->null.rank, test->rank);
-  fitted(bench, bench->null.rank, test->rank, bench->unit);
-  test->correlation = winner_fit ? cosine(bench->n, winner_fit, bench->unit) : 0;
-  FG_TRY(extend(ctx, bench, winner, bench->null.rank + test->rank, &test->more));
-  double surplus = explained(bench, bench->null.rank + test->rank, test->more);
+  test->gain = explained(workspace, workspace->null.rank, test->rank);
+  fitted(workspace, workspace->null.rank, test->rank, workspace->unit);
+  test->correlation = winner_fit ? cosine(workspace->n, winner_fit, workspace->unit) : 0;
+  FG_TRY(extend(ctx, workspace, winner, workspace->null.rank + test->rank, &test->more));
+  double surplus = explained(workspace, workspace->null.rank + test->rank, test->more);
   double k = (double)test->more + (double)winner->candidate.effect->shapes;
-  double left, freedom;
-  error_beside(bench, test->rank, test->gain, bench->columns, &left, &freedom);
+  double left, dof;
+  error_beside(workspace, test->rank, test->gain, workspace->columns, &left, &dof);
   left -= surplus;
-  freedom -= shapes + k;
+  dof -= shapes + k;
   test->p_value = 1;
-  if (test->more > 0 && freedom >= 1 && left > 0)
-    test->p_value = gsl_cdf_fdist_Q(surplus / k / (left / freedom), k, freedom);
+  if (test->more > 0 && dof >= 1 && left > 0)
+    test->p_value = gsl_cdf_fdist_Q(surplus / k / (left / dof), k, dof);
   else if (test->more > 0)
     test->p_value = left > 0 ? 1 : 0;
   return FG_OK;
@@ -169,35 +173,35 @@ static fg_status compare(fg_context *ctx, alias_bench *bench, const fg_engine_st
 fg_status fg_engine_beside(fg_context *ctx, const fg_engine_training *training,
                            fg_engine_noise noise, const fg_engine_stand *base,
                            const fg_engine_stand *other, double *p_value) {
-  alias_bench bench = {0};
+  alias_workspace workspace = {0};
   alias_test test = {0};
-  fg_status status = open_bench(ctx, training, noise, &bench);
-  if (status == FG_OK) status = compare(ctx, &bench, other, base, NULL, NULL, &test);
+  fg_status status = open_workspace(ctx, training, noise, &workspace);
+  if (status == FG_OK) status = compare(ctx, &workspace, other, base, NULL, NULL, &test);
   *p_value = test.p_value;
-  close_bench(&bench);
+  close_workspace(&workspace);
   return status;
 }
 
 fg_status fg_engine_simplify(fg_context *ctx, const fg_engine_training *training,
                              fg_engine_noise noise, const fg_engine_stand *stand, size_t count,
                              size_t winner, size_t *simplest) {
-  alias_bench bench = {0};
+  alias_workspace workspace = {0};
   size_t rank = 0, inside;
   double best = -INFINITY;
   fg_status status = FG_OK;
   *simplest = winner;
-  FG_TRY_EXIT(open_bench(ctx, training, noise, &bench));
-  FG_TRY_EXIT(extend(ctx, &bench, &stand[winner], bench.null.rank, &rank));
+  FG_TRY_EXIT(open_workspace(ctx, training, noise, &workspace));
+  FG_TRY_EXIT(extend(ctx, &workspace, &stand[winner], workspace.null.rank, &rank));
   size_t whole = rank + stand[winner].candidate.effect->shapes;
   for (size_t c = 0; c < count; c++) {
     alias_test test;
     if (c == winner || !isfinite(stand[c].z) || fg_engine_is_curve(&stand[c].candidate) ||
         fg_engine_is_noise(&stand[c].candidate) || far_behind(training, &stand[winner], &stand[c]))
       continue;
-    FG_TRY_EXIT(extend(ctx, &bench, &stand[winner], bench.null.rank, &rank));
-    FG_TRY_EXIT(extend(ctx, &bench, &stand[c], bench.null.rank + rank, &inside));
+    FG_TRY_EXIT(extend(ctx, &workspace, &stand[winner], workspace.null.rank, &rank));
+    FG_TRY_EXIT(extend(ctx, &workspace, &stand[c], workspace.null.rank + rank, &inside));
     if (inside > 0) continue;
-    FG_TRY_EXIT(compare(ctx, &bench, &stand[winner], &stand[c], NULL, NULL, &test));
+    FG_TRY_EXIT(compare(ctx, &workspace, &stand[winner], &stand[c], NULL, NULL, &test));
     if (test.rank + stand[c].candidate.effect->shapes >= whole || test.p_value < SIMPLER_P)
       continue;
     if (stand[c].z > best) {
@@ -206,7 +210,7 @@ fg_status fg_engine_simplify(fg_context *ctx, const fg_engine_training *training
     }
   }
 exit:
-  close_bench(&bench);
+  close_workspace(&workspace);
   return status;
 }
 
@@ -246,26 +250,28 @@ static int by_gain(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-static fg_status find_pairs(fg_context *ctx, alias_bench *bench, const fg_engine_stand **pool,
-                            size_t pooled, const fg_engine_stand *winner, const double *winner_fit,
-                            double gain, size_t winner_rank, fg_loop_claim *claim) {
+static fg_status find_pairs(fg_context *ctx, alias_workspace *workspace,
+                            const fg_engine_stand **pool, size_t pooled,
+                            const fg_engine_stand *winner, const double *winner_fit, double gain,
+                            size_t winner_rank, fg_loop_claim *claim) {
   for (size_t i = 0; i < pooled && i < PAIR_POOL; i++)
     for (size_t k = 0; k < i; k++) {
       alias_test test;
-      FG_TRY(compare(ctx, bench, winner, pool[k], pool[i], winner_fit, &test));
+      FG_TRY(compare(ctx, workspace, winner, pool[k], pool[i], winner_fit, &test));
       bool contains = test.more == 0 && test.rank > winner_rank;
       if (contains || test.p_value < FG_ENGINE_SHOWS || test.gain < (1 - pair_loss) * gain)
         continue;
-      add_alias(bench->training->problem, pool[k], pool[i], &test, gain, claim);
+      add_alias(workspace->training->problem, pool[k], pool[i], &test, gain, claim);
     }
   return FG_OK;
 }
 
 /* A form that holds the winner's and more is no rival, unless the data suggest what it has more. */
-static fg_status suggests_more(fg_context *ctx, alias_bench *bench, const fg_engine_stand *rival,
-                               const fg_engine_stand *winner, bool *contains) {
+static fg_status suggests_more(fg_context *ctx, alias_workspace *workspace,
+                               const fg_engine_stand *rival, const fg_engine_stand *winner,
+                               bool *contains) {
   alias_test test;
-  FG_TRY(compare(ctx, bench, rival, winner, NULL, NULL, &test));
+  FG_TRY(compare(ctx, workspace, rival, winner, NULL, NULL, &test));
   *contains = test.p_value > SUGGESTED_P;
   return FG_OK;
 }
@@ -273,17 +279,17 @@ static fg_status suggests_more(fg_context *ctx, alias_bench *bench, const fg_eng
 fg_status fg_engine_alias_class(fg_context *ctx, const fg_engine_training *training,
                                 fg_engine_noise noise, const fg_engine_stand *stand, size_t count,
                                 const fg_engine_stand *winner, fg_loop_claim *claim) {
-  alias_bench bench = {0};
+  alias_workspace workspace = {0};
   const fg_engine_stand **pool = NULL;
   double *winner_fit = NULL;
   size_t rank = 0, pooled = 0, listed = 0;
   fg_status status = FG_OK;
-  FG_TRY_EXIT(open_bench(ctx, training, noise, &bench));
+  FG_TRY_EXIT(open_workspace(ctx, training, noise, &workspace));
   FG_TRY_EXIT(fg_memory_allocate(ctx, count + 1, sizeof *pool, (void **)&pool));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, bench.n, sizeof *winner_fit, (void **)&winner_fit));
-  FG_TRY_EXIT(extend(ctx, &bench, winner, bench.null.rank, &rank));
-  double gain = explained(&bench, bench.null.rank, rank);
-  fitted(&bench, bench.null.rank, rank, winner_fit);
+  FG_TRY_EXIT(fg_memory_allocate(ctx, workspace.n, sizeof *winner_fit, (void **)&winner_fit));
+  FG_TRY_EXIT(extend(ctx, &workspace, winner, workspace.null.rank, &rank));
+  double gain = explained(&workspace, workspace.null.rank, rank);
+  fitted(&workspace, workspace.null.rank, rank, winner_fit);
   for (size_t c = 0; c < count; c++)
     if (isfinite(stand[c].z) && !fg_engine_is_curve(&stand[c].candidate) &&
         !fg_engine_is_noise(&stand[c].candidate) && !far_behind(training, winner, &stand[c]) &&
@@ -292,19 +298,19 @@ fg_status fg_engine_alias_class(fg_context *ctx, const fg_engine_training *train
   qsort(pool, listed, sizeof *pool, by_gain);
   for (size_t c = 0; c < listed; c++) {
     alias_test test;
-    FG_TRY_EXIT(compare(ctx, &bench, winner, pool[c], NULL, winner_fit, &test));
+    FG_TRY_EXIT(compare(ctx, &workspace, winner, pool[c], NULL, winner_fit, &test));
     bool contains = test.more == 0 && test.rank > rank;
-    if (contains) FG_TRY_EXIT(suggests_more(ctx, &bench, pool[c], winner, &contains));
-    if (test.gain < LEAST_SHARE * gain) continue;
+    if (contains) FG_TRY_EXIT(suggests_more(ctx, &workspace, pool[c], winner, &contains));
+    if (test.gain < MIN_SHARE * gain) continue;
     if (!contains && test.p_value >= FG_ENGINE_SHOWS)
       add_alias(training->problem, pool[c], NULL, &test, gain, claim);
-    else if (!contains && !fg_engine_is_lone(&pool[c]->candidate) && test.rank <= 2)
+    else if (!contains && !fg_engine_is_outlier(&pool[c]->candidate) && test.rank <= 2)
       pool[pooled++] = pool[c];
   }
-  FG_TRY_EXIT(find_pairs(ctx, &bench, pool, pooled, winner, winner_fit, gain, rank, claim));
+  FG_TRY_EXIT(find_pairs(ctx, &workspace, pool, pooled, winner, winner_fit, gain, rank, claim));
 exit:
   free(pool);
   free(winner_fit);
-  close_bench(&bench);
+  close_workspace(&workspace);
   return status;
 }

@@ -16,24 +16,24 @@
 
 /* Of a clean table's chance to be called otherwise, all tests here together. What is looked for by
  * name has used most of FG_LOOP_ACCEPT_P. */
-#define BATTERY_P 0.0015
+#define RESIDUAL_TESTS_P 0.0015
 /* Lags of the sum (a tenth of the usual n / 2 would miss a week, all would drown it), and of one
  * that stands out: a month of days, five years of months. */
 enum { SUM_LAGS = 10, SUM_SHARE = 5, ONE_LAGS = 60, ONE_SHARE = 4 };
 /* Draws at most; no more where every test has been surpassed so often (Besag and Clifford 1991). */
 enum { DRAWS = 3999, SURPASSED = 20 };
 /* As in judge.c: with fewer rows beyond the parameters a new order is no new sample. */
-enum { PERMUTED_FREEDOM = 12 };
-#define BATTERY_SEED 0x9e3779b97f4a7c15u
+enum { PERMUTED_DOF = 12 };
+#define RESIDUAL_TESTS_SEED 0x9e3779b97f4a7c15u
 
-typedef struct battery {
+typedef struct residual_tests {
   fg_engine_training training;
   fg_engine_noise noise;
   fg_engine_span null;
   size_t sum_lags, one_lags; /* 0: the rows have no order */
   double *white, *kept;      /* the residual; each row's at its own variance */
   fg_engine_cells cells[2];  /* of the declared settings; of all that are recorded */
-} battery;
+} residual_tests;
 
 static bool has_order(const fg_engine_run *run) {
   for (size_t c = run->means; c < run->candidates; c++)
@@ -45,7 +45,7 @@ static size_t smaller(size_t a, size_t b) {
   return a < b ? a : b;
 }
 
-static void choose_lags(battery *b) {
+static void choose_lags(residual_tests *b) {
   size_t longest = 0;
   for (size_t k = 0; k < b->training.blocks; k++) {
     size_t length = b->training.start[k + 1] - b->training.start[k];
@@ -58,7 +58,7 @@ static void choose_lags(battery *b) {
 
 /* Repeats need rows that are independent: neighbours that are alike, and groups that share a level,
  * differ by too little. */
-static fg_status open_cells(fg_context *ctx, battery *b) {
+static fg_status open_cells(fg_context *ctx, residual_tests *b) {
   bool independent = b->noise.rho == 0 && b->training.levels == 0;
   for (int recorded = 0; independent && recorded < 2; recorded++)
     FG_TRY(fg_engine_cells_open(ctx, &b->training, b->null.rank, recorded, &b->cells[recorded]));
@@ -67,8 +67,8 @@ static fg_status open_cells(fg_context *ctx, battery *b) {
   return FG_OK;
 }
 
-static fg_status open_battery(fg_context *ctx, const fg_engine_run *run, fg_engine_noise noise,
-                              battery *b) {
+static fg_status open_residual_tests(fg_context *ctx, const fg_engine_run *run,
+                                     fg_engine_noise noise, residual_tests *b) {
   fg_engine_training *training = &b->training;
   b->noise = noise;
   FG_TRY(fg_engine_training_build(ctx, run->problem, run->train, &run->set, training));
@@ -85,7 +85,7 @@ static fg_status open_battery(fg_context *ctx, const fg_engine_run *run, fg_engi
   return open_cells(ctx, b);
 }
 
-static void close_battery(battery *b) {
+static void close_residual_tests(residual_tests *b) {
   fg_engine_cells_close(&b->cells[0]);
   fg_engine_cells_close(&b->cells[1]);
   fg_engine_span_close(&b->null);
@@ -95,7 +95,8 @@ static void close_battery(battery *b) {
 }
 
 /* NaN: the table offers no such test. */
-static void score(battery *b, const double *white, double value[FG_LOOP_CHECKS], size_t *lag) {
+static void score(residual_tests *b, const double *white, double value[FG_LOOP_CHECKS],
+                  size_t *lag) {
   double sum = 0, largest = 0;
   *lag = 0;
   for (size_t k = 0; k < 2; k++)
@@ -114,7 +115,7 @@ static void score(battery *b, const double *white, double value[FG_LOOP_CHECKS],
   if (b->one_lags >= 2) value[FG_LOOP_CHECK_ONE_LAG] = largest;
 }
 
-static void draw(const battery *b, bool permuted, uint64_t *seed, double *y) {
+static void draw(const residual_tests *b, bool permuted, uint64_t *seed, double *y) {
   size_t n = b->training.n;
   for (size_t i = 0; i < n; i++)
     y[i] = permuted ? b->kept[i] : fg_engine_random_normal(seed);
@@ -127,10 +128,10 @@ static void draw(const battery *b, bool permuted, uint64_t *seed, double *y) {
   fg_engine_project_out(n, b->null.basis, b->null.rank, y);
 }
 
-static fg_status p_by_draws(fg_context *ctx, battery *b, const double *value, double *p) {
+static fg_status p_by_draws(fg_context *ctx, residual_tests *b, const double *value, double *p) {
   size_t n = b->training.n, lag, draws = 0, often = 0, surpassed[FG_LOOP_CHECKS] = {0};
-  bool permuted = n >= b->null.rank + PERMUTED_FREEDOM;
-  uint64_t seed = BATTERY_SEED;
+  bool permuted = n >= b->null.rank + PERMUTED_DOF;
+  uint64_t seed = RESIDUAL_TESTS_SEED;
   double *y = NULL, other[FG_LOOP_CHECKS];
   FG_TRY(fg_memory_allocate(ctx, n, sizeof *y, (void **)&y));
   while (draws < DRAWS && often < FG_LOOP_CHECKS) {
@@ -150,10 +151,10 @@ static fg_status p_by_draws(fg_context *ctx, battery *b, const double *value, do
 }
 
 /* Many rows: sums of products are normal, and settings' means too. */
-static void p_by_distribution(const battery *b, const double *value, double *p) {
+static void p_by_distribution(const residual_tests *b, const double *value, double *p) {
   for (size_t k = 0; k < 2; k++)
     if (b->cells[k].cell && isfinite(value[k]))
-      p[k] = gsl_cdf_fdist_Q(value[k], b->cells[k].freedom[0], b->cells[k].freedom[1]);
+      p[k] = gsl_cdf_fdist_Q(value[k], b->cells[k].dof[0], b->cells[k].dof[1]);
   if (!b->sum_lags) return;
   p[FG_LOOP_CHECK_LAGS] = gsl_cdf_chisq_Q(value[FG_LOOP_CHECK_LAGS], (double)b->sum_lags - 1);
   double one = 2 * gsl_cdf_ugaussian_Q(value[FG_LOOP_CHECK_ONE_LAG]);
@@ -161,7 +162,8 @@ static void p_by_distribution(const battery *b, const double *value, double *p) 
 }
 
 /* The settings whose means the model misses most: their rows, the first of each. */
-static void name_worst(const battery *b, const fg_engine_cells *cells, fg_loop_checked *check) {
+static void name_worst(const residual_tests *b, const fg_engine_cells *cells,
+                       fg_loop_checked *check) {
   enum { NAMED = 3 };
   double largest = INFINITY;
   while (check->worst_count < NAMED && check->worst_count < cells->count) {
@@ -185,7 +187,7 @@ static void name_worst(const battery *b, const fg_engine_cells *cells, fg_loop_c
 }
 
 /* rms: of what the settings' means lack, of what the other row says of a row. */
-static void describe(battery *b, size_t lag, fg_loop_checked *check) {
+static void describe(residual_tests *b, size_t lag, fg_loop_checked *check) {
   double mean_square = 0;
   for (size_t i = 0; i < b->training.n; i++)
     mean_square += b->white[i] * b->white[i] / (double)b->training.n;
@@ -193,13 +195,13 @@ static void describe(battery *b, size_t lag, fg_loop_checked *check) {
     fg_engine_cells *cells = &b->cells[k];
     fg_loop_checked *own = &check[FG_LOOP_CHECK_REPEATS + k];
     if (!cells->cell) continue;
-    double ratio = fg_engine_lack_of_fit(&b->training, cells, b->white) * cells->freedom[0] /
-                   cells->freedom[1];
-    memcpy(own->freedom, cells->freedom, sizeof own->freedom);
+    double ratio =
+        fg_engine_lack_of_fit(&b->training, cells, b->white) * cells->dof[0] / cells->dof[1];
+    memcpy(own->dof, cells->dof, sizeof own->dof);
     own->rms = sqrt(mean_square * ratio / (1 + ratio));
     name_worst(b, cells, own);
   }
-  check[FG_LOOP_CHECK_LAGS].freedom[0] = b->sum_lags ? (double)b->sum_lags - 1 : 0;
+  check[FG_LOOP_CHECK_LAGS].dof[0] = b->sum_lags ? (double)b->sum_lags - 1 : 0;
   check[FG_LOOP_CHECK_LAGS].lag = b->sum_lags;
   fg_loop_checked *one = &check[FG_LOOP_CHECK_ONE_LAG];
   one->lag = lag;
@@ -207,7 +209,7 @@ static void describe(battery *b, size_t lag, fg_loop_checked *check) {
   one->rms = fabs(one->correlation) * sqrt(mean_square);
 }
 
-static fg_status keep_cells(fg_context *ctx, const battery *b, size_t which,
+static fg_status keep_cells(fg_context *ctx, const residual_tests *b, size_t which,
                             fg_loop_result *result) {
   size_t rows = b->training.problem->rows;
   FG_TRY(fg_memory_allocate(ctx, rows, sizeof *result->setting, (void **)&result->setting));
@@ -217,9 +219,9 @@ static fg_status keep_cells(fg_context *ctx, const battery *b, size_t which,
 }
 
 /* The test that fails most clearly at its part of the level. */
-static fg_status judge(fg_context *ctx, const battery *b, const double *value, const double *p,
-                       fg_loop_result *result) {
-  double tests = 0, least = INFINITY;
+static fg_status judge(fg_context *ctx, const residual_tests *b, const double *value,
+                       const double *p, fg_loop_result *result) {
+  double tests = 0, min = INFINITY;
   for (size_t k = 0; k < FG_LOOP_CHECKS; k++)
     tests += isfinite(value[k]);
   for (size_t k = 0; k < FG_LOOP_CHECKS; k++) {
@@ -228,10 +230,10 @@ static fg_status judge(fg_context *ctx, const battery *b, const double *value, c
     if (!check->done) continue;
     check->statistic = value[k];
     check->p_value = p[k];
-    check->level = BATTERY_P / tests;
+    check->level = RESIDUAL_TESTS_P / tests;
     check->failed = p[k] < check->level;
-    if (!check->failed || p[k] >= least) continue;
-    least = p[k];
+    if (!check->failed || p[k] >= min) continue;
+    min = p[k];
     result->fails = true;
     result->failed = (fg_loop_check)k;
   }
@@ -240,12 +242,12 @@ static fg_status judge(fg_context *ctx, const battery *b, const double *value, c
 }
 
 fg_status fg_engine_check(fg_context *ctx, const fg_engine_run *run, fg_engine_noise noise) {
-  battery b = {0};
+  residual_tests b = {0};
   double value[FG_LOOP_CHECKS], p[FG_LOOP_CHECKS] = {1, 1, 1, 1};
   size_t lag;
   fg_status status = FG_OK;
   if (run->problem->few || !run->worth) return FG_OK;
-  FG_TRY_EXIT(open_battery(ctx, run, noise, &b));
+  FG_TRY_EXIT(open_residual_tests(ctx, run, noise, &b));
   if (b.training.n < b.null.rank + 3) goto exit;
   score(&b, b.white, value, &lag);
   describe(&b, lag, run->result->check);
@@ -255,6 +257,6 @@ fg_status fg_engine_check(fg_context *ctx, const fg_engine_run *run, fg_engine_n
     p_by_distribution(&b, value, p);
   FG_TRY_EXIT(judge(ctx, &b, value, p, run->result));
 exit:
-  close_battery(&b);
+  close_residual_tests(&b);
   return status;
 }

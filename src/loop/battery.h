@@ -1,16 +1,16 @@
 /* Scores of what `clean` rests on beside everything that was looked for by name. */
-#ifndef FG_LOOP_BATTERY_H
-#define FG_LOOP_BATTERY_H
+#ifndef FG_LOOP_RESIDUAL_TESTS_H
+#define FG_LOOP_RESIDUAL_TESTS_H
 
 #include "loop/engine.h"
 
 /* Rows with the same settings. */
 typedef struct fg_engine_cells {
   size_t count;
-  size_t *cell;      /* n: 0 .. count - 1; NULL: nothing repeats */
-  double *weight;    /* count: sum of 1 / scale² */
-  double *sum;       /* count: room */
-  double freedom[2]; /* of the settings beyond the model; of the repeats */
+  size_t *cell;   /* n: 0 .. count - 1; NULL: nothing repeats */
+  double *weight; /* count: sum of 1 / scale² */
+  double *sum;    /* count: room */
+  double dof[2];  /* of the settings beyond the model; of the repeats */
 } fg_engine_cells;
 
 /* Rows of a training that agree in every column of the null and, with `recorded`, in every column

@@ -6,7 +6,7 @@
 #include "loop/battery.h"
 
 /* Repeats tell their own scatter from so many differences on. */
-enum { REPEATS_LEAST = 4 };
+enum { REPEATS_MIN = 4 };
 /* Of a residual's sum of squares: repeats that differ by less were copied, not measured. */
 #define COPIES 1e-12
 
@@ -71,12 +71,12 @@ fg_status fg_engine_cells_open(fg_context *ctx, const fg_engine_training *traini
   FG_TRY_EXIT(fg_memory_allocate(ctx, cells->count, sizeof(double), (void **)&cells->weight));
   FG_TRY_EXIT(fg_memory_allocate(ctx, cells->count, sizeof(double), (void **)&cells->sum));
   weigh(training, cells);
-  cells->freedom[0] = (double)cells->count - (double)rank;
-  cells->freedom[1] = (double)n - (double)cells->count;
+  cells->dof[0] = (double)cells->count - (double)rank;
+  cells->dof[1] = (double)n - (double)cells->count;
 exit:
   free(rows);
   free(key);
-  if (status != FG_OK || cells->freedom[0] < 1 || cells->freedom[1] < REPEATS_LEAST)
+  if (status != FG_OK || cells->dof[0] < 1 || cells->dof[1] < REPEATS_MIN)
     fg_engine_cells_close(cells);
   return status;
 }
@@ -100,7 +100,7 @@ double fg_engine_lack_of_fit(const fg_engine_training *training, fg_engine_cells
     between += cells->sum[c] * cells->sum[c] / cells->weight[c];
   double repeats = all - between;
   if (!(repeats > COPIES * all)) return NAN;
-  return between / cells->freedom[0] / (repeats / cells->freedom[1]);
+  return between / cells->dof[0] / (repeats / cells->dof[1]);
 }
 
 double fg_engine_lag_score(const fg_engine_training *training, const double *white, size_t lag) {

@@ -6,7 +6,7 @@
 
 /* With more groups than this Student's t of their freedom is close to normal, and the basis
  * large. */
-enum { GROUPS_MOST = 100 };
+enum { GROUPS_MAX = 100 };
 
 bool fg_engine_constant_in_levels(const fg_engine_training *training, const double *columns,
                                   size_t count) {
@@ -24,7 +24,7 @@ fg_status fg_engine_between_basis(fg_context *ctx, const fg_engine_training *tra
   double *columns = NULL;
   *between = NULL;
   *between_rank = 0;
-  if (levels == 0 || levels > GROUPS_MOST) return FG_OK;
+  if (levels == 0 || levels > GROUPS_MAX) return FG_OK;
   FG_TRY(fg_memory_allocate(ctx, n, levels * sizeof *columns, (void **)&columns));
   for (size_t b = 0; b < levels; b++) {
     for (size_t i = training->level_start[b]; i < training->level_start[b + 1]; i++)

@@ -5,12 +5,12 @@
 #include "core/text.h"
 #include "loop/engine.h"
 
-bool fg_engine_is_lone(const fg_loop_candidate *candidate) {
-  return candidate->effect->lone != FG_LOOP_NOT_LONE;
+bool fg_engine_is_outlier(const fg_loop_candidate *candidate) {
+  return candidate->effect->outlier != FG_LOOP_NOT_OUTLIER;
 }
 
 bool fg_engine_is_exchange(const fg_loop_candidate *candidate) {
-  return candidate->effect->lone == FG_LOOP_EXCHANGED_ROWS;
+  return candidate->effect->outlier == FG_LOOP_EXCHANGED_ROWS;
 }
 
 bool fg_engine_is_noise(const fg_loop_candidate *candidate) {
@@ -71,7 +71,7 @@ void fg_engine_candidate_name(const fg_loop_problem *problem, const fg_loop_cand
   if (fg_engine_is_exchange(candidate))
     fg_text_clip(name, FG_LOOP_NAME, "%s(%zu, %zu)", id, candidate->row[0] + 1,
                  candidate->row[1] + 1);
-  else if (fg_engine_is_lone(candidate))
+  else if (fg_engine_is_outlier(candidate))
     name_rows(candidate, name);
   else if (candidate->effect->pair)
     fg_text_clip(name, FG_LOOP_NAME, "%s(%s, %s)", id, problem->coordinate[candidate->a].name,

@@ -88,14 +88,13 @@ typedef struct noise_fit {
 
 /* Columns that are constant in groups are judged between groups: so many fewer degrees of freedom.
  */
-static double freedom_of(const fg_engine_training *training, size_t first, size_t count,
-                         double freedom) {
-  if (!training->levels) return freedom;
+static double dof_of(const fg_engine_training *training, size_t first, size_t count, double dof) {
+  if (!training->levels) return dof;
   for (size_t k = first; k < first + count; k++)
     for (size_t i = 1; i < training->n; i++)
       if (training->group[i] == training->group[i - 1] &&
           training->x[k * training->n + i] != training->x[k * training->n + i - 1])
-        return freedom;
+        return dof;
   return fmax((double)training->groups - 1 - (double)count, 1);
 }
 
@@ -121,7 +120,7 @@ static void describe_noise(const fg_engine_training *training, const noise_fit *
 
 static void describe(const fg_engine_training *training, const fg_engine_fit *fit,
                      const fg_engine_fit *wide, const fg_engine_set *set, const noise_fit *noise,
-                     double freedom, fg_loop_claim *claim) {
+                     double dof, fg_loop_claim *claim) {
   double variance = noise->sd * noise->sd;
   size_t first = training->problem->parameters, slope = fit->columns;
   for (size_t m = 0; m < set->count; m++) {
@@ -129,8 +128,7 @@ static void describe(const fg_engine_training *training, const fg_engine_fit *fi
     const fg_loop_effect *effect = candidate->effect;
     size_t slopes = effect->stepwise ? 0 : effect->shapes;
     size_t count = fg_engine_candidate_columns(training->problem, candidate);
-    double own =
-        fg_engine_is_lone(candidate) ? freedom : freedom_of(training, first, count, freedom);
+    double own = fg_engine_is_outlier(candidate) ? dof : dof_of(training, first, count, dof);
     double t = gsl_cdf_tdist_Qinv(0.025, own);
     memcpy(claim[m].shape, set->shape[m], sizeof claim[m].shape);
     claim[m].candidate = *candidate;
@@ -151,7 +149,7 @@ static void describe(const fg_engine_training *training, const fg_engine_fit *fi
         claim[m].coefficient_u[k] = sqrt(variance * wide->inverse[at * wide->columns + at]);
       }
       amplitude(training, fit, wide, first, count, slope, slopes, variance, &claim[m]);
-      if (fg_engine_is_lone(candidate) || effect->from_zero) {
+      if (fg_engine_is_outlier(candidate) || effect->from_zero) {
         claim[m].amplitude = fabs(claim[m].coefficient[0]);
         claim[m].amplitude_u = claim[m].coefficient_u[0];
       }
@@ -179,10 +177,10 @@ fg_status fg_engine_fit_claims(fg_context *ctx, const fg_loop_problem *problem, 
   FG_TRY_EXIT(fg_engine_least_squares(ctx, &training, noise, &wide));
   /* The correlation was estimated too. */
   size_t used = wide.rank + training.serial;
-  double freedom = training.n > used ? (double)(training.n - used) : NAN;
-  double variance = fit.rss / freedom;
+  double dof = training.n > used ? (double)(training.n - used) : NAN;
+  double variance = fit.rss / dof;
   const noise_fit row = {noise, sqrt(variance)};
-  describe(&training, &fit, &wide, set, &row, freedom, claim);
+  describe(&training, &fit, &wide, set, &row, dof, claim);
   for (size_t k = 0; k < problem->parameters; k++) {
     parameter[k] = fit.beta[k];
     parameter_u[k] = sqrt(variance * wide.inverse[k * wide.columns + k]);

@@ -63,7 +63,7 @@ static fg_status predict(fg_context *ctx, fg_engine_run *fold, double *before, d
 }
 
 /* A response that is wrong is none to predict; two that changed places are put back. */
-static void correct_lone(const fg_engine_run *run, double *residual) {
+static void correct_outlier(const fg_engine_run *run, double *residual) {
   const double *response = run->problem->response;
   for (size_t m = 0; m < run->set.count; m++) {
     const fg_loop_candidate *candidate = &run->set.candidate[m];
@@ -71,7 +71,7 @@ static void correct_lone(const fg_engine_run *run, double *residual) {
       double change = response[candidate->row[1]] - response[candidate->row[0]];
       residual[candidate->row[0]] += change;
       residual[candidate->row[1]] -= change;
-    } else if (fg_engine_is_lone(candidate)) {
+    } else if (fg_engine_is_outlier(candidate)) {
       for (size_t k = 0; k < candidate->rows; k++)
         residual[candidate->row[k]] = NAN;
     }
@@ -115,7 +115,7 @@ static fg_status fit_fold(fg_context *ctx, void *shared, size_t f) {
   for (size_t i = 0; i < rows; i++)
     train[i] = problem->group[i] % all->folds != f;
   FG_TRY_EXIT(predict(ctx, &fold, residual, residual + rows));
-  correct_lone(all->run, residual + rows);
+  correct_outlier(all->run, residual + rows);
 exit:
   free(train);
   free(found);

@@ -65,7 +65,7 @@ void fg_engine_effort_estimate(const fg_loop_problem *problem, const fg_loop_can
   double all = (double)problem->rows;
   size_t rows = 0;
   for (size_t i = 0; i < problem->rows; i++)
-    rows += !problem->aside || !problem->aside[i];
+    rows += !problem->held_out || !problem->held_out[i];
   *effort = (fg_engine_effort){.rows = problem->rows, .candidates = candidates};
   if (rows <= FG_ENGINE_SMALL_ROWS)
     estimate_small(problem, (double)rows, sum.all, effort);

@@ -16,7 +16,7 @@ enum {
 };
 
 /* Of residual sums, with a candidate over without: what an exact fit leaves is rounding. */
-#define FG_ENGINE_RATIO_LEAST 1e-12
+#define FG_ENGINE_RATIO_MIN 1e-12
 
 typedef struct fg_engine_noise {
   double rho, lambda;
@@ -50,7 +50,7 @@ void fg_engine_training_free(fg_engine_training *training);
 
 size_t fg_engine_candidate_columns(const fg_loop_problem *problem,
                                    const fg_loop_candidate *candidate);
-bool fg_engine_is_lone(const fg_loop_candidate *candidate);
+bool fg_engine_is_outlier(const fg_loop_candidate *candidate);
 bool fg_engine_is_exchange(const fg_loop_candidate *candidate);
 bool fg_engine_is_curve(const fg_loop_candidate *candidate);
 /* Of the scatter, not of the mean. */
@@ -129,14 +129,14 @@ typedef struct fg_engine_watch {
   size_t found;
 } fg_engine_watch;
 
-typedef struct fg_engine_bench {
+typedef struct fg_score_workspace {
   const fg_engine_training *training;
   const fg_loop_candidate *candidate;
   size_t candidates;
   double (*shape)[FG_LOOP_SHAPES]; /* versions */
   fg_engine_version *version;
-  size_t versions, columns, rank, freedom, widest; /* columns of one version, at most */
-  size_t between_rank;                             /* what groups may differ by */
+  size_t versions, columns, rank, dof, widest; /* columns of one version, at most */
+  size_t between_rank;                         /* what groups may differ by */
   fg_engine_noise noise[FG_ENGINE_NOISES];
   double weight[FG_ENGINE_NOISES]; /* exp(log terms / freedom): noises compare by rss × weight */
   size_t noises;
@@ -147,7 +147,7 @@ typedef struct fg_engine_bench {
   /* n × (rank + columns + between_rank), row by row; only where rows are few */
   float *rows[FG_ENGINE_NOISES];
   fg_engine_watch watch;
-} fg_engine_bench;
+} fg_score_workspace;
 
 typedef struct fg_engine_score {
   double ratio; /* residual sum with the candidate / without, each at its best noise */
@@ -157,23 +157,25 @@ typedef struct fg_engine_score {
 } fg_engine_score;
 
 /* The bench's watch is the caller's; all else is made. */
-fg_status fg_engine_bench_build(fg_context *ctx, const fg_engine_training *training,
-                                const fg_loop_candidate *candidate, size_t candidates,
-                                fg_engine_bench *bench);
+fg_status fg_score_workspace_build(fg_context *ctx, const fg_engine_training *training,
+                                   const fg_loop_candidate *candidate, size_t candidates,
+                                   fg_score_workspace *workspace);
 /* `done` of `all` in one step. */
-void fg_engine_bench_tell(const fg_engine_bench *bench, size_t done, size_t all);
-void fg_engine_bench_free(fg_engine_bench *bench);
+void fg_score_workspace_tell(const fg_score_workspace *workspace, size_t done, size_t all);
+void fg_score_workspace_free(fg_score_workspace *workspace);
 /* Scores the training's own y; `null` is the best noise without any candidate. */
-void fg_engine_bench_score_data(const fg_engine_bench *bench, fg_engine_score *score, size_t *null);
+void fg_score_workspace_score_data(const fg_score_workspace *workspace, fg_engine_score *score,
+                                   size_t *null);
 /* Scores `count` vectors of responses (not whitened, one after the other; at most FG_ENGINE_BATCH)
  * where rows are few: candidates × count scores, those of one vector together. */
-fg_status fg_engine_bench_score(fg_context *ctx, const fg_engine_bench *bench, size_t count,
-                                const double *y, fg_engine_score *score);
-double fg_engine_deviate(double ratio, double k, double freedom);
+fg_status fg_score_workspace_score(fg_context *ctx, const fg_score_workspace *workspace,
+                                   size_t count, const double *y, fg_engine_score *score);
+double fg_engine_deviate(double ratio, double k, double dof);
 double fg_engine_deviate_to_f(double z, double k, double nu);
 /* Extra freedom of a candidate: rank and shapes. */
-double fg_engine_version_freedom(const fg_engine_bench *bench, const fg_engine_version *version);
+double fg_engine_version_dof(const fg_score_workspace *workspace, const fg_engine_version *version);
 /* Freedom without the candidate: of the groups, or of the rows. */
-double fg_engine_version_whole(const fg_engine_bench *bench, const fg_engine_version *version);
+double fg_engine_version_whole(const fg_score_workspace *workspace,
+                               const fg_engine_version *version);
 
 #endif

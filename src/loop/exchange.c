@@ -134,7 +134,7 @@ double fg_engine_exchange_best(const fg_engine_exchange *exchange, const double 
       double change =
           2 * d * (work[i] - work[j]) +
           d * d * (product(exchange, i, i) + product(exchange, j, j) - 2 * product(exchange, i, j));
-      double ratio = fmax(1 + change / rss, FG_ENGINE_RATIO_LEAST);
+      double ratio = fmax(1 + change / rss, FG_ENGINE_RATIO_MIN);
       if (!(ratio < fmin(best, 1 - CHANGES))) continue;
       best = ratio;
       row[0] = i < j ? i : j;

@@ -56,11 +56,11 @@ static fg_status cross_validated(fg_context *ctx, const fg_engine_run *run,
 
 /* Of more groups than these, neighbours are drawn together: as good, and a thousand draws of a
  * hundred thousand would take as long as the search. */
-enum { DRAWN_MOST = 5000 };
+enum { DRAWN_MAX = 5000 };
 
-/* Sums of neighbouring groups, so that DRAWN_MOST are left at the most; returns how many. */
+/* Sums of neighbouring groups, so that DRAWN_MAX are left at the most; returns how many. */
 static size_t join_groups(size_t count, size_t *group, double *sum) {
-  size_t together = (count + DRAWN_MOST - 1) / DRAWN_MOST, joined = 0;
+  size_t together = (count + DRAWN_MAX - 1) / DRAWN_MAX, joined = 0;
   for (size_t i = 0; together > 1 && i < count; i++) {
     if (i % together == 0) {
       group[joined++] = group[i];
@@ -185,7 +185,7 @@ static fg_status draw_curve(fg_context *ctx, fg_engine_run *run, const fg_loop_c
   curve->count = POINTS;
   curve->coordinate = run->curve_at;
   curve->p_value = run->curve_p;
-  curve->freedom = (double)fit->columns;
+  curve->dof = (double)fit->columns;
   fg_text_clip(curve->name, sizeof curve->name, "%s", at->name);
   run->result->has_curve = true;
 exit:

@@ -11,13 +11,13 @@ static fg_status criterion(fg_context *ctx, const fg_engine_training *training,
                            fg_engine_noise noise, double *value) {
   fg_engine_fit fit;
   FG_TRY(fg_engine_least_squares(ctx, training, noise, &fit));
-  double freedom = (double)training->n - (double)fit.rank;
-  *value = freedom * log(fit.rss) + fg_engine_log_det(training, noise) + fit.log_det;
+  double dof = (double)training->n - (double)fit.rank;
+  *value = dof * log(fit.rss) + fg_engine_log_det(training, noise) + fit.log_det;
   fg_engine_fit_free(&fit);
   return FG_OK;
 }
 
-#define RHO_MOST 0.985
+#define RHO_MAX 0.985
 
 /* Between the points of the grid: steps that shrink, in rho and in the logarithm of lambda. */
 static fg_status polish(fg_context *ctx, const fg_engine_training *training, double best,
@@ -25,8 +25,8 @@ static fg_status polish(fg_context *ctx, const fg_engine_training *training, dou
   double rho_step = 0.1, lambda_step = 0.4;
   for (int round = 0; round < 4; round++) {
     const fg_engine_noise tries[] = {
-        {fmin(noise->rho + rho_step, RHO_MOST), noise->lambda},
-        {fmax(noise->rho - rho_step, -RHO_MOST), noise->lambda},
+        {fmin(noise->rho + rho_step, RHO_MAX), noise->lambda},
+        {fmax(noise->rho - rho_step, -RHO_MAX), noise->lambda},
         {noise->rho, noise->lambda * exp(lambda_step)},
         {noise->rho, noise->lambda * exp(-lambda_step)},
     };
@@ -160,8 +160,8 @@ fg_status fg_engine_fit_set(fg_context *ctx, const fg_loop_problem *problem, con
   FG_TRY_EXIT(fg_engine_least_squares(ctx, &training, *noise, &fit));
   if (residual) fg_engine_fit_residual(&all, &fit, residual);
   if (effect) add_effects(&all, &fit, effect);
-  double freedom = training.n > fit.rank ? (double)(training.n - fit.rank) : NAN;
-  if (sd) *sd = sqrt(fit.rss / freedom * (1 + noise->lambda));
+  double dof = training.n > fit.rank ? (double)(training.n - fit.rank) : NAN;
+  if (sd) *sd = sqrt(fit.rss / dof * (1 + noise->lambda));
 exit:
   fg_engine_fit_free(&fit);
   fg_engine_training_free(&training);

@@ -18,17 +18,17 @@
 
 /* With fewer rows beyond the parameters a new order of the residuals is no new sample: normal
  * numbers are drawn. */
-enum { PERMUTED_FREEDOM = 12 };
+enum { PERMUTED_DOF = 12 };
 /* The number of looks is read where this share of the draws' maxima lies beyond. */
 #define LOOKS_AT 0.02
 /* A first look decides where it says that many times less or more than what is asked. */
-enum { FIRST_DRAWS = 399, DOUBT = 8 };
+enum { FIRST_DRAWS = 399, UNCERTAINTY = 8 };
 /* A candidate's scale: from its median draw to this quantile. */
 #define UPPER 0.95
 static const double upper_normal = 1.6448536269514722;
 
 typedef struct drawing {
-  const fg_engine_bench *bench;
+  const fg_score_workspace *workspace;
   const fg_engine_noise_scores *noise_scores;
   const fg_engine_exchange *exchange; /* NULL: none */
   const fg_engine_null *null;
@@ -40,7 +40,7 @@ typedef struct drawing {
 } drawing;
 
 static void draw_one(const drawing *d, uint64_t *seed, double *y) {
-  const fg_engine_training *training = d->bench->training;
+  const fg_engine_training *training = d->workspace->training;
   size_t n = training->n;
   for (size_t i = 0; i < n; i++)
     y[i] = d->permuted ? d->white[i] : fg_engine_random_normal(seed);
@@ -55,22 +55,22 @@ static void draw_one(const drawing *d, uint64_t *seed, double *y) {
 
 /* Noise and exchange of one draw, behind the means' scores. */
 static void score_rest(const drawing *d, const double *y, double *work, double *z) {
-  const fg_engine_bench *bench = d->bench;
-  size_t n = bench->training->n, noises = d->noise_scores->count, pair[2];
-  fg_engine_noise_scores_of(d->noise_scores, y, work, z + bench->candidates);
+  const fg_score_workspace *workspace = d->workspace;
+  size_t n = workspace->training->n, noises = d->noise_scores->count, pair[2];
+  fg_engine_noise_scores_of(d->noise_scores, y, work, z + workspace->candidates);
   if (!d->exchange) return;
   double *response = work + 3 * n;
   for (size_t i = 0; i < n; i++)
     response[i] = d->exchange->mean[i] + y[i];
   double ratio = fg_engine_exchange_best(d->exchange, y, response, work, pair);
-  z[bench->candidates + noises] =
-      isfinite(ratio) ? fg_engine_deviate(fmin(ratio, 1), 1, (double)bench->freedom) : NAN;
+  z[workspace->candidates + noises] =
+      isfinite(ratio) ? fg_engine_deviate(fmin(ratio, 1), 1, (double)workspace->dof) : NAN;
 }
 
 static fg_status draw_batch(fg_context *ctx, void *shared, size_t item) {
   const drawing *d = shared;
-  const fg_engine_bench *bench = d->bench;
-  size_t n = bench->training->n, first = item * FG_ENGINE_BATCH, count = d->null->draws - first;
+  const fg_score_workspace *workspace = d->workspace;
+  size_t n = workspace->training->n, first = item * FG_ENGINE_BATCH, count = d->null->draws - first;
   uint64_t seed = (d->null->seed + 1) * 0x5851f42d4c957f2du + item;
   fg_engine_score *score = NULL;
   double *y = NULL, *work = NULL;
@@ -79,14 +79,14 @@ static fg_status draw_batch(fg_context *ctx, void *shared, size_t item) {
   FG_TRY_EXIT(fg_memory_allocate(ctx, count, n * sizeof *y, (void **)&y));
   FG_TRY_EXIT(fg_memory_allocate(ctx, n, 4 * sizeof *work, (void **)&work));
   FG_TRY_EXIT(
-      fg_memory_allocate(ctx, bench->candidates + 1, count * sizeof *score, (void **)&score));
+      fg_memory_allocate(ctx, workspace->candidates + 1, count * sizeof *score, (void **)&score));
   for (size_t b = 0; b < count; b++)
     draw_one(d, &seed, y + b * n);
-  FG_TRY_EXIT(fg_engine_bench_score(ctx, bench, count, y, score));
+  FG_TRY_EXIT(fg_score_workspace_score(ctx, workspace, count, y, score));
   for (size_t b = 0; b < count; b++) {
     double *z = d->z + (first + b) * d->kinds;
-    for (size_t c = 0; c < bench->candidates; c++)
-      z[c] = score[b * bench->candidates + c].z;
+    for (size_t c = 0; c < workspace->candidates; c++)
+      z[c] = score[b * workspace->candidates + c].z;
     score_rest(d, y + b * n, work, z);
   }
 exit:
@@ -145,16 +145,16 @@ static double critical_deviate(double accept_p, double tests) {
   return gsl_cdf_ugaussian_Qinv(one);
 }
 
-static void take_critical(const fg_engine_bench *bench, const fg_engine_null *null,
+static void take_critical(const fg_score_workspace *workspace, const fg_engine_null *null,
                           const own_scale *scale, fg_engine_judgement *judgement) {
   double edge = critical_deviate(null->accept_p, judgement->tests);
   for (size_t c = 0; c < judgement->means; c++) {
     if (!isfinite(judgement->z[c])) continue;
-    const fg_engine_version *version = &bench->version[judgement->score[c].version];
-    double k = fg_engine_version_freedom(bench, version);
+    const fg_engine_version *version = &workspace->version[judgement->score[c].version];
+    double k = fg_engine_version_dof(workspace, version);
     judgement->z_critical[c] = scale ? scale[c].middle + edge * scale[c].spread : edge;
-    judgement->f_critical[c] = fg_engine_deviate_to_f(judgement->z_critical[c], k,
-                                                      fg_engine_version_whole(bench, version) - k);
+    judgement->f_critical[c] = fg_engine_deviate_to_f(
+        judgement->z_critical[c], k, fg_engine_version_whole(workspace, version) - k);
   }
 }
 
@@ -174,7 +174,7 @@ static fg_status judge_drawn(fg_context *ctx, drawing *d, const double *raw,
   judgement->tests = looks(d, scale, sorted);
   for (size_t c = 0; c < d->kinds; c++)
     judgement->z[c] = (raw[c] - scale[c].middle) / scale[c].spread;
-  take_critical(d->bench, d->null, scale, judgement);
+  take_critical(d->workspace, d->null, scale, judgement);
 exit:
   free(d->z);
   d->z = NULL;
@@ -200,13 +200,14 @@ static fg_status judge_in_turns(fg_context *ctx, drawing *d, fg_engine_judgement
   memcpy(raw, judgement->z, all * sizeof *raw);
   if (first.draws > FIRST_DRAWS) first.draws = FIRST_DRAWS;
   d->null = &first;
-  fg_engine_bench_tell(d->bench, 1, 3);
+  fg_score_workspace_tell(d->workspace, 1, 3);
   FG_TRY_EXIT(judge_drawn(ctx, d, raw, judgement));
   double p = smallest_p(judgement);
-  if (first.draws == whole.draws || p < whole.accept_p / DOUBT || p > whole.accept_p * DOUBT)
+  if (first.draws == whole.draws || p < whole.accept_p / UNCERTAINTY ||
+      p > whole.accept_p * UNCERTAINTY)
     goto exit;
   d->null = &whole;
-  fg_engine_bench_tell(d->bench, 2, 3);
+  fg_score_workspace_tell(d->workspace, 2, 3);
   FG_TRY_EXIT(judge_drawn(ctx, d, raw, judgement));
 exit:
   free(raw);
@@ -214,10 +215,10 @@ exit:
 }
 
 /* Many rows: every version of every candidate is one look at a normal deviate. */
-static void judge_by_count(const fg_engine_bench *bench, const fg_engine_null *null,
+static void judge_by_count(const fg_score_workspace *workspace, const fg_engine_null *null,
                            fg_engine_judgement *judgement) {
-  judgement->tests = (double)(bench->versions + judgement->candidates - judgement->means);
-  take_critical(bench, null, NULL, judgement);
+  judgement->tests = (double)(workspace->versions + judgement->candidates - judgement->means);
+  take_critical(workspace, null, NULL, judgement);
 }
 
 /* The null's residual, whitened, each over what its own row keeps of it. */
@@ -254,16 +255,16 @@ enum { EXCHANGED_CORRELATED = 250 };
 
 static bool may_exchange(const fg_engine_training *training) {
   bool whole = training->serial || training->levels;
-  size_t most = whole ? EXCHANGED_CORRELATED : FG_ENGINE_SMALL_ROWS;
+  size_t max = whole ? EXCHANGED_CORRELATED : FG_ENGINE_SMALL_ROWS;
   return training->problem->exchangeable && training->n >= training->columns + 4 &&
-         training->n <= most;
+         training->n <= max;
 }
 
 /* The scores of the data themselves. */
-static fg_status score_data(fg_context *ctx, const fg_engine_bench *bench,
+static fg_status score_data(fg_context *ctx, const fg_score_workspace *workspace,
                             const fg_engine_noise_scores *noise_scores,
                             const fg_engine_exchange *exchange, fg_engine_judgement *judgement) {
-  const fg_engine_training *training = bench->training;
+  const fg_engine_training *training = workspace->training;
   size_t n = training->n, noises = noise_scores->count;
   double *work = NULL;
   FG_TRY(fg_memory_allocate(ctx, n, 4 * sizeof *work, (void **)&work));
@@ -279,40 +280,40 @@ static fg_status score_data(fg_context *ctx, const fg_engine_bench *bench,
     judgement->exchange_ratio = fmin(ratio, 1);
     if (judgement->has_exchange)
       judgement->z[judgement->means + noises] =
-          fg_engine_deviate(judgement->exchange_ratio, 1, (double)bench->freedom);
+          fg_engine_deviate(judgement->exchange_ratio, 1, (double)workspace->dof);
   }
   free(work);
   return FG_OK;
 }
 
-fg_status fg_engine_judge(fg_context *ctx, const fg_engine_bench *bench,
+fg_status fg_engine_judge(fg_context *ctx, const fg_score_workspace *workspace,
                           const fg_loop_candidate *noise, size_t noises, const fg_engine_null *null,
                           fg_engine_judgement *judgement) {
-  const fg_engine_training *training = bench->training;
+  const fg_engine_training *training = workspace->training;
   fg_engine_noise_scores noise_scores = {0};
   fg_engine_exchange exchange = {0};
   double *white = NULL;
   fg_status status = FG_OK;
   bool few = training->n <= FG_ENGINE_SMALL_ROWS, exchanges = may_exchange(training);
-  FG_TRY_EXIT(allocate(ctx, bench->candidates, noises, judgement));
-  if (bench->freedom < 2) goto exit;
-  fg_engine_bench_score_data(bench, judgement->score, &judgement->noise);
-  fg_engine_noise at = bench->noise[judgement->noise];
-  const fg_engine_span *span = &bench->null[judgement->noise];
+  FG_TRY_EXIT(allocate(ctx, workspace->candidates, noises, judgement));
+  if (workspace->dof < 2) goto exit;
+  fg_score_workspace_score_data(workspace, judgement->score, &judgement->noise);
+  fg_engine_noise at = workspace->noise[judgement->noise];
+  const fg_engine_span *span = &workspace->null[judgement->noise];
   FG_TRY_EXIT(fg_engine_noise_scores_open(ctx, training, at, span, noise, noises, &noise_scores));
   if (exchanges) FG_TRY_EXIT(fg_engine_exchange_open(ctx, training, at, span, &exchange));
-  FG_TRY_EXIT(score_data(ctx, bench, &noise_scores, exchanges ? &exchange : NULL, judgement));
+  FG_TRY_EXIT(score_data(ctx, workspace, &noise_scores, exchanges ? &exchange : NULL, judgement));
   FG_TRY_EXIT(fg_memory_allocate(ctx, training->n, sizeof *white, (void **)&white));
   null_residual(training, at, span, white);
   drawing d = {
-      bench, &noise_scores, exchanges ? &exchange : NULL,       null,
-      at,    white,         bench->freedom >= PERMUTED_FREEDOM, judgement->candidates + exchanges,
+      workspace, &noise_scores, exchanges ? &exchange : NULL,   null,
+      at,        white,         workspace->dof >= PERMUTED_DOF, judgement->candidates + exchanges,
       NULL};
   if (few)
     FG_TRY_EXIT(judge_in_turns(ctx, &d, judgement));
   else
-    judge_by_count(bench, null, judgement);
-  fg_engine_bench_tell(bench, 3, 3);
+    judge_by_count(workspace, null, judgement);
+  fg_score_workspace_tell(workspace, 3, 3);
   for (size_t c = 0; c <= judgement->candidates; c++)
     judgement->p[c] = over_all(judgement->z[c], judgement->tests);
 exit:

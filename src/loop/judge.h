@@ -33,19 +33,19 @@ typedef struct fg_engine_judgement {
 } fg_engine_judgement;
 
 /* `noise` are candidates of the noise, judged beside the bench's. */
-fg_status fg_engine_judge(fg_context *ctx, const fg_engine_bench *bench,
+fg_status fg_engine_judge(fg_context *ctx, const fg_score_workspace *workspace,
                           const fg_loop_candidate *noise, size_t noises, const fg_engine_null *null,
                           fg_engine_judgement *judgement);
 void fg_engine_judgement_free(fg_engine_judgement *judgement);
 
 /* Few rows: for every candidate of the mean the amplitude (half range; of unit variance of the
  * rows' own noise) that passes in four draws of five; NaN where none does. Curves included. */
-fg_status fg_engine_smallest_amplitudes(fg_context *ctx, const fg_engine_bench *bench,
+fg_status fg_engine_smallest_amplitudes(fg_context *ctx, const fg_score_workspace *workspace,
                                         const fg_engine_judgement *judgement, uint64_t seed,
                                         double *amplitude);
 
 /* Wrong rows, the likeliest number of them, and the row that stands out most by itself. */
-typedef struct fg_engine_lone {
+typedef struct fg_engine_outlier {
   fg_loop_candidate candidate,
       first; /* all that are wrong (one where none is); the first of them */
   bool known;
@@ -55,12 +55,12 @@ typedef struct fg_engine_lone {
   double size, normal_p; /* of the first: in sd of the others, and its p-value were noise normal */
   double f_critical;     /* of one row; one freedom */
   double length;         /* mean |M W e|² of a row */
-} fg_engine_lone;
+} fg_engine_outlier;
 
 /* `null` is the training's at that noise. */
-fg_status fg_engine_judge_lone(fg_context *ctx, const fg_engine_training *training,
-                               fg_engine_noise noise, const fg_engine_span *null, double accept_p,
-                               fg_engine_lone *lone);
+fg_status fg_engine_assess_outlier(fg_context *ctx, const fg_engine_training *training,
+                                   fg_engine_noise noise, const fg_engine_span *null,
+                                   double accept_p, fg_engine_outlier *outlier);
 
 /* Two responses that changed places. exchange.c */
 typedef struct fg_engine_exchange {

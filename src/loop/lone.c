@@ -38,10 +38,10 @@ enum { ONE_IN = 6 };
 /* Tails that measured tables have, and how often before a look at the rows (a choice: what it finds
  * and what it claims of heavy tails is in reports/loop_power.md). The last is normal. */
 enum { TAILS = 5 };
-static const double tail_freedom[TAILS] = {3, 4, 6, 10, INFINITY};
+static const double tail_dof[TAILS] = {3, 4, 6, 10, INFINITY};
 static const double tail_before[TAILS] = {0.01, 0.03, 0.08, 0.18, 0.7};
 
-typedef struct lone_rows {
+typedef struct outlier_rows {
   const fg_engine_training *training;
   fg_engine_noise noise;
   size_t n, rank;
@@ -51,15 +51,15 @@ typedef struct lone_rows {
   double *t;     /* n: residual of a row over its own sd (not over the noise's) */
   double *kept;  /* n: |M W e|² */
   double *rest;  /* n: t of the rows that are left */
-  double taken[FG_LOOP_LONE_ROWS + 1]; /* t of those taken out, before they were */
+  double taken[FG_LOOP_OUTLIER_ROWS + 1]; /* t of those taken out, before they were */
   bool *out;
   double rss;
-} lone_rows;
+} outlier_rows;
 
 static fg_status open_rows(fg_context *ctx, const fg_engine_training *training,
-                           fg_engine_noise noise, const fg_engine_span *null, lone_rows *rows) {
-  size_t n = training->n, columns = null->rank + FG_LOOP_LONE_ROWS + 1;
-  *rows = (lone_rows){.training = training, .noise = noise, .n = n};
+                           fg_engine_noise noise, const fg_engine_span *null, outlier_rows *rows) {
+  size_t n = training->n, columns = null->rank + FG_LOOP_OUTLIER_ROWS + 1;
+  *rows = (outlier_rows){.training = training, .noise = noise, .n = n};
   FG_TRY(fg_memory_allocate(ctx, n, columns * sizeof *rows->basis, (void **)&rows->basis));
   FG_TRY(fg_memory_allocate(ctx, n, 5 * sizeof *rows->white, (void **)&rows->white));
   FG_TRY(fg_memory_allocate(ctx, n, sizeof *rows->out, (void **)&rows->out));
@@ -76,24 +76,24 @@ static fg_status open_rows(fg_context *ctx, const fg_engine_training *training,
   return FG_OK;
 }
 
-static void close_rows(lone_rows *rows) {
+static void close_rows(outlier_rows *rows) {
   free(rows->basis);
   free(rows->white);
   free(rows->out);
 }
 
-static bool whole_covariance(const lone_rows *rows) {
+static bool whole_covariance(const outlier_rows *rows) {
   return rows->n <= FG_ENGINE_SMALL_ROWS && (rows->noise.rho != 0 || rows->noise.lambda > 0);
 }
 
-static void fill_unit(const lone_rows *rows, size_t i) {
+static void fill_unit(const outlier_rows *rows, size_t i) {
   memset(rows->unit, 0, rows->n * sizeof *rows->unit);
   rows->unit[i] = 1;
   if (whole_covariance(rows)) fg_engine_whiten(rows->training, rows->noise, rows->unit);
 }
 
 /* A row beside all others: what is left of its response along its own whitened indicator. */
-static double judge_correlated(lone_rows *rows, size_t i) {
+static double judge_correlated(outlier_rows *rows, size_t i) {
   size_t n = rows->n;
   double along = 0, kept = 0;
   fill_unit(rows, i);
@@ -112,21 +112,21 @@ static double judge_correlated(lone_rows *rows, size_t i) {
 }
 
 /* Where rows are many and correlated a row is judged by its innovation alone. */
-static void judge_rows(lone_rows *rows) {
+static void judge_rows(outlier_rows *rows) {
   for (size_t i = 0; i < rows->n; i++) {
     double along = whole_covariance(rows) ? judge_correlated(rows, i) : rows->white[i];
     rows->t[i] = rows->kept[i] > HELD_ALONE ? along / sqrt(rows->kept[i]) : 0;
   }
 }
 
-static size_t worst_row(const lone_rows *rows) {
+static size_t worst_row(const outlier_rows *rows) {
   size_t worst = rows->n;
   for (size_t i = 0; i < rows->n; i++)
     if (!rows->out[i] && (worst == rows->n || fabs(rows->t[i]) > fabs(rows->t[worst]))) worst = i;
   return worst;
 }
 
-static void take_out(lone_rows *rows, size_t i) {
+static void take_out(outlier_rows *rows, size_t i) {
   size_t n = rows->n;
   double *column = rows->basis + rows->rank * n;
   fill_unit(rows, i);
@@ -143,51 +143,51 @@ static void take_out(lone_rows *rows, size_t i) {
 }
 
 /* Student's t of unit variance: probability beyond x on both sides, and density. */
-static double beyond(double x, double freedom, double normal_freedom) {
-  if (isinf(freedom)) return 2 * gsl_cdf_tdist_Q(x, normal_freedom);
-  return 2 * gsl_cdf_tdist_Q(x / sqrt((freedom - 2) / freedom), freedom);
+static double beyond(double x, double dof, double normal_dof) {
+  if (isinf(dof)) return 2 * gsl_cdf_tdist_Q(x, normal_dof);
+  return 2 * gsl_cdf_tdist_Q(x / sqrt((dof - 2) / dof), dof);
 }
 
-static double log_density(double x, double freedom) {
-  if (isinf(freedom)) return log(gsl_ran_ugaussian_pdf(x));
-  double unit = sqrt((freedom - 2) / freedom);
-  return log(gsl_ran_tdist_pdf(x / unit, freedom) / unit);
+static double log_density(double x, double dof) {
+  if (isinf(dof)) return log(gsl_ran_ugaussian_pdf(x));
+  double unit = sqrt((dof - 2) / dof);
+  return log(gsl_ran_tdist_pdf(x / unit, dof) / unit);
 }
 
 /* How likely each tail is by the rows that are left; of those that are out only that they lie
  * beyond the rest is known. */
-static void weigh_tails(const lone_rows *rows, size_t out, double sd, double weight[TAILS]) {
-  double most = -INFINITY, sum = 0, largest = 0;
+static void weigh_tails(const outlier_rows *rows, size_t out, double sd, double weight[TAILS]) {
+  double max = -INFINITY, sum = 0, largest = 0;
   for (size_t i = 0; i < rows->n; i++)
     if (!rows->out[i]) largest = fmax(largest, fabs(rows->t[i]) / sd);
   for (size_t k = 0; k < TAILS; k++) {
-    weight[k] = log(tail_before[k]) +
-                (double)out * log(fmax(beyond(largest, tail_freedom[k], 1e6), 1e-300));
+    weight[k] =
+        log(tail_before[k]) + (double)out * log(fmax(beyond(largest, tail_dof[k], 1e6), 1e-300));
     for (size_t i = 0; i < rows->n; i++)
       if (!rows->out[i] && rows->kept[i] > HELD_ALONE)
-        weight[k] += log_density(rows->t[i] / sd, tail_freedom[k]);
-    most = fmax(most, weight[k]);
+        weight[k] += log_density(rows->t[i] / sd, tail_dof[k]);
+    max = fmax(max, weight[k]);
   }
   for (size_t k = 0; k < TAILS; k++)
-    sum += weight[k] = exp(weight[k] - most);
+    sum += weight[k] = exp(weight[k] - max);
   for (size_t k = 0; k < TAILS; k++)
     weight[k] /= sum;
 }
 
 /* Of a row that lies `t` noises out, with `out` rows (it among them) taken out. */
-static double row_p(const lone_rows *rows, double t, size_t out) {
-  double freedom = (double)rows->n - (double)rows->rank, weight[TAILS], p = 0;
-  double sd = sqrt(rows->rss / freedom), size = fabs(t) / sd;
+static double row_p(const outlier_rows *rows, double t, size_t out) {
+  double dof = (double)rows->n - (double)rows->rank, weight[TAILS], p = 0;
+  double sd = sqrt(rows->rss / dof), size = fabs(t) / sd;
   weigh_tails(rows, out, sd, weight);
   for (size_t k = 0; k < TAILS; k++)
-    p += weight[k] * beyond(size, tail_freedom[k], freedom);
+    p += weight[k] * beyond(size, tail_dof[k], dof);
   double left = (double)(rows->n - out + 1);
   return -expm1(left * log1p(-fmin(p, 0.5)));
 }
 
 /* The chance that no row is wrong but the tail of all heavy: of as many likelihood ratios as there
  * are rows to be wrong, with the first `taken` rows and one more of `size` apart. */
-static double tail_p(lone_rows *rows, size_t taken, double size) {
+static double tail_p(outlier_rows *rows, size_t taken, double size) {
   size_t rest = 0;
   for (size_t i = 0; i < rows->n; i++)
     if (!rows->out[i] && rows->kept[i] > HELD_ALONE) rows->rest[rest++] = rows->t[i];
@@ -198,15 +198,15 @@ static double tail_p(lone_rows *rows, size_t taken, double size) {
 }
 
 /* F ratio of one row that would just pass; where rows are many their tails are what they show. */
-static double critical_f(lone_rows *rows, double level, double accept_p) {
-  double freedom = (double)rows->n - (double)rows->rank, weight[TAILS], low = 1, high = 1e6;
-  double one = level / (double)rows->n, sd = sqrt(rows->rss / freedom);
+static double critical_f(outlier_rows *rows, double level, double accept_p) {
+  double dof = (double)rows->n - (double)rows->rank, weight[TAILS], low = 1, high = 1e6;
+  double one = level / (double)rows->n, sd = sqrt(rows->rss / dof);
   bool few = rows->n <= FG_ENGINE_SMALL_ROWS;
   weigh_tails(rows, 0, sd, weight);
   for (int i = 0; i < 60; i++) {
     double middle = sqrt(low * high), p = 0;
     for (size_t k = 0; k < TAILS; k++)
-      p += weight[k] * beyond(middle, tail_freedom[k], freedom);
+      p += weight[k] * beyond(middle, tail_dof[k], dof);
     if (p > one || (few && tail_p(rows, 0, middle * sd) > accept_p))
       low = middle;
     else
@@ -225,23 +225,23 @@ static void sort_rows(fg_loop_candidate *candidate) {
 }
 
 /* Heavy tails thin out row by row; wrong responses lie beyond a gap. */
-static bool stands_apart(const lone_rows *rows, double t) {
+static bool stands_apart(const outlier_rows *rows, double t) {
   size_t next = worst_row(rows);
   return next == rows->n || fabs(t) > GAP * fabs(rows->t[next]);
 }
 
 /* Were the noise surely normal. */
-static double normal_p(const lone_rows *rows, double size) {
-  double freedom = (double)rows->n - (double)rows->rank;
-  return fmin((double)rows->n * beyond(size, INFINITY, freedom), 1);
+static double normal_p(const outlier_rows *rows, double size) {
+  double dof = (double)rows->n - (double)rows->rank;
+  return fmin((double)rows->n * beyond(size, INFINITY, dof), 1);
 }
 
-static void search(lone_rows *rows, double accept_p, fg_engine_lone *lone) {
+static void search(outlier_rows *rows, double accept_p, fg_engine_outlier *outlier) {
   const fg_engine_training *training = rows->training;
-  fg_loop_candidate taken = lone->candidate;
+  fg_loop_candidate taken = outlier->candidate;
   double whole = rows->rss, alike = 1;
-  size_t most = rows->n / ONE_IN < FG_LOOP_LONE_ROWS ? rows->n / ONE_IN : FG_LOOP_LONE_ROWS;
-  for (size_t j = 1; j <= (most ? most : 1); j++) {
+  size_t max = rows->n / ONE_IN < FG_LOOP_OUTLIER_ROWS ? rows->n / ONE_IN : FG_LOOP_OUTLIER_ROWS;
+  for (size_t j = 1; j <= (max ? max : 1); j++) {
     size_t worst = worst_row(rows);
     if (worst == rows->n || rows->rank + 3 >= rows->n) break;
     double t = rows->taken[j - 1] = rows->t[worst];
@@ -251,38 +251,38 @@ static void search(lone_rows *rows, double accept_p, fg_engine_lone *lone) {
     double p = fmin(row_p(rows, t, j) / FG_ENGINE_SHARE_OF_ROWS, 1);
     alike = fmin(alike, tail_p(rows, j, 0));
     if (j == 1) {
-      lone->first = taken;
-      lone->known = true;
-      lone->size = fabs(t) / sqrt(rows->rss / ((double)rows->n - (double)rows->rank));
-      lone->normal_p = normal_p(rows, lone->size);
+      outlier->first = taken;
+      outlier->known = true;
+      outlier->size = fabs(t) / sqrt(rows->rss / ((double)rows->n - (double)rows->rank));
+      outlier->normal_p = normal_p(rows, outlier->size);
     }
     if (j > 1 && !(p < accept_p && stands_apart(rows, t))) continue;
-    lone->candidate = taken;
-    lone->ratio = rows->rss / whole;
-    lone->apart_p = p;
+    outlier->candidate = taken;
+    outlier->ratio = rows->rss / whole;
+    outlier->apart_p = p;
   }
-  lone->p_value = fmax(lone->apart_p, alike);
-  sort_rows(&lone->candidate);
+  outlier->p_value = fmax(outlier->apart_p, alike);
+  sort_rows(&outlier->candidate);
 }
 
-fg_status fg_engine_judge_lone(fg_context *ctx, const fg_engine_training *training,
-                               fg_engine_noise noise, const fg_engine_span *null, double accept_p,
-                               fg_engine_lone *lone) {
-  lone_rows rows = {0};
+fg_status fg_engine_assess_outlier(fg_context *ctx, const fg_engine_training *training,
+                                   fg_engine_noise noise, const fg_engine_span *null,
+                                   double accept_p, fg_engine_outlier *outlier) {
+  outlier_rows rows = {0};
   double sum = 0;
   fg_status status = FG_OK;
-  *lone = (fg_engine_lone){
+  *outlier = (fg_engine_outlier){
       .ratio = 1, .p_value = 1, .apart_p = 1, .normal_p = 1, .f_critical = INFINITY};
-  lone->candidate.effect = &fg_loop_lone_effects()[0];
+  outlier->candidate.effect = &fg_loop_outlier_effects()[0];
   if (!training->problem->exchangeable || training->n < training->columns + 5) return FG_OK;
   FG_TRY_EXIT(open_rows(ctx, training, noise, null, &rows));
   if (!(rows.rss > 0)) goto exit;
   judge_rows(&rows);
   for (size_t i = 0; i < rows.n; i++)
     sum += rows.kept[i];
-  lone->length = sum / (double)rows.n;
-  lone->f_critical = critical_f(&rows, accept_p * FG_ENGINE_SHARE_OF_ROWS, accept_p);
-  search(&rows, accept_p, lone);
+  outlier->length = sum / (double)rows.n;
+  outlier->f_critical = critical_f(&rows, accept_p * FG_ENGINE_SHARE_OF_ROWS, accept_p);
+  search(&rows, accept_p, outlier);
 exit:
   close_rows(&rows);
   return status;

@@ -38,7 +38,7 @@ static fg_status open_run(fg_context *ctx, const fg_engine_units *units,
   if (!(run->options.accept_p > 0)) run->options.accept_p = FG_LOOP_ACCEPT_P;
   FG_TRY(fg_memory_allocate(ctx, rows, sizeof *run->train, (void **)&run->train));
   for (size_t i = 0; i < rows; i++)
-    run->train[i] = !problem->aside || !problem->aside[i];
+    run->train[i] = !problem->held_out || !problem->held_out[i];
   FG_TRY(add_candidates(ctx, run, options->effects, &capacity));
   if (!problem->few) FG_TRY(add_candidates(ctx, run, fg_loop_curve_effects(), &capacity));
   run->means = run->candidates;

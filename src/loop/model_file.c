@@ -295,14 +295,14 @@ static void describe_curve(const fg_loop_model *model, const cJSON *json, size_t
                            fg_loop_taken *taken) {
   const cJSON *name = cJSON_GetObjectItemCaseSensitive(json, "coordinate");
   const cJSON *shape = cJSON_GetObjectItemCaseSensitive(json, "shape");
-  double freedom = number_or(json, "freedom", (double)cJSON_GetArraySize(shape));
+  double dof = number_or(json, "freedom", (double)cJSON_GetArraySize(shape));
   fg_text_clip(taken->id, sizeof taken->id, "unattributed");
   fg_text_clip(taken->words, sizeof taken->words, "a smooth curve over %s",
                cJSON_IsString(name) ? name->valuestring : "");
   taken->applied = true;
-  taken->parameters = (size_t)ceil(freedom);
+  taken->parameters = (size_t)ceil(dof);
   taken->amplitude = NAN;
-  taken->u_amplitude = number_or(model->json, "noise_sd", NAN) * sqrt(freedom / (double)rows);
+  taken->u_amplitude = number_or(model->json, "noise_sd", NAN) * sqrt(dof / (double)rows);
 }
 
 /* What the last step added to the change, which `before` still lacks. */
@@ -320,11 +320,11 @@ static fg_status take_all(fg_context *ctx, const fg_loop_model *model, const fg_
                           fg_loop_takings *out) {
   const cJSON *claims = cJSON_GetObjectItemCaseSensitive(model->json, "claims"), *claim;
   const cJSON *curve = cJSON_GetObjectItemCaseSensitive(model->json, "unattributed");
-  size_t rows = table->rows, most = (size_t)cJSON_GetArraySize(claims) + 1;
+  size_t rows = table->rows, max = (size_t)cJSON_GetArraySize(claims) + 1;
   double *before = NULL;
   fg_status status = FG_OK;
   FG_TRY(fg_memory_allocate(ctx, rows + 1, sizeof *out->change, (void **)&out->change));
-  FG_TRY(fg_memory_allocate(ctx, most, sizeof *out->one, (void **)&out->one));
+  FG_TRY(fg_memory_allocate(ctx, max, sizeof *out->one, (void **)&out->one));
   FG_TRY(fg_memory_allocate(ctx, rows + 1, sizeof *before, (void **)&before));
   cJSON_ArrayForEach(claim, claims) {
     FG_TRY_EXIT(apply_claim(ctx, model, claim, table, out->change));

@@ -13,7 +13,7 @@
 static const double same_span = 1e-9, declared_span = 1e-24;
 /* A row that the null's columns hold alone has a residual of rounding: what is divided by the share
  * that it keeps divides by this at the least, a sd of 0.05. */
-static const double kept_least = 0.05 * 0.05;
+static const double kept_min = 0.05 * 0.05;
 
 static double dot(size_t n, const double *a, const double *b) {
   double sum[4] = {0};
@@ -127,7 +127,7 @@ double fg_engine_along(size_t n, const double *unit, size_t count, const double 
 }
 
 double fg_engine_span_kept_sd(const fg_engine_span *span, size_t i) {
-  return sqrt(fmax(span->kept[i], kept_least));
+  return sqrt(fmax(span->kept[i], kept_min));
 }
 
 /* X = Q R column by column; coefficients and (X'X)^-1 from R. */

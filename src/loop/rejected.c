@@ -46,18 +46,18 @@ static fg_loop_verdict judge_rejected(const fg_engine_run *run, const fg_loop_re
 static void describe(const fg_engine_step *step, size_t c, double sd_white, const double *amplitude,
                      fg_loop_rejected *one) {
   const fg_engine_judgement *judgement = &step->judgement;
-  const fg_engine_version *version = &step->bench.version[judgement->score[c].version];
+  const fg_engine_version *version = &step->workspace.version[judgement->score[c].version];
   if (isfinite(judgement->score[c].z)) {
-    double k = fg_engine_version_freedom(&step->bench, version);
+    double k = fg_engine_version_dof(&step->workspace, version);
     one->would_explain = 1 - judgement->score[c].ratio;
     one->retained_share = version->share;
     one->smallest_detectable =
         amplitude ? amplitude[c] * sd_white
                   : detectable(judgement->f_critical[c], k, sd_white, version->length);
   } else {
-    for (size_t v = 0; v < step->bench.versions; v++)
-      if (step->bench.version[v].candidate == c)
-        one->retained_share = fmax(one->retained_share, step->bench.version[v].share);
+    for (size_t v = 0; v < step->workspace.versions; v++)
+      if (step->workspace.version[v].candidate == c)
+        one->retained_share = fmax(one->retained_share, step->workspace.version[v].share);
   }
 }
 
@@ -67,10 +67,11 @@ static void describe_rest(const fg_engine_run *run, const fg_engine_step *step, 
   one->would_explain = stand < run->candidates ? NAN : 0;
   one->retained_share = 1;
   if (stand < run->candidates) return;
-  one->retained_share = fmin(step->lone.length, 1);
-  one->smallest_detectable = detectable(step->lone.f_critical, 1, sd_white, step->lone.length);
+  one->retained_share = fmin(step->outlier.length, 1);
+  one->smallest_detectable =
+      detectable(step->outlier.f_critical, 1, sd_white, step->outlier.length);
   if (stand == fg_engine_wrong_rows(run)) {
-    one->would_explain = 1 - fmin(step->lone.ratio, 1);
+    one->would_explain = 1 - fmin(step->outlier.ratio, 1);
     return;
   }
   one->would_explain = 1 - step->judgement.exchange_ratio;
@@ -95,15 +96,15 @@ static void list_one(const fg_engine_run *run, const fg_engine_step *step, size_
 
 /* A row that normal noise does not reach, and that the others do not show to be wrong. */
 static fg_status note_tail(fg_context *ctx, fg_engine_run *run, const fg_engine_step *step) {
-  const fg_engine_lone *lone = &step->lone;
+  const fg_engine_outlier *outlier = &step->outlier;
   double level = run->options.accept_p;
-  if (!lone->known || !(lone->normal_p < level) || lone->p_value < level) return FG_OK;
+  if (!outlier->known || !(outlier->normal_p < level) || outlier->p_value < level) return FG_OK;
   return fg_engine_note(ctx, run->result,
                         "Row %zu lies %.1f standard deviations of the others from where they have "
                         "it: more than normal noise reaches. These rows cannot tell a wrong value "
                         "from a scatter with heavy tails, so none is claimed; look at how that row "
                         "was measured.",
-                        lone->first.row[0] + 1, lone->size);
+                        outlier->first.row[0] + 1, outlier->size);
 }
 
 fg_status fg_engine_list_rejected(fg_context *ctx, fg_engine_run *run) {
@@ -112,12 +113,12 @@ fg_status fg_engine_list_rejected(fg_context *ctx, fg_engine_run *run) {
   FG_TRY(fg_engine_step_open(ctx, run, &run->set, true, &step));
   fg_status status =
       fg_memory_allocate(ctx, step.stands, sizeof *result->rejected, (void **)&result->rejected);
-  double sd_white = sqrt(step.bench.rss[step.judgement.noise] / (double)step.bench.freedom);
+  double sd_white = sqrt(step.workspace.rss[step.judgement.noise] / (double)step.workspace.dof);
   double *amplitude = NULL;
   if (status == FG_OK && step.training.n <= FG_ENGINE_SMALL_ROWS) {
     status = fg_memory_allocate(ctx, run->means, sizeof *amplitude, (void **)&amplitude);
     if (status == FG_OK)
-      status = fg_engine_smallest_amplitudes(ctx, &step.bench, &step.judgement,
+      status = fg_engine_smallest_amplitudes(ctx, &step.workspace, &step.judgement,
                                              run->options.seed + 2, amplitude);
   }
   for (size_t s = 0; status == FG_OK && s < step.stands; s++)

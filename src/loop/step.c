@@ -35,16 +35,16 @@ static fg_status fill_stands(fg_context *ctx, const fg_engine_run *run, fg_engin
     stand->z = judgement->z[c];
     if (c >= run->means || !isfinite(stand->z)) continue;
     stand->share = 1 - judgement->score[c].ratio;
-    memcpy(stand->shape, step->bench.shape[judgement->score[c].version], sizeof stand->shape);
+    memcpy(stand->shape, step->workspace.shape[judgement->score[c].version], sizeof stand->shape);
   }
   fg_engine_stand *wrong = &step->stand[fg_engine_wrong_rows(run)];
   fg_engine_stand *exchange = &step->stand[fg_engine_exchanged_rows(run)];
   wrong->z = exchange->z = NAN;
-  wrong->candidate = step->lone.candidate;
-  exchange->candidate.effect = &fg_loop_lone_effects()[1];
-  if (step->lone.known && step->lone.ratio < 1)
-    wrong->z = fg_engine_deviate(step->lone.ratio, (double)step->lone.candidate.rows,
-                                 (double)step->bench.freedom);
+  wrong->candidate = step->outlier.candidate;
+  exchange->candidate.effect = &fg_loop_outlier_effects()[1];
+  if (step->outlier.known && step->outlier.ratio < 1)
+    wrong->z = fg_engine_deviate(step->outlier.ratio, (double)step->outlier.candidate.rows,
+                                 (double)step->workspace.dof);
   if (!judgement->has_exchange) return FG_OK;
   exchange->z = judgement->z[run->candidates];
   exchange->candidate.rows = 2;
@@ -61,18 +61,18 @@ fg_status fg_engine_step_open(fg_context *ctx, fg_engine_run *run, const fg_engi
   FG_TRY_EXIT(fg_engine_training_build(ctx, run->problem, run->train, set, &step->training));
   if (!draws) draws = step->training.serial ? DRAWS_CORRELATED : DRAWS;
   if (!judged && draws > DRAWS_UNJUDGED) draws = DRAWS_UNJUDGED;
-  step->bench.watch =
+  step->workspace.watch =
       (fg_engine_watch){run->options.progress, run->options.progress_user, run->result->claims};
   FG_TRY_EXIT(
-      fg_engine_bench_build(ctx, &step->training, run->candidate, run->means, &step->bench));
+      fg_score_workspace_build(ctx, &step->training, run->candidate, run->means, &step->workspace));
   const fg_engine_null null = {draws, FIXED_SEED, run->options.accept_p};
-  FG_TRY_EXIT(fg_engine_judge(ctx, &step->bench, run->candidate + run->means,
+  FG_TRY_EXIT(fg_engine_judge(ctx, &step->workspace, run->candidate + run->means,
                               run->candidates - run->means, &null, &step->judgement));
-  fg_engine_noise noise = step->bench.noise[step->judgement.noise];
+  fg_engine_noise noise = step->workspace.noise[step->judgement.noise];
   if (judged)
-    FG_TRY_EXIT(fg_engine_judge_lone(ctx, &step->training, noise,
-                                     &step->bench.null[step->judgement.noise], null.accept_p,
-                                     &step->lone));
+    FG_TRY_EXIT(fg_engine_assess_outlier(ctx, &step->training, noise,
+                                         &step->workspace.null[step->judgement.noise],
+                                         null.accept_p, &step->outlier));
   FG_TRY_EXIT(fill_stands(ctx, run, step));
 exit:
   if (status != FG_OK) fg_engine_step_close(step);
@@ -81,24 +81,24 @@ exit:
 
 void fg_engine_step_close(fg_engine_step *step) {
   fg_engine_judgement_free(&step->judgement);
-  fg_engine_bench_free(&step->bench);
+  fg_score_workspace_free(&step->workspace);
   fg_engine_training_free(&step->training);
   free(step->stand);
   step->stand = NULL;
 }
 
 double fg_engine_stand_p(const fg_engine_run *run, const fg_engine_step *step, size_t stand) {
-  if (stand == fg_engine_wrong_rows(run)) return step->lone.p_value;
+  if (stand == fg_engine_wrong_rows(run)) return step->outlier.p_value;
   return step->judgement.p[stand < run->candidates ? stand : run->candidates];
 }
 
 bool fg_engine_nearly(const fg_engine_run *run, const fg_engine_step *step, size_t c,
                       size_t other) {
   const fg_engine_score *score = step->judgement.score;
-  const fg_engine_version *version = step->bench.version;
+  const fg_engine_version *version = step->workspace.version;
   if (c >= run->means) return false;
-  if (fg_engine_version_freedom(&step->bench, &version[score[c].version]) >
-      fg_engine_version_freedom(&step->bench, &version[score[other].version]))
+  if (fg_engine_version_dof(&step->workspace, &version[score[c].version]) >
+      fg_engine_version_dof(&step->workspace, &version[score[other].version]))
     return false;
   return 1 - score[c].ratio > NEARLY * (1 - score[other].ratio);
 }

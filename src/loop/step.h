@@ -7,9 +7,9 @@
 /* The state of one step: training, bench, scores of the null with everything accepted. */
 typedef struct fg_engine_step {
   fg_engine_training training;
-  fg_engine_bench bench;
+  fg_score_workspace workspace;
   fg_engine_judgement judgement;
-  fg_engine_lone lone;
+  fg_engine_outlier outlier;
   fg_engine_stand *stand; /* candidates; wrong rows; the exchange */
   size_t stands;
 } fg_engine_step;

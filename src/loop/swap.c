@@ -47,7 +47,7 @@ fg_status fg_engine_swap(fg_context *ctx, fg_engine_run *run) {
     fg_engine_set others = run->set;
     fg_engine_step step;
     fg_loop_claim *claim = &run->result->claim[m];
-    if (fg_engine_is_lone(&claim->candidate) || fg_engine_is_serial(&claim->candidate)) continue;
+    if (fg_engine_is_outlier(&claim->candidate) || fg_engine_is_serial(&claim->candidate)) continue;
     fg_engine_set_remove(&others, m);
     FG_TRY(fg_engine_step_open(ctx, run, &others, false, &step));
     size_t best = 0, own = 0;

@@ -125,7 +125,7 @@ static fg_status add_column(fg_context *ctx, const fg_loop_table_state *build,
   if (fg_quantity_is_result(column->name)) return FG_OK;
   if (column->missing_count)
     return fg_loop_table_leave_out(ctx, build, column->name, "cells are missing");
-  if (column->doubt || (words && column->number_count))
+  if (column->uncertainty || (words && column->number_count))
     return names_are_meant(spec, column->name)
                ? fg_loop_table_leave_out(ctx, build, column->name, "words among numbers")
                : fg_table_check(ctx, build->table, column->name);

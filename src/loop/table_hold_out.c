@@ -8,9 +8,9 @@
 #include "loop/table_parts.h"
 
 /* Aside goes every row of a group that is chosen. */
-static void put_aside(fg_loop_problem *problem, const bool *chosen) {
+static void hold_out(fg_loop_problem *problem, const bool *chosen) {
   for (size_t i = 0; i < problem->rows; i++)
-    problem->aside[i] = chosen[problem->group[i]];
+    problem->held_out[i] = chosen[problem->group[i]];
 }
 
 static fg_status keep_share(fg_context *ctx, const fg_loop_table_state *build, size_t count) {
@@ -30,7 +30,7 @@ static fg_status keep_share(fg_context *ctx, const fg_loop_table_state *build, s
     order[i] = drawn;
     chosen[drawn] = true;
   }
-  put_aside(problem, chosen);
+  hold_out(problem, chosen);
 exit:
   free(order);
   free(chosen);
@@ -59,7 +59,7 @@ static fg_status keep_value(fg_context *ctx, const fg_loop_table_state *build, c
     found++;
     chosen[problem->group[i]] = true;
   }
-  put_aside(problem, chosen);
+  hold_out(problem, chosen);
   free(chosen);
   if (found) return FG_OK;
   return fg_fail(ctx, FG_ERR_USAGE, "--hold-out %s: no row has that value", text);

@@ -49,12 +49,12 @@ void fg_loop_table_free_formula(struct fg_loop_formula *formula) {
 /* The level whose name is nearest to a number; the first where names are words. */
 static double nearest_level(const fg_levels *levels, double value) {
   size_t nearest = 0;
-  double least = INFINITY;
+  double min = INFINITY;
   for (size_t k = 0; k < levels->count; k++) {
     char *end;
     double apart = fabs(strtod(levels->name[k], &end) - value);
-    if (*end || !(apart < least)) continue;
-    least = apart;
+    if (*end || !(apart < min)) continue;
+    min = apart;
     nearest = k;
   }
   return (double)nearest;

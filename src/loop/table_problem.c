@@ -94,7 +94,7 @@ static fg_status allocate(fg_context *ctx, size_t rows, fg_loop_table_problem *o
   FG_TRY(fg_memory_allocate(ctx, rows, sizeof *out->row, (void **)&out->row));
   FG_TRY(fg_memory_allocate(ctx, rows, sizeof *problem->group, (void **)&problem->group));
   FG_TRY(fg_memory_allocate(ctx, rows, sizeof *problem->series, (void **)&problem->series));
-  FG_TRY(fg_memory_allocate(ctx, rows, sizeof *problem->aside, (void **)&problem->aside));
+  FG_TRY(fg_memory_allocate(ctx, rows, sizeof *problem->held_out, (void **)&problem->held_out));
   FG_TRY(fg_memory_allocate(ctx, rows, sizeof *problem->residual, (void **)&problem->residual));
   return fg_memory_allocate(ctx, rows, sizeof *problem->response, (void **)&problem->response);
 }
@@ -227,7 +227,7 @@ void fg_loop_table_problem_free(fg_loop_table_problem *out) {
   free(problem->jacobian);
   free(problem->group);
   free(problem->series);
-  free(problem->aside);
+  free(problem->held_out);
   free(problem->residual);
   free(problem->response);
   fg_loop_table_free_formula(out->model);

@@ -16,11 +16,11 @@ void fg_engine_describe_claim(const fg_engine_run *run, const fg_engine_step *st
   claim->cv_gain = claim->cv_gain_se = NAN;
   claim->p_value = fg_engine_stand_p(run, step, stand);
   if (stand == fg_engine_exchanged_rows(run))
-    claim->p_value = fmin(claim->p_value, step->lone.apart_p);
+    claim->p_value = fmin(claim->p_value, step->outlier.apart_p);
   if (stand < run->means)
-    claim->retained_share = step->bench.version[judgement->score[stand].version].share;
+    claim->retained_share = step->workspace.version[judgement->score[stand].version].share;
   else if (stand >= run->candidates)
-    claim->retained_share = fmin(step->lone.length, 1);
+    claim->retained_share = fmin(step->outlier.length, 1);
 }
 
 void fg_engine_take(fg_engine_run *run, const fg_engine_stand *stand, fg_loop_claim *claim) {

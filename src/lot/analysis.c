@@ -70,7 +70,7 @@ static void rank_arcs_by_spread(fg_lot_analysis *analysis) {
 /* Without tolerances of foils what lies farthest from the lot's mean in its leading quantity, the
  * height of bumps, is the worst. */
 static void rank_by_spread(fg_lot_analysis *analysis) {
-  if (analysis->lot->settings.design.form == FG_FORM_ARC) {
+  if (analysis->lot->settings.design.kind == FG_FOIL_ARC) {
     rank_arcs_by_spread(analysis);
     return;
   }
@@ -154,14 +154,14 @@ static void count_parts(fg_lot_analysis *analysis) {
 }
 
 static fg_status analyse(fg_context *ctx, fg_lot_analysis *analysis) {
-  analysis->parts = fg_form_parts(analysis->lot->settings.design.form);
+  analysis->parts = fg_foil_kind_parts(analysis->lot->settings.design.kind);
   FG_TRY(list_foils(ctx, analysis));
   count_parts(analysis);
   FG_TRY(judge_all(ctx, analysis));
   choose_rows(analysis);
   FG_TRY(fg_lot_analyse_quantities(ctx, analysis));
   FG_TRY(fg_lot_analyse_causes(ctx, analysis));
-  bool bumps = fg_form_has_bumps(analysis->lot->settings.design.form);
+  bool bumps = fg_foil_kind_has_bumps(analysis->lot->settings.design.kind);
   if (bumps) FG_TRY(fg_lot_analyse_correlation(ctx, analysis));
   const fg_design *design = &analysis->lot->settings.design;
   if (design->tolerance_count == fg_report_of_bearing(design, NULL, 0)) rank_by_spread(analysis);
@@ -205,9 +205,9 @@ void fg_lot_analysis_free(fg_lot_analysis *analysis) {
 }
 
 fg_correction fg_lot_correction_largest(const fg_lot_analysis *analysis) {
-  fg_correction most = {NAN, NAN, NAN, NAN, NAN, NAN};
+  fg_correction max = {NAN, NAN, NAN, NAN, NAN, NAN};
   for (size_t i = 0; analysis->lot->model && i < analysis->foil_count; i++)
     if (fg_foil_is_measured(analysis->foils[i].foil))
-      fg_correction_largest(&most, &analysis->foils[i].foil->correction);
-  return most;
+      fg_correction_largest(&max, &analysis->foils[i].foil->correction);
+  return max;
 }

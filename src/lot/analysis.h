@@ -62,7 +62,7 @@ typedef struct fg_lot_quantity {
   double *value;                 /* what is known, foil by foil; owned */
   size_t count;
   size_t *size; /* values of each foil; owned */
-  double mean, sd, least, most, median;
+  double mean, sd, min, max, median;
   fg_lot_place *place; /* by number of the part - 1; owned */
   size_t places;
   bool has_density, has_chart, has_subgroups, has_capability;
@@ -86,13 +86,13 @@ typedef struct fg_lot_correlation {
   double r;
   double slope, intercept;                       /* of the errors in percent, least squares */
   double log_slope, log_low, log_high;           /* of the logarithms, with its interval */
-  double log_freedom;                            /* of that interval; NaN: the foils are too few */
+  double log_dof;                                /* of that interval; NaN: the foils are too few */
   double arc_length_mean_pct, arc_length_sd_pct; /* 100 (R alpha / R_D alpha_D - 1), all bumps */
 } fg_lot_correlation;
 
 typedef struct fg_lot_spread {
   size_t count;
-  double mean, mode, sd, relative_sd_pct, least, most;
+  double mean, mode, sd, relative_sd_pct, min, max;
 } fg_lot_spread;
 
 /* The strips' thickness. Its doubt is the scanner's tone curve for the most part, the same in every

@@ -109,7 +109,7 @@ static void make_plan(fg_lot_analysis *analysis) {
     level[i] = 0;
   }
   assembly->centred = fg_bearing_assess(&unused, angle, level, places, &round) == FG_OK &&
-                      isfinite(round.centred_least_mm);
+                      isfinite(round.centred_min_mm);
   add_limit(plan, "clearance_min_mm", 0, INFINITY, !assembly->centred);
   if (assembly->centred) add_limit(plan, "clearance_centred_min_mm", 0, INFINITY, true);
   for (size_t i = 0; i < settings->design.tolerance_count; i++) {
@@ -244,10 +244,10 @@ static fg_status try_change(fg_context *ctx, fg_lot_analysis *analysis, size_t i
 
 static fg_status try_changes(fg_context *ctx, fg_lot_analysis *analysis) {
   fg_lot_assembly *assembly = &analysis->assembly;
-  size_t most = assembly->stock.foils / assembly->plan.layout.pads, sorted;
+  size_t max = assembly->stock.foils / assembly->plan.layout.pads, sorted;
   for (size_t i = 0; i < sizeof changes / sizeof *changes; i++)
     FG_TRY(try_change(ctx, analysis, i));
-  assembly->classes = most < CLASSES_MAX ? most : CLASSES_MAX;
+  assembly->classes = max < CLASSES_MAX ? max : CLASSES_MAX;
   if (assembly->classes > 1) {
     FG_TRY(fg_assembly_draw_sorted(ctx, &assembly->stock, &assembly->plan, assembly->classes,
                                    &sorted));

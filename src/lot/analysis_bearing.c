@@ -83,8 +83,8 @@ static fg_status place_foils(fg_context *ctx, fg_lot_analysis *analysis, size_t 
  * leaves, which holds its share of the thickness. Of two axes that err by themselves it is the same
  * in bumps that lie alike on the glass only; taken as the same in all it is not less than it is in
  * the least and the mean clearance. */
-static double shared_doubt(const fg_lot_analysis *analysis, const fg_foil *foil,
-                           const fg_bump *bump) {
+static double shared_uncertainty(const fg_lot_analysis *analysis, const fg_foil *foil,
+                                 const fg_bump *bump) {
   const fg_quantity *thickness = fg_quantity_find(FG_QUANTITY_OF_FOIL, "thickness_mm");
   const fg_quantity *clearance = fg_quantity_find(FG_QUANTITY_OF_BUMP, "clearance_fitted_mm");
   double u = fg_foil_thickness(&analysis->lot->settings.design, foil).u_mm;
@@ -102,7 +102,7 @@ fg_lot_clearance fg_lot_clearance_of(const fg_lot_analysis *analysis, const fg_l
     if (bump->number != number) continue;
     if (!fg_lot_bump_counts(foil->foil, bump)) return unknown;
     double u = bump->u_clearance_fitted_mm;
-    double shared = shared_doubt(analysis, foil->foil, bump);
+    double shared = shared_uncertainty(analysis, foil->foil, bump);
     if (!isfinite(u)) u = 0;
     if (!(shared >= 0)) shared = 0;
     return (fg_lot_clearance){.mm = bump->clearance_fitted_mm,
@@ -129,9 +129,10 @@ static void assess(const fg_lot_analysis *analysis, fg_lot_bearing *bearing) {
       own[at] = c.u_own_mm;
       pads[at] = pad;
     }
-  const fg_bearing_doubt doubt = {shared, own, pads};
-  bearing->known = fg_bearing_assess_doubt(&unused, bearing->angle_deg, bearing->clearance_mm,
-                                           bearing->places, &doubt, &bearing->clearance) == FG_OK;
+  const fg_bearing_uncertainty uncertainty = {shared, own, pads};
+  bearing->known =
+      fg_bearing_assess_uncertainty(&unused, bearing->angle_deg, bearing->clearance_mm,
+                                    bearing->places, &uncertainty, &bearing->clearance) == FG_OK;
 }
 
 /* A tolerance that nothing could be judged by must not read as a pass. */

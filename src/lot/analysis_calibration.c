@@ -25,7 +25,7 @@ static double by_thickness(const reading *r, const fg_foil *foil, const fg_foil_
   double moves[FG_CALIBRATED_MAX] = {0};
   const fg_design *design = &r->analysis->lot->settings.design;
   fg_foil thick = *foil;
-  if (design->form == FG_FORM_CANTILEVER) return 0;
+  if (design->kind == FG_FOIL_CANTILEVER) return 0;
   fg_quantity_narrow_calibrated(FG_QUANTITY_OF_FOIL, &thick, &foil->calibrated);
   double u = isfinite(thick.u_thickness_mm) ? thick.u_thickness_mm : 0;
   thick.thickness_mm += u;
@@ -46,7 +46,7 @@ static double by_thickness(const reading *r, const fg_foil *foil, const fg_foil_
 /* An unknown tone curve moves edges alike in every scan: what lies between two of them, or rests on
  * one, errs by it alike. Of what is not by the thickness alone its part is not told: all counts. */
 static bool errs_alike(const fg_design *design, const fg_quantity *row) {
-  bool between = row->uses & FG_QUANTITY_BETWEEN_EDGES && !fg_form_has_bumps(design->form) &&
+  bool between = row->uses & FG_QUANTITY_BETWEEN_EDGES && !fg_foil_kind_has_bumps(design->kind) &&
                  strncmp(row->name, "thickness", 9) != 0;
   bool on_edge = row->uses & FG_QUANTITY_OF_DATUM && design->datum != FG_DATUM_MID;
   return design->tone != FG_TONE_LINEAR && (between || on_edge);

@@ -61,10 +61,10 @@ static double p_of(const fg_lot_quantity *quantity, const fg_lot_cause *cause, c
     between += (double)cause->foils[g] * pow(cause->mean[g] - quantity->chart.centre, 2);
   for (size_t i = 0; i < points; i++)
     within += pow(quantity->chart.point[i].value - cause->mean[by->group[i]], 2);
-  double freedom = (double)(cause->groups - 1), rest = (double)(points - cause->groups);
+  double dof = (double)(cause->groups - 1), rest = (double)(points - cause->groups);
   if (!(rest > 0) || !(between > 0)) return 1;
   if (!(within > 0)) return 0;
-  return fg_distribution_f_upper(between / freedom / (within / rest), freedom, rest);
+  return fg_distribution_f_upper(between / dof / (within / rest), dof, rest);
 }
 
 static fg_status count_left(fg_context *ctx, unsigned rules, const fg_lot_quantity *quantity,
@@ -142,8 +142,8 @@ bool fg_lot_is_explained(const fg_lot_quantity *quantity) {
 }
 
 bool fg_lot_tells_nothing(const fg_lot_quantity *quantity) {
-  enum { FOILS_LEAST = 8 }; /* the rules of a chart speak of eight points in a row */
-  return !quantity->has_chart || (quantity->stable && quantity->chart.count < FOILS_LEAST);
+  enum { FOILS_MIN = 8 }; /* the rules of a chart speak of eight points in a row */
+  return !quantity->has_chart || (quantity->stable && quantity->chart.count < FOILS_MIN);
 }
 
 fg_status fg_lot_analyse_causes(fg_context *ctx, fg_lot_analysis *analysis) {

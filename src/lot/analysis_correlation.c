@@ -81,11 +81,11 @@ static void fill_pairs(const fg_lot_analysis *analysis, const size_t *owner, pai
 }
 
 static fg_status collect_pairs(fg_context *ctx, const fg_lot_analysis *analysis, pairs *p) {
-  size_t most = 0;
+  size_t max = 0;
   void *block;
   for (size_t i = 0; i < analysis->foil_count; i++)
-    most += analysis->foils[i].foil->bump_count;
-  FG_TRY(allocate_pairs(ctx, most, p));
+    max += analysis->foils[i].foil->bump_count;
+  FG_TRY(allocate_pairs(ctx, max, p));
   FG_TRY(fg_memory_allocate(ctx, analysis->foil_count, sizeof(size_t), &block));
   fg_status status = fg_lot_find_owners(ctx, analysis, block);
   if (status == FG_OK) fill_pairs(analysis, block, p);
@@ -162,13 +162,13 @@ static fg_status fit_errors(fg_context *ctx, const fg_lot_settings *settings, pa
   }
   FG_TRY(fg_cluster_line_fit(ctx, p->radius_pct, p->angle_pct, p->foil, p->count, p->foils, &logs));
   double reach =
-      logs.freedom > 0
-          ? logs.u_slope * fg_distribution_t_quantile((1 + settings->confidence) / 2, logs.freedom)
+      logs.dof > 0
+          ? logs.u_slope * fg_distribution_t_quantile((1 + settings->confidence) / 2, logs.dof)
           : NAN;
   result->log_slope = logs.slope;
   result->log_low = logs.slope - reach;
   result->log_high = logs.slope + reach;
-  result->log_freedom = logs.freedom;
+  result->log_dof = logs.dof;
   return FG_OK;
 }
 

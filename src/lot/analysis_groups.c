@@ -44,17 +44,17 @@ static size_t select_levels(const fg_foil_levels *levels, size_t group, double *
 static size_t select_within(const fg_foil_levels *levels, size_t group, double *values,
                             double *pooled) {
   size_t count = 0;
-  double squares = 0, freedom = 0;
+  double squares = 0, dof = 0;
   for (size_t i = 0; i < levels->count; i++) {
     const fg_foil_level *foil = &levels->foil[i];
     if (foil->group != group || isnan(foil->within_sd)) continue;
     double nu = (double)foil->values - 1;
     squares += nu * foil->within_sd * foil->within_sd;
-    freedom += nu;
+    dof += nu;
     if (foil->within_sd > 0)
       values[count++] = log(foil->within_sd) + (log(nu / 2) - gsl_sf_psi(nu / 2)) / 2;
   }
-  *pooled = sqrt(squares / freedom);
+  *pooled = sqrt(squares / dof);
   return count;
 }
 

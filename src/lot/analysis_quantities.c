@@ -37,7 +37,7 @@ static fg_status list_quantities(fg_context *ctx, fg_lot_analysis *analysis) {
   analysis->quantities = block;
   for (size_t o = 0; o < OWNERS; o++) {
     const fg_quantity *shown[FG_QUANTITY_SHOWN_MAX];
-    size_t count = fg_quantity_shown(owners[o], FG_QUANTITY_IN_LOT, design->form, shown);
+    size_t count = fg_quantity_shown(owners[o], FG_QUANTITY_IN_LOT, design->kind, shown);
     for (size_t i = 0; i < count; i++)
       list_quantity(analysis, owners[o], shown[i]);
   }
@@ -56,11 +56,11 @@ static void take_value(fg_lot_quantity *quantity, size_t foil, double value) {
 
 static fg_status collect(fg_context *ctx, const fg_lot_analysis *analysis,
                          fg_lot_quantity *quantity) {
-  size_t most = 0;
+  size_t max = 0;
   void *block;
   for (size_t i = 0; i < analysis->foil_count; i++)
-    most += 1 + fg_part_count(analysis->foils[i].foil, quantity->owner);
-  FG_TRY(fg_memory_allocate(ctx, most, sizeof *quantity->value, &block));
+    max += 1 + fg_part_count(analysis->foils[i].foil, quantity->owner);
+  FG_TRY(fg_memory_allocate(ctx, max, sizeof *quantity->value, &block));
   quantity->value = block;
   FG_TRY(fg_memory_allocate(ctx, analysis->foil_count, sizeof *quantity->size, &block));
   quantity->size = block;
@@ -85,8 +85,8 @@ static fg_status describe(fg_context *ctx, const fg_lot_settings *settings,
   FG_TRY(fg_lot_spread_of(ctx, quantity->value, quantity->count, settings->bandwidth, &spread));
   quantity->mean = spread.mean;
   quantity->sd = spread.sd;
-  quantity->least = spread.least;
-  quantity->most = spread.most;
+  quantity->min = spread.min;
+  quantity->max = spread.max;
   quantity->mode = spread.mode;
   quantity->median = NAN;
   if (quantity->count == 0) return FG_OK;
@@ -208,7 +208,7 @@ fg_status fg_lot_judge_capability(fg_context *ctx, double confidence, fg_lot_qua
                                      .lower = quantity->tolerance->lower,
                                      .upper = quantity->tolerance->upper,
                                      .sigma = process_sigma(quantity),
-                                     .sigma_freedom = 0.62 * (double)(quantity->chart.count - 1),
+                                     .sigma_dof = 0.62 * (double)(quantity->chart.count - 1),
                                      .stable = quantity->stable,
                                      .confidence = confidence,
                                      .density = quantity->has_density ? &quantity->density : NULL};

@@ -192,15 +192,15 @@ fg_status fg_lot_analyse_stiffness(fg_context *ctx, fg_lot_analysis *analysis) {
   fg_lot_stiffness *result = &analysis->stiffness;
   fg_bump_columns columns = {0};
   void *block;
-  size_t most = 0;
+  size_t max = 0;
   fg_status status = FG_OK;
-  if (!fg_form_has_bumps(settings->design.form)) return FG_OK;
+  if (!fg_foil_kind_has_bumps(settings->design.kind)) return FG_OK;
   for (size_t i = 0; i < analysis->foil_count; i++)
-    most += analysis->foils[i].foil->bump_count;
+    max += analysis->foils[i].foil->bump_count;
   FG_TRY_EXIT(stiffness_of_design(ctx, settings, result));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, most, sizeof(double), &block));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, max, sizeof(double), &block));
   result->normalised = block;
-  FG_TRY_EXIT(allocate_columns(ctx, most, &columns));
+  FG_TRY_EXIT(allocate_columns(ctx, max, &columns));
   fill_columns(analysis, &columns);
   analysis->has_stiffness = differ(columns.radius, columns.count) &&
                             differ(columns.arc_length, columns.count) && settings->resamples > 1;
@@ -225,5 +225,5 @@ exit:
 }
 
 const char *fg_lot_stiffness_note(const fg_lot_analysis *analysis) {
-  return fg_stiffness_form_note(analysis->lot->settings.design.form);
+  return fg_stiffness_kind_note(analysis->lot->settings.design.kind);
 }

@@ -63,11 +63,11 @@ fg_status fg_lot_spread_of(fg_context *ctx, const double *values, size_t count,
   fg_density density;
   double squares = 0;
   *spread =
-      (fg_lot_spread){.count = count, .mode = NAN, .sd = NAN, .least = INFINITY, .most = -INFINITY};
+      (fg_lot_spread){.count = count, .mode = NAN, .sd = NAN, .min = INFINITY, .max = -INFINITY};
   for (size_t i = 0; i < count; i++) {
     spread->mean += (values[i] - values[0]) / (double)count;
-    spread->least = fmin(spread->least, values[i]);
-    spread->most = fmax(spread->most, values[i]);
+    spread->min = fmin(spread->min, values[i]);
+    spread->max = fmax(spread->max, values[i]);
   }
   spread->mean = count ? spread->mean + values[0] : NAN;
   for (size_t i = 0; i < count; i++)

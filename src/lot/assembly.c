@@ -77,17 +77,17 @@ void fg_assembly_pick(uint64_t seed, size_t draw, size_t foils, size_t pads, siz
 }
 
 /* Where a bearing is put together. */
-typedef struct bench {
+typedef struct workspace {
   const fg_stock *stock;
   const fg_assembly_plan *plan;
   double angle_deg[FG_BEARING_BUMPS_MAX], clearance_mm[FG_BEARING_BUMPS_MAX];
   double shared_mm[FG_BEARING_BUMPS_MAX], own_mm[FG_BEARING_BUMPS_MAX];
   size_t pad[FG_BEARING_BUMPS_MAX];
-} bench;
+} workspace;
 
-static bench bench_of(const fg_stock *stock, const fg_assembly_plan *plan) {
+static workspace workspace_of(const fg_stock *stock, const fg_assembly_plan *plan) {
   const fg_bearing_layout *layout = &plan->layout;
-  bench b = {.stock = stock, .plan = plan};
+  workspace b = {.stock = stock, .plan = plan};
   for (size_t pad = 0; pad < layout->pads; pad++)
     for (size_t bump = 0; bump < layout->bumps_per_pad; bump++) {
       b.angle_deg[pad * layout->bumps_per_pad + bump] = fg_bearing_angle_deg(layout, pad, bump);
@@ -96,11 +96,11 @@ static bench bench_of(const fg_stock *stock, const fg_assembly_plan *plan) {
   return b;
 }
 
-static size_t places_of(const bench *b) {
+static size_t places_of(const workspace *b) {
   return b->plan->layout.pads * b->plan->layout.bumps_per_pad;
 }
 
-static fg_status build(fg_context *ctx, bench *b, const size_t *foil, bool doubt,
+static fg_status build(fg_context *ctx, workspace *b, const size_t *foil, bool uncertainty,
                        fg_bearing_clearance *result) {
   size_t places = b->stock->places, bytes = places * sizeof(double);
   for (size_t pad = 0; pad < b->plan->layout.pads; pad++) {
@@ -108,9 +108,9 @@ static fg_status build(fg_context *ctx, bench *b, const size_t *foil, bool doubt
     memcpy(b->shared_mm + pad * places, b->stock->shared_mm + foil[pad] * places, bytes);
     memcpy(b->own_mm + pad * places, b->stock->own_mm + foil[pad] * places, bytes);
   }
-  const fg_bearing_doubt known = {b->shared_mm, b->own_mm, b->pad};
-  return fg_bearing_assess_doubt(ctx, b->angle_deg, b->clearance_mm, places_of(b),
-                                 doubt ? &known : NULL, result);
+  const fg_bearing_uncertainty known = {b->shared_mm, b->own_mm, b->pad};
+  return fg_bearing_assess_uncertainty(ctx, b->angle_deg, b->clearance_mm, places_of(b),
+                                       uncertainty ? &known : NULL, result);
 }
 
 static bool within(const fg_assembly_limit *limit, double value) {
@@ -207,7 +207,7 @@ void fg_assembly_result_free(fg_assembly_result *result) {
 }
 
 /* The share of every limit, and of all, over one set of foils drawn with replacement. */
-static fg_status share_of_set(fg_context *ctx, bench *b, size_t set,
+static fg_status share_of_set(fg_context *ctx, workspace *b, size_t set,
                               double share[FG_ASSEMBLY_LIMITS_MAX + 1]) {
   const fg_assembly_plan *plan = b->plan;
   size_t foils = b->stock->foils, foil[FG_BEARING_BUMPS_MAX];
@@ -259,7 +259,7 @@ static void interval_of_sets(const double *share, double confidence, double foil
                        &target->foils_high);
 }
 
-static fg_status resample_foils(fg_context *ctx, bench *b, fg_assembly_result *result) {
+static fg_status resample_foils(fg_context *ctx, workspace *b, fg_assembly_result *result) {
   const fg_assembly_plan *plan = b->plan;
   size_t limits = plan->limits;
   void *block;
@@ -280,7 +280,7 @@ static fg_status resample_foils(fg_context *ctx, bench *b, fg_assembly_result *r
   return status;
 }
 
-static fg_status draw_all(fg_context *ctx, bench *b, fg_assembly_result *result) {
+static fg_status draw_all(fg_context *ctx, workspace *b, fg_assembly_result *result) {
   const fg_assembly_plan *plan = b->plan;
   size_t foil[FG_BEARING_BUMPS_MAX], counts[2] = {0};
   for (size_t i = 0; i < plan->bearings; i++) {
@@ -301,7 +301,7 @@ static fg_status check(fg_context *ctx, const fg_stock *stock, const fg_assembly
 
 fg_status fg_assembly_draw(fg_context *ctx, const fg_stock *stock, const fg_assembly_plan *plan,
                            bool resample, fg_assembly_result *result) {
-  bench b = bench_of(stock, plan);
+  workspace b = workspace_of(stock, plan);
   *result = (fg_assembly_result){.assembled = {.count = 0}};
   FG_TRY(check(ctx, stock, plan));
   FG_TRY(begin(ctx, plan, result));
@@ -313,7 +313,7 @@ fg_status fg_assembly_draw(fg_context *ctx, const fg_stock *stock, const fg_asse
 
 fg_status fg_assembly_draw_design(fg_context *ctx, double clearance_mm, double deviation_mm,
                                   const fg_assembly_plan *plan, fg_assembly_result *result) {
-  bench b = bench_of(NULL, plan);
+  workspace b = workspace_of(NULL, plan);
   size_t counts[2] = {0};
   fg_status status = FG_OK;
   FG_TRY(begin(ctx, plan, result));
@@ -343,7 +343,7 @@ static int by_mean(const void *a, const void *b) {
 
 fg_status fg_assembly_draw_sorted(fg_context *ctx, const fg_stock *stock,
                                   const fg_assembly_plan *plan, size_t classes, size_t *assembled) {
-  bench b = bench_of(stock, plan);
+  workspace b = workspace_of(stock, plan);
   size_t pads = plan->layout.pads, foil[FG_BEARING_BUMPS_MAX];
   void *block;
   *assembled = 0;

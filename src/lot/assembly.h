@@ -23,7 +23,7 @@
 /* Clearances of `foils` foils at the `places` places of a pad, foil after foil; all are finite. */
 typedef struct fg_stock {
   size_t foils, places;
-  double *clearance_mm, *shared_mm, *own_mm; /* and their u, as in fg_bearing_doubt; owned */
+  double *clearance_mm, *shared_mm, *own_mm; /* and their u, as in fg_bearing_uncertainty; owned */
 } fg_stock;
 
 fg_status fg_stock_allocate(fg_context *ctx, size_t foils, size_t places, fg_stock *stock);

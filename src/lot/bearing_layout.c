@@ -29,10 +29,10 @@ static void resolve(const fg_lot_analysis *analysis, size_t bumps, fg_bearing_la
   if (!layout->bumps_per_pad)
     layout->bumps_per_pad = bumps >= layout->first_bump ? bumps + 1 - layout->first_bump : 1;
   layout->bumps_per_pad = between(layout->bumps_per_pad, 1, FG_BEARING_BUMPS_MAX);
-  size_t most = FG_BEARING_BUMPS_MAX / layout->bumps_per_pad;
+  size_t max = FG_BEARING_BUMPS_MAX / layout->bumps_per_pad;
   if (!layout->pads)
     layout->pads = (size_t)floor(360 * (1 + 1e-6) / ((double)layout->bumps_per_pad * pitch));
-  layout->pads = between(layout->pads, 1, most);
+  layout->pads = between(layout->pads, 1, max);
   bool fits = (double)(layout->pads * layout->bumps_per_pad) * pitch <= 360 * (1 + 1e-6);
   layout->pitch_deg = equal || !fits ? 0 : pitch;
 }

@@ -45,12 +45,12 @@ static void list_of_bearings(const fg_lot_analysis *analysis, fg_characteristic 
 
 fg_status fg_characteristics_list(fg_context *ctx, const fg_lot_analysis *analysis,
                                   fg_characteristic **list, size_t *count) {
-  size_t most;
+  size_t max;
   void *block;
-  fg_quantities(FG_QUANTITY_OF_BEARING, &most);
+  fg_quantities(FG_QUANTITY_OF_BEARING, &max);
   for (size_t i = 0; i < analysis->quantity_count; i++)
-    most += analysis->quantities[i].places + 1;
-  FG_TRY(fg_memory_allocate(ctx, most, sizeof **list, &block));
+    max += analysis->quantities[i].places + 1;
+  FG_TRY(fg_memory_allocate(ctx, max, sizeof **list, &block));
   *list = block;
   *count = 0;
   list_of_foils(analysis, *list, count);

@@ -14,11 +14,11 @@
 
 enum { DIE_BYTES_MAX = 64 << 20, CONTEXT_WORDS = 800 };
 
-static fg_status read_number(fg_context *ctx, const cJSON *object, const char *name, double least,
+static fg_status read_number(fg_context *ctx, const cJSON *object, const char *name, double min,
                              double *value) {
   const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, name);
-  if (!cJSON_IsNumber(item) || !isfinite(item->valuedouble) || item->valuedouble < least)
-    return fg_fail(ctx, FG_ERR_DATA, "%s must be a number from %g", name, least);
+  if (!cJSON_IsNumber(item) || !isfinite(item->valuedouble) || item->valuedouble < min)
+    return fg_fail(ctx, FG_ERR_DATA, "%s must be a number from %g", name, min);
   *value = item->valuedouble;
   return FG_OK;
 }

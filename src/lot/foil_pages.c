@@ -120,7 +120,7 @@ static int compare_names(const void *a, const void *b) {
 }
 
 /* As fg_lot_page_name makes them: what else lies there is somebody's. */
-static bool has_form_of_page(const char *name) {
+static bool has_html_form(const char *name) {
   static const char ending[] = ".html";
   size_t length = strlen(name), tail = SUM_DIGITS + sizeof ending - 1;
   if (length < tail + 1 || strcmp(name + length - (sizeof ending - 1), ending) != 0) return false;
@@ -138,7 +138,7 @@ static fg_status remove_others(fg_context *ctx, const char *folder, char *const 
   fg_status status = FG_OK;
   for (struct dirent *entry; listing && status == FG_OK && (entry = readdir(listing));) {
     char *name;
-    if (!has_form_of_page(entry->d_name)) continue;
+    if (!has_html_form(entry->d_name)) continue;
     status = fg_lot_path(ctx, FG_LOT_PAGES, entry->d_name, &name);
     if (status != FG_OK) break;
     if (!bsearch(&name, kept, count, sizeof *kept, compare_names))

@@ -21,7 +21,7 @@ typedef struct fg_index_stat {
   const fg_quantity *row;
   fg_quantity_owner owner;
   size_t count; /* of bumps or foils, as lot.json has them */
-  double mean, sd, median, mode, least, most;
+  double mean, sd, median, mode, min, max;
   double lower, upper; /* tolerance; infinite: none */
   double *foil;        /* of every foil of the lot its value or the mean of its bumps; NaN; owned */
   size_t foils;        /* with a value */
@@ -34,7 +34,7 @@ typedef struct fg_index_stat {
 /* The radii of a lot's bumps over the design's (thesis figure 5.22). */
 typedef struct fg_index_spread {
   size_t count;
-  double mean, mode, relative_sd_pct, least, most;
+  double mean, mode, relative_sd_pct, min, max;
   bool has_density;
   fg_density density;
 } fg_index_spread;
@@ -42,8 +42,8 @@ typedef struct fg_index_spread {
 typedef struct fg_index_lot {
   const char *folder; /* as given */
   char *name;
-  char *problem; /* why nothing is known of it, and what to do; NULL: it is read */
-  char *doubt;   /* why its foils are not known one by one; NULL: they are */
+  char *problem;     /* why nothing is known of it, and what to do; NULL: it is read */
+  char *uncertainty; /* why its foils are not known one by one; NULL: they are */
   fg_lot_date date;
   double day;                   /* the first; NaN: not known */
   char version[32], sha256[65]; /* of the program, and of lot.json */
@@ -89,7 +89,7 @@ typedef struct fg_index_axis {
 typedef struct fg_index_pair {
   size_t axis, a, b; /* a is the larger */
   size_t foils_a, foils_b;
-  double difference, u, freedom, low, high; /* a - b */
+  double difference, u, dof, low, high; /* a - b */
   double p, p_holm;
 } fg_index_pair;
 
@@ -155,7 +155,7 @@ fg_status fg_index_compare_dies(fg_context *ctx, fg_index *index);
 
 /* Welch's test of two means: fills difference, u, freedom, interval, p. */
 void fg_index_welch(fg_index_pair *pair, const double mean[2], const double u[2],
-                    const double freedom[2]);
+                    const double dof[2]);
 
 void fg_index_free(fg_index *index);
 

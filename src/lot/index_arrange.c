@@ -108,8 +108,8 @@ const char *fg_index_unit(const fg_index_axis *axis) {
 static void scale_stat(fg_index_lot *lot, fg_index_stat *stat, fg_index_scale scale) {
   double by =
       scale == FG_INDEX_OVER_DESIGN ? 1 / stat->row->nominal(&lot->design, &lot->nominal) : 1;
-  double *values[] = {&stat->mean,  &stat->sd,   &stat->median, &stat->mode,
-                      &stat->least, &stat->most, &stat->lower,  &stat->upper};
+  double *values[] = {&stat->mean, &stat->sd,  &stat->median, &stat->mode,
+                      &stat->min,  &stat->max, &stat->lower,  &stat->upper};
   double sum = 0, squares = 0;
   for (size_t i = 0; i < sizeof values / sizeof *values; i++)
     *values[i] *= by;
@@ -204,7 +204,7 @@ static void free_lot(fg_index_lot *lot) {
   free(lot->stats);
   free(lot->name);
   free(lot->problem);
-  free(lot->doubt);
+  free(lot->uncertainty);
   free(lot->scan_sum);
   free(lot->die);
   free(lot->coils);

@@ -11,16 +11,16 @@
 #include "lot/index.h"
 
 void fg_index_welch(fg_index_pair *pair, const double mean[2], const double u[2],
-                    const double freedom[2]) {
+                    const double dof[2]) {
   const double squares[2] = {u[0] * u[0], u[1] * u[1]};
   double sum = squares[0] + squares[1], shares = 0;
   for (int i = 0; i < 2; i++)
-    if (squares[i] > 0) shares += squares[i] * squares[i] / freedom[i];
+    if (squares[i] > 0) shares += squares[i] * squares[i] / dof[i];
   pair->difference = mean[0] - mean[1];
   pair->u = sqrt(sum);
-  pair->freedom = sum * sum / shares; /* Welch and Satterthwaite */
-  pair->p = fg_distribution_t_two_sided(pair->difference / pair->u, pair->freedom);
-  double reach = pair->u * fg_distribution_t_quantile((1 + FG_INDEX_CONFIDENCE) / 2, pair->freedom);
+  pair->dof = sum * sum / shares; /* Welch and Satterthwaite */
+  pair->p = fg_distribution_t_two_sided(pair->difference / pair->u, pair->dof);
+  double reach = pair->u * fg_distribution_t_quantile((1 + FG_INDEX_CONFIDENCE) / 2, pair->dof);
   pair->low = pair->difference - reach;
   pair->high = pair->difference + reach;
 }
@@ -78,9 +78,9 @@ static fg_status add_pair(fg_context *ctx, fg_index *index, size_t axis, size_t 
                         .p_holm = NAN};
   const double mean[2] = {a->foil_mean, b->foil_mean},
                u[2] = {a->foil_sd / sqrt((double)a->foils), b->foil_sd / sqrt((double)b->foils)},
-               freedom[2] = {(double)a->foils - 1, (double)b->foils - 1};
+               dof[2] = {(double)a->foils - 1, (double)b->foils - 1};
   if (!(u[0] + u[1] > 0)) return FG_OK; /* nothing scatters: no test */
-  fg_index_welch(&pair, mean, u, freedom);
+  fg_index_welch(&pair, mean, u, dof);
   FG_TRY(fg_memory_reserve(ctx, index->pair_count + 1, sizeof *index->pairs, &index->pair_capacity,
                            (void **)&index->pairs));
   index->pairs[index->pair_count++] = pair;
@@ -203,8 +203,8 @@ static fg_status describe(fg_context *ctx, const double *values, size_t count,
                               .mean = s.mean,
                               .mode = s.mode,
                               .relative_sd_pct = s.relative_sd_pct,
-                              .least = s.least,
-                              .most = s.most};
+                              .min = s.min,
+                              .max = s.max};
   /* Values that differ in their last digits only make a line, no distribution. */
   if (!(s.relative_sd_pct > 1e-7)) return FG_OK;
   spread->has_density = true;

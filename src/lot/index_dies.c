@@ -35,7 +35,7 @@ static void add_value(moments *m, double value) {
 /* What the lots say of two dies. */
 typedef struct tally {
   double weight, difference; /* sum of weights; mean of the lots' differences by them */
-  double squares, freedom;   /* within lots and dies */
+  double squares, dof;       /* within lots and dies */
   size_t shared;             /* lots that hold both */
   moments lots[2];           /* of means of lots that hold one of them */
   size_t foils[2];
@@ -56,7 +56,7 @@ static tally count(const fg_index *index, const fg_index_axis *axis, size_t a, s
       t.weight += weight;
       t.difference += weight / t.weight * (m[0].mean - m[1].mean - t.difference);
       t.squares += m[0].squares + m[1].squares;
-      t.freedom += m[0].n + m[1].n - 2;
+      t.dof += m[0].n + m[1].n - 2;
     } else if (m[0].n + m[1].n > 0) {
       int one = m[0].n > 0 ? 0 : 1;
       add_value(&t.lots[one], m[one].mean);
@@ -68,27 +68,26 @@ static tally count(const fg_index *index, const fg_index_axis *axis, size_t a, s
 static bool test(const tally *t, fg_index_die_pair *result) {
   fg_index_pair *pair = &result->pair;
   result->lots = t->shared ? t->shared : (size_t)(t->lots[0].n + t->lots[1].n);
-  if (t->shared && t->freedom > 0 && t->squares > 0) {
-    const double mean[2] = {t->difference, 0},
-                 u[2] = {sqrt(t->squares / t->freedom / t->weight), 0},
-                 freedom[2] = {t->freedom, 1};
-    fg_index_welch(pair, mean, u, freedom);
+  if (t->shared && t->dof > 0 && t->squares > 0) {
+    const double mean[2] = {t->difference, 0}, u[2] = {sqrt(t->squares / t->dof / t->weight), 0},
+                 dof[2] = {t->dof, 1};
+    fg_index_welch(pair, mean, u, dof);
     result->basis = FG_INDEX_WITHIN_LOTS;
     return true;
   }
   if (t->shared) return false; /* a foil each: no scatter to hold it against */
   result->basis = FG_INDEX_CONFOUNDED;
   pair->difference = t->lots[0].mean - t->lots[1].mean;
-  pair->p = pair->u = pair->low = pair->high = pair->freedom = NAN;
+  pair->p = pair->u = pair->low = pair->high = pair->dof = NAN;
   if (t->lots[0].n < 2 || t->lots[1].n < 2 || !(t->lots[0].squares + t->lots[1].squares > 0))
     return t->lots[0].n > 0 && t->lots[1].n > 0;
-  double mean[2], u[2], freedom[2];
+  double mean[2], u[2], dof[2];
   for (int i = 0; i < 2; i++) {
-    freedom[i] = t->lots[i].n - 1;
+    dof[i] = t->lots[i].n - 1;
     mean[i] = t->lots[i].mean;
-    u[i] = sqrt(t->lots[i].squares / freedom[i] / t->lots[i].n);
+    u[i] = sqrt(t->lots[i].squares / dof[i] / t->lots[i].n);
   }
-  fg_index_welch(pair, mean, u, freedom);
+  fg_index_welch(pair, mean, u, dof);
   result->basis = FG_INDEX_OVER_LOTS;
   return true;
 }

@@ -115,7 +115,7 @@ static fg_status take_dies(fg_context *ctx, reading *r) {
 /* Flags of what does not count, as fg_lot_part_counts has it. */
 static bool is_damaged(const fg_index_lot *lot, const char *flags) {
   bool damaged = false;
-  if (fg_form_parts(lot->design.form) == FG_QUANTITY_OF_BUMP)
+  if (fg_foil_kind_parts(lot->design.kind) == FG_QUANTITY_OF_BUMP)
     return has_flag(fg_bump_flag_words(), flags, FG_BUMP_CRUSHED);
   for (unsigned flag = 1; flag <= FG_LOT_BEAM_DAMAGED; flag <<= 1)
     damaged =
@@ -192,7 +192,7 @@ static fg_status read_ratios(fg_context *ctx, reading *r) {
 }
 
 static const char *parts_file(const fg_index_lot *lot) {
-  return lot->design.form == FG_FORM_CANTILEVER ? "beams.csv" : "bumps.csv";
+  return lot->design.kind == FG_FOIL_CANTILEVER ? "beams.csv" : "bumps.csv";
 }
 
 /* The files must be those of lot.json: another run may have written one of them. */
@@ -203,9 +203,9 @@ static fg_status read_stats(fg_context *ctx, reading *r) {
     double mean;
     fg_index_stat *stat = &lot->stats[i];
     FG_TRY(read_stat(ctx, r, stat, &mean));
-    if (stat->count == 0 || fabs(mean - stat->mean) <= SAME_MEAN * fmax(fabs(stat->most), 1e-3))
+    if (stat->count == 0 || fabs(mean - stat->mean) <= SAME_MEAN * fmax(fabs(stat->max), 1e-3))
       continue;
-    return fg_text_print(ctx, &lot->doubt,
+    return fg_text_print(ctx, &lot->uncertainty,
                          "%s: foils.csv and %s hold other values of %s than lot.json; write "
                          "them again with `foilgauge lot %s/manifest.csv -o %s --recipe "
                          "%s/recipe.json --resume`",
@@ -226,7 +226,7 @@ static fg_status read_table(fg_context *ctx, fg_index_lot *lot, const char *name
   if (status == FG_ERR_MEMORY)
     fg_fail(ctx, status, "%s", inner.message);
   else if (status != FG_OK)
-    status = fg_text_print(ctx, &lot->doubt, "%s", inner.message);
+    status = fg_text_print(ctx, &lot->uncertainty, "%s", inner.message);
   free(text);
   free(path);
   return status;
@@ -245,14 +245,14 @@ fg_status fg_index_read_foils(fg_context *ctx, fg_index *index, fg_index_lot *lo
   reading r = {.index = index, .lot = lot};
   fg_status status = FG_OK;
   FG_TRY_EXIT(read_table(ctx, lot, "foils.csv", &r.foils));
-  if (!lot->doubt) FG_TRY_EXIT(read_table(ctx, lot, parts_file(lot), &r.parts));
-  if (lot->doubt) goto exit;
+  if (!lot->uncertainty) FG_TRY_EXIT(read_table(ctx, lot, parts_file(lot), &r.parts));
+  if (lot->uncertainty) goto exit;
   FG_TRY_EXIT(list_foils(ctx, &r));
   FG_TRY_EXIT(own_parts(ctx, &r));
   FG_TRY_EXIT(read_stats(ctx, &r));
-  if (!lot->doubt) FG_TRY_EXIT(take_dies(ctx, &r));
+  if (!lot->uncertainty) FG_TRY_EXIT(take_dies(ctx, &r));
 exit:
-  if (lot->doubt) forget(lot);
+  if (lot->uncertainty) forget(lot);
   fg_table_free(&r.foils);
   fg_table_free(&r.parts);
   free(r.foil);

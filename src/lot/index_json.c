@@ -47,8 +47,8 @@ static void write_spread(fg_json *json, const fg_index_spread *spread) {
   fg_json_number(json, "mean", spread->mean);
   fg_json_number(json, "mode", spread->mode);
   fg_json_number(json, "relative_sd_pct", spread->relative_sd_pct);
-  fg_json_number(json, "min", spread->least);
-  fg_json_number(json, "max", spread->most);
+  fg_json_number(json, "min", spread->min);
+  fg_json_number(json, "max", spread->max);
   fg_json_object_end(json);
   fg_json_line_end(json);
 }
@@ -59,8 +59,8 @@ static void write_stat(fg_json *json, const fg_index_stat *stat) {
   fg_json_integer(json, "count", (int64_t)stat->count);
   fg_json_number(json, "mean", stat->mean);
   fg_json_number(json, "sd", stat->sd);
-  fg_json_number(json, "min", stat->least);
-  fg_json_number(json, "max", stat->most);
+  fg_json_number(json, "min", stat->min);
+  fg_json_number(json, "max", stat->max);
   fg_json_number(json, "tolerance_min", stat->lower);
   fg_json_number(json, "tolerance_max", stat->upper);
   fg_json_integer(json, "foils", (int64_t)stat->foils);
@@ -84,7 +84,7 @@ static void write_known(fg_json *json, const fg_index *index, const fg_index_lot
   fg_json_string(json, "coils", lot->coils);
   fg_json_string(json, "design_name", lot->design.name);
   fg_json_integer(json, "design_number", (int64_t)lot->design_number);
-  fg_json_string(json, "foils_unknown", lot->doubt);
+  fg_json_string(json, "foils_unknown", lot->uncertainty);
   write_spread(json, &lot->spread);
   fg_json_object(json, "quantities");
   for (size_t i = 0; i < index->axis_count; i++) {
@@ -138,7 +138,7 @@ static void write_pair(fg_json *json, const fg_index *index, const fg_index_pair
   fg_json_integer(json, "foils_smaller", (int64_t)pair->foils_b);
   fg_json_number(json, "difference", pair->difference);
   fg_json_number(json, "u_difference", pair->u);
-  fg_json_number(json, "freedom", pair->freedom);
+  fg_json_number(json, "freedom", pair->dof);
   fg_json_number(json, "low", pair->low);
   fg_json_number(json, "high", pair->high);
   fg_json_number(json, "p", pair->p);
@@ -233,7 +233,7 @@ fg_status fg_index_write_json(fg_context *ctx, const fg_index *index, FILE *out)
 
 static void put_line(FILE *out, const fg_index *index, const fg_index_lot *lot,
                      const fg_index_axis *axis, const fg_index_stat *stat) {
-  const double numbers[] = {stat->mean,         stat->sd,           stat->least,     stat->most,
+  const double numbers[] = {stat->mean,         stat->sd,           stat->min,       stat->max,
                             stat->lower,        stat->upper,        stat->foil_mean, stat->foil_sd,
                             stat->expected_low, stat->expected_high};
   fprintf(out, "%zu,", fg_index_number(index, lot));

@@ -27,8 +27,8 @@ void fg_index_put_spread(FILE *out, const fg_index_spread *spread) {
   fputs("</td><td>", out);
   put_value(out, spread->relative_sd_pct, "%.2f %%");
   fputs("</td><td>", out);
-  put_value(out, spread->least, "%.3f to ");
-  put_value(out, spread->most, "%.3f");
+  put_value(out, spread->min, "%.3f to ");
+  put_value(out, spread->max, "%.3f");
   fputs("</td></tr>\n", out);
 }
 
@@ -49,14 +49,14 @@ static void put_pair(FILE *out, const fg_index *index, const fg_index_pair *pair
   fputs("</td><td class=\"words\">", out);
   fg_html_text(out, b);
   fprintf(out, "</td><td>%s</td><td>%zu, %zu</td><td>%.1f</td><td>", difference, pair->foils_a,
-          pair->foils_b, pair->freedom);
+          pair->foils_b, pair->dof);
   fg_html_text(out, p);
   fprintf(out, "</td>%s</tr>\n", more);
 }
 
 void fg_index_put_pairs(FILE *out, const fg_index *index) {
-  size_t most = index->differing + PAIRS_ALIKE, pairs = index->pair_count;
-  size_t shown = most < PAIRS_SHOWN_MAX ? most : PAIRS_SHOWN_MAX;
+  size_t max = index->differing + PAIRS_ALIKE, pairs = index->pair_count;
+  size_t shown = max < PAIRS_SHOWN_MAX ? max : PAIRS_SHOWN_MAX;
   char name[2][VALUE];
   shown = shown < pairs ? shown : pairs;
   if (!shown) return;

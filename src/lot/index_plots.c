@@ -117,8 +117,8 @@ static void plot_curves(FILE *out, curve *curves, size_t count, const char *labe
   fg_plot at = {out, WIDTH, 70, 740, 26, 330, INFINITY, -INFINITY, 0, 0};
   for (size_t i = 0; i < count; i++) {
     double reach = 2.5 * curves[i].spread->density.bandwidth;
-    at.x_low = fmin(at.x_low, curves[i].spread->least - reach);
-    at.x_high = fmax(at.x_high, curves[i].spread->most + reach);
+    at.x_low = fmin(at.x_low, curves[i].spread->min - reach);
+    at.x_high = fmax(at.x_high, curves[i].spread->max + reach);
     at.y_high = fmax(at.y_high, 1.1 * peak(&curves[i]));
   }
   choose(curves, count);
@@ -197,8 +197,8 @@ static bool find_range(const fg_index *index, const fg_index_axis *axis, fg_plot
     include(fmax(first, stat->expected_low), &low, &high);
     include(fmin(last, stat->expected_high), &low, &high);
   }
-  double room = 0.07 * (high - low), least = 1e-9 * fmax(fabs(low), fabs(high));
-  if (!(room > least)) room = fabs(high) > 0 ? 0.01 * fabs(high) : 1;
+  double room = 0.07 * (high - low), min = 1e-9 * fmax(fabs(low), fabs(high));
+  if (!(room > min)) room = fabs(high) > 0 ? 0.01 * fabs(high) : 1;
   at->y_low = low - room;
   at->y_high = high + room;
   return true;

@@ -167,8 +167,8 @@ static void take_stat(fg_index_lot *lot, fg_quantity_owner owner, const fg_quant
       .sd = number_of(from, "sd"),
       .median = number_of(from, "median"),
       .mode = number_of(from, "mode"),
-      .least = number_of(from, "min"),
-      .most = number_of(from, "max"),
+      .min = number_of(from, "min"),
+      .max = number_of(from, "max"),
       .lower = -INFINITY,
       .upper = INFINITY,
       .foil_mean = NAN,
@@ -185,7 +185,7 @@ static void take_stat(fg_index_lot *lot, fg_quantity_owner owner, const fg_quant
 
 /* In the order of lot.json; what another version knows and this one does not is passed over. */
 static fg_status take_stats(fg_context *ctx, fg_index_lot *lot, const cJSON *root) {
-  const fg_quantity_owner owners[] = {fg_form_parts(lot->design.form), FG_QUANTITY_OF_FOIL};
+  const fg_quantity_owner owners[] = {fg_foil_kind_parts(lot->design.kind), FG_QUANTITY_OF_FOIL};
   const cJSON *list = member(root, "quantities"), *item;
   void *block;
   int size = cJSON_GetArraySize(list);

@@ -18,7 +18,7 @@
 
 /* The manifest's column of what Q-DAS calls a batch; and what its texts hold at most. */
 #define COIL_COLUMN "coil"
-enum { TEXT_BYTES_MOST = 255 };
+enum { TEXT_BYTES_MAX = 255 };
 
 /* A control character would start another field. */
 static void put_text(FILE *out, const char *text) {
@@ -74,9 +74,9 @@ static bool has_field(const char *column) {
   return false;
 }
 
-static void append_words(char text[TEXT_BYTES_MOST], const char *name, const char *value) {
+static void append_words(char text[TEXT_BYTES_MAX], const char *name, const char *value) {
   size_t used = strlen(text);
-  fg_text_clip(text + used, TEXT_BYTES_MOST - used, "%s%s %s", used ? ", " : "", name, value);
+  fg_text_clip(text + used, TEXT_BYTES_MAX - used, "%s%s %s", used ? ", " : "", name, value);
 }
 
 static void put_besides(FILE *out, const char *text, size_t number) {
@@ -88,7 +88,7 @@ static void put_besides(FILE *out, const char *text, size_t number) {
 
 /* "die A, operator Kim, scan foil_7.png": at most as many bytes as the format takes. */
 static void besides_foil(const fg_manifest *manifest, const fg_measured_part *part,
-                         char text[TEXT_BYTES_MOST]) {
+                         char text[TEXT_BYTES_MAX]) {
   size_t item = part->foil->item;
   const char *scan = fg_manifest_scan(manifest, item), *slash = strrchr(scan, '/');
   text[0] = '\0';
@@ -101,7 +101,7 @@ static void besides_foil(const fg_manifest *manifest, const fg_measured_part *pa
 
 /* "pad 1 L7-01, pad 3 L7-02" */
 static void besides_bearing(const fg_lot_analysis *analysis, const fg_measured_part *part,
-                            char text[TEXT_BYTES_MOST]) {
+                            char text[TEXT_BYTES_MAX]) {
   text[0] = '\0';
   for (size_t pad = 0; pad < analysis->layout.pads; pad++) {
     const fg_lot_foil *foil = part->bearing->pad[pad];
@@ -134,7 +134,7 @@ static void put_ident(FILE *out, const fg_lot_analysis *analysis, const fg_measu
 static void put_part(FILE *out, const fg_lot_analysis *analysis, const fg_measured_part *part,
                      const fg_characteristic *list, size_t count) {
   const fg_lot *lot = analysis->lot;
-  char besides[TEXT_BYTES_MOST];
+  char besides[TEXT_BYTES_MAX];
   if (part->foil)
     besides_foil(&lot->manifest, part, besides);
   else

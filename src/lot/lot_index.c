@@ -53,10 +53,10 @@ static fg_status read_lots(fg_context *ctx, fg_index *index) {
     FG_TRY(fg_index_read_lot(ctx, lot));
     if (lot->problem) continue;
     FG_TRY(fg_index_read_foils(ctx, index, lot));
-    if (lot->doubt)
+    if (lot->uncertainty)
       FG_TRY(fg_text_append(ctx, &index->notes,
                             "%s; without them there is no density and no test of this lot\n",
-                            lot->doubt));
+                            lot->uncertainty));
     if (!lot->date.from)
       FG_TRY(fg_text_append(ctx, &index->notes,
                             "%s: the lot has no date and stands behind those that have one; give "

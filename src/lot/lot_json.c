@@ -171,8 +171,8 @@ static void write_quantity(fg_json *json, const fg_lot_analysis *analysis,
   fg_json_number(json, "u_mean_calibration", known.u_calibration);
   fg_json_number(json, "median", quantity->median);
   fg_json_number(json, "mode", quantity->mode);
-  fg_json_number(json, "min", quantity->least);
-  fg_json_number(json, "max", quantity->most);
+  fg_json_number(json, "min", quantity->min);
+  fg_json_number(json, "max", quantity->max);
   fg_json_number(json, "bandwidth", quantity->has_density ? quantity->density.bandwidth : NAN);
   if (fg_owner_is_part(quantity->owner)) write_places(json, fg_lot_words_of(analysis), quantity);
   if (quantity->has_chart) {
@@ -199,7 +199,7 @@ static void write_correlation(fg_json *json, const fg_lot_correlation *correlati
   fg_json_number(json, "log_slope", correlation->log_slope);
   fg_json_number(json, "log_slope_low", correlation->log_low);
   fg_json_number(json, "log_slope_high", correlation->log_high);
-  fg_json_number(json, "log_slope_freedom", correlation->log_freedom);
+  fg_json_number(json, "log_slope_freedom", correlation->log_dof);
   fg_json_number(json, "arc_length_mean_pct", correlation->arc_length_mean_pct);
   fg_json_number(json, "arc_length_sd_pct", correlation->arc_length_sd_pct);
   fg_json_object_end(json);
@@ -213,8 +213,8 @@ void fg_lot_json_spread(fg_json *json, const char *name, const fg_lot_spread *sp
   fg_json_number(json, "mode", spread->mode);
   fg_json_number(json, "sd", spread->sd);
   fg_json_number(json, "relative_sd_pct", spread->relative_sd_pct);
-  fg_json_number(json, "min", spread->least);
-  fg_json_number(json, "max", spread->most);
+  fg_json_number(json, "min", spread->min);
+  fg_json_number(json, "max", spread->max);
   fg_json_object_end(json);
   fg_json_line_end(json);
 }
@@ -299,11 +299,11 @@ fg_status fg_lot_write_json(fg_context *ctx, const fg_lot_analysis *analysis, FI
   fg_json_string(&json, "model_sha256",
                  lot->settings.model_sha256[0] ? lot->settings.model_sha256 : NULL);
   fg_json_scan_model(&json, "model", lot->model);
-  fg_correction most = fg_lot_correction_largest(analysis);
-  fg_json_correction(&json, &most);
+  fg_correction max = fg_lot_correction_largest(analysis);
+  fg_json_correction(&json, &max);
   fg_json_calibration_used(&json, "calibration", &lot->settings.design.calibration);
   fg_json_design(&json, "design", &lot->settings.design);
-  bool bumps = fg_form_has_bumps(lot->settings.design.form);
+  bool bumps = fg_foil_kind_has_bumps(lot->settings.design.kind);
   if (bumps) fg_json_nominal(&json, "nominal", &lot->nominal);
   write_inputs(&json, lot);
   write_foils(&json, analysis);

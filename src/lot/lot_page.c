@@ -35,10 +35,10 @@ static void put_left(FILE *out, const fg_lot_analysis *analysis) {
 /* By what, what it did at most, and how many foils it was not made for. */
 static fg_status put_corrected(fg_context *ctx, FILE *out, const fg_lot_analysis *analysis) {
   char moved[FG_CORRECTION_WORDS], added[FG_CORRECTION_WORDS];
-  const fg_correction most = fg_lot_correction_largest(analysis);
+  const fg_correction max = fg_lot_correction_largest(analysis);
   size_t beyond = 0;
-  fg_correction_moved(&most, moved, sizeof moved);
-  fg_correction_added(&most, added, sizeof added);
+  fg_correction_moved(&max, moved, sizeof moved);
+  fg_correction_added(&max, added, sizeof added);
   FG_TRY(fg_html_corrected(ctx, out, analysis->lot->model, moved, added));
   for (size_t i = 0; i < analysis->foil_count; i++)
     beyond += (analysis->foils[i].foil->flags & FG_FOIL_BEYOND_MODEL_REGION) != 0;
@@ -107,7 +107,7 @@ static void put_foil_row(FILE *out, const fg_lot_analysis *analysis, const fg_lo
   fputs("</td>", out);
   fg_lot_put_verdict(out, foil->verdict);
   fprintf(out, "<td>%zu</td>", fg_part_count(foil->foil, analysis->parts));
-  if (analysis->lot->settings.design.form != FG_FORM_CANTILEVER) {
+  if (analysis->lot->settings.design.kind != FG_FOIL_CANTILEVER) {
     fputs("<td>", out);
     fg_lot_put_number(out, foil->foil->overall.radius_mm, 6);
     fputs("</td>", out);
@@ -141,7 +141,7 @@ static void put_where_pages_are(FILE *out, const fg_lot_analysis *analysis) {
 /* Those that do not pass first. */
 static void put_foils(FILE *out, const fg_lot_analysis *analysis) {
   size_t rows = 0;
-  bool flat = analysis->lot->settings.design.form == FG_FORM_CANTILEVER;
+  bool flat = analysis->lot->settings.design.kind == FG_FOIL_CANTILEVER;
   fprintf(out,
           "<section class=\"part\">\n<h1>Foils</h1>\n<div class=\"scroll lots\"><table><thead><tr>"
           "<th>foil</th><th class=\"w\">scan</th><th>verdict</th><th>%s</th>%s"
@@ -200,7 +200,7 @@ fg_status fg_lot_write_page(fg_context *ctx, const fg_lot_analysis *analysis, FI
   FG_TRY(put_first_screen(ctx, out, analysis));
   put_failed_scans(out, analysis);
   fg_lot_put_quantities(out, analysis);
-  if (fg_form_has_bumps(analysis->lot->settings.design.form)) {
+  if (fg_foil_kind_has_bumps(analysis->lot->settings.design.kind)) {
     fg_lot_put_springback(out, analysis);
     fg_lot_put_dies(out, analysis);
     fg_lot_put_stiffness(out, analysis);

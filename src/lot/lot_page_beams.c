@@ -41,8 +41,8 @@ static void put_extremes(FILE *out, const fg_lot_analysis *analysis) {
   const fg_lot_quantity *length = fg_lot_find_quantity(analysis, "length_mm");
   const fg_lot_quantity *width = fg_lot_find_quantity(analysis, "width_mm");
   if (!length || !width || !length->count || !width->count) return;
-  const fg_beam_size ends[] = {{.length_mm = length->most, .width_mm = width->least},
-                               {.length_mm = length->least, .width_mm = width->most}};
+  const fg_beam_size ends[] = {{.length_mm = length->max, .width_mm = width->min},
+                               {.length_mm = length->min, .width_mm = width->max}};
   static const char *const names[] = {"longest and narrowest", "shortest and widest"};
   fputs("<div class=\"scroll\"><table><thead><tr><th>of this lot&#39;s lengths and widths</th>"
         "<th>L<br>mm</th><th>w<br>mm</th><th>compliance<br>%</th><th>sagitta<br>%</th>"

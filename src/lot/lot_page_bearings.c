@@ -58,7 +58,7 @@ static void put_bearing_row(FILE *out, const fg_lot_analysis *analysis,
   put_verdict(out, analysis, bearing);
   const fg_quantity *shown[FG_QUANTITY_SHOWN_MAX];
   size_t count =
-      fg_quantity_shown(FG_QUANTITY_OF_BEARING, FG_QUANTITY_ON_PAGE, FG_FORM_CLASSICAL, shown);
+      fg_quantity_shown(FG_QUANTITY_OF_BEARING, FG_QUANTITY_ON_PAGE, FG_FOIL_CLASSICAL, shown);
   for (size_t i = 0; i < count; i++) {
     double u = UM_PER_MM * fg_quantity_uncertainty(shown[i], &bearing->clearance);
     fputs("<td>", out);
@@ -74,7 +74,7 @@ static void put_limits(FILE *out, const fg_lot_analysis *analysis) {
   const fg_design *design = &analysis->lot->settings.design;
   const fg_quantity *shown[FG_QUANTITY_SHOWN_MAX];
   size_t count =
-      fg_quantity_shown(FG_QUANTITY_OF_BEARING, FG_QUANTITY_ON_PAGE, FG_FORM_CLASSICAL, shown);
+      fg_quantity_shown(FG_QUANTITY_OF_BEARING, FG_QUANTITY_ON_PAGE, FG_FOIL_CLASSICAL, shown);
   if (!is_judged(analysis)) return;
   fputs("<tr class=\"limits\"><td>tolerance</td><td></td><td></td>", out);
   for (size_t i = 0; i < count; i++) {
@@ -100,7 +100,7 @@ static void put_limits(FILE *out, const fg_lot_analysis *analysis) {
 static void put_bearing_table(FILE *out, const fg_lot_analysis *analysis) {
   const fg_quantity *shown[FG_QUANTITY_SHOWN_MAX];
   size_t count =
-      fg_quantity_shown(FG_QUANTITY_OF_BEARING, FG_QUANTITY_ON_PAGE, FG_FORM_CLASSICAL, shown);
+      fg_quantity_shown(FG_QUANTITY_OF_BEARING, FG_QUANTITY_ON_PAGE, FG_FOIL_CLASSICAL, shown);
   fputs("<div class=\"scroll\"><table><thead><tr><th>bearing</th><th>pads</th>", out);
   if (is_judged(analysis)) fputs("<th>verdict</th>", out);
   for (size_t i = 0; i < count; i++)

@@ -46,14 +46,14 @@ static void put_sentence(FILE *out, const fg_lot_budget *budget) {
   } causes[] = {{"the radius (springback at constant arc length)", &budget->radius},
                 {"the arc length of the bumps", &budget->arc_length},
                 {"the strip's thickness", &budget->thickness}};
-  size_t most = 0;
+  size_t max = 0;
   for (size_t i = 1; i < sizeof causes / sizeof *causes; i++)
-    if (causes[i].term->share_pct > causes[most].term->share_pct) most = i;
+    if (causes[i].term->share_pct > causes[max].term->share_pct) max = i;
   fprintf(
       out,
       "<p>From bump to bump stiffness varies by <b>%.3g&nbsp;%%</b> (one standard deviation). Most "
       "of it is %s, which alone would give %.3g&nbsp;%%.</p>\n",
-      budget->observed_pct, causes[most].words, as_spread(causes[most].term->variance_pct2));
+      budget->observed_pct, causes[max].words, as_spread(causes[max].term->variance_pct2));
 }
 
 static void put_thickness_note(FILE *out, const fg_lot_analysis *analysis) {

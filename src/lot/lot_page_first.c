@@ -48,7 +48,7 @@ static void put_scan_tiles(FILE *out, const fg_lot_analysis *analysis) {
   if (repeats)
     put_tile(out, TONE_OPEN, "of them there twice", repeats, "the same bytes under another name");
   put_tile(out, TONE_PLAIN, "Foils on them", analysis->foil_count, "");
-  if (analysis->lot->settings.design.form != FG_FORM_ARC) {
+  if (analysis->lot->settings.design.kind != FG_FOIL_ARC) {
     const fg_lot_words *words = fg_lot_words_of(analysis);
     put_tile(out, TONE_PLAIN, words->counted, analysis->part_count, "");
     if (analysis->left_out)
@@ -272,10 +272,10 @@ static bool has_value(const fg_lot_analysis *analysis, const fg_lot_foil *foil) 
 
 /* As many as people read of the quantity, or more where its U would be 0.0000. */
 static int decimals_for(const fg_quantity *row, double expanded) {
-  enum { MOST = 9 };
+  enum { MAX = 9 };
   if (!(expanded > 0) || !isfinite(expanded)) return row->decimals;
   int first = (int)-floor(log10(expanded)); /* where its first digit stands */
-  return first > MOST ? MOST : first > row->decimals ? first : row->decimals;
+  return first > MAX ? MAX : first > row->decimals ? first : row->decimals;
 }
 
 /* Value ± U, its limit, and how far it is from it. */

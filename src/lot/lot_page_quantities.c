@@ -16,8 +16,8 @@ static void put_quantity_rows(FILE *out, const fg_lot_analysis *analysis) {
     const fg_lot_quantity *quantity = &analysis->quantities[i];
     bool unstated = !quantity->count && !quantity->tolerance;
     if (unstated && quantity->owner == FG_QUANTITY_OF_BEAM) continue; /* as without a sagitta */
-    const double values[] = {quantity->mean, quantity->sd,    quantity->median,
-                             quantity->mode, quantity->least, quantity->most};
+    const double values[] = {quantity->mean, quantity->sd,  quantity->median,
+                             quantity->mode, quantity->min, quantity->max};
     fprintf(out, "<tr><td class=\"words\">%s</td><td>%s</td><td>%zu</td>", quantity->row->words,
             quantity->row->unit, quantity->count);
     for (size_t k = 0; k < sizeof values / sizeof *values; k++) {
@@ -159,7 +159,7 @@ void fg_lot_put_quantities(FILE *out, const fg_lot_analysis *analysis) {
 /* How far the lot's means lie from the curve, in words. */
 static void put_against_curve(FILE *out, const fg_lot_quantity *quantity,
                               const fg_lot_curve *curve) {
-  double sum = 0, most = 0, value;
+  double sum = 0, max = 0, value;
   int bumps = 0, at = 0;
   for (size_t i = 0; fg_lot_curve_value(curve, quantity->row, i, &value); i++) {
     size_t place = (size_t)curve->point[i].bump - 1;
@@ -167,13 +167,13 @@ static void put_against_curve(FILE *out, const fg_lot_quantity *quantity,
     double off = quantity->place[place].mean - value;
     sum += off;
     bumps++;
-    if (bumps > 1 && fabs(off) <= fabs(most)) continue;
-    most = off;
+    if (bumps > 1 && fabs(off) <= fabs(max)) continue;
+    max = off;
     at = curve->point[i].bump;
   }
   if (!bumps) return;
   fprintf(out, " %s: %+.3g percentage points on the mean of %d bumps, farthest %+.3g at bump %d.",
-          quantity->row->words, sum / bumps, bumps, most, at);
+          quantity->row->words, sum / bumps, bumps, max, at);
 }
 
 /* Figure 5.17 of the thesis: both errors by bump number, and what a simulation or a die says. */
@@ -222,9 +222,9 @@ void fg_lot_put_springback(FILE *out, const fg_lot_analysis *analysis) {
             "trimmed by their radius), slope %.3f, r %.3f. In logarithms, where a constant arc "
             "length is a slope of −1 exactly: %.4f",
             line->count - line->trimmed, line->trimmed, line->slope, line->r, line->log_slope);
-    if (isfinite(line->log_freedom))
+    if (isfinite(line->log_dof))
       fprintf(out, " (%.4f … %.4f; bumps of %zu foil%s, %.1f degrees of freedom)", line->log_low,
-              line->log_high, line->foils, fg_plural(line->foils), line->log_freedom);
+              line->log_high, line->foils, fg_plural(line->foils), line->log_dof);
     fprintf(out,
             ". Arc length against the design, all %zu bumps: %+.3f %%, s %.3f %%."
             "</figcaption></figure>\n",

@@ -4,8 +4,8 @@
 
 static void put_spread_row(FILE *out, const char *title, const fg_lot_spread *spread) {
   fprintf(out, "<tr><td>%s</td><td>%zu</td>", title, spread->count);
-  const double values[] = {spread->mean, spread->mode, spread->relative_sd_pct, spread->least,
-                           spread->most};
+  const double values[] = {spread->mean, spread->mode, spread->relative_sd_pct, spread->min,
+                           spread->max};
   for (size_t i = 0; i < sizeof values / sizeof *values; i++) {
     fputs("<td>", out);
     fg_lot_put_number(out, values[i], 4);
@@ -78,7 +78,7 @@ static void put_spread_parts(FILE *out, const fg_lot_analysis *analysis) {
 
 void fg_lot_put_stiffness(FILE *out, const fg_lot_analysis *analysis) {
   const char *note = fg_lot_stiffness_note(analysis);
-  if (!fg_form_has_bumps(analysis->lot->settings.design.form) || !analysis->part_count) return;
+  if (!fg_foil_kind_has_bumps(analysis->lot->settings.design.kind) || !analysis->part_count) return;
   fputs("<section class=\"part\">\n<h1>Stiffness of the bumps</h1>\n", out);
   if (note) fprintf(out, "<p>%s</p>\n", note);
   if (analysis->has_stiffness)

@@ -37,7 +37,7 @@ void fg_lot_plot_density(FILE *out, const fg_lot_quantity *quantity, double scal
   char mark[64];
   if (!quantity || !quantity->has_density) return;
   if (!(quantity->sd > 1e-9 * fabs(quantity->mean))) return; /* one line, no distribution */
-  double a = scale * quantity->least + shift, b = scale * quantity->most + shift;
+  double a = scale * quantity->min + shift, b = scale * quantity->max + shift;
   fg_plot at = {out, PLOT_WIDTH, 92, 985, 24, 250, fmin(a, b), fmax(a, b), 0, 1};
   double reach = 2.5 * quantity->density.bandwidth * fabs(scale);
   at.x_low -= reach;
@@ -113,10 +113,10 @@ static bool error_axes(const fg_lot_analysis *analysis, fg_plot *at) {
   const fg_lot_quantity *radius = fg_lot_find_quantity(analysis, "radius_error_pct");
   const fg_lot_quantity *angle = fg_lot_find_quantity(analysis, "bump_angle_error_pct");
   if (!radius || !angle || radius->count < 2 || angle->count < 2) return false;
-  at->x_low = fmin(0, radius->least);
-  at->x_high = fmax(0, radius->most);
-  at->y_low = fmin(0, angle->least);
-  at->y_high = fmax(0, angle->most);
+  at->x_low = fmin(0, radius->min);
+  at->x_high = fmax(0, radius->max);
+  at->y_low = fmin(0, angle->min);
+  at->y_high = fmax(0, angle->max);
   fg_lot_plot_widen(&at->x_low, &at->x_high, 0.06);
   fg_lot_plot_widen(&at->y_low, &at->y_high, 0.06);
   return true;
@@ -215,7 +215,7 @@ static void put_places(const polar *p, const fg_lot_bearing *bearing) {
 void fg_lot_plot_polar(FILE *out, const fg_lot_analysis *analysis, const fg_lot_bearing *bearing) {
   double design = analysis->lot->nominal.clearance_mm;
   if (!bearing->known) return;
-  double reach = fmax(fabs(bearing->clearance.least_mm), fabs(bearing->clearance.most_mm));
+  double reach = fmax(fabs(bearing->clearance.min_mm), fabs(bearing->clearance.max_mm));
   const polar p = {out, 140, (POLAR_MIDDLE - 24 - 140) / fmax(reach, fabs(design))};
   fprintf(out,
           "<svg class=\"plot polar\" viewBox=\"0 0 %d %d\" role=\"img\" aria-label=\"Local "
@@ -228,7 +228,7 @@ void fg_lot_plot_polar(FILE *out, const fg_lot_analysis *analysis, const fg_lot_
           "<text class=\"x\" x=\"%d\" y=\"%d\">least</text><text class=\"x\" x=\"%d\" "
           "y=\"%d\">%.1f µm</text>\n",
           POLAR_MIDDLE, POLAR_MIDDLE - 8, POLAR_MIDDLE, POLAR_MIDDLE + 18,
-          1000 * bearing->clearance.least_mm);
+          1000 * bearing->clearance.min_mm);
   put_places(&p, bearing);
   fputs("</svg>\n", out);
 }

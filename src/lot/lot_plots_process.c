@@ -18,9 +18,9 @@ enum { PLOT_WIDTH = 1000, CHART_POINTS_MAX = 600, DOTS_DRAWN_MAX = 120 };
 
 /* Values that are equal but for rounding still get an axis with room for numbers. */
 void fg_lot_plot_widen(double *low, double *high, double share) {
-  static const double least = 1e-9;
+  static const double min = 1e-9;
   double size = fmax(fabs(*low), fabs(*high)), room = (*high - *low) * share;
-  if (!(room > least * size)) room = size > 0 ? 0.01 * size : 1;
+  if (!(room > min * size)) room = size > 0 ? 0.01 * size : 1;
   *low -= room;
   *high += room;
 }
@@ -132,8 +132,8 @@ static bool find_range(const fg_lot_quantity *quantity, const fg_lot_curve *curv
     fg_lot_plot_include(quantity->place[i].mean + reach, low, high);
   }
   if (!(*high >= *low)) return false;
-  fg_lot_plot_include(quantity->least, low, high);
-  fg_lot_plot_include(quantity->most, low, high);
+  fg_lot_plot_include(quantity->min, low, high);
+  fg_lot_plot_include(quantity->max, low, high);
   for (size_t i = 0; fg_lot_curve_value(curve, quantity->row, i, &value); i++)
     fg_lot_plot_include(value, low, high);
   if (quantity->tolerance) {

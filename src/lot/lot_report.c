@@ -40,7 +40,7 @@ static fg_status write_file(fg_context *ctx, const char *folder, size_t i,
                             const fg_lot_analysis *analysis) {
   char *path;
   fg_output output;
-  bool flat = analysis->lot->settings.design.form == FG_FORM_CANTILEVER;
+  bool flat = analysis->lot->settings.design.kind == FG_FOIL_CANTILEVER;
   if (files[i].of == (flat ? CURVED : FLAT)) return FG_OK;
   FG_TRY(fg_lot_path(ctx, folder, files[i].name, &path));
   fg_status status = fg_output_open(ctx, path, &output);

@@ -13,7 +13,7 @@
 enum {
   TEXT_BYTES_MAX = 1 << 30,
   /* Beyond, names are no levels that an effect may have (FG_LOOP_COLUMNS): they may count. */
-  LEVELS_MOST = 12,
+  LEVELS_MAX = 12,
 };
 
 typedef enum lot_file { RESULTS, MANIFEST, RECIPE, FILES } lot_file;
@@ -38,13 +38,14 @@ typedef struct reading {
 
 /* A lot of plain strips holds what a lot with bumps does, and has no value of much of it. */
 static fg_status find_quantity(fg_context *ctx, reading *r) {
-  fg_form form = r->out->design.form == FG_FORM_CANTILEVER ? FG_FORM_CANTILEVER : FG_FORM_CLASSICAL;
-  const fg_quantity_owner owners[] = {fg_form_parts(form), FG_QUANTITY_OF_FOIL};
+  fg_foil_kind kind =
+      r->out->design.kind == FG_FOIL_CANTILEVER ? FG_FOIL_CANTILEVER : FG_FOIL_CLASSICAL;
+  const fg_quantity_owner owners[] = {fg_foil_kind_parts(kind), FG_QUANTITY_OF_FOIL};
   char list[700] = "";
   for (size_t i = 0; i < 2; i++) {
     r->row = fg_quantity_find(owners[i], r->options->quantity);
     r->owner = owners[i];
-    fg_quantity_list(owners[i], form, false, list, sizeof list);
+    fg_quantity_list(owners[i], kind, false, list, sizeof list);
     if (r->row && r->row->kind == FG_QUANTITY_NUMBER) return FG_OK;
   }
   return fg_fail(ctx, FG_ERR_DATA, "'%s' is no quantity that a lot holds; there are: %s",
@@ -156,7 +157,7 @@ static fg_status make_rows(fg_context *ctx, reading *r) {
       FG_TRY(add_foil(ctx, r, i, &record->foils[f]));
   }
   if (r->rows) return FG_OK;
-  if (of_parts(r) && r->out->design.form == FG_FORM_ARC)
+  if (of_parts(r) && r->out->design.kind == FG_FOIL_ARC)
     return fg_fail(
         ctx, FG_ERR_DATA,
         "%s: a lot of plain strips (form arc) has no %s, which is of bumps; choose another "
@@ -186,7 +187,7 @@ static fg_status choose_columns(fg_context *ctx, reading *r) {
       drop = drop || !strcmp(name, own[k]);
     FG_TRY(drop ? fg_table_drop(ctx, &r->manifest, name) : fg_table_check(ctx, &r->manifest, name));
   }
-  return fg_table_count_words(ctx, &r->manifest, LEVELS_MOST, &r->out->said);
+  return fg_table_count_words(ctx, &r->manifest, LEVELS_MAX, &r->out->said);
 }
 
 /* Foils whose name is there more than once: they were measured again. */

@@ -55,7 +55,7 @@ fg_status fg_lot_settings_check(fg_context *ctx, const fg_lot_settings *settings
     FG_TRY(check_number(ctx, &fg_recipe_assembly.rows[i],
                         fg_recipe_number(&fg_recipe_assembly.rows[i], settings)));
   FG_TRY(check_layout(ctx, &settings->layout));
-  if (settings->design.form == FG_FORM_DISCS)
+  if (settings->design.kind == FG_FOIL_DISCS)
     return fg_fail(ctx, FG_ERR_DATA, "design.form is discs; a lot is made of foils");
   FG_TRY(fg_design_check(ctx, &settings->design));
   FG_TRY(fg_lot_dies_check(ctx, settings));
@@ -329,16 +329,16 @@ fg_status fg_lot_settings_format(fg_context *ctx, const fg_lot_settings *setting
   return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a recipe");
 }
 
-size_t fg_recipe_members(fg_member_words *list, size_t most) {
+size_t fg_recipe_members(fg_member_words *list, size_t max) {
   size_t count = 0;
   for (size_t i = 0; i < fg_recipe_values.count; i++, count++)
-    if (count < most) fg_recipe_say("", &fg_recipe_values.rows[i], &list[count]);
+    if (count < max) fg_recipe_say("", &fg_recipe_values.rows[i], &list[count]);
   for (size_t i = 0; i < PARTS; i++, count++) {
-    if (count >= most) continue;
+    if (count >= max) continue;
     list[count] = (fg_member_words){.meaning = parts[i].meaning};
     fg_text_clip(list[count].name, sizeof list[count].name, "%s", parts[i].name);
   }
   for (size_t i = 0; i < fg_recipe_assembly.count; i++, count++)
-    if (count < most) fg_recipe_say("assembly.", &fg_recipe_assembly.rows[i], &list[count]);
+    if (count < max) fg_recipe_say("assembly.", &fg_recipe_assembly.rows[i], &list[count]);
   return count;
 }

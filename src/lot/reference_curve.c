@@ -135,7 +135,7 @@ fg_status fg_reference_curve_check(fg_context *ctx, const fg_lot_settings *setti
   const fg_lot_curve *curve = &settings->curve;
   size_t bumps = settings->design.bump_count;
   if (!curve->count) return FG_OK;
-  if (!fg_form_has_bumps(settings->design.form))
+  if (!fg_foil_kind_has_bumps(settings->design.kind))
     return fg_fail(ctx, FG_ERR_DATA,
                    "reference_curve: the lot's design is of form arc and has no bumps");
   int last = curve->point[curve->count - 1].bump;

@@ -35,14 +35,14 @@ typedef struct measuring {
 
 static fg_status find_quantity(fg_context *ctx, measuring *m) {
   static const fg_quantity_owner discs[] = {FG_QUANTITY_OF_DISC};
-  fg_form form = m->options->design->form;
-  const fg_quantity_owner foils[] = {FG_QUANTITY_OF_FOIL, fg_form_parts(form)};
-  bool is_disc = form == FG_FORM_DISCS;
+  fg_foil_kind kind = m->options->design->kind;
+  const fg_quantity_owner foils[] = {FG_QUANTITY_OF_FOIL, fg_foil_kind_parts(kind)};
+  bool is_disc = kind == FG_FOIL_DISCS;
   const fg_quantity_owner *owners = is_disc ? discs : foils;
   char list[700] = "";
   for (size_t i = 0; i < (is_disc ? 1 : 2); i++) {
     const fg_quantity *found = fg_quantity_find(owners[i], m->options->quantity);
-    fg_quantity_list(owners[i], form == FG_FORM_CANTILEVER ? form : FG_FORM_CLASSICAL, false, list,
+    fg_quantity_list(owners[i], kind == FG_FOIL_CANTILEVER ? kind : FG_FOIL_CLASSICAL, false, list,
                      sizeof list);
     if (!found || found->kind != FG_QUANTITY_NUMBER) continue;
     m->row = found;

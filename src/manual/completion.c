@@ -119,23 +119,23 @@ static bool has_option(const struct argp *parser, const char *name) {
 }
 
 /* Without those that an earlier form of the command has named. */
-static void write_names(const fg_command *command, size_t form, FILE *out) {
-  const struct argp_option *option = command->form[form].parser->options;
+static void write_names(const fg_command *command, size_t usage, FILE *out) {
+  const struct argp_option *option = command->usage[usage].parser->options;
   for (; option->name || option->doc; option++) {
     bool named = !option->name;
-    for (size_t i = 0; i < form && !named; i++)
-      named = has_option(command->form[i].parser, option->name);
+    for (size_t i = 0; i < usage && !named; i++)
+      named = has_option(command->usage[i].parser, option->name);
     if (!named) fprintf(out, "--%s%s ", option->name, option->arg ? "=" : "");
   }
 }
 
 static void write_command(const fg_command *command, FILE *out) {
   fprintf(out, "    %s:-*) _foilgauge_words '", command->name);
-  for (size_t i = 0; i < FG_COMMAND_FORMS && command->form[i].parser; i++)
+  for (size_t i = 0; i < FG_COMMAND_USAGES && command->usage[i].parser; i++)
     write_names(command, i, out);
   fputs("--help'\n      [[ ${COMPREPLY[0]} == *= ]] && compopt -o nospace 2>/dev/null ;;\n", out);
   fprintf(out, "    %s:*) ", command->name);
-  write_choice(command->form[0].parser->args_doc, out);
+  write_choice(command->usage[0].parser->args_doc, out);
   fputs(" ;;\n", out);
 }
 
@@ -148,8 +148,8 @@ void fg_manual_write_completion(FILE *out) {
     fprintf(out, "%s ", command->name);
   fputs("help version'\n    return\n  fi\n  case $command:$before in\n", out);
   for (const fg_command *command = fg_commands; command->name; command++)
-    for (size_t i = 0; i < FG_COMMAND_FORMS && command->form[i].parser; i++)
-      write_values(command->name, command->form[i].parser, out);
+    for (size_t i = 0; i < FG_COMMAND_USAGES && command->usage[i].parser; i++)
+      write_values(command->name, command->usage[i].parser, out);
   fputs("  esac\n  case $command:$word in\n", out);
   for (const fg_command *command = fg_commands; command->name; command++)
     write_command(command, out);

@@ -30,14 +30,14 @@ static void write_endings(FILE *out) {
   fputs(text, out);
 }
 
-enum { MEMBERS_MOST = 128 };
+enum { MEMBERS_MAX = 128 };
 
 /* Members of a JSON file, each with what is there where the file does not say it. */
 static void write_members(fg_member_words_list *list_all, FILE *out) {
-  static fg_member_words list[MEMBERS_MOST];
-  size_t count = list_all(list, MEMBERS_MOST);
+  static fg_member_words list[MEMBERS_MAX];
+  size_t count = list_all(list, MEMBERS_MAX);
   fputs("| member | what it is |\n|---|---|\n", out);
-  for (size_t i = 0; i < count && i < MEMBERS_MOST; i++) {
+  for (size_t i = 0; i < count && i < MEMBERS_MAX; i++) {
     const fg_member_words *words = &list[i];
     fprintf(out, "| `%s` | %s", words->name, words->meaning ? words->meaning : "@missing@");
     if (words->limits[0]) fprintf(out, " From %s.", words->limits);

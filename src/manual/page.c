@@ -36,11 +36,11 @@ static void write_call(const char *words, const char *arguments, size_t length, 
 /* One line for each of the parser's alternatives. */
 static void write_synopsis(const fg_command *command, FILE *out) {
   fputs(".SH SYNOPSIS\n", out);
-  for (size_t i = 0; i < FG_COMMAND_FORMS && command->form[i].parser; i++) {
-    const char *arguments = command->form[i].parser->args_doc;
+  for (size_t i = 0; i < FG_COMMAND_USAGES && command->usage[i].parser; i++) {
+    const char *arguments = command->usage[i].parser->args_doc;
     do {
       size_t length = strcspn(arguments, "\n");
-      write_call(command->form[i].words, arguments, length, out);
+      write_call(command->usage[i].words, arguments, length, out);
       arguments += length;
     } while (*arguments++ == '\n');
   }
@@ -69,8 +69,8 @@ static const char *find_exit(const char *text) {
   return strstr(text, "@exit_");
 }
 
-static void write_description(const fg_command_form *form, bool *known, FILE *out) {
-  char *doc = strdup(form->parser->doc);
+static void write_description(const fg_command_usage *usage, bool *known, FILE *out) {
+  char *doc = strdup(usage->parser->doc);
   if (!doc) abort();
   char *after = strchr(doc, '\v'), *end = (char *)(uintptr_t)find_exit(doc);
   if (end) *end = '\0';
@@ -107,16 +107,16 @@ static void write_option(const struct argp_option *option, bool *known, FILE *ou
 
 static void write_options(const fg_command *command, bool *known, FILE *out) {
   fputs(".SH OPTIONS\n", out);
-  for (size_t i = 0; i < FG_COMMAND_FORMS && command->form[i].parser; i++) {
-    const fg_command_form *form = &command->form[i];
-    const struct argp_option *option = form->parser->options;
-    if (form->title) fprintf(out, ".SS %s\n", form->title);
+  for (size_t i = 0; i < FG_COMMAND_USAGES && command->usage[i].parser; i++) {
+    const fg_command_usage *usage = &command->usage[i];
+    const struct argp_option *option = usage->parser->options;
+    if (usage->title) fprintf(out, ".SS %s\n", usage->title);
     for (; option->name || option->doc; option++) {
       if (option->name) write_option(option, known, out);
       if (!option->name) fprintf(out, ".PP\n%s\n", option->doc);
     }
   }
-  fputs(command->form[1].parser ? ".SS Of both\n" : "", out);
+  fputs(command->usage[1].parser ? ".SS Of both\n" : "", out);
   fputs(".TP\n\\fB\\-\\-help\\fR\nPrint what the command line takes, and end.\n"
         ".TP\n\\fB\\-\\-usage\\fR\nThe same in short.\n",
         out);
@@ -133,10 +133,10 @@ static void write_exit_codes(const char *kind, FILE *out) {
 static void write_exit_status(const fg_command *command, bool *known, FILE *out) {
   const char *last = NULL;
   fputs(".SH EXIT STATUS\n", out);
-  for (size_t i = 0; i < FG_COMMAND_FORMS && command->form[i].parser; i++) {
-    const char *found = find_exit(command->form[i].parser->doc);
+  for (size_t i = 0; i < FG_COMMAND_USAGES && command->usage[i].parser; i++) {
+    const char *found = find_exit(command->usage[i].parser->doc);
     if (!found || (last && !strncmp(found, last, strcspn(found + 1, "@")))) continue;
-    if (command->form[i].title) fprintf(out, ".SS %s\n", command->form[i].title);
+    if (command->usage[i].title) fprintf(out, ".SS %s\n", command->usage[i].title);
     write_exit_codes(found + 1, out);
     char *rest = NULL;
     fill(found + 2 + strcspn(found + 1, "@"), known, &rest);
@@ -193,7 +193,7 @@ static bool write_part(const char *from, const char *to, FILE *out) {
 }
 
 bool fg_manual_write_page(const fg_manual_text *text, const fg_command *command, FILE *out) {
-  bool known = true, several = command && command->form[1].parser;
+  bool known = true, several = command && command->usage[1].parser;
   const char *body = text->body, *end = body + strlen(body);
   const char *sections = strstr(body, "\n## ");
   const char *examples = strstr(body, "\n## Examples\n");
@@ -203,9 +203,9 @@ bool fg_manual_write_page(const fg_manual_text *text, const fg_command *command,
   if (command) write_synopsis(command, out);
   fputs(".SH DESCRIPTION\n", out);
   if (several) known = write_part(body, sections, out) && known;
-  for (size_t i = 0; command && i < FG_COMMAND_FORMS && command->form[i].parser; i++) {
-    if (command->form[i].title) fprintf(out, ".SS %s\n", command->form[i].title);
-    write_description(&command->form[i], &known, out);
+  for (size_t i = 0; command && i < FG_COMMAND_USAGES && command->usage[i].parser; i++) {
+    if (command->usage[i].title) fprintf(out, ".SS %s\n", command->usage[i].title);
+    write_description(&command->usage[i], &known, out);
   }
   if (!several) known = write_part(body, sections, out) && known;
   if (command) write_options(command, &known, out);

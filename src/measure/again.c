@@ -68,7 +68,7 @@ static fg_status measure_flat(fg_context *ctx, const fg_foil *foil, const fg_des
 
 static fg_status measure_foil(fg_context *ctx, const fg_foil *foil, const fg_design *design,
                               const fg_measure_mover *mover, unsigned threads, fg_foil *again) {
-  if (design->form == FG_FORM_CANTILEVER) return measure_flat(ctx, foil, design, mover, again);
+  if (design->kind == FG_FOIL_CANTILEVER) return measure_flat(ctx, foil, design, mover, again);
   memset(again, 0, sizeof *again);
   memcpy(again->place_mm, foil->place_mm, sizeof again->place_mm);
   again->number = foil->number;

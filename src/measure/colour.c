@@ -6,12 +6,12 @@
 #include "measure/colour_fit.h"
 #include "measure/colour_read.h"
 
-enum { RED, GREEN, BLUE, CHANNELS, ROWS_LEAST = 30 };
+enum { RED, GREEN, BLUE, CHANNELS, ROWS_MIN = 30 };
 /* Contrast over noise from which on a channel shows edges. */
-#define CONTRAST_LEAST 4.0
+#define CONTRAST_MIN 4.0
 /* Cross-sections meet the pixels at phases that change slowly along an edge, which shows in no
  * correlation of so few: with less the intervals hold too seldom (reports/colour_lines.md). */
-#define CORRELATION_LEAST 1.25
+#define CORRELATION_MIN 1.25
 /* What is seen to be apart must be so many u beyond 0. */
 #define APART_SIGMAS 3.0
 
@@ -41,7 +41,7 @@ static void clear_shift(int channel, fg_colour_state state, fg_colour_shift *shi
 }
 
 static double u_of(const fg_colour_rows *rows, int unknown) {
-  double correlation = fmax(CORRELATION_LEAST, rows->correlation);
+  double correlation = fmax(CORRELATION_MIN, rows->correlation);
   return sqrt(rows->covariance[unknown][unknown] * rows->scatter * correlation);
 }
 
@@ -84,7 +84,7 @@ static fg_status compare(fg_context *ctx, const fg_colour_stations *stations,
                          double *x0_mm) {
   fg_colour_rows rows = {0};
   fg_status status = fg_colour_rows_build(ctx, stations, against, channel, m->dpi, &rows);
-  bool told = status == FG_OK && rows.count >= ROWS_LEAST && fg_colour_rows_fit(&rows);
+  bool told = status == FG_OK && rows.count >= ROWS_MIN && fg_colour_rows_fit(&rows);
   clear_shift(channel, FG_COLOUR_MEASURED, shift);
   if (told) status = fg_colour_course_find(ctx, &rows, shift, &told);
   if (told)
@@ -131,7 +131,7 @@ static fg_status compare_all(fg_context *ctx, const fg_colour_stations *stations
     fg_colour_shift *shift = &lines->shifts[next++];
     if (is_same(same, against, channel))
       clear_shift(channel, FG_COLOUR_IDENTICAL, shift);
-    else if (fmin(contrast[channel], contrast[against]) < CONTRAST_LEAST)
+    else if (fmin(contrast[channel], contrast[against]) < CONTRAST_MIN)
       clear_shift(channel, FG_COLOUR_NO_CONTRAST, shift);
     else
       FG_TRY(compare(ctx, stations, m, against, channel, shift, &lines->x0_mm));

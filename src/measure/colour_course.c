@@ -50,7 +50,7 @@ static size_t window_of(const windows *w, double y_mm) {
 }
 
 /* Windows of equal length over all rows; at most so many. */
-static void lay_out(const fg_colour_rows *rows, size_t most, windows *w) {
+static void lay_out(const fg_colour_rows *rows, size_t max, windows *w) {
   double low = INFINITY, high = -INFINITY;
   for (size_t i = 0; i < rows->count; i++) {
     low = fmin(low, rows->list[i].y_mm);
@@ -59,7 +59,7 @@ static void lay_out(const fg_colour_rows *rows, size_t most, windows *w) {
   double count =
       fmin((high - low) / (WINDOW_PX * rows->pixel_mm[1]), (double)rows->count / WINDOW_ROWS);
   memset(w, 0, sizeof *w);
-  w->count = (size_t)fmax(1, fmin((double)most, count));
+  w->count = (size_t)fmax(1, fmin((double)max, count));
   w->low_mm = low;
   w->length_mm = fmax((high - low) / (double)w->count, 1e-9);
 }
@@ -196,10 +196,10 @@ static fg_colour_window point_of(const fg_colour_rows *rows, const windows *w, c
 
 /* Windows that tell something, as points of the course. */
 static void write_points(const fg_colour_rows *rows, const windows *w, fg_colour_shift *shift) {
-  double least = TELLING_SHARE * middle_weight(w);
+  double min = TELLING_SHARE * middle_weight(w);
   shift->window_count = 0;
   for (size_t i = 0; i < w->count; i++)
-    if (w->list[i].rows >= 2 && w->list[i].weight > least)
+    if (w->list[i].rows >= 2 && w->list[i].weight > min)
       shift->windows[shift->window_count++] = point_of(rows, w, &w->list[i]);
 }
 
@@ -233,7 +233,8 @@ static line fit_line(const fg_colour_shift *shift, double y_mm, double reach_mm)
 }
 
 /* Uncertainty of the line's value: of the windows' own, and of what they share. */
-static double doubt_of(const fg_colour_shift *shift, const line *at, double y_mm, double reach_mm) {
+static double uncertainty_of(const fg_colour_shift *shift, const line *at, double y_mm,
+                             double reach_mm) {
   double own = 0, lean[SHARED] = {0};
   for (size_t i = 0; i < shift->window_count; i++) {
     const fg_colour_window *p = &shift->windows[i];
@@ -268,18 +269,18 @@ static void smooth(fg_colour_shift *shift) {
   size_t count = shift->window_count;
   if (!count) return;
   double span = (double)(shift->windows[count - 1].y_mm - shift->windows[0].y_mm);
-  double best = 2 * span + 1e-6, reach = best, least = left_out_error(shift, best);
+  double best = 2 * span + 1e-6, reach = best, min = left_out_error(shift, best);
   for (int k = 0; k < BANDWIDTHS; k++, reach /= BANDWIDTH_FACTOR) {
     double error = left_out_error(shift, reach);
-    if (!(error < least)) continue;
-    least = error;
+    if (!(error < min)) continue;
+    min = error;
     best = reach;
   }
   for (size_t i = 0; i < count; i++) {
     fg_colour_window *p = &shift->windows[i];
     line at = fit_line(shift, (double)p->y_mm, best);
     p->smooth_um = (float)at.value;
-    p->u_smooth_um = (float)doubt_of(shift, &at, (double)p->y_mm, best);
+    p->u_smooth_um = (float)uncertainty_of(shift, &at, (double)p->y_mm, best);
   }
 }
 
@@ -357,12 +358,12 @@ static void take_constants(const fg_colour_rows *rows, windows *w) {
 /* F of a dy for every window against one for all, on the same rows. Slow courses show in few
  * windows, steps and ripples in many: the better of two tests. */
 static double test_constant(fg_colour_rows *rows, const windows *fine, windows *scratch) {
-  double used = 0, constant, least = 1;
+  double used = 0, constant, min = 1;
   for (size_t i = 0; i < rows->count; i++)
     used += rows->list[i].used;
-  double freedom = used - (double)fine->count - (double)shared_count(rows);
-  if (fine->count < 3 || freedom < 1) return NAN;
-  double variance = rows->correlation * fine->misfit / freedom;
+  double dof = used - (double)fine->count - (double)shared_count(rows);
+  if (fine->count < 3 || dof < 1) return NAN;
+  double variance = rows->correlation * fine->misfit / dof;
   lay_out(rows, 1, scratch);
   if (!solve_windows(rows, scratch)) return NAN;
   constant = scratch->misfit;
@@ -371,9 +372,9 @@ static double test_constant(fg_colour_rows *rows, const windows *fine, windows *
   for (int k = 0; k < 2; k++) {
     double between = (double)both[k]->count - 1;
     double f = fmax(0, constant - both[k]->misfit) / between / variance;
-    least = fmin(least, fg_distribution_f_upper(f, between, freedom / rows->correlation));
+    min = fmin(min, fg_distribution_f_upper(f, between, dof / rows->correlation));
   }
-  return fmin(1, 2 * least);
+  return fmin(1, 2 * min);
 }
 
 /* The rows' scatter and its correlation are those about the smooth course: about a constant they

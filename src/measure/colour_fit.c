@@ -67,7 +67,8 @@ fg_status fg_colour_rows_build(fg_context *ctx, const fg_colour_stations *statio
     noise[i] = fmax(noise[i], 1e-6); /* of a picture without noise the residuals tell */
   FG_TRY(fg_memory_allocate(ctx, stations->count, sizeof *rows->list, (void **)&rows->list));
   FG_TRY(fg_memory_allocate(ctx, stations->count, sizeof *rows->sizes, (void **)&rows->sizes));
-  rows->unknowns = stations->count && stations->list[0].lone ? FG_COLOUR_UNKNOWNS : FG_COLOUR_SWELL;
+  rows->unknowns =
+      stations->count && stations->list[0].outlier ? FG_COLOUR_UNKNOWNS : FG_COLOUR_SWELL;
   for (size_t i = 0; i < stations->count; i++) {
     const fg_colour_station *s = &stations->list[i];
     if (!s->place[against].good || !s->place[channel].good) continue;

@@ -4,21 +4,22 @@
 
 #include "core/small_solve.h"
 
-enum { LEVEL, CONTRAST, SHIFT, BLUR, VALUES, ROUNDS = 12, PIXELS_LEAST = 12 };
-#define BLUR_LEAST_PX 0.35
-#define BLUR_MOST_PX  8.0
-#define STEP_MOST_PX  1.0
-#define SETTLED_PX    1e-4
-#define BLUR_SETTLED  0.005
-#define OUTER_SHARE   0.8 /* of the reach: beyond it, what lies around is seen */
+enum { LEVEL, CONTRAST, SHIFT, BLUR, VALUES, ROUNDS = 12, PIXELS_MIN = 12 };
+#define BLUR_MIN_PX    0.35
+#define BLUR_MAX_PX    8.0
+#define STEP_MAX_PX    1.0
+#define CONVERGED_PX   1e-4
+#define BLUR_CONVERGED 0.005
+#define OUTER_SHARE    0.8 /* of the reach: beyond it, what lies around is seen */
 
 /* The profile at v = n - shift, without level and contrast: its value and its derivatives by v and
  * by the blur. */
-typedef struct form {
+typedef struct profile_shape {
   double value, by_v, by_blur;
-} form;
+} profile_shape;
 
-static form add_edge(const fg_edge_tables *tables, form sum, double sign, double v, double blur) {
+static profile_shape add_edge(const fg_edge_tables *tables, profile_shape sum, double sign,
+                              double v, double blur) {
   float density, cumulative;
   double u = v / blur;
   fg_edge_normal(tables, (float)u, &density, &cumulative);
@@ -29,9 +30,9 @@ static form add_edge(const fg_edge_tables *tables, form sum, double sign, double
   return sum;
 }
 
-static form form_at(const fg_edge_tables *tables, const fg_colour_known *known, double v,
-                    double blur) {
-  form sum = {0};
+static profile_shape profile_at(const fg_edge_tables *tables, const fg_colour_known *known,
+                                double v, double blur) {
+  profile_shape sum = {0};
   if (isinf(known->half_width_px)) {
     sum = add_edge(tables, sum, 1, -v, blur);
     sum.by_v = -sum.by_v;
@@ -45,14 +46,14 @@ static form form_at(const fg_edge_tables *tables, const fg_colour_known *known, 
  * of gravity, of a lone edge how far it fills the reach. */
 static bool start(const fg_colour_known *known, const fg_colour_pixel *pixels, size_t count,
                   int channel, double x[VALUES]) {
-  bool lone = isinf(known->half_width_px);
+  bool outlier = isinf(known->half_width_px);
   double reach = 0, level = 0, outside = 0, inner = 0, inside = 0, sum = 0, moment = 0;
   for (size_t i = 0; i < count; i++)
     reach = fmax(reach, fabs((double)pixels[i].across_px));
-  double out = OUTER_SHARE * reach, in = lone ? -out : fmin(known->half_width_px, 0.5 * reach);
+  double out = OUTER_SHARE * reach, in = outlier ? -out : fmin(known->half_width_px, 0.5 * reach);
   for (size_t i = 0; i < count; i++) {
     double n = (double)pixels[i].across_px, value = (double)pixels[i].value[channel];
-    bool is_out = lone ? n > out : fabs(n) > out, is_in = lone ? n < in : fabs(n) < in;
+    bool is_out = outlier ? n > out : fabs(n) > out, is_in = outlier ? n < in : fabs(n) < in;
     outside += is_out;
     level += is_out ? value : 0;
     inside += is_in;
@@ -67,7 +68,7 @@ static bool start(const fg_colour_known *known, const fg_colour_pixel *pixels, s
     moment += more * (double)pixels[i].across_px;
   }
   if (x[CONTRAST] == 0 || sum == 0) return false;
-  x[SHIFT] = lone ? reach * (2 * sum / x[CONTRAST] / (double)count - 1) : moment / sum;
+  x[SHIFT] = outlier ? reach * (2 * sum / x[CONTRAST] / (double)count - 1) : moment / sum;
   x[SHIFT] = fmax(-0.5 * reach, fmin(0.5 * reach, x[SHIFT]));
   x[BLUR] = known->blur_px;
   return true;
@@ -88,7 +89,8 @@ static double add_pixels(const profile *p, const double x[VALUES], fg_normal_equ
   fg_normal_clear(system, VALUES);
   for (size_t i = 0; i < p->count; i++) {
     const fg_colour_pixel *pixel = &p->pixels[i];
-    form at = form_at(p->tables, p->known, (double)pixel->across_px - x[SHIFT], x[BLUR]);
+    profile_shape at =
+        profile_at(p->tables, p->known, (double)pixel->across_px - x[SHIFT], x[BLUR]);
     double row[VALUES] = {1, at.value, -x[CONTRAST] * at.by_v, x[CONTRAST] * at.by_blur};
     double residual = (double)pixel->value[p->channel] - x[LEVEL] - x[CONTRAST] * at.value;
     fg_normal_add(system, row, residual, 1);
@@ -100,9 +102,9 @@ static double add_pixels(const profile *p, const double x[VALUES], fg_normal_equ
 static void take_step(double x[VALUES], const double step[VALUES]) {
   x[LEVEL] += step[LEVEL];
   x[CONTRAST] += step[CONTRAST];
-  x[SHIFT] += fmax(-STEP_MOST_PX, fmin(STEP_MOST_PX, step[SHIFT]));
+  x[SHIFT] += fmax(-STEP_MAX_PX, fmin(STEP_MAX_PX, step[SHIFT]));
   double blur = x[BLUR] + fmax(-0.3 * x[BLUR], fmin(0.5 * x[BLUR], step[BLUR]));
-  x[BLUR] = fmax(BLUR_LEAST_PX, fmin(BLUR_MOST_PX, blur));
+  x[BLUR] = fmax(BLUR_MIN_PX, fmin(BLUR_MAX_PX, blur));
 }
 
 void fg_colour_profile_fit(const fg_edge_tables *tables, const fg_colour_known *known,
@@ -112,18 +114,18 @@ void fg_colour_profile_fit(const fg_edge_tables *tables, const fg_colour_known *
   double x[VALUES], step[VALUES], inverse[FG_SMALL_MAX][FG_SMALL_MAX];
   fg_normal_equations system;
   *place = (fg_colour_place){0};
-  if (count < PIXELS_LEAST || !start(known, pixels, count, channel, x)) return;
-  bool settled = false;
+  if (count < PIXELS_MIN || !start(known, pixels, count, channel, x)) return;
+  bool converged = false;
   double sum = 0;
-  for (int round = 0; round < ROUNDS && !settled; round++) {
+  for (int round = 0; round < ROUNDS && !converged; round++) {
     sum = add_pixels(&p, x, &system);
     if (!fg_normal_solve(&system, 1e-9, step, inverse)) return;
     take_step(x, step);
-    settled = fabs(step[SHIFT]) < SETTLED_PX && fabs(step[BLUR]) < BLUR_SETTLED * x[BLUR];
+    converged = fabs(step[SHIFT]) < CONVERGED_PX && fabs(step[BLUR]) < BLUR_CONVERGED * x[BLUR];
   }
   *place = (fg_colour_place){.shift_px = x[SHIFT],
                              .variance = inverse[SHIFT][SHIFT],
                              .contrast = x[CONTRAST],
                              .noise = sum / (double)(count - VALUES),
-                             .good = settled};
+                             .good = converged};
 }

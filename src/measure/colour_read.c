@@ -9,7 +9,7 @@
 
 enum {
   BATCH_ROWS = 128,
-  PIXELS_MOST = 1024, /* of one cross-section; a larger one is not looked at */
+  PIXELS_MAX = 1024, /* of one cross-section; a larger one is not looked at */
 };
 
 /* Rows of the scan, the newest in the place of the oldest. */
@@ -49,7 +49,7 @@ static size_t collect(const ring *r, const fg_colour_station *s, fg_colour_pixel
       double dx = (double)x - s->x, dy = (double)y - s->y;
       double across = dx * s->nx + dy * s->ny, along = dy * s->nx - dx * s->ny;
       if (fabs(across) > s->half_across_px || fabs(along) > s->half_along_px) continue;
-      if (count == PIXELS_MOST) return 0;
+      if (count == PIXELS_MAX) return 0;
       pixels[count++] = pixel_at(r, x, y, across);
     }
   return count;
@@ -67,7 +67,7 @@ static fg_status look(fg_context *ctx, void *shared, size_t item) {
   (void)ctx;
   ring *r = shared;
   fg_colour_station *s = &r->stations->list[r->stations->order[r->first + item]];
-  fg_colour_pixel pixels[PIXELS_MOST];
+  fg_colour_pixel pixels[PIXELS_MAX];
   size_t count = collect(r, s, pixels);
   compare(r, pixels, count);
   for (int channel = 0; channel < 3; channel++)
@@ -115,7 +115,7 @@ fg_status fg_colour_read(fg_context *ctx, fg_scan *scan, fg_budget *budget, unsi
   const fg_scan_info *info = fg_scan_get_info(scan);
   ring r = {.stations = stations,
             .width_px = info->width_px,
-            .rows = stations->rows_most + BATCH_ROWS,
+            .rows = stations->rows_max + BATCH_ROWS,
             .bytes_per_pixel = info->bytes_per_pixel};
   size_t bytes = 3 * (size_t)r.rows * (size_t)r.width_px * (size_t)r.bytes_per_pixel;
   FG_TRY(fg_budget_take(ctx, budget, bytes));

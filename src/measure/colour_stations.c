@@ -10,12 +10,12 @@
 #define ALONG_PX 3.0
 #define RUN_PX   5.0 /* to either side, over which it is seen how the strip bends */
 /* More than this say no more that is of use, and cost time. */
-#define STATIONS_MOST 20000
+#define STATIONS_MAX 20000
 /* Pixels are taken as far from the edges as their blur reaches, and as the channels may be apart.
  */
 #define REACH_BLURS 3.5
 #define APART_PX    4.0
-#define REACH_MOST  24.0
+#define REACH_MAX   24.0
 
 typedef struct chooser {
   const fg_measurement *m;
@@ -36,12 +36,12 @@ static fg_status add(fg_context *ctx, const chooser *c, fg_colour_station *s) {
   FG_TRY(
       fg_memory_reserve(ctx, to->count + 1, sizeof *to->list, &to->capacity, (void **)&to->list));
   to->list[to->count++] = *s;
-  if (s->bottom - s->top + 1 > to->rows_most) to->rows_most = s->bottom - s->top + 1;
+  if (s->bottom - s->top + 1 > to->rows_max) to->rows_max = s->bottom - s->top + 1;
   return FG_OK;
 }
 
 static double reach_px(double blur_px) {
-  return fmin(REACH_BLURS * blur_px + APART_PX, REACH_MOST);
+  return fmin(REACH_BLURS * blur_px + APART_PX, REACH_MAX);
 }
 
 /* The strip's width and blur, px, of all its directions. */
@@ -130,7 +130,7 @@ static fg_status add_disc(fg_context *ctx, const chooser *c, const fg_disc *disc
                            .half_across_px = reach_px(blur) + APART_PX,
                            .known = {.half_width_px = INFINITY, .blur_px = blur},
                            .part = part,
-                           .lone = true};
+                           .outlier = true};
     FG_TRY(add(ctx, c, &s));
   }
   return FG_OK;
@@ -143,7 +143,7 @@ static double find_stride(const fg_measurement *m, const double pixel_mm[2]) {
     length_mm += (double)m->foils[i].strip.count * m->foils[i].strip.step_mm;
   for (size_t i = 0; i < m->disc_count; i++)
     length_mm += 2 * M_PI * m->discs[i].radius_mm;
-  return fmax(1, length_mm / sqrt(pixel_mm[0] * pixel_mm[1]) / ALONG_PX / STATIONS_MOST);
+  return fmax(1, length_mm / sqrt(pixel_mm[0] * pixel_mm[1]) / ALONG_PX / STATIONS_MAX);
 }
 
 static int compare_bottoms(const void *a, const void *b, void *stations) {

@@ -13,7 +13,7 @@ typedef struct fg_colour_station {
   fg_colour_known known;
   int64_t top, bottom; /* rows that its pixels lie in */
   int part;            /* foil, or disc behind the foils; neighbours in the list are neighbours */
-  bool lone;           /* a disc's */
+  bool outlier;        /* a disc's */
   fg_colour_place place[3];
 } fg_colour_station;
 
@@ -21,7 +21,7 @@ typedef struct fg_colour_stations {
   fg_colour_station *list; /* along the parts; owned */
   size_t *order;           /* by bottom row; owned */
   size_t count, capacity;
-  int64_t rows_most; /* that one of them reaches over */
+  int64_t rows_max; /* that one of them reaches over */
 } fg_colour_stations;
 
 /* `m` as its edges were found: at the resolution of the scan, not calibrated. */

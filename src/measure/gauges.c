@@ -26,21 +26,20 @@ fg_status fg_gauge_sightings_add(fg_context *ctx, fg_gauge_sightings *sightings,
   return FG_OK;
 }
 
-double fg_gauge_least_px(const fg_measurement *m) {
-  double least = INFINITY;
+double fg_gauge_min_px(const fg_measurement *m) {
+  double min = INFINITY;
   for (size_t i = 0; i < m->design.gauge_count; i++) {
     const fg_gauge *gauge = &m->design.gauges[i];
-    least =
-        fmin(least, gauge->width_mm * (gauge->kind == FG_GAUGE_LEAF ? LEAF_WIDTHS : DISC_SHARE));
+    min = fmin(min, gauge->width_mm * (gauge->kind == FG_GAUGE_LEAF ? LEAF_WIDTHS : DISC_SHARE));
   }
-  return least * sqrt(m->dpi[0] * m->dpi[1]) / 25.4;
+  return min * sqrt(m->dpi[0] * m->dpi[1]) / 25.4;
 }
 
 fg_status fg_gauge_see_discs(fg_context *ctx, const fg_measurement *m,
                              fg_gauge_sightings *sightings) {
   for (size_t d = 0; d < m->disc_count; d++) {
     const fg_disc *disc = &m->discs[d];
-    double r = disc->radius_mm, level = disc->level_doubt_mm;
+    double r = disc->radius_mm, level = disc->level_u_mm;
     fg_gauge_sighting one = {
         .kind = disc->hole ? FG_GAUGE_HOLE : FG_GAUGE_PIN,
         .width_mm = disc->plain_mm,

@@ -27,7 +27,7 @@ fg_status fg_gauge_sightings_add(fg_context *ctx, fg_gauge_sightings *sightings,
 
 /* Diagonal of the smallest object that may be a gauge of the design, px; INFINITY: none is sought.
  */
-double fg_gauge_least_px(const fg_measurement *m);
+double fg_gauge_min_px(const fg_measurement *m);
 
 /* Place of an object: the island's tiles, and their corner in the scan. */
 typedef struct fg_gauge_object {

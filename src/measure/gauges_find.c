@@ -12,7 +12,7 @@
 /* A leaf stands straight, or is bent evenly by less than this share of its length; where the foil
  * itself is a plain arc, by less than this share of what that is. Evenly: a parabola runs within
  * half its width all along, which no strip with bumps does. */
-#define BEND_MOST      0.1
+#define BEND_MAX       0.1
 #define BEND_ARC_SHARE 0.4
 #define EVEN_WIDTHS    0.5
 /* A round object's box is as wide as high, within this share of it, and as wide as a stated gauge
@@ -21,11 +21,11 @@
 #define SIZE_SHARE   0.1
 /* Blocks that hold part of an edge count to the object: its outline lies so far outside. */
 #define OUTLINE_PX 3.0
-#define DOUBT_PX   8.0
+#define U_PX       8.0
 /* Smallest radius of a disc's edge, and share of the smallest gauge's width (vision/disc_find.h).
  */
-#define RADIUS_LEAST_PX  14.0
-#define DISC_LEAST_SHARE 0.5
+#define RADIUS_MIN_PX  14.0
+#define DISC_MIN_SHARE 0.5
 
 static bool is_stated(const fg_design *design, fg_gauge_kind from, fg_gauge_kind to) {
   for (size_t i = 0; i < design->gauge_count; i++)
@@ -62,10 +62,10 @@ static double bend_of(const fg_trace *trace) {
   return off > EVEN_WIDTHS * trace->width_px ? INFINITY : fabs(sagitta) / chord;
 }
 
-static double bend_most(const fg_design *design) {
-  if (design->form != FG_FORM_ARC) return BEND_MOST;
+static double bend_max(const fg_design *design) {
+  if (design->kind != FG_FOIL_ARC) return BEND_MAX;
   double sagitta = 0.5 * tan(design->subtended_angle_deg * M_PI / 720); /* over the chord */
-  return fmin(BEND_MOST, BEND_ARC_SHARE * sagitta);
+  return fmin(BEND_MAX, BEND_ARC_SHARE * sagitta);
 }
 
 static const char *why_spoiled(const fg_strip *strip) {
@@ -98,7 +98,7 @@ fg_status fg_gauge_see_leaf(fg_context *ctx, const fg_gauge_object *object, cons
   fg_strip strip = {0};
   *taken = false;
   if (!is_stated(&m->design, FG_GAUGE_LEAF, FG_GAUGE_LEAF)) return FG_OK;
-  if (trace->count < 2 || bend_of(trace) > bend_most(&m->design)) return FG_OK;
+  if (trace->count < 2 || bend_of(trace) > bend_max(&m->design)) return FG_OK;
   *taken = true;
   const fg_edge_options options = {
       .dpi = m->dpi, .threads = threads, .linear = m->design.tone == FG_TONE_LINEAR};
@@ -159,7 +159,7 @@ static fg_disc_candidate circle_of(const fg_pixel_shape *shape, const fg_object 
   double y = (o->y + 0.5 * o->height) * FG_BLOCK_PX - 0.5;
   double size = 0.5 * (o->width * shape->scale[0] + o->height * shape->scale[1]);
   double radius = 0.5 * size * FG_BLOCK_PX - OUTLINE_PX;
-  return (fg_disc_candidate){{x * shape->scale[0], y * shape->scale[1], radius}, DOUBT_PX, 1};
+  return (fg_disc_candidate){{x * shape->scale[0], y * shape->scale[1], radius}, U_PX, 1};
 }
 
 /* Measures one round feature; taken: it is one. */
@@ -187,8 +187,7 @@ static fg_status see_outline(fg_context *ctx, const fg_gauge_object *object,
   const fg_pixel_shape shape = fg_pixel_shape_of(object->measurement->dpi);
   const fg_object *o = object->object;
   const fg_disc_candidate candidate = circle_of(&shape, o);
-  if (!is_round(&object->measurement->design, &shape, o) ||
-      candidate.circle.radius < RADIUS_LEAST_PX)
+  if (!is_round(&object->measurement->design, &shape, o) || candidate.circle.radius < RADIUS_MIN_PX)
     return FG_OK;
   return see_circle(ctx, object, &candidate, false, sightings, taken);
 }
@@ -198,11 +197,11 @@ static bool is_hole(const fg_gauge_object *object, const fg_pixel_shape *shape,
                     const fg_circle *circle) {
   const fg_design *design = &object->measurement->design;
   const fg_object *o = object->object;
-  double least = fmin(o->width * shape->scale[0], o->height * shape->scale[1]);
+  double min = fmin(o->width * shape->scale[0], o->height * shape->scale[1]);
   double width_mm = 2 * circle->radius * shape->um / 1000;
   fg_circle outline = circle_of(shape, o).circle;
   if (hypot(circle->x - outline.x, circle->y - outline.y) + circle->radius >
-      0.5 * least * FG_BLOCK_PX - FG_BLOCK_PX)
+      0.5 * min * FG_BLOCK_PX - FG_BLOCK_PX)
     return false;
   for (size_t i = 0; i < design->gauge_count; i++) {
     const fg_gauge *gauge = &design->gauges[i];
@@ -218,10 +217,10 @@ static bool is_hole(const fg_gauge_object *object, const fg_pixel_shape *shape,
 static fg_status see_holes(fg_context *ctx, const fg_gauge_object *object,
                            fg_gauge_sightings *sightings, bool *taken) {
   const fg_pixel_shape shape = fg_pixel_shape_of(object->measurement->dpi);
-  double least = DISC_LEAST_SHARE * fg_gauge_least_px(object->measurement);
+  double min = DISC_MIN_SHARE * fg_gauge_min_px(object->measurement);
   fg_disc_candidates found = {0};
   if (!is_square(&shape, object->object)) return FG_OK;
-  FG_TRY(fg_discs_find(ctx, object->tiles, &shape, fmax(least, RADIUS_LEAST_PX), 1, &found));
+  FG_TRY(fg_discs_find(ctx, object->tiles, &shape, fmax(min, RADIUS_MIN_PX), 1, &found));
   fg_status status = FG_OK;
   for (size_t i = 0; i < found.count && status == FG_OK; i++)
     if (is_hole(object, &shape, &found.list[i].circle))

@@ -13,7 +13,7 @@
 /* Relative scale error of a scanner whose calibration is not stated, standard deviation. */
 #define SCALE_UNKNOWN 0.002
 /* T(1/2) is between the levels of both sides, whatever the tone curve. */
-#define LEVEL_MOST 0.5
+#define LEVEL_MAX 0.5
 /* Standard deviation of T(1/2) by an unknown tone curve (geometry/level_doubt.c). */
 #define LEVEL_UNKNOWN_SD 0.08
 /* Beyond it few drivers' tone curves put it: a wrong width would look alike. */
@@ -60,7 +60,7 @@ static void read_level(const fg_design *design, const fg_gauge *gauge, unsigned 
   reading->u_level = u / fabs(slope);
   double level = reading->level;
   if (!reading->used || fabs(level) <= LEVEL_UNUSUAL + 2 * reading->u_level) return;
-  if (fabs(level) <= LEVEL_MOST + 2 * reading->u_level) {
+  if (fabs(level) <= LEVEL_MAX + 2 * reading->u_level) {
     fg_text_clip(reading->note, sizeof reading->note,
                  "few tone curves make %g mm read %.4f mm: check that the stated width is its own",
                  gauge->width_mm, reading->measured_mm);
@@ -166,9 +166,9 @@ static void set_disc(const fg_level *level, const fg_measurement *m, fg_disc *di
                             disc->plain_blur_um, disc->contrast, disc->bright};
   set_level(level, &part, &disc->picture);
   if (!disc->picture.level_known) return;
-  disc->edge_doubt_mm =
+  disc->edge_u_mm =
       um / 1000 * fg_loss_edge_px(m->jpeg_quality, disc->contrast, disc->blur_um / um);
-  fg_disc_find_level_doubt(&m->design, disc);
+  fg_disc_find_level_uncertainty(&m->design, disc);
 }
 
 static void set_levels(const fg_level *level, fg_measurement *m) {

@@ -9,7 +9,7 @@
  * and the sharper the edge is, for more of it lies at frequencies of large steps. Edges as sharp as
  * no scanner's are taken for as sharp as can be. */
 #define EDGE_PX2_PER_STEP 1.9
-#define BLUR_LEAST_PX     0.5
+#define BLUR_MIN_PX       0.5
 /* Along an edge that runs with the rows or columns, neighbouring blocks are rounded alike: that is
  * not the noise that the rest has. Per gray value of step; a strip's two edges share less of it. */
 #define TURN_VARIANCE_PER_STEP 0.04
@@ -18,7 +18,7 @@
 double fg_loss_edge_px(int jpeg_quality, double contrast, double blur_px) {
   if (!jpeg_quality || contrast == 0) return 0;
   double step = fg_jpeg_step_of(jpeg_quality) / fabs(contrast);
-  return EDGE_PX2_PER_STEP * step / fmax(blur_px, BLUR_LEAST_PX);
+  return EDGE_PX2_PER_STEP * step / fmax(blur_px, BLUR_MIN_PX);
 }
 
 double fg_loss_turn_variance(int jpeg_quality) {

@@ -22,7 +22,7 @@
 #define CONTRADICTION 0.005
 #define UNEQUAL       0.05
 /* A strip narrower than so many pixels is not sure to be found. */
-#define STRIP_LEAST_PX   2.0
+#define STRIP_MIN_PX     2.0
 #define MEMORY_CAP_BYTES ((size_t)FG_MEASURE_MEMORY_CAP_MIB << 20)
 
 static size_t memory_cap(const fg_measure_options *options) {
@@ -56,9 +56,9 @@ static fg_status fail_without_beams(fg_context *ctx, const fg_measurement *m) {
 
 /* Nothing was found: the strip may be too thin for this resolution, if that is the right one. */
 static fg_status fail_empty(fg_context *ctx, const fg_measurement *m) {
-  if (m->design.form == FG_FORM_CANTILEVER) return fail_without_beams(ctx, m);
+  if (m->design.kind == FG_FOIL_CANTILEVER) return fail_without_beams(ctx, m);
   double dpi = fmin(m->dpi[0], m->dpi[1]), width_px = m->design.thickness_mm * dpi / 25.4;
-  if (width_px >= STRIP_LEAST_PX)
+  if (width_px >= STRIP_MIN_PX)
     return fg_fail(ctx, FG_ERR_DATA,
                    "%s: no foil in the picture (%zu speck%s or other objects); is the scan empty, "
                    "or the resolution of %g dpi wrong?",
@@ -68,7 +68,7 @@ static fg_status fail_empty(fg_context *ctx, const fg_measurement *m) {
                  "%g mm is %.1f pixels wide; is the resolution of %g dpi wrong? if not, scan at "
                  "%.0f dpi or more, where it is %g",
                  m->scan, m->specks, fg_plural(m->specks), dpi, m->design.thickness_mm, width_px,
-                 dpi, 100 * ceil(STRIP_LEAST_PX * 0.254 / m->design.thickness_mm), STRIP_LEAST_PX);
+                 dpi, 100 * ceil(STRIP_MIN_PX * 0.254 / m->design.thickness_mm), STRIP_MIN_PX);
 }
 
 static fg_status measure_foils(fg_context *ctx, fg_scan *scan, const fg_measure_options *options,
@@ -251,21 +251,21 @@ static void tell_loss(fg_measurement *m) {
 /* A note, where nothing else is odd. */
 static void tell_apart(fg_measurement *m) {
   const fg_colour_lines *lines = &m->colour_lines;
-  double most = 0;
+  double max = 0;
   for (int k = 0; k < 2; k++)
-    most = fmax(most, lines->shifts[k].largest_px); /* fmax prefers the number to NaN */
+    max = fmax(max, lines->shifts[k].largest_px); /* fmax prefers the number to NaN */
   if (m->warning[0]) return;
   if (m->channel == FG_CHANNEL_LUMINANCE)
     snprintf(
         m->warning, sizeof m->warning,
         "the colour channels lie %.2f px apart, and their mean was measured: edges are blurred "
         "and moved; measure one channel (--channel green), do not convert to gray",
-        most);
+        max);
   else
     snprintf(m->warning, sizeof m->warning,
              "the colour channels lie %.2f px apart: one was measured; do not average channels or "
              "convert the scan to gray",
-             most);
+             max);
 }
 
 fg_status fg_measure_scan(fg_context *ctx, const char *path, const fg_design *design,
@@ -278,7 +278,7 @@ fg_status fg_measure_scan(fg_context *ctx, const char *path, const fg_design *de
   if (!options) options = &defaults;
   FG_TRY_EXIT(fg_design_derive(ctx, design, &measurement->nominal));
   FG_TRY_EXIT(open_scan(ctx, path, options, &scan, measurement));
-  if (design->form == FG_FORM_DISCS)
+  if (design->kind == FG_FOIL_DISCS)
     FG_TRY_EXIT(measure_discs(ctx, scan, options, measurement));
   else
     FG_TRY_EXIT(measure_foils(ctx, scan, options, measurement));

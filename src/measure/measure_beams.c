@@ -13,22 +13,22 @@
 #include "vision/rims.h"
 
 /* What is smaller than this share of a beam's length is dust. */
-#define LEAST_SHARE 0.3
+#define MIN_SHARE 0.3
 /* A difference between the edge's core and flanks counts above so many of its own deviations
  * (geometry/disc_fit.c). */
 #define SPLIT_DEVIATIONS 3.0
 /* A Gaussian's shift along a curved edge, s²/2R, is right but for this share of (s/R)². */
-#define CURVED_DOUBT 0.5
+#define CURVED_U 0.5
 /* A tone curve is known no better than this, in px, whatever its own doubt makes of the place of
  * the edge (reports/accuracy_discs.md: gamma 1.8). */
-#define TONE_DOUBT_PX 0.015
+#define TONE_U_PX 0.015
 /* An edge that ends so near to the border is cut by it: a corner's margin, and some. */
 #define BORDER_PX 12.0
 /* The next edge is too near when its blur may move this one by more, px. */
 #define NARROW_PX 0.01
 
 /* Less of an exponent than this is no finding: edges of a linear scan show as much. */
-#define BENT_LEAST 0.05
+#define BENT_MIN 0.05
 /* Straight edges have no wall or ring about them that looks like a tone curve, so more of one is
  * believed than of discs. */
 static const double range_of_gamma[2] = {0.25, 3.5};
@@ -50,8 +50,8 @@ typedef struct flat_work {
   bool plain;        /* no edge is asked for one */
 } flat_work;
 
-static double least_px(const fg_measurement *m, const fg_pixel_shape *shape) {
-  return LEAST_SHARE * m->design.beam_length_mm * 1000 / shape->um;
+static double min_px(const fg_measurement *m, const fg_pixel_shape *shape) {
+  return MIN_SHARE * m->design.beam_length_mm * 1000 / shape->um;
 }
 
 static fg_status find_polygon(fg_context *ctx, void *shared, size_t i) {
@@ -85,7 +85,7 @@ static fg_status find_tone(fg_context *ctx, void *shared, size_t i) {
   flat_work *w = shared;
   const fg_stretch *side = &w->places.list[i / 2].sides[FG_BEAM_LEFT + i % 2];
   fg_status status = fg_line_edge_tone(ctx, &w->view, side, &w->tones[i]);
-  if (status == FG_ERR_NUMERIC) w->tones[i] = (fg_tone){.gamma = 1, .doubt = INFINITY};
+  if (status == FG_ERR_NUMERIC) w->tones[i] = (fg_tone){.gamma = 1, .uncertainty = INFINITY};
   return status == FG_ERR_NUMERIC ? FG_OK : status;
 }
 
@@ -110,19 +110,19 @@ static double find_split(const fg_disc_edge *edge) {
 }
 
 /* What the level of an edge may move it by, px. */
-static double find_doubt(const flat_work *w, const fg_stretch *side, const fg_disc_edge *found,
-                         double overlap_px) {
+static double find_uncertainty(const flat_work *w, const fg_stretch *side,
+                               const fg_disc_edge *found, double overlap_px) {
   double contrast = fabs(found->inside - found->outside), ratio = found->blur_px / side->radius;
   double loss_px = fg_loss_edge_px(w->m->jpeg_quality, contrast, found->blur_px);
   double level_px =
-      fg_level_doubt(&w->m->design, &found->picture, 0) * fg_level_shift(found->blur_px);
-  double tone_px = hypot(w->tone.gamma == 1 ? 0 : TONE_DOUBT_PX, level_px);
-  double curved_px = CURVED_DOUBT * ratio * ratio * 0.5 * ratio * found->blur_px;
-  return hypot(hypot(found->level_doubt_px, loss_px), hypot(tone_px, overlap_px)) + curved_px;
+      fg_level_uncertainty(&w->m->design, &found->picture, 0) * fg_level_shift(found->blur_px);
+  double tone_px = hypot(w->tone.gamma == 1 ? 0 : TONE_U_PX, level_px);
+  double curved_px = CURVED_U * ratio * ratio * 0.5 * ratio * found->blur_px;
+  return hypot(hypot(found->level_u_px, loss_px), hypot(tone_px, overlap_px)) + curved_px;
 }
 
 static fg_status take_edge(fg_context *ctx, const flat_work *w, const fg_stretch *side,
-                           const fg_disc_edge *found, double doubt_px, fg_beam_edge *edge) {
+                           const fg_disc_edge *found, double u_px, fg_beam_edge *edge) {
   double mm = w->view.shape.um / 1000;
   const double origin[2] = {(double)w->origin_px[0] * w->view.shape.scale[0],
                             (double)w->origin_px[1] * w->view.shape.scale[1]};
@@ -142,7 +142,7 @@ static fg_status take_edge(fg_context *ctx, const flat_work *w, const fg_stretch
   edge->blur_mm = found->blur_px * mm;
   edge->row_mm = w->view.shape.scale[1] * mm;
   edge->split_mm = find_split(found) * mm;
-  edge->doubt_mm = doubt_px * mm;
+  edge->u_mm_of_level = u_px * mm;
   edge->loss_share = fg_loss_turn_variance(w->m->jpeg_quality);
   return FG_OK;
 }
@@ -172,13 +172,13 @@ static double level_of(double gamma, const fg_disc_edge *edge) {
 }
 
 /* The tone is stated as linear, and the edges show another one. */
-static void doubt_linear(const flat_work *w, fg_disc_edge *edge) {
+static void u_linear(const flat_work *w, fg_disc_edge *edge) {
   if (w->bent_gamma == 1) return;
   edge->picture.level = 0;
   edge->picture.u_level = hypot(isnan(edge->picture.u_level) ? 0 : edge->picture.u_level,
                                 level_of(w->bent_gamma, edge));
   edge->picture.gamma = w->bent_gamma;
-  if (fabs(log(w->bent_gamma)) > BENT_LEAST) edge->picture.findings |= FG_PICTURE_TONE_CURVE;
+  if (fabs(log(w->bent_gamma)) > BENT_MIN) edge->picture.findings |= FG_PICTURE_TONE_CURVE;
 }
 
 static fg_status measure_edge(fg_context *ctx, const flat_work *w, const fg_stretch *side,
@@ -192,9 +192,9 @@ static fg_status measure_edge(fg_context *ctx, const flat_work *w, const fg_stre
     double overlap_px = fg_line_edge_overlap(found->next_px, at->blur_px);
     if (overlap_px > NARROW_PX) beam->flags |= FG_BEAM_NARROW_CUT;
     mend_curved(w, side, &beam->edges[FG_BEAM_LEFT], at);
-    doubt_linear(w, at);
+    u_linear(w, at);
     fg_picture_merge(&beam->picture, &at->picture);
-    status = take_edge(ctx, w, side, at, find_doubt(w, side, at, overlap_px), edge);
+    status = take_edge(ctx, w, side, at, find_uncertainty(w, side, at, overlap_px), edge);
   }
   fg_disc_edge_free(at);
   return status == FG_ERR_NUMERIC ? FG_OK : status;
@@ -334,7 +334,7 @@ fg_status fg_flat_island_measure(fg_context *ctx, const fg_flat_island *island,
                  .m = m};
   double background = island->background;
   bool light = fabs(background - levels.low) <= fabs(background - levels.high);
-  const fg_rim_options options = {w.view.middle, light, least_px(m, &w.view.shape)};
+  const fg_rim_options options = {w.view.middle, light, min_px(m, &w.view.shape)};
   fg_status status = FG_OK;
   if (!levels.found) {
     parts->specks++;

@@ -15,9 +15,9 @@
 
 /* Round features below this radius are dust, unless the design states smaller ones; an edge needs
  * so many pixels of radius at the least. */
-#define RADIUS_LEAST_MM 0.2
-#define RADIUS_LEAST_PX 14.0
-#define DESIGN_SHARE    0.7
+#define RADIUS_MIN_MM 0.2
+#define RADIUS_MIN_PX 14.0
+#define DESIGN_SHARE  0.7
 /* Edges that leave their circle by more than this share of the radius (rms) are no round feature.
  */
 #define ROUND_SHARE 0.04
@@ -36,13 +36,13 @@ typedef struct disc_work {
   fg_disc *discs; /* one per candidate; no points: no round feature */
 } disc_work;
 
-static double least_radius_px(const fg_design *design, const fg_pixel_shape *shape) {
-  double least = RADIUS_LEAST_MM;
+static double min_radius_px(const fg_design *design, const fg_pixel_shape *shape) {
+  double min = RADIUS_MIN_MM;
   for (size_t i = 0; i < design->diameter_count; i++) {
     double stated = DESIGN_SHARE * 0.5 * design->diameters_mm[i];
-    least = i == 0 ? stated : fmin(least, stated);
+    min = i == 0 ? stated : fmin(min, stated);
   }
-  return fmax(least * 1000 / shape->um, RADIUS_LEAST_PX);
+  return fmax(min * 1000 / shape->um, RADIUS_MIN_PX);
 }
 
 /* Level of the scan's border: the median of the outermost blocks. */
@@ -87,8 +87,8 @@ static fg_status fit_edge(fg_context *ctx, const disc_work *work, const fg_disc_
   disc->stations = points;
   disc->station_count = edge->count;
   disc->loss_variance = fg_loss_turn_variance(work->jpeg_quality);
-  disc->edge_doubt_mm = hypot(edge->level_doubt_px, loss_px) * mm;
-  fg_disc_find_level_doubt(work->design, disc);
+  disc->edge_u_mm = hypot(edge->level_u_px, loss_px) * mm;
+  fg_disc_find_level_uncertainty(work->design, disc);
   return fg_disc_measure_again(ctx, disc);
 }
 
@@ -139,7 +139,7 @@ static fg_status find_tone(fg_context *ctx, void *shared, size_t i) {
   disc_work *work = shared;
   fg_status status =
       fg_disc_edge_tone(ctx, work->tiles, &work->shape, &work->found->list[i], &work->tones[i]);
-  if (status == FG_ERR_NUMERIC) work->tones[i] = (fg_tone){.gamma = 1, .doubt = INFINITY};
+  if (status == FG_ERR_NUMERIC) work->tones[i] = (fg_tone){.gamma = 1, .uncertainty = INFINITY};
   return status == FG_ERR_NUMERIC ? FG_OK : status;
 }
 
@@ -242,14 +242,14 @@ fg_status fg_measure_discs(fg_context *ctx, const fg_tiles *tiles, unsigned thre
                     .jpeg_quality = m->jpeg_quality,
                     .shape = fg_pixel_shape_of(m->dpi),
                     .found = &found};
-  double least = least_radius_px(&m->design, &work.shape);
-  FG_TRY(fg_discs_find(ctx, tiles, &work.shape, least, threads, &found));
+  double min = min_radius_px(&m->design, &work.shape);
+  FG_TRY(fg_discs_find(ctx, tiles, &work.shape, min, threads, &found));
   fg_status status = measure_candidates(ctx, &work, threads, m);
   fg_disc_candidates_free(&found);
   if (status == FG_OK && m->disc_count == 0)
     status = fg_fail(ctx, FG_ERR_DATA,
                      "%s: no round hole or disc in the picture (%zu other shapes); the smallest "
                      "that counts has a radius of %.3g mm",
-                     m->scan, m->specks, least * work.shape.um / 1000);
+                     m->scan, m->specks, min * work.shape.um / 1000);
   return status;
 }

@@ -9,19 +9,19 @@
 #define MAGNIFICATION_SIGMA 3.0
 #define RINGING_SHARE       0.015
 
-static double beyond_doubt(double difference, double u) {
+static double is_certain(double difference, double u) {
   return fabs(difference) - MAGNIFICATION_SIGMA * u;
 }
 
 /* The largest difference between any two channels' magnifications, beyond doubt, ppm. */
-static double most_magnification(const fg_colour_lines *lines) {
+static double max_magnification(const fg_colour_lines *lines) {
   const fg_colour_shift *a = &lines->shifts[0], *b = &lines->shifts[1];
-  double most = 0;
+  double max = 0;
   /* fmax prefers the number to NaN: of a channel that is not measured nothing is known */
-  most = fmax(most, beyond_doubt(a->magnification_ppm, a->u_magnification_ppm));
-  most = fmax(most, beyond_doubt(b->magnification_ppm, b->u_magnification_ppm));
+  max = fmax(max, is_certain(a->magnification_ppm, a->u_magnification_ppm));
+  max = fmax(max, is_certain(b->magnification_ppm, b->u_magnification_ppm));
   double u = hypot(a->u_magnification_ppm, b->u_magnification_ppm);
-  return fmax(most, beyond_doubt(a->magnification_ppm - b->magnification_ppm, u));
+  return fmax(max, is_certain(a->magnification_ppm - b->magnification_ppm, u));
 }
 
 static void add_finding(fg_measurement *m, unsigned finding) {
@@ -33,18 +33,18 @@ static void add_finding(fg_measurement *m, unsigned finding) {
 
 /* JPEG makes edges ring, which looks like a little sharpening or an odd tone curve; and a file that
  * says itself that it is a JPEG needs not be told: its edges' uncertainties hold that already. */
-static void settle_blocks(bool jpeg, fg_picture_state *state) {
+static void decide_blocks(bool jpeg, fg_picture_state *state) {
   const unsigned looks = FG_PICTURE_SHARPENED | FG_PICTURE_TONE_CURVE | FG_PICTURE_UNKNOWN_PROFILE;
   if (!jpeg && !(state->findings & FG_PICTURE_BLOCK_NOISE)) return;
   if (fmax(state->overshoot, state->undershoot) < RINGING_SHARE) state->findings &= ~looks;
   if (jpeg) state->findings &= ~(unsigned)FG_PICTURE_BLOCK_NOISE;
 }
 
-static void settle_all_blocks(fg_measurement *m) {
+static void decide_all_blocks(fg_measurement *m) {
   for (size_t i = 0; i < m->foil_count; i++)
-    settle_blocks(m->jpeg_quality > 0, &m->foils[i].strip.picture);
+    decide_blocks(m->jpeg_quality > 0, &m->foils[i].strip.picture);
   for (size_t i = 0; i < m->disc_count; i++)
-    settle_blocks(m->jpeg_quality > 0, &m->discs[i].picture);
+    decide_blocks(m->jpeg_quality > 0, &m->discs[i].picture);
 }
 
 static void merge_all(fg_measurement *m) {
@@ -69,8 +69,8 @@ static void tell_findings(fg_measurement *m) {
 }
 
 void fg_picture_gather(fg_measurement *m) {
-  settle_all_blocks(m);
-  if (m->colour_lines.seen && most_magnification(&m->colour_lines) > MAGNIFICATION_PPM)
+  decide_all_blocks(m);
+  if (m->colour_lines.seen && max_magnification(&m->colour_lines) > MAGNIFICATION_PPM)
     add_finding(m, FG_PICTURE_CHANNEL_SCALE);
   merge_all(m);
   if (m->picture.findings && !m->warning[0]) tell_findings(m);

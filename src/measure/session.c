@@ -19,11 +19,11 @@
 
 enum { WORKERS_MAX = 63 };
 /* An object smaller than this share of the design's bump radius is dust. */
-#define OBJECT_LEAST 1.0
+#define OBJECT_MIN 1.0
 /* Of an arc: than this share of its length, or of a radian of it. */
-#define ARC_LEAST 0.25
+#define ARC_MIN 0.25
 /* Of a cantilever: than this share of a beam's length. */
-#define BEAM_LEAST 0.3
+#define BEAM_MIN 0.3
 /* A strip without bumps is a foil that failed when its width is the design's within this factor,
  * and some other thing (a scratch, a hair) when it is not. */
 #define WIDTH_FACTOR 1.6
@@ -33,7 +33,7 @@ enum { WORKERS_MAX = 63 };
 
 /* The reader helps when islands wait with more than this: workers that fall behind would otherwise
  * fill the memory with tiles. */
-#define WAITING_BYTES_MOST ((size_t)32 << 20)
+#define WAITING_BYTES_MAX ((size_t)32 << 20)
 
 /* An island on its way through a worker. */
 typedef struct job {
@@ -85,20 +85,20 @@ static double expected_width_px(const fg_measurement *m) {
   return m->design.thickness_mm * sqrt(m->dpi[0] * m->dpi[1]) / 25.4;
 }
 
-static double least_object_mm(const fg_design *design) {
-  if (design->form == FG_FORM_CANTILEVER) return BEAM_LEAST * design->beam_length_mm;
-  if (design->form != FG_FORM_ARC) return OBJECT_LEAST * design->bump_radius_mm;
-  return ARC_LEAST * design->overall_radius_mm * fmin(design->subtended_angle_deg * M_PI / 180, 1);
+static double min_object_mm(const fg_design *design) {
+  if (design->kind == FG_FOIL_CANTILEVER) return BEAM_MIN * design->beam_length_mm;
+  if (design->kind != FG_FOIL_ARC) return OBJECT_MIN * design->bump_radius_mm;
+  return ARC_MIN * design->overall_radius_mm * fmin(design->subtended_angle_deg * M_PI / 180, 1);
 }
 
 /* Diagonal of the smallest object that may be a foil. */
-static double least_foil_px(const fg_measurement *m) {
-  return least_object_mm(&m->design) * sqrt(m->dpi[0] * m->dpi[1]) / 25.4;
+static double min_foil_px(const fg_measurement *m) {
+  return min_object_mm(&m->design) * sqrt(m->dpi[0] * m->dpi[1]) / 25.4;
 }
 
 /* Of the smallest that is no dust: a foil or a gauge. */
-static double least_object_px(const fg_measurement *m) {
-  return fmin(least_foil_px(m), fg_gauge_least_px(m));
+static double min_object_px(const fg_measurement *m) {
+  return fmin(min_foil_px(m), fg_gauge_min_px(m));
 }
 
 /* Of a file that says itself that it is a JPEG, or of one whose pixels do. */
@@ -178,7 +178,7 @@ static fg_status measure_object(fg_context *ctx, fg_session *s, const job *j,
   bool taken = false, sought = s->measurement->design.gauge_count > 0;
   if (sought) FG_TRY(fg_gauge_see_round(ctx, &object, seen, &taken));
   if (taken) return FG_OK;
-  if (diagonal >= least_foil_px(s->measurement))
+  if (diagonal >= min_foil_px(s->measurement))
     FG_TRY(fg_trace_object(ctx, &j->view, seg, object.object, expected_width_px(s->measurement),
                            list));
   for (size_t k = 0; k < list->count; k++)
@@ -212,7 +212,7 @@ static void free_job(job *j) {
 
 /* Puts the island on tiles of its own. */
 static fg_status anchor(fg_context *ctx, fg_session *s, job *j) {
-  const fg_anchor_options options = {.least_px = least_object_px(s->measurement),
+  const fg_anchor_options options = {.min_px = min_object_px(s->measurement),
                                      .border_px =
                                          BORDER_WIDTHS * expected_width_px(s->measurement)};
   fg_anchored a;
@@ -241,9 +241,9 @@ static fg_status measure_flat(fg_context *ctx, fg_session *s, const job *j) {
 
 static fg_status measure_island(fg_context *ctx, fg_session *s, job *j) {
   fg_segmentation seg;
-  if (s->measurement->design.form == FG_FORM_CANTILEVER) return measure_flat(ctx, s, j);
+  if (s->measurement->design.kind == FG_FOIL_CANTILEVER) return measure_flat(ctx, s, j);
   FG_TRY(anchor(ctx, s, j));
-  FG_TRY(fg_segment(ctx, &j->view, &j->island, least_object_px(s->measurement), &seg));
+  FG_TRY(fg_segment(ctx, &j->view, &j->island, min_object_px(s->measurement), &seg));
   count_specks(s, seg.speck_count);
   pthread_mutex_lock(&s->lock);
   if (seg.object_count) *(seg.light_on_dark ? &s->light : &s->dark) += 1;
@@ -357,7 +357,7 @@ static fg_status find_background(fg_context *ctx, const fg_tiles *tiles, double 
 
 /* Hands an island to the workers; dust is counted and forgotten. */
 static fg_status take_island(fg_context *ctx, fg_session *s, fg_tiles *tiles, fg_island *island) {
-  if (hypot(island->width, island->height) * FG_TILE_PX < least_object_px(s->measurement)) {
+  if (hypot(island->width, island->height) * FG_TILE_PX < min_object_px(s->measurement)) {
     fg_island_forget(tiles, island);
     fg_island_free(island);
     count_specks(s, 1);
@@ -365,7 +365,7 @@ static fg_status take_island(fg_context *ctx, fg_session *s, fg_tiles *tiles, fg
   }
   job j = {.island = *island};
   fg_status status = FG_OK;
-  if (s->measurement->design.form == FG_FORM_CANTILEVER)
+  if (s->measurement->design.kind == FG_FOIL_CANTILEVER)
     status = find_background(ctx, tiles, &j.background);
   if (status == FG_OK) status = fg_island_cut(ctx, tiles, &j.island, &j.view, j.origin_px);
   if (status == FG_OK) status = push_job(ctx, s, &j);
@@ -375,7 +375,7 @@ static fg_status take_island(fg_context *ctx, fg_session *s, fg_tiles *tiles, fg
 
 static bool is_behind(fg_session *s) {
   pthread_mutex_lock(&s->lock);
-  bool behind = s->waiting_bytes > WAITING_BYTES_MOST;
+  bool behind = s->waiting_bytes > WAITING_BYTES_MAX;
   pthread_mutex_unlock(&s->lock);
   return behind;
 }
@@ -457,7 +457,7 @@ fg_status fg_session_finish(fg_context *ctx, fg_session *s) {
   s->worker_count = 0;
   if (s->status != FG_OK) return fg_fail(ctx, s->status, "%s", s->context.message);
   s->measurement->light_on_dark = s->light >= s->dark;
-  if (s->measurement->design.form == FG_FORM_CANTILEVER)
+  if (s->measurement->design.kind == FG_FOIL_CANTILEVER)
     FG_TRY(fg_flat_foils_assemble(ctx, &s->parts, s->measurement));
   sort_foils(s->measurement);
   fg_gauges_match(&s->sightings, s->measurement);

@@ -34,17 +34,17 @@ fg_status fg_lenth_compute(fg_context *ctx, const double *estimates, size_t coun
     magnitude[i] = fabs(estimates[i]);
   double pse = pseudo_standard_error(magnitude, count);
   free(magnitude);
-  double freedom = (double)count / 3;
+  double dof = (double)count / 3;
   double together = (1 + pow(confidence, 1 / (double)count)) / 2;
   *lenth = (fg_lenth){.pseudo_standard_error = pse,
-                      .margin = pse * fg_distribution_t_quantile((1 + confidence) / 2, freedom),
-                      .simultaneous_margin = pse * fg_distribution_t_quantile(together, freedom),
-                      .freedom = freedom};
+                      .margin = pse * fg_distribution_t_quantile((1 + confidence) / 2, dof),
+                      .simultaneous_margin = pse * fg_distribution_t_quantile(together, dof),
+                      .dof = dof};
   return FG_OK;
 }
 
 double fg_lenth_p_value(const fg_lenth *lenth, double estimate) {
-  return fg_distribution_t_two_sided(estimate / lenth->pseudo_standard_error, lenth->freedom);
+  return fg_distribution_t_two_sided(estimate / lenth->pseudo_standard_error, lenth->dof);
 }
 
 static int compare_points(const void *a, const void *b) {
@@ -203,7 +203,7 @@ static int compare_cells(const void *a, const void *b) {
 }
 
 /* Pooled over groups of equal key. */
-static double squares_within_cells(cell *cells, size_t count, size_t *freedom) {
+static double squares_within_cells(cell *cells, size_t count, size_t *dof) {
   double sum = 0;
   qsort(cells, count, sizeof *cells, compare_cells);
   for (size_t start = 0, end = 0; start < count; start = end) {
@@ -213,7 +213,7 @@ static double squares_within_cells(cell *cells, size_t count, size_t *freedom) {
     mean /= (double)(end - start);
     for (size_t i = start; i < end; i++)
       sum += (cells[i].y - mean) * (cells[i].y - mean);
-    *freedom += end - start - 1;
+    *dof += end - start - 1;
   }
   return sum;
 }
@@ -228,10 +228,10 @@ static void judge_curvature(cell *cells, size_t count, fg_curvature *c) {
   double corners = (double)c->corners, centres = (double)c->centres;
   double gap = c->corner_mean - c->centre_mean;
   c->sum_of_squares = corners * centres * gap * gap / (corners + centres);
-  double within = squares_within_cells(cells, count, &c->error_freedom);
-  c->error_mean_square = c->error_freedom ? within / (double)c->error_freedom : NAN;
+  double within = squares_within_cells(cells, count, &c->error_dof);
+  c->error_mean_square = c->error_dof ? within / (double)c->error_dof : NAN;
   c->f = c->sum_of_squares / c->error_mean_square;
-  c->p_value = fg_distribution_f_upper(c->f, 1, (double)c->error_freedom);
+  c->p_value = fg_distribution_f_upper(c->f, 1, (double)c->error_dof);
 }
 
 fg_status fg_curvature_compute(fg_context *ctx, const fg_table *table, const char *const *factors,

@@ -232,7 +232,7 @@ static fg_status read_uncertainty(fg_context *ctx, const fg_experiment_options *
 
 static fg_status fit(fg_context *ctx, fg_experiment *e) {
   const fg_regression_options options = {
-      .confidence = e->confidence, .freedom_taken = e->freedom_taken, .taken = e->taken_out};
+      .confidence = e->confidence, .dof_taken = e->dof_taken, .taken = e->taken_out};
   const fg_extended *y = NULL;
   FG_TRY(fg_table_numbers(ctx, &e->table, e->response, &y));
   FG_TRY(fg_regression_fit(ctx, &e->model, y, &options, &e->regression));
@@ -270,7 +270,7 @@ static fg_status copy_taken(fg_context *ctx, const fg_experiment_options *option
   memcpy(e->taken_out, options->taken_out, rows * sizeof *e->taken_out);
   e->takens = options->takens;
   for (size_t i = 0; i < e->takens; i++)
-    if (e->taken[i].applied) e->freedom_taken += e->taken[i].parameters;
+    if (e->taken[i].applied) e->dof_taken += e->taken[i].parameters;
   return FG_OK;
 }
 

@@ -33,9 +33,9 @@ static bool is_whole_plot(const fg_experiment *e, size_t term) {
 /* Standard deviation that a column is judged by, and its degrees of freedom. */
 static double error_of(const fg_experiment *e, bool whole_plot, double *dof) {
   const fg_split_plot *s = &e->split_plot;
-  *dof = (double)e->regression.residual_freedom;
-  if (!e->has_split_plot) return e->regression.residual_freedom ? e->regression.residual_sd : NAN;
-  *dof = (double)(whole_plot ? s->plot_freedom : s->run_freedom);
+  *dof = (double)e->regression.residual_dof;
+  if (!e->has_split_plot) return e->regression.residual_dof ? e->regression.residual_sd : NAN;
+  *dof = (double)(whole_plot ? s->plot_dof : s->run_dof);
   if (!(*dof > 0)) return NAN;
   return sqrt(whole_plot ? s->plot_ms : s->run_ms);
 }
@@ -63,9 +63,9 @@ static void judge_mixed(const fg_experiment *e, size_t j, double *row,
   const fg_split_plot *s = &e->split_plot;
   row[j] = 1;
   effect->standard_error = sqrt(mixed_variance(
-      e, row, false, effect->whole_plot ? s->taken_plots : s->taken_runs, &effect->freedom));
+      e, row, false, effect->whole_plot ? s->taken_plots : s->taken_runs, &effect->dof));
   row[j] = 0;
-  if (s->mixed->fixed_groups && effect->whole_plot) effect->standard_error = effect->freedom = NAN;
+  if (s->mixed->fixed_groups && effect->whole_plot) effect->standard_error = effect->dof = NAN;
 }
 
 /* The fit of the experiment becomes that of the restricted likelihood. */
@@ -100,7 +100,7 @@ static void fill_effect(const fg_experiment *e, size_t j, double *row,
                                    .low = c->low,
                                    .high = c->high};
   double variance = inverse_at(reg, j, j);
-  double sd = error_of(e, effect->whole_plot, &effect->freedom);
+  double sd = error_of(e, effect->whole_plot, &effect->dof);
   effect->relative_pct = c->term == FG_MODEL_CONSTANT ? NAN : fg_doe_relative_effect_pct(reg, j);
   if (c->aliased) return;
   effect->contrast = c->estimate / sqrt(variance * (double)reg->rows);
@@ -108,9 +108,9 @@ static void fill_effect(const fg_experiment *e, size_t j, double *row,
   effect->standard_error = sd * sqrt(variance);
   if (e->split_plot.mixed) judge_mixed(e, j, row, effect);
   effect->t = c->estimate / effect->standard_error;
-  effect->p_value = fg_distribution_t_two_sided(effect->t, effect->freedom);
+  effect->p_value = fg_distribution_t_two_sided(effect->t, effect->dof);
   double half =
-      effect->standard_error * fg_distribution_t_quantile((1 + e->confidence) / 2, effect->freedom);
+      effect->standard_error * fg_distribution_t_quantile((1 + e->confidence) / 2, effect->dof);
   effect->low = c->estimate - half;
   effect->high = c->estimate + half;
 }
@@ -148,7 +148,7 @@ static fg_status fill_effects(fg_context *ctx, fg_experiment *e) {
 static fg_status note_measurement(fg_context *ctx, fg_experiment *e) {
   const fg_regression *reg = &e->regression;
   if (!e->u) return FG_OK;
-  if (!reg->residual_freedom)
+  if (!reg->residual_dof)
     return fg_experiment_note(ctx, e,
                               "u_measurement is the part of a coefficient's standard error that "
                               "the measurement makes: the whole error is larger, by how much only "
@@ -192,15 +192,15 @@ static fg_status make_split_plot(fg_context *ctx, fg_experiment *e) {
   fg_formula_free(&formula);
   FG_TRY(status);
   e->has_split_plot = true;
-  if (e->freedom_taken)
-    FG_TRY(fg_split_plot_pay(ctx, &e->table, e->whole_plot, e->freedom_taken, e->taken_out,
-                             &e->split_plot));
-  if (!e->split_plot.plot_freedom)
+  if (e->dof_taken)
+    FG_TRY(fg_split_plot_subtract_dof(ctx, &e->table, e->whole_plot, e->dof_taken, e->taken_out,
+                                      &e->split_plot));
+  if (!e->split_plot.plot_dof)
     FG_TRY(fg_experiment_note(ctx, e,
                               "%zu whole plots leave no freedom for their error: what is constant "
                               "within them has no standard error; repeat whole plots",
                               e->split_plot.plots));
-  if (!e->split_plot.run_freedom)
+  if (!e->split_plot.run_dof)
     FG_TRY(fg_experiment_note(ctx, e, "no freedom is left for the error within whole plots"));
   return note_mixed(ctx, e);
 }
@@ -228,7 +228,7 @@ static fg_status make_lenth(fg_context *ctx, fg_experiment *e) {
   for (size_t j = 0; e->has_lenth && j < e->regression.columns; j++)
     if (is_of_interest(e, j))
       e->effect[j].lenth_p_value = fg_lenth_p_value(&e->lenth, e->effect[j].contrast);
-  if (e->regression.residual_freedom || count >= 3) return FG_OK;
+  if (e->regression.residual_dof || count >= 3) return FG_OK;
   return fg_experiment_note(ctx, e,
                             "fewer than three effects are too few for Lenth's method: leave terms "
                             "out, or repeat runs");
@@ -238,7 +238,7 @@ static fg_status make_box_cox(fg_context *ctx, fg_experiment *e) {
   const fg_extended *y = NULL;
   fg_context quiet = {0};
   FG_TRY(fg_table_numbers(ctx, &e->table, e->response, &y));
-  if (!e->regression.residual_freedom || e->table.rows > BOX_COX_RUNS || e->weight) return FG_OK;
+  if (!e->regression.residual_dof || e->table.rows > BOX_COX_RUNS || e->weight) return FG_OK;
   if (!(e->regression.residual_ss > 1e-24 * e->regression.total_ss)) return FG_OK;
   for (size_t i = 0; i < e->table.rows; i++)
     if (!(y[i].value > 0)) return FG_OK;
@@ -301,8 +301,8 @@ static void predict_mixed(const fg_experiment *e, const double *row, fg_predicti
   *p = (fg_prediction){0};
   for (size_t j = 0; j < e->regression.columns; j++)
     p->mean += row[j] * e->split_plot.mixed->estimate[j];
-  p->standard_error = sqrt(mixed_variance(e, row, false, e->freedom_taken, &dof));
-  p->run_standard_error = sqrt(mixed_variance(e, row, true, e->freedom_taken, &run_dof));
+  p->standard_error = sqrt(mixed_variance(e, row, false, e->dof_taken, &dof));
+  p->run_standard_error = sqrt(mixed_variance(e, row, true, e->dof_taken, &run_dof));
   if (e->split_plot.mixed->fixed_groups) p->standard_error = p->run_standard_error = NAN;
   fill_intervals(e, dof, run_dof, p);
 }

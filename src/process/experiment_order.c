@@ -15,7 +15,7 @@
 
 /* Of the null of the neighbours: p is known to 0.003 at the level it is told at, with the fewest to
  * 0.01. */
-enum { DRAWS_MOST = 1999, DRAWS_LEAST = 199 };
+enum { DRAWS_MAX = 1999, DRAWS_MIN = 199 };
 
 /* Draws end once so many lie on either side: p is known to a tenth of itself (Besag and Clifford
  * 1991), and far from the level. */
@@ -42,7 +42,8 @@ static const fg_column *order_column(const fg_experiment *e) {
     if (fg_table_find(NULL, &e->table, names[i], &column) != FG_OK) continue;
     for (size_t v = 0; v < e->model.formula.variables; v++)
       used = used || !strcmp(e->model.formula.variable[v].column, names[i]);
-    if (!used && !column->word_count && !column->missing_count && !column->doubt) return column;
+    if (!used && !column->word_count && !column->missing_count && !column->uncertainty)
+      return column;
   }
   return NULL;
 }
@@ -114,18 +115,18 @@ static void project_out(const checking *c, double *v) {
 static void check_drift(const checking *c, fg_order_check *order) {
   const fg_regression *r = &c->e->regression;
   double first = order->value[c->in_order[0]], last = order->value[c->in_order[c->rows - 1]];
-  double freedom = (double)r->residual_freedom - 1, *x = c->work, whole = 0;
+  double dof = (double)r->residual_dof - 1, *x = c->work, whole = 0;
   for (size_t i = 0; i < c->rows; i++) {
     x[i] = ((order->value[i] - first) / (last - first) - 0.5) * root_weight(c->e, i);
     whole += x[i] * x[i];
   }
   project_out(c, x);
   double left = fg_dot(x, x, c->rows);
-  if (!(freedom > 0) || !(left > 1e-9 * whole)) return; /* the model follows the order itself */
+  if (!(dof > 0) || !(left > 1e-9 * whole)) return; /* the model follows the order itself */
   order->drift = fg_dot(x, c->residual, c->rows) / left;
   double rest = fmax(0, r->residual_ss - order->drift * order->drift * left);
-  order->u_drift = sqrt(rest / freedom / left);
-  order->drift_p = fg_distribution_t_two_sided(order->drift / order->u_drift, freedom);
+  order->u_drift = sqrt(rest / dof / left);
+  order->drift_p = fg_distribution_t_two_sided(order->drift / order->u_drift, dof);
 }
 
 /* Correlation of neighbours in the order, about zero. */
@@ -159,13 +160,13 @@ static fg_status draw_neighbours(fg_context *ctx, const checking *c, int draws,
 
 static fg_status check_neighbours(fg_context *ctx, const checking *c, fg_order_check *order) {
   double squares = 0;
-  if (c->e->regression.residual_freedom < 2) return FG_OK;
+  if (c->e->regression.residual_dof < 2) return FG_OK;
   for (size_t i = 1; i < c->rows; i++)
     squares += pow(c->residual[c->in_order[i]] - c->residual[c->in_order[i - 1]], 2);
   order->durbin_watson = squares / fg_dot(c->residual, c->residual, c->rows);
   order->neighbours = neighbours(c, c->residual);
   double draws = WORK_OF_DRAWS / (2.0 * (double)c->rows * (double)(c->rank + 1));
-  if (draws >= DRAWS_LEAST) return draw_neighbours(ctx, c, (int)fmin(draws, DRAWS_MOST), order);
+  if (draws >= DRAWS_MIN) return draw_neighbours(ctx, c, (int)fmin(draws, DRAWS_MAX), order);
   /* So many runs: normal with variance 1 / runs (Box and Jenkins 1970). */
   order->neighbours_p = erfc(fabs(order->neighbours) * sqrt((double)c->rows / 2));
   return FG_OK;
@@ -178,11 +179,10 @@ static void check_farthest(const checking *c, fg_order_check *order) {
       order->farthest = i;
       order->farthest_t = r->external[i];
     }
-  if (isnan(order->farthest_t) || r->residual_freedom < 2) return;
-  double one =
-      isinf(order->farthest_t)
-          ? 0
-          : fg_distribution_t_two_sided(order->farthest_t, (double)r->residual_freedom - 1);
+  if (isnan(order->farthest_t) || r->residual_dof < 2) return;
+  double one = isinf(order->farthest_t)
+                   ? 0
+                   : fg_distribution_t_two_sided(order->farthest_t, (double)r->residual_dof - 1);
   order->farthest_p = fmin(1, one * (double)c->rows);
 }
 
@@ -218,7 +218,7 @@ static fg_status check(fg_context *ctx, checking *c, fg_experiment *e) {
 fg_status fg_experiment_check_order(fg_context *ctx, fg_experiment *e) {
   checking c = {.e = e, .rows = e->regression.rows};
   const fg_regression *r = &e->regression;
-  if (e->has_split_plot || !r->residual_freedom || !(r->residual_ss > 1e-24 * r->total_ss))
+  if (e->has_split_plot || !r->residual_dof || !(r->residual_ss > 1e-24 * r->total_ss))
     return FG_OK;
   if ((double)r->rows * (double)r->columns * (double)r->columns > WORK_OF_BASIS)
     return fg_experiment_note(

@@ -31,7 +31,7 @@ static bool holds_any(const fg_experiment *e, size_t column, const bool *variabl
 
 /* A coefficient that is aliased or has no error cannot speak for its factor. */
 static bool is_suspect(const fg_experiment *e, size_t variable) {
-  bool lenth = !e->regression.residual_freedom;
+  bool lenth = !e->regression.residual_dof;
   if (variable == e->block_variable) return false;
   for (size_t j = 0; j < e->regression.columns; j++) {
     if (!holds(e, j, variable)) continue;
@@ -79,12 +79,12 @@ static fg_status joint_p(fg_context *ctx, const fg_experiment *e, const bool *va
   gsl_matrix *c = NULL;
   gsl_vector *t = NULL, *x = NULL;
   *p_value = NAN;
-  if (!e->regression.residual_freedom) return FG_OK;
+  if (!e->regression.residual_dof) return FG_OK;
   FG_TRY(fg_memory_allocate(ctx, e->regression.columns, sizeof *column, (void **)&column));
   for (size_t j = 0; j < e->regression.columns; j++) {
     if (!holds_any(e, j, variable)) continue;
     column[count++] = j;
-    dof = fmin(dof, e->effect[j].freedom);
+    dof = fmin(dof, e->effect[j].dof);
   }
   c = count ? gsl_matrix_alloc(count, count) : NULL;
   t = count ? gsl_vector_alloc(count) : NULL;
@@ -112,7 +112,7 @@ static fg_status next_to_leave(fg_context *ctx, const fg_experiment *e, const su
     memcpy(with, s->left, sizeof with);
     with[v] = true;
     FG_TRY(joint_p(ctx, e, with, &p_value));
-    if (!e->regression.residual_freedom) p_value = 1;
+    if (!e->regression.residual_dof) p_value = 1;
     if (!(p_value >= max_p)) continue;
     max_p = p_value;
     *next = v;

@@ -5,7 +5,7 @@
 #include "process/experiment_parts.h"
 
 /* Steps that are tried on each side of the optimum: next to a border the nearest may be outside. */
-enum { REACH = 2, SIDES = 2 * REACH, TRIED_MOST = 1 << 16 };
+enum { REACH = 2, SIDES = 2 * REACH, TRIED_MAX = 1 << 16 };
 
 static const fg_factor *factor_of(const fg_experiment *e, size_t k) {
   for (size_t f = 0; f < e->factors; f++)
@@ -53,15 +53,15 @@ static double cost_of(const fg_experiment *e, double value) {
 }
 
 static bool find_best(const fg_experiment *e, size_t tried, double *best) {
-  double least = INFINITY, x[FG_SURFACE_FACTORS];
+  double min = INFINITY, x[FG_SURFACE_FACTORS];
   for (size_t i = 0; i < tried; i++) {
     combine(e, i, x);
     double cost = cost_of(e, fg_surface_value(&e->surface, x));
-    if (!(cost < least) || !fg_region_contains(&e->region, x, 1e-9)) continue;
-    least = cost;
+    if (!(cost < min) || !fg_region_contains(&e->region, x, 1e-9)) continue;
+    min = cost;
     memcpy(best, x, sizeof x);
   }
-  return isfinite(least);
+  return isfinite(min);
 }
 
 fg_status fg_experiment_round(fg_context *ctx, const fg_experiment_options *options,
@@ -70,7 +70,7 @@ fg_status fg_experiment_round(fg_context *ctx, const fg_experiment_options *opti
   FG_TRY(find_steps(ctx, options, e));
   if (!e->has_rounded) return FG_OK;
   for (size_t k = 0; k < e->surface.factors; k++)
-    if (e->step[k] > 0) tried = tried > TRIED_MOST / SIDES ? TRIED_MOST : tried * SIDES;
+    if (e->step[k] > 0) tried = tried > TRIED_MAX / SIDES ? TRIED_MAX : tried * SIDES;
   e->has_rounded = find_best(e, tried, e->rounded.x);
   if (!e->has_rounded && e->reduced) return FG_OK;
   if (!e->has_rounded)

@@ -25,7 +25,7 @@ static fg_status fit_with(fg_context *ctx, fg_experiment *e, const fg_extended *
                           double process_sd, double median, fg_regression *fit) {
   const fg_regression_options options = {.confidence = e->confidence,
                                          .weights = e->weight,
-                                         .freedom_taken = e->freedom_taken,
+                                         .dof_taken = e->dof_taken,
                                          .taken = e->taken_out};
   double typical = process_sd * process_sd + median * median;
   for (size_t i = 0; i < e->model.rows; i++)
@@ -64,7 +64,7 @@ fg_status fg_experiment_weigh(fg_context *ctx, fg_experiment *e, const fg_extend
   size_t rows = e->model.rows;
   fg_regression weighted = {0};
   e->process_sd = NAN;
-  if (!e->u || !e->regression.residual_freedom || rows > RUNS_MAX) return FG_OK;
+  if (!e->u || !e->regression.residual_dof || rows > RUNS_MAX) return FG_OK;
   for (size_t i = 0; i < rows; i++)
     largest = fmax(largest, e->u[i]);
   FG_TRY(median_u(ctx, e, &median));

@@ -31,17 +31,17 @@ static fg_status note_rounded(fg_context *ctx, const fg_plan *plan, size_t k, ch
 }
 
 static fg_status note_below_zero(fg_context *ctx, const fg_plan *plan, size_t k, char **text) {
-  double least = INFINITY;
+  double min = INFINITY;
   if (!(plan->low[k] > 0 && plan->high[k] > 0)) return FG_OK;
   for (size_t i = 0; i < plan->runs; i++)
-    least = fmin(least, fg_plan_setting(plan, i, k));
-  if (least >= 0) return FG_OK;
+    min = fmin(min, fg_plan_setting(plan, i, k));
+  if (min >= 0) return FG_OK;
   double low = fmin(plan->low[k], plan->high[k]), high = fmax(plan->low[k], plan->high[k]);
   return fg_text_append(
       ctx, text,
       "%s: an axial run is at %.6g, below 0: if that cannot be set, take --axial below %.3g, or "
       "levels closer together\n",
-      plan->name[k], least, floor(200 * low / (high - low) + 100) / 100);
+      plan->name[k], min, floor(200 * low / (high - low) + 100) / 100);
 }
 
 fg_status fg_plan_notes(fg_context *ctx, const fg_plan *plan, char **text) {

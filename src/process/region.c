@@ -11,7 +11,7 @@
 #include "foilgauge/surface.h"
 
 enum {
-  MOST = FG_SURFACE_FACTORS,
+  MAX = FG_SURFACE_FACTORS,
   SETS = FG_REGION_PLANES + 2,
   SCATTERED = 2048, /* points that are looked at */
   STARTS = 24,      /* of these, where a walk starts */
@@ -66,9 +66,9 @@ static void project_on(const fg_region *r, size_t set, double *x) {
  * point may stand still for many sweeps while what is given back still changes, so only when that
  * has settled is it done (Birgin and Raydan 2005). */
 static void project(const fg_region *r, double *x) {
-  double given[SETS][MOST] = {{0}}, before[MOST];
+  double given[SETS][MAX] = {{0}}, before[MAX];
   size_t sets = r->planes + 2;
-  double settled = 1e-13 * size_of(r);
+  double converged = 1e-13 * size_of(r);
   if (fg_region_contains(r, x, 0)) return;
   for (int sweep = 0; sweep < SWEEPS; sweep++) {
     double change = 0;
@@ -81,7 +81,7 @@ static void project(const fg_region *r, double *x) {
         given[s][i] = before[i] - x[i];
       }
     }
-    if (change <= settled) return;
+    if (change <= converged) return;
   }
 }
 
@@ -90,7 +90,7 @@ fg_status fg_region_project(fg_context *ctx, const fg_region *region, double *x)
   for (size_t i = 0; i < region->factors; i++)
     bounded =
         bounded && region->low[i] <= region->high[i] && isfinite(region->high[i] - region->low[i]);
-  double point[MOST] = {0};
+  double point[MAX] = {0};
   memcpy(point, x, region->factors * sizeof *x);
   if (bounded) project(region, point);
   if (!bounded || !fg_region_contains(region, point, 1e-6 * fmax(size_of(region), 1e-300)))
@@ -124,7 +124,7 @@ static void gradient(const objective *o, const double *x, double *slope) {
  * success and halves after a failure. */
 static double walk(const objective *o, const fg_region *r, double *x) {
   size_t n = r->factors;
-  double here = cost(o, x), slope[MOST], next[MOST] = {0}, size = size_of(r);
+  double here = cost(o, x), slope[MAX], next[MAX] = {0}, size = size_of(r);
   gradient(o, x, slope);
   double steepness = sqrt(fg_dot(slope, slope, n));
   double step = steepness > 0 ? 0.5 * size / steepness : 0;
@@ -158,14 +158,14 @@ static double halton(size_t index, unsigned base) {
 }
 
 static void scattered_point(const fg_region *r, size_t index, double *x) {
-  static const unsigned primes[MOST] = {2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37};
+  static const unsigned primes[MAX] = {2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37};
   for (size_t i = 0; i < r->factors; i++)
     x[i] = r->low[i] + (r->high[i] - r->low[i]) * halton(index + 1, primes[i]);
   project(r, x);
 }
 
 typedef struct start {
-  double cost, x[MOST];
+  double cost, x[MAX];
 } start;
 
 /* Keeps the best STARTS, best first. */

@@ -96,11 +96,10 @@ static void judge_terms(fg_split_plot *result) {
   for (size_t t = 0; t < result->terms; t++) {
     fg_split_plot_term *term = &result->term[t];
     double error = term->whole_plot ? result->plot_ms : result->run_ms;
-    size_t freedom = term->whole_plot ? result->plot_freedom : result->run_freedom;
+    size_t dof = term->whole_plot ? result->plot_dof : result->run_dof;
     term->row.f = term->row.mean_square / error;
-    term->error_freedom = (double)freedom;
-    term->row.p_value =
-        fg_distribution_f_upper(term->row.f, (double)term->row.freedom, (double)freedom);
+    term->error_dof = (double)dof;
+    term->row.p_value = fg_distribution_f_upper(term->row.f, (double)term->row.dof, (double)dof);
   }
 }
 
@@ -113,8 +112,8 @@ static void find_variance(size_t rows, fg_split_plot *result) {
   result->at_border = excess <= 0;
 }
 
-fg_status fg_split_plot_pay(fg_context *ctx, const fg_table *table, const char *plot,
-                            size_t freedom, const double *taken, fg_split_plot *result) {
+fg_status fg_split_plot_subtract_dof(fg_context *ctx, const fg_table *table, const char *plot,
+                                     size_t dof, const double *taken, fg_split_plot *result) {
   fg_levels plots = {0};
   double *first = NULL;
   bool whole = true;
@@ -127,16 +126,16 @@ fg_status fg_split_plot_pay(fg_context *ctx, const fg_table *table, const char *
   free(first);
   fg_levels_free(&plots);
   FG_TRY(status);
-  size_t *left = whole ? &result->plot_freedom : &result->run_freedom;
-  if (*left && *left <= freedom)
+  size_t *left = whole ? &result->plot_dof : &result->run_dof;
+  if (*left && *left <= dof)
     return fg_fail(ctx, FG_ERR_DATA,
                    "%zu parameters were taken out before, and the error of the %s has %zu degrees "
                    "of freedom: none is left to judge by; add runs",
-                   freedom, whole ? "whole plots" : "runs", *left);
-  if (*left) *left -= freedom;
-  *(whole ? &result->taken_plots : &result->taken_runs) += freedom;
-  if (result->plot_freedom) result->plot_ms = result->plot_ss / (double)result->plot_freedom;
-  if (result->run_freedom) result->run_ms = result->run_ss / (double)result->run_freedom;
+                   dof, whole ? "whole plots" : "runs", *left);
+  if (*left) *left -= dof;
+  *(whole ? &result->taken_plots : &result->taken_runs) += dof;
+  if (result->plot_dof) result->plot_ms = result->plot_ss / (double)result->plot_dof;
+  if (result->run_dof) result->run_ms = result->run_ss / (double)result->run_dof;
   find_variance(table->rows, result);
   judge_terms(result);
   return FG_OK;
@@ -147,10 +146,10 @@ static fg_status read_strata(fg_context *ctx, const strata *s, const fg_regressi
   const fg_anova_row *plots = &reg->sequential[TERM_PLOTS];
   size_t terms = s->model->formula.terms;
   result->plots = s->plots->count;
-  result->plot_freedom = plots->freedom;
+  result->plot_dof = plots->dof;
   result->plot_ss = plots->sum_of_squares;
-  result->plot_ms = plots->freedom ? plots->mean_square : NAN;
-  result->run_freedom = reg->residual_freedom;
+  result->plot_ms = plots->dof ? plots->mean_square : NAN;
+  result->run_dof = reg->residual_dof;
   result->run_ss = reg->residual_ss;
   result->run_ms = reg->residual_sd * reg->residual_sd;
   find_variance(reg->rows, result);
@@ -170,10 +169,10 @@ static fg_status test_term(fg_context *ctx, const fg_model *model, const fg_mixe
     if (model->column[j].term != FG_MODEL_CONSTANT && !ols->coefficient[j].aliased &&
         !strcmp(model->term_name[model->column[j].term], term->row.name))
       column[count++] = j;
-  term->row.freedom = count;
+  term->row.dof = count;
   term->row.sum_of_squares = term->row.mean_square = NAN;
-  FG_TRY(fg_mixed_test(ctx, mixed, column, count, &term->row.f, &term->error_freedom));
-  term->row.p_value = fg_distribution_f_upper(term->row.f, (double)count, term->error_freedom);
+  FG_TRY(fg_mixed_test(ctx, mixed, column, count, &term->row.f, &term->error_dof));
+  term->row.p_value = fg_distribution_f_upper(term->row.f, (double)count, term->error_dof);
   return FG_OK;
 }
 
@@ -186,7 +185,7 @@ static fg_status test_terms(fg_context *ctx, const fg_model *model, const fg_reg
     fg_split_plot_term *term = &result->term[t];
     if (term->whole_plot && result->mixed->fixed_groups)
       term->row.f = term->row.p_value = term->row.sum_of_squares = term->row.mean_square =
-          term->error_freedom = NAN;
+          term->error_dof = NAN;
     else
       status = test_term(ctx, model, result->mixed, ols, column, term);
   }
@@ -201,12 +200,12 @@ static fg_status fit_mixed(fg_context *ctx, const strata *s, const fg_extended *
   fg_context unused = {0};
   bool orthogonal = true;
   fg_status status = FG_OK;
-  if (!result->run_freedom) return FG_OK;
+  if (!result->run_dof) return FG_OK;
   FG_TRY_EXIT(fg_regression_fit(ctx, s->model, y, NULL, &ols));
   FG_TRY_EXIT(fg_mixed_is_orthogonal(ctx, s->model, s->plots, &ols, &orthogonal));
   if (orthogonal) goto exit;
   FG_TRY_EXIT(fg_memory_allocate(ctx, 1, sizeof *result->mixed, (void **)&result->mixed));
-  status = fg_mixed_fit(&unused, s->model, s->plots, &ols, !result->plot_freedom, result->mixed);
+  status = fg_mixed_fit(&unused, s->model, s->plots, &ols, !result->plot_dof, result->mixed);
   if (status == FG_ERR_MEMORY) FG_TRY_EXIT(fg_fail(ctx, status, "out of memory"));
   if (status != FG_OK) { /* a fit without scatter */
     free(result->mixed);

@@ -6,7 +6,7 @@
 
 #include "core/memory.h"
 
-enum { MOST = FG_SURFACE_FACTORS };
+enum { MAX = FG_SURFACE_FACTORS };
 
 /* Below this share of the largest curvature there is no telling a ridge from a slope. */
 static const double FLAT = 1e-9;
@@ -20,7 +20,7 @@ static fg_status factor_of(fg_context *ctx, const fg_model *model, size_t variab
   if (v->transform != FG_TRANSFORM_NONE)
     return fg_fail(ctx, FG_ERR_USAGE,
                    "the model holds %s: a response surface needs the plain factors", v->name);
-  if (s->factors == MOST)
+  if (s->factors == MAX)
     return fg_fail(ctx, FG_ERR_USAGE, "more than 12 numeric factors in the response surface");
   s->variable[s->factors++] = variable;
   return FG_OK;
@@ -187,8 +187,8 @@ static bool eliminate(double *matrix, double *right, size_t n) {
 /* The stationary point over the free factors, the others held; false when singular. */
 static bool face_point(const fg_surface *s, const hold *holds, const double *low,
                        const double *high, double *x) {
-  double matrix[MOST * MOST], right[MOST];
-  size_t free_factor[MOST], n = 0;
+  double matrix[MAX * MAX], right[MAX];
+  size_t free_factor[MAX], n = 0;
   for (size_t i = 0; i < s->factors; i++) {
     if (holds[i] == HOLD_FREE)
       free_factor[n++] = i;
@@ -230,8 +230,8 @@ static bool next_face(hold *holds, size_t factors) {
 
 fg_status fg_surface_optimum_box(fg_context *ctx, const fg_surface *s, bool highest,
                                  const double *low, const double *high, double *x) {
-  hold holds[MOST] = {HOLD_FREE};
-  double candidate[MOST], best = INFINITY;
+  hold holds[MAX] = {HOLD_FREE};
+  double candidate[MAX], best = INFINITY;
   for (size_t i = 0; i < s->factors; i++)
     if (!(low[i] <= high[i]) || !isfinite(low[i]) || !isfinite(high[i]))
       return fg_fail(ctx, FG_ERR_USAGE, "the region is empty or not bounded: %.15g to %.15g",

@@ -105,9 +105,9 @@ static void widen_all(fg_measurement *m) {
 
 static fg_status find_source(fg_context *ctx, const fg_measurement *same, const double stretch[2],
                              size_t source, unsigned threads, fg_measurement *m) {
-  double most = fmax(fabs(stretch[0]), fabs(stretch[1])), share = most / step;
+  double max = fmax(fabs(stretch[0]), fabs(stretch[1])), share = max / step;
   fg_measurement other;
-  if (most == 0) return FG_OK;
+  if (max == 0) return FG_OK;
   const double factor[2] = {1 + stretch[0] / share, 1 + stretch[1] / share};
   FG_TRY(fg_measure_stretched(ctx, m, factor, threads, &other));
   take_all(same, &other, share, source, m);

@@ -1,7 +1,7 @@
 #include "quantity/parts.h"
 
-fg_quantity_owner fg_form_parts(fg_form form) {
-  return form == FG_FORM_CANTILEVER ? FG_QUANTITY_OF_BEAM : FG_QUANTITY_OF_BUMP;
+fg_quantity_owner fg_foil_kind_parts(fg_foil_kind kind) {
+  return kind == FG_FOIL_CANTILEVER ? FG_QUANTITY_OF_BEAM : FG_QUANTITY_OF_BUMP;
 }
 
 bool fg_owner_is_part(fg_quantity_owner owner) {

@@ -13,7 +13,7 @@ typedef struct fg_foil_part {
 } fg_foil_part;
 
 /* What the parts of a form are. */
-fg_quantity_owner fg_form_parts(fg_form form);
+fg_quantity_owner fg_foil_kind_parts(fg_foil_kind kind);
 bool fg_owner_is_part(fg_quantity_owner owner);
 
 /* "bump", "beam". */

@@ -19,12 +19,12 @@ const fg_quantity *fg_quantities(fg_quantity_owner owner, size_t *count) {
   return tables[owner]->rows;
 }
 
-bool fg_quantity_applies(fg_quantity_owner owner, const fg_quantity *quantity, fg_form form) {
-  if (owner == FG_QUANTITY_OF_BEAM || form == FG_FORM_CANTILEVER)
-    return form == FG_FORM_CANTILEVER &&
+bool fg_quantity_applies(fg_quantity_owner owner, const fg_quantity *quantity, fg_foil_kind kind) {
+  if (owner == FG_QUANTITY_OF_BEAM || kind == FG_FOIL_CANTILEVER)
+    return kind == FG_FOIL_CANTILEVER &&
            (owner == FG_QUANTITY_OF_BEAM ||
             (owner == FG_QUANTITY_OF_FOIL && quantity->uses & FG_QUANTITY_OF_FLAT));
-  if (form == FG_FORM_ARC) return owner == FG_QUANTITY_OF_FOIL;
+  if (kind == FG_FOIL_ARC) return owner == FG_QUANTITY_OF_FOIL;
   return !(quantity->uses & FG_QUANTITY_OF_ARC);
 }
 
@@ -103,12 +103,12 @@ static bool reads_before(const fg_quantity *a, const fg_quantity *b) {
   return a->rank && (!b->rank || a->rank < b->rank);
 }
 
-size_t fg_quantity_shown(fg_quantity_owner owner, fg_quantity_use use, fg_form form,
+size_t fg_quantity_shown(fg_quantity_owner owner, fg_quantity_use use, fg_foil_kind kind,
                          const fg_quantity *shown[FG_QUANTITY_SHOWN_MAX]) {
   size_t count, used = 0;
   const fg_quantity *rows = fg_quantities(owner, &count);
   for (size_t i = 0; i < count && used < FG_QUANTITY_SHOWN_MAX; i++) {
-    if (!(rows[i].uses & use) || !fg_quantity_applies(owner, &rows[i], form)) continue;
+    if (!(rows[i].uses & use) || !fg_quantity_applies(owner, &rows[i], kind)) continue;
     size_t at = used++;
     for (; at > 0 && reads_before(&rows[i], shown[at - 1]); at--)
       shown[at] = shown[at - 1];
@@ -127,12 +127,13 @@ void fg_quantity_column(const fg_quantity *quantity, size_t k, char *text, size_
                  k % values ? 'y' : 'x', unit);
 }
 
-void fg_quantity_list(fg_quantity_owner owner, fg_form form, bool counts, char *text, size_t size) {
+void fg_quantity_list(fg_quantity_owner owner, fg_foil_kind kind, bool counts, char *text,
+                      size_t size) {
   size_t count;
   const fg_quantity *rows = fg_quantities(owner, &count);
   for (size_t i = 0; i < count; i++) {
     size_t used = strlen(text);
-    if (!fg_quantity_applies(owner, &rows[i], form)) continue;
+    if (!fg_quantity_applies(owner, &rows[i], kind)) continue;
     if (rows[i].kind == FG_QUANTITY_NUMBER || (counts && rows[i].kind == FG_QUANTITY_COUNT))
       fg_text_clip(text + used, size - used, "%s%s", used ? ", " : "", rows[i].name);
   }

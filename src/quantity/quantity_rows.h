@@ -16,7 +16,7 @@ bool fg_quantity_has_u(const fg_quantity *quantity);
 
 /* The rows of one use that parts of a form have, as people read them: by rank, those without one
  * behind. Their number. */
-size_t fg_quantity_shown(fg_quantity_owner owner, fg_quantity_use use, fg_form form,
+size_t fg_quantity_shown(fg_quantity_owner owner, fg_quantity_use use, fg_foil_kind kind,
                          const fg_quantity *shown[FG_QUANTITY_SHOWN_MAX]);
 
 /* Values of a row: two of a pair, else one. */
@@ -36,7 +36,8 @@ void fg_quantity_restore(const fg_quantity *quantity, void *object,
 void fg_quantity_column(const fg_quantity *quantity, size_t k, char *text, size_t size);
 
 /* The values that can be judged, for a message: "radius_mm, ..."; appended. Counts too. */
-void fg_quantity_list(fg_quantity_owner owner, fg_form form, bool counts, char *text, size_t size);
+void fg_quantity_list(fg_quantity_owner owner, fg_foil_kind kind, bool counts, char *text,
+                      size_t size);
 
 /* What widens an object: how far each value that has an uncertainty would lie elsewhere, one after
  * the other, two of a pair. How many they are. */

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 
-enum { ROWS_MOST = 1000 };
+enum { ROWS_MAX = 1000 };
 
 /* The array of a member, NULL without; too long or none: refused. */
 static fg_status find_array(const fg_place *place, const cJSON *scanner, const char *name,
@@ -18,7 +18,7 @@ static fg_status read_rows(const fg_place *place, const cJSON *scanner,
                            fg_jump_requests *requests) {
   static const fg_member table[] = {
       {"y_mm", FG_MEMBER_NUMBER, offsetof(fg_rows_lost, y_mm), 0, 10000},
-      {"count", FG_MEMBER_INTEGER, offsetof(fg_rows_lost, count), -ROWS_MOST, ROWS_MOST},
+      {"count", FG_MEMBER_INTEGER, offsetof(fg_rows_lost, count), -ROWS_MAX, ROWS_MAX},
       {0}};
   const cJSON *array, *item;
   FG_TRY(find_array(place, scanner, "rows_lost", &array));
@@ -61,7 +61,7 @@ static fg_status read_stitches(const fg_place *place, const cJSON *scanner,
                                fg_jump_requests *requests) {
   static const fg_member table[] = {
       {"y_mm", FG_MEMBER_NUMBER, offsetof(fg_stitch, y_mm), 0, 10000},
-      {"rows", FG_MEMBER_INTEGER, offsetof(fg_stitch, rows), -ROWS_MOST, ROWS_MOST},
+      {"rows", FG_MEMBER_INTEGER, offsetof(fg_stitch, rows), -ROWS_MAX, ROWS_MAX},
       {"shift_um", FG_MEMBER_NUMBER, offsetof(fg_stitch, shift_um), -500, 500},
       {0}};
   const cJSON *array, *item;

@@ -43,12 +43,12 @@ fg_status fg_member_number(const fg_place *place, const char *name, const cJSON 
 }
 
 fg_status fg_member_numbers(const fg_place *place, const char *name, const cJSON *item, double low,
-                            double high, int least, int most, double *values, int *count) {
+                            double high, int min, int max, double *values, int *count) {
   char what[96];
-  snprintf(what, sizeof what, "must be an array of %d to %d numbers", least, most);
+  snprintf(what, sizeof what, "must be an array of %d to %d numbers", min, max);
   if (!cJSON_IsArray(item)) return fg_member_fail(place, name, item, what);
   int size = cJSON_GetArraySize(item);
-  if (size < least || size > most) return fg_member_fail(place, name, item, what);
+  if (size < min || size > max) return fg_member_fail(place, name, item, what);
   int index = 0;
   const cJSON *entry;
   cJSON_ArrayForEach(entry, item) {

@@ -49,7 +49,7 @@ fg_status fg_member_number(const fg_place *place, const char *name, const cJSON 
 
 /* An array of numbers; *count is what it has, at least `least`, at most `most`. */
 fg_status fg_member_numbers(const fg_place *place, const char *name, const cJSON *item, double low,
-                            double high, int least, int most, double *values, int *count);
+                            double high, int min, int max, double *values, int *count);
 
 /* One of two words, as its number; absent: *choice stays. */
 fg_status fg_member_choice(const fg_place *place, const cJSON *object, const char *name,

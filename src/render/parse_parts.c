@@ -36,9 +36,9 @@ static fg_status read_design(const fg_place *place, const cJSON *object, fg_rend
   design->sleeve_radius_mm = NAN;
   FG_TRY(fg_members_read(place, object, table, design));
   if (isnan(design->sleeve_radius_mm)) design->sleeve_radius_mm = design->overall_radius_mm;
-  const cJSON *form = fg_spec_member(object, "form");
-  design->arc = cJSON_IsString(form) && !strcmp(form->valuestring, "arc");
-  design->cantilever = cJSON_IsString(form) && !strcmp(form->valuestring, "cantilever");
+  const cJSON *kind = fg_spec_member(object, "form");
+  design->arc = cJSON_IsString(kind) && !strcmp(kind->valuestring, "arc");
+  design->cantilever = cJSON_IsString(kind) && !strcmp(kind->valuestring, "cantilever");
   if (design->arc || design->cantilever) design->bump_count = 0;
   return FG_OK;
 }
@@ -182,8 +182,8 @@ static fg_status read_foil(const fg_place *place, const cJSON *foil, fg_foil_req
   const cJSON *design = fg_spec_member(foil, "design");
   fg_place inside = fg_place_inside(place, "design");
   if (design) FG_TRY(read_design(&inside, design, &request->design));
-  const cJSON *form = fg_spec_member(design, "form");
-  if (cJSON_IsString(form) && !strcmp(form->valuestring, "sinusoidal")) request->has_lip = false;
+  const cJSON *kind = fg_spec_member(design, "form");
+  if (cJSON_IsString(kind) && !strcmp(kind->valuestring, "sinusoidal")) request->has_lip = false;
   if (request->design.arc) request->has_lip = false;
   FG_TRY(fg_spec_read_beams(place, foil, request));
   FG_TRY(read_lip(place, fg_spec_member(foil, "lip"), request));

@@ -5,7 +5,7 @@
 
 #include "render/parse.h"
 
-static const double LEAST_BLUR_PX = 0.4; /* sampling at three per pixel smooths with 0.3 */
+static const double MIN_BLUR_PX = 0.4; /* sampling at three per pixel smooths with 0.3 */
 
 static fg_status read_litter(const fg_place *place, const cJSON *parent, const char *name,
                              fg_litter *litter) {
@@ -134,13 +134,13 @@ static fg_status check_blur(const fg_place *place, const cJSON *object, const fg
   for (int axis = 0; axis < 2; axis++) {
     bool turned = scanner->blur_angle_deg != 0;
     double finest = fmax(dpi[0], dpi[1]);
-    double least = LEAST_BLUR_PX * (turned ? finest : dpi[axis]) / coarsest;
+    double min = MIN_BLUR_PX * (turned ? finest : dpi[axis]) / coarsest;
     char what[96];
-    snprintf(what, sizeof what, "must be at least %g along %s at these resolutions", least,
+    snprintf(what, sizeof what, "must be at least %g along %s at these resolutions", min,
              turned ? "both axes"
              : axis ? "y"
                     : "x");
-    if (scanner->blur_px[axis] < least)
+    if (scanner->blur_px[axis] < min)
       return fg_member_fail(place, "blur_px", fg_spec_member(object, "blur_px"), what);
   }
   return FG_OK;
@@ -203,7 +203,7 @@ fg_status fg_spec_read_scanner(const fg_place *place, const cJSON *object, fg_sc
                                 &scanner->colour);
   FG_TRY(fg_members_read(place, object, table, scanner));
   FG_TRY(read_axes(place, object, "dpi", 50, 20000, scanner->dpi));
-  FG_TRY(read_axes(place, object, "blur_px", LEAST_BLUR_PX, 10, scanner->blur_px));
+  FG_TRY(read_axes(place, object, "blur_px", MIN_BLUR_PX, 10, scanner->blur_px));
   FG_TRY(read_resampling(place, object, scanner));
   FG_TRY(check_blur(place, object, scanner));
   FG_TRY(fg_jumps_read(place, object, &scanner->jumps));

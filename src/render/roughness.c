@@ -182,7 +182,7 @@ exit:
 /* A disc has one edge, which scatters by both. */
 fg_status fg_roughness_build_disc(fg_context *ctx, const fg_render_spec *spec, size_t disc,
                                   fg_shape *shape) {
-  enum { LEAST_COUNT = 8 };
+  enum { MIN_COUNT = 8 };
   double sd = 1e-3 * hypot(spec->scanner.edge_roughness_um, spec->scanner.edge_common_um);
   if (sd <= 0) return FG_OK;
   fg_status status = FG_OK;
@@ -190,7 +190,7 @@ fg_status fg_roughness_build_disc(fg_context *ctx, const fg_render_spec *spec, s
   fg_random_seed(&random, spec->seed, FG_STREAM_ROUGHNESS, FG_RENDER_FOILS_MAX + disc);
   sequence q = describe(spec, true);
   double round_mm = 2 * pi * shape->radius;
-  q.count = (size_t)fmax(LEAST_COUNT, ceil(round_mm / q.step_mm));
+  q.count = (size_t)fmax(MIN_COUNT, ceil(round_mm / q.step_mm));
   q.step_mm = round_mm / (double)q.count;
   FG_TRY_EXIT(prepare(ctx, &q));
   FG_TRY_EXIT(fg_memory_allocate(ctx, q.count + 4, sizeof(float), (void **)&shape->roughness));

@@ -242,18 +242,18 @@ static void scatter_litter(fg_render_spec *spec, const fg_litter *litter, fg_ran
   }
 }
 
-int fg_scene_most_bumps(const fg_render_spec *spec) {
-  int most = 0;
+int fg_scene_max_bumps(const fg_render_spec *spec) {
+  int max = 0;
   for (size_t i = 0; i < spec->request_count; i++)
-    if (spec->requests[i].design.bump_count > most) most = spec->requests[i].design.bump_count;
-  return most;
+    if (spec->requests[i].design.bump_count > max) max = spec->requests[i].design.bump_count;
+  return max;
 }
 
 /* A bump that is raised by its number is there on some foil. */
 static fg_status check_lifts(const fg_place *place, const fg_render_spec *spec) {
-  int most = fg_scene_most_bumps(spec);
+  int max = fg_scene_max_bumps(spec);
   for (size_t i = 0; i < spec->effects.count; i++)
-    if (spec->effects.effects[i].lift.last > most)
+    if (spec->effects.effects[i].lift.last > max)
       return fg_fail(place->ctx, FG_ERR_DATA,
                      "%s: effects[%zu] raises bump %d: no foil has so many", place->path, i,
                      spec->effects.effects[i].lift.last);

@@ -201,7 +201,7 @@ typedef enum fg_random_stream {
 fg_status fg_scene_build(const fg_place *place, fg_render_spec *spec);
 void fg_scene_free(fg_scene *scene);
 
-int fg_scene_most_bumps(const fg_render_spec *spec); /* of a foil, as designed */
+int fg_scene_max_bumps(const fg_render_spec *spec); /* of a foil, as designed */
 
 /* Point at distance t along a segment. */
 fg_point fg_segment_point(const fg_segment *segment, double t_mm);

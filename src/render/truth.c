@@ -238,7 +238,7 @@ static void put_effects(fg_json *json, const fg_render_spec *spec) {
     for (int k = 0; k < FG_RENDER_EFFECT_PARAMETERS_MAX && effect->row->parameters[k].name; k++)
       fg_json_number(json, effect->row->parameters[k].name, effect->p[k]);
     if (effect->row->curve) put_curve(json, effect);
-    if (effect->target == FG_RENDER_EFFECT_LIFT) put_lift(json, effect, fg_scene_most_bumps(spec));
+    if (effect->target == FG_RENDER_EFFECT_LIFT) put_lift(json, effect, fg_scene_max_bumps(spec));
     fg_json_object_end(json);
   }
   for (size_t i = 0; i < list->jumps.count; i++)

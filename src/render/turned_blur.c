@@ -57,7 +57,7 @@ static double weight_at(const covariance *v, double motion, double x, double y) 
 /* Weights below the negligible are 0, the others sum to 1. */
 static void fill_weights(fg_turned_blur *blur, const covariance *v, double motion) {
   int columns = 2 * blur->taps[0] + 1, rows = 2 * blur->taps[1] + 1;
-  double least = NEGLIGIBLE * weight_at(v, motion, 0, 0), sum = 0;
+  double min = NEGLIGIBLE * weight_at(v, motion, 0, 0), sum = 0;
   for (int pass = 0; pass < 2; pass++)
     for (int j = 0; j < rows; j++)
       for (int i = 0; i < columns; i++) {
@@ -68,7 +68,7 @@ static void fill_weights(fg_turned_blur *blur, const covariance *v, double motio
         }
         double value = weight_at(v, motion, (double)(i - blur->taps[0]) / blur->samples,
                                  (double)(j - blur->taps[1]) / blur->samples);
-        *weight = value > least ? (float)value : 0;
+        *weight = value > min ? (float)value : 0;
         sum += (double)*weight;
       }
 }

@@ -22,7 +22,7 @@ const char *fg_corrected_symbol(fg_corrected dimension) {
 
 const char *fg_correction_reason_words(fg_correction_reason reason) {
   switch (reason) {
-  case FG_CORRECTION_PAYS:
+  case FG_CORRECTION_HELPS:
     return "removes more error than it adds";
   case FG_CORRECTION_SMALL:
     return "is far below the value's own uncertainty";

@@ -7,7 +7,7 @@
 #include "report/drawing.h"
 
 /* A residual longer than this, drawn, would hide what is beside it. */
-static const double whisker_most_mm = 1.0;
+static const double whisker_max_mm = 1.0;
 
 /* Stations of a long edge against the line between two corners, every so many of them. */
 static fg_status draw_whiskers(fg_context *ctx, fg_canvas *canvas, const fg_beam_edge *edge,
@@ -22,7 +22,7 @@ static fg_status draw_whiskers(fg_context *ctx, fg_canvas *canvas, const fg_beam
   for (size_t i = 0; i < edge->count; i += every) {
     const fg_disc_point *s = &edge->stations[i];
     double off = (s->at.x - from.x) * out.x + (s->at.y - from.y) * out.y;
-    double drawn = fmin(fmax(off * magnification, -whisker_most_mm), whisker_most_mm);
+    double drawn = fmin(fmax(off * magnification, -whisker_max_mm), whisker_max_mm);
     if (!s->used) continue;
     whiskers[used][0] = s->at;
     whiskers[used][1] = (fg_point){s->at.x + drawn * out.x, s->at.y + drawn * out.y};

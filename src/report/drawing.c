@@ -61,18 +61,18 @@ static double large_residual(const fg_measurement *measurement) {
 
 /* More makes a hedgehog of the noise of a clean scan, whose residuals are 0.1 um: nothing to see.
  */
-#define MAGNIFICATION_MOST 1000.0
+#define MAGNIFICATION_MAX 1000.0
 
 /* The magnification of residuals that makes the larger ones about 0.5 mm long: 1, 2 or 5 times a
  * power of ten, and as much as says something. */
 static double magnification_for(double largest) {
   static const double steps[] = {1, 2, 5, 10};
-  if (!(largest > 0)) return MAGNIFICATION_MOST;
+  if (!(largest > 0)) return MAGNIFICATION_MAX;
   double wanted = whisker_mm / (largest * 1e-3), power = pow(10, floor(log10(wanted)));
   double best = power;
   for (int i = 0; i < 4; i++)
     if (steps[i] * power <= wanted) best = steps[i] * power;
-  return fmin(MAGNIFICATION_MOST, fmax(1, best));
+  return fmin(MAGNIFICATION_MAX, fmax(1, best));
 }
 
 double fg_drawing_magnification(const fg_report *report) {
@@ -290,12 +290,12 @@ static size_t crowd(const fg_measurement *measurement, fg_drawing_box box) {
 
 fg_drawing_box fg_drawing_scale_box(const fg_canvas *canvas, const fg_measurement *measurement) {
   fg_drawing_box best = scale_box(canvas, 0);
-  size_t least = crowd(measurement, best);
+  size_t min = crowd(measurement, best);
   for (int corner = 1; corner < 4; corner++) {
     fg_drawing_box box = scale_box(canvas, corner);
     size_t inside = crowd(measurement, box);
-    if (inside >= least) continue;
-    least = inside;
+    if (inside >= min) continue;
+    min = inside;
     best = box;
   }
   return best;

@@ -33,15 +33,15 @@ void fg_plot_end(const fg_plot *at) {
 
 /* As many decimals as neighbouring ticks take to differ, the same for all: 20.7299, 20.7300. */
 static void tick_text(char text[32], double value, double step) {
-  enum { LEAST_DIGITS = 4, MOST_DIGITS = 9, DECIMALS_MOST = 6 };
+  enum { MIN_DIGITS = 4, MAX_DIGITS = 9, DECIMALS_MAX = 6 };
   double size = fabs(value), decimals = fmax(0, ceil(-log10(step) - 1e-9));
-  if (decimals <= DECIMALS_MOST && size < 1e6) {
+  if (decimals <= DECIMALS_MAX && size < 1e6) {
     snprintf(text, 32, "%.*f", (int)decimals, size < step * 1e-6 ? 0 : value);
     return;
   }
   double clean = size < step * 1e-6 ? 0 : value;
-  int digits = clean != 0 ? (int)ceil(log10(size / step * (1 + 1e-9))) + 1 : LEAST_DIGITS;
-  digits = digits < LEAST_DIGITS ? LEAST_DIGITS : digits > MOST_DIGITS ? MOST_DIGITS : digits;
+  int digits = clean != 0 ? (int)ceil(log10(size / step * (1 + 1e-9))) + 1 : MIN_DIGITS;
+  digits = digits < MIN_DIGITS ? MIN_DIGITS : digits > MAX_DIGITS ? MAX_DIGITS : digits;
   snprintf(text, 32, "%.*g", digits, clean);
 }
 

@@ -114,7 +114,7 @@ const fg_flag_words *fg_foil_flag_words(void) {
 }
 
 unsigned fg_foil_flags_told(const fg_design *design, const fg_foil *foil) {
-  bool without_lip = design->form == FG_FORM_SINUSOIDAL;
+  bool without_lip = design->kind == FG_FOIL_SINUSOIDAL;
   return without_lip ? foil->flags & ~(unsigned)FG_FOIL_NO_LIP : foil->flags;
 }
 
@@ -152,17 +152,17 @@ const char *fg_colour_state_word(fg_colour_state state) {
   return "";
 }
 
-const char *fg_form_word(fg_form form) {
-  switch (form) {
-  case FG_FORM_CLASSICAL:
+const char *fg_foil_kind_word(fg_foil_kind kind) {
+  switch (kind) {
+  case FG_FOIL_CLASSICAL:
     return "classical";
-  case FG_FORM_SINUSOIDAL:
+  case FG_FOIL_SINUSOIDAL:
     return "sinusoidal";
-  case FG_FORM_DISCS:
+  case FG_FOIL_DISCS:
     return "discs";
-  case FG_FORM_ARC:
+  case FG_FOIL_ARC:
     return "arc";
-  case FG_FORM_CANTILEVER:
+  case FG_FOIL_CANTILEVER:
     return "cantilever";
   }
   return "";

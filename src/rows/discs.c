@@ -15,11 +15,11 @@
 #include "rows/points.h"
 
 /* So many rows carry any search; the blocks grow with the edges. */
-enum { ROWS_MOST = 2000, BLOCK_LEAST = 2, ROWS_LEAST = 32, NEIGHBOUR_LAG = 3 };
+enum { ROWS_MAX = 2000, BLOCK_MIN = 2, ROWS_MIN = 32, NEIGHBOUR_LAG = 3 };
 /* A known diameter is a disc's when it is so near. */
 #define DIAMETER_SHARE 0.03
 /* No edge is taken for better than this. */
-#define NOISE_LEAST_UM 0.02
+#define NOISE_MIN_UM 0.02
 
 /* ---- known diameters ---- */
 
@@ -130,8 +130,8 @@ static bool average_block(const fg_disc *disc, size_t from, size_t to, fg_points
 
 /* Robust sd of the rows against their neighbours at the lag: the noise of the edge, whatever form
  * the disc has, and whatever jumps and waves a scanner puts into it. */
-static double noise_beside_form(const fg_disc *disc, const fg_points_row *rows, size_t count,
-                                double *work) {
+static double noise_beside_roundness(const fg_disc *disc, const fg_points_row *rows, size_t count,
+                                     double *work) {
   for (size_t i = 0; i < count; i++) {
     size_t before = (i + count - NEIGHBOUR_LAG) % count, after = (i + NEIGHBOUR_LAG) % count;
     double sum = 0;
@@ -147,8 +147,8 @@ static double noise_beside_form(const fg_disc *disc, const fg_points_row *rows, 
 
 /* An edge that is no circle is no gauge: all that it leaves counts as its noise. */
 static double noise_of(const fg_disc *disc, const fg_points_row *rows, size_t count, double *work) {
-  if ((disc->flags & FG_BUMP_POOR_FIT) || count < ROWS_LEAST) return disc->rms_um;
-  return fmax(noise_beside_form(disc, rows, count, work), NOISE_LEAST_UM);
+  if ((disc->flags & FG_BUMP_POOR_FIT) || count < ROWS_MIN) return disc->rms_um;
+  return fmax(noise_beside_roundness(disc, rows, count, work), NOISE_MIN_UM);
 }
 
 static fg_status add_disc(fg_context *ctx, fg_points *points, size_t v, size_t block) {
@@ -171,7 +171,7 @@ static int compare_places(const void *a, const void *b) {
 
 /* Weights in units of the cleanest disc's row. */
 static fg_status weigh(fg_context *ctx, fg_points *points, size_t block) {
-  double *noise = NULL, *work = NULL, least = INFINITY;
+  double *noise = NULL, *work = NULL, min = INFINITY;
   fg_status status = FG_OK;
   FG_TRY_EXIT(fg_memory_allocate(ctx, points->view_count, sizeof *noise, (void **)&noise));
   FG_TRY_EXIT(fg_memory_allocate(ctx, points->row_count, sizeof *work, (void **)&work));
@@ -181,11 +181,11 @@ static fg_status weigh(fg_context *ctx, fg_points *points, size_t block) {
       last++;
     qsort(points->rows + first, last - first, sizeof *points->rows, compare_places);
     noise[v] = noise_of(points->views[v].disc, points->rows + first, last - first, work);
-    least = fmin(least, noise[v]);
+    min = fmin(min, noise[v]);
     first = last;
   }
   for (size_t i = 0; i < points->row_count; i++) {
-    double ratio = least / noise[points->rows[i].view];
+    double ratio = min / noise[points->rows[i].view];
     points->rows[i].weight *= FG_POINTS_BLOCK / (double)block * ratio * ratio;
   }
 exit:
@@ -211,8 +211,8 @@ fg_status fg_points_build_discs(fg_context *ctx, const fg_points_view *views, si
     stations += views[v].disc->station_count;
   }
   points->view_count = points->part_count = points->group_count = count;
-  size_t block = (stations + ROWS_MOST - 1) / ROWS_MOST;
-  if (block < BLOCK_LEAST) block = BLOCK_LEAST;
+  size_t block = (stations + ROWS_MAX - 1) / ROWS_MAX;
+  if (block < BLOCK_MIN) block = BLOCK_MIN;
   FG_TRY_EXIT(match_diameters(ctx, points));
   for (size_t v = 0; v < count; v++)
     FG_TRY_EXIT(add_disc(ctx, points, v, block));

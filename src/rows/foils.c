@@ -11,7 +11,7 @@
  * tenth and more. */
 #define SAME_SHARE 0.2
 /* Half the angle between the outer bumps, at the least: of one bump it is nothing. */
-#define HALF_SPAN_LEAST_RAD 0.1
+#define HALF_SPAN_MIN_RAD 0.1
 static double turn_to(double angle, double near) {
   return angle - 2 * M_PI * round((angle - near) / (2 * M_PI));
 }
@@ -68,7 +68,7 @@ static fg_status start_part(fg_context *ctx, const fg_foil *foil, fg_points_part
   double last = part->bumps[part->bump_count - 1].direction_rad;
   part->middle_rad = 0.5 * (first + last);
   part->half_span_rad =
-      fmax(0.5 * fabs(last - first), HALF_SPAN_LEAST_RAD) * (1 + 1.0 / (double)part->bump_count);
+      fmax(0.5 * fabs(last - first), HALF_SPAN_MIN_RAD) * (1 + 1.0 / (double)part->bump_count);
   return FG_OK;
 }
 
@@ -201,11 +201,11 @@ static bool same_run(const fg_station_label *a, const fg_station_label *b) {
 
 /* Lands are numbered over all bumps of a foil, also those that no circle fitted. */
 static size_t land_numbers(const fg_foil *foil) {
-  int most = 0;
+  int max = 0;
   for (size_t k = 0; k < foil->strip.count; k++)
-    if (foil->labels[k].kind == FG_ARC_LAND && foil->labels[k].number > most)
-      most = foil->labels[k].number;
-  return (size_t)most + 1;
+    if (foil->labels[k].kind == FG_ARC_LAND && foil->labels[k].number > max)
+      max = foil->labels[k].number;
+  return (size_t)max + 1;
 }
 
 /* Groups are what was drawn independently: every bump (over all views of its part) and land. */
@@ -229,13 +229,13 @@ static fg_status add_view(fg_context *ctx, fg_points *points, size_t v, size_t f
 }
 
 /* Gives empty group numbers up, so that groups are 0 .. group_count - 1. */
-static fg_status pack_groups(fg_context *ctx, fg_points *points, size_t most) {
+static fg_status pack_groups(fg_context *ctx, fg_points *points, size_t max) {
   size_t *packed = NULL;
-  FG_TRY(fg_memory_allocate(ctx, most, sizeof *packed, (void **)&packed));
+  FG_TRY(fg_memory_allocate(ctx, max, sizeof *packed, (void **)&packed));
   for (size_t i = 0; i < points->row_count; i++)
     packed[points->rows[i].group] = 1;
   size_t next = 0;
-  for (size_t g = 0; g < most; g++)
+  for (size_t g = 0; g < max; g++)
     packed[g] = packed[g] ? next++ : 0;
   for (size_t i = 0; i < points->row_count; i++)
     points->rows[i].group = packed[points->rows[i].group];

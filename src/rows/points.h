@@ -25,9 +25,9 @@ typedef struct fg_points_view {
   const fg_foil *foil;
   const fg_disc *disc; /* in a foil's place; NULL: a foil */
   const fg_measurement *measurement;
-  size_t scan; /* which input */
-  size_t part; /* which physical foil; views of one part share its geometry */
-  bool aside;  /* of a scan that only confirms */
+  size_t scan;   /* which input */
+  size_t part;   /* which physical foil; views of one part share its geometry */
+  bool held_out; /* of a scan that only confirms */
 } fg_points_view;
 
 /* One row. */
@@ -76,16 +76,16 @@ typedef struct fg_points_pose {
 } fg_points_pose;
 
 /* Noise along an arc (rows/scatter.h). */
-typedef enum fg_scatter_form { FG_SCATTER_GAUSSIAN, FG_SCATTER_EXPONENTIAL } fg_scatter_form;
+typedef enum fg_scatter_model { FG_SCATTER_GAUSSIAN, FG_SCATTER_EXPONENTIAL } fg_scatter_model;
 typedef struct fg_scatter {
   double share; /* of a row's variance that neighbours have in common; 0: rows are independent */
   double range_mm;
-  fg_scatter_form form;
+  fg_scatter_model model;
   double row_um;   /* standard deviation of a row that is a mean of a whole block */
   double integral; /* of the correlation along the edge: noise in n rows averages like that in n
                       over it */
   double swell;    /* noise of long waves over what share, range and form say of it: at least 1 */
-  double freedom;  /* that the noise of long waves is known with; 0: exactly */
+  double dof;      /* that the noise of long waves is known with; 0: exactly */
 } fg_scatter;
 
 typedef struct fg_points {

@@ -10,28 +10,28 @@
 
 /* The scatter of edges is correlated over 0.02 to 0.1 mm of arc on real flatbeds (reports/real);
  * a little more on either side keeps an estimate from sticking to the bound. */
-#define RANGE_LEAST_MM 0.01
-#define RANGE_MOST_MM  0.12
-#define SHARE_MOST     0.8
+#define RANGE_MIN_MM 0.01
+#define RANGE_MAX_MM 0.12
+#define SHARE_MAX    0.8
 /* Rows are independent unless a correlation is likelier by this: chi² of two numbers, 1 in 20. */
-#define GAIN_LEAST 6.0
+#define GAIN_MIN 6.0
 /* Polynomials along an arc: one per so much of it, which leaves what is shorter; their number; rows
  * for each of them. */
 #define POLYNOMIAL_MM 0.45
-enum { POLYNOMIALS_LEAST = 6, POLYNOMIALS_MOST = 16, ROWS_EACH = 4 };
+enum { POLYNOMIALS_MIN = 6, POLYNOMIALS_MAX = 16, ROWS_EACH = 4 };
 /* Waves between these lengths, mm: longer than what the form of the correlation is fitted to, and
  * shorter than what effects make; what is in them says whether the form holds towards long ones. A
  * wave of noise may be so many times larger than the form says. */
 #define WAVE_SHORT_MM 0.4
 #define WAVE_LONG_MM  0.75
-#define SWELL_MOST    2.5
+#define SWELL_MAX     2.5
 /* What such a wave is worth, with what all shorter ones say: on 200 clean renders the noise of long
  * waves scatters by a tenth (reports/loop_rough.md, p-values). */
-#define FREEDOM_PER_WAVE 2.0
+#define DOF_PER_WAVE 2.0
 /* Arcs whose square is so many standard errors above the median one hold something else: a step,
  * dirt. So many in all may. */
 #define ARC_SIGMAS 5.0
-#define ARCS_MOST  0.25
+#define ARCS_MAX   0.25
 /* Steps of the climb: of the range and of the share's odds; halved so often. */
 #define STEP_START 1.5
 enum { HALVINGS = 4, CLIMBS = 40 };
@@ -39,14 +39,14 @@ enum { HALVINGS = 4, CLIMBS = 40 };
 typedef struct arc {
   size_t from, to, rows, polynomials;
   bool out; /* holds something else */
-  double square, freedom;
+  double square, dof;
 } arc;
 
 typedef struct search {
   fg_context *ctx;
   fg_points *points;
   const double *weighted; /* residual */
-  double *polynomials;    /* POLYNOMIALS_MOST × rows, weighted */
+  double *polynomials;    /* POLYNOMIALS_MAX × rows, weighted */
   double *left, *columns; /* the same, whitened */
   arc *arcs;
   size_t arc_count;
@@ -63,7 +63,7 @@ static fg_status list_arcs(search *s) {
     for (size_t i = from; i < to; i++)
       a->rows += points->rows[i].weight > 0;
     double length = fabs(points->rows[to - 1].s_mm - points->rows[from].s_mm) / POLYNOMIAL_MM;
-    a->polynomials = (size_t)fmax(POLYNOMIALS_LEAST, fmin(POLYNOMIALS_MOST, round(length)));
+    a->polynomials = (size_t)fmax(POLYNOMIALS_MIN, fmin(POLYNOMIALS_MAX, round(length)));
     if (a->rows >= ROWS_EACH * a->polynomials) s->arc_count++;
   }
   return FG_OK;
@@ -89,7 +89,7 @@ static void fill_polynomials(search *s) {
 static double take_out(search *s, arc *a) {
   size_t rows = s->points->row_count, n = a->to - a->from;
   double determinant = 0, *left = s->left + a->from;
-  a->freedom = (double)a->rows;
+  a->dof = (double)a->rows;
   for (size_t p = 0; p < a->polynomials; p++) {
     double *own = s->columns + p * rows + a->from, square = fg_dot(own, own, n);
     for (size_t q = 0; q < p; q++) {
@@ -104,7 +104,7 @@ static double take_out(search *s, arc *a) {
       continue;
     }
     determinant += log(rest);
-    a->freedom--;
+    a->dof--;
     for (size_t i = 0; i < n; i++)
       own[i] /= sqrt(rest);
     double along = fg_dot(own, left, n);
@@ -119,16 +119,16 @@ static double take_out(search *s, arc *a) {
 static fg_status deviance(search *s, const fg_scatter *scatter, double *value) {
   size_t rows = s->points->row_count;
   fg_whitening whitening;
-  double square = 0, freedom = 0, determinants = 0;
+  double square = 0, dof = 0, determinants = 0;
   s->points->scatter = *scatter;
   FG_TRY(fg_whitening_open(s->ctx, s->points, &whitening));
   memcpy(s->left, s->weighted, rows * sizeof *s->left);
-  size_t most = 0;
+  size_t max = 0;
   for (size_t k = 0; k < s->arc_count; k++)
-    most = s->arcs[k].polynomials > most ? s->arcs[k].polynomials : most;
-  memcpy(s->columns, s->polynomials, most * rows * sizeof *s->columns);
+    max = s->arcs[k].polynomials > max ? s->arcs[k].polynomials : max;
+  memcpy(s->columns, s->polynomials, max * rows * sizeof *s->columns);
   fg_whitening_apply(&whitening, s->left);
-  for (size_t p = 0; p < most; p++)
+  for (size_t p = 0; p < max; p++)
     fg_whitening_apply(&whitening, s->columns + p * rows);
   for (size_t k = 0; k < s->arc_count; k++) {
     arc *a = &s->arcs[k];
@@ -138,12 +138,12 @@ static fg_status deviance(search *s, const fg_scatter *scatter, double *value) {
       if (whitening.used[i]) determinant -= 2 * log(whitening.scale[i]);
     determinants += determinant;
     square += a->square;
-    freedom += a->freedom;
+    dof += a->dof;
   }
   fg_whitening_close(&whitening);
-  freedom = fmax(1, freedom - s->shared);
-  *value = square > 0 ? freedom * log(square / freedom) + determinants : INFINITY;
-  s->points->scatter.row_um = sqrt(square / fmax(freedom, 1));
+  dof = fmax(1, dof - s->shared);
+  *value = square > 0 ? dof * log(square / dof) + determinants : INFINITY;
+  s->points->scatter.row_um = sqrt(square / fmax(dof, 1));
   return FG_OK;
 }
 
@@ -156,8 +156,8 @@ static fg_status try_one(search *s, fg_scatter scatter, trial *best, bool *bette
   double value;
   *better = false;
   scatter.integral = 1;
-  if (scatter.range_mm < RANGE_LEAST_MM || scatter.range_mm > RANGE_MOST_MM) return FG_OK;
-  if (scatter.share > SHARE_MOST) return FG_OK;
+  if (scatter.range_mm < RANGE_MIN_MM || scatter.range_mm > RANGE_MAX_MM) return FG_OK;
+  if (scatter.share > SHARE_MAX) return FG_OK;
   FG_TRY(deviance(s, &scatter, &value));
   if (!(value < best->deviance)) return FG_OK;
   *best = (trial){s->points->scatter, value};
@@ -169,13 +169,14 @@ static fg_status try_grid(search *s, trial *best) {
   static const double ranges[] = {0.015, 0.025, 0.04, 0.065, 0.1};
   static const double shares[] = {0.15, 0.4, 0.7, 0.9};
   bool better;
-  for (int form = FG_SCATTER_GAUSSIAN; form <= FG_SCATTER_EXPONENTIAL; form++)
+  for (int model = FG_SCATTER_GAUSSIAN; model <= FG_SCATTER_EXPONENTIAL; model++)
     for (size_t r = 0; r < sizeof ranges / sizeof *ranges; r++)
       for (size_t k = 0; k < sizeof shares / sizeof *shares; k++)
-        FG_TRY(try_one(
-            s,
-            (fg_scatter){.share = shares[k], .range_mm = ranges[r], .form = (fg_scatter_form)form},
-            best, &better));
+        FG_TRY(try_one(s,
+                       (fg_scatter){.share = shares[k],
+                                    .range_mm = ranges[r],
+                                    .model = (fg_scatter_model)model},
+                       best, &better));
   return FG_OK;
 }
 
@@ -221,7 +222,7 @@ static fg_status find(search *s, fg_scatter from, trial *best) {
   else
     FG_TRY(try_grid(s, &correlated));
   FG_TRY(climb(s, &correlated));
-  if (white - correlated.deviance > GAIN_LEAST) *best = correlated;
+  if (white - correlated.deviance > GAIN_MIN) *best = correlated;
   return FG_OK;
 }
 
@@ -237,15 +238,15 @@ static fg_status leave_out(search *s, const fg_scatter *scatter, size_t *out) {
   FG_TRY(deviance(s, scatter, &value));
   FG_TRY(fg_memory_allocate(s->ctx, s->arc_count, sizeof *each, (void **)&each));
   for (size_t k = 0; k < s->arc_count; k++)
-    each[k] = s->arcs[k].square / fmax(s->arcs[k].freedom, 1);
+    each[k] = s->arcs[k].square / fmax(s->arcs[k].dof, 1);
   qsort(each, s->arc_count, sizeof *each, compare);
   double median = each[s->arc_count / 2],
-         most = each[(size_t)((1 - ARCS_MOST) * (double)s->arc_count)];
+         max = each[(size_t)((1 - ARCS_MAX) * (double)s->arc_count)];
   free(each);
   for (size_t k = 0; k < s->arc_count; k++) {
     arc *a = &s->arcs[k];
-    double mean = a->square / fmax(a->freedom, 1);
-    a->out = mean > median * (1 + ARC_SIGMAS * sqrt(2 / fmax(a->freedom, 1))) && mean > most;
+    double mean = a->square / fmax(a->dof, 1);
+    a->out = mean > median * (1 + ARC_SIGMAS * sqrt(2 / fmax(a->dof, 1))) && mean > max;
     *out += a->out;
   }
   return FG_OK;
@@ -254,8 +255,8 @@ static fg_status leave_out(search *s, const fg_scatter *scatter, size_t *out) {
 /* Degrees of polynomials that are such waves along an arc: [from, to). */
 static void find_waves(const fg_points *points, const arc *a, size_t *from, size_t *to) {
   double length = fabs(points->rows[a->to - 1].s_mm - points->rows[a->from].s_mm);
-  *from = (size_t)fmax(POLYNOMIALS_LEAST, ceil(2 * length / WAVE_LONG_MM));
-  *to = (size_t)fmin(POLYNOMIALS_MOST,
+  *from = (size_t)fmax(POLYNOMIALS_MIN, ceil(2 * length / WAVE_LONG_MM));
+  *to = (size_t)fmin(POLYNOMIALS_MAX,
                      fmin(floor(2 * length / WAVE_SHORT_MM), (double)(a->rows / ROWS_EACH)));
 }
 
@@ -264,7 +265,7 @@ typedef struct waves {
   double sum, square, count;
 } waves;
 
-static void add_waves(const search *s, const arc *a, waves of_bumps[POLYNOMIALS_MOST],
+static void add_waves(const search *s, const arc *a, waves of_bumps[POLYNOMIALS_MAX],
                       waves *of_lands) {
   size_t rows = s->points->row_count, from, to;
   bool bump = s->points->rows[a->from].bump != 0;
@@ -280,11 +281,11 @@ static void add_waves(const search *s, const arc *a, waves of_bumps[POLYNOMIALS_
 
 /* Mean square along such waves over that of all rows, both whitened: 1 where the form holds. */
 static fg_status find_swell(search *s, fg_scatter *scatter) {
-  waves bumps[POLYNOMIALS_MOST] = {{0}}, lands = {0};
+  waves bumps[POLYNOMIALS_MAX] = {{0}}, lands = {0};
   double value;
   fg_whitening whitening;
   for (size_t k = 0; k < s->arc_count; k++)
-    s->arcs[k].polynomials = POLYNOMIALS_MOST;
+    s->arcs[k].polynomials = POLYNOMIALS_MAX;
   fill_polynomials(s);
   FG_TRY(deviance(s, scatter, &value)); /* leaves orthonormal polynomials, in order */
   FG_TRY(fg_whitening_open(s->ctx, s->points, &whitening));
@@ -294,14 +295,14 @@ static fg_status find_swell(search *s, fg_scatter *scatter) {
   for (size_t k = 0; k < s->arc_count; k++)
     add_waves(s, &s->arcs[k], bumps, &lands);
   double square = lands.square, count = lands.count;
-  for (size_t p = 0; p < POLYNOMIALS_MOST; p++) {
+  for (size_t p = 0; p < POLYNOMIALS_MAX; p++) {
     if (bumps[p].count < 2) continue;
     square += bumps[p].square - bumps[p].sum * bumps[p].sum / bumps[p].count;
     count += bumps[p].count - 1;
   }
   double mean = count > 0 ? square / count / (scatter->row_um * scatter->row_um) : 1;
-  scatter->swell = fmin(fmax(mean, 1), SWELL_MOST);
-  scatter->freedom = FREEDOM_PER_WAVE * count;
+  scatter->swell = fmin(fmax(mean, 1), SWELL_MAX);
+  scatter->dof = DOF_PER_WAVE * count;
   return FG_OK;
 }
 
@@ -319,13 +320,13 @@ static double integral_of(const fg_points *points, const fg_scatter *s) {
   double spacing = spacing_of(points), sum = 1;
   for (int lag = 1; lag * spacing < 10 * s->range_mm; lag++) {
     double d = lag * spacing / s->range_mm;
-    sum += 2 * s->share * exp(s->form == FG_SCATTER_GAUSSIAN ? -d * d : -d);
+    sum += 2 * s->share * exp(s->model == FG_SCATTER_GAUSSIAN ? -d * d : -d);
   }
   return sum;
 }
 
 static fg_status open(search *s) {
-  size_t rows = s->points->row_count, columns = POLYNOMIALS_MOST * rows;
+  size_t rows = s->points->row_count, columns = POLYNOMIALS_MAX * rows;
   FG_TRY(list_arcs(s));
   FG_TRY(fg_memory_allocate(s->ctx, columns, sizeof(double), (void **)&s->polynomials));
   FG_TRY(fg_memory_allocate(s->ctx, columns, sizeof(double), (void **)&s->columns));

@@ -10,9 +10,9 @@
 
 /* As many polynomials as the search can follow over a bump's arc (effect/curves.c), with the two
  * lowest. Of fewer bumps too much of each would go with what they share. */
-enum { POLYNOMIALS = 18, BUMPS_LEAST = 4 };
+enum { POLYNOMIALS = 18, BUMPS_MIN = 4 };
 /* Rounding: a polynomial lies in those before it. */
-#define REST_LEAST 1e-9
+#define REST_MIN 1e-9
 
 static void take(const double *unit, size_t n, double *from) {
   double along = fg_dot(unit, from, n);
@@ -45,12 +45,12 @@ fg_status fg_points_take_shared(fg_context *ctx, const fg_points *points, const 
   *numbers = 0;
   FG_TRY(fg_memory_allocate(ctx, n, POLYNOMIALS * sizeof *basis, (void **)&basis));
   size_t bumps = fill(points, left_out, basis);
-  for (size_t p = 0; bumps >= BUMPS_LEAST && p < POLYNOMIALS; p++) {
+  for (size_t p = 0; bumps >= BUMPS_MIN && p < POLYNOMIALS; p++) {
     double *own = basis + p * n, before = sqrt(fg_dot(own, own, n));
     for (size_t q = 0; q < p; q++)
       take(basis + q * n, n, own);
     double rest = sqrt(fg_dot(own, own, n));
-    if (!(rest > REST_LEAST * before)) {
+    if (!(rest > REST_MIN * before)) {
       memset(own, 0, n * sizeof *own);
       continue;
     }

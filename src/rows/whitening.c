@@ -11,17 +11,17 @@
 /* A Gaussian correlation over more ranges than this is none: exp(-9) = 1e-4. */
 #define BAND_RANGES 3.0
 /* The least that a row holds beside those before it, of its own variance. */
-#define PIVOT_LEAST 1e-4
+#define PIVOT_MIN 1e-4
 
 /* A disc's edge is cut into arcs of this length. */
-#define ARC_MOST_MM 4.0
+#define ARC_MAX_MM 4.0
 
 size_t fg_points_arc_end(const fg_points *points, size_t from) {
   const fg_points_row *first = &points->rows[from];
   size_t to = from;
   while (to < points->row_count && points->rows[to].view == first->view &&
          points->rows[to].group == first->group &&
-         fabs(points->rows[to].s_mm - first->s_mm) < ARC_MOST_MM)
+         fabs(points->rows[to].s_mm - first->s_mm) < ARC_MAX_MM)
     to++;
   return to;
 }
@@ -32,7 +32,7 @@ static double distance(const fg_points *points, size_t a, size_t b) {
 
 /* The most rows that lie within a length of one. */
 static size_t rows_within(const fg_points *points, double length_mm) {
-  size_t most = 1;
+  size_t max = 1;
   for (size_t i = 0, from = 0, end = 0; i < points->row_count; i++) {
     if (i == end) {
       from = i;
@@ -40,9 +40,9 @@ static size_t rows_within(const fg_points *points, double length_mm) {
     }
     while (distance(points, i, from) > length_mm)
       from++;
-    most = i - from > most ? i - from : most;
+    max = i - from > max ? i - from : max;
   }
-  return most;
+  return max;
 }
 
 /* Row i of the banded factor, from the rows of it before; `lower` is `band` + 1 wide, the diagonal
@@ -61,7 +61,7 @@ static void factor_row(const fg_points *points, const fg_whitening *w, size_t i,
     own[k] = sum / other[0];
     square -= own[k] * own[k];
   }
-  own[0] = sqrt(fmax(square, PIVOT_LEAST));
+  own[0] = sqrt(fmax(square, PIVOT_MIN));
 }
 
 static fg_status factor(fg_context *ctx, const fg_points *points, fg_whitening *w) {
@@ -103,7 +103,7 @@ static void filter(const fg_points *points, fg_whitening *w) {
 static fg_status allocate(fg_context *ctx, const fg_points *points, fg_whitening *w) {
   const fg_scatter *s = &points->scatter;
   w->rows = points->row_count;
-  w->exponential = s->form == FG_SCATTER_EXPONENTIAL;
+  w->exponential = s->model == FG_SCATTER_EXPONENTIAL;
   w->band = w->exponential ? 2 : rows_within(points, BAND_RANGES * s->range_mm);
   FG_TRY(fg_memory_allocate(ctx, w->rows, sizeof *w->used, (void **)&w->used));
   FG_TRY(fg_memory_allocate(ctx, w->rows, sizeof *w->first, (void **)&w->first));

@@ -3,7 +3,7 @@
 enum {
   ROW_STEP = 8, /* a strip is some 20 pixels thick at 4800 dpi */
   RUN_PX = 64,
-  RANGE_LEAST = 24, /* in 8-bit counts */
+  RANGE_MIN = 24, /* in 8-bit counts */
 };
 
 static unsigned value_at(const fg_scan_header *header, const void *samples, size_t x, int channel) {
@@ -33,7 +33,7 @@ void fg_contrast_add_row(fg_contrast *contrast, int64_t row, const void *samples
   for (size_t x = 0; x < contrast->header->width_px; x += RUN_PX)
     for (int channel = 0; channel < 3; channel++) {
       unsigned range = range_of_run(contrast->header, samples, x, channel);
-      if (range >= RANGE_LEAST) contrast->sums[channel] += range;
+      if (range >= RANGE_MIN) contrast->sums[channel] += range;
     }
 }
 

@@ -27,7 +27,7 @@ typedef struct fg_scan_header {
   double dpi[2];         /* as the file says, x and y; NaN when it says none */
   const char *no_dpi;    /* then: why, in words; NULL: the format has no resolution */
   char dpi_source[64];   /* which field says it, for error texts */
-  double bytes_least;    /* that the file must have to hold the image; 0: not known */
+  double bytes_min;      /* that the file must have to hold the image; 0: not known */
   uint64_t memory_bytes; /* that the reader will hold: a whole image, a row of tiles */
   char warning[256];     /* what is odd and not wrong; empty when nothing is */
 } fg_scan_header;

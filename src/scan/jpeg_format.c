@@ -70,7 +70,7 @@ static void fill_header(const fg_jpeg_header *jpeg, bool luminance, fg_scan_head
                              .memory_bytes = jpeg->memory_bytes};
   fill_resolution(jpeg, header);
   double bits = jpeg->whole ? BITS_PER_BLOCK_PROGRESSIVE : BITS_PER_BLOCK;
-  if (!jpeg->arithmetic) header->bytes_least = (double)jpeg->blocks * bits / 8;
+  if (!jpeg->arithmetic) header->bytes_min = (double)jpeg->blocks * bits / 8;
   if (jpeg->exif.orientation > 1)
     snprintf(header->warning, sizeof header->warning,
              "its orientation tag (%d) is left alone: positions are those of the rows as stored",

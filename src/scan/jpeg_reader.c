@@ -13,10 +13,10 @@
 #include "core/memory.h"
 #include "scan/jpeg_tables.h"
 
-enum { BUFFER_BYTES = 1 << 16, SEGMENT_BYTES_MOST = 0xffff };
+enum { BUFFER_BYTES = 1 << 16, SEGMENT_BYTES_MAX = 0xffff };
 /* A progressive file has ten scans or so. Every scan of a file that was made to harm goes through
  * all of a large image, for a few bytes each (libjpeg-turbo's own tools stop at a number, too). */
-enum { SCANS_MOST = 100 };
+enum { SCANS_MAX = 100 };
 
 struct fg_jpeg_in {
   struct jpeg_decompress_struct jpeg;
@@ -82,8 +82,8 @@ static void skip_bytes(j_decompress_ptr jpeg, long count) {
 
 static void watch_scans(j_common_ptr common) {
   fg_jpeg_in *reader = common->client_data;
-  if (reader->jpeg.input_scan_number <= SCANS_MOST) return;
-  snprintf(reader->words, sizeof reader->words, "it has more than %d scans", SCANS_MOST);
+  if (reader->jpeg.input_scan_number <= SCANS_MAX) return;
+  snprintf(reader->words, sizeof reader->words, "it has more than %d scans", SCANS_MAX);
   longjmp(reader->failed, 1);
 }
 
@@ -181,7 +181,7 @@ static void read_header(fg_jpeg_in *reader, void *unused) {
   (void)unused;
   struct jpeg_decompress_struct *jpeg = &reader->jpeg;
   fg_jpeg_header *header = &reader->header;
-  jpeg_save_markers(jpeg, JPEG_APP0 + 1, SEGMENT_BYTES_MOST);
+  jpeg_save_markers(jpeg, JPEG_APP0 + 1, SEGMENT_BYTES_MAX);
   jpeg_read_header(jpeg, TRUE);
   header->width_px = jpeg->image_width;
   header->height_px = jpeg->image_height;

@@ -57,7 +57,7 @@ static void fill_header(const fg_png_header *png, fg_scan_header *header) {
   memcpy(header->palette, png->palette, sizeof header->palette);
   fill_resolution(png, header);
   double row_bits = (double)png->width_px * png->channels * png->bit_depth;
-  header->bytes_least = png->height_px * (row_bits / 8 + 1) / DEFLATE_RATIO_MAX;
+  header->bytes_min = png->height_px * (row_bits / 8 + 1) / DEFLATE_RATIO_MAX;
 }
 
 static fg_status open_png(fg_context *ctx, fg_source *source, const fg_scan_options *options,

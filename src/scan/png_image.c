@@ -11,7 +11,7 @@
 /* A block stays in the processor's second cache from its decompression to its rows' conversion. */
 enum { BLOCK_BYTES = 1 << 17, BLOCKS = 4 };
 /* Less is decompressed before a thread is worth its start. */
-#define BESIDE_BYTES_LEAST ((size_t)1 << 20)
+#define BESIDE_BYTES_MIN ((size_t)1 << 20)
 
 typedef struct block {
   uint8_t *lines; /* rows with their filter's byte in front */
@@ -162,7 +162,7 @@ fg_status fg_png_image_create(fg_context *ctx, fg_source *source,
   pthread_cond_init(&image->changed, NULL);
   image->layout = *layout;
   image->rows_left = layout->height_px;
-  image->beside = beside && (layout->row_bytes + 1) * layout->height_px >= BESIDE_BYTES_LEAST &&
+  image->beside = beside && (layout->row_bytes + 1) * layout->height_px >= BESIDE_BYTES_MIN &&
                   fg_core_count() > 1;
   image->block_count = image->beside ? BLOCKS : 1;
   FG_TRY_EXIT(allocate(ctx, image));

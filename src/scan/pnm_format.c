@@ -104,7 +104,7 @@ static fg_status open_pnm(fg_context *ctx, fg_source *source, const fg_scan_opti
   reader->source = source;
   FG_TRY(read_header(ctx, reader, header));
   double bits = reader->bits ? 1 : header->bit_depth;
-  header->bytes_least =
+  header->bytes_min =
       (double)source->offset +
       ceil((double)header->width_px * header->channels * bits / 8) * (double)header->height_px;
   reader->row_samples = (size_t)header->width_px * (size_t)header->channels;

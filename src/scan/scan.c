@@ -63,7 +63,7 @@ static fg_status check_size(fg_context *ctx, const fg_scan *scan, uint64_t cap) 
                    "%s: is %" PRIu64 " pixels wide, more than the %d that are read; scan a "
                    "narrower area",
                    name, header->width_px, FG_SCAN_WIDTH_MAX_PX);
-  if (scan->source.regular && header->bytes_least > (double)scan->source.size)
+  if (scan->source.regular && header->bytes_min > (double)scan->source.size)
     return fg_fail(ctx, FG_ERR_DATA,
                    "%s: declares %" PRIu64 " x %" PRIu64 " pixels, which its %" PRIu64
                    " bytes cannot hold; copy or scan it again",

@@ -9,8 +9,8 @@
 
 #include "core/memory.h"
 
-/* PAST_BYTES: what a pipe may hold behind its image. */
-#define PAST_BYTES ((uint64_t)1 << 30)
+/* CONSUMED_BYTES: what a pipe may hold behind its image. */
+#define CONSUMED_BYTES ((uint64_t)1 << 30)
 /* What is stored of one at most: the largest scan that is read, of four channels. */
 #define STORE_BYTES ((uint64_t)32 << 30)
 enum { BUFFER_BYTES = FG_LEDGER_BLOCK_BYTES };
@@ -261,10 +261,10 @@ fg_status fg_source_drain(fg_context *ctx, fg_source *source) {
   if (source->jumps || (source->regular && (source->stored || source->unsummed))) return FG_OK;
   source->begin = source->end = 0;
   while ((got = receive(source, source->buffer, BUFFER_BYTES)) > 0)
-    if ((past += got) > PAST_BYTES && !source->regular)
+    if ((past += got) > CONSUMED_BYTES && !source->regular)
       return fg_fail(ctx, FG_ERR_DATA,
                      "%s: goes on for more than %d MiB behind its image; give one image",
-                     source->name, (int)(PAST_BYTES >> 20));
+                     source->name, (int)(CONSUMED_BYTES >> 20));
   if (!source->error) return FG_OK;
   return fg_fail(ctx, fg_status_of_errno(source->error), "%s: cannot be read behind the image: %s",
                  source->name, strerror(source->error));

@@ -9,7 +9,7 @@
 #include "scan/tiff_reader.h"
 
 /* A longer strip is read row by row: it may be the whole image. */
-#define STRIP_BYTES_MOST ((size_t)1 << 22)
+#define STRIP_BYTES_MAX ((size_t)1 << 22)
 /* Each thread decodes about so much of a batch of strips, which pays for its start. */
 #define SHARE_BYTES ((size_t)1 << 19)
 
@@ -30,7 +30,7 @@ static void count_threads(fg_tiff *r, uint64_t parts) {
 bool fg_tiff_plan_strips(fg_tiff *r) {
   size_t strip = (size_t)r->rows_per_strip * r->row_bytes;
   uint64_t strips = (r->height + r->rows_per_strip - 1) / r->rows_per_strip;
-  if (!is_plain_codec(r) || strip == 0 || strip > STRIP_BYTES_MOST) return false;
+  if (!is_plain_codec(r) || strip == 0 || strip > STRIP_BYTES_MAX) return false;
   count_threads(r, strips);
   uint64_t together = (SHARE_BYTES + strip - 1) / strip * r->threads;
   r->batch_rows = (together < strips ? together : strips) * r->rows_per_strip;

@@ -10,7 +10,7 @@
 #include "scan/tiff_reader.h"
 
 /* Of an image's markers before its quantization table. */
-enum { TABLES_BYTES_MOST = 4096 };
+enum { TABLES_BYTES_MAX = 4096 };
 
 /* ratio: the most that a byte can become; 0: not known. */
 static const struct {
@@ -79,7 +79,7 @@ static fg_status check_compression(fg_context *ctx, fg_tiff *r, const fg_scan_op
 /* The quantization table of JPEG: in a tag of its own, or before the first strip's or tile's image.
  */
 static fg_status find_quality(fg_context *ctx, const fg_tiff *r, fg_scan_header *header) {
-  uint8_t head[TABLES_BYTES_MOST];
+  uint8_t head[TABLES_BYTES_MAX];
   uint16_t zigzag[64];
   uint32_t length = 0;
   const uint8_t *tables = NULL;
@@ -209,7 +209,7 @@ static fg_status read_tags(fg_context *ctx, fg_tiff *r, const fg_scan_options *o
   header->channels = r->channels;
   fill_resolution(r, header);
   if (ratio > 0)
-    header->bytes_least = (double)r->height * (double)r->width * r->bits * r->channels / 8 / ratio;
+    header->bytes_min = (double)r->height * (double)r->width * r->bits * r->channels / 8 / ratio;
   return FG_OK;
 }
 
@@ -224,7 +224,7 @@ static fg_status open_format(fg_context *ctx, fg_source *source, const fg_scan_o
   note_oddities(r, header);
   /* Rows are planned when the size has been agreed to, and for that no row may be too wide. */
   if (r->width > FG_SCAN_WIDTH_MAX_PX) return FG_OK;
-  return header->bytes_least > (double)source->size ? FG_OK : fg_tiff_plan_rows(ctx, r, header);
+  return header->bytes_min > (double)source->size ? FG_OK : fg_tiff_plan_rows(ctx, r, header);
 }
 
 static fg_status start(fg_context *ctx, void *reader) {

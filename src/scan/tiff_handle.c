@@ -6,7 +6,7 @@
 #include "scan/tiff_reader.h"
 
 /* The most that libtiff may allocate at once. */
-#define ALLOCATION_MOST ((tmsize_t)1 << 30)
+#define ALLOCATION_MAX ((tmsize_t)1 << 30)
 
 static tmsize_t on_read(thandle_t handle, void *out, tmsize_t wanted) {
   fg_tiff_handle *h = handle;
@@ -64,7 +64,7 @@ static int on_warning(TIFF *tiff, void *user, const char *module, const char *fo
 bool fg_tiff_handle_open(fg_tiff_handle *h) {
   TIFFOpenOptions *options = TIFFOpenOptionsAlloc();
   if (!options) return false;
-  TIFFOpenOptionsSetMaxSingleMemAlloc(options, ALLOCATION_MOST);
+  TIFFOpenOptionsSetMaxSingleMemAlloc(options, ALLOCATION_MAX);
   TIFFOpenOptionsSetErrorHandlerExtR(options, on_error, h);
   TIFFOpenOptionsSetWarningHandlerExtR(options, on_warning, h);
   /* m: no mapping; c: strips as they are. */

@@ -10,7 +10,7 @@
 #include "scan/tiff_reader.h"
 
 /* Larger tiles are no scanner's. */
-#define TILE_BYTES_MOST ((uint64_t)64 << 20)
+#define TILE_BYTES_MAX ((uint64_t)64 << 20)
 
 static size_t plane_row_bytes(const fg_tiff *r) {
   size_t samples = (size_t)r->width * (r->separate ? 1 : (size_t)r->channels);
@@ -66,8 +66,8 @@ static fg_status plan_tiles(fg_context *ctx, fg_tiff *r, fg_scan_header *header)
   uint64_t size = TIFFTileSize64(r->main.tiff), pixel_bits = (uint64_t)(r->bits * r->channels);
   if (r->separate) return fg_tiff_fail(ctx, r, "its colours lie in separate tiles");
   if (r->tile_width == 0 || r->tile_height == 0 || r->tile_width % 8 || size == 0 ||
-      size > TILE_BYTES_MOST || r->tile_width > TILE_BYTES_MOST ||
-      r->tile_height > TILE_BYTES_MOST || size != r->tile_width * pixel_bits / 8 * r->tile_height)
+      size > TILE_BYTES_MAX || r->tile_width > TILE_BYTES_MAX || r->tile_height > TILE_BYTES_MAX ||
+      size != r->tile_width * pixel_bits / 8 * r->tile_height)
     return fg_tiff_fail(ctx, r, "its tiles have no sensible size");
   r->tile_bytes = (size_t)size;
   fg_tiff_plan_tiles(r);

@@ -8,7 +8,7 @@
 #include "loop/engine_random.h"
 
 /* Draws of the null; forms that are tried. */
-enum { DRAWS = 4999, FORMS = 2 };
+enum { DRAWS = 4999, PATTERNS = 2 };
 /* Of all bumps, at most this share stands apart from the others; more are two kinds of bumps. */
 static const double largest_share = 1.0 / 3;
 /* Cycles over the bumps are tried in such steps, from two cycles up to a period of two bumps. */
@@ -21,8 +21,8 @@ static int ascending(const void *a, const void *b) {
 
 static double gain_of(const fg_bump_values *at, double taken, double columns, double whole) {
   double left = fmax(whole - taken, 1e-12 * whole) + at->noise_square;
-  double freedom = (double)at->n - 1 - columns + at->noise_freedom;
-  return whole > 0 ? taken / columns / (left / freedom) : 0;
+  double dof = (double)at->n - 1 - columns + at->noise_dof;
+  return whole > 0 ? taken / columns / (left / dof) : 0;
 }
 
 static double square_about_mean(const double *value, size_t n, double *mean) {
@@ -40,15 +40,15 @@ static double square_about_mean(const double *value, size_t n, double *mean) {
 static double best_apart(const fg_bump_values *at, double *by, double *limit) {
   const double *value = at->value;
   size_t n = at->n;
-  double sorted[FG_BUMP_PATTERN_MOST], mean, best = 0;
+  double sorted[FG_BUMP_PATTERN_MAX], mean, best = 0;
   double whole = square_about_mean(value, n, &mean);
   for (size_t i = 0; i < n; i++)
     sorted[i] = value[i];
   qsort(sorted, n, sizeof *sorted, ascending);
-  size_t most = (size_t)(largest_share * (double)n);
+  size_t max = (size_t)(largest_share * (double)n);
   for (int top = 0; top < 2; top++) {
     double sum = 0;
-    for (size_t k = 1; k <= most; k++) {
+    for (size_t k = 1; k <= max; k++) {
       size_t last = top ? n - k : k - 1;
       sum += sorted[last] - mean;
       double of = (double)k * (double)(n - k) / (double)n; /* of the two means' difference */
@@ -66,7 +66,7 @@ static double best_apart(const fg_bump_values *at, double *by, double *limit) {
 /* Least squares of a cosine and a sine beside the mean. */
 static double cycle_gain(const fg_bump_values *at, double period, fg_bump_pattern *to) {
   const double *value = at->value;
-  double c[FG_BUMP_PATTERN_MOST], s[FG_BUMP_PATTERN_MOST], mean[3],
+  double c[FG_BUMP_PATTERN_MAX], s[FG_BUMP_PATTERN_MAX], mean[3],
       whole = square_about_mean(value, at->n, mean);
   for (size_t i = 0; i < at->n; i++) {
     c[i] = cos(2 * M_PI * at->number[i] / period);
@@ -88,15 +88,15 @@ static double cycle_gain(const fg_bump_values *at, double period, fg_bump_patter
 }
 
 static double best_cycle(const fg_bump_values *at, fg_bump_pattern *best) {
-  double range = at->number[at->n - 1] - at->number[0] + 1, most = 0;
+  double range = at->number[at->n - 1] - at->number[0] + 1, max = 0;
   for (double cycles = 2; cycles <= range / 2; cycles += cycle_step) {
     fg_bump_pattern one = {0};
     double gain = cycle_gain(at, range / cycles, &one);
-    if (gain <= most) continue;
-    most = gain;
+    if (gain <= max) continue;
+    max = gain;
     *best = one;
   }
-  return most;
+  return max;
 }
 
 static fg_bump_pattern find_apart(const fg_bump_values *at) {
@@ -119,9 +119,9 @@ static fg_bump_pattern find_cycle(const fg_bump_values *at) {
 }
 
 /* Share of draws of normal scatter in which either form does as well as it does here. */
-static void find_p(const fg_bump_values *at, uint64_t seed, const double gain[FORMS],
-                   double p[FORMS]) {
-  size_t beyond[FORMS] = {1, 1};
+static void find_p(const fg_bump_values *at, uint64_t seed, const double gain[PATTERNS],
+                   double p[PATTERNS]) {
+  size_t beyond[PATTERNS] = {1, 1};
   fg_bump_values drawn = *at;
   for (size_t d = 0; d < DRAWS; d++) {
     double by, limit;
@@ -129,33 +129,33 @@ static void find_p(const fg_bump_values *at, uint64_t seed, const double gain[FO
     drawn.noise_square = 0;
     for (size_t i = 0; i < at->n; i++)
       drawn.value[i] = fg_engine_random_normal(&seed);
-    for (double f = 0; f < at->noise_freedom; f++)
+    for (double f = 0; f < at->noise_dof; f++)
       drawn.noise_square += pow(fg_engine_random_normal(&seed), 2);
     beyond[0] += best_apart(&drawn, &by, &limit) >= gain[0];
     beyond[1] += best_cycle(&drawn, &one) >= gain[1];
   }
-  for (int form = 0; form < FORMS; form++)
-    p[form] = (double)beyond[form] / (DRAWS + 1);
+  for (int pattern = 0; pattern < PATTERNS; pattern++)
+    p[pattern] = (double)beyond[pattern] / (DRAWS + 1);
 }
 
 /* Bonferroni's bound for the best few of all that could be the best: what draws cannot resolve. */
 static double bound_of_apart(const fg_bump_values *at, double gain) {
-  size_t most = (size_t)(largest_share * (double)at->n);
+  size_t max = (size_t)(largest_share * (double)at->n);
   double subsets = 0;
-  for (size_t k = 1; k <= most; k++)
+  for (size_t k = 1; k <= max; k++)
     subsets += gsl_sf_choose((unsigned)at->n, (unsigned)k);
-  double freedom = (double)at->n - 2 + at->noise_freedom;
-  return fmin(1, subsets * gsl_cdf_fdist_Q(gain, 1, freedom));
+  double dof = (double)at->n - 2 + at->noise_dof;
+  return fmin(1, subsets * gsl_cdf_fdist_Q(gain, 1, dof));
 }
 
 fg_bump_pattern fg_bump_pattern_find(const fg_bump_values *at, uint64_t seed, double *p_value) {
-  const fg_bump_pattern found[FORMS] = {find_apart(at), find_cycle(at)};
-  const double gain[FORMS] = {found[0].gain, found[1].gain};
-  double p[FORMS];
+  const fg_bump_pattern found[PATTERNS] = {find_apart(at), find_cycle(at)};
+  const double gain[PATTERNS] = {found[0].gain, found[1].gain};
+  double p[PATTERNS];
   find_p(at, seed, gain, p);
   p[0] = fmin(p[0], bound_of_apart(at, gain[0]));
   int best = p[1] < p[0] || (p[1] == p[0] && gain[1] > gain[0]);
-  *p_value = fmin(1, FORMS * p[best]);
+  *p_value = fmin(1, PATTERNS * p[best]);
   return found[best];
 }
 

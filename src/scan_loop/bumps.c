@@ -20,7 +20,7 @@ enum { RADIUS = FG_SCAN_LOOP_BUMP_RADIUS, ANGLE = FG_SCAN_LOOP_BUMP_ANGLE };
 enum { ORDERS = 6, SIGNS = 9 };
 
 /* A claim must be this many times what all bumps together may be off by. */
-static const double beyond_doubt = 3;
+static const double is_certain = 3;
 static const double accept_p = FG_LOOP_ACCEPT_P; /* over both responses */
 
 fg_status fg_scan_loop_bumps_note(fg_context *ctx, fg_scan_loop_bumps *bumps, const char *format,
@@ -99,7 +99,7 @@ static fg_status build_problem(fg_context *ctx, const fg_scan_loop_bumps *bumps,
   FG_TRY(fg_loop_table_problem_build(ctx, table, &spec, out));
   fg_loop_problem *problem = &out->problem;
   for (size_t i = 0; i < problem->rows; i++)
-    problem->aside[i] = bumps->bump[out->row[i]].aside;
+    problem->held_out[i] = bumps->bump[out->row[i]].held_out;
   drop_coordinate(problem, "foil");
   for (size_t r = 0; r < FG_SCAN_LOOP_BUMP_RESPONSES; r++)
     drop_coordinate(problem, offset_column[r]);
@@ -154,10 +154,10 @@ static void find_errors(fg_scan_loop_bump_level *level, const fg_scan_loop_bumps
     for (int after = 0; after < 2; after++) {
       double value = problem->residual[i] - (after ? level->result.effect_fit[i] : 0);
       if (own_mean) value -= part_mean(level, bumps, bump->part, after);
-      sum[bump->aside][after] += value * value;
+      sum[bump->held_out][after] += value * value;
     }
-    n[bump->aside]++;
-    if (!bump->aside) base += problem->response[i] - level->result.effect_fit[i];
+    n[bump->held_out]++;
+    if (!bump->held_out) base += problem->response[i] - level->result.effect_fit[i];
   }
   for (int after = 0; after < 2; after++) {
     level->error.rms[after] = sqrt(sum[0][after] / n[0]);
@@ -185,7 +185,7 @@ static double over_responses(const fg_loop_problem *problem, double p_value) {
 }
 
 static bool is_exchange(const fg_loop_candidate *candidate) {
-  return candidate->effect && candidate->effect->lone == FG_LOOP_EXCHANGED_ROWS;
+  return candidate->effect && candidate->effect->outlier == FG_LOOP_EXCHANGED_ROWS;
 }
 
 /* Bumps do not change places. */
@@ -206,25 +206,24 @@ static fg_status judge_claim(fg_context *ctx, fg_scan_loop_bumps *bumps, size_t 
   const fg_scan_loop_bump_level *level = &bumps->level[response];
   const fg_loop_problem *problem = &level->problem.problem;
   const fg_scan_loop_bump_response *what = &fg_scan_loop_bump_responses[response];
-  double least = level->least, p_value;
+  double min = level->min, p_value;
   claim->p_value = over_responses(problem, claim->p_value);
   const char *id = claim->candidate.effect->id;
   *kept = false;
   strip_aliases(claim);
   if (is_exchange(&claim->candidate)) return FG_OK;
-  if (claim->candidate.effect->lone == FG_LOOP_WRONG_ROW) {
+  if (claim->candidate.effect->outlier == FG_LOOP_WRONG_ROW) {
     const fg_scan_loop_bump *bump = &bumps->bump[level->problem.row[claim->candidate.row[0]]];
     return fg_scan_loop_bumps_note(ctx, bumps,
                                    "bumps: %s of bump %d of foil %zu stands out from the others",
                                    what->name, bump->number, bump->part + 1);
   }
-  if (!(claim->amplitude > least))
+  if (!(claim->amplitude > min))
     return fg_scan_loop_bumps_note(
         ctx, bumps,
         "bumps: %s of %s is %.3g %s, which is within what the edges leave in doubt "
         "(%.3g %s): no claim",
-        id, what->name, what->scale * claim->amplitude, what->unit, what->scale * least,
-        what->unit);
+        id, what->name, what->scale * claim->amplitude, what->unit, what->scale * min, what->unit);
   if (problem->few) {
     FG_TRY(fg_scan_loop_bumps_null_p(ctx, problem, claim, seed, &p_value));
     p_value *= FG_SCAN_LOOP_BUMP_RESPONSES;
@@ -258,13 +257,13 @@ static void judge_rejected(fg_scan_loop_bump_level *level) {
   const fg_loop_problem *problem = &level->problem.problem;
   size_t rows = 0;
   for (size_t i = 0; i < problem->rows; i++)
-    rows += !problem->aside[i];
+    rows += !problem->held_out[i];
   for (size_t k = 0; k < level->result.rejects; k++) {
     fg_loop_rejected *one = &level->result.rejected[k];
     size_t needed = one->candidate.effect->over_bumps == FG_LOOP_BUMP_STRETCH ? SIGNS : ORDERS;
     one->p_value = over_responses(problem, one->p_value);
     if (problem->few && rows < needed) one->smallest_detectable = NAN;
-    if (one->smallest_detectable < level->least) one->smallest_detectable = level->least;
+    if (one->smallest_detectable < level->min) one->smallest_detectable = level->min;
     if (isnan(one->smallest_detectable) && one->verdict == FG_LOOP_ABSENT)
       one->verdict = FG_LOOP_INCONCLUSIVE;
   }
@@ -286,7 +285,7 @@ static fg_status judge_claims(fg_context *ctx, fg_scan_loop_bumps *bumps, size_t
   }
   result->claims = count;
   judge_rejected(level);
-  if (result->has_curve && !(result->curve.rms > level->least)) result->has_curve = false;
+  if (result->has_curve && !(result->curve.rms > level->min)) result->has_curve = false;
   FG_TRY(find_effects(ctx, level));
   FG_TRY(fg_scan_loop_bumps_find_single(ctx, bumps, response, seed));
   return find_effects(ctx, level);
@@ -309,11 +308,11 @@ static fg_status judge(fg_context *ctx, const fg_design *design, uint64_t seed, 
   }
   level->judged = true;
   for (size_t i = 0; i < bumps->count; i++)
-    if (!bumps->bump[i].aside) {
-      sum += bumps->bump[i].doubt[response];
+    if (!bumps->bump[i].held_out) {
+      sum += bumps->bump[i].uncertainty[response];
       n++;
     }
-  level->least = beyond_doubt * sum / n;
+  level->min = is_certain * sum / n;
   fg_scan_loop_bumps_find_level(bumps, response);
   const fg_loop_result found = level->result; /* only counted */
   FG_TRY(judge_claims(ctx, bumps, response, seed));
@@ -343,9 +342,9 @@ static void find_height_errors(fg_scan_loop_bumps *bumps) {
       double r = level_mm + bump->declared_mm + effect_mm;
       double alpha = bump->declared_arc / r + effect_deg;
       double error = bump->height_mm - height_of(bump->overall_mm, r, alpha);
-      sum[bump->aside][after] += error * error;
+      sum[bump->held_out][after] += error * error;
     }
-    n[bump->aside]++;
+    n[bump->held_out]++;
   }
   for (int after = 0; after < 2; after++) {
     bumps->height.rms[after] = sqrt(sum[0][after] / n[0]);
@@ -375,7 +374,7 @@ static fg_status run(fg_context *ctx, const fg_scan_loop_bumps_request *request,
   fg_table table = {0};
   size_t rows = 0;
   for (size_t i = 0; i < bumps->count; i++)
-    rows += !bumps->bump[i].aside;
+    rows += !bumps->bump[i].held_out;
   FG_TRY(say_power(ctx, bumps, rows));
   if (rows < FG_SCAN_LOOP_BUMP_ROWS + bumps->parts - 1) return FG_OK;
   FG_TRY_EXIT(build_table(ctx, bumps, design, &table));
@@ -393,7 +392,7 @@ fg_status fg_scan_loop_bumps_run(fg_context *ctx, const fg_scan_loop_bumps_reque
       .forming = request->forming,
       .height = {{NAN, NAN}, {NAN, NAN}},
       .level = {{.error = {{NAN, NAN}, {NAN, NAN}}}, {.error = {{NAN, NAN}, {NAN, NAN}}}}};
-  if (request->before[0].design.form == FG_FORM_DISCS) return FG_OK; /* no bumps, nothing to say */
+  if (request->before[0].design.kind == FG_FOIL_DISCS) return FG_OK; /* no bumps, nothing to say */
   if (request->bent)
     return fg_scan_loop_bumps_note(
         ctx, bumps,

@@ -34,11 +34,12 @@ enum {
 typedef struct fg_scan_loop_bump {
   size_t part;
   int number;
-  bool aside;
+  bool held_out;
   double overall_mm, height_mm;
-  double value[FG_SCAN_LOOP_BUMP_RESPONSES], doubt[FG_SCAN_LOOP_BUMP_RESPONSES]; /* mm, degrees */
-  double declared_mm;  /* radius beside the level; 0: a level alone */
-  double declared_arc; /* radius times angle, mm degrees */
+  double value[FG_SCAN_LOOP_BUMP_RESPONSES],
+      uncertainty[FG_SCAN_LOOP_BUMP_RESPONSES]; /* mm, degrees */
+  double declared_mm;                           /* radius beside the level; 0: a level alone */
+  double declared_arc;                          /* radius times angle, mm degrees */
 } fg_scan_loop_bump;
 
 /* Errors about the declared model, without and with what was found; NaN where there are none. */
@@ -52,7 +53,7 @@ typedef struct fg_scan_loop_bump_level {
   fg_loop_result result; /* with the claims that stand; p-values over both responses */
   fg_loop_claim dropped[FG_LOOP_CLAIMS];
   size_t drops;
-  double least;          /* smallest amplitude beyond doubt, the response's unit */
+  double min;            /* smallest amplitude beyond doubt, the response's unit */
   double base;           /* mean of response minus effects, over rows that are not aside */
   double level, u_level; /* mean of response minus declared; NaN: none is declared beside one */
   fg_scan_loop_bump_error error;

@@ -18,7 +18,7 @@ static const fg_bump *find_bump(const fg_forming_prediction *forming, int number
 
 fg_status fg_scan_loop_bumps_check_forming(fg_context *ctx, const fg_forming_prediction *forming,
                                            const fg_measurement *measured, size_t scan_count) {
-  if (!forming || measured[0].design.form != FG_FORM_CLASSICAL) return FG_OK;
+  if (!forming || measured[0].design.kind != FG_FOIL_CLASSICAL) return FG_OK;
   for (size_t s = 0; s < scan_count; s++)
     for (size_t f = 0; f < measured[s].foil_count; f++) {
       const fg_foil *foil = &measured[s].foils[f];
@@ -70,7 +70,7 @@ double fg_scan_loop_bumps_offset(const fg_design *design, const fg_scan_loop_bum
 /* The foils are what was drawn; of one foil its bumps. `doubt` is what all of them share. */
 void fg_scan_loop_bumps_find_level(fg_scan_loop_bumps *bumps, size_t response) {
   fg_scan_loop_bump_level *level = &bumps->level[response];
-  double mean = 0, square = 0, units = 0, doubt = 0, n = 0;
+  double mean = 0, square = 0, units = 0, uncertainty = 0, n = 0;
   level->level = level->u_level = NAN;
   if (!bumps->forming || response != RADIUS) return;
   for (size_t i = 0; i < bumps->count;) {
@@ -78,9 +78,9 @@ void fg_scan_loop_bumps_find_level(fg_scan_loop_bumps *bumps, size_t response) {
     size_t part = bumps->bump[i].part;
     for (; i < bumps->count && bumps->bump[i].part == part; i++) {
       const fg_scan_loop_bump *bump = &bumps->bump[i];
-      if (bump->aside) continue;
+      if (bump->held_out) continue;
       double apart = bump->value[response] - bump->declared_mm;
-      doubt += bump->doubt[response];
+      uncertainty += bump->uncertainty[response];
       n++;
       sum += apart;
       count++;
@@ -93,5 +93,5 @@ void fg_scan_loop_bumps_find_level(fg_scan_loop_bumps *bumps, size_t response) {
   mean /= units;
   double variance = units > 1 ? fmax(0, square / units - mean * mean) / (units - 1) : 0;
   level->level = mean;
-  level->u_level = hypot(sqrt(variance), doubt / n);
+  level->u_level = hypot(sqrt(variance), uncertainty / n);
 }

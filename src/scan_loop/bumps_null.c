@@ -16,15 +16,15 @@ enum { DRAWS = 1999 };
 static const double lengths[] = {0, 0.6, 1.2, 2.4, 4};
 enum { LENGTHS = sizeof lengths / sizeof *lengths };
 
-typedef struct trend_bench {
+typedef struct trend_workspace {
   size_t n, *first, foils; /* first row of each foil, and n */
   double *shape[LENGTHS];  /* each foil's mean taken out, of length 1 */
-} trend_bench;
+} trend_workspace;
 
-static void centre(const trend_bench *bench, double *v) {
-  for (size_t f = 0; f < bench->foils; f++) {
+static void centre(const trend_workspace *workspace, double *v) {
+  for (size_t f = 0; f < workspace->foils; f++) {
     double mean = 0;
-    size_t from = bench->first[f], to = bench->first[f + 1];
+    size_t from = workspace->first[f], to = workspace->first[f + 1];
     for (size_t i = from; i < to; i++)
       mean += v[i] / (double)(to - from);
     for (size_t i = from; i < to; i++)
@@ -33,19 +33,19 @@ static void centre(const trend_bench *bench, double *v) {
 }
 
 static fg_status open_trends(fg_context *ctx, const double *number, const size_t *series, size_t n,
-                             trend_bench *bench) {
-  bench->n = n;
-  FG_TRY(fg_memory_allocate(ctx, n + 1, sizeof *bench->first, (void **)&bench->first));
+                             trend_workspace *workspace) {
+  workspace->n = n;
+  FG_TRY(fg_memory_allocate(ctx, n + 1, sizeof *workspace->first, (void **)&workspace->first));
   for (size_t i = 0; i < n; i++)
-    if (!i || series[i] != series[i - 1]) bench->first[bench->foils++] = i;
-  bench->first[bench->foils] = n;
+    if (!i || series[i] != series[i - 1]) workspace->first[workspace->foils++] = i;
+  workspace->first[workspace->foils] = n;
   for (size_t k = 0; k < LENGTHS; k++) {
     double *v, size = 0;
-    FG_TRY(fg_memory_allocate(ctx, n, sizeof *v, (void **)&bench->shape[k]));
-    v = bench->shape[k];
+    FG_TRY(fg_memory_allocate(ctx, n, sizeof *v, (void **)&workspace->shape[k]));
+    v = workspace->shape[k];
     for (size_t i = 0; i < n; i++)
       v[i] = lengths[k] > 0 ? exp(-(number[i] - 1) / lengths[k]) : number[i];
-    centre(bench, v);
+    centre(workspace, v);
     for (size_t i = 0; i < n; i++)
       size += v[i] * v[i];
     for (size_t i = 0; i < n && size > 0; i++)
@@ -54,21 +54,21 @@ static fg_status open_trends(fg_context *ctx, const double *number, const size_t
   return FG_OK;
 }
 
-static double best_trend(const trend_bench *bench, const double *residual) {
+static double best_trend(const trend_workspace *workspace, const double *residual) {
   double best = 0;
   for (size_t k = 0; k < LENGTHS; k++) {
     double sum = 0;
-    for (size_t i = 0; i < bench->n; i++)
-      sum += bench->shape[k][i] * residual[i];
+    for (size_t i = 0; i < workspace->n; i++)
+      sum += workspace->shape[k][i] * residual[i];
     best = fmax(best, sum * sum);
   }
   return best;
 }
 
-static void shuffle(const trend_bench *bench, uint64_t *seed, double *v) {
-  for (size_t f = 0; f < bench->foils; f++)
-    for (size_t i = bench->first[f + 1] - 1; i > bench->first[f]; i--) {
-      size_t from = bench->first[f], span = i - from + 1;
+static void shuffle(const trend_workspace *workspace, uint64_t *seed, double *v) {
+  for (size_t f = 0; f < workspace->foils; f++)
+    for (size_t i = workspace->first[f + 1] - 1; i > workspace->first[f]; i--) {
+      size_t from = workspace->first[f], span = i - from + 1;
       size_t k = from + (size_t)(fg_engine_random_uniform(seed) * (double)span);
       double value = v[i];
       v[i] = v[k];
@@ -76,13 +76,13 @@ static void shuffle(const trend_bench *bench, uint64_t *seed, double *v) {
     }
 }
 
-static double trend_p(const trend_bench *bench, double *residual, uint64_t seed) {
-  centre(bench, residual);
-  double observed = best_trend(bench, residual) * (1 - 1e-9);
+static double trend_p(const trend_workspace *workspace, double *residual, uint64_t seed) {
+  centre(workspace, residual);
+  double observed = best_trend(workspace, residual) * (1 - 1e-9);
   size_t beyond = 1;
   for (size_t d = 0; d < DRAWS; d++) {
-    shuffle(bench, &seed, residual);
-    beyond += best_trend(bench, residual) >= observed;
+    shuffle(workspace, &seed, residual);
+    beyond += best_trend(workspace, residual) >= observed;
   }
   return (double)beyond / (DRAWS + 1);
 }
@@ -113,14 +113,14 @@ fg_status fg_scan_loop_bumps_null_p(fg_context *ctx, const fg_loop_problem *prob
                                     const fg_loop_claim *claim, uint64_t seed, double *p_value) {
   const fg_loop_coordinate *at = &problem->coordinate[claim->candidate.a];
   fg_status status = FG_OK;
-  trend_bench bench = {0};
+  trend_workspace workspace = {0};
   double *residual = NULL, *value;
   size_t *series = NULL, n = 0;
   FG_TRY_EXIT(fg_memory_allocate(ctx, problem->rows, 2 * sizeof *residual, (void **)&residual));
   FG_TRY_EXIT(fg_memory_allocate(ctx, problem->rows, sizeof *series, (void **)&series));
   value = residual + problem->rows;
   for (size_t i = 0; i < problem->rows; i++) {
-    if (problem->aside[i]) continue;
+    if (problem->held_out[i]) continue;
     residual[n] = problem->residual[i];
     value[n] = at->value[i];
     series[n++] = problem->series[i];
@@ -131,12 +131,12 @@ fg_status fg_scan_loop_bumps_null_p(fg_context *ctx, const fg_loop_problem *prob
     *p_value = sign_p(value, n, seed);
     goto exit;
   }
-  FG_TRY_EXIT(open_trends(ctx, value, series, n, &bench));
-  *p_value = trend_p(&bench, residual, seed);
+  FG_TRY_EXIT(open_trends(ctx, value, series, n, &workspace));
+  *p_value = trend_p(&workspace, residual, seed);
 exit:
   for (size_t k = 0; k < LENGTHS; k++)
-    free(bench.shape[k]);
-  free(bench.first);
+    free(workspace.shape[k]);
+  free(workspace.first);
   free(residual);
   free(series);
   return status;

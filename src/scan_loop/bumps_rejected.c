@@ -51,7 +51,7 @@ void fg_scan_loop_bumps_rejected(const fg_scan_loop_bumps *bumps, fg_scan_loop_b
                                     .would_explain = NAN,
                                     .p_value = claim->p_value,
                                     .retained_share = claim->retained_share,
-                                    .smallest_detectable = level->least};
+                                    .smallest_detectable = level->min};
       if (is_effect(bumps, claim->candidate.effect)) visit(r, &one, user);
     }
     visit_unknown(bumps, r, visit, user);

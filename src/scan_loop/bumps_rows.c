@@ -26,7 +26,7 @@ static fg_scan_loop_bump *find_row(fg_scan_loop_bumps *bumps, size_t part, int n
 }
 
 /* How far one view's value may be off together with all others. */
-static double doubt_of(double u, double before, double after, bool open) {
+static double uncertainty_of(double u, double before, double after, bool open) {
   double moved = isfinite(before) ? after - before : 0;
   return open ? hypot(u, moved) : u;
 }
@@ -39,8 +39,9 @@ static void add_view(fg_scan_loop_bump *row, const fg_foil *foil, const fg_bump 
   row->height_mm += bump->height_mm;
   row->value[RADIUS] += bump->radius_mm;
   row->value[ANGLE] += bump->bump_angle_deg;
-  row->doubt[RADIUS] += doubt_of(bump->u_radius_mm, was[RADIUS], bump->radius_mm, open);
-  row->doubt[ANGLE] += doubt_of(bump->u_bump_angle_deg, was[ANGLE], bump->bump_angle_deg, open);
+  row->uncertainty[RADIUS] += uncertainty_of(bump->u_radius_mm, was[RADIUS], bump->radius_mm, open);
+  row->uncertainty[ANGLE] +=
+      uncertainty_of(bump->u_bump_angle_deg, was[ANGLE], bump->bump_angle_deg, open);
 }
 
 static void divide(fg_scan_loop_bump *row, double views) {
@@ -48,7 +49,7 @@ static void divide(fg_scan_loop_bump *row, double views) {
   row->height_mm /= views;
   for (size_t r = 0; r < FG_SCAN_LOOP_BUMP_RESPONSES; r++) {
     row->value[r] /= views;
-    row->doubt[r] /= views;
+    row->uncertainty[r] /= views;
   }
 }
 
@@ -71,7 +72,7 @@ static void add_foil(const fg_scan_loop_bumps_request *request, size_t scan, siz
     if (!row) {
       row = &bumps->bump[bumps->count++];
       *row = (fg_scan_loop_bump){
-          .part = part, .number = bump->number, .aside = request->hold_out[scan]};
+          .part = part, .number = bump->number, .held_out = request->hold_out[scan]};
     }
     add_view(row, after, bump, find_number(before, bump->number), request->open);
     views[row - bumps->bump]++;
@@ -87,7 +88,7 @@ fg_status fg_scan_loop_bumps_collect(fg_context *ctx, const fg_scan_loop_bumps_r
       total += request->after[s].foils[f].bump_count;
   FG_TRY(fg_memory_allocate(ctx, total, sizeof *bumps->bump, (void **)&bumps->bump));
   FG_TRY(fg_memory_allocate(ctx, total, sizeof *views, (void **)&views));
-  bumps->lip = request->before[0].design.form == FG_FORM_CLASSICAL;
+  bumps->lip = request->before[0].design.kind == FG_FOIL_CLASSICAL;
   for (size_t s = 0; s < request->scan_count; s++) {
     if (request->same_foil && request->hold_out[s]) continue;
     for (size_t f = 0; f < request->after[s].foil_count; f++)

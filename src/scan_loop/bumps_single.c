@@ -16,21 +16,21 @@ static bool collect(const fg_scan_loop_bumps *bumps, const fg_scan_loop_bump_lev
                     size_t coordinate, fg_bump_values *out) {
   const fg_loop_problem *problem = &level->problem.problem;
   const double *number = problem->coordinate[coordinate].value;
-  double count[FG_BUMP_PATTERN_MOST] = {0};
+  double count[FG_BUMP_PATTERN_MAX] = {0};
   *out = (fg_bump_values){0};
   for (size_t i = 0; i < problem->rows; i++) {
     size_t part = bumps->bump[level->problem.row[i]].part, k = 0;
     double mean = 0, n = 0;
-    if (problem->aside[i]) continue;
+    if (problem->held_out[i]) continue;
     for (size_t j = 0; j < problem->rows; j++)
-      if (!problem->aside[j] && bumps->bump[level->problem.row[j]].part == part) {
+      if (!problem->held_out[j] && bumps->bump[level->problem.row[j]].part == part) {
         mean += problem->residual[j] - level->result.effect_fit[j];
         n++;
       }
     while (k < out->n && out->number[k] < number[i])
       k++;
     if (k == out->n || out->number[k] != number[i]) {
-      if (out->n == FG_BUMP_PATTERN_MOST) return false;
+      if (out->n == FG_BUMP_PATTERN_MAX) return false;
       for (size_t m = out->n++; m > k; m--) {
         out->number[m] = out->number[m - 1];
         out->value[m] = out->value[m - 1];
@@ -44,7 +44,7 @@ static bool collect(const fg_scan_loop_bumps *bumps, const fg_scan_loop_bump_lev
   }
   for (size_t k = 0; k < out->n; k++)
     out->value[k] /= count[k];
-  return out->n >= FG_BUMP_PATTERN_LEAST;
+  return out->n >= FG_BUMP_PATTERN_MIN;
 }
 
 static fg_status put_curve(fg_context *ctx, const fg_bump_values *at, const fg_bump_pattern *found,
@@ -121,7 +121,7 @@ fg_status fg_scan_loop_bumps_find_single(fg_context *ctx, fg_scan_loop_bumps *bu
   double p_value;
   const fg_bump_pattern found = fg_bump_pattern_find(&at, seed, &p_value);
   p_value = fmin(1, FG_SCAN_LOOP_BUMP_RESPONSES * p_value);
-  if (!(p_value < FG_BUMP_PATTERN_P) || !(fabs(found.by) > level->least)) return FG_OK;
+  if (!(p_value < FG_BUMP_PATTERN_P) || !(fabs(found.by) > level->min)) return FG_OK;
   FG_TRY(put_curve(ctx, &at, &found, p_value, coordinate, &level->result));
   return say(ctx, bumps, response, &at, &found);
 }

@@ -11,9 +11,10 @@
 #define UNLIKELY_CHI2 9.2
 
 static fg_status open_all(fg_context *ctx, fg_scan_loop *loop) {
-  FG_TRY(fg_memory_allocate(ctx, loop->scan_count, sizeof *loop->pays, (void **)&loop->pays));
+  FG_TRY(
+      fg_memory_allocate(ctx, loop->scan_count, sizeof *loop->benefits, (void **)&loop->benefits));
   for (size_t i = 0; i < loop->scan_count; i++)
-    FG_TRY(fg_pays_open(ctx, &loop->before[i], &loop->pays[i]));
+    FG_TRY(fg_benefits_open(ctx, &loop->before[i], &loop->benefits[i]));
   return FG_OK;
 }
 
@@ -34,50 +35,50 @@ static void turn_covariance(double from[3][3], double to[FG_CORRECTED][FG_CORREC
  * what noise would leave of them (Birge's ratio). */
 static double misfit_of(const fg_explanations *explanations, size_t explanation) {
   const fg_explanation *one = &explanations->each[explanation];
-  if (explanations->right || explanation >= explanations->count || !(one->freedom > 0)) return 1;
-  return isfinite(one->excess) ? fmax(1, one->excess / one->freedom) : 1;
+  if (explanations->right || explanation >= explanations->count || !(one->dof > 0)) return 1;
+  return isfinite(one->excess) ? fmax(1, one->excess / one->dof) : 1;
 }
 
 /* Excess beyond what noise makes of the columns that a set leaves out: chi² that compare. */
 static double excess_beyond(const fg_explanation *one) {
-  return one->excess - one->freedom;
+  return one->excess - one->dof;
 }
 
 bool fg_scan_loop_is_unlikely(const fg_explanations *explanations, size_t explanation) {
-  double least = INFINITY;
+  double min = INFINITY;
   for (size_t m = 0; m < explanations->count; m++)
-    least = fmin(least, excess_beyond(&explanations->each[m]));
-  return excess_beyond(&explanations->each[explanation]) > least + UNLIKELY_CHI2;
+    min = fmin(min, excess_beyond(&explanations->each[m]));
+  return excess_beyond(&explanations->each[explanation]) > min + UNLIKELY_CHI2;
 }
 
-static void add_scaled(fg_pay *pay, size_t item, double noise[FG_CORRECTED][FG_CORRECTED],
+static void add_scaled(fg_benefit *benefit, size_t item, double noise[FG_CORRECTED][FG_CORRECTED],
                        double scale) {
   for (int a = 0; a < FG_CORRECTED; a++)
     for (int b = 0; b < FG_CORRECTED; b++)
       noise[a][b] *= scale;
-  fg_pay_add_noise(pay, item, noise);
+  fg_benefit_add_noise(benefit, item, noise);
 }
 
 static void add_foil_noise(const fg_points_part *part, const fg_joint_fit_part *adds,
-                           const fg_foil *foil, double scale, fg_pay *pay) {
+                           const fg_foil *foil, double scale, fg_benefit *benefit) {
   double noise[FG_CORRECTED][FG_CORRECTED], alone[FG_CORRECTED][FG_CORRECTED] = {{0}};
   for (size_t b = 0; b < foil->bump_count; b++)
     for (size_t k = 0; k < part->bump_count; k++)
       if (part->bumps[k].number == foil->bumps[b].number) {
         turn_covariance(adds->bumps[k], noise);
-        add_scaled(pay, b, noise, scale);
+        add_scaled(benefit, b, noise, scale);
       }
   alone[FG_CORRECTED_OVERALL_RADIUS][FG_CORRECTED_OVERALL_RADIUS] = adds->overall;
-  add_scaled(pay, foil->bump_count, alone, scale);
-  pay->noises++;
+  add_scaled(benefit, foil->bump_count, alone, scale);
+  benefit->noises++;
 }
 
 /* A gauge's radius is given, and the fit tells nothing of it. */
 static void add_disc_noise(const fg_points_part *part, const fg_joint_fit_part *adds, size_t disc,
-                           double scale, fg_pay *pay) {
+                           double scale, fg_benefit *benefit) {
   double noise[FG_CORRECTED][FG_CORRECTED] = {{0}};
   if (!part->radius_known) noise[FG_CORRECTED_RADIUS][FG_CORRECTED_RADIUS] = adds->overall;
-  add_scaled(pay, disc, noise, scale);
+  add_scaled(benefit, disc, noise, scale);
 }
 
 static bool holds_curve(const fg_explanations *explanations, size_t explanation) {
@@ -95,14 +96,14 @@ static void take_noise(fg_scan_loop *loop, const fg_joint_fit_result *fit, size_
   const fg_points_part *part = &fit->points->parts[one->part];
   const fg_joint_fit_part *adds = &fit->parts[one->part];
   const fg_measurement *before = &loop->before[one->scan];
-  fg_pays *pays = &loop->pays[one->scan];
+  fg_benefits *benefits = &loop->benefits[one->scan];
   if (one->foil) {
-    fg_pay *pay = &pays->foil[one->foil - before->foils];
-    add_foil_noise(part, adds, one->foil, scale, pay);
-    pay->misfit = pay->misfit || scale > 1;
-    pay->curve = pay->curve || curve;
+    fg_benefit *benefit = &benefits->foil[one->foil - before->foils];
+    add_foil_noise(part, adds, one->foil, scale, benefit);
+    benefit->misfit = benefit->misfit || scale > 1;
+    benefit->curve = benefit->curve || curve;
   } else {
-    add_disc_noise(part, adds, (size_t)(one->disc - before->discs), scale, &pays->discs);
+    add_disc_noise(part, adds, (size_t)(one->disc - before->discs), scale, &benefits->discs);
   }
 }
 
@@ -110,10 +111,10 @@ fg_status fg_scan_loop_take_moves(fg_context *ctx, fg_scan_loop *loop, size_t ex
                                   const fg_joint_fit_result *fit, const fg_measurement *corrected) {
   double scale = misfit_of(&loop->explanations, explanation);
   if (explanation && fg_scan_loop_is_unlikely(&loop->explanations, explanation)) return FG_OK;
-  if (!loop->pays) FG_TRY(open_all(ctx, loop));
+  if (!loop->benefits) FG_TRY(open_all(ctx, loop));
   for (size_t i = 0; i < loop->scan_count; i++) {
-    fg_pays_add(&loop->pays[i], &loop->before[i], &corrected[i]);
-    loop->pays[i].discs.noises++;
+    fg_benefits_add(&loop->benefits[i], &loop->before[i], &corrected[i]);
+    loop->benefits[i].discs.noises++;
   }
   bool curve = holds_curve(&loop->explanations, explanation);
   for (size_t v = 0; v < fit->points->view_count; v++)
@@ -122,53 +123,55 @@ fg_status fg_scan_loop_take_moves(fg_context *ctx, fg_scan_loop *loop, size_t ex
 }
 
 /* All scans of one foil are decided as one. */
-static void decide_foil(const fg_scan_loop *loop, size_t scan, size_t foil, const fg_pay **pay,
-                        fg_pay_decision *each, fg_pay_decision **to) {
+static void decide_foil(const fg_scan_loop *loop, size_t scan, size_t foil,
+                        const fg_benefit **benefit, fg_benefit_decision *each,
+                        fg_benefit_decision **to) {
   bool same = loop->options.same_foil;
   size_t count = 0;
   for (size_t i = same ? 0 : scan; i < (same ? loop->scan_count : scan + 1); i++) {
-    pay[count] = &loop->pays[i].foil[foil];
+    benefit[count] = &loop->benefits[i].foil[foil];
     to[count++] = &each[i];
   }
-  fg_pay_decide(pay, count, to);
+  fg_benefit_decide(benefit, count, to);
 }
 
 static fg_status keep_foil(fg_context *ctx, fg_scan_loop *loop, size_t scan, size_t foil,
-                           const fg_pay_decision *decision) {
+                           const fg_benefit_decision *decision) {
   const fg_measurement *before = &loop->before[scan];
   fg_foil *after = &loop->after[scan].foils[foil];
   if (before->foils[foil].flags & FG_FOIL_NOT_MEASURED) return FG_OK;
-  const fg_pay_foil of = {before, &before->foils[foil], &loop->pays[scan].foil[foil], decision};
-  FG_TRY(fg_pay_keep_foil(ctx, &of, after));
-  fg_pay_widen_foil(&of, after);
+  const fg_benefit_foil of = {before, &before->foils[foil], &loop->benefits[scan].foil[foil],
+                              decision};
+  FG_TRY(fg_benefit_keep_foil(ctx, &of, after));
+  fg_benefit_widen_foil(&of, after);
   return FG_OK;
 }
 
 static void keep_discs(fg_scan_loop *loop, size_t scan) {
-  fg_pay_decision decision;
-  const fg_pay *pay = &loop->pays[scan].discs;
-  fg_pay_decide(&pay, 1, &(fg_pay_decision *){&decision});
-  fg_pay_keep_discs(&loop->before[scan], pay, &decision, &loop->after[scan]);
-  fg_pay_widen_discs(pay, &decision, &loop->after[scan]);
+  fg_benefit_decision decision;
+  const fg_benefit *benefit = &loop->benefits[scan].discs;
+  fg_benefit_decide(&benefit, 1, &(fg_benefit_decision *){&decision});
+  fg_benefit_keep_discs(&loop->before[scan], benefit, &decision, &loop->after[scan]);
+  fg_benefit_widen_discs(benefit, &decision, &loop->after[scan]);
 }
 
-fg_status fg_scan_loop_keep_what_pays(fg_context *ctx, fg_scan_loop *loop) {
+fg_status fg_scan_loop_keep_beneficial(fg_context *ctx, fg_scan_loop *loop) {
   fg_status status = FG_OK;
-  const fg_pay **pay = NULL;
-  fg_pay_decision *each = NULL, **to = NULL;
-  if (!loop->pays) return FG_OK;
-  FG_TRY_EXIT(fg_memory_allocate(ctx, loop->scan_count, sizeof *pay, (void **)&pay));
+  const fg_benefit **benefit = NULL;
+  fg_benefit_decision *each = NULL, **to = NULL;
+  if (!loop->benefits) return FG_OK;
+  FG_TRY_EXIT(fg_memory_allocate(ctx, loop->scan_count, sizeof *benefit, (void **)&benefit));
   FG_TRY_EXIT(fg_memory_allocate(ctx, loop->scan_count, sizeof *each, (void **)&each));
   FG_TRY_EXIT(fg_memory_allocate(ctx, loop->scan_count, sizeof *to, (void **)&to));
   for (size_t i = 0; i < loop->scan_count; i++) {
     for (size_t f = 0; f < loop->after[i].foil_count; f++) {
-      decide_foil(loop, i, f, pay, each, to);
+      decide_foil(loop, i, f, benefit, each, to);
       FG_TRY_EXIT(keep_foil(ctx, loop, i, f, &each[i]));
     }
     keep_discs(loop, i);
   }
 exit:
-  free(pay);
+  free(benefit);
   free(each);
   free(to);
   return status;

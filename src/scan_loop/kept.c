@@ -37,27 +37,28 @@ exit:
 }
 
 /* Centre and directions go with R0. */
-static double turn_deg(const fg_pay *pay, size_t item, const fg_pay_decision *decision) {
+static double turn_deg(const fg_benefit *benefit, size_t item,
+                       const fg_benefit_decision *decision) {
   double sum = 0;
-  for (size_t e = 0; e < pay->explanations; e++)
-    sum += decision->part[FG_CORRECTED_OVERALL_RADIUS][e] * pay->item[item].turn_deg[e];
+  for (size_t e = 0; e < benefit->explanations; e++)
+    sum += decision->part[FG_CORRECTED_OVERALL_RADIUS][e] * benefit->item[item].turn_deg[e];
   return sum;
 }
 
-static fg_point centre_move(const fg_pay *pay, const fg_pay_decision *decision) {
+static fg_point centre_move(const fg_benefit *benefit, const fg_benefit_decision *decision) {
   fg_point sum = {0, 0};
-  for (size_t e = 0; e < pay->explanations; e++) {
-    sum.x += decision->part[FG_CORRECTED_OVERALL_RADIUS][e] * pay->centre[e].x;
-    sum.y += decision->part[FG_CORRECTED_OVERALL_RADIUS][e] * pay->centre[e].y;
+  for (size_t e = 0; e < benefit->explanations; e++) {
+    sum.x += decision->part[FG_CORRECTED_OVERALL_RADIUS][e] * benefit->centre[e].x;
+    sum.y += decision->part[FG_CORRECTED_OVERALL_RADIUS][e] * benefit->centre[e].y;
   }
   return sum;
 }
 
-static void put_overall(const fg_pay_foil *of, fg_overall *overall) {
+static void put_overall(const fg_benefit_foil *of, fg_overall *overall) {
   const fg_overall *from = &of->before->overall;
   double designed = of->m->design.overall_radius_mm, move[FG_CORRECTED];
-  fg_pay_move(of->pay, of->pay->items - 1, of->decision, move);
-  fg_point centre = centre_move(of->pay, of->decision);
+  fg_benefit_move(of->benefit, of->benefit->items - 1, of->decision, move);
+  fg_point centre = centre_move(of->benefit, of->decision);
   overall->radius_mm = from->radius_mm + move[FG_CORRECTED_OVERALL_RADIUS];
   overall->centre_mm = (fg_point){from->centre_mm.x + centre.x, from->centre_mm.y + centre.y};
   overall->u_radius_mm = sqrt(overall->covariance[2][2]);
@@ -67,14 +68,15 @@ static void put_overall(const fg_pay_foil *of, fg_overall *overall) {
 
 /* R and h as decided, X = R0 + R - h, in the direction that goes with R0. A bump of which a move
  * cannot be said stays as it was corrected. */
-static void put_bump(const fg_pay_foil *of, size_t item, const fg_overall *overall, fg_bump *bump) {
+static void put_bump(const fg_benefit_foil *of, size_t item, const fg_overall *overall,
+                     fg_bump *bump) {
   const fg_bump *from = &of->before->bumps[item];
   double move[FG_CORRECTED];
-  fg_pay_move(of->pay, item, of->decision, move);
+  fg_benefit_move(of->benefit, item, of->decision, move);
   double radius = from->radius_mm + move[FG_CORRECTED_RADIUS];
   double height = from->height_mm + move[FG_CORRECTED_HEIGHT];
   double distance = overall->radius_mm + radius - height;
-  double direction = (from->position_deg + turn_deg(of->pay, item, of->decision)) * M_PI / 180;
+  double direction = (from->position_deg + turn_deg(of->benefit, item, of->decision)) * M_PI / 180;
   if (!isfinite(distance) || !isfinite(direction)) return;
   bump->radius_mm = radius;
   bump->centre_mm = (fg_point){overall->centre_mm.x + distance * cos(direction),
@@ -93,22 +95,22 @@ static void turn_moment(double from[FG_CORRECTED][FG_CORRECTED], double to[3][3]
     }
 }
 
-void fg_pay_widen_foil(const fg_pay_foil *of, fg_foil *after) {
+void fg_benefit_widen_foil(const fg_benefit_foil *of, fg_foil *after) {
   double moment[FG_CORRECTED][FG_CORRECTED], covariance[3][3];
-  if (!of->pay->explanations || fg_pay_is_whole(of->pay, of->decision)) return;
+  if (!of->benefit->explanations || fg_benefit_is_whole(of->benefit, of->decision)) return;
   double share = after->overall.u_springback_error_pct / after->overall.u_radius_mm;
   for (size_t b = 0; b < after->bump_count; b++) {
-    fg_pay_moment(of->pay, b, of->decision, moment);
+    fg_benefit_moment(of->benefit, b, of->decision, moment);
     turn_moment(moment, covariance);
     fg_bump_widen(&of->m->design, &of->m->nominal, &after->overall, covariance, &after->bumps[b]);
   }
-  fg_pay_moment(of->pay, after->bump_count, of->decision, moment);
+  fg_benefit_moment(of->benefit, after->bump_count, of->decision, moment);
   double added = moment[FG_CORRECTED_OVERALL_RADIUS][FG_CORRECTED_OVERALL_RADIUS];
   after->overall.u_radius_mm = hypot(after->overall.u_radius_mm, sqrt(added));
   after->overall.u_springback_error_pct = share * after->overall.u_radius_mm;
 }
 
-static void put_dimensions(const fg_pay_foil *of, fg_foil *foil) {
+static void put_dimensions(const fg_benefit_foil *of, fg_foil *foil) {
   const fg_thickness strip = fg_foil_thickness(&of->m->design, foil);
   put_overall(of, &foil->overall);
   for (size_t b = 0; b < foil->bump_count; b++) {
@@ -117,7 +119,7 @@ static void put_dimensions(const fg_pay_foil *of, fg_foil *foil) {
   }
 }
 
-bool fg_pay_is_moved(const fg_correction_choice choice[FG_CORRECTED]) {
+bool fg_benefit_is_moved(const fg_correction_choice choice[FG_CORRECTED]) {
   for (int k = 0; k < FG_CORRECTED; k++)
     if (choice[k].moved) return true;
   return false;
@@ -134,9 +136,9 @@ static void flag_left(fg_foil *foil) {
       foil->flags |= flags[k];
 }
 
-fg_status fg_pay_keep_foil(fg_context *ctx, const fg_pay_foil *of, fg_foil *after) {
-  if (!fg_pay_is_whole(of->pay, of->decision)) {
-    if (fg_pay_is_moved(of->decision->choice)) {
+fg_status fg_benefit_keep_foil(fg_context *ctx, const fg_benefit_foil *of, fg_foil *after) {
+  if (!fg_benefit_is_whole(of->benefit, of->decision)) {
+    if (fg_benefit_is_moved(of->decision->choice)) {
       put_dimensions(of, after);
     } else {
       fg_foil copy;
@@ -158,16 +160,16 @@ static void keep_circle(const fg_disc *from, fg_disc *disc) {
   memcpy(disc->u_centre_mm, from->u_centre_mm, sizeof disc->u_centre_mm);
 }
 
-void fg_pay_keep_discs(const fg_measurement *before, const fg_pay *pay,
-                       const fg_pay_decision *decision, fg_measurement *after) {
-  for (size_t d = 0; d < after->disc_count && d < pay->items; d++) {
+void fg_benefit_keep_discs(const fg_measurement *before, const fg_benefit *benefit,
+                           const fg_benefit_decision *decision, fg_measurement *after) {
+  for (size_t d = 0; d < after->disc_count && d < benefit->items; d++) {
     fg_disc *disc = &after->discs[d];
     const fg_disc *from = &before->discs[d];
     double move[FG_CORRECTED];
     disc->choice = decision->choice[FG_CORRECTED_RADIUS];
-    if (fg_pay_is_whole(pay, decision)) continue;
+    if (fg_benefit_is_whole(benefit, decision)) continue;
     if (!disc->choice.moved) keep_circle(from, disc);
-    fg_pay_move(pay, d, decision, move);
+    fg_benefit_move(benefit, d, decision, move);
     disc->radius_mm = from->radius_mm + move[FG_CORRECTED_RADIUS];
     disc->u_radius_mm = disc->choice.moved ? sqrt(disc->covariance[2][2]) : from->u_radius_mm;
     disc->diameter_mm = 2 * disc->radius_mm;
@@ -175,12 +177,13 @@ void fg_pay_keep_discs(const fg_measurement *before, const fg_pay *pay,
   }
 }
 
-void fg_pay_widen_discs(const fg_pay *pay, const fg_pay_decision *decision, fg_measurement *after) {
+void fg_benefit_widen_discs(const fg_benefit *benefit, const fg_benefit_decision *decision,
+                            fg_measurement *after) {
   const int k = FG_CORRECTED_RADIUS;
   double moment[FG_CORRECTED][FG_CORRECTED];
-  if (fg_pay_is_whole(pay, decision)) return;
-  for (size_t d = 0; d < after->disc_count && d < pay->items; d++) {
-    fg_pay_moment(pay, d, decision, moment);
+  if (fg_benefit_is_whole(benefit, decision)) return;
+  for (size_t d = 0; d < after->disc_count && d < benefit->items; d++) {
+    fg_benefit_moment(benefit, d, decision, moment);
     after->discs[d].u_radius_mm = hypot(after->discs[d].u_radius_mm, sqrt(moment[k][k]));
     after->discs[d].u_diameter_mm = 2 * after->discs[d].u_radius_mm;
   }

@@ -60,7 +60,7 @@ static fg_scan_result_row row_of(const fg_scan_loop *loop, size_t i, size_t arc)
 fg_status fg_scan_result_put_rows(fg_context *ctx, const fg_scan_loop *loop,
                                   fg_scan_result *result) {
   const fg_points *points = &loop->points;
-  double most = 0;
+  double max = 0;
   size_t arc = 0;
   FG_TRY(put_scans(ctx, loop, result));
   FG_TRY(put_views(ctx, points, result));
@@ -68,11 +68,11 @@ fg_status fg_scan_result_put_rows(fg_context *ctx, const fg_scan_loop *loop,
   for (size_t i = 0; i < points->row_count; i++) {
     arc += i && !same_arc(&points->rows[i - 1], &points->rows[i]);
     result->row[i] = row_of(loop, i, arc);
-    most = fmax(most, points->rows[i].weight);
+    max = fmax(max, points->rows[i].weight);
   }
   result->rows = points->row_count;
   result->row_stations = FG_POINTS_BLOCK;
-  result->light_weight = LIGHT_SHARE * most;
+  result->light_weight = LIGHT_SHARE * max;
   return FG_OK;
 }
 

@@ -116,7 +116,7 @@ static fg_status put_rows(fg_context *ctx, const source *from, fg_scan_result_re
     double effect = from->level->result.effect_fit[i];
     out->bump[i] = (fg_scan_result_bump){.part = bump->part,
                                          .number = bump->number,
-                                         .aside = bump->aside,
+                                         .held_out = bump->held_out,
                                          .before = from->scale * d,
                                          .after = from->scale * (d - effect),
                                          .effect = from->scale * effect};
@@ -175,8 +175,8 @@ fg_status fg_scan_result_put_bumps(fg_context *ctx, const fg_scan_loop *loop,
   const fg_scan_loop_bumps *bumps = &loop->bumps;
   fg_scan_result_bumps *out = &result->bumps;
   for (size_t i = 0; i < bumps->count; i++)
-    out->aside += bumps->bump[i].aside;
-  out->count = bumps->count - out->aside;
+    out->held_out += bumps->bump[i].held_out;
+  out->count = bumps->count - out->held_out;
   out->parts = bumps->parts;
   out->lip = bumps->lip;
   out->coordinate_name = fg_effect_coordinate_name(FG_EFFECT_INDEX);

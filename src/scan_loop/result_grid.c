@@ -5,7 +5,7 @@
 #include "scan_loop/result.h"
 #include "scan_loop/state.h"
 
-enum { LINES_MOST = 140, SAMPLES = FG_SCAN_RESULT_GRID_SAMPLES - 1 };
+enum { LINES_MAX = 140, SAMPLES = FG_SCAN_RESULT_GRID_SAMPLES - 1 };
 
 static double largest(const fg_field_list *fields) {
   const fg_field_frame *f = &fields->frame;
@@ -32,7 +32,7 @@ static double shortest_period(const fg_effect_set *set) {
 static int lines_along(const fg_scan_result_grid *grid, int axis) {
   double range = grid->high_mm[axis] - grid->low_mm[axis], lines = range / grid->cell_mm;
   if (axis == 1) lines = fmax(lines, 6 * range / grid->period_mm);
-  return (int)fmin(LINES_MOST, fmax(4, ceil(lines)));
+  return (int)fmin(LINES_MAX, fmax(4, ceil(lines)));
 }
 
 static void put_line(const fg_field_list *fields, int axis, double across,

@@ -96,10 +96,10 @@ static bool row_place(const fg_points_row *row, fg_effect_coordinate coordinate,
 /* Rows look along the normal of their own arc, which on a bump points to the shaft; over the foil
  * the deviation is told outwards, in the direction that the effect's form moves it. */
 static double share_of(const fg_points_row *row, fg_effect_coordinate coordinate,
-                       const char *form) {
+                       const char *direction) {
   double along = row->radial.x * row->normal.x + row->radial.y * row->normal.y;
   if (coordinate != FG_EFFECT_FOIL) return 1;
-  return form && !strcmp(form, "radial") ? along : along < 0 ? -1 : 1;
+  return direction && !strcmp(direction, "radial") ? along : along < 0 ? -1 : 1;
 }
 
 /* Adds an effect to the bins; with `n` the bins count their rows. */
@@ -110,7 +110,7 @@ static size_t add_effect(const fg_points *points, const fg_effect_found *effect,
   for (size_t i = 0; i < points->row_count; i++) {
     double x;
     if (!row_place(&points->rows[i], coordinate, &x)) continue;
-    double share = share_of(&points->rows[i], coordinate, effect->kind->form);
+    double share = share_of(&points->rows[i], coordinate, effect->kind->direction);
     size_t bin = (size_t)fmin(SAMPLES - 1, (x - range[0]) / (range[1] - range[0]) * SAMPLES);
     for (size_t c = 0; c < filled; c++)
       line->um[bin] += effect->coefficient_um[c] * columns[c * points->row_count + i] / share;

@@ -5,9 +5,9 @@
 #include "scan_loop/result.h"
 #include "scan_loop/state.h"
 
-static const char *form_of(const fg_scatter *scatter) {
+static const char *model_of(const fg_scatter *scatter) {
   if (!(scatter->share > 0)) return "white";
-  return scatter->form == FG_SCATTER_GAUSSIAN ? "gaussian" : "exponential";
+  return scatter->model == FG_SCATTER_GAUSSIAN ? "gaussian" : "exponential";
 }
 
 /* A disc's rows weigh by their own noise: that of a whole row of the cleanest edge is the unit. */
@@ -16,10 +16,10 @@ static fg_status put_discs(fg_context *ctx, const fg_points *points, fg_scan_noi
                             (void **)&noise->disc_um));
   noise->discs = points->view_count;
   for (size_t v = 0; v < points->view_count; v++) {
-    double most = 0;
+    double max = 0;
     for (size_t i = 0; i < points->row_count; i++)
-      if (points->rows[i].view == v) most = fmax(most, points->rows[i].weight);
-    noise->disc_um[v] = most > 0 ? noise->sd_um / sqrt(most / FG_POINTS_BLOCK) : NAN;
+      if (points->rows[i].view == v) max = fmax(max, points->rows[i].weight);
+    noise->disc_um[v] = max > 0 ? noise->sd_um / sqrt(max / FG_POINTS_BLOCK) : NAN;
   }
   return FG_OK;
 }
@@ -29,7 +29,7 @@ fg_status fg_scan_result_put_noise(fg_context *ctx, const fg_scan_loop *loop,
   const fg_scatter *scatter = &loop->points.scatter;
   fg_scan_noise *noise = &result->noise;
   double sd = loop->noise_floor_um;
-  *noise = (fg_scan_noise){.form = form_of(scatter),
+  *noise = (fg_scan_noise){.model = model_of(scatter),
                            .sd_um = sd,
                            .white_um = sd * sqrt(1 - scatter->share),
                            .correlated_um = sd * sqrt(scatter->share),

@@ -14,11 +14,11 @@
 
 /* By so much Schwarz's criterion must prefer geometries of their own: on one foil it never did by
  * more than 40, on two by hundreds (reports/loop_same_foil.md). */
-#define PREFERENCE_LEAST 60.0
+#define PREFERENCE_MIN 60.0
 /* Exact data leave no less. */
 #define NOTHING_UM2 1e-8
 /* With a geometry for each scan many effects look like each other; so few explain by themselves. */
-enum { EFFECTS_MOST = 1 };
+enum { EFFECTS_MAX = 1 };
 
 /* Every scan a part of its own, and what a search leaves then. */
 typedef struct apart {
@@ -31,7 +31,7 @@ typedef struct apart {
 static double mean_square(const fg_points *points, const double *residual_um) {
   double sum = 0, weight = 0;
   for (size_t i = 0; i < points->row_count; i++) {
-    if (points->views[points->rows[i].view].aside) continue;
+    if (points->views[points->rows[i].view].held_out) continue;
     sum += points->rows[i].weight * residual_um[i] * residual_um[i];
     weight += points->rows[i].weight;
   }
@@ -41,7 +41,7 @@ static double mean_square(const fg_points *points, const double *residual_um) {
 static size_t rows_that_count(const fg_points *points) {
   size_t rows = 0;
   for (size_t i = 0; i < points->row_count; i++)
-    rows += points->rows[i].weight > 0 && !points->views[points->rows[i].view].aside;
+    rows += points->rows[i].weight > 0 && !points->views[points->rows[i].view].held_out;
   return rows;
 }
 
@@ -56,7 +56,7 @@ static fg_status set_apart(fg_context *ctx, const fg_points *together, apart *a)
   size_t count = 0;
   FG_TRY(fg_memory_allocate(ctx, together->view_count, sizeof *views, (void **)&views));
   for (size_t v = 0; v < together->view_count; v++) {
-    if (together->views[v].aside) continue;
+    if (together->views[v].held_out) continue;
     views[count] = together->views[v];
     views[count].part = count;
     count++;
@@ -119,14 +119,14 @@ fg_status fg_scan_loop_check_one_foil(fg_context *ctx, const fg_scan_loop *loop)
   apart a = {0};
   size_t views = 0;
   for (size_t v = 0; v < loop->points.view_count; v++)
-    views += !loop->points.views[v].aside;
+    views += !loop->points.views[v].held_out;
   if (!loop->options.same_foil || views <= loop->points.part_count) return FG_OK;
   if (loop->explanations.right && !has_curve(&loop->set)) return FG_OK;
   fg_status status = set_apart(ctx, &loop->points, &a);
   bool told = status == FG_OK;
   if (status != FG_ERR_MEMORY) status = FG_OK; /* rows too few for a geometry each tell nothing */
-  if (told && a.explanations.right && !has_curve(&a.set) && a.set.count <= EFFECTS_MOST &&
-      preference(loop, &a) > PREFERENCE_LEAST)
+  if (told && a.explanations.right && !has_curve(&a.set) && a.set.count <= EFFECTS_MAX &&
+      preference(loop, &a) > PREFERENCE_MIN)
     status = say_two_foils(ctx, loop, &a);
   fg_points_free(&a.points);
   free(a.residual_um);

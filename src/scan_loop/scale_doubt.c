@@ -74,7 +74,7 @@ static void name_alias(const fg_effect_set *set, fg_loop_claim *claim) {
   claim->verdict = FG_LOOP_TIED;
 }
 
-fg_status fg_scan_loop_scale_doubt(fg_context *ctx, fg_scan_loop *loop) {
+fg_status fg_scan_loop_scale_uncertainty(fg_context *ctx, fg_scan_loop *loop) {
   double rel = 0;
   const fg_effect *optical = find_optical(&loop->set);
   fg_loop_claim *stretch = find_stretch(&loop->bumps, &rel);

@@ -9,7 +9,7 @@
 #include "scan_loop/result.h"
 
 /* Rows fewer than this cannot carry a search for effects. */
-enum { ROWS_LEAST = 60 };
+enum { ROWS_MIN = 60 };
 
 /* A copy confirms nothing, and counts its noise twice. */
 static fg_status check_different(fg_context *ctx, const char *const *paths,
@@ -73,8 +73,8 @@ static fg_status build_points(fg_context *ctx, fg_scan_loop *loop) {
   if (loop->options.coarse) fg_points_find_frame(&loop->points);
   size_t rows = 0;
   for (size_t i = 0; i < loop->points.row_count; i++)
-    rows += !loop->points.views[loop->points.rows[i].view].aside;
-  if (rows < ROWS_LEAST)
+    rows += !loop->points.views[loop->points.rows[i].view].held_out;
+  if (rows < ROWS_MIN)
     return fg_fail(ctx, FG_ERR_DATA, "%zu edge rows are too few to look for effects", rows);
   return FG_OK;
 }
@@ -89,7 +89,7 @@ static fg_scan_loop_error summarise(fg_context *ctx, const fg_points *points,
   for (size_t i = 0; i < points->row_count; i++) {
     if (!(points->rows[i].weight > 0)) continue;
     double weight = points->rows[i].weight, square = weight * residual[i] * residual[i];
-    if (points->views[points->rows[i].view].aside) {
+    if (points->views[points->rows[i].view].held_out) {
       held += square;
       held_n += weight;
       continue;
@@ -126,10 +126,10 @@ static fg_status say_reach(fg_context *ctx, fg_scan_loop *loop) {
 }
 
 /* What each disc has of its own is no effect of the scanner, but it is not nothing. */
-#define FORM_P 1e-4
-static fg_status say_form(fg_context *ctx, fg_scan_loop *loop) {
+#define FORMING_P 1e-4
+static fg_status note_forming(fg_context *ctx, fg_scan_loop *loop) {
   const fg_explanations *explanations = &loop->explanations;
-  if (loop->set.count || !(explanations->p_value < FORM_P)) return FG_OK;
+  if (loop->set.count || !(explanations->p_value < FORMING_P)) return FG_OK;
   return fg_scan_loop_bumps_note(
       ctx, &loop->bumps,
       "points: the discs deviate from circles by %.2g um rms, more than noise (p = %.1g), and no "
@@ -178,12 +178,12 @@ static fg_status search_bumps(fg_context *ctx, fg_scan_loop *loop) {
       .seed = loop->options.seed,
   };
   FG_TRY(fg_scan_loop_bumps_run(ctx, &request, &loop->bumps));
-  FG_TRY(loop->points.discs ? say_form(ctx, loop) : say_reach(ctx, loop));
+  FG_TRY(loop->points.discs ? note_forming(ctx, loop) : say_reach(ctx, loop));
   FG_TRY(fg_scan_loop_say_held_out(ctx, loop));
   FG_TRY(fg_scan_loop_say_left_out(ctx, loop));
   FG_TRY(say_lossy(ctx, loop));
   FG_TRY(say_picture(ctx, loop));
-  return fg_scan_loop_scale_doubt(ctx, loop);
+  return fg_scan_loop_scale_uncertainty(ctx, loop);
 }
 
 /* The winner fitted once more, and every scan corrected by it. */
@@ -228,7 +228,7 @@ static fg_status search(fg_context *ctx, fg_scan_loop *loop) {
   loop->tied = loop->explanations.count > 1;
   FG_TRY(correct(ctx, loop));
   if (loop->tied) FG_TRY(fg_scan_loop_find_ranges(ctx, loop));
-  FG_TRY(fg_scan_loop_keep_what_pays(ctx, loop));
+  FG_TRY(fg_scan_loop_keep_beneficial(ctx, loop));
   if (loop->tied) fg_scan_loop_put_ranges(loop);
   FG_TRY(search_bumps(ctx, loop));
   FG_TRY(fg_explain_width(ctx, &loop->points, &loop->set, &loop->width));
@@ -341,9 +341,9 @@ void fg_scan_loop_free(fg_scan_loop *loop) {
   for (size_t k = 0; loop->ranges && k < foils; k++)
     free(loop->ranges[k]);
   free(loop->ranges);
-  for (size_t i = 0; loop->pays && i < loop->scan_count; i++)
-    fg_pays_close(&loop->pays[i]);
-  free(loop->pays);
+  for (size_t i = 0; loop->benefits && i < loop->scan_count; i++)
+    fg_benefits_close(&loop->benefits[i]);
+  free(loop->benefits);
   for (size_t i = 0; i < loop->scan_count; i++) {
     if (loop->before) fg_measurement_free(&loop->before[i]);
     if (loop->after) fg_measurement_free(&loop->after[i]);

@@ -83,8 +83,8 @@ static void flag_reach(const fg_field_frame *frame, fg_measurement *m) {
 }
 
 /* The larger in size. */
-static void take_larger(double *most, double move) {
-  if (isfinite(move) && !(fabs(move) <= fabs(*most))) *most = move;
+static void take_larger(double *max, double move) {
+  if (isfinite(move) && !(fabs(move) <= fabs(*max))) *max = move;
 }
 
 /* What the model adds to an uncertainty u makes sqrt(u² + added²) of it. */
@@ -93,7 +93,7 @@ static double added(double u, double own) {
 }
 
 static bool is_left(const fg_correction_choice choice[FG_CORRECTED]) {
-  return !fg_pay_is_moved(choice) && choice[FG_CORRECTED_RADIUS].reason != FG_CORRECTION_NONE;
+  return !fg_benefit_is_moved(choice) && choice[FG_CORRECTED_RADIUS].reason != FG_CORRECTION_NONE;
 }
 
 /* `corrected`: as measured again, before the model's doubt. */
@@ -140,18 +140,19 @@ static void replace(fg_measurement *m, fg_measurement *corrected) {
 }
 
 /* Of what the model corrects that which pays. */
-static fg_status keep_what_pays(fg_context *ctx, const fg_measurement *m,
-                                const fg_model_doubt *doubt, fg_measurement *corrected) {
-  fg_pay_decision decision, *to = &decision;
-  const fg_pay *pay = &doubt->pays.discs;
-  fg_pay_decide(&pay, 1, &to);
-  fg_pay_keep_discs(m, pay, &decision, corrected);
+static fg_status keep_beneficial(fg_context *ctx, const fg_measurement *m,
+                                 const fg_model_uncertainty *uncertainty,
+                                 fg_measurement *corrected) {
+  fg_benefit_decision decision, *to = &decision;
+  const fg_benefit *benefit = &uncertainty->benefits.discs;
+  fg_benefit_decide(&benefit, 1, &to);
+  fg_benefit_keep_discs(m, benefit, &decision, corrected);
   for (size_t f = 0; f < m->foil_count; f++) {
     if (m->foils[f].flags & FG_FOIL_NOT_MEASURED) continue;
-    pay = &doubt->pays.foil[f];
-    fg_pay_decide(&pay, 1, &to);
-    FG_TRY(fg_pay_keep_foil(ctx, &(fg_pay_foil){m, &m->foils[f], pay, &decision},
-                            &corrected->foils[f]));
+    benefit = &uncertainty->benefits.foil[f];
+    fg_benefit_decide(&benefit, 1, &to);
+    FG_TRY(fg_benefit_keep_foil(ctx, &(fg_benefit_foil){m, &m->foils[f], benefit, &decision},
+                                &corrected->foils[f]));
   }
   return FG_OK;
 }
@@ -160,7 +161,7 @@ fg_status fg_scanner_model_apply(fg_context *ctx, const fg_scanner_model *model,
                                  unsigned threads, char *warning) {
   if (warning) warning[0] = 0;
   /* Which corrections pay is decided of radii and heights, and beams have none. */
-  if (m->design.form == FG_FORM_CANTILEVER)
+  if (m->design.kind == FG_FOIL_CANTILEVER)
     return fg_fail(ctx, FG_ERR_USAGE,
                    "%s: a scanner's model corrects bumps and discs, not the beams of form "
                    "cantilever: measure without --model; what the scanner's scale is wrong by "
@@ -170,19 +171,20 @@ fg_status fg_scanner_model_apply(fg_context *ctx, const fg_scanner_model *model,
   FG_TRY(fg_model_tone_apply(ctx, &model->tone, threads, m));
   if (!m->warning[0]) fg_text_clip(m->warning, sizeof m->warning, "%s", m->tone_note);
   fg_measurement corrected = {0};
-  fg_model_doubt doubt;
+  fg_model_uncertainty uncertainty;
   fg_status status = FG_OK;
-  FG_TRY(fg_model_doubt_open(ctx, model, m, threads, &doubt));
+  FG_TRY(fg_model_uncertainty_open(ctx, model, m, threads, &uncertainty));
   FG_TRY_EXIT(fg_scan_loop_correct(ctx, m, &model->fields, threads, &corrected));
-  if (model->fields.count || model->others) FG_TRY_EXIT(keep_what_pays(ctx, m, &doubt, &corrected));
-  FG_TRY_EXIT(fg_model_doubt_widen(ctx, &doubt, &corrected));
+  if (model->fields.count || model->others)
+    FG_TRY_EXIT(keep_beneficial(ctx, m, &uncertainty, &corrected));
+  FG_TRY_EXIT(fg_model_uncertainty_widen(ctx, &uncertainty, &corrected));
   flag_reach(&model->fields.frame, &corrected);
-  sum_up(m, &doubt.each[0], &corrected);
+  sum_up(m, &uncertainty.each[0], &corrected);
   replace(m, &corrected);
   memcpy(m->model_sha256, model->sha256, sizeof m->model_sha256);
   m->model = model;
 exit:
   if (status != FG_OK) fg_measurement_free(&corrected);
-  fg_model_doubt_close(&doubt);
+  fg_model_uncertainty_close(&uncertainty);
   return status;
 }

@@ -40,21 +40,23 @@ fg_status fg_scanner_model_check_fields(fg_context *ctx, const char *member,
                                         const fg_field_list *list);
 
 /* What a model does to a measurement, and how well that is known. */
-typedef struct fg_model_doubt {
-  fg_measurement each[FG_PAYS_EXPLANATIONS_MAX]; /* owned: by the model, then by what was tied */
+typedef struct fg_model_uncertainty {
+  fg_measurement each[FG_BENEFIT_EXPLANATIONS_MAX]; /* owned: by the model, then by what was tied */
   size_t count;
   double *step[FG_MODEL_NUMBERS_MAX]; /* owned: how far every value moves by the uncertainty of one
                                          of the model's numbers */
   size_t steps;
-  fg_pays pays;
-} fg_model_doubt;
+  fg_benefits benefits;
+} fg_model_uncertainty;
 
-fg_status fg_model_doubt_open(fg_context *ctx, const fg_scanner_model *model,
-                              const fg_measurement *m, unsigned threads, fg_model_doubt *doubt);
-void fg_model_doubt_close(fg_model_doubt *doubt);
+fg_status fg_model_uncertainty_open(fg_context *ctx, const fg_scanner_model *model,
+                                    const fg_measurement *m, unsigned threads,
+                                    fg_model_uncertainty *uncertainty);
+void fg_model_uncertainty_close(fg_model_uncertainty *uncertainty);
 
 /* Adds to every u_ what the uncertainties of the model's numbers do to it, and the mean square of
  * what the explanations would have given instead of the value that is reported. */
-fg_status fg_model_doubt_widen(fg_context *ctx, const fg_model_doubt *doubt, fg_measurement *kept);
+fg_status fg_model_uncertainty_widen(fg_context *ctx, const fg_model_uncertainty *uncertainty,
+                                     fg_measurement *kept);
 
 #endif

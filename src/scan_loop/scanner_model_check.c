@@ -8,20 +8,20 @@
 
 /* An amplitude is what an effect does 18 mm from the middle of the glass, where 1 mm is 5.6 %: no
  * scanner that one would measure with is that wrong (the worst of those measured: 0.6 %). */
-#define AMPLITUDE_MOST_MM 1.0
+#define AMPLITUDE_MAX_MM 1.0
 /* A foil takes some millimetres, the largest flatbed less than a metre. */
-#define REGION_LEAST_MM 1.0
-#define REGION_MOST_MM  2000.0
+#define REGION_MIN_MM 1.0
+#define REGION_MAX_MM 2000.0
 /* A step lies on the glass, the middle of a lens at most this many lengths of the region beyond. */
 #define PLACE_BEYOND 10.0
 /* No tooth of a gear or step of a motor is finer; a period longer than the region's tenfold is no
  * ripple. */
-#define PERIOD_LEAST_MM 0.01
+#define PERIOD_MIN_MM 0.01
 /* All effects together: share of the region's length that they stretch, shear or bend it by. */
-#define BEND_MOST 0.1
+#define BEND_MAX 0.1
 /* What --dpi takes. */
-#define DPI_LEAST 1.0
-#define DPI_MOST  1e6
+#define DPI_MIN 1.0
+#define DPI_MAX 1e6
 
 typedef struct range {
   double low, high;
@@ -39,14 +39,14 @@ static fg_status check_range(fg_context *ctx, const char *member, size_t index, 
 
 static fg_status check_corners(fg_context *ctx, const char *member, const double corners[4]) {
   for (size_t i = 0; i < 4; i++)
-    FG_TRY(check_range(ctx, member, i, corners[i], (range){-REGION_MOST_MM, REGION_MOST_MM, "mm"}));
+    FG_TRY(check_range(ctx, member, i, corners[i], (range){-REGION_MAX_MM, REGION_MAX_MM, "mm"}));
   for (int axis = 0; axis < 2; axis++) {
     double length = corners[2 + axis] - corners[axis];
-    if (!(length >= REGION_LEAST_MM && length <= REGION_MOST_MM))
+    if (!(length >= REGION_MIN_MM && length <= REGION_MAX_MM))
       return fg_fail(ctx, FG_ERR_DATA,
                      "`%s` must be x, y of one corner and of the opposite one: it is %g mm %s; "
                      "%g to %g mm is allowed",
-                     member, length, axis ? "high" : "wide", REGION_LEAST_MM, REGION_MOST_MM);
+                     member, length, axis ? "high" : "wide", REGION_MIN_MM, REGION_MAX_MM);
   }
   return FG_OK;
 }
@@ -58,7 +58,7 @@ fg_status fg_scanner_model_check_place(fg_context *ctx, const double dpi[2],
   const double curve[4] = {frame->first_mm[0], frame->first_mm[1], frame->last_mm[0],
                            frame->last_mm[1]};
   for (size_t axis = 0; axis < 2; axis++)
-    FG_TRY(check_range(ctx, "dpi", axis, dpi[axis], (range){DPI_LEAST, DPI_MOST, "dpi"}));
+    FG_TRY(check_range(ctx, "dpi", axis, dpi[axis], (range){DPI_MIN, DPI_MAX, "dpi"}));
   FG_TRY(check_corners(ctx, "region_mm", region));
   return check_corners(ctx, "curve_mm", curve);
 }
@@ -70,14 +70,14 @@ static void shape_ranges(const fg_field_frame *frame, const fg_field *field, ran
   int axis = kind->axis;
   double low = frame->low_mm[axis], high = frame->high_mm[axis], length = high - low;
   *place = (range){low - PLACE_BEYOND * length, high + PLACE_BEYOND * length, "mm"};
-  if (kind->spans) *place = (range){PERIOD_LEAST_MM, PLACE_BEYOND * length, "mm"};
+  if (kind->spans) *place = (range){PERIOD_MIN_MM, PLACE_BEYOND * length, "mm"};
   *u = (range){0, PLACE_BEYOND * length, "mm"};
 }
 
 static fg_status check_field(fg_context *ctx, const char *member, size_t index,
                              const fg_field_frame *frame, const fg_field *field) {
-  static const range amplitude = {-AMPLITUDE_MOST_MM, AMPLITUDE_MOST_MM, "mm"};
-  static const range u_amplitude = {0, AMPLITUDE_MOST_MM, "mm"};
+  static const range amplitude = {-AMPLITUDE_MAX_MM, AMPLITUDE_MAX_MM, "mm"};
+  static const range u_amplitude = {0, AMPLITUDE_MAX_MM, "mm"};
   char name[96], one[48];
   fg_text_clip(one, sizeof one, "%.30s[%zu]", member, index);
   for (size_t c = 0; c < field->columns; c++) {
@@ -124,7 +124,7 @@ fg_status fg_scanner_model_check_fields(fg_context *ctx, const char *member,
       return fg_fail(ctx, status, "%.400s (%s)", inner.message, list->fields[i].id);
   }
   double bend = find_bend(list);
-  if (bend <= BEND_MOST) return FG_OK;
+  if (bend <= BEND_MAX) return FG_OK;
   return fg_fail(ctx, FG_ERR_DATA,
                  "`%s` bends the %.0f x %.0f mm of `region_mm` by %.3g of their length; a tenth is "
                  "allowed",

@@ -73,64 +73,67 @@ static bool move_number(fg_field *field, size_t k) {
 
 /* What becomes of `own` when one number of the model lies elsewhere. */
 static fg_status step(fg_context *ctx, const fg_field_list *fields, const fg_measurement *m,
-                      unsigned threads, fg_model_doubt *doubt) {
+                      unsigned threads, fg_model_uncertainty *uncertainty) {
   fg_measurement other;
   FG_TRY(fg_scan_loop_correct(ctx, m, fields, threads, &other));
-  fg_pays_add_step(&doubt->pays, &doubt->each[0], &other);
-  fg_status status = find_moves(ctx, &doubt->each[0], &other, &doubt->step[doubt->steps]);
+  fg_benefits_add_step(&uncertainty->benefits, &uncertainty->each[0], &other);
+  fg_status status =
+      find_moves(ctx, &uncertainty->each[0], &other, &uncertainty->step[uncertainty->steps]);
   fg_measurement_free(&other);
-  if (status == FG_OK) doubt->steps++;
+  if (status == FG_OK) uncertainty->steps++;
   return status;
 }
 
 static fg_status step_all(fg_context *ctx, const fg_field_list *fields, const fg_measurement *m,
-                          unsigned threads, fg_model_doubt *doubt) {
+                          unsigned threads, fg_model_uncertainty *uncertainty) {
   for (size_t f = 0; f < fields->count; f++)
     for (size_t c = 0; c < number_count(&fields->fields[f]); c++) {
       fg_field_list moved = *fields;
       if (!move_number(&moved.fields[f], c)) continue;
-      FG_TRY(step(ctx, &moved, m, threads, doubt));
+      FG_TRY(step(ctx, &moved, m, threads, uncertainty));
     }
   return FG_OK;
 }
 
 static fg_status explain(fg_context *ctx, const fg_field_list *fields, const fg_measurement *m,
-                         unsigned threads, fg_model_doubt *doubt) {
-  FG_TRY(fg_scan_loop_correct(ctx, m, fields, threads, &doubt->each[doubt->count]));
-  fg_pays_add(&doubt->pays, m, &doubt->each[doubt->count++]);
+                         unsigned threads, fg_model_uncertainty *uncertainty) {
+  FG_TRY(fg_scan_loop_correct(ctx, m, fields, threads, &uncertainty->each[uncertainty->count]));
+  fg_benefits_add(&uncertainty->benefits, m, &uncertainty->each[uncertainty->count++]);
   return FG_OK;
 }
 
-fg_status fg_model_doubt_open(fg_context *ctx, const fg_scanner_model *model,
-                              const fg_measurement *m, unsigned threads, fg_model_doubt *doubt) {
+fg_status fg_model_uncertainty_open(fg_context *ctx, const fg_scanner_model *model,
+                                    const fg_measurement *m, unsigned threads,
+                                    fg_model_uncertainty *uncertainty) {
   fg_status status = FG_OK;
-  *doubt = (fg_model_doubt){.count = 0};
-  FG_TRY_EXIT(fg_pays_open(ctx, m, &doubt->pays));
-  FG_TRY_EXIT(explain(ctx, &model->fields, m, threads, doubt));
-  FG_TRY_EXIT(step_all(ctx, &model->fields, m, threads, doubt));
+  *uncertainty = (fg_model_uncertainty){.count = 0};
+  FG_TRY_EXIT(fg_benefits_open(ctx, m, &uncertainty->benefits));
+  FG_TRY_EXIT(explain(ctx, &model->fields, m, threads, uncertainty));
+  FG_TRY_EXIT(step_all(ctx, &model->fields, m, threads, uncertainty));
   for (size_t k = 0; k < model->others; k++)
-    FG_TRY_EXIT(explain(ctx, &model->other[k], m, threads, doubt));
+    FG_TRY_EXIT(explain(ctx, &model->other[k], m, threads, uncertainty));
 exit:
-  if (status != FG_OK) fg_model_doubt_close(doubt);
+  if (status != FG_OK) fg_model_uncertainty_close(uncertainty);
   return status;
 }
 
-void fg_model_doubt_close(fg_model_doubt *doubt) {
-  for (size_t k = 0; k < doubt->count; k++)
-    fg_measurement_free(&doubt->each[k]);
-  for (size_t k = 0; k < doubt->steps; k++)
-    free(doubt->step[k]);
-  fg_pays_close(&doubt->pays);
-  *doubt = (fg_model_doubt){.count = 0};
+void fg_model_uncertainty_close(fg_model_uncertainty *uncertainty) {
+  for (size_t k = 0; k < uncertainty->count; k++)
+    fg_measurement_free(&uncertainty->each[k]);
+  for (size_t k = 0; k < uncertainty->steps; k++)
+    free(uncertainty->step[k]);
+  fg_benefits_close(&uncertainty->benefits);
+  *uncertainty = (fg_model_uncertainty){.count = 0};
 }
 
-fg_status fg_model_doubt_widen(fg_context *ctx, const fg_model_doubt *doubt, fg_measurement *kept) {
-  for (size_t k = 0; k < doubt->steps; k++)
-    add_moves(kept, doubt->step[k], 1);
-  for (size_t k = 0; k < doubt->count; k++) {
+fg_status fg_model_uncertainty_widen(fg_context *ctx, const fg_model_uncertainty *uncertainty,
+                                     fg_measurement *kept) {
+  for (size_t k = 0; k < uncertainty->steps; k++)
+    add_moves(kept, uncertainty->step[k], 1);
+  for (size_t k = 0; k < uncertainty->count; k++) {
     double *each = NULL;
-    FG_TRY(find_moves(ctx, kept, &doubt->each[k], &each));
-    add_moves(kept, each, 1 / sqrt((double)doubt->count));
+    FG_TRY(find_moves(ctx, kept, &uncertainty->each[k], &each));
+    add_moves(kept, each, 1 / sqrt((double)uncertainty->count));
     free(each);
   }
   return FG_OK;

@@ -70,12 +70,12 @@ static fg_status read_fields(fg_context *ctx, const char *member, const cJSON *f
 }
 
 static fg_status read_knots(fg_context *ctx, const cJSON *root, size_t *knots) {
-  enum { LEAST = 4 };
+  enum { MIN = 4 };
   const cJSON *item = cJSON_GetObjectItemCaseSensitive(root, "curve_knots");
   double value = !item ? FG_FIELD_COLUMNS : cJSON_IsNumber(item) ? item->valuedouble : NAN;
-  if (!(value >= LEAST && value <= FG_FIELD_COLUMNS && value == floor(value)))
+  if (!(value >= MIN && value <= FG_FIELD_COLUMNS && value == floor(value)))
     return fg_fail(ctx, FG_ERR_DATA, "`curve_knots` is %g; a whole number, %d to %d, is allowed",
-                   value, LEAST, FG_FIELD_COLUMNS);
+                   value, MIN, FG_FIELD_COLUMNS);
   *knots = (size_t)value;
   return FG_OK;
 }
@@ -124,14 +124,14 @@ static fg_status read_date(fg_context *ctx, const cJSON *root, fg_scanner_model 
 }
 
 static fg_status read_origin(fg_context *ctx, const cJSON *root, fg_scanner_model *model) {
-  enum { KNOWN_MOST = 1000000 };
+  enum { KNOWN_MAX = 1000000 };
   const cJSON *inputs = cJSON_GetObjectItemCaseSensitive(root, "inputs");
   const cJSON *known = cJSON_GetObjectItemCaseSensitive(root, "known_diameters");
   double count = !known ? 0 : cJSON_IsNumber(known) ? known->valuedouble : NAN;
-  if (!(count >= 0 && count <= KNOWN_MOST && count == floor(count)))
+  if (!(count >= 0 && count <= KNOWN_MAX && count == floor(count)))
     return fg_fail(ctx, FG_ERR_DATA,
                    "`known_diameters` is %g; how many gauges had one, 0 to %d, is allowed", count,
-                   KNOWN_MOST);
+                   KNOWN_MAX);
   model->known_diameters = (size_t)count;
   model->scans = cJSON_IsArray(inputs) ? (size_t)cJSON_GetArraySize(inputs) : 0;
   return read_date(ctx, root, model);

@@ -13,7 +13,7 @@
  * is known when half as well again as an unknown tone curve leaves it. */
 #define SCALE_FREE  0.05
 #define LEVEL_KNOWN 0.04
-enum { DISCS_LEAST = 3 };
+enum { DISCS_MIN = 3 };
 /* A level that chance would not show. */
 #define SIGNIFICANT 3.3
 /* A scan is of the settings that the level was found with when its edges are as sharp and as
@@ -21,12 +21,12 @@ enum { DISCS_LEAST = 3 };
  * the same level: exponent or S, a strip and a disc may be explained by others each, but not by
  * another level. */
 #define BLUR_RATIO     1.25
-#define ASYMMETRY_MOST 0.02
+#define ASYMMETRY_MAX  0.02
 #define CONTRAST_RATIO 1.5
 /* A change of the level shown is one above so many of its deviations, and above what a strip and a
  * disc of one scan differ by. */
 #define SHOWN_SIGMAS 3.0
-#define SHOWN_LEAST  0.01
+#define SHOWN_MIN    0.01
 /* By how much T(1/2) moves with ln gamma, from black on; over part of the scale by less. */
 #define LEVEL_PER_LN_GAMMA 0.35
 /* A curve whose middle lies q of the contrast off makes the asymmetry q / 4 (edge_spread.h). */
@@ -39,7 +39,7 @@ enum { DISCS_LEAST = 3 };
 /* Diameters of the corrected scan, edges as they were found. */
 static void add_disc(const fg_disc *disc, const fg_disc *corrected, double known_mm, double u_mm,
                      fg_level_sum *sum) {
-  double level = disc->level_doubt_mm;
+  double level = disc->level_u_mm;
   double u = sqrt(fmax(disc->u_radius_mm * disc->u_radius_mm - level * level, 0));
   const fg_gauge gauge = {disc->hole ? FG_GAUGE_HOLE : FG_GAUGE_PIN, known_mm, u_mm};
   const fg_gauge_reading reading = {.measured_mm =
@@ -79,7 +79,7 @@ static fg_model_tone find_on(const fg_scan_loop *loop, const fg_measurement *sca
     const fg_points_view *view = &points->views[v];
     const fg_points_part *part = &points->parts[view->part];
     const fg_disc *disc = view->disc;
-    if (view->aside || !part->radius_known || disc->flags & FG_BUMP_POOR_FIT) continue;
+    if (view->held_out || !part->radius_known || disc->flags & FG_BUMP_POOR_FIT) continue;
     const fg_disc *corrected = &scans[view->scan].discs[disc - view->measurement->discs];
     double stated = view->measurement->design.u_diameters_mm;
     add_disc(disc, corrected, 2 * part->overall_radius_mm, stated > 0 ? stated : U_DIAMETER_MM,
@@ -99,7 +99,7 @@ static fg_model_tone find_on(const fg_scan_loop *loop, const fg_measurement *sca
     }
   }
   if (sum.count) tone.u_scale = fg_level_u_scale(&sum);
-  if (sum.count < DISCS_LEAST) return tone;
+  if (sum.count < DISCS_MIN) return tone;
   fg_level_solve(&sum, SCALE_FREE, &tone.level);
   if (!(tone.level.u < LEVEL_KNOWN)) return tone;
   tone.gauges = sum.count;
@@ -147,7 +147,7 @@ static const tone_row rows[] = {
     ROW("sharpen_radius_px", sharpen_radius_px, 0, 100, false),
 };
 #undef ROW
-enum { ROWS = sizeof rows / sizeof *rows, GAUGES_MOST = 1000000 };
+enum { ROWS = sizeof rows / sizeof *rows, GAUGES_MAX = 1000000 };
 
 static fg_status read_row(fg_context *ctx, const cJSON *object, const tone_row *row,
                           fg_model_tone *tone) {
@@ -186,9 +186,9 @@ fg_status fg_model_tone_read(fg_context *ctx, const cJSON *root, fg_model_tone *
     FG_TRY(read_row(ctx, object, &rows[i], tone));
   const cJSON *gauges = cJSON_GetObjectItemCaseSensitive(object, "gauges");
   double count = cJSON_IsNumber(gauges) ? gauges->valuedouble : NAN;
-  if (!(count >= 1 && count <= GAUGES_MOST && count == floor(count)))
+  if (!(count >= 1 && count <= GAUGES_MAX && count == floor(count)))
     return fg_fail(ctx, FG_ERR_DATA, "`tone.gauges` is %g; a whole number, 1 to %d, is allowed",
-                   count, GAUGES_MOST);
+                   count, GAUGES_MAX);
   tone->gauges = (size_t)count;
   return read_findings(ctx, object, tone);
 }
@@ -277,8 +277,8 @@ static const char *difference(const fg_model_tone *tone, const scan_state *scan,
   const unsigned widening = FG_PICTURE_SHARPENED | FG_PICTURE_TONE_CURVE |
                             FG_PICTURE_UNKNOWN_PROFILE | FG_PICTURE_CLIPPED | FG_PICTURE_FEW_LEVELS;
   if (fabs(log(scan->blur_px / tone->blur_px)) > log(BLUR_RATIO)) return "edges are not as sharp";
-  if (!(fabs(scan->asymmetry - tone->asymmetry) <= ASYMMETRY_MOST) ||
-      fabs(scan->shown - tone->shown) > fmax(SHOWN_SIGMAS * u_shown(scan), SHOWN_LEAST))
+  if (!(fabs(scan->asymmetry - tone->asymmetry) <= ASYMMETRY_MAX) ||
+      fabs(scan->shown - tone->shown) > fmax(SHOWN_SIGMAS * u_shown(scan), SHOWN_MIN))
     return "the edges show another tone curve";
   if (fabs(log(scan->contrast / tone->level.contrast)) > log(CONTRAST_RATIO))
     return "the contrast is another";

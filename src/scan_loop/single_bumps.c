@@ -17,7 +17,7 @@
 /* Polynomials of a bump: a circle's own, those that are judged, those that are noise. */
 enum { CIRCLE = 3, JUDGED = 2, NOISE = 4, ORDERS = CIRCLE + JUDGED + NOISE };
 /* Rows of a bump that tell its polynomials apart. */
-enum { ROWS_LEAST = 2 * ORDERS };
+enum { ROWS_MIN = 2 * ORDERS };
 
 /* Amplitudes of one bump over their standard deviations for noise of 1. */
 typedef struct amplitudes {
@@ -59,7 +59,7 @@ static fg_status without_directions(fg_context *ctx, const fg_scan_loop *loop, d
   size_t count = fg_effect_columns(points, normal, NULL, columns);
   for (size_t i = 0; i < rows; i++) {
     const fg_points_row *row = &points->rows[i];
-    double root = points->views[row->view].aside ? 0 : sqrt(row->weight);
+    double root = points->views[row->view].held_out ? 0 : sqrt(row->weight);
     value[i] = root * loop->residual_after[i];
     for (size_t c = 0; c < count; c++)
       columns[c * rows + i] *= root;
@@ -93,7 +93,7 @@ static amplitudes *find_number(amplitudes *list, size_t *count, int number) {
   while (k < *count && list[k].number < number)
     k++;
   if (k < *count && list[k].number == number) return &list[k];
-  if (*count == FG_BUMP_PATTERN_MOST) return NULL;
+  if (*count == FG_BUMP_PATTERN_MAX) return NULL;
   memmove(&list[k + 1], &list[k], (*count - k) * sizeof *list);
   ++*count;
   list[k] = (amplitudes){.number = number};
@@ -118,11 +118,11 @@ static fg_status collect(fg_context *ctx, const fg_scan_loop *loop, amplitudes *
     for (to = from;
          to < rows && points->rows[to].view == first->view && points->rows[to].bump == first->bump;
          to++) {
-      if (!(points->rows[to].weight > 0) || points->views[first->view].aside) continue;
+      if (!(points->rows[to].weight > 0) || points->views[first->view].held_out) continue;
       own[n] = value[to];
       row[n++] = to;
     }
-    amplitudes *of = first->bump && n >= ROWS_LEAST ? find_number(list, count, first->bump) : NULL;
+    amplitudes *of = first->bump && n >= ROWS_MIN ? find_number(list, count, first->bump) : NULL;
     if (!of) continue;
     fill_columns(points, row, n, columns);
     add_view(columns, own, n, work, of);
@@ -149,8 +149,8 @@ static double square_about_mean(const amplitudes *list, size_t count, int order)
 
 /* Probability that nothing of single bumps is there. */
 static double find_p(const amplitudes *list, size_t count, uint64_t seed) {
-  fg_bump_values at = {.n = count, .noise_freedom = NOISE * (double)(count - 1)};
-  double least = 1;
+  fg_bump_values at = {.n = count, .noise_dof = NOISE * (double)(count - 1)};
+  double min = 1;
   for (int order = CIRCLE + JUDGED; order < ORDERS; order++)
     at.noise_square += square_about_mean(list, count, order);
   for (int order = CIRCLE; order < CIRCLE + JUDGED; order++) {
@@ -160,9 +160,9 @@ static double find_p(const amplitudes *list, size_t count, uint64_t seed) {
       at.value[k] = standard(&list[k], order);
     }
     fg_bump_pattern_find(&at, seed, &p_value);
-    least = fmin(least, JUDGED * p_value);
+    min = fmin(min, JUDGED * p_value);
   }
-  return least;
+  return min;
 }
 
 /* The curve of single bumps joins every explanation, and is fitted beside the winner. */
@@ -180,7 +180,7 @@ static fg_status join(fg_context *ctx, fg_scan_loop *loop, size_t candidate, dou
 fg_status fg_scan_loop_find_single_bumps(fg_context *ctx, fg_scan_loop *loop) {
   const fg_explanations *explanations = &loop->explanations;
   size_t candidate = 0, count = 0;
-  amplitudes list[FG_BUMP_PATTERN_MOST];
+  amplitudes list[FG_BUMP_PATTERN_MAX];
   if (loop->points.discs || loop->points.coarse || loop->set.count == FG_EFFECT_SET_MAX)
     return FG_OK;
   if (!explanations->right) return FG_OK;
@@ -193,7 +193,7 @@ fg_status fg_scan_loop_find_single_bumps(fg_context *ctx, fg_scan_loop *loop) {
     candidate++;
   if (candidate == explanations->candidate_count) return FG_OK;
   FG_TRY(collect(ctx, loop, list, &count));
-  if (count < FG_BUMP_PATTERN_LEAST) return FG_OK;
+  if (count < FG_BUMP_PATTERN_MIN) return FG_OK;
   double p_value = find_p(list, count, loop->options.seed);
   return p_value < FG_BUMP_PATTERN_P ? join(ctx, loop, candidate, p_value) : FG_OK;
 }

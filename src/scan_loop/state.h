@@ -38,7 +38,7 @@ struct fg_scan_loop {
   size_t tie_count;
   fg_scan_loop_range *
       *ranges;             /* per scan and foil: bump_count + 1 (the last: overall); NULL: no tie */
-  fg_pays *pays;           /* per scan: what the explanations would move; NULL: no effects */
+  fg_benefits *benefits;   /* per scan: what the explanations would move; NULL: no effects */
   fg_width_findings width; /* what moves the strip's edges apart; with the set in force */
   fg_scan_loop_bumps bumps; /* the bumps of `after` against the declared springback model */
   fg_model_tone tone;       /* the level of the discs' edges, where their diameters are known */
@@ -71,7 +71,7 @@ fg_status fg_scan_loop_say_held_out(fg_context *ctx, fg_scan_loop *loop);
 const char *fg_scan_loop_fold_of(const fg_scan_loop *loop);
 
 /* Marks a stretch of the part as tied where a scale of the scanner would do as well. */
-fg_status fg_scan_loop_scale_doubt(fg_context *ctx, fg_scan_loop *loop);
+fg_status fg_scan_loop_scale_uncertainty(fg_context *ctx, fg_scan_loop *loop);
 
 /* Copies a measurement with corrected edges and measures its foils and discs again: fields move an
  * edge by d(x, y). NULL: there are none. */
@@ -102,6 +102,6 @@ bool fg_scan_loop_is_unlikely(const fg_explanations *explanations, size_t explan
 fg_status fg_scan_loop_take_moves(fg_context *ctx, fg_scan_loop *loop, size_t explanation,
                                   const fg_joint_fit_result *fit, const fg_measurement *corrected);
 /* Leaves in `after` of the corrections those that pay (pays.h). */
-fg_status fg_scan_loop_keep_what_pays(fg_context *ctx, fg_scan_loop *loop);
+fg_status fg_scan_loop_keep_beneficial(fg_context *ctx, fg_scan_loop *loop);
 
 #endif

@@ -127,7 +127,7 @@ static fg_status put_claim(fg_context *ctx, const fg_scan_loop *loop, const fg_e
   const fg_effect *kind = effect->kind;
   *claim = (fg_scan_result_claim){
       .id = kind->id,
-      .form = kind->form,
+      .direction = kind->direction,
       .words = kind->words,
       .equation = kind->equation,
       .free = fg_effect_is_free(kind),
@@ -331,7 +331,7 @@ fg_status fg_scan_loop_decide(fg_context *ctx, fg_scan_loop *loop) {
   put_unclaimed(loop, result);
   put_width_unclaimed(&loop->width, result);
   put_advice(loop, result);
-  fg_scan_loop_ask_witness(loop, result);
+  fg_scan_loop_check_channels(loop, result);
   FG_TRY(fg_scan_result_put_bumps(ctx, loop, result));
   FG_TRY(fg_scan_result_put_rows(ctx, loop, result));
   FG_TRY(fg_scan_result_put_lines(ctx, loop, result));

@@ -10,15 +10,15 @@
 /* Doubt of either kind that ends it. */
 #define DECIDED_P 0.01
 /* What is said of a tie must be beyond doubt. */
-#define BEYOND_DOUBT_P 0.001
+#define CERTAIN_P 0.001
 /* Less than this between the lines is none. */
 #define CONSTANT_UM 1e-6
 /* What speaks for an effect is its shape: it takes most of what is uneven. */
-#define SHARE_LEAST 0.5
+#define SHARE_MIN 0.5
 /* A claim's shape and the windows are not exact: what the lines show of it is known no better. */
-#define SHAPE_DOUBT 0.1
+#define SHAPE_U 0.1
 /* Gaps that are tried where none is stated, rows to either side. */
-#define GAP_MOST_PX 64.0
+#define GAP_MAX_PX  64.0
 #define GAP_STEP_PX 0.5
 /* What a window averages over. */
 enum { WINDOW_STEPS = 9, LINES = 3 /* red, green, blue */ };
@@ -166,28 +166,29 @@ static double gain(const evidence *e) {
 }
 
 /* Below it nobody believes a probability, and a report of 0 is none. */
-#define P_LEAST 1e-300
+#define P_MIN 1e-300
 
 static double two_sided(double sigmas) {
-  return fmax(P_LEAST, erfc(fabs(sigmas) * M_SQRT1_2));
+  return fmax(P_MIN, erfc(fabs(sigmas) * M_SQRT1_2));
 }
 
-static void decide(fg_scan_witness *w, bool most, const char *why_not) {
-  w->verdict = FG_WITNESS_CANNOT_TELL;
+static void decide(fg_channel_check *w, bool max, const char *why_not) {
+  w->verdict = FG_CHANNEL_CHECK_CANNOT_TELL;
   w->reason = why_not;
-  if (w->p_value < DECIDED_P && w->factor > 0 && !(w->p_against < DECIDED_P) && most)
-    w->verdict = FG_WITNESS_FOR;
+  if (w->p_value < DECIDED_P && w->factor > 0 && !(w->p_against < DECIDED_P) && max)
+    w->verdict = FG_CHANNEL_CHECK_FOR;
   else if (w->p_against < DECIDED_P && w->factor < 0.5)
-    w->verdict = FG_WITNESS_AGAINST;
-  if (w->verdict == FG_WITNESS_AGAINST) w->reason = "the colour lines would show it, and do not";
-  if (w->verdict == FG_WITNESS_FOR)
+    w->verdict = FG_CHANNEL_CHECK_AGAINST;
+  if (w->verdict == FG_CHANNEL_CHECK_AGAINST)
+    w->reason = "the colour lines would show it, and do not";
+  if (w->verdict == FG_CHANNEL_CHECK_FOR)
     w->reason = w->gap_stated ? "the colour lines show it as well"
                               : "the colour lines show it as well, with the gaps that fit best";
 }
 
 /* The lines' gaps are known: what it must show is known in size. Returns by how much it fits better
  * than a constant. */
-static double judge_size(const fg_scan_loop *loop, const carriage *c, fg_scan_witness *w) {
+static double judge_size(const fg_scan_loop *loop, const carriage *c, fg_channel_check *w) {
   double gap_px[LINES] = {loop->options.colour_gap_px[0], 0, loop->options.colour_gap_px[1]};
   evidence e = ask(loop, c, -1, gap_px);
   w->gap_stated = true;
@@ -195,16 +196,16 @@ static double judge_size(const fg_scan_loop *loop, const carriage *c, fg_scan_wi
     w->gap_px[k] = gap_px[k];
   w->expected_um = e.courses ? sqrt(e.expected / (double)e.courses) : NAN;
   if (!(e.weight > 0)) {
-    w->verdict = FG_WITNESS_CANNOT_TELL;
+    w->verdict = FG_CHANNEL_CHECK_CANNOT_TELL;
     w->reason = "it makes the same between the lines everywhere, which the scanner takes out";
     return 0;
   }
   w->factor = e.sum / e.weight;
   w->u_factor = 1 / sqrt(e.weight);
-  double doubt = hypot(w->u_factor, hypot(SHAPE_DOUBT, c->u_amplitude_um / c->amplitude_um));
+  double uncertainty = hypot(w->u_factor, hypot(SHAPE_U, c->u_amplitude_um / c->amplitude_um));
   w->p_value = two_sided(w->factor / w->u_factor);
-  w->p_against = two_sided((1 - w->factor) / doubt);
-  decide(w, gain(&e) >= SHARE_LEAST * e.uneven,
+  w->p_against = two_sided((1 - w->factor) / uncertainty);
+  decide(w, gain(&e) >= SHARE_MIN * e.uneven,
          w->p_value < DECIDED_P ? "the colour lines show something uneven of another size or shape"
                                 : "what it makes between the lines is too small for their u");
   return gain(&e);
@@ -214,7 +215,7 @@ static double judge_size(const fg_scan_loop *loop, const carriage *c, fg_scan_wi
 static double find_gap(const fg_scan_loop *loop, const carriage *c, int line, evidence *best) {
   double likeliest = 0, gaps[LINES] = {0};
   *best = (evidence){0};
-  for (double gap = -GAP_MOST_PX; gap <= GAP_MOST_PX; gap += GAP_STEP_PX) {
+  for (double gap = -GAP_MAX_PX; gap <= GAP_MAX_PX; gap += GAP_STEP_PX) {
     gaps[line] = gap;
     evidence e = ask(loop, c, line, gaps);
     if (!(gain(&e) > gain(best))) continue;
@@ -226,24 +227,24 @@ static double find_gap(const fg_scan_loop *loop, const carriage *c, int line, ev
 
 /* The gaps are not known: each line's is taken as it fits best. Gap and what it stands for are two
  * freedoms; the better of the lines counts, as the better of so many. */
-static double judge_shape(const fg_scan_loop *loop, const carriage *c, fg_scan_witness *w) {
-  double least = 1, lines = 0, all = 0;
-  bool most = false;
+static double judge_shape(const fg_scan_loop *loop, const carriage *c, fg_channel_check *w) {
+  double min = 1, lines = 0, all = 0;
+  bool max = false;
   for (int line = 0; line < LINES; line++) {
     evidence e;
-    double gap = find_gap(loop, c, line, &e), p = fmax(P_LEAST, exp(-0.5 * fmax(0, gain(&e))));
+    double gap = find_gap(loop, c, line, &e), p = fmax(P_MIN, exp(-0.5 * fmax(0, gain(&e))));
     w->gap_px[line] = e.courses ? gap : NAN;
     lines += e.courses > 0;
     all += fmax(0, gain(&e));
-    if (!(p < least)) continue;
-    least = p;
-    most = gain(&e) >= SHARE_LEAST * e.uneven;
+    if (!(p < min)) continue;
+    min = p;
+    max = gain(&e) >= SHARE_MIN * e.uneven;
     w->factor = 1;
     w->expected_um = sqrt(e.expected / (double)e.courses);
   }
-  w->p_value = fmin(1, fmax(1, lines) * least);
+  w->p_value = fmin(1, fmax(1, lines) * min);
   w->p_against = NAN;
-  decide(w, most,
+  decide(w, max,
          w->p_value < DECIDED_P
              ? "the colour lines show something uneven of another shape"
              : "nothing of it shows between the lines; whether it should depends on their gap "
@@ -251,13 +252,13 @@ static double judge_shape(const fg_scan_loop *loop, const carriage *c, fg_scan_w
   return all;
 }
 
-static fg_scan_witness ask_of(const fg_scan_loop *loop, const carriage *c, double *better) {
-  fg_scan_witness w = {.p_value = NAN,
-                       .p_against = NAN,
-                       .factor = NAN,
-                       .u_factor = NAN,
-                       .expected_um = NAN,
-                       .gap_px = {NAN, NAN, NAN}};
+static fg_channel_check ask_of(const fg_scan_loop *loop, const carriage *c, double *better) {
+  fg_channel_check w = {.p_value = NAN,
+                        .p_against = NAN,
+                        .factor = NAN,
+                        .u_factor = NAN,
+                        .expected_um = NAN,
+                        .gap_px = {NAN, NAN, NAN}};
   bool stated = loop->options.colour_gap_px[0] != 0 || loop->options.colour_gap_px[1] != 0;
   *better = (stated ? judge_size : judge_shape)(loop, c, &w);
   return w;
@@ -304,7 +305,7 @@ static void name_set(const fg_effect_set *set, char name[FG_SCAN_RESULT_WORDS]) 
 }
 
 /* What fits best is no knowledge of the sensor: the reader may have it. */
-static void put_gaps(const fg_scan_witness *w, char words[96]) {
+static void put_gaps(const fg_channel_check *w, char words[96]) {
   double gaps[LINES];
   size_t count = 0;
   words[0] = 0;
@@ -323,7 +324,7 @@ static void put_gaps(const fg_scan_witness *w, char words[96]) {
 typedef struct contest {
   char names[FG_SCAN_RESULT_WORDS / 2];
   size_t holds, lacks; /* explanations */
-  fg_scan_witness witness;
+  fg_channel_check channel_check;
   double better;
 } contest;
 
@@ -331,7 +332,7 @@ typedef struct contest {
  * (reports/colour_lines.md); those that leave the lines constant stand apart. */
 static void enter(const fg_scan_loop *loop, const fg_effect_set *set, contest *to) {
   carriage c = carriage_of(loop, set);
-  fg_scan_witness w = {.expected_um = NAN};
+  fg_channel_check w = {.expected_um = NAN};
   double better = 0;
   if (c.fields.count) w = ask_of(loop, &c, &better);
   if (!(w.expected_um > CONSTANT_UM)) {
@@ -344,7 +345,7 @@ static void enter(const fg_scan_loop *loop, const fg_effect_set *set, contest *t
   fg_text_clip(to->names + used, sizeof to->names - used, "%s%s", used ? ", " : "", name);
   if (!to->holds || better > to->better) {
     to->better = better;
-    to->witness = w;
+    to->channel_check = w;
   }
   to->holds++;
 }
@@ -355,18 +356,18 @@ static void ask_tie(const fg_scan_loop *loop, fg_scan_result *result) {
   enter(loop, &loop->set, &all);
   for (size_t k = 0; k < loop->tie_count; k++)
     enter(loop, &loop->tie[k], &all);
-  if (!all.holds || !all.lacks || all.witness.verdict != FG_WITNESS_FOR ||
-      !(all.witness.p_value < BEYOND_DOUBT_P) || result->advices == FG_SCAN_RESULT_ADVICE)
+  if (!all.holds || !all.lacks || all.channel_check.verdict != FG_CHANNEL_CHECK_FOR ||
+      !(all.channel_check.p_value < CERTAIN_P) || result->advices == FG_SCAN_RESULT_ADVICE)
     return;
-  put_gaps(&all.witness, gaps);
-  fg_text_clip(result->witness_words, sizeof result->witness_words,
+  put_gaps(&all.channel_check, gaps);
+  fg_text_clip(result->channel_check_words, sizeof result->channel_check_words,
                "the colour lines of these scans, in which neither part nor optics shows, speak for "
                "the carriage (p = %.1g): %s, and not for the other %zu%s",
-               all.witness.p_value, all.names, all.lacks, gaps);
-  result->advice[result->advices++] = result->witness_words;
+               all.channel_check.p_value, all.names, all.lacks, gaps);
+  result->advice[result->advices++] = result->channel_check_words;
 }
 
-void fg_scan_loop_ask_witness(const fg_scan_loop *loop, fg_scan_result *result) {
+void fg_scan_loop_check_channels(const fg_scan_loop *loop, fg_scan_result *result) {
   if (!any_speaks(loop)) return;
   for (size_t i = 0; i < loop->set.count && i < result->claims; i++) {
     carriage c = start_carriage(loop);
@@ -374,7 +375,7 @@ void fg_scan_loop_ask_witness(const fg_scan_loop *loop, fg_scan_result *result) 
     for (size_t k = 0; k < loop->set.count; k++)
       if (k != i) add_field(&loop->set.effects[k], &c.others);
     double better;
-    result->claim[i].witness = ask_of(loop, &c, &better);
+    result->claim[i].channel_check = ask_of(loop, &c, &better);
   }
   if (!result->named) ask_tie(loop, result);
 }

@@ -6,14 +6,14 @@
  * along y must be D(y) - D(y + g) beside a constant, which the scanner takes out as it puts the
  * rows together. That is a second, independent look at the same carriage.
  */
-#ifndef FG_SCAN_LOOP_WITNESS_H
-#define FG_SCAN_LOOP_WITNESS_H
+#ifndef FG_SCAN_LOOP_CHANNEL_CHECK_H
+#define FG_SCAN_LOOP_CHANNEL_CHECK_H
 
 #include "foilgauge/scan_result.h"
 
 struct fg_scan_loop;
 
 /* Witnesses of the claims, and of a tie what they say of it, into the result. Its claims stand. */
-void fg_scan_loop_ask_witness(const struct fg_scan_loop *loop, fg_scan_result *result);
+void fg_scan_loop_check_channels(const struct fg_scan_loop *loop, fg_scan_result *result);
 
 #endif

@@ -96,12 +96,12 @@ static bool has_cookie(const fg_request *request, const char *token) {
   return false;
 }
 
-static bool is_our_form(const fg_inspection *station, const fg_request *request) {
+static bool has_our_csrf_token(const fg_inspection *station, const fg_request *request) {
   if (request->origin && !fg_reach_is_origin(station, request->host, request->origin)) return false;
   if (request->site && strcmp(request->site, "same-origin") != 0 &&
       strcmp(request->site, "none") != 0)
     return false;
-  return same_secret(fg_request_get(request, "form"), station->form_token);
+  return same_secret(fg_request_get(request, "form"), station->csrf_token);
 }
 
 static bool is_page(const char *path) {
@@ -132,7 +132,7 @@ static bool may_ask(const fg_inspection *station, const fg_request *request, fg_
     say(answer, 401, "Open the address that the station printed: it carries the token.");
     return false;
   }
-  if (request->post && !is_our_form(station, request)) {
+  if (request->post && !has_our_csrf_token(station, request)) {
     say(answer, 403,
         "This form is not from this station as it runs now: go back and load the page again.");
     return false;

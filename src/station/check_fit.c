@@ -7,14 +7,14 @@
 
 /* A disc is of a known diameter when it is this near to it: scanners are out by 0.6 % at most
  * (two that were measured), holes of a plate differ by more. */
-#define SAME_DIAMETER  0.03
-#define COVERAGE_LEAST 300.0 /* degrees: an arc says little of two axes */
+#define SAME_DIAMETER 0.03
+#define COVERAGE_MIN  300.0 /* degrees: an arc says little of two axes */
 
 /* Variance of 1/radius over its mean square: radii of 1 and 1.03 mm have 0.0002. */
 #define LEVEL_TOLD 1e-3
 
 /* Stretches of an edge, and the fewest points that are enough for as many. */
-enum { BLOCKS = 24, POINTS_LEAST = 4 * BLOCKS };
+enum { BLOCKS = 24, POINTS_MIN = 4 * BLOCKS };
 /* Scale of x and y as their mean and half their difference: around a whole circle the five are
  * independent of each other, and the level of the edge moves the mean alone. */
 enum { MEAN, DIFFERENCE, SHEAR, CENTRE_X, CENTRE_Y, UNKNOWNS, OF_SCANNER = SHEAR + 1 };
@@ -22,7 +22,7 @@ enum { MEAN, DIFFERENCE, SHEAR, CENTRE_X, CENTRE_Y, UNKNOWNS, OF_SCANNER = SHEAR
 /* What one disc says, with the variance of its own noise; how far the mean scale moves with the
  * level at which edges are taken, per mm of the edge; and how many mm are in doubt. */
 typedef struct says {
-  double value[OF_SCANNER], variance[OF_SCANNER], level, doubt_mm;
+  double value[OF_SCANNER], variance[OF_SCANNER], level, u_mm_of_level;
 } says;
 
 static double known_diameter(const fg_design *design, const fg_disc *disc) {
@@ -69,7 +69,7 @@ static double slow_variance(const fg_disc *disc, double radius_mm, const double 
 static bool fit_disc(const fg_disc *disc, double radius_mm, says *result) {
   fg_normal_equations system;
   double row[UNKNOWNS], x[UNKNOWNS], inverse[FG_SMALL_MAX][FG_SMALL_MAX];
-  if (disc->points < POINTS_LEAST) return false;
+  if (disc->points < POINTS_MIN) return false;
   fg_normal_clear(&system, UNKNOWNS);
   for (size_t i = 0; i < disc->points; i++) {
     double value = fill_row(disc, i, radius_mm, row);
@@ -82,7 +82,7 @@ static bool fit_disc(const fg_disc *disc, double radius_mm, says *result) {
     result->variance[k] = variance * inverse[k][k];
   }
   result->level = (disc->bright ? 1 : -1) / radius_mm;
-  result->doubt_mm = disc->level_doubt_mm;
+  result->u_mm_of_level = disc->level_u_mm;
   return true;
 }
 
@@ -107,10 +107,10 @@ static void combine(const says *discs, size_t count, int k, double *value, doubl
  * within its doubt: disc i says m + level_i c. Discs of different sizes tell the two apart; of a
  * single ring the doubt stays in m. */
 static void combine_mean(const says *discs, size_t count, double *value, double *variance) {
-  double doubt = 0, ww = 0, wl = 0, wv = 0, lv = 0, chi2;
+  double uncertainty = 0, ww = 0, wl = 0, wv = 0, lv = 0, chi2;
   for (size_t i = 0; i < count; i++)
-    doubt += discs[i].doubt_mm / (double)count;
-  double prior = 1 / fmax(doubt * doubt, 1e-18), ll = prior;
+    uncertainty += discs[i].u_mm_of_level / (double)count;
+  double prior = 1 / fmax(uncertainty * uncertainty, 1e-18), ll = prior;
   for (size_t i = 0; i < count; i++) {
     const says *disc = &discs[i];
     double weight = 1 / disc->variance[MEAN];
@@ -171,7 +171,7 @@ fg_status fg_check_fit_plate(fg_context *ctx, const fg_design *design,
   for (size_t i = 0; i < measurement->disc_count && fit->discs < DISCS_MAX; i++) {
     const fg_disc *disc = &measurement->discs[i];
     double diameter = known_diameter(design, disc);
-    if (isnan(diameter) || disc->coverage_deg < COVERAGE_LEAST) continue;
+    if (isnan(diameter) || disc->coverage_deg < COVERAGE_MIN) continue;
     fit->discs += fit_disc(disc, diameter / 2, &discs[fit->discs]);
   }
   if (!fit->discs)

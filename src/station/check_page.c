@@ -70,7 +70,7 @@ static void write_findings(FILE *out, unsigned findings) {
 
 static void write_accept(const fg_inspection *station, FILE *out, int64_t id) {
   fputs("<form class=\"fields noprint\" method=\"post\" action=\"/baseline\">", out);
-  fg_page_form_token(station, out);
+  fg_page_csrf_token(station, out);
   fprintf(out,
           "<input type=\"hidden\" name=\"id\" value=\"%lld\"><button>Take this check as the new "
           "baseline</button></form>\n",

@@ -60,7 +60,8 @@ static fg_status take_field(fg_context *ctx, const fg_request *request, size_t i
   return FG_OK;
 }
 
-static fg_status take_form(fg_context *ctx, const fg_request *request, fg_identity_change *asked) {
+static fg_status read_html_form(fg_context *ctx, const fg_request *request,
+                                fg_identity_change *asked) {
   char *end;
   const char *id = fg_request_get(request, "foil");
   *asked = (fg_identity_change){.foil = strtoll(id, &end, 10)};
@@ -153,7 +154,7 @@ static fg_status change(fg_context *ctx, sqlite3 *writer, fg_identity_change *as
 fg_status fg_action_correct(fg_context *ctx, fg_inspection *station, const fg_request *request,
                             fg_answer *answer) {
   fg_identity_change asked;
-  FG_TRY(take_form(ctx, request, &asked));
+  FG_TRY(read_html_form(ctx, request, &asked));
   FG_TRY(fg_station_database_begin(ctx, &station->database));
   FG_TRY(fg_station_database_end(ctx, &station->database,
                                  change(ctx, station->database.writer, &asked)));

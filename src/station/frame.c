@@ -27,8 +27,8 @@ void fg_page_time(FILE *out, int64_t at) {
   fputs(text, out);
 }
 
-void fg_page_form_token(const fg_inspection *station, FILE *out) {
-  fprintf(out, "<input type=\"hidden\" name=\"form\" value=\"%s\">", station->form_token);
+void fg_page_csrf_token(const fg_inspection *station, FILE *out) {
+  fprintf(out, "<input type=\"hidden\" name=\"form\" value=\"%s\">", station->csrf_token);
 }
 
 const char *fg_page_verdict_words(const char *verdict, bool withheld) {
@@ -70,21 +70,21 @@ static void write_tabs(FILE *out, fg_tab here) {
   fputs("</nav>\n", out);
 }
 
-static void write_trouble(fg_inspection *station, FILE *out) {
-  fg_trouble *trouble = &station->trouble;
-  pthread_mutex_lock(&trouble->mutex);
-  if (trouble->words[0]) {
+static void write_recovery(fg_inspection *station, FILE *out) {
+  fg_recovery *recovery = &station->recovery;
+  pthread_mutex_lock(&recovery->mutex);
+  if (recovery->words[0]) {
     fputs("<p class=\"banner\" role=\"alert\"><b>Nothing is kept now; it is tried again.</b> ",
           out);
-    fg_html_text(out, trouble->words);
+    fg_html_text(out, recovery->words);
     fputs("</p>\n", out);
   }
-  if (trouble->crowd[0]) {
+  if (recovery->crowd[0]) {
     fputs("<p class=\"banner\"><b>Very many files.</b> ", out);
-    fg_html_text(out, trouble->crowd);
+    fg_html_text(out, recovery->crowd);
     fputs("</p>\n", out);
   }
-  pthread_mutex_unlock(&trouble->mutex);
+  pthread_mutex_unlock(&recovery->mutex);
 }
 
 static fg_status write_banner(fg_context *ctx, const fg_inspection *station, sqlite3 *reader,
@@ -126,10 +126,10 @@ fg_status fg_page_begin(fg_context *ctx, fg_inspection *station, sqlite3 *reader
         out);
   write_tabs(out, tab);
   write_silent(out);
-  fprintf(out, "<main data-news=\"%lld\" data-form=\"%s\" data-at=\"", news, station->form_token);
+  fprintf(out, "<main data-news=\"%lld\" data-form=\"%s\" data-at=\"", news, station->csrf_token);
   fg_page_time(out, fg_station_now());
   fputs("\">\n", out);
-  write_trouble(station, out);
+  write_recovery(station, out);
   return write_banner(ctx, station, reader, out);
 }
 

@@ -90,16 +90,16 @@ static fg_status write_owners(fg_context *ctx, sqlite3 *reader, const fg_identit
 static fg_status write_form(fg_context *ctx, const fg_inspection *station, sqlite3 *reader,
                             const fg_identity_change *asked, FILE *out) {
   fg_query query;
-  fg_foil_form form = {.back = asked->to_now ? "/" : "/foil",
-                       .focus = true,
-                       .who = !asked->to_now,
-                       .by = asked->by,
-                       .also = asked->owned ? asked->after[0] : ""};
+  fg_foil_form_error html_form = {.back = asked->to_now ? "/" : "/foil",
+                                  .focus = true,
+                                  .who = !asked->to_now,
+                                  .by = asked->by,
+                                  .also = asked->owned ? asked->after[0] : ""};
   for (size_t i = 0; i < FG_IDENTITY_FIELDS; i++)
-    form.asked[i] = asked->asked[i] ? asked->after[i] : NULL;
+    html_form.asked[i] = asked->asked[i] ? asked->after[i] : NULL;
   fg_query_begin(reader, "SELECT id, serial, lot, die, operator FROM foils WHERE id = ?", &query);
   fg_query_integer(&query, asked->foil);
-  if (fg_query_row(&query)) fg_page_foil_form(station, &query, &form, out);
+  if (fg_query_row(&query)) fg_page_foil_form_error(station, &query, &html_form, out);
   return fg_query_end(ctx, &query, "reading a foil");
 }
 

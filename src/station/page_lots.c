@@ -100,7 +100,7 @@ static void write_downloads(const fg_inspection *station, FILE *out, const char 
                                          {"results.qif", "QIF"},
                                          {"results.dfq", "DFQ"}};
   fputs("<form class=\"fields noprint\" method=\"post\" action=\"/download\">", out);
-  fg_page_form_token(station, out);
+  fg_page_csrf_token(station, out);
   fputs("<input type=\"hidden\" name=\"lot\" value=\"", out);
   fg_html_text(out, lot);
   fputs("\">", out);
@@ -200,7 +200,7 @@ static fg_status write_question(fg_context *ctx, const fg_inspection *station, s
   FG_TRY(fg_query_end(ctx, &query, "reading the lot"));
   FG_TRY(write_refused(ctx, reader, out));
   fputs("<form class=\"fields\" method=\"post\" action=\"/close\">", out);
-  fg_page_form_token(station, out);
+  fg_page_csrf_token(station, out);
   fputs("<input type=\"hidden\" name=\"lot\" value=\"", out);
   fg_html_text(out, lot);
   fputs("\"><label>Closed by<input name=\"by\" maxlength=\"127\" autocomplete=\"off\" required "

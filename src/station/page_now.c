@@ -152,8 +152,8 @@ static fg_status write_foil(fg_context *ctx, fg_inspection *station, sqlite3 *re
   fputs(withheld ? "<div class=\"withheld\">" : "<div>", out);
   FG_TRY(fg_page_deciding(ctx, reader, id, out));
   fputs("</div>\n", out);
-  const fg_foil_form form = {.back = "/", .focus = focus};
-  fg_page_foil_form(station, foil, &form, out);
+  const fg_foil_form_error html_form = {.back = "/", .focus = focus};
+  fg_page_foil_form_error(station, foil, &html_form, out);
   FG_TRY(fg_page_same_serial(ctx, reader, id, out));
   return write_picture(ctx, reader, id, out);
 }
@@ -200,7 +200,7 @@ static fg_status write_foils(fg_context *ctx, fg_inspection *station, sqlite3 *r
 static void write_scan_button(const fg_inspection *station, FILE *out) {
   if (!station->settings->scan_command[0]) return;
   fputs("<form class=\"fields\" method=\"post\" action=\"/scan\">", out);
-  fg_page_form_token(station, out);
+  fg_page_csrf_token(station, out);
   fprintf(out, "<button class=\"big\"%s>%s</button></form>\n",
           atomic_load(&station->scanning) ? " disabled" : "",
           atomic_load(&station->scanning) ? "Scanning …" : "Scan");

@@ -17,11 +17,11 @@ static pthread_mutex_t measuring = PTHREAD_MUTEX_INITIALIZER;
 
 enum { WHY_BYTES = 400 };
 
-static fg_status apply_model(fg_context *ctx, const fg_past *past, fg_scanner_model **model,
-                             fg_measurement *measurement) {
+static fg_status apply_model(fg_context *ctx, const fg_stored_foil *stored,
+                             fg_scanner_model **model, fg_measurement *measurement) {
   char warning[200];
-  if (!past->model) return FG_OK;
-  FG_TRY(fg_scanner_model_parse(ctx, "the scanner's model of then", past->model, model));
+  if (!stored->model) return FG_OK;
+  FG_TRY(fg_scanner_model_parse(ctx, "the scanner's model of then", stored->model, model));
   return fg_scanner_model_apply(ctx, *model, measurement, 0, warning);
 }
 
@@ -37,81 +37,84 @@ static bool leave_one(fg_measurement *shown, const fg_measurement *measurement, 
   return false;
 }
 
-static fg_status write_measured(fg_context *ctx, const fg_past *past,
+static fg_status write_measured(fg_context *ctx, const fg_stored_foil *stored,
                                 const fg_measurement *measurement, FILE *out) {
   fg_measurement shown;
-  if (!leave_one(&shown, measurement, past->number))
+  if (!leave_one(&shown, measurement, stored->number))
     return fg_fail(ctx, FG_ERR_DATA, "the foil was not found in it again");
-  const fg_report_scan scan = {.path = shown.scan, .measurement = &shown, .name = past->serial};
-  const fg_report report = {
-      .design = &past->settings.design, .nominal = &shown.nominal, .scans = &scan, .scan_count = 1};
+  const fg_report_scan scan = {.path = shown.scan, .measurement = &shown, .name = stored->serial};
+  const fg_report report = {.design = &stored->settings.design,
+                            .nominal = &shown.nominal,
+                            .scans = &scan,
+                            .scan_count = 1};
   return fg_report_write_html(ctx, &report, out);
 }
 
 /* FG_ERR_DATA, FG_ERR_IO: the scan is no longer what was measured, and why. */
-static fg_status measure_again(fg_context *ctx, const char *folder, const fg_past *past,
+static fg_status measure_again(fg_context *ctx, const char *folder, const fg_stored_foil *stored,
                                FILE *out) {
   char *path = NULL, sum[65];
   fg_scanner_model *model = NULL;
   fg_measurement measurement;
   const fg_measure_options options = {
-      .dpi = past->settings.dpi, .allow_lossy = past->settings.allow_lossy, .only_file = true};
-  FG_TRY(fg_stored_name_path(ctx, folder, past->path, &path));
+      .dpi = stored->settings.dpi, .allow_lossy = stored->settings.allow_lossy, .only_file = true};
+  FG_TRY(fg_stored_name_path(ctx, folder, stored->path, &path));
   fg_status status = fg_sha256_file(ctx, path, sum);
-  if (status == FG_OK && strcmp(sum, past->sha256) != 0)
-    status = fg_fail(ctx, FG_ERR_DATA, "%s is another file now", past->path);
+  if (status == FG_OK && strcmp(sum, stored->sha256) != 0)
+    status = fg_fail(ctx, FG_ERR_DATA, "%s is another file now", stored->path);
   if (status == FG_OK)
-    status = fg_measure_scan(ctx, path, &past->settings.design, &options, &measurement);
+    status = fg_measure_scan(ctx, path, &stored->settings.design, &options, &measurement);
   free(path);
   if (status != FG_OK) return status;
-  status = apply_model(ctx, past, &model, &measurement);
+  status = apply_model(ctx, stored, &model, &measurement);
   if (status == FG_OK) status = fg_measurement_calibrate(ctx, 0, &measurement);
-  if (status == FG_OK) status = write_measured(ctx, past, &measurement, out);
+  if (status == FG_OK) status = write_measured(ctx, stored, &measurement, out);
   fg_measurement_free(&measurement);
   if (model) fg_scanner_model_free(model);
   return status;
 }
 
-static fg_status write_facts(fg_context *ctx, const fg_past *past, FILE *out) {
+static fg_status write_facts(fg_context *ctx, const fg_stored_foil *stored, FILE *out) {
   fputs("<h2>Where it comes from</h2>\n<dl class=\"facts\">\n<dt>Scan</dt><dd>", out);
-  fg_html_text(out, past->path);
+  fg_html_text(out, stored->path);
   fputs("</dd>\n<dt>Measured</dt><dd>", out);
-  fg_page_time(out, past->at);
+  fg_page_time(out, stored->at);
   fputs("</dd>\n<dt>SHA-256</dt><dd>", out);
-  fg_html_text(out, past->sha256);
+  fg_html_text(out, stored->sha256);
   fputs("</dd>\n", out);
-  FG_TRY(fg_past_write_provenance(ctx, past, out));
+  FG_TRY(fg_stored_foil_write_provenance(ctx, stored, out));
   fputs("</dl>\n", out);
   return FG_OK;
 }
 
-static fg_status write_record(fg_context *ctx, const fg_past *past, const char *why, FILE *out) {
-  fg_html_begin(out, past->serial);
+static fg_status write_record(fg_context *ctx, const fg_stored_foil *stored, const char *why,
+                              FILE *out) {
+  fg_html_begin(out, stored->serial);
   fputs("<section>\n<header><h1>Foil ", out);
-  fg_html_text(out, past->serial);
+  fg_html_text(out, stored->serial);
   fputs("</h1>", out);
-  if (past->foil) FG_TRY(fg_past_write_verdict(ctx, past, out));
+  if (stored->foil) FG_TRY(fg_stored_foil_write_verdict(ctx, stored, out));
   fputs("</header>\n<p class=\"corrected\"><b>From the record.</b> It cannot be measured again: ",
         out);
   fg_html_text(out, why);
   fputs(". The values are those that were kept when it was measured; the picture and the residuals "
         "are not kept.</p>\n",
         out);
-  fg_past_write_tables(past, out);
-  FG_TRY(write_facts(ctx, past, out));
+  fg_stored_foil_write_tables(stored, out);
+  FG_TRY(write_facts(ctx, stored, out));
   fputs("</section>\n", out);
   fg_html_end(out);
   return FG_OK;
 }
 
 /* Into memory first: what fails half-way is not shown. */
-static fg_status try_again(fg_context *ctx, const char *folder, const fg_past *past, FILE *out,
-                           char why[WHY_BYTES]) {
+static fg_status try_again(fg_context *ctx, const char *folder, const fg_stored_foil *stored,
+                           FILE *out, char why[WHY_BYTES]) {
   char *page = NULL;
   size_t size = 0;
   FILE *into = open_memstream(&page, &size);
   if (!into) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a report");
-  fg_status status = measure_again(ctx, folder, past, into);
+  fg_status status = measure_again(ctx, folder, stored, into);
   if (fclose(into) != 0 && status == FG_OK)
     status = fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a report");
   if (status == FG_OK)
@@ -122,29 +125,30 @@ static fg_status try_again(fg_context *ctx, const char *folder, const fg_past *p
   return status;
 }
 
-static fg_status write_report(fg_context *ctx, const char *folder, const fg_past *past, FILE *out) {
+static fg_status write_report(fg_context *ctx, const char *folder, const fg_stored_foil *stored,
+                              FILE *out) {
   char why[WHY_BYTES];
   if (pthread_mutex_trylock(&measuring) != 0)
     return fg_fail(ctx, FG_ERR_INTERRUPTED,
                    "Another report is being measured: load this page again in a moment.");
-  fg_status status = past->readable ? try_again(ctx, folder, past, out, why)
-                                    : fg_fail(ctx, FG_ERR_DATA, "%s", past->problem);
+  fg_status status = stored->readable ? try_again(ctx, folder, stored, out, why)
+                                      : fg_fail(ctx, FG_ERR_DATA, "%s", stored->problem);
   pthread_mutex_unlock(&measuring);
   if (status == FG_OK || status == FG_ERR_MEMORY) return status;
-  if (!past->readable) fg_text_clip(why, WHY_BYTES, "%s", past->problem);
-  return write_record(ctx, past, why, out);
+  if (!stored->readable) fg_text_clip(why, WHY_BYTES, "%s", stored->problem);
+  return write_record(ctx, stored, why, out);
 }
 
 fg_status fg_page_report(fg_context *ctx, fg_inspection *station, sqlite3 *reader,
                          const fg_request *request, FILE *out) {
-  fg_past *past;
+  fg_stored_foil *stored;
   (void)reader; /* may be another one by the time that it is ours */
   pthread_mutex_lock(&station->database.reading);
   fg_status status =
-      fg_past_load(ctx, station->database.reader, fg_request_get(request, "foil"), &past);
+      fg_stored_foil_load(ctx, station->database.reader, fg_request_get(request, "foil"), &stored);
   pthread_mutex_unlock(&station->database.reading);
   if (status != FG_OK) return status;
-  status = write_report(ctx, station->request->folder, past, out);
-  fg_past_free(past);
+  status = write_report(ctx, station->request->folder, stored, out);
+  fg_stored_foil_free(stored);
   return status;
 }

@@ -36,15 +36,15 @@ static const struct {
 };
 enum { AXES = sizeof axes / sizeof *axes };
 
-static fg_status read_history(fg_context *ctx, sqlite3 *reader, size_t most, history *all) {
+static fg_status read_history(fg_context *ctx, sqlite3 *reader, size_t max, history *all) {
   fg_query query;
   all->count = 0;
   fg_query_begin(reader,
                  "SELECT at, scale_x, u_scale_x, scale_y, u_scale_y, shear, u_shear, verdict, path,"
                  " words, changes FROM checks ORDER BY id DESC LIMIT ?",
                  &query);
-  fg_query_integer(&query, (int64_t)most);
-  while (all->count < most && fg_query_row(&query)) {
+  fg_query_integer(&query, (int64_t)max);
+  while (all->count < max && fg_query_row(&query)) {
     check_row *row = &all->row[all->count++];
     row->at = fg_query_get_integer(&query, 0);
     for (int k = 0; k < AXES; k++) {
@@ -232,7 +232,7 @@ static void write_button(const fg_inspection *station, FILE *out) {
   bool scanning = atomic_load(&station->scanning);
   if (!station->settings->scan_command[0] || !station->check_design_known) return;
   fputs("<form class=\"fields\" method=\"post\" action=\"/scan\">", out);
-  fg_page_form_token(station, out);
+  fg_page_csrf_token(station, out);
   fprintf(out,
           "<input type=\"hidden\" name=\"check\" value=\"1\"><button class=\"big\"%s>%s"
           "</button></form>\n",
@@ -253,14 +253,14 @@ static fg_status write_all(fg_context *ctx, const fg_inspection *station, sqlite
 }
 
 static fg_status write_checks(fg_context *ctx, const fg_inspection *station, sqlite3 *reader,
-                              size_t most, FILE *out) {
+                              size_t max, FILE *out) {
   const fg_station_check *check = &station->settings->check;
   void *block;
   fg_station_health health;
   FG_TRY(fg_station_check_health(ctx, reader, check, &health));
   FG_TRY(fg_memory_allocate(ctx, 1, sizeof(history), &block));
   history *all = block;
-  fg_status status = read_history(ctx, reader, most, all);
+  fg_status status = read_history(ctx, reader, max, all);
   if (status == FG_OK) {
     write_call(out, &health);
     write_next(out, check, &health);

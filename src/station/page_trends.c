@@ -8,7 +8,7 @@
 enum { NAME_BYTES = 140, NARROWEST = 10 };
 /* Points that a chart needs before its silence says that a process is stable (AIAG, Statistical
  * Process Control, 2005: 25 subgroups). */
-enum { STABLE_LEAST = 25 };
+enum { STABLE_MIN = 25 };
 
 typedef struct page {
   FILE *out;
@@ -62,7 +62,7 @@ static void write_steps(const page *p) {
   }
 }
 
-static void write_range_form(const page *p) {
+static void write_range_html_form(const page *p) {
   const fg_trend_choice *choice = p->choice;
   const fg_trend *trend = p->trend;
   FILE *out = p->out;
@@ -216,9 +216,9 @@ static void write_why_not(const page *p) {
     fputs("the design has no tolerance for this quantity.", out);
   else if (p->choice->by_lots)
     fputs("it is a matter of single foils: choose \"Over: foils\".", out);
-  else if (p->trend->count < STABLE_LEAST)
+  else if (p->trend->count < STABLE_MIN)
     fprintf(out, "%zu foil%s: too few to say that the process is stable; it takes %d.",
-            p->trend->count, fg_plural(p->trend->count), STABLE_LEAST);
+            p->trend->count, fg_plural(p->trend->count), STABLE_MIN);
   else if (quantity->chart.signals)
     fprintf(out,
             "the chart is not stable (%zu %s with a signal). What a process will do can be said "
@@ -241,7 +241,7 @@ static void write_capability(const page *p) {
   FILE *out = p->out;
   fputs("<h2>Capability</h2>\n", out);
   if (p->choice->by_lots || !quantity->has_capability || !quantity->stable ||
-      p->trend->count < STABLE_LEAST) {
+      p->trend->count < STABLE_MIN) {
     write_why_not(p);
     return;
   }
@@ -265,7 +265,7 @@ static void write_chart(const page *p) {
   write_controls(p);
   for (int narrow = 0; narrow < 2; narrow++)
     fg_trend_plot(p->out, p->reader, p->trend, runs, count, narrow);
-  write_range_form(p);
+  write_range_html_form(p);
   write_caption(p);
   write_runs(p, runs, count, all);
   write_capability(p);
@@ -283,7 +283,7 @@ static void write_title(const page *p) {
 
 static fg_status write_trend(fg_context *ctx, const page *p) {
   write_title(p);
-  FG_TRY(fg_trend_write_form(ctx, p->station, p->reader, p->trend, p->out));
+  FG_TRY(fg_trend_write_html_form(ctx, p->station, p->reader, p->trend, p->out));
   if (p->trend->quantity.has_chart)
     write_chart(p);
   else if (p->choice->by_lots)

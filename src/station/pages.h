@@ -26,7 +26,7 @@ void fg_page_end(FILE *out);
 void fg_page_time(FILE *out, int64_t at);
 
 /* The hidden field that every form carries. */
-void fg_page_form_token(const fg_inspection *station, FILE *out);
+void fg_page_csrf_token(const fg_inspection *station, FILE *out);
 
 /* PASS, FAIL, SCAN AGAIN, MEASURED; and the CSS class that goes with it. */
 const char *fg_page_verdict_words(const char *verdict, bool withheld);

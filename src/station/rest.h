@@ -2,8 +2,8 @@
  *
  * The time of a file is its file system's, on the network another machine's: it only has to stay
  * the same. */
-#ifndef FG_STATION_REST_H
-#define FG_STATION_REST_H
+#ifndef FG_STATION_FILE_STABILITY_H
+#define FG_STATION_FILE_STABILITY_H
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -12,7 +12,7 @@
 #include "foilgauge/status.h"
 
 /* A whole file is taken when nothing has come for so long and nobody has said that it is closed. */
-#define FG_REST_NS INT64_C(2000000000)
+#define FG_STABLE_NS INT64_C(2000000000)
 
 /* A file as it was first seen so. */
 typedef struct fg_resting {
@@ -22,19 +22,20 @@ typedef struct fg_resting {
   bool tried; /* as it is; the caller's */
 } fg_resting;
 
-typedef struct fg_rest {
+typedef struct fg_file_stability {
   fg_resting *files;
   size_t count, capacity;
   size_t *slots, slot_count; /* a hash table: 1 + a file's index, by its name; 0: nothing */
-} fg_rest;
+} fg_file_stability;
 
 /* Since when the file has been as it is: `now_ns` is of a clock that nobody sets, and it is
  * remembered from its first look on. *file is valid until the next call. */
-fg_status fg_rest_look(fg_context *ctx, fg_rest *rest, const char *name, int64_t bytes,
-                       int64_t modified_ns, int64_t now_ns, fg_resting **file);
+fg_status fg_file_stability_look(fg_context *ctx, fg_file_stability *stability, const char *name,
+                                 int64_t bytes, int64_t modified_ns, int64_t now_ns,
+                                 fg_resting **file);
 
 /* The end of a round: files that were not looked at in it are forgotten. */
-void fg_rest_end_round(fg_rest *rest);
-void fg_rest_free(fg_rest *rest);
+void fg_file_stability_end_round(fg_file_stability *stability);
+void fg_file_stability_free(fg_file_stability *stability);
 
 #endif

@@ -44,18 +44,18 @@ typedef struct words {
 } words;
 
 /* A 0 of the form is any digit. */
-static bool has_form(const char *name, const char *form) {
-  for (; *form; form++, name++)
-    if (*form == '0' ? *name < '0' || *name > '9' : *name != *form) return false;
+static bool has_forming(const char *name, const char *html_form) {
+  for (; *html_form; html_form++, name++)
+    if (*html_form == '0' ? *name < '0' || *name > '9' : *name != *html_form) return false;
   return true;
 }
 
 bool fg_station_is_scanned_check(const char *name) {
-  return has_form(name, CHECK_PREFIX "00000000-000000-000.");
+  return has_forming(name, CHECK_PREFIX "00000000-000000-000.");
 }
 
 bool fg_station_is_scanned(const char *name) {
-  return has_form(name, PREFIX "00000000-000000-000.") || fg_station_is_scanned_check(name);
+  return has_forming(name, PREFIX "00000000-000000-000.") || fg_station_is_scanned_check(name);
 }
 
 /* What a scanner's program asks of its file's ending. */

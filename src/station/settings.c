@@ -175,7 +175,7 @@ fg_status fg_station_settings_load(fg_context *ctx, const char *recipe, const ch
   if (recipe) FG_TRY(fg_lot_settings_load(ctx, recipe, &settings->lot));
   if (recipe) FG_TRY(load_station(ctx, recipe, settings));
   if (design) FG_TRY(fg_lot_settings_take_design(ctx, design, &settings->lot));
-  if (settings->lot.design.form == FG_FORM_CANTILEVER)
+  if (settings->lot.design.kind == FG_FOIL_CANTILEVER)
     return fg_fail(ctx, FG_ERR_DATA,
                    "design.form is cantilever: a station keeps foils with bumps and plain strips; "
                    "measure beams with `foilgauge lot`");
@@ -197,18 +197,18 @@ static void say_member(const char *object, const member *row, const fg_station_s
     fg_text_clip(words->usual, sizeof words->usual, "%s", *(const bool *)place ? "true" : "false");
 }
 
-size_t fg_station_members(fg_member_words *list, size_t most) {
+size_t fg_station_members(fg_member_words *list, size_t max) {
   static fg_station_settings usual;
   size_t count = 0;
   set_usual(&usual);
   for (size_t i = 0; i < MEMBERS; i++, count++)
-    if (count < most) say_member("", &members[i], &usual, &list[count]);
-  if (count < most) {
+    if (count < max) say_member("", &members[i], &usual, &list[count]);
+  if (count < max) {
     list[count] = (fg_member_words){.meaning = check_meaning};
     fg_text_clip(list[count].name, sizeof list[count].name, "station.%s", check_name);
   }
   count++;
   for (size_t i = 0; i < CHECK_MEMBERS; i++, count++)
-    if (count < most) say_member("check.", &check_members[i], &usual, &list[count]);
+    if (count < max) say_member("check.", &check_members[i], &usual, &list[count]);
   return count;
 }

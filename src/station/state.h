@@ -8,7 +8,7 @@
 #include "foilgauge/station.h"
 #include "station/database.h"
 
-enum { FG_FORM_TOKEN = 33 };
+enum { FG_CSRF_TOKEN = 33 };
 
 /* A lot that is being closed, in a thread of its own: scans may have to be measured again. */
 typedef struct fg_closing {
@@ -20,11 +20,11 @@ typedef struct fg_closing {
 } fg_closing;
 
 /* What the station cannot do now and tries again: pages say it. */
-typedef struct fg_trouble {
+typedef struct fg_recovery {
   pthread_mutex_t mutex;
   char words[1000]; /* "": all is well */
   char crowd[200];  /* of a folder with very many files; "": it has not */
-} fg_trouble;
+} fg_recovery;
 
 /* Stage of the newest file before it has a card. */
 typedef enum fg_stage {
@@ -58,14 +58,14 @@ typedef struct fg_inspection {
   bool check_design_known;
   int64_t setup;
   int lock;
-  char form_token[FG_FORM_TOKEN]; /* carried by the html forms of this station's pages */
+  char csrf_token[FG_CSRF_TOKEN]; /* carried by the html forms of this station's pages */
   char host[128];                 /* "127.0.0.1:8317": where it listens */
   fg_reach reach;
   atomic_bool scanning;               /* the scan command runs */
   char scan_warning[1000];            /* options of it that spoil scans; "": none is known */
   struct fg_station_scanner *scanner; /* of the last scan by command; NULL: none yet */
   fg_closing closing;
-  fg_trouble trouble;
+  fg_recovery recovery;
   fg_arriving arriving;
   atomic_llong news;          /* station/news.h */
   void (*wake)(void *server); /* there is news; NULL: nobody waits */

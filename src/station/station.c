@@ -23,19 +23,19 @@ static fg_status load_check(fg_context *ctx, fg_inspection *station) {
   if (!path[0]) return FG_OK;
   fg_design_default(&station->check_design);
   FG_TRY(fg_design_load(ctx, path, &station->check_design));
-  if (station->check_design.form != FG_FORM_DISCS || !station->check_design.diameter_count)
+  if (station->check_design.kind != FG_FOIL_DISCS || !station->check_design.diameter_count)
     return fg_fail(ctx, FG_ERR_DATA,
                    "%.300s: a check needs a design of the form \"discs\" with diameters_mm", path);
   station->check_design_known = true;
   return FG_OK;
 }
 
-static fg_status make_form_token(fg_context *ctx, fg_inspection *station) {
-  unsigned char bytes[(FG_FORM_TOKEN - 1) / 2];
+static fg_status make_csrf_token(fg_context *ctx, fg_inspection *station) {
+  unsigned char bytes[(FG_CSRF_TOKEN - 1) / 2];
   if (getrandom(bytes, sizeof bytes, 0) != (ssize_t)sizeof bytes)
     return fg_fail(ctx, FG_ERR_IO, "the system gives no random numbers");
   for (size_t i = 0; i < sizeof bytes; i++)
-    snprintf(station->form_token + 2 * i, 3, "%02x", bytes[i]);
+    snprintf(station->csrf_token + 2 * i, 3, "%02x", bytes[i]);
   return FG_OK;
 }
 
@@ -58,7 +58,7 @@ static fg_status work(fg_context *ctx, fg_inspection *station) {
   if (request->export_path) return fg_station_export(ctx, station, request->export_path);
   FG_TRY(fg_station_keep_setup(ctx, &station->database, &station->settings->lot, &station->setup));
   if (request->once) return fg_station_watch(ctx, station, true);
-  FG_TRY(make_form_token(ctx, station));
+  FG_TRY(make_csrf_token(ctx, station));
   inspect_scan_command(station);
   FG_TRY(fg_station_server_start(ctx, station));
   fg_status status = fg_station_watch(ctx, station, false);
@@ -76,7 +76,7 @@ fg_status fg_station_run(fg_context *ctx, const fg_station_request *request,
   station->outcome = outcome;
   station->lock = -1;
   pthread_mutex_init(&station->closing.mutex, NULL);
-  pthread_mutex_init(&station->trouble.mutex, NULL);
+  pthread_mutex_init(&station->recovery.mutex, NULL);
   pthread_mutex_init(&station->arriving.mutex, NULL);
   atomic_init(&station->news, fg_station_now());
   fg_status status = work(ctx, station);

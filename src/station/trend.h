@@ -44,8 +44,8 @@ fg_status fg_trend_read(fg_context *ctx, const fg_inspection *station, sqlite3 *
 void fg_trend_free(fg_trend *trend);
 
 /* The fields to choose by. */
-fg_status fg_trend_write_form(fg_context *ctx, const fg_inspection *station, sqlite3 *reader,
-                              const fg_trend *trend, FILE *out);
+fg_status fg_trend_write_html_form(fg_context *ctx, const fg_inspection *station, sqlite3 *reader,
+                                   const fg_trend *trend, FILE *out);
 
 /* The chart in force: of individuals, or of the lots' means. */
 const fg_chart *fg_trend_chart(const fg_trend *trend);

@@ -181,8 +181,8 @@ static fg_status count_bumps(fg_context *ctx, sqlite3 *reader, int *bumps) {
   return fg_query_end(ctx, &query, "reading the bumps");
 }
 
-fg_status fg_trend_write_form(fg_context *ctx, const fg_inspection *station, sqlite3 *reader,
-                              const fg_trend *trend, FILE *out) {
+fg_status fg_trend_write_html_form(fg_context *ctx, const fg_inspection *station, sqlite3 *reader,
+                                   const fg_trend *trend, FILE *out) {
   int bumps;
   const fg_trend_choice *choice = trend->choice;
   FG_TRY(count_bumps(ctx, reader, &bumps));

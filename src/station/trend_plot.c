@@ -11,7 +11,7 @@
 
 enum { DOTS_MAX = 120, COLUMNS_MAX = 450, NAME_BYTES = 140, LABELS = 5 };
 /* A tolerance is drawn while the plot grows by it to so many times what the values need. */
-#define GROWTH_MOST  4.0
+#define GROWTH_MAX   4.0
 #define SIGNAL_PX    6.0
 #define DOT_PX       4.0
 #define LABEL_GAP_PX 18.0
@@ -57,8 +57,8 @@ static void take_tolerance(drawing *d, double *low, double *high) {
   double span = *high - *low;
   d->upper = d->lower = NAN;
   if (!tolerance) return;
-  if (fmax(tolerance->upper, *high) - *low <= GROWTH_MOST * span) d->upper = tolerance->upper;
-  if (*high - fmin(tolerance->lower, *low) <= GROWTH_MOST * span) d->lower = tolerance->lower;
+  if (fmax(tolerance->upper, *high) - *low <= GROWTH_MAX * span) d->upper = tolerance->upper;
+  if (*high - fmin(tolerance->lower, *low) <= GROWTH_MAX * span) d->lower = tolerance->lower;
   include(d->upper, low, high);
   include(d->lower, low, high);
 }
@@ -140,12 +140,12 @@ static void draw_course(const drawing *d) {
   char letter = 'M';
   fputs("<path class=\"curve\" d=\"", d->at.out);
   for (size_t i = trend->first; i <= trend->last; i += share) {
-    size_t least = i, most = i;
+    size_t min = i, max = i;
     for (size_t k = i; k <= trend->last && k < i + share; k++) {
-      if (d->chart->point[k].value < d->chart->point[least].value) least = k;
-      if (d->chart->point[k].value > d->chart->point[most].value) most = k;
+      if (d->chart->point[k].value < d->chart->point[min].value) min = k;
+      if (d->chart->point[k].value > d->chart->point[max].value) max = k;
     }
-    const size_t ends[] = {least < most ? least : most, least < most ? most : least};
+    const size_t ends[] = {min < max ? min : max, min < max ? max : min};
     for (int e = ends[0] == ends[1]; e < 2; e++, letter = 'L')
       fprintf(d->at.out, "%c%.1f %.1f", letter, fg_plot_x(&d->at, place(d, ends[e])),
               fg_plot_y(&d->at, d->chart->point[ends[e]].value));

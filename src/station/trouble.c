@@ -11,13 +11,13 @@
 #include "station/keep.h"
 #include "station/news.h"
 
-void fg_station_set_trouble(fg_inspection *station, const char *words) {
-  fg_trouble *trouble = &station->trouble;
+void fg_station_set_recovery(fg_inspection *station, const char *words) {
+  fg_recovery *recovery = &station->recovery;
   const fg_station_request *request = station->request;
-  pthread_mutex_lock(&trouble->mutex);
-  bool changed = strncmp(trouble->words, words, sizeof trouble->words - 1) != 0;
-  if (changed) fg_text_clip(trouble->words, sizeof trouble->words, "%s", words);
-  pthread_mutex_unlock(&trouble->mutex);
+  pthread_mutex_lock(&recovery->mutex);
+  bool changed = strncmp(recovery->words, words, sizeof recovery->words - 1) != 0;
+  if (changed) fg_text_clip(recovery->words, sizeof recovery->words, "%s", words);
+  pthread_mutex_unlock(&recovery->mutex);
   if (!changed) return;
   if (request->looked_at)
     request->looked_at(request->user, *words ? words : "the station goes on:",
@@ -26,19 +26,19 @@ void fg_station_set_trouble(fg_inspection *station, const char *words) {
 }
 
 void fg_station_note_files(fg_inspection *station, size_t files, double seconds) {
-  fg_trouble *trouble = &station->trouble;
+  fg_recovery *recovery = &station->recovery;
   const fg_station_request *request = station->request;
-  char words[sizeof trouble->crowd] = "";
+  char words[sizeof recovery->crowd] = "";
   if (files > FG_STATION_FILES)
     fg_text_clip(
         words, sizeof words,
         "The folder holds %zu files; looking through them takes %.1f s each time. Move old "
         "ones elsewhere: what was measured stays in the database.",
         files, seconds);
-  pthread_mutex_lock(&trouble->mutex);
-  bool changed = !trouble->crowd[0] != !words[0];
-  strcpy(trouble->crowd, words);
-  pthread_mutex_unlock(&trouble->mutex);
+  pthread_mutex_lock(&recovery->mutex);
+  bool changed = !recovery->crowd[0] != !words[0];
+  strcpy(recovery->crowd, words);
+  pthread_mutex_unlock(&recovery->mutex);
   if (changed && request->looked_at)
     request->looked_at(request->user, request->folder,
                        words[0] ? words : "The folder does not hold too many files any more.");

@@ -1,11 +1,11 @@
 /* What a running station gets over: a folder that goes and comes back, a disk that is full. */
-#ifndef FG_STATION_TROUBLE_H
-#define FG_STATION_TROUBLE_H
+#ifndef FG_STATION_RECOVERY_H
+#define FG_STATION_RECOVERY_H
 
 #include "station/state.h"
 
 /* "": it is over. Says a change to the request's `looked_at`, too. */
-void fg_station_set_trouble(fg_inspection *station, const char *words);
+void fg_station_set_recovery(fg_inspection *station, const char *words);
 
 /* Largest number of files that a folder holds without a warning, and of new ones listed at once. */
 enum { FG_STATION_FILES = 100000 };

@@ -167,46 +167,48 @@ static const struct {
 enum { FOIL_FIELDS = sizeof foil_fields / sizeof *foil_fields };
 
 /* Input for column i + 1 of the row; its value at display goes along, hidden. */
-static void write_field(const fg_query *foil, const fg_foil_form *form, int i, FILE *out) {
+static void write_field(const fg_query *foil, const fg_foil_form_error *html_form, int i,
+                        FILE *out) {
   const char *was = fg_query_get_text(foil, i + 1), *name = foil_fields[i].name;
   fprintf(out, "<input type=\"hidden\" name=\"was_%s\" value=\"", name);
   fg_html_text(out, was);
   fprintf(out, "\"><label>%s<input name=\"%s\" maxlength=\"127\" autocomplete=\"off\"%s%s value=\"",
-          foil_fields[i].label, name, foil_fields[i].more, !i && form->focus ? " data-focus" : "");
-  fg_html_text(out, form->asked[i] ? form->asked[i] : was);
+          foil_fields[i].label, name, foil_fields[i].more,
+          !i && html_form->focus ? " data-focus" : "");
+  fg_html_text(out, html_form->asked[i] ? html_form->asked[i] : was);
   fputs("\"></label>", out);
 }
 
 /* Enter, which a barcode reader adds, presses the first button: never the one that shares. */
-static void write_buttons(const fg_foil_form *form, FILE *out) {
+static void write_buttons(const fg_foil_form_error *html_form, FILE *out) {
   fputs("<button>Keep</button>", out);
-  if (!form->also || !form->also[0]) return;
+  if (!html_form->also || !html_form->also[0]) return;
   fputs("<button class=\"plain\" name=\"also\" value=\"", out);
-  fg_html_text(out, form->also);
+  fg_html_text(out, html_form->also);
   fputs("\">The same foil: keep ", out);
-  fg_html_text(out, form->also);
+  fg_html_text(out, html_form->also);
   fputs("</button>", out);
 }
 
-void fg_page_foil_form(const fg_inspection *station, const fg_query *foil, const fg_foil_form *form,
-                       FILE *out) {
+void fg_page_foil_form_error(const fg_inspection *station, const fg_query *foil,
+                             const fg_foil_form_error *html_form, FILE *out) {
   long long id = (long long)fg_query_get_integer(foil, 0);
   fprintf(out, "<form class=\"fields\" method=\"post\" action=\"/correct\" data-foil=\"%lld\">",
           id);
-  fg_page_form_token(station, out);
+  fg_page_csrf_token(station, out);
   fprintf(out,
           "<input type=\"hidden\" name=\"foil\" value=\"%lld\">"
           "<input type=\"hidden\" name=\"back\" value=\"%s\">",
-          id, form->back);
+          id, html_form->back);
   for (int i = 0; i < FOIL_FIELDS; i++)
-    write_field(foil, form, i, out);
-  if (form->who) {
+    write_field(foil, html_form, i, out);
+  if (html_form->who) {
     fputs("<label>Corrected by<input name=\"by\" maxlength=\"127\" autocomplete=\"off\" required "
           "value=\"",
           out);
-    fg_html_text(out, form->by ? form->by : "");
+    fg_html_text(out, html_form->by ? html_form->by : "");
     fputs("\"></label>", out);
   }
-  write_buttons(form, out);
+  write_buttons(html_form, out);
   fputs("</form>\n", out);
 }

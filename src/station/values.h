@@ -18,7 +18,7 @@ fg_status fg_page_crushed(fg_context *ctx, sqlite3 *reader, int64_t foil, FILE *
 /* Other measurements under the foil's serial number, the newest first; nothing without any. */
 fg_status fg_page_same_serial(fg_context *ctx, sqlite3 *reader, int64_t foil, FILE *out);
 
-typedef struct fg_foil_form {
+typedef struct fg_foil_form_error {
   const char *back; /* the page to return to: "/", else the foil's own */
   bool focus;       /* for the barcode reader */
   bool who;         /* asks who corrects */
@@ -26,12 +26,12 @@ typedef struct fg_foil_form {
   const char *asked[FG_IDENTITY_FIELDS]; /* new serial, lot, die, operator; NULL: as it is */
   const char *by;                        /* author of the correction; NULL: none given */
   const char *also; /* a serial number that may be shared, with a button for it; NULL or "": none */
-} fg_foil_form;
+} fg_foil_form_error;
 
 /* The form for serial, lot, die and operator; `foil` is a row of id, serial, lot, die, operator. It
  * carries the values that it showed, so that only changed fields are applied (fg_action_correct).
  */
-void fg_page_foil_form(const fg_inspection *station, const fg_query *foil, const fg_foil_form *form,
-                       FILE *out);
+void fg_page_foil_form_error(const fg_inspection *station, const fg_query *foil,
+                             const fg_foil_form_error *html_form, FILE *out);
 
 #endif

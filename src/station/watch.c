@@ -45,7 +45,7 @@ typedef struct watch {
   ino_t inode;
   found *files; /* that are not done */
   size_t count, capacity;
-  fg_rest rest;
+  fg_file_stability stability;
   int64_t listed_ns; /* when the folder was, by the steady clock; 0: not yet */
   int64_t took_ns;   /* the list, without what was measured */
   bool pending;      /* a file was not whole yet */
@@ -169,11 +169,11 @@ static fg_status take_closed(fg_context *ctx, watch *at, const char *name) {
 
 static int64_t receive_ns(const watch *at) {
   int64_t given = (int64_t)(at->station->settings->receive_s * 1e9);
-  return given > FG_REST_NS ? given : FG_REST_NS;
+  return given > FG_STABLE_NS ? given : FG_STABLE_NS;
 }
 
 static fg_writer writer_after(const watch *at, int64_t still_ns) {
-  if (still_ns < FG_REST_NS) return FG_WRITER_WRITES;
+  if (still_ns < FG_STABLE_NS) return FG_WRITER_WRITES;
   return still_ns < receive_ns(at) ? FG_WRITER_PAUSES : FG_WRITER_GONE;
 }
 
@@ -193,7 +193,8 @@ static fg_status take_listed(fg_context *ctx, watch *at, const found *file, bool
   int64_t now = now_ns(CLOCK_MONOTONIC);
   FG_TRY(fg_station_take_file(ctx, at->station, file->name, first_writer(at, file, once), &later));
   if (!later) return FG_OK;
-  FG_TRY(fg_rest_look(ctx, &at->rest, file->name, file->bytes, file->modified_ns, now, &resting));
+  FG_TRY(fg_file_stability_look(ctx, &at->stability, file->name, file->bytes, file->modified_ns,
+                                now, &resting));
   fg_writer writer = writer_after(at, now - resting->since_ns);
   if (writer == FG_WRITER_GONE || (writer == FG_WRITER_PAUSES && !resting->tried)) {
     FG_TRY(fg_station_take_file(ctx, at->station, file->name, writer, &later));
@@ -288,7 +289,7 @@ static fg_status take_all(fg_context *ctx, watch *at, bool once) {
     else if (status != FG_OK)
       return fg_fail(ctx, status, "%s", inner.message);
   }
-  fg_rest_end_round(&at->rest);
+  fg_file_stability_end_round(&at->stability);
   fg_station_end_round(at->station);
   at->listed_ns = now_ns(CLOCK_MONOTONIC);
   return short_of_memory;
@@ -308,9 +309,9 @@ static int list_after_ms(const watch *at) {
 
 /* Waits for the next thing to do: events that came, or the time to list. In trouble, events do not
  * bring the next attempt forward. */
-static fg_status wait_and_take(fg_context *ctx, watch *at, bool in_trouble) {
-  int wait_ms = in_trouble ? TURN_MS : list_after_ms(at);
-  FG_TRY(wait_for_event(ctx, at, !in_trouble, wait_ms < TURN_MS ? wait_ms : TURN_MS));
+static fg_status wait_and_take(fg_context *ctx, watch *at, bool in_recovery) {
+  int wait_ms = in_recovery ? TURN_MS : list_after_ms(at);
+  FG_TRY(wait_for_event(ctx, at, !in_recovery, wait_ms < TURN_MS ? wait_ms : TURN_MS));
   fg_station_database_keep_up(&at->station->database);
   FG_TRY(fg_station_look_after_folder(ctx, at->station));
   FG_TRY(take_events(ctx, at));
@@ -332,7 +333,7 @@ static fg_status run(fg_context *ctx, watch *at) {
   listen_to(at);
   status = take_all(&inner, at, false);
   while (status != FG_ERR_INTERRUPTED) {
-    fg_station_set_trouble(at->station, status == FG_OK ? "" : inner.message);
+    fg_station_set_recovery(at->station, status == FG_OK ? "" : inner.message);
     at->pending = at->pending || status != FG_OK;
     status = wait_and_take(&inner, at, status != FG_OK);
   }
@@ -345,6 +346,6 @@ fg_status fg_station_watch(fg_context *ctx, fg_inspection *station, bool once) {
   stop_listening(&at);
   clear(&at);
   free(at.files);
-  fg_rest_free(&at.rest);
+  fg_file_stability_free(&at.stability);
   return status;
 }

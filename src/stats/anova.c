@@ -46,12 +46,12 @@ static void sum_between(const group_sum *sums, size_t rows, fg_anova_oneway *ano
 }
 
 static void finish(fg_anova_oneway *a) {
-  a->between_freedom = a->groups - 1;
-  a->within_freedom = a->rows - a->groups;
-  a->between_ms = a->between_ss / (double)a->between_freedom;
-  a->within_ms = a->within_freedom ? a->within_ss / (double)a->within_freedom : NAN;
+  a->between_dof = a->groups - 1;
+  a->within_dof = a->rows - a->groups;
+  a->between_ms = a->between_ss / (double)a->between_dof;
+  a->within_ms = a->within_dof ? a->within_ss / (double)a->within_dof : NAN;
   a->f = a->between_ms / a->within_ms;
-  a->p_value = fg_distribution_f_upper(a->f, (double)a->between_freedom, (double)a->within_freedom);
+  a->p_value = fg_distribution_f_upper(a->f, (double)a->between_dof, (double)a->within_dof);
   a->r2 = a->between_ss / (a->between_ss + a->within_ss);
   a->residual_sd = sqrt(a->within_ms);
 }

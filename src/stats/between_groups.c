@@ -31,13 +31,13 @@ static double spread_at(const fg_group_mean *groups, size_t count, double tau2) 
 
 /* Where the spread comes to `target`; 0 when it is less at once. `high` is beyond. */
 static double solve(const fg_group_mean *groups, size_t count, double target) {
-  double low = 0, high = 0, least = groups[0].mean, most = least;
+  double low = 0, high = 0, min = groups[0].mean, max = min;
   for (size_t i = 1; i < count; i++) {
-    least = fmin(least, groups[i].mean);
-    most = fmax(most, groups[i].mean);
+    min = fmin(min, groups[i].mean);
+    max = fmax(max, groups[i].mean);
   }
   /* At tau² = k range² / target the sum is at most k range² / tau² = target. */
-  high = (double)count * (most - least) * (most - least) / target;
+  high = (double)count * (max - min) * (max - min) / target;
   double tiny = 1e-12 * high; /* variances of nothing: the sum at 0 would be infinite */
   if (!(high > 0) || spread_at(groups, count, tiny) <= target) return 0;
   for (int i = 0; i < STEPS; i++) {
@@ -53,12 +53,12 @@ static double solve(const fg_group_mean *groups, size_t count, double target) {
 fg_between fg_between_groups(const fg_group_mean *groups, size_t count, double confidence) {
   fg_between result = {NAN, NAN, NAN, NAN, NAN};
   if (count < 2) return result;
-  double weight, freedom = (double)count - 1, tau2 = solve(groups, count, freedom);
+  double weight, dof = (double)count - 1, tau2 = solve(groups, count, dof);
   result.sd = sqrt(tau2);
   result.sd_low =
-      sqrt(solve(groups, count, fg_distribution_chi2_quantile((1 + confidence) / 2, freedom)));
+      sqrt(solve(groups, count, fg_distribution_chi2_quantile((1 + confidence) / 2, dof)));
   result.sd_high =
-      sqrt(solve(groups, count, fg_distribution_chi2_quantile((1 - confidence) / 2, freedom)));
+      sqrt(solve(groups, count, fg_distribution_chi2_quantile((1 - confidence) / 2, dof)));
   result.centre = centre_at(groups, count, fmax(tau2, 1e-300), &weight);
   result.u_centre = 1 / sqrt(weight);
   return result;
@@ -92,10 +92,10 @@ fg_status fg_holm_adjust(fg_context *ctx, const double *p, size_t count, double 
     if (!isnan(p[i])) list[members++] = (ranked){p[i], i};
   }
   fg_sort_items(list, members, sizeof *list, by_p);
-  double most = 0;
+  double max = 0;
   for (size_t i = 0; i < members; i++) {
-    most = fmax(most, fmin(1, (double)(members - i) * list[i].p));
-    adjusted[list[i].place] = most;
+    max = fmax(max, fmin(1, (double)(members - i) * list[i].p));
+    adjusted[list[i].place] = max;
   }
   free(list);
   return FG_OK;

@@ -9,7 +9,7 @@
 #include "foilgauge/design.h"
 #include "foilgauge/distribution.h"
 
-enum { NORMALITY_LEAST = 8 };
+enum { NORMALITY_MIN = 8 };
 
 static void describe(const double *values, size_t count, double *mean, double *sd) {
   double squares = 0;
@@ -50,7 +50,7 @@ fg_status fg_normality_test(fg_context *ctx, const double *values, size_t count,
   void *block;
   double mean, sd;
   *normality = (fg_normality){NAN, NAN};
-  if (count < NORMALITY_LEAST) return FG_OK;
+  if (count < NORMALITY_MIN) return FG_OK;
   FG_TRY(fg_memory_allocate(ctx, count, sizeof *values, &block));
   double *sorted = block;
   memcpy(sorted, values, count * sizeof *values);
@@ -64,22 +64,21 @@ fg_status fg_normality_test(fg_context *ctx, const double *values, size_t count,
   return FG_OK;
 }
 
-static fg_ratio spread_ratio(double width, double sigma, double freedom, double alpha) {
+static fg_ratio spread_ratio(double width, double sigma, double dof, double alpha) {
   fg_ratio ratio = {NAN, NAN, NAN};
   if (!isfinite(width) || !(sigma > 0)) return ratio;
   ratio.value = width / (6 * sigma);
-  ratio.low = ratio.value * sqrt(fg_distribution_chi2_quantile(alpha / 2, freedom) / freedom);
-  ratio.high = ratio.value * sqrt(fg_distribution_chi2_quantile(1 - alpha / 2, freedom) / freedom);
+  ratio.low = ratio.value * sqrt(fg_distribution_chi2_quantile(alpha / 2, dof) / dof);
+  ratio.high = ratio.value * sqrt(fg_distribution_chi2_quantile(1 - alpha / 2, dof) / dof);
   return ratio;
 }
 
-static fg_ratio room_ratio(double distance, double sigma, double count, double freedom,
-                           double alpha) {
+static fg_ratio room_ratio(double distance, double sigma, double count, double dof, double alpha) {
   fg_ratio ratio = {NAN, NAN, NAN};
   if (!(sigma > 0)) return ratio;
   ratio.value = distance / (3 * sigma);
   double z = fg_distribution_normal_quantile(1 - alpha / 2);
-  double reach = z * sqrt(1 / (9 * count) + ratio.value * ratio.value / (2 * freedom));
+  double reach = z * sqrt(1 / (9 * count) + ratio.value * ratio.value / (2 * dof));
   ratio.low = ratio.value - reach;
   ratio.high = ratio.value + reach;
   return ratio;
@@ -117,8 +116,8 @@ fg_status fg_capability_compute(fg_context *ctx, const fg_capability_input *inpu
   capability->p = spread_ratio(width, capability->sd, n - 1, alpha);
   capability->pk = room_ratio(distance, capability->sd, n, n - 1, alpha);
   if (input->stable && input->sigma > 0) {
-    capability->c = spread_ratio(width, input->sigma, input->sigma_freedom, alpha);
-    capability->ck = room_ratio(distance, input->sigma, n, input->sigma_freedom, alpha);
+    capability->c = spread_ratio(width, input->sigma, input->sigma_dof, alpha);
+    capability->ck = room_ratio(distance, input->sigma, n, input->sigma_dof, alpha);
   }
   FG_TRY(fg_normality_test(ctx, input->values, input->count, &capability->normality));
   capability->normal = !(capability->normality.p_value < 0.05);

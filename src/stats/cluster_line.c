@@ -99,6 +99,6 @@ fg_status fg_cluster_line_fit(fg_context *ctx, const double *x, const double *y,
     t.squares += t.products[i / 2][i % 2] * t.products[i / 2][i % 2];
   bool known = t.trace > 1e-9 && sxx > 0;
   line->u_slope = known ? sqrt(t.variance / sxx) : NAN;
-  line->freedom = known ? t.trace * t.trace / t.squares : NAN;
+  line->dof = known ? t.trace * t.trace / t.squares : NAN;
   return FG_OK;
 }

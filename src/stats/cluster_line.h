@@ -19,7 +19,7 @@
 
 typedef struct fg_cluster_line {
   double slope, intercept, r;
-  double u_slope, freedom; /* NaN where the clusters cannot say: fewer than two of them */
+  double u_slope, dof; /* NaN where the clusters cannot say: fewer than two of them */
 } fg_cluster_line;
 
 /* `cluster[i]` below `clusters` says where point i belongs. */

@@ -76,7 +76,7 @@ void fg_column_free(fg_column *column) {
   free(column->slot);
   free(column->word);
   free(column->number);
-  free(column->doubt);
+  free(column->uncertainty);
   free(column->name);
 }
 

@@ -26,6 +26,6 @@ fg_status fg_column_push_text(fg_context *ctx, fg_column *column, size_t row, co
                               size_t length, bool commas);
 
 /* Once all rows are there: gives the columns their doubts, by what the whole table holds. */
-fg_status fg_table_doubt_decimals(fg_context *ctx, fg_table *table, unsigned char separator);
+fg_status fg_table_warn_decimals(fg_context *ctx, fg_table *table, unsigned char separator);
 
 #endif

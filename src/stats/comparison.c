@@ -23,24 +23,24 @@ static moments describe(fg_sample sample) {
   return m;
 }
 
-double fg_effective_freedom(const double *u, const double *freedom, size_t count) {
+double fg_effective_dof(const double *u, const double *dof, size_t count) {
   double sum = 0, shares = 0;
   for (size_t i = 0; i < count; i++)
     sum += u[i] * u[i];
   for (size_t i = 0; i < count; i++)
-    shares += pow(u[i], 4) / freedom[i];
+    shares += pow(u[i], 4) / dof[i];
   return sum * sum / shares;
 }
 
 static void compare_means(moments a, moments b, double confidence, fg_comparison *result) {
   const double u[2] = {sqrt(a.variance / a.n), sqrt(b.variance / b.n)};
-  const double freedom[2] = {a.n - 1, b.n - 1};
+  const double dof[2] = {a.n - 1, b.n - 1};
   double error = hypot(u[0], u[1]);
   result->difference = a.mean - b.mean;
-  result->freedom = fg_effective_freedom(u, freedom, 2);
+  result->dof = fg_effective_dof(u, dof, 2);
   result->t = result->difference / error;
-  result->p_means = fg_distribution_t_two_sided(result->t, result->freedom);
-  double reach = error * fg_distribution_t_quantile((1 + confidence) / 2, result->freedom);
+  result->p_means = fg_distribution_t_two_sided(result->t, result->dof);
+  double reach = error * fg_distribution_t_quantile((1 + confidence) / 2, result->dof);
   result->low = result->difference - reach;
   result->high = result->difference + reach;
 }

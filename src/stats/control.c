@@ -7,8 +7,8 @@
 
 double fg_chart_c4(size_t n) {
   if (n < 2) return NAN;
-  double freedom = (double)n - 1;
-  return sqrt(2 / freedom) * exp(lgamma((double)n / 2) - lgamma(freedom / 2));
+  double dof = (double)n - 1;
+  return sqrt(2 / dof) * exp(lgamma((double)n / 2) - lgamma(dof / 2));
 }
 
 /* Simpson's rule over ±9 sigma: what lies beyond is below 1e-18. */
@@ -48,18 +48,17 @@ static double zone(const fg_chart *chart, size_t i) {
 
 /* Whether at least `least` of the last `length` points lie beyond `limit` on the side of `sign`,
  * the last one among them. */
-static bool beyond(const fg_chart *chart, size_t i, size_t length, size_t least, double limit,
+static bool beyond(const fg_chart *chart, size_t i, size_t length, size_t min, double limit,
                    double sign) {
   size_t found = 0;
   if (i + 1 < length || !(sign * zone(chart, i) > limit)) return false;
   for (size_t k = i + 1 - length; k <= i; k++)
     found += sign * zone(chart, k) > limit;
-  return found >= least;
+  return found >= min;
 }
 
-static bool either_side(const fg_chart *chart, size_t i, size_t length, size_t least,
-                        double limit) {
-  return beyond(chart, i, length, least, limit, 1) || beyond(chart, i, length, least, limit, -1);
+static bool either_side(const fg_chart *chart, size_t i, size_t length, size_t min, double limit) {
+  return beyond(chart, i, length, min, limit, 1) || beyond(chart, i, length, min, limit, -1);
 }
 
 static bool monotonic(const fg_chart *chart, size_t i, size_t length, double sign) {

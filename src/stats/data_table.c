@@ -133,7 +133,7 @@ static fg_status fail_other(fg_context *ctx, const fg_table *table, const fg_col
 
 static fg_status check_column(fg_context *ctx, const fg_table *table, const fg_column *column,
                               const char *advice) {
-  if (column->doubt) return fg_fail(ctx, FG_ERR_DATA, "%s", column->doubt);
+  if (column->uncertainty) return fg_fail(ctx, FG_ERR_DATA, "%s", column->uncertainty);
   if (!column->number_count || !column->word_count) return FG_OK;
   size_t row = 0;
   while (column->word[row] == FG_TABLE_NOT_A_WORD || column->word[row] == FG_TABLE_MISSING)
@@ -153,7 +153,7 @@ fg_status fg_table_numbers(fg_context *ctx, const fg_table *table, const char *n
                            const fg_extended **numbers) {
   const fg_column *column = NULL;
   FG_TRY(fg_table_find(ctx, table, name, &column));
-  if (column->doubt) return fg_fail(ctx, FG_ERR_DATA, "%s", column->doubt);
+  if (column->uncertainty) return fg_fail(ctx, FG_ERR_DATA, "%s", column->uncertainty);
   size_t row = first_other(table, column, true);
   if (row < table->rows) return fail_other(ctx, table, column, row, "correct it");
   *numbers = column->number;
@@ -251,7 +251,7 @@ fg_status fg_table_levels(fg_context *ctx, const fg_table *table, const char *na
   const fg_column *column = NULL;
   *levels = (fg_levels){0};
   FG_TRY(fg_table_find(ctx, table, name, &column));
-  if (column->doubt && !forced) return fg_fail(ctx, FG_ERR_DATA, "%s", column->doubt);
+  if (column->uncertainty && !forced) return fg_fail(ctx, FG_ERR_DATA, "%s", column->uncertainty);
   size_t row = first_other(table, column, column->number_count > 0 && !forced);
   if (row < table->rows)
     return fail_other(ctx, table, column, row,
@@ -296,8 +296,8 @@ fg_status fg_table_select(fg_context *ctx, const fg_table *table, const size_t *
   for (size_t i = 0; i < table->columns; i++) {
     FG_TRY_EXIT(fg_column_open(ctx, selection, table->column[i].name, &column));
     FG_TRY_EXIT(select_column(ctx, &table->column[i], rows, count, column));
-    if (table->column[i].doubt)
-      FG_TRY_EXIT(fg_text_print(ctx, &column->doubt, "%s", table->column[i].doubt));
+    if (table->column[i].uncertainty)
+      FG_TRY_EXIT(fg_text_print(ctx, &column->uncertainty, "%s", table->column[i].uncertainty));
   }
   if (table->line) {
     FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *selection->line, (void **)&selection->line));

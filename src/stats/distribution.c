@@ -6,40 +6,40 @@
 #include "core/extended.h"
 #include "core/numerics.h"
 
-double fg_distribution_t_two_sided(double t, double freedom) {
-  if (!(freedom > 0) || isnan(t)) return NAN;
+double fg_distribution_t_two_sided(double t, double dof) {
+  if (!(dof > 0) || isnan(t)) return NAN;
   if (isinf(t)) return 0;
   /* t² / (freedom + t²) is beta distributed; the upper tail keeps its digits where t is large. */
-  return gsl_cdf_beta_P(freedom / (freedom + t * t), freedom / 2, 0.5);
+  return gsl_cdf_beta_P(dof / (dof + t * t), dof / 2, 0.5);
 }
 
-double fg_distribution_t_quantile(double probability, double freedom) {
-  if (!(freedom > 0) || !(probability > 0 && probability < 1)) return NAN;
-  return gsl_cdf_tdist_Pinv(probability, freedom);
+double fg_distribution_t_quantile(double probability, double dof) {
+  if (!(dof > 0) || !(probability > 0 && probability < 1)) return NAN;
+  return gsl_cdf_tdist_Pinv(probability, dof);
 }
 
-double fg_distribution_f_upper(double f, double freedom_1, double freedom_2) {
-  if (!(freedom_1 > 0 && freedom_2 > 0) || isnan(f)) return NAN;
+double fg_distribution_f_upper(double f, double dof_1, double dof_2) {
+  if (!(dof_1 > 0 && dof_2 > 0) || isnan(f)) return NAN;
   if (isinf(f)) return 0;
   if (f <= 0) return 1;
-  return gsl_cdf_beta_P(freedom_2 / (freedom_2 + freedom_1 * f), freedom_2 / 2, freedom_1 / 2);
+  return gsl_cdf_beta_P(dof_2 / (dof_2 + dof_1 * f), dof_2 / 2, dof_1 / 2);
 }
 
-double fg_distribution_f_quantile(double probability, double freedom_1, double freedom_2) {
-  if (!(freedom_1 > 0 && freedom_2 > 0) || !(probability > 0 && probability < 1)) return NAN;
+double fg_distribution_f_quantile(double probability, double dof_1, double dof_2) {
+  if (!(dof_1 > 0 && dof_2 > 0) || !(probability > 0 && probability < 1)) return NAN;
   fg_numerics_start();
-  return gsl_cdf_fdist_Pinv(probability, freedom_1, freedom_2);
+  return gsl_cdf_fdist_Pinv(probability, dof_1, dof_2);
 }
 
-double fg_distribution_chi2_quantile(double probability, double freedom) {
-  if (!(freedom > 0) || !(probability > 0 && probability < 1)) return NAN;
+double fg_distribution_chi2_quantile(double probability, double dof) {
+  if (!(dof > 0) || !(probability > 0 && probability < 1)) return NAN;
   fg_numerics_start();
-  double quantile = gsl_cdf_chisq_Pinv(probability, freedom);
+  double quantile = gsl_cdf_chisq_Pinv(probability, dof);
   if (isfinite(quantile)) return quantile;
   /* GSL's iteration may not end where the degrees of freedom are thousands; there the cube root is
    * normal (Wilson and Hilferty 1931). */
-  double share = 2 / (9 * freedom);
-  return freedom * pow(1 - share + sqrt(share) * gsl_cdf_ugaussian_Pinv(probability), 3);
+  double share = 2 / (9 * dof);
+  return dof * pow(1 - share + sqrt(share) * gsl_cdf_ugaussian_Pinv(probability), 3);
 }
 
 double fg_distribution_normal_quantile(double probability) {

@@ -117,11 +117,11 @@ static double ratio_at(const setting *s, double place) {
 
 /* The best of a grid, then the slope's zero beside it. */
 static double find_ratio(const setting *s, double *weight) {
-  double best = FIRST, least = INFINITY;
+  double best = FIRST, min = INFINITY;
   for (double place = FIRST; place <= LAST; place += STEP) {
     double value = minus_two_log_likelihood(s, ratio_at(s, place), weight);
-    if (!(value < least)) continue;
-    least = value;
+    if (!(value < min)) continue;
+    min = value;
     best = place;
   }
   double low = fmax(FIRST, best - STEP), high = best + STEP;
@@ -356,7 +356,7 @@ fg_status fg_mixed_fit(fg_context *ctx, const fg_model *model, const fg_levels *
   fg_status status = FG_OK;
   *mixed = (fg_mixed_model){
       .columns = model->columns, .rank = least_squares->rank, .fixed_groups = fixed_groups};
-  if (!least_squares->residual_freedom || !(least_squares->residual_ss > 0))
+  if (!least_squares->residual_dof || !(least_squares->residual_ss > 0))
     return fg_fail(ctx, FG_ERR_NUMERIC, "nothing is left of the runs to tell their scatter by");
   FG_TRY_EXIT(fill_setting(ctx, model, groups, least_squares, &s));
   FG_TRY_EXIT(fg_memory_allocate(ctx, s.groups, sizeof *weight, (void **)&weight));

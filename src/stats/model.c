@@ -132,16 +132,16 @@ static size_t count_term_columns(const fg_model *model, size_t term) {
 
 /* Before any of it is built. */
 static fg_status check_columns(fg_context *ctx, const fg_table *table, const fg_model *model) {
-  size_t columns = model->formula.constant ? 1 : 0, widest = 0, most = 0;
+  size_t columns = model->formula.constant ? 1 : 0, widest = 0, max = 0;
   for (size_t i = 0; i < model->formula.terms; i++) {
     size_t count = count_term_columns(model, i);
     columns = columns > SIZE_MAX - count ? SIZE_MAX : columns + count;
-    if (count <= most) continue;
-    most = count;
+    if (count <= max) continue;
+    max = count;
     widest = i;
   }
   return fg_model_check_size(ctx, table->source, table->rows, columns,
-                             most ? model->term_name[widest] : "the constant", most);
+                             max ? model->term_name[widest] : "the constant", max);
 }
 
 static fg_status name_column(fg_context *ctx, const fg_model *model, fg_model_column *column) {

@@ -26,7 +26,7 @@ static void sum_squares(const fg_fit *fit, fg_regression *reg) {
     if (!(reg->constant && s->kept[k] == 0)) model = fg_extended_add(model, square);
   }
   double scale = fg_extended_add(all, residual).value;
-  reg->residual_ss = reg->residual_freedom ? clean_ss(residual.value, scale) : 0;
+  reg->residual_ss = reg->residual_dof ? clean_ss(residual.value, scale) : 0;
   reg->model_ss = clean_ss(model.value, scale);
   reg->total_ss = reg->residual_ss == 0 || reg->model_ss == 0
                       ? reg->residual_ss + reg->model_ss
@@ -36,19 +36,19 @@ static void sum_squares(const fg_fit *fit, fg_regression *reg) {
 }
 
 static void summarise(fg_regression *reg) {
-  size_t model_freedom = reg->rank - (reg->constant ? 1 : 0);
-  double freedom = (double)reg->residual_freedom;
-  double mean_square = reg->residual_freedom ? reg->residual_ss / freedom : NAN;
+  size_t model_dof = reg->rank - (reg->constant ? 1 : 0);
+  double dof = (double)reg->residual_dof;
+  double mean_square = reg->residual_dof ? reg->residual_ss / dof : NAN;
   reg->residual_sd = sqrt(mean_square);
-  double total_freedom = (double)(reg->rows - (reg->constant ? 1 : 0));
-  reg->adjusted_r2 = 1 - (1 - reg->r2) * total_freedom / freedom;
-  if (!reg->residual_freedom) reg->adjusted_r2 = NAN;
-  reg->model_f = model_freedom ? reg->model_ss / (double)model_freedom / mean_square : NAN;
-  reg->model_p_value = fg_distribution_f_upper(reg->model_f, (double)model_freedom, freedom);
+  double total_dof = (double)(reg->rows - (reg->constant ? 1 : 0));
+  reg->adjusted_r2 = 1 - (1 - reg->r2) * total_dof / dof;
+  if (!reg->residual_dof) reg->adjusted_r2 = NAN;
+  reg->model_f = model_dof ? reg->model_ss / (double)model_dof / mean_square : NAN;
+  reg->model_p_value = fg_distribution_f_upper(reg->model_f, (double)model_dof, dof);
 }
 
 static fg_status note_limits(fg_context *ctx, fg_regression *reg) {
-  if (!reg->residual_freedom)
+  if (!reg->residual_dof)
     FG_TRY(fg_regression_note(
         ctx, reg,
         "%zu runs and %zu coefficients: no residual freedom, so no standard errors, t or p; repeat "
@@ -58,7 +58,7 @@ static fg_status note_limits(fg_context *ctx, fg_regression *reg) {
     FG_TRY(fg_regression_note(ctx, reg,
                               "all responses are equal: there is nothing to explain and R² has no "
                               "meaning; check the response column"));
-  else if (reg->residual_freedom && reg->residual_ss == 0)
+  else if (reg->residual_dof && reg->residual_ss == 0)
     FG_TRY(fg_regression_note(ctx, reg,
                               "the model reproduces the response exactly: the errors are zero and "
                               "the tests have no meaning"));
@@ -114,15 +114,15 @@ static fg_status solve(fg_context *ctx, fg_fit *fit, double tolerance) {
   return status;
 }
 
-static fg_status pay_freedom(fg_context *ctx, const fg_regression_options *options,
-                             fg_regression *regression) {
-  size_t freedom = regression->rows - regression->rank, taken = options->freedom_taken;
-  if (taken && freedom && taken >= freedom)
+static fg_status subtract_dof(fg_context *ctx, const fg_regression_options *options,
+                              fg_regression *regression) {
+  size_t dof = regression->rows - regression->rank, taken = options->dof_taken;
+  if (taken && dof && taken >= dof)
     return fg_fail(ctx, FG_ERR_DATA,
                    "%zu runs, %zu coefficients and %zu parameters of what was taken out before: no "
                    "freedom is left to judge anything by; leave terms out, or add runs",
                    regression->rows, regression->rank, taken);
-  regression->residual_freedom = freedom ? freedom - taken : 0;
+  regression->residual_dof = dof ? dof - taken : 0;
   return FG_OK;
 }
 
@@ -139,7 +139,7 @@ fg_status fg_regression_fit(fg_context *ctx, const fg_model *model, const fg_ext
   FG_TRY_EXIT(check_input(ctx, model, response, options->weights));
   FG_TRY_EXIT(solve(ctx, &fit, options->alias_tolerance));
   regression->rank = fit.solution.rank;
-  FG_TRY_EXIT(pay_freedom(ctx, options, regression));
+  FG_TRY_EXIT(subtract_dof(ctx, options, regression));
   sum_squares(&fit, regression);
   summarise(regression);
   FG_TRY_EXIT(note_limits(ctx, regression));

@@ -10,14 +10,13 @@
 
 static void finish_row(const fg_regression *reg, fg_anova_row *row) {
   double mean_square = reg->residual_sd * reg->residual_sd;
-  if (!row->freedom) {
+  if (!row->dof) {
     row->mean_square = row->f = row->p_value = NAN;
     return;
   }
-  row->mean_square = row->sum_of_squares / (double)row->freedom;
+  row->mean_square = row->sum_of_squares / (double)row->dof;
   row->f = row->mean_square / mean_square;
-  row->p_value =
-      fg_distribution_f_upper(row->f, (double)row->freedom, (double)reg->residual_freedom);
+  row->p_value = fg_distribution_f_upper(row->f, (double)row->dof, (double)reg->residual_dof);
 }
 
 /* The columns of a term are neighbours; each adds z². */
@@ -27,7 +26,7 @@ static void sequential_row(const fg_fit *fit, size_t term, fg_anova_row *row) {
   for (size_t k = 0; k < s->rank; k++) {
     if (fit->model->column[s->kept[k]].term != term) continue;
     sum = fg_extended_add(sum, fg_extended_square(s->z[s->kept[k]]));
-    row->freedom++;
+    row->dof++;
   }
   row->sum_of_squares = sum.value;
 }
@@ -69,7 +68,7 @@ static fg_status partial_row(fg_context *ctx, const fg_fit *fit, const fg_regres
       c[i * n + j] = fg_extended_dot(s->inverse + member[i] * s->columns,
                                      s->inverse + member[j] * s->columns, s->columns);
   }
-  row->freedom = n;
+  row->dof = n;
   row->sum_of_squares = wald(c, b, n).value;
 exit:
   free(member);
@@ -124,8 +123,7 @@ static fg_extended squares_within(const fg_fit *fit, const size_t *runs, size_t 
   return squares;
 }
 
-static fg_extended pure_error(const fg_fit *fit, const size_t *order, size_t rows,
-                              size_t *freedom) {
+static fg_extended pure_error(const fg_fit *fit, const size_t *order, size_t rows, size_t *dof) {
   fg_extended pure = {0, 0};
   void *model = (void *)(size_t)fit->model;
   for (size_t start = 0, end = 0; start < rows; start = end) {
@@ -133,7 +131,7 @@ static fg_extended pure_error(const fg_fit *fit, const size_t *order, size_t row
       if (compare_runs(&order[start], &order[end], model) != 0) break;
     if (end == start + 1) continue;
     pure = fg_extended_add(pure, squares_within(fit, order + start, end - start));
-    *freedom += end - start - 1;
+    *dof += end - start - 1;
   }
   return pure;
 }
@@ -150,9 +148,9 @@ static bool differs_within(const fg_fit *fit, const size_t *order, size_t rows,
 }
 
 /* Pure error and lack of fit share the residual freedom, which has paid for what was taken out. */
-static void pay_pure(size_t paid, bool within, fg_regression *reg) {
-  if (within) reg->pure_freedom = reg->pure_freedom > paid ? reg->pure_freedom - paid : 0;
-  if (reg->pure_freedom > reg->residual_freedom) reg->pure_freedom = reg->residual_freedom;
+static void subtract_pure(size_t paid, bool within, fg_regression *reg) {
+  if (within) reg->pure_dof = reg->pure_dof > paid ? reg->pure_dof - paid : 0;
+  if (reg->pure_dof > reg->residual_dof) reg->pure_dof = reg->residual_dof;
 }
 
 fg_status fg_regression_lack_of_fit(fg_context *ctx, const fg_fit *fit,
@@ -163,19 +161,18 @@ fg_status fg_regression_lack_of_fit(fg_context *ctx, const fg_fit *fit,
   for (size_t i = 0; i < rows; i++)
     order[i] = i;
   qsort_r(order, rows, sizeof *order, compare_runs, (void *)(size_t)fit->model);
-  fg_extended pure = pure_error(fit, order, rows, &reg->pure_freedom);
-  pay_pure(options->freedom_taken, differs_within(fit, order, rows, options->taken), reg);
+  fg_extended pure = pure_error(fit, order, rows, &reg->pure_dof);
+  subtract_pure(options->dof_taken, differs_within(fit, order, rows, options->taken), reg);
   free(order);
-  if (!reg->pure_freedom) return FG_OK;
+  if (!reg->pure_dof) return FG_OK;
   const fg_extended *e = fit->solution.residual;
-  reg->lack_freedom = reg->residual_freedom - reg->pure_freedom;
+  reg->lack_dof = reg->residual_dof - reg->pure_dof;
   reg->pure_ss = pure.value;
   fg_extended lack = fg_extended_subtract(fg_extended_dot(e, e, rows), pure);
-  reg->lack_ss = reg->lack_freedom ? fmax(0, lack.value) : 0;
-  if (!reg->lack_freedom) return FG_OK;
-  reg->lack_f =
-      reg->lack_ss / (double)reg->lack_freedom / (reg->pure_ss / (double)reg->pure_freedom);
+  reg->lack_ss = reg->lack_dof ? fmax(0, lack.value) : 0;
+  if (!reg->lack_dof) return FG_OK;
+  reg->lack_f = reg->lack_ss / (double)reg->lack_dof / (reg->pure_ss / (double)reg->pure_dof);
   reg->lack_p_value =
-      fg_distribution_f_upper(reg->lack_f, (double)reg->lack_freedom, (double)reg->pure_freedom);
+      fg_distribution_f_upper(reg->lack_f, (double)reg->lack_dof, (double)reg->pure_dof);
   return FG_OK;
 }

@@ -30,14 +30,14 @@ static void fill_coefficient(const fg_fit *fit, const fg_regression *reg, size_t
   const fg_orthogonal *s = &fit->solution;
   const fg_extended *u = s->inverse + j * s->columns;
   fg_extended variance = fg_extended_dot(u, u, s->columns);
-  double freedom = (double)reg->residual_freedom;
+  double dof = (double)reg->residual_dof;
   c->estimate = reg->estimate_extended[j].value;
   c->standard_error = reg->residual_sd * fg_extended_sqrt(variance).value;
   c->t = c->standard_error > 0 || isnan(c->standard_error)
              ? c->estimate / c->standard_error
              : (c->estimate == 0 ? NAN : copysign(INFINITY, c->estimate));
-  c->p_value = fg_distribution_t_two_sided(c->t, freedom);
-  double half = c->standard_error * fg_distribution_t_quantile((1 + reg->confidence) / 2, freedom);
+  c->p_value = fg_distribution_t_two_sided(c->t, dof);
+  double half = c->standard_error * fg_distribution_t_quantile((1 + reg->confidence) / 2, dof);
   c->low = c->estimate - half;
   c->high = c->estimate + half;
   bool is_constant = c->term == FG_MODEL_CONSTANT;

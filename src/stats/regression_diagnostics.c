@@ -6,7 +6,7 @@
 #include "stats/regression_parts.h"
 
 /* A run with less than this of its variance left determines a coefficient alone. */
-static const double LEAST_FREEDOM = 1e-10;
+static const double MIN_DOF = 1e-10;
 
 static fg_status allocate(fg_context *ctx, fg_regression *reg) {
   double **vectors[] = {&reg->fitted,   &reg->residual, &reg->leverage,
@@ -28,15 +28,15 @@ static void leverages(const fg_orthogonal *s, double *leverage) {
 /* `e` is the residual times the square root of the weight. */
 static void judge_run(fg_regression *reg, size_t i, double e) {
   double left = 1 - reg->leverage[i], s = reg->residual_sd;
-  double freedom = (double)reg->residual_freedom;
+  double dof = (double)reg->residual_dof;
   reg->internal[i] = reg->external[i] = reg->cook[i] = NAN;
-  if (left < LEAST_FREEDOM || !(s > 0)) return;
+  if (left < MIN_DOF || !(s > 0)) return;
   double r = e / (s * sqrt(left));
   reg->internal[i] = r;
   reg->cook[i] = r * r * reg->leverage[i] / (left * (double)reg->rank);
   /* s without the run: (n - p - 1) s(i)² = (n - p) s² - e² / (1 - h). */
-  if (reg->residual_freedom > 1) {
-    double rest = (freedom - r * r) / (freedom - 1);
+  if (reg->residual_dof > 1) {
+    double rest = (dof - r * r) / (dof - 1);
     reg->external[i] = rest > 0 ? r / sqrt(rest) : copysign(INFINITY, r);
   }
 }
@@ -45,9 +45,9 @@ static fg_status sum_press(fg_context *ctx, fg_regression *reg, const fg_orthogo
   fg_extended press = {0, 0};
   for (size_t i = 0; i < reg->rows; i++) {
     double left = 1 - reg->leverage[i];
-    if (left < LEAST_FREEDOM) {
+    if (left < MIN_DOF) {
       reg->press = reg->predicted_r2 = NAN;
-      if (!reg->residual_freedom) return FG_OK;
+      if (!reg->residual_dof) return FG_OK;
       return fg_regression_note(ctx, reg,
                                 "run %zu alone determines a coefficient (leverage 1): it cannot "
                                 "be predicted from the others, so PRESS is not defined",

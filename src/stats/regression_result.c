@@ -33,7 +33,7 @@ fg_status fg_regression_predict(fg_context *ctx, const fg_regression *regression
   }
   double sd = regression->residual_sd;
   double quantile = fg_distribution_t_quantile((1 + regression->confidence) / 2,
-                                               (double)regression->residual_freedom);
+                                               (double)regression->residual_dof);
   double standard_error = sd * sqrt(length.value), run = sd * sqrt(1 + length.value);
   *prediction = (fg_prediction){.mean = mean.value,
                                 .standard_error = standard_error,

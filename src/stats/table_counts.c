@@ -53,8 +53,8 @@ static void make_numbers(fg_column *column, size_t rows, const double *values, d
   memset(column->slot, 0, column->slot_count * sizeof *column->slot);
 }
 
-static fg_status count_column(fg_context *ctx, const fg_table *table, fg_column *column,
-                              size_t most, char **said) {
+static fg_status count_column(fg_context *ctx, const fg_table *table, fg_column *column, size_t max,
+                              char **said) {
   double *values = NULL;
   size_t first = 0;
   const char *separator = *said ? "; " : "";
@@ -66,7 +66,7 @@ static fg_status count_column(fg_context *ctx, const fg_table *table, fg_column 
     status = fg_text_append(ctx, said, "%s%s counts days since %s", separator, column->name,
                             column->words[first]);
     make_numbers(column, table->rows, values, values[first]);
-  } else if (column->word_count > most && count_all(column, count_serial, values)) {
+  } else if (column->word_count > max && count_all(column, count_serial, values)) {
     status =
         fg_text_append(ctx, said, "%s%s counts by the digits behind '%.*s'", separator,
                        column->name, (int)length_before_digits(column->words[0]), column->words[0]);
@@ -76,11 +76,11 @@ static fg_status count_column(fg_context *ctx, const fg_table *table, fg_column 
   return status;
 }
 
-fg_status fg_table_count_words(fg_context *ctx, fg_table *table, size_t most, char **said) {
+fg_status fg_table_count_words(fg_context *ctx, fg_table *table, size_t max, char **said) {
   for (size_t i = 0; i < table->columns; i++) {
     fg_column *column = &table->column[i];
-    if (column->word_count > 1 && !column->number_count && !column->doubt)
-      FG_TRY(count_column(ctx, table, column, most, said));
+    if (column->word_count > 1 && !column->number_count && !column->uncertainty)
+      FG_TRY(count_column(ctx, table, column, max, said));
   }
   return FG_OK;
 }

@@ -190,7 +190,7 @@ fg_status fg_table_parse(fg_context *ctx, const char *source, const char *text, 
   if (!reader.header)
     FG_TRY_EXIT(fg_fail(ctx, FG_ERR_DATA, "%s: empty; the first row must name columns", source));
   if (!table->rows) FG_TRY_EXIT(fg_fail(ctx, FG_ERR_DATA, "%s: a header, but no rows", source));
-  FG_TRY_EXIT(fg_table_doubt_decimals(ctx, table, reader.separator));
+  FG_TRY_EXIT(fg_table_warn_decimals(ctx, table, reader.separator));
 exit:
   csv_free(&parser);
   for (size_t i = 0; i < reader.pending_capacity; i++)

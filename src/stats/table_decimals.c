@@ -5,10 +5,10 @@
 #include "core/text.h"
 #include "stats/column.h"
 
-static fg_status doubt(fg_context *ctx, const fg_table *table, fg_column *column, size_t row,
-                       const char *what) {
-  if (column->doubt) return FG_OK;
-  return fg_text_print(ctx, &column->doubt, "%s: row %zu (line %zu), column '%s': %s",
+static fg_status uncertainty(fg_context *ctx, const fg_table *table, fg_column *column, size_t row,
+                             const char *what) {
+  if (column->uncertainty) return FG_OK;
+  return fg_text_print(ctx, &column->uncertainty, "%s: row %zu (line %zu), column '%s': %s",
                        table->source, row, table->line[row - 1], column->name, what);
 }
 
@@ -28,8 +28,8 @@ static const char *true_word(const fg_column *column) {
 }
 
 /* Words that look like numbers: such a column would be names, or names among numbers. */
-static fg_status doubt_words(fg_context *ctx, const fg_table *table, fg_column *column,
-                             unsigned char separator) {
+static fg_status warn_words(fg_context *ctx, const fg_table *table, fg_column *column,
+                            unsigned char separator) {
   char what[500];
   for (size_t i = 0; i < column->word_count; i++) {
     const char *word = column->words[i];
@@ -45,7 +45,7 @@ static fg_status doubt_words(fg_context *ctx, const fg_table *table, fg_column *
                  "'%.80s' is a number to people and a word to a program: %s%s%.80s%s", word, advice,
                  other ? "; and '" : "", other ? other : "",
                  other ? "' in the same column is none" : "");
-    return doubt(ctx, table, column, first_row(table, column, i), what);
+    return uncertainty(ctx, table, column, first_row(table, column, i), what);
   }
   return FG_OK;
 }
@@ -62,30 +62,30 @@ static const fg_column *find_comma(const fg_table *table, bool *proven) {
   return first;
 }
 
-static fg_status doubt_points(fg_context *ctx, const fg_table *table, fg_column *column,
-                              const fg_column *comma) {
+static fg_status warn_points(fg_context *ctx, const fg_table *table, fg_column *column,
+                             const fg_column *comma) {
   char what[700];
   const fg_column *other = column->comma_row ? column : comma;
   fg_text_clip(what, sizeof what,
                "a point, but a comma in line %zu, column '%.200s': which is the decimal mark? "
                "Write all numbers alike, and thousands without a separator",
                table->line[other->comma_row - 1], other->name);
-  return doubt(ctx, table, column, column->point_row, what);
+  return uncertainty(ctx, table, column, column->point_row, what);
 }
 
-fg_status fg_table_doubt_decimals(fg_context *ctx, fg_table *table, unsigned char separator) {
+fg_status fg_table_warn_decimals(fg_context *ctx, fg_table *table, unsigned char separator) {
   bool proven;
   const fg_column *comma = find_comma(table, &proven);
   for (size_t i = 0; i < table->columns; i++) {
     fg_column *column = &table->column[i];
-    FG_TRY(doubt_words(ctx, table, column, separator));
-    if (comma && column->point_row) FG_TRY(doubt_points(ctx, table, column, comma));
+    FG_TRY(warn_words(ctx, table, column, separator));
+    if (comma && column->point_row) FG_TRY(warn_points(ctx, table, column, comma));
     if (separator == '\t' && !proven && column->comma_row)
-      FG_TRY(
-          doubt(ctx, table, column, column->comma_row,
-                "a comma with three digits behind it, as in all numbers with one: a decimal mark "
-                "or thousands? Separate the cells by semicolons if it is a decimal mark, else "
-                "write the numbers without it"));
+      FG_TRY(uncertainty(
+          ctx, table, column, column->comma_row,
+          "a comma with three digits behind it, as in all numbers with one: a decimal mark "
+          "or thousands? Separate the cells by semicolons if it is a decimal mark, else "
+          "write the numbers without it"));
   }
   return FG_OK;
 }

@@ -17,7 +17,7 @@ enum {
    * into a tile that is not wanted. */
   REACH_BLOCKS = 6,
   PIECE_BLOCKS = 8, /* a part of fewer hot blocks is dust, not a piece of a strip */
-  ROUNDS_MOST = 6,
+  ROUNDS_MAX = 6,
 };
 typedef struct hot_block {
   int32_t x, y;
@@ -170,8 +170,8 @@ static fg_status find_parts(fg_context *ctx, work *w, size_t *specks, bool *larg
     bool piece = part->area >= PIECE_BLOCKS;
     *specks += w->kept[i] && !piece;
     w->kept[i] = w->kept[i] && piece;
-    *large |= w->kept[i] && hypot((double)part->width, (double)part->height) * FG_BLOCK_PX >=
-                                w->options->least_px;
+    *large |= w->kept[i] &&
+              hypot((double)part->width, (double)part->height) * FG_BLOCK_PX >= w->options->min_px;
   }
   return FG_OK;
 }
@@ -263,14 +263,14 @@ static bool is_inside(const work *w) {
 }
 
 /* Repeats until corner and levels stand. False: they do not, or the island cannot be cut anew. */
-static fg_status settle(fg_context *ctx, work *w, size_t *specks, bool *settled) {
+static fg_status iterate(fg_context *ctx, work *w, size_t *specks, bool *converged) {
   int64_t low_px[2], found_px[2];
   bool large, moved = true;
   fg_levels l = find_own_levels(w);
-  *settled = false;
+  *converged = false;
   if (!l.found) return FG_OK;
   guess_corner(w, &l, low_px);
-  for (int round = 0; round < ROUNDS_MOST && !*settled; round++) {
+  for (int round = 0; round < ROUNDS_MAX && !*converged; round++) {
     if (moved) FG_TRY(cut_sheet(ctx, w, low_px));
     FG_TRY(mark_hot(ctx, w, &l));
     FG_TRY(find_parts(ctx, w, specks, &large));
@@ -278,7 +278,7 @@ static fg_status settle(fg_context *ctx, work *w, size_t *specks, bool *settled)
     if (!large || !is_inside(w) || !mark_near(w) || !find_near_levels(w, &next)) return FG_OK;
     find_low(w, &l, found_px);
     moved = found_px[0] != low_px[0] || found_px[1] != low_px[1];
-    *settled = !moved && next.limit == l.limit && next.light == l.light;
+    *converged = !moved && next.limit == l.limit && next.light == l.light;
     memcpy(low_px, found_px, sizeof low_px);
     l = next;
   }
@@ -367,13 +367,13 @@ fg_status fg_anchor_island(fg_context *ctx, const fg_tiles *tiles, const fg_isla
                            const fg_anchor_options *options, fg_anchored *out) {
   work w = {.tiles = tiles, .island = island, .options = options};
   fg_context inner = {.message = ""};
-  bool settled = false;
+  bool converged = false;
   memset(out, 0, sizeof *out);
   FG_TRY(fg_memory_allocate(ctx, (size_t)tiles->columns * (size_t)tiles->rows, 1, (void **)&w.own));
   for (size_t i = 0; i < island->count; i++)
     w.own[island->tiles[i]] = 1;
-  fg_status status = settle(&inner, &w, &out->specks, &settled);
-  if (status == FG_OK && settled) status = finish(&inner, &w, out);
+  fg_status status = iterate(&inner, &w, &out->specks, &converged);
+  if (status == FG_OK && converged) status = finish(&inner, &w, out);
   free_work(&w);
   if (status == FG_ERR_DATA) return FG_OK; /* the budget does not hold both */
   return status == FG_OK ? FG_OK : fg_fail(ctx, status, "%s", inner.message);

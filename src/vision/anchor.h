@@ -17,7 +17,7 @@ extern "C" {
 #endif
 
 typedef struct fg_anchor_options {
-  double least_px;  /* diagonal of the smallest object that is no dust */
+  double min_px;    /* diagonal of the smallest object that is no dust */
   double border_px; /* what lies nearer to the scan's border may be cut by it */
 } fg_anchor_options;
 

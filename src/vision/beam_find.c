@@ -8,14 +8,14 @@
 
 /* A design's beam may be shorter or longer, narrower or wider by these factors: what is torn off
  * or of another size is told by its values, not left out. */
-#define LENGTH_LEAST 0.3
-#define LENGTH_MOST  3.0
-#define WIDTH_LEAST  0.3
-#define WIDTH_MOST   3.0
+#define LENGTH_MIN 0.3
+#define LENGTH_MAX 3.0
+#define WIDTH_MIN  0.3
+#define WIDTH_MAX  3.0
 /* Straight to this share of the width, within limits in px. */
 #define TOLERANCE_SHARE 0.01
-#define TOLERANCE_LEAST 2.0
-#define TOLERANCE_MOST  5.0
+#define TOLERANCE_MIN   2.0
+#define TOLERANCE_MAX   5.0
 /* Both long sides are parallel, and the tip is across them, within these angles. */
 #define PARALLEL_RAD 0.15
 #define ACROSS_RAD   0.45
@@ -33,10 +33,10 @@
 fg_beam_limits fg_beam_limits_of(const fg_design *design, const fg_pixel_shape *shape) {
   double length = design->beam_length_mm * 1000 / shape->um;
   double width = design->beam_width_mm * 1000 / shape->um;
-  return (fg_beam_limits){.length_px = {LENGTH_LEAST * length, LENGTH_MOST * length},
-                          .width_px = {WIDTH_LEAST * width, WIDTH_MOST * width},
+  return (fg_beam_limits){.length_px = {LENGTH_MIN * length, LENGTH_MAX * length},
+                          .width_px = {WIDTH_MIN * width, WIDTH_MAX * width},
                           .tolerance_px =
-                              fmin(fmax(TOLERANCE_SHARE * width, TOLERANCE_LEAST), TOLERANCE_MOST)};
+                              fmin(fmax(TOLERANCE_SHARE * width, TOLERANCE_MIN), TOLERANCE_MAX)};
 }
 
 static const fg_polygon_side *side_at(const fg_polygon *rim, size_t i) {
@@ -92,7 +92,7 @@ static bool cut_stretch(const fg_straight *line, fg_point from, fg_point to, dou
   *stretch = (fg_stretch){{line->at.x + a * line->along.x, line->at.y + a * line->along.y},
                           {line->at.x + b * line->along.x, line->at.y + b * line->along.y},
                           INFINITY};
-  return b - a >= FG_STRETCH_LEAST_PX;
+  return b - a >= FG_STRETCH_MIN_PX;
 }
 
 /* A beam at work. */
@@ -201,8 +201,8 @@ static bool exclude(const fg_beam_place *a, const fg_beam_place *b) {
 
 /* How far a beam's size is off the design's. */
 static double oddness(const fg_beam_place *place, const fg_beam_limits *limits) {
-  double length = sqrt(limits->length_px[0] * limits->length_px[1] / (LENGTH_LEAST * LENGTH_MOST));
-  double width = sqrt(limits->width_px[0] * limits->width_px[1] / (WIDTH_LEAST * WIDTH_MOST));
+  double length = sqrt(limits->length_px[0] * limits->length_px[1] / (LENGTH_MIN * LENGTH_MAX));
+  double width = sqrt(limits->width_px[0] * limits->width_px[1] / (WIDTH_MIN * WIDTH_MAX));
   return fabs(log(place->length_px / length)) + fabs(log(place->width_px / width));
 }
 

@@ -8,12 +8,12 @@
 /* Stations further than this many robust deviations from the smooth course are left out of it; the
  * floor is for values that are all the same. */
 #define OUTLIER_DEVIATIONS 4.0
-#define LIMIT_LEAST        1e-9
+#define LIMIT_MIN          1e-9
 /* Of the constant's weight, on every other coefficient: a course that turns nowhere stays solvable.
  */
 #define RIDGE 1e-3
 /* Fewer degrees of freedom than these tell nothing of the scatter. */
-#define FREEDOM_LEAST 4
+#define DOF_MIN 4
 
 bool fg_course_solve(fg_normal_equations *system, const fg_course_sums *sums, bool judged,
                      double *coefficients, double *real) {
@@ -22,12 +22,12 @@ bool fg_course_solve(fg_normal_equations *system, const fg_course_sums *sums, bo
     system->matrix[b][b] += RIDGE * system->matrix[0][0];
   if (!fg_normal_solve(system, 0, x, NULL)) return false;
   memcpy(coefficients, x, system->unknowns * sizeof *x);
-  double freedom = sums->count - (double)system->unknowns;
-  if (judged && freedom > FREEDOM_LEAST && sums->squares > 0)
-    *real = fmax(0, 1 - 2 * sums->expected * freedom / (sums->squares * sums->count));
+  double dof = sums->count - (double)system->unknowns;
+  if (judged && dof > DOF_MIN && sums->squares > 0)
+    *real = fmax(0, 1 - 2 * sums->expected * dof / (sums->squares * sums->count));
   return true;
 }
 
 double fg_course_limit(double *sizes, size_t count) {
-  return fg_spread_limit(sizes, count, OUTLIER_DEVIATIONS) + LIMIT_LEAST;
+  return fg_spread_limit(sizes, count, OUTLIER_DEVIATIONS) + LIMIT_MIN;
 }

@@ -12,7 +12,7 @@
 /* The side that leads back is at least this long against what runs across, and in px; a rounded
  * end has facets that lead back, too. */
 #define OPPOSITE_SHARE 0.7
-#define OPPOSITE_LEAST 30.0
+#define OPPOSITE_MIN   30.0
 /* A blurred sharp corner stays so far from where its lines meet (its level line runs through
  * Phi(a)² = 1/2, and blur is about 1.5 px), and a pixel's side is uncertain by a part of itself. */
 #define CORNER_BLUR_PX 1.5
@@ -41,7 +41,7 @@ typedef struct way {
 } way;
 
 static bool is_way_back(const fg_polygon_side *side, const way *w) {
-  return side->length > OPPOSITE_LEAST && side->length > OPPOSITE_SHARE * w->across;
+  return side->length > OPPOSITE_MIN && side->length > OPPOSITE_SHARE * w->across;
 }
 
 static void take_across(const fg_polygon *rim, size_t at, way *w) {
@@ -76,12 +76,12 @@ static bool walk(const fg_polygon *rim, size_t side, bool after, way *w) {
 
 double fg_corner_radius(const fg_polygon *rim, size_t first, size_t last, fg_point corner) {
   size_t n = fg_polygon_span(rim, first, last), wide = n < rim->point_count / 2 ? 40 : 0;
-  double least = INFINITY;
+  double min = INFINITY;
   for (size_t i = 0; i < n + 2 * wide; i++) {
     const fg_point *p = &rim->points[(first + rim->point_count + i - wide) % rim->point_count];
-    least = fmin(least, hypot(p->x - corner.x, p->y - corner.y));
+    min = fmin(min, hypot(p->x - corner.x, p->y - corner.y));
   }
-  return fmax(0, least - CORNER_BLUR_PX) / CORNER_SHARE;
+  return fmax(0, min - CORNER_BLUR_PX) / CORNER_SHARE;
 }
 
 /* The floor in its own frame: u towards the root, v across from the beam's side into the cut. */
@@ -157,7 +157,7 @@ static bool place_straight(const frame *f, fg_cut_floor *floor) {
   floor->corner = corner[0];
   floor->place = place_out(f, a + 0.5 * b * gap, 0.5 * gap);
   floor->stretch = stretch_of(f, a + b * from, from, a + b * to, to, INFINITY);
-  return to - from >= FG_STRETCH_LEAST_PX;
+  return to - from >= FG_STRETCH_MIN_PX;
 }
 
 /* The circle of a round end: u = a + b v + c v² near its apex would do for its place; the circle

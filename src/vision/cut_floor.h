@@ -8,7 +8,7 @@
 /* A corner's blur and what its radius is wrong by keep so far away from the straight side. */
 #define FG_CORNER_MARGIN_PX 6.0
 /* Shorter stretches hold no edge to fit. */
-#define FG_STRETCH_LEAST_PX 6.0
+#define FG_STRETCH_MIN_PX 6.0
 
 #define FG_NO_SIDE ((size_t)-1)
 

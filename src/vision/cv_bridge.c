@@ -78,11 +78,11 @@ static fg_status need(fg_context *ctx, const fg_cv_functions **functions) {
 }
 
 fg_status fg_cv_contours(fg_context *ctx, const uint8_t *picture, int32_t width, int32_t height,
-                         double level, int32_t least, fg_contours *out) {
+                         double level, int32_t min, fg_contours *out) {
   const fg_cv_functions *cv;
   *out = (fg_contours){0};
   FG_TRY(need(ctx, &cv));
-  return cv->contours(ctx, picture, width, height, level, least, out);
+  return cv->contours(ctx, picture, width, height, level, min, out);
 }
 
 fg_status fg_cv_draw_line(fg_context *ctx, fg_rgb *rgb, const double *xy_px, size_t count,

@@ -22,7 +22,7 @@ typedef struct fg_contours {
 /* Outlines of what is brighter than `level` and of the gaps in it, of those whose box is at least
  * `least` cells wide and high. Sides at most 32767. */
 fg_status fg_cv_contours(fg_context *ctx, const uint8_t *picture, int32_t width, int32_t height,
-                         double level, int32_t least, fg_contours *out);
+                         double level, int32_t min, fg_contours *out);
 void fg_contours_free(fg_contours *contours);
 
 /* A picture to draw on: rows of R, G, B bytes, without padding. */

@@ -32,7 +32,7 @@ static fg_status copy_contours(fg_context *ctx, const std::vector<std::vector<cv
 }
 
 static fg_status contours(fg_context *ctx, const uint8_t *picture, int32_t width, int32_t height,
-                          double level, int32_t least, fg_contours *out) {
+                          double level, int32_t min, fg_contours *out) {
   *out = {};
   try {
     cv::setNumThreads(0);
@@ -42,7 +42,7 @@ static fg_status contours(fg_context *ctx, const uint8_t *picture, int32_t width
     cv::findContours(mask, all, cv::RETR_LIST, cv::CHAIN_APPROX_NONE);
     for (auto &contour : all) {
       const cv::Rect box = cv::boundingRect(contour);
-      if (box.width >= least && box.height >= least) large.push_back(std::move(contour));
+      if (box.width >= min && box.height >= min) large.push_back(std::move(contour));
     }
     return copy_contours(ctx, large, out);
   } catch (const std::exception &error) {

@@ -16,7 +16,7 @@ extern "C" {
 typedef struct fg_cv_functions {
   const char *version; /* of the program that it was built with */
   fg_status (*contours)(fg_context *ctx, const uint8_t *picture, int32_t width, int32_t height,
-                        double level, int32_t least, fg_contours *out);
+                        double level, int32_t min, fg_contours *out);
   fg_status (*draw_line)(fg_context *ctx, fg_rgb *rgb, const double *xy_px, size_t count,
                          uint32_t colour, int32_t thickness_px);
   fg_status (*draw_text)(fg_context *ctx, fg_rgb *rgb, const char *text, const double at_px[2],

@@ -5,8 +5,8 @@
 
 /* A circle must be seen over so much of a turn; one that is only a part of a longer outline, for
  * which a rounded corner or the end of a slot must not be taken, over more. */
-#define TURN_LEAST      200.0
-#define TURN_LEAST_PART 250.0
+#define TURN_MIN      200.0
+#define TURN_MIN_PART 250.0
 /* Tolerated rms of an outline's points about the circle: cells, and share of the radius. */
 #define RMS_CELLS 0.6
 #define RMS_SHARE 0.02
@@ -15,10 +15,10 @@
 enum {
   REFITS = 4,
   TURN_BINS = 72,
-  POINTS_LEAST = 12,
+  POINTS_MIN = 12,
   WINDOWS = 24,
   WINDOW_SHARE = 10,
-  POINTS_PART_MOST = 40000
+  POINTS_PART_MAX = 40000
 };
 
 static double tolerance_of(const fg_outline *o, double radius) {
@@ -48,12 +48,12 @@ static double weigh(fg_outline *o, fg_round *r) {
 }
 
 /* Refits to the inliers until they stay; returns the turn that they cover. */
-static double settle(fg_outline *o, fg_round *r) {
+static double iterate(fg_outline *o, fg_round *r) {
   double turn = weigh(o, r);
   for (int i = 0; i < REFITS; i++) {
     size_t before = r->inliers;
     fg_circle next;
-    if (before < POINTS_LEAST ||
+    if (before < POINTS_MIN ||
         fg_circle_estimate(NULL, o->points, o->weights, o->count, &next) != FG_OK)
       return 0;
     r->circle = next;
@@ -63,30 +63,30 @@ static double settle(fg_outline *o, fg_round *r) {
   return turn;
 }
 
-static bool is_round(const fg_outline *o, const fg_round *r, double turn, double turn_least) {
+static bool is_round(const fg_outline *o, const fg_round *r, double turn, double turn_min) {
   /* A digital outline has about one point per cell, and at least 1/sqrt 2. */
   double expected = turn / 360 * 2 * M_PI * r->circle.radius / o->cell;
-  return turn >= turn_least && r->circle.radius >= o->least_radius &&
+  return turn >= turn_min && r->circle.radius >= o->min_radius &&
          r->rms <= tolerance_of(o, r->circle.radius) && (double)r->inliers >= 0.6 * expected;
 }
 
 static bool try_whole(fg_outline *o, fg_round *r) {
   if (fg_circle_estimate(NULL, o->points, NULL, o->count, &r->circle) != FG_OK) return false;
-  double turn = settle(o, r);
-  return is_round(o, r, turn, TURN_LEAST) && r->inliers * 10 >= o->count * 7;
+  double turn = iterate(o, r);
+  return is_round(o, r, turn, TURN_MIN) && r->inliers * 10 >= o->count * 7;
 }
 
 static bool try_stretches(fg_outline *o, fg_round *best) {
   size_t window = o->count / WINDOW_SHARE;
   best->inliers = 0;
-  if (window < POINTS_LEAST || o->count > POINTS_PART_MOST) return false;
+  if (window < POINTS_MIN || o->count > POINTS_PART_MAX) return false;
   for (size_t k = 0; k < WINDOWS; k++) {
     size_t first = k * (o->count - window) / (WINDOWS - 1);
     fg_round r = {0};
     if (fg_circle_estimate(NULL, o->points + first, NULL, window, &r.circle) != FG_OK) continue;
-    if (r.circle.radius < 0.5 * o->least_radius) continue;
-    double turn = settle(o, &r);
-    if (is_round(o, &r, turn, TURN_LEAST_PART) && r.inliers > best->inliers) *best = r;
+    if (r.circle.radius < 0.5 * o->min_radius) continue;
+    double turn = iterate(o, &r);
+    if (is_round(o, &r, turn, TURN_MIN_PART) && r.inliers > best->inliers) *best = r;
   }
   return best->inliers > 0;
 }
@@ -101,7 +101,7 @@ static void remove_inliers(fg_outline *o, fg_round *r) {
 
 bool fg_outline_take_circle(fg_outline *outline, fg_round *round) {
   memset(round, 0, sizeof *round);
-  if (outline->count < POINTS_LEAST) return false;
+  if (outline->count < POINTS_MIN) return false;
   if (!try_whole(outline, round) && !try_stretches(outline, round)) return false;
   remove_inliers(outline, round);
   return true;

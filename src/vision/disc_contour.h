@@ -19,7 +19,7 @@ typedef struct fg_outline {
   double *weights;  /* scratch, as many */
   size_t count;
   double cell; /* what a point is uncertain by */
-  double least_radius;
+  double min_radius;
 } fg_outline;
 
 /* Takes the largest circle out of what is left of the outline: its points are removed. False when

@@ -9,8 +9,8 @@
 #include "vision/driver_choice.h"
 
 /* sd of a pixel, counts, that the fits start from. */
-#define START_NOISE   1.5
-#define SECTORS_LEAST 6
+#define START_NOISE 1.5
+#define SECTORS_MIN 6
 
 static double count_of(const fg_disc_work *work, double light) {
   double rate;
@@ -51,7 +51,7 @@ static unsigned held_of(unsigned held) {
 static fg_driven_profile profile_of(const fg_disc_work *work, size_t sector, fg_profile_bin *bins) {
   const fg_profile_bin *from = work->bins + sector * work->bin_count;
   fg_driven_profile p = {.bins = bins, .single = true, .held = held_of(work->sectors[sector].held)};
-  for (size_t i = 0; i < work->bin_count && p.count + 8 < FG_DRIVEN_MOST; i++)
+  for (size_t i = 0; i < work->bin_count && p.count + 8 < FG_DRIVEN_MAX; i++)
     if (from[i].count > 0) bins[p.count++] = from[i];
   fg_disc_driven_values(work, work->sectors[sector].values, p.values);
   return p;
@@ -81,7 +81,7 @@ static void take_profile(const fg_disc_work *work, const fg_driven_profile *p, f
 
 /* All sectors again, the driver held. */
 static fg_status fit_driven(fg_context *ctx, fg_disc_work *work) {
-  fg_profile_bin bins[FG_DRIVEN_MOST];
+  fg_profile_bin bins[FG_DRIVEN_MAX];
   for (size_t s = 0; s < work->ring.sector_count; s++) {
     fg_step_fit *fit = &work->sectors[s];
     if (!fit->good) continue;
@@ -172,7 +172,7 @@ fg_status fg_disc_find_driver(fg_context *ctx, fg_disc_work *work) {
   if (work->white[0] || work->white[1]) return FG_OK;
   FG_TRY_EXIT(fg_memory_allocate(ctx, 1, sizeof *tone, (void **)&tone));
   FG_TRY_EXIT(draw_sample(ctx, work, &s));
-  if (s.count < SECTORS_LEAST || !(s.ends[1] > s.ends[0])) goto exit;
+  if (s.count < SECTORS_MIN || !(s.ends[1] > s.ends[0])) goto exit;
   fg_driver plain = fg_driver_none(s.ends);
   plain.values[FG_DRIVER_LN_GAMMA] = log(gamma);
   fg_driver_find_misfit(s.profiles, s.count, &plain, tone, &misfit);

@@ -9,7 +9,7 @@
 #include "vision/edge_spread.h"
 #include "vision/picture.h"
 
-enum { CENTRE_ROUNDS = 3, TRIM_ROUNDS = 4, SECTORS_LEAST = 12, SECTORS_MOST = 64 };
+enum { CENTRE_ROUNDS = 3, TRIM_ROUNDS = 4, SECTORS_MIN = 12, SECTORS_MAX = 64 };
 #define SECTOR_PX  48.0
 #define STATION_PX 1.5
 /* The ring reaches so far on both sides of the edge, for the levels and slopes to be known. */
@@ -20,11 +20,11 @@ enum { CENTRE_ROUNDS = 3, TRIM_ROUNDS = 4, SECTORS_LEAST = 12, SECTORS_MOST = 64
 /* A sector whose step is below this share of the typical one has no edge. */
 #define STEP_SHARE 0.3
 /* Less contrast than this many counts is no edge. */
-#define CONTRAST_LEAST  6.0
+#define CONTRAST_MIN    6.0
 #define TRIM_DEVIATIONS 2.5
-#define TRIM_LEAST_PX   0.3
+#define TRIM_MIN_PX     0.3
 /* Clipped light may exceed the end of the scale by this share of the contrast. */
-#define WHITE_DOUBT 0.1
+#define WHITE_U 0.1
 
 static double step_of(const fg_step_fit *fit) {
   return fit->values[FG_STEP_OUTSIDE] - fit->values[FG_STEP_INSIDE];
@@ -45,7 +45,7 @@ static fg_status drop_weak(fg_context *ctx, fg_disc_work *work) {
     fit->good = fit->good && step_of(fit) * typical > STEP_SHARE * typical * typical;
     n += fit->good;
   }
-  if (n < SECTORS_LEAST / 2 || 2 * n < count || fabs(typical) < CONTRAST_LEAST)
+  if (n < SECTORS_MIN / 2 || 2 * n < count || fabs(typical) < CONTRAST_MIN)
     return fg_fail(ctx, FG_ERR_NUMERIC, "no edge around the circle");
   return FG_OK;
 }
@@ -60,7 +60,7 @@ static fg_status fill_ring(fg_context *ctx, fg_disc_work *work, double reach_px)
   fg_ring *ring = &work->ring;
   double circumference = 2 * M_PI * ring->circle.radius;
   ring->reach_px = fmin(reach_px, 0.6 * ring->circle.radius);
-  ring->sector_count = (size_t)fmin(fmax(circumference / SECTOR_PX, SECTORS_LEAST), SECTORS_MOST);
+  ring->sector_count = (size_t)fmin(fmax(circumference / SECTOR_PX, SECTORS_MIN), SECTORS_MAX);
   size_t per_sector = (size_t)(circumference / STATION_PX / (double)ring->sector_count) + 1;
   ring->station_count = per_sector * ring->sector_count;
   FG_TRY(fg_ring_collect(ctx, work->tiles, work->shape, ring));
@@ -73,7 +73,7 @@ static double trim(const fg_point *points, size_t n, const fg_circle *circle, do
   double sum = 0, used = 0;
   for (size_t i = 0; i < n; i++)
     scratch[i] = fabs(hypot(points[i].x - circle->x, points[i].y - circle->y) - circle->radius);
-  double limit = fmax(fg_spread_limit(scratch, n, TRIM_DEVIATIONS), TRIM_LEAST_PX);
+  double limit = fmax(fg_spread_limit(scratch, n, TRIM_DEVIATIONS), TRIM_MIN_PX);
   for (size_t i = 0; i < n; i++) {
     double off = hypot(points[i].x - circle->x, points[i].y - circle->y) - circle->radius;
     weights[i] = fabs(off) <= limit;
@@ -121,7 +121,7 @@ exit:
 }
 
 static double typical_blur(const fg_disc_work *work) {
-  double values[SECTORS_MOST];
+  double values[SECTORS_MAX];
   size_t n = 0;
   for (size_t s = 0; s < work->ring.sector_count; s++)
     if (work->sectors[s].good) values[n++] = work->sectors[s].values[FG_STEP_BLUR];
@@ -131,7 +131,7 @@ static double typical_blur(const fg_disc_work *work) {
 /* Centres the ring on the edge, with levels that have no slopes. */
 static fg_status find_ring(fg_context *ctx, fg_disc_work *work, const fg_disc_candidate *candidate,
                            double *rms) {
-  double reach = candidate->doubt_px + START_PX;
+  double reach = candidate->u_px + START_PX;
   work->ring.circle = candidate->circle;
   for (int round = 0; round < CENTRE_ROUNDS; round++) {
     FG_TRY(fill_ring(ctx, work, reach));
@@ -178,18 +178,18 @@ exit:
 
 /* A doubt of the levels or the tone curve moves the count that is taken for the edge; over the
  * profile's slope there, contrast / (s sqrt(2 pi)), that is a shift. */
-double fg_disc_level_doubt(const fg_disc_work *work, const fg_tone *tone,
-                           const fg_disc_edge *edge) {
+double fg_disc_level_uncertainty(const fg_disc_work *work, const fg_tone *tone,
+                                 const fg_disc_edge *edge) {
   double per_contrast = edge->blur_px * sqrt(2 * M_PI), white = 0, change = 0;
   if (work->driver) return work->u_driver_px;
   const double lights[2] = {edge->inside, edge->outside};
   double counts[2];
   for (int i = 0; i < 2; i++)
     counts[i] = 255 * pow(fmax(lights[i], 1) / 255, 1 / tone->gamma);
-  if (work->white[0] || work->white[1]) white = WHITE_DOUBT * 0.5 * per_contrast;
-  if (tone->doubt > 0)
-    change = (fg_edge_count_between(tone->gamma + tone->doubt, counts) -
-              fg_edge_count_between(tone->gamma - tone->doubt, counts)) /
+  if (work->white[0] || work->white[1]) white = WHITE_U * 0.5 * per_contrast;
+  if (tone->uncertainty > 0)
+    change = (fg_edge_count_between(tone->gamma + tone->uncertainty, counts) -
+              fg_edge_count_between(tone->gamma - tone->uncertainty, counts)) /
              2 / fabs(counts[1] - counts[0]) * per_contrast;
   return hypot(white, change);
 }
@@ -227,7 +227,7 @@ static fg_status run(fg_context *ctx, fg_disc_work *work, const fg_disc_candidat
   edge->count = work->ring.station_count;
   FG_TRY(fg_memory_allocate(ctx, edge->count, sizeof *edge->stations, (void **)&edge->stations));
   FG_TRY(fg_disc_smooth_shape(ctx, work, edge));
-  edge->level_doubt_px = fg_disc_level_doubt(work, tone, edge);
+  edge->level_u_px = fg_disc_level_uncertainty(work, tone, edge);
   return fg_disc_solve(ctx, work, edge);
 }
 

@@ -43,15 +43,15 @@ typedef struct fg_disc_edge {
   fg_picture_state picture;
   double spread_px, asymmetry; /* vision/edge_spread.h */
   bool driven;                 /* a driver's model is in force */
-  double level_doubt_px;       /* what all edge_px may be wrong by together: for the tone curve's
-                                  doubt, and, where the scale ends at white, for light a tenth of
-                                  the contrast beyond it */
+  double level_u_px;           /* what all edge_px may be wrong by together: for the tone curve's
+                                      doubt, and, where the scale ends at white, for light a tenth of
+                                      the contrast beyond it */
 } fg_disc_edge;
 
 /* The tone curve, G(u) = 255 (u/255)^(1/gamma). */
 typedef struct fg_tone {
   double gamma;
-  double doubt;          /* standard deviation; INFINITY: not known */
+  double uncertainty;    /* standard deviation; INFINITY: not known */
   bool slopes;           /* a halo or a wall beside the edge may have made the asymmetry */
   double found, u_found; /* of a pool: the exponent before it is taken for 1; found 0: not known */
   bool plain;            /* counts are taken for the light, whatever the edge says */
@@ -102,8 +102,9 @@ fg_status fg_disc_stack_sectors(fg_context *ctx, fg_disc_work *work);
 /* A step to each profile; `held` as in fg_step_fit. disc_sectors.c */
 void fg_disc_fit_sectors(const fg_disc_work *work, unsigned held);
 
-/* level_doubt_px of the edge, see above. */
-double fg_disc_level_doubt(const fg_disc_work *work, const fg_tone *tone, const fg_disc_edge *edge);
+/* level_u_px of the edge, see above. */
+double fg_disc_level_uncertainty(const fg_disc_work *work, const fg_tone *tone,
+                                 const fg_disc_edge *edge);
 
 /* The shape of every station from the sectors' fits. disc_shape.c */
 fg_status fg_disc_smooth_shape(fg_context *ctx, const fg_disc_work *work, fg_disc_edge *edge);

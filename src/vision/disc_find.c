@@ -10,7 +10,7 @@
 #include "vision/disc_contour.h"
 #include "vision/reduce.h"
 
-enum { LEVELS = 32, LEVEL_STEP_LEAST = 2, RARE_CELLS = 20, CELLS_MOST = 6000000, LEVELS_AGREE = 2 };
+enum { LEVELS = 32, LEVEL_STEP_MIN = 2, RARE_CELLS = 20, CELLS_MAX = 6000000, LEVELS_AGREE = 2 };
 
 /* Circles of one level. */
 typedef struct level_rounds {
@@ -22,7 +22,7 @@ typedef struct level_rounds {
 typedef struct search {
   const fg_pixel_shape *shape;
   fg_reduced picture;
-  double least_px;
+  double min_px;
   level_rounds levels[LEVELS];
 } search;
 
@@ -41,7 +41,7 @@ static void choose_levels(search *s) {
     low++;
   for (sum = 0; high > low && (sum += counts[high]) <= RARE_CELLS;)
     high--;
-  double step = fmax((double)(high - low) / LEVELS, LEVEL_STEP_LEAST);
+  double step = fmax((double)(high - low) / LEVELS, LEVEL_STEP_MIN);
   for (int i = 0; i < LEVELS; i++)
     s->levels[i].level = low + (i + 0.5) * step;
 }
@@ -77,10 +77,10 @@ static fg_status search_level(fg_context *ctx, void *shared, size_t index) {
   level_rounds *level = &s->levels[index];
   fg_contours contours = {0};
   const fg_reduced *p = &s->picture;
-  fg_outline outline = {.cell = p->cell_px, .least_radius = s->least_px};
+  fg_outline outline = {.cell = p->cell_px, .min_radius = s->min_px};
   fg_status status = FG_OK;
-  int32_t least = (int32_t)fmax(4, 1.2 * s->least_px / p->cell_px);
-  FG_TRY_EXIT(fg_cv_contours(ctx, p->cells, p->width, p->height, level->level, least, &contours));
+  int32_t min = (int32_t)fmax(4, 1.2 * s->min_px / p->cell_px);
+  FG_TRY_EXIT(fg_cv_contours(ctx, p->cells, p->width, p->height, level->level, min, &contours));
   size_t points = contours.starts[contours.count];
   FG_TRY_EXIT(fg_memory_allocate(ctx, points, sizeof *outline.points, (void **)&outline.points));
   FG_TRY_EXIT(fg_memory_allocate(ctx, points, sizeof *outline.weights, (void **)&outline.weights));
@@ -162,10 +162,8 @@ static void keep_best(const fg_round *all, const ranked *ranks, size_t count, do
     for (size_t k = 0; k < found->count && free_place; k++)
       free_place = !collide(circle, &found->list[k].circle);
     if (!free_place) continue;
-    found->list[found->count++] =
-        (fg_disc_candidate){.circle = *circle,
-                            .levels = ranks[i].levels,
-                            .doubt_px = 1.5 * cell + 0.02 * circle->radius};
+    found->list[found->count++] = (fg_disc_candidate){
+        .circle = *circle, .levels = ranks[i].levels, .u_px = 1.5 * cell + 0.02 * circle->radius};
   }
 }
 
@@ -192,11 +190,11 @@ exit:
 }
 
 fg_status fg_discs_find(fg_context *ctx, const fg_tiles *tiles, const fg_pixel_shape *shape,
-                        double least_px, unsigned threads, fg_disc_candidates *found) {
-  search s = {.shape = shape, .least_px = least_px};
+                        double min_px, unsigned threads, fg_disc_candidates *found) {
+  search s = {.shape = shape, .min_px = min_px};
   fg_status status = FG_OK;
   memset(found, 0, sizeof *found);
-  FG_TRY_EXIT(fg_reduce(ctx, tiles, CELLS_MOST, &s.picture));
+  FG_TRY_EXIT(fg_reduce(ctx, tiles, CELLS_MAX, &s.picture));
   choose_levels(&s);
   FG_TRY_EXIT(fg_parallel_run(ctx, threads, LEVELS, search_level, &s));
   FG_TRY_EXIT(choose(ctx, &s, found));

@@ -19,7 +19,7 @@ extern "C" {
 
 typedef struct fg_disc_candidate {
   fg_circle circle; /* square px */
-  double doubt_px;  /* how far the edge may lie from it */
+  double u_px;      /* how far the edge may lie from it */
   int levels;       /* outlines that agree */
 } fg_disc_candidate;
 
@@ -37,10 +37,10 @@ typedef struct fg_pixel_shape {
 
 fg_pixel_shape fg_pixel_shape_of(const double dpi[2]);
 
-/* Circles of at least `least_px` radius that show at least 200 degrees of their circumference. None
+/* Circles of at least `min_px` radius that show at least 200 degrees of their circumference. None
  * is no error. */
 fg_status fg_discs_find(fg_context *ctx, const fg_tiles *tiles, const fg_pixel_shape *shape,
-                        double least_px, unsigned threads, fg_disc_candidates *found);
+                        double min_px, unsigned threads, fg_disc_candidates *found);
 void fg_disc_candidates_free(fg_disc_candidates *found);
 
 #ifdef __cplusplus

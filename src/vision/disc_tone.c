@@ -8,24 +8,24 @@
 
 /* A change of gamma counts above so many of its own deviations, and only in a scanner's range:
  * values beyond are a wall or a halo beside the edge. */
-#define GAMMA_DEVIATIONS   4.0
-#define GAMMA_LEAST_CHANGE 0.003
+#define GAMMA_DEVIATIONS 4.0
+#define GAMMA_MIN_CHANGE 0.003
 static const double range_of_gamma[2] = {0.4, 2.8};
 /* Beside a halo or a wall gamma cannot be told: it is taken for 1, which may be wrong by this. */
-#define GAMMA_DOUBT 0.4
+#define GAMMA_U 0.4
 /* Sectors that scatter by more than so many of their own deviations do not show a tone curve. */
 #define SECTOR_SCATTER 3.0
-enum { SECTORS_LEAST = 6 };
+enum { SECTORS_MIN = 6 };
 
 /* Median of the sectors' gammas; both arrays are reordered. */
 static fg_tone judge(double *values, double *sd, size_t n) {
-  fg_tone none = {.gamma = 1, .doubt = INFINITY};
-  if (n < SECTORS_LEAST) return none;
+  fg_tone none = {.gamma = 1, .uncertainty = INFINITY};
+  if (n < SECTORS_MIN) return none;
   double upper = fg_select(values, n, n * 3 / 4), lower = fg_select(values, n, n / 4);
   double scatter = 0.7413 * (upper - lower), own = fg_select(sd, n, n / 2);
   if (scatter > SECTOR_SCATTER * own + 0.01) return none;
   return (fg_tone){.gamma = fg_select(values, n, n / 2),
-                   .doubt = 1.2533 * fmax(scatter, own) / sqrt((double)n)};
+                   .uncertainty = 1.2533 * fmax(scatter, own) / sqrt((double)n)};
 }
 
 /* Fits all sectors with gamma free, their slopes free or held at 0. */
@@ -45,7 +45,7 @@ static void fit_sectors(fg_disc_work *work, bool slopes) {
 fg_status fg_disc_find_tone(fg_context *ctx, fg_disc_work *work, fg_tone *tone) {
   size_t count = work->ring.sector_count, n = 0;
   double *values;
-  *tone = (fg_tone){.gamma = 1, .doubt = INFINITY};
+  *tone = (fg_tone){.gamma = 1, .uncertainty = INFINITY};
   if (work->white[0] || work->white[1]) return FG_OK;
   FG_TRY(fg_memory_allocate(ctx, count, 2 * sizeof *values, (void **)&values));
   /* A tone curve that is not in the model looks like slopes, so both are asked at once. */
@@ -76,8 +76,8 @@ fg_tone fg_tone_pool(const fg_tone *tones, size_t count) {
 fg_tone fg_tone_pool_within(const fg_tone *tones, size_t count, const double range[2]) {
   double sum = 0, weights = 0, squares = 0, slopes = 0, n = 0;
   for (size_t i = 0; i < count; i++) {
-    if (!(tones[i].doubt > 0) || !isfinite(tones[i].doubt)) continue;
-    double weight = 1 / (tones[i].doubt * tones[i].doubt);
+    if (!(tones[i].uncertainty > 0) || !isfinite(tones[i].uncertainty)) continue;
+    double weight = 1 / (tones[i].uncertainty * tones[i].uncertainty);
     sum += weight * tones[i].gamma;
     squares += weight * tones[i].gamma * tones[i].gamma;
     weights += weight;
@@ -86,10 +86,11 @@ fg_tone fg_tone_pool_within(const fg_tone *tones, size_t count, const double ran
   }
   if (n < 1) return (fg_tone){.gamma = 1};
   double gamma = sum / weights, spread = fmax(0, squares - sum * gamma);
-  double doubt = sqrt((n > 1 ? fmax(1, spread / (n - 1)) : 1) / weights);
+  double uncertainty = sqrt((n > 1 ? fmax(1, spread / (n - 1)) : 1) / weights);
   if (2 * slopes > n || gamma < range[0] || gamma > range[1])
-    return (fg_tone){.gamma = 1, .doubt = GAMMA_DOUBT};
-  if (fabs(gamma - 1) < fmax(GAMMA_DEVIATIONS * doubt, GAMMA_LEAST_CHANGE))
-    return (fg_tone){.gamma = 1, .found = gamma, .u_found = doubt};
-  return (fg_tone){.gamma = gamma, .doubt = doubt, .found = gamma, .u_found = doubt};
+    return (fg_tone){.gamma = 1, .uncertainty = GAMMA_U};
+  if (fabs(gamma - 1) < fmax(GAMMA_DEVIATIONS * uncertainty, GAMMA_MIN_CHANGE))
+    return (fg_tone){.gamma = 1, .found = gamma, .u_found = uncertainty};
+  return (fg_tone){
+      .gamma = gamma, .uncertainty = uncertainty, .found = gamma, .u_found = uncertainty};
 }

@@ -13,8 +13,8 @@
 #define CELLS_TOGETHER 2.0
 
 /* Less than this is not called sharpening, and less of a slope no tone curve. */
-#define AMOUNT_LEAST 0.05
-#define SLOPE_LEAST  0.05
+#define AMOUNT_MIN 0.05
+#define SLOPE_MIN  0.05
 /* Of two information criteria that differ by more, the data speak for one model (exp(-5)). */
 #define SCORE_CLEAR 10.0
 
@@ -60,8 +60,8 @@ void fg_driver_describe(const fg_driver *driver, fg_picture_state *state) {
   state->gamma = exp(driver->values[FG_DRIVER_LN_GAMMA]);
   state->tone_s = fg_driver_extra_slope(driver);
   state->sharpen_amount = fmax(driver->values[FG_DRIVER_AMOUNT], 0);
-  if (state->tone_s > SLOPE_LEAST) state->findings |= FG_PICTURE_TONE_CURVE;
-  if (!(state->sharpen_amount > AMOUNT_LEAST)) return;
+  if (state->tone_s > SLOPE_MIN) state->findings |= FG_PICTURE_TONE_CURVE;
+  if (!(state->sharpen_amount > AMOUNT_MIN)) return;
   /* A mask makes up for much that is none: a tone curve of another form, or blocks. Its own mark is
    * overshoot, or that nothing else does as well. */
   bool seen = state->findings & FG_PICTURE_SHARPENED;

@@ -12,7 +12,7 @@
 #include "vision/driver_model.h"
 
 enum { ITERATIONS_MAX = 25, ALL = FG_DRIVEN_VALUES + FG_DRIVER_VALUES };
-#define GAIN_LEAST  1e-4
+#define GAIN_MIN    1e-4
 #define DAMPING_MAX 1e5
 /* Optics are Gaussian to this share of the contrast: where a tone curve is steep, little light
  * beside the edge, its blur's tails, moves many counts. */
@@ -54,7 +54,7 @@ typedef struct solver {
 } solver;
 
 static double *column(const solver *s, size_t i) {
-  return s->counts + i * FG_DRIVEN_MOST;
+  return s->counts + i * FG_DRIVEN_MAX;
 }
 
 /* The model and its derivatives for one profile. */
@@ -320,7 +320,7 @@ static void iterate(const solver *s) {
     accept(s, &driver);
     squares = build(s);
     damping = fmax(damping * 0.1, 1e-9);
-    if (gain < GAIN_LEAST * squares) break;
+    if (gain < GAIN_MIN * squares) break;
   }
   conclude(s, squares);
 }
@@ -335,7 +335,7 @@ fg_status fg_driver_fit_profiles(fg_context *ctx, fg_driven_profile *profiles, s
   FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *s.equations, (void **)&s.equations));
   FG_TRY_EXIT(fg_memory_allocate(ctx, 1 + s.q, sizeof *s.tone, (void **)&s.tone));
   FG_TRY_EXIT(
-      fg_memory_allocate(ctx, (1 + ALL) * FG_DRIVEN_MOST, sizeof *s.counts, (void **)&s.counts));
+      fg_memory_allocate(ctx, (1 + ALL) * FG_DRIVEN_MAX, sizeof *s.counts, (void **)&s.counts));
   FG_TRY_EXIT(
       fg_memory_allocate(ctx, count * FG_DRIVEN_VALUES, sizeof *s.trial, (void **)&s.trial));
   s.moved = s.tone + 1;

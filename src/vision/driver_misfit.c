@@ -8,7 +8,7 @@
 #define CELL_PX     0.5
 #define REACH_BLURS 4.0
 #define REACH_PX    2.0
-enum { CELLS = 64, HALVES_MOST = 2 * FG_DRIVER_PROFILES };
+enum { CELLS = 64, HALVES_MAX = 2 * FG_DRIVER_PROFILES };
 
 /* Mean residuals by distance outwards from the edge, of each half profile. */
 typedef struct cells {
@@ -32,7 +32,7 @@ static void add_half(const fg_driven_profile *p, const double *counts, int side,
 
 /* Mean and its standard error over the half profiles: medians, for dust lies on some. */
 static bool pool_cell(const cells *halves, size_t count, int cell, double *mean, double *error) {
-  double values[HALVES_MOST];
+  double values[HALVES_MAX];
   size_t n = 0;
   for (size_t i = 0; i < count; i++)
     if (halves[i].weight[cell] > 0) values[n++] = halves[i].sum[cell] / halves[i].weight[cell];
@@ -46,12 +46,12 @@ static bool pool_cell(const cells *halves, size_t count, int cell, double *mean,
 
 void fg_driver_find_misfit(const fg_driven_profile *profiles, size_t count, const fg_driver *driver,
                            fg_driver_tone *tone, fg_driver_misfit *misfit) {
-  cells halves[HALVES_MOST];
-  double counts[FG_DRIVEN_MOST];
+  cells halves[HALVES_MAX];
+  double counts[FG_DRIVEN_MAX];
   size_t n = 0;
   *misfit = (fg_driver_misfit){0};
   fg_driver_tone_fill(driver, tone);
-  for (size_t i = 0; i < count && n + 2 <= HALVES_MOST; i++) {
+  for (size_t i = 0; i < count && n + 2 <= HALVES_MAX; i++) {
     fg_driven_counts(driver, tone, &profiles[i], profiles[i].values, counts);
     for (int side = profiles[i].single; side < 2; side++)
       add_half(&profiles[i], counts, side, &halves[n++]);

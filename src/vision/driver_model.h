@@ -33,7 +33,7 @@ enum {
   FG_DRIVER_VALUES
 };
 
-enum { FG_DRIVER_TONE_STEPS = 2048, FG_DRIVER_LIGHT_MOST = 330 };
+enum { FG_DRIVER_TONE_STEPS = 2048, FG_DRIVER_LIGHT_MAX = 330 };
 
 typedef struct fg_driver {
   double values[FG_DRIVER_VALUES];
@@ -47,7 +47,7 @@ fg_driver fg_driver_none(const double ends[2]);
 /* G as a table over all light, dense where powers are steep. */
 typedef struct fg_driver_tone {
   bool linear;                            /* the counts are the light, there is no table */
-  double count[FG_DRIVER_TONE_STEPS + 2]; /* at FG_DRIVER_LIGHT_MOST i² / steps² */
+  double count[FG_DRIVER_TONE_STEPS + 2]; /* at FG_DRIVER_LIGHT_MAX i² / steps² */
   double below;                           /* counts per light below 0 */
 } fg_driver_tone;
 
@@ -77,7 +77,7 @@ enum {
 };
 
 typedef struct fg_driven_profile {
-  const fg_profile_bin *bins; /* none of them empty, at most FG_DRIVEN_MOST - 8 */
+  const fg_profile_bin *bins; /* none of them empty, at most FG_DRIVEN_MAX - 8 */
   const double *tails;        /* of each bin: counts per contrast of light; NULL: not looked at */
   size_t count;
   double values[FG_DRIVEN_VALUES];
@@ -87,7 +87,7 @@ typedef struct fg_driven_profile {
 } fg_driven_profile;
 
 /* Most values of one profile, those at the ends of the convolution among them. */
-enum { FG_DRIVEN_MOST = 1024 };
+enum { FG_DRIVEN_MAX = 1024 };
 #define FG_DRIVEN_STEP_PX 0.25
 
 /* Counts at the places of the bins. */

@@ -5,7 +5,7 @@
 
 /* A Gaussian ends at so many sd. */
 #define KERNEL_REACH 4.0
-enum { KERNEL_MOST = 128 };
+enum { KERNEL_MAX = 128 };
 
 /* One profile in light. */
 typedef struct lit {
@@ -84,13 +84,13 @@ static double plain_count(const lit *l, const fg_driver_tone *tone, double acros
 
 typedef struct kernel {
   int reach;
-  double weights[KERNEL_MOST + 1]; /* from the middle on */
+  double weights[KERNEL_MAX + 1]; /* from the middle on */
 } kernel;
 
 static kernel gaussian(double radius_px) {
   kernel k = {.reach = (int)ceil(KERNEL_REACH * radius_px / FG_DRIVEN_STEP_PX)};
   double sum = 0;
-  if (k.reach > KERNEL_MOST) k.reach = KERNEL_MOST;
+  if (k.reach > KERNEL_MAX) k.reach = KERNEL_MAX;
   for (int i = 0; i <= k.reach; i++) {
     double t = i * FG_DRIVEN_STEP_PX / radius_px;
     k.weights[i] = exp(-0.5 * t * t);
@@ -104,7 +104,7 @@ static kernel gaussian(double radius_px) {
 /* Counts on a grid and their blur by the unsharp mask's Gaussian. */
 static void blurred_grid(const fg_driver *driver, const fg_driver_tone *tone, const lit *l,
                          double from_px, size_t count, double *blurred) {
-  double raw[FG_DRIVEN_MOST + 2 * KERNEL_MOST];
+  double raw[FG_DRIVEN_MAX + 2 * KERNEL_MAX];
   kernel k = gaussian(driver->values[FG_DRIVER_RADIUS]);
   size_t reach = (size_t)k.reach;
   for (size_t i = 0; i < count + 2 * reach; i++)
@@ -150,12 +150,12 @@ void fg_driven_grid(const fg_driver *driver, const fg_driver_tone *tone, const d
 void fg_driven_counts(const fg_driver *driver, const fg_driver_tone *tone,
                       const fg_driven_profile *profile, const double *values, double *counts) {
   lit l = lit_profile(driver, tone, values, profile->single);
-  double blurred[FG_DRIVEN_MOST], from = 0;
+  double blurred[FG_DRIVEN_MAX], from = 0;
   size_t grid = 0;
   if (driver->values[FG_DRIVER_AMOUNT] != 0) {
     from = profile->bins[0].across_px;
     double to = profile->bins[profile->count - 1].across_px;
-    grid = (size_t)fmin((to - from) / FG_DRIVEN_STEP_PX + 5, FG_DRIVEN_MOST);
+    grid = (size_t)fmin((to - from) / FG_DRIVEN_STEP_PX + 5, FG_DRIVEN_MAX);
     from -= 2 * FG_DRIVEN_STEP_PX;
     blurred_grid(driver, tone, &l, from, grid, blurred);
   }

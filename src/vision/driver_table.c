@@ -10,7 +10,7 @@ fg_status fg_driven_tables_create(fg_context *ctx, size_t count, double reach_px
                                   fg_driven_tables *tables) {
   fg_status status = FG_OK;
   memset(tables, 0, sizeof *tables);
-  tables->size = (size_t)fmin(2 * reach_px / FG_DRIVEN_STEP_PX + 1, FG_DRIVEN_MOST);
+  tables->size = (size_t)fmin(2 * reach_px / FG_DRIVEN_STEP_PX + 1, FG_DRIVEN_MAX);
   FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *tables->list, (void **)&tables->list));
   FG_TRY_EXIT(
       fg_memory_allocate(ctx, tables->size, sizeof *tables->scratch, (void **)&tables->scratch));

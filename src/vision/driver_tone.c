@@ -4,7 +4,7 @@
 #include "vision/driver_model.h"
 
 /* Below this steepness the S is a straight line. */
-#define STEEPNESS_LEAST 1e-3
+#define STEEPNESS_MIN 1e-3
 
 fg_driver fg_driver_none(const double ends[2]) {
   return (fg_driver){
@@ -19,12 +19,12 @@ static double logistic(double x) {
 /* S at x, without and with its ends put to 0 and 1. */
 static double s_curve(double k, double m, double x) {
   double low = logistic(-k * m), high = logistic(k * (1 - m));
-  return k < STEEPNESS_LEAST ? x : (logistic(k * (x - m)) - low) / (high - low);
+  return k < STEEPNESS_MIN ? x : (logistic(k * (x - m)) - low) / (high - low);
 }
 
 bool fg_driver_is_linear(const fg_driver *driver) {
   return driver->values[FG_DRIVER_LN_GAMMA] == 0 &&
-         driver->values[FG_DRIVER_STEEPNESS] < STEEPNESS_LEAST;
+         driver->values[FG_DRIVER_STEEPNESS] < STEEPNESS_MIN;
 }
 
 /* Below no light at all a power has nothing; without one light and counts go on. */
@@ -39,7 +39,7 @@ double fg_driver_count(const fg_driver *driver, double light) {
 /* Light at the table's i-th count. */
 static double light_of(int i) {
   const double steps = FG_DRIVER_TONE_STEPS;
-  return FG_DRIVER_LIGHT_MOST * ((double)i / steps) * ((double)i / steps);
+  return FG_DRIVER_LIGHT_MAX * ((double)i / steps) * ((double)i / steps);
 }
 
 void fg_driver_tone_fill(const fg_driver *driver, fg_driver_tone *tone) {
@@ -56,7 +56,7 @@ double fg_driver_tone_at(const fg_driver_tone *tone, double light, double *rate)
   if (tone->linear) return light;
   *rate = tone->below;
   if (light < 0) return tone->count[0] + light * tone->below;
-  double root = sqrt(light / FG_DRIVER_LIGHT_MOST) * FG_DRIVER_TONE_STEPS;
+  double root = sqrt(light / FG_DRIVER_LIGHT_MAX) * FG_DRIVER_TONE_STEPS;
   int i = root < FG_DRIVER_TONE_STEPS ? (int)root : FG_DRIVER_TONE_STEPS;
   double from = light_of(i);
   *rate = (tone->count[i + 1] - tone->count[i]) / (light_of(i + 1) - from);
@@ -82,6 +82,6 @@ double fg_driver_tone_inverse(const fg_driver_tone *tone, double count) {
 
 double fg_driver_extra_slope(const fg_driver *driver) {
   double k = driver->values[FG_DRIVER_STEEPNESS], m = driver->values[FG_DRIVER_CENTRE];
-  if (k < STEEPNESS_LEAST) return 0;
+  if (k < STEEPNESS_MIN) return 0;
   return k / 4 / (logistic(k * (1 - m)) - logistic(-k * m)) - 1;
 }

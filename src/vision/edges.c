@@ -13,15 +13,15 @@
 /* Distance of stations, and half window of the reference line. Both are lengths of the foil, whose
  * fillets are 0.2 mm long: a line that is smoothed over more cuts the corner and bends the scale
  * across. They are held to what so many pixels can tell. */
-#define STEP_MM         0.022
-#define STEP_LEAST_PX   1.0
-#define STEP_MOST_PX    2.0
-#define SMOOTH_MM       0.32
-#define SMOOTH_LEAST_PX 8.0
-#define SMOOTH_MOST_PX  30.0
-#define BAND_BLURS      4.0 /* the band reaches so many blurs beyond the strip's edges */
-#define BAND_MARGIN_PX  4.0 /* and so much background */
-#define BAND_MOST_PX    18.0
+#define STEP_MM        0.022
+#define STEP_MIN_PX    1.0
+#define STEP_MAX_PX    2.0
+#define SMOOTH_MM      0.32
+#define SMOOTH_MIN_PX  8.0
+#define SMOOTH_MAX_PX  30.0
+#define BAND_BLURS     4.0 /* the band reaches so many blurs beyond the strip's edges */
+#define BAND_MARGIN_PX 4.0 /* and so much background */
+#define BAND_MAX_PX    18.0
 enum { SOLVE_ROUNDS = 2 };
 
 /* Ends are round and cut: nothing within a width of them is an edge of the strip's side. */
@@ -167,20 +167,20 @@ static fg_status run(fg_context *ctx, fg_edge_work *work, unsigned *facts) {
   FG_TRY(fg_edges_solve(ctx, work, SOLVE_ROUNDS));
   FG_TRY(fg_edges_drop_disturbed(ctx, work, &disturbed));
   if (disturbed) FG_TRY(solve_again(ctx, work, &disturbed));
-  if (disturbed) FG_TRY(fg_edges_name_trouble(ctx, work, facts));
+  if (disturbed) FG_TRY(fg_edges_name_defect(ctx, work, facts));
   mark_ends(work);
   scale_uncertainties(work);
   return FG_OK;
 }
 
-static double length_px(double mm, const double dpi[2], double least_px, double most_px) {
-  return fmin(fmax(mm * sqrt(dpi[0] * dpi[1]) / 25.4, least_px), most_px);
+static double length_px(double mm, const double dpi[2], double min_px, double max_px) {
+  return fmin(fmax(mm * sqrt(dpi[0] * dpi[1]) / 25.4, min_px), max_px);
 }
 
 static fg_status build_reference(fg_context *ctx, const fg_trace *trace, const double dpi[2],
                                  fg_reference *reference) {
-  double smooth_px = length_px(SMOOTH_MM, dpi, SMOOTH_LEAST_PX, SMOOTH_MOST_PX);
-  double step_px = length_px(STEP_MM, dpi, STEP_LEAST_PX, STEP_MOST_PX);
+  double smooth_px = length_px(SMOOTH_MM, dpi, SMOOTH_MIN_PX, SMOOTH_MAX_PX);
+  double step_px = length_px(STEP_MM, dpi, STEP_MIN_PX, STEP_MAX_PX);
   return fg_reference_build(ctx, trace->points, trace->count, smooth_px, step_px, reference);
 }
 
@@ -194,8 +194,7 @@ static fg_edge_work begin_work(const fg_tiles *tiles, const fg_segmentation *seg
                         .threads = options->threads,
                         .linear = options->linear,
                         .width_px = trace->width_px,
-                        .reach_px =
-                            fmin(BAND_BLURS * trace->blur_px + BAND_MARGIN_PX, BAND_MOST_PX),
+                        .reach_px = fmin(BAND_BLURS * trace->blur_px + BAND_MARGIN_PX, BAND_MAX_PX),
                         .noise = 1,
                         .gamma = 1,
                         .u_driver_px = NAN,

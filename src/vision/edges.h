@@ -55,7 +55,7 @@ typedef struct fg_edge_station {
 
 /* Counts that are farther apart make a staircase of an edge's profile, which noise of a count or
  * two does not smooth. */
-#define FG_LEVEL_STEP_MOST 5.0
+#define FG_LEVEL_STEP_MAX 5.0
 
 /* Stations are worked on in chunks, each with its own pixels; a chunk is a unit of parallel work,
  * its size is fixed, so sums do not depend on the number of threads. A segment is the stretch of
@@ -143,7 +143,7 @@ fg_status fg_edges_smooth_shape(fg_context *ctx, fg_edge_work *work, bool local)
 fg_status fg_edges_drop_disturbed(fg_context *ctx, fg_edge_work *work, size_t *found);
 
 /* What it is that disturbs: facts of the stations, and of the strip in *facts. edges_trouble.c */
-fg_status fg_edges_name_trouble(fg_context *ctx, fg_edge_work *work, unsigned *facts);
+fg_status fg_edges_name_defect(fg_context *ctx, fg_edge_work *work, unsigned *facts);
 
 /* The shape again, from what is left of the segments. edges_shape.c */
 fg_status fg_edges_repeat_shape(fg_context *ctx, fg_edge_work *work);

@@ -11,7 +11,7 @@
 #include "vision/picture.h"
 
 /* Profiles one by one do not tell a power beyond this well: all of them are asked together. */
-#define LN_GAMMA_MOST  0.8
+#define LN_GAMMA_MAX   0.8
 #define NOISE_FACTOR   1.3
 #define MERGED_BLUR_PX 1.6
 /* sd of a pixel, counts, that the fits start from. */
@@ -90,7 +90,7 @@ static size_t copy_bins(const fg_edge_work *work, const fg_segment_profile *segm
                         fg_profile_bin *bins) {
   const double *blur = segment->fit.shape.blur_px;
   size_t n = 0, step = fmin(blur[0], blur[1]) > MERGED_BLUR_PX ? 2 : 1;
-  for (size_t i = 0; i + step <= work->bin_count && n + 8 < FG_DRIVEN_MOST; i += step) {
+  for (size_t i = 0; i + step <= work->bin_count && n + 8 < FG_DRIVEN_MAX; i += step) {
     fg_profile_bin bin = segment->bins[i];
     if (step == 2) bin = merge(&segment->bins[i], &segment->bins[i + 1]);
     if (bin.count > 0) bins[n++] = bin;
@@ -180,7 +180,7 @@ fg_status fg_edges_fit_driven(fg_context *ctx, const fg_edge_work *work,
                               fg_segment_profile *segment) {
   fg_driven_profile p = driven_profile(work, &segment->fit);
   fg_driver_fit fit = {.driver = *work->driver, .noise = START_NOISE};
-  fg_profile_bin bins[FG_DRIVEN_MOST];
+  fg_profile_bin bins[FG_DRIVEN_MAX];
   p.bins = bins;
   p.count = copy_bins(work, segment, bins);
   FG_TRY(fg_driver_fit_profiles(ctx, &p, 1, &fit));
@@ -194,7 +194,7 @@ void fg_edges_describe_driver(const fg_edge_work *work, fg_picture_state *state)
   double per_level = 0.5 * (work->blur_px[0] + work->blur_px[1]) * sqrt(2 * M_PI);
   double u_edge_px = work->u_driver_px;
   if (isnan(u_edge_px)) u_edge_px = 0.5 * work->tone_px * work->u_gamma / work->gamma;
-  if (work->level_step > FG_LEVEL_STEP_MOST) {
+  if (work->level_step > FG_LEVEL_STEP_MAX) {
     /* Either level, and with it the half between them, is anywhere within a step. */
     double share = work->level_step / sqrt(12) / work->contrast;
     u_edge_px = hypot(u_edge_px, share * per_level);
@@ -217,9 +217,9 @@ fg_status fg_edges_find_driver(fg_context *ctx, fg_edge_work *work, bool *found)
   *found = false;
   FG_TRY_EXIT(fg_memory_allocate(ctx, 1, sizeof *tone, (void **)&tone));
   FG_TRY_EXIT(draw_sample(ctx, work, &s));
-  bool missed = is_missed(work, &s, tone), few = work->level_step > FG_LEVEL_STEP_MOST;
+  bool missed = is_missed(work, &s, tone), few = work->level_step > FG_LEVEL_STEP_MAX;
   work->unexplained = missed && few;
-  *found = !work->clipped && !few && (missed || fabs(log(work->gamma)) > LN_GAMMA_MOST);
+  *found = !work->clipped && !few && (missed || fabs(log(work->gamma)) > LN_GAMMA_MAX);
   if (!*found) goto exit;
   FG_TRY_EXIT(
       fg_driver_choose(ctx, s.profiles, s.count, s.ends, work->gamma, START_NOISE, &choice));

@@ -164,9 +164,9 @@ static bool piles_up(const fg_edge_work *work, const value_counts *counts, bool 
     end += step;
   }
   if (end + step < 0 || end + step > 255) return false;
-  double least = PILE_SHARE * (double)counts->total;
-  return (double)counts->of[end] > least && counts->of[end] > 2 * counts->of[end + step] &&
-         (double)count_equal(work, end, high) > least;
+  double min = PILE_SHARE * (double)counts->total;
+  return (double)counts->of[end] > min && counts->of[end] > 2 * counts->of[end + step] &&
+         (double)count_equal(work, end, high) > min;
 }
 
 /* Clipped values pile up at one end of what the strip's pixels have, wherever the scanner's driver
@@ -200,7 +200,7 @@ static double find_level_step(const value_counts *counts) {
 
 /* Beside a halo, a wall or a level that is cut off gamma cannot be told: it is taken for 1, which
  * may be wrong by this. */
-#define GAMMA_DOUBT 0.4
+#define GAMMA_U 0.4
 
 /* gamma from a few profiles; 1 when it does not differ from 1 by more than its uncertainty. The
  * middle of the sorted values stands for all: a profile that holds a fillet or dust is no vote. */
@@ -223,12 +223,12 @@ static fg_status find_gamma(fg_context *ctx, fg_edge_work *work) {
     values[j] = task.fits[i].gamma;
     u += task.fits[i].u_gamma;
   }
-  work->u_gamma = GAMMA_DOUBT;
-  if (count >= 3 && !work->clipped && work->level_step < FG_LEVEL_STEP_MOST) {
+  work->u_gamma = GAMMA_U;
+  if (count >= 3 && !work->clipped && work->level_step < FG_LEVEL_STEP_MAX) {
     double gamma = values[count / 2], spread = values[count * 3 / 4] - values[count / 4];
-    double doubt = fmax(u / count, spread) / sqrt(count);
-    if (fabs(gamma - 1) > fmax(3 * doubt, 0.02)) work->gamma = fmin(fmax(gamma, 0.33), 3.5);
-    work->u_gamma = hypot(doubt, gamma - work->gamma);
+    double uncertainty = fmax(u / count, spread) / sqrt(count);
+    if (fabs(gamma - 1) > fmax(3 * uncertainty, 0.02)) work->gamma = fmin(fmax(gamma, 0.33), 3.5);
+    work->u_gamma = hypot(uncertainty, gamma - work->gamma);
   }
   if (work->gamma != 1) fg_edge_tables_init(work->tables, work->gamma);
   return FG_OK;

@@ -75,14 +75,14 @@ static void move_edges(fg_edge_station *s) {
 }
 
 static double estimate_noise(const fg_edge_work *work) {
-  double sum = 0, freedom = 0;
+  double sum = 0, dof = 0;
   for (size_t i = 0; i < work->reference->count; i++) {
     const fg_edge_station *s = &work->stations[i];
     if (s->used < 8) continue;
     sum += s->misfit;
-    freedom += s->used - 2;
+    dof += s->used - 2;
   }
-  return freedom > 0 ? sqrt(sum / freedom) : 1;
+  return dof > 0 ? sqrt(sum / dof) : 1;
 }
 
 /* Stations whose pixels miss the model far more than usual carry dust or a burr. */

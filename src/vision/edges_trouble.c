@@ -21,19 +21,19 @@ typedef struct tally {
   float foreign[2];    /* of the strip's level, beside it */
 } tally;
 
-typedef struct trouble {
+typedef struct defect {
   const fg_edge_work *work;
   double *middle_px;
   tally *tallies;
   double half_px, inside_px, beside_px;
-} trouble;
+} defect;
 
 static bool is_disturbed(const fg_edge_work *work, size_t i) {
   return work->stations[i].facts & FG_STATION_DISTURBED;
 }
 
 /* Where the strip must be: between the good stations on either side of a disturbed run. */
-static void find_middles(trouble *t) {
+static void find_middles(defect *t) {
   const fg_edge_work *work = t->work;
   size_t count = work->reference->count, good = count;
   double sum = 0, n = 0;
@@ -66,7 +66,7 @@ static double depth_of(const fg_edge_work *work, const fg_edge_station *s, int s
   return (value - strip) / (background - strip);
 }
 
-static void tally_pixels(trouble *t) {
+static void tally_pixels(defect *t) {
   const fg_edge_work *work = t->work;
   for (size_t c = 0; c < work->chunk_count; c++)
     for (size_t i = 0; i < work->bands[c].count; i++) {
@@ -83,7 +83,7 @@ static void tally_pixels(trouble *t) {
 }
 
 /* Facts of one run of disturbed stations. */
-static unsigned name_run(const trouble *t, size_t first, size_t last) {
+static unsigned name_run(const defect *t, size_t first, size_t last) {
   const fg_edge_work *work = t->work;
   double blank[THIRDS] = {0}, foreign[2] = {0};
   for (size_t i = first; i <= last; i++) {
@@ -101,7 +101,7 @@ static unsigned name_run(const trouble *t, size_t first, size_t last) {
 }
 
 /* Only within the strip's ends: beyond them there is background. */
-static void name_runs(const trouble *t, unsigned *facts) {
+static void name_runs(const defect *t, unsigned *facts) {
   const fg_edge_work *work = t->work;
   size_t count = work->reference->count;
   for (size_t first = 0; first < count; first++) {
@@ -119,8 +119,8 @@ static void name_runs(const trouble *t, unsigned *facts) {
   }
 }
 
-fg_status fg_edges_name_trouble(fg_context *ctx, fg_edge_work *work, unsigned *facts) {
-  trouble t = {.work = work};
+fg_status fg_edges_name_defect(fg_context *ctx, fg_edge_work *work, unsigned *facts) {
+  defect t = {.work = work};
   size_t count = work->reference->count;
   fg_status status = FG_OK;
   FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *t.middle_px, (void **)&t.middle_px));

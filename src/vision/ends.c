@@ -6,7 +6,7 @@
 #include "core/small_solve.h"
 
 /* The middle beyond the last stations is that of so many before them: 1 mm at 4800 dpi. */
-enum { COURSE_STATIONS = 96, COURSE_LEAST = 12 };
+enum { COURSE_STATIONS = 96, COURSE_MIN = 12 };
 /* The cut is looked for so many strip widths beyond the last usable station. */
 #define REACH_WIDTHS 4.0
 /* Pixels so many blurs and so many more to either side of the cut are fitted. */
@@ -18,15 +18,15 @@ enum { COURSE_STATIONS = 96, COURSE_LEAST = 12 };
 #define INSIDE_SHARE 0.35
 /* A cut: its step is no less than this share of the sides', its blur and its slope no more. */
 #define STEP_SHARE 0.5
-#define BLUR_MOST  12.0
-#define SKEW_MOST  0.7
+#define BLUR_MAX   12.0
+#define SKEW_MAX   0.7
 /* A pixel this far off is dust, as at the sides: noise sd and a share of the contrast; so many of
  * them hide the cut, and a misfit of this share of the contrast says that it is none. */
 #define OUTLIER_SIGMAS 6.0
 #define OUTLIER_SHARE  0.25
 #define USED_SHARE     0.75
 #define MISFIT_SHARE   0.12
-enum { ROUNDS = 40, REWEIGHTS = 3, ROWS_MAX = 256, ROWS_TOGETHER = 3, BLOCKS_LEAST = 3 };
+enum { ROUNDS = 40, REWEIGHTS = 3, ROWS_MAX = 256, ROWS_TOGETHER = 3, BLOCKS_MIN = 3 };
 
 enum { PLACE, SKEW, BLUR, LEVEL, SLOPE, GAIN, FALL, UNKNOWNS };
 
@@ -84,7 +84,7 @@ static bool find_course(end_view *view, size_t from, bool last) {
     width += edge[1] - edge[0];
     used++;
   }
-  if (used < COURSE_LEAST || !fg_normal_solve(&system, 0, view->course, NULL)) return false;
+  if (used < COURSE_MIN || !fg_normal_solve(&system, 0, view->course, NULL)) return false;
   view->half_px = 0.5 * width / (double)used;
   view->shape = &work->stations[from];
   double blur = fmax(work->blur_px[0], work->blur_px[1]);
@@ -219,8 +219,8 @@ static void window(const end_view *view, double at, double blur, double *from, d
 static bool is_sensible(const end_view *view, const double *x, double from, double to) {
   double side = fabs(background_light(view) - view->shape->plateau);
   double step = fabs(x[LEVEL] - x[GAIN] * view->shape->plateau);
-  return x[PLACE] > from && x[PLACE] < to && fabs(x[SKEW]) < SKEW_MOST && x[BLUR] > 0.2 &&
-         x[BLUR] < BLUR_MOST && step > STEP_SHARE * side && x[GAIN] > 0.3 && x[GAIN] < 3;
+  return x[PLACE] > from && x[PLACE] < to && fabs(x[SKEW]) < SKEW_MAX && x[BLUR] > 0.2 &&
+         x[BLUR] < BLUR_MAX && step > STEP_SHARE * side && x[GAIN] > 0.3 && x[GAIN] < 3;
 }
 
 static void gather(const end_view *view, const double *x, double from, double to, sums *all) {
@@ -292,7 +292,7 @@ static double scatter_of_rows(const end_view *view, double from, double to) {
     mean += top;
     weights += sum;
   }
-  if (blocks < BLOCKS_LEAST) return 0;
+  if (blocks < BLOCKS_MIN) return 0;
   mean /= weights;
   for (size_t i = 0; i < blocks; i++)
     squares += weight[i] * (value[i] - mean) * (value[i] - mean);

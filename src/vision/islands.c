@@ -225,11 +225,11 @@ void fg_island_forget(fg_tiles *tiles, const fg_island *island) {
   }
 }
 
-static int32_t least(int32_t a, int32_t b) {
+static int32_t min(int32_t a, int32_t b) {
   return a < b ? a : b;
 }
 
-static int32_t most(int32_t a, int32_t b) {
+static int32_t max(int32_t a, int32_t b) {
   return a > b ? a : b;
 }
 
@@ -263,9 +263,9 @@ static void move_island(fg_island *island, int32_t columns, int32_t x0, int32_t 
 
 fg_status fg_island_cut(fg_context *ctx, fg_tiles *tiles, fg_island *island, fg_tiles *view,
                         int64_t origin_px[2]) {
-  int32_t x0 = most(island->x - VIEW_MARGIN, 0), y0 = most(island->y - VIEW_MARGIN, 0);
-  int32_t x1 = least(island->x + island->width + VIEW_MARGIN, tiles->columns);
-  int32_t y1 = least(island->y + island->height + VIEW_MARGIN, tiles->rows);
+  int32_t x0 = max(island->x - VIEW_MARGIN, 0), y0 = max(island->y - VIEW_MARGIN, 0);
+  int32_t x1 = min(island->x + island->width + VIEW_MARGIN, tiles->columns);
+  int32_t y1 = min(island->y + island->height + VIEW_MARGIN, tiles->rows);
   origin_px[0] = (int64_t)x0 * FG_TILE_PX;
   origin_px[1] = (int64_t)y0 * FG_TILE_PX;
   int64_t right = (int64_t)x1 * FG_TILE_PX, low = (int64_t)y1 * FG_TILE_PX;

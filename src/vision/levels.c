@@ -4,9 +4,9 @@
 
 enum {
   COUNTS = FG_LEVEL_COUNTS,
-  PIXELS_LEAST = 64, /* fewer beyond the noise are no object */
-  LIMIT_LEAST = 4,   /* counts: what differs less from the background is none of the foil */
-  SAMPLED_ROWS = 4,  /* every so many rows of a tile are looked at */
+  PIXELS_MIN = 64,  /* fewer beyond the noise are no object */
+  LIMIT_MIN = 4,    /* counts: what differs less from the background is none of the foil */
+  SAMPLED_ROWS = 4, /* every so many rows of a tile are looked at */
 };
 /* A pixel is hot when it differs from the background by this share of the typical contrast, and by
  * so many standard deviations. The share is that of the segmentation. */
@@ -43,7 +43,7 @@ fg_levels fg_levels_find(const size_t histogram[COUNTS]) {
   for (int i = 0; i < COUNTS; i++)
     off[abs(i - background)] += histogram[i];
   double sigma = MAD_TO_SIGMA * quantile(off, 0.5);
-  int noise = (int)fmax(LIMIT_LEAST, ceil(HOT_SIGMAS * sigma));
+  int noise = (int)fmax(LIMIT_MIN, ceil(HOT_SIGMAS * sigma));
   for (int i = 0; i < COUNTS; i++) {
     int excess = abs(i - background), light = i > background;
     if (excess <= noise) continue;
@@ -55,5 +55,5 @@ fg_levels fg_levels_find(const size_t histogram[COUNTS]) {
   int excess = (int)fmax(noise, round(HOT_SHARE * quantile(beyond[light], 0.8)));
   return (fg_levels){.light = light,
                      .limit = light ? background + excess : background - excess,
-                     .found = number[light] >= PIXELS_LEAST};
+                     .found = number[light] >= PIXELS_MIN};
 }

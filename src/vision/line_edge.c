@@ -10,19 +10,19 @@
 
 /* What the driver has done is asked of so many sectors at the least, so those of a short stretch
  * are shorter. */
-enum { SECTORS_MOST = 24, SECTORS_WANTED = 10, STATIONS_LEAST = 4, PLACES = 9 };
-#define SECTOR_PX       96.0
-#define SECTOR_LEAST_PX 24.0
-#define STATION_PX      1.5
-#define REACH_PX        15.0 /* of the band, on either side */
-#define REACH_LEAST     2.5
+enum { SECTORS_MAX = 24, SECTORS_WANTED = 10, STATIONS_MIN = 4, PLACES = 9 };
+#define SECTOR_PX     96.0
+#define SECTOR_MIN_PX 24.0
+#define STATION_PX    1.5
+#define REACH_PX      15.0 /* of the band, on either side */
+#define REACH_MIN     2.5
 /* The band ends before the next edge: at this share of the way. */
 #define NEXT_EDGE_SHARE 0.45
 /* An arc's band ends at this share of its radius. */
 #define RADIUS_SHARE 0.6
 /* From so much reach on the levels may run with slopes. */
 #define SLOPE_REACH_PX 10.0
-#define CONTRAST_LEAST 6.0
+#define CONTRAST_MIN   6.0
 /* Dust differs from its side by this share of the contrast, so many blurs and px off the edge. */
 #define DUST_SHARE 0.2
 #define DUST_BLURS 3.0
@@ -181,7 +181,7 @@ static double find_reach(const fg_disc_work *work, const frame *f, double middle
     *near = fmin(*near, typical);
     reach = fmin(reach, NEXT_EDGE_SHARE * typical);
   }
-  return fmax(reach, REACH_LEAST);
+  return fmax(reach, REACH_MIN);
 }
 
 /* At the end of the band the next edge has taken Phi(-(1 - share) next / s) of the contrast: as
@@ -197,7 +197,7 @@ static size_t good_sectors(const fg_disc_work *work) {
   for (size_t s = 0; s < work->ring.sector_count; s++) {
     fg_step_fit *fit = &work->sectors[s];
     double step = fit->values[FG_STEP_OUTSIDE] - fit->values[FG_STEP_INSIDE];
-    fit->good = fit->good && fabs(step) > CONTRAST_LEAST;
+    fit->good = fit->good && fabs(step) > CONTRAST_MIN;
     good += fit->good;
   }
   return good;
@@ -211,7 +211,7 @@ static fg_status check_sectors(fg_context *ctx, const fg_disc_work *work) {
 
 /* The value that half of the good sectors are below. */
 static double typical(const fg_disc_work *work, int value) {
-  double values[SECTORS_MOST];
+  double values[SECTORS_MAX];
   size_t n = 0;
   for (size_t s = 0; s < work->ring.sector_count; s++)
     if (work->sectors[s].good) values[n++] = work->sectors[s].values[value];
@@ -242,8 +242,8 @@ static bool drop_dust(fg_disc_work *work) {
 }
 
 static size_t count_sectors(double length) {
-  double wanted = fmin(SECTORS_WANTED, floor(length / SECTOR_LEAST_PX));
-  return (size_t)fmin(fmax(fmax(length / SECTOR_PX, wanted), 1), SECTORS_MOST);
+  double wanted = fmin(SECTORS_WANTED, floor(length / SECTOR_MIN_PX));
+  return (size_t)fmin(fmax(fmax(length / SECTOR_PX, wanted), 1), SECTORS_MAX);
 }
 
 /* The band with its profiles, and a step without slopes to each. */
@@ -251,7 +251,7 @@ static fg_status open_band(fg_context *ctx, const fg_stretch *stretch, double mi
                            fg_disc_work *work, double *next_px) {
   frame f = frame_of(stretch);
   fg_ring *ring = &work->ring;
-  if (!(f.length >= STATIONS_LEAST * STATION_PX))
+  if (!(f.length >= STATIONS_MIN * STATION_PX))
     return fg_fail(ctx, FG_ERR_NUMERIC, "a side is too short");
   work->open = true;
   ring->circle.radius = stretch->radius;
@@ -310,7 +310,7 @@ static fg_status solve(fg_context *ctx, fg_disc_work *work, const fg_stretch *st
   edge->count = work->ring.station_count;
   FG_TRY(fg_memory_allocate(ctx, edge->count, sizeof *edge->stations, (void **)&edge->stations));
   FG_TRY(fg_disc_smooth_shape(ctx, work, edge));
-  edge->level_doubt_px = fg_disc_level_doubt(work, &tone->tone, edge);
+  edge->level_u_px = fg_disc_level_uncertainty(work, &tone->tone, edge);
   return fg_disc_solve(ctx, work, edge);
 }
 

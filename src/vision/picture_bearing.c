@@ -9,7 +9,7 @@
 #include "core/small_solve.h"
 #include "core/spread.h"
 
-enum { PROFILES_LEAST = 8, BLUR_TERMS = 5 };
+enum { PROFILES_MIN = 8, BLUR_TERMS = 5 };
 
 /* A median over n values has this over the mean's standard deviation. */
 #define MEDIAN_OVER_MEAN 1.2533
@@ -21,7 +21,7 @@ enum { PROFILES_LEAST = 8, BLUR_TERMS = 5 };
 /* Profiles of opposite quarters of the bearings show at least so much of it each. */
 #define QUARTER_SHARE 0.3
 /* Beyond so many px outwards the next thing may lie. */
-#define TURN_MOST_PX 10.0
+#define TURN_MAX_PX 10.0
 /* Flatbeds blur along the carriage by up to half more than across. */
 #define BLUR_RATIO  1.6
 #define BLUR_SIGMAS 5.0
@@ -50,7 +50,7 @@ static double median_share(const inspection *in, size_t i, double *sd) {
     in->scratch[n++] = (double)p->shares[i];
   }
   *sd = NAN;
-  if (n < PROFILES_LEAST || 2 * n < asked) return NAN;
+  if (n < PROFILES_MIN || 2 * n < asked) return NAN;
   double median = fg_select(in->scratch, n, n / 2);
   for (size_t k = 0; k < n; k++)
     in->scratch[k] = fabs(in->scratch[k] - median);
@@ -68,7 +68,7 @@ static double find_turn(const double *shares, const double *sd, int way, double 
   for (int i = first; i >= 1 && i < FG_SHARES - 1; i += way) {
     double at = -way * (shares[i - 1] + shares[i] + shares[i + 1]) / 3;
     double here = sqrt((sd[i - 1] * sd[i - 1] + sd[i] * sd[i] + sd[i + 1] * sd[i + 1]) / 9);
-    if (isnan(at) || fabs(fg_share_px((size_t)i)) > TURN_MOST_PX) break;
+    if (isnan(at) || fabs(fg_share_px((size_t)i)) > TURN_MAX_PX) break;
     if (at > extreme) {
       extreme = at;
       u_extreme = here;
@@ -170,13 +170,13 @@ static void inspect_blur(const inspection *in, fg_picture_state *state) {
     if (!fit_blur(in, limit, x, &u)) return;
     limit = blur_limit(in, x);
   }
-  double half = hypot(x[1], x[2]), least = fmax(x[0] - half, 0.01 * x[0]);
+  double half = hypot(x[1], x[2]), min = fmax(x[0] - half, 0.01 * x[0]);
   if (!(x[0] > 0) || u > 0.3 * x[0]) return;
   state->blur_px[0] = sqrt(x[0] + half);
-  state->blur_px[1] = sqrt(least);
+  state->blur_px[1] = sqrt(min);
   double direction = 0.5 * atan2(x[2], x[1]) * 180 / M_PI;
   state->blur_direction_deg = direction < 0 ? direction + 180 : direction;
-  if (x[0] + half > BLUR_RATIO * BLUR_RATIO * least && half > BLUR_SIGMAS * u)
+  if (x[0] + half > BLUR_RATIO * BLUR_RATIO * min && half > BLUR_SIGMAS * u)
     state->findings |= FG_PICTURE_UNEVEN_BLUR;
 }
 
@@ -213,7 +213,7 @@ static double median_blur(const inspection *in) {
 fg_status fg_picture_inspect_profiles(fg_context *ctx, const fg_edge_profile *profiles,
                                       size_t count, fg_picture_state *state) {
   inspection in = {.profiles = profiles, .count = count, .quarter = -1};
-  if (count < PROFILES_LEAST) return FG_OK;
+  if (count < PROFILES_MIN) return FG_OK;
   FG_TRY(fg_memory_allocate(ctx, count, sizeof *in.scratch, (void **)&in.scratch));
   in.blur_px = median_blur(&in);
   inspect_turns(&in, state);

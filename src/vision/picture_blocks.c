@@ -7,8 +7,8 @@ enum { PHASES = 8 };
 /* Pixels within this share of the contrast of their tile's background are looked at. */
 #define FLAT_SHARE  0.06
 #define FLAT_NOISES 3.0
-#define RATIO_MOST  9.99
-#define RATIO_LEAST 0.15
+#define RATIO_MAX   9.99
+#define RATIO_MIN   0.15
 /* Either axis has one phase that leads by so many sd, and both together by so many: of the largest
  * of eight chances one in 100 leads by 2.5, of both axes at once by 6 one in 10 million. Few blocks
  * step where a picture is quite flat, so more is not asked. */
@@ -47,24 +47,24 @@ typedef struct leader {
 } leader;
 
 static leader find_leader(const steps *s, int axis) {
-  double means[PHASES], sum = 0, most = -1, second = -1, u = 0;
+  double means[PHASES], sum = 0, max = -1, second = -1, u = 0;
   size_t phase = 0;
   for (size_t k = 0; k < PHASES; k++) {
     if (s->count[axis][k] < 100) return (leader){NAN, NAN, 0};
     means[k] = s->sum[axis][k] / s->count[axis][k];
     sum += means[k];
-    if (means[k] > most) {
-      second = most;
-      most = means[k];
+    if (means[k] > max) {
+      second = max;
+      max = means[k];
       phase = k;
       u = sqrt(s->squares[axis][k]) / s->count[axis][k];
     } else {
       second = fmax(second, means[k]);
     }
   }
-  double others = (sum - most) / (PHASES - 1);
-  return (leader){.sigmas = u > 0 ? (most - second) / u : 0,
-                  .ratio = others > 0 ? fmin(most / others - 1, RATIO_MOST) : RATIO_MOST,
+  double others = (sum - max) / (PHASES - 1);
+  return (leader){.sigmas = u > 0 ? (max - second) / u : 0,
+                  .ratio = others > 0 ? fmin(max / others - 1, RATIO_MAX) : RATIO_MAX,
                   .phase = phase};
 }
 
@@ -81,7 +81,7 @@ void fg_picture_inspect_blocks(const fg_tile_choice *choice, int bytes_per_pixel
   const size_t first[2] = {(x.phase + 1) % PHASES, (y.phase + 1) % PHASES};
   bool leads = fmin(x.sigmas, y.sigmas) > LEAD_SIGMAS && hypot(x.sigmas, y.sigmas) > BOTH_SIGMAS;
   state->block_noise = isnan(x.ratio) || isnan(y.ratio) ? NAN : leads ? fmin(x.ratio, y.ratio) : 0;
-  if (!(state->block_noise > RATIO_LEAST)) return;
+  if (!(state->block_noise > RATIO_MIN)) return;
   state->findings |= FG_PICTURE_BLOCK_NOISE;
   state->block_quality = fg_picture_jpeg_quality(choice, bytes_per_pixel, first);
 }

@@ -14,14 +14,14 @@
 
 enum { PLACES = 10, CUTS = 20 };
 /* Less than this of the contrast tells no profile. */
-#define VISIBLE_LEAST 0.01
+#define VISIBLE_MIN 0.01
 /* A profile that misses by this share of its own width, root mean square, beyond the best is still
  * allowed: lenses and the tone curve before the cut bend it by as much. */
 #define MISFIT_SHARE 0.02
 /* From share 0.05 to 0.95 an uncut edge is so many blurs wide. A picture that shows less than a
  * quarter of an edge's width is one of few levels. */
 #define WHOLE_WIDTH 3.29
-#define BLURS_MOST  4.0
+#define BLURS_MAX   4.0
 /* Of the largest shift that is allowed: uniform up to it would be 1 / 1.73. */
 #define SD_OF_LARGEST 0.6
 
@@ -103,7 +103,7 @@ static cut_fit fit_cuts(const cut_profile *profile, double a, double b) {
     misfit += miss * miss / PLACES;
   }
   double seen = fabs(profile->px[PLACES - 1] - profile->px[0]) / WHOLE_WIDTH;
-  double blur = fmax(fmin(fabs(slope), BLURS_MOST * seen), FG_HIDDEN_BLUR_PX);
+  double blur = fmax(fmin(fabs(slope), BLURS_MAX * seen), FG_HIDDEN_BLUR_PX);
   return (cut_fit){sqrt(misfit), blur * fabs(gsl_cdf_ugaussian_Pinv(0.5 + 0.5 * (a - b)))};
 }
 
@@ -114,7 +114,7 @@ static double largest_shift(const cut_profile *profile, double limit_px, double 
   for (int i = 0; i < (profile->open[0] ? CUTS : 1); i++)
     for (int j = 0; j < (profile->open[1] ? CUTS : 1); j++) {
       double a = cut_at(i), b = cut_at(j);
-      if (1 - a - b < VISIBLE_LEAST) continue;
+      if (1 - a - b < VISIBLE_MIN) continue;
       cut_fit fit = fit_cuts(profile, a, b);
       *best_px = fmin(*best_px, fit.misfit_px);
       if (fit.misfit_px <= limit_px) largest = fmax(largest, fit.shift_px);
@@ -129,7 +129,7 @@ void fg_picture_inspect_cut(const fg_edge_profile *profiles, size_t count, doubl
   state->seen_blur = fmin(1, blur_px / FG_HIDDEN_BLUR_PX);
   if (!(state->findings & FG_PICTURE_CLIPPED)) return;
   /* Without a profile that tells: half of the scale or more may be cut. */
-  double shift = FG_HIDDEN_BLUR_PX * gsl_cdf_ugaussian_Pinv(1 - VISIBLE_LEAST / 2);
+  double shift = FG_HIDDEN_BLUR_PX * gsl_cdf_ugaussian_Pinv(1 - VISIBLE_MIN / 2);
   if (take_profile(profiles, count, state, &profile)) {
     double width = fabs(profile.px[PLACES - 1] - profile.px[0]);
     largest_shift(&profile, 0, &best);

@@ -7,9 +7,9 @@
 #include "scan/jpeg_tables.h"
 #include "vision/picture.h"
 
-enum { SIDE = 8, FIRST_AC = 1, QUALITIES = 100, COEFFICIENTS_LEAST = 200 };
-#define NEAR       1.0 /* 3.4 sd of the pixels' rounding; what is nearer to 0 tells nothing */
-#define FITS_LEAST 0.9 /* share of coefficients */
+enum { SIDE = 8, FIRST_AC = 1, QUALITIES = 100, COEFFICIENTS_MIN = 200 };
+#define NEAR     1.0 /* 3.4 sd of the pixels' rounding; what is nearer to 0 tells nothing */
+#define FITS_MIN 0.9 /* share of coefficients */
 
 typedef struct quality_search {
   double cosines[SIDE][SIDE];
@@ -77,9 +77,9 @@ int fg_picture_jpeg_quality(const fg_tile_choice *choice, int bytes_per_pixel,
   prepare(&s);
   for (size_t i = 0; i < choice->count; i++)
     add_tile(&s, choice->tiles[i], bytes_per_pixel, first);
-  if (s.count < COEFFICIENTS_LEAST) return 0;
+  if (s.count < COEFFICIENTS_MIN) return 0;
   for (int q = 0; q < QUALITIES; q++)
-    if (s.fits[q] >= FITS_LEAST * s.count && s.beyond_chance[q] > 0 &&
+    if (s.fits[q] >= FITS_MIN * s.count && s.beyond_chance[q] > 0 &&
         (!best || s.beyond_chance[q] > s.beyond_chance[best - 1]))
       best = q + 1;
   return best;

@@ -9,12 +9,12 @@
 #define STEP_SHARE  0.02
 #define STEP_SIGMAS 2.5
 /* A small disc has few pixels; they suffice to tell levels that are very few. */
-enum { PIXELS_LEAST = 4000, PIXELS_FEW = 400, LEVELS_FEW = 16 };
+enum { PIXELS_MIN = 4000, PIXELS_FEW = 400, LEVELS_FEW = 16 };
 /* The ends of what is in use: but for this share of the pixels. */
 #define END_SHARE 0.002
 /* Counts that are to be expected at a level tell whether it is missing from here on; they come from
  * so many levels on either side. */
-#define EXPECTED_LEAST 1.0
+#define EXPECTED_MIN 1.0
 enum { AROUND = 12 };
 /* Shares count beyond so many of their own deviations. */
 #define GAPS_SIGMAS 4.0
@@ -67,7 +67,7 @@ static level_share missing_between(const fg_value_counts *counts, int low, int h
   double known = 0, missing = 0, variance = 0;
   for (int i = low + 1; i < high; i++) {
     double expected = expected_at(counts, i, low, high), chance = exp(-expected);
-    if (expected < EXPECTED_LEAST) continue;
+    if (expected < EXPECTED_MIN) continue;
     known++;
     missing += (counts->of[i] == 0) - chance;
     variance += chance * (1 - chance);
@@ -78,19 +78,19 @@ static level_share missing_between(const fg_value_counts *counts, int low, int h
 
 static void inspect_gaps(const fg_value_counts *counts, int low, int high,
                          fg_picture_state *state) {
-  level_share least = {INFINITY, 0}, most = {-INFINITY, 0};
+  level_share min = {INFINITY, 0}, max = {-INFINITY, 0};
   const level_share all = missing_between(counts, low, high);
   state->missing_levels = fmax(all.share, 0);
   if (isnan(all.share)) state->missing_levels = NAN;
   for (int k = 0; k < PARTS; k++) {
     const level_share part = missing_between(counts, low + (high - low) * k / PARTS,
                                              low + (high - low) * (k + 1) / PARTS);
-    if (part.share < least.share) least = part;
-    if (part.share > most.share) most = part;
+    if (part.share < min.share) min = part;
+    if (part.share > max.share) max = part;
   }
-  double difference = most.share - least.share;
+  double difference = max.share - min.share;
   if (all.share > fmax(GAPS_SHARE, GAPS_SIGMAS * all.sd) &&
-      difference > fmax(GAPS_DIFFERENCE, GAPS_SIGMAS * hypot(least.sd, most.sd)))
+      difference > fmax(GAPS_DIFFERENCE, GAPS_SIGMAS * hypot(min.sd, max.sd)))
     state->findings |= FG_PICTURE_LEVEL_GAPS;
 }
 
@@ -105,7 +105,7 @@ static void inspect_steps(const fg_value_counts *counts, const double levels[2],
     used += counts->of[i] > 0;
   }
   double step = contrast / (used + 1);
-  bool enough = counts->total > PIXELS_LEAST || (used < LEVELS_FEW && counts->total > PIXELS_FEW);
+  bool enough = counts->total > PIXELS_MIN || (used < LEVELS_FEW && counts->total > PIXELS_FEW);
   /* Where noise is what a fit leaves, it holds the steps of two levels: any other noise would have
    * put more levels between them. */
   bool two = state->gray_levels <= 2;

@@ -6,9 +6,9 @@
 
 enum { LAG_FAR = 6, ROW_STEP = 2 };
 /* Noise of flatbeds at their best resolution is correlated by up to 0.7 of neighbours. */
-#define CORRELATION_MOST 0.85
+#define CORRELATION_MAX 0.85
 /* Rounding to whole counts is noise that has nothing to say of the scanner. */
-#define NOISE_LEAST 0.2
+#define NOISE_MIN 0.2
 
 /* Mean squared differences of pixels that lie one and six apart. */
 typedef struct tile_noise {
@@ -49,10 +49,10 @@ void fg_picture_inspect_noise(const fg_tile_choice *flat, int bytes_per_pixel,
       near[axis][i] = noise.far > 0 ? noise.near[axis] / noise.far : 1;
   }
   state->noise = sqrt(0.5 * fg_select(far, flat->count, flat->count / 2));
-  if (state->noise < NOISE_LEAST) return;
+  if (state->noise < NOISE_MIN) return;
   for (int axis = 0; axis < 2; axis++) {
     state->noise_correlation[axis] = 1 - fg_select(near[axis], flat->count, flat->count / 2);
-    if (state->noise_correlation[axis] > CORRELATION_MOST)
+    if (state->noise_correlation[axis] > CORRELATION_MAX)
       state->findings |= FG_PICTURE_CORRELATED_NOISE;
   }
 }

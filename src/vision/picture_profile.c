@@ -6,9 +6,9 @@
 
 #include "core/select.h"
 
-enum { BINS_MOST = 256 };
+enum { BINS_MAX = 256 };
 /* Less contrast than this many counts is no edge. */
-#define CONTRAST_LEAST 6.0
+#define CONTRAST_MIN 6.0
 
 /* Distance of a bin from the source's middle, outwards. */
 static double outwards(const fg_profile_source *s, const fg_profile_bin *bin) {
@@ -22,9 +22,9 @@ static const fg_profile_bin *bin_at(const fg_profile_source *s, size_t i) {
 
 /* Median value of the bins between two distances outwards. */
 static double level_between(const fg_profile_source *s, double from, double to) {
-  double values[BINS_MOST];
+  double values[BINS_MAX];
   size_t n = 0;
-  for (size_t i = 0; i < s->count && n < BINS_MOST; i++) {
+  for (size_t i = 0; i < s->count && n < BINS_MAX; i++) {
     double at = outwards(s, &s->bins[i]);
     if (s->bins[i].count > 0 && at >= from && at <= to) values[n++] = s->bins[i].value;
   }
@@ -52,7 +52,7 @@ bool fg_edge_profile_take(const fg_profile_source *s, fg_edge_profile *profile) 
   double inside = level_between(s, -s->plateau_px, s->plateau_px);
   double outside = level_between(s, last_px - s->reach_px, INFINITY);
   double edge = find_crossing(s, inside, outside);
-  if (!(fabs(outside - inside) > CONTRAST_LEAST) || isnan(edge)) return false;
+  if (!(fabs(outside - inside) > CONTRAST_MIN) || isnan(edge)) return false;
   double sums[FG_SHARES] = {0}, counts[FG_SHARES] = {0};
   for (size_t i = 0; i < s->count; i++) {
     const fg_profile_bin *bin = &s->bins[i];

@@ -6,7 +6,7 @@
 #include "vision/picture.h"
 #include "vision/picture_profile.h"
 
-enum { PIXEL_STEP = 5, TILES_MOST = 16 };
+enum { PIXEL_STEP = 5, TILES_MAX = 16 };
 #define OUTER_SHARE 0.25 /* of the band's reach: the levels' stretches at its ends */
 
 /* A straight edge has one bearing, which is of no matter here. */
@@ -62,8 +62,8 @@ static bool is_chosen(const fg_tile_choice *choice, const fg_tile *tile) {
 static void choose_around(const fg_disc_work *work, fg_tile_choice *choice) {
   const fg_circle *c = &work->ring.circle;
   choice->count = 0;
-  for (int k = 0; k < TILES_MOST; k++) {
-    double angle = (k + 0.5) * 2 * M_PI / TILES_MOST;
+  for (int k = 0; k < TILES_MAX; k++) {
+    double angle = (k + 0.5) * 2 * M_PI / TILES_MAX;
     double x = (c->x + c->radius * cos(angle)) / work->shape->scale[0];
     double y = (c->y + c->radius * sin(angle)) / work->shape->scale[1];
     int32_t column = (int32_t)floor(x / FG_TILE_PX), row = (int32_t)floor(y / FG_TILE_PX);

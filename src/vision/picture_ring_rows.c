@@ -17,17 +17,17 @@
 
 /* Base: a circle and what different scales of x and y, or a blur of one side, make of it. Its
  * rival has as many values as all jumps and more. */
-enum { BASE = 7, RIVAL = 27, JUMPS_MOST = 6, STATIONS_LEAST = 120, ENDS = 24 };
+enum { BASE = 7, RIVAL = 27, JUMPS_MAX = 6, STATIONS_MIN = 120, ENDS = 24 };
 /* What bends beside a step: a cubic over so many stations of one limb. */
 enum { BENDS = 4, FIT_REACH = 12, LIMBS = 2 };
-#define GAIN_LEAST    40.0 /* of squares, over the variance: two values explain 2 by chance */
-#define JUMP_LEAST_PX 0.5
-#define LIMB_SHARE    0.2 /* the limb that steps less does so by that share of the other */
-#define STEP_SIGMAS   4.0 /* of the expected step, for a limb to be asked */
-#define STEP_SHARE    0.5 /* that the step may differ by from what is expected */
-#define RIVAL_SHARE   1.1
-#define CUT_SIGMAS    4.0 /* residuals count as no larger: dust */
-#define ROW_STEP_PX   1.0
+#define GAIN_MIN    40.0 /* of squares, over the variance: two values explain 2 by chance */
+#define JUMP_MIN_PX 0.5
+#define LIMB_SHARE  0.2 /* the limb that steps less does so by that share of the other */
+#define STEP_SIGMAS 4.0 /* of the expected step, for a limb to be asked */
+#define STEP_SHARE  0.5 /* that the step may differ by from what is expected */
+#define RIVAL_SHARE 1.1
+#define CUT_SIGMAS  4.0 /* residuals count as no larger: dust */
+#define ROW_STEP_PX 1.0
 /* Pixels of several rows tell where an edge is, so one jump looks like two of one limb each that
  * lie a few rows apart; of real ones so near to each other the sum is found. */
 #define APART_PX 12.0
@@ -49,7 +49,7 @@ typedef struct ring_search {
   double *scratch; /* count */
   double noise;    /* sd of one station, from neighbours */
   double sd;       /* of the residuals, not less than the noise */
-  row_jump jumps[JUMPS_MOST];
+  row_jump jumps[JUMPS_MAX];
   size_t jump_count;
 } ring_search;
 
@@ -198,9 +198,9 @@ static void fit_without(ring_search *s, size_t without) {
 /* Adds jumps while they explain more than chance. */
 static void find_jumps(ring_search *s) {
   add_harmonics(s, BASE);
-  while (s->jump_count < JUMPS_MOST) {
+  while (s->jump_count < JUMPS_MAX) {
     row_jump jump = find_jump(s, s->jump_count);
-    if (!(jump.gain > GAIN_LEAST * s->noise * s->noise)) break;
+    if (!(jump.gain > GAIN_MIN * s->noise * s->noise)) break;
     s->jumps[s->jump_count++] = jump;
     add_jump(s, &jump);
   }
@@ -284,27 +284,27 @@ static void find_again(ring_search *s) {
 }
 
 /* Fits the base and all jumps. Squares that each must explain beside the others. */
-static double find_gain_least(ring_search *s) {
+static double find_gain_min(ring_search *s) {
   fit_without(s, s->jump_count);
   s->sd = fmax(robust_sd_of_rest(s), s->noise);
-  return GAIN_LEAST * variance_of(s) * correlation_of(s);
+  return GAIN_MIN * variance_of(s) * correlation_of(s);
 }
 
 /* Leaves out the jump that explains least, where that is chance or too small. */
 static bool drop_weakest(ring_search *s) {
-  double least = find_gain_least(s);
+  double min = find_gain_min(s);
   size_t weakest = 0;
   for (size_t k = 1; k < s->jump_count; k++)
     if (s->jumps[k].gain < s->jumps[weakest].gain) weakest = k;
   const row_jump *jump = &s->jumps[weakest];
-  if (jump->gain > least && hypot(jump->dx, jump->dy) > JUMP_LEAST_PX) return false;
+  if (jump->gain > min && hypot(jump->dx, jump->dy) > JUMP_MIN_PX) return false;
   s->jumps[weakest] = s->jumps[--s->jump_count];
   return true;
 }
 
 /* Whether jumps, and not the part's form, are what the edge shows. */
 static bool is_explained(ring_search *s) {
-  find_gain_least(s);
+  find_gain_min(s);
   double own = variance_of(s);
   add_harmonics(s, RIVAL);
   return own < RIVAL_SHARE * variance_of(s);
@@ -343,7 +343,7 @@ fg_status fg_picture_inspect_ring_rows(fg_context *ctx, const fg_disc_work *work
   FG_TRY_EXIT(fg_memory_allocate(ctx, edge->count, sizeof *s.rows, (void **)&s.rows));
   FG_TRY_EXIT(fg_memory_allocate(ctx, edge->count, sizeof *s.scratch, (void **)&s.scratch));
   take_stations(work, edge, &s);
-  if (s.count >= STATIONS_LEAST && 4 * s.count > 3 * edge->count)
+  if (s.count >= STATIONS_MIN && 4 * s.count > 3 * edge->count)
     search_rows(&s, work->shape->scale[1], state);
 exit:
   free(s.rows);

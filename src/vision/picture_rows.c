@@ -14,15 +14,15 @@
 enum { STRETCHES = 2, PEAK = 5, ENDS = 24 };
 static const int stretches[STRETCHES][2] = {{1, 3}, {4, 7}};
 /* What bends at a step is a cubic over so many stations. */
-enum { BENDS = 4, FIT_REACH = 12, SHIFT_MOST = 5 };
+enum { BENDS = 4, FIT_REACH = 12, SHIFT_MAX = 5 };
 /* An edge that runs along the rows does not say where it crosses one. */
-#define CROSSING_LEAST 0.2
+#define CROSSING_MIN 0.2
 /* A fillet bends both edges at one station, a jump moves them at one row: where these lie so many
  * rows apart they can be told. An edge that runs across the rows shows no jump. */
-#define FIT_SIGMAS    5.0
-#define TOLD_ROWS     3.5
-#define STEP_SIGMAS   4.0
-#define JUMP_LEAST_PX 0.5
+#define FIT_SIGMAS  5.0
+#define TOLD_ROWS   3.5
+#define STEP_SIGMAS 4.0
+#define JUMP_MIN_PX 0.5
 /* Both edges agree in row and in size, and places that show one jump do. */
 #define SAME_ROWS      2.0
 #define APART_STATIONS 2.0
@@ -32,11 +32,11 @@ enum { BENDS = 4, FIT_REACH = 12, SHIFT_MOST = 5 };
 #define SAME_SHARE  0.15
 #define SAME_PX     0.2
 
-/* Tiles in which a row must be the same as the next; noise of less than NOISE_LEAST counts would
+/* Tiles in which a row must be the same as the next; noise of less than NOISE_MIN counts would
  * leave it so. Where more than a tenth of the rows are doubled the driver has enlarged the picture.
  */
 enum { DOUBLED_TILES = 3 };
-#define NOISE_LEAST   0.4
+#define NOISE_MIN     0.4
 #define DOUBLED_SHARE 0.1
 
 typedef struct crossing {
@@ -138,7 +138,7 @@ static step_fit fit_step(const row_search *r, size_t c, int side, size_t normal)
 /* The step that explains the edge around a peak best. */
 static step_fit find_step(const row_search *r, size_t i, int side) {
   step_fit best = {.misfit = INFINITY};
-  for (size_t c = i - SHIFT_MOST; c <= i + SHIFT_MOST; c++) {
+  for (size_t c = i - SHIFT_MAX; c <= i + SHIFT_MAX; c++) {
     step_fit fit = fit_step(r, c, side, i);
     if (fit.misfit < best.misfit) best = fit;
   }
@@ -158,12 +158,12 @@ static fg_status find_crossings(fg_context *ctx, row_search *r, int side) {
   double sd = steps_sd(r);
   for (size_t i = 0; i < r->work->reference->count; i++) {
     const fg_reference_station *at = &r->work->reference->stations[i];
-    if (!(fabs(r->steps[i]) > STEP_SIGMAS * sd) || fabs(at->ty) < CROSSING_LEAST ||
+    if (!(fabs(r->steps[i]) > STEP_SIGMAS * sd) || fabs(at->ty) < CROSSING_MIN ||
         fabs(at->tx) * r->work->width_px < TOLD_ROWS || !is_peak(r, i))
       continue;
     step_fit fit = find_step(r, i, side);
     double jump = fit.step * (at->ty > 0 ? 1 : -1) / at->tx;
-    if (!(fabs(jump) > JUMP_LEAST_PX && fabs(fit.step) > FIT_SIGMAS * fit.sd)) continue;
+    if (!(fabs(jump) > JUMP_MIN_PX && fabs(fit.step) > FIT_SIGMAS * fit.sd)) continue;
     double y = 0.5 * (edge_at(r, fit.at, side).y + edge_at(r, fit.at + 1, side).y);
     FG_TRY(fg_memory_reserve(ctx, r->crossing_count + 1, sizeof *r->crossings, &r->capacity,
                              (void **)&r->crossings));
@@ -263,7 +263,7 @@ static double count_doubled(const fg_tiles *tiles, double *rows) {
 
 static void inspect_doubled(const fg_tiles *tiles, fg_picture_state *state) {
   double rows, doubled = count_doubled(tiles, &rows);
-  if (!(state->noise > NOISE_LEAST) || doubled < 1) return;
+  if (!(state->noise > NOISE_MIN) || doubled < 1) return;
   if (doubled > DOUBLED_SHARE * rows) {
     state->findings |= FG_PICTURE_CORRELATED_NOISE;
     return;

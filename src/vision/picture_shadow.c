@@ -8,7 +8,7 @@
 #include "core/spread.h"
 #include "vision/picture_profile.h"
 
-enum { BANDS_LEAST = 8, PER_BEARING_LEAST = 3, COURSE_TERMS = 5 };
+enum { BANDS_MIN = 8, PER_BEARING_MIN = 3, COURSE_TERMS = 5 };
 
 /* A median over n values has this over the mean's standard deviation. */
 #define MEDIAN_OVER_MEAN 1.2533
@@ -76,7 +76,7 @@ static double band_at(const inspection *in, double bearing, size_t *n) {
     if (fabs(off) <= in->window && !isnan(in->bands[k].share))
       in->scratch[(*n)++] = in->bands[k].share;
   }
-  return *n < PER_BEARING_LEAST ? NAN : fg_select(in->scratch, *n, *n / 2);
+  return *n < PER_BEARING_MIN ? NAN : fg_select(in->scratch, *n, *n / 2);
 }
 
 /* Bearings of too few bands take the deeper of the nearest known ones on either side. */
@@ -98,7 +98,7 @@ static void inspect(const inspection *in, fg_picture_state *state) {
   size_t n = 0;
   for (size_t k = 0; k < in->count; k++)
     if (!isnan(in->bands[k].share)) in->scratch[n++] = in->bands[k].share;
-  if (n < BANDS_LEAST) return;
+  if (n < BANDS_MIN) return;
   double usual = fg_select(in->scratch, n, n / 2);
   double noise = fmin(noise_of_neighbours(in), noise_about_course(in));
   for (int i = 0; i < FG_PICTURE_BEARINGS; i++) {

@@ -8,7 +8,7 @@
 #include "vision/picture.h"
 #include "vision/picture_profile.h"
 
-enum { PIXEL_STEP = 5, TILES_MOST = 12 };
+enum { PIXEL_STEP = 5, TILES_MAX = 12 };
 #define PLATEAU_SHARE 0.15 /* half of the stretch across the strip whose median is its level */
 #define OUTER_PX      2.5
 #define CLIPPED_NOISE 1.0
@@ -68,17 +68,17 @@ static bool is_flat(const fg_segmentation *seg, int32_t column, int32_t row) {
   return true;
 }
 
-/* Up to TILES_MOST of the flat tiles, spread over all. */
+/* Up to TILES_MAX of the flat tiles, spread over all. */
 static void choose_flat(const fg_segmentation *seg, fg_tile_choice *choice) {
   size_t seen = 0, step = 1;
   choice->count = 0;
   for (int32_t row = 0; row < seg->tiles->rows; row++)
     for (int32_t column = 0; column < seg->tiles->columns; column++) {
       if (!is_flat(seg, column, row) || seen++ % step) continue;
-      if (choice->count == TILES_MOST) {
-        for (size_t i = 0; 2 * i < TILES_MOST; i++)
+      if (choice->count == TILES_MAX) {
+        for (size_t i = 0; 2 * i < TILES_MAX; i++)
           choice->tiles[i] = choice->tiles[2 * i];
-        choice->count = TILES_MOST / 2;
+        choice->count = TILES_MAX / 2;
         step *= 2;
       }
       choice->tiles[choice->count++] = fg_tiles_at(seg->tiles, column, row);
@@ -89,9 +89,9 @@ static void choose_flat(const fg_segmentation *seg, fg_tile_choice *choice) {
 static void choose_along(const fg_edge_work *work, fg_tile_choice *choice) {
   size_t count = work->reference->count;
   choice->count = 0;
-  for (size_t k = 0; k < TILES_MOST; k++) {
+  for (size_t k = 0; k < TILES_MAX; k++) {
     const fg_reference_station *r =
-        &work->reference->stations[(2 * k + 1) * count / (2 * TILES_MOST)];
+        &work->reference->stations[(2 * k + 1) * count / (2 * TILES_MAX)];
     int32_t column = (int32_t)(r->x / FG_TILE_PX), row = (int32_t)(r->y / FG_TILE_PX);
     if (r->x < 0 || r->y < 0 || (int64_t)(column + 1) * FG_TILE_PX > work->tiles->width_px ||
         (int64_t)(row + 1) * FG_TILE_PX > work->tiles->height_px)
@@ -221,10 +221,10 @@ fg_status fg_picture_of_strip(fg_context *ctx, const fg_edge_work *work, fg_pict
   fg_edge_profile *profiles = NULL;
   double *scratch = NULL;
   fg_status status = FG_OK;
-  size_t most = 2 * work->segment_count;
-  if (!most) return FG_OK;
-  FG_TRY_EXIT(fg_memory_allocate(ctx, most, sizeof *profiles, (void **)&profiles));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, most, sizeof *scratch, (void **)&scratch));
+  size_t max = 2 * work->segment_count;
+  if (!max) return FG_OK;
+  FG_TRY_EXIT(fg_memory_allocate(ctx, max, sizeof *profiles, (void **)&profiles));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, max, sizeof *scratch, (void **)&scratch));
   FG_TRY_EXIT(inspect(ctx, work, profiles, scratch, state));
 exit:
   free(profiles);

@@ -27,16 +27,16 @@ double fg_straight_left(const fg_straight *line, fg_point p) {
 static double find_farthest(const fg_point *points, size_t count, size_t first, size_t last,
                             size_t *farthest) {
   const fg_point *a = &points[first], *b = &points[last % count];
-  double dx = b->x - a->x, dy = b->y - a->y, length = hypot(dx, dy), most = -1;
+  double dx = b->x - a->x, dy = b->y - a->y, length = hypot(dx, dy), max = -1;
   for (size_t i = first + 1; i < last; i++) {
     double x = points[i].x - a->x, y = points[i].y - a->y;
     double off = length > 1e-9 ? fabs(dx * y - dy * x) / length : hypot(x, y);
-    if (off > most) {
-      most = off;
+    if (off > max) {
+      max = off;
       *farthest = i;
     }
   }
-  return most;
+  return max;
 }
 
 typedef struct corners {
@@ -123,12 +123,12 @@ static void join(fg_polygon *p, double tolerance) {
 
 /* The line starts at a corner: the point farthest from its middle one. */
 static size_t find_start(const fg_point *points, size_t count, const fg_point *from) {
-  double most = -1;
+  double max = -1;
   size_t start = 0;
   for (size_t i = 0; i < count; i++) {
     double off = hypot(points[i].x - from->x, points[i].y - from->y);
-    if (off > most) {
-      most = off;
+    if (off > max) {
+      max = off;
       start = i;
     }
   }

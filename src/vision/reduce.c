@@ -43,10 +43,10 @@ static uint8_t cell_at(const fg_tiles *tiles, const fg_reduced *r, int32_t i, in
                      (size_t)(y % FG_TILE_PX) * FG_TILE_PX + (size_t)(x % FG_TILE_PX));
 }
 
-fg_status fg_reduce(fg_context *ctx, const fg_tiles *tiles, int64_t cells_most, fg_reduced *out) {
+fg_status fg_reduce(fg_context *ctx, const fg_tiles *tiles, int64_t cells_max, fg_reduced *out) {
   int64_t cell = 2;
   memset(out, 0, sizeof *out);
-  while ((tiles->width_px / cell) * (tiles->height_px / cell) > cells_most ||
+  while ((tiles->width_px / cell) * (tiles->height_px / cell) > cells_max ||
          tiles->width_px / cell > SIDE_MAX || tiles->height_px / cell > SIDE_MAX)
     cell *= 2;
   out->cell_px = (int32_t)cell;

@@ -10,8 +10,8 @@ typedef struct fg_reduced {
   int32_t cell_px; /* a cell is the mean of cell_px × cell_px pixels */
 } fg_reduced;
 
-/* The finest reduction (2, 4, 8, ... px) that has at most `cells_most` cells. Where a tile was not
+/* The finest reduction (2, 4, 8, ... px) that has at most `cells_max` cells. Where a tile was not
  * kept its block means stand for the pixels. The caller frees `cells`. */
-fg_status fg_reduce(fg_context *ctx, const fg_tiles *tiles, int64_t cells_most, fg_reduced *out);
+fg_status fg_reduce(fg_context *ctx, const fg_tiles *tiles, int64_t cells_max, fg_reduced *out);
 
 #endif

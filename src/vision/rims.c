@@ -10,7 +10,7 @@
 enum {
   ROW_STEP = 4, /* rims that no such row crosses are specks */
   COUNTS = FG_LEVEL_COUNTS,
-  CONTRAST_LEAST = 12, /* counts */
+  CONTRAST_MIN = 12, /* counts */
 };
 /* The levels must differ by so many times the spread of the counts on either side. */
 #define CONTRAST_SPREADS 3.0
@@ -94,10 +94,10 @@ static void describe(const tracer *t, fg_rim *rim) {
                         high[1] > (double)t->tiles->height_px - 2;
 }
 
-static fg_status keep(fg_context *ctx, const tracer *t, double least_px, fg_rims *rims) {
+static fg_status keep(fg_context *ctx, const tracer *t, double min_px, fg_rims *rims) {
   fg_rim rim = {.count = t->count};
   describe(t, &rim);
-  if (hypot(rim.box_px[2], rim.box_px[3]) < least_px) {
+  if (hypot(rim.box_px[2], rim.box_px[3]) < min_px) {
     rims->specks++;
     return FG_OK;
   }
@@ -110,7 +110,7 @@ static fg_status keep(fg_context *ctx, const tracer *t, double least_px, fg_rims
 }
 
 /* Rims that cross a row of one tile. */
-static fg_status trace_row(fg_context *ctx, tracer *t, int32_t x0, int32_t y, double least_px,
+static fg_status trace_row(fg_context *ctx, tracer *t, int32_t x0, int32_t y, double min_px,
                            fg_rims *rims) {
   int32_t end = x0 + FG_TILE_PX;
   if (end > t->tiles->width_px) end = (int32_t)t->tiles->width_px + 1;
@@ -119,19 +119,19 @@ static fg_status trace_row(fg_context *ctx, tracer *t, int32_t x0, int32_t y, do
     bool right = is_hot(t, x, y);
     if (left != right && !is_seen(t, x, y)) {
       FG_TRY(left ? follow(ctx, t, x, y, 1) : follow(ctx, t, x, y + 1, 3));
-      FG_TRY(keep(ctx, t, least_px, rims));
+      FG_TRY(keep(ctx, t, min_px, rims));
     }
     left = right;
   }
   return FG_OK;
 }
 
-static fg_status trace_tiles(fg_context *ctx, tracer *t, double least_px, fg_rims *rims) {
+static fg_status trace_tiles(fg_context *ctx, tracer *t, double min_px, fg_rims *rims) {
   for (int32_t row = 0; row < t->tiles->rows; row++)
     for (int32_t y = row * FG_TILE_PX; y < (row + 1) * FG_TILE_PX; y += ROW_STEP)
       for (int32_t column = 0; column < t->tiles->columns && y < t->tiles->height_px; column++)
         if (t->mine[(size_t)row * (size_t)t->tiles->columns + (size_t)column])
-          FG_TRY(trace_row(ctx, t, column * FG_TILE_PX, y, least_px, rims));
+          FG_TRY(trace_row(ctx, t, column * FG_TILE_PX, y, min_px, rims));
   return FG_OK;
 }
 
@@ -147,7 +147,7 @@ fg_status fg_rims_trace(fg_context *ctx, const fg_tiles *tiles, const fg_island 
                                  (void **)&t.seen));
   for (size_t i = 0; i < island->count; i++)
     t.mine[island->tiles[i]] = 1;
-  FG_TRY_EXIT(trace_tiles(ctx, &t, options->least_px, rims));
+  FG_TRY_EXIT(trace_tiles(ctx, &t, options->min_px, rims));
 exit:
   free(t.mine);
   free(t.seen);
@@ -220,6 +220,6 @@ fg_two_levels fg_two_levels_find(const fg_tiles *tiles, const fg_island *island)
   double spread = fmax(levels.low - quantile(counts, 0, middle, 0.16),
                        quantile(counts, middle + 1, COUNTS - 1, 0.84) - levels.high);
   double contrast = levels.high - levels.low;
-  levels.found = contrast > CONTRAST_LEAST && contrast > CONTRAST_SPREADS * spread;
+  levels.found = contrast > CONTRAST_MIN && contrast > CONTRAST_SPREADS * spread;
   return levels;
 }

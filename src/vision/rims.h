@@ -37,9 +37,9 @@ typedef struct fg_two_levels {
 fg_two_levels fg_two_levels_find(const fg_tiles *tiles, const fg_island *island);
 
 typedef struct fg_rim_options {
-  double level;    /* between the two sides, 8-bit counts */
-  bool light;      /* the material is what is brighter */
-  double least_px; /* diagonal of the smallest box that counts */
+  double level;  /* between the two sides, 8-bit counts */
+  bool light;    /* the material is what is brighter */
+  double min_px; /* diagonal of the smallest box that counts */
 } fg_rim_options;
 
 /* Every rim of an island, in the order of their uppermost points. FG_ERR_MEMORY. */

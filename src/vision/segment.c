@@ -12,7 +12,7 @@
 #define MASK_SHARE  0.3f
 #define MASK_SIGMAS 6.0f
 /* Contrasts below this many 8-bit counts are no object. */
-#define CONTRAST_LEAST 8.0f
+#define CONTRAST_MIN 8.0f
 
 static int compare_floats(const void *a, const void *b) {
   float x = *(const float *)a, y = *(const float *)b;
@@ -77,13 +77,13 @@ static void take_sample(fg_segmentation *out, int32_t x, int32_t y, float excess
 /* Robust sd of the background: the median of |excess| over the tiles around the island that are not
  * wanted, where the excess is mostly noise. */
 static fg_status estimate_noise(fg_context *ctx, const fg_island *island, fg_segmentation *out) {
-  enum { TILES_MOST = 64, BLOCKS = FG_BLOCKS_PER_TILE * FG_BLOCKS_PER_TILE };
+  enum { TILES_MAX = 64, BLOCKS = FG_BLOCKS_PER_TILE * FG_BLOCKS_PER_TILE };
   const fg_tiles *tiles = out->tiles;
   sample s = {0};
-  size_t taken = 0, stride = island->count / TILES_MOST + 1;
-  FG_TRY(fg_memory_allocate(ctx, (size_t)TILES_MOST * 9 * BLOCKS, sizeof *s.values,
+  size_t taken = 0, stride = island->count / TILES_MAX + 1;
+  FG_TRY(fg_memory_allocate(ctx, (size_t)TILES_MAX * 9 * BLOCKS, sizeof *s.values,
                             (void **)&s.values));
-  for (size_t i = 0; i < island->count && taken < TILES_MOST; i += stride, taken++) {
+  for (size_t i = 0; i < island->count && taken < TILES_MAX; i += stride, taken++) {
     int32_t column = island->tiles[i] % tiles->columns, row = island->tiles[i] / tiles->columns;
     for (int32_t y = row - 1; y <= row + 1; y++)
       for (int32_t x = column - 1; x <= column + 1; x++)
@@ -122,7 +122,7 @@ static void tally_block(fg_segmentation *out, int32_t x, int32_t y, float excess
 /* Polarity by the larger sum beyond the noise; the typical contrast is the 80th percentile of
  * those blocks. */
 static void find_polarity(const fg_island *island, fg_segmentation *out) {
-  tally t = {.limit = fmaxf(MASK_SIGMAS * out->noise, 0.5f * CONTRAST_LEAST)};
+  tally t = {.limit = fmaxf(MASK_SIGMAS * out->noise, 0.5f * CONTRAST_MIN)};
   out->light_on_dark = true;
   visit_island(out, island, tally_block, &t);
   out->light_on_dark = t.light >= t.dark;
@@ -143,11 +143,11 @@ static int compare_objects(const void *a, const void *b) {
 }
 
 static fg_status collect_objects(fg_context *ctx, const fg_blob *blobs, int32_t blob_count,
-                                 double least_px, fg_segmentation *out) {
+                                 double min_px, fg_segmentation *out) {
   FG_TRY(fg_memory_allocate(ctx, (size_t)blob_count, sizeof *out->objects, (void **)&out->objects));
   for (int32_t i = 0; i < blob_count; i++) {
     const fg_blob *b = &blobs[i];
-    if (hypot((double)b->width, (double)b->height) * FG_BLOCK_PX < least_px) {
+    if (hypot((double)b->width, (double)b->height) * FG_BLOCK_PX < min_px) {
       out->speck_count++;
       continue;
     }
@@ -177,7 +177,7 @@ static void mark_block(fg_segmentation *out, int32_t x, int32_t y, float excess,
   m->cells[(size_t)(y - out->y) * (size_t)out->width + (size_t)(x - out->x)] = excess > m->limit;
 }
 
-static fg_status label_objects(fg_context *ctx, const fg_island *island, double least_px,
+static fg_status label_objects(fg_context *ctx, const fg_island *island, double min_px,
                                fg_segmentation *out) {
   size_t count = (size_t)out->width * (size_t)out->height;
   mask m = {.limit = fmaxf(MASK_SIGMAS * out->noise, MASK_SHARE * out->contrast)};
@@ -185,10 +185,10 @@ static fg_status label_objects(fg_context *ctx, const fg_island *island, double 
   int32_t blob_count = 0;
   fg_status status = FG_OK;
   FG_TRY_EXIT(fg_memory_allocate(ctx, count, 1, (void **)&m.cells));
-  if (out->contrast >= CONTRAST_LEAST) visit_island(out, island, mark_block, &m);
+  if (out->contrast >= CONTRAST_MIN) visit_island(out, island, mark_block, &m);
   FG_TRY_EXIT(
       fg_grid_label(ctx, m.cells, out->width, out->height, out->labels, &blobs, &blob_count));
-  FG_TRY_EXIT(collect_objects(ctx, blobs, blob_count, least_px, out));
+  FG_TRY_EXIT(collect_objects(ctx, blobs, blob_count, min_px, out));
 exit:
   free(m.cells);
   free(blobs);
@@ -205,8 +205,8 @@ static void find_box(const fg_island *island, fg_segmentation *out) {
   out->height = (low < out->tiles->block_rows ? low : out->tiles->block_rows) - out->y;
 }
 
-fg_status fg_segment(fg_context *ctx, const fg_tiles *tiles, const fg_island *island,
-                     double least_px, fg_segmentation *out) {
+fg_status fg_segment(fg_context *ctx, const fg_tiles *tiles, const fg_island *island, double min_px,
+                     fg_segmentation *out) {
   memset(out, 0, sizeof *out);
   out->tiles = tiles;
   out->light_on_dark = true;
@@ -217,7 +217,7 @@ fg_status fg_segment(fg_context *ctx, const fg_tiles *tiles, const fg_island *is
   FG_TRY_EXIT(find_background(ctx, island, out));
   FG_TRY_EXIT(estimate_noise(ctx, island, out));
   find_polarity(island, out);
-  FG_TRY_EXIT(label_objects(ctx, island, least_px, out));
+  FG_TRY_EXIT(label_objects(ctx, island, min_px, out));
 exit:
   if (status != FG_OK) fg_segmentation_free(out);
   return status;

@@ -65,9 +65,9 @@ static inline int32_t fg_segmentation_label(const fg_segmentation *s, int32_t x,
   return s->labels[(size_t)v * (size_t)s->width + (size_t)u];
 }
 
-/* Objects whose box has a diagonal of at least `least_px`. No object is not an error here. */
-fg_status fg_segment(fg_context *ctx, const fg_tiles *tiles, const fg_island *island,
-                     double least_px, fg_segmentation *segmentation);
+/* Objects whose box has a diagonal of at least `min_px`. No object is not an error here. */
+fg_status fg_segment(fg_context *ctx, const fg_tiles *tiles, const fg_island *island, double min_px,
+                     fg_segmentation *segmentation);
 
 void fg_segmentation_free(fg_segmentation *segmentation);
 

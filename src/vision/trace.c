@@ -9,10 +9,10 @@
 #include "vision/trace_walk.h"
 
 enum {
-  STRIPS_MAX = 16,  /* strips in one object */
-  POINTS_LEAST = 8, /* of a strip */
+  STRIPS_MAX = 16, /* strips in one object */
+  POINTS_MIN = 8,  /* of a strip */
 };
-#define LENGTH_LEAST 12.0 /* shortest strip, in strip widths */
+#define LENGTH_MIN 12.0 /* shortest strip, in strip widths */
 /* Two traces are one strip when so much of the shorter lies on the longer. */
 #define OVERLAP_SHARE 0.5
 /* The first cuts reach so far to either side: a strip of four times the width that the design
@@ -100,7 +100,7 @@ static void keep_or_drop(fg_trace *trace, fg_trace_list *list) {
   for (size_t i = 1; i < trace->count; i++)
     length += hypot(trace->points[i].x - trace->points[i - 1].x,
                     trace->points[i].y - trace->points[i - 1].y);
-  if (trace->count < POINTS_LEAST || length < LENGTH_LEAST * trace->width_px)
+  if (trace->count < POINTS_MIN || length < LENGTH_MIN * trace->width_px)
     free_trace(trace);
   else
     list->traces[list->count++] = *trace;
@@ -119,7 +119,7 @@ fg_status fg_trace_object(fg_context *ctx, const fg_tiles *tiles,
   FG_TRY_EXIT(fg_memory_allocate(ctx, STRIPS_MAX, sizeof *list->traces, (void **)&list->traces));
   open_blocks(&w, open);
   fg_point seed = {0, 0};
-  int32_t left = object->blocks, little = (int32_t)(LENGTH_LEAST * width_px / FG_BLOCK_PX);
+  int32_t left = object->blocks, little = (int32_t)(LENGTH_MIN * width_px / FG_BLOCK_PX);
   for (int i = 0; i < STRIPS_MAX && left > little && find_seed(&w, open, &seed); i++) {
     trace = (fg_trace){0};
     w.contrast = fg_trace_contrast_at(&w, seed);

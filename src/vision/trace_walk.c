@@ -26,7 +26,7 @@ enum {
 #define NARROW_WIDTHS 0.5
 /* Of the walk; but no step is shorter than this. */
 #define STEPS_PER_WIDTH 3.0
-#define STEP_LEAST_PX   3.0
+#define STEP_MIN_PX     3.0
 /* Background on either side of a cut along the strip. */
 #define WINDOW_MARGIN_PX 6.0
 /* Where no flank was seen. */
@@ -203,7 +203,7 @@ static bool step_ahead(const fg_trace_walker *w, fg_point p, fg_point *direction
 /* Walks from p in one direction, appending points (p itself excluded). */
 static fg_status walk(fg_context *ctx, fg_trace_walker *w, fg_point p, fg_point tangent,
                       fg_trace *trace) {
-  double step = fmax(STEP_LEAST_PX, w->width_px / STEPS_PER_WIDTH), missed = 0,
+  double step = fmax(STEP_MIN_PX, w->width_px / STEPS_PER_WIDTH), missed = 0,
          contrast = w->contrast;
   fg_point direction = tangent;
   bool joined = false; /* since the last good point the strip was too wide: something lies on it */

@@ -17,9 +17,9 @@ static char *read_file(const char *path, size_t *length) {
 /* R's anova leaves out terms without freedom. */
 static void print_rows(const char *kind, const fg_anova_row *rows, size_t count) {
   for (size_t i = 0; i < count; i++) {
-    if (!rows[i].freedom) continue;
+    if (!rows[i].dof) continue;
     printf("%s_ss %.17g\n%s_df %zu\n%s_f %.17g\n%s_p %.17g\n", kind, rows[i].sum_of_squares, kind,
-           rows[i].freedom, kind, rows[i].f, kind, rows[i].p_value);
+           rows[i].dof, kind, rows[i].f, kind, rows[i].p_value);
   }
 }
 

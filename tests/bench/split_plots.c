@@ -8,7 +8,7 @@
 #include "foilgauge/experiment.h"
 #include "support/random.h"
 
-enum { PLOTS = 8, PER_PLOT = 4, RUNS = PLOTS * PER_PLOT, MISSING_MOST = 8, EFFECTS = 6 };
+enum { PLOTS = 8, PER_PLOT = 4, RUNS = PLOTS * PER_PLOT, MISSING_MAX = 8, EFFECTS = 6 };
 
 /* 20 + 3 T + 2 D - P + 0.5 T D + 0 T P; T is the whole plots'. */
 static const double truth[EFFECTS] = {20, 3, 2, -1, 0.5, 0};
@@ -103,7 +103,7 @@ int main(int count, char **words) {
       "as 0 |\n|---|---|---|---|---|---|---|\n",
       plans, PLOTS, PER_PLOT);
   for (size_t s = 0; s < sizeof sds / sizeof *sds; s++)
-    for (size_t missing = 0; missing <= MISSING_MOST; missing++) {
+    for (size_t missing = 0; missing <= MISSING_MAX; missing++) {
       tally t = run(sds[s], missing, plans, 1000 * s + missing + 1);
       printf("| %.1f | %zu | %.1f | %.1f | %.1f | %.1f | %.1f |\n", sds[s], missing,
              percent(t.held[0], t.asked[0]), percent(t.held[1], t.asked[1]),

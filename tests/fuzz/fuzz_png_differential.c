@@ -6,7 +6,7 @@
 #include "fuzz.h"
 #include "support/png_pair.h"
 
-enum { STREAM_MOST = 1 << 20, RECIPE_BYTES = 16, IHDR_END = 33 };
+enum { STREAM_MAX = 1 << 20, RECIPE_BYTES = 16, IHDR_END = 33 };
 
 static uint32_t read_32(const uint8_t *p) {
   return (uint32_t)p[0] << 24 | (uint32_t)p[1] << 16 | (uint32_t)p[2] << 8 | p[3];
@@ -49,7 +49,7 @@ static size_t gather(const growing *file, uint8_t *stream, size_t *places) {
 static size_t find_sum(const uint8_t *stream, size_t size, uint8_t *out, uint32_t *sum) {
   z_stream z = {.next_in = (uint8_t *)(uintptr_t)stream + 2, .avail_in = (uInt)size - 2};
   z.next_out = out;
-  z.avail_out = STREAM_MOST;
+  z.avail_out = STREAM_MAX;
   if (inflateInit2(&z, -15) != Z_OK) abort();
   int code = inflate(&z, Z_FINISH);
   *sum = (uint32_t)adler32(1, out, (uInt)z.total_out);
@@ -59,7 +59,7 @@ static size_t find_sum(const uint8_t *stream, size_t size, uint8_t *out, uint32_
 }
 
 static void repair_stream(growing *file) {
-  static uint8_t out[STREAM_MOST];
+  static uint8_t out[STREAM_MAX];
   uint8_t *stream = malloc(file->size);
   size_t *places = malloc(file->size * sizeof *places);
   if (!stream || !places) abort();
@@ -109,7 +109,7 @@ static growing make(const uint8_t *data, size_t size) {
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
-  if (size <= RECIPE_BYTES || size > STREAM_MOST) return 0;
+  if (size <= RECIPE_BYTES || size > STREAM_MAX) return 0;
   bool made = data[0] & 1;
   growing file = made ? make(data + 1, size - 1) : bend(data + 1, size - 1);
   pair p = read_both_ways(fuzz_file(file.data, file.size));

@@ -8,12 +8,12 @@
 enum { GROUP_FOILS = 14, GROUP_BUMPS = 9 };
 
 typedef struct group_kind {
-  size_t first;        /* foils of group A; the others are of group B */
-  double foil_sd_mm;   /* between foils; bumps within a foil: 0.02 mm */
-  double place_mm;     /* from one place to the next */
-  size_t missing_most; /* bumps, at the first places of a foil */
-  double shift_mm;     /* of group B */
-  double long_tail;    /* of one foil: times its deviation; 1: normal */
+  size_t first;       /* foils of group A; the others are of group B */
+  double foil_sd_mm;  /* between foils; bumps within a foil: 0.02 mm */
+  double place_mm;    /* from one place to the next */
+  size_t missing_max; /* bumps, at the first places of a foil */
+  double shift_mm;    /* of group B */
+  double long_tail;   /* of one foil: times its deviation; 1: normal */
 } group_kind;
 
 static const double group_bump_sd_mm = 0.02;
@@ -48,7 +48,7 @@ static inline void group_lot_draw(const group_kind *kind, uint64_t *seed, group_
     fg_foil *foil = &g->lot.records[i].foils[0];
     double level = kind->foil_sd_mm * random_gaussian(seed) * (i ? 1 : kind->long_tail);
     if (i >= g->first) level += kind->shift_mm;
-    size_t missing = (size_t)(random_uniform(seed) * (double)(kind->missing_most + 1));
+    size_t missing = (size_t)(random_uniform(seed) * (double)(kind->missing_max + 1));
     foil->bump_count = GROUP_BUMPS - missing;
     for (size_t k = 0; k < foil->bump_count; k++) {
       foil->bumps[k].number = (int)(k + missing) + 1;

@@ -225,7 +225,7 @@ static inline void odd_add_foil(const odd_input *in, const odd_foil *f, const od
 static inline void odd_add_disc(const odd_disc *d, const odd_scanner *scanner, fg_measurement *m) {
   fg_context ctx = {0};
   fg_disc *disc = &m->discs[m->disc_count];
-  *disc = (fg_disc){.blur_um = 7, .level_doubt_mm = 1e-5};
+  *disc = (fg_disc){.blur_um = 7, .level_u_mm = 1e-5};
   odd_edge(d, scanner, disc);
   if (fg_disc_measure_again(&ctx, disc) != FG_OK) {
     fg_disc_free(disc);
@@ -247,7 +247,7 @@ static inline void odd_measure(const odd_input *in, fg_measurement *measurements
                           .format = "PNG",
                           .design = in->design};
     fg_context ctx = {0};
-    if (in->design.form != FG_FORM_DISCS) (void)fg_design_derive(&ctx, &in->design, &m->nominal);
+    if (in->design.kind != FG_FOIL_DISCS) (void)fg_design_derive(&ctx, &in->design, &m->nominal);
     snprintf(m->scan, sizeof m->scan, "odd %zu", i + 1);
     snprintf(m->sha256, sizeof m->sha256, "%064zx", i + 1);
     m->foils = calloc(ODD_FOILS, sizeof *m->foils);
@@ -322,17 +322,17 @@ static inline void odd_read(const uint8_t *data, size_t size, odd_input *in) {
   fg_design_default(&in->design);
   in->scans = 1 + (what & 1) + (what & 1 && what & 2);
   in->same_foil = what & 4;
-  if (what & 8) in->design.form = FG_FORM_SINUSOIDAL;
-  if (what & 16) in->design.form = FG_FORM_DISCS;
-  for (size_t i = 0; in->design.form == FG_FORM_DISCS && what & 64 && i < 4; i++)
+  if (what & 8) in->design.kind = FG_FOIL_SINUSOIDAL;
+  if (what & 16) in->design.kind = FG_FOIL_DISCS;
+  for (size_t i = 0; in->design.kind == FG_FOIL_DISCS && what & 64 && i < 4; i++)
     in->design.diameters_mm[in->design.diameter_count++] = odd_between(&b, 0.2, 16);
   for (size_t i = 0; i < in->scans; i++) {
     odd_scan *scan = &in->scan[i];
     unsigned count = odd_byte(&b);
-    bool discs = in->design.form == FG_FORM_DISCS || what & 32;
+    bool discs = in->design.kind == FG_FOIL_DISCS || what & 32;
     scan->hold_out = i > 0 && what & 128;
     scan->scanner = odd_read_scanner(&b);
-    scan->foils = in->design.form == FG_FORM_DISCS ? 0 : 1 + (count & 3) % ODD_FOILS;
+    scan->foils = in->design.kind == FG_FOIL_DISCS ? 0 : 1 + (count & 3) % ODD_FOILS;
     scan->discs = discs ? 1 + (count >> 2) % (count & 1 ? 10 : 4) : 0;
     for (size_t f = 0; f < scan->foils; f++)
       scan->foil[f] = odd_read_foil(&b);

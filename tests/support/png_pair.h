@@ -11,7 +11,7 @@
 
 #include "scan/png_reader.h"
 
-enum { PAIR_PIXELS_MOST = 1 << 21, PAIR_FILTER_MIXED = 5 };
+enum { PAIR_PIXELS_MAX = 1 << 21, PAIR_FILTER_MIXED = 5 };
 
 typedef struct recipe {
   uint32_t width, height;
@@ -150,7 +150,7 @@ static inline fg_status read_image(fg_png *png, reading *out) {
   const fg_png_header *h = fg_png_get_header(png);
   uint64_t pixels = (uint64_t)h->width_px * h->height_px;
   size_t row = (size_t)h->width_px * (size_t)h->channels * (h->bit_depth == 16 ? 2 : 1);
-  if (h->interlaced || pixels > PAIR_PIXELS_MOST)
+  if (h->interlaced || pixels > PAIR_PIXELS_MAX)
     return fg_fail(&out->context, FG_ERR_USAGE, "not compared");
   out->size = row * h->height_px;
   out->rows = calloc(1, out->size);

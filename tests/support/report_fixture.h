@@ -110,7 +110,7 @@ static inline void same_fields(const cJSON *object, fg_quantity_owner owner, con
   size_t count;
   const fg_quantity *fields = fg_quantities(owner, &count);
   for (size_t i = 0; i < count; i++)
-    if (fg_quantity_applies(owner, &fields[i], FG_FORM_CLASSICAL))
+    if (fg_quantity_applies(owner, &fields[i], FG_FOIL_CLASSICAL))
       same_field(object, &fields[i], values);
 }
 

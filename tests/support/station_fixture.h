@@ -28,7 +28,7 @@ static fg_status station_fixture_open(fg_context *ctx, station_fixture *at, cons
   at->station.request = &at->request;
   at->station.settings = &at->settings;
   at->station.outcome = &at->outcome;
-  strcpy(at->station.form_token, "0123456789abcdef0123456789abcdef");
+  strcpy(at->station.csrf_token, "0123456789abcdef0123456789abcdef");
   strcpy(at->station.host, "127.0.0.1:8317");
   FG_TRY(fg_station_database_open(ctx, at->folder, &at->station.database));
   sqlite3 *writer = at->station.database.writer;

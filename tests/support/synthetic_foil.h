@@ -20,7 +20,7 @@ static inline double synthetic_deg(double rad) {
 /* The Gen II numbers, written out: the tests do not lean on the library's default. */
 static inline fg_design synthetic_design(void) {
   fg_design design = {.name = "Gen II <test> & \"quoted\"",
-                      .form = FG_FORM_CLASSICAL,
+                      .kind = FG_FOIL_CLASSICAL,
                       .datum = FG_DATUM_MID,
                       .bump_count = SYNTHETIC_BUMPS,
                       .bump_radius_mm = 3.32,

@@ -8,7 +8,7 @@ static const double many_u = 4.5;
 static fg_design arc_design(fg_datum datum, double radius_mm) {
   fg_design design;
   fg_design_default(&design);
-  design.form = FG_FORM_ARC;
+  design.kind = FG_FOIL_ARC;
   design.datum = datum;
   design.bump_count = 0;
   design.overall_radius_mm = radius_mm;
@@ -41,8 +41,8 @@ static measured measure_arc(fg_datum datum, double radius_mm, const char *foil,
   return measure_stated(datum, FG_TONE_UNKNOWN, radius_mm, foil, scanner);
 }
 
-static void check_within(const char *name, double value, double truth, double u, double most) {
-  if (!(fabs(value - truth) <= many_u * u) || !(u > 0) || !(u < most))
+static void check_within(const char *name, double value, double truth, double u, double max) {
+  if (!(fabs(value - truth) <= many_u * u) || !(u > 0) || !(u < max))
     fail_msg("%s is %.8g, not %.8g: off by %.3g, u %.3g", name, value, truth, value - truth, u);
 }
 

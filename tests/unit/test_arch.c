@@ -275,9 +275,9 @@ static void offset_bearing_is_round(void **state) {
   assert_near(result.offset_mm[0], 0.01, 1e-12);
   assert_near(result.offset_mm[1], -0.02, 1e-12);
   assert_near(result.circularity_mm, 0, 1e-12);
-  assert_near(result.centred_least_mm, 0.08, 1e-12);
+  assert_near(result.centred_min_mm, 0.08, 1e-12);
   assert_near(result.mean_mm, 0.08, 1e-12);
-  assert_near(result.least_mm, 0.08 - hypot(0.01, 0.02), 2e-4);
+  assert_near(result.min_mm, 0.08 - hypot(0.01, 0.02), 2e-4);
 }
 
 /* Three lobes at the bumps' own places: no offset, peak to valley twice the amplitude; shifting the
@@ -294,7 +294,7 @@ static void lobes_are_circularity(void **state) {
   fg_bearing_clearance result;
   assert_int_equal(fg_bearing_assess(&ctx, angle, clearance, 18, &result), FG_OK);
   assert_near(result.circularity_mm, 0.03, 1e-12);
-  assert_near(result.centred_least_mm, 0.055, 1e-12);
+  assert_near(result.centred_min_mm, 0.055, 1e-12);
   clearance[4] = NAN;
   assert_int_equal(fg_bearing_assess(&ctx, angle, clearance, 18, &result), FG_OK);
   assert_int_equal(result.count, 17);
@@ -306,7 +306,7 @@ static void open_bearing_centres_nothing(void **state) {
   const double angle[] = {0, 40, 80}, clearance[] = {0.1, 0.1, 0.1};
   fg_bearing_clearance result;
   assert_int_equal(fg_bearing_assess(&ctx, angle, clearance, 3, &result), FG_OK);
-  assert_true(isnan(result.centred_least_mm));
+  assert_true(isnan(result.centred_min_mm));
   assert_int_equal(fg_bearing_assess(&ctx, angle, clearance, 2, &result), FG_ERR_DATA);
 }
 

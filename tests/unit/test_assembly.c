@@ -67,9 +67,9 @@ static void enumerate(const fg_stock *stock, const fg_assembly_plan *plan, doubl
       for (size_t k = 0; k < foils; k++) {
         if (i == j || i == k || j == k) continue;
         assess(stock, plan, (const size_t[]){i, j, k}, &bearing);
-        bool room = bearing.centred_least_mm >= 0;
+        bool room = bearing.centred_min_mm >= 0;
         bool round = bearing.circularity_mm <= plan->limit[2].upper;
-        share[0] += bearing.least_mm >= 0;
+        share[0] += bearing.min_mm >= 0;
         share[1] += room;
         share[2] += round;
         share[3] += room && round;
@@ -187,7 +187,7 @@ static void intervals_are_exact(void **state) {
 }
 
 /* Measurement's doubt: what lies within U of a limit is neither surely in nor surely out. */
-static void doubt_is_a_share_of_its_own(void **state) {
+static void uncertainty_is_a_share_of_its_own(void **state) {
   (void)state;
   fg_context ctx;
   fg_stock stock = made_stock(9, 0.05, 0.03);
@@ -248,7 +248,7 @@ int main(void) {
       cmocka_unit_test(a_seed_is_a_result),
       cmocka_unit_test(few_foils_are_an_interval),
       cmocka_unit_test(intervals_are_exact),
-      cmocka_unit_test(doubt_is_a_share_of_its_own),
+      cmocka_unit_test(uncertainty_is_a_share_of_its_own),
       cmocka_unit_test(design_and_sorting),
       cmocka_unit_test(too_few_foils_are_refused),
   };

@@ -17,7 +17,7 @@ enum { LONG_STATIONS = 500, SHORT_STATIONS = 60, BEAMS = 4 };
 static const double pi = 3.14159265358979323846;
 
 static fg_design design_of_beams(void) {
-  return (fg_design){.form = FG_FORM_CANTILEVER,
+  return (fg_design){.kind = FG_FOIL_CANTILEVER,
                      .beam_count = BEAMS,
                      .beam_length_mm = 4,
                      .beam_width_mm = 1,

@@ -32,11 +32,11 @@ static void bores_of_the_thesis(void **state) {
   }
   fg_bearing_clearance result;
   assert_int_equal(fg_bearing_assess(&ctx, angle, clearance, 6, &result), FG_OK);
-  assert_near(result.least_mm, -0.040, 1e-12);
-  assert_near(result.most_mm, 0.065, 1e-12);
-  assert_near(result.least_at_deg, 120, 1e-12);
+  assert_near(result.min_mm, -0.040, 1e-12);
+  assert_near(result.max_mm, 0.065, 1e-12);
+  assert_near(result.min_at_deg, 120, 1e-12);
   assert_near(result.circularity_mm, 0.105, 1e-12);
-  assert_near(result.centred_least_mm, -0.040, 1e-12); /* opposite crowns: no place is better */
+  assert_near(result.centred_min_mm, -0.040, 1e-12); /* opposite crowns: no place is better */
 }
 
 static double uniform(uint64_t *seed) {
@@ -72,10 +72,10 @@ static double best_of_all_triples(const double *angle, const double *c, size_t c
     for (size_t j = i + 1; j < count; j++)
       for (size_t k = j + 1; k < count; k++) {
         if (!touch(c, x, y, i, j, k, rotor)) continue;
-        double least = INFINITY;
+        double min = INFINITY;
         for (size_t n = 0; n < count; n++)
-          least = fmin(least, c[n] - rotor[1] * x[n] - rotor[2] * y[n]);
-        best = fmax(best, least);
+          min = fmin(min, c[n] - rotor[1] * x[n] - rotor[2] * y[n]);
+        best = fmax(best, min);
       }
   return best;
 }
@@ -96,8 +96,8 @@ static void centred_is_the_best_of_all(void **state) {
     }
     fg_bearing_clearance result;
     assert_int_equal(fg_bearing_assess(&ctx, angle, clearance, count, &result), FG_OK);
-    assert_near(result.centred_least_mm, best_of_all_triples(angle, clearance, count), 1e-11);
-    assert_true(result.centred_least_mm >= result.least_mm - 1e-12);
+    assert_near(result.centred_min_mm, best_of_all_triples(angle, clearance, count), 1e-11);
+    assert_true(result.centred_min_mm >= result.min_mm - 1e-12);
   }
 }
 
@@ -106,10 +106,10 @@ static double circularity(const fg_bearing_clearance *result) {
   return result->circularity_mm;
 }
 static double centred(const fg_bearing_clearance *result) {
-  return result->centred_least_mm;
+  return result->centred_min_mm;
 }
-static double least(const fg_bearing_clearance *result) {
-  return result->least_mm;
+static double min(const fg_bearing_clearance *result) {
+  return result->min_mm;
 }
 static double mean(const fg_bearing_clearance *result) {
   return result->mean_mm;
@@ -160,24 +160,26 @@ static void uncertainties_are_propagated(void **state) {
       own[i] = 1e-3 * (0.5 + uniform(&seed));
       pad[i] = i / BUMPS;
     }
-    const fg_bearing_doubt doubt = {shared, own, pad};
+    const fg_bearing_uncertainty uncertainty = {shared, own, pad};
     fg_bearing_clearance r;
-    assert_int_equal(fg_bearing_assess_doubt(&ctx, angle, clearance, PLACES, &doubt, &r), FG_OK);
-    assert_near(r.u_least_mm, expected_u(angle, clearance, shared, own, least), 1e-8);
+    assert_int_equal(
+        fg_bearing_assess_uncertainty(&ctx, angle, clearance, PLACES, &uncertainty, &r), FG_OK);
+    assert_near(r.u_min_mm, expected_u(angle, clearance, shared, own, min), 1e-8);
     assert_near(r.u_mean_mm, expected_u(angle, clearance, shared, own, mean), 1e-8);
     assert_near(r.u_circularity_mm, expected_u(angle, clearance, shared, own, circularity), 1e-8);
-    assert_near(r.u_centred_least_mm, expected_u(angle, clearance, shared, own, centred), 1e-8);
-    assert_true(r.u_least_mm > 1e-3); /* the shared part is in it */
+    assert_near(r.u_centred_min_mm, expected_u(angle, clearance, shared, own, centred), 1e-8);
+    assert_true(r.u_min_mm > 1e-3); /* the shared part is in it */
   }
   /* What all places share moves no circularity, and every clearance by all of it. */
   memset(own, 0, sizeof own);
-  const fg_bearing_doubt doubt = {shared, own, pad};
+  const fg_bearing_uncertainty uncertainty = {shared, own, pad};
   fg_bearing_clearance r;
-  assert_int_equal(fg_bearing_assess_doubt(&ctx, angle, clearance, PLACES, &doubt, &r), FG_OK);
+  assert_int_equal(fg_bearing_assess_uncertainty(&ctx, angle, clearance, PLACES, &uncertainty, &r),
+                   FG_OK);
   assert_near(r.u_circularity_mm, 0, 1e-12);
-  assert_near(r.u_centred_least_mm, 1e-3, 1e-12);
+  assert_near(r.u_centred_min_mm, 1e-3, 1e-12);
   assert_int_equal(fg_bearing_assess(&ctx, angle, clearance, PLACES, &r), FG_OK);
-  assert_true(isnan(r.u_least_mm) && isnan(r.u_circularity_mm));
+  assert_true(isnan(r.u_min_mm) && isnan(r.u_circularity_mm));
 }
 
 static fg_verdict decide(const char *quantity, double lower, double upper,
@@ -202,10 +204,10 @@ static void tolerances_judge_with_uncertainty(void **state) {
   (void)state;
   const fg_bearing_clearance c = {.circularity_mm = 0.050,
                                   .u_circularity_mm = 0.001,
-                                  .least_mm = 0.010,
-                                  .u_least_mm = 0.002,
-                                  .centred_least_mm = 0.020,
-                                  .u_centred_least_mm = NAN};
+                                  .min_mm = 0.010,
+                                  .u_min_mm = 0.002,
+                                  .centred_min_mm = 0.020,
+                                  .u_centred_min_mm = NAN};
   double no = INFINITY;
   assert_int_equal(decide("circularity_mm", -no, 0.060, &c, true, 0), FG_VERDICT_PASS);
   assert_int_equal(decide("circularity_mm", -no, 0.0515, &c, true, 3), FG_VERDICT_UNDECIDED);
@@ -238,7 +240,7 @@ static void names_are_known(void **state) {
   strcpy(design.tolerances[1].quantity, "min_mm");
   assert_int_equal(fg_report_check_tolerances(&ctx, &design), FG_ERR_DATA);
   assert_non_null(strstr(ctx.message, "clearance_centred_min_mm"));
-  design.form = FG_FORM_DISCS;
+  design.kind = FG_FOIL_DISCS;
   strcpy(design.tolerances[0].quantity, "circularity_mm");
   assert_int_equal(fg_report_check_tolerances(&ctx, &design), FG_ERR_DATA);
 }

@@ -157,7 +157,7 @@ static void check_rows(fg_quantity_owner owner, const three *of) {
       assert_true(wide[k] == plain[k]);
     }
     if (!strncmp(rows[i].name, "correction", 10)) continue;
-    bool arc = !fg_quantity_applies(owner, &rows[i], FG_FORM_CLASSICAL);
+    bool arc = !fg_quantity_applies(owner, &rows[i], FG_FOIL_CLASSICAL);
     double own = fg_quantity_calibration(owner, &rows[i], of->calibrated);
     if (!arc) assert_near(own, fabs(of->calibrated->move[0][at - values]), 1e-15);
   }

@@ -12,7 +12,7 @@
 #include "support/random.h"
 
 static fg_design design_of_thesis(void) {
-  return (fg_design){.form = FG_FORM_CANTILEVER,
+  return (fg_design){.kind = FG_FOIL_CANTILEVER,
                      .beam_count = 8,
                      .beam_length_mm = 9,
                      .beam_width_mm = 3,

@@ -121,7 +121,7 @@ static void file_is_read(void **state) {
                      "\"overall.radius_mm\": {\"max\": 21}}}\n";
   if (fg_design_parse(&ctx, "x", json, &design) != FG_OK) fail_msg("%s", ctx.message);
   assert_string_equal(design.name, "sheet 7");
-  assert_int_equal(design.form, FG_FORM_SINUSOIDAL);
+  assert_int_equal(design.kind, FG_FOIL_SINUSOIDAL);
   assert_int_equal(design.datum, FG_DATUM_OUTER);
   assert_int_equal(design.bump_count, 7);
   assert_near(design.bump_radius_mm, 3.2, 0);
@@ -149,7 +149,7 @@ static void absent_members_keep_their_values(void **state) {
 
 static void discs_need_no_bump_values(void **state) {
   (void)state;
-  fg_design design = {.form = FG_FORM_CLASSICAL};
+  fg_design design = {.kind = FG_FOIL_CLASSICAL};
   fg_nominal nominal;
   const char *json = "{" SCHEMA ", \"form\": \"discs\", \"diameters_mm\": [4, 6.5]}";
   assert_int_equal(fg_design_parse(NULL, "x", json, &design), FG_OK);
@@ -171,7 +171,7 @@ static void cantilever_is_read(void **state) {
   const char *json = CANTILEVER(9, 3) ", \"beam_count\": 8, \"sagitta_mm\": 1, "
                                       "\"clearance_mm\": 0.126, \"elastic_modulus_gpa\": 214}";
   assert_int_equal(fg_design_parse(NULL, "x", json, &design), FG_OK);
-  assert_int_equal(design.form, FG_FORM_CANTILEVER);
+  assert_int_equal(design.kind, FG_FOIL_CANTILEVER);
   assert_int_equal(design.beam_count, 8);
   assert_int_equal(design.bump_count, 0);
   assert_string_equal(design.name, "cantilever");

@@ -39,9 +39,9 @@ static void styles_are_told(void **state) {
   (void)state;
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
     fg_die_style style;
-    const char *doubt = fg_die_style_find(rows[i].text, &style);
-    if ((doubt == NULL) != (rows[i].separator != 0)) fail_msg("row %zu: %s", i, doubt);
-    if (doubt) continue;
+    const char *uncertainty = fg_die_style_find(rows[i].text, &style);
+    if ((uncertainty == NULL) != (rows[i].separator != 0)) fail_msg("row %zu: %s", i, uncertainty);
+    if (uncertainty) continue;
     if (style.separator != rows[i].separator || style.comma_decimal != rows[i].comma)
       fail_msg("row %zu: '%c' %d", i, style.separator, style.comma_decimal);
   }
@@ -134,7 +134,7 @@ static void make_noise(uint64_t *seed, double length, double sd, double white, d
 }
 
 /* rms of what u of R is said to be over that of R's errors, over many dies of some bumps each. */
-static void try_form(double length, double sd, double white, double *ratio) {
+static void try_form_error(double length, double sd, double white, double *ratio) {
   static fg_station stations[BUMPS * STATIONS];
   static fg_point points[BUMPS * STATIONS];
   fg_strip strip = {.stations = stations, .count = BUMPS * STATIONS, .step_mm = STEP};
@@ -146,7 +146,7 @@ static void try_form(double length, double sd, double white, double *ratio) {
   for (int die = 0; die < DIES; die++) {
     fg_arc arcs[BUMPS], *list[BUMPS];
     fg_range ranges[BUMPS];
-    fg_die_form form;
+    fg_die_form_error form_error;
     for (size_t b = 0; b < BUMPS; b++) {
       make_noise(&seed, length, sd, white, noise);
       for (size_t i = 0; i < STATIONS; i++) {
@@ -158,7 +158,7 @@ static void try_form(double length, double sd, double white, double *ratio) {
       list[b] = &arcs[b];
       assert_int_equal(fg_arc_fit(NULL, &line, &arcs[b]), FG_OK);
     }
-    assert_int_equal(fg_die_form_find(NULL, &line, list, BUMPS, &form), FG_OK);
+    assert_int_equal(fg_die_form_error_find(NULL, &line, list, BUMPS, &form_error), FG_OK);
     for (size_t b = 0; b < BUMPS; b++) {
       errors += pow(arcs[b].circle.radius - RADIUS, 2);
       claimed += arcs[b].covariance[2][2];
@@ -171,11 +171,11 @@ static void try_form(double length, double sd, double white, double *ratio) {
 static void u_knows_the_form(void **state) {
   double ratio;
   (void)state;
-  try_form(1, 0, 1e-4, &ratio); /* white */
+  try_form_error(1, 0, 1e-4, &ratio); /* white */
   assert_near(ratio, 1, 0.15);
-  try_form(0.2, 1e-4, 2e-5, &ratio);
+  try_form_error(0.2, 1e-4, 2e-5, &ratio);
   assert_near(ratio, 1.2, 0.35);
-  try_form(0.5, 1e-4, 2e-5, &ratio);
+  try_form_error(0.5, 1e-4, 2e-5, &ratio);
   assert_near(ratio, 1.2, 0.4);
 }
 

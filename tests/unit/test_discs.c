@@ -28,7 +28,7 @@ static fg_status measure_file(fg_context *ctx, const char *path, unsigned thread
   fg_design design;
   fg_measure_options options = {.threads = threads};
   fg_design_default(&design);
-  design.form = FG_FORM_DISCS;
+  design.kind = FG_FOIL_DISCS;
   design.tone = linear ? FG_TONE_LINEAR : FG_TONE_UNKNOWN;
   return fg_measure_scan(ctx, path, &design, &options, m);
 }

@@ -76,8 +76,8 @@ static double rest(const fg_points *points, const double *columns, const double 
 
 typedef struct number_case {
   int first, count;
-  int bump, every;   /* raised: one, or every so many */
-  double lean, most; /* of the P3; what may be left of 1 um */
+  int bump, every;  /* raised: one, or every so many */
+  double lean, max; /* of the P3; what may be left of 1 um */
 } number_case;
 
 static void columns_hold_what_single_bumps_do(void **state) {
@@ -112,7 +112,7 @@ static void columns_hold_what_single_bumps_do(void **state) {
         if (points.rows[i].bump) target[i] -= mean / square * p4(points.rows[i].phi);
     }
     double left = rest(&points, columns, target);
-    if (!(left <= c->most * sqrt(whole)))
+    if (!(left <= c->max * sqrt(whole)))
       fail_msg("case %zu: %g of %g is left", k, left, sqrt(whole));
     free(target);
     free(columns);

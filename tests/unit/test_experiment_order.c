@@ -200,14 +200,14 @@ static void what_was_taken_is_paid(void **state) {
   options.taken_out = same;
   analyse(&m, "T + D", &options, &between);
   const fg_regression *a = &plain.regression, *b = &paid.regression, *c = &between.regression;
-  assert_int_equal(paid.freedom_taken, 2);
-  assert_int_equal(a->residual_freedom, RUNS - 3);
-  assert_int_equal(b->residual_freedom, RUNS - 5);
+  assert_int_equal(paid.dof_taken, 2);
+  assert_int_equal(a->residual_dof, RUNS - 3);
+  assert_int_equal(b->residual_dof, RUNS - 5);
   assert_true(fabs(b->residual_sd - sqrt(a->residual_ss / (RUNS - 5))) < 1e-12);
-  assert_int_equal(b->pure_freedom, a->pure_freedom - 2);
-  assert_int_equal(b->lack_freedom, a->lack_freedom);
-  assert_int_equal(c->pure_freedom, a->pure_freedom);
-  assert_int_equal(c->lack_freedom, a->lack_freedom - 2);
+  assert_int_equal(b->pure_dof, a->pure_dof - 2);
+  assert_int_equal(b->lack_dof, a->lack_dof);
+  assert_int_equal(c->pure_dof, a->pure_dof);
+  assert_int_equal(c->lack_dof, a->lack_dof - 2);
   double grown = sqrt((RUNS - 3.0) / (RUNS - 5.0));
   assert_true(fabs(paid.effect[1].standard_error / plain.effect[1].standard_error - grown) < 1e-12);
   double p = fg_distribution_t_two_sided(paid.effect[1].t, RUNS - 5);
@@ -242,11 +242,11 @@ static void strata_pay_their_own(void **state) {
   options.taken_out = varying;
   analyse(&m, "T + D", &options, &runs);
   assert_false(plain.has_order);
-  assert_int_equal(whole.split_plot.plot_freedom, plain.split_plot.plot_freedom - 1);
-  assert_int_equal(whole.split_plot.run_freedom, plain.split_plot.run_freedom);
-  assert_int_equal(runs.split_plot.plot_freedom, plain.split_plot.plot_freedom);
-  assert_int_equal(runs.split_plot.run_freedom, plain.split_plot.run_freedom - 1);
-  double ratio = (double)plain.split_plot.plot_freedom / (double)whole.split_plot.plot_freedom;
+  assert_int_equal(whole.split_plot.plot_dof, plain.split_plot.plot_dof - 1);
+  assert_int_equal(whole.split_plot.run_dof, plain.split_plot.run_dof);
+  assert_int_equal(runs.split_plot.plot_dof, plain.split_plot.plot_dof);
+  assert_int_equal(runs.split_plot.run_dof, plain.split_plot.run_dof - 1);
+  double ratio = (double)plain.split_plot.plot_dof / (double)whole.split_plot.plot_dof;
   assert_true(fabs(whole.split_plot.plot_ms / plain.split_plot.plot_ms - ratio) < 1e-12);
   assert_true(fabs(plain.split_plot.term[0].row.f / whole.split_plot.term[0].row.f - ratio) <
               1e-12);

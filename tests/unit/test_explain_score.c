@@ -59,7 +59,7 @@ typedef struct fixture {
   foil_rows f;
   fg_explanations out;
   fg_explain_search s;
-  fg_explain_yardstick y;
+  fg_explain_baseline y;
 } fixture;
 
 static void open_search(fixture *t) {
@@ -76,7 +76,7 @@ static void open_search(fixture *t) {
   for (size_t e = 0; e < CANDIDATES; e++)
     fg_explain_add(&t->s, &(fg_candidate){.kind = kind_of(e), .shape = {candidates[e].shape}});
   fg_explain_noise(&t->s, false);
-  t->y = fg_explain_yardstick_of(&t->s);
+  t->y = fg_explain_find_baseline(&t->s);
 }
 
 static void close_search(fixture *t) {
@@ -154,7 +154,7 @@ static void what_a_set_leaves_is_that_of_dense_least_squares(void **state) {
     fg_explanation got = fg_explain_try(&t.s, &t.y, masks[k]);
     double excess = (own.sum - all.sum) / (noise * noise * t.out.integral);
     assert_near(got.excess, excess, 1e-8 * excess);
-    assert_near(got.freedom, (double)(all.unknowns - own.unknowns), 0);
+    assert_near(got.dof, (double)(all.unknowns - own.unknowns), 0);
   }
   close_search(&t);
 }
@@ -201,9 +201,9 @@ static void what_chance_leaves_is_right(void **state) {
   (void)state;
   fixture t;
   open_search(&t);
-  const fg_explain_yardstick exact = {.freedom = 10, .unit = 1};
+  const fg_explain_baseline exact = {.dof = 10, .unit = 1};
   for (int side = -1; side <= 1; side += 2) {
-    fg_explanation leaves = {.freedom = 10, .excess = 29.588 + 0.001 * side};
+    fg_explanation leaves = {.dof = 10, .excess = 29.588 + 0.001 * side};
     assert_int_equal(fg_explain_is_right(&t.s, &exact, &leaves), side < 0);
   }
   close_search(&t);
@@ -213,11 +213,11 @@ static void two_forms_of_one_effect_are_twins(void **state) {
   (void)state;
   fixture t;
   open_search(&t);
-  assert_true(fg_explain_has_twins(&t.out, bit(OVAL) | bit(RADIAL_OVAL)));
-  assert_true(fg_explain_has_twins(&t.out, bit(START) | bit(LONG_START)));
-  assert_true(fg_explain_has_twins(&t.out, bit(RIPPLE) | bit(NEAR_RIPPLE) | bit(SHEAR)));
-  assert_false(fg_explain_has_twins(&t.out, bit(RIPPLE) | bit(FAR_RIPPLE)));
-  assert_false(fg_explain_has_twins(&t.out, bit(SHEAR) | bit(RIPPLE) | bit(OVAL) | bit(STEP)));
+  assert_true(fg_explain_has_collinear(&t.out, bit(OVAL) | bit(RADIAL_OVAL)));
+  assert_true(fg_explain_has_collinear(&t.out, bit(START) | bit(LONG_START)));
+  assert_true(fg_explain_has_collinear(&t.out, bit(RIPPLE) | bit(NEAR_RIPPLE) | bit(SHEAR)));
+  assert_false(fg_explain_has_collinear(&t.out, bit(RIPPLE) | bit(FAR_RIPPLE)));
+  assert_false(fg_explain_has_collinear(&t.out, bit(SHEAR) | bit(RIPPLE) | bit(OVAL) | bit(STEP)));
   close_search(&t);
 }
 

@@ -44,9 +44,9 @@ static fg_strip strip_of(const fg_render_spec *spec, bool backwards) {
   const double mm = 25.4 / fg_render_get_truth(spec)->dpi[0], half = 0.05;
   fg_strip strip = {.step_mm = step_mm, .thickness_mm = 2 * half, .u_thickness_mm = 1e-5};
   fg_point p;
-  size_t most = 8000;
-  fg_point *points = calloc(most, sizeof *points);
-  while (strip.count < most &&
+  size_t max = 8000;
+  fg_point *points = calloc(max, sizeof *points);
+  while (strip.count < max &&
          fg_render_midline(&ctx, spec, 0, (double)strip.count * step_mm, &p) == FG_OK)
     points[strip.count++] = (fg_point){p.x * mm, p.y * mm};
   strip.stations = calloc(strip.count, sizeof *strip.stations);

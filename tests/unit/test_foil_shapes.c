@@ -10,13 +10,13 @@ static const double many_u = 4.5;
 static const fg_render_bump *true_bump(const measured *m, const fg_render_foil *truth,
                                        const fg_bump *bump) {
   const fg_render_bump *best = NULL;
-  double least = 1.0;
+  double min = 1.0;
   for (size_t i = 0; i < truth->bump_count; i++) {
     const fg_render_bump *t = &truth->bumps[i];
     double d = hypot(t->centre_px.x * 25.4 / m->result.dpi[0] - bump->centre_mm.x,
                      t->centre_px.y * 25.4 / m->result.dpi[1] - bump->centre_mm.y);
-    if (d < least) {
-      least = d;
+    if (d < min) {
+      min = d;
       best = t;
     }
   }
@@ -121,7 +121,7 @@ static void no_lip_is_said(void **state) {
   }
 }
 
-static void sinusoidal_form(void **state) {
+static void sinusoidal_foil(void **state) {
   (void)state;
   measured m = check_foil(5, ",\"lip\":null,\"first_land_mm\":0.2,\"last_land_mm\":0.2",
                           "\"blur_px\":1.2", FG_FOIL_NO_LIP);
@@ -298,7 +298,7 @@ int main(void) {
       cmocka_unit_test(any_rotation_and_either_hand),
       cmocka_unit_test(lips_of_every_kind),
       cmocka_unit_test(no_lip_is_said),
-      cmocka_unit_test(sinusoidal_form),
+      cmocka_unit_test(sinusoidal_foil),
       cmocka_unit_test(missing_bumps_leave_their_numbers_out),
       cmocka_unit_test(crushed_bumps_are_flagged),
       cmocka_unit_test(thick_and_thin_strips),

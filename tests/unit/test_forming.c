@@ -199,7 +199,7 @@ static void form(const fg_design *design, const fg_forming_material *m, double t
 static fg_design sinusoidal_design(void) {
   fg_design design;
   fg_design_default(&design);
-  design.form = FG_FORM_SINUSOIDAL;
+  design.kind = FG_FOIL_SINUSOIDAL;
   design.bump_radius_mm = 3.2;
   design.bump_angle_deg = 60;
   design.fillet_radius_mm = 1.1;

@@ -27,11 +27,11 @@ static void an_unknown_tone_curve_is_eight_percent(void **state) {
   (void)state;
   const fg_design unknown = design_of(FG_TONE_UNKNOWN), linear = design_of(FG_TONE_LINEAR);
   fg_picture_state picture = fg_picture_unknown();
-  assert_near(fg_level_doubt(&unknown, &picture, 0), 0.08, 0.001);
-  assert_near(fg_level_doubt(&linear, &picture, 0), 0.003, 1e-9);
+  assert_near(fg_level_uncertainty(&unknown, &picture, 0), 0.08, 0.001);
+  assert_near(fg_level_uncertainty(&linear, &picture, 0), 0.003, 1e-9);
   picture.u_level = 0.06;
-  assert_near(fg_level_doubt(&unknown, &picture, 0), 0.1, 0.001);
-  assert_near(fg_level_doubt(&linear, &picture, 0), 0.06, 0.001);
+  assert_near(fg_level_uncertainty(&unknown, &picture, 0), 0.1, 0.001);
+  assert_near(fg_level_uncertainty(&linear, &picture, 0), 0.06, 0.001);
 }
 
 /* A gauge goes through the same driver: it knows what is alike all over the scan, and no shadow. */
@@ -41,11 +41,11 @@ static void a_gauge_knows_all_but_what_is_local(void **state) {
   fg_picture_state picture = fg_picture_unknown();
   picture.level_known = true;
   picture.u_level = 0.01;
-  assert_near(fg_level_doubt(&unknown, &picture, 0), 0.01, 1e-9);
+  assert_near(fg_level_uncertainty(&unknown, &picture, 0), 0.01, 1e-9);
   picture.findings = FG_PICTURE_SHARPENED | FG_PICTURE_TONE_CURVE | FG_PICTURE_FEW_LEVELS;
-  assert_near(fg_level_doubt(&unknown, &picture, 0), 0.01, 1e-9);
+  assert_near(fg_level_uncertainty(&unknown, &picture, 0), 0.01, 1e-9);
   picture.findings |= FG_PICTURE_SHADOW;
-  assert_near(fg_level_doubt(&unknown, &picture, 0), 0.25, 0.001);
+  assert_near(fg_level_uncertainty(&unknown, &picture, 0), 0.25, 0.001);
 }
 
 static void a_finding_makes_it_wider(void **state) {
@@ -53,14 +53,15 @@ static void a_finding_makes_it_wider(void **state) {
   const fg_design linear = design_of(FG_TONE_LINEAR);
   for (unsigned bit = 1; bit <= FG_PICTURE_UNKNOWN_PROFILE; bit <<= 1) {
     fg_picture_state picture = fg_picture_unknown();
-    double before = fg_level_doubt(&linear, &picture, 0);
+    double before = fg_level_uncertainty(&linear, &picture, 0);
     picture.findings = bit;
-    assert_true(fg_level_doubt(&linear, &picture, 0) >= before);
+    assert_true(fg_level_uncertainty(&linear, &picture, 0) >= before);
   }
   fg_picture_state picture = fg_picture_unknown();
-  double one = fg_level_doubt(&linear, &picture, FG_FOIL_CLIPPED);
+  double one = fg_level_uncertainty(&linear, &picture, FG_FOIL_CLIPPED);
   assert_near(one, 0.08, 0.001);
-  assert_near(fg_level_doubt(&linear, &picture, FG_FOIL_CLIPPED | FG_FOIL_SIDE_BAND), one, 1e-9);
+  assert_near(fg_level_uncertainty(&linear, &picture, FG_FOIL_CLIPPED | FG_FOIL_SIDE_BAND), one,
+              1e-9);
 }
 
 /* An edge that is cut off, or of two levels, is wider than it is seen. A gauge goes through the
@@ -71,15 +72,15 @@ static void what_is_hidden_counts(void **state) {
   fg_picture_state picture = fg_picture_unknown();
   picture.u_cut = 0.4;
   picture.seen_blur = 0.5;
-  assert_near(fg_level_doubt(&linear, &picture, 0), 0.003, 1e-9);
+  assert_near(fg_level_uncertainty(&linear, &picture, 0), 0.003, 1e-9);
   picture.findings = FG_PICTURE_CLIPPED;
-  assert_near(fg_level_doubt(&linear, &picture, 0), hypot(0.4, 0.1), 0.001);
+  assert_near(fg_level_uncertainty(&linear, &picture, 0), hypot(0.4, 0.1), 0.001);
   picture.level_known = true;
-  assert_near(fg_level_doubt(&linear, &picture, 0), 0.1, 0.001);
+  assert_near(fg_level_uncertainty(&linear, &picture, 0), 0.1, 0.001);
   picture = fg_picture_unknown();
   picture.findings = FG_PICTURE_FEW_LEVELS;
   picture.seen_blur = 0.25;
-  assert_near(fg_level_doubt(&linear, &picture, 0), 4 * 0.29, 0.001);
+  assert_near(fg_level_uncertainty(&linear, &picture, 0), 4 * 0.29, 0.001);
 }
 
 /* Both edges move apart alike: twice the level times the blur times sqrt(2 pi). */
@@ -92,12 +93,12 @@ static void the_thickness_moves_by_both_edges(void **state) {
                             .blur_right_um = 14,
                             .gamma = 1,
                             .picture = fg_picture_unknown()}};
-  double level = fg_level_doubt(&design, &foil.strip.picture, 0);
+  double level = fg_level_uncertainty(&design, &foil.strip.picture, 0);
   double expected = level * sqrt(2 * M_PI) * 26 / 1000;
   fg_foil_find_thickness(&design, &foil);
   assert_near(foil.u_thickness_tone_mm, expected, 1e-12);
   assert_near(foil.u_thickness_mm, hypot(expected, 1e-4), 1e-12);
-  assert_near(fg_foil_edge_doubt_mm(&design, &foil), expected / 2, 1e-12);
+  assert_near(fg_foil_edge_u_mm(&design, &foil), expected / 2, 1e-12);
   assert_int_equal(foil.flags, 0);
   design.thickness_measured_mm = 0.098;
   design.u_thickness_measured_mm = 0.0005;
@@ -141,10 +142,10 @@ static void another_thickness_is_flagged(void **state) {
 static void a_disc_holds_it(void **state) {
   (void)state;
   const fg_design design = design_of(FG_TONE_UNKNOWN);
-  fg_disc disc = {.blur_um = 10, .edge_doubt_mm = 0.001, .picture = fg_picture_unknown()};
-  double level = fg_level_doubt(&design, &disc.picture, 0);
-  fg_disc_find_level_doubt(&design, &disc);
-  assert_near(disc.level_doubt_mm, hypot(0.001, level * sqrt(2 * M_PI) / 100), 1e-12);
+  fg_disc disc = {.blur_um = 10, .edge_u_mm = 0.001, .picture = fg_picture_unknown()};
+  double level = fg_level_uncertainty(&design, &disc.picture, 0);
+  fg_disc_find_level_uncertainty(&design, &disc);
+  assert_near(disc.level_u_mm, hypot(0.001, level * sqrt(2 * M_PI) / 100), 1e-12);
 }
 
 int main(void) {

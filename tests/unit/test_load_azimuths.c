@@ -63,11 +63,11 @@ static void three_azimuths_say_the_axis(void **state) {
     bearing b = {.second_mm = 0.02, .smallest_at_deg = truth};
     fg_load_bearing found = sum(&b, thesis, 3, NULL);
     assert_int_equal(found.axis, FG_LOAD_AXIS_KNOWN);
-    assert_near(remainder(found.least_at_deg - truth, 180), 0, 1e-6);
+    assert_near(remainder(found.min_at_deg - truth, 180), 0, 1e-6);
     assert_near(found.amplitude_mm[2], 0.02, 1e-9);
     assert_near(found.mean_mm, 0.18, 1e-9);
     assert_false(found.harmonic[1] || found.harmonic[3] || found.harmonic[4]);
-    assert_true(found.u_least_at_deg > 0.5 && found.u_least_at_deg < 3);
+    assert_true(found.u_min_at_deg > 0.5 && found.u_min_at_deg < 3);
   }
 }
 
@@ -77,7 +77,7 @@ static void plans_that_cannot_tell(void **state) {
   bearing b = {.second_mm = 0.02, .smallest_at_deg = 90}, round_one = {0};
   fg_load_bearing found = sum(&b, line, 4, NULL);
   assert_int_equal(found.axis, FG_LOAD_AXIS_FEW);
-  assert_true(isnan(found.least_at_deg) && isnan(found.u_least_at_deg));
+  assert_true(isnan(found.min_at_deg) && isnan(found.u_min_at_deg));
   assert_non_null(fg_load_axis_words(found.axis));
   found = sum(&round_one, whole, 12, NULL);
   assert_int_equal(found.axis, FG_LOAD_AXIS_ROUND);
@@ -85,7 +85,7 @@ static void plans_that_cannot_tell(void **state) {
   bearing rivals = {.second_mm = 1e-6, .fourth_mm = 0.02, .fourth_at_deg = 20};
   found = sum(&rivals, half, 6, NULL);
   assert_int_equal(found.axis, FG_LOAD_AXIS_RIVALS);
-  assert_true(isnan(found.least_at_deg));
+  assert_true(isnan(found.min_at_deg));
 }
 
 /* Smallest place of the true curve. */
@@ -115,7 +115,7 @@ static void expanded_uncertainty_holds_the_truth(void **state) {
       fg_load_bearing found = sum(&rows[r].truth, rows[r].azimuths, rows[r].count, &seed);
       if (found.axis != FG_LOAD_AXIS_KNOWN) continue;
       named++;
-      inside += fabs(remainder(found.least_at_deg - truth, 180)) <= 2 * found.u_least_at_deg;
+      inside += fabs(remainder(found.min_at_deg - truth, 180)) <= 2 * found.u_min_at_deg;
     }
     assert_in_range(named, SEEDS * 97 / 100, SEEDS);
     assert_in_range(inside, named * 93 / 100, named * 98 / 100);

@@ -302,7 +302,7 @@ static double smallest_of(const fixture *f, const char *name) {
 /* What is asked of a claim is asked of what would have shown: a trend, and one wrong row. */
 static void what_would_have_shown_follows_the_level(void **state) {
   static const double level[] = {0.05, 0, 0.005}; /* 0: 0.01 */
-  double trend[3], lone[3];
+  double trend[3], outlier[3];
   (void)state;
   for (size_t k = 0; k < 3; k++) {
     fixture f;
@@ -312,14 +312,14 @@ static void what_would_have_shown_follows_the_level(void **state) {
     run_at(&f, level[k]);
     assert_int_equal(f.result.claims, 0);
     trend[k] = smallest_of(&f, "table.linear(humidity_pct)");
-    lone[k] = NAN;
+    outlier[k] = NAN;
     for (size_t i = 0; i < f.result.rejects; i++)
-      if (f.result.rejected[i].candidate.effect->lone == FG_LOOP_WRONG_ROW)
-        lone[k] = f.result.rejected[i].smallest_detectable;
+      if (f.result.rejected[i].candidate.effect->outlier == FG_LOOP_WRONG_ROW)
+        outlier[k] = f.result.rejected[i].smallest_detectable;
     clear(&f);
   }
   assert_true(trend[0] < trend[1] && trend[1] < trend[2]);
-  assert_true(lone[0] < lone[1] && lone[1] < lone[2]);
+  assert_true(outlier[0] < outlier[1] && outlier[1] < outlier[2]);
 }
 
 int main(void) {

@@ -189,15 +189,15 @@ static void what_is_constant_in_groups_is_judged_between_them(void **state) {
                              .coordinates = 1};
   const fg_loop_candidate trend = {.effect = fg_loop_table_effects()};
   fg_engine_training training;
-  fg_engine_bench bench = {0};
+  fg_score_workspace workspace = {0};
   fg_engine_score score;
   size_t null;
   assert_int_equal(fg_engine_training_build(NULL, &problem, NULL, NULL, &training), FG_OK);
-  assert_int_equal(fg_engine_bench_build(NULL, &training, &trend, 1, &bench), FG_OK);
-  fg_engine_bench_score_data(&bench, &score, &null);
+  assert_int_equal(fg_score_workspace_build(NULL, &training, &trend, 1, &workspace), FG_OK);
+  fg_score_workspace_score_data(&workspace, &score, &null);
   assert_near(score.own, left_of_means(y, of_group), 1e-9);
   assert_near(score.z, fg_engine_deviate(score.own, 1, LEVELS - 1), 1e-9);
-  fg_engine_bench_free(&bench);
+  fg_score_workspace_free(&workspace);
   fg_engine_training_free(&training);
 }
 

@@ -299,7 +299,7 @@ static void scanners_far_out_of_line(void **state) {
 static odd_input plate(size_t discs, bool one_size, bool in_line) {
   odd_input in = {.scans = 1};
   fg_design_default(&in.design);
-  in.design.form = FG_FORM_DISCS;
+  in.design.kind = FG_FOIL_DISCS;
   in.scan[0].discs = discs;
   for (size_t d = 0; d < discs; d++)
     in.scan[0].disc[d] = (odd_disc){.x_mm = 3 + 5 * (double)(d % 7),

@@ -29,7 +29,7 @@
 
 typedef fg_status loop_writer(fg_context *ctx, const fg_scan_loop *loop, FILE *out);
 
-static fg_scan_loop *run_loop(const char *spec_json, fg_form form) {
+static fg_scan_loop *run_loop(const char *spec_json, fg_foil_kind kind) {
   char path[] = "/tmp/foilgauge_statements_XXXXXX.png";
   const char *paths[] = {path};
   fg_context ctx = {0};
@@ -42,7 +42,7 @@ static fg_scan_loop *run_loop(const char *spec_json, fg_form form) {
   if (fg_render_scan(&ctx, spec, path, NULL) != FG_OK) fail_msg("%s", ctx.message);
   fg_render_free(spec);
   fg_design_default(&design);
-  design.form = form;
+  design.kind = kind;
   if (fg_scan_loop_run(&ctx, paths, (bool[]){false}, 1, &design, &options, &loop) != FG_OK)
     fail_msg("%s", ctx.message);
   unlink(path);
@@ -86,7 +86,7 @@ static const char *advice_of(const fg_scan_loop *loop, size_t i) {
 
 static void a_foil_says_one_thing(void **state) {
   (void)state;
-  fg_scan_loop *loop = run_loop(FOIL SCALE, FG_FORM_CLASSICAL);
+  fg_scan_loop *loop = run_loop(FOIL SCALE, FG_FOIL_CLASSICAL);
   assert_consistent(loop, "a tie on one scan");
   assert_int_equal(loop->result.advices, 1);
   assert_non_null(strstr(advice_of(loop, 0), "--same-foil"));
@@ -109,7 +109,7 @@ static void a_foil_says_one_thing(void **state) {
 
 static void a_clean_foil_says_one_thing(void **state) {
   (void)state;
-  fg_scan_loop *loop = run_loop(FOIL "]}", FG_FORM_CLASSICAL);
+  fg_scan_loop *loop = run_loop(FOIL "]}", FG_FOIL_CLASSICAL);
   assert_int_equal(loop->verdict, FG_LOOP_CLEAN);
   assert_consistent(loop, "a clean scan");
   assert_int_equal(loop->result.advices, 0);
@@ -119,7 +119,7 @@ static void a_clean_foil_says_one_thing(void **state) {
 /* A disc does not show how far it was turned: no advice to turn one. */
 static void a_ring_says_one_thing(void **state) {
   (void)state;
-  fg_scan_loop *loop = run_loop(RING SCALE, FG_FORM_DISCS);
+  fg_scan_loop *loop = run_loop(RING SCALE, FG_FOIL_DISCS);
   assert_consistent(loop, "a tie in a ring");
   assert_int_equal(loop->result.advices, 1);
   assert_non_null(strstr(advice_of(loop, 0), "plate of several gauges"));

@@ -31,8 +31,8 @@ static void a_recipe_without_a_layout_has_the_design_s(void **state) {
   assert_int_equal(bearing->places, 27);
   assert_int_equal(bearing->clearance.count, 27);
   assert_near(bearing->angle_deg[1], 40.0 / 3, 1e-9);
-  assert_near(bearing->clearance.least_mm, highest->clearance_fitted_mm, 1e-12);
-  assert_near(bearing->clearance.least_at_deg, 120 + 8 * 40.0 / 3, 1e-9);
+  assert_near(bearing->clearance.min_mm, highest->clearance_fitted_mm, 1e-12);
+  assert_near(bearing->clearance.min_at_deg, 120 + 8 * 40.0 / 3, 1e-9);
   assert_string_equal(analysis.layout_note, "");
   fg_lot_analysis_free(&analysis);
   made_lot_free(&lot);
@@ -165,7 +165,7 @@ static void bearings_are_judged(void **state) {
     assert_int_equal(code_of(&lot, &analysis), cases[i].code);
     assert_int_equal(analysis.bearing_count, 3);
     assert_int_equal(analysis.bearings_by_verdict[cases[i].verdict], 3);
-    assert_near(analysis.bearings[0].clearance.u_centred_least_mm, 1e-5, 1e-9);
+    assert_near(analysis.bearings[0].clearance.u_centred_min_mm, 1e-5, 1e-9);
     assert_near(analysis.bearings[0].clearance.u_circularity_mm, 0, 1e-9);
     /* The worst foil is named by its height: no tolerance of a foil says which it is. */
     assert_non_null(analysis.worst[0]->worst_row);

@@ -78,7 +78,7 @@ static void scans_of_one_part_are_one_foil(void **state) {
       draw_bump(&s, 0, 0, &seed, &lot.records[i].foils[0].bumps[k]);
   assert_int_equal(fg_lot_analyse(NULL, &lot, &analysis), FG_OK);
   assert_int_equal(analysis.correlation.foils, 5);
-  assert_true(analysis.correlation.log_freedom < 4);
+  assert_true(analysis.correlation.log_dof < 4);
   fg_lot_analysis_free(&analysis);
   made_lot_free(&lot);
 }

@@ -53,7 +53,7 @@ static void crushed_bumps_are_in_no_statistics(void **state) {
   for (size_t i = 0; i < sound.quantity_count; i++) {
     const fg_lot_quantity *a = &sound.quantities[i], *b = &with.quantities[i];
     assert_int_equal(a->count, b->count);
-    if (a->count && !(a->mean == b->mean && a->most == b->most && a->least == b->least))
+    if (a->count && !(a->mean == b->mean && a->max == b->max && a->min == b->min))
       fail_msg("%s: mean %.9g became %.9g", a->row->name, a->mean, b->mean);
     if (a->places && a->place[8].mean != b->place[8].mean)
       fail_msg("%s of bump 9: %.9g became %.9g", a->row->name, a->place[8].mean, b->place[8].mean);
@@ -62,7 +62,7 @@ static void crushed_bumps_are_in_no_statistics(void **state) {
   assert_true(sound.correlation.arc_length_sd_pct == with.correlation.arc_length_sd_pct);
   assert_true(sound.stiffness.measured.mean == with.stiffness.measured.mean);
   assert_int_equal(with.bearings[0].clearance.count, 26);
-  assert_true(sound.bearings[0].clearance.most_mm == with.bearings[0].clearance.most_mm);
+  assert_true(sound.bearings[0].clearance.max_mm == with.bearings[0].clearance.max_mm);
   char *json = text_of(&with, fg_lot_write_json), *page = text_of(&with, fg_lot_write_page);
   assert_non_null(strstr(json, "\"bumps_crushed\": 1"));
   assert_non_null(strstr(page, "1 of 54 bumps crushed:"));
@@ -120,8 +120,7 @@ static void strips_are_as_thick_as_they_are(void **state) {
   assert_int_equal(fg_lot_analyse(NULL, &other, &thick), FG_OK);
   assert_false(thin.thickness.differs);
   assert_true(thick.thickness.differs);
-  assert_near(thick.bearings[0].clearance.least_mm, thin.bearings[0].clearance.least_mm - 0.005,
-              1e-9);
+  assert_near(thick.bearings[0].clearance.min_mm, thin.bearings[0].clearance.min_mm - 0.005, 1e-9);
   double slope = thick.stiffness.sensitivity.thickness;
   assert_near(thick.stiffness.measured.mean / thin.stiffness.measured.mean, pow(1.05, slope), 2e-3);
   assert_near(thick.stiffness.at_design_thickness.mean, thin.stiffness.measured.mean, 1e-9);
@@ -146,16 +145,16 @@ static void strips_are_as_thick_as_they_are(void **state) {
 
 static void sinusoidal_foils_have_their_reserve(void **state) {
   (void)state;
-  for (int form = FG_FORM_CLASSICAL; form <= FG_FORM_SINUSOIDAL; form++) {
+  for (int kind = FG_FOIL_CLASSICAL; kind <= FG_FOIL_SINUSOIDAL; kind++) {
     fg_design design;
     fg_lot_analysis analysis;
     fg_design_default(&design);
     fg_lot lot = sound_lot(&design);
-    lot.settings.design.form = (fg_form)form;
+    lot.settings.design.kind = (fg_foil_kind)kind;
     assert_int_equal(fg_lot_analyse(NULL, &lot, &analysis), FG_OK);
     char *json = text_of(&analysis, fg_lot_write_json),
          *page = text_of(&analysis, fg_lot_write_page);
-    bool said = form == FG_FORM_SINUSOIDAL;
+    bool said = kind == FG_FOIL_SINUSOIDAL;
     assert_int_equal(strstr(json, "long fillets of these sinusoidal foils") != NULL, said);
     assert_int_equal(strstr(page, "long fillets of these sinusoidal foils") != NULL, said);
     free(json);

@@ -13,11 +13,11 @@
 #include "foilgauge/lot.h"
 #include "foilgauge/station.h"
 
-enum { MOST = 128 };
+enum { MAX = 128 };
 
 static size_t list_members(fg_member_words_list *list_all, fg_member_words *list) {
-  size_t count = list_all(list, MOST);
-  assert_in_range(count, 1, MOST);
+  size_t count = list_all(list, MAX);
+  assert_in_range(count, 1, MAX);
   for (size_t i = 0; i < count; i++) {
     assert_non_null(list[i].meaning);
     assert_true(strlen(list[i].meaning) > 5);
@@ -43,7 +43,7 @@ static fg_status parse_recipe(const char *member, const char *value, fg_lot_sett
 /* A default that is written out says nothing else than one that is left out. */
 static void recipes_take_what_is_listed(void **state) {
   (void)state;
-  static fg_member_words list[MOST];
+  static fg_member_words list[MAX];
   static fg_lot_settings settings, usual;
   fg_lot_settings_default(&usual);
   size_t count = list_members(fg_recipe_members, list), values = 0;
@@ -71,7 +71,7 @@ static void recipes_take_what_is_listed(void **state) {
 
 static void recipes_refuse_what_lies_beyond(void **state) {
   (void)state;
-  static fg_member_words list[MOST];
+  static fg_member_words list[MAX];
   static fg_lot_settings settings;
   size_t count = list_members(fg_recipe_members, list), limits = 0;
   for (size_t i = 0; i < count; i++) {
@@ -103,7 +103,7 @@ static fg_status load_station(const char *member, const char *value, fg_context 
 
 static void stations_take_what_is_listed(void **state) {
   (void)state;
-  static fg_member_words list[MOST];
+  static fg_member_words list[MAX];
   size_t count = list_members(fg_station_members, list);
   for (size_t i = 0; i < count; i++) {
     fg_context ctx = {.message = ""};
@@ -117,7 +117,7 @@ static void stations_take_what_is_listed(void **state) {
 
 static void designs_take_what_is_listed(void **state) {
   (void)state;
-  static fg_member_words list[MOST];
+  static fg_member_words list[MAX];
   static fg_design design;
   size_t count = list_members(fg_design_members, list);
   for (size_t i = 0; i < count; i++) {

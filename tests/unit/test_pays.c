@@ -18,89 +18,89 @@ enum { R0 = FG_CORRECTED_OVERALL_RADIUS, R = FG_CORRECTED_RADIUS, H = FG_CORRECT
 /* Two bumps and R0 alone, every own u 1 um; no explanation yet. */
 enum { ITEMS = 3 };
 
-static fg_pay open_pay(fg_pay_item item[ITEMS]) {
+static fg_benefit open_benefit(fg_benefit_item item[ITEMS]) {
   memset(item, 0, ITEMS * sizeof *item);
   for (int i = 0; i < ITEMS; i++)
     for (int k = 0; k < FG_CORRECTED; k++)
       item[i].u[k] = i + 1 < ITEMS || k == R0 ? UM : NAN;
-  return (fg_pay){.item = item, .items = ITEMS, .noises = 1};
+  return (fg_benefit){.item = item, .items = ITEMS, .noises = 1};
 }
 
 /* An explanation that moves every R0, R and h alike. */
-static void explain(fg_pay *pay, double overall_um, double radius_um, double height_um) {
-  size_t at = pay->explanations++;
-  for (size_t i = 0; i < pay->items; i++) {
-    bool bump = i + 1 < pay->items;
-    pay->item[i].move[at][R0] = overall_um * UM;
-    pay->item[i].move[at][R] = bump ? radius_um * UM : NAN;
-    pay->item[i].move[at][H] = bump ? height_um * UM : NAN;
+static void explain(fg_benefit *benefit, double overall_um, double radius_um, double height_um) {
+  size_t at = benefit->explanations++;
+  for (size_t i = 0; i < benefit->items; i++) {
+    bool bump = i + 1 < benefit->items;
+    benefit->item[i].move[at][R0] = overall_um * UM;
+    benefit->item[i].move[at][R] = bump ? radius_um * UM : NAN;
+    benefit->item[i].move[at][H] = bump ? height_um * UM : NAN;
   }
 }
 
-static void put_noise(fg_pay *pay, int k, double u_um) {
-  for (size_t i = 0; i < pay->items; i++)
-    pay->item[i].noise[k][k] = u_um * UM * u_um * UM;
+static void put_noise(fg_benefit *benefit, int k, double u_um) {
+  for (size_t i = 0; i < benefit->items; i++)
+    benefit->item[i].noise[k][k] = u_um * UM * u_um * UM;
 }
 
-static void decide(const fg_pay *pay, fg_pay_decision *decision) {
-  fg_pay_decide(&pay, 1, &decision);
+static void decide(const fg_benefit *benefit, fg_benefit_decision *decision) {
+  fg_benefit_decide(&benefit, 1, &decision);
 }
 
-static void choose(const fg_pay *pay, int k, fg_correction_reason reason, bool moved) {
-  fg_pay_decision decision;
-  decide(pay, &decision);
+static void choose(const fg_benefit *benefit, int k, fg_correction_reason reason, bool moved) {
+  fg_benefit_decision decision;
+  decide(benefit, &decision);
   assert_int_equal(decision.choice[k].reason, reason);
   assert_int_equal(decision.choice[k].moved, moved);
 }
 
 static void a_move_pays_beyond_twice_its_variance(void **state) {
   (void)state;
-  fg_pay_item item[ITEMS];
-  fg_pay pay = open_pay(item);
-  explain(&pay, 1.5, 1.4, 0.5);
+  fg_benefit_item item[ITEMS];
+  fg_benefit benefit = open_benefit(item);
+  explain(&benefit, 1.5, 1.4, 0.5);
   for (int k = 0; k < FG_CORRECTED; k++)
-    put_noise(&pay, k, 1);
-  choose(&pay, R0, FG_CORRECTION_PAYS, true);
-  choose(&pay, R, FG_CORRECTION_DOUBTFUL, false);
-  choose(&pay, H, FG_CORRECTION_DOUBTFUL, false);
+    put_noise(&benefit, k, 1);
+  choose(&benefit, R0, FG_CORRECTION_HELPS, true);
+  choose(&benefit, R, FG_CORRECTION_DOUBTFUL, false);
+  choose(&benefit, H, FG_CORRECTION_DOUBTFUL, false);
 }
 
 static void what_is_known_exactly_is_moved(void **state) {
   (void)state;
-  fg_pay_item item[ITEMS];
-  fg_pay pay = open_pay(item);
-  explain(&pay, 0.5, 2, -3);
+  fg_benefit_item item[ITEMS];
+  fg_benefit benefit = open_benefit(item);
+  explain(&benefit, 0.5, 2, -3);
   for (int k = 0; k < FG_CORRECTED; k++)
-    choose(&pay, k, FG_CORRECTION_PAYS, true);
+    choose(&benefit, k, FG_CORRECTION_HELPS, true);
 }
 
 /* It follows the others, either way. */
 static void what_hardly_changes_anything_is_not_decided(void **state) {
   (void)state;
-  fg_pay_item item[ITEMS];
-  fg_pay pay = open_pay(item);
-  explain(&pay, 0, 5, 0.01);
-  put_noise(&pay, H, 0.02);
-  choose(&pay, R0, FG_CORRECTION_SMALL, true);
-  choose(&pay, H, FG_CORRECTION_SMALL, true);
-  put_noise(&pay, R, 5);
-  choose(&pay, R, FG_CORRECTION_DOUBTFUL, false);
-  choose(&pay, R0, FG_CORRECTION_SMALL, false);
-  pay = open_pay(item);
-  explain(&pay, 0, 0, 0);
-  choose(&pay, R, FG_CORRECTION_SMALL, true);
+  fg_benefit_item item[ITEMS];
+  fg_benefit benefit = open_benefit(item);
+  explain(&benefit, 0, 5, 0.01);
+  put_noise(&benefit, H, 0.02);
+  choose(&benefit, R0, FG_CORRECTION_SMALL, true);
+  choose(&benefit, H, FG_CORRECTION_SMALL, true);
+  put_noise(&benefit, R, 5);
+  choose(&benefit, R, FG_CORRECTION_DOUBTFUL, false);
+  choose(&benefit, R0, FG_CORRECTION_SMALL, false);
+  benefit = open_benefit(item);
+  explain(&benefit, 0, 0, 0);
+  choose(&benefit, R, FG_CORRECTION_SMALL, true);
 }
 
 static void what_is_no_number_moves_nothing(void **state) {
   (void)state;
-  fg_pay_item item[ITEMS];
-  fg_pay pay = open_pay(item);
-  explain(&pay, NAN, 5, 5);
+  fg_benefit_item item[ITEMS];
+  fg_benefit benefit = open_benefit(item);
+  explain(&benefit, NAN, 5, 5);
   item[1].move[0][R] = NAN; /* one bump of two was not fitted */
-  put_noise(&pay, H, NAN);
-  choose(&pay, R0, FG_CORRECTION_NONE, false);
-  choose(&pay, R, FG_CORRECTION_PAYS, true);
-  choose(&pay, H, FG_CORRECTION_DOUBTFUL, false);
+  put_noise(&benefit, H, NAN);
+  choose(&benefit, R0, FG_CORRECTION_NONE, false);
+  choose(&benefit, R, FG_CORRECTION_HELPS, true);
+  choose(&benefit, H, FG_CORRECTION_DOUBTFUL, false);
 }
 
 static void a_tie_moves_as_far_as_all_explanations_agree(void **state) {
@@ -110,18 +110,18 @@ static void a_tie_moves_as_far_as_all_explanations_agree(void **state) {
   } ties[] = {{10, 6, 8}, {10, 2, 2 + 1.41421356}, {-10, -10, -10}, {10, 1, 0}, {10, 0, 0},
               {10, -9, 0}};
   for (size_t i = 0; i < sizeof ties / sizeof *ties; i++) {
-    fg_pay_item item[ITEMS];
-    fg_pay pay = open_pay(item);
-    fg_pay_decision decision;
+    fg_benefit_item item[ITEMS];
+    fg_benefit benefit = open_benefit(item);
+    fg_benefit_decision decision;
     double move[FG_CORRECTED];
-    explain(&pay, ties[i].one, ties[i].one, 0);
-    explain(&pay, ties[i].other, ties[i].other, 0);
-    decide(&pay, &decision);
-    fg_pay_move(&pay, 0, &decision, move);
+    explain(&benefit, ties[i].one, ties[i].one, 0);
+    explain(&benefit, ties[i].other, ties[i].other, 0);
+    decide(&benefit, &decision);
+    fg_benefit_move(&benefit, 0, &decision, move);
     for (int k = R0; k <= R; k++) {
       assert_int_equal(decision.choice[k].moved, ties[i].moved != 0);
       assert_int_equal(decision.choice[k].reason,
-                       ties[i].moved != 0 ? FG_CORRECTION_PAYS : FG_CORRECTION_TIED);
+                       ties[i].moved != 0 ? FG_CORRECTION_HELPS : FG_CORRECTION_TIED);
       assert_near(move[k], ties[i].moved * UM, 1e-9);
     }
   }
@@ -130,38 +130,38 @@ static void a_tie_moves_as_far_as_all_explanations_agree(void **state) {
 /* What they agree about stays whole where they differ about one bump only. */
 static void what_one_bump_leaves_open_takes_nothing_from_the_others(void **state) {
   (void)state;
-  fg_pay_item item[ITEMS];
-  fg_pay pay = open_pay(item);
-  fg_pay_decision decision;
+  fg_benefit_item item[ITEMS];
+  fg_benefit benefit = open_benefit(item);
+  fg_benefit_decision decision;
   double move[FG_CORRECTED];
-  explain(&pay, 0, 0, 8);
-  explain(&pay, 0, 0, 8);
+  explain(&benefit, 0, 0, 8);
+  explain(&benefit, 0, 0, 8);
   item[1].move[0][H] = 5 * UM;
   item[1].move[1][H] = -3 * UM;
-  decide(&pay, &decision);
-  fg_pay_move(&pay, 0, &decision, move);
+  decide(&benefit, &decision);
+  fg_benefit_move(&benefit, 0, &decision, move);
   assert_near(move[H], 8 * UM, 1e-9);
-  fg_pay_move(&pay, 1, &decision, move);
+  fg_benefit_move(&benefit, 1, &decision, move);
   assert_near(move[H], 1 * UM, 1e-9); /* their mean: neither loses by it */
 }
 
 /* Whichever of three is true, the error falls, and by at least the square of the move. */
 static void no_explanation_is_made_worse(void **state) {
   (void)state;
-  fg_pay_item item[ITEMS];
-  fg_pay pay = open_pay(item);
-  fg_pay_decision decision;
+  fg_benefit_item item[ITEMS];
+  fg_benefit benefit = open_benefit(item);
+  fg_benefit_decision decision;
   static const double moves[3][2] = {{9, 1}, {4, 6}, {2, -1}};
   double t[2], move[FG_CORRECTED];
   for (size_t e = 0; e < 3; e++) {
-    explain(&pay, 0, 0, 0);
+    explain(&benefit, 0, 0, 0);
     for (size_t i = 0; i < 2; i++)
       item[i].move[e][R] = moves[e][i] * UM;
   }
-  decide(&pay, &decision);
+  decide(&benefit, &decision);
   assert_true(decision.choice[R].moved);
   for (size_t i = 0; i < 2; i++) {
-    fg_pay_move(&pay, i, &decision, move);
+    fg_benefit_move(&benefit, i, &decision, move);
     t[i] = move[R] / UM;
   }
   double size = t[0] * t[0] + t[1] * t[1];
@@ -174,48 +174,50 @@ static void no_explanation_is_made_worse(void **state) {
 /* Bumps that gain and bumps that lose are weighed together. */
 static void all_bumps_of_a_kind_are_one_decision(void **state) {
   (void)state;
-  fg_pay_item item[ITEMS];
-  fg_pay pay = open_pay(item);
-  explain(&pay, 0, 3, 0);
-  put_noise(&pay, R, 1);
+  fg_benefit_item item[ITEMS];
+  fg_benefit benefit = open_benefit(item);
+  explain(&benefit, 0, 3, 0);
+  put_noise(&benefit, R, 1);
   item[1].move[0][R] = 0.1 * UM;
-  choose(&pay, R, FG_CORRECTION_PAYS, true); /* 9.01 > 2 × 2 */
+  choose(&benefit, R, FG_CORRECTION_HELPS, true); /* 9.01 > 2 × 2 */
   item[1].noise[R][R] = 16 * UM * UM;
-  choose(&pay, R, FG_CORRECTION_DOUBTFUL, false); /* 9.01 < 2 × 17 */
+  choose(&benefit, R, FG_CORRECTION_DOUBTFUL, false); /* 9.01 < 2 × 17 */
 }
 
 static void scans_of_one_foil_are_one_decision(void **state) {
   (void)state;
-  fg_pay_item item[2][ITEMS];
-  fg_pay pay[2] = {open_pay(item[0]), open_pay(item[1])};
-  fg_pay_decision each[2];
-  explain(&pay[0], 1, 1, 1);
-  explain(&pay[1], -3, -3, -3);
+  fg_benefit_item item[2][ITEMS];
+  fg_benefit benefit[2] = {open_benefit(item[0]), open_benefit(item[1])};
+  fg_benefit_decision each[2];
+  explain(&benefit[0], 1, 1, 1);
+  explain(&benefit[1], -3, -3, -3);
   for (int i = 0; i < 2; i++)
-    put_noise(&pay[i], R0, 1);
-  fg_pay_decide((const fg_pay *[]){&pay[0], &pay[1]}, 2, (fg_pay_decision *[]){&each[0], &each[1]});
+    put_noise(&benefit[i], R0, 1);
+  fg_benefit_decide((const fg_benefit *[]){&benefit[0], &benefit[1]}, 2,
+                    (fg_benefit_decision *[]){&each[0], &each[1]});
   for (int i = 0; i < 2; i++)
     assert_true(each[i].choice[R0].moved); /* 10 > 2 × 2 */
   assert_near(each[0].choice[R0].move_mm, UM, 1e-12);
   assert_near(each[1].choice[R0].move_mm, -3 * UM, 1e-12);
   assert_near(each[1].choice[R].move_mm, 3 * UM, 1e-12);
-  pay[1].lost = true; /* one of them cannot be corrected: none is */
-  fg_pay_decide((const fg_pay *[]){&pay[0], &pay[1]}, 2, (fg_pay_decision *[]){&each[0], &each[1]});
+  benefit[1].lost = true; /* one of them cannot be corrected: none is */
+  fg_benefit_decide((const fg_benefit *[]){&benefit[0], &benefit[1]}, 2,
+                    (fg_benefit_decision *[]){&each[0], &each[1]});
   assert_int_equal(each[0].choice[R0].reason, FG_CORRECTION_LOST);
   assert_false(each[0].choice[R0].moved);
 }
 
 static void the_doubt_is_about_what_is_reported(void **state) {
   (void)state;
-  fg_pay_item item[ITEMS];
-  fg_pay pay = open_pay(item);
+  fg_benefit_item item[ITEMS];
+  fg_benefit benefit = open_benefit(item);
   double moment[FG_CORRECTED][FG_CORRECTED];
-  fg_pay_decision decision = {.choice = {[R] = {.moved = true}}, .part = {[R] = {0.5, 0.5}}};
-  explain(&pay, 4, 10, 2);
-  explain(&pay, 2, 6, 4);
-  put_noise(&pay, R, 1);
-  put_noise(&pay, H, 1);
-  fg_pay_moment(&pay, 0, &decision, moment);
+  fg_benefit_decision decision = {.choice = {[R] = {.moved = true}}, .part = {[R] = {0.5, 0.5}}};
+  explain(&benefit, 4, 10, 2);
+  explain(&benefit, 2, 6, 4);
+  put_noise(&benefit, R, 1);
+  put_noise(&benefit, H, 1);
+  fg_benefit_moment(&benefit, 0, &decision, moment);
   assert_near(moment[R][R], (1 + 4) * UM * UM, 1e-15);              /* noise, and ± 2 about 8 */
   assert_near(moment[H][H], (1 + 10) * UM * UM, 1e-15);             /* noise, and 2² and 4² */
   assert_near(moment[R][H], (2 * 2 - 2 * 4) / 2. * UM * UM, 1e-15); /* R is 2 above, then below */
@@ -225,14 +227,14 @@ static void the_doubt_is_about_what_is_reported(void **state) {
 /* Its own u says too little: that of the moment is reported. */
 static void what_does_not_fit_is_no_whole(void **state) {
   (void)state;
-  fg_pay_item item[ITEMS];
-  fg_pay pay = open_pay(item);
-  fg_pay_decision decision;
-  explain(&pay, 5, 5, 5);
-  decide(&pay, &decision);
-  assert_true(fg_pay_is_whole(&pay, &decision));
-  pay.misfit = true;
-  assert_false(fg_pay_is_whole(&pay, &decision));
+  fg_benefit_item item[ITEMS];
+  fg_benefit benefit = open_benefit(item);
+  fg_benefit_decision decision;
+  explain(&benefit, 5, 5, 5);
+  decide(&benefit, &decision);
+  assert_true(fg_benefit_is_whole(&benefit, &decision));
+  benefit.misfit = true;
+  assert_false(fg_benefit_is_whole(&benefit, &decision));
 }
 
 /* ---- what is reported ---- */
@@ -241,7 +243,7 @@ static void what_does_not_fit_is_no_whole(void **state) {
 typedef struct fixture {
   foil_rows rows;
   fg_measurement corrected;
-  fg_pays pays;
+  fg_benefits benefits;
 } fixture;
 
 static void open_fixture(fixture *f) {
@@ -254,21 +256,21 @@ static void open_fixture(fixture *f) {
                              .count = 2};
   fg_effect_set_fields(&f->rows.points, &set, &fields);
   assert_int_equal(fg_scan_loop_correct(&ctx, &f->rows.m, &fields, 1, &f->corrected), FG_OK);
-  assert_int_equal(fg_pays_open(&ctx, &f->rows.m, &f->pays), FG_OK);
-  fg_pays_add(&f->pays, &f->rows.m, &f->corrected);
+  assert_int_equal(fg_benefits_open(&ctx, &f->rows.m, &f->benefits), FG_OK);
+  fg_benefits_add(&f->benefits, &f->rows.m, &f->corrected);
 }
 
 static void close_fixture(fixture *f) {
-  fg_pays_close(&f->pays);
+  fg_benefits_close(&f->benefits);
   fg_measurement_free(&f->corrected);
   foil_rows_close(&f->rows);
 }
 
-static void keep(fixture *f, const fg_pay_decision *decision) {
+static void keep(fixture *f, const fg_benefit_decision *decision) {
   fg_context ctx = {0};
-  const fg_pay_foil of = {&f->rows.m, &f->rows.m.foils[0], &f->pays.foil[0], decision};
-  assert_int_equal(fg_pay_keep_foil(&ctx, &of, &f->corrected.foils[0]), FG_OK);
-  fg_pay_widen_foil(&of, &f->corrected.foils[0]);
+  const fg_benefit_foil of = {&f->rows.m, &f->rows.m.foils[0], &f->benefits.foil[0], decision};
+  assert_int_equal(fg_benefit_keep_foil(&ctx, &of, &f->corrected.foils[0]), FG_OK);
+  fg_benefit_widen_foil(&of, &f->corrected.foils[0]);
 }
 
 /* What a report derives must be what anyone derives of its circles. */
@@ -293,10 +295,10 @@ static void one_dimension_moves_and_the_report_holds_together(void **state) {
     double overall = after->overall.radius_mm, r = after->bumps[4].radius_mm,
            h = after->bumps[4].height_mm;
     assert_true(fabs(overall - before.overall.radius_mm) > 5 * UM);
-    fg_pay_decision decision = {.choice = {{.reason = FG_CORRECTION_TIED},
-                                           {.reason = FG_CORRECTION_TIED},
-                                           {.reason = FG_CORRECTION_TIED}}};
-    decision.choice[k] = (fg_correction_choice){.reason = FG_CORRECTION_PAYS, .moved = true};
+    fg_benefit_decision decision = {.choice = {{.reason = FG_CORRECTION_TIED},
+                                               {.reason = FG_CORRECTION_TIED},
+                                               {.reason = FG_CORRECTION_TIED}}};
+    decision.choice[k] = (fg_correction_choice){.reason = FG_CORRECTION_HELPS, .moved = true};
     decision.part[k][0] = 1;
     keep(&f, &decision);
     assert_near(after->overall.radius_mm, k == R0 ? overall : before.overall.radius_mm, 1e-12);
@@ -317,9 +319,9 @@ static void what_is_left_is_as_measured_and_says_its_doubt(void **state) {
   const fg_foil *before = &f.rows.m.foils[0];
   fg_foil *after = &f.corrected.foils[0];
   double move = after->bumps[4].height_mm - before->bumps[4].height_mm;
-  const fg_pay_decision decision = {.choice = {{.reason = FG_CORRECTION_TIED},
-                                               {.reason = FG_CORRECTION_DOUBTFUL},
-                                               {.reason = FG_CORRECTION_TIED}}};
+  const fg_benefit_decision decision = {.choice = {{.reason = FG_CORRECTION_TIED},
+                                                   {.reason = FG_CORRECTION_DOUBTFUL},
+                                                   {.reason = FG_CORRECTION_TIED}}};
   keep(&f, &decision);
   for (size_t b = 0; b < before->bump_count; b++) {
     assert_near(after->bumps[b].radius_mm, before->bumps[b].radius_mm, 0);
@@ -340,8 +342,8 @@ static void what_pays_as_a_whole_stays_as_it_was_corrected(void **state) {
   open_fixture(&f);
   fg_foil *after = &f.corrected.foils[0], was = *after;
   fg_bump bump = after->bumps[3];
-  fg_pay_decision decision;
-  decide(&f.pays.foil[0], &decision);
+  fg_benefit_decision decision;
+  decide(&f.benefits.foil[0], &decision);
   for (int k = 0; k < FG_CORRECTED; k++)
     assert_true(decision.choice[k].moved);
   keep(&f, &decision);
@@ -356,13 +358,13 @@ static void other_bumps_after_the_correction_are_none(void **state) {
   (void)state;
   fixture f;
   fg_context ctx = {0};
-  fg_pay_decision decision;
+  fg_benefit_decision decision;
   open_fixture(&f);
-  fg_pays_close(&f.pays);
-  assert_int_equal(fg_pays_open(&ctx, &f.rows.m, &f.pays), FG_OK);
+  fg_benefits_close(&f.benefits);
+  assert_int_equal(fg_benefits_open(&ctx, &f.rows.m, &f.benefits), FG_OK);
   f.corrected.foils[0].bumps[8].number = 11;
-  fg_pays_add(&f.pays, &f.rows.m, &f.corrected);
-  decide(&f.pays.foil[0], &decision);
+  fg_benefits_add(&f.benefits, &f.rows.m, &f.corrected);
+  decide(&f.benefits.foil[0], &decision);
   assert_int_equal(decision.choice[R].reason, FG_CORRECTION_LOST);
   keep(&f, &decision);
   assert_int_equal(f.corrected.foils[0].bumps[8].number, 9);

@@ -25,7 +25,7 @@ static fg_edge_profile cut_edge(double a, double b, int bright) {
 }
 
 /* Standard uncertainty of the edge's place, px. */
-static double doubt_px(double a, double b, int bright) {
+static double u_px(double a, double b, int bright) {
   fg_edge_profile profile = cut_edge(a, b, bright);
   fg_picture_state state = fg_picture_unknown();
   state.findings = FG_PICTURE_CLIPPED;
@@ -43,7 +43,7 @@ static void it_holds_the_edge_and_grows(void **unused) {
       for (int step = 1; step <= 9; step++) {
         double a = 0.1 * step, b = both ? 0.08 : 0;
         double off = BLUR_PX * fabs(gsl_cdf_ugaussian_Pinv(0.5 * (1 + a - b)));
-        double u = doubt_px(a, b, bright), other = doubt_px(b, a, bright);
+        double u = u_px(a, b, bright), other = u_px(b, a, bright);
         if (!(2 * u >= off) || !(2 * other >= off))
           fail_msg("cut %.1f and %.1f: %.3f px off at u %.3f, %.3f", a, b, off, u, other);
         if (!both && !(u >= 0.8 * before)) fail_msg("cut %.1f: u %.3f after %.3f", a, u, before);
@@ -54,7 +54,7 @@ static void it_holds_the_edge_and_grows(void **unused) {
 
 static void a_small_cut_is_a_small_doubt(void **unused) {
   (void)unused;
-  assert_true(doubt_px(0.05, 0, 1) < 0.6);
+  assert_true(u_px(0.05, 0, 1) < 0.6);
 }
 
 int main(void) {

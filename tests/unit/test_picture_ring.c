@@ -22,7 +22,7 @@ static fg_measurement measure_discs(const char *json) {
   assert_true(file >= 0);
   close(file);
   fg_design_default(&design);
-  design.form = FG_FORM_DISCS;
+  design.kind = FG_FOIL_DISCS;
   if (fg_render_parse(&ctx, "disc.json", json, &spec) != FG_OK) fail_msg("%s", ctx.message);
   assert_int_equal(fg_render_scan(&ctx, spec, path, NULL), FG_OK);
   assert_int_equal(fg_measure_scan(&ctx, path, &design, &options, &result), FG_OK);

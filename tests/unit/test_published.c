@@ -103,9 +103,9 @@ static void montgomery_etch(void **state) {
   near("SSE", e.reg.residual_ss, 18020.5, 1e-9);
   near("SST", e.reg.total_ss, 531420.9375, 1e-9);
   near("SE of an effect", 2 * coefficient(&e, "A")->standard_error, 23.7306, 5e-5);
-  assert_int_equal(e.reg.residual_freedom, 8);
-  assert_int_equal(e.reg.pure_freedom, 8);
-  assert_int_equal(e.reg.lack_freedom, 0);
+  assert_int_equal(e.reg.residual_dof, 8);
+  assert_int_equal(e.reg.pure_dof, 8);
+  assert_int_equal(e.reg.lack_dof, 0);
   drop(&e);
 }
 
@@ -123,7 +123,7 @@ static void montgomery_filtration(void **state) {
   near("SS D", sequential_ss(&e, "D"), 855.56, 5e-3);
   near("SS AC", sequential_ss(&e, "A:C"), 1314.06, 5e-3);
   near("SS AD", sequential_ss(&e, "A:D"), 1105.56, 5e-3);
-  assert_int_equal(e.reg.residual_freedom, 0);
+  assert_int_equal(e.reg.residual_dof, 0);
   assert_true(isnan(e.reg.residual_sd) && isnan(coefficient(&e, "A")->p_value));
   assert_int_equal(e.reg.notes, 1);
   assert_non_null(strstr(e.reg.note[0], "Lenth"));
@@ -184,8 +184,8 @@ static void montgomery_yield(void **state) {
   near("lack of fit", e.reg.lack_ss, 0.2844, 6e-5);
   near("pure error", e.reg.pure_ss, 0.2120, 5e-5);
   near("F", e.reg.lack_f, 1.79, 5e-3);
-  assert_int_equal(e.reg.lack_freedom, 3);
-  assert_int_equal(e.reg.pure_freedom, 4);
+  assert_int_equal(e.reg.lack_dof, 3);
+  assert_int_equal(e.reg.pure_dof, 4);
   near("PRESS", e.reg.press, 2.3535, 5e-4);
   near("predicted R²", e.reg.predicted_r2, 0.9181, 5e-5);
   check(fg_surface_make(&e.ctx, &e.model, &e.reg, NULL, &s), &e);
@@ -224,7 +224,7 @@ static void chemreact_first_block(void **state) {
   check(fg_curvature_compute(&e.ctx, &e.table, factors, 2, "Yield", &curvature), &e);
   assert_int_equal(curvature.corners, 4);
   assert_int_equal(curvature.centres, 3);
-  assert_int_equal(curvature.error_freedom, 2);
+  assert_int_equal(curvature.error_dof, 2);
   fit(&e, "Yield ~ Time*Temp");
   near("curvature", curvature.sum_of_squares, e.reg.lack_ss, 1e-10);
   near("curvature F", curvature.f, e.reg.lack_f, 1e-9);

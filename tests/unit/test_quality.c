@@ -221,7 +221,7 @@ static void piston_rings(void **state) {
                                      .lower = 73.95,
                                      .upper = 74.05,
                                      .sigma = sigma,
-                                     .sigma_freedom = 100,
+                                     .sigma_dof = 100,
                                      .stable = true};
   fg_capability result;
   assert_int_equal(fg_capability_compute(&ctx, &input, &result), FG_OK);
@@ -241,7 +241,7 @@ static void capability_needs_stability(void **state) {
   fg_context ctx;
   fg_capability result;
   fg_capability_input input = {
-      .values = x, .count = NX, .lower = 0, .upper = INFINITY, .sigma = 1, .sigma_freedom = 14};
+      .values = x, .count = NX, .lower = 0, .upper = INFINITY, .sigma = 1, .sigma_dof = 14};
   assert_int_equal(fg_capability_compute(&ctx, &input, &result), FG_OK);
   assert_true(isnan(result.ck.value) && isnan(result.p.value));
   assert_near(result.pk.value, result.mean / (3 * result.sd), 1e-12);
@@ -293,7 +293,7 @@ static void comparison_is_r_s(void **state) {
   assert_int_equal(
       fg_comparison_compute(&ctx, (fg_sample){x, NX}, (fg_sample){y, NY}, 0.95, &result), FG_OK);
   assert_near(result.t, -3.65916999921187, 1e-11);
-  assert_near(result.freedom, 15.0616131999752, 1e-10);
+  assert_near(result.dof, 15.0616131999752, 1e-10);
   assert_near(result.p_means, 0.00231174070569478, 1e-12);
   assert_near(result.low, -3.222593003306090, 1e-10);
   assert_near(result.variance_ratio, 0.511754155700473, 1e-12);
@@ -344,11 +344,11 @@ static void published_gauge_study(void **state) {
 /* GUM H.1: contributions in nm with their degrees of freedom; u 32 nm, nu 16, U at 99 % 93 nm. */
 static void gum_end_gauge(void **state) {
   (void)state;
-  const double u[] = {25, 5.8, 3.9, 6.7, 2.9, 16.6}, freedom[] = {18, 24, 5, 8, 50, 2};
+  const double u[] = {25, 5.8, 3.9, 6.7, 2.9, 16.6}, dof[] = {18, 24, 5, 8, 50, 2};
   double squares = 0;
   for (int i = 0; i < 6; i++)
     squares += u[i] * u[i];
-  double nu = floor(fg_effective_freedom(u, freedom, 6));
+  double nu = floor(fg_effective_dof(u, dof, 6));
   assert_near(round(sqrt(squares)), 32, 0);
   assert_near(nu, 16, 0);
   assert_near(fg_distribution_t_quantile(0.995, nu) * 32, 93, 0.6);

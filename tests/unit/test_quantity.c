@@ -60,15 +60,15 @@ static void every_use_has_room(void **state) {
       size_t count, wanted = 0;
       const fg_quantity *rows = fg_quantities(owner, &count);
       for (size_t i = 0; i < count; i++)
-        wanted += rows[i].uses & use && fg_quantity_applies(owner, &rows[i], FG_FORM_CLASSICAL);
-      assert_int_equal(fg_quantity_shown(owner, (fg_quantity_use)use, FG_FORM_CLASSICAL, shown),
+        wanted += rows[i].uses & use && fg_quantity_applies(owner, &rows[i], FG_FOIL_CLASSICAL);
+      assert_int_equal(fg_quantity_shown(owner, (fg_quantity_use)use, FG_FOIL_CLASSICAL, shown),
                        wanted);
       for (size_t i = 1; i < wanted; i++)
         assert_true(!shown[i]->rank || (shown[i - 1]->rank && shown[i - 1]->rank < shown[i]->rank));
     }
   char names[800] = "";
-  fg_quantity_list(FG_QUANTITY_OF_BUMP, FG_FORM_CLASSICAL, true, names, sizeof names);
-  fg_quantity_list(FG_QUANTITY_OF_FOIL, FG_FORM_CLASSICAL, true, names, sizeof names);
+  fg_quantity_list(FG_QUANTITY_OF_BUMP, FG_FOIL_CLASSICAL, true, names, sizeof names);
+  fg_quantity_list(FG_QUANTITY_OF_FOIL, FG_FOIL_CLASSICAL, true, names, sizeof names);
   assert_true(strlen(names) + 1 < sizeof names);
 }
 
@@ -101,13 +101,13 @@ static void same(const cJSON *written, double number) {
   assert_true(fabs(written->valuedouble - number) <= 1e-9 * fabs(number));
 }
 
-static void holds_every_row(const cJSON *object, fg_quantity_owner owner, fg_form form,
+static void holds_every_row(const cJSON *object, fg_quantity_owner owner, fg_foil_kind kind,
                             const void *values) {
   size_t count;
   const fg_quantity *rows = fg_quantities(owner, &count);
   for (size_t i = 0; i < count; i++) {
     double numbers[FG_QUANTITY_NUMBERS_MAX];
-    if (!fg_quantity_applies(owner, &rows[i], form)) continue;
+    if (!fg_quantity_applies(owner, &rows[i], kind)) continue;
     size_t width = fg_quantity_numbers(&rows[i], values, numbers);
     for (size_t k = 0; k < width; k++) {
       bool pair = rows[i].kind == FG_QUANTITY_PAIR;
@@ -151,10 +151,10 @@ static void reports_hold_every_row(void **state) {
   char *text = text_of(&report, fg_report_write_json);
   cJSON *json = cJSON_Parse(text);
   const cJSON *written = item(json, "foils", 0);
-  holds_every_row(written, FG_QUANTITY_OF_FOIL, design.form, foil);
-  holds_every_row(item(written, "bumps", 3), FG_QUANTITY_OF_BUMP, design.form, &foil->bumps[3]);
+  holds_every_row(written, FG_QUANTITY_OF_FOIL, design.kind, foil);
+  holds_every_row(item(written, "bumps", 3), FG_QUANTITY_OF_BUMP, design.kind, &foil->bumps[3]);
   holds_every_row(cJSON_GetObjectItemCaseSensitive(written, "strip"), FG_QUANTITY_OF_STRIP,
-                  design.form, &foil->strip);
+                  design.kind, &foil->strip);
   cJSON_Delete(json);
   free(text);
   text = text_of(&report, fg_report_write_csv);
@@ -169,7 +169,7 @@ static void reports_hold_every_row_of_arcs(void **state) {
   fg_nominal nominal = synthetic_nominal(&design);
   fg_measurement measurement = synthetic_measurement(&design);
   fg_foil *foil = &measurement.foils[0];
-  design.form = measurement.design.form = FG_FORM_ARC;
+  design.kind = measurement.design.kind = FG_FOIL_ARC;
   foil->bump_count = 0;
   foil->correction = (fg_correction){1e-3, 2e-4, 3e-3, 4e-4, 5e-3, 6e-4};
   foil->arc = (fg_foil_arc){110.5, 0.001, 0.45, 0.0009, 39.8, 0.002};
@@ -177,7 +177,7 @@ static void reports_hold_every_row_of_arcs(void **state) {
   fg_report report = {&design, &nominal, &scan, 1, NULL};
   char *text = text_of(&report, fg_report_write_json);
   cJSON *json = cJSON_Parse(text);
-  holds_every_row(item(json, "foils", 0), FG_QUANTITY_OF_FOIL, FG_FORM_ARC, foil);
+  holds_every_row(item(json, "foils", 0), FG_QUANTITY_OF_FOIL, FG_FOIL_ARC, foil);
   cJSON_Delete(json);
   free(text);
   text = text_of(&report, fg_report_write_csv);
@@ -189,7 +189,7 @@ static void reports_hold_every_row_of_arcs(void **state) {
 static void reports_hold_every_row_of_discs(void **state) {
   (void)state;
   fg_design design = synthetic_design();
-  design.form = FG_FORM_DISCS;
+  design.kind = FG_FOIL_DISCS;
   fg_nominal nominal = {0};
   fg_disc disc = synthetic_disc(1, 1.5);
   fg_measurement measurement = {.dpi = {1200, 1200}, .discs = &disc, .disc_count = 1};
@@ -197,7 +197,7 @@ static void reports_hold_every_row_of_discs(void **state) {
   fg_report report = {&design, &nominal, &scan, 1, NULL};
   char *text = text_of(&report, fg_report_write_json);
   cJSON *json = cJSON_Parse(text);
-  holds_every_row(item(json, "discs", 0), FG_QUANTITY_OF_DISC, design.form, &disc);
+  holds_every_row(item(json, "discs", 0), FG_QUANTITY_OF_DISC, design.kind, &disc);
   cJSON_Delete(json);
   free(text);
   text = text_of(&report, fg_report_write_csv);
@@ -277,7 +277,7 @@ static void lots_know_every_row(void **state) {
     const fg_quantity *rows = fg_quantities(owners[o], &count);
     for (size_t i = 0; i < count; i++) {
       bool wanted = rows[i].uses & FG_QUANTITY_IN_LOT &&
-                    fg_quantity_applies(owners[o], &rows[i], design.form);
+                    fg_quantity_applies(owners[o], &rows[i], design.kind);
       if (wanted != (fg_lot_find_quantity(&analysis, rows[i].name) != NULL))
         fail_msg("statistics of %s in a lot", rows[i].name);
     }
@@ -293,7 +293,7 @@ static void lots_know_every_row(void **state) {
       for (size_t k = 0; k < count; k++)
         exported += list[k].row == &rows[i];
       size_t wanted = owners[o] == FG_QUANTITY_OF_BUMP ? BUMPS : 1;
-      bool applies = fg_quantity_applies(owners[o], &rows[i], design.form);
+      bool applies = fg_quantity_applies(owners[o], &rows[i], design.kind);
       assert_int_equal(exported, rows[i].characteristic && applies ? wanted : 0);
     }
   }

@@ -34,11 +34,11 @@ static void a_bumps_rows_are_derived_and_widened(void **state) {
   fg_measurement measurement = synthetic_measurement(&design);
   const fg_foil *foil = &measurement.foils[0];
   fg_thickness strip = fg_foil_thickness(&design, foil);
-  double doubt[3][3] = {{4e-8, 0, 0}, {0, 9e-8, 0}, {0, 0, 1e-8}};
+  double uncertainty[3][3] = {{4e-8, 0, 0}, {0, 9e-8, 0}, {0, 0, 1e-8}};
   fg_bump bump = bare_bump(&foil->bumps[2]);
   fg_bump_derive(&design, &nominal, &foil->overall, &strip, &bump);
   fg_bump wider = bump;
-  fg_bump_widen(&design, &nominal, &foil->overall, doubt, &wider);
+  fg_bump_widen(&design, &nominal, &foil->overall, uncertainty, &wider);
   size_t count;
   const fg_quantity *rows = fg_quantities(FG_QUANTITY_OF_BUMP, &count);
   for (size_t i = 0; i < count; i++) {
@@ -96,7 +96,7 @@ static void grows(fg_quantity_owner owner, const void *narrow, const void *wide)
   for (size_t i = 0; i < count; i++) {
     double before[FG_QUANTITY_NUMBERS_MAX], after[FG_QUANTITY_NUMBERS_MAX];
     if (!fg_quantity_has_u(&rows[i])) continue;
-    if (!fg_quantity_applies(owner, &rows[i], FG_FORM_CLASSICAL)) continue;
+    if (!fg_quantity_applies(owner, &rows[i], FG_FOIL_CLASSICAL)) continue;
     size_t width = fg_quantity_numbers(&rows[i], narrow, before);
     fg_quantity_numbers(&rows[i], wide, after);
     for (size_t k = fg_quantity_values(&rows[i]); k < width; k++) {

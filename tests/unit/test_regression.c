@@ -83,7 +83,7 @@ static void aliases_are_named(void **state) {
   assert_int_equal(alias->with[0], 1);
   assert_near(alias->factor[0], 1, 1e-14);
   assert_near(alias->factor[1], 2, 1e-14);
-  assert_int_equal(e.reg.sequential[2].freedom, 0);
+  assert_int_equal(e.reg.sequential[2].dof, 0);
   assert_true(isnan(e.reg.coefficient[3].estimate));
   assert_non_null(
       strstr(e.reg.note[0], "c cannot be told apart from others (it is 1 × a + 2 × b)"));
@@ -187,7 +187,7 @@ static void partial_squares_are_drops(void **state) {
   fit(&without, text, "y ~ x", NULL);
   assert_near(full.reg.partial[0].sum_of_squares, without.reg.residual_ss - full.reg.residual_ss,
               1e-11);
-  assert_int_equal(full.reg.partial[0].freedom, 2);
+  assert_int_equal(full.reg.partial[0].dof, 2);
   drop(&without);
   fit(&without, text, "y ~ g", NULL);
   assert_near(full.reg.partial[1].sum_of_squares, without.reg.residual_ss - full.reg.residual_ss,
@@ -216,13 +216,13 @@ static void split_plot_has_two_errors(void **state) {
   assert_int_equal(s.term[0].whole_plot, 1);
   assert_near(s.term[0].row.sum_of_squares, 200, 1e-12);
   assert_near(s.plot_ss, 8, 1e-12);
-  assert_int_equal(s.plot_freedom, 2);
+  assert_int_equal(s.plot_dof, 2);
   assert_near(s.term[0].row.f, 50, 1e-11);
   /* differences over D within loads: 4, 0, 6, 2 */
   assert_near(s.term[1].row.sum_of_squares, 18, 1e-12);
   assert_near(s.term[2].row.sum_of_squares, 2, 1e-12);
   assert_near(s.run_ss, 8, 1e-12);
-  assert_int_equal(s.run_freedom, 2);
+  assert_int_equal(s.run_dof, 2);
   assert_near(s.term[1].row.f, 4.5, 1e-12);
   assert_near(s.plot_variance, 0, 1e-12);
   assert_int_equal(s.balanced, 1);

@@ -111,7 +111,7 @@ static void midline_follows_the_curve(void **state) {
     assert_int_equal(fg_render_parse(&ctx, "spec.json", json, &specs[i]), FG_OK);
   }
   fg_point plain, moved, last = {0, 0};
-  double steepest = 0, least = INFINITY, most = 0;
+  double steepest = 0, min = INFINITY, max = 0;
   for (double s = 4; s < 40; s += 0.01) {
     assert_int_equal(fg_render_midline(&ctx, specs[0], 0, s, &plain), FG_OK);
     assert_int_equal(fg_render_midline(&ctx, specs[1], 0, s, &moved), FG_OK);
@@ -124,13 +124,13 @@ static void midline_follows_the_curve(void **state) {
     double shift = hypot(moved.x - plain.x, moved.y - plain.y) * pixel * 1e3;
     if (s > 4) steepest = fmax(steepest, fabs(shift - last.x));
     last.x = shift;
-    least = fmin(least, shift);
-    most = fmax(most, shift);
+    min = fmin(min, shift);
+    max = fmax(max, shift);
   }
   /* Full on the bumps, none on the lands, and no step between: a fillet is 0.22 mm long, and the
    * steepest slope of a cubic that fades over it is 1.5 times the mean. */
-  assert_close(most, 5, 1e-9);
-  assert_close(least, 0, 1e-9);
+  assert_close(max, 5, 1e-9);
+  assert_close(min, 0, 1e-9);
   assert_close(steepest, 1.5 * 5 * 0.01 / 0.22, 0.03);
   for (int i = 0; i < 4; i++)
     fg_render_free(specs[i]);

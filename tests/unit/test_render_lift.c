@@ -124,12 +124,12 @@ static void whole_bump_moves_with_its_flanks(void **state) {
 /* What the midline says is what is drawn: the crown of an upright foil's middle bump. */
 static void picture_shows_the_raised_crown(void **state) {
   (void)state;
-  const char *forms[] = {"crown", "whole"};
+  const char *extents[] = {"crown", "whole"};
   for (int i = 0; i < 2; i++) {
     picture p = draw_format("{\"schema\":\"foilgauge/render/1\",\"effects\":[{\"id\":"
                             "\"free.bump.index\",\"amplitude_um\":7,\"bumps\":[5],\"form\":\"%s\"}"
                             "],\"scanner\":{" EXACT "}}",
-                            forms[i]);
+                            extents[i]);
     double thickness, moved = crown(&p, 4, &thickness) * pixel * 1e3;
     assert_close(moved, i ? 0 : 7, 0.03); /* the whole bump's truth is where it is */
     drop(&p);

@@ -39,15 +39,15 @@ static scatter scatter_of(int foils, const char *rough) {
   return s;
 }
 
-typedef struct form_case {
+typedef struct roughness_case {
   double length_um;
   bool exponential;
   double tolerance; /* of the variance, relative: foils are shorter than centimetres */
-} form_case;
+} roughness_case;
 
 /* The Gaussian that a sample is smoothed with (0.3 px of 25.4 / 4800 mm) takes its share of scatter
  * that is finer than it. */
-static double expected_at(const form_case *c, double lag_um) {
+static double expected_at(const roughness_case *c, double lag_um) {
   const double smooth = 0.3 * 25.4e3 / 4800;
   double sum = 0, weights = 0, widened = hypot(c->length_um, 2 * smooth);
   if (!c->exponential) return c->length_um / widened * exp(-pow(lag_um / widened, 2));
@@ -61,13 +61,13 @@ static double expected_at(const form_case *c, double lag_um) {
 
 static void scatter_has_its_size_and_form(void **state) {
   (void)state;
-  static const form_case cases[] = {
+  static const roughness_case cases[] = {
       {1.06, false, 0.02}, {5, false, 0.02},   {50, false, 0.03}, {1000, false, 0.12},
       {20000, false, 0.4}, {1.06, true, 0.02}, {5, true, 0.02},   {50, true, 0.05},
       {1000, true, 0.15},  {20000, true, 0.4},
   };
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i += test_step(3)) {
-    const form_case *c = &cases[i];
+    const roughness_case *c = &cases[i];
     char rough[160];
     snprintf(rough, sizeof rough,
              "\"edge_roughness_um\":1.6,\"edge_common_um\":1.2,\"correlation_um\":%g,"
@@ -100,7 +100,7 @@ static void edges_share_what_is_common(void **state) {
 /* Around a disc the scatter closes, also where it is longer than the way round. */
 static void disc_scatters_and_closes(void **state) {
   (void)state;
-  const char *forms[] = {"gaussian", "exponential"};
+  const char *models[] = {"gaussian", "exponential"};
   const double lengths_um[] = {20, 200, 50000};
   for (size_t f = 0; f < 2; f++)
     for (size_t l = 0; l < 3; l++) {
@@ -113,7 +113,7 @@ static void disc_scatters_and_closes(void **state) {
                  "{\"schema\":\"foilgauge/render/1\",\"seed\":%d,\"discs\":[{\"centre_mm\":[3,3],"
                  "\"radius_mm\":2}],\"scanner\":{\"rough\":{\"edge_roughness_um\":0.9,"
                  "\"edge_common_um\":1.2,\"correlation_um\":%g,\"correlation_form\":\"%s\"}}}",
-                 seed, lengths_um[l], forms[f]);
+                 seed, lengths_um[l], models[f]);
         assert_int_equal(fg_render_parse(&ctx, "spec.json", json, &spec), FG_OK);
         const fg_shape *disc = &spec->scene.shapes[0];
         size_t n = disc->roughness_count;
@@ -124,7 +124,7 @@ static void disc_scatters_and_closes(void **state) {
         next += pow(1e3 * (double)(disc->roughness[n / 2] - disc->roughness[n / 2 + 1]), 2);
         fg_render_free(spec);
       }
-      double expected = l == 2 ? 1 : expected_at(&(form_case){lengths_um[l], f == 1, 0}, 0);
+      double expected = l == 2 ? 1 : expected_at(&(roughness_case){lengths_um[l], f == 1, 0}, 0);
       const double tolerance[] = {0.04, 0.1, 0.6};
       assert_close(squares / samples / (1.5 * 1.5) / expected, 1, tolerance[l]);
       assert_true(turn < 3 * next + 1e-6); /* where it closes as smooth as elsewhere */

@@ -102,11 +102,11 @@ static void a_sinusoidal_foil_is_not_warned_of_its_lip(void **state) {
   fg_design *design = &all->design;
   all->measurement.foils[0].flags = FG_FOIL_NO_LIP;
   char *warned = text_of(fg_report_write_table, &all->report);
-  fg_form form = design->form;
-  design->form = FG_FORM_SINUSOIDAL;
+  fg_foil_kind kind = design->kind;
+  design->kind = FG_FOIL_SINUSOIDAL;
   char *told = text_of(fg_report_write_table, &all->report);
   char *json = text_of(fg_report_write_json, &all->report);
-  design->form = form;
+  design->kind = kind;
   assert_non_null(strstr(warned, "no_lip"));
   assert_null(strstr(told, "no_lip"));
   assert_non_null(strstr(json, "no_lip"));

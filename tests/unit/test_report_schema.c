@@ -61,7 +61,7 @@ static void a_foil_is_valid(void **state) {
 static void discs_are_valid(void **state) {
   (void)state;
   fg_design design = synthetic_design();
-  design.form = FG_FORM_DISCS;
+  design.kind = FG_FOIL_DISCS;
   design.diameter_count = 2;
   design.diameters_mm[0] = 3;
   design.diameters_mm[1] = 5.5;

@@ -181,7 +181,7 @@ static void an_unknown_tolerance_is_refused(void **state) {
   assert_int_equal(fg_report_check_tolerances(&ctx, &all->design), FG_ERR_DATA);
   assert_non_null(strstr(ctx.message, "tolerances.hight_mm"));
   assert_non_null(strstr(ctx.message, "height_mm,"));
-  all->design.form = FG_FORM_DISCS;
+  all->design.kind = FG_FOIL_DISCS;
   all->design.tolerance_count = 1;
   assert_int_equal(fg_report_check_tolerances(&ctx, &all->design), FG_ERR_DATA);
 }

@@ -200,7 +200,7 @@ static void a_cycle_over_the_bumps_is_told(void **state) {
 }
 
 /* Steady as it may be: what is within the edges' own doubt is nobody's deviation. */
-static void single_bumps_within_doubt_are_not_told(void **state) {
+static void single_bumps_within_uncertainty_are_not_told(void **state) {
   recipe r = plain;
   scans s;
   size_t response;
@@ -314,7 +314,7 @@ int main(void) {
       cmocka_unit_test(what_the_edges_leave_in_doubt_is_no_claim),
       cmocka_unit_test(single_bumps_are_told),
       cmocka_unit_test(a_cycle_over_the_bumps_is_told),
-      cmocka_unit_test(single_bumps_within_doubt_are_not_told),
+      cmocka_unit_test(single_bumps_within_uncertainty_are_not_told),
       cmocka_unit_test(small_foils_say_what_they_cannot_tell),
       cmocka_unit_test(without_a_lip_there_is_no_decay),
       cmocka_unit_test(bumps_that_were_not_fitted_are_left_out),

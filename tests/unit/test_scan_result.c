@@ -43,7 +43,7 @@ static odd_input foil_input(void) {
 static odd_input ring_input(void) {
   odd_input in = {.scans = 1};
   fg_design_default(&in.design);
-  in.design.form = FG_FORM_DISCS;
+  in.design.kind = FG_FOIL_DISCS;
   in.scan[0].discs = 1;
   in.scan[0].disc[0] = (odd_disc){
       .x_mm = 20, .y_mm = 20, .radius_mm = 15, .noise_um = 0.3, .stations = 2000, .seed = 3};
@@ -107,7 +107,7 @@ static void assert_ratios(const cJSON *json, const fg_scan_result *result) {
 }
 
 static void assert_noise(const cJSON *json, const fg_scan_noise *noise) {
-  assert_text(json, "form", noise->form);
+  assert_text(json, "form", noise->model);
   assert_number(json, "sd", noise->sd_um);
   assert_number(json, "white_sd", noise->white_um);
   assert_number(json, "correlated_sd", noise->correlated_um);

@@ -10,13 +10,13 @@
 #include "loop/engine_random.h"
 #include "scan_loop/bump_pattern.h"
 
-static fg_bump_values scatter(size_t n, double noise_freedom, uint64_t *seed) {
-  fg_bump_values at = {.n = n, .noise_freedom = noise_freedom};
+static fg_bump_values scatter(size_t n, double noise_dof, uint64_t *seed) {
+  fg_bump_values at = {.n = n, .noise_dof = noise_dof};
   for (size_t k = 0; k < n; k++) {
     at.number[k] = (double)k + 1;
     at.value[k] = fg_engine_random_normal(seed);
   }
-  for (double f = 0; f < noise_freedom; f++)
+  for (double f = 0; f < noise_dof; f++)
     at.noise_square += pow(fg_engine_random_normal(seed), 2);
   return at;
 }
@@ -57,21 +57,21 @@ static void two_of_six_are_told(void **state) {
 /* P-values of scatter: as many below a tenth as there should be, or fewer (of two forms both). */
 static void scatter_is_not_told(void **state) {
   (void)state;
-  const double freedom[] = {0, 32};
+  const double dof[] = {0, 32};
   enum { DRAWS = 60 };
   for (size_t f = 0; f < 2; f++) {
     size_t tenth = 0;
-    double least = 1;
+    double min = 1;
     for (uint64_t seed = 1; seed <= DRAWS; seed++) {
       uint64_t draw = 7777 * seed;
       double p_value;
-      fg_bump_values at = scatter(6 + seed % 6, freedom[f], &draw);
+      fg_bump_values at = scatter(6 + seed % 6, dof[f], &draw);
       fg_bump_pattern_find(&at, seed, &p_value);
       tenth += p_value < 0.1;
-      least = fmin(least, p_value);
+      min = fmin(min, p_value);
     }
     assert_true(tenth <= 14); /* of 6: 1 in 1000 by chance */
-    assert_true(least > FG_BUMP_PATTERN_P);
+    assert_true(min > FG_BUMP_PATTERN_P);
   }
 }
 

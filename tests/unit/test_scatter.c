@@ -18,8 +18,8 @@ static bool same_arc(const fg_points *points, size_t a, size_t b) {
   return p->view == q->view && p->group == q->group;
 }
 
-static double rho(fg_scatter_form form, double d) {
-  return exp(form == FG_SCATTER_GAUSSIAN ? -d * d : -d);
+static double rho(fg_scatter_model model, double d) {
+  return exp(model == FG_SCATTER_GAUSSIAN ? -d * d : -d);
 }
 
 /* Correlation of rows a and b as rows/scatter.h says it. */
@@ -27,7 +27,7 @@ static double correlation(const fg_points *points, const fg_scatter *s, size_t a
   if (a == b) return 1;
   if (!same_arc(points, a, b)) return 0;
   double d = fabs(points->rows[a].s_mm - points->rows[b].s_mm) / s->range_mm;
-  return s->share * rho(s->form, d);
+  return s->share * rho(s->model, d);
 }
 
 /* Lower root of the correlation of one arc's rows [from, to). */
@@ -84,9 +84,9 @@ static double dense_square(const fg_points *points, const fg_scatter *s, const d
 }
 
 static const fg_scatter kinds[] = {
-    {.share = 0.6, .range_mm = 0.05, .form = FG_SCATTER_GAUSSIAN, .integral = 2.5},
-    {.share = 0.8, .range_mm = 0.1, .form = FG_SCATTER_GAUSSIAN, .integral = 4},
-    {.share = 0.7, .range_mm = 0.06, .form = FG_SCATTER_EXPONENTIAL, .integral = 3},
+    {.share = 0.6, .range_mm = 0.05, .model = FG_SCATTER_GAUSSIAN, .integral = 2.5},
+    {.share = 0.8, .range_mm = 0.1, .model = FG_SCATTER_GAUSSIAN, .integral = 4},
+    {.share = 0.7, .range_mm = 0.06, .model = FG_SCATTER_EXPONENTIAL, .integral = 3},
 };
 enum { KINDS = sizeof kinds / sizeof *kinds };
 
@@ -149,7 +149,7 @@ static double true_long_waves(const fg_points *points, const fg_scatter *s, doub
   }
   spacing /= pairs;
   for (int lag = 1; lag < 1000; lag++)
-    sum += 2 * s->share * rho(s->form, lag * spacing / s->range_mm);
+    sum += 2 * s->share * rho(s->model, lag * spacing / s->range_mm);
   return sd_um * sd_um * sum;
 }
 
@@ -171,7 +171,7 @@ static void noise_at_long_waves_is_found_from_short_ones(void **state) {
       mean += long_waves(&f.points.scatter) / true_long_waves(&f.points, &kinds[k], sd_um) / SEEDS;
       foil_rows_close(&f);
     }
-    assert_near(mean, 1, kinds[k].form == FG_SCATTER_GAUSSIAN ? 0.1 : 0.4);
+    assert_near(mean, 1, kinds[k].model == FG_SCATTER_GAUSSIAN ? 0.1 : 0.4);
   }
 }
 

@@ -7,8 +7,8 @@ enum { FINE = 4800, COARSE = 2400 };
 
 /* Chance and model together: none may be farther off, and their mean square is no more than that of
  * a u that holds. */
-#define MOST_SIGMAS 3.2
-#define MOST_RMS    1.3
+#define MAX_SIGMAS 3.2
+#define MAX_RMS    1.3
 
 /* Errors over their u. */
 typedef struct errors {
@@ -69,7 +69,7 @@ static void check_errors(const char *what, int dpi, const errors e[4]) {
     if (getenv("FOILGAUGE_TEST_SHOW"))
       printf("%s %d %s: worst %.2f u, rms %.2f u, u up to %.2f\n", what, dpi, names[i], e[i].worst,
              rms, e[i].worst_u_um);
-    if (e[i].worst > MOST_SIGMAS || rms > MOST_RMS)
+    if (e[i].worst > MAX_SIGMAS || rms > MAX_RMS)
       fail_msg("%s, %d dpi: %s off by up to %.2f u, rms %.2f u", what, dpi, names[i], e[i].worst,
                rms);
   }

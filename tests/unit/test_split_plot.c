@@ -45,12 +45,12 @@ static double ours(const fg_experiment *e, const char *what, const char *name) {
     if (!is_named(e->regression.coefficient[j].name, name)) continue;
     if (!strcmp(what, "estimate")) return e->regression.coefficient[j].estimate;
     if (!strcmp(what, "standard_error")) return e->effect[j].standard_error;
-    if (!strcmp(what, "freedom")) return e->effect[j].freedom;
+    if (!strcmp(what, "freedom")) return e->effect[j].dof;
   }
   for (size_t t = 0; t < s->terms; t++) {
     if (strcmp(s->term[t].row.name, name) != 0) continue;
     if (!strcmp(what, "term_f")) return s->term[t].row.f;
-    if (!strcmp(what, "term_freedom")) return s->term[t].error_freedom;
+    if (!strcmp(what, "term_freedom")) return s->term[t].error_dof;
     if (!strcmp(what, "term_p")) return s->term[t].row.p_value;
   }
   fail_msg("no %s of %s", what, name);
@@ -135,11 +135,11 @@ static void complete_plans_agree_with_the_strata(void **state) {
     assert_true(fabs(mixed.variance[FG_MIXED_GROUPS] - (s->plot_ms - s->run_ms) / PER_PLOT) < 1e-9);
     negative += mixed.at_border;
     for (size_t j = 0; j < e.regression.columns; j++) {
-      double row[8] = {0}, freedom;
+      double row[8] = {0}, dof;
       row[j] = 1;
-      double u = sqrt(fg_mixed_variance(&mixed, row, false, &freedom));
+      double u = sqrt(fg_mixed_variance(&mixed, row, false, &dof));
       assert_true(fabs(u / e.effect[j].standard_error - 1) < 1e-9);
-      assert_true(fabs(freedom - e.effect[j].freedom) < 1e-6);
+      assert_true(fabs(dof - e.effect[j].dof) < 1e-6);
       assert_true(fabs(mixed.estimate[j] - e.regression.coefficient[j].estimate) < 1e-9);
     }
     fg_mixed_free(&mixed);
@@ -151,7 +151,7 @@ static void complete_plans_agree_with_the_strata(void **state) {
 }
 
 /* Each temperature in one whole plot: T cannot be told, D is told within the plots. */
-static void whole_plots_without_freedom_leave_what_is_within_them(void **state) {
+static void whole_plots_without_dof_leave_what_is_within_them(void **state) {
   (void)state;
   static const char text[] = "T,D,load,y\n-1,-1,1,11\n-1,1,1,15\n-1,-1,1,12\n"
                              "1,-1,2,20\n1,1,2,26\n1,1,2,25\n1,-1,2,21\n";
@@ -161,7 +161,7 @@ static void whole_plots_without_freedom_leave_what_is_within_them(void **state) 
   /* Within plot 1: 3.5 / 2, weight 2/3; within plot 2: 5 / 2, weight 1. */
   double slope = (1.75 * 8 / 3 + 2.5 * 4) / (8.0 / 3 + 4);
   assert_true(fabs(e.regression.coefficient[2].estimate - slope) < 1e-5);
-  assert_true(fabs(e.effect[2].freedom - 4) < 1e-9);
+  assert_true(fabs(e.effect[2].dof - 4) < 1e-9);
   assert_true(e.effect[2].low < slope && e.effect[2].high > slope);
   fg_experiment_free(&e);
 }
@@ -179,7 +179,7 @@ static void odd_plans_are_analysed_or_say_why(void **state) {
   assert_non_null(e.split_plot.mixed);
   for (size_t j = 0; j < e.regression.columns; j++)
     if (!e.regression.coefficient[j].aliased)
-      assert_true(e.effect[j].standard_error > 0 && e.effect[j].freedom > 1);
+      assert_true(e.effect[j].standard_error > 0 && e.effect[j].dof > 1);
   assert_true(e.optimum.prediction.standard_error > 0);
   fg_experiment_free(&e);
   free(text);
@@ -189,7 +189,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(missing_runs_are_analysed_as_by_r),
       cmocka_unit_test(complete_plans_agree_with_the_strata),
-      cmocka_unit_test(whole_plots_without_freedom_leave_what_is_within_them),
+      cmocka_unit_test(whole_plots_without_dof_leave_what_is_within_them),
       cmocka_unit_test(odd_plans_are_analysed_or_say_why),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -45,7 +45,7 @@ static void write_spec(char *json, size_t size, const scanner *is, unsigned seed
 
 static void design_plate(fg_design *design) {
   fg_design_default(design);
-  design->form = FG_FORM_DISCS;
+  design->kind = FG_FOIL_DISCS;
   design->diameter_count = DISCS;
   for (size_t i = 0; i < DISCS; i++)
     design->diameters_mm[i] = 2 * radii_mm[i];
@@ -86,10 +86,10 @@ static void compare(const fg_check_fit *fit, const scanner *is, double in_u[3], 
 }
 
 /* Over seeds: none further off than 4 u, the mean square of deviation / u about 1, and no larger
- * errors than `most_ppm`. Over 40 seeds (SEEDS) the root of that mean square is 0.77 to 1.15 for
+ * errors than `max_ppm`. Over 40 seeds (SEEDS) the root of that mean square is 0.77 to 1.15 for
  * each of the three, in every one of these pictures, and none is 4 u off. */
-static void check_coverage(const char *picture, const scanner *is, double least, double most,
-                           double most_ppm) {
+static void check_coverage(const char *picture, const scanner *is, double min, double max,
+                           double max_ppm) {
 #ifndef SEEDS
   const unsigned seeds = 4 / test_step(4);
 #else
@@ -113,11 +113,11 @@ static void check_coverage(const char *picture, const scanner *is, double least,
          sqrt(square_ppm[1]), sqrt(square_ppm[2]));
 #ifndef SEEDS
   assert_true(worst < 4);
-  assert_true(all > least && all < most);
+  assert_true(all > min && all < max);
   for (int k = 0; k < 3; k++)
-    assert_true(sqrt(square_ppm[k]) < most_ppm * 2 / sqrt(seeds)); /* of four */
+    assert_true(sqrt(square_ppm[k]) < max_ppm * 2 / sqrt(seeds)); /* of four */
 #else
-  (void)all, (void)least, (void)most, (void)most_ppm;
+  (void)all, (void)min, (void)max, (void)max_ppm;
 #endif
 }
 
@@ -178,7 +178,7 @@ static void one_size_tells_no_level(void **state) {
                          .coverage_deg = 360,
                          .points = POINTS,
                          .edge = edge,
-                         .level_doubt_mm = 1e-4};
+                         .level_u_mm = 1e-4};
   const fg_measurement measurement = {.discs = discs, .disc_count = 2};
   design_plate(&design);
   assert_int_equal(fg_check_fit_plate(&ctx, &design, &measurement, &fit), FG_OK);

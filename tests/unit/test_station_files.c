@@ -15,16 +15,17 @@
 
 #define SECOND INT64_C(1000000000)
 
-static bool look(fg_rest *rest, const char *name, int64_t bytes, int64_t modified_ns,
+static bool look(fg_file_stability *rest, const char *name, int64_t bytes, int64_t modified_ns,
                  int64_t now_ns) {
   fg_context ctx;
   fg_resting *file;
-  assert_int_equal(fg_rest_look(&ctx, rest, name, bytes, modified_ns, now_ns, &file), FG_OK);
-  return now_ns - file->since_ns >= FG_REST_NS;
+  assert_int_equal(fg_file_stability_look(&ctx, rest, name, bytes, modified_ns, now_ns, &file),
+                   FG_OK);
+  return now_ns - file->since_ns >= FG_STABLE_NS;
 }
 
 static void test_a_file_rests_when_it_stays_the_same(void **state) {
-  fg_rest rest = {0};
+  fg_file_stability rest = {0};
   (void)state;
   assert_false(look(&rest, "a", 10, 5, 0));
   assert_false(look(&rest, "a", 10, 5, SECOND));
@@ -34,32 +35,32 @@ static void test_a_file_rests_when_it_stays_the_same(void **state) {
   assert_false(look(&rest, "b", 20, 6, 5 * SECOND));
   assert_true(look(&rest, "a", 20, 6, 6 * SECOND));
   assert_true(look(&rest, "b", 20, 6, 7 * SECOND));
-  fg_rest_free(&rest);
+  fg_file_stability_free(&rest);
 }
 
 /* The file server's clock is a year ahead, an hour behind, or set back between two writes. */
 static void test_clocks_of_files_say_nothing(void **state) {
   static const int64_t times[] = {365 * 86400 * SECOND, -3600 * SECOND, 0, -86400 * SECOND};
-  fg_rest rest = {0};
+  fg_file_stability rest = {0};
   (void)state;
   for (size_t i = 0; i < sizeof times / sizeof *times; i++)
     assert_false(look(&rest, "a", 10, times[i], (int64_t)i * SECOND));
   assert_true(look(&rest, "a", 10, times[3], 5 * SECOND));
-  fg_rest_free(&rest);
+  fg_file_stability_free(&rest);
 }
 
 static void test_what_is_gone_is_forgotten(void **state) {
-  fg_rest rest = {0};
+  fg_file_stability rest = {0};
   (void)state;
   look(&rest, "a", 10, 5, 0);
   look(&rest, "b", 10, 5, 0);
-  fg_rest_end_round(&rest);
+  fg_file_stability_end_round(&rest);
   look(&rest, "b", 10, 5, SECOND);
-  fg_rest_end_round(&rest);
+  fg_file_stability_end_round(&rest);
   assert_int_equal(rest.count, 1);
   assert_false(look(&rest, "a", 10, 5, 9 * SECOND)); /* another file of that name */
   assert_true(look(&rest, "b", 10, 5, 9 * SECOND));
-  fg_rest_free(&rest);
+  fg_file_stability_free(&rest);
 }
 
 static void test_folders_of_lots(void **state) {

@@ -353,8 +353,8 @@ static void press(fixture *f, const char *path, const char *fields, int code) {
   fg_request request = {.post = true, .path = path, .last_event = -1};
   fg_answer answer = {0};
   char whole[200];
-  strcpy(f->station.form_token, "0123456789abcdef0123456789abcdef");
-  snprintf(whole, sizeof whole, "form=%s&%s", f->station.form_token, fields);
+  strcpy(f->station.csrf_token, "0123456789abcdef0123456789abcdef");
+  snprintf(whole, sizeof whole, "form=%s&%s", f->station.csrf_token, fields);
   request.host = f->station.host;
   assert_true(fg_request_read_fields(&request, whole, strlen(whole)));
   fg_station_answer(&f->station, &request, &answer);

@@ -21,7 +21,7 @@
 #include "foilgauge/regression.h"
 #include "support/data.h"
 
-enum { MOST_FIELDS = 16, FIRST_DATA_LINE = 61, MOST_SETS = 64 };
+enum { MAX_FIELDS = 16, FIRST_DATA_LINE = 61, MAX_SETS = 64 };
 
 /* The fewest digits over each kind of number; NAN where the set has none. */
 typedef struct digits_row {
@@ -29,7 +29,7 @@ typedef struct digits_row {
   double estimate, standard_error, residual_sd, r2, squares, f;
 } digits_row;
 
-static digits_row results[MOST_SETS];
+static digits_row results[MAX_SETS];
 static size_t result_count;
 
 static double digits(double x, double certified) {
@@ -39,14 +39,14 @@ static double digits(double x, double certified) {
   return fmax(0, fmin(15, -log10(error)));
 }
 
-static void lower(double *least, double value) {
-  *least = isnan(*least) ? value : fmin(*least, value);
+static void lower(double *min, double value) {
+  *min = isnan(*min) ? value : fmin(*min, value);
 }
 
 /* One line cut into its fields. */
 typedef struct line {
   char text[400];
-  char *field[MOST_FIELDS];
+  char *field[MAX_FIELDS];
   size_t fields;
 } line;
 
@@ -60,7 +60,7 @@ static bool next_line(const char **at, line *l) {
   *at += length + ((*at)[length] != 0);
   l->fields = 0;
   char *rest = NULL;
-  for (char *f = strtok_r(l->text, " \t\r", &rest); f && l->fields < MOST_FIELDS;
+  for (char *f = strtok_r(l->text, " \t\r", &rest); f && l->fields < MAX_FIELDS;
        f = strtok_r(NULL, " \t\r", &rest))
     l->field[l->fields++] = f;
   return true;
@@ -120,7 +120,7 @@ static void compare_regression(const char *text, const fg_regression *reg, digit
       row->f = digits(reg->model_f, strtod(l.field[4], NULL));
     } else if (l.fields == 4 && strcmp(l.field[0], "Residual") == 0) {
       residual_line = true;
-      assert_int_equal(reg->residual_freedom, strtoul(l.field[1], NULL, 10));
+      assert_int_equal(reg->residual_dof, strtoul(l.field[1], NULL, 10));
       lower(&row->squares, digits(reg->residual_ss, strtod(l.field[2], NULL)));
     }
   }
@@ -134,12 +134,12 @@ static digits_row *new_row(const char *set, const char *kind, const char *diffic
   return row;
 }
 
-static void assert_digits(const digits_row *row, double least) {
+static void assert_digits(const digits_row *row, double min) {
   const double all[] = {row->estimate, row->standard_error, row->residual_sd,
                         row->r2,       row->squares,        row->f};
   for (size_t i = 0; i < sizeof all / sizeof *all; i++)
-    if (!isnan(all[i]) && all[i] < least)
-      fail_msg("%s: %.2f digits in quantity %zu, %.1f are wanted", row->set, all[i], i, least);
+    if (!isnan(all[i]) && all[i] < min)
+      fail_msg("%s: %.2f digits in quantity %zu, %.1f are wanted", row->set, all[i], i, min);
 }
 
 static void regressions(void **state) {
@@ -207,7 +207,7 @@ static void compare_anova(const char *text, const fg_anova_oneway *a, digits_row
       row->f = digits(a->f, strtod(l.field[5], NULL));
       lines++;
     } else if (l.fields == 5 && strcmp(l.field[0], "Within") == 0) {
-      assert_int_equal(a->within_freedom, strtoul(l.field[2], NULL, 10));
+      assert_int_equal(a->within_dof, strtoul(l.field[2], NULL, 10));
       lower(&row->squares, digits(a->within_ss, strtod(l.field[3], NULL)));
       lower(&row->squares, digits(a->within_ms, strtod(l.field[4], NULL)));
       lines++;

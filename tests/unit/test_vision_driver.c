@@ -159,7 +159,7 @@ static void discs_stay_round_and_right(void **state) {
   };
   fg_design design;
   fg_design_default(&design);
-  design.form = FG_FORM_DISCS;
+  design.kind = FG_FOIL_DISCS;
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
     const driver_case *c = &cases[i];
     char json[8192], curve[4096] = "";

@@ -23,13 +23,13 @@ static fg_point *true_midline(const measured *m, double step_mm, size_t *count) 
 /* Signed distance of a point from a polyline, along a normal, and which vertex is near. */
 static double distance_from(const fg_point *line, size_t count, size_t *near, fg_point p,
                             fg_point normal) {
-  double least = INFINITY;
+  double min = INFINITY;
   size_t from = *near > 400 ? *near - 400 : 0, to = *near + 400 < count ? *near + 400 : count;
   if (*near == 0) to = count;
   for (size_t i = from; i < to; i++) {
     double d = hypot(line[i].x - p.x, line[i].y - p.y);
-    if (d < least) {
-      least = d;
+    if (d < min) {
+      min = d;
       *near = i;
     }
   }

@@ -93,14 +93,14 @@ static void tiles_do_not_depend_on_how_rows_arrive(void **state) {
 }
 
 /* Segments the first island. */
-static fg_segmentation segment(fg_tiles *tiles, double least_px, fg_island *island) {
+static fg_segmentation segment(fg_tiles *tiles, double min_px, fg_island *island) {
   fg_context ctx = {0};
   fg_islands *islands = NULL;
   fg_segmentation seg;
   assert_int_equal(fg_islands_create(&ctx, tiles, &islands), FG_OK);
   assert_int_equal(fg_islands_advance(&ctx, islands), FG_OK);
   assert_true(fg_islands_next(islands, island));
-  assert_int_equal(fg_segment(&ctx, tiles, island, least_px, &seg), FG_OK);
+  assert_int_equal(fg_segment(&ctx, tiles, island, min_px, &seg), FG_OK);
   fg_islands_free(islands);
   return seg;
 }

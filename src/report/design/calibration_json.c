@@ -9,7 +9,7 @@
 #include "core/text.h"
 
 /* A certificate states U with a factor from 1 (68 %) to 4; beyond it is a slip. */
-static const double k_least = 1, k_most = 4;
+static const double k_min = 1, k_max = 4;
 
 static fg_status fail(fg_context *ctx, const char *place, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
@@ -83,8 +83,8 @@ static fg_status read_u(fg_context *ctx, const char *place, const cJSON *object,
   if (isnan(expanded)) return FG_OK;
   if (isnan(k))
     return fail(ctx, place, "%s needs its factor k, as the certificate says", s->expanded);
-  if (!(k >= k_least && k <= k_most))
-    return fail(ctx, place, "k is %g; it must be from %g to %g", k, k_least, k_most);
+  if (!(k >= k_min && k <= k_max))
+    return fail(ctx, place, "k is %g; it must be from %g to %g", k, k_min, k_max);
   *u = expanded / k;
   return FG_OK;
 }

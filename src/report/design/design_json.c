@@ -83,13 +83,13 @@ static fg_status read_word(const reader *r, const char *name, const cJSON *item,
   return fail(r, name, "must be %s", choices);
 }
 
-static fg_status read_form(const reader *r, const char *name, const cJSON *item, void *out) {
+static fg_status read_kind(const reader *r, const char *name, const cJSON *item, void *out) {
   static const char *const words[] = {"classical", "sinusoidal", "discs",
                                       "arc",       "cantilever", NULL};
   int place = 0;
   FG_TRY(read_word(r, name, item, words,
                    "\"classical\", \"sinusoidal\", \"discs\", \"arc\" or \"cantilever\"", &place));
-  *(fg_form *)out = (fg_form)place;
+  *(fg_foil_kind *)out = (fg_foil_kind)place;
   return FG_OK;
 }
 
@@ -101,7 +101,7 @@ static fg_status read_datum(const reader *r, const char *name, const cJSON *item
   return FG_OK;
 }
 
-static const cJSON *earlier_twin(const cJSON *object, const cJSON *member) {
+static const cJSON *earlier_duplicate(const cJSON *object, const cJSON *member) {
   for (const cJSON *item = object->child; item != member; item = item->next)
     if (!strcmp(item->string, member->string)) return item;
   return NULL;
@@ -114,7 +114,7 @@ static fg_status read_limits(const reader *r, const char *name, const cJSON *ite
   for (const cJSON *limit = item->child; limit; limit = limit->next) {
     char full[128];
     snprintf(full, sizeof full, "%.50s.%.20s", name, limit->string);
-    if (earlier_twin(item, limit)) return fail(r, full, "is given twice");
+    if (earlier_duplicate(item, limit)) return fail(r, full, "is given twice");
     if (!strcmp(limit->string, "min"))
       FG_TRY(read_number(r, full, limit, &tolerance->lower));
     else if (!strcmp(limit->string, "max"))
@@ -134,7 +134,7 @@ static fg_status read_tolerances(const reader *r, const char *name, const cJSON 
     char full[80];
     fg_tolerance tolerance = {.lower = -INFINITY, .upper = INFINITY};
     snprintf(full, sizeof full, "%s.%.50s", name, entry->string);
-    if (earlier_twin(item, entry)) return fail(r, full, "is given twice");
+    if (earlier_duplicate(item, entry)) return fail(r, full, "is given twice");
     if (strlen(entry->string) >= sizeof tolerance.quantity)
       return fail(r, full, "is not the name of a quantity");
     if (design->tolerance_count == FG_TOLERANCES_MAX)
@@ -182,7 +182,7 @@ static fg_status read_thickness_measured(const reader *r, const char *name, cons
   for (const cJSON *part = item->child; part; part = part->next)
     if (strcmp(part->string, parts[0].name) != 0 && strcmp(part->string, parts[1].name) != 0)
       return fail(r, name, "'%.40s' is not known; there are value_mm and u_mm", part->string);
-    else if (earlier_twin(item, part))
+    else if (earlier_duplicate(item, part))
       return fail(r, name, "%s is given twice", part->string);
   for (size_t i = 0; i < 2; i++) {
     char full[48];
@@ -220,7 +220,7 @@ static fg_status read_gauge(const reader *r, const char *name, const cJSON *item
   for (const cJSON *member = item->child; member; member = member->next) {
     char full[80];
     snprintf(full, sizeof full, "%.40s.%.30s", name, member->string);
-    if (earlier_twin(item, member)) return fail(r, full, "is given twice");
+    if (earlier_duplicate(item, member)) return fail(r, full, "is given twice");
     if (!strcmp(member->string, members[0]))
       FG_TRY(read_gauge_kind(r, full, member, &gauge->kind));
     else if (!strcmp(member->string, members[1]))
@@ -267,7 +267,7 @@ static const member_row member_rows[] = {
     {"schema", read_schema, 0, "Must be \"foilgauge/design/1\"."},
     MEMBER(name, read_name, "Of the design, as reports show it."),
     MEMBER(
-        form, read_form,
+        kind, read_kind,
         "\"classical\" (bumps, lands, a lip at one end), \"sinusoidal\" (long fillets, short "
         "lands, no lip), \"arc\" (a plain strip, as a top foil), \"cantilever\" (a flat foil with "
         "beams cut out of it) or \"discs\" (no foil: round gauges)."),
@@ -358,7 +358,7 @@ static fg_status check_complete(const reader *r, const cJSON *root, const fg_des
     if (has && !given) given = together[i];
     if (!has && !missing) missing = together[i];
   }
-  if (!fg_form_has_bumps(design->form) || !given || !missing) return FG_OK;
+  if (!fg_foil_kind_has_bumps(design->kind) || !given || !missing) return FG_OK;
   return fail(r, missing, "is missing; a design that states %s must state it too", given);
 }
 
@@ -368,19 +368,19 @@ static bool has_member(const cJSON *root, const char *name) {
 
 /* Of a form that nothing has a default of: what it must state, and what belongs to other forms and
  * would be ignored. */
-typedef struct form_members {
-  const char *form, *part;
+typedef struct kind_members {
+  const char *kind, *part;
   const char *needed[4], *others[12];
-} form_members;
+} kind_members;
 
-static const form_members arc_members = {
+static const kind_members arc_members = {
     "arc",
     "an arc",
     {"overall_radius_mm", "subtended_angle_deg", "thickness_mm"},
     {"bump_count", "bump_radius_mm", "bump_angle_deg", "sleeve_radius_mm", "pitch_deg",
      "fillet_radius_mm", "rotor_diameter_mm", "top_foil_thickness_mm"}};
 
-static const form_members cantilever_members = {
+static const kind_members cantilever_members = {
     "cantilever",
     "a cantilever",
     {"beam_length_mm", "beam_width_mm", "thickness_mm"},
@@ -388,35 +388,35 @@ static const form_members cantilever_members = {
      "fillet_radius_mm", "rotor_diameter_mm", "top_foil_thickness_mm", "overall_radius_mm",
      "datum"}};
 
-static fg_status check_form_members(const reader *r, const cJSON *root, const form_members *own) {
+static fg_status check_kind_members(const reader *r, const cJSON *root, const kind_members *own) {
   for (size_t i = 0; own->needed[i]; i++)
     if (!has_member(root, own->needed[i]))
       return fail(r, own->needed[i], "is missing; %s must state it", own->part);
   for (size_t i = 0; own->others[i]; i++)
     if (has_member(root, own->others[i]))
-      return fail(r, own->others[i], "belongs to a foil with bumps; form is \"%s\"", own->form);
+      return fail(r, own->others[i], "belongs to a foil with bumps; form is \"%s\"", own->kind);
   return FG_OK;
 }
 
-static fg_status read_form_alone(const reader *r, const cJSON *root, const form_members *own,
+static fg_status read_kind_alone(const reader *r, const cJSON *root, const kind_members *own,
                                  fg_design *design) {
-  FG_TRY(check_form_members(r, root, own));
+  FG_TRY(check_kind_members(r, root, own));
   design->bump_count = 0;
-  if (!has_member(root, "name")) strcpy(design->name, own->form);
+  if (!has_member(root, "name")) strcpy(design->name, own->kind);
   return FG_OK;
 }
 
 static fg_status read_root(const reader *r, const cJSON *root, fg_design *design) {
   if (!cJSON_IsObject(root)) return fail(r, "the design", "must be a JSON object");
   for (const cJSON *item = root->child; item; item = item->next) {
-    if (earlier_twin(root, item)) return fail(r, item->string, "is given twice");
+    if (earlier_duplicate(root, item)) return fail(r, item->string, "is given twice");
     FG_TRY(read_member(r, item, design));
   }
   if (!cJSON_GetObjectItemCaseSensitive(root, "schema"))
     return fail(r, "schema", "is missing; a design has \"schema\": \"" DESIGN_SCHEMA "\"");
-  if (design->form == FG_FORM_ARC) return read_form_alone(r, root, &arc_members, design);
-  if (design->form == FG_FORM_CANTILEVER)
-    return read_form_alone(r, root, &cantilever_members, design);
+  if (design->kind == FG_FOIL_ARC) return read_kind_alone(r, root, &arc_members, design);
+  if (design->kind == FG_FOIL_CANTILEVER)
+    return read_kind_alone(r, root, &cantilever_members, design);
   FG_TRY(check_complete(r, root, design));
   if (cJSON_GetObjectItemCaseSensitive(root, "overall_radius_mm") &&
       !cJSON_GetObjectItemCaseSensitive(root, "sleeve_radius_mm"))
@@ -453,10 +453,10 @@ fg_status fg_design_load(fg_context *ctx, const char *path, fg_design *design) {
 }
 
 /* Numbers that the built-in design has are what a file that states nothing is measured with. */
-size_t fg_design_members(fg_member_words *list, size_t most) {
+size_t fg_design_members(fg_member_words *list, size_t max) {
   fg_design usual;
   fg_design_default(&usual);
-  for (size_t i = 0; i < MEMBER_ROWS && i < most; i++) {
+  for (size_t i = 0; i < MEMBER_ROWS && i < max; i++) {
     const member_row *row = &member_rows[i];
     const char *place = (const char *)&usual + row->offset;
     list[i] = (fg_member_words){.meaning = row->meaning};

@@ -32,12 +32,12 @@ static void put_tiles(FILE *out, const fg_design_report *report) {
 }
 
 fg_status fg_design_write_html(fg_context *ctx, const fg_design_report *report, FILE *out) {
-  if (!fg_form_has_bumps(report->design->form))
+  if (!fg_foil_kind_has_bumps(report->design->kind))
     return fg_fail(ctx, FG_ERR_DATA, "form \"%s\" has no bumps, so there is no page of them",
-                   fg_form_word(report->design->form));
+                   fg_foil_kind_word(report->design->kind));
   const fg_stiffness_case bump = fg_stiffness_case_of(report->design, report->material);
   const fg_stiffness_map map = fg_stiffness_map_around(report->design, report->material);
-  const char *note = fg_stiffness_form_note(report->design->form);
+  const char *note = fg_stiffness_kind_note(report->design->kind);
   double along = bump.lines[0].sensitivity.radius_at_arc_length;
   fg_html_begin(out, report->design->name);
   fputs("<section>\n<header><h1>Design ", out);
@@ -53,7 +53,8 @@ fg_status fg_design_write_html(fg_context *ctx, const fg_design_report *report, 
       "the sleeve. A percent more thickness is worth three of stiffness in every model.</p>\n",
       report->material->youngs_modulus_gpa, report->material->poisson_ratio,
       report->material->friction, fg_design_pitch_mm(report->design));
-  fputs("</section>\n<section>\n<h2 class=\"first\">What springback does to it</h2>\n<figure>", out);
+  fputs("</section>\n<section>\n<h2 class=\"first\">What springback does to it</h2>\n<figure>",
+        out);
   fg_stiffness_plot_map(out, &map, NULL, NULL);
   fputs("<figcaption>Stiffness of the arch over the design's: orange stiffer, blue softer; dashed: "
         "as designed. The thick orange line is springback at constant arc length",

@@ -137,14 +137,14 @@ static void write_calibration(const fg_calibration *c, FILE *out) {
 
 fg_status fg_design_write_table(fg_context *ctx, const fg_design_report *report, FILE *out) {
   const fg_design *design = report->design;
-  fprintf(out, "design %s, form %s", design->name, fg_form_word(design->form));
-  if (design->form == FG_FORM_DISCS) {
+  fprintf(out, "design %s, form %s", design->name, fg_foil_kind_word(design->kind));
+  if (design->kind == FG_FOIL_DISCS) {
     fprintf(out, "\n  %zu known diameters\n", design->diameter_count);
     for (size_t i = 0; i < design->diameter_count; i++)
       write_row(out, "diameter", "", design->diameters_mm[i], "mm");
-  } else if (design->form == FG_FORM_ARC) {
+  } else if (design->kind == FG_FOIL_ARC) {
     write_arc(design, report->nominal, out);
-  } else if (design->form == FG_FORM_CANTILEVER) {
+  } else if (design->kind == FG_FOIL_CANTILEVER) {
     write_cantilever(design, out);
   } else {
     fprintf(out, ", datum %s", fg_datum_word(design->datum));
@@ -154,7 +154,7 @@ fg_status fg_design_write_table(fg_context *ctx, const fg_design_report *report,
     fputs("\nderived\n", out);
     write_derived(report->nominal, out);
   }
-  if (fg_form_has_bumps(design->form)) {
+  if (fg_foil_kind_has_bumps(design->kind)) {
     const fg_stiffness_case bump = fg_stiffness_case_of(design, report->material);
     fg_text_stiffness_table(out, &bump, fg_design_pitch_mm(design));
   }
@@ -168,9 +168,9 @@ enum { CURVE_FROM_PCT = -5, CURVE_TO_PCT = 30 };
 fg_status fg_design_write_curve(fg_context *ctx, const fg_design_report *report, FILE *out) {
   const fg_design *design = report->design;
   double nominal_mm = report->nominal->clearance_mm;
-  if (!fg_form_has_bumps(design->form))
+  if (!fg_foil_kind_has_bumps(design->kind))
     return fg_fail(ctx, FG_ERR_DATA, "form \"%s\" has no bumps, so there is no curve",
-                   fg_form_word(design->form));
+                   fg_foil_kind_word(design->kind));
   fputs("radius_error_pct,radius_mm,bump_angle_model_deg,height_model_mm,clearance_mm,"
         "clearance_error,clearance_change_pct\n",
         out);

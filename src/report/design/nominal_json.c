@@ -24,7 +24,7 @@ static void write_stiffness(fg_json *json, const fg_design_report *report) {
   fg_json_object(json, "stiffness");
   write_material(json, report->material);
   fg_json_number(json, "pitch_mm", pitch_mm);
-  fg_json_string(json, "note", fg_stiffness_form_note(report->design->form));
+  fg_json_string(json, "note", fg_stiffness_kind_note(report->design->kind));
   fg_json_array(json, "models");
   for (int i = 0; i < FG_STIFFNESS_MODELS; i++) {
     fg_json_object(json, NULL);
@@ -67,7 +67,7 @@ static void write_cantilever(fg_json *json, const fg_design *design) {
 
 fg_status fg_design_write_json(fg_context *ctx, const fg_design_report *report, FILE *out) {
   const fg_design *design = report->design;
-  bool bumps = fg_form_has_bumps(design->form);
+  bool bumps = fg_foil_kind_has_bumps(design->kind);
   fg_json json;
   fg_json_begin(&json, out);
   fg_json_object(&json, NULL);
@@ -75,12 +75,12 @@ fg_status fg_design_write_json(fg_context *ctx, const fg_design_report *report, 
   fg_json_design(&json, "design", design);
   if (bumps) fg_json_nominal(&json, "nominal", report->nominal);
   if (bumps) write_stiffness(&json, report);
-  if (design->form == FG_FORM_ARC) {
+  if (design->kind == FG_FOIL_ARC) {
     fg_json_object(&json, "nominal");
     fg_json_number(&json, "arc_length_mm", report->nominal->arc_length_mm);
     fg_json_object_end(&json);
   }
-  if (design->form == FG_FORM_CANTILEVER) write_cantilever(&json, design);
+  if (design->kind == FG_FOIL_CANTILEVER) write_cantilever(&json, design);
   fg_json_object_end(&json);
   fg_json_end(&json);
   return fg_stream_finish(ctx, out, "the design");

@@ -91,10 +91,10 @@ static void write_trace(fg_json *json, const fg_die_trace *trace) {
   fg_json_number(json, "noise_um", trace->noise_um);
   fg_json_object(json, "form");
   fg_json_line(json);
-  fg_json_number(json, "sd_um", 1000 * trace->form.sd_mm);
-  fg_json_number(json, "white_share", trace->form.white_share);
-  fg_json_number(json, "length_mm", trace->form.length_mm);
-  fg_json_string(json, "correlation", trace->form.smooth ? "smooth" : "exponential");
+  fg_json_number(json, "sd_um", 1000 * trace->form_error.sd_mm);
+  fg_json_number(json, "white_share", trace->form_error.white_share);
+  fg_json_number(json, "length_mm", trace->form_error.length_mm);
+  fg_json_string(json, "correlation", trace->form_error.smooth ? "smooth" : "exponential");
   fg_json_object_end(json);
   fg_json_line_end(json);
   fg_json_object(json, "overall");

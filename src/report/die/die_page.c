@@ -20,11 +20,11 @@ static void put_error_tile(FILE *out, const char *title, const fg_die_value *v, 
 
 /* Largest sd of one repeat over the bumps of both halves. */
 static double largest_sd(const fg_die *die) {
-  double most = NAN;
+  double max = NAN;
   for (int half = 0; half < FG_DIE_HALVES; half++)
     for (size_t i = 0; i < die->half[half].bump_count; i++)
-      most = fmax(most, die->half[half].bumps[i].value[FG_DIE_RADIUS].sd);
-  return most;
+      max = fmax(max, die->half[half].bumps[i].value[FG_DIE_RADIUS].sd);
+  return max;
 }
 
 static void put_tiles(FILE *out, const fg_die *die) {

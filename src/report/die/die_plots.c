@@ -247,13 +247,13 @@ static void put_residuals(const fg_plot *at, const fg_die *die, const fg_die_tra
 }
 
 static double residual_limit(const fg_die *die, fg_die_half half) {
-  double most = 0;
+  double max = 0;
   for (size_t i = 0; i < die->trace_count; i++)
     if (die->traces[i].half == half) {
-      most = fmax(most, die->traces[i].noise_um);
-      most = fmax(most, die->traces[i].overall.rms_um);
+      max = fmax(max, die->traces[i].noise_um);
+      max = fmax(max, die->traces[i].overall.rms_um);
     }
-  return most > 0 ? 3.2 * most : 1;
+  return max > 0 ? 3.2 * max : 1;
 }
 
 static void put_bands(const fg_plot *at, const fg_die *die, fg_die_half half) {

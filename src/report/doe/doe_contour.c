@@ -105,20 +105,20 @@ static void put_polygon(const fg_plot *at, const slice *s, const polygon *p) {
 /* What of band n lies in a row of cells; whole cells that are neighbours make one polygon. */
 static void put_band_row(const fg_plot *at, const slice *s, int i, double low, double high) {
   for (int k = 0, from = -1; k <= GRID; k++) {
-    double least = INFINITY, most = -INFINITY;
+    double min = INFINITY, max = -INFINITY;
     for (int c = 0; k < GRID && c < 4; c++) {
       double value = s->value[i + (c > 1)][k + c % 2];
-      least = fmin(least, value);
-      most = fmax(most, value);
+      min = fmin(min, value);
+      max = fmax(max, value);
     }
-    bool whole = k < GRID && least >= low && most <= high;
+    bool whole = k < GRID && min >= low && max <= high;
     if (whole && from < 0) from = k;
     if (!whole && from >= 0) {
       const polygon p = {{{from, i, 0}, {k, i, 0}, {k, i + 1, 0}, {from, i + 1, 0}}, 4};
       put_polygon(at, s, &p);
       from = -1;
     }
-    if (k == GRID || whole || most < low || least > high) continue;
+    if (k == GRID || whole || max < low || min > high) continue;
     polygon p = {{{k, i, s->value[i][k]},
                   {k + 1, i, s->value[i][k + 1]},
                   {k + 1, i + 1, s->value[i + 1][k + 1]},

@@ -55,9 +55,9 @@ static void put_tiles(FILE *out, const fg_experiment *e) {
   char value[64], small[96];
   fputs("<dl class=\"tiles\">\n", out);
   snprintf(value, sizeof value, "%zu", r->rows);
-  snprintf(small, sizeof small, "%zu for the error", r->residual_freedom);
+  snprintf(small, sizeof small, "%zu for the error", r->residual_dof);
   put_tile(out, "Runs", value, small);
-  if (r->residual_freedom) {
+  if (r->residual_dof) {
     fg_value_with_unit(e->response, r->residual_sd, 3, value, sizeof value);
     put_tile(out, "Scatter about the model", value, "standard deviation");
     snprintf(value, sizeof value, "%.1f %%", 100 * r->r2);
@@ -74,7 +74,7 @@ static void put_coefficients(FILE *out, const fg_experiment *e) {
           "<th>estimate</th><th>relative<br>%%</th><th>standard<br>error</th>"
           "<th>of it<br>measurement</th><th>t</th><th>%s</th><th colspan=\"2\">%g %% interval</th>"
           "<th>VIF</th></tr></thead>\n<tbody>\n",
-          e->regression.residual_freedom ? "p" : "p (Lenth)", 100 * e->confidence);
+          e->regression.residual_dof ? "p" : "p (Lenth)", 100 * e->confidence);
   for (size_t j = 0; j < e->regression.columns; j++) {
     const fg_coefficient *c = &e->regression.coefficient[j];
     const fg_experiment_effect *effect = &e->effect[j];
@@ -100,7 +100,7 @@ static void put_coefficients(FILE *out, const fg_experiment *e) {
 
 static void put_anova_row(FILE *out, const fg_anova_row *row, double partial, double partial_p) {
   put_name_cell(out, row->name);
-  fprintf(out, "<td>%zu</td>", row->freedom);
+  fprintf(out, "<td>%zu</td>", row->dof);
   put_cell(out, row->sum_of_squares, 5);
   put_cell(out, row->mean_square, 5);
   put_cell(out, row->f, 4);
@@ -110,10 +110,10 @@ static void put_anova_row(FILE *out, const fg_anova_row *row, double partial, do
   fputs("</tr>\n", out);
 }
 
-static void put_error_row(FILE *out, const char *name, size_t freedom, double sum, double f,
+static void put_error_row(FILE *out, const char *name, size_t dof, double sum, double f,
                           double p_value) {
-  const fg_anova_row row = {
-      (char *)(uintptr_t)name, freedom, sum, freedom ? sum / (double)freedom : NAN, f, p_value};
+  const fg_anova_row row = {(char *)(uintptr_t)name,       dof, sum,
+                            dof ? sum / (double)dof : NAN, f,   p_value};
   fputs("<tr>", out);
   put_anova_row(out, &row, NAN, NAN);
 }
@@ -126,8 +126,7 @@ static void put_split_plot(FILE *out, const fg_split_plot *s) {
       put_anova_row(out, &s->term[t].row, NAN, NAN);
     }
     put_error_row(out, whole ? "error of whole plots" : "error of runs",
-                  whole ? s->plot_freedom : s->run_freedom, whole ? s->plot_ss : s->run_ss, NAN,
-                  NAN);
+                  whole ? s->plot_dof : s->run_dof, whole ? s->plot_ss : s->run_ss, NAN, NAN);
   }
 }
 
@@ -141,8 +140,8 @@ static void put_mixed(FILE *out, const fg_experiment *e) {
     const fg_anova_row *row = &s->term[t].row;
     fputs(row->p_value < 1 - e->confidence ? "<tr class=\"on\">" : "<tr>", out);
     put_name_cell(out, row->name);
-    fprintf(out, "<td>%zu</td>", row->freedom);
-    put_cell(out, s->term[t].error_freedom, 4);
+    fprintf(out, "<td>%zu</td>", row->dof);
+    put_cell(out, s->term[t].error_dof, 4);
     put_cell(out, row->f, 4);
     put_p_cell(out, row->p_value);
     fputs("</tr>\n", out);
@@ -167,11 +166,10 @@ static void put_anova(FILE *out, const fg_experiment *e) {
     fputs(r->sequential[t].p_value < 1 - e->confidence ? "<tr class=\"on\">" : "<tr>", out);
     put_anova_row(out, &r->sequential[t], r->partial[t].sum_of_squares, r->partial[t].p_value);
   }
-  if (!e->has_split_plot)
-    put_error_row(out, "residual", r->residual_freedom, r->residual_ss, NAN, NAN);
-  if (r->pure_freedom && r->lack_freedom && !e->has_split_plot) {
-    put_error_row(out, "– lack of fit", r->lack_freedom, r->lack_ss, r->lack_f, r->lack_p_value);
-    put_error_row(out, "– pure error", r->pure_freedom, r->pure_ss, NAN, NAN);
+  if (!e->has_split_plot) put_error_row(out, "residual", r->residual_dof, r->residual_ss, NAN, NAN);
+  if (r->pure_dof && r->lack_dof && !e->has_split_plot) {
+    put_error_row(out, "– lack of fit", r->lack_dof, r->lack_ss, r->lack_f, r->lack_p_value);
+    put_error_row(out, "– pure error", r->pure_dof, r->pure_ss, NAN, NAN);
   }
   fputs("</tbody></table></div>\n<p class=\"note\">Sums of squares: each term after the ones above "
         "it; partial: after all others.</p>\n",
@@ -202,7 +200,7 @@ static void put_runs(FILE *out, const fg_experiment_report *report) {
     put_cell(out, r->fitted[i] + r->residual[i], 5);
     put_cell(out, e->u ? e->u[i] : NAN, 2);
     put_cell(out, r->fitted[i], 5);
-    put_cell(out, r->residual_freedom ? r->residual[i] : 0, 3);
+    put_cell(out, r->residual_dof ? r->residual[i] : 0, 3);
     put_cell(out, r->external[i], 3);
     put_cell(out, r->leverage[i], 3);
     put_cell(out, r->cook[i], 3);
@@ -288,7 +286,7 @@ static fg_status put_plots(fg_context *ctx, FILE *out, const fg_experiment_repor
     fg_doe_plot_contours(out, best);
     end_panels(out);
   }
-  if (!e->regression.residual_freedom) return FG_OK;
+  if (!e->regression.residual_dof) return FG_OK;
   begin_panels(out, "Residuals", "No pattern should show; the normal plot should be straight.");
   FG_TRY(fg_doe_plot_residuals(ctx, out, report));
   end_panels(out);

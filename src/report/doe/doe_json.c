@@ -67,7 +67,7 @@ static void put_coefficients(fg_json *json, const fg_experiment *e) {
     fg_json_number(json, "relative_effect_pct", effect->relative_pct);
     fg_json_number(json, "standard_error", effect->standard_error);
     fg_json_number(json, "t", effect->t);
-    fg_json_number(json, "freedom", effect->freedom);
+    fg_json_number(json, "freedom", effect->dof);
     fg_json_number(json, "p_value", effect->p_value);
     put_interval(json, "interval", effect->low, effect->high);
     fg_json_number(json, "vif", c->vif);
@@ -83,7 +83,7 @@ static void put_coefficients(fg_json *json, const fg_experiment *e) {
 
 static void put_anova_row(fg_json *json, const fg_anova_row *row) {
   fg_json_string(json, "term", row->name);
-  fg_json_integer(json, "freedom", (int64_t)row->freedom);
+  fg_json_integer(json, "freedom", (int64_t)row->dof);
   fg_json_number(json, "sum_of_squares", row->sum_of_squares);
   fg_json_number(json, "mean_square", row->mean_square);
   fg_json_number(json, "f", row->f);
@@ -101,26 +101,26 @@ static void put_anova_rows(fg_json *json, const char *name, const fg_anova_row *
   fg_json_array_end(json);
 }
 
-static double mean_square(double sum, size_t freedom) {
-  return freedom ? sum / (double)freedom : NAN;
+static double mean_square(double sum, size_t dof) {
+  return dof ? sum / (double)dof : NAN;
 }
 
 static void put_anova(fg_json *json, const fg_regression *r) {
-  const double model_freedom = (double)(r->rank - r->constant);
+  const double model_dof = (double)(r->rank - r->constant);
   const fg_anova_row rows[] = {
-      {(char[]){"residual"}, r->residual_freedom, r->residual_ss,
-       mean_square(r->residual_ss, r->residual_freedom), NAN, NAN},
-      {(char[]){"lack of fit"}, r->lack_freedom, r->lack_ss,
-       mean_square(r->lack_ss, r->lack_freedom), r->lack_f, r->lack_p_value},
-      {(char[]){"pure error"}, r->pure_freedom, r->pure_ss,
-       mean_square(r->pure_ss, r->pure_freedom), NAN, NAN},
-      {(char[]){"total"}, r->residual_freedom + (size_t)model_freedom, r->total_ss, NAN, NAN, NAN},
+      {(char[]){"residual"}, r->residual_dof, r->residual_ss,
+       mean_square(r->residual_ss, r->residual_dof), NAN, NAN},
+      {(char[]){"lack of fit"}, r->lack_dof, r->lack_ss, mean_square(r->lack_ss, r->lack_dof),
+       r->lack_f, r->lack_p_value},
+      {(char[]){"pure error"}, r->pure_dof, r->pure_ss, mean_square(r->pure_ss, r->pure_dof), NAN,
+       NAN},
+      {(char[]){"total"}, r->residual_dof + (size_t)model_dof, r->total_ss, NAN, NAN, NAN},
   };
   const fg_anova_row model = {(char[]){"model"},
-                              (size_t)model_freedom,
+                              (size_t)model_dof,
                               r->model_ss,
-                              mean_square(r->model_ss, (size_t)model_freedom),
-                              r->model_ss / model_freedom / (r->residual_sd * r->residual_sd),
+                              mean_square(r->model_ss, (size_t)model_dof),
+                              r->model_ss / model_dof / (r->residual_sd * r->residual_sd),
                               r->model_p_value};
   fg_json_object(json, "anova");
   put_anova_rows(json, "sequential", r->sequential, r->terms);
@@ -134,7 +134,7 @@ static void put_fit(fg_json *json, const fg_regression *r) {
   fg_json_object(json, "fit");
   fg_json_integer(json, "runs", (int64_t)r->rows);
   fg_json_integer(json, "rank", (int64_t)r->rank);
-  fg_json_integer(json, "residual_freedom", (int64_t)r->residual_freedom);
+  fg_json_integer(json, "residual_freedom", (int64_t)r->residual_dof);
   fg_json_number(json, "residual_sd", r->residual_sd);
   fg_json_number(json, "r2", r->r2);
   fg_json_number(json, "adjusted_r2", r->adjusted_r2);
@@ -179,7 +179,7 @@ static void put_tests(fg_json *json, const fg_experiment *e) {
     fg_json_number(json, "pseudo_standard_error", e->lenth.pseudo_standard_error);
     fg_json_number(json, "margin", e->lenth.margin);
     fg_json_number(json, "simultaneous_margin", e->lenth.simultaneous_margin);
-    fg_json_number(json, "freedom", e->lenth.freedom);
+    fg_json_number(json, "freedom", e->lenth.dof);
     fg_json_object_end(json);
   }
   if (fg_doe_json_begin_part(json, "box_cox", e->has_box_cox)) {
@@ -193,7 +193,7 @@ static void put_tests(fg_json *json, const fg_experiment *e) {
     fg_json_number(json, "corner_mean", e->curvature.corner_mean);
     fg_json_number(json, "centre_mean", e->curvature.centre_mean);
     fg_json_number(json, "sum_of_squares", e->curvature.sum_of_squares);
-    fg_json_integer(json, "error_freedom", (int64_t)e->curvature.error_freedom);
+    fg_json_integer(json, "error_freedom", (int64_t)e->curvature.error_dof);
     fg_json_number(json, "f", e->curvature.f);
     fg_json_number(json, "p_value", e->curvature.p_value);
     fg_json_object_end(json);
@@ -206,9 +206,9 @@ static void put_split_plot(fg_json *json, const fg_experiment *e) {
   fg_json_string(json, "column", e->whole_plot);
   fg_json_integer(json, "whole_plots", (int64_t)s->plots);
   fg_json_bool(json, "balanced", s->balanced != 0);
-  fg_json_integer(json, "whole_plot_freedom", (int64_t)s->plot_freedom);
+  fg_json_integer(json, "whole_plot_freedom", (int64_t)s->plot_dof);
   fg_json_number(json, "whole_plot_mean_square", s->plot_ms);
-  fg_json_integer(json, "run_freedom", (int64_t)s->run_freedom);
+  fg_json_integer(json, "run_freedom", (int64_t)s->run_dof);
   fg_json_number(json, "run_mean_square", s->run_ms);
   fg_json_string(json, "method", s->mixed ? "restricted_likelihood" : "strata");
   fg_json_number(json, "whole_plot_variance", s->plot_variance);
@@ -219,7 +219,7 @@ static void put_split_plot(fg_json *json, const fg_experiment *e) {
     fg_json_object(json, NULL);
     fg_json_string(json, "stratum", s->term[t].whole_plot ? "whole plots" : "runs");
     put_anova_row(json, &s->term[t].row);
-    fg_json_number(json, "error_freedom", s->term[t].error_freedom);
+    fg_json_number(json, "error_freedom", s->term[t].error_dof);
     fg_json_object_end(json);
   }
   fg_json_array_end(json);

@@ -6,7 +6,7 @@
 
 void fg_doe_json_taken(fg_json *json, const fg_experiment *e) {
   if (!fg_doe_json_begin_part(json, "taken_out", e->takens > 0)) return;
-  fg_json_integer(json, "freedom", (int64_t)e->freedom_taken);
+  fg_json_integer(json, "freedom", (int64_t)e->dof_taken);
   fg_json_array(json, "effects");
   for (size_t i = 0; i < e->takens; i++) {
     const fg_experiment_taken *t = &e->taken[i];

@@ -25,7 +25,7 @@ static int compare_bars(const void *a, const void *b) {
 
 /* |t| where there is an error, else |contrast|. */
 static size_t collect_bars(const fg_experiment *e, bar *bars) {
-  bool has_error = e->regression.residual_freedom > 0;
+  bool has_error = e->regression.residual_dof > 0;
   size_t count = 0;
   for (size_t j = 0; j < e->regression.columns; j++) {
     double size = fabs(has_error ? e->effect[j].t : e->effect[j].contrast);
@@ -40,11 +40,11 @@ static bool is_on(const fg_experiment *e, size_t column) {
 }
 
 static void put_pareto(FILE *out, const fg_experiment *e, const bar *bars, size_t count) {
-  bool has_error = e->regression.residual_freedom > 0;
+  bool has_error = e->regression.residual_dof > 0;
   size_t shown = count < BARS_SHOWN ? count : BARS_SHOWN;
   int height = 66 + 24 * (int)shown;
   double limit = has_error ? fg_distribution_t_quantile((1 + e->confidence) / 2,
-                                                        (double)e->regression.residual_freedom)
+                                                        (double)e->regression.residual_dof)
                            : e->lenth.margin;
   double longest = bars[0].size;
   if (!e->has_split_plot && limit > 0) longest = fmax(longest, limit);

@@ -42,7 +42,7 @@ fg_status fg_doe_plot_residuals(fg_context *ctx, FILE *out, const fg_experiment_
   bool studentised = true;
   double *x = NULL, *y = NULL;
   fg_status status = FG_OK;
-  if (!e->regression.residual_freedom) return FG_OK;
+  if (!e->regression.residual_dof) return FG_OK;
   FG_TRY_EXIT(fg_memory_allocate(ctx, rows, sizeof *x, (void **)&x));
   FG_TRY_EXIT(fg_memory_allocate(ctx, rows, sizeof *y, (void **)&y));
   for (size_t i = 0; i < rows; i++)

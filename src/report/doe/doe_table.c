@@ -24,7 +24,7 @@ static void put_p(FILE *out, double p_value) {
 }
 
 static void put_coefficients(FILE *out, const fg_experiment *e) {
-  bool lenth = !e->regression.residual_freedom;
+  bool lenth = !e->regression.residual_dof;
   fprintf(out, "\n%-30s%11s%9s%10s%8s%10s   %g %% interval\n", "coefficient", "estimate", "rel. %",
           "std.err", "t", lenth ? "p (Lenth)" : "p", 100 * e->confidence);
   for (size_t j = 0; j < e->regression.columns; j++) {
@@ -47,7 +47,7 @@ static void put_coefficients(FILE *out, const fg_experiment *e) {
 }
 
 static void put_anova_row(FILE *out, const fg_anova_row *row) {
-  fprintf(out, "%-30s%6zu", row->name, row->freedom);
+  fprintf(out, "%-30s%6zu", row->name, row->dof);
   put_number(out, 12, row->sum_of_squares);
   put_number(out, 12, row->mean_square);
   put_number(out, 10, row->f);
@@ -55,10 +55,10 @@ static void put_anova_row(FILE *out, const fg_anova_row *row) {
   fputc('\n', out);
 }
 
-static void put_error_row(FILE *out, const char *name, size_t freedom, double sum, double f,
+static void put_error_row(FILE *out, const char *name, size_t dof, double sum, double f,
                           double p_value) {
-  const fg_anova_row row = {
-      (char *)(uintptr_t)name, freedom, sum, freedom ? sum / (double)freedom : NAN, f, p_value};
+  const fg_anova_row row = {(char *)(uintptr_t)name,       dof, sum,
+                            dof ? sum / (double)dof : NAN, f,   p_value};
   put_anova_row(out, &row);
 }
 
@@ -67,8 +67,8 @@ static void put_mixed(FILE *out, const fg_split_plot *s) {
   fprintf(out, "\n%-30s%6s%12s%10s%10s\n", "tests of the terms", "df", "error df", "F", "p");
   for (size_t t = 0; t < s->terms; t++) {
     const fg_anova_row *row = &s->term[t].row;
-    fprintf(out, "%-30s%6zu", row->name, row->freedom);
-    put_number(out, 12, s->term[t].error_freedom);
+    fprintf(out, "%-30s%6zu", row->name, row->dof);
+    put_number(out, 12, s->term[t].error_dof);
     put_number(out, 10, row->f);
     put_p(out, row->p_value);
     fputc('\n', out);
@@ -94,18 +94,17 @@ static void put_anova(FILE *out, const fg_experiment *e) {
       for (size_t t = 0; t < s->terms; t++)
         if (s->term[t].whole_plot == (size_t)whole) put_anova_row(out, &s->term[t].row);
       put_error_row(out, whole ? "(error of whole plots)" : "(error of runs)",
-                    whole ? s->plot_freedom : s->run_freedom, whole ? s->plot_ss : s->run_ss, NAN,
-                    NAN);
+                    whole ? s->plot_dof : s->run_dof, whole ? s->plot_ss : s->run_ss, NAN, NAN);
     }
     return;
   }
   for (size_t t = 0; t < r->terms; t++)
     put_anova_row(out, &r->sequential[t]);
-  put_error_row(out, "(residual)", r->residual_freedom, r->residual_ss, NAN, NAN);
-  if (!r->pure_freedom) return;
-  if (r->lack_freedom)
-    put_error_row(out, "  (lack of fit)", r->lack_freedom, r->lack_ss, r->lack_f, r->lack_p_value);
-  put_error_row(out, "  (pure error)", r->pure_freedom, r->pure_ss, NAN, NAN);
+  put_error_row(out, "(residual)", r->residual_dof, r->residual_ss, NAN, NAN);
+  if (!r->pure_dof) return;
+  if (r->lack_dof)
+    put_error_row(out, "  (lack of fit)", r->lack_dof, r->lack_ss, r->lack_f, r->lack_p_value);
+  put_error_row(out, "  (pure error)", r->pure_dof, r->pure_ss, NAN, NAN);
 }
 
 static void put_quality(FILE *out, const fg_experiment *e) {

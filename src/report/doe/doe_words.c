@@ -33,7 +33,7 @@ const char *fg_goal_word(fg_goal goal) {
 
 double fg_experiment_p_value(const fg_experiment *e, size_t column) {
   double p_value = e->effect[column].p_value;
-  return e->regression.residual_freedom ? p_value : e->effect[column].lenth_p_value;
+  return e->regression.residual_dof ? p_value : e->effect[column].lenth_p_value;
 }
 
 bool fg_experiment_of_interest(const fg_experiment *e, size_t column) {
@@ -94,15 +94,15 @@ static fg_status say_effect(fg_context *ctx, const fg_experiment *e, size_t j, f
   const fg_coefficient *c = &e->regression.coefficient[j];
   const fg_experiment_effect *effect = &e->effect[j];
   const fg_factor *factor = fg_experiment_main_factor(e, j);
-  char p_value[16], interval[200] = "", by[80], least[80], most[80], name[300], from[80], to[80];
+  char p_value[16], interval[200] = "", by[80], min[80], max[80], name[300], from[80], to[80];
   double change = 2 * c->estimate, low = 2 * effect->low, high = 2 * effect->high;
   fg_p_value_text(p_value, fg_experiment_p_value(e, j));
   const char *equals = *p_value == '<' ? "" : "= ";
   if (isfinite(effect->low)) {
-    fg_value_with_unit(e->response, change < 0 ? -high : low, 3, least, sizeof least);
-    fg_value_with_unit(e->response, change < 0 ? -low : high, 3, most, sizeof most);
-    fg_text_clip(interval, sizeof interval, ", %g %% interval %s to %s", 100 * e->confidence, least,
-                 most);
+    fg_value_with_unit(e->response, change < 0 ? -high : low, 3, min, sizeof min);
+    fg_value_with_unit(e->response, change < 0 ? -low : high, 3, max, sizeof max);
+    fg_text_clip(interval, sizeof interval, ", %g %% interval %s to %s", 100 * e->confidence, min,
+                 max);
   }
   if (factor) {
     fg_name_words(factor->name, name, sizeof name);
@@ -148,14 +148,14 @@ static fg_status say_effects(fg_context *ctx, const fg_experiment *e, fg_sentenc
 
 static fg_status say_quality(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
   const fg_regression *r = &e->regression;
-  if (!r->residual_freedom) return FG_OK;
+  if (!r->residual_dof) return FG_OK;
   FG_TRY(fg_sentences_say(
       ctx, s,
       "The model explains %.0f %% of the variation (adjusted %.0f %%) and would predict "
       "%.0f %% of it in runs that it has not seen. The runs scatter about it with a standard "
       "deviation of %.3g (%zu degree%s of freedom).",
       100 * r->r2, 100 * r->adjusted_r2, 100 * fmax(0, r->predicted_r2), r->residual_sd,
-      r->residual_freedom, fg_plural(r->residual_freedom)));
+      r->residual_dof, fg_plural(r->residual_dof)));
   if (e->has_split_plot && isfinite(e->split_plot.plot_variance))
     FG_TRY(fg_sentences_say(
         ctx, s,
@@ -164,7 +164,7 @@ static fg_status say_quality(fg_context *ctx, const fg_experiment *e, fg_sentenc
         sqrt(e->split_plot.plot_variance), sqrt(e->split_plot.run_variance)));
   if (fg_experiment_lacks_fit(e)) {
     if (!fg_experiment_best(e)->has_optimum) FG_TRY(fg_experiment_say_lack(ctx, e, s));
-  } else if (r->pure_freedom && r->lack_freedom && isfinite(r->lack_p_value) && !e->has_split_plot)
+  } else if (r->pure_dof && r->lack_dof && isfinite(r->lack_p_value) && !e->has_split_plot)
     FG_TRY(fg_sentences_say(ctx, s,
                             "No lack of fit shows beside the scatter of repeated runs (p = %.4f).",
                             r->lack_p_value));
@@ -207,7 +207,7 @@ static fg_status say_curvature(fg_context *ctx, const fg_experiment *e, fg_sente
 
 static fg_status say_measurement(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
   double sd = e->regression.residual_sd;
-  if (!e->u || e->weight || !e->regression.residual_freedom || !(sd > 0)) return FG_OK;
+  if (!e->u || e->weight || !e->regression.residual_dof || !(sd > 0)) return FG_OK;
   return fg_sentences_say(
       ctx, s,
       "Measurement: standard uncertainty %.3g, %.2g %% of the variance between runs; the "

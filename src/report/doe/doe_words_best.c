@@ -13,8 +13,7 @@ const fg_optimum *fg_experiment_best_point(const fg_experiment *e) {
 
 bool fg_experiment_lacks_fit(const fg_experiment *e) {
   const fg_regression *r = &e->regression;
-  return r->pure_freedom && r->lack_freedom && !e->has_split_plot &&
-         r->lack_p_value < 1 - e->confidence;
+  return r->pure_dof && r->lack_dof && !e->has_split_plot && r->lack_p_value < 1 - e->confidence;
 }
 
 static const fg_idle_factor *idle_of(const fg_experiment *e, size_t variable) {

@@ -54,8 +54,8 @@ fg_status fg_experiment_say_taken(fg_context *ctx, const fg_experiment_report *r
   const fg_experiment *e = report->experiment;
   for (size_t i = 0; i < e->takens; i++)
     FG_TRY(say_one(ctx, &e->taken[i], s));
-  if (!e->freedom_taken) return FG_OK;
-  if (!e->regression.residual_freedom)
+  if (!e->dof_taken) return FG_OK;
+  if (!e->regression.residual_dof)
     return fg_sentences_say(ctx, s,
                             "%s estimated it from runs like these; this model leaves no freedom to "
                             "pay for it.",
@@ -64,8 +64,8 @@ fg_status fg_experiment_say_taken(fg_context *ctx, const fg_experiment_report *r
                           "What %s estimated is paid for: the residual has %zu degree%s of freedom "
                           "instead of %zu.",
                           report->model_path ? report->model_path : "the model",
-                          e->regression.residual_freedom, fg_plural(e->regression.residual_freedom),
-                          e->regression.residual_freedom + e->freedom_taken);
+                          e->regression.residual_dof, fg_plural(e->regression.residual_dof),
+                          e->regression.residual_dof + e->dof_taken);
 }
 
 bool fg_order_shows(double p_value) {

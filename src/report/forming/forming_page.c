@@ -98,8 +98,8 @@ static void put_summary(FILE *out, const fg_forming *f) {
   fg_forming_treatment(f, treatment, sizeof treatment);
   fputs("<section>\n<header><h1>Forming of ", out);
   fg_html_text(out, f->design.name);
-  fprintf(out, "</h1><p>%s; die %s%s</p></header>\n<p class=\"say\">", fg_form_word(f->design.form),
-          f->options.die ? "as measured, " : "as designed, ",
+  fprintf(out, "</h1><p>%s; die %s%s</p></header>\n<p class=\"say\">",
+          fg_foil_kind_word(f->design.kind), f->options.die ? "as measured, " : "as designed, ",
           fg_forming_shape_word(f->options.shape));
   fg_html_text(out, treatment);
   fputs(".</p>\n", out);

@@ -96,11 +96,11 @@ static void put_key(const fg_plot *at, const line *lines, size_t count) {
   }
 }
 
-static void put_along(FILE *out, const fg_forming *f, const line *lines, size_t count, double most,
+static void put_along(FILE *out, const fg_forming *f, const line *lines, size_t count, double max,
                       const char *title) {
   double range[2];
   shown_range(f, range);
-  fg_plot at = {out, WIDTH, 76, 985, 34, HEIGHT - 50, range[0], range[1], -most, most};
+  fg_plot at = {out, WIDTH, 76, 985, 34, HEIGHT - 50, range[0], range[1], -max, max};
   fg_plot_begin(&at, HEIGHT, title);
   fg_plot_y_axis(&at, title);
   fg_plot_x_numbers(&at);
@@ -115,11 +115,11 @@ static void put_along(FILE *out, const fg_forming *f, const line *lines, size_t 
 
 void fg_forming_plot_curvature(FILE *out, const fg_forming *f) {
   static const line lines[] = {{die_of, "s2", "in the die"}, {free_of, "s1", "free"}};
-  double most = 0;
+  double max = 0;
   /* Fillets are far sharper: they would flatten everything else. */
   for (size_t i = 0; i < f->count; i++)
-    if (f->pieces[i].kind != FG_ARC_FILLET) most = fmax(most, fabs(f->pieces[i].curvature_die));
-  put_along(out, f, lines, 2, 1.6 * most, "curvature, 1/mm");
+    if (f->pieces[i].kind != FG_ARC_FILLET) max = fmax(max, fabs(f->pieces[i].curvature_die));
+  put_along(out, f, lines, 2, 1.6 * max, "curvature, 1/mm");
 }
 
 void fg_forming_plot_stress(FILE *out, const fg_forming *f) {

@@ -46,7 +46,7 @@ fg_status fg_forming_write_text(fg_context *ctx, const fg_forming *f, FILE *out)
   char notes[FG_FORMING_NOTES][FG_FORMING_NOTE], treatment[200];
   fg_forming_treatment(f, treatment, sizeof treatment);
   fprintf(out, "design %s, form %s; die %s%s; %s\n%s\n\n", f->design.name,
-          fg_form_word(f->design.form), f->options.die ? "as measured, " : "",
+          fg_foil_kind_word(f->design.kind), f->options.die ? "as measured, " : "",
           fg_forming_shape_word(f->options.shape), treatment, f->material.name);
   fputs("  overall radius, strip integrated  ", out);
   put(out, f->overall_radius_mm, 10, 4, " mm   ");

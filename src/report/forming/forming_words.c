@@ -195,7 +195,7 @@ size_t fg_forming_fit_notes(const fg_forming_fit *fit,
   n += note_sign(fit, notes[n]);
   n += note_bounds(fit, notes[n]);
   n += note_open(fit, notes[n]);
-  if (fit->response == FG_FORMING_OF_STRIP && fit->design.form != FG_FORM_ARC)
+  if (fit->response == FG_FORMING_OF_STRIP && fit->design.kind != FG_FOIL_ARC)
     fg_text_clip(notes[n++], FG_FORMING_NOTE,
                  "The response is taken as that of the lands alone, a plain strip of the overall "
                  "radius. Integrated with its bumps the beam's foil closes where measured ones "

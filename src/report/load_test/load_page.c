@@ -13,7 +13,7 @@
 enum { LOOPS_MAX = 24 };
 
 /* The tail of a distribution is not known below. */
-static const double p_least = 1e-12;
+static const double p_min = 1e-12;
 
 static size_t count_flagged(const fg_load_test *test, size_t bearing, unsigned flag) {
   size_t count = 0;
@@ -45,21 +45,21 @@ static void put_clearance_tile(FILE *out, const fg_load_test *test, size_t beari
 
 static void put_tiles(FILE *out, const fg_load_test *test, size_t bearing) {
   const fg_load_bearing *b = &test->bearings[bearing];
-  char least[60] = "", most[60] = "";
-  if (isfinite(b->least.value)) {
-    snprintf(least, sizeof least, "at %g°", b->least_measured_at_deg);
-    snprintf(most, sizeof most, "at %g°", b->most_measured_at_deg);
+  char min[60] = "", max[60] = "";
+  if (isfinite(b->min.value)) {
+    snprintf(min, sizeof min, "at %g°", b->min_measured_at_deg);
+    snprintf(max, sizeof max, "at %g°", b->max_measured_at_deg);
   }
   fputs("<dl class=\"tiles\">\n", out);
-  put_clearance_tile(out, test, bearing, "Smallest clearance", &b->least, least);
-  put_clearance_tile(out, test, bearing, "Largest clearance", &b->most, most);
+  put_clearance_tile(out, test, bearing, "Smallest clearance", &b->min, min);
+  put_clearance_tile(out, test, bearing, "Largest clearance", &b->max, max);
   put_tile(out, "Structural stiffness, mean", &b->stiffness, 1, 0, "N/mm",
            count_flagged(test, bearing, FG_LOAD_AT_END) ? "a lower bound" : "");
   put_tile(out, "Radial hysteresis", &b->hysteresis_n, 1, 2, "N", "no preload");
   fputs("<div><dt>Smallest along</dt><dd>", out);
   if (b->axis == FG_LOAD_AXIS_KNOWN)
-    fprintf(out, "%.1f° and %.1f°<small>± %.1f° (U = 2 u), fitted</small>", b->least_at_deg,
-            b->least_at_deg + 180, 2 * b->u_least_at_deg);
+    fprintf(out, "%.1f° and %.1f°<small>± %.1f° (U = 2 u), fitted</small>", b->min_at_deg,
+            b->min_at_deg + 180, 2 * b->u_min_at_deg);
   else
     fprintf(out, "–<small>%s</small>", fg_load_axis_words(b->axis));
   fputs("</dd></div>\n", out);
@@ -136,7 +136,7 @@ static void put_sentences(FILE *out, const fg_load_test *test, size_t bearing) {
     fprintf(out, "<li>The azimuths %s (p %s %.2g).</li>\n",
             b->p_value < 0.01 ? "differ by more than their repeats do"
                               : "do not differ by more than their repeats do",
-            b->p_value < p_least ? "&lt;" : "=", fmax(b->p_value, p_least));
+            b->p_value < p_min ? "&lt;" : "=", fmax(b->p_value, p_min));
   size_t at_end = count_flagged(test, bearing, FG_LOAD_AT_END);
   if (at_end)
     fprintf(

@@ -134,9 +134,8 @@ static void put_curve(const fg_plot *at, const fg_load_bearing *b) {
     y[i] = curve_at(b, x[i]);
   }
   fg_plot_line(at, x, y, CURVE_STEPS + 1, "hint");
-  if (!isfinite(b->least_at_deg)) return;
-  for (double deg = b->least_at_deg - 720; deg <= at->x_high;
-       deg += 180) /* both ends of the axis */
+  if (!isfinite(b->min_at_deg)) return;
+  for (double deg = b->min_at_deg - 720; deg <= at->x_high; deg += 180) /* both ends of the axis */
     if (deg >= at->x_low) fg_plot_segment(at, deg, at->y_low, deg, at->y_high, "limit");
 }
 

@@ -68,11 +68,11 @@ static void put_bearing(FILE *out, const fg_load_test *test, size_t bearing) {
   for (size_t i = 0; i < test->direction_count; i++)
     if (test->directions[i].bearing == bearing) put_direction(out, test, &test->directions[i], lot);
   if (b->measured > 1)
-    fprintf(out, "  clearance %.2f to %.2f um, mean %.2f, U %.2f\n", 1000 * b->least.value,
-            1000 * b->most.value, 1000 * b->mean_mm, 2000 * b->u_mean_mm);
+    fprintf(out, "  clearance %.2f to %.2f um, mean %.2f, U %.2f\n", 1000 * b->min.value,
+            1000 * b->max.value, 1000 * b->mean_mm, 2000 * b->u_mean_mm);
   if (b->axis == FG_LOAD_AXIS_KNOWN)
-    fprintf(out, "  smallest along the axis %.1f and %.1f degrees, U %.1f\n", b->least_at_deg,
-            b->least_at_deg + 180, 2 * b->u_least_at_deg);
+    fprintf(out, "  smallest along the axis %.1f and %.1f degrees, U %.1f\n", b->min_at_deg,
+            b->min_at_deg + 180, 2 * b->u_min_at_deg);
   else if (b->measured > 1)
     fprintf(out, "  no axis of the smallest clearance: %s\n", fg_load_axis_words(b->axis));
   if (isfinite(b->noise_n)) {

@@ -12,7 +12,7 @@
 /* Looks of the two channels: not of their colours, which those who do not see them could not tell.
  */
 static const char *const line_style[2] = {"s1", "s2"};
-static const char *const doubt_style[2] = {"s1 doubt", "s2 doubt"};
+static const char *const uncertainty_style[2] = {"s1 doubt", "s2 doubt"};
 
 static void put_value(FILE *out, double value, double u, int decimals) {
   fprintf(out, "<td>%+.*f ± %.*f</td>", decimals, value, decimals, FG_COVERAGE_FACTOR * u);
@@ -111,7 +111,7 @@ static void put_course(const fg_plot *at, const fg_measurement *m, int k) {
     if (dot > at->y_low && dot < at->y_high) fg_plot_dot(at, x[i], dot, 2, line_style[k]);
   }
   for (int side = 0; side < 3; side++)
-    put_line(at, shift, x, y[side], side == 1 ? line_style[k] : doubt_style[k]);
+    put_line(at, shift, x, y[side], side == 1 ? line_style[k] : uncertainty_style[k]);
   fprintf(at->out,
           "<circle class=\"%s\" cx=\"%.0f\" cy=\"14\" r=\"5\"/><text x=\"%.0f\" y=\"19\">%s, about "
           "%+.2f µm</text>\n",

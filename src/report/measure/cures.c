@@ -19,11 +19,11 @@ static const char midline[] =
     "known width beside it (gauges)." NOT_KNOWN;
 
 const char *fg_cure_of(const fg_design *design, const fg_quantity *row) {
-  bool of_strip = fg_form_has_bumps(design->form) || !strncmp(row->name, "thickness", 9);
+  bool of_strip = fg_foil_kind_has_bumps(design->kind) || !strncmp(row->name, "thickness", 9);
   if (design->tone == FG_TONE_LINEAR) return NULL;
   if (row->uses & FG_QUANTITY_OF_DATUM && design->datum != FG_DATUM_MID) return midline;
   if (!(row->uses & FG_QUANTITY_BETWEEN_EDGES)) return NULL;
-  if (design->form == FG_FORM_DISCS) return gauge_diameter;
+  if (design->kind == FG_FOIL_DISCS) return gauge_diameter;
   if (!of_strip) return gauge_width;
   return design->thickness_measured_mm > 0 ? NULL : micrometer;
 }

@@ -3,7 +3,7 @@
 #include "quantity/parts.h"
 
 fg_foil_parts fg_foil_parts_of(const fg_design *design, const fg_foil *foil) {
-  fg_quantity_owner owner = fg_form_parts(design->form);
+  fg_quantity_owner owner = fg_foil_kind_parts(design->kind);
   bool beams = owner == FG_QUANTITY_OF_BEAM;
   return (fg_foil_parts){.owner = owner,
                          .name = fg_part_word(owner),

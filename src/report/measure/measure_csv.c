@@ -67,10 +67,10 @@ static void put_beam(FILE *out, const scan_lines *scan, const fg_foil *foil, con
   put_end(out, scan, fg_beam_verdict(scan->design, foil, beam), foil);
 }
 
-static fg_quantity_owner owner_of_lines(fg_form form) {
-  if (form == FG_FORM_DISCS) return FG_QUANTITY_OF_DISC;
-  if (form == FG_FORM_CANTILEVER) return FG_QUANTITY_OF_BEAM;
-  return form == FG_FORM_ARC ? FG_QUANTITY_OF_FOIL : FG_QUANTITY_OF_BUMP;
+static fg_quantity_owner owner_of_lines(fg_foil_kind kind) {
+  if (kind == FG_FOIL_DISCS) return FG_QUANTITY_OF_DISC;
+  if (kind == FG_FOIL_CANTILEVER) return FG_QUANTITY_OF_BEAM;
+  return kind == FG_FOIL_ARC ? FG_QUANTITY_OF_FOIL : FG_QUANTITY_OF_BUMP;
 }
 
 static size_t count_numbers(fg_quantity_owner owner) {
@@ -86,7 +86,7 @@ static void put_bare_foil(FILE *out, const scan_lines *scan, const fg_foil *foil
   fg_csv_put_text(out, scan->path, NULL);
   fprintf(out, ",%d,", foil->number);
   fg_csv_put_flags(out, fg_foil_flag_words(), foil->flags, foil->strip.picture.findings);
-  for (size_t i = count_numbers(owner_of_lines(scan->design->form)); i-- > 0;)
+  for (size_t i = count_numbers(owner_of_lines(scan->design->kind)); i-- > 0;)
     fputc(',', out);
   put_end(out, scan, FG_VERDICT_NOT_MEASURED, foil);
 }
@@ -133,7 +133,7 @@ static void put_heading(FILE *out, fg_quantity_owner owner) {
 }
 
 static fg_status put_foil(fg_context *ctx, FILE *out, const scan_lines *scan, const fg_foil *foil) {
-  if (scan->design->form == FG_FORM_ARC) return put_arc(ctx, out, scan, foil);
+  if (scan->design->kind == FG_FOIL_ARC) return put_arc(ctx, out, scan, foil);
   if (!foil->bump_count && !foil->beam_count) put_bare_foil(out, scan, foil);
   for (size_t b = 0; b < foil->bump_count; b++)
     put_bump(out, scan, foil, &foil->bumps[b]);
@@ -143,7 +143,7 @@ static fg_status put_foil(fg_context *ctx, FILE *out, const scan_lines *scan, co
 }
 
 fg_status fg_report_write_csv(fg_context *ctx, const fg_report *report, FILE *out) {
-  put_heading(out, owner_of_lines(report->design->form));
+  put_heading(out, owner_of_lines(report->design->kind));
   for (size_t i = 0; i < report->scan_count; i++) {
     const fg_measurement *measurement = report->scans[i].measurement;
     const scan_lines scan = {report->scans[i].path, report->design, measurement};
@@ -205,9 +205,9 @@ static void put_beam_points(FILE *out, size_t scan, const fg_foil *foil, const f
     }
 }
 
-static const char *heading_of_points(fg_form form) {
-  if (form == FG_FORM_DISCS) return "scan,disc,point,x_mm,y_mm,residual_um\n";
-  if (form == FG_FORM_CANTILEVER) return "scan,foil,beam,side,station,x_mm,y_mm,u_um,usable\n";
+static const char *heading_of_points(fg_foil_kind kind) {
+  if (kind == FG_FOIL_DISCS) return "scan,disc,point,x_mm,y_mm,residual_um\n";
+  if (kind == FG_FOIL_CANTILEVER) return "scan,foil,beam,side,station,x_mm,y_mm,u_um,usable\n";
   return "scan,foil,station,s_mm,side,x_mm,y_mm,u_um,arc,number,fitted,residual_um\n";
 }
 
@@ -230,7 +230,7 @@ static void put_disc_points(FILE *out, size_t scan, const fg_disc *disc) {
 }
 
 fg_status fg_report_write_points(fg_context *ctx, const fg_report *report, FILE *out) {
-  fputs(heading_of_points(report->design->form), out);
+  fputs(heading_of_points(report->design->kind), out);
   for (size_t i = 0; i < report->scan_count; i++) {
     const fg_measurement *measurement = report->scans[i].measurement;
     for (size_t k = 0; measurement && k < measurement->foil_count; k++)

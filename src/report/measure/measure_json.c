@@ -63,16 +63,16 @@ void fg_json_design(fg_json *json, const char *name, const fg_design *design) {
   fg_json_object(json, name);
   fg_json_string(json, "schema", "foilgauge/design/1");
   fg_json_string(json, "name", design->name);
-  fg_json_string(json, "form", fg_form_word(design->form));
-  if (design->form == FG_FORM_DISCS) {
+  fg_json_string(json, "form", fg_foil_kind_word(design->kind));
+  if (design->kind == FG_FOIL_DISCS) {
     fg_json_numbers(json, "diameters_mm", design->diameters_mm, design->diameter_count);
     write_stated(json, "u_diameters_mm", design->u_diameters_mm);
-  } else if (design->form == FG_FORM_ARC) {
+  } else if (design->kind == FG_FOIL_ARC) {
     fg_json_string(json, "datum", fg_datum_word(design->datum));
     fg_json_number(json, "overall_radius_mm", design->overall_radius_mm);
     fg_json_number(json, "subtended_angle_deg", design->subtended_angle_deg);
     fg_json_number(json, "thickness_mm", design->thickness_mm);
-  } else if (design->form == FG_FORM_CANTILEVER) {
+  } else if (design->kind == FG_FOIL_CANTILEVER) {
     write_cantilever(json, design);
   } else {
     fg_json_string(json, "datum", fg_datum_word(design->datum));
@@ -238,7 +238,7 @@ static void write_flat_values(fg_json *json, const fg_design *design, const fg_f
   size_t count;
   const fg_quantity *rows = fg_quantities(FG_QUANTITY_OF_FOIL, &count);
   for (size_t i = 0; i < count; i++)
-    if (fg_quantity_applies(FG_QUANTITY_OF_FOIL, &rows[i], design->form))
+    if (fg_quantity_applies(FG_QUANTITY_OF_FOIL, &rows[i], design->kind))
       fg_json_number(json, rows[i].name, fg_quantity_value(&rows[i], foil));
   fg_json_number(json, "thickness_design_mm", design->thickness_mm);
   fg_json_array(json, "beams");
@@ -248,7 +248,7 @@ static void write_flat_values(fg_json *json, const fg_design *design, const fg_f
 }
 
 static void write_foil_values(fg_json *json, const fg_design *design, const fg_foil *foil) {
-  bool arc = design->form == FG_FORM_ARC, turns = !(foil->flags & FG_FOIL_NOT_MEASURED) && !arc;
+  bool arc = design->kind == FG_FOIL_ARC, turns = !(foil->flags & FG_FOIL_NOT_MEASURED) && !arc;
   fg_json_string(json, "orientation", turns ? fg_orientation_word(foil->orientation) : NULL);
   fg_json_quantities(json, FG_QUANTITY_OF_FOIL, "", foil, true);
   const fg_thickness strip = fg_foil_thickness(design, foil);
@@ -287,7 +287,7 @@ fg_status fg_json_foil(fg_context *ctx, fg_json *json, const fg_design *design,
   fg_json_string(json, "error", foil->error[0] ? foil->error : NULL);
   fg_json_verdict(json, decision.outcome.verdict);
   fg_json_string(json, "defect", rejected ? defect : NULL);
-  bool flat = design->form == FG_FORM_CANTILEVER;
+  bool flat = design->kind == FG_FOIL_CANTILEVER;
   if (fg_foil_is_measured(foil)) fg_json_judgements(json, &decision, flat ? "beam" : "bump");
   if (flat)
     write_flat_values(json, design, foil);
@@ -331,7 +331,7 @@ static fg_status write_scan(fg_context *ctx, fg_json *json, const fg_report *rep
   for (size_t i = 0; i < measurement->foil_count; i++)
     FG_TRY(fg_json_foil(ctx, json, report->design, &measurement->foils[i]));
   fg_json_array_end(json);
-  if (report->design->form != FG_FORM_DISCS) return FG_OK;
+  if (report->design->kind != FG_FOIL_DISCS) return FG_OK;
   fg_json_array(json, "discs");
   for (size_t i = 0; i < measurement->disc_count; i++)
     FG_TRY(fg_json_disc(ctx, json, report->design, &measurement->discs[i]));
@@ -385,7 +385,8 @@ fg_status fg_report_write_json(fg_context *ctx, const fg_report *report, FILE *o
   fg_json_scan_model(&json, "model", fg_report_model(report));
   fg_json_report_calibration(&json, report);
   fg_json_design(&json, "design", report->design);
-  if (fg_form_has_bumps(report->design->form)) fg_json_nominal(&json, "nominal", report->nominal);
+  if (fg_foil_kind_has_bumps(report->design->kind))
+    fg_json_nominal(&json, "nominal", report->nominal);
   if (report->scan_count == 1 && report->scans[0].measurement)
     FG_TRY(write_scan(ctx, &json, report, report->scans[0].measurement));
   else

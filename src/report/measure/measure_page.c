@@ -61,7 +61,7 @@ static fg_status put_facts(fg_context *ctx, FILE *out, const fg_design *design,
 static void put_uncertainty(FILE *out, const fg_measurement *measurement, const fg_foil *foil) {
   char scale[FG_SCALE_WORDS];
   fg_scale_words(measurement->model, &measurement->design.calibration, scale, sizeof scale);
-  bool flat = measurement->design.form == FG_FORM_CANTILEVER;
+  bool flat = measurement->design.kind == FG_FOIL_CANTILEVER;
   fprintf(
       out,
       "<h2>What ± means</h2>\n<p class=\"note\">± is the expanded uncertainty U = 2 u (coverage "
@@ -73,7 +73,7 @@ static void put_uncertainty(FILE *out, const fg_measurement *measurement, const 
   fputs(" A value passes when value ± U lies inside its tolerance, fails when "
         "it lies outside, and cannot be told when a limit runs through it.",
         out);
-  if (foil && measurement->design.form != FG_FORM_ARC)
+  if (foil && measurement->design.kind != FG_FOIL_ARC)
     fprintf(out, " s is the standard deviation over the n %s.", flat ? "beams" : "bumps");
   fputs("</p>\n", out);
   fg_html_uncertainty_budget(out, measurement, foil);
@@ -106,15 +106,15 @@ static void put_free_and_fitted(FILE *out) {
 }
 
 /* What the colours of the picture mean. */
-static const char *legend_of(fg_form form) {
-  if (form == FG_FORM_DISCS)
+static const char *legend_of(fg_foil_kind kind) {
+  if (kind == FG_FOIL_DISCS)
     return "Orange: the circle that was fitted to each feature, with its number. Magenta: how far "
            "the edge lies from it. A red ring and value: beyond a limit.";
-  if (form == FG_FORM_CANTILEVER)
+  if (kind == FG_FOIL_CANTILEVER)
     return "Orange: the fitted edges of every beam, with its number. Blue, dashed: root line and "
            "axis. Magenta: residuals, longer than drawn are cut at 1 mm. A red ring and value: "
            "beyond a limit, or no length; amber, with a question mark: cannot be told.";
-  if (form == FG_FORM_ARC)
+  if (kind == FG_FOIL_ARC)
     return "Blue, dashed: the circle; orange: the cuts at the ends, with their directions from the "
            "centre. Magenta: residuals.";
   return "Orange: bump circles, solid where the fit used them. Blue, dashed: overall circle. "
@@ -126,7 +126,7 @@ static fg_status put_picture(fg_context *ctx, FILE *out, const fg_report *report
                              const fg_measurement *measurement, const fg_foil *foil) {
   fputs("<figure>", out);
   FG_TRY(fg_html_picture(ctx, out, measurement, foil, fg_drawing_magnification(report)));
-  fprintf(out, "<figcaption>%s</figcaption></figure>\n", legend_of(report->design->form));
+  fprintf(out, "<figcaption>%s</figcaption></figure>\n", legend_of(report->design->kind));
   return FG_OK;
 }
 
@@ -179,9 +179,9 @@ static void put_foil_details(FILE *out, const fg_design *design, const fg_foil *
 }
 
 static void put_details(FILE *out, const fg_design *design, const fg_foil *foil) {
-  if (design->form == FG_FORM_ARC)
+  if (design->kind == FG_FOIL_ARC)
     put_arc_details(out, design, foil);
-  else if (design->form == FG_FORM_CANTILEVER)
+  else if (design->kind == FG_FOIL_CANTILEVER)
     put_flat_details(out, design, foil);
   else
     put_foil_details(out, design, foil);
@@ -220,9 +220,9 @@ static void put_judged(FILE *out, const fg_design *design, const fg_report_scan 
     fg_html_outcome(out, &decision->outcome);
   fputs("<p>", out);
   fg_html_text(out, fg_html_base_name(scan->measurement->scan));
-  if (design->form == FG_FORM_ARC)
+  if (design->kind == FG_FOIL_ARC)
     fputs(" · a plain strip", out);
-  else if (design->form == FG_FORM_CANTILEVER)
+  else if (design->kind == FG_FOIL_CANTILEVER)
     fprintf(out, " · a flat foil, %zu beams", foil->beam_count);
   else if (!(foil->flags & FG_FOIL_NOT_MEASURED))
     fprintf(out, " · %zu bump%s, %s", foil->bump_count, fg_plural(foil->bump_count),
@@ -248,7 +248,7 @@ static fg_status put_foil_section(fg_context *ctx, FILE *out, const fg_report *r
   const fg_design *design = report->design;
   char moved[FG_CORRECTION_WORDS], added[FG_CORRECTION_WORDS];
   bool measured = !(foil->flags & FG_FOIL_NOT_MEASURED);
-  bool bumps = fg_form_has_bumps(design->form);
+  bool bumps = fg_foil_kind_has_bumps(design->kind);
   put_error(out, foil);
   put_flags(out, design, foil);
   fg_correction_moved(&foil->correction, moved, sizeof moved);
@@ -283,14 +283,14 @@ static fg_status put_foil(fg_context *ctx, FILE *out, const fg_report *report,
 static fg_status put_discs_corrected(fg_context *ctx, FILE *out,
                                      const fg_measurement *measurement) {
   char moved[FG_CORRECTION_WORDS] = "", added[FG_CORRECTION_WORDS] = "";
-  double most = 0, u = 0;
+  double max = 0, u = 0;
   for (size_t i = 0; i < measurement->disc_count; i++) {
     const fg_disc *disc = &measurement->discs[i];
-    if (fabs(disc->radius_correction_mm) > fabs(most)) most = disc->radius_correction_mm;
+    if (fabs(disc->radius_correction_mm) > fabs(max)) max = disc->radius_correction_mm;
     u = fmax(u, disc->u_radius_correction_mm);
   }
   if (measurement->disc_count) {
-    fg_text_clip(moved, sizeof moved, "radii by up to %+.3g µm", 1000 * most);
+    fg_text_clip(moved, sizeof moved, "radii by up to %+.3g µm", 1000 * max);
     fg_text_clip(added, sizeof added, "up to %.2g µm to their u", 1000 * u);
   }
   FG_TRY(fg_html_corrected(ctx, out, measurement->model, moved, added));
@@ -346,7 +346,7 @@ static fg_status put_scan(fg_context *ctx, FILE *out, const fg_report *report,
     put_no_scan(out, scan, ++*number);
     return FG_OK;
   }
-  if (report->design->form == FG_FORM_DISCS) return put_discs(ctx, out, report, scan, ++*number);
+  if (report->design->kind == FG_FOIL_DISCS) return put_discs(ctx, out, report, scan, ++*number);
   for (size_t i = 0; i < measurement->foil_count; i++)
     FG_TRY(put_foil(ctx, out, report, scan, &measurement->foils[i], ++*number));
   return FG_OK;

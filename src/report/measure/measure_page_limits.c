@@ -43,15 +43,15 @@ static double width_of(const panel *p) {
 static void find_range(panel *p) {
   double low = p->limit->lower, high = p->limit->upper, reach = shown_beyond * width_of(p);
   double from = isfinite(low) ? low : high, to = isfinite(high) ? high : low;
-  const double most[2] = {from - reach, to + reach};
+  const double max[2] = {from - reach, to + reach};
   for (size_t i = 0; i < p->parts->count; i++) {
     double value = fg_quantity_value(p->row, fg_foil_part_at(p->parts, i));
     double u = fg_quantity_uncertainty(p->row, fg_foil_part_at(p->parts, i));
     double expanded = isfinite(u) ? FG_COVERAGE_FACTOR * u : 0;
     if (!isfinite(value)) continue;
     bool fails = fg_judge_value(p->limit, value, u) == FG_VERDICT_FAIL;
-    from = fmin(from, fmin(fails ? INFINITY : value, fmax(most[0], value - expanded)));
-    to = fmax(to, fmax(fails ? -INFINITY : value, fmin(most[1], value + expanded)));
+    from = fmin(from, fmin(fails ? INFINITY : value, fmax(max[0], value - expanded)));
+    to = fmax(to, fmax(fails ? -INFINITY : value, fmin(max[1], value + expanded)));
   }
   double margin = margin_share * (to > from ? to - from : fmax(fabs(to), 1e-9));
   p->at.y_low = from - margin;

@@ -11,7 +11,7 @@ const char *fg_html_base_name(const char *path) {
 }
 
 static size_t sections_of(const fg_report *report, const fg_report_scan *scan) {
-  if (!scan->measurement || report->design->form == FG_FORM_DISCS) return 1;
+  if (!scan->measurement || report->design->kind == FG_FOIL_DISCS) return 1;
   return scan->measurement->foil_count;
 }
 
@@ -51,14 +51,14 @@ static double mean_of(const fg_design *design, const fg_foil *foil, const char *
 }
 
 static void put_numbers(FILE *out, const fg_design *design, const fg_foil *foil) {
-  if (design->form == FG_FORM_CANTILEVER) {
+  if (design->kind == FG_FOIL_CANTILEVER) {
     put_number(out, foil ? mean_of(design, foil, "length_mm") : NAN, 4);
     put_number(out, foil ? mean_of(design, foil, "width_mm") : NAN, 4);
     put_number(out, foil ? mean_of(design, foil, "compliance_error_pct") : NAN, 3);
     return;
   }
   put_number(out, foil ? foil->overall.radius_mm : NAN, 4);
-  if (design->form == FG_FORM_ARC) {
+  if (design->kind == FG_FOIL_ARC) {
     put_number(out, foil ? foil->arc.subtended_angle_deg : NAN, 3);
     return;
   }
@@ -86,7 +86,7 @@ static fg_status put_whole_scan(fg_context *ctx, FILE *out, const fg_report *rep
   FG_TRY(fg_report_judge_scan(ctx, report->design, scan, &outcome));
   put_link(out, section, scan->path);
   put_verdict_cell(out, outcome.verdict, fg_html_verdict_title(outcome.verdict));
-  if (report->design->form != FG_FORM_DISCS) put_numbers(out, report->design, NULL);
+  if (report->design->kind != FG_FOIL_DISCS) put_numbers(out, report->design, NULL);
   fputs("<td class=\"words\">", out);
   if (scan->measurement)
     fprintf(out, "%zu round features", scan->measurement->disc_count);
@@ -99,7 +99,7 @@ static fg_status put_whole_scan(fg_context *ctx, FILE *out, const fg_report *rep
 static fg_status count_verdicts(fg_context *ctx, const fg_report *report, size_t counts[5]) {
   for (size_t i = 0; i < report->scan_count; i++) {
     const fg_report_scan *scan = &report->scans[i];
-    bool whole = !scan->measurement || report->design->form == FG_FORM_DISCS;
+    bool whole = !scan->measurement || report->design->kind == FG_FOIL_DISCS;
     fg_report_outcome outcome;
     FG_TRY(fg_report_judge_scan(ctx, report->design, scan, &outcome));
     if (whole) counts[outcome.verdict]++;
@@ -131,13 +131,13 @@ static void put_heads(FILE *out, const fg_design *design) {
         "class=\"w\">scan</th>"
         "<th class=\"w\">verdict</th>",
         out);
-  if (design->form == FG_FORM_ARC)
+  if (design->kind == FG_FOIL_ARC)
     fputs("<th>radius<br>mm</th><th>angle<br>°</th>", out);
-  else if (design->form == FG_FORM_CANTILEVER)
+  else if (design->kind == FG_FOIL_CANTILEVER)
     fputs("<th>length, mean<br>mm</th><th>width, mean<br>mm</th><th>compliance against the "
           "design, mean<br>%</th>",
           out);
-  else if (design->form != FG_FORM_DISCS)
+  else if (design->kind != FG_FOIL_DISCS)
     fputs(
         "<th>overall radius<br>mm</th><th>bump radius, mean<br>mm</th><th>height, mean<br>mm</th>",
         out);
@@ -151,14 +151,14 @@ fg_status fg_html_summary(fg_context *ctx, FILE *out, const fg_report *report) {
   FG_TRY(count_verdicts(ctx, report, counts));
   fprintf(out, "<section class=\"judged %s\">\n<header><h1>%zu %s</h1>",
           fg_verdict_word(outcome.verdict), fg_html_sections(report),
-          report->design->form == FG_FORM_DISCS ? "scans" : "foils");
+          report->design->kind == FG_FOIL_DISCS ? "scans" : "foils");
   fg_html_outcome(out, &outcome);
   put_counts(out, report, counts);
   fputs("</header>\n", out);
   put_heads(out, report->design);
   for (size_t i = 0; i < report->scan_count; i++) {
     const fg_report_scan *scan = &report->scans[i];
-    bool whole = !scan->measurement || report->design->form == FG_FORM_DISCS;
+    bool whole = !scan->measurement || report->design->kind == FG_FOIL_DISCS;
     if (whole) FG_TRY(put_whole_scan(ctx, out, report, scan, ++section));
     for (size_t k = 0; !whole && k < scan->measurement->foil_count; k++)
       FG_TRY(put_foil(ctx, out, report, scan, &scan->measurement->foils[k], ++section));

@@ -57,7 +57,7 @@ static void put_flag_cell(FILE *out, const fg_flag_words *words, unsigned flags,
 /* Columns that the table always has, then those with a tolerance that it has not. */
 static size_t choose_columns(const fg_design *design, fg_quantity_owner owner,
                              const fg_quantity *columns[PAGE_COLUMNS_MAX]) {
-  size_t used = fg_quantity_shown(owner, FG_QUANTITY_ON_PAGE, design->form, columns);
+  size_t used = fg_quantity_shown(owner, FG_QUANTITY_ON_PAGE, design->kind, columns);
   for (size_t i = 0; i < design->tolerance_count; i++) {
     const fg_quantity *row = fg_quantity_find(owner, design->tolerances[i].quantity);
     bool there = row == NULL;

@@ -78,9 +78,9 @@ static void put_foil_tiles(FILE *out, const fg_foil *foil, const fg_foil_parts *
 
 void fg_html_tiles(FILE *out, const fg_design *design, const fg_foil *foil) {
   const fg_foil_parts parts = fg_foil_parts_of(design, foil);
-  if (design->form == FG_FORM_ARC)
+  if (design->kind == FG_FOIL_ARC)
     put_arc_tiles(out, foil);
-  else if (design->form == FG_FORM_CANTILEVER)
+  else if (design->kind == FG_FOIL_CANTILEVER)
     put_flat_tiles(out, &parts);
   else
     put_foil_tiles(out, foil, &parts);

@@ -120,8 +120,8 @@ static void put_row(FILE *out, const column *columns, size_t count, int number,
 
 static size_t make_columns(const row_set *rows, column *columns) {
   const fg_quantity *shown[FG_QUANTITY_SHOWN_MAX];
-  fg_form form = rows->owner == FG_QUANTITY_OF_BEAM ? FG_FORM_CANTILEVER : FG_FORM_CLASSICAL;
-  size_t count = fg_quantity_shown(rows->owner, FG_QUANTITY_ON_TERMINAL, form, shown);
+  fg_foil_kind kind = rows->owner == FG_QUANTITY_OF_BEAM ? FG_FOIL_CANTILEVER : FG_FOIL_CLASSICAL;
+  size_t count = fg_quantity_shown(rows->owner, FG_QUANTITY_ON_TERMINAL, kind, shown);
   for (size_t i = 0; i < count; i++) {
     columns[i].row = shown[i];
     measure_column(&columns[i], rows);
@@ -220,7 +220,7 @@ static void put_thickness_words(FILE *out, const fg_design *design, const fg_foi
 static void put_quantities(FILE *out, const fg_design *design, const fg_foil *foil) {
   const fg_quantity *shown[FG_QUANTITY_SHOWN_MAX];
   size_t count =
-      fg_quantity_shown(FG_QUANTITY_OF_FOIL, FG_QUANTITY_ON_TERMINAL, design->form, shown);
+      fg_quantity_shown(FG_QUANTITY_OF_FOIL, FG_QUANTITY_ON_TERMINAL, design->kind, shown);
   for (size_t i = 0; i < count; i++) {
     put_quantity(out, foil, shown[i]);
     if (shown[i]->offset == offsetof(fg_foil, thickness_mm)) put_thickness_words(out, design, foil);
@@ -235,9 +235,9 @@ static void put_foil(FILE *out, const fg_design *design, const fg_foil *foil) {
     put_foil_flags(out, fg_foil_flags_told(design, foil) & ~(unsigned)FG_FOIL_NOT_MEASURED);
     return;
   }
-  if (design->form == FG_FORM_ARC)
+  if (design->kind == FG_FOIL_ARC)
     fprintf(out, "\nfoil %d: a plain strip\n", foil->number);
-  else if (design->form == FG_FORM_CANTILEVER)
+  else if (design->kind == FG_FOIL_CANTILEVER)
     fprintf(out, "\nfoil %d: flat, %zu beams\n", foil->number, foil->beam_count);
   else
     fprintf(out, "\nfoil %d: %zu bump%s, %s\n", foil->number, foil->bump_count,
@@ -249,9 +249,9 @@ static void put_foil(FILE *out, const fg_design *design, const fg_foil *foil) {
   fg_text_thickness_budget(out, design, foil);
   put_correction(out, foil);
   put_foil_flags(out, fg_foil_flags_told(design, foil));
-  if (design->form == FG_FORM_CANTILEVER)
+  if (design->kind == FG_FOIL_CANTILEVER)
     put_beams(out, design, foil);
-  else if (design->form != FG_FORM_ARC)
+  else if (design->kind != FG_FOIL_ARC)
     put_bumps(out, design, foil);
 }
 
@@ -298,7 +298,7 @@ static fg_status put_outcome(fg_context *ctx, FILE *out, const fg_report *report
   }
   if (outcome->rejected)
     fprintf(out, "REJECTED: %zu foil(s) with %s missing or too many.\n", outcome->rejected,
-            design->form == FG_FORM_CANTILEVER ? "beams" : "bumps");
+            design->kind == FG_FOIL_CANTILEVER ? "beams" : "bumps");
   if (outcome->not_measured)
     fprintf(out, "INCOMPLETE: %zu without a value.\n", outcome->not_measured);
   if (outcome->undecided) {
@@ -329,9 +329,9 @@ fg_status fg_report_write_table(fg_context *ctx, const fg_report *report, FILE *
   FG_TRY(put_outcome(ctx, out, report, &outcome));
   char scale[FG_SCALE_WORDS];
   fg_scale_words(fg_report_model(report), &report->design->calibration, scale, sizeof scale);
-  if (fg_form_has_bumps(report->design->form))
+  if (fg_foil_kind_has_bumps(report->design->kind))
     fputs("h and C_loc: the foil free, as scanned. C_fit: pressed into the sleeve.\n", out);
-  if (report->design->form == FG_FORM_CANTILEVER)
+  if (report->design->kind == FG_FOIL_CANTILEVER)
     fputs("e_S, e_s: compliance and sagitta against the design's, of L and w as measured.\n", out);
   fprintf(out, "± is U = 2 u (k = 2, about 95 %%).\n%s\n", scale);
   return fg_stream_finish(ctx, out, "the table");

@@ -83,7 +83,7 @@ static fg_status put_arc(fg_context *ctx, legend *at, const fg_foil *foil) {
 }
 
 static bool is_flagged(const fg_design *design, const fg_foil *foil, size_t i) {
-  if (design->form == FG_FORM_CANTILEVER)
+  if (design->kind == FG_FOIL_CANTILEVER)
     return fg_beam_flags(design, foil, &foil->beams[i]) & ~(unsigned)FG_BEAM_ONE_FLOOR;
   return fg_bump_flags(design, foil, &foil->bumps[i]) != 0;
 }
@@ -92,7 +92,7 @@ static fg_status put_parts(fg_context *ctx, legend *at, const fg_design *design,
                            const fg_foil *foil) {
   const fg_foil_parts parts = fg_foil_parts_of(design, foil);
   const fg_quantity *columns[FG_QUANTITY_SHOWN_MAX];
-  size_t count = fg_quantity_shown(parts.owner, FG_QUANTITY_ON_PICTURE, design->form, columns);
+  size_t count = fg_quantity_shown(parts.owner, FG_QUANTITY_ON_PICTURE, design->kind, columns);
   FG_TRY(put_heading(ctx, at, columns, count));
   for (size_t i = 0; i < parts.count; i++)
     FG_TRY(put_row(ctx, at, columns, count, fg_foil_part_number(&parts, i),
@@ -111,7 +111,7 @@ static fg_status put_flat(fg_context *ctx, legend *at, const fg_design *design, 
 
 static fg_status put_foil(fg_context *ctx, legend *at, const fg_design *design, const fg_foil *foil,
                           bool all) {
-  if (design->form == FG_FORM_CANTILEVER) return put_flat(ctx, at, design, foil, all);
+  if (design->kind == FG_FOIL_CANTILEVER) return put_flat(ctx, at, design, foil, all);
   char text[LINE_MAX_LENGTH], radius[64], error[64], thickness[64];
   value_text(fg_quantity_find(FG_QUANTITY_OF_FOIL, "overall.radius_mm"), foil, radius,
              sizeof radius);
@@ -126,14 +126,14 @@ static fg_status put_foil(fg_context *ctx, legend *at, const fg_design *design, 
              radius, error, thickness);
   FG_TRY(put_text(ctx, at, 0, FG_COLOUR_OVERALL, text));
   at->line++;
-  if (design->form == FG_FORM_ARC) return put_arc(ctx, at, foil);
+  if (design->kind == FG_FOIL_ARC) return put_arc(ctx, at, foil);
   return all ? put_parts(ctx, at, design, foil) : FG_OK;
 }
 
 static fg_status put_discs(fg_context *ctx, legend *at, const fg_measurement *measurement) {
   const fg_quantity *columns[FG_QUANTITY_SHOWN_MAX];
   size_t count =
-      fg_quantity_shown(FG_QUANTITY_OF_DISC, FG_QUANTITY_ON_PICTURE, FG_FORM_DISCS, columns);
+      fg_quantity_shown(FG_QUANTITY_OF_DISC, FG_QUANTITY_ON_PICTURE, FG_FOIL_DISCS, columns);
   FG_TRY(put_heading(ctx, at, columns, count));
   for (size_t i = 0; i < measurement->disc_count; i++)
     FG_TRY(put_row(ctx, at, columns, count, measurement->discs[i].number,
@@ -159,7 +159,7 @@ static fg_status draw_legend(fg_context *ctx, legend *at, const fg_measurement *
                     legend_has_bumps(measurement)));
   if (measurement->disc_count) FG_TRY(put_discs(ctx, at, measurement));
   return put_text(ctx, at, 0, 0xa8b4c0,
-                  measurement->design.form == FG_FORM_CANTILEVER
+                  measurement->design.kind == FG_FOIL_CANTILEVER
                       ? "± is U = 2 u (k = 2, about 95 %). Orange: fitted edges; blue: root line "
                         "and axis. Whiskers: residuals."
                       : "± is U = 2 u (k = 2, about 95 %). Solid arc: used by the fit; dashed: "

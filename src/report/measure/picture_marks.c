@@ -362,7 +362,7 @@ static fg_status draw_foil(fg_context *ctx, marks *at) {
     add_bump(at, &decision, &at->foil->bumps[i]);
   for (size_t i = 0; i < at->foil->beam_count; i++)
     add_beam(at, &decision, &at->foil->beams[i]);
-  if (fg_form_has_bumps(at->measurement->design.form)) add_gaps(at);
+  if (fg_foil_kind_has_bumps(at->measurement->design.kind)) add_gaps(at);
   fg_canvas *canvas = at->canvas;
   fg_point px = to_px(canvas, at->foil->overall.centre_mm);
   px = (fg_point){fmin(fmax(px.x, 0), canvas->width_px), fmin(fmax(px.y, 0), canvas->height_px)};

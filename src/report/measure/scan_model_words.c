@@ -110,11 +110,11 @@ void fg_scale_words(const fg_scanner_model *model, const fg_calibration *calibra
   char scale[FG_SCALE_WORDS] = "The scanner's own error of scale is not in it.";
   if (calibration->stated) {
     fg_calibration_budget terms = fg_calibration_terms(calibration);
-    double most = fmax(terms.length[0], terms.length[1]);
+    double max = fmax(terms.length[0], terms.length[1]);
     fg_text_clip(words, size,
                  "It holds what the stated calibration leaves in doubt: %.2g %% of a length, the "
                  "same in every foil of this scanner%s.",
-                 100 * FG_COVERAGE_FACTOR * most,
+                 100 * FG_COVERAGE_FACTOR * max,
                  model ? "; what the scanner's model corrects is in it too" : "");
     return;
   }
@@ -166,10 +166,10 @@ void fg_correction_added(const fg_correction *c, char *words, size_t size) {
     fg_text_clip(words, size, "%.2g µm to u of R0", 1000 * c->u_overall_radius_mm);
 }
 
-void fg_correction_largest(fg_correction *most, const fg_correction *one) {
+void fg_correction_largest(fg_correction *max, const fg_correction *one) {
   size_t count;
   const fg_quantity *rows = fg_quantities(FG_QUANTITY_OF_FOIL, &count);
-  fg_foil to = {.correction = *most};
+  fg_foil to = {.correction = *max};
   const fg_foil from = {.correction = *one};
   for (size_t i = 0; i < count; i++) {
     double old[FG_QUANTITY_NUMBERS_MAX], new[FG_QUANTITY_NUMBERS_MAX];
@@ -180,7 +180,7 @@ void fg_correction_largest(fg_correction *most, const fg_correction *one) {
       if (isfinite(new[k]) && !(fabs(new[k]) <= fabs(old[k]))) old[k] = new[k];
     fg_quantity_restore(&rows[i], &to, old);
   }
-  *most = to.correction;
+  *max = to.correction;
 }
 
 void fg_json_correction(fg_json *json, const fg_correction *c) {

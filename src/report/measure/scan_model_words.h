@@ -28,7 +28,7 @@ void fg_correction_moved(const fg_correction *correction, char *words, size_t si
 void fg_correction_added(const fg_correction *correction, char *words, size_t size);
 
 /* `most` becomes the larger of both, number by number; start from NaN. */
-void fg_correction_largest(fg_correction *most, const fg_correction *one);
+void fg_correction_largest(fg_correction *max, const fg_correction *one);
 
 /* The member `correction`; nothing where nothing was corrected. */
 void fg_json_correction(fg_json *json, const fg_correction *correction);

@@ -6,7 +6,7 @@
 #include "foilgauge/report.h"
 
 /* A part that is less than this of u² is not worth a line on the terminal. */
-#define MOST_SHARE 0.5
+#define MAX_SHARE 0.5
 
 static double expanded_um(double u_mm) {
   return 1000 * FG_COVERAGE_FACTOR * u_mm;
@@ -60,7 +60,7 @@ void fg_text_thickness_budget(FILE *out, const fg_design *design, const fg_foil 
   if (design->thickness_measured_mm > 0 && isfinite(scan))
     fprintf(out, "  the thickness is stated; the scan says %.4f ± %.4f mm\n",
             foil->thickness_scan_mm, scan);
-  else if (design->tone != FG_TONE_LINEAR && !foil->strip.picture.level_known && share > MOST_SHARE)
+  else if (design->tone != FG_TONE_LINEAR && !foil->strip.picture.level_known && share > MAX_SHARE)
     fprintf(out,
             "  ± %.4f mm of thickness and clearances is by a tone curve that is not known: "
             "--thickness-measured\n",

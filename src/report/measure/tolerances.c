@@ -151,19 +151,19 @@ static int last_found(const fg_foil *foil, fg_quantity_owner owner) {
 }
 
 static size_t stated_parts(const fg_design *design) {
-  return fg_form_parts(design->form) == FG_QUANTITY_OF_BEAM ? design->beam_count
-                                                            : design->bump_count;
+  return fg_foil_kind_parts(design->kind) == FG_QUANTITY_OF_BEAM ? design->beam_count
+                                                                 : design->bump_count;
 }
 
 static int last_number(const fg_design *design, const fg_foil *foil) {
-  int last = last_found(foil, fg_form_parts(design->form)), stated = (int)stated_parts(design);
+  int last = last_found(foil, fg_foil_kind_parts(design->kind)), stated = (int)stated_parts(design);
   if (foil->flags & FG_FOIL_BEAM_PLACES_UNKNOWN) return last;
   return last > stated ? last : stated;
 }
 
 static bool lacks_parts(const fg_design *design, const fg_foil *foil) {
   return design->tolerance_count &&
-         fg_part_count(foil, fg_form_parts(design->form)) < stated_parts(design);
+         fg_part_count(foil, fg_foil_kind_parts(design->kind)) < stated_parts(design);
 }
 
 static bool may_be_hidden(const fg_foil *foil) {
@@ -190,7 +190,7 @@ static int count_missing(const fg_foil *foil, fg_quantity_owner owner, int last)
 /* "bumps 3, 7 are missing (7 found, the design has 9)" */
 static void name_missing(const fg_design *design, const fg_foil *foil, char *words, size_t size) {
   enum { NAMED_MAX = 12 };
-  fg_quantity_owner owner = fg_form_parts(design->form);
+  fg_quantity_owner owner = fg_foil_kind_parts(design->kind);
   size_t found = fg_part_count(foil, owner), stated = stated_parts(design);
   const char *word = fg_part_word(owner);
   int last = last_found(foil, owner), missing = count_missing(foil, owner, last);
@@ -216,7 +216,7 @@ static void name_missing(const fg_design *design, const fg_foil *foil, char *wor
 
 bool fg_foil_defect(const fg_design *design, const fg_foil *foil, char *words, size_t size) {
   char unused[1];
-  fg_quantity_owner owner = fg_form_parts(design->form);
+  fg_quantity_owner owner = fg_foil_kind_parts(design->kind);
   if (!words) {
     words = unused;
     size = sizeof unused;
@@ -286,7 +286,7 @@ static void judge_whole(const fg_design *design, const fg_foil *foil, fg_report_
 
 fg_status fg_foil_decide(fg_context *ctx, const fg_design *design, const fg_foil *foil,
                          fg_decision *decision) {
-  const fg_quantity_owner owner = fg_form_parts(design->form);
+  const fg_quantity_owner owner = fg_foil_kind_parts(design->kind);
   size_t parts = fg_owner_is_part(owner) ? (size_t)last_number(design, foil) : 0;
   FG_TRY(allocate(ctx, design->tolerance_count, parts + 1, decision));
   if (!fg_foil_is_measured(foil)) {
@@ -318,10 +318,10 @@ fg_status fg_disc_decide(fg_context *ctx, const fg_design *design, const fg_disc
 /* A place without a clearance may be the lowest of all: what is known says how low the least is at
  * best, and of a circularity nothing. */
 static fg_judgement judge_part(const fg_tolerance *tolerance, fg_judgement judgement) {
-  bool least = judgement.row == fg_quantity_of_bearing_for("clearance_min_mm") ||
-               judgement.row == fg_quantity_of_bearing_for("clearance_centred_min_mm");
+  bool min = judgement.row == fg_quantity_of_bearing_for("clearance_min_mm") ||
+             judgement.row == fg_quantity_of_bearing_for("clearance_centred_min_mm");
   double expanded = isnan(judgement.u) ? 0 : FG_COVERAGE_FACTOR * judgement.u;
-  if (least && judgement.value + expanded < tolerance->lower) return judgement;
+  if (min && judgement.value + expanded < tolerance->lower) return judgement;
   judgement.verdict = FG_VERDICT_NOT_MEASURED;
   judgement.exceeded = false;
   return judgement;
@@ -332,10 +332,10 @@ fg_status fg_bearing_decide(fg_context *ctx, const fg_design *design,
                             fg_decision *decision) {
   static const fg_bearing_clearance unknown = {
       .mean_mm = NAN,
-      .least_mm = NAN,
-      .most_mm = NAN,
+      .min_mm = NAN,
+      .max_mm = NAN,
       .circularity_mm = NAN,
-      .centred_least_mm = NAN,
+      .centred_min_mm = NAN,
   };
   FG_TRY(allocate(ctx, design->tolerance_count, 1, decision));
   for (size_t i = 0; i < design->tolerance_count; i++) {
@@ -430,9 +430,9 @@ fg_status fg_report_judge(fg_context *ctx, const fg_report *report, fg_report_ou
   return FG_OK;
 }
 
-static bool has_quantity(fg_quantity_owner owner, fg_form form, const char *name) {
+static bool has_quantity(fg_quantity_owner owner, fg_foil_kind kind, const char *name) {
   const fg_quantity *row = fg_quantity_find(owner, name);
-  return row && row->kind != FG_QUANTITY_PAIR && fg_quantity_applies(owner, row, form);
+  return row && row->kind != FG_QUANTITY_PAIR && fg_quantity_applies(owner, row, kind);
 }
 
 static void list_bearing(char *text, size_t size) {
@@ -455,19 +455,19 @@ size_t fg_report_of_bearing(const fg_design *design, char *names, size_t size) {
 }
 
 fg_status fg_report_check_tolerances(fg_context *ctx, const fg_design *design) {
-  bool discs = design->form == FG_FORM_DISCS, beams = design->form == FG_FORM_CANTILEVER;
+  bool discs = design->kind == FG_FOIL_DISCS, beams = design->kind == FG_FOIL_CANTILEVER;
   fg_quantity_owner part = discs   ? FG_QUANTITY_OF_DISC
                            : beams ? FG_QUANTITY_OF_BEAM
                                    : FG_QUANTITY_OF_BUMP;
   for (size_t i = 0; i < design->tolerance_count; i++) {
     const char *quantity = design->tolerances[i].quantity;
-    if (has_quantity(part, design->form, quantity)) continue;
-    if (!discs && has_quantity(FG_QUANTITY_OF_FOIL, design->form, quantity)) continue;
-    bool bumps = fg_form_has_bumps(design->form);
+    if (has_quantity(part, design->kind, quantity)) continue;
+    if (!discs && has_quantity(FG_QUANTITY_OF_FOIL, design->kind, quantity)) continue;
+    bool bumps = fg_foil_kind_has_bumps(design->kind);
     if (bumps && fg_quantity_of_bearing_for(quantity)) continue;
     char names[1000] = "";
-    fg_quantity_list(part, design->form, true, names, sizeof names);
-    if (!discs) fg_quantity_list(FG_QUANTITY_OF_FOIL, design->form, true, names, sizeof names);
+    fg_quantity_list(part, design->kind, true, names, sizeof names);
+    if (!discs) fg_quantity_list(FG_QUANTITY_OF_FOIL, design->kind, true, names, sizeof names);
     if (bumps) list_bearing(names, sizeof names);
     return fg_fail(ctx, FG_ERR_DATA, "tolerances.%s: no such quantity is reported; there are: %s",
                    quantity, names);

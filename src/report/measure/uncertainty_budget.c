@@ -62,7 +62,7 @@ static void write_line(fg_json *json, const fg_quantity *row, const line *sum) {
 
 static void write_budget(fg_json *json, const fg_report *report, fg_quantity_owner owner) {
   const fg_quantity *shown[FG_QUANTITY_SHOWN_MAX];
-  size_t count = fg_quantity_shown(owner, FG_QUANTITY_ON_PAGE, report->design->form, shown);
+  size_t count = fg_quantity_shown(owner, FG_QUANTITY_ON_PAGE, report->design->kind, shown);
   for (size_t i = 0; i < count; i++) {
     line sum = {0};
     for (size_t s = 0; s < report->scan_count; s++)
@@ -104,7 +104,7 @@ void fg_html_uncertainty_budget(FILE *out, const fg_measurement *measurement, co
   for (size_t k = 0; k < sizeof owners / sizeof *owners; k++) {
     const fg_quantity *shown[FG_QUANTITY_SHOWN_MAX];
     size_t count =
-        fg_quantity_shown(owners[k], FG_QUANTITY_ON_PAGE, measurement->design.form, shown);
+        fg_quantity_shown(owners[k], FG_QUANTITY_ON_PAGE, measurement->design.kind, shown);
     for (size_t i = 0; i < count; i++) {
       line sum = {0};
       add_scan(&sum, owners[k], shown[i], measurement, foil);

@@ -28,7 +28,7 @@ static void put_bumps(const fg_plot *at, const view *v, bool after) {
     double x = place_of(v, bump), y = after ? bump->after : bump->before;
     if (!after && bump->effect != 0)
       fg_plot_segment(at, x - 0.3, bump->effect, x + 0.3, bump->effect, "effect");
-    fg_plot_dot(at, x, y, v->bumps->parts > 4 ? 3 : 5, bump->aside ? "run" : "bar");
+    fg_plot_dot(at, x, y, v->bumps->parts > 4 ? 3 : 5, bump->held_out ? "run" : "bar");
   }
 }
 
@@ -188,7 +188,7 @@ static void put_drawings(FILE *out, const fg_scan_result_bumps *bumps) {
 
 void fg_scan_loop_page_bumps(FILE *out, const fg_scan_result *result) {
   const fg_scan_result_bumps *bumps = &result->bumps;
-  bool judged = false, any = bumps->count + bumps->aside > 0;
+  bool judged = false, any = bumps->count + bumps->held_out > 0;
   for (size_t r = 0; r < FG_SCAN_RESULT_RESPONSES; r++)
     judged |= bumps->response[r].judged;
   if (!any && !result->notes) return;

@@ -103,7 +103,7 @@ static void write_response(fg_json *json, const fg_scan_result_response *respons
 void fg_json_bumps(fg_json *json, const fg_scan_result_bumps *bumps) {
   fg_json_object(json, "bumps");
   fg_json_integer(json, "count", (int64_t)bumps->count);
-  fg_json_integer(json, "kept_aside", (int64_t)bumps->aside);
+  fg_json_integer(json, "kept_aside", (int64_t)bumps->held_out);
   fg_json_integer(json, "foils", (int64_t)bumps->parts);
   fg_json_file(json, "declared", bumps->declared_path, bumps->declared_sha256);
   fg_json_array(json, "responses");

@@ -115,8 +115,8 @@ static void put_claim(FILE *out, const fg_scan_result_claim *claim) {
   fg_html_text(out, claim->words);
   fputs("<i>", out);
   fg_html_text(out, claim->id);
-  if (claim->form)
-    fprintf(out, ", along the %s", strcmp(claim->form, "radial") ? "normal" : "radius");
+  if (claim->direction)
+    fprintf(out, ", along the %s", strcmp(claim->direction, "radial") ? "normal" : "radius");
   fprintf(out, "</i></td><td class=\"words\">%s</td><td class=\"words\">", claim->equation);
   for (size_t i = 0; i < claim->parameters; i++) {
     const fg_scan_result_parameter *p = &claim->parameter[i];

@@ -73,7 +73,7 @@ static void put_inputs(FILE *out, const fg_scan_result *result) {
           out);
 }
 
-static void put_doubt(FILE *out, const fg_scan_result *result) {
+static void put_uncertainty(FILE *out, const fg_scan_result *result) {
   if (result->contradicted)
     fputs("<p class=\"doubt\">The scans kept aside do not confirm it: there the residual becomes "
           "larger. Do they lie at the same place of the same glass?</p>\n",
@@ -118,7 +118,7 @@ static fg_status put_head(fg_context *ctx, FILE *out, const fg_scan_result *resu
           classes[result->verdict], fg_loop_outcome_word(result->verdict));
   fg_html_text(out, sentence);
   fputs("</p>\n", out);
-  put_doubt(out, result);
+  put_uncertainty(out, result);
   FG_TRY(put_next(ctx, out, result));
   put_tiles(out, result);
   put_inputs(out, result);
@@ -146,11 +146,11 @@ static void put_shares(FILE *out, double alone, double share, bool of_width) {
             of_width ? " of the width" : "", share < 0.1 ? 2 : 0, 100 * share);
 }
 
-static void put_witness(FILE *out, const fg_scan_witness *witness) {
-  if (witness->verdict == FG_WITNESS_NONE) return;
+static void put_channel_check(FILE *out, const fg_channel_check *channel_check) {
+  if (channel_check->verdict == FG_CHANNEL_CHECK_NONE) return;
   fputs("<br><span class=\"note\">", out);
-  fg_html_text(out, witness->reason);
-  if (isfinite(witness->p_value)) fprintf(out, " (p = %.1g)", witness->p_value);
+  fg_html_text(out, channel_check->reason);
+  if (isfinite(channel_check->p_value)) fprintf(out, " (p = %.1g)", channel_check->p_value);
   fputs("</span>", out);
 }
 
@@ -168,7 +168,7 @@ static void put_claim(FILE *out, const fg_scan_result_claim *claim) {
   } else {
     fputs("see its curve", out);
   }
-  put_witness(out, &claim->witness);
+  put_channel_check(out, &claim->channel_check);
   fputs("</td>", out);
   put_shares(out, claim->would_explain, claim->retained_share, claim->of_width);
 }
@@ -294,7 +294,7 @@ static void put_edge_noise(FILE *out, const fg_scan_noise *noise) {
     fprintf(out,
             "<tr><td class=\"words\">white, and %s along the edge</td><td>%s</td><td>%s</td>"
             "<td>%.2g mm</td></tr>\n",
-            noise->form, words[0], words[1], noise->range_mm);
+            noise->model, words[0], words[1], noise->range_mm);
   else
     fprintf(out,
             "<tr><td class=\"words\">white: rows are independent</td><td>%s</td><td>–</td>"

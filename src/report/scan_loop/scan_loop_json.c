@@ -32,21 +32,21 @@ static void write_shape(fg_json *json, const fg_scan_result_claim *claim) {
   fg_json_array_end(json);
 }
 
-static void write_witness(fg_json *json, const fg_scan_witness *witness) {
+static void write_channel_check(fg_json *json, const fg_channel_check *channel_check) {
   static const char *const lines[] = {"red", "green", "blue"};
-  if (witness->verdict == FG_WITNESS_NONE) return;
+  if (channel_check->verdict == FG_CHANNEL_CHECK_NONE) return;
   fg_json_object(json, "witness");
-  fg_json_string(json, "verdict", fg_scan_loop_witness_word(witness->verdict));
-  fg_json_string(json, "reason", witness->reason);
-  fg_json_number(json, "p_value", witness->p_value);
-  fg_json_number(json, "p_against", witness->p_against);
-  fg_json_number(json, "factor", witness->factor);
-  fg_json_number(json, "u_factor", witness->u_factor);
-  fg_json_number(json, "expected_um", witness->expected_um);
-  fg_json_bool(json, "gap_stated", witness->gap_stated);
+  fg_json_string(json, "verdict", fg_channel_check_word(channel_check->verdict));
+  fg_json_string(json, "reason", channel_check->reason);
+  fg_json_number(json, "p_value", channel_check->p_value);
+  fg_json_number(json, "p_against", channel_check->p_against);
+  fg_json_number(json, "factor", channel_check->factor);
+  fg_json_number(json, "u_factor", channel_check->u_factor);
+  fg_json_number(json, "expected_um", channel_check->expected_um);
+  fg_json_bool(json, "gap_stated", channel_check->gap_stated);
   fg_json_object(json, "gap_px");
   for (int k = 0; k < 3; k++)
-    fg_json_number(json, lines[k], witness->gap_px[k]);
+    fg_json_number(json, lines[k], channel_check->gap_px[k]);
   fg_json_object_end(json);
   fg_json_object_end(json);
 }
@@ -55,7 +55,7 @@ static void write_claim(fg_json *json, const fg_scan_result *result,
                         const fg_scan_result_claim *claim) {
   fg_json_object(json, NULL);
   fg_json_string(json, "id", claim->id);
-  if (claim->form) fg_json_string(json, "form", claim->form);
+  if (claim->direction) fg_json_string(json, "form", claim->direction);
   fg_json_string(json, "level", "points");
   fg_json_string(json, "verdict", fg_loop_verdict_word(claim->verdict));
   write_parameters(json, claim, false);
@@ -68,7 +68,7 @@ static void write_claim(fg_json *json, const fg_scan_result *result,
     write_shape(json, claim);
   }
   write_explanations(json, result, claim->sure);
-  write_witness(json, &claim->witness);
+  write_channel_check(json, &claim->channel_check);
   fg_json_object_end(json);
 }
 
@@ -185,7 +185,7 @@ static void write_inputs(fg_json *json, const fg_scan_result *result) {
 
 static void write_noise(fg_json *json, const fg_scan_noise *noise) {
   fg_json_object(json, "noise");
-  fg_json_string(json, "form", noise->form);
+  fg_json_string(json, "form", noise->model);
   fg_json_number(json, "sd", noise->sd_um);
   fg_json_number(json, "white_sd", noise->white_um);
   fg_json_number(json, "correlated_sd", noise->correlated_um);

@@ -16,10 +16,10 @@ enum { FG_HELD_OUT_WORDS = 80 };
 void fg_scan_loop_held_out_words(const fg_scan_result *result, char words[FG_HELD_OUT_WORDS]);
 
 /* The largest of 1, 2, 5 times a power of ten that is not above `most`. */
-double fg_scan_loop_nice_below(double most);
+double fg_scan_loop_nice_below(double max);
 
 /* "for", "against", "cannot_tell". */
-const char *fg_scan_loop_witness_word(fg_scan_witness_verdict verdict);
+const char *fg_channel_check_word(fg_channel_check_verdict verdict);
 
 /* The page's one sentence; the caller frees it. scan_loop_sentence.c */
 fg_status fg_scan_loop_sentence(fg_context *ctx, const fg_scan_result *result, char **text);

@@ -7,7 +7,7 @@
 #include "report/plot_marks.h"
 #include "report/scan_loop/scan_loop_parts.h"
 
-enum { WIDTH = 520, HEIGHT = 264, POINTS_MOST = 1300, BINS = 150, ROWS_IN_BIN = 8, COLOURS = 4 };
+enum { WIDTH = 520, HEIGHT = 264, POINTS_MAX = 1300, BINS = 150, ROWS_IN_BIN = 8, COLOURS = 4 };
 
 /* A plot's data: rows over one coordinate, before or after. */
 typedef struct series {
@@ -39,15 +39,15 @@ static bool is_light(const series *s, size_t i) {
 }
 
 static void put_points(const fg_plot *at, const series *s, size_t scan, bool light) {
-  size_t rows = s->result->rows, stride = 1 + rows / POINTS_MOST;
-  bool aside = s->result->scan[scan].hold_out;
-  fprintf(at->out, "<path class=\"%s %s\" d=\"", aside ? "aside" : "dots",
+  size_t rows = s->result->rows, stride = 1 + rows / POINTS_MAX;
+  bool held_out = s->result->scan[scan].hold_out;
+  fprintf(at->out, "<path class=\"%s %s\" d=\"", held_out ? "aside" : "dots",
           light ? "pale" : colour(scan));
   for (size_t i = 0; i < rows; i += stride) {
     double x, y;
     if (scan_of(s, i) != scan || is_light(s, i) != light || !point_at(s, i, &x, &y)) continue;
     y = fmin(at->y_high, fmax(at->y_low, y));
-    fprintf(at->out, aside ? "M%.1f %.1fm-2-2l4 4m0-4l-4 4" : "M%.1f %.1fh0", fg_plot_x(at, x),
+    fprintf(at->out, held_out ? "M%.1f %.1fm-2-2l4 4m0-4l-4 4" : "M%.1f %.1fh0", fg_plot_x(at, x),
             fg_plot_y(at, y));
   }
   fputs("\"/>\n", at->out);

@@ -11,10 +11,10 @@
 #include "report/scan_loop/scan_loop_parts.h"
 #include "report/wrapped.h"
 
-static void put_witness(FILE *out, const fg_scan_witness *witness) {
-  if (witness->verdict == FG_WITNESS_NONE) return;
-  fprintf(out, "    %s", witness->reason);
-  if (isfinite(witness->p_value)) fprintf(out, " (p = %.1g)", witness->p_value);
+static void put_channel_check(FILE *out, const fg_channel_check *channel_check) {
+  if (channel_check->verdict == FG_CHANNEL_CHECK_NONE) return;
+  fprintf(out, "    %s", channel_check->reason);
+  if (isfinite(channel_check->p_value)) fprintf(out, " (p = %.1g)", channel_check->p_value);
   fputc('\n', out);
 }
 
@@ -31,7 +31,7 @@ static void put_claims(FILE *out, const fg_scan_result *result) {
       fprintf(out, " %s %.6g +- %.2g", claim->parameter[p].name, claim->parameter[p].value,
               2 * claim->parameter[p].u);
     fputc('\n', out);
-    put_witness(out, &claim->witness);
+    put_channel_check(out, &claim->channel_check);
   }
 }
 
@@ -90,7 +90,7 @@ static void put_noise(FILE *out, const fg_scan_noise *noise) {
   fprintf(out, "noise of a row, um: %.4g; white %.4g", noise->sd_um, noise->white_um);
   if (noise->correlation > 0)
     fprintf(out, ", shared by neighbours %.4g (%s, over %.2g mm)", noise->correlated_um,
-            noise->form, noise->range_mm);
+            noise->model, noise->range_mm);
   fputc('\n', out);
 }
 
@@ -100,7 +100,7 @@ static void put_choice(FILE *out, const char *symbol, const fg_correction_choice
   char words[FG_CHOICE_WORDS];
   fg_choice_words(symbol, choice, true, words);
   if (words[0]) fprintf(out, "  %s\n", words);
-  if (tied && choice->moved && choice->reason == FG_CORRECTION_PAYS)
+  if (tied && choice->moved && choice->reason == FG_CORRECTION_HELPS)
     fprintf(out, "  %s moved by what all explanations agree about, +- %.2g um\n", symbol,
             2000 * choice->u_move_mm);
 }

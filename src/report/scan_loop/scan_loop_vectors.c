@@ -8,15 +8,15 @@
 
 enum {
   WIDTH = 520,
-  HEIGHT_MOST = 560,
+  HEIGHT_MAX = 560,
   MARGIN = 44,
-  NEEDLES_MOST = 420,
-  RING_NEEDLES_MOST = 1100,
-  NUMBERS_MOST = 40
+  NEEDLES_MAX = 420,
+  RING_NEEDLES_MAX = 1100,
+  NUMBERS_MAX = 40
 };
 enum { SCANS_DRAWN = 6 };
 /* The scale's bar, at most, in units of the drawing. */
-static const double bar_most = 88;
+static const double bar_max = 88;
 /* Noise is drawn at most this long: a scan that holds nothing else must look as calm as it is. */
 static const double noise_length = 2;
 static const double needle_length = 44,
@@ -147,7 +147,7 @@ static void put_numbers(const vectors *v) {
   size_t count = 0;
   for (size_t k = 0; k < result->views; k++)
     if (result->view[k].scan == v->scan) count += result->view[k].bumps;
-  if (count > NUMBERS_MOST) return;
+  if (count > NUMBERS_MAX) return;
   for (size_t i = 0, end; i < result->rows; i = end) {
     end = arc_end(v, i);
     const fg_scan_result_row *row = &result->row[i + (end - i) / 2];
@@ -160,7 +160,7 @@ static void put_numbers(const vectors *v) {
 
 /* The scale of all drawings, said once. */
 static void put_scale(const vectors *v) {
-  double um = fg_scan_loop_nice_below(bar_most / v->unit_per_um), length = um * v->unit_per_um;
+  double um = fg_scan_loop_nice_below(bar_max / v->unit_per_um), length = um * v->unit_per_um;
   char words[32];
   fg_scan_loop_length_words(um, words, sizeof words);
   fprintf(v->out,
@@ -213,9 +213,9 @@ static void find_box(vectors *v) {
     v->high[0] = fmax(v->high[0], row->at_mm.x);
     v->high[1] = fmax(v->high[1], row->at_mm.y);
   }
-  v->block = 1 + count / (v->rings ? RING_NEEDLES_MOST : NEEDLES_MOST);
+  v->block = 1 + count / (v->rings ? RING_NEEDLES_MAX : NEEDLES_MAX);
   v->scale = fmin((WIDTH - 2.0 * MARGIN) / (v->high[0] - v->low[0]),
-                  (HEIGHT_MOST - 2.0 * MARGIN) / (v->high[1] - v->low[1]));
+                  (HEIGHT_MAX - 2.0 * MARGIN) / (v->high[1] - v->low[1]));
 }
 
 static void put_scan(vectors *v) {

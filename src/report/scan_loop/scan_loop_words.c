@@ -5,8 +5,8 @@
 #include "core/text.h"
 #include "report/scan_loop/scan_loop_parts.h"
 
-double fg_scan_loop_nice_below(double most) {
-  double power = pow(10, floor(log10(most))), share = most / power;
+double fg_scan_loop_nice_below(double max) {
+  double power = pow(10, floor(log10(max))), share = max / power;
   return power * (share >= 5 ? 5 : share >= 2 ? 2 : 1);
 }
 
@@ -22,15 +22,15 @@ void fg_scan_loop_held_out_words(const fg_scan_result *result, char words[FG_HEL
     fg_text_clip(words, FG_HELD_OUT_WORDS, "%s that took no part in the search", result->fold_of);
 }
 
-const char *fg_scan_loop_witness_word(fg_scan_witness_verdict verdict) {
+const char *fg_channel_check_word(fg_channel_check_verdict verdict) {
   switch (verdict) {
-  case FG_WITNESS_FOR:
+  case FG_CHANNEL_CHECK_FOR:
     return "for";
-  case FG_WITNESS_AGAINST:
+  case FG_CHANNEL_CHECK_AGAINST:
     return "against";
-  case FG_WITNESS_CANNOT_TELL:
+  case FG_CHANNEL_CHECK_CANNOT_TELL:
     return "cannot_tell";
-  case FG_WITNESS_NONE:
+  case FG_CHANNEL_CHECK_NONE:
     break;
   }
   return "";

@@ -95,7 +95,7 @@ static void put_errors(FILE *out, const fg_loop_report *report) {
 }
 
 /* The tests of the whole residual. */
-static void put_battery(FILE *out, const fg_loop_report *report) {
+static void put_residual_tests(FILE *out, const fg_loop_report *report) {
   const fg_loop_checked *check = report->result->check;
   char words[FG_LOOP_WORDS];
   double level = 0;
@@ -261,7 +261,7 @@ fg_status fg_loop_write_html(fg_context *ctx, const fg_loop_report *report, FILE
   free(sentence);
   FG_TRY(fg_loop_plots_put(ctx, out, report));
   put_errors(out, report);
-  put_battery(out, report);
+  put_residual_tests(out, report);
   put_notes(out, report);
   put_candidates(out, report);
   fg_provenance from = {.of_scans = false};

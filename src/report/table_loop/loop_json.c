@@ -24,8 +24,8 @@ static void write_error(fg_json *json, const char *name, const fg_loop_error *er
   fg_json_object_end(json);
 }
 
-static bool is_lone(const fg_loop_claim *claim) {
-  return claim->candidate.effect->lone != FG_LOOP_NOT_LONE;
+static bool is_outlier(const fg_loop_claim *claim) {
+  return claim->candidate.effect->outlier != FG_LOOP_NOT_OUTLIER;
 }
 
 /* What turns the coefficient into a slope per unit of its column, or into a share of the arc
@@ -57,8 +57,8 @@ static void write_parameters(fg_json *json, const fg_loop_report *report,
   double unit = natural_unit(report, claim);
   if (isfinite(unit))
     fg_json_number(json, effect->from_zero ? "stretch" : "slope_per_unit", unit * coefficient[0]);
-  if (!uncertainty && is_lone(claim)) {
-    bool pair = effect->lone == FG_LOOP_EXCHANGED_ROWS;
+  if (!uncertainty && is_outlier(claim)) {
+    bool pair = effect->outlier == FG_LOOP_EXCHANGED_ROWS;
     fg_json_integer(json, "row", (int64_t)report->problem->row[claim->candidate.row[0]] + 1);
     for (size_t k = 1; !pair && k < claim->candidate.rows; k++) {
       snprintf(name, sizeof name, "row_%zu", k + 1);
@@ -74,8 +74,8 @@ static void write_parameters(fg_json *json, const fg_loop_report *report,
 /* What the rows of a lone claim are called, where they have names. */
 static void write_row_names(fg_json *json, const fg_loop_report *report,
                             const fg_loop_claim *claim) {
-  if (!report->row_name || !is_lone(claim)) return;
-  size_t rows = claim->candidate.effect->lone == FG_LOOP_EXCHANGED_ROWS ? 2 : 1;
+  if (!report->row_name || !is_outlier(claim)) return;
+  size_t rows = claim->candidate.effect->outlier == FG_LOOP_EXCHANGED_ROWS ? 2 : 1;
   fg_json_array(json, "row_names");
   for (size_t i = 0; i < rows; i++)
     fg_json_string(json, NULL, report->row_name[report->problem->row[claim->candidate.row[i]]]);
@@ -90,13 +90,13 @@ static void write_claim(fg_json *json, const fg_loop_report *report, const fg_lo
   fg_json_string(json, "level", report->problem->problem.level);
   fg_json_string(json, "verdict", fg_loop_verdict_word(claim->verdict));
   fg_json_array(json, "coordinates");
-  if (!is_lone(claim)) {
+  if (!is_outlier(claim)) {
     const fg_loop_coordinate *at = report->problem->problem.coordinate;
     fg_json_string(json, NULL, at[claim->candidate.a].name);
     if (claim->candidate.effect->pair) fg_json_string(json, NULL, at[claim->candidate.b].name);
   }
   fg_json_array_end(json);
-  if (is_lone(claim)) {
+  if (is_outlier(claim)) {
     fg_json_array(json, "rows");
     for (size_t k = 0; k < claim->candidate.rows; k++)
       fg_json_integer(json, NULL, (int64_t)report->problem->row[claim->candidate.row[k]] + 1);
@@ -138,7 +138,7 @@ static void write_row(fg_json *json, const fg_loop_report *report, size_t row) {
 }
 
 /* The tests of the whole residual; those that the table offers none of are not there. */
-static void write_battery(fg_json *json, const fg_loop_report *report) {
+static void write_residual_tests(fg_json *json, const fg_loop_report *report) {
   char words[FG_LOOP_WORDS];
   fg_json_array(json, "battery");
   for (size_t k = 0; k < FG_LOOP_CHECKS; k++) {
@@ -150,7 +150,7 @@ static void write_battery(fg_json *json, const fg_loop_report *report) {
     fg_json_string(json, "asks", words);
     fg_json_number(json, "statistic", check->statistic);
     if (k < FG_LOOP_CHECK_LAGS)
-      fg_json_numbers(json, "degrees_of_freedom", check->freedom, 2);
+      fg_json_numbers(json, "degrees_of_freedom", check->dof, 2);
     else
       fg_json_integer(json, "lag", (int64_t)check->lag);
     if (k == FG_LOOP_CHECK_ONE_LAG) fg_json_number(json, "correlation", check->correlation);
@@ -219,23 +219,23 @@ static void write_rejected(fg_json *json, const fg_loop_rejected *one) {
   fg_json_object_end(json);
 }
 
-enum { LISTED_ASIDE = 1000 }; /* rows; more are only counted */
+enum { LISTED_HELD_OUT = 1000 }; /* rows; more are only counted */
 
 static void write_inputs(fg_json *json, const fg_loop_report *report) {
   const fg_loop_problem *problem = &report->problem->problem;
-  size_t aside = 0;
+  size_t held_out = 0;
   for (size_t i = 0; i < problem->rows; i++)
-    aside += problem->aside && problem->aside[i];
+    held_out += problem->held_out && problem->held_out[i];
   fg_json_array(json, "inputs");
   fg_json_object(json, NULL);
   fg_json_string(json, "path", report->path);
   fg_json_string(json, "sha256", report->sha256);
   fg_json_integer(json, "rows", (int64_t)problem->rows);
-  fg_json_integer(json, "rows_kept_aside", (int64_t)aside);
+  fg_json_integer(json, "rows_kept_aside", (int64_t)held_out);
   fg_json_array(json, "kept_aside");
   fg_json_line(json);
-  for (size_t i = 0; aside <= LISTED_ASIDE && i < problem->rows; i++)
-    if (problem->aside && problem->aside[i])
+  for (size_t i = 0; held_out <= LISTED_HELD_OUT && i < problem->rows; i++)
+    if (problem->held_out && problem->held_out[i])
       fg_json_integer(json, NULL, (int64_t)report->problem->row[i] + 1);
   fg_json_line_end(json);
   fg_json_array_end(json);
@@ -285,7 +285,7 @@ static void write_findings(fg_json *json, const fg_loop_report *report) {
     write_failed(json, report);
   else
     write_curve(json, report);
-  write_battery(json, report);
+  write_residual_tests(json, report);
   write_error(json, "after", &result->after);
   fg_json_object(json, "error_ratio");
   fg_json_number(json, "rms", result->ratio_rms);
@@ -344,7 +344,7 @@ fg_status fg_loop_write_json(fg_context *ctx, const fg_loop_report *report, FILE
   fg_json_number(&json, "sd", result->noise.sd);
   fg_json_number(&json, "correlation", result->noise.rho);
   fg_json_number(&json, "group_to_row_variance", result->noise.lambda);
-  fg_json_string(&json, "form", fg_loop_noise_form(result));
+  fg_json_string(&json, "form", fg_loop_noise_model(result));
   fg_json_number(&json, "range_rows", range_of(result->noise.rho));
   fg_json_object_end(&json);
   write_findings(&json, report);

@@ -77,7 +77,7 @@ fg_status fg_loop_write_model(fg_context *ctx, const fg_loop_report *report, FIL
   if (result->has_curve) {
     fg_json_object(&json, "unattributed");
     fg_json_string(&json, "coordinate", result->curve.name);
-    fg_json_number(&json, "freedom", result->curve.freedom);
+    fg_json_number(&json, "freedom", result->curve.dof);
     fg_json_array(&json, "shape");
     for (size_t i = 0; i < result->curve.count; i++)
       fg_json_numbers(&json, NULL, result->curve.shape[i], 2);

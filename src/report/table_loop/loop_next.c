@@ -81,7 +81,7 @@ static bool has_term(const fg_loop_report *report, const fg_loop_candidate *cand
 }
 
 /* All that it could be is of the same columns: only its form is open. */
-static bool only_form_is_open(const fg_loop_claim *claim) {
+static bool only_basis_is_open(const fg_loop_claim *claim) {
   bool same = claim->aliases_unlisted == 0 && claim->candidate.effect->accepts;
   for (size_t k = 0; k < claim->aliases; k++) {
     const fg_loop_alias *alias = &claim->alias[k];
@@ -98,14 +98,14 @@ static bool formula_with(const fg_loop_report *report, size_t m, char text[FG_LO
   if (!has_term(report, &claim[m].candidate)) return false;
   fg_text_clip(text, FG_LOOP_STEP, "%s", report->spec->model);
   for (size_t k = 0; k <= m; k++)
-    if (has_term(report, &claim[k].candidate) && only_form_is_open(&claim[k]))
+    if (has_term(report, &claim[k].candidate) && only_basis_is_open(&claim[k]))
       append_term(report, &claim[k].candidate, text);
   return true;
 }
 
 static void look_up_rows(const fg_loop_report *report, const fg_loop_claim *claim,
                          char text[FG_LOOP_STEP]) {
-  bool exchanged = claim->candidate.effect->lone == FG_LOOP_EXCHANGED_ROWS;
+  bool exchanged = claim->candidate.effect->outlier == FG_LOOP_EXCHANGED_ROWS;
   bool one = !exchanged && claim->candidate.rows == 1;
   char rows[FG_LOOP_WORDS];
   fg_loop_rows_words(report, &claim->candidate, rows);
@@ -195,7 +195,7 @@ static void step_of_claim(const fg_loop_report *report, size_t m, char text[FG_L
     advice += report->result->claim[k].aliases > 0;
   bool tied = claim->aliases && advice < report->result->advices;
   const char *apart = tied ? report->result->advice[advice].text : "";
-  if (tied && (!only_form_is_open(claim) || !formula_with(report, m, formula))) {
+  if (tied && (!only_basis_is_open(claim) || !formula_with(report, m, formula))) {
     fg_text_clip(text, FG_LOOP_STEP, "Name no cause yet. %s", apart);
     return;
   }
@@ -206,7 +206,7 @@ static void step_of_claim(const fg_loop_report *report, size_t m, char text[FG_L
                  formula, apart);
     return;
   }
-  if (effect->lone != FG_LOOP_NOT_LONE)
+  if (effect->outlier != FG_LOOP_NOT_OUTLIER)
     look_up_rows(report, claim, text);
   else if (effect->scatter == FG_LOOP_SERIAL)
     count_independent(report, claim, text);

@@ -40,10 +40,10 @@ static size_t tick_count(double low, double high, double step) {
 static void put_level_names(const loop_plot *at, const fg_loop_coordinate *coordinate) {
   enum { ROOM = 62 };
   size_t every = coordinate->levels / (ROOM / 8 + 1) + 1;
-  size_t most = every > 1 ? 8 : ROOM / coordinate->levels;
+  size_t max = every > 1 ? 8 : ROOM / coordinate->levels;
   for (size_t k = 0; k < coordinate->levels; k += every) {
     char name[FG_LOOP_NAME];
-    fg_text_clip(name, most + 1 < sizeof name ? most + 1 : sizeof name, "%s",
+    fg_text_clip(name, max + 1 < sizeof name ? max + 1 : sizeof name, "%s",
                  coordinate->level_name[k]);
     fprintf(at->out, "<text class=\"x\" x=\"%.1f\" y=\"%d\">", at_x(at, (double)k), BOTTOM + 18);
     fg_html_text(at->out, name);
@@ -81,7 +81,7 @@ static void put_axes(const loop_plot *at, const fg_loop_coordinate *coordinate, 
 }
 
 /* At most this many points: more would only blacken the page. */
-enum { POINTS_MOST = 4000 };
+enum { POINTS_MAX = 4000 };
 
 static double clip(const loop_plot *at, double y) {
   return at_y(at, fmin(fmax(y, at->y_low), at->y_high));
@@ -94,10 +94,11 @@ static double place_of(const fg_loop_coordinate *at, size_t row) {
 
 static void put_points(const loop_plot *at, const fg_loop_problem *problem,
                        const fg_loop_panel *panel) {
-  size_t stride = problem->rows / POINTS_MOST + 1;
+  size_t stride = problem->rows / POINTS_MAX + 1;
   for (int held = 0; held < 2; held++)
     for (size_t i = 0; i < problem->rows; i += stride) {
-      if ((problem->aside && problem->aside[i]) != held || !isfinite(panel->at->value[i])) continue;
+      if ((problem->held_out && problem->held_out[i]) != held || !isfinite(panel->at->value[i]))
+        continue;
       fprintf(at->out, "<circle class=\"%s\" cx=\"%.1f\" cy=\"%.1f\" r=\"%.1f\"/>\n",
               held ? "held" : "fit", at_x(at, place_of(panel->at, i)), clip(at, panel->residual[i]),
               problem->rows > 400   ? 1.6
@@ -109,7 +110,7 @@ static void put_points(const loop_plot *at, const fg_loop_problem *problem,
 /* The rows of a series, joined. */
 static void put_joined(const loop_plot *at, const fg_loop_problem *problem,
                        const fg_loop_panel *panel) {
-  if (problem->rows > POINTS_MOST) return;
+  if (problem->rows > POINTS_MAX) return;
   fputs("<path class=\"joined\" d=\"", at->out);
   for (size_t i = 0; i < problem->rows; i++)
     fprintf(at->out, "%s%.1f %.1f", i && problem->series[i] == problem->series[i - 1] ? "L" : "M",
@@ -120,7 +121,7 @@ static void put_joined(const loop_plot *at, const fg_loop_problem *problem,
 static void put_marked(const loop_plot *at, const fg_loop_report *report,
                        const fg_loop_panel *panel) {
   const fg_loop_candidate *marked = panel->marked;
-  size_t count = marked->effect->lone == FG_LOOP_EXCHANGED_ROWS ? 2 : marked->rows;
+  size_t count = marked->effect->outlier == FG_LOOP_EXCHANGED_ROWS ? 2 : marked->rows;
   for (size_t k = 0; k < count; k++) {
     size_t i = marked->row[k], row = report->problem->row[i];
     double x = at_x(at, place_of(panel->at, i)), y = clip(at, panel->residual[i]);

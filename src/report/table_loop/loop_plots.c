@@ -110,15 +110,15 @@ static void open_section(FILE *out, const char *words, const char *id) {
   fputs("</small></h2><div class=\"pair\">\n", out);
 }
 
-static bool any_aside(const fg_loop_problem *problem) {
-  for (size_t i = 0; problem->aside && i < problem->rows; i++)
-    if (problem->aside[i]) return true;
+static bool any_held_out(const fg_loop_problem *problem) {
+  for (size_t i = 0; problem->held_out && i < problem->rows; i++)
+    if (problem->held_out[i]) return true;
   return false;
 }
 
 static void close_section(const fg_loop_report *report, FILE *out) {
   fputs("</div>", out);
-  if (any_aside(&report->problem->problem))
+  if (any_held_out(&report->problem->problem))
     fputs("<p class=\"soft\">Filled: rows that took part. Rings: rows kept aside.</p>", out);
   fputs("</section>\n", out);
 }
@@ -141,18 +141,18 @@ static fg_status put_mean(fg_context *ctx, FILE *out, const fg_loop_report *repo
   size_t rows = problem->rows;
   fg_loop_panel panel = {.residual = work + rows};
   fg_status status = FG_OK;
-  bool lone = !effect->accepts;
-  panel.at = &problem->coordinate[lone ? order_coordinate(problem) : claim->candidate.a];
-  panel.caption = lone ? "Residual of the model without it; the rows that it concerns are marked"
-                       : "What the model lacks, over what is left";
-  panel.marked = lone ? &claim->candidate : NULL;
+  bool outlier = !effect->accepts;
+  panel.at = &problem->coordinate[outlier ? order_coordinate(problem) : claim->candidate.a];
+  panel.caption = outlier ? "Residual of the model without it; the rows that it concerns are marked"
+                          : "What the model lacks, over what is left";
+  panel.marked = outlier ? &claim->candidate : NULL;
   FG_TRY(fg_loop_claim_evaluate(ctx, problem, claim, work));
-  double mean = lone ? 0 : fg_mean(work, rows);
+  double mean = outlier ? 0 : fg_mean(work, rows);
   for (size_t i = 0; i < rows; i++)
     work[rows + i] = left[i] + work[i] - mean;
   if (is_curve(problem, claim))
     FG_TRY_EXIT(draw_curve(ctx, problem, claim, mean, &panel));
-  else if (!lone)
+  else if (!outlier)
     FG_TRY_EXIT(draw_levels(ctx, problem, work, mean, &panel));
   FG_TRY_EXIT(put_pair(ctx, out, report, &panel, left));
 exit:

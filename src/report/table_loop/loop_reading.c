@@ -271,6 +271,6 @@ void fg_loop_claim_reading(const fg_loop_report *report, const fg_loop_claim *cl
 double fg_loop_readable_size(const fg_loop_candidate *candidate, double amplitude) {
   const fg_loop_effect *effect = candidate->effect;
   bool as_is = effect->from_zero || effect->scatter != FG_LOOP_OF_THE_MEAN ||
-               effect->lone == FG_LOOP_WRONG_ROW;
+               effect->outlier == FG_LOOP_WRONG_ROW;
   return as_is ? amplitude : 2 * amplitude;
 }

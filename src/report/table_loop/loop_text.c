@@ -12,7 +12,7 @@
 #include "report/table_loop/loop_words.h"
 #include "report/wrapped.h"
 
-const char *fg_loop_noise_form(const fg_loop_result *result) {
+const char *fg_loop_noise_model(const fg_loop_result *result) {
   bool serial = fg_loop_claims_scatter(result, FG_LOOP_SERIAL);
   bool spread = fg_loop_claims_scatter(result, FG_LOOP_SPREAD);
   return serial && spread ? "correlated along the order, of unequal size"
@@ -179,7 +179,7 @@ static void write_errors(const fg_loop_report *report, FILE *out) {
           fg_loop_number_text("%.5g", result->noise_floor).text);
 }
 
-static void write_battery(const fg_loop_report *report, FILE *out) {
+static void write_residual_tests(const fg_loop_report *report, FILE *out) {
   char words[FG_LOOP_WORDS];
   bool any = false;
   for (size_t k = 0; k < FG_LOOP_CHECKS; k++) {
@@ -275,7 +275,7 @@ fg_status fg_loop_write_text(fg_context *ctx, const fg_loop_report *report, FILE
   for (size_t i = 0; i < result->claims; i++)
     write_claim(report, &result->claim[i], out);
   write_errors(report, out);
-  write_battery(report, out);
+  write_residual_tests(report, out);
   write_rejected(report, out);
   write_notes(report, out);
   return fg_stream_finish(ctx, out, "the loop's report");

@@ -17,15 +17,15 @@ fg_loop_number fg_loop_number_text(const char *format, double value) {
 }
 
 /* Below this a p-value says only that it is no chance. */
-#define P_LEAST 1e-12
+#define P_MIN 1e-12
 
 fg_loop_number fg_loop_p_cell(double p) {
-  if (p < P_LEAST) return fg_loop_number_text("< %.0e", P_LEAST);
+  if (p < P_MIN) return fg_loop_number_text("< %.0e", P_MIN);
   return fg_loop_number_text("%.2g", p);
 }
 
 fg_loop_number fg_loop_p_text(double p) {
-  return fg_loop_number_text(p < P_LEAST ? "p < %.0e" : "p = %.2g", fmax(p, P_LEAST));
+  return fg_loop_number_text(p < P_MIN ? "p < %.0e" : "p = %.2g", fmax(p, P_MIN));
 }
 
 static void append(char *text, const char *words) {
@@ -36,7 +36,7 @@ static void append(char *text, const char *words) {
 /* "row 3", "rows 2, 5 and 54", or what the rows are called. */
 static void list_rows(const fg_loop_report *report, const fg_loop_candidate *candidate,
                       char text[FG_LOOP_WORDS]) {
-  size_t count = candidate->effect->lone == FG_LOOP_EXCHANGED_ROWS ? 2 : candidate->rows;
+  size_t count = candidate->effect->outlier == FG_LOOP_EXCHANGED_ROWS ? 2 : candidate->rows;
   for (size_t k = 0; k < count; k++) {
     size_t row = report->problem->row[candidate->row[k]];
     char number[32];
@@ -53,9 +53,9 @@ void fg_loop_rows_words(const fg_loop_report *report, const fg_loop_candidate *c
   list_rows(report, candidate, text);
 }
 
-static void lone_words(const fg_loop_report *report, const fg_loop_candidate *candidate,
-                       char text[FG_LOOP_WORDS]) {
-  bool exchange = candidate->effect->lone == FG_LOOP_EXCHANGED_ROWS;
+static void outlier_words(const fg_loop_report *report, const fg_loop_candidate *candidate,
+                          char text[FG_LOOP_WORDS]) {
+  bool exchange = candidate->effect->outlier == FG_LOOP_EXCHANGED_ROWS;
   if (!exchange && !candidate->rows) {
     append(text, candidate->effect->words);
     return;
@@ -72,7 +72,7 @@ void fg_loop_candidate_words(const fg_loop_report *report, const fg_loop_candida
   if (candidate->effect->accepts)
     fg_loop_effect_words(&report->problem->problem, candidate, text, FG_LOOP_WORDS);
   else
-    lone_words(report, candidate, text);
+    outlier_words(report, candidate, text);
 }
 
 void fg_loop_alias_words(const fg_loop_report *report, const fg_loop_alias *alias,
@@ -96,12 +96,12 @@ void fg_loop_closeness_words(const fg_loop_alias *alias, char text[FG_LOOP_WORDS
                  alias->loss > 0 ? "less" : "more");
 }
 
-static void lone_statement(const fg_loop_report *report, const fg_loop_candidate *candidate,
-                           char text[FG_LOOP_WORDS]) {
+static void outlier_statement(const fg_loop_report *report, const fg_loop_candidate *candidate,
+                              char text[FG_LOOP_WORDS]) {
   list_rows(report, candidate, text);
-  append(text, candidate->effect->lone == FG_LOOP_EXCHANGED_ROWS ? " changed places"
-               : candidate->rows > 1                             ? " are wrong"
-                                                                 : " is wrong");
+  append(text, candidate->effect->outlier == FG_LOOP_EXCHANGED_ROWS ? " changed places"
+               : candidate->rows > 1                                ? " are wrong"
+                                                                    : " is wrong");
 }
 
 const char *fg_loop_row_words(const fg_loop_coordinate *at) {
@@ -159,7 +159,7 @@ void fg_loop_claim_words(const fg_loop_report *report, const fg_loop_claim *clai
   const fg_loop_coordinate *at = &report->problem->problem.coordinate[claim->candidate.a];
   *text = 0;
   if (!effect->accepts)
-    lone_statement(report, &claim->candidate, text);
+    outlier_statement(report, &claim->candidate, text);
   else if (effect->scatter == FG_LOOP_SERIAL)
     fg_text_clip(text, FG_LOOP_WORDS, "neighbouring %s are alike", fg_loop_row_words(at));
   else if (effect->scatter == FG_LOOP_SPREAD)
@@ -213,7 +213,7 @@ bool fg_loop_has_after(const fg_loop_result *result) {
 static bool left_out_tells(const fg_loop_result *result) {
   bool tells = fg_loop_has_after(result) && !fg_loop_claims_scatter(result, FG_LOOP_SERIAL);
   for (size_t i = 0; i < result->claims; i++)
-    tells = tells && result->claim[i].candidate.effect->lone == FG_LOOP_NOT_LONE;
+    tells = tells && result->claim[i].candidate.effect->outlier == FG_LOOP_NOT_OUTLIER;
   return tells;
 }
 
