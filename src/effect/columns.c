@@ -23,52 +23,53 @@ const fg_effect fg_effect_powers[2] = {
     {.id = "powers.y", .columns = POWERS, .glass = powers_y, .axis = 1},
 };
 
-static size_t midline_columns(const fg_points *points, const fg_effect *effect, double *columns) {
+static size_t midline_columns(const fg_edge_fit *edge_fit, const fg_effect *effect,
+                              double *columns) {
   double values[FG_FIELD_COLUMNS];
   size_t count = 0;
-  for (size_t i = 0; i < points->row_count; i++) {
-    count = effect->midline(points, &points->rows[i], values);
+  for (size_t i = 0; i < edge_fit->row_count; i++) {
+    count = effect->midline(edge_fit, &edge_fit->rows[i], values);
     for (size_t c = 0; c < count; c++)
-      columns[c * points->row_count + i] = values[c];
+      columns[c * edge_fit->row_count + i] = values[c];
   }
   return count;
 }
 
 /* The true position is d beyond the nominal one: along the normal the nominal lacks d. */
-size_t fg_effect_columns(const fg_points *points, const fg_effect *effect, const double *shape,
+size_t fg_effect_columns(const fg_edge_fit *edge_fit, const fg_effect *effect, const double *shape,
                          double *columns) {
   if (effect->width) return 0;
-  if (effect->midline) return midline_columns(points, effect, columns);
-  fg_point at[FG_POINTS_PLACES], d[FG_FIELD_COLUMNS];
-  size_t count = effect->columns, rows = points->row_count;
+  if (effect->midline) return midline_columns(edge_fit, effect, columns);
+  fg_point at[FG_EDGE_FIT_PLACES], d[FG_FIELD_COLUMNS];
+  size_t count = effect->columns, rows = edge_fit->row_count;
   for (size_t i = 0; i < rows; i++) {
-    const fg_points_row *row = &points->rows[i];
-    fg_points_places(row, row->ideal, at);
-    for (int k = 0; k < FG_POINTS_PLACES; k++) {
-      effect->glass(&points->frame, shape, at[k], d);
+    const fg_edge_fit_row *row = &edge_fit->rows[i];
+    fg_edge_fit_places(row, row->ideal, at);
+    for (int k = 0; k < FG_EDGE_FIT_PLACES; k++) {
+      effect->glass(&edge_fit->frame, shape, at[k], d);
       for (size_t c = 0; c < count; c++)
         columns[c * rows + i] =
             (k ? columns[c * rows + i] : 0) -
-            (d[c].x * row->normal.x + d[c].y * row->normal.y) / FG_POINTS_PLACES;
+            (d[c].x * row->normal.x + d[c].y * row->normal.y) / FG_EDGE_FIT_PLACES;
     }
   }
   return count;
 }
 
-size_t fg_effect_width_columns(const fg_points *points, const fg_effect *effect,
+size_t fg_effect_width_columns(const fg_edge_fit *edge_fit, const fg_effect *effect,
                                const double *shape, double *columns) {
   fg_point d[2][FG_FIELD_COLUMNS];
-  size_t count = effect->columns, rows = points->row_count;
+  size_t count = effect->columns, rows = edge_fit->row_count;
   for (size_t i = 0; effect->width && i < rows; i++)
-    columns[i] = effect->width(points, &points->rows[i]);
+    columns[i] = effect->width(edge_fit, &edge_fit->rows[i]);
   if (!effect->glass) return effect->width ? 1 : 0;
   for (size_t i = 0; i < rows; i++) {
-    const fg_points_row *row = &points->rows[i];
+    const fg_edge_fit_row *row = &edge_fit->rows[i];
     fg_point n = row->normal;
     for (int side = 0; side < 2; side++) {
       double w = side ? -row->half_width_mm : row->half_width_mm;
       fg_point at = {row->ideal.x + w * n.x, row->ideal.y + w * n.y};
-      effect->glass(&points->frame, shape, at, d[side]);
+      effect->glass(&edge_fit->frame, shape, at, d[side]);
     }
     for (size_t c = 0; c < count; c++)
       columns[c * rows + i] =

@@ -60,10 +60,10 @@ static void y_over_y(const fg_field_frame *frame, const double *shape, fg_point 
     d[i] = (fg_point){0, values[i]};
 }
 
-static size_t phi(const fg_points *points, const fg_points_row *row, double *values) {
+static size_t phi(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row, double *values) {
   size_t count = fg_midline_legendre(row, 3, 1, 16, values);
-  count += fg_midline_stretch(points, row, 3, values + count);
-  return count + fg_midline_stretch(points, row, 4, values + count);
+  count += fg_midline_stretch(edge_fit, row, 3, values + count);
+  return count + fg_midline_stretch(edge_fit, row, 4, values + count);
 }
 
 /* ---- over the number of the bump ---- */
@@ -71,11 +71,11 @@ static size_t phi(const fg_points *points, const fg_points_row *row, double *val
 enum { HALF = FG_FIELD_COLUMNS / 2 };
 
 /* Numbers of the first and the last bump of any part, whose bumps are in order. */
-static void find_numbers(const fg_points *points, int *first, int *last) {
+static void find_numbers(const fg_edge_fit *edge_fit, int *first, int *last) {
   *first = INT_MAX;
   *last = INT_MIN;
-  for (size_t p = 0; p < points->part_count; p++) {
-    const fg_points_part *part = &points->parts[p];
+  for (size_t p = 0; p < edge_fit->part_count; p++) {
+    const fg_edge_fit_part *part = &edge_fit->parts[p];
     if (!part->bump_count) continue;
     int ends[2] = {part->bumps[0].number, part->bumps[part->bump_count - 1].number};
     for (int e = 0; e < 2; e++) {
@@ -102,12 +102,13 @@ static double pattern(int column, int k, int count) {
 /* What belongs to single bumps beyond their circles: of few bumps the P4 (raised at the middle) and
  * the P3 (leaning) of each; up to as many as there are columns the P4 of each; of more, patterns of
  * it. The first half of the columns is what all effects at once have. */
-static size_t single_bumps(const fg_points *points, const fg_points_row *row, double *values) {
+static size_t single_bumps(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row,
+                           double *values) {
   int first, last;
   for (int c = 0; c < FG_FIELD_COLUMNS; c++)
     values[c] = 0;
   if (!row->bump) return FG_FIELD_COLUMNS;
-  find_numbers(points, &first, &last);
+  find_numbers(edge_fit, &first, &last);
   double legendre[2];
   fg_midline_legendre(row, 3, 1, 2, legendre);
   int k = row->bump - first, count = last - first + 1;
@@ -124,27 +125,28 @@ static size_t single_bumps(const fg_points *points, const fg_points_row *row, do
 }
 
 /* Over the foil. */
-static size_t free_s(const fg_points *points, const fg_points_row *row, double share,
+static size_t free_s(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row, double share,
                      double *values) {
-  fg_field_splines(points->psi_rad[0], points->psi_rad[1], points->frame.knots, row->psi, values);
+  fg_field_splines(edge_fit->psi_rad[0], edge_fit->psi_rad[1], edge_fit->frame.knots, row->psi,
+                   values);
   for (int i = 0; i < FG_FIELD_COLUMNS; i++)
     values[i] *= share;
   return FG_FIELD_COLUMNS;
 }
 
-static size_t foil(const fg_points *points, const fg_points_row *row, double *values) {
-  return free_s(points, row, fg_midline_along_normal(row), values);
+static size_t foil(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row, double *values) {
+  return free_s(edge_fit, row, fg_midline_along_normal(row), values);
 }
 
-static size_t foil_radial(const fg_points *points, const fg_points_row *row, double *values) {
-  return free_s(points, row, fg_midline_along_radius(row), values);
+static size_t foil_radial(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row, double *values) {
+  return free_s(edge_fit, row, fg_midline_along_radius(row), values);
 }
 
 /* Over the direction of the edge in the scan: what the edge model does not know. */
-static size_t normal(const fg_points *points, const fg_points_row *row, double *values) {
+static size_t normal(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row, double *values) {
   enum { HARMONICS = 8, OF_DISCS = 6 }; /* a disc has a form of its own */
   for (int i = 0; i < HARMONICS; i++) {
-    bool used = i < OF_DISCS || !points->discs;
+    bool used = i < OF_DISCS || !edge_fit->discs;
     values[2 * i] = used ? cos((i + 2) * row->normal_rad) : 0;
     values[2 * i + 1] = used ? sin((i + 2) * row->normal_rad) : 0;
   }

@@ -78,10 +78,11 @@ typedef enum fg_effect_on_discs {
 } fg_effect_on_discs;
 
 /* A midline's deviation of every column at one row, along the row's normal; returns how many. */
-typedef size_t fg_effect_midline(const fg_points *points, const fg_points_row *row, double *values);
+typedef size_t fg_effect_midline(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row,
+                                 double *values);
 
 /* Half the width's change at one row, um per um of amplitude. */
-typedef double fg_effect_width(const fg_points *points, const fg_points_row *row);
+typedef double fg_effect_width(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row);
 
 /* Start i of `count` of the search for a shape. */
 typedef double fg_effect_start(const fg_field_frame *frame, size_t i, size_t count);
@@ -118,7 +119,7 @@ typedef struct fg_effect {
 
   fg_effect_coarse coarse;
   size_t rough[2];
-  double hold; /* weight of a curve's coefficients beside rows that weigh FG_POINTS_BLOCK each: of
+  double hold; /* weight of a curve's coefficients beside rows that weigh FG_EDGE_FIT_BLOCK each: of
                   all curves that leave the same residual the smallest one is meant */
   bool bends;  /* bumps are no circles with it */
   bool of_carriage; /* an error of the carriage along its way, the same for all x: the lines of a
@@ -155,6 +156,6 @@ const char *fg_effect_coordinate_title(fg_effect_coordinate coordinate);
 
 /* Whether an effect can be sought in these points' residuals: not every one leaves a trace in a
  * disc, nor is every trace another one than the disc's own form. */
-bool fg_effect_shows(const fg_points *points, const fg_effect *effect);
+bool fg_effect_shows(const fg_edge_fit *edge_fit, const fg_effect *effect);
 
 #endif

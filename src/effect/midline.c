@@ -1,15 +1,15 @@
 #include "effect/midline.h"
 
-double fg_midline_along_radius(const fg_points_row *row) {
+double fg_midline_along_radius(const fg_edge_fit_row *row) {
   return row->radial.x * row->normal.x + row->radial.y * row->normal.y;
 }
 
 /* The rows' normals point out of their own arc: on a bump towards the shaft. */
-double fg_midline_along_normal(const fg_points_row *row) {
+double fg_midline_along_normal(const fg_edge_fit_row *row) {
   return fg_midline_along_radius(row) < 0 ? -1 : 1;
 }
 
-size_t fg_midline_legendre(const fg_points_row *row, int first, int step, int count,
+size_t fg_midline_legendre(const fg_edge_fit_row *row, int first, int step, int count,
                            double *values) {
   double before = 1, at = row->phi;
   for (int n = 1, k = 0; k < count; n++) {
@@ -21,9 +21,9 @@ size_t fg_midline_legendre(const fg_points_row *row, int first, int step, int co
   return (size_t)count;
 }
 
-size_t fg_midline_stretch(const fg_points *points, const fg_points_row *row, int first,
+size_t fg_midline_stretch(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row, int first,
                           double *values) {
-  const fg_points_part *part = &points->parts[row->part];
+  const fg_edge_fit_part *part = &edge_fit->parts[row->part];
   double u = row->phi, u2 = u * u, share = 0;
   if (row->bump) share = part->bumps[row->bump_index].radius_mm / part->mean_radius_mm - 1;
   values[0] = share * (first == 3 ? u * (15 * u2 - 3) / 2 : u2 * (35 * u2 - 15) / 2);

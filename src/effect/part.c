@@ -5,54 +5,56 @@
 #include "effect/rows_of_effects.h"
 
 /* a cos 2(psi - psi0): a cosine and a sine. */
-static size_t cosines(const fg_points_row *row, double share, double *values) {
+static size_t cosines(const fg_edge_fit_row *row, double share, double *values) {
   values[0] = cos(2 * row->psi) * share;
   values[1] = sin(2 * row->psi) * share;
   return 2;
 }
 
-static size_t ovality(const fg_points *points, const fg_points_row *row, double *values) {
-  (void)points;
+static size_t ovality(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row, double *values) {
+  (void)edge_fit;
   return cosines(row, fg_midline_along_normal(row), values);
 }
 
-static size_t ovality_radial(const fg_points *points, const fg_points_row *row, double *values) {
-  (void)points;
+static size_t ovality_radial(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row,
+                             double *values) {
+  (void)edge_fit;
   return cosines(row, fg_midline_along_radius(row), values);
 }
 
-static double cubic_of_psi(const fg_points *points, const fg_points_row *row) {
-  double u = row->psi / points->parts[row->part].half_span_rad;
+static double cubic_of_psi(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row) {
+  double u = row->psi / edge_fit->parts[row->part].half_span_rad;
   return u * u * u;
 }
 
-static size_t spiral(const fg_points *points, const fg_points_row *row, double *values) {
-  values[0] = cubic_of_psi(points, row) * fg_midline_along_normal(row);
+static size_t spiral(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row, double *values) {
+  values[0] = cubic_of_psi(edge_fit, row) * fg_midline_along_normal(row);
   return 1;
 }
 
-static size_t spiral_radial(const fg_points *points, const fg_points_row *row, double *values) {
-  values[0] = cubic_of_psi(points, row) * fg_midline_along_radius(row);
+static size_t spiral_radial(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row,
+                            double *values) {
+  values[0] = cubic_of_psi(edge_fit, row) * fg_midline_along_radius(row);
   return 1;
 }
 
 /* Half of it to either edge; from one end of the foil to the other. */
-static double thickness_taper(const fg_points *points, const fg_points_row *row) {
-  double span = points->parts[row->part].end_to_end_rad;
+static double thickness_taper(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row) {
+  double span = edge_fit->parts[row->part].end_to_end_rad;
   return span > 0 ? 0.5 * row->psi / span : 0;
 }
 
 /* A deviation takes the arc's centre with it, and so the zero of the angle: an even one shows as
  * its slope too, of which P3 is what a circle leaves, and an odd one as P4. */
-static size_t crown(const fg_points *points, const fg_points_row *row, double *values) {
+static size_t crown(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row, double *values) {
   size_t count = fg_midline_legendre(row, 4, 2, 4, values);
-  count += fg_midline_stretch(points, row, 4, values + count);
+  count += fg_midline_stretch(edge_fit, row, 4, values + count);
   return count + fg_midline_legendre(row, 3, 1, 1, values + count);
 }
 
-static size_t skew(const fg_points *points, const fg_points_row *row, double *values) {
+static size_t skew(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row, double *values) {
   size_t count = fg_midline_legendre(row, 3, 2, 4, values);
-  count += fg_midline_stretch(points, row, 3, values + count);
+  count += fg_midline_stretch(edge_fit, row, 3, values + count);
   return count + fg_midline_legendre(row, 4, 1, 1, values + count);
 }
 

@@ -19,18 +19,18 @@ fg_field fg_effect_found_field(const fg_effect_found *effect) {
   return field;
 }
 
-void fg_effect_set_fields(const fg_points *points, const fg_effect_set *set,
+void fg_effect_set_fields(const fg_edge_fit *edge_fit, const fg_effect_set *set,
                           fg_field_list *fields) {
   memset(fields, 0, sizeof *fields);
-  fields->frame = points->frame;
+  fields->frame = edge_fit->frame;
   for (size_t e = 0; e < set->count && fields->count < FG_FIELDS_MAX; e++)
     if (set->effects[e].kind->glass)
       fields->fields[fields->count++] = fg_effect_found_field(&set->effects[e]);
 }
 
-fg_status fg_effect_set_shift(fg_context *ctx, const fg_points *points, const fg_effect_set *set,
-                              double **shift_mm) {
-  size_t rows = points->row_count;
+fg_status fg_effect_set_shift(fg_context *ctx, const fg_edge_fit *edge_fit,
+                              const fg_effect_set *set, double **shift_mm) {
+  size_t rows = edge_fit->row_count;
   double *columns = NULL;
   *shift_mm = NULL;
   FG_TRY(fg_memory_allocate(ctx, rows, sizeof **shift_mm, (void **)shift_mm));
@@ -39,7 +39,7 @@ fg_status fg_effect_set_shift(fg_context *ctx, const fg_points *points, const fg
   for (size_t e = 0; e < set->count && status == FG_OK; e++) {
     const fg_effect_found *effect = &set->effects[e];
     if (effect->kind->glass) continue;
-    size_t count = fg_effect_columns(points, effect->kind, effect->shape, columns);
+    size_t count = fg_effect_columns(edge_fit, effect->kind, effect->shape, columns);
     for (size_t c = 0; c < count; c++)
       for (size_t i = 0; i < rows; i++)
         (*shift_mm)[i] += effect->coefficient_um[c] / 1000 * columns[c * rows + i];

@@ -24,9 +24,10 @@ typedef struct fg_effect_set {
 /* An effect of the scanner as a field; the set's fields, and the shift of every row by part effects
  * (mm). */
 fg_field fg_effect_found_field(const fg_effect_found *effect);
-void fg_effect_set_fields(const fg_points *points, const fg_effect_set *set, fg_field_list *fields);
-fg_status fg_effect_set_shift(fg_context *ctx, const fg_points *points, const fg_effect_set *set,
-                              double **shift_mm);
+void fg_effect_set_fields(const fg_edge_fit *edge_fit, const fg_effect_set *set,
+                          fg_field_list *fields);
+fg_status fg_effect_set_shift(fg_context *ctx, const fg_edge_fit *edge_fit,
+                              const fg_effect_set *set, double **shift_mm);
 
 /* Size, um: of its sine and cosine, of what leads it, of all columns; its standard uncertainty. */
 double fg_effect_found_amplitude(const fg_effect_found *effect);

@@ -17,29 +17,30 @@ typedef struct sums {
   double xx, xl, ll, xr, lr, rr, count;
 } sums;
 
-static double weight_at(const fg_points *points, size_t i) {
-  const fg_points_row *row = &points->rows[i];
-  return points->views[row->view].held_out ? 0 : row->weight / FG_POINTS_BLOCK;
+static double weight_at(const fg_edge_fit *edge_fit, size_t i) {
+  const fg_edge_fit_row *row = &edge_fit->rows[i];
+  return edge_fit->views[row->view].held_out ? 0 : row->weight / FG_EDGE_FIT_BLOCK;
 }
 
-static const fg_disc *disc_at(const fg_points *points, size_t i) {
-  return points->views[points->rows[i].view].disc;
+static const fg_disc *disc_at(const fg_edge_fit *edge_fit, size_t i) {
+  return edge_fit->views[edge_fit->rows[i].view].disc;
 }
 
 /* Rows of a view are neighbours; each gauge counts by the mean of its rows. */
-static sums sum_up(const fg_points *points, const double *scale, const double *residual_um) {
+static sums sum_up(const fg_edge_fit *edge_fit, const double *scale, const double *residual_um) {
   sums sum = {0};
-  for (size_t first = 0, last; first < points->row_count; first = last) {
+  for (size_t first = 0, last; first < edge_fit->row_count; first = last) {
     double weight = 0, x = 0, r = 0;
     for (last = first;
-         last < points->row_count && points->rows[last].view == points->rows[first].view; last++) {
-      double w = weight_at(points, last);
+         last < edge_fit->row_count && edge_fit->rows[last].view == edge_fit->rows[first].view;
+         last++) {
+      double w = weight_at(edge_fit, last);
       weight += w;
       x += w * scale[last];
       r += w * residual_um[last];
     }
-    if (!(weight > 0) || !points->parts[points->rows[first].part].radius_known) continue;
-    double l = disc_at(points, first)->bright ? 1 : -1;
+    if (!(weight > 0) || !edge_fit->parts[edge_fit->rows[first].part].radius_known) continue;
+    double l = disc_at(edge_fit, first)->bright ? 1 : -1;
     x /= weight;
     r /= weight;
     sum.xx += weight * x * x;
@@ -53,18 +54,18 @@ static sums sum_up(const fg_points *points, const double *scale, const double *r
   return sum;
 }
 
-static double stated_u_um(const fg_points *points) {
+static double stated_u_um(const fg_edge_fit *edge_fit) {
   double uncertainty = 0;
-  for (size_t i = 0; i < points->row_count; i++)
-    if (points->parts[points->rows[i].part].radius_known)
-      uncertainty = fmax(uncertainty, 1000 * disc_at(points, i)->level_u_mm);
+  for (size_t i = 0; i < edge_fit->row_count; i++)
+    if (edge_fit->parts[edge_fit->rows[i].part].radius_known)
+      uncertainty = fmax(uncertainty, 1000 * disc_at(edge_fit, i)->level_u_mm);
   return uncertainty;
 }
 
-double fg_common_level_left(const fg_points *points, const double *scale,
+double fg_common_level_left(const fg_edge_fit *edge_fit, const double *scale,
                             const double *residual_um) {
-  double stated = stated_u_um(points);
-  sums s = sum_up(points, scale, residual_um);
+  double stated = stated_u_um(edge_fit);
+  sums s = sum_up(edge_fit, scale, residual_um);
   double determinant = s.xx * s.ll - s.xl * s.xl;
   if (s.count < GAUGES_MIN || !(determinant > 1e-9 * s.xx * s.ll)) return stated;
   double level = (s.xx * s.lr - s.xl * s.xr) / determinant;

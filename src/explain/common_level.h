@@ -1,6 +1,6 @@
 /* The level of all edges of a plate beside its scale. */
-#ifndef FG_EXPLAIN_COMMON_LEVEL_H
-#define FG_EXPLAIN_COMMON_LEVEL_H
+#ifndef FG_SEARCH_COMMON_LEVEL_H
+#define FG_SEARCH_COMMON_LEVEL_H
 
 #include "rows/points.h"
 
@@ -8,7 +8,7 @@
  * doubt that each scan states, or less, where gauges of known and of several sizes tell the level
  * from a scale. `scale` is the column of the scale at the rows, `residual_um` what it is fitted to.
  */
-double fg_common_level_left(const fg_points *points, const double *scale,
+double fg_common_level_left(const fg_edge_fit *edge_fit, const double *scale,
                             const double *residual_um);
 
 #endif

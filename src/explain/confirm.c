@@ -46,7 +46,7 @@ enum { ROUNDNESS_HARMONICS = 5 };
 #define SCATTER_MIN 1e-300
 
 typedef struct confirmation {
-  const fg_points *points;
+  const fg_edge_fit *edge_fit;
   const fg_effect_found *effect;
   double *residual; /* rows: with the effect put back, beside each disc's circle */
   double *columns;  /* effect->columns × rows, likewise */
@@ -54,9 +54,9 @@ typedef struct confirmation {
   size_t group_count, columns_used, index[FG_EFFECT_COLUMNS_MAX];
 } confirmation;
 
-static double weight_at(const fg_points *points, size_t i) {
-  const fg_points_row *row = &points->rows[i];
-  return points->views[row->view].held_out ? 0 : row->weight / FG_POINTS_BLOCK;
+static double weight_at(const fg_edge_fit *edge_fit, size_t i) {
+  const fg_edge_fit_row *row = &edge_fit->rows[i];
+  return edge_fit->views[row->view].held_out ? 0 : row->weight / FG_EDGE_FIT_BLOCK;
 }
 
 /* Nuisance terms of each disc: harmonics up to this, and its radius unless it is known and
@@ -68,58 +68,58 @@ typedef struct roundness {
 } roundness;
 
 /* Harmonics 1 to the last at a row, then 1 unless the radius counts; returns how many. */
-static size_t roundness_basis(const fg_points *points, size_t i, roundness of, double *basis) {
-  const fg_points_row *row = &points->rows[i];
+static size_t roundness_basis(const fg_edge_fit *edge_fit, size_t i, roundness of, double *basis) {
+  const fg_edge_fit_row *row = &edge_fit->rows[i];
   size_t n = 0;
   for (size_t k = 1; k <= of.harmonics; k++) {
     basis[n++] = cos((double)k * row->normal_rad);
     basis[n++] = sin((double)k * row->normal_rad);
   }
-  if (!of.radius_counts || !points->parts[row->part].radius_known) basis[n++] = 1;
+  if (!of.radius_counts || !edge_fit->parts[row->part].radius_known) basis[n++] = 1;
   return n;
 }
 
 /* Takes a disc's circle, or its form up to a harmonic, out of values at its rows [first, last). */
-static void remove_roundness_error(const fg_points *points, size_t first, size_t last, roundness of,
-                                   double *values) {
+static void remove_roundness_error(const fg_edge_fit *edge_fit, size_t first, size_t last,
+                                   roundness of, double *values) {
   fg_normal_equations system;
   double x[FG_SMALL_MAX] = {0}, basis[FG_SMALL_MAX];
-  size_t unknowns = roundness_basis(points, first, of, basis);
+  size_t unknowns = roundness_basis(edge_fit, first, of, basis);
   fg_normal_clear(&system, unknowns);
   for (size_t i = first; i < last; i++) {
-    roundness_basis(points, i, of, basis);
-    fg_normal_add(&system, basis, values[i], weight_at(points, i));
+    roundness_basis(edge_fit, i, of, basis);
+    fg_normal_add(&system, basis, values[i], weight_at(edge_fit, i));
   }
   if (!fg_normal_solve(&system, ROUNDNESS_SINGULAR, x, NULL)) return;
   for (size_t i = first; i < last; i++) {
-    roundness_basis(points, i, of, basis);
+    roundness_basis(edge_fit, i, of, basis);
     for (size_t k = 0; k < unknowns; k++)
       values[i] -= x[k] * basis[k];
   }
 }
 
-static void remove_roundness_errors(const fg_points *points, roundness of, double *values) {
-  for (size_t first = 0; first < points->row_count;) {
+static void remove_roundness_errors(const fg_edge_fit *edge_fit, roundness of, double *values) {
+  for (size_t first = 0; first < edge_fit->row_count;) {
     size_t last = first;
-    while (last < points->row_count && points->rows[last].view == points->rows[first].view)
+    while (last < edge_fit->row_count && edge_fit->rows[last].view == edge_fit->rows[first].view)
       last++;
-    remove_roundness_error(points, first, last, of, values);
+    remove_roundness_error(edge_fit, first, last, of, values);
     first = last;
   }
 }
 
 /* Normal equations of the effect in each group. */
 static void fill_groups(confirmation *c, bool sides) {
-  size_t rows = c->points->row_count;
+  size_t rows = c->edge_fit->row_count;
   double row[FG_SMALL_MAX];
   for (size_t g = 0; g < c->group_count; g++)
     fg_normal_clear(&c->groups[g], c->columns_used);
   for (size_t i = 0; i < rows; i++) {
-    const fg_points_row *at = &c->points->rows[i];
+    const fg_edge_fit_row *at = &c->edge_fit->rows[i];
     size_t g = sides ? 2 * at->view + (at->normal.x > 0) : at->view;
     for (size_t k = 0; k < c->columns_used; k++)
       row[k] = c->columns[c->index[k] * rows + i];
-    fg_normal_add(&c->groups[g], row, c->residual[i], weight_at(c->points, i));
+    fg_normal_add(&c->groups[g], row, c->residual[i], weight_at(c->edge_fit, i));
   }
 }
 
@@ -192,7 +192,7 @@ static double scatter_p(const confirmation *c, const double *x, double groups) {
 /* Whole normal equations and their solution; false when there is nothing to solve. */
 static bool solve_whole(confirmation *c, bool sides, fg_normal_equations *whole, double *x,
                         double inverse[FG_SMALL_MAX][FG_SMALL_MAX]) {
-  c->group_count = (sides ? 2 : 1) * c->points->view_count;
+  c->group_count = (sides ? 2 : 1) * c->edge_fit->view_count;
   fill_groups(c, sides);
   fg_normal_clear(whole, c->columns_used);
   for (size_t g = 0; g < c->group_count; g++)
@@ -215,15 +215,15 @@ static double judge_discs(confirmation *c, double needed_p, double needed_errors
  * the effect out of the residual. */
 static double rest_variance(const confirmation *c, const double *x) {
   double square = 0, count = 0;
-  size_t rows = c->points->row_count;
+  size_t rows = c->edge_fit->row_count;
   for (size_t i = 0; i < rows; i++) {
     for (size_t k = 0; k < c->columns_used; k++)
       c->residual[i] -= x[k] * c->columns[c->index[k] * rows + i];
-    c->residual[i] *= sqrt(weight_at(c->points, i));
+    c->residual[i] *= sqrt(weight_at(c->edge_fit, i));
     square += c->residual[i] * c->residual[i];
     count += c->residual[i] != 0;
   }
-  return count > 0 ? square / count * fg_points_integral(c->points, NULL, rows, c->residual)
+  return count > 0 ? square / count * fg_edge_fit_integral(c->edge_fit, NULL, rows, c->residual)
                    : INFINITY;
 }
 
@@ -234,7 +234,7 @@ static double judge_sides(confirmation *c) {
   if (!solve_whole(c, true, &whole, x, NULL)) return -INFINITY;
   if (effective_groups(c, x) < GROUPS_MIN) return -INFINITY;
   double gain = validated_gain(c, &whole) - LISTED_ERRORS;
-  return quadratic(&whole, x) < fg_explain_policy_of(c->points)->placed_chi2 * rest_variance(c, x)
+  return quadratic(&whole, x) < fg_search_policy_of(c->edge_fit)->placed_chi2 * rest_variance(c, x)
              ? -INFINITY
              : gain;
 }
@@ -273,13 +273,13 @@ static void widen_by_scatter(confirmation *c, fg_effect_found *effect) {
  * scale follows that as far as the discs are alike. */
 static void widen_by_level(const confirmation *c, fg_effect_found *effect) {
   double along = 0, square = 0;
-  for (size_t i = 0; i < c->points->row_count; i++) {
-    const fg_points_row *row = &c->points->rows[i];
-    if (!c->points->parts[row->part].radius_known) continue;
-    along += weight_at(c->points, i) * c->columns[i];
-    square += weight_at(c->points, i) * c->columns[i] * c->columns[i];
+  for (size_t i = 0; i < c->edge_fit->row_count; i++) {
+    const fg_edge_fit_row *row = &c->edge_fit->rows[i];
+    if (!c->edge_fit->parts[row->part].radius_known) continue;
+    along += weight_at(c->edge_fit, i) * c->columns[i];
+    square += weight_at(c->edge_fit, i) * c->columns[i] * c->columns[i];
   }
-  double uncertainty = fg_common_level_left(c->points, c->columns, c->residual);
+  double uncertainty = fg_common_level_left(c->edge_fit, c->columns, c->residual);
   if (square > 0)
     effect->u_coefficient_um[0] = hypot(effect->u_coefficient_um[0], uncertainty * along / square);
 }
@@ -287,20 +287,20 @@ static void widen_by_level(const confirmation *c, fg_effect_found *effect) {
 static void prepare(confirmation *c, const double *residual_um, size_t harmonics) {
   const fg_effect_found *effect = c->effect;
   const roundness of = {harmonics, effect->kind->scales};
-  size_t rows = c->points->row_count;
-  fg_effect_columns(c->points, effect->kind, effect->shape, c->columns);
+  size_t rows = c->edge_fit->row_count;
+  fg_effect_columns(c->edge_fit, effect->kind, effect->shape, c->columns);
   memcpy(c->residual, residual_um, rows * sizeof *c->residual);
   c->columns_used = 0;
   for (size_t k = 0; k < effect->columns; k++) {
     double *column = c->columns + k * rows, square = 0;
     for (size_t i = 0; i < rows; i++)
       c->residual[i] += effect->coefficient_um[k] * column[i];
-    remove_roundness_errors(c->points, of, column);
+    remove_roundness_errors(c->edge_fit, of, column);
     for (size_t i = 0; i < rows; i++)
-      square += weight_at(c->points, i) * column[i] * column[i];
+      square += weight_at(c->edge_fit, i) * column[i] * column[i];
     if (square > NOTHING_UM2) c->index[c->columns_used++] = k;
   }
-  remove_roundness_errors(c->points, of, c->residual);
+  remove_roundness_errors(c->edge_fit, of, c->residual);
 }
 
 /* Amplitude in its standard uncertainties. */
@@ -332,16 +332,16 @@ static double judge(confirmation *c, fg_effect_found *effect, const double *resi
   return confirmed;
 }
 
-fg_status fg_explain_confirm(fg_context *ctx, const fg_points *points, fg_effect_found *effect,
-                             const double *residual_um, double *confirmed) {
-  confirmation c = {.points = points, .effect = effect};
+fg_status fg_search_confirm(fg_context *ctx, const fg_edge_fit *edge_fit, fg_effect_found *effect,
+                            const double *residual_um, double *confirmed) {
+  confirmation c = {.edge_fit = edge_fit, .effect = effect};
   fg_status status = FG_OK;
-  size_t rows = points->row_count;
+  size_t rows = edge_fit->row_count;
   FG_TRY_EXIT(fg_memory_allocate(ctx, rows, sizeof *c.residual, (void **)&c.residual));
   FG_TRY_EXIT(fg_memory_allocate(ctx, rows, FG_EFFECT_COLUMNS_MAX * sizeof *c.columns,
                                  (void **)&c.columns));
   FG_TRY_EXIT(
-      fg_memory_allocate(ctx, points->view_count, 2 * sizeof *c.groups, (void **)&c.groups));
+      fg_memory_allocate(ctx, edge_fit->view_count, 2 * sizeof *c.groups, (void **)&c.groups));
   *confirmed = judge(&c, effect, residual_um);
 exit:
   free(c.residual);

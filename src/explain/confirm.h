@@ -1,12 +1,12 @@
 /* Confirmation of an effect from disc to disc. */
-#ifndef FG_EXPLAIN_CONFIRM_H
-#define FG_EXPLAIN_CONFIRM_H
+#ifndef FG_SEARCH_CONFIRM_H
+#define FG_SEARCH_CONFIRM_H
 
 #include "effect/set.h"
 
 /* Says in `confirmed` (above 0: it is) how well discs confirm an effect of the set that left these
  * residuals, and gives its numbers the uncertainty that discs show. */
-fg_status fg_explain_confirm(fg_context *ctx, const fg_points *points, fg_effect_found *effect,
-                             const double *residual_um, double *confirmed);
+fg_status fg_search_confirm(fg_context *ctx, const fg_edge_fit *edge_fit, fg_effect_found *effect,
+                            const double *residual_um, double *confirmed);
 
 #endif

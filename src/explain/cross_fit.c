@@ -16,9 +16,9 @@ enum { FOLDS_MAX = 5, FOLDS_MIN = 2 };
 #define STRETCH_MM 0.6
 
 typedef struct cross_fit {
-  const fg_points *points;
+  const fg_edge_fit *edge_fit;
   const fg_effect_set *set;
-  const fg_explain_bars *barred;
+  const fg_search_bars *barred;
   fg_cross_fit_unit unit;
   size_t folds;
   size_t *fold;               /* per row */
@@ -39,36 +39,36 @@ static bool lives_at_places(const fg_effect_set *set) {
   return false;
 }
 
-static fg_cross_fit_unit unit_of(const fg_points *points, const fg_effect_set *set) {
+static fg_cross_fit_unit unit_of(const fg_edge_fit *edge_fit, const fg_effect_set *set) {
   if (lives_at_places(set)) return FG_CROSS_FIT_STRETCHES;
-  return points->discs ? FG_CROSS_FIT_DISCS : FG_CROSS_FIT_BUMPS;
+  return edge_fit->discs ? FG_CROSS_FIT_DISCS : FG_CROSS_FIT_BUMPS;
 }
 
 /* Bumps have turns of their own, and so have lands: every fold has both. */
 static fg_status deal(fg_context *ctx, cross_fit *c) {
-  const fg_points *points = c->points;
+  const fg_edge_fit *edge_fit = c->edge_fit;
   size_t bumps = 0, others = 0, own = 0;
-  c->unit = unit_of(points, c->set);
-  FG_TRY(fg_memory_allocate(ctx, points->row_count, sizeof *c->fold, (void **)&c->fold));
-  for (size_t i = 0; i < points->row_count; i++) {
-    const fg_points_row *row = &points->rows[i];
-    if (!i || row->group != points->rows[i - 1].group) own = row->bump ? bumps++ : others++;
+  c->unit = unit_of(edge_fit, c->set);
+  FG_TRY(fg_memory_allocate(ctx, edge_fit->row_count, sizeof *c->fold, (void **)&c->fold));
+  for (size_t i = 0; i < edge_fit->row_count; i++) {
+    const fg_edge_fit_row *row = &edge_fit->rows[i];
+    if (!i || row->group != edge_fit->rows[i - 1].group) own = row->bump ? bumps++ : others++;
     c->fold[i] = c->unit == FG_CROSS_FIT_STRETCHES ? (size_t)fmax(0, row->s_mm / STRETCH_MM) : own;
   }
   size_t units = c->unit == FG_CROSS_FIT_DISCS ? others : bumps;
   c->folds = units < FOLDS_MAX && c->unit != FG_CROSS_FIT_STRETCHES ? units : FOLDS_MAX;
-  for (size_t i = 0; i < points->row_count && c->folds; i++)
+  for (size_t i = 0; i < edge_fit->row_count && c->folds; i++)
     c->fold[i] %= c->folds;
   return FG_OK;
 }
 
 /* What a set leaves of all rows. */
-static fg_status leave(fg_context *ctx, const fg_points *points, const fg_effect_set *set,
+static fg_status leave(fg_context *ctx, const fg_edge_fit *edge_fit, const fg_effect_set *set,
                        double *residual_um) {
-  fg_points all;
-  FG_TRY(fg_points_subset(ctx, points, NULL, &all));
+  fg_edge_fit all;
+  FG_TRY(fg_edge_fit_subset(ctx, edge_fit, NULL, &all));
   fg_status status = fg_joint_fit_geometry(ctx, &all, set, residual_um);
-  fg_points_free(&all);
+  fg_edge_fit_free(&all);
   return status;
 }
 
@@ -80,7 +80,7 @@ static const fg_effect_found *find_of_bumps(const fg_effect_set *set) {
 
 /* What single bumps do has a test of its own, which finds less than the search can
  * (scan_loop/single_bumps.c): it stays, with the numbers that the other rows give it. */
-static fg_status keep_single_bumps(fg_context *ctx, const cross_fit *c, fg_points *others,
+static fg_status keep_single_bumps(fg_context *ctx, const cross_fit *c, fg_edge_fit *others,
                                    fg_effect_set *set) {
   const fg_effect_found *bumps = find_of_bumps(c->set);
   if (!bumps || find_of_bumps(set) || set->count == FG_EFFECT_SET_MAX) return FG_OK;
@@ -91,35 +91,35 @@ static fg_status keep_single_bumps(fg_context *ctx, const cross_fit *c, fg_point
 /* The search on the rows of all other folds. */
 static fg_status search_without(fg_context *ctx, const cross_fit *c, size_t fold,
                                 fg_effect_set *set) {
-  const fg_points *points = c->points;
+  const fg_edge_fit *edge_fit = c->edge_fit;
   bool *keep = NULL;
   double *residual_um = NULL;
-  fg_points others = {0};
-  const fg_iterate_request request = {&others, fg_explain_policy_of(points), c->barred};
+  fg_edge_fit others = {0};
+  const fg_iterate_request request = {&others, fg_search_policy_of(edge_fit), c->barred};
   fg_status status = FG_OK;
-  FG_TRY_EXIT(fg_memory_allocate(ctx, points->row_count, sizeof *keep, (void **)&keep));
-  for (size_t i = 0; i < points->row_count; i++)
+  FG_TRY_EXIT(fg_memory_allocate(ctx, edge_fit->row_count, sizeof *keep, (void **)&keep));
+  for (size_t i = 0; i < edge_fit->row_count; i++)
     keep[i] = c->fold[i] != fold;
-  FG_TRY_EXIT(fg_points_subset(ctx, points, keep, &others));
+  FG_TRY_EXIT(fg_edge_fit_subset(ctx, edge_fit, keep, &others));
   FG_TRY_EXIT(
       fg_memory_allocate(ctx, others.row_count, sizeof *residual_um, (void **)&residual_um));
-  FG_TRY_EXIT(fg_explain_iterate_again(ctx, &request, set, residual_um));
+  FG_TRY_EXIT(fg_search_iterate_again(ctx, &request, set, residual_um));
   FG_TRY_EXIT(keep_single_bumps(ctx, c, &others, set));
 exit:
   free(keep);
   free(residual_um);
-  fg_points_free(&others);
+  fg_edge_fit_free(&others);
   return status;
 }
 
 static fg_status judge_fold(fg_context *ctx, cross_fit *c, size_t fold) {
-  const fg_points *points = c->points;
+  const fg_edge_fit *edge_fit = c->edge_fit;
   fg_effect_set set = *c->set;
   double *left = NULL;
   FG_TRY(search_without(ctx, c, fold, &set));
-  FG_TRY(fg_memory_allocate(ctx, points->row_count, sizeof *left, (void **)&left));
-  fg_status status = leave(ctx, points, &set, left);
-  for (size_t i = 0; i < points->row_count && status == FG_OK; i++)
+  FG_TRY(fg_memory_allocate(ctx, edge_fit->row_count, sizeof *left, (void **)&left));
+  fg_status status = leave(ctx, edge_fit, &set, left);
+  for (size_t i = 0; i < edge_fit->row_count && status == FG_OK; i++)
     if (c->fold[i] == fold) c->after_um[i] = left[i];
   free(left);
   return status;
@@ -130,7 +130,7 @@ static fg_status take_item(fg_context *ctx, void *shared, size_t item) {
   cross_fit *c = shared;
   const fg_effect_set none = {.count = 0};
   fg_status status =
-      item ? judge_fold(ctx, c, item - 1) : leave(ctx, c->points, &none, c->before_um);
+      item ? judge_fold(ctx, c, item - 1) : leave(ctx, c->edge_fit, &none, c->before_um);
   if (status == FG_OK || status == FG_ERR_MEMORY) return status;
   c->cannot[item] = true;
   return FG_OK;
@@ -138,17 +138,17 @@ static fg_status take_item(fg_context *ctx, void *shared, size_t item) {
 
 /* Whether two rows were left out together, and share what they have by chance. */
 static bool are_one(const cross_fit *c, size_t a, size_t b) {
-  return c->points->rows[a].group == c->points->rows[b].group && c->fold[a] == c->fold[b];
+  return c->edge_fit->rows[a].group == c->edge_fit->rows[b].group && c->fold[a] == c->fold[b];
 }
 
 /* Mean squares, and how far their difference varies from unit to unit. */
 static void sum_up(const cross_fit *c, fg_cross_fit *result) {
-  const fg_points *points = c->points;
+  const fg_edge_fit *edge_fit = c->edge_fit;
   double before = 0, after = 0, weight = 0, square = 0, units = 0;
-  for (size_t i = 0, to; i < points->row_count; i = to) {
+  for (size_t i = 0, to; i < edge_fit->row_count; i = to) {
     double own[2] = {0, 0};
-    for (to = i; to < points->row_count && are_one(c, i, to); to++) {
-      double w = points->rows[to].weight;
+    for (to = i; to < edge_fit->row_count && are_one(c, i, to); to++) {
+      double w = edge_fit->rows[to].weight;
       own[0] += w * c->before_um[to] * c->before_um[to];
       own[1] += w * c->after_um[to] * c->after_um[to];
       weight += w;
@@ -169,11 +169,11 @@ static void sum_up(const cross_fit *c, fg_cross_fit *result) {
                            .u_gain = sqrt(fmax(scatter, 0)) / weight};
 }
 
-fg_status fg_explain_cross_fit(fg_context *ctx, const fg_points *points, const fg_effect_set *set,
-                               const fg_explain_bars *barred, unsigned threads,
-                               fg_cross_fit *result) {
-  cross_fit c = {.points = points, .set = set, .barred = barred};
-  size_t rows = points->row_count;
+fg_status fg_search_cross_fit(fg_context *ctx, const fg_edge_fit *edge_fit,
+                              const fg_effect_set *set, const fg_search_bars *barred,
+                              unsigned threads, fg_cross_fit *result) {
+  cross_fit c = {.edge_fit = edge_fit, .set = set, .barred = barred};
+  size_t rows = edge_fit->row_count;
   fg_status status = FG_OK;
   bool cannot = false;
   *result = (fg_cross_fit){.before_um = NAN, .after_um = NAN, .gain = NAN, .u_gain = NAN};

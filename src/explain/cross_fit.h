@@ -8,8 +8,8 @@
  * numbers that it has then. The geometry (every bump's circle, the overall circles, the poses) is
  * not what is tested: it is fitted to all rows, beside nothing before and beside what was found
  * after, so that both errors are of the kind that the residual of all rows is. */
-#ifndef FG_EXPLAIN_CROSS_FIT_H
-#define FG_EXPLAIN_CROSS_FIT_H
+#ifndef FG_SEARCH_CROSS_FIT_H
+#define FG_SEARCH_CROSS_FIT_H
 
 #include "explain/explain.h"
 
@@ -29,8 +29,8 @@ typedef struct fg_cross_fit {
 
 /* `points`: as the search left them, none of them aside; `set`: in force, not empty; `barred`: what
  * that search left out. */
-fg_status fg_explain_cross_fit(fg_context *ctx, const fg_points *points, const fg_effect_set *set,
-                               const fg_explain_bars *barred, unsigned threads,
-                               fg_cross_fit *result);
+fg_status fg_search_cross_fit(fg_context *ctx, const fg_edge_fit *edge_fit,
+                              const fg_effect_set *set, const fg_search_bars *barred,
+                              unsigned threads, fg_cross_fit *result);
 
 #endif

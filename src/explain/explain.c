@@ -9,13 +9,13 @@
 #include "explain/policy.h"
 #include "explain/settle.h"
 
-static void bar(fg_explain_bars *barred, const fg_explanations *explanations,
+static void bar(fg_search_bars *barred, const fg_explanations *explanations,
                 const fg_effect *kind) {
   for (size_t i = 0; i < barred->count; i++)
     if (barred->each[i].effect == kind) return;
-  fg_explain_barred *entry = &barred->each[barred->count++];
+  fg_search_barred *entry = &barred->each[barred->count++];
   *entry =
-      (fg_explain_barred){.effect = kind, .would_explain = NAN, .smallest_um = NAN, .share = NAN};
+      (fg_search_barred){.effect = kind, .would_explain = NAN, .smallest_um = NAN, .share = NAN};
   for (size_t e = 0; e < explanations->candidate_count; e++) {
     if (explanations->candidates[e].kind != kind) continue;
     entry->would_explain = explanations->alone[e];
@@ -27,18 +27,18 @@ static void bar(fg_explain_bars *barred, const fg_explanations *explanations,
 /* Bars what discs do not confirm: all of it when nothing is confirmed, else the one that is
  * confirmed least, since it may have spoilt the others. Without anything more to bar `barred` stays
  * as it is. */
-static fg_status bar_unconfirmed(fg_context *ctx, const fg_points *points, fg_effect_set *set,
+static fg_status bar_unconfirmed(fg_context *ctx, const fg_edge_fit *edge_fit, fg_effect_set *set,
                                  const fg_explanations *explanations, const double *residual_um,
-                                 fg_explain_bars *barred) {
+                                 fg_search_bars *barred) {
   double confirmed[FG_EFFECT_SET_MAX], min = 0;
   size_t failing = 0;
   for (size_t e = 0; e < set->count; e++) {
-    FG_TRY(fg_explain_confirm(ctx, points, &set->effects[e], residual_um, &confirmed[e]));
+    FG_TRY(fg_search_confirm(ctx, edge_fit, &set->effects[e], residual_um, &confirmed[e]));
     failing += !(confirmed[e] > 0);
     min = fmin(min, confirmed[e]);
   }
   size_t max = failing == set->count ? failing : 1;
-  if (!failing || barred->count + max > FG_EXPLAIN_BARRED_MAX) return FG_OK;
+  if (!failing || barred->count + max > FG_SEARCH_BARRED_MAX) return FG_OK;
   for (size_t e = 0, n = 0; e < set->count && n < max; e++) {
     if (confirmed[e] > min && max == 1) continue;
     bar(barred, explanations, set->effects[e].kind);
@@ -80,34 +80,34 @@ static void add_ring_alias(fg_explanations *explanations) {
 
 /* Where every search starts: a set that is out now may have called rows outliers, or bent the
  * geometry out of reach. */
-static void start_again(fg_points *points, const double *weights) {
-  for (size_t i = 0; i < points->row_count; i++)
-    points->rows[i].weight = weights[i];
-  for (size_t v = 0; v < points->view_count; v++) {
-    const fg_disc *disc = points->views[v].disc;
-    fg_points_part *part = &points->parts[points->views[v].part];
-    points->poses[v].origin_mm = disc->centre_mm;
+static void start_again(fg_edge_fit *edge_fit, const double *weights) {
+  for (size_t i = 0; i < edge_fit->row_count; i++)
+    edge_fit->rows[i].weight = weights[i];
+  for (size_t v = 0; v < edge_fit->view_count; v++) {
+    const fg_disc *disc = edge_fit->views[v].disc;
+    fg_edge_fit_part *part = &edge_fit->parts[edge_fit->views[v].part];
+    edge_fit->poses[v].origin_mm = disc->centre_mm;
     if (!part->radius_known) part->overall_radius_mm = disc->radius_mm;
   }
 }
 
 /* Settles, bars what is not confirmed, and settles again without it until nothing is barred. */
-static fg_status iterate_until_confirmed(fg_context *ctx, fg_points *points,
-                                         const fg_explain_policy *policy, fg_effect_set *set,
+static fg_status iterate_until_confirmed(fg_context *ctx, fg_edge_fit *edge_fit,
+                                         const fg_search_policy *policy, fg_effect_set *set,
                                          fg_explanations *explanations, double *residual_um) {
-  fg_explain_bars barred = {.count = 0};
-  const fg_iterate_request request = {points, policy, &barred};
+  fg_search_bars barred = {.count = 0};
+  const fg_iterate_request request = {edge_fit, policy, &barred};
   double *weights = NULL;
   fg_status status = FG_OK;
-  FG_TRY(fg_memory_allocate(ctx, points->row_count, sizeof *weights, (void **)&weights));
-  for (size_t i = 0; i < points->row_count; i++)
-    weights[i] = points->rows[i].weight;
+  FG_TRY(fg_memory_allocate(ctx, edge_fit->row_count, sizeof *weights, (void **)&weights));
+  for (size_t i = 0; i < edge_fit->row_count; i++)
+    weights[i] = edge_fit->rows[i].weight;
   bool more = true;
   while (more) {
     size_t before = barred.count;
-    start_again(points, weights);
-    FG_TRY_EXIT(fg_explain_iterate(ctx, &request, set, explanations, residual_um));
-    FG_TRY_EXIT(bar_unconfirmed(ctx, points, set, explanations, residual_um, &barred));
+    start_again(edge_fit, weights);
+    FG_TRY_EXIT(fg_search_iterate(ctx, &request, set, explanations, residual_um));
+    FG_TRY_EXIT(bar_unconfirmed(ctx, edge_fit, set, explanations, residual_um, &barred));
     more = barred.count > before;
   }
   if (barred.count) explanations->right = false;
@@ -116,13 +116,13 @@ exit:
   return status;
 }
 
-fg_status fg_explain_run(fg_context *ctx, fg_points *points, fg_effect_set *set,
-                         fg_explanations *explanations, double *residual_um) {
-  const fg_explain_policy *policy = fg_explain_policy_of(points);
-  if (policy->confirms && points->part_count > 1)
-    return iterate_until_confirmed(ctx, points, policy, set, explanations, residual_um);
-  const fg_iterate_request request = {.points = points, .policy = policy};
-  FG_TRY(fg_explain_iterate(ctx, &request, set, explanations, residual_um));
+fg_status fg_search_run(fg_context *ctx, fg_edge_fit *edge_fit, fg_effect_set *set,
+                        fg_explanations *explanations, double *residual_um) {
+  const fg_search_policy *policy = fg_search_policy_of(edge_fit);
+  if (policy->confirms && edge_fit->part_count > 1)
+    return iterate_until_confirmed(ctx, edge_fit, policy, set, explanations, residual_um);
+  const fg_iterate_request request = {.edge_fit = edge_fit, .policy = policy};
+  FG_TRY(fg_search_iterate(ctx, &request, set, explanations, residual_um));
   if (policy->confirms) add_ring_alias(explanations);
   return FG_OK;
 }

@@ -12,14 +12,14 @@
  * a part's effect does not. It does not decide: an edge model that errs with the direction of the
  * edge would look the same.
  */
-#ifndef FG_EXPLAIN_EXPLAIN_H
-#define FG_EXPLAIN_EXPLAIN_H
+#ifndef FG_SEARCH_EXPLAIN_H
+#define FG_SEARCH_EXPLAIN_H
 
 #include "effect/set.h"
 #include "foilgauge/scan_loop.h"
 #include "rows/points.h"
 
-enum { FG_CANDIDATES_MAX = 28, FG_EXPLANATIONS_MAX = 16, FG_EXPLAIN_BARRED_MAX = 24 };
+enum { FG_CANDIDATES_MAX = 28, FG_EXPLANATIONS_MAX = 16, FG_SEARCH_BARRED_MAX = 24 };
 
 /* An effect as it enters the search: its shape is known by now, but for the middle c of a
  * polynomial, which is found with every set anew. */
@@ -43,15 +43,15 @@ typedef struct fg_explanation {
 } fg_explanation;
 
 /* Effects that were found and that not all parts confirm: a search leaves them out. */
-typedef struct fg_explain_barred {
+typedef struct fg_search_barred {
   const fg_effect *effect;
   double would_explain, share, smallest_um; /* as in fg_explanations */
-} fg_explain_barred;
+} fg_search_barred;
 
-typedef struct fg_explain_bars {
-  fg_explain_barred each[FG_EXPLAIN_BARRED_MAX];
+typedef struct fg_search_bars {
+  fg_search_barred each[FG_SEARCH_BARRED_MAX];
   size_t count;
-} fg_explain_bars;
+} fg_search_bars;
 
 typedef struct fg_explanations {
   fg_candidate candidates[FG_CANDIDATES_MAX];
@@ -68,34 +68,34 @@ typedef struct fg_explanations {
   double share[FG_CANDIDATES_MAX]; /* |M f|² / |f|² beside the geometry */
   double smallest_um[FG_CANDIDATES_MAX]; /* amplitude that would have shown beside the winner */
   double alone[FG_CANDIDATES_MAX];       /* share of the residual sum that it alone takes */
-  fg_explain_bars barred;                /* what the search left out */
+  fg_search_bars barred;                 /* what the search left out */
 } fg_explanations;
 
 /* What is searched. */
-typedef struct fg_explain_policy fg_explain_policy;
-typedef struct fg_explain_request {
-  const fg_explain_policy *policy;
-  const double *residual_um, *jacobian; /* geometry fitted; as from fg_points_residual */
+typedef struct fg_search_policy fg_search_policy;
+typedef struct fg_search_request {
+  const fg_search_policy *policy;
+  const double *residual_um, *jacobian; /* geometry fitted; as from fg_edge_fit_residual */
   const fg_effect_set
       *known; /* NULL: none; its shaped effects are in the search with their shapes */
   const fg_effect_set *tried;    /* NULL: none; this set was fitted and is not right */
   const fg_effect_set *given_up; /* fitted and run away, or worse than nothing: none of these */
   size_t given_up_count;
-  const fg_explain_bars *barred; /* NULL: none */
-  bool look;                     /* for further shaped effects */
-  bool two_curves;               /* where one is not enough and there are several views */
+  const fg_search_bars *barred; /* NULL: none */
+  bool look;                    /* for further shaped effects */
+  bool two_curves;              /* where one is not enough and there are several views */
   bool hopeless; /* sets whose shapes are not fitted yet had their chance: a right curve stands */
-} fg_explain_request;
+} fg_search_request;
 
-fg_status fg_explain_find(fg_context *ctx, const fg_points *points,
-                          const fg_explain_request *request, fg_explanations *explanations);
+fg_status fg_search_find(fg_context *ctx, const fg_edge_fit *edge_fit,
+                         const fg_search_request *request, fg_explanations *explanations);
 
 /* The whole of it: search and joint fit in turns (settle.h); what discs do not confirm from one to
  * the next is barred. `set` gets the winner, fitted; `residual_um` (rows) what it leaves. */
-fg_status fg_explain_run(fg_context *ctx, fg_points *points, fg_effect_set *set,
-                         fg_explanations *explanations, double *residual_um);
+fg_status fg_search_run(fg_context *ctx, fg_edge_fit *edge_fit, fg_effect_set *set,
+                        fg_explanations *explanations, double *residual_um);
 
 /* One explanation as a set without numbers. */
-void fg_explain_take(const fg_explanations *explanations, size_t explanation, fg_effect_set *set);
+void fg_search_take(const fg_explanations *explanations, size_t explanation, fg_effect_set *set);
 
 #endif

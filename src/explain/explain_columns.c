@@ -20,7 +20,7 @@
 /* Smooth parts of the width that take so many times what chance takes are there. */
 #define CHANCE_TIMES 3.0
 
-double fg_explain_dot(size_t n, const double *a, const double *b) {
+double fg_search_dot(size_t n, const double *a, const double *b) {
   enum { LANES = 8 }; /* sums that do not wait for each other */
   double sum[LANES] = {0};
   size_t i = 0;
@@ -32,22 +32,22 @@ double fg_explain_dot(size_t n, const double *a, const double *b) {
   return ((sum[0] + sum[4]) + (sum[1] + sum[5])) + ((sum[2] + sum[6]) + (sum[3] + sum[7]));
 }
 
-double fg_explain_along(const fg_explain_columns *s, size_t k, const double *v) {
+double fg_search_along(const fg_search_columns *s, size_t k, const double *v) {
   size_t first = s->first[k];
-  return fg_explain_dot(s->last[k] - first, s->basis + k * s->rows + first, v + first);
+  return fg_search_dot(s->last[k] - first, s->basis + k * s->rows + first, v + first);
 }
 
-void fg_explain_take_out(const fg_explain_columns *s, size_t rank, double *v) {
+void fg_search_take_out(const fg_search_columns *s, size_t rank, double *v) {
   for (int twice = 0; twice < 2; twice++)
     for (size_t k = 0; k < rank; k++) {
       const double *b = s->basis + k * s->rows;
-      double d = fg_explain_along(s, k, v);
+      double d = fg_search_along(s, k, v);
       for (size_t i = s->first[k]; d != 0 && i < s->last[k]; i++)
         v[i] -= d * b[i];
     }
 }
 
-static void find_support(fg_explain_columns *s, size_t rank) {
+static void find_support(fg_search_columns *s, size_t rank) {
   const double *v = s->basis + rank * s->rows;
   size_t first = 0, last = s->rows;
   while (first < last && v[first] == 0)
@@ -59,12 +59,12 @@ static void find_support(fg_explain_columns *s, size_t rank) {
 }
 
 /* Adds v to the basis unless it lies in it already, or what it adds has no more than `least`. */
-static bool extend(fg_explain_columns *s, size_t rank, const double *v, double share, double min) {
-  double *to = s->basis + rank * s->rows, whole = fg_explain_dot(s->rows, v, v);
+static bool extend(fg_search_columns *s, size_t rank, const double *v, double share, double min) {
+  double *to = s->basis + rank * s->rows, whole = fg_search_dot(s->rows, v, v);
   if (!(whole > min)) return false;
   memcpy(to, v, s->rows * sizeof *to);
-  fg_explain_take_out(s, rank, to);
-  double left = fg_explain_dot(s->rows, to, to);
+  fg_search_take_out(s, rank, to);
+  double left = fg_search_dot(s->rows, to, to);
   if (!(left > fmax(share * whole, min))) return false;
   for (size_t i = 0; i < s->rows; i++)
     to[i] /= sqrt(left);
@@ -72,72 +72,72 @@ static bool extend(fg_explain_columns *s, size_t rank, const double *v, double s
   return true;
 }
 
-static double weight_of(const fg_explain_columns *s, size_t i) {
-  return fg_points_root_weight(&s->points->rows[s->row[i]]);
+static double weight_of(const fg_search_columns *s, size_t i) {
+  return fg_edge_fit_root_weight(&s->edge_fit->rows[s->row[i]]);
 }
 
-static size_t weigh(const fg_explain_columns *s, size_t count, double *out) {
+static size_t weigh(const fg_search_columns *s, size_t count, double *out) {
   for (size_t c = 0; c < count; c++)
     for (size_t i = 0; i < s->rows; i++)
-      out[c * s->rows + i] = weight_of(s, i) * s->work[c * s->points->row_count + s->row[i]];
+      out[c * s->rows + i] = weight_of(s, i) * s->work[c * s->edge_fit->row_count + s->row[i]];
   return count;
 }
 
 /* Weighted values of all rows, made independent: those in use. `values` may be the work's. */
-static void whiten(const fg_explain_columns *s, const double *values, double *out) {
+static void whiten(const fg_search_columns *s, const double *values, double *out) {
   double *all = s->white;
-  for (size_t i = 0; i < s->points->row_count; i++)
-    all[i] = fg_points_root_weight(&s->points->rows[i]) * values[i];
+  for (size_t i = 0; i < s->edge_fit->row_count; i++)
+    all[i] = fg_edge_fit_root_weight(&s->edge_fit->rows[i]) * values[i];
   fg_whitening_apply(&s->whitening, all);
   for (size_t i = 0; i < s->rows; i++)
     out[i] = all[s->row[i]];
 }
 
-size_t fg_explain_gather(const fg_explain_columns *s, const fg_effect *effect, const double *shape,
-                         double *out) {
-  size_t count = fg_effect_columns(s->points, effect, shape, s->work);
+size_t fg_search_gather(const fg_search_columns *s, const fg_effect *effect, const double *shape,
+                        double *out) {
+  size_t count = fg_effect_columns(s->edge_fit, effect, shape, s->work);
   for (size_t c = 0; c < count; c++)
-    whiten(s, s->work + c * s->points->row_count, out + c * s->rows);
+    whiten(s, s->work + c * s->edge_fit->row_count, out + c * s->rows);
   return count;
 }
 
-static void fill_products(fg_explain_columns *s, size_t from) {
+static void fill_products(fg_search_columns *s, size_t from) {
   for (size_t a = from; a < s->count; a++) {
     const double *p = s->values + a * s->rows;
-    s->right[a] = fg_explain_dot(s->rows, p, s->residual);
+    s->right[a] = fg_search_dot(s->rows, p, s->residual);
     for (size_t b = 0; b <= a; b++)
-      s->gram[a * FG_EXPLAIN_COLUMNS + b] = s->gram[b * FG_EXPLAIN_COLUMNS + a] =
-          fg_explain_dot(s->rows, p, s->values + b * s->rows);
+      s->gram[a * FG_SEARCH_COLUMNS + b] = s->gram[b * FG_SEARCH_COLUMNS + a] =
+          fg_search_dot(s->rows, p, s->values + b * s->rows);
   }
 }
 
-size_t fg_explain_columns_add(fg_explain_columns *s, const fg_effect *effect, const double *shape,
-                              size_t *first, double *share) {
+size_t fg_search_columns_add(fg_search_columns *s, const fg_effect *effect, const double *shape,
+                             size_t *first, double *share) {
   double *to = s->values + s->count * s->rows, *strain = s->strain + s->count * s->rows;
   double whole = 0, left = 0;
   *first = s->count;
-  size_t count = fg_explain_gather(s, effect, shape, to);
+  size_t count = fg_search_gather(s, effect, shape, to);
   for (size_t c = 0; c < count; c++, to += s->rows) {
-    double square = fg_explain_dot(s->rows, to, to);
+    double square = fg_search_dot(s->rows, to, to);
     if (square == 0) continue; /* a knot that is not used */
     whole += square;
-    fg_explain_take_out(s, s->geometry_rank, to);
-    left += fg_explain_dot(s->rows, to, to);
+    fg_search_take_out(s, s->geometry_rank, to);
+    left += fg_search_dot(s->rows, to, to);
   }
   *share = whole > 0 ? left / whole : 0;
   memset(strain, 0, count * s->rows * sizeof *strain);
-  weigh(s, fg_effect_width_columns(s->points, effect, shape, s->work), strain);
+  weigh(s, fg_effect_width_columns(s->edge_fit, effect, shape, s->work), strain);
   s->count += count;
   fill_products(s, *first);
   return count;
 }
 
-size_t fg_explain_columns_span(fg_explain_columns *s, size_t skip, size_t end) {
+size_t fg_search_columns_span(fg_search_columns *s, size_t skip, size_t end) {
   size_t rank = s->geometry_rank;
   for (size_t c = 0; c < s->count; c++) {
     const double *v = s->values + c * s->rows;
-    if ((c >= skip && c < end) || s->part[c] == FG_EXPLAIN_LEFT_OUT) continue;
-    if (s->part[c] == FG_EXPLAIN_WITH_NEXT) {
+    if ((c >= skip && c < end) || s->part[c] == FG_SEARCH_LEFT_OUT) continue;
+    if (s->part[c] == FG_SEARCH_WITH_NEXT) {
       for (size_t i = 0; i < s->rows; i++)
         s->left[i] = v[i] + v[i + s->rows];
       v = s->left;
@@ -145,27 +145,26 @@ size_t fg_explain_columns_span(fg_explain_columns *s, size_t skip, size_t end) {
     if (extend(s, rank, v, DEPENDENT, s->min)) rank++;
   }
   memcpy(s->left, s->residual, s->rows * sizeof *s->left);
-  fg_explain_take_out(s, rank, s->left);
+  fg_search_take_out(s, rank, s->left);
   return rank;
 }
 
-size_t fg_explain_columns_span_more(fg_explain_columns *s, size_t rank, size_t from, size_t to) {
+size_t fg_search_columns_span_more(fg_search_columns *s, size_t rank, size_t from, size_t to) {
   for (size_t c = from; c < to; c++)
     if (extend(s, rank, s->values + c * s->rows, DEPENDENT, s->min)) rank++;
   memcpy(s->left, s->residual, s->rows * sizeof *s->left);
-  fg_explain_take_out(s, rank, s->left);
+  fg_search_take_out(s, rank, s->left);
   return rank;
 }
 
 /* ---- least squares of a set ---- */
 
-static double term_product(const fg_explain_columns *s, const fg_explain_term *a,
-                           const fg_explain_term *b) {
+static double term_product(const fg_search_columns *s, const fg_search_term *a,
+                           const fg_search_term *b) {
   double sum = 0;
   for (size_t i = 0; i < a->count; i++)
     for (size_t k = 0; k < b->count; k++)
-      sum +=
-          a->weight[i] * b->weight[k] * s->gram[a->column[i] * FG_EXPLAIN_COLUMNS + b->column[k]];
+      sum += a->weight[i] * b->weight[k] * s->gram[a->column[i] * FG_SEARCH_COLUMNS + b->column[k]];
   return sum;
 }
 
@@ -176,7 +175,7 @@ typedef struct target {
   double square, min;
 } target;
 
-static double term_right(const target *to, const fg_explain_term *a) {
+static double term_right(const target *to, const fg_search_term *a) {
   double sum = 0;
   for (size_t i = 0; i < a->count; i++)
     sum += a->weight[i] * to->right[a->column[i]];
@@ -184,10 +183,10 @@ static double term_right(const target *to, const fg_explain_term *a) {
 }
 
 /* Cholesky, row by row; a term that adds nothing is left out. */
-static double fit_terms(const fg_explain_columns *s, const target *to, const fg_explain_term *terms,
+static double fit_terms(const fg_search_columns *s, const target *to, const fg_search_term *terms,
                         size_t count, double *x, double *last_u, size_t *rank) {
-  double lower[FG_EXPLAIN_TERMS][FG_EXPLAIN_TERMS], forward[FG_EXPLAIN_TERMS], sum = to->square;
-  size_t used[FG_EXPLAIN_TERMS], n = 0;
+  double lower[FG_SEARCH_TERMS][FG_SEARCH_TERMS], forward[FG_SEARCH_TERMS], sum = to->square;
+  size_t used[FG_SEARCH_TERMS], n = 0;
   for (size_t a = 0; a < count; a++) {
     double whole = term_product(s, &terms[a], &terms[a]), pivot = whole;
     double right = term_right(to, &terms[a]);
@@ -217,15 +216,15 @@ static double fit_terms(const fg_explain_columns *s, const target *to, const fg_
   return fmax(sum, 0);
 }
 
-double fg_explain_solve(const fg_explain_columns *s, const fg_explain_term *terms, size_t count,
-                        double *x, double *last_u, size_t *rank) {
+double fg_search_solve(const fg_search_columns *s, const fg_search_term *terms, size_t count,
+                       double *x, double *last_u, size_t *rank) {
   const target residual = {s->right, s->square, s->min};
   return fit_terms(s, &residual, terms, count, x, last_u, rank);
 }
 
-double fg_explain_share_left(const fg_explain_columns *s, const fg_explain_term *terms,
-                             size_t count, size_t column) {
-  const double *products = s->gram + column * FG_EXPLAIN_COLUMNS;
+double fg_search_share_left(const fg_search_columns *s, const fg_search_term *terms, size_t count,
+                            size_t column) {
+  const double *products = s->gram + column * FG_SEARCH_COLUMNS;
   const target to = {products, products[column], 0};
   size_t rank;
   return to.square > 0 ? fit_terms(s, &to, terms, count, NULL, NULL, &rank) / to.square : 0;
@@ -237,7 +236,7 @@ double fg_explain_share_left(const fg_explain_columns *s, const fg_explain_term 
 enum { WIDTHS_BLOCK = 256 };
 
 /* The next widths from row `from` on without what terms move; returns how many. */
-static size_t widths_left(const fg_explain_columns *s, const fg_explain_term *terms, size_t count,
+static size_t widths_left(const fg_search_columns *s, const fg_search_term *terms, size_t count,
                           const double *x, size_t from, double out[WIDTHS_BLOCK]) {
   size_t rows = s->rows - from < WIDTHS_BLOCK ? s->rows - from : WIDTHS_BLOCK;
   memcpy(out, s->width + from, rows * sizeof *out);
@@ -251,8 +250,8 @@ static size_t widths_left(const fg_explain_columns *s, const fg_explain_term *te
   return rows;
 }
 
-double fg_explain_width_sum(const fg_explain_columns *s, const fg_explain_term *terms, size_t count,
-                            const double *x) {
+double fg_search_width_sum(const fg_search_columns *s, const fg_search_term *terms, size_t count,
+                           const double *x) {
   double left[WIDTHS_BLOCK], squares = 0, along = 0, weight = 0;
   for (size_t from = 0; from < s->rows; from += WIDTHS_BLOCK) {
     size_t rows = widths_left(s, terms, count, x, from, left);
@@ -268,11 +267,11 @@ double fg_explain_width_sum(const fg_explain_columns *s, const fg_explain_term *
 
 /* Directions and places that an error of the edge model may follow: threshold, flare, shading and
  * one-sided blur move the edges apart. */
-static size_t nuisance(const fg_explain_columns *s, double *out) {
+static size_t nuisance(const fg_search_columns *s, double *out) {
   enum { COUNT = 9 };
-  const fg_field_frame *f = &s->points->frame;
+  const fg_field_frame *f = &s->edge_fit->frame;
   for (size_t i = 0; i < s->rows; i++) {
-    const fg_points_row *row = &s->points->rows[s->row[i]];
+    const fg_edge_fit_row *row = &s->edge_fit->rows[s->row[i]];
     double x = (row->at.x - f->centre_mm[0]) / FG_FIELD_HALF_MM;
     double y = (row->at.y - f->centre_mm[1]) / FG_FIELD_HALF_MM, w = weight_of(s, i);
     double all[COUNT] = {x, y, x * x, x * y, y * y};
@@ -288,7 +287,7 @@ static size_t nuisance(const fg_explain_columns *s, double *out) {
 
 /* Orthonormal vectors of what is given, behind those that are there; returns the new rank. The
  * basis is borrowed: the caller spans it again. */
-static size_t span_more(fg_explain_columns *s, size_t rank, const double *v, size_t count) {
+static size_t span_more(fg_search_columns *s, size_t rank, const double *v, size_t count) {
   for (size_t c = 0; c < count; c++)
     if (extend(s, rank, v + c * s->rows, IN_BASIS, 0)) rank++;
   return rank;
@@ -296,7 +295,7 @@ static size_t span_more(fg_explain_columns *s, size_t rank, const double *v, siz
 
 /* What of the widths is smooth over place and direction beyond any stretch by the scanner's fields
  * is the edge model's error; the edges' common error is taken to be no larger. */
-fg_status fg_explain_width_uncertainty(fg_context *ctx, fg_explain_columns *s) {
+fg_status fg_search_width_uncertainty(fg_context *ctx, fg_search_columns *s) {
   double *v = NULL, *left = NULL, *kept = NULL;
   fg_status status = FG_OK;
   s->width_part = 0;
@@ -311,11 +310,11 @@ fg_status fg_explain_width_uncertainty(fg_context *ctx, fg_explain_columns *s) {
   size_t rank = span_more(s, 0, v, 1);
   rank = span_more(s, rank, s->strain, s->count);
   memcpy(left, s->width, s->rows * sizeof *left);
-  fg_explain_take_out(s, rank, left);
-  double before = fg_explain_dot(s->rows, left, left);
+  fg_search_take_out(s, rank, left);
+  double before = fg_search_dot(s->rows, left, left);
   size_t more = span_more(s, rank, v, nuisance(s, v));
-  fg_explain_take_out(s, more, left);
-  double after = fg_explain_dot(s->rows, left, left), n = (double)s->rows;
+  fg_search_take_out(s, more, left);
+  double after = fg_search_dot(s->rows, left, left), n = (double)s->rows;
   double chance = (double)(more - rank) * after / fmax(n - (double)more, 1);
   if (before - after > CHANCE_TIMES * chance) s->width_part = (before - after - chance) / n;
   memcpy(s->basis, kept, kept_size);
@@ -330,22 +329,22 @@ exit:
 
 /* ---- setting up ---- */
 
-static fg_status list_rows(fg_context *ctx, fg_explain_columns *s) {
-  const fg_points *points = s->points;
-  FG_TRY(fg_memory_allocate(ctx, points->row_count, sizeof *s->row, (void **)&s->row));
-  for (size_t i = 0; i < points->row_count; i++)
-    if (!points->views[points->rows[i].view].held_out) s->row[s->rows++] = i;
+static fg_status list_rows(fg_context *ctx, fg_search_columns *s) {
+  const fg_edge_fit *edge_fit = s->edge_fit;
+  FG_TRY(fg_memory_allocate(ctx, edge_fit->row_count, sizeof *s->row, (void **)&s->row));
+  for (size_t i = 0; i < edge_fit->row_count; i++)
+    if (!edge_fit->views[edge_fit->rows[i].view].held_out) s->row[s->rows++] = i;
   return FG_OK;
 }
 
-static fg_status allocate(fg_context *ctx, fg_explain_columns *s) {
-  size_t vector = s->rows * sizeof(double), all = FG_EXPLAIN_COLUMNS;
-  FG_TRY(fg_memory_allocate(ctx, s->points->parameters + all, vector, (void **)&s->basis));
-  size_t max = s->points->parameters + all;
+static fg_status allocate(fg_context *ctx, fg_search_columns *s) {
+  size_t vector = s->rows * sizeof(double), all = FG_SEARCH_COLUMNS;
+  FG_TRY(fg_memory_allocate(ctx, s->edge_fit->parameters + all, vector, (void **)&s->basis));
+  size_t max = s->edge_fit->parameters + all;
   FG_TRY(fg_memory_allocate(ctx, max, sizeof *s->first, (void **)&s->first));
   FG_TRY(fg_memory_allocate(ctx, max, sizeof *s->last, (void **)&s->last));
-  FG_TRY(fg_memory_allocate(ctx, s->points->row_count, sizeof *s->white, (void **)&s->white));
-  FG_TRY(fg_whitening_open(ctx, s->points, &s->whitening));
+  FG_TRY(fg_memory_allocate(ctx, s->edge_fit->row_count, sizeof *s->white, (void **)&s->white));
+  FG_TRY(fg_whitening_open(ctx, s->edge_fit, &s->whitening));
   FG_TRY(fg_memory_allocate(ctx, all, vector, (void **)&s->values));
   FG_TRY(fg_memory_allocate(ctx, all, vector, (void **)&s->strain));
   FG_TRY(fg_memory_allocate(ctx, 1, vector, (void **)&s->residual));
@@ -353,22 +352,22 @@ static fg_status allocate(fg_context *ctx, fg_explain_columns *s) {
   FG_TRY(fg_memory_allocate(ctx, 1, vector, (void **)&s->width));
   FG_TRY(fg_memory_allocate(ctx, all * all, sizeof *s->gram, (void **)&s->gram));
   FG_TRY(fg_memory_allocate(ctx, all, sizeof *s->right, (void **)&s->right));
-  return fg_memory_allocate(ctx, s->points->row_count, FG_EFFECT_COLUMNS_MAX * sizeof *s->work,
+  return fg_memory_allocate(ctx, s->edge_fit->row_count, FG_EFFECT_COLUMNS_MAX * sizeof *s->work,
                             (void **)&s->work);
 }
 
 /* Mean width of every part out: its thickness is a parameter of the geometry. */
-static void fill_width(fg_explain_columns *s) {
-  for (size_t p = 0; p < s->points->part_count; p++) {
+static void fill_width(fg_search_columns *s) {
+  for (size_t p = 0; p < s->edge_fit->part_count; p++) {
     double sum = 0, weight = 0;
     for (size_t i = 0; i < s->rows; i++) {
-      const fg_points_row *row = &s->points->rows[s->row[i]];
+      const fg_edge_fit_row *row = &s->edge_fit->rows[s->row[i]];
       if (row->part != p) continue;
       sum += row->weight * row->half_width_mm;
       weight += row->weight;
     }
     for (size_t i = 0; i < s->rows; i++) {
-      const fg_points_row *row = &s->points->rows[s->row[i]];
+      const fg_edge_fit_row *row = &s->edge_fit->rows[s->row[i]];
       if (row->part != p || !(weight > 0)) continue;
       s->width[i] = 1000 * weight_of(s, i) * (row->half_width_mm - sum / weight);
       s->has_width = s->has_width || row->half_width_mm > 0;
@@ -376,31 +375,30 @@ static void fill_width(fg_explain_columns *s) {
   }
 }
 
-static void span_geometry(fg_explain_columns *s, const double *residual_um,
-                          const double *jacobian) {
+static void span_geometry(fg_search_columns *s, const double *residual_um, const double *jacobian) {
   double *column = s->left; /* borrowed */
-  for (size_t a = 0; a < s->points->parameters; a++) {
-    whiten(s, jacobian + a * s->points->row_count, column);
-    if (fg_explain_dot(s->rows, column, column) > 0 &&
+  for (size_t a = 0; a < s->edge_fit->parameters; a++) {
+    whiten(s, jacobian + a * s->edge_fit->row_count, column);
+    if (fg_search_dot(s->rows, column, column) > 0 &&
         extend(s, s->geometry_rank, column, IN_BASIS, 0))
       s->geometry_rank++;
   }
   whiten(s, residual_um, s->residual);
-  fg_explain_take_out(s, s->geometry_rank, s->residual);
-  s->square = fg_explain_dot(s->rows, s->residual, s->residual);
+  fg_search_take_out(s, s->geometry_rank, s->residual);
+  s->square = fg_search_dot(s->rows, s->residual, s->residual);
 }
 
-fg_status fg_explain_columns_open(fg_context *ctx, const fg_points *points,
-                                  const double *residual_um, const double *jacobian,
-                                  fg_explain_columns *s) {
+fg_status fg_search_columns_open(fg_context *ctx, const fg_edge_fit *edge_fit,
+                                 const double *residual_um, const double *jacobian,
+                                 fg_search_columns *s) {
   memset(s, 0, sizeof *s);
-  s->points = points;
-  const fg_scatter *scatter = &points->scatter;
+  s->edge_fit = edge_fit;
+  const fg_scatter *scatter = &edge_fit->scatter;
   s->integral = scatter->share > 0 ? scatter->integral : 1;
   fg_status status = list_rows(ctx, s);
   if (status == FG_OK) status = allocate(ctx, s);
   if (status != FG_OK) {
-    fg_explain_columns_close(s);
+    fg_search_columns_close(s);
     return status;
   }
   double noise = SEEN_ERRORS * scatter->row_um / LARGEST_UM;
@@ -410,7 +408,7 @@ fg_status fg_explain_columns_open(fg_context *ctx, const fg_points *points,
   return FG_OK;
 }
 
-void fg_explain_columns_close(fg_explain_columns *s) {
+void fg_search_columns_close(fg_search_columns *s) {
   free(s->row);
   free(s->basis);
   free(s->first);

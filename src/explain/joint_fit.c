@@ -56,14 +56,14 @@ static size_t list_unknowns(const fg_effect_set *set, unknown *list) {
 }
 
 /* Columns of the effects' unknowns, um of residual per um or per unit of shape. */
-static void effect_design(const fg_points *points, const fg_effect_set *set, const unknown *list,
-                          size_t count, double *work, double *design) {
-  size_t rows = points->row_count;
+static void effect_design(const fg_edge_fit *edge_fit, const fg_effect_set *set,
+                          const unknown *list, size_t count, double *work, double *design) {
+  size_t rows = edge_fit->row_count;
   for (size_t k = 0; k < count; k++) {
     const fg_effect_found *effect = &set->effects[list[k].effect];
     double *to = design + k * rows, shape[FG_FIELD_SHAPES];
     if (!list[k].shape) {
-      fg_effect_columns(points, effect->kind, effect->shape, work);
+      fg_effect_columns(edge_fit, effect->kind, effect->shape, work);
       memcpy(to, work + list[k].index * rows, rows * sizeof *to);
       continue;
     }
@@ -72,7 +72,7 @@ static void effect_design(const fg_points *points, const fg_effect_set *set, con
     for (int side = -1; side <= 1; side += 2) {
       memcpy(shape, effect->shape, sizeof shape);
       shape[list[k].index] += side * step;
-      fg_effect_columns(points, effect->kind, shape, work);
+      fg_effect_columns(edge_fit, effect->kind, shape, work);
       for (size_t c = 0; c < effect->columns; c++)
         for (size_t i = 0; i < rows; i++)
           to[i] += side * effect->coefficient_um[c] * work[c * rows + i] / (2 * step);
@@ -81,7 +81,7 @@ static void effect_design(const fg_points *points, const fg_effect_set *set, con
 }
 
 typedef struct refit {
-  fg_points *points;
+  fg_edge_fit *edge_fit;
   fg_effect_set *set;
   fg_joint_fit_part *parts; /* NULL: not asked for */
   unknown list[UNKNOWNS_MAX];
@@ -94,25 +94,25 @@ typedef struct refit {
 } refit;
 
 static const double *column_of(const refit *r, size_t k) {
-  size_t rows = r->points->row_count;
+  size_t rows = r->edge_fit->row_count;
   return k < r->parameters ? r->jacobian + k * rows : r->design + (k - r->parameters) * rows;
 }
 
 /* Rows of scans that only confirm fit their own pose, and nothing else of theirs counts. */
 static double row_weight(const refit *r, size_t i, size_t a, size_t b) {
-  if (!r->points->views[r->points->rows[i].view].held_out) return FG_POINTS_BLOCK;
-  return a < r->parameters && b < r->parameters ? FG_POINTS_BLOCK * HELD_OUT_WEIGHT : 0;
+  if (!r->edge_fit->views[r->edge_fit->rows[i].view].held_out) return FG_EDGE_FIT_BLOCK;
+  return a < r->parameters && b < r->parameters ? FG_EDGE_FIT_BLOCK * HELD_OUT_WEIGHT : 0;
 }
 
 static void whiten(const refit *r, double *values) {
-  for (size_t i = 0; i < r->points->row_count; i++)
-    values[i] *= fg_points_root_weight(&r->points->rows[i]);
+  for (size_t i = 0; i < r->edge_fit->row_count; i++)
+    values[i] *= fg_edge_fit_root_weight(&r->edge_fit->rows[i]);
   fg_whitening_apply(&r->whitening, values);
 }
 
 /* Residual and all columns for generalised least squares. */
 static void whiten_all(refit *r) {
-  size_t rows = r->points->row_count;
+  size_t rows = r->edge_fit->row_count;
   memcpy(r->white, r->residual, rows * sizeof *r->white);
   whiten(r, r->white);
   for (size_t k = 0; k < r->parameters; k++)
@@ -123,10 +123,10 @@ static void whiten_all(refit *r) {
 
 /* A curve's coefficients are of some size, and noise of smooth things must not make larger ones:
  * the weight that a normal distribution of that size has beside rows with this noise. */
-static double hold_of(const fg_points *points, const fg_effect_found *effect, bool shape) {
-  const fg_scatter *s = &points->scatter;
+static double hold_of(const fg_edge_fit *edge_fit, const fg_effect_found *effect, bool shape) {
+  const fg_scatter *s = &edge_fit->scatter;
   if (shape || effect->kind->hold == 0) return 0;
-  double noise = FG_POINTS_BLOCK * s->row_um * s->row_um * s->integral * s->swell;
+  double noise = FG_EDGE_FIT_BLOCK * s->row_um * s->row_um * s->integral * s->swell;
   return fmax(effect->kind->hold, noise / (CURVE_UM * CURVE_UM));
 }
 
@@ -135,7 +135,7 @@ static double hold_of(const fg_points *points, const fg_effect_found *effect, bo
 static void hold_free(refit *r, size_t k) {
   const fg_effect_found *effect = &r->set->effects[r->list[k].effect];
   size_t a = r->parameters + k;
-  double hold = hold_of(r->points, effect, r->list[k].shape);
+  double hold = hold_of(r->edge_fit, effect, r->list[k].shape);
   if (hold == 0) return;
   double held = hold * effect->coefficient_um[r->list[k].index];
   gsl_matrix_set(r->normal, a, a, gsl_matrix_get(r->normal, a, a) + hold);
@@ -144,9 +144,9 @@ static void hold_free(refit *r, size_t k) {
 
 /* A row knows few numbers of the geometry, and all of the effects. */
 static void add_row(refit *r, size_t i) {
-  size_t own[FG_POINTS_ROW_PARAMETERS + UNKNOWNS_MAX];
-  double value[FG_POINTS_ROW_PARAMETERS + UNKNOWNS_MAX];
-  size_t count = fg_points_row_parameters(r->points, i, own), geometry = count;
+  size_t own[FG_EDGE_FIT_ROW_PARAMETERS + UNKNOWNS_MAX];
+  double value[FG_EDGE_FIT_ROW_PARAMETERS + UNKNOWNS_MAX];
+  size_t count = fg_edge_fit_row_parameters(r->edge_fit, i, own), geometry = count;
   for (size_t k = 0; k < r->unknowns; k++)
     own[count++] = r->parameters + k;
   for (size_t a = 0; a < count; a++) /* geometry in mm */
@@ -164,7 +164,7 @@ static void assemble(refit *r) {
   size_t n = r->parameters + r->unknowns;
   gsl_matrix_set_zero(r->normal);
   gsl_vector_set_zero(r->right);
-  for (size_t i = 0; i < r->points->row_count; i++)
+  for (size_t i = 0; i < r->edge_fit->row_count; i++)
     add_row(r, i);
   for (size_t k = 0; k < r->unknowns; k++)
     hold_free(r, k);
@@ -205,12 +205,12 @@ static double move(refit *r) {
 
 /* Between the rows next to it a step may lie anywhere: the sd of a uniform distribution. Rows that
  * hardly count do not hold it. */
-static double place_u(const fg_points *points, const fg_effect_found *step) {
+static double place_u(const fg_edge_fit *edge_fit, const fg_effect_found *step) {
   double above = -INFINITY, below = INFINITY, max = 0;
-  for (size_t i = 0; i < points->row_count; i++)
-    max = fmax(max, points->rows[i].weight);
-  for (size_t i = 0; i < points->row_count; i++) {
-    const fg_points_row *row = &points->rows[i];
+  for (size_t i = 0; i < edge_fit->row_count; i++)
+    max = fmax(max, edge_fit->rows[i].weight);
+  for (size_t i = 0; i < edge_fit->row_count; i++) {
+    const fg_edge_fit_row *row = &edge_fit->rows[i];
     double at = fg_point_along(row->ideal, step->kind->axis);
     bool rough =
         row->weight > 0 && row->weight < ROUGH_WEIGHT * max; /* 0: left out for the step itself */
@@ -226,14 +226,14 @@ static double place_u(const fg_points *points, const fg_effect_found *step) {
 /* Variance of the rows, um² per unit of weight, for correlated noise. */
 static double row_variance(const refit *r) {
   double sum = 0, rows = 0;
-  for (size_t i = 0; i < r->points->row_count; i++) {
-    if (r->points->views[r->points->rows[i].view].held_out) continue;
-    sum += FG_POINTS_BLOCK * r->white[i] * r->white[i];
+  for (size_t i = 0; i < r->edge_fit->row_count; i++) {
+    if (r->edge_fit->views[r->edge_fit->rows[i].view].held_out) continue;
+    sum += FG_EDGE_FIT_BLOCK * r->white[i] * r->white[i];
     rows++;
   }
   double dof = fmax(rows - (double)(r->parameters + r->unknowns), 1);
-  double integral = fg_points_integral(r->points, NULL, r->points->row_count, r->white);
-  return sum / dof * fmax(r->points->scatter.swell, integral);
+  double integral = fg_edge_fit_integral(r->edge_fit, NULL, r->edge_fit->row_count, r->white);
+  return sum / dof * fmax(r->edge_fit->scatter.swell, integral);
 }
 
 /* What the effects in force add to the covariance of two numbers of the geometry. `whole` is the
@@ -246,7 +246,7 @@ static double effects_covariance(const refit *r, double variance, const double *
   double sum = variance * (gsl_matrix_get(whole, a, b) - gsl_matrix_get(alone, a, b));
   for (size_t k = 0; k < r->unknowns; k++) {
     size_t c = r->parameters + k;
-    double hold = hold_of(r->points, &r->set->effects[r->list[k].effect], r->list[k].shape);
+    double hold = hold_of(r->edge_fit, &r->set->effects[r->list[k].effect], r->list[k].shape);
     double t = hold * size[r->list[k].effect];
     sum += gsl_matrix_get(whole, a, c) * gsl_matrix_get(whole, b, c) * (t * t - variance * hold);
   }
@@ -260,8 +260,8 @@ static void find_effects_covariance(refit *r, double variance, const gsl_matrix 
     for (size_t c = 0; c < effect->columns; c++)
       size[e] = fmax(size[e], fabs(effect->coefficient_um[c]));
   }
-  for (size_t p = 0, at = 0; p < r->points->part_count; p++) {
-    size_t bumps = r->points->parts[p].bump_count;
+  for (size_t p = 0, at = 0; p < r->edge_fit->part_count; p++) {
+    size_t bumps = r->edge_fit->parts[p].bump_count;
     r->parts[p].overall = fmax(0, effects_covariance(r, variance, size, r->normal, alone, at, at));
     for (size_t b = 0; b < bumps; b++) {
       size_t index[3] = {at + 1 + 3 * b, at + 3 + 3 * b, at}; /* X, R, R0 */
@@ -285,7 +285,7 @@ static void find_uncertainties(refit *r, gsl_matrix *alone) {
   if (gsl_linalg_cholesky_decomp1(r->normal) || gsl_linalg_cholesky_invert(r->normal)) return;
   for (size_t e = 0; e < r->set->count; e++)
     if (r->set->effects[e].kind->jumps)
-      r->set->effects[e].u_shape[0] = place_u(r->points, &r->set->effects[e]);
+      r->set->effects[e].u_shape[0] = place_u(r->edge_fit, &r->set->effects[e]);
   for (size_t k = 0; k < r->unknowns; k++) {
     fg_effect_found *effect = &r->set->effects[r->list[k].effect];
     double u = sqrt(variance * gsl_matrix_get(r->normal, r->parameters + k, r->parameters + k));
@@ -300,39 +300,39 @@ static void find_uncertainties(refit *r, gsl_matrix *alone) {
 
 /* Residual in um and, unless NULL, Jacobian with the set's present correction, geometry fitted to
  * it. */
-static fg_status fit_geometry(fg_context *ctx, fg_points *points, const fg_effect_set *set,
+static fg_status fit_geometry(fg_context *ctx, fg_edge_fit *edge_fit, const fg_effect_set *set,
                               double *residual_um, double *jacobian) {
   fg_field_list fields;
   double *shift = NULL;
-  fg_effect_set_fields(points, set, &fields);
+  fg_effect_set_fields(edge_fit, set, &fields);
   fg_status status = FG_OK;
   for (int twice = 0; twice < 2 && status == FG_OK; twice++) {
     /* Directions in the part's frame come from the geometry, and the geometry from the shift. */
     free(shift);
     shift = NULL;
-    status = fg_effect_set_shift(ctx, points, set, &shift);
-    fg_points_correction correction = {&fields, shift};
-    if (status == FG_OK) status = fg_points_fit(ctx, points, &correction);
-    if (status == FG_OK) fg_points_residual(points, &correction, residual_um, jacobian);
+    status = fg_effect_set_shift(ctx, edge_fit, set, &shift);
+    fg_edge_fit_correction correction = {&fields, shift};
+    if (status == FG_OK) status = fg_edge_fit_fit(ctx, edge_fit, &correction);
+    if (status == FG_OK) fg_edge_fit_residual(edge_fit, &correction, residual_um, jacobian);
   }
-  for (size_t i = 0; i < points->row_count; i++)
+  for (size_t i = 0; i < edge_fit->row_count; i++)
     residual_um[i] *= 1000;
   free(shift);
   return status;
 }
 
-fg_status fg_joint_fit_geometry(fg_context *ctx, fg_points *points, const fg_effect_set *set,
+fg_status fg_joint_fit_geometry(fg_context *ctx, fg_edge_fit *edge_fit, const fg_effect_set *set,
                                 double *residual_um) {
-  return fit_geometry(ctx, points, set, residual_um, NULL);
+  return fit_geometry(ctx, edge_fit, set, residual_um, NULL);
 }
 
 static fg_status evaluate(fg_context *ctx, refit *r) {
-  return fit_geometry(ctx, r->points, r->set, r->residual, r->jacobian);
+  return fit_geometry(ctx, r->edge_fit, r->set, r->residual, r->jacobian);
 }
 
 static fg_status allocate(fg_context *ctx, refit *r) {
-  size_t rows = r->points->row_count, n = r->parameters + r->unknowns;
-  FG_TRY(fg_whitening_open(ctx, r->points, &r->whitening));
+  size_t rows = r->edge_fit->row_count, n = r->parameters + r->unknowns;
+  FG_TRY(fg_whitening_open(ctx, r->edge_fit, &r->whitening));
   FG_TRY(fg_memory_allocate(ctx, rows, sizeof(double), (void **)&r->white));
   FG_TRY(fg_memory_allocate(ctx, rows, sizeof(double), (void **)&r->residual));
   FG_TRY(fg_memory_allocate(ctx, rows * r->parameters, sizeof(double), (void **)&r->jacobian));
@@ -355,83 +355,85 @@ static void release(refit *r) {
   gsl_vector_free(r->right);
 }
 
-static fg_status run(fg_context *ctx, fg_points *points, fg_effect_set *set, double *residual_um,
-                     fg_joint_fit_part *parts) {
-  refit r = {.points = points, .set = set, .parts = parts};
+static fg_status run(fg_context *ctx, fg_edge_fit *edge_fit, fg_effect_set *set,
+                     double *residual_um, fg_joint_fit_part *parts) {
+  refit r = {.edge_fit = edge_fit, .set = set, .parts = parts};
   gsl_matrix *alone = NULL;
   fg_status status = FG_OK;
   fg_numerics_start();
-  FG_TRY(fg_points_fit(ctx, points, NULL));
-  r.parameters = points->parameters;
+  FG_TRY(fg_edge_fit_fit(ctx, edge_fit, NULL));
+  r.parameters = edge_fit->parameters;
   r.unknowns = list_unknowns(set, r.list);
   FG_TRY_EXIT(allocate(ctx, &r));
   for (int round = 0; round < REFIT_ROUNDS; round++) {
     FG_TRY_EXIT(evaluate(ctx, &r));
     if (!r.unknowns) break;
-    effect_design(points, set, r.list, r.unknowns, r.work, r.design);
+    effect_design(edge_fit, set, r.list, r.unknowns, r.work, r.design);
     whiten_all(&r);
     FG_TRY_EXIT(solve(ctx, &r));
     if (move(&r) < STEP_END_UM) break;
   }
   if (r.unknowns) {
     FG_TRY_EXIT(evaluate(ctx, &r));
-    effect_design(points, set, r.list, r.unknowns, r.work, r.design);
+    effect_design(edge_fit, set, r.list, r.unknowns, r.work, r.design);
     whiten_all(&r);
     alone = gsl_matrix_alloc(r.parameters, r.parameters);
     if (alone) find_uncertainties(&r, alone);
     if (!alone) status = fg_fail(ctx, FG_ERR_MEMORY, "out of memory: %zu numbers", r.parameters);
   }
-  if (residual_um) memcpy(residual_um, r.residual, points->row_count * sizeof *residual_um);
+  if (residual_um) memcpy(residual_um, r.residual, edge_fit->row_count * sizeof *residual_um);
 exit:
   gsl_matrix_free(alone);
   release(&r);
   return status;
 }
 
-fg_status fg_joint_fit(fg_context *ctx, fg_points *points, fg_effect_set *set,
+fg_status fg_joint_fit(fg_context *ctx, fg_edge_fit *edge_fit, fg_effect_set *set,
                        double *residual_um) {
-  return run(ctx, points, set, residual_um, NULL);
+  return run(ctx, edge_fit, set, residual_um, NULL);
 }
 
-static fg_status open_parts(fg_context *ctx, const fg_points *points, fg_joint_fit_result *result) {
-  FG_TRY(
-      fg_memory_allocate(ctx, points->part_count, sizeof *result->parts, (void **)&result->parts));
-  for (size_t p = 0; p < points->part_count; p++)
-    FG_TRY(fg_memory_allocate(ctx, points->parts[p].bump_count, sizeof *result->parts[p].bumps,
+static fg_status open_parts(fg_context *ctx, const fg_edge_fit *edge_fit,
+                            fg_joint_fit_result *result) {
+  FG_TRY(fg_memory_allocate(ctx, edge_fit->part_count, sizeof *result->parts,
+                            (void **)&result->parts));
+  for (size_t p = 0; p < edge_fit->part_count; p++)
+    FG_TRY(fg_memory_allocate(ctx, edge_fit->parts[p].bump_count, sizeof *result->parts[p].bumps,
                               (void **)&result->parts[p].bumps));
   return FG_OK;
 }
 
-static fg_status find_shift(fg_context *ctx, const fg_points *points, fg_joint_fit_result *result) {
+static fg_status find_shift(fg_context *ctx, const fg_edge_fit *edge_fit,
+                            fg_joint_fit_result *result) {
   double *along = NULL;
-  FG_TRY(fg_memory_allocate(ctx, points->row_count, sizeof *result->shift_mm,
+  FG_TRY(fg_memory_allocate(ctx, edge_fit->row_count, sizeof *result->shift_mm,
                             (void **)&result->shift_mm));
-  FG_TRY(fg_effect_set_shift(ctx, points, &result->set, &along));
-  for (size_t i = 0; i < points->row_count; i++) {
-    fg_point n = points->rows[i].normal;
+  FG_TRY(fg_effect_set_shift(ctx, edge_fit, &result->set, &along));
+  for (size_t i = 0; i < edge_fit->row_count; i++) {
+    fg_point n = edge_fit->rows[i].normal;
     result->shift_mm[i] = (fg_point){along[i] * n.x, along[i] * n.y};
   }
   free(along);
   return FG_OK;
 }
 
-fg_status fg_joint_fit_open(fg_context *ctx, fg_points *points, const fg_effect_set *set,
+fg_status fg_joint_fit_open(fg_context *ctx, fg_edge_fit *edge_fit, const fg_effect_set *set,
                             fg_joint_fit_result *result) {
-  *result = (fg_joint_fit_result){.points = points, .set = *set};
+  *result = (fg_joint_fit_result){.edge_fit = edge_fit, .set = *set};
   fg_status status = FG_OK;
-  FG_TRY_EXIT(open_parts(ctx, points, result));
-  FG_TRY_EXIT(run(ctx, points, &result->set, NULL, result->parts));
-  fg_effect_set_fields(points, &result->set, &result->fields);
-  FG_TRY_EXIT(find_shift(ctx, points, result));
+  FG_TRY_EXIT(open_parts(ctx, edge_fit, result));
+  FG_TRY_EXIT(run(ctx, edge_fit, &result->set, NULL, result->parts));
+  fg_effect_set_fields(edge_fit, &result->set, &result->fields);
+  FG_TRY_EXIT(find_shift(ctx, edge_fit, result));
 exit:
   if (status != FG_OK) fg_joint_fit_close(result);
   return status;
 }
 
 void fg_joint_fit_close(fg_joint_fit_result *result) {
-  for (size_t p = 0; result->parts && p < result->points->part_count; p++)
+  for (size_t p = 0; result->parts && p < result->edge_fit->part_count; p++)
     free(result->parts[p].bumps);
   free(result->parts);
   free(result->shift_mm);
-  *result = (fg_joint_fit_result){.points = NULL};
+  *result = (fg_joint_fit_result){.edge_fit = NULL};
 }

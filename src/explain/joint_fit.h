@@ -1,15 +1,16 @@
 /* Geometry and effects fitted together. */
-#ifndef FG_EXPLAIN_JOINT_FIT_H
-#define FG_EXPLAIN_JOINT_FIT_H
+#ifndef FG_SEARCH_JOINT_FIT_H
+#define FG_SEARCH_JOINT_FIT_H
 
 #include "effect/set.h"
 
 /* From the effects' present numbers and the geometry that stands. `residual_um` (rows, or NULL)
  * gets what is left. */
-fg_status fg_joint_fit(fg_context *ctx, fg_points *points, fg_effect_set *set, double *residual_um);
+fg_status fg_joint_fit(fg_context *ctx, fg_edge_fit *edge_fit, fg_effect_set *set,
+                       double *residual_um);
 
 /* The geometry alone, beside effects whose numbers stand. */
-fg_status fg_joint_fit_geometry(fg_context *ctx, fg_points *points, const fg_effect_set *set,
+fg_status fg_joint_fit_geometry(fg_context *ctx, fg_edge_fit *edge_fit, const fg_effect_set *set,
                                 double *residual_um);
 
 /* What the effects of a fit add to the covariance of its geometry's noise, mm². */
@@ -21,7 +22,7 @@ typedef struct fg_joint_fit_part {
 /* A fit that stays what it is whatever is fitted next to the same points: the set with its numbers,
  * and what it does at the geometry that was fitted beside it. */
 typedef struct fg_joint_fit_result {
-  const fg_points *points; /* their rows and views; the geometry is not read */
+  const fg_edge_fit *edge_fit; /* their rows and views; the geometry is not read */
   fg_effect_set set;
   fg_field_list fields;     /* of the scanner */
   fg_point *shift_mm;       /* owned; per row: where the part's own effects moved it */
@@ -29,7 +30,7 @@ typedef struct fg_joint_fit_result {
 } fg_joint_fit_result;
 
 /* Fits from the set's present numbers. The points must outlive the result. */
-fg_status fg_joint_fit_open(fg_context *ctx, fg_points *points, const fg_effect_set *set,
+fg_status fg_joint_fit_open(fg_context *ctx, fg_edge_fit *edge_fit, const fg_effect_set *set,
                             fg_joint_fit_result *result);
 void fg_joint_fit_close(fg_joint_fit_result *result);
 

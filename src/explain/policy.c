@@ -4,38 +4,37 @@
 
 /* ---- foils ---- */
 
-static bool scanned_again(const fg_points *points) {
-  return points->view_count > points->part_count;
+static bool scanned_again(const fg_edge_fit *edge_fit) {
+  return edge_fit->view_count > edge_fit->part_count;
 }
 
-static size_t max_effects_of_foils(const fg_points *points) {
-  return points->coarse ? 1 : scanned_again(points) ? 3 : 2;
+static size_t max_effects_of_foils(const fg_edge_fit *edge_fit) {
+  return edge_fit->coarse ? 1 : scanned_again(edge_fit) ? 3 : 2;
 }
 
-static bool has_lower_score(const fg_explain_search *s, const fg_explanation *explanation,
+static bool has_lower_score(const fg_search *s, const fg_explanation *explanation,
                             const fg_explanation *best) {
   if (!isfinite(explanation->excess)) return false;
-  return !isfinite(best->excess) ||
-         fg_explain_schwarz(s, explanation) < fg_explain_schwarz(s, best);
+  return !isfinite(best->excess) || fg_search_schwarz(s, explanation) < fg_search_schwarz(s, best);
 }
 
 /* ---- discs ---- */
 
 /* How many effects the points can tell apart. */
-static size_t max_effects_of_discs(const fg_points *points) {
-  return points->coarse ? 1 : points->part_count > 2 ? 5 : 2;
+static size_t max_effects_of_discs(const fg_edge_fit *edge_fit) {
+  return edge_fit->coarse ? 1 : edge_fit->part_count > 2 ? 5 : 2;
 }
 
 /* What one effect more gains by chance: a set that comes later, and is larger, must gain more. */
 #define ONE_MORE_CHI2 12.0
 
-static bool leaves_less(const fg_explain_search *s, const fg_explanation *explanation,
+static bool leaves_less(const fg_search *s, const fg_explanation *explanation,
                         const fg_explanation *best) {
   (void)s;
   return explanation->excess < best->excess - ONE_MORE_CHI2;
 }
 
-static bool has_new_shape(const fg_explain_search *s, const fg_explain_baseline *y,
+static bool has_new_shape(const fg_search *s, const fg_search_baseline *y,
                           const fg_explanation *best, const fg_explanation *curve) {
   (void)y;
   (void)best;
@@ -43,11 +42,11 @@ static bool has_new_shape(const fg_explain_search *s, const fg_explain_baseline 
   return s->new_shapes > 0;
 }
 
-static const fg_explain_policy foils = {
+static const fg_search_policy foils = {
     .middles_with_sets = true,
     .smoother_curves = true,
     .other_steps = true,
-    .find_placed = fg_explain_find_on_foils,
+    .find_placed = fg_search_find_on_foils,
     .effects_max = max_effects_of_foils,
     .placed_beside = true,
     .edge_error_um = 0.003, /* clean renders leave at most this (reports/loop_scans.md) */
@@ -64,7 +63,7 @@ static const fg_explain_policy foils = {
     .is_better = has_lower_score,
     .beside_curve = 2,
     .curve_share = 0.03, /* reports/loop_scans.md, tier curves */
-    .is_worth_fitting = fg_explain_hopes_for_shape,
+    .is_worth_fitting = fg_search_hopes_for_shape,
     .scatters = true,
     .strategies = {{true, false}, {false, false}, {true, true}},
     .strategy_count = 3,
@@ -78,13 +77,13 @@ static const fg_explain_policy foils = {
  * says little of one: a set must not leave one out that takes more than chance, and what is found
  * must predict discs that it was not fitted to. Their rows are few and lie all over the picture, so
  * that neither the noise along one edge nor the middle of a polynomial needs help. */
-static const fg_explain_policy discs = {
-    .find_placed = fg_explain_find_on_discs,
+static const fg_search_policy discs = {
+    .find_placed = fg_search_find_on_discs,
     .effects_max = max_effects_of_discs,
     .keeps_collinear = true,
     .edge_error_um = 0.01, /* tuned on plates (reports/loop_plate.md) */
     .one_more_chi2 = ONE_MORE_CHI2,
-    .quadratic_chi2 = FG_EXPLAIN_GAIN_MIN,
+    .quadratic_chi2 = FG_SEARCH_GAIN_MIN,
     .placed_chi2 = 45.0,    /* tuned on plates (reports/loop_plate.md) */
     .worse_chi2 = INFINITY, /* none that is much worse is right */
     .is_better = leaves_less,
@@ -103,6 +102,6 @@ static const fg_explain_policy discs = {
     .confirms = true,
 };
 
-const fg_explain_policy *fg_explain_policy_of(const fg_points *points) {
-  return points->discs ? &discs : &foils;
+const fg_search_policy *fg_search_policy_of(const fg_edge_fit *edge_fit) {
+  return edge_fit->discs ? &discs : &foils;
 }

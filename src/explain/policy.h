@@ -4,30 +4,30 @@
  * the edge; but its smooth effects are nearly the same thing, so that few may stand together. A
  * plate of discs tells the smooth effects apart, but each disc has a form and a noise of its own.
  */
-#ifndef FG_EXPLAIN_POLICY_H
-#define FG_EXPLAIN_POLICY_H
+#ifndef FG_SEARCH_POLICY_H
+#define FG_SEARCH_POLICY_H
 
 #include "explain/search.h"
 
 /* How one start of the search goes about it. With `eager`, ripples and steps are looked for at
  * once: right for them, while a large smooth effect leaves traces in the first round that look like
  * them. Two curves can be made of nearly anything, so they come last. */
-typedef struct fg_explain_strategy {
+typedef struct fg_search_strategy {
   bool seeds_placed_first, two_curves;
-} fg_explain_strategy;
+} fg_search_strategy;
 
-enum { FG_EXPLAIN_STRATEGIES_MAX = 3 };
+enum { FG_SEARCH_STRATEGIES_MAX = 3 };
 
-struct fg_explain_policy {
+struct fg_search_policy {
   /* ---- candidates ---- */
   bool middles_with_sets; /* a polynomial's middle is found with every set, from powers that all of
                              them share; else it stands where the last fit put it */
   bool smoother_curves;   /* of all effects at once a curve is a smoother part (fg_effect_coarse) */
   bool other_steps;       /* a bump between two places lets a step stand at either */
-  fg_status (*find_placed)(fg_context *ctx, fg_explain_search *search); /* new ripples and steps */
+  fg_status (*find_placed)(fg_context *ctx, fg_search *search); /* new ripples and steps */
 
   /* ---- which sets are tried, and which are right ---- */
-  size_t (*effects_max)(const fg_points *points); /* in a set */
+  size_t (*effects_max)(const fg_edge_fit *edge_fit); /* in a set */
   bool placed_beside;   /* ripples and steps are not among those: all that stand out may be there */
   bool keeps_collinear; /* one effect in two forms is a set */
   double edge_error_um; /* of the edge model: below it effects are not told apart */
@@ -44,7 +44,7 @@ struct fg_explain_policy {
   bool has_rivals;    /* smooth curves that do as well are tied with listed sets */
   double worse_chi2;  /* a set so much worse than the best one is not tied with it */
   /* Whether a listed set stands before the best one so far where none is right. */
-  bool (*is_better)(const fg_explain_search *search, const fg_explanation *explanation,
+  bool (*is_better)(const fg_search *search, const fg_explanation *explanation,
                     const fg_explanation *best);
 
   /* ---- where no listed set is right ---- */
@@ -55,14 +55,14 @@ struct fg_explain_policy {
                             less */
   /* Whether the best listed set has a shape that is to be fitted with the geometry before any
    * curve is believed. */
-  bool (*is_worth_fitting)(const fg_explain_search *search, const fg_explain_baseline *baseline,
+  bool (*is_worth_fitting)(const fg_search *search, const fg_search_baseline *baseline,
                            const fg_explanation *best, const fg_explanation *curve);
   bool smallest_beside_own; /* the least amplitude of an effect is told beside its other columns */
 
   /* ---- search and fit in turns ---- */
   bool scatters; /* neighbours along an edge share their noise; else what is left says how much */
-  fg_explain_strategy
-      strategies[FG_EXPLAIN_STRATEGIES_MAX]; /* the next one where the last is not right */
+  fg_search_strategy
+      strategies[FG_SEARCH_STRATEGIES_MAX]; /* the next one where the last is not right */
   size_t strategy_count;
   double converged_share;  /* a set that is not right has come to rest when a round takes no more of
                          what  is left */
@@ -80,6 +80,6 @@ struct fg_explain_policy {
 };
 
 /* By what the parts are. */
-const fg_explain_policy *fg_explain_policy_of(const fg_points *points);
+const fg_search_policy *fg_search_policy_of(const fg_edge_fit *edge_fit);
 
 #endif

@@ -23,7 +23,7 @@ enum { ROUNDS = 8, COARSE_ROUNDS = 2 };
 /* Sets that no fit holds, at most: then they come again. */
 enum { GIVEN_UP_MAX = 16 };
 
-void fg_explain_take(const fg_explanations *explanations, size_t explanation, fg_effect_set *set) {
+void fg_search_take(const fg_explanations *explanations, size_t explanation, fg_effect_set *set) {
   memset(set, 0, sizeof *set);
   for (size_t e = 0; e < explanations->candidate_count; e++) {
     if (!(explanations->each[explanation].mask >> e & 1) || set->count == FG_EFFECT_SET_MAX)
@@ -59,23 +59,23 @@ static bool same_effects(const fg_effect_set *a, const fg_effect_set *b) {
 }
 
 /* Residual (um) and Jacobian at the set's geometry, with what the set does put back, linearly. */
-static fg_status put_back(fg_context *ctx, fg_points *points, const fg_effect_set *set,
+static fg_status put_back(fg_context *ctx, fg_edge_fit *edge_fit, const fg_effect_set *set,
                           double *residual_um, double *jacobian) {
-  size_t rows = points->row_count;
+  size_t rows = edge_fit->row_count;
   fg_field_list fields;
   double *shift = NULL, *columns = NULL;
   fg_status status = FG_OK;
-  fg_effect_set_fields(points, set, &fields);
-  FG_TRY_EXIT(fg_effect_set_shift(ctx, points, set, &shift));
+  fg_effect_set_fields(edge_fit, set, &fields);
+  FG_TRY_EXIT(fg_effect_set_shift(ctx, edge_fit, set, &shift));
   FG_TRY_EXIT(
       fg_memory_allocate(ctx, rows, FG_EFFECT_COLUMNS_MAX * sizeof *columns, (void **)&columns));
-  fg_points_correction correction = {&fields, shift};
-  fg_points_residual(points, &correction, residual_um, jacobian);
+  fg_edge_fit_correction correction = {&fields, shift};
+  fg_edge_fit_residual(edge_fit, &correction, residual_um, jacobian);
   for (size_t i = 0; i < rows; i++)
     residual_um[i] *= 1000;
   for (size_t e = 0; e < set->count; e++) {
     const fg_effect_found *effect = &set->effects[e];
-    size_t count = fg_effect_columns(points, effect->kind, effect->shape, columns);
+    size_t count = fg_effect_columns(edge_fit, effect->kind, effect->shape, columns);
     for (size_t c = 0; c < count; c++)
       for (size_t i = 0; i < rows; i++)
         residual_um[i] += effect->coefficient_um[c] * columns[c * rows + i];
@@ -108,8 +108,8 @@ static void drop_nothings(fg_effect_set *set) {
 
 /* A search under way. */
 typedef struct settling {
-  const fg_explain_policy *policy;
-  const fg_explain_bars *barred;
+  const fg_search_policy *policy;
+  const fg_search_bars *barred;
   fg_effect_set set;
   fg_explanations explanations;
   fg_effect_set given_up[GIVEN_UP_MAX];
@@ -118,21 +118,21 @@ typedef struct settling {
 } settling;
 
 /* Weighted sum of squares over the rows that are not kept aside. */
-static double square_of(const fg_points *points, const double *residual_um) {
+static double square_of(const fg_edge_fit *edge_fit, const double *residual_um) {
   double sum = 0;
-  for (size_t i = 0; i < points->row_count; i++)
-    if (!points->views[points->rows[i].view].held_out)
-      sum += points->rows[i].weight * residual_um[i] * residual_um[i];
+  for (size_t i = 0; i < edge_fit->row_count; i++)
+    if (!edge_fit->views[edge_fit->rows[i].view].held_out)
+      sum += edge_fit->rows[i].weight * residual_um[i] * residual_um[i];
   return sum;
 }
 
 /* An effect that bends the geometry so far is none. */
-static bool is_sane(const fg_points *points, const double *geometry, const fg_effect_set *set) {
+static bool is_sane(const fg_edge_fit *edge_fit, const double *geometry, const fg_effect_set *set) {
   size_t at = 0;
-  for (size_t p = 0; p < points->part_count; p++) {
+  for (size_t p = 0; p < edge_fit->part_count; p++) {
     double was = geometry[at];
-    if (!(fabs(points->parts[p].overall_radius_mm / was - 1) < SANE_SHARE)) return false;
-    at += 1 + 3 * points->parts[p].bump_count;
+    if (!(fabs(edge_fit->parts[p].overall_radius_mm / was - 1) < SANE_SHARE)) return false;
+    at += 1 + 3 * edge_fit->parts[p].bump_count;
   }
   for (size_t e = 0; e < set->count; e++)
     for (size_t c = 0; c < set->effects[e].columns; c++)
@@ -142,22 +142,22 @@ static bool is_sane(const fg_points *points, const double *geometry, const fg_ef
 
 /* Fits a set from the geometry that stands. One that runs away, or leaves more than `none` (what no
  * effect at all leaves), is given up: then the set is empty. */
-static fg_status fit(fg_context *ctx, fg_points *points, double none, settling *at) {
-  fg_points_geometry_save(points, at->geometry);
-  fg_status status = fg_joint_fit(ctx, points, &at->set, at->residual_um);
+static fg_status fit(fg_context *ctx, fg_edge_fit *edge_fit, double none, settling *at) {
+  fg_edge_fit_geometry_save(edge_fit, at->geometry);
+  fg_status status = fg_joint_fit(ctx, edge_fit, &at->set, at->residual_um);
   if (status != FG_OK && status != FG_ERR_NUMERIC) return status;
-  if (status == FG_OK && is_sane(points, at->geometry, &at->set) &&
-      square_of(points, at->residual_um) <= none)
+  if (status == FG_OK && is_sane(edge_fit, at->geometry, &at->set) &&
+      square_of(edge_fit, at->residual_um) <= none)
     return FG_OK;
-  fg_points_geometry_load(points, at->geometry);
+  fg_edge_fit_geometry_load(edge_fit, at->geometry);
   if (at->given_up_count < GIVEN_UP_MAX) at->given_up[at->given_up_count++] = at->set;
   memset(&at->set, 0, sizeof at->set);
   ctx->message[0] = 0;
-  return fg_joint_fit(ctx, points, &at->set, at->residual_um);
+  return fg_joint_fit(ctx, edge_fit, &at->set, at->residual_um);
 }
 
 /* Whether a round from `before` to `left` took so little that a further one would take nothing. */
-static bool has_converged(const fg_explain_policy *policy, double before, double left) {
+static bool has_converged(const fg_search_policy *policy, double before, double left) {
   return !(left <= (1 - policy->converged_share) * before);
 }
 
@@ -201,30 +201,31 @@ static void take_best_alone(const fg_explanations *explanations, const fg_effect
 /* Several smooth effects beside a ripple whose period is a little off stand for what that leaves,
  * and no fit holds them: the ripple alone finds its period, and the next round starts from there.
  */
-static fg_status fit_or_best_alone(fg_context *ctx, fg_points *points, double none, settling *at) {
+static fg_status fit_or_best_alone(fg_context *ctx, fg_edge_fit *edge_fit, double none,
+                                   settling *at) {
   const fg_effect_set next = at->set;
-  FG_TRY(fit(ctx, points, none, at));
+  FG_TRY(fit(ctx, edge_fit, none, at));
   if (!at->policy->falls_back || next.count < 2 || at->set.count) return FG_OK;
   take_best_alone(&at->explanations, &next, &at->set);
-  return fit(ctx, points, none, at);
+  return fit(ctx, edge_fit, none, at);
 }
 
 /* The first explanation, or one of the effects that are preferred (NULL: none are). */
 static void take_likeliest(const fg_explanations *explanations, const fg_effect_set *prefer,
                            fg_effect_set *set) {
   for (size_t m = 0; prefer && m < explanations->count; m++) {
-    fg_explain_take(explanations, m, set);
+    fg_search_take(explanations, m, set);
     if (same_effects(set, prefer)) return;
   }
-  fg_explain_take(explanations, 0, set);
+  fg_search_take(explanations, 0, set);
 }
 
 /* One turn: the search at the geometry that stands, and the fit of what it finds, which is `next`.
  * The request holds what differs from turn to turn. */
-static fg_status take_turn(fg_context *ctx, fg_points *points, fg_explain_request request,
+static fg_status take_turn(fg_context *ctx, fg_edge_fit *edge_fit, fg_search_request request,
                            const fg_effect_set *prefer, double none, settling *at,
                            fg_effect_set *next) {
-  const fg_explain_policy *policy = at->policy;
+  const fg_search_policy *policy = at->policy;
   request.policy = policy;
   request.residual_um = at->residual_um;
   request.jacobian = at->jacobian;
@@ -232,44 +233,44 @@ static fg_status take_turn(fg_context *ctx, fg_points *points, fg_explain_reques
   request.given_up = at->given_up;
   request.given_up_count = policy->drops_nothings ? at->given_up_count : 0;
   request.barred = at->barred;
-  if (policy->scatters) FG_TRY(fg_points_find_scatter(ctx, points, at->residual_um));
-  FG_TRY(put_back(ctx, points, &at->set, at->residual_um, at->jacobian));
-  FG_TRY(fg_explain_find(ctx, points, &request, &at->explanations));
+  if (policy->scatters) FG_TRY(fg_edge_fit_find_scatter(ctx, edge_fit, at->residual_um));
+  FG_TRY(put_back(ctx, edge_fit, &at->set, at->residual_um, at->jacobian));
+  FG_TRY(fg_search_find(ctx, edge_fit, &request, &at->explanations));
   take_likeliest(&at->explanations, prefer, next);
   keep_numbers(&at->set, next);
   at->set = *next;
-  fg_explain_drop_across_steps(points, &at->set, policy->step_half_mm);
-  FG_TRY(fit_or_best_alone(ctx, points, none, at));
+  fg_search_drop_across_steps(edge_fit, &at->set, policy->step_half_mm);
+  FG_TRY(fit_or_best_alone(ctx, edge_fit, none, at));
   /* Given up: what was right to first order is not. */
   if (next->count && !at->set.count) at->explanations.right = false;
   return FG_OK;
 }
 
 /* Search and fit in turns from a start without effects. */
-static fg_status iterate_from(fg_context *ctx, fg_points *points, fg_explain_strategy how,
+static fg_status iterate_from(fg_context *ctx, fg_edge_fit *edge_fit, fg_search_strategy how,
                               settling *at) {
-  const fg_explain_policy *policy = at->policy;
+  const fg_search_policy *policy = at->policy;
   fg_effect_set tried = {.count = 0}, last = {.count = 0};
   double left = INFINITY;
   memset(&at->set, 0, sizeof at->set);
-  FG_TRY(fg_joint_fit(ctx, points, &at->set, at->residual_um));
-  double none = square_of(points, at->residual_um);
+  FG_TRY(fg_joint_fit(ctx, edge_fit, &at->set, at->residual_um));
+  double none = square_of(edge_fit, at->residual_um);
   round_end end[ROUNDS];
   bool hopeless = false;
-  for (int round = 0; round < (points->coarse ? COARSE_ROUNDS : ROUNDS); round++) {
+  for (int round = 0; round < (edge_fit->coarse ? COARSE_ROUNDS : ROUNDS); round++) {
     const fg_effect_set in_force = at->set;
     fg_effect_set next;
-    const fg_explain_request request = {.tried = &tried,
-                                        .look = how.seeds_placed_first || round > 0,
-                                        .two_curves = how.two_curves,
-                                        .hopeless = hopeless};
-    FG_TRY(take_turn(ctx, points, request, NULL, none, at, &next));
+    const fg_search_request request = {.tried = &tried,
+                                       .look = how.seeds_placed_first || round > 0,
+                                       .two_curves = how.two_curves,
+                                       .hopeless = hopeless};
+    FG_TRY(take_turn(ctx, edge_fit, request, NULL, none, at, &next));
     bool same = same_effects(policy->converges_in_force ? &in_force : &last, &next);
     last = next;
     if (!at->explanations.right) tried = next;
-    FG_TRY(fg_explain_drop_outliers(ctx, points, policy->own_noise, at->residual_um));
+    FG_TRY(fg_search_drop_outliers(ctx, edge_fit, policy->own_noise, at->residual_um));
     double before = left;
-    left = square_of(points, at->residual_um);
+    left = square_of(edge_fit, at->residual_um);
     if (same && round > 0 && (at->explanations.right || has_converged(policy, before, left))) break;
     end[round] = (round_end){at->set, left, at->explanations.right};
     if (at->explanations.right && comes_again(end, round)) break;
@@ -287,65 +288,65 @@ static size_t count_free(const fg_effect_set *set) {
 }
 
 /* From a set in force; no turn follows that could fit a shape in hope, so none is. */
-static fg_status iterate_from_set(fg_context *ctx, fg_points *points, const fg_effect_set *set,
+static fg_status iterate_from_set(fg_context *ctx, fg_edge_fit *edge_fit, const fg_effect_set *set,
                                   settling *at) {
   memset(&at->set, 0, sizeof at->set);
-  FG_TRY(fg_joint_fit(ctx, points, &at->set, at->residual_um));
-  double none = square_of(points, at->residual_um);
+  FG_TRY(fg_joint_fit(ctx, edge_fit, &at->set, at->residual_um));
+  double none = square_of(edge_fit, at->residual_um);
   at->set = *set;
-  FG_TRY(fit(ctx, points, none, at));
+  FG_TRY(fit(ctx, edge_fit, none, at));
   fg_effect_set next;
-  const fg_explain_request request = {
+  const fg_search_request request = {
       .look = true, .two_curves = count_free(set) > 1, .hopeless = true};
-  return take_turn(ctx, points, request, set, none, at, &next);
+  return take_turn(ctx, edge_fit, request, set, none, at, &next);
 }
 
 /* The manners of the policy, each where the one before does not come to rest at an explanation that
  * is right; the best one stays. */
-static fg_status iterate_from_best(fg_context *ctx, fg_points *points, settling *at) {
-  const fg_explain_policy *policy = at->policy;
-  size_t numbers = fg_points_geometry_size(points);
+static fg_status iterate_from_best(fg_context *ctx, fg_edge_fit *edge_fit, settling *at) {
+  const fg_search_policy *policy = at->policy;
+  size_t numbers = fg_edge_fit_geometry_size(edge_fit);
   double best = INFINITY, *geometry = NULL;
   settling kept = *at;
   FG_TRY(
-      fg_memory_allocate(ctx, numbers + points->row_count, sizeof *geometry, (void **)&geometry));
+      fg_memory_allocate(ctx, numbers + edge_fit->row_count, sizeof *geometry, (void **)&geometry));
   double *residual_um = geometry + numbers;
   fg_status status = FG_OK;
   for (size_t i = 0; i < policy->strategy_count; i++) {
-    if (i > 0 && points->coarse) break;
-    if (policy->strategies[i].two_curves && points->view_count < 2) continue;
-    FG_TRY_EXIT(iterate_from(ctx, points, policy->strategies[i], at));
-    double left = square_of(points, at->residual_um);
+    if (i > 0 && edge_fit->coarse) break;
+    if (policy->strategies[i].two_curves && edge_fit->view_count < 2) continue;
+    FG_TRY_EXIT(iterate_from(ctx, edge_fit, policy->strategies[i], at));
+    double left = square_of(edge_fit, at->residual_um);
     if (at->explanations.right) goto exit;
     if (i && has_converged(policy, best, left)) continue;
     best = left;
     kept = *at;
-    fg_points_geometry_save(points, geometry);
-    memcpy(residual_um, at->residual_um, points->row_count * sizeof *residual_um);
+    fg_edge_fit_geometry_save(edge_fit, geometry);
+    memcpy(residual_um, at->residual_um, edge_fit->row_count * sizeof *residual_um);
   }
   at->set = kept.set;
   at->explanations = kept.explanations;
-  fg_points_geometry_load(points, geometry);
-  memcpy(at->residual_um, residual_um, points->row_count * sizeof *residual_um);
+  fg_edge_fit_geometry_load(edge_fit, geometry);
+  memcpy(at->residual_um, residual_um, edge_fit->row_count * sizeof *residual_um);
 exit:
   free(geometry);
   return status;
 }
 
-static fg_status drop_ends(fg_context *ctx, fg_points *points, double *residual_um) {
+static fg_status drop_ends(fg_context *ctx, fg_edge_fit *edge_fit, double *residual_um) {
   fg_effect_set none = {.count = 0};
-  FG_TRY(fg_joint_fit(ctx, points, &none, residual_um));
-  return fg_explain_drop_ends(ctx, points, residual_um);
+  FG_TRY(fg_joint_fit(ctx, edge_fit, &none, residual_um));
+  return fg_search_drop_ends(ctx, edge_fit, residual_um);
 }
 
 static fg_status open_settling(fg_context *ctx, const fg_iterate_request *request,
                                double *residual_um, settling *at) {
-  const fg_points *points = request->points;
+  const fg_edge_fit *edge_fit = request->edge_fit;
   *at =
       (settling){.policy = request->policy, .barred = request->barred, .residual_um = residual_um};
-  FG_TRY(fg_memory_allocate(ctx, points->row_count, points->parameters * sizeof *at->jacobian,
+  FG_TRY(fg_memory_allocate(ctx, edge_fit->row_count, edge_fit->parameters * sizeof *at->jacobian,
                             (void **)&at->jacobian));
-  return fg_memory_allocate(ctx, fg_points_geometry_size(points), sizeof *at->geometry,
+  return fg_memory_allocate(ctx, fg_edge_fit_geometry_size(edge_fit), sizeof *at->geometry,
                             (void **)&at->geometry);
 }
 
@@ -354,15 +355,15 @@ static void close_settling(settling *at) {
   free(at->geometry);
 }
 
-fg_status fg_explain_iterate(fg_context *ctx, const fg_iterate_request *request, fg_effect_set *set,
-                             fg_explanations *explanations, double *residual_um) {
-  fg_points *points = request->points;
+fg_status fg_search_iterate(fg_context *ctx, const fg_iterate_request *request, fg_effect_set *set,
+                            fg_explanations *explanations, double *residual_um) {
+  fg_edge_fit *edge_fit = request->edge_fit;
   settling at;
   fg_status status = FG_OK;
   memset(set, 0, sizeof *set);
-  if (request->policy->drops_ends) FG_TRY(drop_ends(ctx, points, residual_um));
+  if (request->policy->drops_ends) FG_TRY(drop_ends(ctx, edge_fit, residual_um));
   FG_TRY_EXIT(open_settling(ctx, request, residual_um, &at));
-  FG_TRY_EXIT(iterate_from_best(ctx, points, &at));
+  FG_TRY_EXIT(iterate_from_best(ctx, edge_fit, &at));
   *set = at.set;
   *explanations = at.explanations;
 exit:
@@ -370,12 +371,12 @@ exit:
   return status;
 }
 
-fg_status fg_explain_iterate_again(fg_context *ctx, const fg_iterate_request *request,
-                                   fg_effect_set *set, double *residual_um) {
+fg_status fg_search_iterate_again(fg_context *ctx, const fg_iterate_request *request,
+                                  fg_effect_set *set, double *residual_um) {
   settling at;
   fg_status status = FG_OK;
   FG_TRY_EXIT(open_settling(ctx, request, residual_um, &at));
-  FG_TRY_EXIT(iterate_from_set(ctx, request->points, set, &at));
+  FG_TRY_EXIT(iterate_from_set(ctx, request->edge_fit, set, &at));
   *set = at.set;
 exit:
   close_settling(&at);

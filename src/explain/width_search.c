@@ -39,7 +39,7 @@ typedef struct width_view {
 } width_view;
 
 typedef struct width_fit {
-  const fg_points *points;
+  const fg_edge_fit *edge_fit;
   width_row *rows;
   size_t count;
   width_view *views; /* means */
@@ -50,7 +50,7 @@ typedef struct width_fit {
 
 /* ---- rows ---- */
 
-static size_t put_nuisances(const fg_points_row *row, double *column) {
+static size_t put_nuisances(const fg_edge_fit_row *row, double *column) {
   for (int k = 0; k < 2; k++) {
     column[2 * k] = cos((2 + 2 * k) * row->normal_rad);
     column[2 * k + 1] = sin((2 + 2 * k) * row->normal_rad);
@@ -60,10 +60,10 @@ static size_t put_nuisances(const fg_points_row *row, double *column) {
 }
 
 static void list_rows(width_fit *f) {
-  const fg_points *points = f->points;
-  for (size_t i = 0; i < points->row_count; i++) {
-    const fg_points_row *row = &points->rows[i];
-    if (points->views[row->view].held_out || !(row->weight > 0) || !(row->half_width_mm > 0))
+  const fg_edge_fit *edge_fit = f->edge_fit;
+  for (size_t i = 0; i < edge_fit->row_count; i++) {
+    const fg_edge_fit_row *row = &edge_fit->rows[i];
+    if (edge_fit->views[row->view].held_out || !(row->weight > 0) || !(row->half_width_mm > 0))
       continue;
     width_row *to = &f->rows[f->count++];
     *to = (width_row){.row = i,
@@ -71,8 +71,8 @@ static void list_rows(width_fit *f) {
                       .group = row->group,
                       .weight = row->weight,
                       .value_um = 1000 * row->half_width_mm};
-    to->place[0] = (row->at.x - points->frame.centre_mm[0]) / FG_FIELD_HALF_MM;
-    to->place[1] = (row->at.y - points->frame.centre_mm[1]) / FG_FIELD_HALF_MM;
+    to->place[0] = (row->at.x - edge_fit->frame.centre_mm[0]) / FG_FIELD_HALF_MM;
+    to->place[1] = (row->at.y - edge_fit->frame.centre_mm[1]) / FG_FIELD_HALF_MM;
     put_nuisances(row, to->column + f->effects);
   }
   f->unknowns = f->effects + NUISANCES;
@@ -80,7 +80,7 @@ static void list_rows(width_fit *f) {
 
 static void put_effects(width_fit *f, const fg_width_findings *findings, double *work) {
   for (size_t e = 0; e < f->effects; e++) {
-    fg_effect_width_columns(f->points, findings->each[e].effect.kind, NULL, work);
+    fg_effect_width_columns(f->edge_fit, findings->each[e].effect.kind, NULL, work);
     for (size_t i = 0; i < f->count; i++)
       f->rows[i].column[e] = work[f->rows[i].row];
   }
@@ -90,11 +90,11 @@ static void put_effects(width_fit *f, const fg_width_findings *findings, double 
 static void take_stretch_out(width_fit *f, const fg_effect_set *set, double *work) {
   for (size_t e = 0; e < set->count; e++) {
     const fg_effect_found *effect = &set->effects[e];
-    size_t count = fg_effect_width_columns(f->points, effect->kind, effect->shape, work);
+    size_t count = fg_effect_width_columns(f->edge_fit, effect->kind, effect->shape, work);
     for (size_t c = 0; c < count; c++)
       for (size_t i = 0; i < f->count; i++)
         f->rows[i].value_um -=
-            effect->coefficient_um[c] * work[c * f->points->row_count + f->rows[i].row];
+            effect->coefficient_um[c] * work[c * f->edge_fit->row_count + f->rows[i].row];
   }
 }
 
@@ -105,7 +105,7 @@ static void add_to_mean(double *mean, double value, double share) {
 }
 
 static void find_means(width_fit *f) {
-  memset(f->views, 0, f->points->view_count * sizeof *f->views);
+  memset(f->views, 0, f->edge_fit->view_count * sizeof *f->views);
   for (size_t i = 0; i < f->count; i++) {
     const width_row *row = &f->rows[i];
     width_view *view = &f->views[row->view];
@@ -136,7 +136,7 @@ static width_row beside(const width_fit *f, const width_row *row) {
 static void drop_vanished(width_fit *f) {
   double weight = 0;
   size_t kept = f->effects;
-  for (size_t v = 0; v < f->points->view_count; v++)
+  for (size_t v = 0; v < f->edge_fit->view_count; v++)
     weight += f->views[v].weight;
   for (size_t c = f->effects; c < f->unknowns; c++) {
     if (!(f->system.matrix[c][c] > VANISHED * weight)) continue;
@@ -262,7 +262,7 @@ static void judge(const width_fit *f, size_t e, double variance, size_t groups,
 static double rms_um(const width_fit *f, const fg_width_findings *findings, bool after) {
   double sum = 0, weight = 0;
   for (size_t i = 0; i < f->count; i++) {
-    const fg_points_row *row = &f->points->rows[f->rows[i].row];
+    const fg_edge_fit_row *row = &f->edge_fit->rows[f->rows[i].row];
     width_row r = beside(f, &f->rows[i]);
     for (size_t e = 0; after && e < f->effects; e++)
       if (findings->each[e].found) r.value_um -= f->x[e] * r.column[e];
@@ -288,9 +288,9 @@ static fg_status search(fg_context *ctx, width_fit *f, fg_width_findings *findin
   return FG_OK;
 }
 
-static void list_effects(const fg_points *points, fg_width_findings *findings) {
+static void list_effects(const fg_edge_fit *edge_fit, fg_width_findings *findings) {
   memset(findings, 0, sizeof *findings);
-  if (points->discs) return;
+  if (edge_fit->discs) return;
   for (const fg_effect *kind = fg_effect_first(); kind; kind = fg_effect_next(kind)) {
     if (kind->sought != FG_EFFECT_OF_WIDTH || findings->count == FG_WIDTH_EFFECTS_MAX) continue;
     findings->each[findings->count++] = (fg_width_effect){
@@ -298,19 +298,19 @@ static void list_effects(const fg_points *points, fg_width_findings *findings) {
   }
 }
 
-fg_status fg_explain_width(fg_context *ctx, const fg_points *points, const fg_effect_set *set,
-                           fg_width_findings *findings) {
+fg_status fg_search_width(fg_context *ctx, const fg_edge_fit *edge_fit, const fg_effect_set *set,
+                          fg_width_findings *findings) {
   width_fit *f = NULL;
   double *work = NULL;
   fg_status status = FG_OK;
-  list_effects(points, findings);
+  list_effects(edge_fit, findings);
   if (!findings->count) return FG_OK;
   FG_TRY(fg_memory_allocate(ctx, 1, sizeof *f, (void **)&f));
-  f->points = points;
+  f->edge_fit = edge_fit;
   f->effects = findings->count;
-  size_t rows = points->row_count;
+  size_t rows = edge_fit->row_count;
   FG_TRY_EXIT(fg_memory_allocate(ctx, rows, sizeof *f->rows, (void **)&f->rows));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, points->view_count, sizeof *f->views, (void **)&f->views));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, edge_fit->view_count, sizeof *f->views, (void **)&f->views));
   FG_TRY_EXIT(fg_memory_allocate(ctx, rows, FG_EFFECT_COLUMNS_MAX * sizeof *work, (void **)&work));
   list_rows(f);
   put_effects(f, findings, work);

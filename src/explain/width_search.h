@@ -8,8 +8,8 @@
  * foil, so that is allowed for in the uncertainty. Widths are correlated along an edge and over a
  * bump: bumps and lands are the units, not rows.
  */
-#ifndef FG_EXPLAIN_WIDTH_SEARCH_H
-#define FG_EXPLAIN_WIDTH_SEARCH_H
+#ifndef FG_SEARCH_WIDTH_SEARCH_H
+#define FG_SEARCH_WIDTH_SEARCH_H
 
 #include "effect/set.h"
 
@@ -32,7 +32,7 @@ typedef struct fg_width_findings {
 } fg_width_findings;
 
 /* `set`: in force, fitted to the points. Views that are kept aside have no say. */
-fg_status fg_explain_width(fg_context *ctx, const fg_points *points, const fg_effect_set *set,
-                           fg_width_findings *findings);
+fg_status fg_search_width(fg_context *ctx, const fg_edge_fit *edge_fit, const fg_effect_set *set,
+                          fg_width_findings *findings);
 
 #endif

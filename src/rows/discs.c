@@ -35,20 +35,20 @@ static int compare_sized(const void *a, const void *b) {
   return (p->index > q->index) - (p->index < q->index);
 }
 
-static void know_radius(fg_points *points, size_t view, double diameter_mm) {
-  fg_points_part *part = &points->parts[points->views[view].part];
+static void know_radius(fg_edge_fit *edge_fit, size_t view, double diameter_mm) {
+  fg_edge_fit_part *part = &edge_fit->parts[edge_fit->views[view].part];
   if (fabs(diameter_mm / (2 * part->overall_radius_mm) - 1) > DIAMETER_SHARE) return;
   part->overall_radius_mm = 0.5 * diameter_mm;
   part->radius_known = true;
-  points->known_count++;
+  edge_fit->known_count++;
 }
 
 /* Each disc and each diameter is used once. As many diameters as discs go by rank, which a wrong
  * scale cannot confuse; else the nearest pairs go first. */
-static void match(fg_points *points, const sized *discs, size_t count, const sized *known,
+static void match(fg_edge_fit *edge_fit, const sized *discs, size_t count, const sized *known,
                   size_t known_count, bool *taken) {
   for (size_t i = 0; i < count && count == known_count; i++)
-    know_radius(points, discs[i].index, known[i].diameter_mm);
+    know_radius(edge_fit, discs[i].index, known[i].diameter_mm);
   if (count == known_count) return;
   for (size_t round = 0; round < (count < known_count ? count : known_count); round++) {
     size_t best_disc = count, best_known = known_count;
@@ -62,13 +62,13 @@ static void match(fg_points *points, const sized *discs, size_t count, const siz
         best_known = k;
       }
     taken[best_disc] = taken[count + best_known] = true;
-    know_radius(points, discs[best_disc].index, known[best_known].diameter_mm);
+    know_radius(edge_fit, discs[best_disc].index, known[best_known].diameter_mm);
   }
 }
 
 /* Known diameters of the views [first, last), which are of one scan. */
-static fg_status match_scan(fg_context *ctx, fg_points *points, size_t first, size_t last) {
-  const fg_design *design = &points->views[first].measurement->design;
+static fg_status match_scan(fg_context *ctx, fg_edge_fit *edge_fit, size_t first, size_t last) {
+  const fg_design *design = &edge_fit->views[first].measurement->design;
   size_t count = last - first, known_count = design->diameter_count;
   sized *discs = NULL;
   bool *taken = NULL;
@@ -77,24 +77,24 @@ static fg_status match_scan(fg_context *ctx, fg_points *points, size_t first, si
   FG_TRY_EXIT(fg_memory_allocate(ctx, count + known_count, sizeof *discs, (void **)&discs));
   FG_TRY_EXIT(fg_memory_allocate(ctx, count + known_count, sizeof *taken, (void **)&taken));
   for (size_t i = 0; i < count; i++)
-    discs[i] = (sized){points->views[first + i].disc->diameter_mm, first + i};
+    discs[i] = (sized){edge_fit->views[first + i].disc->diameter_mm, first + i};
   for (size_t k = 0; k < known_count; k++)
     discs[count + k] = (sized){design->diameters_mm[k], k};
   qsort(discs, count, sizeof *discs, compare_sized);
   qsort(discs + count, known_count, sizeof *discs, compare_sized);
-  match(points, discs, count, discs + count, known_count, taken);
+  match(edge_fit, discs, count, discs + count, known_count, taken);
 exit:
   free(discs);
   free(taken);
   return status;
 }
 
-static fg_status match_diameters(fg_context *ctx, fg_points *points) {
-  for (size_t first = 0; first < points->view_count;) {
+static fg_status match_diameters(fg_context *ctx, fg_edge_fit *edge_fit) {
+  for (size_t first = 0; first < edge_fit->view_count;) {
     size_t last = first;
-    while (last < points->view_count && points->views[last].scan == points->views[first].scan)
+    while (last < edge_fit->view_count && edge_fit->views[last].scan == edge_fit->views[first].scan)
       last++;
-    FG_TRY(match_scan(ctx, points, first, last));
+    FG_TRY(match_scan(ctx, edge_fit, first, last));
     first = last;
   }
   return FG_OK;
@@ -104,7 +104,7 @@ static fg_status match_diameters(fg_context *ctx, fg_points *points) {
 
 /* Mean of a block's usable stations, taken in polar coordinates: a mean of points lies inside the
  * circle by the sagitta. */
-static bool average_block(const fg_disc *disc, size_t from, size_t to, fg_points_row *row) {
+static bool average_block(const fg_disc *disc, size_t from, size_t to, fg_edge_fit_row *row) {
   double n = 0, radius = 0, turn = 0, first = 0;
   for (size_t k = from; k < to && k < disc->station_count; k++) {
     const fg_disc_point *p = &disc->stations[k];
@@ -116,9 +116,9 @@ static bool average_block(const fg_disc *disc, size_t from, size_t to, fg_points
     radius += hypot(dx, dy);
     n++;
   }
-  if (n < FG_POINTS_BLOCK_SHARE * (double)(to - from)) return false;
+  if (n < FG_EDGE_FIT_BLOCK_SHARE * (double)(to - from)) return false;
   double angle = first + turn / n;
-  *row = (fg_points_row){.weight = n};
+  *row = (fg_edge_fit_row){.weight = n};
   row->at = (fg_point){disc->centre_mm.x + radius / n * cos(angle),
                        disc->centre_mm.y + radius / n * sin(angle)};
   row->phi = remainder(angle, 2 * M_PI) / M_PI;
@@ -130,7 +130,7 @@ static bool average_block(const fg_disc *disc, size_t from, size_t to, fg_points
 
 /* Robust sd of the rows against their neighbours at the lag: the noise of the edge, whatever form
  * the disc has, and whatever jumps and waves a scanner puts into it. */
-static double noise_beside_roundness(const fg_disc *disc, const fg_points_row *rows, size_t count,
+static double noise_beside_roundness(const fg_disc *disc, const fg_edge_fit_row *rows, size_t count,
                                      double *work) {
   for (size_t i = 0; i < count; i++) {
     size_t before = (i + count - NEIGHBOUR_LAG) % count, after = (i + NEIGHBOUR_LAG) % count;
@@ -146,47 +146,48 @@ static double noise_beside_roundness(const fg_disc *disc, const fg_points_row *r
 }
 
 /* An edge that is no circle is no gauge: all that it leaves counts as its noise. */
-static double noise_of(const fg_disc *disc, const fg_points_row *rows, size_t count, double *work) {
+static double noise_of(const fg_disc *disc, const fg_edge_fit_row *rows, size_t count,
+                       double *work) {
   if ((disc->flags & FG_BUMP_POOR_FIT) || count < ROWS_MIN) return disc->rms_um;
   return fmax(noise_beside_roundness(disc, rows, count, work), NOISE_MIN_UM);
 }
 
-static fg_status add_disc(fg_context *ctx, fg_points *points, size_t v, size_t block) {
-  const fg_disc *disc = points->views[v].disc;
+static fg_status add_disc(fg_context *ctx, fg_edge_fit *edge_fit, size_t v, size_t block) {
+  const fg_disc *disc = edge_fit->views[v].disc;
   for (size_t k = 0; k < disc->station_count; k += block) {
-    fg_points_row row;
+    fg_edge_fit_row row;
     if (!average_block(disc, k, k + block, &row)) continue;
     row.view = v;
-    row.part = points->views[v].part;
+    row.part = edge_fit->views[v].part;
     row.group = v;
-    FG_TRY(fg_points_add_row(ctx, points, &row));
+    FG_TRY(fg_edge_fit_add_row(ctx, edge_fit, &row));
   }
   return FG_OK;
 }
 
 static int compare_places(const void *a, const void *b) {
-  const fg_points_row *p = a, *q = b;
+  const fg_edge_fit_row *p = a, *q = b;
   return (p->s_mm > q->s_mm) - (p->s_mm < q->s_mm);
 }
 
 /* Weights in units of the cleanest disc's row. */
-static fg_status weigh(fg_context *ctx, fg_points *points, size_t block) {
+static fg_status weigh(fg_context *ctx, fg_edge_fit *edge_fit, size_t block) {
   double *noise = NULL, *work = NULL, min = INFINITY;
   fg_status status = FG_OK;
-  FG_TRY_EXIT(fg_memory_allocate(ctx, points->view_count, sizeof *noise, (void **)&noise));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, points->row_count, sizeof *work, (void **)&work));
-  for (size_t first = 0; first < points->row_count;) {
-    size_t last = first, v = points->rows[first].view;
-    while (last < points->row_count && points->rows[last].view == v)
+  FG_TRY_EXIT(fg_memory_allocate(ctx, edge_fit->view_count, sizeof *noise, (void **)&noise));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, edge_fit->row_count, sizeof *work, (void **)&work));
+  for (size_t first = 0; first < edge_fit->row_count;) {
+    size_t last = first, v = edge_fit->rows[first].view;
+    while (last < edge_fit->row_count && edge_fit->rows[last].view == v)
       last++;
-    qsort(points->rows + first, last - first, sizeof *points->rows, compare_places);
-    noise[v] = noise_of(points->views[v].disc, points->rows + first, last - first, work);
+    qsort(edge_fit->rows + first, last - first, sizeof *edge_fit->rows, compare_places);
+    noise[v] = noise_of(edge_fit->views[v].disc, edge_fit->rows + first, last - first, work);
     min = fmin(min, noise[v]);
     first = last;
   }
-  for (size_t i = 0; i < points->row_count; i++) {
-    double ratio = min / noise[points->rows[i].view];
-    points->rows[i].weight *= FG_POINTS_BLOCK / (double)block * ratio * ratio;
+  for (size_t i = 0; i < edge_fit->row_count; i++) {
+    double ratio = min / noise[edge_fit->rows[i].view];
+    edge_fit->rows[i].weight *= FG_EDGE_FIT_BLOCK / (double)block * ratio * ratio;
   }
 exit:
   free(noise);
@@ -194,32 +195,32 @@ exit:
   return status;
 }
 
-fg_status fg_points_build_discs(fg_context *ctx, const fg_points_view *views, size_t count,
-                                fg_points *points) {
+fg_status fg_edge_fit_build_discs(fg_context *ctx, const fg_edge_fit_view *views, size_t count,
+                                  fg_edge_fit *edge_fit) {
   fg_status status = FG_OK;
   size_t stations = 0;
-  points->discs = true;
-  FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *views, (void **)&points->views));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *points->poses, (void **)&points->poses));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *points->parts, (void **)&points->parts));
+  edge_fit->discs = true;
+  FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *views, (void **)&edge_fit->views));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *edge_fit->poses, (void **)&edge_fit->poses));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *edge_fit->parts, (void **)&edge_fit->parts));
   for (size_t v = 0; v < count; v++) {
-    points->views[v] = views[v];
-    points->views[v].part = v;
-    points->poses[v] = (fg_points_pose){views[v].disc->centre_mm, 0};
-    points->parts[v] = (fg_points_part){
+    edge_fit->views[v] = views[v];
+    edge_fit->views[v].part = v;
+    edge_fit->poses[v] = (fg_edge_fit_pose){views[v].disc->centre_mm, 0};
+    edge_fit->parts[v] = (fg_edge_fit_part){
         .overall_radius_mm = views[v].disc->radius_mm, .sense = 1, .half_span_rad = M_PI};
     stations += views[v].disc->station_count;
   }
-  points->view_count = points->part_count = points->group_count = count;
+  edge_fit->view_count = edge_fit->part_count = edge_fit->group_count = count;
   size_t block = (stations + ROWS_MAX - 1) / ROWS_MAX;
   if (block < BLOCK_MIN) block = BLOCK_MIN;
-  FG_TRY_EXIT(match_diameters(ctx, points));
+  FG_TRY_EXIT(match_diameters(ctx, edge_fit));
   for (size_t v = 0; v < count; v++)
-    FG_TRY_EXIT(add_disc(ctx, points, v, block));
-  FG_TRY_EXIT(weigh(ctx, points, block));
-  fg_points_find_frame(points);
-  fg_points_count_parameters(points);
+    FG_TRY_EXIT(add_disc(ctx, edge_fit, v, block));
+  FG_TRY_EXIT(weigh(ctx, edge_fit, block));
+  fg_edge_fit_find_frame(edge_fit);
+  fg_edge_fit_count_parameters(edge_fit);
 exit:
-  if (status != FG_OK) fg_points_free(points);
+  if (status != FG_OK) fg_edge_fit_free(edge_fit);
   return status;
 }

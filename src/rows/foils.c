@@ -46,7 +46,7 @@ static double end_to_end(const fg_foil *foil) {
 }
 
 /* The part as its first view shows it. */
-static fg_status start_part(fg_context *ctx, const fg_foil *foil, fg_points_part *part) {
+static fg_status start_part(fg_context *ctx, const fg_foil *foil, fg_edge_fit_part *part) {
   FG_TRY(fg_memory_allocate(ctx, foil->bump_count, sizeof *part->bumps, (void **)&part->bumps));
   part->overall_radius_mm = foil->overall.radius_mm;
   part->end_to_end_rad = end_to_end(foil);
@@ -58,10 +58,10 @@ static fg_status start_part(fg_context *ctx, const fg_foil *foil, fg_points_part
     double direction = bump_direction(foil, bump);
     if (part->bump_count) direction = turn_to(direction, before);
     before = direction;
-    part->bumps[part->bump_count++] = (fg_points_bump){.number = bump->number,
-                                                       .distance_mm = bump->centre_to_centre_mm,
-                                                       .direction_rad = direction,
-                                                       .radius_mm = bump->radius_mm};
+    part->bumps[part->bump_count++] = (fg_edge_fit_bump){.number = bump->number,
+                                                         .distance_mm = bump->centre_to_centre_mm,
+                                                         .direction_rad = direction,
+                                                         .radius_mm = bump->radius_mm};
   }
   if (!part->bump_count) return FG_OK;
   double first = part->bumps[0].direction_rad;
@@ -79,8 +79,8 @@ static const fg_bump *find_bump(const fg_foil *foil, int number) {
 }
 
 /* Pose of a further view: the mean turn of its bumps. */
-static fg_status start_pose(fg_context *ctx, const fg_points_part *part, const fg_foil *foil,
-                            fg_points_pose *pose) {
+static fg_status start_pose(fg_context *ctx, const fg_edge_fit_part *part, const fg_foil *foil,
+                            fg_edge_fit_pose *pose) {
   double c = 0, s = 0, sense = foil->orientation == FG_CLOCKWISE ? 1 : -1;
   size_t matched = 0;
   for (size_t i = 0; i < part->bump_count; i++) {
@@ -108,7 +108,7 @@ static fg_status start_pose(fg_context *ctx, const fg_points_part *part, const f
   return FG_OK;
 }
 
-static size_t index_of_bump(const fg_points_part *part, int number) {
+static size_t index_of_bump(const fg_edge_fit_part *part, int number) {
   for (size_t i = 0; i < part->bump_count; i++)
     if (part->bumps[i].number == number) return i;
   return part->bump_count;
@@ -126,10 +126,11 @@ static fg_point datum_at(const fg_foil *foil, fg_datum datum, const fg_station *
 }
 
 /* Mean over the fitted stations of [from, to). */
-static bool average_block(const fg_points_view *view, size_t from, size_t to, fg_points_row *row) {
+static bool average_block(const fg_edge_fit_view *view, size_t from, size_t to,
+                          fg_edge_fit_row *row) {
   const fg_foil *foil = view->foil;
   double n = 0;
-  *row = (fg_points_row){0};
+  *row = (fg_edge_fit_row){0};
   for (size_t k = from; k < to; k++) {
     if (!foil->labels[k].fitted) continue;
     const fg_station *s = &foil->strip.stations[k];
@@ -140,7 +141,7 @@ static bool average_block(const fg_points_view *view, size_t from, size_t to, fg
     row->s_mm += s->s_mm;
     n++;
   }
-  if (n < FG_POINTS_BLOCK_SHARE * (double)(to - from)) return false;
+  if (n < FG_EDGE_FIT_BLOCK_SHARE * (double)(to - from)) return false;
   row->at.x /= n;
   row->at.y /= n;
   row->half_width_mm /= n;
@@ -152,7 +153,7 @@ static bool average_block(const fg_points_view *view, size_t from, size_t to, fg
   return true;
 }
 
-static void count_arc(fg_points_part *part, int number, double length_mm) {
+static void count_arc(fg_edge_fit_part *part, int number, double length_mm) {
   double radius = part->bumps[index_of_bump(part, number)].radius_mm, n = (double)++part->arcs;
   part->half_arc_rad += (0.5 * length_mm / radius - part->half_arc_rad) / n;
   part->mean_radius_mm += (radius - part->mean_radius_mm) / n;
@@ -161,9 +162,9 @@ static void count_arc(fg_points_part *part, int number, double length_mm) {
 /* The mean of points on an arc lies inside it by the sagitta's mean, (2h)²/24R with h half the
  * block; a shift of some nanometres, put back by the caller's geometry being fitted to the same
  * means. Rows of one run of labels [first, last]. */
-static fg_status add_run(fg_context *ctx, fg_points *points, size_t v, size_t first, size_t last,
-                         size_t group) {
-  const fg_points_view *view = &points->views[v];
+static fg_status add_run(fg_context *ctx, fg_edge_fit *edge_fit, size_t v, size_t first,
+                         size_t last, size_t group) {
+  const fg_edge_fit_view *view = &edge_fit->views[v];
   const fg_foil *foil = view->foil;
   const fg_station_label *label = &foil->labels[first];
   double length = foil->strip.stations[last].s_mm;
@@ -171,11 +172,11 @@ static fg_status add_run(fg_context *ctx, fg_points *points, size_t v, size_t fi
                   foil->bumps[0].arc_start_mm > foil->bumps[foil->bump_count - 1].arc_start_mm;
   double whole = foil->strip.stations[foil->strip.count - 1].s_mm;
   double start = foil->strip.stations[first].s_mm;
-  fg_points_part *part = &points->parts[view->part];
+  fg_edge_fit_part *part = &edge_fit->parts[view->part];
   if (label->kind == FG_ARC_BUMP) count_arc(part, label->number, length - start);
-  for (size_t k = first; k + FG_POINTS_BLOCK <= last + 1; k += FG_POINTS_BLOCK) {
-    fg_points_row row;
-    if (!average_block(view, k, k + FG_POINTS_BLOCK, &row)) continue;
+  for (size_t k = first; k + FG_EDGE_FIT_BLOCK <= last + 1; k += FG_EDGE_FIT_BLOCK) {
+    fg_edge_fit_row row;
+    if (!average_block(view, k, k + FG_EDGE_FIT_BLOCK, &row)) continue;
     row.view = v;
     row.part = view->part;
     row.group = group;
@@ -186,7 +187,7 @@ static fg_status add_run(fg_context *ctx, fg_points *points, size_t v, size_t fi
       row.phi = -row.phi;
       row.s_mm = whole - row.s_mm;
     }
-    FG_TRY(fg_points_add_row(ctx, points, &row));
+    FG_TRY(fg_edge_fit_add_row(ctx, edge_fit, &row));
   }
   return FG_OK;
 }
@@ -209,9 +210,9 @@ static size_t land_numbers(const fg_foil *foil) {
 }
 
 /* Groups are what was drawn independently: every bump (over all views of its part) and land. */
-static fg_status add_view(fg_context *ctx, fg_points *points, size_t v, size_t first_group) {
-  const fg_foil *foil = points->views[v].foil;
-  const fg_points_part *part = &points->parts[points->views[v].part];
+static fg_status add_view(fg_context *ctx, fg_edge_fit *edge_fit, size_t v, size_t first_group) {
+  const fg_foil *foil = edge_fit->views[v].foil;
+  const fg_edge_fit_part *part = &edge_fit->parts[edge_fit->views[v].part];
   for (size_t k = 0; k < foil->strip.count;) {
     const fg_station_label *label = &foil->labels[k];
     size_t last = k;
@@ -222,68 +223,68 @@ static fg_status add_view(fg_context *ctx, fg_points *points, size_t v, size_t f
                        : first_group + part->bump_count + (size_t)label->number;
     bool known =
         label->kind != FG_ARC_BUMP || index_of_bump(part, label->number) < part->bump_count;
-    if (is_arc(label) && known) FG_TRY(add_run(ctx, points, v, k, last, group));
+    if (is_arc(label) && known) FG_TRY(add_run(ctx, edge_fit, v, k, last, group));
     k = last + 1;
   }
   return FG_OK;
 }
 
 /* Gives empty group numbers up, so that groups are 0 .. group_count - 1. */
-static fg_status pack_groups(fg_context *ctx, fg_points *points, size_t max) {
+static fg_status pack_groups(fg_context *ctx, fg_edge_fit *edge_fit, size_t max) {
   size_t *packed = NULL;
   FG_TRY(fg_memory_allocate(ctx, max, sizeof *packed, (void **)&packed));
-  for (size_t i = 0; i < points->row_count; i++)
-    packed[points->rows[i].group] = 1;
+  for (size_t i = 0; i < edge_fit->row_count; i++)
+    packed[edge_fit->rows[i].group] = 1;
   size_t next = 0;
   for (size_t g = 0; g < max; g++)
     packed[g] = packed[g] ? next++ : 0;
-  for (size_t i = 0; i < points->row_count; i++)
-    points->rows[i].group = packed[points->rows[i].group];
-  points->group_count = next;
+  for (size_t i = 0; i < edge_fit->row_count; i++)
+    edge_fit->rows[i].group = packed[edge_fit->rows[i].group];
+  edge_fit->group_count = next;
   free(packed);
   return FG_OK;
 }
 
-static fg_status fill(fg_context *ctx, fg_points *points) {
+static fg_status fill(fg_context *ctx, fg_edge_fit *edge_fit) {
   size_t first_group = 0;
-  FG_TRY(
-      fg_memory_allocate(ctx, points->part_count, sizeof *points->parts, (void **)&points->parts));
-  for (size_t p = 0; p < points->part_count; p++) {
+  FG_TRY(fg_memory_allocate(ctx, edge_fit->part_count, sizeof *edge_fit->parts,
+                            (void **)&edge_fit->parts));
+  for (size_t p = 0; p < edge_fit->part_count; p++) {
     size_t groups = 0;
-    for (size_t v = 0; v < points->view_count; v++) {
-      const fg_foil *foil = points->views[v].foil;
-      if (points->views[v].part != p) continue;
-      fg_points_part *part = &points->parts[p];
+    for (size_t v = 0; v < edge_fit->view_count; v++) {
+      const fg_foil *foil = edge_fit->views[v].foil;
+      if (edge_fit->views[v].part != p) continue;
+      fg_edge_fit_part *part = &edge_fit->parts[p];
       if (!part->bumps) {
         FG_TRY(start_part(ctx, foil, part));
-        points->poses[v] = (fg_points_pose){foil->overall.centre_mm, 0};
+        edge_fit->poses[v] = (fg_edge_fit_pose){foil->overall.centre_mm, 0};
       } else {
-        FG_TRY(start_pose(ctx, part, foil, &points->poses[v]));
+        FG_TRY(start_pose(ctx, part, foil, &edge_fit->poses[v]));
       }
-      FG_TRY(add_view(ctx, points, v, first_group));
+      FG_TRY(add_view(ctx, edge_fit, v, first_group));
       size_t own = part->bump_count + land_numbers(foil);
       groups = own > groups ? own : groups;
     }
     first_group += groups;
   }
-  fg_points_find_frame(points);
-  return pack_groups(ctx, points, first_group);
+  fg_edge_fit_find_frame(edge_fit);
+  return pack_groups(ctx, edge_fit, first_group);
 }
 
 /* Views that are left out may take a part with them: it has no geometry. Parts are numbered anew,
  * 0 .. part_count - 1 in the order of their first views. */
-static fg_status take_views(fg_context *ctx, const fg_points_view *views, size_t count,
-                            fg_points *points) {
+static fg_status take_views(fg_context *ctx, const fg_edge_fit_view *views, size_t count,
+                            fg_edge_fit *edge_fit) {
   size_t *given = NULL; /* the caller's number of each new part */
   FG_TRY(fg_memory_allocate(ctx, count, sizeof *given, (void **)&given));
   for (size_t i = 0; i < count; i++) {
     size_t part = 0;
     if (views[i].foil->flags & FG_FOIL_NOT_MEASURED) continue;
-    while (part < points->part_count && given[part] != views[i].part)
+    while (part < edge_fit->part_count && given[part] != views[i].part)
       part++;
-    if (part == points->part_count) given[points->part_count++] = views[i].part;
-    points->views[points->view_count] = views[i];
-    points->views[points->view_count++].part = part;
+    if (part == edge_fit->part_count) given[edge_fit->part_count++] = views[i].part;
+    edge_fit->views[edge_fit->view_count] = views[i];
+    edge_fit->views[edge_fit->view_count++].part = part;
   }
   free(given);
   return FG_OK;
@@ -291,38 +292,38 @@ static fg_status take_views(fg_context *ctx, const fg_points_view *views, size_t
 
 /* Groups together, and within them views and places in order: what the engine expects. */
 static int compare_rows(const void *a, const void *b) {
-  const fg_points_row *p = a, *q = b;
+  const fg_edge_fit_row *p = a, *q = b;
   if (p->group != q->group) return (p->group > q->group) - (p->group < q->group);
   if (p->view != q->view) return (p->view > q->view) - (p->view < q->view);
   return (p->s_mm > q->s_mm) - (p->s_mm < q->s_mm);
 }
 
 /* Range of the rows' psi as the measured circles place them. */
-static fg_status find_range(fg_context *ctx, fg_points *points) {
+static fg_status find_range(fg_context *ctx, fg_edge_fit *edge_fit) {
   double *residual = NULL;
-  FG_TRY(fg_memory_allocate(ctx, points->row_count, sizeof *residual, (void **)&residual));
-  fg_points_residual(points, NULL, residual, NULL);
+  FG_TRY(fg_memory_allocate(ctx, edge_fit->row_count, sizeof *residual, (void **)&residual));
+  fg_edge_fit_residual(edge_fit, NULL, residual, NULL);
   free(residual);
-  points->psi_rad[0] = INFINITY;
-  points->psi_rad[1] = -INFINITY;
-  for (size_t i = 0; i < points->row_count; i++) {
-    points->psi_rad[0] = fmin(points->psi_rad[0], points->rows[i].psi);
-    points->psi_rad[1] = fmax(points->psi_rad[1], points->rows[i].psi);
+  edge_fit->psi_rad[0] = INFINITY;
+  edge_fit->psi_rad[1] = -INFINITY;
+  for (size_t i = 0; i < edge_fit->row_count; i++) {
+    edge_fit->psi_rad[0] = fmin(edge_fit->psi_rad[0], edge_fit->rows[i].psi);
+    edge_fit->psi_rad[1] = fmax(edge_fit->psi_rad[1], edge_fit->rows[i].psi);
   }
   return FG_OK;
 }
 
-fg_status fg_points_build_foils(fg_context *ctx, const fg_points_view *views, size_t count,
-                                fg_points *points) {
+fg_status fg_edge_fit_build_foils(fg_context *ctx, const fg_edge_fit_view *views, size_t count,
+                                  fg_edge_fit *edge_fit) {
   fg_status status = FG_OK;
-  FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *views, (void **)&points->views));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *points->poses, (void **)&points->poses));
-  FG_TRY_EXIT(take_views(ctx, views, count, points));
-  FG_TRY_EXIT(fill(ctx, points));
-  fg_points_count_parameters(points);
-  fg_sort_items(points->rows, points->row_count, sizeof *points->rows, compare_rows);
-  FG_TRY_EXIT(find_range(ctx, points));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *views, (void **)&edge_fit->views));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *edge_fit->poses, (void **)&edge_fit->poses));
+  FG_TRY_EXIT(take_views(ctx, views, count, edge_fit));
+  FG_TRY_EXIT(fill(ctx, edge_fit));
+  fg_edge_fit_count_parameters(edge_fit);
+  fg_sort_items(edge_fit->rows, edge_fit->row_count, sizeof *edge_fit->rows, compare_rows);
+  FG_TRY_EXIT(find_range(ctx, edge_fit));
 exit:
-  if (status != FG_OK) fg_points_free(points);
+  if (status != FG_OK) fg_edge_fit_free(edge_fit);
   return status;
 }

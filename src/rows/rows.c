@@ -12,31 +12,31 @@
 /* Knots of free curves that the few places of discs can tell. */
 enum { DISC_KNOTS = 12, COARSE_KNOTS = 6 };
 
-void fg_points_free(fg_points *points) {
-  if (!points) return;
-  for (size_t i = 0; points->parts && i < points->part_count; i++)
-    free(points->parts[i].bumps);
-  free(points->views);
-  free(points->poses);
-  free(points->parts);
-  free(points->rows);
-  memset(points, 0, sizeof *points);
+void fg_edge_fit_free(fg_edge_fit *edge_fit) {
+  if (!edge_fit) return;
+  for (size_t i = 0; edge_fit->parts && i < edge_fit->part_count; i++)
+    free(edge_fit->parts[i].bumps);
+  free(edge_fit->views);
+  free(edge_fit->poses);
+  free(edge_fit->parts);
+  free(edge_fit->rows);
+  memset(edge_fit, 0, sizeof *edge_fit);
 }
 
-fg_status fg_points_add_row(fg_context *ctx, fg_points *points, const fg_points_row *row) {
-  FG_TRY(fg_memory_reserve(ctx, points->row_count + 1, sizeof *points->rows, &points->row_capacity,
-                           (void **)&points->rows));
-  points->rows[points->row_count++] = *row;
+fg_status fg_edge_fit_add_row(fg_context *ctx, fg_edge_fit *edge_fit, const fg_edge_fit_row *row) {
+  FG_TRY(fg_memory_reserve(ctx, edge_fit->row_count + 1, sizeof *edge_fit->rows,
+                           &edge_fit->row_capacity, (void **)&edge_fit->rows));
+  edge_fit->rows[edge_fit->row_count++] = *row;
   return FG_OK;
 }
 
-void fg_points_find_frame(fg_points *points) {
-  fg_field_frame *f = &points->frame;
-  f->knots = points->coarse ? COARSE_KNOTS : points->discs ? DISC_KNOTS : FG_FIELD_COLUMNS;
+void fg_edge_fit_find_frame(fg_edge_fit *edge_fit) {
+  fg_field_frame *f = &edge_fit->frame;
+  f->knots = edge_fit->coarse ? COARSE_KNOTS : edge_fit->discs ? DISC_KNOTS : FG_FIELD_COLUMNS;
   for (int axis = 0; axis < 2; axis++)
     f->low_mm[axis] = 0;
-  for (size_t v = 0; v < points->view_count; v++) {
-    const fg_measurement *m = points->views[v].measurement;
+  for (size_t v = 0; v < edge_fit->view_count; v++) {
+    const fg_measurement *m = edge_fit->views[v].measurement;
     f->high_mm[0] = fmax(f->high_mm[0], (double)m->width_px * 25.4 / m->dpi[0]);
     f->high_mm[1] = fmax(f->high_mm[1], (double)m->height_px * 25.4 / m->dpi[1]);
   }
@@ -44,22 +44,22 @@ void fg_points_find_frame(fg_points *points) {
     f->centre_mm[axis] = 0.5 * (f->low_mm[axis] + f->high_mm[axis]);
     f->first_mm[axis] = f->high_mm[axis];
     f->last_mm[axis] = f->low_mm[axis];
-    for (size_t i = 0; i < points->row_count; i++) {
-      double at = fg_point_along(points->rows[i].at, axis);
+    for (size_t i = 0; i < edge_fit->row_count; i++) {
+      double at = fg_point_along(edge_fit->rows[i].at, axis);
       f->first_mm[axis] = fmin(f->first_mm[axis], at - EDGE_ROOM_MM);
       f->last_mm[axis] = fmax(f->last_mm[axis], at + EDGE_ROOM_MM);
     }
   }
 }
 
-double fg_points_integral(const fg_points *points, const size_t *row, size_t count,
-                          const double *value) {
+double fg_edge_fit_integral(const fg_edge_fit *edge_fit, const size_t *row, size_t count,
+                            const double *value) {
   enum { LAGS = 16 };
   double products[LAGS] = {0}, pairs[LAGS] = {0};
   for (size_t i = 0; i < count; i++)
     for (size_t lag = 0; lag < LAGS && i + lag < count; lag++) {
-      const fg_points_row *a = &points->rows[row ? row[i] : i];
-      const fg_points_row *b = &points->rows[row ? row[i + lag] : i + lag];
+      const fg_edge_fit_row *a = &edge_fit->rows[row ? row[i] : i];
+      const fg_edge_fit_row *b = &edge_fit->rows[row ? row[i + lag] : i + lag];
       if (a->view != b->view || a->group != b->group) break;
       products[lag] += value[i] * value[i + lag];
       pairs[lag]++;

@@ -44,7 +44,7 @@ typedef struct arc {
 
 typedef struct search {
   fg_context *ctx;
-  fg_points *points;
+  fg_edge_fit *edge_fit;
   const double *weighted; /* residual */
   double *polynomials;    /* POLYNOMIALS_MAX × rows, weighted */
   double *left, *columns; /* the same, whitened */
@@ -54,15 +54,15 @@ typedef struct search {
 } search;
 
 static fg_status list_arcs(search *s) {
-  const fg_points *points = s->points;
-  FG_TRY(fg_memory_allocate(s->ctx, points->row_count, sizeof *s->arcs, (void **)&s->arcs));
-  for (size_t from = 0, to; from < points->row_count; from = to) {
+  const fg_edge_fit *edge_fit = s->edge_fit;
+  FG_TRY(fg_memory_allocate(s->ctx, edge_fit->row_count, sizeof *s->arcs, (void **)&s->arcs));
+  for (size_t from = 0, to; from < edge_fit->row_count; from = to) {
     arc *a = &s->arcs[s->arc_count];
     *a = (arc){.from = from};
-    to = a->to = fg_points_arc_end(points, from);
+    to = a->to = fg_edge_fit_arc_end(edge_fit, from);
     for (size_t i = from; i < to; i++)
-      a->rows += points->rows[i].weight > 0;
-    double length = fabs(points->rows[to - 1].s_mm - points->rows[from].s_mm) / POLYNOMIAL_MM;
+      a->rows += edge_fit->rows[i].weight > 0;
+    double length = fabs(edge_fit->rows[to - 1].s_mm - edge_fit->rows[from].s_mm) / POLYNOMIAL_MM;
     a->polynomials = (size_t)fmax(POLYNOMIALS_MIN, fmin(POLYNOMIALS_MAX, round(length)));
     if (a->rows >= ROWS_EACH * a->polynomials) s->arc_count++;
   }
@@ -71,14 +71,14 @@ static fg_status list_arcs(search *s) {
 
 /* Chebyshev's along each arc. */
 static void fill_polynomials(search *s) {
-  size_t rows = s->points->row_count;
+  size_t rows = s->edge_fit->row_count;
   for (size_t k = 0; k < s->arc_count; k++) {
     const arc *a = &s->arcs[k];
-    double low = s->points->rows[a->from].s_mm, high = s->points->rows[a->to - 1].s_mm;
+    double low = s->edge_fit->rows[a->from].s_mm, high = s->edge_fit->rows[a->to - 1].s_mm;
     for (size_t i = a->from; i < a->to; i++) {
-      const fg_points_row *row = &s->points->rows[i];
+      const fg_edge_fit_row *row = &s->edge_fit->rows[i];
       double x = acos(fmax(-1, fmin(1, 2 * (row->s_mm - low) / (high - low) - 1)));
-      double weight = fg_points_root_weight(row);
+      double weight = fg_edge_fit_root_weight(row);
       for (size_t p = 0; p < a->polynomials; p++)
         s->polynomials[p * rows + i] = weight * cos((double)p * x);
     }
@@ -87,7 +87,7 @@ static void fill_polynomials(search *s) {
 
 /* Takes the polynomials out of one arc; returns ln of the determinant of their products. */
 static double take_out(search *s, arc *a) {
-  size_t rows = s->points->row_count, n = a->to - a->from;
+  size_t rows = s->edge_fit->row_count, n = a->to - a->from;
   double determinant = 0, *left = s->left + a->from;
   a->dof = (double)a->rows;
   for (size_t p = 0; p < a->polynomials; p++) {
@@ -117,11 +117,11 @@ static double take_out(search *s, arc *a) {
 
 /* -2 ln of the restricted likelihood but for a constant; a row's variance takes its best value. */
 static fg_status deviance(search *s, const fg_scatter *scatter, double *value) {
-  size_t rows = s->points->row_count;
+  size_t rows = s->edge_fit->row_count;
   fg_whitening whitening;
   double square = 0, dof = 0, determinants = 0;
-  s->points->scatter = *scatter;
-  FG_TRY(fg_whitening_open(s->ctx, s->points, &whitening));
+  s->edge_fit->scatter = *scatter;
+  FG_TRY(fg_whitening_open(s->ctx, s->edge_fit, &whitening));
   memcpy(s->left, s->weighted, rows * sizeof *s->left);
   size_t max = 0;
   for (size_t k = 0; k < s->arc_count; k++)
@@ -143,7 +143,7 @@ static fg_status deviance(search *s, const fg_scatter *scatter, double *value) {
   fg_whitening_close(&whitening);
   dof = fmax(1, dof - s->shared);
   *value = square > 0 ? dof * log(square / dof) + determinants : INFINITY;
-  s->points->scatter.row_um = sqrt(square / fmax(dof, 1));
+  s->edge_fit->scatter.row_um = sqrt(square / fmax(dof, 1));
   return FG_OK;
 }
 
@@ -160,7 +160,7 @@ static fg_status try_one(search *s, fg_scatter scatter, trial *best, bool *bette
   if (scatter.share > SHARE_MAX) return FG_OK;
   FG_TRY(deviance(s, &scatter, &value));
   if (!(value < best->deviance)) return FG_OK;
-  *best = (trial){s->points->scatter, value};
+  *best = (trial){s->edge_fit->scatter, value};
   *better = true;
   return FG_OK;
 }
@@ -215,7 +215,7 @@ static fg_status find(search *s, fg_scatter from, trial *best) {
   best->deviance = INFINITY;
   FG_TRY(deviance(s, &none, &best->deviance));
   double white = best->deviance;
-  best->scatter = s->points->scatter;
+  best->scatter = s->edge_fit->scatter;
   trial correlated = {.deviance = INFINITY};
   if (from.share > 0)
     FG_TRY(try_one(s, from, &correlated, &better));
@@ -253,8 +253,8 @@ static fg_status leave_out(search *s, const fg_scatter *scatter, size_t *out) {
 }
 
 /* Degrees of polynomials that are such waves along an arc: [from, to). */
-static void find_waves(const fg_points *points, const arc *a, size_t *from, size_t *to) {
-  double length = fabs(points->rows[a->to - 1].s_mm - points->rows[a->from].s_mm);
+static void find_waves(const fg_edge_fit *edge_fit, const arc *a, size_t *from, size_t *to) {
+  double length = fabs(edge_fit->rows[a->to - 1].s_mm - edge_fit->rows[a->from].s_mm);
   *from = (size_t)fmax(POLYNOMIALS_MIN, ceil(2 * length / WAVE_LONG_MM));
   *to = (size_t)fmin(POLYNOMIALS_MAX,
                      fmin(floor(2 * length / WAVE_SHORT_MM), (double)(a->rows / ROWS_EACH)));
@@ -267,9 +267,9 @@ typedef struct waves {
 
 static void add_waves(const search *s, const arc *a, waves of_bumps[POLYNOMIALS_MAX],
                       waves *of_lands) {
-  size_t rows = s->points->row_count, from, to;
-  bool bump = s->points->rows[a->from].bump != 0;
-  find_waves(s->points, a, &from, &to);
+  size_t rows = s->edge_fit->row_count, from, to;
+  bool bump = s->edge_fit->rows[a->from].bump != 0;
+  find_waves(s->edge_fit, a, &from, &to);
   for (size_t p = from; p < to && !a->out; p++) {
     double along = fg_dot(s->columns + p * rows + a->from, s->left + a->from, a->to - a->from);
     waves *w = bump ? &of_bumps[p] : of_lands;
@@ -288,8 +288,8 @@ static fg_status find_swell(search *s, fg_scatter *scatter) {
     s->arcs[k].polynomials = POLYNOMIALS_MAX;
   fill_polynomials(s);
   FG_TRY(deviance(s, scatter, &value)); /* leaves orthonormal polynomials, in order */
-  FG_TRY(fg_whitening_open(s->ctx, s->points, &whitening));
-  memcpy(s->left, s->weighted, s->points->row_count * sizeof *s->left);
+  FG_TRY(fg_whitening_open(s->ctx, s->edge_fit, &whitening));
+  memcpy(s->left, s->weighted, s->edge_fit->row_count * sizeof *s->left);
   fg_whitening_apply(&whitening, s->left);
   fg_whitening_close(&whitening);
   for (size_t k = 0; k < s->arc_count; k++)
@@ -306,18 +306,18 @@ static fg_status find_swell(search *s, fg_scatter *scatter) {
   return FG_OK;
 }
 
-static double spacing_of(const fg_points *points) {
+static double spacing_of(const fg_edge_fit *edge_fit) {
   double sum = 0, n = 0;
-  for (size_t i = 0, to; i < points->row_count; i = to) {
-    to = fg_points_arc_end(points, i);
-    sum += fabs(points->rows[to - 1].s_mm - points->rows[i].s_mm);
+  for (size_t i = 0, to; i < edge_fit->row_count; i = to) {
+    to = fg_edge_fit_arc_end(edge_fit, i);
+    sum += fabs(edge_fit->rows[to - 1].s_mm - edge_fit->rows[i].s_mm);
     n += (double)(to - i - 1);
   }
   return n > 0 ? sum / n : 1;
 }
 
-static double integral_of(const fg_points *points, const fg_scatter *s) {
-  double spacing = spacing_of(points), sum = 1;
+static double integral_of(const fg_edge_fit *edge_fit, const fg_scatter *s) {
+  double spacing = spacing_of(edge_fit), sum = 1;
   for (int lag = 1; lag * spacing < 10 * s->range_mm; lag++) {
     double d = lag * spacing / s->range_mm;
     sum += 2 * s->share * exp(s->model == FG_SCATTER_GAUSSIAN ? -d * d : -d);
@@ -326,7 +326,7 @@ static double integral_of(const fg_points *points, const fg_scatter *s) {
 }
 
 static fg_status open(search *s) {
-  size_t rows = s->points->row_count, columns = POLYNOMIALS_MAX * rows;
+  size_t rows = s->edge_fit->row_count, columns = POLYNOMIALS_MAX * rows;
   FG_TRY(list_arcs(s));
   FG_TRY(fg_memory_allocate(s->ctx, columns, sizeof(double), (void **)&s->polynomials));
   FG_TRY(fg_memory_allocate(s->ctx, columns, sizeof(double), (void **)&s->columns));
@@ -338,7 +338,7 @@ static fg_status open(search *s) {
 /* Of the first bump: they are alike. */
 static double polynomials_of_bumps(const search *s) {
   for (size_t k = 0; k < s->arc_count; k++)
-    if (s->points->rows[s->arcs[k].from].bump) return (double)s->arcs[k].polynomials;
+    if (s->edge_fit->rows[s->arcs[k].from].bump) return (double)s->arcs[k].polynomials;
   return 0;
 }
 
@@ -349,29 +349,30 @@ static fg_status take_shared(search *s, double *weighted) {
   bool *left_out = NULL;
   size_t out, numbers;
   FG_TRY(leave_out(s, &white, &out));
-  FG_TRY(fg_memory_allocate(s->ctx, s->points->row_count, sizeof *left_out, (void **)&left_out));
+  FG_TRY(fg_memory_allocate(s->ctx, s->edge_fit->row_count, sizeof *left_out, (void **)&left_out));
   for (size_t k = 0; k < s->arc_count; k++) {
     arc *a = &s->arcs[k];
     for (size_t i = a->from; i < a->to; i++)
       left_out[i] = a->out;
     a->out = false;
   }
-  fg_status status = fg_points_take_shared(s->ctx, s->points, left_out, weighted, &numbers);
+  fg_status status = fg_edge_fit_take_shared(s->ctx, s->edge_fit, left_out, weighted, &numbers);
   s->shared = fmax(0, (double)numbers - polynomials_of_bumps(s));
   free(left_out);
   return status;
 }
 
-fg_status fg_points_find_scatter(fg_context *ctx, fg_points *points, const double *residual_um) {
-  search s = {.ctx = ctx, .points = points};
-  fg_scatter from = points->scatter;
+fg_status fg_edge_fit_find_scatter(fg_context *ctx, fg_edge_fit *edge_fit,
+                                   const double *residual_um) {
+  search s = {.ctx = ctx, .edge_fit = edge_fit};
+  fg_scatter from = edge_fit->scatter;
   trial best = {.scatter = {.integral = 1, .swell = 1}};
   double *weighted = NULL;
   size_t out;
   fg_status status = FG_OK;
-  FG_TRY_EXIT(fg_memory_allocate(ctx, points->row_count, sizeof *weighted, (void **)&weighted));
-  for (size_t i = 0; i < points->row_count; i++)
-    weighted[i] = residual_um[i] * fg_points_root_weight(&points->rows[i]);
+  FG_TRY_EXIT(fg_memory_allocate(ctx, edge_fit->row_count, sizeof *weighted, (void **)&weighted));
+  for (size_t i = 0; i < edge_fit->row_count; i++)
+    weighted[i] = residual_um[i] * fg_edge_fit_root_weight(&edge_fit->rows[i]);
   s.weighted = weighted;
   FG_TRY_EXIT(open(&s));
   if (!s.arc_count) goto exit;
@@ -380,9 +381,9 @@ fg_status fg_points_find_scatter(fg_context *ctx, fg_points *points, const doubl
   FG_TRY_EXIT(leave_out(&s, &best.scatter, &out));
   if (out) FG_TRY_EXIT(find(&s, best.scatter, &best));
   FG_TRY_EXIT(find_swell(&s, &best.scatter));
-  best.scatter.integral = integral_of(points, &best.scatter);
+  best.scatter.integral = integral_of(edge_fit, &best.scatter);
 exit:
-  points->scatter = status == FG_OK ? best.scatter : from;
+  edge_fit->scatter = status == FG_OK ? best.scatter : from;
   free(weighted);
   free(s.arcs);
   free(s.polynomials);

@@ -21,30 +21,30 @@ static void take(const double *unit, size_t n, double *from) {
 }
 
 /* Chebyshev's over every arc of a bump that counts, weighted; returns how many there are. */
-static size_t fill(const fg_points *points, const bool *left_out, double *basis) {
+static size_t fill(const fg_edge_fit *edge_fit, const bool *left_out, double *basis) {
   size_t bumps = 0;
-  for (size_t from = 0, to; from < points->row_count; from = to) {
-    to = fg_points_arc_end(points, from);
-    double low = points->rows[from].s_mm, length = points->rows[to - 1].s_mm - low;
-    if (!points->rows[from].bump || length == 0 || left_out[from]) continue;
+  for (size_t from = 0, to; from < edge_fit->row_count; from = to) {
+    to = fg_edge_fit_arc_end(edge_fit, from);
+    double low = edge_fit->rows[from].s_mm, length = edge_fit->rows[to - 1].s_mm - low;
+    if (!edge_fit->rows[from].bump || length == 0 || left_out[from]) continue;
     bumps++;
     for (size_t i = from; i < to; i++) {
-      const fg_points_row *row = &points->rows[i];
+      const fg_edge_fit_row *row = &edge_fit->rows[i];
       double x = acos(fmax(-1, fmin(1, 2 * (row->s_mm - low) / length - 1)));
       for (size_t p = 0; p < POLYNOMIALS; p++)
-        basis[p * points->row_count + i] = fg_points_root_weight(row) * cos((double)p * x);
+        basis[p * edge_fit->row_count + i] = fg_edge_fit_root_weight(row) * cos((double)p * x);
     }
   }
   return bumps;
 }
 
-fg_status fg_points_take_shared(fg_context *ctx, const fg_points *points, const bool *left_out,
-                                double *weighted, size_t *numbers) {
-  size_t n = points->row_count;
+fg_status fg_edge_fit_take_shared(fg_context *ctx, const fg_edge_fit *edge_fit,
+                                  const bool *left_out, double *weighted, size_t *numbers) {
+  size_t n = edge_fit->row_count;
   double *basis = NULL;
   *numbers = 0;
   FG_TRY(fg_memory_allocate(ctx, n, POLYNOMIALS * sizeof *basis, (void **)&basis));
-  size_t bumps = fill(points, left_out, basis);
+  size_t bumps = fill(edge_fit, left_out, basis);
   for (size_t p = 0; bumps >= BUMPS_MIN && p < POLYNOMIALS; p++) {
     double *own = basis + p * n, before = sqrt(fg_dot(own, own, n));
     for (size_t q = 0; q < p; q++)

@@ -16,29 +16,29 @@
 /* A disc's edge is cut into arcs of this length. */
 #define ARC_MAX_MM 4.0
 
-size_t fg_points_arc_end(const fg_points *points, size_t from) {
-  const fg_points_row *first = &points->rows[from];
+size_t fg_edge_fit_arc_end(const fg_edge_fit *edge_fit, size_t from) {
+  const fg_edge_fit_row *first = &edge_fit->rows[from];
   size_t to = from;
-  while (to < points->row_count && points->rows[to].view == first->view &&
-         points->rows[to].group == first->group &&
-         fabs(points->rows[to].s_mm - first->s_mm) < ARC_MAX_MM)
+  while (to < edge_fit->row_count && edge_fit->rows[to].view == first->view &&
+         edge_fit->rows[to].group == first->group &&
+         fabs(edge_fit->rows[to].s_mm - first->s_mm) < ARC_MAX_MM)
     to++;
   return to;
 }
 
-static double distance(const fg_points *points, size_t a, size_t b) {
-  return fabs(points->rows[a].s_mm - points->rows[b].s_mm);
+static double distance(const fg_edge_fit *edge_fit, size_t a, size_t b) {
+  return fabs(edge_fit->rows[a].s_mm - edge_fit->rows[b].s_mm);
 }
 
 /* The most rows that lie within a length of one. */
-static size_t rows_within(const fg_points *points, double length_mm) {
+static size_t rows_within(const fg_edge_fit *edge_fit, double length_mm) {
   size_t max = 1;
-  for (size_t i = 0, from = 0, end = 0; i < points->row_count; i++) {
+  for (size_t i = 0, from = 0, end = 0; i < edge_fit->row_count; i++) {
     if (i == end) {
       from = i;
-      end = fg_points_arc_end(points, i);
+      end = fg_edge_fit_arc_end(edge_fit, i);
     }
-    while (distance(points, i, from) > length_mm)
+    while (distance(edge_fit, i, from) > length_mm)
       from++;
     max = i - from > max ? i - from : max;
   }
@@ -47,14 +47,14 @@ static size_t rows_within(const fg_points *points, double length_mm) {
 
 /* Row i of the banded factor, from the rows of it before; `lower` is `band` + 1 wide, the diagonal
  * first. */
-static void factor_row(const fg_points *points, const fg_whitening *w, size_t i, size_t start,
+static void factor_row(const fg_edge_fit *edge_fit, const fg_whitening *w, size_t i, size_t start,
                        double *lower) {
-  const fg_scatter *s = &points->scatter;
+  const fg_scatter *s = &edge_fit->scatter;
   size_t width = w->band + 1, reach = i - start < w->band ? i - start : w->band;
   double *own = lower + i * width, square = 1;
   for (size_t k = reach; k > 0; k--) { /* with row i - k */
     const double *other = own - k * width;
-    double d = distance(points, i, i - k) / s->range_mm, sum = s->share * exp(-d * d);
+    double d = distance(edge_fit, i, i - k) / s->range_mm, sum = s->share * exp(-d * d);
     if (!w->used[i - k]) continue;
     for (size_t m = k + 1; m <= reach && m - k <= w->band; m++)
       sum -= own[m] * other[m - k];
@@ -64,14 +64,14 @@ static void factor_row(const fg_points *points, const fg_whitening *w, size_t i,
   own[0] = sqrt(fmax(square, PIVOT_MIN));
 }
 
-static fg_status factor(fg_context *ctx, const fg_points *points, fg_whitening *w) {
+static fg_status factor(fg_context *ctx, const fg_edge_fit *edge_fit, fg_whitening *w) {
   size_t width = w->band + 1, start = 0;
   double *lower = NULL;
   FG_TRY(fg_memory_allocate(ctx, w->rows * width, sizeof *lower, (void **)&lower));
   for (size_t i = 0; i < w->rows; i++) {
     if (w->first[i]) start = i;
     if (!w->used[i]) continue;
-    factor_row(points, w, i, start, lower);
+    factor_row(edge_fit, w, i, start, lower);
     w->scale[i] = 1 / lower[i * width];
     w->log_determinant += 2 * log(lower[i * width]);
     memcpy(w->before + i * w->band, lower + i * width + 1, w->band * sizeof *lower);
@@ -81,14 +81,14 @@ static fg_status factor(fg_context *ctx, const fg_points *points, fg_whitening *
 }
 
 /* Per row: what of the state is left from the row before, and what of an innovation enters it. */
-static void filter(const fg_points *points, fg_whitening *w) {
-  const fg_scatter *s = &points->scatter;
+static void filter(const fg_edge_fit *edge_fit, fg_whitening *w) {
+  const fg_scatter *s = &edge_fit->scatter;
   double known = s->share; /* variance of the state */
   size_t last = 0;
   for (size_t i = 0; i < w->rows; i++) {
     if (w->first[i]) last = w->rows;
     if (!w->used[i]) continue;
-    double keep = last < w->rows ? exp(-distance(points, i, last) / s->range_mm) : 0;
+    double keep = last < w->rows ? exp(-distance(edge_fit, i, last) / s->range_mm) : 0;
     known = keep * keep * known + (1 - keep * keep) * s->share;
     double square = known + 1 - s->share, gain = known / square;
     known *= 1 - gain;
@@ -100,31 +100,31 @@ static void filter(const fg_points *points, fg_whitening *w) {
   }
 }
 
-static fg_status allocate(fg_context *ctx, const fg_points *points, fg_whitening *w) {
-  const fg_scatter *s = &points->scatter;
-  w->rows = points->row_count;
+static fg_status allocate(fg_context *ctx, const fg_edge_fit *edge_fit, fg_whitening *w) {
+  const fg_scatter *s = &edge_fit->scatter;
+  w->rows = edge_fit->row_count;
   w->exponential = s->model == FG_SCATTER_EXPONENTIAL;
-  w->band = w->exponential ? 2 : rows_within(points, BAND_RANGES * s->range_mm);
+  w->band = w->exponential ? 2 : rows_within(edge_fit, BAND_RANGES * s->range_mm);
   FG_TRY(fg_memory_allocate(ctx, w->rows, sizeof *w->used, (void **)&w->used));
   FG_TRY(fg_memory_allocate(ctx, w->rows, sizeof *w->first, (void **)&w->first));
   FG_TRY(fg_memory_allocate(ctx, w->rows, sizeof *w->scale, (void **)&w->scale));
   return fg_memory_allocate(ctx, w->rows * w->band, sizeof *w->before, (void **)&w->before);
 }
 
-fg_status fg_whitening_open(fg_context *ctx, const fg_points *points, fg_whitening *w) {
-  *w = (fg_whitening){.rows = points->row_count};
-  if (!(points->scatter.share > 0) || !points->row_count) return FG_OK;
+fg_status fg_whitening_open(fg_context *ctx, const fg_edge_fit *edge_fit, fg_whitening *w) {
+  *w = (fg_whitening){.rows = edge_fit->row_count};
+  if (!(edge_fit->scatter.share > 0) || !edge_fit->row_count) return FG_OK;
   fg_status status = FG_OK;
-  FG_TRY_EXIT(allocate(ctx, points, w));
+  FG_TRY_EXIT(allocate(ctx, edge_fit, w));
   for (size_t i = 0; i < w->rows; i++)
-    w->used[i] = points->rows[i].weight > 0;
-  for (size_t i = 0; i < w->rows; i = fg_points_arc_end(points, i))
+    w->used[i] = edge_fit->rows[i].weight > 0;
+  for (size_t i = 0; i < w->rows; i = fg_edge_fit_arc_end(edge_fit, i))
     w->first[i] = true;
   if (w->exponential)
-    filter(points, w);
+    filter(edge_fit, w);
   else
-    FG_TRY_EXIT(factor(ctx, points, w));
-  double size = sqrt(points->scatter.integral); /* smooth values keep theirs */
+    FG_TRY_EXIT(factor(ctx, edge_fit, w));
+  double size = sqrt(edge_fit->scatter.integral); /* smooth values keep theirs */
   for (size_t i = 0; i < w->rows; i++)
     w->scale[i] *= size;
   w->unit = 1 / size;

@@ -10,15 +10,15 @@ static fg_point moved(const void *user, fg_point at) {
 }
 
 /* The row of a view that is nearest to a place; NULL: the view has none. */
-static const fg_points_row *nearest_row(const fg_points *points, size_t view, fg_point at) {
-  const fg_points_row *row = NULL;
+static const fg_edge_fit_row *nearest_row(const fg_edge_fit *edge_fit, size_t view, fg_point at) {
+  const fg_edge_fit_row *row = NULL;
   double nearest = INFINITY;
-  for (size_t i = 0; i < points->row_count; i++) {
-    if (points->rows[i].view != view) continue;
-    double dx = points->rows[i].at.x - at.x, dy = points->rows[i].at.y - at.y;
+  for (size_t i = 0; i < edge_fit->row_count; i++) {
+    if (edge_fit->rows[i].view != view) continue;
+    double dx = edge_fit->rows[i].at.x - at.x, dy = edge_fit->rows[i].at.y - at.y;
     if (dx * dx + dy * dy >= nearest) continue;
     nearest = dx * dx + dy * dy;
-    row = &points->rows[i];
+    row = &edge_fit->rows[i];
   }
   return row;
 }
@@ -31,8 +31,8 @@ typedef struct correction {
 
 /* The shift at a place, that of the nearest row of its view. */
 static fg_point shift_at(const fg_joint_fit_result *fit, size_t view, fg_point at) {
-  const fg_points_row *row = nearest_row(fit->points, view, at);
-  return row ? fit->shift_mm[row - fit->points->rows] : (fg_point){0, 0};
+  const fg_edge_fit_row *row = nearest_row(fit->edge_fit, view, at);
+  return row ? fit->shift_mm[row - fit->edge_fit->rows] : (fg_point){0, 0};
 }
 
 static void take_shift(const fg_joint_fit_result *fit, size_t view, fg_strip *strip) {
@@ -50,8 +50,8 @@ static void take_shift(const fg_joint_fit_result *fit, size_t view, fg_strip *st
 /* The view of a foil, or of a disc, in a fit; false: it has none. */
 static bool find_view(const fg_joint_fit_result *fit, const fg_foil *foil, const fg_disc *disc,
                       size_t *view) {
-  for (*view = 0; fit && *view < fit->points->view_count; ++*view) {
-    const fg_points_view *one = &fit->points->views[*view];
+  for (*view = 0; fit && *view < fit->edge_fit->view_count; ++*view) {
+    const fg_edge_fit_view *one = &fit->edge_fit->views[*view];
     if (foil ? one->foil == foil : one->disc == disc) return true;
   }
   return false;
@@ -89,12 +89,12 @@ fg_status fg_scan_loop_correct(fg_context *ctx, const fg_measurement *m,
  * set adds to its geometry's. */
 static void widen_by_effects(const fg_joint_fit_result *fit, const fg_measurement *before,
                              fg_measurement *after) {
-  const fg_points *points = fit->points;
-  for (size_t v = 0; v < points->view_count; v++) {
-    const fg_points_part *part = &points->parts[points->views[v].part];
-    const fg_joint_fit_part *adds = &fit->parts[points->views[v].part];
-    if (points->views[v].measurement != before || points->views[v].disc) continue;
-    fg_foil *foil = &after->foils[points->views[v].foil - before->foils];
+  const fg_edge_fit *edge_fit = fit->edge_fit;
+  for (size_t v = 0; v < edge_fit->view_count; v++) {
+    const fg_edge_fit_part *part = &edge_fit->parts[edge_fit->views[v].part];
+    const fg_joint_fit_part *adds = &fit->parts[edge_fit->views[v].part];
+    if (edge_fit->views[v].measurement != before || edge_fit->views[v].disc) continue;
+    fg_foil *foil = &after->foils[edge_fit->views[v].foil - before->foils];
     double share = foil->overall.u_springback_error_pct / foil->overall.u_radius_mm;
     for (size_t b = 0; b < foil->bump_count; b++)
       for (size_t k = 0; k < part->bump_count; k++)

@@ -59,7 +59,7 @@ static void add_scaled(fg_benefit *benefit, size_t item, double noise[FG_CORRECT
   fg_benefit_add_noise(benefit, item, noise);
 }
 
-static void add_foil_noise(const fg_points_part *part, const fg_joint_fit_part *adds,
+static void add_foil_noise(const fg_edge_fit_part *part, const fg_joint_fit_part *adds,
                            const fg_foil *foil, double scale, fg_benefit *benefit) {
   double noise[FG_CORRECTED][FG_CORRECTED], alone[FG_CORRECTED][FG_CORRECTED] = {{0}};
   for (size_t b = 0; b < foil->bump_count; b++)
@@ -74,7 +74,7 @@ static void add_foil_noise(const fg_points_part *part, const fg_joint_fit_part *
 }
 
 /* A gauge's radius is given, and the fit tells nothing of it. */
-static void add_disc_noise(const fg_points_part *part, const fg_joint_fit_part *adds, size_t disc,
+static void add_disc_noise(const fg_edge_fit_part *part, const fg_joint_fit_part *adds, size_t disc,
                            double scale, fg_benefit *benefit) {
   double noise[FG_CORRECTED][FG_CORRECTED] = {{0}};
   if (!part->radius_known) noise[FG_CORRECTED_RADIUS][FG_CORRECTED_RADIUS] = adds->overall;
@@ -92,8 +92,8 @@ static bool holds_curve(const fg_explanations *explanations, size_t explanation)
 
 static void take_noise(fg_scan_loop *loop, const fg_joint_fit_result *fit, size_t view,
                        double scale, bool curve) {
-  const fg_points_view *one = &fit->points->views[view];
-  const fg_points_part *part = &fit->points->parts[one->part];
+  const fg_edge_fit_view *one = &fit->edge_fit->views[view];
+  const fg_edge_fit_part *part = &fit->edge_fit->parts[one->part];
   const fg_joint_fit_part *adds = &fit->parts[one->part];
   const fg_measurement *before = &loop->before[one->scan];
   fg_benefits *benefits = &loop->benefits[one->scan];
@@ -117,7 +117,7 @@ fg_status fg_scan_loop_take_moves(fg_context *ctx, fg_scan_loop *loop, size_t ex
     loop->benefits[i].discs.noises++;
   }
   bool curve = holds_curve(&loop->explanations, explanation);
-  for (size_t v = 0; v < fit->points->view_count; v++)
+  for (size_t v = 0; v < fit->edge_fit->view_count; v++)
     take_noise(loop, fit, v, scale, curve);
   return FG_OK;
 }

@@ -10,8 +10,8 @@ fg_status fg_scan_loop_find_held_out(fg_context *ctx, fg_scan_loop *loop) {
     before->held_out_rms = after->held_out_rms = before->rms;
     return FG_OK;
   }
-  FG_TRY(fg_explain_cross_fit(ctx, &loop->points, &loop->set, &loop->explanations.barred,
-                              loop->options.threads, &loop->cross_fit));
+  FG_TRY(fg_search_cross_fit(ctx, &loop->edge_fit, &loop->set, &loop->explanations.barred,
+                             loop->options.threads, &loop->cross_fit));
   before->held_out_rms = loop->cross_fit.before_um;
   after->held_out_rms = loop->cross_fit.after_um;
   return FG_OK;

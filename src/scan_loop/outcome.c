@@ -13,7 +13,7 @@ static bool has_free(const fg_effect_set *set, bool wanted) {
 /* A residual that all effects and curves together would take is not clean, even when no set of
  * them was found that holds: beside the scatter of rough edges it need not be large. */
 static bool leaves_much(const fg_scan_loop *loop) {
-  return !loop->points.discs && !loop->explanations.right &&
+  return !loop->edge_fit.discs && !loop->explanations.right &&
          (loop->error_after.rms > MUCH * loop->noise_floor_um ||
           loop->explanations.p_value < FG_LOOP_ACCEPT_P);
 }

@@ -101,8 +101,8 @@ static fg_status widen_by(fg_context *ctx, fg_scan_loop *loop, size_t explanatio
                           fg_measurement *tried) {
   fg_effect_set set;
   fg_joint_fit_result fit;
-  fg_explain_take(&loop->explanations, explanation, &set);
-  fg_status status = fg_joint_fit_open(ctx, &loop->points, &set, &fit);
+  fg_search_take(&loop->explanations, explanation, &set);
+  fg_status status = fg_joint_fit_open(ctx, &loop->edge_fit, &set, &fit);
   if (status == FG_ERR_NUMERIC) return FG_OK;
   if (status != FG_OK) return status;
   loop->unlikely[loop->tie_count] = fg_scan_loop_is_unlikely(&loop->explanations, explanation);
@@ -126,7 +126,7 @@ fg_status fg_scan_loop_find_ranges(fg_context *ctx, fg_scan_loop *loop) {
     status = widen_by(ctx, loop, m, tried);
   free(tried);
   /* The geometry in force is the winner's again. */
-  if (status == FG_OK) status = fg_joint_fit(ctx, &loop->points, &loop->set, NULL);
+  if (status == FG_OK) status = fg_joint_fit(ctx, &loop->edge_fit, &loop->set, NULL);
   for (size_t k = 0; k < loop->tie_count; k++)
     widen_step_place(&loop->set, &loop->tie[k]);
   return status;

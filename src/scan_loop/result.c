@@ -21,26 +21,27 @@ static fg_status put_scans(fg_context *ctx, const fg_scan_loop *loop, fg_scan_re
   return FG_OK;
 }
 
-static fg_status put_views(fg_context *ctx, const fg_points *points, fg_scan_result *result) {
-  FG_TRY(fg_memory_allocate(ctx, points->view_count, sizeof *result->view, (void **)&result->view));
-  for (size_t v = 0; v < points->view_count; v++) {
-    const fg_points_view *view = &points->views[v];
+static fg_status put_views(fg_context *ctx, const fg_edge_fit *edge_fit, fg_scan_result *result) {
+  FG_TRY(
+      fg_memory_allocate(ctx, edge_fit->view_count, sizeof *result->view, (void **)&result->view));
+  for (size_t v = 0; v < edge_fit->view_count; v++) {
+    const fg_edge_fit_view *view = &edge_fit->views[v];
     result->view[v] =
-        (fg_scan_result_view){view->scan, view->foil, points->parts[view->part].bump_count};
+        (fg_scan_result_view){view->scan, view->foil, edge_fit->parts[view->part].bump_count};
   }
-  result->views = points->view_count;
+  result->views = edge_fit->view_count;
   return FG_OK;
 }
 
-static bool same_arc(const fg_points_row *a, const fg_points_row *b) {
+static bool same_arc(const fg_edge_fit_row *a, const fg_edge_fit_row *b) {
   return a->view == b->view && a->group == b->group &&
          hypot(a->at.x - b->at.x, a->at.y - b->at.y) < GAP_MM;
 }
 
 static fg_scan_result_row row_of(const fg_scan_loop *loop, size_t i, size_t arc) {
-  const fg_points_row *row = &loop->points.rows[i];
+  const fg_edge_fit_row *row = &loop->edge_fit.rows[i];
   return (fg_scan_result_row){
-      .scan = loop->points.views[row->view].scan,
+      .scan = loop->edge_fit.views[row->view].scan,
       .arc = arc,
       .bump = row->bump,
       .at_mm = row->at,
@@ -50,7 +51,7 @@ static fg_scan_result_row row_of(const fg_scan_loop *loop, size_t i, size_t arc)
                 [FG_SCAN_Y] = row->at.y,
                 [FG_SCAN_FOIL] = row->s_mm,
                 [FG_SCAN_PHI] = row->bump ? row->phi : NAN,
-                [FG_SCAN_INDEX] = fg_points_along_bumps(row),
+                [FG_SCAN_INDEX] = fg_edge_fit_along_bumps(row),
                 [FG_SCAN_NORMAL] = row->normal_rad * 180 / M_PI},
       .weight = row->weight,
       .residual_um = {loop->residual_before[i], loop->residual_after[i]},
@@ -59,19 +60,19 @@ static fg_scan_result_row row_of(const fg_scan_loop *loop, size_t i, size_t arc)
 
 fg_status fg_scan_result_put_rows(fg_context *ctx, const fg_scan_loop *loop,
                                   fg_scan_result *result) {
-  const fg_points *points = &loop->points;
+  const fg_edge_fit *edge_fit = &loop->edge_fit;
   double max = 0;
   size_t arc = 0;
   FG_TRY(put_scans(ctx, loop, result));
-  FG_TRY(put_views(ctx, points, result));
-  FG_TRY(fg_memory_allocate(ctx, points->row_count, sizeof *result->row, (void **)&result->row));
-  for (size_t i = 0; i < points->row_count; i++) {
-    arc += i && !same_arc(&points->rows[i - 1], &points->rows[i]);
+  FG_TRY(put_views(ctx, edge_fit, result));
+  FG_TRY(fg_memory_allocate(ctx, edge_fit->row_count, sizeof *result->row, (void **)&result->row));
+  for (size_t i = 0; i < edge_fit->row_count; i++) {
+    arc += i && !same_arc(&edge_fit->rows[i - 1], &edge_fit->rows[i]);
     result->row[i] = row_of(loop, i, arc);
-    max = fmax(max, points->rows[i].weight);
+    max = fmax(max, edge_fit->rows[i].weight);
   }
-  result->rows = points->row_count;
-  result->row_stations = FG_POINTS_BLOCK;
+  result->rows = edge_fit->row_count;
+  result->row_stations = FG_EDGE_FIT_BLOCK;
   result->light_weight = LIGHT_SHARE * max;
   return FG_OK;
 }

@@ -53,7 +53,7 @@ fg_status fg_scan_result_put_grid(fg_context *ctx, const fg_scan_loop *loop,
                                   fg_scan_result *result) {
   fg_scan_result_grid *grid = &result->grid;
   fg_field_list fields;
-  fg_effect_set_fields(&loop->points, &loop->set, &fields);
+  fg_effect_set_fields(&loop->edge_fit, &loop->set, &fields);
   const fg_field_frame *f = &fields.frame;
   double width = f->high_mm[0] - f->low_mm[0], height = f->high_mm[1] - f->low_mm[1];
   if (!fields.count) return FG_OK;

@@ -84,10 +84,10 @@ static size_t sum_fields(const fg_field_list *list, int axis, drawn_line *line) 
 
 /* ---- the part ---- */
 
-static bool row_place(const fg_points_row *row, fg_effect_coordinate coordinate, double *x) {
+static bool row_place(const fg_edge_fit_row *row, fg_effect_coordinate coordinate, double *x) {
   double degrees = 180 / M_PI;
   *x = coordinate == FG_EFFECT_PHI      ? row->phi
-       : coordinate == FG_EFFECT_INDEX  ? fg_points_along_bumps(row)
+       : coordinate == FG_EFFECT_INDEX  ? fg_edge_fit_along_bumps(row)
        : coordinate == FG_EFFECT_NORMAL ? row->normal_rad * degrees
                                         : row->psi * degrees;
   return (coordinate != FG_EFFECT_PHI && coordinate != FG_EFFECT_INDEX) || row->bump;
@@ -95,7 +95,7 @@ static bool row_place(const fg_points_row *row, fg_effect_coordinate coordinate,
 
 /* Rows look along the normal of their own arc, which on a bump points to the shaft; over the foil
  * the deviation is told outwards, in the direction that the effect's form moves it. */
-static double share_of(const fg_points_row *row, fg_effect_coordinate coordinate,
+static double share_of(const fg_edge_fit_row *row, fg_effect_coordinate coordinate,
                        const char *direction) {
   double along = row->radial.x * row->normal.x + row->radial.y * row->normal.y;
   if (coordinate != FG_EFFECT_FOIL) return 1;
@@ -103,17 +103,17 @@ static double share_of(const fg_points_row *row, fg_effect_coordinate coordinate
 }
 
 /* Adds an effect to the bins; with `n` the bins count their rows. */
-static size_t add_effect(const fg_points *points, const fg_effect_found *effect,
+static size_t add_effect(const fg_edge_fit *edge_fit, const fg_effect_found *effect,
                          fg_effect_coordinate coordinate, const double range[2], double *columns,
                          drawn_line *line, double *n) {
-  size_t filled = fg_effect_columns(points, effect->kind, effect->shape, columns);
-  for (size_t i = 0; i < points->row_count; i++) {
+  size_t filled = fg_effect_columns(edge_fit, effect->kind, effect->shape, columns);
+  for (size_t i = 0; i < edge_fit->row_count; i++) {
     double x;
-    if (!row_place(&points->rows[i], coordinate, &x)) continue;
-    double share = share_of(&points->rows[i], coordinate, effect->kind->direction);
+    if (!row_place(&edge_fit->rows[i], coordinate, &x)) continue;
+    double share = share_of(&edge_fit->rows[i], coordinate, effect->kind->direction);
     size_t bin = (size_t)fmin(SAMPLES - 1, (x - range[0]) / (range[1] - range[0]) * SAMPLES);
     for (size_t c = 0; c < filled; c++)
-      line->um[bin] += effect->coefficient_um[c] * columns[c * points->row_count + i] / share;
+      line->um[bin] += effect->coefficient_um[c] * columns[c * edge_fit->row_count + i] / share;
     if (n) n[bin] += filled > 0;
   }
   return filled;
@@ -122,21 +122,21 @@ static size_t add_effect(const fg_points *points, const fg_effect_found *effect,
 /* Sum of the part's effects on one coordinate, from their columns at the rows, in bins. */
 static fg_status sum_parts(fg_context *ctx, const fg_scan_loop *loop,
                            fg_effect_coordinate coordinate, drawn_line *line, size_t *count) {
-  const fg_points *points = &loop->points;
+  const fg_edge_fit *edge_fit = &loop->edge_fit;
   double *columns = NULL, n[SAMPLES] = {0}, range[2] = {INFINITY, -INFINITY}, x;
   *count = 0;
-  for (size_t i = 0; i < points->row_count; i++) {
-    if (!row_place(&points->rows[i], coordinate, &x)) continue;
+  for (size_t i = 0; i < edge_fit->row_count; i++) {
+    if (!row_place(&edge_fit->rows[i], coordinate, &x)) continue;
     range[0] = fmin(range[0], x);
     range[1] = fmax(range[1], x);
   }
   if (!(range[1] > range[0])) return FG_OK;
-  FG_TRY(fg_memory_allocate(ctx, points->row_count, FG_EFFECT_COLUMNS_MAX * sizeof *columns,
+  FG_TRY(fg_memory_allocate(ctx, edge_fit->row_count, FG_EFFECT_COLUMNS_MAX * sizeof *columns,
                             (void **)&columns));
   for (size_t e = 0; e < loop->set.count; e++) {
     const fg_effect_found *effect = &loop->set.effects[e];
     if (effect->kind->glass || effect->kind->coordinate != coordinate) continue;
-    *count += add_effect(points, effect, coordinate, range, columns, line, *count ? NULL : n) > 0;
+    *count += add_effect(edge_fit, effect, coordinate, range, columns, line, *count ? NULL : n) > 0;
   }
   for (int i = 0; i < SAMPLES; i++) {
     line->x[i] = range[0] + (i + 0.5) * (range[1] - range[0]) / SAMPLES;
@@ -210,7 +210,7 @@ fg_status fg_scan_result_put_lines(fg_context *ctx, const fg_scan_loop *loop,
   enum { LINES = 2 * 2 + FG_EFFECT_COORDINATES - FG_EFFECT_FOIL };
   fg_field_list fields;
   if (!loop->set.count) return FG_OK;
-  fg_effect_set_fields(&loop->points, &loop->set, &fields);
+  fg_effect_set_fields(&loop->edge_fit, &loop->set, &fields);
   /* One more: a place to try the next one in. */
   FG_TRY(fg_memory_allocate(ctx, LINES + 1, sizeof *result->line, (void **)&result->line));
   for (int axis = 0; axis < 2; axis++)

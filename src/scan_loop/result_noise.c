@@ -11,22 +11,22 @@ static const char *model_of(const fg_scatter *scatter) {
 }
 
 /* A disc's rows weigh by their own noise: that of a whole row of the cleanest edge is the unit. */
-static fg_status put_discs(fg_context *ctx, const fg_points *points, fg_scan_noise *noise) {
-  FG_TRY(fg_memory_allocate(ctx, points->view_count, sizeof *noise->disc_um,
+static fg_status put_discs(fg_context *ctx, const fg_edge_fit *edge_fit, fg_scan_noise *noise) {
+  FG_TRY(fg_memory_allocate(ctx, edge_fit->view_count, sizeof *noise->disc_um,
                             (void **)&noise->disc_um));
-  noise->discs = points->view_count;
-  for (size_t v = 0; v < points->view_count; v++) {
+  noise->discs = edge_fit->view_count;
+  for (size_t v = 0; v < edge_fit->view_count; v++) {
     double max = 0;
-    for (size_t i = 0; i < points->row_count; i++)
-      if (points->rows[i].view == v) max = fmax(max, points->rows[i].weight);
-    noise->disc_um[v] = max > 0 ? noise->sd_um / sqrt(max / FG_POINTS_BLOCK) : NAN;
+    for (size_t i = 0; i < edge_fit->row_count; i++)
+      if (edge_fit->rows[i].view == v) max = fmax(max, edge_fit->rows[i].weight);
+    noise->disc_um[v] = max > 0 ? noise->sd_um / sqrt(max / FG_EDGE_FIT_BLOCK) : NAN;
   }
   return FG_OK;
 }
 
 fg_status fg_scan_result_put_noise(fg_context *ctx, const fg_scan_loop *loop,
                                    fg_scan_result *result) {
-  const fg_scatter *scatter = &loop->points.scatter;
+  const fg_scatter *scatter = &loop->edge_fit.scatter;
   fg_scan_noise *noise = &result->noise;
   double sd = loop->noise_floor_um;
   *noise = (fg_scan_noise){.model = model_of(scatter),
@@ -36,5 +36,5 @@ fg_status fg_scan_result_put_noise(fg_context *ctx, const fg_scan_loop *loop,
                            .correlation = scatter->share,
                            .range_mm = scatter->share > 0 ? scatter->range_mm : 0,
                            .long_waves = fmax(scatter->swell, 1)};
-  return loop->points.discs ? put_discs(ctx, &loop->points, noise) : FG_OK;
+  return loop->edge_fit.discs ? put_discs(ctx, &loop->edge_fit, noise) : FG_OK;
 }

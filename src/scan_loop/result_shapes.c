@@ -16,7 +16,7 @@ static void put_point(fg_scan_result_claim *claim, double at, double um) {
 
 static void put_field(const fg_scan_loop *loop, const fg_effect_found *effect,
                       fg_scan_result_claim *claim) {
-  const fg_field_frame *f = &loop->points.frame;
+  const fg_field_frame *f = &loop->edge_fit.frame;
   int along = effect->kind->coordinate == FG_EFFECT_X ? 0 : 1;
   bool moves_x = effect->kind->moves && !strcmp(effect->kind->moves, "x");
   fg_field_list list = {.frame = *f, .fields = {fg_effect_found_field(effect)}, .count = 1};
@@ -30,7 +30,7 @@ static void put_field(const fg_scan_loop *loop, const fg_effect_found *effect,
 
 static void put_foil(const fg_scan_loop *loop, const fg_effect_found *effect,
                      fg_scan_result_claim *claim) {
-  const double *psi = loop->points.psi_rad;
+  const double *psi = loop->edge_fit.psi_rad;
   for (int i = 0; i < SHAPE_POINTS; i++) {
     double values[FG_FIELD_COLUMNS], t = i / (SHAPE_POINTS - 1.0), sum = 0;
     fg_field_splines(psi[0], psi[1], FG_FIELD_COLUMNS, psi[0] + t * (psi[1] - psi[0]), values);
@@ -43,22 +43,22 @@ static void put_foil(const fg_scan_loop *loop, const fg_effect_found *effect,
 /* Half the arc of a row's bump between its fillets: the fillet's circle (radius r) touches the
  * overall circle from inside and the bump's from outside, so in the triangle of the three centres
  * the sides are R0 - r, R + r and X. */
-static double fillet_to_fillet_rad(const fg_points *points, const fg_points_row *row) {
-  const fg_points_part *part = &points->parts[row->part];
-  const fg_points_bump *bump = &part->bumps[row->bump_index];
-  double r = points->views[row->view].measurement->design.fillet_radius_mm;
+static double fillet_to_fillet_rad(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row) {
+  const fg_edge_fit_part *part = &edge_fit->parts[row->part];
+  const fg_edge_fit_bump *bump = &part->bumps[row->bump_index];
+  double r = edge_fit->views[row->view].measurement->design.fillet_radius_mm;
   double x = bump->distance_mm, from_o = part->overall_radius_mm - r, from_c = bump->radius_mm + r;
   double angle = acos((x * x + from_c * from_c - from_o * from_o) / (2 * x * from_c));
   return isfinite(angle) ? angle : part->half_arc_rad;
 }
 
 /* Where a row lies on the coordinate; NaN: nowhere. */
-static double place_of(const fg_points *points, const fg_points_row *row,
+static double place_of(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row,
                        fg_effect_coordinate coordinate) {
-  if (coordinate == FG_EFFECT_INDEX) return fg_points_along_bumps(row);
+  if (coordinate == FG_EFFECT_INDEX) return fg_edge_fit_along_bumps(row);
   if (coordinate == FG_EFFECT_PHI)
-    return row->bump ? row->phi * points->parts[row->part].half_arc_rad /
-                           fillet_to_fillet_rad(points, row)
+    return row->bump ? row->phi * edge_fit->parts[row->part].half_arc_rad /
+                           fillet_to_fillet_rad(edge_fit, row)
                      : NAN;
   double deg = row->normal_rad * 180 / M_PI;
   return deg < 0 ? deg + 360 : deg;
@@ -67,18 +67,18 @@ static double place_of(const fg_points *points, const fg_points_row *row,
 /* Means of a deviation at the rows, which are where it is known. */
 static fg_status put_part(fg_context *ctx, const fg_scan_loop *loop, const fg_effect_found *effect,
                           fg_scan_result_claim *claim) {
-  const fg_points *points = &loop->points;
+  const fg_edge_fit *edge_fit = &loop->edge_fit;
   fg_effect_coordinate over = effect->kind->coordinate;
   double low = INFINITY, high = -INFINITY, sum[SHAPE_POINTS] = {0}, at[SHAPE_POINTS] = {0};
   double count[SHAPE_POINTS] = {0}, *shift = NULL;
   fg_effect_set alone = {.effects = {*effect}, .count = 1};
-  FG_TRY(fg_effect_set_shift(ctx, points, &alone, &shift));
-  for (size_t i = 0; i < points->row_count; i++) {
-    low = fmin(low, place_of(points, &points->rows[i], over));
-    high = fmax(high, place_of(points, &points->rows[i], over));
+  FG_TRY(fg_effect_set_shift(ctx, edge_fit, &alone, &shift));
+  for (size_t i = 0; i < edge_fit->row_count; i++) {
+    low = fmin(low, place_of(edge_fit, &edge_fit->rows[i], over));
+    high = fmax(high, place_of(edge_fit, &edge_fit->rows[i], over));
   }
-  for (size_t i = 0; i < points->row_count; i++) {
-    double place = place_of(points, &points->rows[i], over);
+  for (size_t i = 0; i < edge_fit->row_count; i++) {
+    double place = place_of(edge_fit, &edge_fit->rows[i], over);
     if (!isfinite(place)) continue;
     size_t bin = (size_t)fmin(SHAPE_POINTS - 1, (place - low) / (high - low) * SHAPE_POINTS);
     sum[bin] += 1000 * shift[i];

@@ -22,26 +22,26 @@ enum { EFFECTS_MAX = 1 };
 
 /* Every scan a part of its own, and what a search leaves then. */
 typedef struct apart {
-  fg_points points;
+  fg_edge_fit edge_fit;
   fg_effect_set set;
   fg_explanations explanations;
   double *residual_um;
 } apart;
 
-static double mean_square(const fg_points *points, const double *residual_um) {
+static double mean_square(const fg_edge_fit *edge_fit, const double *residual_um) {
   double sum = 0, weight = 0;
-  for (size_t i = 0; i < points->row_count; i++) {
-    if (points->views[points->rows[i].view].held_out) continue;
-    sum += points->rows[i].weight * residual_um[i] * residual_um[i];
-    weight += points->rows[i].weight;
+  for (size_t i = 0; i < edge_fit->row_count; i++) {
+    if (edge_fit->views[edge_fit->rows[i].view].held_out) continue;
+    sum += edge_fit->rows[i].weight * residual_um[i] * residual_um[i];
+    weight += edge_fit->rows[i].weight;
   }
   return weight > 0 ? sum / weight : 0;
 }
 
-static size_t rows_that_count(const fg_points *points) {
+static size_t rows_that_count(const fg_edge_fit *edge_fit) {
   size_t rows = 0;
-  for (size_t i = 0; i < points->row_count; i++)
-    rows += points->rows[i].weight > 0 && !points->views[points->rows[i].view].held_out;
+  for (size_t i = 0; i < edge_fit->row_count; i++)
+    rows += edge_fit->rows[i].weight > 0 && !edge_fit->views[edge_fit->rows[i].view].held_out;
   return rows;
 }
 
@@ -51,8 +51,8 @@ static bool has_curve(const fg_effect_set *set) {
   return false;
 }
 
-static fg_status set_apart(fg_context *ctx, const fg_points *together, apart *a) {
-  fg_points_view *views = NULL;
+static fg_status set_apart(fg_context *ctx, const fg_edge_fit *together, apart *a) {
+  fg_edge_fit_view *views = NULL;
   size_t count = 0;
   FG_TRY(fg_memory_allocate(ctx, together->view_count, sizeof *views, (void **)&views));
   for (size_t v = 0; v < together->view_count; v++) {
@@ -61,18 +61,18 @@ static fg_status set_apart(fg_context *ctx, const fg_points *together, apart *a)
     views[count].part = count;
     count++;
   }
-  fg_status status = fg_points_build(ctx, views, count, &a->points);
+  fg_status status = fg_edge_fit_build(ctx, views, count, &a->edge_fit);
   free(views);
   if (status != FG_OK) return status;
-  a->points.coarse = true; /* only few effects count here, and curves not at all */
-  a->points.frame = together->frame;
-  FG_TRY(fg_memory_allocate(ctx, a->points.row_count, sizeof *a->residual_um,
+  a->edge_fit.coarse = true; /* only few effects count here, and curves not at all */
+  a->edge_fit.frame = together->frame;
+  FG_TRY(fg_memory_allocate(ctx, a->edge_fit.row_count, sizeof *a->residual_um,
                             (void **)&a->residual_um));
-  return fg_explain_run(ctx, &a->points, &a->set, &a->explanations, a->residual_um);
+  return fg_search_run(ctx, &a->edge_fit, &a->set, &a->explanations, a->residual_um);
 }
 
-static size_t numbers_of(const fg_points *points, const fg_effect_set *set) {
-  size_t numbers = points->parameters;
+static size_t numbers_of(const fg_edge_fit *edge_fit, const fg_effect_set *set) {
+  size_t numbers = edge_fit->parameters;
   for (size_t e = 0; e < set->count; e++)
     numbers += set->effects[e].columns + set->effects[e].shapes;
   return numbers;
@@ -80,22 +80,22 @@ static size_t numbers_of(const fg_points *points, const fg_effect_set *set) {
 
 /* By how much Schwarz's criterion prefers them. */
 static double preference(const fg_scan_loop *loop, const apart *a) {
-  double together = fmax(mean_square(&loop->points, loop->residual_after), NOTHING_UM2);
-  double alone = fmax(mean_square(&a->points, a->residual_um), NOTHING_UM2);
-  double rows = (double)rows_that_count(&a->points) / a->explanations.integral;
+  double together = fmax(mean_square(&loop->edge_fit, loop->residual_after), NOTHING_UM2);
+  double alone = fmax(mean_square(&a->edge_fit, a->residual_um), NOTHING_UM2);
+  double rows = (double)rows_that_count(&a->edge_fit) / a->explanations.integral;
   double more =
-      (double)numbers_of(&a->points, &a->set) - (double)numbers_of(&loop->points, &loop->set);
+      (double)numbers_of(&a->edge_fit, &a->set) - (double)numbers_of(&loop->edge_fit, &loop->set);
   return rows * log(together / alone) - more * log(rows);
 }
 
 /* The bump that differs most between two views of a part, as it was measured. */
 static fg_status say_two_foils(fg_context *ctx, const fg_scan_loop *loop, const apart *a) {
-  const fg_points *points = &loop->points;
+  const fg_edge_fit *edge_fit = &loop->edge_fit;
   const fg_bump *one = NULL, *other = NULL;
-  for (size_t v = 0; v < points->view_count; v++)
+  for (size_t v = 0; v < edge_fit->view_count; v++)
     for (size_t w = 0; w < v; w++) {
-      if (points->views[v].part != points->views[w].part) continue;
-      const fg_foil *f = points->views[v].foil, *g = points->views[w].foil;
+      if (edge_fit->views[v].part != edge_fit->views[w].part) continue;
+      const fg_foil *f = edge_fit->views[v].foil, *g = edge_fit->views[w].foil;
       for (size_t i = 0; i < f->bump_count; i++)
         for (size_t k = 0; k < g->bump_count; k++) {
           if (f->bumps[i].number != g->bumps[k].number) continue;
@@ -110,25 +110,25 @@ static fg_status say_two_foils(fg_context *ctx, const fg_scan_loop *loop, const 
                  "one for all of them %.3f um whatever the scanner does; bump %d is %.4f mm in one "
                  "scan and %.4f mm in another; without --same-foil the scans are searched as foils "
                  "of one scanner",
-                 sqrt(mean_square(&a->points, a->residual_um)),
-                 sqrt(mean_square(points, loop->residual_after)), one ? one->number : 0,
+                 sqrt(mean_square(&a->edge_fit, a->residual_um)),
+                 sqrt(mean_square(edge_fit, loop->residual_after)), one ? one->number : 0,
                  one ? one->radius_mm : NAN, one ? other->radius_mm : NAN);
 }
 
 fg_status fg_scan_loop_check_one_foil(fg_context *ctx, const fg_scan_loop *loop) {
   apart a = {0};
   size_t views = 0;
-  for (size_t v = 0; v < loop->points.view_count; v++)
-    views += !loop->points.views[v].held_out;
-  if (!loop->options.same_foil || views <= loop->points.part_count) return FG_OK;
+  for (size_t v = 0; v < loop->edge_fit.view_count; v++)
+    views += !loop->edge_fit.views[v].held_out;
+  if (!loop->options.same_foil || views <= loop->edge_fit.part_count) return FG_OK;
   if (loop->explanations.right && !has_curve(&loop->set)) return FG_OK;
-  fg_status status = set_apart(ctx, &loop->points, &a);
+  fg_status status = set_apart(ctx, &loop->edge_fit, &a);
   bool told = status == FG_OK;
   if (status != FG_ERR_MEMORY) status = FG_OK; /* rows too few for a geometry each tell nothing */
   if (told && a.explanations.right && !has_curve(&a.set) && a.set.count <= EFFECTS_MAX &&
       preference(loop, &a) > PREFERENCE_MIN)
     status = say_two_foils(ctx, loop, &a);
-  fg_points_free(&a.points);
+  fg_edge_fit_free(&a.edge_fit);
   free(a.residual_um);
   return status;
 }

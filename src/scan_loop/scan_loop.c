@@ -56,40 +56,40 @@ static fg_status build_points(fg_context *ctx, fg_scan_loop *loop) {
   size_t total = 0, n = 0;
   for (size_t i = 0; i < loop->scan_count; i++)
     total += loop->before[i].foil_count + loop->before[i].disc_count;
-  fg_points_view *views = NULL;
+  fg_edge_fit_view *views = NULL;
   FG_TRY(fg_memory_allocate(ctx, total, sizeof *views, (void **)&views));
   for (size_t i = 0; i < loop->scan_count; i++) {
     const fg_measurement *m = &loop->before[i];
     for (size_t f = 0; f < m->foil_count; f++, n++)
-      views[n] = (fg_points_view){&m->foils[f],     NULL, m, i, loop->options.same_foil ? f : n,
-                                  loop->hold_out[i]};
+      views[n] = (fg_edge_fit_view){&m->foils[f],     NULL, m, i, loop->options.same_foil ? f : n,
+                                    loop->hold_out[i]};
     for (size_t d = 0; d < m->disc_count; d++, n++)
-      views[n] = (fg_points_view){NULL, &m->discs[d], m, i, n, loop->hold_out[i]};
+      views[n] = (fg_edge_fit_view){NULL, &m->discs[d], m, i, n, loop->hold_out[i]};
   }
-  fg_status status = fg_points_build(ctx, views, n, &loop->points);
+  fg_status status = fg_edge_fit_build(ctx, views, n, &loop->edge_fit);
   free(views);
   if (status != FG_OK) return status;
-  loop->points.coarse = loop->options.coarse;
-  if (loop->options.coarse) fg_points_find_frame(&loop->points);
+  loop->edge_fit.coarse = loop->options.coarse;
+  if (loop->options.coarse) fg_edge_fit_find_frame(&loop->edge_fit);
   size_t rows = 0;
-  for (size_t i = 0; i < loop->points.row_count; i++)
-    rows += !loop->points.views[loop->points.rows[i].view].held_out;
+  for (size_t i = 0; i < loop->edge_fit.row_count; i++)
+    rows += !loop->edge_fit.views[loop->edge_fit.rows[i].view].held_out;
   if (rows < ROWS_MIN)
     return fg_fail(ctx, FG_ERR_DATA, "%zu edge rows are too few to look for effects", rows);
   return FG_OK;
 }
 
-static fg_scan_loop_error summarise(fg_context *ctx, const fg_points *points,
+static fg_scan_loop_error summarise(fg_context *ctx, const fg_edge_fit *edge_fit,
                                     const double *residual) {
   fg_scan_loop_error e = {NAN, NAN, NAN, NAN, NAN};
   double sum = 0, n = 0, held = 0, held_n = 0, *absolute = NULL; /* n: weights */
   size_t count = 0;
-  if (fg_memory_allocate(ctx, points->row_count, sizeof *absolute, (void **)&absolute) != FG_OK)
+  if (fg_memory_allocate(ctx, edge_fit->row_count, sizeof *absolute, (void **)&absolute) != FG_OK)
     return e;
-  for (size_t i = 0; i < points->row_count; i++) {
-    if (!(points->rows[i].weight > 0)) continue;
-    double weight = points->rows[i].weight, square = weight * residual[i] * residual[i];
-    if (points->views[points->rows[i].view].held_out) {
+  for (size_t i = 0; i < edge_fit->row_count; i++) {
+    if (!(edge_fit->rows[i].weight > 0)) continue;
+    double weight = edge_fit->rows[i].weight, square = weight * residual[i] * residual[i];
+    if (edge_fit->views[edge_fit->rows[i].view].held_out) {
       held += square;
       held_n += weight;
       continue;
@@ -165,7 +165,7 @@ static bool bends_bumps(const fg_effect_set *set) {
 }
 
 static fg_status search_bumps(fg_context *ctx, fg_scan_loop *loop) {
-  const fg_loop_outcome points = fg_scan_loop_points_outcome(loop);
+  const fg_loop_outcome edge_fit = fg_scan_loop_points_outcome(loop);
   const fg_scan_loop_bumps_request request = {
       .before = loop->before,
       .after = loop->after,
@@ -174,11 +174,11 @@ static fg_status search_bumps(fg_context *ctx, fg_scan_loop *loop) {
       .same_foil = loop->options.same_foil,
       .bent = bends_bumps(&loop->set),
       .forming = loop->options.forming,
-      .open = loop->tied || points == FG_LOOP_PARTLY || points == FG_LOOP_UNATTRIBUTED,
+      .open = loop->tied || edge_fit == FG_LOOP_PARTLY || edge_fit == FG_LOOP_UNATTRIBUTED,
       .seed = loop->options.seed,
   };
   FG_TRY(fg_scan_loop_bumps_run(ctx, &request, &loop->bumps));
-  FG_TRY(loop->points.discs ? note_forming(ctx, loop) : say_reach(ctx, loop));
+  FG_TRY(loop->edge_fit.discs ? note_forming(ctx, loop) : say_reach(ctx, loop));
   FG_TRY(fg_scan_loop_say_held_out(ctx, loop));
   FG_TRY(fg_scan_loop_say_left_out(ctx, loop));
   FG_TRY(say_lossy(ctx, loop));
@@ -189,7 +189,7 @@ static fg_status search_bumps(fg_context *ctx, fg_scan_loop *loop) {
 /* The winner fitted once more, and every scan corrected by it. */
 static fg_status correct(fg_context *ctx, fg_scan_loop *loop) {
   fg_joint_fit_result fit;
-  FG_TRY(fg_joint_fit_open(ctx, &loop->points, &loop->set, &fit));
+  FG_TRY(fg_joint_fit_open(ctx, &loop->edge_fit, &loop->set, &fit));
   loop->set = fit.set;
   fg_status status = fg_scan_loop_correct_all(ctx, loop, &fit, loop->after);
   if (status == FG_OK && fit.set.count)
@@ -214,15 +214,16 @@ static void widen_scales(fg_scan_loop *loop) {
 }
 
 static fg_status search(fg_context *ctx, fg_scan_loop *loop) {
-  size_t rows = loop->points.row_count;
+  size_t rows = loop->edge_fit.row_count;
   FG_TRY(fg_memory_allocate(ctx, rows, sizeof(double), (void **)&loop->residual_before));
   FG_TRY(fg_memory_allocate(ctx, rows, sizeof(double), (void **)&loop->residual_after));
-  FG_TRY(fg_joint_fit(ctx, &loop->points, &loop->set, loop->residual_before));
-  FG_TRY(fg_explain_run(ctx, &loop->points, &loop->set, &loop->explanations, loop->residual_after));
+  FG_TRY(fg_joint_fit(ctx, &loop->edge_fit, &loop->set, loop->residual_before));
+  FG_TRY(
+      fg_search_run(ctx, &loop->edge_fit, &loop->set, &loop->explanations, loop->residual_after));
   FG_TRY(fg_scan_loop_find_single_bumps(ctx, loop));
   FG_TRY(fg_scan_loop_check_one_foil(ctx, loop));
-  loop->error_before = summarise(ctx, &loop->points, loop->residual_before);
-  loop->error_after = summarise(ctx, &loop->points, loop->residual_after);
+  loop->error_before = summarise(ctx, &loop->edge_fit, loop->residual_before);
+  loop->error_after = summarise(ctx, &loop->edge_fit, loop->residual_after);
   FG_TRY(fg_scan_loop_find_held_out(ctx, loop));
   loop->noise_floor_um = loop->explanations.noise_um;
   loop->tied = loop->explanations.count > 1;
@@ -231,7 +232,7 @@ static fg_status search(fg_context *ctx, fg_scan_loop *loop) {
   FG_TRY(fg_scan_loop_keep_beneficial(ctx, loop));
   if (loop->tied) fg_scan_loop_put_ranges(loop);
   FG_TRY(search_bumps(ctx, loop));
-  FG_TRY(fg_explain_width(ctx, &loop->points, &loop->set, &loop->width));
+  FG_TRY(fg_search_width(ctx, &loop->edge_fit, &loop->set, &loop->width));
   loop->tone = fg_model_tone_find(loop, true);
   widen_scales(loop);
   loop->verdict = fg_scan_loop_outcome(loop);
@@ -349,7 +350,7 @@ void fg_scan_loop_free(fg_scan_loop *loop) {
     if (loop->after) fg_measurement_free(&loop->after[i]);
   }
   fg_scan_result_free(&loop->result);
-  fg_points_free(&loop->points);
+  fg_edge_fit_free(&loop->edge_fit);
   fg_scan_loop_bumps_free(&loop->bumps);
   free(loop->before);
   free(loop->after);

@@ -70,14 +70,14 @@ static double mean_of(double sum, double count) {
 }
 
 static fg_model_tone find_on(const fg_scan_loop *loop, const fg_measurement *scans) {
-  const fg_points *points = &loop->points;
+  const fg_edge_fit *edge_fit = &loop->edge_fit;
   fg_model_tone tone = {.gauges = 0};
   fg_level_sum sum = {.count = 0};
   double shown = 0;
   double blur = 0, asymmetry = 0, gamma = 0, gammas = 0, sharpen = 0, radius = 0, sharpened = 0;
-  for (size_t v = 0; points->discs && v < points->view_count; v++) {
-    const fg_points_view *view = &points->views[v];
-    const fg_points_part *part = &points->parts[view->part];
+  for (size_t v = 0; edge_fit->discs && v < edge_fit->view_count; v++) {
+    const fg_edge_fit_view *view = &edge_fit->views[v];
+    const fg_edge_fit_part *part = &edge_fit->parts[view->part];
     const fg_disc *disc = view->disc;
     if (view->held_out || !part->radius_known || disc->flags & FG_BUMP_POOR_FIT) continue;
     const fg_disc *corrected = &scans[view->scan].discs[disc - view->measurement->discs];

@@ -22,11 +22,11 @@ static void format_date(int64_t seconds, char text[FG_MODEL_DATE]) {
 /* How many held the absolute scale; 0 where they could not have shown that it is wrong. */
 static size_t known_diameters(const fg_scan_loop *loop) {
   for (size_t e = 0; e < loop->set.count; e++)
-    if (loop->set.effects[e].kind->scales) return loop->points.known_count;
+    if (loop->set.effects[e].kind->scales) return loop->edge_fit.known_count;
   for (size_t i = 0; i < loop->result.unclaimeds; i++)
     if (fg_effect_find(loop->result.unclaimed[i].id)->scales &&
         loop->result.unclaimed[i].verdict == FG_LOOP_ABSENT)
-      return loop->points.known_count;
+      return loop->edge_fit.known_count;
   return 0;
 }
 
@@ -42,10 +42,10 @@ fg_status fg_scanner_model_of(fg_context *ctx, const fg_scan_loop *loop, fg_scan
   made->scans = loop->scan_count;
   made->known_diameters = known_diameters(loop);
   made->tone = loop->tone;
-  fg_effect_set_fields(&loop->points, &loop->set, &made->fields);
+  fg_effect_set_fields(&loop->edge_fit, &loop->set, &made->fields);
   for (size_t k = 0; k < loop->tie_count; k++)
     if (!loop->unlikely[k])
-      fg_effect_set_fields(&loop->points, &loop->tie[k], &made->other[made->others++]);
+      fg_effect_set_fields(&loop->edge_fit, &loop->tie[k], &made->other[made->others++]);
   made->tied = made->others > 0;
   *model = made;
   return FG_OK;

@@ -47,19 +47,19 @@ static void add_view(const double *columns, const double *value, size_t n, doubl
 
 /* Residual of every row that counts, with what follows the edge's direction taken out. */
 static fg_status without_directions(fg_context *ctx, const fg_scan_loop *loop, double *value) {
-  const fg_points *points = &loop->points;
+  const fg_edge_fit *edge_fit = &loop->edge_fit;
   const fg_effect *normal = fg_effect_first();
   while (!(fg_effect_is_free(normal) && normal->coordinate == FG_EFFECT_NORMAL))
     normal = fg_effect_next(normal);
-  size_t rows = points->row_count;
+  size_t rows = edge_fit->row_count;
   double *columns = NULL, *basis;
   FG_TRY(fg_memory_allocate(ctx, 2 * rows, FG_EFFECT_COLUMNS_MAX * sizeof *columns,
                             (void **)&columns));
   basis = columns + rows * FG_EFFECT_COLUMNS_MAX;
-  size_t count = fg_effect_columns(points, normal, NULL, columns);
+  size_t count = fg_effect_columns(edge_fit, normal, NULL, columns);
   for (size_t i = 0; i < rows; i++) {
-    const fg_points_row *row = &points->rows[i];
-    double root = points->views[row->view].held_out ? 0 : sqrt(row->weight);
+    const fg_edge_fit_row *row = &edge_fit->rows[i];
+    double root = edge_fit->views[row->view].held_out ? 0 : sqrt(row->weight);
     value[i] = root * loop->residual_after[i];
     for (size_t c = 0; c < count; c++)
       columns[c * rows + i] *= root;
@@ -72,14 +72,15 @@ static fg_status without_directions(fg_context *ctx, const fg_scan_loop *loop, d
 
 /* Polynomials of the place in the arc that is there: a raised bump turns back sooner, and over the
  * shorter arc those of the common one look alike. */
-static void fill_columns(const fg_points *points, const size_t *row, size_t n, double *columns) {
+static void fill_columns(const fg_edge_fit *edge_fit, const size_t *row, size_t n,
+                         double *columns) {
   double low = INFINITY, high = -INFINITY;
   for (size_t i = 0; i < n; i++) {
-    low = fmin(low, points->rows[row[i]].phi);
-    high = fmax(high, points->rows[row[i]].phi);
+    low = fmin(low, edge_fit->rows[row[i]].phi);
+    high = fmax(high, edge_fit->rows[row[i]].phi);
   }
   for (size_t i = 0; i < n; i++) {
-    fg_points_row own = points->rows[row[i]];
+    fg_edge_fit_row own = edge_fit->rows[row[i]];
     double values[ORDERS] = {1};
     own.phi = 2 * (own.phi - low) / (high - low) - 1;
     fg_midline_legendre(&own, 1, 1, ORDERS - 1, values + 1);
@@ -103,8 +104,8 @@ static amplitudes *find_number(amplitudes *list, size_t *count, int number) {
 /* Every bump of every view; rows of a bump on a view are neighbours. */
 static fg_status collect(fg_context *ctx, const fg_scan_loop *loop, amplitudes *list,
                          size_t *count) {
-  const fg_points *points = &loop->points;
-  size_t rows = points->row_count, *row = NULL;
+  const fg_edge_fit *edge_fit = &loop->edge_fit;
+  size_t rows = edge_fit->row_count, *row = NULL;
   double *value = NULL, *work = NULL;
   fg_status status = FG_OK;
   FG_TRY_EXIT(fg_memory_allocate(ctx, 2 * rows, sizeof *value, (void **)&value));
@@ -113,18 +114,18 @@ static fg_status collect(fg_context *ctx, const fg_scan_loop *loop, amplitudes *
   FG_TRY_EXIT(without_directions(ctx, loop, value));
   double *own = value + rows, *columns = work + 2 * ORDERS * rows;
   for (size_t from = 0, to; from < rows; from = to) {
-    const fg_points_row *first = &points->rows[from];
+    const fg_edge_fit_row *first = &edge_fit->rows[from];
     size_t n = 0;
-    for (to = from;
-         to < rows && points->rows[to].view == first->view && points->rows[to].bump == first->bump;
+    for (to = from; to < rows && edge_fit->rows[to].view == first->view &&
+                    edge_fit->rows[to].bump == first->bump;
          to++) {
-      if (!(points->rows[to].weight > 0) || points->views[first->view].held_out) continue;
+      if (!(edge_fit->rows[to].weight > 0) || edge_fit->views[first->view].held_out) continue;
       own[n] = value[to];
       row[n++] = to;
     }
     amplitudes *of = first->bump && n >= ROWS_MIN ? find_number(list, count, first->bump) : NULL;
     if (!of) continue;
-    fill_columns(points, row, n, columns);
+    fill_columns(edge_fit, row, n, columns);
     add_view(columns, own, n, work, of);
   }
 exit:
@@ -174,14 +175,14 @@ static fg_status join(fg_context *ctx, fg_scan_loop *loop, size_t candidate, dou
   const fg_candidate *from = &explanations->candidates[candidate];
   loop->set.effects[loop->set.count++] =
       (fg_effect_found){.kind = from->kind, .columns = from->columns};
-  return fg_joint_fit(ctx, &loop->points, &loop->set, loop->residual_after);
+  return fg_joint_fit(ctx, &loop->edge_fit, &loop->set, loop->residual_after);
 }
 
 fg_status fg_scan_loop_find_single_bumps(fg_context *ctx, fg_scan_loop *loop) {
   const fg_explanations *explanations = &loop->explanations;
   size_t candidate = 0, count = 0;
   amplitudes list[FG_BUMP_PATTERN_MAX];
-  if (loop->points.discs || loop->points.coarse || loop->set.count == FG_EFFECT_SET_MAX)
+  if (loop->edge_fit.discs || loop->edge_fit.coarse || loop->set.count == FG_EFFECT_SET_MAX)
     return FG_OK;
   if (!explanations->right) return FG_OK;
   /* What a curve leaves of itself, or bends, is no single bump's. */

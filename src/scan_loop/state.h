@@ -24,7 +24,7 @@ struct fg_scan_loop {
   bool *hold_out;
   size_t scan_count;
   size_t left_out;                          /* foils that were not measured, or are none */
-  fg_points points;                         /* all views; geometry of the final model */
+  fg_edge_fit edge_fit;                     /* all views; geometry of the final model */
   fg_explanations explanations;             /* what was tried, and which sets explain */
   fg_effect_set set;                        /* the winner, fitted */
   double *residual_before, *residual_after; /* um, per row of points */

@@ -17,7 +17,7 @@ _Static_assert((int)FG_SCAN_RESULT_CLAIMS == (int)FG_EFFECT_SET_MAX + (int)FG_WI
 _Static_assert((int)FG_SCAN_RESULT_EXPLANATIONS == (int)FG_EXPLANATIONS_MAX,
                "every explanation has its place");
 _Static_assert((int)FG_SCAN_RESULT_UNCLAIMED >=
-                   FG_CANDIDATES_MAX + (int)FG_EXPLAIN_BARRED_MAX + (int)FG_WIDTH_EFFECTS_MAX,
+                   FG_CANDIDATES_MAX + (int)FG_SEARCH_BARRED_MAX + (int)FG_WIDTH_EFFECTS_MAX,
                "every candidate has its place");
 _Static_assert((int)FG_SCAN_X == (int)FG_EFFECT_X && (int)FG_SCAN_Y == (int)FG_EFFECT_Y &&
                    (int)FG_SCAN_FOIL == (int)FG_EFFECT_FOIL &&
@@ -244,7 +244,7 @@ static void put_unclaimed(const fg_scan_loop *loop, fg_scan_result *result) {
         .smallest_um = explanations->smallest_um[e]};
   }
   for (size_t b = 0; b < explanations->barred.count; b++) {
-    const fg_explain_barred *barred = &explanations->barred.each[b];
+    const fg_search_barred *barred = &explanations->barred.each[b];
     const fg_effect *kind = barred->effect;
     if (fg_effect_is_free(kind) || is_claimed(&loop->set, kind) || is_listed(result, kind))
       continue;
@@ -264,7 +264,7 @@ static void put_unclaimed(const fg_scan_loop *loop, fg_scan_result *result) {
 static void put_advice(const fg_scan_loop *loop, fg_scan_result *result) {
   if (!result->named)
     result->advice[result->advices++] =
-        loop->points.discs
+        loop->edge_fit.discs
             ? "scan a plate of several gauges on the same scanner: what all of them show is the "
               "scanner, and an oval is each one's own"
         : !loop->options.same_foil
@@ -287,7 +287,7 @@ static fg_scan_held_out held_out_of(const fg_scan_loop *loop) {
 static void put_numbers(const fg_scan_loop *loop, fg_scan_result *result) {
   result->verdict = loop->verdict;
   result->same_foil = loop->options.same_foil;
-  result->discs = loop->points.discs;
+  result->discs = loop->edge_fit.discs;
   result->scale_tied = loop->scale_tied;
   result->noise_floor_um = loop->noise_floor_um;
   result->edge_model_error_um = loop->explanations.edge_error_um;

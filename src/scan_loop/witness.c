@@ -283,9 +283,9 @@ static bool take_effect(const fg_effect_found *effect, carriage *c) {
 }
 
 static carriage start_carriage(const fg_scan_loop *loop) {
-  return (carriage){.fields = {.frame = loop->points.frame},
-                    .others = {.frame = loop->points.frame},
-                    .x_mm = loop->points.frame.centre_mm[0]};
+  return (carriage){.fields = {.frame = loop->edge_fit.frame},
+                    .others = {.frame = loop->edge_fit.frame},
+                    .x_mm = loop->edge_fit.frame.centre_mm[0]};
 }
 
 static carriage carriage_of(const fg_scan_loop *loop, const fg_effect_set *set) {

@@ -11,7 +11,7 @@
 
 typedef struct foil_rows {
   fg_measurement m;
-  fg_points points;
+  fg_edge_fit edge_fit;
   double *residual_um, *jacobian, *columns;
 } foil_rows;
 
@@ -22,28 +22,28 @@ static inline void foil_rows_open(foil_rows *f) {
   f->m.width_px = f->m.height_px = 9000;
   f->m.foils = calloc(1, sizeof *f->m.foils);
   f->m.foils[0] = synthetic_foil(&f->m.design, &f->m.nominal);
-  fg_points_view view = {.foil = &f->m.foils[0], .measurement = &f->m};
-  assert_int_equal(fg_points_build(&ctx, &view, 1, &f->points), FG_OK);
-  assert_int_equal(fg_points_fit(&ctx, &f->points, NULL), FG_OK);
-  size_t rows = f->points.row_count;
+  fg_edge_fit_view view = {.foil = &f->m.foils[0], .measurement = &f->m};
+  assert_int_equal(fg_edge_fit_build(&ctx, &view, 1, &f->edge_fit), FG_OK);
+  assert_int_equal(fg_edge_fit_fit(&ctx, &f->edge_fit, NULL), FG_OK);
+  size_t rows = f->edge_fit.row_count;
   f->residual_um = calloc(rows, sizeof(double));
-  f->jacobian = calloc(rows * f->points.parameters, sizeof(double));
+  f->jacobian = calloc(rows * f->edge_fit.parameters, sizeof(double));
   f->columns = calloc(rows * FG_FIELD_COLUMNS, sizeof(double));
-  fg_points_residual(&f->points, NULL, f->residual_um, f->jacobian);
+  fg_edge_fit_residual(&f->edge_fit, NULL, f->residual_um, f->jacobian);
 }
 
 static inline void foil_rows_close(foil_rows *f) {
   free(f->residual_um);
   free(f->jacobian);
   free(f->columns);
-  fg_points_free(&f->points);
+  fg_edge_fit_free(&f->edge_fit);
   synthetic_free(&f->m);
 }
 
 /* Noise in every row's place. */
 static inline void foil_rows_put_noise(foil_rows *f, double noise_um) {
   uint64_t seed = 7;
-  for (size_t i = 0; i < f->points.row_count; i++)
+  for (size_t i = 0; i < f->edge_fit.row_count; i++)
     f->residual_um[i] = noise_um * random_gaussian(&seed);
 }
 
@@ -51,10 +51,10 @@ static inline void foil_rows_put_noise(foil_rows *f, double noise_um) {
 static inline size_t foil_rows_add_effect(foil_rows *f, const fg_effect *effect,
                                           const double *shape, const double *amplitude_um,
                                           size_t amplitudes) {
-  size_t count = fg_effect_columns(&f->points, effect, shape, f->columns);
+  size_t count = fg_effect_columns(&f->edge_fit, effect, shape, f->columns);
   for (size_t c = 0; c < amplitudes && c < count; c++)
-    for (size_t i = 0; i < f->points.row_count; i++)
-      f->residual_um[i] += amplitude_um[c] * f->columns[c * f->points.row_count + i];
+    for (size_t i = 0; i < f->edge_fit.row_count; i++)
+      f->residual_um[i] += amplitude_um[c] * f->columns[c * f->edge_fit.row_count + i];
   return count;
 }
 

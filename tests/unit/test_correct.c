@@ -31,7 +31,7 @@ static fg_field_list scanner(const foil_rows *f) {
                                                  .coefficient_um = {effects[e].amplitude_um},
                                                  .shape = {3.1}};
   }
-  fg_effect_set_fields(&f->points, &set, &fields);
+  fg_effect_set_fields(&f->edge_fit, &set, &fields);
   assert_int_equal(fields.count, 3);
   return fields;
 }
@@ -138,21 +138,21 @@ static void what_the_part_moved_is_put_back(void **state) {
   const fg_effect *oval = fg_effect_find("part.ovality");
   const fg_effect_set set = {.effects = {{.kind = oval, .columns = 2, .coefficient_um = {9, -4}}},
                              .count = 1};
-  assert_int_equal(fg_effect_set_shift(&ctx, &f.points, &set, &shift_mm), FG_OK);
-  fg_point *vectors = calloc(f.points.row_count, sizeof *vectors);
-  for (size_t i = 0; i < f.points.row_count; i++) {
-    fg_point n = f.points.rows[i].normal;
+  assert_int_equal(fg_effect_set_shift(&ctx, &f.edge_fit, &set, &shift_mm), FG_OK);
+  fg_point *vectors = calloc(f.edge_fit.row_count, sizeof *vectors);
+  for (size_t i = 0; i < f.edge_fit.row_count; i++) {
+    fg_point n = f.edge_fit.rows[i].normal;
     vectors[i] = (fg_point){shift_mm[i] * n.x, shift_mm[i] * n.y};
   }
-  const fg_joint_fit_result fit = {.points = &f.points, .shift_mm = vectors};
+  const fg_joint_fit_result fit = {.edge_fit = &f.edge_fit, .shift_mm = vectors};
   fg_strip *strip = &f.m.foils[0].strip;
   for (size_t k = 0; k < strip->count; k++) {
     fg_station *s = &strip->stations[k];
     fg_point middle = {0.5 * (s->left.x + s->right.x), 0.5 * (s->left.y + s->right.y)};
     size_t nearest = 0;
-    for (size_t i = 1; i < f.points.row_count; i++)
-      if (hypot(f.points.rows[i].at.x - middle.x, f.points.rows[i].at.y - middle.y) <
-          hypot(f.points.rows[nearest].at.x - middle.x, f.points.rows[nearest].at.y - middle.y))
+    for (size_t i = 1; i < f.edge_fit.row_count; i++)
+      if (hypot(f.edge_fit.rows[i].at.x - middle.x, f.edge_fit.rows[i].at.y - middle.y) <
+          hypot(f.edge_fit.rows[nearest].at.x - middle.x, f.edge_fit.rows[nearest].at.y - middle.y))
         nearest = i;
     fg_point d = vectors[nearest];
     s->left = (fg_point){s->left.x + d.x, s->left.y + d.y};
@@ -183,10 +183,10 @@ static void a_later_fit_changes_no_correction(void **state) {
   fg_effect_set none = {.count = 0};
   fg_joint_fit_result fit;
   fg_measurement before, after;
-  assert_int_equal(fg_joint_fit_open(&ctx, &f.points, &set, &fit), FG_OK);
+  assert_int_equal(fg_joint_fit_open(&ctx, &f.edge_fit, &set, &fit), FG_OK);
   assert_true(fabs(fit.set.effects[0].coefficient_um[0]) > 1e-3);
   assert_int_equal(fg_scan_loop_correct_fitted(&ctx, &f.m, &fit, 1, &before), FG_OK);
-  assert_int_equal(fg_joint_fit(&ctx, &f.points, &none, NULL), FG_OK);
+  assert_int_equal(fg_joint_fit(&ctx, &f.edge_fit, &none, NULL), FG_OK);
   assert_int_equal(fg_scan_loop_correct_fitted(&ctx, &f.m, &fit, 1, &after), FG_OK);
   same_edges(&after.foils[0].strip, &before.foils[0].strip, 0);
   same_circles(&after.foils[0], &before.foils[0], 0);

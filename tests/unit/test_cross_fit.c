@@ -20,14 +20,14 @@ typedef struct fixture {
   fg_context ctx;
   odd_input in;
   fg_measurement measurement[ODD_SCANS];
-  fg_points points;
+  fg_edge_fit edge_fit;
   fg_effect_set set;
   fg_explanations explanations;
 } fixture;
 
 /* One foil on every scan, turned by 90 degrees from one to the next. */
 static void open_foil(fixture *f, size_t scans, int bumps, double ripple_um) {
-  fg_points_view view[ODD_SCANS] = {{0}};
+  fg_edge_fit_view view[ODD_SCANS] = {{0}};
   *f = (fixture){.in = {.scans = scans}};
   fg_design_default(&f->in.design);
   for (size_t i = 0; i < scans; i++) {
@@ -41,15 +41,16 @@ static void open_foil(fixture *f, size_t scans, int bumps, double ripple_um) {
   }
   odd_measure(&f->in, f->measurement);
   for (size_t i = 0; i < scans; i++)
-    view[i] = (fg_points_view){
+    view[i] = (fg_edge_fit_view){
         .foil = &f->measurement[i].foils[0], .measurement = &f->measurement[i], .scan = i};
-  if (fg_points_build(&f->ctx, view, scans, &f->points) != FG_OK) fail_msg("%s", f->ctx.message);
+  if (fg_edge_fit_build(&f->ctx, view, scans, &f->edge_fit) != FG_OK)
+    fail_msg("%s", f->ctx.message);
 }
 
 static void search(fixture *f) {
-  double *residual_um = calloc(f->points.row_count, sizeof *residual_um);
+  double *residual_um = calloc(f->edge_fit.row_count, sizeof *residual_um);
   assert_non_null(residual_um);
-  if (fg_explain_run(&f->ctx, &f->points, &f->set, &f->explanations, residual_um) != FG_OK)
+  if (fg_search_run(&f->ctx, &f->edge_fit, &f->set, &f->explanations, residual_um) != FG_OK)
     fail_msg("%s", f->ctx.message);
   free(residual_um);
 }
@@ -61,14 +62,14 @@ static fg_effect_set set_of(const char *id) {
 
 static fg_cross_fit judge(fixture *f, unsigned threads) {
   fg_cross_fit result;
-  assert_int_equal(
-      fg_explain_cross_fit(&f->ctx, &f->points, &f->set, &f->explanations.barred, threads, &result),
-      FG_OK);
+  assert_int_equal(fg_search_cross_fit(&f->ctx, &f->edge_fit, &f->set, &f->explanations.barred,
+                                       threads, &result),
+                   FG_OK);
   return result;
 }
 
 static void close_foil(fixture *f) {
-  fg_points_free(&f->points);
+  fg_edge_fit_free(&f->edge_fit);
   for (size_t i = 0; i < f->in.scans; i++)
     fg_measurement_free(&f->measurement[i]);
 }
@@ -77,24 +78,24 @@ static void a_subset_leaves_the_whole_alone(void **state) {
   (void)state;
   fixture f;
   open_foil(&f, 1, BUMPS, 0);
-  fg_points subset;
-  bool *keep = calloc(f.points.row_count, sizeof *keep);
+  fg_edge_fit subset;
+  bool *keep = calloc(f.edge_fit.row_count, sizeof *keep);
   assert_non_null(keep);
   size_t kept = 0;
-  for (size_t i = 0; i < f.points.row_count; i++)
-    kept += keep[i] = f.points.rows[i].bump == 2;
-  assert_int_equal(fg_points_subset(&f.ctx, &f.points, keep, &subset), FG_OK);
+  for (size_t i = 0; i < f.edge_fit.row_count; i++)
+    kept += keep[i] = f.edge_fit.rows[i].bump == 2;
+  assert_int_equal(fg_edge_fit_subset(&f.ctx, &f.edge_fit, keep, &subset), FG_OK);
   assert_true(kept > 0);
   assert_int_equal(subset.row_count, kept);
   for (size_t i = 0; i < kept; i++)
     assert_int_equal(subset.rows[i].bump, 2);
-  double radius_mm = f.points.parts[0].bumps[1].radius_mm, x_mm = f.points.poses[0].origin_mm.x;
+  double radius_mm = f.edge_fit.parts[0].bumps[1].radius_mm, x_mm = f.edge_fit.poses[0].origin_mm.x;
   subset.parts[0].bumps[1].radius_mm = subset.poses[0].origin_mm.x = subset.rows[0].weight = -1;
-  assert_near(f.points.parts[0].bumps[1].radius_mm, radius_mm, 0);
-  assert_near(f.points.poses[0].origin_mm.x, x_mm, 0);
-  for (size_t i = 0; i < f.points.row_count; i++)
-    assert_true(f.points.rows[i].weight >= 0);
-  fg_points_free(&subset);
+  assert_near(f.edge_fit.parts[0].bumps[1].radius_mm, radius_mm, 0);
+  assert_near(f.edge_fit.poses[0].origin_mm.x, x_mm, 0);
+  for (size_t i = 0; i < f.edge_fit.row_count; i++)
+    assert_true(f.edge_fit.rows[i].weight >= 0);
+  fg_edge_fit_free(&subset);
   free(keep);
   close_foil(&f);
 }
@@ -126,7 +127,7 @@ static void what_is_not_there_is_not(void **state) {
   search(&f);
   assert_int_equal(f.set.count, 0);
   f.set = set_of("scan.shear");
-  assert_int_equal(fg_joint_fit(&f.ctx, &f.points, &f.set, NULL), FG_OK);
+  assert_int_equal(fg_joint_fit(&f.ctx, &f.edge_fit, &f.set, NULL), FG_OK);
   fg_cross_fit result = judge(&f, 1);
   assert_int_equal(result.folds, 5);
   assert_true(result.gain <= result.u_gain);
@@ -144,12 +145,12 @@ static void before_is_the_rms(void **state) {
   assert_int_equal(result.unit, FG_CROSS_FIT_BUMPS);
   assert_int_equal(result.folds, 3); /* a bump each */
   const fg_effect_set none = {.count = 0};
-  double *residual_um = calloc(f.points.row_count, sizeof *residual_um), sum = 0, weight = 0;
+  double *residual_um = calloc(f.edge_fit.row_count, sizeof *residual_um), sum = 0, weight = 0;
   assert_non_null(residual_um);
-  assert_int_equal(fg_joint_fit_geometry(&f.ctx, &f.points, &none, residual_um), FG_OK);
-  for (size_t i = 0; i < f.points.row_count; i++) {
-    sum += f.points.rows[i].weight * residual_um[i] * residual_um[i];
-    weight += f.points.rows[i].weight;
+  assert_int_equal(fg_joint_fit_geometry(&f.ctx, &f.edge_fit, &none, residual_um), FG_OK);
+  for (size_t i = 0; i < f.edge_fit.row_count; i++) {
+    sum += f.edge_fit.rows[i].weight * residual_um[i] * residual_um[i];
+    weight += f.edge_fit.rows[i].weight;
   }
   assert_near(result.before_um, sqrt(sum / weight), 1e-6);
   free(residual_um);

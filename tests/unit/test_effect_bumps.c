@@ -17,20 +17,20 @@ static const fg_effect *curve(void) {
 }
 
 /* Rows of one part whose bumps are numbered from `first`. */
-static fg_points make_rows(int first, int count, fg_points_part *part) {
+static fg_edge_fit make_rows(int first, int count, fg_edge_fit_part *part) {
   enum { PLACES = 41 };
-  fg_points points = {.parts = part, .part_count = 1};
-  *part = (fg_points_part){.bump_count = (size_t)count};
+  fg_edge_fit edge_fit = {.parts = part, .part_count = 1};
+  *part = (fg_edge_fit_part){.bump_count = (size_t)count};
   part->bumps = calloc((size_t)count, sizeof *part->bumps);
-  points.rows = calloc((size_t)count * PLACES + 1, sizeof *points.rows);
+  edge_fit.rows = calloc((size_t)count * PLACES + 1, sizeof *edge_fit.rows);
   for (int b = 0; b < count; b++) {
     part->bumps[b].number = first + b;
     for (int i = 0; i < PLACES; i++)
-      points.rows[points.row_count++] = (fg_points_row){
+      edge_fit.rows[edge_fit.row_count++] = (fg_edge_fit_row){
           .bump = first + b, .bump_index = (size_t)b, .phi = 2.0 * i / (PLACES - 1) - 1};
   }
-  points.row_count++; /* a land */
-  return points;
+  edge_fit.row_count++; /* a land */
+  return edge_fit;
 }
 
 static double p4(double u) {
@@ -42,8 +42,8 @@ static double p3(double u) {
 }
 
 /* What is left of a target in the space of the columns. */
-static double rest(const fg_points *points, const double *columns, const double *target) {
-  size_t n = points->row_count;
+static double rest(const fg_edge_fit *edge_fit, const double *columns, const double *target) {
+  size_t n = edge_fit->row_count;
   double *basis = calloc(n * FG_FIELD_COLUMNS, sizeof *basis), left = 0;
   double *d = calloc(n, sizeof *d);
   size_t rank = 0;
@@ -89,34 +89,35 @@ static void columns_hold_what_single_bumps_do(void **state) {
   };
   for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
     const number_case *c = &cases[k];
-    fg_points_part part;
-    fg_points points = make_rows(c->first, c->count, &part);
-    double *columns = calloc(points.row_count * FG_FIELD_COLUMNS, sizeof *columns);
-    double *target = calloc(points.row_count, sizeof *target), whole = 0;
-    assert_int_equal(fg_effect_columns(&points, curve(), NULL, columns), FG_FIELD_COLUMNS);
+    fg_edge_fit_part part;
+    fg_edge_fit edge_fit = make_rows(c->first, c->count, &part);
+    double *columns = calloc(edge_fit.row_count * FG_FIELD_COLUMNS, sizeof *columns);
+    double *target = calloc(edge_fit.row_count, sizeof *target), whole = 0;
+    assert_int_equal(fg_effect_columns(&edge_fit, curve(), NULL, columns), FG_FIELD_COLUMNS);
     double mean = 0;
-    for (size_t i = 0; i < points.row_count; i++) {
-      const fg_points_row *row = &points.rows[i];
+    for (size_t i = 0; i < edge_fit.row_count; i++) {
+      const fg_edge_fit_row *row = &edge_fit.rows[i];
       bool raised = c->every ? row->bump % c->every == 0 : row->bump == c->bump;
       if (row->bump && raised) target[i] = p4(row->phi) + c->lean * p3(row->phi);
       mean += row->bump ? target[i] * p4(row->phi) : 0;
       whole += target[i] * target[i];
       for (int column = 0; column < FG_FIELD_COLUMNS; column++)
-        if (!row->bump) assert_float_equal(columns[column * (int)points.row_count + (int)i], 0, 0);
+        if (!row->bump)
+          assert_float_equal(columns[column * (int)edge_fit.row_count + (int)i], 0, 0);
     }
     if (c->count > FG_FIELD_COLUMNS) { /* what all bumps share is the crown's, not a pattern */
       double square = 0;
-      for (size_t i = 0; i < points.row_count; i++)
-        square += points.rows[i].bump ? pow(p4(points.rows[i].phi), 2) : 0;
-      for (size_t i = 0; i < points.row_count; i++)
-        if (points.rows[i].bump) target[i] -= mean / square * p4(points.rows[i].phi);
+      for (size_t i = 0; i < edge_fit.row_count; i++)
+        square += edge_fit.rows[i].bump ? pow(p4(edge_fit.rows[i].phi), 2) : 0;
+      for (size_t i = 0; i < edge_fit.row_count; i++)
+        if (edge_fit.rows[i].bump) target[i] -= mean / square * p4(edge_fit.rows[i].phi);
     }
-    double left = rest(&points, columns, target);
+    double left = rest(&edge_fit, columns, target);
     if (!(left <= c->max * sqrt(whole)))
       fail_msg("case %zu: %g of %g is left", k, left, sqrt(whole));
     free(target);
     free(columns);
-    free(points.rows);
+    free(edge_fit.rows);
     free(part.bumps);
   }
 }
@@ -140,15 +141,15 @@ static void search_tells_single_bumps(void **state) {
     foil_rows f;
     foil_rows_open(&f);
     foil_rows_put_noise(&f, 0.03);
-    for (size_t i = 0; i < f.points.row_count; i++) {
-      const fg_points_row *row = &f.points.rows[i];
+    for (size_t i = 0; i < f.edge_fit.row_count; i++) {
+      const fg_edge_fit_row *row = &f.edge_fit.rows[i];
       if (row->bump && row->bump % every == 0) f.residual_um[i] += p4(row->phi);
     }
-    const fg_explain_request request = {.policy = fg_explain_policy_of(&f.points),
-                                        .residual_um = f.residual_um,
-                                        .jacobian = f.jacobian,
-                                        .look = true};
-    assert_int_equal(fg_explain_find(&ctx, &f.points, &request, &explanations), FG_OK);
+    const fg_search_request request = {.policy = fg_search_policy_of(&f.edge_fit),
+                                       .residual_um = f.residual_um,
+                                       .jacobian = f.jacobian,
+                                       .look = true};
+    assert_int_equal(fg_search_find(&ctx, &f.edge_fit, &request, &explanations), FG_OK);
     assert_true(explanations.right);
     assert_int_equal(holds(&explanations, "free.bump.index"), every > 1);
     assert_int_equal(holds(&explanations, "part.bump_crown"), every == 1);

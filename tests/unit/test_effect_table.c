@@ -21,7 +21,7 @@
 
 /* Its leading column at the rows, and noise. */
 static void put_effect(foil_rows *f, const fg_effect *effect) {
-  const fg_field_frame *frame = &f->points.frame;
+  const fg_field_frame *frame = &f->edge_fit.frame;
   const double amplitude_um = AMPLITUDE_UM;
   int axis = effect->axis;
   double shape[FG_FIELD_SHAPES] = {frame->centre_mm[axis]};
@@ -58,11 +58,11 @@ static void the_search_knows_every_row(void **state) {
     if (effect->off_foils || fg_effect_is_free(effect) || effect->width || count++ % test_step(4))
       continue;
     put_effect(&f, effect);
-    const fg_explain_request request = {.policy = fg_explain_policy_of(&f.points),
-                                        .residual_um = f.residual_um,
-                                        .jacobian = f.jacobian,
-                                        .look = true};
-    assert_int_equal(fg_explain_find(&ctx, &f.points, &request, &explanations), FG_OK);
+    const fg_search_request request = {.policy = fg_search_policy_of(&f.edge_fit),
+                                       .residual_um = f.residual_um,
+                                       .jacobian = f.jacobian,
+                                       .look = true};
+    assert_int_equal(fg_search_find(&ctx, &f.edge_fit, &request, &explanations), FG_OK);
     if (!explanations.right || !in_class(&explanations, effect))
       fail_msg("the search does not find %s", effect->id);
     for (const fg_effect *curve = fg_effect_first(); curve; curve = fg_effect_next(curve))
@@ -82,11 +82,11 @@ static void the_search_of_the_width_knows_every_row(void **state) {
     uint64_t seed = 11;
     if (!effect->width) continue;
     foil_rows_open(&f);
-    assert_int_equal(fg_effect_width_columns(&f.points, effect, NULL, f.columns), 1);
-    for (size_t i = 0; i < f.points.row_count; i++)
-      f.points.rows[i].half_width_mm +=
+    assert_int_equal(fg_effect_width_columns(&f.edge_fit, effect, NULL, f.columns), 1);
+    for (size_t i = 0; i < f.edge_fit.row_count; i++)
+      f.edge_fit.rows[i].half_width_mm +=
           (AMPLITUDE_UM * f.columns[i] + NOISE_UM * random_gaussian(&seed)) / 1000;
-    assert_int_equal(fg_explain_width(&ctx, &f.points, &none, &findings), FG_OK);
+    assert_int_equal(fg_search_width(&ctx, &f.edge_fit, &none, &findings), FG_OK);
     for (size_t e = 0; e < findings.count; e++) {
       if (findings.each[e].found != (findings.each[e].effect.kind == effect))
         fail_msg("the width with %s in it is taken wrongly", effect->id);

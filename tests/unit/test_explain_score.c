@@ -58,8 +58,8 @@ static const fg_effect *kind_of(size_t e) {
 typedef struct fixture {
   foil_rows f;
   fg_explanations out;
-  fg_explain_search s;
-  fg_explain_baseline y;
+  fg_search s;
+  fg_search_baseline y;
 } fixture;
 
 static void open_search(fixture *t) {
@@ -69,18 +69,18 @@ static void open_search(fixture *t) {
   foil_rows_add_effect(&t->f, kind_of(SHEAR), &candidates[SHEAR].shape, &shear_um, 1);
   foil_rows_add_effect(&t->f, kind_of(RIPPLE), &candidates[RIPPLE].shape, ripple_um, 2);
   t->out = (fg_explanations){0};
-  t->s = (fg_explain_search){.policy = fg_explain_policy_of(&t->f.points), .out = &t->out};
+  t->s = (fg_search){.policy = fg_search_policy_of(&t->f.edge_fit), .out = &t->out};
   assert_int_equal(
-      fg_explain_columns_open(&ctx, &t->f.points, t->f.residual_um, t->f.jacobian, &t->s.columns),
+      fg_search_columns_open(&ctx, &t->f.edge_fit, t->f.residual_um, t->f.jacobian, &t->s.columns),
       FG_OK);
   for (size_t e = 0; e < CANDIDATES; e++)
-    fg_explain_add(&t->s, &(fg_candidate){.kind = kind_of(e), .shape = {candidates[e].shape}});
-  fg_explain_noise(&t->s, false);
-  t->y = fg_explain_find_baseline(&t->s);
+    fg_search_add(&t->s, &(fg_candidate){.kind = kind_of(e), .shape = {candidates[e].shape}});
+  fg_search_noise(&t->s, false);
+  t->y = fg_search_find_baseline(&t->s);
 }
 
 static void close_search(fixture *t) {
-  fg_explain_columns_close(&t->s.columns);
+  fg_search_columns_close(&t->s.columns);
   foil_rows_close(&t->f);
 }
 
@@ -90,7 +90,7 @@ typedef struct dense {
 } dense;
 
 static size_t count_unknowns(const fixture *t, unsigned mask) {
-  size_t n = t->f.points.parameters;
+  size_t n = t->f.edge_fit.parameters;
   for (size_t e = 0; e < CANDIDATES; e++)
     if (mask >> e & 1) n += kind_of(e)->columns ? kind_of(e)->columns : 2;
   return n;
@@ -99,8 +99,8 @@ static size_t count_unknowns(const fixture *t, unsigned mask) {
 /* Geometry and the effects of a mask at once; `last` stands behind the others, with its first
  * column alone (CANDIDATES: there is none). */
 static dense solve_densely(fixture *t, unsigned mask, size_t last) {
-  const fg_points *points = &t->f.points;
-  size_t rows = points->row_count, geometry = points->parameters, at = geometry;
+  const fg_edge_fit *edge_fit = &t->f.edge_fit;
+  size_t rows = edge_fit->row_count, geometry = edge_fit->parameters, at = geometry;
   dense d = {.unknowns = count_unknowns(t, mask) + (last < CANDIDATES)};
   gsl_matrix *design = gsl_matrix_alloc(rows, d.unknowns);
   gsl_matrix *covariance = gsl_matrix_alloc(d.unknowns, d.unknowns);
@@ -108,14 +108,14 @@ static dense solve_densely(fixture *t, unsigned mask, size_t last) {
   gsl_vector *x = gsl_vector_alloc(d.unknowns);
   for (size_t i = 0; i < rows; i++) {
     gsl_vector_set(y, i, t->f.residual_um[i]);
-    gsl_vector_set(weight, i, points->rows[i].weight / FG_POINTS_BLOCK);
+    gsl_vector_set(weight, i, edge_fit->rows[i].weight / FG_EDGE_FIT_BLOCK);
     for (size_t k = 0; k < geometry; k++)
       gsl_matrix_set(design, i, k, t->f.jacobian[k * rows + i]);
   }
   for (size_t k = 0; k <= CANDIDATES; k++) {
     size_t e = k < CANDIDATES ? k : last;
     if (e == CANDIDATES || (k < CANDIDATES && !(mask >> e & 1))) continue;
-    size_t count = fg_effect_columns(points, kind_of(e), &candidates[e].shape, t->f.columns);
+    size_t count = fg_effect_columns(edge_fit, kind_of(e), &candidates[e].shape, t->f.columns);
     for (size_t c = 0; c < (k < CANDIDATES ? count : 1); c++, at++)
       for (size_t i = 0; i < rows; i++)
         gsl_matrix_set(design, i, at, t->f.columns[c * rows + i]);
@@ -144,14 +144,14 @@ static void what_a_set_leaves_is_that_of_dense_least_squares(void **state) {
   fixture t;
   open_search(&t);
   dense all = solve_densely(&t, (1u << CANDIDATES) - 1, CANDIDATES);
-  double rows = (double)t.f.points.row_count;
+  double rows = (double)t.f.edge_fit.row_count;
   double noise = sqrt(all.sum / (rows - (double)all.unknowns));
   assert_near(t.out.noise_um, noise, 1e-9);
   assert_near(noise, NOISE_UM, 0.1 * NOISE_UM);
   assert_true(t.out.integral >= 1 && t.out.integral < 1.5); /* of white noise */
   for (size_t k = 0; k < sizeof masks / sizeof *masks; k++) {
     dense own = solve_densely(&t, masks[k], CANDIDATES);
-    fg_explanation got = fg_explain_try(&t.s, &t.y, masks[k]);
+    fg_explanation got = fg_search_try(&t.s, &t.y, masks[k]);
     double excess = (own.sum - all.sum) / (noise * noise * t.out.integral);
     assert_near(got.excess, excess, 1e-8 * excess);
     assert_near(got.dof, (double)(all.unknowns - own.unknowns), 0);
@@ -164,9 +164,9 @@ static void the_least_amplitude_is_that_of_dense_least_squares(void **state) {
   fixture t;
   open_search(&t);
   unsigned others = bit(RIPPLE) | bit(OVAL);
-  assert_near(fg_explain_amplitude_u(&t.s, others, SHEAR) / solve_densely(&t, others, SHEAR).last_u,
+  assert_near(fg_search_amplitude_u(&t.s, others, SHEAR) / solve_densely(&t, others, SHEAR).last_u,
               1, 1e-7);
-  assert_near(fg_explain_amplitude_u(&t.s, bit(SHEAR), FAR_RIPPLE) /
+  assert_near(fg_search_amplitude_u(&t.s, bit(SHEAR), FAR_RIPPLE) /
                   solve_densely(&t, bit(SHEAR), FAR_RIPPLE).last_u,
               1, 1e-7);
   close_search(&t);
@@ -189,8 +189,8 @@ static void the_set_that_made_the_rows_is_right_and_less_is_not(void **state) {
   fixture t;
   open_search(&t);
   for (size_t k = 0; k < sizeof sets / sizeof *sets; k++) {
-    fg_explanation got = fg_explain_try(&t.s, &t.y, sets[k].mask);
-    if (fg_explain_is_right(&t.s, &t.y, &got) != sets[k].right)
+    fg_explanation got = fg_search_try(&t.s, &t.y, sets[k].mask);
+    if (fg_search_is_right(&t.s, &t.y, &got) != sets[k].right)
       fail_msg("set %#x is %sright", sets[k].mask, sets[k].right ? "not " : "");
   }
   close_search(&t);
@@ -201,10 +201,10 @@ static void what_chance_leaves_is_right(void **state) {
   (void)state;
   fixture t;
   open_search(&t);
-  const fg_explain_baseline exact = {.dof = 10, .unit = 1};
+  const fg_search_baseline exact = {.dof = 10, .unit = 1};
   for (int side = -1; side <= 1; side += 2) {
     fg_explanation leaves = {.dof = 10, .excess = 29.588 + 0.001 * side};
-    assert_int_equal(fg_explain_is_right(&t.s, &exact, &leaves), side < 0);
+    assert_int_equal(fg_search_is_right(&t.s, &exact, &leaves), side < 0);
   }
   close_search(&t);
 }
@@ -213,11 +213,11 @@ static void two_forms_of_one_effect_are_twins(void **state) {
   (void)state;
   fixture t;
   open_search(&t);
-  assert_true(fg_explain_has_collinear(&t.out, bit(OVAL) | bit(RADIAL_OVAL)));
-  assert_true(fg_explain_has_collinear(&t.out, bit(START) | bit(LONG_START)));
-  assert_true(fg_explain_has_collinear(&t.out, bit(RIPPLE) | bit(NEAR_RIPPLE) | bit(SHEAR)));
-  assert_false(fg_explain_has_collinear(&t.out, bit(RIPPLE) | bit(FAR_RIPPLE)));
-  assert_false(fg_explain_has_collinear(&t.out, bit(SHEAR) | bit(RIPPLE) | bit(OVAL) | bit(STEP)));
+  assert_true(fg_search_has_collinear(&t.out, bit(OVAL) | bit(RADIAL_OVAL)));
+  assert_true(fg_search_has_collinear(&t.out, bit(START) | bit(LONG_START)));
+  assert_true(fg_search_has_collinear(&t.out, bit(RIPPLE) | bit(NEAR_RIPPLE) | bit(SHEAR)));
+  assert_false(fg_search_has_collinear(&t.out, bit(RIPPLE) | bit(FAR_RIPPLE)));
+  assert_false(fg_search_has_collinear(&t.out, bit(SHEAR) | bit(RIPPLE) | bit(OVAL) | bit(STEP)));
   close_search(&t);
 }
 
@@ -232,13 +232,13 @@ static void the_middle_of_a_polynomial_is_found(void **state) {
     const fg_effect *kind = fg_effect_find(ids[k]);
     const double amplitude_um = 30;
     foil_rows_open(&f);
-    const double middle_mm = f.points.frame.centre_mm[kind->axis] + 6.5;
+    const double middle_mm = f.edge_fit.frame.centre_mm[kind->axis] + 6.5;
     foil_rows_put_noise(&f, NOISE_UM / 10);
     foil_rows_add_effect(&f, kind, &middle_mm, &amplitude_um, 1);
-    const fg_explain_request request = {.policy = fg_explain_policy_of(&f.points),
-                                        .residual_um = f.residual_um,
-                                        .jacobian = f.jacobian};
-    assert_int_equal(fg_explain_find(&ctx, &f.points, &request, &out), FG_OK);
+    const fg_search_request request = {.policy = fg_search_policy_of(&f.edge_fit),
+                                       .residual_um = f.residual_um,
+                                       .jacobian = f.jacobian};
+    assert_int_equal(fg_search_find(&ctx, &f.edge_fit, &request, &out), FG_OK);
     assert_true(out.right);
     size_t e = 0;
     while (e < out.candidate_count && out.candidates[e].kind != kind)

@@ -123,9 +123,9 @@ static void a_ring_says_one_thing(void **state) {
   assert_consistent(loop, "a tie in a ring");
   assert_int_equal(loop->result.advices, 1);
   assert_non_null(strstr(advice_of(loop, 0), "plate of several gauges"));
-  fg_explain_bars *bars = &loop->explanations.barred;
-  fg_explain_barred *barred = &bars->each[bars->count++];
-  *barred = (fg_explain_barred){
+  fg_search_bars *bars = &loop->explanations.barred;
+  fg_search_barred *barred = &bars->each[bars->count++];
+  *barred = (fg_search_barred){
       .effect = fg_effect_find("scan.row_step"), .would_explain = 0.3, .share = 0.8};
   barred->smallest_um = NAN;
   assert_consistent(loop, "an effect that is not confirmed");

@@ -254,7 +254,7 @@ static void open_fixture(fixture *f) {
   const fg_effect_set set = {.effects = {{.kind = scale, .columns = 1, .coefficient_um = {40}},
                                          {.kind = shear, .columns = 1, .coefficient_um = {25}}},
                              .count = 2};
-  fg_effect_set_fields(&f->rows.points, &set, &fields);
+  fg_effect_set_fields(&f->rows.edge_fit, &set, &fields);
   assert_int_equal(fg_scan_loop_correct(&ctx, &f->rows.m, &fields, 1, &f->corrected), FG_OK);
   assert_int_equal(fg_benefits_open(&ctx, &f->rows.m, &f->benefits), FG_OK);
   fg_benefits_add(&f->benefits, &f->rows.m, &f->corrected);

@@ -36,30 +36,30 @@ static void lose_bumps(fg_foil *foil, int from) {
       foil->labels[k] = (fg_station_label){.kind = FG_ARC_FILLET};
 }
 
-static fg_points build(const fg_measurement *m, bool same) {
+static fg_edge_fit build(const fg_measurement *m, bool same) {
   fg_context ctx = {0};
-  fg_points points;
-  fg_points_view *views = calloc(m->foil_count, sizeof *views);
+  fg_edge_fit edge_fit;
+  fg_edge_fit_view *views = calloc(m->foil_count, sizeof *views);
   for (size_t f = 0; f < m->foil_count; f++)
     views[f] =
-        (fg_points_view){.foil = &m->foils[f], .measurement = m, .part = same ? 0 : f, .scan = f};
-  assert_int_equal(fg_points_build(&ctx, views, m->foil_count, &points), FG_OK);
+        (fg_edge_fit_view){.foil = &m->foils[f], .measurement = m, .part = same ? 0 : f, .scan = f};
+  assert_int_equal(fg_edge_fit_build(&ctx, views, m->foil_count, &edge_fit), FG_OK);
   free(views);
-  return points;
+  return edge_fit;
 }
 
 /* Groups are numbered without a gap, and every one has rows of one part and one arc alone. */
-static void check_groups(const fg_points *points) {
+static void check_groups(const fg_edge_fit *edge_fit) {
   size_t seen = 0;
-  for (size_t i = 0; i < points->row_count; i++) {
-    const fg_points_row *row = &points->rows[i];
+  for (size_t i = 0; i < edge_fit->row_count; i++) {
+    const fg_edge_fit_row *row = &edge_fit->rows[i];
     assert_true(row->group == seen || row->group + 1 == seen);
     seen = row->group + 1;
-    assert_true(row->part < points->part_count);
-    for (size_t k = i; k-- > 0 && points->rows[k].group == row->group;)
-      assert_true(points->rows[k].part == row->part && points->rows[k].bump == row->bump);
+    assert_true(row->part < edge_fit->part_count);
+    for (size_t k = i; k-- > 0 && edge_fit->rows[k].group == row->group;)
+      assert_true(edge_fit->rows[k].part == row->part && edge_fit->rows[k].bump == row->bump);
   }
-  assert_int_equal(seen, points->group_count);
+  assert_int_equal(seen, edge_fit->group_count);
 }
 
 static void a_foil_may_have_more_lands_than_bumps(void **state) {
@@ -67,11 +67,11 @@ static void a_foil_may_have_more_lands_than_bumps(void **state) {
   for (int fitted = 1; fitted <= SYNTHETIC_BUMPS; fitted++) {
     fg_measurement m = measured(1);
     lose_bumps(&m.foils[0], fitted + 1);
-    fg_points points = build(&m, false);
-    check_groups(&points);
-    assert_int_equal(points.parts[0].bump_count, fitted);
-    assert_int_equal(points.group_count, fitted + LANDS);
-    fg_points_free(&points);
+    fg_edge_fit edge_fit = build(&m, false);
+    check_groups(&edge_fit);
+    assert_int_equal(edge_fit.parts[0].bump_count, fitted);
+    assert_int_equal(edge_fit.group_count, fitted + LANDS);
+    fg_edge_fit_free(&edge_fit);
     synthetic_free(&m);
   }
 }
@@ -79,11 +79,11 @@ static void a_foil_may_have_more_lands_than_bumps(void **state) {
 static void views_of_one_part_share_its_groups(void **state) {
   (void)state;
   fg_measurement m = measured(2);
-  fg_points points = build(&m, true);
-  check_groups(&points);
-  assert_int_equal(points.part_count, 1);
-  assert_int_equal(points.group_count, SYNTHETIC_BUMPS + LANDS);
-  fg_points_free(&points);
+  fg_edge_fit edge_fit = build(&m, true);
+  check_groups(&edge_fit);
+  assert_int_equal(edge_fit.part_count, 1);
+  assert_int_equal(edge_fit.group_count, SYNTHETIC_BUMPS + LANDS);
+  fg_edge_fit_free(&edge_fit);
   synthetic_free(&m);
 }
 
@@ -106,9 +106,9 @@ static void a_part_knows_the_angle_from_end_to_end(void **state) {
       s->right = turned(foil->overall.centre_mm, s->right, 0.8);
       if (k < 3) s->weight = 0;
     }
-    fg_points points = build(&m, false);
-    assert_true(fabs(points.parts[0].end_to_end_rad - 124 * synthetic_pi / 180) < 2e-3);
-    fg_points_free(&points);
+    fg_edge_fit edge_fit = build(&m, false);
+    assert_true(fabs(edge_fit.parts[0].end_to_end_rad - 124 * synthetic_pi / 180) < 2e-3);
+    fg_edge_fit_free(&edge_fit);
   }
   synthetic_free(&m);
 }
@@ -117,15 +117,15 @@ static void a_foil_that_was_not_measured_is_no_part(void **state) {
   (void)state;
   fg_measurement m = measured(3);
   m.foils[1].flags |= FG_FOIL_NOT_MEASURED;
-  fg_points points = build(&m, false);
-  check_groups(&points);
-  assert_int_equal(points.part_count, 2);
-  assert_int_equal(points.view_count, 2);
-  assert_int_equal(points.views[1].part, 1);
-  assert_ptr_equal(points.views[1].foil, &m.foils[2]);
-  for (size_t p = 0; p < points.part_count; p++)
-    assert_true(points.parts[p].overall_radius_mm > 0);
-  fg_points_free(&points);
+  fg_edge_fit edge_fit = build(&m, false);
+  check_groups(&edge_fit);
+  assert_int_equal(edge_fit.part_count, 2);
+  assert_int_equal(edge_fit.view_count, 2);
+  assert_int_equal(edge_fit.views[1].part, 1);
+  assert_ptr_equal(edge_fit.views[1].foil, &m.foils[2]);
+  for (size_t p = 0; p < edge_fit.part_count; p++)
+    assert_true(edge_fit.parts[p].overall_radius_mm > 0);
+  fg_edge_fit_free(&edge_fit);
   synthetic_free(&m);
 }
 

@@ -51,11 +51,11 @@ static fg_scan_loop *make_loop(void) {
   strcpy(loop->before[0].scan, "a.png");
   memset(loop->before[0].sha256, 'a', 64);
   loop->before[0].dpi[0] = loop->before[0].dpi[1] = 1200;
-  loop->points.frame = (fg_field_frame){.centre_mm = {20.108333333333333, 20.1},
-                                        .high_mm = {40.216666666666667, 40.2},
-                                        .first_mm = {2.1 / 3, 1.7 / 3},
-                                        .last_mm = {39 + 1.0 / 3, 38 + 2.0 / 3},
-                                        .knots = FG_FIELD_COLUMNS};
+  loop->edge_fit.frame = (fg_field_frame){.centre_mm = {20.108333333333333, 20.1},
+                                          .high_mm = {40.216666666666667, 40.2},
+                                          .first_mm = {2.1 / 3, 1.7 / 3},
+                                          .last_mm = {39 + 1.0 / 3, 38 + 2.0 / 3},
+                                          .knots = FG_FIELD_COLUMNS};
   fg_effect_set *set = &loop->set, *other = &loop->tie[0];
   add_effect(set, "scan.scale_y", 0, 36.0 / 7, 0);
   add_effect(set, "scan.carriage_ripple", 3.1 / 3, 10.0 / 3, -5.0 / 7);
@@ -119,11 +119,11 @@ static void what_is_written_is_read_as_it_was(void **state) {
   (void)state;
   if (fg_scanner_model_parse(&ctx, "written.json", text, &model) != FG_OK)
     fail_msg("%s", ctx.message);
-  fg_effect_set_fields(&loop->points, &loop->set, &written);
+  fg_effect_set_fields(&loop->edge_fit, &loop->set, &written);
   assert_same_fields(&model->fields, &written);
   assert_true(fg_scanner_model_is_tied(model));
   assert_int_equal(model->others, 1);
-  fg_effect_set_fields(&loop->points, &loop->tie[0], &written);
+  fg_effect_set_fields(&loop->edge_fit, &loop->tie[0], &written);
   assert_same_fields(&model->other[0], &written);
   assert_string_equal(model->scanner, "left desk");
   fg_scanner_model_free(model);

@@ -13,8 +13,8 @@
 #include "../support/near.h"
 #include "rows/scatter.h"
 
-static bool same_arc(const fg_points *points, size_t a, size_t b) {
-  const fg_points_row *p = &points->rows[a], *q = &points->rows[b];
+static bool same_arc(const fg_edge_fit *edge_fit, size_t a, size_t b) {
+  const fg_edge_fit_row *p = &edge_fit->rows[a], *q = &edge_fit->rows[b];
   return p->view == q->view && p->group == q->group;
 }
 
@@ -23,35 +23,36 @@ static double rho(fg_scatter_model model, double d) {
 }
 
 /* Correlation of rows a and b as rows/scatter.h says it. */
-static double correlation(const fg_points *points, const fg_scatter *s, size_t a, size_t b) {
+static double correlation(const fg_edge_fit *edge_fit, const fg_scatter *s, size_t a, size_t b) {
   if (a == b) return 1;
-  if (!same_arc(points, a, b)) return 0;
-  double d = fabs(points->rows[a].s_mm - points->rows[b].s_mm) / s->range_mm;
+  if (!same_arc(edge_fit, a, b)) return 0;
+  double d = fabs(edge_fit->rows[a].s_mm - edge_fit->rows[b].s_mm) / s->range_mm;
   return s->share * rho(s->model, d);
 }
 
 /* Lower root of the correlation of one arc's rows [from, to). */
-static gsl_matrix *root_of(const fg_points *points, const fg_scatter *s, size_t from, size_t to) {
+static gsl_matrix *root_of(const fg_edge_fit *edge_fit, const fg_scatter *s, size_t from,
+                           size_t to) {
   gsl_matrix *root = gsl_matrix_calloc(to - from, to - from);
   for (size_t a = from; a < to; a++)
     for (size_t b = from; b < to; b++)
-      gsl_matrix_set(root, a - from, b - from, correlation(points, s, a, b));
+      gsl_matrix_set(root, a - from, b - from, correlation(edge_fit, s, a, b));
   assert_int_equal(gsl_linalg_cholesky_decomp1(root), 0);
   return root;
 }
 
-static size_t end_of_arc(const fg_points *points, size_t from) {
+static size_t end_of_arc(const fg_edge_fit *edge_fit, size_t from) {
   size_t to = from;
-  while (to < points->row_count && same_arc(points, from, to))
+  while (to < edge_fit->row_count && same_arc(edge_fit, from, to))
     to++;
   return to;
 }
 
 /* Rows with noise of this kind and a standard deviation. */
 static void put_scatter(foil_rows *f, const fg_scatter *s, double sd_um, uint64_t seed) {
-  for (size_t from = 0, to; from < f->points.row_count; from = to) {
-    to = end_of_arc(&f->points, from);
-    gsl_matrix *root = root_of(&f->points, s, from, to);
+  for (size_t from = 0, to; from < f->edge_fit.row_count; from = to) {
+    to = end_of_arc(&f->edge_fit, from);
+    gsl_matrix *root = root_of(&f->edge_fit, s, from, to);
     double *white = calloc(to - from, sizeof *white);
     for (size_t i = 0; i < to - from; i++)
       white[i] = random_gaussian(&seed);
@@ -66,11 +67,11 @@ static void put_scatter(foil_rows *f, const fg_scatter *s, double sd_um, uint64_
 }
 
 /* v' C^-1 v over all arcs. */
-static double dense_square(const fg_points *points, const fg_scatter *s, const double *v) {
+static double dense_square(const fg_edge_fit *edge_fit, const fg_scatter *s, const double *v) {
   double sum = 0;
-  for (size_t from = 0, to; from < points->row_count; from = to) {
-    to = end_of_arc(points, from);
-    gsl_matrix *root = root_of(points, s, from, to);
+  for (size_t from = 0, to; from < edge_fit->row_count; from = to) {
+    to = end_of_arc(edge_fit, from);
+    gsl_matrix *root = root_of(edge_fit, s, from, to);
     gsl_vector *x = gsl_vector_alloc(to - from);
     for (size_t i = from; i < to; i++)
       gsl_vector_set(x, i - from, v[i]);
@@ -98,11 +99,11 @@ static void whitened_squares_are_those_of_dense_least_squares(void **state) {
     fg_whitening whitening;
     foil_rows_open(&f);
     foil_rows_put_noise(&f, 1);
-    f.points.scatter = kinds[k];
-    double square = 0, dense = dense_square(&f.points, &kinds[k], f.residual_um);
-    assert_int_equal(fg_whitening_open(&ctx, &f.points, &whitening), FG_OK);
+    f.edge_fit.scatter = kinds[k];
+    double square = 0, dense = dense_square(&f.edge_fit, &kinds[k], f.residual_um);
+    assert_int_equal(fg_whitening_open(&ctx, &f.edge_fit, &whitening), FG_OK);
     fg_whitening_apply(&whitening, f.residual_um);
-    for (size_t i = 0; i < f.points.row_count; i++)
+    for (size_t i = 0; i < f.edge_fit.row_count; i++)
       square += f.residual_um[i] * f.residual_um[i];
     fg_whitening_close(&whitening);
     assert_near(square, kinds[k].integral * dense, 2e-3 * square);
@@ -119,14 +120,14 @@ static void a_row_without_weight_tells_nothing(void **state) {
     fg_whitening whitening;
     double square[2] = {0, 0};
     foil_rows_open(&f);
-    f.points.scatter = kinds[k];
-    f.points.rows[20].weight = 0;
-    assert_int_equal(fg_whitening_open(&ctx, &f.points, &whitening), FG_OK);
+    f.edge_fit.scatter = kinds[k];
+    f.edge_fit.rows[20].weight = 0;
+    assert_int_equal(fg_whitening_open(&ctx, &f.edge_fit, &whitening), FG_OK);
     for (int large = 0; large < 2; large++) {
       foil_rows_put_noise(&f, 1);
       f.residual_um[20] = large ? 1e6 : 0;
       fg_whitening_apply(&whitening, f.residual_um);
-      for (size_t i = 0; i < f.points.row_count; i++)
+      for (size_t i = 0; i < f.edge_fit.row_count; i++)
         square[large] += f.residual_um[i] * f.residual_um[i];
     }
     assert_true(square[0] == square[1]);
@@ -140,11 +141,11 @@ static double long_waves(const fg_scatter *s) {
   return s->row_um * s->row_um * s->integral;
 }
 
-static double true_long_waves(const fg_points *points, const fg_scatter *s, double sd_um) {
+static double true_long_waves(const fg_edge_fit *edge_fit, const fg_scatter *s, double sd_um) {
   double spacing = 0, pairs = 0, sum = 1;
-  for (size_t i = 1; i < points->row_count; i++) {
-    if (!same_arc(points, i - 1, i)) continue;
-    spacing += fabs(points->rows[i].s_mm - points->rows[i - 1].s_mm);
+  for (size_t i = 1; i < edge_fit->row_count; i++) {
+    if (!same_arc(edge_fit, i - 1, i)) continue;
+    spacing += fabs(edge_fit->rows[i].s_mm - edge_fit->rows[i - 1].s_mm);
     pairs++;
   }
   spacing /= pairs;
@@ -167,8 +168,9 @@ static void noise_at_long_waves_is_found_from_short_ones(void **state) {
       /* What is smooth along an arc is no noise. */
       double none = 0, much = 40;
       foil_rows_add_effect(&f, fg_effect_find("scan.shear"), &none, &much, 1);
-      assert_int_equal(fg_points_find_scatter(&ctx, &f.points, f.residual_um), FG_OK);
-      mean += long_waves(&f.points.scatter) / true_long_waves(&f.points, &kinds[k], sd_um) / SEEDS;
+      assert_int_equal(fg_edge_fit_find_scatter(&ctx, &f.edge_fit, f.residual_um), FG_OK);
+      mean +=
+          long_waves(&f.edge_fit.scatter) / true_long_waves(&f.edge_fit, &kinds[k], sd_um) / SEEDS;
       foil_rows_close(&f);
     }
     assert_near(mean, 1, kinds[k].model == FG_SCATTER_GAUSSIAN ? 0.1 : 0.4);
@@ -181,10 +183,10 @@ static void white_noise_stays_white(void **state) {
   foil_rows f;
   foil_rows_open(&f);
   foil_rows_put_noise(&f, 0.3);
-  assert_int_equal(fg_points_find_scatter(&ctx, &f.points, f.residual_um), FG_OK);
-  assert_true(f.points.scatter.share == 0);
-  assert_near(f.points.scatter.integral, 1, 1e-12);
-  assert_near(f.points.scatter.row_um, 0.3, 0.02);
+  assert_int_equal(fg_edge_fit_find_scatter(&ctx, &f.edge_fit, f.residual_um), FG_OK);
+  assert_true(f.edge_fit.scatter.share == 0);
+  assert_near(f.edge_fit.scatter.integral, 1, 1e-12);
+  assert_near(f.edge_fit.scatter.row_um, 0.3, 0.02);
   foil_rows_close(&f);
 }
 
@@ -198,9 +200,9 @@ static void what_bumps_share_is_no_noise(void **state) {
   double none = 0, waves[16] = {0};
   waves[11] = waves[12] = 1;
   foil_rows_add_effect(&f, fg_effect_find("free.bump.phi"), &none, waves, 16);
-  assert_int_equal(fg_points_find_scatter(&ctx, &f.points, f.residual_um), FG_OK);
-  assert_true(f.points.scatter.share == 0);
-  assert_near(f.points.scatter.row_um, 0.3, 0.02);
+  assert_int_equal(fg_edge_fit_find_scatter(&ctx, &f.edge_fit, f.residual_um), FG_OK);
+  assert_true(f.edge_fit.scatter.share == 0);
+  assert_near(f.edge_fit.scatter.row_um, 0.3, 0.02);
   foil_rows_close(&f);
 }
 
@@ -211,11 +213,11 @@ static void a_step_within_an_arc_is_no_noise(void **state) {
   foil_rows f;
   foil_rows_open(&f);
   foil_rows_put_noise(&f, 0.05);
-  const fg_points_row *in_arc = &f.points.rows[f.points.row_count / 3];
+  const fg_edge_fit_row *in_arc = &f.edge_fit.rows[f.edge_fit.row_count / 3];
   double much = 8, shape = in_arc->at.y;
   foil_rows_add_effect(&f, fg_effect_find("scan.row_step"), &shape, &much, 1);
-  assert_int_equal(fg_points_find_scatter(&ctx, &f.points, f.residual_um), FG_OK);
-  assert_near(long_waves(&f.points.scatter), 0.05 * 0.05, 0.6 * 0.05 * 0.05);
+  assert_int_equal(fg_edge_fit_find_scatter(&ctx, &f.edge_fit, f.residual_um), FG_OK);
+  assert_near(long_waves(&f.edge_fit.scatter), 0.05 * 0.05, 0.6 * 0.05 * 0.05);
   foil_rows_close(&f);
 }
 
