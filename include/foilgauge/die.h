@@ -77,7 +77,7 @@ typedef struct fg_die_station {
   int bump;           /* number; 0: the lands', -1: neither */
 } fg_die_station;
 
-/* Noise along the bumps' arcs by restricted likelihood (src/die/form.h). */
+/* Noise along the bumps' arcs by restricted likelihood (src/die/form_error.h). */
 typedef struct fg_die_form_error {
   double sd_mm;       /* of means over a small part of an arc */
   double length_mm;   /* of its correlation: exp(-d/l), where it is `smooth` (1 + d/l + (d/l)²/3)

@@ -174,7 +174,7 @@ typedef struct fg_correction {
 } fg_correction;
 
 /* Dimensions that a correction is decided about, each over all bumps of a foil: whether it lowers
- * the expected error (src/scan_loop/pays.h). What else is reported follows from them. */
+ * the expected error (src/scan_loop/benefit.h). What else is reported follows from them. */
 typedef enum fg_corrected {
   FG_CORRECTED_OVERALL_RADIUS,
   FG_CORRECTED_RADIUS,

@@ -5,7 +5,7 @@
 
 #include "core/memory.h"
 #include "core/select.h"
-#include "die/form.h"
+#include "die/form_error.h"
 #include "die/plausible.h"
 #include "foilgauge/die.h"
 #include "geometry/bump_places.h"

@@ -12,7 +12,7 @@
 #include <stdbool.h>
 
 #include "field/field.h"
-#include "rows/points.h"
+#include "rows/edge_fit.h"
 
 /* How the search comes to it. */
 typedef enum fg_effect_sought {

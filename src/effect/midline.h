@@ -2,7 +2,7 @@
 #ifndef FG_EFFECT_MIDLINE_H
 #define FG_EFFECT_MIDLINE_H
 
-#include "rows/points.h"
+#include "rows/edge_fit.h"
 
 /* A part that was bent moves along its own normal; a part that was drawn with another radius moves
  * along the radius. On a land they are one, on the flank of a bump they differ. Of 1 outwards from

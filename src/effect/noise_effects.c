@@ -2,7 +2,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "effect/forms.h"
+#include "effect/bases.h"
 #include "effect/table_effects.h"
 
 /* Fewer rows than this in a series say nothing of their neighbours. */

@@ -2,7 +2,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "effect/forms.h"
+#include "effect/bases.h"
 #include "effect/table_effects.h"
 
 static const double two_pi = 6.28318530717958647692;

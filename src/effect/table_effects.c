@@ -1,5 +1,5 @@
 /* The effects of tables: of columns, of the order, of bumps, of the heat treatment. */
-#include "effect/forms.h"
+#include "effect/bases.h"
 
 static size_t one_column(const fg_loop_problem *problem, const fg_loop_candidate *candidate) {
   (void)problem, (void)candidate;

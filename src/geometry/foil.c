@@ -10,11 +10,11 @@
 #include "core/select.h"
 #include "geometry/arc_foil.h"
 #include "geometry/bump_places.h"
+#include "geometry/defects.h"
 #include "geometry/foil_uncertainty.h"
 #include "geometry/labels.h"
 #include "geometry/recognise.h"
-#include "geometry/shadow_doubt.h"
-#include "geometry/trouble.h"
+#include "geometry/shadow_uncertainty.h"
 
 /* A bump is crushed when its height or radius is off the sound ones' by this factor. */
 #define CRUSHED_HEIGHT 0.6

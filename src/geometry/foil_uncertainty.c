@@ -7,8 +7,8 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "geometry/level_doubt.h"
-#include "geometry/shadow_doubt.h"
+#include "geometry/level_uncertainty.h"
+#include "geometry/shadow_uncertainty.h"
 
 /* The edge model's systematic error counts when chance would show it less often than this. */
 #define EDGE_MODEL_P 0.005

@@ -1,149 +1,392 @@
-/* The folder of a lot: paths, sums, loading. */
+/* Measuring a lot: what is there is kept, what is missing is measured, then the report. */
 #include <errno.h>
+#include <math.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
 
+#include "core/clock.h"
 #include "core/file.h"
+#include "core/folder.h"
 #include "core/memory.h"
+#include "core/parallel.h"
 #include "core/sha256.h"
 #include "core/text.h"
-#include "lot/lot_report.h"
+#include "foilgauge/measure.h"
+#include "foilgauge/scan_loop.h"
+#include "lot/run/folder_lock.h"
+#include "lot/run/guard.h"
+#include "lot/run/lot.h"
+#include "report/lot/foil_pages.h"
 
-fg_status fg_lot_path(fg_context *ctx, const char *folder, const char *name, char **path) {
-  return fg_text_print(ctx, path, "%s/%s", folder, name);
-}
+/* What is known of an item before it is measured. */
+typedef struct item_state {
+  fg_journal_entry entry; /* its record; length 0: to be measured */
+  char sha256[65];        /* as recorded */
+  bool mine;              /* of this shard */
+  bool wanted;            /* its record's foils are to have a page */
+  bool redrawn;           /* the record stands, but the page is not there */
+} item_state;
 
-void fg_lot_sum_text(const char *text, char sum[65]) {
-  fg_sha256_text(text, sum);
-}
-
-/* Tolerances judge a measurement and statistics follow it: neither makes it another one. Other
- * quantities do: their values stand in another order. */
-fg_status fg_lot_sum_settings(fg_context *ctx, const fg_lot_settings *settings, char sum[65]) {
-  fg_lot_settings bare;
-  char *text, *names;
-  fg_lot_settings_default(&bare);
-  bare.design = settings->design;
-  bare.design.tolerance_count = 0;
-  bare.dpi = settings->dpi;
-  bare.allow_lossy = settings->allow_lossy;
-  strcpy(bare.model_sha256, settings->model_sha256);
-  FG_TRY(fg_record_format_names(ctx, &names));
-  fg_status status = fg_lot_settings_format(ctx, &bare, false, &text);
-  if (status == FG_OK) status = fg_text_append(ctx, &text, "%s", names);
-  if (status == FG_OK) fg_lot_sum_text(text, sum);
-  free(text);
-  free(names);
-  return status;
-}
-
-fg_status fg_lot_write_text(fg_context *ctx, const char *folder, const char *name,
-                            const char *text) {
-  char *path;
-  fg_output output;
-  FG_TRY(fg_lot_path(ctx, folder, name, &path));
-  fg_status status = fg_output_open(ctx, path, &output);
-  free(path);
-  FG_TRY(status);
-  fputs(text, output.stream);
-  return fg_output_commit(ctx, &output);
-}
-
-static fg_status remove_file(fg_context *ctx, const char *folder, const char *name) {
-  char *path;
-  FG_TRY(fg_lot_path(ctx, folder, name, &path));
-  bool gone = unlink(path) == 0 || errno == ENOENT;
-  fg_status status = gone ? FG_OK
-                          : fg_fail(ctx, fg_status_of_errno(errno), "%s: cannot be removed: %s",
-                                    path, strerror(errno));
-  free(path);
-  return status;
-}
-
-fg_status fg_lot_write_model(fg_context *ctx, const char *folder, const char *text) {
-  return text ? fg_lot_write_text(ctx, folder, FG_LOT_MODEL_FILE, text)
-              : remove_file(ctx, folder, FG_LOT_MODEL_FILE);
-}
-
-static const char *const report_files[] = {"lot.json",    "index.html", "foils.csv",
-                                           "bumps.csv",   "beams.csv",  "bearings.csv",
-                                           "results.qif", "results.dfq"};
-
-fg_status fg_lot_remove_report(fg_context *ctx, const char *folder) {
-  for (size_t i = 0; i < sizeof report_files / sizeof *report_files; i++)
-    FG_TRY(remove_file(ctx, folder, report_files[i]));
-  return FG_OK;
-}
-
-typedef struct loader {
-  fg_lot *lot;
+typedef struct lot_run {
+  const fg_lot_request *request;
+  fg_manifest manifest;
   fg_manifest_index index;
-} loader;
+  char *manifest_text, *recipe_text, *results_path;
+  char *model_text;        /* of the scanner's model; NULL: none */
+  fg_scanner_model *model; /* the same, read */
+  fg_journal_head head;
+  item_state *items;
+  size_t *todo, todo_count, done;
+  fg_journal journal;
+  fg_lot_outcome *outcome;
+  double start;
+  pthread_mutex_t listening;
+  atomic_bool stop;
+  int lock;
+} lot_run;
 
-static fg_status take_record(fg_context *ctx, void *user, fg_record *record,
-                             fg_journal_entry entry) {
-  loader *l = user;
-  (void)ctx;
-  (void)entry;
-  size_t item = fg_manifest_index_find(&l->index, &l->lot->manifest, record->scan);
-  if (item == l->lot->manifest.items) return FG_OK;
-  fg_record_free(&l->lot->records[item]);
-  l->lot->records[item] = *record;
-  *record = (fg_record){0};
+static fg_status check_shard(fg_context *ctx, fg_lot_shard shard) {
+  if (shard.index >= 1 && shard.index <= shard.count) return FG_OK;
+  return fg_fail(ctx, FG_ERR_USAGE, "shard %zu/%zu: give i/n with i from 1 to n", shard.index,
+                 shard.count);
+}
+
+/* The recipe that is kept names the copy in the lot's folder, so that it does not matter from where
+ * the model came. */
+static fg_status take_model(fg_context *ctx, lot_run *run, fg_lot_settings *kept) {
+  if (!kept->model[0]) return FG_OK;
+  FG_TRY(fg_file_read_text(ctx, kept->model, FG_LOT_MODEL_BYTES_MAX, &run->model_text));
+  FG_TRY(fg_scanner_model_parse(ctx, kept->model, run->model_text, &run->model));
+  if (strcmp(fg_scanner_model_sha256(run->model), kept->model_sha256) != 0)
+    return fg_fail(ctx, FG_ERR_DATA, "%.500s: the model has changed; run again", kept->model);
+  strcpy(kept->model, FG_LOT_MODEL_FILE);
   return FG_OK;
 }
 
-/* By the name that it has in every folder: a report must not depend on where it came from. */
-static fg_status load_model(fg_context *ctx, const char *folder, fg_lot *lot) {
-  char *path, *text = NULL;
-  FG_TRY(fg_lot_path(ctx, folder, FG_LOT_MODEL_FILE, &path));
-  fg_status status = fg_file_read_text(ctx, path, FG_LOT_MODEL_BYTES_MAX, &text);
-  if (status == FG_OK) status = fg_scanner_model_parse(ctx, FG_LOT_MODEL_FILE, text, &lot->model);
-  free(path);
-  free(text);
-  return status;
+/* The lot's own manifest among the paths; NULL: it is not there. */
+static const char *find_own_manifest(const fg_lot_request *request) {
+  for (size_t i = 0; i < request->path_count; i++)
+    if (fg_lot_is_own_copy(request, request->paths[i], "manifest.csv")) return request->paths[i];
+  return NULL;
 }
 
-/* The lot is named after the folder itself, even where the path ends in "." or a link. */
-static void name_by_folder(const char *folder, char *name, size_t size) {
-  char *path = realpath(folder, NULL);
-  const char *slash = path ? strrchr(path, '/') : NULL;
-  fg_text_clip(name, size, "%s", slash && slash[1] ? slash + 1 : "lot");
-  free(path);
-}
-
-fg_status fg_lot_load(fg_context *ctx, const char *folder, fg_lot *lot) {
-  loader l = {.lot = lot};
-  char *path = NULL;
+static fg_status prepare(fg_context *ctx, lot_run *run) {
+  const fg_lot_request *request = run->request;
+  fg_lot_settings kept = *request->settings;
   void *block;
+  FG_TRY(check_shard(ctx, request->shard));
+  FG_TRY(fg_lot_settings_check(ctx, request->settings));
+  FG_TRY(take_model(ctx, run, &kept));
+  FG_TRY(fg_manifest_collect(ctx, request->paths, request->path_count, request->folder,
+                             find_own_manifest(request), &run->manifest));
+  FG_TRY(fg_lot_check_inputs(ctx, request, &run->manifest));
+  FG_TRY(fg_lot_check_columns(ctx, request->settings, &run->manifest));
+  run->outcome->doubles = run->manifest.doubles;
+  strcpy(run->outcome->first_double, run->manifest.first_double);
+  run->outcome->empty = run->manifest.empty;
+  strcpy(run->outcome->first_empty, run->manifest.first_empty);
+  FG_TRY(fg_manifest_index_build(ctx, &run->manifest, &run->index));
+  FG_TRY(fg_manifest_format(ctx, &run->manifest, &run->manifest_text));
+  FG_TRY(fg_lot_settings_format(ctx, &kept, false, &run->recipe_text));
+  FG_TRY(fg_lot_path(ctx, request->folder, "results.jsonl", &run->results_path));
+  run->head = (fg_journal_head){
+      .version = FOILGAUGE_VERSION, .shard = request->shard, .items = run->manifest.items};
+  fg_lot_sum_text(run->manifest_text, run->head.manifest_sha256);
+  fg_lot_sum_text(run->recipe_text, run->head.recipe_sha256);
+  FG_TRY(fg_lot_sum_settings(ctx, request->settings, run->head.measured_with));
+  FG_TRY(fg_memory_allocate(ctx, run->manifest.items, sizeof *run->items, &block));
+  run->items = block;
+  for (size_t i = 0; i < run->manifest.items; i++)
+    run->items[i].mine = i % request->shard.count == request->shard.index - 1;
+  return FG_OK;
+}
+
+static fg_status take_entry(fg_context *ctx, void *user, fg_record *record,
+                            fg_journal_entry entry) {
+  lot_run *run = user;
+  size_t item = fg_manifest_index_find(&run->index, &run->manifest, record->scan);
+  if (item == run->manifest.items || !run->items[item].mine || !record->sha256[0] ||
+      strcmp(record->measured_with, run->head.measured_with) != 0)
+    return FG_OK;
+  run->items[item].entry = entry;
+  strcpy(run->items[item].sha256, record->sha256);
+  return fg_lot_page_is_wanted(ctx, run->request->pages, &run->request->settings->design,
+                               record->foils, record->foil_count, &run->items[item].wanted);
+}
+
+static fg_status name_page(fg_context *ctx, const lot_run *run, size_t item, const char *sha256,
+                           char **name) {
+  fg_record record = {0};
+  strcpy(record.sha256, sha256);
+  strcpy(record.measured_with, run->head.measured_with);
+  return fg_lot_page_name(ctx, &run->request->settings->design, &run->manifest, item, &record,
+                          name);
+}
+
+/* A record stands while its scan is what it was. A scan that is gone takes nothing with it. */
+static fg_status check_scan(fg_context *ctx, void *shared, size_t i) {
+  lot_run *run = shared;
+  item_state *item = &run->items[i];
+  const char *scan = fg_manifest_scan(&run->manifest, i);
+  char sum[65];
+  if (!item->entry.length || (access(scan, F_OK) != 0 && errno == ENOENT)) return FG_OK;
+  fg_context inner;
+  if (fg_sha256_file(&inner, scan, sum) != FG_OK || strcmp(sum, item->sha256) != 0)
+    item->entry.length = 0;
+  if (!item->entry.length || !item->wanted) return FG_OK;
+  char *page;
+  FG_TRY(name_page(ctx, run, i, sum, &page));
+  item->redrawn = !fg_lot_page_is_there(run->request->folder, page);
+  free(page);
+  return FG_OK;
+}
+
+static fg_status read_earlier(fg_context *ctx, lot_run *run) {
   fg_journal_damage damage;
-  fg_status status = FG_OK;
-  FG_TRY_EXIT(fg_design_derive(ctx, &lot->settings.design, &lot->nominal));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, lot->manifest.items, sizeof *lot->records, &block));
-  lot->records = block;
-  FG_TRY_EXIT(fg_manifest_index_build(ctx, &lot->manifest, &l.index));
-  FG_TRY_EXIT(fg_lot_path(ctx, folder, "results.jsonl", &path));
-  FG_TRY_EXIT(fg_journal_read(ctx, path, &lot->head, &damage, take_record, &l));
-  for (size_t i = 0; i < lot->manifest.items; i++)
-    if (!lot->records[i].scan)
-      FG_TRY_EXIT(fg_fail(ctx, FG_ERR_DATA, "%s: no record of %s; measure it with --resume", path,
-                          fg_manifest_scan(&lot->manifest, i)));
-  FG_TRY_EXIT(fg_lot_mark_repeats(ctx, lot));
-  if (!lot->settings.name[0]) name_by_folder(folder, lot->settings.name, sizeof lot->settings.name);
-  if (lot->settings.model[0]) FG_TRY_EXIT(load_model(ctx, folder, lot));
-exit:
-  free(path);
-  fg_manifest_index_free(&l.index);
+  if (access(run->results_path, F_OK) != 0) return FG_OK;
+  if (!run->request->resume)
+    return fg_fail(ctx, FG_ERR_USAGE,
+                   "%s: the folder holds results; --resume goes on with them, or choose another "
+                   "folder",
+                   run->request->folder);
+  FG_TRY(fg_journal_salvage(ctx, run->results_path, &damage, take_entry, run));
+  run->outcome->torn = damage.lines;
+  run->outcome->first_torn = damage.first;
+  run->outcome->earlier = damage.earlier;
+  return fg_parallel_run(ctx, run->request->settings->jobs, run->manifest.items, check_scan, run);
+}
+
+/* A scan that is not there has a record all the same, with its error. */
+static void note_missing(const char *scan, fg_lot_outcome *outcome) {
+  if (access(scan, F_OK) == 0) return;
+  if (outcome->missing++ == 0)
+    fg_text_clip(outcome->first_missing, sizeof outcome->first_missing, "%s", scan);
+}
+
+static fg_status list_todo(fg_context *ctx, lot_run *run) {
+  void *block;
+  FG_TRY(fg_memory_allocate(ctx, run->manifest.items, sizeof *run->todo, &block));
+  run->todo = block;
+  for (size_t i = 0; i < run->manifest.items; i++) {
+    if (!run->items[i].mine) continue;
+    run->outcome->scans++;
+    bool kept = run->items[i].entry.length > 0, redrawn = run->items[i].redrawn;
+    run->outcome->kept += kept;
+    run->outcome->redrawn += redrawn;
+    if (!kept || redrawn) run->todo[run->todo_count++] = i;
+    if (!kept) note_missing(fg_manifest_scan(&run->manifest, i), run->outcome);
+  }
+  run->outcome->to_measure = run->todo_count - run->outcome->redrawn - run->outcome->missing;
+  return FG_OK;
+}
+
+/* One at a time; the first tenth of a second says nothing about the rest. */
+static void tell(lot_run *run, size_t item, const char *error, bool beyond) {
+  pthread_mutex_lock(&run->listening);
+  fg_lot_outcome *outcome = run->outcome;
+  bool kept = run->items[item].redrawn;
+  outcome->beyond += beyond && !kept;
+  outcome->measured += !error && !kept;
+  outcome->failed += error && !kept;
+  size_t done = ++run->done;
+  double seconds = fg_clock_seconds() - run->start;
+  const fg_lot_progress progress = {
+      .done = done,
+      .total = run->todo_count,
+      .failed = outcome->failed,
+      .kept = outcome->kept,
+      .seconds = seconds,
+      .seconds_left =
+          seconds > 0.1 ? seconds * (double)(run->todo_count - done) / (double)done : NAN,
+      .scan = fg_manifest_scan(&run->manifest, item),
+      .error = error};
+  if (run->request->listener) run->request->listener(run->request->user, &progress);
+  pthread_mutex_unlock(&run->listening);
+}
+
+static fg_status keep(fg_context *ctx, lot_run *run, size_t item, const fg_record *record,
+                      const fg_measurement *measurement) {
+  char *line;
+  size_t length;
+  FG_TRY(fg_record_format(ctx, record, measurement, &line, &length));
+  fg_status status = fg_journal_append(ctx, &run->journal, line, length, &run->items[item].entry);
+  free(line);
   return status;
 }
 
-void fg_lot_free(fg_lot *lot) {
-  for (size_t i = 0; lot->records && i < lot->manifest.items; i++)
-    fg_record_free(&lot->records[i]);
-  free(lot->records);
-  fg_manifest_free(&lot->manifest);
-  if (lot->model) fg_scanner_model_free(lot->model);
-  *lot = (fg_lot){0};
+/* By the scanner's model, if any; a scan that it does not fit is not measured. With what the
+ * calibration does not know. */
+static fg_status correct(fg_context *ctx, const lot_run *run, fg_measurement *measurement,
+                         bool *beyond) {
+  char warning[200];
+  fg_status status = FG_OK;
+  warning[0] = '\0';
+  if (run->model) status = fg_scanner_model_apply(ctx, run->model, measurement, 1, warning);
+  if (status == FG_OK) status = fg_measurement_calibrate(ctx, 1, measurement);
+  if (status != FG_OK) fg_measurement_free(measurement);
+  *beyond = status == FG_OK && warning[0];
+  return status;
+}
+
+static void tell_not_drawn(lot_run *run, const char *why) {
+  pthread_mutex_lock(&run->listening);
+  if (run->outcome->not_drawn++ == 0)
+    fg_text_clip(run->outcome->first_not_drawn, sizeof run->outcome->first_not_drawn, "%s", why);
+  pthread_mutex_unlock(&run->listening);
+}
+
+/* Before the record is kept, so that a record's page is there. A scan that cannot be read a second
+ * time has none; only a page that cannot be written is an error. */
+static fg_status draw_page(fg_context *ctx, lot_run *run, size_t item,
+                           const fg_measurement *measurement) {
+  const fg_design *design = &run->request->settings->design;
+  char *page, *name = NULL;
+  bool wanted;
+  fg_context inner = {.message = ""};
+  FG_TRY(fg_lot_page_is_wanted(ctx, run->request->pages, design, measurement->foils,
+                               measurement->foil_count, &wanted));
+  if (!wanted) return FG_OK;
+  if (fg_lot_page_draw(&inner, design, &run->manifest, item, measurement, &page) != FG_OK) {
+    tell_not_drawn(run, inner.message);
+    return FG_OK;
+  }
+  fg_status status = name_page(ctx, run, item, measurement->sha256, &name);
+  if (status == FG_OK) status = fg_lot_pages_make(ctx, run->request->folder);
+  if (status == FG_OK) status = fg_lot_write_text(ctx, run->request->folder, name, page);
+  free(name);
+  free(page);
+  return status;
+}
+
+/* Whatever is wrong with a scan is its record; only a record that cannot be kept is an error. A
+ * scan that could be read but not measured is the same tomorrow; one that could not be read, or
+ * for which there was no memory, has no checksum and is tried again. */
+static fg_status measure_item(fg_context *ctx, lot_run *run, size_t item) {
+  const fg_lot_settings *settings = run->request->settings;
+  const fg_measure_options options = {.dpi = settings->dpi,
+                                      .allow_lossy = settings->allow_lossy,
+                                      .threads = 1,
+                                      .only_file = true,
+                                      .sum_failed = true};
+  const char *scan = fg_manifest_scan(&run->manifest, item);
+  fg_context inner = {.message = ""};
+  fg_measurement measurement;
+  fg_record record = {.scan = (char *)(uintptr_t)scan, .error = inner.message};
+  memcpy(record.measured_with, run->head.measured_with, sizeof record.measured_with);
+  bool beyond = false;
+  fg_record_date_scan(scan, record.date);
+  fg_status failure = fg_measure_scan(&inner, scan, &settings->design, &options, &measurement);
+  memcpy(record.sha256, measurement.sha256, sizeof record.sha256);
+  if (failure == FG_OK) failure = correct(&inner, run, &measurement, &beyond);
+  if (failure == FG_ERR_MEMORY || failure == FG_ERR_IO) record.sha256[0] = '\0';
+  fg_status status = failure == FG_OK ? draw_page(ctx, run, item, &measurement) : FG_OK;
+  if (status == FG_OK && !run->items[item].redrawn)
+    status = keep(ctx, run, item, &record, failure == FG_OK ? &measurement : NULL);
+  if (failure == FG_OK) fg_measurement_free(&measurement);
+  if (status == FG_OK) tell(run, item, failure == FG_OK ? NULL : inner.message, beyond);
+  return status;
+}
+
+static fg_status measure_next(fg_context *ctx, void *shared, size_t i) {
+  lot_run *run = shared;
+  if (atomic_load(&run->stop)) return FG_OK;
+  fg_status status = measure_item(ctx, run, run->todo[i]);
+  if (status != FG_OK) atomic_store(&run->stop, true);
+  return status;
+}
+
+/* The file in the manifest's order, with one record per item: the same bytes however it came. */
+static fg_status rewrite(fg_context *ctx, lot_run *run) {
+  void *block;
+  const char *from[] = {run->results_path};
+  FG_TRY(fg_memory_allocate(ctx, run->manifest.items, sizeof(fg_journal_entry), &block));
+  fg_journal_entry *entries = block;
+  for (size_t i = 0; i < run->manifest.items; i++)
+    entries[i] = run->items[i].entry;
+  fg_status status = fg_journal_rewrite(ctx, run->results_path, &run->head, from, NULL, entries,
+                                        run->manifest.items);
+  free(entries);
+  return status;
+}
+
+static fg_status measure_missing(fg_context *ctx, lot_run *run) {
+  const fg_lot_request *request = run->request;
+  if (run->todo_count) FG_TRY(fg_lot_remove_report(ctx, request->folder));
+  FG_TRY(fg_lot_write_text(ctx, request->folder, "recipe.json", run->recipe_text));
+  FG_TRY(fg_lot_write_text(ctx, request->folder, "manifest.csv", run->manifest_text));
+  FG_TRY(fg_lot_write_model(ctx, request->folder, run->model_text));
+  FG_TRY(rewrite(ctx, run));
+  if (!run->todo_count) return FG_OK;
+  FG_TRY(fg_journal_open(ctx, run->results_path, &run->journal));
+  run->start = fg_clock_seconds();
+  fg_status status =
+      fg_parallel_run(ctx, request->settings->jobs, run->todo_count, measure_next, run);
+  fg_context inner;
+  fg_status closed = fg_journal_close(&inner, &run->journal);
+  if (status == FG_OK && closed != FG_OK) return fg_fail(ctx, closed, "%s", inner.message);
+  return status;
+}
+
+/* Offsets have moved with the first rewrite: they are read again. */
+static fg_status take_any(fg_context *ctx, void *user, fg_record *record, fg_journal_entry entry) {
+  lot_run *run = user;
+  (void)ctx;
+  size_t item = fg_manifest_index_find(&run->index, &run->manifest, record->scan);
+  if (item < run->manifest.items) run->items[item].entry = entry;
+  return FG_OK;
+}
+
+static fg_status put_in_order(fg_context *ctx, lot_run *run) {
+  fg_journal_head head;
+  fg_journal_damage damage;
+  FG_TRY(fg_journal_read(ctx, run->results_path, &head, &damage, take_any, run));
+  return rewrite(ctx, run);
+}
+
+static fg_status report(fg_context *ctx, lot_run *run) {
+  fg_lot lot = {.manifest = run->manifest, .decimal_comma = run->request->decimal_comma};
+  fg_lot_settings_default(&lot.settings); /* as a merge reads them: a recipe has ten digits */
+  FG_TRY(fg_lot_settings_parse(ctx, "recipe.json", run->recipe_text, &lot.settings));
+  run->manifest = (fg_manifest){0};
+  fg_status status = fg_lot_load(ctx, run->request->folder, &lot);
+  if (status == FG_OK) status = fg_lot_write_report(ctx, run->request->folder, &lot, run->outcome);
+  fg_lot_free(&lot);
+  return status;
+}
+
+static fg_status work(fg_context *ctx, lot_run *run) {
+  FG_TRY(prepare(ctx, run));
+  if (!run->request->dry_run) {
+    FG_TRY(fg_folder_make(ctx, run->request->folder));
+    FG_TRY(fg_folder_lock(ctx, run->request->folder, &run->lock));
+  }
+  FG_TRY(read_earlier(ctx, run));
+  FG_TRY(list_todo(ctx, run));
+  if (run->request->dry_run) return FG_OK;
+  FG_TRY(measure_missing(ctx, run));
+  if (run->todo_count) FG_TRY(put_in_order(ctx, run));
+  return run->request->shard.count == 1 ? report(ctx, run) : FG_OK;
+}
+
+fg_status fg_lot_run(fg_context *ctx, const fg_lot_request *request, fg_lot_outcome *outcome) {
+  lot_run run = {.request = request, .outcome = outcome, .lock = -1};
+  *outcome = (fg_lot_outcome){.judged = {.verdict = FG_VERDICT_NONE}};
+  pthread_mutex_init(&run.listening, NULL);
+  fg_status status = work(ctx, &run);
+  pthread_mutex_destroy(&run.listening);
+  if (run.lock >= 0) close(run.lock);
+  fg_manifest_index_free(&run.index);
+  fg_manifest_free(&run.manifest);
+  free(run.manifest_text);
+  free(run.recipe_text);
+  free(run.model_text);
+  if (run.model) fg_scanner_model_free(run.model);
+  free(run.results_path);
+  free(run.items);
+  free(run.todo);
+  return status;
 }

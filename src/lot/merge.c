@@ -9,10 +9,10 @@
 #include "core/file.h"
 #include "core/folder.h"
 #include "core/memory.h"
-#include "lot/foil_pages.h"
-#include "lot/folder_lock.h"
-#include "lot/guard.h"
-#include "lot/lot_report.h"
+#include "lot/run/folder_lock.h"
+#include "lot/run/guard.h"
+#include "lot/run/lot.h"
+#include "report/lot/foil_pages.h"
 
 enum { TEXT_BYTES_MAX = 1 << 30 };
 

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "core/text.h"
-#include "geometry/level_doubt.h"
+#include "geometry/level_uncertainty.h"
 #include "measure/again.h"
 #include "measure/loss.h"
 
@@ -14,7 +14,7 @@
 #define SCALE_UNKNOWN 0.002
 /* T(1/2) is between the levels of both sides, whatever the tone curve. */
 #define LEVEL_MAX 0.5
-/* Standard deviation of T(1/2) by an unknown tone curve (geometry/level_doubt.c). */
+/* Standard deviation of T(1/2) by an unknown tone curve (geometry/level_uncertainty.c). */
 #define LEVEL_UNKNOWN_SD 0.08
 /* Beyond it few drivers' tone curves put it: a wrong width would look alike. */
 #define LEVEL_UNUSUAL 0.25

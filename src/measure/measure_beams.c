@@ -7,7 +7,7 @@
 
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "geometry/level_doubt.h"
+#include "geometry/level_uncertainty.h"
 #include "measure/loss.h"
 #include "vision/beam_find.h"
 #include "vision/rims.h"

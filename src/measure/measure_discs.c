@@ -8,7 +8,7 @@
 #include "core/parallel.h"
 #include "core/select.h"
 #include "geometry/disc_fit.h"
-#include "geometry/level_doubt.h"
+#include "geometry/level_uncertainty.h"
 #include "measure/loss.h"
 #include "vision/disc_edge.h"
 #include "vision/disc_find.h"

@@ -33,7 +33,7 @@ typedef struct checking {
   double *work;
 } checking;
 
-/* As the loop on tables chooses (src/loop/table_problem.c). */
+/* As the loop on tables chooses (src/table_loop/problem.c). */
 static const fg_column *order_column(const fg_experiment *e) {
   static const char *const names[] = {"run", "order", "run_order", "experiment", "sequence"};
   for (size_t i = 0; i < sizeof names / sizeof *names; i++) {

@@ -5,7 +5,7 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "foilgauge/report.h"
-#include "report/measure/measure_page_parts.h"
+#include "page/page.h"
 #include "report/value_words.h"
 
 static const struct {

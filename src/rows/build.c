@@ -1,6 +1,6 @@
 #include <string.h>
 
-#include "rows/points.h"
+#include "rows/edge_fit.h"
 
 fg_status fg_edge_fit_build(fg_context *ctx, const fg_edge_fit_view *views, size_t count,
                             fg_edge_fit *edge_fit) {

@@ -12,7 +12,7 @@
 
 #include "core/memory.h"
 #include "core/spread.h"
-#include "rows/points.h"
+#include "rows/edge_fit.h"
 
 /* So many rows carry any search; the blocks grow with the edges. */
 enum { ROWS_MAX = 2000, BLOCK_MIN = 2, ROWS_MIN = 32, NEIGHBOUR_LAG = 3 };

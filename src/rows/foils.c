@@ -1,4 +1,4 @@
-#include "rows/points.h"
+#include "rows/edge_fit.h"
 
 #include <math.h>
 #include <stdlib.h>

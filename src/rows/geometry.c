@@ -7,7 +7,7 @@
 
 #include "core/memory.h"
 #include "core/numerics.h"
-#include "rows/points.h"
+#include "rows/edge_fit.h"
 
 enum { FIT_ROUNDS = 8 };
 /* A step of Gauss-Newton that ends the fit, mm and rad; damping of a diagonal, and beside it;

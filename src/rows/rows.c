@@ -5,7 +5,7 @@
 
 #include "core/correlation.h"
 #include "core/memory.h"
-#include "rows/points.h"
+#include "rows/edge_fit.h"
 
 /* Edges lie so far beside the middle of the strip, and are moved by effects. */
 #define EDGE_ROOM_MM 0.2

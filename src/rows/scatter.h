@@ -9,7 +9,7 @@
 
 #include <math.h>
 
-#include "rows/points.h"
+#include "rows/edge_fit.h"
 
 /* Behind the last row of the arc that starts at a row: neighbours on one view of one bump, land or
  * disc. What lies farther apart than 4 mm shares no noise, and polynomials could not follow it. */

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "rows/points.h"
+#include "rows/edge_fit.h"
 
 static fg_status copy(fg_context *ctx, const void *from, size_t count, size_t size, void *to) {
   void **out = to;

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "loop/engine_random.h"
+#include "table_loop/engine_random.h"
 
 /* Draws of the null; forms that are tried. */
 enum { DRAWS = 4999, PATTERNS = 2 };

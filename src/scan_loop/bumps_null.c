@@ -7,8 +7,8 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "loop/engine_random.h"
 #include "scan_loop/bumps.h"
+#include "table_loop/engine_random.h"
 
 enum { DRAWS = 1999 };
 

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "scan_loop/pays.h"
+#include "scan_loop/benefit.h"
 
 static fg_status copy_array(fg_context *ctx, const void *from, size_t count, size_t size,
                             void **to) {

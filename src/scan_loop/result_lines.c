@@ -7,9 +7,9 @@
 #include "core/memory.h"
 #include "effect/columns.h"
 #include "foilgauge/report.h"
-#include "loop/engine.h"
 #include "scan_loop/result.h"
 #include "scan_loop/state.h"
+#include "table_loop/engine.h"
 
 enum { SAMPLES = FG_SCAN_RESULT_SAMPLES };
 

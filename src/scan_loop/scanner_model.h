@@ -2,10 +2,10 @@
 #ifndef FG_SCAN_LOOP_SCANNER_MODEL_H
 #define FG_SCAN_LOOP_SCANNER_MODEL_H
 
-#include "explain/explain.h"
+#include "effect_search/effect_search.h"
 #include "field/field.h"
 #include "foilgauge/scan_loop.h"
-#include "scan_loop/pays.h"
+#include "scan_loop/benefit.h"
 #include "scan_loop/scanner_model_tone.h"
 
 enum { FG_MODEL_DATE = 32 };

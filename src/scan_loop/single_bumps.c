@@ -10,9 +10,9 @@
 #include "core/memory.h"
 #include "effect/columns.h"
 #include "effect/midline.h"
-#include "loop/engine.h"
 #include "scan_loop/bump_pattern.h"
 #include "scan_loop/state.h"
+#include "table_loop/engine.h"
 
 /* Polynomials of a bump: a circle's own, those that are judged, those that are noise. */
 enum { CIRCLE = 3, JUDGED = 2, NOISE = 4, ORDERS = CIRCLE + JUDGED + NOISE };

@@ -2,14 +2,14 @@
 #ifndef FG_SCAN_LOOP_STATE_H
 #define FG_SCAN_LOOP_STATE_H
 
-#include "explain/cross_fit.h"
-#include "explain/explain.h"
-#include "explain/joint_fit.h"
-#include "explain/width_search.h"
+#include "effect_search/cross_fit.h"
+#include "effect_search/effect_search.h"
+#include "effect_search/joint_fit.h"
+#include "effect_search/width_search.h"
 #include "foilgauge/scan_loop.h"
-#include "rows/points.h"
+#include "rows/edge_fit.h"
+#include "scan_loop/benefit.h"
 #include "scan_loop/bumps.h"
-#include "scan_loop/pays.h"
 #include "scan_loop/scanner_model_tone.h"
 #include "scan_loop/verdict.h"
 

@@ -4,10 +4,10 @@
 #include <string.h>
 
 #include "core/text.h"
+#include "scan_loop/channel_check.h"
 #include "scan_loop/result.h"
 #include "scan_loop/scanner_model.h"
 #include "scan_loop/state.h"
-#include "scan_loop/witness.h"
 
 /* Below this share of an effect beside the geometry no data of this kind could show it. */
 #define ABSORBED_SHARE 1e-4

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "core/text.h"
-#include "report/measure/measure_page_parts.h"
+#include "page/page.h"
 #include "station/actions.h"
 #include "station/news.h"
 #include "station/pages.h"

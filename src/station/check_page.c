@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-#include "report/measure/measure_page_parts.h"
+#include "page/page.h"
 #include "station/check_state.h"
 #include "station/pages.h"
 

@@ -6,7 +6,7 @@
 #include "core/folder.h"
 #include "core/memory.h"
 #include "core/text.h"
-#include "lot/lot_report.h"
+#include "lot/run/lot.h"
 #include "station/export.h"
 #include "station/lot_folder.h"
 

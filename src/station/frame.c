@@ -2,7 +2,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "report/measure/measure_page_parts.h"
+#include "page/page.h"
 #include "station/check.h"
 #include "station/news.h"
 #include "station/pages.h"

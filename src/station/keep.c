@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "core/file.h"
-#include "lot/lot_report.h"
+#include "lot/run/lot.h"
 #include "station/keep_parts.h"
 
 const char *fg_card_word(fg_card card) {

@@ -4,8 +4,8 @@
 #include <string.h>
 
 #include "foilgauge/words.h"
-#include "lot/lot_report.h"
-#include "lot/record.h"
+#include "lot/run/lot.h"
+#include "lot/run/record.h"
 #include "quantity/quantity_rows.h"
 #include "station/keep_parts.h"
 

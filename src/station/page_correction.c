@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "report/measure/measure_page_parts.h"
+#include "page/page.h"
 #include "station/correct.h"
 #include "station/pages.h"
 #include "station/values.h"

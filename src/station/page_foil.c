@@ -2,9 +2,9 @@
  * who changed what. */
 #include <string.h>
 
-#include "report/measure/measure_page_parts.h"
+#include "page/page.h"
 #include "station/pages.h"
-#include "station/past.h"
+#include "station/stored_foil.h"
 #include "station/values.h"
 
 static void write_fact(FILE *out, const char *title, const char *text) {

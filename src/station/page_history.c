@@ -4,7 +4,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "report/measure/measure_page_parts.h"
+#include "page/page.h"
 #include "station/pages.h"
 #include "station/values.h"
 

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "core/text.h"
-#include "report/measure/measure_page_parts.h"
+#include "page/page.h"
 #include "station/lot_content.h"
 #include "station/pages.h"
 

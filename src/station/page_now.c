@@ -2,8 +2,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "page/page.h"
 #include "quantity/quantity_rows.h"
-#include "report/measure/measure_page_parts.h"
 #include "station/news.h"
 #include "station/pages.h"
 #include "station/scan_command.h"

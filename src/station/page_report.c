@@ -7,9 +7,9 @@
 #include "core/text.h"
 #include "foilgauge/measure.h"
 #include "foilgauge/scan_loop.h"
-#include "report/measure/measure_page_parts.h"
+#include "page/page.h"
 #include "station/pages.h"
-#include "station/past.h"
+#include "station/stored_foil.h"
 #include "station/stored_name.h"
 
 /* One at a time: each takes all cores for a second, and new scans come first. */

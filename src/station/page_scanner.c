@@ -6,8 +6,8 @@
 #include <time.h>
 
 #include "core/memory.h"
-#include "report/measure/measure_page_parts.h"
-#include "report/plot_marks.h"
+#include "page/page.h"
+#include "page/plot_marks.h"
 #include "station/check.h"
 #include "station/check_page.h"
 #include "station/trend.h"

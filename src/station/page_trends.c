@@ -2,7 +2,7 @@
 #include <math.h>
 
 #include "core/text.h"
-#include "report/measure/measure_page_parts.h"
+#include "page/page.h"
 #include "station/trend.h"
 
 enum { NAME_BYTES = 140, NARROWEST = 10 };

@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "report/measure/measure_page_parts.h"
+#include "report/measure/page_parts.h"
 
 /* Some 150 KB each; a foil whose picture is gone is drawn from its scan. */
 enum { PICTURES_KEPT = 400 };

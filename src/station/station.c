@@ -4,7 +4,7 @@
 #include <sys/random.h>
 #include <unistd.h>
 
-#include "lot/folder_lock.h"
+#include "lot/run/folder_lock.h"
 #include "station/close.h"
 #include "station/export.h"
 #include "station/keep.h"

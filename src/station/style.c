@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "report/measure/measure_page_parts.h"
+#include "page/page.h"
 #include "station/pages.h"
 #include "station/trend.h"
 

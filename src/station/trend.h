@@ -2,7 +2,7 @@
 #ifndef FG_STATION_TREND_H
 #define FG_STATION_TREND_H
 
-#include "lot/analysis.h"
+#include "lot/statistics/analysis.h"
 #include "station/naming.h"
 #include "station/pages.h"
 

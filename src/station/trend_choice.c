@@ -3,8 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "page/page.h"
 #include "quantity/quantity_rows.h"
-#include "report/measure/measure_page_parts.h"
 #include "station/trend.h"
 
 /* How many points a chart has unless somebody asks for others: enough for limits, few enough that

@@ -5,8 +5,8 @@
 #include <stdlib.h>
 
 #include "core/select.h"
-#include "report/measure/measure_page_parts.h"
-#include "report/plot_marks.h"
+#include "page/page.h"
+#include "page/plot_marks.h"
 #include "station/trend.h"
 
 enum { DOTS_MAX = 120, COLUMNS_MAX = 450, NAME_BYTES = 140, LABELS = 5 };

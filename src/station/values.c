@@ -4,8 +4,9 @@
 #include <string.h>
 
 #include "core/text.h"
+#include "foilgauge/words.h"
+#include "page/page.h"
 #include "quantity/quantity_rows.h"
-#include "report/measure/measure_page_parts.h"
 
 /* A value that decided, as a row of the database has it. */
 typedef struct decided {

@@ -22,12 +22,12 @@
 #include "core/memory.h"
 #include "core/select.h"
 #include "core/text.h"
+#include "station/file_stability.h"
 #include "station/intake.h"
 #include "station/keep.h"
 #include "station/news.h"
-#include "station/rest.h"
+#include "station/recovery.h"
 #include "station/stored_name.h"
-#include "station/trouble.h"
 
 /* TURN_MS: how long the station sleeps when nobody tells it anything. A folder that is removed
  * while somebody has a file of it open (the station its database) tells nothing. */

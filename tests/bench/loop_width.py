@@ -29,7 +29,7 @@ HEAD = """# A thickness that changes along the foil
 reports say `part.thickness_taper`; other claims: whatever else they say. Error and U = 2u are of the change from end to end,
 over the renders where it is claimed. Shows from: the smallest change that the others say would have shown, median. U is
 never below what an error of the edge model over the place on the glass would make of it (`PLACE_UM` in
-src/explain/width_search.c), which one scan cannot tell from a taper.
+src/effect_search/width_search.c), which one scan cannot tell from a taper.
 
 | renders | change, µm | scans | claimed | other claims | error within U | median error, µm | mean error, µm | median U, µm | shows from, µm |
 |---|---:|---:|---:|---:|---:|---:|---:|---:|---:|

@@ -67,7 +67,7 @@ build/foilgauge` makes this page. Errors in µm, of the thickness in force.
 
 Both edges lie where the light is half of what it is on either side, so a tone curve makes the strip wider or narrower on both
 sides at once, the same all along it and in every foil. Edges alone do not tell it: u holds the range of tone curves that
-scanners and their drivers have, 8 % of the contrast (`src/geometry/level_doubt.c`). These renders have a power of the light at the
+scanners and their drivers have, 8 % of the contrast (`src/geometry/level_uncertainty.c`). These renders have a power of the light at the
 most, which is found; so the errors of the first row are far smaller than u. What makes the tone known makes u small: the strip's thickness by a micrometer (`thickness_measured`),
 or a tone that is linear and stated as such (`tone`). Radii and heights are of the midline and do not change with it.
 A wall that shows beside one edge along the whole foil and is not recognised as one takes more: the strip then comes out thin

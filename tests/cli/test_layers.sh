@@ -9,7 +9,7 @@ say() {
   failed=1
 }
 
-private='#include "(field|rows|effect|explain|scan_loop|loop)/'
+private='#include "(field|rows|effect|effect_search|scan_loop|table_loop)/'
 found=$(grep -nE "$private" -r src/report)
 [ -z "$found" ] || say "a report includes what is private to the loop: $found"
 
@@ -24,15 +24,15 @@ must_not_include() {
   found=$(grep -nE "#include \"($2)/" -r "src/$1")
   [ -z "$found" ] || say "$1 includes what stands right of it: $found"
 }
-must_not_include field 'rows|effect|explain|scan_loop|loop|report|lot|cli'
-must_not_include forming 'scan|vision|measure|scan_loop|loop|report|lot|cli'
-must_not_include rows 'effect|explain|scan_loop|loop|report|lot|cli'
-must_not_include effect 'explain|scan_loop|loop|report|lot|cli'
-must_not_include explain 'scan_loop|report|lot|cli'
+must_not_include field 'rows|effect|effect_search|scan_loop|table_loop|report|lot|cli'
+must_not_include forming 'scan|vision|measure|scan_loop|table_loop|report|lot|cli'
+must_not_include rows 'effect|effect_search|scan_loop|table_loop|report|lot|cli'
+must_not_include effect 'effect_search|scan_loop|table_loop|report|lot|cli'
+must_not_include effect_search 'scan_loop|report|lot|cli'
 must_not_include scan_loop 'report|lot|cli'
-must_not_include loop 'scan_loop|explain|report|lot|cli'
-must_not_include die 'scan|vision|measure|scan_loop|loop|report|lot|cli'
-must_not_include load_test 'scan|vision|measure|scan_loop|loop|report|lot|cli'
+must_not_include table_loop 'scan_loop|effect_search|report|lot|cli'
+must_not_include die 'scan|vision|measure|scan_loop|table_loop|report|lot|cli'
+must_not_include load_test 'scan|vision|measure|scan_loop|table_loop|report|lot|cli'
 must_not_include report 'cli'
 
 ids=$(grep -rhoE '(\.id = |OVER_GLASS\()"[^"]+"' src/effect | grep -oE '"[^"]+"')

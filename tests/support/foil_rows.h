@@ -6,7 +6,7 @@
 
 #include "effect/columns.h"
 #include "random.h"
-#include "rows/points.h"
+#include "rows/edge_fit.h"
 #include "synthetic_foil.h"
 
 typedef struct foil_rows {

@@ -13,7 +13,7 @@
 
 #include <cmocka.h>
 
-#include "lot/analysis.h"
+#include "lot/statistics/analysis.h"
 
 /* `columns`: further columns of the manifest with a leading comma, or ""; `cells` their text for
  * each foil (NULL: none). Scans are 0.png, 1.png, ... with a foil each, whose bumps are zero. */

@@ -9,7 +9,7 @@
 #include <cmocka.h>
 
 #include "foilgauge/report.h"
-#include "lot/assembly.h"
+#include "lot/statistics/assembly.h"
 #include "support/near.h"
 
 enum { PADS = 3, BUMPS = 9 };

@@ -9,8 +9,8 @@
 
 #include <cmocka.h>
 
-#include "explain/cross_fit.h"
-#include "explain/joint_fit.h"
+#include "effect_search/cross_fit.h"
+#include "effect_search/joint_fit.h"
 #include "support/near.h"
 #include "support/odd_scan.h"
 

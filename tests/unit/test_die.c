@@ -11,7 +11,7 @@
 
 #include "../support/near.h"
 #include "../support/random.h"
-#include "die/form.h"
+#include "die/form_error.h"
 #include "die/header.h"
 #include "die/lines.h"
 

@@ -10,7 +10,7 @@
 #include <cmocka.h>
 
 #include "../support/foil_rows.h"
-#include "explain/policy.h"
+#include "effect_search/policy.h"
 
 static const fg_effect *curve(void) {
   return fg_effect_find("free.bump.index");

@@ -12,8 +12,8 @@
 
 #include "../support/brief.h"
 #include "../support/foil_rows.h"
-#include "explain/policy.h"
-#include "explain/width_search.h"
+#include "effect_search/policy.h"
+#include "effect_search/width_search.h"
 #include "foilgauge/render.h"
 
 #define AMPLITUDE_UM 20.0

@@ -11,7 +11,7 @@
 
 #include "../support/foil_rows.h"
 #include "../support/near.h"
-#include "explain/policy.h"
+#include "effect_search/policy.h"
 
 #define NOISE_UM 0.03
 

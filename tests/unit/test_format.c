@@ -15,7 +15,7 @@
 #include <cjson/cJSON.h>
 
 #include "foilgauge/foil.h"
-#include "lot/manifest.h"
+#include "lot/input/manifest.h"
 #include "scan/format.h"
 
 static void every_row_is_whole(void **state) {
@@ -123,7 +123,8 @@ static void documents_name_every_row(void **state) {
   (void)state;
   size_t count;
   const fg_format *const *formats = fg_formats(&count);
-  char *manual = read_text("src/manual/text/foilgauge-measure.1.md"), *text = read_text("reports/schema/measure.schema.json");
+  char *manual = read_text("src/manual/text/foilgauge-measure.1.md"),
+       *text = read_text("reports/schema/measure.schema.json");
   cJSON *schema = cJSON_Parse(text);
   const cJSON *words = formats_of(schema);
   assert_int_equal(cJSON_GetArraySize(words), count);

@@ -12,7 +12,7 @@
 #include "../support/random.h"
 #include "../support/synthetic_foil.h"
 #include "effect/columns.h"
-#include "explain/joint_fit.h"
+#include "effect_search/joint_fit.h"
 
 #define NOISE_UM 0.03
 

@@ -8,7 +8,7 @@
 #include <cmocka.h>
 
 #include "geometry/foil_uncertainty.h"
-#include "geometry/level_doubt.h"
+#include "geometry/level_uncertainty.h"
 
 static void assert_near(double value, double expected, double tolerance) {
   if (!(fabs(value - expected) <= tolerance))

@@ -10,9 +10,9 @@
 #include <gsl/gsl_linalg.h>
 
 #include "effect/table_effects.h"
-#include "loop/engine.h"
 #include "support/near.h"
 #include "support/random.h"
+#include "table_loop/engine.h"
 
 enum { ROWS = 12, GROUPS = 3 };
 

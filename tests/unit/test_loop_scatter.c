@@ -11,8 +11,8 @@
 #include <gsl/gsl_cdf.h>
 
 #include "foilgauge/loop.h"
-#include "loop/tails.h"
 #include "support/random.h"
+#include "table_loop/tails.h"
 
 enum { ROWS = 120 };
 

@@ -1,6 +1,6 @@
 /* Groups of a lot: foils are the unit, bumps a level within them; all tests share their error. */
-#include "lot/lot_report.h"
-#include "lot/writers.h"
+#include "lot/run/lot.h"
+#include "report/lot/writers.h"
 #include "stats/relabelled_spread.h"
 #include "support/group_lots.h"
 

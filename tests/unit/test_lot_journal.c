@@ -15,11 +15,11 @@
 
 #include "../support/synthetic_foil.h"
 #include "foilgauge/lot.h"
-#include "lot/folder_lock.h"
-#include "lot/journal.h"
-#include "lot/manifest.h"
-#include "lot/record.h"
-#include "lot/seal.h"
+#include "lot/input/manifest.h"
+#include "lot/run/folder_lock.h"
+#include "lot/run/journal.h"
+#include "lot/run/record.h"
+#include "lot/run/seal.h"
 
 typedef struct seen {
   char scans[8][16];

@@ -15,10 +15,10 @@
 
 #include "../support/synthetic_foil.h"
 #include "foilgauge/lot.h"
-#include "lot/journal.h"
-#include "lot/manifest.h"
-#include "lot/record.h"
-#include "lot/seal.h"
+#include "lot/input/manifest.h"
+#include "lot/run/journal.h"
+#include "lot/run/record.h"
+#include "lot/run/seal.h"
 
 static void manifest_reads_back_what_it_writes(void **state) {
   (void)state;

@@ -1,5 +1,5 @@
 /* Whether the process runs as it did, what its signals come from, and what is said of it. */
-#include "lot/writers.h"
+#include "report/lot/writers.h"
 #include "support/made_lot.h"
 #include "support/random.h"
 

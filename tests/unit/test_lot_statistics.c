@@ -1,6 +1,6 @@
 /* What enters a lot's statistics, and which arch a bump is taken for. */
-#include "lot/lot_plots.h"
-#include "lot/writers.h"
+#include "report/lot/plots.h"
+#include "report/lot/writers.h"
 #include "support/made_lot.h"
 #include "support/near.h"
 

@@ -9,7 +9,7 @@
 
 #include "../support/foil_rows.h"
 #include "../support/near.h"
-#include "scan_loop/pays.h"
+#include "scan_loop/benefit.h"
 #include "scan_loop/state.h"
 
 enum { R0 = FG_CORRECTED_OVERALL_RADIUS, R = FG_CORRECTED_RADIUS, H = FG_CORRECTED_HEIGHT };

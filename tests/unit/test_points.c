@@ -9,7 +9,7 @@
 #include <cmocka.h>
 
 #include "../support/synthetic_foil.h"
-#include "rows/points.h"
+#include "rows/edge_fit.h"
 
 enum { LANDS = SYNTHETIC_BUMPS + 1 };
 

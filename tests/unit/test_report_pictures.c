@@ -8,8 +8,9 @@
 
 #include <unistd.h>
 
-#include "report/canvas.h"
-#include "report/measure/measure_page_parts.h"
+#include "foilgauge/report.h"
+#include "page/canvas.h"
+#include "page/page.h"
 #include "support/synthetic_foil.h"
 
 enum { WIDTH = 1100, HEIGHT = 620 };

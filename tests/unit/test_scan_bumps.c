@@ -9,9 +9,9 @@
 
 #include <cmocka.h>
 
-#include "loop/engine_random.h"
 #include "scan_loop/bumps.h"
 #include "support/brief.h"
+#include "table_loop/engine_random.h"
 
 enum { FOILS = 12, BUMPS = 9 };
 

@@ -13,7 +13,7 @@
 #include <cmocka.h>
 
 #include "foilgauge/scan_loop.h"
-#include "report/scan_loop/scan_loop_parts.h"
+#include "report/scan_loop/parts.h"
 #include "scan_loop/state.h"
 #include "support/near.h"
 #include "support/odd_scan.h"

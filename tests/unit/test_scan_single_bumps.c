@@ -7,8 +7,8 @@
 
 #include <cmocka.h>
 
-#include "loop/engine_random.h"
 #include "scan_loop/bump_pattern.h"
+#include "table_loop/engine_random.h"
 
 static fg_bump_values scatter(size_t n, double noise_dof, uint64_t *seed) {
   fg_bump_values at = {.n = n, .noise_dof = noise_dof};

@@ -9,9 +9,9 @@
 #include <cmocka.h>
 
 #include "core/utf8.h"
+#include "station/file_stability.h"
 #include "station/lot_folder.h"
 #include "station/naming.h"
-#include "station/rest.h"
 
 #define SECOND INT64_C(1000000000)
 

@@ -1,7 +1,7 @@
 /* Where a lot's spread of stiffness comes from: causes put in come back out, what is not known is
  * not counted, and measurement's share is what drawing from it gives. */
-#include "lot/stiffness_columns.h"
-#include "lot/writers.h"
+#include "report/lot/stiffness_columns.h"
+#include "report/lot/writers.h"
 #include "support/made_lot.h"
 #include "support/near.h"
 

@@ -3,9 +3,9 @@
 #include "foilgauge/cantilever.h"
 #include "foilgauge/design_report.h"
 #include "report/design/beam_deviations.h"
-#include "report/measure/measure_json.h"
-#include "report/stiffness/stiffness_map.h"
-#include "report/stiffness/stiffness_table.h"
+#include "report/measure/json.h"
+#include "report/stiffness/map.h"
+#include "report/stiffness/table.h"
 
 static void write_material(fg_json *json, const fg_arch_material *material) {
   fg_json_object(json, "material");

@@ -2,9 +2,9 @@
 #include <math.h>
 
 #include "foilgauge/words.h"
+#include "page/page.h"
+#include "page/plot_marks.h"
 #include "report/measure/colour_lines_report.h"
-#include "report/measure/measure_page_parts.h"
-#include "report/plot_marks.h"
 
 /* So many windows without edges are a gap. */
 #define GAP_WINDOWS 4

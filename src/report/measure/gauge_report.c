@@ -5,7 +5,7 @@
 #include "core/text.h"
 #include "foilgauge/report.h"
 #include "foilgauge/words.h"
-#include "report/measure/measure_page_parts.h"
+#include "page/page.h"
 
 enum { GAUGE_WORDS = 400 };
 

@@ -7,7 +7,7 @@
 #include "core/memory.h"
 #include "foilgauge/words.h"
 #include "quantity/quantity_rows.h"
-#include "report/drawing.h"
+#include "report/measure/drawing.h"
 #include "report/measure/foil_parts.h"
 
 enum { WIDTH_MAX = 8000, LEGEND_FOILS_MAX = 6, LINE_MAX_LENGTH = 256 };

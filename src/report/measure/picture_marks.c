@@ -8,7 +8,7 @@
 #include "core/select.h"
 #include "core/utf8.h"
 #include "foilgauge/words.h"
-#include "report/drawing.h"
+#include "report/measure/drawing.h"
 
 enum { COLOUR_FAIL = 0xff5252, COLOUR_OPEN = 0xffb833, MARKS_MAX = 40, TEXT_BYTES = 160 };
 

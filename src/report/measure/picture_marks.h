@@ -2,7 +2,7 @@
 #ifndef FG_REPORT_MEASURE_PICTURE_MARKS_H
 #define FG_REPORT_MEASURE_PICTURE_MARKS_H
 
-#include "report/canvas.h"
+#include "page/canvas.h"
 
 /* A ring around every bump with a value that fails (red) or of which the limit cannot tell
  * (amber), and the worst of its values with its limit, where nothing else stands; the same of the

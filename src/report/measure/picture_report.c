@@ -3,8 +3,8 @@
 #include <math.h>
 
 #include "foilgauge/picture.h"
-#include "report/drawing.h"
-#include "report/measure/measure_page_parts.h"
+#include "page/page.h"
+#include "report/measure/drawing.h"
 
 static double value_of(const fg_picture_state *state, const fg_picture_member *member) {
   return *(const double *)((const char *)state + member->offset);

@@ -6,8 +6,8 @@
 
 #include "core/text.h"
 #include "foilgauge/scan_loop.h"
+#include "page/page.h"
 #include "quantity/quantity_rows.h"
-#include "report/measure/measure_page_parts.h"
 #include "report/quantity_json.h"
 #include "report/value_words.h"
 

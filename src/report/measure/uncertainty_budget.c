@@ -2,9 +2,10 @@
 
 #include <math.h>
 
+#include "foilgauge/words.h"
+#include "page/page.h"
 #include "quantity/quantity_rows.h"
 #include "report/design/calibration_json.h"
-#include "report/measure/measure_page_parts.h"
 
 /* Of one quantity over all parts that have it, root mean squares. */
 typedef struct line {

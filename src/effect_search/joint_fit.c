@@ -1,0 +1,439 @@
+#include "effect_search/joint_fit.h"
+
+#include <gsl/gsl_linalg.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/numerics.h"
+#include "effect/columns.h"
+#include "rows/scatter.h"
+
+enum {
+  REFIT_ROUNDS = 12,
+  UNKNOWNS_MAX = FG_EFFECT_SET_MAX * (FG_EFFECT_COLUMNS_MAX + FG_FIELD_SHAPES)
+};
+/* A coefficient's step that ends the fit, and its largest one, um. */
+#define STEP_END_UM 1e-5
+#define STEP_MAX_UM 60.0
+/* A shape's largest step: this share of itself, and where it is a place as much of a mm; the
+ * hundredth part of that ends the fit. */
+#define SHAPE_SHARE 0.02
+#define SHAPE_MM    0.5
+#define SHAPE_END   100
+/* Half the span of a derivative by a shape, of itself; no shape counts as smaller, mm. */
+#define DERIVE_SHARE 1e-5
+#define SHAPE_MIN    1e-3
+/* Rows of scans that only confirm weigh so much: enough to fit their own pose. */
+#define HELD_OUT_WEIGHT 1e-6
+/* Size of a free curve, um: what scanners and foils do is of this order (reports/loop_scans.md). */
+#define CURVE_UM 15.0
+/* Damping for what no row tells: of a diagonal, and beside it. */
+#define DAMP_SHARE 1e-10
+#define DAMP       1e-12
+/* Rows of less than this share of the largest weight, and those whose normal lies farther from the
+ * step's direction, do not hold its place. */
+#define ROUGH_WEIGHT 0.1
+#define ALONG_MIN    0.3
+
+/* One unknown of the effects: a coefficient, or a shape by its numerical derivative. */
+typedef struct unknown {
+  size_t effect, index;
+  bool shape;
+} unknown;
+
+static size_t list_unknowns(const fg_effect_set *set, unknown *list) {
+  size_t n = 0;
+  for (size_t e = 0; e < set->count; e++) {
+    const fg_effect_found *effect = &set->effects[e];
+    for (size_t c = 0; c < effect->columns; c++)
+      list[n++] = (unknown){e, c, false};
+    for (size_t s = 0; s < effect->shapes && !effect->kind->jumps; s++)
+      list[n++] = (unknown){e, s, true};
+  }
+  return n;
+}
+
+/* Columns of the effects' unknowns, um of residual per um or per unit of shape. */
+static void effect_design(const fg_edge_fit *edge_fit, const fg_effect_set *set,
+                          const unknown *list, size_t count, double *work, double *design) {
+  size_t rows = edge_fit->row_count;
+  for (size_t k = 0; k < count; k++) {
+    const fg_effect_found *effect = &set->effects[list[k].effect];
+    double *to = design + k * rows, shape[FG_FIELD_SHAPES];
+    if (!list[k].shape) {
+      fg_effect_columns(edge_fit, effect->kind, effect->shape, work);
+      memcpy(to, work + list[k].index * rows, rows * sizeof *to);
+      continue;
+    }
+    memset(to, 0, rows * sizeof *to);
+    double step = DERIVE_SHARE * fmax(fabs(effect->shape[list[k].index]), SHAPE_MIN);
+    for (int side = -1; side <= 1; side += 2) {
+      memcpy(shape, effect->shape, sizeof shape);
+      shape[list[k].index] += side * step;
+      fg_effect_columns(edge_fit, effect->kind, shape, work);
+      for (size_t c = 0; c < effect->columns; c++)
+        for (size_t i = 0; i < rows; i++)
+          to[i] += side * effect->coefficient_um[c] * work[c * rows + i] / (2 * step);
+    }
+  }
+}
+
+typedef struct refit {
+  fg_edge_fit *edge_fit;
+  fg_effect_set *set;
+  fg_joint_fit_part *parts; /* NULL: not asked for */
+  unknown list[UNKNOWNS_MAX];
+  size_t unknowns, parameters;
+  double *residual, *jacobian, *design, *work; /* per row */
+  double *white;                               /* residual, weighted and made independent */
+  fg_whitening whitening;
+  gsl_matrix *normal;
+  gsl_vector *right;
+} refit;
+
+static const double *column_of(const refit *r, size_t k) {
+  size_t rows = r->edge_fit->row_count;
+  return k < r->parameters ? r->jacobian + k * rows : r->design + (k - r->parameters) * rows;
+}
+
+/* Rows of scans that only confirm fit their own pose, and nothing else of theirs counts. */
+static double row_weight(const refit *r, size_t i, size_t a, size_t b) {
+  if (!r->edge_fit->views[r->edge_fit->rows[i].view].held_out) return FG_EDGE_FIT_BLOCK;
+  return a < r->parameters && b < r->parameters ? FG_EDGE_FIT_BLOCK * HELD_OUT_WEIGHT : 0;
+}
+
+static void whiten(const refit *r, double *values) {
+  for (size_t i = 0; i < r->edge_fit->row_count; i++)
+    values[i] *= fg_edge_fit_root_weight(&r->edge_fit->rows[i]);
+  fg_whitening_apply(&r->whitening, values);
+}
+
+/* Residual and all columns for generalised least squares. */
+static void whiten_all(refit *r) {
+  size_t rows = r->edge_fit->row_count;
+  memcpy(r->white, r->residual, rows * sizeof *r->white);
+  whiten(r, r->white);
+  for (size_t k = 0; k < r->parameters; k++)
+    whiten(r, r->jacobian + k * rows);
+  for (size_t k = 0; k < r->unknowns; k++)
+    whiten(r, r->design + k * rows);
+}
+
+/* A curve's coefficients are of some size, and noise of smooth things must not make larger ones:
+ * the weight that a normal distribution of that size has beside rows with this noise. */
+static double hold_of(const fg_edge_fit *edge_fit, const fg_effect_found *effect, bool shape) {
+  const fg_scatter *s = &edge_fit->scatter;
+  if (shape || effect->kind->hold == 0) return 0;
+  double noise = FG_EDGE_FIT_BLOCK * s->row_um * s->row_um * s->integral * s->swell;
+  return fmax(effect->kind->hold, noise / (CURVE_UM * CURVE_UM));
+}
+
+/* Free curves hold what the geometry can follow, and reach where no row lies: of all curves that
+ * leave the same residual the smallest one is meant. */
+static void hold_free(refit *r, size_t k) {
+  const fg_effect_found *effect = &r->set->effects[r->list[k].effect];
+  size_t a = r->parameters + k;
+  double hold = hold_of(r->edge_fit, effect, r->list[k].shape);
+  if (hold == 0) return;
+  double held = hold * effect->coefficient_um[r->list[k].index];
+  gsl_matrix_set(r->normal, a, a, gsl_matrix_get(r->normal, a, a) + hold);
+  gsl_vector_set(r->right, a, gsl_vector_get(r->right, a) - held);
+}
+
+/* A row knows few numbers of the geometry, and all of the effects. */
+static void add_row(refit *r, size_t i) {
+  size_t own[FG_EDGE_FIT_ROW_PARAMETERS + UNKNOWNS_MAX];
+  double value[FG_EDGE_FIT_ROW_PARAMETERS + UNKNOWNS_MAX];
+  size_t count = fg_edge_fit_row_parameters(r->edge_fit, i, own), geometry = count;
+  for (size_t k = 0; k < r->unknowns; k++)
+    own[count++] = r->parameters + k;
+  for (size_t a = 0; a < count; a++) /* geometry in mm */
+    value[a] = column_of(r, own[a])[i] * (a < geometry ? 1000 : 1);
+  for (size_t a = 0; a < count; a++) {
+    *gsl_vector_ptr(r->right, own[a]) += row_weight(r, i, own[a], own[a]) * value[a] * r->white[i];
+    for (size_t b = 0; b < count; b++)
+      *gsl_matrix_ptr(r->normal, own[a], own[b]) +=
+          row_weight(r, i, own[a], own[b]) * value[a] * value[b];
+  }
+}
+
+/* The normal equations of geometry and effects, with what holds free curves. */
+static void assemble(refit *r) {
+  size_t n = r->parameters + r->unknowns;
+  gsl_matrix_set_zero(r->normal);
+  gsl_vector_set_zero(r->right);
+  for (size_t i = 0; i < r->edge_fit->row_count; i++)
+    add_row(r, i);
+  for (size_t k = 0; k < r->unknowns; k++)
+    hold_free(r, k);
+  for (size_t a = 0; a < n; a++) {
+    double d = gsl_matrix_get(r->normal, a, a);
+    gsl_matrix_set(r->normal, a, a, d * (1 + DAMP_SHARE) + DAMP);
+  }
+}
+
+static fg_status solve(fg_context *ctx, refit *r) {
+  assemble(r);
+  if (gsl_linalg_cholesky_decomp1(r->normal) || gsl_linalg_cholesky_svx(r->normal, r->right))
+    return fg_fail(ctx, FG_ERR_NUMERIC, "geometry and effects cannot be told apart");
+  return FG_OK;
+}
+
+/* Moves coefficients and shapes; returns the largest move in um of residual. */
+static double move(refit *r) {
+  double largest = 0;
+  for (size_t k = 0; k < r->unknowns; k++) {
+    fg_effect_found *effect = &r->set->effects[r->list[k].effect];
+    double step = gsl_vector_get(r->right, r->parameters + k);
+    if (r->list[k].shape) {
+      /* A period moves by its share; the middle of a lens, which may lie at 0, by its size. */
+      double max = SHAPE_SHARE * fabs(effect->shape[r->list[k].index]) +
+                   (effect->columns == 1 ? SHAPE_MM : 0);
+      step = fmax(-max, fmin(max, step));
+      effect->shape[r->list[k].index] += step;
+      largest = fmax(largest, SHAPE_END * fabs(step) / max * STEP_END_UM);
+    } else {
+      step = fmax(-STEP_MAX_UM, fmin(STEP_MAX_UM, step));
+      effect->coefficient_um[r->list[k].index] += step;
+      largest = fmax(largest, fabs(step));
+    }
+  }
+  return largest;
+}
+
+/* Between the rows next to it a step may lie anywhere: the sd of a uniform distribution. Rows that
+ * hardly count do not hold it. */
+static double place_u(const fg_edge_fit *edge_fit, const fg_effect_found *step) {
+  double above = -INFINITY, below = INFINITY, max = 0;
+  for (size_t i = 0; i < edge_fit->row_count; i++)
+    max = fmax(max, edge_fit->rows[i].weight);
+  for (size_t i = 0; i < edge_fit->row_count; i++) {
+    const fg_edge_fit_row *row = &edge_fit->rows[i];
+    double at = fg_point_along(row->ideal, step->kind->axis);
+    bool rough =
+        row->weight > 0 && row->weight < ROUGH_WEIGHT * max; /* 0: left out for the step itself */
+    if (rough || fabs(fg_point_along(row->normal, step->kind->axis)) < ALONG_MIN) continue;
+    if (at <= step->shape[0])
+      above = fmax(above, at);
+    else
+      below = fmin(below, at);
+  }
+  return isfinite(below - above) ? (below - above) / sqrt(12) : 0;
+}
+
+/* Variance of the rows, um² per unit of weight, for correlated noise. */
+static double row_variance(const refit *r) {
+  double sum = 0, rows = 0;
+  for (size_t i = 0; i < r->edge_fit->row_count; i++) {
+    if (r->edge_fit->views[r->edge_fit->rows[i].view].held_out) continue;
+    sum += FG_EDGE_FIT_BLOCK * r->white[i] * r->white[i];
+    rows++;
+  }
+  double dof = fmax(rows - (double)(r->parameters + r->unknowns), 1);
+  double integral = fg_edge_fit_integral(r->edge_fit, NULL, r->edge_fit->row_count, r->white);
+  return sum / dof * fmax(r->edge_fit->scatter.swell, integral);
+}
+
+/* What the effects in force add to the covariance of two numbers of the geometry. `whole` is the
+ * inverse of all normal equations N + H, H holding the free curves; `alone` that of the geometry.
+ * Noise: V (N + H)^-1 N (N + H)^-1. What H keeps out of a curve whose coefficients are of size t:
+ * (N + H)^-1 H t² H (N + H)^-1. */
+static double effects_covariance(const refit *r, double variance, const double *size,
+                                 const gsl_matrix *whole, const gsl_matrix *alone, size_t a,
+                                 size_t b) {
+  double sum = variance * (gsl_matrix_get(whole, a, b) - gsl_matrix_get(alone, a, b));
+  for (size_t k = 0; k < r->unknowns; k++) {
+    size_t c = r->parameters + k;
+    double hold = hold_of(r->edge_fit, &r->set->effects[r->list[k].effect], r->list[k].shape);
+    double t = hold * size[r->list[k].effect];
+    sum += gsl_matrix_get(whole, a, c) * gsl_matrix_get(whole, b, c) * (t * t - variance * hold);
+  }
+  return sum;
+}
+
+static void find_effects_covariance(refit *r, double variance, const gsl_matrix *alone) {
+  double size[FG_EFFECT_SET_MAX] = {0};
+  for (size_t e = 0; e < r->set->count; e++) {
+    const fg_effect_found *effect = &r->set->effects[e];
+    for (size_t c = 0; c < effect->columns; c++)
+      size[e] = fmax(size[e], fabs(effect->coefficient_um[c]));
+  }
+  for (size_t p = 0, at = 0; p < r->edge_fit->part_count; p++) {
+    size_t bumps = r->edge_fit->parts[p].bump_count;
+    r->parts[p].overall = fmax(0, effects_covariance(r, variance, size, r->normal, alone, at, at));
+    for (size_t b = 0; b < bumps; b++) {
+      size_t index[3] = {at + 1 + 3 * b, at + 3 + 3 * b, at}; /* X, R, R0 */
+      for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++)
+          r->parts[p].bumps[b][i][k] =
+              effects_covariance(r, variance, size, r->normal, alone, index[i], index[k]);
+    }
+    at += 1 + 3 * bumps;
+  }
+}
+
+/* Uncertainties of the effects, and of the geometry beside them; `alone` has room for the
+ * geometry's block of the normal equations. */
+static void find_uncertainties(refit *r, gsl_matrix *alone) {
+  double variance = row_variance(r);
+  assemble(r);
+  for (size_t a = 0; a < r->parameters; a++)
+    for (size_t b = 0; b < r->parameters; b++)
+      gsl_matrix_set(alone, a, b, gsl_matrix_get(r->normal, a, b));
+  if (gsl_linalg_cholesky_decomp1(r->normal) || gsl_linalg_cholesky_invert(r->normal)) return;
+  for (size_t e = 0; e < r->set->count; e++)
+    if (r->set->effects[e].kind->jumps)
+      r->set->effects[e].u_shape[0] = place_u(r->edge_fit, &r->set->effects[e]);
+  for (size_t k = 0; k < r->unknowns; k++) {
+    fg_effect_found *effect = &r->set->effects[r->list[k].effect];
+    double u = sqrt(variance * gsl_matrix_get(r->normal, r->parameters + k, r->parameters + k));
+    if (r->list[k].shape)
+      effect->u_shape[r->list[k].index] = u;
+    else
+      effect->u_coefficient_um[r->list[k].index] = u;
+  }
+  if (!r->parts || gsl_linalg_cholesky_decomp1(alone) || gsl_linalg_cholesky_invert(alone)) return;
+  find_effects_covariance(r, variance, alone);
+}
+
+/* Residual in um and, unless NULL, Jacobian with the set's present correction, geometry fitted to
+ * it. */
+static fg_status fit_geometry(fg_context *ctx, fg_edge_fit *edge_fit, const fg_effect_set *set,
+                              double *residual_um, double *jacobian) {
+  fg_field_list fields;
+  double *shift = NULL;
+  fg_effect_set_fields(edge_fit, set, &fields);
+  fg_status status = FG_OK;
+  for (int twice = 0; twice < 2 && status == FG_OK; twice++) {
+    /* Directions in the part's frame come from the geometry, and the geometry from the shift. */
+    free(shift);
+    shift = NULL;
+    status = fg_effect_set_shift(ctx, edge_fit, set, &shift);
+    fg_edge_fit_correction correction = {&fields, shift};
+    if (status == FG_OK) status = fg_edge_fit_fit(ctx, edge_fit, &correction);
+    if (status == FG_OK) fg_edge_fit_residual(edge_fit, &correction, residual_um, jacobian);
+  }
+  for (size_t i = 0; i < edge_fit->row_count; i++)
+    residual_um[i] *= 1000;
+  free(shift);
+  return status;
+}
+
+fg_status fg_joint_fit_geometry(fg_context *ctx, fg_edge_fit *edge_fit, const fg_effect_set *set,
+                                double *residual_um) {
+  return fit_geometry(ctx, edge_fit, set, residual_um, NULL);
+}
+
+static fg_status evaluate(fg_context *ctx, refit *r) {
+  return fit_geometry(ctx, r->edge_fit, r->set, r->residual, r->jacobian);
+}
+
+static fg_status allocate(fg_context *ctx, refit *r) {
+  size_t rows = r->edge_fit->row_count, n = r->parameters + r->unknowns;
+  FG_TRY(fg_whitening_open(ctx, r->edge_fit, &r->whitening));
+  FG_TRY(fg_memory_allocate(ctx, rows, sizeof(double), (void **)&r->white));
+  FG_TRY(fg_memory_allocate(ctx, rows, sizeof(double), (void **)&r->residual));
+  FG_TRY(fg_memory_allocate(ctx, rows * r->parameters, sizeof(double), (void **)&r->jacobian));
+  FG_TRY(fg_memory_allocate(ctx, rows * (r->unknowns + 1), sizeof(double), (void **)&r->design));
+  FG_TRY(fg_memory_allocate(ctx, rows * FG_EFFECT_COLUMNS_MAX, sizeof(double), (void **)&r->work));
+  r->normal = gsl_matrix_alloc(n, n);
+  r->right = gsl_vector_alloc(n);
+  if (!r->normal || !r->right) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: %zu unknowns", n);
+  return FG_OK;
+}
+
+static void release(refit *r) {
+  fg_whitening_close(&r->whitening);
+  free(r->white);
+  free(r->residual);
+  free(r->jacobian);
+  free(r->design);
+  free(r->work);
+  gsl_matrix_free(r->normal);
+  gsl_vector_free(r->right);
+}
+
+static fg_status run(fg_context *ctx, fg_edge_fit *edge_fit, fg_effect_set *set,
+                     double *residual_um, fg_joint_fit_part *parts) {
+  refit r = {.edge_fit = edge_fit, .set = set, .parts = parts};
+  gsl_matrix *alone = NULL;
+  fg_status status = FG_OK;
+  fg_numerics_start();
+  FG_TRY(fg_edge_fit_fit(ctx, edge_fit, NULL));
+  r.parameters = edge_fit->parameters;
+  r.unknowns = list_unknowns(set, r.list);
+  FG_TRY_EXIT(allocate(ctx, &r));
+  for (int round = 0; round < REFIT_ROUNDS; round++) {
+    FG_TRY_EXIT(evaluate(ctx, &r));
+    if (!r.unknowns) break;
+    effect_design(edge_fit, set, r.list, r.unknowns, r.work, r.design);
+    whiten_all(&r);
+    FG_TRY_EXIT(solve(ctx, &r));
+    if (move(&r) < STEP_END_UM) break;
+  }
+  if (r.unknowns) {
+    FG_TRY_EXIT(evaluate(ctx, &r));
+    effect_design(edge_fit, set, r.list, r.unknowns, r.work, r.design);
+    whiten_all(&r);
+    alone = gsl_matrix_alloc(r.parameters, r.parameters);
+    if (alone) find_uncertainties(&r, alone);
+    if (!alone) status = fg_fail(ctx, FG_ERR_MEMORY, "out of memory: %zu numbers", r.parameters);
+  }
+  if (residual_um) memcpy(residual_um, r.residual, edge_fit->row_count * sizeof *residual_um);
+exit:
+  gsl_matrix_free(alone);
+  release(&r);
+  return status;
+}
+
+fg_status fg_joint_fit(fg_context *ctx, fg_edge_fit *edge_fit, fg_effect_set *set,
+                       double *residual_um) {
+  return run(ctx, edge_fit, set, residual_um, NULL);
+}
+
+static fg_status open_parts(fg_context *ctx, const fg_edge_fit *edge_fit,
+                            fg_joint_fit_result *result) {
+  FG_TRY(fg_memory_allocate(ctx, edge_fit->part_count, sizeof *result->parts,
+                            (void **)&result->parts));
+  for (size_t p = 0; p < edge_fit->part_count; p++)
+    FG_TRY(fg_memory_allocate(ctx, edge_fit->parts[p].bump_count, sizeof *result->parts[p].bumps,
+                              (void **)&result->parts[p].bumps));
+  return FG_OK;
+}
+
+static fg_status find_shift(fg_context *ctx, const fg_edge_fit *edge_fit,
+                            fg_joint_fit_result *result) {
+  double *along = NULL;
+  FG_TRY(fg_memory_allocate(ctx, edge_fit->row_count, sizeof *result->shift_mm,
+                            (void **)&result->shift_mm));
+  FG_TRY(fg_effect_set_shift(ctx, edge_fit, &result->set, &along));
+  for (size_t i = 0; i < edge_fit->row_count; i++) {
+    fg_point n = edge_fit->rows[i].normal;
+    result->shift_mm[i] = (fg_point){along[i] * n.x, along[i] * n.y};
+  }
+  free(along);
+  return FG_OK;
+}
+
+fg_status fg_joint_fit_open(fg_context *ctx, fg_edge_fit *edge_fit, const fg_effect_set *set,
+                            fg_joint_fit_result *result) {
+  *result = (fg_joint_fit_result){.edge_fit = edge_fit, .set = *set};
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(open_parts(ctx, edge_fit, result));
+  FG_TRY_EXIT(run(ctx, edge_fit, &result->set, NULL, result->parts));
+  fg_effect_set_fields(edge_fit, &result->set, &result->fields);
+  FG_TRY_EXIT(find_shift(ctx, edge_fit, result));
+exit:
+  if (status != FG_OK) fg_joint_fit_close(result);
+  return status;
+}
+
+void fg_joint_fit_close(fg_joint_fit_result *result) {
+  for (size_t p = 0; result->parts && p < result->edge_fit->part_count; p++)
+    free(result->parts[p].bumps);
+  free(result->parts);
+  free(result->shift_mm);
+  *result = (fg_joint_fit_result){.edge_fit = NULL};
+}

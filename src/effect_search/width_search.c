@@ -1,0 +1,328 @@
+#include "effect_search/width_search.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <gsl/gsl_cdf.h>
+
+#include "core/memory.h"
+#include "core/small_solve.h"
+#include "core/spread.h"
+#include "effect/columns.h"
+
+/* Chance of a claim where there is nothing. One look per effect, at every scan that is ever
+ * measured. */
+#define CHANCE 0.001
+/* Standard uncertainty of half the width at FG_FIELD_HALF_MM from the middle because the edge model
+ * errs with the place. Tuned on the shaded renders of reports/loop_width.md (gamma, shading,
+ * flare), where it was 0.02 in the mean square and 0.04 at most. */
+#define PLACE_UM 0.04
+/* Rows this far off (dust, a burr) lose their weight. */
+#define OUTLIER_SIGMAS 5.0
+enum { OUTLIER_ROUNDS = 2 };
+/* With fewer bumps and lands nothing is said. */
+enum { GROUPS_MIN = 6 };
+/* Twice and four times the direction of the edge's normal: a strip has two edges that look opposite
+ * ways, so odd multiples cancel. One more tells bumps from lands, which bend differently. */
+enum { NUISANCES = 5, UNKNOWNS = FG_WIDTH_EFFECTS_MAX + NUISANCES, AXES = 2 };
+/* A column of less mean square than this is none. */
+#define VANISHED 1e-9
+
+typedef struct width_row {
+  size_t row, view, group;
+  double weight, value_um, column[UNKNOWNS], place[AXES];
+} width_row;
+
+typedef struct width_view {
+  double weight, value_um, column[UNKNOWNS], place[AXES];
+} width_view;
+
+typedef struct width_fit {
+  const fg_edge_fit *edge_fit;
+  width_row *rows;
+  size_t count;
+  width_view *views; /* means */
+  size_t effects, unknowns;
+  fg_normal_equations system;
+  double x[UNKNOWNS], inverse[FG_SMALL_MAX][FG_SMALL_MAX];
+} width_fit;
+
+/* ---- rows ---- */
+
+static size_t put_nuisances(const fg_edge_fit_row *row, double *column) {
+  for (int k = 0; k < 2; k++) {
+    column[2 * k] = cos((2 + 2 * k) * row->normal_rad);
+    column[2 * k + 1] = sin((2 + 2 * k) * row->normal_rad);
+  }
+  column[4] = row->bump ? 1 : 0;
+  return NUISANCES;
+}
+
+static void list_rows(width_fit *f) {
+  const fg_edge_fit *edge_fit = f->edge_fit;
+  for (size_t i = 0; i < edge_fit->row_count; i++) {
+    const fg_edge_fit_row *row = &edge_fit->rows[i];
+    if (edge_fit->views[row->view].held_out || !(row->weight > 0) || !(row->half_width_mm > 0))
+      continue;
+    width_row *to = &f->rows[f->count++];
+    *to = (width_row){.row = i,
+                      .view = row->view,
+                      .group = row->group,
+                      .weight = row->weight,
+                      .value_um = 1000 * row->half_width_mm};
+    to->place[0] = (row->at.x - edge_fit->frame.centre_mm[0]) / FG_FIELD_HALF_MM;
+    to->place[1] = (row->at.y - edge_fit->frame.centre_mm[1]) / FG_FIELD_HALF_MM;
+    put_nuisances(row, to->column + f->effects);
+  }
+  f->unknowns = f->effects + NUISANCES;
+}
+
+static void put_effects(width_fit *f, const fg_width_findings *findings, double *work) {
+  for (size_t e = 0; e < f->effects; e++) {
+    fg_effect_width_columns(f->edge_fit, findings->each[e].effect.kind, NULL, work);
+    for (size_t i = 0; i < f->count; i++)
+      f->rows[i].column[e] = work[f->rows[i].row];
+  }
+}
+
+/* What the scanner's fields do to the width is no effect of it. */
+static void take_stretch_out(width_fit *f, const fg_effect_set *set, double *work) {
+  for (size_t e = 0; e < set->count; e++) {
+    const fg_effect_found *effect = &set->effects[e];
+    size_t count = fg_effect_width_columns(f->edge_fit, effect->kind, effect->shape, work);
+    for (size_t c = 0; c < count; c++)
+      for (size_t i = 0; i < f->count; i++)
+        f->rows[i].value_um -=
+            effect->coefficient_um[c] * work[c * f->edge_fit->row_count + f->rows[i].row];
+  }
+}
+
+/* ---- least squares beside a level of every view ---- */
+
+static void add_to_mean(double *mean, double value, double share) {
+  *mean += share * (value - *mean);
+}
+
+static void find_means(width_fit *f) {
+  memset(f->views, 0, f->edge_fit->view_count * sizeof *f->views);
+  for (size_t i = 0; i < f->count; i++) {
+    const width_row *row = &f->rows[i];
+    width_view *view = &f->views[row->view];
+    if (!(row->weight > 0)) continue;
+    view->weight += row->weight;
+    double share = row->weight / view->weight;
+    add_to_mean(&view->value_um, row->value_um, share);
+    for (size_t c = 0; c < f->unknowns; c++)
+      add_to_mean(&view->column[c], row->column[c], share);
+    for (size_t a = 0; a < AXES; a++)
+      add_to_mean(&view->place[a], row->place[a], share);
+  }
+}
+
+/* A row beside its view's means. */
+static width_row beside(const width_fit *f, const width_row *row) {
+  const width_view *view = &f->views[row->view];
+  width_row r = *row;
+  r.value_um -= view->value_um;
+  for (size_t c = 0; c < f->unknowns; c++)
+    r.column[c] -= view->column[c];
+  for (size_t a = 0; a < AXES; a++)
+    r.place[a] -= view->place[a];
+  return r;
+}
+
+/* Columns that are the same everywhere (no lands) go; those of effects stay, and the fit fails. */
+static void drop_vanished(width_fit *f) {
+  double weight = 0;
+  size_t kept = f->effects;
+  for (size_t v = 0; v < f->edge_fit->view_count; v++)
+    weight += f->views[v].weight;
+  for (size_t c = f->effects; c < f->unknowns; c++) {
+    if (!(f->system.matrix[c][c] > VANISHED * weight)) continue;
+    for (size_t i = 0; i < f->count; i++)
+      f->rows[i].column[kept] = f->rows[i].column[c];
+    kept++;
+  }
+  f->unknowns = kept;
+}
+
+static void fill_system(width_fit *f) {
+  find_means(f);
+  fg_normal_clear(&f->system, f->unknowns);
+  for (size_t i = 0; i < f->count; i++) {
+    width_row r = beside(f, &f->rows[i]);
+    if (r.weight > 0) fg_normal_add(&f->system, r.column, r.value_um, r.weight);
+  }
+}
+
+static bool fit(width_fit *f) {
+  fill_system(f);
+  size_t before = f->unknowns;
+  drop_vanished(f);
+  if (f->unknowns < before) fill_system(f);
+  return fg_normal_solve(&f->system, 0, f->x, f->inverse);
+}
+
+static double left_um(const width_fit *f, const width_row *row) {
+  width_row r = beside(f, row);
+  for (size_t c = 0; c < f->unknowns; c++)
+    r.value_um -= f->x[c] * r.column[c];
+  return r.value_um;
+}
+
+static fg_status drop_outliers(fg_context *ctx, width_fit *f) {
+  double *size = NULL;
+  size_t n = 0;
+  FG_TRY(fg_memory_allocate(ctx, f->count, sizeof *size, (void **)&size));
+  for (size_t i = 0; i < f->count; i++)
+    if (f->rows[i].weight > 0) size[n++] = fabs(left_um(f, &f->rows[i]));
+  double limit = fg_spread_limit(size, n, OUTLIER_SIGMAS);
+  for (size_t i = 0; i < f->count; i++)
+    if (fabs(left_um(f, &f->rows[i])) > limit) f->rows[i].weight = 0;
+  free(size);
+  return FG_OK;
+}
+
+/* ---- uncertainty ---- */
+
+/* Takes the rows [from, to) of one view out of the equations. Beside the mean of what is left, the
+ * sum of squares is that beside the old mean less the square of its sum over its weight; and about
+ * the old mean, what is left sums to minus what goes. */
+static void remove_view(const width_fit *f, size_t from, size_t to, fg_normal_equations *system) {
+  double sum[UNKNOWNS] = {0}, value = 0, weight = 0;
+  for (size_t i = from; i < to; i++) {
+    width_row r = beside(f, &f->rows[i]);
+    if (!(r.weight > 0)) continue;
+    fg_normal_add(system, r.column, r.value_um, -r.weight);
+    for (size_t c = 0; c < f->unknowns; c++)
+      sum[c] += r.weight * r.column[c];
+    value += r.weight * r.value_um;
+    weight += r.weight;
+  }
+  double rest = f->views[f->rows[from].view].weight - weight;
+  if (rest > 0 && weight > 0)
+    for (size_t c = 0; c < f->unknowns; c++)
+      sum[c] /= rest;
+  if (rest > 0 && weight > 0) fg_normal_add(system, sum, value / rest, -rest);
+}
+
+/* Leaves out one group after the other (the jackknife, which errs on the safe side with few
+ * groups); variance of every effect, and how many groups there are. */
+static size_t find_variances(const width_fit *f, double *variance) {
+  size_t groups = 0;
+  for (size_t e = 0; e < f->effects; e++)
+    variance[e] = 0;
+  for (size_t from = 0, to; from < f->count; from = to, groups++) {
+    fg_normal_equations system = f->system;
+    double x[UNKNOWNS];
+    for (to = from; to < f->count && f->rows[to].group == f->rows[from].group;) {
+      size_t first = to;
+      while (to < f->count && f->rows[to].group == f->rows[first].group &&
+             f->rows[to].view == f->rows[first].view)
+        to++;
+      remove_view(f, first, to, &system);
+    }
+    bool solved = fg_normal_solve(&system, 0, x, NULL);
+    for (size_t e = 0; e < f->effects; e++)
+      variance[e] += solved ? (x[e] - f->x[e]) * (x[e] - f->x[e]) : INFINITY;
+  }
+  for (size_t e = 0; e < f->effects; e++)
+    variance[e] *= (double)(groups - 1) / (double)groups;
+  return groups;
+}
+
+/* What an error of 1 um at FG_FIELD_HALF_MM along an axis of the glass does to an effect. */
+static double leans(const width_fit *f, size_t e, size_t axis) {
+  double sum = 0;
+  for (size_t i = 0; i < f->count; i++) {
+    width_row r = beside(f, &f->rows[i]);
+    for (size_t c = 0; c < f->unknowns && r.weight > 0; c++)
+      sum += f->inverse[e][c] * r.weight * r.column[c] * r.place[axis];
+  }
+  return sum;
+}
+
+/* ---- what is said of it ---- */
+
+static void judge(const width_fit *f, size_t e, double variance, size_t groups,
+                  fg_width_effect *one) {
+  double square = f->system.matrix[e][e], right = f->system.right[e];
+  double place = PLACE_UM * hypot(leans(f, e, 0), leans(f, e, 1)), dof = (double)groups - 1;
+  double u = sqrt(variance + place * place);
+  one->effect.coefficient_um[0] = f->x[e];
+  one->effect.u_coefficient_um[0] = u;
+  one->p_value = 2 * gsl_cdf_tdist_Q(fabs(f->x[e]) / u, dof);
+  one->found = one->p_value < CHANCE;
+  one->share = 1 / (f->inverse[e][e] * square);
+  one->would_explain = right * right / (square * f->system.sum_squares);
+  one->smallest_um = u * gsl_cdf_tdist_Qinv(0.5 * CHANCE, dof);
+}
+
+static double rms_um(const width_fit *f, const fg_width_findings *findings, bool after) {
+  double sum = 0, weight = 0;
+  for (size_t i = 0; i < f->count; i++) {
+    const fg_edge_fit_row *row = &f->edge_fit->rows[f->rows[i].row];
+    width_row r = beside(f, &f->rows[i]);
+    for (size_t e = 0; after && e < f->effects; e++)
+      if (findings->each[e].found) r.value_um -= f->x[e] * r.column[e];
+    sum += row->weight * r.value_um * r.value_um;
+    weight += row->weight;
+  }
+  return sqrt(sum / weight);
+}
+
+static fg_status search(fg_context *ctx, width_fit *f, fg_width_findings *findings) {
+  double variance[FG_WIDTH_EFFECTS_MAX];
+  bool solved = fit(f);
+  for (int round = 0; solved && round < OUTLIER_ROUNDS; round++) {
+    FG_TRY(drop_outliers(ctx, f));
+    solved = fit(f);
+  }
+  size_t groups = solved ? find_variances(f, variance) : 0;
+  if (groups < GROUPS_MIN) return FG_OK;
+  for (size_t e = 0; e < f->effects; e++) {
+    judge(f, e, variance[e], groups, &findings->each[e]);
+    findings->found += findings->each[e].found;
+  }
+  return FG_OK;
+}
+
+static void list_effects(const fg_edge_fit *edge_fit, fg_width_findings *findings) {
+  memset(findings, 0, sizeof *findings);
+  if (edge_fit->discs) return;
+  for (const fg_effect *kind = fg_effect_first(); kind; kind = fg_effect_next(kind)) {
+    if (kind->sought != FG_EFFECT_OF_WIDTH || findings->count == FG_WIDTH_EFFECTS_MAX) continue;
+    findings->each[findings->count++] = (fg_width_effect){
+        .effect = {.kind = kind, .columns = 1}, .p_value = 1, .smallest_um = INFINITY};
+  }
+}
+
+fg_status fg_search_width(fg_context *ctx, const fg_edge_fit *edge_fit, const fg_effect_set *set,
+                          fg_width_findings *findings) {
+  width_fit *f = NULL;
+  double *work = NULL;
+  fg_status status = FG_OK;
+  list_effects(edge_fit, findings);
+  if (!findings->count) return FG_OK;
+  FG_TRY(fg_memory_allocate(ctx, 1, sizeof *f, (void **)&f));
+  f->edge_fit = edge_fit;
+  f->effects = findings->count;
+  size_t rows = edge_fit->row_count;
+  FG_TRY_EXIT(fg_memory_allocate(ctx, rows, sizeof *f->rows, (void **)&f->rows));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, edge_fit->view_count, sizeof *f->views, (void **)&f->views));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, rows, FG_EFFECT_COLUMNS_MAX * sizeof *work, (void **)&work));
+  list_rows(f);
+  put_effects(f, findings, work);
+  find_means(f);
+  findings->rms_before_um = rms_um(f, findings, false);
+  take_stretch_out(f, set, work);
+  FG_TRY_EXIT(search(ctx, f, findings));
+  findings->rms_after_um = rms_um(f, findings, true);
+exit:
+  if (f) free(f->rows);
+  if (f) free(f->views);
+  free(f);
+  free(work);
+  return status;
+}

@@ -1,0 +1,112 @@
+/* A shadow spoils the background's level right at the edges of some bearings: these edges lie
+ * elsewhere by an amount that changes slowly with the bearing. */
+#include "geometry/shadow_uncertainty.h"
+
+#include <math.h>
+
+#include "foilgauge/foil.h"
+#include "geometry/level_uncertainty.h"
+
+/* An edge moves by so many times depth × blur × sqrt(2 pi): half of what the background's level
+ * errs by counts, and that is about the depth. Over renders of known truth errors have at most that
+ * sd (tests/bench/driver.py, kinds shadow and wall). */
+#define SHIFT_PER_DEPTH 0.5
+/* Shapes are smoothed over two harmonics of the bearing and over stretches of a bump that turn by
+ * up to 50 degrees, which carries this share of the deepest band to edges that have none. */
+#define CARRIED_SHARE 0.4
+/* A blur that differs over the bearing leaves as much at every edge as a band of this depth: what
+ * smoothing its shape misses. */
+#define UNEVEN_DEPTH 0.005
+/* Shifts of bearings this far apart have nothing in common. */
+enum { PARTS = 12 };
+
+/* One independent part of the shifts: edges that face the bearing, or, without a part, all. */
+typedef struct shift_part {
+  const fg_datum_line *line;
+  int part;       /* -1: all bearings alike */
+  double carried; /* depth that every edge has beside its own */
+} shift_part;
+
+static double depth_at(const fg_picture_state *picture, double bearing) {
+  double at = bearing / (2 * M_PI) * FG_PICTURE_BEARINGS;
+  double low = floor(at), share = at - low;
+  int i = ((int)low % FG_PICTURE_BEARINGS + FG_PICTURE_BEARINGS) % FG_PICTURE_BEARINGS;
+  return (1 - share) * picture->shadow_at[i] +
+         share * picture->shadow_at[(i + 1) % FG_PICTURE_BEARINGS];
+}
+
+/* Parts overlap, so that the squares of their weights add up to 1 at every bearing. */
+static double weight_at(const shift_part *p, double bearing) {
+  if (p->part < 0) return 1;
+  double step = 2 * M_PI / PARTS, off = fabs(remainder(bearing - p->part * step, 2 * M_PI));
+  return off < step ? cos(M_PI / 2 * off / step) : 0;
+}
+
+/* Outward shift of an edge of one side, mm. */
+static double edge_shift(const shift_part *p, const fg_station *s, bool right) {
+  const fg_strip *strip = p->line->strip;
+  double way = right ? 1 : -1, bearing = atan2(way * s->normal.y, way * s->normal.x);
+  double blur_mm = (right ? strip->blur_right_um : strip->blur_left_um) / 1000;
+  double depth = depth_at(&strip->picture, bearing);
+  depth = p->part < 0 ? depth : hypot(depth, p->carried);
+  return SHIFT_PER_DEPTH * depth * fg_level_shift(blur_mm) * weight_at(p, bearing);
+}
+
+/* Of the line's place at a station: of an edge or of the middle between both. */
+static double line_shift(const void *user, size_t station) {
+  const shift_part *p = user;
+  const fg_station *s = &p->line->strip->stations[station];
+  double left = edge_shift(p, s, false), right = edge_shift(p, s, true);
+  if (!p->line->is_edge) return 0.5 * (right - left);
+  const fg_point *at = &p->line->points[station];
+  return hypot(at->x - s->right.x, at->y - s->right.y) < hypot(at->x - s->left.x, at->y - s->left.y)
+             ? right
+             : -left;
+}
+
+/* Shift of the circle's parameters under each part: of how many, 0 without shadow and uneven
+ * blur. */
+static size_t find_shifts(const fg_datum_line *line, const fg_arc *arc,
+                          double shifts[PARTS + 1][3]) {
+  const fg_picture_state *picture = &line->strip->picture;
+  shift_part p = {.line = line};
+  if (!(picture->findings & (FG_PICTURE_SHADOW | FG_PICTURE_UNEVEN_BLUR))) return 0;
+  for (int i = 0; i < FG_PICTURE_BEARINGS; i++)
+    p.carried = fmax(p.carried, CARRIED_SHARE * fabs(picture->shadow_at[i]));
+  if (picture->findings & FG_PICTURE_UNEVEN_BLUR) p.carried = hypot(p.carried, UNEVEN_DEPTH);
+  for (p.part = -1; p.part < PARTS; p.part++)
+    if (!fg_arc_shift_by(line, arc, line_shift, &p, shifts[p.part + 1])) return 0;
+  return PARTS + 1;
+}
+
+static void add_shifts(double shifts[PARTS + 1][3], size_t count, double covariance[3][3]) {
+  for (size_t i = 0; i < count; i++)
+    for (int p = 0; p < 3; p++)
+      for (int q = 0; q < 3; q++)
+        covariance[p][q] += shifts[i][p] * shifts[i][q];
+}
+
+void fg_arc_add_shadow(const fg_datum_line *line, fg_arc *arc) {
+  double shifts[PARTS + 1][3];
+  add_shifts(shifts, find_shifts(line, arc, shifts), arc->covariance);
+}
+
+void fg_bump_add_shadow(const fg_layout *layout, size_t i, const fg_design *design,
+                        const fg_nominal *nominal, const fg_overall *overall, fg_bump *bump) {
+  double own[PARTS + 1][3], lands[PARTS + 1][3], both[PARTS + 1][3], covariance[3][3] = {{0}};
+  if (!layout->fitted[i]) return;
+  size_t count = find_shifts(&layout->line, &layout->bumps[i], own);
+  if (!count || find_shifts(&layout->line, &layout->overall, lands) != count) return;
+  double dx = bump->centre_mm.x - overall->centre_mm.x;
+  double dy = bump->centre_mm.y - overall->centre_mm.y, d = hypot(dx, dy);
+  for (size_t k = 0; k < count; k++) {
+    both[k][0] = ((own[k][0] - lands[k][0]) * dx + (own[k][1] - lands[k][1]) * dy) / d;
+    both[k][1] = own[k][2];
+    both[k][2] = lands[k][2];
+  }
+  add_shifts(both, count, covariance);
+  fg_bump_widen(design, nominal, overall, covariance, bump);
+  add_shifts(own, count, bump->covariance);
+  for (int axis = 0; axis < 2; axis++)
+    bump->u_centre_mm[axis] = sqrt(bump->covariance[axis][axis]);
+}

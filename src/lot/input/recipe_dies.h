@@ -1,0 +1,24 @@
+/* The dies that a recipe names, as members of the recipe. */
+#ifndef FG_LOT_INPUT_RECIPE_DIES_H
+#define FG_LOT_INPUT_RECIPE_DIES_H
+
+#include <cjson/cJSON.h>
+
+#include "core/json_writer.h"
+#include "foilgauge/lot.h"
+
+/* "dies": {"A": "die_a.json", "B": {...}}: paths of reports of `foilgauge die`, beside the recipe,
+ * or what fg_lot_dies_write writes. */
+fg_status fg_lot_dies_read(fg_context *ctx, const char *path, const cJSON *value,
+                           fg_lot_settings *settings);
+
+/* Nothing where there are none. */
+void fg_lot_dies_write(fg_json *json, const fg_lot_settings *settings);
+
+/* They are of the lot's design: datum, thickness. */
+fg_status fg_lot_dies_check(fg_context *ctx, const fg_lot_settings *settings);
+
+/* NULL: none of that name. */
+const fg_lot_die *fg_lot_dies_find(const fg_lot_settings *settings, const char *name);
+
+#endif

@@ -1,0 +1,146 @@
+#include "lot/input/reference_curve.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/file.h"
+#include "core/text.h"
+#include "foilgauge/table.h"
+
+enum { CURVE_BYTES_MAX = 1 << 20, CONTEXT_WORDS = 700 };
+
+/* Columns of the file, in the order of a point: named as a lot's bumps.csv names them. */
+static const char *const columns[] = {"bump", "radius_error_pct", "intersection_angle_error_pct"};
+enum { COLUMNS = sizeof columns / sizeof columns[0] };
+
+/* `row` from 1, for messages; `line` 0: not a file's. */
+static fg_status add_point(fg_context *ctx, const double numbers[COLUMNS], size_t row,
+                           fg_lot_curve *curve) {
+  double bump = numbers[0];
+  for (int i = 0; i < COLUMNS; i++)
+    if (!isfinite(numbers[i]))
+      return fg_fail(ctx, FG_ERR_DATA, "row %zu: %s is no number", row, columns[i]);
+  if (bump != floor(bump) || bump < 1 || bump > FG_LOT_CURVE_MAX)
+    return fg_fail(ctx, FG_ERR_DATA, "row %zu: bump is %g; it must be a whole number from 1 to %d",
+                   row, bump, FG_LOT_CURVE_MAX);
+  for (size_t i = 0; i < curve->count; i++)
+    if (curve->point[i].bump == (int)bump)
+      return fg_fail(ctx, FG_ERR_DATA, "row %zu: bump %g is there twice", row, bump);
+  size_t at = curve->count++;
+  for (; at > 0 && curve->point[at - 1].bump > (int)bump; at--)
+    curve->point[at] = curve->point[at - 1];
+  curve->point[at] = (fg_lot_curve_point){(int)bump, numbers[1], numbers[2]};
+  return FG_OK;
+}
+
+static fg_status take_table(fg_context *ctx, const fg_table *table, fg_lot_curve *curve) {
+  const fg_extended *numbers[COLUMNS];
+  for (int i = 0; i < COLUMNS; i++)
+    FG_TRY(fg_table_numbers(ctx, table, columns[i], &numbers[i]));
+  for (size_t row = 0; row < table->rows; row++) {
+    double point[COLUMNS];
+    for (int i = 0; i < COLUMNS; i++)
+      point[i] = numbers[i][row].value;
+    FG_TRY(add_point(ctx, point, row + 1, curve));
+  }
+  return FG_OK;
+}
+
+/* A message of a table names its file; one of a point does not. */
+static fg_status name_file(fg_context *ctx, const char *path, const fg_context *inner,
+                           fg_status status) {
+  if (status == FG_OK) return FG_OK;
+  bool named = !strncmp(inner->message, path, strlen(path));
+  return fg_fail(ctx, status, "reference_curve: %.200s%s%.*s%s", named ? "" : path,
+                 named ? "" : ": ", CONTEXT_WORDS, inner->message,
+                 strstr(inner->message, "bump")
+                     ? ""
+                     : "; a reference curve has the columns bump, radius_error_pct, "
+                       "intersection_angle_error_pct");
+}
+
+fg_status fg_lot_settings_take_curve(fg_context *ctx, const char *path, fg_lot_settings *settings) {
+  char *text;
+  fg_table table = {0};
+  fg_context inner = {.message = ""};
+  fg_lot_curve curve = {.count = 0};
+  const char *slash = strrchr(path, '/');
+  FG_TRY(fg_file_read_text(ctx, path, CURVE_BYTES_MAX, &text));
+  fg_status status = fg_table_parse(&inner, path, text, strlen(text), &table);
+  if (status == FG_OK) status = take_table(&inner, &table, &curve);
+  fg_table_free(&table);
+  free(text);
+  FG_TRY(name_file(ctx, path, &inner, status));
+  fg_text_clip(curve.name, sizeof curve.name, "%s", slash ? slash + 1 : path);
+  settings->curve = curve;
+  return FG_OK;
+}
+
+/* As fg_reference_curve_write writes it. */
+static fg_status read_values(fg_context *ctx, const cJSON *value, fg_lot_curve *curve) {
+  const cJSON *name = cJSON_GetObjectItemCaseSensitive(value, "name"), *point;
+  size_t row = 0;
+  if (!cJSON_IsString(name) || strlen(name->valuestring) >= sizeof curve->name)
+    return fg_fail(ctx, FG_ERR_DATA, "name must be a text of less than %zu bytes",
+                   sizeof curve->name);
+  strcpy(curve->name, name->valuestring);
+  cJSON_ArrayForEach(point, cJSON_GetObjectItemCaseSensitive(value, "points")) {
+    double numbers[COLUMNS];
+    for (int i = 0; i < COLUMNS; i++) {
+      const cJSON *item = cJSON_GetArrayItem(point, i);
+      numbers[i] = cJSON_IsNumber(item) ? item->valuedouble : NAN;
+    }
+    FG_TRY(add_point(ctx, numbers, ++row, curve));
+  }
+  return row ? FG_OK : fg_fail(ctx, FG_ERR_DATA, "points are missing");
+}
+
+fg_status fg_reference_curve_read(fg_context *ctx, const char *path, const cJSON *value,
+                                  fg_lot_settings *settings) {
+  fg_lot_curve curve = {.count = 0};
+  fg_context inner = {.message = ""};
+  if (cJSON_IsString(value)) {
+    char file[4096];
+    const char *slash = strrchr(path, '/');
+    bool beside = slash && value->valuestring[0] != '/';
+    fg_text_clip(file, sizeof file, "%.*s%s", beside ? (int)(slash - path) + 1 : 0, path,
+                 value->valuestring);
+    return fg_lot_settings_take_curve(ctx, file, settings);
+  }
+  if (!cJSON_IsObject(value))
+    return fg_fail(ctx, FG_ERR_DATA, "reference_curve must be the path of a CSV file");
+  if (read_values(&inner, value, &curve) != FG_OK)
+    return fg_fail(ctx, FG_ERR_DATA, "reference_curve: %.*s", CONTEXT_WORDS, inner.message);
+  settings->curve = curve;
+  return FG_OK;
+}
+
+void fg_reference_curve_write(fg_json *json, const char *name, const fg_lot_settings *settings) {
+  const fg_lot_curve *curve = &settings->curve;
+  if (!curve->count) return;
+  fg_json_object(json, name);
+  fg_json_string(json, "name", curve->name);
+  fg_json_array(json, "points");
+  for (size_t i = 0; i < curve->count; i++) {
+    const fg_lot_curve_point *p = &curve->point[i];
+    const double numbers[] = {p->bump, p->radius_error_pct, p->angle_error_pct};
+    fg_json_numbers(json, NULL, numbers, COLUMNS);
+  }
+  fg_json_array_end(json);
+  fg_json_object_end(json);
+}
+
+fg_status fg_reference_curve_check(fg_context *ctx, const fg_lot_settings *settings) {
+  const fg_lot_curve *curve = &settings->curve;
+  size_t bumps = settings->design.bump_count;
+  if (!curve->count) return FG_OK;
+  if (!fg_foil_kind_has_bumps(settings->design.kind))
+    return fg_fail(ctx, FG_ERR_DATA,
+                   "reference_curve: the lot's design is of form arc and has no bumps");
+  int last = curve->point[curve->count - 1].bump;
+  if (!bumps || last <= (int)bumps) return FG_OK;
+  return fg_fail(ctx, FG_ERR_DATA,
+                 "reference_curve: %s has a bump %d; the design has %zu, 1 is next to the lip",
+                 curve->name, last, bumps);
+}

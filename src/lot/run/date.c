@@ -1,0 +1,72 @@
+#include "lot/run/date.h"
+
+#include <math.h>
+#include <string.h>
+
+typedef struct span {
+  double first, last; /* days; NaN: none yet */
+} span;
+
+static void take(span *days, double day) {
+  days->first = fmin(days->first, day); /* fmin and fmax pass over a NaN */
+  days->last = fmax(days->last, day);
+}
+
+/* False when there is no such column, nothing in it, or a cell that is no date. */
+static bool of_manifest(const fg_manifest *manifest, span *days) {
+  size_t column = fg_manifest_column(manifest, FG_LOT_DATE_COLUMN);
+  if (column == FG_NO_COLUMN) return false;
+  for (size_t i = 0; i < manifest->items; i++) {
+    const char *cell = fg_manifest_cell(manifest, i, column);
+    double day = fg_date_days(cell);
+    if (*cell && !isfinite(day)) return false;
+    take(days, day);
+  }
+  return isfinite(days->first);
+}
+
+size_t fg_lot_date_wrong(const fg_manifest *manifest, const char **first) {
+  size_t column = fg_manifest_column(manifest, FG_LOT_DATE_COLUMN), wrong = 0;
+  *first = NULL;
+  for (size_t i = 0; column != FG_NO_COLUMN && i < manifest->items; i++) {
+    const char *cell = fg_manifest_cell(manifest, i, column);
+    if (!*cell || isfinite(fg_date_days(cell))) continue;
+    if (wrong++ == 0) *first = cell;
+  }
+  return wrong;
+}
+
+static bool of_scans(const fg_lot *lot, span *days) {
+  for (size_t i = 0; i < lot->manifest.items; i++)
+    take(days, fg_date_days(lot->records[i].date));
+  return isfinite(days->first);
+}
+
+void fg_lot_date_find(const fg_lot *lot, fg_lot_date *date) {
+  span manifest = {NAN, NAN}, scans = {NAN, NAN};
+  *date = (fg_lot_date){.from = NULL};
+  if (of_manifest(&lot->manifest, &manifest))
+    date->from = FG_LOT_DATE_MANIFEST;
+  else if (of_scans(lot, &scans))
+    date->from = FG_LOT_DATE_SCANS;
+  else
+    return;
+  const span *days = !strcmp(date->from, FG_LOT_DATE_MANIFEST) ? &manifest : &scans;
+  fg_date_format(days->first, date->first);
+  fg_date_format(days->last, date->last);
+}
+
+void fg_lot_date_write(fg_json *json, const fg_lot *lot) {
+  fg_lot_date date;
+  const char *wrong;
+  size_t count = fg_lot_date_wrong(&lot->manifest, &wrong);
+  fg_lot_date_find(lot, &date);
+  fg_json_object(json, "date");
+  fg_json_line(json);
+  fg_json_string(json, "first", date.from ? date.first : NULL);
+  fg_json_string(json, "last", date.from ? date.last : NULL);
+  fg_json_string(json, "from", date.from);
+  if (count) fg_json_integer(json, "cells_not_dates", (int64_t)count);
+  fg_json_object_end(json);
+  fg_json_line_end(json);
+}

@@ -1,0 +1,101 @@
+#include "lot/run/guard.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/file.h"
+#include "lot/run/journal.h"
+#include "lot/run/lot.h"
+
+static const char *const lot_files[FG_LOT_FILES] = {
+    "manifest.csv", "recipe.json", FG_LOT_MODEL_FILE, "results.jsonl",
+    "lot.json",     "index.html",  "foils.csv",       "bumps.csv",
+    "beams.csv",    "results.qif", "results.dfq",     "bearings.csv"};
+
+fg_status fg_lot_guard_begin(fg_context *ctx, const char *folder, fg_lot_guard *guard) {
+  for (size_t i = 0; i < FG_LOT_FILES; i++)
+    FG_TRY(fg_lot_path(ctx, folder, lot_files[i], &guard->path[i]));
+  return fg_overwrite_begin(ctx, (const char *const *)guard->path, FG_LOT_FILES, &guard->overwrite);
+}
+
+void fg_lot_guard_free(fg_lot_guard *guard) {
+  for (size_t i = 0; i < FG_LOT_FILES; i++)
+    free(guard->path[i]);
+  fg_overwrite_free(&guard->overwrite);
+}
+
+/* The sum that the lot's results were made with; the model's stands in the recipe, and the copy is
+ * written back as it was read. */
+static bool has_sum(const char *path, const char *name, const fg_journal_head *head) {
+  enum { TEXT_BYTES_MAX = 1 << 30 };
+  char *text, sum[65];
+  if (!strcmp(name, FG_LOT_MODEL_FILE)) return true;
+  if (fg_file_read_text(NULL, path, TEXT_BYTES_MAX, &text) != FG_OK) return false;
+  fg_lot_sum_text(text, sum);
+  free(text);
+  return !strcmp(sum, strcmp(name, "recipe.json") ? head->manifest_sha256 : head->recipe_sha256);
+}
+
+bool fg_lot_is_own_copy(const fg_lot_request *request, const char *path, const char *name) {
+  char *own = NULL, *results = NULL;
+  fg_journal_head head;
+  if (!path || !request->resume) return false;
+  bool same = fg_lot_path(NULL, request->folder, name, &own) == FG_OK &&
+              fg_lot_path(NULL, request->folder, "results.jsonl", &results) == FG_OK &&
+              fg_overwrite_is_same(own, path) &&
+              fg_journal_read_head(NULL, results, &head) == FG_OK && has_sum(own, name, &head);
+  free(own);
+  free(results);
+  return same;
+}
+
+static fg_status check(fg_context *ctx, const fg_lot_request *request, const fg_lot_guard *guard,
+                       const char *path, const char *name, const char *words) {
+  if (fg_lot_is_own_copy(request, path, name)) return FG_OK;
+  return fg_overwrite_check(ctx, &guard->overwrite, path, words);
+}
+
+static fg_status check_all(fg_context *ctx, const fg_lot_request *request,
+                           const fg_manifest *manifest, const fg_lot_guard *guard) {
+  const char *model = request->settings->model;
+  FG_TRY(check(ctx, request, guard, request->recipe, "recipe.json", "the recipe"));
+  FG_TRY(check(ctx, request, guard, request->design, "recipe.json", "the design"));
+  FG_TRY(check(ctx, request, guard, model[0] ? model : NULL, FG_LOT_MODEL_FILE,
+               "the scanner's model"));
+  for (size_t i = 0; i < manifest->items; i++)
+    FG_TRY(fg_overwrite_check(ctx, &guard->overwrite, fg_manifest_scan(manifest, i), "the scan"));
+  for (size_t i = 0; i < request->path_count; i++)
+    FG_TRY(check(ctx, request, guard, request->paths[i], "manifest.csv", "the list of scans"));
+  return FG_OK;
+}
+
+fg_status fg_lot_check_inputs(fg_context *ctx, const fg_lot_request *request,
+                              const fg_manifest *manifest) {
+  fg_lot_guard guard = {0};
+  fg_status status = fg_lot_guard_begin(ctx, request->folder, &guard);
+  if (status == FG_OK) status = check_all(ctx, request, manifest, &guard);
+  fg_lot_guard_free(&guard);
+  return status;
+}
+
+static fg_status check_shard(fg_context *ctx, const char *shard, const fg_lot_guard *guard) {
+  enum { READ = 4 }; /* of lot_files, those that merging reads */
+  fg_status status = FG_OK;
+  for (size_t i = 0; i < READ && status == FG_OK; i++) {
+    char *path;
+    FG_TRY(fg_lot_path(ctx, shard, lot_files[i], &path));
+    status = fg_overwrite_check(ctx, &guard->overwrite, path, "a file of a shard");
+    free(path);
+  }
+  return status;
+}
+
+fg_status fg_lot_check_shards(fg_context *ctx, const char *folder, const char *const *shards,
+                              size_t count) {
+  fg_lot_guard guard = {0};
+  fg_status status = fg_lot_guard_begin(ctx, folder, &guard);
+  for (size_t i = 0; i < count && status == FG_OK; i++)
+    status = check_shard(ctx, shards[i], &guard);
+  fg_lot_guard_free(&guard);
+  return status;
+}

@@ -1,0 +1,35 @@
+/* A lot's files must not take the place of what the lot is made from. */
+#ifndef FG_LOT_RUN_GUARD_H
+#define FG_LOT_RUN_GUARD_H
+
+#include <stdbool.h>
+
+#include "foilgauge/file.h"
+#include "foilgauge/lot.h"
+#include "lot/input/manifest.h"
+
+enum { FG_LOT_FILES = 12 };
+
+/* The files that a run writes into a lot's folder. All zero before; free in any case. */
+typedef struct fg_lot_guard {
+  char *path[FG_LOT_FILES];
+  fg_overwrite overwrite; /* for fg_overwrite_check */
+} fg_lot_guard;
+
+fg_status fg_lot_guard_begin(fg_context *ctx, const char *folder, fg_lot_guard *guard);
+void fg_lot_guard_free(fg_lot_guard *guard);
+
+/* Whether `path` is the file `name` in the folder of a lot that is resumed, as the lot wrote it: it
+ * can be given back. `name`: "manifest.csv", "recipe.json" or FG_LOT_MODEL_FILE. */
+bool fg_lot_is_own_copy(const fg_lot_request *request, const char *path, const char *name);
+
+/* FG_ERR_USAGE when the lot would overwrite its recipe, design, model, a manifest or list, or a
+ * scan; what the lot wrote itself may be given back. */
+fg_status fg_lot_check_inputs(fg_context *ctx, const fg_lot_request *request,
+                              const fg_manifest *manifest);
+
+/* The same for shards that are merged. */
+fg_status fg_lot_check_shards(fg_context *ctx, const char *folder, const char *const *shards,
+                              size_t count);
+
+#endif

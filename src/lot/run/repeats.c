@@ -1,0 +1,60 @@
+/* Scans of a lot with the same bytes. One scan shows one foil: under a second name it says nothing
+ * of the foil of that name, and in statistics it would count twice. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/text.h"
+#include "lot/run/lot.h"
+
+static int by_sum(const void *a, const void *b) {
+  const fg_record *const *one = a, *const *other = b;
+  int order = strcmp((*one)->sha256, (*other)->sha256);
+  return order ? order : (*one > *other) - (*one < *other); /* records lie in manifest's order */
+}
+
+/* Its foils go; the reason takes their place. */
+static fg_status mark_repeat(fg_context *ctx, fg_lot *lot, fg_record *repeat,
+                             const fg_record *first) {
+  size_t item = (size_t)(first - lot->records);
+  fg_record marked = {.scan = repeat->scan, .repeat_of = item + 1};
+  FG_TRY(fg_text_print(ctx, &marked.error,
+                       "%s: the same scan, byte by byte, as that of %s (%s), which counts: %s was "
+                       "not measured",
+                       repeat->scan, fg_manifest_label(&lot->manifest, item), first->scan,
+                       fg_manifest_label(&lot->manifest, (size_t)(repeat - lot->records))));
+  memcpy(marked.sha256, repeat->sha256, sizeof marked.sha256);
+  memcpy(marked.measured_with, repeat->measured_with, sizeof marked.measured_with);
+  memcpy(marked.date, repeat->date, sizeof marked.date);
+  repeat->scan = NULL;
+  fg_record_free(repeat);
+  *repeat = marked;
+  return FG_OK;
+}
+
+fg_status fg_lot_mark_repeats(fg_context *ctx, fg_lot *lot) {
+  size_t items = lot->manifest.items;
+  fg_record **record = NULL;
+  FG_TRY(fg_memory_allocate(ctx, items, sizeof(fg_record *), (void **)&record));
+  for (size_t i = 0; i < items; i++)
+    record[i] = &lot->records[i];
+  qsort(record, items, sizeof *record, by_sum);
+  fg_status status = FG_OK;
+  for (size_t i = 1, first = 0; i < items && status == FG_OK; i++) {
+    bool same = record[i]->sha256[0] && !strcmp(record[i]->sha256, record[first]->sha256);
+    if (!same) first = i;
+    if (same && !record[i]->error) status = mark_repeat(ctx, lot, record[i], record[first]);
+  }
+  free(record);
+  return status;
+}
+
+size_t fg_lot_count_repeats(const fg_lot *lot, const fg_record **first) {
+  size_t count = 0;
+  *first = NULL;
+  for (size_t i = 0; i < lot->manifest.items; i++) {
+    if (!lot->records[i].repeat_of) continue;
+    if (!count++) *first = &lot->records[i];
+  }
+  return count;
+}

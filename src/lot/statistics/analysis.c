@@ -1,0 +1,213 @@
+/* The lot as a whole: its foils, their verdicts, the worst of them. */
+#include "lot/statistics/analysis.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "core/memory.h"
+#include "report/measure/scan_model_words.h"
+
+static fg_status list_foils(fg_context *ctx, fg_lot_analysis *analysis) {
+  const fg_lot *lot = analysis->lot;
+  size_t count = 0;
+  void *block;
+  for (size_t i = 0; i < lot->manifest.items; i++)
+    count += lot->records[i].foil_count;
+  FG_TRY(fg_memory_allocate(ctx, count, sizeof *analysis->foils, &block));
+  analysis->foils = block;
+  for (size_t i = 0; i < lot->manifest.items; i++) {
+    analysis->failed_scans += lot->records[i].error != NULL;
+    for (size_t k = 0; k < lot->records[i].foil_count; k++)
+      analysis->foils[analysis->foil_count++] = (fg_lot_foil){.item = i,
+                                                              .foil = &lot->records[i].foils[k],
+                                                              .worst_u = NAN,
+                                                              .worst_limit = NAN,
+                                                              .worst_margin = NAN};
+  }
+  return FG_OK;
+}
+
+static void find_worst_value(const fg_decision *decision, fg_lot_foil *foil) {
+  const fg_judgement *worst = NULL;
+  for (size_t i = 0; i < decision->count; i++)
+    if (!worst || fg_judgement_compare(&decision->judgements[i], worst) < 0)
+      worst = &decision->judgements[i];
+  if (!worst) return;
+  foil->severity = worst->severity;
+  foil->worst_number = worst->number;
+  foil->worst_row = worst->row;
+  foil->worst_value = worst->value;
+  foil->worst_u = worst->u;
+  foil->worst_limit = worst->margin.limit;
+  foil->worst_margin = worst->margin.inside;
+}
+
+static fg_status judge_foil(fg_context *ctx, fg_lot_analysis *analysis, fg_lot_foil *foil) {
+  fg_decision decision;
+  FG_TRY(fg_foil_decide(ctx, &analysis->lot->settings.design, foil->foil, &decision));
+  fg_outcome_add(&analysis->outcome, &decision.outcome);
+  foil->verdict = decision.outcome.verdict;
+  foil->exceeded = decision.outcome.exceeded > 0;
+  find_worst_value(&decision, foil);
+  if (decision.outcome.rejected || !fg_foil_is_measured(foil->foil)) foil->severity = INFINITY;
+  fg_decision_free(&decision);
+  return FG_OK;
+}
+
+/* Plain strips have no heights: the radius that lies farthest from the lot's mean. */
+static void rank_arcs_by_spread(fg_lot_analysis *analysis) {
+  const fg_lot_quantity *radius = fg_lot_find_quantity(analysis, "overall.radius_mm");
+  for (size_t i = 0; radius && radius->sd > 0 && i < analysis->foil_count; i++) {
+    fg_lot_foil *foil = &analysis->foils[i];
+    if (!fg_foil_is_measured(foil->foil)) continue;
+    foil->worst_row = radius->row;
+    foil->worst_value = foil->foil->overall.radius_mm;
+    foil->worst_u = fg_quantity_uncertainty(radius->row, foil->foil);
+    foil->severity = fabs(foil->worst_value - radius->mean) / radius->sd;
+  }
+}
+
+/* Without tolerances of foils what lies farthest from the lot's mean in its leading quantity, the
+ * height of bumps, is the worst. */
+static void rank_by_spread(fg_lot_analysis *analysis) {
+  if (analysis->lot->settings.design.kind == FG_FOIL_ARC) {
+    rank_arcs_by_spread(analysis);
+    return;
+  }
+  const fg_lot_quantity *leading = fg_lot_leading_quantity(analysis);
+  if (!leading || !(leading->sd > 0)) return;
+  for (size_t i = 0; i < analysis->foil_count; i++) {
+    fg_lot_foil *foil = &analysis->foils[i];
+    for (size_t k = 0; k < fg_part_count(foil->foil, leading->owner); k++) {
+      const fg_foil_part part = fg_part_at(foil->foil, leading->owner, k);
+      double value = fg_quantity_value(leading->row, part.object);
+      double severity = fabs(value - leading->mean) / leading->sd;
+      if (!(severity > foil->severity)) continue;
+      foil->severity = severity;
+      foil->worst_number = part.number;
+      foil->worst_row = leading->row;
+      foil->worst_value = value;
+      foil->worst_u = fg_quantity_uncertainty(leading->row, part.object);
+    }
+  }
+}
+
+/* By the verdict first, then by the severity. */
+static bool is_worse(const fg_lot_foil *foil, const fg_lot_foil *than) {
+  if (foil->verdict != than->verdict)
+    return fg_verdict_worse(foil->verdict, than->verdict) == foil->verdict;
+  return foil->severity > than->severity;
+}
+
+static void find_worst(fg_lot_analysis *analysis) {
+  for (int place = 0; place < 3; place++)
+    for (size_t i = 0; i < analysis->foil_count; i++) {
+      const fg_lot_foil *foil = &analysis->foils[i];
+      bool taken = false;
+      for (int k = 0; k < place; k++)
+        taken = taken || analysis->worst[k] == foil;
+      if (taken) continue;
+      if (!analysis->worst[place] || is_worse(foil, analysis->worst[place]))
+        analysis->worst[place] = foil;
+    }
+}
+
+static fg_status judge_all(fg_context *ctx, fg_lot_analysis *analysis) {
+  analysis->outcome = (fg_report_outcome){.verdict = FG_VERDICT_NONE};
+  for (size_t i = 0; i < analysis->foil_count; i++) {
+    fg_lot_foil *foil = &analysis->foils[i];
+    FG_TRY(judge_foil(ctx, analysis, foil));
+    analysis->by_verdict[foil->verdict]++;
+    analysis->exceeded += foil->exceeded;
+  }
+  fg_report_outcome failed = {.verdict = FG_VERDICT_NOT_MEASURED,
+                              .not_measured = analysis->failed_scans};
+  if (analysis->failed_scans) fg_outcome_add(&analysis->outcome, &failed);
+  return FG_OK;
+}
+
+bool fg_lot_foil_is_good(const fg_lot_foil *foil) {
+  return foil->verdict == FG_VERDICT_PASS || foil->verdict == FG_VERDICT_NONE;
+}
+
+/* A page of 100,000 rows helps nobody. */
+static void choose_rows(fg_lot_analysis *analysis) {
+  size_t rows = 0;
+  for (int good = 0; good < 2; good++)
+    for (size_t i = 0; i < analysis->foil_count && rows < FG_LOT_FOIL_ROWS_MAX; i++)
+      if (fg_lot_foil_is_good(&analysis->foils[i]) == (good == 1)) {
+        analysis->foils[i].row = true;
+        rows++;
+      }
+}
+
+static void count_parts(fg_lot_analysis *analysis) {
+  for (size_t i = 0; i < analysis->foil_count; i++) {
+    const fg_foil *foil = analysis->foils[i].foil;
+    size_t parts = fg_foil_is_measured(foil) ? fg_part_count(foil, analysis->parts) : 0;
+    for (size_t k = 0; k < parts; k++) {
+      const fg_foil_part part = fg_part_at(foil, analysis->parts, k);
+      analysis->left_out += !fg_lot_part_counts(foil, analysis->parts, &part);
+    }
+    analysis->part_count += parts;
+  }
+}
+
+static fg_status analyse(fg_context *ctx, fg_lot_analysis *analysis) {
+  analysis->parts = fg_foil_kind_parts(analysis->lot->settings.design.kind);
+  FG_TRY(list_foils(ctx, analysis));
+  count_parts(analysis);
+  FG_TRY(judge_all(ctx, analysis));
+  choose_rows(analysis);
+  FG_TRY(fg_lot_analyse_quantities(ctx, analysis));
+  FG_TRY(fg_lot_analyse_causes(ctx, analysis));
+  bool bumps = fg_foil_kind_has_bumps(analysis->lot->settings.design.kind);
+  if (bumps) FG_TRY(fg_lot_analyse_correlation(ctx, analysis));
+  const fg_design *design = &analysis->lot->settings.design;
+  if (design->tolerance_count == fg_report_of_bearing(design, NULL, 0)) rank_by_spread(analysis);
+  find_worst(analysis);
+  fg_lot_analyse_thickness(analysis);
+  if (bumps) FG_TRY(fg_lot_analyse_stiffness(ctx, analysis));
+  if (bumps) FG_TRY(fg_lot_analyse_bearings(ctx, analysis));
+  if (bumps) FG_TRY(fg_lot_analyse_assembly(ctx, analysis));
+  FG_TRY(fg_lot_analyse_groups(ctx, analysis));
+  return fg_lot_analyse_gauge(ctx, analysis);
+}
+
+fg_status fg_lot_analyse(fg_context *ctx, const fg_lot *lot, fg_lot_analysis *analysis) {
+  *analysis = (fg_lot_analysis){.lot = lot};
+  fg_status status = analyse(ctx, analysis);
+  if (status != FG_OK) fg_lot_analysis_free(analysis);
+  return status;
+}
+
+void fg_lot_analysis_free(fg_lot_analysis *analysis) {
+  for (size_t i = 0; i < analysis->quantity_count; i++) {
+    fg_lot_quantity *quantity = &analysis->quantities[i];
+    free(quantity->value);
+    free(quantity->size);
+    free(quantity->place);
+    fg_density_free(&quantity->density);
+    fg_chart_free(&quantity->chart);
+    fg_chart_free(&quantity->means);
+    fg_chart_free(&quantity->deviations);
+  }
+  free(analysis->quantities);
+  free(analysis->stiffness.normalised);
+  for (size_t i = 0; i < analysis->bearing_count; i++)
+    fg_decision_free(&analysis->bearings[i].decision);
+  free(analysis->bearings);
+  fg_lot_assembly_free(&analysis->assembly);
+  free(analysis->differences);
+  free(analysis->gauges);
+  free(analysis->foils);
+  *analysis = (fg_lot_analysis){0};
+}
+
+fg_correction fg_lot_correction_largest(const fg_lot_analysis *analysis) {
+  fg_correction max = {NAN, NAN, NAN, NAN, NAN, NAN};
+  for (size_t i = 0; analysis->lot->model && i < analysis->foil_count; i++)
+    if (fg_foil_is_measured(analysis->foils[i].foil))
+      fg_correction_largest(&max, &analysis->foils[i].foil->correction);
+  return max;
+}

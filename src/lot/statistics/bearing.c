@@ -1,0 +1,185 @@
+/* What the lot does to the bearings it will make: clearance. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "lot/statistics/analysis.h"
+#include "quantity/quantity_rows.h"
+
+static fg_status add_bearing(fg_context *ctx, fg_lot_analysis *analysis, const char *name,
+                             fg_lot_bearing **bearing) {
+  FG_TRY(fg_memory_reserve(ctx, analysis->bearing_count + 1, sizeof *analysis->bearings,
+                           &analysis->bearing_capacity, (void **)&analysis->bearings));
+  *bearing = &analysis->bearings[analysis->bearing_count++];
+  **bearing = (fg_lot_bearing){.name = name, .number = analysis->bearing_count};
+  return FG_OK;
+}
+
+static bool is_measured(const fg_lot_foil *foil) {
+  return fg_foil_is_measured(foil->foil);
+}
+
+/* Foils in a row, as many as a bearing has pads; what is left over makes none. */
+static fg_status assume_bearings(fg_context *ctx, fg_lot_analysis *analysis) {
+  size_t pads = analysis->layout.pads, pad = 0;
+  const fg_lot_foil *set[FG_BEARING_BUMPS_MAX];
+  for (size_t i = 0; i < analysis->foil_count; i++) {
+    if (!is_measured(&analysis->foils[i])) continue;
+    set[pad++] = &analysis->foils[i];
+    if (pad < pads) continue;
+    fg_lot_bearing *bearing;
+    FG_TRY(add_bearing(ctx, analysis, NULL, &bearing));
+    memcpy(bearing->pad, set, pads * sizeof *set);
+    pad = 0;
+  }
+  analysis->unplaced.without = pad;
+  return FG_OK;
+}
+
+static fg_lot_bearing *find_bearing(fg_lot_analysis *analysis, const char *name) {
+  for (size_t i = analysis->bearing_count; i-- > 0;)
+    if (!strcmp(analysis->bearings[i].name, name)) return &analysis->bearings[i];
+  return NULL;
+}
+
+/* The pad that the manifest says, else the next free one; `pads` when there is none. */
+static size_t pad_of(const fg_lot_bearing *bearing, const char *text, size_t pads, bool *bad) {
+  char *end;
+  unsigned long pad = strtoul(text, &end, 10);
+  bool right = *text && !*end && pad >= 1 && pad <= pads;
+  *bad = *text && !right;
+  if (right) return bearing->pad[pad - 1] ? pads : pad - 1;
+  size_t next = 0;
+  while (next < pads && bearing->pad[next])
+    next++;
+  return next;
+}
+
+/* A foil that could not be measured leaves its place in the bearing unknown. */
+static fg_status place_foils(fg_context *ctx, fg_lot_analysis *analysis, size_t column) {
+  const fg_manifest *manifest = &analysis->lot->manifest;
+  const fg_lot_settings *settings = &analysis->lot->settings;
+  size_t pad_column = fg_manifest_column(manifest, settings->pad_column);
+  for (size_t i = 0; i < analysis->foil_count; i++) {
+    const fg_lot_foil *foil = &analysis->foils[i];
+    const char *name = fg_manifest_cell(manifest, foil->item, column);
+    bool bad;
+    analysis->unplaced.without += !*name;
+    if (!*name) continue;
+    fg_lot_bearing *bearing = find_bearing(analysis, name);
+    if (!bearing) FG_TRY(add_bearing(ctx, analysis, name, &bearing));
+    if (!is_measured(foil)) continue;
+    const char *cell = fg_manifest_cell(manifest, foil->item, pad_column);
+    size_t pad = pad_of(bearing, cell, analysis->layout.pads, &bad);
+    analysis->unplaced.bad_pads += bad;
+    analysis->unplaced.displaced += pad == analysis->layout.pads;
+    if (pad < analysis->layout.pads) bearing->pad[pad] = foil;
+  }
+  return FG_OK;
+}
+
+/* What all clearances of a bearing err by alike: the strip's thickness, and what the calibration
+ * leaves, which holds its share of the thickness. Of two axes that err by themselves it is the same
+ * in bumps that lie alike on the glass only; taken as the same in all it is not less than it is in
+ * the least and the mean clearance. */
+static double shared_uncertainty(const fg_lot_analysis *analysis, const fg_foil *foil,
+                                 const fg_bump *bump) {
+  const fg_quantity *thickness = fg_quantity_find(FG_QUANTITY_OF_FOIL, "thickness_mm");
+  const fg_quantity *clearance = fg_quantity_find(FG_QUANTITY_OF_BUMP, "clearance_fitted_mm");
+  double u = fg_foil_thickness(&analysis->lot->settings.design, foil).u_mm;
+  double of_it = fg_quantity_calibration(FG_QUANTITY_OF_FOIL, thickness, &foil->calibrated);
+  double all = fg_quantity_calibration(FG_QUANTITY_OF_BUMP, clearance, &bump->calibrated);
+  if (all == 0) return u;
+  return hypot(sqrt(fmax(0, (u - of_it) * (u + of_it))), all);
+}
+
+fg_lot_clearance fg_lot_clearance_of(const fg_lot_analysis *analysis, const fg_lot_foil *foil,
+                                     int number) {
+  const fg_lot_clearance unknown = {NAN, NAN, NAN};
+  for (size_t i = 0; foil && i < foil->foil->bump_count; i++) {
+    const fg_bump *bump = &foil->foil->bumps[i];
+    if (bump->number != number) continue;
+    if (!fg_lot_bump_counts(foil->foil, bump)) return unknown;
+    double u = bump->u_clearance_fitted_mm;
+    double shared = shared_uncertainty(analysis, foil->foil, bump);
+    if (!isfinite(u)) u = 0;
+    if (!(shared >= 0)) shared = 0;
+    return (fg_lot_clearance){.mm = bump->clearance_fitted_mm,
+                              .u_shared_mm = fmin(u, shared),
+                              .u_own_mm = sqrt(fmax(0, (u - shared) * (u + shared)))};
+  }
+  return unknown;
+}
+
+static void assess(const fg_lot_analysis *analysis, fg_lot_bearing *bearing) {
+  const fg_bearing_layout *layout = &analysis->layout;
+  double shared[FG_BEARING_BUMPS_MAX], own[FG_BEARING_BUMPS_MAX];
+  size_t pads[FG_BEARING_BUMPS_MAX];
+  fg_context unused;
+  for (size_t pad = 0; pad < layout->pads; pad++)
+    for (size_t bump = 0; bump < layout->bumps_per_pad; bump++) {
+      size_t at = bearing->places++;
+      fg_lot_clearance c =
+          fg_lot_clearance_of(analysis, bearing->pad[pad], (int)(layout->first_bump + bump));
+      bearing->angle_deg[at] = fg_bearing_angle_deg(layout, pad, bump);
+      bearing->clearance_mm[at] = c.mm;
+      bearing->u_clearance_mm[at] = hypot(c.u_shared_mm, c.u_own_mm);
+      shared[at] = c.u_shared_mm;
+      own[at] = c.u_own_mm;
+      pads[at] = pad;
+    }
+  const fg_bearing_uncertainty uncertainty = {shared, own, pads};
+  bearing->known =
+      fg_bearing_assess_uncertainty(&unused, bearing->angle_deg, bearing->clearance_mm,
+                                    bearing->places, &uncertainty, &bearing->clearance) == FG_OK;
+}
+
+/* A tolerance that nothing could be judged by must not read as a pass. */
+static fg_status judge(fg_context *ctx, fg_lot_analysis *analysis) {
+  const fg_design *design = &analysis->lot->settings.design;
+  for (size_t i = 0; i < analysis->bearing_count; i++) {
+    fg_lot_bearing *bearing = &analysis->bearings[i];
+    bool whole = bearing->known && bearing->clearance.count == bearing->places;
+    FG_TRY(fg_bearing_decide(ctx, design, bearing->known ? &bearing->clearance : NULL, whole,
+                             &bearing->decision));
+    analysis->bearings_by_verdict[bearing->decision.outcome.verdict]++;
+    fg_outcome_add(&analysis->outcome, &bearing->decision.outcome);
+  }
+  const fg_report_outcome none = {.verdict = FG_VERDICT_NOT_MEASURED, .not_measured = 1};
+  if (!analysis->bearing_count && fg_report_of_bearing(design, NULL, 0))
+    fg_outcome_add(&analysis->outcome, &none);
+  return FG_OK;
+}
+
+/* Clearances as the thesis's figure 5.13 has them: 100 (C_local - C_D) / C_D. */
+static fg_status relative_clearance(fg_context *ctx, const fg_lot_analysis *analysis,
+                                    const char *name, fg_lot_spread *spread) {
+  const fg_lot_quantity *quantity = fg_lot_find_quantity(analysis, name);
+  double nominal = analysis->lot->nominal.clearance_mm;
+  void *block;
+  if (!quantity || !(fabs(nominal) > 0)) return FG_OK;
+  FG_TRY(fg_memory_allocate(ctx, quantity->count, sizeof(double), &block));
+  double *relative = block;
+  for (size_t i = 0; i < quantity->count; i++)
+    relative[i] = 100 * (quantity->value[i] - nominal) / nominal;
+  fg_status status =
+      fg_lot_spread_of(ctx, relative, quantity->count, analysis->lot->settings.bandwidth, spread);
+  free(relative);
+  return status;
+}
+
+fg_status fg_lot_analyse_bearings(fg_context *ctx, fg_lot_analysis *analysis) {
+  const fg_lot_settings *settings = &analysis->lot->settings;
+  size_t column = fg_manifest_column(&analysis->lot->manifest, settings->bearing_column);
+  fg_lot_find_layout(analysis);
+  if (column == FG_NO_COLUMN)
+    FG_TRY(assume_bearings(ctx, analysis));
+  else
+    FG_TRY(place_foils(ctx, analysis, column));
+  for (size_t i = 0; i < analysis->bearing_count; i++)
+    assess(analysis, &analysis->bearings[i]);
+  FG_TRY(judge(ctx, analysis));
+  FG_TRY(relative_clearance(ctx, analysis, "clearance_mm", &analysis->clearance_pct));
+  return relative_clearance(ctx, analysis, "clearance_fitted_mm", &analysis->clearance_fitted_pct);
+}

@@ -1,0 +1,46 @@
+/* Springback against the die that a foil was pressed in, beside that against the design. */
+#ifndef FG_LOT_STATISTICS_DIES_H
+#define FG_LOT_STATISTICS_DIES_H
+
+#include "lot/statistics/analysis.h"
+
+/* A bump's reference: the radius of its die at its number, or the die's mean where the die's traces
+ * do not show that bump. NULL die: the foil's cell names none. */
+typedef struct fg_lot_to_die {
+  const fg_lot_die *die;
+  bool by_mean;
+  double radius_mm, u_radius_mm; /* of the die */
+  double error_pct, u_error_pct; /* 100 (R - R_die) / R_die */
+} fg_lot_to_die;
+
+fg_lot_to_die fg_lot_bump_to_die(const fg_lot *lot, const fg_lot_foil *foil, const fg_bump *bump);
+
+/* The bumps of one die's foils. */
+typedef struct fg_lot_die_sum {
+  const fg_lot_die *die;
+  size_t foils, bumps, by_mean;
+  double die_error_pct, u_die_error_pct; /* mean of the references against the design */
+  double design_mean_pct, design_sd_pct; /* of the bumps' errors against the design */
+  double die_mean_pct, die_sd_pct;       /* and against the die */
+  double explained_pct;                  /* of design_mean: the die's share of it */
+} fg_lot_die_sum;
+
+typedef struct fg_lot_dies {
+  fg_lot_die_sum sum[FG_LOT_DIES_MAX];
+  size_t count;
+  size_t bumps;
+  /* Over all bumps with a die: sd of the errors against design and die, and the share of the
+   * variance that the dies explain, percent. NaN with fewer than two bumps. */
+  double design_sd_pct, die_sd_pct, explained_variance_pct;
+  /* Of two dies: the foils' difference (second minus first), the dies', and its share. NaN else. */
+  double foils_differ_pct, dies_differ_pct, explained_difference_pct;
+} fg_lot_dies;
+
+/* count 0: the recipe names no die, or no foil has one. */
+void fg_lot_analyse_dies(const fg_lot_analysis *analysis, fg_lot_dies *dies);
+
+/* In lot.json, on the page: nothing where count is 0. */
+void fg_lot_json_dies(fg_json *json, const fg_lot_analysis *analysis);
+void fg_lot_put_dies(FILE *out, const fg_lot_analysis *analysis);
+
+#endif

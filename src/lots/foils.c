@@ -1,0 +1,262 @@
+/* The foils of a lot, from its foils.csv and its bumps.csv or beams.csv. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/file.h"
+#include "core/memory.h"
+#include "core/text.h"
+#include "foilgauge/table.h"
+#include "foilgauge/words.h"
+#include "lot/statistics/analysis.h"
+#include "lots/lots.h"
+
+/* lot.json has ten digits, and the mean of these files' values is computed from ten digits each. */
+#define SAME_MEAN 1e-8
+
+enum { TABLE_BYTES_MAX = 1 << 30, CELL = 160 };
+
+typedef struct reading {
+  fg_index *index;
+  fg_index_lot *lot;
+  fg_table foils, parts; /* of the lot's CSV files */
+  size_t *foil;          /* row of foils.csv of each foil that counts */
+  size_t *owner;         /* foil of each row of `parts` */
+  size_t *count;         /* values of the stat that is read, by foil */
+} reading;
+
+static const fg_column *find_column(const fg_table *table, const char *name) {
+  const fg_column *column;
+  fg_context unused;
+  return fg_table_find(&unused, table, name, &column) == FG_OK ? column : NULL;
+}
+
+static double cell_number(const fg_column *column, size_t row) {
+  bool number = !column->word || column->word[row] == FG_TABLE_NOT_A_WORD;
+  return number ? column->number[row].value : NAN;
+}
+
+/* A cell as a text: "" where it is missing, and where there is no such column. */
+static const char *cell_text(const fg_column *column, size_t row, char text[CELL]) {
+  text[0] = '\0';
+  if (!column || (column->word && column->word[row] == FG_TABLE_MISSING)) return text;
+  if (!column->word || column->word[row] == FG_TABLE_NOT_A_WORD)
+    snprintf(text, CELL, "%.12g", column->number[row].value);
+  else
+    fg_text_clip(text, CELL, "%s", column->words[column->word[row]]);
+  return text;
+}
+
+/* Whether the flags of a cell, with a space between them, hold this one. */
+static bool has_flag(const fg_flag_words *words, const char *flags, unsigned flag) {
+  for (; words->name; words++) {
+    size_t length = strlen(words->name);
+    if (words->flag != flag) continue;
+    for (const char *at = flags; (at = strstr(at, words->name)); at += length)
+      if ((at == flags || at[-1] == ' ') && (at[length] == ' ' || !at[length])) return true;
+  }
+  return false;
+}
+
+/* A line of foils.csv counts when it is of a foil of the design. */
+static fg_status list_foils(fg_context *ctx, reading *r) {
+  char flags[CELL];
+  void *block;
+  const fg_column *number = find_column(&r->foils, "foil_number"),
+                  *flag = find_column(&r->foils, "flags");
+  FG_TRY(fg_memory_allocate(ctx, r->foils.rows, sizeof *r->foil, &block));
+  r->foil = block;
+  for (size_t row = 0; number && row < r->foils.rows; row++) {
+    cell_text(flag, row, flags);
+    bool measured = !has_flag(fg_foil_flag_words(), flags, FG_FOIL_NOT_MEASURED) &&
+                    !has_flag(fg_foil_flag_words(), flags, FG_FOIL_NOT_THIS_DESIGN);
+    if (measured && isfinite(cell_number(number, row))) r->foil[r->lot->foil_count++] = row;
+  }
+  return FG_OK;
+}
+
+static fg_status find_die(fg_context *ctx, fg_index *index, const char *name, size_t *die) {
+  *die = FG_INDEX_NONE;
+  if (!*name) return FG_OK;
+  for (*die = 0; *die < index->die_count; ++*die)
+    if (!strcmp(index->dies[*die].name, name)) return FG_OK;
+  FG_TRY(fg_memory_reserve(ctx, index->die_count + 1, sizeof *index->dies, &index->die_capacity,
+                           (void **)&index->dies));
+  index->dies[index->die_count] = (fg_index_die){.name = NULL};
+  FG_TRY(fg_text_print(ctx, &index->dies[index->die_count].name, "%s", name));
+  index->die_count++;
+  return FG_OK;
+}
+
+/* Distinct words of a column, "A, B". */
+static fg_status list_words(fg_context *ctx, const reading *r, const char *name, char **words) {
+  const fg_column *column = find_column(&r->foils, name);
+  char cell[CELL], before[CELL];
+  for (size_t i = 0; column && i < r->lot->foil_count; i++) {
+    bool known = !*cell_text(column, r->foil[i], cell);
+    for (size_t k = 0; k < i && !known; k++)
+      known = !strcmp(cell, cell_text(column, r->foil[k], before));
+    if (!known) FG_TRY(fg_text_append(ctx, words, "%s%s", *words ? ", " : "", cell));
+  }
+  return FG_OK;
+}
+
+static fg_status take_dies(fg_context *ctx, reading *r) {
+  const fg_column *column = find_column(&r->foils, "die");
+  char cell[CELL];
+  void *block;
+  FG_TRY(fg_memory_allocate(ctx, r->lot->foil_count, sizeof *r->lot->die, &block));
+  r->lot->die = block;
+  for (size_t i = 0; i < r->lot->foil_count; i++)
+    FG_TRY(find_die(ctx, r->index, cell_text(column, r->foil[i], cell), &r->lot->die[i]));
+  return list_words(ctx, r, "coil", &r->lot->coils);
+}
+
+/* Flags of what does not count, as fg_lot_part_counts has it. */
+static bool is_damaged(const fg_index_lot *lot, const char *flags) {
+  bool damaged = false;
+  if (fg_foil_kind_parts(lot->design.kind) == FG_QUANTITY_OF_BUMP)
+    return has_flag(fg_bump_flag_words(), flags, FG_BUMP_CRUSHED);
+  for (unsigned flag = 1; flag <= FG_LOT_BEAM_DAMAGED; flag <<= 1)
+    damaged =
+        damaged || (flag & FG_LOT_BEAM_DAMAGED && has_flag(fg_beam_flag_words(), flags, flag));
+  return damaged;
+}
+
+/* Whose foil every line of `parts` is, FG_INDEX_NONE for one that does not count: both files are in
+ * one order. */
+static fg_status own_parts(fg_context *ctx, reading *r) {
+  const fg_column *scan[2] = {find_column(&r->foils, "scan"), find_column(&r->parts, "scan")},
+                  *number[2] = {find_column(&r->foils, "foil_number"),
+                                find_column(&r->parts, "foil_number")},
+                  *flag = find_column(&r->parts, "flags");
+  char a[CELL], b[CELL];
+  size_t foil = 0;
+  void *block;
+  FG_TRY(fg_memory_allocate(ctx, r->parts.rows, sizeof *r->owner, &block));
+  r->owner = block;
+  for (size_t row = 0; row < r->parts.rows; row++) {
+    size_t at = foil;
+    r->owner[row] = FG_INDEX_NONE;
+    if (!scan[0] || !scan[1] || !number[0] || !number[1]) continue;
+    while (at < r->lot->foil_count &&
+           (cell_number(number[0], r->foil[at]) != cell_number(number[1], row) ||
+            strcmp(cell_text(scan[0], r->foil[at], a), cell_text(scan[1], row, b)) != 0))
+      at++;
+    if (at == r->lot->foil_count) continue; /* of no foil that counts */
+    foil = at;
+    if (!is_damaged(r->lot, cell_text(flag, row, a))) r->owner[row] = foil;
+  }
+  return FG_OK;
+}
+
+/* The value of every foil, or the mean of its parts; the mean of all of them in *mean. */
+static fg_status read_stat(fg_context *ctx, reading *r, fg_index_stat *stat, double *mean) {
+  bool of_part = fg_owner_is_part(stat->owner);
+  const fg_table *table = of_part ? &r->parts : &r->foils;
+  const fg_column *column = find_column(table, stat->row->name);
+  size_t lines = of_part ? r->parts.rows : r->lot->foil_count, known = 0;
+  double sum = 0;
+  void *block;
+  FG_TRY(fg_memory_allocate(ctx, r->lot->foil_count, sizeof *stat->foil, &block));
+  stat->foil = block;
+  memset(r->count, 0, r->lot->foil_count * sizeof *r->count);
+  for (size_t i = 0; column && i < lines; i++) {
+    size_t foil = of_part ? r->owner[i] : i;
+    double value = cell_number(column, of_part ? i : r->foil[i]);
+    if (foil == FG_INDEX_NONE || !isfinite(value)) continue;
+    stat->foil[foil] += value;
+    r->count[foil]++;
+    sum += value;
+    known++;
+  }
+  for (size_t i = 0; i < r->lot->foil_count; i++)
+    stat->foil[i] = r->count[i] ? stat->foil[i] / (double)r->count[i] : NAN;
+  *mean = known == stat->count && known ? sum / (double)known : NAN;
+  return FG_OK;
+}
+
+static fg_status read_ratios(fg_context *ctx, reading *r) {
+  const fg_column *column = find_column(&r->parts, "radius_mm");
+  fg_index_lot *lot = r->lot;
+  FG_TRY(fg_memory_allocate(ctx, r->parts.rows, sizeof *lot->ratio, (void **)&lot->ratio));
+  FG_TRY(
+      fg_memory_allocate(ctx, r->parts.rows, sizeof *lot->ratio_foil, (void **)&lot->ratio_foil));
+  for (size_t row = 0; column && row < r->parts.rows; row++) {
+    double value = cell_number(column, row);
+    if (r->owner[row] == FG_INDEX_NONE || !isfinite(value)) continue;
+    lot->ratio_foil[lot->ratios] = r->owner[row];
+    lot->ratio[lot->ratios++] = value / lot->design.bump_radius_mm;
+  }
+  return FG_OK;
+}
+
+static const char *parts_file(const fg_index_lot *lot) {
+  return lot->design.kind == FG_FOIL_CANTILEVER ? "beams.csv" : "bumps.csv";
+}
+
+/* The files must be those of lot.json: another run may have written one of them. */
+static fg_status read_stats(fg_context *ctx, reading *r) {
+  fg_index_lot *lot = r->lot;
+  FG_TRY(fg_memory_allocate(ctx, lot->foil_count, sizeof *r->count, (void **)&r->count));
+  for (size_t i = 0; i < lot->stat_count; i++) {
+    double mean;
+    fg_index_stat *stat = &lot->stats[i];
+    FG_TRY(read_stat(ctx, r, stat, &mean));
+    if (stat->count == 0 || fabs(mean - stat->mean) <= SAME_MEAN * fmax(fabs(stat->max), 1e-3))
+      continue;
+    return fg_text_print(ctx, &lot->uncertainty,
+                         "%s: foils.csv and %s hold other values of %s than lot.json; write "
+                         "them again with `foilgauge lot %s/manifest.csv -o %s --recipe "
+                         "%s/recipe.json --resume`",
+                         lot->folder, parts_file(lot), stat->row->name, lot->folder, lot->folder,
+                         lot->folder);
+  }
+  return read_ratios(ctx, r);
+}
+
+/* A table without rows is a lot without foils. */
+static fg_status read_table(fg_context *ctx, fg_index_lot *lot, const char *name, fg_table *table) {
+  char *path, *text = NULL;
+  fg_context inner = {.message = ""};
+  FG_TRY(fg_lot_path(ctx, lot->folder, name, &path));
+  fg_status status = fg_file_read_text(&inner, path, TABLE_BYTES_MAX, &text);
+  bool lines = status == FG_OK && strchr(text, '\n') && strchr(text, '\n')[1];
+  if (lines) status = fg_table_parse(&inner, path, text, strlen(text), table);
+  if (status == FG_ERR_MEMORY)
+    fg_fail(ctx, status, "%s", inner.message);
+  else if (status != FG_OK)
+    status = fg_text_print(ctx, &lot->uncertainty, "%s", inner.message);
+  free(text);
+  free(path);
+  return status;
+}
+
+/* What is known of a lot whose foils are not. */
+static void forget(fg_index_lot *lot) {
+  for (size_t i = 0; i < lot->stat_count; i++) {
+    free(lot->stats[i].foil);
+    lot->stats[i].foil = NULL;
+  }
+  lot->foil_count = lot->ratios = 0;
+}
+
+fg_status fg_index_read_foils(fg_context *ctx, fg_index *index, fg_index_lot *lot) {
+  reading r = {.index = index, .lot = lot};
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(read_table(ctx, lot, "foils.csv", &r.foils));
+  if (!lot->uncertainty) FG_TRY_EXIT(read_table(ctx, lot, parts_file(lot), &r.parts));
+  if (lot->uncertainty) goto exit;
+  FG_TRY_EXIT(list_foils(ctx, &r));
+  FG_TRY_EXIT(own_parts(ctx, &r));
+  FG_TRY_EXIT(read_stats(ctx, &r));
+  if (!lot->uncertainty) FG_TRY_EXIT(take_dies(ctx, &r));
+exit:
+  if (lot->uncertainty) forget(lot);
+  fg_table_free(&r.foils);
+  fg_table_free(&r.parts);
+  free(r.foil);
+  free(r.owner);
+  free(r.count);
+  return status;
+}

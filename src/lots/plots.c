@@ -1,0 +1,279 @@
+/* Figures over lots: densities over each other, and a quantity over the lots. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/text.h"
+#include "lots/lots.h"
+#include "page/page.h"
+#include "page/plot_marks.h"
+
+enum {
+  WIDTH = 1000,
+  CURVE_POINTS = 300,
+  LINES_MAX = 8,    /* more curves than these cannot be told apart: most are grey, then, and */
+  MARKED = 4,       /* so many are not */
+  NAMES_MAX = 6,    /* lots whose names have room under an axis */
+  DATES_MAX = 10,   /* and their dates */
+  NUMBERS_MAX = 40, /* and their numbers: else every second, third ... */
+  LABEL_LETTERS = 26,
+  AXIS_LETTERS = 18,
+};
+
+/* Okabe and Ito's colours, told apart by the colour-blind; dashes tell them apart in black and
+ * white too. Yellow is left out, which white paper swallows. */
+static const struct {
+  const char *colour, *dash;
+} looks[LINES_MAX] = {
+    {"#0072b2", ""},        {"#d55e00", "9 4"},  {"#00795a", "3 3"}, {"#aa4499", "12 3 3 3"},
+    {"#16202a", "6 2 2 2"}, {"#2b8cbe", "14 5"}, {"#a86400", "2 4"}, {"#5b6875", "5 5"},
+};
+
+/* One curve: of a lot or a die. */
+typedef struct curve {
+  const fg_index_spread *spread;
+  const char *name;
+  size_t number; /* on the page; 0: none */
+  int look;      /* of looks; -1: grey */
+  double x, y;   /* of its label, px */
+} curve;
+
+static double peak(const curve *c) {
+  return fg_density_at(&c->spread->density, c->spread->mode);
+}
+
+static void put_curve(const fg_plot *at, const curve *c) {
+  double step = (at->x_high - at->x_low) / CURVE_POINTS;
+  if (c->look < 0)
+    fputs("<path stroke=\"#b4bdc6\" stroke-width=\"1\" d=\"", at->out);
+  else
+    fprintf(at->out,
+            "<path stroke=\"%s\" stroke-width=\"2.5\" stroke-linejoin=\"round\" "
+            "stroke-dasharray=\"%s\" d=\"",
+            looks[c->look].colour, looks[c->look].dash);
+  for (int i = 0; i <= CURVE_POINTS; i++) {
+    double x = at->x_low + i * step;
+    fprintf(at->out, "%c%.1f %.1f", i ? 'L' : 'M', fg_plot_x(at, x),
+            fg_plot_y(at, fg_density_at(&c->spread->density, x)));
+  }
+  fputs("\"/>\n", at->out);
+}
+
+/* Its number at the top of a curve, beside those that are there already. */
+static void put_mark(const fg_plot *at, curve *curves, size_t i) {
+  enum { WIDE = 22, HIGH = 15 };
+  curve *c = &curves[i];
+  c->x = fg_plot_x(at, c->spread->mode);
+  c->y = fg_plot_y(at, peak(c)) - 7;
+  for (size_t k = 0; k < i; k++)
+    if (curves[k].look >= 0 && fabs(curves[k].x - c->x) < WIDE && fabs(curves[k].y - c->y) < HIGH) {
+      c->x = curves[k].x + WIDE;
+      k = (size_t)-1; /* from the beginning: the new place may be taken as well */
+    }
+  fprintf(at->out,
+          "<text x=\"%.1f\" y=\"%.1f\" style=\"fill:%s;text-anchor:middle;font-weight:650\">", c->x,
+          c->y, looks[c->look].colour);
+  if (c->number)
+    fprintf(at->out, "%zu", c->number);
+  else
+    fg_html_text(at->out, c->name);
+  fputs("</text>\n", at->out);
+}
+
+/* Line, number and name at the right. */
+static void put_legend(const fg_plot *at, const curve *c, size_t row) {
+  char name[4 * LABEL_LETTERS + 4];
+  double y = at->top + 14 + 22 * (double)row;
+  fprintf(at->out,
+          "<path stroke=\"%s\" stroke-width=\"2.5\" stroke-dasharray=\"%s\" d=\"M%.0f %.1fH%.0f\"/>"
+          "<text x=\"%.0f\" y=\"%.1f\">",
+          looks[c->look].colour, looks[c->look].dash, at->right + 16, y - 5, at->right + 52,
+          at->right + 60, y);
+  if (c->number) fprintf(at->out, "%zu  ", c->number);
+  fg_index_clip_name(c->name, LABEL_LETTERS, name, sizeof name);
+  fg_html_text(at->out, name);
+  fputs("</text>\n", at->out);
+}
+
+/* Of many curves those that say most: the last, and in turns the lowest and the highest mean. */
+static void choose(curve *curves, size_t count) {
+  size_t given = 0;
+  for (size_t i = 0; i < count; i++)
+    curves[i].look = count <= LINES_MAX ? (int)i : -1;
+  if (count <= LINES_MAX) return;
+  curves[count - 1].look = (int)given++;
+  for (; given < MARKED; given++) {
+    size_t best = count;
+    double sign = given % 2 ? 1 : -1;
+    for (size_t i = 0; i < count; i++)
+      if (curves[i].look < 0 &&
+          (best == count || sign * curves[i].spread->mean > sign * curves[best].spread->mean))
+        best = i;
+    curves[best].look = (int)given;
+  }
+}
+
+static void plot_curves(FILE *out, curve *curves, size_t count, const char *label) {
+  fg_plot at = {out, WIDTH, 70, 740, 26, 330, INFINITY, -INFINITY, 0, 0};
+  for (size_t i = 0; i < count; i++) {
+    double reach = 2.5 * curves[i].spread->density.bandwidth;
+    at.x_low = fmin(at.x_low, curves[i].spread->min - reach);
+    at.x_high = fmax(at.x_high, curves[i].spread->max + reach);
+    at.y_high = fmax(at.y_high, 1.1 * peak(&curves[i]));
+  }
+  choose(curves, count);
+  fg_plot_begin(&at, 384, label);
+  fg_plot_y_axis(&at, "density");
+  fg_plot_x_numbers(&at);
+  fg_plot_x_title(&at, "bump radius over design, R / R_D");
+  if (at.x_low < 1 && at.x_high > 1) {
+    fg_plot_segment(&at, 1, 0, 1, at.y_high, "hypothesis");
+    fg_plot_text(&at, 1, at.y_high * 1.01, "key", "design");
+  }
+  size_t row = 0;
+  for (int pass = 0; pass < 3; pass++)
+    for (size_t i = 0; i < count; i++) {
+      if ((curves[i].look >= 0) != (pass > 0)) continue;
+      if (pass < 2) put_curve(&at, &curves[i]);
+      if (pass == 2) {
+        put_mark(&at, curves, i);
+        put_legend(&at, &curves[i], row++);
+      }
+    }
+  if (count > LINES_MAX) {
+    char text[40];
+    snprintf(text, sizeof text, "grey: %zu more", count - MARKED);
+    fprintf(out, "<text class=\"soft\" x=\"%.0f\" y=\"%.1f\">%s</text>\n", at.right + 60,
+            at.top + 14 + 22 * (double)row, text);
+  }
+  fg_plot_end(&at);
+}
+
+void fg_index_plot_lots(FILE *out, const fg_index *index) {
+  size_t count = 0;
+  curve *curves = calloc(index->read + 1, sizeof *curves);
+  for (size_t i = 0; curves && i < index->read; i++)
+    if (index->lots[i].spread.has_density)
+      curves[count++] =
+          (curve){.spread = &index->lots[i].spread, .name = index->lots[i].name, .number = i + 1};
+  if (count) plot_curves(out, curves, count, "Densities of the bump radius over the design's");
+  free(curves);
+}
+
+void fg_index_plot_dies(FILE *out, const fg_index *index) {
+  size_t count = 0;
+  curve *curves = calloc(index->die_count + 1, sizeof *curves);
+  for (size_t i = 0; curves && i < index->die_count; i++)
+    if (index->dies[i].spread.has_density)
+      curves[count++] = (curve){.spread = &index->dies[i].spread, .name = index->dies[i].name};
+  if (count) plot_curves(out, curves, count, "Densities of the bump radius by die");
+  free(curves);
+}
+
+static void include(double value, double *low, double *high) {
+  if (!isfinite(value)) return;
+  *low = fmin(*low, value);
+  *high = fmax(*high, value);
+}
+
+/* Values and limits are shown whole; what is expected as far as it goes over the values' range at
+ * each side: few lots expect almost anything. */
+static bool find_range(const fg_index *index, const fg_index_axis *axis, fg_plot *at) {
+  double low = INFINITY, high = -INFINITY;
+  for (size_t i = 0; i < index->read; i++) {
+    const fg_index_stat *stat = fg_index_stat_of(axis, &index->lots[i]);
+    if (!stat || !stat->count) continue;
+    double reach = isfinite(stat->sd) ? stat->sd : 0;
+    include(stat->mean - reach, &low, &high);
+    include(stat->mean + reach, &low, &high);
+    include(stat->lower, &low, &high);
+    include(stat->upper, &low, &high);
+  }
+  if (!(high >= low)) return false;
+  double span = high - low, first = low - 0.3 * span, last = high + 0.3 * span;
+  for (size_t i = 0; i < index->read; i++) {
+    const fg_index_stat *stat = fg_index_stat_of(axis, &index->lots[i]);
+    if (!stat) continue;
+    include(fmax(first, stat->expected_low), &low, &high);
+    include(fmin(last, stat->expected_high), &low, &high);
+  }
+  double room = 0.07 * (high - low), min = 1e-9 * fmax(fabs(low), fabs(high));
+  if (!(room > min)) room = fabs(high) > 0 ? 0.01 * fabs(high) : 1;
+  at->y_low = low - room;
+  at->y_high = high + room;
+  return true;
+}
+
+/* Its edges are drawn where they are in the picture: a band without them reaches beyond it. */
+static void put_expected(const fg_plot *at, double x, const fg_index_stat *stat) {
+  if (!isfinite(stat->expected_low)) return;
+  const double edges[2] = {stat->expected_low, stat->expected_high};
+  double top = fmin(edges[1], at->y_high), foot = fmax(edges[0], at->y_low);
+  if (!(top > foot)) return;
+  double left = fg_plot_x(at, x - 0.5), width = fg_plot_x(at, x + 0.5) - left;
+  fprintf(at->out,
+          "<rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\" fill=\"#eff2f5\"/>\n", left,
+          fg_plot_y(at, top), width, fg_plot_y(at, foot) - fg_plot_y(at, top));
+  for (int i = 0; i < 2; i++)
+    if (edges[i] > at->y_low && edges[i] < at->y_high)
+      fg_plot_segment(at, x - 0.5, edges[i], x + 0.5, edges[i], "thin");
+}
+
+static void put_limits(const fg_plot *at, double x, const fg_index_stat *stat) {
+  const double limits[2] = {stat->lower, stat->upper};
+  for (int i = 0; i < 2; i++)
+    if (isfinite(limits[i])) fg_plot_segment(at, x - 0.5, limits[i], x + 0.5, limits[i], "limit");
+}
+
+static void put_lot(const fg_plot *at, double x, const fg_index_stat *stat, bool few) {
+  double size = few ? 6 : 4;
+  if (!stat->count) return;
+  if (isfinite(stat->sd))
+    fg_plot_segment(at, x, stat->mean - stat->sd, x, stat->mean + stat->sd, "s2");
+  if (stat->unexpected)
+    fprintf(at->out,
+            "<rect class=\"signal\" x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\"/>\n",
+            fg_plot_x(at, x) - size, fg_plot_y(at, stat->mean) - size, 2 * size, 2 * size);
+  else
+    fg_plot_dot(at, x, stat->mean, size, "run");
+}
+
+static void put_label(const fg_plot *at, const fg_index *index, size_t i) {
+  size_t every = index->read / NUMBERS_MAX + 1;
+  char text[4 * AXIS_LETTERS + 32], name[4 * AXIS_LETTERS + 4];
+  double x = fg_plot_x(at, (double)i + 1);
+  if (i % every) return;
+  fg_index_clip_name(index->lots[i].name, AXIS_LETTERS, name, sizeof name);
+  if (index->read <= NAMES_MAX)
+    snprintf(text, sizeof text, "%zu  %s", i + 1, name);
+  else
+    snprintf(text, sizeof text, "%zu", i + 1);
+  fg_plot_x_label(at, x, text);
+  if (index->read > DATES_MAX) return;
+  fprintf(at->out,
+          "<text class=\"x soft\" style=\"font-size:12px\" x=\"%.1f\" y=\"%.1f\">%.10s</text>\n", x,
+          at->bottom + 37, index->lots[i].date.from ? index->lots[i].date.first : "no date");
+}
+
+void fg_index_plot_axis(FILE *out, const fg_index *index, const fg_index_axis *axis) {
+  fg_plot at = {out, WIDTH, 92, 985, 14, 210, 0.5, (double)index->read + 0.5, 0, 0};
+  char title[96];
+  const char *unit = fg_index_unit(axis);
+  if (!find_range(index, axis, &at)) return;
+  fg_text_clip(title, sizeof title, "%s%s%s%s", axis->row->symbol,
+               axis->scale == FG_INDEX_OVER_DESIGN ? " over design" : "", *unit ? ", " : "", unit);
+  fg_plot_begin(&at, index->read > DATES_MAX ? 238 : 254, axis->row->words);
+  for (size_t i = 0; i < index->read; i++) {
+    const fg_index_stat *stat = fg_index_stat_of(axis, &index->lots[i]);
+    if (stat) put_expected(&at, (double)i + 1, stat);
+  }
+  fg_plot_y_axis(&at, title);
+  for (size_t i = 0; i < index->read; i++) {
+    const fg_index_stat *stat = fg_index_stat_of(axis, &index->lots[i]);
+    put_label(&at, index, i);
+    if (!stat) continue;
+    put_limits(&at, (double)i + 1, stat);
+    put_lot(&at, (double)i + 1, stat, index->read <= NUMBERS_MAX);
+  }
+  fg_plot_end(&at);
+}

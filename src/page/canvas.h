@@ -1,0 +1,50 @@
+/* One way to draw, two places to draw on: a picture of pixels, and inline SVG.
+ *
+ * Positions are in mm of the scan. Widths and heights of letters are in units of the
+ * canvas, so that a picture of any size looks alike.
+ */
+#ifndef FG_PAGE_CANVAS_H
+#define FG_PAGE_CANVAS_H
+
+#include "page/picture.h"
+#include "vision/cv_bridge.h"
+
+typedef struct fg_canvas {
+  fg_rgb *rgb; /* draw here, or */
+  FILE *svg;   /* write here */
+  double px_per_mm[2];
+  double origin_px[2]; /* canvas px of the scan's (0, 0) */
+  double unit_px;      /* of widths and letters */
+  int32_t width_px, height_px;
+} fg_canvas;
+
+typedef struct fg_pen {
+  uint32_t colour; /* 0xRRGGBB */
+  double width;    /* units */
+  double dash;     /* length of a dash and of a gap, units; 0: solid */
+} fg_pen;
+
+/* A canvas over (a picture of) a measured scan. */
+fg_canvas fg_canvas_over(const fg_picture *picture, const fg_measurement *measurement);
+
+/* A line through points; points closer than half a pixel are left out. */
+fg_status fg_canvas_line(fg_context *ctx, fg_canvas *canvas, const fg_point *mm, size_t count,
+                         fg_pen pen);
+
+/* `count` lines of two points each. */
+fg_status fg_canvas_segments(fg_context *ctx, fg_canvas *canvas, const fg_point (*mm)[2],
+                             size_t count, fg_pen pen);
+
+/* An arc of a circle, angles from the x axis towards y. */
+fg_status fg_canvas_arc(fg_context *ctx, fg_canvas *canvas, const fg_circle *circle,
+                        double from_rad, double to_rad, fg_pen pen);
+
+/* Text with a dark rim, so that it reads on any ground; its capitals are `height` units tall and
+ * their middle is at the point's height. `anchor` 0: it starts at the point; 0.5: centred there. */
+fg_status fg_canvas_text(fg_context *ctx, fg_canvas *canvas, fg_point mm, double height,
+                         double anchor, uint32_t colour, const char *text);
+
+/* Text in a picture has no letters beyond ASCII: α becomes alpha, ± becomes +-. */
+void fg_text_to_ascii(const char *text, char *ascii, size_t size);
+
+#endif

@@ -1,0 +1,16 @@
+/* The frame of every page, and text made harmless. A page is one file, without scripts. */
+#ifndef FG_PAGE_PAGE_H
+#define FG_PAGE_PAGE_H
+
+#include <stdio.h>
+
+/* A page from its doctype to its <main>, and from there to its end. */
+void fg_html_begin(FILE *out, const char *title);
+void fg_html_head(FILE *out, const char *title); /* up to the style: for a page with its own */
+void fg_html_style(FILE *out);                   /* what stands between <style> and </style> */
+void fg_html_end(FILE *out);
+
+/* Text with <, >, &, quotes and stray bytes made harmless. */
+void fg_html_text(FILE *out, const char *text);
+
+#endif

@@ -1,0 +1,71 @@
+/* A design's page. */
+#include <math.h>
+
+#include "core/file.h"
+#include "foilgauge/design_report.h"
+#include "foilgauge/words.h"
+#include "page/page.h"
+#include "page/provenance.h"
+#include "report/stiffness/map.h"
+#include "report/stiffness/table.h"
+
+static void put_tile(FILE *out, const char *title, double value, const char *unit,
+                     const char *where) {
+  fprintf(out, "<div><dt>%s</dt><dd>%s%.5g %s<small>%s</small></dd></div>\n", title,
+          value < 0 ? "−" : "", fabs(value), unit, where);
+}
+
+static void put_tiles(FILE *out, const fg_design_report *report) {
+  const fg_design *design = report->design;
+  fputs("<dl class=\"tiles four\">\n", out);
+  put_tile(out, "bump radius", design->bump_radius_mm, "mm", "R<sub>D</sub>, stated");
+  put_tile(out, "bump angle", design->bump_angle_deg, "°", "α<sub>D</sub>, stated");
+  put_tile(out, "overall radius", design->overall_radius_mm, "mm", "stated");
+  put_tile(out, "thickness", design->thickness_mm, "mm", "stated");
+  put_tile(out, "bump height", report->nominal->height_mm, "mm", "h<sub>D</sub>, eq 5.5");
+  put_tile(out, "arc length of a bump", report->nominal->arc_length_mm, "mm",
+           "α<sub>D</sub> R<sub>D</sub>");
+  put_tile(out, "intersection angle", report->nominal->intersection_angle_deg, "°",
+           "θ<sub>D</sub>");
+  put_tile(out, "clearance", 1000 * report->nominal->clearance_mm, "µm", "C<sub>D</sub>, eq 5.8");
+  fputs("</dl>\n", out);
+}
+
+fg_status fg_design_write_html(fg_context *ctx, const fg_design_report *report, FILE *out) {
+  if (!fg_foil_kind_has_bumps(report->design->kind))
+    return fg_fail(ctx, FG_ERR_DATA, "form \"%s\" has no bumps, so there is no page of them",
+                   fg_foil_kind_word(report->design->kind));
+  const fg_stiffness_case bump = fg_stiffness_case_of(report->design, report->material);
+  const fg_stiffness_map map = fg_stiffness_map_around(report->design, report->material);
+  const char *note = fg_stiffness_kind_note(report->design->kind);
+  double along = bump.lines[0].sensitivity.radius_at_arc_length;
+  fg_html_begin(out, report->design->name);
+  fputs("<section>\n<header><h1>Design ", out);
+  fg_html_text(out, report->design->name);
+  fputs("</h1></header>\n", out);
+  put_tiles(out, report);
+  fputs("<h2>Stiffness of a bump</h2>\n", out);
+  if (note) fprintf(out, "<p>%s</p>\n", note);
+  fg_html_stiffness_table(out, &bump, 1, fg_design_pitch_mm(report->design));
+  fprintf(
+      out,
+      "<p class=\"note\">E %.4g GPa, Poisson's ratio %.3g, friction %.3g; pitch s %.4g mm along "
+      "the sleeve. A percent more thickness is worth three of stiffness in every model.</p>\n",
+      report->material->youngs_modulus_gpa, report->material->poisson_ratio,
+      report->material->friction, fg_design_pitch_mm(report->design));
+  fputs("</section>\n<section>\n<h2 class=\"first\">What springback does to it</h2>\n<figure>",
+        out);
+  fg_stiffness_plot_map(out, &map, NULL, NULL);
+  fputs("<figcaption>Stiffness of the arch over the design's: orange stiffer, blue softer; dashed: "
+        "as designed. The thick orange line is springback at constant arc length",
+        out);
+  if (isfinite(along))
+    fprintf(out, ", along which a percent of radius is worth %s%.2g&nbsp;%% of stiffness at first",
+            along < 0 ? "−" : "+", fabs(along));
+  fputs(".</figcaption></figure>\n</section>\n", out);
+  fg_provenance from = {.design = report->design, .calibration = true};
+  if (report->path) fg_provenance_take_file(&from, report->path);
+  FG_TRY(fg_html_provenance_section(ctx, out, &from));
+  fg_html_end(out);
+  return fg_stream_finish(ctx, out, "the page");
+}

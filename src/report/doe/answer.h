@@ -1,0 +1,13 @@
+/* The first part of an experiment's page. */
+#ifndef FG_REPORT_DOE_ANSWER_H
+#define FG_REPORT_DOE_ANSWER_H
+
+#include <stdio.h>
+
+#include "report/doe/words.h"
+
+void fg_doe_put_answer(FILE *out, const fg_experiment *experiment, const fg_sentences *conclusions);
+/* What else is said: without what the answer says. */
+void fg_doe_put_conclusions(FILE *out, const fg_sentences *conclusions);
+
+#endif

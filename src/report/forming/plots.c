@@ -1,0 +1,207 @@
+#include "report/forming/plots.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#include "page/plot.h"
+#include "page/plot_marks.h"
+
+enum { WIDTH = 1000, HEIGHT = 330, SHOWN_BUMPS = 3 };
+
+/* What a line shows of a stretch. */
+typedef double piece_value(const fg_forming_piece *piece);
+
+static double die_of(const fg_forming_piece *p) {
+  return p->curvature_die;
+}
+static double free_of(const fg_forming_piece *p) {
+  return p->curvature;
+}
+static double bent_of(const fg_forming_piece *p) {
+  return p->stress_mpa[FG_FORMING_BENT];
+}
+static double heated_of(const fg_forming_piece *p) {
+  return p->stress_mpa[FG_FORMING_HEATED];
+}
+static double left_of(const fg_forming_piece *p) {
+  return p->stress_mpa[FG_FORMING_FREE];
+}
+
+/* The stretch around the middle bumps: all pitches are alike but for a measured die's. */
+static void shown_range(const fg_forming *f, double range[2]) {
+  int first = 1, last = (int)f->bump_count;
+  if (last > SHOWN_BUMPS) {
+    first = (last - SHOWN_BUMPS) / 2 + 1;
+    last = first + SHOWN_BUMPS - 1;
+  }
+  range[0] = f->length_mm;
+  range[1] = 0;
+  for (size_t i = 0; i < f->count; i++) {
+    const fg_forming_piece *p = &f->pieces[i];
+    bool land = p->kind == FG_ARC_LAND;
+    if (f->bump_count && (p->number < first || p->number > last + land)) continue;
+    range[0] = fmin(range[0], p->start_mm);
+    range[1] = fmax(range[1], p->start_mm + p->length_mm);
+  }
+}
+
+static double inside(const fg_plot *at, double y) {
+  return fmin(at->y_high, fmax(at->y_low, y));
+}
+
+/* Steps at the ends of stretches; what leaves the plot runs along its edge. */
+static void put_line(const fg_plot *at, const fg_forming *f, piece_value *value,
+                     const char *style) {
+  fprintf(at->out, "<path class=\"%s\" d=\"", style);
+  char mark = 'M';
+  for (size_t i = 0; i < f->count; i++) {
+    const fg_forming_piece *p = &f->pieces[i];
+    double from = fmax(p->start_mm, at->x_low), to = fmin(p->start_mm + p->length_mm, at->x_high);
+    if (to <= from) continue;
+    double y = fg_plot_y(at, inside(at, value(p)));
+    fprintf(at->out, "%c%.1f %.1fH%.1f", mark, fg_plot_x(at, from), y, fg_plot_x(at, to));
+    mark = 'L';
+  }
+  fputs("\"/>\n", at->out);
+}
+
+static void put_numbers(const fg_plot *at, const fg_forming *f) {
+  char text[32];
+  for (size_t b = 0; b < f->bump_count; b++) {
+    double from = f->length_mm, to = 0;
+    for (size_t i = 0; i < f->count; i++) {
+      const fg_forming_piece *p = &f->pieces[i];
+      if (p->kind != FG_ARC_BUMP || p->number != f->bumps[b].number) continue;
+      from = fmin(from, p->start_mm);
+      to = fmax(to, p->start_mm + p->length_mm);
+    }
+    double middle = 0.5 * (from + to);
+    if (middle < at->x_low || middle > at->x_high) continue;
+    snprintf(text, sizeof text, "bump %d", f->bumps[b].number);
+    fprintf(at->out, "<text class=\"x bump\" x=\"%.1f\" y=\"%.1f\">%s</text>\n",
+            fg_plot_x(at, middle), at->bottom - 8, text);
+  }
+}
+
+typedef struct line {
+  piece_value *value;
+  const char *style, *words;
+} line;
+
+static void put_key(const fg_plot *at, const line *lines, size_t count) {
+  for (size_t i = 0; i < count; i++) {
+    double x = 80 + 300 * (double)i;
+    fprintf(at->out, "<path class=\"%s\" d=\"M%.0f 14h26\"/><text x=\"%.0f\" y=\"19\">%s</text>\n",
+            lines[i].style, x, x + 34, lines[i].words);
+  }
+}
+
+static void put_along(FILE *out, const fg_forming *f, const line *lines, size_t count, double max,
+                      const char *title) {
+  double range[2];
+  shown_range(f, range);
+  fg_plot at = {out, WIDTH, 76, 985, 34, HEIGHT - 50, range[0], range[1], -max, max};
+  fg_plot_begin(&at, HEIGHT, title);
+  fg_plot_y_axis(&at, title);
+  fg_plot_x_numbers(&at);
+  fg_plot_x_title(&at, "s along the midline, mm");
+  fg_plot_segment(&at, at.x_low, 0, at.x_high, 0, "zero");
+  for (size_t i = 0; i < count; i++)
+    put_line(&at, f, lines[i].value, lines[i].style);
+  put_numbers(&at, f);
+  put_key(&at, lines, count);
+  fg_plot_end(&at);
+}
+
+void fg_forming_plot_curvature(FILE *out, const fg_forming *f) {
+  static const line lines[] = {{die_of, "s2", "in the die"}, {free_of, "s1", "free"}};
+  double max = 0;
+  /* Fillets are far sharper: they would flatten everything else. */
+  for (size_t i = 0; i < f->count; i++)
+    if (f->pieces[i].kind != FG_ARC_FILLET) max = fmax(max, fabs(f->pieces[i].curvature_die));
+  put_along(out, f, lines, 2, 1.6 * max, "curvature, 1/mm");
+}
+
+void fg_forming_plot_stress(FILE *out, const fg_forming *f) {
+  static const line lines[] = {{bent_of, "s2", "bent, cold, in the die"},
+                               {heated_of, "thin", "at the end of the treatment"},
+                               {left_of, "s1", "free"}};
+  put_along(out, f, lines, 3, 1.15 * fmax(1, f->largest_stress_mpa[FG_FORMING_BENT]),
+            "stress at the face, MPa");
+}
+
+/* ---- over the bumps ---- */
+
+static double radius_error(const fg_forming_bump *b) {
+  return b->fitted.radius_error_pct;
+}
+static double angle_error(const fg_forming_bump *b) {
+  return b->fitted.intersection_angle_error_pct;
+}
+
+void fg_forming_plot_errors(FILE *out, const fg_forming *f) {
+  static const struct {
+    double (*value)(const fg_forming_bump *);
+    const char *style, *words;
+  } series[] = {{radius_error, "s1", "bump radius"},
+                {angle_error, "s2", "intersection angle theta"}};
+  double low = 0, high = 0;
+  char text[16];
+  for (size_t i = 0; i < f->bump_count; i++)
+    for (size_t s = 0; s < 2; s++) {
+      low = fmin(low, series[s].value(&f->bumps[i]));
+      high = fmax(high, series[s].value(&f->bumps[i]));
+    }
+  double margin = fmax(0.2, 0.1 * (high - low));
+  fg_plot at = {out,          WIDTH,        76, 985, 34, 240, 0.4, (double)f->bump_count + 0.6,
+                low - margin, high + margin};
+  fg_plot_begin(&at, 290, "Errors of radius and intersection angle of every bump");
+  fg_plot_y_axis(&at, "error, %");
+  for (size_t i = 0; i < f->bump_count; i++) {
+    snprintf(text, sizeof text, "%d", f->bumps[i].number);
+    fg_plot_x_label(&at, fg_plot_x(&at, f->bumps[i].number), text);
+  }
+  fg_plot_x_title(&at, "bump");
+  fg_plot_segment(&at, at.x_low, 0, at.x_high, 0, "zero");
+  for (size_t s = 0; s < 2; s++) {
+    for (size_t i = 0; i < f->bump_count; i++)
+      if (isfinite(series[s].value(&f->bumps[i])))
+        fg_plot_dot(&at, f->bumps[i].number, series[s].value(&f->bumps[i]), 5, series[s].style);
+    double x = 80 + 300 * (double)s;
+    fprintf(out,
+            "<circle class=\"%s\" cx=\"%.0f\" cy=\"14\" r=\"5\"/><text x=\"%.0f\" y=\"19\">%s"
+            "</text>\n",
+            series[s].style, x, x + 12, series[s].words);
+  }
+  fg_plot_end(&at);
+}
+
+/* ---- a fit ---- */
+
+void fg_forming_plot_fit(FILE *out, const fg_forming_fit *fit) {
+  double low = INFINITY, high = -INFINITY;
+  for (size_t i = 0; i < fit->runs; i++) {
+    const fg_forming_run_fit *r = &fit->run[i];
+    low = fmin(low, fmin(r->measured, fmin(r->fitted, r->left_out)));
+    high = fmax(high, fmax(r->measured, fmax(r->fitted, r->left_out)));
+  }
+  double margin = fmax(1e-6, 0.06 * (high - low));
+  fg_plot at = {out,          WIDTH,         76,           985,          34, 380,
+                low - margin, high + margin, low - margin, high + margin};
+  fg_plot_begin(&at, 430, "Predicted against measured");
+  fg_plot_y_axis(&at, "predicted, %");
+  fg_plot_x_numbers(&at);
+  fg_plot_x_title(&at, "measured, %");
+  fg_plot_segment(&at, at.x_low, at.x_low, at.x_high, at.x_high, "hint");
+  for (size_t i = 0; i < fit->runs; i++) {
+    const fg_forming_run_fit *r = &fit->run[i];
+    fg_plot_segment(&at, r->measured, r->fitted, r->measured, r->left_out, "thin");
+    fg_plot_dot(&at, r->measured, r->left_out, 5, "s2");
+    fg_plot_dot(&at, r->measured, r->fitted, 5, "s1");
+  }
+  fputs("<circle class=\"s1\" cx=\"80\" cy=\"14\" r=\"5\"/><text x=\"92\" y=\"19\">fitted</text>"
+        "<circle class=\"s2\" cx=\"380\" cy=\"14\" r=\"5\"/><text x=\"392\" y=\"19\">by the other "
+        "runs alone</text>\n",
+        out);
+  fg_plot_end(&at);
+}

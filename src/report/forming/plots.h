@@ -1,0 +1,12 @@
+/* A forming drawn: along the strip, over the bumps; a fit over its runs. */
+#ifndef FG_REPORT_FORMING_PLOTS_H
+#define FG_REPORT_FORMING_PLOTS_H
+
+#include "foilgauge/forming.h"
+
+void fg_forming_plot_curvature(FILE *out, const fg_forming *forming);
+void fg_forming_plot_stress(FILE *out, const fg_forming *forming);
+void fg_forming_plot_errors(FILE *out, const fg_forming *forming);
+void fg_forming_plot_fit(FILE *out, const fg_forming_fit *fit);
+
+#endif

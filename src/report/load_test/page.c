@@ -1,0 +1,314 @@
+/* The page: a bearing per section; clearances over the azimuths, then loops and stiffness. */
+#include <math.h>
+#include <string.h>
+
+#include "core/file.h"
+#include "core/text.h"
+#include "foilgauge/load_report.h"
+#include "page/page.h"
+#include "page/provenance.h"
+#include "report/load_test/plots.h"
+#include "report/measure/page_parts.h"
+
+/* So many azimuths of a bearing are drawn with their loops; all are in the table. */
+enum { LOOPS_MAX = 24 };
+
+/* The tail of a distribution is not known below. */
+static const double p_min = 1e-12;
+
+static size_t count_flagged(const fg_load_test *test, size_t bearing, unsigned flag) {
+  size_t count = 0;
+  for (size_t i = 0; i < test->direction_count; i++)
+    count += test->directions[i].bearing == bearing && (test->directions[i].flags & flag);
+  return count;
+}
+
+static void put_tile(FILE *out, const char *title, const fg_load_value *v, double unit,
+                     int decimals, const char *word, const char *small) {
+  fprintf(out, "<div><dt>%s</dt><dd>", title);
+  if (isfinite(v->value))
+    fprintf(out, "%.*f %s<small>± %.*f (U = 2 u)%s%s</small></dd></div>\n", decimals,
+            unit * v->value, word, decimals, FG_COVERAGE_FACTOR * unit * v->u, small[0] ? ", " : "",
+            small);
+  else
+    fputs("–<small>not known</small></dd></div>\n", out);
+}
+
+/* A clearance of a bearing's directions; where foils press the rotor all around, why there is none.
+ */
+static void put_clearance_tile(FILE *out, const fg_load_test *test, size_t bearing,
+                               const char *title, const fg_load_value *v, const char *small) {
+  if (count_flagged(test, bearing, FG_LOAD_NO_GAP) == test->bearings[bearing].directions)
+    fprintf(out, "<div><dt>%s</dt><dd>–<small>no gap</small></dd></div>\n", title);
+  else
+    put_tile(out, title, v, 1000, 1, "µm", small);
+}
+
+static void put_tiles(FILE *out, const fg_load_test *test, size_t bearing) {
+  const fg_load_bearing *b = &test->bearings[bearing];
+  char min[60] = "", max[60] = "";
+  if (isfinite(b->min.value)) {
+    snprintf(min, sizeof min, "at %g°", b->min_measured_at_deg);
+    snprintf(max, sizeof max, "at %g°", b->max_measured_at_deg);
+  }
+  fputs("<dl class=\"tiles\">\n", out);
+  put_clearance_tile(out, test, bearing, "Smallest clearance", &b->min, min);
+  put_clearance_tile(out, test, bearing, "Largest clearance", &b->max, max);
+  put_tile(out, "Structural stiffness, mean", &b->stiffness, 1, 0, "N/mm",
+           count_flagged(test, bearing, FG_LOAD_AT_END) ? "a lower bound" : "");
+  put_tile(out, "Radial hysteresis", &b->hysteresis_n, 1, 2, "N", "no preload");
+  fputs("<div><dt>Smallest along</dt><dd>", out);
+  if (b->axis == FG_LOAD_AXIS_KNOWN)
+    fprintf(out, "%.1f° and %.1f°<small>± %.1f° (U = 2 u), fitted</small>", b->min_at_deg,
+            b->min_at_deg + 180, 2 * b->u_min_at_deg);
+  else
+    fprintf(out, "–<small>%s</small>", fg_load_axis_words(b->axis));
+  fputs("</dd></div>\n", out);
+  if (b->break_away.pulls) put_tile(out, "Preload", &b->preload_kpa, 1, 2, "kPa", "");
+  fputs("</dl>\n", out);
+}
+
+static void put_cell(FILE *out, const fg_load_value *v, double unit, int decimals,
+                     fg_verdict verdict) {
+  if (isfinite(v->value))
+    fprintf(out, "<td class=\"%s\">%.*f<i>± %.*f</i></td>", fg_verdict_word(verdict), decimals,
+            unit * v->value, decimals, FG_COVERAGE_FACTOR * unit * v->u);
+  else
+    fputs("<td>–</td>", out);
+}
+
+static void put_row(FILE *out, const fg_load_test *test, const fg_load_direction *d, bool lot) {
+  char flags[700];
+  /* Said once of the bearing, above the table. */
+  fg_load_flag_words(d->flags & ~(unsigned)FG_LOAD_AT_END, true, flags, sizeof flags);
+  fprintf(out, "<tr><td>%g°</td>", d->azimuth_deg);
+  put_cell(out, &d->clearance, 1000, 1,
+           fg_load_judge_value(test, FG_LOAD_CLEARANCE, &d->clearance));
+  put_cell(out, &d->unloading, 1000, 1, FG_VERDICT_NONE);
+  put_cell(out, &d->gap, 1000, 1, FG_VERDICT_NONE);
+  put_cell(out, &d->stiffness, 1, 0, fg_load_judge_value(test, FG_LOAD_STIFFNESS, &d->stiffness));
+  put_cell(out, &d->loss, 1, 4, fg_load_judge_value(test, FG_LOAD_LOSS, &d->loss));
+  put_cell(out, &d->loss_secant, 1, 4, FG_VERDICT_NONE);
+  put_cell(out, &d->loss_foil, 1, 4, FG_VERDICT_NONE);
+  if (lot) {
+    put_cell(out, &d->predicted, 1000, 1, FG_VERDICT_NONE);
+    put_cell(out, &d->difference, 1000, 1, FG_VERDICT_NONE);
+  }
+  fprintf(out, "<td>%zu</td><td class=\"words\">", d->cycles);
+  fg_html_text(out, flags);
+  fputs("</td></tr>\n", out);
+}
+
+static void put_table(FILE *out, const fg_load_test *test, size_t bearing) {
+  bool lot = test->bearings[bearing].in_lot;
+  fprintf(out,
+          "<div class=\"scroll\"><table>\n<tr><th>azimuth</th><th>clearance,<br>µm</th><th>"
+          "unloading,<br>µm</th><th>gap,<br>µm</th><th>stiffness,<br>N/mm</th><th>loss<br>factor"
+          "</th><th>of the<br>secant</th><th>of the<br>foil</th>%s<th>cycles</th>"
+          "<th class=\"w\">to know</th></tr>\n",
+          lot ? "<th>gap by<br>the lot, µm</th><th>difference<br>of gaps, µm</th>" : "");
+  for (size_t i = 0; i < test->direction_count; i++)
+    if (test->directions[i].bearing == bearing) put_row(out, test, &test->directions[i], lot);
+  fputs("</table></div>\n", out);
+}
+
+static void put_loops(FILE *out, const fg_load_test *test, size_t bearing) {
+  size_t drawn = 0;
+  fputs("<div class=\"panels\">\n", out);
+  for (size_t i = 0; i < test->direction_count; i++) {
+    const fg_load_direction *d = &test->directions[i];
+    if (d->bearing != bearing || drawn++ >= LOOPS_MAX) continue;
+    fprintf(out, "<figure><h3>%g°, force</h3>", d->azimuth_deg);
+    fg_load_plot_loops(out, test, d);
+    fprintf(out, "</figure>\n<figure><h3>%g°, stiffness</h3>", d->azimuth_deg);
+    fg_load_plot_stiffness(out, d);
+    fputs("</figure>\n", out);
+  }
+  fputs("</div>\n", out);
+  if (drawn > LOOPS_MAX)
+    fprintf(out, "<p class=\"note\">The first %d azimuths of %zu are drawn.</p>\n", LOOPS_MAX,
+            drawn);
+}
+
+static void put_sentences(FILE *out, const fg_load_test *test, size_t bearing) {
+  const fg_load_bearing *b = &test->bearings[bearing];
+  fputs("<ul class=\"words\">\n", out);
+  if (isfinite(b->p_value))
+    fprintf(out, "<li>The azimuths %s (p %s %.2g).</li>\n",
+            b->p_value < 0.01 ? "differ by more than their repeats do"
+                              : "do not differ by more than their repeats do",
+            b->p_value < p_min ? "&lt;" : "=", fmax(b->p_value, p_min));
+  size_t at_end = count_flagged(test, bearing, FG_LOAD_AT_END);
+  if (at_end)
+    fprintf(
+        out,
+        "<li>Of %zu of %zu azimuths the stiffness is largest at the last place before the turn: "
+        "a foil that hardens is stiffer at the turn and beyond, and K is a lower bound.</li>\n",
+        at_end, b->directions);
+  if (b->birge > 1.2)
+    fprintf(out,
+            "<li>The cycles differ by %.1f times what the scatter of the samples says; the "
+            "uncertainties are as much larger.</li>\n",
+            b->birge);
+  if (isfinite(b->hysteresis_n.value))
+    fprintf(out,
+            "<li>Radial hysteresis: half of what lies between the strokes is %.3f N + %.4f |F|, "
+            "friction of the foils and of the rig. Preload does not follow from it%s.</li>\n",
+            b->hysteresis_n.value, b->slope,
+            b->break_away.pulls ? "" : ": that takes a break-away test");
+  if (isfinite(b->noise_n)) {
+    fprintf(out, "<li>Noise of a sample: %.3g N, and %.2g µm of displacement", b->noise_n,
+            1000 * b->noise_mm);
+    if (b->step_mm > b->noise_mm)
+      fprintf(out, ", which was recorded in steps of %.3g µm", 1000 * b->step_mm);
+    fputs(".</li>\n", out);
+  }
+  if (b->in_lot && b->unknown_places)
+    fprintf(out, "<li>No clearance at %zu place%s of the lot's bearing: predicted without.</li>\n",
+            b->unknown_places, fg_plural(b->unknown_places));
+  if (test->options.lot && !b->in_lot)
+    fputs("<li>The lot has no bearing of this name.</li>\n", out);
+  fputs("</ul>\n", out);
+}
+
+static void put_break_away(FILE *out, const fg_load_test *test, size_t bearing) {
+  const fg_load_bearing *b = &test->bearings[bearing];
+  const fg_break_away *a = &b->break_away;
+  char flags[1200];
+  if (!a->pulls) return;
+  fprintf(out,
+          "<h2>Break-away test</h2>\n<div class=\"panels\"><figure><h3>%zu pull%s, %zu dead "
+          "weight%s</h3>",
+          a->pulls, fg_plural(a->pulls), a->weights, fg_plural(a->weights));
+  fg_load_plot_break_away(out, test, bearing);
+  fputs("</figure>\n<div><dl class=\"tiles\">\n", out);
+  put_tile(out, "Friction coefficient", &a->friction, 1, 4, "", "");
+  put_tile(out, "Friction without a weight", &a->intercept_n, 1, 3, "N",
+           isfinite(a->rig_n) ? "less the rig's" : "");
+  put_tile(out, "Preload", &b->preload_n, 1, 1, "N", "");
+  put_tile(out, "over the bore", &b->preload_kpa, 1, 2, "kPa", "");
+  fputs("</dl>\n<p class=\"note\">Friction is torque over the rotor's radius. Its line over dead "
+        "weight has the friction coefficient for a slope; intercept over slope is the preload, "
+        "and over π D L its mean pressure.</p>\n",
+        out);
+  fg_break_away_flag_words(a->flags, true, flags, sizeof flags);
+  if (flags[0]) {
+    fputs("<p><b>To know:</b> ", out);
+    fg_html_text(out, flags);
+    fputs(".</p>\n", out);
+  }
+  fputs("</div></div>\n", out);
+}
+
+/* Clearance over the azimuths, their table, their loops. */
+static void put_directions(FILE *out, const fg_load_test *test, size_t bearing) {
+  const fg_load_bearing *b = &test->bearings[bearing];
+  if (!b->directions) return;
+  put_sentences(out, test, bearing);
+  if (b->measured) {
+    fputs("<figure>", out);
+    fg_load_plot_azimuths(out, test, bearing);
+    fprintf(out,
+            "<figcaption>Clearance with U of its repeats alone; dashed the fitted harmonics, red "
+            "where they are smallest%s.</figcaption></figure>\n",
+            b->in_lot ? "; triangles the gap, orange the gap that the lot's foils leave a rotor"
+                      : "");
+  }
+  put_table(out, test, bearing);
+  fputs("<h2>Loops</h2>\n<p class=\"note\">Every cycle as recorded; the band is the threshold, "
+        "orange where the loading strokes pass it. Beside it dF/dx of the loading strokes with U = "
+        "2 u, orange its largest value up to just before the turn.</p>\n",
+        out);
+  put_loops(out, test, bearing);
+}
+
+static void put_bearing(FILE *out, const fg_load_test *test, size_t bearing) {
+  const fg_load_bearing *b = &test->bearings[bearing];
+  fputs("<section>\n<header><h1>Bearing ", out);
+  fg_html_text(out, b->name);
+  fputs("</h1>", out);
+  fg_html_verdict(out, fg_load_judge_bearing(test, bearing));
+  if (b->directions)
+    fprintf(out, "<p>%zu azimuth%s, threshold %g N</p></header>\n", b->directions,
+            b->directions == 1 ? "" : "s", test->options.threshold_n);
+  else
+    fputs("<p>break-away test alone</p></header>\n", out);
+  if (b->directions) put_tiles(out, test, bearing);
+  put_break_away(out, test, bearing);
+  put_directions(out, test, bearing);
+  fputs("</section>\n", out);
+}
+
+static void put_end(FILE *out, const fg_load_test *test) {
+  const fg_load_options *o = &test->options;
+  fputs("<section>\n<h2 class=\"first\">Tests that were read</h2>\n<div class=\"scroll\"><table>\n"
+        "<tr><th>file</th><th class=\"w\">not read</th><th class=\"w\">SHA-256</th></tr>\n",
+        out);
+  for (size_t i = 0; i < test->file_count; i++) {
+    fputs("<tr><td class=\"path\">", out);
+    fg_html_text(out, test->files[i].path);
+    fputs("</td><td class=\"w\">", out);
+    fg_html_text(out, test->files[i].not_read ? test->files[i].not_read : "");
+    fprintf(out, "</td><td class=\"w\">%.12s…</td></tr>\n", test->files[i].sha256);
+  }
+  fprintf(out,
+          "</table></div>\n<p class=\"note\">± is U = 2 u. Instruments, standard: load cell %g %%, "
+          "displacement %g %%, together %.2f %% of a stiffness. Loss factor: loop area / (π K X²), "
+          "X half of the travel, K the largest stiffness up to 1 %% of the travel (10 times the "
+          "displacement's noise where that is more) before the turn, or that of the loop's ends "
+          "(secant); a foil that hardens is stiffer beyond K's place; of the foil: energy lost in "
+          "its compression / (2π × elastic work), whatever "
+          "the gap is.</p>\n</section>\n",
+          o->u_force_pct, o->u_displacement_pct, hypot(o->u_force_pct, o->u_displacement_pct));
+}
+
+/* Limits, and what none was given for. */
+static void put_limits(FILE *out, const fg_load_test *test) {
+  const fg_load_options *o = &test->options;
+  bool comma = false;
+  fputs("<dl class=\"facts\">\n<dt>Limits</dt><dd>", out);
+  for (size_t i = 0; i < o->limit_count; i++) {
+    const fg_tolerance *l = &o->limits[i];
+    fprintf(out, "%s%s", i ? ", " : "", l->quantity);
+    if (isfinite(l->lower)) fprintf(out, " from %g", l->lower);
+    if (isfinite(l->upper)) fprintf(out, " to %g", l->upper);
+  }
+  fprintf(out, "%s</dd>\n<dt>Not judged</dt><dd>", o->limit_count ? "" : "none");
+  for (int q = 0; q < FG_LOAD_QUANTITIES; q++) {
+    const char *name = fg_load_quantity_name((fg_load_quantity)q);
+    bool judged = false;
+    for (size_t i = 0; i < o->limit_count; i++)
+      judged = judged || !strcmp(o->limits[i].quantity, name);
+    if (judged) continue;
+    fprintf(out, "%s%s", comma ? ", " : "", name);
+    comma = true;
+  }
+  fprintf(out, "%s</dd>\n</dl>\n", comma ? "" : "nothing");
+}
+
+static fg_status put_provenance(fg_context *ctx, FILE *out, const fg_load_test *test) {
+  fg_provenance from = {.of_scans = false};
+  for (size_t i = 0; i < test->file_count; i++)
+    fg_provenance_take_file(&from, test->files[i].path);
+  return fg_html_provenance_section(ctx, out, &from);
+}
+
+fg_status fg_load_write_html(fg_context *ctx, const fg_load_test *test, FILE *out) {
+  char words[300];
+  fg_report_outcome outcome;
+  fg_load_judge(test, &outcome, words, sizeof words);
+  fg_html_begin(out, "Load-displacement tests");
+  fputs("<section>\n<header><h1>Load-displacement tests of bearings</h1>", out);
+  fg_html_verdict(out, outcome.verdict);
+  fputs("</header>\n<p class=\"say\">", out);
+  fg_html_text(out, words);
+  fputs(".</p>\n", out);
+  put_limits(out, test);
+  fputs("</section>\n", out);
+  for (size_t i = 0; i < test->bearing_count; i++)
+    put_bearing(out, test, i);
+  put_end(out, test);
+  FG_TRY(put_provenance(ctx, out, test));
+  fg_html_end(out);
+  return fg_stream_finish(ctx, out, "the page");
+}

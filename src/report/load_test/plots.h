@@ -1,0 +1,21 @@
+/* The plots of a load-displacement test's page. */
+#ifndef FG_REPORT_LOAD_TEST_PLOTS_H
+#define FG_REPORT_LOAD_TEST_PLOTS_H
+
+#include <stdio.h>
+
+#include "foilgauge/load_test.h"
+
+/* Force over displacement as recorded, the threshold, where it is passed. */
+void fg_load_plot_loops(FILE *out, const fg_load_test *test, const fg_load_direction *direction);
+
+/* Stiffness over displacement with U. */
+void fg_load_plot_stiffness(FILE *out, const fg_load_direction *direction);
+
+/* Clearance of every azimuth with U of the repeats, the fitted curve, the lot's prediction. */
+void fg_load_plot_azimuths(FILE *out, const fg_load_test *test, size_t bearing);
+
+/* Break-away friction over dead weight, and the line. */
+void fg_load_plot_break_away(FILE *out, const fg_load_test *test, size_t bearing);
+
+#endif

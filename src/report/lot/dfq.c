@@ -1,0 +1,191 @@
+/* results.dfq: the Q-DAS ASCII transfer format. A line is a K field, its characteristic and its
+ * text; lines end with CR LF. Values stand in fields of their own: K0001 the value, K0002 its
+ * attribute (0: valid, 255: no value), K0004 its date and time, K0006 the batch, here the coil,
+ * K0009 a text, here what the manifest says besides and the scan, K0014 the part's ident, here the
+ * foil or the bearing: the characteristics of bearings that the manifest names follow those of
+ * foils, with a value per bearing, whose text names its foils. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/file.h"
+#include "core/json_writer.h"
+#include "core/text.h"
+#include "foilgauge/words.h"
+#include "lot/run/date.h"
+#include "report/lot/characteristics.h"
+#include "report/lot/writers.h"
+
+/* The manifest's column of what Q-DAS calls a batch; and what its texts hold at most. */
+#define COIL_COLUMN "coil"
+enum { TEXT_BYTES_MAX = 255 };
+
+/* A control character would start another field. */
+static void put_text(FILE *out, const char *text) {
+  while (*text)
+    if ((unsigned char)*text < 0x20 || *text == 0x7F) {
+      fputc(' ', out);
+      text++;
+    } else {
+      text += fg_utf8_put(out, text);
+    }
+}
+
+static void put_number(FILE *out, const char *field, size_t number, double value) {
+  char text[32];
+  if (!isfinite(value)) return;
+  fg_json_format(text, value);
+  fprintf(out, "%s/%zu %s\r\n", field, number, text);
+}
+
+static void put_characteristic(FILE *out, size_t number, const fg_lot_words *words,
+                               const fg_characteristic *one) {
+  const fg_quantity *row = one->row;
+  const fg_tolerance *tolerance = one->tolerance;
+  fprintf(out, "K2001/%zu %zu\r\nK2002/%zu %s%s", number, number, number,
+          one->owner == FG_QUANTITY_OF_BEARING ? "bearing: " : "", row->words);
+  if (one->number) fprintf(out, "%s%d", words->before_number, one->number);
+  fprintf(out, "\r\nK2022/%zu 6\r\n", number); /* decimal places */
+  put_number(out, "K2101", number, one->nominal);
+  if (tolerance) put_number(out, "K2110", number, tolerance->lower);
+  if (tolerance) put_number(out, "K2111", number, tolerance->upper);
+  fprintf(out, "K2142/%zu %s\r\n", number, row->unit);
+}
+
+/* dd.mm.yyyy/hh:mm:ss, of the manifest's column `date`, else of the scan's file. */
+static void put_date(FILE *out, const fg_lot *lot, size_t item, size_t number) {
+  size_t column = fg_manifest_column(&lot->manifest, FG_LOT_DATE_COLUMN);
+  double days =
+      fg_date_days(column == FG_NO_COLUMN ? lot->records[item].date
+                                          : fg_manifest_cell(&lot->manifest, item, column));
+  char date[FG_DATE_TEXT];
+  if (!isfinite(days)) return;
+  fg_date_format(days, date); /* 2026-11-20T13:45 */
+  fprintf(out, "K0004/%zu %.2s.%.2s.%.4s/%s:00\r\n", number, date + 8, date + 5, date,
+          date[10] ? date + 11 : "00:00");
+}
+
+/* The columns that have a field of their own, and those that are the scan's and the foil's names.
+ */
+static bool has_field(const char *column) {
+  static const char *const names[] = {"foil", FG_LOT_DATE_COLUMN, COIL_COLUMN, "scan"};
+  for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+    if (!strcmp(column, names[i])) return true;
+  return false;
+}
+
+static void append_words(char text[TEXT_BYTES_MAX], const char *name, const char *value) {
+  size_t used = strlen(text);
+  fg_text_clip(text + used, TEXT_BYTES_MAX - used, "%s%s %s", used ? ", " : "", name, value);
+}
+
+static void put_besides(FILE *out, const char *text, size_t number) {
+  if (!*text) return;
+  fprintf(out, "K0009/%zu ", number);
+  put_text(out, text);
+  fputs("\r\n", out);
+}
+
+/* "die A, operator Kim, scan foil_7.png": at most as many bytes as the format takes. */
+static void besides_foil(const fg_manifest *manifest, const fg_measured_part *part,
+                         char text[TEXT_BYTES_MAX]) {
+  size_t item = part->foil->item;
+  const char *scan = fg_manifest_scan(manifest, item), *slash = strrchr(scan, '/');
+  text[0] = '\0';
+  for (size_t i = 0; i < manifest->columns; i++) {
+    const char *cell = fg_manifest_cell(manifest, item, i);
+    if (*cell && !has_field(manifest->name[i])) append_words(text, manifest->name[i], cell);
+  }
+  append_words(text, "scan", slash && slash[1] ? slash + 1 : scan);
+}
+
+/* "pad 1 L7-01, pad 3 L7-02" */
+static void besides_bearing(const fg_lot_analysis *analysis, const fg_measured_part *part,
+                            char text[TEXT_BYTES_MAX]) {
+  text[0] = '\0';
+  for (size_t pad = 0; pad < analysis->layout.pads; pad++) {
+    const fg_lot_foil *foil = part->bearing->pad[pad];
+    char name[32];
+    snprintf(name, sizeof name, "pad %zu", pad + 1);
+    if (foil) append_words(text, name, fg_manifest_label(&analysis->lot->manifest, foil->item));
+  }
+}
+
+static void put_coil(FILE *out, const fg_manifest *manifest, size_t item, size_t number) {
+  size_t column = fg_manifest_column(manifest, COIL_COLUMN);
+  const char *cell = column == FG_NO_COLUMN ? "" : fg_manifest_cell(manifest, item, column);
+  if (!*cell) return;
+  fprintf(out, "K0006/%zu ", number);
+  put_text(out, cell);
+  fputs("\r\n", out);
+}
+
+static void put_ident(FILE *out, const fg_lot_analysis *analysis, const fg_measured_part *part,
+                      size_t number) {
+  const fg_lot *lot = analysis->lot;
+  fprintf(out, "K0014/%zu ", number);
+  put_text(out,
+           part->foil ? fg_manifest_label(&lot->manifest, part->foil->item) : part->bearing->name);
+  if (part->foil && lot->records[part->foil->item].foil_count > 1)
+    fprintf(out, " #%d", part->foil->foil->number);
+  fputs("\r\n", out);
+}
+
+static void put_part(FILE *out, const fg_lot_analysis *analysis, const fg_measured_part *part,
+                     const fg_characteristic *list, size_t count) {
+  const fg_lot *lot = analysis->lot;
+  char besides[TEXT_BYTES_MAX];
+  if (part->foil)
+    besides_foil(&lot->manifest, part, besides);
+  else
+    besides_bearing(analysis, part, besides);
+  for (size_t i = 0; i < count; i++) {
+    if ((list[i].owner == FG_QUANTITY_OF_BEARING) != !part->foil) continue;
+    double u, value = fg_characteristic_value(&list[i], part, &u);
+    bool known = isfinite(value);
+    put_number(out, "K0001", i + 1, known ? value : 0);
+    fprintf(out, "K0002/%zu %d\r\n", i + 1, known ? 0 : 255);
+    if (part->foil) put_date(out, lot, part->foil->item, i + 1);
+    if (part->foil) put_coil(out, &lot->manifest, part->foil->item, i + 1);
+    put_besides(out, besides, i + 1);
+    put_ident(out, analysis, part, i + 1);
+  }
+}
+
+static int by_foil(const void *a, const void *b) {
+  const fg_measured_part *one = a, *other = b;
+  if (!one->foil != !other->foil) return one->foil ? -1 : 1;
+  if (one->foil) return (one->foil > other->foil) - (one->foil < other->foil);
+  return (one->bearing > other->bearing) - (one->bearing < other->bearing);
+}
+
+/* Foils in the order of the lot, then bearings. */
+static void put_parts(FILE *out, const fg_lot_analysis *analysis, fg_measured_part *parts,
+                      size_t part_count, const fg_characteristic *list, size_t count) {
+  qsort(parts, part_count, sizeof *parts, by_foil);
+  for (size_t i = 0; i < part_count; i++)
+    put_part(out, analysis, &parts[i], list, count);
+}
+
+fg_status fg_lot_write_dfq(fg_context *ctx, const fg_lot_analysis *analysis, FILE *out) {
+  fg_characteristic *list;
+  fg_measured_part *parts;
+  size_t count, part_count;
+  FG_TRY(fg_characteristics_list(ctx, analysis, &list, &count));
+  fg_status status = fg_measured_parts_list(ctx, analysis, &parts, &part_count);
+  if (status != FG_OK) {
+    free(list);
+    return status;
+  }
+  fprintf(out, "K0100 %zu\r\nK1001 ", count);
+  put_text(out, analysis->lot->settings.design.name);
+  fputs("\r\nK1002 ", out);
+  put_text(out, analysis->lot->settings.name);
+  fputs("\r\n", out);
+  for (size_t i = 0; i < count; i++)
+    put_characteristic(out, i + 1, fg_lot_words_of(analysis), &list[i]);
+  put_parts(out, analysis, parts, part_count, list, count);
+  free(parts);
+  free(list);
+  return fg_stream_finish(ctx, out, "results.dfq");
+}

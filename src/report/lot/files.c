@@ -1,0 +1,95 @@
+/* Writes the files of a report. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/file.h"
+#include "core/text.h"
+#include "lot/run/date.h"
+#include "report/lot/foil_pages.h"
+#include "report/lot/writers.h"
+
+/* Which lots have a file. */
+typedef enum lot_kind { ALL, CURVED, FLAT } lot_kind;
+
+static const struct {
+  const char *name;
+  fg_lot_writer *write;
+  lot_kind of;
+} files[] = {
+    {"bumps.csv", fg_lot_write_bumps_csv, CURVED},
+    {"beams.csv", fg_lot_write_beams_csv, FLAT},
+    {"foils.csv", fg_lot_write_foils_csv, ALL},
+    {"bearings.csv", fg_lot_write_bearings_csv, CURVED},
+    {"results.qif", fg_lot_write_qif, ALL},
+    {"results.dfq", fg_lot_write_dfq, ALL},
+    {"index.html", fg_lot_write_page, ALL},
+    {"lot.json", fg_lot_write_json, ALL},
+};
+
+typedef struct file_writing {
+  fg_lot_writer *write;
+  const fg_lot_analysis *analysis;
+} file_writing;
+
+static fg_status write_stream(fg_context *ctx, void *user, FILE *out) {
+  const file_writing *of = user;
+  return of->write(ctx, of->analysis, out);
+}
+
+static fg_status write_file(fg_context *ctx, const char *folder, size_t i,
+                            const fg_lot_analysis *analysis) {
+  char *path;
+  fg_output output;
+  bool flat = analysis->lot->settings.design.kind == FG_FOIL_CANTILEVER;
+  if (files[i].of == (flat ? CURVED : FLAT)) return FG_OK;
+  FG_TRY(fg_lot_path(ctx, folder, files[i].name, &path));
+  fg_status status = fg_output_open(ctx, path, &output);
+  free(path);
+  FG_TRY(status);
+  file_writing of = {files[i].write, analysis};
+  size_t length = strlen(files[i].name), tail = strlen(".csv");
+  bool csv = length > tail && !strcmp(files[i].name + length - tail, ".csv");
+  return fg_output_end(
+      ctx, &output,
+      fg_csv_write(ctx, csv && analysis->lot->decimal_comma, write_stream, &of, output.stream));
+}
+
+static void take_outcome(const fg_lot_analysis *analysis, fg_lot_outcome *outcome) {
+  outcome->judged = analysis->outcome;
+  outcome->scans = analysis->lot->manifest.items;
+  outcome->failed = analysis->failed_scans;
+  outcome->foils = analysis->foil_count;
+  const fg_record *repeat;
+  outcome->repeated = fg_lot_count_repeats(analysis->lot, &repeat);
+  if (repeat)
+    fg_text_clip(outcome->first_repeated, sizeof outcome->first_repeated, "%s", repeat->error);
+  outcome->exceeded = analysis->exceeded;
+  for (int i = 0; i <= FG_VERDICT_NONE; i++)
+    outcome->foils_by_verdict[i] = analysis->by_verdict[i];
+  outcome->bearings = analysis->bearing_count;
+  outcome->bearings_judged = fg_report_of_bearing(&analysis->lot->settings.design, NULL, 0) > 0;
+  const char *no_date;
+  outcome->no_dates = fg_lot_date_wrong(&analysis->lot->manifest, &no_date);
+  if (no_date) fg_text_clip(outcome->first_no_date, sizeof outcome->first_no_date, "%s", no_date);
+  memcpy(outcome->assembly, analysis->assembly.statement, sizeof analysis->assembly.statement);
+  if (outcome->assembly[0][0] && !analysis->assembly.why[0])
+    fg_text_clip(outcome->assembly[3], sizeof outcome->assembly[3], "%s", fg_assembly_scope);
+  for (int i = 0; i <= FG_VERDICT_NONE; i++)
+    outcome->bearings_by_verdict[i] = analysis->bearings_by_verdict[i];
+}
+
+fg_status fg_lot_write_report(fg_context *ctx, const char *folder, const fg_lot *lot,
+                              fg_lot_outcome *outcome) {
+  fg_lot_analysis analysis;
+  FG_TRY(fg_lot_analyse(ctx, lot, &analysis));
+  analysis.folder = folder;
+  char **pages = NULL;
+  fg_status status = fg_lot_pages_find(ctx, folder, lot, &pages);
+  analysis.pages = pages;
+  for (size_t i = 0; i < sizeof files / sizeof files[0] && status == FG_OK; i++)
+    status = write_file(ctx, folder, i, &analysis);
+  if (status == FG_OK) take_outcome(&analysis, outcome);
+  fg_lot_pages_free(lot, pages);
+  fg_lot_analysis_free(&analysis);
+  return status;
+}

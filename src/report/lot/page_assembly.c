@@ -1,0 +1,266 @@
+/* The lot's page: bearings drawn from the foils. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "page/page.h"
+#include "page/plot_marks.h"
+#include "report/lot/page_parts.h"
+#include "report/lot/plots.h"
+
+enum { PLOT_WIDTH = 1000, POINTS = 200, UM_PER_MM = 1000 };
+
+typedef struct curve {
+  fg_density density;
+  bool there;
+} curve;
+
+static curve curve_of(const fg_assembly_result *result, size_t value) {
+  curve c = {.there = false};
+  fg_context unused;
+  c.there = fg_density_fit(&unused, result->value[value], result->values[value],
+                           FG_BANDWIDTH_SILVERMAN, &c.density) == FG_OK;
+  return c;
+}
+
+static double height_at(const curve *c, double um) {
+  return c->there ? fg_density_at(&c->density, um / UM_PER_MM) / UM_PER_MM : NAN;
+}
+
+static void reach(const fg_assembly_result *result, size_t value, const curve *c, fg_plot *at) {
+  size_t count = result->values[value];
+  if (!count) return;
+  double room = c->there ? 2.5 * c->density.bandwidth : 1e-3;
+  at->x_low = fmin(at->x_low, UM_PER_MM * (result->value[value][0] - room));
+  at->x_high = fmax(at->x_high, UM_PER_MM * (result->value[value][count - 1] + room));
+}
+
+static void put_curve(const fg_plot *at, const curve *c, const char *style) {
+  double x[POINTS + 1], y[POINTS + 1];
+  for (int i = 0; i <= POINTS; i++) {
+    x[i] = at->x_low + (at->x_high - at->x_low) * i / POINTS;
+    y[i] = fmin(height_at(c, x[i]), at->y_high);
+  }
+  if (c->there) fg_plot_line(at, x, y, POINTS + 1, style);
+}
+
+static void put_limit(const fg_plot *at, double um, const char *words) {
+  if (!(um >= at->x_low && um <= at->x_high)) return;
+  fg_plot_segment(at, um, 0, um, at->y_high, "limit");
+  bool right = um > (at->x_low + at->x_high) / 2;
+  fg_plot_text(at, um + (right ? -0.01 : 0.01) * (at->x_high - at->x_low), 0.93 * at->y_high,
+               right ? "end" : "key", words);
+}
+
+/* Limits are always in the picture. */
+static void put_limits(const fg_plot *at, const fg_assembly_plan *plan, const fg_quantity *row) {
+  for (size_t i = 0; i < plan->limits; i++) {
+    const fg_assembly_limit *limit = &plan->limit[i];
+    if (limit->row != row) continue;
+    bool touch = limit->lower == 0 && !isfinite(limit->upper);
+    put_limit(at, UM_PER_MM * limit->lower, touch ? "touches" : "limit");
+    put_limit(at, UM_PER_MM * limit->upper, "limit");
+  }
+}
+
+void fg_lot_plot_assembly(FILE *out, const fg_lot_analysis *analysis, size_t value) {
+  const fg_lot_assembly *assembly = &analysis->assembly;
+  const fg_assembly_plan *plan = &assembly->plan;
+  const fg_quantity *row = fg_assembly_row(value);
+  curve drawn = curve_of(&assembly->drawn, value), design = curve_of(&assembly->design, value);
+  fg_plot at = {out, PLOT_WIDTH, 92, 985, 14, 230, INFINITY, -INFINITY, 0, 0};
+  char title[160];
+  reach(&assembly->drawn, value, &drawn, &at);
+  reach(&assembly->design, value, &design, &at);
+  for (size_t i = 0; i < plan->limits; i++) {
+    const double limit[] = {plan->limit[i].lower, plan->limit[i].upper};
+    for (int k = 0; k < 2; k++)
+      if (plan->limit[i].row == row && isfinite(limit[k])) {
+        at.x_low = fmin(at.x_low, UM_PER_MM * limit[k] - 2);
+        at.x_high = fmax(at.x_high, UM_PER_MM * limit[k] + 2);
+      }
+  }
+  for (int i = 0; i <= POINTS && drawn.there; i++)
+    at.y_high =
+        fmax(at.y_high, 1.25 * height_at(&drawn, at.x_low + (at.x_high - at.x_low) * i / POINTS));
+  if (drawn.there && at.y_high > 0) {
+    snprintf(title, sizeof title, "%s, µm", row->words);
+    fg_plot_begin(&at, 280, title);
+    fg_plot_y_axis(&at, "density");
+    fg_plot_x_numbers(&at);
+    fg_plot_x_title(&at, title);
+    put_curve(&at, &design, "hypothesis");
+    put_curve(&at, &drawn, "curve");
+    put_limits(&at, plan, row);
+    double middle = UM_PER_MM * assembly->design.quantile[value][FG_ASSEMBLY_QUANTILES / 2];
+    bool right = middle > (at.x_low + at.x_high) / 2;
+    if (design.there)
+      fg_plot_text(&at, middle + (right ? -0.03 : 0.03) * (at.x_high - at.x_low), 0.8 * at.y_high,
+                   right ? "end" : "key", "at design");
+    fg_plot_end(&at);
+  }
+  if (drawn.there) fg_density_free(&drawn.density);
+  if (design.there) fg_density_free(&design.density);
+}
+
+static void put_percent(FILE *out, double share) {
+  if (isfinite(share))
+    fprintf(out, "%.1f", 100 * share);
+  else
+    fputs("–", out);
+}
+
+static void put_range(FILE *out, double low, double high) {
+  fputs("<td>", out);
+  put_percent(out, low);
+  fputs(" … ", out);
+  put_percent(out, high);
+  fputs("</td>", out);
+}
+
+static void put_share_row(FILE *out, const char *words, const fg_assembly_share *share,
+                          const fg_assembly_share *design) {
+  fprintf(out, "<tr><td class=\"words\">%s</td><td><b>", words);
+  put_percent(out, share->share);
+  fputs("</b></td>", out);
+  put_range(out, share->draws_low, share->draws_high);
+  put_range(out, share->foils_low, share->foils_high);
+  put_range(out, share->surely, share->possibly);
+  fputs("<td>", out);
+  put_percent(out, design->share);
+  fputs("</td></tr>\n", out);
+}
+
+static void limit_words(const fg_assembly_limit *limit, char *text, size_t size) {
+  bool low = isfinite(limit->lower), high = isfinite(limit->upper);
+  int used = snprintf(text, size, "%s", limit->row->words);
+  if (low && used > 0 && (size_t)used < size)
+    used += snprintf(text + used, size - (size_t)used, " ≥ %.4g", UM_PER_MM * limit->lower);
+  if (high && used > 0 && (size_t)used < size)
+    used += snprintf(text + used, size - (size_t)used, "%s ≤ %.4g", low ? " and" : "",
+                     UM_PER_MM * limit->upper);
+  if (used > 0 && (size_t)used < size)
+    snprintf(text + used, size - (size_t)used, " µm%s", limit->asked ? "" : " (told, not asked)");
+}
+
+static void put_shares(FILE *out, const fg_lot_analysis *analysis) {
+  const fg_lot_assembly *assembly = &analysis->assembly;
+  const fg_assembly_plan *plan = &assembly->plan;
+  char words[240];
+  fprintf(out,
+          "<div class=\"scroll\"><table><thead><tr><th>share of the bearings drawn, %%</th><th>"
+          "</th><th>by number<br>of draws</th><th>by number<br>of foils</th><th>by measurement<br>"
+          "surely … possibly</th><th>at design<br>± %.3g %%</th></tr></thead>\n<tbody>\n",
+          analysis->lot->settings.assembly.design_deviation_pct);
+  put_share_row(out, "<b>assemble: all that is asked</b>", &assembly->drawn.assembled,
+                &assembly->design.assembled);
+  for (size_t i = 0; i < plan->limits; i++) {
+    limit_words(&plan->limit[i], words, sizeof words);
+    put_share_row(out, words, &assembly->drawn.within[i], &assembly->design.within[i]);
+  }
+  fputs("</tbody></table></div>\n", out);
+}
+
+static void put_quantiles(FILE *out, const fg_lot_analysis *analysis) {
+  const fg_lot_assembly *assembly = &analysis->assembly;
+  fputs("<div class=\"scroll\"><table><thead><tr><th>µm</th><th>bearings</th>", out);
+  for (size_t k = 0; k < FG_ASSEMBLY_QUANTILES; k++)
+    fprintf(out, "<th>%.0f %%</th>", 100 * fg_assembly_probability[k]);
+  fputs("</tr></thead>\n<tbody>\n", out);
+  for (size_t i = 0; i < FG_ASSEMBLY_VALUES; i++)
+    for (int of_design = 0; of_design < 2; of_design++) {
+      const fg_assembly_result *result = of_design ? &assembly->design : &assembly->drawn;
+      if (!result->values[i]) continue;
+      fprintf(out, "<tr><td class=\"words\">%s</td><td class=\"words\">%s</td>",
+              of_design ? "" : fg_assembly_row(i)->words, of_design ? "at design" : "drawn");
+      for (size_t k = 0; k < FG_ASSEMBLY_QUANTILES; k++) {
+        fputs("<td>", out);
+        fg_lot_put_number(out, round(10 * UM_PER_MM * result->quantile[i][k]) / 10, 4);
+        fputs("</td>", out);
+      }
+      fputs("</tr>\n", out);
+    }
+  fputs("</tbody></table></div>\n", out);
+}
+
+static void put_changes(FILE *out, const fg_lot_assembly *assembly) {
+  if (!assembly->changes) return;
+  fputs("<div class=\"scroll\"><table><thead><tr><th>the same lot with</th><th>assemble, %</th>"
+        "<th>change</th></tr></thead>\n<tbody>\n",
+        out);
+  for (size_t i = 0; i < assembly->changes; i++) {
+    const fg_lot_change *change = &assembly->change[i];
+    fprintf(out, "<tr><td class=\"words\">%s</td><td>", change->words);
+    put_percent(out, change->share);
+    fprintf(out, "</td><td>%s%.1f%s</td></tr>\n", change->gain < 0 ? "−" : "+",
+            100 * fabs(change->gain), change->clear ? "" : " (chance)");
+  }
+  fputs("</tbody></table></div>\n", out);
+}
+
+static void put_left_out(FILE *out, const fg_lot_analysis *analysis) {
+  const fg_lot_assembly *assembly = &analysis->assembly;
+  size_t left = analysis->foil_count - assembly->stock.foils;
+  const char *separator = "";
+  if (!left) return;
+  fprintf(out, "<p class=\"note\">Not drawn from, %zu of %zu foils: ", left, analysis->foil_count);
+  for (int why = FG_LOT_IN_STOCK + 1; why < FG_LOT_LEFT_OUT; why++) {
+    if (!assembly->left_out[why]) continue;
+    fprintf(out, "%s%s, %zu", separator, fg_lot_left_out_words((fg_lot_left_out)why),
+            assembly->left_out[why]);
+    separator = "; ";
+  }
+  fputs(". Which: lot.json.</p>\n", out);
+}
+
+static void put_meaning(FILE *out, const fg_lot_analysis *analysis) {
+  const fg_lot_assembly *assembly = &analysis->assembly;
+  fprintf(
+      out,
+      "<p class=\"note\">A bearing takes %zu different foils, whole ones, which go back after it; "
+      "seed %llu. By number of draws: what %zu draws leave open (Clopper and Pearson, %.3g %%). By "
+      "number of foils: these are %zu of those that the process makes (the interval of as many "
+      "independent bearings as these foils are worth, which foils drawn anew tell; where all "
+      "bearings or none are within, as of %zu without a common foil). By measurement: "
+      "value ± U inside the limit, and not outside. At design: every clearance anywhere within ± "
+      "%.3g %% of the design&#39;s %.4g µm. A change is the same lot, drawn again.%s</p>\n",
+      assembly->plan.layout.pads, (unsigned long long)assembly->plan.seed, assembly->plan.bearings,
+      100 * assembly->plan.confidence, assembly->stock.foils,
+      assembly->stock.foils / assembly->plan.layout.pads,
+      analysis->lot->settings.assembly.design_deviation_pct,
+      UM_PER_MM * analysis->lot->nominal.clearance_mm,
+      assembly->centred ? ""
+                        : " The crowns leave half of the bearing open: the rotor has no place of "
+                          "most room, and is asked to be free on the sleeve&#39;s axis.");
+}
+
+void fg_lot_put_assembly(FILE *out, const fg_lot_analysis *analysis) {
+  const fg_lot_assembly *assembly = &analysis->assembly;
+  if (!assembly->asked) return;
+  fputs("<section class=\"part\">\n<h1>How many bearings of this lot assemble</h1>\n<ul "
+        "class=\"said\">\n",
+        out);
+  for (size_t i = 0; i < sizeof assembly->statement / sizeof *assembly->statement; i++) {
+    if (!assembly->statement[i][0]) continue;
+    fputs("<li>", out);
+    fg_html_text(out, assembly->statement[i]);
+    fputs("</li>\n", out);
+  }
+  fputs("</ul>\n", out);
+  fprintf(out, "<p class=\"note\">%s</p>\n", fg_assembly_scope);
+  put_left_out(out, analysis);
+  if (!assembly->why[0]) {
+    put_shares(out, analysis);
+    for (size_t i = 0; i < FG_ASSEMBLY_VALUES; i++) {
+      if (!assembly->drawn.values[i]) continue;
+      fputs("<figure>", out);
+      fg_lot_plot_assembly(out, analysis, i);
+      fputs("</figure>\n", out);
+    }
+    fputs("<p class=\"note\">Solid: the bearings drawn; dashed: at design; red: limits.</p>\n",
+          out);
+    put_changes(out, assembly);
+    put_quantiles(out, analysis);
+    put_meaning(out, analysis);
+  }
+  fputs("</section>\n", out);
+}

@@ -1,0 +1,183 @@
+/* The lot's page: how much of the deviation is the dies'. */
+#include <math.h>
+
+#include "lot/statistics/dies.h"
+#include "page/page.h"
+#include "page/plot.h"
+#include "page/plot_marks.h"
+#include "report/lot/page_parts.h"
+
+enum { NUMBERS_MAX = FG_LOT_DIE_BUMPS_MAX };
+
+/* Mean errors of one die's foils by bump number, and the die's. */
+typedef struct curve {
+  double number[NUMBERS_MAX], foils[NUMBERS_MAX], die[NUMBERS_MAX];
+  size_t count;
+} curve;
+
+static void find_curve(const fg_lot_analysis *analysis, const fg_lot_die *die, curve *out) {
+  double design_mm = analysis->lot->settings.design.bump_radius_mm;
+  out->count = 0;
+  for (int number = 1; number <= NUMBERS_MAX; number++) {
+    double sum = 0, n = 0, own = NAN;
+    for (size_t i = 0; i < analysis->foil_count; i++) {
+      const fg_lot_foil *foil = &analysis->foils[i];
+      for (size_t k = 0; k < foil->foil->bump_count; k++) {
+        const fg_bump *bump = &foil->foil->bumps[k];
+        if (bump->number != number || !fg_lot_bump_counts(foil->foil, bump)) continue;
+        fg_lot_to_die to = fg_lot_bump_to_die(analysis->lot, foil, bump);
+        if (to.die != die || !isfinite(bump->radius_error_pct)) continue;
+        sum += bump->radius_error_pct;
+        n++;
+        own = 100 * (to.radius_mm - design_mm) / design_mm;
+      }
+    }
+    if (n == 0) continue;
+    out->number[out->count] = number;
+    out->foils[out->count] = sum / n;
+    out->die[out->count++] = own;
+  }
+}
+
+static void put_key(FILE *out, const char *style, double x, const char *name, const char *words) {
+  fprintf(out, "<circle class=\"%s\" cx=\"%.0f\" cy=\"14\" r=\"5\"/><text x=\"%.0f\" y=\"19\">%s ",
+          style, x, x + 12, words);
+  fg_html_text(out, name);
+  fputs("</text>\n", out);
+}
+
+/* One die: its foils' mean error, and its own. */
+static void put_plot(FILE *out, const fg_lot_analysis *analysis, const fg_lot_die *die,
+                     const double range[2]) {
+  curve c;
+  char text[16];
+  find_curve(analysis, die, &c);
+  if (!c.count) return;
+  double margin = fmax(0.05, 0.1 * (range[1] - range[0]));
+  fg_plot at = {out,
+                520,
+                66,
+                510,
+                34,
+                220,
+                c.number[0] - 0.6,
+                c.number[c.count - 1] + 0.6,
+                range[0] - margin,
+                range[1] + margin};
+  fg_plot_begin(&at, 270, "Radius error of the foils and of their die, by bump number");
+  fg_plot_y_axis(&at, "against design, %");
+  for (size_t i = 0; i < c.count; i++) {
+    snprintf(text, sizeof text, "%.0f", c.number[i]);
+    fg_plot_x_label(&at, fg_plot_x(&at, c.number[i]), text);
+    fg_plot_segment(&at, c.number[i], c.die[i], c.number[i], c.foils[i], "hint");
+  }
+  fg_plot_x_title(&at, "bump");
+  fg_plot_line(&at, c.number, c.die, c.count, "s2");
+  fg_plot_line(&at, c.number, c.foils, c.count, "s1");
+  for (size_t i = 0; i < c.count; i++) {
+    fg_plot_dot(&at, c.number[i], c.die[i], 5, "s2");
+    fg_plot_dot(&at, c.number[i], c.foils[i], 5, "s1");
+  }
+  put_key(out, "s1", 80, die->name, "foils of die");
+  put_key(out, "s2", 300, die->name, "die");
+  fg_plot_end(&at);
+}
+
+static void find_range(const fg_lot_analysis *analysis, const fg_lot_dies *dies, double range[2]) {
+  range[0] = range[1] = 0;
+  for (size_t d = 0; d < dies->count; d++) {
+    curve c;
+    find_curve(analysis, dies->sum[d].die, &c);
+    for (size_t i = 0; i < c.count; i++) {
+      range[0] = fmin(range[0], fmin(c.die[i], c.foils[i]));
+      range[1] = fmax(range[1], fmax(c.die[i], c.foils[i]));
+    }
+  }
+}
+
+static void put_sentences(FILE *out, const fg_lot_dies *dies) {
+  fputs("<ul class=\"words\">\n", out);
+  for (size_t i = 0; i < dies->count; i++) {
+    const fg_lot_die_sum *sum = &dies->sum[i];
+    fputs("<li>Die ", out);
+    fg_html_text(out, sum->die->name);
+    fprintf(
+        out,
+        ": its foils' radii are off the design's by %+.2f %%, of which the die itself has %+.3f ± "
+        "%.3f %%; springback is what is left, %+.2f %% of the die.",
+        sum->design_mean_pct, sum->die_error_pct, FG_COVERAGE_FACTOR * sum->u_die_error_pct,
+        sum->die_mean_pct);
+    if (sum->by_mean)
+      fprintf(out, " Held against the die's mean, as no trace shows theirs: %zu of %zu bumps.",
+              sum->by_mean, sum->bumps);
+    fputs("</li>\n", out);
+  }
+  if (dies->count == 2) {
+    fputs("<li>The radii of the foils of die ", out);
+    fg_html_text(out, dies->sum[1].die->name);
+    fputs(" and of die ", out);
+    fg_html_text(out, dies->sum[0].die->name);
+    fprintf(out, " differ by %+.3f %%; the dies differ by %+.3f %%, which is %.0f %% of it.</li>\n",
+            dies->foils_differ_pct, dies->dies_differ_pct, dies->explained_difference_pct);
+  }
+  if (isfinite(dies->explained_variance_pct)) {
+    fprintf(out,
+            "<li>Over all %zu bumps the standard deviation is %.3f %% against the design and %.3f "
+            "%% against the dies: ",
+            dies->bumps, dies->design_sd_pct, dies->die_sd_pct);
+    if (dies->explained_variance_pct > 0)
+      fprintf(out, "the dies explain %.0f %% of the variance.</li>\n",
+              dies->explained_variance_pct);
+    else
+      fputs("the dies explain none of the scatter.</li>\n", out);
+  }
+  fputs("</ul>\n", out);
+}
+
+static void put_table(FILE *out, const fg_lot_dies *dies) {
+  fputs("<div class=\"scroll\"><table><thead><tr><th>die</th><th>foils</th><th>bumps</th><th>die "
+        "against<br>design, %</th><th>foils against<br>design, %</th><th>s</th><th>foils "
+        "against<br>die, "
+        "%</th><th>s</th><th>the die's share<br>of the mean, %</th></tr></thead>\n<tbody>\n",
+        out);
+  for (size_t i = 0; i < dies->count; i++) {
+    const fg_lot_die_sum *sum = &dies->sum[i];
+    fputs("<tr><td>", out);
+    fg_html_text(out, sum->die->name);
+    fprintf(out,
+            "</td><td>%zu</td><td>%zu</td><td>%+.3f ± %.3f</td><td>%+.3f</td><td>%.3f</td>"
+            "<td>%+.3f</td><td>%.3f</td><td>%.1f</td></tr>\n",
+            sum->foils, sum->bumps, sum->die_error_pct, FG_COVERAGE_FACTOR * sum->u_die_error_pct,
+            sum->design_mean_pct, sum->design_sd_pct, sum->die_mean_pct, sum->die_sd_pct,
+            sum->explained_pct);
+  }
+  fprintf(out,
+          "</tbody><tfoot><tr class=\"total\"><td>all</td><td></td><td>%zu</td><td></td><td></td>"
+          "<td>%.3f</td><td></td><td>%.3f</td><td></td></tr></tfoot></table></div>\n",
+          dies->bumps, dies->design_sd_pct, dies->die_sd_pct);
+}
+
+void fg_lot_put_dies(FILE *out, const fg_lot_analysis *analysis) {
+  fg_lot_dies dies;
+  double range[2];
+  fg_lot_analyse_dies(analysis, &dies);
+  if (!dies.count) return;
+  find_range(analysis, &dies, range);
+  fputs("<section class=\"part\">\n<h1>Dies: what of the deviation is theirs</h1>\n", out);
+  put_sentences(out, &dies);
+  fputs("<div class=\"pair\">", out);
+  for (size_t i = 0; i < dies.count; i++) {
+    fputs("<figure>", out);
+    put_plot(out, analysis, dies.sum[i].die, range);
+    fputs("</figure>\n", out);
+  }
+  fputs(
+      "</div>\n<p class=\"note\">Orange: mean radius error of the foils against the design; blue: "
+      "the die&#39;s, as <code>foilgauge die</code> measured it (mean of its halves); the dashed "
+      "way between them is springback.</p>\n",
+      out);
+  put_table(out, &dies);
+  fputs("<p class=\"note\">Bump by bump: radius_error_to_die_pct in bumps.csv. What all dies err "
+        "by alike is no part of the scatter.</p>\n</section>\n",
+        out);
+}

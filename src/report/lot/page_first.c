@@ -1,0 +1,353 @@
+/* The lot's page: what is seen first. Verdict and process, counts, the worst three, one chart. */
+#include <math.h>
+#include <string.h>
+
+#include "core/text.h"
+#include "foilgauge/distribution.h"
+#include "foilgauge/report.h"
+#include "foilgauge/words.h"
+#include "page/page.h"
+#include "report/doe/words.h"
+#include "report/lot/page_parts.h"
+#include "report/lot/plots.h"
+#include "report/measure/page_parts.h"
+#include "report/value_words.h"
+
+/* What a count means, in colour and in a mark: a page is printed in black and white too. */
+typedef enum tile_tone { TONE_PLAIN, TONE_GOOD, TONE_BAD, TONE_OPEN } tile_tone;
+
+static void put_tile(FILE *out, tile_tone tone, const char *title, size_t count,
+                     const char *small) {
+  static const struct {
+    const char *style, *mark;
+  } looks[] = {[TONE_PLAIN] = {"", ""},
+               [TONE_GOOD] = {" class=\"good\"", "✓ "},
+               [TONE_BAD] = {" class=\"bad\"", "✗ "},
+               [TONE_OPEN] = {" class=\"open\"", "? "}};
+  fprintf(out, "<div%s><dt>%s</dt><dd>%s%zu", looks[tone].style, title, looks[tone].mark, count);
+  if (small && *small) fprintf(out, "<small>%s</small>", small);
+  fputs("</dd></div>\n", out);
+}
+
+/* A count of nothing has no tone. */
+static tile_tone tone_of(size_t count, tile_tone what) {
+  return count ? what : TONE_PLAIN;
+}
+
+static bool foils_are_judged(const fg_lot_analysis *analysis) {
+  const fg_design *design = &analysis->lot->settings.design;
+  return design->tolerance_count > fg_report_of_bearing(design, NULL, 0);
+}
+
+static void put_scan_tiles(FILE *out, const fg_lot_analysis *analysis) {
+  size_t failed = analysis->failed_scans, scans = analysis->lot->manifest.items;
+  fputs("<dl class=\"tiles\">\n", out);
+  put_tile(out, TONE_PLAIN, "Scans", scans, failed ? "" : "all could be measured");
+  if (failed) put_tile(out, TONE_OPEN, "Scans not measured", failed, "named below");
+  const fg_record *repeat;
+  size_t repeats = fg_lot_count_repeats(analysis->lot, &repeat);
+  if (repeats)
+    put_tile(out, TONE_OPEN, "of them there twice", repeats, "the same bytes under another name");
+  put_tile(out, TONE_PLAIN, "Foils on them", analysis->foil_count, "");
+  if (analysis->lot->settings.design.kind != FG_FOIL_ARC) {
+    const fg_lot_words *words = fg_lot_words_of(analysis);
+    put_tile(out, TONE_PLAIN, words->counted, analysis->part_count, "");
+    if (analysis->left_out)
+      put_tile(out, TONE_OPEN, words->damaged, analysis->left_out,
+               "judged, but in no statistics of this page");
+  }
+  fputs("</dl>\n", out);
+}
+
+static void put_foil_tiles(FILE *out, const fg_lot_analysis *analysis) {
+  const size_t *by = analysis->by_verdict;
+  bool judged = foils_are_judged(analysis);
+  size_t not_measured = by[FG_VERDICT_NOT_MEASURED];
+  if (!judged && !by[FG_VERDICT_FAIL] && !not_measured) return;
+  fputs("<dl class=\"tiles\">\n", out);
+  if (judged)
+    put_tile(out, tone_of(by[FG_VERDICT_PASS], TONE_GOOD), "Foils pass", by[FG_VERDICT_PASS], "");
+  put_tile(out, tone_of(by[FG_VERDICT_FAIL], TONE_BAD), "Foils fail", by[FG_VERDICT_FAIL], "");
+  if (judged)
+    put_tile(out, tone_of(by[FG_VERDICT_UNDECIDED], TONE_OPEN), "Foils, cannot tell",
+             by[FG_VERDICT_UNDECIDED], by[FG_VERDICT_UNDECIDED] ? "a limit lies within ± U" : "");
+  if (not_measured) put_tile(out, TONE_OPEN, "Foils not measured", not_measured, "");
+  fputs("</dl>\n", out);
+}
+
+static void put_bearing_tiles(FILE *out, const fg_lot_analysis *analysis) {
+  const fg_lot *lot = analysis->lot;
+  const size_t *by = analysis->bearings_by_verdict;
+  if (!fg_report_of_bearing(&lot->settings.design, NULL, 0)) return;
+  bool assumed = fg_manifest_column(&lot->manifest, lot->settings.bearing_column) == FG_NO_COLUMN;
+  fputs("<dl class=\"tiles\">\n", out);
+  put_tile(out, TONE_PLAIN, "Bearings", analysis->bearing_count,
+           assumed ? "foils in a row" : "as the manifest says");
+  put_tile(out, tone_of(by[FG_VERDICT_PASS], TONE_GOOD), "Bearings pass", by[FG_VERDICT_PASS], "");
+  put_tile(out, tone_of(by[FG_VERDICT_FAIL], TONE_BAD), "Bearings fail", by[FG_VERDICT_FAIL], "");
+  if (by[FG_VERDICT_UNDECIDED])
+    put_tile(out, TONE_OPEN, "Bearings, cannot tell", by[FG_VERDICT_UNDECIDED], "");
+  if (by[FG_VERDICT_NOT_MEASURED])
+    put_tile(out, TONE_OPEN, "Bearings not measured", by[FG_VERDICT_NOT_MEASURED], "");
+  fputs("</dl>\n", out);
+}
+
+void fg_lot_put_counts(FILE *out, const fg_lot_analysis *analysis) {
+  put_scan_tiles(out, analysis);
+  put_foil_tiles(out, analysis);
+  put_bearing_tiles(out, analysis);
+}
+
+/* Beside the verdict: foils that pass today say nothing of tomorrow's. */
+static void put_process(FILE *out, const fg_lot_process *process) {
+  size_t open = process->unstable - process->explained;
+  if (!process->watched)
+    fputs("<span class=\"verdict process\">Process: too few foils to tell</span>", out);
+  else if (!process->unstable)
+    fputs("<span class=\"verdict pass process\">Process stable</span>", out);
+  else if (!open)
+    fputs("<span class=\"verdict cannot_tell process\">Process: groups differ</span>", out);
+  else
+    fprintf(out,
+            "<span class=\"verdict cannot_tell process\">Process not stable: %zu of %zu "
+            "quantities</span>",
+            open, process->watched);
+}
+
+/* " (foils A, B and 3 more)" */
+static void put_signals(FILE *out, const fg_lot_analysis *analysis,
+                        const fg_lot_quantity *quantity) {
+  enum { NAMED = 8 };
+  size_t told = 0, foil = 0, foils = quantity->chart.signals;
+  if (!foils) return;
+  fputs(foils == 1 ? " (foil " : " (foils ", out);
+  for (size_t i = 0; i < quantity->chart.count && told < NAMED; i++, foil++) {
+    while (!quantity->size[foil])
+      foil++;
+    if (!quantity->chart.point[i].rules) continue;
+    if (told) fputs(told + 1 == foils ? " and " : ", ", out);
+    fg_lot_put_foil_link(out, analysis, &analysis->foils[foil]);
+    told++;
+  }
+  if (told < foils) fprintf(out, " and %zu more", foils - told);
+  fputs(")", out);
+}
+
+/* In the unit that people read such differences in: µm of mm. */
+static void put_change(FILE *out, const fg_quantity *row, double change, double u) {
+  bool fine = !strcmp(row->unit, "mm");
+  char words[80];
+  fg_scan_loop_value_words((fine ? 1000 : 1) * fabs(change), (fine ? 1000 : 1) * u, words,
+                           sizeof words);
+  fprintf(out, "%s %s", words, fine ? "µm" : row->unit);
+}
+
+/* ": in the order of the foils it rises by 2.03 ± 0.31 µm a foil, 28.4 ± 4.3 µm from the first to
+ * the last (p = 0.0002); without this trend no signal is left." U is of 95 %. */
+static void put_trend(FILE *out, const fg_lot_quantity *quantity) {
+  const fg_lot_trend *trend = &quantity->trend;
+  double u = trend->u_per_foil * fg_distribution_t_quantile(0.975, trend->dof) / FG_COVERAGE_FACTOR;
+  double steps = (double)(trend->foils - 1);
+  char p_value[16];
+  fprintf(out, ": in the order of the foils it %s by ", trend->per_foil < 0 ? "falls" : "rises");
+  put_change(out, quantity->row, trend->per_foil, u);
+  fputs(" a foil, ", out);
+  put_change(out, quantity->row, steps * trend->per_foil, steps * u);
+  fg_p_value_text(p_value, trend->p_value);
+  fputs(" from the first to the last (p ", out);
+  fg_html_text(out, *p_value == '<' ? "" : "= ");
+  fg_html_text(out, p_value);
+  fputs("); without this trend ", out);
+  if (trend->signals_left)
+    fprintf(out, "%zu of the signals %s left.</li>\n", trend->signals_left,
+            trend->signals_left == 1 ? "is" : "are");
+  else
+    fputs("no signal is left.</li>\n", out);
+}
+
+/* "The signals of bump radius come from the column die: ... each by itself shows none." */
+static void put_cause(FILE *out, const fg_lot_analysis *analysis, const fg_lot_quantity *quantity) {
+  const fg_lot_cause *cause = &quantity->cause;
+  fprintf(out, "<li>%zu signal%s of the %s", quantity->chart.signals,
+          quantity->chart.signals == 1 ? "" : "s", quantity->row->words);
+  if (fg_lot_is_trend(quantity)) {
+    put_signals(out, analysis, quantity);
+    put_trend(out, quantity);
+    return;
+  }
+  if (cause->column == FG_NO_COLUMN) {
+    put_signals(out, analysis, quantity);
+    fprintf(out, ": no group of foils explains %s.</li>\n",
+            quantity->chart.signals == 1 ? "it" : "them");
+    return;
+  }
+  fg_lot_put_cause(out, analysis, quantity);
+  fputs("</li>\n", out);
+}
+
+void fg_lot_put_cause(FILE *out, const fg_lot_analysis *analysis, const fg_lot_quantity *quantity) {
+  const fg_lot_cause *cause = &quantity->cause;
+  const char *separator = "";
+  if (cause->column == FG_NO_COLUMN) return;
+  fputs(" come from the groups of the column <b>", out);
+  fg_html_text(out, analysis->lot->manifest.name[cause->column]);
+  fprintf(out, "</b>%s: ", cause->in_turn ? ", whose foils lie in turn" : "");
+  for (size_t g = 0; g < cause->groups; g++) {
+    fputs(separator, out);
+    fg_html_text(out, cause->name[g]);
+    fputs(" has a mean of ", out);
+    fg_lot_put_value(out, quantity->row, cause->mean[g]);
+    fprintf(out, " %s", quantity->row->unit);
+    separator = g + 2 == cause->groups ? " and " : ", ";
+  }
+  if (cause->signals_left)
+    fprintf(out, "; with all groups moved to one mean %zu of them %s left.", cause->signals_left,
+            cause->signals_left == 1 ? "is" : "are");
+  else
+    fputs("; with all groups moved to one mean no signal is left.", out);
+}
+
+static void put_causes(FILE *out, const fg_lot_analysis *analysis) {
+  if (!analysis->process.unstable) return;
+  fputs("<ul class=\"flags\">\n", out);
+  for (size_t i = 0; i < analysis->quantity_count; i++) {
+    const fg_lot_quantity *quantity = &analysis->quantities[i];
+    if (!fg_lot_is_watched(analysis, quantity) || quantity->stable) continue;
+    if (quantity->chart.signals) put_cause(out, analysis, quantity);
+    if (quantity->has_subgroups && quantity->deviations.signals)
+      fprintf(out, "<li>%zu signal%s of the spread of the %s within foils.</li>\n",
+              quantity->deviations.signals, quantity->deviations.signals == 1 ? "" : "s",
+              quantity->row->words);
+  }
+  fputs("</ul>\n", out);
+}
+
+void fg_lot_put_heading(FILE *out, const fg_lot_analysis *analysis) {
+  fputs("<header><h1>", out);
+  fg_html_text(out, analysis->lot->settings.name);
+  fputs("</h1>", out);
+  fg_html_outcome(out, &analysis->outcome);
+  put_process(out, &analysis->process);
+  fprintf(out, "<p>%zu foil%s of %zu scan%s, design ", analysis->foil_count,
+          fg_plural(analysis->foil_count), analysis->lot->manifest.items,
+          fg_plural(analysis->lot->manifest.items));
+  fg_html_text(out, analysis->lot->settings.design.name);
+  fputs("</p></header>\n", out);
+  put_causes(out, analysis);
+}
+
+/* The first damaged beam, with what is wrong with it; false where there is none. */
+static bool put_damage(FILE *out, const fg_foil *foil) {
+  for (size_t i = 0; i < foil->beam_count; i++) {
+    const fg_foil_part part = fg_part_at(foil, FG_QUANTITY_OF_BEAM, i);
+    if (fg_lot_part_counts(foil, FG_QUANTITY_OF_BEAM, &part)) continue;
+    for (const fg_flag_words *words = fg_beam_flag_words(); words->name; words++) {
+      if (!(part.flags & words->flag & FG_LOT_BEAM_DAMAGED)) continue;
+      fprintf(out, "beam %d: %s", part.number, words->plain);
+      return true;
+    }
+  }
+  return false;
+}
+
+/* What stands against a foil most: what it is, or its farthest value. */
+void fg_lot_put_reason(FILE *out, const fg_lot_analysis *analysis, const fg_lot_foil *foil) {
+  char defect[200];
+  if (foil->foil->error[0]) {
+    fg_html_text(out, foil->foil->error);
+  } else if (fg_foil_defect(&analysis->lot->settings.design, foil->foil, defect, sizeof defect)) {
+    fputs(defect, out);
+  } else if (foil->verdict == FG_VERDICT_NOT_MEASURED && put_damage(out, foil->foil)) {
+    return;
+  } else if (foil->worst_row) {
+    fputs(foil->worst_row->words, out);
+    if (foil->worst_number)
+      fprintf(out, " of %s %d", fg_lot_words_of(analysis)->one, foil->worst_number);
+  }
+}
+
+static bool has_value(const fg_lot_analysis *analysis, const fg_lot_foil *foil) {
+  return foil->worst_row && isfinite(foil->worst_value) && !foil->foil->error[0] &&
+         !fg_foil_defect(&analysis->lot->settings.design, foil->foil, NULL, 0);
+}
+
+/* As many as people read of the quantity, or more where its U would be 0.0000. */
+static int decimals_for(const fg_quantity *row, double expanded) {
+  enum { MAX = 9 };
+  if (!(expanded > 0) || !isfinite(expanded)) return row->decimals;
+  int first = (int)-floor(log10(expanded)); /* where its first digit stands */
+  return first > MAX ? MAX : first > row->decimals ? first : row->decimals;
+}
+
+/* Value ± U, its limit, and how far it is from it. */
+void fg_lot_put_margin(FILE *out, const fg_lot_analysis *analysis, const fg_lot_foil *foil) {
+  const fg_quantity *row = foil->worst_row;
+  if (!has_value(analysis, foil)) {
+    fputs("<td>–</td><td>–</td><td>–</td>", out);
+    return;
+  }
+  double expanded = FG_COVERAGE_FACTOR * foil->worst_u;
+  int decimals = decimals_for(row, expanded);
+  fputs("<td>", out);
+  fg_lot_put_decimals(out, foil->worst_value, decimals);
+  if (isfinite(expanded)) {
+    fputs(" ± ", out);
+    fg_lot_put_decimals(out, expanded, decimals);
+  }
+  fprintf(out, " %s</td>", row->unit);
+  if (!isfinite(foil->worst_limit)) {
+    fputs("<td>–</td><td>–</td>", out);
+    return;
+  }
+  fputs("<td>", out);
+  fg_lot_put_number(out, foil->worst_limit, 6);
+  fprintf(out, " %s</td><td>", row->unit);
+  fg_lot_put_decimals(out, fabs(foil->worst_margin), decimals);
+  fprintf(out, " %s %s</td>", row->unit, foil->worst_margin < 0 ? "beyond" : "within");
+}
+
+void fg_lot_put_worst(FILE *out, const fg_lot_analysis *analysis) {
+  const fg_lot *lot = analysis->lot;
+  size_t die = fg_manifest_column(&lot->manifest, lot->settings.die_column);
+  if (!analysis->worst[0]) return;
+  fprintf(out,
+          "<h2>The worst three</h2>\n<div class=\"scroll\"><table><thead><tr><th>foil</th><th "
+          "class=\"w\">scan</th>%s<th>verdict</th><th class=\"w\">what is farthest</th><th>value ± "
+          "U</th><th>nearest limit</th><th>margin</th></tr></thead>\n<tbody>\n",
+          die != FG_NO_COLUMN ? "<th>die</th>" : "");
+  for (int i = 0; i < 3 && analysis->worst[i]; i++) {
+    const fg_lot_foil *foil = analysis->worst[i];
+    fputs("<tr><td class=\"words path\"><b>", out);
+    fg_lot_put_foil_link(out, analysis, foil);
+    fputs("</b></td><td class=\"words path\">", out);
+    fg_lot_put_scan(out, analysis, foil->item);
+    fputs("</td>", out);
+    if (die != FG_NO_COLUMN) {
+      fputs("<td>", out);
+      fg_html_text(out, fg_manifest_cell(&lot->manifest, foil->item, die));
+      fputs("</td>", out);
+    }
+    fg_lot_put_verdict(out, foil->verdict);
+    fputs("<td class=\"words\">", out);
+    fg_lot_put_reason(out, analysis, foil);
+    fputs("</td>", out);
+    fg_lot_put_margin(out, analysis, foil);
+    fputs("</tr>\n", out);
+  }
+  fputs("</tbody></table></div>\n", out);
+  if (!foils_are_judged(analysis))
+    fputs("<p class=\"note\">No tolerance is stated: these lie farthest from the lot's "
+          "mean.</p>\n",
+          out);
+}
+
+void fg_lot_put_leading(FILE *out, const fg_lot_analysis *analysis) {
+  const fg_lot_quantity *leading = fg_lot_leading_quantity(analysis);
+  if (!leading || !leading->places) return;
+  fprintf(out, "<h2>Every %s</h2>\n<figure>", leading->row->words);
+  fg_lot_plot_places(out, analysis, leading, NULL);
+  fputs("<figcaption>", out);
+  fg_lot_put_places_key(out, analysis, leading);
+  if (analysis->left_out) fprintf(out, " %s are not drawn.", fg_lot_words_of(analysis)->damaged);
+  fputs("</figcaption></figure>\n", out);
+}

@@ -1,0 +1,111 @@
+/* The lot's page: groups against each other, and the gauge study. */
+#include <math.h>
+
+#include "page/page.h"
+#include "report/lot/page_parts.h"
+
+static void put_number(FILE *out, double p) {
+  fprintf(out, "%s%.3g", p < 1e-4 ? "&lt; " : "", p < 1e-4 ? 1e-4 : p);
+}
+
+/* The adjusted p decides, because a reader looks for the smallest p of the page. */
+static void put_p(FILE *out, const fg_lot_analysis *analysis, const fg_lot_difference *one,
+                  fg_lot_group_test test) {
+  bool differs = fg_lot_group_differs(analysis, one->p_holm[test]);
+  if (isnan(one->p[test])) {
+    fputs("<td>–</td>", out);
+    return;
+  }
+  fputs(differs ? "<td><b>" : "<td>", out);
+  put_number(out, one->p_holm[test]);
+  fputs(differs ? "</b><i>" : "<i>", out);
+  put_number(out, one->p[test]);
+  fputs("</i></td>", out);
+}
+
+static void put_answer(FILE *out, const fg_lot_analysis *analysis) {
+  double level = 100 * (1 - analysis->lot->settings.confidence);
+  size_t differ = analysis->group_tests_differ, tests = analysis->group_tests;
+  if (differ)
+    fprintf(
+        out,
+        "<p><b>%zu of %zu tests find a difference</b> (%.3g %% for all of them together).</p>\n",
+        differ, tests, level);
+  else
+    fprintf(out,
+            "<p>None of %zu tests finds a difference (%.3g %% for all of them together).</p>\n",
+            tests, level);
+}
+
+static void put_how(FILE *out, const fg_lot_analysis *analysis) {
+  const char *many = fg_lot_words_of(analysis)->many;
+  fprintf(out,
+          "<p class=\"note\">Foils are the unit: the %s of one foil are no independent values. A "
+          "foil counts by its level, the mean of its %s, freed of what their places do where some "
+          "are missing; scans of one foil are one. p: for all tests of this table together "
+          "(Holm), below it that of the test alone. Means: Welch. Spread of foils: F and Levene, "
+          "by relabelling the foils; that takes three foils a group. Spread within a foil: "
+          "Welch&#39;s test of its logarithm.</p>\n",
+          many, many);
+}
+
+static void put_difference(FILE *out, const fg_lot_analysis *analysis,
+                           const fg_lot_difference *one) {
+  const fg_comparison *c = &one->comparison;
+  fprintf(out, "<tr><td class=\"words\">%s</td><td class=\"words\">", one->quantity->row->words);
+  fg_html_text(out, one->a);
+  fputs(" against ", out);
+  fg_html_text(out, one->b);
+  fprintf(out, "</td><td>%zu<br>%zu</td><td>%.6g<br>%.6g</td><td>%.4g<i>%.4g … %.4g</i></td>",
+          one->foils_a, one->foils_b, one->mean_a, one->mean_b, c->difference, c->low, c->high);
+  put_p(out, analysis, one, FG_LOT_TEST_MEANS);
+  fprintf(out, "<td>%.3g<br>%.3g</td>", one->sd_a, one->sd_b);
+  put_p(out, analysis, one, FG_LOT_TEST_VARIANCES);
+  put_p(out, analysis, one, FG_LOT_TEST_LEVENE);
+  if (isfinite(one->within_sd_a) && isfinite(one->within_sd_b))
+    fprintf(out, "<td>%.3g<br>%.3g</td>", one->within_sd_a, one->within_sd_b);
+  else
+    fputs("<td>–</td>", out);
+  put_p(out, analysis, one, FG_LOT_TEST_WITHIN);
+  fputs("</tr>\n", out);
+}
+
+void fg_lot_put_comparisons(FILE *out, const fg_lot_analysis *analysis) {
+  if (!analysis->difference_count) return;
+  fputs("<section class=\"part\">\n<h1>Groups: ", out);
+  fg_html_text(out, analysis->lot->settings.group_column);
+  fputs("</h1>\n", out);
+  put_answer(out, analysis);
+  fputs(
+      "<div class=\"scroll lots\"><table><thead><tr><th>quantity</th><th>groups</th><th>foils</th>"
+      "<th>means</th><th>difference</th><th>p<br>means</th><th>s of<br>foils</th><th>p<br>F</th>"
+      "<th>p<br>Levene</th><th>s within<br>a foil</th><th>p<br>within</th></tr></thead>\n"
+      "<tbody>\n",
+      out);
+  for (size_t i = 0; i < analysis->difference_count; i++)
+    put_difference(out, analysis, &analysis->differences[i]);
+  fputs("</tbody></table></div>\n", out);
+  put_how(out, analysis);
+  fputs("</section>\n", out);
+}
+
+void fg_lot_put_gauge(FILE *out, const fg_lot_analysis *analysis) {
+  if (!analysis->gauge_count) return;
+  fprintf(out,
+          "<section class=\"part\">\n<h1>Gauge repeatability and reproducibility</h1>\n<div "
+          "class=\"scroll\"><table>"
+          "<thead><tr><th>quantity</th><th>%s</th><th>repeatability</th><th>reproducibility</th>"
+          "<th>GRR</th><th>part</th><th>GRR, %%</th><th>categories</th></tr></thead>\n<tbody>\n",
+          fg_lot_words_of(analysis)->one);
+  for (size_t i = 0; i < analysis->gauge_count; i++) {
+    const fg_lot_gauge *gauge = &analysis->gauges[i];
+    const fg_gauge_study *study = &gauge->study;
+    fprintf(out,
+            "<tr><td>%s</td><td>%d</td><td>%.3g</td><td>%.3g</td><td>%.3g</td><td>%.3g</td><td>%.3g"
+            "</td><td>%.0f</td></tr>\n",
+            gauge->quantity->row->words, gauge->number, study->repeatability,
+            study->reproducibility, study->grr, study->part, study->grr_pct,
+            floor(study->distinct_categories));
+  }
+  fputs("</tbody></table></div>\n</section>\n", out);
+}

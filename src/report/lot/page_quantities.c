@@ -1,0 +1,258 @@
+/* The lot's page: statistics of the quantities, capability, charts, springback. */
+#include <math.h>
+#include <string.h>
+
+#include "core/text.h"
+#include "foilgauge/words.h"
+#include "page/page.h"
+#include "report/lot/page_parts.h"
+#include "report/lot/plots.h"
+
+static void put_quantity_rows(FILE *out, const fg_lot_analysis *analysis) {
+  fputs("<h1>Quantities</h1>\n<div class=\"scroll\"><table><thead><tr><th>quantity</th><th>unit"
+        "</th><th>n</th><th>mean</th><th>s</th><th>median</th><th>mode</th><th>min</th><th>max</th>"
+        "<th>runs</th></tr></thead>\n<tbody>\n",
+        out);
+  for (size_t i = 0; i < analysis->quantity_count; i++) {
+    const fg_lot_quantity *quantity = &analysis->quantities[i];
+    bool unstated = !quantity->count && !quantity->tolerance;
+    if (unstated && quantity->owner == FG_QUANTITY_OF_BEAM) continue; /* as without a sagitta */
+    const double values[] = {quantity->mean, quantity->sd,  quantity->median,
+                             quantity->mode, quantity->min, quantity->max};
+    fprintf(out, "<tr><td class=\"words\">%s</td><td>%s</td><td>%zu</td>", quantity->row->words,
+            quantity->row->unit, quantity->count);
+    for (size_t k = 0; k < sizeof values / sizeof *values; k++) {
+      fputs("<td>", out);
+      fg_lot_put_decimals(out, values[k], fg_report_decimals(quantity->row, quantity->sd));
+      fputs("</td>", out);
+    }
+    fprintf(out, "<td%s</td></tr>\n",
+            fg_lot_tells_nothing(quantity)  ? ">–"
+            : quantity->stable              ? " class=\"pass\">stable"
+            : fg_lot_is_explained(quantity) ? " class=\"cannot_tell\">groups differ"
+                                            : " class=\"cannot_tell\">not stable");
+  }
+  fputs("</tbody></table></div>\n", out);
+  if (analysis->left_out)
+    fprintf(out,
+            "<p class=\"reasons\"><b>%zu of %zu %s %s:</b> judged, but in no statistics%s of this "
+            "page.</p>\n",
+            analysis->left_out, analysis->part_count, fg_lot_words_of(analysis)->many,
+            fg_lot_words_of(analysis)->how,
+            analysis->parts == FG_QUANTITY_OF_BUMP ? ", stiffness or clearance" : "");
+}
+
+static void put_cell(FILE *out, double value, int digits) {
+  fputs("<td>", out);
+  fg_lot_put_number(out, value, digits);
+  fputs("</td>", out);
+}
+
+/* So far within its tolerance that the number says nothing more. */
+static const double ratio_told = 100;
+
+static void put_ratio(FILE *out, const fg_ratio *ratio) {
+  if (ratio->value > ratio_told) {
+    fprintf(out, "<td>&gt; %.0f</td>", ratio_told);
+    return;
+  }
+  fputs("<td>", out);
+  fg_lot_put_number(out, ratio->value, 3);
+  if (isfinite(ratio->value)) {
+    fputs(" <i>", out);
+    fg_lot_put_number(out, ratio->low, 3);
+    fputs(" … ", out);
+    fg_lot_put_number(out, ratio->high, 3);
+    fputs("</i>", out);
+  }
+  fputs("</td>", out);
+}
+
+static void put_capability_row(FILE *out, const fg_lot_quantity *quantity) {
+  const fg_capability *capability = &quantity->capability;
+  fprintf(out, "<tr><td class=\"words\">%s</td><td>", quantity->row->words);
+  fg_lot_put_number(out, quantity->tolerance->lower, 6);
+  fputs(" … ", out);
+  fg_lot_put_number(out, quantity->tolerance->upper, 6);
+  fputs("</td>", out);
+  put_ratio(out, &capability->p);
+  put_ratio(out, &capability->pk);
+  put_ratio(out, &capability->c);
+  put_ratio(out, &capability->ck);
+  if (capability->quantile_pk > ratio_told)
+    fprintf(out, "<td>&gt; %.0f</td>", ratio_told);
+  else
+    put_cell(out, capability->quantile_pk, 3);
+  fprintf(out, "<td class=\"words\">%s, %s</td></tr>\n",
+          capability->stable ? "stable" : "not stable",
+          capability->normal ? "normal" : "not normal: the quantile method holds");
+}
+
+static void put_capability(FILE *out, const fg_lot_analysis *analysis) {
+  bool any = false;
+  for (size_t i = 0; i < analysis->quantity_count; i++)
+    any = any || analysis->quantities[i].has_capability;
+  if (!any) return;
+  fputs(
+      "<h2>Capability</h2>\n<div class=\"scroll\"><table><thead><tr><th>quantity</th><th>"
+      "tolerance</th><th>Pp</th><th>Ppk</th><th>Cp</th><th>Cpk</th><th>Ppk by<br>quantiles</th><th>"
+      "</th></tr></thead>\n<tbody>\n",
+      out);
+  for (size_t i = 0; i < analysis->quantity_count; i++)
+    if (analysis->quantities[i].has_capability) put_capability_row(out, &analysis->quantities[i]);
+  fprintf(
+      out,
+      "</tbody></table></div>\n<p class=\"note\">Intervals at %.4g %%. Cp and Cpk speak of what "
+      "the process will do, so they are stated only while its control charts show no signal; "
+      "otherwise Pp and Ppk tell what it did.</p>\n",
+      100 * analysis->lot->settings.confidence);
+}
+
+static void put_signals(FILE *out, const fg_lot_quantity *quantity) {
+  unsigned rules = 0;
+  for (size_t i = 0; i < quantity->chart.count; i++)
+    rules |= quantity->chart.point[i].rules;
+  fprintf(out, "%zu signal%s", quantity->chart.signals, quantity->chart.signals == 1 ? "" : "s");
+  for (unsigned rule = 1; rule <= FG_RUN_RULES; rule++)
+    if (rules & (1u << (rule - 1))) fprintf(out, "; %s", fg_run_rule_words(rule));
+  if (quantity->has_subgroups)
+    fprintf(out, ". Spread within foils: %zu signal%s", quantity->deviations.signals,
+            quantity->deviations.signals == 1 ? "" : "s");
+  fputs(".", out);
+}
+
+static void put_chart(FILE *out, const fg_lot_analysis *analysis, const fg_lot_quantity *quantity) {
+  fputs("<figure>", out);
+  fg_lot_plot_chart(out, analysis, quantity);
+  fputs("<figcaption>", out);
+  put_signals(out, quantity);
+  if (quantity->cause.column != FG_NO_COLUMN) {
+    fputs(" They", out);
+    fg_lot_put_cause(out, analysis, quantity);
+  }
+  fputs("</figcaption></figure>\n", out);
+}
+
+static bool is_charted(const fg_lot_analysis *analysis, const fg_lot_quantity *quantity) {
+  for (const char *const *name = fg_lot_charted; *name; name++)
+    if (!strcmp(quantity->row->name, *name)) return quantity->has_chart;
+  return fg_lot_is_watched(analysis, quantity) && !quantity->stable;
+}
+
+static void put_charts(FILE *out, const fg_lot_analysis *analysis) {
+  fputs("<h2>How the process runs</h2>\n<p class=\"note\">Red, dashed: three sigma from foil to "
+        "foil about the mean. Red squares: signals.</p>\n",
+        out);
+  for (size_t i = 0; i < analysis->quantity_count; i++)
+    if (is_charted(analysis, &analysis->quantities[i]))
+      put_chart(out, analysis, &analysis->quantities[i]);
+}
+
+void fg_lot_put_quantities(FILE *out, const fg_lot_analysis *analysis) {
+  fputs("<section class=\"part\">\n", out);
+  put_quantity_rows(out, analysis);
+  fg_lot_put_known(out, analysis);
+  put_capability(out, analysis);
+  put_charts(out, analysis);
+  fputs("</section>\n", out);
+}
+
+/* How far the lot's means lie from the curve, in words. */
+static void put_against_curve(FILE *out, const fg_lot_quantity *quantity,
+                              const fg_lot_curve *curve) {
+  double sum = 0, max = 0, value;
+  int bumps = 0, at = 0;
+  for (size_t i = 0; fg_lot_curve_value(curve, quantity->row, i, &value); i++) {
+    size_t place = (size_t)curve->point[i].bump - 1;
+    if (place >= quantity->places || !quantity->place[place].count) continue;
+    double off = quantity->place[place].mean - value;
+    sum += off;
+    bumps++;
+    if (bumps > 1 && fabs(off) <= fabs(max)) continue;
+    max = off;
+    at = curve->point[i].bump;
+  }
+  if (!bumps) return;
+  fprintf(out, " %s: %+.3g percentage points on the mean of %d bumps, farthest %+.3g at bump %d.",
+          quantity->row->words, sum / bumps, bumps, max, at);
+}
+
+/* Figure 5.17 of the thesis: both errors by bump number, and what a simulation or a die says. */
+static void put_errors_by_bump(FILE *out, const fg_lot_analysis *analysis) {
+  static const char *const shown[] = {"radius_error_pct", "intersection_angle_error_pct",
+                                      "bump_angle_error_pct"};
+  const fg_lot_curve *curve = &analysis->lot->settings.curve;
+  const fg_lot_quantity *last = NULL;
+  for (size_t i = 0; i < sizeof shown / sizeof *shown; i++) {
+    const fg_lot_quantity *quantity = fg_lot_find_quantity(analysis, shown[i]);
+    if (!quantity) continue;
+    if (last) fputs("</figure>\n<figure>", out); /* of its own, so that a printed page can end */
+    fg_lot_plot_places(out, analysis, quantity, curve);
+    last = quantity;
+  }
+  fputs("<figcaption>Errors of the bump radius (e_R), the intersection angle θ (e_θ) and the bump "
+        "angle α (e_α) of each bump number. ",
+        out);
+  if (last) fg_lot_put_places_key(out, analysis, last);
+  if (curve->count) {
+    fputs(" Diamonds, dashed: the reference curve ", out);
+    fg_html_text(out, curve->name);
+    fputs(". The lot against it:", out);
+    for (size_t i = 0; i < 2; i++) {
+      const fg_lot_quantity *quantity = fg_lot_find_quantity(analysis, shown[i]);
+      if (quantity) put_against_curve(out, quantity, curve);
+    }
+  }
+  fputs("</figcaption></figure>\n", out);
+}
+
+void fg_lot_put_springback(FILE *out, const fg_lot_analysis *analysis) {
+  const fg_lot_quantity *radius = fg_lot_find_quantity(analysis, "radius_mm");
+  fputs("<section class=\"part\">\n<h1>Springback</h1>\n<figure>", out);
+  put_errors_by_bump(out, analysis);
+  fputs("<h2>Radius over design</h2>\n<figure>", out);
+  fg_lot_plot_density(out, radius, 1 / analysis->lot->settings.design.bump_radius_mm, 0,
+                      "radius over design");
+  fputs("<figcaption>Histogram and kernel density.</figcaption></figure>\n", out);
+  if (analysis->has_correlation) {
+    const fg_lot_correlation *line = &analysis->correlation;
+    fputs("<h2>Angle against radius</h2>\n<figure>", out);
+    fg_lot_plot_correlation(out, analysis);
+    fprintf(out,
+            "<figcaption>Dashed: constant arc length. Orange: least squares over %zu bumps (%zu "
+            "trimmed by their radius), slope %.3f, r %.3f. In logarithms, where a constant arc "
+            "length is a slope of −1 exactly: %.4f",
+            line->count - line->trimmed, line->trimmed, line->slope, line->r, line->log_slope);
+    if (isfinite(line->log_dof))
+      fprintf(out, " (%.4f … %.4f; bumps of %zu foil%s, %.1f degrees of freedom)", line->log_low,
+              line->log_high, line->foils, fg_plural(line->foils), line->log_dof);
+    fprintf(out,
+            ". Arc length against the design, all %zu bumps: %+.3f %%, s %.3f %%."
+            "</figcaption></figure>\n",
+            line->count, line->arc_length_mean_pct, line->arc_length_sd_pct);
+  }
+  fputs("</section>\n", out);
+}
+
+void fg_lot_put_arcs(FILE *out, const fg_lot_analysis *analysis) {
+  const fg_design *design = &analysis->lot->settings.design;
+  const struct {
+    const char *name, *words;
+    double design;
+  } shown[] = {
+      {"overall.radius_mm", "radius over design", design->overall_radius_mm},
+      {"arc.subtended_angle_deg", "angle over design", design->subtended_angle_deg},
+  };
+  fputs("<section class=\"part\">\n<h1>Springback</h1>\n", out);
+  for (size_t i = 0; i < sizeof shown / sizeof *shown; i++) {
+    const fg_lot_quantity *quantity = fg_lot_find_quantity(analysis, shown[i].name);
+    if (!quantity || !quantity->has_density) continue;
+    fputs("<figure>", out);
+    fg_lot_plot_density(out, quantity, 1 / shown[i].design, 0, shown[i].words);
+    fprintf(out,
+            "<figcaption>%s over the design's %g, %zu foil%s: mean %.5f.</figcaption></figure>\n",
+            quantity->row->words, shown[i].design, quantity->count, fg_plural(quantity->count),
+            quantity->mean / shown[i].design);
+  }
+  fputs("</section>\n", out);
+}

@@ -1,0 +1,234 @@
+#include "report/lot/plots.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "page/page.h"
+#include "page/plot_marks.h"
+#include "report/stiffness/map.h"
+
+enum { PLOT_WIDTH = 1000, CURVE_POINTS = 240, BARS = 30 };
+
+static void put_bars(const fg_plot *at, const double *bars) {
+  double width = (at->x_high - at->x_low) / BARS;
+  for (int i = 0; i < BARS; i++) {
+    double x = fg_plot_x(at, at->x_low + i * width), y = fg_plot_y(at, bars[i]);
+    if (bars[i] > 0)
+      fprintf(at->out,
+              "<rect class=\"column\" x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\"/>\n",
+              x + 1, y, (at->right - at->left) / BARS - 2, at->bottom - y);
+  }
+}
+
+static void fill_bars(const fg_lot_quantity *quantity, double scale, double shift,
+                      const fg_plot *at, double *bars) {
+  double width = (at->x_high - at->x_low) / BARS;
+  for (size_t i = 0; i < quantity->count; i++) {
+    double x = scale * quantity->value[i] + shift;
+    int bar = (int)floor((x - at->x_low) / width);
+    if (bar >= 0 && bar < BARS) bars[bar] += 1 / (width * (double)quantity->count);
+  }
+}
+
+void fg_lot_plot_density(FILE *out, const fg_lot_quantity *quantity, double scale, double shift,
+                         const char *title) {
+  double x[CURVE_POINTS + 1], y[CURVE_POINTS + 1], bars[BARS] = {0}, high = 0;
+  char mark[64];
+  if (!quantity || !quantity->has_density) return;
+  if (!(quantity->sd > 1e-9 * fabs(quantity->mean))) return; /* one line, no distribution */
+  double a = scale * quantity->min + shift, b = scale * quantity->max + shift;
+  fg_plot at = {out, PLOT_WIDTH, 92, 985, 24, 250, fmin(a, b), fmax(a, b), 0, 1};
+  double reach = 2.5 * quantity->density.bandwidth * fabs(scale);
+  at.x_low -= reach;
+  at.x_high += reach;
+  fill_bars(quantity, scale, shift, &at, bars);
+  for (int i = 0; i <= CURVE_POINTS; i++) {
+    x[i] = at.x_low + (at.x_high - at.x_low) * i / CURVE_POINTS;
+    y[i] = fg_density_at(&quantity->density, (x[i] - shift) / scale) / fabs(scale);
+    high = fmax(high, y[i]);
+  }
+  for (int i = 0; i < BARS; i++)
+    high = fmax(high, bars[i]);
+  at.y_high = 1.08 * high;
+  fg_plot_begin(&at, 300, "Histogram and kernel density");
+  fg_plot_y_axis(&at, "density");
+  put_bars(&at, bars);
+  fg_plot_x_numbers(&at);
+  fg_plot_x_title(&at, title);
+  fg_plot_line(&at, x, y, CURVE_POINTS + 1, "curve");
+  double mode = scale * quantity->mode + shift;
+  fg_plot_segment(&at, mode, 0, mode, at.y_high, "hypothesis");
+  snprintf(mark, sizeof mark, "mode %.4g", mode);
+  bool right = mode > (at.x_low + at.x_high) / 2;
+  fg_plot_text(&at, mode + (right ? -0.01 : 0.01) * (at.x_high - at.x_low), 0.95 * at.y_high,
+               right ? "end" : "key", mark);
+  fg_plot_end(&at);
+}
+
+typedef void bump_visit(const fg_plot *at, const fg_bump *bump);
+
+static void each_bump(const fg_plot *at, const fg_lot_analysis *analysis, bump_visit *visit) {
+  size_t total = 0, seen = 0;
+  for (size_t i = 0; i < analysis->foil_count; i++)
+    total += analysis->foils[i].foil->bump_count;
+  size_t every = total / FG_LOT_DOTS_MAX + 1;
+  for (size_t i = 0; i < analysis->foil_count; i++)
+    for (size_t k = 0; k < analysis->foils[i].foil->bump_count; k++) {
+      const fg_foil *foil = analysis->foils[i].foil;
+      if (seen++ % every == 0 && fg_lot_bump_counts(foil, &foil->bumps[k]))
+        visit(at, &foil->bumps[k]);
+    }
+}
+
+static void put_bump(const fg_plot *at, const fg_bump *bump) {
+  double x = bump->radius_error_pct, y = bump->bump_angle_error_pct;
+  if (!(x >= at->x_low && x <= at->x_high && y >= at->y_low && y <= at->y_high)) return;
+  fg_plot_dot(at, x, y, 4.5, "dot");
+}
+
+/* alpha at constant arc length: 100 (1 / (1 + e_R / 100) - 1). */
+static void put_constant_arc(const fg_plot *at) {
+  double x[CURVE_POINTS + 1], y[CURVE_POINTS + 1];
+  for (int i = 0; i <= CURVE_POINTS; i++) {
+    x[i] = at->x_low + (at->x_high - at->x_low) * i / CURVE_POINTS;
+    y[i] = 100 * (1 / (1 + x[i] / 100) - 1);
+    if (!(y[i] >= at->y_low && y[i] <= at->y_high)) y[i] = NAN;
+  }
+  fg_plot_line(at, x, y, CURVE_POINTS + 1, "hypothesis");
+}
+
+/* The part of the line that lies inside the plot. */
+static void put_fit(const fg_plot *at, double slope, double intercept) {
+  double x[2] = {at->x_low, at->x_high}, y[2];
+  double first = (at->y_low - intercept) / slope, second = (at->y_high - intercept) / slope;
+  x[0] = fmax(x[0], fmin(first, second));
+  x[1] = fmin(x[1], fmax(first, second));
+  for (int i = 0; i < 2; i++)
+    y[i] = intercept + slope * x[i];
+  if (x[1] > x[0]) fg_plot_line(at, x, y, 2, "fit");
+}
+
+static bool error_axes(const fg_lot_analysis *analysis, fg_plot *at) {
+  const fg_lot_quantity *radius = fg_lot_find_quantity(analysis, "radius_error_pct");
+  const fg_lot_quantity *angle = fg_lot_find_quantity(analysis, "bump_angle_error_pct");
+  if (!radius || !angle || radius->count < 2 || angle->count < 2) return false;
+  at->x_low = fmin(0, radius->min);
+  at->x_high = fmax(0, radius->max);
+  at->y_low = fmin(0, angle->min);
+  at->y_high = fmax(0, angle->max);
+  fg_lot_plot_widen(&at->x_low, &at->x_high, 0.06);
+  fg_lot_plot_widen(&at->y_low, &at->y_high, 0.06);
+  return true;
+}
+
+void fg_lot_plot_correlation(FILE *out, const fg_lot_analysis *analysis) {
+  const fg_lot_correlation *line = &analysis->correlation;
+  fg_plot at = {
+      .out = out, .width = PLOT_WIDTH, .left = 92, .right = 985, .top = 14, .bottom = 380};
+  if (!analysis->has_correlation || !error_axes(analysis, &at)) return;
+  fg_plot_begin(&at, 430, "Angle error over radius error of every bump");
+  fg_plot_y_axis(&at, "angle error, %");
+  fg_plot_x_numbers(&at);
+  fg_plot_x_title(&at, "radius error, %");
+  put_constant_arc(&at);
+  each_bump(&at, analysis, put_bump);
+  put_fit(&at, line->slope, line->intercept);
+  fg_plot_end(&at);
+}
+
+static void put_ratio(const fg_plot *at, const fg_bump *bump) {
+  double x = 1 + bump->radius_error_pct / 100, y = 1 + bump->bump_angle_error_pct / 100;
+  if (!(x >= at->x_low && x <= at->x_high && y >= at->y_low && y <= at->y_high)) return;
+  fg_plot_dot(at, x, y, 4.5, "mapped");
+}
+
+static void put_ratios(const fg_plot *at, const void *user) {
+  each_bump(at, user, put_ratio);
+}
+
+void fg_lot_plot_map(FILE *out, const fg_lot_analysis *analysis) {
+  const fg_lot_settings *settings = &analysis->lot->settings;
+  fg_plot at;
+  if (!error_axes(analysis, &at)) return;
+  const fg_stiffness_map map = {&settings->design,   &settings->material, 1 + at.x_low / 100,
+                                1 + at.x_high / 100, 1 + at.y_low / 100,  1 + at.y_high / 100};
+  fg_stiffness_plot_map(out, &map, put_ratios, analysis);
+}
+
+/* A polar plot: the clearance outwards from a zero circle, so that a rub shows inside it. */
+typedef struct polar {
+  FILE *out;
+  double zero_px, px_per_mm;
+} polar;
+
+enum { POLAR_SIZE = 560, POLAR_MIDDLE = POLAR_SIZE / 2 };
+
+static void polar_point(const polar *p, double angle_deg, double clearance_mm, double xy[2]) {
+  double angle = angle_deg * 3.14159265358979323846 / 180;
+  double radius = fmax(0, p->zero_px + p->px_per_mm * clearance_mm);
+  xy[0] = POLAR_MIDDLE + radius * cos(angle);
+  xy[1] = POLAR_MIDDLE - radius * sin(angle);
+}
+
+static void put_ring(const polar *p, double clearance_mm, const char *style, const char *words) {
+  double radius = p->zero_px + p->px_per_mm * clearance_mm;
+  fprintf(p->out, "<circle cx=\"%d\" cy=\"%d\" r=\"%.1f\" fill=\"none\" class=\"%s\"/>\n",
+          POLAR_MIDDLE, POLAR_MIDDLE, radius, style);
+  if (words)
+    fprintf(p->out, "<text class=\"key\" x=\"%d\" y=\"%.1f\">%s</text>\n", POLAR_MIDDLE + 5,
+            POLAR_MIDDLE - radius - 4, words);
+}
+
+static void put_pads(const polar *p, const fg_bearing_layout *layout) {
+  double gap = 180 / (double)layout->pads -
+               fg_bearing_pitch_deg(layout) * (double)(layout->bumps_per_pad - 1) / 2;
+  for (size_t pad = 0; pad < layout->pads; pad++) {
+    double inner[2], outer[2], angle = fg_bearing_angle_deg(layout, pad, 0) - gap;
+    polar_point(p, angle, -p->zero_px / p->px_per_mm + 60 / p->px_per_mm, inner);
+    polar_point(p, angle, (POLAR_MIDDLE - 8 - p->zero_px) / p->px_per_mm, outer);
+    fprintf(p->out, "<path class=\"thin\" d=\"M%.1f %.1fL%.1f %.1f\"/>\n", inner[0], inner[1],
+            outer[0], outer[1]);
+  }
+}
+
+static void put_places(const polar *p, const fg_lot_bearing *bearing) {
+  double xy[2];
+  bool open = false;
+  fputs("<path class=\"curve\" d=\"", p->out);
+  for (size_t i = 0; i <= bearing->places; i++) {
+    size_t at = i % bearing->places;
+    bool known = isfinite(bearing->clearance_mm[at]);
+    polar_point(p, bearing->angle_deg[at], known ? bearing->clearance_mm[at] : 0, xy);
+    if (known) fprintf(p->out, "%c%.1f %.1f", open ? 'L' : 'M', xy[0], xy[1]);
+    open = known;
+  }
+  fputs("\"/>\n", p->out);
+  for (size_t i = 0; i < bearing->places; i++) {
+    if (!isfinite(bearing->clearance_mm[i])) continue;
+    polar_point(p, bearing->angle_deg[i], bearing->clearance_mm[i], xy);
+    fprintf(p->out, "<circle class=\"%s\" cx=\"%.1f\" cy=\"%.1f\" r=\"5\"/>\n",
+            bearing->clearance_mm[i] < 0 ? "signal" : "s2", xy[0], xy[1]);
+  }
+}
+
+void fg_lot_plot_polar(FILE *out, const fg_lot_analysis *analysis, const fg_lot_bearing *bearing) {
+  double design = analysis->lot->nominal.clearance_mm;
+  if (!bearing->known) return;
+  double reach = fmax(fabs(bearing->clearance.min_mm), fabs(bearing->clearance.max_mm));
+  const polar p = {out, 140, (POLAR_MIDDLE - 24 - 140) / fmax(reach, fabs(design))};
+  fprintf(out,
+          "<svg class=\"plot polar\" viewBox=\"0 0 %d %d\" role=\"img\" aria-label=\"Local "
+          "clearance around the bearing, foils fitted\">\n",
+          POLAR_SIZE, POLAR_SIZE);
+  put_pads(&p, &analysis->layout);
+  put_ring(&p, 0, "limit", "0");
+  put_ring(&p, design, "hypothesis", NULL);
+  fprintf(out,
+          "<text class=\"x\" x=\"%d\" y=\"%d\">least</text><text class=\"x\" x=\"%d\" "
+          "y=\"%d\">%.1f µm</text>\n",
+          POLAR_MIDDLE, POLAR_MIDDLE - 8, POLAR_MIDDLE, POLAR_MIDDLE + 18,
+          1000 * bearing->clearance.min_mm);
+  put_places(&p, bearing);
+  fputs("</svg>\n", out);
+}

@@ -1,0 +1,270 @@
+/* A quantity over the numbers of the parts, and over the foils. */
+#include <math.h>
+#include <string.h>
+
+#include "core/text.h"
+#include "page/page.h"
+#include "page/plot_marks.h"
+#include "report/lot/page_parts.h"
+#include "report/lot/plots.h"
+
+/* A chart of more foils is a line with its signals. */
+enum { PLOT_WIDTH = 1000, CHART_POINTS_MAX = 600, DOTS_DRAWN_MAX = 120 };
+
+/* Where the mean and the foils' dots stand beside the place of a bump number. */
+#define MEAN_AT   (-0.17)
+#define FIRST_DOT (-0.05)
+#define LAST_DOT  0.35
+
+/* Values that are equal but for rounding still get an axis with room for numbers. */
+void fg_lot_plot_widen(double *low, double *high, double share) {
+  static const double min = 1e-9;
+  double size = fmax(fabs(*low), fabs(*high)), room = (*high - *low) * share;
+  if (!(room > min * size)) room = size > 0 ? 0.01 * size : 1;
+  *low -= room;
+  *high += room;
+}
+
+void fg_lot_plot_include(double value, double *low, double *high) {
+  if (!isfinite(value)) return;
+  *low = fmin(*low, value);
+  *high = fmax(*high, value);
+}
+
+static void put_limits(const fg_plot *at, const fg_tolerance *tolerance) {
+  if (!tolerance) return;
+  const double limits[2] = {tolerance->lower, tolerance->upper};
+  for (int i = 0; i < 2; i++)
+    if (limits[i] > at->y_low && limits[i] < at->y_high)
+      fg_plot_segment(at, at->x_low, limits[i], at->x_high, limits[i], "limit");
+}
+
+/* Beside an axis there is room for some thirty letters; a longer name gives way to its symbol. */
+static void axis_title(char *text, size_t size, const fg_quantity *row) {
+  enum { LETTERS = 28 };
+  snprintf(text, size, "%s%s%s", strlen(row->words) > LETTERS ? row->symbol : row->words,
+           *row->unit ? ", " : "", row->unit);
+}
+
+bool fg_lot_curve_value(const fg_lot_curve *curve, const fg_quantity *row, size_t i,
+                        double *value) {
+  bool radius = !strcmp(row->name, "radius_error_pct");
+  if (!curve || i >= curve->count) return false;
+  if (!radius && strcmp(row->name, "intersection_angle_error_pct") != 0) return false;
+  *value = radius ? curve->point[i].radius_error_pct : curve->point[i].angle_error_pct;
+  return true;
+}
+
+/* The reference curve: its points joined, a diamond each. */
+static void put_curve(const fg_plot *at, const fg_quantity *row, const fg_lot_curve *curve) {
+  double x[FG_LOT_CURVE_MAX], y[FG_LOT_CURVE_MAX];
+  size_t count = 0;
+  while (fg_lot_curve_value(curve, row, count, &y[count])) {
+    x[count] = curve->point[count].bump;
+    count++;
+  }
+  if (!count) return;
+  fg_plot_line(at, x, y, count, "hypothesis");
+  for (size_t i = 0; i < count; i++) {
+    const double size = 6, px = fg_plot_x(at, x[i]), py = fg_plot_y(at, y[i]);
+    fprintf(at->out,
+            "<path class=\"hypothesis\" style=\"stroke-dasharray:none\" d=\"M%.1f %.1fl%g %gl%g "
+            "%gl%g %gz\"/>\n",
+            px, py - size, size, size, -size, size, -size, -size);
+  }
+}
+
+/* How many foils lie between two that are drawn. */
+static size_t foils_per_dot(const fg_lot_analysis *analysis, const fg_lot_quantity *quantity) {
+  (void)analysis;
+  return quantity->count / FG_LOT_DOTS_MAX + 1;
+}
+
+/* The values of one foil's parts, right of their means: from left to right in order of the foils.
+ * What is beyond a limit is a cross. */
+static void put_foil_dots(const fg_plot *at, const fg_lot_quantity *quantity, const fg_foil *foil,
+                          double share) {
+  for (size_t k = 0; k < fg_part_count(foil, quantity->owner); k++) {
+    const fg_foil_part part = fg_part_at(foil, quantity->owner, k);
+    double value = fg_quantity_value(quantity->row, part.object);
+    int number = fg_lot_part_number(foil, &part);
+    if (number < 1 || !isfinite(value) || !fg_lot_part_counts(foil, quantity->owner, &part))
+      continue;
+    double x = number + FIRST_DOT + (LAST_DOT - FIRST_DOT) * share;
+    const fg_tolerance *limits = quantity->tolerance;
+    bool beyond = limits && fg_margin_to(limits->lower, limits->upper, value).inside < 0;
+    if (beyond)
+      fg_plot_shape(at, x, value, 5, FG_SHAPE_CROSS, "beyond-limit");
+    else
+      fg_plot_dot(at, x, value, 3, "dot");
+  }
+}
+
+static void put_dots(const fg_plot *at, const fg_lot_analysis *analysis,
+                     const fg_lot_quantity *quantity) {
+  size_t every = foils_per_dot(analysis, quantity), foils = analysis->foil_count;
+  for (size_t i = 0; i < foils; i += every)
+    put_foil_dots(at, quantity, analysis->foils[i].foil,
+                  foils > 1 ? (double)i / (double)(foils - 1) : 0.5);
+}
+
+static void put_places(const fg_plot *at, const fg_lot_quantity *quantity) {
+  char number[24];
+  for (size_t i = 0; i < quantity->places; i++) {
+    const fg_lot_place *place = &quantity->place[i];
+    double x = (double)i + 1, mean_x = x + MEAN_AT;
+    snprintf(number, sizeof number, "%zu", i + 1);
+    fg_plot_x_label(at, fg_plot_x(at, x), number);
+    if (!place->count) continue;
+    if (isfinite(place->sd))
+      fg_plot_segment(at, mean_x, place->mean - 2 * place->sd, mean_x, place->mean + 2 * place->sd,
+                      "curve");
+    fg_plot_dot(at, mean_x, place->mean, 6, "s1");
+  }
+}
+
+static bool find_range(const fg_lot_quantity *quantity, const fg_lot_curve *curve, double *low,
+                       double *high) {
+  double value;
+  for (size_t i = 0; i < quantity->places; i++) {
+    double reach = isfinite(quantity->place[i].sd) ? 2 * quantity->place[i].sd : 0;
+    fg_lot_plot_include(quantity->place[i].mean - reach, low, high);
+    fg_lot_plot_include(quantity->place[i].mean + reach, low, high);
+  }
+  if (!(*high >= *low)) return false;
+  fg_lot_plot_include(quantity->min, low, high);
+  fg_lot_plot_include(quantity->max, low, high);
+  for (size_t i = 0; fg_lot_curve_value(curve, quantity->row, i, &value); i++)
+    fg_lot_plot_include(value, low, high);
+  if (quantity->tolerance) {
+    fg_lot_plot_include(quantity->tolerance->lower, low, high);
+    fg_lot_plot_include(quantity->tolerance->upper, low, high);
+  }
+  fg_lot_plot_widen(low, high, 0.06);
+  return true;
+}
+
+void fg_lot_plot_places(FILE *out, const fg_lot_analysis *analysis, const fg_lot_quantity *quantity,
+                        const fg_lot_curve *curve) {
+  double low = INFINITY, high = -INFINITY;
+  char title[160];
+  if (!find_range(quantity, curve, &low, &high)) return;
+  fg_plot at = {out, PLOT_WIDTH, 92, 985, 14, 250, 0.4, (double)quantity->places + 0.6, low, high};
+  axis_title(title, sizeof title, quantity->row);
+  fg_plot_begin(&at, 300, "By number: mean, two standard deviations, and every foil");
+  fg_plot_y_axis(&at, title);
+  fg_plot_x_title(&at, fg_lot_words_of(analysis)->numbers);
+  put_limits(&at, quantity->tolerance);
+  put_dots(&at, analysis, quantity);
+  put_places(&at, quantity);
+  put_curve(&at, quantity->row, curve);
+  fg_plot_end(&at);
+}
+
+void fg_lot_put_places_key(FILE *out, const fg_lot_analysis *analysis,
+                           const fg_lot_quantity *quantity) {
+  size_t every = foils_per_dot(analysis, quantity);
+  fputs("Orange dot and bar: mean and two standard deviations over the foils; beside them every "
+        "foil, from left to right in order",
+        out);
+  if (every > 1) fprintf(out, ", one of %zu drawn", every);
+  if (quantity->tolerance) fputs("; red, dashed: tolerance; red crosses: values beyond it", out);
+  fputs(".", out);
+}
+
+/* Which foil of the lot each point of the chart is. */
+static size_t next_foil(const fg_lot_quantity *quantity, size_t foil) {
+  while (!quantity->size[foil])
+    foil++;
+  return foil;
+}
+
+/* A mark that leads to its foil, and says which that is where a pointer rests on it. */
+static bool begin_mark(const fg_plot *at, const fg_lot_analysis *analysis, size_t foil) {
+  if (!fg_lot_begin_foil_link(at->out, analysis, &analysis->foils[foil])) return false;
+  fputs("<title>", at->out);
+  fg_lot_put_label(at->out, analysis, &analysis->foils[foil]);
+  fputs("</title>", at->out);
+  return true;
+}
+
+/* The groups that explain the signals: a shape for each, a line at its mean, a key above. */
+static void put_groups(const fg_plot *at, const fg_lot_analysis *analysis,
+                       const fg_lot_quantity *quantity) {
+  const fg_lot_cause *cause = &quantity->cause;
+  size_t foil = 0;
+  for (size_t g = 0; g < cause->groups; g++) {
+    char text[200];
+    double x = at->left + (double)g * (at->right - at->left) / (double)cause->groups + 12;
+    fg_plot_segment(at, at->x_low, cause->mean[g], at->x_high, cause->mean[g], "hint");
+    fg_text_clip(text, sizeof text, "%s %s: mean %.5g", analysis->lot->manifest.name[cause->column],
+                 cause->name[g], cause->mean[g]);
+    fg_plot_shape_at(at->out, x, 12, 6, (fg_shape)(g % FG_SHAPES), "group");
+    fprintf(at->out, "<text class=\"start\" x=\"%.1f\" y=\"17\">", x + 12);
+    fg_html_text(at->out, text);
+    fputs("</text>\n", at->out);
+  }
+  for (size_t i = 0; i < quantity->chart.count; i++, foil++) {
+    foil = next_foil(quantity, foil);
+    const char *name =
+        fg_manifest_cell(&analysis->lot->manifest, analysis->foils[foil].item, cause->column);
+    size_t g = 0;
+    while (g + 1 < cause->groups && strcmp(cause->name[g], name) != 0)
+      g++;
+    bool linked = begin_mark(at, analysis, foil);
+    fg_plot_shape(at, (double)i + 1, quantity->chart.point[i].value, 6, (fg_shape)(g % FG_SHAPES),
+                  quantity->chart.point[i].rules ? "signal" : "group");
+    if (linked) fputs("</a>\n", at->out);
+  }
+}
+
+static void put_points(const fg_plot *at, const fg_lot_analysis *analysis,
+                       const fg_lot_quantity *quantity) {
+  const fg_chart *chart = &quantity->chart;
+  size_t foil = 0;
+  for (size_t i = 0; i < chart->count; i++, foil++) {
+    const fg_chart_point *point = &chart->point[i];
+    foil = next_foil(quantity, foil);
+    if (!point->rules && chart->count > DOTS_DRAWN_MAX) continue;
+    bool linked = begin_mark(at, analysis, foil);
+    if (point->rules)
+      fg_plot_shape(at, (double)i + 1, point->value, 7, FG_SHAPE_SQUARE, "signal");
+    else
+      fg_plot_dot(at, (double)i + 1, point->value, 4, "s2");
+    if (linked) fputs("</a>\n", at->out);
+  }
+}
+
+void fg_lot_plot_chart(FILE *out, const fg_lot_analysis *analysis,
+                       const fg_lot_quantity *quantity) {
+  const fg_chart *chart = &quantity->chart;
+  char title[160];
+  if (!quantity->has_chart) return;
+  bool groups = quantity->cause.column != FG_NO_COLUMN && chart->count <= DOTS_DRAWN_MAX;
+  double low = chart->point[0].lower, high = chart->point[0].upper, down = groups ? 20 : 0;
+  for (size_t i = 0; i < chart->count; i++)
+    fg_lot_plot_include(chart->point[i].value, &low, &high);
+  fg_lot_plot_widen(&low, &high, 0.08);
+  fg_plot at = {out, PLOT_WIDTH, 92, 985, 14 + down, 210 + down, 0.5, (double)chart->count + 0.5,
+                low, high};
+  size_t every = chart->count / CHART_POINTS_MAX + 1;
+  axis_title(title, sizeof title, quantity->row);
+  fg_plot_begin(&at, 260 + (int)down, "Control chart, foil after foil");
+  fg_plot_y_axis(&at, title);
+  fg_plot_x_counts(&at);
+  fg_plot_x_title(&at,
+                  fg_owner_is_part(quantity->owner) ? fg_lot_words_of(analysis)->mean : "foil");
+  fg_plot_segment(&at, at.x_low, chart->centre, at.x_high, chart->centre, "thin");
+  fg_plot_segment(&at, at.x_low, chart->point[0].lower, at.x_high, chart->point[0].lower, "limit");
+  fg_plot_segment(&at, at.x_low, chart->point[0].upper, at.x_high, chart->point[0].upper, "limit");
+  fputs("<path class=\"curve\" d=\"", out);
+  for (size_t i = 0; i < chart->count; i += every)
+    fprintf(out, "%c%.1f %.1f", i ? 'L' : 'M', fg_plot_x(&at, (double)i + 1),
+            fg_plot_y(&at, chart->point[i].value));
+  fputs("\"/>\n", out);
+  if (groups)
+    put_groups(&at, analysis, quantity);
+  else
+    put_points(&at, analysis, quantity);
+  fg_plot_end(&at);
+}

@@ -1,0 +1,29 @@
+/* Bumps of a lot with both radius and angle, as columns: what the analysis of stiffness hands on.
+ */
+#ifndef FG_REPORT_LOT_STIFFNESS_COLUMNS_H
+#define FG_REPORT_LOT_STIFFNESS_COLUMNS_H
+
+#include "lot/statistics/analysis.h"
+
+typedef struct fg_bump_columns {
+  double *radius, *arc_length;        /* of the datum line, as measured */
+  double *arch_radius, *arch_length;  /* of the midline */
+  double *thickness;                  /* in force: the foil's, else the design's */
+  double *strip;                      /* as measured; NaN */
+  double *measurement;                /* variance of ln K by the bump's own uncertainty; NaN */
+  double *foot;                       /* the feet's stiffness over the design's */
+  double *designed;                   /* ratio with the design's thickness */
+  double *ratio[FG_STIFFNESS_MODELS]; /* over the design's, by model */
+  size_t count;
+} fg_bump_columns;
+
+/* Variance of ln K of a bump as its radius and angle are known. They are not apart: the crown is
+ * known far better than the centre, so where R is too large so is X, and alpha too small. From
+ * X - R = R0 - h the covariance of X and R is (u_X² + u_R² - u_h²) / 2. */
+double fg_bump_stiffness_variance(const fg_overall *overall, const fg_bump *bump,
+                                  const fg_arch_sensitivity *sensitivity);
+
+/* Fills analysis->stiffness.budget. */
+void fg_lot_analyse_budget(fg_lot_analysis *analysis, const fg_bump_columns *columns);
+
+#endif

@@ -1,0 +1,13 @@
+/* The beams of a flat foil over its scan. */
+#ifndef FG_REPORT_MEASURE_DRAW_BEAMS_H
+#define FG_REPORT_MEASURE_DRAW_BEAMS_H
+
+#include "foilgauge/foil.h"
+#include "page/canvas.h"
+
+/* Outlines of the fitted lines, root lines, axes, numbers, and residuals towards the void
+ * `magnification` times as large. */
+fg_status fg_draw_beams(fg_context *ctx, fg_canvas *canvas, const fg_foil *foil,
+                        double magnification);
+
+#endif

@@ -1,0 +1,32 @@
+/* What is drawn over a scan: edges, circles, numbers, residuals. */
+#ifndef FG_REPORT_MEASURE_DRAWING_H
+#define FG_REPORT_MEASURE_DRAWING_H
+
+#include "foilgauge/report.h"
+#include "page/canvas.h"
+
+enum {
+  FG_COLOUR_EDGE = 0x00a6c8,
+  FG_COLOUR_BUMP = 0xff7a1a,
+  FG_COLOUR_OVERALL = 0x3d9dff,
+  FG_COLOUR_RESIDUAL = 0xe0359b,
+  FG_COLOUR_TEXT = 0xffffff,
+};
+
+/* The emptiest corner of the canvas, where the residuals' scale is drawn: its lowest and highest x
+ * and y, mm. */
+typedef struct fg_drawing_box {
+  fg_point low, high;
+} fg_drawing_box;
+fg_drawing_box fg_drawing_scale_box(const fg_canvas *canvas, const fg_measurement *measurement);
+
+/* How many times as large residuals are drawn so that those of all scans of a report compare: 1, 2
+ * or 5 times a power of ten. */
+double fg_drawing_magnification(const fg_report *report);
+
+/* Draws every foil and disc, and the residuals' scale in the emptiest corner. Residuals are
+ * `magnification` times as large; 0: as suits this measurement. */
+fg_status fg_draw_measurement(fg_context *ctx, fg_canvas *canvas, const fg_measurement *measurement,
+                              double magnification);
+
+#endif

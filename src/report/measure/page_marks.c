@@ -1,0 +1,43 @@
+/* Values, verdicts and outcomes as a page shows them. */
+#include <math.h>
+
+#include "report/measure/page_parts.h"
+
+void fg_html_value(FILE *out, const fg_quantity *row, const void *object) {
+  double value = fg_quantity_value(row, object), u = fg_quantity_uncertainty(row, object);
+  int decimals = row->kind == FG_QUANTITY_COUNT ? 0 : fg_report_decimals(row, u);
+  if (!isfinite(value)) {
+    fputs("–", out);
+    return;
+  }
+  fprintf(out, "%s%.*f", value < 0 ? "−" : "", decimals, fabs(value));
+  if (isfinite(u)) fprintf(out, " <i>± %.*f</i>", decimals, FG_COVERAGE_FACTOR * u);
+}
+
+const char *fg_html_verdict_title(fg_verdict verdict) {
+  switch (verdict) {
+  case FG_VERDICT_PASS:
+    return "Within tolerance";
+  case FG_VERDICT_FAIL:
+    return "Out of tolerance";
+  case FG_VERDICT_UNDECIDED:
+    return "Cannot tell";
+  case FG_VERDICT_NOT_MEASURED:
+    return "Not measured";
+  case FG_VERDICT_NONE:
+    return "No tolerances stated";
+  }
+  return "";
+}
+
+void fg_html_verdict(FILE *out, fg_verdict verdict) {
+  fprintf(out, "<span class=\"verdict %s\">%s</span>\n", fg_verdict_word(verdict),
+          fg_html_verdict_title(verdict));
+}
+
+void fg_html_outcome(FILE *out, const fg_report_outcome *outcome) {
+  if (outcome->rejected && !outcome->exceeded)
+    fputs("<span class=\"verdict fail\">Rejected</span>\n", out);
+  else
+    fg_html_verdict(out, outcome->verdict);
+}

@@ -1,0 +1,109 @@
+/* Key numbers of a page: those of a foil, a plain strip, the discs of a scan. */
+#include <math.h>
+
+#include "report/measure/foil_parts.h"
+#include "report/measure/page_tables.h"
+
+static void put_tile(FILE *out, fg_quantity_owner owner, const char *name, const char *title,
+                     const void *object) {
+  const fg_quantity *row = fg_quantity_find(owner, name);
+  double value = fg_quantity_value(row, object), u = fg_quantity_uncertainty(row, object);
+  int decimals = fg_report_decimals(row, u);
+  fprintf(out, "<div><dt>%s</dt><dd>", title);
+  if (isfinite(value))
+    fprintf(out, "%s%.*f %s", value < 0 ? "−" : "", decimals, fabs(value), row->unit);
+  else
+    fputs("–", out);
+  if (isfinite(u)) fprintf(out, "<small>± %.*f</small>", decimals, FG_COVERAGE_FACTOR * u);
+  fputs("</dd></div>\n", out);
+}
+
+/* Mean over the parts, with their spread as a standard deviation: it says more than one part. */
+static void put_mean_tile(FILE *out, const fg_foil_parts *parts, const char *name,
+                          const char *title) {
+  const fg_quantity *row = fg_quantity_find(parts->owner, name);
+  double sum = 0, squares = 0;
+  size_t count = 0;
+  for (size_t i = 0; i < parts->count; i++) {
+    double value = fg_quantity_value(row, fg_foil_part_at(parts, i));
+    if (!isfinite(value)) continue;
+    count++;
+    double step = value - sum;
+    sum += step / (double)count; /* the running mean */
+    squares += step * (value - sum);
+  }
+  if (count == 0) return;
+  fprintf(out, "<div><dt>%s</dt><dd>%s%.*f %s", title, sum < 0 ? "−" : "", row->decimals, fabs(sum),
+          row->unit);
+  if (count > 1)
+    fprintf(out, "<small>s = %.*f, n = %zu</small>", row->decimals,
+            sqrt(squares / (double)(count - 1)), count);
+  fputs("</dd></div>\n", out);
+}
+
+static void put_arc_tiles(FILE *out, const fg_foil *foil) {
+  fputs("<dl class=\"tiles\">\n", out);
+  put_tile(out, FG_QUANTITY_OF_FOIL, "overall.radius_mm", "Radius", foil);
+  put_tile(out, FG_QUANTITY_OF_FOIL, "overall.springback_error_pct", "Springback of the radius",
+           foil);
+  put_tile(out, FG_QUANTITY_OF_FOIL, "arc.subtended_angle_deg", "Angle between the ends", foil);
+  put_tile(out, FG_QUANTITY_OF_FOIL, "arc.subtended_angle_error_pct", "Angle against the design",
+           foil);
+  put_tile(out, FG_QUANTITY_OF_FOIL, "arc.length_mm", "Length", foil);
+  put_tile(out, FG_QUANTITY_OF_FOIL, "thickness_mm", "Thickness", foil);
+  fputs("</dl>\n", out);
+}
+
+static void put_flat_tiles(FILE *out, const fg_foil_parts *beams) {
+  fputs("<dl class=\"tiles\">\n", out);
+  put_mean_tile(out, beams, "length_mm", "Length, mean");
+  put_mean_tile(out, beams, "width_mm", "Width, mean");
+  put_mean_tile(out, beams, "compliance_error_pct", "Compliance against the design, mean");
+  put_mean_tile(out, beams, "sagitta_error_pct", "Sagitta against the design, mean");
+  put_mean_tile(out, beams, "clearance_change_mm", "Clearance change, mean");
+  fputs("</dl>\n", out);
+}
+
+static void put_foil_tiles(FILE *out, const fg_foil *foil, const fg_foil_parts *bumps) {
+  fputs("<dl class=\"tiles\">\n", out);
+  put_tile(out, FG_QUANTITY_OF_FOIL, "overall.radius_mm", "Overall radius", foil);
+  put_tile(out, FG_QUANTITY_OF_FOIL, "overall.springback_error_pct", "Overall springback", foil);
+  put_mean_tile(out, bumps, "radius_mm", "Bump radius, mean");
+  put_mean_tile(out, bumps, "height_mm", "Bump height, mean");
+  put_mean_tile(out, bumps, "clearance_mm", "Clearance, free, mean");
+  put_mean_tile(out, bumps, "clearance_fitted_mm", "Clearance, fitted, mean");
+  put_tile(out, FG_QUANTITY_OF_FOIL, "thickness_mm", "Thickness", foil);
+  fputs("</dl>\n", out);
+}
+
+void fg_html_tiles(FILE *out, const fg_design *design, const fg_foil *foil) {
+  const fg_foil_parts parts = fg_foil_parts_of(design, foil);
+  if (design->kind == FG_FOIL_ARC)
+    put_arc_tiles(out, foil);
+  else if (design->kind == FG_FOIL_CANTILEVER)
+    put_flat_tiles(out, &parts);
+  else
+    put_foil_tiles(out, foil, &parts);
+}
+
+/* The disc that is farthest from round, the smallest and the largest. */
+void fg_html_disc_tiles(FILE *out, const fg_measurement *measurement) {
+  const fg_disc *small = NULL, *large = NULL, *odd = NULL;
+  for (size_t i = 0; i < measurement->disc_count; i++) {
+    const fg_disc *disc = &measurement->discs[i];
+    if (!isfinite(disc->diameter_mm)) continue;
+    if (!small || disc->diameter_mm < small->diameter_mm) small = disc;
+    if (!large || disc->diameter_mm > large->diameter_mm) large = disc;
+    if (!odd || disc->roundness_um > odd->roundness_um) odd = disc;
+  }
+  if (!small) return;
+  char title[64];
+  fputs("<dl class=\"tiles\">\n", out);
+  snprintf(title, sizeof title, "Smallest diameter, disc %d", small->number);
+  put_tile(out, FG_QUANTITY_OF_DISC, "diameter_mm", title, small);
+  snprintf(title, sizeof title, "Largest diameter, disc %d", large->number);
+  put_tile(out, FG_QUANTITY_OF_DISC, "diameter_mm", title, large);
+  snprintf(title, sizeof title, "Farthest from round, disc %d", odd->number);
+  put_tile(out, FG_QUANTITY_OF_DISC, "roundness_um", title, odd);
+  fputs("</dl>\n", out);
+}

@@ -1,0 +1,151 @@
+/* What was found, drawn: curves over the coordinate it lives on, with the parameters beside them.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "page/plot.h"
+#include "page/plot_marks.h"
+#include "report/scan_loop/parts.h"
+
+enum { SAMPLES = FG_SCAN_RESULT_SAMPLES, WIDTH = 520, HEIGHT = 290 };
+
+/* Where the foils' edges lie: beyond, a curve is not held by data. */
+static void put_reach(const fg_plot *at, const fg_scan_result *result,
+                      fg_scan_coordinate coordinate) {
+  double low = INFINITY, high = -INFINITY;
+  for (size_t i = 0; i < result->rows; i++) {
+    double x = result->row[i].place[coordinate];
+    low = fmin(low, x);
+    high = fmax(high, x);
+  }
+  if (!(high > low)) return;
+  fprintf(at->out,
+          "<rect class=\"beyond\" x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\"/>\n",
+          at->left, at->top, at->right - at->left, at->bottom - at->top);
+  fprintf(at->out, "<rect class=\"reach\" x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\"/>\n",
+          fg_plot_x(at, low), at->top, fg_plot_x(at, high) - fg_plot_x(at, low),
+          at->bottom - at->top);
+}
+
+static void put_band(const fg_plot *at, const fg_scan_result_line *line) {
+  size_t count = SAMPLES;
+  if (!isfinite(line->expanded_um[0])) return;
+  fputs("<path class=\"ci shape\" d=\"", at->out);
+  for (size_t i = 0; i < count; i++)
+    fprintf(at->out, "%c%.1f %.1f", i ? 'L' : 'M', fg_plot_x(at, line->x[i]),
+            fg_plot_y(at, line->um[i] + line->expanded_um[i]));
+  for (size_t i = count; i-- > 0;)
+    fprintf(at->out, "L%.1f %.1f", fg_plot_x(at, line->x[i]),
+            fg_plot_y(at, line->um[i] - line->expanded_um[i]));
+  fputs("Z\"/>\n", at->out);
+}
+
+static const char *moves_words(const fg_scan_result_line *line) {
+  if (!line->glass) return "deviation";
+  return line->axis == 'y' ? "displacement in y" : "displacement in x";
+}
+
+static const char *caption_words(const fg_scan_result_line *line) {
+  static const char *const captions[2][FG_SCAN_COORDINATES] = {
+      {[FG_SCAN_FOIL] = "Deviation of the foil, outwards from O positive",
+       [FG_SCAN_PHI] = "Deviation of every bump from its circle, away from its centre positive",
+       [FG_SCAN_NORMAL] = "What the direction of the edge does, outwards positive"},
+      {[FG_SCAN_FOIL] = "Deviation of the foil from its best circle, outwards positive",
+       [FG_SCAN_INDEX] = "Deviation of single bumps from their circles, away from their centres "
+                         "positive",
+       [FG_SCAN_PHI] = "Deviation of every bump from its best circle, away from its centre "
+                       "positive",
+       [FG_SCAN_NORMAL] = "What the direction of the edge does, outwards positive"}};
+  return line->glass ? "What must be added to the picture's coordinate. White: where edges lie "
+                       "that were measured"
+                     : captions[line->free][line->coordinate];
+}
+
+/* The range with the band; returns how wide the band is. */
+static double find_range(const fg_scan_result_line *line, double range[2]) {
+  double widest = 0;
+  range[0] = range[1] = 0;
+  for (size_t i = 0; i < SAMPLES; i++) {
+    if (!isfinite(line->um[i])) continue;
+    double u = isfinite(line->expanded_um[i]) ? line->expanded_um[i] : 0;
+    widest = fmax(widest, u);
+    range[0] = fmin(range[0], line->um[i] - u);
+    range[1] = fmax(range[1], line->um[i] + u);
+  }
+  return widest;
+}
+
+static void put_line(FILE *out, const fg_scan_result *result, const fg_scan_result_line *line) {
+  double range[2], widest = find_range(line, range);
+  double margin = 0.08 * (range[1] - range[0]) + 1e-6;
+  fg_plot at = {out,
+                WIDTH,
+                72,
+                508,
+                14,
+                240,
+                line->x[0],
+                line->x[SAMPLES - 1],
+                range[0] - margin,
+                range[1] + margin};
+  char title[64];
+  snprintf(title, sizeof title, "%s, µm", moves_words(line));
+  fputs("<figure>", out);
+  fg_plot_begin(&at, HEIGHT, title);
+  if (line->glass) put_reach(&at, result, line->coordinate);
+  fg_plot_y_axis(&at, title);
+  fg_plot_x_numbers(&at);
+  fg_plot_x_title(&at, line->coordinate == FG_SCAN_FOIL
+                           ? "angle from the foil's middle about O, °"
+                           : result->coordinate_title[line->coordinate]);
+  put_band(&at, line);
+  fg_plot_line(&at, line->x, line->um, SAMPLES, "effect");
+  fg_plot_end(&at);
+  fprintf(out, "<figcaption>%s", caption_words(line));
+  if (widest > 0) {
+    fg_scan_loop_length_words(widest, title, sizeof title);
+    fprintf(out, "; band: U = 2u, at most %s", title);
+  }
+  fputs(".</figcaption></figure>\n", out);
+}
+
+static void put_claim(FILE *out, const fg_scan_result_claim *claim) {
+  char words[120];
+  fputs("<tr><td class=\"words\">", out);
+  fg_html_text(out, claim->words);
+  fputs("<i>", out);
+  fg_html_text(out, claim->id);
+  if (claim->direction)
+    fprintf(out, ", along the %s", strcmp(claim->direction, "radial") ? "normal" : "radius");
+  fprintf(out, "</i></td><td class=\"words\">%s</td><td class=\"words\">", claim->equation);
+  for (size_t i = 0; i < claim->parameters; i++) {
+    const fg_scan_result_parameter *p = &claim->parameter[i];
+    fg_scan_loop_value_words(p->told, p->u_told, words, sizeof words);
+    fprintf(out, "%s<span class=\"nobreak\">%s = %s %s</span>", i ? "<br>" : "", p->symbol, words,
+            p->unit);
+  }
+  fputs(claim->free ? "the curve itself</td></tr>\n" : "</td></tr>\n", out);
+}
+
+static void put_parameters(FILE *out, const fg_scan_result *result) {
+  fputs("<div class=\"scroll\"><table><tr><th>effect</th><th class=\"w\">equation</th>"
+        "<th class=\"w\">parameters, ± U = 2u</th></tr>\n",
+        out);
+  for (size_t i = 0; i < result->claims; i++)
+    put_claim(out, &result->claim[i]);
+  fputs(
+      "</table></div>\n<p class=\"note\">x, y: of scale and shear from the middle of the picture, "
+      "else from its top left. ψ: about O from the foil's middle.</p>\n",
+      out);
+}
+
+void fg_scan_loop_page_effects(FILE *out, const fg_scan_result *result) {
+  if (!result->claims) return;
+  fputs("<section><h2 class=\"first\">What was found, drawn</h2>\n", out);
+  put_parameters(out, result);
+  fputs("<div class=\"two\">\n", out);
+  fg_scan_loop_page_grid(out, result);
+  for (size_t i = 0; i < result->lines; i++)
+    put_line(out, result, &result->line[i]);
+  fputs("</div></section>\n", out);
+}

@@ -1,0 +1,99 @@
+/* What to do about what the loop on scans found: one sentence, and the commands for it. */
+#include <string.h>
+
+#include "core/text.h"
+#include "report/scan_loop/parts.h"
+
+/* Where what was found sits, and so what must be corrected. */
+typedef struct sources {
+  bool scanner, part, width, bumps;
+  bool curve; /* something without a name is among it */
+} sources;
+
+static bool of_glass(const fg_scan_result_claim *claim) {
+  if (!claim->free) return strncmp(claim->id, "scan.", 5) == 0;
+  return claim->coordinate == FG_SCAN_X || claim->coordinate == FG_SCAN_Y;
+}
+
+static sources find_sources(const fg_scan_result *result) {
+  sources found = {.bumps = result->bumps.curve != NULL};
+  for (size_t i = 0; i < result->claims; i++) {
+    const fg_scan_result_claim *claim = &result->claim[i];
+    found.curve = found.curve || claim->free;
+    if (claim->of_width)
+      found.width = true;
+    else if (of_glass(claim))
+      found.scanner = true;
+    else
+      found.part = true;
+  }
+  for (size_t r = 0; r < FG_SCAN_RESULT_RESPONSES; r++)
+    found.bumps = found.bumps || result->bumps.response[r].claims;
+  return found;
+}
+
+static fg_status add_scans(fg_context *ctx, const fg_scan_result *result, char **command) {
+  if (result->discs) FG_TRY(fg_text_append(ctx, command, " --form discs"));
+  if (result->same_foil) FG_TRY(fg_text_append(ctx, command, " --same-foil"));
+  for (size_t i = 0; i < result->scans; i++) {
+    if (result->scan[i].hold_out) FG_TRY(fg_text_append(ctx, command, " --hold-out"));
+    FG_TRY(fg_text_append_word(ctx, command, result->scan[i].before->scan));
+  }
+  return FG_OK;
+}
+
+static fg_status correct_by_model(fg_context *ctx, const fg_scan_result *result, char **commands) {
+  FG_TRY(fg_text_append(ctx, commands, "foilgauge loop"));
+  FG_TRY(add_scans(ctx, result, commands));
+  return fg_text_append(ctx, commands,
+                        " --model-out scanner.json\nfoilgauge measure --model scanner.json "
+                        "NEXT_SCAN.png");
+}
+
+static fg_status tell_apart(fg_context *ctx, const fg_scan_result *result, char **words,
+                            char **commands) {
+  FG_TRY(fg_text_print(ctx, words, "Correct nothing by it yet, its cause is not known: %s.",
+                       result->advices ? result->advice[0] : "scan again"));
+  if (result->discs || result->same_foil) return FG_OK;
+  FG_TRY(fg_text_append(ctx, commands, "foilgauge loop --same-foil"));
+  for (size_t i = 0; i < result->scans && i < 1; i++)
+    FG_TRY(fg_text_append_word(ctx, commands, result->scan[i].before->scan));
+  return fg_text_append(ctx, commands, " TURNED_BY_90.png");
+}
+
+static fg_status correct_scanner(fg_context *ctx, const fg_scan_result *result, sources found,
+                                 char **words, char **commands) {
+  FG_TRY(fg_text_print(
+      ctx, words,
+      "Correct the scanner: what was found goes with the glass%s, so every scan of this scanner "
+      "has it; write its model once, and measure with it%s.",
+      found.part ? " (what the part does beside it is the die's or the press's to mend)" : "",
+      found.curve ? ", after a second part on the same glass has shown the same curve" : ""));
+  return correct_by_model(ctx, result, commands);
+}
+
+static const char *for_part(sources found) {
+  if (found.part)
+    return "Correct the part, not the scanner: what was found turns with the foil, so look at the "
+           "die, the press or how the foil was held; the dimensions below are without it.";
+  if (found.width)
+    return "Look at the sheet: its thickness changes along the strip; radii and heights of the "
+           "midline stand.";
+  return "Look at the die and the heat treatment: the bumps differ among themselves in a way that "
+         "the declared model does not explain; the dimensions stand as measured.";
+}
+
+fg_status fg_scan_loop_next(fg_context *ctx, const fg_scan_result *result, char **words,
+                            char **commands) {
+  sources found = find_sources(result);
+  *words = *commands = NULL;
+  if (result->contradicted)
+    return fg_text_print(ctx, words,
+                         "Correct nothing by it: the scans kept aside become worse; scan the same "
+                         "part at the same place of the glass again.");
+  if (!result->named) return tell_apart(ctx, result, words, commands);
+  if (found.scanner) return correct_scanner(ctx, result, found, words, commands);
+  if (found.part || found.width || found.bumps)
+    return fg_text_print(ctx, words, "%s", for_part(found));
+  return fg_text_print(ctx, words, "Nothing to correct: use the dimensions as they were measured.");
+}

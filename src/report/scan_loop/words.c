@@ -1,0 +1,37 @@
+/* Values and units as people read them. */
+#include <math.h>
+#include <string.h>
+
+#include "core/text.h"
+#include "report/scan_loop/parts.h"
+
+double fg_scan_loop_nice_below(double max) {
+  double power = pow(10, floor(log10(max))), share = max / power;
+  return power * (share >= 5 ? 5 : share >= 2 ? 2 : 1);
+}
+
+const char *fg_scan_loop_unit_words(const char *unit) {
+  return !strcmp(unit, "um") ? "µm" : !strcmp(unit, "deg") ? "°" : unit;
+}
+
+void fg_scan_loop_held_out_words(const fg_scan_result *result, char words[FG_HELD_OUT_WORDS]) {
+  words[0] = 0;
+  if (result->held_out == FG_SCAN_HELD_OUT_SCANS)
+    fg_text_clip(words, FG_HELD_OUT_WORDS, "scans kept aside");
+  if (result->held_out == FG_SCAN_HELD_OUT_FOLDS)
+    fg_text_clip(words, FG_HELD_OUT_WORDS, "%s that took no part in the search", result->fold_of);
+}
+
+const char *fg_channel_check_word(fg_channel_check_verdict verdict) {
+  switch (verdict) {
+  case FG_CHANNEL_CHECK_FOR:
+    return "for";
+  case FG_CHANNEL_CHECK_AGAINST:
+    return "against";
+  case FG_CHANNEL_CHECK_CANNOT_TELL:
+    return "cannot_tell";
+  case FG_CHANNEL_CHECK_NONE:
+    break;
+  }
+  return "";
+}

@@ -1,0 +1,11 @@
+/* The plots of what the loop on tables found. */
+#ifndef FG_REPORT_TABLE_LOOP_PLOTS_H
+#define FG_REPORT_TABLE_LOOP_PLOTS_H
+
+#include "foilgauge/loop.h"
+
+/* A section per finding: curves as curves, levels as dashes, spread as a band, wrong rows marked.
+ */
+fg_status fg_loop_plots_put(fg_context *ctx, FILE *out, const fg_loop_report *report);
+
+#endif

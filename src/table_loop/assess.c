@@ -1,0 +1,334 @@
+/* One null for everything: residuals of the null model in another order (Freedman and Lane 1983),
+ * which keeps their tails, through the same scores as the data. Scores of all kinds are put on one
+ * scale by their own draws, so that their largest is a fair maximum (Westfall and Young 1993); how
+ * many independent looks that is worth is read off the draws, and tells p-values beyond them. */
+#include "table_loop/assess.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <gsl/gsl_cdf.h>
+
+#include "core/memory.h"
+#include "core/parallel.h"
+#include "core/select.h"
+#include "table_loop/engine_random.h"
+#include "table_loop/noise_scores.h"
+
+/* With fewer rows beyond the parameters a new order of the residuals is no new sample: normal
+ * numbers are drawn. */
+enum { PERMUTED_DOF = 12 };
+/* The number of looks is read where this share of the draws' maxima lies beyond. */
+#define LOOKS_AT 0.02
+/* A first look decides where it says that many times less or more than what is asked. */
+enum { FIRST_DRAWS = 399, UNCERTAINTY = 8 };
+/* A candidate's scale: from its median draw to this quantile. */
+#define UPPER 0.95
+static const double upper_normal = 1.6448536269514722;
+
+typedef struct drawing {
+  const fg_score_workspace *workspace;
+  const fg_engine_noise_scores *noise_scores;
+  const fg_engine_exchange *exchange; /* NULL: none */
+  const fg_engine_null *null;
+  fg_engine_noise noise;
+  const double *white; /* n: the null's residual, each at its own variance */
+  bool permuted;
+  size_t kinds; /* of scores: means, noises, the exchange */
+  double *z;    /* draws × kinds */
+} drawing;
+
+static void draw_one(const drawing *d, uint64_t *seed, double *y) {
+  const fg_engine_training *training = d->workspace->training;
+  size_t n = training->n;
+  for (size_t i = 0; i < n; i++)
+    y[i] = d->permuted ? d->white[i] : fg_engine_random_normal(seed);
+  for (size_t i = n; d->permuted && i > 1; i--) {
+    size_t k = (size_t)(fg_engine_random_uniform(seed) * (double)i);
+    double other = y[k];
+    y[k] = y[i - 1];
+    y[i - 1] = other;
+  }
+  fg_engine_colour(training, d->noise, y);
+}
+
+/* Noise and exchange of one draw, behind the means' scores. */
+static void score_rest(const drawing *d, const double *y, double *work, double *z) {
+  const fg_score_workspace *workspace = d->workspace;
+  size_t n = workspace->training->n, noises = d->noise_scores->count, pair[2];
+  fg_engine_noise_scores_of(d->noise_scores, y, work, z + workspace->candidates);
+  if (!d->exchange) return;
+  double *response = work + 3 * n;
+  for (size_t i = 0; i < n; i++)
+    response[i] = d->exchange->mean[i] + y[i];
+  double ratio = fg_engine_exchange_best(d->exchange, y, response, work, pair);
+  z[workspace->candidates + noises] =
+      isfinite(ratio) ? fg_engine_deviate(fmin(ratio, 1), 1, (double)workspace->dof) : NAN;
+}
+
+static fg_status draw_batch(fg_context *ctx, void *shared, size_t item) {
+  const drawing *d = shared;
+  const fg_score_workspace *workspace = d->workspace;
+  size_t n = workspace->training->n, first = item * FG_ENGINE_BATCH, count = d->null->draws - first;
+  uint64_t seed = (d->null->seed + 1) * 0x5851f42d4c957f2du + item;
+  fg_engine_score *score = NULL;
+  double *y = NULL, *work = NULL;
+  fg_status status = FG_OK;
+  if (count > FG_ENGINE_BATCH) count = FG_ENGINE_BATCH;
+  FG_TRY_EXIT(fg_memory_allocate(ctx, count, n * sizeof *y, (void **)&y));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, n, 4 * sizeof *work, (void **)&work));
+  FG_TRY_EXIT(
+      fg_memory_allocate(ctx, workspace->candidates + 1, count * sizeof *score, (void **)&score));
+  for (size_t b = 0; b < count; b++)
+    draw_one(d, &seed, y + b * n);
+  FG_TRY_EXIT(fg_score_workspace_score(ctx, workspace, count, y, score));
+  for (size_t b = 0; b < count; b++) {
+    double *z = d->z + (first + b) * d->kinds;
+    for (size_t c = 0; c < workspace->candidates; c++)
+      z[c] = score[b * workspace->candidates + c].z;
+    score_rest(d, y + b * n, work, z);
+  }
+exit:
+  free(y);
+  free(work);
+  free(score);
+  return status;
+}
+
+/* Where a kind of score lies in its own draws. */
+typedef struct own_scale {
+  double middle, spread;
+} own_scale;
+
+static double quantile(const double *sorted, size_t count, double share) {
+  double place = share * (double)(count - 1);
+  size_t below = (size_t)place;
+  if (below + 1 >= count) return sorted[count - 1];
+  return sorted[below] + (place - (double)below) * (sorted[below + 1] - sorted[below]);
+}
+
+static own_scale scale_of(const drawing *d, size_t kind, double *sorted) {
+  size_t count = 0, draws = d->null->draws;
+  for (size_t b = 0; b < draws; b++)
+    if (isfinite(d->z[b * d->kinds + kind])) sorted[count++] = d->z[b * d->kinds + kind];
+  if (count < draws / 2) return (own_scale){NAN, NAN};
+  fg_sort(sorted, count);
+  own_scale scale = {quantile(sorted, count, 0.5), 0};
+  scale.spread = (quantile(sorted, count, UPPER) - scale.middle) / upper_normal;
+  if (!(scale.spread > 0)) scale.spread = NAN;
+  return scale;
+}
+
+/* The number of looks of which chance has the largest as often as the draws do. */
+static double looks(const drawing *d, const own_scale *scale, double *maxima) {
+  size_t draws = d->null->draws;
+  for (size_t b = 0; b < draws; b++) {
+    maxima[b] = -INFINITY;
+    for (size_t c = 0; c < d->kinds; c++) {
+      double z = (d->z[b * d->kinds + c] - scale[c].middle) / scale[c].spread;
+      if (z > maxima[b]) maxima[b] = z;
+    }
+  }
+  fg_sort(maxima, draws);
+  double edge = gsl_cdf_ugaussian_Q(quantile(maxima, draws, 1 - LOOKS_AT));
+  return fmax(log1p(-LOOKS_AT) / log1p(-edge), 1);
+}
+
+static double over_all(double z, double tests) {
+  double p = -expm1(tests * log1p(-gsl_cdf_ugaussian_Q(z))) / FG_ENGINE_SHARE_OF_CANDIDATES;
+  return isfinite(z) ? fmin(p, 1) : 1;
+}
+
+static double critical_deviate(double accept_p, double tests) {
+  double one = -expm1(log1p(-accept_p * FG_ENGINE_SHARE_OF_CANDIDATES) / tests);
+  return gsl_cdf_ugaussian_Qinv(one);
+}
+
+static void take_critical(const fg_score_workspace *workspace, const fg_engine_null *null,
+                          const own_scale *scale, fg_engine_judgement *judgement) {
+  double edge = critical_deviate(null->accept_p, judgement->tests);
+  for (size_t c = 0; c < judgement->means; c++) {
+    if (!isfinite(judgement->z[c])) continue;
+    const fg_engine_version *version = &workspace->version[judgement->score[c].version];
+    double k = fg_engine_version_dof(workspace, version);
+    judgement->z_critical[c] = scale ? scale[c].middle + edge * scale[c].spread : edge;
+    judgement->f_critical[c] = fg_engine_deviate_to_f(
+        judgement->z_critical[c], k, fg_engine_version_whole(workspace, version) - k);
+  }
+}
+
+/* `raw` are the data's deviates before they are put on the draws' scale. */
+static fg_status judge_drawn(fg_context *ctx, drawing *d, const double *raw,
+                             fg_engine_judgement *judgement) {
+  size_t draws = d->null->draws, batches = (draws + FG_ENGINE_BATCH - 1) / FG_ENGINE_BATCH;
+  fg_status status = FG_OK;
+  own_scale *scale = NULL;
+  double *sorted = NULL;
+  FG_TRY_EXIT(fg_memory_allocate(ctx, draws, d->kinds * sizeof *d->z, (void **)&d->z));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, d->kinds, sizeof *scale, (void **)&scale));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, draws, sizeof *sorted, (void **)&sorted));
+  FG_TRY_EXIT(fg_parallel_run(ctx, 0, batches, draw_batch, d));
+  for (size_t c = 0; c < d->kinds; c++)
+    scale[c] = scale_of(d, c, sorted);
+  judgement->tests = looks(d, scale, sorted);
+  for (size_t c = 0; c < d->kinds; c++)
+    judgement->z[c] = (raw[c] - scale[c].middle) / scale[c].spread;
+  take_critical(d->workspace, d->null, scale, judgement);
+exit:
+  free(d->z);
+  d->z = NULL;
+  free(scale);
+  free(sorted);
+  return status;
+}
+
+static double smallest_p(const fg_engine_judgement *judgement) {
+  double smallest = 1;
+  for (size_t c = 0; c <= judgement->candidates; c++)
+    smallest = fmin(smallest, over_all(judgement->z[c], judgement->tests));
+  return smallest;
+}
+
+/* A first look with few draws; as many as were asked for where that leaves anything in doubt. */
+static fg_status judge_in_turns(fg_context *ctx, drawing *d, fg_engine_judgement *judgement) {
+  size_t all = judgement->candidates + 1;
+  fg_engine_null first = *d->null, whole = *d->null;
+  double *raw = NULL;
+  fg_status status = FG_OK;
+  FG_TRY(fg_memory_allocate(ctx, all, sizeof *raw, (void **)&raw));
+  memcpy(raw, judgement->z, all * sizeof *raw);
+  if (first.draws > FIRST_DRAWS) first.draws = FIRST_DRAWS;
+  d->null = &first;
+  fg_score_workspace_tell(d->workspace, 1, 3);
+  FG_TRY_EXIT(judge_drawn(ctx, d, raw, judgement));
+  double p = smallest_p(judgement);
+  if (first.draws == whole.draws || p < whole.accept_p / UNCERTAINTY ||
+      p > whole.accept_p * UNCERTAINTY)
+    goto exit;
+  d->null = &whole;
+  fg_score_workspace_tell(d->workspace, 2, 3);
+  FG_TRY_EXIT(judge_drawn(ctx, d, raw, judgement));
+exit:
+  free(raw);
+  return status;
+}
+
+/* Many rows: every version of every candidate is one look at a normal deviate. */
+static void judge_by_count(const fg_score_workspace *workspace, const fg_engine_null *null,
+                           fg_engine_judgement *judgement) {
+  judgement->tests = (double)(workspace->versions + judgement->candidates - judgement->means);
+  take_critical(workspace, null, NULL, judgement);
+}
+
+/* The null's residual, whitened, each over what its own row keeps of it. */
+static void null_residual(const fg_engine_training *training, fg_engine_noise noise,
+                          const fg_engine_span *null, double *white) {
+  size_t n = training->n;
+  memcpy(white, training->y, n * sizeof *white);
+  fg_engine_whiten(training, noise, white);
+  fg_engine_project_out(n, null->basis, null->rank, white);
+  for (size_t i = 0; i < n; i++)
+    white[i] /= fg_engine_span_kept_sd(null, i);
+}
+
+static fg_status allocate(fg_context *ctx, size_t means, size_t noises,
+                          fg_engine_judgement *judgement) {
+  size_t all = means + noises + 1, size = sizeof(double);
+  *judgement =
+      (fg_engine_judgement){.means = means, .candidates = means + noises, .exchange_ratio = NAN};
+  FG_TRY(fg_memory_allocate(ctx, means + 1, sizeof *judgement->score, (void **)&judgement->score));
+  FG_TRY(fg_memory_allocate(ctx, all, size, (void **)&judgement->z));
+  FG_TRY(fg_memory_allocate(ctx, all, size, (void **)&judgement->p));
+  FG_TRY(fg_memory_allocate(ctx, all, size, (void **)&judgement->z_critical));
+  FG_TRY(fg_memory_allocate(ctx, all, size, (void **)&judgement->f_critical));
+  for (size_t c = 0; c < all; c++) {
+    judgement->z[c] = judgement->z_critical[c] = NAN;
+    judgement->f_critical[c] = INFINITY;
+    judgement->p[c] = 1;
+  }
+  return FG_OK;
+}
+
+/* Beside correlation the exchanges cost rows² a draw. */
+enum { EXCHANGED_CORRELATED = 250 };
+
+static bool may_exchange(const fg_engine_training *training) {
+  bool whole = training->serial || training->levels;
+  size_t max = whole ? EXCHANGED_CORRELATED : FG_ENGINE_SMALL_ROWS;
+  return training->problem->exchangeable && training->n >= training->columns + 4 &&
+         training->n <= max;
+}
+
+/* The scores of the data themselves. */
+static fg_status score_data(fg_context *ctx, const fg_score_workspace *workspace,
+                            const fg_engine_noise_scores *noise_scores,
+                            const fg_engine_exchange *exchange, fg_engine_judgement *judgement) {
+  const fg_engine_training *training = workspace->training;
+  size_t n = training->n, noises = noise_scores->count;
+  double *work = NULL;
+  FG_TRY(fg_memory_allocate(ctx, n, 4 * sizeof *work, (void **)&work));
+  for (size_t c = 0; c < judgement->means; c++)
+    judgement->z[c] = judgement->score[c].z;
+  fg_engine_noise_scores_of(noise_scores, training->y, work, judgement->z + judgement->means);
+  if (exchange) {
+    for (size_t i = 0; i < n; i++)
+      work[3 * n + i] = fg_engine_response(training, i);
+    double ratio =
+        fg_engine_exchange_best(exchange, training->y, work + 3 * n, work, judgement->exchanged);
+    judgement->has_exchange = isfinite(ratio);
+    judgement->exchange_ratio = fmin(ratio, 1);
+    if (judgement->has_exchange)
+      judgement->z[judgement->means + noises] =
+          fg_engine_deviate(judgement->exchange_ratio, 1, (double)workspace->dof);
+  }
+  free(work);
+  return FG_OK;
+}
+
+fg_status fg_engine_judge(fg_context *ctx, const fg_score_workspace *workspace,
+                          const fg_loop_candidate *noise, size_t noises, const fg_engine_null *null,
+                          fg_engine_judgement *judgement) {
+  const fg_engine_training *training = workspace->training;
+  fg_engine_noise_scores noise_scores = {0};
+  fg_engine_exchange exchange = {0};
+  double *white = NULL;
+  fg_status status = FG_OK;
+  bool few = training->n <= FG_ENGINE_SMALL_ROWS, exchanges = may_exchange(training);
+  FG_TRY_EXIT(allocate(ctx, workspace->candidates, noises, judgement));
+  if (workspace->dof < 2) goto exit;
+  fg_score_workspace_score_data(workspace, judgement->score, &judgement->noise);
+  fg_engine_noise at = workspace->noise[judgement->noise];
+  const fg_engine_span *span = &workspace->null[judgement->noise];
+  FG_TRY_EXIT(fg_engine_noise_scores_open(ctx, training, at, span, noise, noises, &noise_scores));
+  if (exchanges) FG_TRY_EXIT(fg_engine_exchange_open(ctx, training, at, span, &exchange));
+  FG_TRY_EXIT(score_data(ctx, workspace, &noise_scores, exchanges ? &exchange : NULL, judgement));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, training->n, sizeof *white, (void **)&white));
+  null_residual(training, at, span, white);
+  drawing d = {
+      workspace, &noise_scores, exchanges ? &exchange : NULL,   null,
+      at,        white,         workspace->dof >= PERMUTED_DOF, judgement->candidates + exchanges,
+      NULL};
+  if (few)
+    FG_TRY_EXIT(judge_in_turns(ctx, &d, judgement));
+  else
+    judge_by_count(workspace, null, judgement);
+  fg_score_workspace_tell(workspace, 3, 3);
+  for (size_t c = 0; c <= judgement->candidates; c++)
+    judgement->p[c] = over_all(judgement->z[c], judgement->tests);
+exit:
+  free(white);
+  fg_engine_noise_scores_close(&noise_scores);
+  fg_engine_exchange_close(&exchange);
+  if (status != FG_OK) fg_engine_judgement_free(judgement);
+  return status;
+}
+
+void fg_engine_judgement_free(fg_engine_judgement *judgement) {
+  free(judgement->score);
+  free(judgement->z);
+  free(judgement->p);
+  free(judgement->z_critical);
+  free(judgement->f_critical);
+  *judgement = (fg_engine_judgement){0};
+}

@@ -1,0 +1,81 @@
+/* What the engine asks of a candidate. */
+#include <stdio.h>
+#include <string.h>
+
+#include "core/text.h"
+#include "table_loop/engine.h"
+
+bool fg_engine_is_outlier(const fg_loop_candidate *candidate) {
+  return candidate->effect->outlier != FG_LOOP_NOT_OUTLIER;
+}
+
+bool fg_engine_is_exchange(const fg_loop_candidate *candidate) {
+  return candidate->effect->outlier == FG_LOOP_EXCHANGED_ROWS;
+}
+
+bool fg_engine_is_noise(const fg_loop_candidate *candidate) {
+  return candidate->effect->scatter != FG_LOOP_OF_THE_MEAN;
+}
+
+bool fg_engine_is_serial(const fg_loop_candidate *candidate) {
+  return candidate->effect->scatter == FG_LOOP_SERIAL;
+}
+
+bool fg_engine_is_curve(const fg_loop_candidate *candidate) {
+  return candidate->effect->unattributed;
+}
+
+size_t fg_engine_candidate_columns(const fg_loop_problem *problem,
+                                   const fg_loop_candidate *candidate) {
+  return candidate->effect->columns(problem, candidate);
+}
+
+bool fg_engine_same_candidate(const fg_loop_candidate *a, const fg_loop_candidate *b) {
+  if (a->effect != b->effect || a->a != b->a || a->b != b->b || a->rows != b->rows) return false;
+  return !a->rows || !memcmp(a->row, b->row, a->rows * sizeof *a->row);
+}
+
+static void name_rows(const fg_loop_candidate *candidate, char name[FG_LOOP_NAME]) {
+  size_t used = (size_t)snprintf(name, FG_LOOP_NAME, "%s", candidate->effect->id);
+  for (size_t k = 0; k < candidate->rows && used < FG_LOOP_NAME; k++, used = strlen(name))
+    fg_text_clip(name + used, FG_LOOP_NAME - used, "%s%zu%s", k ? ", " : "(", candidate->row[k] + 1,
+                 k + 1 == candidate->rows ? ")" : "");
+}
+
+/* "the runs" for a column `run`; others by their name. */
+static const char *coordinate_words(const fg_loop_coordinate *at) {
+  static const char *const plural[][2] = {
+      {"run", "the runs"}, {"row", "the rows"}, {"bump", "the bumps"}};
+  for (size_t i = 0; i < sizeof plural / sizeof *plural; i++)
+    if (!strcmp(at->name, plural[i][0]) && at->roles & (FG_LOOP_ORDER | FG_LOOP_BUMP))
+      return plural[i][1];
+  return at->name;
+}
+
+void fg_loop_effect_words(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
+                          char *text, size_t size) {
+  const fg_loop_effect *effect = candidate->effect;
+  const fg_loop_coordinate *at = problem->coordinate;
+  if (!effect->accepts)
+    fg_text_clip(text, size, "%s", effect->words);
+  else if (effect->pair)
+    fg_text_clip(text, size, "%s %s and %s", effect->words, coordinate_words(&at[candidate->a]),
+                 coordinate_words(&at[candidate->b]));
+  else
+    fg_text_clip(text, size, "%s %s", effect->words, coordinate_words(&at[candidate->a]));
+}
+
+void fg_engine_candidate_name(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
+                              char name[FG_LOOP_NAME]) {
+  const char *id = candidate->effect->id;
+  if (fg_engine_is_exchange(candidate))
+    fg_text_clip(name, FG_LOOP_NAME, "%s(%zu, %zu)", id, candidate->row[0] + 1,
+                 candidate->row[1] + 1);
+  else if (fg_engine_is_outlier(candidate))
+    name_rows(candidate, name);
+  else if (candidate->effect->pair)
+    fg_text_clip(name, FG_LOOP_NAME, "%s(%s, %s)", id, problem->coordinate[candidate->a].name,
+                 problem->coordinate[candidate->b].name);
+  else
+    fg_text_clip(name, FG_LOOP_NAME, "%s(%s)", id, problem->coordinate[candidate->a].name);
+}

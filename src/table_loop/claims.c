@@ -1,0 +1,193 @@
+/* Coefficients and uncertainties of what was found, shapes included. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <gsl/gsl_cdf.h>
+
+#include "core/memory.h"
+#include "table_loop/fit.h"
+
+/* d(effect)/d(shape) at fixed coefficients: columns × n, where the shape may move by small steps.
+ */
+static fg_status shape_slope(fg_context *ctx, const fg_engine_training *training,
+                             const fg_loop_candidate *candidate, const double *shape, size_t d,
+                             const double *beta, double *slope) {
+  size_t count = fg_engine_candidate_columns(training->problem, candidate), n = training->n;
+  double *columns = NULL, moved[FG_LOOP_SHAPES];
+  double step = shape[d] != 0 ? 1e-4 * fabs(shape[d]) : 1e-12;
+  FG_TRY(fg_memory_allocate(ctx, n, count * sizeof *columns, (void **)&columns));
+  fg_status status = FG_OK;
+  memset(slope, 0, n * sizeof *slope);
+  for (int side = -1; side <= 1 && status == FG_OK; side += 2) {
+    memcpy(moved, shape, sizeof moved);
+    moved[d] += side * step;
+    status = fg_engine_gather(ctx, training, candidate, moved, columns);
+    for (size_t k = 0; k < count; k++)
+      for (size_t i = 0; i < n; i++)
+        slope[i] += side * beta[k] * columns[k * n + i] / (2 * step);
+  }
+  free(columns);
+  return status;
+}
+
+/* The training's columns and, behind them, the slopes of all shapes. */
+static fg_status append_slopes(fg_context *ctx, fg_engine_training *training,
+                               const fg_engine_set *set, const fg_engine_fit *fit) {
+  size_t n = training->n, extra = 0, first = training->problem->parameters;
+  for (size_t m = 0; m < set->count; m++)
+    if (!set->candidate[m].effect->stepwise) extra += set->candidate[m].effect->shapes;
+  if (extra == 0) return FG_OK;
+  double *x = NULL;
+  FG_TRY(fg_memory_allocate(ctx, n, (training->columns + extra) * sizeof *x, (void **)&x));
+  memcpy(x, training->x, n * training->columns * sizeof *x);
+  free(training->x);
+  training->x = x;
+  for (size_t m = 0; m < set->count; m++) {
+    const fg_loop_effect *effect = set->candidate[m].effect;
+    for (size_t d = 0; d < effect->shapes && !effect->stepwise; d++)
+      FG_TRY(shape_slope(ctx, training, &set->candidate[m], set->shape[m], d, fit->beta + first,
+                         x + n * training->columns++));
+    if (!fg_engine_is_exchange(&set->candidate[m]) && !fg_engine_is_noise(&set->candidate[m]))
+      first += fg_engine_candidate_columns(training->problem, &set->candidate[m]);
+  }
+  return FG_OK;
+}
+
+/* Half the range over the rows: extremes at rows a and b; its gradient by the coefficients (and
+ * shapes) is half the difference of the columns there. */
+static void amplitude(const fg_engine_training *training, const fg_engine_fit *fit,
+                      const fg_engine_fit *wide, size_t first, size_t count, size_t slope,
+                      size_t slopes, double variance, fg_loop_claim *claim) {
+  size_t n = training->n, low = 0, high = 0, index[FG_LOOP_COLUMNS + FG_LOOP_SHAPES];
+  double lowest = INFINITY, highest = -INFINITY, gradient[FG_LOOP_COLUMNS + FG_LOOP_SHAPES];
+  for (size_t i = 0; i < n; i++) {
+    double value = 0;
+    for (size_t k = first; k < first + count; k++)
+      value += fit->beta[k] * training->x[k * n + i];
+    if (value < lowest) lowest = value, low = i;
+    if (value > highest) highest = value, high = i;
+  }
+  for (size_t k = 0; k < count + slopes; k++) {
+    index[k] = k < count ? first + k : slope + k - count;
+    gradient[k] = (training->x[index[k] * n + high] - training->x[index[k] * n + low]) / 2;
+  }
+  double sum = 0;
+  for (size_t i = 0; i < count + slopes; i++)
+    for (size_t k = 0; k < count + slopes; k++)
+      sum += gradient[i] * gradient[k] * wide->inverse[index[i] * wide->columns + index[k]];
+  claim->amplitude = (highest - lowest) / 2;
+  claim->amplitude_u = sqrt(fmax(sum, 0) * variance);
+}
+
+/* The noise as it was estimated, and a row's sd. */
+typedef struct noise_fit {
+  fg_engine_noise at;
+  double sd;
+} noise_fit;
+
+/* Columns that are constant in groups are judged between groups: so many fewer degrees of freedom.
+ */
+static double dof_of(const fg_engine_training *training, size_t first, size_t count, double dof) {
+  if (!training->levels) return dof;
+  for (size_t k = first; k < first + count; k++)
+    for (size_t i = 1; i < training->n; i++)
+      if (training->group[i] == training->group[i - 1] &&
+          training->x[k * training->n + i] != training->x[k * training->n + i - 1])
+        return dof;
+  return fmax((double)training->groups - 1 - (double)count, 1);
+}
+
+/* The correlation, or how far the sizes of the rows' scatter are apart; the amplitude is half that
+ * in the response's unit. Uncertainties are those of large samples. */
+static void describe_noise(const fg_engine_training *training, const noise_fit *noise,
+                           fg_loop_claim *claim) {
+  double n = (double)training->n, low = INFINITY, high = 0;
+  claim->interval[0] = claim->interval[1] = claim->amplitude = claim->amplitude_u = NAN;
+  if (fg_engine_is_serial(&claim->candidate)) {
+    claim->noise_value = noise->at.rho;
+    claim->noise_value_u = sqrt((1 - noise->at.rho * noise->at.rho) / n);
+    return;
+  }
+  for (size_t i = 0; i < training->n; i++) {
+    low = fmin(low, training->scale[i]);
+    high = fmax(high, training->scale[i]);
+  }
+  claim->noise_value = high / low;
+  claim->noise_value_u = claim->noise_value * sqrt(2 / n);
+  claim->amplitude = noise->sd * (high - low) / 2;
+}
+
+static void describe(const fg_engine_training *training, const fg_engine_fit *fit,
+                     const fg_engine_fit *wide, const fg_engine_set *set, const noise_fit *noise,
+                     double dof, fg_loop_claim *claim) {
+  double variance = noise->sd * noise->sd;
+  size_t first = training->problem->parameters, slope = fit->columns;
+  for (size_t m = 0; m < set->count; m++) {
+    const fg_loop_candidate *candidate = &set->candidate[m];
+    const fg_loop_effect *effect = candidate->effect;
+    size_t slopes = effect->stepwise ? 0 : effect->shapes;
+    size_t count = fg_engine_candidate_columns(training->problem, candidate);
+    double own = fg_engine_is_outlier(candidate) ? dof : dof_of(training, first, count, dof);
+    double t = gsl_cdf_tdist_Qinv(0.025, own);
+    memcpy(claim[m].shape, set->shape[m], sizeof claim[m].shape);
+    claim[m].candidate = *candidate;
+    if (fg_engine_is_noise(candidate)) {
+      describe_noise(training, noise, &claim[m]);
+      continue;
+    }
+    claim[m].columns = count;
+    if (fg_engine_is_exchange(candidate)) {
+      const double *response = training->problem->response;
+      claim[m].coefficient[0] = (response[candidate->row[0]] - response[candidate->row[1]]) / 2;
+      claim[m].amplitude = fabs(claim[m].coefficient[0]);
+      claim[m].amplitude_u = claim[m].coefficient_u[0] = sqrt(variance / 2);
+    } else {
+      for (size_t k = 0; k < count; k++) {
+        size_t at = first + k;
+        claim[m].coefficient[k] = fit->beta[at];
+        claim[m].coefficient_u[k] = sqrt(variance * wide->inverse[at * wide->columns + at]);
+      }
+      amplitude(training, fit, wide, first, count, slope, slopes, variance, &claim[m]);
+      if (fg_engine_is_outlier(candidate) || effect->from_zero) {
+        claim[m].amplitude = fabs(claim[m].coefficient[0]);
+        claim[m].amplitude_u = claim[m].coefficient_u[0];
+      }
+      first += count;
+    }
+    for (size_t d = 0; d < effect->shapes; d++)
+      claim[m].shape_u[d] =
+          d < slopes ? sqrt(variance * wide->inverse[(slope + d) * wide->columns + slope + d])
+                     : NAN;
+    slope += slopes;
+    claim[m].interval[0] = claim[m].amplitude - t * claim[m].amplitude_u;
+    claim[m].interval[1] = claim[m].amplitude + t * claim[m].amplitude_u;
+  }
+}
+
+fg_status fg_engine_fit_claims(fg_context *ctx, const fg_loop_problem *problem, const bool *keep,
+                               const fg_engine_set *set, fg_engine_noise noise,
+                               fg_loop_claim *claim, double *parameter, double *parameter_u) {
+  fg_status status = FG_OK;
+  fg_engine_training training = {0};
+  fg_engine_fit fit = {0}, wide = {0};
+  FG_TRY_EXIT(fg_engine_training_build(ctx, problem, keep, set, &training));
+  FG_TRY_EXIT(fg_engine_least_squares(ctx, &training, noise, &fit));
+  FG_TRY_EXIT(append_slopes(ctx, &training, set, &fit));
+  FG_TRY_EXIT(fg_engine_least_squares(ctx, &training, noise, &wide));
+  /* The correlation was estimated too. */
+  size_t used = wide.rank + training.serial;
+  double dof = training.n > used ? (double)(training.n - used) : NAN;
+  double variance = fit.rss / dof;
+  const noise_fit row = {noise, sqrt(variance)};
+  describe(&training, &fit, &wide, set, &row, dof, claim);
+  for (size_t k = 0; k < problem->parameters; k++) {
+    parameter[k] = fit.beta[k];
+    parameter_u[k] = sqrt(variance * wide.inverse[k * wide.columns + k]);
+  }
+exit:
+  fg_engine_fit_free(&fit);
+  fg_engine_fit_free(&wide);
+  fg_engine_training_free(&training);
+  return status;
+}

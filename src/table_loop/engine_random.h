@@ -1,0 +1,25 @@
+/* Seeded random numbers: splitmix64 (Steele, Lea and Flood 2014). */
+#ifndef FG_TABLE_LOOP_ENGINE_RANDOM_H
+#define FG_TABLE_LOOP_ENGINE_RANDOM_H
+
+#include <math.h>
+#include <stdint.h>
+
+static inline uint64_t fg_engine_random_next(uint64_t *state) {
+  *state += 0x9e3779b97f4a7c15u;
+  uint64_t z = *state;
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+  return z ^ (z >> 31);
+}
+
+static inline double fg_engine_random_uniform(uint64_t *state) {
+  return ((double)(fg_engine_random_next(state) >> 11) + 0.5) * 0x1p-53;
+}
+
+static inline double fg_engine_random_normal(uint64_t *state) {
+  double radius = sqrt(-2 * log(fg_engine_random_uniform(state)));
+  return radius * cos(6.28318530717958647692 * fg_engine_random_uniform(state));
+}
+
+#endif

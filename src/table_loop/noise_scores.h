@@ -1,0 +1,31 @@
+/* What the scatter of a residual lacks: scores of serial correlation and of unequal spread. */
+#ifndef FG_TABLE_LOOP_NOISE_SCORES_H
+#define FG_TABLE_LOOP_NOISE_SCORES_H
+
+#include "table_loop/engine.h"
+
+typedef struct fg_engine_spread {
+  bool serial;
+  size_t columns;
+  double *z;     /* n, of a slope */
+  size_t *level; /* n, of levels: 0 .. columns */
+} fg_engine_spread;
+
+typedef struct fg_engine_noise_scores {
+  const fg_engine_training *training;
+  fg_engine_noise noise;
+  const fg_engine_span *null;
+  size_t count;
+  fg_engine_spread *spread; /* count */
+} fg_engine_noise_scores;
+
+fg_status fg_engine_noise_scores_open(fg_context *ctx, const fg_engine_training *training,
+                                      fg_engine_noise noise, const fg_engine_span *null,
+                                      const fg_loop_candidate *candidate, size_t candidates,
+                                      fg_engine_noise_scores *scores);
+void fg_engine_noise_scores_close(fg_engine_noise_scores *scores);
+/* A normal deviate of each for one response (not whitened); work has room for 2 n. */
+void fg_engine_noise_scores_of(const fg_engine_noise_scores *scores, const double *y, double *work,
+                               double *z);
+
+#endif

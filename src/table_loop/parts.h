@@ -1,0 +1,39 @@
+/* Steps of building a problem from a table. */
+#ifndef FG_TABLE_LOOP_PARTS_H
+#define FG_TABLE_LOOP_PARTS_H
+
+#include "foilgauge/loop.h"
+
+/* Magnitudes of a column's largest number that can be computed with. */
+#define FG_LOOP_TABLE_SMALLEST 1e-304
+#define FG_LOOP_TABLE_LARGEST  1e304
+
+typedef struct fg_loop_table_state {
+  const fg_table *table;
+  const fg_loop_table_spec *spec;
+  fg_loop_table_problem *out;
+  const char *order; /* column that orders rows (within groups), or NULL */
+} fg_loop_table_state;
+
+bool fg_loop_table_is_arc_length(const fg_loop_table_spec *spec);
+/* Jacobian, residual and declared columns by a formula, or by the arc length. */
+fg_status fg_loop_table_fill_model(fg_context *ctx, const fg_loop_table_state *build);
+void fg_loop_table_free_formula(struct fg_loop_formula *formula);
+fg_status fg_loop_table_fill_arc_length(fg_context *ctx, const fg_loop_table_state *build);
+fg_status fg_loop_table_fill_coordinates(fg_context *ctx, const fg_loop_table_state *build);
+fg_status fg_loop_table_add_coordinate(fg_context *ctx, const fg_loop_table_state *build,
+                                       const char *name, unsigned roles,
+                                       fg_loop_coordinate **added);
+void fg_loop_table_finish_coordinate(const fg_loop_problem *problem, fg_loop_coordinate *at);
+fg_loop_coordinate *fg_loop_table_coordinate(const fg_loop_problem *problem, const char *name);
+/* A column that is no candidate, and why: for the report. */
+fg_status fg_loop_table_leave_out(fg_context *ctx, const fg_loop_table_state *build,
+                                  const char *name, const char *why);
+/* table_codes.c */
+void fg_loop_table_drop(fg_loop_problem *problem, size_t coordinate);
+/* Of columns that say the same one stays; rows without an order of their own take a column's. */
+fg_status fg_loop_table_merge_codes(fg_context *ctx, const fg_loop_table_state *build);
+/* table_hold_out.c */
+fg_status fg_loop_table_hold_out(fg_context *ctx, const fg_loop_table_state *build);
+
+#endif

@@ -1,0 +1,69 @@
+#include "table_loop/tails.h"
+
+#include <math.h>
+
+/* A wrong value may lie so many sd of the rest to either side. */
+#define WILD 20
+/* Beside a first wrong value a further one must be so many times as likely, in logarithms: several
+ * values far out are what a heavy tail looks like. */
+#define FURTHER 1.2
+/* The scale of a Student's t, by expectation and maximisation. */
+enum { SCALE_STEPS = 25 };
+#define SCALE_CONVERGED 1e-6
+
+static const double tail_dof[] = {2.5, 3, 4, 6, 10};
+
+static double sum_of_squares(size_t count, const double *value) {
+  double sum = 0;
+  for (size_t i = 0; i < count; i++)
+    sum += value[i] * value[i];
+  return sum;
+}
+
+static double normal_likelihood(double count, double squares) {
+  return -0.5 * count * (log(2 * M_PI * squares / count) + 1);
+}
+
+static double weighted_squares(size_t count, const double *value, double dof, double scale) {
+  double sum = 0;
+  for (size_t i = 0; i < count; i++)
+    sum += (dof + 1) * value[i] * value[i] / (dof + value[i] * value[i] / scale);
+  return sum;
+}
+
+static double log_terms(size_t count, const double *value, double dof, double scale) {
+  double sum = 0;
+  for (size_t i = 0; i < count; i++)
+    sum += log1p(value[i] * value[i] / (dof * scale));
+  return sum;
+}
+
+/* `scale` is squared. */
+static double t_likelihood(size_t rest, const double *value, size_t wrong,
+                           const double *wrong_value, double dof, double scale) {
+  double count = (double)(rest + wrong);
+  for (int step = 0; step < SCALE_STEPS; step++) {
+    double before = scale;
+    scale = (weighted_squares(rest, value, dof, before) +
+             weighted_squares(wrong, wrong_value, dof, before)) /
+            count;
+    if (fabs(scale - before) < SCALE_CONVERGED * before) break;
+  }
+  double one = lgamma((dof + 1) / 2) - lgamma(dof / 2) - 0.5 * log(dof * M_PI * scale);
+  return count * one -
+         (dof + 1) / 2 *
+             (log_terms(rest, value, dof, scale) + log_terms(wrong, wrong_value, dof, scale));
+}
+
+double fg_engine_wrong_over_tail(size_t rest, const double *value, size_t wrong,
+                                 const double *wrong_value) {
+  double squares = sum_of_squares(rest, value), all = squares + sum_of_squares(wrong, wrong_value);
+  double sd = sqrt(squares / (double)rest), further = wrong > 1 ? (double)(wrong - 1) : 0;
+  if (!(sd > 0)) return INFINITY;
+  double apart = normal_likelihood((double)rest, squares) - (double)wrong * log(2 * WILD * sd) -
+                 FURTHER * further;
+  double alike = normal_likelihood((double)(rest + wrong), all);
+  for (size_t k = 0; k < sizeof tail_dof / sizeof *tail_dof; k++)
+    alike = fmax(alike, t_likelihood(rest, value, wrong, wrong_value, tail_dof[k], sd * sd));
+  return apart - alike;
+}

@@ -1,0 +1,101 @@
+/* Whitening: the rows' own scale, first-order correlation along series, then a level shared in
+ * groups.
+ *
+ * A series of unit variance has covariance R with R_ij = rho^|i-j|. L = (v_t - rho v_t-1) /
+ * sqrt(1 - rho²) makes it white. A shared level adds lambda 1 1'; with c = L 1 the covariance is
+ * then I + lambda c c', whose inverse root takes (1 - 1/sqrt(1 + lambda c'c)) of the part along c
+ * away. In groups, rows of a group are one series. */
+#include <math.h>
+
+#include "table_loop/engine.h"
+
+/* c at one row of a group that begins at `first`. */
+static double level_weight(const fg_engine_training *training, double rho, size_t first, size_t i) {
+  const double *scale = training->scale;
+  double own = scale ? 1 / scale[i] : 1;
+  if (i == first) return own;
+  return (own - rho * (scale ? 1 / scale[i - 1] : 1)) / sqrt(1 - rho * rho);
+}
+
+static double level_size(const fg_engine_training *training, double rho, size_t block) {
+  size_t first = training->level_start[block], end = training->level_start[block + 1];
+  double sum = 0;
+  if (!training->scale) return 1 + (double)(end - first - 1) * (1 - rho) / (1 + rho);
+  for (size_t i = first; i < end; i++)
+    sum += pow(level_weight(training, rho, first, i), 2);
+  return sum;
+}
+
+/* y += factor × (part of y along c), for one group. */
+static void scale_level(const fg_engine_training *training, double rho, size_t block, double factor,
+                        double *y) {
+  size_t first = training->level_start[block], end = training->level_start[block + 1];
+  double size = level_size(training, rho, block), along = 0;
+  for (size_t i = first; i < end; i++)
+    along += level_weight(training, rho, first, i) * y[i];
+  for (size_t i = first; i < end; i++)
+    y[i] += factor * along / size * level_weight(training, rho, first, i);
+}
+
+static void scale_levels(const fg_engine_training *training, fg_engine_noise noise, double *y,
+                         bool inverse) {
+  for (size_t b = 0; b < training->levels; b++) {
+    double root = sqrt(1 + noise.lambda * level_size(training, noise.rho, b));
+    scale_level(training, noise.rho, b, (inverse ? root : 1 / root) - 1, y);
+  }
+}
+
+void fg_engine_whiten(const fg_engine_training *training, fg_engine_noise noise, double *y) {
+  double root = sqrt(1 - noise.rho * noise.rho);
+  for (size_t i = 0; training->scale && i < training->n; i++)
+    y[i] /= training->scale[i];
+  if (noise.rho != 0)
+    for (size_t b = 0; b < training->blocks; b++)
+      for (size_t i = training->start[b + 1] - 1; i > training->start[b]; i--)
+        y[i] = (y[i] - noise.rho * y[i - 1]) / root;
+  if (noise.lambda > 0) scale_levels(training, noise, y, false);
+}
+
+void fg_engine_colour(const fg_engine_training *training, fg_engine_noise noise, double *y) {
+  double root = sqrt(1 - noise.rho * noise.rho);
+  if (noise.lambda > 0) scale_levels(training, noise, y, true);
+  if (noise.rho != 0)
+    for (size_t b = 0; b < training->blocks; b++)
+      for (size_t i = training->start[b] + 1; i < training->start[b + 1]; i++)
+        y[i] = noise.rho * y[i - 1] + root * y[i];
+  for (size_t i = 0; training->scale && i < training->n; i++)
+    y[i] *= training->scale[i];
+}
+
+double fg_engine_log_det(const fg_engine_training *training, fg_engine_noise noise) {
+  double sum = 0;
+  for (size_t i = 0; training->scale && i < training->n; i++)
+    sum += 2 * log(training->scale[i]);
+  for (size_t b = 0; noise.rho != 0 && b < training->blocks; b++)
+    sum +=
+        (double)(training->start[b + 1] - training->start[b] - 1) * log1p(-noise.rho * noise.rho);
+  for (size_t b = 0; noise.lambda > 0 && b < training->levels; b++) {
+    sum += log1p(noise.lambda * level_size(training, noise.rho, b));
+  }
+  return sum;
+}
+
+/* Correlation only where it is in force: it is a finding like others. Coarser where a level is
+ * estimated beside it. */
+size_t fg_engine_noise_grid(const fg_engine_training *training,
+                            fg_engine_noise grid[FG_ENGINE_NOISES]) {
+  static const double alone[] = {-0.6, -0.3, 0, 0.2, 0.4, 0.55, 0.7, 0.8, 0.88, 0.94, 0.98};
+  static const double beside_level[] = {-0.3, 0, 0.3, 0.6, 0.85}, none[] = {0};
+  static const double lambda[] = {0, 0.1, 0.3, 1, 3, 10};
+  const double *rho = none;
+  size_t rhos = 1, lambdas = training->levels ? sizeof lambda / sizeof *lambda : 1, count = 0;
+  if (training->serial) {
+    rho = training->levels ? beside_level : alone;
+    rhos = training->levels ? sizeof beside_level / sizeof *beside_level
+                            : sizeof alone / sizeof *alone;
+  }
+  for (size_t i = 0; i < rhos; i++)
+    for (size_t j = 0; j < lambdas; j++)
+      grid[count++] = (fg_engine_noise){rho[i], lambda[j]};
+  return count;
+}
