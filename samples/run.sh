@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Builds foilgauge on a fresh Debian bookworm and measures the sample scan.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."

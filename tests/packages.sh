@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Sourced by samples/run.sh, tests/run.sh and the benchmarks: the Debian packages, in one place,
 # and the way a step is run and told.
 

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Builds foilgauge twice (release; sanitizers with warnings as errors) and runs every test in both.
 # --long adds the accuracy, speed and bed benchmarks, the rendered experiments, the thesis's
 # experiments, the comparison with R, the station and every page in a browser and the loop on measured tables, which rewrite the tables in reports/; a minute of fuzzing for

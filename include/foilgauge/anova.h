@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One-way analysis of variance: do the groups have one mean?
  *
  * Sums in extended precision from the decimal text, so that 13 constant leading digits cost none

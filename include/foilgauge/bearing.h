@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the bumps' shapes do to the bearing that they are built into: stiffness and clearance.
  *
  * STIFFNESS. A bump is a thin arc of radius R (midline), bump angle alpha = 2 phi and thickness t,

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the statistics of a scan cannot know: how long a pixel is, and how warm the part was.
  *
  * A scan tells lengths in pixels. Its own scatter says nothing about the pixel's pitch: that is

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What follows from the size of a cantilever: a flat foil with beams cut out of it, bent afterwards
  * so that every beam stands off its sheet by its sagitta (thesis section 5.11).
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a process can do against a tolerance (ISO 22514-2; Bissell 1990).
  *
  *   Pp  = (U - L) / 6 s        Ppk = min(U - mean, mean - L) / 3 s       s: of all values

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Circles through points: an algebraic estimate, then the orthogonal-distance fit.
  *
  * The algebraic estimate is the hyper-accurate fit (Al-Sharadqah and Chernov 2009, Electronic

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the three lines of a colour scanner's sensor say against each other.
  *
  * Each line sees an edge at a moment of its own, so each channel has its own place of every edge.

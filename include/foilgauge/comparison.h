@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Do two samples differ, in their means or in their spread? And: how good is the gauge?
  *
  * Means: Welch's test (unequal variances, Welch-Satterthwaite degrees of freedom). Spread: the F

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Control charts: does the process run as it did, or has something changed?
  *
  * Limits lie three sigma from the centre; sigma is what the process does within subgroups (or from

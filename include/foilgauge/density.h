@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Kernel density estimate: the distribution that a sample comes from, without naming its family.
  *
  * f(x) = sum of w_i phi((x - x_i) / h) / h with the Gaussian kernel phi. The bandwidth h decides

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The design of a foil: what the part should be, and the tolerances it is judged by.
  *
  * Lengths are in mm, angles in degrees. Words and equations: thesis chapter 5, eq 5.1 to 5.9.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A design and what follows from it, as `foilgauge design` writes it. */
 #ifndef FOILGAUGE_DESIGN_REPORT_H
 #define FOILGAUGE_DESIGN_REPORT_H

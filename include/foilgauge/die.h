@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A die measured by a stylus: traces x, z of each half against the design of the foil that it
  * presses.
  *

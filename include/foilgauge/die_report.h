@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The report of a die: JSON, a table for the terminal, a page. */
 #ifndef FOILGAUGE_DIE_REPORT_H
 #define FOILGAUGE_DIE_REPORT_H

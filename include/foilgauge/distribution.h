@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Probabilities and quantiles (GSL's), and the summary of one column of numbers.
  *
  * Degrees of freedom that are not positive, and statistics that are not numbers, give NaN: what

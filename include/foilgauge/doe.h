@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Designed experiments: coding of factors, effects, and the tests that belong to designs.
  *
  * A factor in real units is coded to x = (value - centre) / half, so that its low level is -1 and

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The analysis of a designed experiment, whole: from a table of runs to effects, tests, the best
  * setting, and the report on it.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Files: outputs that appear under their final name only when they are whole, what an output must
  * not take the place of, and inputs that are read whole.
  *

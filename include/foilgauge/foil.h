@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The measured foil: every dimension with its standard uncertainty.
  *
  * Words, symbols and equations: thesis chapter 5 (eq 5.1 to 5.9). Lengths in mm, angles in

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Springback of a strip by a beam model of forming (thesis section 5.9, without its contact).
  *
  * BENT. A flat strip is bent to the die's curvature kappa_d(s). Its width is far larger than its

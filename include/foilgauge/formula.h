@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Model formulas as in R, and the model matrix that a formula and a table make.
  *
  *     1 + T + D + T:D + T^2        terms; 1 is the constant and may be left out

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Gauges on the glass: parts of known width that lie in the same scan as what is measured.
  *
  * An edge lies where the light is half of what it is on either side. The tone curve T makes a count

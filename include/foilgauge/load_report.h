@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The report of load-displacement tests: JSON, a table for the terminal, CSV, a page, and a table
  * for the loop. */
 #ifndef FOILGAUGE_LOAD_REPORT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Load-displacement tests of an assembled bearing (thesis section 5.13): a rotor that does not turn
  * is pushed and pulled along an azimuth, force and displacement are recorded, several cycles.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Closing the loop: what the residual of a declared model holds, and what that is worth.
  *
  * One engine for every level (bumps, runs, points). It knows no tables and no scans:

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Production lots: many scans to one report that a customer accepts.
  *
  * A lot is a folder:

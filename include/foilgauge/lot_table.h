@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A lot as a table for the loop: what was measured, beside what the manifest says and nothing else
  * that the scans gave.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* From a scan to its measurement. */
 #ifndef FOILGAUGE_MEASURE_H
 #define FOILGAUGE_MEASURE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Checked memory: sizes are multiplied with a check, and a failure has words. */
 #ifndef FOILGAUGE_MEMORY_H
 #define FOILGAUGE_MEMORY_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* State of a picture: what a scanner's driver or the light has made of it, found from its pixels.
  *
  * A length between two edges of opposite sense (a strip's thickness, a disc's diameter) rests on

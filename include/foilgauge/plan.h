@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Plans of experiments: which runs to make, in which order.
  *
  * Two-level factorials, full or fractional (Box and Hunter 1961), with replicates, centre points

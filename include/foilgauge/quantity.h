@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Every reported quantity: one row of a table each.
  *
  * A row says what a quantity is called, where it and its standard uncertainty lie, and what is done

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Least squares of a response on a model, with everything that one looks at afterwards.
  *
  * The matrix is orthogonalised (modified Gram-Schmidt with the response as its last column, Björck

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The forward model: foils and a scanner in, a scan and its truth out.
  *
  * A spec is JSON with "schema": "foilgauge/render/1" (samples/render/ holds specs to start from).

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Reports: a measurement as JSON, CSV, a table for the terminal, a picture and a page.
  *
  * Every reported quantity is one row of a table (quantity.h): JSON, CSV, terminal, page and

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Responses out of scans: a run sheet that names the scans of every run.
  *
  * A cell of the scan column holds one path or several with ';' between them (the foil scanned

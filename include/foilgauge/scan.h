@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A scan, read row by row as gray values.
  *
  * PNG of any kind (gray, RGB, palette, with or without alpha, 1 to 16 bit), TIFF and BigTIFF (gray,

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Closing the loop on scans: what the scanner or the foil does that the declared geometry lacks.
  *
  * The scans are measured, the edge points of all arcs and lands are held against one geometry, and

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the loop on scans came to, decided: numbers, words and points to draw. JSON, text and page
  * say what stands here and decide nothing; whoever uses the library can do the same.
  *

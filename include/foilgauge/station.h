@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The inspection station: a watched folder, a database of everything that was measured in it, and
  * pages in a browser.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a call came to, and the words that go with it.
  *
  * Every public function that can fail returns fg_status; results come last in its parameters.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Stiffness of a bump by the models that the field uses, side by side, and its sensitivities.
  *
  * Everything is per bump and per mm of width, in N/mm²; over the pitch s of the bumps (mm along the

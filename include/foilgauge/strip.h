@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A traced strip: both edges of a foil's cross-section along its whole length.
  *
  * The vision side fills it, the geometry side reads it. Positions are in mm of the scan:

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Response surfaces: where a fitted quadratic is stationary, lowest, highest, and how to get there.
  *
  * The surface is y = b0 + b'x + x'Bx in the numeric factors of a model of degree two at most (Box

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Tables of runs: named columns of numbers or words, read from CSV text.
  *
  * Numbers keep the digits of their decimal text: 0.1 is not the double nearest to 0.1 but that

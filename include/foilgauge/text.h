@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Text that the callee allocates, and text that a terminal shows as it is. */
 #ifndef FOILGAUGE_TEXT_H
 #define FOILGAUGE_TEXT_H

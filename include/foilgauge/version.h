@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The version of the library that is linked. */
 #ifndef FOILGAUGE_VERSION_H
 #define FOILGAUGE_VERSION_H

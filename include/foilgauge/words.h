@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Words of flags and kinds: as JSON has them, and in plain words for people. */
 #ifndef FOILGAUGE_WORDS_H
 #define FOILGAUGE_WORDS_H

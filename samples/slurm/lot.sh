@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Measures a lot on a Slurm cluster: an array of shards, then the merge when all of them are done.
 #   lot.sh manifest.csv recipe.json OUTPUT [SCANS_PER_TASK]
 # The folder of the manifest, of the recipe and of OUTPUT must be seen by every node.

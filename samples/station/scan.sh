@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Scans for measurement through SANE: gray, as many bits as there are, a straight tone curve, no
 # sharpening, no loss. A driver's defaults are made for documents and photographs.
 #
@@ -9,7 +10,7 @@
 # In a recipe: "scan_command": "sh /etc/foilgauge/scan.sh {file} 4800"
 set -eu
 
-[ $# -ge 1 ] || { sed -n '2,9s/^# \{0,1\}//p' "$0" >&2; exit 64; }
+[ $# -ge 1 ] || { sed -n '3,10s/^# \{0,1\}//p' "$0" >&2; exit 64; }
 file=$1
 dpi=${2:-4800}
 shift

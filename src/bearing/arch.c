@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Stiffness of a bump as an arch; derived in foilgauge/bearing.h. */
 #include <math.h>
 

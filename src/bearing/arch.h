@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the models of a bump's stiffness share. */
 #ifndef FG_BEARING_ARCH_H
 #define FG_BEARING_ARCH_H

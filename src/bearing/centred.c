@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The rotor position with the most room: maximise m, m <= c_i - a x_i - b y_i for all i.
  *
  * A linear programme in (m, a, b). Its dual holds the answer: weights w >= 0 on three places with

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Clearance around a bearing; see foilgauge/bearing.h. */
 #include <math.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Places around a bearing, as the files of this room share them. */
 #ifndef FG_BEARING_PLACES_H
 #define FG_BEARING_PLACES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Models of a bump's stiffness, one row each; derived in foilgauge/stiffness.h. */
 #include "foilgauge/stiffness.h"
 

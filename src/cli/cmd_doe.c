@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* foilgauge doe: a table of runs in, what matters and the best setting out. */
 #include <argp.h>
 #include <math.h>

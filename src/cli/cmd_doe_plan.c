@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* foilgauge doe plan: factors in, a run sheet in random order out. */
 #include <argp.h>
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* foilgauge render: a spec in, a scan and its truth out. */
 #include <argp.h>
 #include <stdlib.h>

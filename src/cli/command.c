@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What every command does alike: reads its line, says why it failed. */
 #include <argp.h>
 #include <stdio.h>

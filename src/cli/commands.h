@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The program's commands: a row of a table each (commands.c); what they do alike (command.c,
  * form.c, facts.c). */
 #ifndef FG_CLI_COMMANDS_H

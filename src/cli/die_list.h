@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The profiles of a die: one after the other on the command line, or rows of a table. */
 #ifndef FG_CLI_DIE_LIST_H
 #define FG_CLI_DIE_LIST_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The plan that `doe plan` kept beside a run sheet, as `doe` takes it up again. */
 #ifndef FG_CLI_DOE_KEPT_PLAN_H
 #define FG_CLI_DOE_KEPT_PLAN_H

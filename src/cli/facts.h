@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What texts of help and manual leave to the code: defaults, lists of formats and of words, exit
  * codes. A text names them as @name@. */
 #ifndef FG_CLI_FACTS_H

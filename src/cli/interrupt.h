@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A signal ends every command in one way: no temporary file stays, exit code 130. */
 #ifndef FG_CLI_INTERRUPT_H
 #define FG_CLI_INTERRUPT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The user's knowledge of a part or a scanner, from the command line: it overrules the design. */
 #ifndef FG_CLI_KNOWN_H
 #define FG_CLI_KNOWN_H

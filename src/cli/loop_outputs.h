@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What `loop` can write, on tables as on scans. */
 #ifndef FG_CLI_LOOP_OUTPUTS_H
 #define FG_CLI_LOOP_OUTPUTS_H

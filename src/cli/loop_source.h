@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Where the loop on tables has its table from: a file, a lot, the scans of runs. */
 #ifndef FG_CLI_LOOP_SOURCE_H
 #define FG_CLI_LOOP_SOURCE_H

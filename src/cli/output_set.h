@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The outputs of one command: none takes the place of an input, and all or none get their names. */
 #ifndef FG_CLI_OUTPUT_SET_H
 #define FG_CLI_OUTPUT_SET_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* How far a scan is read: a bar on standard error, where that is a terminal. */
 #ifndef FG_CLI_PROGRESS_H
 #define FG_CLI_PROGRESS_H

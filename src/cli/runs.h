@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the scans of a table of runs give, as `doe` and `loop` read them. */
 #ifndef FG_CLI_RUNS_H
 #define FG_CLI_RUNS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Room on the stack of the first thread. */
 #ifndef FG_CLI_STACK_H
 #define FG_CLI_STACK_H

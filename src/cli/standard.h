@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Standard input, output and error as every command may rely on them. */
 #ifndef FG_CLI_STANDARD_H
 #define FG_CLI_STANDARD_H

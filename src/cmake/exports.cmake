@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # cmake -DHEADERS="a.h;b.h" -DVERSION=0.1 -DMAP=exports.map -P exports.cmake
 # The linker's version script of the shared library: what the public headers declare, and nothing else.
 set(names "")

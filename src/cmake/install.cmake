@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The shared library and everything that `cmake --install` puts in place. Components: `program` runs,
 # `development` builds against the library.
 include(GNUInstallDirs)

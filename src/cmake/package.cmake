@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # cpack: packages for Debian and Ubuntu.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME foilgauge)

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "core/budget.h"
 
 fg_status fg_budget_take(fg_context *ctx, fg_budget *budget, size_t bytes) {

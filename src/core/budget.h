@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A ceiling for the memory that grows with a scan: rows and tiles that are held.
  *
  * A job has one; threads share it. What it does not count (code, libraries, stacks, the results) is

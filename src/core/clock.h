@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A clock that nobody sets. */
 #ifndef FG_CORE_CLOCK_H
 #define FG_CORE_CLOCK_H

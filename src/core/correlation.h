@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Correlation of neighbouring values, from sums of products. */
 #ifndef FG_CORE_CORRELATION_H
 #define FG_CORE_CORRELATION_H

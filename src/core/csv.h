@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Cells of comma-separated values: RFC 4180, as Europe writes it too (semicolons, decimal commas),
  * and no cell that a spreadsheet would take for a formula.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* CSV for spreadsheets whose decimal mark is a comma. Finished CSV is converted, so that its
  * writers need not know of it. */
 #include <stdlib.h>

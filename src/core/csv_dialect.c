@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* CSV as it is written where the decimal mark is a comma: separators and numbers. */
 #include <string.h>
 #include <strings.h>

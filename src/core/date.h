@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Dates as people write them in tables. */
 #ifndef FG_CORE_DATE_H
 #define FG_CORE_DATE_H

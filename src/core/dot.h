@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Product of two vectors. */
 #ifndef FG_CORE_DOT_H
 #define FG_CORE_DOT_H

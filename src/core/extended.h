@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Arithmetic on fg_extended: a number carried as the unevaluated sum of two doubles, 106 bits.
  *
  * Why: the columns of a polynomial in raw units are so nearly parallel (condition number 1e15 for

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Files; what of them is public stands in foilgauge/file.h. */
 #ifndef FG_CORE_FILE_H
 #define FG_CORE_FILE_H

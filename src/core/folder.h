@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Folders for results. */
 #ifndef FG_CORE_FOLDER_H
 #define FG_CORE_FOLDER_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* JSON from text, with memory that runs out told from text that is no JSON: cJSON says NULL of
  * both. */
 #ifndef FG_CORE_JSON_READ_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A small streaming JSON writer: what is written is never held.
  *
  * `name` is the member's name inside an object and NULL inside an array. Deterministic: ten

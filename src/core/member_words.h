@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What there is to say of a member of a JSON file that people write. Where it is read stands what
  * it means; the manual and its test list it from there. */
 #ifndef FG_CORE_MEMBER_WORDS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A list of sentences, each allocated: what a result has to say beside its numbers. */
 #ifndef FG_CORE_NOTES_H
 #define FG_CORE_NOTES_H

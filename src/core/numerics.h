@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* GSL set up for a library: errors come back as codes, never as an abort. */
 #ifndef FG_CORE_NUMERICS_H
 #define FG_CORE_NUMERICS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Independent items spread over threads. */
 #ifndef FG_CORE_PARALLEL_H
 #define FG_CORE_PARALLEL_H

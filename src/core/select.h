@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Order statistics. */
 #ifndef FG_CORE_SELECT_H
 #define FG_CORE_SELECT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* SHA-256 as reports state it: 64 lower-case hex digits. That of a file: foilgauge/file.h. */
 #ifndef FG_CORE_SHA256_H
 #define FG_CORE_SHA256_H

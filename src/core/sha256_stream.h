@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The SHA-256 of bytes as they come by. A long stream is summed on a thread of its own, beside
  * whoever feeds it; a short one, or where no thread is to be had or wanted, as it is fed. */
 #ifndef FG_CORE_SHA256_STREAM_H

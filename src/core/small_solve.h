@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Small dense systems, at most FG_SMALL_MAX unknowns, without the heap. */
 #ifndef FG_CORE_SMALL_SOLVE_H
 #define FG_CORE_SMALL_SOLVE_H

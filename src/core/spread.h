@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The mean of values; how large the sizes of residuals are. */
 #ifndef FG_CORE_SPREAD_H
 #define FG_CORE_SPREAD_H

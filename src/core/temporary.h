@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The names that files have before they are whole.
  *
  * A signal can come at any time, and is the process's: so is the list of these names, the only

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Text that the callee allocates, which is public. */
 #ifndef FG_CORE_TEXT_H
 #define FG_CORE_TEXT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* UTF-8; what of it is public stands in foilgauge/text.h. */
 #ifndef FG_CORE_UTF8_H
 #define FG_CORE_UTF8_H

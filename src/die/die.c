@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Traces brought together: repeats to a half, halves to the die. */
 #include "foilgauge/die.h"
 

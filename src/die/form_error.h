@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a surface's form does to the circles that are fitted to it.
  *
  * A ground or eroded surface errs over lengths that are no longer small beside a bump's arc: most

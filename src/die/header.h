@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the lines before a profile's data say: units, columns, half, tip. */
 #ifndef FG_DIE_HEADER_H
 #define FG_DIE_HEADER_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Lines of a profile's text, and the numbers that stand in them. */
 #ifndef FG_DIE_LINES_H
 #define FG_DIE_LINES_H

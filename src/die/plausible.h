@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Whether a profile can be a trace of the design's die: a wrong unit, a wrong tip, a wrong half. */
 #ifndef FG_DIE_PLAUSIBLE_H
 #define FG_DIE_PLAUSIBLE_H

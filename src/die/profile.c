@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A profile from the text that profilometers write. */
 #include <math.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One trace: stations, segments, circles, and what they come to on the design's datum line. */
 #include <math.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What is reported of a die: a row each. */
 #include "die/values.h"
 

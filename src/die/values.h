@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The numbers behind the rows of what is reported of a die. */
 #ifndef FG_DIE_VALUES_H
 #define FG_DIE_VALUES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "effect/bases.h"
 
 bool fg_basis_is_number(const fg_loop_coordinate *at) {

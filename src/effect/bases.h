@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The forms that effects of tables take: which coordinates they accept, their columns, start values
  * of what is not linear in them. */
 #ifndef FG_EFFECT_BASES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Forms over a column of a table: numbers, levels, two columns together. */
 #include <math.h>
 #include <string.h>

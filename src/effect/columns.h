@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What effects do to the rows of points. */
 #ifndef FG_EFFECT_COLUMNS_H
 #define FG_EFFECT_COLUMNS_H

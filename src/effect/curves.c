@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Free curves, for what no listed effect explains: one row each. */
 #include <limits.h>
 #include <math.h>

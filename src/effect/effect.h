@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Every effect of scanner and part that the loop on scans knows: one row says everything that
  * anybody asks of it.
  *

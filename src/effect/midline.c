@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "effect/midline.h"
 
 double fg_midline_along_radius(const fg_edge_fit_row *row) {

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What bases of the midline are made of. */
 #ifndef FG_EFFECT_MIDLINE_H
 #define FG_EFFECT_MIDLINE_H

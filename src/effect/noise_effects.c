@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the declared noise may lack: independence of neighbours, and one size everywhere. */
 #include <math.h>
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Forms over an order: of runs in time, of bumps from the lip. */
 #include <math.h>
 

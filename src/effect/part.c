@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What is wrong with a part, one row an effect: how it moves the midline stands before the rows. */
 #include <math.h>
 

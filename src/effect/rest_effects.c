@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Rows of a table that stand alone, and the curves of what no listed effect explains. */
 #include <math.h>
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a scanner does, one row an effect: its basis on the glass stands before the rows. */
 #include <math.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Effects with numbers. */
 #ifndef FG_EFFECT_SET_H
 #define FG_EFFECT_SET_H

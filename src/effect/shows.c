@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "effect/effect.h"
 
 static size_t clean_count(const fg_edge_fit *edge_fit) {

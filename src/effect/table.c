@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "effect/rows_of_effects.h"
 
 #include <string.h>

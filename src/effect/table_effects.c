@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The effects of tables: of columns, of the order, of bumps, of the heat treatment. */
 #include "effect/bases.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Effects of tables, one row each (foilgauge/loop.h has what a row says, fg_loop_table_effects all
  * that are looked for), and what the engine adds to them. */
 #ifndef FG_EFFECT_TABLE_EFFECTS_H

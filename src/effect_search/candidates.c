@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The candidates of a search, and sets of them as bits. */
 #include <math.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The columns of all effects beside the geometry, and least squares of any set of them. */
 #ifndef FG_EFFECT_SEARCH_COLUMNS_H
 #define FG_EFFECT_SEARCH_COLUMNS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The level of all edges of a plate beside its scale.
  *
  * A level that is wrong moves every radius by the same length c, a scale by a share s of it: gauge

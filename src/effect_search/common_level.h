@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The level of all edges of a plate beside its scale. */
 #ifndef FG_EFFECT_SEARCH_COMMON_LEVEL_H
 #define FG_EFFECT_SEARCH_COMMON_LEVEL_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Whether discs confirm an effect, each from the others.
  *
  * A disc's own form looks like an effect of the scanner as long as one disc is looked at, and it is

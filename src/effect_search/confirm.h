@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Confirmation of an effect from disc to disc. */
 #ifndef FG_EFFECT_SEARCH_CONFIRM_H
 #define FG_EFFECT_SEARCH_CONFIRM_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What was found, held against rows that took no part in finding it.
  *
  * Bumps (discs: the discs) and lands go round some folds by their place; all rows of a bump, on

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the report says of each effect beside the best explanation. */
 #include <math.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The search from start to end, under the policy of what the parts are. */
 #include "effect_search/effect_search.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Which effects, of all that could, explain the points: sets of them are tried.
  *
  * The smooth effects of scanner and part are nearly the same thing in one scan (they correlate at

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The search for effects and the fit of the geometry in turns. */
 #include "effect_search/iterate.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Search and fit in turns. */
 #ifndef FG_EFFECT_SEARCH_ITERATE_H
 #define FG_EFFECT_SEARCH_ITERATE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Geometry and effects fitted together. */
 #ifndef FG_EFFECT_SEARCH_JOINT_FIT_H
 #define FG_EFFECT_SEARCH_JOINT_FIT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The noise of a row: what is left beside everything at once. */
 #include <gsl/gsl_cdf.h>
 #include <math.h>

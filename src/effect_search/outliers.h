@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Rows that speak of no effect lose their weight. */
 #ifndef FG_EFFECT_SEARCH_OUTLIERS_H
 #define FG_EFFECT_SEARCH_OUTLIERS_H

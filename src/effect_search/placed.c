@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Ripples and steps stand alone even in one scan: they are sought beside all smooth effects. */
 #include <math.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Where a shape takes most: a grid of starts, then finer around the best one. */
 #include <math.h>
 #include <stdlib.h>

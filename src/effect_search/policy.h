@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the search does differently on foils and on discs, one const struct each.
  *
  * A foil's strip has hundreds of bumps' flanks in one scan, so its rows are alike and noise follows

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Free curves of few numbers that do as well as the listed effects: a curve in x, say, that an oval
  * follows within the noise. */
 #include <math.h>

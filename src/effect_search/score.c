@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One set of effects: its least squares, and whether it is right. */
 #include <math.h>
 #include <string.h>

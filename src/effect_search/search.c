@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One search: candidates beside the geometry, the noise that they leave, and sets of them. */
 #include <string.h>
 

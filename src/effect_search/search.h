@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the parts of the search share. */
 #ifndef FG_EFFECT_SEARCH_SEARCH_H
 #define FG_EFFECT_SEARCH_SEARCH_H

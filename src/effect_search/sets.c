@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Sets of candidates: which are tried, which are right, and what stands in where none is. */
 #include <gsl/gsl_cdf.h>
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "effect_search/width_search.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Which effects of the strip's width there are: what moves its edges apart leaves the midline, and
  * with it every residual of the points, as it is.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a scanner does to a place on the glass: true position = nominal position + d(x, y), in mm of
  * the scan. d is a sum of columns, each with a linear amplitude in mm; shapes enter non-linearly.
  * Amplitudes are what a field does at FG_FIELD_HALF_MM from the middle of the scan, so that they

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A die that was measured, from the report of `foilgauge die`. */
 #include <cjson/cJSON.h>
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Constants of the beam model from the runs of a designed experiment. */
 #include <gsl/gsl_cdf.h>
 #include <math.h>

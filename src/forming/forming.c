@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A strip from bent to free: every stretch's section, the strip that comes of it, its circles. */
 #include <math.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A run of `form` without its circles: what a fit needs hundreds of times. */
 #ifndef FG_FORMING_FORMING_H
 #define FG_FORMING_FORMING_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The constants of a strip's material: one row each. */
 #include <cjson/cJSON.h>
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A report of `form` as a declared model: what it says of each bump. */
 #include <cjson/cJSON.h>
 #include <math.h>

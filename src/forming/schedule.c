@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Temperature over time in the die. */
 #include <math.h>
 #include <stdlib.h>

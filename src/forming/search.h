@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The constants that predict runs with the least sum of squares. */
 #ifndef FG_FORMING_SEARCH_H
 #define FG_FORMING_SEARCH_H

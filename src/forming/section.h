@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A cross-section of the strip: its layers through half the thickness (the other half mirrors
  * them), from bent to released. Magnitudes only: whoever knows the bend's side gives the sign. */
 #ifndef FG_FORMING_SECTION_H

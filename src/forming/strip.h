@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The strip along its midline: the stretches of the die, and the curve that curvatures make. */
 #ifndef FG_FORMING_STRIP_H
 #define FG_FORMING_STRIP_H

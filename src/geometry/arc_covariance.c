@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Covariance of a fitted circle: noise correlated along the strip, deviations of whole ranges, and
  * what the half width says. */
 #include "geometry/arcs.h"

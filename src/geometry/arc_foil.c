@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "geometry/arc_foil.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A foil of form "arc": a plain strip, one circle from end to end. */
 #ifndef FG_GEOMETRY_ARC_FOIL_H
 #define FG_GEOMETRY_ARC_FOIL_H

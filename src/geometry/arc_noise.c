@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Correlation of the residuals along the strip. */
 #include "geometry/arcs.h"
 

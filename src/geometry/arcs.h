@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Arcs of a foil: which stations lie on one circle, the circle, and how sure it is.
  *
  * Works on the datum line (midline, inner or outer edge) of a strip.

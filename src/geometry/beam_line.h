@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The line of one edge of a beam, and what the edges of a beam scatter by.
  *
  * A place on a fitted line is a weighted sum of the stations' places across it. Its variance is

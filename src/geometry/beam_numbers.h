@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The order of a foil's beams. */
 #ifndef FG_GEOMETRY_BEAM_NUMBERS_H
 #define FG_GEOMETRY_BEAM_NUMBERS_H

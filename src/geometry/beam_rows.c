@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Row jumps of a picture across the beams of a foil.
  *
  * Every straight edge is a cubic along itself, and a jump of d at y0 adds d n_y [y > y0] to it,

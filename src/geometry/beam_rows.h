@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Row jumps across beams: behind a row that was lost or doubled all edges are
  * displaced along y, so those that cross it obliquely step there, all at one row. */
 #ifndef FG_GEOMETRY_BEAM_ROWS_H

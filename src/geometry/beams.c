@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Beams of a flat foil from their edges: size, uncertainty, numbers, flags. */
 #include <math.h>
 #include <stddef.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Which place of the pitch each bump stands at, and which places are empty. */
 #ifndef FG_GEOMETRY_BUMP_PLACES_H
 #define FG_GEOMETRY_BUMP_PLACES_H

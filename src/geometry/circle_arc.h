@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A circle written down so that it may be as flat as a line: by a point on it, the direction to
  * its centre and its curvature.
  *

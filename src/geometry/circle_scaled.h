@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Points made ready for a circle fit: centred on their weighted mean, turned to their principal
  * axes (x is the long one), scaled to a mean square distance of 1, weights summing to 1.
  *

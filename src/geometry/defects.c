@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "geometry/defects.h"
 
 /* An arc is disturbed where so much of it is hidden in one piece, or altogether. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What disturbs the arcs of a foil, as flags of its bumps. */
 #ifndef FG_GEOMETRY_DEFECTS_H
 #define FG_GEOMETRY_DEFECTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The circle of one round feature, its uncertainty and its roundness.
  *
  * A full turn tells its own noise: the residuals' harmonics 2 and up are the spectrum, its level at

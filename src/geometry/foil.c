@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A foil from its strip: arcs, uncertainties, numbers, flags, derived quantities. */
 #include "foilgauge/foil.h"
 

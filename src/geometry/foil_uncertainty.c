@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a foil's values are uncertain by: scatter of the edges, the edge model, the tone curve. */
 #include "geometry/foil_uncertainty.h"
 

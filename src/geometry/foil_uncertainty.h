@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a foil's values are uncertain by. */
 #ifndef FG_GEOMETRY_FOIL_UNCERTAINTY_H
 #define FG_GEOMETRY_FOIL_UNCERTAINTY_H

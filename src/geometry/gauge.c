@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Gauges as they are stated: words and limits. */
 #include "foilgauge/gauge.h"
 

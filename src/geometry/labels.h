@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What every station belongs to, and its residual from the circle that was fitted there. */
 #ifndef FG_GEOMETRY_LABELS_H
 #define FG_GEOMETRY_LABELS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The layout of a foil: its arcs in order, from what its midline does. */
 #ifndef FG_GEOMETRY_LAYOUT_H
 #define FG_GEOMETRY_LAYOUT_H

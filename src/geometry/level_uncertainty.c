@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Uncertainty of the level at which edges are placed. */
 #include "geometry/level_uncertainty.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Uncertainty of the level at which edges are placed, and of what lies between two edges. */
 #ifndef FG_GEOMETRY_LEVEL_UNCERTAINTY_H
 #define FG_GEOMETRY_LEVEL_UNCERTAINTY_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Whether what was measured is a foil of its design at all. */
 #ifndef FG_GEOMETRY_RECOGNISE_H
 #define FG_GEOMETRY_RECOGNISE_H

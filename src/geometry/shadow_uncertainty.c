@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A shadow spoils the background's level right at the edges of some bearings: these edges lie
  * elsewhere by an amount that changes slowly with the bearing. */
 #include "geometry/shadow_uncertainty.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Uncertainty of circles by a shadow or a lit wall beside edges. */
 #ifndef FG_GEOMETRY_SHADOW_UNCERTAINTY_H
 #define FG_GEOMETRY_SHADOW_UNCERTAINTY_H

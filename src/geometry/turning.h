@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Recognition of a foil from how its midline turns.
  *
  * Along a foil the tangent's direction goes back and forth: a bump turns it one way, the fillet,

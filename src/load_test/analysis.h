@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What is found of one direction, and then of a bearing's directions together. */
 #ifndef FG_LOAD_TEST_ANALYSIS_H
 #define FG_LOAD_TEST_ANALYSIS_H

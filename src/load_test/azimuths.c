@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A bearing's clearance over the azimuths. */
 #include <math.h>
 

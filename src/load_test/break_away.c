@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The straight line of a break-away test: friction coefficient and preload. */
 #include "load_test/break_away.h"
 

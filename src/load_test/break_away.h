@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Break-away tests: torque at which a rotor begins to turn, over the dead weight on its bearing. */
 #ifndef FG_LOAD_TEST_BREAK_AWAY_H
 #define FG_LOAD_TEST_BREAK_AWAY_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Break-away tests from CSV. */
 #include <math.h>
 #include <stdlib.h>

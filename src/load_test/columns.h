@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The columns of a test's table or a break-away test's, by their names and units. */
 #ifndef FG_LOAD_TEST_COLUMNS_H
 #define FG_LOAD_TEST_COLUMNS_H

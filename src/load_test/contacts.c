@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Contradictions among the contacts of a direction, and between them and the strokes. */
 #include <math.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The stiffness over the displacement, and its largest value up to just before the turn. */
 #include <math.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Friction between the strokes over the force: the radial hysteresis. */
 #include <math.h>
 #include <stdint.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The gap: free travel between the places where the foils are touched, by extrapolating each side's
  * loaded branch to no force. */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Stretches of a stroke that its record did not sample: a dropout, or a rotor under load control
  * that jumps through the gap. */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Local quadratic regression of a stroke's force over its displacement. It never reaches over an
  * unsampled stretch (holes.c): what lies on the other side is another branch. */
 #ifndef FG_LOAD_TEST_LOCAL_FIT_H

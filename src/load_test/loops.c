@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The area of the loops and what it says of damping.
  *
  * The mean loop is that of the whole strokes of each sense, taken together: what one of them has

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Noise of force and of displacement, told apart by how the scatter follows the slope; and what
  * that means for the strokes: where a stroke turns, samples lie closer than the displacement is
  * known, and what is regressed on it is bent. */

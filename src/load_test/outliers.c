@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Isolated wrong readings of a record: a loose plug, a lost reflection. */
 #include <math.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The travel that a lot's measured foils leave a rotor, in the directions of the tests. It is that
  * of a rotor that touches and does not press, so that it stands against the gap, not against the
  * clearance at a threshold. */

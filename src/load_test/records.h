@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Samples of every direction, from the files. */
 #ifndef FG_LOAD_TEST_RECORDS_H
 #define FG_LOAD_TEST_RECORDS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A direction's record cut where its displacement turns. */
 #ifndef FG_LOAD_TEST_STROKES_H
 #define FG_LOAD_TEST_STROKES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Turning point of a loading branch: its force, and the place of the branch at that force.
  *
  * The extreme of a noisy displacement lies beyond the turn, and where the force is controlled its

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the load cell says where no foil pulls. */
 #include <math.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Measuring a lot: what is there is kept, what is missing is measured, then the report. */
 #include <errno.h>
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Shards to one lot: refuses what does not belong together, then reports as if it were one run. */
 #include <errno.h>
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Lots in order of date, their designs, and the axes that their quantities can be put on. */
 #include <math.h>
 #include <stdlib.h>

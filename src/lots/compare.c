@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Which lots differ beyond what their foils scatter, and which lie where the others do not. */
 #include <math.h>
 #include <stdlib.h>

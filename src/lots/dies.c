@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Dies against each other. A difference of two dies is that of their lots as well unless lots hold
  * foils of both, so these are asked first; lots that have one die each are compared by their means,
  * lot to lot; where there are too few of these, the two cannot be told apart. */

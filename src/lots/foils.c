@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The foils of a lot, from its foils.csv and its bumps.csv or beams.csv. */
 #include <math.h>
 #include <stdlib.h>

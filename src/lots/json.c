@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* "schema": "foilgauge/lot_index/1" (reports/schema/lot_index.schema.json), and the same as a
  * table: a line for each lot and quantity. */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Lots over time and against each other: reads their reports, and writes page, JSON and table. */
 #include <stdlib.h>
 #include <string.h>

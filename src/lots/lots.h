@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Lots over time and against each other: what a page over lots says, from their reports.
  *
  * A lot is read from lot.json, foils.csv and bumps.csv (or beams.csv), not from its records: lots

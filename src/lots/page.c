@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The page over lots: what there is to say, the lots, then the figures and the numbers. */
 #include <math.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Of the page over lots: who differs from whom, and the dies. */
 #include <math.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Figures over lots: densities over each other, and a quantity over the lots. */
 #include <math.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A lot from its lot.json. */
 #include <math.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a page over lots has to say, in sentences. */
 #include <math.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Completion for bash: commands, their options, and files by the name of an option's argument. */
 #include <argp.h>
 #include <ctype.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Facts for the manual alone (cli/facts.h has those of --help, too): tables of what the code reads
  * and writes. */
 #ifndef FG_MANUAL_FACTS_H

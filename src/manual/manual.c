@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Makes the manual's pages and the completion of the shell: foilgauge_manual FOLDER TEXT...
  *
  * FOLDER/man/<page>.<section>, FOLDER/completion/foilgauge, FOLDER/man/examples (a command a line:

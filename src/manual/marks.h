@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Facts that the code fills into a text, so that the two cannot disagree. The text in the
  * repository is complete without them: of <!--@name@-->value<!--@--> a reader of Markdown sees the
  * value. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The pages of the manual, and the completion of the shell: both of the commands' parsers. */
 #ifndef FG_MANUAL_PAGE_H
 #define FG_MANUAL_PAGE_H

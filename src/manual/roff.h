@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Manual pages: text with light marks in, roff (man macros) out. */
 #ifndef FG_MANUAL_ROFF_H
 #define FG_MANUAL_ROFF_H

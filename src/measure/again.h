@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A measurement with other edges, measured again. */
 #ifndef FG_MEASURE_AGAIN_H
 #define FG_MEASURE_AGAIN_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The channels of a colour scan against each other, around edges that are measured already. */
 #ifndef FG_MEASURE_COLOUR_H
 #define FG_MEASURE_COLOUR_H

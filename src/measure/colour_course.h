@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The course along y of what one channel shows against another. */
 #ifndef FG_MEASURE_COLOUR_COURSE_H
 #define FG_MEASURE_COLOUR_COURSE_H

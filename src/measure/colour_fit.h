@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* How far apart two channels show the same edges: least squares over the cross-sections. */
 #ifndef FG_MEASURE_COLOUR_FIT_H
 #define FG_MEASURE_COLOUR_FIT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Where one channel shows a cross-section whose place is known from another. */
 #ifndef FG_MEASURE_COLOUR_PROFILE_H
 #define FG_MEASURE_COLOUR_PROFILE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The pixels of a colour scan around edges that are known, read once more: what is held of it is
  * as many rows as the tallest cross-section needs. */
 #ifndef FG_MEASURE_COLOUR_READ_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Cross-sections of a measurement, in pixels, at which the channels of its scan are held against
  * each other: of foils across the whole strip, of discs across their edge. */
 #ifndef FG_MEASURE_COLOUR_STATIONS_H

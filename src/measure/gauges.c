@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Which stated gauge is which of the things that lie in a scan. */
 #include "measure/gauges.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Gauges on the glass, found among what lies in a scan. */
 #ifndef FG_MEASURE_GAUGES_H
 #define FG_MEASURE_GAUGES_H

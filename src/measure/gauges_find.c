@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Gauges among the objects of a scan of foils: measured with the edge models of foils and discs. */
 #include <math.h>
 #include <stdlib.h>

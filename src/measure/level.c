@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* See foilgauge/gauge.h for the equation. */
 #include "measure/level.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The level of a scan's edges, told by something of known width, and the edges moved to it. */
 #ifndef FG_MEASURE_LEVEL_H
 #define FG_MEASURE_LEVEL_H

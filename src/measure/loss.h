@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What JPEG's loss does to edges, as measured on renders (reports/jpeg.md). Quality 0: nothing was
  * lost. */
 #ifndef FG_MEASURE_LOSS_H

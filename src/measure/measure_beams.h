@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Flat foils with beams: islands of a scan become parts of foils, and these are put together.
  *
  * The edges of a slit in a sheet need not hang together with those of the sheet's outline by tiles

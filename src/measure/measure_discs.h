@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Every round feature of a scan. */
 #ifndef FG_MEASURE_MEASURE_DISCS_H
 #define FG_MEASURE_MEASURE_DISCS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The state of one scan's picture, from what was found around all that was measured in it. */
 #ifndef FG_MEASURE_PICTURE_GATHER_H
 #define FG_MEASURE_PICTURE_GATHER_H

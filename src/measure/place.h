@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Where a foil lies in the scan. */
 #ifndef FG_MEASURE_PLACE_H
 #define FG_MEASURE_PLACE_H

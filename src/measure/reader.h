@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Rows of a scan into tiles: one thread decodes while another reduces. */
 #ifndef FG_MEASURE_READER_H
 #define FG_MEASURE_READER_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Foils measured while their scan is still read: islands go to worker threads as they are
  * complete, and their tiles are let go when they are measured. The reader lends a hand when the
  * workers fall behind, so what waits is bounded. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One way to draw, two places to draw on: a picture of pixels, and inline SVG.
  *
  * Positions are in mm of the scan. Widths and heights of letters are in units of the

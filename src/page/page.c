@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What every page has: its style, its head and its end, and text made harmless. */
 #include "page/page.h"
 #include "core/json_writer.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The frame of every page, and text made harmless. A page is one file, without scripts. */
 #ifndef FG_PAGE_PAGE_H
 #define FG_PAGE_PAGE_H

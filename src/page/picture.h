@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A scan as a small gray picture, and pictures as PNG. */
 #ifndef FG_PAGE_PICTURE_H
 #define FG_PAGE_PICTURE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Axes of a plot as inline SVG. */
 #ifndef FG_PAGE_PLOT_H
 #define FG_PAGE_PLOT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "page/plot_marks.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Marks in a plot, in units of its axes; the page's style names their looks. */
 #ifndef FG_PAGE_PLOT_MARKS_H
 #define FG_PAGE_PLOT_MARKS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Where a report comes from: the same rows, in the same words, at the end of every page.
  *
  * The date is that of what was measured or read, never that of the writing: the same inputs give

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Text for a terminal. */
 #ifndef FG_PAGE_WRAPPED_H
 #define FG_PAGE_WRAPPED_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Factors to -1 and +1, responses to the sign that is modelled. */
 #include <math.h>
 #include <stdio.h>

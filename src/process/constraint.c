@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Limits that the user sets, in real units: "temperature_C <= 700", "2*a + b >= 3". */
 #include <ctype.h>
 #include <math.h>

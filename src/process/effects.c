@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Effects without an error estimate, the power of the response, curvature. */
 #include <math.h>
 #include <stdlib.h>

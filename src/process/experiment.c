@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* From a table of runs to a fitted model: sign, coding, blocks, formula. */
 #include "foilgauge/experiment.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Predictions of the model at settings that the user asked for, and the best place along each
  * factor from there. This tests a setting that others call the best. */
 #include <math.h>

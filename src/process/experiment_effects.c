@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Every coefficient judged by its own error, and the tests that belong to designs. */
 #include <math.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the residuals show over the order of the runs: a drift, neighbours that are alike, a run
  * that stands out. The loop on tables finds out what it is. */
 #include <math.h>

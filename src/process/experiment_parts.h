@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The stages of fg_experiment_analyse, in their order. */
 #ifndef FG_PROCESS_EXPERIMENT_PARTS_H
 #define FG_PROCESS_EXPERIMENT_PARTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Factors that cannot be told from noise, and the experiment without them: a coefficient that is
  * nothing but scatter would send its factor to an edge of the region, and the best setting with it.
  *

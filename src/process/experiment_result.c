@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What an analysed experiment says when it is asked, and its end. */
 #include <stdarg.h>
 #include <stdlib.h>

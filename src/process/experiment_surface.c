@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Where the fitted surface is best, and how sure that is. */
 #include <math.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Runs whose measurement is less certain weigh less. */
 #include <math.h>
 #include <stdlib.h>

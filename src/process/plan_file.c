@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What lies beside a run sheet: the limits and steps of its factors, and every planned setting. */
 #include <cjson/cJSON.h>
 #include <math.h>

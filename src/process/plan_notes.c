@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What of a plan's settings is other than the levels say. */
 #include <math.h>
 #include <stdlib.h>

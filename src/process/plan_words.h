@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Products of two-level factors as bit masks with a sign: A:A = I, so multiplying is xor. */
 #ifndef FG_PROCESS_PLAN_WORDS_H
 #define FG_PROCESS_PLAN_WORDS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The best point of a quadratic surface in a convex region.
  *
  * The region is the intersection of simple sets, each with a projection in closed form; Dykstra's

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Two strata: whole plots, and runs within them. */
 #include <math.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a lot reports of a bearing that its foils are built into. */
 #include <stddef.h>
 

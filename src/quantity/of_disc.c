@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What is reported of a round hole or disc. */
 #include <stddef.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What is reported of a strip as it was traced: the scan's state, nothing of the part. */
 #include <stddef.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "quantity/parts.h"
 
 fg_quantity_owner fg_foil_kind_parts(fg_foil_kind kind) {

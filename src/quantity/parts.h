@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The numbered parts of a foil, whatever they are: its bumps, or a cantilever's beams. */
 #ifndef FG_QUANTITY_PARTS_H
 #define FG_QUANTITY_PARTS_H

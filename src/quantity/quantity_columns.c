@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Columns of tables that hold reported quantities. */
 #include <string.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What reports, lots, tables and models ask of the rows of quantities. */
 #ifndef FG_QUANTITY_QUANTITY_ROWS_H
 #define FG_QUANTITY_QUANTITY_ROWS_H

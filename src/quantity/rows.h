@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Tables of quantities, one for each owner. */
 #ifndef FG_QUANTITY_ROWS_H
 #define FG_QUANTITY_ROWS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a scanner's model does not know makes every value less certain. */
 #include <math.h>
 #include <stddef.h>

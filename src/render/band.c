@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Which segments and shapes are near which block of 8 × 8 pixels, for one band of rows. */
 #include <math.h>
 #include <stdlib.h>

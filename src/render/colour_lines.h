@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The three lines of a colour sensor. Each reads every row of the glass at a moment of its own; the
  * scanner puts the rows that were read together again by the lines' nominal gap, so what is left
  * between the channels is the carriage's unevenness over that gap. */

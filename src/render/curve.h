@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A free-form curve: the natural cubic spline through its knots, constant beyond them; with a
  * period the spline that closes on itself. */
 #ifndef FG_RENDER_CURVE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Driver stages, applied to the sensor's numbers: tone curve, unsharp mask, gray
  * levels; and JPEG, where the picture once was one.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The driver's work on rounded numbers, row after row. A row is finished once all that its unsharp
  * mask and its JPEG block need has come, so strips of any height give the same picture. */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A render as a PNG file, row by row, and its truth beside it. */
 #include <math.h>
 #include <setjmp.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* JPEG's loss: every 8 × 8 block through the discrete cosine transform, its
  * coefficients rounded to multiples of the tables of ITU-T T.81 annex K. Colours as luminance and
  * two colour differences of half the resolution (JFIF, 4:2:0), as most encoders do. */

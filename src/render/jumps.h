@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Jumps of a whole row or column: rows that a scanner lost or read twice, pieces
  * of a scan that were stitched, seams between the chips of a contact image sensor. They come after
  * the optics, so they are sharp. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Single bumps that deviate from the rest: raised (positive) or sunk, by their number. */
 #ifndef FG_RENDER_LIFT_H
 #define FG_RENDER_LIFT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Members of JSON objects as rows of a table: name, kind, place in a struct, allowed range. */
 #ifndef FG_RENDER_MEMBERS_H
 #define FG_RENDER_MEMBERS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The midline of one foil: lip, lands, fillets, bumps, in its own coordinates. */
 #include <math.h>
 #include <stdlib.h>

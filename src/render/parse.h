@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The parts of a spec, from JSON to requests. */
 #ifndef FG_RENDER_PARSE_H
 #define FG_RENDER_PARSE_H

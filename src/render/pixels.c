@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* From coverage to pixels, row after row: light, shading, tone, noise, clipping; from the sensor's
  * grid to the picture's; the driver's tone curve, rounding. What the driver does then is in
  * driver_rows.c. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Seeded random numbers: xoshiro256++ (Blackman and Vigna 2019), seeded by splitmix64. */
 #ifndef FG_RENDER_RANDOM_H
 #define FG_RENDER_RANDOM_H

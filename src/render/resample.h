@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A driver that promises more dots per inch than its sensor reads: the sensor's rows, interpolated
  * to the stated resolution. The middles of the first pixels coincide. */
 #ifndef FG_RENDER_RESAMPLE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Random deviation of each edge, correlated along the strip or around a disc. */
 #include <math.h>
 #include <stdlib.h>

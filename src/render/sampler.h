@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What is at a place of the picture: coverage before optical blur, smoothed just enough to be
  * sampled.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Foils and discs put in their places, the size of the picture, litter, truth. */
 #include <math.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A flat sheet with beams: its outlines as lines and arcs, the material to the left of their way in
  * the sheet's own coordinates. */
 #include <math.h>

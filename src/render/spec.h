@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a spec asks for, as read; and the scene that is made of it. */
 #ifndef FG_RENDER_SPEC_H
 #define FG_RENDER_SPEC_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Effects: what makes the picture or the part differ from the declared model. One row each.
  *
  * A scanner effect is a field: true position = nominal position + d(x, y), in mm. A part effect

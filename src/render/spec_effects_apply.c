@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the effects of a list do at a place. */
 #include <math.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Effects of a spec: from JSON to a list of rows with their numbers. */
 #include <math.h>
 #include <stdio.h>

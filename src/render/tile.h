@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A tile of 64 × 64 pixels: samples, then the rest of the optical blur and the pixel's square as
  * a two-dimensional, separable low-pass; halo. Tiles lie on a fixed grid and know nothing of each
  * other, so the picture does not depend on the order or the height of strips. */

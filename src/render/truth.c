@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The truth of a render as JSON: what was drawn, with the names of a report. */
 #include <math.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Blur whose ellipse is turned against the rows and columns: it does not separate along them, so
  * its kernel is two-dimensional. */
 #ifndef FG_RENDER_TURNED_BLUR_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a correction came to, dimension by dimension: words and JSON. */
 #ifndef FG_REPORT_CORRECTION_WORDS_H
 #define FG_REPORT_CORRECTION_WORDS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Names of flags and of what was found of a picture, as JSON and CSV list them. */
 #ifndef FG_REPORT_FLAG_NAMES_H
 #define FG_REPORT_FLAG_NAMES_H

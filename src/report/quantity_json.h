@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Rows of quantities as members of JSON. */
 #ifndef FG_REPORT_QUANTITY_JSON_H
 #define FG_REPORT_QUANTITY_JSON_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Columns are named with their unit at the end: temperature_C, duration_h, height_um. */
 #ifndef FG_REPORT_DOE_DOE_UNITS_H
 #define FG_REPORT_DOE_DOE_UNITS_H

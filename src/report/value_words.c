@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A number with its uncertainty, and a length, as sentences say them. */
 #include "report/value_words.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Round holes and discs as parts: each is an overall circle, and nothing else.
  *
  * What tells the scanner from the discs is that the scanner does the same to all of them. A disc's

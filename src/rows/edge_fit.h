@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Level `points`: the residuals of all arcs and lands of one or more scans, against one geometry.
  *
  * Geometry of a foil, in its own frame (origin in the overall centre): R0, and for each bump the

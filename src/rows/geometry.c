@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Residuals of the points from one geometry, their Jacobian, and the fit. */
 #include <gsl/gsl_linalg.h>
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the rows of foils and of discs share. */
 #include <math.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The rows' noise by restricted likelihood: what every arc holds beside polynomials along it. */
 #include "rows/scatter.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Noise of the rows: white, and the edge's own scatter, which neighbours share.
  *
  * The correlation of two rows at distance d along one arc is share rho(d) (1 of a row with itself),

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What all bumps share of a deviation from their circles. It is the part's, not the edge's noise.
  */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Some of the rows, to fit and search by themselves. */
 #include <stdlib.h>
 #include <string.h>

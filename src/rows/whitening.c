@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Rows with correlated noise made independent: banded Cholesky of a Gaussian correlation, the
  * innovations of a Kalman filter for an exponential one, which is that of a state with one step of
  * memory. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Which channel of a colour scan shows the parts best. */
 #ifndef FG_SCAN_CONTRAST_H
 #define FG_SCAN_CONTRAST_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* EXIF 2.32, 4.6: "Exif", two zeros, then a TIFF whose first directory is that of the image. An
  * entry is tag, type, count (2, 2, 4 bytes) and 4 bytes of value, or where it lies. */
 #include "scan/exif.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The resolution and the orientation that EXIF data state: a TIFF directory in a JPEG's APP1. */
 #ifndef FG_SCAN_EXIF_H
 #define FG_SCAN_EXIF_H

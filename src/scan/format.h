@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The formats that a scan can have: a row of a table each. */
 #ifndef FG_SCAN_FORMAT_H
 #define FG_SCAN_FORMAT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Rows of samples to rows of gray. */
 #ifndef FG_SCAN_GRAY_H
 #define FG_SCAN_GRAY_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the reader of any format says of a scan before its first row. */
 #ifndef FG_SCAN_HEADER_H
 #define FG_SCAN_HEADER_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* An interlaced (Adam7) image: its rows come in no useful order, so it is decoded whole. */
 #ifndef FG_SCAN_INTERLACE_H
 #define FG_SCAN_INTERLACE_H

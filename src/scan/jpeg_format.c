@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* JPEG as one of the formats, for those who allow loss. */
 #include <math.h>
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One JPEG, row by row through libjpeg, whose setjmp stays behind this header.
  *
  * Order of calls: open, start, one read for each row, finish. After an error only close is left. */

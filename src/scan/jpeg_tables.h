@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* How much a JPEG has lost, as its quantization tables tell. */
 #ifndef FG_SCAN_JPEG_TABLES_H
 #define FG_SCAN_JPEG_TABLES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a file held when it was read: a mark for every block, by all who read it.
  *
  * A format that jumps about in its file cannot be summed as it is decoded: its SHA-256 is found in

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* PNG as one of the formats: the header in common words, interlaced images decoded whole. */
 #include <math.h>
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The image of a common PNG (whole samples, not interlaced) without libpng: its stream
  * (png_stream.h) and our own filters. Memory is a few blocks of rows, whatever the height; a large
  * image is decompressed on a thread of its own, ahead of the rows that are taken. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One PNG, read from front to back: the image of the common kinds by png_image.h, everything else
  * by libpng. libpng's setjmp stays behind this header.
  *

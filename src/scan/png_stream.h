@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the IDAT chunks of a PNG hold, decompressed: ISA-L's inflate, which takes a third of the
  * time that zlib takes. Every chunk's CRC, the stream's head and its Adler-32 are checked.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Up has no order and is left to the compiler. Sub is a running sum: within sixteen bytes by
  * doubling steps, so that only one addition waits for the sixteen before. Average and Paeth go from
  * pixel to pixel: with three bytes or more, all of a pixel at once; with one or two, a byte at a

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The filters of PNG undone (PNG specification, section 9). */
 #ifndef FG_SCAN_PNG_UNFILTER_H
 #define FG_SCAN_PNG_UNFILTER_H

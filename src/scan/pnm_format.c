@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* PNM: P4 (1 bit), P5 (gray), P6 (colour), binary, 8 or 16 bit. What `scanimage` writes to a pipe.
  *
  * Netpbm's header: the magic, then width, height and (not in P4) the largest value, separated by

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Dots per inch of a scan: as its file or the caller says. */
 #ifndef FG_SCAN_RESOLUTION_H
 #define FG_SCAN_RESOLUTION_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The bytes of a scan: a file or a pipe, read once from front to back through one buffer, and
  * summed as they come by. A format that jumps about (fg_source_read_at) is summed in a reading of
  * its own, and a ledger says when the two saw different bytes. */

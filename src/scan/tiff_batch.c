@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Compressed strips and tiles, decoded by several threads at once: each has a view of the file of
  * its own, and takes the next part (a strip, a tile) until the batch is done. */
 #include <stdatomic.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* TIFF and BigTIFF as one of the formats: what the tags say. */
 #include <math.h>
 #include <stdio.h>

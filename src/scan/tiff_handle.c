@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What libtiff reads through, and where its complaints go. */
 #include <ctype.h>
 #include <stdio.h>

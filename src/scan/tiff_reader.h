@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One TIFF or BigTIFF, first image, row by row through libtiff. */
 #ifndef FG_SCAN_TIFF_READER_H
 #define FG_SCAN_TIFF_READER_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Rows of a TIFF. Uncompressed strips are read directly, by their offsets: a row at a time, however
  * long the strip is, and whatever its byte count says (in files beyond 4 GiB the 32-bit count has
  * wrapped round). Compressed strips and tiles are decoded in batches (tiff_batch.c); long strips,

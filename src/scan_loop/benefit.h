@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Whether a correction pays, dimension by dimension.
  *
  * A correction moves a dimension by m, which is known to u. Left as it is the dimension keeps the

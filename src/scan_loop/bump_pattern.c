@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "scan_loop/bump_pattern.h"
 
 #include <gsl/gsl_cdf.h>

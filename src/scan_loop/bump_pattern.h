@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Numbers that some values stand apart by, or that follow a cycle: of bumps, by their number. */
 #ifndef FG_SCAN_LOOP_BUMP_PATTERN_H
 #define FG_SCAN_LOOP_BUMP_PATTERN_H

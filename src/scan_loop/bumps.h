@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Level `bumps` of the loop on scans: the measured bumps, after what was found on the points has
  * been taken out, against the declared springback model: one radius on all bumps of a foil, and
  * constant arc length (thesis eq 5.6 and 5.7); or, where a forming is declared, the radius that it

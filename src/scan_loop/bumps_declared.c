@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What is declared of the bumps: the design's springback, or a report of `foilgauge form`.
  *
  * A forming predicts radius and angle of each bump. The radius is held against it beside one level

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* P-values of a few bumps without any assumption on their scatter: the numbers of a foil's bumps
  * are drawn anew (trends over the number; exact where the bumps are exchangeable), or the signs of
  * their residuals (stretch). Flips of signs say little of nine bumps beside a mean: they leave a

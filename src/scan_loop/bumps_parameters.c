@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a claim says of the bumps, in numbers that a user can set beside a drawing. */
 #include <math.h>
 #include <string.h>

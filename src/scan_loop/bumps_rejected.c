@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Effects over the bumps that are not claimed. */
 #include <math.h>
 #include <string.h>

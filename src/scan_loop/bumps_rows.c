@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The measured bumps as rows, one per bump of a part. */
 #include <math.h>
 #include <stdlib.h>

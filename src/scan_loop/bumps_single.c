@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Bumps that stand apart from the others by their numbers: a few of them, or a cycle over them. A
  * whole bump that is raised is taken by the geometry, which has a circle for every bump; here its
  * radius and its angle are held against those of the others. Every number's mean over the foils is

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the colour lines of the scans say of an effect of the carriage.
  *
  * The loop finds an effect in the residuals of one channel, where geometry, optics and part have

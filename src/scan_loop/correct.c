@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Foils with corrected edges, measured again. */
 #include <math.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Which dimensions the loop moves. */
 #include <math.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Errors on rows that took no part in the search: of scans kept aside or, without, cross-fitted. */
 #include <math.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What is reported of a foil whose correction pays in part, or not at all. */
 #include <math.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Foils that the loop leaves out: what is no foil of the design has no geometry to hold its edges
  * against, and effects of the scanner must not be read off it. */
 #include <stdio.h>

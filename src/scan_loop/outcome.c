@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The one word that the loop on scans comes to. */
 #include "scan_loop/state.h"
 

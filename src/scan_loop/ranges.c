@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the dimensions are under every explanation of a tie. */
 #include <math.h>
 #include <stdlib.h>

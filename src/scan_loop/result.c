@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Scans, views and rows of the result, and its end. */
 #include "scan_loop/result.h"
 

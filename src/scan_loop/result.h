@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Parts of the result of the loop on scans (foilgauge/scan_result.h), each filled from what was
  * searched and fitted. verdict.c decides what is said and calls them. */
 #ifndef FG_SCAN_LOOP_RESULT_H

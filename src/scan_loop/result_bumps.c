@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Level `bumps` of the result, in the units that people read. */
 #include <math.h>
 #include <stdlib.h>

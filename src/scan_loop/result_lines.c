@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What was found as lines over the coordinate it lives on. Effects that share a coordinate can
  * cancel each other in part, so their sum is the line that counts. */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The noise that everything was judged by, as the search left it beside what was found. */
 #include <math.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Whether scans that are said to show one foil do.
  *
  * Effects of a scanner or a part follow few numbers, or smooth curves; another foil differs bump by

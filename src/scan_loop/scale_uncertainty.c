@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One scale that the edges cannot see.
  *
  * An optical polynomial about another middle differs by a stretch of x, and a stretch of x is one

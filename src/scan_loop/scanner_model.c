@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Correcting scans by a scanner's model. */
 #include <math.h>
 #include <stdio.h>

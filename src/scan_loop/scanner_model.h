@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A scanner's model in memory. */
 #ifndef FG_SCAN_LOOP_SCANNER_MODEL_H
 #define FG_SCAN_LOOP_SCANNER_MODEL_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Whether a scanner can be what a model says. */
 #include <math.h>
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a model is and corrects, for reports. */
 #include <math.h>
 #include <string.h>

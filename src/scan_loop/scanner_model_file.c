@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Reading the model file of a scanner: "foilgauge/scan-model/1" (reports/schema). */
 #include <cjson/cJSON.h>
 #include <math.h>

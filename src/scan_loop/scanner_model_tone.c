@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "scan_loop/scanner_model_tone.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The level of a scanner's edges in its model: found on discs of known diameter, applied to scans
  * that were made with the same settings. */
 #ifndef FG_SCAN_LOOP_SCANNER_MODEL_TONE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Writing the model file of a scanner, "foilgauge/scan-model/1" (reports/schema): beside its
  * reader, scanner_model_file.c. */
 #include <string.h>

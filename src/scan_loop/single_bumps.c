@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Deviations of single bumps from their circles that are too small for the search, which asks of
  * a curve that it gains more than all its columns may by chance. Here the columns are few: one
  * bump, some, or a cycle over them, raised at the middle or leaning; and the noise is what the same

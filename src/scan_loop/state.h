@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the parts of the loop on scans share. */
 #ifndef FG_SCAN_LOOP_STATE_H
 #define FG_SCAN_LOOP_STATE_H

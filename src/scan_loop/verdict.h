@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the loop on scans says of its effects: decided once, for JSON, page, text and model. */
 #ifndef FG_SCAN_LOOP_VERDICT_H
 #define FG_SCAN_LOOP_VERDICT_H

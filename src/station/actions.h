@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a form asks for: the answer sends the browser on, or carries a file. */
 #ifndef FG_STATION_ACTIONS_H
 #define FG_STATION_ACTIONS_H

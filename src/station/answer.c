@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Who may ask, and what: every request passes here. */
 #include "station/answer.h"
 

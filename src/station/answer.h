@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A request and its answer, without a socket: what tests and a fuzzer call. */
 #ifndef FG_STATION_ANSWER_H
 #define FG_STATION_ANSWER_H

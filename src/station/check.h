@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The scanner's own health: a plate or ring of known diameters, now and then. */
 #ifndef FG_STATION_CHECK_H
 #define FG_STATION_CHECK_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a plate of known diameters says of a scanner's two axes. */
 #ifndef FG_STATION_CHECK_FIT_H
 #define FG_STATION_CHECK_FIT_H

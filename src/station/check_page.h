@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The state of the newest check on the tab Scanner. */
 #ifndef FG_STATION_CHECK_PAGE_H
 #define FG_STATION_CHECK_PAGE_H

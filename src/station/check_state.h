@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Tone, sharpening and blur that a scan of the plate shows, and their change. */
 #ifndef FG_STATION_CHECK_STATE_H
 #define FG_STATION_CHECK_STATE_H

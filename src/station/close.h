@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Closing a lot: its folder and report are written, and who did it is kept. */
 #ifndef FG_STATION_CLOSE_H
 #define FG_STATION_CLOSE_H

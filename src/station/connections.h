@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The connections that are open, and who has to make room for others.
  *
  * A connection has a time for a whole request, header and body, and for taking the answer; a clock

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Corrections of a foil's identity, which its file's name gave: every change leaves a trail.
  *
  * A form carries the values that it showed (`was_serial` beside `serial`), so that only fields

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A change of a foil's identity (serial, lot, die, operator), and the page that asks before a
  * change in conflict. */
 #ifndef FG_STATION_CORRECT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The station's database: one file in the folder, in WAL mode, with a version.
  *
  * One connection writes (under a lock, in transactions), another reads; both belong to the

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Lots of the database as folders that `foilgauge lot` could have made: --resume, `merge`,
  * `lot --index` and `loop --lot` go on with them. */
 #ifndef FG_STATION_EXPORT_H

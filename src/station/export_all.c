@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Every lot of the database as a folder. */
 #include <stdlib.h>
 #include <string.h>

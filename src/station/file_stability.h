@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Files that stay as they are, and for how long, as this machine's steady clock tells.
  *
  * The time of a file is its file system's, on the network another machine's: it only has to stay

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What every page of a station has around it. */
 #include <string.h>
 #include <time.h>

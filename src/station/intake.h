@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A file of the folder, from its name to what is kept of it. */
 #ifndef FG_STATION_INTAKE_H
 #define FG_STATION_INTAKE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What is known of files, and with what scans are measured. */
 #include "station/keep.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What goes into the database: scans with all that was measured, cards of files, setups. */
 #ifndef FG_STATION_KEEP_H
 #define FG_STATION_KEEP_H

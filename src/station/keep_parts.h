@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Parts of what is kept, for those who are inside a transaction. */
 #ifndef FG_STATION_KEEP_PARTS_H
 #define FG_STATION_KEEP_PARTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A measured scan as rows: the scan, its foils and bumps, every quantity, what decided. */
 #include <math.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "station/lot_content.h"
 
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the database says of a lot: which foils of which scans belong to it. */
 #ifndef FG_STATION_LOT_CONTENT_H
 #define FG_STATION_LOT_CONTENT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The files of a closed lot, from its folder to a browser. */
 #include <errno.h>
 #include <fcntl.h>

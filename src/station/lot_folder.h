@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the folder of a lot is called, and where the station keeps those of lots that are closed. */
 #ifndef FG_STATION_LOT_FOLDER_H
 #define FG_STATION_LOT_FOLDER_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a file's name says: a pattern of text, `*` for anything and fields in braces. */
 #ifndef FG_STATION_NAMING_H
 #define FG_STATION_NAMING_H

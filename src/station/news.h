@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* News: changes of a page that waits for new results. */
 #ifndef FG_STATION_NEWS_H
 #define FG_STATION_NEWS_H

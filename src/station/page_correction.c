@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Page of a held correction: fields that somebody else changed meanwhile, or the foil that has the
  * serial number already. */
 #include <stdlib.h>

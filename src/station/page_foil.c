@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One foil: what was said of it and why, its picture, its values with their limits, its form, and
  * who changed what. */
 #include <string.h>

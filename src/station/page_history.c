@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Every foil that was measured, the newest first: found by serial number, lot, die, date, verdict.
  */
 #include <stdlib.h>

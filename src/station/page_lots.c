@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Lots that are open and lots that are closed. */
 #include <stdlib.h>
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The newest card, in letters that are read from two metres; what to do next; those before it. */
 #include <math.h>
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A foil's whole report: measured again from its scan with the design and the model of then, or,
  * where the scan is gone or is another by now, what the record of then holds. */
 #include <stdlib.h>

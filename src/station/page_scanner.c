@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The scanner's own health: what its last check came to, when the next is due, what it did over
  * time. */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Trends: how the process runs, over foils or lots. */
 #include <math.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The pages of a station, and what they share. */
 #ifndef FG_STATION_PAGES_H
 #define FG_STATION_PAGES_H

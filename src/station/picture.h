@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Pictures of foils as they stand in pages: of the newest ones, others are drawn when asked for. */
 #ifndef FG_STATION_PICTURE_H
 #define FG_STATION_PICTURE_H

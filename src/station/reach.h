@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Addresses and names of the pages. A request for any other name comes from a page of another site,
  * which could read ours (DNS rebinding). */
 #ifndef FG_STATION_REACH_H

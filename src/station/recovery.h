@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a running station gets over: a folder that goes and comes back, a disk that is full. */
 #ifndef FG_STATION_RECOVERY_H
 #define FG_STATION_RECOVERY_H

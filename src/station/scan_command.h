@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The recipe's scan_command: one at a time, beside the pages. */
 #ifndef FG_STATION_SCAN_COMMAND_H
 #define FG_STATION_SCAN_COMMAND_H

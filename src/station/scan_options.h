@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Options of a scan command that are known to spoil a scan. */
 #ifndef FG_STATION_SCAN_OPTIONS_H
 #define FG_STATION_SCAN_OPTIONS_H

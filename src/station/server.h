@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The pages on a socket: libmicrohttpd carries, answer.h answers. */
 #ifndef FG_STATION_SERVER_H
 #define FG_STATION_SERVER_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A recipe's member `station`. */
 #include <math.h>
 #include <stddef.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* SQLite, with statuses: a statement from its text to its rows. */
 #ifndef FG_STATION_SQL_H
 #define FG_STATION_SQL_H

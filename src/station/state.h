@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a running station holds. */
 #ifndef FG_STATION_STATE_H
 #define FG_STATION_STATE_H

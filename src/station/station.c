@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A station from its start to its end. */
 #include <stdlib.h>
 #include <string.h>

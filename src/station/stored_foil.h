@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A foil of the database with what it was measured and judged with, and the record of then. */
 #ifndef FG_STATION_STORED_FOIL_H
 #define FG_STATION_STORED_FOIL_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Names of files as the database holds them: UTF-8 on one line, whatever bytes the name has.
  *
  * A file's name is any bytes but '/' and NUL. Bytes that are no UTF-8 and control characters are

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The station's style, after that of the reports, and its icon. */
 #include <pthread.h>
 #include <stdio.h>

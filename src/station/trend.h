@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One quantity over the foils of a station, or over its lots: what is asked for, and the chart. */
 #ifndef FG_STATION_TREND_H
 #define FG_STATION_TREND_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a trend is asked to show, from a query and back. */
 #include <math.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The control chart of a trend. Tolerances are broad red ground beyond a solid line, control limits
  * are dashed blue lines: they answer different questions, and are not to be taken for each other.
  */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Where the setup changed that foils are measured with: what a chart shows there may be its doing.
  */
 #include "station/trend.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The looks of trends and of the scanner's history, and the script that zooms by dragging. */
 #include "station/trend.h"
 

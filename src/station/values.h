@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Values, limits and fields of a foil, as several pages show them. */
 #ifndef FG_STATION_VALUES_H
 #define FG_STATION_VALUES_H

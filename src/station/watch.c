@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Watches the folder. A file is inspected when its writer has closed or renamed it (inotify). Where
  * the system does not tell (network folders, files that were there before) it is inspected once it
  * has been at rest for a while. An incomplete file is waited for: its writer may only pause. The

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The folder, watched: which files are new, and when nobody writes to them any more. */
 #ifndef FG_STATION_WATCH_H
 #define FG_STATION_WATCH_H

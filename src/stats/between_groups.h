@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Groups against each other: how far their means lie apart beyond what happens within them.
  *
  * Means y_i with the variance v_i that comes from within, of groups that scatter about a common

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A straight line through points that come in clusters (bumps of a foil).
  *
  * The line is least squares. Points of one cluster share what the cluster does (the foil's

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Building a table cell by cell: shared by the CSV reader and the tables made in memory. */
 #ifndef FG_STATS_COLUMN_H
 #define FG_STATS_COLUMN_H

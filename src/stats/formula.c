@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a parsed formula says of itself. */
 #include "foilgauge/formula.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A recursive descent over the formula; every rule returns a set of terms.
  *
  *     sum      = product { ("+" | "-") product }

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Gauge study: analysis of variance of a crossed design, and means and ranges. */
 #include <math.h>
 #include <stdlib.h>

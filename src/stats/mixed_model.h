@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A linear model with one random effect: y = X b + Z u + e, u of the groups, e of the runs.
  *
  * V = s² (I + r Z Z'), r the ratio of the groups' variance to that of the runs. Restricted

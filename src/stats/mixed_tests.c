@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Variances and tests of a mixed model's estimates (Kenward and Roger 1997). */
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_linalg.h>

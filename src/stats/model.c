@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* From formula and table to the model matrix. */
 #include <stdint.h>
 #include <stdlib.h>

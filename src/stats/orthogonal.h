@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Gram-Schmidt in extended precision, with aliased columns set aside. */
 #ifndef FG_STATS_ORTHOGONAL_H
 #define FG_STATS_ORTHOGONAL_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Sums of squares by term, sequential and partial; lack of fit against repeated runs. */
 #include <math.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Coefficients, aliases and the condition number, from R and its inverse. */
 #include <gsl/gsl_linalg.h>
 #include <math.h>

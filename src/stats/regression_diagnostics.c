@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What each run does to the fit (Cook and Weisberg 1982). */
 #include <math.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The parts of a regression that are worked out after the least-squares solution. */
 #ifndef FG_STATS_REGRESSION_PARTS_H
 #define FG_STATS_REGRESSION_PARTS_H

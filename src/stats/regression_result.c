@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a fitted regression says when it is asked, and its end. */
 #include <math.h>
 #include <stdarg.h>

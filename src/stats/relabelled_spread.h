@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Permutation tests for a difference in spread between two small samples.
  *
  * F and Levene's statistic (about the median) refer to many values, F to normal ones: with seven on

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Words that count: dates and serial numbers as numbers, so that a trend over them can be seen. */
 #include <math.h>
 #include <stdio.h>

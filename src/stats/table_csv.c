@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* CSV text in and out. libcsv finds the cells; this file gives them rows, columns and lines. */
 #include <csv.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the numbers of a table may mean besides: decimal commas beside points, thousands. */
 #include <string.h>
 

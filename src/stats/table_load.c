@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A table from a file, with its sum. */
 #include <stdio.h>
 #include <stdlib.h>

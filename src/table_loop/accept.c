@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Which effect a step accepts: the best claim that passes every gate, else a curve. */
 #include <math.h>
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a step takes: a claim described, its place in the set, and the findings about the scatter
  * with their classes. */
 #include "table_loop/accept_claim.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Taking what passed into a run's result and set. */
 #ifndef FG_TABLE_LOOP_ACCEPT_CLAIM_H
 #define FG_TABLE_LOOP_ACCEPT_CLAIM_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The measurement that would part a tie: the two settings between which the winner and its nearest
  * rival, each fitted to these rows, change most differently. The level of a table is free, so a
  * single setting says nothing. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Alias classes. A rival belongs to the winner's class when, beside it, the winner explains nothing
  * more that the data can show. Were the rival the truth, the winner's surplus would be noise: the
  * truth is left out of its class with the probability of the test alone. */

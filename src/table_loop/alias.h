@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Who else could take the winner's place, with the noise as it is beside the winner. */
 #ifndef FG_TABLE_LOOP_ALIAS_H
 #define FG_TABLE_LOOP_ALIAS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One null for everything: residuals of the null model in another order (Freedman and Lane 1983),
  * which keeps their tails, through the same scores as the data. Scores of all kinds are put on one
  * scale by their own draws, so that their largest is a fair maximum (Westfall and Young 1993); how

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* P-values of everything that a step looks for, over one null. */
 #ifndef FG_TABLE_LOOP_ASSESS_H
 #define FG_TABLE_LOOP_ASSESS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What is the same at every row of a group that shares a level is judged between groups: by what
  * groups differ, with as many degrees of freedom as groups leave, however many rows they have. */
 #ifndef FG_TABLE_LOOP_BETWEEN_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A coordinate in equal steps with sums over the rows of each: a form over that coordinate is
  * multiplied with sums instead of rows. For many rows. */
 #ifndef FG_TABLE_LOOP_BINS_H

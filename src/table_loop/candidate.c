@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the engine asks of a candidate. */
 #include <stdio.h>
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Coefficients and uncertainties of what was found, shapes included. */
 #include <math.h>
 #include <stdlib.h>

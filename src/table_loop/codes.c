@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Columns that say the same as others: no second candidates. */
 #include <math.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Columns as coordinates: every one that is not itself a result of the measurement. */
 #include <math.h>
 #include <stdlib.h>

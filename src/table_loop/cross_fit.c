@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Errors on rows that took no part: the whole search, again without each fold of groups. */
 #include <math.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A declared model as its owner wrote it: response, model, group and order of a table, and the
  * values of a design that constant arc length needs. */
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a search costs, estimated before it starts. */
 #ifndef FG_TABLE_LOOP_EFFORT_H
 #define FG_TABLE_LOOP_EFFORT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The engine's inner parts. Columns are stored one after the other unless said otherwise.
  *
  * A training is the rows that a step learns from, with the columns of the null: the declared

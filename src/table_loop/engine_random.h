@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Seeded random numbers: splitmix64 (Steele, Lea and Flood 2014). */
 #ifndef FG_TABLE_LOOP_ENGINE_RANDOM_H
 #define FG_TABLE_LOOP_ENGINE_RANDOM_H

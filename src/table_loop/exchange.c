@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* With A = W'MW the residual sum is y'Ay. Exchanging the responses of i and j, d apart, changes it
  * by 2 d (Ay_i - Ay_j) + d² (A_ii + A_jj - 2 A_ij). */
 #include <math.h>

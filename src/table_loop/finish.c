@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* After the search: errors before and after, confirmation, parameters, the curve, the verdict. */
 #include <math.h>
 #include <stdlib.h>

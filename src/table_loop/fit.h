@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Fits of a whole set of effects: noise, shapes, cross-validation, uncertainties. */
 #ifndef FG_TABLE_LOOP_FIT_H
 #define FG_TABLE_LOOP_FIT_H

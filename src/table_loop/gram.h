@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Products of a form's columns with what a null spans, and what follows from them: as much as the
  * columns beside the null tell, without writing one of them. For many rows. */
 #ifndef FG_TABLE_LOOP_GRAM_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Settings of one's own: a problem whose rows are not the data's, for evaluating effects there.
  *
  * Every coordinate of a grid has as many values as the grid has rows, whether it is an axis or not,

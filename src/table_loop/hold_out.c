@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Which rows a table keeps aside: a share of its groups, or those with a value. */
 #include <stdlib.h>
 #include <string.h>

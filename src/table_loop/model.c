@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The declared model of a table: a formula, or the constant arc length of the springback model. */
 #include <math.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The model file: declared model, what was found, and how to take it out of another table. */
 #include <math.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the scatter of a residual lacks: scores of serial correlation and of unequal spread. */
 #ifndef FG_TABLE_LOOP_NOISE_SCORES_H
 #define FG_TABLE_LOOP_NOISE_SCORES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Wrong responses: one or several rows whose residuals the others' scatter does not reach.
  *
  * Rows are taken out one after the other, the one that stands out most first; as many are wrong as

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Steps of building a problem from a table. */
 #ifndef FG_TABLE_LOOP_PARTS_H
 #define FG_TABLE_LOOP_PARTS_H

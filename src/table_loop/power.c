@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The smallest amplitude that would have been found: by simulation, noise estimated anew in every
  * draw as in the search itself. */
 #include <math.h>

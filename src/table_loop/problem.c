@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A problem from a table: rows in order, groups, model, coordinates, what is kept aside. */
 #include <math.h>
 #include <stdlib.h>

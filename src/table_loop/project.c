@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Projections and least squares of a training (modified Gram-Schmidt, taken out twice). */
 #include <math.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Shapes of the effects of a set, moved to the least residual sum. */
 #include <math.h>
 #include <stdlib.h>

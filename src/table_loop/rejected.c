@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Candidates that were not claimed: what they would have explained, and what would have shown. */
 #include <math.h>
 #include <stdlib.h>

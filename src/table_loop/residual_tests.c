@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What `clean` rests on: tests of the whole residual beside what was looked for by name. Runs that
  * repeat tell what the model leaves of their means (lack of fit); rows further apart than
  * neighbours tell of a pattern along the order that no listed effect draws (Ljung and Box 1978,

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Scores of what `clean` rests on beside everything that was looked for by name. */
 #ifndef FG_TABLE_LOOP_RESIDUAL_TESTS_H
 #define FG_TABLE_LOOP_RESIDUAL_TESTS_H

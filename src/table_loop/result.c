@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a run of the loop hands back: its words, its notes, what a claim says at a row. */
 #include <stdarg.h>
 #include <stdlib.h>

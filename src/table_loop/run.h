@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One run of the loop: what is accepted so far, and the steps. */
 #ifndef FG_TABLE_LOOP_RUN_H
 #define FG_TABLE_LOOP_RUN_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The size of every row's scatter where it changes: sd = exp(z'g), by the likelihood of the squared
  * residuals (a gamma model with logarithmic link: Smyth 1989), in turns with the mean. */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Scores: a candidate's F ratio at its best version and noise, of one response or of a batch of
  * draws, as a normal deviate. */
 #include <math.h>

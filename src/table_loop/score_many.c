@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "table_loop/score_many.h"
 
 #include <math.h>

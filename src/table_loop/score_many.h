@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Scores of the data where rows are many. */
 #ifndef FG_TABLE_LOOP_SCORE_MANY_H
 #define FG_TABLE_LOOP_SCORE_MANY_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The bench: candidates whitened, projected and orthonormal, for scoring many responses. */
 #include <math.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Correlation of neighbours against effects that a series could be mistaken for. */
 #ifndef FG_TABLE_LOOP_SERIAL_H
 #define FG_TABLE_LOOP_SERIAL_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One step of the loop: everything scored and judged beside what is accepted so far. */
 #include <math.h>
 #include <stdlib.h>

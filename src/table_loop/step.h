@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One step of a run. */
 #ifndef FG_TABLE_LOOP_STEP_H
 #define FG_TABLE_LOOP_STEP_H

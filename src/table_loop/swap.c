@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* With the others fitted, would another candidate serve better in a claim's place? */
 #include <math.h>
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The loop on tables from end to end. */
 #include <math.h>
 #include <stdlib.h>

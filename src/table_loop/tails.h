@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Wrong values, or one heavy tail of all? */
 #ifndef FG_TABLE_LOOP_TAILS_H
 #define FG_TABLE_LOOP_TAILS_H

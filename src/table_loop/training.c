@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Frames: the rows that are used, with the columns of the null. */
 #include <math.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The engine's own units: the response and each declared column divided by a power of two, so that
  * the largest is about 1 and no square over- or underflows. Powers of two round nothing: what is
  * found does not depend on the unit that the data came in. */

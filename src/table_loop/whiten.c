@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Whitening: the rows' own scale, first-order correlation along series, then a level shared in
  * groups.
  *

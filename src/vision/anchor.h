@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Tiles anchored on the foil: what is measured of it does not depend on where it lies on the glass.
  *
  * Block means, medians and the background between them depend on where the tiles' corners lie on

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Where the beams of a flat cantilever foil are, from its rims: to within a pixel.
  *
  * A beam is found by the way of its rim, the material to the left of it (vision/rims.h): a long

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* How one value of the edges' shape runs along a strip or around a turn: what edges_smooth.c and
  * disc_shape.c do alike. */
 #ifndef FG_VISION_COURSE_H

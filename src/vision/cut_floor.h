@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The floor of a cut beside a beam: where its root lies on that side. */
 #ifndef FG_VISION_CUT_FLOOR_H
 #define FG_VISION_CUT_FLOOR_H

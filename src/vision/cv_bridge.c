@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "vision/cv_bridge.h"
 
 #include <dlfcn.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The only door to OpenCV (core and imgproc): plain C in, plain C out, no exception escapes.
  * Whatever comes through it first loads OpenCV; FG_ERR_IO when that fails. */
 #ifndef FG_VISION_CV_BRIDGE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the module around OpenCV offers: it is loaded where it is first needed (cv_bridge.c), as
  * OpenCV brings thirty shared objects that most commands never use. */
 #ifndef FG_VISION_CV_MODULE_H

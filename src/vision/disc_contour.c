@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "vision/disc_contour.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Whether an outline is round, or holds a round part. */
 #ifndef FG_VISION_DISC_CONTOUR_H
 #define FG_VISION_DISC_CONTOUR_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The pixels of a round edge's stations under a driver's model: profiles as tables, of a few
  * stations each, see edges_driven.c. */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Driver model of a round edge: asked only where one step without it misses
  * the sectors' mean profiles, see driver_choice.h. */
 #include <math.h>

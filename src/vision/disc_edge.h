@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The edge of one round feature: an intensity model of one step, fitted to every pixel near it.
  *
  * (1) Mean profiles of sectors tell the shape (levels, slopes, blur, tone curve) and centre the

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Round things in a scan, coarsely: circles that outlines at many levels agree upon.
  *
  * Works on a reduced picture. An edge with a clean, strong step gives the same outline at every

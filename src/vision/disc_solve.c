@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The edge of every station of a round feature from its pixels, the shape held. */
 #include "vision/disc_edge.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The tone curve, from the asymmetry of round edges. */
 #include "vision/disc_edge.h"
 

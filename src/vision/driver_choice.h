@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Which of the models of a scanner's driver explains the profiles of a picture's edges. */
 #ifndef FG_VISION_DRIVER_CHOICE_H
 #define FG_VISION_DRIVER_CHOICE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Least squares for many profiles and one driver.
  *
  * Every profile has unknowns p of its own; the driver's q are common. Of each profile's normal

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a model leaves of many profiles, the same on all of them. */
 #include <math.h>
 #include <string.h>

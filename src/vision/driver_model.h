@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a scanner's driver makes of the counts: a tone curve of few numbers, and an unsharp mask.
  *
  *   counts = (1 + a) C - a (C * normal(r)),   C = G((1 - h) light + h (light * exp(-|x|/l)/2l))

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The counts across edges under a driver's model. */
 #include <math.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Profiles under a driver's model as tables, for the inner loops over pixels. */
 #ifndef FG_VISION_DRIVER_TABLE_H
 #define FG_VISION_DRIVER_TABLE_H

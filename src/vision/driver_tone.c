@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The tone curve of a driver's model as a table. */
 #include <math.h>
 

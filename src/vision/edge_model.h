@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The intensity across a strip: both edges at once.
  *
  * With d1 = e1 - n and d2 = n - e2 (distance outwards from the left and the right edge), and the

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* How an edge runs from dark to bright, without a model: where its counts cross a tenth, the half
  * and nine tenths of the contrast. A tone curve whose middle lies q of the contrast too high makes
  * the bright part of that way longer, by a quarter of q of all of it; a blur that is symmetric leaves both

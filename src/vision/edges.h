@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Sub-pixel edges of a traced strip: an intensity model of both edges, fitted to every pixel.
  *
  * Three steps. (1) Mean profiles of short segments tell the shape: levels, slopes, blur, tone

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Stations where dust, a speck or a burr lies on the strip or beside it. */
 #include <math.h>
 #include <stdlib.h>

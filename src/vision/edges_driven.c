@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The stations' pixels under a driver's model: profiles as tables, of a few stations each. */
 #include <math.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the scanner's driver has made of a strip's edges: asked only where the plain model of
  * edge_model.h misses the mean profiles. What is found is held for the whole strip. */
 #include <math.h>

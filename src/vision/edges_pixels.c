@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The pixels of every chunk of stations, and from them the middle of each station. */
 #include <math.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The shape of the edges along a strip: mean profiles of segments, and their fits. */
 #include "vision/edges.h"
 

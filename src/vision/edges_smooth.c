@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The shape of every station: the segments' fits, smoothed by direction and place. */
 #include "vision/edges.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Both edges of every station from its pixels, the shape of the profile held. */
 #include "vision/edges.h"
 

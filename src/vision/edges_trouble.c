@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What disturbs the strip: a cut through it, or something that lies on it or beside it. */
 #include <math.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The cut ends of a strip: where the strip's side runs out, to a fraction of a pixel.
  *
  * Beyond the last stations the middle goes on as a parabola through those before it. With u along

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Small grids of cells: connected parts of a mask, and medians over neighbours. */
 #ifndef FG_VISION_GRID_H
 #define FG_VISION_GRID_H

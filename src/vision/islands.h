@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Islands: connected groups of wanted tiles, known as soon as the scan has passed them.
  *
  * An island is handed out when every tile that can matter to it is there: three rows of tiles after

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* From which count on a pixel is the foil's, by the pixels alone. */
 #ifndef FG_VISION_LEVELS_H
 #define FG_VISION_LEVELS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The edge of a straight stretch, or of a flat arc: stations along it, each with its place across.
  *
  * The same model of one step as of round features (vision/disc_edge.h), fitted to every pixel of a

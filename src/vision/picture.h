@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a scanner's driver or the light has made of a picture, found from the pixels that were
  * collected around its edges, and from a few tiles beside them. Fills those members of a state that
  * pixels tell without a model; the others stay as they are. */

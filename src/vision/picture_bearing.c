@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What profiles of many bearings tell: under- and overshoot, blur and shadow by direction. */
 #include "vision/picture_profile.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Blocks of 8 × 8 px: a picture that once was a JPEG. */
 #include <math.h>
 

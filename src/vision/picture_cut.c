@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* How far an edge may lie off because an end of the scale cuts its profile.
  *
  * What is cut off cannot be seen, except by how abruptly the profile ends. Let shares a (towards

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The quality of a JPEG from its pixels alone. Its coefficients were rounded to whole steps, so
  * those of its blocks lie at multiples of the steps, but for the rounding of pixels to counts (an
  * sd of 0.29). Finer steps always fit, coarse ones by chance where a step is wide: a quality scores

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Gray levels in use, gaps between them, and values that the ends of the scale have cut. */
 #include <math.h>
 #include <stdbool.h>

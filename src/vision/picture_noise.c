@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Noise of a pixel and its correlation to its neighbours, from flat tiles. */
 #include <math.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One profile across an edge as shares of its contrast. */
 #include "vision/picture_profile.h"
 

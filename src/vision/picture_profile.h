@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Mean profiles across edges, for what a scanner's driver or the light has made of a picture.
  *
  * Nothing here asks the model of an edge: levels are medians, the edge is where the profile crosses

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The state of a picture around one round or straight edge. */
 #include <math.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Where rows of a picture jump beside a round edge. Behind a jump all of the edge is displaced by
  * (dx, dy): rho = base + [y > y0] (dx cos phi + dy sin phi), rho outwards from the circle. Both
  * limbs step at one row, by what one displacement makes of them. That also holds where the limbs

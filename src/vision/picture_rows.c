@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Where rows of a picture jump: the edges of a strip do so at one row, wherever they cross it. */
 #include <math.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A shadow or a lit wall beside the edges of some bearings. */
 #include <math.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The state of a picture: one that is not known, and the worse of two. */
 #include "foilgauge/picture.h"
 

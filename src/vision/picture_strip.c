@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The state of a picture around a strip. */
 #include <math.h>
 #include <stdlib.h>

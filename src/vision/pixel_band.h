@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The band: every pixel near a strip, once, with its place along and across the reference line.
  *
  * Pixels are never interpolated: each enters with its exact distance from the line, so that noise

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The straight sides of a closed line. */
 #ifndef FG_VISION_POLYGON_H
 #define FG_VISION_POLYGON_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A scan in little: one byte per cell, whole in memory. */
 #ifndef FG_VISION_REDUCE_H
 #define FG_VISION_REDUCE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A smooth reference line along a strip: stations at equal steps with tangent and curvature.
  *
  * Pixels get their place (along, across) from this line; where exactly it lies in the strip does

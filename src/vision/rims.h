@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Rims: the closed lines between a flat part's material and what surrounds it, pixel by pixel.
  *
  * A rim runs along the sides of pixels, with the material to the left of its way in coordinates

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The ring: every pixel near a circle, once, with its place along and across it.
  *
  * Pixels are never interpolated; the distance from a circle is exact. Lengths are square pixels

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Segmentation of an island: which of its blocks belong to objects that differ from the background.
  *
  * Works on the block means of fg_tiles. The background is the median of each tile, smoothed over

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Pixels of tiles on other tiles: the same picture, cut from another corner. */
 #ifndef FG_VISION_SHEET_H
 #define FG_VISION_SHEET_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The intensity across one edge that stands alone.
  *
  * With d = n - e (distance outwards from the edge), levels a and b and slopes g and h inside and

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Tracing: the coarse midline of every strip in an object, by walking along it.
  *
  * From a seed inside the strip the walk steps along the tangent, cuts the strip across, and puts

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* From a seed along a strip: cuts across it, steps ahead, gaps. */
 #include "vision/trace_walk.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One walk along a strip. trace.c says from which seeds, and which walks are strips. */
 #ifndef FG_VISION_TRACE_WALK_H
 #define FG_VISION_TRACE_WALK_H

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Accuracy of `foilgauge measure` against known truth: rms error, ratio to the bound, bias, coverage.
 
 Renders foils with `foilgauge render` from seeded specs, measures each, compares with the truth and

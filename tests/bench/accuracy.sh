@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Accuracy of foilgauge on foils with known truth: writes reports/accuracy.md, accuracy.csv and
 # accuracy_shared.md. --share 0.1 takes a tenth of every tier for a quick look.
 set -euo pipefail

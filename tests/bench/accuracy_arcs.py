@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Accuracy on plain strips (form "arc") with known truth: writes reports/accuracy_arcs.md.
 
 Strips are rendered by `foilgauge render` in every rotation, light and dark, 8 and 16 bit, clean and

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Accuracy on flat foils with beams of known length and width: writes reports/accuracy_beams.md.
 
 Foils are rendered by `foilgauge render` and, apart from all of it, by tests/bench/other_beams.py: polygons with exact

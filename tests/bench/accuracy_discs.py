@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Accuracy on plates of round discs and holes with known truth: writes reports/accuracy_discs.md.
 
 Plates are rendered by `foilgauge render`; the bound for a full circle of N = 2 pi R crossings (one

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Uncertainties where scans are hard: coarse resolution, and dust on the edges.
 
 Renders foils with known truth from seeded specs, measures each, and counts which bumps lie within 2u,

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The foils that the accuracy tables are made of: seeded specs for `foilgauge render`, per tier."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Whole beds: see bed.sh. Fails when a bed needs more than its address space or a foil differs."""
 
 import json

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Whole beds: time and memory against reading alone, over bed size and number of foils; the foils of a
 # bed against the same foils one by one. Writes reports/bed.md, bed.csv and bed.svg.
 # Needs 4 GB in $TMPDIR (/tmp); what it makes there it removes.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """What the benchmarks share: truth files, the accuracy bound, errors, tables."""
 
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """samples/stiffness: a bearing that presses its rotor, P, beside A of bearings.csv, which has a gap, with known truth.
 
 Usage: python3 tests/bench/break_away.py samples/stiffness

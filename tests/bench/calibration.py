@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Coverage of U = 1.96 u where the scanner's pitch and the part's temperature are not what they are
 taken for: writes reports/calibration.md.
 

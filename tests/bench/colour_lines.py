@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The channels of colour scans against known truth: how often the 95 % intervals hold, where the flag stands, what a constant
 course looks like, what the witness of the loop says and how large a ripple must be for it, and what it costs.
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Cuts pieces out of a large gray PNG, reading it once: pixels and resolution stay as they are.
  *
  * Usage: crop_png BED.png < LIST; each line of LIST: x y width height PIECE.png

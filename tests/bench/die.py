@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The thesis's die (halves +0.09 % and +0.35 %) from traces that die_profiles.py draws: reports/thesis/die.md.
 
     python3 tests/bench/die.py PROGRAM FOLDER REPORT.md [SEEDS]

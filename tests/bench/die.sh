@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The thesis's die from traces with known truth: writes reports/thesis/die.md and die.html (the sample's page).
 #   tests/bench/die.sh [SEEDS]
 set -euo pipefail

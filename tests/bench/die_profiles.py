@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Stylus traces of a die whose dimensions are known: both halves, any number of repeats, as text.
 
     python3 tests/bench/die_profiles.py FOLDER [--seed N] [--tip-um R] [--repeats N] [--bumps N] ...

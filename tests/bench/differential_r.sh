@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Regression against R's lm and anova on random designs: agreement to 1e-9 of every number.
 # Needs R (Debian: r-base-core) and a release build. Usage: differential_r.sh [COUNT] [REPORT.csv]
 set -euo pipefail

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Designed experiments end to end: plan, render, measure, analyse; how often the 95 % intervals hold
 # the law. Writes reports/doe_end_to_end.md. --repetitions N for a shorter look.
 set -euo pipefail

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Scans as a scanner's driver makes them: what is measured of them, whether U holds the truth, what is said, and what
 becomes of verdicts. Writes reports/driver.md.
 

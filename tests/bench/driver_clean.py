@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Plain scans for driver.py: nothing may be flagged, and nothing be less accurate or slower than by another build."""
 
 import multiprocessing

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """What a scanner's driver and the light do to a scan, for driver.py: one row per kind, of three strengths, and parts of
 known size that are drawn with it by `foilgauge render` and by other_scanner.py."""
 

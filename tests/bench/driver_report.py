@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The page of driver.py: tables from rows of values."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Closing the loop with a forming as the declared model: writes reports/thesis/form_loop.md and form_loop.csv.
 
 Foils whose creep depends on the bump's number, which `foilgauge form` lacks, are rendered and scanned; `loop` is given

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The round features of a real scan: `measure --form discs` on it, and the residual of the largest
 complete one against direction. Writes reports/real/holes.json, holes.csv, holes.svg and the tables
 of holes.md (what stands below its line "## What is seen" is kept).

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """What JPEG costs, and whether the uncertainties say so: writes reports/jpeg.md.
 
 Foils and plates of discs are rendered with known truth from seeded specs (accuracy_specs.py,

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Load-displacement tests of a bearing with known truth: CSV and its truth. Shares no code with the program.
 
 A rotor without turning goes to and fro along an azimuth, x(t) = A sin, from the middle of the clearance:

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """loop_blind_tables.py FOLDER: FOLDER/tables.md from the loop's JSON reports that lie there."""
 
 import glob

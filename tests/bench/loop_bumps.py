@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Renders foils whose bumps depart from the declared springback model, or only scatter about it, runs
 `foilgauge loop` on them and counts what was claimed at the level `bumps`.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """A scanner's errors, found on one thing, taken out of the scans of others.
 
 Usage: loop_carry_over.py PROGRAM [--scanners N] [--seed S] [--threads N]; writes reports/loop_carry_over.csv and .md.

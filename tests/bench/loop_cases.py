@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The foils, scanners and effects that the loop is tried on: seeded specs for `foilgauge render`."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """A rendered foil's true midline, and how far a measured foil's circles lie from it."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """reports/loop_limits.md: what the loop takes on tables of many rows and columns, beside its estimate, and whether
 what was put into them is found.
 

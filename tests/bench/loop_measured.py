@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """loop_measured.py PROGRAM [--seeds N] [--check] [--units] [--accept] [--only TABLE] [--out FOLDER]
 
 The tables of tests/data/measured through `foilgauge loop`: what each is known for beside what is said, with

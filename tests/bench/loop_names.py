@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """What a report of `foilgauge loop --table` claims, as names: shared by what judges it."""
 
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """How well an effect can be seen at all: generalised least squares with its form and the noise's
 covariance known, every number of the geometry and the pose of each scan left free."""
 

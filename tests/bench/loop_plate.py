@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """From artefact to foil: rendered scanners with scale, shear, ripple and lost rows, a plate of twelve
 pin gauges scanned on each, and the model from the plate applied to foils. Also what plates that have
 nothing, or pins that are not round, are called. Writes reports/loop_plate.md and .csv.

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # From a plate of gauges to foils: tests/bench/loop_plate.sh [--scanners N] [--seed N] writes reports/loop_plate.*
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """A scanner's model from a plate of pins whose edges are rough, on foils whose edges are: rendered scanners with scale,
 shear, ripple, lost rows, all four, or nothing; `loop --form discs --model-out` on the plate, `measure --model` on a foil.
 

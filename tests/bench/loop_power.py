@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """loop_power.py PROGRAM [--kinds K,K] [--sizes 4,6] [--designs D,D] [--tables N] [--clean N] [--clean-kinds K]
                        [--seed N] [--jobs N] [--out FOLDER] [--fresh] [--report-only] [--no-peer] [--keep FOLDER]
 

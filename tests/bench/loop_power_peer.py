@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The plain search that loop_power.py sets beside the program: the largest F over candidates whose shapes
 lie on a grid, against a limit for all of them together that is simulated under white noise. It knows the
 noise's covariance (levels of foils), which the program has to estimate; it knows no ties, no correlation, no

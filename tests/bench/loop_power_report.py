@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """reports/loop_power.md from loop_power.csv."""
 
 import numpy as np

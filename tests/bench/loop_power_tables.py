@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Tables whose truth is known, for loop_power.py: three designs, and every kind of effect at a size that
 an oracle states.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """loop_r_tables.py PROGRAM [--seeds N] [--only TABLE] [--out FOLDER] [--jobs N]
 
 Measured tables that come with R (loop_r_tables.R; needs Rscript with MASS, boot, nlme, lattice) through `foilgauge loop`:

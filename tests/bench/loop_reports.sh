@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # reports/thesis/loop_* and reports/blind/: the loop on the thesis's measured tables and on the tables
 # whose truth is not published. Needs the data folder ($FOILGAUGE_SHARED, or ../shared).
 set -eu

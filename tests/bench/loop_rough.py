@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The loop on rendered scans with edges as real scanners make them: scatter that is correlated along the
 strip, one-sided blur, halo, the part's wall beside an edge, JPEG; and on scans of a second renderer (other_scanner.py).
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """What is asked of the loop on rough scans: which figures hold, and which are missed by how much."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """What a row of loop_rough.py's table says against what was there: claims, classes, floors, ranges."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Whether p-values are uniform: Kolmogorov-Smirnov's test, and a plot."""
 
 import math

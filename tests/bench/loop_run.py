@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Renders one case, runs `foilgauge loop` on it, and sets the answer against the truth."""
 
 import csv

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Whether `loop --same-foil` tells two foils from one: pairs of different clean foils must be refused, pairs of
 one foil must not, whatever the scanner or the part does.
 

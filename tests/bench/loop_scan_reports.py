@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Runs `foilgauge loop` on scans whose truth is not published and writes a report each, and a table.
 
 Usage: loop_scan_reports.py PROGRAM FOLDER; FOLDER holds b1.png .. and pairs b10a.png, b10b.png of one foil."""

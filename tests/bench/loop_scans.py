@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The loop on rendered scans whose truth is known: what it names, and what it takes out of the error.
 
 Usage: loop_scans.py PROGRAM [--cases N] [--tier NAME]... [--seed S] [--threads N] [--fresh] [--report-only]

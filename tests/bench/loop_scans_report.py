@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Tables and the plot of loop_scans.py."""
 
 import os

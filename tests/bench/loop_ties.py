@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """What a second scan does to a tie: the range that one scan leaves, and what is left of it with the foil turned by 90 degrees.
 
 Usage: loop_ties.py PROGRAM [--cases N] [--seed S]; writes reports/loop_ties.csv and .md."""

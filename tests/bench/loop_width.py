@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """reports/loop_width.md: from which size on the loop claims a thickness that changes along the foil, and how often it
 claims one where there is none.
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Error and power of a lot's comparison of groups, over lots with known truth. Writes a table in
  * Markdown. build/bench/lot_groups [LOTS] >reports/lot_groups.md */
 #include "foilgauge/distribution.h"

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Scans a second of a lot, on one job and on two: see lot_speed.sh."""
 
 import argparse

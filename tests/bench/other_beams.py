@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Scans of flat cantilever foils with known truth, of another renderer than the program's: outlines as polygons, exact
 area coverage of every pixel, Gaussian blur, edges that scatter, noise."""
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Load-displacement tests of gas foil bearings as a test rig writes them, with their truth: a generator that shares no
 line and no law of friction with foilgauge or with load_tests.py. `foilgauge stiffness` is judged on these records,
 which its makers did not make.

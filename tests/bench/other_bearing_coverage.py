@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """What `foilgauge stiffness` is worth on the records of other_bearing.py, whose truth is known.
 
 Usage: other_bearing_coverage.py build/foilgauge [--records N] [--kinds NAME...] [--seed S] [--csv FILE]

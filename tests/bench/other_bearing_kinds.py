@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Kinds of records that other_bearing.py makes: each a function of a random generator that draws a whole spec.
 
 KINDS names them with what is special about each. All else of a spec is drawn alike: gap, foil, friction, largest load,

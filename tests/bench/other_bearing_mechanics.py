@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Quasi-static mechanics of a rotor that is pushed and pulled in a gas foil bearing, and the true values of a test.
 
 A side of a direction is a foil behind a gap. Its force over the compression y is

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """A scanner's driver for other_scanner.py: what light and software do to a picture between the glass and the file.
 
 Members of the scanner, beside those of other_scanner.py; without any of them a picture stays as it was:

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Scans of another laboratory's renderer: it has no line in common with src/render, and models of its own for whatever
 the two need not agree on. What the loop is worth on data that its makers did not make is judged on these.
 

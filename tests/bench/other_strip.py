@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The foil of other_scanner.py: its midline as a walk of arcs, its rough edges, and how much of each pixel it covers.
 
 Lengths in mm, in the foil's own frame: O at the origin, the middle of the bumps along x, bump 1 at the lowest angle.

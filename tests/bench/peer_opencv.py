@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """A foil measured with OpenCV and SciPy: Otsu, findContours, gradient sub-pixel edges, Nelder-Mead
 circles."""
 

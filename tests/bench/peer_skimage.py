@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """A foil measured with scikit-image and SciPy: threshold, sub-pixel contours, Nelder-Mead circles."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What reading a scan costs: libpng alone, row by row, nothing kept. The yardstick for the time
  * and memory that measuring takes.
  *

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The loop on a real scan of round holes, and what the rest of the picture says to it. Writes
 reports/real/loop.json, loop.html and loop.md; every number comes from the run.
 

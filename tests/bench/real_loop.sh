@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The loop on a real scan of round holes: tests/bench/real_loop.sh SCAN.png [--dpi N] writes reports/real/loop.*
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Prints everything that a regression of `y` in DATA.csv on FORMULA computes, one number a line,
  * for differential_r.sh. */
 #include <stdio.h>

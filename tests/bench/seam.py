@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Rows that are missing in a picture, from its edges and its texture alone: numpy, and nothing of
 foilgauge. Used by real_loop.py to confirm, or not, what the loop found on holes."""
 

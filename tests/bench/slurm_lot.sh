@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # samples/slurm on a one-machine Slurm that this script starts for itself (Debian: slurm-wlm, munge; needs root): a lot as
 # a job array, one task requeued while it runs, the merge, and the report compared with one run's to the byte.
 # Exit 77 (skipped) without Slurm or root.

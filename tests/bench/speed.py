@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Time, memory and accuracy of foilgauge on all cores and on one, of reading alone and of both peers: one run,
 interleaved."""
 

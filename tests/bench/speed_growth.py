@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """How the time of a measurement grows with pixels, foils and noise, a whole bed, and where the time goes: see
 speed.sh. Every size is read with libpng alone, measured on all cores and measured on one, in turn."""
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Split plots with missing runs: the program beside lme4, nlme and pbkrtest of R.
 
     split_plots_r.py PROGRAM [COUNT] [--keep FOLDER]

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """A station's database with many scans, in seconds: one scan is measured by the program, which makes
 the database, and its rows are multiplied with values that vary as those of a press do (from foil to
 foil, from bump to bump, from lot to lot, two dies, a shift, a slow wear), judged by the recipe's

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Pages, start, arrival to verdict and memory of a station: see station_speed.sh."""
 
 import argparse

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """reports/thesis/stiffness.md: the thesis's load-displacement tests beside synthetic ones with known truth, and how often
 the uncertainties of `foilgauge stiffness` hold the truth.  python3 tests/bench/stiffness.py build/foilgauge [OUT.md]"""
 import pathlib

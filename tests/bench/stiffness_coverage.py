@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Coverage of the uncertainties of `foilgauge stiffness`: share of the truths within U, over seeds."""
 import json
 import subprocess

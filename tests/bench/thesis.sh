@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The thesis's experiments analysed: writes reports/thesis/doe_*.json, .html and reports/thesis_doe.md.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."

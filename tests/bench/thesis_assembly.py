@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """thesis_assembly.py FOLDER OUT: bearings drawn from the thesis's rendered lot, as measured and as rendered.
 
 FOLDER holds foil*.truth and the lots thesis/, tight/ and ten/ of thesis_assembly.sh. The draws are made here anew, from the

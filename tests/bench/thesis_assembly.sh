@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Bearings drawn from the thesis's lot (thesis_lot.py), measured, against the truth of the same draws. Writes
 # reports/thesis/assembly.md.   tests/bench/thesis_assembly.sh [DPI]
 set -euo pipefail

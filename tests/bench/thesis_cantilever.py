@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """thesis_cantilever.py PROGRAM: a lot of cantilevers as section 5.11 of the thesis has them, rendered, measured and held against
 its truth and against what the thesis prints. Writes reports/thesis/cantilever.md and cantilever.html, the lot's page.
 

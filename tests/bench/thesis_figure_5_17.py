@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Figure 5.17 of the thesis from end to end: writes reports/thesis/figure_5_17.md, .csv (the reference curve) and .html.
 
 Fourteen foils of nine bumps are rendered with known truth: radius errors that fall from the lip on, with scatter

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Section 5.9 of the thesis by `foilgauge form`: writes reports/thesis/form.md, form.html, form_fit.html, form_loop.html, form_loop.svg.
 
 The thesis's printed numbers (table 5.1 and 5.4's thirteen runs; -17 % mean stress and -69 % cold springback by its

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """thesis_lot.py FOLDER DPI [MEAN SD]: specs of 14 foils with 9 bumps each, as chapter 5 of the thesis found them.
 
 The normalised bump radius has its mean at 1.05, its mode at 1.02 and lies in 0.95 to 1.30: a gamma

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The thesis's lot from end to end, twice: 14 foils of 9 bumps rendered with its distribution of radii (thesis_lot.py),
 # once with the arc length as designed, once with -3.8 ± 4.3 % of it; measured, and the figures set beside those that
 # chapter 5 prints. Writes reports/thesis/lot.md, lot.csv, lot.html, lot_arc_length.html and design.html.

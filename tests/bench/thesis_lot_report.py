@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """thesis_lot_report.py FOLDER OUT: two measured lots beside the thesis's printed figures, as lot.md and lot.csv."""
 
 import csv

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """thesis_lots.py FOLDER DPI: specs of the thesis's sinusoidal lot, 6 foils of 9 bumps (figure 5.22).
 
 The normalised bump radius has its mean at 1.0096 and a relative standard deviation of 1.7 %, and lies in 0.95 to 1.068:

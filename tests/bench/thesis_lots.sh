@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The thesis's figure 5.22 from end to end: its classical and its sinusoidal lot rendered (thesis_lot.py, thesis_lots.py),
 # measured, and put over each other. Writes reports/thesis/lots.md, lots.svg, lots.html, lots.json and
 # lot_sinusoidal.html; the classical lot has its page by thesis_lot.sh.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """thesis_lots_report.py FOLDER OUT: the thesis's two lots over each other (figure 5.22) beside its printed figures: lots.md, lots.svg."""
 
 import json

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Every page that the program writes, in a real browser: at 1280 px, and printed on A4. Ends with an error for a page that
 is wider than its window, a table or a plot's words that are clipped, a heading that ends a printed page, a printed page
 that is half empty although others follow.

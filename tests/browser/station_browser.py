@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """A day at the inspection station in a real browser, headless: an empty folder, a good foil, a bad one,
 a scan that is half written, a file that is no scan; a barcode; a serial number that is half typed while results
 come; two browsers at once; History, a report, a chart that is zoomed by dragging, a lot that is closed and downloaded;

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Plain strips (form "arc"): reports, lots, what is refused.
 . tests/support/cli.sh
 listened="stdout stderr"

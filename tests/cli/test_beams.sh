@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Flat foils with beams (form "cantilever"): combs and slits, what is wrong with them, what is refused.
 . tests/support/cli.sh
 listened="stdout stderr"

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # A bed of foils through the program: reading order and places, one foil that cannot be measured, limits.
 . tests/support/cli.sh
 

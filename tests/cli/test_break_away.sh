@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # `foilgauge stiffness --break-away`: friction coefficient and preload of break-away tests with known truth, how often U
 # holds it, what a table can lack; and that no preload is made of the friction between the strokes of a load test.
 . tests/support/cli.sh

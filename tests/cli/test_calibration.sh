@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # What the statistics cannot know: a calibration in the design or the recipe, in every U, in verdicts, in lots and loops;
 # and where a report comes from, in the same words on every page.
 #   test_calibration.sh PROGRAM

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # An end of the scale that cuts the edges, however deep, leaves no thickness off by more than U, and no wrong verdict.
 #   test_clipped_levels.sh PROGRAM
 . tests/support/cli.sh

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Tables as Europe writes them (semicolons, decimal commas) say what the same tables with points say, and a column that
 # may mean something else is refused with its line.
 . tests/support/cli.sh

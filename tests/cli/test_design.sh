@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # `foilgauge design`: what it prints, what it refuses, and the committed clearance curve.
 . tests/support/cli.sh
 listened="stdout stderr"

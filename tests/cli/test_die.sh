@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # `foilgauge die`: the sample's traces give the die they were made of, in whatever way the text is written; its outputs;
 # limits and exit codes. tests/bench/die_profiles.py made the sample, with samples/die/truth.json as its truth.
 . tests/support/cli.sh

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # What `foilgauge die` refuses: each with the file, the place and what to do.
 . tests/support/cli.sh
 cp "$root"/samples/die/c*.txt .

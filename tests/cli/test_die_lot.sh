@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # A lot whose recipe names the dies that its foils were pressed in: springback against the die beside that against the
 # design. Foils are rendered at 1.05 times the radius of dies that are 1 % and 3 % too large.
 . tests/support/cli.sh

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # `foilgauge doe`: plans, analyses, what it says of bad tables, and that nothing half-written remains.
 . tests/support/cli.sh
 cd "$root" || exit 1

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The best setting of `foilgauge doe`: factors that cannot be told from noise take no part in it, and terminal, page
 # and JSON say the same of how far to trust it.
 . tests/support/cli.sh

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Tables that are large in one way: a limit with its reason before anything is computed, and no step whose time
 # grows with the square of the columns.
 . "$(dirname "$0")/../support/loop.sh"

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # `foilgauge doe --model FILE.json`: what the loop found is taken out before the analysis.
 . tests/support/cli.sh
 

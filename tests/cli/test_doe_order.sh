@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # `foilgauge doe` looks at its residuals over the order of the runs, says what it sees, and how to find out what it is.
 . tests/support/cli.sh
 listened="stdout stderr"

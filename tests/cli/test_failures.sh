@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Memory that runs out at any allocation, a disk that is full at any write: an error each time, no
 # crash, and nothing under a final name but whole files.
 # Usage: test_failures.sh PROGRAM [STRIDE]; with a stride of 1 every allocation fails once.

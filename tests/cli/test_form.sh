@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # `foilgauge form`: its outputs, a die that was measured, constants from runs, bad input. What it computes: unit/test_forming.c.
 . tests/support/cli.sh
 listened="stdout stderr"

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # `foilgauge form` as the declared model of a loop: foils whose creep depends on the bump's number, which the model lacks.
 . tests/support/loop.sh
 skip_when_slow

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # A gauge of known width beside the part: found, measured as the part is, and every edge moved to the level that it
 # tells, whatever the tone curve; one that is missing, spoiled or contradicted is told.
 #   test_gauges.sh PROGRAM

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Program, shared library and module as they are built, and as they lie in the package: canaries on the stack, checked
 # lengths (FORTIFY), full RELRO with addresses bound at the start, position independent, no executable stack.
 set -u

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Names and texts from files: none makes a terminal, a spreadsheet or a page do anything.
 . "$(dirname "$0")/../support/loop.sh"
 mkdir scans

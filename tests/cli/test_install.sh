@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # What `cmake --install` puts in place works there, wherever that is: the program, its module, its manual, the library
 # with the public symbols and no other, in C and in C++, by pkg-config and by find_package.
 set -u

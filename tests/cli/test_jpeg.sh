@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Scans that exist only as JPEG: refused by every command unless loss is allowed, then flagged, and wider.
 . tests/support/cli.sh
 to_jpeg=$(dirname "$program")/tests/to_jpeg

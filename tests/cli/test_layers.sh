@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The rooms of the code (src/README.md): a report reads public results only, and an effect's id
 # stands in its row and nowhere else.
 set -u

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # What `clean` rests on: a table in which nothing of a name shows, and which is no noise, is not called clean.
 . tests/support/cli.sh
 

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The loop on a scan of a foil of which single bumps deviate: told as that, not as steps of the carriage.
 . tests/support/loop.sh
 

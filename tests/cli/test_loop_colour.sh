@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # What the colour lines of a scan say of an effect of the carriage that the loop found; a plate of gauges shows it quickest.
 . tests/support/cli.sh
 skip_when_slow

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The loop on scans beyond one listed effect: curves that no effect stands for, four effects at once, and
 # what the data cannot tell: on which side of a bump a step lies, and the scale beside a lens.
 . tests/support/loop.sh

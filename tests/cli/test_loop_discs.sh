@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The loop on round gauges: a plate names what the scanner does and corrects foils that were scanned
 # on it, known diameters give the absolute scale, a single ring is a tie, pins that are not round are
 # not taken for the scanner.

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Effects of the scanner that other tests do not render: each is named with its numbers, and the dimensions come back.
 . tests/support/loop.sh
 skip_when_slow

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The judge and the tables of tests/bench/loop_power.py: what counts as found, and effects as large as they are said to be.
 if ! /usr/bin/python3 -c 'import numpy, scipy' 2>/dev/null; then
   echo "skipped: no numpy and scipy"

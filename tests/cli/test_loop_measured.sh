@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Tables that somebody measured, through `foilgauge loop`: what each is known for is claimed or in a claim's class, and
 # nothing is said of those that hold nothing (tests/data/measured/expected.json; its "not_yet" lists what is missed).
 if ! command -v python3 >/dev/null; then

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The loop on what the program itself measured: `loop --lot` and `loop --doe --scans`.
 . tests/support/loop.sh
 skip_when_slow

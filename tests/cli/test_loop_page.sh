@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The page of the loop on scans (--html): it says what the report says, is whole and its own, makes
 # names of files harmless, and appears only when it could be written.
 . tests/support/loop.sh

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The loop on scans: clean renders are clean, known effects are named and taken out, a model carries
 # over to another foil, and what does not fit together is refused.
 . tests/support/loop.sh

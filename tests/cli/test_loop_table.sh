@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # `foilgauge loop --table`: what it prints and writes, what it refuses.
 . tests/support/cli.sh
 listened="stdout stderr"

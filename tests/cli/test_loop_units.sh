@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Nothing that `foilgauge loop` says of a measured table depends on the origin or the unit of the response or of a column,
 # nor on a column that is given twice (tests/data/measured/expected.json lists tables of which it still does).
 if ! command -v python3 >/dev/null; then

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # A strip whose thickness changes along the foil: named with its size and its sign, whatever else is there, and never
 # where it does not.
 . tests/support/loop.sh

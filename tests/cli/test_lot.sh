@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # `foilgauge lot` and `merge`: kept, resumed, killed, out of space, sharded, and always the same report.
 # FOILGAUGE_KILLS: how often a run is killed (default 12).
 . tests/support/cli.sh

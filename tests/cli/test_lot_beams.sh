@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # A lot of cantilevers: statistics and files name beams; records keep them; who cannot do with them says so.
 . tests/support/cli.sh
 listened="stdout stderr"

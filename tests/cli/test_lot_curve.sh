@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # A reference curve over the errors per bump of a lot: drawn, kept in the lot's recipe; bad files refused.
 . tests/support/cli.sh
 listened="stdout stderr"

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # What lies in a lot's folder, and among its scans: records that were changed, names of any bytes.
 . tests/support/cli.sh
 listened="stdout stderr"

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # `foilgauge lot --index`: lots whose differences are known (support/made_lots.py makes them out of one that was
 # measured), dies, designs, dates; lots that cannot be read.
 . tests/support/cli.sh

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # A lot's pages of single scans: names, links, which are drawn, and that none is out of date.
 . tests/support/cli.sh
 listened="stdout stderr"

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The manual: a page for every command, every option in it, no warning of the formatter; its
 # examples run; the shell's completion; help wherever it is asked for.
 set -u

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # `foilgauge measure` and what cannot be measured: the exit code, words that help, and no file left.
 . tests/support/cli.sh
 cd "$root" || exit 1

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # `foilgauge measure` on scans of a renderer that is not this project's, against their truth.
 shared=$(realpath -m "${FOILGAUGE_SHARED:-../shared}")/scans
 if [ ! -e "$shared/p1_classical.png" ] || ! command -v python3 >/dev/null; then

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The model of a scanner: what it was made for, lots corrected by it, and every wrong model refused with words.
 . tests/support/loop.sh
 listened="stdout stderr"

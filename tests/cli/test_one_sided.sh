@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Tolerances with one limit, as most drawings have them: a page draws what passes as what passes, labels do not lie over
 # each other, and a lot's worst three are those nearest to a limit.
 if ! command -v python3 >/dev/null; then

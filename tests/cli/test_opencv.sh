@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # OpenCV is loaded where a picture is drawn, and nowhere else: a program that cannot load it measures all the same.
 . tests/support/cli.sh
 

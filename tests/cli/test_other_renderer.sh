@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Scans of a renderer that has nothing in common with the program's, rough as real ones are: they are measured right, and
 # what a scanner did to one of them is named with its numbers.
 . tests/support/loop.sh

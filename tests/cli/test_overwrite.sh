@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # No output of any command takes the place of an input, or of another output, however it is spelled.
 . "$(dirname "$0")/../support/loop.sh"
 mkdir in lots

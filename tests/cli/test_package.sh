@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The packages for Debian: installed on a root that holds nothing else, used from there, removed without a trace.
 set -u
 if [ -n "${FOILGAUGE_TEST_BRIEF:-}" ] || [ -z "${FOILGAUGE_TEST_LONG:-}" ]; then

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Every page in a real browser, on the screen and printed. Only with FOILGAUGE_TEST_LONG, and where there is one: see
 # tests/browser/pages_browser.py.
 # Usage: test_pages_browser.sh PROGRAM

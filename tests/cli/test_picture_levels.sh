@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Gray levels that are missing: told where a tone curve after rounding has left gaps that differ along the
 # scale, not of levels that few pixels left out by chance, nor of a straight stretch, which moves no edge.
 # Usage: test_picture_levels.sh PROGRAM

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Rings around bumps that fail are whole, also where the foil lies at the edge of its scan.
 # Usage: test_picture_rings.sh PROGRAM
 set -euo pipefail

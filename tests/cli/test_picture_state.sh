@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The state of a picture in every form of the report: what is found is named with its cure, and a plain scan is told apart.
 if ! command -v python3 >/dev/null; then
   echo "skipped: no python3"

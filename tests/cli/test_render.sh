@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # foilgauge render: exit codes, no file left behind on failure, the same bytes, bounded memory.
 . tests/support/cli.sh
 cd "$root" || exit 1

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # What is odd about a scan's resolution is said: on the terminal, in JSON and on the page.
 . tests/support/cli.sh
 cd "$root" || exit 1

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # How to scan: samples/station/scan.sh sets every option that a scanner has, by what its driver says of
 # itself, and no other; the station names options of its scan_command that spoil a scan, and none else.
 # Usage: test_scan_command.sh PROGRAM

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The scanner's own path: SANE's test backend through scanimage into the program, as PNG, TIFF and PNM,
 # gray and colour, 1, 8 and 16 bit, by pipe and by file. Its pictures hold no foils, only bars and squares:
 # the program must read all of each, and see the same in every format.

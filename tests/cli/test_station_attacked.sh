@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Nobody without a token can stop a station: requests that are none, and a folder in which somebody puts what is no scan
 # in the place of what is one. Usage: test_station_attacked.sh PROGRAM [SECONDS]
 name=test_station_attacked

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The inspection station in a real browser. Only with FOILGAUGE_TEST_LONG, and where there is one: see
 # tests/browser/station_browser.py.
 # Usage: test_station_browser.sh PROGRAM

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The scanner's check measures tone, sharpening and blur: with a driver that changes one of them foils
 # get no verdict, until the driver is as it was or the change is accepted; what scatters is no change.
 # Usage: test_station_check.sh PROGRAM

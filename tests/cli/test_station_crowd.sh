@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # A folder with very many files, most of which are none of the station's business: it goes on, says so, and a scan that
 # comes is measured at once; a folder that is removed and made again, twice, is found again.
 # Usage: test_station_crowd.sh PROGRAM [FILES]

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Lots of a station: what --export writes is what `lot` would have made of the same scans, to the
 # byte; a lot is closed in the browser, and nothing but its report can be had there.
 # Usage: test_station_lots.sh PROGRAM

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Names of files, whatever bytes they have: other programs read the database, the log has a line for each file and none
 # that a file's name has forged, and the scan is found again. Usage: test_station_names.sh PROGRAM
 name=test_station_names

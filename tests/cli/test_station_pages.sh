@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Pages of a running station: bad bumps are marked, news is told, the scan command runs beside the
 # pages and its failures are cards, a report is measured again only from the same scan.
 # Usage: test_station_pages.sh PROGRAM

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # A writer that pauses is waited for: RECEIVING, no card; when nothing more comes, what is wrong. A scan
 # that comes again under the serial number of another foil is no measurement of that foil.
 # Usage: test_station_receiving.sh PROGRAM

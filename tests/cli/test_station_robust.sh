@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # A station that is killed, whose disk is full, whose folder goes: nothing lost, nothing twice.
 # Usage: test_station_robust.sh PROGRAM [KILLS [FAILURES]]
 name=test_station_robust

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Connections that ask slowly, or take their answers slowly, lock nobody out: 500 of them from 50 addresses, 96 from two,
 # bodies byte by byte, answers that nobody reads, pages that wait for news. All of it on addresses of this machine
 # (127.0.0.x), for some seconds. Usage: test_station_slow.sh PROGRAM [CONNECTIONS ADDRESSES]

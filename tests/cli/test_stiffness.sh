@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # `foilgauge stiffness`: tests of bearings with known clearance, stiffness and friction come back, in whatever way the
 # table is written; what a table can lack; limits and exit codes; a bearing against the lot's foils, and the table for
 # the loop, which finds what was planted there.

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # `foilgauge stiffness`: contacts of records with unsampled stretches. A rotor under load control jumps through the gap; a
 # dropout hides a contact; the clearance is right within U, or withheld with its reason, and no limit passes for it.
 . tests/support/cli.sh

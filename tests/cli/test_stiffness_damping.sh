@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # `foilgauge stiffness`: secant and loss factors. The same foil behind four gaps has one loss factor of its own, while that of
 # the test falls; friction of the rig does not count as the foil's; the secant is that of the loading branches' ends.
 . tests/support/cli.sh

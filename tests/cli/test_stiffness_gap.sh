@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # `foilgauge stiffness`: the gap that lies under a clearance, against known truth of foils of several laws with play
 # operators; bearings that press their rotor have none; a lot's rigid travel against the gap, whatever the threshold.
 . tests/support/cli.sh

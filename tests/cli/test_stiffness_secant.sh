@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # `foilgauge stiffness`: the secant of a rotor that is loaded in steps of force, where samples crowd in the displacement's noise
 # about the turns: within 2 u_repeat of the truth, whether a level is read once or three times.
 . tests/support/cli.sh

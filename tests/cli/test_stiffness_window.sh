@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # `foilgauge stiffness`: the largest stiffness under dead weights, where the gap is not sampled and a loaded branch has few places: a
 # window that is wider than the branch tells nothing of its own bias, which must be in u all the same.
 . tests/support/cli.sh

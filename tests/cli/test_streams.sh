@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Standard streams that are closed, full or gone, and signals: what every command must make of them.
 . "$(dirname "$0")/../support/loop.sh"
 mkdir -p out scans

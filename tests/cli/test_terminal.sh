@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # What commands say: results on a terminal beside the files that were asked for, which quantities fail, what a lot is
 # called, folders and scans that are not there, where a file is no JSON.
 if ! command -v python3 >/dev/null; then

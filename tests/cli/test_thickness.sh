@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # A strip that is not as thick as the design says: clearances are over the strip as it is, both are said where they
 # differ by more than U, and the thickness has a tolerance of its own.
 #   test_thickness.sh PROGRAM

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Lengths between two edges hold an unknown tone curve; a micrometer or the user's word makes it known. No verdict is wrong
 # because of what a scanner's driver does to the tone.
 #   test_tone.sh PROGRAM

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # One verdict everywhere: exit code, JSON, CSV, page, terminal and lot say the same of a foil that passes, fails,
 # cannot be told, lacks a bump, was not measured, or is no foil of the design.
 shared=$(realpath -m "${FOILGAUGE_SHARED:-../shared}")

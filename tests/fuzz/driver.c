@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Runs a fuzz target over files and the files of folders: what a build without libFuzzer can do. */
 #include <dirent.h>
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Design files, and what follows from them. */
 #include "foilgauge/design.h"
 #include "fuzz.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Stylus traces of a die, from their text to every report. Half of the inputs are a text; the other
  * half a recipe: a sound trace whose values are replaced one by one, so that what lies behind the
  * reading of numbers is reached. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What `forming` reads: a material, a schedule, a die's report, a prediction; one of them an input,
  * as its first byte says. What is read is used. */
 #include <stdlib.h>

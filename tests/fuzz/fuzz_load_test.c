@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Load-displacement tests, from the text of a CSV file to every report. Half of the inputs are a
  * text; the other half a recipe: a sound record of which stretches are dropped and values replaced.
  */

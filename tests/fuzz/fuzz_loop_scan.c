@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* From bytes to a few small foils and discs (support/odd_scan.h), through rows, search and
  * correction to every report, the scanner's model and back. */
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* From the bytes of a small scan (at 600 dpi) to its measurement, every report of it included. */
 #include <stdio.h>
 

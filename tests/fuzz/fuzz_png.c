@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* PNG: chunk checksums are put right first, or nearly every input would end at the first of them.
  */
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The reading of common PNGs held against libpng's. Half of the inputs are a file, bent, whose
  * checksums are put right, that of the compressed stream too where zlib finds its end; the other
  * half are a recipe and the rows to make one of, so that sound files of every kind are compared. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Requests to a station: "POST" or not, path, query, then headers, then the body, a line each. */
 #include <stdio.h>
 #include <stdlib.h>

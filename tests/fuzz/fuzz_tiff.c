@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* TIFF, JPEG, and PNM by the way: any bytes that the table of formats takes. */
 #include "fuzz.h"
 

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Runs every fuzz target for some seconds (libFuzzer, AddressSanitizer, UndefinedBehaviorSanitizer), from the
 # committed corpus. Fails at the first input that breaks something, and keeps that input.
 # Usage: tests/fuzz/run.sh [SECONDS [RUNS]]; default 60 s; with RUNS it ends after so many executions.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Sanitizers make tests many times slower: what only adds cases is left to the other tree. */
 #ifndef FG_TESTS_BRIEF_H
 #define FG_TESTS_BRIEF_H

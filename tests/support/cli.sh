@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # What the scripts that try the program share; sourced from the checkout with the program's path. Works in a folder of
 # its own, `work`; `root` is the checkout. A script ends with `exit $failed`.
 set -u

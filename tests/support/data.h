@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The numbers of reference in tests/data (tests/data/SOURCES.md). Tests run in the project's
  * folder. */
 #ifndef FG_TESTS_DATA_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Preloaded into the program: the allocation of a given number, counted from main, fails.
  *
  * FOILGAUGE_FAIL_AT=N: the Nth fails, and all those after it when FOILGAUGE_FAIL_ON is set; 0:

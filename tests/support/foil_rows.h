@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Rows of a synthetic foil with their geometry fitted, and effects put into them. */
 #ifndef FG_TEST_FOIL_ROWS_H
 #define FG_TEST_FOIL_ROWS_H

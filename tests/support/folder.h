@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A folder of its own for a test of files, and what lies in it. */
 #ifndef FG_TESTS_FOLDER_H
 #define FG_TESTS_FOLDER_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Preloaded into the program: from the write of a given number on, the disk is full.
  *
  * FOILGAUGE_FULL_AT=N: the Nth write to a regular file and all those after it fail with ENOSPC;

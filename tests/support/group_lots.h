@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Lots of two groups in memory, whose foils differ as asked and whose bumps scatter within them. */
 #ifndef FG_TEST_GROUP_LOTS_H
 #define FG_TEST_GROUP_LOTS_H

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # What the scripts that render and measure share beside cli.sh; sourced with the program's path.
 . "${BASH_SOURCE[0]%/*}/cli.sh"
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Every statement of the loop's JSON stands on its page and in its text: verdict, claims, class, advice, what is not
 claimed, curves, notes, errors. Arguments: report.json page.html text.txt"""
 import html, json, math, re, sys

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A lot of foils in memory, as if its records had been read. */
 #ifndef FG_TEST_MADE_LOT_H
 #define FG_TEST_MADE_LOT_H

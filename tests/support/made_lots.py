@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """made_lots.py MODEL FOLDER [options], made_lots.py MODEL --list FILE: lots of known values in the form of a lot that was
 measured; made_lots.py --check INDEX: the comparisons of an index against the means and spreads it states of its lots.
 

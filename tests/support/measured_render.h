@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A rendered foil, measured in memory: the renderer's rows go straight into tiles. */
 #ifndef FG_TESTS_MEASURED_RENDER_H
 #define FG_TESTS_MEASURED_RENDER_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Two numbers that must agree within a tolerance; cmocka 1.1.5 knows only float. */
 #ifndef FG_TESTS_NEAR_H
 #define FG_TESTS_NEAR_H

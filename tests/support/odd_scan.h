@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Small measured scans of foils and discs that are odd in every way, made without a picture: edges
  * by formula, measured by the library. Every number comes from bytes, so that a fuzzer can steer
  * it and a test can draw it. */

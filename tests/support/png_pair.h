@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* PNGs made by the test's own filters and zlib's deflate, and one file read in both ways: as the
  * program reads it, and all by libpng. What takes the one and what the other must agree. */
 #ifndef FG_TEST_PNG_PAIR_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Seeded noise for tests: the same numbers on every machine. */
 #ifndef FG_TESTS_RANDOM_H
 #define FG_TESTS_RANDOM_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A measurement made of formulas, and what a report's writer makes of it. */
 #ifndef FG_TESTS_REPORT_FIXTURE_H
 #define FG_TESTS_REPORT_FIXTURE_H

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # What the tests of a running station share; sourced from the checkout with the program's path and `name`, the test's.
 # Files go to $work, which is removed at the end, when the station is ended too.
 set -euo pipefail

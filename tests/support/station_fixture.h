@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A station without a socket: a folder of its own with a database of one scan and one foil. */
 #ifndef FG_TESTS_STATION_FIXTURE_H
 #define FG_TESTS_STATION_FIXTURE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A plausible measurement made of formulas, without a scan: what the reports' tests print. */
 #ifndef FG_TEST_SYNTHETIC_FOIL_H
 #define FG_TEST_SYNTHETIC_FOIL_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* to_jpeg SCAN OUT.jpg QUALITY [WORD...]: any scan as a JPEG of 8 bits, its resolution in the JFIF
  * header. Words: `444`, `420` colours (a warm tint) with chroma as it is or halved both ways,
  * `rgb`, `cmyk`, `progressive`, `nodpi`. Quality 0: the pixels as they are read, as a PGM. */

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """validate_schema.py SCHEMA_FOLDER SCHEMA FILE...: exit 0 valid, 1 not, 77 no python3-jsonschema."""
 
 import json

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* PNGs made for a test: written by libpng into memory, then bent byte by byte. */
 #ifndef FG_TEST_PNG_FIXTURE_H
 #define FG_TEST_PNG_FIXTURE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A render held in memory, as coverage (0 background, 1 foil), for the tests of the renderer. */
 #ifndef RENDER_PICTURE_H
 #define RENDER_PICTURE_H

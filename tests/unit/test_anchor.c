@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One foil measures the same, to the last bit, wherever it lies on the glass and whatever lies
  * beside it; only its place moves. */
 #include "support/measured_render.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Plain strips through the measuring chain: radius, angle and length within their uncertainty of
  * the truth on every datum, and what is no plain strip. */
 #include "support/measured_render.h"

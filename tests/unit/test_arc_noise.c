@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Covariances of fitted arcs against Monte Carlo: white and correlated (AR(1)) noise on known
  * arcs; where arcs end; and which line of the strip is measured. */
 #include "support/brief.h"

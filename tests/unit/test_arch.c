@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The arch model against a frame of straight beam elements, against strain energy integrated from
  * the equilibrium of a cut arch, and at its limits. */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Bearings drawn from a stock of foils: the shares against all draws there are, and the same draws
  * for the same seed. */
 #include <setjmp.h>

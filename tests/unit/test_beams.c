@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Beams from the stations of their edges, made of formulas: sizes, uncertainties, numbers, flags.
  * Rendered ones: tests/cli/test_beams.sh, reports/accuracy_beams.md. */
 #include <math.h>

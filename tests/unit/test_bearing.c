@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What clearances around a bearing come to, how well that is known, and what tolerances say. */
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Groups against each other: their spread against closed forms and draws of known spread. */
 #include "stats/between_groups.h"
 

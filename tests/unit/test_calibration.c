@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a calibration states is read, or refused with its place; what it leaves in doubt is in every
  * u, by as much as another pixel moves the value. */
 #include "foilgauge/calibration.h"

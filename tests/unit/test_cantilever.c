@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What follows from a beam's length and width, against the thesis, against drawn beams and in the
  * cases where nothing can be said. */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Tone, sharpening and blur of a check against its baseline: what has changed is told, what only
  * scatters is not, and a state that was kept reads as it was. */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Circle fits on points of known circles: bias, covariance, optimisers against each other, bad
  * starts, input that has no circle. */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Circle fits against certified answers: NIST's reference pairs and literature sets recomputed in
  * 50-digit arithmetic. */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Where a channel shows a cross-section: profiles with a known place. */
 #include <setjmp.h>
 #include <stdarg.h>

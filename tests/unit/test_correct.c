@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The correction: edges that a known scanner, or a known part, moved are put back. */
 #include <math.h>
 #include <setjmp.h>

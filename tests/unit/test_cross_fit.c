@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Errors on bumps that took no part in the search: what is there is foretold, what is not there is
  * not, and neither the copies nor the threads that this takes leave a trace. */
 #include <math.h>

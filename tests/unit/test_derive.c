@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Derived quantities of a bump: uncertainties against Monte Carlo, datum lines against each other,
  * circles that do not cross. */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Derived quantities against the truth tables of the rendered scans. */
 #include <math.h>
 #include <setjmp.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Designs: nominal values against hand calculation, the declared model against the law of cosines,
  * what is refused and that the words name the member. */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A die's profiles: how a text is read, and what a surface's form does to a circle's uncertainty.
  */
 #include <setjmp.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Round features: plates with known truth, drawn, written and measured; what must be left alone. */
 #include <math.h>
 #include <setjmp.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Dust, specks, cuts and other foils on the edges: what they spoil is left out or said. */
 #include "support/brief.h"
 #include "support/measured_render.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The curve of single bumps: its columns are each bump's own, however many bumps there are, and a
  * search tells bumps that were raised by it. */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The table of effects: a row that the search, the reports' words, the renderer or the loop's
  * benchmark does not know fails here. */
 #include <math.h>

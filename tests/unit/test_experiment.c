@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The optimum in a region against dense search and closed forms; weights; predictions. */
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What `doe` sees over the order of its runs: against the same numbers by another way, on noise,
  * and on what it is to see. And what taking an effect out beforehand costs. */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Files appear under their final name only when whole; what goes wrong is said and leaves nothing
  * behind. */
 #include <dirent.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What cannot be written is said, and leaves nothing behind. */
 #include <dirent.h>
 #include <fcntl.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Bumps that are missing or crushed, in every combination: the others keep their numbers, no land
  * becomes a bump, and what is wrong is said. The strip is the renderer's true midline. */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Whole foils of every shape through the measuring chain: which bump is which, flags, and every
  * radius within its uncertainty of the truth. */
 #include "support/brief.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A format is one row: whoever lists formats lists every row, and so do the documents. */
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The beam model of forming: closed forms, convergence, geometry, trends, and constants that come
  * back. */
 #include <math.h>

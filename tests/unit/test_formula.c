@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Formulas: canonical form, contrasts as in R, and the words of an error. */
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Gauges on the glass: how they are stated, what a level they tell, and which object is which. */
 #include <math.h>
 #include <setjmp.h>

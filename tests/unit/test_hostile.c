@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Bad files by the hundred: an error each time, never a crash, and never a number from a damaged
  * PNG (every one of its bytes is under a checksum). TIFF has no checksums: there a changed pixel is
  * a pixel, and what is asked is that nothing breaks and that what is missing is missed. */

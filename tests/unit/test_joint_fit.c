@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Geometry and effects fitted together, against a dense least squares of the same rows. */
 #include <gsl/gsl_multifit.h>
 #include <math.h>

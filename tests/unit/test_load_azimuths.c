@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Clearance over the azimuths: travel from push to pull is that along the opposite direction, so
  * the fit has even orders only; the axis of the smallest clearance and how often its U holds the
  * truth. */

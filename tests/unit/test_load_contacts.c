@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Unsampled stretches of a stroke, and contacts that contradict each other. */
 #include <math.h>
 #include <setjmp.h>

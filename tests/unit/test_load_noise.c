@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Noise of load-displacement records: the step of a column, noise of force and of displacement told
  * apart, and where strokes turn. */
 #include <math.h>

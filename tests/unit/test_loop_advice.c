@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The advice on a tie, against the same question answered here: both models fitted by normal
  * equations, and their predictions compared at every setting. */
 #include <math.h>

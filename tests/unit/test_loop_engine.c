@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The loop on tables whose truth is known: what it finds, what it leaves alone, what it ties. */
 #include <math.h>
 #include <setjmp.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The model file: what is written loads again, and takes the effect out of another table. */
 #include <math.h>
 #include <setjmp.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Whitening against the covariance that it claims to undo, and least squares against it. */
 #include <math.h>
 #include <setjmp.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Whatever foils and discs the loop on scans gets: an error in words, or a result whose every
  * number is finite or null, with a verdict, uncertainties that are none below 0, and reports that
  * keep to their schema. Made without pictures (support/odd_scan.h). */

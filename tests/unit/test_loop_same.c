@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Scans that are said to show one foil: two foils are told from one, and what a scanner or a part
  * does to one foil is no other foil. Made without pictures (support/odd_scan.h). */
 #include <setjmp.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The loop on tables about what is no mean: neighbours that are alike, a scatter that changes,
  * wrong rows that hide each other; and which order rows have. */
 #include <math.h>

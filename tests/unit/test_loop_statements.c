@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One place decides what the loop on scans says: every statement of its JSON stands on its page and
  * in its text. Rendered scans, and what a loop on other data could have come to. */
 #include <math.h>

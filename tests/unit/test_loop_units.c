@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the loop finds depends neither on the units nor on the origin of its numbers, and whatever
  * it is given, no report holds a number that is none. */
 #include <ctype.h>

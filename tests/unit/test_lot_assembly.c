@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Bearings drawn from the foils of a made lot: which foils take part, and what the three lines say.
  */
 #include "support/made_lot.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Clearance around the bearings of a made lot: where the bumps stand, which foil is meant. */
 #include "support/made_lot.h"
 #include "support/near.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Groups of a lot: foils are the unit, bumps a level within them; all tests share their error. */
 #include "lot/run/lot.h"
 #include "report/lot/writers.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The journal of a lot, and who owns its folder. */
 #include <fcntl.h>
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Manifests, recipes and records of a lot. */
 #include <fcntl.h>
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Whether the process runs as it did, what its signals come from, and what is said of it. */
 #include "report/lot/writers.h"
 #include "support/made_lot.h"

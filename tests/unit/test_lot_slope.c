@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Angle against radius over simulated lots: the slope, how often its interval misses, the scatter
  * of the arc length. */
 #include "support/made_lot.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What enters a lot's statistics, and which arch a bump is taken for. */
 #include "report/lot/plots.h"
 #include "report/lot/writers.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the manual says of the members of recipes and designs is what their readers take. */
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Checked memory: overflow is an error with words, growth keeps what was there. */
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Threads run where their process may. The calls that set and ask for cores are the test's own, so
  * that it does not matter how many the machine has. */
 #include <pthread.h>

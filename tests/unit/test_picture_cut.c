@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Of an edge whose profile an end of the scale cuts, no edge place is claimed that it hides. */
 #include <math.h>
 #include <setjmp.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The quality of a JPEG that became a PNG, from its pixels, and what it adds to the uncertainty. */
 #include "support/measured_render.h"
 

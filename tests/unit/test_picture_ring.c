@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Rows of a picture that jump beside round edges: found where they lie, and not found on plain,
  * rough, lobed and dented discs. */
 #include <unistd.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Plans: the runs that the books print, orthogonality, random order by seed, whole plots. */
 #include <math.h>
 #include <setjmp.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The reading of common PNGs held against libpng's: over kinds, filters, streams and chunks; and
  * over files with one wrong byte or one that is cut off. */
 #include <setjmp.h>

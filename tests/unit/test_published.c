@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Published experiments, to the digits that their authors print: Montgomery, Design and Analysis
  * of Experiments; Box, Hunter and Hunter, Statistics for Experimenters (pilot plant, penicillin);
  * Lenth, Response-surface methods in R, JSS 32-7 (2009); Montgomery, Peck and Vining (acetylene).

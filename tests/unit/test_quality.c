@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Density, control charts, capability, comparison, gauge study: against R and published answers. */
 #include <math.h>
 #include <setjmp.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A quantity is one row: reports, schemas, lots and tables know every row. */
 #include <stdbool.h>
 #include <sys/types.h>

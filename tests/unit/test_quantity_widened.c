@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What widens an uncertainty knows every row of the quantities. */
 #include <stdbool.h>
 #include <sys/types.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Regression where it gets difficult: no freedom, aliases, weights, one run; split plots; optima.
  */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Cantilevers as drawn: widths, lengths and area in the picture against the truth, defects, and the
  * specs that must be refused. */
 #include "render_picture.h"

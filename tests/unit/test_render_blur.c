@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Blur by direction: its own along x and y, the carriage's motion, and what one side gets more. */
 #include "render_picture.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Free-form curves of scanner and part: what moves, by how much, and where. */
 #include "render_picture.h"
 

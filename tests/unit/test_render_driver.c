@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a scanner's driver does to finished numbers: tone curve, unsharp mask, gray levels, JPEG
  * behind them all. Every test computes the driver's part again from the picture without it. */
 #include "render_picture.h"

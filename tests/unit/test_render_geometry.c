@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Where the renderer puts things: areas, centres, edges, the strip's lands and crowns, effects. */
 #include "render_picture.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Rows that were lost or read again, and seams between a sensor's chips: to the pixel. */
 #include "render_picture.h"
 

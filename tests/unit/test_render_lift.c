@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Bumps that are raised by their number: the middle alone, or the whole bump. */
 #include "render_picture.h"
 

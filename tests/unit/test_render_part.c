@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Effects of the part as the renderer draws them. */
 #include "render_picture.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A scan that a driver made finer than its sensor reads: every pixel is the interpolation of the
  * scan that the sensor gave. */
 #include "render_picture.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The edges' scatter: its size and its autocorrelation, both forms, from far below a pixel to
  * centimetres; in the drawn sequence, and in the picture. */
 #include "render_picture.h"

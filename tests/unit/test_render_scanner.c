@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the rendered scanner does to light: tone, noise, clipping, JPEG, halo, wall; the
  * same bytes every time. */
 #include "render_picture.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A shadow by direction: beside the edges whose normal lies in its sector, and only there. */
 #include "render_picture.h"
 

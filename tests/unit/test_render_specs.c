@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Specs of the renderer that must be refused, each by the member that is wrong. */
 #include <setjmp.h>
 #include <stdarg.h>

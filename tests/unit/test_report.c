@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Reports of a measurement made of formulas: what is written is what was measured. */
 #include "core/json_writer.h"
 #include "foilgauge/words.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Overlay and page: pixels where they belong, words that cannot break out of their place. */
 #include <setjmp.h>
 #include <stdarg.h>

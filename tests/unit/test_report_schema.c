@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Reports validate against the JSON Schemas in reports/schema (that these know every row of the
  * quantities: test_quantity.c). Skipped without python3-jsonschema. */
 #include <setjmp.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Values against tolerances, and what is missing: verdicts of reports. */
 #include "core/json_writer.h"
 #include "support/report_fixture.h"

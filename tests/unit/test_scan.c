@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Scans of every kind come out as the gray values that went in; the resolution is what pHYs or the
  * caller says; the SHA-256 is the file's. */
 #include <math.h>

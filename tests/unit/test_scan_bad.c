@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A table of bad files and the error that each must get. */
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Level `bumps` of the loop on scans, on measured foils made by formula: what is there is found,
  * what is not is not, and foils that are too small say so. */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Files that change while they are read: the SHA-256 is of what the rows came from. */
 #include <fcntl.h>
 #include <pthread.h>

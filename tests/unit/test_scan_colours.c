@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Red, green and blue of a scan are read apart after everything else, as each would be by itself.
  */
 #include <setjmp.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* JPEG of every kind that scanners write comes out as the picture that went in, within its loss;
  * the quality is that which it was made with; what is odd, wrong or made to harm is said. */
 #include <setjmp.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The model file of a scanner: what the loop writes is read again as it was, and what no scanner
  * can be is refused with the file, the member, its value and what is allowed. */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Options of a scan command that spoil a scan are named; those that do not are left alone. */
 #include <setjmp.h>
 #include <stdarg.h>

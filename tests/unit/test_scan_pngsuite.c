@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* PngSuite: the valid files decode as libpng's own expansion says, the broken ones are refused, and
  * what has crashed readers crashes nothing. */
 #include <dirent.h>

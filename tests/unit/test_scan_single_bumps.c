@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Values over the bumps' numbers: some stand apart, some follow a cycle, and of scatter alone
  * neither is told; with and without noise that is known from elsewhere. */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* TIFF and PNM of every kind come out as the values that went in; what is odd or wrong is said. */
 #include <setjmp.h>
 #include <stdarg.h>

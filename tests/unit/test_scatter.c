@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Noise that neighbouring rows share: found by restricted likelihood, and taken out as dense
  * generalised least squares takes it out. */
 #include <gsl/gsl_linalg.h>

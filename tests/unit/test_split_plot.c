@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Split plots with missing runs, against R; where none is missing, the analysis of variance. */
 #include <math.h>
 #include <setjmp.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a station answers to whom: fields, names of files, hosts, forms, tokens, hostile texts. */
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a check says of a scanner, on plates of known diameters under scanners of known scale and
  * shear. */
 #include <math.h>

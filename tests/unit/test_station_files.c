@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A station's files: when nobody writes to one any more, whatever clocks say; what a lot's folder
  * is called. */
 #include <setjmp.h>

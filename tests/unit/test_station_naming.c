@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* File names against patterns: the answer of every pattern that backtracks, without its time. */
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What pages may say: of a correction that others have overtaken, of a serial number that another
  * foil has, of a scan that came twice, of a file that is on its way, of crushed bumps, and of their
  * own age. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* For which names a station answers, and from where its forms may come. */
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Requests that come at once: each gets an answer, and what may run once runs once. */
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Trends and the scanner's health, from rows of a database to the words on the page. */
 #include <math.h>
 #include <setjmp.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Where a lot's spread of stiffness comes from: causes put in come back out, what is not known is
  * not counted, and measurement's share is what drawing from it gives. */
 #include "report/lot/stiffness_columns.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The models of a bump's stiffness against numerics of their own: a beam's strain energy, a linkage
  * that moves, a spring from an arc's energy; at their limits; and by the law that all of them
  * share. (The arch itself: test_arch.c.) */

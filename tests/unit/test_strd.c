@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* NIST StRD: every linear regression, ANOVA and univariate set, digits reached against the
  * certified values.
  *

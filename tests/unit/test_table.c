@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* CSV tables: every kind of bad text gets an error that names the place; good text is exact. */
 #include <math.h>
 #include <setjmp.h>

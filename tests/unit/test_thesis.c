@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The thesis's own analysis: tables 5.2 and 5.3 from table 5.1 to the last printed digit, table 5.5
  * from table 5.4 beside the printed one.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A blur that is longer along one axis moves a curved edge by what it has along the edge: circles
  * and heights against renders of known truth. */
 #include "support/brief.h"

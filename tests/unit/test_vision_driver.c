@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a scanner's driver makes of edges: the model that explains them, and the thickness that
  * follows from it, against renders of known truth. */
 #include "support/brief.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Edges: every station against the true midline, the standard deviations against the scatter, and
  * what is found out about the scanner on the way. */
 #include "support/brief.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Grids of cells against the plainest way to the same answer. */
 #include "support/measured_render.h"
 

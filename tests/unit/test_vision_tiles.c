@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Tiles and segmentation: what is kept, that it is exact, and that nothing depends on the way. */
 #include "support/measured_render.h"
 

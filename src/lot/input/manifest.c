@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The table of a manifest: columns, rows, cells. */
 #include "lot/input/manifest.h"
 

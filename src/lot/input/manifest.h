@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The scans of a lot in their order, with the columns that came with them. */
 #ifndef FG_LOT_INPUT_MANIFEST_H
 #define FG_LOT_INPUT_MANIFEST_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* How a manifest grows while it is read. */
 #ifndef FG_LOT_INPUT_MANIFEST_BUILD_H
 #define FG_LOT_INPUT_MANIFEST_BUILD_H

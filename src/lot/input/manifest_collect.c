@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A manifest from what a user names: folders, scans, lists, manifests. */
 #include <dirent.h>
 #include <errno.h>

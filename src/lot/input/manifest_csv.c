@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Manifests as CSV: RFC 4180; the first row names the columns. */
 #include <stdbool.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The item of a scan, by its path. */
 #include <stdint.h>
 #include <stdlib.h>

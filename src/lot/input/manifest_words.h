@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The different cells of a column of the manifest. */
 #ifndef FG_LOT_INPUT_MANIFEST_WORDS_H
 #define FG_LOT_INPUT_MANIFEST_WORDS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Recipe files: every setting of a lot is a row of one table. */
 #include <math.h>
 #include <stdio.h>

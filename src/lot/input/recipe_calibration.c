@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A design of its own, and a recipe's calibration over it. */
 #include "foilgauge/lot.h"
 #include "lot/input/recipe_parts.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The columns that a recipe names, against those of the manifest. */
 #include <string.h>
 

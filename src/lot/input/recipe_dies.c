@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Dies of a recipe: what was measured of them, kept in the recipe itself, so that a lot can be
  * reported anew without their files. */
 #include "lot/input/recipe_dies.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The dies that a recipe names, as members of the recipe. */
 #ifndef FG_LOT_INPUT_RECIPE_DIES_H
 #define FG_LOT_INPUT_RECIPE_DIES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "lot/input/recipe_members.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The settings of a recipe that are one value: a row of a table each. */
 #ifndef FG_LOT_INPUT_RECIPE_MEMBERS_H
 #define FG_LOT_INPUT_RECIPE_MEMBERS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The scanner's model that a recipe names. */
 #include <stdlib.h>
 #include <string.h>

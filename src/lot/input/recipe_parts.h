@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Members of a recipe that have a file of their own. */
 #ifndef FG_LOT_INPUT_RECIPE_PARTS_H
 #define FG_LOT_INPUT_RECIPE_PARTS_H

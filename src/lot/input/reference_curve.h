@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The curve that a lot's errors per bump are drawn against: of a simulation, or of a die. */
 #ifndef FG_LOT_INPUT_REFERENCE_CURVE_H
 #define FG_LOT_INPUT_REFERENCE_CURVE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* When a lot was made: the manifest's column `date`, else the times of its scans' files. */
 #ifndef FG_LOT_RUN_DATE_H
 #define FG_LOT_RUN_DATE_H

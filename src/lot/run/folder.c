@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The folder of a lot: paths, sums, loading. */
 #include <errno.h>
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One process at a time in a folder of results. */
 #ifndef FG_LOT_RUN_FOLDER_LOCK_H
 #define FG_LOT_RUN_FOLDER_LOCK_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A lot's files must not take the place of what the lot is made from. */
 #ifndef FG_LOT_RUN_GUARD_H
 #define FG_LOT_RUN_GUARD_H

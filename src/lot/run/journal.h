@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* results.jsonl: records as they are made, and the lock of the folder they lie in.
  *
  * A record is one write of one line, with its own checksum. What a crash leaves is at worst a last

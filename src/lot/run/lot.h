@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* From a lot's records to its report. */
 #ifndef FG_LOT_RUN_LOT_H
 #define FG_LOT_RUN_LOT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "lot/run/record.h"
 #include "core/json_read.h"
 

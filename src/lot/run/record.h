@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One measured scan as a line of results.jsonl: compact, and exact to the ten digits of a report.
  *
  * {"scan", "sha256", "date", "measured_with", "error", "foils": [{"number", "flags", "error",

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Scans of a lot with the same bytes. One scan shows one foil: under a second name it says nothing
  * of the foil of that name, and in statistics it would count twice. */
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A line of JSON that carries its own checksum: its last member, "checksum", is the beginning of
  * the SHA-256 of all that stands before it. Whatever byte of the line changes, it is noticed. */
 #ifndef FG_LOT_RUN_SEAL_H

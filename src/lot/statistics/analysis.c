@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The lot as a whole: its foils, their verdicts, the worst of them. */
 #include "lot/statistics/analysis.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Every number of a lot's report. */
 #ifndef FG_LOT_STATISTICS_ANALYSIS_H
 #define FG_LOT_STATISTICS_ANALYSIS_H

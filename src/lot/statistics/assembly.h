@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Bearings drawn from the foils that a lot has: what a stock of foils would give.
  *
  * A bearing takes `pads` different foils, whole ones, for the bumps of a foil belong together.

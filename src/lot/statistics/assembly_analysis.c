@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Bearings drawn from the lot's foils: which foils take part, what is asked of a bearing, and what
  * the share would be of a lot changed in one thing. */
 #include <math.h>

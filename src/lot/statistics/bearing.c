@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the lot does to the bearings it will make: clearance. */
 #include <math.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Where the bumps of a lot's foils lie around a bearing. */
 #include <math.h>
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What makes the spread of a lot's stiffness. */
 #include <math.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* How well the means of a lot are known: what statistics say averages out, what the calibration
  * leaves is the same error in every foil. */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Why a control chart signals: groups of foils (dies, coils, operators) with a mean each. */
 #include <math.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Angle against radius: does the arc length stay? */
 #include <math.h>
 #include <stdlib.h>

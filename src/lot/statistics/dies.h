@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Springback against the die that a foil was pressed in, beside that against the design. */
 #ifndef FG_LOT_STATISTICS_DIES_H
 #define FG_LOT_STATISTICS_DIES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "lot/statistics/foil_levels.h"
 
 #include <math.h>

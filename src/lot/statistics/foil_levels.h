@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Level of each foil of a lot in one quantity. The foil is the unit that was made; its bumps are
  * repeats within it.
  *

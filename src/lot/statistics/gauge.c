@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Repeated scans of a lot as a gauge study. */
 #include <math.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Groups of a lot against each other (dies, coils). */
 #include <gsl/gsl_sf_psi.h>
 #include <math.h>

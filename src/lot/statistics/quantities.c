@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Statistics of each quantity. */
 #include <math.h>
 #include <stdlib.h>

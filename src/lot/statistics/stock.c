@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The foils that bearings are drawn from. */
 #include <stdlib.h>
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Trend of a quantity over the order of the foils: a tool wears, a coil hardens. The line is fitted
  * to the foils' values. Successive foils may resemble each other without a trend. So the slope's u
  * counts only n (1 - rho) / (1 + rho) of the n foils as independent (Bartlett 1935), with rho the

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What every part of the analysis asks: which bumps count, a quantity by name, a spread. */
 #include <math.h>
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Deviations of a beam's length and width whose consequences `foilgauge design` tells. */
 #ifndef FG_REPORT_BEAM_DEVIATIONS_H
 #define FG_REPORT_BEAM_DEVIATIONS_H

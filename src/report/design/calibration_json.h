@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* `calibration` of a design, of a recipe and of reports (foilgauge/calibration.h). */
 #ifndef FG_REPORT_CALIBRATION_JSON_H
 #define FG_REPORT_CALIBRATION_JSON_H

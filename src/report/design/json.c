@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include <cjson/cJSON.h>
 #include <ctype.h>
 #include <math.h>
@@ -266,11 +267,10 @@ typedef struct member_row {
 static const member_row member_rows[] = {
     {"schema", read_schema, 0, "Must be \"foilgauge/design/1\"."},
     MEMBER(name, read_name, "Of the design, as reports show it."),
-    MEMBER(
-        kind, read_kind,
-        "\"classical\" (bumps, lands, a lip at one end), \"sinusoidal\" (long fillets, short "
-        "lands, no lip), \"arc\" (a plain strip, as a top foil), \"cantilever\" (a flat foil with "
-        "beams cut out of it) or \"discs\" (no foil: round gauges)."),
+    {"form", read_kind, offsetof(fg_design, kind),
+     "\"classical\" (bumps, lands, a lip at one end), \"sinusoidal\" (long fillets, short "
+     "lands, no lip), \"arc\" (a plain strip, as a top foil), \"cantilever\" (a flat foil with "
+     "beams cut out of it) or \"discs\" (no foil: round gauges)."},
     MEMBER(datum, read_datum,
            "Which line of the strip the lengths belong to: \"mid\", \"inner\" (the shaft's side) "
            "or \"outer\" (the sleeve's)."),

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A design and what follows from it as JSON. */
 #include "core/file.h"
 #include "foilgauge/cantilever.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A design for the terminal, and its curve of springback as CSV. */
 #include <math.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The design's limits and a die. */
 #include <math.h>
 #include <string.h>

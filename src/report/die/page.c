@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A die's page: what it comes to, errors by half, then each half with its traces. */
 #include <math.h>
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The plots of a die's page. */
 #ifndef FG_REPORT_DIE_PLOTS_H
 #define FG_REPORT_DIE_PLOTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What an experiment's page says first: the best setting, what it gives, and how sure that is. */
 #include <math.h>
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The first part of an experiment's page. */
 #ifndef FG_REPORT_DOE_ANSWER_H
 #define FG_REPORT_DOE_ANSWER_H

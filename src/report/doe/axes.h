@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A plot among others on an experiment's page. */
 #ifndef FG_REPORT_DOE_AXES_H
 #define FG_REPORT_DOE_AXES_H

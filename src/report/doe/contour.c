@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The surface over two factors as bands, lines and the runs. */
 #include <math.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* An experiment as JSON (reports/schema/doe.schema.json). */
 #include <math.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Members of an experiment's JSON report. */
 #ifndef FG_REPORT_DOE_JSON_PARTS_H
 #define FG_REPORT_DOE_JSON_PARTS_H

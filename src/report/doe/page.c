@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The page of an experiment: what it says first, then plots, then tables. */
 #include <math.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Means, interactions and profiles: the response over the factors. */
 #include "report/doe/plots.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The plots of an experiment's page. */
 #ifndef FG_REPORT_DOE_PLOTS_H
 #define FG_REPORT_DOE_PLOTS_H

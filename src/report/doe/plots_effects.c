@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Effects by their size: Pareto and half-normal. */
 #include <math.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the model leaves, and the runs that pull it. */
 #include <math.h>
 #include <stdlib.h>

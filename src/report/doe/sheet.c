@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A plan's run sheet as a page: to be printed and filled in at the oven. */
 #include <math.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report/doe/words.h"
 #include "foilgauge/design.h"
 #include "foilgauge/report.h"

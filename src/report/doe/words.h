@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Conclusions of an experiment in plain words; the same on the terminal, the page and in JSON. */
 #ifndef FG_REPORT_DOE_WORDS_H
 #define FG_REPORT_DOE_WORDS_H

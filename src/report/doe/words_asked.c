@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Conclusions on settings that were asked for: their response, and the best along each factor. */
 #include <math.h>
 #include <string.h>

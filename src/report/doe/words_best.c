@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Conclusions on the best setting: its place, its response, and the trust in it. */
 #include <math.h>
 #include <string.h>

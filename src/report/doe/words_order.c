@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What was taken out before the analysis, and what the residuals show over the order of the runs.
  */
 #include <math.h>

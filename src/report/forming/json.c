@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* "foilgauge/form/1" and its CSV files. */
 #include <math.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The pages of a forming and of a fit. */
 #include <math.h>
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A forming, and a fit, for the terminal. */
 #include <math.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What every report of `form` says in words. */
 #ifndef FG_REPORT_FORMING_WORDS_H
 #define FG_REPORT_FORMING_WORDS_H

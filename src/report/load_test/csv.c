@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Load-displacement tests as tables. */
 #include <math.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Limits and load-displacement tests. */
 #include <math.h>
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The page: a bearing per section; clearances over the azimuths, then loops and stiffness. */
 #include <math.h>
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The plots of a load-displacement test's page. */
 #ifndef FG_REPORT_LOAD_TEST_PLOTS_H
 #define FG_REPORT_LOAD_TEST_PLOTS_H

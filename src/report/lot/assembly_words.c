@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What drawn bearings come to, in three lines. */
 #include <math.h>
 #include <stdarg.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What goes to quality systems: lengths and angles, one characteristic per quantity and part, and
  * of the bearings that the manifest names. */
 #ifndef FG_REPORT_LOT_CHARACTERISTICS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* foils.csv, bumps.csv or beams.csv, bearings.csv: the manifest's columns first, so that any
  * program can pivot by them. */
 #include <math.h>

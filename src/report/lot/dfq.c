@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* results.dfq: the Q-DAS ASCII transfer format. A line is a K field, its characteristic and its
  * text; lines end with CR LF. Values stand in fields of their own: K0001 the value, K0002 its
  * attribute (0: valid, 255: no value), K0004 its date and time, K0006 the batch, here the coil,

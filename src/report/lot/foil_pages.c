@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report/lot/foil_pages.h"
 
 #include <dirent.h>

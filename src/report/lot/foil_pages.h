@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The pages of a lot's scans: picture, verdict and every value of its foils, each in a file of the
  * folder `pages` in the lot's.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* lot.json: "schema": "foilgauge/lot/1" (reports/schema/lot.schema.json). */
 #include <math.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The member of lot.json about bearings drawn from the lot's foils. */
 #include "report/lot/json_parts.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The members of lot.json about bearings. */
 #include "report/lot/json_parts.h"
 #include "report/measure/json.h"

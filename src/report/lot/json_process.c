@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* lot.json: whether the process runs as it did, and what its charts' signals come from. */
 #include "report/lot/json_parts.h"
 

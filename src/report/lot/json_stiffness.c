@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Stiffness of a lot's bumps in its JSON. */
 #include "report/lot/json_parts.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The lot's page: verdict, counts, the worst three and one chart first; then the details. */
 
 #include "page/page.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The lot's page: bearings drawn from the foils. */
 #include <math.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The lot's page: what the beams' lengths and widths make of compliance and sagitta. */
 #include <math.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The lot's page: what the foils do to the bearings they are built into. */
 #include <math.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The lot's page: where the spread of the bumps' stiffness comes from. */
 #include <math.h>
 

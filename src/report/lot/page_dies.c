@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The lot's page: how much of the deviation is the dies'. */
 #include <math.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The lot's page: what is seen first. Verdict and process, counts, the worst three, one chart. */
 #include <math.h>
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The lot's page: groups against each other, and the gauge study. */
 #include <math.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the files of a lot's page share, and its sections. */
 #ifndef FG_REPORT_LOT_PAGE_PARTS_H
 #define FG_REPORT_LOT_PAGE_PARTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The lot's page: statistics of the quantities, capability, charts, springback. */
 #include <math.h>
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The lot's page: stiffness of the bumps. */
 #include "report/lot/page_parts.h"
 #include "report/lot/plots.h"

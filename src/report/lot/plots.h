@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Plots of a lot's page; each is one <svg>. */
 #ifndef FG_REPORT_LOT_PLOTS_H
 #define FG_REPORT_LOT_PLOTS_H

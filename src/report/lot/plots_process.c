@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A quantity over the numbers of the parts, and over the foils. */
 #include <math.h>
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* results.qif: QIF 3.0 (ANSI/DMSC QIF 3.0, ISO 23952): the Characteristics, and one set of
  * MeasurementResults with its ActualComponent per foil and per bearing that the manifest names. An
  * ActualComponentSet holds the components of one product: the bearing itself and its foils in order

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Bumps of a lot with both radius and angle, as columns: what the analysis of stiffness hands on.
  */
 #ifndef FG_REPORT_LOT_STIFFNESS_COLUMNS_H

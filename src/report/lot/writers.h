@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The files of a lot's report. Each writer checks the stream at its end: FG_ERR_IO. */
 #ifndef FG_REPORT_LOT_WRITERS_H
 #define FG_REPORT_LOT_WRITERS_H

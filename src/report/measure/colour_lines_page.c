@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The channels of a colour scan against each other, on a page. */
 #include <math.h>
 

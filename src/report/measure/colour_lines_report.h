@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The channels of a colour scan against each other, for reports. */
 #ifndef FG_REPORT_COLOUR_LINES_REPORT_H
 #define FG_REPORT_COLOUR_LINES_REPORT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Comma-separated values, quoted as in RFC 4180, lines end with \n: bumps, and every edge point. */
 #include <math.h>
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Cures of a verdict of "cannot tell", the cheapest first. */
 #include "report/measure/cures.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Cure of a verdict of "cannot tell". */
 #ifndef FG_REPORT_MEASURE_CURES_H
 #define FG_REPORT_MEASURE_CURES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The beams of a flat foil over its scan. */
 #ifndef FG_REPORT_MEASURE_DRAW_BEAMS_H
 #define FG_REPORT_MEASURE_DRAW_BEAMS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What is drawn over a scan: edges, circles, numbers, residuals. */
 #ifndef FG_REPORT_MEASURE_DRAWING_H
 #define FG_REPORT_MEASURE_DRAWING_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a foil is made of that pages list, plot and judge one by one: bumps, or beams. */
 #ifndef FG_REPORT_MEASURE_FOIL_PARTS_H
 #define FG_REPORT_MEASURE_FOIL_PARTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Gauges on the glass, for reports. */
 #ifndef FG_REPORT_GAUGE_REPORT_H
 #define FG_REPORT_GAUGE_REPORT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Parts of the measure report as JSON, for reports that embed them. */
 #ifndef FG_REPORT_MEASURE_JSON_H
 #define FG_REPORT_MEASURE_JSON_H

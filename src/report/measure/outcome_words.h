@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Names of the quantities that keep a run from passing. */
 #ifndef FG_REPORT_MEASURE_OUTCOME_WORDS_H
 #define FG_REPORT_MEASURE_OUTCOME_WORDS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The page: for every foil its verdict, key numbers and picture first, then tables and plots. */
 #include <math.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Every toleranced quantity of the bumps, or beams, over their numbers, with its limits. */
 #include <math.h>
 #include <stdlib.h>

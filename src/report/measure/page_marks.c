@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Values, verdicts and outcomes as a page shows them. */
 #include <math.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Parts of a measurement's page: verdict, values, the picture of a foil, plots. */
 #ifndef FG_REPORT_MEASURE_PAGE_PARTS_H
 #define FG_REPORT_MEASURE_PAGE_PARTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Plots as inline SVG. */
 #include <math.h>
 #include <stdlib.h>

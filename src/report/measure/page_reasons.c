@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Why a verdict is what it is: which values, at which bump, against which limit. */
 #include <math.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Several foils on one page: what each comes to, before the first of them. */
 #include <math.h>
 #include <string.h>

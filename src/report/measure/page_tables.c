@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The tables of a page: bumps, discs, the whole foil, with their tolerances. */
 #include <math.h>
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The tables of a page, and what stands before and beside them. */
 #ifndef FG_REPORT_MEASURE_PAGE_TABLES_H
 #define FG_REPORT_MEASURE_PAGE_TABLES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Key numbers of a page: those of a foil, a plain strip, the discs of a scan. */
 #include <math.h>
 

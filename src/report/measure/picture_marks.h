@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What lies beyond its limit, marked where it is on the picture of a foil or of discs. */
 #ifndef FG_REPORT_MEASURE_PICTURE_MARKS_H
 #define FG_REPORT_MEASURE_PICTURE_MARKS_H

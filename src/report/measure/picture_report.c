@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report/measure/picture_report.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The state of the picture, for reports. */
 #ifndef FG_REPORT_PICTURE_REPORT_H
 #define FG_REPORT_PICTURE_REPORT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Findings of a picture in words, and the members of its state. */
 #include "foilgauge/picture.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a scanner's model is and what it did, where values are reported that it corrected. */
 #ifndef FG_REPORT_MEASURE_SCAN_MODEL_WORDS_H
 #define FG_REPORT_MEASURE_SCAN_MODEL_WORDS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The terminal's table: one block per foil, a row per bump, ± beside each value. */
 #include <math.h>
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Budget of the strip's thickness: the tone curve, and all else. */
 #include "report/measure/thickness_budget.h"
 

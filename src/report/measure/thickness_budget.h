@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Budget of the strip's thickness. */
 #ifndef FG_REPORT_MEASURE_THICKNESS_BUDGET_H
 #define FG_REPORT_MEASURE_THICKNESS_BUDGET_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Verdicts: the design names quantities, their rows say where they lie. What a foil, a
  * scan or a run comes to is decided here and nowhere else. */
 #include <math.h>

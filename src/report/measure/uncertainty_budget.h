@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What u is made of: the scan's statistics, and what the calibration leaves in doubt. */
 #ifndef FG_REPORT_MEASURE_UNCERTAINTY_BUDGET_H
 #define FG_REPORT_MEASURE_UNCERTAINTY_BUDGET_H

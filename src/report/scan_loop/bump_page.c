@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Level `bumps` on the page of the loop on scans: every bump's deviation from the declared
  * springback over its number, what was found of it, what is left. */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Level `bumps` in the report of the loop on scans. */
 #ifndef FG_REPORT_SCAN_LOOP_BUMPS_H
 #define FG_REPORT_SCAN_LOOP_BUMPS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What was found, drawn: curves over the coordinate it lives on, with the parameters beside them.
  */
 #include <math.h>

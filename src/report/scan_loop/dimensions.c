@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The dimensions before and after, with their uncertainties. */
 #include <math.h>
 #include <string.h>

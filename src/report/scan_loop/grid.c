@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The picture's grid, and where its points really lie. */
 #include <math.h>
 

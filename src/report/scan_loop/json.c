@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* "foilgauge/loop/1", domain "scan". */
 #include <stdio.h>
 #include <stdlib.h>

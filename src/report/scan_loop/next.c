@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What to do about what the loop on scans found: one sentence, and the commands for it. */
 #include <string.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The page of the loop on scans: what was found and how sure; where the edges leave their circles;
  * the effect; the dimensions; what was tried. */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Parts of the page of the loop on scans. All write into an open <main>. */
 #ifndef FG_REPORT_SCAN_LOOP_PARTS_H
 #define FG_REPORT_SCAN_LOOP_PARTS_H

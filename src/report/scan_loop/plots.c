@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Residual against each coordinate, before and after. */
 #include <math.h>
 #include <stdlib.h>

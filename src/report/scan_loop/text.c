@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The loop on scans for a terminal: what the page and the JSON say, in lines. */
 #include <math.h>
 #include <stdio.h>

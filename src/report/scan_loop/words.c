@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Values and units as people read them. */
 #include <math.h>
 #include <string.h>

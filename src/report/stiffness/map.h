@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Stiffness of a bump over its radius and angle, all over the design's (thesis figures 5.4, 5.10):
  * the arch of foilgauge/bearing.h, strips as thick as designed. */
 #ifndef FG_REPORT_STIFFNESS_MAP_H

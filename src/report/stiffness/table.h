@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The models of a bump's stiffness side by side: as JSON, as a table of a page, as text. */
 #ifndef FG_REPORT_STIFFNESS_TABLE_H
 #define FG_REPORT_STIFFNESS_TABLE_H

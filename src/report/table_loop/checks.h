@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The tests of the whole residual that `clean` rests on, in words. */
 #ifndef FG_REPORT_TABLE_LOOP_CHECKS_H
 #define FG_REPORT_TABLE_LOOP_CHECKS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* "foilgauge/loop/1": the loop's report. Rows are numbered as in the table, the first data row 1.
  */
 #include <math.h>

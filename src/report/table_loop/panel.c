@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A plot of the loop's page as SVG. */
 #include "report/table_loop/panel.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One plot of rows over a coordinate, with what was found over it. */
 #ifndef FG_REPORT_TABLE_LOOP_PANEL_H
 #define FG_REPORT_TABLE_LOOP_PANEL_H

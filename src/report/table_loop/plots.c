@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The plots of the loop's page: every finding over its coordinate, and what is left with it. */
 #include "report/table_loop/plots.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The plots of what the loop on tables found. */
 #ifndef FG_REPORT_TABLE_LOOP_PLOTS_H
 #define FG_REPORT_TABLE_LOOP_PLOTS_H

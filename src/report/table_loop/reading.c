@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Words for the size of a finding, as its reader sees it: a difference between two levels, two
  * ends, two sides. The engine compares amplitudes, half a range each; a reader of a gauge would be
  * misled by them. */

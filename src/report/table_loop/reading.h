@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Words for the size of a finding in its reader's numbers. */
 #ifndef FG_REPORT_TABLE_LOOP_READING_H
 #define FG_REPORT_TABLE_LOOP_READING_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The loop's report in words: one sentence, and a page for the terminal. */
 #include <math.h>
 #include <stdlib.h>

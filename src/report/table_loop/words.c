@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Candidates, claims and alias classes of the loop on tables, in words for people. */
 #include "report/table_loop/words.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the loop on tables looked for and found, in words for people. */
 #ifndef FG_REPORT_TABLE_LOOP_WORDS_H
 #define FG_REPORT_TABLE_LOOP_WORDS_H

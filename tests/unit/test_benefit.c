@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Whether a correction pays, and what is reported where it does not. */
 #include <math.h>
 #include <setjmp.h>

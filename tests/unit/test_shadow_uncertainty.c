@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A shadow or a lit wall beside edges of some bearings: u of every circle holds what it does,
  * against renders of known truth. */
 #include "support/brief.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Edge rows of measured foils as the loop holds them against one geometry: their groups and parts,
  * for foils that are not as a design has them. */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the level of the edges is uncertain by, and who knows it. */
 #include <math.h>
 #include <setjmp.h>

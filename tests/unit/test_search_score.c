@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The score of a set: what it leaves beside everything at once, against a dense least squares of
  * the same rows; which sets are right, and which are none. */
 #include <gsl/gsl_multifit.h>
