@@ -82,6 +82,8 @@ install(FILES ${CMAKE_BINARY_DIR}/completion/foilgauge
         DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT program)
 install(DIRECTORY reports/schema DESTINATION ${CMAKE_INSTALL_DATADIR}/foilgauge COMPONENT program)
 include(src/cmake/installed_readme.cmake)
+# A Debian package names Debian's own copy of the text (src/cmake/debian/copyright).
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT licence)
 install(DIRECTORY samples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program
         PATTERN run.sh EXCLUDE)
 install(FILES samples/station/foilgauge-station.service DESTINATION lib/systemd/system

@@ -11,7 +11,8 @@ string(REGEX REPLACE "\\[([^]]*)\\]\\(${page}\\)" "\\1 (`man \\3 \\2`)" readme "
 file(RELATIVE_PATH schema ${CMAKE_INSTALL_FULL_DOCDIR} ${CMAKE_INSTALL_FULL_DATADIR}/foilgauge/schema)
 string(REPLACE "[reports/schema/](reports/schema/)" "[schema](${schema}/)" readme "${readme}")
 string(REGEX REPLACE "\\[([^]]*)\\]\\((src|include)/[^)]*\\)" "\\1" readme "${readme}")
-string(REPLACE "[reports/](reports/)" "reports/" readme "${readme}")
+string(REGEX REPLACE "\\[(reports/[^]]*)\\]\\(reports/(README.md)?\\)" "\\1" readme "${readme}")
+string(REGEX REPLACE "\\[([^]]*)\\]\\((\\.github)/[^)]*\\)" "\\1" readme "${readme}")
 file(WRITE ${CMAKE_BINARY_DIR}/package/README.md "${readme}")
 install(FILES ${CMAKE_BINARY_DIR}/package/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
 

@@ -14,7 +14,11 @@ set(CPACK_DEBIAN_PACKAGE_MAINTAINER "foilgauge developers <foilgauge@localhost>"
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME foilgauge)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PROGRAM_PACKAGE_GENERATE_SHLIBS ON)
+# What depends on the shared library, and that the loader's cache is refreshed by a trigger, not by a script.
+file(WRITE ${CMAKE_BINARY_DIR}/package/shlibs "libfoilgauge ${ABI_VERSION} foilgauge (= ${PROJECT_VERSION})\n")
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_CONTROL_EXTRA
+    ${CMAKE_BINARY_DIR}/package/shlibs ${CMAKE_SOURCE_DIR}/src/cmake/debian/triggers)
+set(CPACK_PRE_BUILD_SCRIPTS ${CMAKE_SOURCE_DIR}/src/cmake/debian/stage.cmake)
 set(CPACK_COMPONENT_PROGRAM_DESCRIPTION
     "The program with its manual, its schemas and samples, and the shared library.")
 
@@ -24,5 +28,5 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "foilgauge (= ${PROJECT_VERSION})")
 # Of programs that link the static library.
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "libpng-dev, libtiff-dev, libjpeg-dev, libisal-dev, libgsl-dev, libcjson-dev, nettle-dev, libcsv-dev, libsqlite3-dev, libmicrohttpd-dev")
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION
-    "Headers, the static library, and what pkg-config and CMake need to build against foilgauge.")
+    "Headers, the static library, and what pkg-config and CMake need\nto build against foilgauge.")
 include(CPack)

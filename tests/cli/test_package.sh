@@ -14,6 +14,7 @@ done
 
 # The packages as they are made, but for the compression, which takes longer than all the rest.
 cpack --config "$(dirname "$program")/CPackConfig.cmake" -B "$work/made" -D CPACK_DEBIAN_COMPRESSION_TYPE=gzip \
+  -D CPACK_DEBIAN_PACKAGE_MAINTAINER="A Packager <packager@debian.org>" \
   >"$work/log" 2>&1 || fail "cpack: $(tail -n 5 "$work/log")"
 deb=$(ls "$work"/made/foilgauge_*.deb) dev=$(ls "$work"/made/foilgauge-dev_*.deb)
 
@@ -21,6 +22,27 @@ field() { dpkg-deb -f "$1" "$2"; }
 version=$("$program" version | cut -d' ' -f2)
 [ "$(field "$deb" Version)" = "$version" ] || fail "version $(field "$deb" Version)"
 [ "$(field "$dev" Depends)" = "foilgauge (= $version)" ] || fail "foilgauge-dev depends on $(field "$dev" Depends)"
+# Both say under which licence, of every part; the files that the copyright names are in the sources.
+for made in "$deb:foilgauge" "$dev:foilgauge-dev"; do
+  copyright=$work/${made##*:}.copyright
+  dpkg-deb --fsys-tarfile "${made%:*}" | tar -xO "./usr/share/doc/${made##*:}/copyright" >"$copyright" || fail "${made##*:} has no copyright"
+  head -n 1 "$copyright" | grep -q '^Format: https://www.debian.org/doc/packaging-manuals/copyright-format/1.0/$' ||
+    fail "${made##*:}: the copyright is not machine readable"
+  awk '/^$/ { files = 0 } /^Files:/ { files = 1 } /^License:/ && files { print $2 }' "$copyright" | sort -u >"$work/used"
+  awk '/^$/ { files = 0 } /^Files:/ { files = 1 } /^License:/ && !files { print $2 }' "$copyright" | sort -u >"$work/told"
+  grep -qx GPL-3.0-or-later "$work/used" || fail "${made##*:} is not under GPL-3.0-or-later"
+  diff "$work/used" "$work/told" || fail "${made##*:}: a licence is named and not told"
+done
+(cd "$root" && for files in $(sed -n 's/^Files: //p' "$copyright"); do ls -d $files; done) >/dev/null || fail "the copyright names files that are none"
+# Data of others, as tests/data/SOURCES.md names them, stand in the copyright; all else is the project's own.
+(cd "$root/tests/data" && ls -d */) | grep -vxE 'truth/|split_plot/' | while read -r folder; do
+  grep -qF "tests/data/$folder" "$copyright" || echo "$folder"
+done >"$work/untold"
+[ -s "$work/untold" ] && fail "tests/data holds what the copyright does not tell: $(cat "$work/untold")"
+if command -v lintian >/dev/null; then
+  lintian --allow-root "$deb" "$dev" >"$work/lintian" 2>&1
+  [ -s "$work/lintian" ] && fail "lintian: $(head -n 5 "$work/lintian")"
+fi
 # Every library that the program, the shared library and the module are linked with is of a package that is depended on.
 dpkg-deb -x "$deb" "$work/open"
 links "$work/open/usr/share/doc/foilgauge/README.md"

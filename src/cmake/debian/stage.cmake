@@ -1,0 +1,22 @@
+# Run by cpack before it makes the packages: what Debian's policy asks of a package and `cmake --install` has no place for:
+# its copyright and changelog, manual pages that are compressed, and lintian's overrides.
+set(here ${CMAKE_CURRENT_LIST_DIR})
+string(TIMESTAMP date "%a, %d %b %Y %H:%M:%S +0000" UTC)
+foreach(package program:foilgauge development:foilgauge-dev)
+  string(REGEX MATCHALL "[^:]+" package ${package})
+  list(POP_FRONT package component name)
+  set(share ${CPACK_TEMPORARY_DIRECTORY}/${component}${CPACK_PACKAGING_INSTALL_PREFIX}/share)
+  file(MAKE_DIRECTORY ${share}/doc/${name})
+  configure_file(${here}/copyright ${share}/doc/${name}/copyright COPYONLY)
+  file(WRITE ${share}/doc/${name}/changelog
+       "foilgauge (${CPACK_PACKAGE_VERSION}) unstable; urgency=medium\n\n"
+       "  * Made of the sources, whose changes are told in .github/CHANGELOG.md.\n\n"
+       " -- ${CPACK_DEBIAN_PACKAGE_MAINTAINER}  ${date}\n")
+  file(STRINGS ${here}/overrides overrides REGEX "^(#|${name}:)")
+  list(JOIN overrides "\n" overrides)
+  file(WRITE ${share}/lintian/overrides/${name} "${overrides}\n")
+  file(CHMOD_RECURSE ${share}/lintian ${share}/doc/${name} FILE_PERMISSIONS OWNER_READ OWNER_WRITE GROUP_READ WORLD_READ
+       DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+  file(GLOB texts ${share}/doc/${name}/changelog ${share}/man/man*/*.[157])
+  execute_process(COMMAND gzip -9n ${texts} COMMAND_ERROR_IS_FATAL ANY)
+endforeach()
