@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A quantity is one row: reports, schemas, lots and tables know every row. */
 #include <stdbool.h>
+#include <string.h>
+#include <strings.h>
 #include <sys/types.h>
 
 #include <cjson/cJSON.h>
@@ -43,6 +45,10 @@ static void a_name_is_there_once(void **state) {
         assert_string_not_equal(rows[i].words, rows[k].words);
         assert_int_not_equal(rows[i].offset, rows[k].offset);
         if (rows[i].rank) assert_int_not_equal(rows[i].rank, rows[k].rank);
+        /* A column of S beside one of s is read as the other. */
+        bool letters_tell_apart = strcmp(rows[i].symbol, rows[k].symbol) == 0 ||
+                                  strcasecmp(rows[i].symbol, rows[k].symbol) != 0;
+        assert_true(letters_tell_apart);
       }
   }
   /* A tolerance names a quantity of a foil or of its bumps: never of both. */

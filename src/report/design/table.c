@@ -63,7 +63,7 @@ static void write_beam(const fg_design *design, FILE *out) {
   write_row(out, "thickness", "t", design->thickness_mm, "mm");
   if (design->u_thickness_mm > 0)
     write_row(out, "its standard uncertainty", "u(t)", design->u_thickness_mm, "mm");
-  if (design->sagitta_mm > 0) write_row(out, "sagitta, as bent", "s", design->sagitta_mm, "mm");
+  if (design->sagitta_mm > 0) write_row(out, "sagitta, as bent", "sag", design->sagitta_mm, "mm");
   if (design->clearance_mm > 0) write_row(out, "clearance", "C", design->clearance_mm, "mm");
   if (design->elastic_modulus_gpa > 0)
     write_row(out, "elastic modulus", "E", design->elastic_modulus_gpa, "GPa");
