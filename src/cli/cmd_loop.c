@@ -86,7 +86,7 @@ static const struct argp_option options[] = {
     {"offset", OPTION_OFFSET, "COLUMN", 0,
      "What is predicted of the response besides the model: taken from it, and no candidate", 0},
     {"form-model", OPTION_FORMING_MODEL, "FORM.json", 0,
-     "A report of `foilgauge form -o` as the declared model: what it predicts of the response of "
+     "A report of `foilgauge forming -o` as the declared model: what it predicts of the response of "
      "each bump is the offset, a column `declared`; needs a column `bump` (--lot has it)",
      0},
     {"group", OPTION_GROUP, "COLUMN", 0, "Rows of a group share its level (foil)", 0},

@@ -64,7 +64,7 @@ static const struct argp_option options[] = {
      "scanner, what turns is the part",
      0},
     {"form-model", OPTION_FORMING_MODEL, "FORM.json", 0,
-     "A report of `foilgauge form -o` as the declared model of the bumps, in place of one "
+     "A report of `foilgauge forming -o` as the declared model of the bumps, in place of one "
      "springback for all: the radius that it predicts of each bump beside one level, and its arc "
      "length",
      0},

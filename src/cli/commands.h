@@ -27,6 +27,7 @@ enum { FG_COMMAND_USAGES = 2 };
 
 typedef struct fg_command {
   const char *name;
+  const char *alias; /* an earlier name, which still calls the command; or NULL */
   fg_command_run *run;
   const char *summary; /* one line for `foilgauge help` */
   fg_command_usage usage[FG_COMMAND_USAGES];

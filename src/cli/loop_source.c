@@ -167,7 +167,7 @@ static fg_status note_prediction(fg_context *ctx, const fg_forming_prediction *p
   free(source->input);
   source->input = inputs;
   return fg_text_append(ctx, &source->said,
-                        "%sdeclared: what %s (foilgauge form) predicts of %s by the bump's number; "
+                        "%sdeclared: what %s (foilgauge forming) predicts of %s by the bump's number; "
                         "measured minus predicted is %+.6g on average",
                         source->said ? "; " : "", prediction->path, response, apart);
 }

@@ -20,10 +20,10 @@ static void print_help(FILE *out) {
 }
 
 static const fg_command *find_command(const char *name) {
-  const fg_command *command = fg_commands;
-  while (command->name && strcmp(command->name, name) != 0)
-    command++;
-  return command->name ? command : NULL;
+  for (const fg_command *command = fg_commands; command->name; command++)
+    if (!strcmp(command->name, name) || (command->alias && !strcmp(command->alias, name)))
+      return command;
+  return NULL;
 }
 
 static int no_command(const char *name) {

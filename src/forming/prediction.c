@@ -40,7 +40,7 @@ static fg_status read_bump(fg_context *ctx, const cJSON *item, fg_bump *bump) {
 static fg_status read_root(fg_context *ctx, const cJSON *root, fg_forming_prediction *prediction) {
   const cJSON *schema = cJSON_GetObjectItemCaseSensitive(root, "schema"), *bump;
   if (!cJSON_IsString(schema) || strcmp(schema->valuestring, "foilgauge/form/1") != 0)
-    return fg_fail(ctx, FG_ERR_DATA, "not a report of `foilgauge form -o`");
+    return fg_fail(ctx, FG_ERR_DATA, "not a report of `foilgauge forming -o`");
   cJSON_ArrayForEach(bump, cJSON_GetObjectItemCaseSensitive(root, "bumps")) {
     if (prediction->count == FG_FORMING_BUMPS_MAX)
       return fg_fail(ctx, FG_ERR_DATA, "more than %d bumps", FG_FORMING_BUMPS_MAX);

@@ -147,7 +147,11 @@ void fg_manual_write_completion(FILE *out) {
         out);
   for (const fg_command *command = fg_commands; command->name; command++)
     fprintf(out, "%s ", command->name);
-  fputs("help version'\n    return\n  fi\n  case $command:$before in\n", out);
+  fputs("help version'\n    return\n  fi\n", out);
+  for (const fg_command *command = fg_commands; command->name; command++)
+    if (command->alias)
+      fprintf(out, "  [ \"$command\" = %s ] && command=%s\n", command->alias, command->name);
+  fputs("  case $command:$before in\n", out);
   for (const fg_command *command = fg_commands; command->name; command++)
     for (size_t i = 0; i < FG_COMMAND_USAGES && command->usage[i].parser; i++)
       write_values(command->name, command->usage[i].parser, out);

@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "cli/commands.h"
 #include "cli/facts.h"
@@ -47,6 +48,16 @@ static const fg_command *command_of(const fg_manual_text *text) {
   return command;
 }
 
+/* A link of the alias' name to the command's page, as packages of Debian have it. */
+static int link_alias(const manual *all, const fg_command *command) {
+  char page[80], link[4096];
+  if (!command || !command->alias) return 0;
+  snprintf(page, sizeof page, "foilgauge-%s.1", command->name);
+  snprintf(link, sizeof link, "%s/man/foilgauge-%s.1", all->folder, command->alias);
+  if (unlink(link) != 0 && errno != ENOENT) return complain(link, strerror(errno));
+  return symlink(page, link) == 0 ? 0 : complain(link, strerror(errno));
+}
+
 static int write_page(manual *all, const char *path, const fg_manual_text *text) {
   char name[80], place[100];
   const fg_command *command = command_of(text);
@@ -61,6 +72,7 @@ static int write_page(manual *all, const char *path, const fg_manual_text *text)
   fprintf(all->examples, "# %s\n", name);
   fg_manual_write_examples(text, all->examples);
   if (fclose(out) != 0) return complain(name, "cannot be written");
+  if (link_alias(all, command) != 0) return 1;
   return known ? 0
                : complain(path, "a @name@ of the command's help is not known, or a row of a table "
                                 "has more cells than its head: a bar of the text is \\|");

@@ -8,7 +8,7 @@
 /* A page from its doctype to its <main>, and from there to its end. */
 void fg_html_begin(FILE *out, const char *title);
 void fg_html_head(FILE *out, const char *title); /* up to the style: for a page with its own */
-void fg_html_style(FILE *out);                   /* what stands between <style> and </style> */
+extern const char fg_page_style[];               /* page.css, between <style> and </style> */
 void fg_html_end(FILE *out);
 
 /* Text with <, >, &, quotes and stray bytes made harmless. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What is declared of the bumps: the design's springback, or a report of `foilgauge form`.
+/* What is declared of the bumps: the design's springback, or a report of `foilgauge forming`.
  *
  * A forming predicts radius and angle of each bump. The radius is held against it beside one level
  * (constants of a material are known to some ten percent, and the level is told); the angle through

@@ -20,7 +20,7 @@ static void join(void) {
   size_t size;
   FILE *out = open_memstream(&whole, &size);
   if (!out) return;
-  fg_html_style(out);
+  fputs(fg_page_style, out);
   fputs(fg_station_style, out);
   fputs(fg_trend_style, out);
   fclose(out);

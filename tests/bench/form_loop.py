@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Closing the loop with a forming as the declared model: writes reports/thesis/form_loop.md and form_loop.csv.
 
-Foils whose creep depends on the bump's number, which `foilgauge form` lacks, are rendered and scanned; `loop` is given
+Foils whose creep depends on the bump's number, which `foilgauge forming` lacks, are rendered and scanned; `loop` is given
 what `form` predicts with one creep rate for all bumps, once of a lot (--lot) and once of scans. Foils that creep as
 declared are the control: nothing may be claimed of them.
 
@@ -35,7 +35,7 @@ def save(path, value):
 def form(folder, name, rate):
     out = os.path.join(folder, name)
     material = save(out + ".material", dict(MATERIAL, creep_rate_per_h=rate))
-    subprocess.run([lib.FOILGAUGE, "form", "--material", material, *HEAT, "-o", out], check=True)
+    subprocess.run([lib.FOILGAUGE, "forming", "--material", material, *HEAT, "-o", out], check=True)
     return lib.load(out)["bumps"]
 
 
@@ -130,7 +130,7 @@ TEXT = """# A forming as the declared model, and a law that it lacks
 a seed, rendered at {dpi} dpi, turned at random, {scatters} % scatter of the radius from bump to bump.
 
 The material's creep rate near the lip is lower by exp(-s exp(-(bump - 1) / {reach:g})): s = {weak:g} (weak law: {weak_um:.1f} µm of radius at
-bump 1), s = {strong:g} (law: {strong_um:.1f} µm) and none (control). Declared is what `foilgauge form` says with one rate for all bumps. The loop is
+bump 1), s = {strong:g} (law: {strong_um:.1f} µm) and none (control). Declared is what `foilgauge forming` says with one rate for all bumps. The loop is
 closed with `loop --lot DIR --form-model form.json`, and on scans with `loop SCAN... --form-model form.json` beside as many scans that are
 kept aside (`--hold-out`).
 

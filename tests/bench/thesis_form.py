@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Section 5.9 of the thesis by `foilgauge form`: writes reports/thesis/form.md, form.html, form_fit.html, form_loop.html, form_loop.svg.
+"""Section 5.9 of the thesis by `foilgauge forming`: writes reports/thesis/form.md, form.html, form_fit.html, form_loop.html, form_loop.svg.
 
 The thesis's printed numbers (table 5.1 and 5.4's thirteen runs; -17 % mean stress and -69 % cold springback by its
 sinusoidal die) stand beside the program's. Then a lot is rendered whose creep depends on the bump's number, which the
@@ -28,7 +28,7 @@ FOILS, BUMPS = 12, 9
 def form(folder, *options, name="form.json"):
     # Pages name what was read: by its name, not by where it lay.
     here = [option.removeprefix(folder + os.sep) for option in options]
-    subprocess.run([lib.FOILGAUGE, "form", *here, "-o", name], check=True, cwd=folder)
+    subprocess.run([lib.FOILGAUGE, "forming", *here, "-o", name], check=True, cwd=folder)
     return lib.load(os.path.join(folder, name))
 
 

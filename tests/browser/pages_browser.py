@@ -159,7 +159,7 @@ PAGES = [
     Page("die", "die concave_1.txt concave_2.txt convex_1.txt convex_2.txt"),
     Page("die_limits", "die concave_1.txt concave_2.txt convex_1.txt convex_2.txt --design die.json"),
     Page("design", "design limits.json"),
-    Page("form", "form --temperature 650 --time 5"),
+    Page("form", "forming --temperature 650 --time 5"),
     Page("form_fit", "form --fit composite.csv"),
     Page("stiffness", "stiffness bearings.csv --limit clearance_mm=0.1:0.3"),
     Page("lot", "lot lot_list.csv --recipe recipe.json -o lot", "lot/index.html", tuple(LOT) + ("text.png",)),

@@ -116,8 +116,8 @@ written b.csv "$program" measure scans/*1.png -o m.json --csv b.csv
 written p.csv "$program" measure scans/*1.png -o m.json --points p.csv
 written c.csv "$program" design --curve -o c.csv
 written plan.csv "$program" doe plan --factor T=500.5:600.5 --factor p=1.5:2.5 --seed 1 -o plan.csv
-written t.csv "$program" form --temperature 600 --time 1 -o f.json --table-out t.csv
-written st.csv "$program" form --temperature 600 --time 1 -o f.json --strip-out st.csv
+written t.csv "$program" forming --temperature 600 --time 1 -o f.json --table-out t.csv
+written st.csv "$program" forming --temperature 600 --time 1 -o f.json --strip-out st.csv
 for file in foils bumps bearings; do
   written out.d/$file.csv "$program" lot scans -o out.d --name L
 done

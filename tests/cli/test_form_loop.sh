@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# `foilgauge form` as the declared model of a loop: foils whose creep depends on the bump's number, which the model lacks.
+# `foilgauge forming` as the declared model of a loop: foils whose creep depends on the bump's number, which the model lacks.
 . tests/support/loop.sh
 skip_when_slow
 listened="stdout stderr"
@@ -8,7 +8,7 @@ foils=8
 
 # The declared model, and the truth: the same strip, but bumps near the lip creep less.
 echo '{"schema": "foilgauge/material/1", "creep_rate_per_h": 0.0578, "creep_exponent": 4.61, "creep_energy_kj_per_mol": 130}' >strip.json
-expect 0 "" "$program" form --material strip.json --temperature 650 --time 5 -o declared.json
+expect 0 "" "$program" forming --material strip.json --temperature 650 --time 5 -o declared.json
 python3 - <<'END'
 import json, math
 strip = json.load(open("strip.json"))
@@ -17,7 +17,7 @@ for bump in range(1, 10):
     json.dump(slow, open(f"slow_{bump}.json", "w"))
 END
 for bump in 1 2 3 4 5 6 7 8 9; do
-  "$program" form --material slow_$bump.json --temperature 650 --time 5 --table-out - | sed -n "$((bump + 1))p" >>truth.csv
+  "$program" forming --material slow_$bump.json --temperature 650 --time 5 --table-out - | sed -n "$((bump + 1))p" >>truth.csv
 done
 mkdir lot
 python3 - $foils <<'END'
@@ -69,15 +69,15 @@ END
 grep -q 'declared of the bumps' scans.html && grep -q 'against the declared forming' scans.html ||
   fail "the page does not name the forming"
 script -qec "$program loop $scans --form-model declared.json" /dev/null >terminal.txt 2>&1 || fail "the table of a loop on scans"
-grep -q 'declared is what declared.json (foilgauge form) predicts' terminal.txt && grep -q 'measured minus declared is' terminal.txt ||
+grep -q 'declared is what declared.json (foilgauge forming) predicts' terminal.txt && grep -q 'measured minus declared is' terminal.txt ||
   fail "the terminal does not name the forming"
-expect 65 "loop.json: not a report of .foilgauge form" "$program" loop lot/1.png --form-model loop.json
+expect 65 "loop.json: not a report of .foilgauge forming" "$program" loop lot/1.png --form-model loop.json
 expect 74 "missing.json" "$program" loop lot/1.png --form-model missing.json
 expect 64 "form-model is of the bumps of foils" "$program" loop lot/1.png --form discs --form-model declared.json
 expect 64 "" "$program" loop lot/1.png --form-model declared.json -o declared.json
 expect 64 "give a scan" "$program" loop --form-model declared.json
 echo '{"schema": "foilgauge/design/1", "form": "classical", "bump_count": 6}' >six.json
-expect 0 "" "$program" form six.json -o six_form.json
+expect 0 "" "$program" forming six.json -o six_form.json
 expect 65 "six_form.json: it has no bump 7, which foil 1 of lot/1.png has" "$program" loop lot/1.png --form-model six_form.json
 
 # A column of a table says the same as the report; what cannot be declared is refused.
@@ -96,7 +96,7 @@ near "rms of what is left" "$(value with.json "r['before']['rms']")" 0.0006 0.00
 expect 65 "quantities of a bump, and 'foil' is none" "$program" loop --table table.csv --response foil --model 1 --form-model declared.json
 expect 65 "no column 'bump'|bump" "$program" loop --table "$root/samples/doe/springback_composite.csv" \
   --response springback_error_pct --model 1 --form-model declared.json
-expect 65 "loop.json: not a report of .foilgauge form" "$program" loop --lot out --form-model loop.json
+expect 65 "loop.json: not a report of .foilgauge forming" "$program" loop --lot out --form-model loop.json
 expect 64 "drop --offset" "$program" loop --table table.csv --response radius_mm --model 1 --form-model declared.json --offset declared
 expect 64 "cannot be its own prediction" "$program" loop --table table.csv --response radius_mm --model 1 --offset radius_mm
 expect 64 "" "$program" loop --lot out --form-model declared.json -o declared.json

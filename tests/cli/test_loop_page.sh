@@ -87,7 +87,7 @@ sed -i 's/"radius_mm":\[[^]]*\]/"radius_mm":[3.60,3.50,3.45,3.43,3.42,3.415,3.41
 page decay.html decay.png
 holds decay.html '>explained<' part.lip_decay 'Over the bumps: a decay from the lip' 'uniform springback'
 page aside.html a.png --hold-out other.png
-holds aside.html 'only confirms' 'On scans kept aside' 'class="aside k1"'
+holds aside.html 'only confirms' 'On scans kept aside' 'class="held-out k1"'
 page tie.html faint.png -o tie.out
 holds tie.html 'tied: not named' 'What the data cannot tell apart' 'an oval foil' '--same-foil' '<th>range</th>'
 # What could be it agrees about R0 and h, which are moved, and not about R, which stays as measured: the page, the

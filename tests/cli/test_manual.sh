@@ -112,6 +112,14 @@ grep -q -- '--response' "$work/out" || say "loop --table --help does not explain
 "$fg" measure --help >/dev/full 2>/dev/null
 [ $? = 74 ] || say "help on a full disk"
 
+# An earlier name of a command does what the command does: its run, its help, its page, its completion.
+[ "$("$fg" form --help)" = "$("$fg" forming --help)" ] || say "form --help is not that of forming"
+[ "$("$fg" help form)" = "$("$fg" help forming)" ] || say "help form is not that of forming"
+[ "$("$fg" form -o -)" = "$("$fg" forming -o -)" ] || say "form does something else than forming"
+"$fg" form --shape round 2>&1 | grep -q '`foilgauge forming --help' || say "form names an earlier name to its user"
+"$fg" help | grep -q '^  form ' && say "help lists an earlier name"
+cmp -s "$man/foilgauge-form.1" "$man/foilgauge-forming.1" || say "no page of the name form"
+
 # README: a page, with what the program says of the samples.
 [ "$(wc -l <README.md)" -le 150 ] || say "README.md is longer than a page"
 named=$(grep -oE '^    (\$ )?build/foilgauge [a-z]+' README.md | sed 's/.* //' | sort -u)
@@ -216,6 +224,8 @@ mkdir "$work/files"
  [ "$(complete_line foilgauge lot -o '')" = sub ] || exit 4) || say "completion of files: $?"
 complete_line foilgauge measure --ch | grep -qx -- '--channel=' || say "completion of options"
 [ -z "$(complete_line foilgauge doe -- | sort | uniq -d)" ] || say "completion offers an option twice"
+[ "$(complete_line foilgauge form --te)" = "$(complete_line foilgauge forming --te)" ] || say "completion of an earlier name"
+complete_line foilgauge form --te | grep -qx -- '--temperature=' || say "completion of form's options"
 complete_line foilgauge lot --pages b | grep -qx bad || say "completion of --pages"
 complete_line foilgauge measure --channel g | grep -qx green || say "completion of words"
 

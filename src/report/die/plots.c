@@ -71,7 +71,7 @@ static void put_half_errors(const fg_plot *at, const fg_die *die, fg_die_half ha
   double shift = half == FG_DIE_CONCAVE ? -7 : 7, key = 80 + 420.0 * (double)half;
   if (!side->traces) return;
   fg_plot_segment(at, at->x_low, side->mean[q].value, at->x_high, side->mean[q].value,
-                  half == FG_DIE_CONCAVE ? "k0 aside" : "k1 aside");
+                  half == FG_DIE_CONCAVE ? "k0 faint" : "k1 faint");
   for (size_t i = 0; i < side->bump_count; i++)
     put_mark(at, side->bumps[i].number, shift, &side->bumps[i].value[q], half_style[half]);
   fprintf(at->out,

@@ -40,7 +40,7 @@ static void put_trust(FILE *out, const fg_sentences *conclusions) {
   fputs("<ul>\n", out);
   for (size_t i = 0; i < conclusions->trusts; i++) {
     const char *text = conclusions->text[conclusions->trust + i];
-    fputs(!strncmp(text, "Not sure", 8) ? "<li class=\"doubt\">" : "<li>", out);
+    fputs(!strncmp(text, "Not sure", 8) ? "<li class=\"uncertain\">" : "<li>", out);
     fg_html_text(out, text);
     fputs("</li>\n", out);
   }

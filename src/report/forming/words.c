@@ -48,7 +48,7 @@ static size_t note_material(const fg_forming *forming, char *note) {
   fg_text_clip(
       note, FG_FORMING_NOTE,
       "%zu of %d constants are the literature's, not this strip's: yield stress and creep "
-      "rate scatter by factors, so the size of a springback is a guess until form --fit has "
+      "rate scatter by factors, so the size of a springback is a guess until forming --fit has "
       "runs to find them from. Of the lands alone hotter and longer is less; of the whole "
       "foil, a small difference of lands and bumps, not always.",
       n, FG_FORMING_CONSTANTS);

@@ -13,7 +13,7 @@
 /* Looks of the two channels: not of their colours, which those who do not see them could not tell.
  */
 static const char *const line_style[2] = {"s1", "s2"};
-static const char *const uncertainty_style[2] = {"s1 doubt", "s2 doubt"};
+static const char *const uncertainty_style[2] = {"s1 uncertain", "s2 uncertain"};
 
 static void put_value(FILE *out, double value, double u, int decimals) {
   fprintf(out, "<td>%+.*f ± %.*f</td>", decimals, value, decimals, FG_COVERAGE_FACTOR * u);

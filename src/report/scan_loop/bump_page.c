@@ -165,7 +165,7 @@ static void put_declared(FILE *out, const fg_scan_result_bumps *bumps) {
   fputs("<p class=\"note\">Declared is what <code>", out);
   fg_html_text(out, bumps->declared_path);
   fprintf(out,
-          "</code> (<code>foilgauge form</code>, SHA-256 <code>%.12s</code>) predicts of each bump "
+          "</code> (<code>foilgauge forming</code>, SHA-256 <code>%.12s</code>) predicts of each bump "
           "by its number: its radius beside one level, and its arc length.",
           bumps->declared_sha256);
   for (size_t r = 0; r < FG_SCAN_RESULT_RESPONSES; r++) {

@@ -137,7 +137,7 @@ static void text_claim(const fg_scan_result_response *response,
 
 void fg_text_bumps(const fg_scan_result_bumps *bumps, FILE *out) {
   if (bumps->declared_path)
-    fprintf(out, "  bumps: declared is what %s (foilgauge form) predicts of each by its number\n",
+    fprintf(out, "  bumps: declared is what %s (foilgauge forming) predicts of each by its number\n",
             bumps->declared_path);
   for (size_t r = 0; r < FG_SCAN_RESULT_RESPONSES; r++) {
     const fg_scan_result_response *one = &bumps->response[r];

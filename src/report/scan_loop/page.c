@@ -76,7 +76,7 @@ static void put_inputs(FILE *out, const fg_scan_result *result) {
 
 static void put_uncertainty(FILE *out, const fg_scan_result *result) {
   if (result->contradicted)
-    fputs("<p class=\"doubt\">The scans kept aside do not confirm it: there the residual becomes "
+    fputs("<p class=\"uncertain\">The scans kept aside do not confirm it: there the residual becomes "
           "larger. Do they lie at the same place of the same glass?</p>\n",
           out);
 }

@@ -42,7 +42,7 @@ static bool is_light(const series *s, size_t i) {
 static void put_points(const fg_plot *at, const series *s, size_t scan, bool light) {
   size_t rows = s->result->rows, stride = 1 + rows / POINTS_MAX;
   bool held_out = s->result->scan[scan].hold_out;
-  fprintf(at->out, "<path class=\"%s %s\" d=\"", held_out ? "aside" : "dots",
+  fprintf(at->out, "<path class=\"%s %s\" d=\"", held_out ? "held-out" : "dots",
           light ? "pale" : colour(scan));
   for (size_t i = 0; i < rows; i += stride) {
     double x, y;
