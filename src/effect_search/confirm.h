@@ -5,8 +5,9 @@
 
 #include "effect/set.h"
 
-/* Says in `confirmed` (above 0: it is) how well discs confirm an effect of the set that left these
- * residuals, and gives its numbers the uncertainty that discs show. */
+/* Tests an effect of the set that left these residuals from disc to disc. `confirmed` is positive
+ * when the discs confirm it, and larger the better they do. The effect's numbers get the
+ * uncertainty that the scatter between discs shows. */
 fg_status fg_search_confirm(fg_context *ctx, const fg_edge_fit *edge_fit, fg_effect_found *effect,
                             const double *residual_um, double *confirmed);
 

@@ -1,14 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What was found, held against rows that took no part in finding it.
- *
- * Bumps (discs: the discs) and lands go round some folds by their place; all rows of a bump, on
- * every scan of its foil, are in one. A free curve over a place tells nothing of a place where no
- * row lies, and of a step one disc may be all that shows it, so where one was found short stretches
- * of every arc go round instead. Without the rows
- * of a fold the search is repeated, and what it finds then is taken out of all rows with the
- * numbers that it has then. The geometry (every bump's circle, the overall circles, the poses) is
- * not what is tested: it is fitted to all rows, beside nothing before and beside what was found
- * after, so that both errors are of the kind that the residual of all rows is. */
+/* Cross-validation of the search: its error on rows that it did not use.
+ * // Folds are made of bumps (of discs on plates) and lands, by their place; all rows of a bump, on
+ * every scan of its foil, are in one fold. A free curve over a place is undetermined where no row
+ * lies, and a step may show on one disc only. Where one of them was found, folds are made of short
+ * stretches of every arc instead. The search is repeated without the rows of a fold, and its
+ * effects, with their numbers, are removed from the rows of that fold.
+ * // The geometry (every bump's circle, the overall circles, the poses) is not under test: it is
+ * fitted to all rows, without effects before and beside the effects after. So both errors compare
+ * with the residual of all rows. */
 #ifndef FG_EFFECT_SEARCH_CROSS_FIT_H
 #define FG_EFFECT_SEARCH_CROSS_FIT_H
 
@@ -22,14 +21,14 @@ typedef enum fg_cross_fit_unit {
 
 typedef struct fg_cross_fit {
   fg_cross_fit_unit unit;
-  size_t folds;               /* 0: too few bumps or rows, and no number is told */
+  size_t folds;               /* 0: too few bumps or rows; then no number is reported */
   double before_um, after_um; /* rms over all rows, each from the search without its fold */
-  double gain, u_gain; /* fall of the mean square, um², and its standard error over what was left
+  double gain, u_gain; /* fall of the mean square, um², and its standard error over the units left
                           out together: bumps, lands, discs, stretches */
 } fg_cross_fit;
 
-/* `points`: as the search left them, none of them aside; `set`: in force, not empty; `barred`: what
- * that search left out. */
+/* `edge_fit`: as the search left it, with no row held out; `set`: in force, not empty; `barred`:
+ * effects that the search left out. */
 fg_status fg_search_cross_fit(fg_context *ctx, const fg_edge_fit *edge_fit,
                               const fg_effect_set *set, const fg_search_bars *barred,
                               unsigned threads, fg_cross_fit *result);

@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the search does differently on foils and on discs, one const struct each.
- *
- * A foil's strip has hundreds of bumps' flanks in one scan, so its rows are alike and noise follows
- * the edge; but its smooth effects are nearly the same thing, so that few may stand together. A
- * plate of discs tells the smooth effects apart, but each disc has a form and a noise of its own.
- */
+/* Differences between the searches on foils and on discs: one const struct each.
+ * // A foil's strip has hundreds of bumps' flanks in one scan, so its rows are alike and noise
+ * follows the edge. But its smooth effects are nearly collinear, so a set may hold only a few. A
+ * plate of discs tells the smooth effects apart, but each disc has a form error and a noise of its
+ * own. */
 #ifndef FG_EFFECT_SEARCH_POLICY_H
 #define FG_EFFECT_SEARCH_POLICY_H
 
 #include "effect_search/search.h"
 
-/* How one start of the search goes about it. With `eager`, ripples and steps are looked for at
- * once: right for them, while a large smooth effect leaves traces in the first round that look like
- * them. Two curves can be made of nearly anything, so they come last. */
+/* Strategy of one start of the search. With `seeds_placed`, ripples and steps are sought from the
+ * first round on. That is correct for ripples and steps, but a large smooth effect leaves residuals
+ * in the first round that resemble them. Two curves fit nearly anything, so strategies with two
+ * come last. */
 typedef struct fg_search_strategy {
   bool seeds_placed_first, two_curves;
 } fg_search_strategy;
@@ -21,66 +21,72 @@ enum { FG_SEARCH_STRATEGIES_MAX = 3 };
 
 struct fg_search_policy {
   /* ---- candidates ---- */
-  bool middles_with_sets; /* a polynomial's middle is found with every set, from powers that all of
-                             them share; else it stands where the last fit put it */
-  bool smoother_curves;   /* of all effects at once a curve is a smoother part (fg_effect_coarse) */
-  bool other_steps;       /* a bump between two places lets a step stand at either */
-  fg_status (*find_placed)(fg_context *ctx, fg_search *search); /* new ripples and steps */
+  bool middles_with_sets; /* a polynomial's middle is determined with every set, from powers common
+                             to all polynomials; else it is held where the last fit put it */
+  bool smoother_curves;   /* in the set of all effects, a curve enters as its smoother part
+                             (fg_effect_coarse) */
+  bool other_steps; /* steps at either end of a bump are both candidates: the bump between them
+                       makes them equivalent */
+  fg_status (*find_placed)(fg_context *ctx, fg_search *search); /* finds new ripples and steps */
 
   /* ---- which sets are tried, and which are right ---- */
-  size_t (*effects_max)(const fg_edge_fit *edge_fit); /* in a set */
-  bool placed_beside;   /* ripples and steps are not among those: all that stand out may be there */
-  bool keeps_collinear; /* one effect in two forms is a set */
-  double edge_error_um; /* of the edge model: below it effects are not told apart */
-  double effect_error;  /* an effect's form is known to this share of what it does to the rows; */
-  double more_error;    /* what one more effect takes beside it may be so much of that */
-  double bend_error;    /* the same of one that is led by the lowest polynomials */
-  double one_more_chi2; /* a set is not right beside which a further effect gains more, */
-  bool counts_columns;  /* with one column; as much by chance with several, and beside what the
-                           edges' model leaves */
-  double
-      quadratic_chi2; /* of one view: what a quadratic gains over its slope; else it is a scale */
-  double placed_chi2; /* gain of a ripple or step that makes it worth a place in the search: its
-                         best of some hundred places stands for ln of their number more */
-  bool has_rivals;    /* smooth curves that do as well are tied with listed sets */
-  double worse_chi2;  /* a set so much worse than the best one is not tied with it */
-  /* Whether a listed set stands before the best one so far where none is right. */
+  size_t (*effects_max)(const fg_edge_fit *edge_fit); /* maximum size of a set */
+  bool placed_beside;    /* ripples and steps do not count in the size: all that stand out may be in
+                            the set */
+  bool keeps_collinear;  /* two bases of one effect may be in a set */
+  double edge_error_um;  /* error of the edge model: smaller effects are not told apart */
+  double effect_error;   /* relative error of an effect's basis, as a share of its displacements; */
+  double more_error;     /* residual that one more effect may explain beside it, as such a share */
+  double bend_error;     /* as more_error, for an effect that the lowest polynomials dominate */
+  double one_more_chi2;  /* a set is not right if one further effect of one column gains more than
+                            this; */
+  bool counts_columns;   /* for several columns: the gain of equal probability by chance, plus the
+                            residual of the edge model */
+  double quadratic_chi2; /* gain of a quadratic over its slope that one scan must show; else the
+                            effect is a scale */
+  double placed_chi2;    /* gain at which a ripple or step becomes a candidate: the best of some
+                            hundred places gains more by chance, by ln of their number */
+  bool has_rivals;       /* smooth curves that fit as well are tied with listed sets */
+  double worse_chi2;     /* a set worse than the best one by more than this is not tied with it */
+  /* Returns true when a listed set is better than the best one so far, where none is right. */
   bool (*is_better)(const fg_search *search, const fg_explanation *explanation,
                     const fg_explanation *best);
 
   /* ---- where no listed set is right ---- */
-  size_t beside_curve; /* listed effects beside a curve, at most */
-  bool
-      curves_alone_last; /* curve by curve, alone only where that is better than beside an effect */
-  double curve_share;    /* a curve is known to this share of itself: no effect stands beside it for
-                            less */
-  /* Whether the best listed set has a shape that is to be fitted with the geometry before any
-   * curve is believed. */
+  size_t beside_curve;    /* maximum number of listed effects beside a curve */
+  bool curves_alone_last; /* a curve is tried alone last, and accepted only if better than beside an
+                             effect */
+  double curve_share; /* relative error of a curve: an effect that explains less stands not beside
+                         it */
+  /* Returns true when the best listed set has a shape that must be fitted with the geometry before
+   * any curve is accepted. */
   bool (*is_worth_fitting)(const fg_search *search, const fg_search_baseline *baseline,
                            const fg_explanation *best, const fg_explanation *curve);
-  bool smallest_beside_own; /* the least amplitude of an effect is told beside its other columns */
+  bool smallest_beside_own; /* the smallest detectable amplitude is determined beside the effect's
+                               other columns */
 
   /* ---- search and fit in turns ---- */
-  bool scatters; /* neighbours along an edge share their noise; else what is left says how much */
-  fg_search_strategy
-      strategies[FG_SEARCH_STRATEGIES_MAX]; /* the next one where the last is not right */
+  bool scatters; /* rows are weighted by noise that neighbours along an edge share; else the
+                    residual estimates the correlation */
+  fg_search_strategy strategies[FG_SEARCH_STRATEGIES_MAX]; /* tried in order until one is right */
   size_t strategy_count;
-  double converged_share;  /* a set that is not right has come to rest when a round takes no more of
-                         what  is left */
-  bool converges_in_force; /* it rests when it finds the set in force again, not the one it found
-                          last: one that the fit gave up is tried again, without its outliers */
-  bool falls_back; /* of a set that no fit holds the best effect is fitted alone; else the set is
+  double converged_share;  /* a set that is not right has converged when a round lowers the residual
+                              by no more than this share */
+  bool converges_in_force; /* converged when the search finds the set in force again, not the set
+                              found last; so a set that the fit gave up is tried again without its
+                              outliers */
+  bool falls_back; /* when a set cannot be fitted, its best effect is fitted alone; else the set is
                       not tried again */
-  bool drops_nothings; /* what the fit has made nothing of leaves */
-  bool drops_ends;     /* an arc's last rows may reach into its fillet */
-  bool own_noise;      /* rows are outliers by their own noise, not by their size */
-  double step_half_mm; /* half the height of the rows that a step in the picture blurs */
+  bool drops_nothings; /* effects that the fit reduced to nothing are dropped from the set */
+  bool drops_ends;     /* drops the last rows of an arc that reach into its fillet */
+  bool own_noise; /* outliers are judged in units of each row's noise, not of the common noise */
+  double step_half_mm; /* half the height of the band of rows that a step in the picture blurs */
 
   /* ---- between parts ---- */
-  bool confirms; /* what is found must be confirmed from part to part */
+  bool confirms; /* findings must be confirmed from part to part */
 };
 
-/* By what the parts are. */
+/* Returns the policy for the kind of parts in the edge fit. */
 const fg_search_policy *fg_search_policy_of(const fg_edge_fit *edge_fit);
 
 #endif

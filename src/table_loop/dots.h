@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sums over many rows, several vectors at a time. */
+/* Dot products over many rows, several vectors at a time. */
 #ifndef FG_TABLE_LOOP_DOTS_H
 #define FG_TABLE_LOOP_DOTS_H
 

@@ -5,36 +5,36 @@
 
 #include "table_loop/engine.h"
 
-/* The noise with the largest residual likelihood. */
+/* Chooses the noise with the largest residual likelihood. */
 fg_status fg_engine_choose_noise(fg_context *ctx, const fg_engine_training *training,
                                  fg_engine_noise *noise);
 
-/* Moves the shapes of the set to the least residual sum, one after the other, each between its
+/* Moves the shapes of the set to the smallest residual sum, one after the other, each between its
  * neighbours in the effect's start values. */
 fg_status fg_engine_refine(fg_context *ctx, const fg_loop_problem *problem, const bool *keep,
                            fg_engine_noise noise, fg_engine_set *set);
 
-/* Residuals of the rows kept, each predicted without its own fold of groups; n numbers. */
+/* Computes residuals of the rows kept, each predicted without its own fold of groups; n numbers. */
 fg_status fg_engine_cross_validate(fg_context *ctx, const fg_loop_problem *problem,
                                    const bool *keep, const fg_engine_set *set,
                                    fg_engine_noise noise, double *residual);
 
-/* Gain in whitened squared error of `after` over `before`, summed, and its standard error from the
- * groups. */
+/* Computes the gain in whitened squared error of `after` over `before`, summed, and its standard
+ * error from the groups. */
 fg_status fg_engine_cross_validated_gain(fg_context *ctx, const fg_loop_problem *problem,
                                          const bool *keep, const fg_engine_set *before,
                                          const fg_engine_set *after, fg_engine_noise noise,
                                          double *gain, double *standard_error);
 
-/* Fitted on the rows kept, predicted at all: residual of every row of the problem, and the part
- * that the set contributes (either may be NULL). `sd` is of one row. The noise is the caller's, or
- * chosen by the data. */
+/* Fits on the rows kept and predicts all: residual of every row of the problem, and the set's
+ * contribution (either may be NULL). `sd` is of one row. The noise is the caller's, or chosen by
+ * the data. */
 fg_status fg_engine_fit_set(fg_context *ctx, const fg_loop_problem *problem, const bool *keep,
                             const fg_engine_set *set, bool choose, fg_engine_noise *noise,
                             double *residual, double *effect, double *sd);
 
-/* Coefficients, amplitudes and uncertainties of the set's claims (one each, in order; the curve at
- * `curve` is left out) and of the declared parameters. */
+/* Fits coefficients, amplitudes and uncertainties of the set's claims (one each, in order; the
+ * curve at `curve` is left out) and of the declared parameters. */
 fg_status fg_engine_fit_claims(fg_context *ctx, const fg_loop_problem *problem, const bool *keep,
                                const fg_engine_set *set, fg_engine_noise noise,
                                fg_loop_claim *claim, double *parameter, double *parameter_u);

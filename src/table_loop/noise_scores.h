@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the scatter of a residual lacks: scores of serial correlation and of unequal spread. */
+/* Scores of a residual's noise: serial correlation and unequal spread. */
 #ifndef FG_TABLE_LOOP_NOISE_SCORES_H
 #define FG_TABLE_LOOP_NOISE_SCORES_H
 
@@ -8,8 +8,8 @@
 typedef struct fg_engine_spread {
   bool serial;
   size_t columns;
-  double *z;     /* n, of a slope */
-  size_t *level; /* n, of levels: 0 .. columns */
+  double *z;     /* n: standardised coordinate of a slope */
+  size_t *level; /* n: index of a level, 0 .. columns */
 } fg_engine_spread;
 
 typedef struct fg_engine_noise_scores {
@@ -25,7 +25,7 @@ fg_status fg_engine_noise_scores_open(fg_context *ctx, const fg_engine_training 
                                       const fg_loop_candidate *candidate, size_t candidates,
                                       fg_engine_noise_scores *scores);
 void fg_engine_noise_scores_close(fg_engine_noise_scores *scores);
-/* A normal deviate of each for one response (not whitened); work has room for 2 n. */
+/* Computes a normal deviate of each for one response (not whitened); `work` has room for 2 n. */
 void fg_engine_noise_scores_of(const fg_engine_noise_scores *scores, const double *y, double *work,
                                double *z);
 

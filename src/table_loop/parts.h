@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Steps of building a problem from a table. */
+/* Steps of building a problem from a table, for problem.c. */
 #ifndef FG_TABLE_LOOP_PARTS_H
 #define FG_TABLE_LOOP_PARTS_H
 
 #include "foilgauge/loop.h"
 
-/* Magnitudes of a column's largest number that can be computed with. */
+/* Range of a column's largest magnitude in which squares neither over- nor underflow. */
 #define FG_LOOP_TABLE_SMALLEST 1e-304
 #define FG_LOOP_TABLE_LARGEST  1e304
 
@@ -17,7 +17,7 @@ typedef struct fg_loop_table_state {
 } fg_loop_table_state;
 
 bool fg_loop_table_is_arc_length(const fg_loop_table_spec *spec);
-/* Jacobian, residual and declared columns by a formula, or by the arc length. */
+/* Fills Jacobian, residual and declared columns from a formula, or from the arc length. */
 fg_status fg_loop_table_fill_model(fg_context *ctx, const fg_loop_table_state *build);
 void fg_loop_table_free_formula(struct fg_loop_formula *formula);
 fg_status fg_loop_table_fill_arc_length(fg_context *ctx, const fg_loop_table_state *build);
@@ -27,14 +27,15 @@ fg_status fg_loop_table_add_coordinate(fg_context *ctx, const fg_loop_table_stat
                                        fg_loop_coordinate **added);
 void fg_loop_table_finish_coordinate(const fg_loop_problem *problem, fg_loop_coordinate *at);
 fg_loop_coordinate *fg_loop_table_coordinate(const fg_loop_problem *problem, const char *name);
-/* A column that is no candidate, and why: for the report. */
+/* Records for the report a column that is no candidate, and the reason. */
 fg_status fg_loop_table_leave_out(fg_context *ctx, const fg_loop_table_state *build,
                                   const char *name, const char *why);
-/* table_codes.c */
+/* in codes.c */
 void fg_loop_table_drop(fg_loop_problem *problem, size_t coordinate);
-/* Of columns that say the same one stays; rows without an order of their own take a column's. */
+/* Keeps one of several columns with the same content; rows without an order of their own use a
+ * column's order. */
 fg_status fg_loop_table_merge_codes(fg_context *ctx, const fg_loop_table_state *build);
-/* table_hold_out.c */
+/* in hold_out.c */
 fg_status fg_loop_table_hold_out(fg_context *ctx, const fg_loop_table_state *build);
 
 #endif

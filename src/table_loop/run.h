@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One run of the loop: what is accepted so far, and the steps. */
+/* State and steps of one run of the loop. */
 #ifndef FG_TABLE_LOOP_RUN_H
 #define FG_TABLE_LOOP_RUN_H
 
@@ -15,32 +15,32 @@ typedef struct fg_engine_run {
   fg_loop_result *result;
   bool *train;
   fg_loop_candidate *candidate; /* listed effects first, then curves, then those of the noise */
-  size_t means, candidates;     /* without those of the noise; all */
+  size_t means, candidates;     /* of the mean alone; all */
   fg_engine_set set;            /* claims in the order of result->claim; the curve, if any, last */
   bool has_curve;
   double curve_p;
-  size_t curve_at; /* coordinate */
+  size_t curve_at; /* index of the curve's coordinate */
   fg_engine_noise noise;
-  bool fell;  /* the error of rows that took no part */
+  bool fell;  /* the error of held-out rows fell */
   double sd;  /* of the null at this step, whitened rows */
-  bool worth; /* the residual is more than rounding */
+  bool worth; /* the residual is larger than rounding */
 } fg_engine_run;
 
-/* Accepts what passes, one after the other, and looks at all again at the end. */
+/* Accepts significant effects one after the other, then tests all of them again. */
 fg_status fg_engine_search(fg_context *ctx, fg_engine_run *run);
-/* How many folds the search is made again without. */
+/* Returns the number of folds of the cross-validation. */
 size_t fg_engine_folds(size_t rows);
-/* Errors of rows that took no part: before, and with what the search without them finds; whether it
- * fell by more than a standard error. */
+/* Computes errors of held-out rows, without effects and with those that the search finds without
+ * them; `fell` when it fell by more than a standard error. */
 fg_status fg_engine_cross_fit(fg_context *ctx, const fg_engine_run *run, double *before_rms,
                               double *after_rms, bool *fell);
-/* Tries to accept one effect; *accepted says whether there was one. */
+/* Tries to accept one effect; *accepted is true if there was one. */
 fg_status fg_engine_accept_one(fg_context *ctx, fg_engine_run *run, bool *accepted, bool *last);
-/* With the others fitted, would another candidate serve better in a claim's place? */
+/* Replaces a claim by another candidate that explains more with the others fitted. */
 fg_status fg_engine_swap(fg_context *ctx, fg_engine_run *run);
 fg_status fg_engine_list_rejected(fg_context *ctx, fg_engine_run *run);
 fg_status fg_engine_advise(fg_context *ctx, fg_engine_run *run);
-/* Fills the result's checks, beside everything in the set. battery.c */
+/* Fills the result's checks beside the whole set (residual_tests.c). */
 fg_status fg_engine_check(fg_context *ctx, const fg_engine_run *run, fg_engine_noise noise);
 fg_status fg_engine_finish(fg_context *ctx, fg_engine_run *run);
 fg_status fg_engine_note(fg_context *ctx, fg_loop_result *result, const char *format, ...)
