@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Cross-validation of the search: its error on rows that it did not use.
- * // Folds are made of bumps (of discs on plates) and lands, by their place; all rows of a bump, on
+ *
+ * Folds are made of bumps (of discs on plates) and lands, by their place; all rows of a bump, on
  * every scan of its foil, are in one fold. A free curve over a place is undetermined where no row
  * lies, and a step may show on one disc only. Where one of them was found, folds are made of short
  * stretches of every arc instead. The search is repeated without the rows of a fold, and its
  * effects, with their numbers, are removed from the rows of that fold.
- * // The geometry (every bump's circle, the overall circles, the poses) is not under test: it is
+ *
+ * The geometry (every bump's circle, the overall circles, the poses) is not under test: it is
  * fitted to all rows, without effects before and beside the effects after. So both errors compare
  * with the residual of all rows. */
 #ifndef FG_EFFECT_SEARCH_CROSS_FIT_H

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Differences between the searches on foils and on discs: one const struct each.
- * // A foil's strip has hundreds of bumps' flanks in one scan, so its rows are alike and noise
+ *
+ * A foil's strip has hundreds of bumps' flanks in one scan, so its rows are alike and noise
  * follows the edge. But its smooth effects are nearly collinear, so a set may hold only a few. A
  * plate of discs tells the smooth effects apart, but each disc has a form error and a noise of its
  * own. */

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Search for effects of the strip's width. An effect that moves the strip's edges apart leaves the
  * midline, and with it every residual of the edge fit, unchanged.
- * // Model of half the width of every row, less the stretch by the scanner's fields: a level per
+ *
+ * Model of half the width of every row, less the stretch by the scanner's fields: a level per
  * scan, the edge model's error, and all effects of the width at once, by least squares. The edge
  * model's error follows the direction of the edge and its curvature, so both are fitted. It may
  * also follow the place on the glass, which in one scan is nearly collinear with the place along

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Internal interface of the engine. Columns are stored one after the other unless stated otherwise.
- * // A training set is the rows that a step learns from, with the columns of the null: the declared
+ *
+ * A training set is the rows that a step learns from, with the columns of the null: the declared
  * model's Jacobian and the effects accepted so far. A score workspace is a training set at every
  * noise model that is considered, with every candidate whitened, projected and orthonormal, so that
  * scoring a vector of responses is one product. */

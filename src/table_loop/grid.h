@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Problems on settings that are not the data's, for evaluating effects there.
- * // Every coordinate of a grid has as many values as the grid has rows, axis or not, and no value
+ *
+ * Every coordinate of a grid has as many values as the grid has rows, axis or not, and no value
  * of the data: so an effect over two coordinates never mixes a column of the data with one of the
  * grid. */
 #ifndef FG_TABLE_LOOP_GRID_H
