@@ -1,35 +1,47 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Closing the loop: what the residual of a declared model holds, and what that is worth.
+/* Analysis of the residual of a declared model: effects that it holds, with their significance.
  *
- * One engine for every level (bumps, runs, points). It knows no tables and no scans:
+ * One engine serves every level (bumps, runs, points). It knows neither tables nor scans:
  *
- *   a problem   is a residual with its Jacobian, the coordinates an effect may live on, the groups
- *               that were drawn independently, and the order along which noise may be correlated;
- *   an effect   is a row of a table: an id, the coordinates it needs, its basis, its non-linear
- *               parameters with their start values; a new effect is a new row;
- *   a candidate is an effect on given coordinates of a problem.
+ * - a problem is a residual with its Jacobian, the coordinates that effects may act on, the groups
+ * drawn independently, and the order along which noise may be correlated;
+ * - an effect is a row of a table: an id, the coordinates that it needs, its basis, its non-linear
+ * parameters with their start values; a new effect is a new row;
+ * - a candidate is an effect on given coordinates of a problem.
  *
  * Method:
  *
- *   1  Noise is independent until a finding says otherwise: serial correlation (first order, along
- * a series) and unequal spread are candidates like effects of the mean, and are in force from their
- * claim on. Where groups share a level, the ratio lambda of its variance to the rows' is estimated
- * anew beside every candidate (residual likelihood: Patterson and Thompson 1971). 2  A candidate of
- * the mean is scored by the residual sum that it takes away, whitened and with every parameter of
- * the declared model projected out, what is constant in groups that share a level by what groups
- * differ by; correlation by the product of neighbours, spread by the
- * likelihood of the residuals' sizes. 3  One null for all: residuals in another order (Freedman and
- * Lane 1983), scored in the same way; each score on the scale of its own draws, p-values from the
- * largest of all (Westfall and Young 1993). The draws are the same in every run: no verdict depends
- * on a seed. 4  Wrong rows are judged apart, against the tails that the other rows show, and
- * against one heavy tail of all. 5  An effect that a series could be mistaken for is searched again
- * beside correlation: it is claimed, or correlation is, or they tie. 6  Accepted at p < 0.01, with
- * a gain above one standard error in grouped cross-validation. 7  Its alias class: every candidate
- * beside which the winner explains nothing more that the data can show, and every sum of two such.
- * 8  Refit of all together, swaps, drops; at most six claims. 9  What no candidate explains: a
- * smooth curve over one coordinate (unattributed). 10  Errors of rows that took no part: the whole
- * search again without each fold of groups.
- */
+ * 1. Noise is independent until a finding shows otherwise: serial correlation (first order, along a
+ * series) and unequal spread are candidates like effects of the mean, and are in force once
+ * claimed. Where groups share a level, the ratio lambda of its variance to the rows' is estimated
+ * anew beside every candidate (residual likelihood: Patterson and Thompson 1971).
+ *
+ * 2. The score of a candidate of the mean is its reduction of the residual sum, whitened and with
+ * every parameter of the declared model projected out. A candidate that is constant in groups
+ * sharing a level is scored by the differences between groups. Correlation is scored by the product
+ * of neighbours, spread by the likelihood of the residuals' sizes.
+ *
+ * 3. All candidates share one null: residuals in another order (Freedman and Lane 1983), scored in
+ * the same way. Each score is put on the scale of its own draws; p-values come from the maximum
+ * over all (Westfall and Young 1993). The draws are the same in every run: no verdict depends on a
+ * seed.
+ *
+ * 4. Outlier rows are tested separately, against the tails of the other rows and against one heavy
+ * tail of all rows.
+ *
+ * 5. An effect that serial correlation may imitate is tested again beside correlation: the effect
+ * is claimed, or correlation is, or they tie.
+ *
+ * 6. Acceptance needs p < 0.01 and a gain above one standard error in grouped cross-validation.
+ *
+ * 7. The alias class of a winner: every candidate, and every sum of two, beside which the winner
+ * gains nothing that the data can show.
+ *
+ * 8. Refit of all together, swaps, drops; at most six claims.
+ *
+ * 9. A smooth curve over one coordinate for the part that no candidate explains (unattributed).
+ *
+ * 10. Errors of held-out rows: the whole search is repeated without each fold of groups. */
 #ifndef FOILGAUGE_LOOP_H
 #define FOILGAUGE_LOOP_H
 
@@ -47,71 +59,71 @@ extern "C" {
 #endif
 
 enum {
-  FG_LOOP_SHAPES = 2,       /* non-linear parameters of an effect, at most */
-  FG_LOOP_COLUMNS = 32,     /* linear columns of an effect, at most */
-  FG_LOOP_CLAIMS = 6,       /* effects in one report, at most */
-  FG_LOOP_STARTS = 1024,    /* start values of an effect's shape, at most */
-  FG_LOOP_OUTLIER_ROWS = 8, /* wrong rows in one claim, at most */
-  FG_LOOP_ALIASES = 12,     /* members of an alias class that are reported, at most */
+  FG_LOOP_SHAPES = 2,       /* maximum number of non-linear parameters of an effect */
+  FG_LOOP_COLUMNS = 32,     /* maximum number of linear columns of an effect */
+  FG_LOOP_CLAIMS = 6,       /* maximum number of effects in one report */
+  FG_LOOP_STARTS = 1024,    /* maximum number of start values of an effect's shape */
+  FG_LOOP_OUTLIER_ROWS = 8, /* maximum number of outlier rows in one claim */
+  FG_LOOP_ALIASES = 12,     /* maximum number of reported members of an alias class */
   FG_LOOP_NAME = 96,
 };
 
-/* What a coordinate is; effects ask for these. */
+/* Roles of a coordinate; effects select coordinates by them. */
 typedef enum fg_loop_role {
-  FG_LOOP_ORDER = 1,        /* when a run or group was made */
+  FG_LOOP_ORDER = 1,        /* time or sequence in which runs or groups were made */
   FG_LOOP_BUMP = 2,         /* the bump's number from the lip */
-  FG_LOOP_DECLARED = 4,     /* the declared model uses it */
+  FG_LOOP_DECLARED = 4,     /* used by the declared model */
   FG_LOOP_TEMPERATURE = 8,  /* see kelvin_offset */
-  FG_LOOP_DURATION = 16,    /* a time of treatment */
+  FG_LOOP_DURATION = 16,    /* duration of a treatment */
   FG_LOOP_SENSITIVITY = 32, /* a basis by itself: the response's change by one unit of a part's
                                parameter */
-  FG_LOOP_LEVEL = 64,       /* what the declared model says of the response itself */
+  FG_LOOP_LEVEL = 64,       /* the declared model's prediction of the response */
 } fg_loop_role;
 
 typedef struct fg_loop_coordinate {
   char name[FG_LOOP_NAME];
-  double *value;     /* rows; the level's index for words */
-  size_t levels;     /* words: how many; numbers: 0 */
+  double *value;     /* rows; of words the level's index */
+  size_t levels;     /* of words: number of levels; of numbers: 0 */
   char **level_name; /* levels */
-  size_t distinct;   /* different values */
-  bool coded;        /* numbers: words of another column say the same; levels are left to it */
-  double few[FG_LOOP_COLUMNS + 1];      /* numbers: the lowest of them, ascending */
+  size_t distinct;   /* number of different values */
+  bool coded; /* of numbers: a column of words codes the same levels, so this one adds none */
+  double few[FG_LOOP_COLUMNS + 1];      /* of numbers: the lowest different values, ascending */
   double quantile[FG_LOOP_COLUMNS + 1]; /* of the rows, 0 to 1 in equal steps: knots of curves */
   unsigned roles;
   double kelvin_offset; /* value + kelvin_offset = kelvin */
-  double low, high;     /* of all rows; a basis is scaled by them */
+  double low, high;     /* range over all rows; bases are scaled by it */
 } fg_loop_coordinate;
 
 struct fg_loop_problem;
 
-/* The declared model's columns at the rows of a grid of settings: parameters × rows. */
+/* Computes the declared model's columns at the rows of a grid of settings: parameters × rows. */
 typedef fg_status fg_loop_declared(fg_context *ctx, const void *model,
                                    const struct fg_loop_problem *grid, double *columns);
 
-/* The rows of a series are consecutive and in order. The problem belongs to whoever built it; the
- * engine reads it only. */
+/* The rows of a series are consecutive and in order. The caller owns the problem; the engine only
+ * reads it. */
 typedef struct fg_loop_problem {
   const char *level; /* "runs", "bumps", "points" */
   size_t rows, parameters;
   double *residual;      /* rows: response minus the declared model at its start */
-  double *jacobian;      /* parameters × rows: its change by each parameter */
+  double *jacobian;      /* parameters × rows: derivative of the residual by each parameter */
   char **parameter_name; /* parameters */
-  size_t *group;         /* rows: 0 .. groups - 1, what was drawn independently */
+  size_t *group;         /* rows: 0 .. groups - 1; groups were drawn independently */
   size_t groups;
   bool group_level;  /* rows of a group share a random level */
   size_t *series;    /* rows: along equal values noise may be correlated */
   bool correlated;   /* estimate that correlation */
-  bool *held_out;    /* rows kept aside, whole groups; NULL: none */
-  bool exchangeable; /* rows are single responses: one may be wrong, two may be exchanged */
-  bool few; /* too few groups for curves or the scatter to tell: listed effects of the mean only;
-               whoever built the problem tests the claims by other means */
+  bool *held_out;    /* held-out rows, whole groups; NULL: none */
+  bool exchangeable; /* rows are single responses: one may be an outlier, two may be exchanged */
+  bool few; /* too few groups for curves or tests of the scatter: listed effects of the mean only;
+               the caller tests the claims by other means */
   double *response; /* rows, for exchanged runs: the measured response */
-  double origin;    /* taken from every residual; the constant of the declared model, of value 1, is
-                       so much larger */
-  size_t constant;  /* parameter; only where the origin is not 0 */
+  double origin; /* subtracted from every residual; the constant of the declared model, of value 1,
+                    is larger by it */
+  size_t constant; /* parameter; only where the origin is not 0 */
   fg_loop_coordinate *coordinate;
   size_t coordinates;
-  void *self;                 /* for the effects of a level */
+  void *self;                 /* context of a level's own effects */
   fg_loop_declared *declared; /* NULL: the declared model is known at the rows only */
   const void *declared_model;
 } fg_loop_problem;
@@ -120,48 +132,48 @@ struct fg_loop_effect;
 
 typedef struct fg_loop_candidate {
   const struct fg_loop_effect *effect;
-  size_t a, b; /* coordinates; b = a where there is one */
-  size_t rows; /* of wrong or exchanged responses */
+  size_t a, b; /* coordinates; b = a for an effect of one */
+  size_t rows; /* of outlier or exchanged responses */
   size_t row[FG_LOOP_OUTLIER_ROWS];
 } fg_loop_candidate;
 
 typedef bool fg_loop_accepts(const fg_loop_problem *problem, size_t a, size_t b);
 typedef size_t fg_loop_columns(const fg_loop_problem *problem, const fg_loop_candidate *candidate);
-/* columns × rows, scaled so that one column's half range is about 1: its coefficient is then the
- * amplitude in the response's unit. */
+/* Computes columns × rows, scaled so that one column's half range is about 1: its coefficient is
+ * then the amplitude in the response's unit. */
 typedef void fg_loop_basis(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
                            const double *shape, double *columns);
-/* Start values; returns how many (1 for effects without shape). */
+/* Writes start values; returns their number (1 for effects without shape). */
 typedef size_t fg_loop_starts(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
                               double starts[FG_LOOP_STARTS][FG_LOOP_SHAPES]);
 
-/* What concerns single rows. */
+/* Effects of single rows. */
 typedef enum fg_loop_outlier {
   FG_LOOP_NOT_OUTLIER,
-  FG_LOOP_WRONG_ROW,      /* one response is wrong */
-  FG_LOOP_EXCHANGED_ROWS, /* two changed places */
+  FG_LOOP_WRONG_ROW,      /* one response is an outlier */
+  FG_LOOP_EXCHANGED_ROWS, /* two responses are exchanged */
 } fg_loop_outlier;
 
-/* What concerns the scatter about the mean. */
+/* Effects of the scatter about the mean. */
 typedef enum fg_loop_scatter {
   FG_LOOP_OF_THE_MEAN,
-  FG_LOOP_SERIAL, /* neighbours along the order are alike */
-  FG_LOOP_SPREAD, /* its size changes; the basis is of the logarithm of the standard deviation */
+  FG_LOOP_SERIAL, /* neighbours along the order are correlated */
+  FG_LOOP_SPREAD, /* the sd varies; the basis is of its logarithm */
 } fg_loop_scatter;
 
-/* What the loop on scans looks for over the bumps of its foils, in this order. */
+/* Effects over the bumps of foils that the loop on scans searches, in this order. */
 typedef enum fg_loop_over_bumps {
   FG_LOOP_NOT_OVER_BUMPS,
   FG_LOOP_BUMP_DECAY,   /* from the lip */
-  FG_LOOP_BUMP_STRETCH, /* of the arc length: it shows in the angles alone */
+  FG_LOOP_BUMP_STRETCH, /* of the arc length: only the angles show it */
   FG_LOOP_BUMP_TREND,   /* over their number */
   FG_LOOP_BUMP_KINDS
 } fg_loop_over_bumps;
 
-/* Difference that a claim states, by the kind of its effect. */
+/* Difference that a claim's sentence states, by the kind of its effect. */
 typedef enum fg_loop_reads {
   FG_LOOP_READS_RANGE,    /* over the rows */
-  FG_LOOP_READS_SLOPE,    /* between the ends */
+  FG_LOOP_READS_SLOPE,    /* between the ends of the range */
   FG_LOOP_READS_BEND,     /* between the turn and the farther end */
   FG_LOOP_READS_LEVELS,   /* between the highest level and the lowest */
   FG_LOOP_READS_STEP,     /* between both sides */
@@ -176,34 +188,35 @@ typedef enum fg_loop_reads {
 typedef struct fg_loop_effect {
   const char *id, *level, *frame;
   const char *words; /* "a trend with" */
-  bool pair;         /* of coordinates */
+  bool pair;         /* needs two coordinates */
   size_t shapes;
   const char *shape_name[FG_LOOP_SHAPES];
   fg_loop_accepts *accepts;
   fg_loop_columns *columns;
   fg_loop_basis *basis;
   fg_loop_starts *starts;
-  /* The shape is a place between rows: it cannot be refined by small steps. */
+  /* the shape is a place between rows: small steps cannot refine it */
   bool stepwise;
-  bool cycle;      /* its shape is a period, its columns are sine and cosine */
-  bool from_zero;  /* the amplitude is the largest size, not half the range */
-  bool own_levels; /* each value that was measured has a level of its own: nothing is known between
-                    */
-  bool slope;      /* its coefficient is half the change over its coordinate's range */
-  bool unattributed; /* a curve of what no listed effect explains */
+  bool cycle;        /* the shape is a period, the columns are sine and cosine */
+  bool from_zero;    /* the amplitude is the largest size, not half the range */
+  bool own_levels;   /* every measured value has a level of its own: values between are unknown */
+  bool slope;        /* its coefficient is half the change over its coordinate's range */
+  bool unattributed; /* a curve of the part that no listed effect explains */
   fg_loop_outlier outlier;
   fg_loop_scatter scatter;
   fg_loop_over_bumps over_bumps;
   const char *bump_words; /* "a decay from the lip" */
-  fg_loop_reads reads;    /* in words for people */
-  const char *sought;     /* "trends", for what was looked for in vain; NULL: not told */
-  const char *term; /* of a formula, {a} and {b} for its columns, beside them; NULL: none has it */
+  fg_loop_reads reads;    /* difference stated in sentences */
+  const char
+      *sought;      /* "trends", in the list of effects sought without success; NULL: not listed */
+  const char *term; /* term of a formula, {a} and {b} for its columns, beside their main terms;
+                       NULL: no formula has it */
 } fg_loop_effect;
 
-/* An effect is accepted below this probability of noise alone, over everything that was tried. */
+/* Level of acceptance: p-value of an effect over everything that was tried. */
 #define FG_LOOP_ACCEPT_P 0.01
 
-/* How far a step of the search is, 0 to 1, and how many effects the steps before it found. */
+/* Reports progress: share of the present step, 0 to 1, and number of effects found before it. */
 typedef void fg_loop_progress(void *user, size_t found, double share);
 
 typedef struct fg_loop_options {
@@ -211,10 +224,11 @@ typedef struct fg_loop_options {
   uint64_t seed;
   double accept_p;    /* 0: FG_LOOP_ACCEPT_P */
   size_t simulations; /* 0: 999 */
-  double matters;     /* amplitude that matters, in the response's unit; 0: one noise sd */
+  double matters; /* smallest amplitude of practical interest, in the response's unit; 0: one noise
+                     sd */
   double minutes,
-      mebibytes; /* what the search may take by estimate, else FG_ERR_DATA; 0: no limit */
-  fg_loop_progress *progress; /* NULL: not told */
+      mebibytes; /* limits of the search by estimate, beyond which it is FG_ERR_DATA; 0: no limit */
+  fg_loop_progress *progress; /* NULL: no progress report */
   void *progress_user;
 } fg_loop_options;
 
@@ -224,13 +238,13 @@ typedef enum fg_loop_verdict {
   FG_LOOP_ABSENT,
   FG_LOOP_INCONCLUSIVE,
   FG_LOOP_ABSORBED,
-  FG_LOOP_EXPLAINED_BY_OTHERS, /* passed, but a member of a claim's alias class */
+  FG_LOOP_EXPLAINED_BY_OTHERS, /* significant, but a member of a claim's alias class */
 } fg_loop_verdict;
 
 typedef struct fg_loop_alias {
   char name[2 * FG_LOOP_NAME]; /* of the candidate, or of a sum of two */
-  double correlation;          /* of its best fit with the winner's, both beside the model */
-  double loss;                 /* share of the winner's explained sum that it misses */
+  double correlation;          /* between its best fit and the winner's, both beside the model */
+  double loss;                 /* share of the winner's explained sum that it does not explain */
   fg_loop_candidate candidate, second;
   bool sum;
 } fg_loop_alias;
@@ -246,11 +260,11 @@ typedef struct fg_loop_claim {
   double amplitude_u; /* standard uncertainty */
   double interval[2]; /* 95 % */
   double p_value;     /* max-T */
-  double noise_value, noise_value_u; /* of the scatter: correlation of neighbours; largest over
-                                        smallest sd of a row */
+  double noise_value, noise_value_u; /* of the scatter: correlation of neighbours; ratio of the
+                                        largest to the smallest sd of a row */
   double retained_share;             /* |M W f|² / |W f|² */
-  double cv_gain, cv_gain_se;        /* NaN for lone rows */
-  int held_out;                      /* +1 confirmed, 0 not contradicted, -1 none kept aside */
+  double cv_gain, cv_gain_se;        /* NaN for outlier rows */
+  int held_out;                      /* +1 confirmed, 0 not contradicted, -1 no rows held out */
   fg_loop_alias alias[FG_LOOP_ALIASES];
   size_t aliases, aliases_unlisted;
 } fg_loop_claim;
@@ -259,10 +273,10 @@ typedef struct fg_loop_rejected {
   fg_loop_candidate candidate;
   char name[FG_LOOP_NAME];
   fg_loop_verdict verdict;
-  double would_explain; /* share of the residual sum that it would take away */
+  double would_explain; /* share of the residual sum that it explains alone */
   double p_value;       /* max-T, last step */
   double retained_share;
-  double smallest_detectable; /* amplitude found with a power of 80 %; NaN where nothing would */
+  double smallest_detectable; /* amplitude found with a power of 80 %; NaN where none is */
 } fg_loop_rejected;
 
 typedef struct fg_loop_curve {
@@ -279,7 +293,8 @@ typedef struct fg_loop_curve {
 /* Errors over a set of rows. */
 typedef struct fg_loop_error {
   double rms, robust_sd, p95, maximum;
-  double held_out_rms; /* rows kept aside; without, every fold of groups in turn, searched anew */
+  double held_out_rms; /* held-out rows; without any, cross-fitted: every fold of groups in turn,
+                          with the search repeated */
   double cross_validated_rms; /* whole groups left out in turn */
 } fg_loop_error;
 
@@ -290,29 +305,28 @@ typedef struct fg_loop_noise {
 
 typedef struct fg_loop_advice {
   char text[1200];
-  double runs; /* at either setting, needed for a power of 80 %; NaN: no number helps */
+  double runs; /* number at either setting that a power of 80 % needs; NaN: no number suffices */
 } fg_loop_advice;
 
-/* Tests of the whole residual, beside everything that is looked for by name: `clean` needs that it
- * passes them. */
+/* Residual tests, beside all effects sought by name: `clean` requires that none fails. */
 typedef enum fg_loop_check {
-  FG_LOOP_CHECK_REPEATS,  /* rows of the same declared settings, more alike than the model fits
-                             their means: lack of fit */
-  FG_LOOP_CHECK_SETTINGS, /* the same of rows that agree in every recorded column */
-  FG_LOOP_CHECK_LAGS,     /* rows 2 to `lag` apart, all together */
-  FG_LOOP_CHECK_ONE_LAG,  /* rows `lag` apart, the most alike or unlike */
+  FG_LOOP_CHECK_REPEATS,  /* lack of fit: rows of the same declared settings, against the model's
+                             prediction of their means */
+  FG_LOOP_CHECK_SETTINGS, /* lack of fit of rows that agree in every recorded column */
+  FG_LOOP_CHECK_LAGS,     /* correlation at lags 2 to `lag`, all together */
+  FG_LOOP_CHECK_ONE_LAG,  /* correlation at the one lag where it is strongest */
   FG_LOOP_CHECKS
 } fg_loop_check;
 
 typedef struct fg_loop_checked {
-  bool done, failed; /* not done: nothing repeats, or rows have no order or are too few */
+  bool done, failed; /* not done: no row is repeated, or rows have no order or are too few */
   double statistic;  /* F ratio; sum of squares of normal deviates; the largest of them */
-  double dof[2];     /* of an F ratio; of a sum, the first */
+  double dof[2];     /* of an F ratio; of a sum of squares the first alone */
   double p_value, level;
   size_t lag;
-  double correlation; /* at one lag */
-  double rms;         /* of what it shows, in the response's unit */
-  size_t worst[3];    /* rows of the settings that are missed most, one of each */
+  double correlation; /* at FG_LOOP_CHECK_ONE_LAG */
+  double rms;         /* of the deviation tested, in the response's unit */
+  size_t worst[3];    /* one row of each of the settings with the largest deviations */
   size_t worst_count;
 } fg_loop_checked;
 
@@ -327,7 +341,7 @@ typedef struct fg_loop_result {
   fg_loop_outcome verdict;
   fg_loop_noise noise;
   double noise_floor;
-  double family_p; /* smallest p-value of all that was looked for first: uniform where nothing is */
+  double family_p; /* smallest p-value of the first step's whole family: uniform under the null */
   fg_loop_error before, after;
   double ratio_rms, ratio_held_out, ratio_interval[2]; /* after / before; 95 % block bootstrap */
   fg_loop_claim claim[FG_LOOP_CLAIMS];
@@ -335,84 +349,86 @@ typedef struct fg_loop_result {
   bool has_curve;
   fg_loop_curve curve;
   fg_loop_checked check[FG_LOOP_CHECKS];
-  bool fails; /* one of them, beside all that was found; the clearest is */
+  bool fails; /* one of the tests fails, beside all effects found */
   fg_loop_check failed;
-  size_t *setting; /* rows: which settings, from 1, where those failed (0: kept aside); or NULL */
+  size_t *setting; /* rows: index of the settings, from 1, for the failed test of settings (0: held
+                      out); or NULL */
   fg_loop_rejected *rejected;
   size_t rejects;
   fg_loop_advice advice[FG_LOOP_CLAIMS];
   size_t advices;
   double *parameter, *parameter_u; /* of the declared model, refitted with everything */
   double *before_fit, *after_fit;  /* rows: residual before and after */
-  double *effect_fit;              /* rows: what was found, in the response's unit */
+  double *effect_fit; /* rows: contribution of the effects found, in the response's unit */
   char **note;
   size_t notes, note_capacity;
 } fg_loop_result;
 
-/* Runs the engine. FG_ERR_DATA when nothing can be judged at all: fewer than three rows beyond the
- * parameters, a residual that is zero or constant within rounding is not an error but a result
- * (`clean` with a note). Free with fg_loop_result_free. */
+/* Runs the engine. FG_ERR_DATA when there are fewer than three rows beyond the parameters. A
+ * residual that is zero or constant within rounding is no error but a result (`clean` with a note).
+ * Free with fg_loop_result_free. */
 fg_status fg_loop_run(fg_context *ctx, const fg_loop_problem *problem,
                       const fg_loop_options *options, fg_loop_result *result);
 void fg_loop_result_free(fg_loop_result *result);
 
-/* A spread with a size of its own for every level, rather than a slope. */
+/* Returns true for a spread with an sd of its own for every level, false for a slope. */
 bool fg_loop_spread_by_levels(const fg_loop_problem *problem, const fg_loop_candidate *candidate);
 
 const char *fg_loop_verdict_word(fg_loop_verdict verdict);
 const char *fg_loop_outcome_word(fg_loop_outcome outcome);
 
-/* The effect of a claim at the rows of a problem (rows numbers). */
+/* Evaluates a claim's effect at the rows of a problem (rows numbers). */
 fg_status fg_loop_claim_evaluate(fg_context *ctx, const fg_loop_problem *problem,
                                  const fg_loop_claim *claim, double *effect);
-/* The same of a claim on one coordinate, at values of that. */
+/* Evaluates a claim on one coordinate, at values of that coordinate. */
 fg_status fg_loop_claim_curve(fg_context *ctx, const fg_loop_problem *problem,
                               const fg_loop_claim *claim, const double *value, size_t count,
                               double *effect);
-/* "a drift over the runs"; of single rows without their numbers. */
+/* "a drift over the runs"; for single rows without their numbers. */
 void fg_loop_effect_words(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
                           char *text, size_t size);
-/* The curve at a value of its coordinate; constant beyond its ends. */
+/* Returns the curve at a value of its coordinate; constant beyond its ends. */
 double fg_loop_curve_at(const fg_loop_curve *curve, double value);
 
 /* ---- tables: levels `runs` and `bumps` ---- */
 
-/* The effects of tables, parts over bumps, and heat treatment. */
+/* Returns the effects of tables, of parts over bumps, and of heat treatment. */
 const fg_loop_effect *fg_loop_table_effects(void);
 
 typedef struct fg_loop_table_spec {
   const char *response; /* column */
   const char *model;    /* a formula, or "arc_length" */
   const char *group;    /* column, or NULL */
-  const char *offset; /* column: what is predicted of the response besides the model, and taken from
-                         it (a beam model of forming, say); or NULL */
-  const char *order;  /* column, or NULL: `bump` in groups, `run` or the like, else the rows */
-  const char *hold_out;    /* "0.2", "COLUMN=VALUE"; "0" or NULL: every row takes part */
+  const char *offset;   /* column of predictions, subtracted from the response before the model is
+                           fitted (of a beam model of forming, say); or NULL */
+  const char *order;    /* column, or NULL: `bump` in groups, `run` or the like, else the rows */
+  const char *hold_out; /* "0.2", "COLUMN=VALUE"; "0" or NULL: no row is held out */
   const fg_design *design; /* arc_length only */
   uint64_t seed;
 } fg_loop_table_spec;
 
-/* A declared model in a file: {"response", "model", "group", "order", "design": {...}}. Members
- * that `spec` has already stay; its other members point into `declaration`, which lives as long as
- * they are used. FG_ERR_DATA names the file and the member, or line and column where the JSON stops
- * being valid. */
+/* Declared model in a file: {"response", "model", "group", "order", "design": {...}}. Members
+ * already set in `spec` stay; its other members point into `declaration`, which must outlive their
+ * use. FG_ERR_DATA names the file and the member, or line and column of invalid JSON. */
 typedef struct fg_loop_declaration fg_loop_declaration;
 fg_status fg_loop_declaration_load(fg_context *ctx, const char *path, fg_loop_table_spec *spec,
                                    fg_design *design, fg_loop_declaration **declaration);
-bool fg_loop_declaration_has_design(const fg_loop_declaration *declaration); /* NULL: no */
+bool fg_loop_declaration_has_design(
+    const fg_loop_declaration
+        *declaration); /* Returns true when the declaration has a design; false for NULL. */
 void fg_loop_declaration_free(fg_loop_declaration *declaration);
 
 /* A problem built from a table; owns everything in it. `row` maps its rows to the table's. */
 typedef struct fg_loop_table_problem {
   fg_loop_problem problem;
   size_t *row;
-  char *excluded;                /* words: columns that were left out and why; NULL: none */
-  struct fg_loop_formula *model; /* for problem.declared; NULL: arc_length, which has no columns */
+  char *excluded;                /* words: excluded columns with reasons; NULL: none */
+  struct fg_loop_formula *model; /* of problem.declared; NULL: arc_length, which has no columns */
 } fg_loop_table_problem;
 
-/* Cells that are missing, columns that are not there, a formula that cannot be built: FG_ERR_DATA
- * or FG_ERR_USAGE with words. Columns that are results of the same measurement (bump radius and
- * angle, height ...) are no causes and are left out. */
+/* Missing cells, missing columns or a formula that cannot be built are FG_ERR_DATA or FG_ERR_USAGE
+ * with a message. Columns that are results of the same measurement (bump radius and angle, height
+ * ...) are no causes and are excluded. */
 fg_status fg_loop_table_problem_build(fg_context *ctx, const fg_table *table,
                                       const fg_loop_table_spec *spec,
                                       fg_loop_table_problem *problem);
@@ -420,7 +436,7 @@ void fg_loop_table_problem_free(fg_loop_table_problem *problem);
 
 /* ---- reports ---- */
 
-/* A file that the table was made from: a scan of a run, a part of a lot. */
+/* Source file of the table: a scan of a run, a part of a lot. */
 typedef struct fg_loop_input {
   const char *path, *sha256;
 } fg_loop_input;
@@ -431,53 +447,54 @@ typedef struct fg_loop_report {
   const fg_loop_table_problem *problem;
   const fg_loop_result *result;
   uint64_t seed;
-  const fg_loop_input *input; /* beside `path` */
+  const fg_loop_input *input; /* sources other than `path` */
   size_t inputs;
-  const char *const *row_name; /* of the table's rows: "foil 3, bump 5"; NULL: their numbers */
-  const char *said;            /* how the table was made, a note; NULL: nothing */
+  const char *const
+      *row_name;    /* names of the table's rows: "foil 3, bump 5"; NULL: their numbers */
+  const char *said; /* note on the table's making; NULL: none */
 } fg_loop_report;
 
 /* "foilgauge/loop/1" (reports/schema/loop.schema.json). */
 fg_status fg_loop_write_json(fg_context *ctx, const fg_loop_report *report, FILE *out);
 fg_status fg_loop_write_html(fg_context *ctx, const fg_loop_report *report, FILE *out);
 fg_status fg_loop_write_text(fg_context *ctx, const fg_loop_report *report, FILE *out);
-/* One sentence for a process engineer; the caller frees it. */
+/* Writes one sentence for a process engineer; the caller frees it. */
 fg_status fg_loop_sentence(fg_context *ctx, const fg_loop_report *report, char **text);
-/* What is assumed of the rows' scatter, in words. */
+/* Returns the assumed noise model in words. */
 const char *fg_loop_noise_model(const fg_loop_result *result);
 
-/* ---- the model file: declared model plus what was found ---- */
+/* ---- the model file: declared model and the effects found ---- */
 
 typedef struct fg_loop_model fg_loop_model;
 
 /* "foilgauge/loop-model/1". */
 fg_status fg_loop_write_model(fg_context *ctx, const fg_loop_report *report, FILE *out);
-/* FG_ERR_DATA for a file that is not one. Free with fg_loop_model_free. */
+/* FG_ERR_DATA for a file that is no model. Free with fg_loop_model_free. */
 fg_status fg_loop_model_load(fg_context *ctx, const char *path, fg_loop_model **model);
-/* Takes the effects that were found out of the response column of a table, so that an analysis
- * with the declared formula starts from the better model. Lone rows (outlier, exchanged runs) are
- * of the table they were found in and are not applied. A value outside the range the model was
- * found in, or a level it has not seen, is FG_ERR_DATA with its row. */
+/* Subtracts the effects of the model from the response column of a table, so that an analysis with
+ * the declared formula starts from the better model. Effects of single rows (outlier, exchanged
+ * runs) belong to the model's own table and are not applied. A value outside the model's range, or
+ * a level unknown to it, is FG_ERR_DATA with its row. */
 fg_status fg_loop_model_apply(fg_context *ctx, const fg_loop_model *model, fg_table *table);
 
-/* What a model took out of a table. */
+/* Effect that a model subtracted from a table. */
 typedef struct fg_loop_taken {
   char id[FG_LOOP_NAME], words[4 * FG_LOOP_NAME]; /* "a trend with humidity" */
-  char sentence[10 * FG_LOOP_NAME]; /* with its effect on the response, in the words of the file; or
+  char sentence[10 * FG_LOOP_NAME]; /* with its effect on the response, in the file's own words; or
                                        empty */
-  double amplitude, u_amplitude;    /* as it was found, standard uncertainty; NaN: not known */
-  size_t parameters;                /* that were estimated for it */
-  double low, high;                 /* range of the effect taken out of the rows */
-  bool applied;                     /* false: it concerns rows of the table it was found in */
+  double amplitude, u_amplitude;    /* with standard uncertainty, as in the file; NaN: unknown */
+  size_t parameters;                /* number of parameters estimated for it */
+  double low, high;                 /* range of the subtracted effect over the rows */
+  bool applied;                     /* false: it belongs to rows of the model's own table */
 } fg_loop_taken;
 
 typedef struct fg_loop_takings {
   fg_loop_taken *one;
   size_t count;
-  double *change; /* rows: the sum that was taken out */
+  double *change; /* rows: the subtracted sum */
 } fg_loop_takings;
 
-/* As fg_loop_model_apply, and says what it took. Free with fg_loop_takings_free. */
+/* As fg_loop_model_apply, with a list of the subtracted effects. Free with fg_loop_takings_free. */
 fg_status fg_loop_model_take(fg_context *ctx, const fg_loop_model *model, fg_table *table,
                              fg_loop_takings *takings);
 void fg_loop_takings_free(fg_loop_takings *takings);

@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the loop on scans came to, decided: numbers, words and points to draw. JSON, text and page
- * say what stands here and decide nothing; whoever uses the library can do the same.
+/* Result of the loop on scans: decisions, numbers, words and points to draw. The writers of JSON,
+ * text and page only print it and decide nothing, so that users of the library get the same.
  *
- * Everything belongs to the loop that it is of and lives as long as that.
- */
+ * Everything belongs to its loop and lives as long as the loop. */
 #ifndef FOILGAUGE_SCAN_RESULT_H
 #define FOILGAUGE_SCAN_RESULT_H
 
@@ -29,50 +28,50 @@ enum {
   FG_SCAN_RESULT_GRID_SAMPLES = 61, /* of a line of the picture's grid */
 };
 
-/* What effects live on and residuals are drawn over. */
+/* Coordinates of effects and of residual plots. */
 typedef enum fg_scan_coordinate {
   FG_SCAN_X, /* mm of the scan */
   FG_SCAN_Y,
   FG_SCAN_FOIL,   /* along the foil, mm from the lip's side */
   FG_SCAN_PHI,    /* place in the bump's arc, -1 to 1 */
-  FG_SCAN_INDEX,  /* number of the bump, with less than half a one to either side for the place in
-                     its arc */
+  FG_SCAN_INDEX,  /* number of the bump, plus less than half to either side for the place in its arc
+                   */
   FG_SCAN_NORMAL, /* direction of the edge's outward normal, degrees */
   FG_SCAN_COORDINATES
 } fg_scan_coordinate;
 
-/* What the held-out error is of. */
+/* Kinds of held-out error. */
 typedef enum fg_scan_held_out {
-  FG_SCAN_HELD_OUT_NOTHING, /* nothing was found: it is the rms; or too few bumps to keep some
-                               aside: it is NaN */
-  FG_SCAN_HELD_OUT_SCANS,   /* scans kept aside */
-  /* Cross-fitted: bumps (discs; of a curve over places or a step short stretches of the edge) in
-   * folds, and the search repeated without each. Before, nothing but the geometry is fitted, as to
-   * all rows. */
+  FG_SCAN_HELD_OUT_NOTHING, /* no effect was found: it is the rms; or too few bumps to hold some
+                               out: it is NaN */
+  FG_SCAN_HELD_OUT_SCANS,   /* held-out scans */
+  /* Cross-fitted: bumps in folds (discs on plates; short stretches of the edge for a step or a
+     curve over places), with the search repeated without each. The error before is of the geometry
+     alone, fitted to all rows. */
   FG_SCAN_HELD_OUT_FOLDS
 } fg_scan_held_out;
 
-/* Errors of the points, um. */
+/* Errors of the rows, um. */
 typedef struct fg_scan_loop_error {
   double rms, robust_sd, p95, maximum, held_out_rms;
 } fg_scan_loop_error;
 
-/* Noise of an edge row, um: white, and what neighbours along the edge share (Patterson and Thompson
- * 1971: restricted likelihood). Every sum of squares was judged by it. */
+/* Noise of an edge row, um: white, and correlated along the edge (Patterson and Thompson 1971:
+ * restricted likelihood). All sums of squares are judged by it. */
 typedef struct fg_scan_noise {
-  const char *model; /* "white": rows are independent. Else how the correlation falls with the
-                       distance d: "gaussian": exp(-(d / range)²), "exponential": exp(-d / range) */
-  double sd_um;      /* of a row: the root of the squares of the two that follow */
+  const char *model; /* "white": rows are independent. Else the correlation over the distance d:
+                        "gaussian": exp(-(d / range)²), "exponential": exp(-d / range) */
+  double sd_um;      /* of a row: root of the squares of the two below */
   double white_um, correlated_um;
-  double correlation; /* share of the variance that rows next to each other have in common */
+  double correlation; /* share of the variance that adjacent rows share */
   double range_mm;
-  double long_waves; /* variance of waves of half a millimetre over what the form says of them */
-  double *disc_um;   /* sd of a row of every disc, which has its own; in the scans' order */
+  double long_waves; /* variance of waves of half a millimetre over the model's prediction of it */
+  double *disc_um;   /* sd of a row, disc by disc, in the scans' order */
   size_t discs;
 } fg_scan_noise;
 
-/* One number of an effect: as JSON has it, and as people read it (a ratio in ppm; what leads an
- * effect with its sign). */
+/* Number of an effect: for JSON, and for people (a ratio in ppm; the leading amplitude with its
+ * sign). */
 typedef struct fg_scan_result_parameter {
   const char *name; /* "amplitude_um", "value", "period_mm" */
   double value, u;
@@ -80,10 +79,10 @@ typedef struct fg_scan_result_parameter {
   double told, u_told;
 } fg_scan_result_parameter;
 
-/* What the colour lines say of an effect of the carriage: between the channels of one scan neither
- * part nor optics shows, but the carriage does. */
+/* Verdict of the colour lines on an effect of the carriage: between the channels of one scan, part
+ * and optics cancel, but the carriage's error does not. */
 typedef enum fg_channel_check_verdict {
-  FG_CHANNEL_CHECK_NONE,        /* not the carriage's, or no colour scan */
+  FG_CHANNEL_CHECK_NONE,        /* not of the carriage, or no colour scan */
   FG_CHANNEL_CHECK_FOR,         /* "for" */
   FG_CHANNEL_CHECK_AGAINST,     /* "against" */
   FG_CHANNEL_CHECK_CANNOT_TELL, /* "cannot_tell" */
@@ -91,108 +90,109 @@ typedef enum fg_channel_check_verdict {
 
 typedef struct fg_channel_check {
   fg_channel_check_verdict verdict;
-  const char *reason; /* in words */
-  double p_value;     /* that lines which show nothing of it look like that */
-  double p_against;   /* the same of lines that show it as it is claimed; NaN: gaps not known */
-  double factor, u_factor; /* what they show over what they must; without known gaps 1 and NaN */
-  double expected_um;      /* rms of what they must show, about its mean */
-  double gap_px[3];        /* of red, green, blue: as stated, or what fits best; NaN: none */
+  const char *reason;      /* reason in words */
+  double p_value;          /* of the channels, if the effect were absent */
+  double p_against;        /* of the channels, if the effect were as claimed; NaN: gaps unknown */
+  double factor, u_factor; /* ratio of shown to expected size; without known gaps 1 and NaN */
+  double expected_um;      /* rms of the expected difference, about its mean */
+  double gap_px[3];        /* of red, green, blue: as stated, or the best fit; NaN: none */
   bool gap_stated;
 } fg_channel_check;
 
-/* An effect that is in the corrected model. */
+/* Effect in the corrected model. */
 typedef struct fg_scan_result_claim {
-  const char *id, *direction; /* form: "normal", "radial"; NULL: it has one only */
+  const char *id, *direction; /* direction of an effect with two bases: "normal", "radial"; NULL: it
+                                 has one only */
   const char *words, *equation;
-  const char *says; /* what its sign means; NULL: its words say all */
-  bool of_width;    /* of the strip's width: residual and dimensions are without it */
+  const char *says; /* meaning of the sign; NULL: its words are complete */
+  bool of_width;    /* of the strip's width: residual and dimensions are not corrected for it */
   bool free;        /* a curve that no listed effect explains */
-  bool sure;        /* every explanation that the data allow holds it */
+  bool sure;        /* every explanation that the data allow includes it */
   fg_loop_verdict verdict;
-  fg_scan_coordinate coordinate; /* of curves, and of what the part does */
+  fg_scan_coordinate coordinate; /* of curves, and of effects of the part */
   const char *coordinate_name;   /* "foil.s" */
-  const char *moves;             /* of a curve, in a word */
-  const char *basis;             /* what its shape is about; NULL: its numbers say all */
+  const char *moves;             /* of curves: one word for the thing moved */
+  const char *basis;             /* reference of the shape; NULL: its numbers are complete */
   fg_scan_result_parameter parameter[FG_SCAN_RESULT_PARAMETERS];
   size_t parameters;
   double amplitude_um;
-  double p_value;        /* that it, or no effect at all, is needed */
-  double retained_share; /* of it beside the geometry; NaN: was not searched */
-  double would_explain;  /* share of the residual sum, or of the widths', that it alone takes;
-                            likewise */
-  double (*shape)[2];    /* coordinate and deviation in um, of curves and of what has a basis */
+  double p_value;        /* of the null hypothesis that the effect, or any effect, is not needed */
+  double retained_share; /* share left beside the geometry; NaN: was not searched */
+  double would_explain; /* share of the residual sum, or of the widths' sum, that it explains alone;
+                           NaN: was not searched */
+  double (*shape)[2];   /* coordinate and deviation in um, of curves and of effects with a basis */
   size_t shape_points;
   fg_channel_check channel_check;
 } fg_scan_result_claim;
 
-/* One of several sets of effects that explain. */
+/* One of several sets of effects that explain the residual. */
 typedef struct fg_scan_result_explanation {
   char name[FG_SCAN_RESULT_WORDS];  /* "scan.scale_y + part.ovality" */
-  char words[FG_SCAN_RESULT_WORDS]; /* what it has of its own, for people */
+  char words[FG_SCAN_RESULT_WORDS]; /* the part of it that the others lack, for people */
 } fg_scan_result_explanation;
 
-/* An effect that is not claimed. `tied`: one of several explanations holds it. */
+/* Effect that is not claimed. `tied`: one of several explanations includes it. */
 typedef struct fg_scan_result_unclaimed {
   const char *id, *words;
   bool of_width;
   fg_loop_verdict verdict;
   double would_explain, retained_share;
-  double smallest_um; /* would have shown; NaN: no size would */
-  bool barred;        /* seen, and not confirmed from disc to disc */
+  double smallest_um; /* smallest amplitude that would have shown; NaN: none */
+  bool barred;        /* seen, but not confirmed from disc to disc */
 } fg_scan_result_unclaimed;
 
 typedef struct fg_scan_result_scan {
   const fg_measurement *before, *after;
-  bool hold_out; /* it only confirms */
+  bool hold_out; /* held out */
 } fg_scan_result_scan;
 
-/* What the rows are of: a foil or a disc on a scan. */
+/* Foil or disc on one scan, the unit that rows belong to. */
 typedef struct fg_scan_result_view {
   size_t scan;
   const fg_foil *foil; /* NULL: a disc */
   size_t bumps;        /* of the part */
 } fg_scan_result_view;
 
-/* A mean of neighbouring stations, and how far it lies from its circle. */
+/* Mean of neighbouring stations, and its distance from the circle. */
 typedef struct fg_scan_result_row {
   size_t scan;
-  size_t arc;                        /* neighbours on one edge without a gap */
+  size_t arc;                        /* index of a run of neighbours on one edge without a gap */
   int bump;                          /* number; 0: a land or a disc */
   fg_point at_mm;                    /* measured */
   fg_point ideal_mm;                 /* on its circle */
-  fg_point normal;                   /* outwards from the circle's centre */
-  double place[FG_SCAN_COORDINATES]; /* NaN: it has none */
-  double weight;                     /* stations in the mean; 0: an outlier, which is left out */
-  double residual_um[2];             /* before, after; outwards positive */
+  fg_point normal;                   /* outward from the circle's centre */
+  double place[FG_SCAN_COORDINATES]; /* by coordinate; NaN: none */
+  double weight;                     /* stations in the mean; 0: an outlier, not used */
+  double residual_um[2];             /* before and after correction; outward positive */
 } fg_scan_result_row;
 
-/* Sum of the effects on one coordinate, to be drawn. */
+/* Sum of the effects on one coordinate, for plots. */
 typedef struct fg_scan_result_line {
   fg_scan_coordinate coordinate;
-  bool glass; /* a displacement of the picture; else the part's deviation */
-  char axis;  /* 'x', 'y': of a displacement */
-  bool free;  /* a free curve of the part is in it: without what circles take over */
+  bool glass;                       /* displacement of the picture; else deviation of the part */
+  char axis;                        /* 'x', 'y': component of the displacement */
+  bool free;                        /* includes a free curve of the part, less its circle */
   double x[FG_SCAN_RESULT_SAMPLES]; /* over the foil: degrees about O from its middle */
   double um[FG_SCAN_RESULT_SAMPLES];
-  double expanded_um[FG_SCAN_RESULT_SAMPLES]; /* U = 2u; NaN: not known */
+  double expanded_um[FG_SCAN_RESULT_SAMPLES]; /* U = 2u; NaN: unknown */
 } fg_scan_result_line;
 
-/* One line of the picture's grid, and where its points really lie. */
+/* Line of the picture's grid, and the true places of its points. */
 typedef struct fg_scan_result_grid_line {
   int axis; /* 0: at an x, 1: at a y */
   fg_point at_mm[FG_SCAN_RESULT_GRID_SAMPLES], move_mm[FG_SCAN_RESULT_GRID_SAMPLES];
 } fg_scan_result_grid_line;
 
 typedef struct fg_scan_result_grid {
-  fg_scan_result_grid_line *line; /* as dense as shows what moves them */
-  size_t lines;                   /* 0: nothing moves the picture */
+  fg_scan_result_grid_line *line; /* as dense as the displacement needs */
+  size_t lines;                   /* 0: no effect moves the picture */
   double low_mm[2], high_mm[2];   /* of the picture */
-  double cell_mm;                 /* between lines, at most */
+  double cell_mm;                 /* maximum distance between lines */
   double largest_mm;              /* displacement */
   double period_mm;               /* of the shortest ripple; infinite: none */
 } fg_scan_result_grid;
 
-/* ---- the bumps against the declared springback, or against what a forming predicts ---- */
+/* ---- the bumps against the declared springback, or against a forming's prediction ---- */
 
 enum { FG_SCAN_RESULT_RESPONSES = 2 };
 
@@ -208,7 +208,7 @@ typedef struct fg_scan_result_bump_claim {
   struct {
     char name[2 * FG_LOOP_NAME]; /* "part.stretch(constant)" */
     char id[2 * FG_LOOP_NAME];   /* a sum keeps its words */
-  } tied[FG_LOOP_ALIASES];       /* does as well */
+  } tied[FG_LOOP_ALIASES];       /* equivalent explanations */
   size_t ties;
 } fg_scan_result_bump_claim;
 
@@ -216,51 +216,52 @@ typedef struct fg_scan_result_bump_unclaimed {
   const char *id, *words;
   fg_loop_verdict verdict;
   double would_explain, p_value, retained_share;
-  double smallest; /* would have shown, the response's `unit`; NaN: none would */
+  double smallest; /* smallest amplitude that would have shown, the response's `unit`; NaN: none */
 } fg_scan_result_bump_unclaimed;
 
 typedef struct fg_scan_result_bump {
   size_t part;
   int number;
   bool held_out;
-  double before, after; /* off the model, the response's `unit` */
-  double effect;        /* what was found, there */
+  double before, after; /* deviation from the model, the response's `unit` */
+  double effect;        /* contribution of the effects found */
 } fg_scan_result_bump;
 
-/* rms about the declared model, without and with what was found; NaN: not judged. */
+/* rms about the declared model, without and with the effects found; NaN: not tested. */
 typedef struct fg_scan_result_bump_error {
   double rms[2], held_out_rms[2];
 } fg_scan_result_bump_error;
 
 typedef struct fg_scan_result_response {
   const char *name, *words; /* "bump_radius_mm", "bump radius" */
-  const char *unit, *model; /* of everything here; what is held against */
+  const char *unit, *model; /* unit of all numbers here; declared model */
   bool judged;
   fg_scan_result_bump_claim claim[FG_LOOP_CLAIMS];
   size_t claims;
   fg_scan_result_bump_unclaimed *unclaimed;
   size_t unclaimeds;
-  fg_scan_result_bump *bump; /* NULL: not judged */
+  fg_scan_result_bump *bump; /* NULL: not tested */
   size_t bumps;
-  bool has_curve; /* over the bump's number, which nothing listed explains */
+  bool has_curve; /* a curve over the bump's number that no listed effect explains */
   double (*curve)[2];
   size_t curve_points;
   double curve_rms, curve_p;
-  const char **nearest; /* effects that come near the curve */
+  const char **nearest; /* listed effects that resemble the curve */
   size_t nearests;
   fg_scan_result_bump_error error;
-  /* Mean of measured minus declared, which the errors are without; NaN: the model has no level. */
+  /* Mean of measured minus declared value, which the errors exclude; NaN: the model has no level.
+   */
   double level, u_level;
 } fg_scan_result_response;
 
 typedef struct fg_scan_result_bumps {
-  size_t count, held_out, parts;               /* bumps that are judged, and kept aside; foils */
-  bool lip;                                    /* their numbers count from a lip */
+  size_t count, held_out, parts;               /* bumps tested, and held out; foils */
+  bool lip;                                    /* bump numbers count from a lip */
   const char *coordinate_name;                 /* of those numbers */
   const char *declared_path, *declared_sha256; /* of the forming; NULL: the design's springback */
   fg_scan_result_response response[FG_SCAN_RESULT_RESPONSES];
   fg_scan_result_bump_error height_um;  /* follows from both */
-  const fg_scan_result_response *curve; /* of which a curve is told; NULL: none */
+  const fg_scan_result_response *curve; /* response with an unexplained curve; NULL: none */
 } fg_scan_result_bumps;
 
 /* ---- everything ---- */
@@ -268,21 +269,22 @@ typedef struct fg_scan_result_bumps {
 typedef struct fg_scan_result {
   fg_loop_outcome verdict;
   bool same_foil, discs;
-  bool tied;         /* several explanations */
-  bool named;        /* what was found has a name: no two explanations differ in more than a form */
-  bool scale_tied;   /* a scale that the edges cannot see would do what the part's stretch does */
-  bool corrected;    /* there are claims of the points: before and after differ */
-  bool of_width;     /* there are claims of the width */
-  bool contradicted; /* scans kept aside become worse */
+  bool tied;       /* several explanations */
+  bool named;      /* the effects are named: explanations differ at most in a basis */
+  bool scale_tied; /* a scale that the edges cannot see would explain the part's stretch as well */
+  bool corrected;  /* effects of the rows are claimed: before and after differ */
+  bool of_width;   /* effects of the width are claimed */
+  bool contradicted; /* the error of held-out scans increased */
   double noise_floor_um, edge_model_error_um;
   fg_scan_noise noise;
   double half_width_rms_um, half_width_smooth_um;
-  double p_value;    /* that no effect is needed */
-  double matters_um; /* an effect of this size would be a nuisance: `absent` below it */
+  double p_value;    /* of the null hypothesis that no effect is needed */
+  double matters_um; /* size from which an effect is a nuisance: `absent` means smaller */
   fg_scan_loop_error before, after;
   fg_scan_held_out held_out;
-  size_t folds;        /* that it is cross-fitted over */
-  const char *fold_of; /* what they are of: "bumps", "discs", "stretches of the edge"; NULL: none */
+  size_t folds; /* number of folds of the cross-fit */
+  const char
+      *fold_of; /* units of the folds: "bumps", "discs", "stretches of the edge"; NULL: none */
   double width_before_um,
       width_after_um; /* with `of_width`: rms of half the width about its mean */
 
@@ -290,21 +292,21 @@ typedef struct fg_scan_result {
   size_t scans;
   fg_scan_result_claim claim[FG_SCAN_RESULT_CLAIMS];
   size_t claims;
-  const fg_scan_result_claim *curve;             /* the largest free one; NULL: none */
-  const char *nearest[FG_SCAN_RESULT_UNCLAIMED]; /* effects that come near the curves */
+  const fg_scan_result_claim *curve;             /* largest free curve; NULL: none */
+  const char *nearest[FG_SCAN_RESULT_UNCLAIMED]; /* listed effects that resemble the curves */
   size_t nearests;
-  fg_scan_result_explanation explanation[FG_SCAN_RESULT_EXPLANATIONS]; /* the likeliest first */
-  size_t explanations, unlisted;                                       /* unlisted: further ones */
-  char common[FG_SCAN_RESULT_WORDS]; /* what all explanations share; "": nothing */
+  fg_scan_result_explanation explanation[FG_SCAN_RESULT_EXPLANATIONS]; /* likeliest first */
+  size_t explanations, unlisted;     /* explanations listed; further ones */
+  char common[FG_SCAN_RESULT_WORDS]; /* effects common to all explanations; "": none */
   fg_scan_result_unclaimed unclaimed[FG_SCAN_RESULT_UNCLAIMED];
   size_t unclaimeds;
-  const char *advice[FG_SCAN_RESULT_ADVICE]; /* measurements that would part what is tied */
+  const char *advice[FG_SCAN_RESULT_ADVICE]; /* measurements that would resolve the tie */
   size_t advices;
-  char channel_check_words[FG_SCAN_RESULT_WORDS]; /* the last of them, where the colour lines say it
+  char channel_check_words[FG_SCAN_RESULT_WORDS]; /* verdict of the colour lines, as the last advice
                                                    */
-  const char *const *note;                        /* what the reader must know */
+  const char *const *note;                        /* notes for the reader */
   size_t notes;
-  size_t left_out; /* foils that could not be measured, or are none of the design's */
+  size_t left_out; /* foils without measurement, or not of the design */
   fg_scan_result_bumps bumps;
 
   const char *coordinate_name[FG_SCAN_COORDINATES], *coordinate_title[FG_SCAN_COORDINATES];
@@ -312,12 +314,12 @@ typedef struct fg_scan_result {
   size_t views;
   fg_scan_result_row *row;
   size_t rows, row_stations; /* stations in a full row */
-  double light_weight;       /* rows up to this weight hardly take part: edges that are not round */
+  double light_weight; /* largest weight of rows that hardly contribute: edges that are not round */
   fg_scan_result_line *line;
   size_t lines;
   fg_scan_result_grid grid;
 
-  const struct fg_scanner_model *model; /* of what is the scanner's: what a model file holds */
+  const struct fg_scanner_model *model; /* effects of the scanner, as in a model file */
 } fg_scan_result;
 
 #ifdef __cplusplus

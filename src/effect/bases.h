@@ -1,26 +1,25 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The forms that effects of tables take: which coordinates they accept, their columns, start values
- * of what is not linear in them. */
+/* Bases of the effects of tables: accepted coordinates, columns, start values of shapes. */
 #ifndef FG_EFFECT_BASES_H
 #define FG_EFFECT_BASES_H
 
 #include "foilgauge/loop.h"
 
-/* A number, not a word, that is not the same in every row. */
+/* Returns true for a number, not a word, with more than one value. */
 bool fg_basis_is_number(const fg_loop_coordinate *at);
-/* An order in time or place, where neighbours belong together. */
+/* Returns true for an order in time or place, along which neighbours are related. */
 bool fg_basis_is_sequence(const fg_loop_coordinate *at);
-/* The candidate's coordinate, of a pair the first. */
+/* Returns the candidate's coordinate, the first of a pair. */
 const fg_loop_coordinate *fg_basis_first(const fg_loop_problem *problem,
                                          const fg_loop_candidate *candidate);
 
-/* Words have levels; numbers as many as they have values. */
+/* Returns the number of levels of words, or of different values of numbers. */
 size_t fg_basis_level_count(const fg_loop_coordinate *at);
-/* An indicator of every level but the first: levels - 1 columns. */
+/* Writes an indicator of every level but the first: levels - 1 columns. */
 void fg_basis_level_columns(const fg_loop_problem *problem, const fg_loop_coordinate *at,
                             double *columns);
 
-/* Of a column. column_forms.c */
+/* Of a column, in column_bases.c. */
 fg_loop_accepts fg_basis_accepts_linear, fg_basis_accepts_quadratic, fg_basis_accepts_interaction,
     fg_basis_accepts_factor, fg_basis_accepts_threshold, fg_basis_accepts_sensitivity;
 fg_loop_columns fg_basis_interaction_columns, fg_basis_factor_columns;
@@ -28,13 +27,13 @@ fg_loop_basis fg_basis_linear, fg_basis_quadratic, fg_basis_interaction, fg_basi
     fg_basis_threshold, fg_basis_sensitivity;
 fg_loop_starts fg_basis_threshold_starts;
 
-/* Over an order. order_forms.c */
+/* Over an order, in order_bases.c. */
 fg_loop_accepts fg_basis_accepts_drift, fg_basis_accepts_transient, fg_basis_accepts_lip,
     fg_basis_accepts_periodic;
 fg_loop_basis fg_basis_decay, fg_basis_periodic;
 fg_loop_starts fg_basis_transient_starts, fg_basis_lip_starts, fg_basis_periodic_starts;
 
-/* Of a heat treatment: physical forms of temperature and time. heat_forms.c */
+/* Of a heat treatment: physical laws of temperature and time, in heat_bases.c. */
 fg_loop_accepts fg_basis_accepts_temperature, fg_basis_accepts_duration, fg_basis_accepts_both;
 fg_loop_basis fg_basis_arrhenius, fg_basis_larson_miller, fg_basis_log_time, fg_basis_jmak;
 fg_loop_starts fg_basis_arrhenius_starts, fg_basis_jmak_starts;

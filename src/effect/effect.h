@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Every effect of scanner and part that the loop on scans knows: one row says everything that
- * anybody asks of it.
+/* Table of all effects of scanner and part that the loop on scans knows. A row holds everything
+ * that search, fit, reports and models need of its effect.
  *
- * A scanner's effect moves places of the glass (`glass`), a part's the strip's midline (`midline`)
- * or its edges apart (`width`).
- * A free curve is for what no listed effect explains. An effect that comes in two forms has two
- * rows with one id; the first speaks for both where the form does not matter.
- */
+ * A scanner's effect moves places of the glass (`glass`), a part's effect moves the strip's midline
+ * (`midline`) or its edges apart (`width`). A free curve stands for the part that no listed effect
+ * explains. An effect with two bases has two rows of one id; the first stands for both where the
+ * basis does not matter. */
 #ifndef FG_EFFECT_EFFECT_H
 #define FG_EFFECT_EFFECT_H
 
@@ -15,15 +14,16 @@
 #include "field/field.h"
 #include "rows/edge_fit.h"
 
-/* How the search comes to it. */
+/* Ways in which the search finds an effect. */
 typedef enum fg_effect_sought {
-  FG_EFFECT_SMOOTH,   /* a candidate from the start; a shape is sought beside the geometry alone */
-  FG_EFFECT_PLACED,   /* its shape is sought over a grid: it stands alone even in one scan */
-  FG_EFFECT_CURVE,    /* where no listed effect is right */
-  FG_EFFECT_OF_WIDTH, /* in the strip's width alone, once the points have settled */
+  FG_EFFECT_SMOOTH, /* a candidate from the start; a shape is sought beside the geometry alone */
+  FG_EFFECT_PLACED, /* its shape is sought over a grid: it is told from all others even in one scan
+                     */
+  FG_EFFECT_CURVE,  /* used when no listed effect is right */
+  FG_EFFECT_OF_WIDTH, /* sought in the strip's width alone, once the search has converged */
 } fg_effect_sought;
 
-/* The coordinate that it lives on. */
+/* Coordinate that an effect acts on. */
 typedef enum fg_effect_coordinate {
   FG_EFFECT_X, /* of the scan */
   FG_EFFECT_Y,
@@ -34,18 +34,19 @@ typedef enum fg_effect_coordinate {
   FG_EFFECT_COORDINATES
 } fg_effect_coordinate;
 
-/* What its coefficients and shapes are called and how they are told. */
+/* Names and format of an effect's coefficients and shapes. */
 typedef enum fg_effect_numbers {
   FG_EFFECT_AMPLITUDE, /* one coefficient, um; then its shapes */
   FG_EFFECT_RATIO,     /* one coefficient, per length */
   FG_EFFECT_WAVE,      /* a sine's and a cosine's: amplitude, period, phase */
   FG_EFFECT_OVAL,      /* a cosine's and a sine's of twice an angle: amplitude, phase */
   FG_EFFECT_LED,       /* the first leads */
-  FG_EFFECT_SHAPE,     /* none: the curve itself */
+  FG_EFFECT_SHAPE,     /* none: the report shows the curve itself */
 } fg_effect_numbers;
 
-/* What a polynomial of the scanner is made of in the search: powers of one axis about the middle of
- * the picture, which all polynomials over it share. Its own middle is found with every set. */
+/* Powers that make a scanner's polynomial in the search. They are of one axis, about the middle of
+ * the picture, and all polynomials over that axis share them. A polynomial's own middle c is
+ * determined with every set. */
 typedef enum fg_effect_polynomial {
   FG_EFFECT_NO_POLYNOMIAL,
   FG_EFFECT_LINEAR,    /* u */
@@ -53,97 +54,99 @@ typedef enum fg_effect_polynomial {
   FG_EFFECT_CUBIC,     /* a ((x - c) / w)³: u³, u² and u in the proportion that c gives */
 } fg_effect_polynomial;
 
-/* Of a curve's columns, the part that all effects at once have in the search: with all of them a
- * curve would take the noise that is correlated along the edge for its own. */
+/* Part of a curve's columns that the set of all effects uses: a curve with all columns would absorb
+ * the noise that is correlated along the edge. */
 typedef enum fg_effect_coarse {
   FG_EFFECT_WHOLE,
-  FG_EFFECT_SPLINES,  /* every two neighbours as one */
+  FG_EFFECT_SPLINES,  /* neighbouring columns summed in pairs */
   FG_EFFECT_SMOOTHER, /* without the columns [rough[0], rough[1]) */
-  FG_EFFECT_LEFT_OUT, /* nothing of it: the other form of the curve stands for it */
+  FG_EFFECT_LEFT_OUT, /* none: the curve's other basis stands for it */
 } fg_effect_coarse;
 
-/* In one circle an oval of it and a scale with a shear of the scanner are the same. */
+/* On one circle, a part's ovality and a scanner's scale with shear are collinear. */
 typedef enum fg_effect_ring {
   FG_EFFECT_NOT_IN_RING,
   FG_EFFECT_RING_OF_SCANNER,
   FG_EFFECT_RING_OF_PART,
 } fg_effect_ring;
 
-/* Which discs show it; a disc's own form must not be taken for it. */
+/* Discs on which an effect can be told from the disc's own form error. */
 typedef enum fg_effect_on_discs {
   FG_EFFECT_NOT_ON_DISCS,
   FG_EFFECT_ON_DISCS,
-  FG_EFFECT_ON_ONE_DISC,    /* on several every one has its own */
-  FG_EFFECT_ON_KNOWN_DISCS, /* of known diameter */
-  FG_EFFECT_ON_CLEAN_DISCS, /* on `discs_min` clean ones, or more */
+  FG_EFFECT_ON_ONE_DISC,    /* one disc; of several each has an effect of its own */
+  FG_EFFECT_ON_KNOWN_DISCS, /* discs of known diameter */
+  FG_EFFECT_ON_CLEAN_DISCS, /* `discs_min` clean discs, or more */
 } fg_effect_on_discs;
 
-/* A midline's deviation of every column at one row, along the row's normal; returns how many. */
+/* Computes the midline's deviation of every column at one row, along the row's normal; returns the
+ * number of columns. */
 typedef size_t fg_effect_midline(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row,
                                  double *values);
 
-/* Half the width's change at one row, um per um of amplitude. */
+/* Returns the change of half the width at one row, um per um of amplitude. */
 typedef double fg_effect_width(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row);
 
-/* Start i of `count` of the search for a shape. */
+/* Returns start i of `count` of the search for a shape. */
 typedef double fg_effect_start(const fg_field_frame *frame, size_t i, size_t count);
 
 typedef struct fg_effect {
   const char *id;
-  const char *direction; /* "normal", "radial": of an effect in two forms; else NULL */
-  bool second;           /* form: the first row speaks for both */
-  const char *words;     /* for people */
-  const char *says[2];   /* what a positive and a negative amplitude mean; NULL: `words` say all */
+  const char *direction; /* of an effect with two bases: "normal", "radial"; else NULL */
+  bool second;           /* second basis of an effect: the first row stands for both */
+  const char *words;     /* name for people */
+  const char
+      *says[2]; /* meaning of a positive and a negative amplitude; NULL: `words` are complete */
   const char *equation;
   fg_effect_sought sought;
   fg_effect_coordinate coordinate;
-  const char *moves; /* a curve: what it moves, in a report's word */
+  const char *moves; /* of a curve: the thing that it moves, in one word */
   fg_effect_numbers numbers;
   const char *amplitude_name, *amplitude_symbol; /* NULL: "amplitude_um", "a" */
   bool off_foils;                                /* foils cannot show it */
   fg_effect_on_discs on_discs;
   size_t discs_min;
 
-  size_t columns, shapes; /* linear, non-linear; of a part's effect the basis says the columns */
+  size_t columns, shapes; /* linear, non-linear; of a part's effect the basis returns the columns */
   const char *shape_name[FG_FIELD_SHAPES], *shape_symbol[FG_FIELD_SHAPES]; /* mm; for people */
-  bool spans; /* its shape is a length, not a place */
+  bool spans; /* the shape is a length, not a place */
   fg_field_basis *glass;
   fg_effect_midline *midline;
   fg_effect_width *width;
 
-  int axis; /* of the scanner: where a polynomial's middle or a sought place lies */
+  int axis; /* of the scanner: axis of a polynomial's middle or of a sought place */
   fg_effect_polynomial polynomial;
   fg_effect_start *start;
   size_t starts;
-  bool jumps; /* its shape is a place where the picture jumps: rows on both sides must speak of it,
-                 rows across it do not count, and no derivative by it exists */
+  bool jumps; /* the shape is a place where the picture jumps: it needs rows on both sides, rows
+                 across it do not count, and no derivative by it exists */
 
   fg_effect_coarse coarse;
   size_t rough[2];
-  double hold; /* weight of a curve's coefficients beside rows that weigh FG_EDGE_FIT_BLOCK each: of
-                  all curves that leave the same residual the smallest one is meant */
+  double hold; /* weight of a curve's coefficients beside rows of weight FG_EDGE_FIT_BLOCK: of all
+                  curves with the same residual the smallest one is chosen */
   bool bends;  /* bumps are no circles with it */
-  bool of_carriage; /* an error of the carriage along its way, the same for all x: the lines of a
-                       colour sensor see it at their own moments */
-  bool scales;      /* both axes alike: parts of known size tell it from larger ones */
+  bool of_carriage; /* error of the carriage along its travel, the same for all x: the lines of a
+                       colour sensor see it at different times */
+  bool scales;      /* both axes alike: parts of known size determine it */
   fg_effect_ring ring;
 } fg_effect;
 
-/* All rows, in the order in which they are searched and reported: the first, and the one after
- * `effect`; NULL: there is none. */
+/* Iterates over all rows in the order of search and report: the first one, and the one after
+ * `effect`; NULL: none. */
 const fg_effect *fg_effect_first(void);
 const fg_effect *fg_effect_next(const fg_effect *effect);
 
-/* The first row of an id; NULL: none. */
+/* Returns the first row of an id; NULL: none. */
 const fg_effect *fg_effect_find(const char *id);
 
-/* The polynomial of a degree along an axis; NULL: none. */
+/* Returns the polynomial of a degree along an axis; NULL: none. */
 const fg_effect *fg_effect_find_polynomial(fg_effect_polynomial polynomial, int axis);
 
-/* An effect of the glass as a field without numbers. */
+/* Makes a field without numbers from an effect of the glass. */
 fg_field fg_effect_field(const fg_effect *effect);
 
-/* Whether two rows are one effect, in whatever form. */
+/* Returns true when two rows are one effect, in any of its bases. */
 bool fg_effect_same(const fg_effect *a, const fg_effect *b);
 
 static inline bool fg_effect_is_free(const fg_effect *effect) {
@@ -152,11 +155,11 @@ static inline bool fg_effect_is_free(const fg_effect *effect) {
 
 /* "scan.x", "foil.s", ... */
 const char *fg_effect_coordinate_name(fg_effect_coordinate coordinate);
-/* With what it is and its unit, for an axis. */
+/* Coordinate with description and unit, for an axis. */
 const char *fg_effect_coordinate_title(fg_effect_coordinate coordinate);
 
-/* Whether an effect can be sought in these points' residuals: not every one leaves a trace in a
- * disc, nor is every trace another one than the disc's own form. */
+/* Returns true when an effect can be sought in the residuals of these rows. Not every effect leaves
+ * a trace on a disc, and some traces are the same as the disc's own form error. */
 bool fg_effect_shows(const fg_edge_fit *edge_fit, const fg_effect *effect);
 
 #endif

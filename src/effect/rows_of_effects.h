@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The rows of the table, by what they are of; each ends with id NULL. */
+/* Rows of the table by subject; each list ends with id NULL. */
 #ifndef FG_EFFECT_ROWS_OF_EFFECTS_H
 #define FG_EFFECT_ROWS_OF_EFFECTS_H
 

@@ -7,8 +7,7 @@
 
 enum { FG_EFFECT_SET_MAX = 7, FG_EFFECT_COLUMNS_MAX = FG_FIELD_COLUMNS };
 
-/* One effect that is in the corrected model. Coefficients are linear amplitudes in um of its
- * columns. */
+/* Effect in the corrected model. Coefficients are linear amplitudes of its columns in um. */
 typedef struct fg_effect_found {
   const fg_effect *kind;
   size_t columns, shapes;
@@ -22,20 +21,21 @@ typedef struct fg_effect_set {
   size_t count;
 } fg_effect_set;
 
-/* An effect of the scanner as a field; the set's fields, and the shift of every row by part effects
- * (mm). */
+/* Makes a field from an effect of the scanner; the set's fields, and the shift of every row by part
+ * effects (mm). */
 fg_field fg_effect_found_field(const fg_effect_found *effect);
 void fg_effect_set_fields(const fg_edge_fit *edge_fit, const fg_effect_set *set,
                           fg_field_list *fields);
 fg_status fg_effect_set_shift(fg_context *ctx, const fg_edge_fit *edge_fit,
                               const fg_effect_set *set, double **shift_mm);
 
-/* Size, um: of its sine and cosine, of what leads it, of all columns; its standard uncertainty. */
+/* Size, um: of sine and cosine, of the leading coefficient, or of all columns; its standard
+ * uncertainty. */
 double fg_effect_found_amplitude(const fg_effect_found *effect);
 double fg_effect_found_u(const fg_effect_found *effect);
 
-/* What its numbers are called in a report: name and value of parameter i (amplitudes in um, scale
- * and shear as ratios); false when there are no more. A curve has none. */
+/* Reads name and value of parameter i for reports (amplitudes in um, scale and shear as ratios);
+ * false when there are no more. A curve has none. */
 bool fg_effect_found_number(const fg_effect_found *effect, size_t i, const char **name,
                             double *value, double *u);
 

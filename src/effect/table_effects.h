@@ -1,18 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Effects of tables, one row each (foilgauge/loop.h has what a row says, fg_loop_table_effects all
- * that are looked for), and what the engine adds to them. */
+/* Effects of tables, one row each (members in foilgauge/loop.h; fg_loop_table_effects returns all),
+ * and further rows that the engine adds. */
 #ifndef FG_EFFECT_TABLE_EFFECTS_H
 #define FG_EFFECT_TABLE_EFFECTS_H
 
 #include "foilgauge/loop.h"
 
-/* A wrong row, and two that were exchanged: in the order of fg_loop_outlier. */
+/* Returns the effects of an outlier row and of two exchanged rows, in the order of fg_loop_outlier.
+ */
 const fg_loop_effect *fg_loop_outlier_effects(void);
 
-/* What noise may lack: serial correlation, unequal spread; ends with id NULL. */
+/* Returns the effects of the noise: serial correlation, unequal spread; ends with id NULL. */
 const fg_loop_effect *fg_loop_noise_effects(void);
 
-/* The curves of what no listed effect explains; ends with id NULL. */
+/* Returns the curves for the part that no listed effect explains; ends with id NULL. */
 const fg_loop_effect *fg_loop_curve_effects(void);
 
 #endif

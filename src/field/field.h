@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a scanner does to a place on the glass: true position = nominal position + d(x, y), in mm of
- * the scan. d is a sum of columns, each with a linear amplitude in mm; shapes enter non-linearly.
- * Amplitudes are what a field does at FG_FIELD_HALF_MM from the middle of the scan, so that they
- * compare.
- */
+/* Field: displacement by a scanner of a place on the glass. True position = nominal position + d(x,
+ * y), in mm of the scan. d is a sum of columns, each with a linear amplitude in mm; shapes enter
+ * non-linearly. Amplitudes are displacements at FG_FIELD_HALF_MM from the middle of the scan, so
+ * that they are comparable between fields. */
 #ifndef FG_FIELD_FIELD_H
 #define FG_FIELD_FIELD_H
 
@@ -14,20 +13,20 @@
 enum { FG_FIELD_COLUMNS = 24, FG_FIELD_SHAPES = 2, FG_FIELDS_MAX = 8 };
 #define FG_FIELD_HALF_MM 18.0
 
-/* Where a scan's fields live. */
+/* Frame of a scan's fields. */
 typedef struct fg_field_frame {
   double centre_mm[2];            /* of the picture */
   double low_mm[2], high_mm[2];   /* of the picture */
-  double first_mm[2], last_mm[2]; /* of the edges that were measured: free curves have their knots
-                                     there, and stay constant beyond */
-  size_t knots;                   /* of free curves, at most FG_FIELD_COLUMNS */
+  double first_mm[2], last_mm[2]; /* of the measured edges: knots of free curves lie there, and the
+                                     curves are constant beyond */
+  size_t knots;                   /* number of knots of free curves, at most FG_FIELD_COLUMNS */
 } fg_field_frame;
 
-/* d of every column for unit amplitude. */
+/* Computes d of every column for unit amplitude. */
 typedef void fg_field_basis(const fg_field_frame *frame, const double *shape, fg_point at,
                             fg_point d[FG_FIELD_COLUMNS]);
 
-/* One field with numbers. */
+/* Field with numbers. */
 typedef struct fg_field {
   const char *id;
   fg_field_basis *basis;
@@ -42,10 +41,11 @@ typedef struct fg_field_list {
   size_t count;
 } fg_field_list;
 
-/* d at a nominal position. */
+/* Returns d at a nominal position. */
 fg_point fg_field_at(const fg_field_list *list, fg_point nominal);
 
-/* All columns of a curve over [low, high]: cubic B-splines, constant beyond; 0 from `knots` on. */
+/* Computes all columns of a curve over [low, high]: cubic B-splines, constant beyond; 0 from
+ * `knots` on. */
 void fg_field_splines(double low, double high, size_t knots, double at,
                       double values[FG_FIELD_COLUMNS]);
 

@@ -10,42 +10,43 @@
 #include "scan_loop/scanner_model_tone.h"
 
 enum { FG_MODEL_DATE = 32 };
-/* Amplitudes and shapes of all fields. */
+/* Maximum number of amplitudes and shapes of all fields. */
 enum { FG_MODEL_NUMBERS_MAX = FG_FIELDS_MAX * (FG_FIELD_COLUMNS + FG_FIELD_SHAPES) };
 
 struct fg_scanner_model {
   char sha256[65]; /* of the file */
   char path[1024]; /* as given */
   char scanner[FG_SCANNER_NAME];
-  char date[FG_MODEL_DATE]; /* of the newest scan it was found on; "": not said */
+  char date[FG_MODEL_DATE]; /* of its newest scan; "": not stated */
   double dpi[2];
-  size_t scans;           /* that it was found on; 0: not said */
-  size_t known_diameters; /* gauges of them; 0: its absolute scale is not known */
+  size_t scans;           /* number of its scans; 0: not stated */
+  size_t known_diameters; /* gauges among its scans; 0: its absolute scale is unknown */
   bool tied;
   fg_model_tone tone;
   fg_field_list fields;
-  /* What the explanations that were tied with it would correct instead. */
+  /* Corrections by the explanations tied with it. */
   fg_field_list other[FG_EXPLANATIONS_MAX];
   size_t others;
 };
 
-/* What a loop found of its scanner; free with fg_scanner_model_free. */
+/* Makes a model of a loop's scanner effects; free with fg_scanner_model_free. */
 fg_status fg_scanner_model_of(fg_context *ctx, const fg_scan_loop *loop, fg_scanner_model **model);
 
-/* Whether numbers are such as a scanner can have: FG_ERR_DATA names the member, its value and what
- * is allowed. What is written and what is read pass the same check. `member` is that of the list:
+/* Checks that numbers are plausible for a scanner: FG_ERR_DATA names the member, its value and the
+ * allowed range. Models written and read pass the same check. `member` is that of the list:
  * "fields", "alternatives[2]". */
 fg_status fg_scanner_model_check_place(fg_context *ctx, const double dpi[2],
                                        const fg_field_frame *frame);
 fg_status fg_scanner_model_check_fields(fg_context *ctx, const char *member,
                                         const fg_field_list *list);
 
-/* What a model does to a measurement, and how well that is known. */
+/* Displacements by a model, and their uncertainty. */
 typedef struct fg_model_uncertainty {
-  fg_measurement each[FG_BENEFIT_EXPLANATIONS_MAX]; /* owned: by the model, then by what was tied */
+  fg_measurement each[FG_BENEFIT_EXPLANATIONS_MAX]; /* owned: by the model, then by the explanations
+                                                       tied with it */
   size_t count;
-  double *step[FG_MODEL_NUMBERS_MAX]; /* owned: how far every value moves by the uncertainty of one
-                                         of the model's numbers */
+  double *step[FG_MODEL_NUMBERS_MAX]; /* owned: displacement of every value by the uncertainty of
+                                         one of the model's numbers */
   size_t steps;
   fg_benefits benefits;
 } fg_model_uncertainty;
@@ -55,8 +56,8 @@ fg_status fg_model_uncertainty_open(fg_context *ctx, const fg_scanner_model *mod
                                     fg_model_uncertainty *uncertainty);
 void fg_model_uncertainty_close(fg_model_uncertainty *uncertainty);
 
-/* Adds to every u_ what the uncertainties of the model's numbers do to it, and the mean square of
- * what the explanations would have given instead of the value that is reported. */
+/* Adds to every u_ the uncertainties of the model's numbers, and the mean square difference of the
+ * tied explanations from the reported value. */
 fg_status fg_model_uncertainty_widen(fg_context *ctx, const fg_model_uncertainty *uncertainty,
                                      fg_measurement *kept);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the loop on scans says of its effects: decided once, for JSON, page, text and model. */
+/* Decisions of the loop on scans about its effects, made once for JSON, page, text and model. */
 #ifndef FG_SCAN_LOOP_VERDICT_H
 #define FG_SCAN_LOOP_VERDICT_H
 
@@ -9,20 +9,21 @@
 
 struct fg_scan_loop;
 
-/* An effect of this size would be a nuisance: what could have been shown at it and was not is
- * `absent`. */
+/* Size from which an effect is a nuisance, um: an effect that would have shown at this size and did
+ * not is `absent`. */
 #define FG_SCAN_LOOP_MATTERS_UM 3.0
 
-/* Whether an effect of that size could have been seen: `smallest_um` would have shown, NaN none. */
+/* Returns true when an effect of that size would have shown: `smallest_um` is the detectable
+ * amplitude, NaN for none. */
 static inline bool fg_scan_loop_would_show(double smallest_um) {
   return smallest_um <= FG_SCAN_LOOP_MATTERS_UM;
 }
 
-/* The word for everything, and for the points alone (outcome.c). */
+/* Returns the outcome of everything, and of the rows alone (outcome.c). */
 fg_loop_outcome fg_scan_loop_outcome(const struct fg_scan_loop *loop);
 fg_loop_outcome fg_scan_loop_points_outcome(const struct fg_scan_loop *loop);
 
-/* Fills `result` of the loop from what was searched and fitted; anew when it was filled before. */
+/* Fills `result` of the loop from search and fit; replaces an earlier one. */
 fg_status fg_scan_loop_decide(fg_context *ctx, struct fg_scan_loop *loop);
 
 #endif
