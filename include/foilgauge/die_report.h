@@ -10,18 +10,18 @@
 extern "C" {
 #endif
 
-/* What the design's tolerances say to a die: those that name a quantity of a die's bumps, of every
- * bump of each half, and overall.radius_mm. The others are a foil's. */
+/* Compares a bump with the design's tolerances for dies: those of a quantity of a die's bumps, of
+ * every bump of each half, and of overall.radius_mm. The others are a foil's. */
 fg_verdict fg_die_judge_bump(const fg_die *die, const fg_die_bump *bump);
 fg_verdict fg_die_judge_value(const fg_die *die, const char *name, const fg_die_value *value);
-/* `words`: what it comes to, in a sentence; may be NULL. */
+/* `words` gets the outcome in a sentence; may be NULL. */
 void fg_die_judge(const fg_die *die, fg_report_outcome *outcome, char *words, size_t size);
 
-/* How many of the design's tolerances are about a die. */
+/* Returns the number of the design's tolerances that apply to a die. */
 size_t fg_die_tolerances(const fg_die *die);
 
-/* Bumps of the design that no trace of a half measured: all, those that were traced and lost to
- * dust (fg_die_trace), and those that no trace shows whole. */
+/* Bumps of the design that no trace of a half measured: all; those traced and lost to dust
+ * (fg_die_trace); those that no trace shows completely. */
 typedef enum fg_die_unseen_kind {
   FG_DIE_UNSEEN,
   FG_DIE_LOST,

@@ -1,20 +1,21 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The analysis of a designed experiment, whole: from a table of runs to effects, tests, the best
- * setting, and the report on it.
+/* Analysis of a designed experiment: from a table of runs to effects, tests, the best setting, and
+ * the report.
  *
- * It puts together what table.h, regression.h, doe.h and surface.h hold. Numeric factors are coded
+ * It combines table.h, regression.h, doe.h and surface.h. Numeric factors are coded
  * to -1 and +1, by the levels given or else by the lowest and highest of the data; a factor that
- * the formula transforms (log(t)) or takes for names (factor(t)) stays as it is. Blocks enter as a
+ * the formula transforms (log(t)) or reads as names (factor(t)) is not coded. Blocks enter as a
  * factor of their own, and predictions are averaged over them. With whole plots every coefficient
- * is judged by the error of its own stratum, or where runs are missing by restricted likelihood
- * (doe.h); then coefficients, fitted and residual are its.
+ * is tested against the error of its own stratum, or where runs are missing by restricted
+ * likelihood (doe.h), which then also gives coefficients, fitted values and residuals.
  *
- * Where the uncertainty of the responses differs between runs so much that it matters (some u above
- * twice the middle one and above 0.3 of the scatter), runs are weighed by 1 / (s² + u²), with s,
- * the scatter of the process, such that the weighted residuals are as large as their degrees of
- * freedom say (Mandel and Paule 1970); split plots are not weighed.
+ * Where the uncertainty of the responses differs much between runs (some u above twice the median
+ * and above 0.3 of the scatter), runs are weighed by 1 / (s² + u²), with s, the scatter of the
+ * process, such that the weighted sum of squares equals its dof (Mandel and Paule 1970); split
+ * plots are not weighed.
  *
- * A value that cannot be computed is NaN; a note says why, and which conclusions remain. */
+ * A value that cannot be computed is NaN; a note has the reason and the conclusions that remain
+ * valid. */
 #ifndef FOILGAUGE_EXPERIMENT_H
 #define FOILGAUGE_EXPERIMENT_H
 
@@ -29,33 +30,33 @@
 extern "C" {
 #endif
 
-/* The thesis models the magnitude of a springback error, which is negative. AUTO does so for a
- * response whose name holds "springback_error" when all values have one sign; else as it is. */
+/* Sign of the response. The thesis models the magnitude of a springback error, which is negative.
+ * AUTO does so for a response whose name holds "springback_error" when all values have one sign,
+ * and changes no other. */
 typedef enum fg_experiment_sign {
   FG_SIGN_AUTO,
   FG_SIGN_AS_IS,
   FG_SIGN_MAGNITUDE,
 } fg_experiment_sign;
 
-/* An effect of a loop's model that was taken out of the response before the analysis. */
+/* Effect of a loop's model that was subtracted from the response before the analysis. */
 typedef struct fg_experiment_taken {
-  char id[64], words[400]; /* "table.linear", "a trend with humidity" */
-  char sentence[1000];     /* with its effect on the response; empty: not known */
-  double amplitude,
-      u_amplitude;   /* half its range where it was found, and the standard uncertainty */
-  size_t parameters; /* that were estimated for it */
-  double low, high;  /* of what was taken out of these runs */
-  bool applied;      /* false: it concerns rows of the table it was found in, and stays */
+  char id[64], words[400];       /* "table.linear", "a trend with humidity" */
+  char sentence[1000];           /* with its effect on the response; empty: unknown */
+  double amplitude, u_amplitude; /* half its range in its own data, and the standard uncertainty */
+  size_t parameters;             /* number of parameters estimated for it */
+  double low, high;              /* range of the part subtracted from these runs */
+  bool applied; /* false: it belongs to single rows of its own table and is not subtracted */
 } fg_experiment_taken;
 
-#define FG_EXPERIMENT_CONFIDENCE 0.95 /* of intervals, where nothing else is said */
+#define FG_EXPERIMENT_CONFIDENCE 0.95 /* default level of intervals */
 
 typedef struct fg_experiment_options {
   const char *response; /* NULL: the formula's left side */
   const char *formula;
   const fg_coding *coding; /* of some factors; the others by the data */
   size_t codings;
-  bool uncoded; /* factors that have no coding here stay in real units */
+  bool uncoded; /* factors without a coding here stay in real units */
   fg_experiment_sign sign;
   const char *block;       /* column that names the blocks; NULL: none */
   const char *whole_plot;  /* column that names the whole plots; NULL: none */
@@ -65,61 +66,62 @@ typedef struct fg_experiment_options {
   double target;                 /* FG_GOAL_TARGET: the response wanted */
   const char *const *constraint; /* "temperature_C <= 700", "2*a + b >= 3", in real units */
   size_t constraints;
-  const char *const *at; /* "temperature_C=650, duration_h=4": settings that are asked for, in real
-                            units, every factor once */
+  const char *const *at; /* "temperature_C=650, duration_h=4": settings to predict, in real units,
+                            every factor once */
   size_t ats;
-  const fg_rounding *round; /* what the best setting is rounded to */
+  const fg_rounding *round; /* steps that the best setting is rounded to */
   size_t rounds;
-  const fg_experiment_taken *taken; /* what is out of the response already */
+  const fg_experiment_taken *taken; /* effects already subtracted from the response */
   size_t takens;
-  const double *taken_out; /* rows: the sum of it; NULL without `taken` */
+  const double *taken_out; /* rows: their sum; NULL without `taken` */
 } fg_experiment_options;
 
 /* A numeric factor of the model. */
 typedef struct fg_factor {
   const char *name; /* the table's column */
   size_t variable;  /* index into model.formula.variable */
-  bool coded;       /* by `coding`; else -1 and +1 are themselves */
+  bool coded;       /* by `coding`; false: -1 and +1 are real values */
   bool transformed; /* enters the model through a function */
   fg_coding coding;
   double lowest, highest; /* of the data, in the model's units */
 } fg_factor;
 
-/* What is said of a coefficient beyond regression.coefficient[i] (same index): the error is that
- * of its stratum. */
+/* Properties of a coefficient beyond regression.coefficient[i] (same index): the error is that of
+ * its stratum. */
 typedef struct fg_experiment_effect {
-  bool block;      /* belongs to the blocks: not an effect of interest */
-  bool whole_plot; /* judged by the scatter of whole plots */
+  bool block;      /* of a block: not an effect of interest */
+  bool whole_plot; /* tested against the scatter of whole plots */
   double dof;      /* of its error */
   double standard_error, t, p_value, low, high;
   double relative_pct;  /* 100 estimate / constant (table 5.2); NaN for the constant */
-  double u_measurement; /* part of the standard error that the measurement's uncertainty makes */
+  double u_measurement; /* contribution of the measurement's uncertainty to the standard error */
   double contrast;      /* estimate as in an orthogonal design of this size, for Lenth and plots */
   double lenth_p_value; /* NaN without Lenth */
 } fg_experiment_effect;
 
-/* A factor of the model that cannot be told from noise: none of its coefficients by itself, nor all
- * of them together with those of the other such factors. Any of its settings will do. */
+/* Factor of the model that is not significant: neither are its coefficients one by one, nor all of
+ * them together with those of the other such factors. Its setting does not matter. */
 typedef struct fg_idle_factor {
   size_t variable; /* index into model.formula.variable */
-  size_t columns;  /* of the model that hold it */
-  double p_value;  /* of all of them together; NaN: no error is known, Lenth's margin told */
+  size_t columns;  /* number of the model's columns that contain it */
+  double p_value;  /* of all its coefficients together; NaN: no error is known, Lenth's margin
+                      decided */
 } fg_idle_factor;
 
 typedef struct fg_optimum {
   double x[FG_SURFACE_FACTORS]; /* model's units, in the order of surface.variable */
   fg_prediction prediction;     /* mean with its interval; interval of one confirmation run */
-  bool on_border;               /* of the region: the best may lie beyond */
-  bool on_edge_of_runs;         /* and there no runs are: it is no constraint that holds it */
+  bool on_border;               /* on the border of the region: the best setting may lie beyond */
+  bool on_edge_of_runs;         /* the border is the end of the runs' range, not a constraint */
 } fg_optimum;
 
-/* A setting that was asked for, by the model as given. */
+/* Prediction at a requested setting, by the model as given. */
 typedef struct fg_asked {
-  char *text;                           /* as it was asked */
+  char *text;                           /* the request's text */
   double setting[FG_FORMULA_VARIABLES]; /* as in fg_model_row */
   fg_prediction prediction;
-  bool inside; /* the range of the runs, in every factor */
-  /* By variable of a numeric factor: where it is best within the runs, the others as asked. */
+  bool inside; /* within the range of the runs, in every factor */
+  /* By variable of a numeric factor: best value within the runs, with the others as requested. */
   double best_at[FG_FORMULA_VARIABLES], best_mean[FG_FORMULA_VARIABLES];
 } fg_asked;
 
@@ -128,18 +130,18 @@ enum { FG_RIDGE_POINTS = 11 };
 typedef struct fg_ridge_point {
   double radius, x[FG_SURFACE_FACTORS];
   fg_prediction prediction;
-  bool inside; /* the region of the data and the constraints */
+  bool inside; /* within the region of the data and the constraints */
 } fg_ridge_point;
 
-/* What the residuals show over the order of the runs, beside the model. Each test is told at
- * FG_ORDER_LEVEL, which is 5 % over the three. NaN: it cannot be told. */
+/* Tests of the residuals over the order of the runs, beside the model. Each test has the level
+ * FG_ORDER_LEVEL, 5 % over the three. NaN: not computable. */
 #define FG_ORDER_LEVEL (0.05 / 3)
 typedef struct fg_order_check {
   const char *column;    /* of the table that orders the runs: run, order ...; NULL: their rows */
-  const double *value;   /* rows: where in the order a run stands */
+  const double *value;   /* rows: position of a run in the order */
   double drift, u_drift; /* change of the response from the first run to the last */
   double drift_p;        /* Student's t of the slope, fitted beside the model */
-  double neighbours;     /* correlation of a residual with the next */
+  double neighbours;     /* correlation of successive residuals */
   double durbin_watson;
   double neighbours_p;           /* two-sided: independent normal errors through the same model */
   size_t farthest;               /* row of the largest externally studentised residual, from 0 */
@@ -156,17 +158,18 @@ struct fg_experiment {
   bool magnitude, sign_chosen; /* the response is |y|; by AUTO */
   fg_model model;
   fg_regression regression;
-  fg_experiment_effect *effect; /* regression.columns */
+  fg_experiment_effect *effect; /* per column of the regression */
   fg_factor factor[FG_FORMULA_VARIABLES];
   size_t factors;
   double *setting;   /* rows × model.formula.variables: every run for predictions */
   double *u;         /* rows: of the response; NULL: not known */
   double u_rms;      /* NaN: not known */
-  double *weight;    /* rows: 1 / (process² + u²) over the typical; NULL: all equal */
-  double process_sd; /* scatter beside the measurement's; NaN: not separated */
+  double *weight;    /* rows: 1 / (process² + u²) over the median; NULL: all equal */
+  double process_sd; /* scatter besides the measurement's; NaN: not separated */
   fg_experiment_taken *taken;
-  size_t takens, dof_taken; /* parameters that the residual freedom has paid */
-  double *taken_out;        /* rows; NULL: nothing */
+  size_t takens,
+      dof_taken;     /* parameters of subtracted effects, by which the residual dof is lowered */
+  double *taken_out; /* rows; NULL: nothing was subtracted */
 
   bool has_lenth, has_box_cox, has_curvature, has_split_plot, has_surface, has_optimum;
   fg_lenth lenth; /* of fg_experiment_effect.contrast */
@@ -174,7 +177,7 @@ struct fg_experiment {
   fg_curvature curvature;
   fg_split_plot split_plot;
   fg_surface surface;
-  bool stationary_inside;   /* the region */
+  bool stationary_inside;   /* inside the region */
   fg_prediction stationary; /* at the stationary point */
   bool has_order;
   fg_order_check order;
@@ -186,54 +189,55 @@ struct fg_experiment {
   size_t constraints;
   double best_setting[FG_FORMULA_VARIABLES]; /* levels of word factors at the optimum */
   fg_optimum optimum;
-  /* The best of the settings that can be made, about the optimum: every factor with a step at a
-   * multiple of it, all in the region. */
+  /* Best feasible setting near the optimum: every factor with a step at a multiple of it, all in
+   * the region. */
   bool has_rounded;
   double step[FG_SURFACE_FACTORS]; /* of the surface's factors; 0: not rounded */
   fg_optimum rounded;
   fg_ridge_point ridge[FG_RIDGE_POINTS];
 
-  /* Factors that cannot be told from noise, and the experiment without them, which has the best
-   * setting; NULL: all matter, or none does. Without `reduced` the optimum is that of the model as
+  /* Factors that are not significant, and the experiment without them, which has the best setting.
+   * NULL: all are significant, or none is. Without `reduced` the optimum is that of the model as
    * given. */
   fg_idle_factor idle[FG_FORMULA_VARIABLES];
   size_t idles;
-  bool all_idle; /* no factor of the model can be told from noise */
+  bool all_idle; /* no factor of the model is significant */
   fg_experiment *reduced;
 
   fg_asked *asked;
   size_t askeds;
 
-  char **note; /* what could not be said and why */
+  char **note; /* results that could not be computed, with the reason */
   size_t notes, note_capacity;
 };
 
 /* FG_ERR_DATA, with row and column: a column is missing, a word among numbers, a cell without a
- * number, one run only, a response or a factor with one value. FG_ERR_USAGE: formula, coding,
- * constraint that cannot be. `options` is not kept. Free with fg_experiment_free. */
+ * number, one run only, a response or a factor with one value. FG_ERR_USAGE: invalid formula,
+ * coding or constraint. `options` is not kept. Free with fg_experiment_free. */
 fg_status fg_experiment_analyse(fg_context *ctx, const fg_table *runs,
                                 const fg_experiment_options *options, fg_experiment *experiment);
 void fg_experiment_free(fg_experiment *experiment);
 
-/* The expected response at a setting (as in fg_model_row; blocks are averaged over), with the
+/* Predicts the response at a setting (as in fg_model_row; blocks are averaged over), with the
  * errors of the strata. */
 fg_status fg_experiment_predict(fg_context *ctx, const fg_experiment *experiment,
                                 const double *setting, fg_prediction *prediction);
 
-/* The experiment whose model gives the best setting: `reduced`, or the experiment itself. */
+/* Returns the experiment whose model gives the best setting: `reduced`, or the experiment itself.
+ */
 const fg_experiment *fg_experiment_best(const fg_experiment *experiment);
 
-/* A factor's number in real units. */
+/* Converts a factor's value to real units. */
 double fg_factor_real(const fg_factor *factor, double x);
 
-/* One scan that the responses come from. */
+/* Scan behind a response. */
 typedef struct fg_experiment_scan {
   const char *path; /* as opened */
   size_t run;       /* row of the run sheet, from 1 */
   char sha256[65];  /* "" when it could not be read */
   double value, u;  /* NaN when it could not be measured; u: of the scan alone */
-  /* What one standard deviation of each error that a calibration leaves moves the value by: the
-   * same error in every scan. 0: none is stated. */
+  /* Change of the value by one standard deviation of each error that a calibration leaves: the same
+   * error in every scan. 0: none is stated. */
   double move[FG_CALIBRATION_SOURCES];
   const char *error;
 } fg_experiment_scan;
@@ -246,15 +250,15 @@ typedef struct fg_experiment_report {
   const char *sha256; /* of its content */
   const fg_experiment_scan *scan;
   size_t scans;
-  const size_t *row; /* of the run sheet (from 1), for every run that was analysed; NULL: all */
-  const char *scans_column;       /* of the run sheet; NULL: the response was typed */
+  const size_t *row;              /* of the run sheet (from 1), for every analysed run; NULL: all */
+  const char *scans_column;       /* of the run sheet; NULL: the responses were typed in */
   const char *design_path;        /* NULL: the default */
-  const struct fg_design *design; /* that the scans were measured by; NULL: none were */
-  double u_calibration; /* of the level of all runs, by what is the same in every scan; in no run's
-                           u. 0: no calibration is stated */
+  const struct fg_design *design; /* design that the scans were measured with; NULL: no scans */
+  double u_calibration; /* uncertainty of the level of all runs by errors common to all scans; not
+                           in any run's u. 0: no calibration is stated */
   const char *model_path, *model_sha256; /* of the loop's model; NULL: none */
-  const char *plan_path;                 /* whose limits code the factors; NULL: none */
-  const char *plan_note;                 /* what is odd about it: a sentence; NULL: nothing */
+  const char *plan_path;                 /* plan whose limits code the factors; NULL: none */
+  const char *plan_note;                 /* oddity of the plan, as a sentence; NULL: none */
 } fg_experiment_report;
 
 /* JSON, "schema": "foilgauge/doe/1" (reports/schema/doe.schema.json); a table for the terminal; one

@@ -6,22 +6,20 @@
  * at (2 / sqrt 3) Y and harden linearly, by (4 / 3) H per plastic strain. Both fall with the
  * temperature by one curve, E' by a straight line.
  *
- * RELAXED. The die holds the curvature while the temperature follows a schedule. What exceeds the
- * hot yield stress flows at once; the rest creeps by Norton's law, in uniaxial tension
- *   d eps / dt = A (sigma / 100 MPa)^n exp(-(Q / R) (1/T - 1/T0)),   T0 = 550 degrees C,
- * in plane strain (sigma_y = sigma_x / 2, no volume change) times (sqrt 3 / 2)^(n + 1). A constant
- * temperature has a closed form in every layer:
- *   sigma = (sigma_0^(1 - n) + (n - 1) E' B t)^(-1 / (n - 1)).
+ * RELAXED. The die holds the curvature while the temperature follows a schedule. Stress above the
+ * hot yield stress flows at once; the remainder creeps by Norton's law, in uniaxial tension d eps /
+ * dt = A (sigma / 100 MPa)^n exp(-(Q / R) (1/T - 1/T0)),   T0 = 550 degrees C, in plane strain
+ * (sigma_y = sigma_x / 2, no volume change) times (sqrt 3 / 2)^(n + 1). A constant temperature has
+ * a closed form in every layer: sigma = (sigma_0^(1 - n) + (n - 1) E' B t)^(-1 / (n - 1)).
  *
  * RELEASED, cold and elastic: kappa_f = kappa_d - rho M / (E' I), with M the moment of the bend and
- * rho the share of it that the treatment has left.
+ * rho its share left after the treatment.
  *
  * The free strip is kappa_f integrated along s; its circles are fitted as `measure` fits them.
  *
- * OUT OF REACH: what needs contact and friction (figures 5.14 to 5.16: where the die touches while
- * it closes, whether the pressure closes it, bumps that differ by their place). A pressure on both
- * faces adds a hydrostatic stress in plane strain, which neither yields nor creeps: it enters no
- * equation here.
+ * NOT MODELLED: contact and friction (figures 5.14 to 5.16: contact while the die closes, pressure
+ * too low to close it, bumps that differ by their place). A pressure on both faces adds a
+ * hydrostatic stress in plane strain, which neither yields nor creeps: it enters no equation here.
  */
 #ifndef FOILGAUGE_FORMING_H
 #define FOILGAUGE_FORMING_H
@@ -35,7 +33,7 @@
 extern "C" {
 #endif
 
-/* A file that was read, for the report; path "": none was. */
+/* File that was read, for the report; path "": none. */
 typedef struct fg_forming_file {
   char path[512], sha256[65];
 } fg_forming_file;
@@ -45,10 +43,10 @@ typedef struct fg_forming_file {
 enum {
   FG_FORMING_CURVE_MAX = 16,
   FG_FORMING_SOURCE = 240,
-  FG_FORMING_FREE_MAX = 4, /* constants that a fit may find */
+  FG_FORMING_FREE_MAX = 4, /* maximum number of fitted constants */
 };
-#define FG_FORMING_COLD_C       20.0  /* where strips are bent and released */
-#define FG_FORMING_CREEP_MPA    100.0 /* where creep_rate_per_h is stated */
+#define FG_FORMING_COLD_C       20.0  /* temperature of bending and release */
+#define FG_FORMING_CREEP_MPA    100.0 /* reference stress of creep_rate_per_h */
 #define FG_FORMING_CREEP_TEMP_C 550.0
 
 typedef enum fg_forming_constant {
@@ -65,8 +63,8 @@ typedef enum fg_forming_constant {
 
 typedef struct fg_forming_constant_row {
   const char *name, *symbol, *unit, *words;
-  double low, high; /* what is accepted, and where a fit looks */
-  bool by_factors;  /* a fit takes steps in its logarithm */
+  double low, high; /* accepted range, which is also a fit's */
+  bool by_factors;  /* the fit uses its logarithm */
   double value;     /* the default */
   const char *source;
 } fg_forming_constant_row;
@@ -77,34 +75,35 @@ typedef struct fg_forming_material {
   char name[96];
   double value[FG_FORMING_CONSTANTS];
   char source[FG_FORMING_CONSTANTS][FG_FORMING_SOURCE];
-  /* Yield and hardening at a temperature over those at 20 degrees C: straight lines between
-   * points, nothing beyond the last. */
+  /* Yield and hardening at a temperature over those at 20 degrees C: linear between points,
+   * undefined beyond the last. */
   size_t curve_count;
   double curve_temperature_C[FG_FORMING_CURVE_MAX], curve_share[FG_FORMING_CURVE_MAX];
   char curve_source[FG_FORMING_SOURCE];
   fg_forming_file file;
 } fg_forming_material;
 
-/* Stainless strip 1.4310, annealed: literature, with its scatter in `source`. The thesis prints no
- * constant. */
+/* Stainless strip 1.4310, annealed: literature values, with their scatter in `source`. The thesis
+ * prints no constants. */
 void fg_forming_material_default(fg_forming_material *material);
-/* FG_ERR_DATA names the member and what would be right. */
+/* FG_ERR_DATA names the member and the allowed values. */
 fg_status fg_forming_material_check(fg_context *ctx, const fg_forming_material *material);
 /* "foilgauge/material/1": members of the rows above, each a number or {"value", "source"}; and
- * "yield_curve": {"temperature_C": [...], "share": [...], "source"}. Absent members keep theirs. */
+ * "yield_curve": {"temperature_C": [...], "share": [...], "source"}. Absent members keep their
+ * values. */
 fg_status fg_forming_material_load(fg_context *ctx, const char *path,
                                    fg_forming_material *material);
 
-/* ---- what is done to the strip ---- */
+/* ---- treatment of the strip ---- */
 
-/* Temperatures over time, straight between the points. None: released as it was bent. */
+/* Temperatures over time, linear between the points. No points: released right after bending. */
 typedef struct fg_forming_schedule {
   double *time_h, *temperature_C; /* owned */
   size_t count;
   fg_forming_file file;
 } fg_forming_schedule;
 
-/* One hold, without the ways there and back. */
+/* One hold, without heating and cooling. */
 fg_status fg_forming_schedule_hold(fg_context *ctx, double temperature_C, double hours,
                                    fg_forming_schedule *schedule);
 /* CSV: time_h, temperature_C. */
@@ -112,13 +111,13 @@ fg_status fg_forming_schedule_load(fg_context *ctx, const char *path,
                                    fg_forming_schedule *schedule);
 void fg_forming_schedule_free(fg_forming_schedule *schedule);
 
-/* What the die is: the design's lands, fillets and bumps, or a sine of its height over its pitch.
+/* Shape of the die: the design's lands, fillets and bumps, or a sine of its height over its pitch.
  */
 typedef enum fg_forming_shape { FG_FORMING_ARCS, FG_FORMING_SINE } fg_forming_shape;
 
 enum { FG_FORMING_BUMPS_MAX = 128, FG_FORMING_BUMPS_DEFAULT = 9 };
 
-/* A die that was measured (`foilgauge die -o`). Bumps that it does not show have its mean. */
+/* Measured die (`foilgauge die -o`). Bumps without a measured value get the mean. */
 typedef struct fg_forming_die {
   fg_forming_file file;
   double overall_radius_mm;
@@ -140,10 +139,11 @@ typedef struct fg_forming_options {
   size_t steps;              /* per stretch of a schedule; 0: 200 */
 } fg_forming_options;
 
-/* ---- what comes of it ---- */
+/* ---- result ---- */
 
-/* A stretch of one curvature. Curvatures are above 0 where the strip bends round the shaft's axis,
- * as the lands do; stresses are of the fibre that this stretches, 0 to 2 of FG_FORMING_STATES. */
+/* Piece of constant curvature. Curvatures are positive where the strip bends round the shaft's
+ * axis, as the lands do; stresses are of the fibre stretched by that, 0 to 2 of FG_FORMING_STATES.
+ */
 typedef enum fg_forming_state {
   FG_FORMING_BENT,   /* cold, in the die */
   FG_FORMING_HEATED, /* at the end of the schedule, in the die */
@@ -164,7 +164,7 @@ typedef struct fg_forming_bump {
   int number;
   double die_radius_mm, die_angle_deg;
   double curvature_radius_mm; /* 1 / kappa_f at its crown */
-  fg_bump fitted;             /* as `measure` fits it; NaN: not found */
+  fg_bump fitted;             /* as the measurement fits it; NaN: not found */
 } fg_forming_bump;
 
 typedef struct fg_forming {
@@ -172,7 +172,7 @@ typedef struct fg_forming {
   fg_nominal nominal;
   fg_forming_material material;
   fg_forming_options options;
-  fg_forming_die die;           /* where one was given */
+  fg_forming_die die;           /* if given */
   fg_forming_schedule schedule; /* owned */
   fg_forming_piece *pieces;     /* owned */
   size_t count;
@@ -180,20 +180,20 @@ typedef struct fg_forming {
   fg_forming_bump *bumps; /* owned */
   size_t bump_count;
   /* Of the integrated strip: each pitch turns it by one angle about one centre. NaN: it does not
-   * close round a centre any more. */
+   * close round a centre. */
   double overall_radius_mm, springback_error_pct;
   double turn_die_deg, turn_deg; /* per pitch (arc: from end to end) */
-  /* The lands for themselves: a plain strip bent to the overall radius. */
+  /* Of the lands alone: a plain strip bent to the overall radius. */
   double strip_radius_mm, strip_springback_error_pct;
   double mean_stress_mpa[FG_FORMING_STATES], largest_stress_mpa[FG_FORMING_STATES];
   double mean_share; /* rho over the strip's length */
-  bool yields_back;  /* on release a layer would yield: the release is not elastic */
-  fg_foil foil;      /* the free strip as `measure` sees it; owned */
-  bool fitted;       /* its circles are there */
+  bool yields_back;  /* a layer would yield on release: the release is not elastic */
+  fg_foil foil;      /* the free strip as measured; owned */
+  bool fitted;       /* its circles were found */
 } fg_forming;
 
 /* FG_ERR_DATA: a design without curvature (discs), a schedule beyond the material's curve. `foil`
- * says by its flags and `error` what `measure` would say. Free with fg_forming_free. */
+ * has the flags and `error` that a measurement would have. Free with fg_forming_free. */
 fg_status fg_forming_run(fg_context *ctx, const fg_design *design,
                          const fg_forming_material *material, const fg_forming_schedule *schedule,
                          const fg_forming_options *options, fg_forming *forming);
@@ -209,7 +209,7 @@ fg_status fg_forming_write_html(fg_context *ctx, const fg_forming *forming, FILE
 
 /* ---- constants from a designed experiment ---- */
 
-/* What a run's springback is of. */
+/* Subject of a run's springback. */
 typedef enum fg_forming_response {
   FG_FORMING_OF_STRIP, /* strip_springback_error_pct */
   FG_FORMING_OF_FOIL,  /* springback_error_pct */
@@ -217,17 +217,18 @@ typedef enum fg_forming_response {
 
 typedef struct fg_forming_found {
   fg_forming_constant constant;
-  double value, u;    /* standard uncertainty from the covariance; of a constant by factors of
-                         its logarithm */
-  double interval[2]; /* 95 %, by profile; an end that the runs do not close is NaN */
-  bool at_bound;      /* it ran to the end of what the constant may be: its value says nothing */
+  double value, u; /* standard uncertainty from the covariance; for a constant fitted by its
+                      logarithm, of that logarithm */
+  double
+      interval[2]; /* 95 %, by profile likelihood; NaN for an end that the runs do not determine */
+  bool at_bound;   /* it reached the end of its accepted range: its value is meaningless */
 } fg_forming_found;
 
-/* Whether the runs say what it is: not at its bound, and both ends of its interval closed. */
+/* Returns true when the runs determine the constant: not at its bound, and both ends of its
+ * interval known. */
 bool fg_forming_identified(const fg_forming_found *found);
 
-/* One model's errors: sd of the residuals about it, and of runs that took no part (each in turn).
- */
+/* Errors of one model: sd of its residuals, and of held-out runs (each in turn). */
 typedef struct fg_forming_errors {
   double residual_sd, left_out_rms;
   size_t parameters;
@@ -239,7 +240,7 @@ typedef struct fg_forming_run_fit {
 
 typedef struct fg_forming_fit {
   fg_design design;
-  fg_forming_material material; /* with what was found in it */
+  fg_forming_material material; /* with the fitted constants */
   fg_forming_response response;
   fg_forming_options options;
   char response_name[64];
@@ -254,13 +255,13 @@ typedef struct fg_forming_fit {
   size_t repeats;                   /* their degrees of freedom */
 } fg_forming_fit;
 
-/* Table columns temperature_C, duration_h and `response`. FG_ERR_DATA: fewer runs than constants
- * + 2. Free with fg_forming_fit_free. */
+/* Request for a fit: table columns temperature_C, duration_h and `response`. FG_ERR_DATA: fewer
+ * runs than constants + 2. Free with fg_forming_fit_free. */
 typedef struct fg_forming_fit_request {
   const fg_design *design;
-  const fg_forming_material *material; /* start values, and what is not fitted */
+  const fg_forming_material *material; /* start values, and constants that are not fitted */
   const char *column;                  /* the response; NULL: springback_error_pct */
-  const char *sha256;                  /* of the table's file; NULL: not said */
+  const char *sha256;                  /* of the table's file; NULL: not stated */
   fg_forming_response response;
   fg_forming_options options;
   const fg_forming_constant *free;
@@ -281,18 +282,18 @@ fg_status fg_forming_write_material(fg_context *ctx, const fg_forming_material *
 
 /* ---- as a declared model ---- */
 
-/* What a report of `form` says of the bumps. */
+/* Bumps of a report of `forming`. */
 typedef struct fg_forming_prediction {
   char path[1024], sha256[65];
   size_t count;
-  fg_bump bump[FG_FORMING_BUMPS_MAX]; /* number and the reported quantities; NaN: not said */
+  fg_bump bump[FG_FORMING_BUMPS_MAX]; /* number and the reported quantities; NaN: not reported */
 } fg_forming_prediction;
 
-/* Reads "foilgauge/form/1". FG_ERR_DATA: not one, or one without fitted bumps. */
+/* Reads "foilgauge/form/1". FG_ERR_DATA: another file, or one without fitted bumps. */
 fg_status fg_forming_prediction_load(fg_context *ctx, const char *path,
                                      fg_forming_prediction *prediction);
-/* The prediction of a bump's quantity (its JSON name) by the bump's number. FG_ERR_DATA: a number
- * or a quantity that it does not have. */
+/* Predicts a bump's quantity (its JSON name) by the bump's number. FG_ERR_DATA: a number or a
+ * quantity that the prediction lacks. */
 fg_status fg_forming_predict(fg_context *ctx, const fg_forming_prediction *prediction, int number,
                              const char *quantity, double *value);
 

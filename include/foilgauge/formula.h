@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Model formulas as in R, and the model matrix that a formula and a table make.
+/* Model formulas as in R, and the model matrix of a formula and a table.
  *
  *     1 + T + D + T:D + T^2        terms; 1 is the constant and may be left out
  *     T*D                          T + D + T:D
@@ -100,16 +100,16 @@ typedef struct fg_model {
   fg_extended *matrix; /* columns × rows, column by column */
 } fg_model;
 
-/* The most that a model is computed with. Its time grows as rows × columns² and columns³ (with 106
- * bits: 10 s for 500 columns, 10 minutes for 2,000), its memory as rows × columns × 32 bytes. An
+/* Largest model that is computed. Its time grows as rows × columns² and columns³ (with 106 bits: 10
+ * s for 500 columns, 10 minutes for 2,000), its memory as rows × columns × 32 bytes. An
  * experiment's model has some ten columns; a factor with hundreds of levels is a name of the row.
  */
 #define FG_MODEL_COLUMNS_MAX ((size_t)500)
 #define FG_MODEL_CELLS_MAX   ((size_t)1 << 26) /* 2 GiB */
 #define FG_MODEL_WORK_MAX    1e10              /* rows × columns²: minutes */
 
-/* FG_ERR_DATA where a model would be larger: says so, and that `widest`, a term, has the most of
- * the columns. `source` names the table; NULL: "table". */
+/* FG_ERR_DATA for a larger model, with the term that has most of its columns (`widest`). `source`
+ * names the table; NULL: "table". */
 fg_status fg_model_check_size(fg_context *ctx, const char *source, size_t rows, size_t columns,
                               const char *widest, size_t widest_columns);
 

@@ -11,9 +11,10 @@
 extern "C" {
 #endif
 
-/* What the limits say; `words`: what it comes to, in a sentence; may be NULL. */
+/* Compares with the limits; `words` gets the outcome in a sentence, may be NULL. */
 fg_verdict fg_load_judge_direction(const fg_load_test *test, const fg_load_direction *direction);
-fg_verdict fg_load_judge_bearing(const fg_load_test *test, size_t bearing); /* its directions too */
+fg_verdict fg_load_judge_bearing(const fg_load_test *test,
+                                 size_t bearing); /* includes its directions */
 fg_verdict fg_load_judge_value(const fg_load_test *test, fg_load_quantity quantity,
                                const fg_load_value *value);
 void fg_load_judge(const fg_load_test *test, fg_report_outcome *outcome, char *words, size_t size);
@@ -30,8 +31,8 @@ fg_status fg_load_write_html(fg_context *ctx, const fg_load_test *test, FILE *ou
 /* A row per bearing and azimuth. */
 fg_status fg_load_write_csv(fg_context *ctx, const fg_load_test *test, FILE *out);
 
-/* For `foilgauge loop --table`: causes beside one response, clearance_um, or difference_um where a
- * lot predicts; nothing that follows from the response. */
+/* Table for `foilgauge loop --table`: causes and one response, clearance_um, or difference_um where
+ * a lot predicts; without values that follow from the response. */
 fg_status fg_load_write_table(fg_context *ctx, const fg_load_test *test, FILE *out);
 
 #ifdef __cplusplus

@@ -3,29 +3,29 @@
  * is pushed and pulled along an azimuth, force and displacement are recorded, several cycles.
  *
  * STROKES. A record is cut where the displacement turns. Up strokes push, down strokes pull. While
- * |F| grows a stroke loads; what it does before, on the way back to the middle, is unloading.
+ * |F| grows a stroke loads; before that, returning to the middle, it unloads.
  *
  * CLEARANCE. Travel between the points where the loading strokes pass +T and -T, T the threshold. A
  * point is where a local quadratic regression of F over x says T. Over the strokes j, numbered in
  * time, the points are
  *   x_j = push + d j (up strokes),   x_j = pull + d j (down strokes),   clearance = push - pull:
- * one drift d for both takes out what creeps (of the sensor, or of the force's zero over the local
- * stiffness). T counts from the load cell's zero: the mean of up and down strokes where it rises
- * least, if it rises there by less than half of its steepest. A zero beyond half of T, friction of
- * T and more without a foil, loops that give energy: no clearance is named. Friction makes the
- * unloading points lie elsewhere; their travel is reported beside.
+ * one drift d for both removes creep (of the sensor, or of the force's zero over the local
+ * stiffness). T counts from the load cell's zero: the mean of up and down strokes where its slope
+ * is smallest, if that is less than half of the largest slope. A zero beyond half of T, friction of
+ * T and more without a foil, loops that give energy: no clearance is named. Friction shifts the
+ * unloading points; their travel is reported separately.
  *
- * GAP. Free travel of the rotor, less than the clearance by what both foils yield under T: from
- * place to place where the loaded branches, taken as the mean of loading and unloading, come down
- * to no force. A branch is followed by x0 + p F^(1/n) + q F^(2/n), n from 1 (a spring) to 2; what n
- * makes of x0 is in u. A gap that does not exceed its U is none that is shown: both foils may press
- * the rotor at once, the travel between +T and -T is then theirs, and no clearance is named.
+ * GAP. Free travel of the rotor, smaller than the clearance by the deflection of both foils under
+ * T: it ends where the loaded branches, as the mean of loading and unloading, reach zero force. A
+ * branch is followed by x0 + p F^(1/n) + q F^(2/n), n from 1 (a spring) to 2; the influence of n on
+ * x0 is in u. A gap that does not exceed its U is not shown: both foils may press the rotor at
+ * once, the travel between +T and -T is then theirs, and no clearance is named.
  *
  * STIFFNESS. dF/dx of the loading strokes by the same regression; structural stiffness is its
  * largest value up to just before the turn: 1 % of the travel, or ten times the displacement's
  * noise where that is more, is left out there, and a foil that hardens is stiffer beyond. The place
- * is decided by the other cycles than the one whose value is taken there (the halves of one cycle's
- * samples, where there is but one): the largest of noisy values would be too large.
+ * is chosen on the other cycles than the one whose value is used there (the halves of one cycle's
+ * samples, where there is but one): the largest of noisy values is biased upward.
  *
  * UNSAMPLED STRETCHES, of a dropout or of a rotor that jumps through the gap under load control. No
  * regression reaches over one: a contact is found on its own side's loaded branch. A threshold that
@@ -40,21 +40,20 @@
  *
  * LOSS FACTORS OF THE TEST. Loop area over pi K X²: K the structural stiffness, X half of the
  * travel, gap included: the same foil has a smaller one behind a wider gap. With K of the loop's
- * ends (secant) it is reported beside. The force of an end is that where its loading branch turns,
- * its place what a regression of the displacement over the force says there: the extreme of noisy
+ * ends (secant) it is reported beside. The force of an end is that at the turn of its loading
+ * branch, its place is from a regression of the displacement over the force: the extreme of noisy
  * displacements lies beyond the turn.
  *
- * LOSS FACTOR OF THE FOIL. Of the compression alone, whatever the gap is: energy lost in
+ * LOSS FACTOR OF THE FOIL. Of the compression alone, independent of the gap: energy lost in
  * compressing both sides' foils and letting them go, over 2 pi times the elastic work, the mean of
  * that of loading and of unloading (Ungar and Kerwin, 1962). Comparable with the loss factor gamma
- * of a foil in models (thesis table 5.6). Friction that is passed in the gap is the rig's, and left
- * out.
+ * of a foil in models (thesis table 5.6). Friction in the gap is the rig's, and is excluded.
  *
- * RADIAL HYSTERESIS. Half of what lies between the strokes is friction, of the foils and of the
- * rig. Over the mean force M of both, H = (a + b |M|) (1 - exp(-s/l) - exp(-s'/l)), s and s' the
- * travel since each stroke turned, l the travel that friction takes to turn round. a is the radial
+ * RADIAL HYSTERESIS. Half of the difference between the strokes is friction, of the foils and of
+ * the rig. Over the mean force M of both, H = (a + b |M|) (1 - exp(-s/l) - exp(-s'/l)), s and s'
+ * the travel since each stroke turned, l the travel over which friction reverses. a is the radial
  * hysteresis of a bearing without load; where there is a gap it is the mean of H over the gap. It
- * says nothing of a preload: a rig's friction adds to a as a preload's does, and b is that of
+ * does not reveal a preload: a rig's friction adds to a just as a preload's does, and b is that of
  * sliding feet, not of the rotor in its foils.
  *
  * PRELOAD. A break-away test (thesis section 6.2.2): dead weights W load the bearing, and the
@@ -62,8 +61,8 @@
  * torque / (D/2) = mu (W + P) + rig, a straight line over W: its slope is the coefficient of
  * friction mu, its intercept less the rig's friction is mu P. The foils press the rotor with P
  * without a weight, over the bore's surface with p = P / (pi D L):   1.032 N / 0.03 / (pi 40 mm 40
- * mm) = 6.84 kPa   (thesis: 6.85). u of both follows from the residuals, one weight not taken to
- * scatter as another (HC3: J. S. Long, L. H. Ervin, Using heteroscedasticity consistent standard
+ * mm) = 6.84 kPa   (thesis: 6.85). u of both follows from the residuals, with unequal scatter of
+ * the weights allowed (HC3: J. S. Long, L. H. Ervin, Using heteroscedasticity consistent standard
  * errors in the linear regression model, The American Statistician 54, 2000), widened by Student's
  * t so that U = 2 u holds with few pulls.
  *
@@ -73,12 +72,12 @@
  * degrees are three), k = 4 too from six on. The axis of the smallest clearance is that of the
  * curve.
  *
- * DOUBT. u of a point follows from the scatter about the regression; where the cycles differ by
- * more than these say, all of them are made larger (the Birge ratio, over all directions of a
- * bearing). To that come the instruments', relative and standard: the optical probe's 1.3 % and the
- * load cell's 1.0 % (thesis sections 5.13 and 2.8), together 1.64 % of a stiffness; of a clearance
- * the displacement's, and the load cell's over the local stiffness. They are the same for every
- * direction and take no part in what differs over the azimuths. */
+ * UNCERTAINTY. u of a point follows from the scatter about the regression; where the cycles differ
+ * by more than u implies, every u is widened (the Birge ratio, over all directions of a bearing).
+ * The instruments' uncertainties are added, relative and standard: the optical probe's 1.3 % and
+ * the load cell's 1.0 % (thesis sections 5.13 and 2.8), together 1.64 % of a stiffness; of a
+ * clearance the displacement's, and the load cell's over the local stiffness. They are common to
+ * all directions and do not enter differences over the azimuths. */
 #ifndef FOILGAUGE_LOAD_TEST_H
 #define FOILGAUGE_LOAD_TEST_H
 
@@ -99,14 +98,14 @@ extern "C" {
 #define FG_LOAD_DIAMETER_MM        40.0
 #define FG_LOAD_LENGTH_MM          40.0
 
-/* A file and what is said of it. */
+/* File with facts that its columns may lack. */
 typedef struct fg_load_source {
   const char *path;
-  const char *bearing; /* where it has no column; NULL: the file's name */
-  double azimuth_deg;  /* where it has no column; NaN: not said */
+  const char *bearing; /* used when it has no such column; NULL: the file's name */
+  double azimuth_deg;  /* used when it has no such column; NaN: not stated */
 } fg_load_source;
 
-/* What limits may name. */
+/* Quantities that limits may name. */
 typedef enum fg_load_quantity {
   FG_LOAD_CLEARANCE, /* of every direction */
   FG_LOAD_STIFFNESS,
@@ -143,27 +142,27 @@ fg_load_options fg_load_options_default(void);
 typedef struct fg_load_value {
   double value;
   double u;        /* standard uncertainty, instruments included */
-  double u_repeat; /* without the instruments' scale: what tells directions apart */
+  double u_repeat; /* without the instruments' scale: for comparing directions */
 } fg_load_value;
 
-/* What is wrong with a direction. */
+/* Faults of a direction. */
 enum {
-  FG_LOAD_NO_CONTACT = 1 << 0,      /* |F| never passes the threshold */
-  FG_LOAD_ONE_SIDE = 1 << 1,        /* pushed or pulled only */
-  FG_LOAD_TOO_FEW = 1 << 2,         /* too few samples to regress */
-  FG_LOAD_WRONG_WAY = 1 << 3,       /* loops that give energy */
-  FG_LOAD_FORCE_TURNED = 1 << 4,    /* the force ran against the displacement; it was turned */
-  FG_LOAD_AT_END = 1 << 5,          /* stiffness is largest at the last place before the turn */
-  FG_LOAD_FRICTION_HIGH = 1 << 6,   /* friction in the middle is more than half of the threshold */
-  FG_LOAD_ONE_CYCLE = 1 << 7,       /* nothing says how cycles differ */
-  FG_LOAD_ZERO_OFF = 1 << 8,        /* the load cell's zero exceeds half of the threshold */
-  FG_LOAD_NO_GAP = 1 << 9,          /* both foils touch the rotor at once, or nearly */
-  FG_LOAD_UNITS = 1 << 10,          /* clearance or stiffness of no bearing of that diameter */
-  FG_LOAD_UNSAMPLED = 1 << 11,      /* the threshold is passed where no sample lies */
+  FG_LOAD_NO_CONTACT = 1 << 0,    /* |F| never passes the threshold */
+  FG_LOAD_ONE_SIDE = 1 << 1,      /* pushed or pulled only */
+  FG_LOAD_TOO_FEW = 1 << 2,       /* too few samples to regress */
+  FG_LOAD_WRONG_WAY = 1 << 3,     /* loops that release energy */
+  FG_LOAD_FORCE_TURNED = 1 << 4,  /* the force had the wrong sign and was negated */
+  FG_LOAD_AT_END = 1 << 5,        /* stiffness is largest at the last place before the turn */
+  FG_LOAD_FRICTION_HIGH = 1 << 6, /* friction in the middle is more than half of the threshold */
+  FG_LOAD_ONE_CYCLE = 1 << 7,     /* repeatability unknown */
+  FG_LOAD_ZERO_OFF = 1 << 8,      /* the load cell's zero exceeds half of the threshold */
+  FG_LOAD_NO_GAP = 1 << 9,        /* both foils touch the rotor at once, or nearly */
+  FG_LOAD_UNITS = 1 << 10, /* clearance or stiffness impossible for a bearing of that diameter */
+  FG_LOAD_UNSAMPLED = 1 << 11,      /* the threshold lies in an unsampled stretch */
   FG_LOAD_SAME_SIDE = 1 << 12,      /* push and pull contact on one side of the gap */
-  FG_LOAD_BRANCHES_APART = 1 << 13, /* loading and unloading contacts do not fit together */
-  FG_LOAD_GAP_UNKNOWN = 1 << 14,    /* nothing says whether there is a gap */
-  FG_LOAD_OUTLIERS = 1 << 15,       /* isolated wrong readings, which took no part */
+  FG_LOAD_BRANCHES_APART = 1 << 13, /* loading and unloading contacts contradict each other */
+  FG_LOAD_GAP_UNKNOWN = 1 << 14,    /* the data do not show whether there is a gap */
+  FG_LOAD_OUTLIERS = 1 << 15,       /* isolated wrong readings, excluded */
   FG_LOAD_CONTRADICTION = FG_LOAD_SAME_SIDE | FG_LOAD_BRANCHES_APART,
 };
 
@@ -173,7 +172,7 @@ typedef struct fg_load_flag {
 } fg_load_flag;
 const fg_load_flag *fg_load_flags(void); /* ends with a row whose name is NULL */
 
-/* One place of the stiffness' course. */
+/* Point of the stiffness profile. */
 typedef struct fg_load_point {
   double x_mm, force_n, stiffness_n_mm, u_stiffness_n_mm;
 } fg_load_point;
@@ -191,7 +190,7 @@ typedef struct fg_load_sample {
   double x_mm, force_n;
 } fg_load_sample;
 
-/* H = (a + b |M|) ...; NaN where it cannot be said. */
+/* H = (a + b |M|) ...; NaN where unknown. */
 typedef struct fg_load_friction {
   double a_n, b, way_mm;
   double u_a_n, u_b;
@@ -206,11 +205,11 @@ typedef struct fg_load_direction {
   size_t strokes, cycles;
   double travel_mm, force_low_n, force_high_n;
   double noise_n, noise_mm;           /* sd of the columns; the displacement's with its step */
-  double step_mm;                     /* that the displacement was rounded to; 0: none is seen */
+  double step_mm;                     /* rounding step of the displacement; 0: none visible */
   fg_load_value clearance, unloading; /* mm */
-  fg_load_value gap;                  /* free travel, mm; NaN: not known, or none is shown */
-  double zero_n;                      /* what the load cell says in the gap; NaN: not known */
-  double push_mm, pull_mm;            /* where zero + T, zero - T are passed */
+  fg_load_value gap;                  /* free travel, mm; NaN: unknown, or not shown */
+  double zero_n;                      /* load cell's reading in the gap; NaN: unknown */
+  double push_mm, pull_mm;            /* displacements at zero + T and zero - T */
   double drift_um_cycle;
   fg_load_value stiffness; /* N/mm, largest up to just before the turn */
   double stiffness_at_mm;
@@ -219,19 +218,19 @@ typedef struct fg_load_direction {
   fg_load_value loss, loss_secant, loss_foil; /* of the test with K or secant; of the foils alone */
   fg_load_friction friction;
   fg_load_course course[FG_LOAD_SIDES];
-  fg_load_value predicted;  /* by the lot, mm; NaN: not */
+  fg_load_value predicted;  /* predicted from the lot, mm; NaN: no prediction */
   fg_load_value difference; /* gap - predicted */
-  int predicted_pad;        /* from 1: pad of the place that is met first of both sides; 0: none */
+  int predicted_pad; /* from 1: pad of the place that is touched first on both sides; 0: none */
 } fg_load_direction;
 
 enum { FG_LOAD_ORDER_MAX = 4 }; /* orders of the clearance over the azimuths: 2, 4 */
 
-/* Why an axis of the smallest clearance is not named. */
+/* Reasons why an axis of the smallest clearance is not named. */
 typedef enum fg_load_axis {
   FG_LOAD_AXIS_KNOWN,
   FG_LOAD_AXIS_FEW,    /* fewer than three axes were measured */
-  FG_LOAD_AXIS_ROUND,  /* none stands out of the noise */
-  FG_LOAD_AXIS_RIVALS, /* two minima that are no further apart than their uncertainty */
+  FG_LOAD_AXIS_ROUND,  /* none is significant */
+  FG_LOAD_AXIS_RIVALS, /* two minima closer than their uncertainty */
 } fg_load_axis;
 const char *fg_load_axis_words(fg_load_axis axis); /* NULL: known */
 
@@ -239,13 +238,13 @@ const char *fg_load_axis_words(fg_load_axis axis); /* NULL: known */
 enum {
   FG_BREAK_TOO_FEW = 1 << 0,       /* too few pulls, or one weight */
   FG_BREAK_CURVED = 1 << 1,        /* not a straight line */
-  FG_BREAK_UNCHECKED = 1 << 2,     /* nothing says whether it is one */
-  FG_BREAK_SLOPE = 1 << 3,         /* the slope is not known */
+  FG_BREAK_UNCHECKED = 1 << 2,     /* linearity unknown */
+  FG_BREAK_SLOPE = 1 << 3,         /* the slope is unknown */
   FG_BREAK_BELOW_ZERO = 1 << 4,    /* less friction than the rig's */
   FG_BREAK_RIG_NOT_GIVEN = 1 << 5, /* the rig's friction counts as preload */
   FG_BREAK_NONE_SHOWN = 1 << 6,    /* the preload lies within U of none */
-  FG_BREAK_GAP = 1 << 7,           /* a preload where the load test has a clearance */
-  FG_BREAK_SUSPECTED = 1 << 8,     /* perhaps no straight line */
+  FG_BREAK_GAP = 1 << 7,           /* a preload although the load test has a clearance */
+  FG_BREAK_SUSPECTED = 1 << 8,     /* possibly not a straight line */
 };
 const fg_load_flag *fg_break_away_flags(void); /* ends with a row whose name is NULL */
 
@@ -255,7 +254,7 @@ typedef struct fg_break_away_pull {
   double weight_n, friction_n; /* at the rotor's surface, the rig's friction included */
 } fg_break_away_pull;
 
-/* F over W of a bearing. Values are NaN where they cannot be said. */
+/* F over W of a bearing. NaN where unknown. */
 typedef struct fg_break_away {
   size_t pulls, weights; /* 0: no such test */
   unsigned flags;
@@ -264,7 +263,7 @@ typedef struct fg_break_away {
   fg_load_value intercept_n; /* F without a weight, less the rig's: mu P */
   double rig_n;              /* at the rotor's surface; NaN: not given */
   double residual_n;         /* sd about the line */
-  double p_curved;           /* of a straight line; NaN: too few */
+  double p_curved;           /* p-value of a straight line; NaN: too few pulls */
 } fg_break_away;
 
 typedef struct fg_load_bearing {
@@ -275,22 +274,23 @@ typedef struct fg_load_bearing {
   bool harmonic[FG_LOAD_ORDER_MAX + 1];
   double cosine_mm[FG_LOAD_ORDER_MAX + 1], sine_mm[FG_LOAD_ORDER_MAX + 1];
   double amplitude_mm[FG_LOAD_ORDER_MAX + 1], u_amplitude_mm[FG_LOAD_ORDER_MAX + 1];
-  double p_value; /* of all directions being alike; NaN: too few */
+  double p_value; /* of equal clearances in all directions; NaN: too few */
   fg_load_axis axis;
   double min_at_deg, u_min_at_deg;   /* of the fitted curve, 0 to 180; NaN: see `axis` */
-  double birge;                      /* how far cycles differ over what they should */
+  double birge;                      /* ratio of observed to expected scatter of the cycles */
   fg_load_value stiffness;           /* mean over the directions */
   double noise_n, noise_mm, step_mm; /* of the directions: means, and the largest step */
   fg_load_value hysteresis_n;        /* a of the directions' mean */
   double slope, u_slope;             /* b */
   fg_break_away break_away;
   fg_load_value preload_n, preload_kpa; /* of the break-away test */
-  size_t unknown_places;                /* of the lot's bearing; predicted without them */
+  size_t unknown_places; /* places of the lot's bearing without a measured foil; predicted without
+                            them */
   bool in_lot;
 } fg_load_bearing;
 
 typedef struct fg_load_file {
-  char *path, sha256[65], *not_read; /* columns that nothing reads; NULL: none */
+  char *path, sha256[65], *not_read; /* unused columns; NULL: none */
 } fg_load_file;
 
 typedef struct fg_load_test {
@@ -301,18 +301,18 @@ typedef struct fg_load_test {
   size_t bearing_count, bearing_capacity;
   fg_load_direction *directions; /* by bearing, then azimuth */
   size_t direction_count, direction_capacity;
-  fg_load_sample *samples; /* of a direction together, in the order of time */
+  fg_load_sample *samples; /* of each direction contiguous, in order of time */
   size_t sample_count, sample_capacity;
   fg_break_away_pull *pulls;
   size_t pull_count, pull_capacity;
   char lot_sha256[65];
 } fg_load_test;
 
-/* FG_ERR_DATA names file, row and line: no such column, no unit, an unknown one; a missing number;
- * times that do not rise; FG_ERR_NOT_MEASURED never: a direction that cannot be measured has a
- * flag. `count` may be 0 where there are break-away tests. A break-away test that names no bearing
- * is that of the only bearing of the tests, else of one that is called as its file. Free with
- * fg_load_test_free. */
+/* FG_ERR_DATA names file, row and line: a missing column, a missing or unknown unit, a missing
+ * number, times that do not increase. Never FG_ERR_NOT_MEASURED: a direction that cannot be
+ * measured has a flag. `count` may be 0 where there are break-away tests. A break-away test without
+ * a bearing's name belongs to the only bearing of the tests, else to one named like its file. Free
+ * with fg_load_test_free. */
 fg_status fg_load_test_measure(fg_context *ctx, const fg_load_options *options,
                                const fg_load_source *sources, size_t count, fg_load_test *test);
 void fg_load_test_free(fg_load_test *test);

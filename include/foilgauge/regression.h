@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Least squares of a response on a model, with everything that one looks at afterwards.
+/* Least squares of a response on a model, with tests, intervals and diagnostics.
  *
  * The matrix is orthogonalised (modified Gram-Schmidt with the response as its last column, Björck
  * 1967) in extended precision (106 bits), from the decimal text of the data on, so that 13 digits
  * are left at a condition number of 1e15. A column that is a combination of earlier ones is
  * aliased: it gets no coefficient, and the combination is reported.
  *
- * Where something cannot be computed (no residual freedom, a leverage of one) the number is NaN
- * and a note says why and what can be done.
+ * Where something cannot be computed (no residual dof, a leverage of one) the number is NaN and a
+ * note has the reason and the remedy.
  */
 #ifndef FOILGAUGE_REGRESSION_H
 #define FOILGAUGE_REGRESSION_H
@@ -26,12 +26,12 @@ extern "C" {
 typedef struct fg_regression_options {
   double confidence;      /* of the intervals; 0 means 0.95 */
   double alias_tolerance; /* a column is aliased when less than this share of its length is left
-                             after the earlier columns are taken out; 0 means 1e-13 */
+                             after projection on the earlier columns; 0 means 1e-13 */
   const double *weights;  /* one per row, positive, 1 / variance up to a factor; NULL: all 1 */
-  /* What was estimated from these rows and taken out of the response beforehand: so many
-   * parameters, which the residual freedom, where there is any, pays; FG_ERR_DATA when nothing is
-   * left. `taken` is what was taken out of each row: where it differs between repeated runs, their
-   * pure error pays, else the lack of fit. */
+  /* Effects estimated from these rows and subtracted from the response beforehand: the number of
+   * their parameters, which lowers the residual dof; FG_ERR_DATA when no dof is left. `taken` is
+   * the part subtracted from each row: where it differs between repeated runs it lowers the dof of
+   * pure error, else those of lack of fit. */
   size_t dof_taken;
   const double *taken;
 } fg_regression_options;
@@ -39,10 +39,11 @@ typedef struct fg_regression_options {
 typedef struct fg_coefficient {
   char *name;
   size_t term;  /* index into the model's terms, or FG_MODEL_CONSTANT */
-  bool aliased; /* then the rest is NaN */
+  bool aliased; /* then the numbers below are NaN */
   double estimate, standard_error, t, p_value;
-  double low, high; /* the confidence interval */
-  double vif; /* variance inflation: 1 / (1 - R²) on the other columns; NaN for the constant */
+  double low, high; /* limits of the confidence interval */
+  double vif; /* variance inflation: 1 / (1 - R²), R of its regression on the other columns; NaN for
+                 the constant */
 } fg_coefficient;
 
 /* column = sum of factor[i] × column with[i]. */
@@ -86,7 +87,7 @@ typedef struct fg_regression {
   double *external; /* externally studentised: s without the run */
   double *cook;     /* Cook's distance */
 
-  char **note; /* what could not be computed, and what to do */
+  char **note; /* numbers that could not be computed, with the remedy */
   size_t notes, note_capacity;
 
   fg_extended *estimate_extended; /* columns; 0 where aliased */
@@ -105,8 +106,8 @@ fg_status fg_regression_analyse(fg_context *ctx, const fg_table *table, const ch
                                 const char *response, const fg_regression_options *options,
                                 fg_model *model, fg_regression *regression);
 
-/* At a row of the model matrix: the expected response, the standard error of that mean, and of
- * one new run (unit weight). */
+/* Prediction at a row of the model matrix: the expected response, the standard error of that mean,
+ * and of one new run (unit weight). */
 typedef struct fg_prediction {
   double mean, standard_error, run_standard_error;
   double low, high;         /* confidence interval of the mean */

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Response surfaces: where a fitted quadratic is stationary, lowest, highest, and how to get there.
+/* Response surfaces: stationary point, optimum and ridge path of a fitted quadratic.
  *
  * The surface is y = b0 + b'x + x'Bx in the numeric factors of a model of degree two at most (Box
- * and Wilson 1951); factors of words keep the level they are given. All x are in the units that
+ * and Wilson 1951); factors of words keep a given level. All x are in the units that
  * the model was fitted in, usually coded ones; fg_coding_to_real translates.
  */
 #ifndef FOILGAUGE_SURFACE_H
@@ -24,7 +24,7 @@ typedef enum fg_surface_kind {
   FG_SURFACE_MINIMUM,
   FG_SURFACE_MAXIMUM,
   FG_SURFACE_SADDLE,
-  FG_SURFACE_RIDGE, /* an eigenvalue is nothing beside the largest: no single point */
+  FG_SURFACE_RIDGE, /* an eigenvalue is negligible beside the largest: no single stationary point */
   FG_SURFACE_PLANE, /* no term of degree two */
 } fg_surface_kind;
 
@@ -42,27 +42,27 @@ typedef struct fg_surface {
   double eigenvector[FG_SURFACE_FACTORS][FG_SURFACE_FACTORS]; /* [k] belongs to eigenvalue[k] */
 } fg_surface;
 
-/* `setting` holds one number per variable of the model's formula; only the levels of word factors
- * are read from it (index of the level); NULL: baselines. FG_ERR_USAGE for a degree above two, a
- * transformed number, no numeric factor or more than 12. */
+/* Reads from `setting`, one number per variable of the model's formula, only the levels of word
+ * factors (index of the level); NULL: baselines. FG_ERR_USAGE for a degree above two, a transformed
+ * number, no numeric factor or more than 12. */
 fg_status fg_surface_make(fg_context *ctx, const fg_model *model, const fg_regression *regression,
                           const double *setting, fg_surface *surface);
 
 double fg_surface_value(const fg_surface *surface, const double *x);
 
-/* The lowest (or highest) point of the box low <= x <= high, exactly: every face of the box is
- * searched for its own stationary point. A user's constraint (temperature below 700 °C) is a
+/* Finds the lowest (or highest) point of the box low <= x <= high, exactly: every face of the box
+ * is searched for its own stationary point. A user's constraint (temperature below 700 °C) is a
  * smaller box. FG_ERR_USAGE for an empty box. */
 fg_status fg_surface_optimum_box(fg_context *ctx, const fg_surface *surface, bool highest,
                                  const double *low, const double *high, double *x);
 
-/* The lowest (or highest) point of the ball |x| <= radius. */
+/* Finds the lowest (or highest) point of the ball |x| <= radius. */
 fg_status fg_surface_optimum_ball(fg_context *ctx, const fg_surface *surface, bool highest,
                                   double radius, double *x);
 
 enum { FG_REGION_PLANES = 16 };
 
-/* Where an optimum may lie: a box, a ball and half-spaces at once (a convex region). */
+/* Region of an optimum: the intersection of a box, a ball and half-spaces (convex). */
 typedef struct fg_region {
   size_t factors;
   double low[FG_SURFACE_FACTORS], high[FG_SURFACE_FACTORS];
@@ -73,19 +73,21 @@ typedef struct fg_region {
 
 typedef enum fg_goal { FG_GOAL_LOWEST, FG_GOAL_HIGHEST, FG_GOAL_TARGET } fg_goal;
 
-/* Inside, or outside by no more than `tolerance` (in the unit of x). */
+/* Returns true inside the region, or outside by no more than `tolerance` (in the unit of x). */
 bool fg_region_contains(const fg_region *region, const double *x, double tolerance);
-/* The nearest point of the region (Dykstra 1983). FG_ERR_USAGE when the region is empty. */
+/* Moves x to the nearest point of the region (Dykstra 1983). FG_ERR_USAGE when the region is empty.
+ */
 fg_status fg_region_project(fg_context *ctx, const fg_region *region, double *x);
-/* The lowest or highest point of the surface in the region, or one where it is nearest to `target`
- * (the one nearest to the region's centre among the starts' answers): projected gradients from the
- * best of a fixed set of scattered points. The same answer every time. FG_ERR_USAGE when the region
- * is empty. */
+/* Finds the lowest or highest point of the surface in the region, or the point where it is nearest
+ * to `target` (of several, the one nearest to the region's centre). Method: projected gradients
+ * from the best of a fixed set of scattered points, so the result is reproducible. FG_ERR_USAGE
+ * when the region is empty. */
 fg_status fg_surface_optimum_region(fg_context *ctx, const fg_surface *surface, fg_goal goal,
                                     double target, const fg_region *region, double *x);
 
-/* The ridge path (Draper 1963): the best point on each sphere of radius radii[i] about the centre;
- * on a plane this is the path of steepest ascent or descent. `path` takes count × factors. */
+/* Finds the ridge path (Draper 1963): the best point on each sphere of radius radii[i] about the
+ * centre; on a plane this is the path of steepest ascent or descent. `path` has room for count ×
+ * factors. */
 fg_status fg_surface_ridge_path(fg_context *ctx, const fg_surface *surface, bool highest,
                                 const double *radii, size_t count, double *path);
 

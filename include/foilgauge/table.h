@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Tables of runs: named columns of numbers or words, read from CSV text.
  *
- * Numbers keep the digits of their decimal text: 0.1 is not the double nearest to 0.1 but that
- * double and the rest. Regression needs it (see regression.h); whoever does not reads `.value`.
+ * Numbers keep the digits of their decimal text: 0.1 is the double nearest to 0.1 plus its
+ * remainder. Regression needs both (see regression.h); other users read `.value`.
  *
- * A cell is a number, a word, or missing (empty, NA, NaN, inf). What a column is taken for is
- * decided where it is used: a column of words is a factor; a column of numbers with a word in it
- * is most likely a slip of the pen, so it is an error that names row and column, unless the
- * formula says factor(name). So is a column whose numbers may mean something else: decimal commas
- * beside decimal points, separators of thousands.
+ * A cell is a number, a word, or missing (empty, NA, NaN, inf). The type of a column is decided by
+ * its user: a column of words is a factor; a column of numbers with a word in it is most likely a
+ * typing error, so FG_ERR_DATA names row and column, unless the formula says factor(name). A column
+ * of ambiguous numbers is an error, too: decimal commas beside decimal points, separators of
+ * thousands.
  */
 #ifndef FOILGAUGE_TABLE_H
 #define FOILGAUGE_TABLE_H
@@ -44,7 +44,7 @@ typedef struct fg_column {
   size_t point_row, comma_row; /* from 1, the first number with a decimal point, and with a comma;
                                   0: none */
   bool comma_proven;           /* a decimal comma that cannot separate thousands: 0,5 */
-  char *uncertainty;           /* what speaks against its numbers, with the place; NULL: nothing */
+  char *uncertainty; /* reason, with the place, why its numbers are ambiguous; NULL: they are not */
   size_t capacity, word_capacity, mark_capacity;
   size_t *slot; /* hash of words[]: index + 1, 0 where free */
   size_t slot_count;
@@ -69,12 +69,12 @@ typedef struct fg_table {
 fg_status fg_table_parse(fg_context *ctx, const char *source, const char *text, size_t size,
                          fg_table *table);
 
-/* The table of a file ("-": standard input) of at most 1 GiB, and the SHA-256 of its bytes in
+/* Loads the table of a file ("-": standard input) of at most 1 GiB, and the SHA-256 of its bytes in
  * hexadecimal. FG_ERR_IO, and as fg_table_parse. */
 fg_status fg_table_load(fg_context *ctx, const char *path, fg_table *table, char sha256[65]);
 
-/* A table in memory: start from {0}, add columns of equal length. FG_ERR_USAGE for a name that is
- * there already or another number of rows. Values that are not finite count as missing. */
+/* Builds a table in memory: start from {0}, add columns of equal length. FG_ERR_USAGE for an
+ * existing name or another number of rows. Values that are not finite count as missing. */
 fg_status fg_table_add_numbers(fg_context *ctx, fg_table *table, const char *name,
                                const double *values, size_t rows);
 fg_status fg_table_add_extended(fg_context *ctx, fg_table *table, const char *name,
@@ -82,7 +82,7 @@ fg_status fg_table_add_extended(fg_context *ctx, fg_table *table, const char *na
 fg_status fg_table_add_words(fg_context *ctx, fg_table *table, const char *name,
                              const char *const *words, size_t rows);
 
-/* The column, or FG_ERR_DATA with the names that there are. */
+/* Finds a column; FG_ERR_DATA lists the columns of the table. */
 fg_status fg_table_find(fg_context *ctx, const fg_table *table, const char *name,
                         const fg_column **column);
 

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the models of a bump's stiffness share. */
+/* Parts common to the models of a bump's stiffness. */
 #ifndef FG_BEARING_ARCH_H
 #define FG_BEARING_ARCH_H
 
 #include "foilgauge/bearing.h"
 
-/* FG_ERR_DATA for values that have no meaning. */
+/* FG_ERR_DATA for impossible values. */
 fg_status fg_arch_check(fg_context *ctx, const fg_arch *arch, const fg_arch_material *material);
 
 /* phi, radians. */

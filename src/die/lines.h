@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Lines of a profile's text, and the numbers that stand in them. */
+/* Lines of a profile's text, and their numbers. */
 #ifndef FG_DIE_LINES_H
 #define FG_DIE_LINES_H
 
@@ -8,7 +8,7 @@
 
 enum { FG_DIE_FIELDS_MAX = 16 };
 
-/* How the file writes its columns. */
+/* Format of the file's columns. */
 typedef struct fg_die_style {
   char separator;     /* ';' '\t' ',' or ' ' */
   bool comma_decimal; /* 1,5 */
@@ -19,25 +19,27 @@ typedef struct fg_die_field {
   size_t length;
 } fg_die_field;
 
-/* The line at `at`: its end (line feed, carriage return or both are behind it), and the next. */
+/* Returns the end of the line at `at` (line feed, carriage return or both follow), and the start of
+ * the next line. */
 const char *fg_die_line_end(const char *at);
 const char *fg_die_line_next(const char *at);
 
-/* Cuts a line into fields without the blanks around them; what is beyond FG_DIE_FIELDS_MAX is
- * counted only. */
+/* Splits a line into fields without surrounding blanks; fields beyond FG_DIE_FIELDS_MAX are only
+ * counted. */
 size_t fg_die_split(const char *line, const char *end, char separator,
                     fg_die_field fields[FG_DIE_FIELDS_MAX]);
 
 /* A number with a point or, where `comma_decimal`, a comma. */
 bool fg_die_number(const fg_die_field *field, bool comma_decimal, double *value);
 
-/* Whether nothing but digits, signs, marks and separators stand in it. */
+/* Returns true when the line has only digits, signs, marks and separators. */
 bool fg_die_looks_numeric(const char *line, const char *end);
 
-/* Whether it is two numbers or more, whatever marks and separators the file has. */
+/* Returns true for two numbers or more, with any marks and separators. */
 bool fg_die_is_data(const char *line, const char *end);
 
-/* How the lines from `text` on are written that look numeric. NULL, or what makes it uncertain. */
+/* Finds the format of the lines from `text` on that look numeric. Returns NULL, or the reason why
+ * it is ambiguous. */
 const char *fg_die_style_find(const char *text, fg_die_style *style);
 
 #endif

@@ -1,19 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The strip along its midline: the stretches of the die, and the curve that curvatures make. */
+/* Strip along its midline: the pieces of the die, and the curve that their curvatures make. */
 #ifndef FG_FORMING_STRIP_H
 #define FG_FORMING_STRIP_H
 
 #include "foilgauge/forming.h"
 
-/* Fills design, options, die of `forming` in, pieces, bumps' die values and length out.
- * FG_ERR_DATA: a form without curvature, a die whose bumps overlap. */
+/* Fills design, options and die of `forming`, its pieces, the bumps' die values and the length.
+ * FG_ERR_DATA: a foil kind without curvature, a die whose bumps overlap. */
 fg_status fg_forming_lay_out(fg_context *ctx, fg_forming *forming);
 
-/* The midline with both edges, stations every 8 um, as `measure` takes it. The strip belongs to the
- * caller. */
+/* Draws the midline with both edges, stations every 8 um, as input for the measurement. The strip
+ * belongs to the caller. */
 fg_status fg_forming_draw(fg_context *ctx, const fg_forming *forming, fg_strip *strip);
 
-/* What a pitch does to what comes after it: it turns by turn_rad and shifts by chord_mm; means over
+/* Effect of a pitch on everything after it: it turns by turn_rad and shifts by chord_mm; means over
  * the pitches from one land's middle to the next. Arc: from end to end. */
 typedef struct fg_forming_pitch {
   double turn_rad, chord_mm;

@@ -20,15 +20,16 @@ typedef struct fg_load_columns {
   const fg_extended *number[FG_LOAD_MEASURED]; /* NULL: no such column */
   double scale[FG_LOAD_MEASURED];              /* to degrees, N, mm, s, N mm */
   const fg_column *cycle, *bearing, *pad;      /* NULL: no such column */
-  char *not_read;                              /* names that nothing reads; NULL: none; owned */
+  char *not_read;                              /* names of unused columns; NULL: none; owned */
 } fg_load_columns;
 
-/* FG_ERR_DATA: what is missing, has no unit or an unknown one, is there twice, or holds a cell that
- * is no number. Time may be missing, azimuth too where `azimuth_said`. */
+/* FG_ERR_DATA: a missing or duplicate column, a missing or unknown unit, a cell that is no number.
+ * Time may be missing, azimuth too when `azimuth_said`. */
 fg_status fg_load_columns_find(fg_context *ctx, const fg_table *table, bool azimuth_said,
                                fg_load_columns *columns);
 
-/* Likewise of a break-away test: the dead weight, and either the torque or the force. */
+/* As fg_load_columns_find, for a break-away test: the dead weight, and either the torque or the
+ * force. */
 fg_status fg_load_columns_find_break_away(fg_context *ctx, const fg_table *table,
                                           fg_load_columns *columns);
 

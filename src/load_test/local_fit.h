@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Local quadratic regression of a stroke's force over its displacement. It never reaches over an
- * unsampled stretch (holes.c): what lies on the other side is another branch. */
+/* Local quadratic regression of a stroke's force over its displacement. It never crosses an
+ * unsampled stretch (holes.c): beyond it is another branch. */
 #ifndef FG_LOAD_TEST_LOCAL_FIT_H
 #define FG_LOAD_TEST_LOCAL_FIT_H
 
@@ -10,30 +10,31 @@ typedef struct fg_local_fit {
   double value, u_value; /* F, N */
   double slope, u_slope; /* dF/dx, N/mm */
   double window_mm;      /* half of its width */
-  double u_unsampled_mm; /* of a crossing in an unsampled stretch, for that alone; 0: in none */
+  double u_unsampled_mm; /* of a crossing in an unsampled stretch, its contribution; 0: in none */
 } fg_local_fit;
 
 typedef enum fg_local_target { FG_LOCAL_VALUE, FG_LOCAL_SLOPE } fg_local_target;
 
-/* With a window of half a width `window_mm` about x. False: too few samples in it. */
+/* Fits a window of half width `window_mm` about x. False: too few samples in it. */
 bool fg_local_fit_at(const fg_load_stroke *stroke, double x, double window_mm, fg_local_fit *fit);
 
 /* With this window, or with the next wider one that holds enough samples. */
 bool fg_local_fit_near(const fg_load_stroke *stroke, double x, double window_mm, fg_local_fit *fit);
 
-/* With this window; u holds half of what the next wider one says otherwise. */
+/* Fits with this window; u includes half of the difference from the next wider one. */
 bool fg_local_fit_with(const fg_load_stroke *stroke, double x, double window_mm, fg_local_fit *fit);
 
-/* Within an unsampled stretch: on the chord between its borders, u that of a rectangular
- * distribution over what the force rises by. False: x lies in none. */
+/* Interpolates within an unsampled stretch on the chord between its borders, with u of a
+ * rectangular distribution over the rise of the force. False: x lies in none. */
 bool fg_local_across(const fg_load_stroke *stroke, double x, fg_local_fit *fit);
 
-/* With the window that the noise decides. */
+/* Fits with a window chosen by the noise. */
 bool fg_local_fit_adaptive(const fg_load_stroke *stroke, double x, fg_local_target target,
                            fg_local_fit *fit);
 
-/* Place at which the force passes `level_n`, seen from the largest displacement; the fit there. In
- * an unsampled stretch: within its bounds, see `u_unsampled_mm`. False: it does not. */
+/* Finds the place where the force passes `level_n`, coming from the largest displacement, and the
+ * fit there. In an unsampled stretch: within its bounds, see `u_unsampled_mm`. False: it does not
+ * pass. */
 bool fg_local_crossing(const fg_load_stroke *stroke, double level_n, double *x, double *u_x,
                        fg_local_fit *fit);
 

@@ -5,13 +5,13 @@
 
 #include "foilgauge/load_test.h"
 
-/* Where a record begins among test->samples: a direction that goes on in another file. */
+/* Begin of each record among test->samples: a direction may continue in another file. */
 typedef struct fg_load_records {
   size_t *begin; /* ascending; every direction's first sample is one of them */
   size_t count, capacity;
 } fg_load_records;
 
-/* More bytes of a file are no test's. */
+/* maximum size of a test's file */
 enum { FG_LOAD_BYTES_MAX = 256 << 20 };
 
 /* Fills files (with room for break-away tests), bearings (names), directions (bearing, azimuth,
@@ -19,14 +19,14 @@ enum { FG_LOAD_BYTES_MAX = 256 << 20 };
 fg_status fg_load_records_read(fg_context *ctx, const fg_load_source *sources, size_t count,
                                fg_load_test *test, fg_load_records *records);
 
-/* The bearing of that name; a new one where there is none. */
+/* Finds the bearing of that name; adds it when there is none. */
 fg_status fg_load_find_bearing(fg_context *ctx, fg_load_test *test, const char *name,
                                size_t *index);
 
 /* The file's name less its folder and ending. */
 const char *fg_load_file_stem(const char *path, char *text, size_t size);
 
-/* The last file's bytes must be new. */
+/* FG_ERR_DATA when the last file has the same bytes as an earlier one. */
 fg_status fg_load_check_new(fg_context *ctx, const fg_load_test *test);
 
 void fg_load_records_free(fg_load_records *records);

@@ -8,49 +8,50 @@
 fg_status fg_experiment_note(fg_context *ctx, fg_experiment *experiment, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-/* Fits again with weights where the measurement's uncertainty asks for it. */
+/* Repeats the fit with weights where the measurement's uncertainty requires it. */
 fg_status fg_experiment_weigh(fg_context *ctx, fg_experiment *experiment,
                               const fg_extended *response);
 
-/* Split plots, coefficients by stratum, Lenth, Box-Cox, curvature, what the measurement adds. */
+/* Computes split plots, coefficients by stratum, Lenth, Box-Cox, curvature, and the measurement's
+ * contribution. */
 fg_status fg_experiment_effects(fg_context *ctx, fg_experiment *experiment);
 
-/* What the residuals show over the order of the runs. */
+/* Tests the residuals over the order of the runs. */
 fg_status fg_experiment_check_order(fg_context *ctx, fg_experiment *experiment);
 
-/* Surface and region; `whole`: the experiment that this one is without some factors of, or NULL.
- * Then stationary point, optimum, ridge. */
+/* Finds surface and region, then stationary point, optimum, ridge. `whole`: the experiment with all
+ * factors when this one lacks some, or NULL. */
 fg_status fg_experiment_surface(fg_context *ctx, const fg_experiment_options *options,
                                 const fg_experiment *whole, fg_experiment *experiment);
 fg_status fg_experiment_optimise(fg_context *ctx, const fg_experiment_options *options,
                                  fg_experiment *experiment);
 
-/* Predicts the response at the settings that were asked for. */
+/* Predicts the response at the requested settings. */
 fg_status fg_experiment_ask(fg_context *ctx, const fg_experiment_options *options,
                             fg_experiment *experiment);
 
-/* Everything before the surface. */
+/* Analyses everything before the surface. */
 fg_status fg_experiment_fit(fg_context *ctx, const fg_table *runs,
                             const fg_experiment_options *options, fg_experiment *experiment);
 
-/* Finds the factors that cannot be told from noise, and makes the experiment without them. */
+/* Finds the factors that are not significant, and makes the experiment without them. */
 fg_status fg_experiment_reduce(fg_context *ctx, const fg_table *runs,
                                const fg_experiment_options *options, fg_experiment *experiment);
 
-/* Adds the half-spaces of the whole experiment's region: a factor that is left out takes the value
- * of its range that leaves the others the most room. */
+/* Adds the half-spaces of the whole experiment's region. A factor that is left out gets the value
+ * of its range that restricts the others least. */
 void fg_experiment_take_constraints(const fg_experiment *whole, fg_experiment *experiment);
 
 /* Adds "2*a + b <= 3" (real units) to the region as a half-space in the model's units. */
 fg_status fg_experiment_constrain(fg_context *ctx, const fg_experiment *experiment,
                                   const char *text, fg_region *region);
 
-/* The expected response at a place of the surface; whether it lies on the region's border. */
+/* Predicts the response at a place of the surface; tests whether a place is on the border. */
 fg_status fg_experiment_predict_at(fg_context *ctx, const fg_experiment *experiment,
                                    const double *x, fg_prediction *prediction);
 bool fg_experiment_on_border(const fg_region *region, const double *x);
 
-/* The best setting that can be made, where steps are given. */
+/* Finds the best feasible setting, where steps are given. */
 fg_status fg_experiment_round(fg_context *ctx, const fg_experiment_options *options,
                               fg_experiment *experiment);
 

@@ -13,7 +13,7 @@ typedef struct fg_word {
 /* "A:B" or "-A:B" over the plan's factor names. */
 fg_status fg_word_parse(fg_context *ctx, const fg_plan *plan, const char *text, fg_word *word);
 
-/* The index of the factor called so, or plan->factors. */
+/* Returns the index of the factor of that name, or plan->factors. */
 size_t fg_plan_find_factor(const fg_plan *plan, const char *name, size_t length);
 
 /* Fills word, word_sign and resolution with all products of the generating words. */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Groups against each other: how far their means lie apart beyond what happens within them.
+/* Variance between groups beyond the scatter within them.
  *
- * Means y_i with the variance v_i that comes from within, of groups that scatter about a common
+ * The means y_i have the variance v_i from within; the groups scatter about a common
  * centre with the standard deviation tau. tau² solves sum w_i (y_i - centre)² = k - 1 with
  * w_i = 1 / (tau² + v_i) (Paule and Mandel 1982), its interval the same sum at the quantiles of
  * chi² (Viechtbauer 2007). */
@@ -13,7 +13,7 @@
 #include "foilgauge/status.h"
 
 typedef struct fg_group_mean {
-  double mean, variance; /* of the mean, by what happens within the group */
+  double mean, variance; /* `variance`: of the mean, from the scatter within the group */
 } fg_group_mean;
 
 typedef struct fg_between {
@@ -24,13 +24,13 @@ typedef struct fg_between {
 /* NaN for fewer than two groups. */
 fg_between fg_between_groups(const fg_group_mean *groups, size_t count, double confidence);
 
-/* Where the mean of another group is to be expected: half the width about the centre, by Student's
- * t with count - 1 degrees of freedom. NaN for fewer than two groups. */
+/* Returns the half width, about the centre, of the prediction interval for another group's mean, by
+ * Student's t with count - 1 dof. NaN for fewer than two groups. */
 double fg_between_reach(const fg_between *between, size_t count, double variance,
                         double confidence);
 
-/* p-values of a family, adjusted so that the chance of one that is wrong stays the level (Holm
- * 1979). NaN stays, and is no member. */
+/* Adjusts the p-values of a family so that the probability of any false rejection is the level
+ * (Holm 1979). NaN stays NaN and is no member. */
 fg_status fg_holm_adjust(fg_context *ctx, const double *p, size_t count, double *adjusted);
 
 #endif

@@ -8,25 +8,26 @@
 /* Appends a column without rows; the name is copied. FG_ERR_USAGE when the name is taken. */
 fg_status fg_column_open(fg_context *ctx, fg_table *table, const char *name, fg_column **column);
 
-/* The number of the column of that name; table->columns when there is none. */
+/* Returns the index of the column of that name, or table->columns when there is none. */
 size_t fg_column_find(const fg_table *table, const char *name);
 
-/* Takes the last column away, or the one at `index`. */
+/* Removes the last column, or the one at `index`. */
 void fg_column_drop_last(fg_table *table);
 void fg_column_drop(fg_table *table, size_t index);
-void fg_column_free(fg_column *column); /* what it owns */
+void fg_column_free(fg_column *column); /* Frees the members of a column, not the column itself. */
 
-/* One more cell in the column, which holds `row` cells so far. */
+/* Appends a cell to the column, which holds `row` cells so far. */
 fg_status fg_column_push_number(fg_context *ctx, fg_column *column, size_t row, fg_extended number);
 fg_status fg_column_push_missing(fg_context *ctx, fg_column *column, size_t row);
 fg_status fg_column_push_word(fg_context *ctx, fg_column *column, size_t row, const char *word);
 
-/* Decides what the text is (number, missing or word) and appends it. With `commas` a number may
- * have a decimal comma. */
+/* Appends a text as number, missing value or word. With `commas` a number may have a decimal comma.
+ */
 fg_status fg_column_push_text(fg_context *ctx, fg_column *column, size_t row, const char *text,
                               size_t length, bool commas);
 
-/* Once all rows are there: gives the columns their doubts, by what the whole table holds. */
+/* Sets `uncertainty` of columns with ambiguous decimal marks. Call it once all rows are read: it
+ * compares all columns. */
 fg_status fg_table_warn_decimals(fg_context *ctx, fg_table *table, unsigned char separator);
 
 #endif

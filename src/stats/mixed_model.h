@@ -1,18 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A linear model with one random effect: y = X b + Z u + e, u of the groups, e of the runs.
+/* Linear model with one random effect: y = X b + Z u + e, u of the groups, e of the runs.
  *
  * V = s² (I + r Z Z'), r the ratio of the groups' variance to that of the runs. Restricted
  * likelihood (Patterson and Thompson 1971), profiled over b and s², so that only r is searched for.
  * Variances and degrees of freedom of the estimates: Kenward and Roger (1997).
  *
- * The groups' variance may come out negative: group means that scatter less than their runs say. It
- * stays negative for its effect on b. Held at 0 it would make the intervals of differences between
- * groups too wide (99 % where 95 % is stated), and with groups of one size the answer would not be
- * that of the analysis of variance, which compares the means' scatter as it is.
+ * The groups' variance may come out negative: group means that scatter less than the scatter of
+ * their runs implies. It stays negative for its effect on b. Held at 0 it would make the intervals
+ * of differences between groups too wide (99 % where 95 % is stated), and with groups of one size
+ * the answer would not be that of the analysis of variance, which uses the means' scatter without a
+ * lower limit.
  *
- * All is computed in the orthonormal basis Q of X that least squares found, from the groups' sums
- * s_g = Q_g' 1 and of the residuals: V of a group has the eigenvalue s² (1 + n_g r) along 1 and s²
- * across it. */
+ * Everything is computed in the orthonormal basis Q of X that least squares found, from the groups'
+ * sums s_g = Q_g' 1 and of the residuals: V of a group has the eigenvalue s² (1 + n_g r) along 1
+ * and s² across it. */
 #ifndef FG_STATS_MIXED_MODEL_H
 #define FG_STATS_MIXED_MODEL_H
 
@@ -36,20 +37,20 @@ typedef struct fg_mixed_model {
 } fg_mixed_model;
 
 /* `least_squares` is of the same model and response. FG_ERR_NUMERIC where the two variances cannot
- * be told apart: no degree of freedom for the groups or for the runs within them. `fixed_groups`,
- * for the first of these: the groups may differ by anything, so that only differences within them
- * have a meaningful covariance, and the groups' variance is NaN. */
+ * be separated: no dof for the groups or for the runs within them. `fixed_groups`, for groups
+ * without dof: the groups are arbitrary, so only differences within them have a meaningful
+ * covariance, and the groups' variance is NaN. */
 fg_status fg_mixed_fit(fg_context *ctx, const fg_model *model, const fg_levels *groups,
                        const fg_regression *least_squares, bool fixed_groups,
                        fg_mixed_model *mixed);
 void fg_mixed_free(fg_mixed_model *mixed);
 
-/* Variance of row · b, with its degrees of freedom; with `run` that of one new run of a new group
+/* Returns the variance of row · b and its dof; with `run`, that of one new run of a new group
  * there. */
 double fg_mixed_variance(const fg_mixed_model *mixed, const double *row, bool run, double *dof);
 
-/* F test of some coefficients being 0: scaled F and the degrees of freedom of its denominator. NaN
- * for none. */
+/* Tests whether some coefficients are 0: scaled F and the dof of its denominator. NaN when `count`
+ * is 0. */
 fg_status fg_mixed_test(fg_context *ctx, const fg_mixed_model *mixed, const size_t *column,
                         size_t count, double *f, double *dof);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Gram-Schmidt in extended precision, with aliased columns set aside. */
+/* Gram-Schmidt in extended precision, without aliased columns. */
 #ifndef FG_STATS_ORTHOGONAL_H
 #define FG_STATS_ORTHOGONAL_H
 

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The parts of a regression that are worked out after the least-squares solution. */
+/* Parts of a regression that are computed after the least-squares solution. */
 #ifndef FG_STATS_REGRESSION_PARTS_H
 #define FG_STATS_REGRESSION_PARTS_H
 
 #include "foilgauge/regression.h"
 #include "stats/orthogonal.h"
 
-/* What the parts read: one problem, its solution. */
+/* Input of the parts: the problem and its solution. */
 typedef struct fg_fit {
   const fg_model *model;
   const fg_extended *response;

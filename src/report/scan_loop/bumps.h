@@ -6,16 +6,17 @@
 #include "core/json_writer.h"
 #include "foilgauge/scan_result.h"
 
-/* Into the open arrays `claims` and `rejected`. */
+/* Writes into the open arrays `claims` and `rejected`. */
 void fg_json_bump_claims(fg_json *json, const fg_scan_result_bumps *bumps);
 void fg_json_bump_rejected(fg_json *json, const fg_scan_result_bumps *bumps);
-/* The member `unattributed`; false, and nothing written, where the bumps leave no curve. */
+/* Writes the member `unattributed`; returns false, and writes nothing, when the bumps have no such
+ * curve. */
 bool fg_json_bump_curve(fg_json *json, const fg_scan_result_bumps *bumps);
-/* The member `bumps`. */
+/* Writes the member `bumps`. */
 void fg_json_bumps(fg_json *json, const fg_scan_result_bumps *bumps);
 
 void fg_text_bumps(const fg_scan_result_bumps *bumps, FILE *out);
-/* What is not claimed. */
+/* Writes the effects that are not claimed. */
 void fg_text_bumps_rejected(const fg_scan_result_bumps *bumps, FILE *out);
 
 #endif

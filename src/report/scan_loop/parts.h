@@ -7,49 +7,50 @@
 #include "page/page.h"
 #include "report/value_words.h"
 
-/* ---- words (scan_loop_words.c) ---- */
+/* ---- words (words.c) ---- */
 
 /* "µm" for "um", "°" for "deg". */
 const char *fg_scan_loop_unit_words(const char *unit);
-/* What the held-out error is of: "scans kept aside", "bumps that took no part in the search"; "":
- * it says nothing that the rms does not. */
+/* Writes the kind of the held-out error: "scans kept aside", "bumps that took no part in the
+ * search"; "": it adds nothing to the rms. */
 enum { FG_HELD_OUT_WORDS = 80 };
 void fg_scan_loop_held_out_words(const fg_scan_result *result, char words[FG_HELD_OUT_WORDS]);
 
-/* The largest of 1, 2, 5 times a power of ten that is not above `most`. */
+/* Returns the largest of 1, 2, 5 times a power of ten that is not above `max`. */
 double fg_scan_loop_nice_below(double max);
 
 /* "for", "against", "cannot_tell". */
 const char *fg_channel_check_word(fg_channel_check_verdict verdict);
 
-/* The page's one sentence; the caller frees it. scan_loop_sentence.c */
+/* Writes the page's summary sentence; the caller frees it (sentence.c). */
 fg_status fg_scan_loop_sentence(fg_context *ctx, const fg_scan_result *result, char **text);
 
-/* What to do about it, in one sentence, and the commands for that, a line each; NULL: none. The
- * caller frees both. scan_loop_next.c */
+/* Writes the recommended next step, in one sentence, and its commands, a line each; NULL: none. The
+ * caller frees both (next.c). */
 fg_status fg_scan_loop_next(fg_context *ctx, const fg_scan_result *result, char **words,
                             char **commands);
 
-/* ---- what an effect does (scan_loop_curves.c) ---- */
+/* ---- effects (curves.c) ---- */
 
 /* The deformation of the picture, curves over the coordinates, parameters. */
 void fg_scan_loop_page_effects(FILE *out, const fg_scan_result *result);
 void fg_scan_loop_page_grid(FILE *out, const fg_scan_result *result);
 
-/* ---- residuals (scan_loop_vectors.c, scan_loop_plots.c) ---- */
+/* ---- residuals (vectors.c, plots.c) ---- */
 
 fg_status fg_scan_loop_page_vectors(fg_context *ctx, FILE *out, const fg_scan_result *result);
 fg_status fg_scan_loop_page_residuals(fg_context *ctx, FILE *out, const fg_scan_result *result);
 
-/* Size that all but `share` of the residuals stay below, over rows that weigh; 0 without any. */
+/* Finds the size that all but `share` of the residuals stay below, over rows with weight; 0 without
+ * any. */
 fg_status fg_scan_loop_residual_limit(fg_context *ctx, const fg_scan_result *result, bool after,
                                       double share, double *limit);
 
-/* ---- dimensions (scan_loop_dimensions.c) ---- */
+/* ---- dimensions (dimensions.c) ---- */
 
 void fg_scan_loop_page_dimensions(FILE *out, const fg_scan_result *result);
 
-/* ---- the bumps (scan_loop_bump_page.c) ---- */
+/* ---- the bumps (bump_page.c) ---- */
 
 void fg_scan_loop_page_bumps(FILE *out, const fg_scan_result *result);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The tests of the whole residual that `clean` rests on, in words. */
+/* Words for the residual tests that `clean` requires. */
 #ifndef FG_REPORT_TABLE_LOOP_CHECKS_H
 #define FG_REPORT_TABLE_LOOP_CHECKS_H
 
@@ -7,14 +7,14 @@
 
 /* "lack_of_fit", as the JSON names it. */
 const char *fg_loop_check_id(fg_loop_check check);
-/* What a test asks; "yes" where it is passed: "Are rows 2 to 10 apart independent?". */
+/* Writes a test's question, "yes" if it passes: "Are rows 2 to 10 apart independent?". */
 void fg_loop_check_words(const fg_loop_report *report, fg_loop_check check,
                          char text[FG_LOOP_WORDS]);
-/* What the test that fails says, as a sentence without its full stop. */
+/* Writes the finding of the failed test, as a sentence without its full stop. */
 void fg_loop_failed_words(const fg_loop_report *report, char text[FG_LOOP_WORDS]);
-/* What to do about it. */
+/* Writes the remedy for the failed test. */
 void fg_loop_failed_advice(const fg_loop_report *report, char text[FG_LOOP_WORDS]);
-/* The coordinate that it lives on, or the names of several: "load", "T, D". */
+/* Writes the coordinate of the failed test, or several: "load", "T, D". */
 void fg_loop_failed_coordinate(const fg_loop_report *report, char text[FG_LOOP_WORDS]);
 
 #endif

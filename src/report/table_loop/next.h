@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What to do about what the loop on tables found: one step for each finding, in words. */
+/* Recommended steps after a loop on tables: one for each finding, in words. */
 #ifndef FG_REPORT_TABLE_LOOP_NEXT_H
 #define FG_REPORT_TABLE_LOOP_NEXT_H
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One plot of rows over a coordinate, with what was found over it. */
+/* Plot of rows over one coordinate, with the effects found over it. */
 #ifndef FG_REPORT_TABLE_LOOP_PANEL_H
 #define FG_REPORT_TABLE_LOOP_PANEL_H
 
@@ -18,7 +18,7 @@ typedef struct fg_loop_panel {
   bool dashes;                     /* a dash for each point of the line, not a curve */
   bool band;                       /* the line is the upper edge of a band about zero */
   bool joined;                     /* the rows are joined in their order */
-  const fg_loop_candidate *marked; /* its rows are marked with their numbers; NULL: none */
+  const fg_loop_candidate *marked; /* rows marked with their numbers; NULL: none */
   const char *caption;
 } fg_loop_panel;
 
