@@ -43,12 +43,12 @@ static void score_plain(const group_lot *g, score *s) {
       mean[i] += foil->bumps[k].radius_mm / (double)foil->bump_count;
     }
   }
-  assert_int_equal(fg_comparison_compute(NULL, (fg_sample){value, first},
-                                         (fg_sample){value + first, count - first}, 0.95, &c),
-                   FG_OK);
+  assert_ok(&test_context,
+            fg_comparison_compute(&test_context, (fg_sample){value, first},
+                                  (fg_sample){value + first, count - first}, 0.95, &c));
   s->bumps += c.p_means < 0.05;
   const fg_sample a = {mean, g->first}, b = {mean + g->first, GROUP_FOILS - g->first};
-  assert_int_equal(fg_comparison_compute(NULL, a, b, 0.95, &c), FG_OK);
+  assert_ok(&test_context, fg_comparison_compute(&test_context, a, b, 0.95, &c));
   double pooled = 0, centre[2] = {0, 0}, n[2] = {(double)a.count, (double)b.count};
   for (size_t i = 0; i < GROUP_FOILS; i++)
     centre[i >= g->first] += mean[i] / n[i >= g->first];

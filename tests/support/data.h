@@ -4,15 +4,10 @@
 #ifndef FG_TESTS_DATA_H
 #define FG_TESTS_DATA_H
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 
-#include <cmocka.h>
-
 #include "core/file.h"
+#include "support/test.h"
 
 /* The whole file, NUL-terminated; without it the test fails. The caller frees it. (Inlined, gcc 12
  * takes the text for the local variable that points to it, and warns of dangling pointers.) */

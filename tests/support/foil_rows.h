@@ -8,6 +8,7 @@
 #include "effect/columns.h"
 #include "random.h"
 #include "rows/edge_fit.h"
+#include "support/test.h"
 #include "synthetic_foil.h"
 
 typedef struct foil_rows {
@@ -24,8 +25,8 @@ static inline void foil_rows_open(foil_rows *f) {
   f->m.foils = calloc(1, sizeof *f->m.foils);
   f->m.foils[0] = synthetic_foil(&f->m.design, &f->m.nominal);
   fg_edge_fit_view view = {.foil = &f->m.foils[0], .measurement = &f->m};
-  assert_int_equal(fg_edge_fit_build(&ctx, &view, 1, &f->edge_fit), FG_OK);
-  assert_int_equal(fg_edge_fit_fit(&ctx, &f->edge_fit, NULL), FG_OK);
+  assert_ok(&ctx, fg_edge_fit_build(&ctx, &view, 1, &f->edge_fit));
+  assert_ok(&ctx, fg_edge_fit_fit(&ctx, &f->edge_fit, NULL));
   size_t rows = f->edge_fit.row_count;
   f->residual_um = calloc(rows, sizeof(double));
   f->jacobian = calloc(rows * f->edge_fit.parameters, sizeof(double));

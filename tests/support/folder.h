@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "core/file.h"
+#include "support/test.h"
 
 typedef struct folder {
   char path[200], file[256];
@@ -56,7 +57,7 @@ static inline void write_file(const char *path, const char *content) {
 
 static inline void assert_content(const char *path, const char *content) {
   char *text = NULL;
-  assert_int_equal(fg_file_read_text(NULL, path, 1000, &text), FG_OK);
+  assert_ok(&test_context, fg_file_read_text(&test_context, path, 1000, &text));
   assert_string_equal(text, content);
   free(text);
 }

@@ -5,6 +5,7 @@
 
 #include "support/made_lot.h"
 #include "support/random.h"
+#include "support/test.h"
 
 enum { GROUP_FOILS = 14, GROUP_BUMPS = 9 };
 
@@ -35,7 +36,7 @@ static inline void group_lot_make(const fg_design *design, size_t first, group_l
   for (size_t i = 0; i < GROUP_FOILS; i++)
     for (size_t k = 0; k < GROUP_BUMPS; k++)
       made_bump(&g->lot, i, k, 3.36 + 0.001 * (double)((3 * i + k) % 5), 63.15);
-  assert_int_equal(fg_lot_analyse(NULL, &g->lot, &g->analysis), FG_OK);
+  assert_ok(&test_context, fg_lot_analyse(&test_context, &g->lot, &g->analysis));
 }
 
 static inline void group_lot_free(group_lot *g) {
@@ -72,7 +73,7 @@ static inline void group_lot_relabel(uint64_t *seed, group_lot *g) {
 
 static inline const fg_lot_difference *group_lot_compare(group_lot *g) {
   g->analysis.difference_count = 0;
-  assert_int_equal(fg_lot_analyse_groups(NULL, &g->analysis), FG_OK);
+  assert_ok(&test_context, fg_lot_analyse_groups(&test_context, &g->analysis));
   for (size_t i = 0; i < g->analysis.difference_count; i++)
     if (!strcmp(g->analysis.differences[i].quantity->row->name, "radius_mm"))
       return &g->analysis.differences[i];

@@ -4,17 +4,12 @@
 #define FG_TEST_MADE_LOT_H
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "lot/statistics/analysis.h"
+#include "support/test.h"
 
 /* `columns`: further columns of the manifest with a leading comma, or ""; `cells` their text for
  * each foil (NULL: none). Scans are 0.png, 1.png, ... with a foil each, whose bumps are zero. */
@@ -30,8 +25,8 @@ static inline fg_lot made_lot(const fg_design *design, size_t foils, size_t bump
   fg_lot_settings_default(&lot.settings);
   lot.settings.design = *design;
   lot.settings.resamples = 100;
-  assert_int_equal(fg_design_derive(&ctx, design, &lot.nominal), FG_OK);
-  assert_int_equal(fg_manifest_parse(&ctx, "made.csv", text, "", &lot.manifest), FG_OK);
+  assert_ok(&ctx, fg_design_derive(&ctx, design, &lot.nominal));
+  assert_ok(&ctx, fg_manifest_parse(&ctx, "made.csv", text, "", &lot.manifest));
   assert_int_equal(lot.manifest.items, foils);
   lot.records = calloc(foils, sizeof *lot.records);
   for (size_t i = 0; i < foils; i++) {

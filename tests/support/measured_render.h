@@ -4,18 +4,13 @@
 #define FG_TESTS_MEASURED_RENDER_H
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "foilgauge/render.h"
 #include "measure/session.h"
+#include "support/test.h"
 
 typedef struct rendered {
   fg_render_spec *spec;
@@ -55,16 +50,16 @@ static inline rendered render_open(const char *json) {
   r.row_bytes = (size_t)r.truth->width_px * (size_t)bytes;
   r.strip = calloc(FG_TILE_PX, r.row_bytes);
   assert_non_null(r.strip);
-  assert_int_equal(
-      fg_tiles_create(&ctx, r.truth->width_px, r.truth->height_px, bytes, NULL, &r.tiles), FG_OK);
+  assert_ok(&ctx,
+            fg_tiles_create(&ctx, r.truth->width_px, r.truth->height_px, bytes, NULL, &r.tiles));
   return r;
 }
 
 static inline rendered render_tiles(const char *json) {
   fg_context ctx = {0};
   rendered r = render_open(json);
-  assert_int_equal(fg_render_rows(&ctx, r.spec, 0, rendered_row, &r), FG_OK);
-  assert_int_equal(fg_tiles_finish(&ctx, &r.tiles), FG_OK);
+  assert_ok(&ctx, fg_render_rows(&ctx, r.spec, 0, rendered_row, &r));
+  assert_ok(&ctx, fg_tiles_finish(&ctx, &r.tiles));
   return r;
 }
 
@@ -78,10 +73,10 @@ static inline void rendered_free(rendered *r) {
 static inline void measure_rows(measured *m) {
   fg_context *ctx = &m->ctx;
   rendered *r = &m->picture;
-  assert_int_equal(fg_session_create(ctx, &m->result, 1, &r->session), FG_OK);
-  assert_int_equal(fg_render_rows(ctx, r->spec, 0, rendered_row, r), FG_OK);
-  assert_int_equal(fg_tiles_finish(ctx, &r->tiles), FG_OK);
-  assert_int_equal(fg_session_advance(ctx, &r->tiles, r->session), FG_OK);
+  assert_ok(ctx, fg_session_create(ctx, &m->result, 1, &r->session));
+  assert_ok(ctx, fg_render_rows(ctx, r->spec, 0, rendered_row, r));
+  assert_ok(ctx, fg_tiles_finish(ctx, &r->tiles));
+  assert_ok(ctx, fg_session_advance(ctx, &r->tiles, r->session));
   m->status = fg_session_finish(ctx, r->session);
   fg_session_free(r->session);
   r->session = NULL;
@@ -94,7 +89,7 @@ static inline measured measure_picture(rendered picture, const fg_design *design
     m.result.design = *design;
   else
     fg_design_default(&m.result.design);
-  assert_int_equal(fg_design_derive(&m.ctx, &m.result.design, &m.result.nominal), FG_OK);
+  assert_ok(&m.ctx, fg_design_derive(&m.ctx, &m.result.design, &m.result.nominal));
   for (int i = 0; i < 2; i++)
     m.result.dpi[i] = m.picture.truth->dpi[i];
   measure_rows(&m);

@@ -3,18 +3,12 @@
 #ifndef FG_TESTS_REPORT_FIXTURE_H
 #define FG_TESTS_REPORT_FIXTURE_H
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
 #include <cjson/cJSON.h>
 
 #include "foilgauge/report.h"
 #include "quantity/quantity_rows.h"
 #include "support/synthetic_foil.h"
+#include "support/test.h"
 
 typedef struct fixture {
   fg_design design;
@@ -51,7 +45,7 @@ static inline char *text_of(report_writer *write, const fg_report *report) {
   char *text = NULL;
   size_t size = 0;
   FILE *out = open_memstream(&text, &size);
-  assert_int_equal(write(&ctx, report, out), FG_OK);
+  assert_ok(&ctx, write(&ctx, report, out));
   fclose(out);
   return text;
 }

@@ -4,17 +4,12 @@
 #define RENDER_PICTURE_H
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "foilgauge/render.h"
+#include "support/test.h"
 
 typedef struct picture {
   fg_render_spec *spec;
@@ -42,7 +37,7 @@ static inline picture draw(int64_t strip_rows, const char *json) {
   p.height = p.truth->height_px;
   p.dn = calloc((size_t)p.width * (size_t)p.height, sizeof *p.dn);
   assert_non_null(p.dn);
-  assert_int_equal(fg_render_rows(&ctx, p.spec, strip_rows, keep_row, &p), FG_OK);
+  assert_ok(&ctx, fg_render_rows(&ctx, p.spec, strip_rows, keep_row, &p));
   return p;
 }
 
@@ -59,13 +54,6 @@ static inline void drop(picture *p) {
   fg_render_free(p->spec);
   free(p->dn);
 }
-
-#define assert_close(value, expected, tolerance)                                                   \
-  do {                                                                                             \
-    double value_ = (value), expected_ = (expected), tolerance_ = (tolerance);                     \
-    if (!(fabs(value_ - expected_) <= tolerance_))                                                 \
-      fail_msg("%s = %.9g, not %.9g within %.3g", #value, value_, expected_, tolerance_);          \
-  } while (0)
 
 /* All tests draw on 20 with a contrast of 200 in 16 bit without noise, unless they say so. */
 #define EXACT "\"bits\":16,\"background\":20,\"contrast\":200,\"noise\":0"

@@ -4,6 +4,7 @@
 #include "support/measured_render.h"
 
 #include "support/random.h"
+#include "support/test.h"
 
 enum { ROOM = 300 }; /* px that a foil can be moved by */
 
@@ -33,7 +34,7 @@ static sheet render_sheet(const char *scanner, int bumps, const char *foil) {
   sheet s = {.width = truth->width_px, .height = truth->height_px, .bits = truth->bits};
   s.pixels = calloc((size_t)(s.width * s.height), sizeof *s.pixels);
   assert_non_null(s.pixels);
-  assert_int_equal(fg_render_rows(&ctx, spec, 0, take_row, &s), FG_OK);
+  assert_ok(&ctx, fg_render_rows(&ctx, spec, 0, take_row, &s));
   fg_render_free(spec);
   return s;
 }
@@ -67,8 +68,8 @@ static void add_rows(fg_context *ctx, const sheet *bed, fg_session *session, fg_
         ((uint16_t *)rows)[i] = from[i];
       else
         ((uint8_t *)rows)[i] = (uint8_t)(from[i] / 257);
-    assert_int_equal(fg_tiles_take_strip(ctx, tiles), FG_OK);
-    assert_int_equal(fg_session_advance(ctx, tiles, session), FG_OK);
+    assert_ok(ctx, fg_tiles_take_strip(ctx, tiles));
+    assert_ok(ctx, fg_session_advance(ctx, tiles, session));
   }
 }
 
@@ -78,14 +79,14 @@ static fg_measurement measure_bed(const sheet *bed, double dpi) {
   fg_tiles tiles;
   fg_session *session;
   fg_design_default(&m.design);
-  assert_int_equal(fg_design_derive(&ctx, &m.design, &m.nominal), FG_OK);
-  assert_int_equal(
-      fg_tiles_create(&ctx, bed->width, bed->height, bed->bits > 8 ? 2 : 1, NULL, &tiles), FG_OK);
-  assert_int_equal(fg_session_create(&ctx, &m, 1, &session), FG_OK);
+  assert_ok(&ctx, fg_design_derive(&ctx, &m.design, &m.nominal));
+  assert_ok(&ctx,
+            fg_tiles_create(&ctx, bed->width, bed->height, bed->bits > 8 ? 2 : 1, NULL, &tiles));
+  assert_ok(&ctx, fg_session_create(&ctx, &m, 1, &session));
   add_rows(&ctx, bed, session, &tiles);
-  assert_int_equal(fg_tiles_finish(&ctx, &tiles), FG_OK);
-  assert_int_equal(fg_session_advance(&ctx, &tiles, session), FG_OK);
-  assert_int_equal(fg_session_finish(&ctx, session), FG_OK);
+  assert_ok(&ctx, fg_tiles_finish(&ctx, &tiles));
+  assert_ok(&ctx, fg_session_advance(&ctx, &tiles, session));
+  assert_ok(&ctx, fg_session_finish(&ctx, session));
   fg_session_free(session);
   fg_tiles_free(&tiles);
   return m;
@@ -131,6 +132,7 @@ static void moved(const char *scanner, double dpi) {
   sheet foil = render_sheet(scanner, 3, "");
   fg_measurement first = measure_at(&foil, 128, 128, dpi, 1);
   for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
+    in_row("places[%zu]", i);
     fg_measurement m = measure_at(&foil, places[i][0], places[i][1], dpi, 2 + i);
     assert_same(&first.foils[0], &m.foils[0]);
     for (int k = 0; k < 2; k++)

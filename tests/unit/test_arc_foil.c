@@ -2,6 +2,7 @@
 /* Plain strips through the measuring chain: radius, angle and length within their uncertainty of
  * the truth on every datum, and what is no plain strip. */
 #include "support/measured_render.h"
+#include "support/test.h"
 
 /* One value of many may lie so many standard uncertainties off: 1 in 150,000. */
 static const double many_u = 4.5;
@@ -32,7 +33,7 @@ static measured measure_stated(fg_datum datum, fg_tone_statement tone, double ra
   design.tone = tone;
   arc_spec(json, sizeof json, foil, scanner);
   measured m = measure_render(json, &design);
-  assert_int_equal(m.status, FG_OK);
+  assert_ok(NULL, m.status);
   assert_int_equal(m.result.foil_count, 1);
   return m;
 }
@@ -62,11 +63,10 @@ static void check_arc(fg_datum datum, fg_tone_statement tone, double designed_mm
   check_within("angle", f->arc.subtended_angle_deg, angle, f->arc.u_subtended_angle_deg,
                20 * u_mm * 180 / M_PI / designed_mm);
   check_within("length", f->arc.length_mm, radius * angle * M_PI / 180, f->arc.u_length_mm, u_mm);
-  assert_close(f->arc.subtended_angle_error_pct, 100 * (f->arc.subtended_angle_deg - 40) / 40,
-               1e-9);
-  assert_close(f->arc.u_subtended_angle_error_pct, 100 * f->arc.u_subtended_angle_deg / 40, 1e-9);
-  assert_close(f->overall.springback_error_pct,
-               100 * (designed_mm - f->overall.radius_mm) / designed_mm, 1e-9);
+  assert_near(f->arc.subtended_angle_error_pct, 100 * (f->arc.subtended_angle_deg - 40) / 40, 1e-9);
+  assert_near(f->arc.u_subtended_angle_error_pct, 100 * f->arc.u_subtended_angle_deg / 40, 1e-9);
+  assert_near(f->overall.springback_error_pct,
+              100 * (designed_mm - f->overall.radius_mm) / designed_mm, 1e-9);
   measured_free(&m);
 }
 
@@ -121,7 +121,7 @@ static void a_foil_with_bumps_is_none(void **state) {
   fg_design design = arc_design(FG_DATUM_MID, 15);
   small_foil(json, sizeof json, 4, "", CLEAN);
   measured m = measure_render(json, &design);
-  assert_int_equal(m.status, FG_OK);
+  assert_ok(NULL, m.status);
   assert_int_equal(m.result.foil_count, 1);
   const fg_foil *f = &m.result.foils[0];
   assert_true(f->flags & FG_FOIL_BUMPS_ON_ARC && f->flags & FG_FOIL_NOT_MEASURED);

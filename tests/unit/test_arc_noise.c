@@ -6,6 +6,7 @@
 
 #include "geometry/arcs.h"
 #include "support/random.h"
+#include "support/test.h"
 
 enum { ARCS = 9, POINTS = 320, TRIALS = 120 };
 static const double radius_mm = 3.4, step_mm = 0.0106;
@@ -37,11 +38,11 @@ static void draw_arcs(arcs_strip *a, double sd_mm, double rho, uint64_t *seed) {
                                         .normal = {-c, -s},
                                         .weight = 1};
   }
-  assert_int_equal(fg_datum_line_build(&ctx, &a->strip, FG_DATUM_MID, true, &a->line), FG_OK);
+  assert_ok(&ctx, fg_datum_line_build(&ctx, &a->strip, FG_DATUM_MID, true, &a->line));
   for (size_t i = 0; i < ARCS; i++) {
     a->ranges[i] = (fg_range){i * POINTS, (i + 1) * POINTS - 1};
     a->arcs[i] = (fg_arc){.ranges = &a->ranges[i], .range_count = 1};
-    assert_int_equal(fg_arc_fit(&ctx, &a->line, &a->arcs[i]), FG_OK);
+    assert_ok(&ctx, fg_arc_fit(&ctx, &a->line, &a->arcs[i]));
   }
 }
 
@@ -95,7 +96,7 @@ static void arcs_end_before_the_fillets(void **state) {
     char json[4096];
     small_foil(json, sizeof json, 3, ",\"radius_mm\":[3.4,3.4,3.4]", "\"blur_px\":%g", blurs[j]);
     measured m = measure_render(json, NULL);
-    assert_int_equal(m.status, FG_OK);
+    assert_ok(NULL, m.status);
     const fg_foil *foil = &m.result.foils[0];
     /* A fillet of radius F touches the bump circle from outside and the overall circle from
      * inside; its centre lies R + F from C and R0 - F from O. */
@@ -125,15 +126,15 @@ static void datum_moves_radii_by_half_the_thickness(void **state) {
   for (int side = -1; side <= 1; side += 2) {
     design.datum = side < 0 ? FG_DATUM_INNER : FG_DATUM_OUTER;
     measured m = measure_render(json, &design);
-    assert_int_equal(m.status, FG_OK);
+    assert_ok(NULL, m.status);
     const fg_foil *a = &mid.result.foils[0], *b = &m.result.foils[0];
     assert_int_equal(a->bump_count, b->bump_count);
     /* The sleeve's side is outside of the overall circle, and inside of a bump's. */
-    assert_close(b->overall.radius_mm - a->overall.radius_mm, side * 0.05, 5e-5);
+    assert_near(b->overall.radius_mm - a->overall.radius_mm, side * 0.05, 5e-5);
     for (size_t i = 0; i < a->bump_count; i++) {
-      assert_close(b->bumps[i].radius_mm - a->bumps[i].radius_mm, -side * 0.05, 1e-4);
-      assert_close(b->bumps[i].height_mm, a->bumps[i].height_mm, 3e-5);
-      assert_close(b->bumps[i].centre_to_centre_mm, a->bumps[i].centre_to_centre_mm, 1e-4);
+      assert_near(b->bumps[i].radius_mm - a->bumps[i].radius_mm, -side * 0.05, 1e-4);
+      assert_near(b->bumps[i].height_mm, a->bumps[i].height_mm, 3e-5);
+      assert_near(b->bumps[i].centre_to_centre_mm, a->bumps[i].centre_to_centre_mm, 1e-4);
     }
     measured_free(&m);
   }
@@ -152,7 +153,7 @@ static void intervals_cover_the_truth(void **state) {
     memcpy(strstr(json, "\"seed\":3"), "\"seed\":", 7);
     strstr(json, "\"seed\":")[7] = (char)('1' + i % 9);
     measured m = measure_render(json, NULL);
-    assert_int_equal(m.status, FG_OK);
+    assert_ok(NULL, m.status);
     const fg_foil *f = &m.result.foils[0];
     const fg_render_foil *t = &m.picture.truth->foils[0];
     assert_int_equal(f->bump_count, t->bump_count);

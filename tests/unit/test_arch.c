@@ -2,23 +2,11 @@
 /* The arch model against a frame of straight beam elements, against strain energy integrated from
  * the equilibrium of a cut arch, and at its limits. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "foilgauge/bearing.h"
-
-/* Says both numbers when they differ: cmocka 1.1 compares no doubles. */
-static void near_at(double value, double expected, double tolerance, int line) {
-  if (fabs(value - expected) <= tolerance) return;
-  fail_msg("line %d: %.12g, not %.12g ± %.3g", line, value, expected, tolerance);
-}
-#define assert_near(value, expected, tolerance) near_at(value, expected, tolerance, __LINE__)
+#include "support/test.h"
 
 static const double pi = 3.14159265358979323846;
 static const fg_arch gen2 = {3.32, 63.15, 0.1};
@@ -30,7 +18,7 @@ static fg_arch_material steel(double friction) {
 static double free_stiffness(fg_arch arch, double friction, fg_arch_stiffness *all) {
   fg_context ctx;
   fg_arch_material material = steel(friction);
-  assert_int_equal(fg_arch_free(&ctx, &arch, &material, all), FG_OK);
+  assert_ok(&ctx, fg_arch_free(&ctx, &arch, &material, all));
   return all->stiffness_n_mm2;
 }
 
@@ -175,7 +163,7 @@ static void welded_bump_is_the_frames(void **state) {
     fg_arch_material material = steel(friction);
     fg_arch_stiffness result;
     double sink_w, sink_h, v_w, v_h;
-    assert_int_equal(fg_arch_welded(&ctx, &gen2, &material, &result), FG_OK);
+    assert_ok(&ctx, fg_arch_welded(&ctx, &gen2, &material, &result));
     frame_welded(gen2, 1, 0, false, &sink_w, &v_w);
     frame_welded(gen2, 0, 1, false, &sink_h, &v_h);
     double h = friction * v_w / (1 - friction * v_h);
@@ -185,7 +173,7 @@ static void welded_bump_is_the_frames(void **state) {
   fg_arch_material rough = steel(50);
   fg_arch_stiffness result;
   double sink, v;
-  assert_int_equal(fg_arch_welded(&ctx, &gen2, &rough, &result), FG_OK);
+  assert_ok(&ctx, fg_arch_welded(&ctx, &gen2, &rough, &result));
   frame_welded(gen2, 1, 0, true, &sink, &v);
   assert_true(result.stuck);
   assert_near(result.stiffness_n_mm2 * sink, 1, 3e-3);
@@ -237,7 +225,7 @@ static void sensitivities_are_slopes(void **state) {
   fg_arch_sensitivity s;
   fg_arch_material material = steel(0.1);
   fg_arch_stiffness at, moved;
-  assert_int_equal(fg_arch_sensitivities(&ctx, &gen2, &material, &s), FG_OK);
+  assert_ok(&ctx, fg_arch_sensitivities(&ctx, &gen2, &material, &s));
   fg_arch wider = gen2;
   wider.radius_mm *= 1.001;
   double slope =
@@ -254,9 +242,9 @@ static void nonsense_is_refused(void **state) {
   fg_arch_material material = steel(0.1);
   const fg_arch bad[] = {{0, 60, 0.1}, {3, 0, 0.1}, {3, 180, 0.1}, {3, 60, 4}, {NAN, 60, 0.1}};
   for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
-    assert_int_equal(fg_arch_free(&ctx, &bad[i], &material, &result), FG_ERR_DATA);
+    assert_status(&ctx, fg_arch_free(&ctx, &bad[i], &material, &result), FG_ERR_DATA);
   material.friction = -1;
-  assert_int_equal(fg_arch_welded(&ctx, &gen2, &material, &result), FG_ERR_DATA);
+  assert_status(&ctx, fg_arch_welded(&ctx, &gen2, &material, &result), FG_ERR_DATA);
 }
 
 /* Clearances of a rotor that stands off centre: the offset comes back, the circle is round, and the
@@ -272,7 +260,7 @@ static void offset_bearing_is_round(void **state) {
   }
   assert_near(angle[1], 17.142857142857142, 1e-12);
   fg_bearing_clearance result;
-  assert_int_equal(fg_bearing_assess(&ctx, angle, clearance, 21, &result), FG_OK);
+  assert_ok(&ctx, fg_bearing_assess(&ctx, angle, clearance, 21, &result));
   assert_near(result.offset_mm[0], 0.01, 1e-12);
   assert_near(result.offset_mm[1], -0.02, 1e-12);
   assert_near(result.circularity_mm, 0, 1e-12);
@@ -293,11 +281,11 @@ static void lobes_are_circularity(void **state) {
     clearance[i] = 0.07 + 0.015 * cos(3 * angle[i] * pi / 180);
   }
   fg_bearing_clearance result;
-  assert_int_equal(fg_bearing_assess(&ctx, angle, clearance, 18, &result), FG_OK);
+  assert_ok(&ctx, fg_bearing_assess(&ctx, angle, clearance, 18, &result));
   assert_near(result.circularity_mm, 0.03, 1e-12);
   assert_near(result.centred_min_mm, 0.055, 1e-12);
   clearance[4] = NAN;
-  assert_int_equal(fg_bearing_assess(&ctx, angle, clearance, 18, &result), FG_OK);
+  assert_ok(&ctx, fg_bearing_assess(&ctx, angle, clearance, 18, &result));
   assert_int_equal(result.count, 17);
 }
 
@@ -306,9 +294,9 @@ static void open_bearing_centres_nothing(void **state) {
   fg_context ctx;
   const double angle[] = {0, 40, 80}, clearance[] = {0.1, 0.1, 0.1};
   fg_bearing_clearance result;
-  assert_int_equal(fg_bearing_assess(&ctx, angle, clearance, 3, &result), FG_OK);
+  assert_ok(&ctx, fg_bearing_assess(&ctx, angle, clearance, 3, &result));
   assert_true(isnan(result.centred_min_mm));
-  assert_int_equal(fg_bearing_assess(&ctx, angle, clearance, 2, &result), FG_ERR_DATA);
+  assert_status(&ctx, fg_bearing_assess(&ctx, angle, clearance, 2, &result), FG_ERR_DATA);
 }
 
 int main(void) {

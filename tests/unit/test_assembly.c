@@ -1,17 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Bearings drawn from a stock of foils: the shares against all draws there are, and the same draws
  * for the same seed. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "foilgauge/report.h"
 #include "lot/statistics/assembly.h"
-#include "support/near.h"
+#include "support/test.h"
 
 enum { PADS = 3, BUMPS = 9 };
 
@@ -25,7 +19,7 @@ static fg_stock made_stock(size_t foils, double between, double inside) {
   fg_context ctx;
   fg_stock stock;
   uint64_t seed = 5;
-  assert_int_equal(fg_stock_allocate(&ctx, foils, BUMPS, &stock), FG_OK);
+  assert_ok(&ctx, fg_stock_allocate(&ctx, foils, BUMPS, &stock));
   for (size_t i = 0; i < foils; i++) {
     double mean = 0.02 + between * (uniform(&seed) - 0.5);
     for (size_t k = 0; k < BUMPS; k++) {
@@ -56,7 +50,7 @@ static void assess(const fg_stock *stock, const fg_assembly_plan *plan, const si
     angle[i] = fg_bearing_angle_deg(&plan->layout, i / BUMPS, i % BUMPS);
     clearance[i] = stock->clearance_mm[foil[i / BUMPS] * BUMPS + i % BUMPS];
   }
-  assert_int_equal(fg_bearing_assess(&ctx, angle, clearance, PADS * BUMPS, bearing), FG_OK);
+  assert_ok(&ctx, fg_bearing_assess(&ctx, angle, clearance, PADS * BUMPS, bearing));
 }
 
 /* Every ordered choice of three different foils: what the draws are a sample of. */
@@ -89,7 +83,7 @@ static void draws_agree_with_all_there_are(void **state) {
   fg_assembly_result result;
   double share[4] = {0};
   enumerate(&stock, &plan, share);
-  assert_int_equal(fg_assembly_draw(&ctx, &stock, &plan, false, &result), FG_OK);
+  assert_ok(&ctx, fg_assembly_draw(&ctx, &stock, &plan, false, &result));
   const double drawn[] = {result.within[0].share, result.within[1].share, result.within[2].share,
                           result.assembled.share};
   int between = 0;
@@ -126,9 +120,9 @@ static void a_seed_is_a_result(void **state) {
   fg_assembly_plan plan = made_plan(1000, 0.048), other = plan;
   fg_assembly_result a, b, c;
   other.seed = 2;
-  assert_int_equal(fg_assembly_draw(&ctx, &stock, &plan, true, &a), FG_OK);
-  assert_int_equal(fg_assembly_draw(&ctx, &stock, &plan, true, &b), FG_OK);
-  assert_int_equal(fg_assembly_draw(&ctx, &stock, &other, false, &c), FG_OK);
+  assert_ok(&ctx, fg_assembly_draw(&ctx, &stock, &plan, true, &a));
+  assert_ok(&ctx, fg_assembly_draw(&ctx, &stock, &plan, true, &b));
+  assert_ok(&ctx, fg_assembly_draw(&ctx, &stock, &other, false, &c));
   assert_memory_equal(&a.assembled.share, &b.assembled.share, sizeof(double));
   assert_memory_equal(a.value[0], b.value[0], 1000 * sizeof(double));
   assert_memory_equal(&a.assembled.foils_low, &b.assembled.foils_low, sizeof(double));
@@ -149,7 +143,7 @@ static void few_foils_are_an_interval(void **state) {
     fg_stock stock = made_stock(i ? 60 : 9, 0.05, 0.03);
     fg_assembly_plan plan = made_plan(1000, 0.048);
     fg_assembly_result r;
-    assert_int_equal(fg_assembly_draw(&ctx, &stock, &plan, true, &r), FG_OK);
+    assert_ok(&ctx, fg_assembly_draw(&ctx, &stock, &plan, true, &r));
     assert_true(r.assembled.by_bootstrap);
     assert_true(r.assembled.foils_low <= r.assembled.share);
     assert_true(r.assembled.foils_high >= r.assembled.share);
@@ -158,7 +152,7 @@ static void few_foils_are_an_interval(void **state) {
     fg_assembly_result_free(&r);
     plan.limit[2].upper = 1;
     plan.limit[1].lower = -1;
-    assert_int_equal(fg_assembly_draw(&ctx, &stock, &plan, true, &r), FG_OK);
+    assert_ok(&ctx, fg_assembly_draw(&ctx, &stock, &plan, true, &r));
     assert_near(r.assembled.share, 1, 0);
     assert_false(r.assembled.by_bootstrap);
     /* All of n bearings: (1 - c) / 2 = low^n. */
@@ -194,7 +188,7 @@ static void uncertainty_is_a_share_of_its_own(void **state) {
   fg_stock stock = made_stock(9, 0.05, 0.03);
   fg_assembly_plan plan = made_plan(1000, 1);
   fg_assembly_result r;
-  assert_int_equal(fg_assembly_draw(&ctx, &stock, &plan, false, &r), FG_OK);
+  assert_ok(&ctx, fg_assembly_draw(&ctx, &stock, &plan, false, &r));
   assert_true(r.within[0].surely < r.within[0].share);
   size_t surely = 0, possibly = 0; /* all share 1 um: as if the limit were 2 um higher, lower */
   for (size_t i = 0; i < r.values[1]; i++) {
@@ -214,7 +208,7 @@ static void design_and_sorting(void **state) {
   fg_context ctx;
   fg_assembly_plan plan = made_plan(1000, 0.02);
   fg_assembly_result r;
-  assert_int_equal(fg_assembly_draw_design(&ctx, 0.0655, 0.07 * 0.0655, &plan, &r), FG_OK);
+  assert_ok(&ctx, fg_assembly_draw_design(&ctx, 0.0655, 0.07 * 0.0655, &plan, &r));
   assert_true(r.value[1][0] >= 0.93 * 0.0655 && r.value[1][0] < 0.93 * 0.0655 + 2e-5);
   assert_near(r.assembled.share, 1, 0);
   fg_assembly_result_free(&r);
@@ -223,9 +217,9 @@ static void design_and_sorting(void **state) {
   for (size_t i = 0; i < 6 * BUMPS; i++)
     stock.clearance_mm[i] += i / BUMPS % 2 ? 0.05 : 0;
   size_t sorted;
-  assert_int_equal(fg_assembly_draw(&ctx, &stock, &plan, false, &r), FG_OK);
+  assert_ok(&ctx, fg_assembly_draw(&ctx, &stock, &plan, false, &r));
   assert_true(r.assembled.share < 0.3);
-  assert_int_equal(fg_assembly_draw_sorted(&ctx, &stock, &plan, 2, &sorted), FG_OK);
+  assert_ok(&ctx, fg_assembly_draw_sorted(&ctx, &stock, &plan, 2, &sorted));
   assert_int_equal(sorted, 1000);
   fg_assembly_result_free(&r);
   fg_stock_free(&stock);
@@ -237,7 +231,7 @@ static void too_few_foils_are_refused(void **state) {
   fg_stock stock = made_stock(2, 0.05, 0.03);
   fg_assembly_plan plan = made_plan(10, 0.05);
   fg_assembly_result r;
-  assert_int_equal(fg_assembly_draw(&ctx, &stock, &plan, true, &r), FG_ERR_DATA);
+  assert_status(&ctx, fg_assembly_draw(&ctx, &stock, &plan, true, &r), FG_ERR_DATA);
   assert_non_null(strstr(ctx.message, "2 foils; a bearing takes 3"));
   fg_stock_free(&stock);
 }

@@ -2,17 +2,12 @@
 /* Beams from the stations of their edges, made of formulas: sizes, uncertainties, numbers, flags.
  * Rendered ones: tests/cli/test_beams.sh, reports/accuracy_beams.md. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "foilgauge/foil.h"
 #include "support/random.h"
+#include "support/test.h"
 
 enum { LONG_STATIONS = 500, SHORT_STATIONS = 60, BEAMS = 4 };
 static const double pi = 3.14159265358979323846;
@@ -99,12 +94,8 @@ static fg_foil measured(shape s) {
   fg_context ctx = {0};
   fg_beam beam = make_beam(s);
   fg_foil foil = foil_of(&beam, 1);
-  assert_int_equal(fg_beams_measure(&ctx, &design, &foil), FG_OK);
+  assert_ok(&ctx, fg_beams_measure(&ctx, &design, &foil));
   return foil;
-}
-
-static void assert_near(double value, double wanted, double within) {
-  if (!(fabs(value - wanted) <= within)) fail_msg("%.12g is not %.12g", value, wanted);
 }
 
 static void a_beam_has_its_size_however_it_lies(void **state) {
@@ -167,12 +158,13 @@ static void edges_that_are_not_there(void **state) {
                {{FG_BEAM_TIP}, 1, FG_BEAM_TORN_TIP, false, true},
                {{FG_BEAM_RIGHT}, 1, FG_BEAM_NOT_FITTED, false, false}};
   for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+    in_row("cases[%zu]", k);
     fg_context ctx = {0};
     fg_beam beam = make_beam((shape){4, 1, 0, 0, 0.0003, 0.2, {5, 5}, k});
     for (int i = 0; i < cases[k].count; i++)
       lose(&beam.edges[cases[k].lost[i]]);
     fg_foil foil = foil_of(&beam, 1);
-    assert_int_equal(fg_beams_measure(&ctx, &design, &foil), FG_OK);
+    assert_ok(&ctx, fg_beams_measure(&ctx, &design, &foil));
     assert_int_equal(foil.beams[0].flags, cases[k].flags);
     assert_int_equal(isfinite(foil.beams[0].length_mm), cases[k].length);
     assert_int_equal(isfinite(foil.beams[0].width_mm), cases[k].width);
@@ -191,7 +183,7 @@ static void burrs_are_left_out(void **state) {
   for (size_t i = 100; i < 140; i++)
     beam.edges[FG_BEAM_LEFT].stations[i].at.x -= 0.03;
   fg_foil foil = foil_of(&beam, 1);
-  assert_int_equal(fg_beams_measure(&ctx, &design, &foil), FG_OK);
+  assert_ok(&ctx, fg_beams_measure(&ctx, &design, &foil));
   assert_near(foil.beams[0].width_mm, 1, 4 * foil.beams[0].u_width_mm);
   assert_true(foil.beams[0].flags & FG_BEAM_OUTLIERS);
   fg_foil_free(&foil);
@@ -212,7 +204,7 @@ static void numbers_run_from_left_to_right(void **state) {
                                    place(&row, 2.0 * order[i], 0.02 * order[i]), 1});
     }
     fg_foil foil = foil_of(beams, BEAMS);
-    assert_int_equal(fg_beams_measure(&ctx, &design, &foil), FG_OK);
+    assert_ok(&ctx, fg_beams_measure(&ctx, &design, &foil));
     for (int i = 0; i < BEAMS; i++) {
       assert_int_equal(foil.beams[i].number, i + 1);
       assert_near(foil.beams[i].width_mm, 1 + 0.01 * i, 1e-9);
@@ -259,7 +251,7 @@ static fg_foil comb_without(int stated, int rows, unsigned lost, double turn, bo
       foil.place_mm[k] = low[k];
       foil.place_mm[k + 2] = high[k] - low[k];
     }
-  assert_int_equal(fg_beams_measure(&ctx, design, &foil), FG_OK);
+  assert_ok(&ctx, fg_beams_measure(&ctx, design, &foil));
   return foil;
 }
 
@@ -330,7 +322,7 @@ static void one_of_parallel_beams_that_leans_is_bent(void **state) {
   for (int i = 0; i < BEAMS; i++)
     beams[i] = make_beam((shape){4, 1, 0, 0, 0.0002, i == 2 ? 0.02 : 0, {5 + 2 * i, 9}, 1});
   fg_foil foil = foil_of(beams, BEAMS);
-  assert_int_equal(fg_beams_measure(&ctx, &design, &foil), FG_OK);
+  assert_ok(&ctx, fg_beams_measure(&ctx, &design, &foil));
   for (int i = 0; i < BEAMS; i++)
     assert_int_equal(foil.beams[i].flags, i == 2 ? FG_BEAM_BENT : 0);
   fg_foil_free(&foil);
@@ -349,7 +341,7 @@ static void beams_of_a_ring_run_clockwise(void **state) {
       beams[i] = make_beam((shape){4, 1 + 0.01 * i, 0, 0, 0, turn, place(&middle, 0, 5), 1});
     }
     fg_foil foil = foil_of(beams, BEAMS);
-    assert_int_equal(fg_beams_measure(&ctx, &design, &foil), FG_OK);
+    assert_ok(&ctx, fg_beams_measure(&ctx, &design, &foil));
     for (int i = 0; i < BEAMS; i++)
       assert_near(foil.beams[i].width_mm, 1 + 0.01 * i, 1e-9);
     assert_true(isnan(foil.rotation_deg));
@@ -374,7 +366,7 @@ static void a_ring_leaves_out_what_is_missing(void **state) {
             make_beam((shape){4, 1 + 0.01 * i, 0, 0, 0, turn, place(&middle, 0, 5), 1});
     }
     fg_foil foil = foil_of(beams, count);
-    assert_int_equal(fg_beams_measure(&ctx, &design, &foil), FG_OK);
+    assert_ok(&ctx, fg_beams_measure(&ctx, &design, &foil));
     assert_true(foil.flags & FG_FOIL_MISSING_BEAM);
     assert_numbers_are_widths(&foil);
     fg_foil_free(&foil);
@@ -398,7 +390,7 @@ static void a_foil_without_beams_is_no_crime(void **state) {
   const fg_design design = design_of_beams();
   fg_context ctx = {0};
   fg_foil foil = {0};
-  assert_int_equal(fg_beams_measure(&ctx, &design, &foil), FG_OK);
+  assert_ok(&ctx, fg_beams_measure(&ctx, &design, &foil));
   assert_true(foil.flags & FG_FOIL_BEAM_COUNT);
 }
 

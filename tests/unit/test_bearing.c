@@ -1,15 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What clearances around a bearing come to, how well that is known, and what tolerances say. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "foilgauge/report.h"
-#include "support/near.h"
+#include "support/test.h"
 
 enum { PADS = 3, BUMPS = 9, PLACES = PADS * BUMPS };
 
@@ -32,7 +26,7 @@ static void bores_of_the_thesis(void **state) {
     assert_near(1000 * clearance[i], wanted_um[i % 3], 1e-9);
   }
   fg_bearing_clearance result;
-  assert_int_equal(fg_bearing_assess(&ctx, angle, clearance, 6, &result), FG_OK);
+  assert_ok(&ctx, fg_bearing_assess(&ctx, angle, clearance, 6, &result));
   assert_near(result.min_mm, -0.040, 1e-12);
   assert_near(result.max_mm, 0.065, 1e-12);
   assert_near(result.min_at_deg, 120, 1e-12);
@@ -96,7 +90,7 @@ static void centred_is_the_best_of_all(void **state) {
       clearance[i] = 0.065 + 0.04 * (trial % 4 == 3 ? round(3 * drawn) / 3 : drawn);
     }
     fg_bearing_clearance result;
-    assert_int_equal(fg_bearing_assess(&ctx, angle, clearance, count, &result), FG_OK);
+    assert_ok(&ctx, fg_bearing_assess(&ctx, angle, clearance, count, &result));
     assert_near(result.centred_min_mm, best_of_all_triples(angle, clearance, count), 1e-11);
     assert_true(result.centred_min_mm >= result.min_mm - 1e-12);
   }
@@ -125,7 +119,7 @@ static double slope(const double *angle, const double *clearance, size_t at, pic
     fg_bearing_clearance result;
     memcpy(moved, clearance, sizeof moved);
     moved[at] += side ? step : -step;
-    assert_int_equal(fg_bearing_assess(&ctx, angle, moved, PLACES, &result), FG_OK);
+    assert_ok(&ctx, fg_bearing_assess(&ctx, angle, moved, PLACES, &result));
     value[side] = of(&result);
   }
   return (value[1] - value[0]) / (2 * step);
@@ -163,8 +157,8 @@ static void uncertainties_are_propagated(void **state) {
     }
     const fg_bearing_uncertainty uncertainty = {shared, own, pad};
     fg_bearing_clearance r;
-    assert_int_equal(
-        fg_bearing_assess_uncertainty(&ctx, angle, clearance, PLACES, &uncertainty, &r), FG_OK);
+    assert_ok(&ctx,
+              fg_bearing_assess_uncertainty(&ctx, angle, clearance, PLACES, &uncertainty, &r));
     assert_near(r.u_min_mm, expected_u(angle, clearance, shared, own, min), 1e-8);
     assert_near(r.u_mean_mm, expected_u(angle, clearance, shared, own, mean), 1e-8);
     assert_near(r.u_circularity_mm, expected_u(angle, clearance, shared, own, circularity), 1e-8);
@@ -175,11 +169,10 @@ static void uncertainties_are_propagated(void **state) {
   memset(own, 0, sizeof own);
   const fg_bearing_uncertainty uncertainty = {shared, own, pad};
   fg_bearing_clearance r;
-  assert_int_equal(fg_bearing_assess_uncertainty(&ctx, angle, clearance, PLACES, &uncertainty, &r),
-                   FG_OK);
+  assert_ok(&ctx, fg_bearing_assess_uncertainty(&ctx, angle, clearance, PLACES, &uncertainty, &r));
   assert_near(r.u_circularity_mm, 0, 1e-12);
   assert_near(r.u_centred_min_mm, 1e-3, 1e-12);
-  assert_int_equal(fg_bearing_assess(&ctx, angle, clearance, PLACES, &r), FG_OK);
+  assert_ok(&ctx, fg_bearing_assess(&ctx, angle, clearance, PLACES, &r));
   assert_true(isnan(r.u_min_mm) && isnan(r.u_circularity_mm));
 }
 
@@ -192,8 +185,8 @@ static fg_verdict decide(const char *quantity, double lower, double upper,
   design.tolerance_count = 1;
   design.tolerances[0] = (fg_tolerance){.lower = lower, .upper = upper};
   strcpy(design.tolerances[0].quantity, quantity);
-  assert_int_equal(fg_report_check_tolerances(&ctx, &design), FG_OK);
-  assert_int_equal(fg_bearing_decide(&ctx, &design, clearance, whole, &decision), FG_OK);
+  assert_ok(&ctx, fg_report_check_tolerances(&ctx, &design));
+  assert_ok(&ctx, fg_bearing_decide(&ctx, &design, clearance, whole, &decision));
   assert_int_equal(decision.count, 1);
   assert_int_equal(fg_outcome_exit_code(&decision.outcome), code);
   fg_verdict verdict = decision.outcome.verdict;
@@ -237,13 +230,13 @@ static void names_are_known(void **state) {
   design.tolerances[1] = (fg_tolerance){.quantity = "clearance_min_mm"};
   assert_int_equal(fg_report_of_bearing(&design, names, sizeof names), 1);
   assert_string_equal(names, "clearance_min_mm");
-  assert_int_equal(fg_report_check_tolerances(&ctx, &design), FG_OK);
+  assert_ok(&ctx, fg_report_check_tolerances(&ctx, &design));
   strcpy(design.tolerances[1].quantity, "min_mm");
-  assert_int_equal(fg_report_check_tolerances(&ctx, &design), FG_ERR_DATA);
+  assert_status(&ctx, fg_report_check_tolerances(&ctx, &design), FG_ERR_DATA);
   assert_non_null(strstr(ctx.message, "clearance_centred_min_mm"));
   design.kind = FG_FOIL_DISCS;
   strcpy(design.tolerances[0].quantity, "circularity_mm");
-  assert_int_equal(fg_report_check_tolerances(&ctx, &design), FG_ERR_DATA);
+  assert_status(&ctx, fg_report_check_tolerances(&ctx, &design), FG_ERR_DATA);
 }
 
 int main(void) {

@@ -1,17 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Whether a correction pays, and what is reported where it does not. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 
-#include <cmocka.h>
-
-#include "../support/foil_rows.h"
-#include "../support/near.h"
 #include "scan_loop/benefit.h"
 #include "scan_loop/state.h"
+#include "support/foil_rows.h"
+#include "support/test.h"
 
 enum { R0 = FG_CORRECTED_OVERALL_RADIUS, R = FG_CORRECTED_RADIUS, H = FG_CORRECTED_HEIGHT };
 #define UM 1e-3
@@ -111,6 +106,7 @@ static void a_tie_moves_as_far_as_all_explanations_agree(void **state) {
   } ties[] = {{10, 6, 8}, {10, 2, 2 + 1.41421356}, {-10, -10, -10}, {10, 1, 0}, {10, 0, 0},
               {10, -9, 0}};
   for (size_t i = 0; i < sizeof ties / sizeof *ties; i++) {
+    in_row("ties[%zu]", i);
     fg_benefit_item item[ITEMS];
     fg_benefit benefit = open_benefit(item);
     fg_benefit_decision decision;
@@ -256,8 +252,8 @@ static void open_fixture(fixture *f) {
                                          {.kind = shear, .columns = 1, .coefficient_um = {25}}},
                              .count = 2};
   fg_effect_set_fields(&f->rows.edge_fit, &set, &fields);
-  assert_int_equal(fg_scan_loop_correct(&ctx, &f->rows.m, &fields, 1, &f->corrected), FG_OK);
-  assert_int_equal(fg_benefits_open(&ctx, &f->rows.m, &f->benefits), FG_OK);
+  assert_ok(&ctx, fg_scan_loop_correct(&ctx, &f->rows.m, &fields, 1, &f->corrected));
+  assert_ok(&ctx, fg_benefits_open(&ctx, &f->rows.m, &f->benefits));
   fg_benefits_add(&f->benefits, &f->rows.m, &f->corrected);
 }
 
@@ -270,7 +266,7 @@ static void close_fixture(fixture *f) {
 static void keep(fixture *f, const fg_benefit_decision *decision) {
   fg_context ctx = {0};
   const fg_benefit_foil of = {&f->rows.m, &f->rows.m.foils[0], &f->benefits.foil[0], decision};
-  assert_int_equal(fg_benefit_keep_foil(&ctx, &of, &f->corrected.foils[0]), FG_OK);
+  assert_ok(&ctx, fg_benefit_keep_foil(&ctx, &of, &f->corrected.foils[0]));
   fg_benefit_widen_foil(&of, &f->corrected.foils[0]);
 }
 
@@ -362,7 +358,7 @@ static void other_bumps_after_the_correction_are_none(void **state) {
   fg_benefit_decision decision;
   open_fixture(&f);
   fg_benefits_close(&f.benefits);
-  assert_int_equal(fg_benefits_open(&ctx, &f.rows.m, &f.benefits), FG_OK);
+  assert_ok(&ctx, fg_benefits_open(&ctx, &f.rows.m, &f.benefits));
   f.corrected.foils[0].bumps[8].number = 11;
   fg_benefits_add(&f.benefits, &f.rows.m, &f.corrected);
   decide(&f.benefits.foil[0], &decision);

@@ -3,15 +3,10 @@
 #include "stats/between_groups.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 #include "core/numerics.h"
 #include "support/random.h"
+#include "support/test.h"
 
 enum { GROUPS = 8, LOTS = 6, DRAWS = 4000 };
 
@@ -83,14 +78,14 @@ static void holm_adjusts_step_by_step(void **state) {
   (void)state;
   const double p[] = {0.03, NAN, 0.01, 0.2, 0.02};
   double adjusted[5];
-  assert_int_equal(fg_holm_adjust(NULL, p, 5, adjusted), FG_OK);
+  assert_ok(&test_context, fg_holm_adjust(&test_context, p, 5, adjusted));
   near(adjusted[2], 0.04, 1e-12);
   near(adjusted[4], 0.06, 1e-12);
   near(adjusted[0], 0.06, 1e-12);
   near(adjusted[3], 0.2, 1e-12);
   assert_true(isnan(adjusted[1]));
   const double large[] = {0.6, 0.7};
-  assert_int_equal(fg_holm_adjust(NULL, large, 2, adjusted), FG_OK);
+  assert_ok(&test_context, fg_holm_adjust(&test_context, large, 2, adjusted));
   assert_true(adjusted[0] == 1 && adjusted[1] == 1);
 }
 

@@ -6,7 +6,7 @@
 #include "foilgauge/report.h"
 #include "quantity/quantity_rows.h"
 #include "support/measured_render.h"
-#include "support/near.h"
+#include "support/test.h"
 
 static fg_design read_design(const char *calibration) {
   char json[1024];
@@ -104,29 +104,30 @@ static void what_is_no_calibration_is_refused_with_its_place(void **state) {
   };
   (void)state;
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    in_row("cases[%zu]", i);
     char json[1024];
     fg_context ctx = {0};
     fg_design design;
     fg_design_default(&design);
     snprintf(json, sizeof json, "{\"schema\":\"foilgauge/design/1\",\"calibration\":%s}",
              cases[i].stated);
-    assert_int_equal(fg_design_parse(&ctx, "d.json", json, &design), FG_ERR_DATA);
+    assert_status(&ctx, fg_design_parse(&ctx, "d.json", json, &design), FG_ERR_DATA);
     if (!strstr(ctx.message, cases[i].words)) fail_msg("%s: %s", cases[i].stated, ctx.message);
     assert_false(design.calibration.stated);
   }
   fg_calibration nan = {.stated = true, .u_scale = {NAN, 0}};
-  assert_int_equal(fg_calibration_check(NULL, &nan), FG_ERR_DATA);
+  assert_status(NULL, fg_calibration_check(NULL, &nan), FG_ERR_DATA);
 }
 
 /* The picture with pixels longer by x and y. */
 static measured measure_longer(const char *spec, const fg_design *design, double x, double y) {
   measured m = {.picture = render_open(spec)};
   m.result.design = *design;
-  assert_int_equal(fg_design_derive(&m.ctx, design, &m.result.nominal), FG_OK);
+  assert_ok(&m.ctx, fg_design_derive(&m.ctx, design, &m.result.nominal));
   m.result.dpi[0] = m.picture.truth->dpi[0] / (1 + x);
   m.result.dpi[1] = m.picture.truth->dpi[1] / (1 + y);
   measure_rows(&m);
-  assert_int_equal(m.status, FG_OK);
+  assert_ok(NULL, m.status);
   assert_int_equal(m.result.foil_count, 1);
   return m;
 }
@@ -172,10 +173,10 @@ static void check_foil(const char *calibration, double x, double y) {
   measured plain = measure_longer(spec, &design, 0, 0),
            longer = measure_longer(spec, &design, x, y);
   measured wide = measure_longer(spec, &stated, 0, 0);
-  assert_int_equal(fg_measurement_calibrate(&plain.ctx, 1, &plain.result), FG_OK);
+  assert_ok(&plain.ctx, fg_measurement_calibrate(&plain.ctx, 1, &plain.result));
   assert_false(plain.result.calibrated);
   for (int again = 0; again < 2; again++) /* once */
-    assert_int_equal(fg_measurement_calibrate(&wide.ctx, 1, &wide.result), FG_OK);
+    assert_ok(&wide.ctx, fg_measurement_calibrate(&wide.ctx, 1, &wide.result));
   const fg_foil *a = plain.result.foils, *b = longer.result.foils, *c = wide.result.foils;
   check_rows(FG_QUANTITY_OF_FOIL, &(three){a, b, c, &c->calibrated});
   assert_int_equal(c->bump_count, 3);
@@ -200,7 +201,7 @@ static void one_scale_leaves_angles(void **state) {
   small_foil(spec, sizeof spec, 3, "", "\"dpi\":1200");
   fg_design design = read_design("{\"scale\":{\"u_rel\":1e-3}}");
   measured m = measure_longer(spec, &design, 0, 0);
-  assert_int_equal(fg_measurement_calibrate(&m.ctx, 1, &m.result), FG_OK);
+  assert_ok(&m.ctx, fg_measurement_calibrate(&m.ctx, 1, &m.result));
   const fg_bump *bump = &m.result.foils[0].bumps[1];
   const fg_quantity *radius = fg_quantity_find(FG_QUANTITY_OF_BUMP, "radius_mm");
   const fg_quantity *angle = fg_quantity_find(FG_QUANTITY_OF_BUMP, "bump_angle_deg");

@@ -2,15 +2,10 @@
 /* What follows from a beam's length and width, against the thesis, against drawn beams and in the
  * cases where nothing can be said. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 #include "foilgauge/cantilever.h"
 #include "support/random.h"
+#include "support/test.h"
 
 static fg_design design_of_thesis(void) {
   return (fg_design){.kind = FG_FOIL_CANTILEVER,
@@ -21,10 +16,6 @@ static fg_design design_of_thesis(void) {
                      .sagitta_mm = 1,
                      .clearance_mm = 0.126,
                      .elastic_modulus_gpa = 214};
-}
-
-static void assert_near(double value, double wanted, double within) {
-  if (!(fabs(value - wanted) <= within)) fail_msg("%.12g is not %.12g", value, wanted);
 }
 
 /* Section 5.11: length 0.44 %, width 2.19 %, printed +-3.56 % of compliance, 0.9 % of sagitta, 7 %
@@ -126,6 +117,7 @@ static void what_cannot_be_said_is_nan(void **state) {
   fg_design design = design_of_thesis();
   const double bad[] = {NAN, INFINITY, 0, -9};
   for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+    in_row("bad[%zu]", i);
     const fg_beam_size size = {bad[i], 0.004, 3, 0.003, 0};
     fg_cantilever beam = fg_cantilever_of(&design, &size);
     assert_true(isnan(beam.compliance_error_pct) && isnan(beam.u_compliance_error_pct));

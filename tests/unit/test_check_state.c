@@ -2,19 +2,14 @@
 /* Tone, sharpening and blur of a check against its baseline: what has changed is told, what only
  * scatters is not, and a state that was kept reads as it was. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
 #include "station/check_state.h"
 #include "station/database.h"
+#include "support/test.h"
 
 enum { LEVEL = 0, BLUR = 1 };
 
@@ -147,18 +142,18 @@ static void a_state_that_is_kept_reads_as_it_was(void **state) {
   int64_t at;
   (void)state;
   assert_non_null(mkdtemp(folder));
-  assert_int_equal(fg_station_database_open(&ctx, folder, &database), FG_OK);
+  assert_ok(&ctx, fg_station_database_open(&ctx, folder, &database));
   set(&kept, "blur_um", 11.0625, 0.03);
   set(&kept, "tone_s", -0.25, 0);
   kept.findings = FG_PICTURE_SHADOW | FG_PICTURE_SHADING | FG_PICTURE_ROW_JUMPS;
   add_check(database.writer, 1, 0, &kept);
-  assert_int_equal(fg_check_state_baseline(&ctx, database.writer, 2400, &at, &read), FG_OK);
+  assert_ok(&ctx, fg_check_state_baseline(&ctx, database.writer, 2400, &at, &read));
   assert_int_equal(at, 0);
   kept.value[BLUR] = 9;
   add_check(database.writer, 2, 1, &kept);
   kept.dpi = 1200;
   add_check(database.writer, 3, 1, &kept);
-  assert_int_equal(fg_check_state_baseline(&ctx, database.writer, 2400, &at, &read), FG_OK);
+  assert_ok(&ctx, fg_check_state_baseline(&ctx, database.writer, 2400, &at, &read));
   assert_int_equal(at, 2000);
   assert_int_equal(read.dpi, 2400);
   assert_int_equal(read.findings, kept.findings);
@@ -166,7 +161,7 @@ static void a_state_that_is_kept_reads_as_it_was(void **state) {
     assert_true(isnan(kept.value[k]) ? isnan(read.value[k]) : read.value[k] == kept.value[k]);
     assert_true(isnan(kept.value[k]) || read.u[k] == kept.u[k]);
   }
-  assert_int_equal(fg_check_state_baseline(&ctx, database.writer, 600, &at, &read), FG_OK);
+  assert_ok(&ctx, fg_check_state_baseline(&ctx, database.writer, 600, &at, &read));
   assert_int_equal(at, 0);
   fg_station_database_close(&database);
   snprintf(path, sizeof path, "%s/foilgauge.sqlite", folder);

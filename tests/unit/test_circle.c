@@ -2,16 +2,11 @@
 /* Circle fits on points of known circles: bias, covariance, optimisers against each other, bad
  * starts, input that has no circle. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "foilgauge/circle.h"
 #include "support/random.h"
+#include "support/test.h"
 
 enum { N = 300, TRIALS = 3000 };
 
@@ -70,7 +65,7 @@ static void short_arc_is_not_biased(void **state) {
     fg_point points[N];
     fg_circle hyper;
     make_arc(points, N, truth, 0.7, 63.15 * pi / 180, 0.02, &seed);
-    assert_int_equal(fg_circle_estimate(NULL, points, NULL, N, &hyper), FG_OK);
+    assert_ok(&test_context, fg_circle_estimate(&test_context, points, NULL, N, &hyper));
     fg_circle_fit fit = fit_or_fail(points, N, NULL);
     double errors[3] = {kasa_radius(points, N) - truth.radius, hyper.radius - truth.radius,
                         fit.circle.radius - truth.radius};
@@ -129,7 +124,8 @@ static void optimisers_agree(void **state) {
     double width = (20 + 340 * random_uniform(&seed)) * pi / 180;
     make_arc(points, N, truth, 2 * pi * random_uniform(&seed), width, 1e-3, &seed);
     simplex = fit_or_fail(points, N, NULL);
-    assert_int_equal(fg_circle_fit_levenberg(NULL, points, NULL, N, NULL, &levenberg), FG_OK);
+    assert_ok(&test_context,
+              fg_circle_fit_levenberg(&test_context, points, NULL, N, NULL, &levenberg));
     assert_true(distance_between(&simplex.circle, &levenberg.circle) < 2e-6);
     assert_true(fabs(simplex.rms - levenberg.rms) < 1e-9);
     for (int i = 0; i < 9; i++) {
@@ -157,6 +153,7 @@ static void bad_starts_end_at_the_same_minimum(void **state) {
   }
   fg_circle senseless[] = {{NAN, 0, 1}, {0, 0, -1}, {0, 0, 0}, {INFINITY, 0, 1}, {0, 0, NAN}};
   for (size_t i = 0; i < sizeof senseless / sizeof *senseless; i++) {
+    in_row("senseless[%zu]", i);
     fg_circle_fit fit = fit_or_fail(points, N, &senseless[i]);
     assert_true(distance_between(&fit.circle, &good.circle) < 1e-12);
   }
@@ -168,6 +165,7 @@ static void exact_points_give_exact_circles(void **state) {
   uint64_t seed = 5;
   const double widths_deg[] = {0.5, 2, 10, 63.15, 180, 300, 360};
   for (size_t k = 0; k < sizeof widths_deg / sizeof *widths_deg; k++) {
+    in_row("widths_deg[%zu]", k);
     fg_point points[N];
     const fg_circle truth = {0.25, -0.5, 20.73};
     double width = widths_deg[k] * pi / 180;
@@ -193,7 +191,8 @@ static void weights_are_repetitions(void **state) {
       repeated[count++] = points[i];
   }
   fg_circle_fit weighted, plain = fit_or_fail(repeated, count, NULL);
-  assert_int_equal(fg_circle_fit_geometric(NULL, points, weights, 12, NULL, &weighted), FG_OK);
+  assert_ok(&test_context,
+            fg_circle_fit_geometric(&test_context, points, weights, 12, NULL, &weighted));
   assert_true(distance_between(&weighted.circle, &plain.circle) < 1e-12);
   assert_true(fabs(weighted.rms - plain.rms) < 1e-14);
   for (int i = 0; i < 9; i++)
@@ -255,7 +254,7 @@ static void a_better_line_is_an_error(void **state) {
   const fg_point points[] = {{-1, 0.1}, {-1, -0.1}, {0, 0.1}, {0, -0.1}, {1, 0.1}, {1, -0.1}};
   fg_context ctx = {0};
   fg_circle_fit fit;
-  assert_int_equal(fg_circle_fit_geometric(&ctx, points, NULL, 6, NULL, &fit), FG_ERR_NUMERIC);
+  assert_status(&ctx, fg_circle_fit_geometric(&ctx, points, NULL, 6, NULL, &fit), FG_ERR_NUMERIC);
   assert_non_null(strstr(ctx.message, "line"));
 }
 

@@ -2,19 +2,14 @@
 /* Circle fits against certified answers: NIST's reference pairs and literature sets recomputed in
  * 50-digit arithmetic. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "foilgauge/circle.h"
 #include "support/random.h"
+#include "support/test.h"
 
 enum { POINTS_MAX = 600 };
 
@@ -58,7 +53,7 @@ static void nist_pair(int number) {
     far = fmax(far, fmax(fabs(points[i].x), fabs(points[i].y)));
   }
   fg_circle_fit fit;
-  assert_int_equal(fg_circle_fit_geometric(NULL, points, NULL, count, NULL, &fit), FG_OK);
+  assert_ok(&test_context, fg_circle_fit_geometric(&test_context, points, NULL, count, NULL, &fit));
   double worst = fmax(fmax(fabs(fit.circle.x - answer[first]), fabs(fit.circle.y - answer[second])),
                       fabs(fit.circle.radius - answer[6] / 2));
   if (!(worst <= 1e-12 * far)) fail_msg("cir2d%d: off by %.2g of %.3g", number, worst, far);
@@ -97,8 +92,8 @@ static bool parse_set(char *line, literature_set *set) {
 
 static void check_set(const literature_set *set, const fg_circle *start) {
   fg_circle_fit fit;
-  assert_int_equal(fg_circle_fit_geometric(NULL, set->points, NULL, set->count, start, &fit),
-                   FG_OK);
+  assert_ok(&test_context,
+            fg_circle_fit_geometric(&test_context, set->points, NULL, set->count, start, &fit));
   double worst = fmax(fmax(fabs(fit.circle.x - set->circle.x), fabs(fit.circle.y - set->circle.y)),
                       fabs(fit.circle.radius - set->circle.radius));
   if (!(worst <= 2e-12 * set->circle.radius))

@@ -1,15 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Where a channel shows a cross-section: profiles with a known place. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 #include <math.h>
 
 #include "measure/colour_profile.h"
+#include "support/test.h"
 
 enum { COUNT = 160 };
 

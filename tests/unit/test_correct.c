@@ -1,16 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The correction: edges that a known scanner, or a known part, moved are put back. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 
-#include <cmocka.h>
-
-#include "../support/foil_rows.h"
-#include "../support/near.h"
 #include "scan_loop/state.h"
+#include "support/foil_rows.h"
+#include "support/test.h"
 
 /* Room for rounding, and for what a fit of circles stops at. */
 #define EDGE_MM   1e-9
@@ -24,6 +19,7 @@ static fg_field_list scanner(const foil_rows *f) {
   fg_effect_set set = {.count = 0};
   fg_field_list fields;
   for (size_t e = 0; e < sizeof effects / sizeof *effects; e++) {
+    in_row("effects[%zu]", e);
     const fg_effect *kind = fg_effect_find(effects[e].id);
     assert_non_null(kind);
     set.effects[set.count++] = (fg_effect_found){.kind = kind,
@@ -63,7 +59,7 @@ static fg_measurement measure(const foil_rows *f, const fg_field_list *fields,
     s->right = seen_at(fields, s->right);
   }
   m.foils = &foil;
-  assert_int_equal(fg_scan_loop_correct(&ctx, &m, correction, 1, &corrected), FG_OK);
+  assert_ok(&ctx, fg_scan_loop_correct(&ctx, &m, correction, 1, &corrected));
   free(foil.strip.stations);
   return corrected;
 }
@@ -139,7 +135,7 @@ static void what_the_part_moved_is_put_back(void **state) {
   const fg_effect *oval = fg_effect_find("part.ovality");
   const fg_effect_set set = {.effects = {{.kind = oval, .columns = 2, .coefficient_um = {9, -4}}},
                              .count = 1};
-  assert_int_equal(fg_effect_set_shift(&ctx, &f.edge_fit, &set, &shift_mm), FG_OK);
+  assert_ok(&ctx, fg_effect_set_shift(&ctx, &f.edge_fit, &set, &shift_mm));
   fg_point *vectors = calloc(f.edge_fit.row_count, sizeof *vectors);
   for (size_t i = 0; i < f.edge_fit.row_count; i++) {
     fg_point n = f.edge_fit.rows[i].normal;
@@ -159,8 +155,8 @@ static void what_the_part_moved_is_put_back(void **state) {
     s->left = (fg_point){s->left.x + d.x, s->left.y + d.y};
     s->right = (fg_point){s->right.x + d.x, s->right.y + d.y};
   }
-  assert_int_equal(fg_scan_loop_correct(&ctx, &f.m, NULL, 1, &wrong), FG_OK);
-  assert_int_equal(fg_scan_loop_correct_fitted(&ctx, &f.m, &fit, 1, &right), FG_OK);
+  assert_ok(&ctx, fg_scan_loop_correct(&ctx, &f.m, NULL, 1, &wrong));
+  assert_ok(&ctx, fg_scan_loop_correct_fitted(&ctx, &f.m, &fit, 1, &right));
   assert_true(fabs(wrong.foils[0].overall.radius_mm - truth.foils[0].overall.radius_mm) > 5e-3);
   same_edges(&right.foils[0].strip, &truth.foils[0].strip, NEXT_ROW_MM);
   same_circles(&right.foils[0], &truth.foils[0], NEXT_ROW_MM / 3);
@@ -184,11 +180,11 @@ static void a_later_fit_changes_no_correction(void **state) {
   fg_effect_set none = {.count = 0};
   fg_joint_fit_result fit;
   fg_measurement before, after;
-  assert_int_equal(fg_joint_fit_open(&ctx, &f.edge_fit, &set, &fit), FG_OK);
+  assert_ok(&ctx, fg_joint_fit_open(&ctx, &f.edge_fit, &set, &fit));
   assert_true(fabs(fit.set.effects[0].coefficient_um[0]) > 1e-3);
-  assert_int_equal(fg_scan_loop_correct_fitted(&ctx, &f.m, &fit, 1, &before), FG_OK);
-  assert_int_equal(fg_joint_fit(&ctx, &f.edge_fit, &none, NULL), FG_OK);
-  assert_int_equal(fg_scan_loop_correct_fitted(&ctx, &f.m, &fit, 1, &after), FG_OK);
+  assert_ok(&ctx, fg_scan_loop_correct_fitted(&ctx, &f.m, &fit, 1, &before));
+  assert_ok(&ctx, fg_joint_fit(&ctx, &f.edge_fit, &none, NULL));
+  assert_ok(&ctx, fg_scan_loop_correct_fitted(&ctx, &f.m, &fit, 1, &after));
   same_edges(&after.foils[0].strip, &before.foils[0].strip, 0);
   same_circles(&after.foils[0], &before.foils[0], 0);
   assert_near(after.foils[0].overall.u_radius_mm, before.foils[0].overall.u_radius_mm, 0);
@@ -216,8 +212,8 @@ static void what_a_scanner_did_to_a_disc_is_put_back(void **state) {
   }
   fg_disc disc = {.number = 1, .stations = seen, .station_count = STATIONS};
   fg_measurement m = {.disc_count = 1, .discs = &disc}, wrong, right;
-  assert_int_equal(fg_scan_loop_correct(&ctx, &m, NULL, 1, &wrong), FG_OK);
-  assert_int_equal(fg_scan_loop_correct(&ctx, &m, &fields, 1, &right), FG_OK);
+  assert_ok(&ctx, fg_scan_loop_correct(&ctx, &m, NULL, 1, &wrong));
+  assert_ok(&ctx, fg_scan_loop_correct(&ctx, &m, &fields, 1, &right));
   assert_true(fabs(wrong.discs[0].radius_mm - radius_mm) > 1e-3);
   assert_near(right.discs[0].radius_mm, radius_mm, EDGE_MM);
   assert_near(right.discs[0].centre_mm.x, centre.x, EDGE_MM);
@@ -236,7 +232,7 @@ static void a_foil_that_was_not_measured_stays_so(void **state) {
   fg_field_list fields = scanner(&f);
   fg_measurement corrected;
   f.m.foils[0].flags = FG_FOIL_NOT_MEASURED | FG_FOIL_COARSE_RESOLUTION;
-  assert_int_equal(fg_scan_loop_correct(&ctx, &f.m, &fields, 1, &corrected), FG_OK);
+  assert_ok(&ctx, fg_scan_loop_correct(&ctx, &f.m, &fields, 1, &corrected));
   assert_int_equal(corrected.foils[0].flags, f.m.foils[0].flags);
   assert_true(isnan(corrected.foils[0].overall.radius_mm));
   fg_measurement_free(&corrected);

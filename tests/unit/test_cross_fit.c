@@ -2,18 +2,13 @@
 /* Errors on bumps that took no part in the search: what is there is foretold, what is not there is
  * not, and neither the copies nor the threads that this takes leave a trace. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "effect_search/cross_fit.h"
 #include "effect_search/joint_fit.h"
-#include "support/near.h"
 #include "support/odd_scan.h"
+#include "support/test.h"
 
 enum { BUMPS = 6, RIPPLE_UM = 5 };
 
@@ -63,9 +58,8 @@ static fg_effect_set set_of(const char *id) {
 
 static fg_cross_fit judge(fixture *f, unsigned threads) {
   fg_cross_fit result;
-  assert_int_equal(fg_search_cross_fit(&f->ctx, &f->edge_fit, &f->set, &f->explanations.barred,
-                                       threads, &result),
-                   FG_OK);
+  assert_ok(&f->ctx, fg_search_cross_fit(&f->ctx, &f->edge_fit, &f->set, &f->explanations.barred,
+                                         threads, &result));
   return result;
 }
 
@@ -85,7 +79,7 @@ static void a_subset_leaves_the_whole_alone(void **state) {
   size_t kept = 0;
   for (size_t i = 0; i < f.edge_fit.row_count; i++)
     kept += keep[i] = f.edge_fit.rows[i].bump == 2;
-  assert_int_equal(fg_edge_fit_subset(&f.ctx, &f.edge_fit, keep, &subset), FG_OK);
+  assert_ok(&f.ctx, fg_edge_fit_subset(&f.ctx, &f.edge_fit, keep, &subset));
   assert_true(kept > 0);
   assert_int_equal(subset.row_count, kept);
   for (size_t i = 0; i < kept; i++)
@@ -128,7 +122,7 @@ static void what_is_not_there_is_not(void **state) {
   search(&f);
   assert_int_equal(f.set.count, 0);
   f.set = set_of("scan.shear");
-  assert_int_equal(fg_joint_fit(&f.ctx, &f.edge_fit, &f.set, NULL), FG_OK);
+  assert_ok(&f.ctx, fg_joint_fit(&f.ctx, &f.edge_fit, &f.set, NULL));
   fg_cross_fit result = judge(&f, 1);
   assert_int_equal(result.folds, 5);
   assert_true(result.gain <= result.u_gain);
@@ -148,7 +142,7 @@ static void before_is_the_rms(void **state) {
   const fg_effect_set none = {.count = 0};
   double *residual_um = calloc(f.edge_fit.row_count, sizeof *residual_um), sum = 0, weight = 0;
   assert_non_null(residual_um);
-  assert_int_equal(fg_joint_fit_geometry(&f.ctx, &f.edge_fit, &none, residual_um), FG_OK);
+  assert_ok(&f.ctx, fg_joint_fit_geometry(&f.ctx, &f.edge_fit, &none, residual_um));
   for (size_t i = 0; i < f.edge_fit.row_count; i++) {
     sum += f.edge_fit.rows[i].weight * residual_um[i] * residual_um[i];
     weight += f.edge_fit.rows[i].weight;

@@ -2,16 +2,10 @@
 /* Derived quantities of a bump: uncertainties against Monte Carlo, datum lines against each other,
  * circles that do not cross. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 #include "foilgauge/foil.h"
-#include "support/near.h"
 #include "support/random.h"
+#include "support/test.h"
 
 typedef struct derive_case {
   fg_design design;
@@ -25,7 +19,7 @@ typedef struct derive_case {
 static derive_case make_case(double radius, double x, double overall_radius) {
   derive_case c = {0};
   fg_design_default(&c.design);
-  assert_int_equal(fg_design_derive(NULL, &c.design, &c.nominal), FG_OK);
+  assert_ok(&test_context, fg_design_derive(&test_context, &c.design, &c.nominal));
   c.strip.mm = c.design.thickness_mm;
   c.overall.centre_mm = (fg_point){30, 20};
   c.overall.radius_mm = overall_radius;
@@ -179,6 +173,7 @@ static void a_foil_that_has_opened_stands_higher_in_the_sleeve(void **state) {
   const double half = 63.15 / 2 * 3.14159265358979323846 / 180, chord = 3.32 * sin(half);
   const struct { double overall_mm, lift_um; } rows[] = {{20.73, 0}, {20.98, 0.87}, {23.56, 8.79}};
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    in_row("rows[%zu]", i);
     double r0 = rows[i].overall_mm;
     derive_case c = make_case(3.32, 3.32 * cos(half) + sqrt(r0 * r0 - chord * chord), r0);
     derive(&c);

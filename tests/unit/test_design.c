@@ -2,17 +2,11 @@
 /* Designs: nominal values against hand calculation, the declared model against the law of cosines,
  * what is refused and that the words name the member. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "foilgauge/design.h"
-#include "support/near.h"
+#include "support/test.h"
 
 #define SCHEMA "\"schema\": \"foilgauge/design/1\""
 #define CORE                                                                                       \
@@ -27,7 +21,7 @@ static void default_design_has_known_values(void **state) {
   fg_design design;
   fg_nominal nominal;
   fg_design_default(&design);
-  assert_int_equal(fg_design_derive(NULL, &design, &nominal), FG_OK);
+  assert_ok(&test_context, fg_design_derive(&test_context, &design, &nominal));
   assert_near(nominal.centre_to_centre_mm, 23.48547331077125, 1e-13);
   assert_near(nominal.height_mm, 0.564526689228749, 1e-13);
   assert_near(nominal.clearance_mm, 0.065473310771251, 1e-13);
@@ -45,9 +39,9 @@ static void sleeve_and_datum_enter_where_they_should(void **state) {
   fg_design design;
   fg_nominal plain, wide;
   fg_design_default(&design);
-  assert_int_equal(fg_design_derive(NULL, &design, &plain), FG_OK);
+  assert_ok(&test_context, fg_design_derive(&test_context, &design, &plain));
   design.sleeve_radius_mm += 0.05;
-  assert_int_equal(fg_design_derive(NULL, &design, &wide), FG_OK);
+  assert_ok(&test_context, fg_design_derive(&test_context, &design, &wide));
   assert_near(wide.centre_to_centre_mm, plain.centre_to_centre_mm, 0);
   assert_near(wide.height_mm, plain.height_mm + 0.05, 1e-14);
   assert_near(wide.clearance_mm, plain.clearance_mm, 1e-14);
@@ -60,10 +54,10 @@ static void top_foil_is_taken_off_every_clearance(void **state) {
   fg_nominal plain, covered;
   fg_springback model;
   fg_design_default(&design);
-  assert_int_equal(fg_design_derive(NULL, &design, &plain), FG_OK);
+  assert_ok(&test_context, fg_design_derive(&test_context, &design, &plain));
   double over = fg_design_clearance_over(&design, 0.5, 0.12);
   design.top_foil_thickness_mm = 0.05;
-  assert_int_equal(fg_design_derive(NULL, &design, &covered), FG_OK);
+  assert_ok(&test_context, fg_design_derive(&test_context, &design, &covered));
   assert_near(covered.clearance_mm, plain.clearance_mm - 0.05, 1e-14);
   assert_near(fg_design_clearance_over(&design, 0.5, 0.12), over - 0.05, 1e-14);
   fg_design_springback(&design, &covered, design.bump_radius_mm, &model);
@@ -78,7 +72,7 @@ static void declared_model_is_the_law_of_cosines(void **state) {
   fg_design design;
   fg_nominal nominal;
   fg_design_default(&design);
-  assert_int_equal(fg_design_derive(NULL, &design, &nominal), FG_OK);
+  assert_ok(&test_context, fg_design_derive(&test_context, &design, &nominal));
   for (int percent = -5; percent <= 30; percent++) {
     fg_springback model, next;
     double r = 3.32 * (1 + percent / 100.0), alpha = 63.15 * 3.32 / r;
@@ -101,7 +95,7 @@ static void clearance_grows_as_the_model_says(void **state) {
   fg_nominal nominal;
   fg_springback model;
   fg_design_default(&design);
-  assert_int_equal(fg_design_derive(NULL, &design, &nominal), FG_OK);
+  assert_ok(&test_context, fg_design_derive(&test_context, &design, &nominal));
   fg_design_springback(&design, &nominal, 3.32 * 1.05, &model);
   assert_near(100 * (model.clearance_mm / nominal.clearance_mm - 1), 32.9, 0.1);
   fg_design_springback(&design, &nominal, 3.32 * 1.30, &model);
@@ -141,8 +135,8 @@ static void absent_members_keep_their_values(void **state) {
   fg_design design;
   fg_design_default(&design);
   design.pitch_deg = 15;
-  assert_int_equal(fg_design_parse(NULL, "x", "{" SCHEMA ", \"fillet_radius_mm\": 0.4}", &design),
-                   FG_OK);
+  assert_ok(&test_context, fg_design_parse(&test_context, "x",
+                                           "{" SCHEMA ", \"fillet_radius_mm\": 0.4}", &design));
   assert_near(design.pitch_deg, 15, 0);
   assert_near(design.fillet_radius_mm, 0.4, 0);
   assert_near(design.bump_radius_mm, 3.32, 0);
@@ -153,10 +147,10 @@ static void discs_need_no_bump_values(void **state) {
   fg_design design = {.kind = FG_FOIL_CLASSICAL};
   fg_nominal nominal;
   const char *json = "{" SCHEMA ", \"form\": \"discs\", \"diameters_mm\": [4, 6.5]}";
-  assert_int_equal(fg_design_parse(NULL, "x", json, &design), FG_OK);
+  assert_ok(&test_context, fg_design_parse(&test_context, "x", json, &design));
   assert_int_equal(design.diameter_count, 2);
   assert_near(design.diameters_mm[1], 6.5, 0);
-  assert_int_equal(fg_design_derive(NULL, &design, &nominal), FG_OK);
+  assert_ok(&test_context, fg_design_derive(&test_context, &design, &nominal));
   assert_true(isnan(nominal.height_mm));
 }
 
@@ -171,13 +165,13 @@ static void cantilever_is_read(void **state) {
   fg_design_default(&design);
   const char *json = CANTILEVER(9, 3) ", \"beam_count\": 8, \"sagitta_mm\": 1, "
                                       "\"clearance_mm\": 0.126, \"elastic_modulus_gpa\": 214}";
-  assert_int_equal(fg_design_parse(NULL, "x", json, &design), FG_OK);
+  assert_ok(&test_context, fg_design_parse(&test_context, "x", json, &design));
   assert_int_equal(design.kind, FG_FOIL_CANTILEVER);
   assert_int_equal(design.beam_count, 8);
   assert_int_equal(design.bump_count, 0);
   assert_string_equal(design.name, "cantilever");
   assert_near(design.clearance_mm, 0.126, 0);
-  assert_int_equal(fg_design_derive(NULL, &design, &nominal), FG_OK);
+  assert_ok(&test_context, fg_design_derive(&test_context, &design, &nominal));
   assert_true(isnan(nominal.height_mm));
 }
 
@@ -268,6 +262,7 @@ static void bad_files_are_refused(void **state) {
       {"{" SCHEMA ", \"tolerances\": {\"heigth_mm\": {\"min\": 2}}}", "tolerances.heigth_mm"},
   };
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    in_row("rows[%zu]", i);
     fg_context ctx = {0};
     fg_design design, before;
     memset(&design, 0, sizeof design);
@@ -291,7 +286,7 @@ static void check_refuses_senseless_values(void **state) {
     fg_context ctx = {0};
     fg_design_default(&design);
     design.thickness_mm = values[i];
-    assert_int_equal(fg_design_check(&ctx, &design), FG_ERR_DATA);
+    assert_status(&ctx, fg_design_check(&ctx, &design), FG_ERR_DATA);
     assert_non_null(strstr(ctx.message, "thickness_mm is"));
   }
   fg_design design;
@@ -299,14 +294,14 @@ static void check_refuses_senseless_values(void **state) {
   fg_design_default(&design);
   design.tolerances[0] = (fg_tolerance){"height_mm", NAN, 1};
   design.tolerance_count = 1;
-  assert_int_equal(fg_design_derive(NULL, &design, &nominal), FG_ERR_DATA);
+  assert_status(NULL, fg_design_derive(NULL, &design, &nominal), FG_ERR_DATA);
 }
 
 static void missing_file_is_an_io_error(void **state) {
   (void)state;
   fg_design design;
   fg_context ctx = {0};
-  assert_int_equal(fg_design_load(&ctx, "no/such/file.json", &design), FG_ERR_IO);
+  assert_status(&ctx, fg_design_load(&ctx, "no/such/file.json", &design), FG_ERR_IO);
   assert_non_null(strstr(ctx.message, "no/such/file.json"));
 }
 

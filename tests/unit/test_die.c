@@ -1,20 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A die's profiles: how a text is read, and what a surface's form does to a circle's uncertainty.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
-#include "../support/near.h"
-#include "../support/random.h"
 #include "die/form_error.h"
 #include "die/header.h"
 #include "die/lines.h"
+#include "support/random.h"
+#include "support/test.h"
 
 static void styles_are_told(void **state) {
   static const struct {
@@ -39,6 +34,7 @@ static void styles_are_told(void **state) {
   };
   (void)state;
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    in_row("rows[%zu]", i);
     fg_die_style style;
     const char *uncertainty = fg_die_style_find(rows[i].text, &style);
     if ((uncertainty == NULL) != (rows[i].separator != 0)) fail_msg("row %zu: %s", i, uncertainty);
@@ -93,6 +89,7 @@ static void headers_say_units(void **state) {
   };
   (void)state;
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    in_row("rows[%zu]", i);
     fg_die_header header;
     const char *text = rows[i].text;
     fg_die_header_read(text, text + strlen(text), rows[i].separator, 2, &header);
@@ -157,9 +154,10 @@ static void try_form_error(double length, double sd, double white, double *ratio
       ranges[b] = (fg_range){b * STATIONS, (b + 1) * STATIONS - 1};
       arcs[b] = (fg_arc){.ranges = &ranges[b], .range_count = 1};
       list[b] = &arcs[b];
-      assert_int_equal(fg_arc_fit(NULL, &line, &arcs[b]), FG_OK);
+      assert_ok(&test_context, fg_arc_fit(&test_context, &line, &arcs[b]));
     }
-    assert_int_equal(fg_die_form_error_find(NULL, &line, list, BUMPS, &form_error), FG_OK);
+    assert_ok(&test_context,
+              fg_die_form_error_find(&test_context, &line, list, BUMPS, &form_error));
     for (size_t b = 0; b < BUMPS; b++) {
       errors += pow(arcs[b].circle.radius - RADIUS, 2);
       claimed += arcs[b].covariance[2][2];

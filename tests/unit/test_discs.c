@@ -1,27 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Round features: plates with known truth, drawn, written and measured; what must be left alone. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
 #include "foilgauge/measure.h"
 #include "foilgauge/render.h"
 #include "geometry/disc_fit.h"
-
-#define assert_close(value, expected, tolerance)                                                   \
-  do {                                                                                             \
-    double value_ = (value), expected_ = (expected), tolerance_ = (tolerance);                     \
-    if (!(fabs(value_ - expected_) <= tolerance_))                                                 \
-      fail_msg("%s = %.9g, not %.9g within %.3g", #value, value_, expected_, tolerance_);          \
-  } while (0)
+#include "support/test.h"
 
 /* The renders' counts are proportional to the light but where they say gamma. */
 static fg_status measure_file(fg_context *ctx, const char *path, unsigned threads, bool linear,
@@ -45,7 +33,7 @@ static fg_status measure_stated(fg_context *ctx, const char *members, unsigned t
   close(file);
   snprintf(json, sizeof json, "{\"schema\":\"foilgauge/render/1\",\"seed\":7,%s}", members);
   if (fg_render_parse(ctx, "plate.json", json, &spec) != FG_OK) fail_msg("%s", ctx->message);
-  assert_int_equal(fg_render_scan(ctx, spec, path, NULL), FG_OK);
+  assert_ok(ctx, fg_render_scan(ctx, spec, path, NULL));
   fg_status status = measure_file(ctx, path, threads, linear, m);
   fg_render_free(spec);
   unlink(path);
@@ -66,9 +54,9 @@ static fg_measurement measure_good(const char *members) {
 
 static void assert_disc(const fg_disc *disc, double x, double y, double radius,
                         double tolerance_um) {
-  assert_close(disc->radius_mm * 1000, radius * 1000, tolerance_um);
-  assert_close(disc->centre_mm.x * 1000, x * 1000, 2 * tolerance_um);
-  assert_close(disc->centre_mm.y * 1000, y * 1000, 2 * tolerance_um);
+  assert_near(disc->radius_mm * 1000, radius * 1000, tolerance_um);
+  assert_near(disc->centre_mm.x * 1000, x * 1000, 2 * tolerance_um);
+  assert_near(disc->centre_mm.y * 1000, y * 1000, 2 * tolerance_um);
   assert_true(fabs(disc->radius_mm - radius) < 4 * disc->u_radius_mm + 2e-6);
 }
 
@@ -85,7 +73,7 @@ static void light_discs_have_their_radii(void **state) {
                                       "{\"centre_mm\":[3.5,1.503],\"radius_mm\":0.5137}],"
                                       "\"scanner\":{\"noise\":2}",
                                       0, linear, &m);
-    assert_int_equal(status, FG_OK);
+    assert_ok(NULL, status);
     assert_int_equal(m.disc_count, 2);
     assert_true(m.light_on_dark);
     assert_disc(&m.discs[0], 1.4, 1.5, 0.8, 0.03);
@@ -96,8 +84,8 @@ static void light_discs_have_their_radii(void **state) {
       assert_int_equal(m.discs[i].flags, 0);
       assert_true(m.discs[i].coverage_deg > 355);
       assert_true(m.discs[i].u_centre_mm[0] < 2e-5);
-      assert_close(m.discs[i].u_radius_mm, linear ? 5e-5 : 1.3e-3, linear ? 1e-5 : 0.2e-3);
-      assert_close(m.discs[i].blur_um, sqrt(1.2 * 1.2 + 1.0 / 12) * 25400 / 4800, 0.3);
+      assert_near(m.discs[i].u_radius_mm, linear ? 5e-5 : 1.3e-3, linear ? 1e-5 : 0.2e-3);
+      assert_near(m.discs[i].blur_um, sqrt(1.2 * 1.2 + 1.0 / 12) * 25400 / 4800, 0.3);
       assert_true(m.discs[i].roundness_um < 0.3);
     }
     fg_measurement_free(&m);
@@ -137,10 +125,10 @@ static void lobes_are_roundness(void **state) {
       measure_good("\"discs\":[{\"centre_mm\":[2,2],\"radius_mm\":1.2,\"lobes\":5,\"lobe_um\":3}],"
                    "\"scanner\":{\"noise\":2}");
   assert_int_equal(m.disc_count, 1);
-  assert_close(m.discs[0].roundness_um, 6 * exp(-M_LN2 * 0.01), 0.25);
+  assert_near(m.discs[0].roundness_um, 6 * exp(-M_LN2 * 0.01), 0.25);
   assert_true(m.discs[0].u_roundness_um < 0.2);
-  assert_close(m.discs[0].rms_um, 3 / M_SQRT2, 0.2);
-  assert_close(m.discs[0].radius_mm, 1.2, 2e-4);
+  assert_near(m.discs[0].rms_um, 3 / M_SQRT2, 0.2);
+  assert_near(m.discs[0].radius_mm, 1.2, 2e-4);
   fg_measurement_free(&m);
 }
 
@@ -149,7 +137,7 @@ static void a_tone_curve_does_not_move_the_edge(void **state) {
   fg_measurement m = measure_good("\"discs\":[{\"centre_mm\":[2,2],\"radius_mm\":1.2}],"
                                   "\"scanner\":{\"gamma\":1.8,\"bits\":16,\"blur_px\":1.5}");
   assert_int_equal(m.disc_count, 1);
-  assert_close(m.discs[0].radius_mm * 1000, 1200, 0.2);
+  assert_near(m.discs[0].radius_mm * 1000, 1200, 0.2);
   fg_measurement_free(&m);
 }
 
@@ -159,8 +147,8 @@ static void a_disc_cut_by_the_border_says_its_coverage(void **state) {
       measure_good("\"width_px\":600,\"height_px\":500,\"discs\":[{\"centre_mm\":[1.6,0.4],"
                    "\"radius_mm\":0.8}],\"scanner\":{}");
   assert_int_equal(m.disc_count, 1);
-  assert_close(m.discs[0].radius_mm * 1000, 800, 0.1);
-  assert_close(m.discs[0].coverage_deg, 240, 6);
+  assert_near(m.discs[0].radius_mm * 1000, 800, 0.1);
+  assert_near(m.discs[0].coverage_deg, 240, 6);
   fg_measurement_free(&m);
 }
 
@@ -169,8 +157,8 @@ static void touching_discs_are_two(void **state) {
   fg_measurement m = measure_good("\"discs\":[{\"centre_mm\":[1.2,1.3],\"radius_mm\":0.8},"
                                   "{\"centre_mm\":[1.2,2.7],\"radius_mm\":0.6}],\"scanner\":{}");
   assert_int_equal(m.disc_count, 2);
-  assert_close(m.discs[0].radius_mm * 1000, 800, 0.5);
-  assert_close(m.discs[1].radius_mm * 1000, 600, 0.5);
+  assert_near(m.discs[0].radius_mm * 1000, 800, 0.5);
+  assert_near(m.discs[1].radius_mm * 1000, 600, 0.5);
   for (int i = 0; i < 2; i++)
     assert_true(m.discs[i].coverage_deg < 350);
   fg_measurement_free(&m);
@@ -181,7 +169,7 @@ static void a_faint_disc_is_found(void **state) {
   fg_measurement m = measure_good("\"discs\":[{\"centre_mm\":[1.4,1.4],\"radius_mm\":0.8}],"
                                   "\"scanner\":{\"background\":100,\"contrast\":25,\"noise\":2}");
   assert_int_equal(m.disc_count, 1);
-  assert_close(m.discs[0].radius_mm * 1000, 800, 0.2);
+  assert_near(m.discs[0].radius_mm * 1000, 800, 0.2);
   fg_measurement_free(&m);
 }
 
@@ -193,9 +181,10 @@ static void nothing_round_is_an_error(void **state) {
       "\"foils\":[{}],\"scanner\":{\"dpi\":1200}",
   };
   for (size_t i = 0; i < sizeof plates / sizeof *plates; i++) {
+    in_row("plates[%zu]", i);
     fg_context ctx = {0};
     fg_measurement m;
-    assert_int_equal(measure_plate(&ctx, plates[i], 0, &m), FG_ERR_DATA);
+    assert_status(&ctx, measure_plate(&ctx, plates[i], 0, &m), FG_ERR_DATA);
     assert_non_null(strstr(ctx.message, "no round hole or disc in the picture"));
     fg_measurement_free(&m);
   }
@@ -229,8 +218,8 @@ static void threads_do_not_change_the_result(void **state) {
                       "{\"centre_mm\":[3.5,1.5],\"radius_mm\":0.5}],\"scanner\":{\"noise\":3}";
   fg_context ctx = {0};
   fg_measurement one, two;
-  assert_int_equal(measure_plate(&ctx, plate, 1, &one), FG_OK);
-  assert_int_equal(measure_plate(&ctx, plate, 2, &two), FG_OK);
+  assert_ok(&ctx, measure_plate(&ctx, plate, 1, &one));
+  assert_ok(&ctx, measure_plate(&ctx, plate, 2, &two));
   assert_int_equal(one.disc_count, two.disc_count);
   for (size_t i = 0; i < one.disc_count; i++) {
     assert_true(one.discs[i].radius_mm == two.discs[i].radius_mm);
@@ -251,11 +240,12 @@ static void roundness_is_filtered(void **state) {
     double share;
   } cases[] = {{1, 0}, {3, 0.9975}, {50, 0.5}, {100, 0.0625}};
   for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
+    in_row("cases[%zu]", c);
     for (int i = 0; i < 2000; i++)
       values[i] = 5 + cos(2 * M_PI * cases[c].harmonic * (i + 0.5) / 2000);
-    assert_int_equal(fg_roundness(&ctx, values, 2000, 0, &roundness, &u), FG_OK);
-    assert_close(roundness, 2 * cases[c].share, 0.01);
-    assert_close(u, 0, 1e-9);
+    assert_ok(&ctx, fg_roundness(&ctx, values, 2000, 0, &roundness, &u));
+    assert_near(roundness, 2 * cases[c].share, 0.01);
+    assert_near(u, 0, 1e-9);
   }
 }
 

@@ -2,6 +2,7 @@
 /* Dust, specks, cuts and other foils on the edges: what they spoil is left out or said. */
 #include "support/brief.h"
 #include "support/measured_render.h"
+#include "support/test.h"
 
 /* A single value of many may lie this many standard uncertainties off: 1 in 150,000. */
 static const double many_u = 4.5;
@@ -10,7 +11,7 @@ static measured measure_foil(const char *members, const char *scanner) {
   char json[4096];
   small_foil(json, sizeof json, 9, members, "%s", scanner);
   measured m = measure_render(json, NULL);
-  assert_int_equal(m.status, FG_OK);
+  assert_ok(NULL, m.status);
   assert_int_equal(m.result.foil_count, 1);
   return m;
 }
@@ -63,7 +64,7 @@ static fg_point place_of(const fg_render_spec *spec, int i) {
   fg_context ctx = {0};
   fg_point p;
   if (i < 0) {
-    assert_int_equal(fg_render_midline(&ctx, spec, 0, 1.0, &p), FG_OK);
+    assert_ok(&ctx, fg_render_midline(&ctx, spec, 0, 1.0, &p));
     return p;
   }
   const fg_render_bump *b = &t->bumps[i];
@@ -142,7 +143,7 @@ static void overlapping_foils_flag_their_bumps(void **state) {
              "[14,24]},{\"design\":{\"bump_count\":4},\"centre_mm\":[%g,%g],\"rotate_deg\":%g}]}",
              others[i].x_mm, others[i].y_mm, others[i].rotate_deg);
     measured m = measure_render(json, &design);
-    assert_int_equal(m.status, FG_OK);
+    assert_ok(NULL, m.status);
     for (size_t k = 0; k < m.result.foil_count; k++)
       for (size_t b = 0; b < m.result.foils[k].bump_count; b++) {
         const fg_bump *bump = &m.result.foils[k].bumps[b];

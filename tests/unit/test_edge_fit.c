@@ -2,15 +2,11 @@
 /* Edge rows of measured foils as the loop holds them against one geometry: their groups and parts,
  * for foils that are not as a design has them. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 
-#include <cmocka.h>
-
-#include "../support/synthetic_foil.h"
 #include "rows/edge_fit.h"
+#include "support/synthetic_foil.h"
+#include "support/test.h"
 
 enum { LANDS = SYNTHETIC_BUMPS + 1 };
 
@@ -44,7 +40,7 @@ static fg_edge_fit build(const fg_measurement *m, bool same) {
   for (size_t f = 0; f < m->foil_count; f++)
     views[f] =
         (fg_edge_fit_view){.foil = &m->foils[f], .measurement = m, .part = same ? 0 : f, .scan = f};
-  assert_int_equal(fg_edge_fit_build(&ctx, views, m->foil_count, &edge_fit), FG_OK);
+  assert_ok(&ctx, fg_edge_fit_build(&ctx, views, m->foil_count, &edge_fit));
   free(views);
   return edge_fit;
 }

@@ -2,16 +2,12 @@
 /* The curve of single bumps: its columns are each bump's own, however many bumps there are, and a
  * search tells bumps that were raised by it. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
-#include "../support/foil_rows.h"
 #include "effect_search/policy.h"
+#include "support/foil_rows.h"
+#include "support/test.h"
 
 static const fg_effect *curve(void) {
   return fg_effect_find("free.bump.index");
@@ -89,6 +85,7 @@ static void columns_hold_what_single_bumps_do(void **state) {
       {1, 40, 0, 2, 0, 0.2},   {1, 40, 0, 3, 0, 0.2},  {2, 64, 0, 5, 0, 0.2},
   };
   for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+    in_row("cases[%zu]", k);
     const number_case *c = &cases[k];
     fg_edge_fit_part part;
     fg_edge_fit edge_fit = make_rows(c->first, c->count, &part);
@@ -150,7 +147,7 @@ static void search_tells_single_bumps(void **state) {
                                        .residual_um = f.residual_um,
                                        .jacobian = f.jacobian,
                                        .look = true};
-    assert_int_equal(fg_search_find(&ctx, &f.edge_fit, &request, &explanations), FG_OK);
+    assert_ok(&ctx, fg_search_find(&ctx, &f.edge_fit, &request, &explanations));
     assert_true(explanations.right);
     assert_int_equal(holds(&explanations, "free.bump.index"), every > 1);
     assert_int_equal(holds(&explanations, "part.bump_crown"), every == 1);

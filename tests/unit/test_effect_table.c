@@ -2,20 +2,16 @@
 /* The table of effects: a row that the search, the reports' words, the renderer or the loop's
  * benchmark does not know fails here. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
-#include "../support/brief.h"
-#include "../support/foil_rows.h"
 #include "effect_search/policy.h"
 #include "effect_search/width_search.h"
 #include "foilgauge/render.h"
+#include "support/brief.h"
+#include "support/foil_rows.h"
+#include "support/test.h"
 
 #define AMPLITUDE_UM 20.0
 #define NOISE_UM     0.03
@@ -63,7 +59,7 @@ static void the_search_knows_every_row(void **state) {
                                        .residual_um = f.residual_um,
                                        .jacobian = f.jacobian,
                                        .look = true};
-    assert_int_equal(fg_search_find(&ctx, &f.edge_fit, &request, &explanations), FG_OK);
+    assert_ok(&ctx, fg_search_find(&ctx, &f.edge_fit, &request, &explanations));
     if (!explanations.right || !in_class(&explanations, effect))
       fail_msg("the search does not find %s", effect->id);
     for (const fg_effect *curve = fg_effect_first(); curve; curve = fg_effect_next(curve))
@@ -87,7 +83,7 @@ static void the_search_of_the_width_knows_every_row(void **state) {
     for (size_t i = 0; i < f.edge_fit.row_count; i++)
       f.edge_fit.rows[i].half_width_mm +=
           (AMPLITUDE_UM * f.columns[i] + NOISE_UM * random_gaussian(&seed)) / 1000;
-    assert_int_equal(fg_search_width(&ctx, &f.edge_fit, &none, &findings), FG_OK);
+    assert_ok(&ctx, fg_search_width(&ctx, &f.edge_fit, &none, &findings));
     for (size_t e = 0; e < findings.count; e++) {
       if (findings.each[e].found != (findings.each[e].effect.kind == effect))
         fail_msg("the width with %s in it is taken wrongly", effect->id);

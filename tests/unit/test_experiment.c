@@ -1,11 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The optimum in a region against dense search and closed forms; weights; predictions. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 #include <math.h>
 #include <stdlib.h>
@@ -13,6 +7,7 @@
 
 #include "foilgauge/experiment.h"
 #include "support/random.h"
+#include "support/test.h"
 
 /* An arbitrary quadratic in two factors. */
 static fg_surface random_surface(uint64_t *state) {
@@ -46,9 +41,8 @@ static void optimum_beats_a_grid(void **state) {
   for (int trial = 0; trial < 60; trial++) {
     fg_surface s = random_surface(&seed);
     double sign = trial % 2 ? -1 : 1, x[FG_SURFACE_FACTORS] = {0}, best = INFINITY;
-    assert_int_equal(
-        fg_surface_optimum_region(&ctx, &s, trial % 2 ? FG_GOAL_HIGHEST : FG_GOAL_LOWEST, 0, &r, x),
-        FG_OK);
+    assert_ok(&ctx, fg_surface_optimum_region(
+                        &ctx, &s, trial % 2 ? FG_GOAL_HIGHEST : FG_GOAL_LOWEST, 0, &r, x));
     assert_true(fg_region_contains(&r, x, 1e-7));
     for (int i = 0; i <= 400; i++)
       for (int k = 0; k <= 400; k++) {
@@ -73,8 +67,8 @@ static void optimum_of_a_box_is_exact(void **state) {
   for (int trial = 0; trial < 50; trial++) {
     fg_surface s = random_surface(&seed);
     double x[FG_SURFACE_FACTORS] = {0}, exact[FG_SURFACE_FACTORS] = {0};
-    assert_int_equal(fg_surface_optimum_region(&ctx, &s, FG_GOAL_LOWEST, 0, &r, x), FG_OK);
-    assert_int_equal(fg_surface_optimum_box(&ctx, &s, false, r.low, r.high, exact), FG_OK);
+    assert_ok(&ctx, fg_surface_optimum_region(&ctx, &s, FG_GOAL_LOWEST, 0, &r, x));
+    assert_ok(&ctx, fg_surface_optimum_box(&ctx, &s, false, r.low, r.high, exact));
     assert_true(fabs(fg_surface_value(&s, x) - fg_surface_value(&s, exact)) < 1e-10);
   }
 }
@@ -86,7 +80,7 @@ static void target_is_met(void **state) {
   fg_surface s = {.factors = 2, .constant = 1, .linear = {1, 0.2}};
   double x[FG_SURFACE_FACTORS] = {0};
   (void)state;
-  assert_int_equal(fg_surface_optimum_region(&ctx, &s, FG_GOAL_TARGET, 0.7, &r, x), FG_OK);
+  assert_ok(&ctx, fg_surface_optimum_region(&ctx, &s, FG_GOAL_TARGET, 0.7, &r, x));
   assert_true(fabs(fg_surface_value(&s, x) - 0.7) < 1e-6);
   assert_true(fg_region_contains(&r, x, 1e-7));
 }
@@ -97,7 +91,7 @@ static void projection_is_the_nearest_point(void **state) {
   fg_region r = unit_region();
   double x[FG_SURFACE_FACTORS] = {5, 5}, best = INFINITY;
   (void)state;
-  assert_int_equal(fg_region_project(&ctx, &r, x), FG_OK);
+  assert_ok(&ctx, fg_region_project(&ctx, &r, x));
   double found = hypot(x[0] - 5, x[1] - 5);
   for (int i = 0; i <= 2000; i++)
     for (int k = 0; k <= 2000; k++) {
@@ -107,7 +101,7 @@ static void projection_is_the_nearest_point(void **state) {
   assert_true(fg_region_contains(&r, x, 1e-8));
   assert_true(found <= best + 1e-8 && found > best - 5e-3);
   r.limit[0] = -9;
-  assert_int_equal(fg_region_project(&ctx, &r, x), FG_ERR_USAGE);
+  assert_status(&ctx, fg_region_project(&ctx, &r, x), FG_ERR_USAGE);
 }
 
 enum { RUNS = 12 };
@@ -124,9 +118,9 @@ static void make_table(fg_table *table, double far, double far_u) {
   }
   y[RUNS - 1] += far;
   u[RUNS - 1] = far_u;
-  assert_int_equal(fg_table_add_numbers(&ctx, table, "a", a, RUNS), FG_OK);
-  assert_int_equal(fg_table_add_numbers(&ctx, table, "y", y, RUNS), FG_OK);
-  assert_int_equal(fg_table_add_numbers(&ctx, table, "u", u, RUNS), FG_OK);
+  assert_ok(&ctx, fg_table_add_numbers(&ctx, table, "a", a, RUNS));
+  assert_ok(&ctx, fg_table_add_numbers(&ctx, table, "y", y, RUNS));
+  assert_ok(&ctx, fg_table_add_numbers(&ctx, table, "u", u, RUNS));
 }
 
 static void analyse(const fg_table *table, fg_experiment *e) {
@@ -172,8 +166,8 @@ static void predictions_agree(void **state) {
   (void)state;
   make_table(&table, 0, 0.02);
   analyse(&table, &e);
-  assert_int_equal(fg_experiment_predict(&ctx, &e, setting, &ours), FG_OK);
-  assert_int_equal(fg_regression_predict(&ctx, &e.regression, row, &theirs), FG_OK);
+  assert_ok(&ctx, fg_experiment_predict(&ctx, &e, setting, &ours));
+  assert_ok(&ctx, fg_regression_predict(&ctx, &e.regression, row, &theirs));
   assert_true(fabs(ours.mean - theirs.mean) < 1e-12);
   assert_true(fabs(ours.low - theirs.low) < 1e-10 && fabs(ours.run_high - theirs.run_high) < 1e-10);
   fg_experiment_free(&e);

@@ -2,18 +2,13 @@
 /* What `doe` sees over the order of its runs: against the same numbers by another way, on noise,
  * and on what it is to see. And what taking an effect out beforehand costs. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "foilgauge/distribution.h"
 #include "foilgauge/experiment.h"
+#include "support/test.h"
 
 enum { RUNS = 24 };
 
@@ -49,10 +44,10 @@ static void analyse(const made *m, const char *formula, const fg_experiment_opti
   fg_experiment_options options = more ? *more : (fg_experiment_options){0};
   options.response = "y";
   options.formula = formula;
-  assert_int_equal(fg_table_add_numbers(&ctx, &table, "run", m->run, RUNS), FG_OK);
-  assert_int_equal(fg_table_add_numbers(&ctx, &table, "T", m->t, RUNS), FG_OK);
-  assert_int_equal(fg_table_add_numbers(&ctx, &table, "D", m->d, RUNS), FG_OK);
-  assert_int_equal(fg_table_add_numbers(&ctx, &table, "y", m->y, RUNS), FG_OK);
+  assert_ok(&ctx, fg_table_add_numbers(&ctx, &table, "run", m->run, RUNS));
+  assert_ok(&ctx, fg_table_add_numbers(&ctx, &table, "T", m->t, RUNS));
+  assert_ok(&ctx, fg_table_add_numbers(&ctx, &table, "D", m->d, RUNS));
+  assert_ok(&ctx, fg_table_add_numbers(&ctx, &table, "y", m->y, RUNS));
   if (fg_experiment_analyse(&ctx, &table, &options, e) != FG_OK) fail_msg("%s", ctx.message);
   fg_table_free(&table);
 }
@@ -267,10 +262,10 @@ static void nothing_left_is_said(void **state) {
   const fg_experiment_taken taken[] = {{.id = "a", .words = "a", .parameters = 3, .applied = true}};
   const fg_experiment_options options = {
       .response = "y", .formula = "T + D", .taken = taken, .takens = 1, .taken_out = m.run};
-  assert_int_equal(fg_table_add_numbers(&ctx, &table, "T", m.t, 6), FG_OK);
-  assert_int_equal(fg_table_add_numbers(&ctx, &table, "D", m.d, 6), FG_OK);
-  assert_int_equal(fg_table_add_numbers(&ctx, &table, "y", m.y, 6), FG_OK);
-  assert_int_equal(fg_experiment_analyse(&ctx, &table, &options, &e), FG_ERR_DATA);
+  assert_ok(&ctx, fg_table_add_numbers(&ctx, &table, "T", m.t, 6));
+  assert_ok(&ctx, fg_table_add_numbers(&ctx, &table, "D", m.d, 6));
+  assert_ok(&ctx, fg_table_add_numbers(&ctx, &table, "y", m.y, 6));
+  assert_status(&ctx, fg_experiment_analyse(&ctx, &table, &options, &e), FG_ERR_DATA);
   if (!strstr(ctx.message, "no freedom is left")) fail_msg("%s", ctx.message);
   fg_table_free(&table);
 }

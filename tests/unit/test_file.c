@@ -3,11 +3,7 @@
  * behind. */
 #include <dirent.h>
 #include <fcntl.h>
-#include <setjmp.h>
 #include <signal.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,23 +12,22 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
 #include "core/file.h"
 #include "core/sha256.h"
 #include "core/temporary.h"
 #include "support/folder.h"
+#include "support/test.h"
 
 static void file_appears_only_when_whole(void **state) {
   folder *where = *state;
   write_file(where->file, "old");
   fg_output output;
-  assert_int_equal(fg_output_open(NULL, where->file, &output), FG_OK);
+  assert_ok(&test_context, fg_output_open(&test_context, where->file, &output));
   fputs("new", output.stream);
   fflush(output.stream);
   assert_content(where->file, "old");
   assert_int_equal(count_entries(where), 2);
-  assert_int_equal(fg_output_commit(NULL, &output), FG_OK);
+  assert_ok(&test_context, fg_output_commit(&test_context, &output));
   fg_output_discard(&output);
   assert_content(where->file, "new");
   assert_int_equal(count_entries(where), 1);
@@ -41,7 +36,7 @@ static void file_appears_only_when_whole(void **state) {
 static void discard_leaves_nothing(void **state) {
   folder *where = *state;
   fg_output output;
-  assert_int_equal(fg_output_open(NULL, where->file, &output), FG_OK);
+  assert_ok(&test_context, fg_output_open(&test_context, where->file, &output));
   fputs("half", output.stream);
   fg_output_discard(&output);
   fg_output_discard(&output);
@@ -98,7 +93,7 @@ static void shared_memory_is_written_like_a_file(void **state) {
   if (descriptor < 0) skip();
   close(descriptor);
   write_file(path, "old");
-  assert_int_equal(fg_output_open(NULL, path, &output), FG_OK);
+  assert_ok(&test_context, fg_output_open(&test_context, path, &output));
   fputs("new", output.stream);
   fflush(output.stream);
   assert_content(path, "old");
@@ -120,7 +115,7 @@ static void a_named_descriptor_is_written_in_place(void **state) {
   assert_content(where->file, "before within after");
   fg_context ctx = {0};
   fg_output output;
-  assert_int_equal(fg_output_open(&ctx, name, &output), FG_ERR_IO);
+  assert_status(&ctx, fg_output_open(&ctx, name, &output), FG_ERR_IO);
   assert_non_null(strstr(ctx.message, name));
 }
 
@@ -128,14 +123,14 @@ static void a_named_descriptor_is_written_in_place(void **state) {
 static void leftovers_are_removed_and_others_kept(void **state) {
   folder *where = *state;
   fg_output one, other;
-  assert_int_equal(fg_output_open(NULL, where->file, &one), FG_OK);
-  assert_int_equal(fg_output_open(NULL, where->file, &other), FG_OK);
+  assert_ok(&test_context, fg_output_open(&test_context, where->file, &one));
+  assert_ok(&test_context, fg_output_open(&test_context, where->file, &other));
   assert_int_equal(count_entries(where), 2);
   fputs("one", one.stream);
   fputs("other", other.stream);
-  assert_int_equal(fg_output_commit(NULL, &one), FG_OK);
+  assert_ok(&test_context, fg_output_commit(&test_context, &one));
   assert_content(where->file, "one");
-  assert_int_equal(fg_output_commit(NULL, &other), FG_OK);
+  assert_ok(&test_context, fg_output_commit(&test_context, &other));
   assert_content(where->file, "other");
   assert_int_equal(count_entries(where), 1);
 
@@ -210,11 +205,11 @@ static void text_is_read_whole(void **state) {
   memset(content, 'a', 20000);
   content[20000] = '\0';
   write_file(where->file, content);
-  assert_int_equal(fg_file_read_text(NULL, where->file, 20000, &text), FG_OK);
+  assert_ok(&test_context, fg_file_read_text(&test_context, where->file, 20000, &text));
   assert_string_equal(text, content);
   free(text);
   fg_context ctx = {0};
-  assert_int_equal(fg_file_read_text(&ctx, where->file, 19999, &text), FG_ERR_DATA);
+  assert_status(&ctx, fg_file_read_text(&ctx, where->file, 19999, &text), FG_ERR_DATA);
   assert_null(text);
   assert_non_null(strstr(ctx.message, "19999"));
   write_file(where->file, "");
@@ -228,11 +223,11 @@ static void what_is_no_text_is_refused(void **state) {
   FILE *stream = fopen(where->file, "wb");
   fwrite("ab\0cd", 1, 5, stream);
   fclose(stream);
-  assert_int_equal(fg_file_read_text(&ctx, where->file, 100, &text), FG_ERR_DATA);
+  assert_status(&ctx, fg_file_read_text(&ctx, where->file, 100, &text), FG_ERR_DATA);
   assert_non_null(strstr(ctx.message, "byte 2"));
-  assert_int_equal(fg_file_read_text(&ctx, where->path, 100, &text), FG_ERR_IO);
+  assert_status(&ctx, fg_file_read_text(&ctx, where->path, 100, &text), FG_ERR_IO);
   assert_non_null(strstr(ctx.message, "directory"));
-  assert_int_equal(fg_file_read_text(&ctx, "/nonexistent/design.json", 100, &text), FG_ERR_IO);
+  assert_status(&ctx, fg_file_read_text(&ctx, "/nonexistent/design.json", 100, &text), FG_ERR_IO);
   assert_non_null(strstr(ctx.message, "/nonexistent/design.json"));
   assert_null(text);
 }
@@ -242,9 +237,9 @@ static void sha256_is_the_standards(void **state) {
   folder *where = *state;
   char hex[65];
   write_file(where->file, "abc");
-  assert_int_equal(fg_sha256_file(NULL, where->file, hex), FG_OK);
+  assert_ok(&test_context, fg_sha256_file(&test_context, where->file, hex));
   assert_string_equal(hex, "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
-  assert_int_equal(fg_sha256_file(NULL, where->path, hex), FG_ERR_IO);
+  assert_status(NULL, fg_sha256_file(NULL, where->path, hex), FG_ERR_IO);
 }
 
 int main(void) {

@@ -2,11 +2,7 @@
 /* What cannot be written is said, and leaves nothing behind. */
 #include <dirent.h>
 #include <fcntl.h>
-#include <setjmp.h>
 #include <signal.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,12 +11,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
 #include "core/file.h"
 #include "core/sha256.h"
 #include "core/temporary.h"
 #include "support/folder.h"
+#include "support/test.h"
 
 /* More than stdio buffers, so that a write fails before the commit. */
 static fg_status write_much(fg_context *ctx, const char *path) {
@@ -42,10 +37,10 @@ static void full_device_is_an_error(void **state) {
   (void)state;
   if (access("/dev/full", W_OK) != 0) skip();
   fg_context ctx = {0};
-  assert_int_equal(write_much(&ctx, "/dev/full"), FG_ERR_IO);
+  assert_status(&ctx, write_much(&ctx, "/dev/full"), FG_ERR_IO);
   assert_non_null(strstr(ctx.message, "/dev/full: cannot be written: No space left on device"));
   assert_non_null(strstr(ctx.message, "free some space"));
-  assert_int_equal(write_little(&ctx, "/dev/full"), FG_ERR_IO);
+  assert_status(&ctx, write_little(&ctx, "/dev/full"), FG_ERR_IO);
   assert_non_null(strstr(ctx.message, "No space left"));
 }
 
@@ -62,8 +57,8 @@ static void full_disk_leaves_the_old_file(void **state) {
   fg_status little_status = write_little(&little, where->file);
   setrlimit(RLIMIT_FSIZE, &before);
   signal(SIGXFSZ, handler);
-  assert_int_equal(much_status, FG_ERR_IO);
-  assert_int_equal(little_status, FG_ERR_IO);
+  assert_status(NULL, much_status, FG_ERR_IO);
+  assert_status(NULL, little_status, FG_ERR_IO);
   assert_non_null(strstr(much.message, where->file));
   assert_non_null(strstr(much.message, "too large"));
   assert_non_null(strstr(little.message, "too large"));
@@ -77,7 +72,7 @@ static void passing_shortage_is_an_error(void **state) {
   struct rlimit before, low;
   fg_context ctx = {0};
   fg_output output;
-  assert_int_equal(fg_output_open(&ctx, where->file, &output), FG_OK);
+  assert_ok(&ctx, fg_output_open(&ctx, where->file, &output));
   assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
   void (*handler)(int) = signal(SIGXFSZ, SIG_IGN);
   low = (struct rlimit){.rlim_cur = 5, .rlim_max = before.rlim_max};
@@ -86,7 +81,7 @@ static void passing_shortage_is_an_error(void **state) {
     fputs("0123456789", output.stream);
   setrlimit(RLIMIT_FSIZE, &before);
   signal(SIGXFSZ, handler);
-  assert_int_equal(fg_output_commit(&ctx, &output), FG_ERR_IO);
+  assert_status(&ctx, fg_output_commit(&ctx, &output), FG_ERR_IO);
   assert_non_null(strstr(ctx.message, where->file));
   assert_non_null(strstr(ctx.message, "too large"));
   assert_int_equal(count_entries(where), 0);
@@ -109,6 +104,7 @@ static void unwritable_places_are_named(void **state) {
       {"", FG_ERR_USAGE, "empty name"},
   };
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    in_row("cases[%zu]", i);
     fg_context ctx = {0};
     fg_output output;
     assert_int_equal(fg_output_open(&ctx, cases[i].path, &output), cases[i].status);
@@ -126,7 +122,7 @@ static void read_only_file_is_respected(void **state) {
   if (access(where->file, W_OK) == 0) skip(); /* root may write all */
   fg_context ctx = {0};
   fg_output output;
-  assert_int_equal(fg_output_open(&ctx, where->file, &output), FG_ERR_IO);
+  assert_status(&ctx, fg_output_open(&ctx, where->file, &output), FG_ERR_IO);
   assert_non_null(strstr(ctx.message, "ermission"));
   assert_content(where->file, "keep");
 }
@@ -148,9 +144,9 @@ static void standard_output_stays_open(void **state) {
   dup2(kept, STDOUT_FILENO);
   close(kept);
   close(descriptor);
-  assert_int_equal(first, FG_OK);
-  assert_int_equal(committed, FG_OK);
-  assert_int_equal(second, FG_OK);
+  assert_ok(NULL, first);
+  assert_ok(NULL, committed);
+  assert_ok(NULL, second);
   assert_int_equal(put, 4);
   assert_content(where->file, "one two");
 }

@@ -2,19 +2,14 @@
 /* Bumps that are missing or crushed, in every combination: the others keep their numbers, no land
  * becomes a bump, and what is wrong is said. The strip is the renderer's true midline. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "foilgauge/foil.h"
 #include "foilgauge/render.h"
 #include "support/brief.h"
+#include "support/test.h"
 
 enum { BUMPS = 9 };
 static const double step_mm = 0.02;
@@ -77,7 +72,7 @@ static fg_foil measure(const fg_render_spec *spec, bool backwards) {
   fg_design design;
   fg_design_default(&design);
   fg_foil foil = {.strip = strip_of(spec, backwards)};
-  assert_int_equal(fg_foil_measure(&ctx, &design, 1, &foil), FG_OK);
+  assert_ok(&ctx, fg_foil_measure(&ctx, &design, 1, &foil));
   return foil;
 }
 

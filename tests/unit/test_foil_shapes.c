@@ -3,6 +3,7 @@
  * radius within its uncertainty of the truth. */
 #include "support/brief.h"
 #include "support/measured_render.h"
+#include "support/test.h"
 
 /* A single value of many may lie this many standard uncertainties off: 1 in 150,000. */
 static const double many_u = 4.5;
@@ -57,7 +58,7 @@ static measured check_foil(int bumps, const char *members, const char *scanner, 
   design.bump_count = (size_t)bumps;
   small_foil(json, sizeof json, bumps, members, "%s", scanner);
   measured m = measure_render(json, &design);
-  assert_int_equal(m.status, FG_OK);
+  assert_ok(NULL, m.status);
   assert_int_equal(m.result.foil_count, 1);
   assert_string_equal(m.result.foils[0].error, "");
   assert_int_equal(m.result.foils[0].flags & ~(unsigned)FG_FOIL_ROUGH_EDGE, flags);
@@ -72,7 +73,7 @@ static void any_number_of_bumps(void **state) {
     measured m =
         check_foil(counts[i], "", "\"blur_px\":1.2", counts[i] == 1 ? FG_FOIL_FEW_LANDS : 0);
     check_bumps(&m, 0, false, 0);
-    assert_close(m.result.foils[0].thickness_mm, 0.1, 0.0001);
+    assert_near(m.result.foils[0].thickness_mm, 0.1, 0.0001);
     measured_free(&m);
   }
 }
@@ -89,7 +90,7 @@ static void any_rotation_and_either_hand(void **state) {
     const fg_foil *f = &m.result.foils[0];
     check_bumps(&m, 0, false, 0);
     assert_int_equal(f->orientation, mirror ? FG_COUNTERCLOCKWISE : FG_CLOCKWISE);
-    assert_close(remainder(f->rotation_deg - 15 * i, 360), 0, 0.01);
+    assert_near(remainder(f->rotation_deg - 15 * i, 360), 0, 0.01);
     measured_free(&m);
   }
 }
@@ -170,9 +171,9 @@ static void thick_and_thin_strips(void **state) {
     snprintf(tail, sizeof tail, "%s", at);
     snprintf(at, sizeof json - (size_t)(at - json), "\"thickness_mm\":%g,%s", thicknesses[i], tail);
     measured m = measure_render(json, &design);
-    assert_int_equal(m.status, FG_OK);
+    assert_ok(NULL, m.status);
     check_bumps(&m, 0, false, 0);
-    assert_close(m.result.foils[0].thickness_mm, thicknesses[i], 0.0001);
+    assert_near(m.result.foils[0].thickness_mm, thicknesses[i], 0.0001);
     measured_free(&m);
   }
 }
@@ -186,7 +187,7 @@ static void two_foils_in_one_scan(void **state) {
       "{\"design\":{\"bump_count\":3},\"rotate_deg\":70,\"mirror\":true,"
       "\"radius_springback\":{\"mean\":0.03,\"sd\":0.01}}]}",
       NULL);
-  assert_int_equal(m.status, FG_OK);
+  assert_ok(NULL, m.status);
   assert_int_equal(m.result.foil_count, 2);
   for (size_t i = 0; i < 2; i++) {
     assert_int_equal(m.result.foils[i].flags, FG_FOIL_BUMP_COUNT);
@@ -213,7 +214,7 @@ static void cut_by_the_border(void **state) {
              "\"overall_radius_mm\":20.95,\"centre_mm\":%s}]}",
              cases[i].centre);
     measured m = measure_render(json, NULL);
-    assert_int_equal(m.status, FG_OK);
+    assert_ok(NULL, m.status);
     assert_int_equal(m.result.foil_count, 1);
     assert_true(m.result.foils[0].flags & FG_FOIL_TOUCHES_BORDER);
     assert_int_equal(m.result.foils[0].bump_count, cases[i].bumps);
@@ -234,7 +235,7 @@ static void touching_foils_are_flagged(void **state) {
              "[14,24]},{\"design\":{\"bump_count\":4},\"centre_mm\":[%g,24]}]}",
              14 + across_mm[i]);
     measured m = measure_render(json, NULL);
-    assert_int_equal(m.status, FG_OK);
+    assert_ok(NULL, m.status);
     assert_true(m.result.foil_count > 0);
     for (size_t j = 0; j < m.result.foil_count; j++)
       if (!(m.result.foils[j].flags & (FG_FOIL_TOUCHES_OTHER | FG_FOIL_NOT_MEASURED)))
@@ -247,7 +248,7 @@ static measured measure_coarse(int dpi, const char *members) {
   char json[4096];
   small_foil(json, sizeof json, 9, members, "\"dpi\":%d,\"blur_px\":1,\"noise\":0.3", dpi);
   measured m = measure_render(json, NULL);
-  assert_int_equal(m.status, FG_OK);
+  assert_ok(NULL, m.status);
   assert_int_equal(m.result.foils[0].bump_count, 9);
   return m;
 }
@@ -271,7 +272,7 @@ static void coarse_scans_are_not_biased(void **state) {
       }
       measured_free(&m);
     }
-    assert_close(1000 * sum / count, 0, 0.4);
+    assert_near(1000 * sum / count, 0, 0.4);
   }
 }
 

@@ -1,9 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A format is one row: whoever lists formats lists every row, and so do the documents. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,13 +7,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
 #include <cjson/cJSON.h>
 
 #include "foilgauge/foil.h"
 #include "lot/input/manifest.h"
 #include "scan/format.h"
+#include "support/test.h"
 
 static void every_row_is_whole(void **state) {
   (void)state;
@@ -81,7 +76,7 @@ static void a_lot_takes_every_ending(void **state) {
   fg_context ctx = {0};
   fg_manifest manifest;
   const char *path = folder;
-  assert_int_equal(fg_manifest_collect(&ctx, &path, 1, NULL, NULL, &manifest), FG_OK);
+  assert_ok(&ctx, fg_manifest_collect(&ctx, &path, 1, NULL, NULL, &manifest));
   assert_int_equal(manifest.items, files);
   fg_manifest_free(&manifest);
   snprintf(command, sizeof command, "rm -r %s", folder);

@@ -2,18 +2,13 @@
 /* The beam model of forming: closed forms, convergence, geometry, trends, and constants that come
  * back. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "foilgauge/forming.h"
 #include "forming/section.h"
 #include "support/brief.h"
+#include "support/test.h"
 
 static const double plane = 1.1547005383792515; /* 2 / sqrt 3 */
 
@@ -43,7 +38,7 @@ static double springback(const fg_forming_material *m, double thickness, double 
                          size_t layers) {
   fg_context ctx = {0};
   fg_section s;
-  assert_int_equal(fg_section_make(&ctx, thickness, layers, &s), FG_OK);
+  assert_ok(&ctx, fg_section_make(&ctx, thickness, layers, &s));
   fg_section_bend(m, curvature, &s);
   double change = fg_section_moment(m, FG_FORMING_COLD_C, &s) / fg_section_stiffness(m, &s);
   fg_section_free(&s);
@@ -100,7 +95,7 @@ static double face_after(const fg_forming_material *m, double curvature,
                          const fg_forming_schedule *schedule, size_t steps) {
   fg_context ctx = {0};
   fg_section s;
-  assert_int_equal(fg_section_make(&ctx, 0.1, 4, &s), FG_OK);
+  assert_ok(&ctx, fg_section_make(&ctx, 0.1, 4, &s));
   fg_section_bend(m, curvature, &s);
   fg_section_treat(m, schedule, steps, &s);
   double stress = fg_section_face_stress(m, FG_FORMING_COLD_C, &s);
@@ -191,9 +186,8 @@ static void form(const fg_design *design, const fg_forming_material *m, double t
                  double hours, const fg_forming_options *options, fg_forming *forming) {
   fg_context ctx = {0};
   fg_forming_schedule hold = {0};
-  if (hours > 0)
-    assert_int_equal(fg_forming_schedule_hold(&ctx, temperature_C, hours, &hold), FG_OK);
-  assert_int_equal(fg_forming_run(&ctx, design, m, &hold, options, forming), FG_OK);
+  if (hours > 0) assert_ok(&ctx, fg_forming_schedule_hold(&ctx, temperature_C, hours, &hold));
+  assert_ok(&ctx, fg_forming_run(&ctx, design, m, &hold, options, forming));
   fg_forming_schedule_free(&hold);
 }
 
@@ -335,9 +329,9 @@ static void make_table(const double *response, fg_table *table) {
     own[i] = response ? response[i] : runs[i][2];
   }
   *table = (fg_table){0};
-  assert_int_equal(fg_table_add_numbers(&ctx, table, "temperature_C", column[0], 13), FG_OK);
-  assert_int_equal(fg_table_add_numbers(&ctx, table, "duration_h", column[1], 13), FG_OK);
-  assert_int_equal(fg_table_add_numbers(&ctx, table, "springback_error_pct", own, 13), FG_OK);
+  assert_ok(&ctx, fg_table_add_numbers(&ctx, table, "temperature_C", column[0], 13));
+  assert_ok(&ctx, fg_table_add_numbers(&ctx, table, "duration_h", column[1], 13));
+  assert_ok(&ctx, fg_table_add_numbers(&ctx, table, "springback_error_pct", own, 13));
 }
 
 static void fit(const double *response, fg_forming_response of, fg_forming_fit *result) {
@@ -352,7 +346,7 @@ static void fit(const double *response, fg_forming_response of, fg_forming_fit *
   make_table(response, &table);
   const fg_forming_fit_request request = {
       .design = &design, .material = &m, .response = of, .free = creep, .free_count = 3};
-  assert_int_equal(fg_forming_fit_runs(&ctx, &table, &request, result), FG_OK);
+  assert_ok(&ctx, fg_forming_fit_runs(&ctx, &table, &request, result));
   fg_table_free(&table);
 }
 

@@ -1,15 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Formulas: canonical form, contrasts as in R, and the words of an error. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "core/text.h"
 #include "foilgauge/formula.h"
+#include "support/test.h"
 
 static void formulas_are_canonical(void **state) {
   static const struct {
@@ -38,11 +34,12 @@ static void formulas_are_canonical(void **state) {
   };
   (void)state;
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    in_row("cases[%zu]", i);
     fg_context ctx = {0};
     fg_formula formula;
     char *text = NULL;
     if (fg_formula_parse(&ctx, cases[i].text, &formula) != FG_OK) fail_msg("%s", ctx.message);
-    assert_int_equal(fg_formula_format(&ctx, &formula, &text), FG_OK);
+    assert_ok(&ctx, fg_formula_format(&ctx, &formula, &text));
     assert_string_equal(text, cases[i].canonical);
     free(text);
     fg_formula_free(&formula);
@@ -71,9 +68,10 @@ static void errors_say_where(void **state) {
   };
   (void)state;
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    in_row("cases[%zu]", i);
     fg_context ctx = {0};
     fg_formula formula;
-    assert_int_equal(fg_formula_parse(&ctx, cases[i].text, &formula), FG_ERR_USAGE);
+    assert_status(&ctx, fg_formula_parse(&ctx, cases[i].text, &formula), FG_ERR_USAGE);
     if (!strstr(ctx.message, cases[i].words))
       fail_msg("'%s': '%s' lacks '%s'", cases[i].text, ctx.message, cases[i].words);
   }
@@ -88,12 +86,11 @@ static void check_columns(const char *formula_text, const char *names) {
   fg_formula formula;
   fg_model model;
   char *joined = NULL;
-  assert_int_equal(fg_table_parse(&ctx, "t", TABLE, strlen(TABLE), &table), FG_OK);
-  assert_int_equal(fg_formula_parse(&ctx, formula_text, &formula), FG_OK);
+  assert_ok(&ctx, fg_table_parse(&ctx, "t", TABLE, strlen(TABLE), &table));
+  assert_ok(&ctx, fg_formula_parse(&ctx, formula_text, &formula));
   if (fg_model_build(&ctx, &table, &formula, &model) != FG_OK) fail_msg("%s", ctx.message);
   for (size_t i = 0; i < model.columns; i++)
-    assert_int_equal(fg_text_append(&ctx, &joined, "%s%s", i ? " " : "", model.column[i].name),
-                     FG_OK);
+    assert_ok(&ctx, fg_text_append(&ctx, &joined, "%s%s", i ? " " : "", model.column[i].name));
   assert_string_equal(joined, names);
   free(joined);
   fg_model_free(&model);
@@ -124,9 +121,9 @@ static void the_matrix_holds_products(void **state) {
   fg_formula formula;
   fg_model model;
   (void)state;
-  assert_int_equal(fg_table_parse(&ctx, "t", TABLE, strlen(TABLE), &table), FG_OK);
-  assert_int_equal(fg_formula_parse(&ctx, "inverse(x) + x^2:g + sqrt(x)", &formula), FG_OK);
-  assert_int_equal(fg_model_build(&ctx, &table, &formula, &model), FG_OK);
+  assert_ok(&ctx, fg_table_parse(&ctx, "t", TABLE, strlen(TABLE), &table));
+  assert_ok(&ctx, fg_formula_parse(&ctx, "inverse(x) + x^2:g + sqrt(x)", &formula));
+  assert_ok(&ctx, fg_model_build(&ctx, &table, &formula, &model));
   assert_int_equal(model.columns, 5);
   const double expected[4][5] = {{1, 1, 1, 1, 0},
                                  {1, 0.5, 1.4142135623730951, 0, 4},
@@ -137,7 +134,7 @@ static void the_matrix_holds_products(void **state) {
       assert_true(model.matrix[j * 4 + i].value == expected[i][j]);
   double at[5];
   /* variables in order of appearance: inverse(x), x, g, sqrt(x) */
-  assert_int_equal(fg_model_row(&ctx, &model, (double[]){2, 2, 1, 2}, at), FG_OK);
+  assert_ok(&ctx, fg_model_row(&ctx, &model, (double[]){2, 2, 1, 2}, at));
   for (size_t j = 0; j < 5; j++)
     assert_true(at[j] == expected[1][j]);
   fg_model_free(&model);
@@ -159,13 +156,13 @@ static void bad_models_are_refused(void **state) {
   };
   (void)state;
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    in_row("cases[%zu]", i);
     fg_context ctx = {0};
     fg_table table;
     fg_formula formula;
     fg_model model;
-    assert_int_equal(fg_table_parse(&ctx, "t", cases[i].text, strlen(cases[i].text), &table),
-                     FG_OK);
-    assert_int_equal(fg_formula_parse(&ctx, cases[i].formula, &formula), FG_OK);
+    assert_ok(&ctx, fg_table_parse(&ctx, "t", cases[i].text, strlen(cases[i].text), &table));
+    assert_ok(&ctx, fg_formula_parse(&ctx, cases[i].formula, &formula));
     assert_int_not_equal(fg_model_build(&ctx, &table, &formula, &model), FG_OK);
     if (!strstr(ctx.message, cases[i].words))
       fail_msg("case %zu: '%s' lacks '%s'", i, ctx.message, cases[i].words);

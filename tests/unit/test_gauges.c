@@ -1,24 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Gauges on the glass: how they are stated, what a level they tell, and which object is which. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "measure/gauges.h"
 #include "measure/level.h"
-#include "support/near.h"
+#include "support/test.h"
 #include "vision/edge_spread.h"
 
 static void a_gauge_is_kind_width_and_uncertainty(void **state) {
   (void)state;
   fg_context ctx = {0};
   fg_gauge gauge;
-  assert_int_equal(fg_gauge_parse(&ctx, "pin:2.5:0.0004", &gauge), FG_OK);
+  assert_ok(&ctx, fg_gauge_parse(&ctx, "pin:2.5:0.0004", &gauge));
   assert_int_equal(gauge.kind, FG_GAUGE_PIN);
   assert_near(gauge.width_mm, 2.5, 1e-15);
   assert_near(gauge.u_mm, 0.0004, 1e-15);
@@ -26,11 +21,11 @@ static void a_gauge_is_kind_width_and_uncertainty(void **state) {
                                       "pin:1:",     "pin:1:0.1:",  "pins:1:0.1", "pin:one:0.1",
                                       "pin:1:0.1x", "pin:inf:0.1", ":1:0.1"};
   for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
-    assert_int_equal(fg_gauge_parse(&ctx, wrong[i], &gauge), FG_ERR_USAGE);
+    assert_status(&ctx, fg_gauge_parse(&ctx, wrong[i], &gauge), FG_ERR_USAGE);
   static const char *const beyond[] = {"leaf:0.001:0.0001", "leaf:300:1",      "leaf:0.1:0.02",
                                        "leaf:0.1:0",        "leaf:0.1:-0.001", "leaf:-0.1:0.001"};
   for (size_t i = 0; i < sizeof beyond / sizeof *beyond; i++)
-    assert_int_equal(fg_gauge_parse(&ctx, beyond[i], &gauge), FG_ERR_DATA);
+    assert_status(&ctx, fg_gauge_parse(&ctx, beyond[i], &gauge), FG_ERR_DATA);
 }
 
 /* What a gauge reads whose edges lie at level h. */
@@ -114,7 +109,7 @@ static void each_gauge_is_the_nearest_sighting_of_its_kind(void **state) {
       {.kind = FG_GAUGE_HOLE, .width_mm = 1.0, .spoiled = "it is not round"},
       {.kind = FG_GAUGE_PIN, .width_mm = 2.2}};
   for (size_t i = 0; i < sizeof all / sizeof *all; i++)
-    assert_int_equal(fg_gauge_sightings_add(&ctx, &seen, &all[i]), FG_OK);
+    assert_ok(&ctx, fg_gauge_sightings_add(&ctx, &seen, &all[i]));
   fg_measurement m = {.design = {.gauge_count = 6,
                                  .gauges = {{FG_GAUGE_LEAF, 0.2, 0.001},
                                             {FG_GAUGE_LEAF, 0.1, 0.001},

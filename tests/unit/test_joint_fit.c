@@ -2,18 +2,13 @@
 /* Geometry and effects fitted together, against a dense least squares of the same rows. */
 #include <gsl/gsl_multifit.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 
-#include <cmocka.h>
-
-#include "../support/near.h"
-#include "../support/random.h"
-#include "../support/synthetic_foil.h"
 #include "effect/columns.h"
 #include "effect_search/joint_fit.h"
+#include "support/random.h"
+#include "support/synthetic_foil.h"
+#include "support/test.h"
 
 #define NOISE_UM 0.03
 
@@ -28,8 +23,8 @@ static fg_edge_fit open_points(fg_measurement *m) {
   m->foils = calloc(1, sizeof *m->foils);
   m->foils[0] = synthetic_foil(&m->design, &m->nominal);
   fg_edge_fit_view view = {.foil = &m->foils[0], .measurement = m};
-  assert_int_equal(fg_edge_fit_build(&ctx, &view, 1, &edge_fit), FG_OK);
-  assert_int_equal(fg_edge_fit_fit(&ctx, &edge_fit, NULL), FG_OK);
+  assert_ok(&ctx, fg_edge_fit_build(&ctx, &view, 1, &edge_fit));
+  assert_ok(&ctx, fg_edge_fit_fit(&ctx, &edge_fit, NULL));
   return edge_fit;
 }
 
@@ -73,7 +68,7 @@ static void solve_densely(fg_edge_fit *edge_fit, const fg_effect_set *set, gsl_v
   gsl_vector *y = gsl_vector_alloc(rows), *weight = gsl_vector_alloc(rows);
   fg_field_list fields;
   fg_effect_set_fields(edge_fit, set, &fields);
-  assert_int_equal(fg_effect_set_shift(&ctx, edge_fit, set, &shift), FG_OK);
+  assert_ok(&ctx, fg_effect_set_shift(&ctx, edge_fit, set, &shift));
   fg_edge_fit_residual(edge_fit, &(fg_edge_fit_correction){&fields, shift}, residual, jacobian);
   for (size_t i = 0; i < rows; i++) {
     gsl_vector_set(y, i, 1000 * residual[i]);
@@ -129,7 +124,7 @@ static void it_ends_where_dense_least_squares_does(void **state) {
   disturb(&edge_fit, &fields);
   add_effect(&set, "scan.shear", 0);
   add_effect(&set, "scan.carriage_ripple", 1.003 * period_mm);
-  assert_int_equal(fg_joint_fit(&ctx, &edge_fit, &set, NULL), FG_OK);
+  assert_ok(&ctx, fg_joint_fit(&ctx, &edge_fit, &set, NULL));
   const fg_effect_found *shear = &set.effects[0], *ripple = &set.effects[1];
   assert_near(shear->coefficient_um[0], shear_um, 4 * shear->u_coefficient_um[0]);
   assert_near(ripple->coefficient_um[0], sine_um, 4 * ripple->u_coefficient_um[0]);

@@ -1,20 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the level of the edges is uncertain by, and who knows it. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 #include "geometry/foil_uncertainty.h"
 #include "geometry/level_uncertainty.h"
-
-static void assert_near(double value, double expected, double tolerance) {
-  if (!(fabs(value - expected) <= tolerance))
-    fail_msg("%.9g, not %.9g within %.3g", value, expected, tolerance);
-}
+#include "support/test.h"
 
 static fg_design design_of(fg_tone_statement tone) {
   fg_design design;
@@ -129,6 +119,7 @@ static void another_thickness_is_flagged(void **state) {
                 {0.079, FG_FOIL_OTHER_THICKNESS},
                 {0.5, FG_FOIL_OTHER_THICKNESS}};
   for (size_t i = 0; i < sizeof strips / sizeof *strips; i++) {
+    in_row("strips[%zu]", i);
     fg_foil foil = {.strip = {.thickness_mm = strips[i].mm,
                               .blur_left_um = 7,
                               .blur_right_um = 7,

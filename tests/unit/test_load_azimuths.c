@@ -3,16 +3,10 @@
  * the fit has even orders only; the axis of the smallest clearance and how often its U holds the
  * truth. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 
-#include <cmocka.h>
-
 #include "load_test/analysis.h"
-#include "support/near.h"
+#include "support/test.h"
 
 enum { AZIMUTHS_MAX = 12, SEEDS = 1000 };
 static const double u_mm = 0.001;
@@ -109,6 +103,7 @@ static void expanded_uncertainty_holds_the_truth(void **state) {
               {whole, 12, {.second_mm = 0.005, .smallest_at_deg = 30}},
               {whole, 12, {.second_mm = 0.01, .smallest_at_deg = 30, .fourth_mm = 0.004}}};
   for (size_t r = 0; r < sizeof rows / sizeof *rows; r++) {
+    in_row("rows[%zu]", r);
     uint64_t seed = 11 + r;
     double truth = true_axis(&rows[r].truth);
     size_t named = 0, inside = 0;

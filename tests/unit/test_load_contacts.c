@@ -1,17 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Unsampled stretches of a stroke, and contacts that contradict each other. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 #include "load_test/analysis.h"
 #include "load_test/local_fit.h"
-#include "support/near.h"
+#include "support/test.h"
 
 enum { SAMPLES = 600 };
 
@@ -142,14 +136,15 @@ static void contradictions(void **state) {
   fg_load_records records = {.begin = begin, .count = 1};
   fg_load_test test = {.samples = samples, .sample_count = ALL};
   fg_load_direction d = {.count = ALL, .travel_mm = 0.38};
-  assert_int_equal(fg_load_strokes_cut(&ctx, &test, &d, &records, &strokes), FG_OK);
+  assert_ok(&ctx, fg_load_strokes_cut(&ctx, &test, &d, &records, &strokes));
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    in_row("rows[%zu]", i);
     const double u = 0.0005;
     d.flags = 0;
     d.pull_mm = rows[i].pull_mm, d.push_mm = rows[i].push_mm, d.drift_um_cycle = NAN;
     d.clearance = (fg_load_value){d.push_mm - d.pull_mm, u, u};
     d.unloading = (fg_load_value){rows[i].unloading_mm, u, u};
-    assert_int_equal(fg_load_check_contacts(&ctx, &strokes, 0, &d), FG_OK);
+    assert_ok(&ctx, fg_load_check_contacts(&ctx, &strokes, 0, &d));
     assert_int_equal(d.flags & FG_LOAD_CONTRADICTION, rows[i].flags);
   }
   fg_load_strokes_free(&strokes);

@@ -2,16 +2,10 @@
 /* Noise of load-displacement records: the step of a column, noise of force and of displacement told
  * apart, and where strokes turn. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 
-#include <cmocka.h>
-
 #include "load_test/noise.h"
-#include "support/near.h"
+#include "support/test.h"
 
 enum { CYCLES = 5, EACH = 600, SAMPLES = CYCLES * EACH };
 static const double amplitude_mm = 0.19;
@@ -58,8 +52,7 @@ static void cut(record *r) {
   r->direction = (fg_load_direction){.count = SAMPLES, .travel_mm = 2 * amplitude_mm};
   r->direction.step_mm = fg_load_find_step(r->sample, SAMPLES);
   r->records = (fg_load_records){.begin = begin, .count = 1};
-  assert_int_equal(fg_load_strokes_cut(&ctx, &r->test, &r->direction, &r->records, &r->strokes),
-                   FG_OK);
+  assert_ok(&ctx, fg_load_strokes_cut(&ctx, &r->test, &r->direction, &r->records, &r->strokes));
 }
 
 static void steps_of_columns(void **state) {
@@ -85,6 +78,7 @@ static void noise_of_both_columns(void **state) {
   } rows[] = {{0.2, 0.0002, 0}, {1, 0.0002, 0}, {0.1, 0.001, 0}, {0.2, 0.0002, 0.002}};
   record *r = calloc(1, sizeof *r);
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    in_row("rows[%zu]", i);
     fill(r, rows[i].n, rows[i].mm, rows[i].step_mm);
     cut(r);
     double mm = hypot(rows[i].mm, rows[i].step_mm / sqrt(12));

@@ -2,18 +2,13 @@
 /* The advice on a tie, against the same question answered here: both models fitted by normal
  * equations, and their predictions compared at every setting. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "foilgauge/loop.h"
-#include "support/near.h"
 #include "support/random.h"
+#include "support/test.h"
 
 enum { ROWS = 40, COLUMNS = 4, STEPS = 7 };
 
@@ -150,11 +145,11 @@ static void a_tie_is_parted_where_its_models_differ_most(void **state) {
     fg_loop_table_spec spec = {.response = "y", .model = "1 + a", .hold_out = "0", .seed = 1};
     const fg_loop_options options = {.effects = fg_loop_table_effects(), .seed = 1};
     make_rows(seed, &data);
-    assert_int_equal(fg_table_add_numbers(&ctx, &table, "a", data.a, ROWS), FG_OK);
-    assert_int_equal(fg_table_add_numbers(&ctx, &table, "b", data.b, ROWS), FG_OK);
-    assert_int_equal(fg_table_add_numbers(&ctx, &table, "y", data.y, ROWS), FG_OK);
-    assert_int_equal(fg_loop_table_problem_build(&ctx, &table, &spec, &problem), FG_OK);
-    assert_int_equal(fg_loop_run(&ctx, &problem.problem, &options, &result), FG_OK);
+    assert_ok(&ctx, fg_table_add_numbers(&ctx, &table, "a", data.a, ROWS));
+    assert_ok(&ctx, fg_table_add_numbers(&ctx, &table, "b", data.b, ROWS));
+    assert_ok(&ctx, fg_table_add_numbers(&ctx, &table, "y", data.y, ROWS));
+    assert_ok(&ctx, fg_loop_table_problem_build(&ctx, &table, &spec, &problem));
+    assert_ok(&ctx, fg_loop_run(&ctx, &problem.problem, &options, &result));
     compared += check_advice(&data, &result);
     fg_loop_result_free(&result);
     fg_loop_table_problem_free(&problem);

@@ -1,18 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The loop on tables whose truth is known: what it finds, what it leaves alone, what it ties. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "foilgauge/loop.h"
 #include "support/brief.h"
-#include "support/near.h"
 #include "support/random.h"
+#include "support/test.h"
 
 enum { RUNS = 24, FOILS = 14, BUMPS = 9 };
 

@@ -1,19 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The model file: what is written loads again, and takes the effect out of another table. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
 #include "foilgauge/loop.h"
-#include "support/near.h"
 #include "support/random.h"
+#include "support/test.h"
 
 enum { RUNS = 30 };
 
@@ -25,10 +20,10 @@ static void make_table(fg_table *table, uint64_t seed, double humidity_slope, do
     humidity[i] = i == 0 ? 20 : i == 1 ? 60 : 20 + 40 * random_uniform(&seed);
     y[i] = 3 + t[i] / 100 + humidity_slope * humidity[i] + sd * random_gaussian(&seed);
   }
-  assert_int_equal(fg_table_add_numbers(NULL, table, "run", run, RUNS), FG_OK);
-  assert_int_equal(fg_table_add_numbers(NULL, table, "t", t, RUNS), FG_OK);
-  assert_int_equal(fg_table_add_numbers(NULL, table, "humidity", humidity, RUNS), FG_OK);
-  assert_int_equal(fg_table_add_numbers(NULL, table, "y", y, RUNS), FG_OK);
+  assert_ok(&test_context, fg_table_add_numbers(&test_context, table, "run", run, RUNS));
+  assert_ok(&test_context, fg_table_add_numbers(&test_context, table, "t", t, RUNS));
+  assert_ok(&test_context, fg_table_add_numbers(&test_context, table, "humidity", humidity, RUNS));
+  assert_ok(&test_context, fg_table_add_numbers(&test_context, table, "y", y, RUNS));
 }
 
 static void write_model(const char *path) {
@@ -39,8 +34,8 @@ static void write_model(const char *path) {
   fg_loop_table_spec spec = {.response = "y", .model = "1 + t", .seed = 1};
   fg_loop_options options = {.effects = fg_loop_table_effects(), .seed = 1};
   make_table(&table, 7, 0.1, 0.2);
-  assert_int_equal(fg_loop_table_problem_build(&ctx, &table, &spec, &problem), FG_OK);
-  assert_int_equal(fg_loop_run(&ctx, &problem.problem, &options, &result), FG_OK);
+  assert_ok(&ctx, fg_loop_table_problem_build(&ctx, &table, &spec, &problem));
+  assert_ok(&ctx, fg_loop_run(&ctx, &problem.problem, &options, &result));
   assert_int_equal(result.claims, 1);
   fg_loop_report report = {.path = "found.csv",
                            .sha256 = "",
@@ -50,7 +45,7 @@ static void write_model(const char *path) {
                            .seed = 1};
   FILE *file = fopen(path, "w");
   assert_non_null(file);
-  assert_int_equal(fg_loop_write_model(&ctx, &report, file), FG_OK);
+  assert_ok(&ctx, fg_loop_write_model(&ctx, &report, file));
   fclose(file);
   fg_loop_result_free(&result);
   fg_loop_table_problem_free(&problem);
@@ -76,7 +71,7 @@ static void the_effect_is_taken_out(void **state) {
     assert_near(other.column[3].number[i].value, expected, 0.25);
   }
   other.column[2].number[4].value = 90;
-  assert_int_equal(fg_loop_model_apply(&ctx, model, &other), FG_ERR_DATA);
+  assert_status(&ctx, fg_loop_model_apply(&ctx, model, &other), FG_ERR_DATA);
   assert_non_null(strstr(ctx.message, "row 5: humidity is 90"));
   fg_table_free(&other);
   fg_loop_model_free(model);
@@ -90,13 +85,14 @@ static void what_is_no_model_is_refused(void **state) {
   (void)state;
   close(mkstemp(path));
   for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+    in_row("texts[%zu]", i);
     fg_context ctx = {0};
     fg_loop_model *model = NULL;
     FILE *file = fopen(path, "w");
     assert_non_null(file);
     fputs(texts[i], file);
     fclose(file);
-    assert_int_equal(fg_loop_model_load(&ctx, path, &model), FG_ERR_DATA);
+    assert_status(&ctx, fg_loop_model_load(&ctx, path, &model), FG_ERR_DATA);
     assert_null(model);
     assert_non_null(strstr(ctx.message, path));
   }

@@ -1,18 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Whitening against the covariance that it claims to undo, and least squares against it. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
 #include <gsl/gsl_linalg.h>
 
 #include "effect/table_effects.h"
-#include "support/near.h"
 #include "support/random.h"
+#include "support/test.h"
 #include "table_loop/engine.h"
 
 enum { ROWS = 12, GROUPS = 3 };
@@ -50,8 +46,10 @@ static void whitening_undoes_the_covariance(void **state) {
   (void)state;
   fg_loop_problem problem = make_problem();
   fg_engine_training training;
-  assert_int_equal(fg_engine_training_build(NULL, &problem, NULL, NULL, &training), FG_OK);
+  assert_ok(&test_context,
+            fg_engine_training_build(&test_context, &problem, NULL, NULL, &training));
   for (size_t m = 0; m < sizeof noises / sizeof *noises; m++) {
+    in_row("noises[%zu]", m);
     double c[ROWS][ROWS], column[ROWS];
     for (size_t k = 0; k < ROWS; k++) {
       for (size_t i = 0; i < ROWS; i++)
@@ -74,8 +72,10 @@ static void colouring_undoes_whitening(void **state) {
   fg_loop_problem problem = make_problem();
   fg_engine_training training;
   double y[ROWS];
-  assert_int_equal(fg_engine_training_build(NULL, &problem, NULL, NULL, &training), FG_OK);
+  assert_ok(&test_context,
+            fg_engine_training_build(&test_context, &problem, NULL, NULL, &training));
   for (size_t m = 0; m < sizeof noises / sizeof *noises; m++) {
+    in_row("noises[%zu]", m);
     memcpy(y, residual, sizeof y);
     fg_engine_whiten(&training, noises[m], y);
     fg_engine_colour(&training, noises[m], y);
@@ -89,8 +89,10 @@ static void the_determinant_is_the_covariance_s(void **state) {
   (void)state;
   fg_loop_problem problem = make_problem();
   fg_engine_training training;
-  assert_int_equal(fg_engine_training_build(NULL, &problem, NULL, NULL, &training), FG_OK);
+  assert_ok(&test_context,
+            fg_engine_training_build(&test_context, &problem, NULL, NULL, &training));
   for (size_t m = 0; m < sizeof noises / sizeof *noises; m++) {
+    in_row("noises[%zu]", m);
     gsl_matrix *c = gsl_matrix_alloc(ROWS, ROWS);
     double log_det = 0;
     for (size_t i = 0; i < ROWS; i++)
@@ -111,10 +113,12 @@ static void least_squares_solves_the_normal_equations(void **state) {
   fg_loop_problem problem = make_problem();
   fg_engine_training training;
   fg_engine_fit fit;
-  assert_int_equal(fg_engine_training_build(NULL, &problem, NULL, NULL, &training), FG_OK);
+  assert_ok(&test_context,
+            fg_engine_training_build(&test_context, &problem, NULL, NULL, &training));
   for (size_t m = 0; m < sizeof noises / sizeof *noises; m++) {
+    in_row("noises[%zu]", m);
     double r[ROWS], x[ROWS], sum = 0;
-    assert_int_equal(fg_engine_least_squares(NULL, &training, noises[m], &fit), FG_OK);
+    assert_ok(&test_context, fg_engine_least_squares(&test_context, &training, noises[m], &fit));
     for (size_t i = 0; i < ROWS; i++)
       r[i] = residual[i] - fit.beta[0] - fit.beta[1] * jacobian[ROWS + i];
     fg_engine_whiten(&training, noises[m], r);
@@ -193,8 +197,10 @@ static void what_is_constant_in_groups_is_judged_between_them(void **state) {
   fg_score_workspace workspace = {0};
   fg_engine_score score;
   size_t null;
-  assert_int_equal(fg_engine_training_build(NULL, &problem, NULL, NULL, &training), FG_OK);
-  assert_int_equal(fg_score_workspace_build(NULL, &training, &trend, 1, &workspace), FG_OK);
+  assert_ok(&test_context,
+            fg_engine_training_build(&test_context, &problem, NULL, NULL, &training));
+  assert_ok(&test_context,
+            fg_score_workspace_build(&test_context, &training, &trend, 1, &workspace));
   fg_score_workspace_score_data(&workspace, &score, &null);
   assert_near(score.own, left_of_means(y, of_group), 1e-9);
   assert_near(score.z, fg_engine_deviate(score.own, 1, LEVELS - 1), 1e-9);

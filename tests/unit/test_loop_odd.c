@@ -2,13 +2,7 @@
 /* Whatever foils and discs the loop on scans gets: an error in words, or a result whose every
  * number is finite or null, with a verdict, uncertainties that are none below 0, and reports that
  * keep to their schema. Made without pictures (support/odd_scan.h). */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
-
-#include <cmocka.h>
 
 #include <cjson/cJSON.h>
 #include <sys/wait.h>
@@ -17,6 +11,7 @@
 #include "scan_loop/state.h"
 #include "support/brief.h"
 #include "support/odd_scan.h"
+#include "support/test.h"
 
 enum { SKIPPED = 77, FILES = 400, DRAWN = 32, BYTES = 96 };
 
@@ -72,7 +67,7 @@ static char *written(const fg_scan_loop *loop, writer *write) {
   size_t size;
   FILE *out = open_memstream(&text, &size);
   assert_non_null(out);
-  assert_int_equal(write(&ctx, loop, out), FG_OK);
+  assert_ok(&ctx, write(&ctx, loop, out));
   fclose(out);
   return text;
 }
@@ -170,7 +165,7 @@ static void a_plain_foil_is_clean(void **state) {
   fg_context ctx = {0};
   fg_scan_loop *loop = NULL;
   odd_input in = one_foil(9);
-  assert_int_equal(close_loop(&in, false, &ctx, &loop), FG_OK);
+  assert_ok(NULL, close_loop(&in, false, &ctx, &loop));
   assert_int_equal(loop->set.count, 0);
   assert_true(loop->explanations.right);
   check_reports(loop, "a plain foil");
@@ -181,6 +176,7 @@ static void bumps_and_lands_that_are_missing(void **state) {
   static const int missing[] = {1, 2, 0x10, 0x1e, 0xaa, 0x1fe, 0x1ff};
   (void)state;
   for (size_t i = 0; i < sizeof missing / sizeof *missing; i++) {
+    in_row("missing[%zu]", i);
     char what[64];
     odd_input in = one_foil(9);
     in.scan[0].foil[0].missing = missing[i];
@@ -216,6 +212,7 @@ static void noise_from_nothing_to_much(void **state) {
   static const double noise[] = {0, 1e-6, 1e-3, 5, 50};
   (void)state;
   for (size_t i = 0; i < sizeof noise / sizeof *noise; i++) {
+    in_row("noise[%zu]", i);
     char what[64];
     odd_input in = one_foil(5);
     in.scan[0].foil[0].noise_um = noise[i];
@@ -256,9 +253,9 @@ static void scans_of_one_foil_and_of_several(void **state) {
   (void)state;
   for (int same = 0; same < 2; same++) {
     odd_input in = two_scans(5, same);
-    assert_int_equal(check(&in, true, "a foil twice, turned"), FG_OK);
+    assert_ok(NULL, check(&in, true, "a foil twice, turned"));
     in.scan[1].foil[0] = in.scan[0].foil[0];
-    assert_int_equal(check(&in, true, "a foil twice, the same edges"), FG_OK);
+    assert_ok(NULL, check(&in, true, "a foil twice, the same edges"));
     in.scan[1].hold_out = true;
     check(&in, true, "a foil kept aside");
     in.scan[0].foil[0].faults = ODD_UNMEASURED;
@@ -357,7 +354,7 @@ static void foils_and_discs_do_not_mix(void **state) {
   fg_design_default(&in.design);
   in.scan[0].foils = 1;
   in.scan[0].foil[0] = odd_plain_foil(3);
-  assert_int_equal(check(&in, true, "a foil and discs"), FG_ERR_DATA);
+  assert_status(NULL, check(&in, true, "a foil and discs"), FG_ERR_DATA);
 }
 
 /* ---- anything ---- */

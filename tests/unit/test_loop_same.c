@@ -1,17 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Scans that are said to show one foil: two foils are told from one, and what a scanner or a part
  * does to one foil is no other foil. Made without pictures (support/odd_scan.h). */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
-
-#include <cmocka.h>
 
 #include "scan_loop/state.h"
 #include "support/brief.h"
 #include "support/odd_scan.h"
+#include "support/test.h"
 
 /* One foil of six bumps on two scans, turned by `turn_deg` in between. */
 static odd_input pair(double turn_deg, uint64_t seed) {
@@ -44,7 +39,7 @@ static void two_clean_foils_are_not_one(void **state) {
   fg_context ctx = {0};
   odd_input in = pair(90, 1);
   in.scan[1].foil[0].spread += 0.006;
-  assert_int_equal(close_loop(&in, &ctx), FG_ERR_DATA);
+  assert_status(NULL, close_loop(&in, &ctx), FG_ERR_DATA);
   assert_non_null(strstr(ctx.message, "not of one foil"));
   assert_non_null(strstr(ctx.message, "bump "));
 }

@@ -2,17 +2,14 @@
 /* The loop on tables about what is no mean: neighbours that are alike, a scatter that changes,
  * wrong rows that hide each other; and which order rows have. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
 #include <gsl/gsl_cdf.h>
 
 #include "foilgauge/loop.h"
 #include "support/random.h"
+#include "support/test.h"
 #include "table_loop/tails.h"
 
 enum { ROWS = 120 };
@@ -41,11 +38,11 @@ static void search(const series *data, uint64_t seed, outcome *out) {
   const fg_loop_table_spec spec = {.response = "y", .model = "1", .seed = seed};
   *out = (outcome){0};
   fg_table *table = &out->table;
-  assert_int_equal(fg_table_add_numbers(&out->ctx, table, "reading", data->reading, ROWS), FG_OK);
-  assert_int_equal(fg_table_add_numbers(&out->ctx, table, "pressure", data->pressure, ROWS), FG_OK);
-  assert_int_equal(fg_table_add_numbers(&out->ctx, table, "y", data->y, ROWS), FG_OK);
-  assert_int_equal(fg_loop_table_problem_build(&out->ctx, table, &spec, &out->problem), FG_OK);
-  assert_int_equal(fg_loop_run(&out->ctx, &out->problem.problem, &options, &out->result), FG_OK);
+  assert_ok(&out->ctx, fg_table_add_numbers(&out->ctx, table, "reading", data->reading, ROWS));
+  assert_ok(&out->ctx, fg_table_add_numbers(&out->ctx, table, "pressure", data->pressure, ROWS));
+  assert_ok(&out->ctx, fg_table_add_numbers(&out->ctx, table, "y", data->y, ROWS));
+  assert_ok(&out->ctx, fg_loop_table_problem_build(&out->ctx, table, &spec, &out->problem));
+  assert_ok(&out->ctx, fg_loop_run(&out->ctx, &out->problem.problem, &options, &out->result));
 }
 
 static void clear(outcome *out) {

@@ -2,20 +2,16 @@
 /* One place decides what the loop on scans says: every statement of its JSON stands on its page and
  * in its text. Rendered scans, and what a loop on other data could have come to. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
 #include "core/spread.h"
 #include "foilgauge/render.h"
 #include "scan_loop/state.h"
+#include "support/test.h"
 
 #define SCANNER                                                                                    \
   "\"scanner\":{\"dpi\":1200,\"background\":30,\"contrast\":175,\"blur_px\":1.3,\"noise\":1.2},"
@@ -65,7 +61,7 @@ static void assert_consistent(fg_scan_loop *loop, const char *what) {
   char folder[] = "/tmp/foilgauge_statements_XXXXXX", path[3][64], command[400];
   assert_non_null(mkdtemp(folder));
   fg_context ctx = {0};
-  assert_int_equal(fg_scan_loop_decide(&ctx, loop), FG_OK);
+  assert_ok(&ctx, fg_scan_loop_decide(&ctx, loop));
   for (int i = 0; i < 3; i++) {
     snprintf(path[i], sizeof path[i], "%s/%s", folder, names[i]);
     write_file(loop, writers[i], path[i]);
@@ -101,7 +97,7 @@ static void a_foil_says_one_thing(void **state) {
   loop->scale_tied = loop->tied = false;
   assert_consistent(loop, "no tie");
   assert_int_equal(loop->result.advices, 0);
-  assert_int_equal(fg_scan_loop_bumps_note(NULL, &loop->bumps, "a <note> & more"), FG_OK);
+  assert_ok(&test_context, fg_scan_loop_bumps_note(&test_context, &loop->bumps, "a <note> & more"));
   loop->error_before.held_out_rms = 1.5;
   loop->error_after.held_out_rms = 0.2;
   assert_consistent(loop, "a note, and a scan kept aside");

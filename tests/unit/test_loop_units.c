@@ -3,18 +3,13 @@
  * it is given, no report holds a number that is none. */
 #include <ctype.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "foilgauge/loop.h"
-#include "support/near.h"
 #include "support/random.h"
+#include "support/test.h"
 
 enum { RUNS = 24 };
 
@@ -37,9 +32,9 @@ static void make_table(const change *by, fg_table *table) {
     humidity[i] = (humidity[i] + by->column_offset) * by->column_scale;
   }
   *table = (fg_table){0};
-  assert_int_equal(fg_table_add_numbers(&ctx, table, "t", t, RUNS), FG_OK);
-  assert_int_equal(fg_table_add_numbers(&ctx, table, "humidity", humidity, RUNS), FG_OK);
-  assert_int_equal(fg_table_add_numbers(&ctx, table, "y", y, RUNS), FG_OK);
+  assert_ok(&ctx, fg_table_add_numbers(&ctx, table, "t", t, RUNS));
+  assert_ok(&ctx, fg_table_add_numbers(&ctx, table, "humidity", humidity, RUNS));
+  assert_ok(&ctx, fg_table_add_numbers(&ctx, table, "y", y, RUNS));
 }
 
 static bool holds_word(const char *text, const char *word) {
@@ -56,11 +51,12 @@ static void check_reports(const fg_loop_report *report) {
   writer *const writers[] = {fg_loop_write_json, fg_loop_write_text, fg_loop_write_html,
                              fg_loop_write_model};
   for (size_t i = 0; i < sizeof writers / sizeof *writers; i++) {
+    in_row("writers[%zu]", i);
     fg_context ctx = {0};
     char *text = NULL;
     size_t size = 0;
     FILE *out = open_memstream(&text, &size);
-    assert_int_equal(writers[i](&ctx, report, out), FG_OK);
+    assert_ok(NULL, writers[i](&ctx, report, out));
     fclose(out);
     if (holds_word(text, "nan") || holds_word(text, "inf")) fail_msg("%s", text);
     free(text);
@@ -111,6 +107,7 @@ static void a_finding_does_not_depend_on_the_unit_or_the_origin(void **state) {
   assert_int_equal(plain.claims, 1);
   assert_string_equal(plain.claim[0].name, "table.linear(humidity)");
   for (size_t i = 0; i < sizeof changes / sizeof *changes; i++) {
+    in_row("changes[%zu]", i);
     const change *by = &changes[i];
     run_changed(by, &other);
     assert_int_equal(other.verdict, plain.verdict);
@@ -161,17 +158,18 @@ static const struct odd_table {
 static void odd_tables_get_a_verdict_or_an_error(void **state) {
   (void)state;
   for (size_t i = 0; i < sizeof odd / sizeof *odd; i++) {
+    in_row("odd[%zu]", i);
     fg_context ctx = {0};
     fg_table table;
     fg_loop_result result;
     fg_loop_table_spec spec = {
         .response = odd[i].response, .model = odd[i].model, .group = odd[i].group, .hold_out = "0"};
     fg_status status = fg_table_parse(&ctx, "odd.csv", odd[i].table, strlen(odd[i].table), &table);
-    assert_int_equal(status, FG_OK);
+    assert_ok(NULL, status);
     status = run(&ctx, &table, &spec, &result);
     if (!odd[i].words && status != FG_OK) fail_msg("table %zu: %s", i, ctx.message);
     if (odd[i].words) {
-      assert_int_equal(status, FG_ERR_DATA);
+      assert_status(NULL, status, FG_ERR_DATA);
       if (!strstr(ctx.message, odd[i].words)) fail_msg("table %zu: %s", i, ctx.message);
     }
     fg_loop_result_free(&result);

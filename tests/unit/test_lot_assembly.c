@@ -2,7 +2,7 @@
 /* Bearings drawn from the foils of a made lot: which foils take part, and what the three lines say.
  */
 #include "support/made_lot.h"
-#include "support/near.h"
+#include "support/test.h"
 
 /* Foils of one radius each at constant arc length, and how far their bumps scatter about it. */
 static fg_lot lot_of(const fg_design *design, size_t foils, const double *radius, double scatter,

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Clearance around the bearings of a made lot: where the bumps stand, which foil is meant. */
 #include "support/made_lot.h"
-#include "support/near.h"
+#include "support/test.h"
 
 /* Three foils of the design; bump 9 of the second stands highest. */
 static fg_lot nine_bumps(const fg_design *design) {
@@ -14,7 +14,7 @@ static fg_lot nine_bumps(const fg_design *design) {
 }
 
 static const fg_lot_bearing *only_bearing(const fg_lot *lot, fg_lot_analysis *analysis) {
-  assert_int_equal(fg_lot_analyse(NULL, lot, analysis), FG_OK);
+  assert_ok(&test_context, fg_lot_analyse(&test_context, lot, analysis));
   assert_int_equal(analysis->bearing_count, 1);
   assert_true(analysis->bearings[0].known);
   return &analysis->bearings[0];
@@ -66,11 +66,10 @@ static void a_stated_layout_stands(void **state) {
   fg_lot_analysis analysis;
   fg_design_default(&design);
   fg_lot lot = nine_bumps(&design);
-  assert_int_equal(fg_lot_settings_parse(&ctx, "r.json",
-                                         "{\"schema\": \"foilgauge/recipe/1\", \"pads\": 3, "
-                                         "\"bumps_per_pad\": 7}",
-                                         &lot.settings),
-                   FG_OK);
+  assert_ok(&ctx, fg_lot_settings_parse(&ctx, "r.json",
+                                        "{\"schema\": \"foilgauge/recipe/1\", \"pads\": 3, "
+                                        "\"bumps_per_pad\": 7}",
+                                        &lot.settings));
   const fg_lot_bearing *bearing = only_bearing(&lot, &analysis);
   assert_int_equal(bearing->places, 21);
   assert_near(bearing->angle_deg[1], 360.0 / 21, 1e-9);
@@ -102,7 +101,7 @@ static void a_crowded_design_keeps_within_the_bearing(void **state) {
   fg_lot lot = nine_bumps(&design);
   lot.settings.design.bump_count = 400;
   lot.settings.design.pitch_deg = 0.9;
-  assert_int_equal(fg_lot_analyse(NULL, &lot, &analysis), FG_OK);
+  assert_ok(&test_context, fg_lot_analyse(&test_context, &lot, &analysis));
   assert_true(analysis.layout.pads * analysis.layout.bumps_per_pad <= FG_BEARING_BUMPS_MAX);
   assert_non_null(strstr(analysis.layout_note, "400 bumps"));
   fg_lot_analysis_free(&analysis);
@@ -145,7 +144,7 @@ static fg_lot toleranced(const char *const *cells, double lower) {
 }
 
 static int code_of(const fg_lot *lot, fg_lot_analysis *analysis) {
-  assert_int_equal(fg_lot_analyse(NULL, lot, analysis), FG_OK);
+  assert_ok(&test_context, fg_lot_analyse(&test_context, lot, analysis));
   return fg_outcome_exit_code(&analysis->outcome);
 }
 

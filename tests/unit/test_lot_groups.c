@@ -4,6 +4,7 @@
 #include "report/lot/writers.h"
 #include "stats/relabelled_spread.h"
 #include "support/group_lots.h"
+#include "support/test.h"
 
 enum { LOTS = 500 };
 
@@ -87,7 +88,7 @@ static void scans_of_one_foil_count_once(void **state) {
   for (size_t i = 0; i < SCANS; i++)
     for (size_t k = 0; k < 5; k++)
       made_bump(&lot, i, k, 3.3 + 0.01 * (double)((7 * i + 3 * k) % 11), 63.15);
-  assert_int_equal(fg_lot_analyse(NULL, &lot, &analysis), FG_OK);
+  assert_ok(&test_context, fg_lot_analyse(&test_context, &lot, &analysis));
   assert_int_equal(analysis.differences[0].foils_a, 3);
   assert_int_equal(analysis.differences[0].foils_b, 3);
   assert_int_equal(analysis.differences[0].count_a, 30);
@@ -100,16 +101,16 @@ static void few_values_are_dealt_in_every_way(void **state) {
   (void)state;
   const double a[] = {-1, 0, 1}, b[] = {-10, 0, 10}, same[] = {4, 4, 4};
   fg_relabelled_spread spread;
-  assert_int_equal(fg_relabel_spreads(NULL, (fg_sample){a, 3}, (fg_sample){b, 3}, 9999, &spread),
-                   FG_OK);
+  assert_ok(&test_context,
+            fg_relabel_spreads(&test_context, (fg_sample){a, 3}, (fg_sample){b, 3}, 9999, &spread));
   assert_true(spread.complete);
   /* As extreme: {-1, 0, 1} with either zero, {0, 0, 1} and {0, 0, -1}; each on either side. */
   assert_true(fabs(spread.p_variances - 8.0 / 20) < 1e-12);
-  assert_int_equal(fg_relabel_spreads(NULL, (fg_sample){a, 2}, (fg_sample){b, 3}, 9999, &spread),
-                   FG_OK);
+  assert_ok(&test_context,
+            fg_relabel_spreads(&test_context, (fg_sample){a, 2}, (fg_sample){b, 3}, 9999, &spread));
   assert_true(isnan(spread.p_variances) && isnan(spread.p_levene));
-  assert_int_equal(
-      fg_relabel_spreads(NULL, (fg_sample){same, 3}, (fg_sample){same, 3}, 9999, &spread), FG_OK);
+  assert_ok(&test_context, fg_relabel_spreads(&test_context, (fg_sample){same, 3},
+                                              (fg_sample){same, 3}, 9999, &spread));
   assert_true(isnan(spread.p_levene));
 }
 
@@ -126,7 +127,7 @@ static void page_says_how_many_tests_differ(void **state) {
   group_lot_draw(&apart, &seed, &g);
   group_lot_compare(&g);
   FILE *out = open_memstream(&text, &size);
-  assert_int_equal(fg_lot_write_page(NULL, &g.analysis, out), FG_OK);
+  assert_ok(NULL, fg_lot_write_page(NULL, &g.analysis, out));
   fclose(out);
   assert_non_null(strstr(text, "tests find a difference</b> (5 % for all of them together)"));
   free(text);

@@ -2,25 +2,20 @@
 /* The journal of a lot, and who owns its folder. */
 #include <fcntl.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
-#include "../support/synthetic_foil.h"
 #include "foilgauge/lot.h"
 #include "lot/input/manifest.h"
 #include "lot/run/folder_lock.h"
 #include "lot/run/journal.h"
 #include "lot/run/record.h"
 #include "lot/run/seal.h"
+#include "support/synthetic_foil.h"
+#include "support/test.h"
 
 typedef struct seen {
   char scans[8][16];
@@ -42,8 +37,8 @@ static void append(fg_journal *journal, const char *scan) {
   char *line;
   size_t length;
   memset(record.measured_with, 'b', 64);
-  assert_int_equal(fg_record_format(&ctx, &record, NULL, &line, &length), FG_OK);
-  assert_int_equal(fg_journal_append(&ctx, journal, line, length, &entry), FG_OK);
+  assert_ok(&ctx, fg_record_format(&ctx, &record, NULL, &line, &length));
+  assert_ok(&ctx, fg_journal_append(&ctx, journal, line, length, &entry));
   free(line);
 }
 
@@ -64,19 +59,19 @@ static void journal_drops_what_is_torn(void **state) {
   fg_journal_head head = head_of(2, 5), read;
   const char *from[] = {path};
   fg_journal_entry none = {0};
-  assert_int_equal(fg_journal_rewrite(&ctx, path, &head, from, NULL, &none, 1), FG_OK);
+  assert_ok(&ctx, fg_journal_rewrite(&ctx, path, &head, from, NULL, &none, 1));
   fg_journal journal;
-  assert_int_equal(fg_journal_open(&ctx, path, &journal), FG_OK);
+  assert_ok(&ctx, fg_journal_open(&ctx, path, &journal));
   append(&journal, "one");
   append(&journal, "two");
-  assert_int_equal(fg_journal_close(&ctx, &journal), FG_OK);
+  assert_ok(&ctx, fg_journal_close(&ctx, &journal));
   struct stat whole;
   assert_int_equal(stat(path, &whole), 0);
   for (off_t cut = 1; cut < 60; cut += 7) {
     seen s = {0};
     fg_journal_damage damage;
     assert_int_equal(truncate(path, whole.st_size - cut), 0);
-    assert_int_equal(fg_journal_read(&ctx, path, &read, &damage, note, &s), FG_OK);
+    assert_ok(&ctx, fg_journal_read(&ctx, path, &read, &damage, note, &s));
     assert_int_equal(damage.lines, 1);
     assert_int_equal(damage.first, 3);
     assert_int_equal(s.count, 1);
@@ -85,7 +80,7 @@ static void journal_drops_what_is_torn(void **state) {
     assert_int_equal(read.shard.count, 5);
   }
   assert_int_equal(truncate(path, 20), 0);
-  assert_int_equal(fg_journal_read_head(&ctx, path, &read), FG_ERR_DATA);
+  assert_status(&ctx, fg_journal_read_head(&ctx, path, &read), FG_ERR_DATA);
   unlink(path);
   rmdir(folder);
 }
@@ -110,15 +105,15 @@ static void journal_salvages_what_is_whole(void **state) {
   fg_journal_head head = head_of(1, 1);
   const char *from[] = {path};
   fg_journal_entry none = {0};
-  assert_int_equal(fg_journal_rewrite(&ctx, path, &head, from, NULL, &none, 1), FG_OK);
+  assert_ok(&ctx, fg_journal_rewrite(&ctx, path, &head, from, NULL, &none, 1));
   struct stat info;
   assert_int_equal(stat(path, &info), 0);
   off_t first = info.st_size;
   fg_journal journal;
-  assert_int_equal(fg_journal_open(&ctx, path, &journal), FG_OK);
+  assert_ok(&ctx, fg_journal_open(&ctx, path, &journal));
   append(&journal, "one");
   append(&journal, "two");
-  assert_int_equal(fg_journal_close(&ctx, &journal), FG_OK);
+  assert_ok(&ctx, fg_journal_close(&ctx, &journal));
   assert_int_equal(stat(path, &info), 0);
   off_t second = first + (info.st_size - first) / 2;
   for (off_t at = 0; at < info.st_size; at++) {
@@ -126,7 +121,7 @@ static void journal_salvages_what_is_whole(void **state) {
     fg_journal_damage damage;
     bool joined = at + 1 == first || at + 1 == second; /* no newline: two lines are one */
     change_byte(path, at);
-    assert_int_equal(fg_journal_salvage(&ctx, path, &damage, note, &s), FG_OK);
+    assert_ok(&ctx, fg_journal_salvage(&ctx, path, &damage, note, &s));
     assert_int_equal(damage.lines, 1);
     assert_int_equal(damage.first, at < first ? 1 : at < second ? 2 : 3);
     assert_int_equal(s.count, (at < first ? 2 : 1) - (joined ? 1 : 0));
@@ -153,18 +148,18 @@ static void journal_takes_no_memory_for_a_hole(void **state) {
   fg_journal_head head = head_of(1, 1);
   const char *from[] = {path};
   fg_journal_entry none = {0};
-  assert_int_equal(fg_journal_rewrite(&ctx, path, &head, from, NULL, &none, 1), FG_OK);
+  assert_ok(&ctx, fg_journal_rewrite(&ctx, path, &head, from, NULL, &none, 1));
   struct stat info;
   assert_int_equal(stat(path, &info), 0);
   assert_int_equal(truncate(path, info.st_size + (100 << 20)), 0);
   fg_journal journal;
-  assert_int_equal(fg_journal_open(&ctx, path, &journal), FG_OK);
+  assert_ok(&ctx, fg_journal_open(&ctx, path, &journal));
   append(&journal, "\n");
   append(&journal, "two");
-  assert_int_equal(fg_journal_close(&ctx, &journal), FG_OK);
+  assert_ok(&ctx, fg_journal_close(&ctx, &journal));
   seen s = {0};
   fg_journal_damage damage;
-  assert_int_equal(fg_journal_salvage(&ctx, path, &damage, note, &s), FG_OK);
+  assert_ok(&ctx, fg_journal_salvage(&ctx, path, &damage, note, &s));
   assert_int_equal(damage.lines, 1);
   assert_int_equal(s.count, 1);
   assert_string_equal(s.scans[0], "two");
@@ -182,12 +177,12 @@ static void journal_knows_earlier_ones_and_other_files(void **state) {
   assert_non_null(mkdtemp(folder));
   snprintf(path, sizeof path, "%s/results.jsonl", folder);
   write_text(path, "{\"schema\": \"foilgauge/results/1\"}\n{\"scan\": \"a.png\"}\n");
-  assert_int_equal(fg_journal_salvage(&ctx, path, &damage, note, &s), FG_OK);
+  assert_ok(&ctx, fg_journal_salvage(&ctx, path, &damage, note, &s));
   assert_true(damage.earlier);
-  assert_int_equal(fg_journal_read(&ctx, path, &head, &damage, note, &s), FG_ERR_DATA);
+  assert_status(&ctx, fg_journal_read(&ctx, path, &head, &damage, note, &s), FG_ERR_DATA);
   assert_non_null(strstr(ctx.message, "earlier version"));
   write_text(path, "somebody's own text\nof two lines\n");
-  assert_int_equal(fg_journal_salvage(&ctx, path, &damage, note, &s), FG_ERR_DATA);
+  assert_status(&ctx, fg_journal_salvage(&ctx, path, &damage, note, &s), FG_ERR_DATA);
   assert_non_null(strstr(ctx.message, "another folder"));
   assert_int_equal(s.count, 0);
   unlink(path);
@@ -200,11 +195,11 @@ static void folder_has_one_owner(void **state) {
   char folder[] = "/tmp/foilgauge-test-XXXXXX", path[64];
   assert_non_null(mkdtemp(folder));
   int first, second;
-  assert_int_equal(fg_folder_lock(&ctx, folder, &first), FG_OK);
-  assert_int_equal(fg_folder_lock(&ctx, folder, &second), FG_ERR_IO);
+  assert_ok(&ctx, fg_folder_lock(&ctx, folder, &first));
+  assert_status(&ctx, fg_folder_lock(&ctx, folder, &second), FG_ERR_IO);
   assert_non_null(strstr(ctx.message, "another run"));
   close(first);
-  assert_int_equal(fg_folder_lock(&ctx, folder, &second), FG_OK);
+  assert_ok(&ctx, fg_folder_lock(&ctx, folder, &second));
   close(second);
   snprintf(path, sizeof path, "%s/.lock", folder);
   unlink(path);

@@ -3,6 +3,7 @@
 #include "report/lot/writers.h"
 #include "support/made_lot.h"
 #include "support/random.h"
+#include "support/test.h"
 
 enum { FOILS = 24, BUMPS = 3 };
 
@@ -30,12 +31,12 @@ static fg_lot_quantity radius_of(const char *const *cells, const double *offset_
   design.tolerance_count = 1;
   design.tolerances[0] = (fg_tolerance){.quantity = "radius_mm", .lower = 3.3, .upper = 3.5};
   fg_lot lot = lot_of(&design, cells, offset_mm);
-  assert_int_equal(fg_lot_analyse(NULL, &lot, &analysis), FG_OK);
+  assert_ok(&test_context, fg_lot_analyse(&test_context, &lot, &analysis));
   fg_lot_quantity radius = *fg_lot_find_quantity(&analysis, "radius_mm");
   *process = analysis.process;
   if (page) {
     FILE *out = open_memstream(page, &size);
-    assert_int_equal(fg_lot_write_page(NULL, &analysis, out), FG_OK);
+    assert_ok(NULL, fg_lot_write_page(NULL, &analysis, out));
     fclose(out);
   }
   fg_lot_analysis_free(&analysis);
@@ -142,7 +143,7 @@ static void trends_of_noise_are_rare(void **state) {
         value = alike[k] * value + random_gaussian(&noise);
         if (i >= 20) point[i - 20].value = value;
       }
-      assert_int_equal(fg_lot_find_trend(NULL, 0, 0.0125, &quantity), FG_OK);
+      assert_ok(&test_context, fg_lot_find_trend(&test_context, 0, 0.0125, &quantity));
       known += quantity.trend.known;
     }
     assert_true(known <= (k ? 0.035 : 0.0125) * LOTS && known >= 0.004 * LOTS);
@@ -190,7 +191,7 @@ static void the_margin_of_the_worst_is_told(void **state) {
   const double offset[FOILS] = {[7] = 0.05};
   fg_lot lot = lot_of(&design, NULL, offset);
   lot.records[7].foils[0].bumps[2].u_radius_mm = 0.001;
-  assert_int_equal(fg_lot_analyse(NULL, &lot, &analysis), FG_OK);
+  assert_ok(&test_context, fg_lot_analyse(&test_context, &lot, &analysis));
   const fg_lot_foil *worst = analysis.worst[0];
   assert_int_equal(worst->item, 7);
   assert_int_equal(worst->worst_number, 3);

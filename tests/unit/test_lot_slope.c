@@ -3,6 +3,7 @@
  * of the arc length. */
 #include "support/made_lot.h"
 #include "support/random.h"
+#include "support/test.h"
 
 enum { FOILS = 14, BUMPS = 9, LOTS = 1500 };
 
@@ -42,11 +43,12 @@ static void the_slope_is_minus_one(void **state) {
   for (size_t i = 0; i < FOILS; i++)
     foils[i] = (fg_lot_foil){.item = i, .foil = &lot.records[i].foils[0]};
   for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
+    in_row("cases[%zu]", c);
     double slope = 0, spread = 0, missed = 0;
     for (int trial = 0; trial < LOTS; trial++) {
       fg_lot_analysis analysis = {.lot = &lot, .foils = foils, .foil_count = FOILS};
       draw_lot(&lot, &cases[c], &seed);
-      assert_int_equal(fg_lot_analyse_correlation(NULL, &analysis), FG_OK);
+      assert_ok(&test_context, fg_lot_analyse_correlation(&test_context, &analysis));
       const fg_lot_correlation *line = &analysis.correlation;
       assert_true(analysis.has_correlation);
       assert_int_equal(line->foils, FOILS);
@@ -77,7 +79,7 @@ static void scans_of_one_part_are_one_foil(void **state) {
   for (size_t i = 0; i < 8; i++)
     for (size_t k = 0; k < BUMPS; k++)
       draw_bump(&s, 0, 0, &seed, &lot.records[i].foils[0].bumps[k]);
-  assert_int_equal(fg_lot_analyse(NULL, &lot, &analysis), FG_OK);
+  assert_ok(&test_context, fg_lot_analyse(&test_context, &lot, &analysis));
   assert_int_equal(analysis.correlation.foils, 5);
   assert_true(analysis.correlation.log_dof < 4);
   fg_lot_analysis_free(&analysis);
@@ -95,7 +97,7 @@ static void one_foil_has_no_interval(void **state) {
   fg_lot_analysis analysis;
   for (size_t k = 0; k < BUMPS; k++)
     draw_bump(&s, 0, 0, &seed, &lot.records[0].foils[0].bumps[k]);
-  assert_int_equal(fg_lot_analyse(NULL, &lot, &analysis), FG_OK);
+  assert_ok(&test_context, fg_lot_analyse(&test_context, &lot, &analysis));
   assert_true(isfinite(analysis.correlation.log_slope) && isnan(analysis.correlation.log_low));
   fg_lot_analysis_free(&analysis);
   made_lot_free(&lot);

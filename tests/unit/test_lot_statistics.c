@@ -3,7 +3,7 @@
 #include "report/lot/plots.h"
 #include "report/lot/writers.h"
 #include "support/made_lot.h"
-#include "support/near.h"
+#include "support/test.h"
 
 enum { FOILS = 6, BUMPS = 9 };
 
@@ -21,7 +21,7 @@ static char *text_of(const fg_lot_analysis *analysis, fg_lot_writer *writer) {
   char *text;
   size_t size;
   FILE *out = open_memstream(&text, &size);
-  assert_int_equal(writer(NULL, analysis, out), FG_OK);
+  assert_ok(NULL, writer(NULL, analysis, out));
   fclose(out);
   return text;
 }
@@ -43,11 +43,11 @@ static void crushed_bumps_are_in_no_statistics(void **state) {
   fg_design_default(&design);
   fg_lot lot = sound_lot(&design);
   lot.records[2].foils[0].bump_count = 8;
-  assert_int_equal(fg_lot_analyse(NULL, &lot, &sound), FG_OK);
+  assert_ok(&test_context, fg_lot_analyse(&test_context, &lot, &sound));
   lot.records[2].foils[0].bump_count = 9;
   made_bump(&lot, 2, 8, 6.5, 20);
   lot.records[2].foils[0].bumps[8].flags |= FG_BUMP_CRUSHED;
-  assert_int_equal(fg_lot_analyse(NULL, &lot, &with), FG_OK);
+  assert_ok(&test_context, fg_lot_analyse(&test_context, &lot, &with));
   assert_int_equal(sound.left_out, 0);
   assert_int_equal(with.left_out, 1);
   assert_int_equal(with.part_count, FOILS * BUMPS);
@@ -90,7 +90,7 @@ static void arches_bend_about_the_midline(void **state) {
     assert_near(arch.radius_mm, 3.32, 1e-12);
     assert_near(fg_design_arch(&design, 0.12, 3.32 + 1.2 * shift[i], 63.15).radius_mm, 3.32, 1e-12);
     fg_lot lot = sound_lot(&design); /* the same numbers, of another line */
-    assert_int_equal(fg_lot_analyse(NULL, &lot, &analysis), FG_OK);
+    assert_ok(&test_context, fg_lot_analyse(&test_context, &lot, &analysis));
     map[i] = map_of(&analysis);
     fg_lot_analysis_free(&analysis);
     made_lot_free(&lot);
@@ -117,8 +117,8 @@ static void strips_are_as_thick_as_they_are(void **state) {
       made_bump(&other, i, k, bump->radius_mm, bump->bump_angle_deg);
     }
   }
-  assert_int_equal(fg_lot_analyse(NULL, &lot, &thin), FG_OK);
-  assert_int_equal(fg_lot_analyse(NULL, &other, &thick), FG_OK);
+  assert_ok(&test_context, fg_lot_analyse(&test_context, &lot, &thin));
+  assert_ok(&test_context, fg_lot_analyse(&test_context, &other, &thick));
   assert_false(thin.thickness.differs);
   assert_true(thick.thickness.differs);
   assert_near(thick.bearings[0].clearance.min_mm, thin.bearings[0].clearance.min_mm - 0.005, 1e-9);
@@ -152,7 +152,7 @@ static void sinusoidal_foils_have_their_reserve(void **state) {
     fg_design_default(&design);
     fg_lot lot = sound_lot(&design);
     lot.settings.design.kind = (fg_foil_kind)kind;
-    assert_int_equal(fg_lot_analyse(NULL, &lot, &analysis), FG_OK);
+    assert_ok(&test_context, fg_lot_analyse(&test_context, &lot, &analysis));
     char *json = text_of(&analysis, fg_lot_write_json),
          *page = text_of(&analysis, fg_lot_write_page);
     bool said = kind == FG_FOIL_SINUSOIDAL;

@@ -1,18 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the manual says of the members of recipes and designs is what their readers take. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "core/member_words.h"
 #include "foilgauge/lot.h"
 #include "foilgauge/station.h"
+#include "support/test.h"
 
 enum { MAX = 128 };
 
@@ -55,10 +50,10 @@ static void recipes_take_what_is_listed(void **state) {
     fg_status status = parse_recipe(list[i].name, value, &settings, &ctx);
     assert_null(strstr(ctx.message, "unknown"));
     if (!list[i].usual[0]) continue;
-    assert_int_equal(status, FG_OK);
+    assert_ok(NULL, status);
     char *a, *b;
-    assert_int_equal(fg_lot_settings_format(&ctx, &settings, true, &a), FG_OK);
-    assert_int_equal(fg_lot_settings_format(&ctx, &usual, true, &b), FG_OK);
+    assert_ok(&ctx, fg_lot_settings_format(&ctx, &settings, true, &a));
+    assert_ok(&ctx, fg_lot_settings_format(&ctx, &usual, true, &b));
     assert_string_equal(a, b);
     free(a);
     free(b);
@@ -66,7 +61,7 @@ static void recipes_take_what_is_listed(void **state) {
   }
   assert_true(values > 20);
   fg_context ctx = {.message = ""};
-  assert_int_equal(parse_recipe("nothing_of_this_name", "1", &settings, &ctx), FG_ERR_DATA);
+  assert_status(NULL, parse_recipe("nothing_of_this_name", "1", &settings, &ctx), FG_ERR_DATA);
   assert_non_null(strstr(ctx.message, "unknown"));
 }
 
@@ -81,7 +76,7 @@ static void recipes_refuse_what_lies_beyond(void **state) {
     fg_context ctx = {.message = ""};
     if (sscanf(list[i].limits, "%lf to %lf", &lowest, &highest) != 2) continue;
     snprintf(value, sizeof value, list[i].usual[0] == '[' ? "[%.17g]" : "%.17g", 2 * highest);
-    assert_int_equal(parse_recipe(list[i].name, value, &settings, &ctx), FG_ERR_DATA);
+    assert_status(NULL, parse_recipe(list[i].name, value, &settings, &ctx), FG_ERR_DATA);
     limits++;
   }
   assert_true(limits > 10);
@@ -112,7 +107,7 @@ static void stations_take_what_is_listed(void **state) {
     assert_null(strstr(ctx.message, "unknown"));
   }
   fg_context ctx = {.message = ""};
-  assert_int_equal(load_station("station.check.nothing", "1", &ctx), FG_ERR_DATA);
+  assert_status(NULL, load_station("station.check.nothing", "1", &ctx), FG_ERR_DATA);
   assert_non_null(strstr(ctx.message, "there are design, file_name, every_h, scale_max_ppm"));
 }
 
@@ -148,6 +143,7 @@ static void the_pages_say_them(void **state) {
   FILE *out = open_memstream(&whole, &size);
   assert_non_null(out);
   for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+    in_row("texts[%zu]", i);
     FILE *in = fopen(texts[i], "r");
     assert_non_null(in);
     for (int c = getc(in); c != EOF; c = getc(in))

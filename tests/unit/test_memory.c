@@ -1,21 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Checked memory: overflow is an error with words, growth keeps what was there. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "core/memory.h"
+#include "support/test.h"
 
 static void overflow_is_an_error(void **state) {
   (void)state;
   fg_context ctx = {0};
   void *block = &ctx;
-  assert_int_equal(fg_memory_allocate(&ctx, SIZE_MAX / 2, 3, &block), FG_ERR_MEMORY);
+  assert_status(&ctx, fg_memory_allocate(&ctx, SIZE_MAX / 2, 3, &block), FG_ERR_MEMORY);
   assert_null(block);
   assert_non_null(strstr(ctx.message, "out of memory"));
 }
@@ -26,8 +21,8 @@ static void growth_keeps_content(void **state) {
   int *items = NULL;
   size_t capacity = 0;
   for (int i = 0; i < 1000; i++) {
-    assert_int_equal(
-        fg_memory_reserve(&ctx, (size_t)i + 1, sizeof *items, &capacity, (void **)&items), FG_OK);
+    assert_ok(&ctx,
+              fg_memory_reserve(&ctx, (size_t)i + 1, sizeof *items, &capacity, (void **)&items));
     items[i] = i;
   }
   for (int i = 0; i < 1000; i++)

@@ -3,15 +3,10 @@
  * that it does not matter how many the machine has. */
 #include <pthread.h>
 #include <sched.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "core/parallel.h"
+#include "support/test.h"
 
 static cpu_set_t allowed, started_on, running_on;
 
@@ -56,13 +51,13 @@ static void threads_keep_to_the_cores_of_their_process(void **state) {
   (void)state;
   fg_thread thread;
   allow((const size_t[]){1, 3, 5}, 3);
-  assert_int_equal(fg_thread_start(&thread, nothing, NULL), FG_OK);
+  assert_ok(NULL, fg_thread_start(&thread, nothing, NULL));
   fg_thread_join(&thread);
   assert_true(CPU_EQUAL(&running_on, &allowed));
   assert_int_equal(CPU_COUNT(&started_on), 2);
   assert_false(CPU_ISSET(3, &started_on));
   allow((const size_t[]){3}, 1);
-  assert_int_equal(fg_thread_start(&thread, nothing, NULL), FG_OK);
+  assert_ok(NULL, fg_thread_start(&thread, nothing, NULL));
   fg_thread_join(&thread);
   assert_int_equal(CPU_COUNT(&running_on), 0);
 }
@@ -94,7 +89,7 @@ static void there_are_as_many_threads_as_cores(void **state) {
   assert_int_equal(fg_core_count(), 3);
   allow((const size_t[]){3}, 1);
   assert_int_equal(fg_core_count(), 1);
-  assert_int_equal(fg_parallel_run(NULL, 0, 2000, sign, &m), FG_OK);
+  assert_ok(&test_context, fg_parallel_run(&test_context, 0, 2000, sign, &m));
   assert_int_equal(m.count, 1);
 }
 

@@ -1,14 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Of an edge whose profile an end of the scale cuts, no edge place is claimed that it hides. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 
-#include <cmocka.h>
 #include <gsl/gsl_cdf.h>
 
+#include "support/test.h"
 #include "vision/picture.h"
 
 #define BLUR_PX 1.3

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The quality of a JPEG that became a PNG, from its pixels, and what it adds to the uncertainty. */
 #include "support/measured_render.h"
+#include "support/test.h"
 
 #define PLAIN "\"dpi\":2400,\"blur_px\":1.0,\"noise\":1.5,\"background\":30,\"contrast\":160"
 
@@ -8,7 +9,7 @@ static fg_strip strip_of(const char *scanner) {
   char json[4096];
   small_foil(json, sizeof json, 2, "", "%s", scanner);
   measured m = measure_render(json, NULL);
-  assert_int_equal(m.status, FG_OK);
+  assert_ok(NULL, m.status);
   assert_int_equal(m.result.foil_count, 1);
   fg_strip strip = m.result.foils[0].strip; /* of which only numbers are used */
   measured_free(&m);
@@ -19,10 +20,11 @@ static void quality_is_found(void **unused) {
   (void)unused;
   static const int qualities[] = {40, 60, 75, 85, 90};
   for (size_t i = 0; i < sizeof qualities / sizeof *qualities; i++) {
+    in_row("qualities[%zu]", i);
     char scanner[512];
     snprintf(scanner, sizeof scanner, PLAIN ",\"rough\":{\"jpeg\":{\"quality\":%d}}", qualities[i]);
     fg_strip strip = strip_of(scanner);
-    assert_close(strip.picture.block_quality, qualities[i], 1);
+    assert_near(strip.picture.block_quality, qualities[i], 1);
     assert_true(strip.loss_um > 0 && strip.loss_variance > 0);
   }
 }
@@ -33,6 +35,7 @@ static void plain_scans_have_none(void **unused) {
       PLAIN, PLAIN ",\"noise_correlation\":0.6", PLAIN ",\"levels\":16",
       PLAIN ",\"unsharp_mask\":{\"amount_pct\":100,\"radius_px\":1}"};
   for (size_t i = 0; i < sizeof scanners / sizeof *scanners; i++) {
+    in_row("scanners[%zu]", i);
     fg_strip strip = strip_of(scanners[i]);
     assert_int_equal(strip.picture.block_quality, 0);
     assert_true(strip.loss_um == 0 && strip.loss_variance == 0);

@@ -5,6 +5,7 @@
 
 #include "foilgauge/measure.h"
 #include "support/measured_render.h"
+#include "support/test.h"
 
 #define PLAIN "\"dpi\":2400,\"blur_px\":1.0,\"noise\":1.5,\"background\":30,\"contrast\":160"
 #define ROUGH                                                                                      \
@@ -25,8 +26,8 @@ static fg_measurement measure_discs(const char *json) {
   fg_design_default(&design);
   design.kind = FG_FOIL_DISCS;
   if (fg_render_parse(&ctx, "disc.json", json, &spec) != FG_OK) fail_msg("%s", ctx.message);
-  assert_int_equal(fg_render_scan(&ctx, spec, path, NULL), FG_OK);
-  assert_int_equal(fg_measure_scan(&ctx, path, &design, &options, &result), FG_OK);
+  assert_ok(&ctx, fg_render_scan(&ctx, spec, path, NULL));
+  assert_ok(&ctx, fg_measure_scan(&ctx, path, &design, &options, &result));
   fg_render_free(spec);
   unlink(path);
   return result;
@@ -59,8 +60,8 @@ static void assert_none(const char *disc, const char *scanner) {
 static void assert_jumps(const char *scanner, double jumps, double px, double u_px) {
   fg_picture_state state = state_of("", scanner);
   if (!(state.findings & FG_PICTURE_ROW_JUMPS)) fail_msg("%s: none is found", scanner);
-  assert_close(state.row_jumps, jumps, 0);
-  assert_close(state.row_jump_px, px, u_px);
+  assert_near(state.row_jumps, jumps, 0);
+  assert_near(state.row_jump_px, px, u_px);
 }
 
 /* y in mm: 1 is far above the middle, 2.2 in the middle, where the limbs run along y. */

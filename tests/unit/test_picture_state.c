@@ -2,6 +2,7 @@
 /* What a scanner's driver or the light has made of a picture, found from its pixels: each kind is
  * found and measured, and nothing is found on plain and on rough scans. */
 #include "support/measured_render.h"
+#include "support/test.h"
 
 #define PLAIN "\"dpi\":2400,\"blur_px\":1.0,\"noise\":1.5,\"background\":30,\"contrast\":160"
 
@@ -9,7 +10,7 @@ static fg_picture_state state_of(const char *foil, const char *scanner) {
   char json[4096];
   small_foil(json, sizeof json, 2, foil, "%s", scanner);
   measured m = measure_render(json, NULL);
-  assert_int_equal(m.status, FG_OK);
+  assert_ok(NULL, m.status);
   assert_int_equal(m.result.foil_count, 1);
   fg_picture_state state = m.result.foils[0].strip.picture;
   measured_free(&m);
@@ -60,6 +61,7 @@ static void each_kind_is_found(void **unused) {
        FG_PICTURE_SHADOW, model | FG_PICTURE_SHARPENED},
   };
   for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+    in_row("kinds[%zu]", i);
     unsigned found = of_scanner(kinds[i].scanner).findings;
     if ((found & kinds[i].must) != kinds[i].must || (found & ~(kinds[i].must | kinds[i].may)))
       fail_msg("%s: found %#x", kinds[i].scanner, found);
@@ -92,9 +94,9 @@ static void blur_is_an_ellipse(void **unused) {
   fg_picture_state state =
       of_scanner("\"dpi\":2400,\"blur_px\":[3,1],\"noise\":1,\"background\":30,\"contrast\":160");
   assert_true(state.findings & FG_PICTURE_UNEVEN_BLUR);
-  assert_close(state.blur_px[0], 3, 0.4);
-  assert_close(state.blur_px[1], 1, 0.4);
-  assert_close(remainder(state.blur_direction_deg, 180), 0, 5);
+  assert_near(state.blur_px[0], 3, 0.4);
+  assert_near(state.blur_px[1], 1, 0.4);
+  assert_near(remainder(state.blur_direction_deg, 180), 0, 5);
   state = of_scanner(
       "\"dpi\":2400,\"blur_px\":[1.4,1.1],\"noise\":1,\"background\":30,\"contrast\":160");
   assert_int_equal(state.findings, 0);
@@ -108,7 +110,7 @@ static void rows_that_jump_are_counted(void **unused) {
                                           "{\"y_mm\":3.2,\"count\":2},{\"y_mm\":4.4,\"count\":2}]");
   assert_true(state.findings & FG_PICTURE_ROW_JUMPS);
   assert_true(state.row_jumps >= 1 && state.row_jumps <= 3);
-  assert_close(state.row_jump_px, -2, 0.4);
+  assert_near(state.row_jump_px, -2, 0.4);
 }
 
 static void noise_is_measured(void **unused) {
@@ -116,8 +118,8 @@ static void noise_is_measured(void **unused) {
   fg_picture_state state = of_scanner(PLAIN);
   assert_true(fabs(state.noise_correlation[0]) < 0.2 && fabs(state.noise_correlation[1]) < 0.2);
   state = of_scanner(PLAIN ",\"noise_correlation\":0.7");
-  assert_close(state.noise_correlation[0], 0.65, 0.2);
-  assert_close(state.noise_correlation[1], 0.65, 0.2);
+  assert_near(state.noise_correlation[0], 0.65, 0.2);
+  assert_near(state.noise_correlation[1], 0.65, 0.2);
 }
 
 int main(void) {

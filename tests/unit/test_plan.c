@@ -1,20 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Plans: the runs that the books print, orthogonality, random order by seed, whole plots. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "foilgauge/plan.h"
 #include "foilgauge/regression.h"
+#include "support/test.h"
 
-static const fg_plan_factor FIVE[] = {{"A", -1, 1, false, 0}, {"B", -1, 1, false, 0}, {"C", -1, 1, false, 0},
-                                      {"D", -1, 1, false, 0}, {"E", -1, 1, false, 0}, {"F", -1, 1, false, 0},
-                                      {"G", -1, 1, false, 0}};
+static const fg_plan_factor FIVE[] = {
+    {"A", -1, 1, false, 0}, {"B", -1, 1, false, 0}, {"C", -1, 1, false, 0}, {"D", -1, 1, false, 0},
+    {"E", -1, 1, false, 0}, {"F", -1, 1, false, 0}, {"G", -1, 1, false, 0}};
 
 static void make(const fg_plan_options *options, fg_plan *plan) {
   fg_context ctx = {0};
@@ -50,17 +46,17 @@ static void fractions_have_their_resolution(void **state) {
   for (size_t a = 0; a < 7; a++)
     for (size_t b = 0; b < 7; b++)
       assert_true(inner(&plan, a, b) == (a == b ? 8 : 0));
-  assert_int_equal(fg_plan_alias_text(&ctx, &plan, 1, 2, &text), FG_OK);
+  assert_ok(&ctx, fg_plan_alias_text(&ctx, &plan, 1, 2, &text));
   assert_non_null(strstr(text, "A = B:D = C:E = F:G\n"));
   free(text);
   fg_plan_free(&plan);
   make(&(fg_plan_options){.factor = FIVE, .factors = 5, .generator = one, .generators = 1}, &plan);
   assert_int_equal(plan.runs, 16);
   assert_int_equal(plan.resolution, 5);
-  assert_int_equal(fg_plan_relation_text(&ctx, &plan, &text), FG_OK);
+  assert_ok(&ctx, fg_plan_relation_text(&ctx, &plan, &text));
   assert_string_equal(text, "I = -A:B:C:D:E");
   free(text);
-  assert_int_equal(fg_plan_alias_text(&ctx, &plan, 2, 3, &text), FG_OK);
+  assert_ok(&ctx, fg_plan_alias_text(&ctx, &plan, 2, 3, &text));
   assert_non_null(strstr(text, "A:B = -C:D:E\n"));
   free(text);
   for (size_t i = 0; i < plan.runs; i++) {
@@ -86,13 +82,13 @@ static void the_modified_composite_is_the_thesis_one(void **state) {
                           .centre_points = 1,
                           .seed = 5},
        &plan);
-  assert_int_equal(fg_plan_table(&ctx, &plan, &table), FG_OK);
+  assert_ok(&ctx, fg_plan_table(&ctx, &plan, &table));
   assert_int_equal(table.rows, 9);
   assert_int_equal(table.columns, 5);
   const fg_extended *order = NULL, *t = NULL, *d = NULL;
-  assert_int_equal(fg_table_numbers(&ctx, &table, "standard_order", &order), FG_OK);
-  assert_int_equal(fg_table_numbers(&ctx, &table, "T", &t), FG_OK);
-  assert_int_equal(fg_table_numbers(&ctx, &table, "D", &d), FG_OK);
+  assert_ok(&ctx, fg_table_numbers(&ctx, &table, "standard_order", &order));
+  assert_ok(&ctx, fg_table_numbers(&ctx, &table, "T", &t));
+  assert_ok(&ctx, fg_table_numbers(&ctx, &table, "D", &d));
   for (size_t i = 0; i < 9; i++) {
     const double *run = runs[(size_t)order[i].value - 1];
     assert_true(t[i].value == run[0] && d[i].value == run[1]);
@@ -249,9 +245,10 @@ static void impossible_plans_are_refused(void **state) {
   };
   (void)state;
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    in_row("cases[%zu]", i);
     fg_context ctx = {0};
     fg_plan plan;
-    assert_int_equal(fg_plan_make(&ctx, &cases[i].options, &plan), FG_ERR_USAGE);
+    assert_status(&ctx, fg_plan_make(&ctx, &cases[i].options, &plan), FG_ERR_USAGE);
     if (!strstr(ctx.message, cases[i].words))
       fail_msg("case %zu: '%s' lacks '%s'", i, ctx.message, cases[i].words);
   }

@@ -1,16 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The reading of common PNGs held against libpng's: over kinds, filters, streams and chunks; and
  * over files with one wrong byte or one that is cut off. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 #include "foilgauge/scan.h"
 #include "png_fixture.h"
 #include "support/png_pair.h"
+#include "support/test.h"
 
 static const recipe plain = {
     .width = 61, .height = 43, .bit_depth = 8, .level = 6, .window_bits = 15, .memory_level = 8};
@@ -64,6 +59,7 @@ static void every_kind_and_filter(void **state) {
   for (int kind = 0; kind < KINDS; kind++)
     for (int filter = 0; filter <= PAIR_FILTER_MIXED; filter++)
       for (size_t w = 0; w < sizeof widths / sizeof widths[0]; w++) {
+        in_row("widths[%zu]", w);
         recipe r = plain;
         r.colour_type = kinds[kind].colour_type;
         r.bit_depth = kinds[kind].bit_depth;
@@ -241,8 +237,8 @@ static void damage_of_a_large_image_is_told(void **state) {
     assert_int_equal(count_alone(&png, "large", at), 0);
     png.data[at] ^= 0x10;
     pair p = read_bytes(&cut);
-    assert_int_equal(p.ours.status, FG_ERR_DATA);
-    assert_int_equal(p.libpng.status, FG_ERR_DATA);
+    assert_status(NULL, p.ours.status, FG_ERR_DATA);
+    assert_status(NULL, p.libpng.status, FG_ERR_DATA);
     assert_non_null(strstr(p.ours.context.message, "is cut off (chunk IDAT"));
     free_pair(&p);
   }
@@ -258,9 +254,9 @@ static void a_large_image_may_be_left(void **state) {
   uint8_t *rows = malloc(1500 * 1000);
   for (int64_t count = 0; count <= 1000; count += 125) {
     fg_scan *scan = NULL;
-    assert_int_equal(fg_scan_open(&ctx, path, &(fg_scan_options){.dpi = 600}, &scan), FG_OK);
-    assert_int_equal(fg_scan_read_rows(&ctx, scan, count, rows, 1500), FG_OK);
-    if (count % 2 == 0) assert_int_equal(fg_scan_sha256(&ctx, scan, left), FG_OK);
+    assert_ok(&ctx, fg_scan_open(&ctx, path, &(fg_scan_options){.dpi = 600}, &scan));
+    assert_ok(&ctx, fg_scan_read_rows(&ctx, scan, count, rows, 1500));
+    if (count % 2 == 0) assert_ok(&ctx, fg_scan_sha256(&ctx, scan, left));
     if (count == 0) memcpy(whole, left, sizeof whole);
     assert_string_equal(left, whole);
     fg_scan_close(scan);
@@ -332,8 +328,8 @@ static void wrong_rows_are_refused(void **state) {
   grow_chunk(&png, "IDAT", stream.data, (uint32_t)stream.size);
   grow_chunk(&png, "IEND", NULL, 0);
   pair p = read_bytes(&png);
-  assert_int_equal(p.ours.status, FG_ERR_DATA);
-  assert_int_equal(p.libpng.status, FG_ERR_DATA);
+  assert_status(NULL, p.ours.status, FG_ERR_DATA);
+  assert_status(NULL, p.libpng.status, FG_ERR_DATA);
   assert_non_null(strstr(p.ours.context.message, "filter"));
   assert_non_null(strstr(p.ours.context.message, "row 11 of"));
   free_pair(&p);

@@ -4,17 +4,13 @@
  * Lenth, Response-surface methods in R, JSS 32-7 (2009); Montgomery, Peck and Vining (acetylene).
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "foilgauge/doe.h"
 #include "foilgauge/surface.h"
 #include "support/data.h"
+#include "support/test.h"
 
 /* One experiment on its way from file to fit. */
 typedef struct experiment {
@@ -152,7 +148,7 @@ static void filtration_by_lenth(void **state) {
   near("largest", points[14].magnitude, 21.625, 1e-12);
   near("quantile", points[14].quantile, 2.1280452, 1e-6);
   near("median quantile", points[7].quantile, 0.6744898, 1e-6);
-  assert_int_equal(fg_lenth_compute(&e.ctx, effects, 2, 0.95, &lenth), FG_ERR_DATA);
+  assert_status(&e.ctx, fg_lenth_compute(&e.ctx, effects, 2, 0.95, &lenth), FG_ERR_DATA);
   drop(&e);
 }
 
@@ -249,6 +245,7 @@ static void chemreact_second_order(void **state) {
   code(&e, "Temp=170:180");
   fit(&e, "Yield ~ Block + Time + Temp + Time:Temp + Time^2 + Temp^2");
   for (size_t i = 0; i < COUNT(published_rows); i++) {
+    in_row("published_rows[%zu]", i);
     const fg_coefficient *c = coefficient(&e, published_rows[i].name);
     near(c->name, c->estimate, published_rows[i].estimate, 6e-7);
     near(c->name, c->standard_error, published_rows[i].standard_error, 6e-7);

@@ -1,16 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Density, control charts, capability, comparison, gauge study: against R and published answers. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
-#include "../support/random.h"
 #include "foilgauge/capability.h"
 #include "foilgauge/comparison.h"
 #include "foilgauge/control.h"
@@ -18,13 +11,8 @@
 #include "foilgauge/distribution.h"
 #include "foilgauge/table.h"
 #include "support/data.h"
-
-/* Says both numbers when they differ: cmocka 1.1 compares no doubles. */
-static void near_at(double value, double expected, double tolerance, int line) {
-  if (fabs(value - expected) <= tolerance) return;
-  fail_msg("line %d: %.12g, not %.12g ± %.3g", line, value, expected, tolerance);
-}
-#define assert_near(value, expected, tolerance) near_at(value, expected, tolerance, __LINE__)
+#include "support/random.h"
+#include "support/test.h"
 
 static const double x[] = {3.1, 2.7, 4.4, 5.2, 3.9, 4.8, 2.2, 3.3,
                            6.1, 4.0, 3.6, 5.5, 4.1, 2.9, 3.8};
@@ -43,7 +31,7 @@ static void bandwidths_are_r_s(void **state) {
                   {FG_BANDWIDTH_SHEATHER_JONES, 0.755226846142903, 2e-3}};
   for (size_t i = 0; i < 3; i++) {
     fg_density density;
-    assert_int_equal(fg_density_fit(&ctx, x, NX, expected[i].rule, &density), FG_OK);
+    assert_ok(&ctx, fg_density_fit(&ctx, x, NX, expected[i].rule, &density));
     assert_near(density.bandwidth, expected[i].bandwidth, expected[i].tolerance);
     fg_density_free(&density);
   }
@@ -53,7 +41,7 @@ static void density_is_r_s_and_integrates_to_one(void **state) {
   (void)state;
   fg_context ctx;
   fg_density density;
-  assert_int_equal(fg_density_fit(&ctx, x, NX, FG_BANDWIDTH_SILVERMAN, &density), FG_OK);
+  assert_ok(&ctx, fg_density_fit(&ctx, x, NX, FG_BANDWIDTH_SILVERMAN, &density));
   density.bandwidth = 0.5;
   assert_near(fg_density_at(&density, 4.0), 0.339311221143906, 1e-12);
   double sum = 0;
@@ -78,8 +66,7 @@ static void binned_density_is_the_same(void **state) {
   for (int i = 0; i < MANY; i++)
     values[i] = random_gaussian(&seed) + (i % 3 ? 0 : 4);
   fg_density density;
-  assert_int_equal(fg_density_fit(&ctx, values, MANY, FG_BANDWIDTH_SHEATHER_JONES, &density),
-                   FG_OK);
+  assert_ok(&ctx, fg_density_fit(&ctx, values, MANY, FG_BANDWIDTH_SHEATHER_JONES, &density));
   for (double at = -2; at < 7; at += 0.5) {
     double exact = 0, h = density.bandwidth;
     for (int i = 0; i < MANY; i++)
@@ -104,8 +91,8 @@ static void equal_values_have_no_density(void **state) {
   fg_context ctx;
   fg_density density;
   const double same[] = {2, 2, 2};
-  assert_int_equal(fg_density_fit(&ctx, same, 3, FG_BANDWIDTH_SCOTT, &density), FG_ERR_DATA);
-  assert_int_equal(fg_density_fit(&ctx, same, 0, FG_BANDWIDTH_SCOTT, &density), FG_ERR_DATA);
+  assert_status(&ctx, fg_density_fit(&ctx, same, 3, FG_BANDWIDTH_SCOTT, &density), FG_ERR_DATA);
+  assert_status(&ctx, fg_density_fit(&ctx, same, 0, FG_BANDWIDTH_SCOTT, &density), FG_ERR_DATA);
 }
 
 /* Tables of Montgomery, Introduction to Statistical Quality Control. */
@@ -143,14 +130,14 @@ static void rules_end_where_they_should(void **state) {
   for (int i = 0; i < STEADY; i++)
     base[i] = random_gaussian(&seed);
   for (size_t p = 0; p < sizeof patterns / sizeof *patterns; p++) {
+    in_row("patterns[%zu]", p);
     double values[STEADY + LONGEST], sigma;
     fg_chart chart;
     memcpy(values, base, sizeof base);
     values[STEADY - 1] = patterns[p].before;
     memcpy(values + STEADY, patterns[p].values, patterns[p].count * sizeof *values);
-    assert_int_equal(
-        fg_chart_individuals(&ctx, values, STEADY + patterns[p].count, 0xFF, &chart, &sigma),
-        FG_OK);
+    assert_ok(&ctx,
+              fg_chart_individuals(&ctx, values, STEADY + patterns[p].count, 0xFF, &chart, &sigma));
     unsigned bit = 1u << (patterns[p].rule - 1);
     assert_true(chart.point[STEADY + patterns[p].at].rules & bit);
     if (patterns[p].at > 0) assert_false(chart.point[STEADY + patterns[p].at - 1].rules & bit);
@@ -166,9 +153,8 @@ static void limits_follow_the_subgroups(void **state) {
   const size_t size[] = {3, 2, 0, 4};
   fg_chart means, deviations;
   double sigma;
-  assert_int_equal(
-      fg_chart_subgroups(&ctx, values, size, 4, FG_SIGMA_FROM_SD, 1, &means, &deviations, &sigma),
-      FG_OK);
+  assert_ok(&ctx, fg_chart_subgroups(&ctx, values, size, 4, FG_SIGMA_FROM_SD, 1, &means,
+                                     &deviations, &sigma));
   double squares = pow(1 - 2.125, 2) + pow(3 - 2.125, 2) + pow(2 - 2.125, 2) + pow(2.5 - 2.125, 2);
   double s[3] = {1, sqrt(2), sqrt(squares / 3)};
   double expected = (s[0] / fg_chart_c4(3) + s[1] / fg_chart_c4(2) + s[2] / fg_chart_c4(4)) / 3;
@@ -184,7 +170,7 @@ static fg_table load(const char *name) {
   fg_context ctx;
   fg_table table = {0};
   char *text = data_read(name);
-  assert_int_equal(fg_table_parse(&ctx, name, text, strlen(text), &table), FG_OK);
+  assert_ok(&ctx, fg_table_parse(&ctx, name, text, strlen(text), &table));
   free(text);
   return table;
 }
@@ -192,7 +178,7 @@ static fg_table load(const char *name) {
 static double *numbers_of(const fg_table *table, const char *name) {
   fg_context ctx;
   const fg_extended *numbers;
-  assert_int_equal(fg_table_numbers(&ctx, table, name, &numbers), FG_OK);
+  assert_ok(&ctx, fg_table_numbers(&ctx, table, name, &numbers));
   double *values = malloc(table->rows * sizeof *values);
   for (size_t i = 0; i < table->rows; i++)
     values[i] = numbers[i].value;
@@ -209,9 +195,8 @@ static void piston_rings(void **state) {
   fg_chart chart;
   for (int i = 0; i < 25; i++)
     size[i] = 5;
-  assert_int_equal(
-      fg_chart_subgroups(&ctx, values, size, 25, FG_SIGMA_FROM_RANGE, 1, &chart, NULL, &sigma),
-      FG_OK);
+  assert_ok(&ctx, fg_chart_subgroups(&ctx, values, size, 25, FG_SIGMA_FROM_RANGE, 1, &chart, NULL,
+                                     &sigma));
   assert_near(chart.centre, 74.001176, 5e-7);
   assert_near(sigma, 0.0097853, 5e-7);
   assert_near(chart.point[0].lower, 73.98805, 5e-6);
@@ -225,7 +210,7 @@ static void piston_rings(void **state) {
                                      .sigma_dof = 100,
                                      .stable = true};
   fg_capability result;
-  assert_int_equal(fg_capability_compute(&ctx, &input, &result), FG_OK);
+  assert_ok(&ctx, fg_capability_compute(&ctx, &input, &result));
   assert_near(result.c.value, 1.7032, 1e-4);
   assert_near(result.ck.value, 1.6632, 1e-4);
   assert_near(result.p.value, 1.6551, 1e-4);
@@ -243,11 +228,11 @@ static void capability_needs_stability(void **state) {
   fg_capability result;
   fg_capability_input input = {
       .values = x, .count = NX, .lower = 0, .upper = INFINITY, .sigma = 1, .sigma_dof = 14};
-  assert_int_equal(fg_capability_compute(&ctx, &input, &result), FG_OK);
+  assert_ok(&ctx, fg_capability_compute(&ctx, &input, &result));
   assert_true(isnan(result.ck.value) && isnan(result.p.value));
   assert_near(result.pk.value, result.mean / (3 * result.sd), 1e-12);
   input.lower = -INFINITY;
-  assert_int_equal(fg_capability_compute(&ctx, &input, &result), FG_ERR_USAGE);
+  assert_status(&ctx, fg_capability_compute(&ctx, &input, &result), FG_ERR_USAGE);
 }
 
 /* The quantile method on a density that is nearly one normal kernel agrees with the other. */
@@ -260,17 +245,17 @@ static void quantiles_agree_where_normal(void **state) {
   double *values = malloc(MANY * sizeof *values);
   for (int i = 0; i < MANY; i++)
     values[i] = fg_distribution_normal_quantile((i + 0.5) / MANY);
-  assert_int_equal(fg_density_fit(&ctx, values, MANY, FG_BANDWIDTH_SILVERMAN, &density), FG_OK);
+  assert_ok(&ctx, fg_density_fit(&ctx, values, MANY, FG_BANDWIDTH_SILVERMAN, &density));
   const fg_capability_input input = {
       .values = values, .count = MANY, .lower = -4, .upper = 5, .sigma = NAN, .density = &density};
-  assert_int_equal(fg_capability_compute(&ctx, &input, &result), FG_OK);
+  assert_ok(&ctx, fg_capability_compute(&ctx, &input, &result));
   assert_near(result.quantile_p / result.p.value, 1, 0.03);
   assert_near(result.quantile_pk / result.pk.value, 1, 0.03);
   assert_true(result.normal);
   for (int i = 0; i < MANY; i++)
     values[i] = exp(values[i]);
   fg_normality normality;
-  assert_int_equal(fg_normality_test(&ctx, values, MANY, &normality), FG_OK);
+  assert_ok(&ctx, fg_normality_test(&ctx, values, MANY, &normality));
   assert_true(normality.p_value < 1e-6);
   fg_density_free(&density);
   free(values);
@@ -281,7 +266,7 @@ static void anderson_darling_is_r_s(void **state) {
   (void)state;
   fg_context ctx;
   fg_normality normality;
-  assert_int_equal(fg_normality_test(&ctx, x, NX, &normality), FG_OK);
+  assert_ok(&ctx, fg_normality_test(&ctx, x, NX, &normality));
   assert_near(normality.a2, 0.161227772888307, 1e-12);
   assert_true(normality.p_value > 0.9);
 }
@@ -291,8 +276,8 @@ static void comparison_is_r_s(void **state) {
   (void)state;
   fg_context ctx;
   fg_comparison result;
-  assert_int_equal(
-      fg_comparison_compute(&ctx, (fg_sample){x, NX}, (fg_sample){y, NY}, 0.95, &result), FG_OK);
+  assert_ok(&ctx,
+            fg_comparison_compute(&ctx, (fg_sample){x, NX}, (fg_sample){y, NY}, 0.95, &result));
   assert_near(result.t, -3.65916999921187, 1e-11);
   assert_near(result.dof, 15.0616131999752, 1e-10);
   assert_near(result.p_means, 0.00231174070569478, 1e-12);
@@ -312,11 +297,11 @@ static void published_gauge_study(void **state) {
   double *values = numbers_of(&table, "y"), *parts = numbers_of(&table, "part");
   double *trials = numbers_of(&table, "trial"), ordered[90];
   fg_levels who;
-  assert_int_equal(fg_table_levels(&ctx, &table, "appraiser", false, &who), FG_OK);
+  assert_ok(&ctx, fg_table_levels(&ctx, &table, "appraiser", false, &who));
   for (size_t i = 0; i < table.rows; i++)
     ordered[((size_t)parts[i] - 1) * 9 + who.index[i] * 3 + (size_t)trials[i] - 1] = values[i];
   fg_gauge_study study;
-  assert_int_equal(fg_gauge_study_compute(&ctx, ordered, 10, 3, 3, &study), FG_OK);
+  assert_ok(&ctx, fg_gauge_study_compute(&ctx, ordered, 10, 3, 3, &study));
   assert_true(study.pooled);
   assert_near(study.f_interaction, 0.434, 5e-4);
   assert_near(study.ss_operator, 3.1673, 5e-5);

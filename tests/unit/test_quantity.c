@@ -15,6 +15,7 @@
 #include "support/made_lot.h"
 #include "support/measured_render.h"
 #include "support/synthetic_foil.h"
+#include "support/test.h"
 
 static void every_row_is_whole(void **state) {
   (void)state;
@@ -88,7 +89,7 @@ static char *text_of(const fg_report *report,
   size_t length;
   FILE *out = open_memstream(&text, &length);
   assert_non_null(out);
-  assert_int_equal(write(&ctx, report, out), FG_OK);
+  assert_ok(&ctx, write(&ctx, report, out));
   fclose(out);
   return text;
 }
@@ -291,7 +292,7 @@ static void lots_know_every_row(void **state) {
   }
   size_t count;
   fg_characteristic *list = NULL;
-  assert_int_equal(fg_characteristics_list(&ctx, &analysis, &list, &count), FG_OK);
+  assert_ok(&ctx, fg_characteristics_list(&ctx, &analysis, &list, &count));
   for (size_t o = 0; o < 2; o++) {
     size_t rows_count;
     const fg_quantity *rows = fg_quantities(owners[o], &rows_count);

@@ -13,6 +13,7 @@
 #include "support/made_lot.h"
 #include "support/measured_render.h"
 #include "support/synthetic_foil.h"
+#include "support/test.h"
 
 /* A bump that everything can be derived of, and nothing has been. */
 static fg_bump bare_bump(const fg_bump *from) {
@@ -71,7 +72,7 @@ static measured corrected_by(const char *json, fg_scanner_model **model) {
   char spec[4096];
   small_foil(spec, sizeof spec, 3, "", "\"dpi\":1200");
   measured m = measure_render(spec, NULL);
-  assert_int_equal(m.status, FG_OK);
+  assert_ok(NULL, m.status);
   assert_int_equal(m.result.foil_count, 1);
   m.result.discs = calloc(1, sizeof *m.result.discs);
   m.result.disc_count = 1;

@@ -2,19 +2,14 @@
 /* Regression where it gets difficult: no freedom, aliases, weights, one run; split plots; optima.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "foilgauge/anova.h"
 #include "foilgauge/doe.h"
 #include "foilgauge/surface.h"
-#include "support/near.h"
+#include "support/test.h"
 
 typedef struct experiment {
   fg_context ctx;
@@ -26,7 +21,7 @@ typedef struct experiment {
 static void fit(experiment *e, const char *text, const char *formula, const double *weights) {
   const fg_regression_options options = {.weights = weights};
   *e = (experiment){0};
-  assert_int_equal(fg_table_parse(&e->ctx, "runs.csv", text, strlen(text), &e->table), FG_OK);
+  assert_ok(&e->ctx, fg_table_parse(&e->ctx, "runs.csv", text, strlen(text), &e->table));
   if (fg_regression_analyse(&e->ctx, &e->table, formula, NULL, &options, &e->model, &e->reg) !=
       FG_OK)
     fail_msg("%s", e->ctx.message);
@@ -89,7 +84,7 @@ static void aliases_are_named(void **state) {
   assert_non_null(
       strstr(e.reg.note[0], "c cannot be told apart from others (it is 1 × a + 2 × b)"));
   fg_prediction p;
-  assert_int_equal(fg_regression_predict(&e.ctx, &e.reg, (double[]){1, 3, 0.2, 3.4}, &p), FG_OK);
+  assert_ok(&e.ctx, fg_regression_predict(&e.ctx, &e.reg, (double[]){1, 3, 0.2, 3.4}, &p));
   assert_near(p.mean, e.reg.fitted[2], 1e-14);
   assert_near(p.standard_error, e.reg.residual_sd * sqrt(e.reg.leverage[2]), 1e-14);
   drop(&e);
@@ -125,9 +120,9 @@ static void weights_repeat_runs(void **state) {
   fg_regression reg;
   fg_context ctx = {0};
   const fg_regression_options bad = {.weights = (double[]){1, 0}};
-  assert_int_equal(fg_table_parse(&ctx, "t", "x,y\n1,2\n2,3\n", 12, &table), FG_OK);
-  assert_int_equal(fg_regression_analyse(&ctx, &table, "y~x", NULL, &bad, &model, &reg),
-                   FG_ERR_USAGE);
+  assert_ok(&ctx, fg_table_parse(&ctx, "t", "x,y\n1,2\n2,3\n", 12, &table));
+  assert_status(&ctx, fg_regression_analyse(&ctx, &table, "y~x", NULL, &bad, &model, &reg),
+                FG_ERR_USAGE);
   assert_non_null(strstr(ctx.message, "row 2: the weight"));
   fg_table_free(&table);
 }
@@ -147,19 +142,17 @@ static void deletion_is_what_it_says(void **state) {
     size_t rows[ROWS - 1], count = 0;
     for (size_t i = 0; i < ROWS; i++)
       if (i != left) rows[count++] = i;
-    assert_int_equal(fg_table_select(&e.ctx, &all.table, rows, count, &e.table), FG_OK);
-    assert_int_equal(
-        fg_regression_analyse(&e.ctx, &e.table, "y ~ x + x^2", NULL, NULL, &e.model, &e.reg),
-        FG_OK);
+    assert_ok(&e.ctx, fg_table_select(&e.ctx, &all.table, rows, count, &e.table));
+    assert_ok(&e.ctx,
+              fg_regression_analyse(&e.ctx, &e.table, "y ~ x + x^2", NULL, NULL, &e.model, &e.reg));
     double x = all.table.column[0].number[left].value, y = all.table.column[1].number[left].value;
-    assert_int_equal(fg_regression_predict(&e.ctx, &e.reg, (double[]){1, x, x * x}, &p), FG_OK);
+    assert_ok(&e.ctx, fg_regression_predict(&e.ctx, &e.reg, (double[]){1, x, x * x}, &p));
     press += (y - p.mean) * (y - p.mean);
     assert_near(all.reg.external[left], (y - p.mean) / p.run_standard_error, 1e-11);
     double cook = 0;
     for (size_t i = 0; i < ROWS; i++) {
       double at = all.table.column[0].number[i].value;
-      assert_int_equal(fg_regression_predict(&e.ctx, &e.reg, (double[]){1, at, at * at}, &p),
-                       FG_OK);
+      assert_ok(&e.ctx, fg_regression_predict(&e.ctx, &e.reg, (double[]){1, at, at * at}, &p));
       cook += pow(all.reg.fitted[i] - p.mean, 2) / (3 * pow(all.reg.residual_sd, 2));
     }
     assert_near(all.reg.cook[left], cook, 1e-11 * (1 + cook));
@@ -208,9 +201,9 @@ static void split_plot_has_two_errors(void **state) {
   fg_formula formula;
   fg_split_plot s;
   (void)state;
-  assert_int_equal(fg_table_parse(&ctx, "t", text, strlen(text), &table), FG_OK);
-  assert_int_equal(fg_formula_parse(&ctx, "T*D", &formula), FG_OK);
-  assert_int_equal(fg_split_plot_analyse(&ctx, &table, &formula, "y", "load", &s), FG_OK);
+  assert_ok(&ctx, fg_table_parse(&ctx, "t", text, strlen(text), &table));
+  assert_ok(&ctx, fg_formula_parse(&ctx, "T*D", &formula));
+  assert_ok(&ctx, fg_split_plot_analyse(&ctx, &table, &formula, "y", "load", &s));
   /* loads: 13, 15, 23, 25; T: 14 against 24 */
   assert_int_equal(s.terms, 3);
   assert_string_equal(s.term[0].row.name, "T");
@@ -228,9 +221,9 @@ static void split_plot_has_two_errors(void **state) {
   assert_near(s.plot_variance, 0, 1e-12);
   assert_int_equal(s.balanced, 1);
   fg_split_plot_free(&s);
-  assert_int_equal(fg_split_plot_analyse(&ctx, &table, &formula, "y", "y", &s), FG_OK);
+  assert_ok(&ctx, fg_split_plot_analyse(&ctx, &table, &formula, "y", "y", &s));
   fg_split_plot_free(&s);
-  assert_int_equal(fg_split_plot_analyse(&ctx, &table, &formula, "y", "none", &s), FG_ERR_DATA);
+  assert_status(&ctx, fg_split_plot_analyse(&ctx, &table, &formula, "y", "none", &s), FG_ERR_DATA);
   fg_formula_free(&formula);
   fg_table_free(&table);
 }
@@ -254,14 +247,14 @@ static void optima_beat_a_grid(void **state) {
         sprintf(text + strlen(text), "%d,%d,%.17g\n", i, k, fg_surface_value(&s, x));
       }
     fit(&e, text, "y ~ x1*x2 + x1^2 + x2^2", NULL);
-    assert_int_equal(fg_surface_make(&ctx, &e.model, &e.reg, NULL, &s), FG_OK);
+    assert_ok(&ctx, fg_surface_make(&ctx, &e.model, &e.reg, NULL, &s));
     assert_int_equal(s.kind, shape ? FG_SURFACE_SADDLE : FG_SURFACE_MINIMUM);
     assert_near(2 * (3 * s.stationary[0] - 0.5 * s.stationary[1]) + 1, 0, 1e-12);
     for (int highest = 0; highest < 2; highest++) {
       double low[] = {-1, 0.2}, high[] = {0.5, 1.5}, x[2], ball[2], turn = highest ? -1 : 1;
       double radius = 1.2, best_box = INFINITY, best_ball = INFINITY;
-      assert_int_equal(fg_surface_optimum_box(&ctx, &s, highest, low, high, x), FG_OK);
-      assert_int_equal(fg_surface_optimum_ball(&ctx, &s, highest, radius, ball), FG_OK);
+      assert_ok(&ctx, fg_surface_optimum_box(&ctx, &s, highest, low, high, x));
+      assert_ok(&ctx, fg_surface_optimum_ball(&ctx, &s, highest, radius, ball));
       for (int i = 0; i <= 400; i++)
         for (int k = 0; k <= 400; k++) {
           double p[] = {low[0] + (high[0] - low[0]) * i / 400,
@@ -288,15 +281,15 @@ static void planes_are_walked_straight(void **state) {
   double path[4];
   (void)state;
   fit(&e, "a,b,y\n-1,-1,0\n1,-1,6\n-1,1,8\n1,1,14\n", "y ~ a + b", NULL);
-  assert_int_equal(fg_surface_make(&e.ctx, &e.model, &e.reg, NULL, &s), FG_OK);
+  assert_ok(&e.ctx, fg_surface_make(&e.ctx, &e.model, &e.reg, NULL, &s));
   assert_int_equal(s.kind, FG_SURFACE_PLANE);
   assert_false(s.has_stationary);
-  assert_int_equal(fg_surface_ridge_path(&e.ctx, &s, false, (double[]){1, 2}, 2, path), FG_OK);
+  assert_ok(&e.ctx, fg_surface_ridge_path(&e.ctx, &s, false, (double[]){1, 2}, 2, path));
   assert_near(path[0], -0.6, 1e-9);
   assert_near(path[1], -0.8, 1e-9);
   assert_near(path[3], -1.6, 1e-9);
   double low[] = {-1, 3}, high[] = {1, 2}, x[2];
-  assert_int_equal(fg_surface_optimum_box(&e.ctx, &s, false, low, high, x), FG_ERR_USAGE);
+  assert_status(&e.ctx, fg_surface_optimum_box(&e.ctx, &s, false, low, high, x), FG_ERR_USAGE);
   drop(&e);
 }
 
@@ -307,8 +300,8 @@ static void the_hard_case_has_its_radius(void **state) {
   double x[2];
   (void)state;
   fit(&e, "a,b,y\n0,0,0\n1,0,-1\n-1,0,-1\n0,1,1\n0,-1,1\n2,1,-3\n", "y ~ a + b + a^2 + b^2", NULL);
-  assert_int_equal(fg_surface_make(&e.ctx, &e.model, &e.reg, NULL, &s), FG_OK);
-  assert_int_equal(fg_surface_optimum_ball(&e.ctx, &s, false, 1.5, x), FG_OK);
+  assert_ok(&e.ctx, fg_surface_make(&e.ctx, &e.model, &e.reg, NULL, &s));
+  assert_ok(&e.ctx, fg_surface_optimum_ball(&e.ctx, &s, false, 1.5, x));
   assert_near(fabs(x[0]), 1.5, 1e-9);
   assert_near(x[1], 0, 1e-9);
   drop(&e);
@@ -319,15 +312,15 @@ static void oneway_groups(void **state) {
   fg_table table;
   fg_anova_oneway a;
   (void)state;
-  assert_int_equal(fg_table_parse(&ctx, "t", "g,y\n1,1\n1,3\n2,5\n2,7\n", 20, &table), FG_OK);
-  assert_int_equal(fg_anova_oneway_compute(&ctx, &table, "y", "g", &a), FG_OK);
+  assert_ok(&ctx, fg_table_parse(&ctx, "t", "g,y\n1,1\n1,3\n2,5\n2,7\n", 20, &table));
+  assert_ok(&ctx, fg_anova_oneway_compute(&ctx, &table, "y", "g", &a));
   assert_near(a.between_ss, 16, 0);
   assert_near(a.within_ss, 4, 0);
   assert_near(a.f, 8, 0);
   assert_near(a.group[1].mean, 6, 0);
   assert_near(a.p_value, 0.105572809, 1e-9); /* 1 - sqrt(F / (F + 2)) on 1 and 2 */
   fg_anova_oneway_free(&a);
-  assert_int_equal(fg_anova_oneway_compute(&ctx, &table, "g", "z", &a), FG_ERR_DATA);
+  assert_status(&ctx, fg_anova_oneway_compute(&ctx, &table, "g", "z", &a), FG_ERR_DATA);
   fg_table_free(&table);
 }
 

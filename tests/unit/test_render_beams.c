@@ -5,6 +5,7 @@
 
 #include "render/spec.h"
 #include "support/brief.h"
+#include "support/test.h"
 
 #define HEAD "{\"schema\":\"foilgauge/render/1\",\"seed\":9,"
 /* Four beams of 5 by 1.5 mm, at 1200 dpi. */
@@ -41,14 +42,14 @@ static void check_width(const char *layout) {
     const fg_render_beam *beam = &truth->beams[i];
     int64_t x = llround(0.5 * (beam->root_px.x + beam->tip_px.x)), y = llround(beam->root_px.y);
     int64_t half = (int64_t)(0.5 * (beam->width_mm + 0.2) / pixel_mm);
-    assert_close(material(&p, x, y - half, y + half, true), beam->width_mm / pixel_mm, 2e-3);
+    assert_near(material(&p, x, y - half, y + half, true), beam->width_mm / pixel_mm, 2e-3);
     /* From within the base to beyond the free end, before the rest of the sheet. */
     int64_t from = llround(beam->root_px.x) - 40, to = llround(beam->tip_px.x + 0.1 / pixel_mm);
-    assert_close(material(&p, from, y, to, false), beam->tip_px.x - ((double)from - 0.5), 2e-3);
-    assert_close(beam->tip_px.x - beam->root_px.x, beam->length_mm / pixel_mm, 1e-9);
+    assert_near(material(&p, from, y, to, false), beam->tip_px.x - ((double)from - 0.5), 2e-3);
+    assert_near(beam->tip_px.x - beam->root_px.x, beam->length_mm / pixel_mm, 1e-9);
   }
-  assert_close(truth->beams[1].width_mm, 1.468, 1e-12);
-  assert_close(truth->beams[3].length_mm, 5.3, 1e-12);
+  assert_near(truth->beams[1].width_mm, 1.468, 1e-12);
+  assert_near(truth->beams[3].length_mm, 5.3, 1e-12);
   drop(&p);
 }
 
@@ -78,7 +79,7 @@ static void roots_lie_where_the_truth_says(void **state) {
      * v / (2 r), the pixel's square adds 1/12. */
     double radius = 0.1 / pixel_mm, beside = (double)llround(gap) - gap;
     double moved = slits ? (beside * beside + 0.5 * 0.5 + 1.0 / 12) / (2 * radius) : 0;
-    assert_close(edge, beam->root_px.x + moved, slits ? 5e-3 : 2e-3);
+    assert_near(edge, beam->root_px.x + moved, slits ? 5e-3 : 2e-3);
     drop(&p);
   }
 }
@@ -100,7 +101,7 @@ static void comb_has_its_area(void **state) {
       sum += (p.dn[k] - 20) / 200;
     double area =
         row * 3 + 4 * 5 * 1.5 - (4 + 8) * (1 - quarter) * 0.2 * 0.2 + 8 * (1 - quarter) * 0.4 * 0.4;
-    assert_close(sum * pixel_mm * pixel_mm / area, 1, 2e-5);
+    assert_near(sum * pixel_mm * pixel_mm / area, 1, 2e-5);
     drop(&p);
   }
 }
@@ -118,7 +119,7 @@ static void strips_do_not_show(void **state) {
            "\"effects\":[{\"id\":\"scan.carriage_ripple\",\"amplitude_um\":20,\"period_mm\":3}]}";
   picture a = draw(0, json), b = draw(64, json);
   assert_memory_equal(a.dn, b.dn, (size_t)(a.width * a.height) * sizeof *a.dn);
-  assert_close(a.dn[1], 205, 1); /* within the sheet, that goes on beyond the picture */
+  assert_near(a.dn[1], 205, 1); /* within the sheet, that goes on beyond the picture */
   drop(&a);
   drop(&b);
 }
@@ -129,7 +130,7 @@ static void scanner_effects_move_the_edges(void **state) {
                                "},\"effects\":[{\"id\":\"scan.scale_y\",\"value\":0.004}]}");
   const fg_render_beam *beam = &p.truth->foils[0].beams[2];
   int64_t x = llround(beam->root_px.x) + 100, y = llround(beam->root_px.y);
-  assert_close(material(&p, x, y - 45, y + 45, true), 1.5 / pixel_mm / 1.004, 2e-3);
+  assert_near(material(&p, x, y - 45, y + 45, true), 1.5 / pixel_mm / 1.004, 2e-3);
   drop(&p);
 }
 
@@ -151,8 +152,8 @@ static void edges_scatter(void **state) {
     }
   }
   double sd_um = 1e3 * pixel_mm * sqrt(squares / count);
-  assert_close(sd_um / (10 * sqrt(2)), 1, 0.2);
-  assert_close(1e3 * pixel_mm * sum / count, 0, 3);
+  assert_near(sd_um / (10 * sqrt(2)), 1, 0.2);
+  assert_near(1e3 * pixel_mm * sum / count, 0, 3);
   drop(&p);
 }
 
@@ -165,8 +166,8 @@ static void walls_stand_beside_edges_that_face_them(void **state) {
   const fg_render_beam *beam = &p.truth->foils[0].beams[1];
   int64_t x = llround(beam->root_px.x) + 120;
   double low = beam->root_px.y + 0.75 / pixel_mm, high = beam->root_px.y - 0.75 / pixel_mm;
-  assert_close(coverage(&p, x, llround(low) + 10), 0.5 * exp(-1), 0.03);
-  assert_close(coverage(&p, x, llround(high) - 10), 0, 1e-3);
+  assert_near(coverage(&p, x, llround(low) + 10), 0.5 * exp(-1), 0.03);
+  assert_near(coverage(&p, x, llround(high) - 10), 0, 1e-3);
   drop(&p);
 }
 
@@ -181,23 +182,23 @@ static void defects_are_drawn_and_told(void **state) {
   const fg_render_beam *taper = &truth->beams[0], *torn = &truth->beams[1],
                        *bent = &truth->beams[2];
   assert_int_equal(taper->number, 2);
-  assert_close(taper->taper_um, 100, 1e-9);
+  assert_near(taper->taper_um, 100, 1e-9);
   int64_t y = llround(taper->root_px.y), x = llround(taper->root_px.x);
   double wide = material(&p, x + 40, y - 60, y + 60, true);
   double narrow = material(&p, x + 200, y - 60, y + 60, true);
-  assert_close((wide - narrow) / 160, 0.1 / 5, 1e-4);
+  assert_near((wide - narrow) / 160, 0.1 / 5, 1e-4);
   assert_true(torn->torn && !bent->torn);
-  assert_close(torn->length_mm, 3, 1e-12);
+  assert_near(torn->length_mm, 3, 1e-12);
   y = llround(torn->root_px.y);
   double sum = 0;
   for (int64_t k = y - 34; k <= y + 34; k++)
     sum += material(&p, x - 40, k, x + 236, false) - 40.5 - (double)x + torn->root_px.x;
-  assert_close(sum / 69 * pixel_mm, 3, 0.1);
-  assert_close(bent->tip_px.x - bent->root_px.x, 5 * cos(0.1047197551) / pixel_mm, 1e-4);
-  assert_close(bent->tip_px.y - bent->root_px.y, 5 * sin(0.1047197551) / pixel_mm, 1e-4);
+  assert_near(sum / 69 * pixel_mm, 3, 0.1);
+  assert_near(bent->tip_px.x - bent->root_px.x, 5 * cos(0.1047197551) / pixel_mm, 1e-4);
+  assert_near(bent->tip_px.y - bent->root_px.y, 5 * sin(0.1047197551) / pixel_mm, 1e-4);
   int64_t at = llround(0.5 * (bent->tip_px.x + bent->root_px.x));
   y = llround(0.5 * (bent->tip_px.y + bent->root_px.y));
-  assert_close(material(&p, at, y - 60, y + 60, true), 1.5 / cos(0.1047197551) / pixel_mm, 5e-3);
+  assert_near(material(&p, at, y - 60, y + 60, true), 1.5 / cos(0.1047197551) / pixel_mm, 5e-3);
   drop(&p);
 }
 
@@ -216,8 +217,8 @@ static void numbers_and_draws_stay(void **state) {
   assert_true(all[0].root_px.y < all[1].root_px.y && all[0].length_mm != all[1].length_mm);
   assert_true(rest[0].root_px.y > rest[1].root_px.y);
   assert_int_equal(rest[1].number, 3);
-  assert_close(rest[1].length_mm, all[2].length_mm, 0);
-  assert_close(rest[1].width_mm, all[2].width_mm, 0);
+  assert_near(rest[1].length_mm, all[2].length_mm, 0);
+  assert_near(rest[1].width_mm, all[2].width_mm, 0);
   drop(&a);
   drop(&b);
 }
@@ -230,13 +231,13 @@ static void truth_says_what_follows(void **state) {
   /* +0.44 % of length, -2.19 % of width. */
   const char *text = HEAD "\"foils\":[{" DESIGN ",\"beams\":{\"length_um\":[22,0,0,0],"
                           "\"width_um\":[-32.85,0,0,0]}}]}";
-  assert_int_equal(fg_render_parse(&ctx, "spec.json", text, &spec), FG_OK);
-  assert_int_equal(fg_render_truth_json(&ctx, spec, &json), FG_OK);
+  assert_ok(&ctx, fg_render_parse(&ctx, "spec.json", text, &spec));
+  assert_ok(&ctx, fg_render_truth_json(&ctx, spec, &json));
   assert_non_null(strstr(json, "\"form\": \"cantilever\""));
-  assert_close(strtod(strstr(json, "compliance_error_pct\":") + 22, NULL), 3.5939, 1e-3);
-  assert_close(strtod(strstr(json, "sagitta_error_pct\":") + 19, NULL), 0.8819, 1e-3);
-  assert_close(strtod(strstr(json, "clearance_change_pct\":") + 22, NULL), -4.4097, 1e-3);
-  assert_int_equal(fg_render_midline(&ctx, spec, 0, 0, &(fg_point){0}), FG_ERR_USAGE);
+  assert_near(strtod(strstr(json, "compliance_error_pct\":") + 22, NULL), 3.5939, 1e-3);
+  assert_near(strtod(strstr(json, "sagitta_error_pct\":") + 19, NULL), 0.8819, 1e-3);
+  assert_near(strtod(strstr(json, "clearance_change_pct\":") + 22, NULL), -4.4097, 1e-3);
+  assert_status(&ctx, fg_render_midline(&ctx, spec, 0, 0, &(fg_point){0}), FG_ERR_USAGE);
   free(json);
   fg_render_free(spec);
 }
@@ -268,6 +269,7 @@ static void bad_beams_are_refused(void **state) {
       {"\"design\":{\"form\":\"cantilever\",\"beam_count\":0}", "beam_count is 0"},
   };
   for (size_t i = 0; i < sizeof table / sizeof *table; i++) {
+    in_row("table[%zu]", i);
     fg_context ctx = {0};
     fg_render_spec *spec = NULL;
     char json[1024];
@@ -280,11 +282,12 @@ static void bad_beams_are_refused(void **state) {
   }
   fg_context ctx = {0};
   fg_render_spec *spec = NULL;
-  assert_int_equal(fg_render_parse(&ctx, "spec.json",
-                                   HEAD "\"foils\":[{" DESIGN "}],\"effects\":[{\"id\":"
-                                        "\"part.ovality\",\"amplitude_um\":5}]}",
-                                   &spec),
-                   FG_ERR_DATA);
+  assert_status(&ctx,
+                fg_render_parse(&ctx, "spec.json",
+                                HEAD "\"foils\":[{" DESIGN "}],\"effects\":[{\"id\":"
+                                     "\"part.ovality\",\"amplitude_um\":5}]}",
+                                &spec),
+                FG_ERR_DATA);
   assert_non_null(strstr(ctx.message, "effects[0] is part.ovality"));
 }
 

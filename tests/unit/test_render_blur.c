@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Blur by direction: its own along x and y, the carriage's motion, and what one side gets more. */
 #include "render_picture.h"
+#include "support/test.h"
 
 /* Sd of a disc's edge along a line through its middle, of what the profile climbs by: [0] where it
  * begins, [1] where it ends, along rising x or y. */
@@ -41,11 +42,11 @@ static void blur_is_one_sided(void **state) {
     snprintf(members, sizeof members, scanner, ways[i]);
     edge_sds(members, 1, sd);
     int soft = i < 2 ? 1 : 0;
-    assert_close(sd[!soft], with_pixel(1.8), 0.02);
-    assert_close(sd[soft], with_pixel(hypot(1.8, 2.2)), 0.05);
+    assert_near(sd[!soft], with_pixel(1.8), 0.02);
+    assert_near(sd[soft], with_pixel(hypot(1.8, 2.2)), 0.05);
     edge_sds(members, 0, sd);
-    assert_close(sd[0], with_pixel(1.8), 0.02);
-    assert_close(sd[1], with_pixel(1.8), 0.02);
+    assert_near(sd[0], with_pixel(1.8), 0.02);
+    assert_near(sd[1], with_pixel(1.8), 0.02);
   }
 }
 
@@ -55,7 +56,7 @@ static void blur_has_its_own_size_along_each_axis(void **state) {
     double sd[2];
     edge_sds("\"blur_px\":[0.9,2.4]", axis, sd);
     for (int i = 0; i < 2; i++)
-      assert_close(sd[i], with_pixel(axis ? 2.4 : 0.9), 0.01);
+      assert_near(sd[i], with_pixel(axis ? 2.4 : 0.9), 0.01);
   }
 }
 
@@ -67,7 +68,7 @@ static void motion_blurs_along_the_way(void **state) {
     double sd[2];
     edge_sds(scanner, axis, sd);
     for (int i = 0; i < 2; i++)
-      assert_close(sd[i], with_pixel(axis ? sqrt(1 + 6 * 6 / 12.0) : 1), 0.01);
+      assert_near(sd[i], with_pixel(axis ? sqrt(1 + 6 * 6 / 12.0) : 1), 0.01);
   }
 }
 
@@ -105,7 +106,7 @@ static void ellipse_is_turned(void **state) {
       snprintf(members, sizeof members, "\"blur_px\":[3,1],\"blur_angle_deg\":%g", angles[i]);
       double turn = (normal - angles[i]) * pi / 180;
       double expected = hypot(3 * cos(turn), sin(turn));
-      assert_close(straight_edge_sd(members, normal), expected, 0.01);
+      assert_near(straight_edge_sd(members, normal), expected, 0.01);
     }
 }
 
@@ -126,7 +127,7 @@ static void turned_ellipse_meets_the_straight_one(void **state) {
                             "0.2}],\"scanner\":{" EXACT ",%s}}",
                             pairs[i][k]);
     for (int64_t k = 0; k < 150 * 150; k++)
-      assert_close(both[0].dn[k], both[1].dn[k], 0.05);
+      assert_near(both[0].dn[k], both[1].dn[k], 0.05);
     drop(&both[0]);
     drop(&both[1]);
   }
@@ -159,9 +160,9 @@ static void blur_keeps_the_light(void **state) {
       sums[i] += (p.dn[k] - 20) / 200;
     drop(&p);
   }
-  assert_close(sums[1] / sums[0], 1, 1e-5);
-  assert_close(sums[2] / sums[0], 1, 1e-5);
-  assert_close(sums[3] / sums[0], 1, 1e-5);
+  assert_near(sums[1] / sums[0], 1, 1e-5);
+  assert_near(sums[2] / sums[0], 1, 1e-5);
+  assert_near(sums[3] / sums[0], 1, 1e-5);
 }
 
 int main(void) {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Free-form curves of scanner and part: what moves, by how much, and where. */
 #include "render_picture.h"
+#include "support/test.h"
 
 typedef struct field_case {
   const char *effect;
@@ -24,6 +25,7 @@ static void curves_move_the_picture(void **state) {
        -5, 0},
   };
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    in_row("cases[%zu]", i);
     picture p = draw_format("{\"schema\":\"foilgauge/render/1\",\"width_px\":420,"
                             "\"height_px\":340,\"discs\":[{\"centre_mm\":[1.6,1.2],"
                             "\"radius_mm\":0.1}],\"effects\":[%s],\"scanner\":{" EXACT "}}",
@@ -36,8 +38,8 @@ static void curves_move_the_picture(void **state) {
         my += coverage(&p, x, y) * (double)y;
       }
     /* The mean of a curve over the disc is not its value at the centre: r²/8 of its bend. */
-    assert_close((1.6 - mx / area * pixel) * 1e3, cases[i].dx_um, 0.06);
-    assert_close((1.2 - my / area * pixel) * 1e3, cases[i].dy_um, 0.06);
+    assert_near((1.6 - mx / area * pixel) * 1e3, cases[i].dx_um, 0.06);
+    assert_near((1.2 - my / area * pixel) * 1e3, cases[i].dy_um, 0.06);
     drop(&p);
   }
 }
@@ -74,11 +76,11 @@ static void curves_move_the_crown(void **state) {
   const char *looks = "{\"id\":\"free.edge.normal\",\"knots\":[[10,4],[90,%g],[200,-3],[260,2]]}";
   char effect[256];
   snprintf(effect, sizeof effect, across, 6.0);
-  assert_close(crown_with(effect), 6, 0.03);
+  assert_near(crown_with(effect), 6, 0.03);
   snprintf(effect, sizeof effect, along, 7.0);
-  assert_close(crown_with(effect), -7, 0.03);
+  assert_near(crown_with(effect), -7, 0.03);
   snprintf(effect, sizeof effect, looks, 5.0);
-  assert_close(crown_with(effect), 5, 0.03);
+  assert_near(crown_with(effect), 5, 0.03);
 }
 
 static void edges_move_apart(void **state) {
@@ -87,8 +89,8 @@ static void edges_move_apart(void **state) {
                       "\"free.edge.normal\",\"edges\":\"apart\",\"knots\":[[0,0],[90,4],[180,1]]}],"
                       "\"scanner\":{" EXACT "}}");
   double thickness, moved = middle_crown(&p, &thickness);
-  assert_close(moved, 0, 0.004);
-  assert_close(thickness, 0.108 / pixel, 0.01);
+  assert_near(moved, 0, 0.004);
+  assert_near(thickness, 0.108 / pixel, 0.01);
   drop(&p);
 }
 
@@ -109,19 +111,19 @@ static void midline_follows_the_curve(void **state) {
   for (int i = 0; i < 4; i++) {
     char json[512];
     snprintf(json, sizeof json, format, effects[i]);
-    assert_int_equal(fg_render_parse(&ctx, "spec.json", json, &specs[i]), FG_OK);
+    assert_ok(&ctx, fg_render_parse(&ctx, "spec.json", json, &specs[i]));
   }
   fg_point plain, moved, last = {0, 0};
   double steepest = 0, min = INFINITY, max = 0;
   for (double s = 4; s < 40; s += 0.01) {
-    assert_int_equal(fg_render_midline(&ctx, specs[0], 0, s, &plain), FG_OK);
-    assert_int_equal(fg_render_midline(&ctx, specs[1], 0, s, &moved), FG_OK);
-    assert_close(hypot(moved.x - 20 / pixel, moved.y - 30 / pixel) -
-                     hypot(plain.x - 20 / pixel, plain.y - 30 / pixel),
-                 5e-3 / pixel, 1e-9);
-    assert_int_equal(fg_render_midline(&ctx, specs[2], 0, s, &moved), FG_OK);
-    assert_close(hypot(moved.x - plain.x, moved.y - plain.y) * pixel, 5e-3, 1e-9);
-    assert_int_equal(fg_render_midline(&ctx, specs[3], 0, s, &moved), FG_OK);
+    assert_ok(&ctx, fg_render_midline(&ctx, specs[0], 0, s, &plain));
+    assert_ok(&ctx, fg_render_midline(&ctx, specs[1], 0, s, &moved));
+    assert_near(hypot(moved.x - 20 / pixel, moved.y - 30 / pixel) -
+                    hypot(plain.x - 20 / pixel, plain.y - 30 / pixel),
+                5e-3 / pixel, 1e-9);
+    assert_ok(&ctx, fg_render_midline(&ctx, specs[2], 0, s, &moved));
+    assert_near(hypot(moved.x - plain.x, moved.y - plain.y) * pixel, 5e-3, 1e-9);
+    assert_ok(&ctx, fg_render_midline(&ctx, specs[3], 0, s, &moved));
     double shift = hypot(moved.x - plain.x, moved.y - plain.y) * pixel * 1e3;
     if (s > 4) steepest = fmax(steepest, fabs(shift - last.x));
     last.x = shift;
@@ -130,9 +132,9 @@ static void midline_follows_the_curve(void **state) {
   }
   /* Full on the bumps, none on the lands, and no step between: a fillet is 0.22 mm long, and the
    * steepest slope of a cubic that fades over it is 1.5 times the mean. */
-  assert_close(max, 5, 1e-9);
-  assert_close(min, 0, 1e-9);
-  assert_close(steepest, 1.5 * 5 * 0.01 / 0.22, 0.03);
+  assert_near(max, 5, 1e-9);
+  assert_near(min, 0, 1e-9);
+  assert_near(steepest, 1.5 * 5 * 0.01 / 0.22, 0.03);
   for (int i = 0; i < 4; i++)
     fg_render_free(specs[i]);
 }
@@ -146,8 +148,8 @@ static void stretch_lengthens_the_arcs(void **state) {
   const fg_render_bump *bumps = p.truth->foils[0].bumps;
   for (int i = 0; i < 9; i++) {
     double beyond = bumps[i].radius_mm - 3.32;
-    assert_close(bumps[i].bump_angle_deg * bumps[i].radius_mm, 63.15 * 3.32 * (1.01 + 0.2 * beyond),
-                 1e-9);
+    assert_near(bumps[i].bump_angle_deg * bumps[i].radius_mm, 63.15 * 3.32 * (1.01 + 0.2 * beyond),
+                1e-9);
   }
   drop(&p);
 }
@@ -163,7 +165,7 @@ static void strip_stays_whole(void **state) {
   fg_context ctx = {0};
   fg_point last, point;
   double length = 0, area = 0, step = 0.002;
-  assert_int_equal(fg_render_midline(&ctx, p.spec, 0, 0, &last), FG_OK);
+  assert_ok(&ctx, fg_render_midline(&ctx, p.spec, 0, 0, &last));
   for (double s = step; fg_render_midline(&ctx, p.spec, 0, s, &point) == FG_OK; s += step) {
     length += hypot(point.x - last.x, point.y - last.y);
     last = point;
@@ -172,7 +174,7 @@ static void strip_stays_whole(void **state) {
     area += (p.dn[i] - 20) / 200;
   /* The edges are moved along the undisturbed normal: the strip's width shrinks by the cosine of
    * the slope, at most 0.01, on the fillets. */
-  assert_close(area / (length * 0.1 / pixel), 1, 1.5e-3);
+  assert_near(area / (length * 0.1 / pixel), 1, 1.5e-3);
   drop(&p);
 }
 

@@ -2,6 +2,7 @@
 /* What a scanner's driver does to finished numbers: tone curve, unsharp mask, gray levels, JPEG
  * behind them all. Every test computes the driver's part again from the picture without it. */
 #include "render_picture.h"
+#include "support/test.h"
 
 /* A disc of 200 on 20, its edge at x = 200 px along the middle row. */
 #define DISC                                                                                       \
@@ -39,8 +40,8 @@ static void tone_curve_is_applied_exactly(void **state) {
         out = points[k][1] + (in - points[k][0]) / (points[k + 1][0] - points[k][0]) *
                                  (points[k + 1][1] - points[k][1]);
     double rounding = in > 119.99 && in < 121.01 ? 30 : 1.5; /* slope × half a step of 1/257 */
-    assert_close(bent.dn[i], out, (rounding + 1) * 0.5 / 257 + 1e-4);
-    assert_close(narrow.dn[i], out, 0.5 + rounding * 0.5 / 257 + 1e-4);
+    assert_near(bent.dn[i], out, (rounding + 1) * 0.5 / 257 + 1e-4);
+    assert_near(narrow.dn[i], out, 0.5 + rounding * 0.5 / 257 + 1e-4);
   }
   drop(&plain);
   drop(&bent);
@@ -53,7 +54,7 @@ static void tone_of_rounded_numbers_leaves_gaps(void **state) {
   picture plain = draw_format(DISC, 3, EIGHT), bent;
   bent = draw_format(DISC, 3, EIGHT ",\"tone_curve\":[[60,0],[160,250]],\"tone_bits\":8");
   for (size_t i = 0; i < pixel_count(&plain); i++)
-    assert_close(bent.dn[i], floor(fmax(0, fmin(250, 2.5 * (plain.dn[i] - 60))) + 0.5), 0);
+    assert_near(bent.dn[i], floor(fmax(0, fmin(250, 2.5 * (plain.dn[i] - 60))) + 0.5), 0);
   drop(&plain);
   drop(&bent);
 }
@@ -100,8 +101,8 @@ static void check_mask(const char *scanner, double amount_pct, double radius, do
     for (int64_t x = 0; x < plain.width; x++) {
       double in = plain.dn[y * plain.width + x], soft = blurred(&plain, x, y, radius);
       if (fabs(fabs(in - soft) - threshold) < 1e-3) continue; /* either way */
-      assert_close(sharp.dn[y * plain.width + x], masked(in, soft, 0.01 * amount_pct, threshold),
-                   0.5 * step + 2e-3);
+      assert_near(sharp.dn[y * plain.width + x], masked(in, soft, 0.01 * amount_pct, threshold),
+                  0.5 * step + 2e-3);
     }
   drop(&plain);
   drop(&sharp);
@@ -138,13 +139,13 @@ static void unsharp_mask_overshoots_and_keeps_the_half_level(void **state) {
   for (int64_t x = 30; x < 70; x++) {
     double inside = edge - (double)x;
     double expected = 2 * edge_height(inside, sd) - edge_height(inside, wide);
-    assert_close(row[x], 60 + 100 * expected, 0.1);
+    assert_near(row[x], 60 + 100 * expected, 0.1);
     highest = fmax(highest, row[x]);
     lowest = fmin(lowest, row[x]);
   }
   assert_true(highest > 164 && lowest < 56);
   double half = 50 + (row[50] - 110) / (row[50] - row[51]);
-  assert_close(half, edge, 0.01);
+  assert_near(half, edge, 0.01);
   drop(&p);
 }
 
@@ -185,7 +186,7 @@ static void levels_are_the_nearest(void **state) {
   (void)state;
   picture plain = draw_format(DISC, 6, RAMP), coarse = draw_format(DISC, 6, RAMP ",\"levels\":16");
   for (size_t i = 0; i < pixel_count(&plain); i++)
-    assert_close(coarse.dn[i], 17 * round(plain.dn[i] / 17), 0);
+    assert_near(coarse.dn[i], 17 * round(plain.dn[i] / 17), 0);
   drop(&plain);
   drop(&coarse);
 }
@@ -196,8 +197,8 @@ static void threshold_divides_two_levels(void **state) {
   middle = draw_format(DISC, 7, RAMP ",\"levels\":2");
   high = draw_format(DISC, 7, RAMP ",\"levels\":2,\"threshold\":180");
   for (size_t i = 0; i < pixel_count(&plain); i++) {
-    assert_close(middle.dn[i], plain.dn[i] >= 127.5 ? 255 : 0, 0);
-    assert_close(high.dn[i], plain.dn[i] >= 180 ? 255 : 0, 0);
+    assert_near(middle.dn[i], plain.dn[i] >= 127.5 ? 255 : 0, 0);
+    assert_near(high.dn[i], plain.dn[i] >= 180 ? 255 : 0, 0);
   }
   drop(&plain);
   drop(&middle);
@@ -210,8 +211,8 @@ static void jpeg_comes_last(void **state) {
   static bool seen[65536];
   picture p = draw_format(DISC, 8, EIGHT ",\"levels\":2,\"rough\":{\"jpeg\":{\"quality\":60}}");
   assert_true(count_values(&p, seen) > 20);
-  assert_close(p.dn[0], 0, 0);
-  assert_close(p.dn[125 * 250 + 125], 255, 0);
+  assert_near(p.dn[0], 0, 0);
+  assert_near(p.dn[125 * 250 + 125], 255, 0);
   drop(&p);
 }
 
@@ -272,9 +273,9 @@ static void channels_are_worked_on_one_by_one(void **state) {
   snprintf(members, sizeof members,
            "%s,\"colour_lines\":{\"background\":[20,60,200],\"contrast\":[200,120,-150]}", driver);
   snprintf(json, sizeof json, DISC, 2, members);
-  assert_int_equal(fg_render_parse(&ctx, "spec.json", json, &spec), FG_OK);
+  assert_ok(&ctx, fg_render_parse(&ctx, "spec.json", json, &spec));
   colour_row colours = {.width = 250, .row = 70};
-  assert_int_equal(fg_render_rows(&ctx, spec, 0, keep_colour_row, &colours), FG_OK);
+  assert_ok(&ctx, fg_render_rows(&ctx, spec, 0, keep_colour_row, &colours));
   fg_render_free(spec);
   for (int c = 0; c < 3; c++) {
     snprintf(members, sizeof members, "%s,\"background\":%g,\"contrast\":%g", driver, background[c],
@@ -292,7 +293,7 @@ static void truth_records_the_driver(void **state) {
   fg_context ctx = {0};
   char *json = NULL;
   picture p = draw_format(DISC, 1, EIGHT), all;
-  assert_int_equal(fg_render_truth_json(&ctx, p.spec, &json), FG_OK);
+  assert_ok(&ctx, fg_render_truth_json(&ctx, p.spec, &json));
   assert_null(strstr(json, "tone_curve"));
   assert_null(strstr(json, "unsharp"));
   assert_null(strstr(json, "levels"));
@@ -302,7 +303,7 @@ static void truth_records_the_driver(void **state) {
   all = draw_format(DISC, 1,
                     EIGHT ",\"tone_curve\":[[0,0],[200,255]],\"unsharp_mask\":{\"amount_pct\":50,"
                           "\"threshold\":3},\"levels\":2,\"threshold\":90");
-  assert_int_equal(fg_render_truth_json(&ctx, all.spec, &json), FG_OK);
+  assert_ok(&ctx, fg_render_truth_json(&ctx, all.spec, &json));
   const char *words[] = {"\"tone_curve\": [", "[200, 255]",       "\"amount_pct\": 50",
                          "\"radius_px\": 1",  "\"threshold\": 3", "\"levels\": 2",
                          "\"threshold\": 90"};

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Where the renderer puts things: areas, centres, edges, the strip's lands and crowns, effects. */
 #include "render_picture.h"
+#include "support/test.h"
 
 #include <gsl/gsl_cdf.h>
 
@@ -32,9 +33,9 @@ static void disc_has_its_area_and_centre(void **state) {
                             "\"scanner\":{" EXACT ",\"blur_px\":%g}}",
                             blurs[i]);
     moments m = picture_moments(&p);
-    assert_close(sqrt(m.area / 3.14159265358979) * pixel, 0.5, 5e-5 * pixel);
-    assert_close(m.x, 0.6613 / pixel, 1e-3);
-    assert_close(m.y, 0.6429 / pixel, 1e-3);
+    assert_near(sqrt(m.area / 3.14159265358979) * pixel, 0.5, 5e-5 * pixel);
+    assert_near(m.x, 0.6613 / pixel, 1e-3);
+    assert_near(m.y, 0.6429 / pixel, 1e-3);
     drop(&p);
   }
 }
@@ -45,7 +46,7 @@ static void hole_takes_its_area(void **state) {
                           "\"discs\":[{\"centre_mm\":[0.66,0.64],\"radius_mm\":0.5},"
                           "{\"centre_mm\":[0.7,0.6],\"radius_mm\":0.25,\"hole\":true}],"
                           "\"scanner\":{" EXACT ",\"blur_px\":1.5}}");
-  assert_close(picture_moments(&p).area * pixel * pixel, 3.14159265358979 * (0.25 - 0.0625), 1e-5);
+  assert_near(picture_moments(&p).area * pixel * pixel, 3.14159265358979 * (0.25 - 0.0625), 1e-5);
   drop(&p);
 }
 
@@ -89,10 +90,10 @@ static void check_edge(double angle_deg, double blur_px, const char *polarity) {
     count++;
   }
   double n = (double)count;
-  assert_close(centre_sum / n, expected_sum / n, 1e-3);
-  assert_close(level_sum / n, -variance / (2 * radius / pixel), 0.004);
+  assert_near(centre_sum / n, expected_sum / n, 1e-3);
+  assert_near(level_sum / n, -variance / (2 * radius / pixel), 0.004);
   assert_true(largest < 0.02);
-  assert_close(sqrt(spread_sum / n), sqrt(variance), 0.005);
+  assert_near(sqrt(spread_sum / n), sqrt(variance), 0.005);
   drop(&p);
 }
 
@@ -117,13 +118,13 @@ static void strip_is_where_truth_says(void **state) {
                             mirror ? "true" : "false");
     const fg_render_foil *foil = &p.truth->foils[0];
     double thickness;
-    assert_close(crown(&p, 1, &thickness), 0, 0.004);
-    assert_close(thickness, 0.1 / pixel, 0.01);
+    assert_near(crown(&p, 1, &thickness), 0, 0.004);
+    assert_near(thickness, 0.1 / pixel, 0.01);
     /* The crown is R0 - h from O, below the middle bump. */
     const fg_render_bump *bump = &foil->bumps[1];
-    assert_close(foil->overall_centre_px.y - bump->centre_px.y, bump->centre_to_centre_mm / pixel,
-                 1e-6);
-    assert_close(bump->height_mm, 20.95 - (bump->centre_to_centre_mm - bump->radius_mm), 1e-12);
+    assert_near(foil->overall_centre_px.y - bump->centre_px.y, bump->centre_to_centre_mm / pixel,
+                1e-6);
+    assert_near(bump->height_mm, 20.95 - (bump->centre_to_centre_mm - bump->radius_mm), 1e-12);
     drop(&p);
   }
 }
@@ -138,8 +139,8 @@ static void lands_lie_on_the_overall_circle(void **state) {
   double expected = foil->overall_centre_px.y - 20.95 / pixel, centre, thickness;
   column(&p, llround(foil->overall_centre_px.x), llround(expected) - 40, llround(expected) + 40,
          &centre, &thickness);
-  assert_close(centre, expected, 0.004);
-  assert_close(thickness, 0.1 / pixel, 0.01);
+  assert_near(centre, expected, 0.004);
+  assert_near(thickness, 0.1 / pixel, 0.01);
   drop(&p);
 }
 
@@ -153,14 +154,14 @@ static void strip_has_its_area(void **state) {
   fg_context ctx = {0};
   fg_point last, point;
   double length = 0, step = 0.01;
-  assert_int_equal(fg_render_midline(&ctx, p.spec, 0, 0, &last), FG_OK);
+  assert_ok(&ctx, fg_render_midline(&ctx, p.spec, 0, 0, &last));
   double s = step;
   while (fg_render_midline(&ctx, p.spec, 0, s, &point) == FG_OK) {
     length += hypot(point.x - last.x, point.y - last.y);
     last = point;
     s += step;
   }
-  assert_close(picture_moments(&p).area, length * 0.1 / pixel, 0.6 * step / pixel * 0.1 / pixel);
+  assert_near(picture_moments(&p).area, length * 0.1 / pixel, 0.6 * step / pixel * 0.1 / pixel);
   assert_int_equal(p.truth->foils[0].bump_count, 8);
   assert_true(p.truth->foils[0].bumps[4].crushed);
   drop(&p);
@@ -173,9 +174,9 @@ static void unequal_resolution(void **state) {
                       "\"discs\":[{\"centre_mm\":[0.66,0.64],\"radius_mm\":0.5}],"
                       "\"scanner\":{\"dpi\":[4800,4200]," EXACT "}}");
   moments m = picture_moments(&p);
-  assert_close(m.x, 0.66 * 4800 / 25.4, 2e-3);
-  assert_close(m.y, 0.64 * 4200 / 25.4, 2e-3);
-  assert_close(m.area, 3.14159265358979 * 0.25 * 4800 * 4200 / 25.4 / 25.4, 3);
+  assert_near(m.x, 0.66 * 4800 / 25.4, 2e-3);
+  assert_near(m.y, 0.64 * 4200 / 25.4, 2e-3);
+  assert_near(m.area, 3.14159265358979 * 0.25 * 4800 * 4200 / 25.4 / 25.4, 3);
   drop(&p);
 }
 
@@ -204,13 +205,14 @@ static void fields_move_the_picture(void **state) {
        0, 9.95},
   };
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    in_row("cases[%zu]", i);
     picture p = draw_format("{\"schema\":\"foilgauge/render/1\",\"width_px\":1700,"
                             "\"height_px\":1300,\"discs\":[{\"centre_mm\":[8,6],"
                             "\"radius_mm\":0.1}],\"effects\":[%s],\"scanner\":{" EXACT "}}",
                             cases[i].effect);
     moments m = picture_moments(&p);
-    assert_close((8 - m.x * pixel) * 1e3, cases[i].dx_um, 0.035);
-    assert_close((6 - m.y * pixel) * 1e3, cases[i].dy_um, 0.035);
+    assert_near((8 - m.x * pixel) * 1e3, cases[i].dx_um, 0.035);
+    assert_near((6 - m.y * pixel) * 1e3, cases[i].dy_um, 0.035);
     drop(&p);
   }
 }
@@ -230,7 +232,7 @@ static void lost_rows_are_sharp(void **state) {
   picture a = draw(0, with), b = draw(0, without);
   for (int64_t y = 0; y < 240; y++)
     for (int64_t x = 0; x < a.width; x++)
-      assert_close(coverage(&a, x, y), coverage(&b, x, y < 100 ? y : y + 3), 3e-5);
+      assert_near(coverage(&a, x, y), coverage(&b, x, y < 100 ? y : y + 3), 3e-5);
   drop(&a);
   drop(&b);
 }
@@ -246,15 +248,15 @@ static void lip_stands_on_the_land(void **state) {
     fg_point o = p.truth->foils[0].overall_centre_px, end, foot, land;
     fg_context ctx = {0};
     double bend_end = 1.5 + 0.2 * 3.14159265358979;
-    assert_int_equal(fg_render_midline(&ctx, p.spec, 0, 0, &end), FG_OK);
-    assert_int_equal(fg_render_midline(&ctx, p.spec, 0, 1.5, &foot), FG_OK);
-    assert_int_equal(fg_render_midline(&ctx, p.spec, 0, bend_end, &land), FG_OK);
+    assert_ok(&ctx, fg_render_midline(&ctx, p.spec, 0, 0, &end));
+    assert_ok(&ctx, fg_render_midline(&ctx, p.spec, 0, 1.5, &foot));
+    assert_ok(&ctx, fg_render_midline(&ctx, p.spec, 0, bend_end, &land));
     double ux = (land.x - o.x) * pixel / 20.73, uy = (land.y - o.y) * pixel / 20.73;
     double along = ((end.x - land.x) * ux + (end.y - land.y) * uy) * pixel;
     double across = ((foot.y - land.y) * ux - (foot.x - land.x) * uy) * pixel;
-    assert_close(hypot(ux, uy), 1, 1e-9);
-    assert_close(along, inwards ? -1.9 : 1.9, 1e-9);
-    assert_close(across, -0.4, 1e-9); /* beyond the land's end, away from bump 1 */
+    assert_near(hypot(ux, uy), 1, 1e-9);
+    assert_near(along, inwards ? -1.9 : 1.9, 1e-9);
+    assert_near(across, -0.4, 1e-9); /* beyond the land's end, away from bump 1 */
     drop(&p);
   }
 }
@@ -269,7 +271,7 @@ static void foils_of_a_bed_lie_apart(void **state) {
          "\"design\":{\"bump_count\":3},\"repeat\":3,\"rotate_deg\":-90,\"rotate_step_deg\":90}],"
          "\"scanner\":{" EXACT "}}");
   assert_int_equal(bed.truth->foil_count, 3);
-  assert_close(picture_moments(&bed).area / picture_moments(&one).area, 3, 1e-5);
+  assert_near(picture_moments(&bed).area / picture_moments(&one).area, 3, 1e-5);
   drop(&one);
   drop(&bed);
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Rows that were lost or read again, and seams between a sensor's chips: to the pixel. */
 #include "render_picture.h"
+#include "support/test.h"
 
 #define DISC                                                                                       \
   "{\"schema\":\"foilgauge/render/1\",\"width_px\":250,\"height_px\":%d,\"discs\":[{"              \
@@ -12,7 +13,7 @@ static void assert_rows(const char *scanner, int64_t height, const int64_t *show
   for (int64_t y = 0; y < height; y++) {
     if (shows[y] >= plain.height) continue;
     for (int64_t x = 0; x < p.width; x++)
-      assert_close(p.dn[y * p.width + x], plain.dn[shows[y] * p.width + x], 1.0 / 256);
+      assert_near(p.dn[y * p.width + x], plain.dn[shows[y] * p.width + x], 1.0 / 256);
   }
   drop(&plain);
   drop(&p);
@@ -59,8 +60,8 @@ static void pieces_shift_sideways(void **state) {
                           ",\"stitches\":[{\"y_mm\":0.5,\"rows\":-1,\"shift_um\":10.583333333}]");
   for (int64_t y = 0; y < 250; y++)
     for (int64_t x = 0; x + 2 < 250; x++)
-      assert_close(p.dn[y * 250 + x], plain.dn[(y < 95 ? y * 250 : (y - 1) * 250 + 2) + x],
-                   1.0 / 256);
+      assert_near(p.dn[y * 250 + x], plain.dn[(y < 95 ? y * 250 : (y - 1) * 250 + 2) + x],
+                  1.0 / 256);
   drop(&plain);
   drop(&p);
 }
@@ -68,7 +69,7 @@ static void pieces_shift_sideways(void **state) {
 static void assert_truth(const picture *p, const char *words) {
   fg_context ctx = {0};
   char *json = NULL;
-  assert_int_equal(fg_render_truth_json(&ctx, p->spec, &json), FG_OK);
+  assert_ok(&ctx, fg_render_truth_json(&ctx, p->spec, &json));
   if (!strstr(json, words)) fail_msg("'%s' is not in %s", words, json);
   free(json);
 }
@@ -126,8 +127,8 @@ static void chips_shift_what_they_see(void **state) {
         mx += coverage(&p, x, y) * (double)x;
         my += coverage(&p, x, y) * (double)y;
       }
-    assert_close((0.5 + chip - mx / area * pixel) * 1e3, expected[chip][0], 0.02);
-    assert_close((0.5 - my / area * pixel) * 1e3, expected[chip][1], 0.02);
+    assert_near((0.5 + chip - mx / area * pixel) * 1e3, expected[chip][0], 0.02);
+    assert_near((0.5 - my / area * pixel) * 1e3, expected[chip][1], 0.02);
   }
   drop(&p);
 }
@@ -140,7 +141,7 @@ static void seam_is_sharp(void **state) {
       DISC, 250, ",\"chip_seams\":[{\"x_mm\":0.66,\"shift_um\":0,\"shift_y_um\":10.583333333}]");
   for (int64_t y = 0; y + 2 < 250; y++)
     for (int64_t x = 0; x < 250; x++)
-      assert_close(p.dn[y * 250 + x], plain.dn[(y + (x > 124 ? 2 : 0)) * 250 + x], 1.0 / 256);
+      assert_near(p.dn[y * 250 + x], plain.dn[(y + (x > 124 ? 2 : 0)) * 250 + x], 1.0 / 256);
   drop(&plain);
   drop(&p);
 }

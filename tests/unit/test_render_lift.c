@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Bumps that are raised by their number: the middle alone, or the whole bump. */
 #include "render_picture.h"
+#include "support/test.h"
 
 #define FOIL(effect)                                                                               \
   "{\"schema\":\"foilgauge/render/1\",\"seed\":3,\"foils\":[{\"centre_mm\":[20,30],"               \
@@ -55,10 +56,11 @@ static void patterns_raise_the_bumps_they_name(void **state) {
       {LIFT("\"values_um\":[1,2,3,-4]"), {1, 2, 3, -4, 0, 0, 0, 0, 0}},
   };
   for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
+    in_row("cases[%zu]", c);
     double um[9];
     raised_um(cases[c].json, um);
     for (int i = 0; i < 9; i++)
-      assert_close(um[i], cases[c].um[i], 0.002);
+      assert_near(um[i], cases[c].um[i], 0.002);
   }
 }
 
@@ -84,12 +86,12 @@ static void crown_stays_at_its_ends(void **state) {
       }
       if (pass == 1 && um > 1e-9) {
         double u = 2 * (s - middle) / (last - first);
-        assert_close(um, 6 * (1 - u * u) * (1 - u * u), 0.03);
+        assert_near(um, 6 * (1 - u * u) * (1 - u * u), 0.03);
       }
       middle = 0.5 * (first + last);
     }
-  assert_close(largest, 6, 0.001);
-  assert_close(last - first, 3.45, 0.1); /* one bump's arc between its fillets */
+  assert_near(largest, 6, 0.001);
+  assert_near(last - first, 3.45, 0.1); /* one bump's arc between its fillets */
   fg_render_free(plain);
   fg_render_free(spec);
 }
@@ -106,16 +108,16 @@ static void whole_bump_moves_with_its_flanks(void **state) {
   for (int i = 0; i < 9; i++) {
     const fg_render_bump *a = &before->bumps[i], *b = &after->bumps[i];
     double by = i == 3 ? 5e-3 : 0, overall = after->overall_radius_mm;
-    assert_close(b->radius_mm, a->radius_mm, 0);
-    assert_close(b->centre_to_centre_mm, a->centre_to_centre_mm - by, 1e-12);
-    assert_close(b->height_mm, a->height_mm + by, 1e-12);
+    assert_near(b->radius_mm, a->radius_mm, 0);
+    assert_near(b->centre_to_centre_mm, a->centre_to_centre_mm - by, 1e-12);
+    assert_near(b->height_mm, a->height_mm + by, 1e-12);
     double half = 0.5 * b->bump_angle_deg * 3.14159265358979323846 / 180;
     double crossing = b->centre_to_centre_mm - b->radius_mm * cos(half);
-    assert_close(hypot(crossing, b->radius_mm * sin(half)), overall, 1e-9);
+    assert_near(hypot(crossing, b->radius_mm * sin(half)), overall, 1e-9);
   }
   fg_point p, last = {0, 0};
   for (double s = 0; fg_render_midline(&ctx, spec, 0, s, &p) == FG_OK; s += 0.002) {
-    if (s > 0) assert_close(hypot(p.x - last.x, p.y - last.y) * pixel, 0.002, 2e-7);
+    if (s > 0) assert_near(hypot(p.x - last.x, p.y - last.y) * pixel, 0.002, 2e-7);
     last = p;
   }
   fg_render_free(plain);
@@ -132,7 +134,7 @@ static void picture_shows_the_raised_crown(void **state) {
                             "],\"scanner\":{" EXACT "}}",
                             extents[i]);
     double thickness, moved = crown(&p, 4, &thickness) * pixel * 1e3;
-    assert_close(moved, i ? 0 : 7, 0.03); /* the whole bump's truth is where it is */
+    assert_near(moved, i ? 0 : 7, 0.03); /* the whole bump's truth is where it is */
     drop(&p);
   }
 }
@@ -142,7 +144,7 @@ static void truth_says_which(void **state) {
   fg_context ctx = {0};
   char *json = NULL;
   fg_render_spec *spec = parse(LIFT("\"amplitude_um\":4,\"every\":3,\"form\":\"whole\""));
-  assert_int_equal(fg_render_truth_json(&ctx, spec, &json), FG_OK);
+  assert_ok(&ctx, fg_render_truth_json(&ctx, spec, &json));
   assert_non_null(strstr(json, "\"id\": \"free.bump.index\""));
   assert_non_null(strstr(json, "\"form\": \"whole\""));
   assert_non_null(strstr(json, "\"values_um\": [0, 0, 4, 0, 0, 4, 0, 0, 4]"));

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Effects of the part as the renderer draws them. */
 #include "render_picture.h"
+#include "support/test.h"
 
 static double crown_with(const char *effect, const char *more, size_t bump) {
   picture p = draw_format("{\"schema\":\"foilgauge/render/1\",\"foils\":[{"
@@ -16,16 +17,16 @@ static double crown_with(const char *effect, const char *more, size_t bump) {
 /* At the crown of the middle bump, which stands upright: psi = 0, u = 0. Rows rise towards O. */
 static void part_effects_move_the_crown(void **state) {
   (void)state;
-  assert_close(crown_with("{\"id\":\"part.bump_crown\",\"amplitude_um\":5}", "", 1), 5, 0.02);
+  assert_near(crown_with("{\"id\":\"part.bump_crown\",\"amplitude_um\":5}", "", 1), 5, 0.02);
   /* The column is a pixel's: up to half of one beside the crown, where a skew is not level. */
-  assert_close(crown_with("{\"id\":\"part.bump_skew\",\"amplitude_um\":5}", "", 1), 0, 0.03);
-  assert_close(crown_with("{\"id\":\"part.ovality\",\"amplitude_um\":5}", "", 1), -5, 0.02);
-  assert_close(crown_with("{\"id\":\"part.ovality\",\"amplitude_um\":5,\"phase_deg\":90}", "", 1),
-               5, 0.02);
-  assert_close(
+  assert_near(crown_with("{\"id\":\"part.bump_skew\",\"amplitude_um\":5}", "", 1), 0, 0.03);
+  assert_near(crown_with("{\"id\":\"part.ovality\",\"amplitude_um\":5}", "", 1), -5, 0.02);
+  assert_near(crown_with("{\"id\":\"part.ovality\",\"amplitude_um\":5,\"phase_deg\":90}", "", 1), 5,
+              0.02);
+  assert_near(
       crown_with("{\"id\":\"part.ovality\",\"amplitude_um\":5,\"along\":\"normal\"}", "", 1), -5,
       0.02);
-  assert_close(crown_with("{\"id\":\"part.spiral\",\"amplitude_um\":5}", "", 1), 0, 0.02);
+  assert_near(crown_with("{\"id\":\"part.spiral\",\"amplitude_um\":5}", "", 1), 0, 0.02);
 }
 
 /* A spec whose effect has an amplitude of 0, and of 10 um. */
@@ -33,7 +34,7 @@ static void parse_without_and_with(fg_context *ctx, const char *format, fg_rende
   char json[512];
   for (int i = 0; i < 2; i++) {
     snprintf(json, sizeof json, format, i ? 10 : 0);
-    assert_int_equal(fg_render_parse(ctx, "spec.json", json, &specs[i]), FG_OK);
+    assert_ok(ctx, fg_render_parse(ctx, "spec.json", json, &specs[i]));
   }
 }
 
@@ -49,12 +50,12 @@ static void normal_ovality_moves_at_right_angles(void **state) {
   parse_without_and_with(&ctx, format, specs);
   for (double s = 2; s < 40; s += 0.37) {
     fg_point at, on, moved;
-    assert_int_equal(fg_render_midline(&ctx, specs[0], 0, s, &at), FG_OK);
-    assert_int_equal(fg_render_midline(&ctx, specs[0], 0, s + 1e-4, &on), FG_OK);
-    assert_int_equal(fg_render_midline(&ctx, specs[1], 0, s, &moved), FG_OK);
+    assert_ok(&ctx, fg_render_midline(&ctx, specs[0], 0, s, &at));
+    assert_ok(&ctx, fg_render_midline(&ctx, specs[0], 0, s + 1e-4, &on));
+    assert_ok(&ctx, fg_render_midline(&ctx, specs[1], 0, s, &moved));
     double tx = on.x - at.x, ty = on.y - at.y, dx = moved.x - at.x, dy = moved.y - at.y;
     double along = (dx * tx + dy * ty) / hypot(tx, ty);
-    assert_close(along * pixel * 1e3, 0, 0.01);
+    assert_near(along * pixel * 1e3, 0, 0.01);
     assert_true(hypot(dx, dy) * pixel * 1e3 < 10.01);
   }
   for (int i = 0; i < 2; i++)
@@ -71,11 +72,11 @@ static void spiral_lies_beside_the_plain_foil(void **state) {
   fg_render_spec *specs[2];
   parse_without_and_with(&ctx, format, specs);
   fg_point a, b;
-  assert_int_equal(fg_render_midline(&ctx, specs[0], 0, 0, &a), FG_OK);
-  assert_int_equal(fg_render_midline(&ctx, specs[1], 0, 0, &b), FG_OK);
+  assert_ok(&ctx, fg_render_midline(&ctx, specs[0], 0, 0, &a));
+  assert_ok(&ctx, fg_render_midline(&ctx, specs[1], 0, 0, &b));
   /* The lip's end of the foil has u = -1: it moves inwards by the amplitude. */
   double ox = 20 / pixel, oy = 30 / pixel;
-  assert_close((hypot(b.x - ox, b.y - oy) - hypot(a.x - ox, a.y - oy)) * pixel * 1e3, -10, 0.2);
+  assert_near((hypot(b.x - ox, b.y - oy) - hypot(a.x - ox, a.y - oy)) * pixel * 1e3, -10, 0.2);
   for (int i = 0; i < 2; i++)
     fg_render_free(specs[i]);
 }
@@ -87,8 +88,8 @@ static void lip_decay_widens_the_first_bumps(void **state) {
   const fg_render_bump *bumps = p.truth->foils[0].bumps;
   for (int i = 0; i < 9; i++) {
     double radius = 3.32 * (1 + 0.06 * exp(-i / 2.0));
-    assert_close(bumps[i].radius_mm, radius, 1e-12);
-    assert_close(bumps[i].bump_angle_deg * radius, 63.15 * 3.32, 1e-9);
+    assert_near(bumps[i].radius_mm, radius, 1e-12);
+    assert_near(bumps[i].bump_angle_deg * radius, 63.15 * 3.32, 1e-9);
   }
   drop(&p);
 }

@@ -2,6 +2,7 @@
 /* A scan that a driver made finer than its sensor reads: every pixel is the interpolation of the
  * scan that the sensor gave. */
 #include "render_picture.h"
+#include "support/test.h"
 
 /* A disc and a hole, `scanner` says at what resolution. */
 static picture draw_size(int width, int height, const char *scanner) {
@@ -67,14 +68,15 @@ static void pixels_are_interpolated(void **state) {
        true},
   };
   for (size_t k = 0; k < sizeof table / sizeof *table; k++) {
+    in_row("table[%zu]", k);
     picture seen = draw_size(table[k].width, table[k].height, table[k].sensor);
     picture p = draw_size(251, 241, table[k].scanner);
     for (int64_t y = 0; y < p.height; y++)
       for (int64_t x = 0; x < p.width; x++)
-        assert_close(pixel_of(&p, x, y),
-                     interpolated(&seen, (double)x * table[k].step[0], (double)y * table[k].step[1],
-                                  table[k].bicubic ? cubic_weight : linear_weight),
-                     1.2 / 257);
+        assert_near(pixel_of(&p, x, y),
+                    interpolated(&seen, (double)x * table[k].step[0], (double)y * table[k].step[1],
+                                 table[k].bicubic ? cubic_weight : linear_weight),
+                    1.2 / 257);
     drop(&seen);
     drop(&p);
   }
@@ -86,19 +88,19 @@ static void truth_is_of_the_finished_picture(void **state) {
   fg_context ctx = {0};
   char *json = NULL;
   picture p = draw_size(251, 241, "\"dpi\":4800,\"resampled_from_dpi\":1200");
-  assert_int_equal(fg_render_truth_json(&ctx, p.spec, &json), FG_OK);
+  assert_ok(&ctx, fg_render_truth_json(&ctx, p.spec, &json));
   assert_non_null(strstr(json, "\"resampled_from_dpi\": 1200"));
   assert_non_null(strstr(json, "\"resampled_by\": \"bilinear\""));
   assert_non_null(strstr(json, "\"dpi\": 4800"));
   free(json);
-  assert_close(p.truth->discs[0].centre_px.x, 0.66 / pixel, 1e-9);
+  assert_near(p.truth->discs[0].centre_px.x, 0.66 / pixel, 1e-9);
   double sum = 0, first = 0;
   for (int64_t x = 0; x < 251; x++) {
     double value = pixel_of(&p, x, 60) + pixel_of(&p, x, 166) - 60;
     sum += value;
     first += value * (double)x;
   }
-  assert_close(first / sum, 0.66 / pixel, 0.3);
+  assert_near(first / sum, 0.66 / pixel, 0.3);
   drop(&p);
 }
 
@@ -142,10 +144,10 @@ static void channels_are_resampled_alike(void **state) {
     char json[1024];
     double place[3][2];
     snprintf(json, sizeof json, format, resampled ? ",\"resampled_from_dpi\":2400" : "");
-    assert_int_equal(fg_render_parse(&ctx, "spec.json", json, &spec), FG_OK);
+    assert_ok(&ctx, fg_render_parse(&ctx, "spec.json", json, &spec));
     colour_rows colours = {.width = 2001, .pixels = calloc(2001 * 200, 3)};
     assert_non_null(colours.pixels);
-    assert_int_equal(fg_render_rows(&ctx, spec, 0, keep_colours, &colours), FG_OK);
+    assert_ok(&ctx, fg_render_rows(&ctx, spec, 0, keep_colours, &colours));
     for (int c = 0; c < 3; c++)
       for (int k = 0; k < 2; k++) {
         double sum = 0, first = 0;
@@ -158,12 +160,12 @@ static void channels_are_resampled_alike(void **state) {
         place[c][k] = first / sum;
       }
     double apart = place[1][1] - place[1][0];
-    assert_close(apart, 9.4 / pixel, 0.02);
-    assert_close((place[0][1] - place[0][0]) / apart, 1 + 500e-6, 1e-5);
-    assert_close((place[2][1] - place[2][0]) / apart, 1 - 200e-6, 1e-5);
-    assert_close(0.5 * (place[0][0] + place[0][1]) - 0.5 * (place[1][0] + place[1][1]), 0, 0.03);
-    assert_close(0.5 * (place[2][0] + place[2][1]) - 0.5 * (place[1][0] + place[1][1]),
-                 resampled ? 2 : 1, 0.03);
+    assert_near(apart, 9.4 / pixel, 0.02);
+    assert_near((place[0][1] - place[0][0]) / apart, 1 + 500e-6, 1e-5);
+    assert_near((place[2][1] - place[2][0]) / apart, 1 - 200e-6, 1e-5);
+    assert_near(0.5 * (place[0][0] + place[0][1]) - 0.5 * (place[1][0] + place[1][1]), 0, 0.03);
+    assert_near(0.5 * (place[2][0] + place[2][1]) - 0.5 * (place[1][0] + place[1][1]),
+                resampled ? 2 : 1, 0.03);
     free(colours.pixels);
     fg_render_free(spec);
   }

@@ -5,6 +5,7 @@
 
 #include "render/spec.h"
 #include "support/brief.h"
+#include "support/test.h"
 
 /* Mean square of a foil's first edge and its products at lags of one step, over many foils. */
 typedef struct scatter {
@@ -75,11 +76,11 @@ static void scatter_has_its_size_and_form(void **state) {
              "\"correlation_form\":\"%s\"",
              c->length_um, c->exponential ? "exponential" : "gaussian");
     scatter s = scatter_of(c->length_um < 20 ? 4 : c->length_um < 100 ? 24 : 60, rough);
-    assert_close(s.variance / 4 / expected_at(c, 0), 1, c->tolerance);
+    assert_near(s.variance / 4 / expected_at(c, 0), 1, c->tolerance);
     for (size_t k = 1; k < 64 && (double)k * s.step_um < 3 * c->length_um; k++) {
       if (isnan(s.lag[k])) break;
       double expected = expected_at(c, (double)k * s.step_um) / expected_at(c, 0);
-      assert_close(s.lag[k] / s.variance, expected, fmax(0.02, 0.6 * c->tolerance));
+      assert_near(s.lag[k] / s.variance, expected, fmax(0.02, 0.6 * c->tolerance));
     }
   }
 }
@@ -94,7 +95,7 @@ static void edges_share_what_is_common(void **state) {
     for (size_t i = 0; i < foil->roughness_count; i++, count++)
       both += 1e6 * (double)foil->roughness[0][i] * (double)foil->roughness[1][i];
   }
-  assert_close(both / count, 1.44, 0.08);
+  assert_near(both / count, 1.44, 0.08);
   fg_render_free(spec);
 }
 
@@ -115,7 +116,7 @@ static void disc_scatters_and_closes(void **state) {
                  "\"radius_mm\":2}],\"scanner\":{\"rough\":{\"edge_roughness_um\":0.9,"
                  "\"edge_common_um\":1.2,\"correlation_um\":%g,\"correlation_form\":\"%s\"}}}",
                  seed, lengths_um[l], models[f]);
-        assert_int_equal(fg_render_parse(&ctx, "spec.json", json, &spec), FG_OK);
+        assert_ok(&ctx, fg_render_parse(&ctx, "spec.json", json, &spec));
         const fg_shape *disc = &spec->scene.shapes[0];
         size_t n = disc->roughness_count;
         for (size_t i = 1; i <= n; i++)
@@ -127,7 +128,7 @@ static void disc_scatters_and_closes(void **state) {
       }
       double expected = l == 2 ? 1 : expected_at(&(roughness_case){lengths_um[l], f == 1, 0}, 0);
       const double tolerance[] = {0.04, 0.1, 0.6};
-      assert_close(squares / samples / (1.5 * 1.5) / expected, 1, tolerance[l]);
+      assert_near(squares / samples / (1.5 * 1.5) / expected, 1, tolerance[l]);
       assert_true(turn < 3 * next + 1e-6); /* where it closes as smooth as elsewhere */
     }
 }
@@ -190,7 +191,7 @@ static void roughness_has_its_size(void **state) {
     count++;
   }
   /* 600 columns of 5.3 um hold about 36 independent lengths: 12 % for the sd of one draw. */
-  assert_close(sqrt(squares / (double)count), 1.5 * sqrt(2.0), 0.8);
+  assert_near(sqrt(squares / (double)count), 1.5 * sqrt(2.0), 0.8);
   assert_true(lag / squares > 0.9);
   drop(&a);
   drop(&b);

@@ -7,6 +7,7 @@
 
 #include "foilgauge/scan.h"
 #include "render/jpeg.h"
+#include "support/test.h"
 
 typedef struct statistics {
   double mean, sd, right, below;
@@ -46,10 +47,10 @@ static void noise_has_its_sd_and_correlation(void **state) {
              correlations[i]);
     picture p = draw_format(EMPTY, 3, members);
     statistics s = picture_statistics(&p);
-    assert_close(s.mean, 100, 0.08);
-    assert_close(s.sd, 2.5, 0.03);
-    assert_close(s.right, correlations[i], 0.01);
-    assert_close(s.below, correlations[i], 0.01);
+    assert_near(s.mean, 100, 0.08);
+    assert_near(s.sd, 2.5, 0.03);
+    assert_near(s.right, correlations[i], 0.01);
+    assert_near(s.below, correlations[i], 0.01);
     drop(&p);
   }
 }
@@ -64,8 +65,8 @@ static void noise_is_normal(void **state) {
     fourth += u * u * u * u / n;
     beyond += fabs(u) > 3;
   }
-  assert_close(fourth, 3, 0.06);
-  assert_close(beyond / n, 0.0027, 0.0004);
+  assert_near(fourth, 3, 0.06);
+  assert_near(beyond / n, 0.0027, 0.0004);
   drop(&p);
 }
 
@@ -73,8 +74,8 @@ static void eight_bit_rounds_to_nearest(void **state) {
   (void)state;
   picture p = draw_format(EMPTY, 5, "\"bits\":8,\"noise\":1");
   statistics s = picture_statistics(&p);
-  assert_close(s.mean, 100, 0.01);
-  assert_close(s.sd, sqrt(1 + 1.0 / 12), 0.01);
+  assert_near(s.mean, 100, 0.01);
+  assert_near(s.sd, sqrt(1 + 1.0 / 12), 0.01);
   drop(&p);
 }
 
@@ -88,14 +89,14 @@ static void plateaus_keep_their_values_under_gamma(void **state) {
                             "0.661458333],\"radius_mm\":0.396875}],"
                             "\"scanner\":{" EXACT ",\"gamma\":%g}}",
                             gammas[i]);
-    assert_close(p.dn[3 * p.width + 3], 20, 0.01);
-    assert_close(p.dn[125 * p.width + 125], 220, 0.01);
+    assert_near(p.dn[3 * p.width + 3], 20, 0.01);
+    assert_near(p.dn[125 * p.width + 125], 220, 0.01);
     middles[i] = p.dn[125 * p.width + 200]; /* on the edge: half of the light */
     drop(&p);
   }
   for (size_t i = 0; i < 3; i++) {
     double light = 0.5 * (pow(20 / 255.0, gammas[i]) + pow(220 / 255.0, gammas[i]));
-    assert_close(middles[i], 255 * pow(light, 1 / gammas[i]), 1.0);
+    assert_near(middles[i], 255 * pow(light, 1 / gammas[i]), 1.0);
   }
 }
 
@@ -104,9 +105,9 @@ static void shading_and_clipping(void **state) {
   picture p = draw_format(EMPTY, 1,
                           "\"bits\":16,\"noise\":0,\"shading\":{\"x\":0.1,\"y\":-0.05,"
                           "\"quadratic\":0.02},\"clip_white\":111");
-  assert_close(p.dn[0], 100 * (1 - 0.1 + 0.05 + 0.04), 0.01);
-  assert_close(p.dn[599 * 800], 100 * (1 - 0.1 - 0.05 + 0.04), 0.01);
-  assert_close(p.dn[799], 111, 0.01); /* 119 */
+  assert_near(p.dn[0], 100 * (1 - 0.1 + 0.05 + 0.04), 0.01);
+  assert_near(p.dn[599 * 800], 100 * (1 - 0.1 - 0.05 + 0.04), 0.01);
+  assert_near(p.dn[799], 111, 0.01); /* 119 */
   drop(&p);
 }
 
@@ -129,8 +130,8 @@ static void halo_moves_light(void **state) {
     if (i) assert_true(coverage(&p, 300, 300) > 0.88);
     drop(&p);
   }
-  assert_close(sums[1] / sums[0], 1, 1e-3);
-  assert_close(near[0], 0, 1e-4);
+  assert_near(sums[1] / sums[0], 1, 1e-3);
+  assert_near(near[0], 0, 1e-4);
   assert_true(near[1] > 0.015 && near[1] < 0.06);
 }
 
@@ -146,8 +147,8 @@ static void wall_shows_on_one_side(void **state) {
   int64_t x = llround(bump->centre_px.x);
   int64_t y = llround(bump->centre_px.y + bump->radius_mm * 4800 / 25.4);
   double inside = coverage(&p, x, y + 9 + 10), outside = coverage(&p, x, y - 9 - 10);
-  assert_close(inside, 0.3 * exp(-1), 0.02);
-  assert_close(outside, 0, 1e-3);
+  assert_near(inside, 0.3 * exp(-1), 0.02);
+  assert_near(outside, 0, 1e-3);
   drop(&p);
 }
 
@@ -197,11 +198,11 @@ static void jpeg_halves_the_resolution_of_colours(void **state) {
   for (int i = 0; i < 16 * 16; i++)
     memcpy(edge + 3 * i, i % 16 < 5 ? (uint8_t[]){180, 90, 100} : (uint8_t[]){60, 130, 209}, 3);
   fg_jpeg_squeeze_colours(&jpeg, edge, 16, 16, 16 * 3);
-  assert_close(edge[3 * 2], 180, 3);
-  assert_close(edge[3 * 8], 60, 3);
-  assert_close(edge[3 * 8 + 2], 209, 3);
-  assert_close(edge[3 * 4], 120, 4);
-  assert_close(edge[3 * 5], 120, 4);
+  assert_near(edge[3 * 2], 180, 3);
+  assert_near(edge[3 * 8], 60, 3);
+  assert_near(edge[3 * 8 + 2], 209, 3);
+  assert_near(edge[3 * 4], 120, 4);
+  assert_near(edge[3 * 5], 120, 4);
 }
 
 #define BUSY                                                                                       \
@@ -242,17 +243,17 @@ static void file_holds_the_rows(void **state) {
   picture p = draw(0, "{\"schema\":\"foilgauge/render/1\",\"width_px\":130,\"height_px\":140,"
                       "\"discs\":[{\"centre_mm\":[0.3,0.35],\"radius_mm\":0.2}],"
                       "\"scanner\":{\"dpi\":[4800,4200],\"bits\":16}}");
-  assert_int_equal(fg_render_scan(&ctx, p.spec, path, NULL), FG_OK);
+  assert_ok(&ctx, fg_render_scan(&ctx, p.spec, path, NULL));
   fg_scan *scan = NULL;
-  assert_int_equal(fg_scan_open(&ctx, path, &(fg_scan_options){0}, &scan), FG_OK);
+  assert_ok(&ctx, fg_scan_open(&ctx, path, &(fg_scan_options){0}, &scan));
   const fg_scan_info *info = fg_scan_get_info(scan);
   assert_int_equal(info->width_px, 130);
   assert_int_equal(info->height_px, 140);
   assert_int_equal(info->bit_depth, 16);
-  assert_close(info->dpi[0], 4800, 0);
-  assert_close(info->dpi[1], 4200, 0);
+  assert_near(info->dpi[0], 4800, 0);
+  assert_near(info->dpi[1], 4200, 0);
   uint16_t rows[140][130];
-  assert_int_equal(fg_scan_read_rows(&ctx, scan, 140, rows, sizeof rows[0]), FG_OK);
+  assert_ok(&ctx, fg_scan_read_rows(&ctx, scan, 140, rows, sizeof rows[0]));
   for (int i = 0; i < 130 * 140; i++)
     assert_int_equal(rows[i / 130][i % 130], lround(p.dn[i] * 257));
   fg_scan_close(scan);

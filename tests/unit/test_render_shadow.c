@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A shadow by direction: beside the edges whose normal lies in its sector, and only there. */
 #include "render_picture.h"
+#include "support/test.h"
 
 static const double pi = 3.14159265358979323846;
 
@@ -52,10 +53,10 @@ static void shadow_is_within_its_sector(void **state) {
     for (double degrees = 0; degrees < 360; degrees += 5)
       for (double distance = 8; distance < 60; distance += 13) {
         double share = expected_share(degrees, directions[i], widths[i]);
-        assert_close(beside(&p, degrees, distance), 100 - 30 * share * exp(-distance / 20), 0.15);
+        assert_near(beside(&p, degrees, distance), 100 - 30 * share * exp(-distance / 20), 0.15);
       }
     for (double degrees = 0; degrees < 360; degrees += 5)
-      assert_close(beside(&p, degrees, -8), 200, 0.01);
+      assert_near(beside(&p, degrees, -8), 200, 0.01);
     drop(&p);
   }
 }
@@ -69,8 +70,8 @@ static void amplitude_is_light(void **state) {
       snprintf(members, sizeof members, "\"shadow\":{\"amplitude\":%g,\"length_px\":20}",
                0.2 * sign);
       picture p = draw_disc(DISC, 120, dark ? -100 : 100, members);
-      assert_close(beside(&p, 0, 10), 120 + sign * 20 * exp(-0.5), 0.1);
-      assert_close(beside(&p, 180, 10), 120, 0.01);
+      assert_near(beside(&p, 0, 10), 120 + sign * 20 * exp(-0.5), 0.1);
+      assert_near(beside(&p, 180, 10), 120, 0.01);
       drop(&p);
     }
 }
@@ -79,9 +80,9 @@ static void gap_keeps_it_from_the_edge(void **state) {
   (void)state;
   picture p =
       draw_disc(DISC, 100, 100, "\"shadow\":{\"amplitude\":-0.4,\"length_px\":15,\"gap_px\":16}");
-  assert_close(beside(&p, 0, 22), 100 - 40 * exp(-0.4), 0.3);
-  assert_close(beside(&p, 0, 8), 100 - 40 * exp(-0.5), 0.5);
-  assert_close(beside(&p, 0, 31), 100 - 40 * exp(-1), 0.3);
+  assert_near(beside(&p, 0, 22), 100 - 40 * exp(-0.4), 0.3);
+  assert_near(beside(&p, 0, 8), 100 - 40 * exp(-0.5), 0.5);
+  assert_near(beside(&p, 0, 31), 100 - 40 * exp(-1), 0.3);
   drop(&p);
 }
 
@@ -89,9 +90,9 @@ static void gap_keeps_it_from_the_edge(void **state) {
 static void hole_faces_its_middle(void **state) {
   (void)state;
   picture p = draw_disc(HOLE, 100, 100, "\"shadow\":{\"amplitude\":-0.3,\"length_px\":20}");
-  assert_close(beside(&p, 180, -10), 100 - 30 * exp(-0.5), 0.1);
-  assert_close(beside(&p, 0, -10), 100, 0.01);
-  assert_close(beside(&p, 180, 10), 200, 0.01);
+  assert_near(beside(&p, 180, -10), 100 - 30 * exp(-0.5), 0.1);
+  assert_near(beside(&p, 0, -10), 100, 0.01);
+  assert_near(beside(&p, 180, 10), 200, 0.01);
   drop(&p);
 }
 
@@ -108,8 +109,8 @@ static void strips_have_it_beside_their_wall(void **state) {
   double y = bump->centre_px.y + bump->radius_mm / pixel, half = 0.05 / pixel;
   double inside = value_at(&p, (double)x, y + half + 10);
   double outside = value_at(&p, (double)x, y - half - 10);
-  assert_close((inside - 20) / 200, 0.25 * exp(-1), 0.003);
-  assert_close((outside - 20) / 200, 0.3 * exp(-1), 0.003);
+  assert_near((inside - 20) / 200, 0.25 * exp(-1), 0.003);
+  assert_near((outside - 20) / 200, 0.3 * exp(-1), 0.003);
   drop(&p);
 }
 
@@ -130,7 +131,7 @@ static void truth_records_it(void **state) {
   fg_context ctx = {0};
   char *json = NULL;
   picture p = draw_disc(DISC, 100, 100, "\"shadow\":{\"amplitude\":-0.4,\"direction_deg\":30}");
-  assert_int_equal(fg_render_truth_json(&ctx, p.spec, &json), FG_OK);
+  assert_ok(&ctx, fg_render_truth_json(&ctx, p.spec, &json));
   const char *words[] = {"\"shadow\": {", "\"amplitude\": -0.4", "\"direction_deg\": 30",
                          "\"width_deg\": 90", "\"length_px\": 15"};
   for (size_t i = 0; i < sizeof words / sizeof *words; i++)

@@ -1,14 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Specs of the renderer that must be refused, each by the member that is wrong. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "foilgauge/render.h"
+#include "support/test.h"
 
 typedef struct bad_spec {
   const char *json, *words;
@@ -189,6 +185,7 @@ static void bad_specs_are_refused_by_name(void **state) {
       {HEAD "\"effects\":[{\"id\":\"part.stretch\"}]}", "effects[0].value_rel is missing"},
   };
   for (size_t i = 0; i < sizeof table / sizeof *table; i++) {
+    in_row("table[%zu]", i);
     fg_context ctx = {0};
     fg_render_spec *spec = (fg_render_spec *)table;
     if (fg_render_parse(&ctx, "spec.json", table[i].json, &spec) != FG_ERR_DATA)

@@ -4,6 +4,7 @@
 #include "foilgauge/words.h"
 #include "quantity/quantity_rows.h"
 #include "support/report_fixture.h"
+#include "support/test.h"
 
 static void json_holds_every_field(void **state) {
   fixture *all = *state;
@@ -149,6 +150,7 @@ static void numbers_are_plain(void **state) {
   } cases[] = {{20.73, "20.73"},   {-0.0, "0"},     {NAN, "null"},
                {INFINITY, "null"}, {2e-5, "2e-05"}, {1.0 / 3, "0.3333333333"}};
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    in_row("cases[%zu]", i);
     char text[32];
     fg_json_format(text, cases[i].value);
     assert_string_equal(text, cases[i].text);
@@ -216,10 +218,11 @@ static void a_full_disk_is_an_error(void **state) {
   report_writer *const writers[] = {fg_report_write_json, fg_report_write_csv,
                                     fg_report_write_points, fg_report_write_table};
   for (size_t i = 0; i < sizeof writers / sizeof *writers; i++) {
+    in_row("writers[%zu]", i);
     fg_context ctx = {0};
     FILE *full = fopen("/dev/full", "w");
     if (!full) skip();
-    assert_int_equal(writers[i](&ctx, &all->report, full), FG_ERR_IO);
+    assert_status(NULL, writers[i](&ctx, &all->report, full), FG_ERR_IO);
     assert_true(ctx.message[0] != '\0');
     fclose(full);
   }

@@ -1,11 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Overlay and page: pixels where they belong, words that cannot break out of their place. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 #include <unistd.h>
 
@@ -13,6 +7,7 @@
 #include "page/canvas.h"
 #include "page/page.h"
 #include "support/synthetic_foil.h"
+#include "support/test.h"
 
 enum { WIDTH = 1100, HEIGHT = 620 };
 
@@ -28,7 +23,7 @@ static void write_ramp(char path[]) {
   for (int y = 0; y < HEIGHT; y++)
     for (int x = 0; x < WIDTH; x++)
       gray[y * WIDTH + x] = (uint8_t)lround(ramp(x, y));
-  assert_int_equal(fg_png_encode(&ctx, gray, WIDTH, HEIGHT, 1, &png, &size), FG_OK);
+  assert_ok(&ctx, fg_png_encode(&ctx, gray, WIDTH, HEIGHT, 1, &png, &size));
   FILE *file = fdopen(mkstemp(path), "w");
   assert_int_equal(fwrite(png, 1, size, file), size);
   fclose(file);
@@ -53,9 +48,9 @@ static void a_picture_averages_over_boxes(void **state) {
   const int32_t widths[] = {WIDTH, 1099, 373, 64};
   for (size_t b = 0; b < 2; b++)
     for (size_t i = 0; i < sizeof widths / sizeof *widths; i++) {
+      in_row("widths[%zu]", i);
       fg_picture picture;
-      assert_int_equal(fg_picture_load(&ctx, &measurement, boxes[b], widths[i], 1e9, &picture),
-                       FG_OK);
+      assert_ok(&ctx, fg_picture_load(&ctx, &measurement, boxes[b], widths[i], 1e9, &picture));
       assert_true(picture.width <= widths[i] && picture.width >= widths[i] * 9 / 10 - 200);
       for (int32_t y = 0; y < picture.height; y++)
         for (int32_t x = 0; x < picture.width; x++) {
@@ -78,7 +73,7 @@ static void a_scan_that_changed_is_refused(void **state) {
   const int64_t box[4] = {0, 0, WIDTH, HEIGHT};
   fg_picture picture;
   measurement.height_px++;
-  assert_int_equal(fg_picture_load(&ctx, &measurement, box, 100, 1e9, &picture), FG_ERR_DATA);
+  assert_status(&ctx, fg_picture_load(&ctx, &measurement, box, 100, 1e9, &picture), FG_ERR_DATA);
   assert_null(picture.gray);
   unlink(path);
 }
@@ -107,7 +102,7 @@ static void a_line_lies_where_its_pixels_are(void **state) {
     canvas.rgb = &rgb;
     double mm = 437.0 * 25.4 / 600;
     const fg_point ends[2] = {{mm, 100 * 25.4 / 600}, {mm, 300 * 25.4 / 600}};
-    assert_int_equal(fg_canvas_line(&ctx, &canvas, ends, 2, (fg_pen){0xff0000, 1, 0}), FG_OK);
+    assert_ok(&ctx, fg_canvas_line(&ctx, &canvas, ends, 2, (fg_pen){0xff0000, 1, 0}));
     double expected = (437.0 - 100 + 0.5) * width / 800.0 - 0.5;
     assert_true(fabs(column_of(&rgb) - expected) < 0.08);
     free(rgb.pixels);
@@ -121,7 +116,7 @@ __attribute__((noinline)) static char *page_of(const fg_report *report) {
   char *text = NULL;
   size_t size = 0;
   FILE *out = open_memstream(&text, &size);
-  assert_int_equal(fg_report_write_html(&ctx, report, out), FG_OK);
+  assert_ok(&ctx, fg_report_write_html(&ctx, report, out));
   fclose(out);
   return text;
 }

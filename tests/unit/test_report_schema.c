@@ -1,18 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Reports validate against the JSON Schemas in reports/schema (that these know every row of the
  * quantities: test_quantity.c). Skipped without python3-jsonschema. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include "foilgauge/report.h"
 #include "support/synthetic_foil.h"
+#include "support/test.h"
 
 enum { SKIPPED = 77 };
 
@@ -22,7 +17,7 @@ static int validate(const fg_report *report) {
   char path[] = "/tmp/foilgauge-report-XXXXXX", command[256];
   FILE *out = fdopen(mkstemp(path), "w");
   assert_non_null(out);
-  assert_int_equal(fg_report_write_json(&ctx, report, out), FG_OK);
+  assert_ok(&ctx, fg_report_write_json(&ctx, report, out));
   fclose(out);
   snprintf(command, sizeof command,
            "python3 tests/support/validate_schema.py reports/schema measure.schema.json %s", path);

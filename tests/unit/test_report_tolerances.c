@@ -2,6 +2,7 @@
 /* Values against tolerances, and what is missing: verdicts of reports. */
 #include "core/json_writer.h"
 #include "support/report_fixture.h"
+#include "support/test.h"
 
 static void verdict_considers_the_uncertainty(void **state) {
   (void)state;
@@ -21,6 +22,7 @@ static void verdict_considers_the_uncertainty(void **state) {
       {NAN, 0.1, FG_VERDICT_NOT_MEASURED, FG_VERDICT_NOT_MEASURED},
   };
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    in_row("cases[%zu]", i);
     assert_int_equal(fg_judge_value(&both, cases[i].value, cases[i].u), cases[i].verdict);
     assert_int_equal(fg_judge_value(&upper, cases[i].value, cases[i].u), cases[i].with_upper);
   }
@@ -29,7 +31,7 @@ static void verdict_considers_the_uncertainty(void **state) {
 static fg_report_outcome outcome_of(const fixture *all) {
   fg_context ctx = {0};
   fg_report_outcome outcome;
-  assert_int_equal(fg_report_judge(&ctx, &all->report, &outcome), FG_OK);
+  assert_ok(&ctx, fg_report_judge(&ctx, &all->report, &outcome));
   return outcome;
 }
 
@@ -89,7 +91,7 @@ static void a_missing_bump_rejects_the_foil(void **state) {
   char words[200];
   synthetic_tolerance(&all->design, "height_mm", 0.5, 0.6);
   lose_bump(foil, 3); /* number 4 */
-  assert_int_equal(fg_foil_decide(&ctx, &all->design, foil, &decision), FG_OK);
+  assert_ok(&ctx, fg_foil_decide(&ctx, &all->design, foil, &decision));
   assert_int_equal(decision.count, 9);
   for (size_t i = 0; i < decision.count; i++) {
     assert_int_equal(decision.judgements[i].verdict, i == 3 ? FG_VERDICT_FAIL : FG_VERDICT_PASS);
@@ -177,14 +179,14 @@ static void an_unknown_tolerance_is_refused(void **state) {
   fixture *all = *state;
   fg_context ctx = {0};
   synthetic_tolerance(&all->design, "thickness_mm", 0.09, 0.11);
-  assert_int_equal(fg_report_check_tolerances(&ctx, &all->design), FG_OK);
+  assert_ok(&ctx, fg_report_check_tolerances(&ctx, &all->design));
   synthetic_tolerance(&all->design, "hight_mm", 0, 1);
-  assert_int_equal(fg_report_check_tolerances(&ctx, &all->design), FG_ERR_DATA);
+  assert_status(&ctx, fg_report_check_tolerances(&ctx, &all->design), FG_ERR_DATA);
   assert_non_null(strstr(ctx.message, "tolerances.hight_mm"));
   assert_non_null(strstr(ctx.message, "height_mm,"));
   all->design.kind = FG_FOIL_DISCS;
   all->design.tolerance_count = 1;
-  assert_int_equal(fg_report_check_tolerances(&ctx, &all->design), FG_ERR_DATA);
+  assert_status(&ctx, fg_report_check_tolerances(&ctx, &all->design), FG_ERR_DATA);
 }
 
 static void a_margin_is_to_the_limit_that_exists(void **state) {
@@ -197,6 +199,7 @@ static void a_margin_is_to_the_limit_that_exists(void **state) {
       {1, INFINITY, 40, 1, 39}, {1, INFINITY, NAN, 1, NAN},
   };
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    in_row("cases[%zu]", i);
     const fg_margin margin = fg_margin_to(cases[i].lower, cases[i].upper, cases[i].value);
     assert_true(margin.limit == cases[i].limit);
     assert_true(margin.upper == (cases[i].limit == cases[i].upper));
@@ -213,8 +216,7 @@ static fg_judgement judgement_of(const fixture *all, const char *quantity, int n
   fg_context ctx = {0};
   fg_decision decision;
   fg_judgement found = {.severity = NAN};
-  assert_int_equal(fg_foil_decide(&ctx, &all->design, &all->measurement.foils[0], &decision),
-                   FG_OK);
+  assert_ok(&ctx, fg_foil_decide(&ctx, &all->design, &all->measurement.foils[0], &decision));
   for (size_t i = 0; i < decision.count; i++)
     if (!strcmp(decision.judgements[i].tolerance->quantity, quantity) &&
         decision.judgements[i].number == number)

@@ -3,17 +3,12 @@
  * caller says; the SHA-256 is the file's. */
 #include <math.h>
 #include <pthread.h>
-#include <setjmp.h>
 #include <signal.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 #include "core/sha256.h"
 #include "foilgauge/scan.h"
 #include "png_fixture.h"
+#include "support/test.h"
 
 static const picture plain = {.width = 61,
                               .height = 23,
@@ -92,7 +87,7 @@ static void round_trip(const picture *p, uint32_t seed) {
   for (size_t y = 0; y < p->height; y++)
     for (size_t i = row_bytes; i < stride; i++)
       assert_int_equal(rows[y * stride + i], 0xa5);
-  assert_int_equal(fg_scan_read_rows(&ctx, scan, 1, rows, (int64_t)stride), FG_ERR_USAGE);
+  assert_status(&ctx, fg_scan_read_rows(&ctx, scan, 1, rows, (int64_t)stride), FG_ERR_USAGE);
 
   fg_scan_close(scan);
   unlink(path);
@@ -131,6 +126,7 @@ static void transparency_is_dropped(void **state) {
   (void)state;
   static const size_t with_trns[] = {0, 3, 4, 7, 8, 11, 14};
   for (size_t i = 0; i < sizeof with_trns / sizeof with_trns[0]; i++) {
+    in_row("with_trns[%zu]", i);
     picture p = make_kind(with_trns[i], 9);
     p.with_trns = 1;
     round_trip(&p, 13);
@@ -168,8 +164,8 @@ static void equal_colours_keep_their_value(void **state) {
   char *path = save_bytes(file.data, file.size);
   uint16_t *rows = malloc(65536 * 2);
   fg_scan *scan = NULL;
-  assert_int_equal(fg_scan_open(NULL, path, NULL, &scan), FG_OK);
-  assert_int_equal(fg_scan_read_rows(NULL, scan, 256, rows, 512), FG_OK);
+  assert_ok(&test_context, fg_scan_open(&test_context, path, NULL, &scan));
+  assert_ok(&test_context, fg_scan_read_rows(&test_context, scan, 256, rows, 512));
   for (size_t i = 0; i < 65536; i++)
     assert_int_equal(rows[i], i);
   fg_scan_close(scan);
@@ -228,6 +224,7 @@ static const struct {
 static void resolution_comes_from_file_or_caller(void **state) {
   (void)state;
   for (size_t i = 0; i < sizeof resolutions / sizeof resolutions[0]; i++) {
+    in_row("resolutions[%zu]", i);
     picture p = plain;
     memcpy(p.phys, resolutions[i].phys, sizeof p.phys);
     p.phys_unit = resolutions[i].unit;
@@ -248,9 +245,9 @@ static void resolution_comes_from_file_or_caller(void **state) {
 static void zero_dpi_from_a_user_is_wrong(void **state) {
   (void)state;
   fg_context ctx = {0};
-  assert_int_equal(fg_scan_check_dpi(&ctx, 0), FG_ERR_USAGE);
+  assert_status(&ctx, fg_scan_check_dpi(&ctx, 0), FG_ERR_USAGE);
   assert_non_null(strstr(ctx.message, "--dpi"));
-  assert_int_equal(fg_scan_check_dpi(&ctx, 4800), FG_OK);
+  assert_ok(&ctx, fg_scan_check_dpi(&ctx, 4800));
 }
 
 /* The sum of the same bytes by nettle's plain call. */
@@ -302,9 +299,9 @@ static void pipe_is_read_hashed_and_drained(void **state) {
   fg_scan *scan = NULL;
   char hex[65], wanted[65];
   if (fg_scan_open(&ctx, "-", NULL, &scan) != FG_OK) fail_msg("%s", ctx.message);
-  assert_int_equal(fg_scan_sha256(&ctx, scan, hex), FG_ERR_USAGE);
-  assert_int_equal(fg_scan_read_rows(&ctx, scan, 300, rows, 700), FG_OK);
-  assert_int_equal(fg_scan_sha256(&ctx, scan, hex), FG_OK);
+  assert_status(&ctx, fg_scan_sha256(&ctx, scan, hex), FG_ERR_USAGE);
+  assert_ok(&ctx, fg_scan_read_rows(&ctx, scan, 300, rows, 700));
+  assert_ok(&ctx, fg_scan_sha256(&ctx, scan, hex));
   /* Closing the pipe's end first: a sender that was not drained then fails instead of waiting. */
   fg_scan_close(scan);
   dup2(saved, STDIN_FILENO);

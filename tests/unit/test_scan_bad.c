@@ -1,15 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A table of bad files and the error that each must get. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <sys/stat.h>
-
-#include <cmocka.h>
 
 #include "foilgauge/scan.h"
 #include "png_fixture.h"
+#include "support/test.h"
 
 static const picture plain = {.width = 301,
                               .height = 200,
@@ -42,7 +37,7 @@ static fg_status read_all(fg_context *ctx, const char *path, const fg_scan_optio
     status = fg_scan_read_rows(ctx, scan, left < 16 ? left : 16, rows, (int64_t)stride);
   }
   if (status != FG_OK)
-    assert_int_equal(fg_scan_read_rows(NULL, scan, 1, rows, (int64_t)stride), FG_ERR_USAGE);
+    assert_status(NULL, fg_scan_read_rows(NULL, scan, 1, rows, (int64_t)stride), FG_ERR_USAGE);
   free(rows);
   fg_scan_close(scan);
   return status;
@@ -93,6 +88,7 @@ static const struct {
 static void strangers_are_called_by_name(void **state) {
   (void)state;
   for (size_t i = 0; i < sizeof strangers / sizeof strangers[0]; i++) {
+    in_row("strangers[%zu]", i);
     bytes file = {(uint8_t *)strangers[i].head.data, strangers[i].head.size};
     expect(strangers[i].label, &file, FG_ERR_DATA, strangers[i].says);
   }
@@ -130,6 +126,7 @@ static void wrong_crc_is_fatal_in_every_chunk(void **state) {
   insert_chunk(&file, find_chunk(&file, "IEND"), "tIME", "\x07\xe8\1\1\1\1\1", 7);
   expect("all CRCs right", &file, FG_OK, NULL);
   for (size_t i = 0; i < sizeof types / sizeof types[0]; i++) {
+    in_row("types[%zu]", i);
     size_t at = find_chunk(&file, types[i]);
     uint8_t *crc = file.data + at + 8 + get_32(file.data + at);
     for (int byte = 0; byte < 4; byte++) {
@@ -187,6 +184,7 @@ static const struct {
 static void contradictory_headers_are_refused(void **state) {
   (void)state;
   for (size_t i = 0; i < sizeof headers / sizeof headers[0]; i++) {
+    in_row("headers[%zu]", i);
     bytes file = make_plain();
     size_t at = find_chunk(&file, "IHDR");
     uint8_t *field = file.data + at + 8 + headers[i].field;
@@ -274,10 +272,10 @@ static void oversized_scans_are_refused_by_the_cap(void **state) {
   bytes file = make_plain();
   char *path = save_bytes(file.data, file.size);
   fg_context ctx = {0};
-  assert_int_equal(read_all(&ctx, path, &(fg_scan_options){.pixel_cap = 301 * 200 - 1}),
-                   FG_ERR_DATA);
+  assert_status(&ctx, read_all(&ctx, path, &(fg_scan_options){.pixel_cap = 301 * 200 - 1}),
+                FG_ERR_DATA);
   assert_non_null(strstr(ctx.message, "301 x 200"));
-  assert_int_equal(read_all(&ctx, path, &(fg_scan_options){.pixel_cap = 301 * 200}), FG_OK);
+  assert_ok(&ctx, read_all(&ctx, path, &(fg_scan_options){.pixel_cap = 301 * 200}));
   unlink(path);
   free(path);
   free(file.data);
@@ -301,17 +299,17 @@ static void huge_interlaced_scans_are_refused(void **state) {
 static void what_is_no_file_is_an_io_error(void **state) {
   (void)state;
   fg_context ctx = {0};
-  assert_int_equal(read_all(&ctx, "/nonexistent/scan.png", NULL), FG_ERR_IO);
+  assert_status(&ctx, read_all(&ctx, "/nonexistent/scan.png", NULL), FG_ERR_IO);
   assert_non_null(strstr(ctx.message, "/nonexistent/scan.png"));
   assert_non_null(strstr(ctx.message, "No such file"));
-  assert_int_equal(read_all(&ctx, "/", NULL), FG_ERR_IO);
+  assert_status(&ctx, read_all(&ctx, "/", NULL), FG_ERR_IO);
   assert_non_null(strstr(ctx.message, "folder"));
-  assert_int_equal(read_all(&ctx, "/dev/null", NULL), FG_ERR_DATA);
+  assert_status(&ctx, read_all(&ctx, "/dev/null", NULL), FG_ERR_DATA);
   assert_non_null(strstr(ctx.message, "is empty"));
   char *path = save_bytes("x", 1);
   chmod(path, 0);
   if (access(path, R_OK) != 0) {
-    assert_int_equal(read_all(&ctx, path, NULL), FG_ERR_IO);
+    assert_status(&ctx, read_all(&ctx, path, NULL), FG_ERR_IO);
     assert_non_null(strstr(ctx.message, "ermission"));
   }
   unlink(path);

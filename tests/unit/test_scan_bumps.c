@@ -2,16 +2,12 @@
 /* Level `bumps` of the loop on scans, on measured foils made by formula: what is there is found,
  * what is not is not, and foils that are too small say so. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "scan_loop/bumps.h"
 #include "support/brief.h"
+#include "support/test.h"
 #include "table_loop/engine_random.h"
 
 enum { FOILS = 12, BUMPS = 9 };
@@ -67,7 +63,7 @@ static void run(const recipe *r, uint64_t seed, scans *s) {
   make(r, seed, s);
   const fg_scan_loop_bumps_request request = {
       .before = &s->one, .after = &s->one, .hold_out = none, .scan_count = 1, .seed = seed};
-  assert_int_equal(fg_scan_loop_bumps_run(&ctx, &request, &s->bumps), FG_OK);
+  assert_ok(&ctx, fg_scan_loop_bumps_run(&ctx, &request, &s->bumps));
 }
 
 /* The first claim of a response and its parameter. */
@@ -163,6 +159,7 @@ static void single_bumps_are_told(void **state) {
                {2, 5, 0.1, "of bumps 2, 7 differs"}};
   (void)state;
   for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+    in_row("cases[%zu]", k);
     recipe r = plain;
     scans s;
     r.first = cases[k].first;
@@ -258,7 +255,7 @@ static void bumps_that_were_not_fitted_are_left_out(void **state) {
   s.bump[0][4].radius_mm = NAN;
   const fg_scan_loop_bumps_request request = {
       .before = &s.one, .after = &s.one, .hold_out = none, .scan_count = 1, .seed = 1};
-  assert_int_equal(fg_scan_loop_bumps_run(&ctx, &request, &s.bumps), FG_OK);
+  assert_ok(&ctx, fg_scan_loop_bumps_run(&ctx, &request, &s.bumps));
   assert_int_equal(s.bumps.count, BUMPS - 2);
   fg_scan_loop_bumps_free(&s.bumps);
 }
@@ -277,13 +274,13 @@ static void views_of_one_foil_are_averaged(void **state) {
                                         .scan_count = 2,
                                         .same_foil = true,
                                         .seed = 1};
-  assert_int_equal(fg_scan_loop_bumps_run(&ctx, &request, &s.bumps), FG_OK);
+  assert_ok(&ctx, fg_scan_loop_bumps_run(&ctx, &request, &s.bumps));
   assert_int_equal(s.bumps.count, BUMPS);
   assert_int_equal(s.bumps.parts, 1);
   assert_true(fabs(s.bumps.bump[3].value[0] - s.bump[0][3].radius_mm) < 1e-12);
   fg_scan_loop_bumps_free(&s.bumps);
   request.same_foil = false;
-  assert_int_equal(fg_scan_loop_bumps_run(&ctx, &request, &s.bumps), FG_OK);
+  assert_ok(&ctx, fg_scan_loop_bumps_run(&ctx, &request, &s.bumps));
   assert_int_equal(s.bumps.count, 2 * BUMPS);
   fg_scan_loop_bumps_free(&s.bumps);
 }

@@ -2,22 +2,18 @@
 /* Files that change while they are read: the SHA-256 is of what the rows came from. */
 #include <fcntl.h>
 #include <pthread.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <cmocka.h>
 #include <tiffio.h>
 
 #include "core/sha256.h"
 #include "foilgauge/measure.h"
 #include "foilgauge/scan.h"
+#include "support/test.h"
 
 enum { WIDTH = 2000, HEIGHT = 1500, HEAD = 17, BYTES = HEAD + WIDTH * HEIGHT };
 
@@ -95,10 +91,10 @@ static void sum_is_of_the_rows_that_were_read(void **state) {
   char hex[65], wanted[65];
   write_file(p->file, p->bytes, BYTES);
   fg_scan *scan = open_scan(p->file);
-  assert_int_equal(read_rows(scan, HEIGHT / 2), FG_OK);
+  assert_ok(NULL, read_rows(scan, HEIGHT / 2));
   overwrite(p->file, HEAD, BYTES / 4);
-  assert_int_equal(read_rows(scan, HEIGHT / 2), FG_OK);
-  assert_int_equal(fg_scan_sha256(NULL, scan, hex), FG_OK);
+  assert_ok(NULL, read_rows(scan, HEIGHT / 2));
+  assert_ok(&test_context, fg_scan_sha256(&test_context, scan, hex));
   sum_of(p->bytes, BYTES, wanted);
   assert_string_equal(hex, wanted);
   fg_scan_close(scan);
@@ -109,11 +105,11 @@ static void another_file_of_the_name_does_not_matter(void **state) {
   char hex[65], wanted[65];
   write_file(p->file, p->bytes, BYTES);
   fg_scan *scan = open_scan(p->file);
-  assert_int_equal(read_rows(scan, 10), FG_OK);
+  assert_ok(NULL, read_rows(scan, 10));
   write_file(p->other, (const uint8_t *)"other", 5);
   assert_int_equal(rename(p->other, p->file), 0);
-  assert_int_equal(read_rows(scan, HEIGHT - 10), FG_OK);
-  assert_int_equal(fg_scan_sha256(NULL, scan, hex), FG_OK);
+  assert_ok(NULL, read_rows(scan, HEIGHT - 10));
+  assert_ok(&test_context, fg_scan_sha256(&test_context, scan, hex));
   sum_of(p->bytes, BYTES, wanted);
   assert_string_equal(hex, wanted);
   fg_scan_close(scan);
@@ -126,9 +122,9 @@ static void completed_file_has_not_the_sum_of_the_cut_off_one(void **state) {
   write_file(p->file, p->bytes, BYTES);
   fg_scan *scan = open_scan(p->file);
   assert_int_equal(truncate(p->file, (off_t)cut), 0);
-  assert_int_equal(read_rows(scan, HEIGHT), FG_ERR_DATA);
+  assert_status(NULL, read_rows(scan, HEIGHT), FG_ERR_DATA);
   write_file(p->file, p->bytes, BYTES);
-  assert_int_equal(fg_scan_sha256(NULL, scan, hex), FG_OK);
+  assert_ok(&test_context, fg_scan_sha256(&test_context, scan, hex));
   sum_of(p->bytes, cut, wanted);
   assert_string_equal(hex, wanted);
   fg_scan_close(scan);
@@ -144,10 +140,10 @@ static void sum_of_a_scan_that_failed_is_of_the_whole_file(void **state) {
   fg_design_default(&design);
   memset(p->bytes, 'x', 2);
   write_file(p->file, p->bytes, BYTES);
-  assert_int_equal(fg_measure_scan(NULL, p->file, &design, &options, &m), FG_ERR_DATA);
+  assert_status(NULL, fg_measure_scan(NULL, p->file, &design, &options, &m), FG_ERR_DATA);
   sum_of(p->bytes, BYTES, wanted);
   assert_string_equal(m.sha256, wanted);
-  assert_int_equal(fg_measure_scan(NULL, p->folder, &design, &options, &m), FG_ERR_IO);
+  assert_status(NULL, fg_measure_scan(NULL, p->folder, &design, &options, &m), FG_ERR_IO);
   assert_string_equal(m.sha256, "");
 }
 
@@ -160,9 +156,9 @@ static void only_files_are_waited_for(void **state) {
   for (int i = 0; i < 2; i++) {
     fg_context ctx = {""};
     char hex[65];
-    assert_int_equal(fg_scan_open(&ctx, names[i], &options, &scan), FG_ERR_IO);
+    assert_status(&ctx, fg_scan_open(&ctx, names[i], &options, &scan), FG_ERR_IO);
     assert_non_null(strstr(ctx.message, "a pipe or a device"));
-    assert_int_equal(fg_sha256_file(NULL, names[i], hex), FG_ERR_IO);
+    assert_status(NULL, fg_sha256_file(NULL, names[i], hex), FG_ERR_IO);
   }
 }
 
@@ -203,11 +199,11 @@ static void tiff_is_summed_beside_its_reading(void **state) {
     pthread_t thread;
     assert_true(fg_scan_sums_apart(job.scan));
     assert_int_equal(pthread_create(&thread, NULL, sum_scan, &job), 0);
-    assert_int_equal(read_rows(job.scan, HEIGHT), FG_OK);
+    assert_ok(NULL, read_rows(job.scan, HEIGHT));
     pthread_join(thread, NULL);
-    assert_int_equal(job.status, FG_OK);
-    assert_int_equal(fg_scan_check_unchanged(NULL, job.scan), FG_OK);
-    assert_int_equal(fg_sha256_file(NULL, p->file, wanted), FG_OK);
+    assert_ok(NULL, job.status);
+    assert_ok(&test_context, fg_scan_check_unchanged(&test_context, job.scan));
+    assert_ok(&test_context, fg_sha256_file(&test_context, p->file, wanted));
     assert_string_equal(job.hex, wanted);
     fg_scan_close(job.scan);
   }
@@ -222,16 +218,16 @@ static void tiff_that_changed_is_refused(void **state) {
     write_tiff(p, COMPRESSION_NONE);
     fg_scan *scan = open_scan(p->file);
     if (summed_first)
-      assert_int_equal(fg_scan_sha256(NULL, scan, hex), FG_OK);
+      assert_ok(&test_context, fg_scan_sha256(&test_context, scan, hex));
     else
-      assert_int_equal(read_rows(scan, HEIGHT / 2), FG_OK);
+      assert_ok(NULL, read_rows(scan, HEIGHT / 2));
     overwrite(p->file, WIDTH * HEIGHT / 4, 1);
     overwrite(p->file, WIDTH * HEIGHT / 4 + 1, 1);
     if (summed_first)
-      assert_int_equal(read_rows(scan, HEIGHT / 2), FG_OK);
+      assert_ok(NULL, read_rows(scan, HEIGHT / 2));
     else
-      assert_int_equal(fg_scan_sha256(NULL, scan, hex), FG_ERR_IO);
-    assert_int_equal(fg_scan_check_unchanged(&ctx, scan), FG_ERR_IO);
+      assert_status(NULL, fg_scan_sha256(NULL, scan, hex), FG_ERR_IO);
+    assert_status(&ctx, fg_scan_check_unchanged(&ctx, scan), FG_ERR_IO);
     assert_non_null(strstr(ctx.message, "changed while it was read"));
     fg_scan_close(scan);
   }

@@ -1,15 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Red, green and blue of a scan are read apart after everything else, as each would be by itself.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 #include "foilgauge/scan.h"
 #include "png_fixture.h"
+#include "support/test.h"
 
 enum { WIDTH = 61, HEIGHT = 23 };
 
@@ -58,12 +53,12 @@ static void assert_apart(const picture *p) {
     fg_scan_close(read_channel(path, (fg_channel)(FG_CHANNEL_RED + k), alone[k]));
   fg_scan *scan = read_channel(path, FG_CHANNEL_RED, alone[0]);
   size_t row = WIDTH * (size_t)fg_scan_get_info(scan)->bytes_per_pixel;
-  assert_int_equal(fg_scan_sha256(&ctx, scan, hex), FG_OK);
+  assert_ok(&ctx, fg_scan_sha256(&ctx, scan, hex));
   assert_true(fg_scan_has_colours(scan));
-  assert_int_equal(fg_scan_begin_colours(&ctx, scan), FG_OK);
+  assert_ok(&ctx, fg_scan_begin_colours(&ctx, scan));
   for (size_t y = 0; y < HEIGHT; y++) {
     void *planes[3] = {apart[0], apart[1], apart[2]};
-    assert_int_equal(fg_scan_read_colours(&ctx, scan, planes), FG_OK);
+    assert_ok(&ctx, fg_scan_read_colours(&ctx, scan, planes));
     for (int k = 0; k < 3; k++)
       assert_memory_equal(apart[k], alone[k] + y * row, row);
   }
@@ -92,7 +87,7 @@ static void gray_has_no_colours(void **state) {
   fg_context ctx = {0};
   fg_scan *scan = read_channel(path, FG_CHANNEL_GREEN, rows);
   assert_false(fg_scan_has_colours(scan));
-  assert_int_equal(fg_scan_begin_colours(&ctx, scan), FG_ERR_USAGE);
+  assert_status(&ctx, fg_scan_begin_colours(&ctx, scan), FG_ERR_USAGE);
   fg_scan_close(scan);
   unlink(path);
   free(path);
@@ -111,7 +106,7 @@ static void a_file_that_shrinks_is_an_error(void **state) {
   fg_status status = fg_scan_begin_colours(&ctx, scan);
   for (int y = 0; y < HEIGHT && status == FG_OK; y++)
     status = fg_scan_read_colours(&ctx, scan, planes);
-  assert_int_equal(status, FG_ERR_DATA);
+  assert_status(NULL, status, FG_ERR_DATA);
   assert_non_null(strstr(ctx.message, path));
   fg_scan_close(scan);
   unlink(path);

@@ -1,21 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* JPEG of every kind that scanners write comes out as the picture that went in, within its loss;
  * the quality is that which it was made with; what is odd, wrong or made to harm is said. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <cmocka.h>
 #include <jpeglib.h>
 
 #include "foilgauge/scan.h"
 #include "png_fixture.h"
+#include "support/test.h"
 
 enum { WIDTH = 93, HEIGHT = 70 };
 
@@ -165,6 +161,7 @@ static void every_kind_is_read(void **state) {
                                         FG_CHANNEL_LUMINANCE};
   for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
     for (size_t c = 0; c < sizeof channels / sizeof *channels; c++) {
+      in_row("channels[%zu]", c);
       fg_context ctx = {0};
       reading r;
       fg_scan_options options = {.allow_lossy = true, .channel = channels[c], .dpi = 600};
@@ -181,7 +178,7 @@ static void nobody_gets_loss_unasked(void **state) {
   (void)state;
   fg_context ctx = {0};
   reading r;
-  assert_int_equal(read_kind(&ctx, &plain, NULL, &r), FG_ERR_DATA);
+  assert_status(&ctx, read_kind(&ctx, &plain, NULL, &r), FG_ERR_DATA);
   assert_non_null(strstr(ctx.message, "--allow-lossy"));
   assert_non_null(strstr(ctx.message, "\"allow_lossy\": true"));
 }
@@ -193,7 +190,7 @@ static void the_tables_tell_the_quality(void **state) {
     reading r;
     kind k = plain;
     k.quality = quality;
-    assert_int_equal(read_kind(&ctx, &k, &allowed, &r), FG_OK);
+    assert_ok(&ctx, read_kind(&ctx, &k, &allowed, &r));
     assert_int_equal(r.info.jpeg_quality, quality < 100 ? quality : 99);
   }
 }
@@ -233,6 +230,7 @@ static void resolution_comes_from_jfif_or_exif(void **state) {
       {0, 1, big, sizeof big - 1, 0, "no density"},
   };
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    in_row("cases[%zu]", i);
     fg_context ctx = {0};
     reading r;
     kind k = plain;

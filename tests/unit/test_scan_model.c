@@ -2,19 +2,14 @@
 /* The model file of a scanner: what the loop writes is read again as it was, and what no scanner
  * can be is refused with the file, the member, its value and what is allowed. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "scan_loop/result.h"
 #include "scan_loop/scanner_model.h"
 #include "scan_loop/state.h"
-#include "support/near.h"
+#include "support/test.h"
 
 enum { GRID = 41 };
 
@@ -141,7 +136,7 @@ static void what_would_be_refused_is_not_written(void **state) {
   assert_non_null(out);
   loop->set.effects[1].coefficient_um[0] = 5000;
   decide(loop);
-  assert_int_equal(fg_scan_loop_write_model(&ctx, loop, out), FG_ERR_DATA);
+  assert_status(&ctx, fg_scan_loop_write_model(&ctx, loop, out), FG_ERR_DATA);
   assert_non_null(strstr(ctx.message, "scan.carriage_ripple"));
   fclose(out);
   free_loop(loop);
@@ -207,6 +202,7 @@ static void what_no_scanner_can_be_is_refused(void **state) {
   };
   (void)state;
   for (size_t i = 0; i < sizeof table / sizeof *table; i++) {
+    in_row("table[%zu]", i);
     fg_context ctx = {0};
     fg_scanner_model *model = NULL;
     fg_status status = fg_scanner_model_parse(&ctx, "bad.json", table[i].json, &model);
@@ -229,6 +225,7 @@ static void what_a_scanner_can_be_is_taken(void **state) {
   };
   (void)state;
   for (size_t i = 0; i < sizeof table / sizeof *table; i++) {
+    in_row("table[%zu]", i);
     fg_context ctx = {0};
     fg_scanner_model *model = NULL;
     if (fg_scanner_model_parse(&ctx, "good.json", table[i], &model) != FG_OK)

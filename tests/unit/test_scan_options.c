@@ -1,16 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Options of a scan command that spoil a scan are named; those that do not are left alone. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "foilgauge/picture.h"
 #include "station/scan_options.h"
+#include "support/test.h"
 
 static void harmless_commands_are_left_alone(void **state) {
   static const char *const commands[] = {
@@ -28,6 +23,7 @@ static void harmless_commands_are_left_alone(void **state) {
   char words[1000];
   (void)state;
   for (size_t i = 0; i < sizeof commands / sizeof *commands; i++) {
+    in_row("commands[%zu]", i);
     assert_int_equal(fg_scan_options_inspect(commands[i], words, sizeof words), 0);
     assert_string_equal(words, "");
   }
@@ -60,6 +56,7 @@ static void harmful_options_are_named_with_what_is_right(void **state) {
   char words[1000];
   (void)state;
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    in_row("rows[%zu]", i);
     const fg_picture_words *found = fg_picture_finding_words();
     assert_int_equal(fg_scan_options_inspect(rows[i].command, words, sizeof words), 1);
     while (found->name && strcmp(found->name, rows[i].finding) != 0)

@@ -3,15 +3,10 @@
  * what has crashed readers crashes nothing. */
 #include <dirent.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 #include "foilgauge/scan.h"
 #include "png_fixture.h"
+#include "support/test.h"
 
 static char *suite_folder(void) {
   const char *shared = getenv("FOILGAUGE_SHARED");

@@ -3,21 +3,16 @@
  * JSON, and the JSON says nothing else. Small scans, made by formula: a ring that is tied, a clean
  * foil, a foil with a ripple. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cjson/cJSON.h>
-#include <cmocka.h>
-
 #include "foilgauge/scan_loop.h"
 #include "report/scan_loop/parts.h"
 #include "scan_loop/state.h"
-#include "support/near.h"
 #include "support/odd_scan.h"
+#include "support/test.h"
+#include <cjson/cJSON.h>
 
 enum { FOIL_BUMPS = 5 };
 
@@ -57,7 +52,7 @@ static cJSON *written(const fg_scan_loop *loop) {
   size_t size;
   FILE *out = open_memstream(&text, &size);
   assert_non_null(out);
-  assert_int_equal(fg_scan_loop_write_json(&ctx, loop, out), FG_OK);
+  assert_ok(&ctx, fg_scan_loop_write_json(&ctx, loop, out));
   fclose(out);
   cJSON *json = cJSON_Parse(text);
   assert_non_null(json);
@@ -126,7 +121,7 @@ static void assert_noise(const cJSON *json, const fg_scan_noise *noise) {
 static void assert_summary(const cJSON *json, const fg_scan_result *result) {
   fg_context ctx = {0};
   char *sentence = NULL;
-  assert_int_equal(fg_scan_loop_sentence(&ctx, result, &sentence), FG_OK);
+  assert_ok(&ctx, fg_scan_loop_sentence(&ctx, result, &sentence));
   assert_true(strlen(sentence) > 0);
   assert_text(json, "summary", sentence);
   free(sentence);

@@ -2,13 +2,9 @@
 /* Values over the bumps' numbers: some stand apart, some follow a cycle, and of scatter alone
  * neither is told; with and without noise that is known from elsewhere. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-
-#include <cmocka.h>
 
 #include "scan_loop/bump_pattern.h"
+#include "support/test.h"
 #include "table_loop/engine_random.h"
 
 static fg_bump_values scatter(size_t n, double noise_dof, uint64_t *seed) {

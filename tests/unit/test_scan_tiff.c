@@ -1,15 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* TIFF and PNM of every kind come out as the values that went in; what is odd or wrong is said. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 
-#include <cmocka.h>
 #include <tiffio.h>
 
 #include "foilgauge/scan.h"
 #include "png_fixture.h"
+#include "support/test.h"
 
 enum { WIDTH = 93, HEIGHT = 70, TILE = 32, CHANNELS_MAX = 4 };
 
@@ -239,10 +235,9 @@ static void loss_is_refused_unless_allowed(void **state) {
             .rows_per_strip = 8};
   if (!TIFFIsCODECConfigured(COMPRESSION_JPEG)) skip();
   char *path = write_tiff(&k);
-  assert_int_equal(read_all(&ctx, path, &(fg_scan_options){.dpi = 600}, NULL), FG_ERR_DATA);
+  assert_status(&ctx, read_all(&ctx, path, &(fg_scan_options){.dpi = 600}, NULL), FG_ERR_DATA);
   assert_non_null(strstr(ctx.message, "--allow-lossy"));
-  assert_int_equal(read_all(&ctx, path, &(fg_scan_options){.dpi = 600, .allow_lossy = true}, NULL),
-                   FG_OK);
+  assert_ok(&ctx, read_all(&ctx, path, &(fg_scan_options){.dpi = 600, .allow_lossy = true}, NULL));
   unlink(path);
   free(path);
 }
@@ -326,8 +321,8 @@ static void damaged_strips_are_told_alike(void **state) {
   }
   fclose(file);
   for (int round = 0; round < 20; round++) {
-    assert_int_equal(read_wide(&ctx[0], path, 1, rows), FG_ERR_DATA);
-    assert_int_equal(read_wide(&ctx[1], path, 4, rows), FG_ERR_DATA);
+    assert_status(NULL, read_wide(&ctx[0], path, 1, rows), FG_ERR_DATA);
+    assert_status(NULL, read_wide(&ctx[1], path, 4, rows), FG_ERR_DATA);
     assert_string_equal(ctx[0].message, ctx[1].message);
     if (!strstr(ctx[0].message, "row 641 of 1400")) fail_msg("%s", ctx[0].message);
   }
@@ -357,7 +352,7 @@ static void wrapped_byte_counts_are_said_and_read(void **state) {
   rewind(file);
   fwrite(content, 1, size, file);
   fclose(file);
-  assert_int_equal(read_all(&ctx, path, &(fg_scan_options){.dpi = 600}, warning), FG_OK);
+  assert_ok(&ctx, read_all(&ctx, path, &(fg_scan_options){.dpi = 600}, warning));
   if (!strstr(warning, "byte count")) fail_msg("no warning but '%s'", warning);
   check_scan(&k, path, FG_CHANNEL_AUTO);
   unlink(path);
@@ -390,7 +385,8 @@ static void beyond_4_gib_the_last_rows_are_there(void **state) {
   assert_non_null(strstr(fg_scan_get_info(scan)->warning, "wrap"));
   fg_scan_close(scan);
   assert_int_equal(truncate(path, 255 + 2ll * BIG_WIDTH * BIG_HEIGHT), 0);
-  assert_int_equal(fg_scan_open(&ctx, path, &(fg_scan_options){.dpi = 4800}, &scan), FG_ERR_DATA);
+  assert_status(&ctx, fg_scan_open(&ctx, path, &(fg_scan_options){.dpi = 4800}, &scan),
+                FG_ERR_DATA);
   unlink(path);
   free(path);
 }
@@ -450,9 +446,10 @@ static void the_channel_with_the_most_contrast_is_taken(void **state) {
     char *path = save_bytes((uint8_t *)text, (size_t)head + SIDE * SIDE * 3);
     fg_scan *scan = NULL;
     uint8_t row[SIDE];
-    assert_int_equal(fg_scan_open(NULL, path, &(fg_scan_options){.dpi = 600}, &scan), FG_OK);
+    assert_ok(&test_context,
+              fg_scan_open(&test_context, path, &(fg_scan_options){.dpi = 600}, &scan));
     assert_int_equal(fg_scan_get_info(scan)->channel, FG_CHANNEL_RED + best);
-    assert_int_equal(fg_scan_read_rows(NULL, scan, 1, row, SIDE), FG_OK);
+    assert_ok(&test_context, fg_scan_read_rows(&test_context, scan, 1, row, SIDE));
     assert_int_equal(row[44], 200);
     assert_int_equal(row[0], 30);
     fg_scan_close(scan);

@@ -3,16 +3,11 @@
  * generalised least squares takes it out. */
 #include <gsl/gsl_linalg.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 
-#include <cmocka.h>
-
-#include "../support/foil_rows.h"
-#include "../support/near.h"
 #include "rows/scatter.h"
+#include "support/foil_rows.h"
+#include "support/test.h"
 
 static bool same_arc(const fg_edge_fit *edge_fit, size_t a, size_t b) {
   const fg_edge_fit_row *p = &edge_fit->rows[a], *q = &edge_fit->rows[b];
@@ -102,7 +97,7 @@ static void whitened_squares_are_those_of_dense_least_squares(void **state) {
     foil_rows_put_noise(&f, 1);
     f.edge_fit.scatter = kinds[k];
     double square = 0, dense = dense_square(&f.edge_fit, &kinds[k], f.residual_um);
-    assert_int_equal(fg_whitening_open(&ctx, &f.edge_fit, &whitening), FG_OK);
+    assert_ok(&ctx, fg_whitening_open(&ctx, &f.edge_fit, &whitening));
     fg_whitening_apply(&whitening, f.residual_um);
     for (size_t i = 0; i < f.edge_fit.row_count; i++)
       square += f.residual_um[i] * f.residual_um[i];
@@ -123,7 +118,7 @@ static void a_row_without_weight_tells_nothing(void **state) {
     foil_rows_open(&f);
     f.edge_fit.scatter = kinds[k];
     f.edge_fit.rows[20].weight = 0;
-    assert_int_equal(fg_whitening_open(&ctx, &f.edge_fit, &whitening), FG_OK);
+    assert_ok(&ctx, fg_whitening_open(&ctx, &f.edge_fit, &whitening));
     for (int large = 0; large < 2; large++) {
       foil_rows_put_noise(&f, 1);
       f.residual_um[20] = large ? 1e6 : 0;
@@ -169,7 +164,7 @@ static void noise_at_long_waves_is_found_from_short_ones(void **state) {
       /* What is smooth along an arc is no noise. */
       double none = 0, much = 40;
       foil_rows_add_effect(&f, fg_effect_find("scan.shear"), &none, &much, 1);
-      assert_int_equal(fg_edge_fit_find_scatter(&ctx, &f.edge_fit, f.residual_um), FG_OK);
+      assert_ok(&ctx, fg_edge_fit_find_scatter(&ctx, &f.edge_fit, f.residual_um));
       mean +=
           long_waves(&f.edge_fit.scatter) / true_long_waves(&f.edge_fit, &kinds[k], sd_um) / SEEDS;
       foil_rows_close(&f);
@@ -184,7 +179,7 @@ static void white_noise_stays_white(void **state) {
   foil_rows f;
   foil_rows_open(&f);
   foil_rows_put_noise(&f, 0.3);
-  assert_int_equal(fg_edge_fit_find_scatter(&ctx, &f.edge_fit, f.residual_um), FG_OK);
+  assert_ok(&ctx, fg_edge_fit_find_scatter(&ctx, &f.edge_fit, f.residual_um));
   assert_true(f.edge_fit.scatter.share == 0);
   assert_near(f.edge_fit.scatter.integral, 1, 1e-12);
   assert_near(f.edge_fit.scatter.row_um, 0.3, 0.02);
@@ -201,7 +196,7 @@ static void what_bumps_share_is_no_noise(void **state) {
   double none = 0, waves[16] = {0};
   waves[11] = waves[12] = 1;
   foil_rows_add_effect(&f, fg_effect_find("free.bump.phi"), &none, waves, 16);
-  assert_int_equal(fg_edge_fit_find_scatter(&ctx, &f.edge_fit, f.residual_um), FG_OK);
+  assert_ok(&ctx, fg_edge_fit_find_scatter(&ctx, &f.edge_fit, f.residual_um));
   assert_true(f.edge_fit.scatter.share == 0);
   assert_near(f.edge_fit.scatter.row_um, 0.3, 0.02);
   foil_rows_close(&f);
@@ -217,7 +212,7 @@ static void a_step_within_an_arc_is_no_noise(void **state) {
   const fg_edge_fit_row *in_arc = &f.edge_fit.rows[f.edge_fit.row_count / 3];
   double much = 8, shape = in_arc->at.y;
   foil_rows_add_effect(&f, fg_effect_find("scan.row_step"), &shape, &much, 1);
-  assert_int_equal(fg_edge_fit_find_scatter(&ctx, &f.edge_fit, f.residual_um), FG_OK);
+  assert_ok(&ctx, fg_edge_fit_find_scatter(&ctx, &f.edge_fit, f.residual_um));
   assert_near(long_waves(&f.edge_fit.scatter), 0.05 * 0.05, 0.6 * 0.05 * 0.05);
   foil_rows_close(&f);
 }

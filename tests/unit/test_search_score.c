@@ -3,16 +3,11 @@
  * the same rows; which sets are right, and which are none. */
 #include <gsl/gsl_multifit.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 
-#include <cmocka.h>
-
-#include "../support/foil_rows.h"
-#include "../support/near.h"
 #include "effect_search/policy.h"
+#include "support/foil_rows.h"
+#include "support/test.h"
 
 #define NOISE_UM 0.03
 
@@ -71,9 +66,8 @@ static void open_search(fixture *t) {
   foil_rows_add_effect(&t->f, kind_of(RIPPLE), &candidates[RIPPLE].shape, ripple_um, 2);
   t->out = (fg_explanations){0};
   t->s = (fg_search){.policy = fg_search_policy_of(&t->f.edge_fit), .out = &t->out};
-  assert_int_equal(
-      fg_search_columns_open(&ctx, &t->f.edge_fit, t->f.residual_um, t->f.jacobian, &t->s.columns),
-      FG_OK);
+  assert_ok(&ctx, fg_search_columns_open(&ctx, &t->f.edge_fit, t->f.residual_um, t->f.jacobian,
+                                         &t->s.columns));
   for (size_t e = 0; e < CANDIDATES; e++)
     fg_search_add(&t->s, &(fg_candidate){.kind = kind_of(e), .shape = {candidates[e].shape}});
   fg_search_noise(&t->s, false);
@@ -151,6 +145,7 @@ static void what_a_set_leaves_is_that_of_dense_least_squares(void **state) {
   assert_near(noise, NOISE_UM, 0.1 * NOISE_UM);
   assert_true(t.out.integral >= 1 && t.out.integral < 1.5); /* of white noise */
   for (size_t k = 0; k < sizeof masks / sizeof *masks; k++) {
+    in_row("masks[%zu]", k);
     dense own = solve_densely(&t, masks[k], CANDIDATES);
     fg_explanation got = fg_search_try(&t.s, &t.y, masks[k]);
     double excess = (own.sum - all.sum) / (noise * noise * t.out.integral);
@@ -190,6 +185,7 @@ static void the_set_that_made_the_rows_is_right_and_less_is_not(void **state) {
   fixture t;
   open_search(&t);
   for (size_t k = 0; k < sizeof sets / sizeof *sets; k++) {
+    in_row("sets[%zu]", k);
     fg_explanation got = fg_search_try(&t.s, &t.y, sets[k].mask);
     if (fg_search_is_right(&t.s, &t.y, &got) != sets[k].right)
       fail_msg("set %#x is %sright", sets[k].mask, sets[k].right ? "not " : "");
@@ -239,7 +235,7 @@ static void the_middle_of_a_polynomial_is_found(void **state) {
     const fg_search_request request = {.policy = fg_search_policy_of(&f.edge_fit),
                                        .residual_um = f.residual_um,
                                        .jacobian = f.jacobian};
-    assert_int_equal(fg_search_find(&ctx, &f.edge_fit, &request, &out), FG_OK);
+    assert_ok(&ctx, fg_search_find(&ctx, &f.edge_fit, &request, &out));
     assert_true(out.right);
     size_t e = 0;
     while (e < out.candidate_count && out.candidates[e].kind != kind)

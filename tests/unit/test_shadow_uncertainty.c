@@ -3,6 +3,7 @@
  * against renders of known truth. */
 #include "support/brief.h"
 #include "support/measured_render.h"
+#include "support/test.h"
 
 enum { FINE = 4800, COARSE = 2400 };
 
@@ -45,7 +46,7 @@ static measured measure_case(int dpi, int degrees, bool dark, const char *scanne
              dark ? "\"background\":205,\"contrast\":-165," : "\"background\":45,\"contrast\":150,",
              scanner);
   measured m = measure_render(json, NULL);
-  assert_int_equal(m.status, FG_OK);
+  assert_ok(NULL, m.status);
   assert_int_equal(m.result.foil_count, 1);
   return m;
 }

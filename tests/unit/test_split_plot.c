@@ -1,19 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Split plots with missing runs, against R; where none is missing, the analysis of variance. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "foilgauge/experiment.h"
 #include "stats/mixed_model.h"
 #include "support/data.h"
 #include "support/random.h"
+#include "support/test.h"
 
 static fg_experiment analyse(const char *text, const char *formula) {
   fg_context ctx = {0};
@@ -129,8 +124,9 @@ static void complete_plans_agree_with_the_strata(void **state) {
     fg_levels plots;
     fg_mixed_model mixed;
     assert_null(e.split_plot.mixed);
-    assert_int_equal(fg_table_levels(NULL, &e.table, "load", true, &plots), FG_OK);
-    assert_int_equal(fg_mixed_fit(NULL, &e.model, &plots, &e.regression, false, &mixed), FG_OK);
+    assert_ok(&test_context, fg_table_levels(&test_context, &e.table, "load", true, &plots));
+    assert_ok(&test_context,
+              fg_mixed_fit(&test_context, &e.model, &plots, &e.regression, false, &mixed));
     const fg_split_plot *s = &e.split_plot;
     assert_true(fabs(mixed.variance[FG_MIXED_RUNS] / s->run_ms - 1) < 1e-9);
     assert_true(fabs(mixed.variance[FG_MIXED_GROUPS] - (s->plot_ms - s->run_ms) / PER_PLOT) < 1e-9);

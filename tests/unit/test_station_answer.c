@@ -1,16 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a station answers to whom: fields, names of files, hosts, forms, tokens, hostile texts. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "station/naming.h"
 #include "support/station_fixture.h"
+#include "support/test.h"
 
 #define HOSTILE "<script>alert(1)</script>\"'&"
 #define FORM    "form=0123456789abcdef0123456789abcdef&"
@@ -68,7 +64,7 @@ static const char *serial_now(void) {
   fg_query_begin(fixture.station.database.reader, "SELECT serial FROM foils WHERE id = 1", &query);
   assert_true(fg_query_row(&query));
   snprintf(text, sizeof text, "%s", fg_query_get_text(&query, 0));
-  assert_int_equal(fg_query_end(&ctx, &query, "serial"), FG_OK);
+  assert_ok(&ctx, fg_query_end(&ctx, &query, "serial"));
   return text;
 }
 
@@ -100,6 +96,7 @@ static void test_fields(void **state) {
       {"a%ff=1", false, 0, 0},
   };
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    in_row("rows[%zu]", i);
     fg_request request = {0};
     bool good = fg_request_read_fields(&request, rows[i].text, strlen(rows[i].text));
     if (good != rows[i].good) fail_msg("'%s' is %s", rows[i].text, good ? "taken" : "refused");
@@ -150,6 +147,7 @@ static void test_names_of_files(void **state) {
       {"{serial}_{lot}", HOSTILE "_..", true, HOSTILE, ".", ""},
   };
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    in_row("rows[%zu]", i);
     fg_named named;
     if (fg_naming_take(rows[i].pattern, rows[i].file, &named) != rows[i].fits)
       fail_msg("%s %s", rows[i].pattern, rows[i].file);
@@ -160,6 +158,7 @@ static void test_names_of_files(void **state) {
   static const char *const bad[] = {
       "", "{", "{serial", "{weight}", "{serial}{lot}", "*{serial}", "{serial}-{serial}"};
   for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+    in_row("bad[%zu]", i);
     fg_context ctx = {0};
     if (fg_naming_check(&ctx, bad[i]) != FG_ERR_DATA) fail_msg("'%s' is taken", bad[i]);
     assert_string_not_equal(ctx.message, "");
@@ -185,6 +184,7 @@ static void test_hosts(void **state) {
       {"127.0.0.1:8317, evil", 421},
   };
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    in_row("rows[%zu]", i);
     fg_request request = make_request("/", "");
     request.host = rows[i].host;
     if (ask(&request) != rows[i].code) fail_msg("%s: %d", rows[i].host, told.code);
@@ -210,6 +210,7 @@ static void test_forms(void **state) {
       {"form=0123456789abcdef0123456789abcdef0&foil=1&serial=B", NULL, NULL, 403},
   };
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    in_row("rows[%zu]", i);
     fg_request request = make_request("/correct", rows[i].fields);
     request.post = true;
     request.origin = rows[i].origin;
@@ -249,6 +250,7 @@ static void test_token(void **state) {
   };
   fixture.request.token = token;
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    in_row("rows[%zu]", i);
     fg_request request = make_request(rows[i].path, rows[i].fields);
     request.cookie = rows[i].cookie;
     if (ask(&request) != rows[i].code) fail_msg("row %zu: %d", i, told.code);
@@ -278,6 +280,7 @@ static void test_nothing_else_is_served(void **state) {
   static const char *const ids[] = {
       "", "0", "-1", "2", "1 ", "1x", "9223372036854775808", "1;DROP TABLE foils", "../1"};
   for (size_t i = 0; i < sizeof ids / sizeof *ids; i++) {
+    in_row("ids[%zu]", i);
     fg_request request = {.path = "/foil", .host = "127.0.0.1:8317"};
     request.fields = 1;
     strcpy(request.field[0].name, "id");
@@ -306,6 +309,7 @@ static void test_script_in_names(void **state) {
                                          {"/trends", ""},
                                          {"/lots", ""}};
   for (size_t i = 0; i < sizeof asked / sizeof *asked; i++) {
+    in_row("asked[%zu]", i);
     if (get(asked[i][0], asked[i][1]) != 200) fail_msg("%s: %d", asked[i][0], told.code);
     if (strstr(page, "<script>") || strstr(page, "\" onfocus="))
       fail_msg("%s?%s: a script", asked[i][0], asked[i][1]);
@@ -332,6 +336,7 @@ static void test_corrections(void **state) {
       {"serial=x", 404, "S-2", ""},
   };
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    in_row("rows[%zu]", i);
     char fields[200];
     snprintf(fields, sizeof fields, FORM "%s", rows[i].fields);
     if (post("/correct", fields) != rows[i].code) fail_msg("row %zu: %d", i, told.code);
@@ -352,7 +357,7 @@ static void test_corrections(void **state) {
   assert_true(fg_query_row(&query));
   for (int i = 0; i < 3; i++)
     assert_int_equal(fg_query_get_integer(&query, i), i ? 1 : 2);
-  assert_int_equal(fg_query_end(&ctx, &query, "trail"), FG_OK);
+  assert_ok(&ctx, fg_query_end(&ctx, &query, "trail"));
   assert_int_equal(get("/foil", "id=1"), 200);
   assert_non_null(strstr(page, "Eva"));
 }
@@ -384,6 +389,7 @@ static void test_searches(void **state) {
       {"page=99999999999999999999", true},
   };
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    in_row("rows[%zu]", i);
     assert_int_equal(get("/history", rows[i].fields), 200);
     if ((strstr(page, "href=\"/foil?id=1\"") != NULL) != rows[i].found)
       fail_msg("'%s'", rows[i].fields);

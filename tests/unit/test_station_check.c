@@ -2,21 +2,16 @@
 /* What a check says of a scanner, on plates of known diameters under scanners of known scale and
  * shear. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
 #include "foilgauge/measure.h"
 #include "foilgauge/render.h"
 #include "station/check_fit.h"
 #include "support/brief.h"
+#include "support/test.h"
 
 #define NOMINAL_DPI 4800.0
 
@@ -63,7 +58,7 @@ static fg_check_fit check(const scanner *is, unsigned seed, const char *picture)
   close(mkstemp(path));
   write_spec(json, sizeof json, is, seed, picture);
   if (fg_render_parse(&ctx, "plate.json", json, &spec) != FG_OK) fail_msg("%s", ctx.message);
-  assert_int_equal(fg_render_scan(&ctx, spec, path, NULL), FG_OK);
+  assert_ok(&ctx, fg_render_scan(&ctx, spec, path, NULL));
   design_plate(&design);
   design.tone = is->tone;
   if (fg_measure_scan(&ctx, path, &design, &options, &measurement) != FG_OK)
@@ -182,7 +177,7 @@ static void one_size_tells_no_level(void **state) {
                          .level_u_mm = 1e-4};
   const fg_measurement measurement = {.discs = discs, .disc_count = 2};
   design_plate(&design);
-  assert_int_equal(fg_check_fit_plate(&ctx, &design, &measurement, &fit), FG_OK);
+  assert_ok(&ctx, fg_check_fit_plate(&ctx, &design, &measurement, &fit));
   assert_true(isnan(fit.level_um) && isnan(fit.u_level_um));
 }
 
@@ -211,7 +206,7 @@ static void a_plate_of_other_diameters_is_refused(void **state) {
   fg_disc disc = {.diameter_mm = 7, .coverage_deg = 360};
   const fg_measurement measurement = {.discs = &disc, .disc_count = 1};
   design_plate(&design);
-  assert_int_equal(fg_check_fit_plate(&ctx, &design, &measurement, &fit), FG_ERR_NOT_MEASURED);
+  assert_status(&ctx, fg_check_fit_plate(&ctx, &design, &measurement, &fit), FG_ERR_NOT_MEASURED);
   assert_non_null(strstr(ctx.message, "none of 1 discs"));
 }
 

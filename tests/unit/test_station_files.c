@@ -1,18 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A station's files: when nobody writes to one any more, whatever clocks say; what a lot's folder
  * is called. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "core/utf8.h"
 #include "station/file_stability.h"
 #include "station/lot_folder.h"
 #include "station/naming.h"
+#include "support/test.h"
 
 #define SECOND INT64_C(1000000000)
 
@@ -20,8 +15,7 @@ static bool look(fg_file_stability *rest, const char *name, int64_t bytes, int64
                  int64_t now_ns) {
   fg_context ctx;
   fg_resting *file;
-  assert_int_equal(fg_file_stability_look(&ctx, rest, name, bytes, modified_ns, now_ns, &file),
-                   FG_OK);
+  assert_ok(&ctx, fg_file_stability_look(&ctx, rest, name, bytes, modified_ns, now_ns, &file));
   return now_ns - file->since_ns >= FG_STABLE_NS;
 }
 
@@ -82,6 +76,7 @@ static void test_folders_of_lots(void **state) {
   char name[FG_LOT_FOLDER_NAME];
   (void)state;
   for (size_t i = 0; i < sizeof lots / sizeof *lots; i++) {
+    in_row("lots[%zu]", i);
     fg_lot_folder_name(lots[i][0], name);
     assert_string_equal(name, lots[i][1]);
   }

@@ -1,16 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* File names against patterns: the answer of every pattern that backtracks, without its time. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "station/naming.h"
 #include "support/random.h"
+#include "support/test.h"
 
 enum { NAME = 250, RANDOM = 200000 };
 
@@ -101,9 +96,10 @@ static void test_long_names(void **state) {
   memset(name, '_', NAME);
   name[NAME] = '\0';
   for (size_t i = 0; i < sizeof patterns / sizeof *patterns; i++) {
+    in_row("patterns[%zu]", i);
     fg_context ctx;
     fg_named named;
-    assert_int_equal(fg_naming_check(&ctx, patterns[i]), FG_OK);
+    assert_ok(&ctx, fg_naming_check(&ctx, patterns[i]));
     assert_false(fg_naming_take(patterns[i], name, &named));
     assert_int_equal(strlen(named.serial), FG_NAMED_TEXT - 1);
     assert_string_equal(named.lot, "");

@@ -2,17 +2,13 @@
 /* What pages may say: of a correction that others have overtaken, of a serial number that another
  * foil has, of a scan that came twice, of a file that is on its way, of crushed bumps, and of their
  * own age. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "station/news.h"
 #include "support/station_fixture.h"
+#include "support/test.h"
 
 #define FORM "form=0123456789abcdef0123456789abcdef&foil=1&"
 
@@ -67,7 +63,7 @@ static void expect_foil(const char *expected) {
                  &query);
   assert_true(fg_query_row(&query));
   assert_string_equal(fg_query_get_text(&query, 0), expected);
-  assert_int_equal(fg_query_end(&ctx, &query, "a foil"), FG_OK);
+  assert_ok(&ctx, fg_query_end(&ctx, &query, "a foil"));
 }
 
 static void expect_words(const char *words) {
@@ -143,6 +139,7 @@ static void test_a_scan_that_came_again_is_no_pass(void **state) {
   };
   (void)state;
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    in_row("rows[%zu]", i);
     char text[400];
     snprintf(text, sizeof text,
              "DELETE FROM arrivals WHERE id > 1; INSERT INTO arrivals (id, at, path, kind, message,"
@@ -228,6 +225,7 @@ static void test_crushed_is_said_of_crushed_bumps(void **state) {
   };
   (void)state;
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    in_row("rows[%zu]", i);
     char text[400];
     snprintf(text, sizeof text,
              "DELETE FROM bumps; INSERT INTO bumps VALUES (1, 1, 'fail', '%s'),"
@@ -248,6 +246,7 @@ static void test_a_page_says_how_old_it_is(void **state) {
   char expected[100];
   (void)state;
   for (size_t i = 0; i < sizeof paths / sizeof *paths; i++) {
+    in_row("paths[%zu]", i);
     assert_int_equal(ask(paths[i], "", false), 200);
     expect_words("<html lang=\"en\" class=\"unconfirmed\">");
     expect_words("This page shows what was known at 20");

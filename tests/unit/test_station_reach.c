@@ -1,17 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* For which names a station answers, and from where its forms may come. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
 #include "station/answer.h"
 #include "station/reach.h"
+#include "support/test.h"
 
 static const char *const hosts[] = {"scanner.example.com", "Other.example:443", "[2001:db8::7]"};
 
@@ -128,13 +123,14 @@ static void test_what_is_refused(void **state) {
   fg_context ctx;
   (void)state;
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    in_row("rows[%zu]", i);
     ctx.message[0] = '\0';
     if (fg_reach_find(&ctx, &rows[i], &address, &reach) != FG_ERR_USAGE)
       fail_msg("row %zu is taken", i);
     assert_string_not_equal(ctx.message, "");
   }
   const fg_station_request good = {.listen = "::1", .hosts = hosts, .host_count = 3};
-  assert_int_equal(fg_reach_find(&ctx, &good, &address, &reach), FG_OK);
+  assert_ok(&ctx, fg_reach_find(&ctx, &good, &address, &reach));
   assert_int_equal(reach, FG_REACH_LOCAL);
 }
 

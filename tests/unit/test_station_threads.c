@@ -1,17 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Requests that come at once: each gets an answer, and what may run once runs once. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "station/close.h"
 #include "support/station_fixture.h"
+#include "support/test.h"
 
 enum { THREADS = 8, ROUNDS = 60 };
 
@@ -47,7 +42,7 @@ static void test_a_lot_is_closed_by_one(void **state) {
   fg_context ctx = {0};
   int sent_on = 0, refused = 0;
   (void)state;
-  assert_int_equal(station_fixture_open(&ctx, &fixture, "S-1", "S-1.png"), FG_OK);
+  assert_ok(&ctx, station_fixture_open(&ctx, &fixture, "S-1", "S-1.png"));
   pthread_barrier_init(&barrier, NULL, THREADS);
   pthread_mutex_init(&fixture.station.closing.mutex, NULL);
   for (int i = 0; i < THREADS; i++)

@@ -1,20 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Trends and the scanner's health, from rows of a database to the words on the page. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
 #include "station/answer.h"
 #include "station/check.h"
 #include "station/scan_command.h"
+#include "support/test.h"
 
 enum { BUMPS = 3 };
 #define HOUR_MS INT64_C(3600000)
@@ -43,7 +38,7 @@ static int start(void **state) {
   fixture *f = calloc(1, sizeof *f);
   strcpy(f->folder, "/tmp/foilgauge_trend_XXXXXX");
   assert_non_null(mkdtemp(f->folder));
-  assert_int_equal(fg_station_settings_load(&ctx, NULL, NULL, &f->settings), FG_OK);
+  assert_ok(&ctx, fg_station_settings_load(&ctx, NULL, NULL, &f->settings));
   f->settings.lot.design.tolerance_count = 1;
   f->settings.lot.design.tolerances[0] = (fg_tolerance){"radius_mm", 3.3, 3.5};
   f->request = (fg_station_request){.folder = f->folder, .settings = &f->settings};
@@ -66,6 +61,7 @@ static int stop(void **state) {
   char path[128];
   fg_station_database_close(&f->station.database);
   for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
+    in_row("files[%zu]", i);
     snprintf(path, sizeof path, "%s/%s", f->folder, files[i]);
     unlink(path);
   }

@@ -4,7 +4,7 @@
 #include "report/lot/stiffness_columns.h"
 #include "report/lot/writers.h"
 #include "support/made_lot.h"
-#include "support/near.h"
+#include "support/test.h"
 
 enum { FOILS = 12, BUMPS = 8 };
 
@@ -34,11 +34,12 @@ static void causes_come_back(void **state) {
   const causes all[] = {
       {0.02, 1e-5, 1e-6}, {1e-5, 0.01, 1e-6}, {1e-5, 1e-5, 0.01}, {0.02, 0.01, 0.005}};
   for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
+    in_row("all[%zu]", i);
     fg_design design;
     fg_lot_analysis analysis;
     fg_design_default(&design);
     fg_lot lot = caused_lot(&design, &all[i]);
-    assert_int_equal(fg_lot_analyse(NULL, &lot, &analysis), FG_OK);
+    assert_ok(&test_context, fg_lot_analyse(&test_context, &lot, &analysis));
     const fg_lot_budget *budget = &analysis.stiffness.budget;
     assert_true(budget->known);
     double n = BUMPS * FOILS, bessel = sqrt(n / (n - 1));
@@ -84,7 +85,7 @@ static void shares_of_causes_that_go_together_are_the_whole(void **state) {
             (1 + together[c] * (radius / 3.4 - 1) + 0.004 * ((double)((3 * i + 7 * k) % 5) - 2));
         made_bump(&lot, i, k, radius, length / radius);
       }
-    assert_int_equal(fg_lot_analyse(NULL, &lot, &analysis), FG_OK);
+    assert_ok(&test_context, fg_lot_analyse(&test_context, &lot, &analysis));
     assert_true(analysis.stiffness.budget.known);
     assert_shares_are_the_whole(&analysis.stiffness.budget);
     fg_lot_analysis_free(&analysis);
@@ -92,11 +93,12 @@ static void shares_of_causes_that_go_together_are_the_whole(void **state) {
   }
 }
 
-static char *text_of(const fg_lot_analysis *analysis, fg_lot_writer *writer) {
+static __attribute__((noinline)) char *text_of(const fg_lot_analysis *analysis,
+                                               fg_lot_writer *writer) {
   char *text;
   size_t size;
   FILE *out = open_memstream(&text, &size);
-  assert_int_equal(writer(NULL, analysis, out), FG_OK);
+  assert_ok(NULL, writer(NULL, analysis, out));
   fclose(out);
   return text;
 }
@@ -113,7 +115,7 @@ static void thickness_that_is_not_known_is_not_zero(void **state) {
     for (size_t i = 0; i < FOILS; i++)
       if (!one || i) lot.records[i].foils[0].thickness_mm = NAN;
     if (one) lot.manifest.items = 1;
-    assert_int_equal(fg_lot_analyse(NULL, &lot, &analysis), FG_OK);
+    assert_ok(&test_context, fg_lot_analyse(&test_context, &lot, &analysis));
     const fg_lot_budget *budget = &analysis.stiffness.budget;
     assert_true(budget->known && isnan(budget->thickness.spread_pct));
     assert_near(sqrt(budget->sum_pct2) / budget->observed_pct, 1, 3e-3);
@@ -138,7 +140,7 @@ static void one_bump_has_no_spread(void **state) {
   fg_design_default(&design);
   fg_lot lot = made_lot(&design, 1, 1, "", NULL);
   made_bump(&lot, 0, 0, 3.4, 61);
-  assert_int_equal(fg_lot_analyse(NULL, &lot, &analysis), FG_OK);
+  assert_ok(&test_context, fg_lot_analyse(&test_context, &lot, &analysis));
   assert_false(analysis.has_stiffness || analysis.stiffness.budget.known);
   char *page = text_of(&analysis, fg_lot_write_page), *json = text_of(&analysis, fg_lot_write_json);
   assert_non_null(strstr(page, "How stiffness varies is not known"));
@@ -168,7 +170,7 @@ static void measurement_is_what_drawing_gives(void **state) {
   const fg_arch arch = {bump->radius_mm, bump->bump_angle_deg, 0.1};
   fg_arch_sensitivity slope;
   fg_context ctx;
-  assert_int_equal(fg_arch_sensitivities(&ctx, &arch, &material, &slope), FG_OK);
+  assert_ok(&ctx, fg_arch_sensitivities(&ctx, &arch, &material, &slope));
   double sum = 0, squares = 0, angles = 0, angle_squares = 0;
   for (int i = 1; i <= DRAWS; i++) {
     /* Two waves over the draws: each of sd 1, uncorrelated. */
@@ -181,7 +183,7 @@ static void measurement_is_what_drawing_gives(void **state) {
     fg_bump_derive(&design, &lot.nominal, &foil->overall, &strip, drawn);
     fg_arch_stiffness k;
     const fg_arch moved = {drawn->radius_mm, drawn->bump_angle_deg, 0.1};
-    assert_int_equal(fg_arch_free(&ctx, &moved, &material, &k), FG_OK);
+    assert_ok(&ctx, fg_arch_free(&ctx, &moved, &material, &k));
     double ln = log(k.stiffness_n_mm2), angle = drawn->bump_angle_deg - bump->bump_angle_deg;
     sum += ln / DRAWS;
     squares += ln * ln / DRAWS;

@@ -3,16 +3,10 @@
  * that moves, a spring from an arc's energy; at their limits; and by the law that all of them
  * share. (The arch itself: test_arch.c.) */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "foilgauge/stiffness.h"
-#include "support/near.h"
+#include "support/test.h"
 
 static const double pi = 3.14159265358979323846;
 static const fg_arch gen2 = {3.32, 63.15, 0.1};
@@ -23,8 +17,7 @@ static double stiffness_of(int model, fg_arch arch, double friction) {
   fg_context ctx;
   double stiffness;
   const fg_arch_material material = {200, 0.3, friction};
-  assert_int_equal(fg_stiffness_models()[model].stiffness(&ctx, &arch, &material, &stiffness),
-                   FG_OK);
+  assert_ok(NULL, fg_stiffness_models()[model].stiffness(&ctx, &arch, &material, &stiffness));
   return stiffness;
 }
 
@@ -52,6 +45,7 @@ static void heshmat_is_a_beam_on_its_chord(void **state) {
   (void)state;
   const fg_arch arches[] = {gen2, {4.1, 50, 0.1}, {2.5, 120, 0.15}};
   for (size_t i = 0; i < sizeof arches / sizeof *arches; i++) {
+    in_row("arches[%zu]", i);
     double half = arches[i].radius_mm * sin(arches[i].bump_angle_deg * pi / 360);
     double sink = 2 * simpson(0, half, beam_moment, 0) / bending(arches[i]);
     assert_near(stiffness_of(HESHMAT, arches[i], 0.1) * sink, 1, 1e-12);
@@ -94,6 +88,7 @@ static void flat_bumps_are_beams(void **state) {
   (void)state;
   const double angles[] = {1, 0.1, 0.001};
   for (size_t i = 0; i < sizeof angles / sizeof *angles; i++) {
+    in_row("angles[%zu]", i);
     const fg_arch flat = {1e6, angles[i], 1e-9};
     double beam = stiffness_of(HESHMAT, flat, 0);
     assert_near(stiffness_of(ARCH, flat, 0) / beam, 1, 1e-4);

@@ -8,19 +8,15 @@
  * Digits are -log10 |x - c| / |c| (-log10 |x| for c = 0), at most 15, as many as are certified.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "core/text.h"
 #include "foilgauge/anova.h"
 #include "foilgauge/distribution.h"
 #include "foilgauge/regression.h"
 #include "support/data.h"
+#include "support/test.h"
 
 enum { MAX_FIELDS = 16, FIRST_DATA_LINE = 61, MAX_SETS = 64 };
 
@@ -91,14 +87,14 @@ static void read_regression_table(const char *text, fg_table *table) {
   for (size_t number = 1; next_line(&text, &l); number++) {
     if (number < FIRST_DATA_LINE || l.fields < 2 || !is_number(l.field[0])) continue;
     if (!csv) {
-      assert_int_equal(fg_text_append(&ctx, &csv, l.fields == 2 ? "y,x" : "y"), FG_OK);
+      assert_ok(&ctx, fg_text_append(&ctx, &csv, l.fields == 2 ? "y,x" : "y"));
       for (size_t i = 1; l.fields > 2 && i < l.fields; i++)
-        assert_int_equal(fg_text_append(&ctx, &csv, ",x%zu", i), FG_OK);
+        assert_ok(&ctx, fg_text_append(&ctx, &csv, ",x%zu", i));
     }
     for (size_t i = 0; i < l.fields; i++)
-      assert_int_equal(fg_text_append(&ctx, &csv, "%s%s", i ? "," : "\n", l.field[i]), FG_OK);
+      assert_ok(&ctx, fg_text_append(&ctx, &csv, "%s%s", i ? "," : "\n", l.field[i]));
   }
-  assert_int_equal(fg_table_parse(&ctx, "strd", csv, strlen(csv), table), FG_OK);
+  assert_ok(&ctx, fg_table_parse(&ctx, "strd", csv, strlen(csv), table));
   free(csv);
 }
 
@@ -161,14 +157,14 @@ static void regressions(void **state) {
   };
   (void)state;
   for (size_t i = 0; i < sizeof sets / sizeof *sets; i++) {
+    in_row("sets[%zu]", i);
     fg_context ctx = {0};
     fg_table table;
     fg_model model;
     fg_regression reg;
     char *text = read_set(sets[i].set);
     read_regression_table(text, &table);
-    assert_int_equal(fg_regression_analyse(&ctx, &table, sets[i].formula, NULL, NULL, &model, &reg),
-                     FG_OK);
+    assert_ok(&ctx, fg_regression_analyse(&ctx, &table, sets[i].formula, NULL, NULL, &model, &reg));
     digits_row *row = new_row(sets[i].set, "regression", sets[i].difficulty);
     compare_regression(text, &reg, row);
     assert_digits(row, 13);
@@ -194,7 +190,7 @@ static void read_anova_table(const char *text, fg_table *table) {
     for (size_t i = 0; i < l.fields; i++)
       used += (size_t)snprintf(csv + used, capacity - used, "t%zu,%s\n", i + 1, l.field[i]);
   }
-  assert_int_equal(fg_table_parse(&ctx, "strd", csv, used, table), FG_OK);
+  assert_ok(&ctx, fg_table_parse(&ctx, "strd", csv, used, table));
   free(csv);
 }
 
@@ -228,8 +224,7 @@ static void compare_factor_regression(const fg_table *table, const fg_anova_onew
   fg_context ctx = {0};
   fg_model model;
   fg_regression reg;
-  assert_int_equal(fg_regression_analyse(&ctx, table, "y ~ group", NULL, NULL, &model, &reg),
-                   FG_OK);
+  assert_ok(&ctx, fg_regression_analyse(&ctx, table, "y ~ group", NULL, NULL, &model, &reg));
   assert_true(digits(reg.sequential[0].sum_of_squares, a->between_ss) > 14);
   assert_true(digits(reg.sequential[0].f, a->f) > 14);
   assert_true(digits(reg.partial[0].sum_of_squares, a->between_ss) > 14);
@@ -249,12 +244,13 @@ static void anovas(void **state) {
   };
   (void)state;
   for (size_t i = 0; i < sizeof sets / sizeof *sets; i++) {
+    in_row("sets[%zu]", i);
     fg_context ctx = {0};
     fg_table table;
     fg_anova_oneway anova;
     char *text = read_set(sets[i].set);
     read_anova_table(text, &table);
-    assert_int_equal(fg_anova_oneway_compute(&ctx, &table, "y", "group", &anova), FG_OK);
+    assert_ok(&ctx, fg_anova_oneway_compute(&ctx, &table, "y", "group", &anova));
     digits_row *row = new_row(sets[i].set, "ANOVA", sets[i].difficulty);
     compare_anova(text, &anova, row);
     assert_digits(row, 13);
@@ -272,8 +268,8 @@ static void read_numbers(const char *text, fg_table *table) {
   const char *dashes = strstr(text, "\n-----");
   assert_non_null(dashes);
   const char *data = strchr(dashes + 1, '\n') + 1;
-  assert_int_equal(fg_text_print(&ctx, &csv, "y\n%s", data), FG_OK);
-  assert_int_equal(fg_table_parse(&ctx, "strd", csv, strlen(csv), table), FG_OK);
+  assert_ok(&ctx, fg_text_print(&ctx, &csv, "y\n%s", data));
+  assert_ok(&ctx, fg_table_parse(&ctx, "strd", csv, strlen(csv), table));
   free(csv);
 }
 
@@ -284,13 +280,14 @@ static void summaries(void **state) {
                                            "lower", "average", "average", "higher"};
   (void)state;
   for (size_t i = 0; i < sizeof sets / sizeof *sets; i++) {
+    in_row("sets[%zu]", i);
     fg_context ctx = {0};
     fg_table table;
     fg_summary summary;
     line l;
     char *text = read_set(sets[i]);
     read_numbers(text, &table);
-    assert_int_equal(fg_summary_compute(&ctx, table.column[0].number, table.rows, &summary), FG_OK);
+    assert_ok(&ctx, fg_summary_compute(&ctx, table.column[0].number, table.rows, &summary));
     digits_row *row = new_row(sets[i], "summary", difficulty[i]);
     const char *at = text;
     while (next_line(&at, &l)) {
@@ -323,6 +320,7 @@ static void write_cells(FILE *file, const digits_row *row, const char *separator
   const double all[] = {row->estimate, row->standard_error, row->residual_sd,
                         row->r2,       row->squares,        row->f};
   for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
+    in_row("all[%zu]", i);
     fputs(separator, file);
     if (!isnan(all[i])) fprintf(file, "%.1f", all[i]);
   }

@@ -1,17 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* CSV tables: every kind of bad text gets an error that names the place; good text is exact. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "core/extended.h"
 #include "foilgauge/table.h"
+#include "support/test.h"
 
 static fg_status parse(fg_context *ctx, const char *text, fg_table *table) {
   return fg_table_parse(ctx, "runs.csv", text, strlen(text), table);
@@ -36,16 +32,17 @@ static void bad_text_is_named(void **state) {
   };
   (void)state;
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    in_row("cases[%zu]", i);
     fg_context ctx = {0};
     fg_table table;
-    assert_int_equal(parse(&ctx, cases[i].text, &table), FG_ERR_DATA);
+    assert_status(&ctx, parse(&ctx, cases[i].text, &table), FG_ERR_DATA);
     if (!strstr(ctx.message, cases[i].words))
       fail_msg("case %zu: '%s' lacks '%s'", i, ctx.message, cases[i].words);
     assert_null(table.column);
   }
   fg_context ctx = {0};
   fg_table table;
-  assert_int_equal(fg_table_parse(&ctx, "runs.csv", "T,D\n1,\0\n", 8, &table), FG_ERR_DATA);
+  assert_status(&ctx, fg_table_parse(&ctx, "runs.csv", "T,D\n1,\0\n", 8, &table), FG_ERR_DATA);
   assert_non_null(strstr(ctx.message, "NUL byte"));
 }
 
@@ -62,11 +59,12 @@ static void bad_cells_are_named_where_used(void **state) {
   };
   (void)state;
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    in_row("cases[%zu]", i);
     fg_context ctx = {0};
     fg_table table;
     const fg_extended *numbers = NULL;
-    assert_int_equal(parse(&ctx, cases[i].text, &table), FG_OK);
-    assert_int_equal(fg_table_numbers(&ctx, &table, "D", &numbers), FG_ERR_DATA);
+    assert_ok(&ctx, parse(&ctx, cases[i].text, &table));
+    assert_status(&ctx, fg_table_numbers(&ctx, &table, "D", &numbers), FG_ERR_DATA);
     if (!strstr(ctx.message, cases[i].words))
       fail_msg("case %zu: '%s' lacks '%s'", i, ctx.message, cases[i].words);
     fg_table_free(&table);
@@ -83,20 +81,21 @@ static void dialects_are_read(void **state) {
   };
   (void)state;
   for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+    in_row("texts[%zu]", i);
     fg_context ctx = {0};
     fg_table table;
     const fg_extended *numbers = NULL;
     fg_levels levels;
     char *text = NULL;
-    assert_int_equal(parse(&ctx, texts[i], &table), FG_OK);
+    assert_ok(&ctx, parse(&ctx, texts[i], &table));
     assert_int_equal(table.rows, 2);
-    assert_int_equal(fg_table_numbers(&ctx, &table, "T", &numbers), FG_OK);
+    assert_ok(&ctx, fg_table_numbers(&ctx, &table, "T", &numbers));
     assert_true(numbers[0].value == 1.5 && numbers[1].value == -2000);
-    assert_int_equal(fg_table_levels(&ctx, &table, "name", false, &levels), FG_OK);
+    assert_ok(&ctx, fg_table_levels(&ctx, &table, "name", false, &levels));
     assert_int_equal(levels.count, 2);
     assert_string_equal(levels.name[0], "a, \"b\"");
     assert_int_equal(levels.index[1], 1);
-    assert_int_equal(fg_table_format(&ctx, &table, &text), FG_OK);
+    assert_ok(&ctx, fg_table_format(&ctx, &table, &text));
     assert_string_equal(text, "T,name\n1.5,\"a, \"\"b\"\"\"\n-2000,c\n");
     free(text);
     fg_levels_free(&levels);
@@ -128,6 +127,7 @@ static void decimals_keep_their_digits(void **state) {
   assert_true(fg_extended_parse("3.141592653589793238462643383279", 32, &a));
   assert_true(fabs(a.tail - 1.2246467991473532e-16) < 1e-30);
   for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
+    in_row("numbers[%zu]", i);
     assert_true(fg_extended_parse(numbers[i], strlen(numbers[i]), &a));
     assert_true(a.value == strtod(numbers[i], NULL));
   }
@@ -161,11 +161,11 @@ static void words_among_numbers_need_factor(void **state) {
   fg_table table;
   fg_levels levels;
   (void)state;
-  assert_int_equal(parse(&ctx, "m\n10\n9\nspare\n9\n", &table), FG_OK);
-  assert_int_equal(fg_table_levels(&ctx, &table, "m", false, &levels), FG_ERR_DATA);
+  assert_ok(&ctx, parse(&ctx, "m\n10\n9\nspare\n9\n", &table));
+  assert_status(&ctx, fg_table_levels(&ctx, &table, "m", false, &levels), FG_ERR_DATA);
   assert_non_null(strstr(ctx.message, "row 3 (line 4), column 'm': 'spare' is not a number"));
   assert_non_null(strstr(ctx.message, "factor(name)"));
-  assert_int_equal(fg_table_levels(&ctx, &table, "m", true, &levels), FG_OK);
+  assert_ok(&ctx, fg_table_levels(&ctx, &table, "m", true, &levels));
   assert_int_equal(levels.count, 3);
   assert_string_equal(levels.name[0], "9");
   assert_string_equal(levels.name[2], "spare");
@@ -185,9 +185,9 @@ static void a_million_rows(void **state) {
   size_t length = (size_t)sprintf(text, "x,w\n");
   for (int i = 0; i < ROWS; i++)
     length += (size_t)sprintf(text + length, "%d.%03d,w%d\n", i / 1000, i % 1000, i % 7);
-  assert_int_equal(fg_table_parse(&ctx, "big.csv", text, length, &table), FG_OK);
+  assert_ok(&ctx, fg_table_parse(&ctx, "big.csv", text, length, &table));
   assert_int_equal(table.rows, ROWS);
-  assert_int_equal(fg_table_numbers(&ctx, &table, "x", &numbers), FG_OK);
+  assert_ok(&ctx, fg_table_numbers(&ctx, &table, "x", &numbers));
   fg_extended sum = {0, 0};
   for (size_t i = 0; i < table.rows; i++)
     sum = fg_extended_add(sum, numbers[i]);
@@ -207,14 +207,15 @@ static void decimal_commas_are_read(void **state) {
   };
   (void)state;
   for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+    in_row("texts[%zu]", i);
     fg_context ctx = {0};
     fg_table table;
     fg_extended tenth;
     const fg_extended *t = NULL, *d = NULL;
-    assert_int_equal(parse(&ctx, texts[i], &table), FG_OK);
+    assert_ok(&ctx, parse(&ctx, texts[i], &table));
     assert_int_equal(table.rows, 2);
-    assert_int_equal(fg_table_numbers(&ctx, &table, "T", &t), FG_OK);
-    assert_int_equal(fg_table_numbers(&ctx, &table, "D", &d), FG_OK);
+    assert_ok(&ctx, fg_table_numbers(&ctx, &table, "T", &t));
+    assert_ok(&ctx, fg_table_numbers(&ctx, &table, "D", &d));
     assert_true(fg_extended_parse("0.1", 3, &tenth));
     assert_true(t[0].value == tenth.value && t[0].tail == tenth.tail && t[1].value == 0.5);
     assert_true(d[0].value == -1.25e-3 && d[1].value == 1234);
@@ -238,6 +239,7 @@ static void separators_are_told_by_the_rows(void **state) {
   };
   (void)state;
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    in_row("cases[%zu]", i);
     fg_context ctx = {0};
     fg_table table;
     if (parse(&ctx, cases[i].text, &table) != FG_OK) fail_msg("case %zu: %s", i, ctx.message);
@@ -273,21 +275,22 @@ static void doubtful_columns_are_refused(void **state) {
   };
   (void)state;
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    in_row("cases[%zu]", i);
     fg_context ctx = {0};
     fg_table table, copy;
     fg_levels levels;
     const fg_extended *numbers = NULL;
-    assert_int_equal(parse(&ctx, cases[i].text, &table), FG_OK);
-    assert_int_equal(fg_table_check(&ctx, &table, "D"), FG_ERR_DATA);
+    assert_ok(&ctx, parse(&ctx, cases[i].text, &table));
+    assert_status(&ctx, fg_table_check(&ctx, &table, "D"), FG_ERR_DATA);
     if (!strstr(ctx.message, cases[i].words))
       fail_msg("case %zu: '%s' lacks '%s'", i, ctx.message, cases[i].words);
-    assert_int_equal(fg_table_numbers(&ctx, &table, "D", &numbers), FG_ERR_DATA);
-    assert_int_equal(fg_table_levels(&ctx, &table, "D", false, &levels), FG_ERR_DATA);
-    assert_int_equal(fg_table_levels(&ctx, &table, "D", true, &levels), FG_OK);
+    assert_status(&ctx, fg_table_numbers(&ctx, &table, "D", &numbers), FG_ERR_DATA);
+    assert_status(&ctx, fg_table_levels(&ctx, &table, "D", false, &levels), FG_ERR_DATA);
+    assert_ok(&ctx, fg_table_levels(&ctx, &table, "D", true, &levels));
     fg_levels_free(&levels);
-    assert_int_equal(fg_table_numbers(&ctx, &table, "x", &numbers), FG_OK);
-    assert_int_equal(fg_table_copy(&ctx, &table, &copy), FG_OK);
-    assert_int_equal(fg_table_check(&ctx, &copy, "D"), FG_ERR_DATA);
+    assert_ok(&ctx, fg_table_numbers(&ctx, &table, "x", &numbers));
+    assert_ok(&ctx, fg_table_copy(&ctx, &table, &copy));
+    assert_status(&ctx, fg_table_check(&ctx, &copy, "D"), FG_ERR_DATA);
     fg_table_free(&copy);
     fg_table_free(&table);
   }
@@ -303,9 +306,10 @@ static void sound_columns_are_not_refused(void **state) {
   };
   (void)state;
   for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+    in_row("texts[%zu]", i);
     fg_context ctx = {0};
     fg_table table;
-    assert_int_equal(parse(&ctx, texts[i], &table), FG_OK);
+    assert_ok(&ctx, parse(&ctx, texts[i], &table));
     if (fg_table_check(&ctx, &table, "D") != FG_OK) fail_msg("case %zu: %s", i, ctx.message);
     fg_table_free(&table);
   }
@@ -330,6 +334,7 @@ static void words_that_count_are_numbers(void **state) {
   };
   (void)state;
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    in_row("cases[%zu]", i);
     fg_context ctx = {0};
     fg_table table;
     const fg_column *w = NULL;
@@ -337,9 +342,9 @@ static void words_that_count_are_numbers(void **state) {
     const char *const *cells = cases[i].cells;
     snprintf(text, sizeof text, "x,w\n1,%s\n2,%s\n3,%s\n4,%s\n", cells[0], cells[1], cells[2],
              cells[3]);
-    assert_int_equal(parse(&ctx, text, &table), FG_OK);
-    assert_int_equal(fg_table_count_words(&ctx, &table, 2, &said), FG_OK);
-    assert_int_equal(fg_table_find(&ctx, &table, "w", &w), FG_OK);
+    assert_ok(&ctx, parse(&ctx, text, &table));
+    assert_ok(&ctx, fg_table_count_words(&ctx, &table, 2, &said));
+    assert_ok(&ctx, fg_table_find(&ctx, &table, "w", &w));
     assert_int_equal(w->word_count == 0, isfinite(cases[i].first));
     assert_int_equal(said != NULL, isfinite(cases[i].first));
     if (isfinite(cases[i].first)) {
@@ -357,15 +362,15 @@ static void columns_are_dropped(void **state) {
   fg_table table;
   const fg_column *column;
   (void)state;
-  assert_int_equal(parse(&ctx, "a,b,c\n1,x,2\n3,y,4\n", &table), FG_OK);
-  assert_int_equal(fg_table_drop(&ctx, &table, "d"), FG_ERR_DATA);
-  assert_int_equal(fg_table_drop(&ctx, &table, "b"), FG_OK);
-  assert_int_equal(fg_table_find(&ctx, &table, "b", &column), FG_ERR_DATA);
-  assert_int_equal(fg_table_find(&ctx, &table, "c", &column), FG_OK);
+  assert_ok(&ctx, parse(&ctx, "a,b,c\n1,x,2\n3,y,4\n", &table));
+  assert_status(&ctx, fg_table_drop(&ctx, &table, "d"), FG_ERR_DATA);
+  assert_ok(&ctx, fg_table_drop(&ctx, &table, "b"));
+  assert_status(&ctx, fg_table_find(&ctx, &table, "b", &column), FG_ERR_DATA);
+  assert_ok(&ctx, fg_table_find(&ctx, &table, "c", &column));
   assert_true(column->number[1].value == 4);
-  assert_int_equal(fg_table_add_numbers(&ctx, &table, "b", (double[]){5, 6}, 2), FG_OK);
-  assert_int_equal(fg_table_add_numbers(&ctx, &table, "c", (double[]){5, 6}, 2), FG_ERR_USAGE);
-  assert_int_equal(fg_table_find(&ctx, &table, "b", &column), FG_OK);
+  assert_ok(&ctx, fg_table_add_numbers(&ctx, &table, "b", (double[]){5, 6}, 2));
+  assert_status(&ctx, fg_table_add_numbers(&ctx, &table, "c", (double[]){5, 6}, 2), FG_ERR_USAGE);
+  assert_ok(&ctx, fg_table_find(&ctx, &table, "b", &column));
   fg_table_free(&table);
 }
 
@@ -373,14 +378,14 @@ static void rows_are_selected(void **state) {
   fg_context ctx = {0};
   fg_table table, part;
   (void)state;
-  assert_int_equal(parse(&ctx, "x,w\n1,a\n2,b\n3,\n", &table), FG_OK);
-  assert_int_equal(fg_table_select(&ctx, &table, (size_t[]){2, 0}, 2, &part), FG_OK);
+  assert_ok(&ctx, parse(&ctx, "x,w\n1,a\n2,b\n3,\n", &table));
+  assert_ok(&ctx, fg_table_select(&ctx, &table, (size_t[]){2, 0}, 2, &part));
   assert_true(part.column[0].number[0].value == 3 && part.column[0].number[1].value == 1);
   assert_true(part.column[1].word[0] == FG_TABLE_MISSING && part.column[1].missing_count == 1);
   assert_string_equal(part.column[1].words[part.column[1].word[1]], "a");
   assert_int_equal(part.line[0], 4);
   fg_table_free(&part);
-  assert_int_equal(fg_table_select(&ctx, &table, (size_t[]){3}, 1, &part), FG_ERR_USAGE);
+  assert_status(&ctx, fg_table_select(&ctx, &table, (size_t[]){3}, 1, &part), FG_ERR_USAGE);
   fg_table_free(&table);
 }
 

@@ -5,16 +5,12 @@
  *     test_thesis --report DIR    writes DIR/thesis_doe.md as well
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "foilgauge/doe.h"
 #include "support/data.h"
+#include "support/test.h"
 
 static const char RESPONSE[] = "springback_error_pct";
 enum { MOST_TERMS = 8, QUANTITIES = 5 };
@@ -45,10 +41,10 @@ static void code_column(fg_table *table, const char *from, const char *to, const
   const fg_extended *x = NULL;
   char text[80];
   snprintf(text, sizeof text, "%s=%s", to, range);
-  assert_int_equal(fg_coding_parse(&ctx, text, &coding), FG_OK);
-  assert_int_equal(fg_table_numbers(&ctx, table, from, &x), FG_OK);
-  assert_int_equal(fg_table_add_extended(&ctx, table, to, x, table->rows), FG_OK);
-  assert_int_equal(fg_coding_apply(&ctx, &coding, table), FG_OK);
+  assert_ok(&ctx, fg_coding_parse(&ctx, text, &coding));
+  assert_ok(&ctx, fg_table_numbers(&ctx, table, from, &x));
+  assert_ok(&ctx, fg_table_add_extended(&ctx, table, to, x, table->rows));
+  assert_ok(&ctx, fg_coding_apply(&ctx, &coding, table));
 }
 
 /* The row of the printed table that carries the term, and what is printed there. */
@@ -61,7 +57,7 @@ static void read_printed(const fg_table *printed, comparison *c) {
       row++;
     assert_true(row < printed->rows);
     for (size_t q = 0; q < QUANTITIES; q++) {
-      assert_int_equal(fg_table_find(&ctx, printed, QUANTITY[q], &column), FG_OK);
+      assert_ok(&ctx, fg_table_find(&ctx, printed, QUANTITY[q], &column));
       bool missing = column->word && column->word[row] == FG_TABLE_MISSING;
       c->printed[i][q] = missing ? NAN : column->number[row].value;
     }
@@ -73,7 +69,7 @@ static void compare(fg_table *runs, const char *formula, const char *printed_nam
   fg_model model;
   fg_regression reg;
   fg_table printed;
-  assert_int_equal(fg_response_apply(&ctx, FG_RESPONSE_MAGNITUDE, RESPONSE, runs), FG_OK);
+  assert_ok(&ctx, fg_response_apply(&ctx, FG_RESPONSE_MAGNITUDE, RESPONSE, runs));
   if (fg_regression_analyse(&ctx, runs, formula, RESPONSE, NULL, &model, &reg) != FG_OK)
     fail_msg("%s", ctx.message);
   c->title = printed_name;
@@ -192,15 +188,13 @@ static void table_5_4_with_the_responses_of_5_1(void **state) {
   read_table("table_5_1", &first);
   fg_extended *y = own_numbers(&runs, RESPONSE);
   const fg_extended *printed = own_numbers(&first, RESPONSE);
-  assert_int_equal(fg_regression_analyse(&ctx, &runs, SECOND_ORDER, RESPONSE, NULL, &model, &wrong),
-                   FG_OK);
+  assert_ok(&ctx, fg_regression_analyse(&ctx, &runs, SECOND_ORDER, RESPONSE, NULL, &model, &wrong));
   fg_model_free(&model);
   for (size_t i = 0; i < 4; i++) {
     assert_true(y[i].value == printed[i].value);
     y[i] = printed[2 * i];
   }
-  assert_int_equal(fg_regression_analyse(&ctx, &runs, SECOND_ORDER, RESPONSE, NULL, &model, &right),
-                   FG_OK);
+  assert_ok(&ctx, fg_regression_analyse(&ctx, &runs, SECOND_ORDER, RESPONSE, NULL, &model, &right));
   assert_true(fabs(wrong.coefficient[1].standard_error - 2.7358) < 5e-5);
   assert_true(fabs(right.coefficient[1].standard_error - 0.6882) < 5e-5);
   assert_true(right.coefficient[1].p_value < 0.001 && right.coefficient[4].p_value < 0.03);
@@ -277,8 +271,7 @@ static void sign_is_a_choice(void **state) {
   fg_regression reg;
   (void)state;
   read_table_5_1(&runs);
-  assert_int_equal(fg_regression_analyse(&ctx, &runs, "T + D + T:D", RESPONSE, NULL, &model, &reg),
-                   FG_OK);
+  assert_ok(&ctx, fg_regression_analyse(&ctx, &runs, "T + D + T:D", RESPONSE, NULL, &model, &reg));
   assert_true(fabs(reg.coefficient[0].estimate - -7.10875) < 1e-12);
   assert_true(fabs(reg.coefficient[1].estimate - 3.39375) < 1e-12);
   assert_true(fabs(fg_doe_relative_effect_pct(&reg, 1) - -47.7404607) < 1e-6);

@@ -3,6 +3,7 @@
  * and heights against renders of known truth. */
 #include "support/brief.h"
 #include "support/measured_render.h"
+#include "support/test.h"
 
 /* Without noise to speak of: what is left is the model's. Heights are free of what both circles
  * have in common. */
@@ -26,7 +27,7 @@ static void check_turn(int degrees, const char *blur) {
   small_foil(json, sizeof json, 3, foil,
              "\"dpi\":4800,\"bits\":16,\"noise\":0.3,\"background\":45,\"contrast\":150,%s", blur);
   measured m = measure_render(json, NULL);
-  assert_int_equal(m.status, FG_OK);
+  assert_ok(NULL, m.status);
   const fg_foil *f = &m.result.foils[0];
   assert_true(f->strip.picture.findings & FG_PICTURE_UNEVEN_BLUR);
   assert_false(f->strip.picture.findings & FG_PICTURE_SHADOW);

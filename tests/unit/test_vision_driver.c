@@ -8,6 +8,7 @@
 
 #include "foilgauge/measure.h"
 
+#include "support/test.h"
 #include "vision/driver_choice.h"
 
 enum { FINE = 4800, COARSE = 2400 };
@@ -37,7 +38,7 @@ static measured measure_driver(const driver_case *c, const char *light, int dpi)
              "\"dpi\":%d,\"noise\":1.2,\"blur_px\":%g,%s%s%s", dpi, dpi == FINE ? 1.4 : 1.0, light,
              c->scanner, curve);
   measured m = measure_render(json, NULL);
-  assert_int_equal(m.status, FG_OK);
+  assert_ok(NULL, m.status);
   assert_int_equal(m.result.foil_count, 1);
   return m;
 }
@@ -112,9 +113,9 @@ static void plain_edges_are_plain(void **state) {
   for (int light = 0; light < 2; light++) {
     measured m = measure_driver(&plain, lights[light], COARSE);
     const fg_strip *strip = &m.result.foils[0].strip;
-    assert_close(strip->gamma, 1, 0);
-    assert_close(strip->picture.sharpen_amount, 0, 0);
-    assert_close(strip->picture.tone_s, 0, 0);
+    assert_near(strip->gamma, 1, 0);
+    assert_near(strip->picture.sharpen_amount, 0, 0);
+    assert_near(strip->picture.tone_s, 0, 0);
     assert_int_equal(strip->picture.findings, 0);
     assert_true(u_thickness_um(strip) < 0.6);
     measured_free(&m);
@@ -127,8 +128,8 @@ static void an_unsharp_mask_is_measured(void **state) {
   static const driver_case c = {",\"bits\":16,\"unsharp_mask\":{\"amount_pct\":80,\"radius_px\":2}",
                                 0, 0};
   measured m = measure_driver(&c, lights[0], FINE);
-  assert_close(m.result.foils[0].strip.picture.sharpen_amount, 0.8, 0.1);
-  assert_close(m.result.foils[0].strip.picture.sharpen_radius_px, 2, 0.2);
+  assert_near(m.result.foils[0].strip.picture.sharpen_amount, 0.8, 0.1);
+  assert_near(m.result.foils[0].strip.picture.sharpen_radius_px, 2, 0.2);
   measured_free(&m);
 }
 
@@ -143,7 +144,7 @@ static fg_measurement measure_drawn(const char *json, const fg_design *design) {
   assert_true(file >= 0);
   close(file);
   if (fg_render_parse(&ctx, "plate", json, &spec) != FG_OK) fail_msg("%s", ctx.message);
-  assert_int_equal(fg_render_scan(&ctx, spec, path, NULL), FG_OK);
+  assert_ok(&ctx, fg_render_scan(&ctx, spec, path, NULL));
   if (fg_measure_scan(&ctx, path, design, &options, &m) != FG_OK) fail_msg("%s", ctx.message);
   fg_render_free(spec);
   unlink(path);
@@ -162,6 +163,7 @@ static void discs_stay_round_and_right(void **state) {
   fg_design_default(&design);
   design.kind = FG_FOIL_DISCS;
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    in_row("cases[%zu]", i);
     const driver_case *c = &cases[i];
     char json[8192], curve[4096] = "";
     if (c->s_slope > 0) write_s_curve(c->s_slope, curve, sizeof curve);

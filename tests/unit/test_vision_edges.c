@@ -3,6 +3,7 @@
  * what is found out about the scanner on the way. */
 #include "support/brief.h"
 #include "support/measured_render.h"
+#include "support/test.h"
 
 typedef struct line_error {
   double mean_px, sd_px, worst_px; /* of the midline, along the normal */
@@ -73,7 +74,7 @@ static measured measure_scanner(const char *scanner) {
   char json[4096];
   small_foil(json, sizeof json, 2, ",\"rotate_deg\":-73", "%s", scanner);
   measured m = measure_render(json, NULL);
-  assert_int_equal(m.status, FG_OK);
+  assert_ok(NULL, m.status);
   assert_int_equal(m.result.foil_count, 1);
   assert_int_equal(m.result.foils[0].bump_count, 2);
   return m;
@@ -105,16 +106,16 @@ static void edges_are_on_the_truth(void **state) {
     double px_um = 25400 / m.result.dpi[0];
     assert_true(e.count > 800);
     /* Blur moves the edges of a bump towards its centre by s²/(2R), R being 640 px. */
-    assert_close(e.mean_px, 0, 0.003 + cases[i].blur_px * cases[i].blur_px / 1280);
+    assert_near(e.mean_px, 0, 0.003 + cases[i].blur_px * cases[i].blur_px / 1280);
     if (strstr(cases[i].scanner, "0.02")) {
-      assert_close(e.sd_px, 0, 0.003 + cases[i].blur_px * cases[i].blur_px / 1280);
+      assert_near(e.sd_px, 0, 0.003 + cases[i].blur_px * cases[i].blur_px / 1280);
       /* At an arc's end half of what the blur does to a fillet (R 66 px) may show. */
-      assert_close(e.worst_px, 0, 0.015 + cases[i].blur_px * cases[i].blur_px / 264);
+      assert_near(e.worst_px, 0, 0.015 + cases[i].blur_px * cases[i].blur_px / 264);
     }
-    assert_close(strip->blur_left_um / px_um, blur_seen(cases[i].blur_px), 0.02);
-    assert_close(strip->blur_right_um / px_um, blur_seen(cases[i].blur_px), 0.02);
-    assert_close(strip->gamma, cases[i].gamma, 0.03 * cases[i].gamma);
-    assert_close(strip->thickness_mm * 1000, 100, cases[i].thickness_um);
+    assert_near(strip->blur_left_um / px_um, blur_seen(cases[i].blur_px), 0.02);
+    assert_near(strip->blur_right_um / px_um, blur_seen(cases[i].blur_px), 0.02);
+    assert_near(strip->gamma, cases[i].gamma, 0.03 * cases[i].gamma);
+    assert_near(strip->thickness_mm * 1000, 100, cases[i].thickness_um);
     assert_int_equal(strip->facts, 0);
     measured_free(&m);
   }
@@ -141,12 +142,12 @@ static void standard_deviations_are_the_scatter(void **state) {
     double bound = noise / cases[i].contrast *
                    sqrt(2 * blur_seen(cases[i].blur_px) * sqrt(3.14159265358979)) /
                    sqrt(2 * step_px);
-    assert_close(e.sd_px / e.expected_px, 1, 0.12);
+    assert_near(e.sd_px / e.expected_px, 1, 0.12);
     if (!(e.sd_px < cases[i].most_of_bound * bound))
       fail_msg("%s: scatter %.4f px, bound %.4f", cases[i].scanner, e.sd_px, bound);
-    assert_close(m.result.foils[0].strip.noise * 255, noise, 0.25 * noise);
-    assert_close(m.result.foils[0].strip.contrast * 255, cases[i].contrast,
-                 0.02 * cases[i].contrast);
+    assert_near(m.result.foils[0].strip.noise * 255, noise, 0.25 * noise);
+    assert_near(m.result.foils[0].strip.contrast * 255, cases[i].contrast,
+                0.02 * cases[i].contrast);
     measured_free(&m);
   }
 }
@@ -157,7 +158,7 @@ static void two_blurs_are_told_apart(void **state) {
   measured m = measure_scanner("\"rough\":{\"one_sided_blur_px\":1.8}");
   const fg_strip *strip = &m.result.foils[0].strip;
   assert_true(fabs(strip->blur_left_um - strip->blur_right_um) > 2);
-  assert_close(compare_line(&m).mean_px, 0, 0.003);
+  assert_near(compare_line(&m).mean_px, 0, 0.003);
   measured_free(&m);
 }
 
@@ -172,8 +173,8 @@ static void clipping_is_flagged(void **state) {
     measured m = measure_scanner(scanners[i]);
     const fg_foil *foil = &m.result.foils[0];
     if (!(foil->flags & FG_FOIL_CLIPPED)) fail_msg("%s: not flagged", scanners[i]);
-    assert_close(compare_line(&m).mean_px, 0, 0.005);
-    assert_close(foil->thickness_mm * 1000, 100, 2);
+    assert_near(compare_line(&m).mean_px, 0, 0.005);
+    assert_near(foil->thickness_mm * 1000, 100, 2);
     measured_free(&m);
   }
 }

@@ -3,6 +3,7 @@
 #include "support/measured_render.h"
 
 #include "support/random.h"
+#include "support/test.h"
 #include "vision/grid.h"
 
 enum { WIDTH = 37, HEIGHT = 29, ROUNDS = 60 };
@@ -48,7 +49,7 @@ static void labels_are_those_of_a_flood(void **state) {
       mask[i] = random_uniform(&seed) < 0.15 + 0.7 * round / ROUNDS;
     for (int i = 0; i < WIDTH * HEIGHT; i++)
       if (mask[i] && !wanted[i]) flood(mask, i % WIDTH, i / WIDTH, ++count, wanted);
-    assert_int_equal(fg_grid_label(&ctx, mask, WIDTH, HEIGHT, labels, &blobs, &found), FG_OK);
+    assert_ok(&ctx, fg_grid_label(&ctx, mask, WIDTH, HEIGHT, labels, &blobs, &found));
     assert_int_equal(found, count);
     assert_memory_equal(labels, wanted, sizeof labels);
     for (int32_t i = 0; i < count; i++)
@@ -86,7 +87,7 @@ static void medians_are_those_of_what_is_known(void **state) {
     for (int i = 0; i < WIDTH * HEIGHT; i++)
       grid[i] = random_uniform(&seed) < 0.3 * round ? NAN : (float)random_gaussian(&seed);
     memcpy(before, grid, sizeof before);
-    assert_int_equal(fg_grid_median(&ctx, grid, WIDTH, HEIGHT), FG_OK);
+    assert_ok(&ctx, fg_grid_median(&ctx, grid, WIDTH, HEIGHT));
     for (int i = 0; i < WIDTH * HEIGHT; i++) {
       float wanted = sorted_median(before, i % WIDTH, i / WIDTH);
       if (!isnan(wanted)) assert_true(grid[i] == wanted);

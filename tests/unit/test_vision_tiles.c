@@ -3,6 +3,7 @@
 #include "support/measured_render.h"
 
 #include "support/random.h"
+#include "support/test.h"
 #include "vision/segment.h"
 
 enum { WIDTH = 700, HEIGHT = 500 };
@@ -33,19 +34,18 @@ static fg_tiles fill(const scene *s, int bytes, bool strip_by_strip) {
         memcpy(&rows[y][2 * x], &s->pixels[y][x], 2);
       else
         rows[y][x] = (uint8_t)(s->pixels[y][x] / 257);
-  assert_int_equal(fg_tiles_create(&ctx, WIDTH, HEIGHT, bytes, NULL, &tiles), FG_OK);
+  assert_ok(&ctx, fg_tiles_create(&ctx, WIDTH, HEIGHT, bytes, NULL, &tiles));
   for (int strip = 0; strip * FG_TILE_PX < HEIGHT; strip++) {
     if (strip_by_strip) {
-      assert_int_equal(fg_tiles_add_strip(&ctx, &tiles, rows[strip * FG_TILE_PX], sizeof rows[0]),
-                       FG_OK);
+      assert_ok(&ctx, fg_tiles_add_strip(&ctx, &tiles, rows[strip * FG_TILE_PX], sizeof rows[0]));
       continue;
     }
     char *to = fg_tiles_strip(&tiles, strip);
     for (int y = 0; y < fg_tiles_strip_rows(&tiles, strip); y++)
       memcpy(to + y * WIDTH * bytes, rows[strip * FG_TILE_PX + y], (size_t)(WIDTH * bytes));
-    assert_int_equal(fg_tiles_take_strip(&ctx, &tiles), FG_OK);
+    assert_ok(&ctx, fg_tiles_take_strip(&ctx, &tiles));
   }
-  assert_int_equal(fg_tiles_finish(&ctx, &tiles), FG_OK);
+  assert_ok(&ctx, fg_tiles_finish(&ctx, &tiles));
   return tiles;
 }
 
@@ -68,7 +68,7 @@ static void kept_pixels_are_the_scans_own(void **state) {
         float scan = bytes == 2 ? (float)s.pixels[y][x] / 257.0f : (float)(s.pixels[y][x] / 257);
         bool near_disc = hypot(x - 350, y - 230) < 60 + 16;
         if (near_disc && !isfinite(value)) fail_msg("(%d, %d) of the disc was not kept", x, y);
-        if (isfinite(value)) assert_close(value, scan, 1e-4);
+        if (isfinite(value)) assert_near(value, scan, 1e-4);
       }
     assert_true(isnan(fg_tiles_pixel(&tiles, -1, 0)) && isnan(fg_tiles_pixel(&tiles, 0, HEIGHT)));
     /* A disc of 2 tiles across with its neighbours, not the bed. */
@@ -98,10 +98,10 @@ static fg_segmentation segment(fg_tiles *tiles, double min_px, fg_island *island
   fg_context ctx = {0};
   fg_islands *islands = NULL;
   fg_segmentation seg;
-  assert_int_equal(fg_islands_create(&ctx, tiles, &islands), FG_OK);
-  assert_int_equal(fg_islands_advance(&ctx, islands), FG_OK);
+  assert_ok(&ctx, fg_islands_create(&ctx, tiles, &islands));
+  assert_ok(&ctx, fg_islands_advance(&ctx, islands));
   assert_true(fg_islands_next(islands, island));
-  assert_int_equal(fg_segment(&ctx, tiles, island, min_px, &seg), FG_OK);
+  assert_ok(&ctx, fg_segment(&ctx, tiles, island, min_px, &seg));
   fg_islands_free(islands);
   return seg;
 }
@@ -117,12 +117,12 @@ static void polarity_and_contrast_are_found_under_shading(void **state) {
       fg_island island;
       fg_segmentation seg = segment(&tiles, 60, &island);
       assert_int_equal(seg.light_on_dark, sign > 0);
-      assert_close(seg.contrast, 120, 8);
+      assert_near(seg.contrast, 120, 8);
       assert_int_equal(seg.object_count, 1);
       const fg_object *o = &seg.objects[0];
-      assert_close((o->x + 0.5 * o->width) * FG_BLOCK_PX, 350, 8);
-      assert_close((o->y + 0.5 * o->height) * FG_BLOCK_PX, 230, 8);
-      assert_close(o->width * FG_BLOCK_PX, 120, 17);
+      assert_near((o->x + 0.5 * o->width) * FG_BLOCK_PX, 350, 8);
+      assert_near((o->y + 0.5 * o->height) * FG_BLOCK_PX, 230, 8);
+      assert_near(o->width * FG_BLOCK_PX, 120, 17);
       assert_false(o->touches_border);
       fg_segmentation_free(&seg);
       fg_island_free(&island);
@@ -158,7 +158,7 @@ static void dust_is_no_foil(void **state) {
                "\"scratches\":{\"count\":6,\"length_px\":200,\"radius_px\":0.8,\"contrast\":50}",
                polarity[i]);
     measured m = measure_render(json, NULL);
-    assert_int_equal(m.status, FG_OK);
+    assert_ok(NULL, m.status);
     assert_int_equal(m.result.light_on_dark, i == 0);
     assert_int_equal(m.result.foil_count, 1);
     assert_int_equal(m.result.foils[0].bump_count, 3);
