@@ -118,19 +118,19 @@ void fg_lot_settings_default(fg_lot_settings *settings);
 fg_status fg_lot_settings_check(fg_context *ctx, const fg_lot_settings *settings);
 
 /* The design of a file in place of the recipe's, under the recipe's own calibration. */
-fg_status fg_lot_settings_take_design(fg_context *ctx, const char *path, fg_lot_settings *settings);
+fg_status fg_lot_settings_load_design(fg_context *ctx, const char *path, fg_lot_settings *settings);
 
 /* Sets the model and its sum; the file must be one, and the scanner's of that name unless NULL. */
-fg_status fg_lot_settings_take_model(fg_context *ctx, const char *path, const char *scanner,
+fg_status fg_lot_settings_load_model(fg_context *ctx, const char *path, const char *scanner,
                                      fg_lot_settings *settings);
 
 /* Adds a die from its report, the JSON of `foilgauge die`. */
-fg_status fg_lot_settings_take_die(fg_context *ctx, const char *name, const char *path,
-                                   fg_lot_settings *settings);
+fg_status fg_lot_settings_add_die(fg_context *ctx, const char *name, const char *path,
+                                  fg_lot_settings *settings);
 
 /* Sets the reference curve from a CSV with the columns bump, radius_error_pct and
  * intersection_angle_error_pct. */
-fg_status fg_lot_settings_take_curve(fg_context *ctx, const char *path, fg_lot_settings *settings);
+fg_status fg_lot_settings_load_curve(fg_context *ctx, const char *path, fg_lot_settings *settings);
 
 /* Reads a recipe; members that are absent keep their value. Paths are relative to the recipe. A
  * model that is not the one that the recipe states the sum of is FG_ERR_DATA; parsing alone does

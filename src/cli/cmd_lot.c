@@ -211,7 +211,7 @@ static fg_status take_dies(fg_context *ctx, const lot_arguments *arguments,
       return fg_fail(ctx, FG_ERR_USAGE, "--die: the name has more than %zu bytes", sizeof name - 1);
     memcpy(name, arguments->dies[i], length);
     name[length] = '\0';
-    FG_TRY(fg_lot_settings_take_die(ctx, name, equals + 1, settings));
+    FG_TRY(fg_lot_settings_add_die(ctx, name, equals + 1, settings));
   }
   return FG_OK;
 }
@@ -220,14 +220,14 @@ static fg_status load_settings(fg_context *ctx, const lot_arguments *arguments,
                                fg_lot_settings *settings) {
   fg_lot_settings_default(settings);
   if (arguments->recipe) FG_TRY(fg_lot_settings_load(ctx, arguments->recipe, settings));
-  if (arguments->design) FG_TRY(fg_lot_settings_take_design(ctx, arguments->design, settings));
+  if (arguments->design) FG_TRY(fg_lot_settings_load_design(ctx, arguments->design, settings));
   const char *model = arguments->model ? arguments->model : settings->model;
   if (arguments->scanner && !model[0])
     return fg_fail(ctx, FG_ERR_USAGE, "--scanner says which scanner --model must be of: give one");
   if (arguments->model || arguments->scanner)
-    FG_TRY(fg_lot_settings_take_model(ctx, model, arguments->scanner, settings));
+    FG_TRY(fg_lot_settings_load_model(ctx, model, arguments->scanner, settings));
   FG_TRY(take_dies(ctx, arguments, settings));
-  if (arguments->curve) FG_TRY(fg_lot_settings_take_curve(ctx, arguments->curve, settings));
+  if (arguments->curve) FG_TRY(fg_lot_settings_load_curve(ctx, arguments->curve, settings));
   if (arguments->jobs > 0) settings->jobs = (unsigned)arguments->jobs;
   if (arguments->dpi > 0) settings->dpi = arguments->dpi;
   settings->allow_lossy |= arguments->allow_lossy;

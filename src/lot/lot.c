@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "core/clock.h"
+#include "core/date.h"
 #include "core/file.h"
 #include "core/folder.h"
 #include "core/memory.h"
@@ -18,9 +19,11 @@
 #include "core/text.h"
 #include "foilgauge/measure.h"
 #include "foilgauge/scan_loop.h"
+#include "lot/input/recipe.h"
 #include "lot/run/folder_lock.h"
 #include "lot/run/guard.h"
 #include "lot/run/lot.h"
+#include "report/lot/files.h"
 #include "report/lot/foil_pages.h"
 
 /* What is known of an item before it is measured. */
@@ -96,8 +99,8 @@ static fg_status prepare(fg_context *ctx, lot_run *run) {
   FG_TRY(fg_lot_path(ctx, request->folder, "results.jsonl", &run->results_path));
   run->head = (fg_journal_head){
       .version = FOILGAUGE_VERSION, .shard = request->shard, .items = run->manifest.items};
-  fg_lot_sum_text(run->manifest_text, run->head.manifest_sha256);
-  fg_lot_sum_text(run->recipe_text, run->head.recipe_sha256);
+  fg_sha256_text(run->manifest_text, run->head.manifest_sha256);
+  fg_sha256_text(run->recipe_text, run->head.recipe_sha256);
   FG_TRY(fg_lot_sum_settings(ctx, request->settings, run->head.measured_with));
   FG_TRY(fg_memory_allocate(ctx, run->manifest.items, sizeof *run->items, &block));
   run->items = block;
@@ -279,7 +282,7 @@ static fg_status measure_item(fg_context *ctx, lot_run *run, size_t item) {
   fg_record record = {.scan = (char *)(uintptr_t)scan, .error = inner.message};
   memcpy(record.measured_with, run->head.measured_with, sizeof record.measured_with);
   bool beyond = false;
-  fg_record_date_scan(scan, record.date);
+  fg_date_of_file(scan, record.date);
   fg_status failure = fg_measure_scan(&inner, scan, &settings->design, &options, &measurement);
   memcpy(record.sha256, measurement.sha256, sizeof record.sha256);
   if (failure == FG_OK) failure = correct(&inner, run, &measurement, &beyond);

@@ -10,9 +10,11 @@
 #include "core/file.h"
 #include "core/folder.h"
 #include "core/memory.h"
+#include "core/sha256.h"
 #include "lot/run/folder_lock.h"
 #include "lot/run/guard.h"
 #include "lot/run/lot.h"
+#include "report/lot/files.h"
 #include "report/lot/foil_pages.h"
 
 enum { TEXT_BYTES_MAX = 1 << 30 };
@@ -47,7 +49,7 @@ static fg_status read_text(fg_context *ctx, const char *folder, const char *name
 static fg_status check_sum(fg_context *ctx, const char *folder, const char *name, const char *text,
                            const char *expected) {
   char sum[65];
-  fg_lot_sum_text(text, sum);
+  fg_sha256_text(text, sum);
   if (!strcmp(sum, expected)) return FG_OK;
   return fg_fail(ctx, FG_ERR_DATA,
                  "%s: %s is not the one that its results.jsonl was made with; measure the shard "

@@ -7,7 +7,7 @@
 #include "core/memory.h"
 #include "core/select.h"
 #include "core/text.h"
-#include "lots/lots.h"
+#include "lots/index.h"
 
 /* Two quantities say the same of every foil when their values lie on one line: what is left is the
  * tenth digit of the tables. */
@@ -205,7 +205,7 @@ static void free_lot(fg_index_lot *lot) {
   free(lot->stats);
   free(lot->name);
   free(lot->problem);
-  free(lot->uncertainty);
+  free(lot->foils_unknown);
   free(lot->scan_sum);
   free(lot->die);
   free(lot->coils);

@@ -9,7 +9,7 @@
 #include "core/text.h"
 #include "foilgauge/distribution.h"
 #include "lot/statistics/analysis.h"
-#include "lots/lots.h"
+#include "lots/index.h"
 
 void fg_index_welch(fg_index_pair *pair, const double mean[2], const double u[2],
                     const double dof[2]) {

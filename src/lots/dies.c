@@ -8,7 +8,7 @@
 #include "core/memory.h"
 #include "core/select.h"
 #include "core/text.h"
-#include "lots/lots.h"
+#include "lots/index.h"
 
 typedef struct moments {
   double n, mean, squares;

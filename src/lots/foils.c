@@ -10,7 +10,7 @@
 #include "foilgauge/table.h"
 #include "foilgauge/words.h"
 #include "lot/statistics/analysis.h"
-#include "lots/lots.h"
+#include "lots/index.h"
 
 /* lot.json has ten digits, and the mean of these files' values is computed from ten digits each. */
 #define SAME_MEAN 1e-8
@@ -206,7 +206,7 @@ static fg_status read_stats(fg_context *ctx, reading *r) {
     FG_TRY(read_stat(ctx, r, stat, &mean));
     if (stat->count == 0 || fabs(mean - stat->mean) <= SAME_MEAN * fmax(fabs(stat->max), 1e-3))
       continue;
-    return fg_text_print(ctx, &lot->uncertainty,
+    return fg_text_print(ctx, &lot->foils_unknown,
                          "%s: foils.csv and %s hold other values of %s than lot.json; write "
                          "them again with `foilgauge lot %s/manifest.csv -o %s --recipe "
                          "%s/recipe.json --resume`",
@@ -227,7 +227,7 @@ static fg_status read_table(fg_context *ctx, fg_index_lot *lot, const char *name
   if (status == FG_ERR_MEMORY)
     fg_fail(ctx, status, "%s", inner.message);
   else if (status != FG_OK)
-    status = fg_text_print(ctx, &lot->uncertainty, "%s", inner.message);
+    status = fg_text_print(ctx, &lot->foils_unknown, "%s", inner.message);
   free(text);
   free(path);
   return status;
@@ -246,14 +246,14 @@ fg_status fg_index_read_foils(fg_context *ctx, fg_index *index, fg_index_lot *lo
   reading r = {.index = index, .lot = lot};
   fg_status status = FG_OK;
   FG_TRY_EXIT(read_table(ctx, lot, "foils.csv", &r.foils));
-  if (!lot->uncertainty) FG_TRY_EXIT(read_table(ctx, lot, parts_file(lot), &r.parts));
-  if (lot->uncertainty) goto exit;
+  if (!lot->foils_unknown) FG_TRY_EXIT(read_table(ctx, lot, parts_file(lot), &r.parts));
+  if (lot->foils_unknown) goto exit;
   FG_TRY_EXIT(list_foils(ctx, &r));
   FG_TRY_EXIT(own_parts(ctx, &r));
   FG_TRY_EXIT(read_stats(ctx, &r));
-  if (!lot->uncertainty) FG_TRY_EXIT(take_dies(ctx, &r));
+  if (!lot->foils_unknown) FG_TRY_EXIT(take_dies(ctx, &r));
 exit:
-  if (lot->uncertainty) forget(lot);
+  if (lot->foils_unknown) forget(lot);
   fg_table_free(&r.foils);
   fg_table_free(&r.parts);
   free(r.foil);

@@ -7,7 +7,7 @@
 
 #include "core/csv.h"
 #include "core/file.h"
-#include "lots/lots.h"
+#include "lots/index.h"
 #include "report/measure/json.h"
 
 /* Of thousands of pairs those that differ most are listed; `tested` and `differing` count all. */
@@ -85,7 +85,7 @@ static void write_known(fg_json *json, const fg_index *index, const fg_index_lot
   fg_json_string(json, "coils", lot->coils);
   fg_json_string(json, "design_name", lot->design.name);
   fg_json_integer(json, "design_number", (int64_t)lot->design_number);
-  fg_json_string(json, "foils_unknown", lot->uncertainty);
+  fg_json_string(json, "foils_unknown", lot->foils_unknown);
   write_spread(json, &lot->spread);
   fg_json_object(json, "quantities");
   for (size_t i = 0; i < index->axis_count; i++) {

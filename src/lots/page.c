@@ -6,7 +6,7 @@
 
 #include "core/file.h"
 #include "core/text.h"
-#include "lots/lots.h"
+#include "lots/index.h"
 #include "page/page.h"
 #include "page/provenance.h"
 #include "report/lot/page_parts.h"

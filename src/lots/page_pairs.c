@@ -4,7 +4,7 @@
 #include <stdlib.h>
 
 #include "core/text.h"
-#include "lots/lots.h"
+#include "lots/index.h"
 #include "page/page.h"
 
 enum {

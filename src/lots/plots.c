@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "core/text.h"
-#include "lots/lots.h"
+#include "lots/index.h"
 #include "page/page.h"
 #include "page/plot_marks.h"
 

@@ -11,8 +11,9 @@
 #include "core/file.h"
 #include "core/json_read.h"
 #include "core/memory.h"
+#include "core/sha256.h"
 #include "core/text.h"
-#include "lots/lots.h"
+#include "lots/index.h"
 #include "quantity/parts.h"
 #include "report/measure/json.h"
 
@@ -136,7 +137,7 @@ static fg_status sum_design(fg_context *ctx, fg_index_lot *lot) {
     free(text);
     return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a design");
   }
-  fg_lot_sum_text(text, lot->design_sum);
+  fg_sha256_text(text, lot->design_sum);
   free(text);
   return FG_OK;
 }
@@ -241,7 +242,7 @@ fg_status fg_index_read_lot(fg_context *ctx, fg_index_lot *lot) {
   } else {
     cJSON *root;
     status = fg_json_read(ctx, path, text, &root);
-    fg_lot_sum_text(text, lot->sha256);
+    fg_sha256_text(text, lot->sha256);
     if (status != FG_ERR_MEMORY)
       status = take_all(ctx, lot, path, root); /* damage is noted there */
     cJSON_Delete(root);

@@ -8,7 +8,7 @@
 #include "core/text.h"
 #include "core/utf8.h"
 #include "foilgauge/words.h"
-#include "lots/lots.h"
+#include "lots/index.h"
 
 enum {
   SAID_MAX = 3,    /* quantities with a sentence of their own */

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/date.h"
 #include "core/json_writer.h"
 #include "core/sha256.h"
 #include "core/text.h"

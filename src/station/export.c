@@ -7,12 +7,15 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "core/date.h"
 #include "core/memory.h"
+#include "core/sha256.h"
 #include "core/text.h"
 #include "foilgauge/measure.h"
-#include "lot/input/manifest_build.h"
+#include "lot/input/recipe.h"
 #include "lot/run/folder_lock.h"
 #include "lot/run/lot.h"
+#include "report/lot/files.h"
 #include "station/intake.h"
 #include "station/lot_content.h"
 #include "station/lot_folder.h"
@@ -152,8 +155,8 @@ static fg_status make_head(fg_context *ctx, export *at) {
   at->head =
       (fg_journal_head){.version = FOILGAUGE_VERSION, .shard = {1, 1}, .items = at->manifest.items};
   FG_TRY(fg_lot_settings_format(ctx, &at->settings, false, &at->recipe_text));
-  fg_lot_sum_text(at->manifest_text, at->head.manifest_sha256);
-  fg_lot_sum_text(at->recipe_text, at->head.recipe_sha256);
+  fg_sha256_text(at->manifest_text, at->head.manifest_sha256);
+  fg_sha256_text(at->recipe_text, at->head.recipe_sha256);
   return fg_lot_sum_settings(ctx, &at->settings, at->head.measured_with);
 }
 
@@ -204,7 +207,7 @@ static fg_status measure_again(fg_context *ctx, export *at, size_t item, char **
   fg_measurement measurement;
   char date[11];
   const char *path = fg_manifest_scan(&at->manifest, item);
-  fg_record_date_scan(path, date);
+  fg_date_of_file(path, date);
   fg_status status = fg_measure_scan(&inner, path, &at->settings.design, &options, &measurement);
   if (status == FG_OK) status = fg_station_correct(&inner, at->model, 1, &measurement);
   if (status == FG_ERR_MEMORY) return fg_fail(ctx, status, "%s", inner.message);

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/file.h"
+#include "core/sha256.h"
 #include "lot/run/lot.h"
 #include "station/keep_parts.h"
 
@@ -59,7 +60,7 @@ fg_status fg_station_keep_setup(fg_context *ctx, fg_station_database *database,
     status = fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a setup");
   }
   if (status == FG_OK) {
-    fg_lot_sum_text(whole, sum);
+    fg_sha256_text(whole, sum);
     status = fg_station_database_begin(ctx, database);
     if (status == FG_OK) {
       status = find_setup(ctx, database, sum, setup);

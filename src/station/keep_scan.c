@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/date.h"
 #include "foilgauge/words.h"
 #include "lot/run/lot.h"
 #include "lot/run/record.h"
@@ -183,7 +184,7 @@ static fg_status format_record(fg_context *ctx, const fg_station_scan *kept, cha
   size_t length;
   fg_record record = {.scan = (char *)(uintptr_t)kept->file.name};
   memcpy(record.sha256, kept->measurement->sha256, sizeof record.sha256);
-  fg_record_date(kept->file.modified_ns / 1000000000, record.date);
+  fg_date_of_time(kept->file.modified_ns / 1000000000, record.date);
   FG_TRY(fg_lot_sum_settings(ctx, kept->settings, record.measured_with));
   return fg_record_format(ctx, &record, kept->measurement, line, &length);
 }

@@ -175,7 +175,7 @@ fg_status fg_station_settings_load(fg_context *ctx, const char *recipe, const ch
   set_usual(settings);
   if (recipe) FG_TRY(fg_lot_settings_load(ctx, recipe, &settings->lot));
   if (recipe) FG_TRY(load_station(ctx, recipe, settings));
-  if (design) FG_TRY(fg_lot_settings_take_design(ctx, design, &settings->lot));
+  if (design) FG_TRY(fg_lot_settings_load_design(ctx, design, &settings->lot));
   if (settings->lot.design.kind == FG_FOIL_CANTILEVER)
     return fg_fail(ctx, FG_ERR_DATA,
                    "design.form is cantilever: a station keeps foils with bumps and plain strips; "

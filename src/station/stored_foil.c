@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/date.h"
 #include "core/memory.h"
 #include "core/text.h"
 #include "foilgauge/scan_loop.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Groups of a lot: foils are the unit, bumps a level within them; all tests share their error. */
 #include "lot/run/lot.h"
-#include "report/lot/writers.h"
+#include "report/lot/files.h"
 #include "stats/relabelled_spread.h"
 #include "support/group_lots.h"
 #include "support/test.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Whether the process runs as it did, what its signals come from, and what is said of it. */
-#include "report/lot/writers.h"
+#include "report/lot/files.h"
 #include "support/made_lot.h"
 #include "support/random.h"
 #include "support/test.h"

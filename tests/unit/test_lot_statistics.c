@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What enters a lot's statistics, and which arch a bump is taken for. */
+#include "report/lot/files.h"
 #include "report/lot/plots.h"
-#include "report/lot/writers.h"
 #include "support/made_lot.h"
 #include "support/test.h"
 

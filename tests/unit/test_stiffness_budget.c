@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Where a lot's spread of stiffness comes from: causes put in come back out, what is not known is
  * not counted, and measurement's share is what drawing from it gives. */
-#include "report/lot/stiffness_columns.h"
-#include "report/lot/writers.h"
+#include "lot/statistics/budget.h"
+#include "report/lot/files.h"
 #include "support/made_lot.h"
 #include "support/test.h"
 

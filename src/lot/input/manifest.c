@@ -9,7 +9,6 @@
 #include "core/csv.h"
 #include "core/memory.h"
 #include "core/text.h"
-#include "lot/input/manifest_build.h"
 
 fg_status fg_manifest_copy_text(fg_context *ctx, const char *text, size_t length, char **copy) {
   *copy = strndup(text, length);

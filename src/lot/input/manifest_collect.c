@@ -13,7 +13,6 @@
 #include "core/memory.h"
 #include "core/text.h"
 #include "lot/input/manifest.h"
-#include "lot/input/manifest_build.h"
 #include "scan/format.h"
 
 enum { TEXT_BYTES_MAX = 1 << 30, DEPTH_MAX = 32 };

@@ -10,7 +10,6 @@
 #include "core/memory.h"
 #include "core/text.h"
 #include "lot/input/manifest.h"
-#include "lot/input/manifest_build.h"
 
 /* Every line of the reports repeats the columns. */
 enum { COLUMNS_MAX = 1000 };

@@ -13,11 +13,12 @@
 #include "core/text.h"
 #include "foilgauge/control.h"
 #include "foilgauge/lot.h"
+#include "foilgauge/scan_loop.h"
 #include "foilgauge/stiffness.h"
-#include "lot/input/recipe_dies.h"
+#include "lot/input/recipe.h"
 #include "lot/input/recipe_members.h"
-#include "lot/input/recipe_parts.h"
 #include "lot/input/reference_curve.h"
+#include "report/design/calibration_json.h"
 #include "report/measure/json.h"
 
 enum { RECIPE_BYTES_MAX = 1 << 20 };
@@ -130,18 +131,12 @@ static fg_status read_member(fg_context *ctx, const fg_recipe_member *row, const
   return FG_OK;
 }
 
-static void beside_recipe(const char *path, const char *name, char *file, size_t size) {
-  const char *slash = strrchr(path, '/');
-  bool beside = slash && name[0] != '/';
-  fg_text_clip(file, size, "%.*s%s", beside ? (int)(slash - path) + 1 : 0, path, name);
-}
-
 /* "design": an object, or the path of a file beside the recipe. */
 static fg_status read_design(fg_context *ctx, const char *path, const cJSON *value,
                              fg_design *design) {
   if (cJSON_IsString(value)) {
     char file[4096];
-    beside_recipe(path, value->valuestring, file, sizeof file);
+    fg_recipe_find_file(path, value->valuestring, file, sizeof file);
     return fg_design_load(ctx, file, design);
   }
   if (!cJSON_IsObject(value))
@@ -231,6 +226,17 @@ static fg_status read_part(fg_context *ctx, const char *path, const cJSON *value
                  value->string);
 }
 
+static void overrule_calibration(fg_lot_settings *settings) {
+  if (settings->calibration.stated) settings->design.calibration = settings->calibration;
+}
+
+static fg_status read_calibration(fg_context *ctx, const cJSON *root, fg_lot_settings *settings) {
+  const cJSON *value = cJSON_GetObjectItemCaseSensitive(root, "calibration");
+  if (value) FG_TRY(fg_calibration_read(ctx, value, &settings->calibration));
+  overrule_calibration(settings);
+  return FG_OK;
+}
+
 static fg_status read_object(fg_context *ctx, const char *path, const cJSON *root,
                              fg_lot_settings *settings) {
   const cJSON *schema = cJSON_GetObjectItemCaseSensitive(root, "schema"), *value;
@@ -247,7 +253,7 @@ static fg_status read_object(fg_context *ctx, const char *path, const cJSON *roo
     else
       FG_TRY(read_part(ctx, path, value, settings));
   }
-  FG_TRY(fg_recipe_read_calibration(ctx, root, settings));
+  FG_TRY(read_calibration(ctx, root, settings));
   return fg_lot_settings_check(ctx, settings);
 }
 
@@ -264,11 +270,40 @@ fg_status fg_lot_settings_parse(fg_context *ctx, const char *path, const char *j
   return FG_OK;
 }
 
+fg_status fg_lot_settings_load_design(fg_context *ctx, const char *path,
+                                      fg_lot_settings *settings) {
+  fg_design design;
+  fg_design_default(&design);
+  FG_TRY(fg_design_load(ctx, path, &design));
+  settings->design = design;
+  overrule_calibration(settings);
+  return FG_OK;
+}
+
+fg_status fg_lot_settings_load_model(fg_context *ctx, const char *path, const char *scanner,
+                                     fg_lot_settings *settings) {
+  fg_scanner_model *model;
+  char *whole = realpath(path, NULL); /* the settings may be printed, and read elsewhere */
+  const char *name = whole ? whole : path;
+  fg_status status = fg_scanner_model_load(ctx, path, &model);
+  if (status == FG_OK && strlen(name) >= sizeof settings->model)
+    status = fg_fail(ctx, FG_ERR_USAGE, "%.200s ...: the path is too long; at most %zu bytes", name,
+                     sizeof settings->model - 1);
+  if (status == FG_OK) {
+    status = fg_scanner_model_check_scanner(ctx, model, path, scanner);
+    strcpy(settings->model, name);
+    strcpy(settings->model_sha256, fg_scanner_model_sha256(model));
+  }
+  if (model) fg_scanner_model_free(model);
+  free(whole);
+  return status;
+}
+
 static fg_status find_model(fg_context *ctx, const char *path, fg_lot_settings *settings) {
   char file[4096], stated[65];
   strcpy(stated, settings->model_sha256);
-  beside_recipe(path, settings->model, file, sizeof file);
-  FG_TRY(fg_lot_settings_take_model(ctx, file, NULL, settings));
+  fg_recipe_find_file(path, settings->model, file, sizeof file);
+  FG_TRY(fg_lot_settings_load_model(ctx, file, NULL, settings));
   if (!stated[0] || !strcmp(stated, settings->model_sha256)) return FG_OK;
   return fg_fail(ctx, FG_ERR_DATA,
                  "%.300s: not the model that %.300s was written with (model_sha256 differs)", file,
@@ -319,7 +354,8 @@ fg_status fg_lot_settings_format(fg_context *ctx, const fg_lot_settings *setting
     fg_recipe_write(&writer, &fg_recipe_assembly.rows[i], settings);
   fg_json_object_end(&writer);
   fg_json_line_end(&writer);
-  if (with_jobs) fg_recipe_write_calibration(&writer, settings); /* else as the design's */
+  if (with_jobs)
+    fg_json_calibration(&writer, "calibration", &settings->calibration); /* else as the design's */
   fg_json_design(&writer, "design", &settings->design);
   fg_json_object_end(&writer);
   fg_json_end(&writer);

@@ -3,8 +3,7 @@
 #include <string.h>
 
 #include "core/text.h"
-#include "lot/input/recipe_dies.h"
-#include "lot/run/lot.h"
+#include "lot/input/recipe.h"
 
 static void list_columns(const fg_manifest *manifest, char *text, size_t size) {
   size_t used = 0;

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Dies of a recipe: what was measured of them, kept in the recipe itself, so that a lot can be
  * reported anew without their files. */
-#include "lot/input/recipe_dies.h"
 #include "core/json_read.h"
+#include "core/sha256.h"
+#include "lot/input/recipe.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -11,7 +12,7 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "foilgauge/words.h"
-#include "lot/run/lot.h"
+#include "lot/input/recipe_members.h"
 
 enum { DIE_BYTES_MAX = 64 << 20, CONTEXT_WORDS = 800 };
 
@@ -70,7 +71,7 @@ static fg_status load_report(fg_context *ctx, const char *file, fg_lot_die *die)
   char *text;
   cJSON *root;
   FG_TRY(fg_file_read_text(ctx, file, DIE_BYTES_MAX, &text));
-  fg_lot_sum_text(text, die->sha256);
+  fg_sha256_text(text, die->sha256);
   fg_status status = fg_json_read(ctx, file, text, &root);
   free(text);
   FG_TRY(status);
@@ -115,8 +116,8 @@ static fg_status new_die(fg_context *ctx, const char *name, fg_lot_settings *set
   return FG_OK;
 }
 
-fg_status fg_lot_settings_take_die(fg_context *ctx, const char *name, const char *path,
-                                   fg_lot_settings *settings) {
+fg_status fg_lot_settings_add_die(fg_context *ctx, const char *name, const char *path,
+                                  fg_lot_settings *settings) {
   fg_lot_die *die = NULL;
   FG_TRY(new_die(ctx, name, settings, &die));
   return load_report(ctx, path, die);
@@ -131,11 +132,8 @@ fg_status fg_lot_dies_read(fg_context *ctx, const char *path, const cJSON *value
   cJSON_ArrayForEach(item, value) {
     if (cJSON_IsString(item)) {
       char file[4096];
-      const char *slash = strrchr(path, '/');
-      bool beside = slash && item->valuestring[0] != '/';
-      fg_text_clip(file, sizeof file, "%.*s%s", beside ? (int)(slash - path) + 1 : 0, path,
-                   item->valuestring);
-      FG_TRY(fg_lot_settings_take_die(ctx, item->string, file, settings));
+      fg_recipe_find_file(path, item->valuestring, file, sizeof file);
+      FG_TRY(fg_lot_settings_add_die(ctx, item->string, file, settings));
       continue;
     }
     fg_lot_die *die = NULL;

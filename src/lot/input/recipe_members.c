@@ -187,3 +187,9 @@ void fg_recipe_say(const char *object, const fg_recipe_member *row, fg_member_wo
     fg_text_clip(words->limits, sizeof words->limits, "%.16g to %.16g", row->lowest, row->highest);
   say_usual(row, &usual, words->usual, sizeof words->usual);
 }
+
+void fg_recipe_find_file(const char *path, const char *name, char *file, size_t size) {
+  const char *slash = strrchr(path, '/');
+  bool beside = slash && name[0] != '/';
+  fg_text_clip(file, size, "%.*s%s", beside ? (int)(slash - path) + 1 : 0, path, name);
+}

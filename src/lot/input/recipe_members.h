@@ -49,4 +49,7 @@ void fg_recipe_write(fg_json *json, const fg_recipe_member *row, const fg_lot_se
 /* What there is to say of it; `object` stands before its name ("assembly."). */
 void fg_recipe_say(const char *object, const fg_recipe_member *row, fg_member_words *words);
 
+/* Makes `file` the path `name` as the recipe `path` means it: relative to the recipe's folder. */
+void fg_recipe_find_file(const char *path, const char *name, char *file, size_t size);
+
 #endif

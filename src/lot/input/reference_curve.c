@@ -8,6 +8,7 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "foilgauge/table.h"
+#include "lot/input/recipe_members.h"
 
 enum { CURVE_BYTES_MAX = 1 << 20, CONTEXT_WORDS = 700 };
 
@@ -61,7 +62,7 @@ static fg_status name_file(fg_context *ctx, const char *path, const fg_context *
                        "intersection_angle_error_pct");
 }
 
-fg_status fg_lot_settings_take_curve(fg_context *ctx, const char *path, fg_lot_settings *settings) {
+fg_status fg_lot_settings_load_curve(fg_context *ctx, const char *path, fg_lot_settings *settings) {
   char *text;
   fg_table table = {0};
   fg_context inner = {.message = ""};
@@ -103,11 +104,8 @@ fg_status fg_reference_curve_read(fg_context *ctx, const char *path, const cJSON
   fg_context inner = {.message = ""};
   if (cJSON_IsString(value)) {
     char file[4096];
-    const char *slash = strrchr(path, '/');
-    bool beside = slash && value->valuestring[0] != '/';
-    fg_text_clip(file, sizeof file, "%.*s%s", beside ? (int)(slash - path) + 1 : 0, path,
-                 value->valuestring);
-    return fg_lot_settings_take_curve(ctx, file, settings);
+    fg_recipe_find_file(path, value->valuestring, file, sizeof file);
+    return fg_lot_settings_load_curve(ctx, file, settings);
   }
   if (!cJSON_IsObject(value))
     return fg_fail(ctx, FG_ERR_DATA, "reference_curve must be the path of a CSV file");

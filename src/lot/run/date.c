@@ -56,18 +56,3 @@ void fg_lot_date_find(const fg_lot *lot, fg_lot_date *date) {
   fg_date_format(days->first, date->first);
   fg_date_format(days->last, date->last);
 }
-
-void fg_lot_date_write(fg_json *json, const fg_lot *lot) {
-  fg_lot_date date;
-  const char *wrong;
-  size_t count = fg_lot_date_wrong(&lot->manifest, &wrong);
-  fg_lot_date_find(lot, &date);
-  fg_json_object(json, "date");
-  fg_json_line(json);
-  fg_json_string(json, "first", date.from ? date.first : NULL);
-  fg_json_string(json, "last", date.from ? date.last : NULL);
-  fg_json_string(json, "from", date.from);
-  if (count) fg_json_integer(json, "cells_not_dates", (int64_t)count);
-  fg_json_object_end(json);
-  fg_json_line_end(json);
-}

@@ -24,7 +24,4 @@ void fg_lot_date_find(const fg_lot *lot, fg_lot_date *date);
 /* How many cells of that column are no date, and the first of them; 0, NULL: none. */
 size_t fg_lot_date_wrong(const fg_manifest *manifest, const char **first);
 
-/* The member `date` of lot.json. */
-void fg_lot_date_write(fg_json *json, const fg_lot *lot);
-
 #endif

@@ -16,10 +16,6 @@ fg_status fg_lot_path(fg_context *ctx, const char *folder, const char *name, cha
   return fg_text_print(ctx, path, "%s/%s", folder, name);
 }
 
-void fg_lot_sum_text(const char *text, char sum[65]) {
-  fg_sha256_text(text, sum);
-}
-
 /* Tolerances judge a measurement and statistics follow it: neither makes it another one. Other
  * quantities do: their values stand in another order. */
 fg_status fg_lot_sum_settings(fg_context *ctx, const fg_lot_settings *settings, char sum[65]) {
@@ -34,7 +30,7 @@ fg_status fg_lot_sum_settings(fg_context *ctx, const fg_lot_settings *settings, 
   FG_TRY(fg_record_format_names(ctx, &names));
   fg_status status = fg_lot_settings_format(ctx, &bare, false, &text);
   if (status == FG_OK) status = fg_text_append(ctx, &text, "%s", names);
-  if (status == FG_OK) fg_lot_sum_text(text, sum);
+  if (status == FG_OK) fg_sha256_text(text, sum);
   free(text);
   free(names);
   return status;

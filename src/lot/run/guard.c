@@ -5,22 +5,32 @@
 #include <string.h>
 
 #include "core/file.h"
+#include "core/sha256.h"
+#include "foilgauge/file.h"
 #include "lot/run/journal.h"
 #include "lot/run/lot.h"
 
-static const char *const lot_files[FG_LOT_FILES] = {
-    "manifest.csv", "recipe.json", FG_LOT_MODEL_FILE, "results.jsonl",
-    "lot.json",     "index.html",  "foils.csv",       "bumps.csv",
-    "beams.csv",    "results.qif", "results.dfq",     "bearings.csv"};
+enum { LOT_FILES = 12 };
 
-fg_status fg_lot_guard_begin(fg_context *ctx, const char *folder, fg_lot_guard *guard) {
-  for (size_t i = 0; i < FG_LOT_FILES; i++)
+/* The files that a run writes into a lot's folder. All zero before; free in any case. */
+typedef struct lot_guard {
+  char *path[LOT_FILES];
+  fg_overwrite overwrite; /* for fg_overwrite_check */
+} lot_guard;
+
+static const char *const lot_files[LOT_FILES] = {"manifest.csv",  "recipe.json", FG_LOT_MODEL_FILE,
+                                                 "results.jsonl", "lot.json",    "index.html",
+                                                 "foils.csv",     "bumps.csv",   "beams.csv",
+                                                 "results.qif",   "results.dfq", "bearings.csv"};
+
+static fg_status begin_guard(fg_context *ctx, const char *folder, lot_guard *guard) {
+  for (size_t i = 0; i < LOT_FILES; i++)
     FG_TRY(fg_lot_path(ctx, folder, lot_files[i], &guard->path[i]));
-  return fg_overwrite_begin(ctx, (const char *const *)guard->path, FG_LOT_FILES, &guard->overwrite);
+  return fg_overwrite_begin(ctx, (const char *const *)guard->path, LOT_FILES, &guard->overwrite);
 }
 
-void fg_lot_guard_free(fg_lot_guard *guard) {
-  for (size_t i = 0; i < FG_LOT_FILES; i++)
+static void free_guard(lot_guard *guard) {
+  for (size_t i = 0; i < LOT_FILES; i++)
     free(guard->path[i]);
   fg_overwrite_free(&guard->overwrite);
 }
@@ -32,7 +42,7 @@ static bool has_sum(const char *path, const char *name, const fg_journal_head *h
   char *text, sum[65];
   if (!strcmp(name, FG_LOT_MODEL_FILE)) return true;
   if (fg_file_read_text(NULL, path, TEXT_BYTES_MAX, &text) != FG_OK) return false;
-  fg_lot_sum_text(text, sum);
+  fg_sha256_text(text, sum);
   free(text);
   return !strcmp(sum, strcmp(name, "recipe.json") ? head->manifest_sha256 : head->recipe_sha256);
 }
@@ -50,14 +60,14 @@ bool fg_lot_is_own_copy(const fg_lot_request *request, const char *path, const c
   return same;
 }
 
-static fg_status check(fg_context *ctx, const fg_lot_request *request, const fg_lot_guard *guard,
+static fg_status check(fg_context *ctx, const fg_lot_request *request, const lot_guard *guard,
                        const char *path, const char *name, const char *words) {
   if (fg_lot_is_own_copy(request, path, name)) return FG_OK;
   return fg_overwrite_check(ctx, &guard->overwrite, path, words);
 }
 
 static fg_status check_all(fg_context *ctx, const fg_lot_request *request,
-                           const fg_manifest *manifest, const fg_lot_guard *guard) {
+                           const fg_manifest *manifest, const lot_guard *guard) {
   const char *model = request->settings->model;
   FG_TRY(check(ctx, request, guard, request->recipe, "recipe.json", "the recipe"));
   FG_TRY(check(ctx, request, guard, request->design, "recipe.json", "the design"));
@@ -72,14 +82,14 @@ static fg_status check_all(fg_context *ctx, const fg_lot_request *request,
 
 fg_status fg_lot_check_inputs(fg_context *ctx, const fg_lot_request *request,
                               const fg_manifest *manifest) {
-  fg_lot_guard guard = {0};
-  fg_status status = fg_lot_guard_begin(ctx, request->folder, &guard);
+  lot_guard guard = {0};
+  fg_status status = begin_guard(ctx, request->folder, &guard);
   if (status == FG_OK) status = check_all(ctx, request, manifest, &guard);
-  fg_lot_guard_free(&guard);
+  free_guard(&guard);
   return status;
 }
 
-static fg_status check_shard(fg_context *ctx, const char *shard, const fg_lot_guard *guard) {
+static fg_status check_shard(fg_context *ctx, const char *shard, const lot_guard *guard) {
   enum { READ = 4 }; /* of lot_files, those that merging reads */
   fg_status status = FG_OK;
   for (size_t i = 0; i < READ && status == FG_OK; i++) {
@@ -93,10 +103,10 @@ static fg_status check_shard(fg_context *ctx, const char *shard, const fg_lot_gu
 
 fg_status fg_lot_check_shards(fg_context *ctx, const char *folder, const char *const *shards,
                               size_t count) {
-  fg_lot_guard guard = {0};
-  fg_status status = fg_lot_guard_begin(ctx, folder, &guard);
+  lot_guard guard = {0};
+  fg_status status = begin_guard(ctx, folder, &guard);
   for (size_t i = 0; i < count && status == FG_OK; i++)
     status = check_shard(ctx, shards[i], &guard);
-  fg_lot_guard_free(&guard);
+  free_guard(&guard);
   return status;
 }

@@ -5,20 +5,8 @@
 
 #include <stdbool.h>
 
-#include "foilgauge/file.h"
 #include "foilgauge/lot.h"
 #include "lot/input/manifest.h"
-
-enum { FG_LOT_FILES = 12 };
-
-/* The files that a run writes into a lot's folder. All zero before; free in any case. */
-typedef struct fg_lot_guard {
-  char *path[FG_LOT_FILES];
-  fg_overwrite overwrite; /* for fg_overwrite_check */
-} fg_lot_guard;
-
-fg_status fg_lot_guard_begin(fg_context *ctx, const char *folder, fg_lot_guard *guard);
-void fg_lot_guard_free(fg_lot_guard *guard);
 
 /* Whether `path` is the file `name` in the folder of a lot that is resumed, as the lot wrote it: it
  * can be given back. `name`: "manifest.csv", "recipe.json" or FG_LOT_MODEL_FILE. */

@@ -34,26 +34,13 @@ fg_status fg_lot_mark_repeats(fg_context *ctx, fg_lot *lot);
 /* Returns the number of repeated scans; *first is the first of them, or NULL. */
 size_t fg_lot_count_repeats(const fg_lot *lot, const fg_record **first);
 
-/* Writes every file of the report, lot.json last, so that it says that all are there. */
-fg_status fg_lot_write_report(fg_context *ctx, const char *folder, const fg_lot *lot,
-                              fg_lot_outcome *outcome);
-
 /* Removes the report of an earlier run: it must not stand beside other results. */
 fg_status fg_lot_remove_report(fg_context *ctx, const char *folder);
-
-/* More groups than these are not compared. */
-enum { FG_LOT_GROUPS_MAX = 12 };
-
-/* The columns that the settings name are there (those that nobody has named may be missing), and
- * there are not too many groups: FG_ERR_DATA, before anything is measured. */
-fg_status fg_lot_check_columns(fg_context *ctx, const fg_lot_settings *settings,
-                               const fg_manifest *manifest);
 
 /* folder/name; the caller frees. */
 fg_status fg_lot_path(fg_context *ctx, const char *folder, const char *name, char **path);
 
-/* SHA-256 of a text, and of what a scan is measured with. */
-void fg_lot_sum_text(const char *text, char sum[65]);
+/* SHA-256 of the settings that a scan is measured with. */
 fg_status fg_lot_sum_settings(fg_context *ctx, const fg_lot_settings *settings, char sum[65]);
 
 /* A whole text under its name. */

@@ -131,14 +131,6 @@ static void write_record(FILE *out, const fg_record *record, const char *scan_by
   fg_json_end(&json);
 }
 
-void fg_record_date(int64_t seconds, char date[11]) {
-  fg_date_of_time(seconds, date);
-}
-
-void fg_record_date_scan(const char *path, char date[11]) {
-  fg_date_of_file(path, date);
-}
-
 fg_status fg_record_format(fg_context *ctx, const fg_record *record,
                            const fg_measurement *measurement, char **line, size_t *length) {
   char *scan_bytes;

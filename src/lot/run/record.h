@@ -28,12 +28,6 @@ typedef struct fg_record {
   size_t repeat_of; /* in a lot: item + 1 of an earlier scan with the same bytes; 0: none */
 } fg_record;
 
-/* When the scan's file was written last, by its own time; "" where that is not known. A lot whose
- * manifest has no column `date` is dated by it. */
-void fg_record_date_scan(const char *path, char date[11]);
-/* The same of a time, in seconds since 1970. */
-void fg_record_date(int64_t seconds, char date[11]);
-
 /* A line with its newline; `measurement` NULL: `record->error` says why. The caller frees. */
 fg_status fg_record_format(fg_context *ctx, const fg_record *record,
                            const fg_measurement *measurement, char **line, size_t *length);

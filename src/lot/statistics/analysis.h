@@ -8,6 +8,7 @@
 #include "foilgauge/control.h"
 #include "foilgauge/density.h"
 #include "foilgauge/stiffness.h"
+#include "lot/input/recipe.h"
 #include "lot/run/lot.h"
 #include "lot/statistics/assembly.h"
 #include "quantity/parts.h"
@@ -392,5 +393,19 @@ fg_lot_known fg_lot_mean_known(const fg_lot_analysis *analysis, const fg_lot_qua
 
 /* Relative, of the mean stiffness: what the calibration leaves. */
 double fg_lot_stiffness_calibration(const fg_lot_analysis *analysis);
+
+enum { FG_LOT_WORDS_MAX = 4096 };
+
+/* In order of appearance; the words belong to the manifest. */
+typedef struct fg_manifest_words {
+  const char *word[FG_LOT_WORDS_MAX];
+  size_t count;
+} fg_manifest_words;
+
+/* The word's place, which is added where it is new; FG_LOT_WORDS_MAX when there is no room. */
+size_t fg_manifest_word_index(fg_manifest_words *words, const char *word);
+
+/* Cells of the lot's foils that are not empty. */
+void fg_lot_list_words(const fg_lot_analysis *analysis, size_t column, fg_manifest_words *words);
 
 #endif

@@ -2,7 +2,7 @@
 /* What makes the spread of a lot's stiffness. */
 #include <math.h>
 
-#include "report/lot/stiffness_columns.h"
+#include "lot/statistics/budget.h"
 
 static const double rad_per_deg = 3.14159265358979323846 / 180;
 

@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-#include "lot/input/recipe_dies.h"
+#include "lot/input/recipe.h"
 
 fg_lot_to_die fg_lot_bump_to_die(const fg_lot *lot, const fg_lot_foil *foil, const fg_bump *bump) {
   fg_lot_to_die to = {NULL, false, NAN, NAN, NAN, NAN};
@@ -102,40 +102,4 @@ void fg_lot_analyse_dies(const fg_lot_analysis *analysis, fg_lot_dies *dies) {
   dies->foils_differ_pct = dies->sum[1].design_mean_pct - dies->sum[0].design_mean_pct;
   dies->dies_differ_pct = dies->sum[1].die_error_pct - dies->sum[0].die_error_pct;
   dies->explained_difference_pct = 100 * dies->dies_differ_pct / dies->foils_differ_pct;
-}
-
-static void write_sum(fg_json *json, const fg_lot_die_sum *sum) {
-  fg_json_object(json, NULL);
-  fg_json_string(json, "name", sum->die->name);
-  fg_json_string(json, "sha256", sum->die->sha256);
-  fg_json_integer(json, "foils", (int64_t)sum->foils);
-  fg_json_integer(json, "bumps", (int64_t)sum->bumps);
-  fg_json_integer(json, "bumps_by_mean", (int64_t)sum->by_mean);
-  fg_json_number(json, "die_radius_error_pct", sum->die_error_pct);
-  fg_json_number(json, "u_die_radius_error_pct", sum->u_die_error_pct);
-  fg_json_number(json, "radius_error_mean_pct", sum->design_mean_pct);
-  fg_json_number(json, "radius_error_sd_pct", sum->design_sd_pct);
-  fg_json_number(json, "radius_error_to_die_mean_pct", sum->die_mean_pct);
-  fg_json_number(json, "radius_error_to_die_sd_pct", sum->die_sd_pct);
-  fg_json_number(json, "explained_by_die_pct", sum->explained_pct);
-  fg_json_object_end(json);
-}
-
-void fg_lot_json_dies(fg_json *json, const fg_lot_analysis *analysis) {
-  fg_lot_dies dies;
-  fg_lot_analyse_dies(analysis, &dies);
-  if (!dies.count) return;
-  fg_json_object(json, "dies");
-  fg_json_array(json, "each");
-  for (size_t i = 0; i < dies.count; i++)
-    write_sum(json, &dies.sum[i]);
-  fg_json_array_end(json);
-  fg_json_integer(json, "bumps", (int64_t)dies.bumps);
-  fg_json_number(json, "radius_error_sd_pct", dies.design_sd_pct);
-  fg_json_number(json, "radius_error_to_die_sd_pct", dies.die_sd_pct);
-  fg_json_number(json, "explained_variance_pct", dies.explained_variance_pct);
-  fg_json_number(json, "foils_differ_pct", dies.foils_differ_pct);
-  fg_json_number(json, "dies_differ_pct", dies.dies_differ_pct);
-  fg_json_number(json, "explained_difference_pct", dies.explained_difference_pct);
-  fg_json_object_end(json);
 }

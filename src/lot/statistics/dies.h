@@ -40,8 +40,6 @@ typedef struct fg_lot_dies {
 /* count 0: the recipe names no die, or no foil has one. */
 void fg_lot_analyse_dies(const fg_lot_analysis *analysis, fg_lot_dies *dies);
 
-/* In lot.json, on the page: nothing where count is 0. */
-void fg_lot_json_dies(fg_json *json, const fg_lot_analysis *analysis);
 void fg_lot_put_dies(FILE *out, const fg_lot_analysis *analysis);
 
 #endif

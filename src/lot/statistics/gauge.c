@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "lot/input/manifest_words.h"
 #include "lot/statistics/analysis.h"
 
 /* A gauge study needs a whole table of part × operator × trial. */

@@ -7,7 +7,6 @@
 
 #include "core/memory.h"
 #include "core/spread.h"
-#include "lot/input/manifest_words.h"
 #include "lot/statistics/analysis.h"
 #include "lot/statistics/foil_levels.h"
 #include "stats/between_groups.h"

@@ -5,8 +5,8 @@
 
 #include "core/memory.h"
 #include "core/spread.h"
+#include "lot/statistics/budget.h"
 #include "quantity/quantity_rows.h"
-#include "report/lot/stiffness_columns.h"
 
 void fg_lot_analyse_thickness(fg_lot_analysis *analysis) {
   fg_lot_thickness *result = &analysis->thickness;

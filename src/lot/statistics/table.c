@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "core/sha256.h"
 #include "foilgauge/lot_table.h"
 
 #include <math.h>
@@ -67,7 +68,7 @@ static fg_status read_folder(fg_context *ctx, reading *r) {
   for (int i = 0; i < FILES; i++) {
     FG_TRY_EXIT(fg_lot_path(ctx, r->folder, file_name[i], &out->path[i]));
     FG_TRY_EXIT(fg_file_read_text(ctx, out->path[i], TEXT_BYTES_MAX, &text[i]));
-    fg_lot_sum_text(text[i], out->sha256[i]);
+    fg_sha256_text(text[i], out->sha256[i]);
   }
   fg_lot_settings_default(&r->lot.settings);
   FG_TRY_EXIT(fg_lot_settings_parse(ctx, out->path[RECIPE], text[RECIPE], &r->lot.settings));

@@ -81,3 +81,18 @@ fg_status fg_lot_spread_of(fg_context *ctx, const double *values, size_t count,
   fg_density_free(&density);
   return FG_OK;
 }
+
+size_t fg_manifest_word_index(fg_manifest_words *words, const char *word) {
+  for (size_t i = 0; i < words->count; i++)
+    if (!strcmp(words->word[i], word)) return i;
+  if (words->count == FG_LOT_WORDS_MAX) return FG_LOT_WORDS_MAX;
+  words->word[words->count] = word;
+  return words->count++;
+}
+
+void fg_lot_list_words(const fg_lot_analysis *analysis, size_t column, fg_manifest_words *words) {
+  for (size_t i = 0; i < analysis->foil_count; i++) {
+    const char *word = fg_manifest_cell(&analysis->lot->manifest, analysis->foils[i].item, column);
+    if (*word) fg_manifest_word_index(words, word);
+  }
+}

@@ -12,7 +12,7 @@
 #include "lot/statistics/dies.h"
 #include "quantity/quantity_rows.h"
 #include "report/flag_names.h"
-#include "report/lot/writers.h"
+#include "report/lot/files.h"
 
 static void put_text(FILE *out, const char *text) {
   fg_csv_put_text(out, text, fg_utf8_put);

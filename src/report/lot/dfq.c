@@ -15,7 +15,7 @@
 #include "foilgauge/words.h"
 #include "lot/run/date.h"
 #include "report/lot/characteristics.h"
-#include "report/lot/writers.h"
+#include "report/lot/files.h"
 
 /* The manifest's column of what Q-DAS calls a batch; and what its texts hold at most. */
 #define COIL_COLUMN "coil"

@@ -6,8 +6,8 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "lot/run/date.h"
+#include "report/lot/files.h"
 #include "report/lot/foil_pages.h"
-#include "report/lot/writers.h"
 
 /* Which lots have a file. */
 typedef enum lot_kind { ALL, CURVED, FLAT } lot_kind;

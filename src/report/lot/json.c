@@ -9,8 +9,8 @@
 #include "lot/statistics/dies.h"
 #include "report/design/calibration_json.h"
 #include "report/flag_names.h"
-#include "report/lot/json_parts.h"
-#include "report/lot/writers.h"
+#include "report/lot/files.h"
+#include "report/lot/json.h"
 #include "report/measure/json.h"
 #include "report/measure/scan_model_words.h"
 #include "report/quantity_json.h"
@@ -284,6 +284,57 @@ static void write_gauge(fg_json *json, const fg_lot_words *words, const fg_lot_g
   fg_json_line_end(json);
 }
 
+static void write_lot_date(fg_json *json, const fg_lot *lot) {
+  fg_lot_date date;
+  const char *wrong;
+  size_t count = fg_lot_date_wrong(&lot->manifest, &wrong);
+  fg_lot_date_find(lot, &date);
+  fg_json_object(json, "date");
+  fg_json_line(json);
+  fg_json_string(json, "first", date.from ? date.first : NULL);
+  fg_json_string(json, "last", date.from ? date.last : NULL);
+  fg_json_string(json, "from", date.from);
+  if (count) fg_json_integer(json, "cells_not_dates", (int64_t)count);
+  fg_json_object_end(json);
+  fg_json_line_end(json);
+}
+
+static void write_die_sum(fg_json *json, const fg_lot_die_sum *sum) {
+  fg_json_object(json, NULL);
+  fg_json_string(json, "name", sum->die->name);
+  fg_json_string(json, "sha256", sum->die->sha256);
+  fg_json_integer(json, "foils", (int64_t)sum->foils);
+  fg_json_integer(json, "bumps", (int64_t)sum->bumps);
+  fg_json_integer(json, "bumps_by_mean", (int64_t)sum->by_mean);
+  fg_json_number(json, "die_radius_error_pct", sum->die_error_pct);
+  fg_json_number(json, "u_die_radius_error_pct", sum->u_die_error_pct);
+  fg_json_number(json, "radius_error_mean_pct", sum->design_mean_pct);
+  fg_json_number(json, "radius_error_sd_pct", sum->design_sd_pct);
+  fg_json_number(json, "radius_error_to_die_mean_pct", sum->die_mean_pct);
+  fg_json_number(json, "radius_error_to_die_sd_pct", sum->die_sd_pct);
+  fg_json_number(json, "explained_by_die_pct", sum->explained_pct);
+  fg_json_object_end(json);
+}
+
+static void write_dies_of_lot(fg_json *json, const fg_lot_analysis *analysis) {
+  fg_lot_dies dies;
+  fg_lot_analyse_dies(analysis, &dies);
+  if (!dies.count) return;
+  fg_json_object(json, "dies");
+  fg_json_array(json, "each");
+  for (size_t i = 0; i < dies.count; i++)
+    write_die_sum(json, &dies.sum[i]);
+  fg_json_array_end(json);
+  fg_json_integer(json, "bumps", (int64_t)dies.bumps);
+  fg_json_number(json, "radius_error_sd_pct", dies.design_sd_pct);
+  fg_json_number(json, "radius_error_to_die_sd_pct", dies.die_sd_pct);
+  fg_json_number(json, "explained_variance_pct", dies.explained_variance_pct);
+  fg_json_number(json, "foils_differ_pct", dies.foils_differ_pct);
+  fg_json_number(json, "dies_differ_pct", dies.dies_differ_pct);
+  fg_json_number(json, "explained_difference_pct", dies.explained_difference_pct);
+  fg_json_object_end(json);
+}
+
 fg_status fg_lot_write_json(fg_context *ctx, const fg_lot_analysis *analysis, FILE *out) {
   const fg_lot *lot = analysis->lot;
   fg_json json;
@@ -291,7 +342,7 @@ fg_status fg_lot_write_json(fg_context *ctx, const fg_lot_analysis *analysis, FI
   fg_json_object(&json, NULL);
   fg_json_head(&json, "foilgauge/lot/1");
   fg_json_string(&json, "name", lot->settings.name);
-  fg_lot_date_write(&json, lot);
+  write_lot_date(&json, lot);
   fg_json_verdict(&json, analysis->outcome.verdict);
   write_counts(&json, analysis);
   fg_lot_json_process(&json, analysis);
@@ -316,7 +367,7 @@ fg_status fg_lot_write_json(fg_context *ctx, const fg_lot_analysis *analysis, FI
   write_thickness(&json, analysis);
   if (bumps) fg_lot_json_stiffness(&json, analysis);
   if (bumps) fg_lot_json_bearings(&json, analysis);
-  if (bumps) fg_lot_json_dies(&json, analysis);
+  if (bumps) write_dies_of_lot(&json, analysis);
   fg_reference_curve_write(&json, "reference_curve", &lot->settings);
   if (bumps) fg_lot_json_assembly(&json, analysis);
   fg_json_array(&json, "comparisons");

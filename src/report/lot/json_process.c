@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* lot.json: whether the process runs as it did, and what its charts' signals come from. */
-#include "report/lot/json_parts.h"
+#include "report/lot/json.h"
 
 static void write_trend(fg_json *json, const fg_lot_trend *trend) {
   if (!trend->known) {

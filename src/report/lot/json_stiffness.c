@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Stiffness of a lot's bumps in its JSON. */
-#include "report/lot/json_parts.h"
+#include "report/lot/json.h"
 
 static void write_arch(fg_json *json, const char *name, const fg_arch_stiffness *stiffness) {
   fg_json_object(json, name);

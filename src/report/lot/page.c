@@ -6,9 +6,9 @@
 #include "lot/run/date.h"
 #include "lot/statistics/dies.h"
 #include "page/provenance.h"
+#include "report/lot/files.h"
 #include "report/lot/page_parts.h"
 #include "report/lot/plots.h"
-#include "report/lot/writers.h"
 #include "report/measure/scan_model_words.h"
 
 /* What the model does not know well enough to correct. */

@@ -11,11 +11,12 @@
 
 #include "core/file.h"
 #include "core/json_writer.h"
+#include "core/sha256.h"
 #include "foilgauge/words.h"
 #include "lot/run/date.h"
 #include "page/page.h"
 #include "report/lot/characteristics.h"
-#include "report/lot/writers.h"
+#include "report/lot/files.h"
 
 typedef struct qif {
   FILE *out;
@@ -50,7 +51,7 @@ static void put_number(FILE *out, double value) {
 static void put_uuid(FILE *out, const char *a, const char *b) {
   char sum[65], both[160];
   snprintf(both, sizeof both, "%s %s", a, b);
-  fg_lot_sum_text(both, sum);
+  fg_sha256_text(both, sum);
   fprintf(out, "%.8s-%.4s-5%.3s-8%.3s-%.12s", sum, sum + 8, sum + 13, sum + 17, sum + 20);
 }
 

@@ -7,7 +7,7 @@
 #include "core/memory.h"
 #include "core/text.h"
 #include "foilgauge/file.h"
-#include "lots/lots.h"
+#include "lots/index.h"
 
 enum { PAGE, JSON, TABLE, OUTPUTS };
 
@@ -54,10 +54,10 @@ static fg_status read_lots(fg_context *ctx, fg_index *index) {
     FG_TRY(fg_index_read_lot(ctx, lot));
     if (lot->problem) continue;
     FG_TRY(fg_index_read_foils(ctx, index, lot));
-    if (lot->uncertainty)
+    if (lot->foils_unknown)
       FG_TRY(fg_text_append(ctx, &index->notes,
                             "%s; without them there is no density and no test of this lot\n",
-                            lot->uncertainty));
+                            lot->foils_unknown));
     if (!lot->date.from)
       FG_TRY(fg_text_append(ctx, &index->notes,
                             "%s: the lot has no date and stands behind those that have one; give "

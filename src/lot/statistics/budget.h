@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Bumps of a lot with both radius and angle, as columns: what the analysis of stiffness hands on.
  */
-#ifndef FG_REPORT_LOT_STIFFNESS_COLUMNS_H
-#define FG_REPORT_LOT_STIFFNESS_COLUMNS_H
+#ifndef FG_LOT_STATISTICS_BUDGET_H
+#define FG_LOT_STATISTICS_BUDGET_H
 
 #include "lot/statistics/analysis.h"
 

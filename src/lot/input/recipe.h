@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The dies that a recipe names, as members of the recipe. */
-#ifndef FG_LOT_INPUT_RECIPE_DIES_H
-#define FG_LOT_INPUT_RECIPE_DIES_H
+/* Members of a recipe that have a file of their own, and its columns against a manifest. */
+#ifndef FG_LOT_INPUT_RECIPE_H
+#define FG_LOT_INPUT_RECIPE_H
 
 #include <cjson/cJSON.h>
 
 #include "core/json_writer.h"
 #include "foilgauge/lot.h"
+#include "lot/input/manifest.h"
 
 /* "dies": {"A": "die_a.json", "B": {...}}: paths of reports of `foilgauge die`, beside the recipe,
  * or what fg_lot_dies_write writes. */
@@ -21,5 +22,13 @@ fg_status fg_lot_dies_check(fg_context *ctx, const fg_lot_settings *settings);
 
 /* NULL: none of that name. */
 const fg_lot_die *fg_lot_dies_find(const fg_lot_settings *settings, const char *name);
+
+/* More groups than these are not compared. */
+enum { FG_LOT_GROUPS_MAX = 12 };
+
+/* FG_ERR_DATA where a column that the settings name is not there (the default ones may be missing),
+ * or where there are too many groups. To be called before anything is measured. */
+fg_status fg_lot_check_columns(fg_context *ctx, const fg_lot_settings *settings,
+                               const fg_manifest *manifest);
 
 #endif

@@ -3,8 +3,8 @@
  *
  * A lot is read from lot.json, foils.csv and bumps.csv (or beams.csv), not from its records: lots
  * of years come from many versions of the program, and the names in these files stay. */
-#ifndef FG_LOTS_LOTS_H
-#define FG_LOTS_LOTS_H
+#ifndef FG_LOTS_INDEX_H
+#define FG_LOTS_INDEX_H
 
 #include <stdbool.h>
 #include <stdio.h>
@@ -43,8 +43,8 @@ typedef struct fg_index_spread {
 typedef struct fg_index_lot {
   const char *folder; /* as given */
   char *name;
-  char *problem;     /* why nothing is known of it, and what to do; NULL: it is read */
-  char *uncertainty; /* why its foils are not known one by one; NULL: they are */
+  char *problem;       /* why nothing is known of it, and what to do; NULL: it is read */
+  char *foils_unknown; /* why its foils are not known one by one; NULL: they are */
   fg_lot_date date;
   double day;                   /* the first; NaN: not known */
   char version[32], sha256[65]; /* of the program, and of lot.json */

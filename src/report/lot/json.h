@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the files of a lot's JSON share. */
-#ifndef FG_REPORT_LOT_JSON_PARTS_H
-#define FG_REPORT_LOT_JSON_PARTS_H
+#ifndef FG_REPORT_LOT_JSON_H
+#define FG_REPORT_LOT_JSON_H
 
 #include "core/json_writer.h"
 #include "lot/statistics/analysis.h"
