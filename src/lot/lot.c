@@ -53,7 +53,7 @@ typedef struct lot_run {
   int lock;
 } lot_run;
 
-static fg_status check_shard(fg_context *ctx, fg_lot_shard shard) {
+static fg_status check_shard_number(fg_context *ctx, fg_lot_shard shard) {
   if (shard.index >= 1 && shard.index <= shard.count) return FG_OK;
   return fg_fail(ctx, FG_ERR_USAGE, "shard %zu/%zu: give i/n with i from 1 to n", shard.index,
                  shard.count);
@@ -61,7 +61,7 @@ static fg_status check_shard(fg_context *ctx, fg_lot_shard shard) {
 
 /* The recipe that is kept names the copy in the lot's folder, so that it does not matter from where
  * the model came. */
-static fg_status take_model(fg_context *ctx, lot_run *run, fg_lot_settings *kept) {
+static fg_status read_scanner_model(fg_context *ctx, lot_run *run, fg_lot_settings *kept) {
   if (!kept->model[0]) return FG_OK;
   FG_TRY(fg_file_read_text(ctx, kept->model, FG_LOT_MODEL_BYTES_MAX, &run->model_text));
   FG_TRY(fg_scanner_model_parse(ctx, kept->model, run->model_text, &run->model));
@@ -78,13 +78,13 @@ static const char *find_own_manifest(const fg_lot_request *request) {
   return NULL;
 }
 
-static fg_status prepare(fg_context *ctx, lot_run *run) {
+static fg_status prepare_run(fg_context *ctx, lot_run *run) {
   const fg_lot_request *request = run->request;
   fg_lot_settings kept = *request->settings;
   void *block;
-  FG_TRY(check_shard(ctx, request->shard));
+  FG_TRY(check_shard_number(ctx, request->shard));
   FG_TRY(fg_lot_settings_check(ctx, request->settings));
-  FG_TRY(take_model(ctx, run, &kept));
+  FG_TRY(read_scanner_model(ctx, run, &kept));
   FG_TRY(fg_manifest_collect(ctx, request->paths, request->path_count, request->folder,
                              find_own_manifest(request), &run->manifest));
   FG_TRY(fg_lot_check_inputs(ctx, request, &run->manifest));
@@ -109,8 +109,8 @@ static fg_status prepare(fg_context *ctx, lot_run *run) {
   return FG_OK;
 }
 
-static fg_status take_entry(fg_context *ctx, void *user, fg_record *record,
-                            fg_journal_entry entry) {
+static fg_status accept_record(fg_context *ctx, void *user, fg_record *record,
+                               fg_journal_entry entry) {
   lot_run *run = user;
   size_t item = fg_manifest_index_find(&run->index, &run->manifest, record->scan);
   if (item == run->manifest.items || !run->items[item].mine || !record->sha256[0] ||
@@ -157,7 +157,7 @@ static fg_status read_earlier(fg_context *ctx, lot_run *run) {
                    "%s: the folder holds results; --resume goes on with them, or choose another "
                    "folder",
                    run->request->folder);
-  FG_TRY(fg_journal_salvage(ctx, run->results_path, &damage, take_entry, run));
+  FG_TRY(fg_journal_salvage(ctx, run->results_path, &damage, accept_record, run));
   run->outcome->torn = damage.lines;
   run->outcome->first_torn = damage.first;
   run->outcome->earlier = damage.earlier;
@@ -189,7 +189,7 @@ static fg_status list_todo(fg_context *ctx, lot_run *run) {
 }
 
 /* One at a time; the first tenth of a second says nothing about the rest. */
-static void tell(lot_run *run, size_t item, const char *error, bool beyond) {
+static void report_progress(lot_run *run, size_t item, const char *error, bool beyond) {
   pthread_mutex_lock(&run->listening);
   fg_lot_outcome *outcome = run->outcome;
   bool kept = run->items[item].redrawn;
@@ -212,8 +212,8 @@ static void tell(lot_run *run, size_t item, const char *error, bool beyond) {
   pthread_mutex_unlock(&run->listening);
 }
 
-static fg_status keep(fg_context *ctx, lot_run *run, size_t item, const fg_record *record,
-                      const fg_measurement *measurement) {
+static fg_status append_record(fg_context *ctx, lot_run *run, size_t item, const fg_record *record,
+                               const fg_measurement *measurement) {
   char *line;
   size_t length;
   FG_TRY(fg_record_format(ctx, record, measurement, &line, &length));
@@ -224,8 +224,8 @@ static fg_status keep(fg_context *ctx, lot_run *run, size_t item, const fg_recor
 
 /* By the scanner's model, if any; a scan that it does not fit is not measured. With what the
  * calibration does not know. */
-static fg_status correct(fg_context *ctx, const lot_run *run, fg_measurement *measurement,
-                         bool *beyond) {
+static fg_status correct_measurement(fg_context *ctx, const lot_run *run,
+                                     fg_measurement *measurement, bool *beyond) {
   char warning[200];
   fg_status status = FG_OK;
   warning[0] = '\0';
@@ -236,7 +236,7 @@ static fg_status correct(fg_context *ctx, const lot_run *run, fg_measurement *me
   return status;
 }
 
-static void tell_not_drawn(lot_run *run, const char *why) {
+static void note_undrawn_page(lot_run *run, const char *why) {
   pthread_mutex_lock(&run->listening);
   if (run->outcome->not_drawn++ == 0)
     fg_text_clip(run->outcome->first_not_drawn, sizeof run->outcome->first_not_drawn, "%s", why);
@@ -255,7 +255,7 @@ static fg_status draw_page(fg_context *ctx, lot_run *run, size_t item,
                                measurement->foil_count, &wanted));
   if (!wanted) return FG_OK;
   if (fg_lot_page_draw(&inner, design, &run->manifest, item, measurement, &page) != FG_OK) {
-    tell_not_drawn(run, inner.message);
+    note_undrawn_page(run, inner.message);
     return FG_OK;
   }
   fg_status status = name_page(ctx, run, item, measurement->sha256, &name);
@@ -285,13 +285,13 @@ static fg_status measure_item(fg_context *ctx, lot_run *run, size_t item) {
   fg_date_of_file(scan, record.date);
   fg_status failure = fg_measure_scan(&inner, scan, &settings->design, &options, &measurement);
   memcpy(record.sha256, measurement.sha256, sizeof record.sha256);
-  if (failure == FG_OK) failure = correct(&inner, run, &measurement, &beyond);
+  if (failure == FG_OK) failure = correct_measurement(&inner, run, &measurement, &beyond);
   if (failure == FG_ERR_MEMORY || failure == FG_ERR_IO) record.sha256[0] = '\0';
   fg_status status = failure == FG_OK ? draw_page(ctx, run, item, &measurement) : FG_OK;
   if (status == FG_OK && !run->items[item].redrawn)
-    status = keep(ctx, run, item, &record, failure == FG_OK ? &measurement : NULL);
+    status = append_record(ctx, run, item, &record, failure == FG_OK ? &measurement : NULL);
   if (failure == FG_OK) fg_measurement_free(&measurement);
-  if (status == FG_OK) tell(run, item, failure == FG_OK ? NULL : inner.message, beyond);
+  if (status == FG_OK) report_progress(run, item, failure == FG_OK ? NULL : inner.message, beyond);
   return status;
 }
 
@@ -304,7 +304,7 @@ static fg_status measure_next(fg_context *ctx, void *shared, size_t i) {
 }
 
 /* The file in the manifest's order, with one record per item: the same bytes however it came. */
-static fg_status rewrite(fg_context *ctx, lot_run *run) {
+static fg_status rewrite_journal(fg_context *ctx, lot_run *run) {
   void *block;
   const char *from[] = {run->results_path};
   FG_TRY(fg_memory_allocate(ctx, run->manifest.items, sizeof(fg_journal_entry), &block));
@@ -323,7 +323,7 @@ static fg_status measure_missing(fg_context *ctx, lot_run *run) {
   FG_TRY(fg_lot_write_text(ctx, request->folder, "recipe.json", run->recipe_text));
   FG_TRY(fg_lot_write_text(ctx, request->folder, "manifest.csv", run->manifest_text));
   FG_TRY(fg_lot_write_model(ctx, request->folder, run->model_text));
-  FG_TRY(rewrite(ctx, run));
+  FG_TRY(rewrite_journal(ctx, run));
   if (!run->todo_count) return FG_OK;
   FG_TRY(fg_journal_open(ctx, run->results_path, &run->journal));
   run->start = fg_clock_seconds();
@@ -336,7 +336,8 @@ static fg_status measure_missing(fg_context *ctx, lot_run *run) {
 }
 
 /* Offsets have moved with the first rewrite: they are read again. */
-static fg_status take_any(fg_context *ctx, void *user, fg_record *record, fg_journal_entry entry) {
+static fg_status note_offset(fg_context *ctx, void *user, fg_record *record,
+                             fg_journal_entry entry) {
   lot_run *run = user;
   (void)ctx;
   size_t item = fg_manifest_index_find(&run->index, &run->manifest, record->scan);
@@ -344,14 +345,14 @@ static fg_status take_any(fg_context *ctx, void *user, fg_record *record, fg_jou
   return FG_OK;
 }
 
-static fg_status put_in_order(fg_context *ctx, lot_run *run) {
+static fg_status order_journal(fg_context *ctx, lot_run *run) {
   fg_journal_head head;
   fg_journal_damage damage;
-  FG_TRY(fg_journal_read(ctx, run->results_path, &head, &damage, take_any, run));
-  return rewrite(ctx, run);
+  FG_TRY(fg_journal_read(ctx, run->results_path, &head, &damage, note_offset, run));
+  return rewrite_journal(ctx, run);
 }
 
-static fg_status report(fg_context *ctx, lot_run *run) {
+static fg_status write_report(fg_context *ctx, lot_run *run) {
   fg_lot lot = {.manifest = run->manifest, .decimal_comma = run->request->decimal_comma};
   fg_lot_settings_default(&lot.settings); /* as a merge reads them: a recipe has ten digits */
   FG_TRY(fg_lot_settings_parse(ctx, "recipe.json", run->recipe_text, &lot.settings));
@@ -362,8 +363,8 @@ static fg_status report(fg_context *ctx, lot_run *run) {
   return status;
 }
 
-static fg_status work(fg_context *ctx, lot_run *run) {
-  FG_TRY(prepare(ctx, run));
+static fg_status measure_lot(fg_context *ctx, lot_run *run) {
+  FG_TRY(prepare_run(ctx, run));
   if (!run->request->dry_run) {
     FG_TRY(fg_folder_make(ctx, run->request->folder));
     FG_TRY(fg_folder_lock(ctx, run->request->folder, &run->lock));
@@ -372,15 +373,15 @@ static fg_status work(fg_context *ctx, lot_run *run) {
   FG_TRY(list_todo(ctx, run));
   if (run->request->dry_run) return FG_OK;
   FG_TRY(measure_missing(ctx, run));
-  if (run->todo_count) FG_TRY(put_in_order(ctx, run));
-  return run->request->shard.count == 1 ? report(ctx, run) : FG_OK;
+  if (run->todo_count) FG_TRY(order_journal(ctx, run));
+  return run->request->shard.count == 1 ? write_report(ctx, run) : FG_OK;
 }
 
 fg_status fg_lot_run(fg_context *ctx, const fg_lot_request *request, fg_lot_outcome *outcome) {
   lot_run run = {.request = request, .outcome = outcome, .lock = -1};
   *outcome = (fg_lot_outcome){.judged = {.verdict = FG_VERDICT_NONE}};
   pthread_mutex_init(&run.listening, NULL);
-  fg_status status = work(ctx, &run);
+  fg_status status = measure_lot(ctx, &run);
   pthread_mutex_destroy(&run.listening);
   if (run.lock >= 0) close(run.lock);
   fg_manifest_index_free(&run.index);

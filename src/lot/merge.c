@@ -38,7 +38,8 @@ typedef struct merger {
   bool decimal_comma;
 } merger;
 
-static fg_status read_text(fg_context *ctx, const char *folder, const char *name, char **text) {
+static fg_status read_folder_text(fg_context *ctx, const char *folder, const char *name,
+                                  char **text) {
   char *path;
   FG_TRY(fg_lot_path(ctx, folder, name, &path));
   fg_status status = fg_file_read_text(ctx, path, TEXT_BYTES_MAX, text);
@@ -46,8 +47,8 @@ static fg_status read_text(fg_context *ctx, const char *folder, const char *name
   return status;
 }
 
-static fg_status check_sum(fg_context *ctx, const char *folder, const char *name, const char *text,
-                           const char *expected) {
+static fg_status check_text_sum(fg_context *ctx, const char *folder, const char *name,
+                                const char *text, const char *expected) {
   char sum[65];
   fg_sha256_text(text, sum);
   if (!strcmp(sum, expected)) return FG_OK;
@@ -58,23 +59,23 @@ static fg_status check_sum(fg_context *ctx, const char *folder, const char *name
 }
 
 /* The first folder says what the lot is. */
-static fg_status read_first(fg_context *ctx, merger *m) {
+static fg_status read_first_folder(fg_context *ctx, merger *m) {
   const char *folder = m->folders[0];
-  FG_TRY(read_text(ctx, folder, "recipe.json", &m->recipe_text));
-  FG_TRY(read_text(ctx, folder, "manifest.csv", &m->manifest_text));
-  FG_TRY(check_sum(ctx, folder, "recipe.json", m->recipe_text, m->head.recipe_sha256));
-  FG_TRY(check_sum(ctx, folder, "manifest.csv", m->manifest_text, m->head.manifest_sha256));
+  FG_TRY(read_folder_text(ctx, folder, "recipe.json", &m->recipe_text));
+  FG_TRY(read_folder_text(ctx, folder, "manifest.csv", &m->manifest_text));
+  FG_TRY(check_text_sum(ctx, folder, "recipe.json", m->recipe_text, m->head.recipe_sha256));
+  FG_TRY(check_text_sum(ctx, folder, "manifest.csv", m->manifest_text, m->head.manifest_sha256));
   fg_lot_settings_default(&m->settings);
   FG_TRY(fg_lot_settings_parse(ctx, folder, m->recipe_text, &m->settings));
   if (m->settings.model[0]) {
-    FG_TRY(read_text(ctx, folder, FG_LOT_MODEL_FILE, &m->model_text));
-    FG_TRY(check_sum(ctx, folder, FG_LOT_MODEL_FILE, m->model_text, m->settings.model_sha256));
+    FG_TRY(read_folder_text(ctx, folder, FG_LOT_MODEL_FILE, &m->model_text));
+    FG_TRY(check_text_sum(ctx, folder, FG_LOT_MODEL_FILE, m->model_text, m->settings.model_sha256));
   }
   FG_TRY(fg_manifest_parse(ctx, folder, m->manifest_text, "", &m->manifest));
   return fg_manifest_index_build(ctx, &m->manifest, &m->index);
 }
 
-static fg_status allocate(fg_context *ctx, merger *m) {
+static fg_status allocate_merger(fg_context *ctx, merger *m) {
   void *block;
   FG_TRY(fg_memory_allocate(ctx, m->manifest.items, sizeof *m->entries, &block));
   m->entries = block;
@@ -85,7 +86,7 @@ static fg_status allocate(fg_context *ctx, merger *m) {
   return FG_OK;
 }
 
-static fg_status refuse(fg_context *ctx, const merger *m, const char *what) {
+static fg_status refuse_shard(fg_context *ctx, const merger *m, const char *what) {
   return fg_fail(ctx, FG_ERR_DATA, "%s and %s: %s differ; shards of one lot must share it",
                  m->folders[0], m->folders[m->at], what);
 }
@@ -96,26 +97,28 @@ static bool has_other_model(const merger *m) {
   fg_lot_settings other;
   char *text = NULL;
   fg_lot_settings_default(&other);
-  if (read_text(&ignored, m->folders[m->at], "recipe.json", &text) != FG_OK) return false;
+  if (read_folder_text(&ignored, m->folders[m->at], "recipe.json", &text) != FG_OK) return false;
   fg_status status = fg_lot_settings_parse(&ignored, m->folders[m->at], text, &other);
   free(text);
   return status == FG_OK && strcmp(other.model_sha256, m->settings.model_sha256) != 0;
 }
 
 static fg_status check_head(fg_context *ctx, const merger *m, const fg_journal_head *head) {
-  if (strcmp(head->version, m->head.version) != 0) return refuse(ctx, m, "the program's versions");
+  if (strcmp(head->version, m->head.version) != 0)
+    return refuse_shard(ctx, m, "the program's versions");
   if (strcmp(head->recipe_sha256, m->head.recipe_sha256) != 0)
-    return refuse(ctx, m, has_other_model(m) ? "the scanner's models" : "the recipes");
+    return refuse_shard(ctx, m, has_other_model(m) ? "the scanner's models" : "the recipes");
   if (strcmp(head->manifest_sha256, m->head.manifest_sha256) != 0)
-    return refuse(ctx, m, "the manifests");
+    return refuse_shard(ctx, m, "the manifests");
   if (strcmp(head->measured_with, m->head.measured_with) != 0)
-    return refuse(ctx, m, "the settings of the measurement");
-  if (head->shard.count != m->head.shard.count) return refuse(ctx, m, "the numbers of shards");
+    return refuse_shard(ctx, m, "the settings of the measurement");
+  if (head->shard.count != m->head.shard.count)
+    return refuse_shard(ctx, m, "the numbers of shards");
   return FG_OK;
 }
 
-static fg_status take_entry(fg_context *ctx, void *user, fg_record *record,
-                            fg_journal_entry entry) {
+static fg_status assign_record(fg_context *ctx, void *user, fg_record *record,
+                               fg_journal_entry entry) {
   merger *m = user;
   size_t item = fg_manifest_index_find(&m->index, &m->manifest, record->scan);
   if (item == m->manifest.items)
@@ -132,7 +135,7 @@ static fg_status take_entry(fg_context *ctx, void *user, fg_record *record,
   return FG_OK;
 }
 
-static fg_status take_shard(fg_context *ctx, merger *m) {
+static fg_status add_shard(fg_context *ctx, merger *m) {
   fg_journal_head head;
   fg_journal_damage damage;
   FG_TRY(fg_journal_read_head(ctx, m->paths[m->at], &head));
@@ -142,7 +145,7 @@ static fg_status take_shard(fg_context *ctx, merger *m) {
     return fg_fail(ctx, FG_ERR_DATA, "shard %zu/%zu is there twice: %s and %s", head.shard.index,
                    head.shard.count, m->folders[*folder - 1], m->folders[m->at]);
   *folder = m->at + 1;
-  FG_TRY(fg_journal_read(ctx, m->paths[m->at], &head, &damage, take_entry, m));
+  FG_TRY(fg_journal_read(ctx, m->paths[m->at], &head, &damage, assign_record, m));
   if (!damage.lines) return FG_OK;
   return fg_fail(ctx, FG_ERR_DATA,
                  "%s: line %zu is damaged or not whole (one of %zu); measure the shard with "
@@ -150,7 +153,7 @@ static fg_status take_shard(fg_context *ctx, merger *m) {
                  m->paths[m->at], damage.first, damage.lines);
 }
 
-static fg_status check_complete(fg_context *ctx, const merger *m) {
+static fg_status check_all_there(fg_context *ctx, const merger *m) {
   size_t missing = 0, first = 0;
   for (size_t i = m->head.shard.count; i-- > 0;)
     if (!m->shard_of[i]) {
@@ -173,7 +176,7 @@ static fg_status check_complete(fg_context *ctx, const merger *m) {
                  m->folders[shard]);
 }
 
-static fg_status gather(fg_context *ctx, merger *m) {
+static fg_status gather_shards(fg_context *ctx, merger *m) {
   void *block;
   FG_TRY(fg_memory_allocate(ctx, m->count, sizeof *m->paths, &block));
   m->paths = block;
@@ -182,14 +185,14 @@ static fg_status gather(fg_context *ctx, merger *m) {
     FG_TRY(fg_lot_path(ctx, m->folders[i], "results.jsonl", &m->paths[i]));
   }
   FG_TRY(fg_journal_read_head(ctx, m->paths[0], &m->head));
-  FG_TRY(read_first(ctx, m));
-  FG_TRY(allocate(ctx, m));
+  FG_TRY(read_first_folder(ctx, m));
+  FG_TRY(allocate_merger(ctx, m));
   for (m->at = 0; m->at < m->count; m->at++)
-    FG_TRY(take_shard(ctx, m));
-  return check_complete(ctx, m);
+    FG_TRY(add_shard(ctx, m));
+  return check_all_there(ctx, m);
 }
 
-static fg_status check_target(fg_context *ctx, const merger *m) {
+static fg_status check_target_folder(fg_context *ctx, const merger *m) {
   struct stat target, source;
   FG_TRY(fg_lot_check_shards(ctx, m->folder, m->folders, m->count));
   FG_TRY(fg_folder_make(ctx, m->folder));
@@ -200,7 +203,7 @@ static fg_status check_target(fg_context *ctx, const merger *m) {
   return FG_OK;
 }
 
-static fg_status write_lot(fg_context *ctx, merger *m, fg_lot_outcome *outcome) {
+static fg_status write_merged_lot(fg_context *ctx, merger *m, fg_lot_outcome *outcome) {
   char *path;
   fg_journal_head head = m->head;
   head.shard = (fg_lot_shard){1, 1};
@@ -223,12 +226,12 @@ static fg_status write_lot(fg_context *ctx, merger *m, fg_lot_outcome *outcome) 
   return status;
 }
 
-static fg_status merge(fg_context *ctx, merger *m, fg_lot_outcome *outcome) {
+static fg_status merge_shards(fg_context *ctx, merger *m, fg_lot_outcome *outcome) {
   if (m->count == 0) return fg_fail(ctx, FG_ERR_USAGE, "no folder to merge");
-  FG_TRY(gather(ctx, m));
-  FG_TRY(check_target(ctx, m));
+  FG_TRY(gather_shards(ctx, m));
+  FG_TRY(check_target_folder(ctx, m));
   FG_TRY(fg_folder_lock(ctx, m->folder, &m->lock));
-  return write_lot(ctx, m, outcome);
+  return write_merged_lot(ctx, m, outcome);
 }
 
 fg_status fg_lot_merge(fg_context *ctx, const char *const *folders, size_t count,
@@ -239,7 +242,7 @@ fg_status fg_lot_merge(fg_context *ctx, const char *const *folders, size_t count
               .decimal_comma = decimal_comma,
               .lock = -1};
   *outcome = (fg_lot_outcome){.judged = {.verdict = FG_VERDICT_NONE}};
-  fg_status status = merge(ctx, &m, outcome);
+  fg_status status = merge_shards(ctx, &m, outcome);
   if (m.lock >= 0) close(m.lock);
   for (size_t i = 0; m.paths && i < count; i++)
     free(m.paths[i]);

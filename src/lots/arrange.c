@@ -14,7 +14,7 @@
 #define ON_ONE_LINE 1e-9
 
 /* Not read behind, then those without a date; else by date, name, and as given. */
-static int by_date(const void *left, const void *right) {
+static int compare_dates(const void *left, const void *right) {
   const fg_index_lot *a = left, *b = right;
   if (!a->problem != !b->problem) return a->problem ? 1 : -1;
   if (isnan(a->day) != isnan(b->day)) return isnan(a->day) ? 1 : -1;
@@ -35,7 +35,7 @@ static void number_designs(fg_index *index) {
   }
 }
 
-static int by_name(const void *left, const void *right) {
+static int compare_die_names(const void *left, const void *right) {
   const fg_index_die *a = left, *b = right;
   return strcmp(a->name, b->name);
 }
@@ -46,7 +46,7 @@ static fg_status order_dies(fg_context *ctx, fg_index *index) {
   FG_TRY(fg_memory_allocate(ctx, index->die_count, sizeof *place, (void **)&place));
   for (size_t i = 0; i < index->die_count; i++)
     index->dies[i].foils = i; /* not counted yet: the place that it had */
-  fg_sort_items(index->dies, index->die_count, sizeof *index->dies, by_name);
+  fg_sort_items(index->dies, index->die_count, sizeof *index->dies, compare_die_names);
   for (size_t i = 0; i < index->die_count; i++) {
     place[index->dies[i].foils] = i;
     index->dies[i].foils = 0;
@@ -69,13 +69,13 @@ static bool is_dimension(const fg_quantity *row) {
   return !strcmp(row->unit, "mm") || !strcmp(row->unit, "°");
 }
 
-static fg_index_scale scale_of(const fg_index *index, const fg_quantity *row) {
+static fg_index_scale choose_scale(const fg_index *index, const fg_quantity *row) {
   if (index->designs < 2 || !is_dimension(row)) return FG_INDEX_AS_IS;
   return row->nominal ? FG_INDEX_OVER_DESIGN : FG_INDEX_APART;
 }
 
 /* Those of bumps and beams before those of foils, each in the order of the lots' reports. */
-static fg_status list_axes(fg_context *ctx, fg_index *index) {
+static fg_status list_index_axes(fg_context *ctx, fg_index *index) {
   static const fg_quantity_owner owners[] = {FG_QUANTITY_OF_BUMP, FG_QUANTITY_OF_BEAM,
                                              FG_QUANTITY_OF_FOIL};
   size_t capacity = 0;
@@ -88,7 +88,7 @@ static fg_status list_axes(fg_context *ctx, fg_index *index) {
                                  (void **)&index->axes));
         index->axes[index->axis_count++] = (fg_index_axis){.row = stat->row,
                                                            .owner = stat->owner,
-                                                           .scale = scale_of(index, stat->row),
+                                                           .scale = choose_scale(index, stat->row),
                                                            .same_as = FG_INDEX_NONE,
                                                            .p_equal = NAN,
                                                            .within_sd = NAN};
@@ -144,7 +144,7 @@ typedef struct line {
   bool apart;    /* a foil has one and not the other */
 } line;
 
-static void add_lot(line *l, const fg_index_stat *a, const fg_index_stat *b, size_t foils) {
+static void add_lot_to_line(line *l, const fg_index_stat *a, const fg_index_stat *b, size_t foils) {
   for (size_t i = 0; i < foils; i++) {
     bool first = isfinite(a->foil[i]), second = isfinite(b->foil[i]);
     l->apart = l->apart || first != second;
@@ -163,14 +163,14 @@ static void add_lot(line *l, const fg_index_stat *a, const fg_index_stat *b, siz
   }
 }
 
-static bool says_the_same(const fg_index *index, const fg_index_axis *a, const fg_index_axis *b) {
+static bool is_same_on_line(const fg_index *index, const fg_index_axis *a, const fg_index_axis *b) {
   line l = {0};
   if (a->owner != b->owner) return false;
   for (size_t i = 0; i < index->read; i++) {
     const fg_index_lot *lot = &index->lots[i];
     const fg_index_stat *x = fg_index_stat_of(a, lot), *y = fg_index_stat_of(b, lot);
     if (!x != !y) return false;
-    if (x && lot->foil_count) add_lot(&l, x, y, lot->foil_count);
+    if (x && lot->foil_count) add_lot_to_line(&l, x, y, lot->foil_count);
   }
   double xx = l.xx - l.x * l.x / l.n, yy = l.yy - l.y * l.y / l.n, xy = l.xy - l.x * l.y / l.n;
   return !l.apart && l.n > 2 && xx > 0 && yy > 0 && 1 - xy * xy / (xx * yy) < ON_ONE_LINE;
@@ -181,18 +181,18 @@ static void find_same(fg_index *index) {
     for (size_t a = 0; a < b && index->axes[b].same_as == FG_INDEX_NONE; a++)
       if (index->axes[a].same_as == FG_INDEX_NONE && index->axes[a].scale != FG_INDEX_APART &&
           index->axes[b].scale != FG_INDEX_APART &&
-          says_the_same(index, &index->axes[a], &index->axes[b]))
+          is_same_on_line(index, &index->axes[a], &index->axes[b]))
         index->axes[b].same_as = a;
 }
 
 fg_status fg_index_arrange(fg_context *ctx, fg_index *index) {
-  fg_sort_items(index->lots, index->count, sizeof *index->lots, by_date);
+  fg_sort_items(index->lots, index->count, sizeof *index->lots, compare_dates);
   index->read = 0;
   while (index->read < index->count && !index->lots[index->read].problem)
     index->read++;
   number_designs(index);
   if (index->die_count) FG_TRY(order_dies(ctx, index));
-  FG_TRY(list_axes(ctx, index));
+  FG_TRY(list_index_axes(ctx, index));
   for (size_t i = 0; i < index->axis_count; i++)
     scale_axis(index, &index->axes[i]);
   find_same(index);

@@ -26,7 +26,7 @@ void fg_index_welch(fg_index_pair *pair, const double mean[2], const double u[2]
   pair->high = pair->difference + reach;
 }
 
-static int by_text(const void *left, const void *right) {
+static int compare_texts(const void *left, const void *right) {
   return strcmp(left, right);
 }
 
@@ -47,7 +47,7 @@ static fg_status mark_shared(fg_context *ctx, fg_index *index, bool *shared) {
   for (size_t i = 0; i < index->read; i++)
     if (index->lots[i].scan_sums)
       qsort(index->lots[i].scan_sum, index->lots[i].scan_sums, sizeof *index->lots[i].scan_sum,
-            by_text);
+            compare_texts);
   for (size_t i = 0; i < index->read; i++)
     for (size_t k = i + 1; k < index->read; k++) {
       size_t scans = count_shared(&index->lots[i], &index->lots[k]);
@@ -60,7 +60,7 @@ static fg_status mark_shared(fg_context *ctx, fg_index *index, bool *shared) {
   return FG_OK;
 }
 
-static bool can_compare(const fg_index_axis *axis) {
+static bool is_comparable(const fg_index_axis *axis) {
   return axis->scale != FG_INDEX_APART && axis->same_as == FG_INDEX_NONE;
 }
 
@@ -88,7 +88,7 @@ static fg_status add_pair(fg_context *ctx, fg_index *index, size_t axis, size_t 
   return FG_OK;
 }
 
-static int by_p(const void *left, const void *right) {
+static int compare_pair_p(const void *left, const void *right) {
   const fg_index_pair *a = left, *b = right;
   if (a->p != b->p) return a->p < b->p ? -1 : 1;
   if (a->axis != b->axis) return a->axis < b->axis ? -1 : 1;
@@ -96,10 +96,10 @@ static int by_p(const void *left, const void *right) {
   return a->b < b->b ? -1 : a->b > b->b;
 }
 
-static fg_status adjust(fg_context *ctx, fg_index *index) {
+static fg_status adjust_pairs(fg_context *ctx, fg_index *index) {
   double *p = NULL;
   FG_TRY(fg_memory_allocate(ctx, 2 * index->pair_count, sizeof *p, (void **)&p));
-  fg_sort_items(index->pairs, index->pair_count, sizeof *index->pairs, by_p);
+  fg_sort_items(index->pairs, index->pair_count, sizeof *index->pairs, compare_pair_p);
   for (size_t i = 0; i < index->pair_count; i++)
     p[i] = index->pairs[i].p;
   double *adjusted = p + index->pair_count;
@@ -118,10 +118,10 @@ static fg_status compare_pairs(fg_context *ctx, fg_index *index) {
   FG_TRY(fg_memory_allocate(ctx, index->read * index->read, sizeof *shared, (void **)&shared));
   FG_TRY_EXIT(mark_shared(ctx, index, shared));
   for (size_t axis = 0; axis < index->axis_count; axis++)
-    for (size_t a = 0; a < index->read && can_compare(&index->axes[axis]); a++)
+    for (size_t a = 0; a < index->read && is_comparable(&index->axes[axis]); a++)
       for (size_t b = a + 1; b < index->read; b++)
         if (!shared[a * index->read + b]) FG_TRY_EXIT(add_pair(ctx, index, axis, a, b));
-  FG_TRY_EXIT(adjust(ctx, index));
+  FG_TRY_EXIT(adjust_pairs(ctx, index));
 exit:
   free(shared);
   return status;
@@ -151,8 +151,8 @@ static void analyse_variance(const fg_index *index, fg_index_axis *axis) {
 }
 
 /* Each lot against what all others say. */
-static void expect(const fg_index_axis *axis, fg_index_stat **stat, const fg_group_mean *groups,
-                   fg_group_mean *others) {
+static void expect_means(const fg_index_axis *axis, fg_index_stat **stat,
+                         const fg_group_mean *groups, fg_group_mean *others) {
   for (size_t i = 0; i < axis->lots; i++) {
     memcpy(others, groups, i * sizeof *others);
     memcpy(others + i, groups + i + 1, (axis->lots - i - 1) * sizeof *others);
@@ -181,7 +181,7 @@ static fg_status analyse_axis(fg_context *ctx, fg_index *index, fg_index_axis *a
     stats[at++] = stat;
   }
   axis->between = fg_between_groups(groups, axis->lots, FG_INDEX_CONFIDENCE);
-  if (axis->lots >= FG_INDEX_LOTS_MIN) expect(axis, stats, groups, groups + axis->lots);
+  if (axis->lots >= FG_INDEX_LOTS_MIN) expect_means(axis, stats, groups, groups + axis->lots);
 exit:
   free(groups);
   free(stats);
@@ -194,8 +194,8 @@ fg_status fg_index_compare(fg_context *ctx, fg_index *index) {
   return compare_pairs(ctx, index);
 }
 
-static fg_status describe(fg_context *ctx, const double *values, size_t count,
-                          fg_index_spread *spread) {
+static fg_status describe_ratios(fg_context *ctx, const double *values, size_t count,
+                                 fg_index_spread *spread) {
   fg_lot_settings settings;
   fg_lot_spread s;
   fg_lot_settings_default(&settings);
@@ -212,7 +212,7 @@ static fg_status describe(fg_context *ctx, const double *values, size_t count,
   return fg_density_fit(ctx, values, count, settings.bandwidth, &spread->density);
 }
 
-static size_t gather(const fg_index *index, size_t die, double *values) {
+static size_t gather_die_ratios(const fg_index *index, size_t die, double *values) {
   size_t count = 0;
   for (size_t i = 0; i < index->read; i++) {
     const fg_index_lot *lot = &index->lots[i];
@@ -222,7 +222,7 @@ static size_t gather(const fg_index *index, size_t die, double *values) {
   return count;
 }
 
-static void count_foils(const fg_index *index, size_t die) {
+static void count_die_ratios(const fg_index *index, size_t die) {
   for (size_t i = 0; i < index->read; i++) {
     size_t foils = 0;
     for (size_t k = 0; k < index->lots[i].foil_count; k++)
@@ -239,12 +239,13 @@ fg_status fg_index_spreads(fg_context *ctx, fg_index *index) {
   for (size_t i = 0; i < index->read; i++) {
     fg_index_lot *lot = &index->lots[i];
     all += lot->ratios;
-    FG_TRY(describe(ctx, lot->ratio, lot->ratios, &lot->spread));
+    FG_TRY(describe_ratios(ctx, lot->ratio, lot->ratios, &lot->spread));
   }
   FG_TRY(fg_memory_allocate(ctx, all, sizeof *values, (void **)&values));
   for (size_t die = 0; die < index->die_count && status == FG_OK; die++) {
-    count_foils(index, die);
-    status = describe(ctx, values, gather(index, die, values), &index->dies[die].spread);
+    count_die_ratios(index, die);
+    status = describe_ratios(ctx, values, gather_die_ratios(index, die, values),
+                             &index->dies[die].spread);
   }
   free(values);
   return status;

@@ -14,7 +14,7 @@ typedef struct moments {
   double n, mean, squares;
 } moments;
 
-static moments of_foils(const fg_index_lot *lot, const fg_index_stat *stat, size_t die) {
+static moments find_foil_moments(const fg_index_lot *lot, const fg_index_stat *stat, size_t die) {
   moments m = {0, 0, 0};
   for (size_t i = 0; i < lot->foil_count; i++) {
     if (lot->die[i] != die || !isfinite(stat->foil[i])) continue;
@@ -26,7 +26,7 @@ static moments of_foils(const fg_index_lot *lot, const fg_index_stat *stat, size
   return m;
 }
 
-static void add_value(moments *m, double value) {
+static void add_lot_mean(moments *m, double value) {
   double step = value - m->mean;
   m->n++;
   m->mean += step / m->n;
@@ -42,13 +42,13 @@ typedef struct tally {
   size_t foils[2];
 } tally;
 
-static tally count(const fg_index *index, const fg_index_axis *axis, size_t a, size_t b) {
+static tally tally_lots(const fg_index *index, const fg_index_axis *axis, size_t a, size_t b) {
   tally t = {.weight = 0};
   for (size_t i = 0; i < index->read; i++) {
     const fg_index_lot *lot = &index->lots[i];
     const fg_index_stat *stat = fg_index_stat_of(axis, lot);
     if (!stat || !lot->foil_count) continue;
-    const moments m[2] = {of_foils(lot, stat, a), of_foils(lot, stat, b)};
+    const moments m[2] = {find_foil_moments(lot, stat, a), find_foil_moments(lot, stat, b)};
     t.foils[0] += (size_t)m[0].n;
     t.foils[1] += (size_t)m[1].n;
     if (m[0].n > 0 && m[1].n > 0) {
@@ -60,13 +60,13 @@ static tally count(const fg_index *index, const fg_index_axis *axis, size_t a, s
       t.dof += m[0].n + m[1].n - 2;
     } else if (m[0].n + m[1].n > 0) {
       int one = m[0].n > 0 ? 0 : 1;
-      add_value(&t.lots[one], m[one].mean);
+      add_lot_mean(&t.lots[one], m[one].mean);
     }
   }
   return t;
 }
 
-static bool test(const tally *t, fg_index_die_pair *result) {
+static bool test_dies(const tally *t, fg_index_die_pair *result) {
   fg_index_pair *pair = &result->pair;
   result->lots = t->shared ? t->shared : (size_t)(t->lots[0].n + t->lots[1].n);
   if (t->shared && t->dof > 0 && t->squares > 0) {
@@ -93,7 +93,7 @@ static bool test(const tally *t, fg_index_die_pair *result) {
   return true;
 }
 
-static void turn(fg_index_pair *pair) {
+static void swap_dies(fg_index_pair *pair) {
   double low = pair->low;
   size_t die = pair->a, foils = pair->foils_a;
   pair->a = pair->b;
@@ -105,16 +105,17 @@ static void turn(fg_index_pair *pair) {
   pair->high = -low;
 }
 
-static fg_status compare(fg_context *ctx, fg_index *index, size_t axis, size_t a, size_t b) {
-  const tally t = count(index, &index->axes[axis], a, b);
+static fg_status compare_two_dies(fg_context *ctx, fg_index *index, size_t axis, size_t a,
+                                  size_t b) {
+  const tally t = tally_lots(index, &index->axes[axis], a, b);
   fg_index_die_pair result = {.pair = {.axis = axis,
                                        .a = a,
                                        .b = b,
                                        .foils_a = t.foils[0],
                                        .foils_b = t.foils[1],
                                        .p_holm = NAN}};
-  if (!test(&t, &result)) return FG_OK;
-  if (result.pair.difference < 0) turn(&result.pair);
+  if (!test_dies(&t, &result)) return FG_OK;
+  if (result.pair.difference < 0) swap_dies(&result.pair);
   FG_TRY(fg_memory_reserve(ctx, index->die_pair_count + 1, sizeof *index->die_pairs,
                            &index->die_pair_capacity, (void **)&index->die_pairs));
   index->die_pairs[index->die_pair_count++] = result;
@@ -122,7 +123,7 @@ static fg_status compare(fg_context *ctx, fg_index *index, size_t axis, size_t a
 }
 
 /* Those that are not tested behind. */
-static int by_p(const void *left, const void *right) {
+static int compare_die_p(const void *left, const void *right) {
   const fg_index_die_pair *a = left, *b = right;
   if (isnan(a->pair.p) != isnan(b->pair.p)) return isnan(a->pair.p) ? 1 : -1;
   if (a->pair.p != b->pair.p && !isnan(a->pair.p)) return a->pair.p < b->pair.p ? -1 : 1;
@@ -131,11 +132,11 @@ static int by_p(const void *left, const void *right) {
   return a->pair.b < b->pair.b ? -1 : a->pair.b > b->pair.b;
 }
 
-static fg_status adjust(fg_context *ctx, fg_index *index) {
+static fg_status adjust_die_pairs(fg_context *ctx, fg_index *index) {
   double *p = NULL;
   size_t pairs = index->die_pair_count;
   FG_TRY(fg_memory_allocate(ctx, 2 * pairs, sizeof *p, (void **)&p));
-  fg_sort_items(index->die_pairs, pairs, sizeof *index->die_pairs, by_p);
+  fg_sort_items(index->die_pairs, pairs, sizeof *index->die_pairs, compare_die_p);
   for (size_t i = 0; i < pairs; i++)
     p[i] = index->die_pairs[i].pair.p;
   fg_status status = fg_holm_adjust(ctx, p, pairs, p + pairs);
@@ -157,7 +158,7 @@ fg_status fg_index_compare_dies(fg_context *ctx, fg_index *index) {
     if (of->scale == FG_INDEX_APART || of->same_as != FG_INDEX_NONE) continue;
     for (size_t a = 0; a < index->die_count; a++)
       for (size_t b = a + 1; b < index->die_count; b++)
-        FG_TRY(compare(ctx, index, axis, a, b));
+        FG_TRY(compare_two_dies(ctx, index, axis, a, b));
   }
-  return adjust(ctx, index);
+  return adjust_die_pairs(ctx, index);
 }

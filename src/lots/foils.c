@@ -49,7 +49,7 @@ static const char *cell_text(const fg_column *column, size_t row, char text[CELL
 }
 
 /* Whether the flags of a cell, with a space between them, hold this one. */
-static bool has_flag(const fg_flag_words *words, const char *flags, unsigned flag) {
+static bool has_flag_name(const fg_flag_words *words, const char *flags, unsigned flag) {
   for (; words->name; words++) {
     size_t length = strlen(words->name);
     if (words->flag != flag) continue;
@@ -60,7 +60,7 @@ static bool has_flag(const fg_flag_words *words, const char *flags, unsigned fla
 }
 
 /* A line of foils.csv counts when it is of a foil of the design. */
-static fg_status list_foils(fg_context *ctx, reading *r) {
+static fg_status list_counted_foils(fg_context *ctx, reading *r) {
   char flags[CELL];
   void *block;
   const fg_column *number = find_column(&r->foils, "foil_number"),
@@ -69,14 +69,14 @@ static fg_status list_foils(fg_context *ctx, reading *r) {
   r->foil = block;
   for (size_t row = 0; number && row < r->foils.rows; row++) {
     cell_text(flag, row, flags);
-    bool measured = !has_flag(fg_foil_flag_words(), flags, FG_FOIL_NOT_MEASURED) &&
-                    !has_flag(fg_foil_flag_words(), flags, FG_FOIL_NOT_THIS_DESIGN);
+    bool measured = !has_flag_name(fg_foil_flag_words(), flags, FG_FOIL_NOT_MEASURED) &&
+                    !has_flag_name(fg_foil_flag_words(), flags, FG_FOIL_NOT_THIS_DESIGN);
     if (measured && isfinite(cell_number(number, row))) r->foil[r->lot->foil_count++] = row;
   }
   return FG_OK;
 }
 
-static fg_status find_die(fg_context *ctx, fg_index *index, const char *name, size_t *die) {
+static fg_status find_or_add_die(fg_context *ctx, fg_index *index, const char *name, size_t *die) {
   *die = FG_INDEX_NONE;
   if (!*name) return FG_OK;
   for (*die = 0; *die < index->die_count; ++*die)
@@ -102,14 +102,14 @@ static fg_status list_words(fg_context *ctx, const reading *r, const char *name,
   return FG_OK;
 }
 
-static fg_status take_dies(fg_context *ctx, reading *r) {
+static fg_status assign_dies(fg_context *ctx, reading *r) {
   const fg_column *column = find_column(&r->foils, "die");
   char cell[CELL];
   void *block;
   FG_TRY(fg_memory_allocate(ctx, r->lot->foil_count, sizeof *r->lot->die, &block));
   r->lot->die = block;
   for (size_t i = 0; i < r->lot->foil_count; i++)
-    FG_TRY(find_die(ctx, r->index, cell_text(column, r->foil[i], cell), &r->lot->die[i]));
+    FG_TRY(find_or_add_die(ctx, r->index, cell_text(column, r->foil[i], cell), &r->lot->die[i]));
   return list_words(ctx, r, "coil", &r->lot->coils);
 }
 
@@ -117,16 +117,16 @@ static fg_status take_dies(fg_context *ctx, reading *r) {
 static bool is_damaged(const fg_index_lot *lot, const char *flags) {
   bool damaged = false;
   if (fg_foil_kind_parts(lot->design.kind) == FG_QUANTITY_OF_BUMP)
-    return has_flag(fg_bump_flag_words(), flags, FG_BUMP_CRUSHED);
+    return has_flag_name(fg_bump_flag_words(), flags, FG_BUMP_CRUSHED);
   for (unsigned flag = 1; flag <= FG_LOT_BEAM_DAMAGED; flag <<= 1)
     damaged =
-        damaged || (flag & FG_LOT_BEAM_DAMAGED && has_flag(fg_beam_flag_words(), flags, flag));
+        damaged || (flag & FG_LOT_BEAM_DAMAGED && has_flag_name(fg_beam_flag_words(), flags, flag));
   return damaged;
 }
 
 /* Whose foil every line of `parts` is, FG_INDEX_NONE for one that does not count: both files are in
  * one order. */
-static fg_status own_parts(fg_context *ctx, reading *r) {
+static fg_status assign_parts(fg_context *ctx, reading *r) {
   const fg_column *scan[2] = {find_column(&r->foils, "scan"), find_column(&r->parts, "scan")},
                   *number[2] = {find_column(&r->foils, "foil_number"),
                                 find_column(&r->parts, "foil_number")},
@@ -192,7 +192,7 @@ static fg_status read_ratios(fg_context *ctx, reading *r) {
   return FG_OK;
 }
 
-static const char *parts_file(const fg_index_lot *lot) {
+static const char *parts_file_name(const fg_index_lot *lot) {
   return lot->design.kind == FG_FOIL_CANTILEVER ? "beams.csv" : "bumps.csv";
 }
 
@@ -210,14 +210,15 @@ static fg_status read_stats(fg_context *ctx, reading *r) {
                          "%s: foils.csv and %s hold other values of %s than lot.json; write "
                          "them again with `foilgauge lot %s/manifest.csv -o %s --recipe "
                          "%s/recipe.json --resume`",
-                         lot->folder, parts_file(lot), stat->row->name, lot->folder, lot->folder,
-                         lot->folder);
+                         lot->folder, parts_file_name(lot), stat->row->name, lot->folder,
+                         lot->folder, lot->folder);
   }
   return read_ratios(ctx, r);
 }
 
 /* A table without rows is a lot without foils. */
-static fg_status read_table(fg_context *ctx, fg_index_lot *lot, const char *name, fg_table *table) {
+static fg_status read_lot_csv(fg_context *ctx, fg_index_lot *lot, const char *name,
+                              fg_table *table) {
   char *path, *text = NULL;
   fg_context inner = {.message = ""};
   FG_TRY(fg_lot_path(ctx, lot->folder, name, &path));
@@ -234,7 +235,7 @@ static fg_status read_table(fg_context *ctx, fg_index_lot *lot, const char *name
 }
 
 /* What is known of a lot whose foils are not. */
-static void forget(fg_index_lot *lot) {
+static void drop_foils(fg_index_lot *lot) {
   for (size_t i = 0; i < lot->stat_count; i++) {
     free(lot->stats[i].foil);
     lot->stats[i].foil = NULL;
@@ -245,15 +246,15 @@ static void forget(fg_index_lot *lot) {
 fg_status fg_index_read_foils(fg_context *ctx, fg_index *index, fg_index_lot *lot) {
   reading r = {.index = index, .lot = lot};
   fg_status status = FG_OK;
-  FG_TRY_EXIT(read_table(ctx, lot, "foils.csv", &r.foils));
-  if (!lot->foils_unknown) FG_TRY_EXIT(read_table(ctx, lot, parts_file(lot), &r.parts));
+  FG_TRY_EXIT(read_lot_csv(ctx, lot, "foils.csv", &r.foils));
+  if (!lot->foils_unknown) FG_TRY_EXIT(read_lot_csv(ctx, lot, parts_file_name(lot), &r.parts));
   if (lot->foils_unknown) goto exit;
-  FG_TRY_EXIT(list_foils(ctx, &r));
-  FG_TRY_EXIT(own_parts(ctx, &r));
+  FG_TRY_EXIT(list_counted_foils(ctx, &r));
+  FG_TRY_EXIT(assign_parts(ctx, &r));
   FG_TRY_EXIT(read_stats(ctx, &r));
-  if (!lot->foils_unknown) FG_TRY_EXIT(take_dies(ctx, &r));
+  if (!lot->foils_unknown) FG_TRY_EXIT(assign_dies(ctx, &r));
 exit:
-  if (lot->foils_unknown) forget(lot);
+  if (lot->foils_unknown) drop_foils(lot);
   fg_table_free(&r.foils);
   fg_table_free(&r.parts);
   free(r.foil);

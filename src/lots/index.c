@@ -12,7 +12,7 @@
 enum { PAGE, JSON, TABLE, OUTPUTS };
 
 /* The page must not take the place of what it is made from, nor of what it links to. */
-static fg_status check_outputs(fg_context *ctx, const fg_lot_index_request *request) {
+static fg_status check_index_outputs(fg_context *ctx, const fg_lot_index_request *request) {
   static const char *const inputs[] = {"lot.json", "index.html", "foils.csv", "bumps.csv",
                                        "beams.csv"};
   enum { INPUTS = sizeof inputs / sizeof *inputs };
@@ -68,7 +68,7 @@ static fg_status read_lots(fg_context *ctx, fg_index *index) {
   return FG_OK;
 }
 
-static fg_status make(fg_context *ctx, const fg_lot_index_request *request, fg_index *index) {
+static fg_status make_index(fg_context *ctx, const fg_lot_index_request *request, fg_index *index) {
   FG_TRY(list_lots(ctx, request, index));
   FG_TRY(read_lots(ctx, index));
   FG_TRY(fg_index_arrange(ctx, index));
@@ -83,8 +83,8 @@ static fg_status write_csv(fg_context *ctx, void *index, FILE *out) {
   return fg_index_write_csv(ctx, index, out);
 }
 
-static fg_status write_kind(fg_context *ctx, const fg_lot_index_request *request, fg_index *index,
-                            int kind, FILE *out) {
+static fg_status write_index_output(fg_context *ctx, const fg_lot_index_request *request,
+                                    fg_index *index, int kind, FILE *out) {
   if (kind == PAGE) return fg_index_write_page(ctx, index, request->page, out);
   return kind == JSON ? fg_index_write_json(ctx, index, out)
                       : fg_csv_write(ctx, request->decimal_comma, write_csv, index, out);
@@ -102,7 +102,7 @@ static fg_status write_outputs(fg_context *ctx, const fg_lot_index_request *requ
   if (status != FG_OK) opened--; /* the last one is not open */
   for (int i = 0; i < OUTPUTS && status == FG_OK; i++)
     if (path[i]) {
-      status = write_kind(ctx, request, index, i, output[i].stream);
+      status = write_index_output(ctx, request, index, i, output[i].stream);
       status = fg_output_flush(ctx, &output[i], status);
     }
   for (int i = 0; i < opened; i++)
@@ -111,8 +111,8 @@ static fg_status write_outputs(fg_context *ctx, const fg_lot_index_request *requ
 }
 
 /* What was not read, and the notes, for whoever called. */
-static fg_status take_outcome(fg_context *ctx, const fg_index *index,
-                              fg_lot_index_outcome *outcome) {
+static fg_status fill_index_outcome(fg_context *ctx, const fg_index *index,
+                                    fg_lot_index_outcome *outcome) {
   outcome->lots = index->read;
   outcome->not_read = index->count - index->read;
   outcome->differing = index->differing;
@@ -129,9 +129,9 @@ fg_status fg_lot_index(fg_context *ctx, const fg_lot_index_request *request,
   fg_index index = {0};
   fg_status status = FG_OK;
   *outcome = (fg_lot_index_outcome){0};
-  FG_TRY_EXIT(check_outputs(ctx, request));
-  FG_TRY_EXIT(make(ctx, request, &index));
-  FG_TRY_EXIT(take_outcome(ctx, &index, outcome));
+  FG_TRY_EXIT(check_index_outputs(ctx, request));
+  FG_TRY_EXIT(make_index(ctx, request, &index));
+  FG_TRY_EXIT(fill_index_outcome(ctx, &index, outcome));
   FG_TRY_EXIT(write_outputs(ctx, request, &index));
 exit:
   if (status != FG_OK) fg_lot_index_outcome_free(outcome);

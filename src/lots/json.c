@@ -18,7 +18,7 @@ static const char *scale_word(fg_index_scale scale) {
   return words[scale];
 }
 
-static void write_date(fg_json *json, const fg_lot_date *date) {
+static void write_index_date(fg_json *json, const fg_lot_date *date) {
   fg_json_object(json, "date");
   fg_json_line(json);
   fg_json_string(json, "first", date->from ? date->first : NULL);
@@ -28,7 +28,7 @@ static void write_date(fg_json *json, const fg_lot_date *date) {
   fg_json_line_end(json);
 }
 
-static void write_counts(fg_json *json, const fg_index_lot *lot) {
+static void write_lot_counts(fg_json *json, const fg_index_lot *lot) {
   fg_json_object(json, "counts");
   fg_json_line(json);
   fg_json_integer(json, "scans", (int64_t)lot->scans);
@@ -74,13 +74,13 @@ static void write_stat(fg_json *json, const fg_index_stat *stat) {
   fg_json_line_end(json);
 }
 
-static void write_known(fg_json *json, const fg_index *index, const fg_index_lot *lot,
-                        const char *dies) {
+static void write_read_lot(fg_json *json, const fg_index *index, const fg_index_lot *lot,
+                           const char *dies) {
   fg_json_string(json, "name", lot->name);
-  write_date(json, &lot->date);
+  write_index_date(json, &lot->date);
   fg_json_string(json, "version", lot->version);
   fg_json_verdict(json, lot->verdict);
-  write_counts(json, lot);
+  write_lot_counts(json, lot);
   fg_json_string(json, "dies", dies);
   fg_json_string(json, "coils", lot->coils);
   fg_json_string(json, "design_name", lot->design.name);
@@ -95,21 +95,21 @@ static void write_known(fg_json *json, const fg_index *index, const fg_index_lot
   fg_json_object_end(json);
 }
 
-static fg_status write_lot(fg_context *ctx, fg_json *json, const fg_index *index,
-                           const fg_index_lot *lot) {
+static fg_status write_index_lot(fg_context *ctx, fg_json *json, const fg_index *index,
+                                 const fg_index_lot *lot) {
   char *dies = NULL;
   FG_TRY(fg_index_die_names(ctx, index, lot, &dies));
   fg_json_object(json, NULL);
   fg_json_string(json, "folder", lot->folder);
   fg_json_string(json, "sha256", lot->sha256[0] ? lot->sha256 : NULL);
   fg_json_string(json, "problem", lot->problem);
-  if (!lot->problem) write_known(json, index, lot, dies);
+  if (!lot->problem) write_read_lot(json, index, lot, dies);
   fg_json_object_end(json);
   free(dies);
   return FG_OK;
 }
 
-static void write_axis(fg_json *json, const fg_index *index, const fg_index_axis *axis) {
+static void write_index_axis(fg_json *json, const fg_index *index, const fg_index_axis *axis) {
   bool same = axis->same_as != FG_INDEX_NONE;
   fg_json_object(json, NULL);
   fg_json_line(json);
@@ -218,11 +218,11 @@ fg_status fg_index_write_json(fg_context *ctx, const fg_index *index, FILE *out)
   fg_json_integer(&json, "designs", (int64_t)index->designs);
   fg_json_array(&json, "lots");
   for (size_t i = 0; i < index->count; i++)
-    FG_TRY(write_lot(ctx, &json, index, &index->lots[i]));
+    FG_TRY(write_index_lot(ctx, &json, index, &index->lots[i]));
   fg_json_array_end(&json);
   fg_json_array(&json, "quantities");
   for (size_t i = 0; i < index->axis_count; i++)
-    write_axis(&json, index, &index->axes[i]);
+    write_index_axis(&json, index, &index->axes[i]);
   fg_json_array_end(&json);
   write_pairs(&json, index);
   write_dies(&json, index);
@@ -232,8 +232,8 @@ fg_status fg_index_write_json(fg_context *ctx, const fg_index *index, FILE *out)
   return fg_stream_finish(ctx, out, "the index of lots");
 }
 
-static void put_line(FILE *out, const fg_index *index, const fg_index_lot *lot,
-                     const fg_index_axis *axis, const fg_index_stat *stat) {
+static void put_quantity_line(FILE *out, const fg_index *index, const fg_index_lot *lot,
+                              const fg_index_axis *axis, const fg_index_stat *stat) {
   const double numbers[] = {stat->mean,         stat->sd,           stat->min,       stat->max,
                             stat->lower,        stat->upper,        stat->foil_mean, stat->foil_sd,
                             stat->expected_low, stat->expected_high};
@@ -255,7 +255,7 @@ fg_status fg_index_write_csv(fg_context *ctx, const fg_index *index, FILE *out) 
   for (size_t i = 0; i < index->read; i++)
     for (size_t k = 0; k < index->axis_count; k++) {
       const fg_index_stat *stat = fg_index_stat_of(&index->axes[k], &index->lots[i]);
-      if (stat) put_line(out, index, &index->lots[i], &index->axes[k], stat);
+      if (stat) put_quantity_line(out, index, &index->lots[i], &index->axes[k], stat);
     }
   return fg_stream_finish(ctx, out, "the table of lots");
 }

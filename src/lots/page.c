@@ -20,13 +20,13 @@ enum {
 
 /* A folder as seen from the page's: both as given, so a lot beside or below the page keeps its
  * link when all is moved together. */
-static const char *seen_from(const char *page, const char *folder) {
+static const char *strip_page_folder(const char *page, const char *folder) {
   const char *slash = strrchr(page, '/');
   size_t length = slash ? (size_t)(slash - page) + 1 : 0;
   return length && !strncmp(page, folder, length) ? folder + length : folder;
 }
 
-static void put_lines(FILE *out, const char *text) {
+static void put_text_lines(FILE *out, const char *text) {
   fputs("<ul class=\"flags\">\n", out);
   while (text && *text) {
     char line[1200];
@@ -40,7 +40,7 @@ static void put_lines(FILE *out, const char *text) {
   fputs("</ul>\n", out);
 }
 
-static void put_date(FILE *out, const fg_index_lot *lot) {
+static void put_lot_date(FILE *out, const fg_index_lot *lot) {
   const fg_lot_date *date = &lot->date;
   if (!date->from) {
     fputs("–<i>not known</i>", out);
@@ -57,7 +57,7 @@ static bool has_coils(const fg_index *index) {
   return false;
 }
 
-static void put_words(FILE *out, const char *words) {
+static void put_words_cell(FILE *out, const char *words) {
   fputs("<td class=\"words\">", out);
   fg_html_text(out, words ? words : "–");
   fputs("</td>", out);
@@ -71,20 +71,20 @@ static fg_status put_lot_row(fg_context *ctx, FILE *out, const fg_index *index,
                            lot->by_verdict[FG_VERDICT_NOT_MEASURED] + lot->failed_scans};
   FG_TRY(fg_index_die_names(ctx, index, lot, &dies));
   fprintf(out, "<tr><td>%zu</td><td class=\"words\"><a href=\"", fg_index_number(index, lot));
-  fg_lot_put_href(out, seen_from(page, lot->folder));
+  fg_lot_put_href(out, strip_page_folder(page, lot->folder));
   fputs("/index.html\">", out);
   fg_html_text(out, lot->name);
   fputs("</a><i>", out);
   fg_html_text(out, lot->folder);
   fputs("</i></td><td>", out);
-  put_date(out, lot);
+  put_lot_date(out, lot);
   fputs("</td><td>", out);
   fg_html_verdict(out, lot->verdict);
   fputs("</td>", out);
   for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
     fprintf(out, "<td>%zu</td>", counts[i]);
-  if (index->die_count) put_words(out, dies);
-  if (has_coils(index)) put_words(out, lot->coils);
+  if (index->die_count) put_words_cell(out, dies);
+  if (has_coils(index)) put_words_cell(out, lot->coils);
   fputs("<td class=\"words\">", out);
   fg_html_text(out, lot->design.name);
   if (index->designs > 1) fprintf(out, "<i>design %zu</i>", lot->design_number);
@@ -112,12 +112,12 @@ static fg_status put_lot_table(fg_context *ctx, FILE *out, const fg_index *index
 }
 
 /* So many that their table would push the figures out of sight. */
-static bool are_many(const fg_index *index) {
+static bool has_many_lots(const fg_index *index) {
   return index->read > LOTS_FIRST_MAX;
 }
 
-static fg_status put_first_screen(fg_context *ctx, FILE *out, const fg_index *index,
-                                  const char *page) {
+static fg_status put_index_first_screen(fg_context *ctx, FILE *out, const fg_index *index,
+                                        const char *page) {
   fprintf(out,
           "<section class=\"part\">\n<header><h1>%zu lot%s, one after the other and against each "
           "other</h1>"
@@ -129,8 +129,8 @@ static fg_status put_first_screen(fg_context *ctx, FILE *out, const fg_index *in
     fputs("</li>\n", out);
   }
   fputs("</ul>\n", out);
-  if (index->notes) put_lines(out, index->notes);
-  if (are_many(index))
+  if (index->notes) put_text_lines(out, index->notes);
+  if (has_many_lots(index))
     fputs("<p class=\"note\">Which lot has which number, its date, folder and verdict: <a "
           "href=\"#lots\">the lots</a>, behind the figures.</p>\n",
           out);
@@ -146,7 +146,7 @@ static bool has_curves(const fg_index *index) {
   return false;
 }
 
-static void put_spreads(FILE *out, const fg_index *index) {
+static void put_spread_tables(FILE *out, const fg_index *index) {
   fputs("<div class=\"scroll lots\"><table><thead><tr><th>no.</th><th class=\"w\">lot</th>", out);
   fputs(fg_index_spread_heads, out);
   for (size_t i = 0; i < index->read; i++) {
@@ -167,18 +167,19 @@ static void put_densities(FILE *out, const fg_index *index) {
       "design: 1 is a bump as designed, above 1 it has sprung open. Numbers at the curves are the "
       "lots&#39;.</figcaption></figure>\n",
       out);
-  if (!are_many(index)) put_spreads(out, index);
+  if (!has_many_lots(index)) put_spread_tables(out, index);
   fputs("</section>\n", out);
 }
 
 /* The tables of many lots. */
-static fg_status put_behind(fg_context *ctx, FILE *out, const fg_index *index, const char *page) {
-  if (!are_many(index)) return FG_OK;
+static fg_status put_tables_of_many(fg_context *ctx, FILE *out, const fg_index *index,
+                                    const char *page) {
+  if (!has_many_lots(index)) return FG_OK;
   fputs("<section id=\"lots\" class=\"part\">\n<h1>The lots</h1>\n", out);
   FG_TRY(put_lot_table(ctx, out, index, page));
   fputs("</section>\n<section class=\"part\">\n<h1>Bump radius over design, lot by lot</h1>\n",
         out);
-  put_spreads(out, index);
+  put_spread_tables(out, index);
   fputs("</section>\n", out);
   return FG_OK;
 }
@@ -201,12 +202,12 @@ static void put_axis_words(FILE *out, const fg_index_axis *axis) {
   fputs(".", out);
 }
 
-static bool is_shown(const fg_index *index, const fg_index_axis *axis) {
+static bool is_axis_shown(const fg_index *index, const fg_index_axis *axis) {
   if (axis->scale == FG_INDEX_APART) return false;
   return axis->same_as == FG_INDEX_NONE || (axis->limited && !index->axes[axis->same_as].limited);
 }
 
-static void put_axes(FILE *out, const fg_index *index) {
+static void put_axis_figures(FILE *out, const fg_index *index) {
   const char *separator = "<p class=\"note\">Not drawn, for they say of every foil what another "
                           "quantity says: ";
   fputs("<section class=\"part\">\n<h1>Every quantity over the lots</h1>\n<p "
@@ -225,7 +226,7 @@ static void put_axes(FILE *out, const fg_index *index) {
   fputs("</p>\n", out);
   for (size_t i = 0; i < index->axis_count; i++) {
     const fg_index_axis *axis = &index->axes[i];
-    if (!is_shown(index, axis)) continue;
+    if (!is_axis_shown(index, axis)) continue;
     fprintf(out, "<figure><h2>%c%s%s</h2>\n",
             axis->row->words[0] >= 'a' && axis->row->words[0] <= 'z' ? axis->row->words[0] - 32
                                                                      : axis->row->words[0],
@@ -238,7 +239,7 @@ static void put_axes(FILE *out, const fg_index *index) {
   }
   for (size_t i = 0; i < index->axis_count; i++) {
     const fg_index_axis *axis = &index->axes[i];
-    if (axis->same_as == FG_INDEX_NONE || is_shown(index, axis)) continue;
+    if (axis->same_as == FG_INDEX_NONE || is_axis_shown(index, axis)) continue;
     fprintf(out, "%s%s (%s)", separator, axis->row->words, index->axes[axis->same_as].row->symbol);
     separator = "; ";
   }
@@ -246,7 +247,7 @@ static void put_axes(FILE *out, const fg_index *index) {
   fputs("</section>\n", out);
 }
 
-static void put_mean(FILE *out, const fg_index_axis *axis, const fg_index_stat *stat) {
+static void put_mean_cell(FILE *out, const fg_index_axis *axis, const fg_index_stat *stat) {
   char mean[VALUE] = "–", sd[VALUE] = "";
   if (stat && stat->count) {
     fg_index_value(axis, stat->mean, mean, sizeof mean);
@@ -256,13 +257,13 @@ static void put_mean(FILE *out, const fg_index_axis *axis, const fg_index_stat *
           sd);
 }
 
-static void put_table(FILE *out, const fg_index *index) {
+static void put_means_table(FILE *out, const fg_index *index) {
   fputs("<section class=\"part\">\n<h1>Mean and s of every quantity</h1>\n<div class=\"scroll "
         "lots\"><table><thead><tr>"
         "<th>no.</th><th class=\"w\">lot</th>",
         out);
   for (size_t i = 0; i < index->axis_count; i++)
-    if (is_shown(index, &index->axes[i]))
+    if (is_axis_shown(index, &index->axes[i]))
       fprintf(out, "<th>%s%s</th>", index->axes[i].row->symbol,
               index->axes[i].scale == FG_INDEX_OVER_DESIGN ? "<br>/ design" : "");
   fputs("</tr></thead>\n<tbody>\n", out);
@@ -271,8 +272,8 @@ static void put_table(FILE *out, const fg_index *index) {
     fg_html_text(out, index->lots[i].name);
     fputs("</td>", out);
     for (size_t k = 0; k < index->axis_count; k++)
-      if (is_shown(index, &index->axes[k]))
-        put_mean(out, &index->axes[k], fg_index_stat_of(&index->axes[k], &index->lots[i]));
+      if (is_axis_shown(index, &index->axes[k]))
+        put_mean_cell(out, &index->axes[k], fg_index_stat_of(&index->axes[k], &index->lots[i]));
     fputs("</tr>\n", out);
   }
   fputs("</tbody></table></div>\n<p class=\"note\">Mean, below it s of the single values. Red: a "
@@ -292,7 +293,7 @@ static void put_unread(FILE *out, const fg_index *index) {
   fputs("</ul>\n</section>\n", out);
 }
 
-static fg_status put_origin(fg_context *ctx, FILE *out, const fg_index *index) {
+static fg_status put_index_provenance(fg_context *ctx, FILE *out, const fg_index *index) {
   fg_provenance from = {.design = index->read ? &index->lots[0].design : NULL};
   size_t stated = 0;
   for (size_t i = 0; i < index->read; i++) {
@@ -311,15 +312,15 @@ static fg_status put_origin(fg_context *ctx, FILE *out, const fg_index *index) {
 
 fg_status fg_index_write_page(fg_context *ctx, const fg_index *index, const char *page, FILE *out) {
   fg_html_begin(out, "Lots");
-  FG_TRY(put_first_screen(ctx, out, index, page));
+  FG_TRY(put_index_first_screen(ctx, out, index, page));
   put_unread(out, index);
   put_densities(out, index);
-  put_axes(out, index);
+  put_axis_figures(out, index);
   fg_index_put_pairs(out, index);
   fg_index_put_dies(out, index);
-  FG_TRY(put_behind(ctx, out, index, page));
-  put_table(out, index);
-  FG_TRY(put_origin(ctx, out, index));
+  FG_TRY(put_tables_of_many(ctx, out, index, page));
+  put_means_table(out, index);
+  FG_TRY(put_index_provenance(ctx, out, index));
   fg_html_end(out);
   return fg_stream_finish(ctx, out, "the page over lots");
 }

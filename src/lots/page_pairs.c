@@ -13,7 +13,7 @@ enum {
   VALUE = 96,
 };
 
-static void put_value(FILE *out, double value, const char *format) {
+static void put_axis_value(FILE *out, double value, const char *format) {
   if (isfinite(value))
     fprintf(out, format, value);
   else
@@ -22,14 +22,14 @@ static void put_value(FILE *out, double value, const char *format) {
 
 void fg_index_put_spread(FILE *out, const fg_index_spread *spread) {
   fprintf(out, "<td>%zu</td><td>", spread->count);
-  put_value(out, spread->mean, "%.4f");
+  put_axis_value(out, spread->mean, "%.4f");
   fputs("</td><td>", out);
-  put_value(out, spread->mode, "%.4f");
+  put_axis_value(out, spread->mode, "%.4f");
   fputs("</td><td>", out);
-  put_value(out, spread->relative_sd_pct, "%.2f %%");
+  put_axis_value(out, spread->relative_sd_pct, "%.2f %%");
   fputs("</td><td>", out);
-  put_value(out, spread->min, "%.3f to ");
-  put_value(out, spread->max, "%.3f");
+  put_axis_value(out, spread->min, "%.3f to ");
+  put_axis_value(out, spread->max, "%.3f");
   fputs("</td></tr>\n", out);
 }
 
@@ -37,8 +37,8 @@ const char fg_index_spread_heads[] =
     "<th>bumps</th><th>mean</th><th>mode</th><th>relative s</th><th>range</th></tr></thead>\n"
     "<tbody>\n";
 
-static void put_pair(FILE *out, const fg_index *index, const fg_index_pair *pair, const char *a,
-                     const char *b, const char *more) {
+static void put_lot_pair(FILE *out, const fg_index *index, const fg_index_pair *pair, const char *a,
+                         const char *b, const char *more) {
   const fg_index_axis *axis = &index->axes[pair->axis];
   char difference[VALUE], p[16];
   fg_index_difference(axis, pair, difference, sizeof difference);
@@ -71,7 +71,7 @@ void fg_index_put_pairs(FILE *out, const fg_index *index) {
     const size_t lots[2] = {pair->a, pair->b};
     for (int k = 0; k < 2; k++)
       fg_text_clip(name[k], VALUE, "%zu  %s", lots[k] + 1, index->lots[lots[k]].name);
-    put_pair(out, index, pair, name[0], name[1], "");
+    put_lot_pair(out, index, pair, name[0], name[1], "");
   }
   fprintf(
       out,
@@ -106,8 +106,8 @@ static void put_die_pairs(FILE *out, const fg_index *index) {
                    of->basis == FG_INDEX_WITHIN_LOTS ? "within" : "between means of", of->lots,
                    of->lots == 1 ? "" : "s");
     fg_text_clip(more, sizeof more, "<td class=\"words\">%s</td>", words);
-    put_pair(out, index, &of->pair, index->dies[of->pair.a].name, index->dies[of->pair.b].name,
-             more);
+    put_lot_pair(out, index, &of->pair, index->dies[of->pair.a].name, index->dies[of->pair.b].name,
+                 more);
   }
   fputs("</tbody></table></div>\n", out);
 }

@@ -39,11 +39,11 @@ typedef struct curve {
   double x, y;   /* of its label, px */
 } curve;
 
-static double peak(const curve *c) {
+static double find_peak(const curve *c) {
   return fg_density_at(&c->spread->density, c->spread->mode);
 }
 
-static void put_curve(const fg_plot *at, const curve *c) {
+static void put_density_curve(const fg_plot *at, const curve *c) {
   double step = (at->x_high - at->x_low) / CURVE_POINTS;
   if (c->look < 0)
     fputs("<path stroke=\"#b4bdc6\" stroke-width=\"1\" d=\"", at->out);
@@ -61,11 +61,11 @@ static void put_curve(const fg_plot *at, const curve *c) {
 }
 
 /* Its number at the top of a curve, beside those that are there already. */
-static void put_mark(const fg_plot *at, curve *curves, size_t i) {
+static void put_curve_number(const fg_plot *at, curve *curves, size_t i) {
   enum { WIDE = 22, HIGH = 15 };
   curve *c = &curves[i];
   c->x = fg_plot_x(at, c->spread->mode);
-  c->y = fg_plot_y(at, peak(c)) - 7;
+  c->y = fg_plot_y(at, find_peak(c)) - 7;
   for (size_t k = 0; k < i; k++)
     if (curves[k].look >= 0 && fabs(curves[k].x - c->x) < WIDE && fabs(curves[k].y - c->y) < HIGH) {
       c->x = curves[k].x + WIDE;
@@ -82,7 +82,7 @@ static void put_mark(const fg_plot *at, curve *curves, size_t i) {
 }
 
 /* Line, number and name at the right. */
-static void put_legend(const fg_plot *at, const curve *c, size_t row) {
+static void put_curve_legend(const fg_plot *at, const curve *c, size_t row) {
   char name[4 * LABEL_LETTERS + 4];
   double y = at->top + 14 + 22 * (double)row;
   fprintf(at->out,
@@ -97,7 +97,7 @@ static void put_legend(const fg_plot *at, const curve *c, size_t row) {
 }
 
 /* Of many curves those that say most: the last, and in turns the lowest and the highest mean. */
-static void choose(curve *curves, size_t count) {
+static void choose_looks(curve *curves, size_t count) {
   size_t given = 0;
   for (size_t i = 0; i < count; i++)
     curves[i].look = count <= LINES_MAX ? (int)i : -1;
@@ -120,9 +120,9 @@ static void plot_curves(FILE *out, curve *curves, size_t count, const char *labe
     double reach = 2.5 * curves[i].spread->density.bandwidth;
     at.x_low = fmin(at.x_low, curves[i].spread->min - reach);
     at.x_high = fmax(at.x_high, curves[i].spread->max + reach);
-    at.y_high = fmax(at.y_high, 1.1 * peak(&curves[i]));
+    at.y_high = fmax(at.y_high, 1.1 * find_peak(&curves[i]));
   }
-  choose(curves, count);
+  choose_looks(curves, count);
   fg_plot_begin(&at, 384, label);
   fg_plot_y_axis(&at, "density");
   fg_plot_x_numbers(&at);
@@ -135,10 +135,10 @@ static void plot_curves(FILE *out, curve *curves, size_t count, const char *labe
   for (int pass = 0; pass < 3; pass++)
     for (size_t i = 0; i < count; i++) {
       if ((curves[i].look >= 0) != (pass > 0)) continue;
-      if (pass < 2) put_curve(&at, &curves[i]);
+      if (pass < 2) put_density_curve(&at, &curves[i]);
       if (pass == 2) {
-        put_mark(&at, curves, i);
-        put_legend(&at, &curves[i], row++);
+        put_curve_number(&at, curves, i);
+        put_curve_legend(&at, &curves[i], row++);
       }
     }
   if (count > LINES_MAX) {
@@ -171,7 +171,7 @@ void fg_index_plot_dies(FILE *out, const fg_index *index) {
   free(curves);
 }
 
-static void include(double value, double *low, double *high) {
+static void widen_range(double value, double *low, double *high) {
   if (!isfinite(value)) return;
   *low = fmin(*low, value);
   *high = fmax(*high, value);
@@ -179,24 +179,24 @@ static void include(double value, double *low, double *high) {
 
 /* Values and limits are shown whole; what is expected as far as it goes over the values' range at
  * each side: few lots expect almost anything. */
-static bool find_range(const fg_index *index, const fg_index_axis *axis, fg_plot *at) {
+static bool find_axis_range(const fg_index *index, const fg_index_axis *axis, fg_plot *at) {
   double low = INFINITY, high = -INFINITY;
   for (size_t i = 0; i < index->read; i++) {
     const fg_index_stat *stat = fg_index_stat_of(axis, &index->lots[i]);
     if (!stat || !stat->count) continue;
     double reach = isfinite(stat->sd) ? stat->sd : 0;
-    include(stat->mean - reach, &low, &high);
-    include(stat->mean + reach, &low, &high);
-    include(stat->lower, &low, &high);
-    include(stat->upper, &low, &high);
+    widen_range(stat->mean - reach, &low, &high);
+    widen_range(stat->mean + reach, &low, &high);
+    widen_range(stat->lower, &low, &high);
+    widen_range(stat->upper, &low, &high);
   }
   if (!(high >= low)) return false;
   double span = high - low, first = low - 0.3 * span, last = high + 0.3 * span;
   for (size_t i = 0; i < index->read; i++) {
     const fg_index_stat *stat = fg_index_stat_of(axis, &index->lots[i]);
     if (!stat) continue;
-    include(fmax(first, stat->expected_low), &low, &high);
-    include(fmin(last, stat->expected_high), &low, &high);
+    widen_range(fmax(first, stat->expected_low), &low, &high);
+    widen_range(fmin(last, stat->expected_high), &low, &high);
   }
   double room = 0.07 * (high - low), min = 1e-9 * fmax(fabs(low), fabs(high));
   if (!(room > min)) room = fabs(high) > 0 ? 0.01 * fabs(high) : 1;
@@ -206,7 +206,7 @@ static bool find_range(const fg_index *index, const fg_index_axis *axis, fg_plot
 }
 
 /* Its edges are drawn where they are in the picture: a band without them reaches beyond it. */
-static void put_expected(const fg_plot *at, double x, const fg_index_stat *stat) {
+static void put_expected_band(const fg_plot *at, double x, const fg_index_stat *stat) {
   if (!isfinite(stat->expected_low)) return;
   const double edges[2] = {stat->expected_low, stat->expected_high};
   double top = fmin(edges[1], at->y_high), foot = fmax(edges[0], at->y_low);
@@ -220,13 +220,13 @@ static void put_expected(const fg_plot *at, double x, const fg_index_stat *stat)
       fg_plot_segment(at, x - 0.5, edges[i], x + 0.5, edges[i], "thin");
 }
 
-static void put_limits(const fg_plot *at, double x, const fg_index_stat *stat) {
+static void put_lot_limits(const fg_plot *at, double x, const fg_index_stat *stat) {
   const double limits[2] = {stat->lower, stat->upper};
   for (int i = 0; i < 2; i++)
     if (isfinite(limits[i])) fg_plot_segment(at, x - 0.5, limits[i], x + 0.5, limits[i], "limit");
 }
 
-static void put_lot(const fg_plot *at, double x, const fg_index_stat *stat, bool few) {
+static void put_lot_mean(const fg_plot *at, double x, const fg_index_stat *stat, bool few) {
   double size = few ? 6 : 4;
   if (!stat->count) return;
   if (isfinite(stat->sd))
@@ -239,7 +239,7 @@ static void put_lot(const fg_plot *at, double x, const fg_index_stat *stat, bool
     fg_plot_dot(at, x, stat->mean, size, "run");
 }
 
-static void put_label(const fg_plot *at, const fg_index *index, size_t i) {
+static void put_lot_label(const fg_plot *at, const fg_index *index, size_t i) {
   size_t every = index->read / NUMBERS_MAX + 1;
   char text[4 * AXIS_LETTERS + 32], name[4 * AXIS_LETTERS + 4];
   double x = fg_plot_x(at, (double)i + 1);
@@ -260,21 +260,21 @@ void fg_index_plot_axis(FILE *out, const fg_index *index, const fg_index_axis *a
   fg_plot at = {out, WIDTH, 92, 985, 14, 210, 0.5, (double)index->read + 0.5, 0, 0};
   char title[96];
   const char *unit = fg_index_unit(axis);
-  if (!find_range(index, axis, &at)) return;
+  if (!find_axis_range(index, axis, &at)) return;
   fg_text_clip(title, sizeof title, "%s%s%s%s", axis->row->symbol,
                axis->scale == FG_INDEX_OVER_DESIGN ? " over design" : "", *unit ? ", " : "", unit);
   fg_plot_begin(&at, index->read > DATES_MAX ? 238 : 254, axis->row->words);
   for (size_t i = 0; i < index->read; i++) {
     const fg_index_stat *stat = fg_index_stat_of(axis, &index->lots[i]);
-    if (stat) put_expected(&at, (double)i + 1, stat);
+    if (stat) put_expected_band(&at, (double)i + 1, stat);
   }
   fg_plot_y_axis(&at, title);
   for (size_t i = 0; i < index->read; i++) {
     const fg_index_stat *stat = fg_index_stat_of(axis, &index->lots[i]);
-    put_label(&at, index, i);
+    put_lot_label(&at, index, i);
     if (!stat) continue;
-    put_limits(&at, (double)i + 1, stat);
-    put_lot(&at, (double)i + 1, stat, index->read <= NUMBERS_MAX);
+    put_lot_limits(&at, (double)i + 1, stat);
+    put_lot_mean(&at, (double)i + 1, stat, index->read <= NUMBERS_MAX);
   }
   fg_plot_end(&at);
 }

@@ -19,28 +19,28 @@
 
 enum { LOT_BYTES_MAX = 1 << 30 };
 
-static const cJSON *member(const cJSON *object, const char *name) {
+static const cJSON *find_member(const cJSON *object, const char *name) {
   return cJSON_GetObjectItemCaseSensitive(object, name);
 }
 
-static const char *text_of(const cJSON *object, const char *name) {
-  const cJSON *value = member(object, name);
+static const char *read_member_text(const cJSON *object, const char *name) {
+  const cJSON *value = find_member(object, name);
   return cJSON_IsString(value) ? value->valuestring : "";
 }
 
-static double number_of(const cJSON *object, const char *name) {
-  const cJSON *value = member(object, name);
+static double read_member_number(const cJSON *object, const char *name) {
+  const cJSON *value = find_member(object, name);
   return cJSON_IsNumber(value) ? value->valuedouble : NAN;
 }
 
-static size_t count_of(const cJSON *object, const char *name) {
-  double value = number_of(object, name);
+static size_t read_member_count(const cJSON *object, const char *name) {
+  double value = read_member_number(object, name);
   return value >= 0 && value < 1e15 ? (size_t)value : 0;
 }
 
 /* Why there is no lot.json, and what to do about it. */
-static fg_status say_missing(fg_context *ctx, fg_index_lot *lot, const char *path,
-                             const char *error) {
+static fg_status describe_missing(fg_context *ctx, fg_index_lot *lot, const char *path,
+                                  const char *error) {
   fg_journal_head head;
   fg_context unused;
   struct stat about;
@@ -70,16 +70,16 @@ static fg_status say_missing(fg_context *ctx, fg_index_lot *lot, const char *pat
 }
 
 /* A lot.json that cannot be taken; NULL: it can. */
-static fg_status say_damage(fg_context *ctx, fg_index_lot *lot, const char *path,
-                            const cJSON *root) {
+static fg_status describe_damage(fg_context *ctx, fg_index_lot *lot, const char *path,
+                                 const cJSON *root) {
   static const char kind[] = "foilgauge/lot/";
-  const char *schema = text_of(root, "schema");
+  const char *schema = read_member_text(root, "schema");
   if (root && !strcmp(schema, "foilgauge/lot/1")) return FG_OK;
   if (root && !strncmp(schema, kind, sizeof kind - 1))
     return fg_text_print(ctx, &lot->problem,
                          "%s: of another version, %s, and this program reads foilgauge/lot/1; take "
                          "the program that it is of (%s), or a newer one",
-                         path, schema, text_of(root, "version"));
+                         path, schema, read_member_text(root, "version"));
   if (root)
     return fg_text_print(ctx, &lot->problem, "%s: not the report of a lot (its schema is '%s')",
                          path, schema);
@@ -89,36 +89,36 @@ static fg_status say_damage(fg_context *ctx, fg_index_lot *lot, const char *path
                        path, lot->folder, lot->folder, lot->folder);
 }
 
-static fg_verdict verdict_of(const char *word) {
+static fg_verdict read_verdict_word(const char *word) {
   for (int verdict = FG_VERDICT_PASS; verdict < FG_VERDICT_NONE; verdict++)
     if (!strcmp(word, fg_verdict_word((fg_verdict)verdict))) return (fg_verdict)verdict;
   return FG_VERDICT_NONE;
 }
 
-static void take_counts(fg_index_lot *lot, const cJSON *root) {
-  const cJSON *counts = member(root, "counts");
-  lot->verdict = verdict_of(text_of(root, "verdict"));
-  lot->scans = count_of(counts, "scans");
-  lot->failed_scans = count_of(counts, "scans_not_measured");
-  lot->foils = count_of(counts, "foils");
-  lot->exceeded = count_of(counts, "exceeded");
+static void read_counts(fg_index_lot *lot, const cJSON *root) {
+  const cJSON *counts = find_member(root, "counts");
+  lot->verdict = read_verdict_word(read_member_text(root, "verdict"));
+  lot->scans = read_member_count(counts, "scans");
+  lot->failed_scans = read_member_count(counts, "scans_not_measured");
+  lot->foils = read_member_count(counts, "foils");
+  lot->exceeded = read_member_count(counts, "exceeded");
   for (int verdict = FG_VERDICT_PASS; verdict <= FG_VERDICT_NONE; verdict++)
-    lot->by_verdict[verdict] = count_of(counts, fg_verdict_word((fg_verdict)verdict));
+    lot->by_verdict[verdict] = read_member_count(counts, fg_verdict_word((fg_verdict)verdict));
 }
 
-static void take_date(fg_index_lot *lot, const cJSON *root) {
-  const cJSON *date = member(root, "date");
-  const char *from = text_of(date, "from");
-  lot->day = fg_date_days(text_of(date, "first"));
+static void read_lot_date(fg_index_lot *lot, const cJSON *root) {
+  const cJSON *date = find_member(root, "date");
+  const char *from = read_member_text(date, "from");
+  lot->day = fg_date_days(read_member_text(date, "first"));
   if (!isfinite(lot->day)) return;
   lot->date.from = !strcmp(from, FG_LOT_DATE_MANIFEST) ? FG_LOT_DATE_MANIFEST : FG_LOT_DATE_SCANS;
   fg_date_format(lot->day, lot->date.first);
-  double last = fg_date_days(text_of(date, "last"));
+  double last = fg_date_days(read_member_text(date, "last"));
   fg_date_format(isfinite(last) ? last : lot->day, lot->date.last);
 }
 
 /* What the design asks for: its text without its name, tolerances and the scanner's calibration. */
-static fg_status sum_design(fg_context *ctx, fg_index_lot *lot) {
+static fg_status sum_asked_design(fg_context *ctx, fg_index_lot *lot) {
   char *text = NULL;
   size_t size;
   fg_json json;
@@ -142,35 +142,35 @@ static fg_status sum_design(fg_context *ctx, fg_index_lot *lot) {
   return FG_OK;
 }
 
-static fg_status take_design(fg_context *ctx, fg_index_lot *lot, const char *path,
-                             const cJSON *root) {
+static fg_status read_lot_design(fg_context *ctx, fg_index_lot *lot, const char *path,
+                                 const cJSON *root) {
   fg_context inner = {.message = ""};
-  char *text = cJSON_PrintUnformatted(member(root, "design"));
+  char *text = cJSON_PrintUnformatted(find_member(root, "design"));
   fg_design_default(&lot->design);
   fg_status status = text ? fg_design_parse(&inner, path, text, &lot->design)
                           : fg_fail(&inner, FG_ERR_DATA, "%s: design: it is missing", path);
   if (status == FG_OK) status = fg_design_derive(&inner, &lot->design, &lot->nominal);
   cJSON_free(text);
-  if (status == FG_OK) return sum_design(ctx, lot);
+  if (status == FG_OK) return sum_asked_design(ctx, lot);
   if (status == FG_ERR_MEMORY) return fg_fail(ctx, status, "%s", inner.message);
   return fg_text_print(ctx, &lot->problem,
                        "%s (foilgauge %s wrote it, this is %s; what it cannot read may be newer)",
                        inner.message, lot->version, FOILGAUGE_VERSION);
 }
 
-static void take_stat(fg_index_lot *lot, fg_quantity_owner owner, const fg_quantity *row,
-                      const cJSON *from) {
+static void read_lot_stat(fg_index_lot *lot, fg_quantity_owner owner, const fg_quantity *row,
+                          const cJSON *from) {
   fg_index_stat *stat = &lot->stats[lot->stat_count++];
   *stat = (fg_index_stat){
       .row = row,
       .owner = owner,
-      .count = count_of(from, "count"),
-      .mean = number_of(from, "mean"),
-      .sd = number_of(from, "sd"),
-      .median = number_of(from, "median"),
-      .mode = number_of(from, "mode"),
-      .min = number_of(from, "min"),
-      .max = number_of(from, "max"),
+      .count = read_member_count(from, "count"),
+      .mean = read_member_number(from, "mean"),
+      .sd = read_member_number(from, "sd"),
+      .median = read_member_number(from, "median"),
+      .mode = read_member_number(from, "mode"),
+      .min = read_member_number(from, "min"),
+      .max = read_member_number(from, "max"),
       .lower = -INFINITY,
       .upper = INFINITY,
       .foil_mean = NAN,
@@ -186,9 +186,9 @@ static void take_stat(fg_index_lot *lot, fg_quantity_owner owner, const fg_quant
 }
 
 /* In the order of lot.json; what another version knows and this one does not is passed over. */
-static fg_status take_stats(fg_context *ctx, fg_index_lot *lot, const cJSON *root) {
+static fg_status read_lot_stats(fg_context *ctx, fg_index_lot *lot, const cJSON *root) {
   const fg_quantity_owner owners[] = {fg_foil_kind_parts(lot->design.kind), FG_QUANTITY_OF_FOIL};
-  const cJSON *list = member(root, "quantities"), *item;
+  const cJSON *list = find_member(root, "quantities"), *item;
   void *block;
   int size = cJSON_GetArraySize(list);
   FG_TRY(fg_memory_allocate(ctx, (size_t)(size > 0 ? size : 0), sizeof *lot->stats, &block));
@@ -196,37 +196,38 @@ static fg_status take_stats(fg_context *ctx, fg_index_lot *lot, const cJSON *roo
   cJSON_ArrayForEach(item, list) for (size_t o = 0; o < 2; o++) {
     const fg_quantity *row = fg_quantity_find(owners[o], item->string);
     if (!row || row->kind == FG_QUANTITY_PAIR) continue;
-    take_stat(lot, owners[o], row, item);
+    read_lot_stat(lot, owners[o], row, item);
     break;
   }
   return FG_OK;
 }
 
-static fg_status take_scans(fg_context *ctx, fg_index_lot *lot, const cJSON *root) {
-  const cJSON *list = member(root, "inputs"), *item;
+static fg_status read_scan_sums(fg_context *ctx, fg_index_lot *lot, const cJSON *root) {
+  const cJSON *list = find_member(root, "inputs"), *item;
   void *block;
   int size = cJSON_GetArraySize(list);
   FG_TRY(fg_memory_allocate(ctx, (size_t)(size > 0 ? size : 0), sizeof *lot->scan_sum, &block));
   lot->scan_sum = block;
   cJSON_ArrayForEach(item, list) {
-    const char *sum = text_of(item, "sha256");
+    const char *sum = read_member_text(item, "sha256");
     if (strlen(sum) == 64) strcpy(lot->scan_sum[lot->scan_sums++], sum);
   }
   return FG_OK;
 }
 
-static fg_status take_all(fg_context *ctx, fg_index_lot *lot, const char *path, const cJSON *root) {
-  FG_TRY(say_damage(ctx, lot, path, root));
+static fg_status read_lot_members(fg_context *ctx, fg_index_lot *lot, const char *path,
+                                  const cJSON *root) {
+  FG_TRY(describe_damage(ctx, lot, path, root));
   if (lot->problem) return FG_OK;
-  const char *name = text_of(root, "name");
+  const char *name = read_member_text(root, "name");
   FG_TRY(fg_text_print(ctx, &lot->name, "%s", *name ? name : lot->folder));
-  fg_text_clip(lot->version, sizeof lot->version, "%s", text_of(root, "version"));
-  take_counts(lot, root);
-  take_date(lot, root);
-  FG_TRY(take_design(ctx, lot, path, root));
+  fg_text_clip(lot->version, sizeof lot->version, "%s", read_member_text(root, "version"));
+  read_counts(lot, root);
+  read_lot_date(lot, root);
+  FG_TRY(read_lot_design(ctx, lot, path, root));
   if (lot->problem) return FG_OK;
-  FG_TRY(take_stats(ctx, lot, root));
-  return take_scans(ctx, lot, root);
+  FG_TRY(read_lot_stats(ctx, lot, root));
+  return read_scan_sums(ctx, lot, root);
 }
 
 fg_status fg_index_read_lot(fg_context *ctx, fg_index_lot *lot) {
@@ -238,13 +239,13 @@ fg_status fg_index_read_lot(fg_context *ctx, fg_index_lot *lot) {
   if (status == FG_ERR_MEMORY) {
     fg_fail(ctx, status, "%s", inner.message);
   } else if (status != FG_OK) {
-    status = say_missing(ctx, lot, path, inner.message);
+    status = describe_missing(ctx, lot, path, inner.message);
   } else {
     cJSON *root;
     status = fg_json_read(ctx, path, text, &root);
     fg_sha256_text(text, lot->sha256);
     if (status != FG_ERR_MEMORY)
-      status = take_all(ctx, lot, path, root); /* damage is noted there */
+      status = read_lot_members(ctx, lot, path, root); /* damage is noted there */
     cJSON_Delete(root);
   }
   free(text);

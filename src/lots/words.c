@@ -37,7 +37,7 @@ static const char *unit_behind(const fg_index_axis *axis, char space[8]) {
   return space;
 }
 
-static int decimals_of(const fg_index_axis *axis) {
+static int axis_decimals(const fg_index_axis *axis) {
   if (axis->scale == FG_INDEX_OVER_DESIGN) return RATIO_DECIMALS;
   return axis->row->decimals < DECIMALS_MAX ? axis->row->decimals : DECIMALS_MAX;
 }
@@ -45,7 +45,7 @@ static int decimals_of(const fg_index_axis *axis) {
 void fg_index_value(const fg_index_axis *axis, double value, char *text, size_t size) {
   char unit[8];
   if (isfinite(value))
-    fg_text_clip(text, size, "%s%.*f%s", value < 0 ? "−" : "", decimals_of(axis), fabs(value),
+    fg_text_clip(text, size, "%s%.*f%s", value < 0 ? "−" : "", axis_decimals(axis), fabs(value),
                  unit_behind(axis, unit));
   else
     fg_text_clip(text, size, "–");
@@ -56,7 +56,7 @@ void fg_index_difference(const fg_index_axis *axis, const fg_index_pair *pair, c
   char unit[8];
   double reach = (pair->high - pair->low) / 2;
   /* Two digits of the half interval. */
-  int decimals = isfinite(reach) && reach > 0 ? 1 - (int)floor(log10(reach)) : decimals_of(axis);
+  int decimals = isfinite(reach) && reach > 0 ? 1 - (int)floor(log10(reach)) : axis_decimals(axis);
   decimals = decimals < 0 ? 0 : decimals > DECIMALS_MAX ? DECIMALS_MAX : decimals;
   if (isfinite(reach))
     fg_text_clip(text, size, "%.*f ± %.*f%s", decimals, pair->difference, decimals, reach,
@@ -86,7 +86,7 @@ fg_status fg_index_die_names(fg_context *ctx, const fg_index *index, const fg_in
   return FG_OK;
 }
 
-static fg_status add(fg_context *ctx, fg_index *index, char *sentence) {
+static fg_status append_sentence(fg_context *ctx, fg_index *index, char *sentence) {
   fg_status status = fg_memory_reserve(ctx, index->sentence_count + 1, sizeof *index->sentences,
                                        &index->sentence_capacity, (void **)&index->sentences);
   if (status == FG_OK)
@@ -128,11 +128,11 @@ static fg_status say_axis(fg_context *ctx, fg_index *index, size_t axis) {
       name_axis(of, name, sizeof name), fg_index_number(index, a), a->name,
       fg_index_number(index, b), b->name, difference, *p == '<' ? "" : "= ", p, first->foils_a,
       first->foils_b, more));
-  return add(ctx, index, sentence);
+  return append_sentence(ctx, index, sentence);
 }
 
 /* Whether the two lots differ in any quantity. */
-static bool differ(const fg_index *index, size_t a, size_t b) {
+static bool is_pair_differing(const fg_index *index, size_t a, size_t b) {
   for (size_t i = 0; i < index->differing; i++)
     if ((index->pairs[i].a == a && index->pairs[i].b == b) ||
         (index->pairs[i].a == b && index->pairs[i].b == a))
@@ -141,12 +141,12 @@ static bool differ(const fg_index *index, size_t a, size_t b) {
 }
 
 /* "Lots that differ beyond chance: 1 from 2, 3; 2 from 3." */
-static fg_status say_who(fg_context *ctx, fg_index *index) {
+static fg_status say_differing_lots(fg_context *ctx, fg_index *index) {
   char *sentence = NULL;
   for (size_t a = 0; a < index->read; a++) {
     bool begun = false;
     for (size_t b = a + 1; b < index->read; b++) {
-      if (!differ(index, a, b)) continue;
+      if (!is_pair_differing(index, a, b)) continue;
       if (!begun)
         FG_TRY(fg_text_append(
             ctx, &sentence, "%s%zu from %zu",
@@ -157,7 +157,7 @@ static fg_status say_who(fg_context *ctx, fg_index *index) {
     }
   }
   FG_TRY(fg_text_append(ctx, &sentence, "."));
-  return add(ctx, index, sentence);
+  return append_sentence(ctx, index, sentence);
 }
 
 /* Of many lots those that differ from half of the others or more, the worst first. */
@@ -167,7 +167,7 @@ static fg_status say_odd(fg_context *ctx, fg_index *index) {
   FG_TRY(fg_memory_allocate(ctx, index->read, sizeof *others, (void **)&others));
   for (size_t a = 0; a < index->read; a++)
     for (size_t b = 0; b < index->read; b++)
-      others[a] += differ(index, a, b);
+      others[a] += is_pair_differing(index, a, b);
   fg_status status = FG_OK;
   for (size_t said = 0; said < SAID_MAX && status == FG_OK; said++) {
     size_t worst = 0;
@@ -185,7 +185,7 @@ static fg_status say_odd(fg_context *ctx, fg_index *index) {
     return status;
   }
   FG_TRY(fg_text_append(ctx, &sentence, " of %zu.", index->read - 1));
-  return add(ctx, index, sentence);
+  return append_sentence(ctx, index, sentence);
 }
 
 /* How many of the lots are within tolerance. */
@@ -209,22 +209,22 @@ static fg_status say_verdicts(fg_context *ctx, fg_index *index) {
     if (lots) separator = ", ";
   }
   FG_TRY(fg_text_append(ctx, &sentence, "."));
-  return add(ctx, index, sentence);
+  return append_sentence(ctx, index, sentence);
 }
 
-static bool differs(const fg_index *index, size_t axis) {
+static bool is_axis_differing(const fg_index *index, size_t axis) {
   for (size_t i = 0; i < index->differing; i++)
     if (index->pairs[i].axis == axis) return true;
   return false;
 }
 
 /* Most quantities follow from the first ones. */
-static fg_status say_more(fg_context *ctx, fg_index *index, size_t quantities, const char *what,
-                          const char *where) {
+static fg_status say_more_quantities(fg_context *ctx, fg_index *index, size_t quantities,
+                                     const char *what, const char *where) {
   char *sentence = NULL;
   FG_TRY(fg_text_print(ctx, &sentence, "%s differ in %zu more quantit%s as well: see \"%s\".", what,
                        quantities, quantities == 1 ? "y" : "ies", where));
-  return add(ctx, index, sentence);
+  return append_sentence(ctx, index, sentence);
 }
 
 static size_t count_tested(const fg_index *index) {
@@ -248,19 +248,19 @@ static fg_status say_pairs(fg_context *ctx, fg_index *index) {
                          "quantities (%zu test%s, together at 5 %%).",
                          count_tested(index), index->pair_count, fg_plural(index->pair_count)));
   }
-  if (sentence) return add(ctx, index, sentence);
+  if (sentence) return append_sentence(ctx, index, sentence);
   if (index->read > LISTED_MAX)
     FG_TRY(say_odd(ctx, index));
   else if (index->read > 2)
-    FG_TRY(say_who(ctx, index));
+    FG_TRY(say_differing_lots(ctx, index));
   size_t before = index->sentence_count;
   size_t axis = 0, more = 0;
   for (; axis < index->axis_count; axis++)
     if (index->sentence_count < before + SAID_MAX)
       FG_TRY(say_axis(ctx, index, axis));
     else
-      more += differs(index, axis);
-  return more ? say_more(ctx, index, more, "Lots", "Which lots differ") : FG_OK;
+      more += is_axis_differing(index, axis);
+  return more ? say_more_quantities(ctx, index, more, "Lots", "Which lots differ") : FG_OK;
 }
 
 /* The lots that lie where the others do not, of one quantity. */
@@ -283,7 +283,7 @@ static fg_status say_unexpected(fg_context *ctx, fg_index *index, const fg_index
   if (!sentence) return FG_OK;
   if (lots > 3) FG_TRY(fg_text_append(ctx, &sentence, "; and %zu more", lots - 3));
   FG_TRY(fg_text_append(ctx, &sentence, "."));
-  return add(ctx, index, sentence);
+  return append_sentence(ctx, index, sentence);
 }
 
 static fg_status say_die_pair(fg_context *ctx, fg_index *index, const fg_index_die_pair *of) {
@@ -297,7 +297,7 @@ static fg_status say_die_pair(fg_context *ctx, fg_index *index, const fg_index_d
                        index->dies[of->pair.b].name, difference, *p == '<' ? "" : "= ", p,
                        of->basis == FG_INDEX_WITHIN_LOTS ? "within" : "between the means of",
                        of->lots, of->lots == 1 ? "" : "s"));
-  return add(ctx, index, sentence);
+  return append_sentence(ctx, index, sentence);
 }
 
 /* How many pairs of dies were tested, and how many cannot be. */
@@ -328,7 +328,7 @@ static fg_status say_no_die(fg_context *ctx, fg_index *index) {
                           "%s%zu pair%s of dies cannot be told from their lots: no lot has foils "
                           "of both, and there are fewer than two lots of each.",
                           sentence ? " " : "", apart, apart == 1 ? "" : "s"));
-  return sentence ? add(ctx, index, sentence) : FG_OK;
+  return sentence ? append_sentence(ctx, index, sentence) : FG_OK;
 }
 
 /* One sentence for each quantity in which dies differ; else that they do not, or why not. */
@@ -341,11 +341,12 @@ static fg_status say_dies(fg_context *ctx, fg_index *index) {
         if (said++ < SAID_MAX) FG_TRY(say_die_pair(ctx, index, &index->die_pairs[i]));
         break;
       }
-  if (said > SAID_MAX) FG_TRY(say_more(ctx, index, said - SAID_MAX, "Dies", "Which dies differ"));
+  if (said > SAID_MAX)
+    FG_TRY(say_more_quantities(ctx, index, said - SAID_MAX, "Dies", "Which dies differ"));
   return said ? FG_OK : say_no_die(ctx, index);
 }
 
-static fg_status say_apart(fg_context *ctx, fg_index *index) {
+static fg_status say_designs_apart(fg_context *ctx, fg_index *index) {
   char *sentence = NULL;
   if (index->designs < 2) return FG_OK;
   FG_TRY(fg_text_print(ctx, &sentence,
@@ -359,7 +360,7 @@ static fg_status say_apart(fg_context *ctx, fg_index *index) {
     separator = "; ";
   }
   FG_TRY(fg_text_append(ctx, &sentence, "."));
-  return add(ctx, index, sentence);
+  return append_sentence(ctx, index, sentence);
 }
 
 fg_status fg_index_say(fg_context *ctx, fg_index *index) {
@@ -369,5 +370,5 @@ fg_status fg_index_say(fg_context *ctx, fg_index *index) {
     if (index->axes[i].same_as == FG_INDEX_NONE)
       FG_TRY(say_unexpected(ctx, index, &index->axes[i]));
   FG_TRY(say_dies(ctx, index));
-  return say_apart(ctx, index);
+  return say_designs_apart(ctx, index);
 }

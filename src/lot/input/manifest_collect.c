@@ -20,15 +20,15 @@ enum { TEXT_BYTES_MAX = 1 << 30, DEPTH_MAX = 32 };
 /* Folders: every picture below, in the order of the names' bytes, so that a lot reads alike in
  * every locale. */
 
-static int keep_visible(const struct dirent *entry) {
+static int is_visible_entry(const struct dirent *entry) {
   return entry->d_name[0] != '.';
 }
 
-static int by_bytes(const struct dirent **a, const struct dirent **b) {
+static int compare_names_bytewise(const struct dirent **a, const struct dirent **b) {
   return strcmp((*a)->d_name, (*b)->d_name);
 }
 
-static bool same_place(const char *a, const char *b) {
+static bool is_same_file(const char *a, const char *b) {
   struct stat one, other;
   return stat(a, &one) == 0 && stat(b, &other) == 0 && one.st_dev == other.st_dev &&
          one.st_ino == other.st_ino;
@@ -54,7 +54,7 @@ static fg_status add_entry(const search *s, const char *folder, const char *name
   fg_status status = FG_OK;
   bool there = stat(path, &info) == 0;
   size_t before = s->manifest->items;
-  if (there && S_ISDIR(info.st_mode) && !(s->leave_out && same_place(path, s->leave_out))) {
+  if (there && S_ISDIR(info.st_mode) && !(s->leave_out && is_same_file(path, s->leave_out))) {
     status = add_folder(s, path, depth + 1);
     if (s->manifest->items == before && fg_format_has_name(name)) note_empty(s->manifest, path);
   } else if (fg_format_has_name(name) && !(there && S_ISDIR(info.st_mode)))
@@ -68,7 +68,7 @@ static fg_status add_folder(const search *s, const char *folder, int depth) {
   if (depth > DEPTH_MAX)
     return fg_fail(s->ctx, FG_ERR_DATA, "%s: folders lie %d deep; is a link going round?", folder,
                    DEPTH_MAX);
-  int count = scandir(folder, &entries, keep_visible, by_bytes);
+  int count = scandir(folder, &entries, is_visible_entry, compare_names_bytewise);
   if (count < 0)
     return fg_fail(s->ctx, fg_status_of_errno(errno), "%s: the folder cannot be read: %s", folder,
                    strerror(errno));
@@ -166,7 +166,7 @@ static fg_status check_double(fg_context *ctx, const fg_manifest *manifest, size
   return FG_OK;
 }
 
-static void leave_out(fg_manifest *manifest, size_t first, size_t second) {
+static void drop_double(fg_manifest *manifest, size_t first, size_t second) {
   if (manifest->doubles++ == 0)
     fg_text_clip(manifest->first_double, sizeof manifest->first_double, "%s (%s)",
                  fg_manifest_scan(manifest, second), fg_manifest_scan(manifest, first));
@@ -176,8 +176,8 @@ static void leave_out(fg_manifest *manifest, size_t first, size_t second) {
   }
 }
 
-static fg_status leave_out_doubles(fg_context *ctx, fg_manifest *manifest, const fg_manifest *real,
-                                   const fg_manifest_index *index) {
+static fg_status drop_doubles(fg_context *ctx, fg_manifest *manifest, const fg_manifest *real,
+                              const fg_manifest_index *index) {
   size_t kept = 0, columns = manifest->columns;
   for (size_t i = 0; i < real->items; i++) {
     size_t first = fg_manifest_index_find(index, real, real->cell[i]);
@@ -185,7 +185,7 @@ static fg_status leave_out_doubles(fg_context *ctx, fg_manifest *manifest, const
   }
   for (size_t i = 0; i < real->items; i++) {
     size_t first = fg_manifest_index_find(index, real, real->cell[i]);
-    if (first != i) leave_out(manifest, first, i);
+    if (first != i) drop_double(manifest, first, i);
   }
   for (size_t i = 0; i < real->items; i++) {
     if (!manifest->cell[i * columns]) continue;
@@ -196,7 +196,7 @@ static fg_status leave_out_doubles(fg_context *ctx, fg_manifest *manifest, const
   return FG_OK;
 }
 
-static fg_status check_scans(fg_context *ctx, fg_manifest *manifest) {
+static fg_status check_listed_scans(fg_context *ctx, fg_manifest *manifest) {
   fg_manifest real = {0};
   fg_manifest_index index = {0};
   char endings[100];
@@ -206,7 +206,7 @@ static fg_status check_scans(fg_context *ctx, fg_manifest *manifest) {
                    endings);
   fg_status status = resolve_scans(ctx, manifest, &real);
   if (status == FG_OK) status = fg_manifest_index_build(ctx, &real, &index);
-  if (status == FG_OK) status = leave_out_doubles(ctx, manifest, &real, &index);
+  if (status == FG_OK) status = drop_doubles(ctx, manifest, &real, &index);
   for (size_t i = 0; i < real.items; i++)
     free(real.cell[i]);
   free(real.cell);
@@ -221,7 +221,7 @@ fg_status fg_manifest_collect(fg_context *ctx, const char *const *paths, size_t 
   fg_status status = fg_manifest_start(ctx, manifest);
   for (size_t i = 0; i < count && status == FG_OK; i++)
     status = add_path(&s, paths[i]);
-  if (status == FG_OK) status = check_scans(ctx, manifest);
+  if (status == FG_OK) status = check_listed_scans(ctx, manifest);
   if (status != FG_OK) fg_manifest_free(manifest);
   return status;
 }

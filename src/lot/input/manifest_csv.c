@@ -26,7 +26,7 @@ typedef struct csv_reader {
   fg_status status;
 } csv_reader;
 
-static fg_status take_name(csv_reader *r, const char *text, size_t length) {
+static fg_status add_heading(csv_reader *r, const char *text, size_t length) {
   size_t column;
   FG_TRY(fg_manifest_add_column(r->ctx, r->manifest, text, length, &column));
   FG_TRY(fg_memory_reserve(r->ctx, r->columns + 1, sizeof *r->column, &r->capacity,
@@ -39,14 +39,14 @@ static fg_status take_name(csv_reader *r, const char *text, size_t length) {
   return FG_OK;
 }
 
-static fg_status take_cell(csv_reader *r, const char *text, size_t length) {
+static fg_status accept_cell(csv_reader *r, const char *text, size_t length) {
   fg_csv_take_apostrophe(&text, &length);
   if (!r->named && r->columns == COLUMNS_MAX)
     return fg_fail(r->ctx, FG_ERR_DATA,
                    "%s: more than %d columns, which every line of the reports would repeat; keep "
                    "those that say which foil it is",
                    r->source, COLUMNS_MAX);
-  if (!r->named) return take_name(r, text, length);
+  if (!r->named) return add_heading(r, text, length);
   if (r->cell >= r->columns && length)
     return fg_fail(r->ctx, FG_ERR_DATA, "%s: row %zu has more cells than the heading (%zu)%s",
                    r->source, r->row + 1, r->columns,
@@ -61,7 +61,7 @@ static fg_status take_cell(csv_reader *r, const char *text, size_t length) {
   return fg_manifest_copy_text(r->ctx, text, length, &r->cells[column]);
 }
 
-static fg_status end_names(csv_reader *r) {
+static fg_status end_heading(csv_reader *r) {
   r->named = true;
   for (size_t i = 0; i < r->columns; i++)
     if (r->column[i] == 0) return FG_OK;
@@ -69,8 +69,8 @@ static fg_status end_names(csv_reader *r) {
                  r->source);
 }
 
-static fg_status end_row(csv_reader *r) {
-  if (!r->named) return r->columns ? end_names(r) : FG_OK;
+static fg_status end_manifest_row(csv_reader *r) {
+  if (!r->named) return r->columns ? end_heading(r) : FG_OK;
   char **cells = r->cells;
   bool filled = r->filled;
   r->row++;
@@ -90,13 +90,13 @@ static fg_status end_row(csv_reader *r) {
 
 static void on_cell(void *text, size_t length, void *user) {
   csv_reader *r = user;
-  if (r->status == FG_OK) r->status = take_cell(r, text, length);
+  if (r->status == FG_OK) r->status = accept_cell(r, text, length);
 }
 
 static void on_row(int end, void *user) {
   csv_reader *r = user;
   (void)end;
-  if (r->status == FG_OK) r->status = end_row(r);
+  if (r->status == FG_OK) r->status = end_manifest_row(r);
 }
 
 /* Whether the column's new cells are numbers, one with a decimal comma at least. */
@@ -112,7 +112,7 @@ static bool has_decimal_commas(const fg_manifest *manifest, size_t from, size_t 
 }
 
 /* A lot writes its tables with commas between the cells: numbers get points. */
-static void write_points(fg_manifest *manifest, size_t from) {
+static void write_decimal_points(fg_manifest *manifest, size_t from) {
   for (size_t column = 1; column < manifest->columns; column++) {
     if (!has_decimal_commas(manifest, from, column)) continue;
     for (size_t i = from; i < manifest->items; i++) {
@@ -143,7 +143,7 @@ static fg_status parse_rows(csv_reader *r, const char *text) {
   if (r->status == FG_OK && !r->named)
     return fg_fail(r->ctx, FG_ERR_DATA, "%s: empty; the first row must name the columns",
                    r->source);
-  if (r->status == FG_OK && separator != ',') write_points(r->manifest, from);
+  if (r->status == FG_OK && separator != ',') write_decimal_points(r->manifest, from);
   return r->status;
 }
 

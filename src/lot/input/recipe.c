@@ -65,8 +65,8 @@ fg_status fg_lot_settings_check(fg_context *ctx, const fg_lot_settings *settings
   return fg_report_check_tolerances(ctx, &settings->design);
 }
 
-static fg_status read_words(fg_context *ctx, const fg_recipe_member *row, const cJSON *value,
-                            char *text) {
+static fg_status read_setting_text(fg_context *ctx, const fg_recipe_member *row, const cJSON *value,
+                                   char *text) {
   if (!cJSON_IsString(value))
     return fg_fail(ctx, FG_ERR_DATA, "%s must be a text in quotes", row->name);
   if (strlen(value->valuestring) >= row->size)
@@ -114,10 +114,10 @@ static void store_number(const fg_recipe_member *row, void *place, double value)
   if (row->kind == FG_RECIPE_UNSIGNED) *(unsigned *)place = (unsigned)value;
 }
 
-static fg_status read_member(fg_context *ctx, const fg_recipe_member *row, const cJSON *value,
-                             fg_lot_settings *settings) {
+static fg_status read_setting(fg_context *ctx, const fg_recipe_member *row, const cJSON *value,
+                              fg_lot_settings *settings) {
   void *place = fg_recipe_place(row, settings);
-  if (row->kind == FG_RECIPE_WORDS) return read_words(ctx, row, value, place);
+  if (row->kind == FG_RECIPE_WORDS) return read_setting_text(ctx, row, value, place);
   if (row->kind == FG_RECIPE_SWITCH) return read_switch(ctx, row, value, place);
   if (row->kind == FG_RECIPE_RULE) return read_bandwidth(ctx, value, place);
   if (row->kind == FG_RECIPE_RUN_RULES) return read_run_rules(ctx, row, value, place);
@@ -132,8 +132,8 @@ static fg_status read_member(fg_context *ctx, const fg_recipe_member *row, const
 }
 
 /* "design": an object, or the path of a file beside the recipe. */
-static fg_status read_design(fg_context *ctx, const char *path, const cJSON *value,
-                             fg_design *design) {
+static fg_status read_recipe_design(fg_context *ctx, const char *path, const cJSON *value,
+                                    fg_design *design) {
   if (cJSON_IsString(value)) {
     char file[4096];
     fg_recipe_find_file(path, value->valuestring, file, sizeof file);
@@ -166,19 +166,19 @@ static fg_status read_assembly(fg_context *ctx, const cJSON *object, fg_lot_sett
                      value->string);
     if (cJSON_GetObjectItemCaseSensitive(object, value->string) != value)
       return fg_fail(ctx, FG_ERR_DATA, "assembly.%s is there twice", value->string);
-    fg_status status = read_member(&inner, &fg_recipe_assembly.rows[i], value, settings);
+    fg_status status = read_setting(&inner, &fg_recipe_assembly.rows[i], value, settings);
     if (status != FG_OK) return fg_fail(ctx, status, "assembly.%.300s", inner.message);
   }
   return FG_OK;
 }
 
-static fg_status read_own_design(fg_context *ctx, const char *path, const cJSON *value,
-                                 fg_lot_settings *settings) {
-  return read_design(ctx, path, value, &settings->design);
+static fg_status read_design_part(fg_context *ctx, const char *path, const cJSON *value,
+                                  fg_lot_settings *settings) {
+  return read_recipe_design(ctx, path, value, &settings->design);
 }
 
-static fg_status read_drawn(fg_context *ctx, const char *path, const cJSON *value,
-                            fg_lot_settings *settings) {
+static fg_status read_assembly_part(fg_context *ctx, const char *path, const cJSON *value,
+                                    fg_lot_settings *settings) {
   (void)path;
   return read_assembly(ctx, value, settings);
 }
@@ -192,7 +192,7 @@ static const struct {
 } parts[] = {
     {"schema", NULL, "Must be \"foilgauge/recipe/1\"."},
     {"version", NULL, "Of the program that wrote it; not read."},
-    {"design", read_own_design,
+    {"design", read_design_part,
      "An object as in `foilgauge-design`(5), or the path of such a file beside the recipe."},
     {"dies", fg_lot_dies_read,
      "An object of names and paths of what `foilgauge die -o` wrote, as in {\"A\": "
@@ -200,7 +200,7 @@ static const struct {
     {"reference_curve", fg_reference_curve_read,
      "The path of a CSV file beside the recipe, with the columns bump, radius_error_pct and "
      "intersection_angle_error_pct: drawn over the errors per bump."},
-    {"assembly", read_drawn, "An object with the members that follow."},
+    {"assembly", read_assembly_part, "An object with the members that follow."},
     {"calibration", NULL,
      "As in `foilgauge-design`(5), over that of the recipe's design."}, /* read last */
     {"station", NULL,
@@ -216,8 +216,8 @@ static const fg_recipe_member *find_member(const char *name) {
   return NULL;
 }
 
-static fg_status read_part(fg_context *ctx, const char *path, const cJSON *value,
-                           fg_lot_settings *settings) {
+static fg_status read_recipe_part(fg_context *ctx, const char *path, const cJSON *value,
+                                  fg_lot_settings *settings) {
   for (size_t i = 0; i < PARTS; i++)
     if (!strcmp(value->string, parts[i].name))
       return parts[i].read ? parts[i].read(ctx, path, value, settings) : FG_OK;
@@ -237,7 +237,7 @@ static fg_status read_calibration(fg_context *ctx, const cJSON *root, fg_lot_set
   return FG_OK;
 }
 
-static fg_status read_object(fg_context *ctx, const char *path, const cJSON *root,
+static fg_status read_recipe(fg_context *ctx, const char *path, const cJSON *root,
                              fg_lot_settings *settings) {
   const cJSON *schema = cJSON_GetObjectItemCaseSensitive(root, "schema"), *value;
   if (!cJSON_IsObject(root) || !cJSON_IsString(schema) ||
@@ -249,9 +249,9 @@ static fg_status read_object(fg_context *ctx, const char *path, const cJSON *roo
     if (cJSON_GetObjectItemCaseSensitive(root, value->string) != value)
       return fg_fail(ctx, FG_ERR_DATA, "%s is there twice", value->string);
     if (row)
-      FG_TRY(read_member(ctx, row, value, settings));
+      FG_TRY(read_setting(ctx, row, value, settings));
     else
-      FG_TRY(read_part(ctx, path, value, settings));
+      FG_TRY(read_recipe_part(ctx, path, value, settings));
   }
   FG_TRY(read_calibration(ctx, root, settings));
   return fg_lot_settings_check(ctx, settings);
@@ -263,7 +263,7 @@ fg_status fg_lot_settings_parse(fg_context *ctx, const char *path, const char *j
   fg_lot_settings copy = *settings;
   cJSON *root;
   FG_TRY(fg_json_read(ctx, path, json, &root));
-  fg_status status = read_object(&inner, path, root, &copy);
+  fg_status status = read_recipe(&inner, path, root, &copy);
   cJSON_Delete(root);
   if (status != FG_OK) return fg_fail(ctx, status, "%.200s: %.800s", path, inner.message);
   *settings = copy;
@@ -322,7 +322,7 @@ fg_status fg_lot_settings_load(fg_context *ctx, const char *path, fg_lot_setting
 }
 
 /* A lot that knows no model, no dies, no loss, has a recipe that does not speak of them. */
-static bool is_silent(const fg_recipe_member *row, const fg_lot_settings *settings) {
+static bool is_left_unsaid(const fg_recipe_member *row, const fg_lot_settings *settings) {
   bool model = row->offset == offsetof(fg_lot_settings, model) ||
                row->offset == offsetof(fg_lot_settings, model_sha256);
   if (row->offset == offsetof(fg_lot_settings, die_column)) return !settings->die_count;
@@ -342,7 +342,7 @@ fg_status fg_lot_settings_format(fg_context *ctx, const fg_lot_settings *setting
   fg_json_head(&writer, "foilgauge/recipe/1");
   for (size_t i = 0; i < fg_recipe_values.count; i++)
     if (with_jobs ||
-        !(fg_recipe_values.rows[i].jobs || is_silent(&fg_recipe_values.rows[i], settings)))
+        !(fg_recipe_values.rows[i].jobs || is_left_unsaid(&fg_recipe_values.rows[i], settings)))
       fg_recipe_write(&writer, &fg_recipe_values.rows[i], settings);
   fg_lot_dies_write(&writer, settings);
   writer.exact = true; /* what is read again gives the same report */

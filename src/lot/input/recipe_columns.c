@@ -5,7 +5,7 @@
 #include "core/text.h"
 #include "lot/input/recipe.h"
 
-static void list_columns(const fg_manifest *manifest, char *text, size_t size) {
+static void list_column_names(const fg_manifest *manifest, char *text, size_t size) {
   size_t used = 0;
   for (size_t i = 0; i < manifest->columns; i++) {
     fg_text_clip(text + used, size - used, "%s%s", i ? ", " : "", manifest->name[i]);
@@ -14,12 +14,12 @@ static void list_columns(const fg_manifest *manifest, char *text, size_t size) {
 }
 
 /* `usual` is what stands there when nobody has named a column: it may be missing. */
-static fg_status check_column(fg_context *ctx, const fg_manifest *manifest, const char *member,
-                              const char *column, const char *usual) {
+static fg_status check_named_column(fg_context *ctx, const fg_manifest *manifest,
+                                    const char *member, const char *column, const char *usual) {
   char columns[400];
   if (!*column || !strcmp(column, usual)) return FG_OK;
   if (fg_manifest_column(manifest, column) != FG_NO_COLUMN) return FG_OK;
-  list_columns(manifest, columns, sizeof columns);
+  list_column_names(manifest, columns, sizeof columns);
   return fg_fail(ctx, FG_ERR_DATA, "%s: the manifest has no column '%s'; it has: %s", member,
                  column, columns);
 }
@@ -43,11 +43,11 @@ static fg_status check_groups(fg_context *ctx, const fg_manifest *manifest, cons
 }
 
 /* With dies, the column is there, and every cell names one of them or none. */
-static fg_status check_dies(fg_context *ctx, const fg_lot_settings *settings,
-                            const fg_manifest *manifest) {
+static fg_status check_die_cells(fg_context *ctx, const fg_lot_settings *settings,
+                                 const fg_manifest *manifest) {
   char columns[400];
   size_t column = fg_manifest_column(manifest, settings->die_column);
-  list_columns(manifest, columns, sizeof columns);
+  list_column_names(manifest, columns, sizeof columns);
   if (!settings->die_count) return FG_OK;
   if (column == FG_NO_COLUMN)
     return fg_fail(ctx, FG_ERR_DATA,
@@ -69,13 +69,13 @@ fg_status fg_lot_check_columns(fg_context *ctx, const fg_lot_settings *settings,
                                const fg_manifest *manifest) {
   fg_lot_settings usual;
   fg_lot_settings_default(&usual);
-#define CHECK(member) check_column(ctx, manifest, #member, settings->member, usual.member)
+#define CHECK(member) check_named_column(ctx, manifest, #member, settings->member, usual.member)
   FG_TRY(CHECK(group_column));
   FG_TRY(CHECK(part_column));
   FG_TRY(CHECK(operator_column));
   FG_TRY(CHECK(bearing_column));
   FG_TRY(CHECK(pad_column));
-  FG_TRY(check_dies(ctx, settings, manifest));
+  FG_TRY(check_die_cells(ctx, settings, manifest));
 #undef CHECK
   return check_groups(ctx, manifest, settings->group_column);
 }

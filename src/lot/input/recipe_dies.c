@@ -16,8 +16,8 @@
 
 enum { DIE_BYTES_MAX = 64 << 20, CONTEXT_WORDS = 800 };
 
-static fg_status read_number(fg_context *ctx, const cJSON *object, const char *name, double min,
-                             double *value) {
+static fg_status read_min_number(fg_context *ctx, const cJSON *object, const char *name, double min,
+                                 double *value) {
   const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, name);
   if (!cJSON_IsNumber(item) || !isfinite(item->valuedouble) || item->valuedouble < min)
     return fg_fail(ctx, FG_ERR_DATA, "%s must be a number from %g", name, min);
@@ -25,7 +25,7 @@ static fg_status read_number(fg_context *ctx, const cJSON *object, const char *n
   return FG_OK;
 }
 
-static fg_status read_datum(fg_context *ctx, const cJSON *object, fg_datum *datum) {
+static fg_status read_die_datum(fg_context *ctx, const cJSON *object, fg_datum *datum) {
   const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, "datum");
   for (int d = FG_DATUM_MID; d <= FG_DATUM_OUTER; d++)
     if (cJSON_IsString(item) && !strcmp(item->valuestring, fg_datum_word((fg_datum)d))) {
@@ -35,8 +35,8 @@ static fg_status read_datum(fg_context *ctx, const cJSON *object, fg_datum *datu
   return fg_fail(ctx, FG_ERR_DATA, "datum must be mid, inner or outer");
 }
 
-static fg_status add_bump(fg_context *ctx, double number, double radius_mm, double u_mm,
-                          fg_lot_die *die) {
+static fg_status add_die_bump(fg_context *ctx, double number, double radius_mm, double u_mm,
+                              fg_lot_die *die) {
   if (die->bump_count == FG_LOT_DIE_BUMPS_MAX)
     return fg_fail(ctx, FG_ERR_DATA, "more than %d bumps", FG_LOT_DIE_BUMPS_MAX);
   if (number != floor(number) || fabs(number) > 1e6 || !(radius_mm > 0) || !(u_mm >= 0))
@@ -46,28 +46,28 @@ static fg_status add_bump(fg_context *ctx, double number, double radius_mm, doub
 }
 
 /* "foilgauge/die/1" */
-static fg_status read_report(fg_context *ctx, const cJSON *root, fg_lot_die *die) {
+static fg_status read_die_report(fg_context *ctx, const cJSON *root, fg_lot_die *die) {
   const cJSON *schema = cJSON_GetObjectItemCaseSensitive(root, "schema"), *bump;
   const cJSON *design = cJSON_GetObjectItemCaseSensitive(root, "design");
   const cJSON *whole = cJSON_GetObjectItemCaseSensitive(root, "die");
   const cJSON *mean = cJSON_GetObjectItemCaseSensitive(whole, "mean");
   if (!cJSON_IsString(schema) || strcmp(schema->valuestring, "foilgauge/die/1") != 0)
     return fg_fail(ctx, FG_ERR_DATA, "not a report of `foilgauge die -o`");
-  FG_TRY(read_datum(ctx, design, &die->datum));
-  FG_TRY(read_number(ctx, design, "thickness_mm", 0, &die->thickness_mm));
-  FG_TRY(read_number(ctx, mean, "radius_mm", 1e-6, &die->radius_mm));
-  FG_TRY(read_number(ctx, mean, "u_radius_mm", 0, &die->u_radius_mm));
+  FG_TRY(read_die_datum(ctx, design, &die->datum));
+  FG_TRY(read_min_number(ctx, design, "thickness_mm", 0, &die->thickness_mm));
+  FG_TRY(read_min_number(ctx, mean, "radius_mm", 1e-6, &die->radius_mm));
+  FG_TRY(read_min_number(ctx, mean, "u_radius_mm", 0, &die->u_radius_mm));
   cJSON_ArrayForEach(bump, cJSON_GetObjectItemCaseSensitive(whole, "bumps")) {
     double number = 0, radius = 0, u = 0;
-    FG_TRY(read_number(ctx, bump, "number", -1e6, &number));
-    FG_TRY(read_number(ctx, bump, "radius_mm", 1e-6, &radius));
-    FG_TRY(read_number(ctx, bump, "u_radius_mm", 0, &u));
-    FG_TRY(add_bump(ctx, number, radius, u, die));
+    FG_TRY(read_min_number(ctx, bump, "number", -1e6, &number));
+    FG_TRY(read_min_number(ctx, bump, "radius_mm", 1e-6, &radius));
+    FG_TRY(read_min_number(ctx, bump, "u_radius_mm", 0, &u));
+    FG_TRY(add_die_bump(ctx, number, radius, u, die));
   }
   return FG_OK;
 }
 
-static fg_status load_report(fg_context *ctx, const char *file, fg_lot_die *die) {
+static fg_status load_die_report(fg_context *ctx, const char *file, fg_lot_die *die) {
   char *text;
   cJSON *root;
   FG_TRY(fg_file_read_text(ctx, file, DIE_BYTES_MAX, &text));
@@ -76,33 +76,33 @@ static fg_status load_report(fg_context *ctx, const char *file, fg_lot_die *die)
   free(text);
   FG_TRY(status);
   fg_context inner = {.message = ""};
-  status = read_report(&inner, root, die);
+  status = read_die_report(&inner, root, die);
   cJSON_Delete(root);
   return status == FG_OK ? FG_OK
                          : fg_fail(ctx, status, "%.200s: %.*s", file, CONTEXT_WORDS, inner.message);
 }
 
 /* As fg_lot_dies_write writes it. */
-static fg_status read_values(fg_context *ctx, const cJSON *value, fg_lot_die *die) {
+static fg_status read_kept_die(fg_context *ctx, const cJSON *value, fg_lot_die *die) {
   const cJSON *sum = cJSON_GetObjectItemCaseSensitive(value, "sha256"), *bump;
   if (cJSON_IsString(sum)) fg_text_clip(die->sha256, sizeof die->sha256, "%s", sum->valuestring);
-  FG_TRY(read_datum(ctx, value, &die->datum));
-  FG_TRY(read_number(ctx, value, "thickness_mm", 0, &die->thickness_mm));
-  FG_TRY(read_number(ctx, value, "radius_mm", 1e-6, &die->radius_mm));
-  FG_TRY(read_number(ctx, value, "u_radius_mm", 0, &die->u_radius_mm));
+  FG_TRY(read_die_datum(ctx, value, &die->datum));
+  FG_TRY(read_min_number(ctx, value, "thickness_mm", 0, &die->thickness_mm));
+  FG_TRY(read_min_number(ctx, value, "radius_mm", 1e-6, &die->radius_mm));
+  FG_TRY(read_min_number(ctx, value, "u_radius_mm", 0, &die->u_radius_mm));
   cJSON_ArrayForEach(bump, cJSON_GetObjectItemCaseSensitive(value, "bumps")) {
     double numbers[3] = {NAN, NAN, NAN};
     for (int i = 0; i < 3; i++) {
       const cJSON *item = cJSON_GetArrayItem(bump, i);
       if (cJSON_IsNumber(item)) numbers[i] = item->valuedouble;
     }
-    FG_TRY(add_bump(ctx, numbers[0], numbers[1], numbers[2], die));
+    FG_TRY(add_die_bump(ctx, numbers[0], numbers[1], numbers[2], die));
   }
   return FG_OK;
 }
 
-static fg_status new_die(fg_context *ctx, const char *name, fg_lot_settings *settings,
-                         fg_lot_die **die) {
+static fg_status append_die(fg_context *ctx, const char *name, fg_lot_settings *settings,
+                            fg_lot_die **die) {
   if (!*name || strlen(name) >= sizeof(*die)->name)
     return fg_fail(ctx, FG_ERR_DATA, "dies: a name must have 1 to %zu bytes",
                    sizeof(*die)->name - 1);
@@ -119,8 +119,8 @@ static fg_status new_die(fg_context *ctx, const char *name, fg_lot_settings *set
 fg_status fg_lot_settings_add_die(fg_context *ctx, const char *name, const char *path,
                                   fg_lot_settings *settings) {
   fg_lot_die *die = NULL;
-  FG_TRY(new_die(ctx, name, settings, &die));
-  return load_report(ctx, path, die);
+  FG_TRY(append_die(ctx, name, settings, &die));
+  return load_die_report(ctx, path, die);
 }
 
 fg_status fg_lot_dies_read(fg_context *ctx, const char *path, const cJSON *value,
@@ -138,8 +138,8 @@ fg_status fg_lot_dies_read(fg_context *ctx, const char *path, const cJSON *value
     }
     fg_lot_die *die = NULL;
     fg_context inner = {.message = ""};
-    FG_TRY(new_die(ctx, item->string, settings, &die));
-    if (read_values(&inner, item, die) != FG_OK)
+    FG_TRY(append_die(ctx, item->string, settings, &die));
+    if (read_kept_die(&inner, item, die) != FG_OK)
       return fg_fail(ctx, FG_ERR_DATA, "dies: '%.60s': %.*s", item->string, CONTEXT_WORDS,
                      inner.message);
   }

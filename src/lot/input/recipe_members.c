@@ -159,8 +159,8 @@ void fg_recipe_write(fg_json *json, const fg_recipe_member *row, const fg_lot_se
 }
 
 /* What --print-recipe writes of it. */
-static void say_usual(const fg_recipe_member *row, const fg_lot_settings *usual, char *text,
-                      size_t size) {
+static void print_default(const fg_recipe_member *row, const fg_lot_settings *usual, char *text,
+                          size_t size) {
   char *json = NULL;
   size_t length;
   fg_json writer;
@@ -185,7 +185,7 @@ void fg_recipe_say(const char *object, const fg_recipe_member *row, fg_member_wo
   fg_text_clip(words->name, sizeof words->name, "%s%s", object, row->name);
   if (row->highest > 0)
     fg_text_clip(words->limits, sizeof words->limits, "%.16g to %.16g", row->lowest, row->highest);
-  say_usual(row, &usual, words->usual, sizeof words->usual);
+  print_default(row, &usual, words->usual, sizeof words->usual);
 }
 
 void fg_recipe_find_file(const char *path, const char *name, char *file, size_t size) {

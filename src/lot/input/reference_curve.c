@@ -17,8 +17,8 @@ static const char *const columns[] = {"bump", "radius_error_pct", "intersection_
 enum { COLUMNS = sizeof columns / sizeof columns[0] };
 
 /* `row` from 1, for messages; `line` 0: not a file's. */
-static fg_status add_point(fg_context *ctx, const double numbers[COLUMNS], size_t row,
-                           fg_lot_curve *curve) {
+static fg_status insert_point(fg_context *ctx, const double numbers[COLUMNS], size_t row,
+                              fg_lot_curve *curve) {
   double bump = numbers[0];
   for (int i = 0; i < COLUMNS; i++)
     if (!isfinite(numbers[i]))
@@ -36,7 +36,7 @@ static fg_status add_point(fg_context *ctx, const double numbers[COLUMNS], size_
   return FG_OK;
 }
 
-static fg_status take_table(fg_context *ctx, const fg_table *table, fg_lot_curve *curve) {
+static fg_status read_curve_table(fg_context *ctx, const fg_table *table, fg_lot_curve *curve) {
   const fg_extended *numbers[COLUMNS];
   for (int i = 0; i < COLUMNS; i++)
     FG_TRY(fg_table_numbers(ctx, table, columns[i], &numbers[i]));
@@ -44,14 +44,14 @@ static fg_status take_table(fg_context *ctx, const fg_table *table, fg_lot_curve
     double point[COLUMNS];
     for (int i = 0; i < COLUMNS; i++)
       point[i] = numbers[i][row].value;
-    FG_TRY(add_point(ctx, point, row + 1, curve));
+    FG_TRY(insert_point(ctx, point, row + 1, curve));
   }
   return FG_OK;
 }
 
 /* A message of a table names its file; one of a point does not. */
-static fg_status name_file(fg_context *ctx, const char *path, const fg_context *inner,
-                           fg_status status) {
+static fg_status name_curve_file(fg_context *ctx, const char *path, const fg_context *inner,
+                                 fg_status status) {
   if (status == FG_OK) return FG_OK;
   bool named = !strncmp(inner->message, path, strlen(path));
   return fg_fail(ctx, status, "reference_curve: %.200s%s%.*s%s", named ? "" : path,
@@ -70,17 +70,17 @@ fg_status fg_lot_settings_load_curve(fg_context *ctx, const char *path, fg_lot_s
   const char *slash = strrchr(path, '/');
   FG_TRY(fg_file_read_text(ctx, path, CURVE_BYTES_MAX, &text));
   fg_status status = fg_table_parse(&inner, path, text, strlen(text), &table);
-  if (status == FG_OK) status = take_table(&inner, &table, &curve);
+  if (status == FG_OK) status = read_curve_table(&inner, &table, &curve);
   fg_table_free(&table);
   free(text);
-  FG_TRY(name_file(ctx, path, &inner, status));
+  FG_TRY(name_curve_file(ctx, path, &inner, status));
   fg_text_clip(curve.name, sizeof curve.name, "%s", slash ? slash + 1 : path);
   settings->curve = curve;
   return FG_OK;
 }
 
 /* As fg_reference_curve_write writes it. */
-static fg_status read_values(fg_context *ctx, const cJSON *value, fg_lot_curve *curve) {
+static fg_status read_kept_curve(fg_context *ctx, const cJSON *value, fg_lot_curve *curve) {
   const cJSON *name = cJSON_GetObjectItemCaseSensitive(value, "name"), *point;
   size_t row = 0;
   if (!cJSON_IsString(name) || strlen(name->valuestring) >= sizeof curve->name)
@@ -93,7 +93,7 @@ static fg_status read_values(fg_context *ctx, const cJSON *value, fg_lot_curve *
       const cJSON *item = cJSON_GetArrayItem(point, i);
       numbers[i] = cJSON_IsNumber(item) ? item->valuedouble : NAN;
     }
-    FG_TRY(add_point(ctx, numbers, ++row, curve));
+    FG_TRY(insert_point(ctx, numbers, ++row, curve));
   }
   return row ? FG_OK : fg_fail(ctx, FG_ERR_DATA, "points are missing");
 }
@@ -109,7 +109,7 @@ fg_status fg_reference_curve_read(fg_context *ctx, const char *path, const cJSON
   }
   if (!cJSON_IsObject(value))
     return fg_fail(ctx, FG_ERR_DATA, "reference_curve must be the path of a CSV file");
-  if (read_values(&inner, value, &curve) != FG_OK)
+  if (read_kept_curve(&inner, value, &curve) != FG_OK)
     return fg_fail(ctx, FG_ERR_DATA, "reference_curve: %.*s", CONTEXT_WORDS, inner.message);
   settings->curve = curve;
   return FG_OK;

@@ -8,20 +8,20 @@ typedef struct span {
   double first, last; /* days; NaN: none yet */
 } span;
 
-static void take(span *days, double day) {
+static void widen_span(span *days, double day) {
   days->first = fmin(days->first, day); /* fmin and fmax pass over a NaN */
   days->last = fmax(days->last, day);
 }
 
 /* False when there is no such column, nothing in it, or a cell that is no date. */
-static bool of_manifest(const fg_manifest *manifest, span *days) {
+static bool date_by_manifest(const fg_manifest *manifest, span *days) {
   size_t column = fg_manifest_column(manifest, FG_LOT_DATE_COLUMN);
   if (column == FG_NO_COLUMN) return false;
   for (size_t i = 0; i < manifest->items; i++) {
     const char *cell = fg_manifest_cell(manifest, i, column);
     double day = fg_date_days(cell);
     if (*cell && !isfinite(day)) return false;
-    take(days, day);
+    widen_span(days, day);
   }
   return isfinite(days->first);
 }
@@ -37,18 +37,18 @@ size_t fg_lot_date_wrong(const fg_manifest *manifest, const char **first) {
   return wrong;
 }
 
-static bool of_scans(const fg_lot *lot, span *days) {
+static bool date_by_scans(const fg_lot *lot, span *days) {
   for (size_t i = 0; i < lot->manifest.items; i++)
-    take(days, fg_date_days(lot->records[i].date));
+    widen_span(days, fg_date_days(lot->records[i].date));
   return isfinite(days->first);
 }
 
 void fg_lot_date_find(const fg_lot *lot, fg_lot_date *date) {
   span manifest = {NAN, NAN}, scans = {NAN, NAN};
   *date = (fg_lot_date){.from = NULL};
-  if (of_manifest(&lot->manifest, &manifest))
+  if (date_by_manifest(&lot->manifest, &manifest))
     date->from = FG_LOT_DATE_MANIFEST;
-  else if (of_scans(lot, &scans))
+  else if (date_by_scans(lot, &scans))
     date->from = FG_LOT_DATE_SCANS;
   else
     return;

@@ -48,7 +48,7 @@ fg_status fg_lot_write_text(fg_context *ctx, const char *folder, const char *nam
   return fg_output_commit(ctx, &output);
 }
 
-static fg_status remove_file(fg_context *ctx, const char *folder, const char *name) {
+static fg_status remove_lot_file(fg_context *ctx, const char *folder, const char *name) {
   char *path;
   FG_TRY(fg_lot_path(ctx, folder, name, &path));
   bool gone = unlink(path) == 0 || errno == ENOENT;
@@ -61,7 +61,7 @@ static fg_status remove_file(fg_context *ctx, const char *folder, const char *na
 
 fg_status fg_lot_write_model(fg_context *ctx, const char *folder, const char *text) {
   return text ? fg_lot_write_text(ctx, folder, FG_LOT_MODEL_FILE, text)
-              : remove_file(ctx, folder, FG_LOT_MODEL_FILE);
+              : remove_lot_file(ctx, folder, FG_LOT_MODEL_FILE);
 }
 
 static const char *const report_files[] = {"lot.json",    "index.html", "foils.csv",
@@ -70,7 +70,7 @@ static const char *const report_files[] = {"lot.json",    "index.html", "foils.c
 
 fg_status fg_lot_remove_report(fg_context *ctx, const char *folder) {
   for (size_t i = 0; i < sizeof report_files / sizeof *report_files; i++)
-    FG_TRY(remove_file(ctx, folder, report_files[i]));
+    FG_TRY(remove_lot_file(ctx, folder, report_files[i]));
   return FG_OK;
 }
 
@@ -79,7 +79,7 @@ typedef struct loader {
   fg_manifest_index index;
 } loader;
 
-static fg_status take_record(fg_context *ctx, void *user, fg_record *record,
+static fg_status move_record(fg_context *ctx, void *user, fg_record *record,
                              fg_journal_entry entry) {
   loader *l = user;
   (void)ctx;
@@ -93,7 +93,7 @@ static fg_status take_record(fg_context *ctx, void *user, fg_record *record,
 }
 
 /* By the name that it has in every folder: a report must not depend on where it came from. */
-static fg_status load_model(fg_context *ctx, const char *folder, fg_lot *lot) {
+static fg_status load_model_copy(fg_context *ctx, const char *folder, fg_lot *lot) {
   char *path, *text = NULL;
   FG_TRY(fg_lot_path(ctx, folder, FG_LOT_MODEL_FILE, &path));
   fg_status status = fg_file_read_text(ctx, path, FG_LOT_MODEL_BYTES_MAX, &text);
@@ -122,14 +122,14 @@ fg_status fg_lot_load(fg_context *ctx, const char *folder, fg_lot *lot) {
   lot->records = block;
   FG_TRY_EXIT(fg_manifest_index_build(ctx, &lot->manifest, &l.index));
   FG_TRY_EXIT(fg_lot_path(ctx, folder, "results.jsonl", &path));
-  FG_TRY_EXIT(fg_journal_read(ctx, path, &lot->head, &damage, take_record, &l));
+  FG_TRY_EXIT(fg_journal_read(ctx, path, &lot->head, &damage, move_record, &l));
   for (size_t i = 0; i < lot->manifest.items; i++)
     if (!lot->records[i].scan)
       FG_TRY_EXIT(fg_fail(ctx, FG_ERR_DATA, "%s: no record of %s; measure it with --resume", path,
                           fg_manifest_scan(&lot->manifest, i)));
   FG_TRY_EXIT(fg_lot_mark_repeats(ctx, lot));
   if (!lot->settings.name[0]) name_by_folder(folder, lot->settings.name, sizeof lot->settings.name);
-  if (lot->settings.model[0]) FG_TRY_EXIT(load_model(ctx, folder, lot));
+  if (lot->settings.model[0]) FG_TRY_EXIT(load_model_copy(ctx, folder, lot));
 exit:
   free(path);
   fg_manifest_index_free(&l.index);

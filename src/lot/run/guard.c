@@ -37,7 +37,7 @@ static void free_guard(lot_guard *guard) {
 
 /* The sum that the lot's results were made with; the model's stands in the recipe, and the copy is
  * written back as it was read. */
-static bool has_sum(const char *path, const char *name, const fg_journal_head *head) {
+static bool is_as_written(const char *path, const char *name, const fg_journal_head *head) {
   enum { TEXT_BYTES_MAX = 1 << 30 };
   char *text, sum[65];
   if (!strcmp(name, FG_LOT_MODEL_FILE)) return true;
@@ -54,29 +54,31 @@ bool fg_lot_is_own_copy(const fg_lot_request *request, const char *path, const c
   bool same = fg_lot_path(NULL, request->folder, name, &own) == FG_OK &&
               fg_lot_path(NULL, request->folder, "results.jsonl", &results) == FG_OK &&
               fg_overwrite_is_same(own, path) &&
-              fg_journal_read_head(NULL, results, &head) == FG_OK && has_sum(own, name, &head);
+              fg_journal_read_head(NULL, results, &head) == FG_OK &&
+              is_as_written(own, name, &head);
   free(own);
   free(results);
   return same;
 }
 
-static fg_status check(fg_context *ctx, const fg_lot_request *request, const lot_guard *guard,
-                       const char *path, const char *name, const char *words) {
+static fg_status check_input(fg_context *ctx, const fg_lot_request *request, const lot_guard *guard,
+                             const char *path, const char *name, const char *words) {
   if (fg_lot_is_own_copy(request, path, name)) return FG_OK;
   return fg_overwrite_check(ctx, &guard->overwrite, path, words);
 }
 
-static fg_status check_all(fg_context *ctx, const fg_lot_request *request,
-                           const fg_manifest *manifest, const lot_guard *guard) {
+static fg_status check_all_inputs(fg_context *ctx, const fg_lot_request *request,
+                                  const fg_manifest *manifest, const lot_guard *guard) {
   const char *model = request->settings->model;
-  FG_TRY(check(ctx, request, guard, request->recipe, "recipe.json", "the recipe"));
-  FG_TRY(check(ctx, request, guard, request->design, "recipe.json", "the design"));
-  FG_TRY(check(ctx, request, guard, model[0] ? model : NULL, FG_LOT_MODEL_FILE,
-               "the scanner's model"));
+  FG_TRY(check_input(ctx, request, guard, request->recipe, "recipe.json", "the recipe"));
+  FG_TRY(check_input(ctx, request, guard, request->design, "recipe.json", "the design"));
+  FG_TRY(check_input(ctx, request, guard, model[0] ? model : NULL, FG_LOT_MODEL_FILE,
+                     "the scanner's model"));
   for (size_t i = 0; i < manifest->items; i++)
     FG_TRY(fg_overwrite_check(ctx, &guard->overwrite, fg_manifest_scan(manifest, i), "the scan"));
   for (size_t i = 0; i < request->path_count; i++)
-    FG_TRY(check(ctx, request, guard, request->paths[i], "manifest.csv", "the list of scans"));
+    FG_TRY(
+        check_input(ctx, request, guard, request->paths[i], "manifest.csv", "the list of scans"));
   return FG_OK;
 }
 
@@ -84,12 +86,12 @@ fg_status fg_lot_check_inputs(fg_context *ctx, const fg_lot_request *request,
                               const fg_manifest *manifest) {
   lot_guard guard = {0};
   fg_status status = begin_guard(ctx, request->folder, &guard);
-  if (status == FG_OK) status = check_all(ctx, request, manifest, &guard);
+  if (status == FG_OK) status = check_all_inputs(ctx, request, manifest, &guard);
   free_guard(&guard);
   return status;
 }
 
-static fg_status check_shard(fg_context *ctx, const char *shard, const lot_guard *guard) {
+static fg_status check_shard_files(fg_context *ctx, const char *shard, const lot_guard *guard) {
   enum { READ = 4 }; /* of lot_files, those that merging reads */
   fg_status status = FG_OK;
   for (size_t i = 0; i < READ && status == FG_OK; i++) {
@@ -106,7 +108,7 @@ fg_status fg_lot_check_shards(fg_context *ctx, const char *folder, const char *c
   lot_guard guard = {0};
   fg_status status = begin_guard(ctx, folder, &guard);
   for (size_t i = 0; i < count && status == FG_OK; i++)
-    status = check_shard(ctx, shards[i], &guard);
+    status = check_shard_files(ctx, shards[i], &guard);
   free_guard(&guard);
   return status;
 }

@@ -20,7 +20,7 @@
 
 enum { SYNC_RECORDS = 64, COPY_BYTES = 1 << 16, LINE_BYTES_MAX = 1 << 26 };
 
-static fg_status fail_errno(fg_context *ctx, const char *path, const char *what) {
+static fg_status fail_file(fg_context *ctx, const char *path, const char *what) {
   const char *advice = errno == ENOSPC || errno == EDQUOT || errno == EFBIG
                            ? "; what is kept stays valid: free some space and --resume"
                            : "";
@@ -48,7 +48,7 @@ static void write_head_members(FILE *out, const fg_journal_head *head) {
   fg_json_end(&json);
 }
 
-static fg_status write_head(fg_context *ctx, FILE *out, const fg_journal_head *head) {
+static fg_status write_journal_head(fg_context *ctx, FILE *out, const fg_journal_head *head) {
   char *line = NULL;
   size_t length;
   FILE *memory = open_memstream(&line, &length);
@@ -64,7 +64,7 @@ static fg_status write_head(fg_context *ctx, FILE *out, const fg_journal_head *h
   return FG_OK;
 }
 
-static bool read_text(const cJSON *root, const char *name, char *text, size_t size) {
+static bool read_head_text(const cJSON *root, const char *name, char *text, size_t size) {
   const cJSON *value = cJSON_GetObjectItemCaseSensitive(root, name);
   if (!cJSON_IsString(value) || strlen(value->valuestring) >= size) return false;
   strcpy(text, value->valuestring);
@@ -81,13 +81,13 @@ static bool read_head_members(const cJSON *root, fg_journal_head *head) {
     return false;
   head->shard = (fg_lot_shard){(size_t)index->valuedouble, (size_t)count->valuedouble};
   head->items = (size_t)items->valuedouble;
-  return read_text(root, "version", head->version, sizeof head->version) &&
-         read_text(root, "manifest_sha256", head->manifest_sha256, 65) &&
-         read_text(root, "recipe_sha256", head->recipe_sha256, 65) &&
-         read_text(root, "measured_with", head->measured_with, 65);
+  return read_head_text(root, "version", head->version, sizeof head->version) &&
+         read_head_text(root, "manifest_sha256", head->manifest_sha256, 65) &&
+         read_head_text(root, "recipe_sha256", head->recipe_sha256, 65) &&
+         read_head_text(root, "measured_with", head->measured_with, 65);
 }
 
-static bool has_schema(const cJSON *root, const char *expected) {
+static bool is_of_schema(const cJSON *root, const char *expected) {
   const cJSON *schema = cJSON_GetObjectItemCaseSensitive(root, "schema");
   return cJSON_IsString(schema) && !strcmp(schema->valuestring, expected);
 }
@@ -96,7 +96,7 @@ typedef enum head_state { HEAD_GOOD, HEAD_EARLIER, HEAD_DAMAGED } head_state;
 
 /* Values lie in records by their places alone: a build that measures others would take one for
  * another, wherever as many are there. */
-static fg_status check_names(fg_context *ctx, const char *line, head_state *state) {
+static fg_status check_value_names(fg_context *ctx, const char *line, head_state *state) {
   char *names;
   FG_TRY(fg_record_format_names(ctx, &names));
   names[strcspn(names, "}")] = '\0';
@@ -112,14 +112,14 @@ static fg_status parse_head(fg_context *ctx, const char *line, fg_journal_head *
   cJSON *root;
   if (fg_json_read(ctx, "the head of a journal", line, &root) == FG_ERR_MEMORY)
     return FG_ERR_MEMORY;
-  if (has_schema(root, SCHEMA_UNSEALED) && !cJSON_HasObjectItem(root, "checksum"))
+  if (is_of_schema(root, SCHEMA_UNSEALED) && !cJSON_HasObjectItem(root, "checksum"))
     state = HEAD_EARLIER;
-  else if (fg_seal_holds(line, strlen(line)) && has_schema(root, SCHEMA) &&
+  else if (fg_seal_holds(line, strlen(line)) && is_of_schema(root, SCHEMA) &&
            read_head_members(root, head))
     state = HEAD_GOOD;
   cJSON_Delete(root);
   *out = state;
-  return state == HEAD_GOOD ? check_names(ctx, line, out) : FG_OK;
+  return state == HEAD_GOOD ? check_value_names(ctx, line, out) : FG_OK;
 }
 
 static fg_status fail_head(fg_context *ctx, const char *path, head_state state) {
@@ -147,7 +147,7 @@ typedef struct reader {
 
 /* One line into r->line, with its newline; false at the end. Of a line that no record can be the
  * rest is passed over, so that a damaged file takes no more memory than a whole one. */
-static fg_status read_line(fg_context *ctx, reader *r, size_t *length, bool *there) {
+static fg_status read_journal_line(fg_context *ctx, reader *r, size_t *length, bool *there) {
   int byte;
   *length = 0;
   while ((byte = getc_unlocked(r->in)) != EOF) {
@@ -164,11 +164,12 @@ static fg_status read_line(fg_context *ctx, reader *r, size_t *length, bool *the
 }
 
 /* The next line, NULL at the end; "" when it has no newline or holds a NUL. */
-static fg_status next_line(fg_context *ctx, reader *r, fg_journal_entry *entry, const char **line) {
+static fg_status next_journal_line(fg_context *ctx, reader *r, fg_journal_entry *entry,
+                                   const char **line) {
   bool there;
   off_t start = r->offset;
   size_t length;
-  FG_TRY(read_line(ctx, r, &length, &there));
+  FG_TRY(read_journal_line(ctx, r, &length, &there));
   *line = NULL;
   if (!there) return FG_OK;
   *entry = (fg_journal_entry){start, length};
@@ -186,7 +187,7 @@ static fg_status read_records(fg_context *ctx, reader *r, fg_journal_visit *visi
   fg_journal_entry entry;
   const char *line;
   for (;;) {
-    FG_TRY(next_line(ctx, r, &entry, &line));
+    FG_TRY(next_journal_line(ctx, r, &entry, &line));
     if (!line) break;
     fg_record record;
     fg_context inner;
@@ -201,16 +202,16 @@ static fg_status read_records(fg_context *ctx, reader *r, fg_journal_visit *visi
     fg_record_free(&record);
     FG_TRY(status);
   }
-  if (ferror(r->in)) return fail_errno(ctx, r->path, "read");
+  if (ferror(r->in)) return fail_file(ctx, r->path, "read");
   return FG_OK;
 }
 
 static fg_status open_reader(fg_context *ctx, reader *r, fg_journal_head *head, head_state *state) {
   fg_journal_entry entry;
   r->in = fopen(r->path, "rbe");
-  if (!r->in) return fail_errno(ctx, r->path, "opened");
+  if (!r->in) return fail_file(ctx, r->path, "opened");
   const char *line;
-  FG_TRY(next_line(ctx, r, &entry, &line));
+  FG_TRY(next_journal_line(ctx, r, &entry, &line));
   return parse_head(ctx, line ? line : "", head, state);
 }
 
@@ -240,7 +241,7 @@ fg_status fg_journal_read_head(fg_context *ctx, const char *path, fg_journal_hea
   return close_reader(&r, read_strictly(ctx, &r, head, NULL, NULL));
 }
 
-static fg_status salvage(fg_context *ctx, reader *r, fg_journal_visit *visit, void *user) {
+static fg_status salvage_records(fg_context *ctx, reader *r, fg_journal_visit *visit, void *user) {
   fg_journal_head head;
   head_state state;
   FG_TRY(open_reader(ctx, r, &head, &state));
@@ -255,7 +256,7 @@ fg_status fg_journal_salvage(fg_context *ctx, const char *path, fg_journal_damag
                              fg_journal_visit *visit, void *user) {
   reader r = {.path = path, .damage = damage};
   *damage = (fg_journal_damage){0};
-  return close_reader(&r, salvage(ctx, &r, visit, user));
+  return close_reader(&r, salvage_records(ctx, &r, visit, user));
 }
 
 static fg_status copy_entry(fg_context *ctx, const char *path, int from, fg_journal_entry entry,
@@ -265,7 +266,7 @@ static fg_status copy_entry(fg_context *ctx, const char *path, int from, fg_jour
     size_t want = entry.length < sizeof piece ? entry.length : sizeof piece;
     ssize_t got = pread(from, piece, want, entry.offset);
     if (got < 0 && errno == EINTR) continue;
-    if (got <= 0) return fail_errno(ctx, path, "read");
+    if (got <= 0) return fail_file(ctx, path, "read");
     fwrite(piece, 1, (size_t)got, out);
     entry.offset += got;
     entry.length -= (size_t)got;
@@ -287,7 +288,7 @@ static fg_status copy_entries(fg_context *ctx, const char *const *from, const si
     }
     if (descriptor < 0) descriptor = open(from[file], O_RDONLY | O_CLOEXEC);
     opened = file;
-    status = descriptor < 0 ? fail_errno(ctx, from[file], "opened")
+    status = descriptor < 0 ? fail_file(ctx, from[file], "opened")
                             : copy_entry(ctx, from[file], descriptor, entries[i], out);
   }
   if (descriptor >= 0) close(descriptor);
@@ -299,7 +300,7 @@ fg_status fg_journal_rewrite(fg_context *ctx, const char *to, const fg_journal_h
                              const fg_journal_entry *entries, size_t count) {
   fg_output output;
   FG_TRY(fg_output_open(ctx, to, &output));
-  fg_status status = write_head(ctx, output.stream, head);
+  fg_status status = write_journal_head(ctx, output.stream, head);
   if (status == FG_OK) status = copy_entries(ctx, from, from_of, entries, count, output.stream);
   return fg_output_end(ctx, &output, status);
 }
@@ -308,7 +309,7 @@ fg_status fg_journal_write(fg_context *ctx, const char *to, const fg_journal_hea
                            fg_journal_source *source, void *user) {
   fg_output output;
   FG_TRY(fg_output_open(ctx, to, &output));
-  fg_status status = write_head(ctx, output.stream, head);
+  fg_status status = write_journal_head(ctx, output.stream, head);
   for (size_t i = 0; i < head->items && status == FG_OK; i++) {
     char *line = NULL;
     size_t length = 0;
@@ -321,7 +322,7 @@ fg_status fg_journal_write(fg_context *ctx, const char *to, const fg_journal_hea
 
 fg_status fg_journal_open(fg_context *ctx, const char *path, fg_journal *journal) {
   *journal = (fg_journal){.descriptor = open(path, O_WRONLY | O_CLOEXEC)};
-  if (journal->descriptor < 0) return fail_errno(ctx, path, "opened");
+  if (journal->descriptor < 0) return fail_file(ctx, path, "opened");
   journal->end = lseek(journal->descriptor, 0, SEEK_END);
   journal->path = strdup(path);
   clock_gettime(CLOCK_MONOTONIC, &journal->synced);
@@ -361,22 +362,21 @@ fg_status fg_journal_append(fg_context *ctx, fg_journal *journal, const char *li
     journal->end += (off_t)length;
     due = is_sync_due(journal);
   } else {
-    status = fail_errno(ctx, journal->path, "written");
+    status = fail_file(ctx, journal->path, "written");
     if (ftruncate(journal->descriptor, journal->end) != 0) entry->length = 0;
   }
   pthread_mutex_unlock(&journal->mutex);
   /* Nobody else waits for the disk. */
-  if (due && fdatasync(journal->descriptor) != 0)
-    status = fail_errno(ctx, journal->path, "written");
+  if (due && fdatasync(journal->descriptor) != 0) status = fail_file(ctx, journal->path, "written");
   return status;
 }
 
 fg_status fg_journal_close(fg_context *ctx, fg_journal *journal) {
   fg_status status = FG_OK;
   if (!journal->path) return FG_OK;
-  if (fsync(journal->descriptor) != 0) status = fail_errno(ctx, journal->path, "written");
+  if (fsync(journal->descriptor) != 0) status = fail_file(ctx, journal->path, "written");
   if (close(journal->descriptor) != 0 && status == FG_OK)
-    status = fail_errno(ctx, journal->path, "written");
+    status = fail_file(ctx, journal->path, "written");
   pthread_mutex_destroy(&journal->mutex);
   free(journal->path);
   *journal = (fg_journal){.descriptor = -1};

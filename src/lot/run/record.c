@@ -22,7 +22,7 @@
  */
 enum { NUMBER_MAX = 10000 };
 
-static void write_values(fg_json *json, fg_quantity_owner owner, const void *object) {
+static void write_value_list(fg_json *json, fg_quantity_owner owner, const void *object) {
   size_t count;
   const fg_quantity *rows = fg_quantities(owner, &count);
   fg_json_array(json, "values");
@@ -54,14 +54,14 @@ static void write_calibrated(fg_json *json, fg_quantity_owner owner,
   fg_json_array_end(json);
 }
 
-static void write_flags(fg_json *json, const fg_flag_words *words, unsigned flags,
-                        unsigned findings) {
+static void write_flag_list(fg_json *json, const fg_flag_words *words, unsigned flags,
+                            unsigned findings) {
   fg_json_array(json, "flags");
   fg_json_flag_names(json, words, flags, findings);
   fg_json_array_end(json);
 }
 
-static const fg_flag_words *flag_words(fg_quantity_owner owner) {
+static const fg_flag_words *part_flag_words(fg_quantity_owner owner) {
   return owner == FG_QUANTITY_OF_BEAM ? fg_beam_flag_words() : fg_bump_flag_words();
 }
 
@@ -74,20 +74,20 @@ static void write_parts(fg_json *json, const char *name, const fg_foil *foil,
     const fg_foil_part part = fg_part_at(foil, owner, i);
     fg_json_object(json, NULL);
     fg_json_integer(json, "number", part.number);
-    write_flags(json, flag_words(owner), part.flags, 0);
-    write_values(json, owner, part.object);
+    write_flag_list(json, part_flag_words(owner), part.flags, 0);
+    write_value_list(json, owner, part.object);
     write_calibrated(json, owner, part.calibrated);
     fg_json_object_end(json);
   }
   fg_json_array_end(json);
 }
 
-static void write_foil(fg_json *json, const fg_foil *foil) {
+static void write_measured_foil(fg_json *json, const fg_foil *foil) {
   fg_json_object(json, NULL);
   fg_json_integer(json, "number", foil->number);
-  write_flags(json, fg_foil_flag_words(), foil->flags, foil->strip.picture.findings);
+  write_flag_list(json, fg_foil_flag_words(), foil->flags, foil->strip.picture.findings);
   fg_json_string(json, "error", foil->error[0] ? foil->error : NULL);
-  write_values(json, FG_QUANTITY_OF_FOIL, foil);
+  write_value_list(json, FG_QUANTITY_OF_FOIL, foil);
   write_calibrated(json, FG_QUANTITY_OF_FOIL, &foil->calibrated);
   write_parts(json, "bumps", foil, FG_QUANTITY_OF_BUMP);
   if (foil->beam_count) write_parts(json, "beams", foil, FG_QUANTITY_OF_BEAM);
@@ -111,7 +111,7 @@ static fg_status format_bytes(fg_context *ctx, const char *text, char **hex) {
   return FG_OK;
 }
 
-static void write_record(FILE *out, const fg_record *record, const char *scan_bytes,
+static void print_record(FILE *out, const fg_record *record, const char *scan_bytes,
                          const fg_measurement *measurement) {
   fg_json json;
   fg_json_begin(&json, out);
@@ -125,7 +125,7 @@ static void write_record(FILE *out, const fg_record *record, const char *scan_by
   fg_json_string(&json, "error", measurement ? NULL : record->error);
   fg_json_array(&json, "foils");
   for (size_t i = 0; measurement && i < measurement->foil_count; i++)
-    write_foil(&json, &measurement->foils[i]);
+    write_measured_foil(&json, &measurement->foils[i]);
   fg_json_array_end(&json);
   fg_json_object_end(&json);
   fg_json_end(&json);
@@ -137,7 +137,7 @@ fg_status fg_record_format(fg_context *ctx, const fg_record *record,
   *line = NULL;
   FG_TRY(format_bytes(ctx, record->scan, &scan_bytes));
   FILE *out = open_memstream(line, length);
-  if (out) write_record(out, record, scan_bytes, measurement);
+  if (out) print_record(out, record, scan_bytes, measurement);
   free(scan_bytes);
   if (!out) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a record");
   bool broken = ferror(out) != 0;
@@ -151,7 +151,7 @@ static fg_status fail_record(fg_context *ctx, const char *what) {
   return fg_fail(ctx, FG_ERR_DATA, "not a record of a lot: %s", what);
 }
 
-static const cJSON *member(const cJSON *object, const char *name) {
+static const cJSON *find_member(const cJSON *object, const char *name) {
   return cJSON_GetObjectItemCaseSensitive(object, name);
 }
 
@@ -169,9 +169,9 @@ static unsigned find_finding(const char *name) {
 }
 
 /* `findings` NULL: of a part, which has none of its own. */
-static fg_status read_flags(fg_context *ctx, const cJSON *object, const fg_flag_words *words,
-                            unsigned *flags, unsigned *findings) {
-  const cJSON *list = member(object, "flags"), *item;
+static fg_status restore_flags(fg_context *ctx, const cJSON *object, const fg_flag_words *words,
+                               unsigned *flags, unsigned *findings) {
+  const cJSON *list = find_member(object, "flags"), *item;
   *flags = 0;
   if (!cJSON_IsArray(list)) return fail_record(ctx, "no flags");
   cJSON_ArrayForEach(item, list) {
@@ -184,11 +184,11 @@ static fg_status read_flags(fg_context *ctx, const cJSON *object, const fg_flag_
   return FG_OK;
 }
 
-static fg_status read_values(fg_context *ctx, const cJSON *object, fg_quantity_owner owner,
-                             void *target) {
+static fg_status restore_values(fg_context *ctx, const cJSON *object, fg_quantity_owner owner,
+                                void *target) {
   size_t count;
   const fg_quantity *rows = fg_quantities(owner, &count);
-  const cJSON *values = member(object, "values");
+  const cJSON *values = find_member(object, "values");
   const cJSON *value = cJSON_IsArray(values) ? values->child : NULL;
   for (size_t i = 0; i < count; i++) {
     double numbers[FG_QUANTITY_NUMBERS_MAX];
@@ -205,7 +205,7 @@ static fg_status read_values(fg_context *ctx, const cJSON *object, fg_quantity_o
 
 static fg_status read_calibrated(fg_context *ctx, const cJSON *object, fg_quantity_owner owner,
                                  fg_calibrated *calibrated) {
-  const cJSON *sources = member(object, "calibrated"), *source, *move;
+  const cJSON *sources = find_member(object, "calibrated"), *source, *move;
   size_t s = 0;
   *calibrated = (fg_calibrated){.move = {{0}}};
   cJSON_ArrayForEach(source, sources) {
@@ -222,8 +222,8 @@ static fg_status read_calibrated(fg_context *ctx, const cJSON *object, fg_quanti
   return FG_OK;
 }
 
-static fg_status read_number(fg_context *ctx, const cJSON *object, int *number) {
-  const cJSON *value = member(object, "number");
+static fg_status read_part_number(fg_context *ctx, const cJSON *object, int *number) {
+  const cJSON *value = find_member(object, "number");
   double read = cJSON_IsNumber(value) ? value->valuedouble : NAN;
   if (!(read >= 0 && read <= NUMBER_MAX && read == floor(read)))
     return fail_record(ctx, "no number that a foil, bump or beam can have");
@@ -232,11 +232,11 @@ static fg_status read_number(fg_context *ctx, const cJSON *object, int *number) 
 }
 
 /* What every part has, whatever it is. */
-static fg_status read_part(fg_context *ctx, const cJSON *object, fg_quantity_owner owner,
-                           fg_foil_part *part, void *target, fg_calibrated *calibrated) {
-  FG_TRY(read_number(ctx, object, &part->number));
-  FG_TRY(read_flags(ctx, object, flag_words(owner), &part->flags, NULL));
-  FG_TRY(read_values(ctx, object, owner, target));
+static fg_status restore_part(fg_context *ctx, const cJSON *object, fg_quantity_owner owner,
+                              fg_foil_part *part, void *target, fg_calibrated *calibrated) {
+  FG_TRY(read_part_number(ctx, object, &part->number));
+  FG_TRY(restore_flags(ctx, object, part_flag_words(owner), &part->flags, NULL));
+  FG_TRY(restore_values(ctx, object, owner, target));
   return read_calibrated(ctx, object, owner, calibrated);
 }
 
@@ -249,7 +249,7 @@ static fg_status read_bumps(fg_context *ctx, const cJSON *bumps, fg_foil *foil) 
   cJSON_ArrayForEach(bump, bumps) {
     fg_bump *target = &foil->bumps[foil->bump_count++];
     fg_foil_part part;
-    FG_TRY(read_part(ctx, bump, FG_QUANTITY_OF_BUMP, &part, target, &target->calibrated));
+    FG_TRY(restore_part(ctx, bump, FG_QUANTITY_OF_BUMP, &part, target, &target->calibrated));
     target->number = part.number;
     target->flags = part.flags;
   }
@@ -267,24 +267,24 @@ static fg_status read_beams(fg_context *ctx, const cJSON *beams, fg_foil *foil) 
   cJSON_ArrayForEach(beam, beams) {
     fg_beam *target = &foil->beams[foil->beam_count++];
     fg_foil_part part;
-    FG_TRY(read_part(ctx, beam, FG_QUANTITY_OF_BEAM, &part, target, &target->calibrated));
+    FG_TRY(restore_part(ctx, beam, FG_QUANTITY_OF_BEAM, &part, target, &target->calibrated));
     target->number = part.number;
     target->flags = part.flags;
   }
   return FG_OK;
 }
 
-static fg_status read_foil(fg_context *ctx, const cJSON *object, fg_foil *foil) {
-  const cJSON *error = member(object, "error");
-  FG_TRY(read_number(ctx, object, &foil->number));
-  FG_TRY(
-      read_flags(ctx, object, fg_foil_flag_words(), &foil->flags, &foil->strip.picture.findings));
-  FG_TRY(read_values(ctx, object, FG_QUANTITY_OF_FOIL, foil));
+static fg_status restore_foil(fg_context *ctx, const cJSON *object, fg_foil *foil) {
+  const cJSON *error = find_member(object, "error");
+  FG_TRY(read_part_number(ctx, object, &foil->number));
+  FG_TRY(restore_flags(ctx, object, fg_foil_flag_words(), &foil->flags,
+                       &foil->strip.picture.findings));
+  FG_TRY(restore_values(ctx, object, FG_QUANTITY_OF_FOIL, foil));
   FG_TRY(read_calibrated(ctx, object, FG_QUANTITY_OF_FOIL, &foil->calibrated));
   if (cJSON_IsString(error))
     fg_text_clip(foil->error, sizeof foil->error, "%s", error->valuestring);
-  FG_TRY(read_bumps(ctx, member(object, "bumps"), foil));
-  return read_beams(ctx, member(object, "beams"), foil);
+  FG_TRY(read_bumps(ctx, find_member(object, "bumps"), foil));
+  return read_beams(ctx, find_member(object, "beams"), foil);
 }
 
 static fg_status read_sum(fg_context *ctx, const cJSON *value, char sum[65]) {
@@ -300,7 +300,7 @@ static fg_status copy_words(fg_context *ctx, const cJSON *value, char **copy) {
   return *copy ? FG_OK : fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a record");
 }
 
-static int digit_of(char hex) {
+static int hex_digit(char hex) {
   const char *digits = "0123456789abcdef", *at = hex ? strchr(digits, hex) : NULL;
   return at ? (int)(at - digits) : -1;
 }
@@ -315,7 +315,7 @@ static fg_status read_bytes(fg_context *ctx, const cJSON *value, char **text) {
   free(*text);
   *text = block;
   for (size_t i = 0; i < length / 2; i++) {
-    int high = digit_of(value->valuestring[2 * i]), low = digit_of(value->valuestring[2 * i + 1]);
+    int high = hex_digit(value->valuestring[2 * i]), low = hex_digit(value->valuestring[2 * i + 1]);
     if (high < 0 || low < 0 || high + low == 0) return fail_record(ctx, "scan_bytes that are none");
     (*text)[i] = (char)(high << 4 | low);
   }
@@ -323,7 +323,7 @@ static fg_status read_bytes(fg_context *ctx, const cJSON *value, char **text) {
 }
 
 /* A record from before there were dates has none. */
-static fg_status read_date(fg_context *ctx, const cJSON *value, char date[11]) {
+static fg_status read_scan_date(fg_context *ctx, const cJSON *value, char date[11]) {
   if (!value) return FG_OK;
   if (!cJSON_IsString(value) || strlen(value->valuestring) != 10)
     return fail_record(ctx, "a date that is none");
@@ -332,24 +332,24 @@ static fg_status read_date(fg_context *ctx, const cJSON *value, char date[11]) {
 }
 
 static fg_status read_head(fg_context *ctx, const cJSON *root, fg_record *record) {
-  FG_TRY(copy_words(ctx, member(root, "scan"), &record->scan));
-  FG_TRY(read_bytes(ctx, member(root, "scan_bytes"), &record->scan));
-  FG_TRY(read_sum(ctx, member(root, "sha256"), record->sha256));
-  FG_TRY(read_sum(ctx, member(root, "measured_with"), record->measured_with));
-  FG_TRY(read_date(ctx, member(root, "date"), record->date));
-  FG_TRY(copy_words(ctx, member(root, "error"), &record->error));
-  if (!record->scan || !record->measured_with[0] || !cJSON_IsArray(member(root, "foils")))
+  FG_TRY(copy_words(ctx, find_member(root, "scan"), &record->scan));
+  FG_TRY(read_bytes(ctx, find_member(root, "scan_bytes"), &record->scan));
+  FG_TRY(read_sum(ctx, find_member(root, "sha256"), record->sha256));
+  FG_TRY(read_sum(ctx, find_member(root, "measured_with"), record->measured_with));
+  FG_TRY(read_scan_date(ctx, find_member(root, "date"), record->date));
+  FG_TRY(copy_words(ctx, find_member(root, "error"), &record->error));
+  if (!record->scan || !record->measured_with[0] || !cJSON_IsArray(find_member(root, "foils")))
     return fail_record(ctx, "members are missing");
   return FG_OK;
 }
 
 static fg_status read_foils(fg_context *ctx, const cJSON *root, fg_record *record) {
-  const cJSON *foils = member(root, "foils"), *foil;
+  const cJSON *foils = find_member(root, "foils"), *foil;
   void *block;
   FG_TRY(fg_memory_allocate(ctx, (size_t)cJSON_GetArraySize(foils), sizeof *record->foils, &block));
   record->foils = block;
   cJSON_ArrayForEach(foil, foils)
-      FG_TRY(read_foil(ctx, foil, &record->foils[record->foil_count++]));
+      FG_TRY(restore_foil(ctx, foil, &record->foils[record->foil_count++]));
   return FG_OK;
 }
 
@@ -376,7 +376,7 @@ void fg_record_free(fg_record *record) {
   *record = (fg_record){0};
 }
 
-static void write_names(fg_json *json, const char *name, fg_quantity_owner owner) {
+static void write_value_names(fg_json *json, const char *name, fg_quantity_owner owner) {
   size_t count;
   const fg_quantity *rows = fg_quantities(owner, &count);
   fg_json_array(json, name);
@@ -396,9 +396,9 @@ static void write_names(fg_json *json, const char *name, fg_quantity_owner owner
 }
 
 void fg_record_write_names(fg_json *json) {
-  write_names(json, "foil_values", FG_QUANTITY_OF_FOIL);
-  write_names(json, "bump_values", FG_QUANTITY_OF_BUMP);
-  write_names(json, "beam_values", FG_QUANTITY_OF_BEAM);
+  write_value_names(json, "foil_values", FG_QUANTITY_OF_FOIL);
+  write_value_names(json, "bump_values", FG_QUANTITY_OF_BUMP);
+  write_value_names(json, "beam_values", FG_QUANTITY_OF_BEAM);
 }
 
 fg_status fg_record_format_names(fg_context *ctx, char **text) {

@@ -8,7 +8,7 @@
 #include "core/text.h"
 #include "lot/run/lot.h"
 
-static int by_sum(const void *a, const void *b) {
+static int compare_sums(const void *a, const void *b) {
   const fg_record *const *one = a, *const *other = b;
   int order = strcmp((*one)->sha256, (*other)->sha256);
   return order ? order : (*one > *other) - (*one < *other); /* records lie in manifest's order */
@@ -39,7 +39,7 @@ fg_status fg_lot_mark_repeats(fg_context *ctx, fg_lot *lot) {
   FG_TRY(fg_memory_allocate(ctx, items, sizeof(fg_record *), (void **)&record));
   for (size_t i = 0; i < items; i++)
     record[i] = &lot->records[i];
-  qsort(record, items, sizeof *record, by_sum);
+  qsort(record, items, sizeof *record, compare_sums);
   fg_status status = FG_OK;
   for (size_t i = 1, first = 0; i < items && status == FG_OK; i++) {
     bool same = record[i]->sha256[0] && !strcmp(record[i]->sha256, record[first]->sha256);

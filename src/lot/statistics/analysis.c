@@ -8,7 +8,7 @@
 #include "core/memory.h"
 #include "report/measure/scan_model_words.h"
 
-static fg_status list_foils(fg_context *ctx, fg_lot_analysis *analysis) {
+static fg_status list_lot_foils(fg_context *ctx, fg_lot_analysis *analysis) {
   const fg_lot *lot = analysis->lot;
   size_t count = 0;
   void *block;
@@ -43,7 +43,7 @@ static void find_worst_value(const fg_decision *decision, fg_lot_foil *foil) {
   foil->worst_margin = worst->margin.inside;
 }
 
-static fg_status judge_foil(fg_context *ctx, fg_lot_analysis *analysis, fg_lot_foil *foil) {
+static fg_status decide_foil(fg_context *ctx, fg_lot_analysis *analysis, fg_lot_foil *foil) {
   fg_decision decision;
   FG_TRY(fg_foil_decide(ctx, &analysis->lot->settings.design, foil->foil, &decision));
   fg_outcome_add(&analysis->outcome, &decision.outcome);
@@ -94,13 +94,13 @@ static void rank_by_spread(fg_lot_analysis *analysis) {
 }
 
 /* By the verdict first, then by the severity. */
-static bool is_worse(const fg_lot_foil *foil, const fg_lot_foil *than) {
+static bool is_worse_foil(const fg_lot_foil *foil, const fg_lot_foil *than) {
   if (foil->verdict != than->verdict)
     return fg_verdict_worse(foil->verdict, than->verdict) == foil->verdict;
   return foil->severity > than->severity;
 }
 
-static void find_worst(fg_lot_analysis *analysis) {
+static void find_worst_three(fg_lot_analysis *analysis) {
   for (int place = 0; place < 3; place++)
     for (size_t i = 0; i < analysis->foil_count; i++) {
       const fg_lot_foil *foil = &analysis->foils[i];
@@ -108,16 +108,16 @@ static void find_worst(fg_lot_analysis *analysis) {
       for (int k = 0; k < place; k++)
         taken = taken || analysis->worst[k] == foil;
       if (taken) continue;
-      if (!analysis->worst[place] || is_worse(foil, analysis->worst[place]))
+      if (!analysis->worst[place] || is_worse_foil(foil, analysis->worst[place]))
         analysis->worst[place] = foil;
     }
 }
 
-static fg_status judge_all(fg_context *ctx, fg_lot_analysis *analysis) {
+static fg_status decide_foils(fg_context *ctx, fg_lot_analysis *analysis) {
   analysis->outcome = (fg_report_outcome){.verdict = FG_VERDICT_NONE};
   for (size_t i = 0; i < analysis->foil_count; i++) {
     fg_lot_foil *foil = &analysis->foils[i];
-    FG_TRY(judge_foil(ctx, analysis, foil));
+    FG_TRY(decide_foil(ctx, analysis, foil));
     analysis->by_verdict[foil->verdict]++;
     analysis->exceeded += foil->exceeded;
   }
@@ -132,7 +132,7 @@ bool fg_lot_foil_is_good(const fg_lot_foil *foil) {
 }
 
 /* A page of 100,000 rows helps nobody. */
-static void choose_rows(fg_lot_analysis *analysis) {
+static void choose_listed_foils(fg_lot_analysis *analysis) {
   size_t rows = 0;
   for (int good = 0; good < 2; good++)
     for (size_t i = 0; i < analysis->foil_count && rows < FG_LOT_FOIL_ROWS_MAX; i++)
@@ -154,19 +154,19 @@ static void count_parts(fg_lot_analysis *analysis) {
   }
 }
 
-static fg_status analyse(fg_context *ctx, fg_lot_analysis *analysis) {
+static fg_status analyse_records(fg_context *ctx, fg_lot_analysis *analysis) {
   analysis->parts = fg_foil_kind_parts(analysis->lot->settings.design.kind);
-  FG_TRY(list_foils(ctx, analysis));
+  FG_TRY(list_lot_foils(ctx, analysis));
   count_parts(analysis);
-  FG_TRY(judge_all(ctx, analysis));
-  choose_rows(analysis);
+  FG_TRY(decide_foils(ctx, analysis));
+  choose_listed_foils(analysis);
   FG_TRY(fg_lot_analyse_quantities(ctx, analysis));
   FG_TRY(fg_lot_analyse_causes(ctx, analysis));
   bool bumps = fg_foil_kind_has_bumps(analysis->lot->settings.design.kind);
   if (bumps) FG_TRY(fg_lot_analyse_correlation(ctx, analysis));
   const fg_design *design = &analysis->lot->settings.design;
   if (design->tolerance_count == fg_report_of_bearing(design, NULL, 0)) rank_by_spread(analysis);
-  find_worst(analysis);
+  find_worst_three(analysis);
   fg_lot_analyse_thickness(analysis);
   if (bumps) FG_TRY(fg_lot_analyse_stiffness(ctx, analysis));
   if (bumps) FG_TRY(fg_lot_analyse_bearings(ctx, analysis));
@@ -177,7 +177,7 @@ static fg_status analyse(fg_context *ctx, fg_lot_analysis *analysis) {
 
 fg_status fg_lot_analyse(fg_context *ctx, const fg_lot *lot, fg_lot_analysis *analysis) {
   *analysis = (fg_lot_analysis){.lot = lot};
-  fg_status status = analyse(ctx, analysis);
+  fg_status status = analyse_records(ctx, analysis);
   if (status != FG_OK) fg_lot_analysis_free(analysis);
   return status;
 }

@@ -46,7 +46,7 @@ void fg_assembly_interval(double count, double of, double confidence, double *lo
 }
 
 /* A stream of its own for every purpose, draw by draw. */
-static uint64_t stream(uint64_t seed, uint64_t purpose, uint64_t draw) {
+static uint64_t seed_stream(uint64_t seed, uint64_t purpose, uint64_t draw) {
   uint64_t state = seed ^ purpose * 0xd1342543de82ef95u;
   state = fg_engine_random_next(&state) ^ draw;
   return fg_engine_random_next(&state);
@@ -54,7 +54,7 @@ static uint64_t stream(uint64_t seed, uint64_t purpose, uint64_t draw) {
 
 enum { FOR_BEARING = 1, FOR_SORTED, FOR_DESIGN, FOR_SET, FOR_SET_BEARING };
 
-static size_t below(uint64_t *state, size_t count) {
+static size_t draw_below(uint64_t *state, size_t count) {
   size_t drawn = (size_t)(fg_engine_random_uniform(state) * (double)count);
   return drawn < count ? drawn : count - 1;
 }
@@ -64,7 +64,7 @@ static void pick_different(uint64_t *state, size_t foils, size_t pads, size_t *f
   for (size_t pad = 0; pad < pads; pad++) {
     bool taken = true;
     while (taken) {
-      foil[pad] = below(state, foils);
+      foil[pad] = draw_below(state, foils);
       taken = false;
       for (size_t i = 0; i < pad; i++)
         taken = taken || foil[i] == foil[pad];
@@ -73,7 +73,7 @@ static void pick_different(uint64_t *state, size_t foils, size_t pads, size_t *f
 }
 
 void fg_assembly_pick(uint64_t seed, size_t draw, size_t foils, size_t pads, size_t *foil) {
-  uint64_t state = stream(seed, FOR_BEARING, draw);
+  uint64_t state = seed_stream(seed, FOR_BEARING, draw);
   pick_different(&state, foils, pads, foil);
 }
 
@@ -86,7 +86,7 @@ typedef struct workspace {
   size_t pad[FG_BEARING_BUMPS_MAX];
 } workspace;
 
-static workspace workspace_of(const fg_stock *stock, const fg_assembly_plan *plan) {
+static workspace make_workspace(const fg_stock *stock, const fg_assembly_plan *plan) {
   const fg_bearing_layout *layout = &plan->layout;
   workspace b = {.stock = stock, .plan = plan};
   for (size_t pad = 0; pad < layout->pads; pad++)
@@ -97,12 +97,12 @@ static workspace workspace_of(const fg_stock *stock, const fg_assembly_plan *pla
   return b;
 }
 
-static size_t places_of(const workspace *b) {
+static size_t count_places(const workspace *b) {
   return b->plan->layout.pads * b->plan->layout.bumps_per_pad;
 }
 
-static fg_status build(fg_context *ctx, workspace *b, const size_t *foil, bool uncertainty,
-                       fg_bearing_clearance *result) {
+static fg_status build_bearing(fg_context *ctx, workspace *b, const size_t *foil, bool uncertainty,
+                               fg_bearing_clearance *result) {
   size_t places = b->stock->places, bytes = places * sizeof(double);
   for (size_t pad = 0; pad < b->plan->layout.pads; pad++) {
     memcpy(b->clearance_mm + pad * places, b->stock->clearance_mm + foil[pad] * places, bytes);
@@ -110,25 +110,25 @@ static fg_status build(fg_context *ctx, workspace *b, const size_t *foil, bool u
     memcpy(b->own_mm + pad * places, b->stock->own_mm + foil[pad] * places, bytes);
   }
   const fg_bearing_uncertainty known = {b->shared_mm, b->own_mm, b->pad};
-  return fg_bearing_assess_uncertainty(ctx, b->angle_deg, b->clearance_mm, places_of(b),
+  return fg_bearing_assess_uncertainty(ctx, b->angle_deg, b->clearance_mm, count_places(b),
                                        uncertainty ? &known : NULL, result);
 }
 
-static bool within(const fg_assembly_limit *limit, double value) {
+static bool is_within_limit(const fg_assembly_limit *limit, double value) {
   return value >= limit->lower && value <= limit->upper;
 }
 
 static bool is_assembled(const fg_assembly_plan *plan, const fg_bearing_clearance *bearing) {
   for (size_t i = 0; i < plan->limits; i++)
     if (plan->limit[i].asked &&
-        !within(&plan->limit[i], fg_quantity_value(plan->limit[i].row, bearing)))
+        !is_within_limit(&plan->limit[i], fg_quantity_value(plan->limit[i].row, bearing)))
       return false;
   return true;
 }
 
 /* Counts one bearing. */
-static void take(const fg_assembly_plan *plan, const fg_bearing_clearance *bearing,
-                 size_t counts[2], fg_assembly_result *result) {
+static void count_bearing(const fg_assembly_plan *plan, const fg_bearing_clearance *bearing,
+                          size_t counts[2], fg_assembly_result *result) {
   bool out[FG_ASSEMBLY_LIMITS_MAX], surely = true, possibly = true;
   size_t rejecting = 0;
   for (size_t i = 0; i < plan->limits; i++) {
@@ -138,7 +138,7 @@ static void take(const fg_assembly_plan *plan, const fg_bearing_clearance *beari
     double u = fg_quantity_uncertainty(limit->row, bearing);
     const fg_tolerance asked = {.lower = limit->lower, .upper = limit->upper};
     fg_verdict verdict = fg_judge_value(&asked, value, u);
-    out[i] = !within(limit, value);
+    out[i] = !is_within_limit(limit, value);
     share->count += !out[i];
     share->surely += verdict == FG_VERDICT_PASS;
     share->possibly += verdict == FG_VERDICT_PASS || verdict == FG_VERDICT_UNDECIDED;
@@ -170,8 +170,8 @@ static void finish_share(const fg_assembly_plan *plan, fg_assembly_share *share)
                        &share->draws_high);
 }
 
-static void finish(const fg_assembly_plan *plan, const size_t counts[2],
-                   fg_assembly_result *result) {
+static void finish_result(const fg_assembly_plan *plan, const size_t counts[2],
+                          fg_assembly_result *result) {
   result->assembled.surely = (double)counts[0];
   result->assembled.possibly = (double)counts[1];
   finish_share(plan, &result->assembled);
@@ -187,7 +187,8 @@ static void finish(const fg_assembly_plan *plan, const size_t counts[2],
   }
 }
 
-static fg_status begin(fg_context *ctx, const fg_assembly_plan *plan, fg_assembly_result *result) {
+static fg_status begin_result(fg_context *ctx, const fg_assembly_plan *plan,
+                              fg_assembly_result *result) {
   *result = (fg_assembly_result){.assembled = {.count = 0}};
   for (size_t i = 0; i < FG_ASSEMBLY_VALUES; i++) {
     void *block;
@@ -208,27 +209,27 @@ void fg_assembly_result_free(fg_assembly_result *result) {
 }
 
 /* The share of every limit, and of all, over one set of foils drawn with replacement. */
-static fg_status share_of_set(fg_context *ctx, workspace *b, size_t set,
-                              double share[FG_ASSEMBLY_LIMITS_MAX + 1]) {
+static fg_status draw_set_share(fg_context *ctx, workspace *b, size_t set,
+                                double share[FG_ASSEMBLY_LIMITS_MAX + 1]) {
   const fg_assembly_plan *plan = b->plan;
   size_t foils = b->stock->foils, foil[FG_BEARING_BUMPS_MAX];
   void *block;
   FG_TRY(fg_memory_allocate(ctx, foils, sizeof(size_t), &block));
   size_t *member = block;
-  uint64_t state = stream(plan->seed, FOR_SET, set),
-           draws = stream(plan->seed, FOR_SET_BEARING, set);
+  uint64_t state = seed_stream(plan->seed, FOR_SET, set),
+           draws = seed_stream(plan->seed, FOR_SET_BEARING, set);
   fg_status status = FG_OK;
   for (size_t i = 0; i < foils; i++)
-    member[i] = below(&state, foils);
+    member[i] = draw_below(&state, foils);
   for (size_t i = 0; i < BEARINGS_OF_A_SET && status == FG_OK; i++) {
     fg_bearing_clearance bearing;
     pick_different(&draws, foils, plan->layout.pads, foil);
     for (size_t pad = 0; pad < plan->layout.pads; pad++)
       foil[pad] = member[foil[pad]];
-    status = build(ctx, b, foil, false, &bearing);
+    status = build_bearing(ctx, b, foil, false, &bearing);
     if (status != FG_OK) break;
     for (size_t k = 0; k < plan->limits; k++)
-      share[k] += within(&plan->limit[k], fg_quantity_value(plan->limit[k].row, &bearing));
+      share[k] += is_within_limit(&plan->limit[k], fg_quantity_value(plan->limit[k].row, &bearing));
     share[plan->limits] += is_assembled(plan, &bearing);
   }
   for (size_t k = 0; k <= plan->limits; k++)
@@ -241,8 +242,8 @@ static fg_status share_of_set(fg_context *ctx, workspace *b, size_t set,
  * second is known. What the foils leave is the scatter of a share of so many independent bearings,
  * fewer by what few foils know of their own scatter (Korn and Graubard 1998), and the exact
  * interval is of those. Where sets do not tell, bearings without a common foil are counted. */
-static void interval_of_sets(const double *share, double confidence, double foils, double pads,
-                             fg_assembly_share *target) {
+static void find_foils_interval(const double *share, double confidence, double foils, double pads,
+                                fg_assembly_share *target) {
   double mean = 0, variance = 0, tail = (1 - confidence) / 2;
   for (size_t i = 0; i < SETS; i++)
     mean += share[i] / SETS;
@@ -269,14 +270,14 @@ static fg_status resample_foils(fg_context *ctx, workspace *b, fg_assembly_resul
   fg_status status = FG_OK;
   for (size_t set = 0; set < SETS && status == FG_OK; set++) {
     double share[FG_ASSEMBLY_LIMITS_MAX + 1] = {0};
-    status = share_of_set(ctx, b, set, share);
+    status = draw_set_share(ctx, b, set, share);
     for (size_t k = 0; k <= limits; k++)
       all[k * SETS + set] = share[k];
   }
   for (size_t k = 0; k <= limits && status == FG_OK; k++)
-    interval_of_sets(all + k * SETS, plan->confidence, (double)b->stock->foils,
-                     (double)plan->layout.pads,
-                     k < limits ? &result->within[k] : &result->assembled);
+    find_foils_interval(all + k * SETS, plan->confidence, (double)b->stock->foils,
+                        (double)plan->layout.pads,
+                        k < limits ? &result->within[k] : &result->assembled);
   free(all);
   return status;
 }
@@ -287,14 +288,14 @@ static fg_status draw_all(fg_context *ctx, workspace *b, fg_assembly_result *res
   for (size_t i = 0; i < plan->bearings; i++) {
     fg_bearing_clearance bearing;
     fg_assembly_pick(plan->seed, i, b->stock->foils, plan->layout.pads, foil);
-    FG_TRY(build(ctx, b, foil, true, &bearing));
-    take(plan, &bearing, counts, result);
+    FG_TRY(build_bearing(ctx, b, foil, true, &bearing));
+    count_bearing(plan, &bearing, counts, result);
   }
-  finish(plan, counts, result);
+  finish_result(plan, counts, result);
   return FG_OK;
 }
 
-static fg_status check(fg_context *ctx, const fg_stock *stock, const fg_assembly_plan *plan) {
+static fg_status check_stock(fg_context *ctx, const fg_stock *stock, const fg_assembly_plan *plan) {
   if (stock->foils >= plan->layout.pads) return FG_OK;
   return fg_fail(ctx, FG_ERR_DATA, "%zu foils; a bearing takes %zu different ones", stock->foils,
                  plan->layout.pads);
@@ -302,10 +303,10 @@ static fg_status check(fg_context *ctx, const fg_stock *stock, const fg_assembly
 
 fg_status fg_assembly_draw(fg_context *ctx, const fg_stock *stock, const fg_assembly_plan *plan,
                            bool resample, fg_assembly_result *result) {
-  workspace b = workspace_of(stock, plan);
+  workspace b = make_workspace(stock, plan);
   *result = (fg_assembly_result){.assembled = {.count = 0}};
-  FG_TRY(check(ctx, stock, plan));
-  FG_TRY(begin(ctx, plan, result));
+  FG_TRY(check_stock(ctx, stock, plan));
+  FG_TRY(begin_result(ctx, plan, result));
   fg_status status = draw_all(ctx, &b, result);
   if (status == FG_OK && resample) status = resample_foils(ctx, &b, result);
   if (status != FG_OK) fg_assembly_result_free(result);
@@ -314,19 +315,19 @@ fg_status fg_assembly_draw(fg_context *ctx, const fg_stock *stock, const fg_asse
 
 fg_status fg_assembly_draw_design(fg_context *ctx, double clearance_mm, double deviation_mm,
                                   const fg_assembly_plan *plan, fg_assembly_result *result) {
-  workspace b = workspace_of(NULL, plan);
+  workspace b = make_workspace(NULL, plan);
   size_t counts[2] = {0};
   fg_status status = FG_OK;
-  FG_TRY(begin(ctx, plan, result));
+  FG_TRY(begin_result(ctx, plan, result));
   for (size_t i = 0; i < plan->bearings && status == FG_OK; i++) {
-    uint64_t state = stream(plan->seed, FOR_DESIGN, i);
+    uint64_t state = seed_stream(plan->seed, FOR_DESIGN, i);
     fg_bearing_clearance bearing;
-    for (size_t k = 0; k < places_of(&b); k++)
+    for (size_t k = 0; k < count_places(&b); k++)
       b.clearance_mm[k] = clearance_mm + deviation_mm * (2 * fg_engine_random_uniform(&state) - 1);
-    status = fg_bearing_assess(ctx, b.angle_deg, b.clearance_mm, places_of(&b), &bearing);
-    if (status == FG_OK) take(plan, &bearing, counts, result);
+    status = fg_bearing_assess(ctx, b.angle_deg, b.clearance_mm, count_places(&b), &bearing);
+    if (status == FG_OK) count_bearing(plan, &bearing, counts, result);
   }
-  if (status == FG_OK) finish(plan, counts, result);
+  if (status == FG_OK) finish_result(plan, counts, result);
   if (status != FG_OK) fg_assembly_result_free(result);
   return status;
 }
@@ -336,7 +337,7 @@ typedef struct ranked {
   size_t foil;
 } ranked;
 
-static int by_mean(const void *a, const void *b) {
+static int compare_means(const void *a, const void *b) {
   const ranked *x = a, *y = b;
   if (x->mean != y->mean) return x->mean < y->mean ? -1 : 1;
   return x->foil < y->foil ? -1 : x->foil > y->foil;
@@ -344,11 +345,11 @@ static int by_mean(const void *a, const void *b) {
 
 fg_status fg_assembly_draw_sorted(fg_context *ctx, const fg_stock *stock,
                                   const fg_assembly_plan *plan, size_t classes, size_t *assembled) {
-  workspace b = workspace_of(stock, plan);
+  workspace b = make_workspace(stock, plan);
   size_t pads = plan->layout.pads, foil[FG_BEARING_BUMPS_MAX];
   void *block;
   *assembled = 0;
-  FG_TRY(check(ctx, stock, plan));
+  FG_TRY(check_stock(ctx, stock, plan));
   FG_TRY(fg_memory_allocate(ctx, stock->foils, sizeof(ranked), &block));
   ranked *order = block;
   fg_status status = FG_OK;
@@ -357,18 +358,18 @@ fg_status fg_assembly_draw_sorted(fg_context *ctx, const fg_stock *stock,
     for (size_t k = 0; k < stock->places; k++)
       order[i].mean += stock->clearance_mm[i * stock->places + k];
   }
-  fg_sort_items(order, stock->foils, sizeof *order, by_mean);
+  fg_sort_items(order, stock->foils, sizeof *order, compare_means);
   for (size_t i = 0; i < plan->bearings && status == FG_OK; i++) {
-    uint64_t state = stream(plan->seed, FOR_SORTED, i);
+    uint64_t state = seed_stream(plan->seed, FOR_SORTED, i);
     /* The box of a foil drawn at random: a box is drawn as often as it has foils. */
-    size_t box = below(&state, stock->foils) * classes / stock->foils;
+    size_t box = draw_below(&state, stock->foils) * classes / stock->foils;
     size_t from = (box * stock->foils + classes - 1) / classes;
     size_t to = ((box + 1) * stock->foils + classes - 1) / classes;
     fg_bearing_clearance bearing;
     pick_different(&state, to - from, pads, foil);
     for (size_t pad = 0; pad < pads; pad++)
       foil[pad] = order[from + foil[pad]].foil;
-    status = build(ctx, &b, foil, false, &bearing);
+    status = build_bearing(ctx, &b, foil, false, &bearing);
     *assembled += status == FG_OK && is_assembled(plan, &bearing);
   }
   free(order);

@@ -30,7 +30,7 @@ const char *fg_lot_left_out_words(fg_lot_left_out why) {
   return words[why];
 }
 
-static fg_lot_left_out reason_of(const fg_lot_analysis *analysis, size_t at) {
+static fg_lot_left_out find_reason(const fg_lot_analysis *analysis, size_t at) {
   static const unsigned doubtful = FG_FOIL_TOUCHES_OTHER | FG_FOIL_TOUCHES_BORDER | FG_FOIL_GAP;
   const fg_bearing_layout *layout = &analysis->layout;
   const fg_lot_foil *foil = &analysis->foils[at];
@@ -47,7 +47,7 @@ static fg_lot_left_out reason_of(const fg_lot_analysis *analysis, size_t at) {
   return FG_LOT_IN_STOCK;
 }
 
-static fg_status find_reasons(fg_context *ctx, fg_lot_analysis *analysis) {
+static fg_status find_left_out(fg_context *ctx, fg_lot_analysis *analysis) {
   fg_lot_assembly *assembly = &analysis->assembly;
   size_t count = analysis->foil_count;
   void *block;
@@ -57,7 +57,7 @@ static fg_status find_reasons(fg_context *ctx, fg_lot_analysis *analysis) {
   size_t *owner = block, *scans = owner + count; /* scans: in stock, of the part that owns them */
   fg_status status = fg_lot_find_owners(ctx, analysis, owner);
   for (size_t i = 0; i < count && status == FG_OK; i++) {
-    fg_lot_left_out why = reason_of(analysis, i);
+    fg_lot_left_out why = find_reason(analysis, i);
     if (why == FG_LOT_IN_STOCK && scans[owner[i]]++) why = FG_LOT_SCANNED_AGAIN;
     assembly->reason[i] = why;
     assembly->left_out[why]++;
@@ -66,11 +66,11 @@ static fg_status find_reasons(fg_context *ctx, fg_lot_analysis *analysis) {
   return status;
 }
 
-static fg_status take_stock(fg_context *ctx, fg_lot_analysis *analysis) {
+static fg_status fill_stock(fg_context *ctx, fg_lot_analysis *analysis) {
   fg_lot_assembly *assembly = &analysis->assembly;
   fg_stock *stock = &assembly->stock;
   size_t places = analysis->layout.bumps_per_pad, at = 0;
-  FG_TRY(find_reasons(ctx, analysis));
+  FG_TRY(find_left_out(ctx, analysis));
   FG_TRY(fg_stock_allocate(ctx, assembly->left_out[FG_LOT_IN_STOCK], places, stock));
   for (size_t i = 0; i < analysis->foil_count; i++)
     for (size_t k = 0; k < places && assembly->reason[i] == FG_LOT_IN_STOCK; k++) {
@@ -92,7 +92,7 @@ static void add_limit(fg_assembly_plan *plan, const char *quantity, double lower
 
 /* A rotor must have room: where it has most, or, where the crowns leave half of the bearing open,
  * on the sleeve's axis. Beside it whether it touches on the axis, and the design's tolerances. */
-static void make_plan(fg_lot_analysis *analysis) {
+static void plan_assembly(fg_lot_analysis *analysis) {
   fg_lot_assembly *assembly = &analysis->assembly;
   const fg_lot_settings *settings = &analysis->lot->settings;
   fg_assembly_plan *plan = &assembly->plan;
@@ -122,7 +122,7 @@ static void make_plan(fg_lot_analysis *analysis) {
 
 /* How far the clearance of a bump of this radius and angle moves when the radius does and the arc
  * length stays, the foil fitted into the sleeve. */
-static double moved_clearance(const fg_lot *lot, const fg_bump *bump, double radius_mm) {
+static double move_clearance(const fg_lot *lot, const fg_bump *bump, double radius_mm) {
   const fg_design *design = &lot->settings.design;
   const fg_overall sleeve = {.radius_mm = design->sleeve_radius_mm};
   const fg_thickness strip = {.mm = design->thickness_mm};
@@ -154,7 +154,7 @@ static fg_status centre_radii(const fg_lot_analysis *analysis, fg_stock *stock) 
         if (pass == 0)
           mean += (bump->radius_mm - mean) / (double)++count;
         else
-          stock->clearance_mm[at * places + place] += moved_clearance(
+          stock->clearance_mm[at * places + place] += move_clearance(
               analysis->lot, bump,
               bump->radius_mm + analysis->lot->settings.design.bump_radius_mm - mean);
       }
@@ -220,7 +220,7 @@ static void rank_changes(fg_lot_assembly *assembly) {
 }
 
 /* A bump that no such change could leave has no clearance. */
-static bool is_possible(const fg_stock *stock) {
+static bool has_all_clearances(const fg_stock *stock) {
   for (size_t i = 0; i < stock->foils * stock->places; i++)
     if (!isfinite(stock->clearance_mm[i])) return false;
   return true;
@@ -232,7 +232,7 @@ static fg_status try_change(fg_context *ctx, fg_lot_analysis *analysis, size_t i
   fg_assembly_result result;
   FG_TRY(fg_stock_copy(ctx, &assembly->stock, &changed));
   fg_status status = changes[i].make(analysis, &changed);
-  if (status == FG_OK && is_possible(&changed)) {
+  if (status == FG_OK && has_all_clearances(&changed)) {
     status = fg_assembly_draw(ctx, &changed, &assembly->plan, false, &result);
     if (status == FG_OK) {
       add_change(assembly, changes[i].name, changes[i].words, result.assembled.count);
@@ -265,8 +265,8 @@ fg_status fg_lot_analyse_assembly(fg_context *ctx, fg_lot_analysis *analysis) {
   double nominal = analysis->lot->nominal.clearance_mm;
   assembly->asked = settings->assembly.bearings > 0;
   if (!assembly->asked) return FG_OK;
-  FG_TRY(take_stock(ctx, analysis));
-  make_plan(analysis);
+  FG_TRY(fill_stock(ctx, analysis));
+  plan_assembly(analysis);
   if (assembly->stock.foils < pads)
     snprintf(assembly->why, sizeof assembly->why,
              "No bearings are drawn: %zu of %zu foils can be built in, a bearing takes %zu "

@@ -17,7 +17,7 @@ static fg_status add_bearing(fg_context *ctx, fg_lot_analysis *analysis, const c
   return FG_OK;
 }
 
-static bool is_measured(const fg_lot_foil *foil) {
+static bool has_measured_foil(const fg_lot_foil *foil) {
   return fg_foil_is_measured(foil->foil);
 }
 
@@ -26,7 +26,7 @@ static fg_status assume_bearings(fg_context *ctx, fg_lot_analysis *analysis) {
   size_t pads = analysis->layout.pads, pad = 0;
   const fg_lot_foil *set[FG_BEARING_BUMPS_MAX];
   for (size_t i = 0; i < analysis->foil_count; i++) {
-    if (!is_measured(&analysis->foils[i])) continue;
+    if (!has_measured_foil(&analysis->foils[i])) continue;
     set[pad++] = &analysis->foils[i];
     if (pad < pads) continue;
     fg_lot_bearing *bearing;
@@ -38,14 +38,14 @@ static fg_status assume_bearings(fg_context *ctx, fg_lot_analysis *analysis) {
   return FG_OK;
 }
 
-static fg_lot_bearing *find_bearing(fg_lot_analysis *analysis, const char *name) {
+static fg_lot_bearing *find_named_bearing(fg_lot_analysis *analysis, const char *name) {
   for (size_t i = analysis->bearing_count; i-- > 0;)
     if (!strcmp(analysis->bearings[i].name, name)) return &analysis->bearings[i];
   return NULL;
 }
 
 /* The pad that the manifest says, else the next free one; `pads` when there is none. */
-static size_t pad_of(const fg_lot_bearing *bearing, const char *text, size_t pads, bool *bad) {
+static size_t choose_pad(const fg_lot_bearing *bearing, const char *text, size_t pads, bool *bad) {
   char *end;
   unsigned long pad = strtoul(text, &end, 10);
   bool right = *text && !*end && pad >= 1 && pad <= pads;
@@ -68,11 +68,11 @@ static fg_status place_foils(fg_context *ctx, fg_lot_analysis *analysis, size_t 
     bool bad;
     analysis->unplaced.without += !*name;
     if (!*name) continue;
-    fg_lot_bearing *bearing = find_bearing(analysis, name);
+    fg_lot_bearing *bearing = find_named_bearing(analysis, name);
     if (!bearing) FG_TRY(add_bearing(ctx, analysis, name, &bearing));
-    if (!is_measured(foil)) continue;
+    if (!has_measured_foil(foil)) continue;
     const char *cell = fg_manifest_cell(manifest, foil->item, pad_column);
-    size_t pad = pad_of(bearing, cell, analysis->layout.pads, &bad);
+    size_t pad = choose_pad(bearing, cell, analysis->layout.pads, &bad);
     analysis->unplaced.bad_pads += bad;
     analysis->unplaced.displaced += pad == analysis->layout.pads;
     if (pad < analysis->layout.pads) bearing->pad[pad] = foil;
@@ -113,7 +113,7 @@ fg_lot_clearance fg_lot_clearance_of(const fg_lot_analysis *analysis, const fg_l
   return unknown;
 }
 
-static void assess(const fg_lot_analysis *analysis, fg_lot_bearing *bearing) {
+static void assess_bearing(const fg_lot_analysis *analysis, fg_lot_bearing *bearing) {
   const fg_bearing_layout *layout = &analysis->layout;
   double shared[FG_BEARING_BUMPS_MAX], own[FG_BEARING_BUMPS_MAX];
   size_t pads[FG_BEARING_BUMPS_MAX];
@@ -137,7 +137,7 @@ static void assess(const fg_lot_analysis *analysis, fg_lot_bearing *bearing) {
 }
 
 /* A tolerance that nothing could be judged by must not read as a pass. */
-static fg_status judge(fg_context *ctx, fg_lot_analysis *analysis) {
+static fg_status decide_bearings(fg_context *ctx, fg_lot_analysis *analysis) {
   const fg_design *design = &analysis->lot->settings.design;
   for (size_t i = 0; i < analysis->bearing_count; i++) {
     fg_lot_bearing *bearing = &analysis->bearings[i];
@@ -154,8 +154,8 @@ static fg_status judge(fg_context *ctx, fg_lot_analysis *analysis) {
 }
 
 /* Clearances as the thesis's figure 5.13 has them: 100 (C_local - C_D) / C_D. */
-static fg_status relative_clearance(fg_context *ctx, const fg_lot_analysis *analysis,
-                                    const char *name, fg_lot_spread *spread) {
+static fg_status describe_relative_clearance(fg_context *ctx, const fg_lot_analysis *analysis,
+                                             const char *name, fg_lot_spread *spread) {
   const fg_lot_quantity *quantity = fg_lot_find_quantity(analysis, name);
   double nominal = analysis->lot->nominal.clearance_mm;
   void *block;
@@ -179,8 +179,9 @@ fg_status fg_lot_analyse_bearings(fg_context *ctx, fg_lot_analysis *analysis) {
   else
     FG_TRY(place_foils(ctx, analysis, column));
   for (size_t i = 0; i < analysis->bearing_count; i++)
-    assess(analysis, &analysis->bearings[i]);
-  FG_TRY(judge(ctx, analysis));
-  FG_TRY(relative_clearance(ctx, analysis, "clearance_mm", &analysis->clearance_pct));
-  return relative_clearance(ctx, analysis, "clearance_fitted_mm", &analysis->clearance_fitted_pct);
+    assess_bearing(analysis, &analysis->bearings[i]);
+  FG_TRY(decide_bearings(ctx, analysis));
+  FG_TRY(describe_relative_clearance(ctx, analysis, "clearance_mm", &analysis->clearance_pct));
+  return describe_relative_clearance(ctx, analysis, "clearance_fitted_mm",
+                                     &analysis->clearance_fitted_pct);
 }

@@ -6,7 +6,7 @@
 
 #include "lot/statistics/analysis.h"
 
-static size_t highest_bump(const fg_lot_analysis *analysis) {
+static size_t find_highest_bump(const fg_lot_analysis *analysis) {
   int highest = 0;
   for (size_t i = 0; i < analysis->foil_count; i++)
     for (size_t k = 0; k < analysis->foils[i].foil->bump_count; k++)
@@ -15,25 +15,26 @@ static size_t highest_bump(const fg_lot_analysis *analysis) {
   return (size_t)highest;
 }
 
-static size_t between(size_t value, size_t low, size_t high) {
+static size_t clamp_count(size_t value, size_t low, size_t high) {
   return value < low ? low : value > high ? high : value;
 }
 
 /* What the recipe leaves open is the design's: a place for every bump from the first on, at the
  * design's pitch, and as many pads as fit around. A recipe that states pads and bumps, and no
  * pitch, has them equally spaced; so has one whose pads do not fit at the design's pitch. */
-static void resolve(const fg_lot_analysis *analysis, size_t bumps, fg_bearing_layout *layout) {
+static void resolve_layout(const fg_lot_analysis *analysis, size_t bumps,
+                           fg_bearing_layout *layout) {
   const fg_lot_settings *settings = &analysis->lot->settings;
   *layout = settings->layout;
   bool equal = layout->pads && layout->bumps_per_pad && !(layout->pitch_deg > 0);
   double pitch = layout->pitch_deg > 0 ? layout->pitch_deg : settings->design.pitch_deg;
   if (!layout->bumps_per_pad)
     layout->bumps_per_pad = bumps >= layout->first_bump ? bumps + 1 - layout->first_bump : 1;
-  layout->bumps_per_pad = between(layout->bumps_per_pad, 1, FG_BEARING_BUMPS_MAX);
+  layout->bumps_per_pad = clamp_count(layout->bumps_per_pad, 1, FG_BEARING_BUMPS_MAX);
   size_t max = FG_BEARING_BUMPS_MAX / layout->bumps_per_pad;
   if (!layout->pads)
     layout->pads = (size_t)floor(360 * (1 + 1e-6) / ((double)layout->bumps_per_pad * pitch));
-  layout->pads = between(layout->pads, 1, max);
+  layout->pads = clamp_count(layout->pads, 1, max);
   bool fits = (double)(layout->pads * layout->bumps_per_pad) * pitch <= 360 * (1 + 1e-6);
   layout->pitch_deg = equal || !fits ? 0 : pitch;
 }
@@ -62,8 +63,8 @@ static void describe_contradiction(const fg_design *design, const fg_bearing_lay
 
 void fg_lot_find_layout(fg_lot_analysis *analysis) {
   const fg_design *design = &analysis->lot->settings.design;
-  size_t bumps = design->bump_count ? design->bump_count : highest_bump(analysis);
-  resolve(analysis, bumps, &analysis->layout);
+  size_t bumps = design->bump_count ? design->bump_count : find_highest_bump(analysis);
+  resolve_layout(analysis, bumps, &analysis->layout);
   describe_contradiction(design, &analysis->layout, bumps, analysis->layout_note,
                          sizeof analysis->layout_note);
 }

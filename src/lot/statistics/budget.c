@@ -30,7 +30,7 @@ typedef struct moments {
 } moments;
 
 /* Pairs of which both are known. */
-static moments moments_of(const double *x, const double *y, size_t count) {
+static moments find_moments(const double *x, const double *y, size_t count) {
   moments m = {0};
   for (size_t i = 0; i < count; i++) {
     if (!isfinite(x[i]) || !isfinite(y[i])) continue;
@@ -53,7 +53,7 @@ static double known_or_0(double value) {
 }
 
 static double measurement_pct(const fg_bump_columns *columns) {
-  moments m = moments_of(columns->measurement, columns->measurement, columns->count);
+  moments m = find_moments(columns->measurement, columns->measurement, columns->count);
   return m.count ? 100 * sqrt(m.mean_x) : NAN;
 }
 
@@ -64,7 +64,7 @@ static const double COLLINEAR = 1e-9;
 
 /* Share of y's variance that the causes of `subset` explain: y is their combination as far as they
  * go, by elimination on the correlations `r`, whose last row and column are y's. */
-static double explained(const double r[CAUSES + 1][CAUSES + 1], int subset) {
+static double find_explained_share(const double r[CAUSES + 1][CAUSES + 1], int subset) {
   double m[CAUSES + 1][CAUSES + 1];
   for (int i = 0; i <= CAUSES; i++)
     for (int j = 0; j <= CAUSES; j++)
@@ -92,7 +92,7 @@ static void find_shares(const fg_bump_columns *columns, bool thickness, fg_lot_b
   double r[CAUSES + 1][CAUSES + 1], all = 0;
   for (int i = 0; i <= CAUSES; i++)
     for (int j = 0; j <= CAUSES; j++) {
-      moments m = moments_of(column[i], column[j], columns->count);
+      moments m = find_moments(column[i], column[j], columns->count);
       r[i][j] = m.xx > 0 && m.yy > 0 ? m.xy / sqrt(m.xx * m.yy) : 0;
     }
   for (int k = 0; k < CAUSES; k++) {
@@ -100,8 +100,8 @@ static void find_shares(const fg_bump_columns *columns, bool thickness, fg_lot_b
     for (int subset = 0; subset < SUBSETS; subset++) {
       if (subset >> k & 1) continue;
       int size = (subset & 1) + (subset >> 1 & 1) + (subset >> 2 & 1);
-      double gain = explained((const double(*)[CAUSES + 1]) r, subset | 1 << k) -
-                    explained((const double(*)[CAUSES + 1]) r, subset);
+      double gain = find_explained_share((const double(*)[CAUSES + 1]) r, subset | 1 << k) -
+                    find_explained_share((const double(*)[CAUSES + 1]) r, subset);
       term[k]->share_pct += 100 * order_weight[size] * fmax(0, gain);
     }
     all += term[k]->share_pct;
@@ -114,8 +114,8 @@ void fg_lot_analyse_budget(fg_lot_analysis *analysis, const fg_bump_columns *col
   fg_lot_budget *budget = &analysis->stiffness.budget;
   const fg_arch_sensitivity *slope =
       &analysis->stiffness.cases[FG_LOT_CASE_MEAN].lines[0].sensitivity;
-  moments m = moments_of(columns->arch_radius, columns->arch_length, columns->count);
-  moments t = moments_of(columns->strip, columns->strip, columns->count);
+  moments m = find_moments(columns->arch_radius, columns->arch_length, columns->count);
+  moments t = find_moments(columns->strip, columns->strip, columns->count);
   budget->radius = (fg_lot_budget_term){relative_pct(m.xx, m.count, m.mean_x),
                                         slope->radius_at_arc_length, NAN, NAN};
   budget->arc_length =

@@ -22,7 +22,7 @@ typedef struct reading {
 
 /* By how much a value lies elsewhere with a strip thicker by its statistical u: derived again. What
  * lies flat has none. */
-static double by_thickness(const reading *r, const fg_foil *foil, const fg_foil_part *part) {
+static double move_by_thickness(const reading *r, const fg_foil *foil, const fg_foil_part *part) {
   double moves[FG_CALIBRATED_MAX] = {0};
   const fg_design *design = &r->analysis->lot->settings.design;
   fg_foil thick = *foil;
@@ -46,22 +46,23 @@ static double by_thickness(const reading *r, const fg_foil *foil, const fg_foil_
 
 /* An unknown tone curve moves edges alike in every scan: what lies between two of them, or rests on
  * one, errs by it alike. Of what is not by the thickness alone its part is not told: all counts. */
-static bool errs_alike(const fg_design *design, const fg_quantity *row) {
+static bool is_common_error(const fg_design *design, const fg_quantity *row) {
   bool between = row->uses & FG_QUANTITY_BETWEEN_EDGES && !fg_foil_kind_has_bumps(design->kind) &&
                  strncmp(row->name, "thickness", 9) != 0;
   bool on_edge = row->uses & FG_QUANTITY_OF_DATUM && design->datum != FG_DATUM_MID;
   return design->tone != FG_TONE_LINEAR && (between || on_edge);
 }
 
-static void add(sums *sum, const reading *r, const fg_foil *foil, const fg_foil_part *part) {
+static void add_reading(sums *sum, const reading *r, const fg_foil *foil,
+                        const fg_foil_part *part) {
   const fg_quantity *row = r->quantity->row;
   const void *object = part ? part->object : foil;
   const fg_calibrated *calibrated = part ? part->calibrated : &foil->calibrated;
   double u = fg_quantity_uncertainty(row, object);
   double own = fg_quantity_calibration(r->quantity->owner, row, calibrated);
   if (!isfinite(fg_quantity_value(row, object)) || !isfinite(u)) return;
-  bool whole = errs_alike(&r->analysis->lot->settings.design, row);
-  double alike = whole ? sqrt(fmax(0, u * u - own * own)) : by_thickness(r, foil, part);
+  bool whole = is_common_error(&r->analysis->lot->settings.design, row);
+  double alike = whole ? sqrt(fmax(0, u * u - own * own)) : move_by_thickness(r, foil, part);
   double statistical = fmax(0, u * u - own * own - alike * alike);
   sum->u += sqrt(statistical);
   sum->squares += statistical;
@@ -71,13 +72,13 @@ static void add(sums *sum, const reading *r, const fg_foil *foil, const fg_foil_
   sum->count++;
 }
 
-static sums of_foil(const reading *r, const fg_foil *foil) {
+static sums sum_foil(const reading *r, const fg_foil *foil) {
   sums sum = {0};
   if (!fg_foil_is_measured(foil)) return sum;
-  if (r->quantity->owner == FG_QUANTITY_OF_FOIL) add(&sum, r, foil, NULL);
+  if (r->quantity->owner == FG_QUANTITY_OF_FOIL) add_reading(&sum, r, foil, NULL);
   for (size_t k = 0; k < fg_part_count(foil, r->quantity->owner); k++) {
     const fg_foil_part part = fg_part_at(foil, r->quantity->owner, k);
-    if (fg_lot_part_counts(foil, r->quantity->owner, &part)) add(&sum, r, foil, &part);
+    if (fg_lot_part_counts(foil, r->quantity->owner, &part)) add_reading(&sum, r, foil, &part);
   }
   return sum;
 }
@@ -89,7 +90,7 @@ fg_lot_known fg_lot_mean_known(const fg_lot_analysis *analysis, const fg_lot_qua
   if (!fg_quantity_has_u(quantity->row)) return unknown;
   const reading r = {analysis, quantity, fg_quantity_move_of(quantity->owner, quantity->row)};
   for (size_t i = 0; i < analysis->foil_count; i++) {
-    sums foil = of_foil(&r, analysis->foils[i].foil);
+    sums foil = sum_foil(&r, analysis->foils[i].foil);
     all.squares += own ? foil.squares : foil.u * foil.u; /* R0 errs alike in all bumps of a foil */
     all.alike += foil.alike;
     for (size_t s = 0; s < FG_CALIBRATION_SOURCES; s++)

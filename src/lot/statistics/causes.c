@@ -19,7 +19,7 @@ typedef struct grouping {
   double *moved; /* the points, every group moved to the chart's centre */
 } grouping;
 
-static size_t group_of(fg_lot_cause *cause, const char *name) {
+static size_t find_group(fg_lot_cause *cause, const char *name) {
   for (size_t g = 0; g < cause->groups; g++)
     if (!strcmp(cause->name[g], name)) return g;
   if (cause->groups == FG_LOT_GROUPS_MAX) return FG_LOT_GROUPS_MAX;
@@ -35,7 +35,7 @@ static bool find_groups(const fg_lot_analysis *analysis, const fg_lot_quantity *
     if (!quantity->size[i]) continue;
     const char *name =
         fg_manifest_cell(&analysis->lot->manifest, analysis->foils[i].item, cause->column);
-    size_t group = *name ? group_of(cause, name) : FG_LOT_GROUPS_MAX;
+    size_t group = *name ? find_group(cause, name) : FG_LOT_GROUPS_MAX;
     if (group == FG_LOT_GROUPS_MAX) return false;
     by->group[point] = group;
     cause->foils[group]++;
@@ -55,7 +55,8 @@ static bool is_in_turn(const fg_lot_cause *cause, const grouping *by, size_t poi
 }
 
 /* One-way analysis of variance of the foils' values. */
-static double p_of(const fg_lot_quantity *quantity, const fg_lot_cause *cause, const grouping *by) {
+static double find_p_value(const fg_lot_quantity *quantity, const fg_lot_cause *cause,
+                           const grouping *by) {
   double between = 0, within = 0;
   size_t points = quantity->chart.count;
   for (size_t g = 0; g < cause->groups; g++)
@@ -68,8 +69,9 @@ static double p_of(const fg_lot_quantity *quantity, const fg_lot_cause *cause, c
   return fg_distribution_f_upper(between / dof / (within / rest), dof, rest);
 }
 
-static fg_status count_left(fg_context *ctx, unsigned rules, const fg_lot_quantity *quantity,
-                            fg_lot_cause *cause, const grouping *by) {
+static fg_status count_unexplained_signals(fg_context *ctx, unsigned rules,
+                                           const fg_lot_quantity *quantity, fg_lot_cause *cause,
+                                           const grouping *by) {
   fg_chart chart;
   double sigma;
   for (size_t i = 0; i < quantity->chart.count; i++)
@@ -87,18 +89,18 @@ static fg_status try_column(fg_context *ctx, const fg_lot_analysis *analysis,
   fg_lot_cause cause = {.column = fg_manifest_column(&analysis->lot->manifest, column)};
   if (cause.column == FG_NO_COLUMN || cause.column == quantity->cause.column) return FG_OK;
   if (!find_groups(analysis, quantity, &cause, by)) return FG_OK;
-  cause.p_value = p_of(quantity, &cause, by);
+  cause.p_value = find_p_value(quantity, &cause, by);
   if (!(cause.p_value < chance / CAUSES_TRIED)) return FG_OK;
   cause.in_turn = is_in_turn(&cause, by, quantity->chart.count);
-  FG_TRY(count_left(ctx, analysis->lot->settings.run_rules, quantity, &cause, by));
+  FG_TRY(count_unexplained_signals(ctx, analysis->lot->settings.run_rules, quantity, &cause, by));
   size_t known = quantity->cause.column == FG_NO_COLUMN ? quantity->chart.signals
                                                         : quantity->cause.signals_left;
   if (cause.signals_left < known) quantity->cause = cause;
   return FG_OK;
 }
 
-static fg_status find_cause(fg_context *ctx, const fg_lot_analysis *analysis,
-                            fg_lot_quantity *quantity) {
+static fg_status find_best_cause(fg_context *ctx, const fg_lot_analysis *analysis,
+                                 fg_lot_quantity *quantity) {
   const fg_lot_settings *settings = &analysis->lot->settings;
   const char *const columns[COLUMNS_TRIED] = {settings->group_column, settings->die_column,
                                               settings->operator_column};
@@ -153,7 +155,7 @@ fg_status fg_lot_analyse_causes(fg_context *ctx, fg_lot_analysis *analysis) {
     fg_lot_quantity *quantity = &analysis->quantities[i];
     quantity->cause.column = FG_NO_COLUMN;
     if (quantity->has_chart && quantity->chart.signals) {
-      FG_TRY(find_cause(ctx, analysis, quantity));
+      FG_TRY(find_best_cause(ctx, analysis, quantity));
       FG_TRY(fg_lot_find_trend(ctx, analysis->lot->settings.run_rules, chance / CAUSES_TRIED,
                                quantity));
     }

@@ -95,8 +95,8 @@ static fg_status collect_pairs(fg_context *ctx, const fg_lot_analysis *analysis,
 }
 
 /* The values that `share` of all lie below and above. */
-static fg_status tails_of(fg_context *ctx, const double *values, size_t count, double share,
-                          double limits[2]) {
+static fg_status find_tails(fg_context *ctx, const double *values, size_t count, double share,
+                            double limits[2]) {
   void *block;
   FG_TRY(fg_memory_allocate(ctx, count, sizeof *values, &block));
   double *sorted = block;
@@ -110,10 +110,10 @@ static fg_status tails_of(fg_context *ctx, const double *values, size_t count, d
 
 /* By the radius alone, as the thesis does: rows that leave because their angle, the response, lies
  * far out would take the slope towards 0. */
-static fg_status trim(fg_context *ctx, double trim_pct, pairs *p) {
+static fg_status trim_by_radius(fg_context *ctx, double trim_pct, pairs *p) {
   double limits[2];
   size_t kept = 0;
-  FG_TRY(tails_of(ctx, p->radius_pct, p->count, trim_pct / 100, limits));
+  FG_TRY(find_tails(ctx, p->radius_pct, p->count, trim_pct / 100, limits));
   for (size_t i = 0; i < p->count; i++) {
     if (!(p->radius_pct[i] >= limits[0] && p->radius_pct[i] <= limits[1])) continue;
     p->radius_pct[kept] = p->radius_pct[i];
@@ -138,7 +138,7 @@ static void describe_arc_length(const pairs *p, fg_lot_correlation *result) {
   result->arc_length_sd_pct = sqrt(squares / (double)(p->count - 1));
 }
 
-static size_t count_foils(const pairs *p, size_t *seen) {
+static size_t count_paired_foils(const pairs *p, size_t *seen) {
   size_t count = 0;
   for (size_t i = 0; i < p->count; i++)
     count += seen[p->foil[i]]++ == 0;
@@ -150,7 +150,7 @@ static fg_status fit_errors(fg_context *ctx, const fg_lot_settings *settings, pa
   fg_cluster_line errors, logs;
   void *seen;
   FG_TRY(fg_memory_allocate(ctx, p->foils, sizeof(size_t), &seen));
-  result->foils = count_foils(p, seen);
+  result->foils = count_paired_foils(p, seen);
   free(seen);
   FG_TRY(
       fg_cluster_line_fit(ctx, p->radius_pct, p->angle_pct, p->foil, p->count, p->foils, &errors));
@@ -182,7 +182,7 @@ fg_status fg_lot_analyse_correlation(fg_context *ctx, fg_lot_analysis *analysis)
   result->count = p.count;
   if (p.count < 5) goto exit;
   describe_arc_length(&p, result);
-  FG_TRY_EXIT(trim(ctx, settings->trim_pct, &p));
+  FG_TRY_EXIT(trim_by_radius(ctx, settings->trim_pct, &p));
   result->trimmed = result->count - p.count;
   analysis->has_correlation = p.count >= 5;
   if (analysis->has_correlation) FG_TRY_EXIT(fit_errors(ctx, settings, &p, result));

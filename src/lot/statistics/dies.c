@@ -31,8 +31,8 @@ typedef struct sums {
   double count, design, die, design_square, die_square, own, u_own;
 } sums;
 
-static void add(const fg_lot_analysis *analysis, const fg_bump *bump, const fg_lot_to_die *to,
-                sums *s) {
+static void add_die_error(const fg_lot_analysis *analysis, const fg_bump *bump,
+                          const fg_lot_to_die *to, sums *s) {
   double design_mm = analysis->lot->settings.design.bump_radius_mm;
   double error = bump->radius_error_pct;
   s->count++;
@@ -44,16 +44,16 @@ static void add(const fg_lot_analysis *analysis, const fg_bump *bump, const fg_l
   s->u_own += 100 * to->u_radius_mm / design_mm;
 }
 
-static double sd_of(double count, double sum, double square) {
+static double sd_of_sums(double count, double sum, double square) {
   return count > 1 ? sqrt(fmax(square - sum * sum / count, 0) / (count - 1)) : NAN;
 }
 
-static void finish(const sums *s, fg_lot_die_sum *sum) {
+static void finish_die_sum(const sums *s, fg_lot_die_sum *sum) {
   sum->bumps = (size_t)s->count;
   sum->design_mean_pct = s->design / s->count;
   sum->die_mean_pct = s->die / s->count;
-  sum->design_sd_pct = sd_of(s->count, s->design, s->design_square);
-  sum->die_sd_pct = sd_of(s->count, s->die, s->die_square);
+  sum->design_sd_pct = sd_of_sums(s->count, s->design, s->design_square);
+  sum->die_sd_pct = sd_of_sums(s->count, s->die, s->die_square);
   sum->die_error_pct = s->own / s->count;
   sum->u_die_error_pct = s->u_own / s->count;
   sum->explained_pct = 100 * sum->die_error_pct / sum->design_mean_pct;
@@ -71,14 +71,14 @@ static void sum_die(const fg_lot_analysis *analysis, const fg_lot_die *die, sums
       fg_lot_to_die to = fg_lot_bump_to_die(analysis->lot, foil, bump);
       if (to.die != die || !fg_lot_bump_counts(foil->foil, bump) || !isfinite(to.error_pct))
         continue;
-      add(analysis, bump, &to, &s);
-      add(analysis, bump, &to, all);
+      add_die_error(analysis, bump, &to, &s);
+      add_die_error(analysis, bump, &to, all);
       sum->by_mean += to.by_mean;
       of_this = true;
     }
     sum->foils += of_this;
   }
-  if (s.count > 0) finish(&s, sum);
+  if (s.count > 0) finish_die_sum(&s, sum);
 }
 
 void fg_lot_analyse_dies(const fg_lot_analysis *analysis, fg_lot_dies *dies) {
@@ -94,8 +94,8 @@ void fg_lot_analyse_dies(const fg_lot_analysis *analysis, fg_lot_dies *dies) {
     dies->count += sum->bumps > 0;
   }
   dies->bumps = (size_t)all.count;
-  dies->design_sd_pct = sd_of(all.count, all.design, all.design_square);
-  dies->die_sd_pct = sd_of(all.count, all.die, all.die_square);
+  dies->design_sd_pct = sd_of_sums(all.count, all.design, all.design_square);
+  dies->die_sd_pct = sd_of_sums(all.count, all.die, all.die_square);
   double ratio = dies->die_sd_pct / dies->design_sd_pct;
   dies->explained_variance_pct = 100 * (1 - ratio * ratio);
   if (dies->count != 2) return;

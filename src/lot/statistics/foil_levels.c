@@ -32,7 +32,7 @@ static size_t find_foil(fg_foil_levels *levels, size_t group, size_t owner) {
   return levels->count++;
 }
 
-static void add_value(layout *l, size_t foil, int number, double value) {
+static void add_entry(layout *l, size_t foil, int number, double value) {
   size_t place = number > 0 ? (size_t)number : 0;
   if (!isfinite(value)) return;
   l->entry[l->entries++] = (entry){foil, place, value};
@@ -40,8 +40,8 @@ static void add_value(layout *l, size_t foil, int number, double value) {
   if (place >= l->places) l->places = place + 1;
 }
 
-static void gather(const fg_lot_analysis *analysis, const fg_lot_quantity *quantity,
-                   const size_t *group, const size_t *owner, layout *l) {
+static void gather_entries(const fg_lot_analysis *analysis, const fg_lot_quantity *quantity,
+                           const size_t *group, const size_t *owner, layout *l) {
   for (size_t i = 0; i < analysis->foil_count; i++) {
     const fg_foil *foil = analysis->foils[i].foil;
     if (group[i] == FG_NO_COLUMN || !fg_foil_is_measured(foil)) continue;
@@ -49,11 +49,11 @@ static void gather(const fg_lot_analysis *analysis, const fg_lot_quantity *quant
     if (at == l->levels->count)
       l->levels->foil[l->levels->count++] = (fg_foil_level){.group = group[i], .owner = i};
     if (quantity->owner == FG_QUANTITY_OF_FOIL)
-      add_value(l, at, 0, fg_quantity_value(quantity->row, foil));
+      add_entry(l, at, 0, fg_quantity_value(quantity->row, foil));
     for (size_t k = 0; k < fg_part_count(foil, quantity->owner); k++) {
       const fg_foil_part part = fg_part_at(foil, quantity->owner, k);
       if (fg_lot_part_counts(foil, quantity->owner, &part))
-        add_value(l, at, fg_lot_part_number(foil, &part),
+        add_entry(l, at, fg_lot_part_number(foil, &part),
                   fg_quantity_value(quantity->row, part.object));
     }
   }
@@ -70,7 +70,7 @@ static void fit_levels(const layout *l) {
 }
 
 /* Returns the largest step of an effect. */
-static double fit_places(const layout *l) {
+static double fit_place_effects(const layout *l) {
   double mean = 0, used = 0, step = 0;
   for (size_t p = 0; p < l->places; p++)
     l->sum[p] = 0;
@@ -93,21 +93,21 @@ static double fit_places(const layout *l) {
 }
 
 /* By turns, which is least squares as the two factors are all there is (Gauss-Seidel). */
-static void fit(const layout *l) {
+static void iterate_levels(const layout *l) {
   double size = 0;
   fit_levels(l);
   for (size_t i = 0; i < l->levels->count; i++)
     size = fmax(size, fabs(l->levels->foil[i].level));
   if (l->places < 2) return;
   for (int sweep = 0; sweep < SWEEPS_MAX; sweep++) {
-    double step = fit_places(l);
+    double step = fit_place_effects(l);
     fit_levels(l);
     if (step <= CONVERGED * size) return;
   }
 }
 
 /* The places take degrees of freedom, which all foils share by their values. */
-static void find_within(const layout *l) {
+static void find_within_sd(const layout *l) {
   double dof = 0, places = 0;
   fg_foil_level *foil = l->levels->foil;
   for (size_t p = 0; p < l->places; p++)
@@ -147,14 +147,14 @@ fg_status fg_foil_levels_make(fg_context *ctx, const fg_lot_analysis *analysis,
   FG_TRY_EXIT(
       fg_memory_allocate(ctx, analysis->foil_count, sizeof *levels->foil, (void **)&levels->foil));
   FG_TRY_EXIT(fg_memory_allocate(ctx, max, sizeof *l.entry, (void **)&l.entry));
-  gather(analysis, quantity, group, owner, &l);
+  gather_entries(analysis, quantity, group, owner, &l);
   FG_TRY_EXIT(fg_memory_allocate(ctx, l.places, sizeof *l.effect, (void **)&l.effect));
   FG_TRY_EXIT(fg_memory_allocate(ctx, l.places, sizeof *l.sum, (void **)&l.sum));
   FG_TRY_EXIT(fg_memory_allocate(ctx, l.places, sizeof *l.count, (void **)&l.count));
   for (size_t e = 0; e < l.entries; e++)
     l.count[l.entry[e].place]++;
-  fit(&l);
-  find_within(&l);
+  iterate_levels(&l);
+  find_within_sd(&l);
   drop_empty(levels);
 exit:
   free(l.entry);

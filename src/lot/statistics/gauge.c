@@ -33,8 +33,8 @@ static size_t count_trials(const fg_lot_analysis *analysis, size_t part_column,
 }
 
 /* False when the scans do not fill the table: then there is no study. */
-static bool fill_table(const fg_lot_analysis *analysis, gauge_table *table, size_t part_column,
-                       size_t operator_column) {
+static bool fill_gauge_table(const fg_lot_analysis *analysis, gauge_table *table,
+                             size_t part_column, size_t operator_column) {
   const fg_manifest *manifest = &analysis->lot->manifest;
   size_t parts = table->parts.count, operators = table->operators.count;
   for (size_t i = 0; i < analysis->foil_count; i++) {
@@ -53,7 +53,7 @@ static bool fill_table(const fg_lot_analysis *analysis, gauge_table *table, size
   return true;
 }
 
-static double foil_value(const fg_lot_quantity *quantity, const fg_foil *foil, int number) {
+static double value_of_number(const fg_lot_quantity *quantity, const fg_foil *foil, int number) {
   if (!number) return fg_quantity_value(quantity->row, foil);
   for (size_t i = 0; i < fg_part_count(foil, quantity->owner); i++) {
     const fg_foil_part part = fg_part_at(foil, quantity->owner, i);
@@ -64,12 +64,12 @@ static double foil_value(const fg_lot_quantity *quantity, const fg_foil *foil, i
   return NAN;
 }
 
-static fg_status study(fg_context *ctx, fg_lot_analysis *analysis, const gauge_table *table,
-                       const fg_lot_quantity *quantity, int number, double *values) {
+static fg_status study_number(fg_context *ctx, fg_lot_analysis *analysis, const gauge_table *table,
+                              const fg_lot_quantity *quantity, int number, double *values) {
   fg_lot_gauge gauge = {.quantity = quantity, .number = number};
   size_t count = table->parts.count * table->operators.count * table->trials;
   for (size_t i = 0; i < count; i++) {
-    values[i] = foil_value(quantity, table->foil[i], number);
+    values[i] = value_of_number(quantity, table->foil[i], number);
     if (!isfinite(values[i])) return FG_OK;
   }
   FG_TRY(fg_gauge_study_compute(ctx, values, table->parts.count, table->operators.count,
@@ -80,19 +80,19 @@ static fg_status study(fg_context *ctx, fg_lot_analysis *analysis, const gauge_t
   return FG_OK;
 }
 
-static fg_status study_all(fg_context *ctx, fg_lot_analysis *analysis, const gauge_table *table,
-                           double *values) {
+static fg_status study_quantities(fg_context *ctx, fg_lot_analysis *analysis,
+                                  const gauge_table *table, double *values) {
   for (size_t q = 0; q < analysis->quantity_count; q++) {
     const fg_lot_quantity *quantity = &analysis->quantities[q];
     int parts = (int)quantity->places;
     for (int number = parts ? 1 : 0; number <= parts; number++)
-      FG_TRY(study(ctx, analysis, table, quantity, number, values));
+      FG_TRY(study_number(ctx, analysis, table, quantity, number, values));
   }
   return FG_OK;
 }
 
-static fg_status run_study(fg_context *ctx, fg_lot_analysis *analysis, gauge_table *table,
-                           size_t part_column, size_t operator_column) {
+static fg_status run_gauge_study(fg_context *ctx, fg_lot_analysis *analysis, gauge_table *table,
+                                 size_t part_column, size_t operator_column) {
   void *values = NULL, *block;
   fg_status status = FG_OK;
   fg_lot_list_words(analysis, part_column, &table->parts);
@@ -107,8 +107,8 @@ static fg_status run_study(fg_context *ctx, fg_lot_analysis *analysis, gauge_tab
   FG_TRY_EXIT(fg_memory_allocate(ctx, analysis->foil_count, sizeof *table->foil, &block));
   table->foil = block;
   FG_TRY_EXIT(fg_memory_allocate(ctx, analysis->foil_count, sizeof(double), &values));
-  if (fill_table(analysis, table, part_column, operator_column))
-    FG_TRY_EXIT(study_all(ctx, analysis, table, values));
+  if (fill_gauge_table(analysis, table, part_column, operator_column))
+    FG_TRY_EXIT(study_quantities(ctx, analysis, table, values));
 exit:
   free(values);
   free(table->seen);
@@ -123,7 +123,7 @@ fg_status fg_lot_analyse_gauge(fg_context *ctx, fg_lot_analysis *analysis) {
   void *block;
   if (part == FG_NO_COLUMN || who == FG_NO_COLUMN) return FG_OK;
   FG_TRY(fg_memory_allocate(ctx, 1, sizeof(gauge_table), &block));
-  fg_status status = run_study(ctx, analysis, block, part, who);
+  fg_status status = run_gauge_study(ctx, analysis, block, part, who);
   free(block);
   return status;
 }

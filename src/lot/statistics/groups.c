@@ -24,7 +24,7 @@ typedef struct grouping {
   size_t draws;
 } grouping;
 
-static double sd_of(const double *values, size_t count, double mean) {
+static double sd_about_mean(const double *values, size_t count, double mean) {
   return sqrt(fg_squares_about(values, count, mean) / (double)(count - 1));
 }
 
@@ -89,9 +89,9 @@ static fg_status add_difference(fg_context *ctx, fg_lot_analysis *analysis,
   return FG_OK;
 }
 
-static fg_status compare(fg_context *ctx, fg_lot_analysis *analysis,
-                         const fg_lot_quantity *quantity, const fg_foil_levels *levels,
-                         const grouping *by, size_t a, size_t b) {
+static fg_status compare_pair(fg_context *ctx, fg_lot_analysis *analysis,
+                              const fg_lot_quantity *quantity, const fg_foil_levels *levels,
+                              const grouping *by, size_t a, size_t b) {
   fg_lot_difference d = {.quantity = quantity, .a = by->words->word[a], .b = by->words->word[b]};
   fg_relabelled_spread spread;
   bool compared;
@@ -106,8 +106,8 @@ static fg_status compare(fg_context *ctx, fg_lot_analysis *analysis,
   if (!compared) return FG_OK;
   d.mean_a = fg_mean(by->values, d.foils_a);
   d.mean_b = fg_mean(second, d.foils_b);
-  d.sd_a = sd_of(by->values, d.foils_a, d.mean_a);
-  d.sd_b = sd_of(second, d.foils_b, d.mean_b);
+  d.sd_a = sd_about_mean(by->values, d.foils_a, d.mean_a);
+  d.sd_b = sd_about_mean(second, d.foils_b, d.mean_b);
   FG_TRY(fg_relabel_spreads(ctx, (fg_sample){by->values, d.foils_a}, (fg_sample){second, d.foils_b},
                             by->draws, &spread));
   d.p[FG_LOT_TEST_MEANS] = d.comparison.p_means;
@@ -124,13 +124,13 @@ static fg_status compare_quantity(fg_context *ctx, fg_lot_analysis *analysis,
   fg_status status = FG_OK;
   for (size_t a = 0; a < by->words->count; a++)
     for (size_t b = a + 1; b < by->words->count && status == FG_OK; b++)
-      status = compare(ctx, analysis, quantity, &levels, by, a, b);
+      status = compare_pair(ctx, analysis, quantity, &levels, by, a, b);
   fg_foil_levels_free(&levels);
   return status;
 }
 
 /* One family of all tests: a reader looks for the smallest p of the page. */
-static fg_status adjust(fg_context *ctx, fg_lot_analysis *analysis) {
+static fg_status adjust_p_values(fg_context *ctx, fg_lot_analysis *analysis) {
   size_t count = analysis->difference_count * FG_LOT_GROUP_TESTS;
   double *p = NULL;
   FG_TRY(fg_memory_allocate(ctx, 2 * count, sizeof *p, (void **)&p));
@@ -153,8 +153,8 @@ bool fg_lot_group_differs(const fg_lot_analysis *analysis, double p_holm) {
   return p_holm < 1 - analysis->lot->settings.confidence;
 }
 
-static fg_status compare_all(fg_context *ctx, fg_lot_analysis *analysis, size_t column,
-                             const fg_manifest_words *words) {
+static fg_status compare_groups(fg_context *ctx, fg_lot_analysis *analysis, size_t column,
+                                const fg_manifest_words *words) {
   grouping by = {.words = words};
   fg_status status = FG_OK;
   size_t foils = analysis->foil_count, pairs = words->count * (words->count - 1) / 2;
@@ -172,7 +172,7 @@ static fg_status compare_all(fg_context *ctx, fg_lot_analysis *analysis, size_t 
   }
   for (size_t q = 0; q < analysis->quantity_count; q++)
     FG_TRY_EXIT(compare_quantity(ctx, analysis, &analysis->quantities[q], &by));
-  FG_TRY_EXIT(adjust(ctx, analysis));
+  FG_TRY_EXIT(adjust_p_values(ctx, analysis));
 exit:
   free(by.group);
   free(by.owner);
@@ -196,7 +196,7 @@ fg_status fg_lot_analyse_groups(fg_context *ctx, fg_lot_analysis *analysis) {
     status = fg_fail(ctx, FG_ERR_DATA, "group_column '%s' has %zu groups; at most %d are compared",
                      lot->settings.group_column, words->count, FG_LOT_GROUPS_MAX);
   else if (words->count > 1)
-    status = compare_all(ctx, analysis, column, words);
+    status = compare_groups(ctx, analysis, column, words);
   free(words);
   return status;
 }

@@ -10,7 +10,7 @@
 #include "lot/statistics/analysis.h"
 #include "quantity/quantity_rows.h"
 
-static bool is_listed(const fg_lot_analysis *analysis, const fg_quantity *row) {
+static bool is_quantity_listed(const fg_lot_analysis *analysis, const fg_quantity *row) {
   for (size_t i = 0; i < analysis->quantity_count; i++)
     if (analysis->quantities[i].row == row) return true;
   return false;
@@ -18,7 +18,7 @@ static bool is_listed(const fg_lot_analysis *analysis, const fg_quantity *row) {
 
 static void list_quantity(fg_lot_analysis *analysis, fg_quantity_owner owner,
                           const fg_quantity *row) {
-  if (!row || is_listed(analysis, row)) return;
+  if (!row || is_quantity_listed(analysis, row)) return;
   const fg_design *design = &analysis->lot->settings.design;
   fg_lot_quantity *quantity = &analysis->quantities[analysis->quantity_count++];
   *quantity = (fg_lot_quantity){.row = row, .owner = owner, .mode = NAN};
@@ -49,14 +49,14 @@ static fg_status list_quantities(fg_context *ctx, fg_lot_analysis *analysis) {
   return FG_OK;
 }
 
-static void take_value(fg_lot_quantity *quantity, size_t foil, double value) {
+static void append_value(fg_lot_quantity *quantity, size_t foil, double value) {
   if (!isfinite(value)) return;
   quantity->value[quantity->count++] = value;
   quantity->size[foil]++;
 }
 
-static fg_status collect(fg_context *ctx, const fg_lot_analysis *analysis,
-                         fg_lot_quantity *quantity) {
+static fg_status collect_values(fg_context *ctx, const fg_lot_analysis *analysis,
+                                fg_lot_quantity *quantity) {
   size_t max = 0;
   void *block;
   for (size_t i = 0; i < analysis->foil_count; i++)
@@ -69,18 +69,18 @@ static fg_status collect(fg_context *ctx, const fg_lot_analysis *analysis,
     const fg_foil *foil = analysis->foils[i].foil;
     if (!fg_foil_is_measured(foil)) continue;
     if (quantity->owner == FG_QUANTITY_OF_FOIL)
-      take_value(quantity, i, fg_quantity_value(quantity->row, foil));
+      append_value(quantity, i, fg_quantity_value(quantity->row, foil));
     for (size_t k = 0; k < fg_part_count(foil, quantity->owner); k++) {
       const fg_foil_part part = fg_part_at(foil, quantity->owner, k);
       if (fg_lot_part_counts(foil, quantity->owner, &part))
-        take_value(quantity, i, fg_quantity_value(quantity->row, part.object));
+        append_value(quantity, i, fg_quantity_value(quantity->row, part.object));
     }
   }
   return FG_OK;
 }
 
-static fg_status describe(fg_context *ctx, const fg_lot_settings *settings,
-                          fg_lot_quantity *quantity) {
+static fg_status describe_values(fg_context *ctx, const fg_lot_settings *settings,
+                                 fg_lot_quantity *quantity) {
   fg_lot_spread spread;
   void *block;
   FG_TRY(fg_lot_spread_of(ctx, quantity->value, quantity->count, settings->bandwidth, &spread));
@@ -151,8 +151,8 @@ static fg_status describe_places(fg_context *ctx, const fg_lot_analysis *analysi
 }
 
 /* The mean of each foil's values, foils without any left out. */
-static fg_status foil_means(fg_context *ctx, const fg_lot_quantity *quantity, size_t foils,
-                            double **means, size_t *count) {
+static fg_status find_foil_means(fg_context *ctx, const fg_lot_quantity *quantity, size_t foils,
+                                 double **means, size_t *count) {
   void *block;
   size_t at = 0;
   FG_TRY(fg_memory_allocate(ctx, foils, sizeof **means, &block));
@@ -172,7 +172,7 @@ fg_status fg_lot_chart_quantity(fg_context *ctx, unsigned rules, size_t foils,
                                 fg_lot_quantity *quantity) {
   double *means;
   size_t count;
-  FG_TRY(foil_means(ctx, quantity, foils, &means, &count));
+  FG_TRY(find_foil_means(ctx, quantity, foils, &means, &count));
   fg_status status = FG_OK;
   quantity->has_chart = count >= 2;
   if (quantity->has_chart)
@@ -222,8 +222,8 @@ fg_status fg_lot_analyse_quantities(fg_context *ctx, fg_lot_analysis *analysis) 
   FG_TRY(list_quantities(ctx, analysis));
   for (size_t i = 0; i < analysis->quantity_count; i++) {
     fg_lot_quantity *quantity = &analysis->quantities[i];
-    FG_TRY(collect(ctx, analysis, quantity));
-    FG_TRY(describe(ctx, &analysis->lot->settings, quantity));
+    FG_TRY(collect_values(ctx, analysis, quantity));
+    FG_TRY(describe_values(ctx, &analysis->lot->settings, quantity));
     FG_TRY(describe_places(ctx, analysis, quantity));
     FG_TRY(fg_lot_chart_quantity(ctx, analysis->lot->settings.run_rules, analysis->foil_count,
                                  quantity));

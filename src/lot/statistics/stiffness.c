@@ -49,7 +49,7 @@ static fg_status stiffness_of_design(fg_context *ctx, const fg_lot_settings *set
 
 enum { COLUMNS = 9 + FG_STIFFNESS_MODELS };
 
-static void list_columns(fg_bump_columns *columns, double **all[COLUMNS]) {
+static void list_bump_columns(fg_bump_columns *columns, double **all[COLUMNS]) {
   double **const named[] = {&columns->radius,      &columns->arc_length, &columns->arch_radius,
                             &columns->arch_length, &columns->thickness,  &columns->strip,
                             &columns->measurement, &columns->foot,       &columns->designed};
@@ -63,7 +63,7 @@ static void list_columns(fg_bump_columns *columns, double **all[COLUMNS]) {
 static fg_status allocate_columns(fg_context *ctx, size_t count, fg_bump_columns *columns) {
   double **all[COLUMNS];
   void *block;
-  list_columns(columns, all);
+  list_bump_columns(columns, all);
   for (size_t i = 0; i < COLUMNS; i++) {
     FG_TRY(fg_memory_allocate(ctx, count, sizeof(double), &block));
     *all[i] = block;
@@ -73,14 +73,14 @@ static fg_status allocate_columns(fg_context *ctx, size_t count, fg_bump_columns
 
 static void free_columns(fg_bump_columns *columns) {
   double **all[COLUMNS];
-  list_columns(columns, all);
+  list_bump_columns(columns, all);
   for (size_t i = 0; i < COLUMNS; i++)
     free(*all[i]);
 }
 
 /* Of the models beside the arch; NaN where one gives none. */
-static void add_models(const fg_lot_settings *settings, const fg_lot_stiffness *result,
-                       const fg_arch *arch, fg_bump_columns *columns) {
+static void add_model_ratios(const fg_lot_settings *settings, const fg_lot_stiffness *result,
+                             const fg_arch *arch, fg_bump_columns *columns) {
   for (int i = 1; i < FG_STIFFNESS_MODELS; i++) {
     double stiffness = NAN;
     fg_context unused;
@@ -92,8 +92,8 @@ static void add_models(const fg_lot_settings *settings, const fg_lot_stiffness *
 }
 
 /* A line of the columns; what the bump's stiffness over the design's is. */
-static double add_bump(const fg_lot_analysis *analysis, const fg_foil *foil, const fg_bump *bump,
-                       fg_bump_columns *columns) {
+static double add_stiffness_row(const fg_lot_analysis *analysis, const fg_foil *foil,
+                                const fg_bump *bump, fg_bump_columns *columns) {
   const fg_lot_settings *settings = &analysis->lot->settings;
   double thickness_mm = fg_foil_thickness(&settings->design, foil).mm;
   double radius = bump->radius_mm, angle = bump->bump_angle_deg, foot;
@@ -114,26 +114,27 @@ static double add_bump(const fg_lot_analysis *analysis, const fg_foil *foil, con
   fg_quantity_narrow_calibrated(FG_QUANTITY_OF_BUMP, &scattered, &bump->calibrated);
   columns->measurement[at] =
       fg_bump_stiffness_variance(&foil->overall, &scattered, &result->sensitivity);
-  add_models(settings, result, &arch, columns);
+  add_model_ratios(settings, result, &arch, columns);
   columns->designed[at] =
       stiffness_ratio(settings, result, settings->design.thickness_mm, radius, angle, NULL);
   columns->count++;
   return ratio;
 }
 
-static void fill_columns(fg_lot_analysis *analysis, fg_bump_columns *columns) {
+static void fill_bump_columns(fg_lot_analysis *analysis, fg_bump_columns *columns) {
   size_t at = 0;
   for (size_t i = 0; i < analysis->foil_count; i++) {
     const fg_foil *foil = analysis->foils[i].foil;
     for (size_t k = 0; k < foil->bump_count; k++)
-      analysis->stiffness.normalised[at++] = add_bump(analysis, foil, &foil->bumps[k], columns);
+      analysis->stiffness.normalised[at++] =
+          add_stiffness_row(analysis, foil, &foil->bumps[k], columns);
   }
 }
 
 /* Radius and arc length are drawn apart: the first carries the springback, the second what is left
  * of the angle when the first is taken out. Every bump's thickness comes equally often. */
-static fg_status resample(fg_context *ctx, const fg_lot_settings *settings,
-                          const fg_bump_columns *columns, fg_lot_stiffness *result) {
+static fg_status resample_stiffness(fg_context *ctx, const fg_lot_settings *settings,
+                                    const fg_bump_columns *columns, fg_lot_stiffness *result) {
   fg_density radius = {0}, arc_length = {0};
   void *block = NULL;
   fg_status status = FG_OK;
@@ -158,7 +159,7 @@ exit:
   return status;
 }
 
-static bool differ(const double *values, size_t count) {
+static bool has_different_values(const double *values, size_t count) {
   for (size_t i = 1; i < count; i++)
     if (values[i] != values[0]) return true;
   return false;
@@ -202,9 +203,10 @@ fg_status fg_lot_analyse_stiffness(fg_context *ctx, fg_lot_analysis *analysis) {
   FG_TRY_EXIT(fg_memory_allocate(ctx, max, sizeof(double), &block));
   result->normalised = block;
   FG_TRY_EXIT(allocate_columns(ctx, max, &columns));
-  fill_columns(analysis, &columns);
-  analysis->has_stiffness = differ(columns.radius, columns.count) &&
-                            differ(columns.arc_length, columns.count) && settings->resamples > 1;
+  fill_bump_columns(analysis, &columns);
+  analysis->has_stiffness = has_different_values(columns.radius, columns.count) &&
+                            has_different_values(columns.arc_length, columns.count) &&
+                            settings->resamples > 1;
   if (!analysis->has_stiffness) goto exit;
   FG_TRY_EXIT(fg_lot_spread_of(ctx, columns.ratio[0], columns.count, settings->bandwidth,
                                &result->measured));
@@ -219,7 +221,7 @@ fg_status fg_lot_analyse_stiffness(fg_context *ctx, fg_lot_analysis *analysis) {
     result->u_by_thickness = fabs(result->sensitivity.thickness) * result->measured.mean *
                              analysis->thickness.mean.u_mm / analysis->thickness.mean.mm;
   result->u_by_calibration = result->measured.mean * fg_lot_stiffness_calibration(analysis);
-  FG_TRY_EXIT(resample(ctx, settings, &columns, result));
+  FG_TRY_EXIT(resample_stiffness(ctx, settings, &columns, result));
 exit:
   free_columns(&columns);
   return status;

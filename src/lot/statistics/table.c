@@ -39,7 +39,7 @@ typedef struct reading {
 } reading;
 
 /* A lot of plain strips holds what a lot with bumps does, and has no value of much of it. */
-static fg_status find_quantity(fg_context *ctx, reading *r) {
+static fg_status find_response(fg_context *ctx, reading *r) {
   fg_foil_kind kind =
       r->out->design.kind == FG_FOIL_CANTILEVER ? FG_FOIL_CANTILEVER : FG_FOIL_CLASSICAL;
   const fg_quantity_owner owners[] = {fg_foil_kind_parts(kind), FG_QUANTITY_OF_FOIL};
@@ -54,7 +54,8 @@ static fg_status find_quantity(fg_context *ctx, reading *r) {
                  r->options->quantity, list);
 }
 
-static fg_status check_sum(fg_context *ctx, const reading *r, lot_file file, const char *expected) {
+static fg_status check_file_sum(fg_context *ctx, const reading *r, lot_file file,
+                                const char *expected) {
   if (!strcmp(r->out->sha256[file], expected)) return FG_OK;
   return fg_fail(ctx, FG_ERR_DATA,
                  "%s: not the one that %s was made with; run `foilgauge lot` with --resume",
@@ -79,8 +80,8 @@ static fg_status read_folder(fg_context *ctx, reading *r) {
     FG_TRY_EXIT(
         fg_fail(ctx, FG_ERR_DATA, "%s: not as `foilgauge lot` wrote it", out->path[MANIFEST]));
   FG_TRY_EXIT(fg_lot_load(ctx, r->folder, &r->lot));
-  FG_TRY_EXIT(check_sum(ctx, r, RECIPE, r->lot.head.recipe_sha256));
-  FG_TRY_EXIT(check_sum(ctx, r, MANIFEST, r->lot.head.manifest_sha256));
+  FG_TRY_EXIT(check_file_sum(ctx, r, RECIPE, r->lot.head.recipe_sha256));
+  FG_TRY_EXIT(check_file_sum(ctx, r, MANIFEST, r->lot.head.manifest_sha256));
   out->design = r->lot.settings.design;
 exit:
   for (int i = 0; i < FILES; i++)
@@ -88,7 +89,7 @@ exit:
   return status;
 }
 
-static bool of_parts(const reading *r) {
+static bool is_of_parts(const reading *r) {
   return fg_owner_is_part(r->owner);
 }
 
@@ -96,11 +97,11 @@ static size_t count_rows(const reading *r) {
   size_t rows = 0;
   for (size_t i = 0; i < r->lot.manifest.items; i++)
     for (size_t f = 0; f < r->lot.records[i].foil_count; f++)
-      rows += of_parts(r) ? fg_part_count(&r->lot.records[i].foils[f], r->owner) : 1;
+      rows += is_of_parts(r) ? fg_part_count(&r->lot.records[i].foils[f], r->owner) : 1;
   return rows;
 }
 
-static fg_status allocate(fg_context *ctx, reading *r) {
+static fg_status allocate_rows(fg_context *ctx, reading *r) {
   size_t rows = count_rows(r);
   FG_TRY(fg_memory_allocate(ctx, rows, sizeof *r->item, (void **)&r->item));
   FG_TRY(fg_memory_allocate(ctx, rows, sizeof *r->value, (void **)&r->value));
@@ -112,8 +113,8 @@ static fg_status allocate(fg_context *ctx, reading *r) {
 }
 
 /* A row of the object; one without a value is counted. */
-static fg_status add_row(fg_context *ctx, reading *r, size_t item, const fg_foil *foil,
-                         const fg_foil_part *part) {
+static fg_status append_row(fg_context *ctx, reading *r, size_t item, const fg_foil *foil,
+                            const fg_foil_part *part) {
   size_t at = r->rows, foils = r->lot.records[item].foil_count;
   double value = fg_quantity_value(r->row, part ? part->object : (const void *)foil);
   const fg_bump *bump = part && r->owner == FG_QUANTITY_OF_BUMP ? part->object : NULL;
@@ -134,32 +135,32 @@ static fg_status add_row(fg_context *ctx, reading *r, size_t item, const fg_foil
                        fg_part_word(r->owner), part->number);
 }
 
-static fg_status add_foil(fg_context *ctx, reading *r, size_t item, const fg_foil *foil) {
+static fg_status append_foil_rows(fg_context *ctx, reading *r, size_t item, const fg_foil *foil) {
   r->several += r->lot.records[item].foil_count > 1;
   if (!fg_foil_is_measured(foil)) {
     r->foreign++;
     return FG_OK;
   }
-  if (!of_parts(r)) return add_row(ctx, r, item, foil, NULL);
+  if (!is_of_parts(r)) return append_row(ctx, r, item, foil, NULL);
   for (size_t k = 0; k < fg_part_count(foil, r->owner); k++) {
     const fg_foil_part part = fg_part_at(foil, r->owner, k);
     bool counts = fg_lot_part_counts(foil, r->owner, &part);
     r->crushed += !counts;
-    if (counts) FG_TRY(add_row(ctx, r, item, foil, &part));
+    if (counts) FG_TRY(append_row(ctx, r, item, foil, &part));
   }
   return FG_OK;
 }
 
 static fg_status make_rows(fg_context *ctx, reading *r) {
-  FG_TRY(allocate(ctx, r));
+  FG_TRY(allocate_rows(ctx, r));
   for (size_t i = 0; i < r->lot.manifest.items; i++) {
     const fg_record *record = &r->lot.records[i];
     r->failed += record->error != NULL;
     for (size_t f = 0; f < record->foil_count; f++)
-      FG_TRY(add_foil(ctx, r, i, &record->foils[f]));
+      FG_TRY(append_foil_rows(ctx, r, i, &record->foils[f]));
   }
   if (r->rows) return FG_OK;
-  if (of_parts(r) && r->out->design.kind == FG_FOIL_ARC)
+  if (is_of_parts(r) && r->out->design.kind == FG_FOIL_ARC)
     return fg_fail(
         ctx, FG_ERR_DATA,
         "%s: a lot of plain strips (form arc) has no %s, which is of bumps; choose another "
@@ -176,7 +177,7 @@ static bool is_named(const reading *r, const char *column) {
 }
 
 /* The manifest's columns that may be causes: sound ones, and none that the table names itself. */
-static fg_status choose_columns(fg_context *ctx, reading *r) {
+static fg_status choose_cause_columns(fg_context *ctx, reading *r) {
   const char *own[] = {
       "scan", "foil", "foil_number", fg_part_word(r->owner), "radius_mm", r->options->quantity};
   const fg_column *column;
@@ -201,10 +202,10 @@ static bool has_repeats(fg_context *ctx, const reading *r, fg_status *status) {
   return repeats;
 }
 
-static fg_status fill_table(fg_context *ctx, reading *r) {
+static fg_status fill_lot_table(fg_context *ctx, reading *r) {
   fg_table *table = &r->out->table;
   fg_status status = FG_OK;
-  bool grouped = of_parts(r) || has_repeats(ctx, r, &status);
+  bool grouped = is_of_parts(r) || has_repeats(ctx, r, &status);
   FG_TRY(status);
   FG_TRY(fg_table_select(ctx, &r->manifest, r->item, r->rows, table));
   free(table->line); /* its rows are not the manifest's */
@@ -217,7 +218,7 @@ static fg_status fill_table(fg_context *ctx, reading *r) {
     r->out->group = "foil";
   }
   if (r->several) FG_TRY(fg_table_add_numbers(ctx, table, "foil_number", r->number, r->rows));
-  if (of_parts(r))
+  if (is_of_parts(r))
     FG_TRY(fg_table_add_numbers(ctx, table, fg_part_word(r->owner), r->bump, r->rows));
   if (r->options->with_radius && r->owner == FG_QUANTITY_OF_BUMP &&
       strcmp(r->options->quantity, "radius_mm") != 0)
@@ -225,7 +226,7 @@ static fg_status fill_table(fg_context *ctx, reading *r) {
   return fg_table_add_numbers(ctx, table, r->options->quantity, r->value, r->rows);
 }
 
-static fg_status say_left_out(fg_context *ctx, reading *r) {
+static fg_status describe_left_out(fg_context *ctx, reading *r) {
   bool beams = r->owner == FG_QUANTITY_OF_BEAM;
   const struct {
     size_t count;
@@ -234,9 +235,9 @@ static fg_status say_left_out(fg_context *ctx, reading *r) {
       {r->failed, "scans that could not be measured"},
       {r->foreign, "foils that are none of the design"},
       {r->crushed, beams ? "torn, bent or hidden beams" : "crushed bumps"},
-      {r->unknown, beams         ? "beams without a value"
-                   : of_parts(r) ? "bumps without a value"
-                                 : "foils without a value"},
+      {r->unknown, beams            ? "beams without a value"
+                   : is_of_parts(r) ? "bumps without a value"
+                                    : "foils without a value"},
   };
   for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
     if (counts[i].count)
@@ -245,20 +246,20 @@ static fg_status say_left_out(fg_context *ctx, reading *r) {
   return FG_OK;
 }
 
-static fg_status read_all(fg_context *ctx, reading *r) {
+static fg_status read_lot_table(fg_context *ctx, reading *r) {
   FG_TRY(read_folder(ctx, r));
-  FG_TRY(find_quantity(ctx, r));
+  FG_TRY(find_response(ctx, r));
   FG_TRY(make_rows(ctx, r));
-  FG_TRY(choose_columns(ctx, r));
-  FG_TRY(say_left_out(ctx, r));
-  return fill_table(ctx, r);
+  FG_TRY(choose_cause_columns(ctx, r));
+  FG_TRY(describe_left_out(ctx, r));
+  return fill_lot_table(ctx, r);
 }
 
 fg_status fg_lot_table_read(fg_context *ctx, const char *folder,
                             const fg_lot_table_options *options, fg_lot_table *out) {
   reading r = {.options = options, .folder = folder, .out = out};
   *out = (fg_lot_table){0};
-  fg_status status = read_all(ctx, &r);
+  fg_status status = read_lot_table(ctx, &r);
   for (size_t i = 0; i < r.rows; i++)
     free(r.label[i]);
   free(r.label);

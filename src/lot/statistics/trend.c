@@ -34,7 +34,7 @@ static double serial_correlation(const line *l, const fg_chart *chart) {
   return fmin(fmax(r + (2 + 4 * r) / n, 0), rho_max);
 }
 
-static line fit_line(const fg_chart *chart) {
+static line fit_trend(const fg_chart *chart) {
   double n = (double)chart->count, cross = 0;
   line l = {.middle = (n - 1) / 2, .squares = n * (n * n - 1) / 12};
   for (size_t i = 0; i < chart->count; i++) {
@@ -49,8 +49,8 @@ static line fit_line(const fg_chart *chart) {
 }
 
 /* The chart's signals without the line. */
-static fg_status count_left(fg_context *ctx, unsigned rules, const line *l, const fg_chart *chart,
-                            size_t *signals) {
+static fg_status count_signals_left(fg_context *ctx, unsigned rules, const line *l,
+                                    const fg_chart *chart, size_t *signals) {
   void *block;
   fg_chart flat;
   double sigma;
@@ -71,7 +71,7 @@ fg_status fg_lot_find_trend(fg_context *ctx, unsigned rules, double level,
   const fg_chart *chart = &quantity->chart;
   quantity->trend = (fg_lot_trend){0};
   if (chart->count < FOILS_MIN) return FG_OK;
-  line l = fit_line(chart);
+  line l = fit_trend(chart);
   double n = (double)chart->count, factor = (1 + l.rho) / (1 - l.rho);
   double dof = fmax(n / factor - 2, 1);
   double u = sqrt(l.residual_ss / (n - 2) / l.squares * factor);
@@ -84,5 +84,5 @@ fg_status fg_lot_find_trend(fg_context *ctx, unsigned rules, double level,
                                    .correlation = l.rho,
                                    .foils = chart->count,
                                    .p_value = p_value};
-  return count_left(ctx, rules, &l, chart, &quantity->trend.signals_left);
+  return count_signals_left(ctx, rules, &l, chart, &quantity->trend.signals_left);
 }

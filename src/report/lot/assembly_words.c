@@ -8,7 +8,7 @@
 #include "core/text.h"
 #include "lot/statistics/analysis.h"
 
-__attribute__((format(printf, 3, 4))) static void add(char *text, size_t size, const char *format,
+__attribute__((format(printf, 3, 4))) static void append_words(char *text, size_t size, const char *format,
                                                       ...) {
   size_t used = strlen(text);
   va_list list;
@@ -18,7 +18,7 @@ __attribute__((format(printf, 3, 4))) static void add(char *text, size_t size, c
 }
 
 /* "97.4", "99.96", "above 99.99": as many digits as tell it from all and from none. */
-static const char *percent(double share, char text[16]) {
+static const char *format_percent(double share, char text[16]) {
   double value = 100 * share;
   if (value > 99.99 && value < 100) return "above 99.99";
   if (value > 0 && value < 0.01) return "below 0.01";
@@ -35,26 +35,27 @@ static void say_how_many(const fg_lot_assembly *assembly, char *text, size_t siz
   const fg_assembly_share *share = &assembly->drawn.assembled;
   size_t foils = assembly->stock.foils, pads = assembly->plan.layout.pads;
   char now[16], low[16], high[16], sure[16], maybe[16];
-  add(text, size,
+  append_words(text, size,
       "%zu of %zu bearings drawn from %zu foil%s assemble: %s %% (%s to %s %% as so few foils tell",
-      share->count, assembly->plan.bearings, foils, fg_plural(foils), percent(share->share, now),
-      percent(share->foils_low, low), percent(share->foils_high, high));
+      share->count, assembly->plan.bearings, foils, fg_plural(foils),
+      format_percent(share->share, now), format_percent(share->foils_low, low),
+      format_percent(share->foils_high, high));
   if (share->surely < share->possibly)
-    add(text, size, ", %s to %s %% as the measurement does", percent(share->surely, sure),
-        percent(share->possibly, maybe));
-  add(text, size, "). That is %.1f of the %zu bearing%s that these foils make.",
+    append_words(text, size, ", %s to %s %% as the measurement does", format_percent(share->surely, sure),
+        format_percent(share->possibly, maybe));
+  append_words(text, size, "). That is %.1f of the %zu bearing%s that these foils make.",
       share->share * (double)(foils / pads), foils / pads, fg_plural(foils / pads));
 }
 
-static void put_limit(const fg_assembly_limit *limit, char *text, size_t size) {
-  add(text, size, "%s", limit->row->words);
+static void append_limit(const fg_assembly_limit *limit, char *text, size_t size) {
+  append_words(text, size, "%s", limit->row->words);
   if (isfinite(limit->lower) && limit->lower == 0 && !isfinite(limit->upper)) {
-    add(text, size, " below 0, the rotor touches");
+    append_words(text, size, " below 0, the rotor touches");
     return;
   }
-  if (isfinite(limit->lower)) add(text, size, " below %.4g µm", 1000 * limit->lower);
+  if (isfinite(limit->lower)) append_words(text, size, " below %.4g µm", 1000 * limit->lower);
   if (isfinite(limit->upper))
-    add(text, size, "%s above %.4g µm", isfinite(limit->lower) ? " or" : "", 1000 * limit->upper);
+    append_words(text, size, "%s above %.4g µm", isfinite(limit->lower) ? " or" : "", 1000 * limit->upper);
 }
 
 static void say_what_rejects(const fg_lot_assembly *assembly, char *text, size_t size) {
@@ -64,38 +65,38 @@ static void say_what_rejects(const fg_lot_assembly *assembly, char *text, size_t
   for (size_t i = 0; i < plan->limits; i++)
     if (drawn->rejected[i] > drawn->rejected[first]) first = i;
   if (!rejected) {
-    add(text, size, "Nothing rejects any of them.");
+    append_words(text, size, "Nothing rejects any of them.");
     return;
   }
-  add(text, size, "What rejects the other %zu: ", rejected);
-  put_limit(&plan->limit[first], text, size);
-  add(text, size, " (%zu of them, %zu by this alone)", drawn->rejected[first], drawn->alone[first]);
+  append_words(text, size, "What rejects the other %zu: ", rejected);
+  append_limit(&plan->limit[first], text, size);
+  append_words(text, size, " (%zu of them, %zu by this alone)", drawn->rejected[first], drawn->alone[first]);
   for (size_t i = 0; i < plan->limits; i++) {
     if (i == first || !drawn->rejected[i]) continue;
-    add(text, size, "; ");
-    put_limit(&plan->limit[i], text, size);
-    add(text, size, " (%zu, %zu alone)", drawn->rejected[i], drawn->alone[i]);
+    append_words(text, size, "; ");
+    append_limit(&plan->limit[i], text, size);
+    append_words(text, size, " (%zu, %zu alone)", drawn->rejected[i], drawn->alone[i]);
   }
-  add(text, size, ".");
+  append_words(text, size, ".");
 }
 
 static void say_what_would_help(const fg_lot_assembly *assembly, char *text, size_t size) {
   const fg_lot_change *best = &assembly->change[0];
   char now[16], then[16];
   if (assembly->drawn.assembled.count == assembly->plan.bearings) {
-    add(text, size, "Every bearing drawn assembles already, so no change can show more.");
+    append_words(text, size, "Every bearing drawn assembles already, so no change can show more.");
     return;
   }
   if (!assembly->changes || !best->clear || best->gain <= 0) {
-    add(text, size, "None of the changes tried makes more of them assemble than chance does.");
+    append_words(text, size, "None of the changes tried makes more of them assemble than chance does.");
     return;
   }
-  add(text, size, "What would change it most: %s: %s %% would assemble (%+.1f points)", best->words,
-      percent(best->share, now), 100 * best->gain);
+  append_words(text, size, "What would change it most: %s: %s %% would assemble (%+.1f points)", best->words,
+      format_percent(best->share, now), 100 * best->gain);
   for (size_t i = 1; i < assembly->changes && assembly->change[i].gain > 0; i++)
-    add(text, size, "%s %s, %s %%", i == 1 ? "; then" : ";", assembly->change[i].words,
-        percent(assembly->change[i].share, then));
-  add(text, size, ".");
+    append_words(text, size, "%s %s, %s %%", i == 1 ? "; then" : ";", assembly->change[i].words,
+        format_percent(assembly->change[i].share, then));
+  append_words(text, size, ".");
 }
 
 void fg_lot_say_assembly(fg_lot_analysis *analysis) {

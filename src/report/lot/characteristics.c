@@ -8,18 +8,19 @@
 #include "core/memory.h"
 #include "quantity/quantity_rows.h"
 
-static bool are_named(const fg_lot_analysis *analysis) {
+static bool has_named_bearings(const fg_lot_analysis *analysis) {
   return analysis->bearing_count && analysis->bearings[0].name;
 }
 
-static const fg_tolerance *find_tolerance(const fg_design *design, const fg_quantity *row) {
+static const fg_tolerance *find_part_tolerance(const fg_design *design, const fg_quantity *row) {
   for (size_t i = 0; i < design->tolerance_count; i++)
     if (fg_quantity_of_bearing_for(design->tolerances[i].quantity) == row)
       return &design->tolerances[i];
   return NULL;
 }
 
-static void list_of_foils(const fg_lot_analysis *analysis, fg_characteristic *list, size_t *count) {
+static void list_foil_characteristics(const fg_lot_analysis *analysis, fg_characteristic *list,
+                                      size_t *count) {
   for (size_t i = 0; i < analysis->quantity_count; i++) {
     const fg_lot_quantity *quantity = &analysis->quantities[i];
     const fg_quantity *row = quantity->row;
@@ -32,16 +33,16 @@ static void list_of_foils(const fg_lot_analysis *analysis, fg_characteristic *li
   }
 }
 
-static void list_of_bearings(const fg_lot_analysis *analysis, fg_characteristic *list,
-                             size_t *count) {
+static void list_bearing_characteristics(const fg_lot_analysis *analysis, fg_characteristic *list,
+                                         size_t *count) {
   const fg_design *design = &analysis->lot->settings.design;
   size_t rows;
   const fg_quantity *row = fg_quantities(FG_QUANTITY_OF_BEARING, &rows);
   for (size_t i = 0; i < rows; i++)
     if (row[i].characteristic)
       list[(*count)++] =
-          (fg_characteristic){&row[i], FG_QUANTITY_OF_BEARING, find_tolerance(design, &row[i]), 0,
-                              row[i].nominal(design, &analysis->lot->nominal)};
+          (fg_characteristic){&row[i], FG_QUANTITY_OF_BEARING, find_part_tolerance(design, &row[i]),
+                              0, row[i].nominal(design, &analysis->lot->nominal)};
 }
 
 fg_status fg_characteristics_list(fg_context *ctx, const fg_lot_analysis *analysis,
@@ -54,8 +55,8 @@ fg_status fg_characteristics_list(fg_context *ctx, const fg_lot_analysis *analys
   FG_TRY(fg_memory_allocate(ctx, max, sizeof **list, &block));
   *list = block;
   *count = 0;
-  list_of_foils(analysis, *list, count);
-  if (*count && are_named(analysis)) list_of_bearings(analysis, *list, count);
+  list_foil_characteristics(analysis, *list, count);
+  if (*count && has_named_bearings(analysis)) list_bearing_characteristics(analysis, *list, count);
   return FG_OK;
 }
 
@@ -86,7 +87,7 @@ fg_status fg_measured_parts_list(fg_context *ctx, const fg_lot_analysis *analysi
     return status;
   }
   bool *built = block;
-  if (are_named(analysis)) list_built(analysis, *parts, count, built);
+  if (has_named_bearings(analysis)) list_built(analysis, *parts, count, built);
   for (size_t i = 0; i < analysis->foil_count; i++)
     if (!built[i]) (*parts)[(*count)++] = (fg_measured_part){.foil = &analysis->foils[i]};
   free(built);
@@ -94,7 +95,8 @@ fg_status fg_measured_parts_list(fg_context *ctx, const fg_lot_analysis *analysi
 }
 
 /* What of the part the characteristic is of; NULL: nothing, or nothing that was measured. */
-static const void *find_object(const fg_characteristic *one, const fg_measured_part *part) {
+static const void *find_measured_object(const fg_characteristic *one,
+                                        const fg_measured_part *part) {
   if (one->owner == FG_QUANTITY_OF_BEARING)
     return !part->foil && part->bearing->known ? &part->bearing->clearance : NULL;
   if (!part->foil || !fg_foil_is_measured(part->foil->foil)) return NULL;
@@ -109,7 +111,7 @@ static const void *find_object(const fg_characteristic *one, const fg_measured_p
 
 double fg_characteristic_value(const fg_characteristic *characteristic,
                                const fg_measured_part *part, double *u) {
-  const void *object = find_object(characteristic, part);
+  const void *object = find_measured_object(characteristic, part);
   *u = object ? fg_quantity_uncertainty(characteristic->row, object) : NAN;
   return object ? fg_quantity_value(characteristic->row, object) : NAN;
 }

@@ -14,24 +14,24 @@
 #include "report/flag_names.h"
 #include "report/lot/files.h"
 
-static void put_text(FILE *out, const char *text) {
+static void put_csv_text(FILE *out, const char *text) {
   fg_csv_put_text(out, text, fg_utf8_put);
 }
 
-static void put_columns(FILE *out, const fg_manifest *manifest, size_t item) {
+static void put_manifest_cells(FILE *out, const fg_manifest *manifest, size_t item) {
   for (size_t i = 0; i < manifest->columns; i++) {
     if (i) fputc(',', out);
-    put_text(out, fg_manifest_cell(manifest, item, i));
+    put_csv_text(out, fg_manifest_cell(manifest, item, i));
   }
 }
 
-static void put_heading(FILE *out, const fg_manifest *manifest, const char *more,
-                        fg_quantity_owner owner) {
+static void put_csv_heading(FILE *out, const fg_manifest *manifest, const char *more,
+                            fg_quantity_owner owner) {
   size_t count;
   const fg_quantity *rows = fg_quantities(owner, &count);
   for (size_t i = 0; i < manifest->columns; i++) {
     if (i) fputc(',', out);
-    put_text(out, manifest->name[i]);
+    put_csv_text(out, manifest->name[i]);
   }
   fputs(more, out);
   for (size_t i = 0; i < count; i++) {
@@ -45,7 +45,7 @@ static void put_heading(FILE *out, const fg_manifest *manifest, const char *more
   fputc('\n', out);
 }
 
-static void put_values(FILE *out, fg_quantity_owner owner, const void *object) {
+static void put_quantity_cells(FILE *out, fg_quantity_owner owner, const void *object) {
   size_t count;
   const fg_quantity *rows = fg_quantities(owner, &count);
   for (size_t i = 0; i < count; i++) {
@@ -59,12 +59,12 @@ static void put_values(FILE *out, fg_quantity_owner owner, const void *object) {
 }
 
 /* Every cell that the heading names, though empty: a reader counts them. */
-static void put_failed(FILE *out, const fg_lot *lot, size_t item) {
+static void put_failed_scan(FILE *out, const fg_lot *lot, size_t item) {
   size_t rows;
   const fg_quantity *row = fg_quantities(FG_QUANTITY_OF_FOIL, &rows);
-  put_columns(out, &lot->manifest, item);
+  put_manifest_cells(out, &lot->manifest, item);
   fprintf(out, ",,,not_measured,%s,", lot->records[item].repeat_of ? "repeated_scan" : "");
-  put_text(out, lot->records[item].error);
+  put_csv_text(out, lot->records[item].error);
   for (size_t i = 0; i < rows; i++)
     if (row[i].kind != FG_QUANTITY_PAIR) fputs(fg_quantity_has_u(&row[i]) ? ",," : ",", out);
   fputc('\n', out);
@@ -73,20 +73,21 @@ static void put_failed(FILE *out, const fg_lot *lot, size_t item) {
 fg_status fg_lot_write_foils_csv(fg_context *ctx, const fg_lot_analysis *analysis, FILE *out) {
   const fg_lot *lot = analysis->lot;
   size_t next = 0;
-  put_heading(out, &lot->manifest, ",foil_number,page,verdict,flags,error", FG_QUANTITY_OF_FOIL);
+  put_csv_heading(out, &lot->manifest, ",foil_number,page,verdict,flags,error",
+                  FG_QUANTITY_OF_FOIL);
   for (size_t item = 0; item < lot->manifest.items; item++) {
-    if (lot->records[item].error) put_failed(out, lot, item);
+    if (lot->records[item].error) put_failed_scan(out, lot, item);
     for (; next < analysis->foil_count && analysis->foils[next].item == item; next++) {
       const fg_lot_foil *foil = &analysis->foils[next];
-      put_columns(out, &lot->manifest, item);
+      put_manifest_cells(out, &lot->manifest, item);
       fprintf(out, ",%d,", foil->foil->number);
-      if (analysis->pages && analysis->pages[item]) put_text(out, analysis->pages[item]);
+      if (analysis->pages && analysis->pages[item]) put_csv_text(out, analysis->pages[item]);
       fprintf(out, ",%s", fg_verdict_word(foil->verdict));
       fg_csv_put_flags(out, fg_foil_flag_words(), foil->foil->flags,
                        foil->foil->strip.picture.findings);
       fputc(',', out);
-      put_text(out, foil->foil->error);
-      put_values(out, FG_QUANTITY_OF_FOIL, foil->foil);
+      put_csv_text(out, foil->foil->error);
+      put_quantity_cells(out, FG_QUANTITY_OF_FOIL, foil->foil);
     }
   }
   return fg_stream_finish(ctx, out, "foils.csv");
@@ -105,22 +106,22 @@ fg_status fg_lot_write_bumps_csv(fg_context *ctx, const fg_lot_analysis *analysi
   const double *stiffness = analysis->stiffness.normalised;
   size_t at = 0;
   bool dies = analysis->lot->settings.die_count > 0;
-  put_heading(out, manifest,
-              dies ? ",foil_number,bump,flags,normalised_stiffness,die_radius_mm,"
-                     "radius_error_to_die_pct,u_radius_error_to_die_pct,verdict"
-                   : ",foil_number,bump,flags,normalised_stiffness,verdict",
-              FG_QUANTITY_OF_BUMP);
+  put_csv_heading(out, manifest,
+                  dies ? ",foil_number,bump,flags,normalised_stiffness,die_radius_mm,"
+                         "radius_error_to_die_pct,u_radius_error_to_die_pct,verdict"
+                       : ",foil_number,bump,flags,normalised_stiffness,verdict",
+                  FG_QUANTITY_OF_BUMP);
   for (size_t i = 0; i < analysis->foil_count; i++) {
     const fg_lot_foil *foil = &analysis->foils[i];
     for (size_t k = 0; k < foil->foil->bump_count; k++) {
       const fg_bump *bump = &foil->foil->bumps[k];
-      put_columns(out, manifest, foil->item);
+      put_manifest_cells(out, manifest, foil->item);
       fprintf(out, ",%d,%d", foil->foil->number, bump->number);
       fg_csv_put_flags(out, fg_bump_flag_words(), fg_bump_flags(design, foil->foil, bump), 0);
       fg_csv_put_number(out, stiffness[at++]);
       if (dies) put_to_die(out, analysis->lot, foil, bump);
       fprintf(out, ",%s", fg_verdict_word(fg_bump_verdict(design, foil->foil, bump)));
-      put_values(out, FG_QUANTITY_OF_BUMP, bump);
+      put_quantity_cells(out, FG_QUANTITY_OF_BUMP, bump);
     }
   }
   return fg_stream_finish(ctx, out, "bumps.csv");
@@ -129,16 +130,16 @@ fg_status fg_lot_write_bumps_csv(fg_context *ctx, const fg_lot_analysis *analysi
 fg_status fg_lot_write_beams_csv(fg_context *ctx, const fg_lot_analysis *analysis, FILE *out) {
   const fg_manifest *manifest = &analysis->lot->manifest;
   const fg_design *design = &analysis->lot->settings.design;
-  put_heading(out, manifest, ",foil_number,beam,flags,verdict", FG_QUANTITY_OF_BEAM);
+  put_csv_heading(out, manifest, ",foil_number,beam,flags,verdict", FG_QUANTITY_OF_BEAM);
   for (size_t i = 0; i < analysis->foil_count; i++) {
     const fg_foil *foil = analysis->foils[i].foil;
     for (size_t k = 0; k < foil->beam_count; k++) {
       const fg_beam *beam = &foil->beams[k];
-      put_columns(out, manifest, analysis->foils[i].item);
+      put_manifest_cells(out, manifest, analysis->foils[i].item);
       fprintf(out, ",%d,%d", foil->number, beam->number);
       fg_csv_put_flags(out, fg_beam_flag_words(), fg_beam_flags(design, foil, beam), 0);
       fprintf(out, ",%s", fg_verdict_word(fg_beam_verdict(design, foil, beam)));
-      put_values(out, FG_QUANTITY_OF_BEAM, beam);
+      put_quantity_cells(out, FG_QUANTITY_OF_BEAM, beam);
     }
   }
   return fg_stream_finish(ctx, out, "beams.csv");
@@ -158,8 +159,8 @@ static void put_bearing_heading(FILE *out) {
 }
 
 /* The foils' labels with a space between, "-" for a pad that is not there. */
-static fg_status put_pads(fg_context *ctx, FILE *out, const fg_lot_analysis *analysis,
-                          const fg_lot_bearing *bearing) {
+static fg_status put_pad_labels(fg_context *ctx, FILE *out, const fg_lot_analysis *analysis,
+                                const fg_lot_bearing *bearing) {
   char *text = NULL;
   size_t size;
   FILE *words = open_memstream(&text, &size);
@@ -172,7 +173,7 @@ static fg_status put_pads(fg_context *ctx, FILE *out, const fg_lot_analysis *ana
       fprintf(words, "#%d", foil->foil->number);
   }
   bool broken = fclose(words) != 0;
-  if (!broken) put_text(out, text);
+  if (!broken) put_csv_text(out, text);
   free(text);
   return broken ? fg_fail(ctx, FG_ERR_MEMORY, "out of memory: bearings.csv") : FG_OK;
 }
@@ -184,11 +185,11 @@ fg_status fg_lot_write_bearings_csv(fg_context *ctx, const fg_lot_analysis *anal
   for (size_t i = 0; i < analysis->bearing_count; i++) {
     const fg_lot_bearing *bearing = &analysis->bearings[i];
     if (bearing->name)
-      put_text(out, bearing->name);
+      put_csv_text(out, bearing->name);
     else
       fprintf(out, "%zu", bearing->number);
     fputc(',', out);
-    FG_TRY(put_pads(ctx, out, analysis, bearing));
+    FG_TRY(put_pad_labels(ctx, out, analysis, bearing));
     fprintf(out, ",%s,%zu", fg_verdict_word(bearing->decision.outcome.verdict), bearing->places);
     for (size_t k = 0; k < rows; k++) {
       double numbers[FG_QUANTITY_NUMBERS_MAX];

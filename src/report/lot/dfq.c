@@ -22,7 +22,7 @@
 enum { TEXT_BYTES_MAX = 255 };
 
 /* A control character would start another field. */
-static void put_text(FILE *out, const char *text) {
+static void put_field_text(FILE *out, const char *text) {
   while (*text)
     if ((unsigned char)*text < 0x20 || *text == 0x7F) {
       fputc(' ', out);
@@ -32,7 +32,7 @@ static void put_text(FILE *out, const char *text) {
     }
 }
 
-static void put_number(FILE *out, const char *field, size_t number, double value) {
+static void put_value_field(FILE *out, const char *field, size_t number, double value) {
   char text[32];
   if (!isfinite(value)) return;
   fg_json_format(text, value);
@@ -47,14 +47,14 @@ static void put_characteristic(FILE *out, size_t number, const fg_lot_words *wor
           one->owner == FG_QUANTITY_OF_BEARING ? "bearing: " : "", row->words);
   if (one->number) fprintf(out, "%s%d", words->before_number, one->number);
   fprintf(out, "\r\nK2022/%zu 6\r\n", number); /* decimal places */
-  put_number(out, "K2101", number, one->nominal);
-  if (tolerance) put_number(out, "K2110", number, tolerance->lower);
-  if (tolerance) put_number(out, "K2111", number, tolerance->upper);
+  put_value_field(out, "K2101", number, one->nominal);
+  if (tolerance) put_value_field(out, "K2110", number, tolerance->lower);
+  if (tolerance) put_value_field(out, "K2111", number, tolerance->upper);
   fprintf(out, "K2142/%zu %s\r\n", number, row->unit);
 }
 
 /* dd.mm.yyyy/hh:mm:ss, of the manifest's column `date`, else of the scan's file. */
-static void put_date(FILE *out, const fg_lot *lot, size_t item, size_t number) {
+static void put_date_field(FILE *out, const fg_lot *lot, size_t item, size_t number) {
   size_t column = fg_manifest_column(&lot->manifest, FG_LOT_DATE_COLUMN);
   double days =
       fg_date_days(column == FG_NO_COLUMN ? lot->records[item].date
@@ -80,16 +80,16 @@ static void append_words(char text[TEXT_BYTES_MAX], const char *name, const char
   fg_text_clip(text + used, TEXT_BYTES_MAX - used, "%s%s %s", used ? ", " : "", name, value);
 }
 
-static void put_besides(FILE *out, const char *text, size_t number) {
+static void put_besides_field(FILE *out, const char *text, size_t number) {
   if (!*text) return;
   fprintf(out, "K0009/%zu ", number);
-  put_text(out, text);
+  put_field_text(out, text);
   fputs("\r\n", out);
 }
 
 /* "die A, operator Kim, scan foil_7.png": at most as many bytes as the format takes. */
-static void besides_foil(const fg_manifest *manifest, const fg_measured_part *part,
-                         char text[TEXT_BYTES_MAX]) {
+static void describe_foil(const fg_manifest *manifest, const fg_measured_part *part,
+                          char text[TEXT_BYTES_MAX]) {
   size_t item = part->foil->item;
   const char *scan = fg_manifest_scan(manifest, item), *slash = strrchr(scan, '/');
   text[0] = '\0';
@@ -101,8 +101,8 @@ static void besides_foil(const fg_manifest *manifest, const fg_measured_part *pa
 }
 
 /* "pad 1 L7-01, pad 3 L7-02" */
-static void besides_bearing(const fg_lot_analysis *analysis, const fg_measured_part *part,
-                            char text[TEXT_BYTES_MAX]) {
+static void describe_bearing_pads(const fg_lot_analysis *analysis, const fg_measured_part *part,
+                                  char text[TEXT_BYTES_MAX]) {
   text[0] = '\0';
   for (size_t pad = 0; pad < analysis->layout.pads; pad++) {
     const fg_lot_foil *foil = part->bearing->pad[pad];
@@ -112,48 +112,49 @@ static void besides_bearing(const fg_lot_analysis *analysis, const fg_measured_p
   }
 }
 
-static void put_coil(FILE *out, const fg_manifest *manifest, size_t item, size_t number) {
+static void put_batch_field(FILE *out, const fg_manifest *manifest, size_t item, size_t number) {
   size_t column = fg_manifest_column(manifest, COIL_COLUMN);
   const char *cell = column == FG_NO_COLUMN ? "" : fg_manifest_cell(manifest, item, column);
   if (!*cell) return;
   fprintf(out, "K0006/%zu ", number);
-  put_text(out, cell);
+  put_field_text(out, cell);
   fputs("\r\n", out);
 }
 
-static void put_ident(FILE *out, const fg_lot_analysis *analysis, const fg_measured_part *part,
-                      size_t number) {
+static void put_ident_field(FILE *out, const fg_lot_analysis *analysis,
+                            const fg_measured_part *part, size_t number) {
   const fg_lot *lot = analysis->lot;
   fprintf(out, "K0014/%zu ", number);
-  put_text(out,
-           part->foil ? fg_manifest_label(&lot->manifest, part->foil->item) : part->bearing->name);
+  put_field_text(out, part->foil ? fg_manifest_label(&lot->manifest, part->foil->item)
+                                 : part->bearing->name);
   if (part->foil && lot->records[part->foil->item].foil_count > 1)
     fprintf(out, " #%d", part->foil->foil->number);
   fputs("\r\n", out);
 }
 
-static void put_part(FILE *out, const fg_lot_analysis *analysis, const fg_measured_part *part,
-                     const fg_characteristic *list, size_t count) {
+static void put_part_values(FILE *out, const fg_lot_analysis *analysis,
+                            const fg_measured_part *part, const fg_characteristic *list,
+                            size_t count) {
   const fg_lot *lot = analysis->lot;
   char besides[TEXT_BYTES_MAX];
   if (part->foil)
-    besides_foil(&lot->manifest, part, besides);
+    describe_foil(&lot->manifest, part, besides);
   else
-    besides_bearing(analysis, part, besides);
+    describe_bearing_pads(analysis, part, besides);
   for (size_t i = 0; i < count; i++) {
     if ((list[i].owner == FG_QUANTITY_OF_BEARING) != !part->foil) continue;
     double u, value = fg_characteristic_value(&list[i], part, &u);
     bool known = isfinite(value);
-    put_number(out, "K0001", i + 1, known ? value : 0);
+    put_value_field(out, "K0001", i + 1, known ? value : 0);
     fprintf(out, "K0002/%zu %d\r\n", i + 1, known ? 0 : 255);
-    if (part->foil) put_date(out, lot, part->foil->item, i + 1);
-    if (part->foil) put_coil(out, &lot->manifest, part->foil->item, i + 1);
-    put_besides(out, besides, i + 1);
-    put_ident(out, analysis, part, i + 1);
+    if (part->foil) put_date_field(out, lot, part->foil->item, i + 1);
+    if (part->foil) put_batch_field(out, &lot->manifest, part->foil->item, i + 1);
+    put_besides_field(out, besides, i + 1);
+    put_ident_field(out, analysis, part, i + 1);
   }
 }
 
-static int by_foil(const void *a, const void *b) {
+static int is_of_foil(const void *a, const void *b) {
   const fg_measured_part *one = a, *other = b;
   if (!one->foil != !other->foil) return one->foil ? -1 : 1;
   if (one->foil) return (one->foil > other->foil) - (one->foil < other->foil);
@@ -161,11 +162,11 @@ static int by_foil(const void *a, const void *b) {
 }
 
 /* Foils in the order of the lot, then bearings. */
-static void put_parts(FILE *out, const fg_lot_analysis *analysis, fg_measured_part *parts,
-                      size_t part_count, const fg_characteristic *list, size_t count) {
-  qsort(parts, part_count, sizeof *parts, by_foil);
+static void put_all_parts(FILE *out, const fg_lot_analysis *analysis, fg_measured_part *parts,
+                          size_t part_count, const fg_characteristic *list, size_t count) {
+  qsort(parts, part_count, sizeof *parts, is_of_foil);
   for (size_t i = 0; i < part_count; i++)
-    put_part(out, analysis, &parts[i], list, count);
+    put_part_values(out, analysis, &parts[i], list, count);
 }
 
 fg_status fg_lot_write_dfq(fg_context *ctx, const fg_lot_analysis *analysis, FILE *out) {
@@ -179,13 +180,13 @@ fg_status fg_lot_write_dfq(fg_context *ctx, const fg_lot_analysis *analysis, FIL
     return status;
   }
   fprintf(out, "K0100 %zu\r\nK1001 ", count);
-  put_text(out, analysis->lot->settings.design.name);
+  put_field_text(out, analysis->lot->settings.design.name);
   fputs("\r\nK1002 ", out);
-  put_text(out, analysis->lot->settings.name);
+  put_field_text(out, analysis->lot->settings.name);
   fputs("\r\n", out);
   for (size_t i = 0; i < count; i++)
     put_characteristic(out, i + 1, fg_lot_words_of(analysis), &list[i]);
-  put_parts(out, analysis, parts, part_count, list, count);
+  put_all_parts(out, analysis, parts, part_count, list, count);
   free(parts);
   free(list);
   return fg_stream_finish(ctx, out, "results.dfq");

@@ -32,13 +32,13 @@ typedef struct file_writing {
   const fg_lot_analysis *analysis;
 } file_writing;
 
-static fg_status write_stream(fg_context *ctx, void *user, FILE *out) {
+static fg_status write_report_stream(fg_context *ctx, void *user, FILE *out) {
   const file_writing *of = user;
   return of->write(ctx, of->analysis, out);
 }
 
-static fg_status write_file(fg_context *ctx, const char *folder, size_t i,
-                            const fg_lot_analysis *analysis) {
+static fg_status write_report_file(fg_context *ctx, const char *folder, size_t i,
+                                   const fg_lot_analysis *analysis) {
   char *path;
   fg_output output;
   bool flat = analysis->lot->settings.design.kind == FG_FOIL_CANTILEVER;
@@ -50,12 +50,12 @@ static fg_status write_file(fg_context *ctx, const char *folder, size_t i,
   file_writing of = {files[i].write, analysis};
   size_t length = strlen(files[i].name), tail = strlen(".csv");
   bool csv = length > tail && !strcmp(files[i].name + length - tail, ".csv");
-  return fg_output_end(
-      ctx, &output,
-      fg_csv_write(ctx, csv && analysis->lot->decimal_comma, write_stream, &of, output.stream));
+  return fg_output_end(ctx, &output,
+                       fg_csv_write(ctx, csv && analysis->lot->decimal_comma, write_report_stream,
+                                    &of, output.stream));
 }
 
-static void take_outcome(const fg_lot_analysis *analysis, fg_lot_outcome *outcome) {
+static void fill_lot_outcome(const fg_lot_analysis *analysis, fg_lot_outcome *outcome) {
   outcome->judged = analysis->outcome;
   outcome->scans = analysis->lot->manifest.items;
   outcome->failed = analysis->failed_scans;
@@ -88,8 +88,8 @@ fg_status fg_lot_write_report(fg_context *ctx, const char *folder, const fg_lot 
   fg_status status = fg_lot_pages_find(ctx, folder, lot, &pages);
   analysis.pages = pages;
   for (size_t i = 0; i < sizeof files / sizeof files[0] && status == FG_OK; i++)
-    status = write_file(ctx, folder, i, &analysis);
-  if (status == FG_OK) take_outcome(&analysis, outcome);
+    status = write_report_file(ctx, folder, i, &analysis);
+  if (status == FG_OK) fill_lot_outcome(&analysis, outcome);
   fg_lot_pages_free(lot, pages);
   fg_lot_analysis_free(&analysis);
   return status;

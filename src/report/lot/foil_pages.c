@@ -25,7 +25,7 @@ const char *fg_lot_pages_word(fg_lot_pages which) {
 
 /* Letters, digits, dot, dash and underscore stay, but for a dot at the begin; without the ending.
  */
-static void plain_name(const char *scan, char name[NAME_BYTES + 1]) {
+static void make_plain_name(const char *scan, char name[NAME_BYTES + 1]) {
   static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_.";
   const char *slash = strrchr(scan, '/'), *base = slash ? slash + 1 : scan;
   const char *dot = strrchr(base, '.');
@@ -47,7 +47,7 @@ fg_status fg_lot_page_name(fg_context *ctx, const fg_design *design, const fg_ma
                            size_t item, const fg_record *record, char **name) {
   const char *scan = fg_manifest_scan(manifest, item);
   char plain[NAME_BYTES + 1], sum[65], *text = NULL;
-  plain_name(scan, plain);
+  make_plain_name(scan, plain);
   fg_status status = fg_text_append(ctx, &text, "%s\n%s\n%s\n%s\n", record->sha256,
                                     record->measured_with, scan, fg_manifest_label(manifest, item));
   if (status == FG_OK) status = append_tolerances(ctx, design, &text);
@@ -78,7 +78,7 @@ fg_status fg_lot_page_is_wanted(fg_context *ctx, fg_lot_pages which, const fg_de
 }
 
 /* The manifest's name for it, where the scan shows one foil. */
-static const char *name_of(const fg_manifest *manifest, size_t item, size_t foils) {
+static const char *find_foil_name(const fg_manifest *manifest, size_t item, size_t foils) {
   size_t column = fg_manifest_column(manifest, "foil");
   const char *name =
       foils == 1 && column != FG_NO_COLUMN ? fg_manifest_cell(manifest, item, column) : "";
@@ -89,7 +89,7 @@ fg_status fg_lot_page_draw(fg_context *ctx, const fg_design *design, const fg_ma
                            size_t item, const fg_measurement *measurement, char **page) {
   const fg_report_scan scan = {.path = measurement->scan,
                                .measurement = measurement,
-                               .name = name_of(manifest, item, measurement->foil_count)};
+                               .name = find_foil_name(manifest, item, measurement->foil_count)};
   const fg_report report = {.design = design,
                             .nominal = &measurement->nominal,
                             .scans = &scan,
@@ -116,12 +116,12 @@ fg_status fg_lot_pages_make(fg_context *ctx, const char *folder) {
   return status;
 }
 
-static int compare_names(const void *a, const void *b) {
+static int compare_page_names(const void *a, const void *b) {
   return strcmp(*(char *const *)a, *(char *const *)b);
 }
 
 /* As fg_lot_page_name makes them: what else lies there is somebody's. */
-static bool has_html_form(const char *name) {
+static bool is_page_name(const char *name) {
   static const char ending[] = ".html";
   size_t length = strlen(name), tail = SUM_DIGITS + sizeof ending - 1;
   if (length < tail + 1 || strcmp(name + length - (sizeof ending - 1), ending) != 0) return false;
@@ -130,8 +130,8 @@ static bool has_html_form(const char *name) {
 }
 
 /* `kept` in order of their names. */
-static fg_status remove_others(fg_context *ctx, const char *folder, char *const *kept,
-                               size_t count) {
+static fg_status remove_unkept_pages(fg_context *ctx, const char *folder, char *const *kept,
+                                     size_t count) {
   char *pages;
   FG_TRY(fg_lot_path(ctx, folder, FG_LOT_PAGES, &pages));
   DIR *listing = opendir(pages);
@@ -139,10 +139,10 @@ static fg_status remove_others(fg_context *ctx, const char *folder, char *const 
   fg_status status = FG_OK;
   for (struct dirent *entry; listing && status == FG_OK && (entry = readdir(listing));) {
     char *name;
-    if (!has_html_form(entry->d_name)) continue;
+    if (!is_page_name(entry->d_name)) continue;
     status = fg_lot_path(ctx, FG_LOT_PAGES, entry->d_name, &name);
     if (status != FG_OK) break;
-    if (!bsearch(&name, kept, count, sizeof *kept, compare_names))
+    if (!bsearch(&name, kept, count, sizeof *kept, compare_page_names))
       unlinkat(dirfd(listing), entry->d_name, 0);
     free(name);
   }
@@ -150,15 +150,16 @@ static fg_status remove_others(fg_context *ctx, const char *folder, char *const 
   return status;
 }
 
-static fg_status clean(fg_context *ctx, const char *folder, const fg_lot *lot, char *const *names) {
+static fg_status remove_stale_pages(fg_context *ctx, const char *folder, const fg_lot *lot,
+                                    char *const *names) {
   void *block;
   size_t count = 0;
   FG_TRY(fg_memory_allocate(ctx, lot->manifest.items, sizeof *names, &block));
   char **kept = block;
   for (size_t i = 0; i < lot->manifest.items; i++)
     if (names[i]) kept[count++] = names[i];
-  qsort(kept, count, sizeof *kept, compare_names);
-  fg_status status = remove_others(ctx, folder, kept, count);
+  qsort(kept, count, sizeof *kept, compare_page_names);
+  fg_status status = remove_unkept_pages(ctx, folder, kept, count);
   free(kept);
   return status;
 }
@@ -176,7 +177,7 @@ fg_status fg_lot_pages_find(fg_context *ctx, const char *folder, const fg_lot *l
     free((*names)[i]);
     (*names)[i] = NULL;
   }
-  if (status == FG_OK) status = clean(ctx, folder, lot, *names);
+  if (status == FG_OK) status = remove_stale_pages(ctx, folder, lot, *names);
   if (status != FG_OK) {
     fg_lot_pages_free(lot, *names);
     *names = NULL;
@@ -191,7 +192,7 @@ void fg_lot_pages_free(const fg_lot *lot, char **names) {
 }
 
 /* The same file under a second name, where the system can: pages are replaced, never changed. */
-static fg_status take_page(fg_context *ctx, const char *from, const char *to, const char *name) {
+static fg_status link_page(fg_context *ctx, const char *from, const char *to, const char *name) {
   char *source = NULL, *target = NULL, *text = NULL;
   fg_status status = FG_OK;
   FG_TRY_EXIT(fg_lot_path(ctx, from, name, &source));
@@ -217,7 +218,7 @@ fg_status fg_lot_pages_take(fg_context *ctx, const char *const *folders, const s
     bool there = fg_lot_page_is_there(folders[from[i]], name);
     fg_status status = there && !made ? fg_lot_pages_make(ctx, folder) : FG_OK;
     made |= there;
-    if (there && status == FG_OK) status = take_page(ctx, folders[from[i]], folder, name);
+    if (there && status == FG_OK) status = link_page(ctx, folders[from[i]], folder, name);
     free(name);
     FG_TRY(status);
   }

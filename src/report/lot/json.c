@@ -15,7 +15,7 @@
 #include "report/measure/scan_model_words.h"
 #include "report/quantity_json.h"
 
-static void write_inputs(fg_json *json, const fg_lot *lot) {
+static void write_lot_inputs(fg_json *json, const fg_lot *lot) {
   fg_json_array(json, "inputs");
   for (size_t i = 0; i < lot->manifest.items; i++) {
     const fg_record *record = &lot->records[i];
@@ -31,7 +31,7 @@ static void write_inputs(fg_json *json, const fg_lot *lot) {
   fg_json_array_end(json);
 }
 
-static void write_counts(fg_json *json, const fg_lot_analysis *analysis) {
+static void write_foil_counts(fg_json *json, const fg_lot_analysis *analysis) {
   const fg_lot_words *words = fg_lot_words_of(analysis);
   fg_json_object(json, "counts");
   fg_json_integer(json, "scans", (int64_t)analysis->lot->manifest.items);
@@ -50,13 +50,14 @@ static void write_counts(fg_json *json, const fg_lot_analysis *analysis) {
   fg_json_object_end(json);
 }
 
-static void write_flags(fg_json *json, const fg_foil *foil) {
+static void write_foil_flags(fg_json *json, const fg_foil *foil) {
   fg_json_array(json, "flags");
   fg_json_flag_names(json, fg_foil_flag_words(), foil->flags, foil->strip.picture.findings);
   fg_json_array_end(json);
 }
 
-static void write_foil(fg_json *json, const fg_lot_analysis *analysis, const fg_lot_foil *foil) {
+static void write_lot_foil(fg_json *json, const fg_lot_analysis *analysis,
+                           const fg_lot_foil *foil) {
   const fg_manifest *manifest = &analysis->lot->manifest;
   char defect[200];
   fg_json_object(json, NULL);
@@ -64,7 +65,7 @@ static void write_foil(fg_json *json, const fg_lot_analysis *analysis, const fg_
   fg_json_integer(json, "input", (int64_t)foil->item);
   fg_json_string(json, "label", fg_manifest_label(manifest, foil->item));
   fg_json_integer(json, "number", foil->foil->number);
-  write_flags(json, foil->foil);
+  write_foil_flags(json, foil->foil);
   fg_json_verdict(json, foil->verdict);
   bool rejected =
       fg_foil_defect(&analysis->lot->settings.design, foil->foil, defect, sizeof defect);
@@ -81,18 +82,18 @@ static void write_foil(fg_json *json, const fg_lot_analysis *analysis, const fg_
   fg_json_line_end(json);
 }
 
-static void write_foils(fg_json *json, const fg_lot_analysis *analysis) {
+static void write_lot_foils(fg_json *json, const fg_lot_analysis *analysis) {
   fg_json_array(json, "foils");
   for (size_t i = 0; i < analysis->foil_count; i++)
-    write_foil(json, analysis, &analysis->foils[i]);
+    write_lot_foil(json, analysis, &analysis->foils[i]);
   fg_json_array_end(json);
   fg_json_array(json, "worst");
   for (int i = 0; i < 3; i++)
-    if (analysis->worst[i]) write_foil(json, analysis, analysis->worst[i]);
+    if (analysis->worst[i]) write_lot_foil(json, analysis, analysis->worst[i]);
   fg_json_array_end(json);
 }
 
-static void write_ratio(fg_json *json, const char *name, const fg_ratio *ratio) {
+static void write_capability_ratio(fg_json *json, const char *name, const fg_ratio *ratio) {
   fg_json_object(json, name);
   fg_json_line(json);
   fg_json_number(json, "value", ratio->value);
@@ -102,7 +103,7 @@ static void write_ratio(fg_json *json, const char *name, const fg_ratio *ratio) 
   fg_json_line_end(json);
 }
 
-static void write_capability(fg_json *json, const fg_lot_quantity *quantity) {
+static void write_lot_capability(fg_json *json, const fg_lot_quantity *quantity) {
   const fg_capability *capability = &quantity->capability;
   fg_json_object(json, "capability");
   fg_json_number(json, "min", quantity->tolerance->lower);
@@ -111,17 +112,18 @@ static void write_capability(fg_json *json, const fg_lot_quantity *quantity) {
   fg_json_bool(json, "normal", capability->normal);
   fg_json_number(json, "anderson_darling", capability->normality.a2);
   fg_json_number(json, "normality_p_value", capability->normality.p_value);
-  write_ratio(json, "pp", &capability->p);
-  write_ratio(json, "ppk", &capability->pk);
-  write_ratio(json, "cp", &capability->c);
-  write_ratio(json, "cpk", &capability->ck);
+  write_capability_ratio(json, "pp", &capability->p);
+  write_capability_ratio(json, "ppk", &capability->pk);
+  write_capability_ratio(json, "cp", &capability->c);
+  write_capability_ratio(json, "cpk", &capability->ck);
   fg_json_number(json, "pp_quantile", capability->quantile_p);
   fg_json_number(json, "ppk_quantile", capability->quantile_pk);
   fg_json_numbers(json, "quantiles", capability->quantile, 3);
   fg_json_object_end(json);
 }
 
-static void write_chart(fg_json *json, const char *name, const fg_chart *chart, double sigma) {
+static void write_control_chart(fg_json *json, const char *name, const fg_chart *chart,
+                                double sigma) {
   fg_json_object(json, name);
   fg_json_number(json, "centre", chart->centre);
   fg_json_number(json, "sigma", sigma);
@@ -160,8 +162,8 @@ static void write_places(fg_json *json, const fg_lot_words *words,
   fg_json_array_end(json);
 }
 
-static void write_quantity(fg_json *json, const fg_lot_analysis *analysis,
-                           const fg_lot_quantity *quantity) {
+static void write_lot_quantity(fg_json *json, const fg_lot_analysis *analysis,
+                               const fg_lot_quantity *quantity) {
   fg_json_object(json, quantity->row->name);
   fg_json_integer(json, "count", (int64_t)quantity->count);
   fg_json_number(json, "mean", quantity->mean);
@@ -177,15 +179,15 @@ static void write_quantity(fg_json *json, const fg_lot_analysis *analysis,
   fg_json_number(json, "bandwidth", quantity->has_density ? quantity->density.bandwidth : NAN);
   if (fg_owner_is_part(quantity->owner)) write_places(json, fg_lot_words_of(analysis), quantity);
   if (quantity->has_chart) {
-    write_chart(json, "individuals", &quantity->chart, quantity->chart_sigma);
+    write_control_chart(json, "individuals", &quantity->chart, quantity->chart_sigma);
     fg_json_bool(json, "stable", quantity->stable);
     fg_lot_json_cause(json, analysis, quantity);
   }
   if (quantity->has_subgroups) {
-    write_chart(json, "means", &quantity->means, quantity->within_sigma);
-    write_chart(json, "deviations", &quantity->deviations, quantity->within_sigma);
+    write_control_chart(json, "means", &quantity->means, quantity->within_sigma);
+    write_control_chart(json, "deviations", &quantity->deviations, quantity->within_sigma);
   }
-  if (quantity->has_capability) write_capability(json, quantity);
+  if (quantity->has_capability) write_lot_capability(json, quantity);
   fg_json_object_end(json);
 }
 
@@ -316,7 +318,7 @@ static void write_die_sum(fg_json *json, const fg_lot_die_sum *sum) {
   fg_json_object_end(json);
 }
 
-static void write_dies_of_lot(fg_json *json, const fg_lot_analysis *analysis) {
+static void write_lot_dies(fg_json *json, const fg_lot_analysis *analysis) {
   fg_lot_dies dies;
   fg_lot_analyse_dies(analysis, &dies);
   if (!dies.count) return;
@@ -344,7 +346,7 @@ fg_status fg_lot_write_json(fg_context *ctx, const fg_lot_analysis *analysis, FI
   fg_json_string(&json, "name", lot->settings.name);
   write_lot_date(&json, lot);
   fg_json_verdict(&json, analysis->outcome.verdict);
-  write_counts(&json, analysis);
+  write_foil_counts(&json, analysis);
   fg_lot_json_process(&json, analysis);
   fg_json_string(&json, "recipe_sha256", lot->head.recipe_sha256);
   fg_json_string(&json, "manifest_sha256", lot->head.manifest_sha256);
@@ -357,17 +359,17 @@ fg_status fg_lot_write_json(fg_context *ctx, const fg_lot_analysis *analysis, FI
   fg_json_design(&json, "design", &lot->settings.design);
   bool bumps = fg_foil_kind_has_bumps(lot->settings.design.kind);
   if (bumps) fg_json_nominal(&json, "nominal", &lot->nominal);
-  write_inputs(&json, lot);
-  write_foils(&json, analysis);
+  write_lot_inputs(&json, lot);
+  write_lot_foils(&json, analysis);
   fg_json_object(&json, "quantities");
   for (size_t i = 0; i < analysis->quantity_count; i++)
-    write_quantity(&json, analysis, &analysis->quantities[i]);
+    write_lot_quantity(&json, analysis, &analysis->quantities[i]);
   fg_json_object_end(&json);
   if (analysis->has_correlation) write_correlation(&json, &analysis->correlation);
   write_thickness(&json, analysis);
   if (bumps) fg_lot_json_stiffness(&json, analysis);
   if (bumps) fg_lot_json_bearings(&json, analysis);
-  if (bumps) write_dies_of_lot(&json, analysis);
+  if (bumps) write_lot_dies(&json, analysis);
   fg_reference_curve_write(&json, "reference_curve", &lot->settings);
   if (bumps) fg_lot_json_assembly(&json, analysis);
   fg_json_array(&json, "comparisons");

@@ -2,8 +2,8 @@
 /* The member of lot.json about bearings drawn from the lot's foils. */
 #include "report/lot/json.h"
 
-static void write_share(fg_json *json, const char *name, const fg_assembly_share *share,
-                        bool resampled) {
+static void write_assembly_share(fg_json *json, const char *name, const fg_assembly_share *share,
+                                 bool resampled) {
   fg_json_object(json, name);
   fg_json_line(json);
   fg_json_integer(json, "count", (int64_t)share->count);
@@ -22,10 +22,10 @@ static void write_share(fg_json *json, const char *name, const fg_assembly_share
   fg_json_line_end(json);
 }
 
-static void write_result(fg_json *json, const fg_assembly_plan *plan,
-                         const fg_assembly_result *result, bool resampled) {
+static void write_assembly_result(fg_json *json, const fg_assembly_plan *plan,
+                                  const fg_assembly_result *result, bool resampled) {
   fg_json_object(json, "drawn");
-  write_share(json, "assembled", &result->assembled, resampled);
+  write_assembly_share(json, "assembled", &result->assembled, resampled);
   fg_json_array(json, "limits");
   for (size_t i = 0; i < plan->limits; i++) {
     fg_json_object(json, NULL);
@@ -33,7 +33,7 @@ static void write_result(fg_json *json, const fg_assembly_plan *plan,
     fg_json_number(json, "min", plan->limit[i].lower);
     fg_json_number(json, "max", plan->limit[i].upper);
     fg_json_bool(json, "asked", plan->limit[i].asked);
-    write_share(json, "within", &result->within[i], resampled);
+    write_assembly_share(json, "within", &result->within[i], resampled);
     fg_json_integer(json, "rejected", (int64_t)result->rejected[i]);
     fg_json_integer(json, "rejected_alone", (int64_t)result->alone[i]);
     fg_json_object_end(json);
@@ -65,7 +65,7 @@ static void write_left_out(fg_json *json, const fg_lot_analysis *analysis) {
   fg_json_array_end(json);
 }
 
-static void write_changes(fg_json *json, const fg_lot_assembly *assembly) {
+static void write_assembly_changes(fg_json *json, const fg_lot_assembly *assembly) {
   fg_json_array(json, "changes");
   for (size_t i = 0; i < assembly->changes; i++) {
     const fg_lot_change *change = &assembly->change[i];
@@ -85,13 +85,13 @@ static void write_changes(fg_json *json, const fg_lot_assembly *assembly) {
 
 static void write_drawn(fg_json *json, const fg_lot_analysis *analysis) {
   const fg_lot_assembly *assembly = &analysis->assembly;
-  write_result(json, &assembly->plan, &assembly->drawn, true);
+  write_assembly_result(json, &assembly->plan, &assembly->drawn, true);
   fg_json_object(json, "design");
   fg_json_number(json, "clearance_mm", analysis->lot->nominal.clearance_mm);
   fg_json_number(json, "deviation_pct", analysis->lot->settings.assembly.design_deviation_pct);
-  write_result(json, &assembly->plan, &assembly->design, false);
+  write_assembly_result(json, &assembly->plan, &assembly->design, false);
   fg_json_object_end(json);
-  write_changes(json, assembly);
+  write_assembly_changes(json, assembly);
 }
 
 void fg_lot_json_assembly(fg_json *json, const fg_lot_analysis *analysis) {

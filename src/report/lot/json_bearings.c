@@ -17,8 +17,8 @@ static void write_pads(fg_json *json, const fg_lot_analysis *analysis,
   fg_json_line_end(json);
 }
 
-static void write_bearing(fg_json *json, const fg_lot_analysis *analysis,
-                          const fg_lot_bearing *bearing) {
+static void write_lot_bearing(fg_json *json, const fg_lot_analysis *analysis,
+                              const fg_lot_bearing *bearing) {
   fg_json_object(json, NULL);
   fg_json_string(json, "name", bearing->name);
   fg_json_integer(json, "number", (int64_t)bearing->number);
@@ -59,7 +59,7 @@ void fg_lot_json_bearings(fg_json *json, const fg_lot_analysis *analysis) {
   fg_json_line_end(json);
   fg_json_array(json, "bearings");
   for (size_t i = 0; i < analysis->bearing_count; i++)
-    write_bearing(json, analysis, &analysis->bearings[i]);
+    write_lot_bearing(json, analysis, &analysis->bearings[i]);
   fg_json_array_end(json);
   if (analysis->clearance_pct.count)
     fg_lot_json_spread(json, "clearance_relative_to_design_pct", &analysis->clearance_pct);

@@ -2,7 +2,7 @@
 /* lot.json: whether the process runs as it did, and what its charts' signals come from. */
 #include "report/lot/json.h"
 
-static void write_trend(fg_json *json, const fg_lot_trend *trend) {
+static void write_lot_trend(fg_json *json, const fg_lot_trend *trend) {
   if (!trend->known) {
     fg_json_string(json, "trend", NULL);
     return;
@@ -21,7 +21,7 @@ static void write_trend(fg_json *json, const fg_lot_trend *trend) {
 void fg_lot_json_cause(fg_json *json, const fg_lot_analysis *analysis,
                        const fg_lot_quantity *quantity) {
   const fg_lot_cause *cause = &quantity->cause;
-  write_trend(json, &quantity->trend);
+  write_lot_trend(json, &quantity->trend);
   if (cause->column == FG_NO_COLUMN) {
     fg_json_string(json, "signals_by", NULL);
     return;
@@ -45,8 +45,8 @@ void fg_lot_json_cause(fg_json *json, const fg_lot_analysis *analysis,
   fg_json_object_end(json);
 }
 
-static void write_names(fg_json *json, const char *name, const fg_lot_analysis *analysis,
-                        bool unstable, bool explained) {
+static void write_foil_names(fg_json *json, const char *name, const fg_lot_analysis *analysis,
+                             bool unstable, bool explained) {
   fg_json_array(json, name);
   for (size_t i = 0; i < analysis->quantity_count; i++) {
     const fg_lot_quantity *quantity = &analysis->quantities[i];
@@ -65,8 +65,8 @@ void fg_lot_json_process(fg_json *json, const fg_lot_analysis *analysis) {
     fg_json_bool(json, "stable", process->unstable == 0);
   else
     fg_json_string(json, "stable", NULL);
-  write_names(json, "watched", analysis, false, false);
-  write_names(json, "not_stable", analysis, true, false);
-  write_names(json, "explained", analysis, true, true);
+  write_foil_names(json, "watched", analysis, false, false);
+  write_foil_names(json, "not_stable", analysis, true, false);
+  write_foil_names(json, "explained", analysis, true, true);
   fg_json_object_end(json);
 }

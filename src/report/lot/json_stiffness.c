@@ -41,7 +41,7 @@ static void write_term(fg_json *json, const char *name, const fg_lot_budget_term
   fg_json_line_end(json);
 }
 
-static void write_budget(fg_json *json, const fg_lot_budget *budget) {
+static void write_stiffness_budget(fg_json *json, const fg_lot_budget *budget) {
   fg_json_object(json, "budget");
   write_term(json, "radius_at_arc_length", &budget->radius);
   write_term(json, "arc_length", &budget->arc_length);
@@ -77,7 +77,7 @@ void fg_lot_json_stiffness(fg_json *json, const fg_lot_analysis *analysis) {
     fg_lot_json_spread(json, "normalised_at_design_thickness", &stiffness->at_design_thickness);
     fg_lot_json_spread(json, "normalised_resampled", &stiffness->resampled);
     fg_lot_json_spread(json, "normalised_foot", &stiffness->foot);
-    write_budget(json, &stiffness->budget);
+    write_stiffness_budget(json, &stiffness->budget);
   }
   fg_json_object_end(json);
 }

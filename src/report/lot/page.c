@@ -12,7 +12,7 @@
 #include "report/measure/scan_model_words.h"
 
 /* What the model does not know well enough to correct. */
-static void put_left(FILE *out, const fg_lot_analysis *analysis) {
+static void put_uncorrected(FILE *out, const fg_lot_analysis *analysis) {
   static const struct {
     unsigned flag;
     const char *words, *name;
@@ -34,7 +34,7 @@ static void put_left(FILE *out, const fg_lot_analysis *analysis) {
 }
 
 /* By what, what it did at most, and how many foils it was not made for. */
-static fg_status put_corrected(fg_context *ctx, FILE *out, const fg_lot_analysis *analysis) {
+static fg_status put_correction(fg_context *ctx, FILE *out, const fg_lot_analysis *analysis) {
   char moved[FG_CORRECTION_WORDS], added[FG_CORRECTION_WORDS];
   const fg_correction max = fg_lot_correction_largest(analysis);
   size_t beyond = 0;
@@ -50,7 +50,7 @@ static fg_status put_corrected(fg_context *ctx, FILE *out, const fg_lot_analysis
             "%zu foils; there the correction is not known to hold (flag "
             "beyond_model_region in foils.csv).</li></ul>\n",
             beyond, analysis->foil_count);
-  put_left(out, analysis);
+  put_uncorrected(out, analysis);
   return FG_OK;
 }
 
@@ -67,10 +67,10 @@ static void put_lossy(FILE *out, const fg_lot_analysis *analysis) {
             lossy, analysis->foil_count);
 }
 
-static fg_status put_first_screen(fg_context *ctx, FILE *out, const fg_lot_analysis *analysis) {
+static fg_status put_lot_first_screen(fg_context *ctx, FILE *out, const fg_lot_analysis *analysis) {
   fputs("<section class=\"part\">\n", out);
   fg_lot_put_heading(out, analysis);
-  FG_TRY(put_corrected(ctx, out, analysis));
+  FG_TRY(put_correction(ctx, out, analysis));
   put_lossy(out, analysis);
   fg_lot_put_counts(out, analysis);
   fg_lot_put_worst(out, analysis);
@@ -140,7 +140,7 @@ static void put_where_pages_are(FILE *out, const fg_lot_analysis *analysis) {
 }
 
 /* Those that do not pass first. */
-static void put_foils(FILE *out, const fg_lot_analysis *analysis) {
+static void put_foil_list(FILE *out, const fg_lot_analysis *analysis) {
   size_t rows = 0;
   bool flat = analysis->lot->settings.design.kind == FG_FOIL_CANTILEVER;
   fprintf(out,
@@ -165,7 +165,7 @@ static void put_foils(FILE *out, const fg_lot_analysis *analysis) {
   fputs("</section>\n", out);
 }
 
-static fg_status put_origin(fg_context *ctx, FILE *out, const fg_lot_analysis *analysis) {
+static fg_status put_lot_provenance(fg_context *ctx, FILE *out, const fg_lot_analysis *analysis) {
   char scale[FG_SCALE_WORDS];
   fg_scale_words(analysis->lot->model, &analysis->lot->settings.design.calibration, scale,
                  sizeof scale);
@@ -198,7 +198,7 @@ static fg_status put_origin(fg_context *ctx, FILE *out, const fg_lot_analysis *a
 
 fg_status fg_lot_write_page(fg_context *ctx, const fg_lot_analysis *analysis, FILE *out) {
   fg_html_begin(out, analysis->lot->settings.name);
-  FG_TRY(put_first_screen(ctx, out, analysis));
+  FG_TRY(put_lot_first_screen(ctx, out, analysis));
   put_failed_scans(out, analysis);
   fg_lot_put_quantities(out, analysis);
   if (fg_foil_kind_has_bumps(analysis->lot->settings.design.kind)) {
@@ -214,8 +214,8 @@ fg_status fg_lot_write_page(fg_context *ctx, const fg_lot_analysis *analysis, FI
   }
   fg_lot_put_comparisons(out, analysis);
   fg_lot_put_gauge(out, analysis);
-  put_foils(out, analysis);
-  FG_TRY(put_origin(ctx, out, analysis));
+  put_foil_list(out, analysis);
+  FG_TRY(put_lot_provenance(ctx, out, analysis));
   fg_html_end(out);
   return fg_stream_finish(ctx, out, "the lot's page");
 }

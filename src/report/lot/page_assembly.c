@@ -15,7 +15,7 @@ typedef struct curve {
   bool there;
 } curve;
 
-static curve curve_of(const fg_assembly_result *result, size_t value) {
+static curve make_value_curve(const fg_assembly_result *result, size_t value) {
   curve c = {.there = false};
   fg_context unused;
   c.there = fg_density_fit(&unused, result->value[value], result->values[value],
@@ -23,11 +23,12 @@ static curve curve_of(const fg_assembly_result *result, size_t value) {
   return c;
 }
 
-static double height_at(const curve *c, double um) {
+static double find_height(const curve *c, double um) {
   return c->there ? fg_density_at(&c->density, um / UM_PER_MM) / UM_PER_MM : NAN;
 }
 
-static void reach(const fg_assembly_result *result, size_t value, const curve *c, fg_plot *at) {
+static void find_value_range(const fg_assembly_result *result, size_t value, const curve *c,
+                             fg_plot *at) {
   size_t count = result->values[value];
   if (!count) return;
   double room = c->there ? 2.5 * c->density.bandwidth : 1e-3;
@@ -35,16 +36,16 @@ static void reach(const fg_assembly_result *result, size_t value, const curve *c
   at->x_high = fmax(at->x_high, UM_PER_MM * (result->value[value][count - 1] + room));
 }
 
-static void put_curve(const fg_plot *at, const curve *c, const char *style) {
+static void put_value_curve(const fg_plot *at, const curve *c, const char *style) {
   double x[POINTS + 1], y[POINTS + 1];
   for (int i = 0; i <= POINTS; i++) {
     x[i] = at->x_low + (at->x_high - at->x_low) * i / POINTS;
-    y[i] = fmin(height_at(c, x[i]), at->y_high);
+    y[i] = fmin(find_height(c, x[i]), at->y_high);
   }
   if (c->there) fg_plot_line(at, x, y, POINTS + 1, style);
 }
 
-static void put_limit(const fg_plot *at, double um, const char *words) {
+static void put_value_limit(const fg_plot *at, double um, const char *words) {
   if (!(um >= at->x_low && um <= at->x_high)) return;
   fg_plot_segment(at, um, 0, um, at->y_high, "limit");
   bool right = um > (at->x_low + at->x_high) / 2;
@@ -53,13 +54,14 @@ static void put_limit(const fg_plot *at, double um, const char *words) {
 }
 
 /* Limits are always in the picture. */
-static void put_limits(const fg_plot *at, const fg_assembly_plan *plan, const fg_quantity *row) {
+static void put_value_limits(const fg_plot *at, const fg_assembly_plan *plan,
+                             const fg_quantity *row) {
   for (size_t i = 0; i < plan->limits; i++) {
     const fg_assembly_limit *limit = &plan->limit[i];
     if (limit->row != row) continue;
     bool touch = limit->lower == 0 && !isfinite(limit->upper);
-    put_limit(at, UM_PER_MM * limit->lower, touch ? "touches" : "limit");
-    put_limit(at, UM_PER_MM * limit->upper, "limit");
+    put_value_limit(at, UM_PER_MM * limit->lower, touch ? "touches" : "limit");
+    put_value_limit(at, UM_PER_MM * limit->upper, "limit");
   }
 }
 
@@ -67,11 +69,12 @@ void fg_lot_plot_assembly(FILE *out, const fg_lot_analysis *analysis, size_t val
   const fg_lot_assembly *assembly = &analysis->assembly;
   const fg_assembly_plan *plan = &assembly->plan;
   const fg_quantity *row = fg_assembly_row(value);
-  curve drawn = curve_of(&assembly->drawn, value), design = curve_of(&assembly->design, value);
+  curve drawn = make_value_curve(&assembly->drawn, value),
+        design = make_value_curve(&assembly->design, value);
   fg_plot at = {out, PLOT_WIDTH, 92, 985, 14, 230, INFINITY, -INFINITY, 0, 0};
   char title[160];
-  reach(&assembly->drawn, value, &drawn, &at);
-  reach(&assembly->design, value, &design, &at);
+  find_value_range(&assembly->drawn, value, &drawn, &at);
+  find_value_range(&assembly->design, value, &design, &at);
   for (size_t i = 0; i < plan->limits; i++) {
     const double limit[] = {plan->limit[i].lower, plan->limit[i].upper};
     for (int k = 0; k < 2; k++)
@@ -82,16 +85,16 @@ void fg_lot_plot_assembly(FILE *out, const fg_lot_analysis *analysis, size_t val
   }
   for (int i = 0; i <= POINTS && drawn.there; i++)
     at.y_high =
-        fmax(at.y_high, 1.25 * height_at(&drawn, at.x_low + (at.x_high - at.x_low) * i / POINTS));
+        fmax(at.y_high, 1.25 * find_height(&drawn, at.x_low + (at.x_high - at.x_low) * i / POINTS));
   if (drawn.there && at.y_high > 0) {
     snprintf(title, sizeof title, "%s, µm", row->words);
     fg_plot_begin(&at, 280, title);
     fg_plot_y_axis(&at, "density");
     fg_plot_x_numbers(&at);
     fg_plot_x_title(&at, title);
-    put_curve(&at, &design, "hypothesis");
-    put_curve(&at, &drawn, "curve");
-    put_limits(&at, plan, row);
+    put_value_curve(&at, &design, "hypothesis");
+    put_value_curve(&at, &drawn, "curve");
+    put_value_limits(&at, plan, row);
     double middle = UM_PER_MM * assembly->design.quantile[value][FG_ASSEMBLY_QUANTILES / 2];
     bool right = middle > (at.x_low + at.x_high) / 2;
     if (design.there)
@@ -110,7 +113,7 @@ static void put_percent(FILE *out, double share) {
     fputs("–", out);
 }
 
-static void put_range(FILE *out, double low, double high) {
+static void put_share_range(FILE *out, double low, double high) {
   fputs("<td>", out);
   put_percent(out, low);
   fputs(" … ", out);
@@ -123,9 +126,9 @@ static void put_share_row(FILE *out, const char *words, const fg_assembly_share 
   fprintf(out, "<tr><td class=\"words\">%s</td><td><b>", words);
   put_percent(out, share->share);
   fputs("</b></td>", out);
-  put_range(out, share->draws_low, share->draws_high);
-  put_range(out, share->foils_low, share->foils_high);
-  put_range(out, share->surely, share->possibly);
+  put_share_range(out, share->draws_low, share->draws_high);
+  put_share_range(out, share->foils_low, share->foils_high);
+  put_share_range(out, share->surely, share->possibly);
   fputs("<td>", out);
   put_percent(out, design->share);
   fputs("</td></tr>\n", out);
@@ -143,7 +146,7 @@ static void limit_words(const fg_assembly_limit *limit, char *text, size_t size)
     snprintf(text + used, size - (size_t)used, " µm%s", limit->asked ? "" : " (told, not asked)");
 }
 
-static void put_shares(FILE *out, const fg_lot_analysis *analysis) {
+static void put_share_table(FILE *out, const fg_lot_analysis *analysis) {
   const fg_lot_assembly *assembly = &analysis->assembly;
   const fg_assembly_plan *plan = &assembly->plan;
   char words[240];
@@ -183,7 +186,7 @@ static void put_quantiles(FILE *out, const fg_lot_analysis *analysis) {
   fputs("</tbody></table></div>\n", out);
 }
 
-static void put_changes(FILE *out, const fg_lot_assembly *assembly) {
+static void put_change_table(FILE *out, const fg_lot_assembly *assembly) {
   if (!assembly->changes) return;
   fputs("<div class=\"scroll\"><table><thead><tr><th>the same lot with</th><th>assemble, %</th>"
         "<th>change</th></tr></thead>\n<tbody>\n",
@@ -250,7 +253,7 @@ void fg_lot_put_assembly(FILE *out, const fg_lot_analysis *analysis) {
   fprintf(out, "<p class=\"note\">%s</p>\n", fg_assembly_scope);
   put_left_out(out, analysis);
   if (!assembly->why[0]) {
-    put_shares(out, analysis);
+    put_share_table(out, analysis);
     for (size_t i = 0; i < FG_ASSEMBLY_VALUES; i++) {
       if (!assembly->drawn.values[i]) continue;
       fputs("<figure>", out);
@@ -259,7 +262,7 @@ void fg_lot_put_assembly(FILE *out, const fg_lot_analysis *analysis) {
     }
     fputs("<p class=\"note\">Solid: the bearings drawn; dashed: at design; red: limits.</p>\n",
           out);
-    put_changes(out, assembly);
+    put_change_table(out, assembly);
     put_quantiles(out, analysis);
     put_meaning(out, analysis);
   }

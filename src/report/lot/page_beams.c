@@ -7,8 +7,8 @@
 #include "report/lot/page_parts.h"
 #include "report/lot/plots.h"
 
-static void put_places(FILE *out, const fg_lot_analysis *analysis, const char *name,
-                       const char *words) {
+static void put_beam_places(FILE *out, const fg_lot_analysis *analysis, const char *name,
+                            const char *words) {
   const fg_lot_quantity *quantity = fg_lot_find_quantity(analysis, name);
   if (!quantity || !quantity->count) return;
   fputs("<figure>", out);
@@ -19,7 +19,7 @@ static void put_places(FILE *out, const fg_lot_analysis *analysis, const char *n
 }
 
 /* To first order 100 dS / S = 3 x 100 dL / L - 100 dw / w. */
-static void put_spread(FILE *out, const fg_lot_analysis *analysis) {
+static void put_compliance_spread(FILE *out, const fg_lot_analysis *analysis) {
   const fg_design *design = &analysis->lot->settings.design;
   const fg_lot_quantity *length = fg_lot_find_quantity(analysis, "length_mm");
   const fg_lot_quantity *width = fg_lot_find_quantity(analysis, "width_mm");
@@ -74,12 +74,12 @@ static void put_extremes(FILE *out, const fg_lot_analysis *analysis) {
 void fg_lot_put_beams(FILE *out, const fg_lot_analysis *analysis) {
   if (!analysis->part_count) return;
   fputs("<section class=\"part\">\n<h1>Compliance and sagitta</h1>\n", out);
-  put_spread(out, analysis);
+  put_compliance_spread(out, analysis);
   put_extremes(out, analysis);
-  put_places(out, analysis, "length_mm",
-             "Length of every beam, from the line of the roots to the "
-             "free end.");
-  put_places(out, analysis, "width_mm", "Width of every beam, half way along.");
-  put_places(out, analysis, "sagitta_error_pct", "Sagitta of every beam against the design.");
+  put_beam_places(out, analysis, "length_mm",
+                  "Length of every beam, from the line of the roots to the "
+                  "free end.");
+  put_beam_places(out, analysis, "width_mm", "Width of every beam, half way along.");
+  put_beam_places(out, analysis, "sagitta_error_pct", "Sagitta of every beam against the design.");
   fputs("</section>\n", out);
 }

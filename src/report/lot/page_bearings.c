@@ -18,16 +18,17 @@ static void put_bearing_name(FILE *out, const fg_lot_bearing *bearing) {
     fprintf(out, "%zu", bearing->number);
 }
 
-static bool is_judged(const fg_lot_analysis *analysis) {
+static bool is_bearing_judged(const fg_lot_analysis *analysis) {
   return fg_report_of_bearing(&analysis->lot->settings.design, NULL, 0) > 0;
 }
 
 /* What fails or cannot be told is named: a row of numbers alone would have to be searched. */
-static void put_verdict(FILE *out, const fg_lot_analysis *analysis, const fg_lot_bearing *bearing) {
+static void put_bearing_verdict(FILE *out, const fg_lot_analysis *analysis,
+                                const fg_lot_bearing *bearing) {
   const fg_decision *decision = &bearing->decision;
   fg_verdict verdict = decision->outcome.verdict;
   const char *separator = ": ";
-  if (!is_judged(analysis)) return;
+  if (!is_bearing_judged(analysis)) return;
   fprintf(out, "<td class=\"%s\">%s", fg_verdict_word(verdict), fg_html_verdict_title(verdict));
   for (size_t i = 0; i < decision->count; i++) {
     if (verdict == FG_VERDICT_PASS || decision->judgements[i].verdict != verdict) continue;
@@ -57,7 +58,7 @@ static void put_bearing_row(FILE *out, const fg_lot_analysis *analysis,
       fputs("–", out);
   }
   fputs("</td>", out);
-  put_verdict(out, analysis, bearing);
+  put_bearing_verdict(out, analysis, bearing);
   const fg_quantity *shown[FG_QUANTITY_SHOWN_MAX];
   size_t count =
       fg_quantity_shown(FG_QUANTITY_OF_BEARING, FG_QUANTITY_ON_PAGE, FG_FOIL_CLASSICAL, shown);
@@ -72,12 +73,12 @@ static void put_bearing_row(FILE *out, const fg_lot_analysis *analysis,
 }
 
 /* The limits, over the columns that they are of. */
-static void put_limits(FILE *out, const fg_lot_analysis *analysis) {
+static void put_limit_row(FILE *out, const fg_lot_analysis *analysis) {
   const fg_design *design = &analysis->lot->settings.design;
   const fg_quantity *shown[FG_QUANTITY_SHOWN_MAX];
   size_t count =
       fg_quantity_shown(FG_QUANTITY_OF_BEARING, FG_QUANTITY_ON_PAGE, FG_FOIL_CLASSICAL, shown);
-  if (!is_judged(analysis)) return;
+  if (!is_bearing_judged(analysis)) return;
   fputs("<tr class=\"limits\"><td>tolerance</td><td></td><td></td>", out);
   for (size_t i = 0; i < count; i++) {
     fputs("<td>", out);
@@ -104,11 +105,11 @@ static void put_bearing_table(FILE *out, const fg_lot_analysis *analysis) {
   size_t count =
       fg_quantity_shown(FG_QUANTITY_OF_BEARING, FG_QUANTITY_ON_PAGE, FG_FOIL_CLASSICAL, shown);
   fputs("<div class=\"scroll\"><table><thead><tr><th>bearing</th><th>pads</th>", out);
-  if (is_judged(analysis)) fputs("<th>verdict</th>", out);
+  if (is_bearing_judged(analysis)) fputs("<th>verdict</th>", out);
   for (size_t i = 0; i < count; i++)
     fprintf(out, "<th>%s<br>µm</th>", shown[i]->symbol);
   fputs("</tr></thead>\n<tbody>\n", out);
-  put_limits(out, analysis);
+  put_limit_row(out, analysis);
   for (size_t i = 0; i < analysis->bearing_count && i < BEARING_ROWS_MAX; i++)
     put_bearing_row(out, analysis, &analysis->bearings[i]);
   fputs("</tbody></table></div>\n", out);
@@ -136,8 +137,9 @@ static bool is_drawn(const fg_lot_analysis *analysis, size_t bearing) {
   return before < POLAR_MAX;
 }
 
-static void put_outcome(FILE *out, const fg_lot_analysis *analysis, const fg_lot_bearing *bearing) {
-  if (is_judged(analysis))
+static void put_bearing_counts(FILE *out, const fg_lot_analysis *analysis,
+                               const fg_lot_bearing *bearing) {
+  if (is_bearing_judged(analysis))
     fprintf(out, ": %s", fg_html_verdict_title(bearing->decision.outcome.verdict));
   if (!bearing->known) fputs(": not known, a foil or a value is missing", out);
 }
@@ -160,7 +162,7 @@ static void put_assembled(FILE *out, const fg_lot_analysis *analysis) {
     fg_lot_plot_polar(out, analysis, &analysis->bearings[i]);
     fputs("<figcaption>Bearing ", out);
     put_bearing_name(out, &analysis->bearings[i]);
-    put_outcome(out, analysis, &analysis->bearings[i]);
+    put_bearing_counts(out, analysis, &analysis->bearings[i]);
     fputs("</figcaption></figure>\n", out);
   }
   fprintf(out,
@@ -182,7 +184,7 @@ static void put_unplaced(FILE *out, const fg_lot_analysis *analysis) {
   const fg_lot_settings *settings = &analysis->lot->settings;
   bool assumed =
       fg_manifest_column(&analysis->lot->manifest, settings->bearing_column) == FG_NO_COLUMN;
-  if (is_judged(analysis) && !analysis->bearing_count)
+  if (is_bearing_judged(analysis) && !analysis->bearing_count)
     fprintf(out,
             "<p class=\"reasons\"><b>Not measured:</b> the design states tolerances of a bearing, "
             "and these foils make none: a bearing takes %zu.</p>\n",

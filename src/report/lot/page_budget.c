@@ -4,43 +4,43 @@
 
 #include "report/lot/page_parts.h"
 
-static void put_cell(FILE *out, double value, int digits) {
+static void put_term_cell(FILE *out, double value, int digits) {
   fputs("<td>", out);
   fg_lot_put_number(out, value, digits);
   fputs("</td>", out);
 }
 
 /* A variance as the spread that it would give alone. */
-static double as_spread(double variance_pct2) {
+static double variance_to_spread(double variance_pct2) {
   return sqrt(variance_pct2);
 }
 
 /* A tenth of a percent of the whole is fine enough. */
-static double rounded(double share_pct) {
+static double round_share(double share_pct) {
   return round(10 * share_pct) / 10;
 }
 
-static void put_row(FILE *out, const char *title, const fg_lot_budget_term *term) {
+static void put_term_row(FILE *out, const char *title, const fg_lot_budget_term *term) {
   fprintf(out, "<tr><td>%s</td>", title);
-  put_cell(out, term->spread_pct, 3);
+  put_term_cell(out, term->spread_pct, 3);
   if (isfinite(term->sensitivity))
     fprintf(out, "<td>%s%.2f</td>", term->sensitivity < 0 ? "−" : "+", fabs(term->sensitivity));
   else
     fputs("<td></td>", out);
-  put_cell(out, as_spread(term->variance_pct2), 3);
-  put_cell(out, rounded(term->share_pct), 3);
+  put_term_cell(out, variance_to_spread(term->variance_pct2), 3);
+  put_term_cell(out, round_share(term->share_pct), 3);
   fputs("</tr>\n", out);
 }
 
 static void put_share(FILE *out, const char *style, const char *title, double spread_pct,
                       double share_pct) {
   fprintf(out, "<tr%s><td>%s</td><td></td><td></td>", style, title);
-  put_cell(out, spread_pct, 3);
-  put_cell(out, rounded(share_pct), 3);
+  put_term_cell(out, spread_pct, 3);
+  put_term_cell(out, round_share(share_pct), 3);
   fputs("</tr>\n", out);
 }
 
-static void put_sentence(FILE *out, const fg_lot_budget *budget) {
+static void put_budget_sentence(FILE *out, const fg_lot_budget *budget) {
   const struct {
     const char *words;
     const fg_lot_budget_term *term;
@@ -54,7 +54,7 @@ static void put_sentence(FILE *out, const fg_lot_budget *budget) {
       out,
       "<p>From bump to bump stiffness varies by <b>%.3g&nbsp;%%</b> (one standard deviation). Most "
       "of it is %s, which alone would give %.3g&nbsp;%%.</p>\n",
-      budget->observed_pct, causes[max].words, as_spread(causes[max].term->variance_pct2));
+      budget->observed_pct, causes[max].words, variance_to_spread(causes[max].term->variance_pct2));
 }
 
 static void put_thickness_note(FILE *out, const fg_lot_analysis *analysis) {
@@ -66,7 +66,7 @@ static void put_thickness_note(FILE *out, const fg_lot_analysis *analysis) {
           foils ? "one foil only" : "no foil");
 }
 
-static void put_rest(FILE *out, const fg_lot_budget *budget) {
+static void put_unexplained(FILE *out, const fg_lot_budget *budget) {
   fprintf(out,
           "<p class=\"note\">The shares are what each cause adds to the variance that a regression "
           "on the causes explains, averaged over the orders in which they may enter (Lindeman, "
@@ -85,7 +85,7 @@ static void put_rest(FILE *out, const fg_lot_budget *budget) {
         out);
 }
 
-static void put_calibration(FILE *out, const fg_lot_analysis *analysis) {
+static void put_calibration_note(FILE *out, const fg_lot_analysis *analysis) {
   double mean = analysis->stiffness.measured.mean, u = analysis->stiffness.u_by_calibration;
   if (!analysis->lot->settings.design.calibration.stated) {
     fputs("<p class=\"note\">Calibration: none is stated; what it leaves is not in the mean&#39;s "
@@ -103,18 +103,18 @@ void fg_lot_put_stiffness_budget(FILE *out, const fg_lot_analysis *analysis) {
   const fg_lot_budget *budget = &analysis->stiffness.budget;
   if (!budget->known) return;
   fputs("<h2>Where the spread comes from</h2>\n", out);
-  put_sentence(out, budget);
+  put_budget_sentence(out, budget);
   fputs("<div class=\"scroll\"><table><thead><tr><th>cause</th><th>varies by, %</th><th>% of "
         "stiffness<br>per %</th><th>alone gives, %</th><th>share of the<br>variance, "
         "%</th></tr></thead>\n<tbody>\n",
         out);
-  put_row(out, "radius, at constant arc length", &budget->radius);
-  put_row(out, "arc length R α of the bump", &budget->arc_length);
-  put_row(out, "thickness of the strip", &budget->thickness);
+  put_term_row(out, "radius, at constant arc length", &budget->radius);
+  put_term_row(out, "arc length R α of the bump", &budget->arc_length);
+  put_term_row(out, "thickness of the strip", &budget->thickness);
   put_share(out, "", "not explained by these", NAN, budget->rest_share_pct);
   put_share(out, " class=\"total\"", "observed", budget->observed_pct, 100);
   fputs("</tbody></table></div>\n", out);
   put_thickness_note(out, analysis);
-  put_rest(out, budget);
-  put_calibration(out, analysis);
+  put_unexplained(out, budget);
+  put_calibration_note(out, analysis);
 }

@@ -5,7 +5,7 @@
 #include "foilgauge/words.h"
 #include "report/lot/page_parts.h"
 
-static void put_row(FILE *out, const fg_lot_quantity *quantity, const fg_lot_known *known) {
+static void put_known_row(FILE *out, const fg_lot_quantity *quantity, const fg_lot_known *known) {
   const double k = FG_COVERAGE_FACTOR;
   const double cells[] = {k * known->u_statistical, k * known->u_calibration, k * known->u};
   int decimals = fg_report_decimals(quantity->row, known->u) + 1;
@@ -31,7 +31,7 @@ void fg_lot_put_known(FILE *out, const fg_lot_analysis *analysis) {
         out);
   for (size_t i = 0; i < analysis->quantity_count; i++) {
     const fg_lot_known known = fg_lot_mean_known(analysis, &analysis->quantities[i]);
-    if (isfinite(known.u)) put_row(out, &analysis->quantities[i], &known);
+    if (isfinite(known.u)) put_known_row(out, &analysis->quantities[i], &known);
   }
   fputs("</tbody></table></div>\n<p class=\"note\">What the scans&#39; statistics leave averages "
         "out over the foils, but for the thickness, whose doubt they share; what the calibration "

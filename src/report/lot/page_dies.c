@@ -16,7 +16,7 @@ typedef struct curve {
   size_t count;
 } curve;
 
-static void find_curve(const fg_lot_analysis *analysis, const fg_lot_die *die, curve *out) {
+static void find_die_curve(const fg_lot_analysis *analysis, const fg_lot_die *die, curve *out) {
   double design_mm = analysis->lot->settings.design.bump_radius_mm;
   out->count = 0;
   for (int number = 1; number <= NUMBERS_MAX; number++) {
@@ -40,7 +40,8 @@ static void find_curve(const fg_lot_analysis *analysis, const fg_lot_die *die, c
   }
 }
 
-static void put_key(FILE *out, const char *style, double x, const char *name, const char *words) {
+static void put_die_key(FILE *out, const char *style, double x, const char *name,
+                        const char *words) {
   fprintf(out, "<circle class=\"%s\" cx=\"%.0f\" cy=\"14\" r=\"5\"/><text x=\"%.0f\" y=\"19\">%s ",
           style, x, x + 12, words);
   fg_html_text(out, name);
@@ -48,11 +49,11 @@ static void put_key(FILE *out, const char *style, double x, const char *name, co
 }
 
 /* One die: its foils' mean error, and its own. */
-static void put_plot(FILE *out, const fg_lot_analysis *analysis, const fg_lot_die *die,
-                     const double range[2]) {
+static void put_die_plot(FILE *out, const fg_lot_analysis *analysis, const fg_lot_die *die,
+                         const double range[2]) {
   curve c;
   char text[16];
-  find_curve(analysis, die, &c);
+  find_die_curve(analysis, die, &c);
   if (!c.count) return;
   double margin = fmax(0.05, 0.1 * (range[1] - range[0]));
   fg_plot at = {out,
@@ -79,16 +80,17 @@ static void put_plot(FILE *out, const fg_lot_analysis *analysis, const fg_lot_di
     fg_plot_dot(&at, c.number[i], c.die[i], 5, "s2");
     fg_plot_dot(&at, c.number[i], c.foils[i], 5, "s1");
   }
-  put_key(out, "s1", 80, die->name, "foils of die");
-  put_key(out, "s2", 300, die->name, "die");
+  put_die_key(out, "s1", 80, die->name, "foils of die");
+  put_die_key(out, "s2", 300, die->name, "die");
   fg_plot_end(&at);
 }
 
-static void find_range(const fg_lot_analysis *analysis, const fg_lot_dies *dies, double range[2]) {
+static void find_error_range(const fg_lot_analysis *analysis, const fg_lot_dies *dies,
+                             double range[2]) {
   range[0] = range[1] = 0;
   for (size_t d = 0; d < dies->count; d++) {
     curve c;
-    find_curve(analysis, dies->sum[d].die, &c);
+    find_die_curve(analysis, dies->sum[d].die, &c);
     for (size_t i = 0; i < c.count; i++) {
       range[0] = fmin(range[0], fmin(c.die[i], c.foils[i]));
       range[1] = fmax(range[1], fmax(c.die[i], c.foils[i]));
@@ -96,7 +98,7 @@ static void find_range(const fg_lot_analysis *analysis, const fg_lot_dies *dies,
   }
 }
 
-static void put_sentences(FILE *out, const fg_lot_dies *dies) {
+static void put_die_sentences(FILE *out, const fg_lot_dies *dies) {
   fputs("<ul class=\"words\">\n", out);
   for (size_t i = 0; i < dies->count; i++) {
     const fg_lot_die_sum *sum = &dies->sum[i];
@@ -135,7 +137,7 @@ static void put_sentences(FILE *out, const fg_lot_dies *dies) {
   fputs("</ul>\n", out);
 }
 
-static void put_table(FILE *out, const fg_lot_dies *dies) {
+static void put_die_table(FILE *out, const fg_lot_dies *dies) {
   fputs("<div class=\"scroll\"><table><thead><tr><th>die</th><th>foils</th><th>bumps</th><th>die "
         "against<br>design, %</th><th>foils against<br>design, %</th><th>s</th><th>foils "
         "against<br>die, "
@@ -163,13 +165,13 @@ void fg_lot_put_dies(FILE *out, const fg_lot_analysis *analysis) {
   double range[2];
   fg_lot_analyse_dies(analysis, &dies);
   if (!dies.count) return;
-  find_range(analysis, &dies, range);
+  find_error_range(analysis, &dies, range);
   fputs("<section class=\"part\">\n<h1>Dies: what of the deviation is theirs</h1>\n", out);
-  put_sentences(out, &dies);
+  put_die_sentences(out, &dies);
   fputs("<div class=\"pair\">", out);
   for (size_t i = 0; i < dies.count; i++) {
     fputs("<figure>", out);
-    put_plot(out, analysis, dies.sum[i].die, range);
+    put_die_plot(out, analysis, dies.sum[i].die, range);
     fputs("</figure>\n", out);
   }
   fputs(
@@ -177,7 +179,7 @@ void fg_lot_put_dies(FILE *out, const fg_lot_analysis *analysis) {
       "the die&#39;s, as <code>foilgauge die</code> measured it (mean of its halves); the dashed "
       "way between them is springback.</p>\n",
       out);
-  put_table(out, &dies);
+  put_die_table(out, &dies);
   fputs("<p class=\"note\">Bump by bump: radius_error_to_die_pct in bumps.csv. What all dies err "
         "by alike is no part of the scatter.</p>\n</section>\n",
         out);

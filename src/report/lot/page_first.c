@@ -17,8 +17,8 @@
 /* What a count means, in colour and in a mark: a page is printed in black and white too. */
 typedef enum tile_tone { TONE_PLAIN, TONE_GOOD, TONE_BAD, TONE_OPEN } tile_tone;
 
-static void put_tile(FILE *out, tile_tone tone, const char *title, size_t count,
-                     const char *small) {
+static void put_count_tile(FILE *out, tile_tone tone, const char *title, size_t count,
+                           const char *small) {
   static const struct {
     const char *style, *mark;
   } looks[] = {[TONE_PLAIN] = {"", ""},
@@ -31,7 +31,7 @@ static void put_tile(FILE *out, tile_tone tone, const char *title, size_t count,
 }
 
 /* A count of nothing has no tone. */
-static tile_tone tone_of(size_t count, tile_tone what) {
+static tile_tone choose_tone(size_t count, tile_tone what) {
   return count ? what : TONE_PLAIN;
 }
 
@@ -43,36 +43,40 @@ static bool foils_are_judged(const fg_lot_analysis *analysis) {
 static void put_scan_tiles(FILE *out, const fg_lot_analysis *analysis) {
   size_t failed = analysis->failed_scans, scans = analysis->lot->manifest.items;
   fputs("<dl class=\"tiles\">\n", out);
-  put_tile(out, TONE_PLAIN, "Scans", scans, failed ? "" : "all could be measured");
-  if (failed) put_tile(out, TONE_OPEN, "Scans not measured", failed, "named below");
+  put_count_tile(out, TONE_PLAIN, "Scans", scans, failed ? "" : "all could be measured");
+  if (failed) put_count_tile(out, TONE_OPEN, "Scans not measured", failed, "named below");
   const fg_record *repeat;
   size_t repeats = fg_lot_count_repeats(analysis->lot, &repeat);
   if (repeats)
-    put_tile(out, TONE_OPEN, "of them there twice", repeats, "the same bytes under another name");
-  put_tile(out, TONE_PLAIN, "Foils on them", analysis->foil_count, "");
+    put_count_tile(out, TONE_OPEN, "of them there twice", repeats,
+                   "the same bytes under another name");
+  put_count_tile(out, TONE_PLAIN, "Foils on them", analysis->foil_count, "");
   if (analysis->lot->settings.design.kind != FG_FOIL_ARC) {
     const fg_lot_words *words = fg_lot_words_of(analysis);
-    put_tile(out, TONE_PLAIN, words->counted, analysis->part_count, "");
+    put_count_tile(out, TONE_PLAIN, words->counted, analysis->part_count, "");
     if (analysis->left_out)
-      put_tile(out, TONE_OPEN, words->damaged, analysis->left_out,
-               "judged, but in no statistics of this page");
+      put_count_tile(out, TONE_OPEN, words->damaged, analysis->left_out,
+                     "judged, but in no statistics of this page");
   }
   fputs("</dl>\n", out);
 }
 
-static void put_foil_tiles(FILE *out, const fg_lot_analysis *analysis) {
+static void put_verdict_tiles(FILE *out, const fg_lot_analysis *analysis) {
   const size_t *by = analysis->by_verdict;
   bool judged = foils_are_judged(analysis);
   size_t not_measured = by[FG_VERDICT_NOT_MEASURED];
   if (!judged && !by[FG_VERDICT_FAIL] && !not_measured) return;
   fputs("<dl class=\"tiles\">\n", out);
   if (judged)
-    put_tile(out, tone_of(by[FG_VERDICT_PASS], TONE_GOOD), "Foils pass", by[FG_VERDICT_PASS], "");
-  put_tile(out, tone_of(by[FG_VERDICT_FAIL], TONE_BAD), "Foils fail", by[FG_VERDICT_FAIL], "");
+    put_count_tile(out, choose_tone(by[FG_VERDICT_PASS], TONE_GOOD), "Foils pass",
+                   by[FG_VERDICT_PASS], "");
+  put_count_tile(out, choose_tone(by[FG_VERDICT_FAIL], TONE_BAD), "Foils fail", by[FG_VERDICT_FAIL],
+                 "");
   if (judged)
-    put_tile(out, tone_of(by[FG_VERDICT_UNDECIDED], TONE_OPEN), "Foils, cannot tell",
-             by[FG_VERDICT_UNDECIDED], by[FG_VERDICT_UNDECIDED] ? "a limit lies within ± U" : "");
-  if (not_measured) put_tile(out, TONE_OPEN, "Foils not measured", not_measured, "");
+    put_count_tile(out, choose_tone(by[FG_VERDICT_UNDECIDED], TONE_OPEN), "Foils, cannot tell",
+                   by[FG_VERDICT_UNDECIDED],
+                   by[FG_VERDICT_UNDECIDED] ? "a limit lies within ± U" : "");
+  if (not_measured) put_count_tile(out, TONE_OPEN, "Foils not measured", not_measured, "");
   fputs("</dl>\n", out);
 }
 
@@ -82,20 +86,22 @@ static void put_bearing_tiles(FILE *out, const fg_lot_analysis *analysis) {
   if (!fg_report_of_bearing(&lot->settings.design, NULL, 0)) return;
   bool assumed = fg_manifest_column(&lot->manifest, lot->settings.bearing_column) == FG_NO_COLUMN;
   fputs("<dl class=\"tiles\">\n", out);
-  put_tile(out, TONE_PLAIN, "Bearings", analysis->bearing_count,
-           assumed ? "foils in a row" : "as the manifest says");
-  put_tile(out, tone_of(by[FG_VERDICT_PASS], TONE_GOOD), "Bearings pass", by[FG_VERDICT_PASS], "");
-  put_tile(out, tone_of(by[FG_VERDICT_FAIL], TONE_BAD), "Bearings fail", by[FG_VERDICT_FAIL], "");
+  put_count_tile(out, TONE_PLAIN, "Bearings", analysis->bearing_count,
+                 assumed ? "foils in a row" : "as the manifest says");
+  put_count_tile(out, choose_tone(by[FG_VERDICT_PASS], TONE_GOOD), "Bearings pass",
+                 by[FG_VERDICT_PASS], "");
+  put_count_tile(out, choose_tone(by[FG_VERDICT_FAIL], TONE_BAD), "Bearings fail",
+                 by[FG_VERDICT_FAIL], "");
   if (by[FG_VERDICT_UNDECIDED])
-    put_tile(out, TONE_OPEN, "Bearings, cannot tell", by[FG_VERDICT_UNDECIDED], "");
+    put_count_tile(out, TONE_OPEN, "Bearings, cannot tell", by[FG_VERDICT_UNDECIDED], "");
   if (by[FG_VERDICT_NOT_MEASURED])
-    put_tile(out, TONE_OPEN, "Bearings not measured", by[FG_VERDICT_NOT_MEASURED], "");
+    put_count_tile(out, TONE_OPEN, "Bearings not measured", by[FG_VERDICT_NOT_MEASURED], "");
   fputs("</dl>\n", out);
 }
 
 void fg_lot_put_counts(FILE *out, const fg_lot_analysis *analysis) {
   put_scan_tiles(out, analysis);
-  put_foil_tiles(out, analysis);
+  put_verdict_tiles(out, analysis);
   put_bearing_tiles(out, analysis);
 }
 
@@ -116,8 +122,8 @@ static void put_process(FILE *out, const fg_lot_process *process) {
 }
 
 /* " (foils A, B and 3 more)" */
-static void put_signals(FILE *out, const fg_lot_analysis *analysis,
-                        const fg_lot_quantity *quantity) {
+static void put_signal_counts(FILE *out, const fg_lot_analysis *analysis,
+                              const fg_lot_quantity *quantity) {
   enum { NAMED = 8 };
   size_t told = 0, foil = 0, foils = quantity->chart.signals;
   if (!foils) return;
@@ -135,7 +141,7 @@ static void put_signals(FILE *out, const fg_lot_analysis *analysis,
 }
 
 /* In the unit that people read such differences in: µm of mm. */
-static void put_change(FILE *out, const fg_quantity *row, double change, double u) {
+static void put_trend_change(FILE *out, const fg_quantity *row, double change, double u) {
   bool fine = !strcmp(row->unit, "mm");
   char words[80];
   fg_scan_loop_value_words((fine ? 1000 : 1) * fabs(change), (fine ? 1000 : 1) * u, words,
@@ -151,9 +157,9 @@ static void put_trend(FILE *out, const fg_lot_quantity *quantity) {
   double steps = (double)(trend->foils - 1);
   char p_value[16];
   fprintf(out, ": in the order of the foils it %s by ", trend->per_foil < 0 ? "falls" : "rises");
-  put_change(out, quantity->row, trend->per_foil, u);
+  put_trend_change(out, quantity->row, trend->per_foil, u);
   fputs(" a foil, ", out);
-  put_change(out, quantity->row, steps * trend->per_foil, steps * u);
+  put_trend_change(out, quantity->row, steps * trend->per_foil, steps * u);
   fg_p_value_text(p_value, trend->p_value);
   fputs(" from the first to the last (p ", out);
   fg_html_text(out, *p_value == '<' ? "" : "= ");
@@ -167,17 +173,18 @@ static void put_trend(FILE *out, const fg_lot_quantity *quantity) {
 }
 
 /* "The signals of bump radius come from the column die: ... each by itself shows none." */
-static void put_cause(FILE *out, const fg_lot_analysis *analysis, const fg_lot_quantity *quantity) {
+static void put_quantity_cause(FILE *out, const fg_lot_analysis *analysis,
+                               const fg_lot_quantity *quantity) {
   const fg_lot_cause *cause = &quantity->cause;
   fprintf(out, "<li>%zu signal%s of the %s", quantity->chart.signals,
           quantity->chart.signals == 1 ? "" : "s", quantity->row->words);
   if (fg_lot_is_trend(quantity)) {
-    put_signals(out, analysis, quantity);
+    put_signal_counts(out, analysis, quantity);
     put_trend(out, quantity);
     return;
   }
   if (cause->column == FG_NO_COLUMN) {
-    put_signals(out, analysis, quantity);
+    put_signal_counts(out, analysis, quantity);
     fprintf(out, ": no group of foils explains %s.</li>\n",
             quantity->chart.signals == 1 ? "it" : "them");
     return;
@@ -214,7 +221,7 @@ static void put_causes(FILE *out, const fg_lot_analysis *analysis) {
   for (size_t i = 0; i < analysis->quantity_count; i++) {
     const fg_lot_quantity *quantity = &analysis->quantities[i];
     if (!fg_lot_is_watched(analysis, quantity) || quantity->stable) continue;
-    if (quantity->chart.signals) put_cause(out, analysis, quantity);
+    if (quantity->chart.signals) put_quantity_cause(out, analysis, quantity);
     if (quantity->has_subgroups && quantity->deviations.signals)
       fprintf(out, "<li>%zu signal%s of the spread of the %s within foils.</li>\n",
               quantity->deviations.signals, quantity->deviations.signals == 1 ? "" : "s",
@@ -267,13 +274,13 @@ void fg_lot_put_reason(FILE *out, const fg_lot_analysis *analysis, const fg_lot_
   }
 }
 
-static bool has_value(const fg_lot_analysis *analysis, const fg_lot_foil *foil) {
+static bool has_worst_value(const fg_lot_analysis *analysis, const fg_lot_foil *foil) {
   return foil->worst_row && isfinite(foil->worst_value) && !foil->foil->error[0] &&
          !fg_foil_defect(&analysis->lot->settings.design, foil->foil, NULL, 0);
 }
 
 /* As many as people read of the quantity, or more where its U would be 0.0000. */
-static int decimals_for(const fg_quantity *row, double expanded) {
+static int margin_decimals(const fg_quantity *row, double expanded) {
   enum { MAX = 9 };
   if (!(expanded > 0) || !isfinite(expanded)) return row->decimals;
   int first = (int)-floor(log10(expanded)); /* where its first digit stands */
@@ -283,12 +290,12 @@ static int decimals_for(const fg_quantity *row, double expanded) {
 /* Value ± U, its limit, and how far it is from it. */
 void fg_lot_put_margin(FILE *out, const fg_lot_analysis *analysis, const fg_lot_foil *foil) {
   const fg_quantity *row = foil->worst_row;
-  if (!has_value(analysis, foil)) {
+  if (!has_worst_value(analysis, foil)) {
     fputs("<td>–</td><td>–</td><td>–</td>", out);
     return;
   }
   double expanded = FG_COVERAGE_FACTOR * foil->worst_u;
-  int decimals = decimals_for(row, expanded);
+  int decimals = margin_decimals(row, expanded);
   fputs("<td>", out);
   fg_lot_put_decimals(out, foil->worst_value, decimals);
   if (isfinite(expanded)) {

@@ -5,22 +5,22 @@
 #include "page/page.h"
 #include "report/lot/page_parts.h"
 
-static void put_number(FILE *out, double p) {
+static void put_group_number(FILE *out, double p) {
   fprintf(out, "%s%.3g", p < 1e-4 ? "&lt; " : "", p < 1e-4 ? 1e-4 : p);
 }
 
 /* The adjusted p decides, because a reader looks for the smallest p of the page. */
-static void put_p(FILE *out, const fg_lot_analysis *analysis, const fg_lot_difference *one,
-                  fg_lot_group_test test) {
+static void put_p_value(FILE *out, const fg_lot_analysis *analysis, const fg_lot_difference *one,
+                        fg_lot_group_test test) {
   bool differs = fg_lot_group_differs(analysis, one->p_holm[test]);
   if (isnan(one->p[test])) {
     fputs("<td>–</td>", out);
     return;
   }
   fputs(differs ? "<td><b>" : "<td>", out);
-  put_number(out, one->p_holm[test]);
+  put_group_number(out, one->p_holm[test]);
   fputs(differs ? "</b><i>" : "<i>", out);
-  put_number(out, one->p[test]);
+  put_group_number(out, one->p[test]);
   fputs("</i></td>", out);
 }
 
@@ -38,7 +38,7 @@ static void put_answer(FILE *out, const fg_lot_analysis *analysis) {
             tests, level);
 }
 
-static void put_how(FILE *out, const fg_lot_analysis *analysis) {
+static void put_method(FILE *out, const fg_lot_analysis *analysis) {
   const char *many = fg_lot_words_of(analysis)->many;
   fprintf(out,
           "<p class=\"note\">Foils are the unit: the %s of one foil are no independent values. A "
@@ -50,8 +50,8 @@ static void put_how(FILE *out, const fg_lot_analysis *analysis) {
           many, many);
 }
 
-static void put_difference(FILE *out, const fg_lot_analysis *analysis,
-                           const fg_lot_difference *one) {
+static void put_group_row(FILE *out, const fg_lot_analysis *analysis,
+                          const fg_lot_difference *one) {
   const fg_comparison *c = &one->comparison;
   fprintf(out, "<tr><td class=\"words\">%s</td><td class=\"words\">", one->quantity->row->words);
   fg_html_text(out, one->a);
@@ -59,15 +59,15 @@ static void put_difference(FILE *out, const fg_lot_analysis *analysis,
   fg_html_text(out, one->b);
   fprintf(out, "</td><td>%zu<br>%zu</td><td>%.6g<br>%.6g</td><td>%.4g<i>%.4g … %.4g</i></td>",
           one->foils_a, one->foils_b, one->mean_a, one->mean_b, c->difference, c->low, c->high);
-  put_p(out, analysis, one, FG_LOT_TEST_MEANS);
+  put_p_value(out, analysis, one, FG_LOT_TEST_MEANS);
   fprintf(out, "<td>%.3g<br>%.3g</td>", one->sd_a, one->sd_b);
-  put_p(out, analysis, one, FG_LOT_TEST_VARIANCES);
-  put_p(out, analysis, one, FG_LOT_TEST_LEVENE);
+  put_p_value(out, analysis, one, FG_LOT_TEST_VARIANCES);
+  put_p_value(out, analysis, one, FG_LOT_TEST_LEVENE);
   if (isfinite(one->within_sd_a) && isfinite(one->within_sd_b))
     fprintf(out, "<td>%.3g<br>%.3g</td>", one->within_sd_a, one->within_sd_b);
   else
     fputs("<td>–</td>", out);
-  put_p(out, analysis, one, FG_LOT_TEST_WITHIN);
+  put_p_value(out, analysis, one, FG_LOT_TEST_WITHIN);
   fputs("</tr>\n", out);
 }
 
@@ -84,9 +84,9 @@ void fg_lot_put_comparisons(FILE *out, const fg_lot_analysis *analysis) {
       "<tbody>\n",
       out);
   for (size_t i = 0; i < analysis->difference_count; i++)
-    put_difference(out, analysis, &analysis->differences[i]);
+    put_group_row(out, analysis, &analysis->differences[i]);
   fputs("</tbody></table></div>\n", out);
-  put_how(out, analysis);
+  put_method(out, analysis);
   fputs("</section>\n", out);
 }
 

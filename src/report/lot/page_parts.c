@@ -47,7 +47,7 @@ void fg_lot_put_href(FILE *out, const char *path) {
 }
 
 /* The way from one folder to a file, both as the system knows them: "../scans/1.png". */
-static void put_way(FILE *out, const char *folder, const char *file) {
+static void put_relative_path(FILE *out, const char *folder, const char *file) {
   size_t same = 0; /* behind the last slash that both have */
   for (size_t i = 0; folder[i] && folder[i] == file[i]; i++)
     if (file[i] == '/') same = i + 1;
@@ -64,7 +64,7 @@ void fg_lot_put_scan(FILE *out, const fg_lot_analysis *analysis, size_t item) {
   char *file = folder ? realpath(scan, NULL) : NULL;
   if (file) {
     fputs("<a href=\"", out);
-    put_way(out, folder, file);
+    put_relative_path(out, folder, file);
     fputs("\">", out);
   }
   fg_html_text(out, slash && slash[1] ? slash + 1 : scan);

@@ -43,7 +43,7 @@ static void put_quantity_rows(FILE *out, const fg_lot_analysis *analysis) {
             analysis->parts == FG_QUANTITY_OF_BUMP ? ", stiffness or clearance" : "");
 }
 
-static void put_cell(FILE *out, double value, int digits) {
+static void put_capability_cell(FILE *out, double value, int digits) {
   fputs("<td>", out);
   fg_lot_put_number(out, value, digits);
   fputs("</td>", out);
@@ -52,7 +52,7 @@ static void put_cell(FILE *out, double value, int digits) {
 /* So far within its tolerance that the number says nothing more. */
 static const double ratio_told = 100;
 
-static void put_ratio(FILE *out, const fg_ratio *ratio) {
+static void put_capability_ratio(FILE *out, const fg_ratio *ratio) {
   if (ratio->value > ratio_told) {
     fprintf(out, "<td>&gt; %.0f</td>", ratio_told);
     return;
@@ -76,14 +76,14 @@ static void put_capability_row(FILE *out, const fg_lot_quantity *quantity) {
   fputs(" … ", out);
   fg_lot_put_number(out, quantity->tolerance->upper, 6);
   fputs("</td>", out);
-  put_ratio(out, &capability->p);
-  put_ratio(out, &capability->pk);
-  put_ratio(out, &capability->c);
-  put_ratio(out, &capability->ck);
+  put_capability_ratio(out, &capability->p);
+  put_capability_ratio(out, &capability->pk);
+  put_capability_ratio(out, &capability->c);
+  put_capability_ratio(out, &capability->ck);
   if (capability->quantile_pk > ratio_told)
     fprintf(out, "<td>&gt; %.0f</td>", ratio_told);
   else
-    put_cell(out, capability->quantile_pk, 3);
+    put_capability_cell(out, capability->quantile_pk, 3);
   fprintf(out, "<td class=\"words\">%s, %s</td></tr>\n",
           capability->stable ? "stable" : "not stable",
           capability->normal ? "normal" : "not normal: the quantile method holds");
@@ -109,7 +109,7 @@ static void put_capability(FILE *out, const fg_lot_analysis *analysis) {
       100 * analysis->lot->settings.confidence);
 }
 
-static void put_signals(FILE *out, const fg_lot_quantity *quantity) {
+static void put_chart_signals(FILE *out, const fg_lot_quantity *quantity) {
   unsigned rules = 0;
   for (size_t i = 0; i < quantity->chart.count; i++)
     rules |= quantity->chart.point[i].rules;
@@ -122,11 +122,12 @@ static void put_signals(FILE *out, const fg_lot_quantity *quantity) {
   fputs(".", out);
 }
 
-static void put_chart(FILE *out, const fg_lot_analysis *analysis, const fg_lot_quantity *quantity) {
+static void put_control_chart(FILE *out, const fg_lot_analysis *analysis,
+                              const fg_lot_quantity *quantity) {
   fputs("<figure>", out);
   fg_lot_plot_chart(out, analysis, quantity);
   fputs("<figcaption>", out);
-  put_signals(out, quantity);
+  put_chart_signals(out, quantity);
   if (quantity->cause.column != FG_NO_COLUMN) {
     fputs(" They", out);
     fg_lot_put_cause(out, analysis, quantity);
@@ -146,7 +147,7 @@ static void put_charts(FILE *out, const fg_lot_analysis *analysis) {
         out);
   for (size_t i = 0; i < analysis->quantity_count; i++)
     if (is_charted(analysis, &analysis->quantities[i]))
-      put_chart(out, analysis, &analysis->quantities[i]);
+      put_control_chart(out, analysis, &analysis->quantities[i]);
 }
 
 void fg_lot_put_quantities(FILE *out, const fg_lot_analysis *analysis) {

@@ -16,7 +16,7 @@ static void put_spread_row(FILE *out, const char *title, const fg_lot_spread *sp
 }
 
 /* Mean over the design's ± what the thickness leaves in doubt, and which thickness that is. */
-static void put_thickness(FILE *out, const fg_lot_analysis *analysis) {
+static void put_stiffness_thickness(FILE *out, const fg_lot_analysis *analysis) {
   const fg_lot_stiffness *stiffness = &analysis->stiffness;
   fprintf(out,
           "<p class=\"note\">The mean of %.4g is known to ± %.2g, since stiffness goes with "
@@ -33,7 +33,7 @@ void fg_lot_put_thickness(FILE *out, const fg_lot_analysis *analysis) {
   if (thickness->differs) fprintf(out, " and not %.4g as the design says", design_mm);
 }
 
-static void put_spreads(FILE *out, const fg_lot_analysis *analysis) {
+static void put_stiffness_spreads(FILE *out, const fg_lot_analysis *analysis) {
   const fg_lot_stiffness *stiffness = &analysis->stiffness;
   fputs("<div class=\"scroll\"><table><thead><tr><th>"
         "over the design's</th><th>n</th><th>mean</th><th>mode</th><th>rel. s, %</th><th>min</th>"
@@ -52,7 +52,7 @@ static void put_spreads(FILE *out, const fg_lot_analysis *analysis) {
   fputs("</tbody></table></div>\n", out);
 }
 
-static void put_models(FILE *out, const fg_lot_analysis *analysis, size_t cases) {
+static void put_stiffness_models(FILE *out, const fg_lot_analysis *analysis, size_t cases) {
   const fg_arch_material *material = &analysis->lot->settings.material;
   double pitch_mm = fg_design_pitch_mm(&analysis->lot->settings.design);
   fputs("<h2>By model</h2>\n", out);
@@ -66,8 +66,8 @@ static void put_models(FILE *out, const fg_lot_analysis *analysis, size_t cases)
 }
 
 static void put_spread_parts(FILE *out, const fg_lot_analysis *analysis) {
-  put_spreads(out, analysis);
-  if (analysis->thickness.foils) put_thickness(out, analysis);
+  put_stiffness_spreads(out, analysis);
+  if (analysis->thickness.foils) put_stiffness_thickness(out, analysis);
   fputs("<figure>", out);
   fg_lot_plot_map(out, analysis);
   fputs("<figcaption>Stiffness of the arch over the design's, for strips as thick as designed: "
@@ -88,6 +88,6 @@ void fg_lot_put_stiffness(FILE *out, const fg_lot_analysis *analysis) {
     fputs("<p class=\"note\">How stiffness varies is not known: that takes two bumps with radius "
           "and angle.</p>\n",
           out);
-  put_models(out, analysis, analysis->has_stiffness ? FG_LOT_CASES : 1);
+  put_stiffness_models(out, analysis, analysis->has_stiffness ? FG_LOT_CASES : 1);
   fputs("</section>\n", out);
 }

@@ -69,7 +69,7 @@ void fg_lot_plot_density(FILE *out, const fg_lot_quantity *quantity, double scal
 
 typedef void bump_visit(const fg_plot *at, const fg_bump *bump);
 
-static void each_bump(const fg_plot *at, const fg_lot_analysis *analysis, bump_visit *visit) {
+static void visit_bumps(const fg_plot *at, const fg_lot_analysis *analysis, bump_visit *visit) {
   size_t total = 0, seen = 0;
   for (size_t i = 0; i < analysis->foil_count; i++)
     total += analysis->foils[i].foil->bump_count;
@@ -82,14 +82,14 @@ static void each_bump(const fg_plot *at, const fg_lot_analysis *analysis, bump_v
     }
 }
 
-static void put_bump(const fg_plot *at, const fg_bump *bump) {
+static void put_error_dot(const fg_plot *at, const fg_bump *bump) {
   double x = bump->radius_error_pct, y = bump->bump_angle_error_pct;
   if (!(x >= at->x_low && x <= at->x_high && y >= at->y_low && y <= at->y_high)) return;
   fg_plot_dot(at, x, y, 4.5, "dot");
 }
 
 /* alpha at constant arc length: 100 (1 / (1 + e_R / 100) - 1). */
-static void put_constant_arc(const fg_plot *at) {
+static void put_arc_hypothesis(const fg_plot *at) {
   double x[CURVE_POINTS + 1], y[CURVE_POINTS + 1];
   for (int i = 0; i <= CURVE_POINTS; i++) {
     x[i] = at->x_low + (at->x_high - at->x_low) * i / CURVE_POINTS;
@@ -100,7 +100,7 @@ static void put_constant_arc(const fg_plot *at) {
 }
 
 /* The part of the line that lies inside the plot. */
-static void put_fit(const fg_plot *at, double slope, double intercept) {
+static void put_error_line(const fg_plot *at, double slope, double intercept) {
   double x[2] = {at->x_low, at->x_high}, y[2];
   double first = (at->y_low - intercept) / slope, second = (at->y_high - intercept) / slope;
   x[0] = fmax(x[0], fmin(first, second));
@@ -132,20 +132,20 @@ void fg_lot_plot_correlation(FILE *out, const fg_lot_analysis *analysis) {
   fg_plot_y_axis(&at, "angle error, %");
   fg_plot_x_numbers(&at);
   fg_plot_x_title(&at, "radius error, %");
-  put_constant_arc(&at);
-  each_bump(&at, analysis, put_bump);
-  put_fit(&at, line->slope, line->intercept);
+  put_arc_hypothesis(&at);
+  visit_bumps(&at, analysis, put_error_dot);
+  put_error_line(&at, line->slope, line->intercept);
   fg_plot_end(&at);
 }
 
-static void put_ratio(const fg_plot *at, const fg_bump *bump) {
+static void put_stiffness_dot(const fg_plot *at, const fg_bump *bump) {
   double x = 1 + bump->radius_error_pct / 100, y = 1 + bump->bump_angle_error_pct / 100;
   if (!(x >= at->x_low && x <= at->x_high && y >= at->y_low && y <= at->y_high)) return;
   fg_plot_dot(at, x, y, 4.5, "mapped");
 }
 
-static void put_ratios(const fg_plot *at, const void *user) {
-  each_bump(at, user, put_ratio);
+static void put_stiffness_dots(const fg_plot *at, const void *user) {
+  visit_bumps(at, user, put_stiffness_dot);
 }
 
 void fg_lot_plot_map(FILE *out, const fg_lot_analysis *analysis) {
@@ -154,7 +154,7 @@ void fg_lot_plot_map(FILE *out, const fg_lot_analysis *analysis) {
   if (!error_axes(analysis, &at)) return;
   const fg_stiffness_map map = {&settings->design,   &settings->material, 1 + at.x_low / 100,
                                 1 + at.x_high / 100, 1 + at.y_low / 100,  1 + at.y_high / 100};
-  fg_stiffness_plot_map(out, &map, put_ratios, analysis);
+  fg_stiffness_plot_map(out, &map, put_stiffness_dots, analysis);
 }
 
 /* A polar plot: the clearance outwards from a zero circle, so that a rub shows inside it. */
@@ -181,7 +181,7 @@ static void put_ring(const polar *p, double clearance_mm, const char *style, con
             POLAR_MIDDLE - radius - 4, words);
 }
 
-static void put_pads(const polar *p, const fg_bearing_layout *layout) {
+static void put_pad_arcs(const polar *p, const fg_bearing_layout *layout) {
   double gap = 180 / (double)layout->pads -
                fg_bearing_pitch_deg(layout) * (double)(layout->bumps_per_pad - 1) / 2;
   for (size_t pad = 0; pad < layout->pads; pad++) {
@@ -193,7 +193,7 @@ static void put_pads(const polar *p, const fg_bearing_layout *layout) {
   }
 }
 
-static void put_places(const polar *p, const fg_lot_bearing *bearing) {
+static void put_polar_places(const polar *p, const fg_lot_bearing *bearing) {
   double xy[2];
   bool open = false;
   fputs("<path class=\"curve\" d=\"", p->out);
@@ -222,7 +222,7 @@ void fg_lot_plot_polar(FILE *out, const fg_lot_analysis *analysis, const fg_lot_
           "<svg class=\"plot polar\" viewBox=\"0 0 %d %d\" role=\"img\" aria-label=\"Local "
           "clearance around the bearing, foils fitted\">\n",
           POLAR_SIZE, POLAR_SIZE);
-  put_pads(&p, &analysis->layout);
+  put_pad_arcs(&p, &analysis->layout);
   put_ring(&p, 0, "limit", "0");
   put_ring(&p, design, "hypothesis", NULL);
   fprintf(out,
@@ -230,6 +230,6 @@ void fg_lot_plot_polar(FILE *out, const fg_lot_analysis *analysis, const fg_lot_
           "y=\"%d\">%.1f µm</text>\n",
           POLAR_MIDDLE, POLAR_MIDDLE - 8, POLAR_MIDDLE, POLAR_MIDDLE + 18,
           1000 * bearing->clearance.min_mm);
-  put_places(&p, bearing);
+  put_polar_places(&p, bearing);
   fputs("</svg>\n", out);
 }

@@ -12,7 +12,6 @@ enum { FG_LOT_DOTS_MAX = 3000 };
 
 /* Room around an axis; a value on it. */
 void fg_lot_plot_widen(double *low, double *high, double share);
-void fg_lot_plot_include(double value, double *low, double *high);
 
 /* Mean ± 2 sd of each bump number and the foils beside them, with the tolerance (thesis figure
  * 5.17), and the reference curve where it speaks of this quantity; NULL: none. And what its marks

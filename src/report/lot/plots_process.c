@@ -26,13 +26,13 @@ void fg_lot_plot_widen(double *low, double *high, double share) {
   *high += room;
 }
 
-void fg_lot_plot_include(double value, double *low, double *high) {
+static void widen_to_value(double value, double *low, double *high) {
   if (!isfinite(value)) return;
   *low = fmin(*low, value);
   *high = fmax(*high, value);
 }
 
-static void put_limits(const fg_plot *at, const fg_tolerance *tolerance) {
+static void put_tolerance_lines(const fg_plot *at, const fg_tolerance *tolerance) {
   if (!tolerance) return;
   const double limits[2] = {tolerance->lower, tolerance->upper};
   for (int i = 0; i < 2; i++)
@@ -41,7 +41,7 @@ static void put_limits(const fg_plot *at, const fg_tolerance *tolerance) {
 }
 
 /* Beside an axis there is room for some thirty letters; a longer name gives way to its symbol. */
-static void axis_title(char *text, size_t size, const fg_quantity *row) {
+static void format_axis_title(char *text, size_t size, const fg_quantity *row) {
   enum { LETTERS = 28 };
   snprintf(text, size, "%s%s%s", strlen(row->words) > LETTERS ? row->symbol : row->words,
            *row->unit ? ", " : "", row->unit);
@@ -57,7 +57,8 @@ bool fg_lot_curve_value(const fg_lot_curve *curve, const fg_quantity *row, size_
 }
 
 /* The reference curve: its points joined, a diamond each. */
-static void put_curve(const fg_plot *at, const fg_quantity *row, const fg_lot_curve *curve) {
+static void put_reference_curve(const fg_plot *at, const fg_quantity *row,
+                                const fg_lot_curve *curve) {
   double x[FG_LOT_CURVE_MAX], y[FG_LOT_CURVE_MAX];
   size_t count = 0;
   while (fg_lot_curve_value(curve, row, count, &y[count])) {
@@ -101,15 +102,15 @@ static void put_foil_dots(const fg_plot *at, const fg_lot_quantity *quantity, co
   }
 }
 
-static void put_dots(const fg_plot *at, const fg_lot_analysis *analysis,
-                     const fg_lot_quantity *quantity) {
+static void put_all_dots(const fg_plot *at, const fg_lot_analysis *analysis,
+                         const fg_lot_quantity *quantity) {
   size_t every = foils_per_dot(analysis, quantity), foils = analysis->foil_count;
   for (size_t i = 0; i < foils; i += every)
     put_foil_dots(at, quantity, analysis->foils[i].foil,
                   foils > 1 ? (double)i / (double)(foils - 1) : 0.5);
 }
 
-static void put_places(const fg_plot *at, const fg_lot_quantity *quantity) {
+static void put_place_means(const fg_plot *at, const fg_lot_quantity *quantity) {
   char number[24];
   for (size_t i = 0; i < quantity->places; i++) {
     const fg_lot_place *place = &quantity->place[i];
@@ -124,22 +125,22 @@ static void put_places(const fg_plot *at, const fg_lot_quantity *quantity) {
   }
 }
 
-static bool find_range(const fg_lot_quantity *quantity, const fg_lot_curve *curve, double *low,
-                       double *high) {
+static bool find_place_range(const fg_lot_quantity *quantity, const fg_lot_curve *curve,
+                             double *low, double *high) {
   double value;
   for (size_t i = 0; i < quantity->places; i++) {
     double reach = isfinite(quantity->place[i].sd) ? 2 * quantity->place[i].sd : 0;
-    fg_lot_plot_include(quantity->place[i].mean - reach, low, high);
-    fg_lot_plot_include(quantity->place[i].mean + reach, low, high);
+    widen_to_value(quantity->place[i].mean - reach, low, high);
+    widen_to_value(quantity->place[i].mean + reach, low, high);
   }
   if (!(*high >= *low)) return false;
-  fg_lot_plot_include(quantity->min, low, high);
-  fg_lot_plot_include(quantity->max, low, high);
+  widen_to_value(quantity->min, low, high);
+  widen_to_value(quantity->max, low, high);
   for (size_t i = 0; fg_lot_curve_value(curve, quantity->row, i, &value); i++)
-    fg_lot_plot_include(value, low, high);
+    widen_to_value(value, low, high);
   if (quantity->tolerance) {
-    fg_lot_plot_include(quantity->tolerance->lower, low, high);
-    fg_lot_plot_include(quantity->tolerance->upper, low, high);
+    widen_to_value(quantity->tolerance->lower, low, high);
+    widen_to_value(quantity->tolerance->upper, low, high);
   }
   fg_lot_plot_widen(low, high, 0.06);
   return true;
@@ -149,16 +150,16 @@ void fg_lot_plot_places(FILE *out, const fg_lot_analysis *analysis, const fg_lot
                         const fg_lot_curve *curve) {
   double low = INFINITY, high = -INFINITY;
   char title[160];
-  if (!find_range(quantity, curve, &low, &high)) return;
+  if (!find_place_range(quantity, curve, &low, &high)) return;
   fg_plot at = {out, PLOT_WIDTH, 92, 985, 14, 250, 0.4, (double)quantity->places + 0.6, low, high};
-  axis_title(title, sizeof title, quantity->row);
+  format_axis_title(title, sizeof title, quantity->row);
   fg_plot_begin(&at, 300, "By number: mean, two standard deviations, and every foil");
   fg_plot_y_axis(&at, title);
   fg_plot_x_title(&at, fg_lot_words_of(analysis)->numbers);
-  put_limits(&at, quantity->tolerance);
-  put_dots(&at, analysis, quantity);
-  put_places(&at, quantity);
-  put_curve(&at, quantity->row, curve);
+  put_tolerance_lines(&at, quantity->tolerance);
+  put_all_dots(&at, analysis, quantity);
+  put_place_means(&at, quantity);
+  put_reference_curve(&at, quantity->row, curve);
   fg_plot_end(&at);
 }
 
@@ -174,7 +175,7 @@ void fg_lot_put_places_key(FILE *out, const fg_lot_analysis *analysis,
 }
 
 /* Which foil of the lot each point of the chart is. */
-static size_t next_foil(const fg_lot_quantity *quantity, size_t foil) {
+static size_t find_next_foil(const fg_lot_quantity *quantity, size_t foil) {
   while (!quantity->size[foil])
     foil++;
   return foil;
@@ -190,8 +191,8 @@ static bool begin_mark(const fg_plot *at, const fg_lot_analysis *analysis, size_
 }
 
 /* The groups that explain the signals: a shape for each, a line at its mean, a key above. */
-static void put_groups(const fg_plot *at, const fg_lot_analysis *analysis,
-                       const fg_lot_quantity *quantity) {
+static void put_cause_groups(const fg_plot *at, const fg_lot_analysis *analysis,
+                             const fg_lot_quantity *quantity) {
   const fg_lot_cause *cause = &quantity->cause;
   size_t foil = 0;
   for (size_t g = 0; g < cause->groups; g++) {
@@ -206,7 +207,7 @@ static void put_groups(const fg_plot *at, const fg_lot_analysis *analysis,
     fputs("</text>\n", at->out);
   }
   for (size_t i = 0; i < quantity->chart.count; i++, foil++) {
-    foil = next_foil(quantity, foil);
+    foil = find_next_foil(quantity, foil);
     const char *name =
         fg_manifest_cell(&analysis->lot->manifest, analysis->foils[foil].item, cause->column);
     size_t g = 0;
@@ -219,13 +220,13 @@ static void put_groups(const fg_plot *at, const fg_lot_analysis *analysis,
   }
 }
 
-static void put_points(const fg_plot *at, const fg_lot_analysis *analysis,
-                       const fg_lot_quantity *quantity) {
+static void put_chart_points(const fg_plot *at, const fg_lot_analysis *analysis,
+                             const fg_lot_quantity *quantity) {
   const fg_chart *chart = &quantity->chart;
   size_t foil = 0;
   for (size_t i = 0; i < chart->count; i++, foil++) {
     const fg_chart_point *point = &chart->point[i];
-    foil = next_foil(quantity, foil);
+    foil = find_next_foil(quantity, foil);
     if (!point->rules && chart->count > DOTS_DRAWN_MAX) continue;
     bool linked = begin_mark(at, analysis, foil);
     if (point->rules)
@@ -244,12 +245,12 @@ void fg_lot_plot_chart(FILE *out, const fg_lot_analysis *analysis,
   bool groups = quantity->cause.column != FG_NO_COLUMN && chart->count <= DOTS_DRAWN_MAX;
   double low = chart->point[0].lower, high = chart->point[0].upper, down = groups ? 20 : 0;
   for (size_t i = 0; i < chart->count; i++)
-    fg_lot_plot_include(chart->point[i].value, &low, &high);
+    widen_to_value(chart->point[i].value, &low, &high);
   fg_lot_plot_widen(&low, &high, 0.08);
   fg_plot at = {out, PLOT_WIDTH, 92, 985, 14 + down, 210 + down, 0.5, (double)chart->count + 0.5,
                 low, high};
   size_t every = chart->count / CHART_POINTS_MAX + 1;
-  axis_title(title, sizeof title, quantity->row);
+  format_axis_title(title, sizeof title, quantity->row);
   fg_plot_begin(&at, 260 + (int)down, "Control chart, foil after foil");
   fg_plot_y_axis(&at, title);
   fg_plot_x_counts(&at);
@@ -264,8 +265,8 @@ void fg_lot_plot_chart(FILE *out, const fg_lot_analysis *analysis,
             fg_plot_y(&at, chart->point[i].value));
   fputs("\"/>\n", out);
   if (groups)
-    put_groups(&at, analysis, quantity);
+    put_cause_groups(&at, analysis, quantity);
   else
-    put_points(&at, analysis, quantity);
+    put_chart_points(&at, analysis, quantity);
   fg_plot_end(&at);
 }

@@ -41,7 +41,7 @@ static size_t results_id(const qif *q, size_t part) {
   return 3 * q->count + q->part_count + part * (q->count + 1) + 1;
 }
 
-static void put_number(FILE *out, double value) {
+static void put_qif_number(FILE *out, double value) {
   char text[32];
   fg_json_format(text, value);
   fputs(text, out);
@@ -55,7 +55,7 @@ static void put_uuid(FILE *out, const char *a, const char *b) {
   fprintf(out, "%.8s-%.4s-5%.3s-8%.3s-%.12s", sum, sum + 8, sum + 13, sum + 17, sum + 20);
 }
 
-static void put_head(const qif *q) {
+static void put_qif_head(const qif *q) {
   const fg_lot *lot = q->analysis->lot;
   size_t last = results_id(q, q->part_count) - 1;
   fprintf(q->out,
@@ -80,18 +80,18 @@ static void put_tolerance(FILE *out, const fg_tolerance *tolerance) {
   fputs("<Tolerance>", out);
   if (isfinite(tolerance->upper)) {
     fputs("<MaxValue>", out);
-    put_number(out, tolerance->upper);
+    put_qif_number(out, tolerance->upper);
     fputs("</MaxValue>", out);
   }
   if (isfinite(tolerance->lower)) {
     fputs("<MinValue>", out);
-    put_number(out, tolerance->lower);
+    put_qif_number(out, tolerance->lower);
     fputs("</MinValue>", out);
   }
   fputs("<DefinedAsLimit>true</DefinedAsLimit></Tolerance>", out);
 }
 
-static void put_name(FILE *out, const fg_lot_words *words, const fg_characteristic *one) {
+static void put_qif_name(FILE *out, const fg_lot_words *words, const fg_characteristic *one) {
   if (one->owner == FG_QUANTITY_OF_BEARING) fputs("bearing: ", out);
   fputs(one->row->words, out);
   if (one->number) fprintf(out, "%s%d", words->before_number, one->number);
@@ -111,14 +111,14 @@ static void put_characteristics(const qif *q) {
             "<%sCharacteristicNominal id=\"%zu\"><CharacteristicDefinitionId>%zu"
             "</CharacteristicDefinitionId><TargetValue>",
             q->list[i].row->characteristic, q->count + i + 1, i + 1);
-    put_number(q->out, q->list[i].nominal);
+    put_qif_number(q->out, q->list[i].nominal);
     fprintf(q->out, "</TargetValue></%sCharacteristicNominal>\n", q->list[i].row->characteristic);
   }
   fprintf(q->out, "</CharacteristicNominals>\n<CharacteristicItems n=\"%zu\">\n", q->count);
   for (size_t i = 0; i < q->count; i++) {
     fprintf(q->out, "<%sCharacteristicItem id=\"%zu\"><Name>", q->list[i].row->characteristic,
             item_id(q, i));
-    put_name(q->out, fg_lot_words_of(q->analysis), &q->list[i]);
+    put_qif_name(q->out, fg_lot_words_of(q->analysis), &q->list[i]);
     fprintf(q->out,
             "</Name><CharacteristicNominalId>%zu</CharacteristicNominalId>"
             "</%sCharacteristicItem>\n",
@@ -153,7 +153,7 @@ static const char *inspection_status(fg_verdict verdict) {
   }
 }
 
-static void put_measurement(const qif *q, size_t id, size_t i, double value, double u) {
+static void put_qif_measurement(const qif *q, size_t id, size_t i, double value, double u) {
   const fg_characteristic *one = &q->list[i];
   const fg_tolerance *tolerance = one->tolerance;
   fg_verdict verdict = tolerance ? fg_judge_value(tolerance, value, u) : FG_VERDICT_NONE;
@@ -164,16 +164,16 @@ static void put_measurement(const qif *q, size_t id, size_t i, double value, dou
           one->row->characteristic, id, characteristic_status(verdict), item_id(q, i));
   if (isfinite(u)) {
     fputs(" combinedUncertainty=\"", q->out);
-    put_number(q->out, u);
+    put_qif_number(q->out, u);
     fputs("\"", q->out);
   }
   fputs(">", q->out);
-  put_number(q->out, value);
+  put_qif_number(q->out, value);
   fprintf(q->out, "</Value></%sCharacteristicMeasurement>\n", one->row->characteristic);
 }
 
 /* Of the manifest's column `date`, else of the scan's file; the standard wants a time in UTC. */
-static void put_start(const qif *q, const fg_lot_foil *foil) {
+static void put_inspection_start(const qif *q, const fg_lot_foil *foil) {
   const fg_lot *lot = q->analysis->lot;
   size_t column = fg_manifest_column(&lot->manifest, FG_LOT_DATE_COLUMN);
   double days =
@@ -188,30 +188,30 @@ static void put_start(const qif *q, const fg_lot_foil *foil) {
           date, strchr(date, 'T') ? ":00Z" : "T00:00:00Z");
 }
 
-static fg_verdict verdict_of(const fg_measured_part *part) {
+static fg_verdict find_part_verdict(const fg_measured_part *part) {
   return part->foil ? part->foil->verdict : part->bearing->decision.outcome.verdict;
 }
 
-static void put_part(const qif *q, size_t index) {
+static void put_part_results(const qif *q, size_t index) {
   const fg_measured_part *part = &q->parts[index];
   size_t id = results_id(q, index), known = 0;
   double u;
   for (size_t i = 0; i < q->count; i++)
     known += isfinite(fg_characteristic_value(&q->list[i], part, &u)) != 0;
   fprintf(q->out, "<MeasurementResults id=\"%zu\">\n", id);
-  if (part->foil) put_start(q, part->foil);
+  if (part->foil) put_inspection_start(q, part->foil);
   if (known) {
     fprintf(q->out, "<MeasuredCharacteristics><CharacteristicMeasurements n=\"%zu\">\n", known);
     for (size_t i = 0; i < q->count; i++) {
       double value = fg_characteristic_value(&q->list[i], part, &u);
-      if (isfinite(value)) put_measurement(q, id + 1 + i, i, value, u);
+      if (isfinite(value)) put_qif_measurement(q, id + 1 + i, i, value, u);
     }
     fputs("</CharacteristicMeasurements></MeasuredCharacteristics>\n", q->out);
   }
   fprintf(q->out,
           "<InspectionStatus><InspectionStatusEnum>%s</InspectionStatusEnum></InspectionStatus>"
           "<ActualComponentIds n=\"1\"><Id>%zu</Id></ActualComponentIds>\n</MeasurementResults>\n",
-          inspection_status(verdict_of(part)), component_id(q, index));
+          inspection_status(find_part_verdict(part)), component_id(q, index));
 }
 
 static void put_attribute(FILE *out, const char *name, const char *value) {
@@ -262,7 +262,7 @@ static void put_component(const qif *q, size_t index) {
   fprintf(q->out,
           "</SerialNumber><Status><InspectionStatusEnum>%s</InspectionStatusEnum></Status>"
           "</ActualComponent>\n",
-          inspection_status(verdict_of(part)));
+          inspection_status(find_part_verdict(part)));
 }
 
 /* How many of the parts from this one on are of one product. */
@@ -292,7 +292,7 @@ static void put_results(const qif *q) {
   if (!q->part_count) return;
   fprintf(q->out, "<Results>\n<MeasurementResultsSet n=\"%zu\">\n", q->part_count);
   for (size_t i = 0; i < q->part_count; i++)
-    put_part(q, i);
+    put_part_results(q, i);
   fputs("</MeasurementResultsSet>\n", q->out);
   put_components(q);
   fputs("</Results>\n", q->out);
@@ -303,7 +303,7 @@ fg_status fg_lot_write_qif(fg_context *ctx, const fg_lot_analysis *analysis, FIL
   fg_status status = fg_characteristics_list(ctx, analysis, &q.list, &q.count);
   if (status == FG_OK) status = fg_measured_parts_list(ctx, analysis, &q.parts, &q.part_count);
   if (status == FG_OK) {
-    put_head(&q);
+    put_qif_head(&q);
     if (q.count) put_characteristics(&q);
     if (q.count) put_results(&q);
     fputs("</QIFDocument>\n", out);
