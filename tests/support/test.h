@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Frame of every unit test: cmocka with what its header needs, calls that must succeed, numbers that
- * must agree, and the row of a table that a failed assertion stands in.
+/* Frame of every unit test: cmocka with what its header needs, calls that must succeed, numbers
+ * that must agree, and the row of a table that a failed assertion stands in.
  *
  *   static const struct { ... } cases[] = {...};
  *   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -55,6 +55,17 @@ static __attribute__((noinline, unused)) const char *test_place(const char *file
 
 #define TEST_PLACE test_place(__FILE__), __LINE__
 
+/* A test that failed in a row leaves its words behind: the next test begins without. */
+static inline int test_forget_row(void **state) {
+  (void)state;
+  test_row_words[0] = '\0';
+  return 0;
+}
+
+#undef cmocka_unit_test
+#define cmocka_unit_test(test)                                                                     \
+  { #test, test, test_forget_row, NULL, NULL }
+
 /* cmocka's own, with the row. */
 #undef assert_true
 #define assert_true(c) _assert_true(cast_to_largest_integral_type(c), #c, TEST_PLACE)
@@ -63,7 +74,8 @@ static __attribute__((noinline, unused)) const char *test_place(const char *file
 #undef assert_non_null
 #define assert_non_null(c) _assert_true(cast_ptr_to_largest_integral_type(c), #c, TEST_PLACE)
 #undef assert_null
-#define assert_null(c) _assert_true(!(cast_ptr_to_largest_integral_type(c)), #c " == NULL", TEST_PLACE)
+#define assert_null(c)                                                                             \
+  _assert_true(!(cast_ptr_to_largest_integral_type(c)), #c " == NULL", TEST_PLACE)
 #undef assert_int_equal
 #define assert_int_equal(a, b)                                                                     \
   _assert_int_equal(cast_to_largest_integral_type(a), cast_to_largest_integral_type(b), TEST_PLACE)
@@ -106,7 +118,8 @@ static inline void test_status(const fg_context *ctx, fg_status status, fg_statu
   _fail(file, line);
 }
 
-/* The call returns FG_OK; otherwise its status and the message in `ctx` (NULL: none) are printed. */
+/* The call returns FG_OK; otherwise its status and the message in `ctx` (NULL: none) are printed.
+ */
 #define assert_ok(ctx, call) assert_status(ctx, call, FG_OK)
 
 /* The call returns `wanted`. */

@@ -149,12 +149,12 @@ static void a_foil_does_not_depend_on_its_place(void **state) {
   moved("\"dpi\":1600,\"noise\":1", 1600);
 }
 
-static void nor_when_it_is_dark_and_of_16_bit(void **state) {
+static void a_dark_16_bit_scan_measures_the_same_after_a_move(void **state) {
   (void)state;
   moved("\"dpi\":1600,\"noise\":2,\"bits\":16,\"background\":220,\"contrast\":-170", 1600);
 }
 
-static void nor_on_what_lies_beside_it(void **state) {
+static void foils_beside_it_do_not_change_a_measurement(void **state) {
   (void)state;
   const double dpi = 1600;
   const char *scanner = "\"dpi\":1600,\"noise\":1";
@@ -179,8 +179,8 @@ static void nor_on_what_lies_beside_it(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_foil_does_not_depend_on_its_place),
-      cmocka_unit_test(nor_when_it_is_dark_and_of_16_bit),
-      cmocka_unit_test(nor_on_what_lies_beside_it),
+      cmocka_unit_test(a_dark_16_bit_scan_measures_the_same_after_a_move),
+      cmocka_unit_test(foils_beside_it_do_not_change_a_measurement),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

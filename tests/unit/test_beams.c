@@ -260,7 +260,7 @@ static void assert_numbers_are_widths(const fg_foil *foil) {
     assert_int_equal(foil->beams[i].number, lround((foil->beams[i].width_mm - 1) / 0.01) + 1);
 }
 
-static void numbers_leave_out_what_is_missing(void **state) {
+static void beam_numbers_skip_missing_beams(void **state) {
   (void)state;
   fg_design design;
   for (int k = 0; k < 8; k++)
@@ -300,7 +300,7 @@ static void rows_share_their_places(void **state) {
 }
 
 /* An end beam of a foil whose box is not known, or cut by the scan's border, may be either. */
-static void places_that_cannot_be_told_are_said(void **state) {
+static void unknown_beam_places_are_flagged(void **state) {
   (void)state;
   fg_design design;
   fg_foil foil = comb_without(5, 1, 1, 0.3, false, &design);
@@ -350,7 +350,7 @@ static void beams_of_a_ring_run_clockwise(void **state) {
 }
 
 /* Six places at 40 degrees, the gap behind them 160: that of a missing beam is 80. */
-static void a_ring_leaves_out_what_is_missing(void **state) {
+static void beam_numbers_in_a_ring_skip_missing_beams(void **state) {
   (void)state;
   fg_design design = design_of_beams();
   design.beam_count = 6;
@@ -402,10 +402,10 @@ int main(void) {
       cmocka_unit_test(edges_that_are_not_there),
       cmocka_unit_test(burrs_are_left_out),
       cmocka_unit_test(numbers_run_from_left_to_right),
-      cmocka_unit_test(numbers_leave_out_what_is_missing),
+      cmocka_unit_test(beam_numbers_skip_missing_beams),
       cmocka_unit_test(rows_share_their_places),
-      cmocka_unit_test(places_that_cannot_be_told_are_said),
-      cmocka_unit_test(a_ring_leaves_out_what_is_missing),
+      cmocka_unit_test(unknown_beam_places_are_flagged),
+      cmocka_unit_test(beam_numbers_in_a_ring_skip_missing_beams),
       cmocka_unit_test(one_of_parallel_beams_that_leans_is_bent),
       cmocka_unit_test(beams_of_a_ring_run_clockwise),
       cmocka_unit_test(another_size_is_no_foil_of_the_design),

@@ -49,7 +49,7 @@ static void choose(const fg_benefit *benefit, int k, fg_correction_reason reason
   assert_int_equal(decision.choice[k].moved, moved);
 }
 
-static void a_move_pays_beyond_twice_its_variance(void **state) {
+static void a_correction_helps_beyond_twice_its_variance(void **state) {
   (void)state;
   fg_benefit_item item[ITEMS];
   fg_benefit benefit = open_benefit(item);
@@ -61,7 +61,7 @@ static void a_move_pays_beyond_twice_its_variance(void **state) {
   choose(&benefit, H, FG_CORRECTION_DOUBTFUL, false);
 }
 
-static void what_is_known_exactly_is_moved(void **state) {
+static void exactly_known_corrections_are_applied(void **state) {
   (void)state;
   fg_benefit_item item[ITEMS];
   fg_benefit benefit = open_benefit(item);
@@ -71,7 +71,7 @@ static void what_is_known_exactly_is_moved(void **state) {
 }
 
 /* It follows the others, either way. */
-static void what_hardly_changes_anything_is_not_decided(void **state) {
+static void negligible_corrections_follow_the_others(void **state) {
   (void)state;
   fg_benefit_item item[ITEMS];
   fg_benefit benefit = open_benefit(item);
@@ -87,7 +87,7 @@ static void what_hardly_changes_anything_is_not_decided(void **state) {
   choose(&benefit, R, FG_CORRECTION_SMALL, true);
 }
 
-static void what_is_no_number_moves_nothing(void **state) {
+static void unfitted_bumps_move_nothing(void **state) {
   (void)state;
   fg_benefit_item item[ITEMS];
   fg_benefit benefit = open_benefit(item);
@@ -125,7 +125,7 @@ static void a_tie_moves_as_far_as_all_explanations_agree(void **state) {
 }
 
 /* What they agree about stays whole where they differ about one bump only. */
-static void what_one_bump_leaves_open_takes_nothing_from_the_others(void **state) {
+static void one_undecided_bump_leaves_the_others_corrected(void **state) {
   (void)state;
   fg_benefit_item item[ITEMS];
   fg_benefit benefit = open_benefit(item);
@@ -204,7 +204,7 @@ static void scans_of_one_foil_are_one_decision(void **state) {
   assert_false(each[0].choice[R0].moved);
 }
 
-static void the_doubt_is_about_what_is_reported(void **state) {
+static void u_belongs_to_the_reported_value(void **state) {
   (void)state;
   fg_benefit_item item[ITEMS];
   fg_benefit benefit = open_benefit(item);
@@ -222,7 +222,7 @@ static void the_doubt_is_about_what_is_reported(void **state) {
 }
 
 /* Its own u says too little: that of the moment is reported. */
-static void what_does_not_fit_is_no_whole(void **state) {
+static void misfitting_corrections_are_not_whole(void **state) {
   (void)state;
   fg_benefit_item item[ITEMS];
   fg_benefit benefit = open_benefit(item);
@@ -309,7 +309,7 @@ static void one_dimension_moves_and_the_report_holds_together(void **state) {
   }
 }
 
-static void what_is_left_is_as_measured_and_says_its_doubt(void **state) {
+static void uncorrected_values_stay_with_a_wider_u(void **state) {
   (void)state;
   fixture f;
   open_fixture(&f);
@@ -333,7 +333,7 @@ static void what_is_left_is_as_measured_and_says_its_doubt(void **state) {
   close_fixture(&f);
 }
 
-static void what_pays_as_a_whole_stays_as_it_was_corrected(void **state) {
+static void a_wholly_beneficial_correction_is_kept(void **state) {
   (void)state;
   fixture f;
   open_fixture(&f);
@@ -371,20 +371,20 @@ static void other_bumps_after_the_correction_are_none(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_move_pays_beyond_twice_its_variance),
-      cmocka_unit_test(what_is_known_exactly_is_moved),
-      cmocka_unit_test(what_hardly_changes_anything_is_not_decided),
-      cmocka_unit_test(what_is_no_number_moves_nothing),
+      cmocka_unit_test(a_correction_helps_beyond_twice_its_variance),
+      cmocka_unit_test(exactly_known_corrections_are_applied),
+      cmocka_unit_test(negligible_corrections_follow_the_others),
+      cmocka_unit_test(unfitted_bumps_move_nothing),
       cmocka_unit_test(a_tie_moves_as_far_as_all_explanations_agree),
-      cmocka_unit_test(what_one_bump_leaves_open_takes_nothing_from_the_others),
+      cmocka_unit_test(one_undecided_bump_leaves_the_others_corrected),
       cmocka_unit_test(no_explanation_is_made_worse),
       cmocka_unit_test(all_bumps_of_a_kind_are_one_decision),
       cmocka_unit_test(scans_of_one_foil_are_one_decision),
-      cmocka_unit_test(the_doubt_is_about_what_is_reported),
-      cmocka_unit_test(what_does_not_fit_is_no_whole),
+      cmocka_unit_test(u_belongs_to_the_reported_value),
+      cmocka_unit_test(misfitting_corrections_are_not_whole),
       cmocka_unit_test(one_dimension_moves_and_the_report_holds_together),
-      cmocka_unit_test(what_is_left_is_as_measured_and_says_its_doubt),
-      cmocka_unit_test(what_pays_as_a_whole_stays_as_it_was_corrected),
+      cmocka_unit_test(uncorrected_values_stay_with_a_wider_u),
+      cmocka_unit_test(a_wholly_beneficial_correction_is_kept),
       cmocka_unit_test(other_bumps_after_the_correction_are_none),
   };
   return cmocka_run_group_tests_name("what pays", tests, NULL, NULL);

@@ -40,7 +40,7 @@ static void certificates_state_u_or_expanded_u_with_its_factor(void **state) {
 }
 
 /* Two errors that are independent have the covariance of x and y: what heat does is common. */
-static void two_independent_errors_hold_what_is_common(void **state) {
+static void a_common_error_correlates_two_axes(void **state) {
   (void)state;
   const char *const stated[] = {
       "{\"scale\":{\"x\":{\"u_rel\":1e-4},\"y\":{\"u_rel\":3e-4}},"
@@ -63,7 +63,7 @@ static void two_independent_errors_hold_what_is_common(void **state) {
   }
 }
 
-static void what_is_no_calibration_is_refused_with_its_place(void **state) {
+static void invalid_calibrations_are_refused_with_their_place(void **state) {
   static const struct {
     const char *stated, *words;
   } cases[] = {
@@ -215,8 +215,8 @@ static void one_scale_leaves_angles(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(certificates_state_u_or_expanded_u_with_its_factor),
-      cmocka_unit_test(two_independent_errors_hold_what_is_common),
-      cmocka_unit_test(what_is_no_calibration_is_refused_with_its_place),
+      cmocka_unit_test(a_common_error_correlates_two_axes),
+      cmocka_unit_test(invalid_calibrations_are_refused_with_their_place),
       cmocka_unit_test(a_longer_pixel_moves_every_quantity_as_its_u_says),
       cmocka_unit_test(one_scale_leaves_angles),
   };

@@ -112,7 +112,7 @@ static void small_uncertainties_are_first_order(void **state) {
   assert_near(beam.u_compliance_error_pct, 100 * fabs(3 * l - w), 1e-3);
 }
 
-static void what_cannot_be_said_is_nan(void **state) {
+static void impossible_sizes_give_nan(void **state) {
   (void)state;
   fg_design design = design_of_thesis();
   const double bad[] = {NAN, INFINITY, 0, -9};
@@ -144,7 +144,7 @@ int main(void) {
       cmocka_unit_test(nominal_beam_is_eq_5_10),
       cmocka_unit_test(uncertainties_are_those_of_drawn_beams),
       cmocka_unit_test(small_uncertainties_are_first_order),
-      cmocka_unit_test(what_cannot_be_said_is_nan),
+      cmocka_unit_test(impossible_sizes_give_nan),
   };
   return cmocka_run_group_tests_name("cantilever", tests, NULL, NULL);
 }

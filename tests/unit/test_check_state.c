@@ -49,7 +49,7 @@ static void a_change_counts_beyond_scatter_and_what_matters(void **state) {
   assert_int_equal(fg_check_state_compare(&now, &baseline, words, sizeof words), 0);
 }
 
-static void what_one_of_both_does_not_know_is_not_compared(void **state) {
+static void unknown_members_are_not_compared(void **state) {
   char words[600];
   fg_check_state baseline = unknown(2400), now = unknown(2400);
   (void)state;
@@ -172,7 +172,7 @@ static void a_state_that_is_kept_reads_as_it_was(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_change_counts_beyond_scatter_and_what_matters),
-      cmocka_unit_test(what_one_of_both_does_not_know_is_not_compared),
+      cmocka_unit_test(unknown_members_are_not_compared),
       cmocka_unit_test(a_blur_may_change_by_a_tenth),
       cmocka_unit_test(a_new_finding_is_a_change_and_one_that_was_there_is_none),
       cmocka_unit_test(the_state_is_of_the_discs),

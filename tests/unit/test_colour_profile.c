@@ -39,7 +39,7 @@ static void assert_places(const fg_colour_known *known, double shift, double blu
   assert_false(place[2].good);
 }
 
-static void a_strip_is_found_where_it_is(void **state) {
+static void a_strip_is_found_at_its_place(void **state) {
   (void)state;
   for (double shift = -3.5; shift <= 3.5; shift += 0.5)
     assert_places(&(fg_colour_known){.half_width_px = 9.5, .blur_px = 1.2}, shift, 1.5);
@@ -56,7 +56,7 @@ static void a_strip_narrower_than_its_blur_is_found(void **state) {
   assert_float_equal(place.shift_px, 0.7, 1e-3);
 }
 
-static void a_lone_edge_is_found_where_it_is(void **state) {
+static void a_single_edge_is_found_at_its_place(void **state) {
   (void)state;
   for (double shift = -3; shift <= 3; shift += 0.5)
     assert_places(&(fg_colour_known){.half_width_px = INFINITY, .blur_px = 1.2}, shift, 1.4);
@@ -77,9 +77,9 @@ static void few_pixels_tell_nothing(void **state) {
 int main(void) {
   fg_edge_tables_init(&tables, 1);
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_strip_is_found_where_it_is),
+      cmocka_unit_test(a_strip_is_found_at_its_place),
       cmocka_unit_test(a_strip_narrower_than_its_blur_is_found),
-      cmocka_unit_test(a_lone_edge_is_found_where_it_is),
+      cmocka_unit_test(a_single_edge_is_found_at_its_place),
       cmocka_unit_test(few_pixels_tell_nothing),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

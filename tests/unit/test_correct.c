@@ -89,7 +89,7 @@ static void same_circles(const fg_foil *got, const fg_foil *wanted, double toler
   }
 }
 
-static void what_a_scanner_moved_is_put_back(void **state) {
+static void a_scanner_s_shift_of_a_foil_is_corrected(void **state) {
   (void)state;
   foil_rows f;
   foil_rows_open(&f);
@@ -125,7 +125,7 @@ static void the_corrected_foil_is_the_one_that_was_drawn(void **state) {
  * this, and its direction by the angle between them. */
 #define NEXT_ROW_MM 1.5e-4
 
-static void what_the_part_moved_is_put_back(void **state) {
+static void a_part_s_own_deviation_is_corrected(void **state) {
   (void)state;
   fg_context ctx = {0};
   foil_rows f;
@@ -194,7 +194,7 @@ static void a_later_fit_changes_no_correction(void **state) {
   foil_rows_close(&f);
 }
 
-static void what_a_scanner_did_to_a_disc_is_put_back(void **state) {
+static void a_scanner_s_shift_of_a_disc_is_corrected(void **state) {
   (void)state;
   enum { STATIONS = 720 };
   fg_context ctx = {0};
@@ -241,11 +241,11 @@ static void a_foil_that_was_not_measured_stays_so(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(what_a_scanner_moved_is_put_back),
+      cmocka_unit_test(a_scanner_s_shift_of_a_foil_is_corrected),
       cmocka_unit_test(the_corrected_foil_is_the_one_that_was_drawn),
-      cmocka_unit_test(what_the_part_moved_is_put_back),
+      cmocka_unit_test(a_part_s_own_deviation_is_corrected),
       cmocka_unit_test(a_later_fit_changes_no_correction),
-      cmocka_unit_test(what_a_scanner_did_to_a_disc_is_put_back),
+      cmocka_unit_test(a_scanner_s_shift_of_a_disc_is_corrected),
       cmocka_unit_test(a_foil_that_was_not_measured_stays_so),
   };
   return cmocka_run_group_tests_name("correction", tests, NULL, NULL);

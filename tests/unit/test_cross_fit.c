@@ -69,7 +69,7 @@ static void close_foil(fixture *f) {
     fg_measurement_free(&f->measurement[i]);
 }
 
-static void a_subset_leaves_the_whole_alone(void **state) {
+static void taking_a_subset_leaves_the_full_set_unchanged(void **state) {
   (void)state;
   fixture f;
   open_foil(&f, 1, BUMPS, 0);
@@ -96,7 +96,7 @@ static void a_subset_leaves_the_whole_alone(void **state) {
 }
 
 /* Without its fold the search finds what it found with it, and the fold is as well explained. */
-static void what_is_there_is_foretold(void **state) {
+static void a_true_effect_survives_cross_fitting(void **state) {
   (void)state;
   for (size_t scans = 1; scans <= 2; scans++) {
     fixture f;
@@ -115,7 +115,7 @@ static void what_is_there_is_foretold(void **state) {
 }
 
 /* A set that noise alone would have: its numbers, fitted to all rows, must not come along. */
-static void what_is_not_there_is_not(void **state) {
+static void noise_is_not_confirmed_by_cross_fitting(void **state) {
   (void)state;
   fixture f;
   open_foil(&f, 1, BUMPS, 0);
@@ -181,9 +181,9 @@ static void one_bump_cannot_be_left_out(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_subset_leaves_the_whole_alone),
-      cmocka_unit_test(what_is_there_is_foretold),
-      cmocka_unit_test(what_is_not_there_is_not),
+      cmocka_unit_test(taking_a_subset_leaves_the_full_set_unchanged),
+      cmocka_unit_test(a_true_effect_survives_cross_fitting),
+      cmocka_unit_test(noise_is_not_confirmed_by_cross_fitting),
       cmocka_unit_test(before_is_the_rms),
       cmocka_unit_test(a_curve_is_judged_by_stretches),
       cmocka_unit_test(one_bump_cannot_be_left_out),

@@ -293,7 +293,7 @@ static void circles_that_do_not_cross_have_no_angle(void **state) {
   assert_int_equal(c.bump.flags, FG_BUMP_POOR_FIT);
 }
 
-static void what_was_not_fitted_stays_unknown(void **state) {
+static void unfitted_values_stay_unknown(void **state) {
   (void)state;
   derive_case c = make_case(NAN, 23.79, 20.95);
   c.bump.flags = FG_BUMP_NOT_FITTED;
@@ -323,7 +323,7 @@ int main(void) {
       cmocka_unit_test(a_thickness_that_was_not_measured_is_the_design_s),
       cmocka_unit_test(height_does_not_depend_on_the_datum),
       cmocka_unit_test(circles_that_do_not_cross_have_no_angle),
-      cmocka_unit_test(what_was_not_fitted_stays_unknown),
+      cmocka_unit_test(unfitted_values_stay_unknown),
   };
   return cmocka_run_group_tests_name("derive", tests, NULL, NULL);
 }

@@ -167,7 +167,7 @@ static void try_form_error(double length, double sd, double white, double *ratio
 }
 
 /* Not too small; where waves are long it may be on the safe side. */
-static void u_knows_the_form(void **state) {
+static void u_covers_the_form_error(void **state) {
   double ratio;
   (void)state;
   try_form_error(1, 0, 1e-4, &ratio); /* white */
@@ -180,9 +180,9 @@ static void u_knows_the_form(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(styles_are_told),   cmocka_unit_test(numbers_are_numbers),
-      cmocka_unit_test(headers_say_units), cmocka_unit_test(halves_are_named),
-      cmocka_unit_test(u_knows_the_form),
+      cmocka_unit_test(styles_are_told),         cmocka_unit_test(numbers_are_numbers),
+      cmocka_unit_test(headers_say_units),       cmocka_unit_test(halves_are_named),
+      cmocka_unit_test(u_covers_the_form_error),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

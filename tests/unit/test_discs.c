@@ -191,7 +191,7 @@ static void nothing_round_is_an_error(void **state) {
 }
 
 /* Two lobes are an oval, four a square with round corners. */
-static void an_oval_is_left_alone_or_flagged(void **state) {
+static void an_oval_disc_is_measured_or_flagged(void **state) {
   (void)state;
   static const int lobes[] = {2, 4};
   for (size_t i = 0; i < 2; i++) {
@@ -260,7 +260,7 @@ int main(void) {
       cmocka_unit_test(touching_discs_are_two),
       cmocka_unit_test(a_faint_disc_is_found),
       cmocka_unit_test(nothing_round_is_an_error),
-      cmocka_unit_test(an_oval_is_left_alone_or_flagged),
+      cmocka_unit_test(an_oval_disc_is_measured_or_flagged),
       cmocka_unit_test(threads_do_not_change_the_result),
       cmocka_unit_test(roundness_is_filtered),
   };

@@ -77,7 +77,7 @@ typedef struct number_case {
   double lean, max; /* of the P3; what may be left of 1 um */
 } number_case;
 
-static void columns_hold_what_single_bumps_do(void **state) {
+static void columns_reproduce_moves_of_single_bumps(void **state) {
   (void)state;
   static const number_case cases[] = {
       {1, 9, 4, 0, 1, 1e-9},   {1, 9, 0, 3, 1, 1e-9},  {3, 12, 14, 0, 1, 1e-9},
@@ -158,7 +158,7 @@ static void search_tells_single_bumps(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(columns_hold_what_single_bumps_do),
+      cmocka_unit_test(columns_reproduce_moves_of_single_bumps),
       cmocka_unit_test(search_tells_single_bumps),
   };
   return cmocka_run_group_tests_name("effects of single bumps", tests, NULL, NULL);

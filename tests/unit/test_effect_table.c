@@ -95,7 +95,7 @@ static void the_search_of_the_width_knows_every_row(void **state) {
   }
 }
 
-static void every_row_says_what_it_is(void **state) {
+static void every_effect_row_is_complete(void **state) {
   (void)state;
   for (const fg_effect *effect = fg_effect_first(); effect; effect = fg_effect_next(effect)) {
     if (!effect->words || !effect->equation) fail_msg("%s has no words", effect->id);
@@ -150,7 +150,7 @@ static void the_benchmark_draws_every_row(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(every_row_says_what_it_is),
+      cmocka_unit_test(every_effect_row_is_complete),
       cmocka_unit_test(the_search_knows_every_row),
       cmocka_unit_test(the_search_of_the_width_knows_every_row),
       cmocka_unit_test(the_renderer_knows_every_row),

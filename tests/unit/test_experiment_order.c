@@ -166,7 +166,7 @@ static int times_told(int what, double size) {
   return told;
 }
 
-static void what_is_there_is_told(void **state) {
+static void real_order_effects_are_found(void **state) {
   (void)state;
   int drift = times_told(0, 1.2), alike = times_told(1, 2), slip = times_told(2, 2.1);
   if (drift < 54 || slip < 54) fail_msg("a drift is told in %d, a slip in %d of 60", drift, slip);
@@ -175,7 +175,7 @@ static void what_is_there_is_told(void **state) {
 
 /* What was taken out is paid for by the residual, and by the error of repeated runs where it
  * differs between them. */
-static void what_was_taken_is_paid(void **state) {
+static void removed_effects_cost_their_degrees_of_freedom(void **state) {
   (void)state;
   made m;
   fg_experiment plain, paid, between;
@@ -251,7 +251,7 @@ static void strata_pay_their_own(void **state) {
   fg_experiment_free(&runs);
 }
 
-static void nothing_left_is_said(void **state) {
+static void no_residual_dof_is_reported(void **state) {
   (void)state;
   made m;
   fg_context ctx = {0};
@@ -272,9 +272,12 @@ static void nothing_left_is_said(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(tests_are_the_known_ones), cmocka_unit_test(noise_is_told_at_the_level),
-      cmocka_unit_test(what_is_there_is_told),    cmocka_unit_test(what_was_taken_is_paid),
-      cmocka_unit_test(strata_pay_their_own),     cmocka_unit_test(nothing_left_is_said),
+      cmocka_unit_test(tests_are_the_known_ones),
+      cmocka_unit_test(noise_is_told_at_the_level),
+      cmocka_unit_test(real_order_effects_are_found),
+      cmocka_unit_test(removed_effects_cost_their_degrees_of_freedom),
+      cmocka_unit_test(strata_pay_their_own),
+      cmocka_unit_test(no_residual_dof_is_reported),
   };
   return cmocka_run_group_tests_name("experiment_order", tests, NULL, NULL);
 }

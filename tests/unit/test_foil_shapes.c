@@ -111,7 +111,7 @@ static void lips_of_every_kind(void **state) {
 }
 
 /* Without a lip numbers go clockwise, and the flag says so. */
-static void no_lip_is_said(void **state) {
+static void a_missing_lip_is_flagged(void **state) {
   (void)state;
   for (int mirror = 0; mirror < 2; mirror++) {
     char members[100];
@@ -277,7 +277,7 @@ static void coarse_scans_are_not_biased(void **state) {
 }
 
 /* Where the edges blur into each other, the scan is called too coarse. */
-static void too_coarse_is_said(void **state) {
+static void a_coarse_scan_is_flagged(void **state) {
   (void)state;
   static const struct {
     int dpi;
@@ -299,7 +299,7 @@ int main(void) {
       cmocka_unit_test(any_number_of_bumps),
       cmocka_unit_test(any_rotation_and_either_hand),
       cmocka_unit_test(lips_of_every_kind),
-      cmocka_unit_test(no_lip_is_said),
+      cmocka_unit_test(a_missing_lip_is_flagged),
       cmocka_unit_test(sinusoidal_foil),
       cmocka_unit_test(missing_bumps_leave_their_numbers_out),
       cmocka_unit_test(crushed_bumps_are_flagged),
@@ -308,7 +308,7 @@ int main(void) {
       cmocka_unit_test(cut_by_the_border),
       cmocka_unit_test(touching_foils_are_flagged),
       cmocka_unit_test(coarse_scans_are_not_biased),
-      cmocka_unit_test(too_coarse_is_said),
+      cmocka_unit_test(a_coarse_scan_is_flagged),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

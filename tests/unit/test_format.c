@@ -14,7 +14,7 @@
 #include "scan/format.h"
 #include "support/test.h"
 
-static void every_row_is_whole(void **state) {
+static void every_format_is_complete(void **state) {
   (void)state;
   size_t count;
   const fg_format *const *formats = fg_formats(&count);
@@ -140,7 +140,7 @@ static void documents_name_every_row(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(every_row_is_whole),       cmocka_unit_test(an_ending_belongs_to_one_row),
+      cmocka_unit_test(every_format_is_complete), cmocka_unit_test(an_ending_belongs_to_one_row),
       cmocka_unit_test(a_lot_takes_every_ending), cmocka_unit_test(messages_name_every_row),
       cmocka_unit_test(documents_name_every_row),
   };

@@ -108,7 +108,7 @@ static void solve_densely(fg_edge_fit *edge_fit, const fg_effect_set *set, gsl_v
   free(shift);
 }
 
-static void it_ends_where_dense_least_squares_does(void **state) {
+static void joint_fit_agrees_with_dense_least_squares(void **state) {
   (void)state;
   fg_context ctx = {0};
   fg_measurement m;
@@ -157,6 +157,6 @@ static void it_ends_where_dense_least_squares_does(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(it_ends_where_dense_least_squares_does)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(joint_fit_agrees_with_dense_least_squares)};
   return cmocka_run_group_tests_name("joint fit", tests, NULL, NULL);
 }

@@ -26,7 +26,7 @@ static void an_unknown_tone_curve_is_eight_percent(void **state) {
 }
 
 /* A gauge goes through the same driver: it knows what is alike all over the scan, and no shadow. */
-static void a_gauge_knows_all_but_what_is_local(void **state) {
+static void a_gauge_removes_the_level_s_uncertainty_but_not_a_shadow_s(void **state) {
   (void)state;
   const fg_design unknown = design_of(FG_TONE_UNKNOWN);
   fg_picture_state picture = fg_picture_unknown();
@@ -57,7 +57,7 @@ static void a_finding_makes_it_wider(void **state) {
 
 /* An edge that is cut off, or of two levels, is wider than it is seen. A gauge goes through the
  * same cut. */
-static void what_is_hidden_counts(void **state) {
+static void clipped_blur_adds_to_u(void **state) {
   (void)state;
   const fg_design linear = design_of(FG_TONE_LINEAR);
   fg_picture_state picture = fg_picture_unknown();
@@ -143,9 +143,9 @@ static void a_disc_holds_it(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(an_unknown_tone_curve_is_eight_percent),
-      cmocka_unit_test(a_gauge_knows_all_but_what_is_local),
+      cmocka_unit_test(a_gauge_removes_the_level_s_uncertainty_but_not_a_shadow_s),
       cmocka_unit_test(a_finding_makes_it_wider),
-      cmocka_unit_test(what_is_hidden_counts),
+      cmocka_unit_test(clipped_blur_adds_to_u),
       cmocka_unit_test(the_thickness_moves_by_both_edges),
       cmocka_unit_test(another_thickness_is_flagged),
       cmocka_unit_test(a_disc_holds_it),

@@ -174,7 +174,7 @@ static void a_copy_is_no_second_candidate(void **state) {
   clear(&f);
 }
 
-static void what_no_effect_lists_is_unattributed(void **state) {
+static void an_unlisted_effect_is_unattributed(void **state) {
   enum { MANY = 72 };
   double x[MANY], y[MANY], run_number[MANY];
   uint64_t seed = 71;
@@ -296,7 +296,7 @@ static double smallest_of(const fixture *f, const char *name) {
 }
 
 /* What is asked of a claim is asked of what would have shown: a trend, and one wrong row. */
-static void what_would_have_shown_follows_the_level(void **state) {
+static void smallest_detectable_effect_follows_the_level(void **state) {
   static const double level[] = {0.05, 0, 0.005}; /* 0: 0.01 */
   double trend[3], outlier[3];
   (void)state;
@@ -325,12 +325,12 @@ int main(void) {
       cmocka_unit_test(a_drift_is_no_correlation),
       cmocka_unit_test(exchanged_runs_are_named),
       cmocka_unit_test(a_copy_is_no_second_candidate),
-      cmocka_unit_test(what_no_effect_lists_is_unattributed),
+      cmocka_unit_test(an_unlisted_effect_is_unattributed),
       cmocka_unit_test(the_lip_decay_of_a_lot_is_found),
       cmocka_unit_test(foils_that_differ_by_chance_are_no_effect),
       cmocka_unit_test(stretch_is_found_beside_arc_length),
       cmocka_unit_test(the_same_seed_gives_the_same),
-      cmocka_unit_test(what_would_have_shown_follows_the_level),
+      cmocka_unit_test(smallest_detectable_effect_follows_the_level),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -78,7 +78,7 @@ static void the_effect_is_taken_out(void **state) {
   unlink(path);
 }
 
-static void what_is_no_model_is_refused(void **state) {
+static void invalid_models_are_refused(void **state) {
   static const char *const texts[] = {"", "[]", "{}", "{\"schema\": \"foilgauge/loop/1\"}",
                                       "{\"schema\": \"foilgauge/loop-model/1\"}"};
   char path[] = "/tmp/foilgauge_loop_model_XXXXXX";
@@ -102,7 +102,7 @@ static void what_is_no_model_is_refused(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(the_effect_is_taken_out),
-      cmocka_unit_test(what_is_no_model_is_refused),
+      cmocka_unit_test(invalid_models_are_refused),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -168,7 +168,7 @@ static double left_of_means(const double *y, const double *of_group) {
 }
 
 /* However many rows a group has: its F ratio is that of the means, with the groups' freedom. */
-static void what_is_constant_in_groups_is_judged_between_them(void **state) {
+static void effects_constant_within_groups_are_tested_between_groups(void **state) {
   (void)state;
   double y[LEVELS * EACH], one[LEVELS * EACH], value[LEVELS * EACH], of_group[LEVELS];
   size_t in_group[LEVELS * EACH];
@@ -215,7 +215,7 @@ int main(void) {
       cmocka_unit_test(the_determinant_is_the_covariance_s),
       cmocka_unit_test(least_squares_solves_the_normal_equations),
       cmocka_unit_test(deviates_and_ratios_agree),
-      cmocka_unit_test(what_is_constant_in_groups_is_judged_between_them),
+      cmocka_unit_test(effects_constant_within_groups_are_tested_between_groups),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

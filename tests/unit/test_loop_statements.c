@@ -81,7 +81,7 @@ static const char *advice_of(const fg_scan_loop *loop, size_t i) {
   return loop->result.advice[i];
 }
 
-static void a_foil_says_one_thing(void **state) {
+static void statements_on_a_foil_agree(void **state) {
   (void)state;
   fg_scan_loop *loop = run_loop(FOIL SCALE, FG_FOIL_CLASSICAL);
   assert_consistent(loop, "a tie on one scan");
@@ -104,7 +104,7 @@ static void a_foil_says_one_thing(void **state) {
   fg_scan_loop_free(loop);
 }
 
-static void a_clean_foil_says_one_thing(void **state) {
+static void statements_on_a_clean_foil_agree(void **state) {
   (void)state;
   fg_scan_loop *loop = run_loop(FOIL "]}", FG_FOIL_CLASSICAL);
   assert_int_equal(loop->verdict, FG_LOOP_CLEAN);
@@ -114,7 +114,7 @@ static void a_clean_foil_says_one_thing(void **state) {
 }
 
 /* A disc does not show how far it was turned: no advice to turn one. */
-static void a_ring_says_one_thing(void **state) {
+static void statements_on_a_ring_agree(void **state) {
   (void)state;
   fg_scan_loop *loop = run_loop(RING SCALE, FG_FOIL_DISCS);
   assert_consistent(loop, "a tie in a ring");
@@ -149,9 +149,9 @@ static void sizes_are_summed_up_in_one_way(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_foil_says_one_thing),
-      cmocka_unit_test(a_clean_foil_says_one_thing),
-      cmocka_unit_test(a_ring_says_one_thing),
+      cmocka_unit_test(statements_on_a_foil_agree),
+      cmocka_unit_test(statements_on_a_clean_foil_agree),
+      cmocka_unit_test(statements_on_a_ring_agree),
       cmocka_unit_test(sizes_are_summed_up_in_one_way),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

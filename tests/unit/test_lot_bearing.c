@@ -59,7 +59,7 @@ static void pads_are_as_many_as_fit(void **state) {
 }
 
 /* What a recipe states stands, and what of it contradicts the design is said. */
-static void a_stated_layout_stands(void **state) {
+static void a_stated_layout_is_kept(void **state) {
   (void)state;
   fg_context ctx;
   fg_design design;
@@ -237,7 +237,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_recipe_without_a_layout_has_the_design_s),
       cmocka_unit_test(pads_are_as_many_as_fit),
-      cmocka_unit_test(a_stated_layout_stands),
+      cmocka_unit_test(a_stated_layout_is_kept),
       cmocka_unit_test(bumps_that_the_design_does_not_count_are_counted),
       cmocka_unit_test(a_crowded_design_keeps_within_the_bearing),
       cmocka_unit_test(bearings_are_of_fitted_foils),

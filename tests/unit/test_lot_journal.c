@@ -50,7 +50,7 @@ static fg_journal_head head_of(size_t index, size_t count) {
   return head;
 }
 
-static void journal_drops_what_is_torn(void **state) {
+static void journal_drops_a_torn_last_line(void **state) {
   (void)state;
   fg_context ctx;
   char folder[] = "/tmp/foilgauge-test-XXXXXX", path[64];
@@ -96,7 +96,7 @@ static void change_byte(const char *path, off_t at) {
 }
 
 /* Two records: whatever byte of the file changes, one line is noted and the rest is kept. */
-static void journal_salvages_what_is_whole(void **state) {
+static void journal_keeps_every_undamaged_line(void **state) {
   (void)state;
   fg_context ctx;
   char folder[] = "/tmp/foilgauge-test-XXXXXX", path[64];
@@ -139,7 +139,7 @@ static void write_text(const char *path, const char *text) {
 }
 
 /* As after a loss of power: a hole where records were. */
-static void journal_takes_no_memory_for_a_hole(void **state) {
+static void a_hole_in_the_journal_takes_no_memory(void **state) {
   (void)state;
   fg_context ctx;
   char folder[] = "/tmp/foilgauge-test-XXXXXX", path[64];
@@ -208,9 +208,9 @@ static void folder_has_one_owner(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(journal_drops_what_is_torn),
-      cmocka_unit_test(journal_salvages_what_is_whole),
-      cmocka_unit_test(journal_takes_no_memory_for_a_hole),
+      cmocka_unit_test(journal_drops_a_torn_last_line),
+      cmocka_unit_test(journal_keeps_every_undamaged_line),
+      cmocka_unit_test(a_hole_in_the_journal_takes_no_memory),
       cmocka_unit_test(journal_knows_earlier_ones_and_other_files),
       cmocka_unit_test(folder_has_one_owner),
   };

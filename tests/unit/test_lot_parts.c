@@ -16,7 +16,7 @@
 #include "support/synthetic_foil.h"
 #include "support/test.h"
 
-static void manifest_reads_back_what_it_writes(void **state) {
+static void a_written_manifest_reads_back_equal(void **state) {
   (void)state;
   fg_context ctx;
   fg_manifest manifest = {0}, again = {0};
@@ -82,7 +82,7 @@ static void bad_manifests_say_why(void **state) {
   }
 }
 
-static void recipe_reads_back_what_it_writes(void **state) {
+static void a_written_recipe_reads_back_equal(void **state) {
   (void)state;
   fg_context ctx;
   fg_lot_settings settings, again;
@@ -283,10 +283,10 @@ static void record_keeps_a_name_of_any_bytes(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(manifest_reads_back_what_it_writes),
+      cmocka_unit_test(a_written_manifest_reads_back_equal),
       cmocka_unit_test(manifest_numbers_get_points),
       cmocka_unit_test(bad_manifests_say_why),
-      cmocka_unit_test(recipe_reads_back_what_it_writes),
+      cmocka_unit_test(a_written_recipe_reads_back_equal),
       cmocka_unit_test(bad_recipes_say_why),
       cmocka_unit_test(record_keeps_every_field),
       cmocka_unit_test(record_notices_every_changed_byte),

@@ -104,7 +104,7 @@ static void a_drift_is_a_trend(void **state) {
 }
 
 /* One foil out of line is no trend, nor are dies that follow each other: those explain more. */
-static void a_lone_foil_and_a_new_die_are_no_trend(void **state) {
+static void a_single_outlier_and_a_new_die_are_no_trend(void **state) {
   (void)state;
   const char *cells[FOILS];
   double offset[FOILS] = {[11] = 0.08};
@@ -207,7 +207,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(dies_in_turn_explain_the_signals),
       cmocka_unit_test(a_drift_is_a_trend),
-      cmocka_unit_test(a_lone_foil_and_a_new_die_are_no_trend),
+      cmocka_unit_test(a_single_outlier_and_a_new_die_are_no_trend),
       cmocka_unit_test(trends_of_noise_are_rare),
       cmocka_unit_test(groups_must_hold_every_foil),
       cmocka_unit_test(a_quiet_process_is_stable),

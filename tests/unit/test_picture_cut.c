@@ -32,7 +32,7 @@ static double u_px(double a, double b, int bright) {
   return state.u_cut * 0.7 * sqrt(2 * M_PI);
 }
 
-static void it_holds_the_edge_and_grows(void **unused) {
+static void u_of_a_cut_covers_the_edge_and_grows_with_the_cut(void **unused) {
   (void)unused;
   for (int bright = 0; bright < 2; bright++)
     for (int both = 0; both < 2; both++) {
@@ -49,15 +49,15 @@ static void it_holds_the_edge_and_grows(void **unused) {
     }
 }
 
-static void a_small_cut_is_a_small_doubt(void **unused) {
+static void a_small_cut_adds_little_uncertainty(void **unused) {
   (void)unused;
   assert_true(u_px(0.05, 0, 1) < 0.6);
 }
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(it_holds_the_edge_and_grows),
-      cmocka_unit_test(a_small_cut_is_a_small_doubt),
+      cmocka_unit_test(u_of_a_cut_covers_the_edge_and_grows_with_the_cut),
+      cmocka_unit_test(a_small_cut_adds_little_uncertainty),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -53,7 +53,7 @@ static void expect_same(const char *what, int number, const recipe *r) {
   free(raw);
 }
 
-static void every_kind_and_filter(void **state) {
+static void every_colour_type_and_filter_decodes_as_libpng(void **state) {
   (void)state;
   static const uint32_t widths[] = {1, 2, 3, 5, 7, 8, 15, 16, 17, 33, 64, 301};
   for (int kind = 0; kind < KINDS; kind++)
@@ -341,7 +341,7 @@ static void wrong_rows_are_refused(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(every_kind_and_filter),
+      cmocka_unit_test(every_colour_type_and_filter_decodes_as_libpng),
       cmocka_unit_test(every_way_to_deflate),
       cmocka_unit_test(every_split),
       cmocka_unit_test(more_than_a_block),

@@ -17,7 +17,7 @@
 #include "support/synthetic_foil.h"
 #include "support/test.h"
 
-static void every_row_is_whole(void **state) {
+static void every_format_is_complete(void **state) {
   (void)state;
   for (fg_quantity_owner owner = 0; owner < FG_QUANTITY_OWNERS; owner++) {
     size_t count;
@@ -344,7 +344,7 @@ static void tables_tell_results_from_causes(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(every_row_is_whole),
+      cmocka_unit_test(every_format_is_complete),
       cmocka_unit_test(a_name_is_there_once),
       cmocka_unit_test(every_use_has_room),
       cmocka_unit_test(reports_hold_every_row),

@@ -129,7 +129,7 @@ static void weights_repeat_runs(void **state) {
 
 /* Leaving every run out in turn and fitting again gives the same PRESS, external residuals and
  * Cook's distances. */
-static void deletion_is_what_it_says(void **state) {
+static void leave_one_out_residuals_agree_with_refits(void **state) {
   enum { ROWS = 7 };
   static const char text[] = "x,y\n1,2\n2,3\n3,7\n4,6\n6,9\n7,7\n11,20\n";
   experiment all;
@@ -332,7 +332,7 @@ int main(void) {
       cmocka_unit_test(aliases_are_named),
       cmocka_unit_test(a_fraction_has_its_alias),
       cmocka_unit_test(weights_repeat_runs),
-      cmocka_unit_test(deletion_is_what_it_says),
+      cmocka_unit_test(leave_one_out_residuals_agree_with_refits),
       cmocka_unit_test(a_lever_run_is_noted),
       cmocka_unit_test(partial_squares_are_drops),
       cmocka_unit_test(split_plot_has_two_errors),

@@ -64,7 +64,7 @@ static void slits_leave_their_widths_and_lengths(void **state) {
 }
 
 /* Where the base's edge and the ends of slits lie: half way between two beams, and in a slit. */
-static void roots_lie_where_the_truth_says(void **state) {
+static void beam_roots_agree_with_the_truth(void **state) {
   (void)state;
   for (int slits = 0; slits < 2; slits++) {
     picture p = draw_sheet(slits ? ",\"rotate_deg\":0,\"beams\":{\"layout\":\"slits\"}"
@@ -223,7 +223,7 @@ static void numbers_and_draws_stay(void **state) {
   drop(&b);
 }
 
-static void truth_says_what_follows(void **state) {
+static void truth_holds_derived_values(void **state) {
   (void)state;
   fg_context ctx = {0};
   fg_render_spec *spec = NULL;
@@ -295,7 +295,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(comb_has_its_widths_and_lengths),
       cmocka_unit_test(slits_leave_their_widths_and_lengths),
-      cmocka_unit_test(roots_lie_where_the_truth_says),
+      cmocka_unit_test(beam_roots_agree_with_the_truth),
       cmocka_unit_test(comb_has_its_area),
       cmocka_unit_test(strips_do_not_show),
       cmocka_unit_test(scanner_effects_move_the_edges),
@@ -303,7 +303,7 @@ int main(void) {
       cmocka_unit_test(walls_stand_beside_edges_that_face_them),
       cmocka_unit_test(defects_are_drawn_and_told),
       cmocka_unit_test(numbers_and_draws_stay),
-      cmocka_unit_test(truth_says_what_follows),
+      cmocka_unit_test(truth_holds_derived_values),
       cmocka_unit_test(bad_beams_are_refused),
   };
   return cmocka_run_group_tests_name("render_beams", tests, NULL, NULL);

@@ -40,7 +40,7 @@ static void disc_has_its_area_and_centre(void **state) {
   }
 }
 
-static void hole_takes_its_area(void **state) {
+static void a_hole_reduces_the_area(void **state) {
   (void)state;
   picture p = draw_format("{\"schema\":\"foilgauge/render/1\",\"width_px\":260,\"height_px\":250,"
                           "\"discs\":[{\"centre_mm\":[0.66,0.64],\"radius_mm\":0.5},"
@@ -107,7 +107,7 @@ static void edges_are_where_they_should_be(void **state) {
   }
 }
 
-static void strip_is_where_truth_says(void **state) {
+static void strip_agrees_with_the_truth(void **state) {
   (void)state;
   for (int mirror = 0; mirror < 2; mirror++) {
     picture p = draw_format("{\"schema\":\"foilgauge/render/1\",\"seed\":5,\"foils\":[{"
@@ -279,9 +279,9 @@ static void foils_of_a_bed_lie_apart(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(disc_has_its_area_and_centre),
-      cmocka_unit_test(hole_takes_its_area),
+      cmocka_unit_test(a_hole_reduces_the_area),
       cmocka_unit_test(edges_are_where_they_should_be),
-      cmocka_unit_test(strip_is_where_truth_says),
+      cmocka_unit_test(strip_agrees_with_the_truth),
       cmocka_unit_test(lands_lie_on_the_overall_circle),
       cmocka_unit_test(strip_has_its_area),
       cmocka_unit_test(unequal_resolution),

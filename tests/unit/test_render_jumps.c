@@ -110,7 +110,7 @@ static void fitted_picture_grows(void **state) {
 
 /* Three chips: a disc's middle on each shows the sum of the seams before it. True = nominal + d:
  * the disc shows where nominal = true - d. */
-static void chips_shift_what_they_see(void **state) {
+static void chips_shift_discs_by_their_seams(void **state) {
   (void)state;
   picture p =
       draw(0, "{\"schema\":\"foilgauge/render/1\",\"width_px\":700,\"height_px\":200,"
@@ -148,10 +148,14 @@ static void seam_is_sharp(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(lost_rows_are_not_there),   cmocka_unit_test(rows_are_read_again),
-      cmocka_unit_test(pieces_are_stitched),       cmocka_unit_test(pieces_shift_sideways),
-      cmocka_unit_test(truth_names_the_step),      cmocka_unit_test(fitted_picture_grows),
-      cmocka_unit_test(chips_shift_what_they_see), cmocka_unit_test(seam_is_sharp),
+      cmocka_unit_test(lost_rows_are_not_there),
+      cmocka_unit_test(rows_are_read_again),
+      cmocka_unit_test(pieces_are_stitched),
+      cmocka_unit_test(pieces_shift_sideways),
+      cmocka_unit_test(truth_names_the_step),
+      cmocka_unit_test(fitted_picture_grows),
+      cmocka_unit_test(chips_shift_discs_by_their_seams),
+      cmocka_unit_test(seam_is_sharp),
   };
   return cmocka_run_group_tests_name("render jumps", tests, NULL, NULL);
 }

@@ -139,7 +139,7 @@ static void picture_shows_the_raised_crown(void **state) {
   }
 }
 
-static void truth_says_which(void **state) {
+static void truth_names_the_raised_bumps(void **state) {
   (void)state;
   fg_context ctx = {0};
   char *json = NULL;
@@ -158,7 +158,7 @@ int main(void) {
       cmocka_unit_test(crown_stays_at_its_ends),
       cmocka_unit_test(whole_bump_moves_with_its_flanks),
       cmocka_unit_test(picture_shows_the_raised_crown),
-      cmocka_unit_test(truth_says_which),
+      cmocka_unit_test(truth_names_the_raised_bumps),
   };
   return cmocka_run_group_tests_name("render lift", tests, NULL, NULL);
 }

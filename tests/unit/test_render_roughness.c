@@ -61,7 +61,7 @@ static double expected_at(const roughness_case *c, double lag_um) {
   return sum / weights;
 }
 
-static void scatter_has_its_size_and_form(void **state) {
+static void roughness_has_its_size_and_correlation(void **state) {
   (void)state;
   static const roughness_case cases[] = {
       {1.06, false, 0.02}, {5, false, 0.02},   {50, false, 0.03}, {1000, false, 0.12},
@@ -86,7 +86,7 @@ static void scatter_has_its_size_and_form(void **state) {
 }
 
 /* Both edges share edge_common_um and nothing else. */
-static void edges_share_what_is_common(void **state) {
+static void common_roughness_is_equal_on_both_edges(void **state) {
   (void)state;
   fg_render_spec *spec = many(30, "\"edge_roughness_um\":1.6,\"edge_common_um\":1.2");
   double both = 0, count = 0;
@@ -199,8 +199,8 @@ static void roughness_has_its_size(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(scatter_has_its_size_and_form),
-      cmocka_unit_test(edges_share_what_is_common),
+      cmocka_unit_test(roughness_has_its_size_and_correlation),
+      cmocka_unit_test(common_roughness_is_equal_on_both_edges),
       cmocka_unit_test(disc_scatters_and_closes),
       cmocka_unit_test(disc_scatter_is_in_the_picture),
       cmocka_unit_test(roughness_has_its_size),

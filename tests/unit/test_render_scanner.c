@@ -152,7 +152,7 @@ static void wall_shows_on_one_side(void **state) {
   drop(&p);
 }
 
-static void jpeg_keeps_what_is_flat_and_rounds_the_rest(void **state) {
+static void jpeg_keeps_flat_blocks_and_rounds_ramps(void **state) {
   (void)state;
   fg_jpeg jpeg;
   uint8_t flat[16 * 16], ramp[13 * 16], once[13 * 16];
@@ -270,7 +270,7 @@ int main(void) {
       cmocka_unit_test(shading_and_clipping),
       cmocka_unit_test(halo_moves_light),
       cmocka_unit_test(wall_shows_on_one_side),
-      cmocka_unit_test(jpeg_keeps_what_is_flat_and_rounds_the_rest),
+      cmocka_unit_test(jpeg_keeps_flat_blocks_and_rounds_ramps),
       cmocka_unit_test(jpeg_halves_the_resolution_of_colours),
       cmocka_unit_test(same_spec_same_bytes_whatever_the_strip),
       cmocka_unit_test(file_holds_the_rows),

@@ -112,7 +112,7 @@ static picture make_kind(size_t kind, uint32_t seed) {
   return p;
 }
 
-static void every_kind_comes_out_as_it_went_in(void **state) {
+static void every_colour_type_reads_back_equal(void **state) {
   (void)state;
   for (size_t kind = 0; kind < sizeof kinds / sizeof kinds[0]; kind++)
     for (int interlace = 0; interlace < 2; interlace++) {
@@ -317,7 +317,7 @@ static void pipe_is_read_hashed_and_drained(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(every_kind_comes_out_as_it_went_in),
+      cmocka_unit_test(every_colour_type_reads_back_equal),
       cmocka_unit_test(transparency_is_dropped),
       cmocka_unit_test(small_interlaced_images_are_whole),
       cmocka_unit_test(many_small_pieces_are_joined),

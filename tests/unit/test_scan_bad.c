@@ -296,7 +296,7 @@ static void huge_interlaced_scans_are_refused(void **state) {
   free(file.data);
 }
 
-static void what_is_no_file_is_an_io_error(void **state) {
+static void a_missing_file_is_an_io_error(void **state) {
   (void)state;
   fg_context ctx = {0};
   assert_status(&ctx, read_all(&ctx, "/nonexistent/scan.png", NULL), FG_ERR_IO);
@@ -362,7 +362,7 @@ int main(void) {
       cmocka_unit_test(colour_beyond_the_palette_is_located),
       cmocka_unit_test(oversized_scans_are_refused_by_the_cap),
       cmocka_unit_test(huge_interlaced_scans_are_refused),
-      cmocka_unit_test(what_is_no_file_is_an_io_error),
+      cmocka_unit_test(a_missing_file_is_an_io_error),
       cmocka_unit_test(harmless_extras_pass),
       cmocka_unit_test(nothing_is_printed),
   };

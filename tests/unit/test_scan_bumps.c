@@ -125,7 +125,7 @@ static void foils_are_the_units_of_a_lot(void **state) {
 }
 
 /* A steady error of the edges, as all bumps share, is no stretch; nor is it silent. */
-static void what_the_edges_leave_in_doubt_is_no_claim(void **state) {
+static void a_common_edge_error_is_no_claim(void **state) {
   recipe r = plain;
   scans s;
   (void)state;
@@ -309,7 +309,7 @@ int main(void) {
       cmocka_unit_test(a_decay_from_the_lip_is_found),
       cmocka_unit_test(a_stretch_is_found),
       cmocka_unit_test(foils_are_the_units_of_a_lot),
-      cmocka_unit_test(what_the_edges_leave_in_doubt_is_no_claim),
+      cmocka_unit_test(a_common_edge_error_is_no_claim),
       cmocka_unit_test(single_bumps_are_told),
       cmocka_unit_test(a_cycle_over_the_bumps_is_told),
       cmocka_unit_test(single_bumps_within_uncertainty_are_not_told),

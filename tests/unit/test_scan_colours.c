@@ -67,7 +67,7 @@ static void assert_apart(const picture *p) {
   free(path);
 }
 
-static void every_kind_is_read_apart(void **state) {
+static void channels_of_every_colour_type_are_separated(void **state) {
   (void)state;
   static const int kinds[][2] = {{PNG_COLOR_TYPE_RGB, 8},       {PNG_COLOR_TYPE_RGB, 16},
                                  {PNG_COLOR_TYPE_RGB_ALPHA, 8}, {PNG_COLOR_TYPE_RGB_ALPHA, 16},
@@ -115,7 +115,7 @@ static void a_file_that_shrinks_is_an_error(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(every_kind_is_read_apart),
+      cmocka_unit_test(channels_of_every_colour_type_are_separated),
       cmocka_unit_test(gray_has_no_colours),
       cmocka_unit_test(a_file_that_shrinks_is_an_error),
   };

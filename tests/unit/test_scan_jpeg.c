@@ -147,7 +147,7 @@ static fg_status read_kind(fg_context *ctx, const kind *k, const fg_scan_options
   return status;
 }
 
-static void every_kind_is_read(void **state) {
+static void every_supported_jpeg_is_read(void **state) {
   (void)state;
   static const kind kinds[] = {
       {"gray", JCS_GRAYSCALE, 0, 95, 0, 0, 0, 1, {600, 600}, NULL, 0},
@@ -289,7 +289,7 @@ static void no_byte_breaks_it(void **state) {
   free(file.data);
 }
 
-static void what_is_not_read_is_called_by_name(void **state) {
+static void unsupported_jpegs_are_named(void **state) {
   (void)state;
   kind k = plain;
   k.in = JCS_CMYK;
@@ -311,7 +311,7 @@ static void what_is_not_read_is_called_by_name(void **state) {
 }
 
 /* Few bytes that would take much memory or time. */
-static void what_is_made_to_harm_is_refused(void **state) {
+static void hostile_jpegs_are_refused(void **state) {
   (void)state;
   bytes file = write_jpeg(&plain);
   uint8_t *frame = memmem(file.data, file.size, "\xff\xc0", 2);
@@ -361,14 +361,14 @@ static void a_pipe_will_do(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(every_kind_is_read),
+      cmocka_unit_test(every_supported_jpeg_is_read),
       cmocka_unit_test(nobody_gets_loss_unasked),
       cmocka_unit_test(the_tables_tell_the_quality),
       cmocka_unit_test(resolution_comes_from_jfif_or_exif),
       cmocka_unit_test(cut_off_is_said_wherever_it_is),
       cmocka_unit_test(no_byte_breaks_it),
-      cmocka_unit_test(what_is_not_read_is_called_by_name),
-      cmocka_unit_test(what_is_made_to_harm_is_refused),
+      cmocka_unit_test(unsupported_jpegs_are_named),
+      cmocka_unit_test(hostile_jpegs_are_refused),
       cmocka_unit_test(a_pipe_will_do),
   };
   return cmocka_run_group_tests_name("scan_jpeg", tests, NULL, NULL);

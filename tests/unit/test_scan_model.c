@@ -106,7 +106,7 @@ static void assert_same_fields(const fg_field_list *read, const fg_field_list *w
   }
 }
 
-static void what_is_written_is_read_as_it_was(void **state) {
+static void a_written_scanner_model_reads_back_equal(void **state) {
   fg_context ctx = {0};
   fg_scanner_model *model = NULL;
   fg_field_list written;
@@ -128,7 +128,7 @@ static void what_is_written_is_read_as_it_was(void **state) {
 }
 
 /* A model that its own reader would refuse is not written. */
-static void what_would_be_refused_is_not_written(void **state) {
+static void unreadable_scanner_models_are_not_written(void **state) {
   fg_context ctx = {0};
   fg_scan_loop *loop = make_loop();
   FILE *out = fopen("/dev/null", "w");
@@ -156,7 +156,7 @@ static void what_would_be_refused_is_not_written(void **state) {
 #define FIELDS(list) "\"fields\":[" list "],\"alternatives\":[]}"
 #define GOOD         SCALE("0.036", "1e-6")
 
-static void what_no_scanner_can_be_is_refused(void **state) {
+static void impossible_scanner_models_are_refused(void **state) {
   static const struct {
     const char *json, *member, *value, *allowed;
   } table[] = {
@@ -215,7 +215,7 @@ static void what_no_scanner_can_be_is_refused(void **state) {
   }
 }
 
-static void what_a_scanner_can_be_is_taken(void **state) {
+static void possible_scanner_models_are_accepted(void **state) {
   static const char *const table[] = {
       HEAD PLACE FIELDS(GOOD),
       HEAD PLACE FIELDS(""),
@@ -236,10 +236,10 @@ static void what_a_scanner_can_be_is_taken(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(what_is_written_is_read_as_it_was),
-      cmocka_unit_test(what_would_be_refused_is_not_written),
-      cmocka_unit_test(what_no_scanner_can_be_is_refused),
-      cmocka_unit_test(what_a_scanner_can_be_is_taken),
+      cmocka_unit_test(a_written_scanner_model_reads_back_equal),
+      cmocka_unit_test(unreadable_scanner_models_are_not_written),
+      cmocka_unit_test(impossible_scanner_models_are_refused),
+      cmocka_unit_test(possible_scanner_models_are_accepted),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -294,7 +294,7 @@ static void a_scale_is_told_in_ppm(void **state) {
 }
 
 /* The line that is drawn, the grid and the model are the claim's own numbers. */
-static void a_ripple_is_what_is_drawn(void **state) {
+static void drawn_ripple_equals_the_claimed_one(void **state) {
   (void)state;
   enum { RIPPLE_UM = 8, PERIOD_MM = 3 };
   odd_input in = foil_input();
@@ -332,7 +332,7 @@ int main(void) {
       cmocka_unit_test(a_ring_is_tied),
       cmocka_unit_test(a_clean_foil_holds_nothing_to_draw),
       cmocka_unit_test(a_scale_is_told_in_ppm),
-      cmocka_unit_test(a_ripple_is_what_is_drawn),
+      cmocka_unit_test(drawn_ripple_equals_the_claimed_one),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -137,7 +137,7 @@ static void check_scan(const kind *k, const char *path, fg_channel channel) {
 }
 
 /* Every kind: bits and channels, byte order and size of offsets, compression, strips and tiles. */
-static void every_kind_comes_out_as_it_went_in(void **state) {
+static void every_colour_type_reads_back_equal(void **state) {
   (void)state;
   static const kind kinds[] = {
       {.bits = 1, .channels = 1, .photometric = PHOTOMETRIC_MINISBLACK},
@@ -461,7 +461,7 @@ static void the_channel_with_the_most_contrast_is_taken(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(every_kind_comes_out_as_it_went_in),
+      cmocka_unit_test(every_colour_type_reads_back_equal),
       cmocka_unit_test(separate_planes_are_read),
       cmocka_unit_test(resolution_is_in_inch_or_cm),
       cmocka_unit_test(loss_is_refused_unless_allowed),

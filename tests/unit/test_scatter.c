@@ -187,7 +187,7 @@ static void white_noise_stays_white(void **state) {
 }
 
 /* Nor is what every bump has: short waves that polynomials along one arc do not follow. */
-static void what_bumps_share_is_no_noise(void **state) {
+static void waves_common_to_all_bumps_are_no_noise(void **state) {
   (void)state;
   fg_context ctx = {0};
   foil_rows f;
@@ -223,7 +223,7 @@ int main(void) {
       cmocka_unit_test(a_row_without_weight_tells_nothing),
       cmocka_unit_test(noise_at_long_waves_is_found_from_short_ones),
       cmocka_unit_test(white_noise_stays_white),
-      cmocka_unit_test(what_bumps_share_is_no_noise),
+      cmocka_unit_test(waves_common_to_all_bumps_are_no_noise),
       cmocka_unit_test(a_step_within_an_arc_is_no_noise),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

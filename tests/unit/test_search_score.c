@@ -132,7 +132,7 @@ static unsigned bit(size_t e) {
   return 1u << e;
 }
 
-static void what_a_set_leaves_is_that_of_dense_least_squares(void **state) {
+static void residuals_of_a_set_agree_with_dense_least_squares(void **state) {
   (void)state;
   static const unsigned masks[] = {0, 1u << SHEAR, 1u << SHEAR | 1u << RIPPLE, 1u << OVAL,
                                    1u << STEP | 1u << FAR_RIPPLE | 1u << RADIAL_OVAL};
@@ -155,7 +155,7 @@ static void what_a_set_leaves_is_that_of_dense_least_squares(void **state) {
   close_search(&t);
 }
 
-static void the_least_amplitude_is_that_of_dense_least_squares(void **state) {
+static void amplitude_u_agrees_with_dense_least_squares(void **state) {
   (void)state;
   fixture t;
   open_search(&t);
@@ -168,7 +168,7 @@ static void the_least_amplitude_is_that_of_dense_least_squares(void **state) {
   close_search(&t);
 }
 
-static void the_set_that_made_the_rows_is_right_and_less_is_not(void **state) {
+static void only_sets_that_hold_the_true_effects_are_right(void **state) {
   (void)state;
   static const struct {
     unsigned mask;
@@ -194,7 +194,7 @@ static void the_set_that_made_the_rows_is_right_and_less_is_not(void **state) {
 }
 
 /* Chi² of 10 exceeds 29.588 by chance once in 1000 (Abramowitz and Stegun, table 26.8). */
-static void what_chance_leaves_is_right(void **state) {
+static void sets_within_chance_are_right(void **state) {
   (void)state;
   fixture t;
   open_search(&t);
@@ -206,7 +206,7 @@ static void what_chance_leaves_is_right(void **state) {
   close_search(&t);
 }
 
-static void two_forms_of_one_effect_are_twins(void **state) {
+static void two_directions_of_one_effect_are_collinear(void **state) {
   (void)state;
   fixture t;
   open_search(&t);
@@ -248,11 +248,11 @@ static void the_middle_of_a_polynomial_is_found(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(what_a_set_leaves_is_that_of_dense_least_squares),
-      cmocka_unit_test(the_least_amplitude_is_that_of_dense_least_squares),
-      cmocka_unit_test(the_set_that_made_the_rows_is_right_and_less_is_not),
-      cmocka_unit_test(what_chance_leaves_is_right),
-      cmocka_unit_test(two_forms_of_one_effect_are_twins),
+      cmocka_unit_test(residuals_of_a_set_agree_with_dense_least_squares),
+      cmocka_unit_test(amplitude_u_agrees_with_dense_least_squares),
+      cmocka_unit_test(only_sets_that_hold_the_true_effects_are_right),
+      cmocka_unit_test(sets_within_chance_are_right),
+      cmocka_unit_test(two_directions_of_one_effect_are_collinear),
       cmocka_unit_test(the_middle_of_a_polynomial_is_found),
   };
   return cmocka_run_group_tests_name("score of a set", tests, NULL, NULL);

@@ -148,7 +148,7 @@ static void complete_plans_agree_with_the_strata(void **state) {
 }
 
 /* Each temperature in one whole plot: T cannot be told, D is told within the plots. */
-static void whole_plots_without_dof_leave_what_is_within_them(void **state) {
+static void factors_within_plots_are_estimated_without_whole_plot_dof(void **state) {
   (void)state;
   static const char text[] = "T,D,load,y\n-1,-1,1,11\n-1,1,1,15\n-1,-1,1,12\n"
                              "1,-1,2,20\n1,1,2,26\n1,1,2,25\n1,-1,2,21\n";
@@ -186,7 +186,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(missing_runs_are_analysed_as_by_r),
       cmocka_unit_test(complete_plans_agree_with_the_strata),
-      cmocka_unit_test(whole_plots_without_dof_leave_what_is_within_them),
+      cmocka_unit_test(factors_within_plots_are_estimated_without_whole_plot_dof),
       cmocka_unit_test(odd_plans_are_analysed_or_say_why),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -397,7 +397,7 @@ static void test_searches(void **state) {
 }
 
 /* Without a command, and of another program's record, the words say so. */
-static void test_what_there_is_not(void **state) {
+static void test_answers_hold_without_scan_command_and_files(void **state) {
   (void)state;
   assert_int_equal(post("/scan", FORM), 404);
   assert_int_equal(get("/foil", "id=1"), 200);
@@ -419,7 +419,7 @@ int main(void) {
       cmocka_unit_test(test_script_in_names),
       cmocka_unit_test(test_corrections),
       cmocka_unit_test(test_searches),
-      cmocka_unit_test(test_what_there_is_not),
+      cmocka_unit_test(test_answers_hold_without_scan_command_and_files),
   };
   int failed = cmocka_run_group_tests(tests, open_fixture, close_fixture);
   free(page);

@@ -19,7 +19,7 @@ static bool look(fg_file_stability *rest, const char *name, int64_t bytes, int64
   return now_ns - file->since_ns >= FG_STABLE_NS;
 }
 
-static void test_a_file_rests_when_it_stays_the_same(void **state) {
+static void test_a_file_is_stable_when_it_stays_the_same(void **state) {
   fg_file_stability rest = {0};
   (void)state;
   assert_false(look(&rest, "a", 10, 5, 0));
@@ -44,7 +44,7 @@ static void test_clocks_of_files_say_nothing(void **state) {
   fg_file_stability_free(&rest);
 }
 
-static void test_what_is_gone_is_forgotten(void **state) {
+static void test_removed_files_are_forgotten(void **state) {
   fg_file_stability rest = {0};
   (void)state;
   look(&rest, "a", 10, 5, 0);
@@ -110,9 +110,9 @@ static void test_names_are_text(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_a_file_rests_when_it_stays_the_same),
+      cmocka_unit_test(test_a_file_is_stable_when_it_stays_the_same),
       cmocka_unit_test(test_clocks_of_files_say_nothing),
-      cmocka_unit_test(test_what_is_gone_is_forgotten),
+      cmocka_unit_test(test_removed_files_are_forgotten),
       cmocka_unit_test(test_folders_of_lots),
       cmocka_unit_test(test_long_lots_stay_apart),
       cmocka_unit_test(test_names_are_text),

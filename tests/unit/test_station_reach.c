@@ -97,7 +97,7 @@ static void test_origins(void **state) {
   assert_false(fg_reach_is_origin(&station, "127.0.0.1:8317", "null"));
 }
 
-static void test_what_is_refused(void **state) {
+static void test_unsafe_station_requests_are_refused(void **state) {
   static const char token[] = "a-token-of-this-test";
   static const char *const wrong[] = {"not a name", "https://a"};
   static const fg_station_request rows[] = {
@@ -136,9 +136,11 @@ static void test_what_is_refused(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_given_names),          cmocka_unit_test(test_port_80_needs_no_number),
-      cmocka_unit_test(test_names_of_the_machine), cmocka_unit_test(test_origins),
-      cmocka_unit_test(test_what_is_refused),
+      cmocka_unit_test(test_given_names),
+      cmocka_unit_test(test_port_80_needs_no_number),
+      cmocka_unit_test(test_names_of_the_machine),
+      cmocka_unit_test(test_origins),
+      cmocka_unit_test(test_unsafe_station_requests_are_refused),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

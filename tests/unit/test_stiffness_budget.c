@@ -156,7 +156,7 @@ static void one_bump_has_no_spread(void **state) {
 
 /* Circles drawn around a bump whose crown is known better than its radius, against the variance
  * that is worked out from the uncertainties alone. */
-static void measurement_is_what_drawing_gives(void **state) {
+static void measurement_variance_agrees_with_drawn_circles(void **state) {
   (void)state;
   enum { DRAWS = 400 };
   const double u_radius = 4e-3, u_crown = 0.3e-3;
@@ -211,7 +211,7 @@ int main(void) {
       cmocka_unit_test(shares_of_causes_that_go_together_are_the_whole),
       cmocka_unit_test(thickness_that_is_not_known_is_not_zero),
       cmocka_unit_test(one_bump_has_no_spread),
-      cmocka_unit_test(measurement_is_what_drawing_gives),
+      cmocka_unit_test(measurement_variance_agrees_with_drawn_circles),
   };
   return cmocka_run_group_tests_name("budget of stiffness", tests, NULL, NULL);
 }

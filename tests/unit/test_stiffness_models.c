@@ -133,7 +133,7 @@ static void slender_bending_is_one_law(void **state) {
   assert_near(lines[HESHMAT].sensitivity.angle, -3 * phi / tan(phi), 1e-6);
 }
 
-static void what_a_model_cannot_say_is_said(void **state) {
+static void models_outside_their_range_give_a_reason(void **state) {
   (void)state;
   fg_stiffness_line lines[FG_STIFFNESS_MODELS];
   const fg_arch steep = {3.32, 170, 0.1}, none = {3.32, 180, 0.1}, stout = {0.5, 60, 0.1};
@@ -169,7 +169,7 @@ int main(void) {
       cmocka_unit_test(flat_bumps_are_beams),
       cmocka_unit_test(heshmat_leaves_the_arch_as_it_rises),
       cmocka_unit_test(slender_bending_is_one_law),
-      cmocka_unit_test(what_a_model_cannot_say_is_said),
+      cmocka_unit_test(models_outside_their_range_give_a_reason),
   };
   return cmocka_run_group_tests_name("models of stiffness", tests, NULL, NULL);
 }

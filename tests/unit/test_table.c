@@ -251,7 +251,7 @@ static void separators_are_told_by_the_rows(void **state) {
 
 /* Numbers that may mean something else, and words among numbers, are refused where they are used,
  * and nowhere else; factor(name) takes them as names. */
-static void doubtful_columns_are_refused(void **state) {
+static void ambiguous_columns_are_refused(void **state) {
   static const struct {
     const char *text, *words;
   } cases[] = {
@@ -400,7 +400,7 @@ int main(void) {
       cmocka_unit_test(a_million_rows),
       cmocka_unit_test(decimal_commas_are_read),
       cmocka_unit_test(separators_are_told_by_the_rows),
-      cmocka_unit_test(doubtful_columns_are_refused),
+      cmocka_unit_test(ambiguous_columns_are_refused),
       cmocka_unit_test(sound_columns_are_not_refused),
       cmocka_unit_test(words_that_count_are_numbers),
       cmocka_unit_test(columns_are_dropped),

@@ -78,7 +78,7 @@ static float sorted_median(const float *grid, int x, int y) {
   return known ? values[known / 2] : NAN;
 }
 
-static void medians_are_those_of_what_is_known(void **state) {
+static void medians_ignore_unknown_cells(void **state) {
   (void)state;
   uint64_t seed = 6;
   fg_context ctx = {0};
@@ -99,7 +99,7 @@ static void medians_are_those_of_what_is_known(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(labels_are_those_of_a_flood),
-      cmocka_unit_test(medians_are_those_of_what_is_known),
+      cmocka_unit_test(medians_ignore_unknown_cells),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -130,7 +130,7 @@ static void polarity_and_contrast_are_found_under_shading(void **state) {
     }
 }
 
-static void what_is_small_is_a_speck(void **state) {
+static void small_islands_are_specks(void **state) {
   (void)state;
   static scene s;
   paint(&s, 1, 0, 1);
@@ -171,7 +171,7 @@ int main(void) {
       cmocka_unit_test(kept_pixels_are_the_scans_own),
       cmocka_unit_test(tiles_do_not_depend_on_how_rows_arrive),
       cmocka_unit_test(polarity_and_contrast_are_found_under_shading),
-      cmocka_unit_test(what_is_small_is_a_speck),
+      cmocka_unit_test(small_islands_are_specks),
       cmocka_unit_test(dust_is_no_foil),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
