@@ -10,37 +10,27 @@
  * - a candidate is an effect on given coordinates of a problem.
  *
  * Method:
- *
  * 1. Noise is independent until a finding shows otherwise: serial correlation (first order, along a
  * series) and unequal spread are candidates like effects of the mean, and are in force once
  * claimed. Where groups share a level, the ratio lambda of its variance to the rows' is estimated
  * anew beside every candidate (residual likelihood: Patterson and Thompson 1971).
- *
  * 2. The score of a candidate of the mean is its reduction of the residual sum, whitened and with
  * every parameter of the declared model projected out. A candidate that is constant in groups
  * sharing a level is scored by the differences between groups. Correlation is scored by the product
  * of neighbours, spread by the likelihood of the residuals' sizes.
- *
  * 3. All candidates share one null: residuals in another order (Freedman and Lane 1983), scored in
  * the same way. Each score is put on the scale of its own draws; p-values come from the maximum
  * over all (Westfall and Young 1993). The draws are the same in every run: no verdict depends on a
  * seed.
- *
  * 4. Outlier rows are tested separately, against the tails of the other rows and against one heavy
  * tail of all rows.
- *
  * 5. An effect that serial correlation may imitate is tested again beside correlation: the effect
  * is claimed, or correlation is, or they tie.
- *
  * 6. Acceptance needs p < 0.01 and a gain above one standard error in grouped cross-validation.
- *
  * 7. The alias class of a winner: every candidate, and every sum of two, beside which the winner
  * gains nothing that the data can show.
- *
  * 8. Refit of all together, swaps, drops; at most six claims.
- *
  * 9. A smooth curve over one coordinate for the part that no candidate explains (unattributed).
- *
  * 10. Errors of held-out rows: the whole search is repeated without each fold of groups. */
 #ifndef FOILGAUGE_LOOP_H
 #define FOILGAUGE_LOOP_H
