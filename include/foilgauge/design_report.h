@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A design and what follows from it, as `foilgauge design` writes it. */
+/* A design and its derived values, as `foilgauge design` writes them. */
 #ifndef FOILGAUGE_DESIGN_REPORT_H
 #define FOILGAUGE_DESIGN_REPORT_H
 
@@ -22,10 +22,10 @@ typedef struct fg_design_report {
 /* "foilgauge/nominal/1", reports/schema/nominal.schema.json. */
 fg_status fg_design_write_json(fg_context *ctx, const fg_design_report *report, FILE *out);
 
-/* For the terminal. */
+/* Writes a table for the terminal. */
 fg_status fg_design_write_table(fg_context *ctx, const fg_design_report *report, FILE *out);
 
-/* How the declared springback model changes the clearance, as CSV: bump radius error from -5 to
+/* Writes the clearance under the declared springback model, as CSV: bump radius error from -5 to
  * +30 %. FG_ERR_DATA for a form without bumps. */
 fg_status fg_design_write_curve(fg_context *ctx, const fg_design_report *report, FILE *out);
 

@@ -28,7 +28,8 @@ typedef enum fg_die_unseen_kind {
   FG_DIE_UNTRACED,
 } fg_die_unseen_kind;
 
-/* Returns their number and writes the bumps into `words`: "1, 9". 0 for a half without traces. */
+/* Returns the number of these bumps and lists them in `words`: "1, 9". 0 for a half without
+ * traces. */
 size_t fg_die_unseen(const fg_die *die, fg_die_half half, fg_die_unseen_kind kind, char *words,
                      size_t size);
 bool fg_die_is_lost(const fg_die_trace *trace, int number);

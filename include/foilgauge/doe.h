@@ -29,7 +29,7 @@ typedef struct fg_coding {
 
 /* "NAME=LOW:HIGH". FG_ERR_USAGE names the fault. */
 fg_status fg_coding_parse(fg_context *ctx, const char *text, fg_coding *coding);
-/* The lowest and the highest value in the table. FG_ERR_DATA when they are equal. */
+/* Codes by the lowest and the highest value in the table. FG_ERR_DATA when they are equal. */
 fg_status fg_coding_from_data(fg_context *ctx, const fg_table *table, const char *name,
                               fg_coding *coding);
 double fg_coding_to_real(const fg_coding *coding, double coded);
@@ -55,7 +55,7 @@ typedef enum fg_response_sign {
 fg_status fg_response_apply(fg_context *ctx, fg_response_sign sign, const char *name,
                             fg_table *table);
 
-/* 100 coefficient / constant; NaN for the constant itself, and without one. */
+/* Returns 100 coefficient / constant; NaN for the constant itself, and without one. */
 double fg_doe_relative_effect_pct(const fg_regression *regression, size_t column);
 
 /* Lenth's test of effects without residual dof (Lenth 1989): the median of the effects gives their
@@ -123,7 +123,7 @@ typedef struct fg_split_plot {
   double plot_ss, plot_ms, run_ss, run_ms; /* of the strata; NaN mean square without dof */
   double plot_variance, run_variance;      /* the first at least 0; NaN: unknown */
   size_t balanced;                         /* 1: equal plots */
-  bool at_border;                          /* the whole plots' variance is estimated as 0 */
+  bool at_border;                          /* the estimate of the whole plots' variance is 0 */
   struct fg_mixed_model *mixed;            /* NULL: by strata; owned */
   size_t taken_plots,
       taken_runs; /* dof that fg_split_plot_subtract_dof subtracted from each stratum */

@@ -19,7 +19,7 @@ fg_verdict fg_load_judge_value(const fg_load_test *test, fg_load_quantity quanti
                                const fg_load_value *value);
 void fg_load_judge(const fg_load_test *test, fg_report_outcome *outcome, char *words, size_t size);
 
-/* The words of a direction's flags, joined; "" without. `plain`: for people. */
+/* Writes the words of a direction's flags, joined; "" without flags. `plain`: for people. */
 void fg_load_flag_words(unsigned flags, bool plain, char *words, size_t size);
 void fg_break_away_flag_words(unsigned flags, bool plain, char *words, size_t size);
 
@@ -28,7 +28,7 @@ fg_status fg_load_write_json(fg_context *ctx, const fg_load_test *test, FILE *ou
 fg_status fg_load_write_text(fg_context *ctx, const fg_load_test *test, FILE *out);
 fg_status fg_load_write_html(fg_context *ctx, const fg_load_test *test, FILE *out);
 
-/* A row per bearing and azimuth. */
+/* CSV, a row per bearing and azimuth. */
 fg_status fg_load_write_csv(fg_context *ctx, const fg_load_test *test, FILE *out);
 
 /* Table for `foilgauge loop --table`: causes and one response, clearance_um, or difference_um where

@@ -23,9 +23,9 @@ extern "C" {
 /* k of the expanded uncertainty U = k u. */
 #define FG_COVERAGE_FACTOR 2.0
 
-/* What a value says about its tolerance, its uncertainty considered (after ISO 14253-1): the
- * interval value ± 2 u lies inside both limits, or outside one, or a limit runs through it. A value
- * whose uncertainty is not known is judged as if it were 0. */
+/* Verdict on a value against its tolerance, its uncertainty considered (after ISO 14253-1): the
+ * interval value ± 2 u lies inside both limits, or outside one, or a limit runs through it. A
+ * value whose uncertainty is not known is judged as if it were 0. */
 typedef enum fg_verdict {
   FG_VERDICT_PASS,         /* "pass" */
   FG_VERDICT_FAIL,         /* "fail" */
@@ -34,13 +34,14 @@ typedef enum fg_verdict {
   FG_VERDICT_NONE,         /* "no_tolerance" */
 } fg_verdict;
 
-/* What a limit says to one value. */
+/* Returns the verdict on one value. */
 fg_verdict fg_judge_value(const fg_tolerance *tolerance, double value, double u);
 
-/* The word of a verdict as JSON has it. */
+/* Returns the verdict's word as JSON has it. */
 const char *fg_verdict_word(fg_verdict verdict);
 
-/* The worse of two: fail, then not measured, cannot tell, pass, no tolerance. */
+/* Returns the worse of two, from the worst: fail, then not measured, cannot tell, pass, no
+ * tolerance. */
 fg_verdict fg_verdict_worse(fg_verdict a, fg_verdict b);
 
 typedef struct fg_judgement {
@@ -56,10 +57,10 @@ typedef struct fg_judgement {
   bool missing;  /* of a bump that is not there: no value, and a fail */
   bool exceeded; /* the value fails */
   fg_verdict verdict;
-  const char *cure; /* "cannot tell": what would decide it; static; NULL: nothing cheap */
+  const char *cure; /* "cannot tell": cheapest way to decide it; static; NULL: none is cheap */
 } fg_judgement;
 
-/* What a foil, a disc, a scan or a run comes to. */
+/* Outcome of a foil, a disc, a scan or a run. */
 typedef struct fg_report_outcome {
   fg_verdict verdict;  /* the worst of all */
   size_t exceeded;     /* values that lie beyond a limit by more than U */
@@ -75,13 +76,13 @@ void fg_outcome_add(fg_report_outcome *sum, const fg_report_outcome *part);
  * 0. */
 int fg_outcome_exit_code(const fg_report_outcome *outcome);
 
-/* The decision about a foil or a disc. Every report, a lot and the exit code read this one and
- * count nothing again.
+/* The decision on a foil or a disc. Every report, a lot and the exit code read it; none counts
+ * again.
  *
- * A foil passes when all of it was measured and every value passes. It fails when a value fails or
- * a defect rejects it (fg_foil_defect). It is not measured when it could not be, when it is no foil
- * of the design (fg_foil_is_measured), when a bump could not be fitted, or when the border of the
- * scan may hide bumps that tolerances ask for. */
+ * A foil passes when all of it was measured and every value passes. It fails when a value fails
+ * or a defect rejects it (fg_foil_defect). It is not measured when it could not be, when it is
+ * no foil of the design (fg_foil_is_measured), when a bump could not be fitted, or when the
+ * border of the scan may hide bumps that tolerances ask for. */
 typedef struct fg_decision {
   fg_report_outcome outcome;
   fg_judgement *judgements; /* per tolerance of the foil, and per tolerance and bump; owned */
@@ -93,50 +94,51 @@ fg_status fg_foil_decide(fg_context *ctx, const fg_design *design, const fg_foil
 fg_status fg_disc_decide(fg_context *ctx, const fg_design *design, const fg_disc *disc,
                          fg_decision *decision);
 
-/* A bearing of a lot, by the tolerances that name quantities of a bearing (quantity.h). NULL:
- * nothing is known of it. One that is not `whole` has places without a clearance: it fails where
- * what is known falls below a limit already, and is not measured otherwise. */
+/* Decides on a bearing of a lot, by the tolerances that name quantities of a bearing
+ * (quantity.h). NULL: nothing is known of it. A bearing that is not `whole` has places without a
+ * clearance: it fails where a known clearance lies below a limit already, and is not measured
+ * otherwise. */
 fg_status fg_bearing_decide(fg_context *ctx, const fg_design *design,
                             const fg_bearing_clearance *clearance, bool whole,
                             fg_decision *decision);
 void fg_decision_free(fg_decision *decision);
 
 /* Ranks judgements, the worst first: by verdict (fail, not measured, cannot tell, pass), then by
- * severity, then by number. Below 0: `a` comes before `b`. Every choice of the worst is this one.
- */
+ * severity, then by number. Below 0: `a` comes before `b`. Every search for the worst uses it. */
 int fg_judgement_compare(const fg_judgement *a, const fg_judgement *b);
 
-/* How many of the design's tolerances are of a bearing, and which: a scan has none, they are judged
- * in lots. `names` may be NULL. */
+/* Returns the number of the design's tolerances of a bearing, and writes their names (`names`
+ * may be NULL). They are judged in lots: a scan shows no bearing. */
 size_t fg_report_of_bearing(const fg_design *design, char *names, size_t size);
 
 /* True with `words` (may be NULL) for people: "bump 3 is missing (8 found, the design has 9)". A
- * place at the pitch that is seen to be empty rejects a foil under every design. Another number of
- * bumps than the design's does so under a design with tolerances, unless the border of the scan
- * cuts the foil; under one without, which judges nothing, it is a flag alone. */
+ * place at the pitch that the scan shows empty rejects a foil under every design. Another number
+ * of bumps than the design's does so under a design with tolerances, unless the border of the
+ * scan cuts the foil; under one without, which judges nothing, it is a flag alone. */
 bool fg_foil_defect(const fg_design *design, const fg_foil *foil, char *words, size_t size);
 
-/* The worst of a bump's values; "not_measured" when it was not fitted or its foil not measured. */
+/* Returns the worst verdict of a bump's values; "not_measured" when it was not fitted or its
+ * foil not measured. */
 fg_verdict fg_bump_verdict(const fg_design *design, const fg_foil *foil, const fg_bump *bump);
 
-/* The flags of a bump as reports write them: with FG_BUMP_OUT_OF_TOLERANCE when its verdict is
- * fail. */
+/* Returns the flags of a bump as reports write them, with FG_BUMP_OUT_OF_TOLERANCE when its
+ * verdict is fail. */
 unsigned fg_bump_flags(const fg_design *design, const fg_foil *foil, const fg_bump *bump);
 unsigned fg_disc_flags(const fg_design *design, const fg_disc *disc);
 
-/* The same of a beam; "not_measured" without a length or a width. */
+/* Returns the worst verdict of a beam's values; "not_measured" without a length or a width. */
 fg_verdict fg_beam_verdict(const fg_design *design, const fg_foil *foil, const fg_beam *beam);
 unsigned fg_beam_flags(const fg_design *design, const fg_foil *foil, const fg_beam *beam);
 
 /* FG_ERR_DATA when a tolerance names a quantity that is not reported for this form of part; the
- * message lists the names that there are. Those of a bearing are right for foils. */
+ * message lists those that are. Quantities of a bearing are accepted for foils. */
 fg_status fg_report_check_tolerances(fg_context *ctx, const fg_design *design);
 
 /* One scan of a report: measured, or not and why. */
 typedef struct fg_report_scan {
   const char *path;
   const fg_measurement *measurement; /* NULL when it could not be measured */
-  const char *error;                 /* then: the words */
+  const char *error;                 /* why not */
   const char *name; /* of its one foil: a serial number; NULL: the foil's number on the scan */
 } fg_report_scan;
 
@@ -145,10 +147,10 @@ typedef struct fg_report {
   const fg_nominal *nominal;
   const fg_report_scan *scans;
   size_t scan_count;
-  const char *back; /* where the page leads back to; NULL: nowhere */
+  const char *back; /* address of the page's link back; NULL: none */
 } fg_report;
 
-/* One scan, and all of them. */
+/* Judge one scan, and all of them. */
 fg_status fg_report_judge_scan(fg_context *ctx, const fg_design *design, const fg_report_scan *scan,
                                fg_report_outcome *outcome);
 fg_status fg_report_judge(fg_context *ctx, const fg_report *report, fg_report_outcome *outcome);
@@ -160,15 +162,15 @@ fg_status fg_report_judge(fg_context *ctx, const fg_report *report, fg_report_ou
  * order given, and `inputs[]` runs parallel. Numbers have ten significant digits; NaN is null. */
 fg_status fg_report_write_json(fg_context *ctx, const fg_report *report, FILE *out);
 
-/* One line per bump (or disc), a heading line, quoted as in RFC 4180; an unknown number is an empty
- * field. */
+/* CSV: a heading line, then one line per bump (or disc), quoted as in RFC 4180; an unknown
+ * number is an empty field. */
 fg_status fg_report_write_csv(fg_context *ctx, const fg_report *report, FILE *out);
 
-/* Every edge point: left and right edge and midline of every station (or every point of every
- * disc), the arc it belongs to and its residual from the fitted circle. */
+/* CSV of every edge point: left and right edge and midline of every station (or every point of
+ * every disc), the arc it belongs to and its residual from the fitted circle. */
 fg_status fg_report_write_points(fg_context *ctx, const fg_report *report, FILE *out);
 
-/* For people, at most 100 columns. */
+/* Table for a terminal, at most 100 columns wide. */
 fg_status fg_report_write_table(fg_context *ctx, const fg_report *report, FILE *out);
 
 /* PNG, at most 8000 px wide: the one scan of the report in gray (read again from its file), edges,

@@ -6,12 +6,11 @@
  * over its scans, of the mean over the foils in each, of the mean over the bumps of each foil where
  * the quantity is one of bumps.
  *
- * Standard uncertainty of these means: scans and foils are independent. Bumps of one foil are so in
- * what their own circle says alone (radius); what needs the overall circle too (height, angle,
- * clearance) shares its error, and the mean over bumps gets the mean of their uncertainties, which
- * is an upper bound. What a calibration leaves in doubt is the same error in every scan: it is in
- * no run's uncertainty, moves the level of all runs, and has its own number.
- */
+ * Standard uncertainty of these means: scans and foils are independent. Bumps of one foil are
+ * independent in the radius, which their own circle alone gives. Height, angle and clearance
+ * need the overall circle too and share its error: the mean over bumps gets the mean of their
+ * uncertainties, which is an upper bound. The calibration's error is the same in every scan: it
+ * is in no run's uncertainty, moves the level of all runs, and has its own number. */
 #ifndef FOILGAUGE_RUN_SHEET_H
 #define FOILGAUGE_RUN_SHEET_H
 
@@ -27,7 +26,7 @@ typedef fg_status fg_run_sheet_visit(fg_context *ctx, void *user, const char *sc
 
 typedef struct fg_run_sheet_options {
   const char *column;   /* that names the scans */
-  const char *quantity; /* any reported one: "overall.springback_error_pct", "height_mm" */
+  const char *quantity; /* any reported quantity: "overall.springback_error_pct", "height_mm" */
   const char *folder;   /* of relative paths; NULL: the current one */
   const fg_design *design;
   fg_measure_options measure;
@@ -36,7 +35,7 @@ typedef struct fg_run_sheet_options {
 } fg_run_sheet_options;
 
 typedef struct fg_run_sheet {
-  fg_table table; /* the runs that were measured, with columns <quantity> and u_<quantity> */
+  fg_table table; /* the measured runs, with columns <quantity> and u_<quantity> */
   size_t *row;    /* table.rows: row of the sheet, from 1 */
   fg_experiment_scan *scan;
   size_t scans;
@@ -45,9 +44,9 @@ typedef struct fg_run_sheet {
   size_t failed;        /* scans that could not be measured; a run without any other is left out */
 } fg_run_sheet;
 
-/* FG_ERR_DATA: no such column; no reported quantity of that name (the message lists them); a column
- * of the quantity's name is there already; not one scan could be measured (the first one's words).
- * What is wrong with one scan is in scan[].error. Free with fg_run_sheet_free. */
+/* FG_ERR_DATA: no such column; no reported quantity of that name (the message lists them); a
+ * column of the quantity's name is there already; no scan could be measured (the first one's
+ * message). The error of one scan is in scan[].error. Free with fg_run_sheet_free. */
 fg_status fg_run_sheet_measure(fg_context *ctx, const fg_table *sheet,
                                const fg_run_sheet_options *options, fg_run_sheet *measured);
 void fg_run_sheet_free(fg_run_sheet *measured);

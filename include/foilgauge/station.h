@@ -1,15 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The inspection station: a watched folder, a database of everything that was measured in it, and
- * pages in a browser.
+/* The inspection station: a watched folder, a database of all its measurements, and pages in a
+ * browser.
  *
- * A scan that appears in the folder and is whole is measured and judged as `foilgauge lot` does it,
- * and kept with every quantity, its standard uncertainty, the verdict and its reasons in one SQLite
- * database, FG_STATION_DATABASE, in the folder. The scan itself is never touched. What is no scan,
- * is not whole or cannot be read is kept too, as a card with what is wrong.
- *
- * What is kept is kept in one transaction: a program that is killed has kept all of a scan or
- * nothing, and what it had not kept it finds in the folder when it starts again.
- */
+ * A scan that appears in the folder and is whole is measured and judged as `foilgauge lot` does
+ * it, and kept with every quantity, its standard uncertainty, the verdict and its reasons in one
+ * SQLite database, FG_STATION_DATABASE, in the folder. The scan itself is never touched. A file
+ * that is no scan, is not whole or cannot be read is kept too, as a card with the fault. Each
+ * scan is kept in one transaction: a program that is killed has kept all of a scan or nothing,
+ * and finds the rest in the folder when it starts again. */
 #ifndef FOILGAUGE_STATION_H
 #define FOILGAUGE_STATION_H
 
@@ -21,20 +19,20 @@ extern "C" {
 
 #define FG_STATION_DATABASE "foilgauge.sqlite"
 
-/* When the scanner has to prove itself with a plate or ring of known diameters (`design`: a file
- * of the form discs). */
+/* The scanner's check with a plate or ring of known diameters (`design`: a file of the kind
+ * discs). */
 typedef struct fg_station_check {
   char design[1024];    /* path, relative to the recipe; "": no check is asked for */
-  char file_name[256];  /* as that of foils; what is called so is a check. "check*" */
-  double every_h;       /* 0: whenever somebody likes */
-  double scale_max_ppm; /* a scale further from 1 fails */
-  bool withhold;        /* past due, or failed: no verdict */
+  char file_name[256];  /* pattern like that of foils; a file so named is a check. "check*" */
+  double every_h;       /* 0: at any time */
+  double scale_max_ppm; /* the check fails when the scale differs from 1 by more */
+  bool withhold;        /* an overdue or failed check withholds verdicts */
 } fg_station_check;
 
 typedef struct fg_station_settings {
   fg_lot_settings lot; /* of the whole recipe: design, model, dpi, run rules, bearings ... */
-  /* How files are called: text, `*` for anything, and {serial}, {lot}, {die}, {operator}, {check};
-   * without its ending. "{serial}" unless the recipe says otherwise. */
+  /* Pattern of file names: text, `*` for anything, and {serial}, {lot}, {die}, {operator},
+   * {check}; without its ending. "{serial}" unless the recipe says otherwise. */
   char file_name[256];
   /* Run by /bin/sh in the folder when somebody presses Scan; {file} is the scan to write. It is
    * hidden until the command has ended well, then called station-DATE-TIME.png (.tif, .pnm where
@@ -55,20 +53,20 @@ fg_status fg_station_settings_load(fg_context *ctx, const char *recipe, const ch
 typedef struct fg_station_request {
   const char *folder;
   const fg_station_settings *settings;
-  bool once; /* measure what is new, and return */
-  const char
-      *export_path;   /* write the lots of the database as folders below this one, and return */
-  bool decimal_comma; /* of the tables of lots that are closed or written (fg_csv_write) */
-  double poll_s;      /* look every so many seconds (network folders); 0: be told by the system */
+  bool once;               /* measure new files, and return */
+  const char *export_path; /* export the database's lots as folders below this one, and return */
+  bool decimal_comma;      /* in CSV of lots that are closed or exported (fg_csv_write) */
+  double poll_s;      /* poll every `poll_s` seconds (network folders); 0: the system notifies */
   const char *listen; /* address; NULL: 127.0.0.1 */
-  unsigned port;      /* 0: one that is free */
+  unsigned port;      /* 0: any free port */
   const char *token;  /* needed by every request; NULL: none (loopback only) */
-  const char *const *hosts; /* further names that requests may be for, with or without a port */
+  const char *const *hosts; /* further host names that requests may use, with or without a port */
   size_t host_count;
-  const char *origin; /* "https://scanner.example.com": of a proxy before the pages; NULL: none */
-  int end_descriptor; /* readable: the station ends, with FG_ERR_INTERRUPTED; 0: it is never told */
-  /* Called when pages can be had, once for each of their addresses; and for every file that was
-   * looked at. From any thread, one at a time; either may be NULL. */
+  const char
+      *origin; /* of a proxy in front of the pages, "https://scanner.example.com"; NULL: none */
+  int end_descriptor; /* the station ends when it is readable, with FG_ERR_INTERRUPTED; 0: none */
+  /* Callbacks: `ready` when pages are served, once for each address; `looked_at` for every file
+   * that was read. They are called from any thread, one at a time; either may be NULL. */
   void (*ready)(void *user, const char *address);
   void (*looked_at)(void *user, const char *file, const char *words);
   void *user;
@@ -80,9 +78,9 @@ typedef struct fg_station_outcome {
   fg_report_outcome judged; /* of the scans that were measured */
 } fg_station_outcome;
 
-/* FG_ERR_IO: another station is at work in the folder, the database cannot be written, the address
- * is taken. Without `once` and `export_path` it runs until `end_descriptor` is readable
- * (FG_ERR_INTERRUPTED). Its pages report failures meanwhile, and it tries again. */
+/* Runs the station. FG_ERR_IO: another station runs in the folder, the database cannot be
+ * written, the address is taken. Without `once` and `export_path` it runs until `end_descriptor`
+ * is readable (FG_ERR_INTERRUPTED). Its pages report failures meanwhile, and it tries again. */
 fg_status fg_station_run(fg_context *ctx, const fg_station_request *request,
                          fg_station_outcome *outcome);
 

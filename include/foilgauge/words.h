@@ -18,15 +18,15 @@ typedef struct fg_flag_words {
 /* Tables that end with a row whose name is NULL. */
 const fg_flag_words *fg_foil_flag_words(void);
 
-/* The flags that are told to people: a sinusoidal foil has no lip by design. */
+/* Returns the flags that people should see: a sinusoidal foil has no lip by design. */
 unsigned fg_foil_flags_told(const fg_design *design, const fg_foil *foil);
 const fg_flag_words *fg_bump_flag_words(void);
 const fg_flag_words *fg_beam_flag_words(void);
 
 const char *fg_foil_kind_word(fg_foil_kind kind);
 const char *fg_datum_word(fg_datum datum);
-/* Where the strip is not as thick as the design says: what that does to the clearances; "" where it
- * is, within U. */
+/* Writes the consequence for the clearances of a strip thicker or thinner than the design's; ""
+ * where they agree within U. */
 void fg_thickness_words(const fg_design *design, const fg_foil *foil, char *words, size_t size);
 
 const char *fg_orientation_word(fg_orientation orientation);
@@ -34,7 +34,7 @@ const char *fg_arc_kind_word(fg_arc_kind kind);
 const char *fg_channel_word(fg_channel channel);
 const char *fg_colour_state_word(fg_colour_state state);
 
-/* How many decimals of a value people should see: U = 2 u shows two digits, or one where that is
+/* Returns the decimals of a value for people: U = 2 u shows two digits, or one where that is
  * fine enough. */
 int fg_report_decimals(const fg_quantity *row, double u);
 

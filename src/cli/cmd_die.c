@@ -18,7 +18,7 @@ enum { OUT_JSON, OUT_HTML, OUT_TABLE, OUT_COUNT };
 
 typedef struct die_run {
   const char *design_path, *list_path;
-  fg_die_source said; /* what the options before a profile say of it */
+  fg_die_source said; /* as the options before a profile state it */
   int unused;         /* the last of those options, while no profile has followed it; else 0 */
   fg_die_sources sources;
   fg_die_options options;
@@ -99,7 +99,7 @@ static void take(die_run *run, fg_status status) {
   if (run->status == FG_OK) run->status = status;
 }
 
-/* What stands behind the last profile would be said of none. */
+/* Options behind the last profile would apply to none. */
 static void check_end(const die_run *run, const struct argp_state *state) {
   if (!run->sources.count && !run->list_path) argp_error(state, "no PROFILE was given");
   if (!run->unused || run->list_path) return;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* foilgauge doe: a table of runs in, what matters and the best setting out. */
+/* foilgauge doe: reads a table of runs, finds the factors that matter and the best setting. */
 #include <argp.h>
 #include <math.h>
 #include <stdio.h>
@@ -17,7 +17,7 @@
 #include "foilgauge/plan.h"
 #include "foilgauge/text.h"
 
-/* What the command can write. */
+/* Outputs of the command. */
 typedef enum output_kind { OUT_JSON, OUT_HTML, OUT_TABLE, OUT_COUNT } output_kind;
 
 typedef fg_status report_writer(fg_context *ctx, const fg_experiment_report *report, FILE *out);
@@ -291,7 +291,7 @@ static fg_status check_outputs(fg_context *ctx, doe_run *run) {
   return fg_output_set_check(ctx, &run->outputs, inputs, sizeof inputs / sizeof *inputs);
 }
 
-/* What is not there is said before the scans are measured. */
+/* Missing columns are reported before the scans are measured. */
 static fg_status check_columns(fg_context *ctx, const doe_run *run) {
   const fg_experiment_options *how = &run->arguments.options;
   const fg_column *column;

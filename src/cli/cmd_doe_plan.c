@@ -289,7 +289,7 @@ static fg_status tell_notes(fg_context *ctx, const fg_plan *plan) {
   return FG_OK;
 }
 
-/* Beside a sheet that is a file: what a spreadsheet would lose. */
+/* Writes beside a sheet that is a file the facts that a spreadsheet would lose. */
 static fg_status write_beside(fg_context *ctx, const plan_arguments *a, const fg_plan *plan) {
   fg_output output;
   char *path;
@@ -310,7 +310,7 @@ static fg_status write_page(fg_context *ctx, const plan_arguments *a, const fg_p
                        fg_plan_write_html(ctx, plan, a->column, a->columns, output.stream));
 }
 
-/* A sheet that somebody filled in is no sheet to write over; what is no table is not looked at. */
+/* Refuses to overwrite a sheet that somebody filled in. A file that is no table is not checked. */
 static fg_status check_unfilled(fg_context *ctx, const plan_arguments *a) {
   fg_context unused = {.message = ""};
   fg_table table;

@@ -212,7 +212,7 @@ static fg_status check_outputs(fg_context *ctx, arguments *a) {
 }
 
 /* The model's age is its scans', not its file's: a loop that is run again writes the same bytes.
- * SOURCE_DATE_EPOCH, where it is set, stands for it. */
+ * SOURCE_DATE_EPOCH, where it is set, overrules it. */
 static int64_t find_date(const arguments *a) {
   const char *epoch = getenv("SOURCE_DATE_EPOCH");
   char *end;
@@ -227,7 +227,7 @@ static int64_t find_date(const arguments *a) {
   return newest;
 }
 
-/* A scanner without faults has a model, too: that it was looked for, and on which scans. */
+/* A scanner without faults has a model too: it states the search, and its scans. */
 static void tell_empty_model(const arguments *a, const fg_scan_result *result) {
   const char *path = a->outputs.path[FG_LOOP_MODEL];
   if (path && fg_scanner_model_is_empty(result->model))
@@ -237,7 +237,7 @@ static void tell_empty_model(const arguments *a, const fg_scan_result *result) {
             path);
 }
 
-/* As measure says it. */
+/* Notes the pictures' findings in the words of `measure`. */
 static void tell_pictures(const fg_scan_result *result) {
   for (size_t i = 0; i < result->scans; i++)
     for (const fg_picture_words *words = fg_picture_finding_words(); words->name; words++)
@@ -305,7 +305,7 @@ const struct argp fg_loop_parser = {options, parse_option, "SCAN...", doc, NULL,
 int fg_cmd_loop_scan(int argc, char **argv) {
   fg_context ctx = {0};
   arguments a = {.options = {.seed = FG_CLI_SEED}, .outputs.count = FG_LOOP_OUTPUTS};
-  /* in order: reports list the scans as they are given, those kept aside between the others */
+  /* in order: reports list the scans as they are given, held-out scans among the others */
   fg_status status = fg_cli_parse_in_order(&ctx, &fg_loop_parser, argc, argv, &a);
   if (status != FG_OK) return fg_cli_fail(&ctx, status);
   int code = 0;

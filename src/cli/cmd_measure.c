@@ -15,7 +15,7 @@
 #include "foilgauge/scan_loop.h"
 #include "foilgauge/words.h"
 
-/* What the command can write, in the order of writing. */
+/* Outputs of the command, in the order of writing. */
 typedef enum output_kind {
   OUT_JSON,
   OUT_CSV,
@@ -251,7 +251,7 @@ static fg_status allocate_scans(fg_context *ctx, measure_run *run) {
   return FG_OK;
 }
 
-/* A foil that could not be measured is said on standard error too: the report may go to a file. */
+/* Notes foils that could not be measured on standard error: the report may go to a file. */
 static void tell_failures(const fg_measurement *measurement) {
   for (size_t i = 0; i < measurement->foil_count; i++) {
     const fg_foil *foil = &measurement->foils[i];
@@ -272,7 +272,7 @@ static fg_status apply_model(fg_context *ctx, const measure_run *run, fg_measure
   return FG_OK;
 }
 
-/* A scan that fails is reported; only what stops everything is an error here. */
+/* Measures one scan. A scan that fails is reported; only an error that ends the run is returned. */
 static fg_status measure_one(fg_context *ctx, measure_run *run, size_t index) {
   fg_measure_options options_of_scan = run->arguments.options;
   fg_progress progress;

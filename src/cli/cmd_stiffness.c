@@ -15,7 +15,7 @@
 enum { OUT_JSON, OUT_HTML, OUT_TEXT, OUT_CSV, OUT_TABLE, OUT_COUNT };
 
 typedef struct stiffness_run {
-  fg_load_source said; /* what the options before a file say of it */
+  fg_load_source said; /* as the options before a file state it */
   fg_load_source *sources;
   size_t count, capacity;
   fg_load_source *break_away;

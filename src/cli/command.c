@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What every command does alike: reads its line, says why it failed. */
+/* The parts that all commands share: reading the command line, reporting a failure. */
 #include <argp.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,7 +12,8 @@ int fg_cli_fail(const fg_context *ctx, fg_status status) {
   return fg_status_exit_code(status);
 }
 
-/* argp would take it for the value of an option that stands before it (`loop --table --help`). */
+/* Answers --help wherever it stands: argp would read it as the value of an option before it
+ * (`loop --table --help`). */
 static void answer_help(const struct argp *parser, int argc, char **argv) {
   for (int i = 1; i < argc && strcmp(argv[i], "--") != 0; i++) {
     if (strcmp(argv[i], "--help") != 0) continue;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The program's commands: a row of a table each (commands.c); what they do alike (command.c,
- * form.c, facts.c). */
+/* The program's commands, a row of a table each (commands.c), and the parts that they share
+ * (command.c, foil_kind.c, facts.c). */
 #ifndef FG_CLI_COMMANDS_H
 #define FG_CLI_COMMANDS_H
 
@@ -15,12 +15,12 @@ struct argp_state;
 /* argv[0] is "foilgauge" and the command's name. Returns the exit code (facts.c lists them). */
 typedef int fg_command_run(int argc, char **argv);
 
-/* One way to call a command. Its parser says everything of its options: to who types them, to
+/* One way to call a command. Its parser is the one source of its options: for the command line,
  * --help, the manual page and the shell's completion (src/manual/). */
 typedef struct fg_command_usage {
   const char *words; /* after "foilgauge": "doe plan" */
   const struct argp *parser;
-  const char *title; /* over its options, where a command has more than one form; else NULL */
+  const char *title; /* over its options, where a command has more than one usage; else NULL */
 } fg_command_usage;
 
 enum { FG_COMMAND_USAGES = 2 };
@@ -59,22 +59,21 @@ extern const struct argp fg_measure_parser, fg_doe_parser, fg_doe_plan_parser, f
 fg_status fg_cli_parse(fg_context *ctx, const struct argp *parser, int argc, char **argv,
                        void *input);
 
-/* The same, options and arguments told in the order in which they stand. */
+/* Reads the command line with options and arguments in the order in which they stand. */
 fg_status fg_cli_parse_in_order(fg_context *ctx, const struct argp *parser, int argc, char **argv,
                                 void *input);
 
-/* The number of an option --name; one that is none or out of range ends the program (64). */
+/* Returns the number of an option --name; anything else or out of range ends the program (64). */
 double fg_cli_number(struct argp_state *state, const char *name, const char *text, double lowest,
                      double highest);
 
 /* Prints "foilgauge: <message>" on standard error and returns the status' exit code. */
 int fg_cli_fail(const fg_context *ctx, fg_status status);
 
-/* Says on standard error what a lot came to; returns the exit code. */
+/* Writes the outcome of a lot on standard error; returns the exit code. */
 int fg_cli_lot_summary(const fg_lot_outcome *outcome, const char *folder);
 
-/* What --allow-lossy is for, in every command that reads scans. */
-/* The row of an option that every command with CSV to write has, and its key. */
+/* Row and key of the option --decimal-comma, for every command that writes CSV. */
 enum { FG_CLI_DECIMAL_COMMA = 0x7001 };
 #define FG_CLI_DECIMAL_COMMA_ROW(group)                                                            \
   {                                                                                                \
@@ -89,8 +88,8 @@ enum { FG_CLI_DECIMAL_COMMA = 0x7001 };
   "Take scans that JPEG has compressed with loss, with the wider uncertainties that belong to "    \
   "them"
 
-/* --form: overrules the design's; NULL leaves it. */
+/* Applies --form, which overrules the design's kind; NULL leaves it. */
 fg_status fg_cli_apply_forming(fg_context *ctx, const char *usage, fg_design *design);
-void fg_cli_write_usages(FILE *out); /* "classical, sinusoidal or discs" */
+void fg_cli_write_usages(FILE *out); /* writes "classical, sinusoidal or discs" */
 
 #endif

@@ -7,19 +7,19 @@
 
 typedef struct fg_die_sources {
   fg_die_source *source; /* owned, `count` of them */
-  char **path;           /* their paths, where they had to be made; owned */
+  char **path;           /* paths that were joined to a folder; owned */
   size_t count, capacity, path_count, path_capacity;
 } fg_die_sources;
 
 fg_status fg_die_sources_add(fg_context *ctx, fg_die_sources *sources, const fg_die_source *source);
 void fg_die_sources_free(fg_die_sources *sources);
 
-/* False: the text says nothing of the kind. */
+/* Read a half, two units, two columns; false: the text is none of that kind. */
 bool fg_die_read_half(const char *text, const char **half);
 bool fg_die_read_units(const char *text, fg_die_unit unit[2]);
 bool fg_die_read_columns(const char *text, size_t column[2]);
 
-/* Adds the rows of a table; what a row does not say is as `said`. */
+/* Adds the rows of a table; cells that it lacks are as `said`. */
 fg_status fg_die_list_load(fg_context *ctx, const char *path, const fg_die_source *said,
                            fg_die_sources *sources);
 

@@ -21,7 +21,7 @@ static bool is_rounded(const fg_doe_plan_request *r, const char *name) {
   return false;
 }
 
-/* A number of the formula that enters it as it is: what can be coded. */
+/* True for a number that enters the formula untransformed: only that can be coded. */
 static bool is_factor(const fg_formula *formula, const char *name) {
   bool found = false;
   for (size_t v = 0; v < formula->variables; v++) {
@@ -50,7 +50,7 @@ static void apply_plan(const fg_doe_plan_request *r, const fg_plan_limits *plan,
   }
 }
 
-/* A run sheet of `doe plan` whose plan is gone is analysed by its data, and that is said. */
+/* Notes that the plan of a run sheet is gone: the sheet is analysed by its data. */
 static void note_lost(const fg_table *sheet, fg_doe_plan *plan) {
   const fg_column *column;
   if (fg_table_find(NULL, sheet, "standard_order", &column) != FG_OK ||
@@ -71,7 +71,7 @@ static void note_changed(const fg_table *sheet, fg_doe_plan *plan) {
         changed, fg_plural(changed), first);
 }
 
-/* What is wrong with it, and what to do. */
+/* Loads the plan; a message says what to do about a fault. */
 static fg_status load_plan(fg_context *ctx, fg_doe_plan *plan) {
   fg_context inner = {.message = ""};
   fg_status status = fg_plan_limits_load(&inner, plan->path, &plan->limits);

@@ -29,7 +29,8 @@ const fg_exit_code fg_exit_codes[] = {
     {0, NULL},
 };
 
-/* What may come out of a command: it judges values, measures scans that may fail, or neither. */
+/* Exit codes of commands by kind: those that judge values, those that measure scans, which may
+ * fail, and the others. */
 static const struct {
   const char *name;
   const char *codes; /* of those below 64; 0: done */
@@ -196,7 +197,7 @@ const fg_fact *fg_fact_find(const char *name, size_t length) {
   return NULL;
 }
 
-/* The length of a name between two @, of which the first stands before `text`; 0: none. */
+/* Returns the length of a name between two @, of which the first is before `text`; 0: none. */
 static size_t name_length(const char *text) {
   size_t length = 0;
   while (islower((unsigned char)text[length]) || text[length] == '_')

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What texts of help and manual leave to the code: defaults, lists of formats and of words, exit
- * codes. A text names them as @name@. */
+/* Facts that the code fills into texts of help and manual: defaults, lists of formats and of
+ * words, exit codes. A text names them as @name@. */
 #ifndef FG_CLI_FACTS_H
 #define FG_CLI_FACTS_H
 
@@ -11,7 +11,7 @@
 /* Defaults that are the command line's own; those of the library stand in its headers. */
 enum {
   FG_CLI_STATION_PORT = 8317,
-  FG_CLI_LOOP_MINUTES = 10, /* that a search may take by estimate before it is refused */
+  FG_CLI_LOOP_MINUTES = 10, /* longest estimated search that is not refused */
   FG_CLI_LOOP_MEBIBYTES = 512,
   FG_CLI_SEED = 1,
 };
@@ -23,7 +23,7 @@ typedef struct fg_fact {
   void (*write)(FILE *out);
 } fg_fact;
 
-/* The fact of that name, or NULL. */
+/* Returns the fact of that name, or NULL. */
 const fg_fact *fg_fact_find(const char *name, size_t length);
 
 /* The exit codes of a kind of commands, by the name of its fact ("exit_judged"). */
@@ -34,11 +34,11 @@ typedef struct fg_exit_code {
 bool fg_exit_codes_use(const char *kind, size_t length, const fg_exit_code *code);
 extern const fg_exit_code fg_exit_codes[]; /* ends with words of NULL */
 
-/* Writes a text with what it names put in; `more` (may be NULL) knows further facts. Whether
- * everything it names is known. */
+/* Writes a text with its facts filled in; `more` (may be NULL) finds further facts. Returns true
+ * when every fact that it names is known. */
 bool fg_facts_write(const char *text, const fg_fact *(*more)(const char *, size_t), FILE *out);
 
-/* As help_filter of a parser (argp): fills the texts of --help. */
+/* Fills the texts of --help; the help_filter of a parser (argp). */
 char *fg_cli_fill(int key, const char *text, void *input);
 
 #endif

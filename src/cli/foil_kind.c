@@ -4,7 +4,7 @@
 
 #include "cli/commands.h"
 
-/* Forms whose design can be the built-in one. */
+/* Kinds of foil that the built-in design can have. */
 static const struct {
   const char *name;
   fg_foil_kind kind;

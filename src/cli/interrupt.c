@@ -60,7 +60,7 @@ void fg_interrupt_start(void) {
   pthread_attr_setstacksize(&attributes, STACK_BYTES);
   pthread_attr_setdetachstate(&attributes, PTHREAD_CREATE_DETACHED);
   pthread_sigmask(SIG_BLOCK, &signals, NULL);
-  /* Without the thread a signal ends the program as it always does. */
+  /* Without the thread a signal ends the program at once, by its default. */
   if (pthread_create(&thread, &attributes, wait_for_signal, &signals) != 0)
     pthread_sigmask(SIG_UNBLOCK, &signals, NULL);
   pthread_attr_destroy(&attributes);

@@ -15,7 +15,7 @@ static void read_tone(struct argp_state *state, const char *text, fg_cli_known *
   known->tone = linear ? FG_TONE_LINEAR : FG_TONE_UNKNOWN;
 }
 
-/* Behind a value: "±", "+-" or ":". NULL: none of them. */
+/* Skips "±", "+-" or ":" behind a value. NULL: there is none. */
 static const char *skip_separator(const char *text) {
   static const char *const separators[] = {"±", "+-", ":"};
   for (size_t i = 0; i < sizeof separators / sizeof *separators; i++)

@@ -30,10 +30,10 @@ enum { FG_CLI_TONE = 0x7002, FG_CLI_THICKNESS = 0x7003 };
         group                                                                                       \
   }
 
-/* Takes an option of these rows; false: it is another one. A wrong argument ends the program. */
+/* Reads an option of these rows; false: it is another one. A wrong argument ends the program. */
 bool fg_cli_take_known(struct argp_state *state, int key, const char *text, fg_cli_known *known);
 
-/* Puts it into the design; what it overrules there is said on standard error. Check the design
+/* Writes it into the design, and notes on standard error what it overrules. Check the design
  * afterwards. */
 void fg_cli_apply_known(const fg_cli_known *known, fg_design *design);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What `loop` can write, on tables as on scans. */
+/* Outputs of `loop`, on tables and on scans. */
 #ifndef FG_CLI_LOOP_OUTPUTS_H
 #define FG_CLI_LOOP_OUTPUTS_H
 
@@ -13,8 +13,8 @@ typedef enum fg_loop_output {
   FG_LOOP_OUTPUTS
 } fg_loop_output;
 
-/* Results without -o go to standard output: as text on a terminal, else as JSON where no file was
- * asked for. */
+/* Sends results without -o to standard output: as text on a terminal, else as JSON where no file
+ * was asked for. */
 void fg_loop_outputs_choose(fg_output_set *set);
 
 #endif

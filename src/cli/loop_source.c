@@ -11,7 +11,7 @@
 #include "foilgauge/memory.h"
 #include "foilgauge/text.h"
 
-/* Beyond, names are no levels that an effect may have: they may count. */
+/* Levels of a column at most. Names with more are no levels of an effect: they may be a count. */
 enum { LEVELS_MAX = FG_LOOP_COLUMNS };
 
 static const char scan_column[] = "scan";
@@ -103,7 +103,7 @@ static fg_status name_runs(fg_context *ctx, fg_loop_source *source) {
                         measured->failed, fg_plural(measured->failed));
 }
 
-/* What is not there is said before the scans are measured. */
+/* Missing columns are reported before the scans are measured. */
 static fg_status check_columns(fg_context *ctx, const fg_loop_table_spec *spec,
                                const fg_table *sheet) {
   const fg_column *column;
@@ -166,13 +166,14 @@ static fg_status note_prediction(fg_context *ctx, const fg_forming_prediction *p
   inputs[source->inputs++] = (fg_loop_input){source->forming_path, source->forming_sha256};
   free(source->input);
   source->input = inputs;
-  return fg_text_append(ctx, &source->said,
-                        "%sdeclared: what %s (foilgauge forming) predicts of %s by the bump's number; "
-                        "measured minus predicted is %+.6g on average",
-                        source->said ? "; " : "", prediction->path, response, apart);
+  return fg_text_append(
+      ctx, &source->said,
+      "%sdeclared: what %s (foilgauge forming) predicts of %s by the bump's number; "
+      "measured minus predicted is %+.6g on average",
+      source->said ? "; " : "", prediction->path, response, apart);
 }
 
-/* What it predicts of every row becomes the offset. */
+/* Declares a forming: its prediction of every row becomes the offset. */
 static fg_status declare_forming(fg_context *ctx, const char *path, fg_table *table,
                                  fg_loop_table_spec *spec, fg_loop_source *source) {
   fg_forming_prediction *prediction = NULL;

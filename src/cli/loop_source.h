@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Where the loop on tables has its table from: a file, a lot, the scans of runs. */
+/* Source of the table for the loop on tables: a file, a lot, the scans of runs. */
 #ifndef FG_CLI_LOOP_SOURCE_H
 #define FG_CLI_LOOP_SOURCE_H
 
@@ -10,10 +10,10 @@
 
 enum { FG_LOOP_WITHOUTS = 100 };
 
-/* What the command line says of it: one of table, lot and runs. */
+/* The source as the command line names it: one of table, lot and runs. */
 typedef struct fg_loop_source_request {
   const char *table, *lot, *runs;
-  const char *forming_model;             /* a report of `form`; NULL: none */
+  const char *forming_model;             /* a report of `forming`; NULL: none */
   const char *scans;                     /* of runs: a folder, or a column; NULL: column `scan` */
   const char *without[FG_LOOP_WITHOUTS]; /* columns to leave out */
   size_t withouts;
@@ -31,7 +31,7 @@ typedef struct fg_loop_source {
   const char *const *row_name;
   char *said;
   bool failed; /* some of the scans could not be measured */
-  /* Private: what the others point into. */
+  /* Private: owns the data that the others point into. */
   fg_table read;
   fg_lot_table lot;
   fg_run_sheet measured;
@@ -39,12 +39,12 @@ typedef struct fg_loop_source {
   char *forming_path, forming_sha256[65];
 } fg_loop_source;
 
-/* Before anything is read: what the source reads is no output. */
+/* Checks, before anything is read, that no input of the source is an output. */
 fg_status fg_loop_source_check(fg_context *ctx, const fg_loop_source_request *request,
                                fg_output_set *outputs);
 
-/* The table for a response and its model; `spec->group` is chosen where it is NULL, and `design` is
- * the lot's where the caller has none of his own. Free with fg_loop_source_free. */
+/* Reads the table for a response and its model; `spec->group` is chosen where it is NULL, and
+ * `design` is the lot's where the caller has none. Free with fg_loop_source_free. */
 fg_status fg_loop_source_read(fg_context *ctx, const fg_loop_source_request *request,
                               bool has_design, fg_output_set *outputs, fg_loop_table_spec *spec,
                               fg_design *design, fg_loop_source *source);

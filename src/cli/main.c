@@ -37,7 +37,7 @@ static void help_usage(const fg_command_usage *usage) {
   argp_help(usage->parser, stdout, ARGP_HELP_STD_HELP, words);
 }
 
-/* Of one form that has words of its own: `help doe plan`. */
+/* Prints the help of one usage that has words of its own: `help doe plan`. */
 static int help_part(const fg_command *command, const char *part) {
   char words[64];
   snprintf(words, sizeof words, "%s %s", command->name, part);
@@ -49,7 +49,7 @@ static int help_part(const fg_command *command, const char *part) {
   return no_command(words);
 }
 
-/* What `foilgauge COMMAND --help` says, of every way to call it. */
+/* Prints the text of `foilgauge COMMAND --help` for every usage. */
 static int help_command(const char *name, const char *part) {
   const fg_command *command = find_command(name);
   if (!command) return no_command(name);

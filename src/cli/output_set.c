@@ -64,7 +64,7 @@ static fg_status write_one(fg_context *ctx, fg_output_set *set, size_t kind,
                          fg_csv_write(ctx, decimal_comma, write_kind, &of, output->stream));
 }
 
-/* An output that fails after another has its final name: none may look finished. */
+/* Removes committed outputs when a later one fails: none may look finished. */
 static void take_back(const fg_output_set *set, size_t committed) {
   for (size_t kind = 0; kind < committed; kind++) {
     const char *path = set->path[kind];

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The outputs of one command: none takes the place of an input, and all or none get their names. */
+/* The outputs of one command: none overwrites an input, and all or none get their names. */
 #ifndef FG_CLI_OUTPUT_SET_H
 #define FG_CLI_OUTPUT_SET_H
 
@@ -20,22 +20,23 @@ typedef struct fg_output_set {
   bool decimal_comma;
 } fg_output_set;
 
-/* Something that the command reads; a path of NULL is nothing. */
+/* An input of the command; a path of NULL is none. */
 typedef struct fg_input {
   const char *path;
-  const char *words; /* what it is: "the scan" */
+  const char *words; /* for messages: "the scan" */
 } fg_input;
 
 bool fg_is_standard(const char *path);
-bool fg_output_set_has_standard(const fg_output_set *set); /* one of them is standard output */
+bool fg_output_set_has_standard(
+    const fg_output_set *set); /* true when one of them is standard output */
 
 /* Chooses standard output for results that no option sends elsewhere. A terminal shows the text,
  * even where files are written. A pipe or a file gets the JSON when no output is asked for, and
  * with `json_beside` when no JSON is. */
 void fg_output_set_choose_standard(fg_output_set *set, size_t json, size_t text, bool json_beside);
 
-/* FG_ERR_USAGE when two outputs are one file, or one is an input (foilgauge/file.h). Once all
- * outputs are known and before anything is done; again where more inputs become known. */
+/* FG_ERR_USAGE when two outputs are one file, or one is an input (foilgauge/file.h). Call it
+ * once all outputs are known and before any work; again when more inputs become known. */
 fg_status fg_output_set_check(fg_context *ctx, fg_output_set *set, const fg_input *inputs,
                               size_t count);
 
@@ -48,6 +49,6 @@ typedef fg_status fg_output_writer(fg_context *ctx, void *user, size_t kind, FIL
  * first; standard output comes last, when all files are written. */
 fg_status fg_output_set_write(fg_context *ctx, fg_output_set *set, fg_output_writer *writer,
                               void *user);
-void fg_output_set_close(fg_output_set *set); /* what was not committed is removed */
+void fg_output_set_close(fg_output_set *set); /* removes outputs that were not committed */
 
 #endif

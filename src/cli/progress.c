@@ -11,7 +11,7 @@ enum { BAR_WIDTH = 40 };
 /* A scan that is done at once shows no bar, and a bar is not drawn more often than it is seen. */
 #define SECONDS_BETWEEN 0.2
 
-/* As much of the name as there is place for, in whole characters. */
+/* Clips the name to the space there is, in whole characters. */
 static void clip_visible(const char *name, char *clipped, size_t size) {
   char visible[4 * FG_PROGRESS_NAME];
   size_t length, kept = 0;

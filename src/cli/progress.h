@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* How far a scan is read: a bar on standard error, where that is a terminal. */
+/* Progress of reading a scan: a bar on standard error, where that is a terminal. */
 #ifndef FG_CLI_PROGRESS_H
 #define FG_CLI_PROGRESS_H
 
@@ -10,7 +10,7 @@
 enum { FG_PROGRESS_NAME = 31 };
 
 typedef struct fg_progress {
-  char name[FG_PROGRESS_NAME]; /* of the scan, without what a terminal would obey */
+  char name[FG_PROGRESS_NAME]; /* of the scan, without control characters */
   bool wanted;                 /* standard error is a terminal */
   bool shown;
   struct timespec last;

@@ -5,7 +5,7 @@
 #include <sys/mman.h>
 #include <sys/resource.h>
 
-/* SLACK: what is on the stack already, and lies between. */
+/* SLACK: the stack in use already, and the gap below it. */
 enum { RESERVED_BYTES = 2 << 20, SLACK_BYTES = 1 << 17 };
 
 static __attribute__((noinline)) void touch_far_end(void) {

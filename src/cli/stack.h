@@ -5,10 +5,9 @@
 
 #include <stdbool.h>
 
-/* The first thread's stack grows as it is used; where the address space is limited (ulimit -v) it
- * then cannot, and the program is ended by a signal somewhere in its work. This takes at the start
- * what a worker's stack has. False: there is not so much memory. Call it before there is another
- * thread. */
+/* Reserves the first thread's stack, as large as a worker's. It grows with its use; where the
+ * address space is limited (ulimit -v) it could not later, and a signal would end the program in
+ * its work. False: there is not enough memory. Call it before there is another thread. */
 bool fg_stack_reserve(void);
 
 #endif

@@ -10,7 +10,8 @@
 #include "foilgauge/file.h"
 #include "foilgauge/text.h"
 
-/* What would be lost is an error: /dev/null is opened the wrong way round for input and output. */
+/* Opens closed descriptors on /dev/null, for input and output the wrong way round: output that
+ * would be lost is then an error. */
 static void open_closed(void) {
   static const int modes[] = {O_WRONLY, O_RDONLY, O_WRONLY};
   for (int descriptor = STDIN_FILENO; descriptor <= STDERR_FILENO; descriptor++)
@@ -18,9 +19,9 @@ static void open_closed(void) {
       _exit(fg_status_exit_code(FG_ERR_IO));
 }
 
-/* A library's own ending can wait for ever: OpenBLAS, where address space was too small for its
- * threads. Nothing of ours is left to be done then. A leak is looked for after this, so that a
- * program with sanitizers ends the long way. */
+/* Ends the program without the libraries' exit handlers, which can wait for ever: OpenBLAS does,
+ * where address space was too small for its threads. Nothing of ours is left to do.
+ * LeakSanitizer runs after this, so a program with sanitizers ends the long way. */
 static void leave(int code) {
 #ifndef __SANITIZE_ADDRESS__
   fflush(NULL);
@@ -43,8 +44,8 @@ static void flush_output(int code, void *unused) {
   _exit(fg_status_exit_code(status));
 }
 
-/* Whatever is said may hold names and texts from files, and no control character of those reaches a
- * terminal or a log. */
+/* Messages may hold names and texts from files; no control character of those reaches a terminal
+ * or a log. */
 static ssize_t say(void *unused, const char *bytes, size_t size) {
   enum { PIECE = 1024 };
   char visible[4 * PIECE];

@@ -3,11 +3,11 @@
 #ifndef FG_CLI_STANDARD_H
 #define FG_CLI_STANDARD_H
 
-/* First of all: a descriptor that is closed at the start would be given to the next file that is
- * opened, and what is said to it would land there. From here on, whatever goes to `stderr` comes
- * without control characters but newline and tab; what draws (progress.h) writes to the descriptor.
- * At exit, standard output is flushed; where that fails, the program says so and ends with the exit
- * code of output. No library's own ending is waited for. */
+/* Call it first: a descriptor that is closed at the start would be given to the next file that
+ * is opened, and messages would land there. From here on `stderr` passes no control characters
+ * but newline and tab; the progress bar (progress.h) writes to the descriptor. At exit, standard
+ * output is flushed; where that fails, the program says so and ends with the exit code of
+ * output. Exit does not wait for libraries to end. */
 void fg_standard_start(void);
 
 #endif

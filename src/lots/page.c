@@ -6,11 +6,12 @@
 
 #include "core/file.h"
 #include "core/text.h"
+#include "foilgauge/words.h"
 #include "lots/index.h"
 #include "page/page.h"
 #include "page/provenance.h"
+#include "page/verdict.h"
 #include "report/lot/page_parts.h"
-#include "report/measure/page_parts.h"
 
 enum {
   LOTS_FIRST_MAX = 20,

@@ -9,7 +9,8 @@
 #include "manual/facts.h"
 #include "manual/page.h"
 
-/* What follows the commands' cases: `words` completes by words, `files` by endings (none: any). */
+/* Head of the completion, before the commands' cases: _foilgauge_words completes by words,
+ * _foilgauge_files by endings (none: any). */
 static const char head[] =
     "# Completion of foilgauge for bash. Written by foilgauge_manual (src/manual/).\n"
     "_foilgauge_words() {\n"
@@ -46,7 +47,7 @@ static const struct {
   const char *argument, *fact;
 } words_of[] = {{"CHANNEL", "channels"}, {"FORM", "forms"}, {"PAGES", "pages"}};
 
-/* The words of a list in running text: "a, b or c". */
+/* Writes the words of a list in running text, "a, b or c", without its commas. */
 static void write_words(const char *fact, FILE *out) {
   char *list = NULL, *rest = NULL;
   size_t size;
@@ -63,7 +64,7 @@ static bool is_folder(const char *argument) {
   return strstr(argument, "DIR") || strstr(argument, "FOLDER");
 }
 
-/* Files of an ending where the name has one: "FILE.json", "SCAN.png". */
+/* True for names of files: "FILE.json", "SCAN.png". */
 static bool is_file(const char *argument) {
   return strstr(argument, "FILE") || strchr(argument, '.') || !strcmp(argument, "SCAN");
 }
@@ -119,7 +120,7 @@ static bool has_option(const struct argp *parser, const char *name) {
   return false;
 }
 
-/* Without those that an earlier form of the command has named. */
+/* Options that an earlier usage of the command has named are left out. */
 static void write_names(const fg_command *command, size_t usage, FILE *out) {
   const struct argp_option *option = command->usage[usage].parser->options;
   for (; option->name || option->doc; option++) {

@@ -33,7 +33,7 @@ static void write_endings(FILE *out) {
 
 enum { MEMBERS_MAX = 128 };
 
-/* Members of a JSON file, each with what is there where the file does not say it. */
+/* Writes the members of a JSON file, each with its default. */
 static void write_members(fg_member_words_list *list_all, FILE *out) {
   static fg_member_words list[MEMBERS_MAX];
   size_t count = list_all(list, MEMBERS_MAX);
@@ -102,7 +102,7 @@ static void write_picture_findings(FILE *out) {
     fprintf(out, "| `%s` | %s %s |\n", words->name, words->meaning, words->cure);
 }
 
-/* Settings of one interface to scanners, where it has any for a finding. */
+/* Writes the settings of one scanner interface, where it has any for a finding. */
 static void write_settings(size_t offset, FILE *out) {
   fputs("| finding | settings |\n|---|---|\n", out);
   for (const fg_picture_words *words = fg_picture_finding_words(); words->name; words++) {

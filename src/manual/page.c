@@ -8,12 +8,12 @@
 #include "cli/facts.h"
 #include "manual/roff.h"
 
-/* Pages beside those of the commands. */
+/* Pages that are of no command. */
 static const struct {
   char name[24], section;
 } see_also[] = {{"foilgauge-design", '5'}, {"foilgauge-recipe", '5'}, {"foilgauge-scanning", '7'}};
 
-/* What a parser says, with what the code knows put in; the caller frees. */
+/* Fills the facts of the code into a parser's text; the caller frees. */
 static void fill(const char *text, bool *known, char **whole) {
   size_t size;
   FILE *out = open_memstream(whole, &size);
@@ -47,7 +47,8 @@ static void write_synopsis(const fg_command *command, FILE *out) {
   }
 }
 
-/* Paragraphs of a parser's text as those of a manual: an example there has two blanks before it. */
+/* Writes the paragraphs of a parser's text as those of a manual; an example is indented by two
+ * blanks there. */
 static bool write_paragraphs(const char *text, FILE *out) {
   char *marked = NULL;
   size_t size;
@@ -65,7 +66,7 @@ static bool write_paragraphs(const char *text, FILE *out) {
   return right;
 }
 
-/* The paragraph of a parser's text that says how the command ends, or NULL. */
+/* Returns the paragraph of a parser's text on exit codes, or NULL. */
 static const char *find_exit(const char *text) {
   return strstr(text, "@exit_");
 }
@@ -123,7 +124,7 @@ static void write_options(const fg_command *command, bool *known, FILE *out) {
         out);
 }
 
-/* `kind` stands behind an @. */
+/* `kind` begins behind an @ and ends with one. */
 static void write_exit_codes(const char *kind, FILE *out) {
   size_t length = strcspn(kind, "@");
   for (const fg_exit_code *code = fg_exit_codes; code->words; code++)
@@ -154,7 +155,7 @@ static void write_reference(const char *name, size_t length, char section, bool 
   fprintf(out, "\\fR(%c)", section);
 }
 
-/* Every page but its own. */
+/* Lists every page but this one. */
 static void write_see_also(const char *self, char section, FILE *out) {
   static const char program[] = "foilgauge";
   bool first = strcmp(self, program) == 0;

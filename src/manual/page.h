@@ -8,19 +8,20 @@
 
 #include "cli/commands.h"
 
-/* A text of src/manual/text: "# name(section) - what it is", then paragraphs and sections. */
+/* A text of src/manual/text: "# name(section) - summary", then paragraphs and sections. */
 typedef struct fg_manual_text {
   char name[64], summary[200];
   char section;     /* '1', '5' */
-  const char *body; /* what follows the title, with what the code knows put in */
+  const char *body; /* after the title, with the facts filled in */
 } fg_manual_text;
 
-/* `command` is NULL for pages that are of none. Whether all is known that is named in it. */
+/* Writes a page; `command` is NULL for pages of no command. Returns true when every fact that it
+ * names is known. */
 bool fg_manual_write_page(const fg_manual_text *text, const fg_command *command, FILE *out);
 
 void fg_manual_write_completion(FILE *out);
 
-/* The examples of a text, a command a line. */
+/* Writes the examples of a text, a command a line. */
 void fg_manual_write_examples(const fg_manual_text *text, FILE *out);
 
 #endif

@@ -5,7 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The code point of a UTF-8 sequence and its length. Texts are the project's own. */
+/* Decodes a UTF-8 sequence: code point and length. It is not checked: the texts are the
+ * project's own. */
 static size_t decode(const char *text, size_t length, unsigned *code) {
   unsigned char first = (unsigned char)text[0];
   size_t size = first < 0xC0 ? 1 : first < 0xE0 ? 2 : first < 0xF0 ? 3 : 4;
@@ -46,7 +47,7 @@ void fg_roff_escape(const char *text, size_t length, FILE *out) {
   }
 }
 
-/* The length of what a mark at `text` encloses; 0: the mark is none. */
+/* Returns the length of the text that a mark at `text` encloses; 0: it is no mark. */
 static size_t enclosed(const char *text, size_t length, const char *mark) {
   size_t width = strlen(mark);
   if (length < 2 * width || strncmp(text, mark, width) != 0) return 0;
@@ -55,7 +56,7 @@ static size_t enclosed(const char *text, size_t length, const char *mark) {
   return 0;
 }
 
-/* [words](address): the length of all of it, and of the words. */
+/* Returns the length of a link [words](address), and that of its words. */
 static size_t link_length(const char *text, size_t length, size_t *words) {
   const char *middle = length && *text == '[' ? memmem(text, length, "](", 2) : NULL;
   const char *end = middle ? memchr(middle, ')', length - (size_t)(middle - text)) : NULL;
@@ -94,7 +95,7 @@ typedef struct writer {
   FILE *out;
   bool in_code, in_table, gap; /* gap: a paragraph begins */
   char heading[4][80];         /* of the table's columns */
-  size_t columns, cells;       /* that have a heading, and all */
+  size_t columns, cells;       /* with a heading, and all */
   bool wrong;                  /* a row has other cells than its table's head */
 } writer;
 
@@ -110,8 +111,8 @@ static void write_code(writer *w, const char *line, size_t length) {
   fputc('\n', w->out);
 }
 
-/* A bar between cells, as readers of Markdown see it; `\\|` is a bar of the text, in code as well.
- */
+/* True for a bar between cells, as readers of Markdown see it; `\\|` is a bar of the text, in
+ * code as well. */
 static bool is_border(const char *at, const char *start) {
   return *at == '|' && (at == start || at[-1] != '\\');
 }
@@ -123,7 +124,7 @@ static size_t count_cells(const char *line, size_t length) {
   return borders ? borders - 1 : 0;
 }
 
-/* The next cell of a row, without the blanks about it. */
+/* Finds the next cell of a row, without the blanks around it. */
 static bool next_cell(const char **at, const char *end, const char **cell, size_t *length) {
   const char *start = *at;
   while (start < end && (*start == '|' || *start == ' '))
@@ -148,7 +149,7 @@ static void read_headings(writer *w, const char *at, const char *end) {
     snprintf(w->heading[w->columns++], sizeof *w->heading, "%.*s", (int)length, cell);
 }
 
-/* The text of a cell, its bars without their escape. */
+/* Writes the text of a cell, its bars without their escape. */
 static void write_cell(const char *cell, size_t length, FILE *out) {
   char *plain = malloc(length + 1);
   size_t count = 0;
@@ -159,7 +160,8 @@ static void write_cell(const char *cell, size_t length, FILE *out) {
   free(plain);
 }
 
-/* A row is a tagged paragraph: the first cell, then the others, named where there are several. */
+/* Writes a row as a tagged paragraph: the first cell, then the others, named where there are
+ * several. */
 static void write_row(writer *w, const char *at, const char *end) {
   const char *cell;
   size_t length;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Manual pages: text with light marks in, roff (man macros) out. */
+/* Manual pages: reads text with light marks, writes roff (man macros). */
 #ifndef FG_MANUAL_ROFF_H
 #define FG_MANUAL_ROFF_H
 
@@ -7,15 +7,15 @@
 #include <stddef.h>
 #include <stdio.h>
 
-/* Characters as they are, with nothing that roff would take for a command. */
+/* Writes characters as they are; those that roff would take for a command are escaped. */
 void fg_roff_escape(const char *text, size_t length, FILE *out);
 
-/* A line of running text: `code` in bold, **words** in bold, [words](address) as words. */
+/* Writes a line of running text: `code` in bold, **words** in bold, [words](address) as words. */
 void fg_roff_inline(const char *text, size_t length, FILE *out);
 
-/* A text of paragraphs, `## Headings`, tables (| a | b |), lists (- a) and indented examples; `#`
- * headings and the text before the first heading are left out. In a cell `\\|` is a bar. False: a
- * row of a table has more or fewer cells than its head. */
+/* Writes a text of paragraphs, `## Headings`, tables (| a | b |), lists (- a) and indented
+ * examples; `#` headings and the text before the first heading are left out. In a cell `\\|` is
+ * a bar. False: a row of a table has more or fewer cells than its head. */
 bool fg_roff_text(const char *text, FILE *out);
 
 #endif

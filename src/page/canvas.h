@@ -25,27 +25,28 @@ typedef struct fg_pen {
   double dash;     /* length of a dash and of a gap, units; 0: solid */
 } fg_pen;
 
-/* A canvas over (a picture of) a measured scan. */
+/* Returns a canvas over a measured scan, or over a picture of it. */
 fg_canvas fg_canvas_over(const fg_picture *picture, const fg_measurement *measurement);
 
-/* A line through points; points closer than half a pixel are left out. */
+/* Draws a line through points. Points closer than half a pixel are left out. */
 fg_status fg_canvas_line(fg_context *ctx, fg_canvas *canvas, const fg_point *mm, size_t count,
                          fg_pen pen);
 
-/* `count` lines of two points each. */
+/* Draws `count` lines of two points each. */
 fg_status fg_canvas_segments(fg_context *ctx, fg_canvas *canvas, const fg_point (*mm)[2],
                              size_t count, fg_pen pen);
 
-/* An arc of a circle, angles from the x axis towards y. */
+/* Draws an arc of a circle; angles run from the x axis towards y. */
 fg_status fg_canvas_arc(fg_context *ctx, fg_canvas *canvas, const fg_circle *circle,
                         double from_rad, double to_rad, fg_pen pen);
 
-/* Text with a dark rim, so that it reads on any ground; its capitals are `height` units tall and
- * their middle is at the point's height. `anchor` 0: it starts at the point; 0.5: centred there. */
+/* Writes text with a dark rim, which can be read on any ground. Its capitals are `height` units
+ * tall, and their middle is at the point's height. `anchor` 0: it starts at the point; 0.5:
+ * centred there. */
 fg_status fg_canvas_text(fg_context *ctx, fg_canvas *canvas, fg_point mm, double height,
                          double anchor, uint32_t colour, const char *text);
 
-/* Text in a picture has no letters beyond ASCII: α becomes alpha, ± becomes +-. */
+/* Rewrites text in ASCII, the only letters of a picture: α becomes alpha, ± becomes +-. */
 void fg_text_to_ascii(const char *text, char *ascii, size_t size);
 
 #endif

@@ -5,13 +5,13 @@
 
 #include <stdio.h>
 
-/* A page from its doctype to its <main>, and from there to its end. */
+/* Write a page from its doctype to its <main>, and its end. */
 void fg_html_begin(FILE *out, const char *title);
 void fg_html_head(FILE *out, const char *title); /* up to the style: for a page with its own */
 extern const char fg_page_style[];               /* page.css, between <style> and </style> */
 void fg_html_end(FILE *out);
 
-/* Text with <, >, &, quotes and stray bytes made harmless. */
+/* Writes text with <, >, &, quotes and stray bytes made harmless. */
 void fg_html_text(FILE *out, const char *text);
 
 #endif

@@ -9,8 +9,8 @@
 #include "core/memory.h"
 #include "foilgauge/scan.h"
 
-/* The boxes of one axis: source pixel i covers [i, i + 1) × reduction of the picture, so it gives
- * its value to one picture pixel or shares it between two. */
+/* Weights along one axis: source pixel i covers [i, i + 1) × reduction of the picture, so its
+ * value goes to one picture pixel or is shared between two. */
 typedef struct share {
   int32_t first; /* picture pixel */
   float weight;  /* its share, in picture px; the rest goes to first + 1 */
@@ -120,7 +120,8 @@ static void choose_size(const int64_t box[4], int32_t width_max, double pixels_m
   double reduction = fmin(1, fmin(width_max / width, sqrt(pixels_max / (width * height))));
   picture->width = (int32_t)fmax(1, floor(width * reduction));
   picture->height = (int32_t)fmax(1, floor(height * reduction));
-  /* Whole pictures of whole boxes: the two differ a little, and every weight adds up to 1. */
+  /* The picture's size is rounded to whole pixels; the reduction follows from it, so that all
+   * weights add up to 1. */
   picture->reduction[0] = picture->width / width;
   picture->reduction[1] = picture->height / height;
   picture->origin_px[0] = box[0];
@@ -159,7 +160,7 @@ void fg_picture_free(fg_picture *picture) {
   *picture = (fg_picture){0};
 }
 
-/* libpng's simplified interface: it returns errors, where the full one would longjmp. */
+/* libpng's simplified interface returns errors, where the full one would longjmp. */
 fg_status fg_png_encode(fg_context *ctx, const uint8_t *pixels, int32_t width, int32_t height,
                         int channels, uint8_t **png, size_t *size) {
   png_image image = {.version = PNG_IMAGE_VERSION,

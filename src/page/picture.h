@@ -24,7 +24,7 @@ fg_status fg_picture_load(fg_context *ctx, const fg_measurement *measurement,
 
 void fg_picture_free(fg_picture *picture);
 
-/* A whole PNG in memory: gray (channels 1) or RGB (channels 3). The caller frees *png. */
+/* Encodes a whole PNG in memory: gray (channels 1) or RGB (channels 3). The caller frees *png. */
 fg_status fg_png_encode(fg_context *ctx, const uint8_t *pixels, int32_t width, int32_t height,
                         int channels, uint8_t **png, size_t *size);
 

@@ -32,7 +32,7 @@ void fg_plot_end(const fg_plot *at) {
   fputs("</svg>\n", at->out);
 }
 
-/* As many decimals as neighbouring ticks take to differ, the same for all: 20.7299, 20.7300. */
+/* Decimals are those that neighbouring ticks need to differ, the same for all: 20.7299, 20.7300. */
 static void tick_text(char text[32], double value, double step) {
   enum { MIN_DIGITS = 4, MAX_DIGITS = 9, DECIMALS_MAX = 6 };
   double size = fabs(value), decimals = fmax(0, ceil(-log10(step) - 1e-9));
@@ -46,8 +46,8 @@ static void tick_text(char text[32], double value, double step) {
   snprintf(text, 32, "%.*g", digits, clean);
 }
 
-/* The ticks' letters in px: smaller where the longest would reach into the title. 0: as they are.
- */
+/* Returns the ticks' letter size in px, smaller where the longest would reach into the title; 0:
+ * the style's size. */
 static double tick_size(const fg_plot *at, double step) {
   const double wide_px = 8.9, size_px = 14,
                title_px = 22; /* of a digit of that size; of the title */

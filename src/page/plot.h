@@ -5,7 +5,7 @@
 
 #include <stdio.h>
 
-/* A plot's place for data, in units of its view box, and what its axes span. */
+/* A plot: its field for data, in units of its view box, and the ranges of its axes. */
 typedef struct fg_plot {
   FILE *out;
   int width; /* of the view box */
@@ -16,18 +16,18 @@ typedef struct fg_plot {
 double fg_plot_x(const fg_plot *at, double x);
 double fg_plot_y(const fg_plot *at, double y);
 
-/* 1, 2 or 5 times a power of ten, about a fifth of the span. */
+/* Returns a step of ticks: 1, 2 or 5 times a power of ten, about a fifth of the span. */
 double fg_plot_nice_step(double span);
 
 /* Opens the <svg>; `label` is for readers that do not see it, and is made harmless. */
 void fg_plot_begin(const fg_plot *at, int height, const char *label);
 void fg_plot_end(const fg_plot *at);
 
-/* Numbers, grid lines, and the title (made harmless) along the axis. */
+/* Write numbers, grid lines, and the title (made harmless) along the axis. */
 void fg_plot_y_axis(const fg_plot *at, const char *title);
 void fg_plot_x_label(const fg_plot *at, double x, const char *text);
 void fg_plot_x_numbers(const fg_plot *at);
-void fg_plot_x_counts(const fg_plot *at); /* of whole things: never 1.5 */
+void fg_plot_x_counts(const fg_plot *at); /* of counts: never 1.5 */
 void fg_plot_x_title(const fg_plot *at, const char *title);
 
 #endif

@@ -60,13 +60,13 @@ void fg_plot_text(const fg_plot *at, double x, double y, const char *style, cons
   fputs("</text>\n", at->out);
 }
 
-/* The highest first. */
+/* Compares labels: the highest comes first. */
 static int by_height(const void *a, const void *b) {
   const fg_plot_label *one = a, *other = b;
   return (one->y < other->y) - (one->y > other->y);
 }
 
-/* Down from the top as far as the gap asks, then up again from the plot's end. */
+/* Moves labels down from the top until the gap is kept, then up again from the plot's lower end. */
 static void spread(const fg_plot *at, const fg_plot_label *labels, double *y, size_t count,
                    double gap_px) {
   for (size_t i = 0; i < count; i++) {

@@ -9,7 +9,7 @@
 
 void fg_plot_dot(const fg_plot *at, double x, double y, double radius, const char *style);
 
-/* Marks that differ without their colour. */
+/* Marks that can be told apart without their colour. */
 typedef enum fg_shape {
   FG_SHAPE_CIRCLE,
   FG_SHAPE_SQUARE,
@@ -20,21 +20,22 @@ typedef enum fg_shape {
 } fg_shape;
 void fg_plot_shape(const fg_plot *at, double x, double y, double radius, fg_shape shape,
                    const char *style);
-/* The same at a place of the view box. */
+/* Draws the mark at a point of the view box. */
 void fg_plot_shape_at(FILE *out, double x, double y, double radius, fg_shape shape,
                       const char *style);
 
-/* A value that is not finite leaves a gap. */
+/* Draws a line through the points; a value that is not finite leaves a gap. */
 void fg_plot_line(const fg_plot *at, const double *x, const double *y, size_t count,
                   const char *style);
 void fg_plot_segment(const fg_plot *at, double x1, double y1, double x2, double y2,
                      const char *style);
 
-/* The text is made harmless. */
+/* Writes text, made harmless. */
 void fg_plot_text(const fg_plot *at, double x, double y, const char *style, const char *text);
 
-/* Labels of levels beside the plot, right of it, none over the other: they are sorted by height and
- * moved apart to the gap, within the plot's height as long as they fit. Texts are made harmless. */
+/* Labels of levels, right of the plot. They are sorted by height and moved apart to the gap, so
+ * that none covers another; they stay within the plot's height as long as they fit. Texts are
+ * made harmless. */
 typedef struct fg_plot_label {
   double y; /* in units of the axis */
   const char *style;

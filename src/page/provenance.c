@@ -28,7 +28,7 @@ void fg_provenance_take_file(fg_provenance *p, const char *path) {
   fg_provenance_take_date(p, date);
 }
 
-/* What a design asks for; the scanner's calibration is told by itself. */
+/* Writes the SHA-256 of the design without its calibration, which has a row of its own. */
 static fg_status sum_design(fg_context *ctx, const fg_design *design, char sum[65]) {
   char *text = NULL;
   size_t size;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Names of flags and of what was found of a picture, as JSON and CSV list them. */
+/* Names of flags and of a picture's findings, as JSON and CSV list them. */
 #ifndef FG_REPORT_FLAG_NAMES_H
 #define FG_REPORT_FLAG_NAMES_H
 
@@ -8,11 +8,12 @@
 #include "core/json_writer.h"
 #include "foilgauge/words.h"
 
-/* Elements of an array that the caller has begun: flags of `words`, then picture findings. */
+/* Writes elements of an array that the caller has begun: flags of `words`, then picture
+ * findings. */
 void fg_json_flag_names(fg_json *json, const fg_flag_words *words, unsigned flags,
                         unsigned findings);
 
-/* A comma and one cell: the same names, between blanks. */
+/* Writes a comma and one cell with the same names, separated by blanks. */
 void fg_csv_put_flags(FILE *out, const fg_flag_words *words, unsigned flags, unsigned findings);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A number with its uncertainty, and a length, as sentences say them. */
+/* A number with its uncertainty, and a length, as sentences write them. */
 #include "report/value_words.h"
 
 #include <math.h>

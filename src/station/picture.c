@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "report/measure/page_parts.h"
+#include "report/foil_html.h"
 
 /* Some 150 KB each; a foil whose picture is gone is drawn from its scan. */
 enum { PICTURES_KEPT = 400 };

@@ -8,8 +8,10 @@
 #include "core/memory.h"
 #include "core/text.h"
 #include "foilgauge/scan_loop.h"
+#include "page/page.h"
 #include "page/provenance.h"
-#include "report/measure/page_tables.h"
+#include "page/verdict.h"
+#include "report/foil_html.h"
 
 /* NULL where the database has none. */
 static fg_status copy(fg_context *ctx, const fg_query *query, int column, char **text) {

@@ -61,7 +61,7 @@ static fg_status read_number(fg_context *ctx, const char *place, const cJSON *ob
   return FG_OK;
 }
 
-/* What an object may hold: a value or NULL, and u or U with its k. */
+/* Members of an object: a value or NULL, and u or U with its k. */
 typedef struct stated {
   const char *value, *u, *expanded;
 } stated;
@@ -181,7 +181,7 @@ static void write_stated(fg_json *json, const char *name, const stated *s, doubl
 
 static void write_members(fg_json *json, const fg_calibration *c) {
   bool exact = json->exact;
-  json->exact = true; /* what is read again measures the same */
+  json->exact = true; /* a file that is read again must measure the same */
   if (c->certificate[0]) fg_json_string(json, "certificate", c->certificate);
   if (c->date[0]) fg_json_string(json, "date", c->date);
   if (c->per_axis) {

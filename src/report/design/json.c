@@ -20,7 +20,7 @@ enum { DESIGN_BYTES_MAX = 1 << 20, MESSAGE_MAX = 900 };
 
 #define DESIGN_SCHEMA "foilgauge/design/1"
 
-/* Where we are, for messages. */
+/* Place in the file, for messages. */
 typedef struct reader {
   fg_context *ctx;
   const char *path;
@@ -170,7 +170,7 @@ static fg_status read_tone(const reader *r, const char *name, const cJSON *item,
   return FG_OK;
 }
 
-/* fg_design_check says whether they are plausible; 0 would be taken for "not stated". */
+/* Refuses 0, which would mean "not stated". fg_design_check tests if the values are plausible. */
 static fg_status read_thickness_measured(const reader *r, const char *name, const cJSON *item,
                                          void *out) {
   fg_design *design = out;
@@ -366,8 +366,8 @@ static bool has_member(const cJSON *root, const char *name) {
   return cJSON_GetObjectItemCaseSensitive(root, name) != NULL;
 }
 
-/* Of a form that nothing has a default of: what it must state, and what belongs to other forms and
- * would be ignored. */
+/* Members of a foil kind without defaults: those that it must state, and those of other kinds,
+ * which would be ignored. */
 typedef struct kind_members {
   const char *kind, *part;
   const char *needed[4], *others[12];
@@ -452,7 +452,7 @@ fg_status fg_design_load(fg_context *ctx, const char *path, fg_design *design) {
   return status;
 }
 
-/* Numbers that the built-in design has are what a file that states nothing is measured with. */
+/* Defaults are the built-in design's: a file that states nothing is measured with them. */
 size_t fg_design_members(fg_member_words *list, size_t max) {
   fg_design usual;
   fg_design_default(&usual);

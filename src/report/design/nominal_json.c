@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A design and what follows from it as JSON. */
+/* A design and its derived values as JSON. */
 #include "core/file.h"
 #include "foilgauge/cantilever.h"
 #include "foilgauge/design_report.h"

@@ -7,28 +7,29 @@
 #include "foilgauge/words.h"
 #include "page/page.h"
 #include "page/provenance.h"
+#include "page/tile.h"
 #include "report/stiffness/map.h"
 #include "report/stiffness/table.h"
 
-static void put_tile(FILE *out, const char *title, double value, const char *unit,
-                     const char *where) {
-  fprintf(out, "<div><dt>%s</dt><dd>%s%.5g %s<small>%s</small></dd></div>\n", title,
-          value < 0 ? "−" : "", fabs(value), unit, where);
+static void put_stated_tile(FILE *out, const char *title, double value, const char *unit,
+                            const char *source) {
+  fg_html_tile(out, title, source, "%s%.5g %s", value < 0 ? "−" : "", fabs(value), unit);
 }
 
 static void put_tiles(FILE *out, const fg_design_report *report) {
   const fg_design *design = report->design;
   fputs("<dl class=\"tiles four\">\n", out);
-  put_tile(out, "bump radius", design->bump_radius_mm, "mm", "R<sub>D</sub>, stated");
-  put_tile(out, "bump angle", design->bump_angle_deg, "°", "α<sub>D</sub>, stated");
-  put_tile(out, "overall radius", design->overall_radius_mm, "mm", "stated");
-  put_tile(out, "thickness", design->thickness_mm, "mm", "stated");
-  put_tile(out, "bump height", report->nominal->height_mm, "mm", "h<sub>D</sub>, eq 5.5");
-  put_tile(out, "arc length of a bump", report->nominal->arc_length_mm, "mm",
-           "α<sub>D</sub> R<sub>D</sub>");
-  put_tile(out, "intersection angle", report->nominal->intersection_angle_deg, "°",
-           "θ<sub>D</sub>");
-  put_tile(out, "clearance", 1000 * report->nominal->clearance_mm, "µm", "C<sub>D</sub>, eq 5.8");
+  put_stated_tile(out, "bump radius", design->bump_radius_mm, "mm", "R<sub>D</sub>, stated");
+  put_stated_tile(out, "bump angle", design->bump_angle_deg, "°", "α<sub>D</sub>, stated");
+  put_stated_tile(out, "overall radius", design->overall_radius_mm, "mm", "stated");
+  put_stated_tile(out, "thickness", design->thickness_mm, "mm", "stated");
+  put_stated_tile(out, "bump height", report->nominal->height_mm, "mm", "h<sub>D</sub>, eq 5.5");
+  put_stated_tile(out, "arc length of a bump", report->nominal->arc_length_mm, "mm",
+                  "α<sub>D</sub> R<sub>D</sub>");
+  put_stated_tile(out, "intersection angle", report->nominal->intersection_angle_deg, "°",
+                  "θ<sub>D</sub>");
+  put_stated_tile(out, "clearance", 1000 * report->nominal->clearance_mm, "µm",
+                  "C<sub>D</sub>, eq 5.8");
   fputs("</dl>\n", out);
 }
 

@@ -69,7 +69,7 @@ static void write_beam(const fg_design *design, FILE *out) {
     write_row(out, "elastic modulus", "E", design->elastic_modulus_gpa, "GPa");
 }
 
-/* What of sagitta and clearance cannot be said stays out of a line. */
+/* Writes one line; sagitta and clearance that are not known are left out of it. */
 static void write_deviating(const fg_design *design, double length_pct, double width_pct,
                             FILE *out) {
   const fg_cantilever beam = fg_cantilever_deviating(design, length_pct, width_pct);

@@ -50,7 +50,7 @@ bool fg_die_is_lost(const fg_die_trace *trace, int number) {
   return false;
 }
 
-/* By some trace of the half; none measured it. */
+/* True when a trace of the half lost the bump, and none measured it. */
 static bool is_lost(const fg_die *die, fg_die_half half, int number) {
   for (size_t i = 0; i < die->trace_count; i++)
     if (die->traces[i].half == half && fg_die_is_lost(&die->traces[i], number)) return true;

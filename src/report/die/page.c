@@ -1,14 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A die's page: what it comes to, errors by half, then each half with its traces. */
+/* A die's page: outcome, errors by half, then each half with its traces. */
 #include <math.h>
 #include <string.h>
 
 #include "core/file.h"
 #include "foilgauge/die_report.h"
+#include "foilgauge/words.h"
 #include "page/page.h"
 #include "page/provenance.h"
+#include "page/tile.h"
+#include "page/verdict.h"
 #include "report/die/plots.h"
-#include "report/measure/page_parts.h"
 
 static const char *const datum_words[] = {"midline", "inner side", "outer side"};
 static const char *const half_words[FG_DIE_HALVES] = {
@@ -16,8 +18,9 @@ static const char *const half_words[FG_DIE_HALVES] = {
     "Convex half: ridges, touches the strip's outer side"};
 
 static void put_error_tile(FILE *out, const char *title, const fg_die_value *v, const char *unit) {
-  fprintf(out, "<div><dt>%s</dt><dd>%+.3f %s<small>± %.3f (U = 2 u)</small></dd></div>\n", title,
-          v->value, unit, FG_COVERAGE_FACTOR * v->u);
+  char small[64];
+  snprintf(small, sizeof small, "± %.3f (U = 2 u)", FG_COVERAGE_FACTOR * v->u);
+  fg_html_tile(out, title, small, "%+.3f %s", v->value, unit);
 }
 
 /* Largest sd of one repeat over the bumps of both halves. */
@@ -41,15 +44,14 @@ static void put_tiles(FILE *out, const fg_die *die) {
     put_error_tile(out, "Radius error of the die", &die->whole.mean[FG_DIE_RADIUS_ERROR], "%");
   put_error_tile(out, "Bump angle error, mean", &die->whole.mean[FG_DIE_ANGLE_ERROR], "%");
   put_error_tile(out, "Overall radius error", &die->whole.overall_error_pct, "%");
-  fputs("<div><dt>Repeats of R, largest s</dt><dd>", out);
   if (isfinite(sd))
-    fprintf(out, "%.2f µm", 1000 * sd);
+    fg_html_tile(out, "Repeats of R, largest s", NULL, "%.2f µm", 1000 * sd);
   else
-    fputs("–<small>one trace of each half</small>", out);
-  fputs("</dd></div>\n</dl>\n", out);
+    fg_html_tile(out, "Repeats of R, largest s", "one trace of each half", "–");
+  fputs("</dl>\n", out);
 }
 
-/* What the halves come to, each in a sentence. */
+/* Writes the result of each half in a sentence. */
 static void put_sentences(FILE *out, const fg_die *die) {
   char unseen[200];
   fputs("<ul class=\"words\">\n", out);
@@ -111,7 +113,7 @@ static void put_head(FILE *out, const fg_die *die, const char *count, const char
   fputs("<td></td></tr>\n", out);
 }
 
-/* `of`: whose s it is; NULL: the column's heading says it. */
+/* `of`: owner of s; NULL: the column's heading names it. */
 static void put_row(FILE *out, const fg_die *die, const fg_die_value v[FG_DIE_QUANTITIES],
                     const char *of) {
   for (size_t i = 0; i < COLUMNS; i++) {

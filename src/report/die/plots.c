@@ -205,10 +205,11 @@ static along along_of(const fg_die *die, const fg_die_trace *trace) {
   return a;
 }
 
-/* Means over this much of the plot's width: what repeats share stands out of the noise. */
+/* Width of the bins whose means are drawn: in means, the shape that repeats share rises out of
+ * the noise. */
 enum { BIN_PX = 2 };
 
-/* One bin of a line: the mean of what fell into it. */
+/* One bin of a line: the mean of its points. */
 typedef struct bin {
   double column, sum;
   int count, kind; /* bump, or 0 of the lands */

@@ -7,13 +7,13 @@
 
 #include "foilgauge/die.h"
 
-/* Error of every bump by half with U, the design's line, the limits that it states. */
+/* Plots the error of every bump by half with U, the design's line and its limits. */
 void fg_die_plot_errors(FILE *out, const fg_die *die, fg_die_quantity quantity);
 
-/* The first trace of a half to scale, its circles drawn on. */
+/* Plots the first trace of a half to scale, with its circles. */
 void fg_die_plot_trace(FILE *out, const fg_die *die, fg_die_half half);
 
-/* Residuals of every trace of a half, one above the other by their bumps. */
+/* Plots the residuals of every trace of a half, one above the other by their bumps. */
 void fg_die_plot_residuals(FILE *out, const fg_die *die, fg_die_half half);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What an experiment's page says first: the best setting, what it gives, and how sure that is. */
+/* The answer on an experiment's page: the best setting, its response, and the confidence in it. */
 #include <math.h>
 #include <string.h>
 
@@ -14,7 +14,7 @@ static const char *why_no_optimum(const fg_experiment *e) {
   return "no optimum";
 }
 
-/* The factor that does most, where no surface says more: a screening's answer. */
+/* Writes the strongest factor, the answer of a screening, which has no surface. */
 static void put_strongest(FILE *out, const fg_experiment *e, const fg_sentences *conclusions) {
   fputs("<p class=\"set\">No best setting</p>\n<p>", out);
   fg_html_text(out, why_no_optimum(e));
@@ -47,7 +47,7 @@ static void put_trust(FILE *out, const fg_sentences *conclusions) {
   fputs("</ul>\n", out);
 }
 
-/* No factor can be told from noise. */
+/* Writes the answer where no factor can be told from noise. */
 static void put_no_best(FILE *out, const fg_sentences *conclusions) {
   fputs("<p class=\"set\">No best setting</p>\n", out);
   for (size_t i = conclusions->setting; i < conclusions->trust; i++) {
@@ -104,7 +104,7 @@ void fg_doe_put_answer(FILE *out, const fg_experiment *e, const fg_sentences *co
   fputs("</div>\n", out);
 }
 
-/* The rest of what is said: the answer has stood above. */
+/* Writes the other conclusions, below the answer. */
 void fg_doe_put_conclusions(FILE *out, const fg_sentences *conclusions) {
   fputs("<h2>What the runs say</h2>\n<ul class=\"words\">\n", out);
   for (size_t i = 0; i < conclusions->count; i++) {

@@ -8,7 +8,7 @@
 #include "report/doe/words.h"
 
 void fg_doe_put_answer(FILE *out, const fg_experiment *experiment, const fg_sentences *conclusions);
-/* What else is said: without what the answer says. */
+/* Writes the conclusions that the answer does not hold. */
 void fg_doe_put_conclusions(FILE *out, const fg_sentences *conclusions);
 
 #endif

@@ -7,7 +7,7 @@
 
 enum { FG_AXES_WIDTH = 480, FG_AXES_HEIGHT = 330 };
 
-/* More points than these are thinned out. */
+/* Points of a plot at most; of more, only some are drawn. */
 enum { FG_DOE_POINTS_SHOWN = 2000 };
 
 /* Opens <figure> and <svg> for data within these ranges, widened by a margin; ranges that are empty
@@ -20,7 +20,7 @@ void fg_range_add(double range[2], double value);
 
 void fg_axes_dot(const fg_plot *at, const char *style, double x, double y, double radius);
 void fg_axes_line(const fg_plot *at, const char *style, double x0, double y0, double x1, double y1);
-/* Text beside a point, to its right where there is room, else to its left. */
+/* Writes text beside a point: right of it where there is room, else left. */
 void fg_axes_text(const fg_plot *at, double x, double y, const char *text);
 
 #endif

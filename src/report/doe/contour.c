@@ -83,8 +83,8 @@ static void add_point(polygon *p, const double *a, const double *b, double share
   p->count++;
 }
 
-/* The part of a polygon whose value is at least `level` (sign 1) or at most (sign -1): Sutherland
- * and Hodgman (1974). */
+/* Cuts a polygon to the part whose value is at least `level` (sign 1) or at most (sign -1):
+ * Sutherland and Hodgman (1974). */
 static void cut(polygon *p, double level, double sign) {
   polygon kept = {.count = 0};
   for (int c = 0; c < p->count; c++) {
@@ -103,7 +103,7 @@ static void put_polygon(const fg_plot *at, const slice *s, const polygon *p) {
   if (p->count) fputc('z', at->out);
 }
 
-/* What of band n lies in a row of cells; whole cells that are neighbours make one polygon. */
+/* Draws the part of band n in a row of cells; whole neighbouring cells make one polygon. */
 static void put_band_row(const fg_plot *at, const slice *s, int i, double low, double high) {
   for (int k = 0, from = -1; k <= GRID; k++) {
     double min = INFINITY, max = -INFINITY;
@@ -148,7 +148,7 @@ static void put_bands(const fg_plot *at, const slice *s) {
   }
 }
 
-/* Whether a place of the slice, in cells, is in the region. */
+/* True when a point of the slice, in cells, is in the region. */
 static bool is_inside(const slice *s, double k, double i) {
   double x[FG_SURFACE_FACTORS];
   memcpy(x, s->x, sizeof x);
@@ -157,7 +157,8 @@ static bool is_inside(const slice *s, double k, double i) {
   return fg_region_contains(&s->e->region, x, 1e-9);
 }
 
-/* Where the region's edge crosses the way from a place inside to one outside. */
+/* Returns the point where the region's edge crosses the line from inside to outside, as a share
+ * of the line, by bisection. */
 static double edge_between(const slice *s, const double *in, const double *out) {
   double low = 0, high = 1;
   for (int step = 0; step < BISECTIONS; step++) {
@@ -205,7 +206,8 @@ static void put_outside(const fg_plot *at, const slice *s) {
   free(text);
 }
 
-/* Where the level crosses the sides of a cell: two points, or four at a saddle (paired as met). */
+/* Draws the level in a cell: it crosses the sides at two points, or at four at a saddle (paired
+ * as met). */
 static void put_cell(const fg_plot *at, const slice *s, int i, int k, double level) {
   const double corner[4][3] = {{k, i, s->value[i][k]},
                                {k + 1, i, s->value[i][k + 1]},
@@ -222,7 +224,7 @@ static void put_cell(const fg_plot *at, const slice *s, int i, int k, double lev
   }
 }
 
-/* Whether words at a place would lie over others, a run, the best setting, or the rim. */
+/* True when words at this place cover no others, no run, not the best setting, nor the rim. */
 static bool is_free(const fg_plot *at, const places *taken, double x, double y) {
   if (x < at->left + LABEL_WIDE / 2 || x > at->right - LABEL_WIDE / 2 || y < at->top + LABEL_HIGH ||
       y > at->bottom - LABEL_HIGH / 2)
@@ -239,8 +241,8 @@ static void take_place(places *taken, double x, double y, double wide) {
   taken->wide[taken->count++] = wide;
 }
 
-/* The label of a level stands on its line, at the first place that is free; a line without such a
- * place has none. */
+/* Writes the label of a level on its line, at the first free place; a line without one gets no
+ * label. */
 static void put_label(const fg_plot *at, const slice *s, double level, places *taken) {
   for (int n = 0; n < 4 * GRID; n++) /* from the middle diagonal outwards; first in the region */
     for (int i = 2; i < GRID - 2; i++) {
@@ -270,7 +272,7 @@ static void put_lines(const fg_plot *at, const slice *s, places *taken) {
   }
 }
 
-/* Where words must not lie. */
+/* Adds the places that words must leave free. */
 static void take_runs(const fg_plot *at, const slice *s, places *taken) {
   const fg_experiment *e = s->e;
   size_t variables = e->model.formula.variables;

@@ -166,7 +166,7 @@ static void put_aliases(fg_json *json, const fg_regression *r) {
   fg_json_array_end(json);
 }
 
-/* A null stands for what could not be made. */
+/* Writes null where the part could not be made. */
 bool fg_doe_json_begin_part(fg_json *json, const char *name, bool has) {
   if (has)
     fg_json_object(json, name);
@@ -311,7 +311,7 @@ static void put_ridge(fg_json *json, const fg_experiment *e) {
   fg_json_array_end(json);
 }
 
-/* Factors that cannot be told from noise. */
+/* Writes the factors that cannot be told from noise. */
 static void put_any(fg_json *json, const fg_experiment *e) {
   fg_json_array(json, "any");
   for (size_t i = 0; i < e->idles; i++) {
@@ -324,7 +324,7 @@ static void put_any(fg_json *json, const fg_experiment *e) {
   fg_json_array_end(json);
 }
 
-/* Of the model that has the best setting. */
+/* Writes the surface of the model that has the best setting. */
 static void put_surface(fg_json *json, const fg_experiment *whole) {
   const fg_experiment *e = fg_experiment_best(whole);
   if (!fg_doe_json_begin_part(json, "surface", e->has_surface)) return;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What was taken out before the analysis, and the residuals over the order of the runs, as JSON. */
+/* Effects taken out before the analysis, and the residuals over the order of the runs, as JSON. */
 #include <stdlib.h>
 
 #include "report/doe/json_parts.h"

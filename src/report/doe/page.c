@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The page of an experiment: what it says first, then plots, then tables. */
+/* The page of an experiment: the answer first, then plots, then tables. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -7,6 +7,7 @@
 #include "foilgauge/words.h"
 #include "page/page.h"
 #include "page/provenance.h"
+#include "page/tile.h"
 #include "report/doe/answer.h"
 #include "report/doe/plots.h"
 #include "report/doe/words.h"
@@ -47,24 +48,18 @@ static void put_list(FILE *out, const char *style, char *const *text, size_t cou
   fputs("</ul>\n", out);
 }
 
-static void put_tile(FILE *out, const char *title, const char *value, const char *small) {
-  fprintf(out, "<div><dt>%s</dt><dd>%s<small>%s</small></dd></div>\n", title, value, small);
-}
-
 static void put_tiles(FILE *out, const fg_experiment *e) {
   const fg_regression *r = &e->regression;
   char value[64], small[96];
   fputs("<dl class=\"tiles\">\n", out);
-  snprintf(value, sizeof value, "%zu", r->rows);
   snprintf(small, sizeof small, "%zu for the error", r->residual_dof);
-  put_tile(out, "Runs", value, small);
+  fg_html_tile(out, "Runs", small, "%zu", r->rows);
   if (r->residual_dof) {
     fg_value_with_unit(e->response, r->residual_sd, 3, value, sizeof value);
-    put_tile(out, "Scatter about the model", value, "standard deviation");
-    snprintf(value, sizeof value, "%.1f %%", 100 * r->r2);
+    fg_html_tile(out, "Scatter about the model", "standard deviation", "%s", value);
     snprintf(small, sizeof small, "adjusted %.1f %%, predicted %.1f %%", 100 * r->adjusted_r2,
              100 * r->predicted_r2);
-    put_tile(out, "R²", value, small);
+    fg_html_tile(out, "R²", small, "%.1f %%", 100 * r->r2);
   }
   fputs("</dl>\n", out);
 }
@@ -131,7 +126,7 @@ static void put_split_plot(FILE *out, const fg_split_plot *s) {
   }
 }
 
-/* By restricted likelihood: each term has an error of its own. */
+/* Writes the terms by restricted likelihood: each has an error of its own. */
 static void put_mixed(FILE *out, const fg_experiment *e) {
   const fg_split_plot *s = &e->split_plot;
   fputs("<h2>Tests of the terms</h2>\n<div class=\"scroll\"><table><thead><tr><th>term</th>"

@@ -18,7 +18,8 @@ static void put_x_title(const fg_plot *at, const char *name) {
   fg_plot_x_title(at, words);
 }
 
-/* What of the response it is, in its unit: the name stands at the head of the page. */
+/* Titles the axis with the statistic and its unit; the response's name is at the head of the
+ * page. */
 static void put_y_axis(const fg_plot *at, const fg_experiment *e, const char *what) {
   const char *unit = fg_unit_of_name(e->response);
   char words[80];
@@ -30,7 +31,7 @@ static double response_at(const fg_experiment *e, size_t run) {
   return e->regression.fitted[run] + e->regression.residual[run];
 }
 
-/* Mean response at every value that a variable takes. */
+/* Mean response at every value of a variable. */
 typedef struct level_means {
   double value[LEVELS_SHOWN], mean[LEVELS_SHOWN];
   size_t runs[LEVELS_SHOWN], count;

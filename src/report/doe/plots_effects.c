@@ -77,7 +77,8 @@ static void put_pareto(FILE *out, const fg_experiment *e, const bar *bars, size_
           e->has_split_plot ? "Each is judged by its own stratum." : "Red: the limit.");
 }
 
-/* Of the points (by size), those of effects that are not told from nothing. Returns how many. */
+/* Keeps, of the points by size, those of effects that cannot be told from noise. Returns their
+ * number. */
 static size_t keep_untold(const fg_experiment *e, const bar *bars, const fg_half_normal *points,
                           size_t count, fg_half_normal *small) {
   size_t kept = 0;
@@ -88,13 +89,14 @@ static size_t keep_untold(const fg_experiment *e, const bar *bars, const fg_half
   return kept;
 }
 
-/* As Lenth (1989) trims the effects that his error is taken from. */
+/* Factor by which Lenth (1989) trims effects before he estimates the error. */
 static const double TRIM = 2.5;
 
-/* The line of the small effects: magnitude = slope × quantile. What is told from nothing, by its
- * own error or Lenth's, is not small, nor what lies far right of a line through the smaller half of
- * the others. They fill the lower quantiles among all effects, so the line is fitted where they are
- * plotted. Leaves the small ones in `small`; 0: there are none, or they are nothing at all. */
+/* Returns the slope of the line of small effects: magnitude = slope × quantile. Not small are
+ * effects that are told from noise, by their own error or Lenth's, and those far right of a line
+ * through the smaller half of the others. Small effects fill the lower quantiles among all
+ * effects, so the line is fitted where they are plotted. Leaves the small ones in `small`; 0:
+ * there are none, or all are 0. */
 static double small_slope(fg_half_normal *small, size_t *count) {
   size_t half = (*count + 1) / 2, kept = 0;
   double products = 0, squares = 0, first = 0;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the model leaves, and the runs that pull it. */
+/* Plots of residuals, and of the runs with large leverage. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -9,7 +9,7 @@
 #include "report/doe/axes.h"
 #include "report/doe/plots.h"
 
-/* Externally studentised where they exist: what a run does not fit, in standard deviations. */
+/* Returns a run's residual, externally studentised where that exists: in standard deviations. */
 static double residual_of(const fg_experiment *e, size_t run, bool studentised) {
   return studentised ? e->regression.external[run] : e->regression.residual[run];
 }

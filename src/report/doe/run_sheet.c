@@ -200,7 +200,8 @@ static fg_status list_scans(fg_context *ctx, const fg_table *sheet, const fg_col
   return FG_OK;
 }
 
-/* Every scan has the same error: it moves the mean of all by the mean of what it moves each by. */
+/* Returns u of the mean of all runs by the calibration. All scans share its error, which moves
+ * the mean by the mean of the runs' moves. */
 static double level_calibration(const fg_run_sheet *sheet) {
   double squares = 0;
   for (size_t s = 0; s < FG_CALIBRATION_SOURCES; s++) {

@@ -63,7 +63,7 @@ static void put_error_row(FILE *out, const char *name, size_t dof, double sum, d
   put_anova_row(out, &row);
 }
 
-/* By restricted likelihood: each term has an error of its own. */
+/* Writes the terms by restricted likelihood: each has an error of its own. */
 static void put_mixed(FILE *out, const fg_split_plot *s) {
   fprintf(out, "\n%-30s%6s%12s%10s%10s\n", "tests of the terms", "df", "error df", "F", "p");
   for (size_t t = 0; t < s->terms; t++) {

@@ -187,8 +187,8 @@ static bool has_squares(const fg_experiment *e) {
   return false;
 }
 
-/* Curvature at the centre belongs to no factor: squares in the model tell which, or need further
- * runs first. */
+/* Curvature at the centre is of no known factor: squares in the model show which, or need
+ * further runs first. */
 static fg_status say_curvature(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
   char p_value[16];
   if (!e->has_curvature || !isfinite(e->curvature.p_value)) return FG_OK;
@@ -216,7 +216,7 @@ static fg_status say_measurement(fg_context *ctx, const fg_experiment *e, fg_sen
       e->u_rms, fmin(100, 100 * e->u_rms * e->u_rms / (sd * sd)));
 }
 
-/* What every scan shares is in no run's u. */
+/* The error that all scans share is in no run's u. */
 static fg_status say_calibration(fg_context *ctx, const fg_experiment_report *report,
                                  fg_sentences *s) {
   if (!report->scans || !report->design) return FG_OK;

@@ -21,10 +21,10 @@ void fg_sentences_free(fg_sentences *sentences);
 fg_status fg_sentences_say(fg_context *ctx, fg_sentences *sentences, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-/* Whether a sentence is a command, to be shown as it is typed. */
+/* True when a sentence is a command, to be shown as it is typed. */
 bool fg_sentence_is_command(const char *text);
 
-/* Parts of the conclusions: what was taken out before the analysis; what shows over the order. */
+/* Add parts of the conclusions: effects taken out before the analysis; effects over the order. */
 fg_status fg_experiment_say_taken(fg_context *ctx, const fg_experiment_report *report,
                                   fg_sentences *sentences);
 fg_status fg_experiment_say_order(fg_context *ctx, const fg_experiment_report *report,
@@ -43,39 +43,39 @@ fg_status fg_experiment_say_asked(fg_context *ctx, const fg_experiment *experime
 /* True where repeated runs show lack of fit. */
 bool fg_experiment_lacks_fit(const fg_experiment *experiment);
 
-/* The best setting: the one that can be made, where that was asked for. */
+/* Returns the best setting: among those a machine has, where steps were given. */
 const fg_optimum *fg_experiment_best_point(const fg_experiment *experiment);
 
-/* The numeric factor whose first power alone the column is, or NULL. */
+/* Returns the numeric factor whose first power the column is, or NULL. */
 const fg_factor *fg_experiment_main_factor(const fg_experiment *experiment, size_t column);
 
-/* Whether a test of the order is told, and whether any is. */
+/* True when a test of the order is reported; when any is. */
 bool fg_order_shows(double p_value);
 bool fg_order_seen(const fg_order_check *order);
 
-/* The loop on tables for the same data and model, to be typed. The caller frees it. */
+/* Returns the command of the loop on tables for the same data and model. The caller frees it. */
 fg_status fg_experiment_loop_command(fg_context *ctx, const fg_experiment_report *report,
                                      char **command);
 
-/* How the response is modelled: "the magnitude of ...". The caller frees it. */
+/* Names the response as it is modelled: "the magnitude of ...". The caller frees it. */
 fg_status fg_experiment_response_words(fg_context *ctx, const fg_experiment *experiment,
                                        char **words);
 
-/* "temperature 600 °C, duration 3 h, pressure any (cheapest will do)" of a place of the surface
- * that has the best setting; x is not read where no factor can be told from noise. */
+/* Writes the best setting, a point of the surface, in words: "temperature 600 °C, duration 3 h,
+ * pressure any (cheapest will do)". x is not read where no factor can be told from noise. */
 void fg_experiment_setting_words(const fg_experiment *experiment, const double *x, char *text,
                                  size_t size);
 
 const char *fg_surface_kind_word(fg_surface_kind kind);
 const char *fg_goal_word(fg_goal goal);
 
-/* The p value to judge a column by: its own, or Lenth's where there is no error; NaN: neither. */
+/* Returns the p value of a column: its own, or Lenth's where there is no error; NaN: neither. */
 double fg_experiment_p_value(const fg_experiment *experiment, size_t column);
 
-/* A column of the model that is neither constant, nor block, nor aliased. */
+/* True for a column of the model that is neither constant, nor block, nor aliased. */
 bool fg_experiment_of_interest(const fg_experiment *experiment, size_t column);
 
-/* The factor of the surface's axis k. */
+/* Returns the factor of the surface's axis k. */
 const fg_factor *fg_surface_factor(const fg_experiment *experiment, size_t k);
 
 /* "0.0037", "< 0.0001", "–". */

@@ -161,8 +161,8 @@ static fg_status say_no_best(fg_context *ctx, const fg_experiment *e, fg_sentenc
   return say_as_given(ctx, e, s);
 }
 
-/* "temperature cannot be told from the scatter ..., from 500 °C to 600 °C it changes the response
- * by 0.2 µm, 95 % interval −1.1 µm to 1.5 µm": how much may hide behind "any". */
+/* Adds the size that may hide behind "any": "temperature cannot be told from the scatter ...,
+ * from 500 °C to 600 °C it changes the response by 0.2 µm, 95 % interval −1.1 µm to 1.5 µm". */
 static fg_status say_idle(fg_context *ctx, const fg_experiment *e, const fg_idle_factor *idle,
                           fg_sentences *s) {
   const char *column = e->model.formula.variable[idle->variable].column;

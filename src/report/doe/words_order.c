@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What was taken out before the analysis, and what the residuals show over the order of the runs.
- */
+/* Effects taken out before the analysis, and tests of the residuals over the order of the runs. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

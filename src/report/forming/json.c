@@ -28,7 +28,7 @@ static void write_material(fg_json *json, const fg_forming_material *material) {
   fg_json_object_end(json);
 }
 
-/* Files that were read, by what they are. */
+/* Writes an input file under the name of its role. */
 static void write_input(fg_json *json, const char *name, const fg_forming_file *file) {
   if (file->path[0]) fg_json_file(json, name, file->path, file->sha256);
 }

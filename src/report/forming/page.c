@@ -7,17 +7,16 @@
 #include "foilgauge/words.h"
 #include "page/page.h"
 #include "page/provenance.h"
+#include "page/tile.h"
 #include "report/forming/plots.h"
 #include "report/forming/words.h"
 
-static void put_tile(FILE *out, const char *title, double value, int decimals, const char *unit,
-                     const char *small) {
-  fprintf(out, "<div><dt>%s</dt><dd>", title);
+static void put_forming_tile(FILE *out, const char *title, double value, int decimals,
+                             const char *unit, const char *small) {
   if (isfinite(value))
-    fprintf(out, "%.*f %s", decimals, value, unit);
+    fg_html_tile(out, title, small, "%.*f %s", decimals, value, unit);
   else
-    fputs("–", out);
-  fprintf(out, "<small>%s</small></dd></div>\n", small);
+    fg_html_tile(out, title, small, "–");
 }
 
 static void put_tiles(FILE *out, const fg_forming *f) {
@@ -25,14 +24,17 @@ static void put_tiles(FILE *out, const fg_forming *f) {
   for (size_t i = 0; i < f->bump_count; i++)
     sum += f->bumps[i].fitted.radius_error_pct / (double)f->bump_count;
   fputs("<dl class=\"tiles\">\n", out);
-  put_tile(out, "Overall springback", f->springback_error_pct, 2, "%",
-           "100 (R0 - R) / R0: below 0 the foil opens");
-  if (f->bump_count) put_tile(out, "Bump radius error, mean", sum, 2, "%", "fitted circles");
-  put_tile(out, "The lands alone", f->strip_springback_error_pct, 2, "%",
-           "as a plain strip of the overall radius");
-  put_tile(out, "Moment that is left", f->mean_share, 3, "", "rho, over the strip");
-  put_tile(out, "Mean stress, bent", f->mean_stress_mpa[FG_FORMING_BENT], 0, "MPa", "at the face");
-  put_tile(out, "Mean stress, free", f->mean_stress_mpa[FG_FORMING_FREE], 0, "MPa", "at the face");
+  put_forming_tile(out, "Overall springback", f->springback_error_pct, 2, "%",
+                   "100 (R0 - R) / R0: below 0 the foil opens");
+  if (f->bump_count)
+    put_forming_tile(out, "Bump radius error, mean", sum, 2, "%", "fitted circles");
+  put_forming_tile(out, "The lands alone", f->strip_springback_error_pct, 2, "%",
+                   "as a plain strip of the overall radius");
+  put_forming_tile(out, "Moment that is left", f->mean_share, 3, "", "rho, over the strip");
+  put_forming_tile(out, "Mean stress, bent", f->mean_stress_mpa[FG_FORMING_BENT], 0, "MPa",
+                   "at the face");
+  put_forming_tile(out, "Mean stress, free", f->mean_stress_mpa[FG_FORMING_FREE], 0, "MPa",
+                   "at the face");
   fputs("</dl>\n", out);
 }
 

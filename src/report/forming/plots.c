@@ -9,7 +9,7 @@
 
 enum { WIDTH = 1000, HEIGHT = 330, SHOWN_BUMPS = 3 };
 
-/* What a line shows of a stretch. */
+/* Returns the value of a stretch that a line shows. */
 typedef double piece_value(const fg_forming_piece *piece);
 
 static double die_of(const fg_forming_piece *p) {
@@ -50,7 +50,7 @@ static double inside(const fg_plot *at, double y) {
   return fmin(at->y_high, fmax(at->y_low, y));
 }
 
-/* Steps at the ends of stretches; what leaves the plot runs along its edge. */
+/* Draws a line with steps at the ends of stretches. Beyond the plot it runs along the edge. */
 static void put_line(const fg_plot *at, const fg_forming *f, piece_value *value,
                      const char *style) {
   fprintf(at->out, "<path class=\"%s\" d=\"", style);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A forming drawn: along the strip, over the bumps; a fit over its runs. */
+/* Plots of a forming: along the strip, over the bumps; of a fit over its runs. */
 #ifndef FG_REPORT_FORMING_PLOTS_H
 #define FG_REPORT_FORMING_PLOTS_H
 

@@ -35,7 +35,7 @@ void fg_forming_treatment(const fg_forming *forming, char *text, size_t size) {
                  s->time_h[s->count - 1] - s->time_h[0], hottest);
 }
 
-/* Whether a constant of the material is the literature's. */
+/* True when a constant of the material is the literature's. */
 static bool is_default(const fg_forming_material *material, fg_forming_constant c) {
   return !strcmp(material->source[c], fg_forming_constant_of(c)->source);
 }
@@ -55,7 +55,7 @@ static size_t note_material(const fg_forming *forming, char *note) {
   return 1;
 }
 
-/* Bumps bend the other way than lands and fillets: what they open closes the foil. */
+/* Bumps bend the other way than lands and fillets: when they open, the foil closes. */
 static size_t note_closing(const fg_forming *forming, char *note) {
   char lands[60] = "springs back to no circle";
   if (!forming->bump_count || !(forming->springback_error_pct > 0)) return 0;

@@ -53,7 +53,7 @@ fg_status fg_load_write_csv(fg_context *ctx, const fg_load_test *test, FILE *out
   return fg_stream_finish(ctx, out, "the CSV");
 }
 
-/* Which causes the table can have. */
+/* Causes that the table can have. */
 typedef struct causes {
   bool bearing, pad, predicted_pad;
 } causes;

@@ -6,7 +6,7 @@
 #include "foilgauge/load_report.h"
 #include "report/measure/json.h"
 
-/* name, u_name, and what repeats alone say of it. */
+/* Writes name, u_name, and the standard deviation of repeats alone. */
 static void write_value(fg_json *json, const char *name, const fg_load_value *value) {
   fg_json_number(json, name, value->value);
   fg_json_of(json, "u_", name, value->u);

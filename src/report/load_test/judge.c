@@ -23,7 +23,7 @@ static void add(fg_verdict verdict, fg_report_outcome *sum) {
                                            .not_measured = verdict == FG_VERDICT_NOT_MEASURED});
 }
 
-/* A record that has a clearance, which it does not tell: no limit passes or fails for it. */
+/* True for a record with a clearance that is withheld: it passes and fails no limit. */
 static bool is_withheld(const fg_load_direction *d) {
   return !isfinite(d->clearance.value) && (d->flags & (FG_LOAD_UNSAMPLED | FG_LOAD_CONTRADICTION));
 }

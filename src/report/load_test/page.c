@@ -6,12 +6,14 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "foilgauge/load_report.h"
+#include "foilgauge/words.h"
 #include "page/page.h"
 #include "page/provenance.h"
+#include "page/tile.h"
+#include "page/verdict.h"
 #include "report/load_test/plots.h"
-#include "report/measure/page_parts.h"
 
-/* So many azimuths of a bearing are drawn with their loops; all are in the table. */
+/* Azimuths of a bearing that are drawn with their loops, at most; all are in the table. */
 enum { LOOPS_MAX = 24 };
 
 /* The tail of a distribution is not known below. */
@@ -24,15 +26,15 @@ static size_t count_flagged(const fg_load_test *test, size_t bearing, unsigned f
   return count;
 }
 
-static void put_tile(FILE *out, const char *title, const fg_load_value *v, double unit,
-                     int decimals, const char *word, const char *small) {
-  fprintf(out, "<div><dt>%s</dt><dd>", title);
+static void put_load_tile(FILE *out, const char *title, const fg_load_value *v, double unit,
+                          int decimals, const char *word, const char *small) {
+  char words[120];
+  snprintf(words, sizeof words, "± %.*f (U = 2 u)%s%s", decimals, FG_COVERAGE_FACTOR * unit * v->u,
+           small[0] ? ", " : "", small);
   if (isfinite(v->value))
-    fprintf(out, "%.*f %s<small>± %.*f (U = 2 u)%s%s</small></dd></div>\n", decimals,
-            unit * v->value, word, decimals, FG_COVERAGE_FACTOR * unit * v->u, small[0] ? ", " : "",
-            small);
+    fg_html_tile(out, title, words, "%.*f %s", decimals, unit * v->value, word);
   else
-    fputs("–<small>not known</small></dd></div>\n", out);
+    fg_html_tile(out, title, "not known", "–");
 }
 
 /* A clearance of a bearing's directions; where foils press the rotor all around, why there is none.
@@ -40,9 +42,9 @@ static void put_tile(FILE *out, const char *title, const fg_load_value *v, doubl
 static void put_clearance_tile(FILE *out, const fg_load_test *test, size_t bearing,
                                const char *title, const fg_load_value *v, const char *small) {
   if (count_flagged(test, bearing, FG_LOAD_NO_GAP) == test->bearings[bearing].directions)
-    fprintf(out, "<div><dt>%s</dt><dd>–<small>no gap</small></dd></div>\n", title);
+    fg_html_tile(out, title, "no gap", "–");
   else
-    put_tile(out, title, v, 1000, 1, "µm", small);
+    put_load_tile(out, title, v, 1000, 1, "µm", small);
 }
 
 static void put_tiles(FILE *out, const fg_load_test *test, size_t bearing) {
@@ -55,17 +57,17 @@ static void put_tiles(FILE *out, const fg_load_test *test, size_t bearing) {
   fputs("<dl class=\"tiles\">\n", out);
   put_clearance_tile(out, test, bearing, "Smallest clearance", &b->min, min);
   put_clearance_tile(out, test, bearing, "Largest clearance", &b->max, max);
-  put_tile(out, "Structural stiffness, mean", &b->stiffness, 1, 0, "N/mm",
-           count_flagged(test, bearing, FG_LOAD_AT_END) ? "a lower bound" : "");
-  put_tile(out, "Radial hysteresis", &b->hysteresis_n, 1, 2, "N", "no preload");
-  fputs("<div><dt>Smallest along</dt><dd>", out);
+  put_load_tile(out, "Structural stiffness, mean", &b->stiffness, 1, 0, "N/mm",
+                count_flagged(test, bearing, FG_LOAD_AT_END) ? "a lower bound" : "");
+  put_load_tile(out, "Radial hysteresis", &b->hysteresis_n, 1, 2, "N", "no preload");
+  char axis[60];
+  snprintf(axis, sizeof axis, "± %.1f° (U = 2 u), fitted", 2 * b->u_min_at_deg);
   if (b->axis == FG_LOAD_AXIS_KNOWN)
-    fprintf(out, "%.1f° and %.1f°<small>± %.1f° (U = 2 u), fitted</small>", b->min_at_deg,
-            b->min_at_deg + 180, 2 * b->u_min_at_deg);
+    fg_html_tile(out, "Smallest along", axis, "%.1f° and %.1f°", b->min_at_deg,
+                 b->min_at_deg + 180);
   else
-    fprintf(out, "–<small>%s</small>", fg_load_axis_words(b->axis));
-  fputs("</dd></div>\n", out);
-  if (b->break_away.pulls) put_tile(out, "Preload", &b->preload_kpa, 1, 2, "kPa", "");
+    fg_html_tile(out, "Smallest along", fg_load_axis_words(b->axis), "–");
+  if (b->break_away.pulls) put_load_tile(out, "Preload", &b->preload_kpa, 1, 2, "kPa", "");
   fputs("</dl>\n", out);
 }
 
@@ -183,11 +185,11 @@ static void put_break_away(FILE *out, const fg_load_test *test, size_t bearing) 
           a->pulls, fg_plural(a->pulls), a->weights, fg_plural(a->weights));
   fg_load_plot_break_away(out, test, bearing);
   fputs("</figure>\n<div><dl class=\"tiles\">\n", out);
-  put_tile(out, "Friction coefficient", &a->friction, 1, 4, "", "");
-  put_tile(out, "Friction without a weight", &a->intercept_n, 1, 3, "N",
-           isfinite(a->rig_n) ? "less the rig's" : "");
-  put_tile(out, "Preload", &b->preload_n, 1, 1, "N", "");
-  put_tile(out, "over the bore", &b->preload_kpa, 1, 2, "kPa", "");
+  put_load_tile(out, "Friction coefficient", &a->friction, 1, 4, "", "");
+  put_load_tile(out, "Friction without a weight", &a->intercept_n, 1, 3, "N",
+                isfinite(a->rig_n) ? "less the rig's" : "");
+  put_load_tile(out, "Preload", &b->preload_n, 1, 1, "N", "");
+  put_load_tile(out, "over the bore", &b->preload_kpa, 1, 2, "kPa", "");
   fputs("</dl>\n<p class=\"note\">Friction is torque over the rotor's radius. Its line over dead "
         "weight has the friction coefficient for a slope; intercept over slope is the preload, "
         "and over π D L its mean pressure.</p>\n",
@@ -263,7 +265,7 @@ static void put_end(FILE *out, const fg_load_test *test) {
           o->u_force_pct, o->u_displacement_pct, hypot(o->u_force_pct, o->u_displacement_pct));
 }
 
-/* Limits, and what none was given for. */
+/* Writes the limits, and the quantities without one. */
 static void put_limits(FILE *out, const fg_load_test *test) {
   const fg_load_options *o = &test->options;
   bool comma = false;

@@ -7,7 +7,7 @@
 #include "page/plot.h"
 #include "page/plot_marks.h"
 
-/* Of a loop, so many samples are drawn: more make the page large and no line finer. */
+/* LOOP_SAMPLES: samples drawn of a loop; more make the page larger, but no line finer. */
 enum { LOOP_SAMPLES = 1200, CURVE_STEPS = 180 };
 
 static void widen(double range[2], double low, double high) {

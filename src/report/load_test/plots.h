@@ -7,16 +7,18 @@
 
 #include "foilgauge/load_test.h"
 
-/* Force over displacement as recorded, the threshold, where it is passed. */
+/* Plots force over displacement as recorded, with the threshold and the points where it is
+ * passed. */
 void fg_load_plot_loops(FILE *out, const fg_load_test *test, const fg_load_direction *direction);
 
-/* Stiffness over displacement with U. */
+/* Plots stiffness over displacement with U. */
 void fg_load_plot_stiffness(FILE *out, const fg_load_direction *direction);
 
-/* Clearance of every azimuth with U of the repeats, the fitted curve, the lot's prediction. */
+/* Plots the clearance of every azimuth with U of the repeats, the fitted curve, the lot's
+ * prediction. */
 void fg_load_plot_azimuths(FILE *out, const fg_load_test *test, size_t bearing);
 
-/* Break-away friction over dead weight, and the line. */
+/* Plots break-away friction over dead weight, and the fitted line. */
 void fg_load_plot_break_away(FILE *out, const fg_load_test *test, size_t bearing);
 
 #endif

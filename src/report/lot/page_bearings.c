@@ -3,11 +3,12 @@
 #include <math.h>
 
 #include "core/text.h"
+#include "foilgauge/words.h"
 #include "page/page.h"
+#include "page/verdict.h"
 #include "quantity/quantity_rows.h"
 #include "report/lot/page_parts.h"
 #include "report/lot/plots.h"
-#include "report/measure/page_parts.h"
 
 enum { POLAR_MAX = 30, BEARING_ROWS_MAX = 200, UM_PER_MM = 1000 };
 

@@ -8,31 +8,15 @@
 #include "foilgauge/report.h"
 #include "foilgauge/words.h"
 #include "page/page.h"
+#include "page/tile.h"
+#include "page/verdict.h"
 #include "report/doe/words.h"
 #include "report/lot/page_parts.h"
 #include "report/lot/plots.h"
-#include "report/measure/page_parts.h"
 #include "report/value_words.h"
 
-/* What a count means, in colour and in a mark: a page is printed in black and white too. */
-typedef enum tile_tone { TONE_PLAIN, TONE_GOOD, TONE_BAD, TONE_OPEN } tile_tone;
-
-static void put_count_tile(FILE *out, tile_tone tone, const char *title, size_t count,
-                           const char *small) {
-  static const struct {
-    const char *style, *mark;
-  } looks[] = {[TONE_PLAIN] = {"", ""},
-               [TONE_GOOD] = {" class=\"good\"", "✓ "},
-               [TONE_BAD] = {" class=\"bad\"", "✗ "},
-               [TONE_OPEN] = {" class=\"open\"", "? "}};
-  fprintf(out, "<div%s><dt>%s</dt><dd>%s%zu", looks[tone].style, title, looks[tone].mark, count);
-  if (small && *small) fprintf(out, "<small>%s</small>", small);
-  fputs("</dd></div>\n", out);
-}
-
-/* A count of nothing has no tone. */
-static tile_tone choose_tone(size_t count, tile_tone what) {
-  return count ? what : TONE_PLAIN;
+static fg_tile_look choose_look(size_t count, fg_tile_look look) {
+  return count ? look : FG_TILE_PLAIN;
 }
 
 static bool foils_are_judged(const fg_lot_analysis *analysis) {
@@ -43,20 +27,20 @@ static bool foils_are_judged(const fg_lot_analysis *analysis) {
 static void put_scan_tiles(FILE *out, const fg_lot_analysis *analysis) {
   size_t failed = analysis->failed_scans, scans = analysis->lot->manifest.items;
   fputs("<dl class=\"tiles\">\n", out);
-  put_count_tile(out, TONE_PLAIN, "Scans", scans, failed ? "" : "all could be measured");
-  if (failed) put_count_tile(out, TONE_OPEN, "Scans not measured", failed, "named below");
+  fg_html_count_tile(out, FG_TILE_PLAIN, "Scans", scans, failed ? "" : "all could be measured");
+  if (failed) fg_html_count_tile(out, FG_TILE_OPEN, "Scans not measured", failed, "named below");
   const fg_record *repeat;
   size_t repeats = fg_lot_count_repeats(analysis->lot, &repeat);
   if (repeats)
-    put_count_tile(out, TONE_OPEN, "of them there twice", repeats,
-                   "the same bytes under another name");
-  put_count_tile(out, TONE_PLAIN, "Foils on them", analysis->foil_count, "");
+    fg_html_count_tile(out, FG_TILE_OPEN, "of them there twice", repeats,
+                       "the same bytes under another name");
+  fg_html_count_tile(out, FG_TILE_PLAIN, "Foils on them", analysis->foil_count, "");
   if (analysis->lot->settings.design.kind != FG_FOIL_ARC) {
     const fg_lot_words *words = fg_lot_words_of(analysis);
-    put_count_tile(out, TONE_PLAIN, words->counted, analysis->part_count, "");
+    fg_html_count_tile(out, FG_TILE_PLAIN, words->counted, analysis->part_count, "");
     if (analysis->left_out)
-      put_count_tile(out, TONE_OPEN, words->damaged, analysis->left_out,
-                     "judged, but in no statistics of this page");
+      fg_html_count_tile(out, FG_TILE_OPEN, words->damaged, analysis->left_out,
+                         "judged, but in no statistics of this page");
   }
   fputs("</dl>\n", out);
 }
@@ -68,15 +52,15 @@ static void put_verdict_tiles(FILE *out, const fg_lot_analysis *analysis) {
   if (!judged && !by[FG_VERDICT_FAIL] && !not_measured) return;
   fputs("<dl class=\"tiles\">\n", out);
   if (judged)
-    put_count_tile(out, choose_tone(by[FG_VERDICT_PASS], TONE_GOOD), "Foils pass",
-                   by[FG_VERDICT_PASS], "");
-  put_count_tile(out, choose_tone(by[FG_VERDICT_FAIL], TONE_BAD), "Foils fail", by[FG_VERDICT_FAIL],
-                 "");
+    fg_html_count_tile(out, choose_look(by[FG_VERDICT_PASS], FG_TILE_GOOD), "Foils pass",
+                       by[FG_VERDICT_PASS], "");
+  fg_html_count_tile(out, choose_look(by[FG_VERDICT_FAIL], FG_TILE_BAD), "Foils fail",
+                     by[FG_VERDICT_FAIL], "");
   if (judged)
-    put_count_tile(out, choose_tone(by[FG_VERDICT_UNDECIDED], TONE_OPEN), "Foils, cannot tell",
-                   by[FG_VERDICT_UNDECIDED],
-                   by[FG_VERDICT_UNDECIDED] ? "a limit lies within ± U" : "");
-  if (not_measured) put_count_tile(out, TONE_OPEN, "Foils not measured", not_measured, "");
+    fg_html_count_tile(out, choose_look(by[FG_VERDICT_UNDECIDED], FG_TILE_OPEN),
+                       "Foils, cannot tell", by[FG_VERDICT_UNDECIDED],
+                       by[FG_VERDICT_UNDECIDED] ? "a limit lies within ± U" : "");
+  if (not_measured) fg_html_count_tile(out, FG_TILE_OPEN, "Foils not measured", not_measured, "");
   fputs("</dl>\n", out);
 }
 
@@ -86,16 +70,16 @@ static void put_bearing_tiles(FILE *out, const fg_lot_analysis *analysis) {
   if (!fg_report_of_bearing(&lot->settings.design, NULL, 0)) return;
   bool assumed = fg_manifest_column(&lot->manifest, lot->settings.bearing_column) == FG_NO_COLUMN;
   fputs("<dl class=\"tiles\">\n", out);
-  put_count_tile(out, TONE_PLAIN, "Bearings", analysis->bearing_count,
-                 assumed ? "foils in a row" : "as the manifest says");
-  put_count_tile(out, choose_tone(by[FG_VERDICT_PASS], TONE_GOOD), "Bearings pass",
-                 by[FG_VERDICT_PASS], "");
-  put_count_tile(out, choose_tone(by[FG_VERDICT_FAIL], TONE_BAD), "Bearings fail",
-                 by[FG_VERDICT_FAIL], "");
+  fg_html_count_tile(out, FG_TILE_PLAIN, "Bearings", analysis->bearing_count,
+                     assumed ? "foils in a row" : "as the manifest says");
+  fg_html_count_tile(out, choose_look(by[FG_VERDICT_PASS], FG_TILE_GOOD), "Bearings pass",
+                     by[FG_VERDICT_PASS], "");
+  fg_html_count_tile(out, choose_look(by[FG_VERDICT_FAIL], FG_TILE_BAD), "Bearings fail",
+                     by[FG_VERDICT_FAIL], "");
   if (by[FG_VERDICT_UNDECIDED])
-    put_count_tile(out, TONE_OPEN, "Bearings, cannot tell", by[FG_VERDICT_UNDECIDED], "");
+    fg_html_count_tile(out, FG_TILE_OPEN, "Bearings, cannot tell", by[FG_VERDICT_UNDECIDED], "");
   if (by[FG_VERDICT_NOT_MEASURED])
-    put_count_tile(out, TONE_OPEN, "Bearings not measured", by[FG_VERDICT_NOT_MEASURED], "");
+    fg_html_count_tile(out, FG_TILE_OPEN, "Bearings not measured", by[FG_VERDICT_NOT_MEASURED], "");
   fputs("</dl>\n", out);
 }
 

@@ -7,11 +7,11 @@
 #include "page/plot_marks.h"
 #include "report/measure/colour_lines_report.h"
 
-/* So many windows without edges are a gap. */
+/* Windows without edges from which on a line has a gap. */
 #define GAP_WINDOWS 4
 
-/* Looks of the two channels: not of their colours, which those who do not see them could not tell.
- */
+/* Styles of the two channels. They are not drawn in their own colours, which the colour-blind
+ * could not tell apart. */
 static const char *const line_style[2] = {"s1", "s2"};
 static const char *const uncertainty_style[2] = {"s1 uncertain", "s2 uncertain"};
 
@@ -87,7 +87,7 @@ static bool find_ranges(const fg_measurement *m, double x[2], double y[2]) {
   return x[1] > x[0];
 }
 
-/* Where no edges tell, the line has a gap. */
+/* Draws a line, with gaps where there are no edges. */
 static void put_line(const fg_plot *at, const fg_colour_shift *shift, const double *x,
                      const double *y, const char *style) {
   size_t first = 0;

@@ -8,13 +8,13 @@
 #include "core/json_writer.h"
 #include "foilgauge/foil.h"
 
-/* Member `colour_lines` of one scan; nothing of a gray one. */
+/* Writes the member `colour_lines` of a scan; nothing for a gray one. */
 void fg_json_colour_lines(fg_json *json, const fg_measurement *measurement);
 
-/* One line for the terminal; nothing of a gray scan. */
+/* Writes one line for the terminal; nothing for a gray scan. */
 void fg_text_colour_lines(FILE *out, const fg_measurement *measurement);
 
-/* A section of a page; nothing of a gray scan. */
+/* Writes a section of a page; nothing for a gray scan. */
 void fg_html_colour_lines(FILE *out, const fg_measurement *measurement);
 
 #endif

@@ -29,7 +29,7 @@ static void put_values(FILE *out, fg_quantity_owner owner, const void *object) {
   }
 }
 
-/* What all lines of a scan share. */
+/* Cells that all lines of a scan share. */
 typedef struct scan_lines {
   const char *path;
   const fg_design *design;
@@ -44,7 +44,7 @@ static void put_end(FILE *out, const scan_lines *scan, fg_verdict verdict, const
   fputc('\n', out);
 }
 
-/* What is of the whole scan stands in every line. */
+/* Returns the flags of a line; those of the whole scan are in every line. */
 static unsigned flags_of_line(const scan_lines *scan, const fg_foil *foil, const fg_bump *bump) {
   unsigned flags = fg_bump_flags(scan->design, foil, bump);
   return foil->flags & FG_FOIL_LOSSY ? flags | FG_BUMP_LOSSY : flags;
@@ -82,7 +82,7 @@ static size_t count_numbers(fg_quantity_owner owner) {
   return numbers;
 }
 
-/* A foil without bumps is not left out: a line whose values are empty. */
+/* Writes a line with empty values for a foil without bumps, so that it is not left out. */
 static void put_bare_foil(FILE *out, const scan_lines *scan, const fg_foil *foil) {
   fg_csv_put_text(out, scan->path, NULL);
   fprintf(out, ",%d,", foil->number);
@@ -192,7 +192,7 @@ static void put_station(FILE *out, const char *place, const fg_station *station,
     put_point(out, place, station, label, &points[i]);
 }
 
-/* Of a beam's edges. */
+/* Writes the points of a beam's edges. */
 static void put_beam_points(FILE *out, size_t scan, const fg_foil *foil, const fg_beam *beam) {
   static const char *const sides[FG_BEAM_SIDES] = {"left", "right", "tip", "root_left",
                                                    "root_right"};

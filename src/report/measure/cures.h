@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Cure of a verdict of "cannot tell". */
+/* Cures of a verdict "cannot tell": the cheapest way to a decision. */
 #ifndef FG_REPORT_MEASURE_CURES_H
 #define FG_REPORT_MEASURE_CURES_H
 
@@ -7,17 +7,17 @@
 
 enum { FG_CURES_MAX = 4 };
 
-/* Each once; the texts are static. */
+/* A set of cures, each once; the texts are static. */
 typedef struct fg_cures {
   const char *list[FG_CURES_MAX];
   size_t count;
 } fg_cures;
 
-/* Of a quantity whose limit lies within U: the cheapest cure, where an unknown tone curve is in its
- * U and could be known; else NULL. */
+/* Returns the cheapest cure of a quantity whose limit lies within U: there is one where U holds
+ * the error of an unknown tone curve; else NULL. */
 const char *fg_cure_of(const fg_design *design, const fg_quantity *row);
 
-/* Those of a decision, without what is there. */
+/* Adds the cures of a decision that are not in the set. */
 void fg_cures_add(fg_cures *cures, const fg_decision *decision);
 
 #endif

@@ -7,10 +7,11 @@
 #include "core/memory.h"
 #include "report/measure/drawing.h"
 
-/* A residual longer than this, drawn, would hide what is beside it. */
+/* Residuals are drawn no longer than this: a longer one would cover its neighbours. */
 static const double whisker_max_mm = 1.0;
 
-/* Stations of a long edge against the line between two corners, every so many of them. */
+/* Draws residuals of a long edge's stations against the line between two corners, one of several
+ * stations. */
 static fg_status draw_whiskers(fg_context *ctx, fg_canvas *canvas, const fg_beam_edge *edge,
                                fg_point from, fg_point to, double magnification) {
   double length = hypot(to.x - from.x, to.y - from.y);

@@ -6,7 +6,7 @@
 #include "foilgauge/foil.h"
 #include "page/canvas.h"
 
-/* Outlines of the fitted lines, root lines, axes, numbers, and residuals towards the void
+/* Draws outlines of the fitted lines, root lines, axes, numbers, and residuals towards the void
  * `magnification` times as large. */
 fg_status fg_draw_beams(fg_context *ctx, fg_canvas *canvas, const fg_foil *foil,
                         double magnification);

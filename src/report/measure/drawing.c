@@ -10,8 +10,8 @@
 
 static const double pi = 3.14159265358979323846;
 
-/* Where residuals are drawn: this far from the midline, on the shaft's side, where there is room.
- */
+/* Distance of the residuals' baseline from the midline, on the shaft's side, where there is
+ * room. */
 static const double baseline_mm = 0.8;
 static const double whisker_mm = 0.5;
 
@@ -60,12 +60,12 @@ static double large_residual(const fg_measurement *measurement) {
   return largest;
 }
 
-/* More makes a hedgehog of the noise of a clean scan, whose residuals are 0.1 um: nothing to see.
- */
+/* A larger magnification would draw the noise of a clean scan, residuals of 0.1 um, as spikes
+ * that mean nothing. */
 #define MAGNIFICATION_MAX 1000.0
 
-/* The magnification of residuals that makes the larger ones about 0.5 mm long: 1, 2 or 5 times a
- * power of ten, and as much as says something. */
+/* Returns the magnification that draws the larger residuals about 0.5 mm long: 1, 2 or 5 times a
+ * power of ten, at most MAGNIFICATION_MAX. */
 static double magnification_for(double largest) {
   static const double steps[] = {1, 2, 5, 10};
   if (!(largest > 0)) return MAGNIFICATION_MAX;
@@ -142,7 +142,7 @@ static fg_status draw_cross(fg_context *ctx, fg_canvas *canvas, fg_point at, dou
   return fg_canvas_segments(ctx, canvas, lines, 2, (fg_pen){colour, 1.2, 0});
 }
 
-/* How far to both sides of the direction to O the used arc reaches. */
+/* Finds the reach of the used arc to both sides of the direction to O. */
 static void used_arc(const fg_foil *foil, const fg_bump *bump, double towards, double range[2]) {
   range[0] = range[1] = 0;
   for (size_t i = 0; foil->labels && i < foil->strip.count; i++) {
@@ -186,8 +186,8 @@ static fg_status draw_overall(fg_context *ctx, fg_canvas *canvas, const fg_overa
   return fg_canvas_text(ctx, canvas, at, 11, 0.5, FG_COLOUR_TEXT, "O");
 }
 
-/* The cuts of a plain strip, prolonged beyond its edges, and their directions from O: what the
- * angle lies between. */
+/* Draws the cuts of a plain strip, prolonged beyond its edges, and their directions from O,
+ * which enclose the angle. */
 static fg_status draw_ends(fg_context *ctx, fg_canvas *canvas, const fg_foil *foil) {
   fg_point o = foil->overall.centre_mm;
   if (!isfinite(foil->arc.subtended_angle_deg)) return FG_OK;
@@ -244,8 +244,8 @@ static fg_status draw_disc(fg_context *ctx, fg_canvas *canvas, const fg_disc *di
   return fg_canvas_text(ctx, canvas, disc->centre_mm, 12, 0.5, FG_COLOUR_TEXT, number);
 }
 
-/* In a corner of the canvas: 0 is the lower left, 1 the lower right, 2 the upper left, 3 the upper
- * right. */
+/* Returns the box of the scale in a corner of the canvas: 0 is the lower left, 1 the lower
+ * right, 2 the upper left, 3 the upper right. */
 static fg_drawing_box scale_box(const fg_canvas *canvas, int corner) {
   const double size_px[2] = {30 * canvas->unit_px + canvas->px_per_mm[0] + 420 * canvas->unit_px,
                              56 * canvas->unit_px};
@@ -267,8 +267,7 @@ static size_t crowd_of_beam(const fg_beam *beam, fg_drawing_box box) {
   return inside;
 }
 
-/* How much of the strips, with their residuals beside them, and of the discs' edges lies in a box.
- */
+/* Counts the points of strips, with the residuals beside them, and of discs' edges in a box. */
 static size_t crowd(const fg_measurement *measurement, fg_drawing_box box) {
   size_t inside = 0;
   double margin = baseline_mm + whisker_mm;
@@ -302,7 +301,7 @@ fg_drawing_box fg_drawing_scale_box(const fg_canvas *canvas, const fg_measuremen
   return best;
 }
 
-/* A bar of 1 mm in the emptiest corner, which says how much residual that is. */
+/* Draws a bar of 1 mm in the emptiest corner, with the residual that it stands for. */
 static fg_status draw_scale(fg_context *ctx, fg_canvas *canvas, const fg_measurement *measurement,
                             double magnification) {
   double unit_mm = canvas->unit_px / canvas->px_per_mm[0];

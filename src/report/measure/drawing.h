@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What is drawn over a scan: edges, circles, numbers, residuals. */
+/* The drawing over a scan: edges, circles, numbers, residuals. */
 #ifndef FG_REPORT_MEASURE_DRAWING_H
 #define FG_REPORT_MEASURE_DRAWING_H
 
@@ -21,8 +21,8 @@ typedef struct fg_drawing_box {
 } fg_drawing_box;
 fg_drawing_box fg_drawing_scale_box(const fg_canvas *canvas, const fg_measurement *measurement);
 
-/* How many times as large residuals are drawn so that those of all scans of a report compare: 1, 2
- * or 5 times a power of ten. */
+/* Returns the magnification of residuals, one for all scans of a report, so that they compare:
+ * 1, 2 or 5 times a power of ten. */
 double fg_drawing_magnification(const fg_report *report);
 
 /* Draws every foil and disc, and the residuals' scale in the emptiest corner. Residuals are

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a foil is made of that pages list, plot and judge one by one: bumps, or beams. */
+/* The parts of a foil that pages list, plot and judge one by one: bumps, or beams. */
 #ifndef FG_REPORT_MEASURE_FOIL_PARTS_H
 #define FG_REPORT_MEASURE_FOIL_PARTS_H
 
@@ -21,10 +21,10 @@ int fg_foil_parts_last(
     const fg_foil_parts *parts); /* the highest number, at least the stated count and 1 */
 bool fg_foil_parts_have(const fg_foil_parts *parts, int number);
 
-/* Why a part has no value, for people. */
+/* Returns the reason why a part has no value, for people. */
 const char *fg_foil_part_lack(const fg_foil_parts *parts, size_t i);
 
-/* What a row of the quantities is of: "bump", "beam" or "". */
+/* Returns the name of the part that a row of the quantities belongs to: "bump", "beam" or "". */
 const char *fg_foil_part_word(const fg_quantity *row);
 
 #endif

@@ -8,16 +8,16 @@
 #include "core/json_writer.h"
 #include "foilgauge/foil.h"
 
-/* Member `gauges` of a design. */
+/* Writes the member `gauges` of a design. */
 void fg_json_gauges_stated(fg_json *json, const fg_design *design);
 
-/* Member `gauges` of one scan: as stated, and as found. */
+/* Writes the member `gauges` of one scan: as stated, and as found. */
 void fg_json_gauges(fg_json *json, const fg_measurement *measurement);
 
-/* For the terminal: a line for each. */
+/* Writes a line for each, for the terminal. */
 void fg_text_gauges(FILE *out, const fg_measurement *measurement);
 
-/* A section of a page; nothing where none is stated. */
+/* Writes a section of a page; nothing where none is stated. */
 void fg_html_gauges(FILE *out, const fg_measurement *measurement);
 
 #endif

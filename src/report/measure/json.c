@@ -35,7 +35,7 @@ static void write_tolerances(fg_json *json, const fg_design *design) {
   fg_json_object_end(json);
 }
 
-/* Where 0 says that none is stated. */
+/* Writes a number; nothing for 0, which means "not stated". */
 static void write_stated(fg_json *json, const char *name, double value) {
   if (value != 0) fg_json_number(json, name, value);
 }
@@ -131,7 +131,7 @@ static void write_input(fg_json *json, const fg_report_scan *scan) {
   fg_json_object_end(json);
 }
 
-/* Flags of a foil or its part, and what was found of the picture that it was measured in. */
+/* Writes the flags of a foil or its part, and the findings of its picture. */
 static void write_flags(fg_json *json, const fg_flag_words *words, unsigned flags,
                         unsigned findings) {
   fg_json_array(json, "flags");
@@ -185,7 +185,8 @@ static void write_judgement(fg_json *json, const fg_judgement *judgement, const 
   fg_json_line_end(json);
 }
 
-/* Whoever reads `in_tolerance` as a boolean never takes for good what was not seen to pass. */
+/* `in_tolerance` is true for a pass alone: a reader who takes it for a boolean accepts nothing
+ * that was not seen to pass. */
 void fg_json_verdict(fg_json *json, fg_verdict verdict) {
   if (verdict == FG_VERDICT_NONE)
     fg_json_string(json, "in_tolerance", NULL);
@@ -234,7 +235,7 @@ static void write_beam(fg_json *json, const fg_design *design, const fg_foil *fo
   fg_json_object_end(json);
 }
 
-/* What a flat foil has of a foil's values, and its beams. */
+/* Writes the values that a flat foil shares with others, and its beams. */
 static void write_flat_values(fg_json *json, const fg_design *design, const fg_foil *foil) {
   size_t count;
   const fg_quantity *rows = fg_quantities(FG_QUANTITY_OF_FOIL, &count);

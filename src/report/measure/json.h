@@ -6,17 +6,18 @@
 #include "core/json_writer.h"
 #include "foilgauge/report.h"
 
-/* Members as a design file has them; loads again with fg_design_parse. */
+/* Writes the members as a design file has them; fg_design_parse reads them again. */
 void fg_json_design(fg_json *json, const char *name, const fg_design *design);
 void fg_json_nominal(fg_json *json, const char *name, const fg_nominal *nominal);
 
-/* "in_tolerance": true only for a pass; null where nothing is judged. And "verdict". */
+/* Writes "in_tolerance", true only for a pass, null where nothing is judged; and "verdict". */
 void fg_json_verdict(fg_json *json, fg_verdict verdict);
 
-/* "judgements": of values; `owner` is what their numbers count: "bump", "disc". */
+/* Writes "judgements" of values; `owner` names the part that their numbers count: "bump",
+ * "disc". */
 void fg_json_judgements(fg_json *json, const fg_decision *decision, const char *owner);
 
-/* One member of `foils`, of `discs`. */
+/* Write one member of `foils`, of `discs`. */
 fg_status fg_json_foil(fg_context *ctx, fg_json *json, const fg_design *design,
                        const fg_foil *foil);
 fg_status fg_json_disc(fg_context *ctx, fg_json *json, const fg_design *design,

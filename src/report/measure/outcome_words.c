@@ -3,7 +3,7 @@
 
 #include "report/measure/cures.h"
 
-/* By tolerance of the design. */
+/* Counts by tolerance of the design. */
 typedef struct tally {
   const fg_design *design;
   fg_verdict verdict;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The overlay: the scan in gray, what was found drawn over it, and a legend below. */
+/* The overlay: the scan in gray, the measured geometry drawn over it, and a legend below. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

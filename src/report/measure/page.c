@@ -32,7 +32,7 @@ static void put_flags(FILE *out, const fg_design *design, const fg_foil *foil) {
                 foil->strip.picture.findings);
 }
 
-/* Of all discs at once; which disc has what stands in the table. */
+/* Writes the findings of all discs together; the table has those of each disc. */
 static void put_disc_findings(FILE *out, const fg_measurement *measurement) {
   put_flag_list(out, fg_bump_flag_words(), 0, measurement->picture.findings);
 }
@@ -58,7 +58,7 @@ static fg_status put_facts(fg_context *ctx, FILE *out, const fg_design *design,
   return FG_OK;
 }
 
-/* Where the tiles have an s, it is said what over. */
+/* Explains ±, and s where the tiles have it. */
 static void put_uncertainty(FILE *out, const fg_measurement *measurement, const fg_foil *foil) {
   char scale[FG_SCALE_WORDS];
   fg_scale_words(measurement->model, &measurement->design.calibration, scale, sizeof scale);
@@ -80,7 +80,7 @@ static void put_uncertainty(FILE *out, const fg_measurement *measurement, const 
   fg_html_uncertainty_budget(out, measurement, foil);
 }
 
-/* What is measured of a flat foil, and what follows from it. */
+/* Explains the measured and derived values of a flat foil. */
 static void put_beam_words(FILE *out, const fg_design *design) {
   fputs("<h2>How a beam is measured</h2>\n<p class=\"note\">L runs along the beam's axis, midway "
         "between its long edges, from the root line to the tip's line; the root line joins the "
@@ -106,7 +106,7 @@ static void put_free_and_fitted(FILE *out) {
       out);
 }
 
-/* What the colours of the picture mean. */
+/* Returns the legend of the picture's colours. */
 static const char *legend_of(fg_foil_kind kind) {
   if (kind == FG_FOIL_DISCS)
     return "Orange: the circle that was fitted to each feature, with its number. Magenta: how far "
@@ -235,7 +235,7 @@ static void put_judged(FILE *out, const fg_design *design, const fg_report_scan 
   put_not_judged(out, design);
 }
 
-/* What ended or limits the measurement stands above the picture. */
+/* Writes the error that ended or limits the measurement, above the picture. */
 static void put_error(FILE *out, const fg_foil *foil) {
   if (!foil->error[0]) return;
   fputs("<p class=\"next\"><b>Why it is not measured:</b> ", out);

@@ -8,10 +8,10 @@
 #include "report/measure/foil_parts.h"
 #include "report/measure/page_tables.h"
 
-/* What lies farther beyond its limits than this share of the limits' distance is drawn at the
- * plot's edge, with its value: one crushed bump must not flatten the others. */
+/* Values farther beyond their limits than this share of the limits' distance are drawn at the
+ * plot's edge, with their number: one crushed bump must not flatten the others. */
 static const double shown_beyond = 1.5;
-/* Around what is drawn, as a share of it. */
+/* Margin around the drawn range, as a share of it. */
 static const double margin_share = 0.12;
 
 typedef struct panel {
@@ -23,8 +23,8 @@ typedef struct panel {
   const fg_tolerance *limit;
 } panel;
 
-/* Width between the limits. A single limit has none: twice the median of the values' distances
- * stands in for it, which a few damaged bumps do not move. */
+/* Returns the width between the limits. For a single limit it is twice the median distance of
+ * the values from it, which a few damaged bumps do not move. */
 static double width_of(const panel *p) {
   double low = p->limit->lower, high = p->limit->upper, width = high - low;
   if (isfinite(width) && width > 0) return width;
@@ -90,7 +90,8 @@ void fg_html_limit_lines(const fg_plot *at, fg_plot_label *labels, size_t count)
   fg_plot_labels(at, labels, count, FG_PLOT_LABEL_GAP_PX);
 }
 
-/* A cross over what fails, a question mark over what cannot be told: the colour is not all. */
+/* Writes a cross over values that fail, a question mark over undecided ones: the sign goes with
+ * the colour. */
 static void put_verdict(const panel *p, fg_verdict verdict, double x, double y) {
   if (verdict == FG_VERDICT_FAIL)
     fprintf(p->at.out, "<path class=\"beyond-limit\" d=\"M%.1f %.1fl16 16m0 -16l-16 16\"/>\n",
@@ -99,8 +100,8 @@ static void put_verdict(const panel *p, fg_verdict verdict, double x, double y) 
     fprintf(p->at.out, "<text class=\"told open\" x=\"%.1f\" y=\"%.1f\">?</text>\n", x + 8, y + 5);
 }
 
-/* At the plot's edge: an arrow, and below it the value, upright: neighbours have columns as narrow
- * as a letter is high. */
+/* Draws an arrow at the plot's edge and the value below it, upright: columns are as narrow as a
+ * letter is high. */
 static void put_beyond(const panel *p, double x, double value) {
   const double arrow_px = 24, half_letter_px = 5;
   bool above = value > p->at.y_high;

@@ -9,7 +9,8 @@
 
 enum { WIDTH_MAX = 1600, FOILS_MAX = 6 };
 static const double pixels_max = 4e6;
-/* What the page's style leaves to a picture, in its own pixels: one unit of the drawing is one. */
+/* Largest size of a picture in the page's style, in CSS pixels; one unit of the drawing is one
+ * of them. */
 #define SHOWN_WIDTH  1038.0
 #define SHOWN_HEIGHT 600.0
 
@@ -63,7 +64,7 @@ static void choose_box(const fg_measurement *measurement, const fg_foil *foil, i
   }
 }
 
-/* Without pixels: only where the drawing would lie. */
+/* Makes a picture without pixels, to place a drawing that stands alone. */
 static void empty_picture(const int64_t box[4], fg_picture *picture) {
   double reduction = fmin(1, WIDTH_MAX / (double)box[2]);
   *picture = (fg_picture){.width = (int32_t)fmax(1, (double)box[2] * reduction),
@@ -72,8 +73,8 @@ static void empty_picture(const int64_t box[4], fg_picture *picture) {
                           .origin_px = {box[0], box[1]}};
 }
 
-/* To every fourth level, which nobody sees: the noise of a plain background would be most of the
- * page's bytes. */
+/* Rounds to every fourth level, which nobody sees: noise of a plain background would be most of
+ * the page's bytes. */
 static void drop_noise(fg_picture *picture) {
   enum { STEP = 4, WHITE = 255 };
   size_t pixels = (size_t)picture->width * (size_t)picture->height;

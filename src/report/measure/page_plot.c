@@ -12,8 +12,8 @@ static bool has_residual(const fg_station_label *label) {
   return isfinite(label->residual_um) && (label->kind == FG_ARC_BUMP || label->kind == FG_ARC_LAND);
 }
 
-/* Nearly all residuals fit: one grain of dust must not flatten the rest. What is larger is drawn at
- * the limit. */
+/* Returns a limit that nearly all residuals keep: one grain of dust must not flatten the rest.
+ * Larger ones are drawn at the limit. */
 static double residual_limit(const fg_foil *foil) {
   double *sizes = calloc(foil->strip.count, sizeof *sizes), limit = 1;
   size_t count = 0;
@@ -84,7 +84,7 @@ void fg_html_residuals(FILE *out, const fg_foil *foil) {
 }
 
 typedef struct series {
-  const char *quantity, *style, *words, *of_limit; /* what follows a limit's number */
+  const char *quantity, *style, *words, *of_limit; /* text behind a limit's number */
   double shift; /* sideways, so that two error bars do not hide each other */
 } series;
 
@@ -105,7 +105,8 @@ static const error_plot of_beams = {
     {{"compliance_error_pct", "s1", "compliance", " % compliance", -7},
      {"sagitta_error_pct", "s2", "sagitta", " % sagitta", 7}}};
 
-/* Crushed bumps lie far out: where the others are is what the plot must show. */
+/* True when the plot's range must hold the part: crushed bumps lie far out, and would flatten
+ * the others. */
 static bool is_shown(const fg_foil_parts *parts, size_t i) {
   if (parts->owner != FG_QUANTITY_OF_BUMP) return true;
   return !(((const fg_bump *)fg_foil_part_at(parts, i))->flags & FG_BUMP_CRUSHED);
@@ -139,7 +140,7 @@ static void error_range(const fg_design *design, const error_plot *plot, const f
   range[1] += margin;
 }
 
-/* Beyond the plot: its value, at the edge where it leaves. */
+/* Writes the value of a point beyond the plot, at the edge nearest to it. */
 static void put_outside(const fg_plot *at, const series *one, double x, double value) {
   bool above = value > at->y_high;
   double y = above ? at->top : at->bottom;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Why a verdict is what it is: which values, at which bump, against which limit. */
+/* Reasons of a verdict: its values, their bumps, their limits. */
 #include <math.h>
 
 #include "report/measure/cures.h"
@@ -19,7 +19,7 @@ static bool is_told(const fg_judgement *one, fg_verdict verdict) {
   return one->verdict == verdict && !one->missing;
 }
 
-/* Judgements of one tolerance are neighbours. Bumps that are missing are the defect's to tell. */
+/* Judgements of one tolerance are neighbours. Missing bumps are left to the defect's words. */
 static size_t put_list(FILE *out, const fg_decision *decision, fg_verdict verdict) {
   const fg_tolerance *last = NULL;
   size_t told = 0;
@@ -39,7 +39,7 @@ static size_t put_list(FILE *out, const fg_decision *decision, fg_verdict verdic
   return told;
 }
 
-/* " What decides it: ..." */
+/* Writes " What decides it: ..." */
 static void put_cures(FILE *out, const fg_cures *cures) {
   for (size_t i = 0; i < cures->count; i++) {
     fputs(i ? " " : " <b>What decides it:</b> ", out);
@@ -94,7 +94,7 @@ void fg_html_why(FILE *out, const fg_design *design, const fg_foil *foil,
   }
 }
 
-/* Of the discs of a scan: one line per verdict that is no pass. */
+/* Writes one line per verdict of the scan's discs that is no pass. */
 fg_status fg_html_disc_reasons(fg_context *ctx, FILE *out, const fg_design *design,
                                const fg_measurement *measurement) {
   static const fg_verdict told[] = {FG_VERDICT_FAIL, FG_VERDICT_NOT_MEASURED, FG_VERDICT_UNDECIDED};

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Several foils on one page: what each comes to, before the first of them. */
+/* Several foils on one page: a table of their outcomes, before the first of them. */
 #include <math.h>
 #include <string.h>
 

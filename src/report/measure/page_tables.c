@@ -25,6 +25,18 @@ static void put_limits(FILE *out, const fg_tolerance *tolerance) {
     fprintf(out, "≤ %.6g", tolerance->upper);
 }
 
+/* Writes "3.39288 ± 0.00042", or "–" when it is not known. */
+static void put_quantity_value(FILE *out, const fg_quantity *row, const void *object) {
+  double value = fg_quantity_value(row, object), u = fg_quantity_uncertainty(row, object);
+  int decimals = row->kind == FG_QUANTITY_COUNT ? 0 : fg_report_decimals(row, u);
+  if (!isfinite(value)) {
+    fputs("–", out);
+    return;
+  }
+  fprintf(out, "%s%.*f", value < 0 ? "−" : "", decimals, fabs(value));
+  if (isfinite(u)) fprintf(out, " <i>± %.*f</i>", decimals, FG_COVERAGE_FACTOR * u);
+}
+
 /* `judged`: the values are those of a part of the design. */
 static void put_cell(FILE *out, const fg_design *design, const fg_quantity *row, const void *object,
                      bool judged) {
@@ -34,7 +46,7 @@ static void put_cell(FILE *out, const fg_design *design, const fg_quantity *row,
     verdict = fg_judge_value(tolerance, fg_quantity_value(row, object),
                              fg_quantity_uncertainty(row, object));
   fprintf(out, "<td class=\"%s\">", fg_verdict_word(verdict));
-  fg_html_value(out, row, object);
+  put_quantity_value(out, row, object);
   fputs("</td>", out);
 }
 
@@ -97,7 +109,7 @@ static void put_table_head(FILE *out, const fg_design *design, const table_rows 
   fputs("<td></td></tr>\n", out);
 }
 
-/* A part that could not be fitted has no values: one cell says so. */
+/* Writes one cell in place of the values of a part that could not be fitted. */
 static void put_unfitted(FILE *out, int number, size_t columns) {
   fprintf(out,
           "<tr class=\"unfitted\"><td>%d</td><td class=\"words not_measured\" colspan=\"%zu\">"
@@ -105,7 +117,7 @@ static void put_unfitted(FILE *out, int number, size_t columns) {
           number, columns);
 }
 
-/* What a table asks of a row, whatever it is of. */
+/* State of a row: the part's number, flags and object, for every owner. */
 typedef struct row_state {
   int number;
   bool unfitted;
@@ -128,7 +140,7 @@ static row_state state_of(const fg_design *design, const table_rows *rows, const
                      disc->picture.findings};
 }
 
-/* What the symbols of the heads stand for. */
+/* Explains the symbols of the heads. */
 static void put_key(FILE *out, const fg_quantity *const *columns, size_t count) {
   fputs("<p class=\"note symbols\">", out);
   for (size_t i = 0; i < count; i++)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The tables of a page, and what stands before and beside them. */
+/* The tables of a measurement's page, its tiles, reasons and limits. */
 #ifndef FG_REPORT_MEASURE_PAGE_TABLES_H
 #define FG_REPORT_MEASURE_PAGE_TABLES_H
 
@@ -7,41 +7,41 @@
 #include "page/plot_marks.h"
 #include "report/measure/page_parts.h"
 
-void fg_html_part_table(FILE *out, const fg_design *design, const fg_foil *foil);
 void fg_html_disc_table(FILE *out, const fg_design *design, const fg_measurement *measurement);
-void fg_html_foil_table(FILE *out, const fg_design *design, const fg_foil *foil);
 
-/* ---- key numbers (measure_page_tiles.c) ---- */
+/* Key numbers (page_tiles.c). */
 
 void fg_html_tiles(FILE *out, const fg_design *design, const fg_foil *foil);
 void fg_html_disc_tiles(FILE *out, const fg_measurement *measurement);
 
-/* ---- why (measure_page_reasons.c) ---- */
+/* Reasons of a verdict (page_reasons.c). */
 
-/* A paragraph with every value of that verdict, its bump and its limit; nothing without one. */
+/* Writes a paragraph with every value of that verdict, its bump and its limit; nothing without
+ * one. */
 void fg_html_reasons(FILE *out, const fg_decision *decision, fg_verdict verdict);
 void fg_html_defect(FILE *out, const fg_design *design, const fg_foil *foil);
 fg_status fg_html_disc_reasons(fg_context *ctx, FILE *out, const fg_design *design,
                                const fg_measurement *measurement);
-/* All of it in one line, without a paragraph. */
+/* Writes all reasons in one line, without a paragraph. */
 void fg_html_why(FILE *out, const fg_design *design, const fg_foil *foil,
                  const fg_decision *decision);
 
-/* ---- limits (measure_page_limits.c) ---- */
+/* Limits (page_limits.c). */
 
-/* A plot of every toleranced quantity of the bumps. */
+/* Plots every toleranced quantity of the bumps. */
 void fg_html_limits(FILE *out, const fg_design *design, const fg_foil *foil);
-/* The limits that are set, with `words` behind their values; returns how many. */
+/* Makes labels of the limits that are set, with `words` behind their values; returns their
+ * number. */
 size_t fg_html_limit_labels(const fg_tolerance *limit, const char *words, fg_plot_label labels[2]);
-/* Right of a plot, for the labels; 0 without one. */
+/* Returns the room that labels need right of a plot; 0 without one. */
 double fg_html_limit_room(const fg_plot_label *labels, size_t count);
-/* A line for each limit, and the labels beside the plot. */
+/* Draws a line for each limit, and the labels beside the plot. */
 void fg_html_limit_lines(const fg_plot *at, fg_plot_label *labels, size_t count);
 
-/* ---- several foils (measure_page_summary.c) ---- */
+/* Several foils (page_summary.c). */
 
 const char *fg_html_base_name(const char *path);
-/* Foils and unmeasured scans, each of which has a section of the page: "part1" ... */
+/* Returns the number of sections: one for each foil and each unmeasured scan, "part1" ... */
 size_t fg_html_sections(const fg_report *report);
 fg_status fg_html_summary(fg_context *ctx, FILE *out, const fg_report *report);
 

@@ -2,24 +2,25 @@
 /* Key numbers of a page: those of a foil, a plain strip, the discs of a scan. */
 #include <math.h>
 
+#include "page/tile.h"
 #include "report/measure/foil_parts.h"
 #include "report/measure/page_tables.h"
 
-static void put_tile(FILE *out, fg_quantity_owner owner, const char *name, const char *title,
-                     const void *object) {
+static void put_quantity_tile(FILE *out, fg_quantity_owner owner, const char *name,
+                              const char *title, const void *object) {
   const fg_quantity *row = fg_quantity_find(owner, name);
   double value = fg_quantity_value(row, object), u = fg_quantity_uncertainty(row, object);
   int decimals = fg_report_decimals(row, u);
-  fprintf(out, "<div><dt>%s</dt><dd>", title);
+  char small[64] = "";
+  if (isfinite(u)) snprintf(small, sizeof small, "± %.*f", decimals, FG_COVERAGE_FACTOR * u);
   if (isfinite(value))
-    fprintf(out, "%s%.*f %s", value < 0 ? "−" : "", decimals, fabs(value), row->unit);
+    fg_html_tile(out, title, small, "%s%.*f %s", value < 0 ? "−" : "", decimals, fabs(value),
+                 row->unit);
   else
-    fputs("–", out);
-  if (isfinite(u)) fprintf(out, "<small>± %.*f</small>", decimals, FG_COVERAGE_FACTOR * u);
-  fputs("</dd></div>\n", out);
+    fg_html_tile(out, title, small, "–");
 }
 
-/* Mean over the parts, with their spread as a standard deviation: it says more than one part. */
+/* Writes the mean over the parts, with their spread as a standard deviation. */
 static void put_mean_tile(FILE *out, const fg_foil_parts *parts, const char *name,
                           const char *title) {
   const fg_quantity *row = fg_quantity_find(parts->owner, name);
@@ -34,24 +35,25 @@ static void put_mean_tile(FILE *out, const fg_foil_parts *parts, const char *nam
     squares += step * (value - sum);
   }
   if (count == 0) return;
-  fprintf(out, "<div><dt>%s</dt><dd>%s%.*f %s", title, sum < 0 ? "−" : "", row->decimals, fabs(sum),
-          row->unit);
+  char small[64] = "";
   if (count > 1)
-    fprintf(out, "<small>s = %.*f, n = %zu</small>", row->decimals,
-            sqrt(squares / (double)(count - 1)), count);
-  fputs("</dd></div>\n", out);
+    snprintf(small, sizeof small, "s = %.*f, n = %zu", row->decimals,
+             sqrt(squares / (double)(count - 1)), count);
+  fg_html_tile(out, title, small, "%s%.*f %s", sum < 0 ? "−" : "", row->decimals, fabs(sum),
+               row->unit);
 }
 
 static void put_arc_tiles(FILE *out, const fg_foil *foil) {
   fputs("<dl class=\"tiles\">\n", out);
-  put_tile(out, FG_QUANTITY_OF_FOIL, "overall.radius_mm", "Radius", foil);
-  put_tile(out, FG_QUANTITY_OF_FOIL, "overall.springback_error_pct", "Springback of the radius",
-           foil);
-  put_tile(out, FG_QUANTITY_OF_FOIL, "arc.subtended_angle_deg", "Angle between the ends", foil);
-  put_tile(out, FG_QUANTITY_OF_FOIL, "arc.subtended_angle_error_pct", "Angle against the design",
-           foil);
-  put_tile(out, FG_QUANTITY_OF_FOIL, "arc.length_mm", "Length", foil);
-  put_tile(out, FG_QUANTITY_OF_FOIL, "thickness_mm", "Thickness", foil);
+  put_quantity_tile(out, FG_QUANTITY_OF_FOIL, "overall.radius_mm", "Radius", foil);
+  put_quantity_tile(out, FG_QUANTITY_OF_FOIL, "overall.springback_error_pct",
+                    "Springback of the radius", foil);
+  put_quantity_tile(out, FG_QUANTITY_OF_FOIL, "arc.subtended_angle_deg", "Angle between the ends",
+                    foil);
+  put_quantity_tile(out, FG_QUANTITY_OF_FOIL, "arc.subtended_angle_error_pct",
+                    "Angle against the design", foil);
+  put_quantity_tile(out, FG_QUANTITY_OF_FOIL, "arc.length_mm", "Length", foil);
+  put_quantity_tile(out, FG_QUANTITY_OF_FOIL, "thickness_mm", "Thickness", foil);
   fputs("</dl>\n", out);
 }
 
@@ -67,13 +69,14 @@ static void put_flat_tiles(FILE *out, const fg_foil_parts *beams) {
 
 static void put_foil_tiles(FILE *out, const fg_foil *foil, const fg_foil_parts *bumps) {
   fputs("<dl class=\"tiles\">\n", out);
-  put_tile(out, FG_QUANTITY_OF_FOIL, "overall.radius_mm", "Overall radius", foil);
-  put_tile(out, FG_QUANTITY_OF_FOIL, "overall.springback_error_pct", "Overall springback", foil);
+  put_quantity_tile(out, FG_QUANTITY_OF_FOIL, "overall.radius_mm", "Overall radius", foil);
+  put_quantity_tile(out, FG_QUANTITY_OF_FOIL, "overall.springback_error_pct", "Overall springback",
+                    foil);
   put_mean_tile(out, bumps, "radius_mm", "Bump radius, mean");
   put_mean_tile(out, bumps, "height_mm", "Bump height, mean");
   put_mean_tile(out, bumps, "clearance_mm", "Clearance, free, mean");
   put_mean_tile(out, bumps, "clearance_fitted_mm", "Clearance, fitted, mean");
-  put_tile(out, FG_QUANTITY_OF_FOIL, "thickness_mm", "Thickness", foil);
+  put_quantity_tile(out, FG_QUANTITY_OF_FOIL, "thickness_mm", "Thickness", foil);
   fputs("</dl>\n", out);
 }
 
@@ -101,10 +104,10 @@ void fg_html_disc_tiles(FILE *out, const fg_measurement *measurement) {
   char title[64];
   fputs("<dl class=\"tiles\">\n", out);
   snprintf(title, sizeof title, "Smallest diameter, disc %d", small->number);
-  put_tile(out, FG_QUANTITY_OF_DISC, "diameter_mm", title, small);
+  put_quantity_tile(out, FG_QUANTITY_OF_DISC, "diameter_mm", title, small);
   snprintf(title, sizeof title, "Largest diameter, disc %d", large->number);
-  put_tile(out, FG_QUANTITY_OF_DISC, "diameter_mm", title, large);
+  put_quantity_tile(out, FG_QUANTITY_OF_DISC, "diameter_mm", title, large);
   snprintf(title, sizeof title, "Farthest from round, disc %d", odd->number);
-  put_tile(out, FG_QUANTITY_OF_DISC, "roundness_um", title, odd);
+  put_quantity_tile(out, FG_QUANTITY_OF_DISC, "roundness_um", title, odd);
   fputs("</dl>\n", out);
 }

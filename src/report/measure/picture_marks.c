@@ -13,8 +13,8 @@
 
 enum { COLOUR_FAIL = 0xff5252, COLOUR_OPEN = 0xffb833, MARKS_MAX = 40, TEXT_BYTES = 160 };
 
-/* In units of the canvas. A capital's height; the width of a bold letter of that height, which is
- * 0.65 of its font's size, and that 1 / 0.7 of the height; what is left free around a text. */
+/* In units of the canvas. A capital's height; the width of a bold letter of that height, which
+ * is 0.65 of its font's size, and that 1 / 0.7 of the height; the margin around a text. */
 static const double letter_units = 12, width_per_height = 0.65 / 0.7, gap_units = 7;
 /* Cells in which the picture is taken to be free or not, and the steps of places that are tried. */
 static const double cell_units = 6;
@@ -23,7 +23,7 @@ static const double cell_units = 6;
 static const double ring_over_chord = 1.08, ring_over_disc = 1.12, ring_over_width = 0.62,
                     number_mm = 2.1, band_mm = 0.9;
 
-/* What is wrong at one place: a value, or what has none (worst NULL: it fails). */
+/* A mark at one place: for a value, or for a part without one (worst NULL: it fails). */
 typedef struct mark {
   const fg_judgement *worst;
   fg_point at; /* mm: of the ring's centre, or of the overall circle's where there is no ring */
@@ -32,7 +32,7 @@ typedef struct mark {
   double width_px, height_px; /* of the text, with its gap */
 } mark;
 
-/* Which cells of the picture something stands in. */
+/* Occupied cells of the picture. */
 typedef struct cells {
   unsigned char *taken;
   int columns, rows;
@@ -215,7 +215,7 @@ static void take_discs(marks *at) {
   }
 }
 
-/* What is drawn already. */
+/* Marks the cells of the drawing as occupied. */
 static void take_drawing(marks *at) {
   const fg_canvas *canvas = at->canvas;
   fg_drawing_box scale = fg_drawing_scale_box(canvas, at->measurement);
@@ -233,14 +233,14 @@ static void take_drawing(marks *at) {
   }
 }
 
-/* The free place whose middle is nearest; false: there is none. */
+/* Finds the free place whose middle is nearest; false: there is none. */
 static bool find_place(const marks *at, const mark *one, fg_point *middle) {
   fg_point anchor = to_px(at->canvas, one->at);
   double best = INFINITY, step = at->cells.size_px;
   double half[2] = {one->width_px / 2, one->height_px / 2};
   for (double y = half[1]; y < at->canvas->height_px - half[1]; y += step)
     for (double x = half[0]; x < at->canvas->width_px - half[0]; x += step) {
-      /* A text is wide: what is above or below it is nearer than what is beside it. */
+      /* A text is wide: places above or below are nearer than those beside it. */
       double distance = hypot(fmax(0, fabs(x - anchor.x) - half[0] / 2), y - anchor.y);
       if (distance >= best ||
           !is_free(&at->cells, x - half[0], y - half[1], x + half[0], y + half[1]))
@@ -251,7 +251,7 @@ static bool find_place(const marks *at, const mark *one, fg_point *middle) {
   return isfinite(best);
 }
 
-/* From the ring to the text's edge, straight. */
+/* Draws a straight line from the ring to the text's edge. */
 static fg_status draw_leader(fg_context *ctx, fg_canvas *canvas, const mark *one, fg_point middle,
                              fg_pen pen) {
   fg_point ring = to_px(canvas, one->at);
@@ -314,8 +314,8 @@ static const fg_bump *find_bump(const fg_foil *foil, int number) {
   return NULL;
 }
 
-/* Where a bump that is not there belongs: on the overall circle, half-way between its neighbours,
- * or one pitch beyond the last. False: too few of them are there. */
+/* Finds the place of a missing bump: on the overall circle, half-way between its neighbours, or
+ * one pitch beyond the last. False: too few of them are there. */
 static bool find_gap(const fg_foil *foil, int number, fg_point *at) {
   static const double radian = 3.14159265358979323846 / 180;
   const fg_bump *before = find_bump(foil, number - 1), *behind = find_bump(foil, number + 1);
@@ -334,7 +334,7 @@ static bool find_gap(const fg_foil *foil, int number, fg_point *at) {
   return true;
 }
 
-/* Bumps without values: those that are missing, and those whose circle could not be fitted. */
+/* Adds marks for bumps without values: missing ones, and those whose circle could not be fitted. */
 static void add_gaps(marks *at) {
   const double half_chord_mm = 1.8; /* of a ring around nothing */
   int last = (int)at->measurement->design.bump_count;

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What lies beyond its limit, marked where it is on the picture of a foil or of discs. */
+/* Marks of values beyond their limits, on the picture of a foil or of discs. */
 #ifndef FG_REPORT_MEASURE_PICTURE_MARKS_H
 #define FG_REPORT_MEASURE_PICTURE_MARKS_H
 
 #include "page/canvas.h"
 
-/* A ring around every bump with a value that fails (red) or of which the limit cannot tell
- * (amber), and the worst of its values with its limit, where nothing else stands; the same of the
- * whole foil without a ring, and a ring where a bump is missing or could not be fitted.
- * `measurement` has that one foil, or discs; after fg_draw_measurement. */
+/* Draws a ring around every bump with a value that fails (red) or is undecided (amber), and
+ * writes the worst of its values with its limit at a free place. The foil's own values have no
+ * ring; a bump that is missing or could not be fitted has one. `measurement` has that one foil,
+ * or discs. Call it after fg_draw_measurement. */
 fg_status fg_draw_verdicts(fg_context *ctx, fg_canvas *canvas, const fg_measurement *measurement);
 
 #endif

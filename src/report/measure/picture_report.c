@@ -40,7 +40,7 @@ void fg_text_picture_state(FILE *out, const fg_measurement *measurement) {
       fprintf(out, "picture: %s: %s %s\n", words->name, words->meaning, words->cure);
 }
 
-/* Which setting of a driver it is, by the names that drivers have for it. */
+/* Writes the driver's setting by the names that drivers have for it. */
 static void put_settings(FILE *out, const fg_picture_words *words) {
   const char *const names[] = {"SANE", "TWAIN", "WIA"};
   const char *const settings[] = {words->sane, words->twain, words->wia};

@@ -8,13 +8,14 @@
 #include "core/json_writer.h"
 #include "foilgauge/foil.h"
 
-/* Member `picture` of one scan: its state, and what was found with the settings that cause it. */
+/* Writes the member `picture` of one scan: its state, and its findings with the settings that
+ * cause them. */
 void fg_json_picture_state(fg_json *json, const fg_measurement *measurement);
 
-/* For the terminal: a line for each finding; nothing of a picture as it should be. */
+/* Writes a line for each finding, for the terminal; nothing without findings. */
 void fg_text_picture_state(FILE *out, const fg_measurement *measurement);
 
-/* A section of a page. */
+/* Writes a section of a page. */
 void fg_html_picture_state(FILE *out, const fg_measurement *measurement);
 
 #endif

@@ -4,8 +4,8 @@
 
 #define AT(member) offsetof(fg_picture_state, member)
 
-/* Options as SANE's backends spell them, capabilities of TWAIN 2, properties of WIA 2: what they
- * are set to, or in brackets what has them. */
+/* Options as SANE's backends spell them, capabilities of TWAIN 2, properties of WIA 2: their
+ * values, or in brackets the devices that have them. */
 static const fg_picture_words findings[] = {
     {FG_PICTURE_FEW_LEVELS, "few_levels",
      "There are so few gray levels that the place of an edge depends on where they lie.",

@@ -27,8 +27,8 @@ static fg_status say_effect(fg_context *ctx, const fg_scanner_model_effect *effe
   return fg_text_append(ctx, text, "up to ±%s)", value);
 }
 
-/* "a wrong scale along the carriage's way (q = 2000 ± 1 ppm); ...": what it corrects. The caller
- * frees. */
+/* Lists the effects that the model corrects: "a wrong scale along the carriage's way (q = 2000 ±
+ * 1 ppm); ...". The caller frees. */
 static fg_status effects_of(fg_context *ctx, const fg_scanner_model *model, char **text) {
   fg_scanner_model_facts facts;
   fg_scanner_model_describe(model, &facts);
@@ -90,7 +90,7 @@ const fg_scanner_model *fg_report_model(const fg_report *report) {
   return NULL;
 }
 
-/* What a scanner's model says of the scale. */
+/* Writes the words on scale of a scanner's model. */
 static void model_scale_words(const fg_scanner_model *model, char *words, size_t size) {
   fg_scanner_model_facts facts;
   fg_scanner_model_describe(model, &facts);
@@ -138,7 +138,7 @@ static fg_status title_of(fg_context *ctx, const fg_scanner_model *model, char *
   return FG_OK;
 }
 
-/* What was left as measured was not moved, and is not named. */
+/* Dimensions left as measured are not named. */
 void fg_correction_moved(const fg_correction *c, char *words, size_t size) {
   const struct {
     const char *name;

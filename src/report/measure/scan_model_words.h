@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a scanner's model is and what it did, where values are reported that it corrected. */
+/* A scanner's model in words, and its effect on the reported values that it corrected. */
 #ifndef FG_REPORT_MEASURE_SCAN_MODEL_WORDS_H
 #define FG_REPORT_MEASURE_SCAN_MODEL_WORDS_H
 
@@ -10,37 +10,37 @@
 
 struct fg_scanner_model;
 
-/* What the scans of a report were corrected by; NULL: nothing. */
+/* Returns the model that corrected the scans of a report; NULL: none. */
 const struct fg_scanner_model *fg_report_model(const fg_report *report);
 
-/* An object; NULL: null. */
+/* Writes the model as an object; NULL: null. */
 void fg_json_scan_model(fg_json *json, const char *name, const struct fg_scanner_model *model);
 
 enum { FG_SCALE_WORDS = 480, FG_CORRECTION_WORDS = 256 };
 
-/* Whether the scanner's error of scale is in the uncertainties: a sentence or two. NULL: no model.
- */
+/* Writes in a sentence or two if the uncertainties include the scanner's error of scale. NULL:
+ * no model. */
 void fg_scale_words(const struct fg_scanner_model *model, const fg_calibration *calibration,
                     char *words, size_t size);
 
-/* "R0 by -41.9 µm, R by up to +8.2 µm, ...": what it did to one foil; "0.01 µm to u of R0, ...":
- * what it added. Empty where nothing was corrected. */
+/* Describe the correction of one foil: "R0 by -41.9 µm, R by up to +8.2 µm, ..."; and its
+ * contribution to u: "0.01 µm to u of R0, ...". Empty where nothing was corrected. */
 void fg_correction_moved(const fg_correction *correction, char *words, size_t size);
 void fg_correction_added(const fg_correction *correction, char *words, size_t size);
 
-/* `most` becomes the larger of both, number by number; start from NaN. */
+/* Replaces each number of `max` by the larger of both; start from NaN. */
 void fg_correction_largest(fg_correction *max, const fg_correction *one);
 
-/* The member `correction`; nothing where nothing was corrected. */
+/* Writes the member `correction`; nothing where nothing was corrected. */
 void fg_json_correction(fg_json *json, const fg_correction *correction);
 
-/* A page: what stands above the values, and rows of the list of facts. `moved` and `added` are
+/* Write the box above a page's values, and rows of its list of facts. `moved` and `added` are
  * words as above, or empty. Nothing without a model. */
 fg_status fg_html_corrected(fg_context *ctx, FILE *out, const struct fg_scanner_model *model,
                             const char *moved, const char *added);
 fg_status fg_html_model_facts(fg_context *ctx, FILE *out, const struct fg_scanner_model *model);
 
-/* The same for a terminal, in lines. */
+/* Writes the same facts for a terminal, in lines. */
 fg_status fg_text_scan_model(fg_context *ctx, FILE *out, const struct fg_scanner_model *model);
 
 #endif

@@ -31,7 +31,8 @@ typedef struct row_set {
   size_t count, size;
 } row_set;
 
-/* So many decimals that U = k u shows two digits; one, where two would be nanometres and less. */
+/* Returns the decimals with which U = k u shows two digits; one digit, where the second would be
+ * a nanometre or less. */
 int fg_report_decimals(const fg_quantity *row, double u) {
   double expanded = FG_COVERAGE_FACTOR * u;
   if (!(expanded > 0)) return row->decimals;
@@ -210,7 +211,7 @@ static void put_place(FILE *out, const fg_foil *foil) {
           foil->place_mm[1], foil->place_mm[2], foil->place_mm[3]);
 }
 
-/* In two lines of less than 100 columns. */
+/* Writes the words in two lines of less than 100 columns. */
 static void put_thickness_words(FILE *out, const fg_design *design, const fg_foil *foil) {
   char words[200];
   fg_thickness_words(design, foil, words, sizeof words);

@@ -13,7 +13,7 @@ static double expanded_um(double u_mm) {
   return 1000 * FG_COVERAGE_FACTOR * u_mm;
 }
 
-/* Of the scan's u²; NaN where there is none. */
+/* Returns the tone curve's share of the scan's u²; NaN where there is none. */
 static double tone_share(const fg_foil *foil) {
   double u = foil->u_thickness_scan_mm, tone = foil->u_thickness_tone_mm;
   return u > 0 ? tone * tone / (u * u) : NAN;

@@ -7,10 +7,11 @@
 
 #include "foilgauge/foil.h"
 
-/* A table of its parts with their shares, and where the thickness in force comes from. */
+/* Writes a table of its parts with their shares, and the source of the thickness in force. */
 void fg_html_thickness_budget(FILE *out, const fg_design *design, const fg_foil *foil);
 
-/* One line, where the thickness in force is not the scan's or a tone curve is most of its u. */
+/* Writes one line where the thickness in force is not the scan's, or a tone curve is the largest
+ * part of its u. */
 void fg_text_thickness_budget(FILE *out, const fg_design *design, const fg_foil *foil);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Verdicts: the design names quantities, their rows say where they lie. What a foil, a
- * scan or a run comes to is decided here and nowhere else. */
+/* Verdicts by tolerances: the design names quantities, their rows read the values. The outcome
+ * of a foil, a scan or a run is decided here and nowhere else. */
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -77,8 +77,8 @@ static void add_unmeasured(fg_report_outcome *outcome) {
                  &(fg_report_outcome){.verdict = FG_VERDICT_NOT_MEASURED, .not_measured = 1});
 }
 
-/* Deviation that the tolerance allows. It is U at least, because values nearer than U to each other
- * are not told apart; a count without U differs by 1 at least. */
+/* Returns the deviation that the tolerance allows. It is U at least, because values nearer than
+ * U to each other are not told apart; a count without U differs by 1 at least. */
 static double allowed_deviation(const fg_design *design, const fg_tolerance *tolerance,
                                 const fg_quantity *row, double limit, double u) {
   double expanded = u > 0 ? FG_COVERAGE_FACTOR * u : 0, nominal = 0;
@@ -117,8 +117,8 @@ static fg_judgement judge(const fg_design *design, const fg_tolerance *tolerance
                         .cure = verdict == FG_VERDICT_UNDECIDED ? fg_cure_of(design, row) : NULL};
 }
 
-/* Of a bump that the design states and the foil lacks. Behind the last bump that was found nothing
- * but the design says that there should be one: where the scan's border may hide it, it is not
+/* Judges a bump that the design states and the foil lacks. Behind the last bump that was found,
+ * only the design claims that there is one: where the scan's border may hide it, it is not
  * measured. */
 static fg_judgement judge_nothing(const fg_tolerance *tolerance, const fg_quantity *row, int number,
                                   bool hidden) {
@@ -133,7 +133,7 @@ static fg_judgement judge_nothing(const fg_tolerance *tolerance, const fg_quanti
                         .verdict = hidden ? FG_VERDICT_NOT_MEASURED : FG_VERDICT_FAIL};
 }
 
-/* A place at the pitch that is empty makes numbers jump: look for the number, not the index. */
+/* Finds a part by its number, not its index: an empty place at the pitch makes numbers jump. */
 static const void *find_part(const fg_foil *foil, fg_quantity_owner owner, int number) {
   for (size_t i = 0; i < fg_part_count(foil, owner); i++) {
     const fg_foil_part part = fg_part_at(foil, owner, i);
@@ -276,7 +276,7 @@ static bool is_whole(const fg_design *design, const fg_foil *foil) {
   return !(lacks_parts(design, foil) && may_be_hidden(foil));
 }
 
-/* What no single value says. */
+/* Judges the foil as a whole, beyond its single values. */
 static void judge_whole(const fg_design *design, const fg_foil *foil, fg_report_outcome *outcome) {
   if (fg_foil_defect(design, foil, NULL, 0)) {
     outcome->verdict = FG_VERDICT_FAIL;
@@ -316,8 +316,8 @@ fg_status fg_disc_decide(fg_context *ctx, const fg_design *design, const fg_disc
   return FG_OK;
 }
 
-/* A place without a clearance may be the lowest of all: what is known says how low the least is at
- * best, and of a circularity nothing. */
+/* Judges a bearing with unknown places, one of which may be the lowest of all: known places give
+ * an upper bound of the smallest clearance, and nothing on circularity. */
 static fg_judgement judge_part(const fg_tolerance *tolerance, fg_judgement judgement) {
   bool min = judgement.row == fg_quantity_of_bearing_for("clearance_min_mm") ||
              judgement.row == fg_quantity_of_bearing_for("clearance_centred_min_mm");

@@ -8,7 +8,7 @@
 #include "quantity/quantity_rows.h"
 #include "report/design/calibration_json.h"
 
-/* Of one quantity over all parts that have it, root mean squares. */
+/* Root mean squares of one quantity over all parts that have it. */
 typedef struct line {
   double all, calibration; /* squares, summed */
   size_t count;

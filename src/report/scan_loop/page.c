@@ -8,34 +8,33 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "page/provenance.h"
+#include "page/tile.h"
 #include "report/scan_loop/parts.h"
-
-static void put_tile(FILE *out, const char *name, const char *value, const char *small) {
-  fprintf(out, "<div><dt>%s</dt><dd>%s<small>%s</small></dd></div>\n", name, value, small);
-}
 
 static void put_tiles(FILE *out, const fg_scan_result *result) {
   char words[32], small[80];
   const fg_scan_loop_error *before = &result->before, *after = &result->after;
   fputs("<dl class=\"tiles\">\n", out);
   fg_scan_loop_length_words(before->rms, words, sizeof words);
-  put_tile(out, result->corrected ? "Edge residual before" : "Edge residual", words, "rms");
+  fg_html_tile(out, result->corrected ? "Edge residual before" : "Edge residual", "rms", "%s",
+               words);
   if (result->corrected) {
     fg_scan_loop_length_words(after->rms, words, sizeof words);
-    put_tile(out, "Edge residual after", words, "rms");
+    fg_html_tile(out, "Edge residual after", "rms", "%s", words);
     fg_text_clip(words, sizeof words, "%.3g ×", before->rms / after->rms);
     fg_text_clip(small, sizeof small, "after / before = %.3g", after->rms / before->rms);
-    put_tile(out, "Smaller by", words, small);
+    fg_html_tile(out, "Smaller by", small, "%s", words);
   }
   fg_scan_loop_length_words(result->noise_floor_um, words, sizeof words);
   fg_text_clip(small, sizeof small, "what is left is %.3g times this",
                after->rms / result->noise_floor_um);
-  put_tile(out, "Noise floor", words, small);
+  fg_html_tile(out, "Noise floor", small, "%s", words);
   if (result->corrected && result->held_out != FG_SCAN_HELD_OUT_NOTHING) {
     fg_scan_loop_length_words(after->held_out_rms, words, sizeof words);
     fg_text_clip(small, sizeof small, "after / before = %.3g",
                  after->held_out_rms / before->held_out_rms);
-    put_tile(out, result->folds ? "Cross-fitted, after" : "Scans kept aside, after", words, small);
+    fg_html_tile(out, result->folds ? "Cross-fitted, after" : "Scans kept aside, after", small,
+                 "%s", words);
   }
   fputs("</dl>\n", out);
 }
@@ -76,9 +75,10 @@ static void put_inputs(FILE *out, const fg_scan_result *result) {
 
 static void put_uncertainty(FILE *out, const fg_scan_result *result) {
   if (result->contradicted)
-    fputs("<p class=\"uncertain\">The scans kept aside do not confirm it: there the residual becomes "
-          "larger. Do they lie at the same place of the same glass?</p>\n",
-          out);
+    fputs(
+        "<p class=\"uncertain\">The scans kept aside do not confirm it: there the residual becomes "
+        "larger. Do they lie at the same place of the same glass?</p>\n",
+        out);
 }
 
 /* The commands, a line each. */

@@ -6,7 +6,7 @@
 
 #include "page/plot_marks.h"
 
-/* The colour is full at 40 % more or less: what a lot does to stiffness, lies within. */
+/* Colour is full at ± 40 %: the stiffness of lots varies by less. */
 static const double full_colour = 0.4;
 
 enum { STEPS = 120, JSON_STEPS = 10 };
@@ -58,11 +58,11 @@ static void put_cells(const fg_plot *at, const fg_stiffness_map *map) {
     }
 }
 
-/* Up to where a bump is one. */
+/* Largest angle of a bump: less than a half circle. */
 static const double half_circle_deg = 179.9;
 
-/* The angle where stiffness comes to `level` at this radius, by bisection (it falls as the angle
- * grows); NaN: not on the map. */
+/* Returns the angle where stiffness is `level` at this radius, by bisection (it falls as the
+ * angle grows); NaN: not on the map. */
 static double angle_of(const fg_plot *at, const fg_stiffness_map *map, double radius,
                        double level) {
   enum { HALVINGS = 20 }; /* far finer than a pixel */
@@ -80,7 +80,7 @@ static double angle_of(const fg_plot *at, const fg_stiffness_map *map, double ra
   return low;
 }
 
-/* Numbers stand along the rising diagonal, which every line of equal stiffness crosses once. */
+/* Writes the number on the rising diagonal, which every line of equal stiffness crosses once. */
 static void put_level(const fg_plot *at, const fg_stiffness_map *map, double level) {
   double x[STEPS + 1], y[STEPS + 1], nearest = INFINITY;
   int place = -1;

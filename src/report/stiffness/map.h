@@ -14,17 +14,18 @@ typedef struct fg_stiffness_map {
   double radius_low, radius_high, angle_low, angle_high; /* over the design's */
 } fg_stiffness_map;
 
-/* Around the design, as far as bumps were found to spring back: radii 0.9 to 1.35 of the design's,
- * angles 0.7 to 1.1 (thesis figure 5.8: 0.95 to 1.3 at constant arc length). */
+/* Returns a map around the design, over the range of springback that was measured: radii 0.9 to
+ * 1.35 of the design's, angles 0.7 to 1.1 (thesis figure 5.8: 0.95 to 1.3 at constant arc
+ * length). */
 fg_stiffness_map fg_stiffness_map_around(const fg_design *design, const fg_arch_material *material);
 
-/* NaN where a bump of these ratios is none. */
+/* Returns the ratio of stiffness; NaN where these ratios give no bump. */
 double fg_stiffness_map_at(const fg_stiffness_map *map, double radius_ratio, double angle_ratio);
 
-/* What belongs on top of it. */
+/* Draws dots on top of the map. */
 typedef void fg_stiffness_dots(const fg_plot *at, const void *user);
 
-/* One <svg>; `dots` may be NULL. */
+/* Writes one <svg>; `dots` may be NULL. */
 void fg_stiffness_plot_map(FILE *out, const fg_stiffness_map *map, fg_stiffness_dots *dots,
                            const void *user);
 

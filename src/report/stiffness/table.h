@@ -14,19 +14,19 @@ typedef struct fg_stiffness_case {
   fg_stiffness_line lines[FG_STIFFNESS_MODELS];
 } fg_stiffness_case;
 
-/* The design's bump. */
+/* Returns the design's bump. */
 fg_stiffness_case fg_stiffness_case_of(const fg_design *design, const fg_arch_material *material);
 
 void fg_json_sensitivity(fg_json *json, const char *name, const fg_arch_sensitivity *sensitivity);
 
-/* One member of the case's name: the bump, and what the model numbered so makes of it. */
+/* Writes one member of the case's name: the bump, and its stiffness by this model. */
 void fg_json_stiffness_case(fg_json *json, const fg_stiffness_case *bump, int model,
                             double pitch_mm);
 
-/* The members that say what a model is. */
+/* Writes the members that describe a model. */
 void fg_json_stiffness_model(fg_json *json, int model);
 
-/* A table, its columns explained, and the models' formulas, sources and reserves below. */
+/* Writes a table, its columns explained, and the models' formulas, sources and reserves below. */
 void fg_html_stiffness_table(FILE *out, const fg_stiffness_case *cases, size_t count,
                              double pitch_mm);
 

@@ -1,19 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Values, verdicts and outcomes as a page shows them. */
-#include <math.h>
-
-#include "report/measure/page_parts.h"
-
-void fg_html_value(FILE *out, const fg_quantity *row, const void *object) {
-  double value = fg_quantity_value(row, object), u = fg_quantity_uncertainty(row, object);
-  int decimals = row->kind == FG_QUANTITY_COUNT ? 0 : fg_report_decimals(row, u);
-  if (!isfinite(value)) {
-    fputs("–", out);
-    return;
-  }
-  fprintf(out, "%s%.*f", value < 0 ? "−" : "", decimals, fabs(value));
-  if (isfinite(u)) fprintf(out, " <i>± %.*f</i>", decimals, FG_COVERAGE_FACTOR * u);
-}
+#include "page/verdict.h"
 
 const char *fg_html_verdict_title(fg_verdict verdict) {
   switch (verdict) {
