@@ -10,7 +10,7 @@ string(REGEX REPLACE "\\[([^]]*)\\]\\(${page}\\)" "\\1 (`man \\3 \\2`)" readme "
 
 file(RELATIVE_PATH schema ${CMAKE_INSTALL_FULL_DOCDIR} ${CMAKE_INSTALL_FULL_DATADIR}/foilgauge/schema)
 string(REPLACE "[reports/schema/](reports/schema/)" "[schema](${schema}/)" readme "${readme}")
-string(REGEX REPLACE "\\[([^]]*)\\]\\((src|include)/[^)]*\\)" "\\1" readme "${readme}")
+string(REGEX REPLACE "\\[([^]]*)\\]\\((src|include|tests)/[^)]*\\)" "\\1" readme "${readme}")
 string(REGEX REPLACE "\\[(reports/[^]]*)\\]\\(reports/(README.md)?\\)" "\\1" readme "${readme}")
 string(REGEX REPLACE "\\[([^]]*)\\]\\((\\.github)/[^)]*\\)" "\\1" readme "${readme}")
 file(WRITE ${CMAKE_BINARY_DIR}/package/README.md "${readme}")

@@ -127,7 +127,7 @@ for command in $named; do
   grep -qx "$command" <<<"$commands" || say "README.md uses a command that is none: $command"
 done
 grep -oE '\]\([^)]*\)' README.md | tr -d '](' | tr -d ')' | while read -r path; do
-  [ -e "$path" ] || echo "$path"
+  [ -e "${path%%#*}" ] || grep -qi "^## ${path#\#}\$" <(tr ' ' - <README.md | sed 's/^##-/## /') || echo "$path"
 done >"$work/gone"
 [ -s "$work/gone" ] && say "README.md points to what is not there: $(cat "$work/gone")"
 
