@@ -1,5 +1,5 @@
 #!/bin/bash
-# What a contributor reads leads to what is there, and every room has an owner.
+# CONTRIBUTING, CODEOWNERS and CHANGELOG name files, tests and rooms that are there, and every room has an owner.
 . tests/support/cli.sh
 skip_when_slow
 

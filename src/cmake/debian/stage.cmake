@@ -1,5 +1,5 @@
-# Run by cpack before it makes the packages: what Debian's policy asks of a package and `cmake --install` has no place for:
-# its copyright and changelog, manual pages that are compressed, and lintian's overrides.
+# cpack runs it before it makes the packages. It adds the files that Debian's policy asks for and `cmake --install` has no place
+# for: copyright, changelog, and overrides of lintian; and it compresses the manual pages.
 set(here ${CMAKE_CURRENT_LIST_DIR})
 string(TIMESTAMP date "%a, %d %b %Y %H:%M:%S +0000" UTC)
 foreach(package program:foilgauge development:foilgauge-dev)
