@@ -2,7 +2,7 @@
 /* The candidates of a search, and sets of them as bits. */
 #include <math.h>
 
-#include "effect_search/search.h"
+#include "effect_search/state.h"
 
 bool fg_search_seeks(const fg_search *s, const fg_effect *kind) {
   for (size_t i = 0; i < s->out->barred.count; i++)

@@ -3,7 +3,7 @@
 #ifndef FG_EFFECT_SEARCH_COLUMNS_H
 #define FG_EFFECT_SEARCH_COLUMNS_H
 
-#include "effect_search/effect_search.h"
+#include "effect_search/explanations.h"
 #include "rows/scatter.h"
 
 enum { FG_SEARCH_COLUMNS = 320, FG_SEARCH_TERMS = 64 };

@@ -2,7 +2,7 @@
 /* What the report says of each effect beside the best explanation. */
 #include <math.h>
 
-#include "effect_search/search.h"
+#include "effect_search/state.h"
 
 /* Standard deviations of an amplitude that is found in most cases: at chi² 10.8 (score.c) one of
  * 3.5 is in 58 of 100. */

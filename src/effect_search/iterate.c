@@ -11,6 +11,7 @@
 #include "effect_search/joint_fit.h"
 #include "effect_search/outliers.h"
 #include "effect_search/policy.h"
+#include "effect_search/search.h"
 #include "rows/scatter.h"
 
 /* Largest change of an overall radius, and largest coefficient, that an effect may have: far beyond

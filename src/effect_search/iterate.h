@@ -3,7 +3,7 @@
 #ifndef FG_EFFECT_SEARCH_ITERATE_H
 #define FG_EFFECT_SEARCH_ITERATE_H
 
-#include "effect_search/effect_search.h"
+#include "effect_search/explanations.h"
 
 typedef struct fg_iterate_request {
   fg_edge_fit *edge_fit; /* gets the geometry fitted beside the winner */

@@ -3,7 +3,7 @@
 #include <gsl/gsl_cdf.h>
 #include <math.h>
 
-#include "effect_search/search.h"
+#include "effect_search/state.h"
 
 /* A curve with all its columns leaves less than this share of what a smoother one does. */
 #define FINER 0.9 /* tuned on reports/loop_scans.md, tier curves */

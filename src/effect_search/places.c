@@ -4,7 +4,7 @@
 #include <stdlib.h>
 
 #include "core/small_solve.h"
-#include "effect_search/search.h"
+#include "effect_search/state.h"
 
 /* Steps of each finer grid between the neighbours of the best place; how often; rows on either side
  * of a step. */

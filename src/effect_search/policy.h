@@ -8,7 +8,7 @@
 #ifndef FG_EFFECT_SEARCH_POLICY_H
 #define FG_EFFECT_SEARCH_POLICY_H
 
-#include "effect_search/search.h"
+#include "effect_search/state.h"
 
 /* Strategy of one start of the search. With `seeds_placed`, ripples and steps are sought from the
  * first round on. That is correct for ripples and steps, but a large smooth effect leaves residuals

@@ -3,7 +3,7 @@
  * follows within the noise. */
 #include <math.h>
 
-#include "effect_search/search.h"
+#include "effect_search/state.h"
 
 /* A curve that can follow the one listed effect itself stands beside it only when Schwarz's
  * criterion prefers it strongly (Kass and Raftery 1995, section 3.2). */

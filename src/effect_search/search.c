@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One search: candidates beside the geometry, the noise that they leave, and sets of them. */
+#include "effect_search/search.h"
+
 #include <string.h>
 
 #include "effect/columns.h"

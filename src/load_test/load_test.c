@@ -212,6 +212,7 @@ static fg_status measure_direction(fg_context *ctx, fg_load_test *test,
   find_ranges(test, d);
   d->step_mm = fg_load_find_step(test->samples + d->first, d->count);
   FG_TRY_EXIT(fg_load_strokes_cut(ctx, test, d, records, &strokes));
+  FG_TRY_EXIT(fg_load_find_noise(ctx, test->samples + d->first, d->step_mm, &strokes));
   d->noise_n = strokes.count ? strokes.noise_n : NAN;
   d->noise_mm = strokes.count ? strokes.noise_mm : NAN;
   d->strokes = strokes.count;

@@ -7,7 +7,6 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "load_test/noise.h"
 
 /* A way back that is shorter than this share of the travel is noise, or a stop on the way. */
 static const double turn_share = 0.1;
@@ -160,7 +159,7 @@ fg_status fg_load_strokes_cut(fg_context *ctx, const fg_load_test *test,
     FG_TRY(cut_record(ctx, samples, from - direction->first, to - direction->first, i,
                       turn_share * direction->travel_mm, strokes));
   }
-  return fg_load_find_noise(ctx, samples, direction->step_mm, strokes);
+  return FG_OK;
 }
 
 /* A sample with what is known of it. */

@@ -10,6 +10,15 @@
 #include "page/picture.h"
 #include "vision/cv_bridge.h"
 
+/* Colours of drawings over a scan, 0xRRGGBB. */
+enum {
+  FG_COLOUR_EDGE = 0x00a6c8,
+  FG_COLOUR_BUMP = 0xff7a1a,
+  FG_COLOUR_OVERALL = 0x3d9dff,
+  FG_COLOUR_RESIDUAL = 0xe0359b,
+  FG_COLOUR_TEXT = 0xffffff,
+};
+
 typedef struct fg_canvas {
   fg_rgb *rgb; /* draw here, or */
   FILE *svg;   /* write here */

@@ -4,11 +4,7 @@
 #include <math.h>
 #include <stddef.h>
 
-#include "render/spec.h"
-
-enum { COURSE_POINTS = 201 };
-
-static const char *const line_words[FG_COLOUR_LINES] = {"red", "green", "blue"};
+const char *const fg_colour_line_words[FG_COLOUR_LINES] = {"red", "green", "blue"};
 
 /* Members with a number for each line. */
 static const struct line_member {
@@ -81,54 +77,4 @@ double fg_colour_lines_reach_px(const fg_colour_lines *lines, double width_px) {
     reach = fmax(reach, fabs(line->shift_px[1]));
   }
   return reach;
-}
-
-/* The carriage's error along y when a line reads row y, in the middle of the picture, mm. */
-static double carriage_mm(const fg_render_spec *spec, const fg_colour_line *line, double y_mm) {
-  double at[2] = {0.5 * (double)spec->sensor.width_px * spec->sensor.pixel_mm[0],
-                  y_mm + line->gap_px * spec->sensor.pixel_mm[1]};
-  double d[2];
-  fg_render_effects_field(&spec->effects, at[0], at[1], at, d);
-  return d[1];
-}
-
-/* true = nominal + d: the picture moves up by d. */
-static void put_course(fg_json *json, const fg_render_spec *spec, int i) {
-  const fg_colour_line *line = &spec->scanner.colour.line[i],
-                       *green = &spec->scanner.colour.line[1];
-  double height_mm = (double)spec->sensor.height_px * spec->sensor.pixel_mm[1];
-  double shift_mm = (line->shift_px[1] - green->shift_px[1]) * spec->sensor.pixel_mm[1];
-  fg_json_array(json, "course");
-  for (int k = 0; k < COURSE_POINTS; k++) {
-    double y = height_mm * k / (COURSE_POINTS - 1);
-    double um = 1e3 * (shift_mm - carriage_mm(spec, line, y) + carriage_mm(spec, green, y));
-    fg_json_numbers(json, NULL, (const double[]){y, um}, 2);
-  }
-  fg_json_array_end(json);
-}
-
-static void put_line(fg_json *json, const fg_render_spec *spec, int i) {
-  const fg_colour_line *line = &spec->scanner.colour.line[i],
-                       *green = &spec->scanner.colour.line[1];
-  double dx = line->shift_px[0] - green->shift_px[0], dy = line->shift_px[1] - green->shift_px[1];
-  fg_json_object(json, line_words[i]);
-  fg_json_number(json, "gap_px", line->gap_px - green->gap_px);
-  fg_json_number(json, "dx_px", dx * spec->sensor.pixel_mm[0] / spec->pixel_mm[0]);
-  fg_json_number(json, "dy_px", dy * spec->sensor.pixel_mm[1] / spec->pixel_mm[1]);
-  fg_json_number(json, "dx_um", 1e3 * dx * spec->sensor.pixel_mm[0]);
-  fg_json_number(json, "dy_um", 1e3 * dy * spec->sensor.pixel_mm[1]);
-  fg_json_number(json, "magnification_ppm", line->magnification_ppm - green->magnification_ppm);
-  put_course(json, spec, i);
-  fg_json_object_end(json);
-}
-
-void fg_colour_lines_put_truth(fg_json *json, const fg_render_spec *spec) {
-  if (!spec->scanner.colour.stated) return;
-  fg_json_object(json, "colour_lines");
-  fg_json_string(json, "against", line_words[1]);
-  fg_json_number(json, "middle_x_mm",
-                 0.5 * (double)(spec->sensor.width_px - 1) * spec->sensor.pixel_mm[0]);
-  put_line(json, spec, 0);
-  put_line(json, spec, 2);
-  fg_json_object_end(json);
 }

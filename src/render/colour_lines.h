@@ -26,6 +26,8 @@ typedef struct fg_colour_lines {
   fg_colour_line line[FG_COLOUR_LINES];
 } fg_colour_lines;
 
+extern const char *const fg_colour_line_words[FG_COLOUR_LINES];
+
 /* Member colour_lines of a spec's scanner. Background and contrast are those of the gray scan where
  * nothing else is said. */
 fg_status fg_colour_lines_read(const fg_place *place, const cJSON *scanner, double background,
@@ -33,10 +35,5 @@ fg_status fg_colour_lines_read(const fg_place *place, const cJSON *scanner, doub
 
 /* The most by which a line shows anything away from its place, along one axis, px. */
 double fg_colour_lines_reach_px(const fg_colour_lines *lines, double width_px);
-
-struct fg_render_spec;
-
-/* The same as truth: what red and blue show against green, and its course along y. */
-void fg_colour_lines_put_truth(fg_json *json, const struct fg_render_spec *spec);
 
 #endif

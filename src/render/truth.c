@@ -6,6 +6,8 @@
 #include "core/json_writer.h"
 #include "render/spec.h"
 
+enum { PROFILE_POINTS = 201 }; /* of a colour line, along y */
+
 static void put_pair(fg_json *json, const char *name, double first, double second) {
   const double pair[2] = {first, second};
   fg_json_numbers(json, name, pair, 2);
@@ -279,6 +281,56 @@ static void put_foils(fg_json *json, const fg_render_spec *spec) {
   fg_json_array_end(json);
 }
 
+/* The carriage's error along y when a line reads row y, in the middle of the picture, mm. */
+static double carriage_mm(const fg_render_spec *spec, const fg_colour_line *line, double y_mm) {
+  double at[2] = {0.5 * (double)spec->sensor.width_px * spec->sensor.pixel_mm[0],
+                  y_mm + line->gap_px * spec->sensor.pixel_mm[1]};
+  double d[2];
+  fg_render_effects_field(&spec->effects, at[0], at[1], at, d);
+  return d[1];
+}
+
+/* true = nominal + d: the picture moves up by d. */
+static void put_colour_profile(fg_json *json, const fg_render_spec *spec, int i) {
+  const fg_colour_line *line = &spec->scanner.colour.line[i],
+                       *green = &spec->scanner.colour.line[1];
+  double height_mm = (double)spec->sensor.height_px * spec->sensor.pixel_mm[1];
+  double shift_mm = (line->shift_px[1] - green->shift_px[1]) * spec->sensor.pixel_mm[1];
+  fg_json_array(json, "course");
+  for (int k = 0; k < PROFILE_POINTS; k++) {
+    double y = height_mm * k / (PROFILE_POINTS - 1);
+    double um = 1e3 * (shift_mm - carriage_mm(spec, line, y) + carriage_mm(spec, green, y));
+    fg_json_numbers(json, NULL, (const double[]){y, um}, 2);
+  }
+  fg_json_array_end(json);
+}
+
+static void put_colour_line(fg_json *json, const fg_render_spec *spec, int i) {
+  const fg_colour_line *line = &spec->scanner.colour.line[i],
+                       *green = &spec->scanner.colour.line[1];
+  double dx = line->shift_px[0] - green->shift_px[0], dy = line->shift_px[1] - green->shift_px[1];
+  fg_json_object(json, fg_colour_line_words[i]);
+  fg_json_number(json, "gap_px", line->gap_px - green->gap_px);
+  fg_json_number(json, "dx_px", dx * spec->sensor.pixel_mm[0] / spec->pixel_mm[0]);
+  fg_json_number(json, "dy_px", dy * spec->sensor.pixel_mm[1] / spec->pixel_mm[1]);
+  fg_json_number(json, "dx_um", 1e3 * dx * spec->sensor.pixel_mm[0]);
+  fg_json_number(json, "dy_um", 1e3 * dy * spec->sensor.pixel_mm[1]);
+  fg_json_number(json, "magnification_ppm", line->magnification_ppm - green->magnification_ppm);
+  put_colour_profile(json, spec, i);
+  fg_json_object_end(json);
+}
+
+static void put_colour_lines(fg_json *json, const fg_render_spec *spec) {
+  if (!spec->scanner.colour.stated) return;
+  fg_json_object(json, "colour_lines");
+  fg_json_string(json, "against", fg_colour_line_words[1]);
+  fg_json_number(json, "middle_x_mm",
+                 0.5 * (double)(spec->sensor.width_px - 1) * spec->sensor.pixel_mm[0]);
+  put_colour_line(json, spec, 0);
+  put_colour_line(json, spec, 2);
+  fg_json_object_end(json);
+}
+
 static void write_truth(const fg_render_spec *spec, FILE *out) {
   fg_json json;
   fg_json_begin(&json, out);
@@ -289,7 +341,7 @@ static void write_truth(const fg_render_spec *spec, FILE *out) {
   put_discs(&json, spec);
   put_scan(&json, spec);
   put_effects(&json, spec);
-  fg_colour_lines_put_truth(&json, spec);
+  put_colour_lines(&json, spec);
   fg_json_object_end(&json);
 }
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The one word that the loop on scans comes to. */
 #include "scan_loop/state.h"
+#include "scan_loop/verdict.h"
 
 /* Residual over the noise that says that something is there. */
 #define MUCH 1.5

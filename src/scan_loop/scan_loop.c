@@ -8,6 +8,7 @@
 #include "core/memory.h"
 #include "core/spread.h"
 #include "scan_loop/result.h"
+#include "scan_loop/verdict.h"
 
 /* Rows fewer than this cannot carry a search for effects. */
 enum { ROWS_MIN = 60 };
@@ -234,7 +235,7 @@ static fg_status search(fg_context *ctx, fg_scan_loop *loop) {
   if (loop->tied) fg_scan_loop_put_ranges(loop);
   FG_TRY(search_bumps(ctx, loop));
   FG_TRY(fg_search_width(ctx, &loop->edge_fit, &loop->set, &loop->width));
-  loop->tone = fg_model_tone_find(loop, true);
+  loop->tone = fg_scan_loop_find_tone(loop, true);
   widen_scales(loop);
   loop->verdict = fg_scan_loop_outcome(loop);
   return fg_scan_loop_decide(ctx, loop);
@@ -295,7 +296,7 @@ static fg_status close_loop(fg_context *ctx, fg_scan_loop *loop, fg_scan_loop **
   FG_TRY_EXIT(
       fg_scan_loop_bumps_check_forming(ctx, loop->options.forming, loop->before, loop->scan_count));
   FG_TRY_EXIT(build_points(ctx, loop));
-  loop->tone = fg_model_tone_find(loop, false);
+  loop->tone = fg_scan_loop_find_tone(loop, false);
   if (!loop->levelled && fg_model_tone_is_significant(&loop->tone))
     return level_again(ctx, loop, result);
   FG_TRY_EXIT(search(ctx, loop));

@@ -21,10 +21,8 @@ typedef struct fg_model_tone {
   double u_scale;    /* relative u of a scale found with the level; 0: no known diameters */
 } fg_model_tone;
 
-/* Finds the level from discs of known diameter, together with a scale. After a search it uses the
- * discs as scanned or as corrected, whichever agree better. gauges is 0 where the discs do not
- * determine the level. */
-fg_model_tone fg_model_tone_find(const fg_scan_loop *loop, bool searched);
+/* T(1/2) less a half, as the edge model explains the edge of a disc. */
+double fg_model_tone_shown_by(const fg_disc *disc);
 
 /* Returns true when the level differs significantly from half of the counts. */
 bool fg_model_tone_is_significant(const fg_model_tone *tone);

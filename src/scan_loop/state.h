@@ -7,12 +7,12 @@
 #include "effect_search/effect_search.h"
 #include "effect_search/joint_fit.h"
 #include "effect_search/width_search.h"
+#include "foilgauge/loop.h"
 #include "foilgauge/scan_loop.h"
 #include "rows/edge_fit.h"
 #include "scan_loop/benefit.h"
 #include "scan_loop/bumps.h"
 #include "scan_loop/scanner_model_tone.h"
-#include "scan_loop/verdict.h"
 
 /* Lowest and highest value of a dimension over the tied explanations. */
 typedef struct fg_scan_loop_range {
@@ -90,6 +90,11 @@ fg_status fg_scan_loop_correct_fitted(fg_context *ctx, const fg_measurement *m,
 /* Corrects all of the loop's measurements. */
 fg_status fg_scan_loop_correct_all(fg_context *ctx, const fg_scan_loop *loop,
                                    const fg_joint_fit_result *fit, fg_measurement *after);
+
+/* Finds the edge level from the scans' discs of known diameter, together with a scale. After a
+ * search it uses the discs as scanned or as corrected, whichever agree better. gauges is 0 where
+ * the discs do not determine the level. */
+fg_model_tone fg_scan_loop_find_tone(const fg_scan_loop *loop, bool searched);
 
 /* Finds, in a tie, the dimensions under every explanation. */
 fg_status fg_scan_loop_find_ranges(fg_context *ctx, fg_scan_loop *loop);

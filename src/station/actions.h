@@ -3,7 +3,7 @@
 #ifndef FG_STATION_ACTIONS_H
 #define FG_STATION_ACTIONS_H
 
-#include "station/answer.h"
+#include "station/request.h"
 
 typedef fg_status fg_action(fg_context *ctx, fg_inspection *station, const fg_request *request,
                             fg_answer *answer);

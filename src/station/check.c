@@ -11,7 +11,7 @@
 #include "station/actions.h"
 #include "station/check_fit.h"
 #include "station/check_state.h"
-#include "station/keep_parts.h"
+#include "station/keep.h"
 #include "station/news.h"
 
 #define MS_PER_HOUR INT64_C(3600000)

@@ -8,9 +8,4 @@
 /* Waits for a lot that is being closed. */
 void fg_closing_end(fg_closing *closing);
 
-/* What a foil of that lot has to say when it comes after the lot was closed; "" when it has not
- * been. */
-fg_status fg_station_lot_note(fg_context *ctx, fg_station_database *database, const char *lot,
-                              char *words, size_t size);
-
 #endif

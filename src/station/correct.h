@@ -4,8 +4,8 @@
 #ifndef FG_STATION_CORRECT_H
 #define FG_STATION_CORRECT_H
 
-#include "station/answer.h"
 #include "station/naming.h"
+#include "station/request.h"
 
 /* FG_IDENTITY_FIELDS: serial, lot, die, operator. FG_IDENTITY_BYTES: a file's name, and the number
  * of a foil of its bed. */

@@ -8,7 +8,6 @@
 #include "core/file.h"
 #include "core/sha256.h"
 #include "lot/run/lot.h"
-#include "station/keep_parts.h"
 
 const char *fg_card_word(fg_card card) {
   static const char *const words[] = {"measured",   "known", "unfinished", "foreign",

@@ -75,4 +75,9 @@ fg_status fg_station_keep_scan(fg_context *ctx, fg_station_database *database,
                                const fg_station_scan *kept, int64_t *scan,
                                fg_report_outcome *outcome);
 
+/* The row of a card, inside a transaction of its caller. */
+fg_status fg_station_insert_card(fg_context *ctx, fg_station_database *database,
+                                 const fg_station_file *file, fg_card card, const char *message,
+                                 int64_t scan);
+
 #endif

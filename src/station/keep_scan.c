@@ -9,7 +9,7 @@
 #include "lot/run/lot.h"
 #include "lot/run/record.h"
 #include "quantity/quantity_rows.h"
-#include "station/keep_parts.h"
+#include "station/keep.h"
 
 enum { DECIDING_MAX = 3, WORDS = 600 };
 

@@ -105,3 +105,21 @@ void fg_lot_content_free(fg_lot_content *content) {
   free(content->scans);
   *content = (fg_lot_content){0};
 }
+
+fg_status fg_station_lot_note(fg_context *ctx, fg_station_database *database, const char *lot,
+                              char *words, size_t size) {
+  fg_query query;
+  words[0] = '\0';
+  pthread_mutex_lock(&database->writing);
+  fg_query_begin(database->writer, "SELECT by FROM lots WHERE name = ? ORDER BY id DESC LIMIT 1",
+                 &query);
+  fg_query_text(&query, lot);
+  if (fg_query_row(&query))
+    fg_text_clip(words, size,
+                 "comes after its lot '%.127s' was closed by %.127s; close the lot again on the "
+                 "page Lots",
+                 lot, fg_query_get_text(&query, 0));
+  fg_status status = fg_query_end(ctx, &query, "reading the lots");
+  pthread_mutex_unlock(&database->writing);
+  return status;
+}

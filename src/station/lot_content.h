@@ -44,4 +44,9 @@ fg_status fg_lot_content_read(fg_context *ctx, sqlite3 *reader, const char *lot,
                               fg_lot_content *content);
 void fg_lot_content_free(fg_lot_content *content);
 
+/* What a foil of that lot has to say when it comes after the lot was closed; "" when it has not
+ * been. */
+fg_status fg_station_lot_note(fg_context *ctx, fg_station_database *database, const char *lot,
+                              char *words, size_t size);
+
 #endif

@@ -3,7 +3,7 @@
 #ifndef FG_STATION_PAGES_H
 #define FG_STATION_PAGES_H
 
-#include "station/answer.h"
+#include "station/request.h"
 
 typedef enum fg_tab {
   FG_TAB_NOW,

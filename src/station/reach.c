@@ -12,7 +12,7 @@
 #include <unistd.h>
 
 #include "core/text.h"
-#include "station/answer.h"
+#include "station/request.h"
 
 enum { NAME_BYTES = 256, DEFAULT_PORT = 80 };
 

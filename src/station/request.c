@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "core/utf8.h"
-#include "station/answer.h"
+#include "station/request.h"
 
 static int hex_digit(char c) {
   if (c >= '0' && c <= '9') return c - '0';

@@ -4,7 +4,7 @@
 #define FG_STATION_STORED_FOIL_H
 
 #include "lot/run/record.h"
-#include "station/answer.h"
+#include "station/request.h"
 
 typedef struct fg_stored_foil {
   int64_t id, at;

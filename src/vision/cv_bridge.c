@@ -10,8 +10,6 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "vision/cv_module.h"
-
 enum { PATH_BYTES = 4096 };
 
 static pthread_once_t once = PTHREAD_ONCE_INIT;

@@ -4,47 +4,22 @@
 #ifndef FG_VISION_CV_BRIDGE_H
 #define FG_VISION_CV_BRIDGE_H
 
-#include <stddef.h>
-#include <stdint.h>
-
-#include "foilgauge/status.h"
+#include "vision/cv_module.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-/* Closed contours: contour i holds the points starts[i] to starts[i + 1] - 1, in order. */
-typedef struct fg_contours {
-  int32_t *xy;    /* x, y of every point; owned */
-  size_t *starts; /* count + 1; owned */
-  size_t count;
-} fg_contours;
-
 /* Outlines of what is brighter than `level` and of the gaps in it, of those whose box is at least
- * `least` cells wide and high. Sides at most 32767. */
+ * `min` cells wide and high. Sides at most 32767. */
 fg_status fg_cv_contours(fg_context *ctx, const uint8_t *picture, int32_t width, int32_t height,
                          double level, int32_t min, fg_contours *out);
 void fg_contours_free(fg_contours *contours);
-
-/* A picture to draw on: rows of R, G, B bytes, without padding. */
-typedef struct fg_rgb {
-  uint8_t *pixels; /* 3 × width × height */
-  int32_t width, height;
-} fg_rgb;
 
 /* Draws an antialiased line through `count` points x, y in px (pixel centres at whole numbers; what
  * lies outside is cut off). `colour` is 0xRRGGBB. */
 fg_status fg_cv_draw_line(fg_context *ctx, fg_rgb *rgb, const double *xy_px, size_t count,
                           uint32_t colour, int32_t thickness_px);
-
-/* How text is drawn. */
-typedef struct fg_text_style {
-  double height_px;     /* of its capitals */
-  double anchor;        /* moves it to the left by that share of its width */
-  uint32_t colour;      /* 0xRRGGBB */
-  int32_t thickness_px; /* of the strokes */
-  int32_t rim_px;       /* of a dark rim around them; 0: none */
-} fg_text_style;
 
 /* Draws ASCII text, its baseline at at_px[1]. */
 fg_status fg_cv_draw_text(fg_context *ctx, fg_rgb *rgb, const char *text, const double at_px[2],

@@ -1,10 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the module around OpenCV offers: it is loaded where it is first needed (cv_bridge.c), as
- * OpenCV brings thirty shared objects that most commands never use. */
+/* Types and functions of the module around OpenCV. It is loaded where it is first needed
+ * (cv_bridge.c), as OpenCV brings thirty shared objects that most commands never use. */
 #ifndef FG_VISION_CV_MODULE_H
 #define FG_VISION_CV_MODULE_H
 
-#include "vision/cv_bridge.h"
+#include <stddef.h>
+#include <stdint.h>
+
+#include "foilgauge/status.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -12,6 +15,28 @@ extern "C" {
 
 #define FG_CV_MODULE_FILE   "foilgauge-opencv.so"
 #define FG_CV_MODULE_SYMBOL "fg_cv_module"
+
+/* Closed contours: contour i holds the points starts[i] to starts[i + 1] - 1, in order. */
+typedef struct fg_contours {
+  int32_t *xy;    /* x, y of every point; owned */
+  size_t *starts; /* count + 1; owned */
+  size_t count;
+} fg_contours;
+
+/* A picture to draw on: rows of R, G, B bytes, without padding. */
+typedef struct fg_rgb {
+  uint8_t *pixels; /* 3 × width × height */
+  int32_t width, height;
+} fg_rgb;
+
+/* Style of a text. */
+typedef struct fg_text_style {
+  double height_px;     /* of its capitals */
+  double anchor;        /* moves it to the left by that share of its width */
+  uint32_t colour;      /* 0xRRGGBB */
+  int32_t thickness_px; /* of the strokes */
+  int32_t rim_px;       /* of a dark rim around them; 0: none */
+} fg_text_style;
 
 /* Each is the function of cv_bridge.h of that name. */
 typedef struct fg_cv_functions {

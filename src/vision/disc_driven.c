@@ -3,7 +3,7 @@
  * stations each, see edges_driven.c. */
 #include <math.h>
 
-#include "vision/disc_edge.h"
+#include "vision/disc_work.h"
 
 enum { BLOCK_STATIONS = 8, REACH_BLURS = 4 };
 

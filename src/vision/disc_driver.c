@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "vision/disc_edge.h"
+#include "vision/disc_work.h"
 #include "vision/driver_choice.h"
 
 /* sd of a pixel, counts, that the fits start from. */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The sectors of an edge: mean profiles and a step fitted to each. */
-#include "vision/disc_edge.h"
+#include "vision/disc_work.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The shape of a round edge around its turn: sectors' fits, smoothed by their first harmonics. */
-#include "vision/disc_edge.h"
+#include "vision/disc_work.h"
 
 #include <math.h>
 #include <stdlib.h>

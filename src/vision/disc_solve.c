@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The edge of every station of a round feature from its pixels, the shape held. */
-#include "vision/disc_edge.h"
+#include "vision/disc_work.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -8,6 +8,7 @@
 #include "core/memory.h"
 #include "core/select.h"
 #include "vision/edge_spread.h"
+#include "vision/edge_work.h"
 #include "vision/ends.h"
 #include "vision/picture.h"
 

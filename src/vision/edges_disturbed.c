@@ -6,7 +6,7 @@
 #include "core/memory.h"
 #include "core/select.h"
 #include "core/spread.h"
-#include "vision/edges.h"
+#include "vision/edge_work.h"
 
 /* The misfit is looked at over so many stations to either side; it is no chance when it is above
  * the usual one by so many times the scatter. */

@@ -3,7 +3,7 @@
 #include <math.h>
 
 #include "vision/driver_table.h"
-#include "vision/edges.h"
+#include "vision/edge_work.h"
 
 enum { BLOCK_STATIONS = 8 };
 

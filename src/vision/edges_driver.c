@@ -8,7 +8,7 @@
 #include "core/memory.h"
 #include "core/select.h"
 #include "vision/driver_choice.h"
-#include "vision/edges.h"
+#include "vision/edge_work.h"
 #include "vision/picture.h"
 
 /* Profiles one by one do not tell a power beyond this well: all of them are asked together. */

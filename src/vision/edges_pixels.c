@@ -3,7 +3,7 @@
 #include <math.h>
 
 #include "core/parallel.h"
-#include "vision/edges.h"
+#include "vision/edge_work.h"
 
 enum { MIDDLE_STATIONS = 4 }; /* the middle is smoothed over so many stations to either side */
 

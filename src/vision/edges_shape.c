@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The shape of the edges along a strip: mean profiles of segments, and their fits. */
-#include "vision/edges.h"
+#include "vision/edge_work.h"
 
 #include <math.h>
 #include <string.h>

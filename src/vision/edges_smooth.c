@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The shape of every station: the segments' fits, smoothed by direction and place. */
-#include "vision/edges.h"
+#include "vision/edge_work.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Both edges of every station from its pixels, the shape of the profile held. */
-#include "vision/edges.h"
+#include "vision/edge_work.h"
 
 #include <math.h>
 #include <string.h>

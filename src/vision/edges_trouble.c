@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "vision/edges.h"
+#include "vision/edge_work.h"
 
 /* Inside is so many blurs from the edges (or the middle third), beside so many and a pixel. */
 #define INSIDE_BLURS 1.5

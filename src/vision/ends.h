@@ -14,7 +14,7 @@
 #ifndef FG_VISION_ENDS_H
 #define FG_VISION_ENDS_H
 
-#include "vision/edges.h"
+#include "vision/edge_work.h"
 
 #ifdef __cplusplus
 extern "C" {

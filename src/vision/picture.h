@@ -6,8 +6,8 @@
 #define FG_VISION_PICTURE_H
 
 #include "foilgauge/picture.h"
-#include "vision/disc_edge.h"
-#include "vision/edges.h"
+#include "vision/disc_work.h"
+#include "vision/edge_work.h"
 #include "vision/picture_profile.h"
 
 /* Of a strip whose edges are found. picture_strip.c */

@@ -7,7 +7,6 @@
 
 #include "core/memory.h"
 #include "foilgauge/strip.h"
-#include "vision/trace_walk.h"
 
 enum {
   STRIPS_MAX = 16, /* strips in one object */

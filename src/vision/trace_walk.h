@@ -3,7 +3,17 @@
 #ifndef FG_VISION_TRACE_WALK_H
 #define FG_VISION_TRACE_WALK_H
 
-#include "vision/trace.h"
+#include "foilgauge/circle.h"
+#include "vision/segment.h"
+
+typedef struct fg_trace {
+  fg_point *points; /* px, from one end to the other; owned */
+  size_t count, capacity;
+  double width_px; /* of the strip at half contrast, at the seed */
+  double blur_px;  /* mean sd of the edges' blur, roughly */
+  double contrast; /* contrast at the seed, 8-bit counts */
+  unsigned facts;  /* fg_strip_fact: border, other, gap */
+} fg_trace;
 
 typedef struct fg_trace_walker {
   const fg_tiles *tiles;

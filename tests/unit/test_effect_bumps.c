@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "effect_search/policy.h"
+#include "effect_search/search.h"
 #include "support/foil_rows.h"
 #include "support/test.h"
 

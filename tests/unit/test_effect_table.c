@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "effect_search/policy.h"
+#include "effect_search/search.h"
 #include "effect_search/width_search.h"
 #include "foilgauge/render.h"
 #include "support/brief.h"

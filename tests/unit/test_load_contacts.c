@@ -5,6 +5,7 @@
 
 #include "load_test/analysis.h"
 #include "load_test/local_fit.h"
+#include "load_test/noise.h"
 #include "support/test.h"
 
 enum { SAMPLES = 600 };
@@ -137,6 +138,7 @@ static void contradictions(void **state) {
   fg_load_test test = {.samples = samples, .sample_count = ALL};
   fg_load_direction d = {.count = ALL, .travel_mm = 0.38};
   assert_ok(&ctx, fg_load_strokes_cut(&ctx, &test, &d, &records, &strokes));
+  assert_ok(&ctx, fg_load_find_noise(&ctx, samples, d.step_mm, &strokes));
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
     in_row("rows[%zu]", i);
     const double u = 0.0005;

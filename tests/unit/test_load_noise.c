@@ -53,6 +53,7 @@ static void cut(record *r) {
   r->direction.step_mm = fg_load_find_step(r->sample, SAMPLES);
   r->records = (fg_load_records){.begin = begin, .count = 1};
   assert_ok(&ctx, fg_load_strokes_cut(&ctx, &r->test, &r->direction, &r->records, &r->strokes));
+  assert_ok(&ctx, fg_load_find_noise(&ctx, r->sample, r->direction.step_mm, &r->strokes));
 }
 
 static void steps_of_columns(void **state) {

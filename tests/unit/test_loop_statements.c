@@ -11,6 +11,7 @@
 #include "core/spread.h"
 #include "foilgauge/render.h"
 #include "scan_loop/state.h"
+#include "scan_loop/verdict.h"
 #include "support/test.h"
 
 #define SCANNER                                                                                    \

@@ -9,6 +9,7 @@
 #include "scan_loop/result.h"
 #include "scan_loop/scanner_model.h"
 #include "scan_loop/state.h"
+#include "scan_loop/verdict.h"
 #include "support/test.h"
 
 enum { GRID = 41 };

@@ -5,7 +5,6 @@
 #include <stdlib.h>
 
 #include "core/memory.h"
-#include "report/measure/drawing.h"
 
 /* Residuals are drawn no longer than this: a longer one would cover its neighbours. */
 static const double whisker_max_mm = 1.0;

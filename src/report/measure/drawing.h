@@ -6,14 +6,6 @@
 #include "foilgauge/report.h"
 #include "page/canvas.h"
 
-enum {
-  FG_COLOUR_EDGE = 0x00a6c8,
-  FG_COLOUR_BUMP = 0xff7a1a,
-  FG_COLOUR_OVERALL = 0x3d9dff,
-  FG_COLOUR_RESIDUAL = 0xe0359b,
-  FG_COLOUR_TEXT = 0xffffff,
-};
-
 /* The emptiest corner of the canvas, where the residuals' scale is drawn: its lowest and highest x
  * and y, mm. */
 typedef struct fg_drawing_box {

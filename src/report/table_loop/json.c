@@ -11,6 +11,7 @@
 #include "foilgauge/words.h"
 #include "report/table_loop/checks.h"
 #include "report/table_loop/next.h"
+#include "report/table_loop/reading.h"
 
 static void write_error(fg_json *json, const char *name, const fg_loop_error *error) {
   fg_json_object(json, name);

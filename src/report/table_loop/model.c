@@ -4,7 +4,7 @@
 #include "core/json_writer.h"
 #include "foilgauge/loop.h"
 #include "foilgauge/words.h"
-#include "report/table_loop/words.h"
+#include "report/table_loop/reading.h"
 
 static void write_coordinate(fg_json *json, const fg_loop_coordinate *at) {
   fg_json_object(json, NULL);

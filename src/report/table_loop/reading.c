@@ -252,8 +252,11 @@ static void read_exchange(const reading *r) {
   fg_text_clip(r->text, FG_LOOP_WORDS, "their responses are %s apart", range);
 }
 
-void fg_loop_claim_reading(const fg_loop_report *report, const fg_loop_claim *claim,
-                           char text[FG_LOOP_WORDS]) {
+/* "operator B reads 0.592 ± 0.093 µm higher than operator A", "it rises by 0.72 ± 0.10 from the
+ * first run to the last": of claims of the mean and of single rows. U is of 95 %, by Student's t.
+ */
+static void write_reading(const fg_loop_report *report, const fg_loop_claim *claim,
+                          char text[FG_LOOP_WORDS]) {
   static void (*const readers[FG_LOOP_READINGS])(const reading *) = {
       [FG_LOOP_READS_RANGE] = read_range, [FG_LOOP_READS_SLOPE] = read_slope,
       [FG_LOOP_READS_BEND] = read_bend,   [FG_LOOP_READS_LEVELS] = read_levels,
@@ -274,4 +277,28 @@ double fg_loop_readable_size(const fg_loop_candidate *candidate, double amplitud
   bool as_is = effect->from_zero || effect->scatter != FG_LOOP_OF_THE_MEAN ||
                effect->outlier == FG_LOOP_WRONG_ROW;
   return as_is ? amplitude : 2 * amplitude;
+}
+
+void fg_loop_claim_size(const fg_loop_report *report, const fg_loop_claim *claim,
+                        char text[FG_LOOP_WORDS]) {
+  const fg_loop_effect *effect = claim->candidate.effect;
+  if (effect->scatter == FG_LOOP_OF_THE_MEAN) {
+    write_reading(report, claim, text);
+    return;
+  }
+  fg_text_clip(text, FG_LOOP_WORDS, "%s %s",
+               effect->scatter == FG_LOOP_SERIAL ? "correlation" : "ratio of the sd",
+               fg_loop_number_text("%.3g", claim->noise_value).text);
+  size_t used = strlen(text);
+  if (isfinite(claim->noise_value_u))
+    fg_text_clip(text + used, FG_LOOP_WORDS - used, " ± %.2g", 2 * claim->noise_value_u);
+}
+
+void fg_loop_claim_sentence(const fg_loop_report *report, const fg_loop_claim *claim,
+                            char text[2 * FG_LOOP_WORDS]) {
+  char words[FG_LOOP_WORDS], size[FG_LOOP_WORDS];
+  bool mean = claim->candidate.effect->scatter == FG_LOOP_OF_THE_MEAN;
+  fg_loop_claim_words(report, claim, words);
+  fg_loop_claim_size(report, claim, size);
+  fg_text_clip(text, (size_t)2 * FG_LOOP_WORDS, mean ? "%s: %s" : "%s (%s)", words, size);
 }

@@ -5,14 +5,17 @@
 
 #include "report/table_loop/words.h"
 
-/* Writes "operator B reads 0.592 ± 0.093 µm higher than operator A", "it rises by 0.72 ± 0.10 from
- * the first run to the last": for claims of the mean and of single rows. U is of 95 %, by Student's
- * t. */
-void fg_loop_claim_reading(const fg_loop_report *report, const fg_loop_claim *claim,
-                           char text[FG_LOOP_WORDS]);
-
 /* Returns the smallest difference of that kind that would have been found, given the detectable
  * amplitude. */
 double fg_loop_readable_size(const fg_loop_candidate *candidate, double amplitude);
+
+/* Effect on the response ("it rises by 0.72 ± 0.10 from the first run to the last"); of the scatter
+ * "correlation 0.94 ± 0.03", "ratio of the sd 4.1 ± 0.9". */
+void fg_loop_claim_size(const fg_loop_report *report, const fg_loop_claim *claim,
+                        char text[FG_LOOP_WORDS]);
+
+/* Words and size: "levels of operator: operator B reads 0.59 ± 0.09 higher than operator A". */
+void fg_loop_claim_sentence(const fg_loop_report *report, const fg_loop_claim *claim,
+                            char text[2 * FG_LOOP_WORDS]);
 
 #endif

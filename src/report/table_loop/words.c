@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "core/text.h"
-#include "report/table_loop/reading.h"
 
 fg_loop_number fg_loop_number_text(const char *format, double value) {
   fg_loop_number out;
@@ -167,30 +166,6 @@ void fg_loop_claim_words(const fg_loop_report *report, const fg_loop_claim *clai
     spread_statement(report, claim, text);
   else
     mean_statement(report, claim, text);
-}
-
-void fg_loop_claim_size(const fg_loop_report *report, const fg_loop_claim *claim,
-                        char text[FG_LOOP_WORDS]) {
-  const fg_loop_effect *effect = claim->candidate.effect;
-  if (effect->scatter == FG_LOOP_OF_THE_MEAN) {
-    fg_loop_claim_reading(report, claim, text);
-    return;
-  }
-  fg_text_clip(text, FG_LOOP_WORDS, "%s %s",
-               effect->scatter == FG_LOOP_SERIAL ? "correlation" : "ratio of the sd",
-               fg_loop_number_text("%.3g", claim->noise_value).text);
-  size_t used = strlen(text);
-  if (isfinite(claim->noise_value_u))
-    fg_text_clip(text + used, FG_LOOP_WORDS - used, " ± %.2g", 2 * claim->noise_value_u);
-}
-
-void fg_loop_claim_sentence(const fg_loop_report *report, const fg_loop_claim *claim,
-                            char text[2 * FG_LOOP_WORDS]) {
-  char words[FG_LOOP_WORDS], size[FG_LOOP_WORDS];
-  bool mean = claim->candidate.effect->scatter == FG_LOOP_OF_THE_MEAN;
-  fg_loop_claim_words(report, claim, words);
-  fg_loop_claim_size(report, claim, size);
-  fg_text_clip(text, (size_t)2 * FG_LOOP_WORDS, mean ? "%s: %s" : "%s (%s)", words, size);
 }
 
 const char *fg_loop_rejected_word(const fg_loop_rejected *rejected) {

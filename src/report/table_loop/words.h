@@ -35,13 +35,6 @@ void fg_loop_closeness_words(const fg_loop_alias *alias, char text[FG_LOOP_WORDS
  * its candidate's words. */
 void fg_loop_claim_words(const fg_loop_report *report, const fg_loop_claim *claim,
                          char text[FG_LOOP_WORDS]);
-/* Effect on the response ("it rises by 0.72 ± 0.10 from the first run to the last"); of the scatter
- * "correlation 0.94 ± 0.03", "ratio of the sd 4.1 ± 0.9". */
-void fg_loop_claim_size(const fg_loop_report *report, const fg_loop_claim *claim,
-                        char text[FG_LOOP_WORDS]);
-/* Words and size: "levels of operator: operator B reads 0.59 ± 0.09 higher than operator A". */
-void fg_loop_claim_sentence(const fg_loop_report *report, const fg_loop_claim *claim,
-                            char text[2 * FG_LOOP_WORDS]);
 /* Verdict of a residual test: "yes" for noise, "no", and "not sure" for a p-value that noise alone
  * reaches in one table of ten. */
 const char *fg_loop_check_answer(const fg_loop_checked *check);

@@ -1,0 +1,57 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A request and its answer, as pages and actions see them: no sockets, no HTTP. */
+#ifndef FG_STATION_REQUEST_H
+#define FG_STATION_REQUEST_H
+
+#include <stddef.h>
+#include <stdio.h>
+
+#include "station/state.h"
+
+/* FG_TOKEN_MAX: of --token; it fits into a cookie. */
+enum { FG_TOKEN_MIN = 16, FG_TOKEN_MAX = 64 };
+enum { FG_FIELDS_MAX = 32, FG_FIELD_BYTES = 1024, FG_BODY_MAX = 1 << 16 };
+
+/* A name and its value, from a query or a form; decoded, valid UTF-8, without control characters.
+ */
+typedef struct fg_field {
+  char name[64];
+  char value[FG_FIELD_BYTES];
+} fg_field;
+
+typedef struct fg_request {
+  bool post;        /* else GET */
+  const char *path; /* as it was sent: routes are plain ASCII, nothing in them is encoded */
+  fg_field field[FG_FIELDS_MAX];
+  size_t fields;
+  const char *host, *origin, *site, *cookie; /* headers; NULL: absent. site: Sec-Fetch-Site */
+  long long last_event;                      /* Last-Event-ID; -1: none */
+} fg_request;
+
+typedef struct fg_answer {
+  int code;           /* of HTTP */
+  const char *type;   /* "text/html; charset=utf-8" */
+  char location[256]; /* of a redirection; "": none */
+  char cookie[128];   /* to set; "": none */
+  char download[160]; /* name of a file to save; "": to be shown */
+  bool own_style;     /* a report of its own: its styles are inline */
+  bool wait;          /* there is no event yet: ask again when there is one */
+  char *body;
+  size_t size;
+} fg_answer;
+
+/* One field more, name and value (NULL: "") still encoded as in an address. False as below. */
+bool fg_request_add_field(fg_request *request, const char *name, const char *value);
+
+/* Fields of a query or a form body. False: too many, too long, or not encoded as it should be. */
+bool fg_request_read_fields(fg_request *request, const char *text, size_t length);
+
+/* The value, or "". */
+const char *fg_request_get(const fg_request *request, const char *name);
+
+/* A page's writer: into `out`; `reader` is the database, and nobody else's meanwhile. FG_ERR_USAGE:
+ * what was asked for does not exist (404). */
+typedef fg_status fg_page_writer(fg_context *ctx, fg_inspection *station, sqlite3 *reader,
+                                 const fg_request *request, FILE *out);
+
+#endif
