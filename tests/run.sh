@@ -1,28 +1,55 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Builds foilgauge twice (release; sanitizers with warnings as errors) and runs every test in both.
-# --long adds the accuracy, speed and bed benchmarks, the rendered experiments, the thesis's
-# experiments, the comparison with R, the station and every page in a browser and the loop on measured tables, which rewrite the tables in reports/; a minute of fuzzing for
-# each target, and a failure of every single allocation.
+# Builds foilgauge and tests it; --help says what each option adds or leaves out.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 . tests/packages.sh
 
-long=no
-case "${1-}" in
-  "") ;;
-  --long) long=yes ;;
+usage() {
+  cat <<'U'
+usage: tests/run.sh [--quick | --long | --help]
+
+  (nothing)  builds foilgauge twice, for release in build/ and with sanitizers and warnings as errors in build-sanitize/,
+             and runs every test in both: some seven minutes on two cores
+  --quick    builds for release alone and runs the tests that are labelled `quick`: less than a minute after the build.
+             Every room's unit tests and a script for each command are among them
+  --long     as without an option, and before that the benchmarks of accuracy, speed and beds, the rendered experiments,
+             the thesis's experiments, the comparison with R, the station and every page in a browser and the loop on
+             measured tables, which rewrite the tables in reports/; a minute of fuzzing for each target; a failure of
+             every single allocation
+
+After a build, `ctest --test-dir build -R NAME` runs the tests with NAME in theirs, and `ctest --test-dir build -L LABEL`
+those of a room, a command or a kind: station, loop, lot, render, unit, cli, fuzz (`ctest --test-dir build --print-labels`).
+U
+}
+
+tier=whole
+case "$#${1-}" in
+  0) ;;
+  1--quick) tier=quick ;;
+  1--long) tier=long ;;
+  1--help | 1-h)
+    usage
+    exit 0
+    ;;
   *)
-    echo "usage: tests/run.sh [--long]" >&2
+    usage >&2
     exit 64
     ;;
 esac
 
+# One more test at once than there are cores: the station's tests wait more than they work.
+jobs=$(($(nproc) + 1))
 install_missing $FOILGAUGE_PACKAGES
+# A version manager's python3 is a script that takes a tenth of a second, and the tests call Python a thousand times.
+PATH=$(dirname "$(python3 -c 'import sys; print(sys.executable)' 2>/dev/null || command -v sh)"):$PATH
 build_preset release build
+if [ $tier = quick ]; then
+  exec ctest --test-dir build -L quick --output-on-failure -j$jobs
+fi
 build_preset sanitize build-sanitize
 
-if [ $long = yes ]; then
+if [ $tier = long ]; then
   export FOILGAUGE_TEST_LONG=1 # tests that have more to show where time is no matter
   tests/bench/accuracy.sh
   tests/bench/speed.sh
@@ -51,7 +78,6 @@ export FOILGAUGE_RENDERER=$PWD/build/foilgauge
 code=0
 for tree in build build-sanitize; do
   echo "testing $tree/"
-  # One more than there are cores: the station's tests wait more than they work.
-  ctest --test-dir "$tree" --output-on-failure -j"$(($(nproc) + 1))" || code=$?
+  ctest --test-dir "$tree" --output-on-failure -j$jobs || code=$?
 done
 exit $code

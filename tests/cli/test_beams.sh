@@ -18,7 +18,7 @@ J
 }
 # agrees NAME WIDEST: every beam of a report beside its truth, in um.
 agrees() {
-  python3 - "$1" "$2" <<'P' || fail "$1 is not as rendered"
+  checks - "$1" "$2" <<'P' || fail "$1 is not as rendered"
 import json, sys
 truth, found = json.load(open(sys.argv[1] + ".truth")), json.load(open(sys.argv[1] + ".json"))
 beams = found["foils"][0]["beams"]
@@ -56,7 +56,7 @@ seen() { # NAME FINDINGS UM [OPTION...]: flags of the foil, and every beam withi
   "$program" measure $1.png --design design.json -o $1.json "${@:4}" >/dev/null
   [ "$(value $1.json 'sorted(f["finding"] for f in r["picture"]["findings"])')" = "$2" ] ||
     fail "$1: $(value $1.json '[f["finding"] for f in r["picture"]["findings"]]')"
-  python3 - $1 $3 <<'P' || fail "$1 is farther off than is said"
+  checks - $1 $3 <<'P' || fail "$1 is farther off than is said"
 import json, sys
 truth, found = json.load(open(sys.argv[1] + ".truth")), json.load(open(sys.argv[1] + ".json"))
 dpi = found["inputs"][0]["dpi"][0]
@@ -104,7 +104,7 @@ expect 2 'narrow_cut' "$program" measure narrow.png --design design.json
 sed 's/"form"/"calibration": {"scale": {"u_rel": 0.001}}, "tone": "linear", "form"/' design.json >doubted.json
 "$program" measure comb.png --design doubted.json -o doubted.json.out
 near "u of a length" "$(value doubted.json.out 'r["foils"][0]["beams"][0]["u_length_mm"]')" 0.004 0.0002
-python3 - <<'P' || fail "an unknown tone curve is in a width, not in a length"
+checks - <<'P' || fail "an unknown tone curve is in a width, not in a length"
 import json
 known, unknown = (json.load(open(name))["foils"][0]["beams"][0] for name in ("doubted.json.out", "comb.json"))
 assert unknown["u_width_mm"] > 0.005 > 4 * known["u_width_mm"], (unknown["u_width_mm"], known["u_width_mm"])

@@ -12,7 +12,7 @@ cat >"$work/spec.json" <<'SPEC'
 SPEC
 "$renderer" render "$work/spec.json" -o "$work/bed.png" || fail "render"
 expect 2 "" "$program" measure "$work/bed.png" -o "$work/bed.json" --csv "$work/bed.csv"
-python3 - "$work/bed.json" <<'CHECK' || fail "the report is wrong"
+checks - "$work/bed.json" <<'CHECK' || fail "the report is wrong"
 import json, sys
 foils = json.load(open(sys.argv[1]))["foils"]
 assert [f["number"] for f in foils] == [1, 2, 3, 4, 5]

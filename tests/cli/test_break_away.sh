@@ -37,7 +37,7 @@ END
 
 for name in even grows no_preload few; do
   "$program" stiffness --break-away $name.csv --rig-torque 10 -o $name.json
-  python3 - $name.json <<'END' || fail "$name: U does not hold the truth as often as it says"
+  checks - $name.json <<'END' || fail "$name: U does not hold the truth as often as it says"
 import json, math, sys
 name = sys.argv[1]
 preload = 0 if "no_preload" in name else 34.4

@@ -29,7 +29,7 @@ for d in plain scale warm; do
   expect 0 '' "$program" measure $scan --design $d.json -o $d.out --html $d.html
   valid measure.schema.json $d.out
 done
-python3 - <<'P' || fail "u and values"
+checks - <<'P' || fail "u and values"
 import json
 read = lambda name: json.load(open(name + ".out"))
 plain, scale, warm = read("plain"), read("scale"), read("warm")
@@ -81,7 +81,7 @@ for file in lot.json index.html bumps.csv; do
 done
 valid lot.schema.json lot/lot.json
 expect 0 '' "$program" lot scans --design plain.json -o bare
-python3 - <<'P' || fail "the lot"
+checks - <<'P' || fail "the lot"
 import json
 a, b = (json.load(open(d + "/lot.json")) for d in ("lot", "bare"))
 assert a["calibration"]["scale"]["u_rel"] == 2e-3 and b["calibration"] is None
@@ -126,7 +126,7 @@ for d in plain scale; do
   expect 0 '' "$program" doe scans/runs.csv --scans scan --design $d.json --response overall.radius_mm --model T -o doe_$d.out --html doe_$d.html
 done
 valid doe.schema.json doe_plain.out doe_scale.out
-python3 - <<'P' || fail "an experiment's calibration"
+checks - <<'P' || fail "an experiment's calibration"
 import json
 a, b = (json.load(open(f"doe_{d}.out")) for d in ("plain", "scale"))
 assert a["calibration"] is None and a["u_calibration"] is None
@@ -144,7 +144,7 @@ for d in plain scale; do
   valid loop_scan.schema.json loop_$d.out
 done
 grep -q '<dt>Calibration</dt><dd>K 17' loop.html || fail "the loop's page does not name it"
-python3 - <<'P' || fail "the loop"
+checks - <<'P' || fail "the loop"
 import json
 a, b = (json.load(open(f"loop_{d}.out")) for d in ("plain", "scale"))
 for name in ("verdict", "p_value", "noise_floor", "claims", "rejected", "error_ratio"):

@@ -15,7 +15,7 @@ clip() {
 J
   "$renderer" render scan.json -o scan.png || fail "render $*"
   "$program" measure scan.png --design limits.json -o scan.out 2>/dev/null
-  python3 - "$4" <<'P' || fail "clipped $*: wrong beyond U, or a wrong verdict"
+  checks - "$4" <<'P' || fail "clipped $*: wrong beyond U, or a wrong verdict"
 import json, sys
 foil, truth = json.load(open("scan.out"))["foils"][0], float(sys.argv[1])
 assert "clipped_levels" in foil["flags"], foil["flags"]
@@ -42,7 +42,7 @@ for threshold in 60 180; do
 J
   "$renderer" render bit.json -o bit.png || fail "render 1 bit"
   "$program" measure bit.png --design pin.json -o bit.out 2>/dev/null
-  python3 - <<'P' || fail "a pin of two levels, threshold $threshold"
+  checks - <<'P' || fail "a pin of two levels, threshold $threshold"
 import json
 disc = json.load(open("bit.out"))["discs"][0]
 assert "few_levels" in disc["flags"] and disc["verdict"] == "cannot_tell", (disc["flags"], disc["verdict"])

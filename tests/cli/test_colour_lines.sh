@@ -71,7 +71,7 @@ expect 0 "" "$program" measure magenta.png -o magenta.report.json
 within magenta dx_px blue 0.2
 
 # Gray saved as RGB; gray; half a file.
-python3 - <<'PYTHON'
+checks - <<'PYTHON'
 import struct, zlib
 data = open("near.png", "rb").read()
 at, chunks = 8, []

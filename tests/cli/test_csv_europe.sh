@@ -11,7 +11,7 @@ european() {
 }
 # alike A B: reports that differ in nothing but the name and sum of their input.
 alike() {
-  python3 - "$@" <<'P' || fail "$1 and $2 differ"
+  checks - "$@" <<'P' || fail "$1 and $2 differ"
 import json, sys
 a, b = (json.load(open(name)) for name in sys.argv[1:])
 for report in (a, b):
@@ -105,7 +105,7 @@ written() {
   rm -rf out.d
   "$@" --decimal-comma >said 2>&1
   [ $? = $code ] || fail "$* --decimal-comma: another exit code: $(cat said)"
-  python3 read.py point.out "$file" || fail "$* --decimal-comma: $file"
+  checks read.py point.out "$file" || fail "$* --decimal-comma: $file"
 }
 mkdir scans
 for i in 1 2 3; do
@@ -128,7 +128,7 @@ written out.d/bumps.csv "$program" merge s1 s2 -o out.d
 "$program" lot --index a.html points -o a.json 2>said || fail "index: $(cat said)"
 rm -rf commas && "$program" lot scans -o commas --name L --decimal-comma 2>said || fail "lot: $(cat said)"
 "$program" lot --index a.html commas -o b.json 2>said || fail "index: $(cat said)"
-python3 - a.json b.json <<'P' || fail "an index of a lot with decimal commas"
+checks - a.json b.json <<'P' || fail "an index of a lot with decimal commas"
 import json, sys
 a, b = (json.load(open(name))["lots"][0]["quantities"] for name in sys.argv[1:])
 assert a == b
@@ -144,7 +144,7 @@ for i in point comma; do
   "$program" station st --export lots.$i $option >said 2>&1 || fail "station --export: $(cat said)"
 done
 for file in foils bumps; do
-  python3 read.py "$(find lots.point -name $file.csv)" "$(find lots.comma -name $file.csv)" || fail "the station's $file.csv"
+  checks read.py "$(find lots.point -name $file.csv)" "$(find lots.comma -name $file.csv)" || fail "the station's $file.csv"
 done
 
 exit $failed

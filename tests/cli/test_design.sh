@@ -42,7 +42,7 @@ echo '{"schema": "foilgauge/design/1", "form": "sinusoidal"}' >"$work/sinus.json
 "$program" design "$root/samples/top_foil_design.json" -o "$work/arc.json" || fail "design of a plain strip"
 expect 65 "has no bumps" "$program" design "$root/samples/top_foil_design.json" --html "$work/never.html"
 valid nominal.schema.json "$work/arc.json" "$work/stiff.json" "$work/soft.json" "$work/none.json" "$work/sinus-out.json"
-python3 - "$work" <<'END' || fail "the stiffness of a design"
+checks - "$work" <<'END' || fail "the stiffness of a design"
 import json, sys
 one, soft, none, sinus = (json.load(open(f"{sys.argv[1]}/{name}.json")) for name in ("stiff", "soft", "none", "sinus-out"))
 assert "stiffness" not in none

@@ -216,7 +216,7 @@ echo '550,1.png;2.png' >>"$folder/scans/runs.csv"
 echo '{"schema": "foilgauge/design/1", "bump_count": 4}' >"$folder/four.json"
 measured=("$program" doe "$folder/scans/runs.csv" --scans scan --design "$folder/four.json" --model T)
 expect 0 '' "${measured[@]}" --response overall.springback_error_pct -o "$out/a.json"
-python3 - "$out/a.json" <<'PYTHON' || fail "the measured springback is not the rendered one"
+checks - "$out/a.json" <<'PYTHON' || fail "the measured springback is not the rendered one"
 import json, sys
 report = json.load(open(sys.argv[1]))
 truth = [100 * (r / 20.73 - 1) for r in (21.0, 21.4, 21.1, 21.5, 21.2)]

@@ -49,7 +49,7 @@ analyse() {
   python3 -c "import html,re,sys; t = re.sub(r'<style.*?</style>|<svg.*?</svg>', '', sys.stdin.read(), flags=re.S)
 print(' '.join(html.unescape(re.sub('<[^>]+>', ' ', t)).split()))" <"$name.page.html" >"$name.html"
   # Whatever is said of the best setting stands in all three.
-  python3 - "$name" <<'P' || fail "$name: terminal, page and JSON differ"
+  checks - "$name" <<'P' || fail "$name: terminal, page and JSON differ"
 import json, sys
 name = sys.argv[1]
 said = json.load(open(name + ".json"))["conclusions"]
@@ -72,7 +72,7 @@ grep -q 'pressure [0-9.]* bar' noise.html && fail "a pressure in bar"
 grep -q 'pressure cannot be told from the scatter (p = [0-9.]*, its terms together)' noise.txt || fail "why any"
 grep -q 'It lies inside the region of the runs' noise.txt || fail "the terminal does not say that it is inside"
 analyse without ccd.csv springback_um 'temperature_C*duration_h + temperature_C^2 + duration_h^2'
-python3 - <<'P' || fail "the optimum is not that of the model without the pressure"
+checks - <<'P' || fail "the optimum is not that of the model without the pressure"
 import json
 noise, without = (json.load(open(n + ".json"))["surface"] for n in ("noise", "without"))
 assert [a["name"] for a in noise["any"]] == ["pressure_bar"] and noise["any"][0]["terms"] == 4, noise["any"]

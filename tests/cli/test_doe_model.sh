@@ -13,7 +13,7 @@ grep -q '"table.linear' better.json || fail "the loop has not found the humidity
 
 expect 0 '' "$program" doe runs.csv --response y --model T --code none -o before.json
 expect 0 '' "$program" doe runs.csv --response y --model better.json --code none -o after.json
-python3 - <<'P' || fail "the analysis does not start from the better model"
+checks - <<'P' || fail "the analysis does not start from the better model"
 import json
 before, after = (json.load(open(name + ".json")) for name in ("before", "after"))
 slope = lambda r: [c for c in r["coefficients"] if "T" in c["name"]][0]
@@ -24,7 +24,7 @@ assert after["runs"][0]["response"] != before["runs"][0]["response"]
 P
 
 # What was taken out is said, with its uncertainty, and the residual pays for it.
-python3 - <<'P' || fail "what was taken out is not said or not paid for"
+checks - <<'P' || fail "what was taken out is not said or not paid for"
 import json
 before, after, model = (json.load(open(name + ".json")) for name in ("before", "after", "better"))
 claim = model["claims"][0]
@@ -65,7 +65,7 @@ model["unattributed"] = {"coordinate": "run", "freedom": 3.4, "shape": [[1, 0.1]
 json.dump(model, open("more.json", "w"))
 P
 expect 0 '' "$program" doe runs.csv --response y --model more.json --code none -o more.out.json
-python3 - <<'P' || fail "a lone row, a curve"
+checks - <<'P' || fail "a lone row, a curve"
 import json
 report = json.load(open("more.out.json"))
 lone, curve = report["taken_out"]["effects"][1:]

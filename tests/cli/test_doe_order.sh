@@ -21,7 +21,7 @@ for name in clean "it's a drift" slip unnamed shuffled; do
   expect 0 '' "$program" doe "$name.csv" --response y --model T -o "$name.json"
   valid doe.schema.json "$name.json"
 done
-python3 - <<'P' || fail "what is seen over the order"
+checks - <<'P' || fail "what is seen over the order"
 import json
 clean, drift, slip, unnamed, shuffled = (
     json.load(open(name + ".json")) for name in ("clean", "it's a drift", "slip", "unnamed", "shuffled"))
@@ -76,7 +76,7 @@ with open("factorial.csv", "w") as out:
         print(a, b, c, d, 10 + 4 * a - 3 * b + 2 * a * b + 1.8 * c + 0.3 * random.gauss(0, 1), sep=",", file=out)
 P
 expect 0 '' "$program" doe factorial.csv --response y --model 'A*B*C*D' --html factorial.html -o factorial.json
-python3 - <<'P' || fail "the half-normal line"
+checks - <<'P' || fail "the half-normal line"
 import re
 page = open("factorial.html").read()
 plot = page[page.index("Half-normal plot"):]

@@ -31,7 +31,7 @@ expect 0 "" "$program" forming "$root/samples/render/../top_foil_design.json" -o
 expect 0 "" "$program" die "$root"/samples/die/*.txt -o die.json
 expect 0 "" "$program" forming --die die.json -o of_die.json
 expect 0 "" "$program" forming -o of_design.json
-python3 - of_die.json of_design.json die.json <<'END' || fail "the die's bumps"
+checks - of_die.json of_design.json die.json <<'END' || fail "the die's bumps"
 import json, sys
 die_form, design_form, die = (json.load(open(name)) for name in sys.argv[1:])
 of = {b["number"]: b["radius_mm"] for b in die["die"]["bumps"]}

@@ -39,7 +39,7 @@ expect 0 "" "$renderer" lot lot -o out
 
 expect 0 "" "$program" loop --lot out --form-model declared.json -o loop.json --html loop.html
 valid loop.schema.json loop.json
-python3 - loop.json <<'END' || fail "the effect over the bumps is not found"
+checks - loop.json <<'END' || fail "the effect over the bumps is not found"
 import json, sys
 r = json.load(open(sys.argv[1]))
 assert r["declared"]["offset"] == "declared" and any(i["path"] == "declared.json" for i in r["inputs"]), r["declared"]
@@ -54,7 +54,7 @@ grep -q 'measured minus predicted' loop.html || fail "the page does not say how 
 scans="lot/1.png lot/2.png lot/3.png --hold-out lot/4.png"
 expect 0 "" "$program" loop $scans --form-model declared.json -o scans.json --html scans.html
 valid loop_scan.schema.json scans.json
-python3 - scans.json declared.json <<'END' || fail "the effect over the bumps of scans is not found"
+checks - scans.json declared.json <<'END' || fail "the effect over the bumps of scans is not found"
 import hashlib, json, sys
 r = json.load(open(sys.argv[1]))
 bumps = r["bumps"]

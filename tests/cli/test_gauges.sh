@@ -78,11 +78,9 @@ for dpi in 2400, 4800:
             assert abs(off) < 0.0005 and u < (0.0018 if curve else 0.0006), (name, off, u)
             assert scan(name, [FOIL], dpi=dpi, light=light, curve=curve)["foils"][0]["u_thickness_mm"] > 3 * u, name
 P
-python3 - "$program" "$renderer" <<'P' || fail "a leaf beside the foil"
-exec(open("draw.py").read()); exec(open("curves.py").read().split("\n", 1)[1])
-P
-python3 - "$program" "$renderer" <<'P' || fail "gauges of other sizes, places and kinds"
-exec(open("draw.py").read())
+checks curves.py "$program" "$renderer" || fail "a leaf beside the foil"
+checks - "$program" "$renderer" <<'P' || fail "gauges of other sizes, places and kinds"
+from draw import *
 LEVEL = {"curve": CURVE}
 for name, foils, discs, gauges in (
         ("short", [FOIL, leaf(length=5)], [], ["leaf:0.1:0.0005"]),
@@ -129,8 +127,8 @@ for disc in report["discs"]:
     true = round(disc["diameter_mm"])
     assert abs(disc["diameter_mm"] - true) < 2 * disc["u_diameter_mm"] and abs(disc["diameter_mm"] - true) < 0.0015, disc["diameter_mm"]
 P
-python3 - "$program" "$renderer" <<'P' || fail "gauges that tell nothing"
-exec(open("draw.py").read())
+checks - "$program" "$renderer" <<'P' || fail "gauges that tell nothing"
+from draw import *
 plain = scan("alone", [FOIL])["foils"][0]["thickness_mm"]
 missing = scan("missing", [FOIL], options=LEAF)
 assert not missing["gauges"][0]["found"] and "no straight strip" in missing["gauges"][0]["note"]
@@ -150,8 +148,8 @@ assert two["gauges_contradict"] and "contradict" in two["said"] and "contradict"
 right("contradict", two)
 P
 # A plate of known diameters tells the level, apart from the scanner's scale, for scans of the same settings.
-python3 - "$program" "$renderer" <<'P' || fail "the level in a scanner's model"
-exec(open("draw.py").read())
+checks - "$program" "$renderer" <<'P' || fail "the level in a scanner's model"
+from draw import *
 PINS = [(2.4, 2.6, 2), (10, 3.5, 3), (20, 4.6, 4), (32, 5.1, 5), (4.2, 15, 2.5), (14.4, 16.1, 5.5), (40, 24, 6)]
 open("plate.design", "w").write(json.dumps({"schema": "foilgauge/design/1", "form": "discs", "u_diameters_mm": 0.0004,
                                             "diameters_mm": [pin[2] for pin in PINS]}))

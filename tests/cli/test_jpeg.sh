@@ -45,7 +45,7 @@ grep -q '<li>The scan was compressed with loss (JPEG)' lossy.html || fail "the p
 foil='r["foils"][0]'
 near "radius, all the same" "$(value lossy.json "$foil['bumps'][1]['radius_mm']")" \
   "$(value pixels.json "$foil['bumps'][1]['radius_mm']")" 1e-12
-python3 - <<'P' || fail "the uncertainties do not hold the loss"
+checks - <<'P' || fail "the uncertainties do not hold the loss"
 import json
 # The quality is found in the pixels alone, too: their uncertainties are as those of the JPEG.
 lossy, pixels = (json.load(open(f"{name}.json"))["foils"][0] for name in ("lossy", "pixels"))

@@ -40,7 +40,7 @@ look months 1
 look cube A+B+C
 look flat A+B+C
 look copies A+B+C
-python3 - <<'PYTHON' || fail "clean is said of what is no noise, or not of what is"
+checks - <<'PYTHON' || fail "clean is said of what is no noise, or not of what is"
 import json
 def report(name):
     r = json.load(open(name + ".json"))

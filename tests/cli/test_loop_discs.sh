@@ -30,7 +30,7 @@ PYTHON
 
 # Largest error of a radius in um, against the pins in order of size.
 error_of() {
-  python3 - "$1" "$2" "$pins" <<'PYTHON'
+  checks - "$1" "$2" "$pins" <<'PYTHON'
 import json, sys
 report, side, pins = sys.argv[1:]
 r = json.load(open(report))

@@ -25,7 +25,7 @@ for i in $(seq 14); do
 done
 expect 0 '' "$program" lot lot.csv -o lot --design four.json
 expect 0 '' "$program" loop --lot lot -o bumps.json --html bumps.html
-python3 - <<'P' || fail "the bumps of the lot: $(head -c 3000 bumps.json)"
+checks - <<'P' || fail "the bumps of the lot: $(head -c 3000 bumps.json)"
 import json
 r = json.load(open("bumps.json"))
 assert r["verdict"] == "explained", r["summary"]
@@ -71,7 +71,7 @@ expect 0 '"groups": 7' "$program" loop --lot again --response overall.radius_mm 
 
 # Its own tables through --table: results of the same measurement are never causes.
 expect 0 '' "$program" loop --table lot/bumps.csv --response radius_mm --model 1 --group serial -o own.json
-python3 - <<'P' || fail "the lot's own table: $(head -c 2000 own.json)"
+checks - <<'P' || fail "the lot's own table: $(head -c 2000 own.json)"
 import json
 r = json.load(open("own.json"))
 tried = " ".join(c["name"] for c in r["claims"] + r["rejected"])
@@ -89,7 +89,7 @@ for i in $(seq 12); do
 done
 runs=("$program" loop --doe runs.csv --response radius_mm --model T_C --design four.json)
 expect 0 '' "${runs[@]}" --scans scans -o runs.json
-python3 - <<'P' || fail "the runs: $(head -c 3000 runs.json)"
+checks - <<'P' || fail "the runs: $(head -c 3000 runs.json)"
 import json
 r = json.load(open("runs.json"))
 assert r["verdict"] == "explained", r["summary"]

@@ -93,7 +93,7 @@ holds tie.html 'tied: not named' 'What the data cannot tell apart' 'an oval foil
 # What could be it agrees about R0 and h, which are moved, and not about R, which stays as measured: the page, the
 # terminal and the JSON say so, and the ranges hold what is reported.
 holds tie.html 'R stays as measured: these explanations would move' '<i>left</i>' 'R left as measured: the correction is' 'cannot tell apart' 'follow from R0, R and h'
-python3 - <<'PYTHON' || fail "a tie moves what its explanations do not agree about, or does not say so"
+checks - <<'PYTHON' || fail "a tie moves what its explanations do not agree about, or does not say so"
 import json
 r = json.load(open("tie.out"))
 before, after = (r[side]["foils"][0] for side in ("before", "after"))

@@ -50,7 +50,7 @@ reads() {
     --model-out "$name.model.json"
   terminal "$name" "$program" loop --table "$name.csv" --response "$response" --model "$2"
   valid loop.schema.json "$name.json"
-  python3 - "$@" <<'P' || fail "$name: not '$3' with $4"
+  checks - "$@" <<'P' || fail "$name: not '$3' with $4"
 import html, json, re, sys
 name, _, words, expected = sys.argv[1:5]
 report = json.load(open(name + ".json"))
@@ -102,7 +102,7 @@ grep -qE 'is suspected to hold .*\(p = 0\.0' s.txt || grep -q 'is suspected to h
 grep -q 'is noise as far' s.txt s.html s.json && fail "p = $(value s.json 'r["family_p_value"]') is called noise"
 grep -q 'Something is suspected, nothing is proven' s.html || fail "the page says that all is well"
 grep -q 'class="verdict clean"' s.html && fail "the page is green"
-python3 - <<'P' || fail "a test of what is left says yes to a small p"
+checks - <<'P' || fail "a test of what is left says yes to a small p"
 import json, re
 text = open("s.txt").read()
 for check in json.load(open("s.json"))["battery"]:

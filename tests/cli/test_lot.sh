@@ -82,7 +82,7 @@ for i in 1 2; do "$program" lot copied --recipe recipe.json -o part$i --shard $i
 expect 2 'counted once: 1 scan' "$program" merge part1 part2 -o joined
 same with joined
 valid with/lot.json
-python3 - without/lot.json with/lot.json <<'P' || fail "a copy of a scan changes the lot's statistics"
+checks - without/lot.json with/lot.json <<'P' || fail "a copy of a scan changes the lot's statistics"
 import json, sys
 a, b = (json.load(open(name)) for name in sys.argv[1:])
 assert a["quantities"] == b["quantities"] and a["foils"] == b["foils"], "statistics"
@@ -160,7 +160,7 @@ mkdir equal # the same pixels; other bytes behind them, or they would be one sca
 for i in $(seq 12); do (cat scans/foil1.png && echo "$i") >"equal/$i.png"; done
 expect 0 '' timeout 60 "$program" lot equal --recipe recipe.json -o same
 [ -s same/lot.json ] || fail "a lot of equal foils has no report"
-python3 - same/lot.json <<'P' || fail "a lot of equal foils shows signals"
+checks - same/lot.json <<'P' || fail "a lot of equal foils shows signals"
 import json, sys
 for quantity in json.load(open(sys.argv[1]))["quantities"].values():
     assert not quantity["individuals"]["signals"], quantity["individuals"]
@@ -201,7 +201,7 @@ if command -v xmllint >/dev/null; then
     fail "results.qif: $(head -n 3 xmllint.log)"
 fi
 valid lot.schema.json one/lot.json
-python3 - one/results.dfq <<'P' || fail "results.dfq"
+checks - one/results.dfq <<'P' || fail "results.dfq"
 import re, sys
 lines = open(sys.argv[1], "rb").read().decode().split("\r\n")
 assert lines[-1] == "" and lines[0].startswith("K0100 ")

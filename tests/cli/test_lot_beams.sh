@@ -28,7 +28,7 @@ expect 0 "6 foils of 6 scans: 6 pass" run -o one
 valid lot.schema.json one/lot.json
 [ -e one/bumps.csv ] || [ -e one/bearings.csv ] && fail "files of bumps beside those of beams"
 [ "$(wc -l <one/beams.csv)" = 25 ] || fail "beams.csv"
-python3 - <<'P' || fail "the lot's numbers"
+checks - <<'P' || fail "the lot's numbers"
 import csv, json, statistics
 r = json.load(open("one/lot.json"))
 truth = [b for i in range(1, 7) for b in json.load(open(f"lot/f{i}.truth"))["beams"]]
@@ -74,7 +74,7 @@ run -o bad >stdout 2>stderr
 code=$?
 [ $code = 1 ] || [ $code = 2 ] || fail "the exit code of a lot with a torn beam and long ones is $code: $(cat stdout stderr)"
 valid lot.schema.json bad/lot.json
-python3 - <<'P' || fail "damaged beams"
+checks - <<'P' || fail "damaged beams"
 import json
 r = json.load(open("bad/lot.json"))
 assert r["counts"]["beams_damaged"] == 1 and r["counts"]["fail"] >= 1, r["counts"]
@@ -84,7 +84,7 @@ P
 # Lots beside each other, a lot as a table, an experiment of scans.
 expect 0 "" "$program" lot --index index.html -o index.json one bad
 valid lot_index.schema.json index.json
-python3 - <<'P' || fail "lots of beams beside each other"
+checks - <<'P' || fail "lots of beams beside each other"
 import json
 r = json.load(open("index.json"))
 assert not any(l.get("problem") or l.get("doubt") for l in r["lots"]), r["lots"]

@@ -164,7 +164,7 @@ if command -v xmllint >/dev/null; then
   xmllint --noout --schema "$root/tests/support/qif3_results.xsd" built/results.qif 2>xmllint.log ||
     fail "results.qif of bearings: $(head -n 3 xmllint.log)"
 fi
-python3 - built <<'P' || fail "bearings for quality systems"
+checks - built <<'P' || fail "bearings for quality systems"
 import hashlib, json, re, sys
 import xml.etree.ElementTree as tree
 folder, q = sys.argv[1], "{http://qifstandards.org/xsd/qif3}"

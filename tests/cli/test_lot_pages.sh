@@ -24,7 +24,7 @@ lot() {
 
 # links LOT: every link of its page into `pages` leads to a file and a section; prints how many files they are of.
 links() {
-  python3 - "$1" <<'P' || fail "$1: links"
+  checks - "$1" <<'P' || fail "$1: links"
 import os, re, sys
 lot = sys.argv[1]
 page = open(f"{lot}/index.html", encoding="utf-8").read()

@@ -44,7 +44,7 @@ grep -q 'own error of scale is not in it' plain.txt || fail "plain.txt does not 
 [ "$(value plain.out "r['model'], 'correction' in r['foils'][0]")" = '(None, False)' ] || fail "plain.out names a model"
 [ "$(python3 -c "import csv; print(next(csv.DictReader(open(\"s1.csv\")))[\"model_sha256\"])")" = "$sum" ] || fail "s1.csv does not name the model"
 [ "$(python3 -c "import csv; print(next(csv.DictReader(open(\"plain.csv\")))[\"model_sha256\"])")" = "" ] || fail "plain.csv names a model"
-python3 - "$sum" <<'P' || fail "s1.out: the model and what it did"
+checks - "$sum" <<'P' || fail "s1.out: the model and what it did"
 import json, sys
 r, plain = json.load(open("s1.out")), json.load(open("plain.out"))["foils"][0]
 m, foil = r["model"], r["foils"][0]
@@ -104,7 +104,7 @@ for field in model["fields"]:
 json.dump(model, open("vague.json", "w"))
 P
 expect 0 '' "$program" measure scans/s1.png --model vague.json -o vague.out
-python3 - <<'P' || fail "a tied model does not widen the uncertainty to what its alternative would change"
+checks - <<'P' || fail "a tied model does not widen the uncertainty to what its alternative would change"
 import json
 read = lambda name: json.load(open(name))["foils"][0]
 tied, sure, scanned = read("tied.out"), read("s1.out"), read("scanned.out")
@@ -195,7 +195,7 @@ grep -q 'model was found in: 3 of 3 foils' beyond/index.html || fail "the lot's 
 [ "$(value beyond/lot.json "all('beyond_model_region' in f['flags'] for f in r['foils'])")" = True ] || fail "lot.json: no flag"
 cmp -s left.json one/scanner_model.json || fail "the lot does not keep its model"
 grep -q model plain/recipe.json && fail "a lot without a model has a recipe that speaks of one"
-python3 - one plain <<'P' || fail "the lot's radii"
+checks - one plain <<'P' || fail "the lot's radii"
 import csv, json, sys
 r0 = [[float(row["overall.radius_mm"]) for row in csv.DictReader(open(f"{folder}/foils.csv"))] for folder in sys.argv[1:]]
 measured = json.load(open("s1.out"))["foils"][0]["overall"]["radius_mm"]
@@ -206,7 +206,7 @@ P
 
 # What a tied model does not know well enough stays as scanned in a lot as well: the table flags it, the page counts it.
 expect 0 '' "$program" lot scans --model tied.json -o open
-python3 - open plain <<'P' || fail "a lot corrects by a tied model, or does not say that it does not"
+checks - open plain <<'P' || fail "a lot corrects by a tied model, or does not say that it does not"
 import csv, sys
 rows = [list(csv.DictReader(open(f"{folder}/foils.csv"))) for folder in sys.argv[1:]]
 for tied, plain in zip(*rows):

@@ -14,7 +14,7 @@ other() { "$python" "$root/tests/bench/other_scanner.py" . "$@" >/dev/null || fa
 other --seed 6 --name clean
 "$program" measure clean.png -o clean.json || fail "measure"
 valid measure.schema.json clean.json
-python3 - <<'PYTHON' || fail "the scan of the second renderer is measured wrong"
+checks - <<'PYTHON' || fail "the scan of the second renderer is measured wrong"
 import json
 foil, truth = json.load(open("clean.json"))["foils"][0], json.load(open("clean.truth.json"))
 places = [4800 / 25.4 * v for v in foil["overall"]["centre_mm"]]

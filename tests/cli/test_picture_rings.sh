@@ -3,6 +3,7 @@
 # Rings around bumps that fail are whole, also where the foil lies at the edge of its scan.
 # Usage: test_picture_rings.sh PROGRAM
 set -euo pipefail
+. "$(dirname "$0")/../support/checks.sh"
 program=$1
 renderer=${FOILGAUGE_RENDERER:-$program}
 work=$(mktemp -d)
@@ -15,7 +16,7 @@ for turn in -90 0 90 135; do
     "design": {"bump_count": 5}, "crushed": [{"bump": 3, "height_factor": 0.5}]}]}' $turn >"$work/spec.json"
   "$renderer" render "$work/spec.json" -o "$work/$turn.png"
   "$program" measure "$work/$turn.png" --design "$work/design.json" --html "$work/$turn.html" >/dev/null 2>&1 || true
-  python3 - "$work/$turn.html" <<'PY' || { echo "test_picture_rings: at $turn degrees" >&2; exit 1; }
+  checks - "$work/$turn.html" <<'PY' || { echo "test_picture_rings: at $turn degrees" >&2; exit 1; }
 import re, sys
 page = open(sys.argv[1]).read()
 left, top, width, height = map(float, re.search(r'class="picture"[^>]*viewBox="([^"]*)"', page)[1].split())

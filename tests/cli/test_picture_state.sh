@@ -18,7 +18,7 @@ render plain ''
 render sharp ',"unsharp_mask":{"amount_pct":100,"radius_px":1}'
 render blocks ',"rough":{"jpeg":{"quality":75}}'
 
-python3 - <<'P' || fail "the reports' findings"
+checks - <<'P' || fail "the reports' findings"
 import json
 def read(name):
     report = json.load(open(name + ".json"))

@@ -78,7 +78,7 @@ while time.monotonic() < end:
 assert longest < 1, longest
 print("%d requests, a page after %.2f s at most" % (sent, longest))
 PY
-(ulimit -n 4096 2>/dev/null || true; python3 "$work/attack.py" "$(cat "$work/address")" "$seconds") >"$work/found" 2>>"$work/said" ||
+(ulimit -n 4096 2>/dev/null || true; checks "$work/attack.py" "$(cat "$work/address")" "$seconds") >"$work/found" 2>>"$work/said" ||
   fail "requests"
 # Of the program alone: sanitizers keep what was freed.
 [ -n "${FOILGAUGE_TEST_BRIEF:-}" ] || [ "$(awk '/VmHWM/ { print int($2 / 1024) }' "/proc/$station/status")" -lt 250 ] || fail "memory"

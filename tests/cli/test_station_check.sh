@@ -4,6 +4,7 @@
 # get no verdict, until the driver is as it was or the change is accepted; what scatters is no change.
 # Usage: test_station_check.sh PROGRAM
 set -euo pipefail
+. "$(dirname "$0")/../support/checks.sh"
 program=$1
 renderer=${FOILGAUGE_RENDERER:-$program}
 work=$(mktemp -d)
@@ -90,20 +91,14 @@ once
 plate 19 "$work/in/check_new.png" "$plain, \"gamma\": 1.8"
 "$program" station "$work/in" --recipe "$work/recipe.json" --port 0 >"$work/address" 2>"$work/err" &
 station=$!
-python3 - "$work" <<'P' || fail "accepting: $(cat "$work/err")"
+checks - "$work" <<'P' || fail "accepting: $(cat "$work/err")"
 import re, sys, time, urllib.error, urllib.parse, urllib.request
-end = time.time() + 30
-def wait(what):
-    while time.time() < end:
-        found = what()
-        if found:
-            return found
-        time.sleep(0.05)
-    sys.exit("waited in vain")
-base = wait(lambda: open(sys.argv[1] + "/address").read().strip())
+base = wait_until(lambda: open(sys.argv[1] + "/address").read().strip())
 page = lambda: urllib.request.urlopen(base + "scanner").read().decode()
-wait(lambda: "CHANGED" in page())
+# An earlier check is in the page's history as CHANGED: only the newest one can be accepted.
+wait_until(lambda: 'name="form"' in page())
 text = page()
+assert "CHANGED" in text
 token = re.search(r'name="form" value="(\w+)"', text).group(1)
 check = re.search(r'name="id" value="(\d+)"', text).group(1)
 def post(fields):

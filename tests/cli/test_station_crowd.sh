@@ -40,9 +40,11 @@ wait_for 30 measured "$many" 1
 first=$(($(ms) - began))
 [ "$(grep -cE "The folder holds [0-9]{6,} files; looking" "$work/said")" -eq 1 ] || fail "no word of many files, or too many"
 began=$(ms)
-python3 -c 'import sys, urllib.request
+checks - "$(cat "$work/address")" <<'PY' || fail "the page does not say that there are very many files"
+import sys, urllib.request
 page = urllib.request.urlopen(sys.argv[1]).read().decode()
-assert "Very many files" in page, page' "$(cat "$work/address")" || fail "the page"
+assert "Very many files" in page, page
+PY
 page=$(($(ms) - began))
 memory=$(awk '/VmHWM/ { print int($2 / 1024) }' "/proc/$station/status")
 [ "$memory" -lt 200 ] || fail "$memory MiB"

@@ -4,6 +4,7 @@
 # byte; a lot is closed in the browser, and nothing but its report can be had there.
 # Usage: test_station_lots.sh PROGRAM
 set -euo pipefail
+. "$(dirname "$0")/../support/checks.sh"
 program=$1
 renderer=${FOILGAUGE_RENDERER:-$program}
 work=$(mktemp -d)
@@ -96,18 +97,10 @@ grep -q "4 scans, 1 to measure, 3 kept" "$work/said" || fail "--resume of two se
 # In the browser.
 "$program" station "$work/in" --recipe "$work/other.json" --port 0 >"$work/address" 2>"$work/err" &
 station=$!
-python3 - "$work" "$program" >&2 <<'PY' || fail "pages: $(cat "$work/err")"
+checks - "$work" "$program" >&2 <<'PY' || fail "pages: $(cat "$work/err")"
 import os, re, sys, time, urllib.error, urllib.parse, urllib.request
 work = sys.argv[1]
-def wait(what, seconds=20):
-    end = time.time() + seconds
-    while time.time() < end:
-        found = what()
-        if found:
-            return found
-        time.sleep(0.02)
-    sys.exit("waited in vain")
-base = wait(lambda: open(work + "/address").read().strip())
+base = wait_until(lambda: open(work + "/address").read().strip())
 def ask(path, **fields):
     data = urllib.parse.urlencode(fields).encode() if fields else None
     try:
@@ -128,9 +121,9 @@ assert ask("/close", form=form, lot="L 1", by=" ")[0] == 422
 assert ask("/close", form=form, lot="nothing", by="Ann")[0] == 404
 assert ask("/lot?name=L%201")[0] == 404
 for lot in "L 1", "../../up":
-    wait(lambda: "being closed" not in page("/lots")) # one at a time
+    wait_until(lambda: "being closed" not in page("/lots")) # one at a time
     assert ask("/close", form=form, lot=lot, by="Ann <b>")[0] == 200
-wait(lambda: "being closed" not in page("/lots"))
+wait_until(lambda: "being closed" not in page("/lots"))
 lots = page("/lots")
 assert "Closed lots" in lots and "Ann &lt;b&gt;" in lots and "since" not in lots, lots
 folders = sorted(os.listdir(work + "/in/lots"))
@@ -153,21 +146,18 @@ assert ask("/download", form=form, lot="L 1", file="foils.csv")[0] == 404
 PY
 # A foil that comes too late is said, on its card and beside the lot.
 draw 6 "$work/in/L 1-late2.png"
-python3 - "$work" >&2 <<'PY' || fail "late: $(cat "$work/err")"
+checks - "$work" >&2 <<'PY' || fail "late: $(cat "$work/err")"
 import re, sys, time, urllib.parse, urllib.request
 base = open(sys.argv[1] + "/address").read().strip()
 get = lambda path: urllib.request.urlopen(base + path).read().decode()
-end = time.time() + 20
-while "L 1-late2.png" not in get("") and time.time() < end:
-    time.sleep(0.05)
+wait_until(lambda: "L 1-late2.png" in get(""))
 assert "comes after its lot &#39;L 1&#39; was closed by Ann" in get("").replace("'", "&#39;"), get("")
 lots = get("lots")
 assert "been corrected since" in lots, lots
 form = re.search('name="form" value="([0-9a-f]+)"', lots)[1]
 fields = urllib.parse.urlencode(dict(form=form, lot="L 1", by="Bob")).encode()
 urllib.request.urlopen(base + "close", fields).read()
-while "being closed" in get("lots") and time.time() < end:
-    time.sleep(0.05)
+wait_until(lambda: "being closed" not in get("lots"))
 lots = get("lots")
 assert "been corrected since" not in lots and "by Bob" in lots and ", 1 time before" in lots, lots
 PY

@@ -46,7 +46,7 @@ names = {name for name, in database.execute("SELECT path FROM files")}
 assert {"bytes/FF/C3.png", "ünï%FF 100%.png", "text/FE/0Afoilgauge: forged again"} <= names, names
 assert {"fifo.png", "folder.png", "zero.png", "nowhere.png", "loop.png"} & names == set(), names
 PY
-python3 "$work/read.py" "$work/in" || fail "the database, read by Python"
+checks "$work/read.py" "$work/in" || fail "the database, read by Python"
 ! command -v sqlite3 >/dev/null || sqlite3 "$work/in/foilgauge.sqlite" .dump | iconv -f utf-8 -t utf-8 >/dev/null ||
   fail "the database, read by sqlite3"
 
@@ -62,15 +62,15 @@ for column in "dpi", "findings", "baseline", "changes":
 database.execute("PRAGMA user_version = 1")
 database.commit()
 PY
-! python3 "$work/read.py" "$work/in" 2>/dev/null || fail "a database of version 1 reads as one of today"
+! checks "$work/read.py" "$work/in" 2>/dev/null || fail "a database of version 1 reads as one of today"
 : >"$work/said"
 "$program" station "$work/in" $recipe --once 2>"$work/said" || fail "the second time: exit code $?"
 grep -q "0 measured, 0 known, 0 refused" "$work/said" || fail "a file is not known any more"
-python3 "$work/read.py" "$work/in" || fail "the database of version 1, read by Python"
+checks "$work/read.py" "$work/in" || fail "the database of version 1, read by Python"
 
 # The scan is found again, on the page and in a lot.
 start "$work/in" $recipe
-python3 - "$(cat "$work/address")" <<'PY' || fail "a report"
+checks - "$(cat "$work/address")" <<'PY' || fail "a report"
 import re, sys, urllib.request
 ask = lambda path: urllib.request.urlopen(sys.argv[1] + path).read().decode()
 for foil in 1, 2, 3:

@@ -4,6 +4,7 @@
 # pages and its failures are cards, a report is measured again only from the same scan.
 # Usage: test_station_pages.sh PROGRAM
 set -euo pipefail
+. "$(dirname "$0")/../support/checks.sh"
 program=$1
 renderer=${FOILGAUGE_RENDERER:-$program}
 work=$(mktemp -d)
@@ -43,18 +44,10 @@ cat >"$work/recipe.json" <<R
 R
 "$program" station "$folder" --recipe "$work/recipe.json" --port 0 >"$work/address" 2>"$work/err" &
 station=$!
-python3 - "$work" "$folder" >&2 <<'PY' || fail "pages: $(cat "$work/err")"
+checks - "$work" "$folder" >&2 <<'PY' || fail "pages: $(cat "$work/err")"
 import os, re, shutil, socket, sqlite3, sys, threading, time, urllib.error, urllib.parse, urllib.request
 work, folder = sys.argv[1:]
-def wait(what, seconds=20):
-    end = time.time() + seconds
-    while time.time() < end:
-        found = what()
-        if found:
-            return found
-        time.sleep(0.02)
-    sys.exit("waited in vain")
-base = wait(lambda: open(work + "/address").read().strip())
+base = wait_until(lambda: open(work + "/address").read().strip())
 def ask(path, fields=None, **headers):
     data = urllib.parse.urlencode(fields).encode() if fields else None
     request = urllib.request.Request(base + path.lstrip("/"), data, headers)
@@ -69,7 +62,7 @@ def page(path="/"):
     return body
 
 # The verdict, the ring and the label at each of both bumps.
-now = wait(lambda: "FAIL" in page() and 'class="picture"' in page() and page())
+now = wait_until(lambda: "FAIL" in page() and 'class="picture"' in page() and page())
 assert now.count('stroke="#ff5252"') >= 2, now
 for bump in "1", "2":
     assert re.search(r'fill="#ff5252"[^>]*>%s: R [0-9.]+ mm, max 3<' % bump, now), bump
@@ -97,13 +90,13 @@ def scan(mode):
     if mode == "slow":
         assert ">Scanning …</button>" in page() and "disabled" in page()
         assert ask("/scan", {"form": form})[0] == 200
-    wait(lambda: "disabled>Scanning" not in page())
+    wait_until(lambda: "disabled>Scanning" not in page())
 scan("fail")
 assert "ended with exit code 3: warming up scanimage: device busy" in page(), page()
 scan("none")
 assert "the scan command wrote no file" in page()
 scan("slow")
-wait(lambda: re.search(r'<div class="call fail.*station-\d{8}-\d{6}-\d{3}\.png', page()))
+wait_until(lambda: re.search(r'<div class="call fail.*station-\d{8}-\d{6}-\d{3}\.png', page()))
 assert not [name for name in os.listdir(folder) if name.startswith(".station")]
 assert len([name for name in os.listdir(folder) if name.startswith("station-")]) == 1
 rows = sqlite3.connect(folder + "/foilgauge.sqlite").execute("SELECT source FROM scans ORDER BY id")

@@ -153,7 +153,7 @@ for line in "" 'proxy_set_header Host $host;' 'proxy_set_header Host $http_host;
   esac
   run_proxy "$line"
   wait_for 10 python3 -c 'import socket, sys; socket.create_connection(("127.0.0.1", int(sys.argv[1])))' "$port"
-  python3 "$work/browse.py" "https://localhost:$port" "$work/cert.pem" "$token" "S-$RANDOM" 2>>"$work/said" ||
+  checks "$work/browse.py" "https://localhost:$port" "$work/cert.pem" "$token" "S-$RANDOM" 2>>"$work/said" ||
     fail "through nginx with '$line'"
   kill $proxy && wait $proxy 2>/dev/null || true
   proxy=

@@ -4,6 +4,7 @@
 # that comes again under the serial number of another foil is no measurement of that foil.
 # Usage: test_station_receiving.sh PROGRAM
 set -euo pipefail
+. "$(dirname "$0")/../support/checks.sh"
 program=$1
 renderer=${FOILGAUGE_RENDERER:-$program}
 work=$(mktemp -d)
@@ -25,20 +26,12 @@ cat >"$work/recipe.json" <<'R'
 R
 "$program" station "$work/in" --recipe "$work/recipe.json" --port 0 >"$work/address" 2>"$work/err" &
 station=$!
-python3 - "$work" >&2 <<'PY' || fail "$(cat "$work/err")"
+checks - "$work" >&2 <<'PY' || fail "$(cat "$work/err")"
 import os, re, shutil, sqlite3, struct, sys, time, urllib.request, zlib
 work = sys.argv[1]
 folder = work + "/in/"
 RECEIVE_S = 4
-def wait(what, seconds=30):
-    end = time.time() + seconds
-    while time.time() < end:
-        found = what()
-        if found:
-            return found
-        time.sleep(0.02)
-    sys.exit("waited in vain, line %d: %s" % (sys._getframe(1).f_lineno, page()))
-base = wait(lambda: open(work + "/address").read().strip()).rstrip("/")
+base = wait_until(lambda: open(work + "/address").read().strip()).rstrip("/")
 def page(path="/"):
     return urllib.request.urlopen(base + path).read().decode()
 def call():
@@ -50,34 +43,34 @@ def cards():
 
 shutil.copy(work + "/1.png", folder + ".a")
 os.rename(folder + ".a", folder + "7_1.png")
-wait(lambda: call() == ("PASS", "7_1.png"))
+wait_until(lambda: call() == ("PASS", "7_1.png"))
 
 # The writer closes the file and goes on three seconds later, twice; the old PASS is not what is in large letters.
 whole = open(work + "/2.png", "rb").read()
 third = len(whole) // 3
 for part in whole[:third], whole[third:2 * third]:
     open(folder + "7_2.png", "ab").write(part)
-    wait(lambda: call() == ("RECEIVING", "7_2.png"))
+    wait_until(lambda: call() == ("RECEIVING", "7_2.png"))
     until = time.time() + RECEIVE_S - 1
     while time.time() < until:
         assert call() == ("RECEIVING", "7_2.png"), call()
         time.sleep(0.1)
     assert "Before it: 7_1.png PASS" in page()
 open(folder + "7_2.png", "ab").write(whole[2 * third:])
-wait(lambda: call() == ("PASS", "7_2.png"))
+wait_until(lambda: call() == ("PASS", "7_2.png"))
 assert cards() == [("7_1.png", "measured"), ("7_2.png", "measured")], cards()
 
 # One that is received and taken away again leaves what was there.
 open(folder + "7_x.png", "wb").write(whole[:third])
-wait(lambda: call() == ("RECEIVING", "7_x.png"))
+wait_until(lambda: call() == ("RECEIVING", "7_x.png"))
 os.remove(folder + "7_x.png")
-wait(lambda: call() == ("PASS", "7_2.png"))
+wait_until(lambda: call() == ("PASS", "7_2.png"))
 
 # A writer that never goes on: after RECEIVE_S the page says what is missing.
 open(folder + "7_3.png", "wb").write(whole[:third])
 began = time.time()
-wait(lambda: call() == ("RECEIVING", "7_3.png"))
-wait(lambda: call() == ("SCAN AGAIN", "7_3.png"))
+wait_until(lambda: call() == ("RECEIVING", "7_3.png"))
+wait_until(lambda: call() == ("SCAN AGAIN", "7_3.png"))
 assert RECEIVE_S - 1 < time.time() - began < RECEIVE_S + 5, time.time() - began
 assert "its end is missing" in page()
 
@@ -92,27 +85,27 @@ def pnm(source):
     return b"P5\n# resolution 1200\n%d %d\n255\n" % (width, height) + bytes(width * height)
 empty = pnm(work + "/1.png")
 open(folder + "7_4.pgm", "wb").write(empty[:len(empty) // 2])
-wait(lambda: call() == ("RECEIVING", "7_4.pgm"))
+wait_until(lambda: call() == ("RECEIVING", "7_4.pgm"))
 time.sleep(RECEIVE_S - 1)
 assert call() == ("RECEIVING", "7_4.pgm"), call()
-wait(lambda: call() == ("SCAN AGAIN", "7_4.pgm"))
+wait_until(lambda: call() == ("SCAN AGAIN", "7_4.pgm"))
 assert "cannot hold" in page()
 began = time.time()
 open(folder + "7_5.pgm", "wb").write(empty)
-wait(lambda: call() == ("SCAN AGAIN", "7_5.pgm"))
+wait_until(lambda: call() == ("SCAN AGAIN", "7_5.pgm"))
 assert time.time() - began < RECEIVE_S - 1, time.time() - began
 
 # The bytes of another foil's scan: no PASS, and no colour of one. Of the same foil: measured before.
 shutil.copy(work + "/1.png", folder + "7_8.png")
-wait(lambda: call() == ("SAME SCAN", "7_8.png"))
+wait_until(lambda: call() == ("SAME SCAN", "7_8.png"))
 assert "it shows foil 1, and says nothing of foil 8" in page()
 assert 'class="call pass' not in page() and "<h2 id=\"foil" not in page()
 shutil.copy(work + "/1.png", folder + "8_1.png")
-wait(lambda: call() == ("SAME SCAN", "8_1.png"))
+wait_until(lambda: call() == ("SAME SCAN", "8_1.png"))
 os.utime(folder + "7_1.png")
-wait(lambda: call() == ("MEASURED BEFORE", "7_1.png"))
+wait_until(lambda: call() == ("MEASURED BEFORE", "7_1.png"))
 shutil.copy(work + "/2.png", folder + "7_2.PNG")
-wait(lambda: call() == ("MEASURED BEFORE", "7_2.PNG"))
+wait_until(lambda: call() == ("MEASURED BEFORE", "7_2.PNG"))
 assert sorted(set(kind for path, kind in cards())) == ["duplicate", "known", "measured", "unfinished", "unreadable"]
 PY
 kill "$station"

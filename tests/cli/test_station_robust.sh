@@ -26,7 +26,7 @@ once() {
 }
 # check FOLDER SCANS...: the database is whole, with so many scans, each once, with its foils and card.
 check() {
-  python3 - "$@" <<'PY' || fail "the database of $1"
+  checks - "$@" <<'PY' || fail "the database of $1"
 import sqlite3, sys
 for folder, scans in zip(sys.argv[1::2], sys.argv[2::2]):
     database = sqlite3.connect(folder + "/foilgauge.sqlite")
@@ -95,7 +95,7 @@ expect 0 "1 measured, 0 known, 0 refused" once "$work/in" $recipe
 check "$work/in" 3
 
 # Databases of these versions are in use: a change of theirs is a new migration, never another of the same.
-python3 - "$work/in/foilgauge.sqlite" <<'PY' || fail "a version of the database is not what it was"
+checks - "$work/in/foilgauge.sqlite" <<'PY' || fail "a version of the database is not what it was"
 import hashlib, sqlite3, sys
 database = sqlite3.connect(sys.argv[1])
 digests = {1: "f95022470d3216694ba0dfcafafb27dc04586e7554e963ed10c5cc8a0bf1b01c"}
@@ -183,7 +183,7 @@ echo "disk full: $((${#all[@]} / 2)) places; killed: $kills times, $arrived scan
 # A header that comes byte by byte, for ever, holds no place for longer than half a minute.
 if [ -n "${FOILGAUGE_TEST_LONG-}" ]; then
   start "$work/in" $recipe
-  python3 - "$work/address" <<'PY' || fail "a header that never ends"
+  checks - "$work/address" <<'PY' || fail "a header that never ends"
 import socket, sys, time, urllib.parse, urllib.request
 base = open(sys.argv[1]).read().strip()
 where = urllib.parse.urlparse(base)
@@ -219,9 +219,10 @@ if [ "$(id -u)" -eq 0 ] && mkdir "$work/full" && mount -t tmpfs -o size=1m tmpfs
   dd if=/dev/zero of="$work/full/.fill" bs=4k 2>/dev/null || true
   for scan in 1 2 3 4; do mv "$work/full/.$scan" "$work/full/$scan.png"; done
   wait_for 20 grep -q "(it is tried again)" "$work/said"
-  wait_for 20 python3 -c 'import sys, urllib.request
-page = urllib.request.urlopen(open(sys.argv[1]).read().strip()).read().decode()
-assert "Nothing is kept now" in page, page' "$work/address" || fail "the page does not say that the disk is full"
+  checks - "$work/address" <<'PY' || fail "the page does not say that the disk is full"
+import sys, urllib.request
+wait_until(lambda: "Nothing is kept now" in urllib.request.urlopen(open(sys.argv[1]).read().strip()).read().decode(), 20)
+PY
   rm "$work/full/.fill"
   wait_for 20 measured "$work/full" 4
   wait_for 20 grep -q "the station goes on" "$work/said"
@@ -275,10 +276,11 @@ paused_ms=$(($(date +%s%3N) - began_ms))
 wait_for 20 measured "$work/poll" 2
 stop
 check "$work/poll" 2
-[ $paused_ms -gt 1800 ] || python3 -c 'import sqlite3, sys
+[ $paused_ms -gt 1800 ] || checks - "$work/poll/foilgauge.sqlite" <<'PY' || fail "a card before the scan was whole"
+import sqlite3, sys
 cards = sqlite3.connect(sys.argv[1]).execute("SELECT path, kind FROM arrivals").fetchall()
-assert sorted(cards) == [("a.tif", "measured"), ("b.png", "measured")], cards' \
-  "$work/poll/foilgauge.sqlite" || fail "a card before the scan was whole"
+assert sorted(cards) == [("a.tif", "measured"), ("b.png", "measured")]
+PY
 
 # Memory that runs out, and a disk that is full, at any call.
 if ldd "$program" | grep libasan >/dev/null || [ ! -e "$shims/libfailing_malloc.so" ]; then

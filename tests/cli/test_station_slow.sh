@@ -131,7 +131,7 @@ leave(many)
 print("%d connections from %d addresses; the longest of each, s: " % (connections, addresses)
       + ", ".join("%s %.2f (%d)" % (what, took, asked[what]) for what, took in longest.items()))
 PY
-(ulimit -n 4096 2>/dev/null || true; python3 "$work/attack.py" "$(cat "$work/address")" "$connections" "$addresses" "${FOILGAUGE_TEST_LONG-}" >"$work/found" 2>>"$work/said") || fail "slow connections"
+(ulimit -n 4096 2>/dev/null || true; checks "$work/attack.py" "$(cat "$work/address")" "$connections" "$addresses" "${FOILGAUGE_TEST_LONG-}" >"$work/found" 2>>"$work/said") || fail "slow connections"
 [ "$(ls "/proc/$station/fd" | wc -l)" -lt 300 ] || fail "open files"
 stop TERM
 [ $code -eq 130 ] || fail "exit code $code"

@@ -86,7 +86,7 @@ run 0 "no axis of the smallest clearance: azimuths lie on fewer than three axes"
 # A digital indicator shows whole steps: the report names them, and the values stay within U.
 awk -F, -v OFS=, 'NR > 1 { $5 = sprintf("%.3f", $5) } { print }' test.csv >steps.csv
 run 0 "" steps.csv -o steps.json --text steps.txt --html steps.html
-python3 - steps.json r.json <<'END' || fail "a displacement in steps"
+checks - steps.json r.json <<'END' || fail "a displacement in steps"
 import json, sys
 steps, fine = (json.load(open(path))["azimuths"] for path in sys.argv[1:])
 for a, b in zip(steps, fine):

@@ -77,7 +77,7 @@ END
 judged() { # NAME CODE FLAG [OPTION...]
   local name=$1 code=$2 flag=$3
   expect "$code" "" "$program" stiffness --azimuth 0 "$name.csv" -o "$name.json" "${@:4}"
-  python3 - "$name.json" "$flag" <<'END' || fail "$name: the clearance is not the truth"
+  checks - "$name.json" "$flag" <<'END' || fail "$name: the clearance is not the truth"
 import json, sys
 a, truth = json.load(open(sys.argv[1]))["azimuths"][0], json.load(open("truth.json"))["clearance_mm"]
 flags = {"unsampled", "same_side", "branches_apart"} & set(a["flags"])
@@ -103,7 +103,7 @@ for wrong in "150 2 -60" "700 2 -45" "901 2 100" "333 1 0.3" "1200 1 -0.3" "600 
     awk -F, -v OFS=, -v wrong="$wrong" -v run=$run 'BEGIN {split(wrong, w, " ")} NR - 1 >= w[1] && NR - 1 < w[1] + run {$(w[2]) = w[3]} 1' \
       clean.csv >jumped.csv
     judged jumped 0 ""
-    python3 - <<'END' || fail "$wrong, $run times: another result"
+    checks - <<'END' || fail "$wrong, $run times: another result"
 import json
 a, b = (json.load(open(name))["azimuths"][0] for name in ("jumped.json", "clean.json"))
 assert "outliers" in a["flags"] and "outliers" not in b["flags"], a["flags"]

@@ -48,7 +48,7 @@ for case in "0.02 0" "0.06 0" "0.10 0" "0.16 0" "0.10 1"; do
   read -r gap rig <<<"$case"
   python3 damped.py "$gap" "$rig" >test.csv
   expect 0 "" "$program" stiffness --azimuth 0 test.csv -o "r_${gap}_$rig.json"
-  python3 - "r_${gap}_$rig.json" <<'END' || fail "gap $gap mm, rig $rig N"
+  checks - "r_${gap}_$rig.json" <<'END' || fail "gap $gap mm, rig $rig N"
 import json, sys
 a, truth = json.load(open(sys.argv[1]))["azimuths"][0], json.load(open("truth.json"))
 for name, true in truth.items():
@@ -59,7 +59,7 @@ assert a["u_repeat_stiffness_secant_n_mm"] < 0.01 * a["stiffness_secant_n_mm"]
 END
 done
 # Of the test: falls with the gap. Of the foil: the same within 3 %.
-python3 - r_0.02_0.json r_0.06_0.json r_0.10_0.json r_0.16_0.json <<'END' || fail "loss factors over the gap"
+checks - r_0.02_0.json r_0.06_0.json r_0.10_0.json r_0.16_0.json <<'END' || fail "loss factors over the gap"
 import json, sys
 found = [json.load(open(path))["azimuths"][0] for path in sys.argv[1:]]
 test, foil = [a["loss_factor"] for a in found], [a["loss_factor_foil"] for a in found]

@@ -46,7 +46,7 @@ for case in "150 1" "25 3"; do
     python3 stepped.py "$steps" "$readings" "$seed" >test.csv
     expect 0 "" "$program" stiffness --azimuth 0 test.csv -o "r_$seed.json"
   done
-  python3 - r_?.json <<'END' || fail "$steps steps, $readings readings"
+  checks - r_?.json <<'END' || fail "$steps steps, $readings readings"
 import json, sys
 truth, within = json.load(open("truth.json")), 0
 for path in sys.argv[1:]:

@@ -28,7 +28,7 @@ for exponent in 1.3 1.5 1.7; do
     python3 weights.py "$exponent" "$seed" >test.csv
     expect 0 "" "$program" stiffness --azimuth 0 test.csv -o "r_$seed.json"
   done
-  python3 - "$exponent" r_?.json <<'END' || fail "exponent $exponent"
+  checks - "$exponent" r_?.json <<'END' || fail "exponent $exponent"
 import json, sys
 n, within, known = float(sys.argv[1]), 0, 0
 for path in sys.argv[2:]:

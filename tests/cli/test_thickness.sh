@@ -19,7 +19,7 @@ for scan in thick plain; do
   "$program" measure "$scan.png" --tone linear -o "$scan.out" --html "$scan.html" || fail "$scan: $?"
   script -qec "'$program' measure $scan.png --tone linear" /dev/null >"$scan.txt" 2>/dev/null
 done
-python3 - <<'P' || fail "clearances are not over the strip as it is"
+checks - <<'P' || fail "clearances are not over the strip as it is"
 import json
 read = lambda name: json.load(open(name))["foils"][0]
 foil, plain, truth = read("thick.out"), read("plain.out"), json.load(open("truth.json"))

@@ -31,7 +31,7 @@ expect 0 '' "$program" measure plain.png --design design.json --thickness-measur
 same pm.out colon.out
 same pm.out measured.out
 same by_option.out linear.out
-python3 - <<'P' || fail "what is known of the tone is not in the uncertainties"
+checks - <<'P' || fail "what is known of the tone is not in the uncertainties"
 import json
 read = lambda name: json.load(open(name + ".out"))
 unknown, linear, measured, other = (read(n)["foils"][0] for n in ("design", "linear", "measured", "other"))
@@ -56,7 +56,7 @@ grep -q 'linear, as stated' <("$program" design linear.json) || fail "the design
 # Where an edge is the datum it moves with the tone, and its radii; a height, between two places of one edge, does not.
 design ', "datum": "inner"' inner.json
 "$program" measure plain.png --design inner.json -o inner.out
-python3 - <<'P' || fail "radii of an edge do not hold the tone"
+checks - <<'P' || fail "radii of an edge do not hold the tone"
 import json
 foil = json.load(open("inner.out"))["foils"][0]
 half = foil["thickness_tone_u_mm"] / 2

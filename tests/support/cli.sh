@@ -2,6 +2,7 @@
 # What the scripts that try the program share; sourced from the checkout with the program's path. Works in a folder of
 # its own, `work`; `root` is the checkout. A script ends with `exit $failed`.
 set -u
+. "${BASH_SOURCE[0]%/*}/checks.sh"
 program=$(realpath "$1")
 root=$PWD
 # Draws what the tests look at: a build that is not slowed down by sanitizers, where there is one.
