@@ -22,7 +22,7 @@ typedef struct fg_sample {
 } fg_sample;
 
 typedef struct fg_comparison {
-  double difference, low, high; /* of the means, a - b, with its interval */
+  double difference, low, high; /* difference of the means, a - b, with its interval */
   double t, dof, p_means;
   double variance_ratio, f_low, f_high, p_variances; /* F */
   double levene, p_levene;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Measuring a lot: what is there is kept, what is missing is measured, then the report. */
+/* Runs a lot: records that hold are kept, missing scans are measured, then the report is written.
+ */
 #include <errno.h>
 #include <math.h>
 #include <stdatomic.h>
@@ -26,13 +27,13 @@
 #include "report/lot/files.h"
 #include "report/lot/foil_pages.h"
 
-/* What is known of an item before it is measured. */
+/* State of an item before it is measured. */
 typedef struct item_state {
-  fg_journal_entry entry; /* its record; length 0: to be measured */
-  char sha256[65];        /* as recorded */
-  bool mine;              /* of this shard */
-  bool wanted;            /* its record's foils are to have a page */
-  bool redrawn;           /* the record stands, but the page is not there */
+  fg_journal_entry entry; /* its record; length 0: it must be measured */
+  char sha256[65];        /* of its scan as recorded */
+  bool mine;              /* belongs to this shard */
+  bool wanted;            /* its scan is to have a page */
+  bool redrawn;           /* the record holds, but the page is missing */
 } item_state;
 
 typedef struct lot_run {
@@ -40,8 +41,8 @@ typedef struct lot_run {
   fg_manifest manifest;
   fg_manifest_index index;
   char *manifest_text, *recipe_text, *results_path;
-  char *model_text;        /* of the scanner's model; NULL: none */
-  fg_scanner_model *model; /* the same, read */
+  char *model_text;        /* text of the scanner's model; NULL: none */
+  fg_scanner_model *model; /* the parsed model */
   fg_journal_head head;
   item_state *items;
   size_t *todo, todo_count, done;
@@ -59,8 +60,8 @@ static fg_status check_shard_number(fg_context *ctx, fg_lot_shard shard) {
                  shard.count);
 }
 
-/* The recipe that is kept names the copy in the lot's folder, so that it does not matter from where
- * the model came. */
+/* The kept recipe names the model's copy in the lot's folder, so the model's origin does not
+ * matter. */
 static fg_status read_scanner_model(fg_context *ctx, lot_run *run, fg_lot_settings *kept) {
   if (!kept->model[0]) return FG_OK;
   FG_TRY(fg_file_read_text(ctx, kept->model, FG_LOT_MODEL_BYTES_MAX, &run->model_text));
@@ -71,7 +72,7 @@ static fg_status read_scanner_model(fg_context *ctx, lot_run *run, fg_lot_settin
   return FG_OK;
 }
 
-/* The lot's own manifest among the paths; NULL: it is not there. */
+/* Returns the path that is the lot's own manifest, or NULL. */
 static const char *find_own_manifest(const fg_lot_request *request) {
   for (size_t i = 0; i < request->path_count; i++)
     if (fg_lot_is_own_copy(request, request->paths[i], "manifest.csv")) return request->paths[i];
@@ -131,7 +132,7 @@ static fg_status name_page(fg_context *ctx, const lot_run *run, size_t item, con
                           name);
 }
 
-/* A record stands while its scan is what it was. A scan that is gone takes nothing with it. */
+/* A record holds while its scan is unchanged. A scan that is gone keeps its record and page. */
 static fg_status check_scan(fg_context *ctx, void *shared, size_t i) {
   lot_run *run = shared;
   item_state *item = &run->items[i];
@@ -164,7 +165,7 @@ static fg_status read_earlier(fg_context *ctx, lot_run *run) {
   return fg_parallel_run(ctx, run->request->settings->jobs, run->manifest.items, check_scan, run);
 }
 
-/* A scan that is not there has a record all the same, with its error. */
+/* A missing scan gets a record with its error, too. */
 static void note_missing(const char *scan, fg_lot_outcome *outcome) {
   if (access(scan, F_OK) == 0) return;
   if (outcome->missing++ == 0)
@@ -188,7 +189,8 @@ static fg_status list_todo(fg_context *ctx, lot_run *run) {
   return FG_OK;
 }
 
-/* One at a time; the first tenth of a second says nothing about the rest. */
+/* Listeners are called one at a time. The rate of the first tenth of a second is too uncertain to
+ * extrapolate. */
 static void report_progress(lot_run *run, size_t item, const char *error, bool beyond) {
   pthread_mutex_lock(&run->listening);
   fg_lot_outcome *outcome = run->outcome;
@@ -222,8 +224,8 @@ static fg_status append_record(fg_context *ctx, lot_run *run, size_t item, const
   return status;
 }
 
-/* By the scanner's model, if any; a scan that it does not fit is not measured. With what the
- * calibration does not know. */
+/* Applies the scanner's model and adds the calibration's uncertainty. A scan that the model does
+ * not fit counts as not measured. */
 static fg_status correct_measurement(fg_context *ctx, const lot_run *run,
                                      fg_measurement *measurement, bool *beyond) {
   char warning[200];
@@ -243,8 +245,8 @@ static void note_undrawn_page(lot_run *run, const char *why) {
   pthread_mutex_unlock(&run->listening);
 }
 
-/* Before the record is kept, so that a record's page is there. A scan that cannot be read a second
- * time has none; only a page that cannot be written is an error. */
+/* Draws the page before the record is kept, so that every record's page exists. A scan that cannot
+ * be read again has no page; only a page that cannot be written is an error. */
 static fg_status draw_page(fg_context *ctx, lot_run *run, size_t item,
                            const fg_measurement *measurement) {
   const fg_design *design = &run->request->settings->design;
@@ -266,9 +268,9 @@ static fg_status draw_page(fg_context *ctx, lot_run *run, size_t item,
   return status;
 }
 
-/* Whatever is wrong with a scan is its record; only a record that cannot be kept is an error. A
- * scan that could be read but not measured is the same tomorrow; one that could not be read, or
- * for which there was no memory, has no checksum and is tried again. */
+/* Every failure of a scan becomes its record; only a record that cannot be kept is an error. A scan
+ * that was read but not measured fails again tomorrow, so its checksum is kept. One that could not
+ * be read, or for which memory ran out, has no checksum and is tried again. */
 static fg_status measure_item(fg_context *ctx, lot_run *run, size_t item) {
   const fg_lot_settings *settings = run->request->settings;
   const fg_measure_options options = {.dpi = settings->dpi,
@@ -303,7 +305,8 @@ static fg_status measure_next(fg_context *ctx, void *shared, size_t i) {
   return status;
 }
 
-/* The file in the manifest's order, with one record per item: the same bytes however it came. */
+/* Rewrites the journal in the manifest's order, one record per item, so that the file's bytes do
+ * not depend on the order of the work. */
 static fg_status rewrite_journal(fg_context *ctx, lot_run *run) {
   void *block;
   const char *from[] = {run->results_path};
@@ -335,7 +338,7 @@ static fg_status measure_missing(fg_context *ctx, lot_run *run) {
   return status;
 }
 
-/* Offsets have moved with the first rewrite: they are read again. */
+/* Notes the new offset of a record: the first rewrite has moved them. */
 static fg_status note_offset(fg_context *ctx, void *user, fg_record *record,
                              fg_journal_entry entry) {
   lot_run *run = user;
@@ -354,7 +357,8 @@ static fg_status order_journal(fg_context *ctx, lot_run *run) {
 
 static fg_status write_report(fg_context *ctx, lot_run *run) {
   fg_lot lot = {.manifest = run->manifest, .decimal_comma = run->request->decimal_comma};
-  fg_lot_settings_default(&lot.settings); /* as a merge reads them: a recipe has ten digits */
+  fg_lot_settings_default(
+      &lot.settings); /* from the text, as a merge reads them: a recipe has ten digits */
   FG_TRY(fg_lot_settings_parse(ctx, "recipe.json", run->recipe_text, &lot.settings));
   run->manifest = (fg_manifest){0};
   fg_status status = fg_lot_load(ctx, run->request->folder, &lot);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Shards to one lot: refuses what does not belong together, then reports as if it were one run. */
+/* Merges shards into one lot: refuses shards that do not belong together, then reports as one run
+ * would. */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -22,7 +23,7 @@ enum { TEXT_BYTES_MAX = 1 << 30 };
 typedef struct merger {
   const char *const *folders;
   size_t count;
-  const char *folder; /* of the result */
+  const char *folder; /* of the merged lot */
   char *recipe_text, *manifest_text;
   char *model_text; /* NULL: none */
   fg_lot_settings settings;
@@ -30,10 +31,10 @@ typedef struct merger {
   fg_manifest_index index;
   fg_journal_head head; /* of the first shard */
   char **paths;         /* results.jsonl of each folder */
-  size_t *shard_of;     /* by shard index - 1: folder + 1 */
+  size_t *shard_of;     /* folder + 1 by shard index - 1; 0: missing */
   fg_journal_entry *entries;
   size_t *from;
-  size_t at; /* the folder being read */
+  size_t at; /* folder that is read now */
   int lock;
   bool decimal_comma;
 } merger;
@@ -58,7 +59,7 @@ static fg_status check_text_sum(fg_context *ctx, const char *folder, const char 
                  folder, name);
 }
 
-/* The first folder says what the lot is. */
+/* The first folder defines the lot: recipe, manifest, model. */
 static fg_status read_first_folder(fg_context *ctx, merger *m) {
   const char *folder = m->folders[0];
   FG_TRY(read_folder_text(ctx, folder, "recipe.json", &m->recipe_text));
@@ -91,7 +92,7 @@ static fg_status refuse_shard(fg_context *ctx, const merger *m, const char *what
                  m->folders[0], m->folders[m->at], what);
 }
 
-/* For the words only: a recipe that cannot be read is just another recipe. */
+/* Serves the message only: an unreadable recipe counts as another recipe. */
 static bool has_other_model(const merger *m) {
   fg_context ignored = {.message = ""};
   fg_lot_settings other;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Lots in order of date, their designs, and the axes that their quantities can be put on. */
+/* Order of the lots by date, their designs, and the axes of their quantities. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,11 +9,11 @@
 #include "core/text.h"
 #include "lots/index.h"
 
-/* Two quantities say the same of every foil when their values lie on one line: what is left is the
- * tenth digit of the tables. */
+/* Two quantities are equivalent when their values over all foils lie on one line; the residual is
+ * the tenth digit of the tables. */
 #define ON_ONE_LINE 1e-9
 
-/* Not read behind, then those without a date; else by date, name, and as given. */
+/* Sorts by date, name and given order; lots without a date come later, unread ones last. */
 static int compare_dates(const void *left, const void *right) {
   const fg_index_lot *a = left, *b = right;
   if (!a->problem != !b->problem) return a->problem ? 1 : -1;
@@ -40,12 +40,12 @@ static int compare_die_names(const void *left, const void *right) {
   return strcmp(a->name, b->name);
 }
 
-/* Dies by name; the foils keep theirs. */
+/* Sorts the dies by name, and renumbers them in the foils. */
 static fg_status order_dies(fg_context *ctx, fg_index *index) {
   size_t *place = NULL;
   FG_TRY(fg_memory_allocate(ctx, index->die_count, sizeof *place, (void **)&place));
   for (size_t i = 0; i < index->die_count; i++)
-    index->dies[i].foils = i; /* not counted yet: the place that it had */
+    index->dies[i].foils = i; /* place before sorting; foils are not counted yet */
   fg_sort_items(index->dies, index->die_count, sizeof *index->dies, compare_die_names);
   for (size_t i = 0; i < index->die_count; i++) {
     place[index->dies[i].foils] = i;
@@ -74,7 +74,8 @@ static fg_index_scale choose_scale(const fg_index *index, const fg_quantity *row
   return row->nominal ? FG_INDEX_OVER_DESIGN : FG_INDEX_APART;
 }
 
-/* Those of bumps and beams before those of foils, each in the order of the lots' reports. */
+/* Lists the axes: quantities of bumps and beams before those of foils, each in the order of the
+ * lots' reports. */
 static fg_status list_index_axes(fg_context *ctx, fg_index *index) {
   static const fg_quantity_owner owners[] = {FG_QUANTITY_OF_BUMP, FG_QUANTITY_OF_BEAM,
                                              FG_QUANTITY_OF_FOIL};
@@ -137,11 +138,11 @@ static void scale_axis(fg_index *index, fg_index_axis *axis) {
   }
 }
 
-/* Sums over all foils that have both. */
+/* Sums over all foils that have both values. */
 typedef struct line {
   double n, x, y, xx, yy, xy;
-  double x0, y0; /* taken off, so that no digits are lost */
-  bool apart;    /* a foil has one and not the other */
+  double x0, y0; /* origin, subtracted to keep digits */
+  bool apart;    /* a foil has only one of the values */
 } line;
 
 static void add_lot_to_line(line *l, const fg_index_stat *a, const fg_index_stat *b, size_t foils) {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which lots differ beyond what their foils scatter, and which lie where the others do not. */
+/* Comparison of lots: pairs that differ beyond the scatter of their foils, and lots whose mean the
+ * other lots do not make likely. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -30,7 +31,7 @@ static int compare_texts(const void *left, const void *right) {
   return strcmp(left, right);
 }
 
-/* Both sorted. */
+/* Both lists are sorted. */
 static size_t count_shared(const fg_index_lot *a, const fg_index_lot *b) {
   size_t shared = 0;
   for (size_t i = 0, k = 0; i < a->scan_sums && k < b->scan_sums;) {
@@ -42,7 +43,7 @@ static size_t count_shared(const fg_index_lot *a, const fg_index_lot *b) {
   return shared;
 }
 
-/* The same scans in two lots make them alike: that is no evidence. */
+/* Marks pairs of lots that share scans: their likeness is no evidence. */
 static fg_status mark_shared(fg_context *ctx, fg_index *index, bool *shared) {
   for (size_t i = 0; i < index->read; i++)
     if (index->lots[i].scan_sums)
@@ -80,7 +81,7 @@ static fg_status add_pair(fg_context *ctx, fg_index *index, size_t axis, size_t 
   const double mean[2] = {a->foil_mean, b->foil_mean},
                u[2] = {a->foil_sd / sqrt((double)a->foils), b->foil_sd / sqrt((double)b->foils)},
                dof[2] = {(double)a->foils - 1, (double)b->foils - 1};
-  if (!(u[0] + u[1] > 0)) return FG_OK; /* nothing scatters: no test */
+  if (!(u[0] + u[1] > 0)) return FG_OK; /* no test without scatter */
   fg_index_welch(&pair, mean, u, dof);
   FG_TRY(fg_memory_reserve(ctx, index->pair_count + 1, sizeof *index->pairs, &index->pair_capacity,
                            (void **)&index->pairs));
@@ -127,7 +128,8 @@ exit:
   return status;
 }
 
-/* Scatter of foils within their lots, pooled, and whether the lots' means scatter by more. */
+/* Pools the scatter of foils within their lots, and tests whether the lots' means scatter by more.
+ */
 static void analyse_variance(const fg_index *index, fg_index_axis *axis) {
   double n = 0, sum = 0, squares = 0, within = 0, between = 0, first = NAN;
   for (size_t i = 0; i < index->read; i++) {
@@ -142,7 +144,7 @@ static void analyse_variance(const fg_index *index, fg_index_axis *axis) {
     if (stat->foils > 1) within += (foils - 1) * stat->foil_sd * stat->foil_sd;
   }
   double lots = (double)axis->lots;
-  if (!(n > lots)) return; /* one foil each: nothing is known of what happens within */
+  if (!(n > lots)) return; /* one foil each: the scatter within lots is unknown */
   between = fmax(0, squares - sum * sum / n);
   axis->within_sd = sqrt(within / (n - lots));
   if (axis->lots > 1 && within > 0)
@@ -150,7 +152,7 @@ static void analyse_variance(const fg_index *index, fg_index_axis *axis) {
         fg_distribution_f_upper(between / (lots - 1) / (within / (n - lots)), lots - 1, n - lots);
 }
 
-/* Each lot against what all others say. */
+/* Compares each lot with the interval that the others give. */
 static void expect_means(const fg_index_axis *axis, fg_index_stat **stat,
                          const fg_group_mean *groups, fg_group_mean *others) {
   for (size_t i = 0; i < axis->lots; i++) {
@@ -206,7 +208,7 @@ static fg_status describe_ratios(fg_context *ctx, const double *values, size_t c
                               .relative_sd_pct = s.relative_sd_pct,
                               .min = s.min,
                               .max = s.max};
-  /* Values that differ in their last digits only make a line, no distribution. */
+  /* Values that differ only in their last digits have no density. */
   if (!(s.relative_sd_pct > 1e-7)) return FG_OK;
   spread->has_density = true;
   return fg_density_fit(ctx, values, count, settings.bandwidth, &spread->density);

@@ -33,12 +33,12 @@ static void add_lot_mean(moments *m, double value) {
   m->squares += step * (value - m->mean);
 }
 
-/* What the lots say of two dies. */
+/* Evidence of the lots about two dies. */
 typedef struct tally {
-  double weight, difference; /* sum of weights; mean of the lots' differences by them */
-  double squares, dof;       /* within lots and dies */
-  size_t shared;             /* lots that hold both */
-  moments lots[2];           /* of means of lots that hold one of them */
+  double weight, difference; /* sum of weights; weighted mean of the lots' differences */
+  double squares, dof;       /* sums within lots and dies */
+  size_t shared;             /* lots with foils of both */
+  moments lots[2];           /* moments of the means of lots that hold one of them */
   size_t foils[2];
 } tally;
 
@@ -76,7 +76,7 @@ static bool test_dies(const tally *t, fg_index_die_pair *result) {
     result->basis = FG_INDEX_WITHIN_LOTS;
     return true;
   }
-  if (t->shared) return false; /* a foil each: no scatter to hold it against */
+  if (t->shared) return false; /* one foil each: no scatter to test against */
   result->basis = FG_INDEX_CONFOUNDED;
   pair->difference = t->lots[0].mean - t->lots[1].mean;
   pair->p = pair->u = pair->low = pair->high = pair->dof = NAN;
@@ -122,7 +122,7 @@ static fg_status compare_two_dies(fg_context *ctx, fg_index *index, size_t axis,
   return FG_OK;
 }
 
-/* Those that are not tested behind. */
+/* Sorts by p-value; untested pairs come last. */
 static int compare_die_p(const void *left, const void *right) {
   const fg_index_die_pair *a = left, *b = right;
   if (isnan(a->pair.p) != isnan(b->pair.p)) return isnan(a->pair.p) ? 1 : -1;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The foils of a lot, from its foils.csv and its bumps.csv or beams.csv. */
+/* Foils of a lot, from its foils.csv and its bumps.csv or beams.csv. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,7 +12,8 @@
 #include "lot/statistics/analysis.h"
 #include "lots/index.h"
 
-/* lot.json has ten digits, and the mean of these files' values is computed from ten digits each. */
+/* Tolerance of a mean: lot.json has ten digits, and so have the values that the mean is computed
+ * from. */
 #define SAME_MEAN 1e-8
 
 enum { TABLE_BYTES_MAX = 1 << 30, CELL = 160 };
@@ -20,10 +21,10 @@ enum { TABLE_BYTES_MAX = 1 << 30, CELL = 160 };
 typedef struct reading {
   fg_index *index;
   fg_index_lot *lot;
-  fg_table foils, parts; /* of the lot's CSV files */
-  size_t *foil;          /* row of foils.csv of each foil that counts */
-  size_t *owner;         /* foil of each row of `parts` */
-  size_t *count;         /* values of the stat that is read, by foil */
+  fg_table foils, parts; /* tables of the lot's CSV files */
+  size_t *foil;          /* row of foils.csv by counted foil */
+  size_t *owner;         /* foil by row of `parts` */
+  size_t *count;         /* number of values of the current stat by foil */
 } reading;
 
 static const fg_column *find_column(const fg_table *table, const char *name) {
@@ -37,7 +38,7 @@ static double cell_number(const fg_column *column, size_t row) {
   return number ? column->number[row].value : NAN;
 }
 
-/* A cell as a text: "" where it is missing, and where there is no such column. */
+/* Returns a cell as text; "" for a missing cell or column. */
 static const char *cell_text(const fg_column *column, size_t row, char text[CELL]) {
   text[0] = '\0';
   if (!column || (column->word && column->word[row] == FG_TABLE_MISSING)) return text;
@@ -48,7 +49,7 @@ static const char *cell_text(const fg_column *column, size_t row, char text[CELL
   return text;
 }
 
-/* Whether the flags of a cell, with a space between them, hold this one. */
+/* Returns true when the flags of a cell, separated by spaces, hold this one. */
 static bool has_flag_name(const fg_flag_words *words, const char *flags, unsigned flag) {
   for (; words->name; words++) {
     size_t length = strlen(words->name);
@@ -59,7 +60,7 @@ static bool has_flag_name(const fg_flag_words *words, const char *flags, unsigne
   return false;
 }
 
-/* A line of foils.csv counts when it is of a foil of the design. */
+/* Lists the lines of foils.csv that count: those of foils of the design. */
 static fg_status list_counted_foils(fg_context *ctx, reading *r) {
   char flags[CELL];
   void *block;
@@ -89,7 +90,7 @@ static fg_status find_or_add_die(fg_context *ctx, fg_index *index, const char *n
   return FG_OK;
 }
 
-/* Distinct words of a column, "A, B". */
+/* Lists the distinct words of a column: "A, B". */
 static fg_status list_words(fg_context *ctx, const reading *r, const char *name, char **words) {
   const fg_column *column = find_column(&r->foils, name);
   char cell[CELL], before[CELL];
@@ -113,7 +114,7 @@ static fg_status assign_dies(fg_context *ctx, reading *r) {
   return list_words(ctx, r, "coil", &r->lot->coils);
 }
 
-/* Flags of what does not count, as fg_lot_part_counts has it. */
+/* Returns true for the flags of a part that does not count, as fg_lot_part_counts does. */
 static bool is_damaged(const fg_index_lot *lot, const char *flags) {
   bool damaged = false;
   if (fg_foil_kind_parts(lot->design.kind) == FG_QUANTITY_OF_BUMP)
@@ -124,8 +125,8 @@ static bool is_damaged(const fg_index_lot *lot, const char *flags) {
   return damaged;
 }
 
-/* Whose foil every line of `parts` is, FG_INDEX_NONE for one that does not count: both files are in
- * one order. */
+/* Assigns a foil to every line of `parts`, FG_INDEX_NONE to one that does not count. Both files
+ * have one order. */
 static fg_status assign_parts(fg_context *ctx, reading *r) {
   const fg_column *scan[2] = {find_column(&r->foils, "scan"), find_column(&r->parts, "scan")},
                   *number[2] = {find_column(&r->foils, "foil_number"),
@@ -144,14 +145,14 @@ static fg_status assign_parts(fg_context *ctx, reading *r) {
            (cell_number(number[0], r->foil[at]) != cell_number(number[1], row) ||
             strcmp(cell_text(scan[0], r->foil[at], a), cell_text(scan[1], row, b)) != 0))
       at++;
-    if (at == r->lot->foil_count) continue; /* of no foil that counts */
+    if (at == r->lot->foil_count) continue; /* its foil does not count */
     foil = at;
     if (!is_damaged(r->lot, cell_text(flag, row, a))) r->owner[row] = foil;
   }
   return FG_OK;
 }
 
-/* The value of every foil, or the mean of its parts; the mean of all of them in *mean. */
+/* Reads the value of every foil, or the mean of its parts; *mean is the mean of all values. */
 static fg_status read_stat(fg_context *ctx, reading *r, fg_index_stat *stat, double *mean) {
   bool of_part = fg_owner_is_part(stat->owner);
   const fg_table *table = of_part ? &r->parts : &r->foils;
@@ -196,7 +197,7 @@ static const char *parts_file_name(const fg_index_lot *lot) {
   return lot->design.kind == FG_FOIL_CANTILEVER ? "beams.csv" : "bumps.csv";
 }
 
-/* The files must be those of lot.json: another run may have written one of them. */
+/* Checks the files against lot.json: another run may have written one of them. */
 static fg_status read_stats(fg_context *ctx, reading *r) {
   fg_index_lot *lot = r->lot;
   FG_TRY(fg_memory_allocate(ctx, lot->foil_count, sizeof *r->count, (void **)&r->count));
@@ -216,7 +217,7 @@ static fg_status read_stats(fg_context *ctx, reading *r) {
   return read_ratios(ctx, r);
 }
 
-/* A table without rows is a lot without foils. */
+/* Reads a table; one without rows is a lot without foils. */
 static fg_status read_lot_csv(fg_context *ctx, fg_index_lot *lot, const char *name,
                               fg_table *table) {
   char *path, *text = NULL;
@@ -234,7 +235,7 @@ static fg_status read_lot_csv(fg_context *ctx, fg_index_lot *lot, const char *na
   return status;
 }
 
-/* What is known of a lot whose foils are not. */
+/* Drops the foils of a lot that are not known one by one. */
 static void drop_foils(fg_index_lot *lot) {
   for (size_t i = 0; i < lot->stat_count; i++) {
     free(lot->stats[i].foil);

@@ -11,7 +11,7 @@
 
 enum { PAGE, JSON, TABLE, OUTPUTS };
 
-/* The page must not take the place of what it is made from, nor of what it links to. */
+/* Refuses outputs that would overwrite the lots' reports or the pages that they link to. */
 static fg_status check_index_outputs(fg_context *ctx, const fg_lot_index_request *request) {
   static const char *const inputs[] = {"lot.json", "index.html", "foils.csv", "bumps.csv",
                                        "beams.csv"};
@@ -30,7 +30,7 @@ static fg_status check_index_outputs(fg_context *ctx, const fg_lot_index_request
   return status;
 }
 
-/* A folder that is named twice, under whatever spelling, is one lot. */
+/* Lists the folders; one that is named twice, under any spelling, is one lot. */
 static fg_status list_lots(fg_context *ctx, const fg_lot_index_request *request, fg_index *index) {
   FG_TRY(fg_memory_allocate(ctx, request->count, sizeof *index->lots, (void **)&index->lots));
   for (size_t i = 0; i < request->count; i++) {
@@ -90,7 +90,7 @@ static fg_status write_index_output(fg_context *ctx, const fg_lot_index_request 
                       : fg_csv_write(ctx, request->decimal_comma, write_csv, index, out);
 }
 
-/* All are written and flushed before one gets its name: none where one cannot be written. */
+/* Writes and flushes all outputs before one gets its name: either all appear or none. */
 static fg_status write_outputs(fg_context *ctx, const fg_lot_index_request *request,
                                fg_index *index) {
   const char *const path[OUTPUTS] = {request->page, request->json, request->csv};
@@ -110,7 +110,7 @@ static fg_status write_outputs(fg_context *ctx, const fg_lot_index_request *requ
   return status;
 }
 
-/* What was not read, and the notes, for whoever called. */
+/* Fills the outcome: lots that could not be read, notes, sentences. */
 static fg_status fill_index_outcome(fg_context *ctx, const fg_index *index,
                                     fg_lot_index_outcome *outcome) {
   outcome->lots = index->read;

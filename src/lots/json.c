@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* "schema": "foilgauge/lot_index/1" (reports/schema/lot_index.schema.json), and the same as a
- * table: a line for each lot and quantity. */
+/* JSON of the index, "schema": "foilgauge/lot_index/1" (reports/schema/lot_index.schema.json), and
+ * its table: a line for each lot and quantity. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,7 +10,7 @@
 #include "lots/index.h"
 #include "report/measure/json.h"
 
-/* Of thousands of pairs those that differ most are listed; `tested` and `differing` count all. */
+/* Limit of the listed pairs, those that differ most; `tested` and `differing` count all. */
 enum { PAIRS_LISTED_MAX = 2000 };
 
 static const char *scale_word(fg_index_scale scale) {
@@ -128,7 +128,7 @@ static void write_index_axis(fg_json *json, const fg_index *index, const fg_inde
   fg_json_line_end(json);
 }
 
-/* The members that pairs of lots and of dies have. */
+/* Writes the members that pairs of lots and of dies share. */
 static void write_pair(fg_json *json, const fg_index *index, const fg_index_pair *pair,
                        const char *a, const char *b) {
   fg_json_string(json, "quantity", index->axes[pair->axis].row->name);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The page over lots: what there is to say, the lots, then the figures and the numbers. */
+/* Page over lots: sentences and lots first, then figures and numbers. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,12 +15,12 @@
 
 enum {
   LOTS_FIRST_MAX = 20,
-  LOTS_SPREAD_MIN = 3, /* of two, the pair says it all */
+  LOTS_SPREAD_MIN = 3, /* two lots are a pair, which says it all */
   VALUE = 96,
 };
 
-/* A folder as seen from the page's: both as given, so a lot beside or below the page keeps its
- * link when all is moved together. */
+/* Returns a folder relative to the page's, both as given: the link of a lot beside or below the
+ * page survives when all is moved together. */
 static const char *strip_page_folder(const char *page, const char *folder) {
   const char *slash = strrchr(page, '/');
   size_t length = slash ? (size_t)(slash - page) + 1 : 0;
@@ -112,7 +112,7 @@ static fg_status put_lot_table(fg_context *ctx, FILE *out, const fg_index *index
   return FG_OK;
 }
 
-/* So many that their table would push the figures out of sight. */
+/* Returns true when the table of the lots would push the figures out of sight. */
 static bool has_many_lots(const fg_index *index) {
   return index->read > LOTS_FIRST_MAX;
 }
@@ -172,7 +172,7 @@ static void put_densities(FILE *out, const fg_index *index) {
   fputs("</section>\n", out);
 }
 
-/* The tables of many lots. */
+/* Puts the tables of many lots behind the figures. */
 static fg_status put_tables_of_many(fg_context *ctx, FILE *out, const fg_index *index,
                                     const char *page) {
   if (!has_many_lots(index)) return FG_OK;
@@ -185,7 +185,7 @@ static fg_status put_tables_of_many(fg_context *ctx, FILE *out, const fg_index *
   return FG_OK;
 }
 
-/* What the lots' means scatter by, beyond their foils. */
+/* Puts the scatter of the lots' means beyond that of their foils. */
 static void put_axis_words(FILE *out, const fg_index_axis *axis) {
   char a[VALUE], b[VALUE], p[16];
   if (axis->lots < LOTS_SPREAD_MIN) return;

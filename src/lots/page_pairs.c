@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Of the page over lots: who differs from whom, and the dies. */
+/* Page over lots: pairs of lots and of dies that differ. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -9,7 +9,7 @@
 
 enum {
   PAIRS_SHOWN_MAX = 40,
-  PAIRS_ALIKE = 5, /* of those that do not differ, the nearest to it */
+  PAIRS_ALIKE = 5, /* nearest pairs among those that do not differ */
   VALUE = 96,
 };
 

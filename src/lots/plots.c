@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Figures over lots: densities over each other, and a quantity over the lots. */
+/* Figures over lots: superimposed densities, and a quantity over the lots. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,11 +12,11 @@
 enum {
   WIDTH = 1000,
   CURVE_POINTS = 300,
-  LINES_MAX = 8,    /* more curves than these cannot be told apart: most are grey, then, and */
-  MARKED = 4,       /* so many are not */
-  NAMES_MAX = 6,    /* lots whose names have room under an axis */
-  DATES_MAX = 10,   /* and their dates */
-  NUMBERS_MAX = 40, /* and their numbers: else every second, third ... */
+  LINES_MAX = 8,    /* beyond this most curves are grey: more cannot be told apart */
+  MARKED = 4,       /* number of coloured curves then */
+  NAMES_MAX = 6,    /* lots whose names fit under an axis */
+  DATES_MAX = 10,   /* lots whose dates fit */
+  NUMBERS_MAX = 40, /* lots whose numbers fit; else every second, third .. */
   LABEL_LETTERS = 26,
   AXIS_LETTERS = 18,
 };
@@ -30,12 +30,12 @@ static const struct {
     {"#16202a", "6 2 2 2"}, {"#2b8cbe", "14 5"}, {"#a86400", "2 4"}, {"#5b6875", "5 5"},
 };
 
-/* One curve: of a lot or a die. */
+/* Curve of a lot or a die. */
 typedef struct curve {
   const fg_index_spread *spread;
   const char *name;
   size_t number; /* on the page; 0: none */
-  int look;      /* of looks; -1: grey */
+  int look;      /* index into looks; -1: grey */
   double x, y;   /* of its label, px */
 } curve;
 
@@ -60,7 +60,7 @@ static void put_density_curve(const fg_plot *at, const curve *c) {
   fputs("\"/>\n", at->out);
 }
 
-/* Its number at the top of a curve, beside those that are there already. */
+/* Puts the number at the top of a curve, beside the numbers that are there. */
 static void put_curve_number(const fg_plot *at, curve *curves, size_t i) {
   enum { WIDE = 22, HIGH = 15 };
   curve *c = &curves[i];
@@ -69,7 +69,7 @@ static void put_curve_number(const fg_plot *at, curve *curves, size_t i) {
   for (size_t k = 0; k < i; k++)
     if (curves[k].look >= 0 && fabs(curves[k].x - c->x) < WIDE && fabs(curves[k].y - c->y) < HIGH) {
       c->x = curves[k].x + WIDE;
-      k = (size_t)-1; /* from the beginning: the new place may be taken as well */
+      k = (size_t)-1; /* restarts: the new place may be occupied, too */
     }
   fprintf(at->out,
           "<text x=\"%.1f\" y=\"%.1f\" style=\"fill:%s;text-anchor:middle;font-weight:650\">", c->x,
@@ -81,7 +81,7 @@ static void put_curve_number(const fg_plot *at, curve *curves, size_t i) {
   fputs("</text>\n", at->out);
 }
 
-/* Line, number and name at the right. */
+/* Puts line, number and name at the right. */
 static void put_curve_legend(const fg_plot *at, const curve *c, size_t row) {
   char name[4 * LABEL_LETTERS + 4];
   double y = at->top + 14 + 22 * (double)row;
@@ -96,7 +96,8 @@ static void put_curve_legend(const fg_plot *at, const curve *c, size_t row) {
   fputs("</text>\n", at->out);
 }
 
-/* Of many curves those that say most: the last, and in turns the lowest and the highest mean. */
+/* Chooses the curves to colour among many: the last, then in turns the lowest and the highest mean.
+ */
 static void choose_looks(curve *curves, size_t count) {
   size_t given = 0;
   for (size_t i = 0; i < count; i++)
@@ -177,8 +178,8 @@ static void widen_range(double value, double *low, double *high) {
   *high = fmax(*high, value);
 }
 
-/* Values and limits are shown whole; what is expected as far as it goes over the values' range at
- * each side: few lots expect almost anything. */
+/* Includes values and limits wholly, and expected intervals as far as 0.3 of that span at each
+ * side: few lots expect almost anything. */
 static bool find_axis_range(const fg_index *index, const fg_index_axis *axis, fg_plot *at) {
   double low = INFINITY, high = -INFINITY;
   for (size_t i = 0; i < index->read; i++) {
@@ -205,7 +206,7 @@ static bool find_axis_range(const fg_index *index, const fg_index_axis *axis, fg
   return true;
 }
 
-/* Its edges are drawn where they are in the picture: a band without them reaches beyond it. */
+/* Puts the expected interval; edges outside the picture are not drawn. */
 static void put_expected_band(const fg_plot *at, double x, const fg_index_stat *stat) {
   if (!isfinite(stat->expected_low)) return;
   const double edges[2] = {stat->expected_low, stat->expected_high};

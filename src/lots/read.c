@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A lot from its lot.json. */
+/* Reads a lot from its lot.json. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -38,7 +38,7 @@ static size_t read_member_count(const cJSON *object, const char *name) {
   return value >= 0 && value < 1e15 ? (size_t)value : 0;
 }
 
-/* Why there is no lot.json, and what to do about it. */
+/* Describes why lot.json is missing, with advice. */
 static fg_status describe_missing(fg_context *ctx, fg_index_lot *lot, const char *path,
                                   const char *error) {
   fg_journal_head head;
@@ -69,7 +69,7 @@ static fg_status describe_missing(fg_context *ctx, fg_index_lot *lot, const char
                        lot->folder, lot->folder);
 }
 
-/* A lot.json that cannot be taken; NULL: it can. */
+/* Describes the damage of a lot.json; NULL: it can be read. */
 static fg_status describe_damage(fg_context *ctx, fg_index_lot *lot, const char *path,
                                  const cJSON *root) {
   static const char kind[] = "foilgauge/lot/";
@@ -117,7 +117,7 @@ static void read_lot_date(fg_index_lot *lot, const cJSON *root) {
   fg_date_format(isfinite(last) ? last : lot->day, lot->date.last);
 }
 
-/* What the design asks for: its text without its name, tolerances and the scanner's calibration. */
+/* Sums the nominal values of the design: its text without name, tolerances and calibration. */
 static fg_status sum_asked_design(fg_context *ctx, fg_index_lot *lot) {
   char *text = NULL;
   size_t size;
@@ -185,7 +185,7 @@ static void read_lot_stat(fg_index_lot *lot, fg_quantity_owner owner, const fg_q
     }
 }
 
-/* In the order of lot.json; what another version knows and this one does not is passed over. */
+/* Reads the quantities in the order of lot.json; unknown ones, of another version, are skipped. */
 static fg_status read_lot_stats(fg_context *ctx, fg_index_lot *lot, const cJSON *root) {
   const fg_quantity_owner owners[] = {fg_foil_kind_parts(lot->design.kind), FG_QUANTITY_OF_FOIL};
   const cJSON *list = find_member(root, "quantities"), *item;
@@ -245,7 +245,7 @@ fg_status fg_index_read_lot(fg_context *ctx, fg_index_lot *lot) {
     status = fg_json_read(ctx, path, text, &root);
     fg_sha256_text(text, lot->sha256);
     if (status != FG_ERR_MEMORY)
-      status = read_lot_members(ctx, lot, path, root); /* damage is noted there */
+      status = read_lot_members(ctx, lot, path, root); /* damage becomes lot->problem */
     cJSON_Delete(root);
   }
   free(text);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a page over lots has to say, in sentences. */
+/* Sentences of the page over lots. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,7 +12,7 @@
 
 enum {
   SAID_MAX = 3,    /* quantities with a sentence of their own */
-  LISTED_MAX = 12, /* lots whose numbers a sentence can list */
+  LISTED_MAX = 12, /* lots that a sentence can list */
   VALUE = 80,
   DECIMALS_MAX = 8,
   RATIO_DECIMALS = 4
@@ -104,7 +104,7 @@ static const char *name_axis(const fg_index_axis *axis, char *text, size_t size)
   return text;
 }
 
-/* Of a quantity the pair that is surest to differ, and how many more there are. */
+/* Says the pair that differs most surely in a quantity, and the number of further pairs. */
 static fg_status say_axis(fg_context *ctx, fg_index *index, size_t axis) {
   const fg_index_pair *first = NULL;
   const fg_index_axis *of = &index->axes[axis];
@@ -131,7 +131,7 @@ static fg_status say_axis(fg_context *ctx, fg_index *index, size_t axis) {
   return append_sentence(ctx, index, sentence);
 }
 
-/* Whether the two lots differ in any quantity. */
+/* Returns true when the two lots differ in any quantity. */
 static bool is_pair_differing(const fg_index *index, size_t a, size_t b) {
   for (size_t i = 0; i < index->differing; i++)
     if ((index->pairs[i].a == a && index->pairs[i].b == b) ||
@@ -140,7 +140,7 @@ static bool is_pair_differing(const fg_index *index, size_t a, size_t b) {
   return false;
 }
 
-/* "Lots that differ beyond chance: 1 from 2, 3; 2 from 3." */
+/* Says "Lots that differ beyond the scatter of foils: 1 from 2, 3; 2 from 3." */
 static fg_status say_differing_lots(fg_context *ctx, fg_index *index) {
   char *sentence = NULL;
   for (size_t a = 0; a < index->read; a++) {
@@ -160,7 +160,7 @@ static fg_status say_differing_lots(fg_context *ctx, fg_index *index) {
   return append_sentence(ctx, index, sentence);
 }
 
-/* Of many lots those that differ from half of the others or more, the worst first. */
+/* Says, of many lots, those that differ from half of the others or more, the worst first. */
 static fg_status say_odd(fg_context *ctx, fg_index *index) {
   size_t *others = NULL;
   char *sentence = NULL;
@@ -188,7 +188,7 @@ static fg_status say_odd(fg_context *ctx, fg_index *index) {
   return append_sentence(ctx, index, sentence);
 }
 
-/* How many of the lots are within tolerance. */
+/* Says the number of lots within tolerance. */
 static fg_status say_verdicts(fg_context *ctx, fg_index *index) {
   static const struct {
     fg_verdict verdict;
@@ -218,7 +218,7 @@ static bool is_axis_differing(const fg_index *index, size_t axis) {
   return false;
 }
 
-/* Most quantities follow from the first ones. */
+/* Says that further quantities differ: most follow from the first ones. */
 static fg_status say_more_quantities(fg_context *ctx, fg_index *index, size_t quantities,
                                      const char *what, const char *where) {
   char *sentence = NULL;
@@ -263,7 +263,7 @@ static fg_status say_pairs(fg_context *ctx, fg_index *index) {
   return more ? say_more_quantities(ctx, index, more, "Lots", "Which lots differ") : FG_OK;
 }
 
-/* The lots that lie where the others do not, of one quantity. */
+/* Says the lots whose mean the others make unlikely in a quantity. */
 static fg_status say_unexpected(fg_context *ctx, fg_index *index, const fg_index_axis *axis) {
   char *sentence = NULL, name[VALUE], value[VALUE], low[VALUE], high[VALUE];
   size_t lots = 0;
@@ -300,7 +300,7 @@ static fg_status say_die_pair(fg_context *ctx, fg_index *index, const fg_index_d
   return append_sentence(ctx, index, sentence);
 }
 
-/* How many pairs of dies were tested, and how many cannot be. */
+/* Says the numbers of pairs of dies that were tested, and that cannot be. */
 static fg_status say_no_die(fg_context *ctx, fg_index *index) {
   size_t tests = 0, tested = 0, apart = 0;
   char *sentence = NULL;
@@ -331,7 +331,8 @@ static fg_status say_no_die(fg_context *ctx, fg_index *index) {
   return sentence ? append_sentence(ctx, index, sentence) : FG_OK;
 }
 
-/* One sentence for each quantity in which dies differ; else that they do not, or why not. */
+/* Says the dies that differ, a sentence for each quantity; else that none differ, or why they
+ * cannot be compared. */
 static fg_status say_dies(fg_context *ctx, fg_index *index) {
   if (index->die_count < 2 || index->die_count > FG_INDEX_DIES_MAX) return FG_OK;
   size_t said = 0;

@@ -17,8 +17,8 @@
 
 enum { TEXT_BYTES_MAX = 1 << 30, DEPTH_MAX = 32 };
 
-/* Folders: every picture below, in the order of the names' bytes, so that a lot reads alike in
- * every locale. */
+/* Pictures of folders are sorted by the bytes of their names, so that a lot reads alike in every
+ * locale. */
 
 static int is_visible_entry(const struct dirent *entry) {
   return entry->d_name[0] != '.';
@@ -132,14 +132,13 @@ static fg_status add_path(const search *s, const char *path) {
   if (ends_with(path, ".csv"))
     return add_text_file(s->ctx, path, false, s->own == path, s->manifest);
   if (ends_with(path, ".txt")) return add_text_file(s->ctx, path, true, false, s->manifest);
-  /* A missing scan becomes a record with its error. A path without the name of a scan can only be a
+  /* A missing scan becomes a record with its error. A path without the name of a scan must be a
    * folder. */
   if (!fg_format_has_name(path) && stat(path, &info) != 0) return fg_folder_require(s->ctx, path);
   return fg_manifest_add_scan(s->ctx, s->manifest, "", path);
 }
 
-/* The scans under one spelling each: without links, "." and "..". One that is not there keeps its
- * own. */
+/* Resolves links, "." and ".." of every scan. A scan that is missing keeps its spelling. */
 static fg_status resolve_scans(fg_context *ctx, const fg_manifest *manifest, fg_manifest *real) {
   void *block;
   FG_TRY(fg_memory_allocate(ctx, manifest->items, sizeof *real->cell, &block));
@@ -153,7 +152,7 @@ static fg_status resolve_scans(fg_context *ctx, const fg_manifest *manifest, fg_
   return FG_OK;
 }
 
-/* The columns of both must say the same; else which of them holds? */
+/* Both rows must agree: nobody knows which of two cells holds. */
 static fg_status check_double(fg_context *ctx, const fg_manifest *manifest, size_t first,
                               size_t second) {
   for (size_t i = 1; i < manifest->columns; i++)

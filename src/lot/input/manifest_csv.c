@@ -11,17 +11,17 @@
 #include "core/text.h"
 #include "lot/input/manifest.h"
 
-/* Every line of the reports repeats the columns. */
+/* Limit of the columns: every line of the reports repeats them. */
 enum { COLUMNS_MAX = 1000 };
 
 typedef struct csv_reader {
   fg_context *ctx;
   fg_manifest *manifest;
   const char *source, *folder;
-  size_t *column; /* of the file to those of the manifest */
+  size_t *column; /* column of the manifest by column of the file */
   size_t columns, capacity, cell, row, scan;
   unsigned char separator;
-  char **cells; /* of the row that is read; NULL before its first cell */
+  char **cells; /* cells of the current row; NULL before the first */
   bool named, filled;
   fg_status status;
 } csv_reader;
@@ -99,7 +99,7 @@ static void on_row(int end, void *user) {
   if (r->status == FG_OK) r->status = end_manifest_row(r);
 }
 
-/* Whether the column's new cells are numbers, one with a decimal comma at least. */
+/* Returns true when the column's new cells are numbers, and one of them has a decimal comma. */
 static bool has_decimal_commas(const fg_manifest *manifest, size_t from, size_t column) {
   bool commas = false;
   for (size_t i = from; i < manifest->items; i++) {
@@ -111,7 +111,7 @@ static bool has_decimal_commas(const fg_manifest *manifest, size_t from, size_t 
   return commas;
 }
 
-/* A lot writes its tables with commas between the cells: numbers get points. */
+/* A lot writes its tables with commas between the cells, so numbers get decimal points. */
 static void write_decimal_points(fg_manifest *manifest, size_t from) {
   for (size_t column = 1; column < manifest->columns; column++) {
     if (!has_decimal_commas(manifest, from, column)) continue;

@@ -131,7 +131,7 @@ static fg_status read_setting(fg_context *ctx, const fg_recipe_member *row, cons
   return FG_OK;
 }
 
-/* "design": an object, or the path of a file beside the recipe. */
+/* Reads "design": an object, or the path of a file beside the recipe. */
 static fg_status read_recipe_design(fg_context *ctx, const char *path, const cJSON *value,
                                     fg_design *design) {
   if (cJSON_IsString(value)) {
@@ -148,7 +148,7 @@ static fg_status read_recipe_design(fg_context *ctx, const char *path, const cJS
   return status;
 }
 
-/* "assembly": { "bearings": 1000, ... }; members that are absent keep their value. */
+/* Reads "assembly": {"bearings": 1000, ...}. Absent members keep their value. */
 static fg_status read_assembly(fg_context *ctx, const cJSON *object, fg_lot_settings *settings) {
   fg_context inner = {.message = ""};
   const cJSON *value;
@@ -187,7 +187,7 @@ static fg_status read_assembly_part(fg_context *ctx, const char *path, const cJS
 static const struct {
   const char *name;
   fg_status (*read)(fg_context *ctx, const char *path, const cJSON *value,
-                    fg_lot_settings *settings); /* NULL: read elsewhere, or to people only */
+                    fg_lot_settings *settings); /* NULL: read elsewhere, or meant for people only */
   const char *meaning;
 } parts[] = {
     {"schema", NULL, "Must be \"foilgauge/recipe/1\"."},
@@ -283,7 +283,8 @@ fg_status fg_lot_settings_load_design(fg_context *ctx, const char *path,
 fg_status fg_lot_settings_load_model(fg_context *ctx, const char *path, const char *scanner,
                                      fg_lot_settings *settings) {
   fg_scanner_model *model;
-  char *whole = realpath(path, NULL); /* the settings may be printed, and read elsewhere */
+  char *whole =
+      realpath(path, NULL); /* absolute: the settings may be printed, and read elsewhere */
   const char *name = whole ? whole : path;
   fg_status status = fg_scanner_model_load(ctx, path, &model);
   if (status == FG_OK && strlen(name) >= sizeof settings->model)
@@ -321,7 +322,7 @@ fg_status fg_lot_settings_load(fg_context *ctx, const char *path, fg_lot_setting
   return status;
 }
 
-/* A lot that knows no model, no dies, no loss, has a recipe that does not speak of them. */
+/* A recipe is silent about a model, dies and loss that its lot does not have. */
 static bool is_left_unsaid(const fg_recipe_member *row, const fg_lot_settings *settings) {
   bool model = row->offset == offsetof(fg_lot_settings, model) ||
                row->offset == offsetof(fg_lot_settings, model_sha256);
@@ -345,7 +346,7 @@ fg_status fg_lot_settings_format(fg_context *ctx, const fg_lot_settings *setting
         !(fg_recipe_values.rows[i].jobs || is_left_unsaid(&fg_recipe_values.rows[i], settings)))
       fg_recipe_write(&writer, &fg_recipe_values.rows[i], settings);
   fg_lot_dies_write(&writer, settings);
-  writer.exact = true; /* what is read again gives the same report */
+  writer.exact = true; /* ten digits would change the report of a lot that is read again */
   fg_reference_curve_write(&writer, "reference_curve", settings);
   writer.exact = false;
   fg_json_object(&writer, "assembly");
@@ -355,7 +356,8 @@ fg_status fg_lot_settings_format(fg_context *ctx, const fg_lot_settings *setting
   fg_json_object_end(&writer);
   fg_json_line_end(&writer);
   if (with_jobs)
-    fg_json_calibration(&writer, "calibration", &settings->calibration); /* else as the design's */
+    fg_json_calibration(&writer, "calibration",
+                        &settings->calibration); /* else the design's calibration says the same */
   fg_json_design(&writer, "design", &settings->design);
   fg_json_object_end(&writer);
   fg_json_end(&writer);

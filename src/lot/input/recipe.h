@@ -9,18 +9,18 @@
 #include "foilgauge/lot.h"
 #include "lot/input/manifest.h"
 
-/* "dies": {"A": "die_a.json", "B": {...}}: paths of reports of `foilgauge die`, beside the recipe,
- * or what fg_lot_dies_write writes. */
+/* Reads "dies": {"A": "die_a.json", "B": {...}}: paths of reports of `foilgauge die` beside the
+ * recipe, or the objects that fg_lot_dies_write writes. */
 fg_status fg_lot_dies_read(fg_context *ctx, const char *path, const cJSON *value,
                            fg_lot_settings *settings);
 
-/* Nothing where there are none. */
+/* Writes nothing where the recipe names no die. */
 void fg_lot_dies_write(fg_json *json, const fg_lot_settings *settings);
 
-/* They are of the lot's design: datum, thickness. */
+/* Checks that the dies were measured for the lot's datum and thickness. */
 fg_status fg_lot_dies_check(fg_context *ctx, const fg_lot_settings *settings);
 
-/* NULL: none of that name. */
+/* Returns NULL when no die has the name. */
 const fg_lot_die *fg_lot_dies_find(const fg_lot_settings *settings, const char *name);
 
 /* More groups than these are not compared. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The columns that a recipe names, against those of the manifest. */
+/* Checks of the columns that a recipe names against those of a manifest. */
 #include <string.h>
 
 #include "core/text.h"
@@ -13,7 +13,7 @@ static void list_column_names(const fg_manifest *manifest, char *text, size_t si
   }
 }
 
-/* `usual` is what stands there when nobody has named a column: it may be missing. */
+/* A column with its default name `usual` may be missing: nobody has asked for it. */
 static fg_status check_named_column(fg_context *ctx, const fg_manifest *manifest,
                                     const char *member, const char *column, const char *usual) {
   char columns[400];
@@ -42,7 +42,7 @@ static fg_status check_groups(fg_context *ctx, const fg_manifest *manifest, cons
   return FG_OK;
 }
 
-/* With dies, the column is there, and every cell names one of them or none. */
+/* Dies need their column, and each of its cells must name one of them or be empty. */
 static fg_status check_die_cells(fg_context *ctx, const fg_lot_settings *settings,
                                  const fg_manifest *manifest) {
   char columns[400];

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Dies of a recipe: what was measured of them, kept in the recipe itself, so that a lot can be
- * reported anew without their files. */
+/* Dies of a recipe. Their numbers are kept in the recipe, so that a lot can be reported again
+ * without the files of `foilgauge die`. */
 #include "core/json_read.h"
 #include "core/sha256.h"
 #include "lot/input/recipe.h"
@@ -45,7 +45,7 @@ static fg_status add_die_bump(fg_context *ctx, double number, double radius_mm, 
   return FG_OK;
 }
 
-/* "foilgauge/die/1" */
+/* Reads a report of `foilgauge die`, "foilgauge/die/1". */
 static fg_status read_die_report(fg_context *ctx, const cJSON *root, fg_lot_die *die) {
   const cJSON *schema = cJSON_GetObjectItemCaseSensitive(root, "schema"), *bump;
   const cJSON *design = cJSON_GetObjectItemCaseSensitive(root, "design");
@@ -82,7 +82,7 @@ static fg_status load_die_report(fg_context *ctx, const char *file, fg_lot_die *
                          : fg_fail(ctx, status, "%.200s: %.*s", file, CONTEXT_WORDS, inner.message);
 }
 
-/* As fg_lot_dies_write writes it. */
+/* Reads the numbers that fg_lot_dies_write keeps in a recipe. */
 static fg_status read_kept_die(fg_context *ctx, const cJSON *value, fg_lot_die *die) {
   const cJSON *sum = cJSON_GetObjectItemCaseSensitive(value, "sha256"), *bump;
   if (cJSON_IsString(sum)) fg_text_clip(die->sha256, sizeof die->sha256, "%s", sum->valuestring);
@@ -165,7 +165,7 @@ static void write_die(fg_json *json, const fg_lot_die *die) {
 
 void fg_lot_dies_write(fg_json *json, const fg_lot_settings *settings) {
   if (!settings->die_count) return;
-  json->exact = true; /* what is read again gives the same report */
+  json->exact = true; /* ten digits would change the report of a lot that is read again */
   fg_json_object(json, "dies");
   for (size_t i = 0; i < settings->die_count; i++)
     write_die(json, &settings->dies[i]);

@@ -73,7 +73,7 @@ static const fg_recipe_member members[] = {
      "Coulomb's, of the bumps' feet."},
 };
 
-/* Of the object "assembly". A hundred thousand draws take seconds, and tell shares to 0.3 %. */
+/* Members of "assembly". A hundred thousand draws take seconds and give shares to 0.3 %. */
 static const fg_recipe_member assembly_members[] = {
     {"bearings", FG_RECIPE_COUNT, AT(assembly.bearings), 0, 0, 100000, false, false,
      "Drawn from the foils, to see how many would assemble; 0 draws none."},
@@ -158,7 +158,7 @@ void fg_recipe_write(fg_json *json, const fg_recipe_member *row, const fg_lot_se
   }
 }
 
-/* What --print-recipe writes of it. */
+/* Prints the default as --print-recipe does. */
 static void print_default(const fg_recipe_member *row, const fg_lot_settings *usual, char *text,
                           size_t size) {
   char *json = NULL;

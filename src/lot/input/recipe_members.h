@@ -24,10 +24,10 @@ typedef enum fg_recipe_kind {
 typedef struct fg_recipe_member {
   const char *name;
   fg_recipe_kind kind;
-  size_t offset, size; /* size: of a text */
+  size_t offset, size; /* `size` is that of a text */
   double lowest, highest;
-  bool jobs;           /* says how the work is done, not what comes out */
-  bool open;           /* null, kept as 0: what the design says */
+  bool jobs;           /* changes how the work is done, not its results */
+  bool open;           /* may be null (kept as 0): the design decides */
   const char *meaning; /* foilgauge-recipe(5) */
 } fg_recipe_member;
 
@@ -36,20 +36,21 @@ typedef struct fg_recipe_table {
   size_t count;
 } fg_recipe_table;
 
-/* Of the recipe itself, and of its object "assembly". */
+/* Tables of the recipe itself and of its object "assembly". */
 extern const fg_recipe_table fg_recipe_values, fg_recipe_assembly;
 
-/* Where the value lies; as a number, NaN for one that is none; whether it is left to the design. */
+/* Address of the value in the settings. The value as a number, NaN for other kinds. True when the
+ * value is left to the design. */
 void *fg_recipe_place(const fg_recipe_member *row, const fg_lot_settings *settings);
 double fg_recipe_number(const fg_recipe_member *row, const fg_lot_settings *settings);
 bool fg_recipe_is_open(const fg_recipe_member *row, double value);
 
 void fg_recipe_write(fg_json *json, const fg_recipe_member *row, const fg_lot_settings *settings);
 
-/* What there is to say of it; `object` stands before its name ("assembly."). */
+/* Words of the manual about a member; `object` stands before its name ("assembly."). */
 void fg_recipe_say(const char *object, const fg_recipe_member *row, fg_member_words *words);
 
-/* Makes `file` the path `name` as the recipe `path` means it: relative to the recipe's folder. */
+/* Resolves `name` against the folder of the recipe `path`. */
 void fg_recipe_find_file(const char *path, const char *name, char *file, size_t size);
 
 #endif

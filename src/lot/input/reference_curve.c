@@ -12,11 +12,11 @@
 
 enum { CURVE_BYTES_MAX = 1 << 20, CONTEXT_WORDS = 700 };
 
-/* Columns of the file, in the order of a point: named as a lot's bumps.csv names them. */
+/* Columns of the file in the order of a point, with the names of a lot's bumps.csv. */
 static const char *const columns[] = {"bump", "radius_error_pct", "intersection_angle_error_pct"};
 enum { COLUMNS = sizeof columns / sizeof columns[0] };
 
-/* `row` from 1, for messages; `line` 0: not a file's. */
+/* Inserts a point in the order of bumps; `row`, from 1, is for messages. */
 static fg_status insert_point(fg_context *ctx, const double numbers[COLUMNS], size_t row,
                               fg_lot_curve *curve) {
   double bump = numbers[0];
@@ -49,7 +49,7 @@ static fg_status read_curve_table(fg_context *ctx, const fg_table *table, fg_lot
   return FG_OK;
 }
 
-/* A message of a table names its file; one of a point does not. */
+/* A message of the table names its file already; one of a point does not. */
 static fg_status name_curve_file(fg_context *ctx, const char *path, const fg_context *inner,
                                  fg_status status) {
   if (status == FG_OK) return FG_OK;
@@ -79,7 +79,7 @@ fg_status fg_lot_settings_load_curve(fg_context *ctx, const char *path, fg_lot_s
   return FG_OK;
 }
 
-/* As fg_reference_curve_write writes it. */
+/* Reads the numbers that fg_reference_curve_write keeps in a recipe. */
 static fg_status read_kept_curve(fg_context *ctx, const cJSON *value, fg_lot_curve *curve) {
   const cJSON *name = cJSON_GetObjectItemCaseSensitive(value, "name"), *point;
   size_t row = 0;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The curve that a lot's errors per bump are drawn against: of a simulation, or of a die. */
+/* Reference curve over the errors per bump, from a simulation or a die. */
 #ifndef FG_LOT_INPUT_REFERENCE_CURVE_H
 #define FG_LOT_INPUT_REFERENCE_CURVE_H
 
@@ -8,15 +8,16 @@
 #include "core/json_writer.h"
 #include "foilgauge/lot.h"
 
-/* "reference_curve": the path of a CSV beside the recipe, or what fg_reference_curve_write writes:
- * the numbers stand in the lot's own recipe, so that it can be reported anew without the file. */
+/* Reads "reference_curve": the path of a CSV file beside the recipe, or the object that
+ * fg_reference_curve_write writes. The numbers stand in the lot's own recipe, so that it can be
+ * reported again without the file. */
 fg_status fg_reference_curve_read(fg_context *ctx, const char *path, const cJSON *value,
                                   fg_lot_settings *settings);
 
-/* Nothing where there is none. */
+/* Writes nothing where the recipe has no curve. */
 void fg_reference_curve_write(fg_json *json, const char *name, const fg_lot_settings *settings);
 
-/* Its bumps are those of the design. */
+/* Checks that the design has the curve's bumps. */
 fg_status fg_reference_curve_check(fg_context *ctx, const fg_lot_settings *settings);
 
 #endif

@@ -13,7 +13,7 @@ static void widen_span(span *days, double day) {
   days->last = fmax(days->last, day);
 }
 
-/* False when there is no such column, nothing in it, or a cell that is no date. */
+/* Returns false when the column is missing, is empty, or has a cell that is no date. */
 static bool date_by_manifest(const fg_manifest *manifest, span *days) {
   size_t column = fg_manifest_column(manifest, FG_LOT_DATE_COLUMN);
   if (column == FG_NO_COLUMN) return false;

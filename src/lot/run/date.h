@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* When a lot was made: the manifest's column `date`, else the times of its scans' files. */
+/* Date of a lot: the manifest's column `date`, else the times of the scans' files. */
 #ifndef FG_LOT_RUN_DATE_H
 #define FG_LOT_RUN_DATE_H
 
@@ -7,21 +7,22 @@
 #include "core/json_writer.h"
 #include "lot/run/lot.h"
 
-/* The column of a manifest. */
+/* Column of the manifest that holds dates. */
 #define FG_LOT_DATE_COLUMN "date"
 
 typedef struct fg_lot_date {
-  char first[FG_DATE_TEXT], last[FG_DATE_TEXT]; /* "": not known; of both ends */
-  const char *from; /* FG_LOT_DATE_MANIFEST, FG_LOT_DATE_SCANS; NULL: not known */
+  char first[FG_DATE_TEXT], last[FG_DATE_TEXT]; /* earliest and latest; "": unknown */
+  const char *from; /* FG_LOT_DATE_MANIFEST or FG_LOT_DATE_SCANS; NULL: unknown */
 } fg_lot_date;
 
 #define FG_LOT_DATE_MANIFEST "manifest"
 #define FG_LOT_DATE_SCANS    "scans"
 
-/* A column `date` in which a cell is no date is not taken. */
+/* Finds the dates. A column `date` with a cell that is no date is ignored. */
 void fg_lot_date_find(const fg_lot *lot, fg_lot_date *date);
 
-/* How many cells of that column are no date, and the first of them; 0, NULL: none. */
+/* Returns the number of cells of that column that are no date; *first is the first of them, or
+ * NULL. */
 size_t fg_lot_date_wrong(const fg_manifest *manifest, const char **first);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The folder of a lot: paths, sums, loading. */
+/* Folder of a lot: its paths, its checksums, loading it. */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,8 +16,8 @@ fg_status fg_lot_path(fg_context *ctx, const char *folder, const char *name, cha
   return fg_text_print(ctx, path, "%s/%s", folder, name);
 }
 
-/* Tolerances judge a measurement and statistics follow it: neither makes it another one. Other
- * quantities do: their values stand in another order. */
+/* Tolerances and statistics come after a measurement, so they are not part of the sum. The names of
+ * the quantities are: other quantities put the values in another order. */
 fg_status fg_lot_sum_settings(fg_context *ctx, const fg_lot_settings *settings, char sum[65]) {
   fg_lot_settings bare;
   char *text, *names;
@@ -92,7 +92,7 @@ static fg_status move_record(fg_context *ctx, void *user, fg_record *record,
   return FG_OK;
 }
 
-/* By the name that it has in every folder: a report must not depend on where it came from. */
+/* The copy has one name in every folder, so a report does not depend on the model's origin. */
 static fg_status load_model_copy(fg_context *ctx, const char *folder, fg_lot *lot) {
   char *path, *text = NULL;
   FG_TRY(fg_lot_path(ctx, folder, FG_LOT_MODEL_FILE, &path));
@@ -103,7 +103,7 @@ static fg_status load_model_copy(fg_context *ctx, const char *folder, fg_lot *lo
   return status;
 }
 
-/* The lot is named after the folder itself, even where the path ends in "." or a link. */
+/* Names the lot after the folder itself, even where the path ends in "." or a link. */
 static void name_by_folder(const char *folder, char *name, size_t size) {
   char *path = realpath(folder, NULL);
   const char *slash = path ? strrchr(path, '/') : NULL;

@@ -12,7 +12,7 @@
 #include "core/folder.h"
 #include "core/text.h"
 
-/* Ours alone: the names that outputs have before they are whole (core/file.h). */
+/* Removes temporary outputs (core/file.h) of a killed run; other files stay. */
 static void remove_leftovers(const char *folder) {
   static const char first[] = ".foilgauge-", last[] = ".tmp";
   DIR *entries = opendir(folder);

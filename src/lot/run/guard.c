@@ -12,7 +12,7 @@
 
 enum { LOT_FILES = 12 };
 
-/* The files that a run writes into a lot's folder. All zero before; free in any case. */
+/* Paths of the files that a run writes into a lot's folder. Starts zeroed; free it in any case. */
 typedef struct lot_guard {
   char *path[LOT_FILES];
   fg_overwrite overwrite; /* for fg_overwrite_check */
@@ -35,7 +35,7 @@ static void free_guard(lot_guard *guard) {
   fg_overwrite_free(&guard->overwrite);
 }
 
-/* The sum that the lot's results were made with; the model's stands in the recipe, and the copy is
+/* Checks the sum that the results were made with. The model's stands in the recipe, and its copy is
  * written back as it was read. */
 static bool is_as_written(const char *path, const char *name, const fg_journal_head *head) {
   enum { TEXT_BYTES_MAX = 1 << 30 };
@@ -92,7 +92,7 @@ fg_status fg_lot_check_inputs(fg_context *ctx, const fg_lot_request *request,
 }
 
 static fg_status check_shard_files(fg_context *ctx, const char *shard, const lot_guard *guard) {
-  enum { READ = 4 }; /* of lot_files, those that merging reads */
+  enum { READ = 4 }; /* number of lot_files that merging reads */
   fg_status status = FG_OK;
   for (size_t i = 0; i < READ && status == FG_OK; i++) {
     char *path;

@@ -94,8 +94,8 @@ static bool is_of_schema(const cJSON *root, const char *expected) {
 
 typedef enum head_state { HEAD_GOOD, HEAD_EARLIER, HEAD_DAMAGED } head_state;
 
-/* Values lie in records by their places alone: a build that measures others would take one for
- * another, wherever as many are there. */
+/* Records hold values by position. A build with other quantities would misread them wherever their
+ * number agrees, so the names of the first line must match. */
 static fg_status check_value_names(fg_context *ctx, const char *line, head_state *state) {
   char *names;
   FG_TRY(fg_record_format_names(ctx, &names));
@@ -140,13 +140,13 @@ typedef struct reader {
   char *line;
   size_t capacity;
   off_t offset;
-  size_t number;  /* of the line, from 1 */
-  size_t records; /* that were whole */
+  size_t number;  /* of the current line, from 1 */
+  size_t records; /* whole ones so far */
   fg_journal_damage *damage;
 } reader;
 
-/* One line into r->line, with its newline; false at the end. Of a line that no record can be the
- * rest is passed over, so that a damaged file takes no more memory than a whole one. */
+/* Reads a line with its newline into r->line; *there is false at the end. The tail of a line too
+ * long for a record is skipped, so that a damaged file needs no more memory than a whole one. */
 static fg_status read_journal_line(fg_context *ctx, reader *r, size_t *length, bool *there) {
   int byte;
   *length = 0;
@@ -163,7 +163,8 @@ static fg_status read_journal_line(fg_context *ctx, reader *r, size_t *length, b
   return FG_OK;
 }
 
-/* The next line, NULL at the end; "" when it has no newline or holds a NUL. */
+/* Sets *line to the next line, to NULL at the end, or to "" when it has no newline or holds a NUL.
+ */
 static fg_status next_journal_line(fg_context *ctx, reader *r, fg_journal_entry *entry,
                                    const char **line) {
   bool there;
@@ -342,7 +343,7 @@ static bool write_whole(const fg_journal *journal, const char *line, size_t leng
   return true;
 }
 
-/* Every record would cost a disk's turn; a second's worth is what a power cut may take. */
+/* Limits syncs to one a second or SYNC_RECORDS records: a power cut may lose so much. */
 static bool is_sync_due(fg_journal *journal) {
   struct timespec now;
   clock_gettime(CLOCK_MONOTONIC, &now);
@@ -366,7 +367,7 @@ fg_status fg_journal_append(fg_context *ctx, fg_journal *journal, const char *li
     if (ftruncate(journal->descriptor, journal->end) != 0) entry->length = 0;
   }
   pthread_mutex_unlock(&journal->mutex);
-  /* Nobody else waits for the disk. */
+  /* Other threads do not wait for the disk. */
   if (due && fdatasync(journal->descriptor) != 0) status = fail_file(ctx, journal->path, "written");
   return status;
 }

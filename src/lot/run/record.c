@@ -17,9 +17,7 @@
 #include "quantity/quantity_rows.h"
 #include "report/flag_names.h"
 
-/* NUMBER_MAX: of a foil or a part of it. No scan holds so many, and what is counted by number stays
- * small.
- */
+/* Highest number of a foil or of a part. No scan holds so many, and arrays by number stay small. */
 enum { NUMBER_MAX = 10000 };
 
 static void write_value_list(fg_json *json, fg_quantity_owner owner, const void *object) {
@@ -41,7 +39,7 @@ static bool is_moved(const fg_calibrated *calibrated, size_t source) {
   return false;
 }
 
-/* Nothing without a calibration. */
+/* Writes nothing where no calibration is stated. */
 static void write_calibrated(fg_json *json, fg_quantity_owner owner,
                              const fg_calibrated *calibrated) {
   size_t sources = FG_CALIBRATION_SOURCES;
@@ -65,7 +63,7 @@ static const fg_flag_words *part_flag_words(fg_quantity_owner owner) {
   return owner == FG_QUANTITY_OF_BEAM ? fg_beam_flag_words() : fg_bump_flag_words();
 }
 
-/* Of what is no foil of the design a lot keeps what the whole is, not its parts. */
+/* Parts are kept of foils of the design only; of other objects the whole is enough. */
 static void write_parts(fg_json *json, const char *name, const fg_foil *foil,
                         fg_quantity_owner owner) {
   size_t count = fg_foil_is_measured(foil) ? fg_part_count(foil, owner) : 0;
@@ -94,8 +92,8 @@ static void write_measured_foil(fg_json *json, const fg_foil *foil) {
   fg_json_object_end(json);
 }
 
-/* JSON holds UTF-8 only, a name of a file any bytes: one that is not UTF-8 is also written as hex
- * digits, so that it comes back as it was. *hex is NULL where there is no need. */
+/* JSON holds UTF-8, a file name any bytes. A name that is not UTF-8 is also written as hex digits,
+ * so that it can be restored. *hex is NULL where that is not needed. */
 static fg_status format_bytes(fg_context *ctx, const char *text, char **hex) {
   static const char digits[] = "0123456789abcdef";
   size_t length = strlen(text);
@@ -168,7 +166,7 @@ static unsigned find_finding(const char *name) {
   return words->finding;
 }
 
-/* `findings` NULL: of a part, which has none of its own. */
+/* `findings` is NULL for a part, which has none of its own. */
 static fg_status restore_flags(fg_context *ctx, const cJSON *object, const fg_flag_words *words,
                                unsigned *flags, unsigned *findings) {
   const cJSON *list = find_member(object, "flags"), *item;
@@ -231,7 +229,7 @@ static fg_status read_part_number(fg_context *ctx, const cJSON *object, int *num
   return FG_OK;
 }
 
-/* What every part has, whatever it is. */
+/* Reads the members that every kind of part has. */
 static fg_status restore_part(fg_context *ctx, const cJSON *object, fg_quantity_owner owner,
                               fg_foil_part *part, void *target, fg_calibrated *calibrated) {
   FG_TRY(read_part_number(ctx, object, &part->number));
@@ -256,7 +254,7 @@ static fg_status read_bumps(fg_context *ctx, const cJSON *bumps, fg_foil *foil) 
   return FG_OK;
 }
 
-/* Of a cantilever; other records have none. */
+/* Reads the beams of a cantilever; other records have none. */
 static fg_status read_beams(fg_context *ctx, const cJSON *beams, fg_foil *foil) {
   const cJSON *beam;
   void *block;
@@ -305,7 +303,7 @@ static int hex_digit(char hex) {
   return at ? (int)(at - digits) : -1;
 }
 
-/* The name's bytes, where it could not be written as a text. */
+/* Restores a name that was written as bytes. */
 static fg_status read_bytes(fg_context *ctx, const cJSON *value, char **text) {
   if (!value) return FG_OK;
   size_t length = cJSON_IsString(value) ? strlen(value->valuestring) : 0;
@@ -322,7 +320,7 @@ static fg_status read_bytes(fg_context *ctx, const cJSON *value, char **text) {
   return FG_OK;
 }
 
-/* A record from before there were dates has none. */
+/* Records of early versions have no date. */
 static fg_status read_scan_date(fg_context *ctx, const cJSON *value, char date[11]) {
   if (!value) return FG_OK;
   if (!cJSON_IsString(value) || strlen(value->valuestring) != 10)
@@ -368,7 +366,7 @@ fg_status fg_record_parse(fg_context *ctx, const char *line, fg_record *record) 
 void fg_record_free(fg_record *record) {
   for (size_t i = 0; i < record->foil_count; i++) {
     free(record->foils[i].bumps);
-    free(record->foils[i].beams); /* whose edges a record does not have */
+    free(record->foils[i].beams); /* records hold no edges of beams */
   }
   free(record->foils);
   free(record->scan);

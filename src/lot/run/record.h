@@ -19,27 +19,28 @@
 
 typedef struct fg_record {
   char *scan;
-  char sha256[65];        /* "": the scan could not be read, so the record is never kept */
+  char sha256[65];        /* "": the scan could not be read, so the record is not reused */
   char measured_with[65]; /* SHA-256 of version, design without tolerances, resolution, fields */
-  char date[11];          /* of the scan's file, UTC, "2026-11-20"; "": not known */
+  char date[11];          /* of the scan's file, UTC, "2026-11-20"; "": unknown */
   char *error;            /* NULL: it was measured */
   fg_foil *foils;         /* without strips and labels; owned, with their bumps */
   size_t foil_count;
-  size_t repeat_of; /* in a lot: item + 1 of an earlier scan with the same bytes; 0: none */
+  size_t repeat_of; /* item + 1 of an earlier scan with the same bytes; 0: none */
 } fg_record;
 
-/* A line with its newline; `measurement` NULL: `record->error` says why. The caller frees. */
+/* Formats a record as a line with its newline. NULL `measurement`: `record->error` holds the
+ * reason. The caller frees the line. */
 fg_status fg_record_format(fg_context *ctx, const fg_record *record,
                            const fg_measurement *measurement, char **line, size_t *length);
 
-/* FG_ERR_DATA when the line is no record, or not the one that was written. */
+/* FG_ERR_DATA when the line is no record or fails its checksum. */
 fg_status fg_record_parse(fg_context *ctx, const char *line, fg_record *record);
 void fg_record_free(fg_record *record);
 
-/* Names of the places of `values`, as members of the first line. */
+/* Writes the names of `values`, as members of the first line. */
 void fg_record_write_names(fg_json *json);
 
-/* The same as a text; the caller frees it. */
+/* Formats these names as a text; the caller frees it. */
 fg_status fg_record_format_names(fg_context *ctx, char **text);
 
 #endif

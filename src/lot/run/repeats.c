@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Scans of a lot with the same bytes. One scan shows one foil: under a second name it says nothing
- * of the foil of that name, and in statistics it would count twice. */
+/* Repeated scans: files with the same bytes under several names. A scan shows one foil. Under a
+ * second name it tells nothing of the foil of that name, and would count twice in statistics. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -14,7 +14,7 @@ static int compare_sums(const void *a, const void *b) {
   return order ? order : (*one > *other) - (*one < *other); /* records lie in manifest's order */
 }
 
-/* Its foils go; the reason takes their place. */
+/* Replaces the foils of the repeat by the reason. */
 static fg_status mark_repeat(fg_context *ctx, fg_lot *lot, fg_record *repeat,
                              const fg_record *first) {
   size_t item = (size_t)(first - lot->records);

@@ -24,7 +24,7 @@ fg_status fg_seal_line(fg_context *ctx, char **line, size_t *length) {
   size_t body = *length;
   while (body > 0 && (*line)[body - 1] != '}')
     body--;
-  if (body > 0) body--; /* the brace comes with the seal */
+  if (body > 0) body--; /* the seal ends with the brace */
   char *longer = realloc(*line, body + SEAL_BYTES + 1);
   if (!longer) {
     free(*line);

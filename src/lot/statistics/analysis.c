@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The lot as a whole: its foils, their verdicts, the worst of them. */
+/* Foils of the lot, their verdicts, and the worst of them. */
 #include "lot/statistics/analysis.h"
 
 #include <math.h>
@@ -55,7 +55,8 @@ static fg_status decide_foil(fg_context *ctx, fg_lot_analysis *analysis, fg_lot_
   return FG_OK;
 }
 
-/* Plain strips have no heights: the radius that lies farthest from the lot's mean. */
+/* Ranks plain strips, which have no heights, by the distance of their radius from the lot's mean.
+ */
 static void rank_arcs_by_spread(fg_lot_analysis *analysis) {
   const fg_lot_quantity *radius = fg_lot_find_quantity(analysis, "overall.radius_mm");
   for (size_t i = 0; radius && radius->sd > 0 && i < analysis->foil_count; i++) {
@@ -68,8 +69,8 @@ static void rank_arcs_by_spread(fg_lot_analysis *analysis) {
   }
 }
 
-/* Without tolerances of foils what lies farthest from the lot's mean in its leading quantity, the
- * height of bumps, is the worst. */
+/* Ranks foils without tolerances by the distance of the leading quantity (heights of bumps) from
+ * the lot's mean. */
 static void rank_by_spread(fg_lot_analysis *analysis) {
   if (analysis->lot->settings.design.kind == FG_FOIL_ARC) {
     rank_arcs_by_spread(analysis);
@@ -93,7 +94,7 @@ static void rank_by_spread(fg_lot_analysis *analysis) {
   }
 }
 
-/* By the verdict first, then by the severity. */
+/* Compares verdicts first, then severities. */
 static bool is_worse_foil(const fg_lot_foil *foil, const fg_lot_foil *than) {
   if (foil->verdict != than->verdict)
     return fg_verdict_worse(foil->verdict, than->verdict) == foil->verdict;
@@ -131,7 +132,7 @@ bool fg_lot_foil_is_good(const fg_lot_foil *foil) {
   return foil->verdict == FG_VERDICT_PASS || foil->verdict == FG_VERDICT_NONE;
 }
 
-/* A page of 100,000 rows helps nobody. */
+/* Rows of the page are limited: nobody reads 100,000. */
 static void choose_listed_foils(fg_lot_analysis *analysis) {
   size_t rows = 0;
   for (int good = 0; good < 2; good++)

@@ -15,8 +15,8 @@
 
 const double fg_assembly_probability[FG_ASSEMBLY_QUANTILES] = {0.05, 0.25, 0.5, 0.75, 0.95};
 
-/* Of the bootstrap: sets of foils, and bearings of each. The scatter of the bearings is taken out,
- * so that 200 × 250 say as much about the foils as many more would. */
+/* Size of the bootstrap: sets of foils, and bearings of each. The scatter of the bearings is
+ * subtracted, so that 200 × 250 tell as much about the foils as many more would. */
 enum { SETS = 200, BEARINGS_OF_A_SET = 250 };
 
 const fg_quantity *fg_assembly_row(size_t value) {
@@ -25,8 +25,8 @@ const fg_quantity *fg_assembly_row(size_t value) {
   return fg_quantity_find(FG_QUANTITY_OF_BEARING, names[value]);
 }
 
-/* Where the beta distribution reaches a probability: by bisection, for GSL's own inverse does not
- * always converge. */
+/* Returns the quantile of a beta distribution by bisection: GSL's own inverse does not always
+ * converge. */
 static double beta_quantile(double probability, double a, double b) {
   double low = 0, high = 1;
   for (int i = 0; i < 60; i++) {
@@ -45,7 +45,7 @@ void fg_assembly_interval(double count, double of, double confidence, double *lo
   *high = count < of ? beta_quantile(1 - tail, count + 1, of - count) : 1;
 }
 
-/* A stream of its own for every purpose, draw by draw. */
+/* Gives every purpose and draw a random stream of its own. */
 static uint64_t seed_stream(uint64_t seed, uint64_t purpose, uint64_t draw) {
   uint64_t state = seed ^ purpose * 0xd1342543de82ef95u;
   state = fg_engine_random_next(&state) ^ draw;
@@ -59,7 +59,7 @@ static size_t draw_below(uint64_t *state, size_t count) {
   return drawn < count ? drawn : count - 1;
 }
 
-/* `pads` different numbers below `foils`: one that was drawn already is drawn again. */
+/* Draws `pads` different numbers below `foils`; a repeated one is drawn again. */
 static void pick_different(uint64_t *state, size_t foils, size_t pads, size_t *foil) {
   for (size_t pad = 0; pad < pads; pad++) {
     bool taken = true;
@@ -77,7 +77,7 @@ void fg_assembly_pick(uint64_t seed, size_t draw, size_t foils, size_t pads, siz
   pick_different(&state, foils, pads, foil);
 }
 
-/* Where a bearing is put together. */
+/* Arrays of one bearing while it is built. */
 typedef struct workspace {
   const fg_stock *stock;
   const fg_assembly_plan *plan;
@@ -126,7 +126,7 @@ static bool is_assembled(const fg_assembly_plan *plan, const fg_bearing_clearanc
   return true;
 }
 
-/* Counts one bearing. */
+/* Counts a bearing. */
 static void count_bearing(const fg_assembly_plan *plan, const fg_bearing_clearance *bearing,
                           size_t counts[2], fg_assembly_result *result) {
   bool out[FG_ASSEMBLY_LIMITS_MAX], surely = true, possibly = true;
@@ -208,7 +208,8 @@ void fg_assembly_result_free(fg_assembly_result *result) {
   *result = (fg_assembly_result){.assembled = {.count = 0}};
 }
 
-/* The share of every limit, and of all, over one set of foils drawn with replacement. */
+/* Finds the share within every limit, and within all, of one set of foils drawn with replacement.
+ */
 static fg_status draw_set_share(fg_context *ctx, workspace *b, size_t set,
                                 double share[FG_ASSEMBLY_LIMITS_MAX + 1]) {
   const fg_assembly_plan *plan = b->plan;
@@ -238,10 +239,11 @@ static fg_status draw_set_share(fg_context *ctx, workspace *b, size_t set,
   return status;
 }
 
-/* Shares of SETS sets of foils scatter by the foils and by their BEARINGS_OF_A_SET bearings; the
- * second is known. What the foils leave is the scatter of a share of so many independent bearings,
- * fewer by what few foils know of their own scatter (Korn and Graubard 1998), and the exact
- * interval is of those. Where sets do not tell, bearings without a common foil are counted. */
+/* Interval of a share by the number of foils. Shares of SETS sets scatter by the foils and by their
+ * BEARINGS_OF_A_SET bearings; the second part is known. The first is the scatter of a share of a
+ * number of independent bearings, reduced because few foils tell little of their own scatter (Korn
+ * and Graubard 1998). The exact interval is that of this number. Where the sets do not tell it,
+ * bearings without a common foil are counted. */
 static void find_foils_interval(const double *share, double confidence, double foils, double pads,
                                 fg_assembly_share *target) {
   double mean = 0, variance = 0, tail = (1 - confidence) / 2;
@@ -361,7 +363,7 @@ fg_status fg_assembly_draw_sorted(fg_context *ctx, const fg_stock *stock,
   fg_sort_items(order, stock->foils, sizeof *order, compare_means);
   for (size_t i = 0; i < plan->bearings && status == FG_OK; i++) {
     uint64_t state = seed_stream(plan->seed, FOR_SORTED, i);
-    /* The box of a foil drawn at random: a box is drawn as often as it has foils. */
+    /* Box of a random foil: a box is drawn as often as it has foils. */
     size_t box = draw_below(&state, stock->foils) * classes / stock->foils;
     size_t from = (box * stock->foils + classes - 1) / classes;
     size_t to = ((box + 1) * stock->foils + classes - 1) / classes;

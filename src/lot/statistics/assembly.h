@@ -31,20 +31,20 @@ fg_status fg_stock_allocate(fg_context *ctx, size_t foils, size_t places, fg_sto
 fg_status fg_stock_copy(fg_context *ctx, const fg_stock *stock, fg_stock *copy);
 void fg_stock_free(fg_stock *stock);
 
-/* What a bearing is asked: lower <= value <= upper. */
+/* Requirement of a bearing: lower <= value <= upper. */
 typedef struct fg_assembly_limit {
   const fg_quantity *row; /* of a bearing */
   double lower, upper;
-  bool asked; /* a bearing that is not within does not count as assembled */
+  bool asked; /* a bearing beyond the limit does not count as assembled */
 } fg_assembly_limit;
 
 enum { FG_ASSEMBLY_LIMITS_MAX = 8, FG_ASSEMBLY_QUANTILES = 5, FG_ASSEMBLY_VALUES = 3 };
 
-/* Probabilities of the quantiles, and whose they are: circularity_mm, min_mm, centred_min_mm. */
+/* Probabilities of the quantiles; their quantities are circularity_mm, min_mm, centred_min_mm. */
 extern const double fg_assembly_probability[FG_ASSEMBLY_QUANTILES];
 const fg_quantity *fg_assembly_row(size_t value);
 
-/* The limits of what drawn bearings tell, as a sentence for every report of them. */
+/* Limits of drawn bearings as evidence: a sentence for every report of them. */
 extern const char fg_assembly_scope[];
 
 typedef struct fg_assembly_plan {
@@ -56,45 +56,45 @@ typedef struct fg_assembly_plan {
   size_t limits;
 } fg_assembly_plan;
 
-/* Of the bearings drawn. */
+/* Share of the drawn bearings. */
 typedef struct fg_assembly_share {
   size_t count;
   double share;
-  double draws_low, draws_high; /* by the number of draws */
-  double foils_low, foils_high; /* by the number of foils; NaN: not asked */
-  bool by_bootstrap;            /* else by foils / pads bearings */
-  double surely, possibly;      /* share whose value ± U is within; that is not surely outside */
+  double draws_low, draws_high; /* interval by the number of draws */
+  double foils_low, foils_high; /* interval by the number of foils; NaN: not asked */
+  bool by_bootstrap;            /* false: by foils / pads bearings */
+  double surely, possibly;      /* shares: value ± U within the limit; not surely outside */
 } fg_assembly_share;
 
 typedef struct fg_assembly_result {
   fg_assembly_share assembled;
   fg_assembly_share within[FG_ASSEMBLY_LIMITS_MAX];
-  size_t rejected[FG_ASSEMBLY_LIMITS_MAX]; /* bearings that it keeps from being assembled */
-  size_t alone[FG_ASSEMBLY_LIMITS_MAX];    /* and no other does */
+  size_t rejected[FG_ASSEMBLY_LIMITS_MAX]; /* bearings that the limit rejects */
+  size_t alone[FG_ASSEMBLY_LIMITS_MAX];    /* bearings that only this limit rejects */
   double quantile[FG_ASSEMBLY_VALUES][FG_ASSEMBLY_QUANTILES];
-  double *value[FG_ASSEMBLY_VALUES]; /* of every bearing, ascending; owned; NaN: none */
-  size_t values[FG_ASSEMBLY_VALUES]; /* how many are known */
+  double *value[FG_ASSEMBLY_VALUES]; /* known values of the bearings, ascending; owned */
+  size_t values[FG_ASSEMBLY_VALUES]; /* number of known values */
 } fg_assembly_result;
 
-/* Draws bearings of different foils; FG_ERR_DATA for fewer foils than pads. With `resample` the
+/* Draws bearings of different foils. FG_ERR_DATA for fewer foils than pads. `resample` adds the
  * intervals by the number of foils. */
 fg_status fg_assembly_draw(fg_context *ctx, const fg_stock *stock, const fg_assembly_plan *plan,
                            bool resample, fg_assembly_result *result);
 void fg_assembly_result_free(fg_assembly_result *result);
 
-/* How many of the plan's bearings are assembled when the foils are sorted by their mean clearance
- * into `classes` boxes and a bearing is made of one box. */
+/* Counts the assembled bearings when the foils are sorted by mean clearance into `classes` boxes
+ * and a bearing takes its foils from one box. */
 fg_status fg_assembly_draw_sorted(fg_context *ctx, const fg_stock *stock,
                                   const fg_assembly_plan *plan, size_t classes, size_t *assembled);
 
-/* Bearings of the design, each place's clearance anywhere within ± deviation of it. */
+/* Draws bearings of the design, with each place's clearance uniform within ± deviation. */
 fg_status fg_assembly_draw_design(fg_context *ctx, double clearance_mm, double deviation_mm,
                                   const fg_assembly_plan *plan, fg_assembly_result *result);
 
-/* Clopper and Pearson's interval of a share; `count` may be no whole number. */
+/* Interval of Clopper and Pearson of a share; `count` may be fractional. */
 void fg_assembly_interval(double count, double of, double confidence, double *low, double *high);
 
-/* Which foil is pad `pad` of draw `draw`, for a stock of that many. */
+/* Picks the foils of the pads of draw `draw` from a stock of `foils`. */
 void fg_assembly_pick(uint64_t seed, size_t draw, size_t foils, size_t pads, size_t *foil);
 
 #endif

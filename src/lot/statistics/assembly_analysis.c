@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Bearings drawn from the lot's foils: which foils take part, what is asked of a bearing, and what
- * the share would be of a lot changed in one thing. */
+/* Bearings drawn from the lot's foils: the foils that take part, the requirements of a bearing, and
+ * the share of a lot with one property changed. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -13,7 +13,7 @@
 
 static const double rad_per_deg = 3.14159265358979323846 / 180;
 
-/* A workshop sorts into a few boxes. */
+/* Number of boxes that a workshop sorts into. */
 enum { CLASSES_MAX = 5 };
 
 const char *fg_lot_left_out_words(fg_lot_left_out why) {
@@ -90,8 +90,9 @@ static void add_limit(fg_assembly_plan *plan, const char *quantity, double lower
       (fg_assembly_limit){fg_quantity_of_bearing_for(quantity), lower, upper, asked};
 }
 
-/* A rotor must have room: where it has most, or, where the crowns leave half of the bearing open,
- * on the sleeve's axis. Beside it whether it touches on the axis, and the design's tolerances. */
+/* Requirements of a bearing. A rotor must have room: at its best place, or, where the crowns leave
+ * half of the bearing open, on the sleeve's axis. Also noted: contact on the axis, and the design's
+ * tolerances. */
 static void plan_assembly(fg_lot_analysis *analysis) {
   fg_lot_assembly *assembly = &analysis->assembly;
   const fg_lot_settings *settings = &analysis->lot->settings;
@@ -120,8 +121,8 @@ static void plan_assembly(fg_lot_analysis *analysis) {
   }
 }
 
-/* How far the clearance of a bump of this radius and angle moves when the radius does and the arc
- * length stays, the foil fitted into the sleeve. */
+/* Returns the change of the clearance over a bump when its radius becomes `radius_mm` at constant
+ * arc length, the foil fitted into the sleeve. */
 static double move_clearance(const fg_lot *lot, const fg_bump *bump, double radius_mm) {
   const fg_design *design = &lot->settings.design;
   const fg_overall sleeve = {.radius_mm = design->sleeve_radius_mm};
@@ -139,7 +140,7 @@ static double move_clearance(const fg_lot *lot, const fg_bump *bump, double radi
   return clearance[1] - clearance[0];
 }
 
-/* Every radius moves by as much, until their mean is the design's. */
+/* Moves every radius equally, until their mean is the design's. */
 static fg_status centre_radii(const fg_lot_analysis *analysis, fg_stock *stock) {
   size_t places = stock->places, count = 0, at = 0;
   double mean = 0;
@@ -208,7 +209,7 @@ static void add_change(fg_lot_assembly *assembly, const char *name, const char *
                       .clear = fabs(share - before) > 2 * scatter};
 }
 
-/* The largest gain first; equal ones as they come. */
+/* Sorts by gain, the largest first; equal ones keep their order. */
 static void rank_changes(fg_lot_assembly *assembly) {
   fg_lot_change *change = assembly->change;
   for (size_t i = 1; i < assembly->changes; i++)
@@ -219,7 +220,7 @@ static void rank_changes(fg_lot_assembly *assembly) {
     }
 }
 
-/* A bump that no such change could leave has no clearance. */
+/* Returns false when a changed bump has no clearance. */
 static bool has_all_clearances(const fg_stock *stock) {
   for (size_t i = 0; i < stock->foils * stock->places; i++)
     if (!isfinite(stock->clearance_mm[i])) return false;

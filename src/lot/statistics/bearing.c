@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the lot does to the bearings it will make: clearance. */
+/* Clearance of the bearings that the lot makes. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,7 +21,7 @@ static bool has_measured_foil(const fg_lot_foil *foil) {
   return fg_foil_is_measured(foil->foil);
 }
 
-/* Foils in a row, as many as a bearing has pads; what is left over makes none. */
+/* Assumes bearings of foils in a row, as many as pads; the remainder makes none. */
 static fg_status assume_bearings(fg_context *ctx, fg_lot_analysis *analysis) {
   size_t pads = analysis->layout.pads, pad = 0;
   const fg_lot_foil *set[FG_BEARING_BUMPS_MAX];
@@ -44,7 +44,7 @@ static fg_lot_bearing *find_named_bearing(fg_lot_analysis *analysis, const char 
   return NULL;
 }
 
-/* The pad that the manifest says, else the next free one; `pads` when there is none. */
+/* Returns the pad that the manifest says, else the next free one; `pads` when there is none. */
 static size_t choose_pad(const fg_lot_bearing *bearing, const char *text, size_t pads, bool *bad) {
   char *end;
   unsigned long pad = strtoul(text, &end, 10);
@@ -57,7 +57,7 @@ static size_t choose_pad(const fg_lot_bearing *bearing, const char *text, size_t
   return next;
 }
 
-/* A foil that could not be measured leaves its place in the bearing unknown. */
+/* Places the foils. A foil that could not be measured leaves its place unknown. */
 static fg_status place_foils(fg_context *ctx, fg_lot_analysis *analysis, size_t column) {
   const fg_manifest *manifest = &analysis->lot->manifest;
   const fg_lot_settings *settings = &analysis->lot->settings;
@@ -80,10 +80,10 @@ static fg_status place_foils(fg_context *ctx, fg_lot_analysis *analysis, size_t 
   return FG_OK;
 }
 
-/* What all clearances of a bearing err by alike: the strip's thickness, and what the calibration
- * leaves, which holds its share of the thickness. Of two axes that err by themselves it is the same
- * in bumps that lie alike on the glass only; taken as the same in all it is not less than it is in
- * the least and the mean clearance. */
+/* Returns the common uncertainty of all clearances of a bearing: that of the strip's thickness and
+ * of the calibration, which contains its share of the thickness. Independent errors of the two axes
+ * agree only in bumps that lie alike on the glass. Taken as common in all, this uncertainty is not
+ * underestimated in the smallest and the mean clearance. */
 static double shared_uncertainty(const fg_lot_analysis *analysis, const fg_foil *foil,
                                  const fg_bump *bump) {
   const fg_quantity *thickness = fg_quantity_find(FG_QUANTITY_OF_FOIL, "thickness_mm");
@@ -136,7 +136,7 @@ static void assess_bearing(const fg_lot_analysis *analysis, fg_lot_bearing *bear
                                     bearing->places, &uncertainty, &bearing->clearance) == FG_OK;
 }
 
-/* A tolerance that nothing could be judged by must not read as a pass. */
+/* Decides the bearings. A tolerance that judges no bearing must not read as a pass. */
 static fg_status decide_bearings(fg_context *ctx, fg_lot_analysis *analysis) {
   const fg_design *design = &analysis->lot->settings.design;
   for (size_t i = 0; i < analysis->bearing_count; i++) {
@@ -153,7 +153,7 @@ static fg_status decide_bearings(fg_context *ctx, fg_lot_analysis *analysis) {
   return FG_OK;
 }
 
-/* Clearances as the thesis's figure 5.13 has them: 100 (C_local - C_D) / C_D. */
+/* Describes clearances as figure 5.13 of the thesis: 100 (C_local - C_D) / C_D. */
 static fg_status describe_relative_clearance(fg_context *ctx, const fg_lot_analysis *analysis,
                                              const char *name, fg_lot_spread *spread) {
   const fg_lot_quantity *quantity = fg_lot_find_quantity(analysis, name);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Where the bumps of a lot's foils lie around a bearing. */
+/* Layout of a lot's bumps around a bearing. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -19,9 +19,9 @@ static size_t clamp_count(size_t value, size_t low, size_t high) {
   return value < low ? low : value > high ? high : value;
 }
 
-/* What the recipe leaves open is the design's: a place for every bump from the first on, at the
- * design's pitch, and as many pads as fit around. A recipe that states pads and bumps, and no
- * pitch, has them equally spaced; so has one whose pads do not fit at the design's pitch. */
+/* Completes the recipe's layout by the design: a place for every bump from the first on, at the
+ * design's pitch, and as many pads as fit around. Bumps are equally spaced where the recipe states
+ * pads and bumps but no pitch, or where the pads do not fit at the design's pitch. */
 static void resolve_layout(const fg_lot_analysis *analysis, size_t bumps,
                            fg_bearing_layout *layout) {
   const fg_lot_settings *settings = &analysis->lot->settings;

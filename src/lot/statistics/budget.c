@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What makes the spread of a lot's stiffness. */
+/* Causes of the spread of a lot's stiffness. */
 #include <math.h>
 
 #include "lot/statistics/budget.h"
@@ -29,7 +29,7 @@ typedef struct moments {
   size_t count;
 } moments;
 
-/* Pairs of which both are known. */
+/* Moments of the pairs whose values are both known. */
 static moments find_moments(const double *x, const double *y, size_t count) {
   moments m = {0};
   for (size_t i = 0; i < count; i++) {
@@ -59,11 +59,11 @@ static double measurement_pct(const fg_bump_columns *columns) {
 
 enum { CAUSES = 3, SUBSETS = 1 << CAUSES };
 
-/* A cause that keeps less than this of its variance beside the others adds nothing. */
+/* Collinear cause: one that keeps less than this of its variance beside the others. */
 static const double COLLINEAR = 1e-9;
 
-/* Share of y's variance that the causes of `subset` explain: y is their combination as far as they
- * go, by elimination on the correlations `r`, whose last row and column are y's. */
+/* Returns the share of y's variance that the causes of `subset` explain, by elimination on the
+ * correlations `r`. The last row and column are y's; y is a combination of the causes. */
 static double find_explained_share(const double r[CAUSES + 1][CAUSES + 1], int subset) {
   double m[CAUSES + 1][CAUSES + 1];
   for (int i = 0; i <= CAUSES; i++)
@@ -81,7 +81,7 @@ static double find_explained_share(const double r[CAUSES + 1][CAUSES + 1], int s
   return fmin(1, fmax(0, 1 - m[CAUSES][CAUSES]));
 }
 
-/* Weight of a subset of `size` others that enters before: size! (CAUSES - 1 - size)! / CAUSES!. */
+/* Weights of a subset of `size` others that enters before: size! (CAUSES - 1 - size)! / CAUSES!. */
 static const double order_weight[CAUSES] = {1.0 / 3, 1.0 / 6, 1.0 / 3};
 
 static void find_shares(const fg_bump_columns *columns, bool thickness, fg_lot_budget *budget) {

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* How well the means of a lot are known: what statistics say averages out, what the calibration
- * leaves is the same error in every foil. */
+/* Uncertainty of a lot's means: statistical errors average out, the calibration's error is the same
+ * in every foil. */
 #include <math.h>
 #include <string.h>
 
 #include "lot/statistics/analysis.h"
 #include "quantity/quantity_rows.h"
 
-/* Of the values of one foil, and of the lot. `alike` is by the thickness, whose doubt is the
- * scanner's tone curve for the most part and the same in every scan. */
+/* Sums over the values of a foil, and of the lot. `alike` is the common error by the thickness,
+ * whose uncertainty is mainly that of the scanner's tone curve. */
 typedef struct sums {
   double u, squares, alike, move[FG_CALIBRATION_SOURCES];
   size_t count;
@@ -17,11 +17,11 @@ typedef struct sums {
 typedef struct reading {
   const fg_lot_analysis *analysis;
   const fg_lot_quantity *quantity;
-  size_t at; /* of its moves */
+  size_t at; /* index of the quantity in the moves */
 } reading;
 
-/* By how much a value lies elsewhere with a strip thicker by its statistical u: derived again. What
- * lies flat has none. */
+/* Returns the change of a value, derived again, with a strip thicker by its statistical u. Foils
+ * that lie flat have none. */
 static double move_by_thickness(const reading *r, const fg_foil *foil, const fg_foil_part *part) {
   double moves[FG_CALIBRATED_MAX] = {0};
   const fg_design *design = &r->analysis->lot->settings.design;
@@ -44,8 +44,9 @@ static double move_by_thickness(const reading *r, const fg_foil *foil, const fg_
   return moves[r->at];
 }
 
-/* An unknown tone curve moves edges alike in every scan: what lies between two of them, or rests on
- * one, errs by it alike. Of what is not by the thickness alone its part is not told: all counts. */
+/* An unknown tone curve moves the edges alike in every scan. So a quantity between two edges, or at
+ * one, has a common error. Its part is unknown where the thickness is not the only cause: the whole
+ * error then counts as common. */
 static bool is_common_error(const fg_design *design, const fg_quantity *row) {
   bool between = row->uses & FG_QUANTITY_BETWEEN_EDGES && !fg_foil_kind_has_bumps(design->kind) &&
                  strncmp(row->name, "thickness", 9) != 0;
@@ -103,7 +104,7 @@ fg_lot_known fg_lot_mean_known(const fg_lot_analysis *analysis, const fg_lot_qua
   return (fg_lot_known){statistical, calibration, hypot(statistical, calibration)};
 }
 
-/* Its change of ln K by one standard deviation of one source. */
+/* Returns the change of ln K by one standard deviation of a source. */
 static double relative_move(const fg_foil *foil, const fg_bump *bump, size_t source,
                             const fg_arch_sensitivity *sensitivity) {
   static const char *const names[] = {"radius_mm", "bump_angle_deg"};

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Why a control chart signals: groups of foils (dies, coils, operators) with a mean each. */
+/* Causes of a control chart's signals: groups of foils (dies, coils, operators) with a mean each.
+ */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,15 +9,16 @@
 #include "foilgauge/distribution.h"
 #include "lot/statistics/analysis.h"
 
-/* A group that differs by chance in one of twenty lots would explain any chart: all columns tried,
- * and the order of the foils, share that chance (Bonferroni). */
+/* Probability of a cause by chance: all columns tried and the order of the foils share it
+ * (Bonferroni). Without that a group that differs by chance in one of twenty lots would explain any
+ * chart. */
 static const double chance = 0.05;
 enum { COLUMNS_TRIED = 3, CAUSES_TRIED = COLUMNS_TRIED + 1, FOILS_PER_GROUP = 2 };
 
-/* The points of a chart with the group of each. */
+/* Points of a chart with their groups. */
 typedef struct grouping {
-  size_t *group; /* by point */
-  double *moved; /* the points, every group moved to the chart's centre */
+  size_t *group; /* group of each point */
+  double *moved; /* the points once every group has the chart's centre as mean */
 } grouping;
 
 static size_t find_group(fg_lot_cause *cause, const char *name) {
@@ -27,7 +29,7 @@ static size_t find_group(fg_lot_cause *cause, const char *name) {
   return cause->groups++;
 }
 
-/* False when the column does not put every foil of the chart into one of a few groups. */
+/* Returns false when the column does not sort all foils of the chart into a few groups. */
 static bool find_groups(const fg_lot_analysis *analysis, const fg_lot_quantity *quantity,
                         fg_lot_cause *cause, const grouping *by) {
   size_t point = 0;
@@ -54,7 +56,7 @@ static bool is_in_turn(const fg_lot_cause *cause, const grouping *by, size_t poi
   return true;
 }
 
-/* One-way analysis of variance of the foils' values. */
+/* Returns the p-value of a one-way analysis of variance of the foils' values. */
 static double find_p_value(const fg_lot_quantity *quantity, const fg_lot_cause *cause,
                            const grouping *by) {
   double between = 0, within = 0;
@@ -83,7 +85,7 @@ static fg_status count_unexplained_signals(fg_context *ctx, unsigned rules,
   return FG_OK;
 }
 
-/* The better of the cause that is known and this column. */
+/* Keeps the better of the known cause and this column. */
 static fg_status try_column(fg_context *ctx, const fg_lot_analysis *analysis,
                             fg_lot_quantity *quantity, const char *column, const grouping *by) {
   fg_lot_cause cause = {.column = fg_manifest_column(&analysis->lot->manifest, column)};
@@ -117,7 +119,8 @@ exit:
   return status;
 }
 
-/* What the release of a lot rests on: quantities with a tolerance, else what the page charts. */
+/* The release of a lot rests on the quantities with a tolerance, else on those that the page
+ * charts. */
 bool fg_lot_is_watched(const fg_lot_analysis *analysis, const fg_lot_quantity *quantity) {
   const fg_design *design = &analysis->lot->settings.design;
   if (!quantity->has_chart) return false;

@@ -12,7 +12,7 @@
 
 typedef struct pairs {
   double *radius_pct, *angle_pct; /* errors */
-  size_t *foil;                   /* which foil a bump is of, from 0 */
+  size_t *foil;                   /* index of each bump's foil */
   size_t count, foils;
 } pairs;
 
@@ -33,7 +33,8 @@ static fg_status allocate_pairs(fg_context *ctx, size_t count, pairs *p) {
   return FG_OK;
 }
 
-/* Scans of one part show one foil: its name in the part's column, its number in the scan. */
+/* Key of a part: its name in the part's column and its number in the scan. Scans of one part show
+ * one foil. */
 typedef struct part {
   const char *name;
   int number;
@@ -94,7 +95,7 @@ static fg_status collect_pairs(fg_context *ctx, const fg_lot_analysis *analysis,
   return status;
 }
 
-/* The values that `share` of all lie below and above. */
+/* Finds the two values beyond which `share` of all lie on each side. */
 static fg_status find_tails(fg_context *ctx, const double *values, size_t count, double share,
                             double limits[2]) {
   void *block;
@@ -108,8 +109,8 @@ static fg_status find_tails(fg_context *ctx, const double *values, size_t count,
   return FG_OK;
 }
 
-/* By the radius alone, as the thesis does: rows that leave because their angle, the response, lies
- * far out would take the slope towards 0. */
+/* Trims by the radius alone, as the thesis does. Trimming by the angle, the response, would bias
+ * the slope towards 0. */
 static fg_status trim_by_radius(fg_context *ctx, double trim_pct, pairs *p) {
   double limits[2];
   size_t kept = 0;
@@ -124,8 +125,8 @@ static fg_status trim_by_radius(fg_context *ctx, double trim_pct, pairs *p) {
   return FG_OK;
 }
 
-/* 100 (R alpha / R_D alpha_D - 1) of every bump: what was trimmed belongs to it, or its scatter
- * would come out too small. */
+/* Describes 100 (R alpha / R_D alpha_D - 1) of every bump, trimmed ones included: without them its
+ * scatter would be too small. */
 static void describe_arc_length(const pairs *p, fg_lot_correlation *result) {
   double mean = 0, squares = 0;
   for (size_t i = 0; i < p->count; i++) {

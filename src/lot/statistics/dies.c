@@ -26,7 +26,7 @@ fg_lot_to_die fg_lot_bump_to_die(const fg_lot *lot, const fg_lot_foil *foil, con
   return to;
 }
 
-/* Sums of errors against design and die, and of the dies' own. */
+/* Sums of the errors against design and die, and of the dies' own errors. */
 typedef struct sums {
   double count, design, die, design_square, die_square, own, u_own;
 } sums;

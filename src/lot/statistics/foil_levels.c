@@ -6,9 +6,10 @@
 
 #include "core/memory.h"
 
-/* Sweeps over foils and places; with few bumps missing the rest falls by ten in each. */
+/* Limit of the sweeps over foils and places. With few bumps missing the residual falls tenfold in
+ * each. */
 enum { SWEEPS_MAX = 200 };
-static const double CONVERGED = 1e-12; /* of the largest level's size */
+static const double CONVERGED = 1e-12; /* relative to the largest level */
 
 typedef struct entry {
   size_t foil, place;
@@ -25,7 +26,7 @@ typedef struct layout {
 } layout;
 
 static size_t find_foil(fg_foil_levels *levels, size_t group, size_t owner) {
-  /* A foil's scans follow each other in most lots: the search starts at the last. */
+  /* The search starts at the last foil: scans of a foil follow each other in most lots. */
   for (size_t i = levels->count; i-- > 0;)
     if (levels->foil[i].group == group && levels->foil[i].owner == owner) return i;
   levels->foil[levels->count] = (fg_foil_level){.group = group, .owner = owner};
@@ -69,7 +70,7 @@ static void fit_levels(const layout *l) {
   }
 }
 
-/* Returns the largest step of an effect. */
+/* Fits the effects of the places; returns the largest step. */
 static double fit_place_effects(const layout *l) {
   double mean = 0, used = 0, step = 0;
   for (size_t p = 0; p < l->places; p++)
@@ -92,7 +93,7 @@ static double fit_place_effects(const layout *l) {
   return step;
 }
 
-/* By turns, which is least squares as the two factors are all there is (Gauss-Seidel). */
+/* Alternates between the two factors, which converges to least squares (Gauss-Seidel). */
 static void iterate_levels(const layout *l) {
   double size = 0;
   fit_levels(l);
@@ -106,7 +107,8 @@ static void iterate_levels(const layout *l) {
   }
 }
 
-/* The places take degrees of freedom, which all foils share by their values. */
+/* Finds the sd within foils. The places use degrees of freedom, which all foils share by their
+ * number of values. */
 static void find_within_sd(const layout *l) {
   double dof = 0, places = 0;
   fg_foil_level *foil = l->levels->foil;

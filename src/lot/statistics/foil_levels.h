@@ -11,11 +11,11 @@
 #include "lot/statistics/analysis.h"
 
 typedef struct fg_foil_level {
-  size_t group; /* index of the manifest's word */
-  size_t owner; /* the foil of the lot that the scans are of */
+  size_t group; /* index of the group's word */
+  size_t owner; /* foil of the lot that the scans belong to */
   size_t values;
   double level;
-  double within_sd; /* of its values about their level and places; NaN: fewer than two */
+  double within_sd; /* sd of the values about level and places; NaN: fewer than two */
 } fg_foil_level;
 
 typedef struct fg_foil_levels {
@@ -23,8 +23,9 @@ typedef struct fg_foil_levels {
   size_t count;
 } fg_foil_levels;
 
-/* `group` and `owner` by foil of the analysis. Scans of one foil in one group are one foil; a foil
- * whose group is FG_NO_COLUMN, or without values, is left out. Free with fg_foil_levels_free. */
+/* Makes the levels; `group` and `owner` are by foil of the analysis. Scans of one foil in one group
+ * are one foil. A foil without values, or whose group is FG_NO_COLUMN, is left out. Free with
+ * fg_foil_levels_free. */
 fg_status fg_foil_levels_make(fg_context *ctx, const fg_lot_analysis *analysis,
                               const fg_lot_quantity *quantity, const size_t *group,
                               const size_t *owner, fg_foil_levels *levels);

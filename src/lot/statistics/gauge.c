@@ -7,11 +7,11 @@
 #include "core/memory.h"
 #include "lot/statistics/analysis.h"
 
-/* A gauge study needs a whole table of part × operator × trial. */
+/* Full table of part × operator × trial, which a gauge study needs. */
 typedef struct gauge_table {
   fg_manifest_words parts, operators;
   size_t trials;
-  size_t *seen; /* scans of each part and operator */
+  size_t *seen; /* number of scans by part and operator */
   const fg_foil **foil;
 } gauge_table;
 
@@ -32,7 +32,7 @@ static size_t count_trials(const fg_lot_analysis *analysis, size_t part_column,
   return trials;
 }
 
-/* False when the scans do not fill the table: then there is no study. */
+/* Returns false when the scans do not fill the table; there is no study then. */
 static bool fill_gauge_table(const fg_lot_analysis *analysis, gauge_table *table,
                              size_t part_column, size_t operator_column) {
   const fg_manifest *manifest = &analysis->lot->manifest;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Groups of a lot against each other (dies, coils). */
+/* Comparison of the groups of a lot (dies, coils). */
 #include <gsl/gsl_sf_psi.h>
 #include <math.h>
 #include <stdlib.h>
@@ -12,11 +12,11 @@
 #include "stats/between_groups.h"
 #include "stats/relabelled_spread.h"
 
-/* Relabellings for every test of the page: Holm divides 5 % by their number, and the smallest p
- * must lie well below that. */
+/* Relabellings for a test of the page: Holm divides 5 % by the number of tests, and the smallest p
+ * must be well below that. */
 enum { DRAWS_PER_TEST = 200, DRAWS_MIN = 9999 };
 
-/* The lot's foils and their groups. */
+/* Foils of the lot with their groups. */
 typedef struct grouping {
   const fg_manifest_words *words;
   size_t *group, *owner; /* by foil of the analysis */
@@ -40,7 +40,8 @@ static size_t select_levels(const fg_foil_levels *levels, size_t group, double *
   return count;
 }
 
-/* ln s of n values lies below ln sigma by (ln(nu / 2) - psi(nu / 2)) / 2, nu = n - 1. */
+/* Selects ln s of the foils' parts. ln s of n values is biased by -(ln(nu / 2) - psi(nu / 2)) / 2,
+ * nu = n - 1. */
 static size_t select_within(const fg_foil_levels *levels, size_t group, double *values,
                             double *pooled) {
   size_t count = 0;
@@ -58,7 +59,7 @@ static size_t select_within(const fg_foil_levels *levels, size_t group, double *
   return count;
 }
 
-/* Too few to compare, or nothing that differs: nothing is said. */
+/* Skips samples that are too few, or that do not scatter. */
 static fg_status compare_samples(const double *values, size_t a, size_t b, double confidence,
                                  fg_comparison *comparison, bool *compared) {
   fg_context unused;
@@ -129,7 +130,7 @@ static fg_status compare_quantity(fg_context *ctx, fg_lot_analysis *analysis,
   return status;
 }
 
-/* One family of all tests: a reader looks for the smallest p of the page. */
+/* Adjusts all tests as one family, for a reader looks for the smallest p of the page. */
 static fg_status adjust_p_values(fg_context *ctx, fg_lot_analysis *analysis) {
   size_t count = analysis->difference_count * FG_LOT_GROUP_TESTS;
   double *p = NULL;

@@ -27,7 +27,7 @@ static void list_quantity(fg_lot_analysis *analysis, fg_quantity_owner owner,
       quantity->tolerance = &design->tolerances[i];
 }
 
-/* What every report shows; what has a tolerance comes behind. */
+/* Lists the quantities that every report shows, then those with a tolerance. */
 static fg_status list_quantities(fg_context *ctx, fg_lot_analysis *analysis) {
   const fg_quantity_owner owners[] = {analysis->parts, FG_QUANTITY_OF_FOIL};
   enum { OWNERS = sizeof owners / sizeof owners[0] };
@@ -122,10 +122,10 @@ static void add_to_place(fg_lot_place *place, double value) {
   place->count++;
   double step = value - place->mean;
   place->mean += step / (double)place->count;
-  place->sd += step * (value - place->mean); /* the sum of squares, until all are there */
+  place->sd += step * (value - place->mean); /* a sum of squares until all values are added */
 }
 
-/* Mean and sd of each number over the foils (Welford's running sums). */
+/* Finds mean and sd of each number over the foils (running sums of Welford). */
 static fg_status describe_places(fg_context *ctx, const fg_lot_analysis *analysis,
                                  fg_lot_quantity *quantity) {
   void *block;
@@ -150,7 +150,7 @@ static fg_status describe_places(fg_context *ctx, const fg_lot_analysis *analysi
   return FG_OK;
 }
 
-/* The mean of each foil's values, foils without any left out. */
+/* Finds the mean of each foil's values; foils without values are left out. */
 static fg_status find_foil_means(fg_context *ctx, const fg_lot_quantity *quantity, size_t foils,
                                  double **means, size_t *count) {
   void *block;
@@ -190,10 +190,10 @@ fg_status fg_lot_chart_quantity(fg_context *ctx, unsigned rules, size_t foils,
   return FG_OK;
 }
 
-/* Sigma of the process over the lot: what foils vary by from one to the next, and parts within a
- * foil. The mean of n bumps carries within² / n of the variance of one: it is taken out of the
- * first before the second is added. The degrees of freedom are those of a moving range (0.62 (n -
- * 1), Wetherill and Brown 1991), the fewer of the two. */
+/* Returns the standard deviation of the process: between foils, and between the parts of a foil.
+ * The variance of a mean of n bumps contains within² / n, which is subtracted before within² is
+ * added. The degrees of freedom are the smaller of that and those of a moving range (0.62 (n - 1),
+ * Wetherill and Brown 1991). */
 static double process_sigma(const fg_lot_quantity *quantity) {
   if (!quantity->has_subgroups) return quantity->chart_sigma;
   double parts = (double)quantity->count / (double)quantity->chart.count;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the lot does to the bearings it will make: stiffness of the bumps. */
+/* Stiffness of a lot's bumps. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -78,7 +78,7 @@ static void free_columns(fg_bump_columns *columns) {
     free(*all[i]);
 }
 
-/* Of the models beside the arch; NaN where one gives none. */
+/* Adds the ratios of the models beside the arch; NaN where one gives none. */
 static void add_model_ratios(const fg_lot_settings *settings, const fg_lot_stiffness *result,
                              const fg_arch *arch, fg_bump_columns *columns) {
   for (int i = 1; i < FG_STIFFNESS_MODELS; i++) {
@@ -91,7 +91,7 @@ static void add_model_ratios(const fg_lot_settings *settings, const fg_lot_stiff
   }
 }
 
-/* A line of the columns; what the bump's stiffness over the design's is. */
+/* Adds a bump to the columns; returns its stiffness over the design's. */
 static double add_stiffness_row(const fg_lot_analysis *analysis, const fg_foil *foil,
                                 const fg_bump *bump, fg_bump_columns *columns) {
   const fg_lot_settings *settings = &analysis->lot->settings;
@@ -110,7 +110,7 @@ static double add_stiffness_row(const fg_lot_analysis *analysis, const fg_foil *
   columns->arch_radius[at] = arch.radius_mm;
   columns->arch_length[at] = arch.radius_mm * angle;
   columns->strip[at] = foil->thickness_mm;
-  fg_bump scattered = *bump; /* what all bumps share is in no spread */
+  fg_bump scattered = *bump; /* errors that all bumps share cause no spread */
   fg_quantity_narrow_calibrated(FG_QUANTITY_OF_BUMP, &scattered, &bump->calibrated);
   columns->measurement[at] =
       fg_bump_stiffness_variance(&foil->overall, &scattered, &result->sensitivity);
@@ -131,8 +131,8 @@ static void fill_bump_columns(fg_lot_analysis *analysis, fg_bump_columns *column
   }
 }
 
-/* Radius and arc length are drawn apart: the first carries the springback, the second what is left
- * of the angle when the first is taken out. Every bump's thickness comes equally often. */
+/* Draws radius and arc length independently: the radius carries the springback, the arc length the
+ * rest of the angle's variation. Thicknesses of the bumps come in turns. */
 static fg_status resample_stiffness(fg_context *ctx, const fg_lot_settings *settings,
                                     const fg_bump_columns *columns, fg_lot_stiffness *result) {
   fg_density radius = {0}, arc_length = {0};
@@ -165,7 +165,7 @@ static bool has_different_values(const double *values, size_t count) {
   return false;
 }
 
-/* A bump of the lot's mean radius, arc length and thickness. */
+/* Finds the stiffness of a bump with the lot's mean radius, arc length and thickness. */
 static void find_mean_bump(const fg_lot_settings *settings, const fg_bump_columns *columns,
                            fg_lot_stiffness *result) {
   fg_stiffness_case *bump = &result->cases[FG_LOT_CASE_MEAN];
@@ -178,7 +178,7 @@ static void find_mean_bump(const fg_lot_settings *settings, const fg_bump_column
   fg_stiffness_compare(&bump->arch, &settings->material, bump->lines);
 }
 
-/* A model that gives no stiffness for one of the bumps has no spread over them. */
+/* A model without a stiffness for one of the bumps has no spread over them. */
 static fg_status spread_by_models(fg_context *ctx, const fg_lot_settings *settings,
                                   const fg_bump_columns *columns, fg_lot_stiffness *result) {
   for (int i = 0; i < FG_STIFFNESS_MODELS; i++) {

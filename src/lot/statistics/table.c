@@ -14,7 +14,7 @@
 
 enum {
   TEXT_BYTES_MAX = 1 << 30,
-  /* Beyond, names are no levels that an effect may have (FG_LOOP_COLUMNS): they may count. */
+  /* a column with more names cannot be an effect (FG_LOOP_COLUMNS), and may be a count */
   LEVELS_MAX = 12,
 };
 
@@ -29,16 +29,17 @@ typedef struct reading {
   fg_table manifest;
   const fg_quantity *row;
   fg_quantity_owner owner;
-  /* Of the rows that are made. */
+  /* Rows that are made. */
   size_t rows, *item;
   double *value, *radius, *bump, *number;
   char **label;
-  size_t repeated; /* foils of a name that an earlier one has */
-  size_t several;  /* foils beside another in their scan */
+  size_t repeated; /* foils whose name an earlier one has */
+  size_t several;  /* foils that share their scan with another */
   size_t failed, foreign, crushed, unknown;
 } reading;
 
-/* A lot of plain strips holds what a lot with bumps does, and has no value of much of it. */
+/* Finds the response. A lot of plain strips holds the quantities of a lot with bumps, but no values
+ * of most. */
 static fg_status find_response(fg_context *ctx, reading *r) {
   fg_foil_kind kind =
       r->out->design.kind == FG_FOIL_CANTILEVER ? FG_FOIL_CANTILEVER : FG_FOIL_CLASSICAL;
@@ -112,7 +113,7 @@ static fg_status allocate_rows(fg_context *ctx, reading *r) {
   return fg_memory_allocate(ctx, rows, sizeof *r->out->name, (void **)&r->out->name);
 }
 
-/* A row of the object; one without a value is counted. */
+/* Adds a row of the object; an object without a value is counted. */
 static fg_status append_row(fg_context *ctx, reading *r, size_t item, const fg_foil *foil,
                             const fg_foil_part *part) {
   size_t at = r->rows, foils = r->lot.records[item].foil_count;
@@ -176,7 +177,8 @@ static bool is_named(const reading *r, const char *column) {
   return false;
 }
 
-/* The manifest's columns that may be causes: sound ones, and none that the table names itself. */
+/* Chooses the columns of the manifest that may be causes: sound ones, but for those that the table
+ * makes itself. */
 static fg_status choose_cause_columns(fg_context *ctx, reading *r) {
   const char *own[] = {
       "scan", "foil", "foil_number", fg_part_word(r->owner), "radius_mm", r->options->quantity};
@@ -193,7 +195,7 @@ static fg_status choose_cause_columns(fg_context *ctx, reading *r) {
   return fg_table_count_words(ctx, &r->manifest, LEVELS_MAX, &r->out->said);
 }
 
-/* Foils whose name is there more than once: they were measured again. */
+/* Returns true when a name stands at several foils, which were then measured again. */
 static bool has_repeats(fg_context *ctx, const reading *r, fg_status *status) {
   fg_table names = {0};
   *status = fg_table_add_words(ctx, &names, "foil", (const char *const *)r->label, r->rows);
@@ -208,7 +210,7 @@ static fg_status fill_lot_table(fg_context *ctx, reading *r) {
   bool grouped = is_of_parts(r) || has_repeats(ctx, r, &status);
   FG_TRY(status);
   FG_TRY(fg_table_select(ctx, &r->manifest, r->item, r->rows, table));
-  free(table->line); /* its rows are not the manifest's */
+  free(table->line); /* the table's rows are not the manifest's */
   table->line = NULL;
   free(table->source);
   table->source = NULL;

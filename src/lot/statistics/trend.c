@@ -10,14 +10,13 @@
 #include "foilgauge/distribution.h"
 #include "lot/statistics/analysis.h"
 
-/* Fewer foils have a line through them by chance; correlation cannot be told from a trend beyond
- * its limit. */
+/* Limits: fewer foils have a line by chance; a stronger correlation cannot be told from a trend. */
 enum { FOILS_MIN = 6 };
 static const double rho_max = 0.95;
 
 /* value = mean + slope (i - middle) + residual. */
 typedef struct line {
-  double mean, slope, middle, squares; /* of the places about their middle */
+  double mean, slope, middle, squares; /* squares: of the places about their middle */
   double residual_ss, rho;
 } line;
 
@@ -25,7 +24,7 @@ static double residual_at(const line *l, const fg_chart *chart, size_t i) {
   return chart->point[i].value - l->mean - l->slope * ((double)i - l->middle);
 }
 
-/* A residual's correlation with the next comes out too low by about (2 + 4 r) / n beside a line. */
+/* Returns the serial correlation, corrected for its bias beside a line, about -(2 + 4 r) / n. */
 static double serial_correlation(const line *l, const fg_chart *chart) {
   double cross = 0, n = (double)chart->count;
   for (size_t i = 1; i < chart->count; i++)
@@ -48,7 +47,7 @@ static line fit_trend(const fg_chart *chart) {
   return l;
 }
 
-/* The chart's signals without the line. */
+/* Counts the chart's signals without the line. */
 static fg_status count_signals_left(fg_context *ctx, unsigned rules, const line *l,
                                     const fg_chart *chart, size_t *signals) {
   void *block;

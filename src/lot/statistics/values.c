@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What every part of the analysis asks: which bumps count, a quantity by name, a spread. */
+/* Helpers of the analysis: parts that count, quantities by name, spreads, distinct words. */
 #include <math.h>
 #include <string.h>
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What drawn bearings come to, in three lines. */
+/* Summary of the drawn bearings in three lines. */
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -8,8 +8,8 @@
 #include "core/text.h"
 #include "lot/statistics/analysis.h"
 
-__attribute__((format(printf, 3, 4))) static void append_words(char *text, size_t size, const char *format,
-                                                      ...) {
+__attribute__((format(printf, 3, 4))) static void append_words(char *text, size_t size,
+                                                               const char *format, ...) {
   size_t used = strlen(text);
   va_list list;
   va_start(list, format);
@@ -17,7 +17,8 @@ __attribute__((format(printf, 3, 4))) static void append_words(char *text, size_
   va_end(list);
 }
 
-/* "97.4", "99.96", "above 99.99": as many digits as tell it from all and from none. */
+/* Formats a share with as many digits as tell it from all and from none: "97.4", "99.96",
+ * "above 99.99". */
 static const char *format_percent(double share, char text[16]) {
   double value = 100 * share;
   if (value > 99.99 && value < 100) return "above 99.99";
@@ -35,16 +36,17 @@ static void say_how_many(const fg_lot_assembly *assembly, char *text, size_t siz
   const fg_assembly_share *share = &assembly->drawn.assembled;
   size_t foils = assembly->stock.foils, pads = assembly->plan.layout.pads;
   char now[16], low[16], high[16], sure[16], maybe[16];
-  append_words(text, size,
+  append_words(
+      text, size,
       "%zu of %zu bearings drawn from %zu foil%s assemble: %s %% (%s to %s %% as so few foils tell",
       share->count, assembly->plan.bearings, foils, fg_plural(foils),
       format_percent(share->share, now), format_percent(share->foils_low, low),
       format_percent(share->foils_high, high));
   if (share->surely < share->possibly)
-    append_words(text, size, ", %s to %s %% as the measurement does", format_percent(share->surely, sure),
-        format_percent(share->possibly, maybe));
+    append_words(text, size, ", %s to %s %% as the measurement does",
+                 format_percent(share->surely, sure), format_percent(share->possibly, maybe));
   append_words(text, size, "). That is %.1f of the %zu bearing%s that these foils make.",
-      share->share * (double)(foils / pads), foils / pads, fg_plural(foils / pads));
+               share->share * (double)(foils / pads), foils / pads, fg_plural(foils / pads));
 }
 
 static void append_limit(const fg_assembly_limit *limit, char *text, size_t size) {
@@ -55,7 +57,8 @@ static void append_limit(const fg_assembly_limit *limit, char *text, size_t size
   }
   if (isfinite(limit->lower)) append_words(text, size, " below %.4g µm", 1000 * limit->lower);
   if (isfinite(limit->upper))
-    append_words(text, size, "%s above %.4g µm", isfinite(limit->lower) ? " or" : "", 1000 * limit->upper);
+    append_words(text, size, "%s above %.4g µm", isfinite(limit->lower) ? " or" : "",
+                 1000 * limit->upper);
 }
 
 static void say_what_rejects(const fg_lot_assembly *assembly, char *text, size_t size) {
@@ -70,7 +73,8 @@ static void say_what_rejects(const fg_lot_assembly *assembly, char *text, size_t
   }
   append_words(text, size, "What rejects the other %zu: ", rejected);
   append_limit(&plan->limit[first], text, size);
-  append_words(text, size, " (%zu of them, %zu by this alone)", drawn->rejected[first], drawn->alone[first]);
+  append_words(text, size, " (%zu of them, %zu by this alone)", drawn->rejected[first],
+               drawn->alone[first]);
   for (size_t i = 0; i < plan->limits; i++) {
     if (i == first || !drawn->rejected[i]) continue;
     append_words(text, size, "; ");
@@ -88,14 +92,15 @@ static void say_what_would_help(const fg_lot_assembly *assembly, char *text, siz
     return;
   }
   if (!assembly->changes || !best->clear || best->gain <= 0) {
-    append_words(text, size, "None of the changes tried makes more of them assemble than chance does.");
+    append_words(text, size,
+                 "None of the changes tried makes more of them assemble than chance does.");
     return;
   }
-  append_words(text, size, "What would change it most: %s: %s %% would assemble (%+.1f points)", best->words,
-      format_percent(best->share, now), 100 * best->gain);
+  append_words(text, size, "What would change it most: %s: %s %% would assemble (%+.1f points)",
+               best->words, format_percent(best->share, now), 100 * best->gain);
   for (size_t i = 1; i < assembly->changes && assembly->change[i].gain > 0; i++)
     append_words(text, size, "%s %s, %s %%", i == 1 ? "; then" : ";", assembly->change[i].words,
-        format_percent(assembly->change[i].share, then));
+                 format_percent(assembly->change[i].share, then));
   append_words(text, size, ".");
 }
 

@@ -94,7 +94,8 @@ fg_status fg_measured_parts_list(fg_context *ctx, const fg_lot_analysis *analysi
   return FG_OK;
 }
 
-/* What of the part the characteristic is of; NULL: nothing, or nothing that was measured. */
+/* Returns the object of the part that the characteristic describes; NULL: none, or none that was
+ * measured. */
 static const void *find_measured_object(const fg_characteristic *one,
                                         const fg_measured_part *part) {
   if (one->owner == FG_QUANTITY_OF_BEARING)

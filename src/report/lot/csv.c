@@ -58,7 +58,7 @@ static void put_quantity_cells(FILE *out, fg_quantity_owner owner, const void *o
   fputc('\n', out);
 }
 
-/* Every cell that the heading names, though empty: a reader counts them. */
+/* Puts every cell of the heading, empty ones too: readers count them. */
 static void put_failed_scan(FILE *out, const fg_lot *lot, size_t item) {
   size_t rows;
   const fg_quantity *row = fg_quantities(FG_QUANTITY_OF_FOIL, &rows);
@@ -158,7 +158,7 @@ static void put_bearing_heading(FILE *out) {
   fputc('\n', out);
 }
 
-/* The foils' labels with a space between, "-" for a pad that is not there. */
+/* Puts the foils' labels separated by spaces, "-" for a missing pad. */
 static fg_status put_pad_labels(fg_context *ctx, FILE *out, const fg_lot_analysis *analysis,
                                 const fg_lot_bearing *bearing) {
   char *text = NULL;

@@ -17,11 +17,11 @@
 #include "report/lot/characteristics.h"
 #include "report/lot/files.h"
 
-/* The manifest's column of what Q-DAS calls a batch; and what its texts hold at most. */
+/* Column of the manifest that Q-DAS calls batch, and the maximum of its texts. */
 #define COIL_COLUMN "coil"
 enum { TEXT_BYTES_MAX = 255 };
 
-/* A control character would start another field. */
+/* Replaces control characters: one would start another field. */
 static void put_field_text(FILE *out, const char *text) {
   while (*text)
     if ((unsigned char)*text < 0x20 || *text == 0x7F) {
@@ -53,7 +53,8 @@ static void put_characteristic(FILE *out, size_t number, const fg_lot_words *wor
   fprintf(out, "K2142/%zu %s\r\n", number, row->unit);
 }
 
-/* dd.mm.yyyy/hh:mm:ss, of the manifest's column `date`, else of the scan's file. */
+/* Puts the date as dd.mm.yyyy/hh:mm:ss, from the manifest's column `date`, else from the scan's
+ * file. */
 static void put_date_field(FILE *out, const fg_lot *lot, size_t item, size_t number) {
   size_t column = fg_manifest_column(&lot->manifest, FG_LOT_DATE_COLUMN);
   double days =
@@ -66,8 +67,7 @@ static void put_date_field(FILE *out, const fg_lot *lot, size_t item, size_t num
           date[10] ? date + 11 : "00:00");
 }
 
-/* The columns that have a field of their own, and those that are the scan's and the foil's names.
- */
+/* Returns true for columns with a field of their own, and for the names of scan and foil. */
 static bool has_field(const char *column) {
   static const char *const names[] = {"foil", FG_LOT_DATE_COLUMN, COIL_COLUMN, "scan"};
   for (size_t i = 0; i < sizeof names / sizeof *names; i++)
@@ -87,7 +87,8 @@ static void put_besides_field(FILE *out, const char *text, size_t number) {
   fputs("\r\n", out);
 }
 
-/* "die A, operator Kim, scan foil_7.png": at most as many bytes as the format takes. */
+/* Describes a foil: "die A, operator Kim, scan foil_7.png", clipped to the bytes that the format
+ * takes. */
 static void describe_foil(const fg_manifest *manifest, const fg_measured_part *part,
                           char text[TEXT_BYTES_MAX]) {
   size_t item = part->foil->item;
@@ -100,7 +101,7 @@ static void describe_foil(const fg_manifest *manifest, const fg_measured_part *p
   append_words(text, "scan", slash && slash[1] ? slash + 1 : scan);
 }
 
-/* "pad 1 L7-01, pad 3 L7-02" */
+/* Describes the pads of a bearing: "pad 1 L7-01, pad 3 L7-02". */
 static void describe_bearing_pads(const fg_lot_analysis *analysis, const fg_measured_part *part,
                                   char text[TEXT_BYTES_MAX]) {
   text[0] = '\0';
@@ -161,7 +162,7 @@ static int is_of_foil(const void *a, const void *b) {
   return (one->bearing > other->bearing) - (one->bearing < other->bearing);
 }
 
-/* Foils in the order of the lot, then bearings. */
+/* Puts the foils in the order of the lot, then the bearings. */
 static void put_all_parts(FILE *out, const fg_lot_analysis *analysis, fg_measured_part *parts,
                           size_t part_count, const fg_characteristic *list, size_t count) {
   qsort(parts, part_count, sizeof *parts, is_of_foil);

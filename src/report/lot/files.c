@@ -9,7 +9,7 @@
 #include "report/lot/files.h"
 #include "report/lot/foil_pages.h"
 
-/* Which lots have a file. */
+/* Lots that have a file. */
 typedef enum lot_kind { ALL, CURVED, FLAT } lot_kind;
 
 static const struct {

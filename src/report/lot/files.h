@@ -10,7 +10,7 @@
 typedef fg_status fg_lot_writer(fg_context *ctx, const fg_lot_analysis *analysis, FILE *out);
 
 fg_lot_writer fg_lot_write_json;
-fg_lot_writer fg_lot_write_foils_csv; /* a line per foil, and per scan that gave none */
+fg_lot_writer fg_lot_write_foils_csv; /* a line per foil, and per scan without foils */
 fg_lot_writer fg_lot_write_bumps_csv; /* a line per bump */
 fg_lot_writer fg_lot_write_beams_csv; /* a line per beam */
 fg_lot_writer fg_lot_write_bearings_csv;

@@ -14,7 +14,7 @@
 #include "core/sha256.h"
 #include "core/text.h"
 
-/* Of a scan's name so many bytes stand in its page's, and of the sum so many digits. */
+/* Limits of a page's name: bytes of the scan's name, digits of the sum. */
 enum { NAME_BYTES = 60, SUM_DIGITS = 16, PAGE_BYTES_MAX = 1 << 30 };
 
 const char *fg_lot_pages_word(fg_lot_pages which) {
@@ -23,8 +23,8 @@ const char *fg_lot_pages_word(fg_lot_pages which) {
   return words[which];
 }
 
-/* Letters, digits, dot, dash and underscore stay, but for a dot at the begin; without the ending.
- */
+/* Keeps letters, digits, dots (but for a first one), dashes and underscores of a scan's name; drops
+ * its ending. */
 static void make_plain_name(const char *scan, char name[NAME_BYTES + 1]) {
   static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_.";
   const char *slash = strrchr(scan, '/'), *base = slash ? slash + 1 : scan;
@@ -77,7 +77,7 @@ fg_status fg_lot_page_is_wanted(fg_context *ctx, fg_lot_pages which, const fg_de
   return FG_OK;
 }
 
-/* The manifest's name for it, where the scan shows one foil. */
+/* Returns the manifest's name of the foil, where the scan shows one. */
 static const char *find_foil_name(const fg_manifest *manifest, size_t item, size_t foils) {
   size_t column = fg_manifest_column(manifest, "foil");
   const char *name =
@@ -120,7 +120,8 @@ static int compare_page_names(const void *a, const void *b) {
   return strcmp(*(char *const *)a, *(char *const *)b);
 }
 
-/* As fg_lot_page_name makes them: what else lies there is somebody's. */
+/* Returns true for names as fg_lot_page_name makes them: other files in the folder belong to
+ * somebody. */
 static bool is_page_name(const char *name) {
   static const char ending[] = ".html";
   size_t length = strlen(name), tail = SUM_DIGITS + sizeof ending - 1;
@@ -129,7 +130,7 @@ static bool is_page_name(const char *name) {
          strspn(name + length - tail, "0123456789abcdef") == SUM_DIGITS;
 }
 
-/* `kept` in order of their names. */
+/* Removes pages that are not `kept`, which is sorted by name. */
 static fg_status remove_unkept_pages(fg_context *ctx, const char *folder, char *const *kept,
                                      size_t count) {
   char *pages;
@@ -191,7 +192,7 @@ void fg_lot_pages_free(const fg_lot *lot, char **names) {
   free(names);
 }
 
-/* The same file under a second name, where the system can: pages are replaced, never changed. */
+/* Links the page, or copies it where the system cannot link: pages are replaced, never changed. */
 static fg_status link_page(fg_context *ctx, const char *from, const char *to, const char *name) {
   char *source = NULL, *target = NULL, *text = NULL;
   fg_status status = FG_OK;

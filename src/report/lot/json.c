@@ -233,7 +233,7 @@ static void write_thickness(fg_json *json, const fg_lot_analysis *analysis) {
   fg_json_object_end(json);
 }
 
-/* Members of the tests, in the order of fg_lot_group_test. */
+/* Members of the tests in the order of fg_lot_group_test. */
 static const char *const test_members[FG_LOT_GROUP_TESTS][2] = {{"p_means", "p_means_holm"},
                                                                 {"p_variances", "p_variances_holm"},
                                                                 {"p_levene", "p_levene_holm"},

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The member of lot.json about bearings drawn from the lot's foils. */
+/* Member of lot.json about bearings drawn from the lot's foils. */
 #include "report/lot/json.h"
 
 static void write_assembly_share(fg_json *json, const char *name, const fg_assembly_share *share,

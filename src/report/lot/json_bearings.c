@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The members of lot.json about bearings. */
+/* Members of lot.json about bearings. */
 #include "report/lot/json.h"
 #include "report/measure/json.h"
 #include "report/quantity_json.h"

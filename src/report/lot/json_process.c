@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* lot.json: whether the process runs as it did, and what its charts' signals come from. */
+/* Members of lot.json about the state of the process and the causes of its charts' signals. */
 #include "report/lot/json.h"
 
 static void write_lot_trend(fg_json *json, const fg_lot_trend *trend) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Stiffness of a lot's bumps in its JSON. */
+/* Members of lot.json about the stiffness of bumps. */
 #include "report/lot/json.h"
 
 static void write_arch(fg_json *json, const char *name, const fg_arch_stiffness *stiffness) {

@@ -11,7 +11,7 @@
 #include "report/lot/plots.h"
 #include "report/measure/scan_model_words.h"
 
-/* What the model does not know well enough to correct. */
+/* Puts the effects that the model does not know well enough to correct. */
 static void put_uncorrected(FILE *out, const fg_lot_analysis *analysis) {
   static const struct {
     unsigned flag;
@@ -33,7 +33,7 @@ static void put_uncorrected(FILE *out, const fg_lot_analysis *analysis) {
   }
 }
 
-/* By what, what it did at most, and how many foils it was not made for. */
+/* Puts the model, its largest correction, and the number of foils beyond its region. */
 static fg_status put_correction(fg_context *ctx, FILE *out, const fg_lot_analysis *analysis) {
   char moved[FG_CORRECTION_WORDS], added[FG_CORRECTION_WORDS];
   const fg_correction max = fg_lot_correction_largest(analysis);
@@ -139,7 +139,7 @@ static void put_where_pages_are(FILE *out, const fg_lot_analysis *analysis) {
   fputs(".</p>\n", out);
 }
 
-/* Those that do not pass first. */
+/* Puts the list of foils; those that do not pass come first. */
 static void put_foil_list(FILE *out, const fg_lot_analysis *analysis) {
   size_t rows = 0;
   bool flat = analysis->lot->settings.design.kind == FG_FOIL_CANTILEVER;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The lot's page: what the beams' lengths and widths make of compliance and sagitta. */
+/* The lot's page: effect of the beams' lengths and widths on compliance and sagitta. */
 #include <math.h>
 
 #include "foilgauge/cantilever.h"
@@ -35,8 +35,8 @@ static void put_compliance_spread(FILE *out, const fg_lot_analysis *analysis) {
           compliance->mean, compliance->sd, by_length, by_width, hypot(by_length, by_width));
 }
 
-/* The lot's extremes: what the beam that is longest and narrowest, and the other way round, would
- * have. */
+/* Puts the extremes of the lot: the longest beam that is narrowest, and the shortest that is
+ * widest. */
 static void put_extremes(FILE *out, const fg_lot_analysis *analysis) {
   const fg_design *design = &analysis->lot->settings.design;
   const fg_lot_quantity *length = fg_lot_find_quantity(analysis, "length_mm");

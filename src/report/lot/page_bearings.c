@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The lot's page: what the foils do to the bearings they are built into. */
+/* The lot's page: the bearings that the foils are built into. */
 #include <math.h>
 
 #include "core/text.h"
@@ -23,7 +23,7 @@ static bool is_bearing_judged(const fg_lot_analysis *analysis) {
   return fg_report_of_bearing(&analysis->lot->settings.design, NULL, 0) > 0;
 }
 
-/* What fails or cannot be told is named: a row of numbers alone would have to be searched. */
+/* Names the quantities that fail or cannot be told: a row of numbers would have to be searched. */
 static void put_bearing_verdict(FILE *out, const fg_lot_analysis *analysis,
                                 const fg_lot_bearing *bearing) {
   const fg_decision *decision = &bearing->decision;
@@ -73,7 +73,7 @@ static void put_bearing_row(FILE *out, const fg_lot_analysis *analysis,
   fputs("</tr>\n", out);
 }
 
-/* The limits, over the columns that they are of. */
+/* Puts the limits above their columns. */
 static void put_limit_row(FILE *out, const fg_lot_analysis *analysis) {
   const fg_design *design = &analysis->lot->settings.design;
   const fg_quantity *shown[FG_QUANTITY_SHOWN_MAX];
@@ -127,7 +127,7 @@ static void put_mean_and_sd(FILE *out, const fg_lot_spread *spread) {
   fputs(" %", out);
 }
 
-/* Bearings that do not pass come before those that do, where not all can be drawn. */
+/* Draws bearings that do not pass before others, where not all can be drawn. */
 static bool is_drawn(const fg_lot_analysis *analysis, size_t bearing) {
   size_t before = 0;
   bool good = analysis->bearings[bearing].decision.outcome.verdict == FG_VERDICT_PASS;
@@ -145,7 +145,7 @@ static void put_bearing_counts(FILE *out, const fg_lot_analysis *analysis,
   if (!bearing->known) fputs(": not known, a foil or a value is missing", out);
 }
 
-/* How the foils lie around the bearings, drawings, and a line of each. */
+/* Puts the layout, drawings of bearings, and a line for each. */
 static void put_assembled(FILE *out, const fg_lot_analysis *analysis) {
   const fg_lot_settings *settings = &analysis->lot->settings;
   bool assumed =
@@ -179,7 +179,7 @@ static void put_assembled(FILE *out, const fg_lot_analysis *analysis) {
   put_bearing_table(out, analysis);
 }
 
-/* Foils that are in no bearing, and tolerances that therefore judge nothing. */
+/* Puts the foils that are in no bearing, and tolerances that therefore judge nothing. */
 static void put_unplaced(FILE *out, const fg_lot_analysis *analysis) {
   const fg_lot_unplaced *unplaced = &analysis->unplaced;
   const fg_lot_settings *settings = &analysis->lot->settings;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The lot's page: where the spread of the bumps' stiffness comes from. */
+/* The lot's page: causes of the spread of the bumps' stiffness. */
 #include <math.h>
 
 #include "report/lot/page_parts.h"
@@ -10,12 +10,12 @@ static void put_term_cell(FILE *out, double value, int digits) {
   fputs("</td>", out);
 }
 
-/* A variance as the spread that it would give alone. */
+/* Returns the spread that a variance would give alone. */
 static double variance_to_spread(double variance_pct2) {
   return sqrt(variance_pct2);
 }
 
-/* A tenth of a percent of the whole is fine enough. */
+/* Rounds to a tenth of a percent, which is fine enough. */
 static double round_share(double share_pct) {
   return round(10 * share_pct) / 10;
 }

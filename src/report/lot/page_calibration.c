@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The lot's page: how well its means are known. */
+/* The lot's page: uncertainty of its means. */
 #include <math.h>
 
 #include "foilgauge/words.h"

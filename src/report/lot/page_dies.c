@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The lot's page: how much of the deviation is the dies'. */
+/* The lot's page: share of the deviation that the dies explain. */
 #include <math.h>
 
 #include "lot/statistics/dies.h"
@@ -10,7 +10,7 @@
 
 enum { NUMBERS_MAX = FG_LOT_DIE_BUMPS_MAX };
 
-/* Mean errors of one die's foils by bump number, and the die's. */
+/* Mean errors by bump number of one die's foils, and of the die. */
 typedef struct curve {
   double number[NUMBERS_MAX], foils[NUMBERS_MAX], die[NUMBERS_MAX];
   size_t count;
@@ -48,7 +48,7 @@ static void put_die_key(FILE *out, const char *style, double x, const char *name
   fputs("</text>\n", out);
 }
 
-/* One die: its foils' mean error, and its own. */
+/* Puts the mean error of a die's foils, and the die's own. */
 static void put_die_plot(FILE *out, const fg_lot_analysis *analysis, const fg_lot_die *die,
                          const double range[2]) {
   curve c;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The lot's page: what is seen first. Verdict and process, counts, the worst three, one chart. */
+/* The lot's page: its first screen with verdict and process, counts, the worst three, and one
+ * chart. */
 #include <math.h>
 #include <string.h>
 
@@ -89,7 +90,7 @@ void fg_lot_put_counts(FILE *out, const fg_lot_analysis *analysis) {
   put_bearing_tiles(out, analysis);
 }
 
-/* Beside the verdict: foils that pass today say nothing of tomorrow's. */
+/* Puts the state of the process beside the verdict: passing foils tell nothing of tomorrow's. */
 static void put_process(FILE *out, const fg_lot_process *process) {
   size_t open = process->unstable - process->explained;
   if (!process->watched)
@@ -105,7 +106,7 @@ static void put_process(FILE *out, const fg_lot_process *process) {
             open, process->watched);
 }
 
-/* " (foils A, B and 3 more)" */
+/* Puts the foils of signals: " (foils A, B and 3 more)". */
 static void put_signal_counts(FILE *out, const fg_lot_analysis *analysis,
                               const fg_lot_quantity *quantity) {
   enum { NAMED = 8 };
@@ -124,7 +125,7 @@ static void put_signal_counts(FILE *out, const fg_lot_analysis *analysis,
   fputs(")", out);
 }
 
-/* In the unit that people read such differences in: µm of mm. */
+/* Puts a change in the unit that people read: µm for mm. */
 static void put_trend_change(FILE *out, const fg_quantity *row, double change, double u) {
   bool fine = !strcmp(row->unit, "mm");
   char words[80];
@@ -133,8 +134,8 @@ static void put_trend_change(FILE *out, const fg_quantity *row, double change, d
   fprintf(out, "%s %s", words, fine ? "µm" : row->unit);
 }
 
-/* ": in the order of the foils it rises by 2.03 ± 0.31 µm a foil, 28.4 ± 4.3 µm from the first to
- * the last (p = 0.0002); without this trend no signal is left." U is of 95 %. */
+/* Puts a trend: ": in the order of the foils it rises by 2.03 ± 0.31 µm a foil, 28.4 ± 4.3 µm from
+ * the first to the last (p = 0.0002); without this trend no signal is left." U is of 95 %. */
 static void put_trend(FILE *out, const fg_lot_quantity *quantity) {
   const fg_lot_trend *trend = &quantity->trend;
   double u = trend->u_per_foil * fg_distribution_t_quantile(0.975, trend->dof) / FG_COVERAGE_FACTOR;
@@ -156,7 +157,8 @@ static void put_trend(FILE *out, const fg_lot_quantity *quantity) {
     fputs("no signal is left.</li>\n", out);
 }
 
-/* "The signals of bump radius come from the column die: ... each by itself shows none." */
+/* Puts a cause: "The signals of bump radius come from the column die: ... each by itself shows
+ * none." */
 static void put_quantity_cause(FILE *out, const fg_lot_analysis *analysis,
                                const fg_lot_quantity *quantity) {
   const fg_lot_cause *cause = &quantity->cause;
@@ -228,7 +230,7 @@ void fg_lot_put_heading(FILE *out, const fg_lot_analysis *analysis) {
   put_causes(out, analysis);
 }
 
-/* The first damaged beam, with what is wrong with it; false where there is none. */
+/* Puts the first damaged beam with its defect; returns false where there is none. */
 static bool put_damage(FILE *out, const fg_foil *foil) {
   for (size_t i = 0; i < foil->beam_count; i++) {
     const fg_foil_part part = fg_part_at(foil, FG_QUANTITY_OF_BEAM, i);
@@ -242,7 +244,7 @@ static bool put_damage(FILE *out, const fg_foil *foil) {
   return false;
 }
 
-/* What stands against a foil most: what it is, or its farthest value. */
+/* Puts the main reason for rejection: a defect, or the value farthest beyond its limit. */
 void fg_lot_put_reason(FILE *out, const fg_lot_analysis *analysis, const fg_lot_foil *foil) {
   char defect[200];
   if (foil->foil->error[0]) {
@@ -263,15 +265,15 @@ static bool has_worst_value(const fg_lot_analysis *analysis, const fg_lot_foil *
          !fg_foil_defect(&analysis->lot->settings.design, foil->foil, NULL, 0);
 }
 
-/* As many as people read of the quantity, or more where its U would be 0.0000. */
+/* Returns the decimals of the quantity, or more where its U would read 0.0000. */
 static int margin_decimals(const fg_quantity *row, double expanded) {
   enum { MAX = 9 };
   if (!(expanded > 0) || !isfinite(expanded)) return row->decimals;
-  int first = (int)-floor(log10(expanded)); /* where its first digit stands */
+  int first = (int)-floor(log10(expanded)); /* place of the first digit */
   return first > MAX ? MAX : first > row->decimals ? first : row->decimals;
 }
 
-/* Value ± U, its limit, and how far it is from it. */
+/* Puts value ± U, its limit, and its distance from it. */
 void fg_lot_put_margin(FILE *out, const fg_lot_analysis *analysis, const fg_lot_foil *foil) {
   const fg_quantity *row = foil->worst_row;
   if (!has_worst_value(analysis, foil)) {

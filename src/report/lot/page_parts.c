@@ -46,9 +46,9 @@ void fg_lot_put_href(FILE *out, const char *path) {
       fprintf(out, "%%%02X", (unsigned)(unsigned char)*path);
 }
 
-/* The way from one folder to a file, both as the system knows them: "../scans/1.png". */
+/* Puts the relative path from a folder to a file, both absolute: "../scans/1.png". */
 static void put_relative_path(FILE *out, const char *folder, const char *file) {
-  size_t same = 0; /* behind the last slash that both have */
+  size_t same = 0; /* length of the common path, with its last slash */
   for (size_t i = 0; folder[i] && folder[i] == file[i]; i++)
     if (file[i] == '/') same = i + 1;
   size_t length = strlen(folder);

@@ -17,7 +17,8 @@ static void put_quantity_rows(FILE *out, const fg_lot_analysis *analysis) {
   for (size_t i = 0; i < analysis->quantity_count; i++) {
     const fg_lot_quantity *quantity = &analysis->quantities[i];
     bool unstated = !quantity->count && !quantity->tolerance;
-    if (unstated && quantity->owner == FG_QUANTITY_OF_BEAM) continue; /* as without a sagitta */
+    if (unstated && quantity->owner == FG_QUANTITY_OF_BEAM)
+      continue; /* such as without a sagitta */
     const double values[] = {quantity->mean, quantity->sd,  quantity->median,
                              quantity->mode, quantity->min, quantity->max};
     fprintf(out, "<tr><td class=\"words\">%s</td><td>%s</td><td>%zu</td>", quantity->row->words,
@@ -49,7 +50,7 @@ static void put_capability_cell(FILE *out, double value, int digits) {
   fputs("</td>", out);
 }
 
-/* So far within its tolerance that the number says nothing more. */
+/* Capability ratio from which a higher number tells nothing more. */
 static const double ratio_told = 100;
 
 static void put_capability_ratio(FILE *out, const fg_ratio *ratio) {
@@ -159,7 +160,7 @@ void fg_lot_put_quantities(FILE *out, const fg_lot_analysis *analysis) {
   fputs("</section>\n", out);
 }
 
-/* How far the lot's means lie from the curve, in words. */
+/* Puts the distance of the lot's means from the curve, in words. */
 static void put_against_curve(FILE *out, const fg_lot_quantity *quantity,
                               const fg_lot_curve *curve) {
   double sum = 0, max = 0, value;
@@ -179,7 +180,7 @@ static void put_against_curve(FILE *out, const fg_lot_quantity *quantity,
           quantity->row->words, sum / bumps, bumps, max, at);
 }
 
-/* Figure 5.17 of the thesis: both errors by bump number, and what a simulation or a die says. */
+/* Puts figure 5.17 of the thesis: both errors by bump number, with the reference curve. */
 static void put_errors_by_bump(FILE *out, const fg_lot_analysis *analysis) {
   static const char *const shown[] = {"radius_error_pct", "intersection_angle_error_pct",
                                       "bump_angle_error_pct"};
@@ -188,7 +189,9 @@ static void put_errors_by_bump(FILE *out, const fg_lot_analysis *analysis) {
   for (size_t i = 0; i < sizeof shown / sizeof *shown; i++) {
     const fg_lot_quantity *quantity = fg_lot_find_quantity(analysis, shown[i]);
     if (!quantity) continue;
-    if (last) fputs("</figure>\n<figure>", out); /* of its own, so that a printed page can end */
+    if (last)
+      fputs("</figure>\n<figure>",
+            out); /* in a figure of its own, so that a printed page can break */
     fg_lot_plot_places(out, analysis, quantity, curve);
     last = quantity;
   }

@@ -15,7 +15,8 @@ static void put_spread_row(FILE *out, const char *title, const fg_lot_spread *sp
   fputs("</tr>\n", out);
 }
 
-/* Mean over the design's ± what the thickness leaves in doubt, and which thickness that is. */
+/* Puts the mean over the design's ± its uncertainty by the thickness, and the origin of that
+ * thickness. */
 static void put_stiffness_thickness(FILE *out, const fg_lot_analysis *analysis) {
   const fg_lot_stiffness *stiffness = &analysis->stiffness;
   fprintf(out,

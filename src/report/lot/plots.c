@@ -37,7 +37,7 @@ void fg_lot_plot_density(FILE *out, const fg_lot_quantity *quantity, double scal
   double x[CURVE_POINTS + 1], y[CURVE_POINTS + 1], bars[BARS] = {0}, high = 0;
   char mark[64];
   if (!quantity || !quantity->has_density) return;
-  if (!(quantity->sd > 1e-9 * fabs(quantity->mean))) return; /* one line, no distribution */
+  if (!(quantity->sd > 1e-9 * fabs(quantity->mean))) return; /* equal values have no density */
   double a = scale * quantity->min + shift, b = scale * quantity->max + shift;
   fg_plot at = {out, PLOT_WIDTH, 92, 985, 24, 250, fmin(a, b), fmax(a, b), 0, 1};
   double reach = 2.5 * quantity->density.bandwidth * fabs(scale);
@@ -88,7 +88,7 @@ static void put_error_dot(const fg_plot *at, const fg_bump *bump) {
   fg_plot_dot(at, x, y, 4.5, "dot");
 }
 
-/* alpha at constant arc length: 100 (1 / (1 + e_R / 100) - 1). */
+/* Puts alpha at constant arc length: 100 (1 / (1 + e_R / 100) - 1). */
 static void put_arc_hypothesis(const fg_plot *at) {
   double x[CURVE_POINTS + 1], y[CURVE_POINTS + 1];
   for (int i = 0; i <= CURVE_POINTS; i++) {
@@ -99,7 +99,7 @@ static void put_arc_hypothesis(const fg_plot *at) {
   fg_plot_line(at, x, y, CURVE_POINTS + 1, "hypothesis");
 }
 
-/* The part of the line that lies inside the plot. */
+/* Puts the part of the line inside the plot. */
 static void put_error_line(const fg_plot *at, double slope, double intercept) {
   double x[2] = {at->x_low, at->x_high}, y[2];
   double first = (at->y_low - intercept) / slope, second = (at->y_high - intercept) / slope;
@@ -157,7 +157,7 @@ void fg_lot_plot_map(FILE *out, const fg_lot_analysis *analysis) {
   fg_stiffness_plot_map(out, &map, put_stiffness_dots, analysis);
 }
 
-/* A polar plot: the clearance outwards from a zero circle, so that a rub shows inside it. */
+/* Polar plot: clearance outwards from a circle of zero, so that contact shows inside it. */
 typedef struct polar {
   FILE *out;
   double zero_px, px_per_mm;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A quantity over the numbers of the parts, and over the foils. */
+/* Plots of a quantity over the numbers of the parts, and over the foils. */
 #include <math.h>
 #include <string.h>
 
@@ -9,15 +9,15 @@
 #include "report/lot/page_parts.h"
 #include "report/lot/plots.h"
 
-/* A chart of more foils is a line with its signals. */
+/* Maximum of points; beyond it a chart is a line with its signals. */
 enum { PLOT_WIDTH = 1000, CHART_POINTS_MAX = 600, DOTS_DRAWN_MAX = 120 };
 
-/* Where the mean and the foils' dots stand beside the place of a bump number. */
+/* Offsets of the mean and of the foils' dots from the place of a number. */
 #define MEAN_AT   (-0.17)
 #define FIRST_DOT (-0.05)
 #define LAST_DOT  0.35
 
-/* Values that are equal but for rounding still get an axis with room for numbers. */
+/* Widens an axis; one of equal values still gets room for numbers. */
 void fg_lot_plot_widen(double *low, double *high, double share) {
   static const double min = 1e-9;
   double size = fmax(fabs(*low), fabs(*high)), room = (*high - *low) * share;
@@ -40,7 +40,7 @@ static void put_tolerance_lines(const fg_plot *at, const fg_tolerance *tolerance
       fg_plot_segment(at, at->x_low, limits[i], at->x_high, limits[i], "limit");
 }
 
-/* Beside an axis there is room for some thirty letters; a longer name gives way to its symbol. */
+/* Shortens a name of more than thirty letters, which do not fit beside an axis, to its symbol. */
 static void format_axis_title(char *text, size_t size, const fg_quantity *row) {
   enum { LETTERS = 28 };
   snprintf(text, size, "%s%s%s", strlen(row->words) > LETTERS ? row->symbol : row->words,
@@ -56,7 +56,7 @@ bool fg_lot_curve_value(const fg_lot_curve *curve, const fg_quantity *row, size_
   return true;
 }
 
-/* The reference curve: its points joined, a diamond each. */
+/* Puts the reference curve: joined points, each a diamond. */
 static void put_reference_curve(const fg_plot *at, const fg_quantity *row,
                                 const fg_lot_curve *curve) {
   double x[FG_LOT_CURVE_MAX], y[FG_LOT_CURVE_MAX];
@@ -76,14 +76,14 @@ static void put_reference_curve(const fg_plot *at, const fg_quantity *row,
   }
 }
 
-/* How many foils lie between two that are drawn. */
+/* Returns the step between drawn foils. */
 static size_t foils_per_dot(const fg_lot_analysis *analysis, const fg_lot_quantity *quantity) {
   (void)analysis;
   return quantity->count / FG_LOT_DOTS_MAX + 1;
 }
 
-/* The values of one foil's parts, right of their means: from left to right in order of the foils.
- * What is beyond a limit is a cross. */
+/* Puts the values of one foil's parts right of their means, from left to right in order of the
+ * foils. A cross marks a value beyond a limit. */
 static void put_foil_dots(const fg_plot *at, const fg_lot_quantity *quantity, const fg_foil *foil,
                           double share) {
   for (size_t k = 0; k < fg_part_count(foil, quantity->owner); k++) {
@@ -174,14 +174,14 @@ void fg_lot_put_places_key(FILE *out, const fg_lot_analysis *analysis,
   fputs(".", out);
 }
 
-/* Which foil of the lot each point of the chart is. */
+/* Returns the foil of the chart's next point. */
 static size_t find_next_foil(const fg_lot_quantity *quantity, size_t foil) {
   while (!quantity->size[foil])
     foil++;
   return foil;
 }
 
-/* A mark that leads to its foil, and says which that is where a pointer rests on it. */
+/* Begins a mark that links to its foil and names it under a pointer. */
 static bool begin_mark(const fg_plot *at, const fg_lot_analysis *analysis, size_t foil) {
   if (!fg_lot_begin_foil_link(at->out, analysis, &analysis->foils[foil])) return false;
   fputs("<title>", at->out);
@@ -190,7 +190,7 @@ static bool begin_mark(const fg_plot *at, const fg_lot_analysis *analysis, size_
   return true;
 }
 
-/* The groups that explain the signals: a shape for each, a line at its mean, a key above. */
+/* Puts the groups that explain the signals: a shape for each, a line at its mean, a key above. */
 static void put_cause_groups(const fg_plot *at, const fg_lot_analysis *analysis,
                              const fg_lot_quantity *quantity) {
   const fg_lot_cause *cause = &quantity->cause;

@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* results.qif: QIF 3.0 (ANSI/DMSC QIF 3.0, ISO 23952): the Characteristics, and one set of
- * MeasurementResults with its ActualComponent per foil and per bearing that the manifest names. An
- * ActualComponentSet holds the components of one product: the bearing itself and its foils in order
- * of the pads; foils in no bearing are a set of their own. Attributes of a foil's component are
- * what the manifest says of it (die, coil, operator, bearing ...), its pad, its scan and the scan's
- * SHA-256; its date is when its inspection started. */
+/* results.qif: QIF 3.0 (ANSI/DMSC QIF 3.0, ISO 23952).
+ *
+ * It holds the Characteristics, and one set of MeasurementResults with its ActualComponent per
+ * foil and per bearing that the manifest names. An ActualComponentSet holds the components of one
+ * product: the bearing itself and its foils in order of the pads; foils in no bearing are a set of
+ * their own. The component of a foil has the cells of the manifest (die, coil, operator, bearing
+ * ...), its pad, its scan and the scan's SHA-256 as attributes; its date is the start of its
+ * inspection. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -27,7 +29,7 @@ typedef struct qif {
   size_t part_count;
 } qif;
 
-/* Ids: definitions, nominals, items (count each), then per part one component, one set of results
+/* Ids: definitions, nominals and items (`count` each), then per part a component, a set of results
  * and `count` measurements. */
 static size_t item_id(const qif *q, size_t i) {
   return 2 * q->count + i + 1;
@@ -47,7 +49,7 @@ static void put_qif_number(FILE *out, double value) {
   fputs(text, out);
 }
 
-/* A UUID out of what the lot is: the same lot has the same one. */
+/* Puts a UUID derived from the lot, so that the same lot has the same one. */
 static void put_uuid(FILE *out, const char *a, const char *b) {
   char sum[65], both[160];
   snprintf(both, sizeof both, "%s %s", a, b);
@@ -172,7 +174,8 @@ static void put_qif_measurement(const qif *q, size_t id, size_t i, double value,
   fprintf(q->out, "</Value></%sCharacteristicMeasurement>\n", one->row->characteristic);
 }
 
-/* Of the manifest's column `date`, else of the scan's file; the standard wants a time in UTC. */
+/* Puts the time from the manifest's column `date`, else from the scan's file; the standard wants
+ * UTC. */
 static void put_inspection_start(const qif *q, const fg_lot_foil *foil) {
   const fg_lot *lot = q->analysis->lot;
   size_t column = fg_manifest_column(&lot->manifest, FG_LOT_DATE_COLUMN);
@@ -222,7 +225,7 @@ static void put_attribute(FILE *out, const char *name, const char *value) {
   fputs("\"/>", out);
 }
 
-/* What the manifest's columns say, where they say something, and where the foil comes from. */
+/* Puts the cells of the manifest that are not empty, and the origin of the foil. */
 static void put_attributes(const qif *q, const fg_measured_part *part) {
   const fg_manifest *manifest = &q->analysis->lot->manifest;
   size_t item = part->foil->item, count = 2;
@@ -265,7 +268,7 @@ static void put_component(const qif *q, size_t index) {
           inspection_status(find_part_verdict(part)));
 }
 
-/* How many of the parts from this one on are of one product. */
+/* Returns the number of parts from this one on that belong to one product. */
 static size_t product_size(const qif *q, size_t first) {
   size_t end = first + 1;
   while (end < q->part_count && q->parts[end].bearing == q->parts[first].bearing)
