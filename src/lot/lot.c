@@ -145,7 +145,7 @@ static fg_status check_scan(fg_context *ctx, void *shared, size_t i) {
   if (!item->entry.length || !item->wanted) return FG_OK;
   char *page;
   FG_TRY(name_page(ctx, run, i, sum, &page));
-  item->redrawn = !fg_lot_page_is_there(run->request->folder, page);
+  item->redrawn = !fg_lot_page_exists(run->request->folder, page);
   free(page);
   return FG_OK;
 }
@@ -261,7 +261,7 @@ static fg_status draw_page(fg_context *ctx, lot_run *run, size_t item,
     return FG_OK;
   }
   fg_status status = name_page(ctx, run, item, measurement->sha256, &name);
-  if (status == FG_OK) status = fg_lot_pages_make(ctx, run->request->folder);
+  if (status == FG_OK) status = fg_lot_pages_make_folder(ctx, run->request->folder);
   if (status == FG_OK) status = fg_lot_write_text(ctx, run->request->folder, name, page);
   free(name);
   free(page);

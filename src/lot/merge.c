@@ -221,7 +221,7 @@ static fg_status write_merged_lot(fg_context *ctx, merger *m, fg_lot_outcome *ou
       .settings = m->settings, .manifest = m->manifest, .decimal_comma = m->decimal_comma};
   m->manifest = (fg_manifest){0};
   status = fg_lot_load(ctx, m->folder, &lot);
-  if (status == FG_OK) status = fg_lot_pages_take(ctx, m->folders, m->from, m->folder, &lot);
+  if (status == FG_OK) status = fg_lot_pages_link(ctx, m->folders, m->from, m->folder, &lot);
   if (status == FG_OK) status = fg_lot_write_report(ctx, m->folder, &lot, outcome);
   fg_lot_free(&lot);
   return status;

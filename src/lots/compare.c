@@ -201,7 +201,7 @@ static fg_status describe_ratios(fg_context *ctx, const double *values, size_t c
   fg_lot_settings settings;
   fg_lot_spread s;
   fg_lot_settings_default(&settings);
-  FG_TRY(fg_lot_spread_of(ctx, values, count, settings.bandwidth, &s));
+  FG_TRY(fg_lot_find_spread(ctx, values, count, settings.bandwidth, &s));
   *spread = (fg_index_spread){.count = count,
                               .mean = s.mean,
                               .mode = s.mode,

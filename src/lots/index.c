@@ -76,7 +76,7 @@ static fg_status make_index(fg_context *ctx, const fg_lot_index_request *request
   FG_TRY(fg_index_spreads(ctx, index));
   FG_TRY(fg_index_compare(ctx, index));
   FG_TRY(fg_index_compare_dies(ctx, index));
-  return fg_index_say(ctx, index);
+  return fg_index_make_sentences(ctx, index);
 }
 
 static fg_status write_csv(fg_context *ctx, void *index, FILE *out) {

@@ -165,7 +165,7 @@ void fg_index_free(fg_index *index);
 fg_index_stat *fg_index_stat_of(const fg_index_axis *axis, const fg_index_lot *lot);
 
 /* Makes the sentences of page and JSON. */
-fg_status fg_index_say(fg_context *ctx, fg_index *index);
+fg_status fg_index_make_sentences(fg_context *ctx, fg_index *index);
 
 /* Formats a value of an axis with its unit, and a difference as "0.0312 ± 0.0041 mm" with half its
  * interval. */

@@ -43,57 +43,57 @@ static double find_peak(const curve *c) {
   return fg_density_at(&c->spread->density, c->spread->mode);
 }
 
-static void put_density_curve(const fg_plot *at, const curve *c) {
-  double step = (at->x_high - at->x_low) / CURVE_POINTS;
+static void put_density_curve(const fg_plot *plot, const curve *c) {
+  double step = (plot->x_high - plot->x_low) / CURVE_POINTS;
   if (c->look < 0)
-    fputs("<path stroke=\"#b4bdc6\" stroke-width=\"1\" d=\"", at->out);
+    fputs("<path stroke=\"#b4bdc6\" stroke-width=\"1\" d=\"", plot->out);
   else
-    fprintf(at->out,
+    fprintf(plot->out,
             "<path stroke=\"%s\" stroke-width=\"2.5\" stroke-linejoin=\"round\" "
             "stroke-dasharray=\"%s\" d=\"",
             looks[c->look].colour, looks[c->look].dash);
   for (int i = 0; i <= CURVE_POINTS; i++) {
-    double x = at->x_low + i * step;
-    fprintf(at->out, "%c%.1f %.1f", i ? 'L' : 'M', fg_plot_x(at, x),
-            fg_plot_y(at, fg_density_at(&c->spread->density, x)));
+    double x = plot->x_low + i * step;
+    fprintf(plot->out, "%c%.1f %.1f", i ? 'L' : 'M', fg_plot_x(plot, x),
+            fg_plot_y(plot, fg_density_at(&c->spread->density, x)));
   }
-  fputs("\"/>\n", at->out);
+  fputs("\"/>\n", plot->out);
 }
 
 /* Puts the number at the top of a curve, beside the numbers that are there. */
-static void put_curve_number(const fg_plot *at, curve *curves, size_t i) {
+static void put_curve_number(const fg_plot *plot, curve *curves, size_t i) {
   enum { WIDE = 22, HIGH = 15 };
   curve *c = &curves[i];
-  c->x = fg_plot_x(at, c->spread->mode);
-  c->y = fg_plot_y(at, find_peak(c)) - 7;
+  c->x = fg_plot_x(plot, c->spread->mode);
+  c->y = fg_plot_y(plot, find_peak(c)) - 7;
   for (size_t k = 0; k < i; k++)
     if (curves[k].look >= 0 && fabs(curves[k].x - c->x) < WIDE && fabs(curves[k].y - c->y) < HIGH) {
       c->x = curves[k].x + WIDE;
       k = (size_t)-1; /* restarts: the new place may be occupied, too */
     }
-  fprintf(at->out,
+  fprintf(plot->out,
           "<text x=\"%.1f\" y=\"%.1f\" style=\"fill:%s;text-anchor:middle;font-weight:650\">", c->x,
           c->y, looks[c->look].colour);
   if (c->number)
-    fprintf(at->out, "%zu", c->number);
+    fprintf(plot->out, "%zu", c->number);
   else
-    fg_html_text(at->out, c->name);
-  fputs("</text>\n", at->out);
+    fg_html_text(plot->out, c->name);
+  fputs("</text>\n", plot->out);
 }
 
 /* Puts line, number and name at the right. */
-static void put_curve_legend(const fg_plot *at, const curve *c, size_t row) {
+static void put_curve_legend(const fg_plot *plot, const curve *c, size_t row) {
   char name[4 * LABEL_LETTERS + 4];
-  double y = at->top + 14 + 22 * (double)row;
-  fprintf(at->out,
+  double y = plot->top + 14 + 22 * (double)row;
+  fprintf(plot->out,
           "<path stroke=\"%s\" stroke-width=\"2.5\" stroke-dasharray=\"%s\" d=\"M%.0f %.1fH%.0f\"/>"
           "<text x=\"%.0f\" y=\"%.1f\">",
-          looks[c->look].colour, looks[c->look].dash, at->right + 16, y - 5, at->right + 52,
-          at->right + 60, y);
-  if (c->number) fprintf(at->out, "%zu  ", c->number);
+          looks[c->look].colour, looks[c->look].dash, plot->right + 16, y - 5, plot->right + 52,
+          plot->right + 60, y);
+  if (c->number) fprintf(plot->out, "%zu  ", c->number);
   fg_index_clip_name(c->name, LABEL_LETTERS, name, sizeof name);
-  fg_html_text(at->out, name);
-  fputs("</text>\n", at->out);
+  fg_html_text(plot->out, name);
+  fputs("</text>\n", plot->out);
 }
 
 /* Chooses the curves to colour among many: the last, then in turns the lowest and the highest mean.
@@ -116,39 +116,39 @@ static void choose_looks(curve *curves, size_t count) {
 }
 
 static void plot_curves(FILE *out, curve *curves, size_t count, const char *label) {
-  fg_plot at = {out, WIDTH, 70, 740, 26, 330, INFINITY, -INFINITY, 0, 0};
+  fg_plot plot = {out, WIDTH, 70, 740, 26, 330, INFINITY, -INFINITY, 0, 0};
   for (size_t i = 0; i < count; i++) {
     double reach = 2.5 * curves[i].spread->density.bandwidth;
-    at.x_low = fmin(at.x_low, curves[i].spread->min - reach);
-    at.x_high = fmax(at.x_high, curves[i].spread->max + reach);
-    at.y_high = fmax(at.y_high, 1.1 * find_peak(&curves[i]));
+    plot.x_low = fmin(plot.x_low, curves[i].spread->min - reach);
+    plot.x_high = fmax(plot.x_high, curves[i].spread->max + reach);
+    plot.y_high = fmax(plot.y_high, 1.1 * find_peak(&curves[i]));
   }
   choose_looks(curves, count);
-  fg_plot_begin(&at, 384, label);
-  fg_plot_y_axis(&at, "density");
-  fg_plot_x_numbers(&at);
-  fg_plot_x_title(&at, "bump radius over design, R / R_D");
-  if (at.x_low < 1 && at.x_high > 1) {
-    fg_plot_segment(&at, 1, 0, 1, at.y_high, "hypothesis");
-    fg_plot_text(&at, 1, at.y_high * 1.01, "key", "design");
+  fg_plot_begin(&plot, 384, label);
+  fg_plot_y_axis(&plot, "density");
+  fg_plot_x_numbers(&plot);
+  fg_plot_x_title(&plot, "bump radius over design, R / R_D");
+  if (plot.x_low < 1 && plot.x_high > 1) {
+    fg_plot_segment(&plot, 1, 0, 1, plot.y_high, "hypothesis");
+    fg_plot_text(&plot, 1, plot.y_high * 1.01, "key", "design");
   }
   size_t row = 0;
   for (int pass = 0; pass < 3; pass++)
     for (size_t i = 0; i < count; i++) {
       if ((curves[i].look >= 0) != (pass > 0)) continue;
-      if (pass < 2) put_density_curve(&at, &curves[i]);
+      if (pass < 2) put_density_curve(&plot, &curves[i]);
       if (pass == 2) {
-        put_curve_number(&at, curves, i);
-        put_curve_legend(&at, &curves[i], row++);
+        put_curve_number(&plot, curves, i);
+        put_curve_legend(&plot, &curves[i], row++);
       }
     }
   if (count > LINES_MAX) {
     char text[40];
     snprintf(text, sizeof text, "grey: %zu more", count - MARKED);
-    fprintf(out, "<text class=\"soft\" x=\"%.0f\" y=\"%.1f\">%s</text>\n", at.right + 60,
-            at.top + 14 + 22 * (double)row, text);
+    fprintf(out, "<text class=\"soft\" x=\"%.0f\" y=\"%.1f\">%s</text>\n", plot.right + 60,
+            plot.top + 14 + 22 * (double)row, text);
   }
-  fg_plot_end(&at);
+  fg_plot_end(&plot);
 }
 
 void fg_index_plot_lots(FILE *out, const fg_index *index) {
@@ -180,7 +180,7 @@ static void widen_range(double value, double *low, double *high) {
 
 /* Includes values and limits wholly, and expected intervals as far as 0.3 of that span at each
  * side: few lots expect almost anything. */
-static bool find_axis_range(const fg_index *index, const fg_index_axis *axis, fg_plot *at) {
+static bool find_axis_range(const fg_index *index, const fg_index_axis *axis, fg_plot *plot) {
   double low = INFINITY, high = -INFINITY;
   for (size_t i = 0; i < index->read; i++) {
     const fg_index_stat *stat = fg_index_stat_of(axis, &index->lots[i]);
@@ -201,81 +201,81 @@ static bool find_axis_range(const fg_index *index, const fg_index_axis *axis, fg
   }
   double room = 0.07 * (high - low), min = 1e-9 * fmax(fabs(low), fabs(high));
   if (!(room > min)) room = fabs(high) > 0 ? 0.01 * fabs(high) : 1;
-  at->y_low = low - room;
-  at->y_high = high + room;
+  plot->y_low = low - room;
+  plot->y_high = high + room;
   return true;
 }
 
 /* Puts the expected interval; edges outside the picture are not drawn. */
-static void put_expected_band(const fg_plot *at, double x, const fg_index_stat *stat) {
+static void put_expected_band(const fg_plot *plot, double x, const fg_index_stat *stat) {
   if (!isfinite(stat->expected_low)) return;
   const double edges[2] = {stat->expected_low, stat->expected_high};
-  double top = fmin(edges[1], at->y_high), foot = fmax(edges[0], at->y_low);
+  double top = fmin(edges[1], plot->y_high), foot = fmax(edges[0], plot->y_low);
   if (!(top > foot)) return;
-  double left = fg_plot_x(at, x - 0.5), width = fg_plot_x(at, x + 0.5) - left;
-  fprintf(at->out,
+  double left = fg_plot_x(plot, x - 0.5), width = fg_plot_x(plot, x + 0.5) - left;
+  fprintf(plot->out,
           "<rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\" fill=\"#eff2f5\"/>\n", left,
-          fg_plot_y(at, top), width, fg_plot_y(at, foot) - fg_plot_y(at, top));
+          fg_plot_y(plot, top), width, fg_plot_y(plot, foot) - fg_plot_y(plot, top));
   for (int i = 0; i < 2; i++)
-    if (edges[i] > at->y_low && edges[i] < at->y_high)
-      fg_plot_segment(at, x - 0.5, edges[i], x + 0.5, edges[i], "thin");
+    if (edges[i] > plot->y_low && edges[i] < plot->y_high)
+      fg_plot_segment(plot, x - 0.5, edges[i], x + 0.5, edges[i], "thin");
 }
 
-static void put_lot_limits(const fg_plot *at, double x, const fg_index_stat *stat) {
+static void put_lot_limits(const fg_plot *plot, double x, const fg_index_stat *stat) {
   const double limits[2] = {stat->lower, stat->upper};
   for (int i = 0; i < 2; i++)
-    if (isfinite(limits[i])) fg_plot_segment(at, x - 0.5, limits[i], x + 0.5, limits[i], "limit");
+    if (isfinite(limits[i])) fg_plot_segment(plot, x - 0.5, limits[i], x + 0.5, limits[i], "limit");
 }
 
-static void put_lot_mean(const fg_plot *at, double x, const fg_index_stat *stat, bool few) {
+static void put_lot_mean(const fg_plot *plot, double x, const fg_index_stat *stat, bool few) {
   double size = few ? 6 : 4;
   if (!stat->count) return;
   if (isfinite(stat->sd))
-    fg_plot_segment(at, x, stat->mean - stat->sd, x, stat->mean + stat->sd, "s2");
+    fg_plot_segment(plot, x, stat->mean - stat->sd, x, stat->mean + stat->sd, "s2");
   if (stat->unexpected)
-    fprintf(at->out,
+    fprintf(plot->out,
             "<rect class=\"signal\" x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\"/>\n",
-            fg_plot_x(at, x) - size, fg_plot_y(at, stat->mean) - size, 2 * size, 2 * size);
+            fg_plot_x(plot, x) - size, fg_plot_y(plot, stat->mean) - size, 2 * size, 2 * size);
   else
-    fg_plot_dot(at, x, stat->mean, size, "run");
+    fg_plot_dot(plot, x, stat->mean, size, "run");
 }
 
-static void put_lot_label(const fg_plot *at, const fg_index *index, size_t i) {
+static void put_lot_label(const fg_plot *plot, const fg_index *index, size_t i) {
   size_t every = index->read / NUMBERS_MAX + 1;
   char text[4 * AXIS_LETTERS + 32], name[4 * AXIS_LETTERS + 4];
-  double x = fg_plot_x(at, (double)i + 1);
+  double x = fg_plot_x(plot, (double)i + 1);
   if (i % every) return;
   fg_index_clip_name(index->lots[i].name, AXIS_LETTERS, name, sizeof name);
   if (index->read <= NAMES_MAX)
     snprintf(text, sizeof text, "%zu  %s", i + 1, name);
   else
     snprintf(text, sizeof text, "%zu", i + 1);
-  fg_plot_x_label(at, x, text);
+  fg_plot_x_label(plot, x, text);
   if (index->read > DATES_MAX) return;
-  fprintf(at->out,
+  fprintf(plot->out,
           "<text class=\"x soft\" style=\"font-size:12px\" x=\"%.1f\" y=\"%.1f\">%.10s</text>\n", x,
-          at->bottom + 37, index->lots[i].date.from ? index->lots[i].date.first : "no date");
+          plot->bottom + 37, index->lots[i].date.from ? index->lots[i].date.first : "no date");
 }
 
 void fg_index_plot_axis(FILE *out, const fg_index *index, const fg_index_axis *axis) {
-  fg_plot at = {out, WIDTH, 92, 985, 14, 210, 0.5, (double)index->read + 0.5, 0, 0};
+  fg_plot plot = {out, WIDTH, 92, 985, 14, 210, 0.5, (double)index->read + 0.5, 0, 0};
   char title[96];
   const char *unit = fg_index_unit(axis);
-  if (!find_axis_range(index, axis, &at)) return;
+  if (!find_axis_range(index, axis, &plot)) return;
   fg_text_clip(title, sizeof title, "%s%s%s%s", axis->row->symbol,
                axis->scale == FG_INDEX_OVER_DESIGN ? " over design" : "", *unit ? ", " : "", unit);
-  fg_plot_begin(&at, index->read > DATES_MAX ? 238 : 254, axis->row->words);
+  fg_plot_begin(&plot, index->read > DATES_MAX ? 238 : 254, axis->row->words);
   for (size_t i = 0; i < index->read; i++) {
     const fg_index_stat *stat = fg_index_stat_of(axis, &index->lots[i]);
-    if (stat) put_expected_band(&at, (double)i + 1, stat);
+    if (stat) put_expected_band(&plot, (double)i + 1, stat);
   }
-  fg_plot_y_axis(&at, title);
+  fg_plot_y_axis(&plot, title);
   for (size_t i = 0; i < index->read; i++) {
     const fg_index_stat *stat = fg_index_stat_of(axis, &index->lots[i]);
-    put_lot_label(&at, index, i);
+    put_lot_label(&plot, index, i);
     if (!stat) continue;
-    put_lot_limits(&at, (double)i + 1, stat);
-    put_lot_mean(&at, (double)i + 1, stat, index->read <= NUMBERS_MAX);
+    put_lot_limits(&plot, (double)i + 1, stat);
+    put_lot_mean(&plot, (double)i + 1, stat, index->read <= NUMBERS_MAX);
   }
-  fg_plot_end(&at);
+  fg_plot_end(&plot);
 }

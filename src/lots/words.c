@@ -104,8 +104,8 @@ static const char *name_axis(const fg_index_axis *axis, char *text, size_t size)
   return text;
 }
 
-/* Says the pair that differs most surely in a quantity, and the number of further pairs. */
-static fg_status say_axis(fg_context *ctx, fg_index *index, size_t axis) {
+/* States the pair that differs most surely in a quantity, and the number of further pairs. */
+static fg_status state_axis(fg_context *ctx, fg_index *index, size_t axis) {
   const fg_index_pair *first = NULL;
   const fg_index_axis *of = &index->axes[axis];
   size_t differing = 0;
@@ -140,8 +140,8 @@ static bool is_pair_differing(const fg_index *index, size_t a, size_t b) {
   return false;
 }
 
-/* Says "Lots that differ beyond the scatter of foils: 1 from 2, 3; 2 from 3." */
-static fg_status say_differing_lots(fg_context *ctx, fg_index *index) {
+/* States "Lots that differ beyond the scatter of foils: 1 from 2, 3; 2 from 3." */
+static fg_status state_differing_lots(fg_context *ctx, fg_index *index) {
   char *sentence = NULL;
   for (size_t a = 0; a < index->read; a++) {
     bool begun = false;
@@ -161,7 +161,7 @@ static fg_status say_differing_lots(fg_context *ctx, fg_index *index) {
 }
 
 /* Says, of many lots, those that differ from half of the others or more, the worst first. */
-static fg_status say_odd(fg_context *ctx, fg_index *index) {
+static fg_status state_odd(fg_context *ctx, fg_index *index) {
   size_t *others = NULL;
   char *sentence = NULL;
   FG_TRY(fg_memory_allocate(ctx, index->read, sizeof *others, (void **)&others));
@@ -188,8 +188,8 @@ static fg_status say_odd(fg_context *ctx, fg_index *index) {
   return append_sentence(ctx, index, sentence);
 }
 
-/* Says the number of lots within tolerance. */
-static fg_status say_verdicts(fg_context *ctx, fg_index *index) {
+/* States the number of lots within tolerance. */
+static fg_status state_verdicts(fg_context *ctx, fg_index *index) {
   static const struct {
     fg_verdict verdict;
     const char *words;
@@ -218,9 +218,9 @@ static bool is_axis_differing(const fg_index *index, size_t axis) {
   return false;
 }
 
-/* Says that further quantities differ: most follow from the first ones. */
-static fg_status say_more_quantities(fg_context *ctx, fg_index *index, size_t quantities,
-                                     const char *what, const char *where) {
+/* States that further quantities differ: most follow from the first ones. */
+static fg_status state_more_quantities(fg_context *ctx, fg_index *index, size_t quantities,
+                                       const char *what, const char *where) {
   char *sentence = NULL;
   FG_TRY(fg_text_print(ctx, &sentence, "%s differ in %zu more quantit%s as well: see \"%s\".", what,
                        quantities, quantities == 1 ? "y" : "ies", where));
@@ -234,7 +234,7 @@ static size_t count_tested(const fg_index *index) {
   return tested;
 }
 
-static fg_status say_pairs(fg_context *ctx, fg_index *index) {
+static fg_status state_pairs(fg_context *ctx, fg_index *index) {
   char *sentence = NULL;
   if (index->read < 2) {
     FG_TRY(fg_text_print(ctx, &sentence, "One lot: there is nothing to compare it with."));
@@ -250,21 +250,21 @@ static fg_status say_pairs(fg_context *ctx, fg_index *index) {
   }
   if (sentence) return append_sentence(ctx, index, sentence);
   if (index->read > LISTED_MAX)
-    FG_TRY(say_odd(ctx, index));
+    FG_TRY(state_odd(ctx, index));
   else if (index->read > 2)
-    FG_TRY(say_differing_lots(ctx, index));
+    FG_TRY(state_differing_lots(ctx, index));
   size_t before = index->sentence_count;
   size_t axis = 0, more = 0;
   for (; axis < index->axis_count; axis++)
     if (index->sentence_count < before + SAID_MAX)
-      FG_TRY(say_axis(ctx, index, axis));
+      FG_TRY(state_axis(ctx, index, axis));
     else
       more += is_axis_differing(index, axis);
-  return more ? say_more_quantities(ctx, index, more, "Lots", "Which lots differ") : FG_OK;
+  return more ? state_more_quantities(ctx, index, more, "Lots", "Which lots differ") : FG_OK;
 }
 
-/* Says the lots whose mean the others make unlikely in a quantity. */
-static fg_status say_unexpected(fg_context *ctx, fg_index *index, const fg_index_axis *axis) {
+/* States the lots whose mean the others make unlikely in a quantity. */
+static fg_status state_unexpected(fg_context *ctx, fg_index *index, const fg_index_axis *axis) {
   char *sentence = NULL, name[VALUE], value[VALUE], low[VALUE], high[VALUE];
   size_t lots = 0;
   for (size_t i = 0; i < index->read; i++) {
@@ -286,7 +286,7 @@ static fg_status say_unexpected(fg_context *ctx, fg_index *index, const fg_index
   return append_sentence(ctx, index, sentence);
 }
 
-static fg_status say_die_pair(fg_context *ctx, fg_index *index, const fg_index_die_pair *of) {
+static fg_status state_die_pair(fg_context *ctx, fg_index *index, const fg_index_die_pair *of) {
   const fg_index_axis *axis = &index->axes[of->pair.axis];
   char *sentence = NULL, difference[VALUE], p[16], name[VALUE];
   fg_index_difference(axis, &of->pair, difference, sizeof difference);
@@ -300,8 +300,8 @@ static fg_status say_die_pair(fg_context *ctx, fg_index *index, const fg_index_d
   return append_sentence(ctx, index, sentence);
 }
 
-/* Says the numbers of pairs of dies that were tested, and that cannot be. */
-static fg_status say_no_die(fg_context *ctx, fg_index *index) {
+/* States the numbers of pairs of dies that were tested, and that cannot be. */
+static fg_status state_no_die(fg_context *ctx, fg_index *index) {
   size_t tests = 0, tested = 0, apart = 0;
   char *sentence = NULL;
   for (size_t i = 0; i < index->die_pair_count; i++)
@@ -331,23 +331,23 @@ static fg_status say_no_die(fg_context *ctx, fg_index *index) {
   return sentence ? append_sentence(ctx, index, sentence) : FG_OK;
 }
 
-/* Says the dies that differ, a sentence for each quantity; else that none differ, or why they
+/* States the dies that differ, a sentence for each quantity; else that none differ, or why they
  * cannot be compared. */
-static fg_status say_dies(fg_context *ctx, fg_index *index) {
+static fg_status state_dies(fg_context *ctx, fg_index *index) {
   if (index->die_count < 2 || index->die_count > FG_INDEX_DIES_MAX) return FG_OK;
   size_t said = 0;
   for (size_t axis = 0; axis < index->axis_count; axis++)
     for (size_t i = 0; i < index->dies_differing; i++)
       if (index->die_pairs[i].pair.axis == axis) {
-        if (said++ < SAID_MAX) FG_TRY(say_die_pair(ctx, index, &index->die_pairs[i]));
+        if (said++ < SAID_MAX) FG_TRY(state_die_pair(ctx, index, &index->die_pairs[i]));
         break;
       }
   if (said > SAID_MAX)
-    FG_TRY(say_more_quantities(ctx, index, said - SAID_MAX, "Dies", "Which dies differ"));
-  return said ? FG_OK : say_no_die(ctx, index);
+    FG_TRY(state_more_quantities(ctx, index, said - SAID_MAX, "Dies", "Which dies differ"));
+  return said ? FG_OK : state_no_die(ctx, index);
 }
 
-static fg_status say_designs_apart(fg_context *ctx, fg_index *index) {
+static fg_status state_designs_apart(fg_context *ctx, fg_index *index) {
   char *sentence = NULL;
   if (index->designs < 2) return FG_OK;
   FG_TRY(fg_text_print(ctx, &sentence,
@@ -364,12 +364,12 @@ static fg_status say_designs_apart(fg_context *ctx, fg_index *index) {
   return append_sentence(ctx, index, sentence);
 }
 
-fg_status fg_index_say(fg_context *ctx, fg_index *index) {
-  FG_TRY(say_verdicts(ctx, index));
-  FG_TRY(say_pairs(ctx, index));
+fg_status fg_index_make_sentences(fg_context *ctx, fg_index *index) {
+  FG_TRY(state_verdicts(ctx, index));
+  FG_TRY(state_pairs(ctx, index));
   for (size_t i = 0; i < index->axis_count; i++)
     if (index->axes[i].same_as == FG_INDEX_NONE)
-      FG_TRY(say_unexpected(ctx, index, &index->axes[i]));
-  FG_TRY(say_dies(ctx, index));
-  return say_designs_apart(ctx, index);
+      FG_TRY(state_unexpected(ctx, index, &index->axes[i]));
+  FG_TRY(state_dies(ctx, index));
+  return state_designs_apart(ctx, index);
 }

@@ -371,13 +371,13 @@ fg_status fg_lot_settings_format(fg_context *ctx, const fg_lot_settings *setting
 size_t fg_recipe_members(fg_member_words *list, size_t max) {
   size_t count = 0;
   for (size_t i = 0; i < fg_recipe_values.count; i++, count++)
-    if (count < max) fg_recipe_say("", &fg_recipe_values.rows[i], &list[count]);
+    if (count < max) fg_recipe_describe("", &fg_recipe_values.rows[i], &list[count]);
   for (size_t i = 0; i < PARTS; i++, count++) {
     if (count >= max) continue;
     list[count] = (fg_member_words){.meaning = parts[i].meaning};
     fg_text_clip(list[count].name, sizeof list[count].name, "%s", parts[i].name);
   }
   for (size_t i = 0; i < fg_recipe_assembly.count; i++, count++)
-    if (count < max) fg_recipe_say("assembly.", &fg_recipe_assembly.rows[i], &list[count]);
+    if (count < max) fg_recipe_describe("assembly.", &fg_recipe_assembly.rows[i], &list[count]);
   return count;
 }

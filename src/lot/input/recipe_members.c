@@ -178,7 +178,7 @@ static void print_default(const fg_recipe_member *row, const fg_lot_settings *us
   free(json);
 }
 
-void fg_recipe_say(const char *object, const fg_recipe_member *row, fg_member_words *words) {
+void fg_recipe_describe(const char *object, const fg_recipe_member *row, fg_member_words *words) {
   fg_lot_settings usual;
   fg_lot_settings_default(&usual);
   *words = (fg_member_words){.meaning = row->meaning};

@@ -48,7 +48,7 @@ bool fg_recipe_is_open(const fg_recipe_member *row, double value);
 void fg_recipe_write(fg_json *json, const fg_recipe_member *row, const fg_lot_settings *settings);
 
 /* Words of the manual about a member; `object` stands before its name ("assembly."). */
-void fg_recipe_say(const char *object, const fg_recipe_member *row, fg_member_words *words);
+void fg_recipe_describe(const char *object, const fg_recipe_member *row, fg_member_words *words);
 
 /* Resolves `name` against the folder of the recipe `path`. */
 void fg_recipe_find_file(const char *path, const char *name, char *file, size_t size);

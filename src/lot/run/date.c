@@ -26,7 +26,7 @@ static bool date_by_manifest(const fg_manifest *manifest, span *days) {
   return isfinite(days->first);
 }
 
-size_t fg_lot_date_wrong(const fg_manifest *manifest, const char **first) {
+size_t fg_lot_date_count_invalid(const fg_manifest *manifest, const char **first) {
   size_t column = fg_manifest_column(manifest, FG_LOT_DATE_COLUMN), wrong = 0;
   *first = NULL;
   for (size_t i = 0; column != FG_NO_COLUMN && i < manifest->items; i++) {

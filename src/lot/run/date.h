@@ -23,6 +23,6 @@ void fg_lot_date_find(const fg_lot *lot, fg_lot_date *date);
 
 /* Returns the number of cells of that column that are no date; *first is the first of them, or
  * NULL. */
-size_t fg_lot_date_wrong(const fg_manifest *manifest, const char **first);
+size_t fg_lot_date_count_invalid(const fg_manifest *manifest, const char **first);
 
 #endif

@@ -113,9 +113,9 @@ typedef struct fg_lot_budget_term {
 } fg_lot_budget_term;
 
 /* Standard uncertainty of the mean of a lot's values; NaN: unknown. */
-typedef struct fg_lot_known {
+typedef struct fg_lot_mean_u {
   double u_statistical, u_calibration, u;
-} fg_lot_known;
+} fg_lot_mean_u;
 
 /* Sources of the relative sd of the stiffness (arch), to first order about the lot's mean:
  *   rsd² = (s_arc sigma_R)² + (s_alpha sigma_arc)² + 2 r s_arc sigma_R s_alpha sigma_arc
@@ -354,7 +354,7 @@ bool fg_lot_is_trend(const fg_lot_quantity *quantity);
 bool fg_lot_is_watched(const fg_lot_analysis *analysis, const fg_lot_quantity *quantity);
 bool fg_lot_is_explained(const fg_lot_quantity *quantity);
 /* Returns true when there is no chart, or too few foils for a signal and none. */
-bool fg_lot_tells_nothing(const fg_lot_quantity *quantity);
+bool fg_lot_is_uninformative(const fg_lot_quantity *quantity);
 
 /* Names of the quantities whose charts are drawn where none has a tolerance; ends with NULL. */
 extern const char *const fg_lot_charted[];
@@ -381,19 +381,19 @@ void fg_lot_find_layout(fg_lot_analysis *analysis);
 fg_status fg_lot_analyse_bearings(fg_context *ctx, fg_lot_analysis *analysis);
 fg_status fg_lot_analyse_assembly(fg_context *ctx, fg_lot_analysis *analysis);
 void fg_lot_assembly_free(fg_lot_assembly *assembly);
-void fg_lot_say_assembly(fg_lot_analysis *analysis); /* fills the statements */
+void fg_lot_summarise_assembly(fg_lot_analysis *analysis); /* fills the statements */
 fg_status fg_lot_analyse_groups(fg_context *ctx, fg_lot_analysis *analysis);
 /* Returns true when an adjusted p-value lies below 1 - confidence of the recipe. */
 bool fg_lot_group_differs(const fg_lot_analysis *analysis, double p_holm);
 fg_status fg_lot_analyse_gauge(fg_context *ctx, fg_lot_analysis *analysis);
 
 /* Computes mean, sd and range of `count` finite values, and the mode of their density. */
-fg_status fg_lot_spread_of(fg_context *ctx, const double *values, size_t count,
-                           fg_bandwidth_rule rule, fg_lot_spread *spread);
+fg_status fg_lot_find_spread(fg_context *ctx, const double *values, size_t count,
+                             fg_bandwidth_rule rule, fg_lot_spread *spread);
 
 /* Returns the uncertainty of the mean of a quantity. Statistical errors average out over the foils;
  * the error of the calibration is the same in each and does not. */
-fg_lot_known fg_lot_mean_known(const fg_lot_analysis *analysis, const fg_lot_quantity *quantity);
+fg_lot_mean_u fg_lot_find_mean_u(const fg_lot_analysis *analysis, const fg_lot_quantity *quantity);
 
 /* Returns the relative u of the mean stiffness from the calibration. */
 double fg_lot_stiffness_calibration(const fg_lot_analysis *analysis);

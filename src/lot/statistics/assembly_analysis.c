@@ -284,7 +284,7 @@ fg_status fg_lot_analyse_assembly(fg_context *ctx, fg_lot_analysis *analysis) {
                                  fabs(nominal) * settings->assembly.design_deviation_pct / 100,
                                  &assembly->plan, &assembly->design));
   FG_TRY(try_changes(ctx, analysis));
-  fg_lot_say_assembly(analysis);
+  fg_lot_summarise_assembly(analysis);
   return FG_OK;
 }
 

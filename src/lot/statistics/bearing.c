@@ -165,7 +165,7 @@ static fg_status describe_relative_clearance(fg_context *ctx, const fg_lot_analy
   for (size_t i = 0; i < quantity->count; i++)
     relative[i] = 100 * (quantity->value[i] - nominal) / nominal;
   fg_status status =
-      fg_lot_spread_of(ctx, relative, quantity->count, analysis->lot->settings.bandwidth, spread);
+      fg_lot_find_spread(ctx, relative, quantity->count, analysis->lot->settings.bandwidth, spread);
   free(relative);
   return status;
 }

@@ -84,9 +84,9 @@ static sums sum_foil(const reading *r, const fg_foil *foil) {
   return sum;
 }
 
-fg_lot_known fg_lot_mean_known(const fg_lot_analysis *analysis, const fg_lot_quantity *quantity) {
+fg_lot_mean_u fg_lot_find_mean_u(const fg_lot_analysis *analysis, const fg_lot_quantity *quantity) {
   sums all = {0};
-  const fg_lot_known unknown = {NAN, NAN, NAN};
+  const fg_lot_mean_u unknown = {NAN, NAN, NAN};
   bool own = (quantity->row->uses & FG_QUANTITY_IS_OWN) != 0;
   if (!fg_quantity_has_u(quantity->row)) return unknown;
   const reading r = {analysis, quantity, fg_quantity_move_of(quantity->owner, quantity->row)};
@@ -101,7 +101,7 @@ fg_lot_known fg_lot_mean_known(const fg_lot_analysis *analysis, const fg_lot_qua
   if (!all.count) return unknown;
   double n = (double)all.count, calibration = hypot(all.move[0], all.move[1]) / n;
   double statistical = hypot(sqrt(all.squares), all.alike) / n;
-  return (fg_lot_known){statistical, calibration, hypot(statistical, calibration)};
+  return (fg_lot_mean_u){statistical, calibration, hypot(statistical, calibration)};
 }
 
 /* Returns the change of ln K by one standard deviation of a source. */

@@ -147,7 +147,7 @@ bool fg_lot_is_explained(const fg_lot_quantity *quantity) {
          !(quantity->has_subgroups && quantity->deviations.signals);
 }
 
-bool fg_lot_tells_nothing(const fg_lot_quantity *quantity) {
+bool fg_lot_is_uninformative(const fg_lot_quantity *quantity) {
   enum { FOILS_MIN = 8 }; /* the rules of a chart speak of eight points in a row */
   return !quantity->has_chart || (quantity->stable && quantity->chart.count < FOILS_MIN);
 }
@@ -162,7 +162,7 @@ fg_status fg_lot_analyse_causes(fg_context *ctx, fg_lot_analysis *analysis) {
       FG_TRY(fg_lot_find_trend(ctx, analysis->lot->settings.run_rules, chance / CAUSES_TRIED,
                                quantity));
     }
-    if (fg_lot_tells_nothing(quantity) || !fg_lot_is_watched(analysis, quantity)) continue;
+    if (fg_lot_is_uninformative(quantity) || !fg_lot_is_watched(analysis, quantity)) continue;
     process->watched++;
     process->unstable += !quantity->stable;
     process->explained += !quantity->stable && fg_lot_is_explained(quantity);

@@ -83,7 +83,7 @@ static fg_status describe_values(fg_context *ctx, const fg_lot_settings *setting
                                  fg_lot_quantity *quantity) {
   fg_lot_spread spread;
   void *block;
-  FG_TRY(fg_lot_spread_of(ctx, quantity->value, quantity->count, settings->bandwidth, &spread));
+  FG_TRY(fg_lot_find_spread(ctx, quantity->value, quantity->count, settings->bandwidth, &spread));
   quantity->mean = spread.mean;
   quantity->sd = spread.sd;
   quantity->min = spread.min;

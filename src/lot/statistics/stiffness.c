@@ -151,7 +151,7 @@ static fg_status resample_stiffness(fg_context *ctx, const fg_lot_settings *sett
     ratio[count] = stiffness_ratio(settings, result, thickness_mm, r, length / r, NULL);
     count += isfinite(ratio[count]) != 0;
   }
-  FG_TRY_EXIT(fg_lot_spread_of(ctx, ratio, count, settings->bandwidth, &result->resampled));
+  FG_TRY_EXIT(fg_lot_find_spread(ctx, ratio, count, settings->bandwidth, &result->resampled));
 exit:
   free(block);
   fg_density_free(&radius);
@@ -183,8 +183,8 @@ static fg_status spread_by_models(fg_context *ctx, const fg_lot_settings *settin
                                   const fg_bump_columns *columns, fg_lot_stiffness *result) {
   for (int i = 0; i < FG_STIFFNESS_MODELS; i++) {
     if (!isfinite(fg_mean(columns->ratio[i], columns->count))) continue;
-    FG_TRY(fg_lot_spread_of(ctx, columns->ratio[i], columns->count, settings->bandwidth,
-                            &result->by_model[i]));
+    FG_TRY(fg_lot_find_spread(ctx, columns->ratio[i], columns->count, settings->bandwidth,
+                              &result->by_model[i]));
   }
   return FG_OK;
 }
@@ -208,15 +208,15 @@ fg_status fg_lot_analyse_stiffness(fg_context *ctx, fg_lot_analysis *analysis) {
                             has_different_values(columns.arc_length, columns.count) &&
                             settings->resamples > 1;
   if (!analysis->has_stiffness) goto exit;
-  FG_TRY_EXIT(fg_lot_spread_of(ctx, columns.ratio[0], columns.count, settings->bandwidth,
-                               &result->measured));
+  FG_TRY_EXIT(fg_lot_find_spread(ctx, columns.ratio[0], columns.count, settings->bandwidth,
+                                 &result->measured));
   FG_TRY_EXIT(spread_by_models(ctx, settings, &columns, result));
   find_mean_bump(settings, &columns, result);
   fg_lot_analyse_budget(analysis, &columns);
   FG_TRY_EXIT(
-      fg_lot_spread_of(ctx, columns.foot, columns.count, settings->bandwidth, &result->foot));
-  FG_TRY_EXIT(fg_lot_spread_of(ctx, columns.designed, columns.count, settings->bandwidth,
-                               &result->at_design_thickness));
+      fg_lot_find_spread(ctx, columns.foot, columns.count, settings->bandwidth, &result->foot));
+  FG_TRY_EXIT(fg_lot_find_spread(ctx, columns.designed, columns.count, settings->bandwidth,
+                                 &result->at_design_thickness));
   if (analysis->thickness.foils)
     result->u_by_thickness = fabs(result->sensitivity.thickness) * result->measured.mean *
                              analysis->thickness.mean.u_mm / analysis->thickness.mean.mm;

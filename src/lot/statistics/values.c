@@ -59,8 +59,8 @@ const fg_lot_quantity *fg_lot_leading_quantity(const fg_lot_analysis *analysis) 
   return fg_lot_find_quantity(analysis, beams ? "compliance_error_pct" : "height_mm");
 }
 
-fg_status fg_lot_spread_of(fg_context *ctx, const double *values, size_t count,
-                           fg_bandwidth_rule rule, fg_lot_spread *spread) {
+fg_status fg_lot_find_spread(fg_context *ctx, const double *values, size_t count,
+                             fg_bandwidth_rule rule, fg_lot_spread *spread) {
   fg_density density;
   double squares = 0;
   *spread =

@@ -32,7 +32,7 @@ const char fg_assembly_scope[] =
     "This is geometry: clearances of the bearings at rest. It is no rotordynamic simulation: what "
     "bearings of such spread do at speed (thesis 5.12) it does not say.";
 
-static void say_how_many(const fg_lot_assembly *assembly, char *text, size_t size) {
+static void state_how_many(const fg_lot_assembly *assembly, char *text, size_t size) {
   const fg_assembly_share *share = &assembly->drawn.assembled;
   size_t foils = assembly->stock.foils, pads = assembly->plan.layout.pads;
   char now[16], low[16], high[16], sure[16], maybe[16];
@@ -61,7 +61,7 @@ static void append_limit(const fg_assembly_limit *limit, char *text, size_t size
                  1000 * limit->upper);
 }
 
-static void say_what_rejects(const fg_lot_assembly *assembly, char *text, size_t size) {
+static void state_what_rejects(const fg_lot_assembly *assembly, char *text, size_t size) {
   const fg_assembly_plan *plan = &assembly->plan;
   const fg_assembly_result *drawn = &assembly->drawn;
   size_t first = 0, rejected = plan->bearings - drawn->assembled.count;
@@ -84,7 +84,7 @@ static void say_what_rejects(const fg_lot_assembly *assembly, char *text, size_t
   append_words(text, size, ".");
 }
 
-static void say_what_would_help(const fg_lot_assembly *assembly, char *text, size_t size) {
+static void state_what_would_help(const fg_lot_assembly *assembly, char *text, size_t size) {
   const fg_lot_change *best = &assembly->change[0];
   char now[16], then[16];
   if (assembly->drawn.assembled.count == assembly->plan.bearings) {
@@ -104,10 +104,10 @@ static void say_what_would_help(const fg_lot_assembly *assembly, char *text, siz
   append_words(text, size, ".");
 }
 
-void fg_lot_say_assembly(fg_lot_analysis *analysis) {
+void fg_lot_summarise_assembly(fg_lot_analysis *analysis) {
   fg_lot_assembly *assembly = &analysis->assembly;
   const size_t size = sizeof assembly->statement[0];
-  say_how_many(assembly, assembly->statement[0], size);
-  say_what_rejects(assembly, assembly->statement[1], size);
-  say_what_would_help(assembly, assembly->statement[2], size);
+  state_how_many(assembly, assembly->statement[0], size);
+  state_what_rejects(assembly, assembly->statement[1], size);
+  state_what_would_help(assembly, assembly->statement[2], size);
 }

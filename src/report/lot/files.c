@@ -70,7 +70,7 @@ static void fill_lot_outcome(const fg_lot_analysis *analysis, fg_lot_outcome *ou
   outcome->bearings = analysis->bearing_count;
   outcome->bearings_judged = fg_report_of_bearing(&analysis->lot->settings.design, NULL, 0) > 0;
   const char *no_date;
-  outcome->no_dates = fg_lot_date_wrong(&analysis->lot->manifest, &no_date);
+  outcome->no_dates = fg_lot_date_count_invalid(&analysis->lot->manifest, &no_date);
   if (no_date) fg_text_clip(outcome->first_no_date, sizeof outcome->first_no_date, "%s", no_date);
   memcpy(outcome->assembly, analysis->assembly.statement, sizeof analysis->assembly.statement);
   if (outcome->assembly[0][0] && !analysis->assembly.why[0])

@@ -57,7 +57,7 @@ fg_status fg_lot_page_name(fg_context *ctx, const fg_design *design, const fg_ma
   return fg_text_print(ctx, name, FG_LOT_PAGES "/%s-%.*s.html", plain, SUM_DIGITS, sum);
 }
 
-bool fg_lot_page_is_there(const char *folder, const char *name) {
+bool fg_lot_page_exists(const char *folder, const char *name) {
   char *path = NULL;
   bool there = fg_lot_path(NULL, folder, name, &path) == FG_OK && access(path, F_OK) == 0;
   free(path);
@@ -108,7 +108,7 @@ fg_status fg_lot_page_draw(fg_context *ctx, const fg_design *design, const fg_ma
   return status;
 }
 
-fg_status fg_lot_pages_make(fg_context *ctx, const char *folder) {
+fg_status fg_lot_pages_make_folder(fg_context *ctx, const char *folder) {
   char *pages;
   FG_TRY(fg_lot_path(ctx, folder, FG_LOT_PAGES, &pages));
   fg_status status = fg_folder_make(ctx, pages);
@@ -174,7 +174,7 @@ fg_status fg_lot_pages_find(fg_context *ctx, const char *folder, const fg_lot *l
     const fg_record *record = &lot->records[i];
     if (record->error) continue;
     status = fg_lot_page_name(ctx, &lot->settings.design, &lot->manifest, i, record, &(*names)[i]);
-    if (status != FG_OK || fg_lot_page_is_there(folder, (*names)[i])) continue;
+    if (status != FG_OK || fg_lot_page_exists(folder, (*names)[i])) continue;
     free((*names)[i]);
     (*names)[i] = NULL;
   }
@@ -208,7 +208,7 @@ exit:
   return status;
 }
 
-fg_status fg_lot_pages_take(fg_context *ctx, const char *const *folders, const size_t *from,
+fg_status fg_lot_pages_link(fg_context *ctx, const char *const *folders, const size_t *from,
                             const char *folder, const fg_lot *lot) {
   bool made = false;
   for (size_t i = 0; i < lot->manifest.items; i++) {
@@ -216,8 +216,8 @@ fg_status fg_lot_pages_take(fg_context *ctx, const char *const *folders, const s
     if (lot->records[i].error) continue;
     FG_TRY(
         fg_lot_page_name(ctx, &lot->settings.design, &lot->manifest, i, &lot->records[i], &name));
-    bool there = fg_lot_page_is_there(folders[from[i]], name);
-    fg_status status = there && !made ? fg_lot_pages_make(ctx, folder) : FG_OK;
+    bool there = fg_lot_page_exists(folders[from[i]], name);
+    fg_status status = there && !made ? fg_lot_pages_make_folder(ctx, folder) : FG_OK;
     made |= there;
     if (there && status == FG_OK) status = link_page(ctx, folders[from[i]], folder, name);
     free(name);

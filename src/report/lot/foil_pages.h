@@ -17,7 +17,7 @@
 fg_status fg_lot_page_name(fg_context *ctx, const fg_design *design, const fg_manifest *manifest,
                            size_t item, const fg_record *record, char **name);
 
-bool fg_lot_page_is_there(const char *folder, const char *name);
+bool fg_lot_page_exists(const char *folder, const char *name);
 
 /* Tells whether a scan with these foils gets a page. */
 fg_status fg_lot_page_is_wanted(fg_context *ctx, fg_lot_pages which, const fg_design *design,
@@ -28,7 +28,7 @@ fg_status fg_lot_page_draw(fg_context *ctx, const fg_design *design, const fg_ma
                            size_t item, const fg_measurement *measurement, char **page);
 
 /* Makes the folder of the pages. */
-fg_status fg_lot_pages_make(fg_context *ctx, const char *folder);
+fg_status fg_lot_pages_make_folder(fg_context *ctx, const char *folder);
 
 /* Finds the existing pages by item; NULL: none. Pages that no longer belong to the lot are removed.
  * Free with fg_lot_pages_free. */
@@ -36,7 +36,7 @@ fg_status fg_lot_pages_find(fg_context *ctx, const char *folder, const fg_lot *l
 void fg_lot_pages_free(const fg_lot *lot, char **names);
 
 /* Brings the pages of shards into the lot's folder: item i is of folder from[i]. */
-fg_status fg_lot_pages_take(fg_context *ctx, const char *const *folders, const size_t *from,
+fg_status fg_lot_pages_link(fg_context *ctx, const char *const *folders, const size_t *from,
                             const char *folder, const fg_lot *lot);
 
 #endif

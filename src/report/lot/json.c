@@ -168,7 +168,7 @@ static void write_lot_quantity(fg_json *json, const fg_lot_analysis *analysis,
   fg_json_integer(json, "count", (int64_t)quantity->count);
   fg_json_number(json, "mean", quantity->mean);
   fg_json_number(json, "sd", quantity->sd);
-  const fg_lot_known known = fg_lot_mean_known(analysis, quantity);
+  const fg_lot_mean_u known = fg_lot_find_mean_u(analysis, quantity);
   fg_json_number(json, "u_mean", known.u);
   fg_json_number(json, "u_mean_statistical", known.u_statistical);
   fg_json_number(json, "u_mean_calibration", known.u_calibration);
@@ -289,7 +289,7 @@ static void write_gauge(fg_json *json, const fg_lot_words *words, const fg_lot_g
 static void write_lot_date(fg_json *json, const fg_lot *lot) {
   fg_lot_date date;
   const char *wrong;
-  size_t count = fg_lot_date_wrong(&lot->manifest, &wrong);
+  size_t count = fg_lot_date_count_invalid(&lot->manifest, &wrong);
   fg_lot_date_find(lot, &date);
   fg_json_object(json, "date");
   fg_json_line(json);

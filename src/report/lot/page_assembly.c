@@ -28,40 +28,40 @@ static double find_height(const curve *c, double um) {
 }
 
 static void find_value_range(const fg_assembly_result *result, size_t value, const curve *c,
-                             fg_plot *at) {
+                             fg_plot *plot) {
   size_t count = result->values[value];
   if (!count) return;
   double room = c->there ? 2.5 * c->density.bandwidth : 1e-3;
-  at->x_low = fmin(at->x_low, UM_PER_MM * (result->value[value][0] - room));
-  at->x_high = fmax(at->x_high, UM_PER_MM * (result->value[value][count - 1] + room));
+  plot->x_low = fmin(plot->x_low, UM_PER_MM * (result->value[value][0] - room));
+  plot->x_high = fmax(plot->x_high, UM_PER_MM * (result->value[value][count - 1] + room));
 }
 
-static void put_value_curve(const fg_plot *at, const curve *c, const char *style) {
+static void put_value_curve(const fg_plot *plot, const curve *c, const char *style) {
   double x[POINTS + 1], y[POINTS + 1];
   for (int i = 0; i <= POINTS; i++) {
-    x[i] = at->x_low + (at->x_high - at->x_low) * i / POINTS;
-    y[i] = fmin(find_height(c, x[i]), at->y_high);
+    x[i] = plot->x_low + (plot->x_high - plot->x_low) * i / POINTS;
+    y[i] = fmin(find_height(c, x[i]), plot->y_high);
   }
-  if (c->there) fg_plot_line(at, x, y, POINTS + 1, style);
+  if (c->there) fg_plot_line(plot, x, y, POINTS + 1, style);
 }
 
-static void put_value_limit(const fg_plot *at, double um, const char *words) {
-  if (!(um >= at->x_low && um <= at->x_high)) return;
-  fg_plot_segment(at, um, 0, um, at->y_high, "limit");
-  bool right = um > (at->x_low + at->x_high) / 2;
-  fg_plot_text(at, um + (right ? -0.01 : 0.01) * (at->x_high - at->x_low), 0.93 * at->y_high,
-               right ? "end" : "key", words);
+static void put_value_limit(const fg_plot *plot, double um, const char *words) {
+  if (!(um >= plot->x_low && um <= plot->x_high)) return;
+  fg_plot_segment(plot, um, 0, um, plot->y_high, "limit");
+  bool right = um > (plot->x_low + plot->x_high) / 2;
+  fg_plot_text(plot, um + (right ? -0.01 : 0.01) * (plot->x_high - plot->x_low),
+               0.93 * plot->y_high, right ? "end" : "key", words);
 }
 
 /* Limits are always in the picture. */
-static void put_value_limits(const fg_plot *at, const fg_assembly_plan *plan,
+static void put_value_limits(const fg_plot *plot, const fg_assembly_plan *plan,
                              const fg_quantity *row) {
   for (size_t i = 0; i < plan->limits; i++) {
     const fg_assembly_limit *limit = &plan->limit[i];
     if (limit->row != row) continue;
     bool touch = limit->lower == 0 && !isfinite(limit->upper);
-    put_value_limit(at, UM_PER_MM * limit->lower, touch ? "touches" : "limit");
-    put_value_limit(at, UM_PER_MM * limit->upper, "limit");
+    put_value_limit(plot, UM_PER_MM * limit->lower, touch ? "touches" : "limit");
+    put_value_limit(plot, UM_PER_MM * limit->upper, "limit");
   }
 }
 
@@ -71,36 +71,37 @@ void fg_lot_plot_assembly(FILE *out, const fg_lot_analysis *analysis, size_t val
   const fg_quantity *row = fg_assembly_row(value);
   curve drawn = make_value_curve(&assembly->drawn, value),
         design = make_value_curve(&assembly->design, value);
-  fg_plot at = {out, PLOT_WIDTH, 92, 985, 14, 230, INFINITY, -INFINITY, 0, 0};
+  fg_plot plot = {out, PLOT_WIDTH, 92, 985, 14, 230, INFINITY, -INFINITY, 0, 0};
   char title[160];
-  find_value_range(&assembly->drawn, value, &drawn, &at);
-  find_value_range(&assembly->design, value, &design, &at);
+  find_value_range(&assembly->drawn, value, &drawn, &plot);
+  find_value_range(&assembly->design, value, &design, &plot);
   for (size_t i = 0; i < plan->limits; i++) {
     const double limit[] = {plan->limit[i].lower, plan->limit[i].upper};
     for (int k = 0; k < 2; k++)
       if (plan->limit[i].row == row && isfinite(limit[k])) {
-        at.x_low = fmin(at.x_low, UM_PER_MM * limit[k] - 2);
-        at.x_high = fmax(at.x_high, UM_PER_MM * limit[k] + 2);
+        plot.x_low = fmin(plot.x_low, UM_PER_MM * limit[k] - 2);
+        plot.x_high = fmax(plot.x_high, UM_PER_MM * limit[k] + 2);
       }
   }
   for (int i = 0; i <= POINTS && drawn.there; i++)
-    at.y_high =
-        fmax(at.y_high, 1.25 * find_height(&drawn, at.x_low + (at.x_high - at.x_low) * i / POINTS));
-  if (drawn.there && at.y_high > 0) {
+    plot.y_high =
+        fmax(plot.y_high,
+             1.25 * find_height(&drawn, plot.x_low + (plot.x_high - plot.x_low) * i / POINTS));
+  if (drawn.there && plot.y_high > 0) {
     snprintf(title, sizeof title, "%s, µm", row->words);
-    fg_plot_begin(&at, 280, title);
-    fg_plot_y_axis(&at, "density");
-    fg_plot_x_numbers(&at);
-    fg_plot_x_title(&at, title);
-    put_value_curve(&at, &design, "hypothesis");
-    put_value_curve(&at, &drawn, "curve");
-    put_value_limits(&at, plan, row);
+    fg_plot_begin(&plot, 280, title);
+    fg_plot_y_axis(&plot, "density");
+    fg_plot_x_numbers(&plot);
+    fg_plot_x_title(&plot, title);
+    put_value_curve(&plot, &design, "hypothesis");
+    put_value_curve(&plot, &drawn, "curve");
+    put_value_limits(&plot, plan, row);
     double middle = UM_PER_MM * assembly->design.quantile[value][FG_ASSEMBLY_QUANTILES / 2];
-    bool right = middle > (at.x_low + at.x_high) / 2;
+    bool right = middle > (plot.x_low + plot.x_high) / 2;
     if (design.there)
-      fg_plot_text(&at, middle + (right ? -0.03 : 0.03) * (at.x_high - at.x_low), 0.8 * at.y_high,
-                   right ? "end" : "key", "at design");
-    fg_plot_end(&at);
+      fg_plot_text(&plot, middle + (right ? -0.03 : 0.03) * (plot.x_high - plot.x_low),
+                   0.8 * plot.y_high, right ? "end" : "key", "at design");
+    fg_plot_end(&plot);
   }
   if (drawn.there) fg_density_free(&drawn.density);
   if (design.there) fg_density_free(&design.density);

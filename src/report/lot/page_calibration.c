@@ -5,7 +5,7 @@
 #include "foilgauge/words.h"
 #include "report/lot/page_parts.h"
 
-static void put_known_row(FILE *out, const fg_lot_quantity *quantity, const fg_lot_known *known) {
+static void put_known_row(FILE *out, const fg_lot_quantity *quantity, const fg_lot_mean_u *known) {
   const double k = FG_COVERAGE_FACTOR;
   const double cells[] = {k * known->u_statistical, k * known->u_calibration, k * known->u};
   int decimals = fg_report_decimals(quantity->row, known->u) + 1;
@@ -19,7 +19,7 @@ static void put_known_row(FILE *out, const fg_lot_quantity *quantity, const fg_l
   fputs("</tr>\n", out);
 }
 
-void fg_lot_put_known(FILE *out, const fg_lot_analysis *analysis) {
+void fg_lot_put_mean_u(FILE *out, const fg_lot_analysis *analysis) {
   const fg_calibration *calibration = &analysis->lot->settings.design.calibration;
   if (!calibration->stated) {
     fputs("<p class=\"note\">U holds statistics only: no calibration is stated.</p>\n", out);
@@ -30,7 +30,7 @@ void fg_lot_put_known(FILE *out, const fg_lot_analysis *analysis) {
         "</thead>\n<tbody>\n",
         out);
   for (size_t i = 0; i < analysis->quantity_count; i++) {
-    const fg_lot_known known = fg_lot_mean_known(analysis, &analysis->quantities[i]);
+    const fg_lot_mean_u known = fg_lot_find_mean_u(analysis, &analysis->quantities[i]);
     if (isfinite(known.u)) put_known_row(out, &analysis->quantities[i], &known);
   }
   fputs("</tbody></table></div>\n<p class=\"note\">What the scans&#39; statistics leave averages "

@@ -56,33 +56,33 @@ static void put_die_plot(FILE *out, const fg_lot_analysis *analysis, const fg_lo
   find_die_curve(analysis, die, &c);
   if (!c.count) return;
   double margin = fmax(0.05, 0.1 * (range[1] - range[0]));
-  fg_plot at = {out,
-                520,
-                66,
-                510,
-                34,
-                220,
-                c.number[0] - 0.6,
-                c.number[c.count - 1] + 0.6,
-                range[0] - margin,
-                range[1] + margin};
-  fg_plot_begin(&at, 270, "Radius error of the foils and of their die, by bump number");
-  fg_plot_y_axis(&at, "against design, %");
+  fg_plot plot = {out,
+                  520,
+                  66,
+                  510,
+                  34,
+                  220,
+                  c.number[0] - 0.6,
+                  c.number[c.count - 1] + 0.6,
+                  range[0] - margin,
+                  range[1] + margin};
+  fg_plot_begin(&plot, 270, "Radius error of the foils and of their die, by bump number");
+  fg_plot_y_axis(&plot, "against design, %");
   for (size_t i = 0; i < c.count; i++) {
     snprintf(text, sizeof text, "%.0f", c.number[i]);
-    fg_plot_x_label(&at, fg_plot_x(&at, c.number[i]), text);
-    fg_plot_segment(&at, c.number[i], c.die[i], c.number[i], c.foils[i], "hint");
+    fg_plot_x_label(&plot, fg_plot_x(&plot, c.number[i]), text);
+    fg_plot_segment(&plot, c.number[i], c.die[i], c.number[i], c.foils[i], "hint");
   }
-  fg_plot_x_title(&at, "bump");
-  fg_plot_line(&at, c.number, c.die, c.count, "s2");
-  fg_plot_line(&at, c.number, c.foils, c.count, "s1");
+  fg_plot_x_title(&plot, "bump");
+  fg_plot_line(&plot, c.number, c.die, c.count, "s2");
+  fg_plot_line(&plot, c.number, c.foils, c.count, "s1");
   for (size_t i = 0; i < c.count; i++) {
-    fg_plot_dot(&at, c.number[i], c.die[i], 5, "s2");
-    fg_plot_dot(&at, c.number[i], c.foils[i], 5, "s1");
+    fg_plot_dot(&plot, c.number[i], c.die[i], 5, "s2");
+    fg_plot_dot(&plot, c.number[i], c.foils[i], 5, "s1");
   }
   put_die_key(out, "s1", 80, die->name, "foils of die");
   put_die_key(out, "s2", 300, die->name, "die");
-  fg_plot_end(&at);
+  fg_plot_end(&plot);
 }
 
 static void find_error_range(const fg_lot_analysis *analysis, const fg_lot_dies *dies,

@@ -29,10 +29,10 @@ static void put_quantity_rows(FILE *out, const fg_lot_analysis *analysis) {
       fputs("</td>", out);
     }
     fprintf(out, "<td%s</td></tr>\n",
-            fg_lot_tells_nothing(quantity)  ? ">–"
-            : quantity->stable              ? " class=\"pass\">stable"
-            : fg_lot_is_explained(quantity) ? " class=\"cannot_tell\">groups differ"
-                                            : " class=\"cannot_tell\">not stable");
+            fg_lot_is_uninformative(quantity) ? ">–"
+            : quantity->stable                ? " class=\"pass\">stable"
+            : fg_lot_is_explained(quantity)   ? " class=\"cannot_tell\">groups differ"
+                                              : " class=\"cannot_tell\">not stable");
   }
   fputs("</tbody></table></div>\n", out);
   if (analysis->left_out)
@@ -154,7 +154,7 @@ static void put_charts(FILE *out, const fg_lot_analysis *analysis) {
 void fg_lot_put_quantities(FILE *out, const fg_lot_analysis *analysis) {
   fputs("<section class=\"part\">\n", out);
   put_quantity_rows(out, analysis);
-  fg_lot_put_known(out, analysis);
+  fg_lot_put_mean_u(out, analysis);
   put_capability(out, analysis);
   put_charts(out, analysis);
   fputs("</section>\n", out);

@@ -11,23 +11,23 @@
 
 enum { PLOT_WIDTH = 1000, CURVE_POINTS = 240, BARS = 30 };
 
-static void put_bars(const fg_plot *at, const double *bars) {
-  double width = (at->x_high - at->x_low) / BARS;
+static void put_bars(const fg_plot *plot, const double *bars) {
+  double width = (plot->x_high - plot->x_low) / BARS;
   for (int i = 0; i < BARS; i++) {
-    double x = fg_plot_x(at, at->x_low + i * width), y = fg_plot_y(at, bars[i]);
+    double x = fg_plot_x(plot, plot->x_low + i * width), y = fg_plot_y(plot, bars[i]);
     if (bars[i] > 0)
-      fprintf(at->out,
+      fprintf(plot->out,
               "<rect class=\"column\" x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\"/>\n",
-              x + 1, y, (at->right - at->left) / BARS - 2, at->bottom - y);
+              x + 1, y, (plot->right - plot->left) / BARS - 2, plot->bottom - y);
   }
 }
 
 static void fill_bars(const fg_lot_quantity *quantity, double scale, double shift,
-                      const fg_plot *at, double *bars) {
-  double width = (at->x_high - at->x_low) / BARS;
+                      const fg_plot *plot, double *bars) {
+  double width = (plot->x_high - plot->x_low) / BARS;
   for (size_t i = 0; i < quantity->count; i++) {
     double x = scale * quantity->value[i] + shift;
-    int bar = (int)floor((x - at->x_low) / width);
+    int bar = (int)floor((x - plot->x_low) / width);
     if (bar >= 0 && bar < BARS) bars[bar] += 1 / (width * (double)quantity->count);
   }
 }
@@ -39,37 +39,37 @@ void fg_lot_plot_density(FILE *out, const fg_lot_quantity *quantity, double scal
   if (!quantity || !quantity->has_density) return;
   if (!(quantity->sd > 1e-9 * fabs(quantity->mean))) return; /* equal values have no density */
   double a = scale * quantity->min + shift, b = scale * quantity->max + shift;
-  fg_plot at = {out, PLOT_WIDTH, 92, 985, 24, 250, fmin(a, b), fmax(a, b), 0, 1};
+  fg_plot plot = {out, PLOT_WIDTH, 92, 985, 24, 250, fmin(a, b), fmax(a, b), 0, 1};
   double reach = 2.5 * quantity->density.bandwidth * fabs(scale);
-  at.x_low -= reach;
-  at.x_high += reach;
-  fill_bars(quantity, scale, shift, &at, bars);
+  plot.x_low -= reach;
+  plot.x_high += reach;
+  fill_bars(quantity, scale, shift, &plot, bars);
   for (int i = 0; i <= CURVE_POINTS; i++) {
-    x[i] = at.x_low + (at.x_high - at.x_low) * i / CURVE_POINTS;
+    x[i] = plot.x_low + (plot.x_high - plot.x_low) * i / CURVE_POINTS;
     y[i] = fg_density_at(&quantity->density, (x[i] - shift) / scale) / fabs(scale);
     high = fmax(high, y[i]);
   }
   for (int i = 0; i < BARS; i++)
     high = fmax(high, bars[i]);
-  at.y_high = 1.08 * high;
-  fg_plot_begin(&at, 300, "Histogram and kernel density");
-  fg_plot_y_axis(&at, "density");
-  put_bars(&at, bars);
-  fg_plot_x_numbers(&at);
-  fg_plot_x_title(&at, title);
-  fg_plot_line(&at, x, y, CURVE_POINTS + 1, "curve");
+  plot.y_high = 1.08 * high;
+  fg_plot_begin(&plot, 300, "Histogram and kernel density");
+  fg_plot_y_axis(&plot, "density");
+  put_bars(&plot, bars);
+  fg_plot_x_numbers(&plot);
+  fg_plot_x_title(&plot, title);
+  fg_plot_line(&plot, x, y, CURVE_POINTS + 1, "curve");
   double mode = scale * quantity->mode + shift;
-  fg_plot_segment(&at, mode, 0, mode, at.y_high, "hypothesis");
+  fg_plot_segment(&plot, mode, 0, mode, plot.y_high, "hypothesis");
   snprintf(mark, sizeof mark, "mode %.4g", mode);
-  bool right = mode > (at.x_low + at.x_high) / 2;
-  fg_plot_text(&at, mode + (right ? -0.01 : 0.01) * (at.x_high - at.x_low), 0.95 * at.y_high,
-               right ? "end" : "key", mark);
-  fg_plot_end(&at);
+  bool right = mode > (plot.x_low + plot.x_high) / 2;
+  fg_plot_text(&plot, mode + (right ? -0.01 : 0.01) * (plot.x_high - plot.x_low),
+               0.95 * plot.y_high, right ? "end" : "key", mark);
+  fg_plot_end(&plot);
 }
 
-typedef void bump_visit(const fg_plot *at, const fg_bump *bump);
+typedef void bump_visit(const fg_plot *plot, const fg_bump *bump);
 
-static void visit_bumps(const fg_plot *at, const fg_lot_analysis *analysis, bump_visit *visit) {
+static void visit_bumps(const fg_plot *plot, const fg_lot_analysis *analysis, bump_visit *visit) {
   size_t total = 0, seen = 0;
   for (size_t i = 0; i < analysis->foil_count; i++)
     total += analysis->foils[i].foil->bump_count;
@@ -78,82 +78,82 @@ static void visit_bumps(const fg_plot *at, const fg_lot_analysis *analysis, bump
     for (size_t k = 0; k < analysis->foils[i].foil->bump_count; k++) {
       const fg_foil *foil = analysis->foils[i].foil;
       if (seen++ % every == 0 && fg_lot_bump_counts(foil, &foil->bumps[k]))
-        visit(at, &foil->bumps[k]);
+        visit(plot, &foil->bumps[k]);
     }
 }
 
-static void put_error_dot(const fg_plot *at, const fg_bump *bump) {
+static void put_error_dot(const fg_plot *plot, const fg_bump *bump) {
   double x = bump->radius_error_pct, y = bump->bump_angle_error_pct;
-  if (!(x >= at->x_low && x <= at->x_high && y >= at->y_low && y <= at->y_high)) return;
-  fg_plot_dot(at, x, y, 4.5, "dot");
+  if (!(x >= plot->x_low && x <= plot->x_high && y >= plot->y_low && y <= plot->y_high)) return;
+  fg_plot_dot(plot, x, y, 4.5, "dot");
 }
 
 /* Puts alpha at constant arc length: 100 (1 / (1 + e_R / 100) - 1). */
-static void put_arc_hypothesis(const fg_plot *at) {
+static void put_arc_hypothesis(const fg_plot *plot) {
   double x[CURVE_POINTS + 1], y[CURVE_POINTS + 1];
   for (int i = 0; i <= CURVE_POINTS; i++) {
-    x[i] = at->x_low + (at->x_high - at->x_low) * i / CURVE_POINTS;
+    x[i] = plot->x_low + (plot->x_high - plot->x_low) * i / CURVE_POINTS;
     y[i] = 100 * (1 / (1 + x[i] / 100) - 1);
-    if (!(y[i] >= at->y_low && y[i] <= at->y_high)) y[i] = NAN;
+    if (!(y[i] >= plot->y_low && y[i] <= plot->y_high)) y[i] = NAN;
   }
-  fg_plot_line(at, x, y, CURVE_POINTS + 1, "hypothesis");
+  fg_plot_line(plot, x, y, CURVE_POINTS + 1, "hypothesis");
 }
 
 /* Puts the part of the line inside the plot. */
-static void put_error_line(const fg_plot *at, double slope, double intercept) {
-  double x[2] = {at->x_low, at->x_high}, y[2];
-  double first = (at->y_low - intercept) / slope, second = (at->y_high - intercept) / slope;
+static void put_error_line(const fg_plot *plot, double slope, double intercept) {
+  double x[2] = {plot->x_low, plot->x_high}, y[2];
+  double first = (plot->y_low - intercept) / slope, second = (plot->y_high - intercept) / slope;
   x[0] = fmax(x[0], fmin(first, second));
   x[1] = fmin(x[1], fmax(first, second));
   for (int i = 0; i < 2; i++)
     y[i] = intercept + slope * x[i];
-  if (x[1] > x[0]) fg_plot_line(at, x, y, 2, "fit");
+  if (x[1] > x[0]) fg_plot_line(plot, x, y, 2, "fit");
 }
 
-static bool error_axes(const fg_lot_analysis *analysis, fg_plot *at) {
+static bool error_axes(const fg_lot_analysis *analysis, fg_plot *plot) {
   const fg_lot_quantity *radius = fg_lot_find_quantity(analysis, "radius_error_pct");
   const fg_lot_quantity *angle = fg_lot_find_quantity(analysis, "bump_angle_error_pct");
   if (!radius || !angle || radius->count < 2 || angle->count < 2) return false;
-  at->x_low = fmin(0, radius->min);
-  at->x_high = fmax(0, radius->max);
-  at->y_low = fmin(0, angle->min);
-  at->y_high = fmax(0, angle->max);
-  fg_lot_plot_widen(&at->x_low, &at->x_high, 0.06);
-  fg_lot_plot_widen(&at->y_low, &at->y_high, 0.06);
+  plot->x_low = fmin(0, radius->min);
+  plot->x_high = fmax(0, radius->max);
+  plot->y_low = fmin(0, angle->min);
+  plot->y_high = fmax(0, angle->max);
+  fg_lot_plot_widen(&plot->x_low, &plot->x_high, 0.06);
+  fg_lot_plot_widen(&plot->y_low, &plot->y_high, 0.06);
   return true;
 }
 
 void fg_lot_plot_correlation(FILE *out, const fg_lot_analysis *analysis) {
   const fg_lot_correlation *line = &analysis->correlation;
-  fg_plot at = {
+  fg_plot plot = {
       .out = out, .width = PLOT_WIDTH, .left = 92, .right = 985, .top = 14, .bottom = 380};
-  if (!analysis->has_correlation || !error_axes(analysis, &at)) return;
-  fg_plot_begin(&at, 430, "Angle error over radius error of every bump");
-  fg_plot_y_axis(&at, "angle error, %");
-  fg_plot_x_numbers(&at);
-  fg_plot_x_title(&at, "radius error, %");
-  put_arc_hypothesis(&at);
-  visit_bumps(&at, analysis, put_error_dot);
-  put_error_line(&at, line->slope, line->intercept);
-  fg_plot_end(&at);
+  if (!analysis->has_correlation || !error_axes(analysis, &plot)) return;
+  fg_plot_begin(&plot, 430, "Angle error over radius error of every bump");
+  fg_plot_y_axis(&plot, "angle error, %");
+  fg_plot_x_numbers(&plot);
+  fg_plot_x_title(&plot, "radius error, %");
+  put_arc_hypothesis(&plot);
+  visit_bumps(&plot, analysis, put_error_dot);
+  put_error_line(&plot, line->slope, line->intercept);
+  fg_plot_end(&plot);
 }
 
-static void put_stiffness_dot(const fg_plot *at, const fg_bump *bump) {
+static void put_stiffness_dot(const fg_plot *plot, const fg_bump *bump) {
   double x = 1 + bump->radius_error_pct / 100, y = 1 + bump->bump_angle_error_pct / 100;
-  if (!(x >= at->x_low && x <= at->x_high && y >= at->y_low && y <= at->y_high)) return;
-  fg_plot_dot(at, x, y, 4.5, "mapped");
+  if (!(x >= plot->x_low && x <= plot->x_high && y >= plot->y_low && y <= plot->y_high)) return;
+  fg_plot_dot(plot, x, y, 4.5, "mapped");
 }
 
-static void put_stiffness_dots(const fg_plot *at, const void *user) {
-  visit_bumps(at, user, put_stiffness_dot);
+static void put_stiffness_dots(const fg_plot *plot, const void *user) {
+  visit_bumps(plot, user, put_stiffness_dot);
 }
 
 void fg_lot_plot_map(FILE *out, const fg_lot_analysis *analysis) {
   const fg_lot_settings *settings = &analysis->lot->settings;
-  fg_plot at;
-  if (!error_axes(analysis, &at)) return;
-  const fg_stiffness_map map = {&settings->design,   &settings->material, 1 + at.x_low / 100,
-                                1 + at.x_high / 100, 1 + at.y_low / 100,  1 + at.y_high / 100};
+  fg_plot plot;
+  if (!error_axes(analysis, &plot)) return;
+  const fg_stiffness_map map = {&settings->design,     &settings->material,  1 + plot.x_low / 100,
+                                1 + plot.x_high / 100, 1 + plot.y_low / 100, 1 + plot.y_high / 100};
   fg_stiffness_plot_map(out, &map, put_stiffness_dots, analysis);
 }
 

@@ -32,12 +32,12 @@ static void widen_to_value(double value, double *low, double *high) {
   *high = fmax(*high, value);
 }
 
-static void put_tolerance_lines(const fg_plot *at, const fg_tolerance *tolerance) {
+static void put_tolerance_lines(const fg_plot *plot, const fg_tolerance *tolerance) {
   if (!tolerance) return;
   const double limits[2] = {tolerance->lower, tolerance->upper};
   for (int i = 0; i < 2; i++)
-    if (limits[i] > at->y_low && limits[i] < at->y_high)
-      fg_plot_segment(at, at->x_low, limits[i], at->x_high, limits[i], "limit");
+    if (limits[i] > plot->y_low && limits[i] < plot->y_high)
+      fg_plot_segment(plot, plot->x_low, limits[i], plot->x_high, limits[i], "limit");
 }
 
 /* Shortens a name of more than thirty letters, which do not fit beside an axis, to its symbol. */
@@ -57,7 +57,7 @@ bool fg_lot_curve_value(const fg_lot_curve *curve, const fg_quantity *row, size_
 }
 
 /* Puts the reference curve: joined points, each a diamond. */
-static void put_reference_curve(const fg_plot *at, const fg_quantity *row,
+static void put_reference_curve(const fg_plot *plot, const fg_quantity *row,
                                 const fg_lot_curve *curve) {
   double x[FG_LOT_CURVE_MAX], y[FG_LOT_CURVE_MAX];
   size_t count = 0;
@@ -66,10 +66,10 @@ static void put_reference_curve(const fg_plot *at, const fg_quantity *row,
     count++;
   }
   if (!count) return;
-  fg_plot_line(at, x, y, count, "hypothesis");
+  fg_plot_line(plot, x, y, count, "hypothesis");
   for (size_t i = 0; i < count; i++) {
-    const double size = 6, px = fg_plot_x(at, x[i]), py = fg_plot_y(at, y[i]);
-    fprintf(at->out,
+    const double size = 6, px = fg_plot_x(plot, x[i]), py = fg_plot_y(plot, y[i]);
+    fprintf(plot->out,
             "<path class=\"hypothesis\" style=\"stroke-dasharray:none\" d=\"M%.1f %.1fl%g %gl%g "
             "%gl%g %gz\"/>\n",
             px, py - size, size, size, -size, size, -size, -size);
@@ -84,7 +84,7 @@ static size_t foils_per_dot(const fg_lot_analysis *analysis, const fg_lot_quanti
 
 /* Puts the values of one foil's parts right of their means, from left to right in order of the
  * foils. A cross marks a value beyond a limit. */
-static void put_foil_dots(const fg_plot *at, const fg_lot_quantity *quantity, const fg_foil *foil,
+static void put_foil_dots(const fg_plot *plot, const fg_lot_quantity *quantity, const fg_foil *foil,
                           double share) {
   for (size_t k = 0; k < fg_part_count(foil, quantity->owner); k++) {
     const fg_foil_part part = fg_part_at(foil, quantity->owner, k);
@@ -96,32 +96,32 @@ static void put_foil_dots(const fg_plot *at, const fg_lot_quantity *quantity, co
     const fg_tolerance *limits = quantity->tolerance;
     bool beyond = limits && fg_margin_to(limits->lower, limits->upper, value).inside < 0;
     if (beyond)
-      fg_plot_shape(at, x, value, 5, FG_SHAPE_CROSS, "beyond-limit");
+      fg_plot_shape(plot, x, value, 5, FG_SHAPE_CROSS, "beyond-limit");
     else
-      fg_plot_dot(at, x, value, 3, "dot");
+      fg_plot_dot(plot, x, value, 3, "dot");
   }
 }
 
-static void put_all_dots(const fg_plot *at, const fg_lot_analysis *analysis,
+static void put_all_dots(const fg_plot *plot, const fg_lot_analysis *analysis,
                          const fg_lot_quantity *quantity) {
   size_t every = foils_per_dot(analysis, quantity), foils = analysis->foil_count;
   for (size_t i = 0; i < foils; i += every)
-    put_foil_dots(at, quantity, analysis->foils[i].foil,
+    put_foil_dots(plot, quantity, analysis->foils[i].foil,
                   foils > 1 ? (double)i / (double)(foils - 1) : 0.5);
 }
 
-static void put_place_means(const fg_plot *at, const fg_lot_quantity *quantity) {
+static void put_place_means(const fg_plot *plot, const fg_lot_quantity *quantity) {
   char number[24];
   for (size_t i = 0; i < quantity->places; i++) {
     const fg_lot_place *place = &quantity->place[i];
     double x = (double)i + 1, mean_x = x + MEAN_AT;
     snprintf(number, sizeof number, "%zu", i + 1);
-    fg_plot_x_label(at, fg_plot_x(at, x), number);
+    fg_plot_x_label(plot, fg_plot_x(plot, x), number);
     if (!place->count) continue;
     if (isfinite(place->sd))
-      fg_plot_segment(at, mean_x, place->mean - 2 * place->sd, mean_x, place->mean + 2 * place->sd,
-                      "curve");
-    fg_plot_dot(at, mean_x, place->mean, 6, "s1");
+      fg_plot_segment(plot, mean_x, place->mean - 2 * place->sd, mean_x,
+                      place->mean + 2 * place->sd, "curve");
+    fg_plot_dot(plot, mean_x, place->mean, 6, "s1");
   }
 }
 
@@ -151,16 +151,17 @@ void fg_lot_plot_places(FILE *out, const fg_lot_analysis *analysis, const fg_lot
   double low = INFINITY, high = -INFINITY;
   char title[160];
   if (!find_place_range(quantity, curve, &low, &high)) return;
-  fg_plot at = {out, PLOT_WIDTH, 92, 985, 14, 250, 0.4, (double)quantity->places + 0.6, low, high};
+  fg_plot plot = {out, PLOT_WIDTH, 92, 985, 14, 250, 0.4, (double)quantity->places + 0.6,
+                  low, high};
   format_axis_title(title, sizeof title, quantity->row);
-  fg_plot_begin(&at, 300, "By number: mean, two standard deviations, and every foil");
-  fg_plot_y_axis(&at, title);
-  fg_plot_x_title(&at, fg_lot_words_of(analysis)->numbers);
-  put_tolerance_lines(&at, quantity->tolerance);
-  put_all_dots(&at, analysis, quantity);
-  put_place_means(&at, quantity);
-  put_reference_curve(&at, quantity->row, curve);
-  fg_plot_end(&at);
+  fg_plot_begin(&plot, 300, "By number: mean, two standard deviations, and every foil");
+  fg_plot_y_axis(&plot, title);
+  fg_plot_x_title(&plot, fg_lot_words_of(analysis)->numbers);
+  put_tolerance_lines(&plot, quantity->tolerance);
+  put_all_dots(&plot, analysis, quantity);
+  put_place_means(&plot, quantity);
+  put_reference_curve(&plot, quantity->row, curve);
+  fg_plot_end(&plot);
 }
 
 void fg_lot_put_places_key(FILE *out, const fg_lot_analysis *analysis,
@@ -182,29 +183,29 @@ static size_t find_next_foil(const fg_lot_quantity *quantity, size_t foil) {
 }
 
 /* Begins a mark that links to its foil and names it under a pointer. */
-static bool begin_mark(const fg_plot *at, const fg_lot_analysis *analysis, size_t foil) {
-  if (!fg_lot_begin_foil_link(at->out, analysis, &analysis->foils[foil])) return false;
-  fputs("<title>", at->out);
-  fg_lot_put_label(at->out, analysis, &analysis->foils[foil]);
-  fputs("</title>", at->out);
+static bool begin_mark(const fg_plot *plot, const fg_lot_analysis *analysis, size_t foil) {
+  if (!fg_lot_begin_foil_link(plot->out, analysis, &analysis->foils[foil])) return false;
+  fputs("<title>", plot->out);
+  fg_lot_put_label(plot->out, analysis, &analysis->foils[foil]);
+  fputs("</title>", plot->out);
   return true;
 }
 
 /* Puts the groups that explain the signals: a shape for each, a line at its mean, a key above. */
-static void put_cause_groups(const fg_plot *at, const fg_lot_analysis *analysis,
+static void put_cause_groups(const fg_plot *plot, const fg_lot_analysis *analysis,
                              const fg_lot_quantity *quantity) {
   const fg_lot_cause *cause = &quantity->cause;
   size_t foil = 0;
   for (size_t g = 0; g < cause->groups; g++) {
     char text[200];
-    double x = at->left + (double)g * (at->right - at->left) / (double)cause->groups + 12;
-    fg_plot_segment(at, at->x_low, cause->mean[g], at->x_high, cause->mean[g], "hint");
+    double x = plot->left + (double)g * (plot->right - plot->left) / (double)cause->groups + 12;
+    fg_plot_segment(plot, plot->x_low, cause->mean[g], plot->x_high, cause->mean[g], "hint");
     fg_text_clip(text, sizeof text, "%s %s: mean %.5g", analysis->lot->manifest.name[cause->column],
                  cause->name[g], cause->mean[g]);
-    fg_plot_shape_at(at->out, x, 12, 6, (fg_shape)(g % FG_SHAPES), "group");
-    fprintf(at->out, "<text class=\"start\" x=\"%.1f\" y=\"17\">", x + 12);
-    fg_html_text(at->out, text);
-    fputs("</text>\n", at->out);
+    fg_plot_shape_at(plot->out, x, 12, 6, (fg_shape)(g % FG_SHAPES), "group");
+    fprintf(plot->out, "<text class=\"start\" x=\"%.1f\" y=\"17\">", x + 12);
+    fg_html_text(plot->out, text);
+    fputs("</text>\n", plot->out);
   }
   for (size_t i = 0; i < quantity->chart.count; i++, foil++) {
     foil = find_next_foil(quantity, foil);
@@ -213,14 +214,14 @@ static void put_cause_groups(const fg_plot *at, const fg_lot_analysis *analysis,
     size_t g = 0;
     while (g + 1 < cause->groups && strcmp(cause->name[g], name) != 0)
       g++;
-    bool linked = begin_mark(at, analysis, foil);
-    fg_plot_shape(at, (double)i + 1, quantity->chart.point[i].value, 6, (fg_shape)(g % FG_SHAPES),
+    bool linked = begin_mark(plot, analysis, foil);
+    fg_plot_shape(plot, (double)i + 1, quantity->chart.point[i].value, 6, (fg_shape)(g % FG_SHAPES),
                   quantity->chart.point[i].rules ? "signal" : "group");
-    if (linked) fputs("</a>\n", at->out);
+    if (linked) fputs("</a>\n", plot->out);
   }
 }
 
-static void put_chart_points(const fg_plot *at, const fg_lot_analysis *analysis,
+static void put_chart_points(const fg_plot *plot, const fg_lot_analysis *analysis,
                              const fg_lot_quantity *quantity) {
   const fg_chart *chart = &quantity->chart;
   size_t foil = 0;
@@ -228,12 +229,12 @@ static void put_chart_points(const fg_plot *at, const fg_lot_analysis *analysis,
     const fg_chart_point *point = &chart->point[i];
     foil = find_next_foil(quantity, foil);
     if (!point->rules && chart->count > DOTS_DRAWN_MAX) continue;
-    bool linked = begin_mark(at, analysis, foil);
+    bool linked = begin_mark(plot, analysis, foil);
     if (point->rules)
-      fg_plot_shape(at, (double)i + 1, point->value, 7, FG_SHAPE_SQUARE, "signal");
+      fg_plot_shape(plot, (double)i + 1, point->value, 7, FG_SHAPE_SQUARE, "signal");
     else
-      fg_plot_dot(at, (double)i + 1, point->value, 4, "s2");
-    if (linked) fputs("</a>\n", at->out);
+      fg_plot_dot(plot, (double)i + 1, point->value, 4, "s2");
+    if (linked) fputs("</a>\n", plot->out);
   }
 }
 
@@ -247,26 +248,28 @@ void fg_lot_plot_chart(FILE *out, const fg_lot_analysis *analysis,
   for (size_t i = 0; i < chart->count; i++)
     widen_to_value(chart->point[i].value, &low, &high);
   fg_lot_plot_widen(&low, &high, 0.08);
-  fg_plot at = {out, PLOT_WIDTH, 92, 985, 14 + down, 210 + down, 0.5, (double)chart->count + 0.5,
-                low, high};
+  fg_plot plot = {out, PLOT_WIDTH, 92, 985, 14 + down, 210 + down, 0.5, (double)chart->count + 0.5,
+                  low, high};
   size_t every = chart->count / CHART_POINTS_MAX + 1;
   format_axis_title(title, sizeof title, quantity->row);
-  fg_plot_begin(&at, 260 + (int)down, "Control chart, foil after foil");
-  fg_plot_y_axis(&at, title);
-  fg_plot_x_counts(&at);
-  fg_plot_x_title(&at,
+  fg_plot_begin(&plot, 260 + (int)down, "Control chart, foil after foil");
+  fg_plot_y_axis(&plot, title);
+  fg_plot_x_counts(&plot);
+  fg_plot_x_title(&plot,
                   fg_owner_is_part(quantity->owner) ? fg_lot_words_of(analysis)->mean : "foil");
-  fg_plot_segment(&at, at.x_low, chart->centre, at.x_high, chart->centre, "thin");
-  fg_plot_segment(&at, at.x_low, chart->point[0].lower, at.x_high, chart->point[0].lower, "limit");
-  fg_plot_segment(&at, at.x_low, chart->point[0].upper, at.x_high, chart->point[0].upper, "limit");
+  fg_plot_segment(&plot, plot.x_low, chart->centre, plot.x_high, chart->centre, "thin");
+  fg_plot_segment(&plot, plot.x_low, chart->point[0].lower, plot.x_high, chart->point[0].lower,
+                  "limit");
+  fg_plot_segment(&plot, plot.x_low, chart->point[0].upper, plot.x_high, chart->point[0].upper,
+                  "limit");
   fputs("<path class=\"curve\" d=\"", out);
   for (size_t i = 0; i < chart->count; i += every)
-    fprintf(out, "%c%.1f %.1f", i ? 'L' : 'M', fg_plot_x(&at, (double)i + 1),
-            fg_plot_y(&at, chart->point[i].value));
+    fprintf(out, "%c%.1f %.1f", i ? 'L' : 'M', fg_plot_x(&plot, (double)i + 1),
+            fg_plot_y(&plot, chart->point[i].value));
   fputs("\"/>\n", out);
   if (groups)
-    put_cause_groups(&at, analysis, quantity);
+    put_cause_groups(&plot, analysis, quantity);
   else
-    put_chart_points(&at, analysis, quantity);
-  fg_plot_end(&at);
+    put_chart_points(&plot, analysis, quantity);
+  fg_plot_end(&plot);
 }
