@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Forms over a column of a table: numbers, levels, two columns together. */
+/* Bases over a column of a table: numbers, levels, products of two columns. */
 #include <math.h>
 #include <string.h>
 
@@ -91,7 +91,7 @@ void fg_basis_interaction(const fg_loop_problem *problem, const fg_loop_candidat
   }
 }
 
-/* Words, or numbers that take few values often. */
+/* Accepts words, or numbers with few values that recur. */
 bool fg_basis_accepts_factor(const fg_loop_problem *problem, size_t a, size_t b) {
   const fg_loop_coordinate *at = &problem->coordinate[a];
   (void)b;

@@ -1,17 +1,18 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Free curves, for what no listed effect explains: one row each. */
+/* Free curves for the part that no listed effect explains: one row each. */
 #include <limits.h>
 #include <math.h>
 
 #include "effect/midline.h"
 #include "effect/rows_of_effects.h"
 
-/* Weight of a curve's coefficients; harmonics of the edge's direction are told from the geometry
- * less well (tuned on reports/loop_scans.md, tier curves). */
+/* Weight of a curve's coefficients. It is larger for harmonics of the edge's direction, which are
+ * less distinct from the geometry (tuned on reports/loop_scans.md, tier curves). */
 #define FREE_HOLD   1e-3
 #define NORMAL_HOLD 4e-2
-/* Fewer clean discs than this have a curve over the picture follow the form of each of them; the
- * same for a curve over the direction of the edge, which all of them share. */
+/* Minimum number of clean discs for a curve over the picture: with fewer it follows the form error
+ * of each disc. For a curve over the direction of the edge, which all discs share, fewer suffice.
+ */
 enum { CURVE_DISCS = 8, NORMAL_DISCS = 3 };
 
 #define A_CURVE                                                                                    \
@@ -71,7 +72,7 @@ static size_t phi(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row, doubl
 
 enum { HALF = FG_FIELD_COLUMNS / 2 };
 
-/* Numbers of the first and the last bump of any part, whose bumps are in order. */
+/* Finds the numbers of the first and the last bump of any part, whose bumps are in order. */
 static void find_numbers(const fg_edge_fit *edge_fit, int *first, int *last) {
   *first = INT_MAX;
   *last = INT_MIN;
@@ -86,8 +87,8 @@ static void find_numbers(const fg_edge_fit *edge_fit, int *first, int *last) {
   }
 }
 
-/* Of more bumps than columns: patterns that repeat after so many bumps, and smooth ones of so many
- * half waves over all of them, in the order of the columns. */
+/* Returns column `column` at bump k, for more bumps than columns: patterns that repeat after some
+ * bumps, and smooth ones of some half waves over all bumps, in the order of the columns. */
 static double pattern(int column, int k, int count) {
   static const double periods[] = {2, 3, 4, 5, 6, 2.5, 3.5, 8, 10};
   static const int is_wave[FG_FIELD_COLUMNS] = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 0,
@@ -100,9 +101,9 @@ static double pattern(int column, int k, int count) {
   return waves % 2 ? sin(turn) : cos(turn);
 }
 
-/* What belongs to single bumps beyond their circles: of few bumps the P4 (raised at the middle) and
- * the P3 (leaning) of each; up to as many as there are columns the P4 of each; of more, patterns of
- * it. The first half of the columns is what all effects at once have. */
+/* Deviations of single bumps beyond their circles. For few bumps: P4 (raised at the middle) and P3
+ * (leaning) of each; for up to as many bumps as columns: P4 of each; for more: patterns of P4. The
+ * set of all effects uses the first half of the columns. */
 static size_t single_bumps(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row,
                            double *values) {
   int first, last;
@@ -143,9 +144,12 @@ static size_t foil_radial(const fg_edge_fit *edge_fit, const fg_edge_fit_row *ro
   return free_s(edge_fit, row, fg_midline_along_radius(row), values);
 }
 
-/* Over the direction of the edge in the scan: what the edge model does not know. */
+/* Over the direction of the edge in the scan: error of the edge model. */
 static size_t normal(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row, double *values) {
-  enum { HARMONICS = 8, OF_DISCS = 6 }; /* a disc has a form of its own */
+  enum {
+    HARMONICS = 8,
+    OF_DISCS = 6
+  }; /* limit for discs, each of which has a form error of its own */
   for (int i = 0; i < HARMONICS; i++) {
     bool used = i < OF_DISCS || !edge_fit->discs;
     values[2 * i] = used ? cos((i + 2) * row->normal_rad) : 0;

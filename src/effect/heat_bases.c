@@ -5,7 +5,7 @@
 
 static const double gas_constant_kj = 8.314462618e-3; /* per mol and K */
 
-/* A monotone form, scaled to -1 and +1 at the ends of the coordinate. */
+/* Scales a monotone function to -1 and +1 at the ends of the coordinate. */
 static double scaled_basis(double value, double at_low, double at_high) {
   return at_high != at_low ? (2 * value - at_low - at_high) / (at_high - at_low) : 0;
 }

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the declared noise may lack: independence of neighbours, and one size everywhere. */
+/* Deviations from the declared noise: correlated neighbours, and unequal spread. */
 #include <math.h>
 #include <string.h>
 
 #include "effect/bases.h"
 #include "effect/table_effects.h"
 
-/* Fewer rows than this in a series say nothing of their neighbours. */
+/* Minimum length of a series for estimating the correlation of neighbours. */
 enum { SERIES_ROWS = 8 };
 
 /* A level of its own for the spread needs so many rows. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Forms over an order: of runs in time, of bumps from the lip. */
+/* Bases over an order: of runs in time, of bumps from the lip. */
 #include <math.h>
 
 #include "effect/bases.h"

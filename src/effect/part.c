@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What is wrong with a part, one row an effect: how it moves the midline stands before the rows. */
+/* Effects of the part, one row each: the functions before the rows compute the midline's
+ * displacement. */
 #include <math.h>
 
 #include "effect/midline.h"
@@ -45,8 +46,8 @@ static double thickness_taper(const fg_edge_fit *edge_fit, const fg_edge_fit_row
   return span > 0 ? 0.5 * row->psi / span : 0;
 }
 
-/* A deviation takes the arc's centre with it, and so the zero of the angle: an even one shows as
- * its slope too, of which P3 is what a circle leaves, and an odd one as P4. */
+/* A deviation shifts the arc's centre and with it the zero of the angle. So an even deviation has a
+ * component of its slope, of which the circle leaves P3, and an odd one a component of P4. */
 static size_t crown(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row, double *values) {
   size_t count = fg_midline_legendre(row, 4, 2, 4, values);
   count += fg_midline_stretch(edge_fit, row, 4, values + count);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Rows of a table that stand alone, and the curves of what no listed effect explains. */
+/* Effects of single rows of a table, and the curves for the part that no listed effect explains. */
 #include <math.h>
 #include <string.h>
 
@@ -101,8 +101,8 @@ static void place_knots(const fg_loop_coordinate *at, size_t knots, double *knot
     knot[k] = (double)k / (double)(knots - 1);
 }
 
-/* Truncated powers of a natural spline (Hastie, Tibshirani and Friedman 2009, eq 5.4); the constant
- * is left to the model. */
+/* Truncated powers of a natural spline (Hastie, Tibshirani and Friedman 2009, eq 5.4), without the
+ * constant, which the model has. */
 static void spline_basis(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
                          const double *shape, double *columns) {
   const fg_loop_coordinate *at = &problem->coordinate[candidate->a];
@@ -136,7 +136,8 @@ static void wave_basis(const fg_loop_problem *problem, const fg_loop_candidate *
   }
 }
 
-/* Over a coordinate that is no order, where nobody looks for long runs of cycles. */
+/* Maximum number of waves over a coordinate that is no order, where long cycles are not expected.
+ */
 enum { WAVES = 20 };
 
 static size_t wave_starts(const fg_loop_problem *problem, const fg_loop_candidate *candidate,

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a scanner does, one row an effect: its basis on the glass stands before the rows. */
+/* Effects of the scanner, one row each: the functions before the rows are their bases on the glass.
+ */
 #include <math.h>
 
 #include "effect/rows_of_effects.h"
@@ -21,7 +22,7 @@ static void shear(const fg_field_frame *frame, const double *shape, fg_point at,
   d[0] = (fg_point){from_middle(frame, 1, at.y), 0};
 }
 
-/* Both axes: only known lengths tell it from larger parts. */
+/* Both axes: only known lengths distinguish it from larger parts. */
 static void scale(const fg_field_frame *frame, const double *shape, fg_point at, fg_point *d) {
   (void)shape;
   d[0] = (fg_point){from_middle(frame, 0, at.x), from_middle(frame, 1, at.y)};
@@ -67,7 +68,7 @@ static void carriage_quadratic(const fg_field_frame *frame, const double *shape,
   d[0] = (fg_point){0, v * v};
 }
 
-/* The carriage takes up speed from the picture's first row on. */
+/* The carriage accelerates from the picture's first row on. */
 static void carriage_start(const fg_field_frame *frame, const double *shape, fg_point at,
                            fg_point *d) {
   d[0] = (fg_point){0, exp(-(at.y - frame->low_mm[1]) / shape[0])};

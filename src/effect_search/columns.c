@@ -8,17 +8,17 @@
 #include "core/memory.h"
 #include "effect/columns.h"
 
-/* A column whose mean square is less than this beside the geometry is nothing. */
+/* Mean square below which a column counts as zero beside the geometry. */
 #define VANISHED 1e-8
-/* What no effect of this size, um, makes larger than so many standard errors is nothing either: of
- * columns that are nearly the same such remainders follow the noise of their rows' places. */
+/* A column also counts as zero when an effect of this size, um, would be fewer standard errors than
+ * this: remainders of nearly collinear columns follow the noise of their rows' places. */
 #define LARGEST_UM  50.0
 #define SEEN_ERRORS 3.0
-/* A term of which less than this share stands beside the terms before it is one of them. */
+/* Share of a term beside the terms before it, below which it is collinear with them. */
 #define DEPENDENT 1e-6
-/* A vector of which less than this share stands beside the basis lies in it: rounding. */
+/* Share of a vector beside the basis, below which it lies in its span: rounding. */
 #define IN_BASIS 1e-12
-/* Smooth parts of the width that take so many times what chance takes are there. */
+/* Ratio to the chance level from which smooth parts of the width are significant. */
 #define CHANCE_TIMES 3.0
 
 double fg_search_dot(size_t n, const double *a, const double *b) {
@@ -59,7 +59,7 @@ static void find_support(fg_search_columns *s, size_t rank) {
   s->last[rank] = last;
 }
 
-/* Adds v to the basis unless it lies in it already, or what it adds has no more than `least`. */
+/* Adds v to the basis unless it lies in its span, or its new part is no longer than `min`. */
 static bool extend(fg_search_columns *s, size_t rank, const double *v, double share, double min) {
   double *to = s->basis + rank * s->rows, whole = fg_search_dot(s->rows, v, v);
   if (!(whole > min)) return false;
@@ -169,8 +169,8 @@ static double term_product(const fg_search_columns *s, const fg_search_term *a,
   return sum;
 }
 
-/* What terms are fitted to: the products of all columns with it, its square, and what a term must
- * leave to count. */
+/* Target of a fit: products of all columns with it, its square, and the minimum share that a term
+ * must keep to count. */
 typedef struct target {
   const double *right;
   double square, min;
@@ -236,7 +236,8 @@ double fg_search_share_left(const fg_search_columns *s, const fg_search_term *te
 /* Rows that stay beside the processor while all terms pass. */
 enum { WIDTHS_BLOCK = 256 };
 
-/* The next widths from row `from` on without what terms move; returns how many. */
+/* Computes the next widths from row `from` on less the terms' displacement; returns their number.
+ */
 static size_t widths_left(const fg_search_columns *s, const fg_search_term *terms, size_t count,
                           const double *x, size_t from, double out[WIDTHS_BLOCK]) {
   size_t rows = s->rows - from < WIDTHS_BLOCK ? s->rows - from : WIDTHS_BLOCK;
@@ -286,16 +287,17 @@ static size_t nuisance(const fg_search_columns *s, double *out) {
   return COUNT;
 }
 
-/* Orthonormal vectors of what is given, behind those that are there; returns the new rank. The
- * basis is borrowed: the caller spans it again. */
+/* Orthonormalises further vectors behind the basis; returns the new rank. The basis is borrowed:
+ * the caller spans it again. */
 static size_t span_more(fg_search_columns *s, size_t rank, const double *v, size_t count) {
   for (size_t c = 0; c < count; c++)
     if (extend(s, rank, v + c * s->rows, IN_BASIS, 0)) rank++;
   return rank;
 }
 
-/* What of the widths is smooth over place and direction beyond any stretch by the scanner's fields
- * is the edge model's error; the edges' common error is taken to be no larger. */
+/* Error of the edge model: the part of the widths that is smooth over place and direction and that
+ * no stretch by the scanner's fields explains. The edges' common error is assumed to be no larger.
+ */
 fg_status fg_search_width_uncertainty(fg_context *ctx, fg_search_columns *s) {
   double *v = NULL, *left = NULL, *kept = NULL;
   fg_status status = FG_OK;

@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The level of all edges of a plate beside its scale.
+/* Uncertainty of a plate's scale by the level of its edges.
  *
- * A level that is wrong moves every radius by the same length c, a scale by a share s of it: gauge
- * g of known radius is off by x_g s + l_g c, l_g being 1 for a light disc or hole and -1 for a dark
- * one. Gauges of different sizes tell the two apart. What they leave of c is its standard deviation
- * beside s. A c that differs from 0 is in the scale that was fitted without it: it counts as well.
- */
+ * A wrong level moves every radius by the same length c, a scale by a share s of it: the error of
+ * gauge g of known radius is x_g s + l_g c, with l_g = 1 for a light disc or hole and -1 for a dark
+ * one. Gauges of different sizes separate s and c. The standard deviation of c beside s is the
+ * uncertainty. A c that differs from 0 has biased the scale that was fitted without it, so it is
+ * added. */
 #include "effect_search/common_level.h"
 
 #include <math.h>
 
-/* Gauges: two unknowns, and some to tell their scatter by. */
+/* Minimum number of gauges: two unknowns, and the remainder for their scatter. */
 enum { GAUGES_MIN = 5 };
 
 /* Sums over gauges of weight, scale (x), level (l), residual (r). */

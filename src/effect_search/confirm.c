@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Whether discs confirm an effect, each from the others.
+/* Confirmation of an effect from disc to disc.
  *
- * A disc's own form looks like an effect of the scanner as long as one disc is looked at, and it is
- * no noise that averages out along the edge. So an effect must predict discs that it was not fitted
- * to: its gain in grouped cross-validation, the groups being discs, and a test of its amplitude
- * against what differs from disc to disc. A step or a ripple was sought over many places and may
- * lie in one disc alone: it is confirmed as well when it stands beside a smooth form of every disc,
- * and each side of the discs predicts the other.
- */
+ * On one disc, its own form error looks like an effect of the scanner, and it does not average out
+ * along the edge as noise does. So an effect must predict discs that it was not fitted to. Two
+ * tests decide: its gain in grouped cross-validation, with discs as groups, and its amplitude
+ * against the scatter between discs. A step or a ripple was sought over many places and may lie on
+ * one disc alone. It is also confirmed when it is significant beside a smooth form error of every
+ * disc, and each side of the discs predicts the other. */
 #include "effect_search/confirm.h"
 
 #include <gsl/gsl_cdf.h>
@@ -21,35 +20,35 @@
 #include "effect_search/common_level.h"
 #include "effect_search/policy.h"
 
-/* Chance of an amplitude like this where there is none (these and those below were tuned on
+/* P-value at which an amplitude is confirmed (this and the constants below were tuned on
  * reports/loop_plate.md: plates with and without an effect, of true and of lobed pins). */
 #define CONFIRM_P 0.005
-/* The same where the best of so many places was taken. */
+/* P-value for the best of many places. */
 #define CONFIRM_SHAPED_P 1e-4
 /* Standard errors that the gain of a free curve has to exceed; of a listed effect. */
 #define FREE_ERRORS   3.0
 #define LISTED_ERRORS 1.0
-/* Amplitude in its standard uncertainties, at the least: what is said to be the smallest that would
- * have shown (describe.c). */
+/* Minimum amplitude in standard uncertainties, equal to the smallest detectable one in reports
+ * (describe.c). */
 #define AMPLITUDE_ERRORS 3.5
-/* Groups that share the information, at the least. */
+/* Minimum effective number of groups with information. */
 #define GROUPS_MIN 1.5
-/* Undulations of a disc's form that a step or a ripple is confirmed beside. */
+/* Number of undulations of a disc's form error beside which a step or a ripple is tested. */
 enum { ROUNDNESS_HARMONICS = 5 };
-/* Normal equations are singular where a pivot is this share of its diagonal: of an effect; of a
- * form, whose rows may lie on a short arc. */
+/* Pivot, as a share of its diagonal, below which normal equations are singular: of an effect; of a
+ * form error, whose rows may lie on a short arc. */
 #define SINGULAR           1e-9
 #define ROUNDNESS_SINGULAR 1e-12
-/* A column with a smaller sum of squares beside the forms is nothing, um². */
+/* Sum of squares beside the form errors, um², below which a column counts as zero. */
 #define NOTHING_UM2 1e-6
-/* Student's t has no fewer degrees of freedom, and no scatter is less. */
+/* Lower limits of the dof of Student's t, and of the scatter. */
 #define DOF_MIN     0.5
 #define SCATTER_MIN 1e-300
 
 typedef struct confirmation {
   const fg_edge_fit *edge_fit;
   const fg_effect_found *effect;
-  double *residual; /* rows: with the effect put back, beside each disc's circle */
+  double *residual; /* rows: with the effect added back, beside each disc's circle */
   double *columns;  /* effect->columns × rows, likewise */
   fg_normal_equations *groups;
   size_t group_count, columns_used, index[FG_EFFECT_COLUMNS_MAX];
@@ -60,9 +59,9 @@ static double weight_at(const fg_edge_fit *edge_fit, size_t i) {
   return edge_fit->views[row->view].held_out ? 0 : row->weight / FG_EDGE_FIT_BLOCK;
 }
 
-/* Nuisance terms of each disc: harmonics up to this, and its radius unless it is known and
- * counts. The level of all edges moves known radii as well: of what follows them a scale alone is
- * told from it (common_level.h), any other effect must show in the discs' shapes. */
+/* Nuisance terms of each disc: harmonics up to this, and its radius unless it is known and counts.
+ * The level of all edges moves known radii as well: only a scale is separated from it
+ * (common_level.h); any other effect must show in the discs' shapes. */
 typedef struct roundness {
   size_t harmonics;
   bool radius_counts;
@@ -80,7 +79,8 @@ static size_t roundness_basis(const fg_edge_fit *edge_fit, size_t i, roundness o
   return n;
 }
 
-/* Takes a disc's circle, or its form up to a harmonic, out of values at its rows [first, last). */
+/* Removes a disc's circle, or its form error up to a harmonic, from values at its rows [first,
+ * last). */
 static void remove_roundness_error(const fg_edge_fit *edge_fit, size_t first, size_t last,
                                    roundness of, double *values) {
   fg_normal_equations system;
@@ -201,7 +201,7 @@ static bool solve_whole(confirmation *c, bool sides, fg_normal_equations *whole,
   return c->columns_used && fg_normal_solve(whole, SINGULAR, x, inverse);
 }
 
-/* How well the effect is confirmed from disc to disc: above 0 it is. */
+/* Returns a positive number when discs confirm the effect, larger for stronger confirmation. */
 static double judge_discs(confirmation *c, double needed_p, double needed_errors) {
   fg_normal_equations whole;
   double x[FG_SMALL_MAX];
@@ -212,8 +212,8 @@ static double judge_discs(confirmation *c, double needed_p, double needed_errors
   return validated_gain(c, &whole) - needed_errors;
 }
 
-/* Variance of what the effect leaves, per unit of weight, for noise that is correlated so; takes
- * the effect out of the residual. */
+/* Returns the variance of the residual beside the effect, per unit of weight, for correlated noise;
+ * removes the effect from the residual. */
 static double rest_variance(const confirmation *c, const double *x) {
   double square = 0, count = 0;
   size_t rows = c->edge_fit->row_count;
@@ -228,7 +228,8 @@ static double rest_variance(const confirmation *c, const double *x) {
                    : INFINITY;
 }
 
-/* The same for a step or a ripple beside the form of every disc, from side to side. */
+/* As confirm_by_discs, for a step or a ripple beside the form error of every disc, from side to
+ * side. */
 static double judge_sides(confirmation *c) {
   fg_normal_equations whole;
   double x[FG_SMALL_MAX];
@@ -240,8 +241,8 @@ static double judge_sides(confirmation *c) {
              : gain;
 }
 
-/* Standard uncertainties of the coefficients from what differs from disc to disc (a sandwich of the
- * groups' scores), where there are discs enough to tell. */
+/* Widens the standard uncertainties of the coefficients by the scatter between discs (a sandwich of
+ * the groups' scores), where there are enough discs. */
 static void widen_by_scatter(confirmation *c, fg_effect_found *effect) {
   fg_normal_equations whole;
   double x[FG_SMALL_MAX], inverse[FG_SMALL_MAX][FG_SMALL_MAX], n = 0;
@@ -270,8 +271,8 @@ static void widen_by_scatter(confirmation *c, fg_effect_found *effect) {
   }
 }
 
-/* All edges may lie a little too far out or in together, by what is left in doubt of their level: a
- * scale follows that as far as the discs are alike. */
+/* Widens a scale's uncertainty by that of the edges' common level: a wrong level imitates a scale
+ * as far as the discs are of one size. */
 static void widen_by_level(const confirmation *c, fg_effect_found *effect) {
   double along = 0, square = 0;
   for (size_t i = 0; i < c->edge_fit->row_count; i++) {

@@ -25,7 +25,7 @@ typedef struct cross_fit {
   size_t *fold;               /* per row */
   double *before_um;          /* likewise */
   double *after_um;           /* every row from the search without its fold */
-  bool cannot[FOLDS_MAX + 1]; /* too few rows, or a geometry that they do not hold */
+  bool cannot[FOLDS_MAX + 1]; /* too few rows, or a geometry that they do not determine */
 } cross_fit;
 
 /* A curve over places, or a jump at one, which a single disc or bump may be all that shows. */
@@ -63,7 +63,7 @@ static fg_status deal(fg_context *ctx, cross_fit *c) {
   return FG_OK;
 }
 
-/* What a set leaves of all rows. */
+/* Computes the residual of a set over all rows. */
 static fg_status leave(fg_context *ctx, const fg_edge_fit *edge_fit, const fg_effect_set *set,
                        double *residual_um) {
   fg_edge_fit all;
@@ -79,8 +79,8 @@ static const fg_effect_found *find_of_bumps(const fg_effect_set *set) {
   return NULL;
 }
 
-/* What single bumps do has a test of its own, which finds less than the search can
- * (scan_loop/single_bumps.c): it stays, with the numbers that the other rows give it. */
+/* Keeps effects of single bumps, with numbers fitted to the other rows. Their own test finds
+ * smaller ones than the search can (scan_loop/single_bumps.c). */
 static fg_status keep_single_bumps(fg_context *ctx, const cross_fit *c, fg_edge_fit *others,
                                    fg_effect_set *set) {
   const fg_effect_found *bumps = find_of_bumps(c->set);
@@ -137,7 +137,7 @@ static fg_status take_item(fg_context *ctx, void *shared, size_t item) {
   return FG_OK;
 }
 
-/* Whether two rows were left out together, and share what they have by chance. */
+/* Returns true for two rows that were left out together and share an error. */
 static bool are_one(const cross_fit *c, size_t a, size_t b) {
   return c->edge_fit->rows[a].group == c->edge_fit->rows[b].group && c->fold[a] == c->fold[b];
 }

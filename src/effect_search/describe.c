@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the report says of each effect beside the best explanation. */
+/* Facts of each effect beside the best explanation, for the report. */
 #include <math.h>
 
 #include "effect_search/state.h"
 
-/* Standard deviations of an amplitude that is found in most cases: at chi² 10.8 (score.c) one of
- * 3.5 is in 58 of 100. */
+/* Amplitude, in standard deviations, that is found in most cases: at chi² 10.8 (score.c) an
+ * amplitude of 3.5 is found in 58 of 100. */
 #define SMALLEST_ERRORS 3.5
 
-/* That no effect is needed: by all of them at once, and where one is found by the best one of the
- * family, if that says more. */
+/* P-value of no effect: by all effects at once, or where an effect is found by the best one of the
+ * family, whichever is smaller. */
 static double p_of_none(const fg_search *s, const fg_search_baseline *y, const double *left) {
   const fg_explanations *out = s->out;
   double none = s->columns.square, beyond = 1 + y->allowance / y->dof;

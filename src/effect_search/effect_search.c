@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The search from start to end, under the policy of what the parts are. */
+/* The search from start to end, under the policy for its kind of parts. */
 #include "effect_search/effect_search.h"
 
 #include <math.h>
@@ -25,9 +25,8 @@ static void bar(fg_search_bars *barred, const fg_explanations *explanations,
   }
 }
 
-/* Bars what discs do not confirm: all of it when nothing is confirmed, else the one that is
- * confirmed least, since it may have spoilt the others. Without anything more to bar `barred` stays
- * as it is. */
+/* Bars effects that discs do not confirm: all of them when none is confirmed, else the least
+ * confirmed one, which may have spoilt the others. When none is left to bar, `barred` stays. */
 static fg_status bar_unconfirmed(fg_context *ctx, const fg_edge_fit *edge_fit, fg_effect_set *set,
                                  const fg_explanations *explanations, const double *residual_um,
                                  fg_search_bars *barred) {
@@ -48,7 +47,7 @@ static fg_status bar_unconfirmed(fg_context *ctx, const fg_edge_fit *edge_fit, f
   return FG_OK;
 }
 
-/* Those that stand for each other in a ring. */
+/* Returns the mask of the scanner's or of the part's effects that are collinear on a ring. */
 static unsigned ring_mask(const fg_explanations *explanations, fg_effect_ring ring) {
   unsigned mask = 0;
   for (size_t e = 0; e < explanations->candidate_count; e++)
@@ -79,8 +78,8 @@ static void add_ring_alias(fg_explanations *explanations) {
   }
 }
 
-/* Where every search starts: a set that is out now may have called rows outliers, or bent the
- * geometry out of reach. */
+/* Restores the start of every search: a set that is barred now may have dropped rows as outliers,
+ * or bent the geometry out of reach. */
 static void start_again(fg_edge_fit *edge_fit, const double *weights) {
   for (size_t i = 0; i < edge_fit->row_count; i++)
     edge_fit->rows[i].weight = weights[i];
@@ -92,7 +91,7 @@ static void start_again(fg_edge_fit *edge_fit, const double *weights) {
   }
 }
 
-/* Settles, bars what is not confirmed, and settles again without it until nothing is barred. */
+/* Iterates, bars effects that are not confirmed, and repeats until none is barred. */
 static fg_status iterate_until_confirmed(fg_context *ctx, fg_edge_fit *edge_fit,
                                          const fg_search_policy *policy, fg_effect_set *set,
                                          fg_explanations *explanations, double *residual_um) {

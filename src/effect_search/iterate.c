@@ -14,15 +14,15 @@
 #include "effect_search/search.h"
 #include "rows/scatter.h"
 
-/* Largest change of an overall radius, and largest coefficient, that an effect may have: far beyond
- * the 40 um of reports/loop_scans.md. */
+/* Largest plausible change of an overall radius, and largest plausible coefficient: far beyond the
+ * 40 um of reports/loop_scans.md. */
 #define SANE_SHARE 0.03
 #define SANE_UM    2000.0
 /* An amplitude that is more than its uncertainty (1 in 16 000 by chance). */
 #define THERE_SIGMAS 4.0
-/* Turns of search and fit, at most. */
+/* Maximum number of rounds of search and fit. */
 enum { ROUNDS = 8, COARSE_ROUNDS = 2 };
-/* Sets that no fit holds, at most: then they come again. */
+/* Maximum number of sets given up; further ones may recur. */
 enum { GIVEN_UP_MAX = 16 };
 
 void fg_search_take(const fg_explanations *explanations, size_t explanation, fg_effect_set *set) {
@@ -39,12 +39,13 @@ void fg_search_take(const fg_explanations *explanations, size_t explanation, fg_
   }
 }
 
-/* Its shape is the middle, which every search finds anew; the fit's is the better one. */
+/* The shape is a polynomial's middle: every search determines it anew, but the fit's value is
+ * better. */
 static bool has_middle(const fg_effect_found *effect) {
   return effect->kind->polynomial > FG_EFFECT_LINEAR;
 }
 
-/* Numbers of the effects that both sets hold. */
+/* Copies the numbers of effects that both sets include. */
 static void keep_numbers(const fg_effect_set *from, fg_effect_set *to) {
   for (size_t e = 0; e < to->count; e++)
     for (size_t k = 0; k < from->count; k++)
@@ -60,7 +61,8 @@ static bool same_effects(const fg_effect_set *a, const fg_effect_set *b) {
   return true;
 }
 
-/* Residual (um) and Jacobian at the set's geometry, with what the set does put back, linearly. */
+/* Computes residual (um) and Jacobian at the set's geometry, with the set's effects added back,
+ * linearly. */
 static fg_status put_back(fg_context *ctx, fg_edge_fit *edge_fit, const fg_effect_set *set,
                           double *residual_um, double *jacobian) {
   size_t rows = edge_fit->row_count;
@@ -88,7 +90,7 @@ exit:
   return status;
 }
 
-/* Whether an effect's numbers are more than its uncertainty. */
+/* Returns true when an effect's numbers exceed its uncertainty. */
 static bool is_there(const fg_effect_found *effect) {
   for (size_t c = 0; c < effect->columns; c++)
     if (!(fabs(effect->coefficient_um[c]) < THERE_SIGMAS * effect->u_coefficient_um[c]))
@@ -96,13 +98,13 @@ static bool is_there(const fg_effect_found *effect) {
   return false;
 }
 
-/* What the fit has made nothing of is dropped: a second ripple that stood for the curvature of a
- * first one, a smooth effect beside one that has found its shape since. */
+/* Drops effects that the fit reduced to nothing: a second ripple in place of the curvature of a
+ * first one, or a smooth effect beside one whose shape has been found since. */
 static void drop_nothings(fg_effect_set *set) {
   size_t kept = 0, there = 0;
   for (size_t e = 0; e < set->count; e++)
     there += is_there(&set->effects[e]);
-  if (!there) return; /* each could go, but not all: they stand for each other */
+  if (!there) return; /* each could go, but not all: they are collinear */
   for (size_t e = 0; e < set->count; e++)
     if (is_there(&set->effects[e])) set->effects[kept++] = set->effects[e];
   set->count = kept;
@@ -116,10 +118,10 @@ typedef struct settling {
   fg_explanations explanations;
   fg_effect_set given_up[GIVEN_UP_MAX];
   size_t given_up_count;
-  double *residual_um, *jacobian, *geometry; /* per row; parameters × rows; to come back to */
+  double *residual_um, *jacobian, *geometry; /* per row; parameters × rows; saved geometry */
 } settling;
 
-/* Weighted sum of squares over the rows that are not kept aside. */
+/* Returns the weighted sum of squares over the rows that are not held out. */
 static double square_of(const fg_edge_fit *edge_fit, const double *residual_um) {
   double sum = 0;
   for (size_t i = 0; i < edge_fit->row_count; i++)
@@ -142,8 +144,8 @@ static bool is_sane(const fg_edge_fit *edge_fit, const double *geometry, const f
   return true;
 }
 
-/* Fits a set from the geometry that stands. One that runs away, or leaves more than `none` (what no
- * effect at all leaves), is given up: then the set is empty. */
+/* Fits a set from the present geometry. A fit that runs away, or leaves more than `none` (the
+ * residual without effects), is given up: then the set is empty. */
 static fg_status fit(fg_context *ctx, fg_edge_fit *edge_fit, double none, settling *at) {
   fg_edge_fit_geometry_save(edge_fit, at->geometry);
   fg_status status = fg_joint_fit(ctx, edge_fit, &at->set, at->residual_um);
@@ -158,20 +160,20 @@ static fg_status fit(fg_context *ctx, fg_edge_fit *edge_fit, double none, settli
   return fg_joint_fit(ctx, edge_fit, &at->set, at->residual_um);
 }
 
-/* Whether a round from `before` to `left` took so little that a further one would take nothing. */
+/* Returns true when a round lowered the residual so little that a further one is useless. */
 static bool has_converged(const fg_search_policy *policy, double before, double left) {
   return !(left <= (1 - policy->converged_share) * before);
 }
 
-/* What a round came to. */
+/* Result of a round. */
 typedef struct round_end {
   fg_effect_set set;
   double left; /* sum of squares */
   bool right;
 } round_end;
 
-/* Two explanations that lead to each other would take turns for ever: that of fewer effects stands,
- * of as many the one that leaves less. */
+/* Two explanations that lead to each other would alternate for ever. The one of fewer effects is
+ * accepted, of equal numbers the one with the smaller residual. */
 static bool comes_again(const round_end *end, int round) {
   if (round < 2 || !same_effects(&end[round].set, &end[round - 2].set)) return false;
   const round_end *now = &end[round], *other = &end[round - 1];
@@ -179,14 +181,14 @@ static bool comes_again(const round_end *end, int round) {
   return now->left <= other->left;
 }
 
-/* What was right, was left in the hope of a better set, and is come to again. */
+/* Returns true for a set that was right, was left for a better one, and is reached again. */
 static bool was_right_before(const round_end *end, int round) {
   for (int r = 0; r + 1 < round && end[round].right; r++)
     if (end[r].right && same_effects(&end[r].set, &end[round].set)) return true;
   return false;
 }
 
-/* Of a set the effect that alone takes the most of what there is. */
+/* Keeps, of a set, the one effect that alone explains most. */
 static void take_best_alone(const fg_explanations *explanations, const fg_effect_set *from,
                             fg_effect_set *to) {
   double max = -1;
@@ -200,8 +202,8 @@ static void take_best_alone(const fg_explanations *explanations, const fg_effect
     }
 }
 
-/* Several smooth effects beside a ripple whose period is a little off stand for what that leaves,
- * and no fit holds them: the ripple alone finds its period, and the next round starts from there.
+/* Several smooth effects beside a ripple with a slightly wrong period stand for its residual, and
+ * their joint fit fails. The ripple fitted alone finds its period, and the next round starts there.
  */
 static fg_status fit_or_best_alone(fg_context *ctx, fg_edge_fit *edge_fit, double none,
                                    settling *at) {
@@ -222,8 +224,8 @@ static void take_likeliest(const fg_explanations *explanations, const fg_effect_
   fg_search_take(explanations, 0, set);
 }
 
-/* One turn: the search at the geometry that stands, and the fit of what it finds, which is `next`.
- * The request holds what differs from turn to turn. */
+/* Runs one turn: the search at the present geometry, and the fit of the set found, `next`. The
+ * request holds the members that differ from turn to turn. */
 static fg_status take_turn(fg_context *ctx, fg_edge_fit *edge_fit, fg_search_request request,
                            const fg_effect_set *prefer, double none, settling *at,
                            fg_effect_set *next) {
@@ -243,7 +245,7 @@ static fg_status take_turn(fg_context *ctx, fg_edge_fit *edge_fit, fg_search_req
   at->set = *next;
   fg_search_drop_across_steps(edge_fit, &at->set, policy->step_half_mm);
   FG_TRY(fit_or_best_alone(ctx, edge_fit, none, at));
-  /* Given up: what was right to first order is not. */
+  /* the set was right to first order only */
   if (next->count && !at->set.count) at->explanations.right = false;
   return FG_OK;
 }
@@ -303,8 +305,8 @@ static fg_status iterate_from_set(fg_context *ctx, fg_edge_fit *edge_fit, const 
   return take_turn(ctx, edge_fit, request, set, none, at, &next);
 }
 
-/* The manners of the policy, each where the one before does not come to rest at an explanation that
- * is right; the best one stays. */
+/* Tries the strategies of the policy in order until one converges at a right explanation; the best
+ * result is kept. */
 static fg_status iterate_from_best(fg_context *ctx, fg_edge_fit *edge_fit, settling *at) {
   const fg_search_policy *policy = at->policy;
   size_t numbers = fg_edge_fit_geometry_size(edge_fit);

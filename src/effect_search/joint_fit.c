@@ -18,8 +18,8 @@ enum {
 /* A coefficient's step that ends the fit, and its largest one, um. */
 #define STEP_END_UM 1e-5
 #define STEP_MAX_UM 60.0
-/* A shape's largest step: this share of itself, and where it is a place as much of a mm; the
- * hundredth part of that ends the fit. */
+/* Largest step of a shape: this share of itself, or this length for a place; the fit ends at a
+ * hundredth of it. */
 #define SHAPE_SHARE 0.02
 #define SHAPE_MM    0.5
 #define SHAPE_END   100
@@ -28,13 +28,13 @@ enum {
 #define SHAPE_MIN    1e-3
 /* Rows of scans that only confirm weigh so much: enough to fit their own pose. */
 #define HELD_OUT_WEIGHT 1e-6
-/* Size of a free curve, um: what scanners and foils do is of this order (reports/loop_scans.md). */
+/* Size of a free curve, um: typical of scanners and foils (reports/loop_scans.md). */
 #define CURVE_UM 15.0
-/* Damping for what no row tells: of a diagonal, and beside it. */
+/* Damping for unknowns that no row determines: share of a diagonal, and absolute. */
 #define DAMP_SHARE 1e-10
 #define DAMP       1e-12
-/* Rows of less than this share of the largest weight, and those whose normal lies farther from the
- * step's direction, do not hold its place. */
+/* Rows of less than this share of the largest weight, and rows whose normal is farther from the
+ * step's direction, do not determine its place. */
 #define ROUGH_WEIGHT 0.1
 #define ALONG_MIN    0.3
 
@@ -84,7 +84,7 @@ static void effect_design(const fg_edge_fit *edge_fit, const fg_effect_set *set,
 typedef struct refit {
   fg_edge_fit *edge_fit;
   fg_effect_set *set;
-  fg_joint_fit_part *parts; /* NULL: not asked for */
+  fg_joint_fit_part *parts; /* NULL: not wanted */
   unknown list[UNKNOWNS_MAX];
   size_t unknowns, parameters;
   double *residual, *jacobian, *design, *work; /* per row */
@@ -111,7 +111,7 @@ static void whiten(const refit *r, double *values) {
   fg_whitening_apply(&r->whitening, values);
 }
 
-/* Residual and all columns for generalised least squares. */
+/* Whitens residual and all columns, for generalised least squares. */
 static void whiten_all(refit *r) {
   size_t rows = r->edge_fit->row_count;
   memcpy(r->white, r->residual, rows * sizeof *r->white);
@@ -122,8 +122,8 @@ static void whiten_all(refit *r) {
     whiten(r, r->design + k * rows);
 }
 
-/* A curve's coefficients are of some size, and noise of smooth things must not make larger ones:
- * the weight that a normal distribution of that size has beside rows with this noise. */
+/* Returns the weight of a normal prior on a curve's coefficients, of this size, beside rows with
+ * this noise: noise in smooth functions must not enlarge the coefficients. */
 static double hold_of(const fg_edge_fit *edge_fit, const fg_effect_found *effect, bool shape) {
   const fg_scatter *s = &edge_fit->scatter;
   if (shape || effect->kind->hold == 0) return 0;
@@ -131,8 +131,8 @@ static double hold_of(const fg_edge_fit *edge_fit, const fg_effect_found *effect
   return fmax(effect->kind->hold, noise / (CURVE_UM * CURVE_UM));
 }
 
-/* Free curves hold what the geometry can follow, and reach where no row lies: of all curves that
- * leave the same residual the smallest one is meant. */
+/* Adds the prior of free curves. They are nearly collinear with the geometry and extend to places
+ * without rows: of all curves with the same residual the smallest one is chosen. */
 static void hold_free(refit *r, size_t k) {
   const fg_effect_found *effect = &r->set->effects[r->list[k].effect];
   size_t a = r->parameters + k;
@@ -143,7 +143,8 @@ static void hold_free(refit *r, size_t k) {
   gsl_vector_set(r->right, a, gsl_vector_get(r->right, a) - held);
 }
 
-/* A row knows few numbers of the geometry, and all of the effects. */
+/* Adds a row to the normal equations; it depends on few numbers of the geometry, and on all
+ * effects. */
 static void add_row(refit *r, size_t i) {
   size_t own[FG_EDGE_FIT_ROW_PARAMETERS + UNKNOWNS_MAX];
   double value[FG_EDGE_FIT_ROW_PARAMETERS + UNKNOWNS_MAX];
@@ -160,7 +161,7 @@ static void add_row(refit *r, size_t i) {
   }
 }
 
-/* The normal equations of geometry and effects, with what holds free curves. */
+/* Assembles the normal equations of geometry and effects, with the prior of free curves. */
 static void assemble(refit *r) {
   size_t n = r->parameters + r->unknowns;
   gsl_matrix_set_zero(r->normal);
@@ -204,8 +205,8 @@ static double move(refit *r) {
   return largest;
 }
 
-/* Between the rows next to it a step may lie anywhere: the sd of a uniform distribution. Rows that
- * hardly count do not hold it. */
+/* Returns the u of a step's place: between the nearest rows it may lie anywhere, with the sd of a
+ * uniform distribution. Rows of small weight do not count. */
 static double place_u(const fg_edge_fit *edge_fit, const fg_effect_found *step) {
   double above = -INFINITY, below = INFINITY, max = 0;
   for (size_t i = 0; i < edge_fit->row_count; i++)
@@ -237,10 +238,10 @@ static double row_variance(const refit *r) {
   return sum / dof * fmax(r->edge_fit->scatter.swell, integral);
 }
 
-/* What the effects in force add to the covariance of two numbers of the geometry. `whole` is the
- * inverse of all normal equations N + H, H holding the free curves; `alone` that of the geometry.
- * Noise: V (N + H)^-1 N (N + H)^-1. What H keeps out of a curve whose coefficients are of size t:
- * (N + H)^-1 H t² H (N + H)^-1. */
+/* Adds the effects' contribution to the covariance of two numbers of the geometry. `whole` is the
+ * inverse of all normal equations N + H, H the prior of the free curves; `alone` that of the
+ * geometry. Noise: V (N + H)^-1 N (N + H)^-1. Bias by the prior, for coefficients of size t: (N +
+ * H)^-1 H t² H (N + H)^-1. */
 static double effects_covariance(const refit *r, double variance, const double *size,
                                  const gsl_matrix *whole, const gsl_matrix *alone, size_t a,
                                  size_t b) {
@@ -275,7 +276,7 @@ static void find_effects_covariance(refit *r, double variance, const gsl_matrix 
   }
 }
 
-/* Uncertainties of the effects, and of the geometry beside them; `alone` has room for the
+/* Finds the uncertainties of the effects, and of the geometry beside them; `alone` has room for the
  * geometry's block of the normal equations. */
 static void find_uncertainties(refit *r, gsl_matrix *alone) {
   double variance = row_variance(r);
@@ -299,8 +300,8 @@ static void find_uncertainties(refit *r, gsl_matrix *alone) {
   find_effects_covariance(r, variance, alone);
 }
 
-/* Residual in um and, unless NULL, Jacobian with the set's present correction, geometry fitted to
- * it. */
+/* Fits the geometry under the set's present correction; computes the residual in um and, unless
+ * NULL, the Jacobian. */
 static fg_status fit_geometry(fg_context *ctx, fg_edge_fit *edge_fit, const fg_effect_set *set,
                               double *residual_um, double *jacobian) {
   fg_field_list fields;
@@ -308,7 +309,8 @@ static fg_status fit_geometry(fg_context *ctx, fg_edge_fit *edge_fit, const fg_e
   fg_effect_set_fields(edge_fit, set, &fields);
   fg_status status = FG_OK;
   for (int twice = 0; twice < 2 && status == FG_OK; twice++) {
-    /* Directions in the part's frame come from the geometry, and the geometry from the shift. */
+    /* Repeated, because directions in the part's frame depend on the geometry, and the geometry on
+     * the shift. */
     free(shift);
     shift = NULL;
     status = fg_effect_set_shift(ctx, edge_fit, set, &shift);

@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The noise of a row: what is left beside everything at once. */
+/* Noise of a row: the residual beside all effects at once. */
 #include <gsl/gsl_cdf.h>
 #include <math.h>
 
 #include "effect_search/state.h"
 
-/* A curve with all its columns leaves less than this share of what a smoother one does. */
+/* Share of the noise beside a curve's smoother part, below which all of its columns are needed. */
 #define FINER 0.9 /* tuned on reports/loop_scans.md, tier curves */
 /* No row is better known, um: exact data are not of a scanner. */
 #define NOISE_MIN_UM 1e-4
-/* Rows beyond the numbers that are fitted to them: fewer tell no noise. */
+/* Minimum residual dof for estimating the noise. */
 enum { DOF_MIN = 12 };
 
 double fg_search_chance(const fg_search *s, double chi2, double numbers) {
@@ -30,8 +30,8 @@ double fg_search_integral(const fg_search_columns *s) {
   return fg_edge_fit_integral(s->edge_fit, s->row, s->rows, s->left);
 }
 
-/* A smooth value keeps its size beside correlated noise, which is smaller by the root of its
- * integral. */
+/* Returns the noise of a row. Whitening keeps the size of smooth values, so the whitened residual
+ * is larger than the noise by the root of the correlation's integral. */
 static double noise_of(const fg_search_columns *c, size_t rank) {
   double dof = fmax((double)c->rows - (double)rank, 1) * c->integral;
   return fmax(sqrt(fg_search_dot(c->rows, c->left, c->left) / dof), NOISE_MIN_UM);
@@ -61,7 +61,7 @@ size_t fg_search_noise(fg_search *s, bool listed_only) {
   return rank;
 }
 
-/* Whether all effects at once have less than all of its columns. */
+/* Returns true when the set of all effects has fewer than all columns of the curve. */
 static bool is_smoother(const fg_search_columns *c, const fg_candidate *curve) {
   for (size_t k = 0; k < curve->columns; k++)
     if (c->part[curve->column[k]] != FG_SEARCH_ITSELF) return true;

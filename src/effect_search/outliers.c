@@ -7,8 +7,8 @@
 #include "core/memory.h"
 #include "core/spread.h"
 
-/* Rows this far off are left out, if they are fewer than this share: of normal noise 1 in 1.7
- * million is. */
+/* Rows beyond so many sigmas are dropped, if they are fewer than this share: of normal noise 1
+ * in 1.7 million is. */
 #define OUTLIER_SIGMAS 5.0
 #define OUTLIER_SHARE  0.02
 /* Of a third difference at a run's end (tuned on reports/loop_scans.md). */
@@ -56,7 +56,7 @@ static void drop_range(fg_edge_fit *edge_fit, size_t from, size_t to) {
     edge_fit->rows[i].weight = 0;
 }
 
-/* Third differences: what is smooth stays out of them. */
+/* Third differences remove smooth deviations. */
 fg_status fg_search_drop_ends(fg_context *ctx, fg_edge_fit *edge_fit, const double *residual_um) {
   size_t rows = edge_fit->row_count, n = 0;
   double *size = NULL;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Ripples and steps stand alone even in one scan: they are sought beside all smooth effects. */
+/* Search for ripples and steps. They are distinct from all smooth effects even in one scan, so they
+ * are sought beside them. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,12 +8,12 @@
 #include "core/memory.h"
 #include "effect_search/policy.h"
 
-/* A step elsewhere that leaves no more than this is as good (1 in 600 by chance); one so near is
- * the same. */
+/* A step elsewhere is as good when its residual exceeds the best one's by no more than this (1 in
+ * 600 by chance); one nearer than this is the same. */
 #define OTHER_STEP_CHI2 10.0
 #define OTHER_STEP_MM   0.3
 
-/* The shape with which it takes most beside the geometry alone. */
+/* Finds the shape that explains most beside the geometry alone. */
 static fg_status find_alone(fg_context *ctx, fg_search *s, const fg_effect *kind, double *shape) {
   const fg_field_frame *frame = &s->columns.edge_fit->frame;
   double *work = NULL;
@@ -52,7 +53,8 @@ fg_status fg_search_add_other_steps(fg_context *ctx, fg_search *s, const fg_effe
   FG_TRY(fg_memory_allocate(ctx, s->columns.rows, sizeof *work, (void **)&work));
   fg_search_noise(s, false);
   double unit = s->out->noise_um * s->out->noise_um * s->out->integral;
-  size_t rank = fg_search_columns_span(&s->columns, 0, s->free_end); /* geometry, what is known */
+  size_t rank =
+      fg_search_columns_span(&s->columns, 0, s->free_end); /* geometry and known effects */
   for (size_t e = 0; e < known->count; e++) {
     const fg_effect_found *step = &known->effects[e];
     if (!step->kind->jumps) continue;
@@ -76,12 +78,12 @@ fg_status fg_search_add_other_steps(fg_context *ctx, fg_search *s, const fg_effe
 
 /* ---- ripples and steps that stand out ---- */
 
-/* Adds what stands out most, once. */
+/* Adds the most significant candidate, once. */
 static bool add_best(fg_search *s, bool listed_only, double *work) {
   size_t rank = fg_search_noise(s, false);
   double noise_um = s->out->noise_um, integral = s->out->integral;
   if (listed_only) rank = fg_search_noise(s, true);
-  /* What the listed effects leave may be the very thing that is sought: it is no noise. */
+  /* The residual beside listed effects may contain the effect sought: it is no noise. */
   s->out->noise_um = noise_um;
   s->out->integral = integral;
   fg_search_hit best = {0};
@@ -102,8 +104,9 @@ static bool add_best(fg_search *s, bool listed_only, double *work) {
   return true;
 }
 
-/* Free curves can follow a long ripple: it is sought beside the listed effects too. What is found
- * there is a candidate like any other; a curve that is no ripple stays the better explanation. */
+/* Searches beside the listed effects too, because free curves can follow a long ripple. A ripple
+ * found there is a candidate like any other; a curve that is no ripple stays the better
+ * explanation. */
 fg_status fg_search_find_on_foils(fg_context *ctx, fg_search *s) {
   double *work = NULL;
   FG_TRY(fg_memory_allocate(ctx, s->columns.rows, 2 * sizeof *work, (void **)&work));
@@ -114,7 +117,7 @@ fg_status fg_search_find_on_foils(fg_context *ctx, fg_search *s) {
   return FG_OK;
 }
 
-/* What the best smooth effect takes by itself. */
+/* Returns the gain of the best smooth effect alone. */
 static double best_alone(fg_search *s) {
   const fg_search_baseline y = fg_search_find_baseline(s);
   double min = s->columns.square;
@@ -156,8 +159,8 @@ fg_status fg_search_find_in_place(fg_context *ctx, fg_search *s) {
   return FG_OK;
 }
 
-/* The gain in units of the noise that the effect leaves: where it is most of the residual, the
- * noise that it stands against must not hold it. */
+/* Returns the gain in units of the noise beside the effect: when the effect is most of the
+ * residual, the noise estimate must not include it. */
 static double gain_over_rest(fg_search *s, size_t rank, const fg_candidate *effect) {
   double before = fg_search_dot(s->columns.rows, s->columns.left, s->columns.left), share;
   size_t first, kept = s->columns.count;
@@ -170,9 +173,9 @@ static double gain_over_rest(fg_search *s, size_t rank, const fg_candidate *effe
   return gain;
 }
 
-/* Ripples and steps stand alone even in one scan: they are sought beside all smooth effects. One at
- * a time: what a step leaves across itself would be read as a second one; and each can be read as
- * several of the other: the better one. */
+/* Searches ripples and steps beside all smooth effects, one at a time: the residual of a step
+ * across itself would be read as a second step. A ripple can be read as several steps and vice
+ * versa: the better one is added. */
 fg_status fg_search_find_on_discs(fg_context *ctx, fg_search *s) {
   fg_candidate best = {0};
   double *work = NULL, max = 0;

@@ -1,21 +1,22 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Where a shape takes most: a grid of starts, then finer around the best one. */
+/* Search for the best place of a shape: a grid of starts, then finer grids around the best. */
 #include <math.h>
 #include <stdlib.h>
 
 #include "core/small_solve.h"
 #include "effect_search/state.h"
 
-/* Steps of each finer grid between the neighbours of the best place; how often; rows on either side
- * of a step. */
+/* Steps of each finer grid between the neighbours of the best place; number of such grids; rows on
+ * either side of a step. */
 enum { REFINE_STEPS = 24, REFINE_LEVELS = 4, SIDE_ROWS = 12 };
-/* A quick look takes every so many starts. */
+/* A coarse search uses one start in so many. */
 enum { COARSER = 40 };
-/* A column beside the basis with less than this mean square tells nothing: one row in 64 000. */
+/* Mean square of a column beside the basis, below which it has no information: one row in 64 000.
+ */
 #define COLUMN_MIN (1e-3 / 64)
 /* Its normal equations are singular where a pivot is this share of its diagonal. */
 #define SINGULAR 1e-9
-/* Columns of one grid that are kept: beyond that the rows are many, and memory counts. */
+/* Limit of a stored grid's columns: beyond it the rows are many, and memory matters. */
 #define GRID_BYTES_MAX ((size_t)32 << 20)
 
 /* A step needs rows on both sides that speak of it: one bad row at the foil's end is none. */
@@ -38,8 +39,8 @@ static fg_search_hit gain_of(const fg_search *s, size_t rank, double place, size
   fg_search_hit none = {0, 0, place}, found = none;
   fg_normal_clear(&system, count);
   for (size_t a = 0; a < count; a++) {
-    /* What is left stands beside the basis already, and the basis takes its share of the products.
-     */
+    /* `left` is beside the basis already; the products are corrected for the column's part in the
+     * basis. */
     system.right[a] = fg_search_dot(c->rows, columns + a * c->rows, c->left);
     for (size_t b = 0; b <= a; b++)
       system.matrix[a][b] = fg_search_dot(c->rows, columns + a * c->rows, columns + b * c->rows);
@@ -74,7 +75,7 @@ static fg_search_hit gain_at(const fg_search *s, size_t rank, const fg_effect *k
 
 /* ---- the grid of starts ---- */
 
-/* The columns over all starts; NULL: they would take too much memory. */
+/* Returns the columns over all starts; NULL: they would need too much memory. */
 static const fg_search_grid *grid_of(fg_search *s, const fg_effect *kind, size_t starts) {
   size_t vector = s->columns.rows * sizeof(double), count = kind->columns;
   for (size_t g = 0; g < s->grids; g++)

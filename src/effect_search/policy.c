@@ -21,12 +21,12 @@ static bool has_lower_score(const fg_search *s, const fg_explanation *explanatio
 
 /* ---- discs ---- */
 
-/* How many effects the points can tell apart. */
+/* Returns the number of effects that the rows can tell apart. */
 static size_t max_effects_of_discs(const fg_edge_fit *edge_fit) {
   return edge_fit->coarse ? 1 : edge_fit->part_count > 2 ? 5 : 2;
 }
 
-/* What one effect more gains by chance: a set that comes later, and is larger, must gain more. */
+/* Gain of one more effect by chance: a set that comes later, and is larger, must gain more. */
 #define ONE_MORE_CHI2 12.0
 
 static bool leaves_less(const fg_search *s, const fg_explanation *explanation,
@@ -50,7 +50,7 @@ static const fg_search_policy foils = {
     .find_placed = fg_search_find_on_foils,
     .effects_max = max_effects_of_foils,
     .placed_beside = true,
-    .edge_error_um = 0.003, /* clean renders leave at most this (reports/loop_scans.md) */
+    .edge_error_um = 0.003, /* upper limit on clean renders (reports/loop_scans.md) */
     /* Edges of a stretched picture are measured a little wrong (reports/loop_scans.md). */
     .effect_error = 0.0055,
     .more_error = 0.01,
@@ -60,7 +60,7 @@ static const fg_search_policy foils = {
     .counts_columns = true,
     .placed_chi2 = 30.0, /* of 300 places 1 in 10 000 by chance */
     .has_rivals = true,
-    .worse_chi2 = 18.0, /* what one more effect may not gain, another one may not lose */
+    .worse_chi2 = 18.0, /* equal to the gain that one more effect needs */
     .is_better = has_lower_score,
     .beside_curve = 2,
     .curve_share = 0.03, /* reports/loop_scans.md, tier curves */
@@ -74,10 +74,11 @@ static const fg_search_policy foils = {
     .step_half_mm = 0.08,
 };
 
-/* Each disc's form is in the noise and in the free curves alike, so that the sum over all effects
- * says little of one: a set must not leave one out that takes more than chance, and what is found
- * must predict discs that it was not fitted to. Their rows are few and lie all over the picture, so
- * that neither the noise along one edge nor the middle of a polynomial needs help. */
+/* Policy for discs. Each disc's form error enters the noise and the free curves alike, so the sum
+ * over all effects is weak evidence about one effect. So a set must not omit an effect that
+ * explains more than chance, and its effects must predict discs that they were not fitted to. Rows
+ * of discs are few and spread over the picture: neither the noise along one edge nor the middle of
+ * a polynomial needs special treatment. */
 static const fg_search_policy discs = {
     .find_placed = fg_search_find_on_discs,
     .effects_max = max_effects_of_discs,
@@ -95,9 +96,9 @@ static const fg_search_policy discs = {
     .strategies = {{true, false}},
     .strategy_count = 1,
     .converged_share =
-        1, /* one round without a new effect is rest: confirmation judges what it is */
+        1, /* one round without a new effect has converged: the confirmation decides */
     .falls_back = true,
-    .converges_in_force = true, /* there is one manner only, so no other start follows */
+    .converges_in_force = true, /* with one strategy only, no other start follows */
     .own_noise = true,
     .step_half_mm = 0.03,
     .confirms = true,

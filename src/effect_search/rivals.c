@@ -1,20 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Free curves of few numbers that do as well as the listed effects: a curve in x, say, that an oval
- * follows within the noise. */
+/* Rivals: free curves of few numbers that fit as well as the listed effects. An example is a curve
+ * in x that an oval follows within the noise. */
 #include <math.h>
 
 #include "effect_search/state.h"
 
-/* A curve that can follow the one listed effect itself stands beside it only when Schwarz's
- * criterion prefers it strongly (Kass and Raftery 1995, section 3.2). */
+/* Gain by Schwarz's criterion that a curve able to follow the one listed effect needs (Kass and
+ * Raftery 1995, section 3.2: strong). */
 #define FOLLOWER_GAIN 10.0
 /* It follows an effect of which it leaves no more than this share. */
 #define FOLLOWED_SHARE 0.05
-/* A curve that Schwarz's criterion prefers another one to by less could be it (Kass and Raftery
- * 1995, section 3.2: "positive" below 6, "very strong" from 10). */
+/* Loss by Schwarz's criterion up to which a curve may be the true one (Kass and Raftery 1995,
+ * section 3.2: "positive" below 6, "very strong" from 10). */
 #define CURVE_LOSS 6.0
-/* A smooth curve is there when chance gains as much less often than this: of some ten curves of
- * five sizes each, 1 in 2000. */
+/* P-value at which a smooth curve is accepted: of some ten curves of five sizes each, 1 in 2000. */
 #define CURVE_P 1e-5
 /* Numbers of a smooth curve, beside its mean. */
 enum { NUMBERS_MAX = 16 };
@@ -36,8 +35,8 @@ static double legendre(size_t degree, double x) {
   return now;
 }
 
-/* Splines whose coefficients follow a polynomial are one; other curves have their lowest columns
- * first. */
+/* Lists the lowest terms of a curve. Splines whose coefficients follow a polynomial are one term
+ * each; other curves have their lowest columns first. */
 static size_t list_terms(const fg_search *s, const fg_candidate *curve, size_t numbers,
                          fg_search_term *term) {
   size_t knots = s->columns.edge_fit->frame.knots, count = 0;
@@ -55,13 +54,14 @@ static size_t list_terms(const fg_search *s, const fg_candidate *curve, size_t n
   return count;
 }
 
-/* What the columns of one candidate come to, which left `sum`. */
+/* Makes the explanation of one candidate, whose residual sum is `sum`. */
 static fg_explanation of_candidate(const fg_search_baseline *y, size_t e, double sum, size_t rank) {
   return (fg_explanation){
       .mask = 1u << e, .excess = fmax(0, sum - y->full) / y->unit, .dof = y->dof - (double)rank};
 }
 
-/* The curve of as many numbers as Schwarz's criterion says; of those that are right. */
+/* Returns the curve with the number of terms that Schwarz's criterion prefers; with `right`, among
+ * those that are right. */
 static fg_explanation smoothest(const fg_search *s, const fg_search_baseline *y, size_t e,
                                 bool right) {
   fg_explanation best = {.excess = INFINITY};
@@ -79,8 +79,8 @@ static fg_explanation smoothest(const fg_search *s, const fg_search_baseline *y,
   return best;
 }
 
-/* One bump alone that stands out, whose number is sought. `score` becomes Schwarz's criterion of
- * it. */
+/* Returns the single bump that deviates most, its number being a parameter. `score` gets Schwarz's
+ * criterion. */
 static fg_explanation single_bump(const fg_search *s, const fg_search_baseline *y, size_t e,
                                   bool right, double *score) {
   const fg_candidate *curve = &s->out->candidates[e];
@@ -99,7 +99,7 @@ static fg_explanation single_bump(const fg_search *s, const fg_search_baseline *
   return best;
 }
 
-/* Whether a curve can follow every effect of a set. */
+/* Returns true when a curve can follow every effect of a set. */
 static bool follows(const fg_search *s, const fg_candidate *curve, unsigned mask) {
   fg_search_term term[FG_EFFECT_COLUMNS_MAX];
   for (size_t k = 0; k < curve->columns; k++)
@@ -153,8 +153,8 @@ bool fg_search_curve_helps(const fg_search *s, const fg_search_baseline *y, unsi
   return false;
 }
 
-/* Schwarz's criterion of a listed set. A place that was sought is a number too, and stands for ln
- * of how many there were. */
+/* Returns Schwarz's criterion of a listed set. A sought place is a parameter too, with a penalty of
+ * ln of the number of places. */
 static double listed_score(const fg_search *s, const fg_explanation *m) {
   double score = fg_search_schwarz(s, m), number = log((double)s->columns.rows / s->out->integral);
   for (size_t e = 0; e < s->out->candidate_count; e++) {
@@ -187,7 +187,7 @@ void fg_search_add_rivals(fg_search *s, const fg_search_baseline *y) {
     const fg_candidate *curve = &out->candidates[e];
     if (!fg_effect_is_free(curve->kind)) continue;
     if (curve->kind->bends && (listed & y->bends))
-      continue; /* told from a curve by what leads it */
+      continue; /* the leading column tells it from a curve */
     double own;
     fg_explanation rival = simplest(s, y, e, true, &own);
     if (!isfinite(rival.excess)) continue;

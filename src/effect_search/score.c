@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One set of effects: its least squares, and whether it is right. */
+/* Score of one set of effects: its least squares, and the decision whether it is right. */
 #include <math.h>
 #include <string.h>
 
 #include "effect_search/policy.h"
 
-/* A set is right when what it leaves beyond all effects is likelier than this. */
+/* P-value of the excess over all effects, above which a set is right. */
 #define ACCEPT_P 0.001
-/* The middle of a polynomial lies within so many picture sizes of the picture's: farther off it is
- * a scale. */
+/* Largest distance of a polynomial's middle from the picture's, in picture sizes: beyond it the
+ * effect is a scale. */
 #define MIDDLE_REACH 1.5
-/* Of a deviation of every bump, the lowest polynomial makes at least this share: else it is
- * neither a crown nor a skew but a curve (tuned on reports/loop_scans.md, tier curves). */
+/* Minimum share of the lowest polynomial in a deviation of every bump: below it, it is neither a
+ * crown nor a skew but a curve (tuned on reports/loop_scans.md, tier curves). */
 #define LOWEST_SHARE 0.6
 /* Steps of the grid for a middle; of the finer ones around its best, each over two of its steps. */
 enum { MIDDLE_STEPS = 60, MIDDLE_LEVELS = 3, MIDDLE_FINER = 10 };
@@ -78,9 +78,9 @@ static bool scanned_again(const fg_search *s) {
   return s->columns.edge_fit->view_count > s->columns.edge_fit->part_count;
 }
 
-/* Of one view a quadratic gains little over its slope, and its middle may come out anywhere: where
- * that is too far off it is held at the end of its reach, on the side that leaves less. Returns how
- * many numbers that takes. */
+/* Holds the middles that the data do not determine. In one view a quadratic gains little over its
+ * slope, and its middle may come out anywhere. A middle out of reach is held at the end of the
+ * reach, on the side with the smaller residual. Returns the number of middles held. */
 static size_t hold_middles(const fg_search *s, const fg_search_baseline *y, unsigned mask,
                            const double *x, set_terms *set) {
   size_t held = 0;
@@ -106,7 +106,8 @@ static size_t hold_middles(const fg_search *s, const fg_search_baseline *y, unsi
   return held;
 }
 
-/* A quadratic whose middle is far off is a scale; one that gains nothing over it is one. */
+/* Returns true for a quadratic that gains over its slope; with a far middle, or without a gain, it
+ * is a scale. */
 static bool is_quadratic(const fg_search *s, const fg_search_baseline *y, const set_terms *set,
                          size_t e, const double *x, double sum, double *t) {
   const double *own = x + set->first[e];

@@ -7,7 +7,7 @@
 #include "effect/columns.h"
 #include "effect_search/policy.h"
 
-/* Of the curves, what all effects at once have: half as many columns, and one form. */
+/* Selects the curve's columns for the set of all effects: half as many, and one basis. */
 static void choose_parts(fg_search_columns *c, const fg_candidate *effect) {
   const fg_effect *kind = effect->kind;
   for (size_t k = 0; k < effect->columns; k++) {
@@ -20,8 +20,8 @@ static void choose_parts(fg_search_columns *c, const fg_candidate *effect) {
   }
 }
 
-/* A polynomial of the scanner, made of the powers of its axis from column `first` on: its own is
- * the highest, and those below give its middle. */
+/* Adds a polynomial of the scanner, made of the powers of its axis from column `first` on: the
+ * highest is its own, the lower ones give its middle. */
 static void add_of_powers(fg_search *s, const fg_effect *kind, size_t first) {
   size_t e = s->out->candidate_count++, degree = kind->polynomial - FG_EFFECT_LINEAR;
   fg_candidate *to = &s->out->candidates[e];
@@ -36,7 +36,7 @@ static void add_of_powers(fg_search *s, const fg_effect *kind, size_t first) {
   s->out->share[e] = s->columns.gram[lead * FG_SEARCH_COLUMNS + lead] / (double)s->columns.rows;
 }
 
-/* One whose middle is the picture's until a fit has found it. */
+/* Adds a polynomial whose middle is the picture's until a fit has found it. */
 static void add_with_middle(fg_search *s, const fg_effect *kind, const fg_effect_set *known) {
   fg_candidate effect = {.kind = kind};
   const fg_effect_found *from = fg_search_find_known(known, kind);

@@ -1,24 +1,24 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sets of candidates: which are tried, which are right, and what stands in where none is. */
+/* Sets of candidates: their order, the right ones, and the curve when none is right. */
 #include <gsl/gsl_cdf.h>
 #include <math.h>
 #include <string.h>
 
 #include "effect_search/policy.h"
 
-/* Schwarz's criterion is -2 ln of a probability but for a constant; a difference of 10 is very
- * strong (Kass and Raftery 1995, section 3.2). */
+/* Schwarz's criterion is -2 ln of a probability up to a constant; a difference of 10 is very strong
+ * (Kass and Raftery 1995, section 3.2). */
 #define SCORE_GAIN 10.0
-/* A set with a shape that is not fitted yet may leave this share of what there is, */
+/* Maximum residual of a set with an unfitted shape, as a share of the residual without effects, */
 #define FITTING_SHARE 0.1
-/* and this many times what a curve leaves (both tuned on reports/loop_scans.md). */
+/* and as a multiple of a curve's residual (both tuned on reports/loop_scans.md). */
 #define FITTING_TIMES 30.0
-/* What a place, a middle, a length or a period costs that was sought over a grid, as -2 ln of a
- * probability: of some eight that rows this noisy tell apart one is right. A column costs 2. An
- * oracle that orders single effects so names 87 of 100 turned pairs; with every number at 2, 85;
- * without, 81; Bayes' rule over the grid itself, 89 (tests/bench/loop_oracle.py). */
+/* Penalty of a place, a middle, a length or a period sought over a grid, as -2 ln of a probability:
+ * of some eight values that rows this noisy tell apart one is right. A column costs 2. An oracle
+ * that orders single effects by this names 87 of 100 turned pairs; with every number at 2, 85;
+ * without a penalty, 81; Bayes' rule over the grid itself, 89 (tests/bench/loop_oracle.py). */
 #define SHAPE 4.0
-/* Effects that one curve does not stand for. */
+/* Number of effects from which one curve does not replace them. */
 enum { FEW = 2 };
 
 /* The next set of some candidates, in ascending order; 0 behind the last one. */
@@ -44,8 +44,8 @@ static placed_masks find_placed_masks(const fg_search *s) {
   return masks;
 }
 
-/* Few smooth effects, which can stand for each other; ripples and steps stand alone, and all that
- * are there may be. */
+/* Returns true for a set of few smooth effects. Smooth effects are nearly collinear; ripples and
+ * steps are distinct and do not count. */
 static bool is_small(unsigned mask, placed_masks placed, size_t max) {
   unsigned held = mask & placed.all, more = held & ~placed.known;
   bool one_more = (held & placed.known) == placed.known && fg_search_bits(more) <= 1;
@@ -53,7 +53,7 @@ static bool is_small(unsigned mask, placed_masks placed, size_t max) {
          (fg_search_bits(mask) <= max || one_more || held == placed.all);
 }
 
-/* Whether a mask is a set that is there, of some effects. */
+/* Returns true when a mask holds exactly the effects of a set. */
 static bool holds(const fg_search *s, const fg_effect_set *set, unsigned mask) {
   size_t count = 0;
   for (size_t e = 0; e < s->out->candidate_count; e++) {
@@ -75,8 +75,8 @@ static bool is_set(const fg_search *s, unsigned mask) {
   return s->policy->keeps_collinear || !fg_search_has_collinear(s->out, mask);
 }
 
-/* What one more effect gains by chance, with the columns that it adds. One that was sought over
- * places has had more chances. */
+/* Returns the gain of one more effect by chance, with its columns. An effect sought over places
+ * gains more by chance. */
 static double chance_of(const fg_search *s, size_t e, double columns) {
   const fg_search_policy *policy = s->policy;
   if (!policy->counts_columns) return policy->one_more_chi2;
@@ -86,7 +86,7 @@ static double chance_of(const fg_search *s, size_t e, double columns) {
   return placed ? fmax(chance, policy->placed_chi2) : chance;
 }
 
-/* Whether one more listed effect, or a smooth curve, takes more than it may. */
+/* Returns true when one more listed effect, or a smooth curve, explains more than allowed. */
 static bool one_more_helps(const fg_search *s, const fg_search_baseline *y,
                            const fg_explanation *m) {
   unsigned more = fg_search_mask_of(s->out, false) & ~m->mask;
@@ -101,15 +101,15 @@ static bool one_more_helps(const fg_search *s, const fg_search_baseline *y,
   return s->policy->has_rivals && fg_search_curve_helps(s, y, m->mask, known_to);
 }
 
-/* What a pass over the sets of one size looks for. */
+/* Criteria of a pass over the sets of one size. */
 typedef struct pass {
   placed_masks placed;
   size_t size, max;
-  bool exact; /* right without what the forms of effects may leave */
+  bool exact; /* right without the allowance for errors of the effects' bases */
   double min; /* and with less than this */
 } pass;
 
-/* Keeps the sets of one size that are right; `best` becomes the best of those that are tried. */
+/* Keeps the right sets of one size; `best` gets the best set tried. */
 static void try_size(fg_search *s, const fg_search_baseline *y, const pass *p,
                      fg_explanation *best) {
   unsigned listed = fg_search_mask_of(s->out, false);
@@ -124,8 +124,8 @@ static void try_size(fg_search *s, const fg_search_baseline *y, const pass *p,
   }
 }
 
-/* What is right only because forms of effects are not known exactly gives way to one effect more
- * that is right without that, where the difference is more than all that forms leave. */
+/* Replaces sets that are right only by the allowance for errors of the bases: one effect more that
+ * is right without it is better, if the difference exceeds the whole allowance. */
 static void try_exact(fg_search *s, const fg_search_baseline *y, pass p) {
   fg_explanations *out = s->out;
   fg_explanation each[FG_EXPLANATIONS_MAX], best = {.excess = INFINITY};
@@ -145,8 +145,7 @@ static void try_exact(fg_search *s, const fg_search_baseline *y, pass p) {
   out->total = total;
 }
 
-/* Listed sets by size; the first size with one that is right ends the search. Returns the best of
- * those that were tried. */
+/* Tries listed sets by size, up to the first size with a right one. Returns the best set tried. */
 static fg_explanation try_listed(fg_search *s, const fg_search_baseline *y) {
   fg_explanation best = {.excess = INFINITY};
   pass p = {.placed = find_placed_masks(s),
@@ -175,7 +174,8 @@ static void drop_worse(const fg_search *s, const fg_search_baseline *y) {
   out->count = kept;
 }
 
-/* Numbers of its effects' shapes that are no columns: what Akaike's criterion does not know of. */
+/* Returns the number of shape parameters, which are no columns and which Akaike's criterion lacks.
+ */
 static double shapes_of(const fg_search *s, unsigned mask) {
   double cost = 0;
   for (size_t e = 0; e < s->out->candidate_count; e++) {
@@ -190,8 +190,7 @@ static double likelihood(const fg_search *s, const fg_explanation *m) {
   return fg_search_akaike(m) + m->width + fg_search_causes(m->mask) + shapes_of(s, m->mask);
 }
 
-/* The width of the strip puts those that stay in order. Its noise is what the best of them leaves
- * of it. */
+/* Orders tied sets by the width of the strip. Its noise is the residual of the best of them. */
 static void order_by_width(const fg_search *s) {
   fg_explanations *out = s->out;
   double width = INFINITY;
@@ -210,7 +209,7 @@ static void order_by_width(const fg_search *s) {
 
 /* ---- free curves ---- */
 
-/* Schwarz's criterion of a set with a free curve, as far as a listed effect beside it goes. */
+/* Returns Schwarz's criterion of a set with a free curve, relative to a listed effect beside it. */
 static double free_score(const fg_search *s, const fg_search_baseline *y, fg_explanation m) {
   double share = s->policy->curve_share;
   if (!isfinite(m.excess)) return INFINITY;
@@ -246,8 +245,8 @@ static void try_curves_beside(const fg_search *s, const fg_search_baseline *y, u
       try_curves(s, y, curves, mask, trial);
 }
 
-/* A free curve, alone or beside few listed effects: the one that leaves least for its columns; the
- * best listed set stands when none does better. */
+/* Tries a free curve, alone or beside few listed effects: the best one for its number of columns;
+ * the best listed set stays when none is better. */
 static fg_explanation try_free(const fg_search *s, const fg_search_baseline *y,
                                fg_explanation best) {
   unsigned free = fg_search_mask_of(s->out, true);
@@ -261,8 +260,8 @@ static fg_explanation try_free(const fg_search *s, const fg_search_baseline *y,
   return trial.best;
 }
 
-/* Two curves, alone or beside one listed effect: a carriage that runs unevenly also sways. One view
- * could not tell them. */
+/* Tries two curves, alone or beside one listed effect: a carriage that runs unevenly also sways.
+ * One view cannot separate them. */
 static fg_explanation try_two_free(const fg_search *s, const fg_search_baseline *y,
                                    fg_explanation best) {
   const fg_explanations *out = s->out;
@@ -294,7 +293,7 @@ bool fg_search_hopes_for_shape(const fg_search *s, const fg_search_baseline *y,
 
 /* ---- all of them ---- */
 
-/* What stands in where no listed set is right. */
+/* Finds the curve that replaces the listed sets where none is right. */
 static void stand_in(fg_search *s, const fg_search_baseline *y, fg_explanation best) {
   fg_explanation curve = try_free(s, y, best);
   if (s->policy->has_rivals) {

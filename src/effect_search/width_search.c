@@ -12,20 +12,20 @@
 #include "core/spread.h"
 #include "effect/columns.h"
 
-/* Chance of a claim where there is nothing. One look per effect, at every scan that is ever
- * measured. */
+/* P-value of a claim: one test per effect, in every scan that is ever measured. */
 #define CHANCE 0.001
-/* Standard uncertainty of half the width at FG_FIELD_HALF_MM from the middle because the edge model
- * errs with the place. Tuned on the shaded renders of reports/loop_width.md (gamma, shading,
- * flare), where it was 0.02 in the mean square and 0.04 at most. */
+/* Standard uncertainty of half the width at FG_FIELD_HALF_MM from the middle by the edge model's
+ * error over the place. Tuned on the shaded renders of reports/loop_width.md (gamma, shading,
+ * flare), where it was 0.02 rms and 0.04 at most. */
 #define PLACE_UM 0.04
 /* Rows this far off (dust, a burr) lose their weight. */
 #define OUTLIER_SIGMAS 5.0
 enum { OUTLIER_ROUNDS = 2 };
-/* With fewer bumps and lands nothing is said. */
+/* Minimum number of bumps and lands for a claim. */
 enum { GROUPS_MIN = 6 };
-/* Twice and four times the direction of the edge's normal: a strip has two edges that look opposite
- * ways, so odd multiples cancel. One more tells bumps from lands, which bend differently. */
+/* Nuisances: twice and four times the direction of the edge's normal (a strip has two opposite
+ * edges, so odd multiples cancel), and one that separates bumps from lands, which bend differently.
+ */
 enum { NUISANCES = 5, UNKNOWNS = FG_WIDTH_EFFECTS_MAX + NUISANCES, AXES = 2 };
 /* A column of less mean square than this is none. */
 #define VANISHED 1e-9
@@ -87,7 +87,7 @@ static void put_effects(width_fit *f, const fg_width_findings *findings, double 
   }
 }
 
-/* What the scanner's fields do to the width is no effect of it. */
+/* Removes the stretch by the scanner's fields: it is no effect of the width. */
 static void take_stretch_out(width_fit *f, const fg_effect_set *set, double *work) {
   for (size_t e = 0; e < set->count; e++) {
     const fg_effect_found *effect = &set->effects[e];
@@ -187,9 +187,9 @@ static fg_status drop_outliers(fg_context *ctx, width_fit *f) {
 
 /* ---- uncertainty ---- */
 
-/* Takes the rows [from, to) of one view out of the equations. Beside the mean of what is left, the
- * sum of squares is that beside the old mean less the square of its sum over its weight; and about
- * the old mean, what is left sums to minus what goes. */
+/* Removes the rows [from, to) of one view from the equations. Beside the mean of the remaining
+ * rows, the sum of squares is that beside the old mean less the square of its sum over its weight;
+ * about the old mean, the remaining rows sum to minus the removed ones. */
 static void remove_view(const width_fit *f, size_t from, size_t to, fg_normal_equations *system) {
   double sum[UNKNOWNS] = {0}, value = 0, weight = 0;
   for (size_t i = from; i < to; i++) {
@@ -208,8 +208,8 @@ static void remove_view(const width_fit *f, size_t from, size_t to, fg_normal_eq
   if (rest > 0 && weight > 0) fg_normal_add(system, sum, value / rest, -rest);
 }
 
-/* Leaves out one group after the other (the jackknife, which errs on the safe side with few
- * groups); variance of every effect, and how many groups there are. */
+/* Computes variances by leaving out one group after the other (jackknife, conservative with few
+ * groups): variance of every effect, and the number of groups. */
 static size_t find_variances(const width_fit *f, double *variance) {
   size_t groups = 0;
   for (size_t e = 0; e < f->effects; e++)
@@ -233,7 +233,8 @@ static size_t find_variances(const width_fit *f, double *variance) {
   return groups;
 }
 
-/* What an error of 1 um at FG_FIELD_HALF_MM along an axis of the glass does to an effect. */
+/* Returns the change of an effect by an error of 1 um at FG_FIELD_HALF_MM along an axis of the
+ * glass. */
 static double leans(const width_fit *f, size_t e, size_t axis) {
   double sum = 0;
   for (size_t i = 0; i < f->count; i++) {
@@ -244,7 +245,7 @@ static double leans(const width_fit *f, size_t e, size_t axis) {
   return sum;
 }
 
-/* ---- what is said of it ---- */
+/* ---- claims ---- */
 
 static void judge(const width_fit *f, size_t e, double variance, size_t groups,
                   fg_width_effect *one) {

@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Round holes and discs as parts: each is an overall circle, and nothing else.
+/* Rows of round holes and discs: each part is one circle.
  *
- * What tells the scanner from the discs is that the scanner does the same to all of them. A disc's
- * own form (an oval pin, the wall of a hole that shows at one side) does not repeat, so part
- * effects are not sought on a plate; in a single ring an oval is the same thing as a scale and a
- * shear. How rough each edge is differs by tens of times between features of one picture: every
- * disc's rows carry their own noise.
- */
+ * The scanner acts on all discs alike, which separates it from the discs. A disc's own form error
+ * (an oval pin, the wall of a hole that shows at one side) does not repeat, so part effects are not
+ * sought on a plate; on a single ring ovality is collinear with a scale and a shear. The roughness
+ * of edges differs by factors of ten and more between features of one picture, so every disc's rows
+ * have their own noise. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -44,8 +43,8 @@ static void know_radius(fg_edge_fit *edge_fit, size_t view, double diameter_mm) 
   edge_fit->known_count++;
 }
 
-/* Each disc and each diameter is used once. As many diameters as discs go by rank, which a wrong
- * scale cannot confuse; else the nearest pairs go first. */
+/* Assigns known diameters to discs, each used once. Equal numbers are assigned by rank, which is
+ * independent of the scale; else the nearest pairs go first. */
 static void match(fg_edge_fit *edge_fit, const sized *discs, size_t count, const sized *known,
                   size_t known_count, bool *taken) {
   for (size_t i = 0; i < count && count == known_count; i++)
@@ -103,8 +102,8 @@ static fg_status match_diameters(fg_context *ctx, fg_edge_fit *edge_fit) {
 
 /* ---- rows ---- */
 
-/* Mean of a block's usable stations, taken in polar coordinates: a mean of points lies inside the
- * circle by the sagitta. */
+/* Averages a block's usable stations in polar coordinates: a mean of points lies inside the circle
+ * by the sagitta. */
 static bool average_block(const fg_disc *disc, size_t from, size_t to, fg_edge_fit_row *row) {
   double n = 0, radius = 0, turn = 0, first = 0;
   for (size_t k = from; k < to && k < disc->station_count; k++) {
@@ -129,8 +128,8 @@ static bool average_block(const fg_disc *disc, size_t from, size_t to, fg_edge_f
   return true;
 }
 
-/* Robust sd of the rows against their neighbours at the lag: the noise of the edge, whatever form
- * the disc has, and whatever jumps and waves a scanner puts into it. */
+/* Robust sd of the rows against their neighbours at the lag: the noise of the edge, independent of
+ * the disc's form error and of a scanner's jumps and waves. */
 static double noise_beside_roundness(const fg_disc *disc, const fg_edge_fit_row *rows, size_t count,
                                      double *work) {
   for (size_t i = 0; i < count; i++) {

@@ -8,10 +8,10 @@
 #include "core/memory.h"
 #include "core/select.h"
 
-/* Radii of one bump in two scans may differ by so much: a ripple of the carriage moves them by a
- * tenth and more. */
+/* Maximum relative difference of one bump's radii in two scans: a ripple of the carriage changes
+ * them by a tenth and more. */
 #define SAME_SHARE 0.2
-/* Half the angle between the outer bumps, at the least: of one bump it is nothing. */
+/* Lower limit of half the angle between the outer bumps, which is 0 for one bump. */
 #define HALF_SPAN_MIN_RAD 0.1
 static double turn_to(double angle, double near) {
   return angle - 2 * M_PI * round((angle - near) / (2 * M_PI));
@@ -160,9 +160,9 @@ static void count_arc(fg_edge_fit_part *part, int number, double length_mm) {
   part->mean_radius_mm += (radius - part->mean_radius_mm) / n;
 }
 
-/* The mean of points on an arc lies inside it by the sagitta's mean, (2h)²/24R with h half the
- * block; a shift of some nanometres, put back by the caller's geometry being fitted to the same
- * means. Rows of one run of labels [first, last]. */
+/* Adds the rows of one run of labels [first, last]. The mean of points on an arc lies inside it by
+ * the sagitta's mean, (2h)²/24R with h half the block: some nanometres, which cancel because the
+ * caller's geometry is fitted to the same means. */
 static fg_status add_run(fg_context *ctx, fg_edge_fit *edge_fit, size_t v, size_t first,
                          size_t last, size_t group) {
   const fg_edge_fit_view *view = &edge_fit->views[v];
@@ -210,7 +210,8 @@ static size_t land_numbers(const fg_foil *foil) {
   return (size_t)max + 1;
 }
 
-/* Groups are what was drawn independently: every bump (over all views of its part) and land. */
+/* Adds the rows of a view. Groups are the independent units: every bump (over all views of its
+ * part) and land. */
 static fg_status add_view(fg_context *ctx, fg_edge_fit *edge_fit, size_t v, size_t first_group) {
   const fg_foil *foil = edge_fit->views[v].foil;
   const fg_edge_fit_part *part = &edge_fit->parts[edge_fit->views[v].part];
@@ -230,7 +231,7 @@ static fg_status add_view(fg_context *ctx, fg_edge_fit *edge_fit, size_t v, size
   return FG_OK;
 }
 
-/* Gives empty group numbers up, so that groups are 0 .. group_count - 1. */
+/* Renumbers groups without gaps: 0 .. group_count - 1. */
 static fg_status pack_groups(fg_context *ctx, fg_edge_fit *edge_fit, size_t max) {
   size_t *packed = NULL;
   FG_TRY(fg_memory_allocate(ctx, max, sizeof *packed, (void **)&packed));
@@ -272,8 +273,8 @@ static fg_status fill(fg_context *ctx, fg_edge_fit *edge_fit) {
   return pack_groups(ctx, edge_fit, first_group);
 }
 
-/* Views that are left out may take a part with them: it has no geometry. Parts are numbered anew,
- * 0 .. part_count - 1 in the order of their first views. */
+/* Copies the usable views. A part may lose all its views, and with them its geometry: parts are
+ * renumbered 0 .. part_count - 1 in the order of their first views. */
 static fg_status take_views(fg_context *ctx, const fg_edge_fit_view *views, size_t count,
                             fg_edge_fit *edge_fit) {
   size_t *given = NULL; /* the caller's number of each new part */
@@ -291,7 +292,7 @@ static fg_status take_views(fg_context *ctx, const fg_edge_fit_view *views, size
   return FG_OK;
 }
 
-/* Groups together, and within them views and places in order: what the engine expects. */
+/* Orders rows by group, then view and place, as the engine requires. */
 static int compare_rows(const void *a, const void *b) {
   const fg_edge_fit_row *p = a, *q = b;
   if (p->group != q->group) return (p->group > q->group) - (p->group < q->group);

@@ -11,15 +11,15 @@
 #include "rows/edge_fit.h"
 
 enum { FIT_ROUNDS = 8 };
-/* A step of Gauss-Newton that ends the fit, mm and rad; damping of a diagonal, and beside it;
- * growth of the residual that is rounding. */
+/* Step of Gauss-Newton that ends the fit, mm and rad; damping as a share of a diagonal, and
+ * absolute; growth of the residual by rounding. */
 #define STEP_END   1e-9
 #define DAMP_SHARE 1e-12
 #define DAMP       1e-12
 #define ROUNDING   1e-9
 
-/* Parameters: per part R0, then X, beta, R of every bump; per view O.x, O.y, and a turn where it
- * is not the part's first. */
+/* Returns the first parameter of a part. Order: per part R0, then X, beta, R of every bump; per
+ * view O.x, O.y, and a turn unless it is the part's first. */
 static size_t first_of_part(const fg_edge_fit *edge_fit, size_t part) {
   size_t at = 0;
   for (size_t p = 0; p < part; p++)
@@ -186,7 +186,8 @@ static void move_geometry(fg_edge_fit *edge_fit, const gsl_vector *step) {
   }
 }
 
-/* Normal equations, with a trace of damping for what no row tells (a bump without points). */
+/* Solves the normal equations, slightly damped for parameters that no row determines (a bump
+ * without rows). */
 static fg_status solve_step(fg_context *ctx, const fg_edge_fit *edge_fit, const double *residual,
                             const double *jacobian, gsl_matrix *normal, gsl_vector *step) {
   size_t n = edge_fit->parameters, rows = edge_fit->row_count;

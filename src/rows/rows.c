@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the rows of foils and of discs share. */
+/* Functions common to the rows of foils and of discs. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,7 +10,7 @@
 
 /* Edges lie so far beside the middle of the strip, and are moved by effects. */
 #define EDGE_ROOM_MM 0.2
-/* Knots of free curves that the few places of discs can tell. */
+/* Maximum number of knots of free curves that the few places of discs determine. */
 enum { DISC_KNOTS = 12, COARSE_KNOTS = 6 };
 
 void fg_edge_fit_free(fg_edge_fit *edge_fit) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The rows' noise by restricted likelihood: what every arc holds beside polynomials along it. */
+/* Noise of the rows by restricted likelihood, beside polynomials along every arc. */
 #include "rows/scatter.h"
 
 #include <math.h>
@@ -9,28 +9,27 @@
 #include "core/dot.h"
 #include "core/memory.h"
 
-/* The scatter of edges is correlated over 0.02 to 0.1 mm of arc on real flatbeds (reports/real);
- * a little more on either side keeps an estimate from sticking to the bound. */
+/* Bounds of the range: the scatter of edges is correlated over 0.02 to 0.1 mm of arc on real
+ * flatbeds (reports/real); a margin on either side keeps estimates off the bound. */
 #define RANGE_MIN_MM 0.01
 #define RANGE_MAX_MM 0.12
 #define SHARE_MAX    0.8
 /* Rows are independent unless a correlation is likelier by this: chi² of two numbers, 1 in 20. */
 #define GAIN_MIN 6.0
-/* Polynomials along an arc: one per so much of it, which leaves what is shorter; their number; rows
- * for each of them. */
+/* Polynomials along an arc: one per this length, which leaves shorter waves; their number; minimum
+ * number of rows for each. */
 #define POLYNOMIAL_MM 0.45
 enum { POLYNOMIALS_MIN = 6, POLYNOMIALS_MAX = 16, ROWS_EACH = 4 };
-/* Waves between these lengths, mm: longer than what the form of the correlation is fitted to, and
- * shorter than what effects make; what is in them says whether the form holds towards long ones. A
- * wave of noise may be so many times larger than the form says. */
+/* Band of wave lengths, mm, that tests the model of the correlation: longer than the model is
+ * fitted to, and shorter than effects. A wave of noise may exceed the model by SWELL_MAX. */
 #define WAVE_SHORT_MM 0.4
 #define WAVE_LONG_MM  0.75
 #define SWELL_MAX     2.5
-/* What such a wave is worth, with what all shorter ones say: on 200 clean renders the noise of long
- * waves scatters by a tenth (reports/loop_rough.md, p-values). */
+/* Dof of such a wave, shorter waves included: on 200 clean renders the noise of long waves scatters
+ * by a tenth (reports/loop_rough.md, p-values). */
 #define DOF_PER_WAVE 2.0
-/* Arcs whose square is so many standard errors above the median one hold something else: a step,
- * dirt. So many in all may. */
+/* Arcs whose square exceeds the median one by so many standard errors have another deviation: a
+ * step, dirt. At most this share of the arcs. */
 #define ARC_SIGMAS 5.0
 #define ARCS_MAX   0.25
 /* Steps of the climb: of the range and of the share's odds; halved so often. */
@@ -39,7 +38,7 @@ enum { HALVINGS = 4, CLIMBS = 40 };
 
 typedef struct arc {
   size_t from, to, rows, polynomials;
-  bool out; /* holds something else */
+  bool out; /* has a deviation of its own */
   double square, dof;
 } arc;
 
@@ -51,7 +50,8 @@ typedef struct search {
   double *left, *columns; /* the same, whitened */
   arc *arcs;
   size_t arc_count;
-  double shared; /* numbers that went with what all bumps share, beyond the arcs' own */
+  double shared; /* number of parameters that the shape common to all bumps uses, beyond the arcs'
+                    own */
 } search;
 
 static fg_status list_arcs(search *s) {
@@ -86,7 +86,7 @@ static void fill_polynomials(search *s) {
   }
 }
 
-/* Takes the polynomials out of one arc; returns ln of the determinant of their products. */
+/* Projects one arc beside its polynomials; returns ln of the determinant of their products. */
 static double take_out(search *s, arc *a) {
   size_t rows = s->edge_fit->row_count, n = a->to - a->from;
   double determinant = 0, *left = s->left + a->from;
@@ -100,7 +100,7 @@ static double take_out(search *s, arc *a) {
         own[i] -= along * before[i];
     }
     double rest = fg_dot(own, own, n);
-    if (!(rest > 1e-12 * square)) { /* rounding: it lies in those before it */
+    if (!(rest > 1e-12 * square)) { /* rounding: it lies in the span of those before it */
       memset(own, 0, n * sizeof *own);
       continue;
     }
@@ -116,7 +116,8 @@ static double take_out(search *s, arc *a) {
   return determinant;
 }
 
-/* -2 ln of the restricted likelihood but for a constant; a row's variance takes its best value. */
+/* Computes -2 ln of the restricted likelihood up to a constant; a row's variance has its best
+ * value. */
 static fg_status deviance(search *s, const fg_scatter *scatter, double *value) {
   size_t rows = s->edge_fit->row_count;
   fg_whitening whitening;
@@ -232,7 +233,7 @@ static int compare(const void *a, const void *b) {
   return (p > q) - (p < q);
 }
 
-/* Leaves arcs out that hold more than noise; returns how many. */
+/* Leaves out arcs with more than noise; returns their number. */
 static fg_status leave_out(search *s, const fg_scatter *scatter, size_t *out) {
   double value, *each = NULL;
   *out = 0;
@@ -261,7 +262,7 @@ static void find_waves(const fg_edge_fit *edge_fit, const arc *a, size_t *from, 
                      fmin(floor(2 * length / WAVE_SHORT_MM), (double)(a->rows / ROWS_EACH)));
 }
 
-/* The same deviation of every bump is no noise: what is left of the waves of one degree. */
+/* Waves of one degree, less the shape common to all bumps, which is no noise. */
 typedef struct waves {
   double sum, square, count;
 } waves;
@@ -280,7 +281,8 @@ static void add_waves(const search *s, const arc *a, waves of_bumps[POLYNOMIALS_
   }
 }
 
-/* Mean square along such waves over that of all rows, both whitened: 1 where the form holds. */
+/* Finds the mean square of such waves over that of all rows, both whitened: 1 where the model is
+ * valid. */
 static fg_status find_swell(search *s, fg_scatter *scatter) {
   waves bumps[POLYNOMIALS_MAX] = {{0}}, lands = {0};
   double value;
@@ -343,8 +345,8 @@ static double polynomials_of_bumps(const search *s) {
   return 0;
 }
 
-/* What the bumps share, of those that hold nothing else as far as that shows before the noise is
- * known. */
+/* Removes the shape common to the bumps, estimated from arcs that show no deviation of their own
+ * before the noise is known. */
 static fg_status take_shared(search *s, double *weighted) {
   const fg_scatter white = {.integral = 1};
   bool *left_out = NULL;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What all bumps share of a deviation from their circles. It is the part's, not the edge's noise.
- */
+/* Shape common to all bumps, as a deviation from their circles: it is the part's, not the edge's
+ * noise. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,10 +9,10 @@
 #include "core/memory.h"
 #include "rows/scatter.h"
 
-/* As many polynomials as the search can follow over a bump's arc (effect/curves.c), with the two
- * lowest. Of fewer bumps too much of each would go with what they share. */
+/* Number of polynomials that the search can follow over a bump's arc (effect/curves.c), with the
+ * two lowest. With fewer bumps than the minimum, the common shape would absorb too much of each. */
 enum { POLYNOMIALS = 18, BUMPS_MIN = 4 };
-/* Rounding: a polynomial lies in those before it. */
+/* Rounding limit: a polynomial lies in the span of those before it. */
 #define REST_MIN 1e-9
 
 static void take(const double *unit, size_t n, double *from) {

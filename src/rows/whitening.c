@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Rows with correlated noise made independent: banded Cholesky of a Gaussian correlation, the
- * innovations of a Kalman filter for an exponential one, which is that of a state with one step of
- * memory. */
+/* Whitening of rows with correlated noise: banded Cholesky for a Gaussian correlation, the
+ * innovations of a Kalman filter with one state for an exponential one. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,7 +10,7 @@
 
 /* A Gaussian correlation over more ranges than this is none: exp(-9) = 1e-4. */
 #define BAND_RANGES 3.0
-/* The least that a row holds beside those before it, of its own variance. */
+/* Lower limit of a row's innovation variance, as a share of its own. */
 #define PIVOT_MIN 1e-4
 
 /* A disc's edge is cut into arcs of this length. */
@@ -31,7 +30,7 @@ static double distance(const fg_edge_fit *edge_fit, size_t a, size_t b) {
   return fabs(edge_fit->rows[a].s_mm - edge_fit->rows[b].s_mm);
 }
 
-/* The most rows that lie within a length of one. */
+/* Returns the largest number of rows within a length of one row. */
 static size_t rows_within(const fg_edge_fit *edge_fit, double length_mm) {
   size_t max = 1;
   for (size_t i = 0, from = 0, end = 0; i < edge_fit->row_count; i++) {
@@ -46,8 +45,8 @@ static size_t rows_within(const fg_edge_fit *edge_fit, double length_mm) {
   return max;
 }
 
-/* Row i of the banded factor, from the rows of it before; `lower` is `band` + 1 wide, the diagonal
- * first. */
+/* Computes row i of the banded factor from the rows before it; `lower` is `band` + 1 wide, the
+ * diagonal first. */
 static void factor_row(const fg_edge_fit *edge_fit, const fg_whitening *w, size_t i, size_t start,
                        double *lower) {
   const fg_scatter *s = &edge_fit->scatter;
@@ -81,7 +80,7 @@ static fg_status factor(fg_context *ctx, const fg_edge_fit *edge_fit, fg_whiteni
   return FG_OK;
 }
 
-/* Per row: what of the state is left from the row before, and what of an innovation enters it. */
+/* Computes, per row, the decay of the state from the row before, and the gain of an innovation. */
 static void filter(const fg_edge_fit *edge_fit, fg_whitening *w) {
   const fg_scatter *s = &edge_fit->scatter;
   double known = s->share; /* variance of the state */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which effect a step accepts: the best claim that passes every gate, else a curve. */
+/* Choice of the effect that a step accepts: the best claim that passes every gate, else a curve. */
 #include <math.h>
 #include <string.h>
 
@@ -9,13 +9,13 @@
 #include "table_loop/serial.h"
 #include "table_loop/step.h"
 
-/* What comes after a first claim must be so many times as sure: its null leans on the first. */
+/* Factor by which the level is lowered after a first claim, on which the later null depends. */
 enum { LATER_CLAIMS = 2 };
-/* Beside an effect another one explains more when chance would do so less often than this
- * (what that finds and misses: reports/loop_power.md). */
+/* P-value at which an effect explains more beside another one (power and errors:
+ * reports/loop_power.md). */
 #define BESIDE_P 0.003
-/* Beside the best outlier a claim still shows when chance would do as much less often than this:
- * milder than a claim, for the outlier has taken some of it. */
+/* P-value that a claim needs beside the largest outlier: milder than a claim's, because the outlier
+ * has absorbed part of it. */
 #define HINGE_P 0.02
 
 typedef enum family {
@@ -49,7 +49,7 @@ static bool best_passing(const fg_engine_run *run, const fg_engine_step *step, f
   return found;
 }
 
-/* The noise as it is beside a stand. */
+/* Estimates the noise beside a stand. */
 static fg_status noise_beside(fg_context *ctx, const fg_engine_run *run,
                               const fg_engine_stand *stand, fg_engine_noise *noise) {
   fg_engine_set with;
@@ -58,7 +58,7 @@ static fg_status noise_beside(fg_context *ctx, const fg_engine_run *run,
   return fg_engine_fit_set(ctx, run->problem, run->train, &with, true, noise, NULL, NULL, NULL);
 }
 
-/* Moves a stand's shape off the grid of its start values. */
+/* Refines a stand's shape off the grid of its start values. */
 static fg_status sharpen(fg_context *ctx, const fg_engine_run *run, fg_engine_noise noise,
                          fg_engine_stand *stand) {
   fg_engine_set with;
@@ -71,12 +71,12 @@ static fg_status sharpen(fg_context *ctx, const fg_engine_run *run, fg_engine_no
 /* A curve that passes, and the listed effect that would be taken. */
 typedef struct basis_choice {
   size_t winner, curve;
-  bool wrong; /* the winner's form is not in the table: the curve is right */
+  bool wrong; /* the winner's basis is not the true one: the curve is right */
   fg_engine_noise noise;
 } basis_choice;
 
-/* Unless another listed effect leaves the curve nothing to explain: levels of a die in turn look
- * like a wave over the foils. */
+/* Keeps the winner when another listed effect leaves the curve nothing to explain: levels of
+ * alternating dies look like a wave over the foils. */
 static fg_status right_basis(fg_context *ctx, const fg_engine_run *run, const fg_engine_step *step,
                              basis_choice *choice) {
   double best = -INFINITY;
@@ -95,8 +95,8 @@ static fg_status right_basis(fg_context *ctx, const fg_engine_run *run, const fg
   return FG_OK;
 }
 
-/* The best curve over the winner's coordinate explains what the winner does not: the form is not in
- * the table, whatever its nearest relative. */
+/* Tests whether the best curve over the winner's coordinate explains more than the winner: then the
+ * true basis is not in the table. */
 static fg_status wrong_basis(fg_context *ctx, const fg_engine_run *run, const fg_engine_step *step,
                              basis_choice *choice) {
   const fg_engine_stand *winner = &step->stand[choice->winner];
@@ -127,8 +127,8 @@ static fg_status gate(fg_context *ctx, const fg_engine_run *run, const fg_engine
   return FG_OK;
 }
 
-/* What hinges on one row is that row's doing: beside the row that stands out most it must still
- * show. */
+/* Tests whether a claim depends on one row: it must stay significant beside the row with the
+ * largest residual. */
 static fg_status hinges_on_a_row(fg_context *ctx, const fg_engine_run *run,
                                  const fg_engine_step *step, fg_engine_noise noise, size_t stand,
                                  bool *hinges) {
@@ -162,8 +162,8 @@ static fg_status take_curve(fg_context *ctx, fg_engine_run *run, fg_engine_step 
   return FG_OK;
 }
 
-/* The curve given, then the next best over the same coordinate: knots are chosen by what predicts.
- */
+/* Accepts the given curve, or the next best one over the same coordinate: cross-validation chooses
+ * the knots. */
 static fg_status take_best_curve(fg_context *ctx, fg_engine_run *run, fg_engine_step *step,
                                  size_t curve, bool *accepted) {
   double below = step->stand[curve].z;
@@ -213,8 +213,8 @@ static fg_status take_claim(fg_context *ctx, fg_engine_run *run, const fg_engine
   return FG_OK;
 }
 
-/* The wrong rows are two that changed places, or one of them: the exchange explains as much with
- * nothing to estimate. No heavy tail has them fit in each other's places. */
+/* Returns true when the outlier rows are two exchanged ones, or one of them: the exchange explains
+ * as much without any parameter. A heavy tail would not make them fit in each other's places. */
 static bool is_of_exchange(const fg_engine_run *run, const fg_engine_step *step) {
   const fg_loop_candidate *wrong = &step->outlier.candidate;
   const fg_engine_stand *exchange = &step->stand[fg_engine_exchanged_rows(run)];
@@ -229,7 +229,7 @@ static bool is_of_exchange(const fg_engine_run *run, const fg_engine_step *step)
   return step->judgement.exchange_ratio <= slack * step->outlier.ratio;
 }
 
-/* Lone rows that pass, when they explain at least as much as the best candidate. */
+/* Returns true when significant outlier rows explain at least as much as the best candidate. */
 static bool outlier_first(const fg_engine_run *run, const fg_engine_step *step, bool listed,
                           size_t best, size_t *winner) {
   double ratio = listed ? step->judgement.score[best].ratio : 1;
@@ -248,8 +248,8 @@ static bool outlier_first(const fg_engine_run *run, const fg_engine_step *step, 
   return found;
 }
 
-/* A second form over a coordinate that a claim lives on already: two forms that the table lists
- * make one that it does not. The claim gives way to a curve, where one serves. */
+/* Handles a second basis over a claim's coordinate: two listed bases suggest one that is not
+ * listed. A curve replaces the claim if one fits. */
 static fg_status second_basis(fg_context *ctx, fg_engine_run *run, const fg_engine_step *step,
                               size_t winner, bool *accepted) {
   const fg_loop_candidate *candidate = &step->stand[winner].candidate;
@@ -281,8 +281,8 @@ static fg_status second_basis(fg_context *ctx, fg_engine_run *run, const fg_engi
   return status;
 }
 
-/* A form whose place or period was searched for, over an order that any table has, gives way to a
- * recorded column without such freedom that does as well. */
+/* Replaces a basis with a sought place or period, over an order that any table has, by a recorded
+ * column without such parameters that explains as much. */
 static fg_status prefer_recorded(fg_context *ctx, const fg_engine_run *run,
                                  const fg_engine_step *step, fg_engine_noise noise,
                                  size_t *winner) {
@@ -305,7 +305,7 @@ static fg_status prefer_recorded(fg_context *ctx, const fg_engine_run *run,
   return FG_OK;
 }
 
-/* The listed winner, or what it stands for. */
+/* Accepts the listed winner, or the effect that replaces it. */
 static fg_status decide_listed(fg_context *ctx, fg_engine_run *run, fg_engine_step *step,
                                size_t winner, bool *accepted) {
   basis_choice choice = {.winner = winner};

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a step takes: a claim described, its place in the set, and the findings about the scatter
- * with their classes. */
+/* Acceptance of a claim: its description, its place in the set, and the alias classes of findings
+ * about the noise. */
 #include "table_loop/accept_claim.h"
 
 #include <math.h>
@@ -32,8 +32,8 @@ void fg_engine_take(fg_engine_run *run, const fg_engine_stand *stand, fg_loop_cl
   run->result->claim[run->result->claims++] = *claim;
 }
 
-/* Effects of the mean beside which the correlation is not needed: as many as a class has room for,
- * the best first. */
+/* Ties correlation with effects of the mean beside which it is not needed: at most as many as a
+ * class has room for, the best first. */
 static fg_status tie_correlation(fg_context *ctx, const fg_engine_run *run,
                                  const fg_engine_step *step, fg_loop_claim *claim) {
   enum { TRIED = 2 * FG_LOOP_ALIASES };
@@ -75,8 +75,6 @@ static fg_status tie_spread(fg_context *ctx, const fg_engine_run *run, const fg_
   return FG_OK;
 }
 
-/* Correlation or unequal spread: a finding about the noise, which everything after it has. It may
- * show by an effect that it stands for: `p_value` is that one's, or 1. */
 fg_status fg_engine_take_noise(fg_context *ctx, fg_engine_run *run, const fg_engine_step *step,
                                size_t winner, double p_value, bool *accepted) {
   fg_loop_claim claim;

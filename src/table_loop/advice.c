@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The measurement that would part a tie: the two settings between which the winner and its nearest
- * rival, each fitted to these rows, change most differently. The level of a table is free, so a
- * single setting says nothing. */
+/* Advice for resolving a tie: the two settings between which the predictions of the winner and its
+ * nearest rival, each fitted to these rows, differ most. The level of a table is free, so a single
+ * setting has no information. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,7 +14,7 @@
 /* Normal quantiles of a power of 80 %, and of the surplus test of an alias (p = 0.002). */
 static const double power_80 = 0.8416, surplus = 3.09;
 
-/* A whole model: what is declared with its parameters, and everything that was found. */
+/* Whole model: the declared one with its parameters, and all effects found. */
 typedef struct whole_model {
   fg_loop_claim member[FG_LOOP_CLAIMS + 1];
   size_t members;
@@ -38,9 +38,9 @@ static fg_status fit_whole(fg_context *ctx, const fg_engine_run *run, size_t m,
                               whole->parameter_u);
 }
 
-/* The coordinates of both, each in the values that can be set: every level of words, the values
- * that were measured where these are few or an effect gives each its own level, elsewhere the
- * measured ones that lie nearest to seven equal steps. More runs come at the end of an order. */
+/* Axes of the grid: coordinates of both, each at feasible values. These are every level of words;
+ * the measured values where they are few or an effect gives each its own level; else the measured
+ * values nearest to seven equal steps. More runs come at the end of an order. */
 enum { AXES = 4, STEPS = 7 };
 
 /* At either setting a user makes so many more runs, or half as many as the table has. */
@@ -99,7 +99,7 @@ static double axis_value(const setting_axes *axes, size_t axis, size_t setting) 
   return axes->value[axis][setting % axes->steps[axis]];
 }
 
-/* What the models use beside the axes stays in the middle. */
+/* Holds other coordinates of the models at their middle. */
 static fg_status hold(fg_context *ctx, const setting_axes *axes, size_t coordinate,
                       fg_loop_problem *grid) {
   const fg_loop_coordinate *at = &grid->coordinate[coordinate];
@@ -136,7 +136,8 @@ static fg_status open_settings(fg_context *ctx, const fg_engine_run *run, const 
   return FG_OK;
 }
 
-/* value += sign × what the whole model says at the rows of a grid. Lone rows are of the table. */
+/* value += sign × prediction of the whole model at the rows of a grid. Effects of single rows do
+ * not apply. */
 static fg_status predict(fg_context *ctx, const fg_engine_run *run, const whole_model *whole,
                          const fg_loop_problem *grid, double sign, double *value) {
   size_t rows = grid->rows, parameters = run->problem->parameters;
@@ -233,8 +234,8 @@ static void say_repeats(const fg_loop_problem *problem, const fg_loop_claim *cla
   advice->runs = 2;
 }
 
-/* The settings of the first runs, again at the end: what lasts moves them, what only makes
- * neighbours alike does not. */
+/* Advises to repeat the settings of the first runs at the end: a lasting effect changes them,
+ * correlation of neighbours does not. */
 static void say_order(const fg_loop_problem *problem, const fg_loop_claim *claim,
                       fg_loop_advice *advice) {
   enum { REPEATS = 4 };

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Alias classes. A rival belongs to the winner's class when, beside it, the winner explains nothing
- * more that the data can show. Were the rival the truth, the winner's surplus would be noise: the
- * truth is left out of its class with the probability of the test alone. */
+/* Alias classes. A rival belongs to the winner's class when the winner's gain beside it is not
+ * significant. If the rival is the true effect, that gain is noise, so the class misses the true
+ * effect with the probability of the test alone. */
 #include "table_loop/alias.h"
 
 #include <math.h>
@@ -14,16 +14,16 @@
 #include "core/text.h"
 #include "table_loop/between.h"
 
-/* Where the winner explains more than a simpler one at this level, it stays. */
+/* P-value at which the winner stays although a simpler candidate exists. */
 #define SIMPLER_P FG_LOOP_ACCEPT_P
 
-/* A member of a class explains at least this share of what the winner does. */
+/* Minimum share of the winner's explained sum for a member of a class. */
 #define MIN_SHARE 0.4
-/* What a larger form has more is suggested below this. */
+/* P-value at which the additional part of a larger basis is suggested by the data. */
 #define SUGGESTED_P 0.1
 
-/* Where rows are many, what explained less than this share of what the winner does is not tried
- * beside it: it would not come up to MIN_SHARE, and what it leaves to the winner would show. */
+/* Share of the winner's explained sum below which a rival is not tried, for many rows: it would not
+ * reach MIN_SHARE, and the winner's gain beside it would be significant. */
 #define TRIED_SHARE 0.2
 
 static bool far_behind(const fg_engine_training *training, const fg_engine_stand *winner,
@@ -43,7 +43,7 @@ typedef struct alias_workspace {
   fg_engine_span null; /* with room for more columns */
   double *y, *columns, *unit;
   double rss, dof;
-  double *between; /* what groups may differ by beside the null: groups × n */
+  double *between; /* differences between groups beside the null: groups × n */
   size_t groups;
   double groups_rss;
   bool constant; /* in groups: the columns added last */
@@ -126,9 +126,9 @@ typedef struct alias_test {
   double correlation;
 } alias_test;
 
-/* What is left beside the null and `count` columns behind it, before the winner: residual sum and
- * freedom. Of a winner that is constant in groups those of the groups: of the columns only what
- * lies between groups takes from them. */
+/* Computes residual sum and dof beside the null and `count` columns, before the winner. For a
+ * winner constant in groups they are those of the groups: the columns count by their part between
+ * groups. */
 static void error_beside(const alias_workspace *workspace, size_t count, double gain, double *unit,
                          double *left, double *dof) {
   *left = workspace->rss - gain;
@@ -267,7 +267,7 @@ static fg_status find_pairs(fg_context *ctx, alias_workspace *workspace,
   return FG_OK;
 }
 
-/* A form that holds the winner's and more is no rival, unless the data suggest what it has more. */
+/* A basis that includes the winner's is no rival, unless the data suggest its additional part. */
 static fg_status suggests_more(fg_context *ctx, alias_workspace *workspace,
                                const fg_engine_stand *rival, const fg_engine_stand *winner,
                                bool *contains) {

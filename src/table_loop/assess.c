@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One null for everything: residuals of the null model in another order (Freedman and Lane 1983),
- * which keeps their tails, through the same scores as the data. Scores of all kinds are put on one
- * scale by their own draws, so that their largest is a fair maximum (Westfall and Young 1993); how
- * many independent looks that is worth is read off the draws, and tells p-values beyond them. */
+/* Common null of all tests: residuals of the null model in another order (Freedman and Lane 1983),
+ * which keeps their tails, scored as the data are. Scores of all kinds are put on one scale by
+ * their own draws, so that their maximum is a fair statistic (Westfall and Young 1993). The
+ * effective number of independent tests is estimated from the draws and extends p-values beyond
+ * them. */
 #include "table_loop/assess.h"
 
 #include <math.h>
@@ -17,12 +18,13 @@
 #include "table_loop/engine_random.h"
 #include "table_loop/noise_scores.h"
 
-/* With fewer rows beyond the parameters a new order of the residuals is no new sample: normal
- * numbers are drawn. */
+/* Minimum residual dof for permutations: below it a new order of the residuals is no new sample,
+ * and normal numbers are drawn. */
 enum { PERMUTED_DOF = 12 };
-/* The number of looks is read where this share of the draws' maxima lies beyond. */
+/* Share of the draws' maxima at whose quantile the number of tests is estimated. */
 #define LOOKS_AT 0.02
-/* A first look decides where it says that many times less or more than what is asked. */
+/* Number of draws of a first pass, which decides when its p-value differs from the level by this
+ * factor. */
 enum { FIRST_DRAWS = 399, UNCERTAINTY = 8 };
 /* A candidate's scale: from its median draw to this quantile. */
 #define UPPER 0.95
@@ -97,7 +99,7 @@ exit:
   return status;
 }
 
-/* Where a kind of score lies in its own draws. */
+/* Location of one kind of score in its own draws. */
 typedef struct own_scale {
   double middle, spread;
 } own_scale;
@@ -121,7 +123,8 @@ static own_scale scale_of(const drawing *d, size_t kind, double *sorted) {
   return scale;
 }
 
-/* The number of looks of which chance has the largest as often as the draws do. */
+/* Returns the number of independent tests whose maximum is as large as often as that of the draws.
+ */
 static double looks(const drawing *d, const own_scale *scale, double *maxima) {
   size_t draws = d->null->draws;
   for (size_t b = 0; b < draws; b++) {
@@ -159,7 +162,7 @@ static void take_critical(const fg_score_workspace *workspace, const fg_engine_n
   }
 }
 
-/* `raw` are the data's deviates before they are put on the draws' scale. */
+/* `raw` are the data's deviates before scaling by the draws. */
 static fg_status judge_drawn(fg_context *ctx, drawing *d, const double *raw,
                              fg_engine_judgement *judgement) {
   size_t draws = d->null->draws, batches = (draws + FG_ENGINE_BATCH - 1) / FG_ENGINE_BATCH;
@@ -191,7 +194,7 @@ static double smallest_p(const fg_engine_judgement *judgement) {
   return smallest;
 }
 
-/* A first look with few draws; as many as were asked for where that leaves anything in doubt. */
+/* Assesses with few draws first, and with all of them if that leaves a doubt. */
 static fg_status judge_in_turns(fg_context *ctx, drawing *d, fg_engine_judgement *judgement) {
   size_t all = judgement->candidates + 1;
   fg_engine_null first = *d->null, whole = *d->null;
@@ -215,14 +218,14 @@ exit:
   return status;
 }
 
-/* Many rows: every version of every candidate is one look at a normal deviate. */
+/* Assesses many rows: every version of every candidate counts as one test of a normal deviate. */
 static void judge_by_count(const fg_score_workspace *workspace, const fg_engine_null *null,
                            fg_engine_judgement *judgement) {
   judgement->tests = (double)(workspace->versions + judgement->candidates - judgement->means);
   take_critical(workspace, null, NULL, judgement);
 }
 
-/* The null's residual, whitened, each over what its own row keeps of it. */
+/* Computes the null's residual, whitened, each over the share that its row keeps. */
 static void null_residual(const fg_engine_training *training, fg_engine_noise noise,
                           const fg_engine_span *null, double *white) {
   size_t n = training->n;

@@ -5,8 +5,7 @@
 
 #include "core/memory.h"
 
-/* With more groups than this Student's t of their freedom is close to normal, and the basis
- * large. */
+/* Number of groups above which Student's t of their dof is close to normal, and the basis large. */
 enum { GROUPS_MAX = 100 };
 
 bool fg_engine_constant_in_levels(const fg_engine_training *training, const double *columns,

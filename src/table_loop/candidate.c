@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the engine asks of a candidate. */
+/* Properties of a candidate. */
 #include <stdio.h>
 #include <string.h>
 

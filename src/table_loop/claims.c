@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Coefficients and uncertainties of what was found, shapes included. */
+/* Coefficients and uncertainties of the effects found, shapes included. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -55,8 +55,8 @@ static fg_status append_slopes(fg_context *ctx, fg_engine_training *training,
   return FG_OK;
 }
 
-/* Half the range over the rows: extremes at rows a and b; its gradient by the coefficients (and
- * shapes) is half the difference of the columns there. */
+/* Computes half the range over the rows, with extremes at rows a and b; its gradient by the
+ * coefficients (and shapes) is half the difference of the columns there. */
 static void amplitude(const fg_engine_training *training, const fg_engine_fit *fit,
                       const fg_engine_fit *wide, size_t first, size_t count, size_t slope,
                       size_t slopes, double variance, fg_loop_claim *claim) {
@@ -87,8 +87,7 @@ typedef struct noise_fit {
   double sd;
 } noise_fit;
 
-/* Columns that are constant in groups are judged between groups: so many fewer degrees of freedom.
- */
+/* Columns that are constant in groups are tested between groups, with as many fewer dof. */
 static double dof_of(const fg_engine_training *training, size_t first, size_t count, double dof) {
   if (!training->levels) return dof;
   for (size_t k = first; k < first + count; k++)
@@ -99,8 +98,8 @@ static double dof_of(const fg_engine_training *training, size_t first, size_t co
   return fmax((double)training->groups - 1 - (double)count, 1);
 }
 
-/* The correlation, or how far the sizes of the rows' scatter are apart; the amplitude is half that
- * in the response's unit. Uncertainties are those of large samples. */
+/* Describes correlation, or the ratio of the rows' extreme sd; the amplitude is half their
+ * difference in the response's unit. Uncertainties are asymptotic. */
 static void describe_noise(const fg_engine_training *training, const noise_fit *noise,
                            fg_loop_claim *claim) {
   double n = (double)training->n, low = INFINITY, high = 0;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Columns that say the same as others: no second candidates. */
+/* Columns with the same content as others: they are no second candidates. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -72,7 +72,7 @@ static bool has_part(const fg_loop_coordinate *at) {
          (FG_LOOP_ORDER | FG_LOOP_BUMP | FG_LOOP_DECLARED | FG_LOOP_TEMPERATURE | FG_LOOP_DURATION);
 }
 
-/* One of two that say the same goes; SIZE_MAX: neither. */
+/* Chooses which of two columns with the same content goes; SIZE_MAX: neither. */
 static fg_status superfluous(fg_context *ctx, const fg_loop_problem *problem, size_t a, size_t b,
                              size_t *gone) {
   fg_loop_coordinate *x = &problem->coordinate[a], *y = &problem->coordinate[b];
@@ -121,8 +121,8 @@ static bool is_in_blocks(const fg_loop_coordinate *at, size_t rows) {
   return pieces == at->distinct && at->distinct >= 2 && at->distinct < rows;
 }
 
-/* Rows without an order of their own: a column of time or of numbers in steps is their order; rows
- * that were sorted by a column have none, and neighbours mean nothing. */
+/* Finds an order for rows without one: a column of time or of equally spaced numbers. Rows sorted
+ * by a column have none, because neighbours are not related. */
 static void find_order(fg_loop_problem *problem) {
   size_t last = problem->coordinates - 1, rows = problem->rows, order = last;
   bool sorted = false;
@@ -152,7 +152,7 @@ fg_status fg_loop_table_merge_codes(fg_context *ctx, const fg_loop_table_state *
       fg_text_clip(why, sizeof why, "says the same as %s", problem->coordinate[a + b - gone].name);
       FG_TRY(fg_loop_table_leave_out(ctx, build, problem->coordinate[gone].name, why));
       fg_loop_table_drop(problem, gone);
-      b = a; /* again from here: what stood behind has moved up */
+      b = a; /* again from here: later columns have moved up */
     }
   return FG_OK;
 }

@@ -59,7 +59,7 @@ static bool ends_with(const char *name, const char *end) {
   return length > size && !strcmp(name + length - size, end);
 }
 
-/* The unit in the name says what a column is; without one it is taken for neither. */
+/* Derives a column's roles from the unit in its name; without a unit it has none. */
 static void give_roles(fg_loop_coordinate *at) {
   if (strcasestr(at->name, "temp") && ends_with(at->name, "_C")) {
     at->roles |= FG_LOOP_TEMPERATURE;
@@ -101,7 +101,7 @@ static bool is_in_range(const fg_table *table, const fg_column *column) {
   return largest == 0 || (largest >= FG_LOOP_TABLE_SMALLEST && largest <= FG_LOOP_TABLE_LARGEST);
 }
 
-/* Groups are names, and so is what the model puts into factor(). */
+/* Returns true for columns of names: groups, and those that the model puts into factor(). */
 static bool names_are_meant(const fg_loop_table_spec *spec, const char *column) {
   fg_context ignored = {0};
   fg_formula formula = {0};

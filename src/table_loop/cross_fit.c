@@ -8,13 +8,13 @@
 #include "core/parallel.h"
 #include "table_loop/run.h"
 
-/* Folds of whole groups, in turn over their order, and draws of their nulls: a fold's search
- * decides nothing but what it would have found. */
+/* Folds of whole groups, in turn over their order, and draws of their nulls: few suffice, because a
+ * fold's search decides nothing but its own prediction. */
 enum { FOLDS = 5, DRAWS = 499 };
-/* Where rows are many a few folds say as much, and every one costs a search. */
+/* Number of folds for many rows: fewer suffice, and each costs a search. */
 enum { MANY_ROWS = 20000, FOLDS_OF_MANY = 2 };
 
-/* What the rows kept on both sides say of a row between them, where neighbours are alike. */
+/* Predicts a row from the kept rows on both sides of it, where neighbours are correlated. */
 static double expected(const fg_engine_training *all, const bool *keep, const double *residual,
                        double rho, size_t block, size_t i) {
   size_t before = i, after = i, end = all->start[block + 1];
@@ -51,7 +51,8 @@ static fg_status take_out_neighbours(fg_context *ctx, const fg_engine_run *fold,
   return status;
 }
 
-/* Residuals of the rows left out, with nothing found and with what the fold's own search found. */
+/* Computes residuals of the held-out rows, without effects and with those of the fold's own search.
+ */
 static fg_status predict(fg_context *ctx, fg_engine_run *fold, double *before, double *after) {
   const fg_engine_set none = {0};
   fg_engine_noise noise = {0};
@@ -63,7 +64,8 @@ static fg_status predict(fg_context *ctx, fg_engine_run *fold, double *before, d
   return noise.rho != 0 ? take_out_neighbours(ctx, fold, noise.rho, after) : FG_OK;
 }
 
-/* A response that is wrong is none to predict; two that changed places are put back. */
+/* Leaves out an outlier response, which is no value to predict, and puts exchanged responses back.
+ */
 static void correct_outlier(const fg_engine_run *run, double *residual) {
   const double *response = run->problem->response;
   for (size_t m = 0; m < run->set.count; m++) {
@@ -79,7 +81,7 @@ static void correct_outlier(const fg_engine_run *run, double *residual) {
   }
 }
 
-/* The sum of what groups gain, above its own standard error. */
+/* Returns true when the sum of the groups' gains exceeds its own standard error. */
 static bool beyond_chance(const double *gain, size_t groups) {
   double sum = 0, squares = 0, count = (double)groups;
   for (size_t g = 0; g < groups; g++)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A declared model as its owner wrote it: response, model, group and order of a table, and the
- * values of a design that constant arc length needs. */
+/* Reader of a declared model's file: response, model, group and order of a table, and the design's
+ * values for constant arc length. */
 #include <stdlib.h>
 #include <string.h>
 

@@ -5,9 +5,9 @@
 
 /* Measured (reports/loop_limits.md), of one core. Few rows: seconds per product with a draw. */
 static const double per_product = 3e-11;
-/* Many: seconds of one search for five effects and a curve, of its own, per start value, per row,
- * and per row and column; how much more where groups share a level. Where neighbours turn out to be
- * alike it takes half as much again. Bytes of the program, per row and per cell. */
+/* Cost constants for many rows: seconds of one search for five effects and a curve, in total, per
+ * start value, per row, and per row and column; factor where groups share a level. Correlation of
+ * neighbours adds half as much. Bytes of the program, per row and per cell. */
 static const double per_search = 0.1, per_start = 7e-5, per_row = 6e-5, per_cell = 3.5e-7,
                     with_levels = 2.5;
 static const double bytes_at_least = 2e7, bytes_a_row = 2000, bytes_a_cell = 26;
@@ -20,7 +20,7 @@ enum {
   FOLDS = 5
 };
 
-/* Columns of everything that is looked for, each form once and with all its start values. */
+/* Sum of the columns of all candidates, each basis once and with all its start values. */
 typedef struct sought {
   double columns, starts, all;
 } sought;
@@ -40,8 +40,9 @@ static sought count_sought(const fg_loop_problem *problem, const fg_loop_candida
   return sum;
 }
 
-/* Few rows: every candidate is scored in every draw at every noise model; beside correlation, in
- * fewer draws, at more of them. The search is made again without each fold. */
+/* Estimates the effort for few rows: every candidate is scored in every draw at every noise model,
+ * and beside correlation, in fewer draws, at more of them. The search is repeated without each
+ * fold. */
 static void estimate_small(const fg_loop_problem *problem, double rows, double columns,
                            fg_engine_effort *effort) {
   double noises = problem->group_level ? LEVEL_NOISES : 1;
@@ -50,8 +51,8 @@ static void estimate_small(const fg_loop_problem *problem, double rows, double c
   effort->bytes = 8 * (noises * looks * rows * columns + DRAWS * (double)effort->candidates);
 }
 
-/* Many: one search and one without each fold, each of all rows but its own. Start values are tried
- * over sums, the best of them on all rows. */
+/* Estimates the effort for many rows: one search and one without each fold. Start values are tried
+ * over binned sums, the best of them on all rows. */
 static void estimate_large(const fg_loop_problem *problem, double rows, const sought *sum,
                            fg_engine_effort *effort) {
   double searches = (double)fg_engine_folds(problem->rows);

@@ -10,7 +10,8 @@
 
 /* An exchange that changes less of the residual sum than this changes rounding. */
 #define CHANGES 1e-6
-/* Rows of either sign whose residuals are largest: an exchange that helps takes from both. */
+/* Number of rows of either sign with the largest residuals that are tried: a useful exchange
+ * reduces both. */
 enum { TRIED = 16 };
 
 static fg_status fill_products(fg_context *ctx, fg_engine_exchange *exchange) {
@@ -35,7 +36,7 @@ static fg_status fill_products(fg_context *ctx, fg_engine_exchange *exchange) {
   return FG_OK;
 }
 
-/* The response that the null expects: what was measured less the residual. */
+/* Computes the response expected by the null: the measured response less the residual. */
 static fg_status fill_mean(fg_context *ctx, fg_engine_exchange *exchange) {
   const fg_engine_training *training = exchange->training;
   fg_engine_fit fit;

@@ -12,8 +12,8 @@
 #include "table_loop/grid.h"
 #include "table_loop/run.h"
 
-/* Strong correlation makes the sd of a row larger than what these rows show: the noise floor that
- * is said is at the most so many times their rms. */
+/* Upper limit of the reported noise floor, as a multiple of the rows' rms: strong correlation makes
+ * the sd of a row larger than the scatter that these rows show. */
 #define FLOOR_OVER_RMS 1.25
 
 static fg_status measure(fg_context *ctx, const fg_engine_run *run, const double *residual,
@@ -55,11 +55,11 @@ static fg_status cross_validated(fg_context *ctx, const fg_engine_run *run,
   return status;
 }
 
-/* Of more groups than these, neighbours are drawn together: as good, and a thousand draws of a
- * hundred thousand would take as long as the search. */
+/* Number of groups above which neighbouring groups are joined: as good, and a thousand draws of a
+ * hundred thousand groups would cost as much as the search. */
 enum { DRAWN_MAX = 5000 };
 
-/* Sums of neighbouring groups, so that DRAWN_MAX are left at the most; returns how many. */
+/* Sums neighbouring groups so that at most DRAWN_MAX are left; returns their number. */
 static size_t join_groups(size_t count, size_t *group, double *sum) {
   size_t together = (count + DRAWN_MAX - 1) / DRAWN_MAX, joined = 0;
   for (size_t i = 0; together > 1 && i < count; i++) {
@@ -73,8 +73,8 @@ static size_t join_groups(size_t count, size_t *group, double *sum) {
   return together > 1 ? joined : count;
 }
 
-/* 95 % interval of after / before: groups drawn with replacement, kept-aside ones where there are
- * enough of them, else all that took part. */
+/* Computes the 95 % interval of after / before: groups drawn with replacement, held-out ones if
+ * there are enough of them, else all others. */
 static fg_status bootstrap(fg_context *ctx, fg_engine_run *run, double interval[2]) {
   enum { DRAWS = 999, ENOUGH = 8 };
   const fg_loop_problem *problem = run->problem;
@@ -112,8 +112,9 @@ exit:
   return status;
 }
 
-/* +1: the kept-aside error falls by more than one standard error of the change; 0: neither way;
- * -1 where nothing is kept aside; -2: it rises by more than two: contradicted. */
+/* Returns +1 when the held-out error falls by more than one standard error of the change
+ * (confirmed), -2 when it rises by more than two (contradicted), -1 when no row is held out, else
+ * 0. */
 static int confirm(const fg_engine_run *run) {
   const fg_loop_problem *problem = run->problem;
   const double *before = run->result->before_fit, *after = run->result->after_fit;
@@ -136,7 +137,8 @@ static int confirm(const fg_engine_run *run) {
   return groups >= 5 && sum < -2 * se ? -2 : 0;
 }
 
-/* The mean of the curve over the rows, its rms about it, and the rows that it moves most. */
+/* Computes the mean of the curve over the rows, its rms about it, and the rows with the largest
+ * displacement. */
 static fg_status describe_curve(fg_context *ctx, const fg_loop_problem *problem,
                                 const fg_loop_claim *fit, double *mean, fg_loop_curve *curve) {
   double *effect = NULL, squares = 0;
@@ -194,7 +196,8 @@ exit:
   return status;
 }
 
-/* Where neighbours are alike, a row's error is what the one before it does not say. */
+/* Subtracts from each row's error the prediction by the row before it, where neighbours are
+ * correlated. */
 static fg_status innovations(fg_context *ctx, const fg_engine_run *run, fg_engine_noise noise) {
   fg_engine_training all;
   double *residual = run->result->after_fit;
@@ -218,7 +221,7 @@ static fg_status errors(fg_context *ctx, fg_engine_run *run, fg_engine_noise *no
   FG_TRY(fg_engine_fit_set(ctx, run->problem, run->train, &run->set, true, noise, result->after_fit,
                            result->effect_fit, &result->noise.sd));
   FG_TRY(innovations(ctx, run, *noise));
-  if (run->set.count == 0) /* nothing found: the same fit, before and after */
+  if (run->set.count == 0) /* no effect found: before and after are the same fit */
     memcpy(result->after_fit, result->before_fit, run->problem->rows * sizeof(double));
   result->noise.rho = noise->rho;
   result->noise.lambda = noise->lambda;
@@ -241,7 +244,7 @@ static fg_status errors(fg_context *ctx, fg_engine_run *run, fg_engine_noise *no
   return bootstrap(ctx, run, result->ratio_interval);
 }
 
-/* Parameters are of all rows: what is kept aside has done its work. */
+/* Fits the parameters to all rows: held-out rows have served their purpose. */
 static fg_status parameters(fg_context *ctx, fg_engine_run *run, fg_engine_noise noise) {
   fg_loop_result *result = run->result;
   fg_loop_claim fit[FG_LOOP_CLAIMS + 1] = {0};
@@ -263,7 +266,7 @@ static fg_status parameters(fg_context *ctx, fg_engine_run *run, fg_engine_noise
   return run->has_curve ? draw_curve(ctx, run, &fit[run->set.count - 1]) : FG_OK;
 }
 
-/* What is of the spread alone has no error to lower. */
+/* Returns true when an error can fall: effects of the spread alone do not change it. */
 static bool may_lower(const fg_loop_result *result) {
   bool lowers = false;
   for (size_t m = 0; m < result->claims; m++)
@@ -276,7 +279,7 @@ static bool error_fell(const fg_engine_run *run) {
   return may_lower(result) && result->ratio_rms < 1 && run->fell;
 }
 
-/* What was found without an error that fell. */
+/* Adds a note when effects were found but the error did not fall. */
 static fg_status note_verdict(fg_context *ctx, const fg_engine_run *run) {
   fg_loop_result *result = run->result;
   if (!may_lower(result) || error_fell(run) || run->has_curve) return FG_OK;

@@ -31,10 +31,11 @@ void fg_engine_gram_take(size_t n, const double *columns, size_t count, const do
   }
 }
 
-/* A column of which less than this share of its squared length is left lies in the span. */
+/* Share of a column's squared length below which it lies in the span. */
 static const double same_span = 1e-9;
 
-/* Row k of the Cholesky factor of F'F - (F'Q)(F'Q)' over the columns kept so far; |f_k|² left. */
+/* Computes row k of the Cholesky factor of F'F - (F'Q)(F'Q)' over the columns kept so far; returns
+ * the remaining |f_k|². */
 static double factor_row(fg_engine_gram *gram, size_t k, const size_t *kept, size_t rank,
                          double *u) {
   const size_t width = gram->rank + 1;

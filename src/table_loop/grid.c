@@ -6,8 +6,8 @@
 
 #include "core/memory.h"
 
-/* Coordinates that are no axis share one array of zeros: the last coordinate's, which is one more
- * than the problem has. */
+/* Coordinates that are no axis share one array of zeros: that of an additional coordinate after the
+ * problem's. */
 static double *zeros(const fg_loop_problem *grid) {
   return grid->coordinate[grid->coordinates].value;
 }

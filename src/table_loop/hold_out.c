@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which rows a table keeps aside: a share of its groups, or those with a value. */
+/* Held-out rows of a table: a share of its groups, or those with a value. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -8,7 +8,7 @@
 #include "table_loop/engine_random.h"
 #include "table_loop/parts.h"
 
-/* Aside goes every row of a group that is chosen. */
+/* Holds out every row of the chosen groups. */
 static void hold_out(fg_loop_problem *problem, const bool *chosen) {
   for (size_t i = 0; i < problem->rows; i++)
     problem->held_out[i] = chosen[problem->group[i]];
@@ -38,7 +38,7 @@ exit:
   return status;
 }
 
-/* Whole groups that hold a row with the value. */
+/* Chooses whole groups with a row of that value. */
 static fg_status keep_value(fg_context *ctx, const fg_loop_table_state *build, const char *text) {
   fg_loop_problem *problem = &build->out->problem;
   char name[256];
@@ -69,7 +69,7 @@ static fg_status keep_value(fg_context *ctx, const fg_loop_table_state *build, c
 fg_status fg_loop_table_hold_out(fg_context *ctx, const fg_loop_table_state *build) {
   fg_loop_problem *problem = &build->out->problem;
   const char *text = build->spec->hold_out;
-  if (!text) return FG_OK; /* every row takes part */
+  if (!text) return FG_OK; /* no row is held out */
   if (strchr(text, '=')) return keep_value(ctx, build, text);
   char *end;
   double share = strtod(text, &end);

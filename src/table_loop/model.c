@@ -35,7 +35,7 @@ static fg_status copy_model(fg_context *ctx, const fg_loop_table_state *build,
   return FG_OK;
 }
 
-/* What the declared formula needs to be evaluated at a setting. */
+/* Data for evaluating the declared formula at a setting. */
 struct fg_loop_formula {
   fg_model model;                    /* without its matrix */
   double mean[FG_FORMULA_VARIABLES]; /* of the variables that are no coordinates */
@@ -47,7 +47,7 @@ void fg_loop_table_free_formula(struct fg_loop_formula *formula) {
   free(formula);
 }
 
-/* The level whose name is nearest to a number; the first where names are words. */
+/* Returns the level whose name is nearest to a number; the first where names are words. */
 static double nearest_level(const fg_levels *levels, double value) {
   size_t nearest = 0;
   double min = INFINITY;
@@ -88,7 +88,7 @@ static fg_status declared_at(fg_context *ctx, const void *model, const fg_loop_p
   return status;
 }
 
-/* The problem keeps the model, without its matrix. */
+/* Moves the model, without its matrix, to the problem. */
 static fg_status keep_model(fg_context *ctx, const fg_loop_table_state *build, fg_model *model) {
   fg_loop_problem *problem = &build->out->problem;
   struct fg_loop_formula *formula = NULL;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The model file: declared model, what was found, and how to take it out of another table. */
+/* Model file: the declared model, the effects found, and their subtraction from another table. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,7 +12,7 @@
 #include "core/text.h"
 #include "foilgauge/loop.h"
 
-/* A coordinate as it was where the effect was found: its range scales the basis. */
+/* Coordinate as in the effect's own data: its range scales the basis. */
 typedef struct model_coordinate {
   const char *name;
   double low, high, kelvin_offset;
@@ -162,7 +162,7 @@ static fg_status fill_words(fg_context *ctx, const fg_loop_model *model, const f
   return FG_OK;
 }
 
-/* The response's change by an effect, from coordinates found in the table by name. */
+/* Computes the response's change by an effect, at coordinates found in the table by name. */
 static fg_status apply_claim(fg_context *ctx, const fg_loop_model *model, const cJSON *json,
                              const fg_table *table, double *change) {
   const cJSON *coordinates = cJSON_GetObjectItemCaseSensitive(json, "coordinates");
@@ -179,7 +179,7 @@ static fg_status apply_claim(fg_context *ctx, const fg_loop_model *model, const 
   FG_TRY_EXIT(get_text(ctx, model, json, "id", &id));
   while (effect->id && strcmp(effect->id, id))
     effect++;
-  if (!effect->id) goto exit; /* lone rows belong to the table they were found in */
+  if (!effect->id) goto exit; /* effects of single rows belong to their own table */
   claim.candidate.effect = effect;
   FG_TRY_EXIT(fg_memory_allocate(ctx, table->rows + 1, 3 * sizeof *values, (void **)&values));
   for (int k = 0; k < cJSON_GetArraySize(coordinates) && k < 2; k++) {
@@ -259,7 +259,7 @@ static double number_or(const cJSON *json, const char *name, double otherwise) {
   return cJSON_IsNumber(item) ? item->valuedouble : otherwise;
 }
 
-/* "a trend with humidity"; what the table of effects does not know concerns single rows. */
+/* "a trend with humidity"; an id that is not in the table of effects concerns single rows. */
 static void describe(const cJSON *json, fg_loop_taken *taken) {
   const cJSON *at = cJSON_GetObjectItemCaseSensitive(json, "coordinates");
   const cJSON *id = cJSON_GetObjectItemCaseSensitive(json, "id");
@@ -290,8 +290,8 @@ static void describe(const cJSON *json, fg_loop_taken *taken) {
   taken->u_amplitude = number_or(json, "u_amplitude", NAN);
 }
 
-/* A penalised curve has as many parameters as its effective freedom; its uncertainty is that of so
- * many estimated from so many rows. */
+/* A penalised curve has as many parameters as its effective dof; its uncertainty is that of so many
+ * parameters estimated from so many rows. */
 static void describe_curve(const fg_loop_model *model, const cJSON *json, size_t rows,
                            fg_loop_taken *taken) {
   const cJSON *name = cJSON_GetObjectItemCaseSensitive(json, "coordinate");
@@ -306,7 +306,7 @@ static void describe_curve(const fg_loop_model *model, const cJSON *json, size_t
   taken->u_amplitude = number_or(model->json, "noise_sd", NAN) * sqrt(dof / (double)rows);
 }
 
-/* What the last step added to the change, which `before` still lacks. */
+/* Computes the last step's addition to the change, which `before` still lacks. */
 static void measure_step(const double *change, double *before, size_t rows, fg_loop_taken *taken) {
   for (size_t i = 0; i < rows; i++) {
     double step = change[i] - before[i];

@@ -8,8 +8,7 @@
 #include "core/memory.h"
 #include "effect/table_effects.h"
 
-/* A normal residual's size has this variance over its squared mean (pi / 2 - 1); an exponential one
- * has 1. */
+/* Variance over squared mean of a normal residual's size (pi / 2 - 1); an exponential one has 1. */
 #define SIZE_DISPERSION 0.5707963267948966
 /* Sizes of a level are not smaller than this share of all rows': rounding may make them equal. */
 #define SMALLEST_SIZE 1e-12
@@ -75,8 +74,8 @@ static double serial_score(const fg_engine_training *training, const double *whi
   return square > 0 ? along / square * sqrt((double)training->n) : NAN;
 }
 
-/* -2 log likelihood of sizes with means exp(intercept + slope z), by Newton's steps from a slope of
- * none; exponential, so that tails do not mislead as they do squares. */
+/* -2 log likelihood of sizes with means exp(intercept + slope z), by Newton's method from slope 0;
+ * exponential, because it is less sensitive to tails than squares are. */
 static double slope_likelihood(size_t n, const double *z, const double *size, double mean) {
   double a = log(mean), b = 0, value = 0;
   for (int step = 0; step < NEWTON_STEPS; step++) {

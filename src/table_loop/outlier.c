@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Wrong responses: one or several rows whose residuals the others' scatter does not reach.
+/* Outlier rows: one or several responses with residuals beyond the scatter of the others.
  *
- * Rows are taken out one after the other, the one that stands out most first; as many are wrong as
- * the last that the rest does not explain (generalised extreme studentised deviates: Rosner 1983),
- * so that two do not hide each other. The rest's tails are not known but shown by it: the
- * probability of such a row is that of Student's t, averaged over its degrees of freedom by what
- * the remaining rows make likely. And it must be likelier that the rows are wrong than that all of
- * them have one heavy tail: a likelihood ratio passes 1 / p by chance less often than p. */
+ * Rows are removed one after the other, the largest residual first; the outliers are all up to the
+ * last one that the remaining rows do not explain (generalised extreme studentised deviates: Rosner
+ * 1983), so that two do not hide each other. The tails of the remaining rows are unknown: the
+ * probability of such a residual is that of Student's t, averaged over its dof with the posterior
+ * weights from the remaining rows. In addition, outliers must be likelier than one heavy tail of
+ * all rows: a likelihood ratio exceeds 1 / p by chance less often than p. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -19,25 +19,26 @@
 #include "table_loop/assess.h"
 #include "table_loop/tails.h"
 
-/* A row whose residual keeps less of its own error than this is held by the model alone: nothing
- * can tell that it is wrong. */
+/* Share of its own error in a row's residual, below which the model alone fits the row: it cannot
+ * be recognised as an outlier. */
 #define HELD_ALONE 1e-9
-/* Wrong rows are few: at most one in so many. */
+/* At most one row in so many is an outlier. */
 enum { ONE_IN = 6 };
 
-/* Several rows are wrong where the last of them lies so many times farther out than the next. */
+/* Several rows are outliers when the last of them lies so many times farther out than the next row.
+ */
 #define GAP 1.5
 
-/* What a likelihood ratio of wrong rows over a heavy tail of all is divided by for every row that
- * might be wrong. A choice, by tables of 24, 126 and 200 rows alike: with it 97 of 100 wrong values
- * of 10 standard errors are found in normal noise, and a row is called wrong in 5 of 100 tables
- * without one where the noise is Student's t with 3 degrees of freedom, in 3 with 4, in 1 where it
- * is Laplace's (without it: all, 11, 7 and 3). At 0.12 that is 4, 2 and none, and 87 of the wrong
- * values, 64 of those in 24 rows. */
+/* Divisor of the likelihood ratio of outliers over a heavy tail, for every possible outlier row.
+ * Chosen on tables of 24, 126 and 200 rows: with it 97 of 100 wrong values of 10 standard errors
+ * are found in normal noise. A row is called wrong in 5 of 100 tables without one where the noise
+ * is Student's t with 3 dof, in 3 with 4, in 1 where it is Laplace's (without it: all found; 11, 7
+ * and 3 false). At 0.12 false ones are 4, 2 and none, and 87 of the wrong values are found, 64 of
+ * those in 24 rows. */
 #define WRONG_ODDS 0.05
 
-/* Tails that measured tables have, and how often before a look at the rows (a choice: what it finds
- * and what it claims of heavy tails is in reports/loop_power.md). The last is normal. */
+/* Tails of measured tables (dof) with their prior probabilities, a choice (power and false claims
+ * with heavy tails: reports/loop_power.md). The last is normal. */
 enum { TAILS = 5 };
 static const double tail_dof[TAILS] = {3, 4, 6, 10, INFINITY};
 static const double tail_before[TAILS] = {0.01, 0.03, 0.08, 0.18, 0.7};
@@ -47,7 +48,7 @@ typedef struct outlier_rows {
   fg_engine_noise noise;
   size_t n, rank;
   double *basis; /* orthonormal, whitened: the null's columns, then the rows taken out */
-  double *white; /* n: what is left of the response */
+  double *white; /* n: whitened residual of the response */
   double *unit;  /* n: one row's whitened indicator */
   double *t;     /* n: residual of a row over its own sd (not over the noise's) */
   double *kept;  /* n: |M W e|² */
@@ -93,7 +94,8 @@ static void fill_unit(const outlier_rows *rows, size_t i) {
   if (whole_covariance(rows)) fg_engine_whiten(rows->training, rows->noise, rows->unit);
 }
 
-/* A row beside all others: what is left of its response along its own whitened indicator. */
+/* Assesses a row beside all others: the residual of its response along its own whitened indicator.
+ */
 static double judge_correlated(outlier_rows *rows, size_t i) {
   size_t n = rows->n;
   double along = 0, kept = 0;
@@ -112,7 +114,7 @@ static double judge_correlated(outlier_rows *rows, size_t i) {
   return along;
 }
 
-/* Where rows are many and correlated a row is judged by its innovation alone. */
+/* Assesses rows; where they are many and correlated, by their innovations alone. */
 static void judge_rows(outlier_rows *rows) {
   for (size_t i = 0; i < rows->n; i++) {
     double along = whole_covariance(rows) ? judge_correlated(rows, i) : rows->white[i];
@@ -155,8 +157,8 @@ static double log_density(double x, double dof) {
   return log(gsl_ran_tdist_pdf(x / unit, dof) / unit);
 }
 
-/* How likely each tail is by the rows that are left; of those that are out only that they lie
- * beyond the rest is known. */
+/* Computes the posterior weight of each tail from the remaining rows; of removed rows only the fact
+ * that they lie beyond is used. */
 static void weigh_tails(const outlier_rows *rows, size_t out, double sd, double weight[TAILS]) {
   double max = -INFINITY, sum = 0, largest = 0;
   for (size_t i = 0; i < rows->n; i++)
@@ -175,7 +177,8 @@ static void weigh_tails(const outlier_rows *rows, size_t out, double sd, double 
     weight[k] /= sum;
 }
 
-/* Of a row that lies `t` noises out, with `out` rows (it among them) taken out. */
+/* Returns the p-value of a row at distance `t`, in sd of the noise, with `out` rows (itself among
+ * them) removed. */
 static double row_p(const outlier_rows *rows, double t, size_t out) {
   double dof = (double)rows->n - (double)rows->rank, weight[TAILS], p = 0;
   double sd = sqrt(rows->rss / dof), size = fabs(t) / sd;
@@ -186,8 +189,8 @@ static double row_p(const outlier_rows *rows, double t, size_t out) {
   return -expm1(left * log1p(-fmin(p, 0.5)));
 }
 
-/* The chance that no row is wrong but the tail of all heavy: of as many likelihood ratios as there
- * are rows to be wrong, with the first `taken` rows and one more of `size` apart. */
+/* Returns the p-value against a heavy tail of all rows: the smallest of as many likelihood ratios
+ * as there are possible outliers, for the first `taken` rows and one more of `size`. */
 static double tail_p(outlier_rows *rows, size_t taken, double size) {
   size_t rest = 0;
   for (size_t i = 0; i < rows->n; i++)
@@ -198,7 +201,8 @@ static double tail_p(outlier_rows *rows, size_t taken, double size) {
   return fmin(WRONG_ODDS * (double)rows->n * exp(-ratio), 1);
 }
 
-/* F ratio of one row that would just pass; where rows are many their tails are what they show. */
+/* Returns the smallest F ratio of one row that is accepted; where rows are many their tails are the
+ * observed ones. */
 static double critical_f(outlier_rows *rows, double level, double accept_p) {
   double dof = (double)rows->n - (double)rows->rank, weight[TAILS], low = 1, high = 1e6;
   double one = level / (double)rows->n, sd = sqrt(rows->rss / dof);

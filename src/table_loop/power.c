@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The smallest amplitude that would have been found: by simulation, noise estimated anew in every
- * draw as in the search itself. */
+/* Smallest detectable amplitude by simulation, with the noise estimated anew in every draw, as in
+ * the search. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,7 +12,8 @@
 enum { DRAWS = 60, HALVINGS = 14 };
 static const double wanted = 0.8;
 
-/* Products with the bench's columns at every noise: of each draw of noise, and of the effect. */
+/* Products with the workspace's columns at every noise: of each draw of noise, and of the effect.
+ */
 typedef struct power_workspace {
   const fg_score_workspace *workspace;
   size_t width;
@@ -79,8 +80,8 @@ static void draw_noise(power_workspace *power, fg_engine_noise noise, uint64_t s
   }
 }
 
-/* The columns of the middle version, the k-th k times: neither the clearest pattern of many nor the
- * one that the declared model absorbs. Half range 1. */
+/* Sets the effect to the columns of the middle version, the k-th weighted by k: neither the
+ * clearest of many patterns nor one that the declared model absorbs. Half range 1. */
 static fg_status set_effect(fg_context *ctx, power_workspace *power, size_t version) {
   const fg_score_workspace *workspace = power->workspace;
   const fg_engine_training *training = workspace->training;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A problem from a table: rows in order, groups, model, coordinates, what is kept aside. */
+/* Building a problem from a table: rows in order, groups, model, coordinates, held-out rows. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -118,8 +118,8 @@ static fg_status fill_response(fg_context *ctx, const fg_loop_table_state *build
                  largest > 1 ? "large" : "small");
 }
 
-/* Where the declared model has a constant, residuals are told from the first response, with all the
- * digits that the table has: the constant takes up the rest. */
+/* Subtracts the first response as origin, with all digits of the table, where the declared model
+ * has a constant, which absorbs it. */
 static fg_status take_origin(fg_context *ctx, const fg_loop_table_state *build) {
   fg_loop_problem *problem = &build->out->problem;
   const fg_extended *response;
@@ -141,8 +141,8 @@ static fg_status take_origin(fg_context *ctx, const fg_loop_table_state *build) 
   return FG_OK;
 }
 
-/* What is predicted besides the model is taken from the residual; the response stays as it was
- * measured: two that were exchanged are exchanged as they are. */
+/* Subtracts the offset column from the residual. The response stays as measured: exchanged
+ * responses are exchanged with it. */
 static fg_status take_offset(fg_context *ctx, const fg_loop_table_state *build) {
   fg_loop_problem *problem = &build->out->problem;
   const char *name = build->spec->offset;
@@ -156,15 +156,16 @@ static fg_status take_offset(fg_context *ctx, const fg_loop_table_state *build) 
   return FG_OK;
 }
 
-/* What the declared model says of the response, as far as no column says the same: the scatter may
- * follow it. */
+/* Adds the declared model's prediction of the response as a coordinate, unless a column has the
+ * same content: the scatter may follow it. */
 static fg_status add_level(fg_context *ctx, const fg_loop_table_state *build) {
   fg_loop_problem *problem = &build->out->problem;
   fg_engine_training training;
   fg_engine_fit fit = {0};
   fg_loop_coordinate *at = NULL;
   char name[FG_LOOP_NAME];
-  if (problem->parameters < 3) return FG_OK; /* a constant and one column: the column says it */
+  if (problem->parameters < 3)
+    return FG_OK; /* a constant and one column: the column is that coordinate */
   fg_text_clip(name, sizeof name, "the level of %s", build->spec->response);
   FG_TRY(fg_loop_table_add_coordinate(ctx, build, name, FG_LOOP_LEVEL, &at));
   FG_TRY(fg_engine_training_build(ctx, problem, NULL, NULL, &training));

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Projections and least squares of a training (modified Gram-Schmidt, taken out twice). */
+/* Projections and least squares of a training set (modified Gram-Schmidt, applied twice). */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,12 +8,12 @@
 #include "table_loop/dots.h"
 #include "table_loop/engine.h"
 
-/* A column of which less than this share of its squared length is left lies in the span: of what
- * the declared model has only what is there twice, since with an origin far away (a temperature
- * of 10^6) its columns are nearly parallel; of effects also what is too much alike to matter. */
+/* Share of a column's squared length below which it lies in the span. For the declared model it is
+ * the rounding limit, because with an origin far away (a temperature of 10^6) its columns are
+ * nearly parallel; for effects it also excludes nearly collinear columns. */
 static const double same_span = 1e-9, declared_span = 1e-24;
-/* A row that the null's columns hold alone has a residual of rounding: what is divided by the share
- * that it keeps divides by this at the least, a sd of 0.05. */
+/* Lower limit of the kept share by which a residual is divided, a sd of 0.05: the residual of a row
+ * that the null's columns fit alone is rounding. */
 static const double kept_min = 0.05 * 0.05;
 
 static double dot(size_t n, const double *a, const double *b) {
@@ -30,9 +30,9 @@ static double dot(size_t n, const double *a, const double *b) {
 /* Vectors of a basis that are taken out together where rows are many. */
 enum { TOGETHER = 64 };
 
-/* The same of many rows: so many vectors together, so that v is read and written a few times only.
- * Twice is enough for this order of the sums as well (Giraud and others 2005). `along` (or NULL)
- * gathers how much of each was taken out. */
+/* As the function for few rows, with several vectors at a time, so that v is read and written only
+ * a few times. Two passes suffice for this order of the sums as well (Giraud and others 2005).
+ * `along` (or NULL) sums the removed parts. */
 static double project_many(size_t n, const double *basis, size_t rank, double *v, double *along) {
   double here[TOGETHER];
   for (int pass = 0; pass < 2; pass++)
@@ -139,7 +139,7 @@ typedef struct triangle {
   double *r;     /* columns × columns, r[i * columns + j]: row i of kept column j */
 } triangle;
 
-/* Takes the columns kept so far out of v; along[k] is what each had of it. */
+/* Projects v beside the columns kept so far; along[k] is its part along each. */
 static double take_kept(size_t n, const triangle *t, double *v, double *along) {
   memset(along, 0, t->rank * sizeof *along);
   if (n > FG_ENGINE_SMALL_ROWS) return project_many(n, t->basis, t->rank, v, along);

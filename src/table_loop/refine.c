@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Shapes of the effects of a set, moved to the least residual sum. */
+/* Refinement of the shapes of a set's effects to the smallest residual sum. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -36,14 +36,15 @@ static void neighbours(const fg_loop_problem *problem, const fg_loop_candidate *
   }
 }
 
-/* One shape of one member of a set, with all else held. */
+/* One shape of one member of a set; the others are held. */
 typedef struct moving {
   const fg_loop_problem *problem;
   const bool *keep;
   fg_engine_noise noise;
   fg_engine_set *set;
   size_t member;
-  /* Where rows are many: the set without the member, and what the member is multiplied with. */
+  /* For many rows: the set without the member, and the vectors that the member is multiplied with.
+   */
   fg_engine_training training;
   fg_engine_span null;
   fg_engine_bins bins;
@@ -109,7 +110,7 @@ static void close_many(moving *m) {
   free(m->gram.cross);
 }
 
-/* Golden section in the logarithm; kept only where it is better than the start. */
+/* Golden section in the logarithm; the result is used only if better than the start. */
 static fg_status move_one(fg_context *ctx, moving *m, size_t dimension) {
   static const double golden = 0.61803398874989485;
   double *shape = &m->set->shape[m->member][dimension], start = *shape, at_start, low, high;
@@ -152,7 +153,7 @@ static fg_status move_member(fg_context *ctx, moving *m) {
   for (size_t d = 0; d < effect->shapes; d++)
     FG_TRY(move_one(ctx, m, d));
   if (!m->in_steps) return FG_OK;
-  FG_TRY(on_all_rows(ctx, m, &after)); /* steps hide what is narrower */
+  FG_TRY(on_all_rows(ctx, m, &after)); /* narrower shapes need all rows: bins hide them */
   double moved[FG_LOOP_SHAPES];
   memcpy(moved, m->set->shape[m->member], sizeof moved);
   memcpy(m->set->shape[m->member], start, sizeof start);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Candidates that were not claimed: what they would have explained, and what would have shown. */
+/* Candidates that are not claimed: the share that they explain, and their detectable amplitude. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,7 +10,8 @@
 
 static const double power_80 = 0.8416; /* normal quantile of a power of 80 % */
 
-/* Amplitude a with a² |M W f|² / s² = (sqrt(k F) + 0.84)²: found four times in five. */
+/* Detectable amplitude a, with a² |M W f|² / s² = (sqrt(k F) + 0.84)²: found with a power of 80 %.
+ */
 static double detectable(double f_critical, double k, double sd_white, double length) {
   if (!isfinite(f_critical) || !(length > 0)) return NAN;
   return (sqrt(k * f_critical) + power_80) * sd_white / sqrt(length);
@@ -62,7 +63,7 @@ static void describe(const fg_engine_step *step, size_t c, double sd_white, cons
   }
 }
 
-/* Rows by themselves; of the scatter no amplitude is told. */
+/* Describes single rows; candidates of the scatter have no detectable amplitude. */
 static void describe_rest(const fg_engine_run *run, const fg_engine_step *step, size_t stand,
                           double sd_white, fg_loop_rejected *one) {
   one->would_explain = stand < run->candidates ? NAN : 0;

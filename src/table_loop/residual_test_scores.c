@@ -6,12 +6,12 @@
 #include "core/memory.h"
 #include "table_loop/residual_tests.h"
 
-/* Repeats tell their own scatter from so many differences on. */
+/* Minimum number of differences between repeats for estimating their scatter. */
 enum { REPEATS_MIN = 4 };
 /* Of a residual's sum of squares: repeats that differ by less were copied, not measured. */
 #define COPIES 1e-12
 
-/* A row with what its settings are: columns of the null, then recorded columns. */
+/* Row with its settings: columns of the null, then recorded columns. */
 typedef struct keyed_row {
   const double *key;
   size_t width, row;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What `clean` rests on: tests of the whole residual beside what was looked for by name. Runs that
- * repeat tell what the model leaves of their means (lack of fit); rows further apart than
- * neighbours tell of a pattern along the order that no listed effect draws (Ljung and Box 1978,
- * each lag at the size that its own products have). Both against residuals in another order. */
+/* Residual tests behind the verdict `clean`, beside all effects sought by name. Repeated runs show
+ * deviations of their means from the model (lack of fit). Rows further apart than neighbours show a
+ * pattern along the order that no listed effect describes (Ljung and Box 1978, each lag scaled by
+ * its own products). Both are compared with residuals in another order. */
 #include "table_loop/residual_tests.h"
 
 #include <math.h>
@@ -15,13 +15,13 @@
 #include "table_loop/engine_random.h"
 #include "table_loop/run.h"
 
-/* Of a clean table's chance to be called otherwise, all tests here together. What is looked for by
- * name has used most of FG_LOOP_ACCEPT_P. */
+/* Level of all residual tests together. The effects sought by name use most of FG_LOOP_ACCEPT_P. */
 #define RESIDUAL_TESTS_P 0.0015
-/* Lags of the sum (a tenth of the usual n / 2 would miss a week, all would drown it), and of one
- * that stands out: a month of days, five years of months. */
+/* Lags of the sum (a tenth of the usual n / 2 would miss a week, all would hide it), and of a
+ * single lag: a month of days, five years of months. */
 enum { SUM_LAGS = 10, SUM_SHARE = 5, ONE_LAGS = 60, ONE_SHARE = 4 };
-/* Draws at most; no more where every test has been surpassed so often (Besag and Clifford 1991). */
+/* Maximum number of draws; they end when every test has been exceeded so often (Besag and Clifford
+ * 1991). */
 enum { DRAWS = 3999, SURPASSED = 20 };
 /* As in judge.c: with fewer rows beyond the parameters a new order is no new sample. */
 enum { PERMUTED_DOF = 12 };
@@ -57,8 +57,8 @@ static void choose_lags(residual_tests *b) {
   if (b->sum_lags < 2) b->sum_lags = b->one_lags = 0;
 }
 
-/* Repeats need rows that are independent: neighbours that are alike, and groups that share a level,
- * differ by too little. */
+/* Opens the cells of repeated rows. They need independent rows: correlated neighbours, and groups
+ * that share a level, differ by too little. */
 static fg_status open_cells(fg_context *ctx, residual_tests *b) {
   bool independent = b->noise.rho == 0 && b->training.levels == 0;
   for (int recorded = 0; independent && recorded < 2; recorded++)
@@ -162,7 +162,7 @@ static void p_by_distribution(const residual_tests *b, const double *value, doub
   p[FG_LOOP_CHECK_ONE_LAG] = -expm1(((double)b->one_lags - 1) * log1p(-one));
 }
 
-/* The settings whose means the model misses most: their rows, the first of each. */
+/* Names the settings with the largest deviations: the first row of each. */
 static void name_worst(const residual_tests *b, const fg_engine_cells *cells,
                        fg_loop_checked *check) {
   enum { NAMED = 3 };
@@ -187,7 +187,8 @@ static void name_worst(const residual_tests *b, const fg_engine_cells *cells,
   }
 }
 
-/* rms: of what the settings' means lack, of what the other row says of a row. */
+/* rms: of the deviations of the settings' means, or of the part of a row that the other row
+ * predicts. */
 static void describe(residual_tests *b, size_t lag, fg_loop_checked *check) {
   double mean_square = 0;
   for (size_t i = 0; i < b->training.n; i++)
@@ -219,7 +220,7 @@ static fg_status keep_cells(fg_context *ctx, const residual_tests *b, size_t whi
   return FG_OK;
 }
 
-/* The test that fails most clearly at its part of the level. */
+/* Selects the failed test that is most significant relative to its level. */
 static fg_status judge(fg_context *ctx, const residual_tests *b, const double *value,
                        const double *p, fg_loop_result *result) {
   double tests = 0, min = INFINITY;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a run of the loop hands back: its words, its notes, what a claim says at a row. */
+/* Result of a run of the loop: its words, its notes, a claim's value at a row. */
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>

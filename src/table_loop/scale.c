@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The size of every row's scatter where it changes: sd = exp(z'g), by the likelihood of the squared
+/* Scale of every row's scatter where it varies: sd = exp(z'g), by the likelihood of the squared
  * residuals (a gamma model with logarithmic link: Smyth 1989), in turns with the mean. */
 #include <math.h>
 #include <stdlib.h>
@@ -11,7 +11,7 @@
 #include "core/memory.h"
 #include "table_loop/engine.h"
 
-/* A scale is bounded: a level whose rows agree by luck must not decide alone. */
+/* Bounds of a scale: a level whose rows agree by chance must not dominate the fit. */
 #define SCALE_MAX 12
 enum { TURNS = 3, STEPS = 12 };
 

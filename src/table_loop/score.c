@@ -20,7 +20,7 @@ double fg_engine_version_whole(const fg_score_workspace *workspace,
 }
 
 /* Wilson and Hilferty's normal deviate of an F ratio: close enough to compare candidates of
- * different freedom, and monotone, so p-values from simulation stay exact. */
+ * different dof, and monotone, so p-values from simulation stay exact. */
 double fg_engine_deviate(double ratio, double k, double dof) {
   double nu = dof - k, f = (1 / ratio - 1) * nu / k;
   double root = cbrt(f), a = 2 / (9 * nu), b = 2 / (9 * k);
@@ -42,7 +42,7 @@ double fg_engine_deviate_to_f(double z, double k, double nu) {
 
 /* Residual sums at one noise model. */
 typedef struct residual_sums {
-  double rss, between; /* without any candidate: of rows, and of what groups differ by */
+  double rss, between; /* without any candidate: of rows, and of differences between groups */
 } residual_sums;
 
 static bool can_be_scored(const fg_score_workspace *workspace, const fg_engine_version *version) {
@@ -55,7 +55,8 @@ static double share_left(double whole, double gain) {
   return whole > 0 ? fmax(1 - gain / whole, FG_ENGINE_RATIO_MIN) : 1;
 }
 
-/* The version's score where it is the candidate's best; `gain` is what it takes away. */
+/* Stores the version's score if it is the candidate's best; `gain` is its reduction of the residual
+ * sum. */
 static void take_version(const fg_score_workspace *workspace, size_t v, size_t j,
                          residual_sums sums, double gain, fg_engine_score *score) {
   const fg_engine_version *version = &workspace->version[v];
@@ -100,11 +101,11 @@ void fg_score_workspace_score_data(const fg_score_workspace *workspace, fg_engin
   }
   finish_scores(workspace, workspace->rss[*null] * workspace->weight[*null], score);
 }
-/* Responses of a batch interleaved, so that every column of the bench is read once for all. */
+/* Responses of a batch interleaved, so that every column of the workspace is read once for all. */
 typedef struct response_batch {
   size_t count;
   float *white; /* n × FG_ENGINE_BATCH */
-  float *sums;  /* the bench's width × FG_ENGINE_BATCH */
+  float *sums;  /* the workspace's width × FG_ENGINE_BATCH */
   double *one;  /* n */
   double rss[FG_ENGINE_BATCH], lowest[FG_ENGINE_BATCH];
 } response_batch;
@@ -126,7 +127,7 @@ static void whiten_batch(const fg_score_workspace *workspace, fg_engine_noise no
   }
 }
 
-/* Columns in blocks whose sums stay in the nearest cache. */
+/* Block of columns whose sums stay in the nearest cache. */
 enum { BLOCK = 64 };
 
 /* One value of every response of a batch. */

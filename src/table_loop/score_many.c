@@ -13,8 +13,8 @@
 #include "table_loop/between.h"
 #include "table_loop/bins.h"
 
-/* Steps of a coordinate; powers of two for the transform. A cycle has 16 of them at the least, so
- * that it keeps 99 % of what it explains. */
+/* Steps of a coordinate; powers of two for the transform. A cycle has at least 16 of them, so that
+ * 99 % of its explained sum is kept. */
 enum { STEPS_MIN = 2048, STEPS_MAX = 8192, STEPS_A_HALF_CYCLE = 8 };
 
 typedef struct many {
@@ -28,8 +28,9 @@ static const fg_loop_candidate *candidate_of(const many *m, size_t c) {
   return &m->workspace->candidate[c];
 }
 
-/* May the best of a candidate's versions be found over sums? Where rows are independent, and along
- * an order where neighbours are alike: a form that is smooth along it stays what it is. */
+/* Returns true when the best of a candidate's versions can be found over binned sums: for
+ * independent rows, and, where neighbours are correlated, for a basis that is smooth along their
+ * order. */
 static bool in_steps(const many *m, size_t c) {
   const fg_loop_candidate *candidate = candidate_of(m, c);
   const fg_loop_coordinate *at = &m->workspace->training->problem->coordinate[candidate->a];
@@ -43,7 +44,7 @@ static double half_cycles(const fg_loop_coordinate *at, double period) {
   return 2 * (at->high - at->low) / period;
 }
 
-/* A cycle whose start values are half a cycle apart. */
+/* Returns true for a cycle whose start values are half a cycle apart. */
 static bool is_cycle(const many *m, size_t c, size_t steps) {
   const fg_loop_candidate *candidate = candidate_of(m, c);
   const fg_loop_coordinate *at = &m->workspace->training->problem->coordinate[candidate->a];
@@ -72,8 +73,8 @@ static size_t count_steps(const many *m, size_t coordinate) {
 typedef struct first_look {
   fg_engine_bins bins;
   double *columns; /* widest × steps */
-  double *waves;   /* (rank + 2) × 2 steps: transforms of the vectors and of the weight; NULL: none
-                      yet */
+  double *waves;   /* (rank + 2) × 2 steps: transforms of the vectors and of the weight; NULL: not
+                      computed yet */
   fg_engine_gram gram;
 } first_look;
 
@@ -135,7 +136,7 @@ static fg_status look_at(fg_context *ctx, const many *m, size_t c, first_look *l
   return FG_OK;
 }
 
-/* The first look at everything over one coordinate. */
+/* Scores, over binned sums, all candidates of one coordinate. */
 static fg_status look_over(fg_context *ctx, void *shared, size_t coordinate) {
   const many *m = shared;
   fg_score_workspace *workspace = m->workspace;
@@ -162,7 +163,7 @@ exit:
   return status;
 }
 
-/* What is left of a candidate's versions, on all rows. */
+/* Scores the remaining versions of a candidate on all rows. */
 static fg_status score_candidate(fg_context *ctx, void *shared, size_t c) {
   const many *m = shared;
   fg_score_workspace *workspace = m->workspace;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The bench: candidates whitened, projected and orthonormal, for scoring many responses. */
+/* Score workspace: candidates whitened, projected and orthonormal, for scoring many responses. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -38,8 +38,8 @@ static fg_status list_versions(fg_context *ctx, fg_score_workspace *workspace) {
   return FG_OK;
 }
 
-/* An effect takes correlation away more than it adds: the models around the null's best, then in
- * steps down to none. */
+/* Thins the noise models: an effect reduces correlation more often than it adds to it, so the
+ * models are those around the null's best, then steps down to none. */
 static void thin_noises(fg_score_workspace *workspace, size_t best) {
   size_t kept = 0;
   for (size_t j = 0; j < workspace->noises; j++) {
@@ -51,8 +51,8 @@ static void thin_noises(fg_score_workspace *workspace, size_t best) {
   workspace->noises = kept;
 }
 
-/* Weights of the noise models by residual likelihood: with S the residual sum and f the freedom,
- * f log S - 2 log|W| + log|X'W'WX|, so that S exp(rest / f) compares. */
+/* Computes weights of the noise models by residual likelihood: with S the residual sum and f the
+ * dof, f log S - 2 log|W| + log|X'W'WX|, so that S exp(terms / f) is comparable. */
 static fg_status weigh_noises(fg_context *ctx, fg_score_workspace *workspace) {
   const fg_engine_training *training = workspace->training;
   double terms[FG_ENGINE_NOISES], best = INFINITY, sums[FG_ENGINE_NOISES];
@@ -83,7 +83,8 @@ static fg_status weigh_noises(fg_context *ctx, fg_score_workspace *workspace) {
   return FG_OK;
 }
 
-/* The version's columns, whitened, orthonormal beside the null: at most bench->widest × n. */
+/* Computes the version's columns, whitened, orthonormal beside the null: at most workspace->widest
+ * × n. */
 static fg_status version_basis(fg_context *ctx, const fg_score_workspace *workspace, size_t v,
                                size_t j, double *columns, double *unit) {
   const fg_engine_training *training = workspace->training;

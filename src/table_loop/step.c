@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One step of the loop: everything scored and judged beside what is accepted so far. */
+/* One step of the loop: all candidates scored and assessed beside the effects accepted so far. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,14 +8,14 @@
 #include "effect/table_effects.h"
 #include "table_loop/step.h"
 
-/* A candidate explains nearly what another does from this share on. */
+/* Share of another candidate's explained sum from which one explains nearly as much. */
 #define NEARLY 0.8
 
 /* The null is drawn from the same numbers in every run: no verdict depends on a seed. */
 #define FIXED_SEED 1
 
-/* Draws of the null; beside correlation, where each costs as many times as there are noise models,
- * and where a step is not judged, fewer. */
+/* Draws of the null; fewer beside correlation, where each costs a factor of the number of noise
+ * models, and where a step is not assessed. */
 enum { DRAWS = 1999, DRAWS_CORRELATED = 799, DRAWS_UNJUDGED = 399 };
 
 size_t fg_engine_wrong_rows(const fg_engine_run *run) {

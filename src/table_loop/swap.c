@@ -6,8 +6,8 @@
 #include "table_loop/serial.h"
 #include "table_loop/step.h"
 
-/* Beside the others a claim explains nothing any more below this deviate (one-sided 1 %), unless
- * another candidate reaches the second in its place. */
+/* Deviate below which a claim explains nothing beside the others (one-sided 1 %), unless another
+ * candidate reaches the second one in its place. */
 static const double OWN_Z = 2.33, BEST_Z = 4;
 
 static bool tied_with_correlation(const fg_loop_claim *claim, fg_loop_candidate *tied) {
@@ -19,7 +19,7 @@ static bool tied_with_correlation(const fg_loop_claim *claim, fg_loop_candidate 
   return false;
 }
 
-/* Correlation that the effects found after it have made needless. */
+/* Drops correlation that later effects have made unnecessary. */
 static fg_status drop_correlation(fg_context *ctx, fg_engine_run *run) {
   for (size_t m = 0; m < run->result->claims; m++) {
     if (!fg_engine_is_serial(&run->result->claim[m].candidate)) continue;

@@ -55,7 +55,7 @@ static fg_status open_run(fg_context *ctx, const fg_engine_units *units,
   return fg_memory_allocate(ctx, problem->parameters, size, (void **)&result->parameter_u);
 }
 
-/* Declared columns that the others span, as far as the digits tell. */
+/* Notes declared columns that lie in the span of the others, within rounding. */
 static fg_status note_aliased(fg_context *ctx, fg_engine_run *run, const fg_engine_fit *fit) {
   const fg_loop_problem *problem = run->problem;
   char *names = NULL;
@@ -113,7 +113,7 @@ fg_status fg_engine_search(fg_context *ctx, fg_engine_run *run) {
   return fg_engine_swap(ctx, run);
 }
 
-/* Where rows are many the shortest cycles are left out. */
+/* Notes that the shortest cycles are left out where rows are many. */
 static fg_status note_cycles(fg_context *ctx, const fg_engine_run *run) {
   for (size_t c = 0; c < run->means; c++) {
     const fg_loop_candidate *candidate = &run->candidate[c];

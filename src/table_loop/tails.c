@@ -3,10 +3,10 @@
 
 #include <math.h>
 
-/* A wrong value may lie so many sd of the rest to either side. */
+/* Range of a wrong value, in sd of the others, to either side. */
 #define WILD 20
-/* Beside a first wrong value a further one must be so many times as likely, in logarithms: several
- * values far out are what a heavy tail looks like. */
+/* Log odds of a further wrong value beside a first one: several values far out are typical of a
+ * heavy tail. */
 #define FURTHER 1.2
 /* The scale of a Student's t, by expectation and maximisation. */
 enum { SCALE_STEPS = 25 };

@@ -115,7 +115,7 @@ double fg_engine_response(const fg_engine_training *training, size_t i) {
   return training->y[i] - problem->residual[row] + problem->response[row];
 }
 
-/* A form that overflows at some row is no candidate: columns of zeros explain nothing. */
+/* Zeroes a basis that overflows at some row: columns of zeros explain nothing. */
 static void refuse_overflow(double *columns, size_t count) {
   for (size_t i = 0; i < count; i++)
     if (!isfinite(columns[i])) {

@@ -81,7 +81,7 @@ static void restore(double *value, size_t count, int exponent) {
     value[i] = ldexp(value[i], exponent);
 }
 
-/* A sum of squares: NaN where the caller's unit cannot hold it. */
+/* Restores a sum of squares: NaN where the caller's unit cannot represent it. */
 static void restore_square(double *value, int exponent) {
   double before = *value;
   *value = ldexp(before, 2 * exponent);

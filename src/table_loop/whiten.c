@@ -4,8 +4,8 @@
  *
  * A series of unit variance has covariance R with R_ij = rho^|i-j|. L = (v_t - rho v_t-1) /
  * sqrt(1 - rho²) makes it white. A shared level adds lambda 1 1'; with c = L 1 the covariance is
- * then I + lambda c c', whose inverse root takes (1 - 1/sqrt(1 + lambda c'c)) of the part along c
- * away. In groups, rows of a group are one series. */
+ * then I + lambda c c', whose inverse root removes (1 - 1/sqrt(1 + lambda c'c)) of the part along
+ * c. In groups, rows of a group are one series. */
 #include <math.h>
 
 #include "table_loop/engine.h"
@@ -81,8 +81,8 @@ double fg_engine_log_det(const fg_engine_training *training, fg_engine_noise noi
   return sum;
 }
 
-/* Correlation only where it is in force: it is a finding like others. Coarser where a level is
- * estimated beside it. */
+/* Correlation only when it is in force: it is a finding like others. The grid is coarser where a
+ * level is estimated too. */
 size_t fg_engine_noise_grid(const fg_engine_training *training,
                             fg_engine_noise grid[FG_ENGINE_NOISES]) {
   static const double alone[] = {-0.6, -0.3, 0, 0.2, 0.4, 0.55, 0.7, 0.8, 0.88, 0.94, 0.98};
