@@ -18,9 +18,9 @@ typedef struct half_loads {
 
 typedef double flexibility[LOADS][LOADS];
 
-/* Gauss and Legendre's rule of ten points. What is integrated are products of sines and cosines
- * over at most a quarter turn: exact to rounding, also for a flat arc, where closed forms are
- * differences of like numbers. */
+/* Gauss-Legendre rule of ten points. The integrands are products of sines and cosines over at most
+ * a quarter turn: exact to rounding, also for a flat arc, where closed forms are differences of
+ * nearly equal numbers. */
 enum { NODES = 10 };
 
 static const double half_node[NODES / 2] = {0.1488743389816312, 0.4333953941292472,

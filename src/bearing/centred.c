@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The rotor position with the most room: maximise m, m <= c_i - a x_i - b y_i for all i.
+/* Rotor position with the largest minimum clearance: maximise m, m <= c_i - a x_i - b y_i for all
+ * i.
  *
- * A linear programme in (m, a, b). Its dual holds the answer: weights w >= 0 on three places with
- * sum w = 1, sum w x = sum w y = 0, so that m = sum w c whatever a and b are. From three places
- * that surround the axis the place that the rotor overlaps most enters, and the one leaves that
+ * A linear programme in (m, a, b). Its dual has the solution: weights w >= 0 on three places with
+ * sum w = 1, sum w x = sum w y = 0, so that m = sum w c for any a and b. Start: three places that
+ * surround the axis. Step: the place that the rotor overlaps most enters, and the one leaves that
  * keeps the weights positive, until none is overlapped (dual simplex). */
 #include <math.h>
 
 #include "bearing/places.h"
 
-/* Of directions (unit vectors) and of clearances in mm: far below what is measured. */
+/* Tolerances of directions (unit vectors) and of clearances in mm: far below the measurement's. */
 static const double tiny = 1e-9, overlap_mm = 1e-12;
 
 /* Exchanges are a handful; where equal clearances let them turn in a circle all triples are tried.
@@ -20,7 +21,7 @@ double fg_places_shifted(const fg_places *p, size_t i, double a, double b) {
   return p->clearance[i] - a * p->x[i] - b * p->y[i];
 }
 
-/* Whether every half plane holds a crown: else a rotor could move away without end. */
+/* Returns true when every half plane holds a crown: else a rotor could move away without limit. */
 static bool surrounded(const fg_places *p) {
   for (size_t i = 0; i < p->count; i++) {
     bool left = false, right = false;
@@ -101,7 +102,8 @@ static size_t most_overlapped(const fg_places *p, const double rotor[3], double 
   return at;
 }
 
-/* Which of the three gives way to `next`: the first whose weight would reach zero. */
+/* Returns the place of the three that leaves for `next`: the first whose weight would reach zero.
+ */
 static int leaving(const fg_places *p, const size_t at[3], const double w[3], size_t next) {
   const double direction[3] = {1, p->x[next], p->y[next]};
   double v[3], min = INFINITY;
@@ -130,7 +132,8 @@ static bool exchange(const fg_places *p, size_t at[3], double rotor[3]) {
   return false;
 }
 
-/* Of the rotor positions that touch three crowns alike the one with the most room. */
+/* Finds, of all rotor positions that touch three crowns equally, the one with the largest
+ * clearance. */
 static bool try_all(const fg_places *p, size_t touched[3], double best[3]) {
   double max = -INFINITY, rotor[3], room;
   for (size_t i = 0; i < p->count; i++)

@@ -9,11 +9,11 @@
 
 static const double rad_per_deg = 3.14159265358979323846 / 180;
 
-/* What a model leaves out is said once it changes the stiffness by more than this. */
+/* Minimum change of the stiffness by a neglected influence that is reported. */
 static const double matters_share = 0.05;
 
-/* Shear makes a beam of length L that is loaded in its middle softer by 2.4 (1 + nu) (t / L)²: 3 %
- * where it is ten times as long as thick. */
+/* Ratio of length to thickness below which shear matters: shear makes a beam of length L, loaded in
+ * its middle, softer by 2.4 (1 + nu) (t / L)², which is 3 % at a ratio of ten. */
 static const double slender_ratio = 10;
 
 fg_arch_material fg_arch_material_default(void) {
@@ -60,7 +60,7 @@ static fg_status heshmat_stiffness(fg_context *ctx, const fg_arch *arch,
   return FG_OK;
 }
 
-/* How a model that is a simplification stands to the arch under the same friction. */
+/* Writes the ratio of a simplified model to the arch under the same friction. */
 static void put_against_arch(double stiffness_n_mm2, const fg_arch *arch,
                              const fg_arch_material *material, const char *what, char *words,
                              size_t size) {
@@ -83,8 +83,8 @@ static void heshmat_reserve(const fg_arch *arch, const fg_arch_material *materia
                    "A straight beam as long as the chord, and no friction", words, size);
 }
 
-/* The arc under the horizontal force of a foot, over R³/D: the closed form, and for flat arcs,
- * where that is a difference of like numbers, its series. */
+/* Flexibility of the arc under the horizontal force of a foot, over R³/D: the closed form, or for
+ * flat arcs, where that is a difference of nearly equal numbers, its series. */
 static double horizontal_flexibility(double phi) {
   static const double flat = 0.05;
   double square = phi * phi;
@@ -179,7 +179,7 @@ fg_status fg_arch_sensitivities(fg_context *ctx, const fg_arch *arch,
   return fg_stiffness_sensitivities(ctx, &models[0], arch, material, sensitivity);
 }
 
-/* What all models leave out; true: it counts. */
+/* Writes the influence that all models neglect; returns true when it matters. */
 static bool is_stout(const fg_arch *arch, char *words, size_t size) {
   double ratio = 2 * fg_arch_half_angle(arch) * arch->radius_mm / arch->thickness_mm;
   if (ratio >= slender_ratio) return false;

@@ -10,7 +10,7 @@
 #include "core/numerics.h"
 #include "die/values.h"
 
-/* What the traces of one half say of one bump. */
+/* Values of one bump from the traces of one half. */
 typedef struct repeats {
   const fg_die_trace **trace; /* owned; `count` of them */
   const fg_bump **bump;       /* owned */
@@ -34,7 +34,7 @@ static void find_repeats(const fg_die *die, fg_die_half half, int number, repeat
   }
 }
 
-/* Mean and sd over repeats; v->u: root mean square of what each is uncertain by. */
+/* Computes mean and sd over repeats; v->u: root mean square of the traces' own u. */
 static void sum_up(const fg_design *design, const repeats *of, fg_die_quantity q, fg_die_value *v) {
   double n = (double)of->count, sum = 0, square = 0, u_square = 0, u;
   for (size_t i = 0; i < of->count; i++) {
@@ -50,7 +50,8 @@ static void sum_up(const fg_design *design, const repeats *of, fg_die_quantity q
   v->u = sqrt(u_square / n);
 }
 
-/* The sd of one repeat over all bumps together, which a few repeats of one bump do not tell. */
+/* Returns the sd of one repeat pooled over all bumps, because a few repeats of one bump determine
+ * it poorly. */
 static double pooled_sd(const fg_die_side *side, fg_die_quantity q) {
   double square = 0, dof = 0;
   for (size_t i = 0; i < side->bump_count; i++) {
@@ -62,15 +63,15 @@ static double pooled_sd(const fg_die_side *side, fg_die_quantity q) {
   return dof > 0 ? sqrt(square / dof) : NAN;
 }
 
-/* u of a mean of `count` repeats: what repeats show becomes less with their number; what each
- * trace's own u has beyond that is the surface's form, the same in every repeat. */
+/* Returns the u of a mean of `count` repeats: the scatter of repeats is averaged; the remainder of
+ * each trace's own u is the surface's form error, the same in every repeat. */
 static double u_of_mean(double own, double pooled, size_t count) {
   double seen = isfinite(pooled) ? pooled * pooled : own * own;
   return sqrt(fmax(own * own - seen, 0) + seen / (double)count);
 }
 
-/* A bump's own circle alone gives its radius; all else rests on the overall circle too, whose error
- * all bumps share. */
+/* Returns true for the radius, which depends on the bump's own circle only; all other quantities
+ * depend on the overall circle too, whose error is common to all bumps. */
 static bool is_own(fg_die_quantity q) {
   return q == FG_DIE_RADIUS || q == FG_DIE_RADIUS_ERROR;
 }
@@ -224,7 +225,7 @@ static fg_status measure_trace(fg_context *ctx, fg_die *die, const fg_die_source
   fg_status status =
       fg_die_trace_measure(ctx, &die->design, &die->options, source, &profile, trace);
   fg_die_profile_free(&profile);
-  die->trace_count++; /* what it has so far is freed with the others */
+  die->trace_count++; /* a partly filled trace is freed with the others */
   for (size_t i = 0; i < die->trace_count; i++)
     trace->repeat += die->traces[i].half == trace->half;
   return status;

@@ -10,13 +10,12 @@
 /* Of an arc: enough for lengths of a twentieth of it, few enough to be quick. */
 enum { BINS = 40, BINS_MIN = 8, PARAMETERS = 3 };
 
-/* Tried, relative to the mean arc's length: a wave longer than half of the arc is all but part of
- * the circle. */
+/* Correlation lengths tried, relative to the mean arc's length: the circle absorbs a wave longer
+ * than half of the arc almost completely. */
 static const double lengths[] = {0.015, 0.02, 0.03, 0.04, 0.055, 0.08, 0.13, 0.2};
 static const double white_shares[] = {1, 0.7, 0.4, 0.2, 0.1, 0.03, 0.01, 0.003};
-/* Correlated noise must do better than white noise by this much of the deviance, which it has two
- * parameters for: chance gives that in 5 % (chi², two degrees of freedom), and a long wave that is
- * not there would widen every u. */
+/* Minimum gain of correlated over white noise in deviance, for two more parameters: reached by
+ * chance in 5 % (chi², 2 dof). A long wave claimed in error would widen every u. */
 #define CORRELATED_GAIN 6.0
 enum {
   LENGTHS = sizeof lengths / sizeof *lengths,
@@ -91,7 +90,7 @@ static void solve_lower(size_t n, const double *lower, double *v) {
   }
 }
 
-/* What one arc adds to the restricted likelihood: log determinants, and r'Pr. */
+/* Contribution of one arc to the restricted likelihood: log determinants, and r'Pr. */
 typedef struct part {
   double log_determinants, square, dof;
 } part;

@@ -88,7 +88,7 @@ const char *fg_die_half_in(const char *text, size_t length) {
   return fg_die_half_word(concave ? FG_DIE_CONCAVE : FG_DIE_CONVEX);
 }
 
-/* Which axis the first word of a column's heading names: 0 x, 1 z, -1 neither. */
+/* Returns the axis named by the first word of a column's heading: 0 x, 1 z, -1 neither. */
 static int axis_of(const char *text, size_t length) {
   static const char *const names[2][6] = {{"x", "length", "distance", "position", "lateral", NULL},
                                           {"z", "height", "profile", "depth", "vertical", NULL}};
@@ -119,8 +119,8 @@ static void read_unit_line(const char *line, size_t length, fg_die_header *heade
   if (z || !x) take_unit(unit, &header->unit[1]);
 }
 
-/* Headings that name both axes: "X [mm]; Z [µm]". Between blanks a heading and its unit are
- * fields of their own. */
+/* Reads headings that name both axes: "X [mm]; Z [µm]". When blanks separate, a heading and its
+ * unit are two fields. */
 static bool read_names(const fg_die_field *fields, size_t count, size_t columns,
                        fg_die_header *header) {
   size_t column[2] = {0, 0};

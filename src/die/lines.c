@@ -89,7 +89,7 @@ bool fg_die_looks_numeric(const char *line, const char *end) {
   return digit && line < end;
 }
 
-/* What marks stand in the lines of a file. */
+/* Marks found in the lines of a file. */
 typedef struct marks {
   size_t lines, commas, points, most_commas;
   bool semicolon, tab, blank, comma_blank;

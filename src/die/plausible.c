@@ -11,7 +11,7 @@
 #define RADIUS_FACTOR 1.25
 /* A trace is not longer than the overall circle is wide; a die may have a rim. */
 #define LENGTH_DIAMETERS 1.3
-/* And shows three bumps at least, with the lands between them. */
+/* A trace must show at least three bumps, with the lands between them. */
 enum { BUMPS_MIN = 3, POINTS_PER_BUMP = 60 };
 
 static const double rad_per_deg = 3.14159265358979323846 / 180;
@@ -23,7 +23,7 @@ static double span_mm(const fg_design *design, double bumps) {
          sin(half < M_PI / 2 ? half : M_PI / 2);
 }
 
-/* Whether a length is one of this design's traces. */
+/* Returns true when a length is plausible for a trace of this design. */
 static bool length_fits(const fg_design *design, double mm) {
   return mm > 0.7 * span_mm(design, 2) && mm < 2 * LENGTH_DIAMETERS * design->overall_radius_mm;
 }
@@ -45,8 +45,8 @@ static fg_status fail_length(fg_context *ctx, const fg_design *design, const cha
                  span_mm(design, BUMPS_MIN) + design->bump_radius_mm);
 }
 
-/* Heights of a die differ by less than the diameter of its overall circle. A larger difference was
- * written for a lost contact, or in another unit. */
+/* Refuses impossible heights: they differ by less than the diameter of the die's overall circle. A
+ * larger difference marks a lost contact, or another unit. */
 static fg_status check_heights(fg_context *ctx, const fg_design *design, const char *path,
                                const fg_die_profile *p) {
   double limit = 2 * LENGTH_DIAMETERS * design->overall_radius_mm, z;
@@ -89,7 +89,7 @@ fg_status fg_die_check_tip(fg_context *ctx, const fg_design *design, const char 
                  path, tip, design->bump_radius_mm);
 }
 
-/* Where the overall circle's centre lies: below a dome of lands, above a bowl. */
+/* The overall circle's centre lies below a dome of lands, above a bowl. */
 fg_status fg_die_check_half(fg_context *ctx, const char *path, const fg_die_profile *p,
                             const fg_layout *layout) {
   const fg_circle *circle = &layout->overall.circle;

@@ -63,7 +63,7 @@ static fg_status find_data(reader *r) {
                  r->source->path);
 }
 
-/* Which columns are x and z: as was said, as the headings say, or the only two. */
+/* Chooses the columns x and z: as stated, by the headings, or the only two. */
 static fg_status choose_columns(reader *r, const fg_die_header *header) {
   for (int axis = 0; axis < 2; axis++) {
     size_t said = r->source->column[axis] ? r->source->column[axis] : header->column[axis];

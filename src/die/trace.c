@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One trace: stations, segments, circles, and what they come to on the design's datum line. */
+/* One trace: stations, segments, circles, and their values on the design's datum line. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,18 +12,18 @@
 #include "geometry/bump_places.h"
 #include "geometry/labels.h"
 
-/* A station is a mean of neighbouring points over this length: far below what bends the line (its
- * points lie 2 nm inside a radius of 2 mm), and a bump's arc has the 300 to 400 stations that a
- * strip's has at 4800 dpi, for which the noise along it is estimated (geometry/arc_noise.c). */
+/* Length over which neighbouring points are averaged to a station: far too short to bend the line
+ * (its points lie 2 nm inside a radius of 2 mm), and a bump's arc has the 300 to 400 stations that
+ * a strip's has at 4800 dpi, for which the noise along it is estimated (geometry/arc_noise.c). */
 #define STATION_MM 0.01
 /* Whole lands are off one circle when chance would show it less often than this (as on a strip). */
 #define LANDS_P 0.005
 /* A bump counts as seen whole when its arc reaches over this share of the design's angle. */
 #define WHOLE_SHARE 0.6
 
-/* Room for the stations: each takes a point at least, and the next one lies STATION_MM further. The
- * length is compared before it becomes a count: a stray value may make it larger than any size_t.
- */
+/* Returns an upper limit of the number of stations: each has at least one point, and the next one
+ * lies STATION_MM further. The length is compared before conversion: a stray value may make it
+ * larger than any size_t. */
 static size_t count_stations_max(const fg_die_profile *p) {
   double length = 0;
   for (size_t i = 1; i < p->count; i++)
@@ -32,7 +32,7 @@ static size_t count_stations_max(const fg_die_profile *p) {
   return stations < (double)p->count ? (size_t)stations : p->count;
 }
 
-/* y runs down, as in a scan: the material lies on the side of the normal. */
+/* y points down, as in a scan: the material lies on the side of the normal. */
 static fg_status make_strip(fg_context *ctx, const fg_die_profile *p, fg_strip *strip) {
   size_t i = 0;
   memset(strip, 0, sizeof *strip);
@@ -59,8 +59,8 @@ static fg_status make_strip(fg_context *ctx, const fg_die_profile *p, fg_strip *
   return FG_OK;
 }
 
-/* A bump's arc is no circle where it scatters by this factor more than the median one, and by more
- * than a stylus' own noise. */
+/* A bump's arc is no circle when its scatter exceeds the median one by this factor, and a stylus'
+ * own noise. */
 #define POOR_SCATTER 4.0
 #define POOR_MIN_MM  0.0002
 enum { BUMPS_MAX = 512 };
@@ -102,8 +102,8 @@ static bool is_whole(const fg_layout *layout, size_t i, double angle_deg) {
   return length > WHOLE_SHARE * angle_deg * M_PI / 180 * arc->circle.radius;
 }
 
-/* Where the tip's cone or the arm touched, a flank goes on as a straight line, and the arc with it:
- * such a bump stands out by its residuals. */
+/* Drops arcs that continue as a straight line on a flank, where the tip's cone or the arm touched:
+ * such a bump has large residuals. */
 static void drop_bent_arcs(double angle_deg, fg_layout *layout) {
   double rms[BUMPS_MAX];
   size_t n = 0;
@@ -136,10 +136,11 @@ static fg_status find_covariances(fg_context *ctx, fg_layout *layout, double ang
   return status;
 }
 
-/* What is added to a bump's traced radius, and taken off that of the lands: the tip's radius, which
- * lies outside of the material, and the way from the surface to the datum line, which does so too.
- * Seen from the material outwards the datum line lies t/2 (mid) off each half's surface, at 0 or t
- * off for the strip's faces; outwards a groove's radius shrinks, a ridge's grows. */
+/* Returns the length that is added to a bump's traced radius, and subtracted from that of the
+ * lands: the tip's radius, outside of the material, and the distance from the surface to the datum
+ * line, outside too. Outward from the material the datum line lies t/2 (mid) off each half's
+ * surface, at 0 or t for the strip's faces; in that direction a groove's radius shrinks, a ridge's
+ * grows. */
 static double datum_shift(const fg_design *design, const fg_die_profile *p) {
   double t = design->thickness_mm, above = t / 2;
   bool inner = p->half == FG_DIE_CONCAVE; /* this half touches the strip's inner face */
@@ -205,7 +206,7 @@ static bool has_crown(const fg_layout *layout, double at_deg, double height_mm) 
   return fabs(hypot(p.x - o->x, p.y - o->y) - o->radius) > CROWN_SHARE * height_mm;
 }
 
-/* True where the trace shows both feet of a bump whose crown lies in that direction. */
+/* Returns true when the trace shows both feet of a bump whose crown lies in that direction. */
 static bool is_traced(const fg_layout *layout, const fg_nominal *nominal, double at_deg) {
   size_t station;
   double half_deg =
@@ -214,8 +215,9 @@ static bool is_traced(const fg_layout *layout, const fg_nominal *nominal, double
          find_station(layout, at_deg + half_deg, &station);
 }
 
-/* Bumps before (`way` -1) or after (1) one of the layout, in the order of x, whose crowns are seen:
- * they count, so that a trace that begins within a bump numbers as one that begins before it. */
+/* Counts the visible crowns before (`way` -1) or after (1) a bump of the layout, in the order of x.
+ * They count so that a trace that begins within a bump has the same numbers as one that begins
+ * before it. */
 static int crowns_beyond(const fg_design *design, const fg_nominal *nominal,
                          const fg_layout *layout, size_t i, int way) {
   double rising = layout->turning.sense < 0 ? 1 : -1; /* of the direction along x: dome, bowl */
@@ -248,8 +250,8 @@ static void number_bumps(const fg_die_source *source, int last, fg_die_trace *tr
   }
 }
 
-/* Bumps that were traced and not measured. Those that an end of the trace cuts are none. `first` is
- * a bump of the layout that was measured, `at` its place along x, `last` the last place. */
+/* Finds bumps that were traced but not measured, except those cut by an end of the trace. `first`
+ * is a bump of the layout that was measured, `at` its place along x, `last` the last place. */
 static fg_status find_lost(fg_context *ctx, const fg_design *design, const fg_nominal *nominal,
                            const fg_layout *layout, const fg_die_source *source, size_t first,
                            int at, int last, fg_die_trace *trace) {
@@ -323,7 +325,7 @@ static void label_bumps(const fg_layout *layout, fg_die_trace *trace) {
                     trace);
 }
 
-/* z runs up in what is reported. */
+/* Turns z upward for reports. */
 static void turn_up(fg_die_trace *trace) {
   trace->overall.centre_mm.y = -trace->overall.centre_mm.y;
   for (size_t i = 0; i < trace->bump_count; i++)

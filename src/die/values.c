@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What is reported of a die: a row each. */
+/* Quantities reported of a die: a row each. */
 #include "die/values.h"
 
 #include <math.h>
 #include <stddef.h>
 
-/* A row of what is reported: a bump's quantity, or the place, which is worked out here. */
+/* Row of a reported quantity: a bump's quantity, or the place, which is computed here. */
 typedef struct source_row {
   fg_die_row row;
   size_t at, u_at; /* in fg_bump */
@@ -91,8 +91,8 @@ double fg_die_value_of(const fg_design *design, const fg_die_trace *trace, const
   return member(bump, rows[q].at);
 }
 
-/* What errs alike in every trace: the tip's radius moves R and R0 against each other and leaves the
- * centres, the scale moves all three. */
+/* Errors common to all traces: the tip's radius moves R and R0 in opposite directions and leaves
+ * the centres, the scale moves all three. */
 void fg_die_systematic_u(const fg_die *die, const fg_die_trace *trace, const fg_bump *bump,
                          double u[FG_DIE_QUANTITIES]) {
   double tip = die->options.u_tip_um / 1000, scale = die->options.u_scale_ppm * 1e-6;

@@ -18,13 +18,13 @@ enum {
   STRIDES = 16,  /* each half as long again: some 1300 standard uncertainties */
 };
 static const double confidence = 0.95;
-/* Layers for a fit: the springback of the thesis's runs is off by 0.003 points at most. */
+/* Layers for a fit: the error of the springback of the thesis's runs is at most 0.003 points. */
 enum { FIT_LAYERS = 40 };
 
 /* ---- how well each constant is known ---- */
 
-/* One end of a profile interval: the least sum of squares over the others, with this constant held
- * ever farther away, until it passes `limit`. */
+/* One end of a profile interval: the smallest sum of squares over the others, with this constant
+ * held ever farther away, until it exceeds `limit`. */
 typedef struct profile {
   const fg_forming_search *whole;
   const gsl_vector *at;
@@ -185,7 +185,7 @@ static fg_status run_search(fg_forming_search *s, fg_forming_fit *fit) {
   return status;
 }
 
-/* ---- beside it: a quadratic surface, and what repeats ---- */
+/* ---- for comparison: a quadratic surface, and repeats ---- */
 
 static fg_status fit_surface(fg_context *ctx, const fg_table *table, fg_forming_fit *fit) {
   static const char formula[] = "1 + temperature_C + duration_h + temperature_C:duration_h + "
@@ -212,7 +212,7 @@ static fg_status fit_surface(fg_context *ctx, const fg_table *table, fg_forming_
   return FG_OK;
 }
 
-/* ---- what is asked ---- */
+/* ---- request ---- */
 
 #define ABSOLUTE_ZERO_C (-273.15)
 

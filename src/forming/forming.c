@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A strip from bent to free: every stretch's section, the strip that comes of it, its circles. */
+/* A strip from bent to free: the section of every piece, the resulting strip, its circles. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -41,8 +41,8 @@ static void take_section(const fg_forming *forming, fg_section *section, fg_form
   *yields_back = *yields_back || fg_section_yields_back(material, change, section);
 }
 
-/* A piece of the same curvature was there before: at the same place of an earlier pitch, or in this
- * one. */
+/* Finds an earlier piece of the same curvature, which has the same section: at the same place of an
+ * earlier pitch, or in this one. */
 static const fg_forming_piece *find_duplicate(const fg_forming *forming, size_t at) {
   for (size_t i = 0; i < at; i++)
     if (forming->pieces[i].curvature_die == forming->pieces[at].curvature_die)
@@ -96,7 +96,7 @@ static void find_overall(fg_forming *forming) {
   bool closes = free_pitch.turn_rad > 1e-9 && free_pitch.turn_rad < 2 * M_PI;
   forming->overall_radius_mm =
       closes ? free_pitch.chord_mm / (2 * sin(free_pitch.turn_rad / 2)) - in : NAN;
-  /* A plain strip may turn by more than half a circle: its curvature says it. */
+  /* A plain strip may turn by more than half a circle: its curvature gives the radius. */
   if (!forming->bump_count)
     forming->overall_radius_mm = radius_of(forming, 1 / forming->pieces[0].curvature - in);
   forming->springback_error_pct = opened_pct(&forming->design, forming->overall_radius_mm);
@@ -119,7 +119,7 @@ static void find_means(fg_forming *forming) {
 
 /* ---- the circles ---- */
 
-/* The bump whose stretch holds the middle of an arc. */
+/* Returns the bump whose piece contains the middle of an arc. */
 static fg_forming_bump *bump_at(fg_forming *forming, const fg_bump *fitted) {
   double s = 0.5 * (fitted->arc_start_mm + fitted->arc_end_mm);
   for (size_t i = 0; i < forming->count; i++) {

@@ -51,8 +51,8 @@ static const fg_forming_constant_row rows[FG_FORMING_CONSTANTS] = {
                                  "316; measured values reach 400"},
 };
 
-/* Only its trend: to 540 °C after annealed 301 and 304 in the Aerospace and Nickel Institute
- * tables, beyond by the eye. */
+/* A trend only: up to 540 °C from annealed 301 and 304 in the Aerospace and Nickel Institute
+ * tables, beyond by extrapolation by eye. */
 static const double curve_t[] = {20, 200, 400, 540, 650, 760, 900};
 static const double curve_share[] = {1, 0.73, 0.62, 0.57, 0.5, 0.4, 0.2};
 static const char curve_words[] =
@@ -123,7 +123,8 @@ static fg_status read_text(fg_context *ctx, const char *name, const cJSON *item,
   return FG_OK;
 }
 
-/* A number, or {"value": ..., "source": ...}. Whoever gives a number without its source says so. */
+/* Reads a number, or {"value": ..., "source": ...}. A number without its source gets a source that
+ * states so. */
 static fg_status read_constant(fg_context *ctx, const cJSON *item, int c,
                                fg_forming_material *material) {
   char *source = material->source[c];

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A report of `form` as a declared model: what it says of each bump. */
+/* Report of `forming` as a declared model: its prediction of each bump. */
 #include <cjson/cJSON.h>
 #include <math.h>
 #include <stdlib.h>
@@ -14,7 +14,7 @@
 
 enum { BYTES_MAX = 64 << 20 };
 
-/* Quantities that it does not hold stay unknown. */
+/* Quantities that the report lacks stay unknown. */
 static fg_status read_bump(fg_context *ctx, const cJSON *item, fg_bump *bump) {
   size_t count;
   const fg_quantity *rows = fg_quantities(FG_QUANTITY_OF_BUMP, &count);

@@ -16,7 +16,7 @@ enum {
   STARTS_MAX = 81, /* 3^FG_FORMING_FREE_MAX */
 };
 static const double tolerance = 1e-10;
-/* What a prediction that is no number counts as, in points: far beyond every run. */
+/* Value of an invalid prediction, in points: far beyond every run. */
 static const double nowhere = FG_FORMING_NOWHERE;
 
 /* A constant as the search moves it. */
@@ -92,8 +92,8 @@ fg_status fg_forming_search_from(fg_forming_search *s, gsl_vector *x, double *su
   return s->status;
 }
 
-/* Where searches begin: creep of such strips lies within these by orders of magnitude; what is not
- * creep begins around the material's value. */
+/* Returns a start of the search: the creep constants of such strips lie within these starts by
+ * orders of magnitude; other constants start around the material's value. */
 static double start_of(const fg_forming_search *s, fg_forming_constant c, size_t i) {
   static const double rate[] = {1e-8, 1e-5, 1e-2}, exponent[] = {1.5, 4, 7},
                       energy[] = {80, 160, 280}, around[] = {0.7, 1, 1.4};
@@ -136,8 +136,6 @@ static void choose_starts(fg_forming_search *s, gsl_vector *x, gsl_vector *f,
   }
 }
 
-/* The least sum of squares over the free constants, from `warm` (may be NULL) and from the best of
- * a grid; `x` becomes where it lies. */
 fg_status fg_forming_search_all(fg_forming_search *s, const gsl_vector *warm, gsl_vector *x,
                                 double *min, gsl_matrix *covariance) {
   double best[STARTS_KEPT][FG_FORMING_FREE_MAX] = {{0}};

@@ -48,8 +48,8 @@ static double height_of(const fg_section *section, size_t layer) {
   return layer == section->layers ? half : half * ((double)layer + 0.5) / (double)section->layers;
 }
 
-/* What exceeds the yield stress flows: with p the plastic strain before and d what is added,
- * E' (e - d) = f (S Y + S² H (p + d)), S = 2 / sqrt 3. */
+/* Stress above the yield stress flows: with p the plastic strain before and d its increment, E' (e
+ * - d) = f (S Y + S² H (p + d)), S = 2 / sqrt 3. */
 static void flow(const fg_forming_material *material, double temperature_C, fg_section *section) {
   double modulus = fg_section_plane_modulus(material, temperature_C);
   double share = fg_section_yield_share(material, temperature_C);
@@ -84,8 +84,8 @@ static double creep_rate(const fg_forming_material *material, double temperature
 
 /* With e the elastic strain and s = 100 MPa: de/dt = -B(T) (E'(T) e / s)^n, so
  *   e = e0 (1 + (n - 1) x)^(-1 / (n - 1)), x = e0^(n - 1) * integral of B (E' / s)^n dt,
- * and e0 exp(-x) for n = 1. The integral over a straight way of T by Gauss's two points: exact on a
- * hold, of fourth order on a ramp. */
+ * and e0 exp(-x) for n = 1. The integral over a linear change of T by Gauss's two points: exact on
+ * a hold, of fourth order on a ramp. */
 static void creep(const fg_forming_material *material, double from_C, double rise_C, double hours,
                   fg_section *section) {
   static const double place[] = {0.21132486540518712, 0.78867513459481288};

@@ -24,8 +24,8 @@ typedef struct crest {
   double arc_rad;  /* about C, from the axis to the fillet */
 } crest;
 
-/* Of the midline: along its normal the datum's other lines are parallel to it. Towards the shaft
- * a bump's radius grows, those of lands and fillets fall. */
+/* Returns the distance of the midline from the datum line: lines along its normal are parallel.
+ * Towards the shaft a bump's radius grows, those of lands and fillets shrink. */
 static double inwards_mm(const fg_design *design) {
   double half = 0.5 * design->thickness_mm;
   return design->datum == FG_DATUM_MID ? 0 : design->datum == FG_DATUM_INNER ? half : -half;

@@ -6,23 +6,23 @@
 #include "foilgauge/distribution.h"
 #include "load_test/analysis.h"
 
-/* Travel from push to pull along an azimuth is that along the azimuth half a turn on: azimuths are
- * axes, and the travel has even orders only. */
+/* Period of azimuths: travel from push to pull along an azimuth equals that along the opposite one,
+ * so azimuths are axes, and the travel has even orders only. */
 static const double half_turn_deg = 180;
 
 /* Azimuths nearer to each other than this are one axis. */
 static const double same_axis_deg = 1;
 
-/* The 4th order takes so many axes: five would be met exactly, and leave nothing to check it by. */
+/* Minimum number of axes for each order: five would fit the 4th order exactly, without a check. */
 enum { SECOND_ORDER_AXES_MIN = 3, FOURTH_ORDER_AXES_MIN = 6 };
 
-/* An axis is named where noise alone would make one with less than this probability, and where no
+/* An axis is named when noise alone would make one with less than this probability, and when no
  * other minimum lies within so many standard uncertainties of it. */
 static const double p_axis = 0.01, rival_reach = 2;
 
 enum { STEPS = 720, COEFFICIENTS_MAX = 1 + FG_LOAD_ORDER_MAX, KNOWN_DOF = 1000000 };
 
-/* Which cosines and sines the columns are. */
+/* Cosines and sines of the columns. */
 typedef struct curve {
   int order[COEFFICIENTS_MAX];
   bool sine[COEFFICIENTS_MAX];
@@ -117,7 +117,7 @@ static double variance_between(const curve *c, double a_deg, double b_deg) {
   return variance;
 }
 
-/* True where another minimum lies within the uncertainty of the smallest. */
+/* Returns true when another minimum lies within the uncertainty of the smallest. */
 static bool has_rival(const curve *c, double best, double birge) {
   double step = half_turn_deg / STEPS;
   for (int i = 0; i < STEPS; i++) {
@@ -172,7 +172,7 @@ static void take_extremes(const fg_load_test *test, size_t bearing, fg_load_bear
     sum->directions++;
     if (isfinite(d->stiffness.value)) {
       stiffness += d->stiffness.value;
-      u += d->stiffness.u_repeat; /* what windows bend is alike in all directions */
+      u += d->stiffness.u_repeat; /* bias by windows is the same in all directions */
       count++;
     }
     if (!is_of(test, i, bearing)) continue;

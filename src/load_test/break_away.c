@@ -11,8 +11,8 @@
 /* Straight lines fail the test for a curve this often, and are suspected of one. */
 static const double p_curved_max = 0.01, p_suspected_max = 0.1;
 
-/* P is the intercept over the slope: where the slope is not known to a third, P has no interval
- * worth the name. */
+/* Minimum ratio of the slope to its u. P is the intercept over the slope: with a less certain slope
+ * its interval is useless. */
 static const double slope_known = 3;
 
 /* U = 2 u. */
@@ -21,7 +21,8 @@ static const double reach = 2;
 /* Squares of residuals below this share of the squares themselves are those of rounding. */
 static const double rounding = 1e-20;
 
-/* A line takes two numbers; a curve shows from the third weight on. */
+/* Minimum numbers of pulls and weights: a line has two parameters; curvature shows from the third
+ * weight on. */
 enum { PULLS_MIN = 3, CHECKED_PULLS_MIN = 4, CHECKED_WEIGHTS_MIN = 3 };
 
 const fg_load_flag *fg_break_away_flags(void) {
@@ -138,7 +139,7 @@ static void find_covariance(const pulls *p, const line *l, size_t unknowns,
   }
 }
 
-/* Probability that a straight line shows such a curve; NaN where nothing can say. */
+/* Returns the probability that a straight line shows such a curvature; NaN where unknown. */
 static double test_curve(const pulls *p, const line *straight) {
   line curve;
   double covariance[CURVE][CURVE];
@@ -161,8 +162,8 @@ static double to_kpa(const fg_load_options *o, double newtons) {
   return 1000 * newtons / (M_PI * o->diameter_mm * o->length_mm); /* N/mm² is 1000 kPa */
 }
 
-/* mu, mu P and P of the line. The load cell's scale is in F and so in mu and in mu P, in P only as
- * far as the rig's friction is not; that of the weights is in mu and P. */
+/* Computes mu, mu P and P of the line. The load cell's scale is in F and so in mu and in mu P; in P
+ * only through the rig's friction. The weights' scale is in mu and P. */
 static void take_line(const pulls *p, const line *l, fg_load_bearing *sum) {
   const fg_load_options *o = &p->test->options;
   fg_break_away *out = &sum->break_away;

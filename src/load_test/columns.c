@@ -58,7 +58,8 @@ static bool is_separator(char c) {
   return c == ' ' || c == '_';
 }
 
-/* The place behind the quantity's word, whose blanks may be underlines; NULL: another word. */
+/* Returns the text after the quantity's word, in which blanks may be underlines; NULL: another
+ * word. */
 static const char *skip_word(const char *name, const char *word) {
   for (; *word; word++, name++) {
     bool same = is_separator(*word)
@@ -69,8 +70,9 @@ static const char *skip_word(const char *name, const char *word) {
   return isalnum((unsigned char)*name) ? NULL : name;
 }
 
-/* What follows the quantity's word in a column's name, less blanks, underlines and brackets; NULL:
- * the column is of something else. Units of torque are products: what joins their parts goes. */
+/* Returns the text after the quantity's word in a column's name, without blanks, underlines and
+ * brackets; NULL: another quantity. Units of torque are products: signs between their parts are
+ * removed. */
 static const char *unit_text(const char *name, int which, char *text, size_t size) {
   const char *from = skip_word(name, rows[which].name);
   if (!from) return NULL;

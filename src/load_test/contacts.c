@@ -5,17 +5,17 @@
 #include "load_test/analysis.h"
 #include "load_test/local_fit.h"
 
-/* Places of a loaded branch where its strokes are compared, fewer than which say nothing; half of
- * the window there, as a share of the branch. */
+/* Number of places of a loaded branch where its strokes are compared, and its minimum; half of the
+ * window there, as a share of the branch. */
 enum { PLACES = 16, PLACES_MIN = 8 };
 static const double window_share = 1.0 / 8;
 
 /* Standard uncertainties that two contacts may be apart by. */
 static const double reach = 2;
 
-/* Distance by which friction can part loading and unloading on one side: at the place where the
- * unloading stroke passes T the loading one is 2 H above it, and has risen by that since it passed
- * T. NaN: the branch does not say. */
+/* Returns the distance of loading and unloading on one side that friction explains: at the place
+ * where the unloading stroke passes T the loading one is 2 H above it, and has risen by that since
+ * it passed T. NaN: unknown from this branch. */
 static double parted_by_friction(const fg_load_stroke *load, const fg_load_stroke *unload,
                                  double contact, double end) {
   double friction = 0, slope = INFINITY;

@@ -10,12 +10,13 @@
 /* A stroke that ends nearer to the record's end than this share of the travel reaches it. */
 static const double reach_share = 0.05;
 
-/* Where a stroke turns its samples lie in the noise of the displacement: so much is left out. */
+/* Share of the travel left out before a turn, where samples lie within the noise of the
+ * displacement. */
 static const double turn_left_out = 0.01;
 
-/* So many times the displacement's noise are left out as well. At a distance d from where samples
- * crowd, as those of a sine do, the place of one is off on average by s² / (2 d), which rises by
- * s² / (2 d²): at 10 s by half a percent, and so does the slope. */
+/* Multiple of the displacement's noise left out as well. At a distance d from the place where
+ * samples crowd, as those of a sine do, a sample's place has a mean bias of s² / (2 d), whose slope
+ * is s² / (2 d²): at 10 s half a percent, and so is the error of the slope. */
 static const double noise_left_out = 10;
 
 bool fg_load_stroke_reaches(const fg_load_stroke *stroke, const fg_load_direction *direction,
@@ -27,7 +28,7 @@ bool fg_load_stroke_reaches(const fg_load_stroke *stroke, const fg_load_directio
 
 enum { WHOLE, ODD, EVEN, PARTS };
 
-/* The loading strokes of one side: all as one, and as two halves that share no sample (every second
+/* Loading strokes of one side: all merged, and two halves without common samples (every second
  * stroke, or every second sample of a single one). */
 typedef struct side {
   const fg_load_stroke **stroke;
@@ -101,9 +102,8 @@ static int by_size(const void *left, const void *right) {
   return (a > b) - (a < b);
 }
 
-/* Windows that suit the whole: of each place the middle one of those around. Where noise makes a
- * slope steep it makes its window narrow as well, and the largest slope of all would be sought
- * among such. */
+/* Chooses windows: at each place the median of those around. Noise that makes a slope steep makes
+ * its window narrow as well, and the largest slope would be sought among such windows. */
 static void find_windows(const side *s, double window[FG_LOAD_POINTS]) {
   enum { AROUND = 4 };
   double own[FG_LOAD_POINTS];
@@ -153,7 +153,7 @@ static void write_course(const side *s, fg_load_course *course) {
   }
 }
 
-/* How the strokes' slopes at one place differ. */
+/* Adds the scatter of the strokes' slopes at one place. */
 static void add_scatter(const side *s, size_t at, fg_load_scatter *scatter) {
   double weight = 0, sum = 0, squares = 0;
   for (size_t i = 0; i < s->count; i++) {

@@ -10,19 +10,19 @@
 #include "load_test/analysis.h"
 #include "load_test/local_fit.h"
 
-/* Places between the ends of all strokes, less a share of the travel at each end; the ways of
- * friction that are tried, up to a quarter of the travel. */
+/* Number of places between the ends of all strokes, less a share of the travel at each end; number
+ * of lengths l that are tried, up to a quarter of the travel. */
 enum { PLACES = 49, WAYS = 51 };
 static const double end_left_out = 0.05, way_share_max = 0.25;
 
-/* Half of the regression's window, in distances between places. It is the same everywhere and
- * whatever the noise is: one that the noise widens reaches to where friction turns round, and what
- * it smooths there the slope takes. All places together average the noise. */
+/* Half of the regression's window, in distances between places. It is constant: a window widened by
+ * noise would reach to the reversal of friction and bias the slope. All places together average the
+ * noise. */
 static const double window_places = 1.5;
 
 typedef struct between {
   double x[PLACES], half[PLACES], middle[PLACES]; /* H, M */
-  double low, high;                               /* where strokes turn */
+  double low, high;                               /* turns of the strokes */
   size_t count;                                   /* of strokes that are means */
 } between;
 
@@ -67,9 +67,9 @@ static double time_until(const fg_load_stroke *s, double x) {
   return s->sense > 0 ? share : 1 - share;
 }
 
-/* Each stroke against those before and after it, at the time when it passes the place: that takes
- * out what drifts. A place that it passes at p of its time, they passed p before it began and will
- * pass 1 - p after it has ended. Where none has both, against the next. */
+/* Compares each stroke with those before and after it, at the time when it passes the place, which
+ * removes drift. A place that it passes at p of its time was passed p before its begin and will be
+ * passed 1 - p after its end. A stroke with only one neighbour is compared with that. */
 static void compare(const fg_load_strokes *strokes, const double *forces, between *b) {
   for (int pairs = 0; pairs < 2 && !b->count; pairs++)
     for (size_t i = 1; i <= strokes->count; i++) {
@@ -147,9 +147,9 @@ static fg_load_friction fit(const between *b, double zero) {
 /* Share of the gap about its middle where no foil pulls, whatever it was rounded to. */
 static const double gap_share = 0.7;
 
-/* u of a by how the strokes' mean forces between two places scatter about a drift: noise that is
- * alike from sample to sample shows there. Widened by Student's t, as they are few; 0 where none is
- * left to scatter. */
+/* Returns the u of a from the scatter of the strokes' mean forces between two places about a drift:
+ * this includes noise that is correlated from sample to sample. Widened by Student's t, as the
+ * strokes are few; 0 without dof. */
 static double scatter_of_strokes(const fg_load_strokes *strokes, double low, double high) {
   enum { LEVEL, DRIFT, SENSE, UNKNOWNS };
   fg_normal_equations system;
@@ -187,9 +187,9 @@ static double count_between(const fg_load_strokes *strokes, int sense, double lo
   return count;
 }
 
-/* In a gap a is seen alone: the mean of H over it, with no model of what the foils do beside it.
- * Its u is that of the places' scatter, whose neighbours are alike, of the samples' noise, or of
- * the strokes. */
+/* Computes a in a gap: the mean of H over it, without any model of the foils. Its u is the largest
+ * of three: by the places' scatter, whose neighbours are correlated, by the samples' noise, by the
+ * strokes. */
 static void take_gap(const between *b, const fg_load_strokes *strokes,
                      const fg_load_direction *direction, double centre, fg_load_friction *f) {
   enum { GAP_PLACES_MIN = 4 };
@@ -226,7 +226,7 @@ fg_status fg_load_find_friction(fg_context *ctx, const fg_load_strokes *strokes,
   if (status != FG_OK || !b.count || !isfinite(centre)) return status;
   for (size_t k = 0; k < PLACES; k++)
     if (fabs(b.x[k] - centre) < fabs(b.x[zero] - centre)) zero = k;
-  /* In the middle between the points no foil pulls: what the cell says there is its zero. */
+  /* In the middle between the points no foil pulls: the cell's reading there is its zero. */
   direction->friction = fit(&b, b.middle[zero]);
   take_gap(&b, strokes, direction, centre, &direction->friction);
   return FG_OK;

@@ -1,36 +1,36 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The gap: free travel between the places where the foils are touched, by extrapolating each side's
- * loaded branch to no force. */
+/* Gap: free travel between the places of foil contact, by extrapolating each side's loaded branch
+ * to zero force. */
 #include <math.h>
 
 #include "core/small_solve.h"
 #include "load_test/analysis.h"
 
-/* A foil's force over its compression y is c y^n and what a second term bends of it: n is 1 for a
- * spring, more where bumps are touched one after the other, and no more than 2. The exponents are
- * tried in steps. */
+/* Number of exponents tried. A foil's force over its compression y is c y^n with a second term for
+ * curvature: n is 1 for a spring, more where bumps are touched one after the other, and at most 2.
+ */
 enum { EXPONENTS = 11 };
 static const double exponent_min = 1, exponent_max = 2;
 
-/* Forces that the branch is fitted over. Low, since it is extrapolated to none; but above what
- * noise and friction make of a rotor in the gap, where up strokes read +a and down strokes -a. */
+/* Range of forces of the fit. Low, because the branch is extrapolated to zero; but above the noise
+ * and friction of a rotor in the gap, where up strokes read +a and down strokes -a. */
 static const double noise_reach = 5, friction_reach = 2, low_share = 0.02;
 static const double span = 8, high_share_min = 0.15, high_share_max = 0.7, span_min = 2,
                     span_growth = 1.25;
 
-/* A load cell's zero lies within this share of the force's range about its middle. Further out it
- * is none but a place where the foils are less stiff, as behind an interference. */
+/* Maximum distance of a load cell's zero from the middle of the force's range, as a share of it.
+ * Further out the flat place is a softer part of the foils, as behind an interference. */
 static const double zero_share_max = 0.25;
 
-/* Nor is it one where up and down strokes have changed places by more than noise: few samples of a
- * rotor that jumps through the gap. */
+/* Limit, in units of noise, of a negative friction at the zero (up strokes below down strokes).
+ * Beyond it the zero is wrong: few samples of a rotor that jumps through the gap. */
 static const double friction_noise = 3;
 
-/* Samples of each sense that a branch takes; where there are fewer it is followed further. */
+/* Minimum number of samples of each sense in a branch; it is extended until it has them. */
 enum { SAMPLES_MIN = 10 };
 
-/* x = x0 + p e + q e² + s (g + h e), e = F^(1/n), s the stroke's sense: its last two terms are what
- * friction parts loading and unloading by. */
+/* x = x0 + p e + q e² + s (g + h e), e = F^(1/n), s the stroke's sense: the last two terms are the
+ * friction between loading and unloading. */
 enum { CONTACT, GROWTH, BEND, PARTED, PARTED_GROWTH, TERMS };
 
 /* One side's branch, its force and travel outwards. */
@@ -51,8 +51,8 @@ static bool take_sample(const branch *b, const fg_load_stroke *s, size_t k, doub
   return *force > b->low_n && *force < b->high_n && out > b->from_mm;
 }
 
-/* True where the branch has enough samples. Their mean becomes the origin, so that sums of squares
- * keep their digits. */
+/* Returns true when the branch has enough samples. Their mean becomes the origin, so that sums of
+ * squares keep their digits. */
 static bool count_samples(branch *b) {
   double force, x, sum = 0;
   b->count[0] = b->count[1] = b->origin_mm = 0;
@@ -66,7 +66,7 @@ static bool count_samples(branch *b) {
   return b->count[0] >= SAMPLES_MIN && b->count[1] >= SAMPLES_MIN;
 }
 
-/* `yield_mm`: what the foils yield under the threshold at most. */
+/* `yield_mm`: maximum deflection of the foils under the threshold. */
 static branch make_branch(const fg_load_strokes *strokes, int side, fg_load_zero zero,
                           double yield_mm, const fg_load_direction *d) {
   branch b = {.strokes = strokes, .side = side};
@@ -115,14 +115,14 @@ static bool fit_exponent(const branch *b, double exponent, branch_fit *fit) {
   return true;
 }
 
-/* Contact with one foil: its place outwards, its u by noise and friction, and half of the range
- * over the exponents, an error that both sides share. */
+/* Contact with one foil: its place outward, its u by noise and friction, and half of the range over
+ * the exponents, an error common to both sides. */
 typedef struct touched {
   double x_mm, u_mm, model_mm;
 } touched;
 
-/* Exponents that fit better count more; but friction that turns round at the contact bends the
- * branch as an exponent does, so that half of the weight stays with all of them alike. */
+/* Weights exponents by their fit. But friction that reverses at the contact bends the branch as an
+ * exponent does, so half of the weight is equal for all of them. */
 static touched weigh(const branch *b, const branch_fit fits[EXPONENTS]) {
   double min = INFINITY, low = INFINITY, high = -INFINITY, weights = 0;
   double contact = 0, variance = 0, parted = 0, plain = 0;

@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Stretches of a stroke that its record did not sample: a dropout, or a rotor under load control
- * that jumps through the gap. */
+/* Unsampled stretches of a stroke: a dropout, or a rotor under load control that jumps through the
+ * gap. */
 #include <math.h>
 
 #include "load_test/strokes.h"
 
-/* Distances between places that a stretch is held against on either side; nearer ones than so many
- * resolutions are one place, as those of a rotor that rests under a weight are. */
+/* Number of distances between places that a stretch is compared with on either side; places within
+ * so many resolutions are one, as those of a rotor at rest under a weight. */
 enum { AROUND = 24, AROUND_MIN = 4 };
 static const double place_resolutions = 3;
 
-/* A stretch this many times as wide as three quarters of the distances around it was not sampled.
- * Of places at random that is one in a thousand; a few samples within a gap leave it one. */
+/* Ratio to the upper quartile of the distances around it from which a stretch is unsampled. Of
+ * places at random that is one in a thousand; a gap with a few samples in it stays one. */
 static const double hole_factor = 7, smaller_share = 0.75;
 
 double fg_load_stroke_place(const fg_load_stroke *s) {
@@ -20,7 +20,7 @@ double fg_load_stroke_place(const fg_load_stroke *s) {
 
 typedef enum around { FEW, WIDE, DENSE } around;
 
-/* Class of most distances between samples from `i` on, outwards. */
+/* Finds the class of most distances between samples from `i` on, outward. */
 static around look_around(const fg_load_stroke *s, size_t i, int step, double small) {
   size_t count = 0, smaller = 0;
   double place = fg_load_stroke_place(s), last = s->x[i];

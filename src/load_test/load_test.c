@@ -91,7 +91,7 @@ static void find_ranges(const fg_load_test *test, fg_load_direction *d) {
   d->travel_mm = high - low;
 }
 
-/* A load cell may read what pushes or what resists. */
+/* Corrects the force's sign: a load cell may read the pushing or the resisting force. */
 static void turn_force(fg_load_test *test, fg_load_direction *d) {
   fg_load_sample *s = test->samples + d->first;
   double x = 0, f = 0, together = 0, n = (double)d->count;
@@ -105,7 +105,8 @@ static void turn_force(fg_load_test *test, fg_load_direction *d) {
   d->flags |= FG_LOAD_FORCE_TURNED;
 }
 
-/* Clearances that are units mistaken: a share of the bore, and below what a rotor is round to. */
+/* Range of plausible clearances, outside of which the unit is wrong: a share of the bore, and the
+ * roundness of a rotor. */
 static const double clearance_share_max = 0.05, clearance_min_mm = 0.001;
 
 /* Likewise of a stiffness: of steel as thick as the foil is, not of a foil. */
@@ -119,23 +120,23 @@ static void forget_clearance(fg_load_direction *d) {
 /* U = 2 u: a gap within it is none that is shown. */
 static const double gap_reach = 2;
 
-/* A foil's force grows with its compression y as y² at most, so that y is 2 F / (dF/dx) at most:
- * travel beyond that of both sides is free. */
+/* Upper limit of y (dF/dx) / F: a foil's force grows with its compression y at most as y², so that
+ * y is at most 2 F / (dF/dx). Travel beyond that of both sides is free. */
 static const double yield_max = 2;
 
 static double find_yield_mm(const fg_load_test *test, const fg_load_findings *findings) {
   return yield_max * test->options.threshold_n * findings->compliance_mm_n;
 }
 
-/* Foils that press the rotor have no place where it is free, and so neither a zero nor a friction
- * that is passed there. Branches that leave anything between no gap and the whole travel say
- * nothing: then the travel may. */
+/* Checks the gap. Without a gap there is no free place, and so neither a zero nor a friction of the
+ * rig alone. When the branches allow anything between no gap and the whole travel, the travel
+ * decides. */
 static void check_gap(double yield_mm, fg_load_zero *zero, fg_load_direction *d) {
   double u = gap_reach * d->gap.u_repeat, c = d->clearance.value;
   const fg_load_value none = {NAN, NAN, NAN};
   bool known = isfinite(d->gap.value), decided = known && !(d->gap.value + u >= c);
   if (known && d->gap.value > u) return;
-  if (!isfinite(c) && !(known && u < yield_mm)) { /* nothing that U could be held against */
+  if (!isfinite(c) && !(known && u < yield_mm)) { /* no U to compare with */
     d->gap = none;
     return;
   }
@@ -154,7 +155,7 @@ static bool leaves_nothing(const fg_load_direction *d) {
   return (d->flags & FG_LOAD_UNSAMPLED) && !(d->clearance.value > 2 * d->clearance.u_repeat);
 }
 
-/* What is no clearance though both thresholds are passed. */
+/* Flags a clearance that is none although both thresholds are passed. */
 static void check_clearance(const fg_load_test *test, const fg_load_zero *zero,
                             fg_load_direction *d) {
   double t = test->options.threshold_n, c = d->clearance.value;
@@ -168,7 +169,8 @@ static void check_clearance(const fg_load_test *test, const fg_load_zero *zero,
     d->flags |= FG_LOAD_UNITS;
 }
 
-/* Rows that do not stand in the order of time: loading and unloading may be each other. */
+/* Discards everything for rows that are not in the order of time: loading and unloading may be
+ * exchanged. */
 static void forget_all(fg_load_direction *d) {
   const fg_load_value none = {NAN, NAN, NAN};
   forget_clearance(d);
@@ -251,7 +253,7 @@ static void widen_loss(fg_load_direction *d) {
   d->loss_foil.u = d->loss_foil.u_repeat;
 }
 
-/* What repeats say of a bearing's directions, and the instruments' share. */
+/* Widens a bearing's directions by the scatter of repeats, and adds the instruments' share. */
 static void finish_bearing(fg_load_test *test, const fg_load_findings *findings, size_t bearing) {
   const fg_load_options *o = &test->options;
   fg_load_scatter points = {0}, slopes = {0};

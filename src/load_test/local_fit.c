@@ -7,18 +7,18 @@
 enum { SAMPLES_MIN = 12, PLACES_MIN = 4 };
 static const double window_growth = 1.25, window_share_max = 0.5;
 
-/* Of the stroke: where it turns, samples lie so close that the displacement's noise would flatten
- * what is fitted to a narrower window. */
+/* Minimum window as a share of the stroke: near a turn, samples lie so close that the
+ * displacement's noise would flatten a narrower fit. */
 static const double window_share_min = 1.0 / 60;
 
-/* How many standard uncertainties the intervals of windows that must agree reach. Small: a window
- * that is a little too small costs noise, which u says; one too large costs bias, which it does
- * not. tests/bench/stiffness.py counts what comes of it. */
+/* Reach of the intervals that must agree, in standard uncertainties. It is small: a window slightly
+ * too small costs noise, which u includes; one too large costs bias, which u does not include.
+ * tests/bench/stiffness.py measures the coverage. */
 static const double interval_reach[] = {[FG_LOCAL_VALUE] = 1.0, [FG_LOCAL_SLOPE] = 2.0};
 static const double window_taken = 0.64;
 
-/* Places where a stroke is looked at for the force that is sought, and samples of a window there:
- * so many that noise does not pass for the force in the gap. */
+/* Number of places for finding the force along a stroke, and samples of a window there: enough that
+ * noise is not mistaken for the force in the gap. */
 enum { LOOK_PLACES = 120, LOOK_SAMPLES = 24, SOLVE_STEPS = 6 };
 
 /* Inverse of a symmetric 3 × 3 matrix. */
@@ -44,8 +44,8 @@ typedef struct sums {
   size_t count;
 } sums;
 
-/* First sample and the one after the last within the window about x, on this side of unsampled
- * stretches; false: x lies in one. */
+/* Finds the first sample and the one after the last within the window about x, without crossing
+ * unsampled stretches; false: x lies in one. */
 static bool find_range(const fg_load_stroke *s, double x, double window, size_t *first,
                        size_t *end) {
   size_t at = fg_load_stroke_from(s, x);
@@ -98,8 +98,8 @@ bool fg_local_fit_at(const fg_load_stroke *stroke, double x, double window_mm, f
   return true;
 }
 
-/* Half of a width that holds so many samples at so many places, or all of this side of unsampled
- * stretches. A rotor that rests under weights leaves many samples at few places. */
+/* Returns half of a width with so many samples at so many places, or up to the next unsampled
+ * stretches. A rotor at rest under weights leaves many samples at few places. */
 static double window_of(const fg_load_stroke *s, double x, size_t samples, size_t places) {
   size_t low = fg_load_stroke_from(s, x), high = low, seen = 0;
   double window = window_share_min * (s->x[s->count - 1] - s->x[0]);
@@ -130,11 +130,11 @@ bool fg_local_fit_near(const fg_load_stroke *stroke, double x, double window_mm,
   return fg_local_fit_at(stroke, x, fmax(window_mm, 1.0001 * smallest_window(stroke, x)), fit);
 }
 
-/* The narrower window is taken, and what the wider one says otherwise stands for its bias: at 0.64
- * of the width a quarter to two fifths of the wider one's is left, over what they differ by a third
- * to two thirds; of a slope two thirds. Where the foil is touched the force has a bend that is
- * sharper than windows are: there the bias of a value falls as slowly as the width, and all of it
- * counts. */
+/* Share of the difference from the wider window that counts as the narrower one's bias. At 0.64 of
+ * the width a quarter to two fifths of the wider one's bias is left, which is a third to two thirds
+ * of their difference; for a slope two thirds. At foil contact the force bends more sharply than
+ * windows do: there the bias of a value falls only as the width, and the whole difference counts.
+ */
 static const double slope_share = 2.0 / 3;
 
 static void narrow(const fg_local_fit *narrower, fg_local_fit *fit) {
@@ -153,8 +153,8 @@ bool fg_local_fit_with(const fg_load_stroke *stroke, double x, double window_mm,
   return true;
 }
 
-/* Widest window: half of the stroke, and no wider than what lies on this side of unsampled
- * stretches. Windows beyond that hold the same samples, and agree whatever their bias is. */
+/* Returns the widest window: half of the stroke, within the nearest unsampled stretches. Wider
+ * windows hold the same samples, and agree whatever their bias is. */
 static double widest_window(const fg_load_stroke *s, double x) {
   size_t first, last;
   double widest = window_share_max * (s->x[s->count - 1] - s->x[0]);
@@ -196,7 +196,7 @@ typedef struct look_around {
   double outer_x, outer_value, inner_x, inner_value;
 } look_around;
 
-/* False: the search goes on. */
+/* False: the search continues. */
 static bool visit(look_around *l, double x, double value) {
   l->inner_x = x, l->inner_value = value;
   if (value < l->level && l->outer_value >= l->level) return true;
@@ -246,8 +246,8 @@ static looked look(look_around *l) {
   return NOWHERE;
 }
 
-/* In an unsampled stretch the force rises, and no steeper than so many times what is known beside
- * it: that bounds the place, which is the middle of them, of a rectangular distribution. */
+/* Factor by which the force in an unsampled stretch may be steeper than beside it. That bounds the
+ * place: the middle of the bounds, with a rectangular distribution. */
 static const double steeper_max = 2;
 
 static bool bracket(const look_around *l, double *x, double *u_x, fg_local_fit *fit) {
@@ -283,8 +283,8 @@ static double place_mean(const fg_load_stroke *s, size_t i, int step) {
   return sum / count;
 }
 
-/* For a level that no regression passes, as between two rests of a rotor under weights: it lies
- * between the places on both sides. */
+/* Brackets a level that no regression passes, as between two rests of a rotor under weights: it
+ * lies between the places on both sides. */
 static bool bracket_places(look_around *l, double *x, double *u_x, fg_local_fit *fit) {
   const fg_load_stroke *s = l->stroke;
   size_t outer = fg_load_stroke_from(s, l->outer_x), inner = fg_load_stroke_from(s, l->inner_x);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The area of the loops and what it says of damping.
+/* Area of the loops, and the loss factors.
  *
- * The mean loop is that of the whole strokes of each sense, taken together: what one of them has
- * lost in a dropout the others hold. Loops one by one say how they scatter. */
+ * The mean loop is that of the whole strokes of each sense, merged: a dropout in one of them is
+ * covered by the others. Single loops give the scatter. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -13,7 +13,7 @@
 /* Ends of a loop that lie nearer to each other than this share of the travel close it. */
 static const double close_share = 0.05;
 
-/* Loops give energy where their area is below zero by more than U = 2 u. */
+/* Number of u by which a loop's area must be negative for the flag of released energy, U = 2 u. */
 static const double gained_reach = 2;
 
 typedef struct tally {
@@ -26,8 +26,9 @@ static void add(tally *t, double area) {
   t->count++;
 }
 
-/* A force that drifts adds to a loop that begins with the one stroke what it takes from a loop that
- * begins with the other: means of neighbours, which share a stroke, are without it. */
+/* Loops, as means of neighbours that share a stroke. A drift of the force adds to a loop that
+ * begins with an up stroke as much as it removes from one that begins with a down stroke: their
+ * mean is free of it. */
 typedef struct loops {
   tally single, pair;
   double noise; /* variance of one loop by the samples' scatter */
@@ -86,9 +87,9 @@ static loops find_loops(const fg_load_sample *samples, const fg_load_strokes *st
   return all;
 }
 
-/* Variance of a stroke's share, s², by how areas scatter. A pair of loops is s_i / 2 + s_j + s_k /
- * 2 of three strokes: 3/2 s²; its neighbour shares s² of that, the next one s² / 4, and so much
- * less they scatter about their mean. */
+/* Returns the variance of a stroke's share, s², from the scatter of areas. A pair of loops is s_i /
+ * 2 + s_j + s_k / 2 of three strokes: 3/2 s². Its neighbour shares s² of that, the next one s² / 4,
+ * and their scatter about the mean is smaller by so much. */
 static double stroke_variance(const loops *all) {
   const tally *t = all->pair.count > 0 ? &all->pair : &all->single;
   double n = t->count, mean = t->sum / n, own = 2;
@@ -97,8 +98,8 @@ static double stroke_variance(const loops *all) {
   return fmax(0, t->squares - n * mean * mean) / (n - 1) / own;
 }
 
-/* Standard uncertainty of the mean area by how the loops scatter: it is twice the mean of what its
- * n strokes give, so its variance is 4 s² / n. */
+/* Returns the standard uncertainty of the mean area by the scatter of loops: the mean is twice the
+ * mean of its n strokes' shares, so its variance is 4 s² / n. */
 static double u_of_scatter(const loops *all) {
   const tally *t = all->pair.count > 0 ? &all->pair : &all->single;
   double strokes = t->count + (all->pair.count > 0 ? 2 : 1);
@@ -163,7 +164,7 @@ exit:
 
 typedef struct work {
   double value, variance; /* by the samples' noise */
-  double unsampled;       /* u of what lies in unsampled stretches, where the force only rises */
+  double unsampled;       /* u by unsampled stretches, where the force is only known to rise */
 } work;
 
 static double force_between(const fg_load_stroke *s, size_t i, double x) {
@@ -186,8 +187,8 @@ static work integrate(const fg_load_stroke *s, double base, double from, double 
   return w;
 }
 
-/* One end of the loop: the tip's force on the loading branch, and how far the samples of both
- * branches stay away from it, as those near a turn are left out. */
+/* One end of the loop: the tip's force on the loading branch, and the distance from it of both
+ * branches' samples, as those near a turn are left out. */
 typedef struct tip {
   bool found;
   double force_n, u_force_n;
@@ -212,8 +213,8 @@ static tip find_tip(const mean_loop *loop, int side) {
   return t;
 }
 
-/* Between both ends, and half of what the branches are apart where the samples end: there they meet
- * somewhere until the turn. */
+/* Computes the area between both ends. Beyond the last samples half of the branches' distance is
+ * used: they meet somewhere before the turn. */
 static fg_load_value area_of(const mean_loop *loop, const tip end[FG_LOAD_SIDES]) {
   double low = end[FG_LOAD_PULL].sampled_mm, high = end[FG_LOAD_PUSH].sampled_mm;
   work up = integrate(&loop->branch[UP], 0, low, high);
@@ -230,8 +231,8 @@ static fg_load_value area_of(const mean_loop *loop, const tip end[FG_LOAD_SIDES]
 
 /* ---- the foils alone ---- */
 
-/* The compression begins before the threshold is passed by this many times what the local stiffness
- * makes of it: until then there is next to no force. */
+/* Begin of the compression, as a multiple of the local compliance's distance before the threshold:
+ * earlier there is almost no force. */
 static const double before_threshold = 1.5;
 
 typedef struct energy {
@@ -267,8 +268,8 @@ static bool press(const mean_loop *loop, const tip *end, int side, const fg_load
   return true;
 }
 
-/* Energy lost over 2 pi times the elastic work (E. E. Ungar, E. M. Kerwin, Loss factors of
- * viscoelastic systems in terms of energy concepts, J. Acoust. Soc. Am. 34, 1962). */
+/* Loss factor: energy lost over 2 pi times the elastic work (E. E. Ungar, E. M. Kerwin, Loss
+ * factors of viscoelastic systems in terms of energy concepts, J. Acoust. Soc. Am. 34, 1962). */
 static void find_foil_loss(const mean_loop *loop, const tip end[FG_LOAD_SIDES],
                            const fg_load_zero *zero, double threshold, fg_load_direction *d) {
   energy sum = {0};
@@ -282,7 +283,7 @@ static void find_foil_loss(const mean_loop *loop, const tip end[FG_LOAD_SIDES],
   d->loss_foil = (fg_load_value){value, NAN, hypot(lost, elastic)};
 }
 
-/* A force at the turn that is off takes the place along the branch with it. */
+/* An error of the force at the turn moves the place along the branch as well. */
 static double u_of_secant(const mean_loop *loop, double k, double travel) {
   double variance = 0;
   for (int side = 0; side < FG_LOAD_SIDES; side++) {

@@ -10,8 +10,8 @@
 
 /* ---- the step of a column ---- */
 
-/* Of the smallest distance between two values: others must be multiples of it to this share, and
- * there must be far fewer values than samples. */
+/* Tolerance of a rounding step: other distances must be multiples of the smallest one to this
+ * share, and values must be far fewer than samples. */
 static const double step_tolerance = 1e-3, values_share_max = 0.5;
 enum { STEP_SAMPLES_MAX = 20000, STEP_SAMPLES_MIN = 48 };
 
@@ -47,8 +47,8 @@ double fg_load_find_step(const fg_load_sample *samples, size_t count) {
 
 /* ---- the slope of the strokes, roughly ---- */
 
-/* Places of the pilot's slopes, half of its window as a share of the span, and the share of a
- * stroke at each end where friction turns round and the slope is none of the spring's. */
+/* Number of places of the pilot's slopes, half of its window as a share of the span, and the share
+ * of a stroke at each end where friction reverses and the slope is not the spring's. */
 enum { PILOT = 96 };
 static const double pilot_window = 0.04, end_left_out = 0.05;
 
@@ -84,9 +84,9 @@ static double square_at(const pilot *p, double x) {
 
 /* ---- variance = force² + slope² displacement² ---- */
 
-/* Weighted least squares, weights from the variances of the turn before; what would be below zero
- * is zero. A sample where the force bends sharply is not taken for noise: what is this many times
- * the variance counts as that (of normal noise 0.3 % of samples). */
+/* Iterations of weighted least squares, with weights from the previous variances; negative results
+ * are set to zero. A sample where the force bends sharply is no noise: squares above this multiple
+ * of the variance are cut there (0.3 % of samples of normal noise). */
 enum { TURNS = 30 };
 static const double largest_share = 9;
 
@@ -112,7 +112,7 @@ static void add_moments(const fg_load_stroke *s, const pilot *p, variances v, mo
   }
 }
 
-/* With the displacement's at least `least`. */
+/* Solves with the displacement's variance at least `min`. */
 static variances solve(const moments *m, double min) {
   double determinant = m->one * m->kk - m->k * m->k;
   variances v = {m->q / m->one, 0};
@@ -159,14 +159,14 @@ static variances find_variances(const fg_load_strokes *strokes, const pilot p[2]
 
 /* ---- where strokes turn ---- */
 
-/* Samples about a turn that a parabola over their order is fitted to: within so many times the
- * displacement's noise of its extreme. Where it is small, or the way turns sharply, they are too
- * few, and the extreme is no worse than the noise. */
+/* Range about a turn for fitting a parabola over the samples' order: within so many times the
+ * displacement's noise of its extreme. Where the noise is small, or the turn sharp, samples are too
+ * few, and the extreme is as good as the noise. */
 static const double turn_reach = 8;
 enum { TURN_SAMPLES_MIN = 7, TURN_SAMPLES_MAX = 400 };
 
-/* Vertex of the parabola through the samples about `at`; the sample itself where there is none.
- * The extreme of noisy samples lies beyond the way's. */
+/* Returns the vertex of the parabola through the samples about `at`, or the sample itself. The
+ * extreme of noisy samples lies beyond the true turn. */
 static double turning_point(const fg_load_sample *s, size_t low, size_t high, size_t at,
                             double reach) {
   size_t first = at, last = at;
@@ -196,10 +196,10 @@ static void find_turns(const fg_load_sample *samples, double noise_mm, fg_load_s
   s->high_mm = fmax(start, end);
 }
 
-/* ---- what is left of the strokes ---- */
+/* ---- dropping samples near turns ---- */
 
-/* Samples nearer to a turn than so many times the displacement's noise, or than so many of its
- * steps, are left out: that many lie there that their place says little. */
+/* Distances from a turn within which samples are left out, in units of the displacement's noise and
+ * of its step: samples crowd there, and their places have no information. */
 static const double turn_left_out = 3, steps_left_out = 1.5;
 
 static void trim(double noise_mm, double step_mm, fg_load_stroke *s) {

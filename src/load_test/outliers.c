@@ -7,13 +7,13 @@
 #include "core/select.h"
 #include "load_test/analysis.h"
 
-/* A reading is isolated when it lies further from every line through its neighbours than this many
- * medians of all readings' distances (some eight standard deviations of white noise), and than this
+/* Limits for an isolated reading: its distance from every line through its neighbours exceeds this
+ * many medians of all readings' distances (some eight standard deviations of white noise), and this
  * share of the column's range. */
 static const double medians = 12, range_share = 0.02;
 
-/* And when its neighbours lie this much nearer to each other: a rotor that jumps through its gap
- * leaves them apart. */
+/* Minimum ratio of that distance to the distance between its neighbours: a rotor that jumps through
+ * its gap leaves them apart. */
 static const double apart = 3;
 
 enum { RUN_MAX = 2, COLUMNS = 2 };
@@ -22,8 +22,8 @@ static double *value_at(fg_load_sample *sample, int column) {
   return column ? &sample->force_n : &sample->x_mm;
 }
 
-/* Distance of a run's reading from the line between its neighbours, and from the lines that go on
- * from each side's last two: at a turn of the stroke one of these meets it. */
+/* Returns the distance of a run's reading from the line between its neighbours, and from the
+ * extrapolations of each side's last two: at a turn of the stroke one of these fits. */
 static double distance(fg_load_sample *s, size_t run, size_t k, int column) {
   double before[2] = {*value_at(s - 2, column), *value_at(s - 1, column)};
   double after[2] = {*value_at(s + run, column), *value_at(s + run + 1, column)};
@@ -57,7 +57,7 @@ static double find_limit(fg_load_sample *s, size_t count, int column, double *ro
   double median = fg_select(room, n, n / 2);
   for (size_t i = 0; i < count; i++)
     room[i] = *value_at(s + i, column);
-  /* Quantiles: wrong readings must not widen the range that they are held against. */
+  /* Quantiles, because wrong readings must not widen the range that they are compared with. */
   double low = fg_select(room, count, count / 20);
   double high = fg_select(room, count, count - 1 - count / 20);
   return fmax(medians * median, range_share * (high - low));

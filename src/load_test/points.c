@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Where the strokes pass the threshold. */
+/* Places where the strokes pass the threshold. */
 #include <math.h>
 
 #include "core/small_solve.h"
 #include "load_test/analysis.h"
 #include "load_test/local_fit.h"
 
-/* Strokes at least this share of the longest have both turns. */
+/* Minimum length, relative to the longest, of strokes with both turns. */
 static const double whole_share = 0.9;
 
 enum { RECORDS_MAX = FG_SMALL_MAX - 3, PUSH = 0, PULL, DRIFT, OFFSETS };
@@ -21,7 +21,7 @@ typedef struct point {
   double x, u;
 } point;
 
-/* How the points are joined. */
+/* Plan of the fit through the points. */
 typedef struct plan {
   size_t count[2], repeats; /* points of each side; of one side in one record at most */
   bool apart;               /* every record has points of both sides: each may have an offset */
@@ -73,9 +73,9 @@ static bool is_whole(const fg_load_stroke *s, const fg_load_strokes *strokes) {
   return s->high_mm - s->low_mm > whole_share * longest;
 }
 
-/* Drift of single strokes: as much as their points and the middles of their turns
- * both say. Points alone may differ as a foil that was never loaded yields otherwise, middles alone
- * as the turns do; a place that scatters by its uncertainty says little. */
+/* Aligns single strokes by the drift that both their points and the middles of their turns support.
+ * Points alone may differ because a foil deflects differently when first loaded, middles alone
+ * because the turns do; a difference within its uncertainty is no evidence. */
 static void align(fg_load_strokes *strokes, fg_load_levels levels, const double *x,
                   double variance) {
   double middle = 0, count = 0;
@@ -96,8 +96,7 @@ static void align(fg_load_strokes *strokes, fg_load_levels levels, const double 
   }
 }
 
-/* Least squares of all strokes' points, which says how the strokes have drifted; false where a side
- * has none. */
+/* Fits the points of all strokes, with their drift; false when a side has none. */
 static bool join(fg_load_strokes *strokes, fg_load_levels levels, joined *out) {
   fg_normal_equations system;
   plan all = make_plan(strokes, levels);
@@ -140,7 +139,7 @@ static bool join(fg_load_strokes *strokes, fg_load_levels levels, joined *out) {
   return true;
 }
 
-/* Where all strokes of one sense pass a force. */
+/* Places where all strokes of one sense pass a force. */
 typedef struct passed {
   bool found;
   double x, u, u_unsampled, slope;
@@ -161,7 +160,7 @@ static fg_status find_passed(fg_context *ctx, const fg_load_strokes *strokes, in
   return status;
 }
 
-/* One unsampled stretch may hold both places: what it leaves open of them adds up. */
+/* One unsampled stretch may hold both places: their uncertainties in it add up. */
 static fg_load_value travel(const passed side[2]) {
   const passed *push = &side[PUSH], *pull = &side[PULL];
   if (!push->found || !pull->found) return (fg_load_value){NAN, NAN, NAN};

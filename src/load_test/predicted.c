@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The travel that a lot's measured foils leave a rotor, in the directions of the tests. It is that
- * of a rotor that touches and does not press, so that it stands against the gap, not against the
+/* Predicted travel of a rotor in a bearing of a lot's measured foils, in the directions of the
+ * tests. The rotor touches without pressing, so the travel compares with the gap, not with the
  * clearance at a threshold. */
 #include <math.h>
 #include <stdlib.h>
@@ -46,7 +46,8 @@ static void name_of(const cJSON *bearing, char *text, size_t size) {
     fg_text_clip(text, size, "%.0f", cJSON_IsNumber(number) ? number->valuedouble : 0);
 }
 
-/* A clearance of null is a place that was not measured; what else is none is no lot's. */
+/* A clearance of null is a place that was not measured; another value that is no number is no lot's
+ * report. */
 static const char *check_place(const places *p, size_t i) {
   if (!isfinite(p->angle_deg[i])) return "has no angle_deg";
   if (!isfinite(p->clearance_mm[i])) return NULL;
@@ -79,8 +80,8 @@ static fg_status read_places(fg_context *ctx, const cJSON *bearing, const char *
   return FG_OK;
 }
 
-/* How far a rotor goes from the middle towards `deg` until it meets a place: place i leaves
- * c_i = way cos(angle_i - deg), to first order. */
+/* Returns the place that a rotor moving from the middle towards `deg` touches first: place i allows
+ * way = c_i / cos(angle_i - deg), to first order. */
 static size_t first_met(const places *p, double deg, double *way, double *u) {
   size_t met = p->count;
   *way = INFINITY;

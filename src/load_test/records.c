@@ -17,7 +17,7 @@ enum { DIRECTIONS_MAX = 1000 };
 /* A kilometre and 100 MN are units mistaken; sums of squares stay far from the largest double. */
 static const double displacement_max_mm = 1e6, force_max_n = 1e8;
 
-/* Azimuths that are the same direction: a fraction of what a dividing head is set by. */
+/* Difference below which azimuths are one direction: a fraction of a dividing head's step. */
 static const double same_azimuth_deg = 0.05;
 
 /* A row of a file, before the rows are sorted by direction. */
@@ -126,7 +126,7 @@ static fg_status check_size(reading *r, const fg_table *table, const fg_load_col
   return FG_OK;
 }
 
-/* Repeats that are one file would halve the doubt for nothing. */
+/* A file given twice as a repeat would halve the uncertainty without new information. */
 fg_status fg_load_check_new(fg_context *ctx, const fg_load_test *test) {
   const fg_load_file *last = &test->files[test->file_count - 1];
   for (size_t i = 0; i + 1 < test->file_count; i++)
@@ -200,7 +200,7 @@ static int by_place(const void *left, const void *right) {
   return (a->old > b->old) - (a->old < b->old);
 }
 
-/* Directions by bearing and azimuth, and what each row's direction has become. */
+/* Sorts directions by bearing and azimuth, and renumbers each row's direction. */
 static fg_status sort_directions(reading *r) {
   fg_load_test *test = r->test;
   size_t count = test->direction_count;

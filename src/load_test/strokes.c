@@ -11,7 +11,7 @@
 /* A way back that is shorter than this share of the travel is noise, or a stop on the way. */
 static const double turn_share = 0.1;
 
-/* Fewer tell neither a course nor its scatter. */
+/* Minimum number of samples of a stroke for a profile and its scatter. */
 enum { STROKE_SAMPLES_MIN = 24 };
 
 void fg_load_stroke_free(fg_load_stroke *stroke) {
@@ -39,8 +39,9 @@ static fg_status allocate(fg_context *ctx, size_t count, fg_load_stroke *stroke)
   return fg_memory_allocate(ctx, count, sizeof *stroke->variance, (void **)&stroke->variance);
 }
 
-/* Of a sample about the line between its neighbours (T. Gasser, L. Sroka, C. Jennen-Steinmetz,
- * Residual variance and residual pattern in nonlinear regression, Biometrika 73, 1986). */
+/* Scatter of a sample about the line between its neighbours (T. Gasser, L. Sroka, C.
+ * Jennen-Steinmetz, Residual variance and residual pattern in nonlinear regression, Biometrika 73,
+ * 1986). */
 static void find_scatter(fg_load_stroke *s) {
   for (size_t i = 1; i + 1 < s->count; i++) {
     double span = s->x[i + 1] - s->x[i - 1];
@@ -63,8 +64,8 @@ typedef struct placed {
   uint64_t order;
 } placed;
 
-/* Where a column was rounded many samples have one displacement: in the order of their force, or
- * of time, neighbours would be more alike than the scatter is. */
+/* Orders samples by displacement alone. Of a rounded column many samples have one displacement:
+ * ordered by force, or by time, neighbours would differ less than the scatter. */
 static int by_x(const void *left, const void *right) {
   const placed *a = left, *b = right;
   if (a->x != b->x) return a->x < b->x ? -1 : 1;
@@ -101,7 +102,7 @@ static fg_status add_stroke(fg_context *ctx, const fg_load_sample *samples, fg_l
   return fill(ctx, samples, &strokes->stroke[strokes->count - 1]);
 }
 
-/* Strokes of one record: from one extreme to the next that lies `way` off. */
+/* Cuts strokes of one record: from one extreme to the next at a distance of at least `way`. */
 static fg_status cut_record(fg_context *ctx, const fg_load_sample *samples, size_t begin,
                             size_t end, size_t record, double way, fg_load_strokes *strokes) {
   size_t start = begin, low = begin, high = begin;
@@ -162,7 +163,7 @@ fg_status fg_load_strokes_cut(fg_context *ctx, const fg_load_test *test,
   return FG_OK;
 }
 
-/* A sample with what is known of it. */
+/* Sample with its variance and drift. */
 typedef struct cell {
   double x, f, variance, scatter;
   uint64_t order;

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Turning point of a loading branch: its force, and the place of the branch at that force.
  *
- * The extreme of a noisy displacement lies beyond the turn, and where the force is controlled its
- * sample may be any of several about it. An error of the place d counts (s - K) d in the force
+ * The extreme of a noisy displacement lies beyond the turn, and under force control its sample may
+ * be any of several about it. An error d of the place causes an error (s - K) d of the force
  * between the ends, s the slope there, K the secant: several percent, as s is a multiple of K. At
- * the ends the force tells the place better than the displacement does, s times its noise being
- * larger than that of the force. So the turn is sought in the force over time, and the place is
- * that of a regression of displacement over force. */
+ * the ends the force determines the place better than the displacement does, because s times the
+ * displacement's noise exceeds the force's noise. So the turn is sought in the force over time, and
+ * the place is from a regression of displacement over force. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -17,29 +17,29 @@
 /* Samples before a turn that a parabola is fitted to. */
 enum { BEFORE = 12, PARAMETERS = 3 };
 
-/* The turn is sought where the displacement lies within so many times its noise of its extreme. */
+/* Range of the search for the turn: displacement within so many times its noise of its extreme. */
 static const double candidate_reach = 4;
 enum { CANDIDATES_MAX = 60 };
 
-/* The largest of several fits that lean on nearly the same samples lies above its own mean by up
- * to this share of their standard uncertainty. */
+/* The largest of several fits to nearly the same samples exceeds its own mean by up to this share
+ * of their standard uncertainty. */
 static const double selection_share = 1;
 
-/* Turns further below the outermost than so many standard uncertainties have lost their tip in a
- * dropout, or are none of the loop's. The smallest uncertainty of all counts: noise is alike at
- * every turn, and a dropout within the samples before it makes that of its own turn large. */
+/* Turns below the outermost one by more than so many standard uncertainties lost their tip in a
+ * dropout, or are not the loop's. The smallest uncertainty of all is used: noise is the same at
+ * every turn, and a dropout just before a turn makes that turn's own uncertainty large. */
 static const double turn_reach = 4;
 
 /* A stretch beside a turn is a dropout where it is as many times as wide as the others there. */
 static const double leap_factor = 7;
 
-/* Of the force at the turn, and samples at least: what the place is regressed over. */
+/* Range of forces at the turn, and minimum number of samples, for the regression of the place. */
 static const double window_share = 0.2;
 enum { PLACE_SAMPLES_MIN = 24 };
 
 typedef struct turn {
   double force, u, rise; /* of one sample */
-  double lost;           /* what the force leaps by in a dropout beside the turn; 0: none */
+  double lost;           /* jump of the force in a dropout beside the turn; 0: none */
   size_t at;
 } turn;
 
@@ -77,8 +77,8 @@ static bool fit_force(const fg_load_sample *samples, size_t at, int sign, turn *
   return true;
 }
 
-/* Force that a dropout leaps over beside sample `at`: one whose way is many times that of the
- * samples before it and of the displacement's noise. */
+/* Returns the force skipped by a dropout beside sample `at`: an interval whose travel is many times
+ * that of the intervals before it and of the displacement's noise. */
 static double leap_at(const fg_load_sample *samples, const fg_load_stroke *s, size_t at,
                       double noise_mm) {
   double way = 0, leap = 0;
@@ -91,8 +91,8 @@ static double leap_at(const fg_load_sample *samples, const fg_load_stroke *s, si
   return leap;
 }
 
-/* Largest force about the end of a stroke; never beyond the extreme reading, as a parabola is at
- * the end of a rest under a weight. Forces count outwards. */
+/* Finds the largest force about the end of a stroke; never beyond the extreme reading, which a
+ * parabola exceeds at the end of a rest under a weight. Forces count outward. */
 static bool find_turn(const fg_load_sample *samples, const fg_load_stroke *s, double noise_mm,
                       turn *best) {
   double reach = candidate_reach * noise_mm, x = samples[s->last].x_mm, extreme = -INFINITY;
@@ -160,9 +160,9 @@ static void choose(const fg_load_sample *samples, const fg_load_loop_strokes *st
   drop_lost(b);
 }
 
-/* Mean of the turns' forces. The turn lies anywhere between two samples: `rise` of a rectangular
- * distribution, alike at every turn. Where all turns were lost in dropouts it may lie as far beyond
- * the samples as the force leaps there. */
+/* Averages the turns' forces. A turn lies anywhere between two samples: `rise` of a rectangular
+ * distribution, the same at every turn. When all turns were lost in dropouts, it may lie as far
+ * beyond the samples as the force jumps there. */
 static void mean_force(const branch *b, int sense, fg_load_turn *t) {
   double n = (double)b->count, sum = 0, squares = 0, own = 0, rise = 0, lost = 0;
   for (size_t i = 0; i < b->count; i++) {

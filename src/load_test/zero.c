@@ -1,21 +1,21 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the load cell says where no foil pulls. */
+/* Load cell's zero: its reading where no foil pulls. */
 #include <math.h>
 
 #include "load_test/analysis.h"
 #include "load_test/local_fit.h"
 
-/* Places between the ends that up and down strokes share, less a share of the travel at each end;
- * windows as shares of it, the narrowest that holds samples. */
+/* Number of places between the ends that up and down strokes share, less a share of the travel at
+ * each end; windows as shares of it, of which the narrowest with samples is used. */
 enum { PLACES = 49 };
 static const double end_left_out = 0.05, window_share = 1.0 / 16, window_share_max = 0.25;
 
-/* Where the force rises nowhere by less than this share of its steepest, there is no gap to see:
- * the share that a foil's stiffness may well vary by on its own. */
+/* Maximum ratio of smallest to largest slope for a visible gap: a foil's stiffness alone may vary
+ * by that. */
 static const double flat_share = 0.5;
 
-/* Places that rise by no more than this share of the steepest beyond the flattest are the gap; the
- * mean over them scatters less than one. */
+/* Slope above the smallest one, as a share of the largest, up to which places belong to the gap; a
+ * mean over them scatters less than one place. */
 static const double gap_share = 0.05;
 
 static bool fit_at(const fg_load_stroke *stroke, double x, double span, fg_local_fit *fit) {
@@ -24,7 +24,7 @@ static bool fit_at(const fg_load_stroke *stroke, double x, double span, fg_local
   return fg_local_across(stroke, x, fit);
 }
 
-/* What both say where both are known, and how fast their mean rises. */
+/* Forces of both senses where both are known, and the slope of their mean. */
 typedef struct course {
   double x[PLACES], middle[PLACES], half[PLACES], u[PLACES], slope[PLACES], min, max;
   size_t count;
@@ -54,9 +54,8 @@ static bool is_flat(const course *c, size_t k) {
   return c->slope[k] <= c->min + gap_share * c->max;
 }
 
-/* Mean over the places where it rises next to nothing, of the middle half of them: windows of the
- * others reach to the foils. Neighbouring places share samples: the mean is taken to be known no
- * better than one of them. */
+/* Averages over the middle half of the flat places: windows of the others reach to the foils.
+ * Neighbouring places share samples, so the mean's u is that of one of them. */
 static fg_load_zero mean_of_gap(const course *c) {
   fg_load_zero zero = {0, 0, 0, 0};
   double count = 0, first = INFINITY, last = -INFINITY;

@@ -84,7 +84,7 @@ double fg_coding_to_real(const fg_coding *coding, double coded) {
   return fg_extended_add(centre_of(coding), step).value;
 }
 
-/* The table's own column, to be changed, once it is known to hold numbers only. */
+/* Returns the table's own column for writing, after checking that it has numbers only. */
 static fg_status numbers_to_change(fg_context *ctx, fg_table *table, const char *name,
                                    fg_extended **numbers) {
   const fg_extended *checked = NULL;

@@ -69,7 +69,7 @@ fg_status fg_half_normal_points(fg_context *ctx, const double *estimates, size_t
 /* The likelihood profile of lambda: one orthogonal basis serves all powers. */
 typedef struct profile {
   const fg_orthogonal *basis;
-  const double *log_response; /* centred: the geometric mean is 1, which keeps the unit */
+  const double *log_response; /* centred: the geometric mean is 1, which preserves the unit */
   double *work;
 } profile;
 
@@ -116,7 +116,8 @@ static double most_likely(const profile *p) {
   return (low + high) / 2;
 }
 
-/* Where the likelihood falls below `level` between lambda and `end`; `end` when it does not. */
+/* Finds where the likelihood falls below `level` between lambda and `end`; `end` when it does not.
+ */
 static double crossing(const profile *p, double lambda, double end, double level) {
   double inside = lambda, outside = end;
   if (log_likelihood(p, end) >= level) return end;
@@ -177,7 +178,7 @@ exit:
   return status;
 }
 
-/* Runs by kind: a corner has every factor at ±1; its bits say which. */
+/* Kinds of runs: a corner has every factor at ±1, given by its bits. */
 typedef enum run_kind { RUN_OTHER, RUN_CORNER, RUN_CENTRE } run_kind;
 
 static run_kind classify(const fg_extended *const *x, size_t factors, size_t row, size_t *corner) {

@@ -60,7 +60,7 @@ static fg_status apply_sign(fg_context *ctx, const fg_experiment_options *option
   return fg_response_apply(ctx, FG_RESPONSE_MAGNITUDE, e->response, &e->table);
 }
 
-/* The right side as asked for, with the blocks in front. */
+/* Writes the right side as requested, with the blocks in front. */
 static fg_status write_formula(fg_context *ctx, const fg_experiment_options *options,
                                const fg_formula *parsed, fg_experiment *e) {
   char *right = NULL;
@@ -243,7 +243,7 @@ static fg_status fit(fg_context *ctx, fg_experiment *e) {
   return FG_OK;
 }
 
-/* Columns that a plan writes and that matter only when the analysis is told of them. */
+/* Notes columns of a plan that the analysis needs but was not given as options. */
 static fg_status note_forgotten(fg_context *ctx, fg_experiment *e) {
   for (size_t i = 0; i < e->table.columns; i++) {
     const char *name = e->table.column[i].name;

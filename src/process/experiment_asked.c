@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Predictions of the model at settings that the user asked for, and the best place along each
- * factor from there. This tests a setting that others call the best. */
+/* Predictions at settings that the user requests, and the best value along each factor from there:
+ * for testing a setting that others call the best. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,7 +9,7 @@
 #include "core/text.h"
 #include "process/experiment_parts.h"
 
-/* Places along a factor that are looked at; a parabola through the best finds the rest. */
+/* Number of values along a factor; a parabola through the best ones refines the optimum. */
 enum { PLACES = 200 };
 
 static fg_status fail_at(fg_context *ctx, const char *text, const char *at, const char *what) {
@@ -108,7 +108,7 @@ static fg_status cost_at(fg_context *ctx, const fg_experiment *e, const fg_asked
   return FG_OK;
 }
 
-/* The best of this factor within the runs, the others as asked. */
+/* Finds the best value of this factor within the runs, with the others as requested. */
 static fg_status best_along(fg_context *ctx, const fg_experiment *e, const fg_factor *factor,
                             fg_asked *asked) {
   size_t v = factor->variable;

@@ -10,10 +10,10 @@
 #include "process/experiment_parts.h"
 #include "stats/mixed_model.h"
 
-/* Box-Cox looks at the residuals some 300 times: not worth the wait with a sea of runs. */
+/* Maximum number of runs for Box-Cox, which computes the residuals some 300 times. */
 enum { BOX_COX_RUNS = 100000 };
 
-/* Element (i, j) of (X'X)^-1: no residual freedom is needed for it. */
+/* Element (i, j) of (X'X)^-1, which needs no residual dof. */
 static double inverse_at(const fg_regression *reg, size_t i, size_t j) {
   double sum = 0;
   for (size_t k = 0; k < reg->columns; k++)
@@ -31,7 +31,7 @@ static bool is_whole_plot(const fg_experiment *e, size_t term) {
   return false;
 }
 
-/* Standard deviation that a column is judged by, and its degrees of freedom. */
+/* Returns the standard deviation for testing a column, and its dof. */
 static double error_of(const fg_experiment *e, bool whole_plot, double *dof) {
   const fg_split_plot *s = &e->split_plot;
   *dof = (double)e->regression.residual_dof;
@@ -46,8 +46,8 @@ static bool is_block_term(const fg_experiment *e, size_t term) {
          e->model.formula.term[term].power[e->block_variable] > 0;
 }
 
-/* Variance and degrees of freedom by restricted likelihood. Effects removed from the response
- * before have used `taken` of the latter. */
+/* Returns variance and dof by restricted likelihood. Effects subtracted from the response before
+ * lower the dof by `taken`. */
 static double mixed_variance(const fg_experiment *e, const double *row, bool run, size_t taken,
                              double *dof) {
   double variance = fg_mixed_variance(e->split_plot.mixed, row, run, dof);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the residuals show over the order of the runs: a drift, neighbours that are alike, a run
- * that stands out. The loop on tables finds out what it is. */
+/* Residuals over the order of the runs: tests for a drift, for correlated neighbours, and for an
+ * outlier. The loop on tables identifies the cause. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,11 +14,11 @@
 #include "foilgauge/distribution.h"
 #include "process/experiment_parts.h"
 
-/* Of the null of the neighbours: p is known to 0.003 at the level it is told at, with the fewest to
- * 0.01. */
+/* Draws of the neighbours' null: p is known to 0.003 at the level of the test, with the fewest
+ * draws to 0.01. */
 enum { DRAWS_MAX = 1999, DRAWS_MIN = 199 };
 
-/* Draws end once so many lie on either side: p is known to a tenth of itself (Besag and Clifford
+/* Draws end after so many on either side: p is then known to a tenth of itself (Besag and Clifford
  * 1991), and far from the level. */
 enum { ENOUGH = 100 };
 
@@ -56,7 +56,7 @@ static int by_value(const void *a, const void *b, void *value) {
   return (i > k) - (i < k);
 }
 
-/* false: two runs stand at one place, which is no order. */
+/* false: two runs have one position, which is no order */
 static bool sort_runs(const checking *c, double *value) {
   for (size_t i = 0; i < c->rows; i++)
     c->in_order[i] = i;
@@ -100,7 +100,7 @@ static void fill_basis(checking *c) {
   }
 }
 
-/* Takes the model out. */
+/* Projects v beside the model. */
 static void project_out(const checking *c, double *v) {
   for (size_t k = 0; k < c->rank; k++) {
     const double *q = c->basis + k * c->rows;
@@ -138,8 +138,8 @@ static double neighbours(const checking *c, const double *v) {
   return products / fg_dot(v, v, c->rows);
 }
 
-/* Residuals of independent errors are correlated by the model that was taken out: the null is
- * drawn through it. */
+/* Draws the null through the model: its projection correlates the residuals of independent errors.
+ */
 static fg_status draw_neighbours(fg_context *ctx, const checking *c, int draws,
                                  fg_order_check *order) {
   gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
@@ -168,7 +168,8 @@ static fg_status check_neighbours(fg_context *ctx, const checking *c, fg_order_c
   order->neighbours = neighbours(c, c->residual);
   double draws = WORK_OF_DRAWS / (2.0 * (double)c->rows * (double)(c->rank + 1));
   if (draws >= DRAWS_MIN) return draw_neighbours(ctx, c, (int)fmin(draws, DRAWS_MAX), order);
-  /* So many runs: normal with variance 1 / runs (Box and Jenkins 1970). */
+  /* Number of runs from which the normal approximation is used: normal with variance 1 / runs (Box
+   * and Jenkins 1970). */
   order->neighbours_p = erfc(fabs(order->neighbours) * sqrt((double)c->rows / 2));
   return FG_OK;
 }
@@ -215,7 +216,7 @@ static fg_status check(fg_context *ctx, checking *c, fg_experiment *e) {
   return FG_OK;
 }
 
-/* Whole plots scatter by themselves, which neighbours share: nothing is told of them here. */
+/* Skips tests with whole plots, whose own scatter is common to neighbours. */
 fg_status fg_experiment_check_order(fg_context *ctx, fg_experiment *e) {
   checking c = {.e = e, .rows = e->regression.rows};
   const fg_regression *r = &e->regression;

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Factors that cannot be told from noise, and the experiment without them: a coefficient that is
- * nothing but scatter would send its factor to an edge of the region, and the best setting with it.
+/* Factors that are not significant, and the experiment without them. A coefficient of noise alone
+ * would send its factor to an edge of the region, and the best setting with it.
  *
- * A factor is a suspect where none of its coefficients stands out by itself at the level of the
- * intervals. Suspects leave one by one, the largest p first, as long as all that left can be zero
- * together: Wald's F of their coefficients in the model as given, so that what leaves is judged by
- * one and the same error. */
+ * A factor is a suspect when none of its coefficients is significant at the level of the intervals.
+ * Suspects leave one by one, the largest p first, as long as all that left can be zero together:
+ * Wald's F of their coefficients in the model as given, so that all are tested against the same
+ * error. */
 #include <gsl/gsl_linalg.h>
 #include <math.h>
 #include <stdlib.h>
@@ -70,8 +70,8 @@ static double wald(const fg_experiment *e, const size_t *column, size_t count, g
   return sum;
 }
 
-/* The chance that noise alone makes the coefficients of these variables as large as they are; NaN:
- * there is no error to hold them against. */
+/* Computes the p-value of the coefficients of these variables together; NaN: there is no error to
+ * compare with. */
 static fg_status joint_p(fg_context *ctx, const fg_experiment *e, const bool *variable,
                          double *p_value) {
   fg_status status = FG_OK;
@@ -101,7 +101,7 @@ exit:
   return status;
 }
 
-/* The suspect whose leaving shows least; FG_FORMULA_VARIABLES: none may leave. */
+/* Finds the suspect whose removal is least significant; FG_FORMULA_VARIABLES: none may leave. */
 static fg_status next_to_leave(fg_context *ctx, const fg_experiment *e, const suspects *s,
                                size_t *next) {
   double max_p = 1 - e->confidence;
@@ -147,7 +147,7 @@ static fg_status find_idle(fg_context *ctx, fg_experiment *e, suspects *s) {
   return FG_OK;
 }
 
-/* The formula without the idle factors; the blocks come back by their option. */
+/* Writes the formula without the idle factors; the blocks return by their option. */
 static fg_status write_formula(fg_context *ctx, const fg_experiment *e, const suspects *s,
                                char **text) {
   fg_formula formula = e->model.formula;

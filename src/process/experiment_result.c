@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What an analysed experiment says when it is asked, and its end. */
+/* Predictions of an analysed experiment, its notes, and freeing it. */
 #include <stdarg.h>
 #include <stdlib.h>
 

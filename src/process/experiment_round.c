@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The best setting that the machine can be given: a multiple of each factor's step. */
+/* Best feasible setting: a multiple of each factor's step. */
 #include <math.h>
 #include <string.h>
 

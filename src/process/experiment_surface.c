@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Where the fitted surface is best, and how sure that is. */
+/* Optimum of the fitted surface, and its uncertainty. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,7 +10,8 @@
 
 enum { COMBINATIONS = 4096 };
 
-/* How near to its border a point counts as on it, as a share of the region's size. */
+/* Distance from the border, as a share of the region's size, within which a point counts as on it.
+ */
 static const double BORDER = 1e-6;
 
 static const fg_factor *factor_of(const fg_experiment *e, size_t k) {
@@ -113,7 +114,7 @@ static fg_status make_surface(fg_context *ctx, const fg_experiment *e, const dou
   return e->factors ? fg_surface_make(ctx, &e->model, &e->regression, levels, surface) : FG_OK;
 }
 
-/* Blocks shift the surface by a constant, which the predictions put right. */
+/* Blocks shift the surface by a constant, for which the predictions correct it. */
 static fg_status find_optimum(fg_context *ctx, fg_experiment *e) {
   double levels[FG_FORMULA_VARIABLES] = {0}, best = INFINITY;
   size_t tried = 0;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Runs whose measurement is less certain weigh less. */
+/* Weights of runs by the uncertainty of their measurement. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -34,7 +34,8 @@ static fg_status fit_with(fg_context *ctx, fg_experiment *e, const fg_extended *
   return fg_regression_fit(ctx, &e->model, response, &options, fit);
 }
 
-/* The weighted residuals' variance over what s and u say: falls as s grows. */
+/* Computes the ratio of the weighted residuals' variance to that by s and u: it falls as s grows.
+ */
 static fg_status excess(fg_context *ctx, fg_experiment *e, const fg_extended *response,
                         double process_sd, double median, double *ratio) {
   fg_regression fit = {0};

@@ -22,7 +22,7 @@ static fg_status push_run(fg_context *ctx, fg_plan *plan, const double *coded, c
   return FG_OK;
 }
 
-/* The order of the corners and what makes them a fraction. */
+/* Order of the corners, and the generators of the fraction. */
 typedef struct fraction {
   size_t basic[FG_PLAN_FACTORS], basics; /* factors that run through all combinations */
   size_t made[FG_PLAN_FACTORS];          /* factor made by generator g */
@@ -164,8 +164,8 @@ static uint64_t next_random(uint64_t *state) {
   return z ^ z >> 31;
 }
 
-/* Each run gets a random key for its plot and one of its own; sorting by block, plot key, own key
- * shuffles plots within blocks and runs within plots. */
+/* Sort key: each run gets a random key for its plot and one of its own; sorting by block, plot key,
+ * own key shuffles plots within blocks and runs within plots. */
 typedef struct sort_key {
   uint64_t plot, own;
   fg_plan_run run;
@@ -179,8 +179,8 @@ static int compare_keys(const void *a, const void *b) {
   return (x->run.standard > y->run.standard) - (x->run.standard < y->run.standard);
 }
 
-/* Same load: the same block, the same replicate, the same setting of every hard factor. Centre
- * points of a block share one. */
+/* Returns true for runs of one load: the same block, replicate, and setting of every hard factor.
+ * Centre points of a block share one. */
 static bool same_plot(const fg_plan_options *o, const fg_plan_run *a, const fg_plan_run *b) {
   if (a->block != b->block) return false;
   bool centres =
@@ -268,7 +268,7 @@ static fg_status copy_factors(fg_context *ctx, const fg_plan_options *o, fg_plan
   return FG_OK;
 }
 
-/* A step so coarse that two levels become one leaves another plan than was asked for. */
+/* Refuses a step so coarse that two levels become equal: the plan would be another one. */
 static fg_status check_steps(fg_context *ctx, const fg_plan *plan) {
   for (size_t k = 0; k < plan->factors; k++)
     for (size_t i = 0; plan->step[k] > 0 && i < plan->runs; i++)

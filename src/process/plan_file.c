@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What lies beside a run sheet: the limits and steps of its factors, and every planned setting. */
+/* Companion file of a run sheet: limits and steps of its factors, and every planned setting. */
 #include <cjson/cJSON.h>
 #include <math.h>
 #include <stdlib.h>
@@ -14,7 +14,7 @@
 
 enum { PLAN_BYTES_MAX = 1 << 26 };
 
-/* What a spreadsheet may lose of a number that it shows. */
+/* Relative rounding that a spreadsheet may apply to a number. */
 static const double same = 1e-6;
 
 static void write_factors(fg_json *json, const fg_plan *plan) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What of a plan's settings is other than the levels say. */
+/* Notes on settings that differ from the plan's levels. */
 #include <math.h>
 #include <stdlib.h>
 

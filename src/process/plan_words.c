@@ -94,7 +94,7 @@ fg_status fg_plan_relation_text(fg_context *ctx, const fg_plan *plan, char **tex
   return FG_OK;
 }
 
-/* One effect and those that its column stands for as well. */
+/* Appends one effect and its aliases. */
 static fg_status append_aliases(fg_context *ctx, const fg_plan *plan, uint32_t effect,
                                 size_t alias_order, char **text) {
   FG_TRY(append_mask(ctx, plan, effect, text));

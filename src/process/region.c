@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The best point of a quadratic surface in a convex region.
+/* Best point of a quadratic surface in a convex region.
  *
- * The region is the intersection of simple sets, each with a projection in closed form; Dykstra's
- * algorithm turns these into the projection on the intersection, and projected gradients walk to a
- * local optimum from scattered starts. A quadratic may have several local optima on the border of
- * the region (a saddle has), so the starts are the best of many. */
+ * The region is the intersection of simple sets, each with a projection in closed form. Dykstra's
+ * algorithm combines these into the projection on the intersection; projected gradients then
+ * descend to a local optimum from scattered starts. A quadratic may have several local optima on
+ * the border of the region (a saddle has), so the starts are the best of many. */
 #include <math.h>
 #include <string.h>
 
@@ -20,7 +20,7 @@ enum {
   SWEEPS = 2000
 };
 
-/* How far from the region counts as in it, as a share of the region's size. */
+/* Distance from the region, as a share of its size, within which a point counts as inside. */
 static const double SLACK = 1e-9;
 
 static double distance(const double *a, const double *b, size_t count) {
@@ -63,9 +63,9 @@ static void project_on(const fg_region *r, size_t set, double *x) {
   }
 }
 
-/* Dykstra (1983): what each set's projection took away is given back before its next turn. The
- * point may stand still for many sweeps while what is given back still changes, so only when that
- * has settled is it done (Birgin and Raydan 2005). */
+/* Dykstra (1983): each set's previous correction is added back before its next projection. The
+ * point may stay constant for many sweeps while the corrections still change, so the corrections
+ * must converge (Birgin and Raydan 2005). */
 static void project(const fg_region *r, double *x) {
   double given[SETS][MAX] = {{0}}, before[MAX];
   size_t sets = r->planes + 2;
@@ -100,7 +100,7 @@ fg_status fg_region_project(fg_context *ctx, const fg_region *region, double *x)
   return FG_OK;
 }
 
-/* What is made small, and its gradient. */
+/* Cost function and its gradient. */
 typedef struct objective {
   const fg_surface *surface;
   fg_goal goal;
@@ -121,8 +121,8 @@ static void gradient(const objective *o, const double *x, double *slope) {
     slope[i] = factor * (s->linear[i] + 2 * fg_dot(s->quadratic[i], x, s->factors));
 }
 
-/* A step is taken when it lowers the cost by a tenth of what the slope promises; it doubles after a
- * success and halves after a failure. */
+/* Descends by projected gradients. A step is accepted when it lowers the cost by a tenth of the
+ * slope's prediction; it doubles after a success and halves after a failure. */
 static double walk(const objective *o, const fg_region *r, double *x) {
   size_t n = r->factors;
   double here = cost(o, x), slope[MAX], next[MAX] = {0}, size = size_of(r);
@@ -169,7 +169,7 @@ typedef struct start {
   double cost, x[MAX];
 } start;
 
-/* Keeps the best STARTS, best first. */
+/* Inserts a candidate into the list of the best STARTS, best first. */
 static void keep_start(start *starts, size_t *count, const start *candidate) {
   size_t place = *count;
   while (place > 0 && candidate->cost < starts[place - 1].cost)
@@ -180,7 +180,7 @@ static void keep_start(start *starts, size_t *count, const start *candidate) {
   starts[place] = *candidate;
 }
 
-/* Candidates whose answer is exact where it lies inside: stationary point, box, ball. */
+/* Adds the candidates that are exact if they lie inside: stationary point, box, ball. */
 static void keep_exact(const objective *o, const fg_region *r, start *starts, size_t *count) {
   start s = {0};
   bool highest = o->goal == FG_GOAL_HIGHEST;

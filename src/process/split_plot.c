@@ -28,8 +28,9 @@ static bool is_constant_within(const fg_model *model, const fg_levels *plots, si
   return true;
 }
 
-/* Columns of the whole-plot terms, then one indicator per plot, then the others: the plots take
- * what is left of them after the whole-plot terms, and the sequential squares are the strata. */
+/* Order of the columns: whole-plot terms, then one indicator per plot, then the others. So the
+ * plots explain the remainder after the whole-plot terms, and the sequential squares are the
+ * strata. */
 typedef struct strata {
   const fg_model *model;
   const fg_levels *plots;
@@ -194,7 +195,8 @@ static fg_status test_terms(fg_context *ctx, const fg_model *model, const fg_reg
   return status;
 }
 
-/* Restricted likelihood where the strata are not orthogonal, as far as there is scatter to tell. */
+/* Fits by restricted likelihood where the strata are not orthogonal, if the scatter has enough dof.
+ */
 static fg_status fit_mixed(fg_context *ctx, const strata *s, const fg_extended *y,
                            fg_split_plot *result) {
   fg_regression ols = {0};

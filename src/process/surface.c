@@ -12,7 +12,7 @@ enum { MAX = FG_SURFACE_FACTORS };
 /* Below this share of the largest curvature there is no telling a ridge from a slope. */
 static const double FLAT = 1e-9;
 
-/* Which factor of the surface the variable is; a new one is appended. */
+/* Returns the variable's index among the surface's factors; a new one is appended. */
 static fg_status factor_of(fg_context *ctx, const fg_model *model, size_t variable, fg_surface *s,
                            size_t *factor) {
   const fg_variable *v = &model->formula.variable[variable];
@@ -105,9 +105,9 @@ static double slope_along(const fg_surface *s, size_t k) {
   return slope;
 }
 
-/* Along the eigenvectors the surface is sum (g_k u_k + e_k u_k²): x = sum u_k v_k with
- * u_k = -g_k / (2 (e_k - shift)); shift 0 is the stationary point. The shift is edge - distance:
- * kept apart, a distance far below the rounding of the edge still counts. */
+/* Along the eigenvectors the surface is sum (g_k u_k + e_k u_k²): x = sum u_k v_k with u_k = -g_k /
+ * (2 (e_k - shift)); shift 0 is the stationary point. The shift is edge - distance: two numbers, so
+ * that a distance far below the rounding of the edge still counts. */
 static void shifted_point(const fg_surface *s, double edge, double distance, double *x) {
   for (size_t i = 0; i < s->factors; i++)
     x[i] = 0;
@@ -151,11 +151,11 @@ fg_status fg_surface_make(fg_context *ctx, const fg_model *model, const fg_regre
   return FG_OK;
 }
 
-/* Which bound each factor is held at on a face of the box. */
+/* Bound of each factor on a face of the box. */
 typedef enum hold { HOLD_FREE, HOLD_LOW, HOLD_HIGH, HOLDS } hold;
 
-/* Elimination with row pivoting, the solution in `right`; false when singular. (GSL's asks for
- * memory and does not look whether it got it.) */
+/* Elimination with row pivoting, the solution in `right`; false when singular. (GSL's version
+ * allocates memory without checking.) */
 static bool eliminate(double *matrix, double *right, size_t n) {
   for (size_t k = 0; k < n; k++) {
     size_t pivot = k;
@@ -185,7 +185,7 @@ static bool eliminate(double *matrix, double *right, size_t n) {
   return true;
 }
 
-/* The stationary point over the free factors, the others held; false when singular. */
+/* Finds the stationary point over the free factors, the others held; false when singular. */
 static bool face_point(const fg_surface *s, const hold *holds, const double *low,
                        const double *high, double *x) {
   double matrix[MAX * MAX], right[MAX];
@@ -274,8 +274,8 @@ static bool sphere_point(const fg_surface *s, double radius, double *x) {
   return true;
 }
 
-/* The hard case: the slope along the lowest eigenvector vanishes; what is missing of the radius
- * is walked along it. */
+/* The hard case: the slope along the lowest eigenvector vanishes; the remainder of the radius is
+ * covered along it. */
 static void complete_radius(const fg_surface *s, double radius, double *x) {
   const double *v = s->eigenvector[s->factors - 1];
   double missing = radius * radius - pow(norm(x, s->factors), 2), along = 0;

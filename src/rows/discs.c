@@ -14,7 +14,7 @@
 #include "core/spread.h"
 #include "rows/edge_fit.h"
 
-/* So many rows carry any search; the blocks grow with the edges. */
+/* Number of rows that suffices for any search; the blocks grow with the edges. */
 enum { ROWS_MAX = 2000, BLOCK_MIN = 2, ROWS_MIN = 32, NEIGHBOUR_LAG = 3 };
 /* A known diameter is a disc's when it is so near. */
 #define DIAMETER_SHARE 0.03

@@ -7,22 +7,23 @@
 
 #include "core/memory.h"
 
-/* A correction of less than this share of what a value is uncertain by anyway, with its doubt,
- * changes u by half a percent: nothing is decided about it. */
+/* Size of a correction, as a share of the value's uncertainty, below which nothing is decided: with
+ * its own uncertainty it changes u by half a percent. */
 #define SMALL_SHARE 0.1
 /* m² > 2 u² (see the header). */
 #define BENEFIT_RATIO 2.0
-/* A free curve is there beyond doubt, but what it does to a dimension is another sum of its many
- * numbers than what showed it: that must be more than chance by itself (chi² of 1, 1 in 100). */
+/* For a free curve. The curve itself is significant, but its effect on a dimension is another sum
+ * of its many coefficients than the one that was tested, so it must be significant by itself (chi²
+ * of 1, 1 in 100). */
 #define CURVE_BENEFIT_RATIO 6.63
-/* Explanations that agree about less than that of their mean move agree about nothing: moving by it
- * would gain 6 % of what the mean is worth. */
+/* Share of the mean move below which the agreed move counts as zero: moving by it would gain 6 % of
+ * the mean's gain. */
 #define AGREED_SHARE 0.25
 /* Steps to the shortest point between explanations, and the share of its square that ends them. */
 enum { SHORTEST_STEPS = 1000 };
 #define SHORTEST_END 1e-9
-/* What every explanation keeps of what the shortest move gains for it, on the way to their mean;
- * and bisections of that way. */
+/* Share of the shortest move's gain that every explanation keeps on the way to the mean; number of
+ * bisections of that way. */
 #define KEPT_GAIN 0.5
 enum { AGREED_STEPS = 30 };
 
@@ -89,8 +90,8 @@ static void moves_of(const fg_foil *from, const fg_foil *to, size_t item,
   move[FG_CORRECTED_HEIGHT] = bump ? to->bumps[item].height_mm - from->bumps[item].height_mm : NAN;
 }
 
-/* An explanation that shows other bumps: what the one in force says, so that scans of one foil keep
- * the same explanations. */
+/* Replaces the moves of an explanation that shows other bumps by those of the one in force, so that
+ * scans of one foil have the same explanations. */
 static void say_nothing(fg_benefit *benefit, size_t at) {
   benefit->centre[at] = benefit->centre[0];
   for (size_t i = 0; i < benefit->items; i++) {
@@ -175,8 +176,8 @@ void fg_benefits_add_step(fg_benefits *benefits, const fg_measurement *corrected
 
 /* ---- the rule ---- */
 
-/* What one kind of all items and views comes to, mm²: products of the explanations' moves, and sums
- * of their noise and of the values' own u². */
+/* Sums of one dimension over all items and views, mm²: products of the explanations' moves, of
+ * their noise, and of the values' own u². */
 typedef struct sums {
   double items, noise, own;
   bool curve; /* an explanation is a free curve */
@@ -238,8 +239,8 @@ static void put_mean(size_t explanations, double *part) {
     part[e] = e < explanations ? 1 / (double)explanations : 0;
 }
 
-/* From where it stands towards the explanation that it gains least for, until it gains as much for
- * that one as for the others (Gilbert 1966). */
+/* Finds the shortest move: steps towards the explanation of the smallest gain, until its gain
+ * equals that of the others (Gilbert 1966). */
 static void put_shortest(const sums *s, double *part) {
   put_mean(s->explanations, part);
   for (int step = 0; step < SHORTEST_STEPS && s->explanations > 1; step++) {
@@ -255,7 +256,7 @@ static void put_shortest(const sums *s, double *part) {
   }
 }
 
-/* Gains every explanation that much, at least? */
+/* Returns true when every explanation gains at least `min`. */
 static bool gains(const sums *s, const double *part, double min) {
   double size = size_of(s, part);
   for (size_t e = 0; e < s->explanations; e++)
@@ -263,8 +264,8 @@ static bool gains(const sums *s, const double *part, double min) {
   return true;
 }
 
-/* From the shortest move towards their mean, which is best on average, as far as none of them loses
- * more than its share of what the shortest one gains, which comes back. */
+/* Finds the agreed move: from the shortest one towards the mean, which is best on average, as far
+ * as every explanation keeps its share of the shortest one's gain. Returns that gain. */
 static double put_agreed(const sums *s, double *part) {
   double shortest[FG_BENEFIT_EXPLANATIONS_MAX], mean[FG_BENEFIT_EXPLANATIONS_MAX];
   double low = 0, high = 1;
@@ -285,7 +286,7 @@ static double put_agreed(const sums *s, double *part) {
   return gain;
 }
 
-/* `part` gets the move: that which explanations agree about, and for what is left their mean. */
+/* Decides: `part` gets the move that the explanations agree about, else their mean. */
 static fg_correction_reason judge(const sums *s, double *part) {
   double agreed[FG_BENEFIT_EXPLANATIONS_MAX];
   put_mean(s->explanations, part);

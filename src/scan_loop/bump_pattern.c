@@ -8,9 +8,9 @@
 
 #include "table_loop/engine_random.h"
 
-/* Draws of the null; forms that are tried. */
+/* Draws of the null; number of patterns. */
 enum { DRAWS = 4999, PATTERNS = 2 };
-/* Of all bumps, at most this share stands apart from the others; more are two kinds of bumps. */
+/* Maximum share of bumps that deviate: with more there are two kinds of bumps. */
 static const double largest_share = 1.0 / 3;
 /* Cycles over the bumps are tried in such steps, from two cycles up to a period of two bumps. */
 static const double cycle_step = 0.25;
@@ -36,7 +36,7 @@ static double square_about_mean(const double *value, size_t n, double *mean) {
   return sum;
 }
 
-/* The best few are the largest or the smallest. `limit`: the value from which on they stand apart,
+/* Finds the best few values to set apart, which are the largest or the smallest. `limit`: they lie
  * above it for by > 0, below it for by < 0. */
 static double best_apart(const fg_bump_values *at, double *by, double *limit) {
   const double *value = at->value;
@@ -64,7 +64,7 @@ static double best_apart(const fg_bump_values *at, double *by, double *limit) {
   return best;
 }
 
-/* Least squares of a cosine and a sine beside the mean. */
+/* Fits a cosine and a sine beside the mean. */
 static double cycle_gain(const fg_bump_values *at, double period, fg_bump_pattern *to) {
   const double *value = at->value;
   double c[FG_BUMP_PATTERN_MAX], s[FG_BUMP_PATTERN_MAX], mean[3],
@@ -119,7 +119,7 @@ static fg_bump_pattern find_cycle(const fg_bump_values *at) {
   return found;
 }
 
-/* Share of draws of normal scatter in which either form does as well as it does here. */
+/* Finds the share of normal draws in which either pattern gains as much. */
 static void find_p(const fg_bump_values *at, uint64_t seed, const double gain[PATTERNS],
                    double p[PATTERNS]) {
   size_t beyond[PATTERNS] = {1, 1};
@@ -139,7 +139,8 @@ static void find_p(const fg_bump_values *at, uint64_t seed, const double gain[PA
     p[pattern] = (double)beyond[pattern] / (DRAWS + 1);
 }
 
-/* Bonferroni's bound for the best few of all that could be the best: what draws cannot resolve. */
+/* Returns Bonferroni's bound for the best few of all possible choices: for p-values that draws
+ * cannot resolve. */
 static double bound_of_apart(const fg_bump_values *at, double gain) {
   size_t max = (size_t)(largest_share * (double)at->n);
   double subsets = 0;

@@ -16,11 +16,12 @@ const fg_scan_loop_bump_response fg_scan_loop_bump_responses[FG_SCAN_LOOP_BUMP_R
 
 enum { RADIUS = FG_SCAN_LOOP_BUMP_RADIUS, ANGLE = FG_SCAN_LOOP_BUMP_ANGLE };
 
-/* Five bumps have 120 orders, nine 256 pairs of signs: below 0.005 beside their mirror images from
- * six and nine bumps on. */
+/* Minimum numbers of bumps for permutations and for sign flips: five bumps have 120 orders, nine
+ * have 256 pairs of signs; beside their mirror images p can be below 0.005 from six and nine bumps
+ * on. */
 enum { ORDERS = 6, SIGNS = 9 };
 
-/* A claim must be this many times what all bumps together may be off by. */
+/* Minimum ratio of a claim to the uncertainty common to all bumps. */
 static const double is_certain = 3;
 static const double accept_p = FG_LOOP_ACCEPT_P; /* over both responses */
 
@@ -167,7 +168,8 @@ static void find_errors(fg_scan_loop_bump_level *level, const fg_scan_loop_bumps
   level->base = base / n[0];
 }
 
-/* Without bumps kept aside: cross-fitted by the engine, where what it found is what stands. */
+/* Uses the engine's cross-fitted error, without held-out bumps, when its claims are accepted
+ * unchanged. */
 static void take_cross_fitted(fg_scan_loop_bump_level *level, const fg_loop_result *found) {
   fg_loop_result *result = &level->result;
   double *held_out = level->error.held_out_rms;
@@ -180,7 +182,8 @@ static void take_cross_fitted(fg_scan_loop_bump_level *level, const fg_loop_resu
   }
 }
 
-/* Of few bumps the engine knows no curves, but counts them: that pays for the second response. */
+/* Corrects p for two responses. For few bumps the engine tests no curves but counts them, which
+ * already covers the second response. */
 static double over_responses(const fg_loop_problem *problem, double p_value) {
   return fmin(1, (problem->few ? 1 : FG_SCAN_LOOP_BUMP_RESPONSES) * p_value);
 }
@@ -200,8 +203,8 @@ static void strip_aliases(fg_loop_claim *claim) {
   if (!kept) claim->verdict = FG_LOOP_FOUND;
 }
 
-/* An outlier is said, not claimed; what is no larger than what the edges leave in doubt is no
- * claim, however steady it is. */
+/* Accepts or rejects a claim. An outlier is a note, no claim; an effect no larger than the
+ * uncertainty that the edges leave is no claim, however constant. */
 static fg_status judge_claim(fg_context *ctx, fg_scan_loop_bumps *bumps, size_t response,
                              uint64_t seed, fg_loop_claim *claim, bool *kept) {
   const fg_scan_loop_bump_level *level = &bumps->level[response];
@@ -328,12 +331,12 @@ static double height_of(double overall_mm, double radius_mm, double angle_deg) {
   return overall_mm - radius_mm * cos(half) - sqrt(overall_mm * overall_mm - s * s) + radius_mm;
 }
 
-/* Predicted from the declared model alone, and with what was found. */
+/* Predicted from the declared model alone, and with the effects found. */
 static void find_height_errors(fg_scan_loop_bumps *bumps) {
   const fg_scan_loop_bump_level *radius = &bumps->level[RADIUS], *angle = &bumps->level[ANGLE];
   double sum[2][2] = {{0}}, n[2] = {0};
   for (size_t i = 0; i < bumps->count; i++) {
-    /* Both problems hold the same rows in the same order. */
+    /* Both problems have the same rows in the same order. */
     const fg_scan_loop_bump *bump = &bumps->bump[radius->problem.row[i]];
     for (int after = 0; after < 2; after++) {
       double effect_mm = after ? radius->result.effect_fit[i] : 0;
@@ -393,7 +396,7 @@ fg_status fg_scan_loop_bumps_run(fg_context *ctx, const fg_scan_loop_bumps_reque
       .forming = request->forming,
       .height = {{NAN, NAN}, {NAN, NAN}},
       .level = {{.error = {{NAN, NAN}, {NAN, NAN}}}, {.error = {{NAN, NAN}, {NAN, NAN}}}}};
-  if (request->before[0].design.kind == FG_FOIL_DISCS) return FG_OK; /* no bumps, nothing to say */
+  if (request->before[0].design.kind == FG_FOIL_DISCS) return FG_OK; /* discs have no bumps */
   if (request->bent)
     return fg_scan_loop_bumps_note(
         ctx, bumps,

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What is declared of the bumps: the design's springback, or a report of `foilgauge forming`.
+/* Declared values of the bumps: the design's springback, or a report of `foilgauge forming`.
  *
- * A forming predicts radius and angle of each bump. The radius is held against it beside one level
- * (constants of a material are known to some ten percent, and the level is told); the angle through
- * the arc length R alpha, as the design's springback does it, so that bumps that open by more than
- * was predicted keep theirs. */
+ * A forming predicts radius and angle of each bump. The radius is compared beside one level, which
+ * is reported: a material's constants are known to some ten percent. The angle is compared through
+ * the arc length R alpha, as with the design's springback, so that bumps that open more than
+ * predicted keep their arc length. */
 #include <math.h>
 
 #include "scan_loop/bumps.h"
@@ -68,7 +68,8 @@ double fg_scan_loop_bumps_offset(const fg_design *design, const fg_scan_loop_bum
   return (bump->declared_arc - designed) / bump->value[RADIUS];
 }
 
-/* The foils are what was drawn; of one foil its bumps. `doubt` is what all of them share. */
+/* The independent units are the foils, or of one foil its bumps. `uncertainty` is common to all of
+ * them. */
 void fg_scan_loop_bumps_find_level(fg_scan_loop_bumps *bumps, size_t response) {
   fg_scan_loop_bump_level *level = &bumps->level[response];
   double mean = 0, square = 0, units = 0, uncertainty = 0, n = 0;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* P-values of a few bumps without any assumption on their scatter: the numbers of a foil's bumps
- * are drawn anew (trends over the number; exact where the bumps are exchangeable), or the signs of
- * their residuals (stretch). Flips of signs say little of nine bumps beside a mean: they leave a
- * trend half of its size. */
+/* P-values for few bumps without assumptions on their scatter. For trends over the number, the
+ * numbers of a foil's bumps are permuted (exact if the bumps are exchangeable); for stretch, the
+ * signs of their residuals are flipped. Sign flips are weak for trends: of nine bumps beside a
+ * mean, they leave a trend half of its size. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

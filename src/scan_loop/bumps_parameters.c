@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a claim says of the bumps, in numbers that a user can set beside a drawing. */
+/* Parameters of a claim about the bumps, in a drawing's quantities. */
 #include <math.h>
 #include <string.h>
 

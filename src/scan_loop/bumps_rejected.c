@@ -5,7 +5,7 @@
 
 #include "scan_loop/bumps.h"
 
-/* Of those looked for; the engine's lone rows are notes. */
+/* Returns true for the effects sought; the engine's effects of single rows are notes. */
 static bool is_effect(const fg_scan_loop_bumps *bumps, const fg_loop_effect *effect) {
   return effect >= bumps->effect && effect < bumps->effect + FG_SCAN_LOOP_BUMP_EFFECTS;
 }
@@ -20,8 +20,7 @@ static bool is_mentioned(const fg_scan_loop_bump_level *level, const fg_loop_eff
   return false;
 }
 
-/* Too few bumps, or no lip, to look at all: nothing is known of the effect, which is not `absent`.
- */
+/* Reports every effect as unknown, not as `absent`: too few bumps, or no lip. */
 static void visit_unknown(const fg_scan_loop_bumps *bumps, size_t response,
                           fg_scan_loop_bumps_visitor *visit, void *user) {
   const fg_scan_loop_bump_level *level = &bumps->level[response];
@@ -37,7 +36,8 @@ static void visit_unknown(const fg_scan_loop_bumps *bumps, size_t response,
   }
 }
 
-/* An effect that was found is not rejected of the same response on its other coordinate. */
+/* An effect found on one coordinate is not listed as rejected of the same response on its other
+ * coordinate. */
 void fg_scan_loop_bumps_rejected(const fg_scan_loop_bumps *bumps, fg_scan_loop_bumps_visitor *visit,
                                  void *user) {
   for (size_t r = 0; r < FG_SCAN_LOOP_BUMP_RESPONSES && bumps->count; r++) {

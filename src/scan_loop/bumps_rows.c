@@ -26,7 +26,7 @@ static fg_scan_loop_bump *find_row(fg_scan_loop_bumps *bumps, size_t part, int n
   return NULL;
 }
 
-/* How far one view's value may be off together with all others. */
+/* Returns the error of one view's value that is common to all views. */
 static double uncertainty_of(double u, double before, double after, bool open) {
   double moved = isfinite(before) ? after - before : 0;
   return open ? hypot(u, moved) : u;

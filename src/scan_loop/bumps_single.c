@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Bumps that stand apart from the others by their numbers: a few of them, or a cycle over them. A
- * whole bump that is raised is taken by the geometry, which has a circle for every bump; here its
- * radius and its angle are held against those of the others. Every number's mean over the foils is
- * one value. */
+/* Bumps that deviate by their numbers: a few of them, or a cycle over them. The geometry absorbs a
+ * whole bump that is raised, because every bump has a circle; so here its radius and angle are
+ * compared with those of the others. The unit is the mean of a number over the foils. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,7 +11,8 @@
 #include "scan_loop/bump_pattern.h"
 #include "scan_loop/bumps.h"
 
-/* Means of the numbers over the foils, each foil about its own mean, beside what was found. */
+/* Collects the means of the numbers over the foils, each foil relative to its own mean, beside the
+ * effects found. */
 static bool collect(const fg_scan_loop_bumps *bumps, const fg_scan_loop_bump_level *level,
                     size_t coordinate, fg_bump_values *out) {
   const fg_loop_problem *problem = &level->problem.problem;

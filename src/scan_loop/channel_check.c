@@ -8,30 +8,30 @@
 #include "core/text.h"
 #include "scan_loop/state.h"
 
-/* Doubt of either kind that ends it. */
+/* P-value that decides either way. */
 #define DECIDED_P 0.01
-/* What is said of a tie must be beyond doubt. */
+/* P-value for statements about a tie. */
 #define CERTAIN_P 0.001
 /* Less than this between the lines is none. */
 #define CONSTANT_UM 1e-6
-/* What speaks for an effect is its shape: it takes most of what is uneven. */
+/* Minimum share of the variation that the effect's shape must explain to be confirmed. */
 #define SHARE_MIN 0.5
-/* A claim's shape and the windows are not exact: what the lines show of it is known no better. */
+/* Relative u of the prediction, because a claim's shape and the windows are approximate. */
 #define SHAPE_U 0.1
 /* Gaps that are tried where none is stated, rows to either side. */
 #define GAP_MAX_PX  64.0
 #define GAP_STEP_PX 0.5
-/* What a window averages over. */
+/* Steps that a window's average is computed from. */
 enum { WINDOW_STEPS = 9, LINES = 3 /* red, green, blue */ };
 
-/* The carriage's error by some effects; by others that were found beside them. */
+/* Error of the carriage by some effects, and by others that were found beside them. */
 typedef struct carriage {
   fg_field_list fields, others;
   double x_mm, amplitude_um, u_amplitude_um;
 } carriage;
 
-/* What one course says of a prediction: weight and weighted size of the factor that it takes, and
- * what is uneven in all. */
+/* Evidence of one profile on a prediction: weight and weighted estimate of its factor, and the
+ * whole variation. */
 typedef struct evidence {
   double weight, sum;      /* the factor is sum / weight, its u 1 / sqrt(weight) */
   double uneven, expected; /* chi-squared above the windows' number; mean square of it, um² */
@@ -42,7 +42,7 @@ static double error_um(const carriage *c, const fg_field_list *fields, double y_
   return 1e3 * fg_field_at(fields, (fg_point){c->x_mm, y_mm}).y;
 }
 
-/* What effects make of dy in one window. */
+/* Returns the prediction of dy in one window. */
 static double predict(const carriage *c, const fg_field_list *fields, const fg_colour_shift *shift,
                       double y_mm, double gap_mm) {
   double sum = 0;
@@ -53,13 +53,13 @@ static double predict(const carriage *c, const fg_field_list *fields, const fg_c
   return sum / WINDOW_STEPS;
 }
 
-/* What effects make of one course, by window. */
+/* Predictions of one profile, by window. */
 typedef struct predictions {
   double asked[FG_COLOUR_WINDOWS_MAX], others[FG_COLOUR_WINDOWS_MAX];
 } predictions;
 
-/* Factor, that of what was found beside it, constant, and what all windows share (each known to its
- * own standard deviation). */
+/* Unknowns: factor, factor of the effects found beside it, constant, and errors common to all
+ * windows (each with a prior standard deviation). */
 enum { FACTOR, OTHERS, CONSTANT, SHARED, UNKNOWNS = SHARED + FG_COLOUR_SHARED };
 
 static void fill_system(const fg_colour_shift *shift, const predictions *p, bool with_factor,
@@ -77,12 +77,12 @@ static void fill_system(const fg_colour_shift *shift, const predictions *p, bool
   }
   for (int k = 0; k < FG_COLOUR_SHARED; k++)
     system->matrix[SHARED + k][SHARED + k] += 1;
-  for (int k = FACTOR; k <= OTHERS; k++) /* of what is nothing the factor is 0 */
+  for (int k = FACTOR; k <= OTHERS; k++) /* the factor of a zero prediction is 0 */
     if (system->matrix[k][k] == 0) system->matrix[k][k] = k == OTHERS || !with_factor;
 }
 
-/* What is left of the weighted squares; the factor and its variance. False: the course cannot tell
- * the prediction from a constant. */
+/* Solves for the factor and its variance; `left` is the weighted residual sum. False: the profile
+ * cannot separate the prediction from a constant. */
 static bool solve(const fg_colour_shift *shift, const predictions *p, bool with_factor,
                   double *left, double *factor, double *variance) {
   fg_normal_equations system;
@@ -98,8 +98,8 @@ static bool solve(const fg_colour_shift *shift, const predictions *p, bool with_
   return *variance > 0 && 1 / *variance > 1e-9 * raw;
 }
 
-/* Adds one course. Where windows scatter more than their u say, even beside the prediction, the
- * carriage does more than that, and what they say weighs less. */
+/* Adds one profile. Where windows scatter more than their u implies, even beside the prediction,
+ * the carriage has further errors, and the profile's weight is lowered. */
 static void add_course(const carriage *c, const fg_colour_shift *shift, double gap_mm,
                        evidence *to) {
   predictions p;
@@ -145,8 +145,8 @@ static int line_of(fg_channel channel) {
   return (int)channel - FG_CHANNEL_RED;
 }
 
-/* Of one line, or of all (-1). Courses are held against the line that was measured, and so are the
- * gaps: of what was found the carriage's error is as that line saw it. */
+/* Collects the evidence of one line, or of all (-1). Profiles and gaps are relative to the measured
+ * line, which also saw the carriage's error as found. */
 static evidence ask(const fg_scan_loop *loop, const carriage *c, int line, const double gap_px[]) {
   evidence all = {0};
   for (size_t i = 0; i < loop->scan_count; i++)
@@ -187,8 +187,8 @@ static void decide(fg_channel_check *w, bool max, const char *why_not) {
                               : "the colour lines show it as well, with the gaps that fit best";
 }
 
-/* The lines' gaps are known: what it must show is known in size. Returns by how much it fits better
- * than a constant. */
+/* Checks with known gaps, where the expected size is known too. Returns the gain over a constant.
+ */
 static double judge_size(const fg_scan_loop *loop, const carriage *c, fg_channel_check *w) {
   double gap_px[LINES] = {loop->options.colour_gap_px[0], 0, loop->options.colour_gap_px[1]};
   evidence e = ask(loop, c, -1, gap_px);
@@ -226,8 +226,8 @@ static double find_gap(const fg_scan_loop *loop, const carriage *c, int line, ev
   return likeliest;
 }
 
-/* The gaps are not known: each line's is taken as it fits best. Gap and what it stands for are two
- * freedoms; the better of the lines counts, as the better of so many. */
+/* Checks with unknown gaps: each line's gap is fitted. Gap and factor are two dof; the best line is
+ * corrected for the number of lines. */
 static double judge_shape(const fg_scan_loop *loop, const carriage *c, fg_channel_check *w) {
   double min = 1, lines = 0, all = 0;
   bool max = false;
@@ -305,7 +305,7 @@ static void name_set(const fg_effect_set *set, char name[FG_SCAN_RESULT_WORDS]) 
   }
 }
 
-/* What fits best is no knowledge of the sensor: the reader may have it. */
+/* Marks fitted gaps as unknown: only the reader may know the sensor. */
 static void put_gaps(const fg_channel_check *w, char words[96]) {
   double gaps[LINES];
   size_t count = 0;
@@ -320,8 +320,8 @@ static void put_gaps(const fg_channel_check *w, char words[96]) {
                  gaps[1]);
 }
 
-/* What the lines say of a tie: which explanations hold something of the carriage that would show
- * between them, and the witness of the one that fits best. */
+/* Evidence on a tie: explanations with an effect of the carriage that would show between the lines,
+ * and the channel check of the one that fits best. */
 typedef struct contest {
   char names[FG_SCAN_RESULT_WORDS / 2];
   size_t holds, lacks; /* explanations */
@@ -329,8 +329,9 @@ typedef struct contest {
   double better;
 } contest;
 
-/* Of the carriage's members the numbers are too uncertain in a tie to part them from each other
- * (reports/colour_lines.md); those that leave the lines constant stand apart. */
+/* Enters an explanation. In a tie the numbers of the carriage's effects are too uncertain to
+ * separate these from each other (reports/colour_lines.md), but not from explanations that predict
+ * a constant. */
 static void enter(const fg_scan_loop *loop, const fg_effect_set *set, contest *to) {
   carriage c = carriage_of(loop, set);
   fg_channel_check w = {.expected_um = NAN};

@@ -24,7 +24,7 @@ static const fg_edge_fit_row *nearest_row(const fg_edge_fit *edge_fit, size_t vi
   return row;
 }
 
-/* What is taken out of edges: a scanner's fields, and of a fit what its part moved. */
+/* Displacement of edges to remove: a scanner's fields, and of a fit its part effects. */
 typedef struct correction {
   const fg_field_list *fields;    /* NULL: none */
   const fg_joint_fit_result *fit; /* NULL: none */
@@ -86,8 +86,8 @@ fg_status fg_scan_loop_correct(fg_context *ctx, const fg_measurement *m,
   return correct(ctx, m, &(correction){.fields = fields}, threads, corrected);
 }
 
-/* What was corrected is not known exactly: the uncertainties of the foils take what the fit of the
- * set adds to its geometry's. */
+/* Widens the foils' uncertainties by the contribution of the set's effects to the geometry's
+ * covariance: the correction is not known exactly. */
 static void widen_by_effects(const fg_joint_fit_result *fit, const fg_measurement *before,
                              fg_measurement *after) {
   const fg_edge_fit *edge_fit = fit->edge_fit;

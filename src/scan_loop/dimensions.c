@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which dimensions the loop moves. */
+/* Choice of the dimensions that the loop corrects. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,8 +7,8 @@
 #include "core/memory.h"
 #include "scan_loop/state.h"
 
-/* An explanation a hundred times less likely than the likeliest, 2 ln 100: the loop claims nothing
- * on less than that either. */
+/* Excess chi² of an explanation a hundred times less likely than the likeliest, 2 ln 100: the level
+ * of the loop's claims. */
 #define UNLIKELY_CHI2 9.2
 
 static fg_status open_all(fg_context *ctx, fg_scan_loop *loop) {
@@ -31,16 +31,17 @@ static void turn_covariance(double from[3][3], double to[FG_CORRECTED][FG_CORREC
     }
 }
 
-/* A set that is not right leaves a smooth rest, of which its own fit takes up as much as any other
- * fit would: what the effects add to the variances is larger by what is left of all effects over
- * what noise would leave of them (Birge's ratio). */
+/* Birge ratio of a set that is not right. It leaves a smooth residual, of which its own fit absorbs
+ * as much as any other fit would, so the variances of the effects are widened by the ratio of the
+ * residual to that expected from noise. */
 static double misfit_of(const fg_explanations *explanations, size_t explanation) {
   const fg_explanation *one = &explanations->each[explanation];
   if (explanations->right || explanation >= explanations->count || !(one->dof > 0)) return 1;
   return isfinite(one->excess) ? fmax(1, one->excess / one->dof) : 1;
 }
 
-/* Excess beyond what noise makes of the columns that a set leaves out: chi² that compare. */
+/* Excess beyond the noise's share in the columns that a set leaves out, for comparing sets of
+ * different size. */
 static double excess_beyond(const fg_explanation *one) {
   return one->excess - one->dof;
 }
@@ -74,7 +75,7 @@ static void add_foil_noise(const fg_edge_fit_part *part, const fg_joint_fit_part
   benefit->noises++;
 }
 
-/* A gauge's radius is given, and the fit tells nothing of it. */
+/* A gauge's radius is given: the fit does not determine it. */
 static void add_disc_noise(const fg_edge_fit_part *part, const fg_joint_fit_part *adds, size_t disc,
                            double scale, fg_benefit *benefit) {
   double noise[FG_CORRECTED][FG_CORRECTED] = {{0}};

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Errors on rows that took no part in the search: of scans kept aside or, without, cross-fitted. */
+/* Errors on held-out rows: of held-out scans, or without them cross-fitted. */
 #include <math.h>
 
 #include "scan_loop/state.h"
 
 fg_status fg_scan_loop_find_held_out(fg_context *ctx, fg_scan_loop *loop) {
   fg_scan_loop_error *before = &loop->error_before, *after = &loop->error_after;
-  if (isfinite(before->held_out_rms)) return FG_OK; /* of scans kept aside */
-  if (!loop->set.count) {                           /* nothing was found that could be judged */
+  if (isfinite(before->held_out_rms)) return FG_OK; /* of held-out scans */
+  if (!loop->set.count) {                           /* no effect that could be tested */
     before->held_out_rms = after->held_out_rms = before->rms;
     return FG_OK;
   }

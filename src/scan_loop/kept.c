@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What is reported of a foil whose correction pays in part, or not at all. */
+/* Reported values of a foil whose correction has a benefit for some dimensions only, or for none.
+ */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -67,8 +68,8 @@ static void put_overall(const fg_benefit_foil *of, fg_overall *overall) {
   overall->u_springback_error_pct = 100 * overall->u_radius_mm / designed;
 }
 
-/* R and h as decided, X = R0 + R - h, in the direction that goes with R0. A bump of which a move
- * cannot be said stays as it was corrected. */
+/* Sets R and h as decided, X = R0 + R - h, in the direction that belongs to R0. A bump whose move
+ * is unknown stays as corrected. */
 static void put_bump(const fg_benefit_foil *of, size_t item, const fg_overall *overall,
                      fg_bump *bump) {
   const fg_bump *from = &of->before->bumps[item];
@@ -153,8 +154,7 @@ fg_status fg_benefit_keep_foil(fg_context *ctx, const fg_benefit_foil *of, fg_fo
   return FG_OK;
 }
 
-/* Its roundness and residuals are of the corrected edge all the same: they are what the effects
- * were found by. */
+/* Roundness and residuals stay those of the corrected edge, on which the effects were found. */
 static void keep_circle(const fg_disc *from, fg_disc *disc) {
   memcpy(disc->covariance, from->covariance, sizeof disc->covariance);
   disc->centre_mm = from->centre_mm;

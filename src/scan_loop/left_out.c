@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Foils that the loop leaves out: what is no foil of the design has no geometry to hold its edges
- * against, and effects of the scanner must not be read off it. */
+/* Foils that the loop leaves out. A foil of another design has no geometry to compare its edges
+ * with, and would distort the effects of the scanner. */
 #include <stdio.h>
 #include <stdlib.h>
 

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The one word that the loop on scans comes to. */
+/* Outcome of the loop on scans, as one word. */
 #include "scan_loop/state.h"
 #include "scan_loop/verdict.h"
 
-/* Residual over the noise that says that something is there. */
+/* Ratio of residual to noise from which an unexplained deviation is reported. */
 #define MUCH 1.5
 
 static bool has_free(const fg_effect_set *set, bool wanted) {
@@ -12,8 +12,8 @@ static bool has_free(const fg_effect_set *set, bool wanted) {
   return false;
 }
 
-/* A residual that all effects and curves together would take is not clean, even when no set of
- * them was found that holds: beside the scatter of rough edges it need not be large. */
+/* A residual that all effects and curves together would explain is not clean, even when no set of
+ * them is right: beside the scatter of rough edges it may be small. */
 static bool leaves_much(const fg_scan_loop *loop) {
   return !loop->edge_fit.discs && !loop->explanations.right &&
          (loop->error_after.rms > MUCH * loop->noise_floor_um ||
@@ -33,8 +33,8 @@ static fg_loop_outcome bumps_outcome(const fg_scan_loop_bumps *bumps) {
   return rest ? FG_LOOP_UNATTRIBUTED : FG_LOOP_CLEAN;
 }
 
-/* Points come first; only where they are clean the bumps decide. What moves the edges apart shows
- * in neither: the midline says nothing of its strip's thickness. */
+/* The rows decide first, the bumps only when the rows are clean. Effects of the width show in
+ * neither, because the midline is independent of the thickness. */
 fg_loop_outcome fg_scan_loop_outcome(const fg_scan_loop *loop) {
   fg_loop_outcome outcome = fg_scan_loop_points_outcome(loop);
   if (outcome == FG_LOOP_CLEAN) outcome = bumps_outcome(&loop->bumps);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the dimensions are under every explanation of a tie. */
+/* Ranges of the dimensions over all explanations of a tie. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -19,7 +19,8 @@ static void widen(double range[2], double value) {
 static void widen_ranges(const fg_measurement *m, fg_scan_loop_range *ranges, size_t foil) {
   const fg_foil *f = &m->foils[foil];
   for (size_t b = 0; b < f->bump_count; b++) {
-    /* A range holds its value's own uncertainty too: the truth lies in it, not between fits. */
+    /* A range includes its value's own uncertainty: it shall contain the true value, not only the
+     * fits. */
     double ur = COVERAGE * f->bumps[b].u_radius_mm, uh = COVERAGE * f->bumps[b].u_height_mm;
     widen(ranges[b].radius_mm, f->bumps[b].radius_mm - ur);
     widen(ranges[b].radius_mm, f->bumps[b].radius_mm + ur);
@@ -96,8 +97,8 @@ static void widen_step_place(fg_effect_set *set, const fg_effect_set *other) {
     }
 }
 
-/* What the dimensions are under one explanation that is not the winner. One that cannot be fitted
- * is none. */
+/* Extends the ranges by one explanation other than the winner. One that cannot be fitted is
+ * skipped. */
 static fg_status widen_by(fg_context *ctx, fg_scan_loop *loop, size_t explanation,
                           fg_measurement *tried) {
   fg_effect_set set;

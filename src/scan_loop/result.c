@@ -10,7 +10,7 @@
 
 /* Neighbours on one arc are no further apart. */
 #define GAP_MM 0.5
-/* Rows up to this share of the heaviest one hardly take part. */
+/* Weight, relative to the largest, up to which rows hardly contribute. */
 #define LIGHT_SHARE 0.1
 
 static fg_status put_scans(fg_context *ctx, const fg_scan_loop *loop, fg_scan_result *result) {

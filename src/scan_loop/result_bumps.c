@@ -22,7 +22,7 @@ typedef struct source {
 
 static void put_ties(const fg_loop_claim *claim, fg_scan_result_bump_claim *out) {
   for (size_t i = 0; i < claim->aliases; i++) {
-    /* Beside its name with the coordinate: a sum has no id and keeps its words. */
+    /* The id follows the name with its coordinate; a sum has no id. */
     const fg_loop_alias *alias = &claim->alias[i];
     fg_text_clip(out->tied[i].name, sizeof out->tied[i].name, "%s", alias->name);
     fg_text_clip(out->tied[i].id, sizeof out->tied[i].id, "%s",
@@ -51,7 +51,7 @@ static void put_claim(const source *from, const fg_loop_claim *claim,
   put_ties(claim, out);
 }
 
-/* ---- what is not claimed ---- */
+/* ---- effects that are not claimed ---- */
 
 typedef struct unclaimed_list {
   fg_scan_result *result;
@@ -94,8 +94,8 @@ static const fg_scan_loop_bump *bump_of(const source *from, size_t i) {
   return &from->bumps->bump[from->level->problem.row[i]];
 }
 
-/* Level of a foil where the model leaves every foil its own: what the effects leave of its
- * residuals, on average. */
+/* Returns the level of a foil where the model has one for each: mean of its residuals beside the
+ * effects. */
 static double level_of(const source *from, size_t part) {
   double sum = 0, n = 0;
   const fg_loop_problem *problem = &from->level->problem.problem;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What was found as lines over the coordinate it lives on. Effects that share a coordinate can
- * cancel each other in part, so their sum is the line that counts. */
+/* Effects as lines over their coordinates. Effects on one coordinate may cancel each other in part,
+ * so their sum is drawn. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -53,8 +53,8 @@ static void put_expanded(const fg_field *field, const fg_field_frame *frame, int
   }
 }
 
-/* Sum over the fields on one axis and direction; returns how many they are. The columns of a free
- * curve hang together, so its uncertainty is not theirs one by one. */
+/* Sums the fields on one axis and direction; returns their number. The columns of a free curve are
+ * correlated, so its uncertainty is not computed from them one by one. */
 static size_t sum_fields(const fg_field_list *list, int axis, drawn_line *line) {
   const fg_field_frame *frame = &list->frame;
   size_t count = 0;
@@ -94,8 +94,9 @@ static bool row_place(const fg_edge_fit_row *row, fg_effect_coordinate coordinat
   return (coordinate != FG_EFFECT_PHI && coordinate != FG_EFFECT_INDEX) || row->bump;
 }
 
-/* Rows look along the normal of their own arc, which on a bump points to the shaft; over the foil
- * the deviation is told outwards, in the direction that the effect's form moves it. */
+/* Returns the share of a row. Rows are measured along the normal of their own arc, which on a bump
+ * points to the shaft; over the foil the deviation is reported outward, in the direction of the
+ * effect's basis. */
 static double share_of(const fg_edge_fit_row *row, fg_effect_coordinate coordinate,
                        const char *direction) {
   double along = row->radial.x * row->normal.x + row->radial.y * row->normal.y;
@@ -148,8 +149,8 @@ static fg_status sum_parts(fg_context *ctx, const fg_scan_loop *loop,
   return FG_OK;
 }
 
-/* A free curve says nothing of what circles take over: the bump's own, or the overall circle with
- * its centre. */
+/* Removes from a free curve the part that circles absorb: the bump's own, or the overall circle
+ * with its centre. */
 static void take_circles(fg_effect_coordinate coordinate, drawn_line *line) {
   double columns[3 * SAMPLES], basis[3 * SAMPLES], d[SAMPLES];
   size_t n = 0, at[SAMPLES];
@@ -168,7 +169,7 @@ static void take_circles(fg_effect_coordinate coordinate, drawn_line *line) {
     line->um[at[k]] = d[k];
 }
 
-/* Gaps of a few bins are bridged, wider ones stay: no edge looks that way. */
+/* Bridges gaps of a few bins; wider ones stay, because no edge has these directions. */
 static void bridge(drawn_line *line) {
   enum { WIDEST = 12 };
   size_t last = SAMPLES;
@@ -198,7 +199,7 @@ static fg_status put_part(fg_context *ctx, const fg_scan_loop *loop,
   if (!count) return FG_OK;
   line->coordinate = (fg_scan_coordinate)coordinate;
   line->free = has_free(&loop->set, coordinate);
-  /* What single bumps deviate by is beside their circles already. */
+  /* Effects of single bumps are relative to their circles already. */
   if (line->free && coordinate != FG_EFFECT_NORMAL && coordinate != FG_EFFECT_INDEX)
     take_circles(coordinate, line);
   bridge(line);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The noise that everything was judged by, as the search left it beside what was found. */
+/* Noise used in all tests, as the search estimated it beside the effects found. */
 #include <math.h>
 
 #include "core/memory.h"

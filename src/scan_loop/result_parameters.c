@@ -4,7 +4,8 @@
 
 #include "scan_loop/result.h"
 
-/* Names of fg_effect_found_number with their units for people; a ratio is told in ppm. */
+/* Converts the names of fg_effect_found_number to names with units for people; ratios are in ppm.
+ */
 static void put_unit(const fg_effect *kind, fg_scan_result_parameter *p) {
   static const struct {
     const char *name, *people, *unit;
@@ -44,7 +45,8 @@ fg_scan_result_put_parameters(const fg_effect_found *effect,
     *p = (fg_scan_result_parameter){0};
     if (!fg_effect_found_number(effect, i, &p->name, &p->value, &p->u)) break;
     put_unit(effect->kind, p);
-    if (effect->kind->numbers == FG_EFFECT_LED) p->told = effect->coefficient_um[0]; /* which way */
+    if (effect->kind->numbers == FG_EFFECT_LED)
+      p->told = effect->coefficient_um[0]; /* with its sign */
     if (effect->kind->numbers == FG_EFFECT_OVAL && i == 1) p->symbol = "ψ0";
   }
   return i;

@@ -41,9 +41,9 @@ static void put_foil(const fg_scan_loop *loop, const fg_effect_found *effect,
   }
 }
 
-/* Half the arc of a row's bump between its fillets: the fillet's circle (radius r) touches the
- * overall circle from inside and the bump's from outside, so in the triangle of the three centres
- * the sides are R0 - r, R + r and X. */
+/* Returns half the arc of a row's bump between its fillets. The fillet's circle (radius r) touches
+ * the overall circle from inside and the bump's from outside, so the triangle of the three centres
+ * has the sides R0 - r, R + r and X. */
 static double fillet_to_fillet_rad(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row) {
   const fg_edge_fit_part *part = &edge_fit->parts[row->part];
   const fg_edge_fit_bump *bump = &part->bumps[row->bump_index];
@@ -53,7 +53,7 @@ static double fillet_to_fillet_rad(const fg_edge_fit *edge_fit, const fg_edge_fi
   return isfinite(angle) ? angle : part->half_arc_rad;
 }
 
-/* Where a row lies on the coordinate; NaN: nowhere. */
+/* Returns the row's place on the coordinate; NaN: none. */
 static double place_of(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row,
                        fg_effect_coordinate coordinate) {
   if (coordinate == FG_EFFECT_INDEX) return fg_edge_fit_along_bumps(row);

@@ -1,27 +1,26 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Whether scans that are said to show one foil do.
+/* Test that scans given as scans of one foil show the same foil.
  *
  * Effects of a scanner or a part follow few numbers, or smooth curves; another foil differs bump by
- * bump, in a radius, a distance and a direction each. So scans of two foils leave under one
- * geometry what no set of effects takes, while a geometry for each scan leaves noise alone. Scans
- * of one foil with an effect that is not in the table are no such case: what one geometry cannot
- * follow there, geometries of their own cannot either.
- */
+ * bump, in radius, distance and direction. Under one geometry, scans of two foils leave a residual
+ * that no set of effects explains, while a geometry for each scan leaves noise alone. Scans of one
+ * foil with an effect that is not in the table are different: geometries of their own cannot follow
+ * it either. */
 #include <math.h>
 #include <stdlib.h>
 
 #include "core/memory.h"
 #include "scan_loop/state.h"
 
-/* By so much Schwarz's criterion must prefer geometries of their own: on one foil it never did by
- * more than 40, on two by hundreds (reports/loop_same_foil.md). */
+/* Minimum preference of Schwarz's criterion for a geometry per scan: on one foil it never exceeded
+ * 40, on two it was hundreds (reports/loop_same_foil.md). */
 #define PREFERENCE_MIN 60.0
 /* Exact data leave no less. */
 #define NOTHING_UM2 1e-8
-/* With a geometry for each scan many effects look like each other; so few explain by themselves. */
+/* With a geometry for each scan many effects are nearly collinear; so one is enough. */
 enum { EFFECTS_MAX = 1 };
 
-/* Every scan a part of its own, and what a search leaves then. */
+/* Residual of a search with a geometry for each scan. */
 typedef struct apart {
   fg_edge_fit edge_fit;
   fg_effect_set set;
@@ -89,7 +88,7 @@ static double preference(const fg_scan_loop *loop, const apart *a) {
   return rows * log(together / alone) - more * log(rows);
 }
 
-/* The bump that differs most between two views of a part, as it was measured. */
+/* Names the bump that differs most between two views of a part, as measured. */
 static fg_status say_two_foils(fg_context *ctx, const fg_scan_loop *loop, const apart *a) {
   const fg_edge_fit *edge_fit = &loop->edge_fit;
   const fg_bump *one = NULL, *other = NULL;
@@ -125,7 +124,7 @@ fg_status fg_scan_loop_check_one_foil(fg_context *ctx, const fg_scan_loop *loop)
   if (loop->explanations.right && !has_curve(&loop->set)) return FG_OK;
   fg_status status = set_apart(ctx, &loop->edge_fit, &a);
   bool told = status == FG_OK;
-  if (status != FG_ERR_MEMORY) status = FG_OK; /* rows too few for a geometry each tell nothing */
+  if (status != FG_ERR_MEMORY) status = FG_OK; /* too few rows for a geometry each: no conclusion */
   if (told && a.explanations.right && !has_curve(&a.set) && a.set.count <= EFFECTS_MAX &&
       preference(loop, &a) > PREFERENCE_MIN)
     status = say_two_foils(ctx, loop, &a);

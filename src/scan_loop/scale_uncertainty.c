@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One scale that the edges cannot see.
+/* A scale that the edges cannot see.
  *
- * An optical polynomial about another middle differs by a stretch of x, and a stretch of x is one
- * of y the other way beside a scale of everything, which is no residual at all: with a free middle,
- * a polynomial in x and `scan.scale_y` are one, but for the size of every length. Only the design
- * tells: heat treatment keeps the arc length of a bump. Where all bumps miss it by one share, the
- * scanner's scale explains that as well as the part's stretch does. */
+ * Two optical polynomials with different middles differ by a stretch of x. A stretch of x equals an
+ * opposite stretch of y beside a scale of both axes, and a scale of both axes leaves no residual.
+ * So with a free middle, a polynomial in x and `scan.scale_y` are equivalent, except for the size
+ * of every length. Only the design separates them: heat treatment keeps the arc length of a bump.
+ * Where all bumps miss their arc length by the same share, the scanner's scale explains that as
+ * well as the part's stretch. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -54,8 +55,8 @@ static void widen_foil(fg_foil *foil, double scale) {
   widen(overall->radius_range_mm, overall->radius_mm, overall->u_radius_mm, scale);
 }
 
-/* The same effects with the scale in the stretch's place; a scale that is there already stands,
- * beside a cubic, for a quadratic. */
+/* Names the same effects with the scale instead of the stretch; a scale that is in the set already
+ * stands, beside a cubic, for a quadratic. */
 static void name_alias(const fg_effect_set *set, fg_loop_claim *claim) {
   fg_loop_alias *alias = &claim->alias[0];
   const fg_effect *scale = fg_effect_find_polynomial(FG_EFFECT_LINEAR, 1), *last = scale;

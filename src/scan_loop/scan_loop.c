@@ -110,8 +110,8 @@ static fg_scan_loop_error summarise(fg_context *ctx, const fg_edge_fit *edge_fit
   return e;
 }
 
-/* Where most effects of the size that matters could not have been seen, `absent` effects must not
- * look like a clean scanner. */
+/* Notes when most effects of the relevant size could not have been detected: `absent` effects must
+ * not look like a clean scanner. */
 static fg_status say_reach(fg_context *ctx, fg_scan_loop *loop) {
   size_t listed = 0, hidden = 0;
   for (size_t e = 0; e < loop->explanations.candidate_count; e++) {
@@ -127,7 +127,7 @@ static fg_status say_reach(fg_context *ctx, fg_scan_loop *loop) {
       hidden, listed, FG_SCAN_LOOP_MATTERS_UM);
 }
 
-/* What each disc has of its own is no effect of the scanner, but it is not nothing. */
+/* Notes form errors of single discs: they are no effect of the scanner, but significant. */
 #define FORMING_P 1e-4
 static fg_status note_forming(fg_context *ctx, fg_scan_loop *loop) {
   const fg_explanations *explanations = &loop->explanations;
@@ -207,8 +207,8 @@ static void widen_scale(double u_scale, fg_effect_set *set) {
   }
 }
 
-/* Points tell a scale as well as if the diameters were exact and the edges' level known: both are
- * shared by all points of a disc, and the level by all discs. */
+/* Widens the uncertainty of scales by that of the known diameters and of the edges' level: the
+ * first is common to all rows of a disc, the second to all discs. */
 static void widen_scales(fg_scan_loop *loop) {
   widen_scale(loop->tone.u_scale, &loop->set);
   for (size_t k = 0; k < loop->tie_count; k++)
@@ -258,8 +258,8 @@ exit:
   return status;
 }
 
-/* Last: what is found and what pays is decided by statistics alone, for a misfit does not see a
- * scale that all share; the dimensions that are reported have it in u_. */
+/* Last step. Effects and benefits are decided by statistics alone, because the residual is not
+ * sensitive to a common scale; the reported dimensions have its uncertainty in their u_. */
 static fg_status calibrate(fg_context *ctx, fg_scan_loop *loop) {
   for (size_t i = 0; i < loop->scan_count; i++) {
     FG_TRY(fg_measurement_calibrate(ctx, loop->options.threads, &loop->before[i]));
@@ -270,8 +270,8 @@ static fg_status calibrate(fg_context *ctx, fg_scan_loop *loop) {
 
 static fg_status close_loop(fg_context *ctx, fg_scan_loop *loop, fg_scan_loop **result);
 
-/* Anew, with the edges where the known diameters say that they are: a level that all discs
- * share looks like a scale that falls with their size. */
+/* Repeats the loop with the edges moved to the level that the known diameters show: a level common
+ * to all discs looks like a scale that falls with their size. */
 static fg_status level_again(fg_context *ctx, fg_scan_loop *loop, fg_scan_loop **result) {
   fg_scan_loop *next = NULL;
   fg_status status = FG_OK;

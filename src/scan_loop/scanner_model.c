@@ -10,7 +10,7 @@
 #include "scan_loop/scanner_model.h"
 #include "scan_loop/state.h"
 
-/* How far a box reaches over the model's region; 1: to its border. */
+/* Returns how far a box extends beyond the model's region; 1: to its border. */
 static double reach_of(const fg_field_frame *frame, const double low[2], const double high[2]) {
   double reach = 0;
   for (int axis = 0; axis < 2; axis++) {
@@ -32,7 +32,7 @@ static double disc_reach(const fg_field_frame *frame, const fg_disc *disc) {
   return reach_of(frame, (double[]){c.x - r, c.y - r}, (double[]){c.x + r, c.y + r});
 }
 
-/* Of the part that lies farthest; of a scan without any, its picture. */
+/* Returns the reach of the farthest part; of a scan without parts, of its picture. */
 static double find_reach(const fg_field_frame *frame, const fg_measurement *m) {
   double reach = 0;
   for (size_t f = 0; f < m->foil_count; f++)
@@ -45,7 +45,7 @@ static double find_reach(const fg_field_frame *frame, const fg_measurement *m) {
   return reach_of(frame, frame->low_mm, size);
 }
 
-/* A curve that was found over one length says little beyond it, and nothing at twice that. */
+/* A curve found over one length is unreliable beyond it, and meaningless at twice that. */
 static const double reach_warned = 1.1, reach_refused = 2;
 
 static fg_status check_place(fg_context *ctx, const fg_scanner_model *model,
@@ -88,7 +88,7 @@ static void take_larger(double *max, double move) {
   if (isfinite(move) && !(fabs(move) <= fabs(*max))) *max = move;
 }
 
-/* What the model adds to an uncertainty u makes sqrt(u² + added²) of it. */
+/* Returns the uncertainty `added` such that sqrt(u² + added²) is the total. */
 static double added(double u, double own) {
   return sqrt(fmax(0, u * u - own * own));
 }
@@ -97,7 +97,7 @@ static bool is_left(const fg_correction_choice choice[FG_CORRECTED]) {
   return !fg_benefit_is_moved(choice) && choice[FG_CORRECTED_RADIUS].reason != FG_CORRECTION_NONE;
 }
 
-/* `corrected`: as measured again, before the model's doubt. */
+/* `corrected`: as measured again, before the model's uncertainty is added. */
 static void sum_up_foil(const fg_foil *before, const fg_foil *corrected, fg_foil *foil) {
   const fg_foil *own = is_left(foil->choice) ? before : corrected;
   fg_correction *c = &foil->correction;
@@ -140,7 +140,7 @@ static void replace(fg_measurement *m, fg_measurement *corrected) {
   *m = *corrected;
 }
 
-/* Of what the model corrects that which pays. */
+/* Keeps only the model's corrections with a benefit. */
 static fg_status keep_beneficial(fg_context *ctx, const fg_measurement *m,
                                  const fg_model_uncertainty *uncertainty,
                                  fg_measurement *corrected) {
@@ -161,7 +161,7 @@ static fg_status keep_beneficial(fg_context *ctx, const fg_measurement *m,
 fg_status fg_scanner_model_apply(fg_context *ctx, const fg_scanner_model *model, fg_measurement *m,
                                  unsigned threads, char *warning) {
   if (warning) warning[0] = 0;
-  /* Which corrections pay is decided of radii and heights, and beams have none. */
+  /* Benefits are decided on radii and heights, which beams lack. */
   if (m->design.kind == FG_FOIL_CANTILEVER)
     return fg_fail(ctx, FG_ERR_USAGE,
                    "%s: a scanner's model corrects bumps and discs, not the beams of form "

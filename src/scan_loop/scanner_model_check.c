@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Whether a scanner can be what a model says. */
+/* Plausibility of a scanner's model. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -7,20 +7,21 @@
 #include "core/text.h"
 #include "scan_loop/scanner_model.h"
 
-/* An amplitude is what an effect does 18 mm from the middle of the glass, where 1 mm is 5.6 %: no
- * scanner that one would measure with is that wrong (the worst of those measured: 0.6 %). */
+/* Maximum amplitude, at 18 mm from the middle of the glass, where 1 mm is 5.6 %: no usable scanner
+ * has such an error (the worst one measured: 0.6 %). */
 #define AMPLITUDE_MAX_MM 1.0
-/* A foil takes some millimetres, the largest flatbed less than a metre. */
+/* A foil is some millimetres long, the largest flatbed less than a metre. */
 #define REGION_MIN_MM 1.0
 #define REGION_MAX_MM 2000.0
-/* A step lies on the glass, the middle of a lens at most this many lengths of the region beyond. */
+/* A step lies on the glass; the middle of a lens lies at most this many lengths of the region
+ * beyond it. */
 #define PLACE_BEYOND 10.0
-/* No tooth of a gear or step of a motor is finer; a period longer than the region's tenfold is no
+/* No tooth of a gear or step of a motor is finer; a period longer than ten times the region is no
  * ripple. */
 #define PERIOD_MIN_MM 0.01
 /* All effects together: share of the region's length that they stretch, shear or bend it by. */
 #define BEND_MAX 0.1
-/* What --dpi takes. */
+/* Range of the option --dpi. */
 #define DPI_MIN 1.0
 #define DPI_MAX 1e6
 
@@ -64,7 +65,7 @@ fg_status fg_scanner_model_check_place(fg_context *ctx, const double dpi[2],
   return check_corners(ctx, "curve_mm", curve);
 }
 
-/* Where a shape of an effect may lie, and how uncertain it may be. */
+/* Finds the allowed ranges of an effect's shape, and of its uncertainty. */
 static void shape_ranges(const fg_field_frame *frame, const fg_field *field, range *place,
                          range *u) {
   const fg_effect *kind = fg_effect_find(field->id);
@@ -98,7 +99,8 @@ static fg_status check_field(fg_context *ctx, const char *member, size_t index,
   return FG_OK;
 }
 
-/* Largest difference between what two places of the region are moved by, over its length. */
+/* Returns the largest difference between the displacements of two places of the region, over its
+ * length. */
 static double find_bend(const fg_field_list *list) {
   enum { GRID = 9 };
   const fg_field_frame *f = &list->frame;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a model is and corrects, for reports. */
+/* Facts of a scanner's model, for reports. */
 #include <math.h>
 #include <string.h>
 
@@ -8,7 +8,7 @@
 
 _Static_assert((int)FG_SCANNER_MODEL_EFFECTS >= (int)FG_FIELDS_MAX, "every field has its place");
 
-/* How far an effect moves anything in the region, um: the half range of its larger component. */
+/* Returns the half range, um, of an effect's larger component in the region. */
 static double half_range_um(const fg_field_list *list, size_t index) {
   enum { GRID = 33 };
   const fg_field_frame *f = &list->frame;

@@ -16,7 +16,8 @@
 enum { MODEL_BYTES_MAX = 1 << 20 };
 _Static_assert((int)FG_EFFECT_SET_MAX <= (int)FG_FIELDS_MAX, "what is written can be read");
 
-/* Exactly `wanted` numbers of an array member; NaN for null. What they may be is checked later. */
+/* Reads exactly `wanted` numbers of an array member; NaN for null. Their ranges are checked later.
+ */
 static fg_status read_numbers(fg_context *ctx, const cJSON *object, const char *before,
                               const char *name, double *out, size_t wanted) {
   const cJSON *array = cJSON_GetObjectItemCaseSensitive(object, name);
@@ -56,7 +57,7 @@ static fg_status read_field(fg_context *ctx, const char *member, const cJSON *it
   return FG_OK;
 }
 
-/* An effect may stand there more than once: two ripples, two steps. */
+/* An effect may occur more than once: two ripples, two steps. */
 static fg_status read_fields(fg_context *ctx, const char *member, const cJSON *fields,
                              fg_field_list *list) {
   const cJSON *item;
@@ -86,7 +87,7 @@ static fg_status read_place(fg_context *ctx, const cJSON *root, fg_scanner_model
   double region[4], curve[4];
   FG_TRY(read_numbers(ctx, root, "", "dpi", model->dpi, 2));
   FG_TRY(read_numbers(ctx, root, "", "region_mm", region, 4));
-  memcpy(curve, region, sizeof curve); /* a file without free curves need not say */
+  memcpy(curve, region, sizeof curve); /* a file without free curves may lack the member */
   if (cJSON_GetObjectItemCaseSensitive(root, "curve_mm"))
     FG_TRY(read_numbers(ctx, root, "", "curve_mm", curve, 4));
   FG_TRY(read_knots(ctx, root, &frame->knots));

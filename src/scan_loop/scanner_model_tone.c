@@ -8,22 +8,22 @@
 
 /* A level that chance would not show. */
 #define SIGNIFICANT 3.3
-/* A scan is of the settings that the level was found with when its edges are as sharp and as
- * asymmetric, its contrast similar, and the tone curve that explains them puts half of the light at
- * the same level: exponent or S, a strip and a disc may be explained by others each, but not by
- * another level. */
+/* Tolerances for equal settings: a scan has the settings of the level when its edges are as sharp
+ * and as asymmetric, its contrast is similar, and its fitted tone curve puts half of the light at
+ * the same level. A strip and a disc may fit different curves (exponent or S), but not different
+ * levels. */
 #define BLUR_RATIO     1.25
 #define ASYMMETRY_MAX  0.02
 #define CONTRAST_RATIO 1.5
-/* A change of the level shown is one above so many of its deviations, and above what a strip and a
- * disc of one scan differ by. */
+/* A change of the shown level is significant above so many of its deviations, and above the
+ * difference of a strip and a disc of one scan. */
 #define SHOWN_SIGMAS 3.0
 #define SHOWN_MIN    0.01
 /* By how much T(1/2) moves with ln gamma, from black on; over part of the scale by less. */
 #define LEVEL_PER_LN_GAMMA 0.35
-/* A curve whose middle lies q of the contrast off makes the asymmetry q / 4 (edge_spread.h). */
+/* A curve whose middle is off by q of the contrast makes an asymmetry of q / 4 (edge_spread.h). */
 #define LEVEL_PER_ASYMMETRY 4.0
-/* The asymmetry alone tells of an edge that does not show its exponent; it scatters by this. */
+/* Scatter of the asymmetry, which alone represents an edge without a visible exponent. */
 #define U_ASYMMETRY 0.003
 
 /* T(1/2) less a half, as the edge model explains the edge. */
@@ -131,7 +131,7 @@ void fg_model_tone_write(fg_json *json, const fg_model_tone *tone) {
 
 /* ---- applying it ---- */
 
-/* Means over what a scan shows. */
+/* Means over the edges of a scan. */
 typedef struct scan_state {
   double blur_px, asymmetry, contrast, shown, u_gamma;
 } scan_state;
@@ -181,9 +181,9 @@ static double u_shown(const scan_state *scan) {
   return scan->u_gamma > 0 ? LEVEL_PER_LN_GAMMA * scan->u_gamma : LEVEL_PER_ASYMMETRY * U_ASYMMETRY;
 }
 
-/* Limit within which the level is taken for the same: what is seen of it, and what
- * cannot be seen. Where no tone curve explains the edges, of the scan or of the model, the
- * asymmetry is left to tell it. */
+/* Returns the limit within which the level counts as unchanged: uncertainty of its visible and of
+ * its invisible part. Where no tone curve explains the edges, of the scan or of the model, only the
+ * asymmetry shows it. */
 static double u_sameness(const fg_model_tone *tone, const scan_state *scan) {
   double seen = fabs(scan->shown - tone->shown);
   if (!isfinite(seen))

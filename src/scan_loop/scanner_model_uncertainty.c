@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the model does not know makes every value less certain. */
+/* Uncertainty of every value by that of the model. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -26,7 +26,7 @@ static void visit_all(fg_measurement *m, const fg_measurement *other, visitor *v
           other && d < other->disc_count ? &other->discs[d] : NULL, user);
 }
 
-/* How far every value that has an uncertainty lies elsewhere, in the visits' order. */
+/* Displacement of every value that has an uncertainty, in the visits' order. */
 typedef struct moves {
   double *each; /* NULL: only counted */
   size_t at;
@@ -72,7 +72,7 @@ static bool move_number(fg_field *field, size_t k) {
   return u > 0;
 }
 
-/* What becomes of `own` when one number of the model lies elsewhere. */
+/* Measures `own` again with one number of the model displaced. */
 static fg_status step(fg_context *ctx, const fg_field_list *fields, const fg_measurement *m,
                       unsigned threads, fg_model_uncertainty *uncertainty) {
   fg_measurement other;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writing the model file of a scanner, "foilgauge/scan-model/1" (reports/schema): beside its
- * reader, scanner_model_file.c. */
+/* Writer of a scanner's model file, "foilgauge/scan-model/1" (reports/schema); the reader is
+ * scanner_model_file.c. */
 #include <string.h>
 #include <time.h>
 
@@ -11,7 +11,7 @@
 #include "scan_loop/scanner_model.h"
 #include "scan_loop/state.h"
 
-/* ---- the model that a loop found ---- */
+/* ---- the model of a loop ---- */
 
 static void format_date(int64_t seconds, char text[FG_MODEL_DATE]) {
   time_t at = (time_t)seconds;
@@ -20,7 +20,8 @@ static void format_date(int64_t seconds, char text[FG_MODEL_DATE]) {
   if (seconds && gmtime_r(&at, &utc)) strftime(text, FG_MODEL_DATE, "%Y-%m-%dT%H:%M:%SZ", &utc);
 }
 
-/* How many held the absolute scale; 0 where they could not have shown that it is wrong. */
+/* Returns the number of known diameters that determined the absolute scale; 0 where they could not
+ * have detected an error of it. */
 static size_t known_diameters(const fg_scan_loop *loop) {
   for (size_t e = 0; e < loop->set.count; e++)
     if (loop->set.effects[e].kind->scales) return loop->edge_fit.known_count;
@@ -38,7 +39,7 @@ fg_status fg_scanner_model_of(fg_context *ctx, const fg_scan_loop *loop, fg_scan
     fg_text_clip(made->scanner, sizeof made->scanner, "%s", loop->options.scanner);
   format_date(loop->options.date, made->date);
   const fg_measurement *first = &loop->before[0];
-  for (int axis = 0; axis < 2; axis++) /* as the scan says */
+  for (int axis = 0; axis < 2; axis++) /* resolution stated by the scan */
     made->dpi[axis] = first->dpi[axis] * fg_calibration_factor(&first->design.calibration);
   made->scans = loop->scan_count;
   made->known_diameters = known_diameters(loop);
@@ -81,7 +82,7 @@ static void write_inputs(fg_json *json, const fg_scan_result *result) {
   fg_json_array_end(json);
 }
 
-/* What the reader would refuse is no model. */
+/* Refuses a model that the reader would refuse. */
 static fg_status check(fg_context *ctx, const fg_scanner_model *model) {
   fg_context inner = {.message = ""};
   fg_status status = fg_scanner_model_check_place(&inner, model->dpi, &model->fields.frame);
@@ -93,10 +94,10 @@ static fg_status check(fg_context *ctx, const fg_scanner_model *model) {
                  inner.message);
 }
 
-/* Findings that spoil edges as no model of a scanner holds: it would be carried to every scan.
- * Rows that jump are not of them: a step of the carriage is what the loop looks for. Nor is a
- * profile that no tone curve here explains: it is one for all edges, and known diameters tell its
- * level. */
+/* Refuses pictures with findings that distort edges in a way that no model describes: the
+ * distortion would be applied to every scan. Rows that jump are allowed: a step of the carriage is
+ * an effect that the loop finds. So is a profile that no tone curve explains: it is the same for
+ * all edges, and known diameters determine its level. */
 static fg_status check_pictures(fg_context *ctx, const fg_scan_loop *loop) {
   const unsigned spoiling =
       FG_PICTURE_CLIPPED | FG_PICTURE_FEW_LEVELS | FG_PICTURE_SHADOW | FG_PICTURE_BLOCK_NOISE;

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Deviations of single bumps from their circles that are too small for the search, which asks of
- * a curve that it gains more than all its columns may by chance. Here the columns are few: one
- * bump, some, or a cycle over them, raised at the middle or leaning; and the noise is what the same
- * bumps show of finer polynomials, whatever its correlation along the edge. What depends on the
- * direction of the edge is taken out first: an edge model errs with it. */
+/* Deviations of single bumps from their circles that are too small for the search. The search
+ * requires of a curve a gain above that of all its columns by chance. Here the columns are few: one
+ * bump, some, or a cycle over them, raised at the middle or leaning. The noise is that of finer
+ * polynomials on the same bumps, whatever its correlation along the edge. Deviations that follow
+ * the direction of the edge are removed first, because the edge model's error does. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,7 +17,7 @@
 
 /* Polynomials of a bump: a circle's own, those that are judged, those that are noise. */
 enum { CIRCLE = 3, JUDGED = 2, NOISE = 4, ORDERS = CIRCLE + JUDGED + NOISE };
-/* Rows of a bump that tell its polynomials apart. */
+/* Minimum number of rows of a bump for separating its polynomials. */
 enum { ROWS_MIN = 2 * ORDERS };
 
 /* Amplitudes of one bump over their standard deviations for noise of 1. */
@@ -26,8 +26,8 @@ typedef struct amplitudes {
   double weight[ORDERS], sum[ORDERS]; /* over the bump's views */
 } amplitudes;
 
-/* Least squares of the polynomials, one after the other: an amplitude beside all that come before
- * and after it is what the last of them has. */
+/* Fits the polynomials one after the other: the amplitude beside all others is that of the one
+ * fitted last. */
 static void add_view(const double *columns, const double *value, size_t n, double *work,
                      amplitudes *to) {
   for (int order = CIRCLE; order < ORDERS; order++) {
@@ -46,7 +46,7 @@ static void add_view(const double *columns, const double *value, size_t n, doubl
   }
 }
 
-/* Residual of every row that counts, with what follows the edge's direction taken out. */
+/* Computes the residual of every usable row, without the part that follows the edge's direction. */
 static fg_status without_directions(fg_context *ctx, const fg_scan_loop *loop, double *value) {
   const fg_edge_fit *edge_fit = &loop->edge_fit;
   const fg_effect *normal = fg_effect_first();
@@ -71,8 +71,8 @@ static fg_status without_directions(fg_context *ctx, const fg_scan_loop *loop, d
   return FG_OK;
 }
 
-/* Polynomials of the place in the arc that is there: a raised bump turns back sooner, and over the
- * shorter arc those of the common one look alike. */
+/* Fills polynomials over the visible part of the arc: a raised bump turns back sooner, and over the
+ * shorter arc polynomials of the common one are nearly collinear. */
 static void fill_columns(const fg_edge_fit *edge_fit, const size_t *row, size_t n,
                          double *columns) {
   double low = INFINITY, high = -INFINITY;
@@ -186,7 +186,7 @@ fg_status fg_scan_loop_find_single_bumps(fg_context *ctx, fg_scan_loop *loop) {
   if (loop->edge_fit.discs || loop->edge_fit.coarse || loop->set.count == FG_EFFECT_SET_MAX)
     return FG_OK;
   if (!explanations->right) return FG_OK;
-  /* What a curve leaves of itself, or bends, is no single bump's. */
+  /* With a free curve, or an effect that bends bumps, deviations are not of single bumps. */
   for (size_t e = 0; e < loop->set.count; e++)
     if (loop->set.effects[e].kind->bends || fg_effect_is_free(loop->set.effects[e].kind))
       return FG_OK;

@@ -39,7 +39,7 @@ static bool member_holds(const fg_explanations *explanations, size_t explanation
   return false;
 }
 
-/* Whether every explanation that the data allow holds the effect, in whatever form. */
+/* Returns true when every explanation that the data allow includes the effect, in any basis. */
 static bool is_sure(const fg_explanations *explanations, const fg_effect *kind) {
   for (size_t m = 0; m < explanations->count; m++)
     if (!member_holds(explanations, m, kind)) return false;
@@ -52,7 +52,7 @@ static bool any_member_holds(const fg_explanations *explanations, const fg_effec
   return false;
 }
 
-/* Whether an explanation has all effects of another, in whatever form. */
+/* Returns true when an explanation includes all effects of another, in any basis. */
 static bool covers(const fg_explanations *explanations, size_t explanation, size_t other) {
   for (size_t e = 0; e < explanations->candidate_count; e++)
     if ((explanations->each[other].mask >> e & 1) &&
@@ -74,8 +74,8 @@ static void put_name(const fg_explanations *explanations, size_t explanation,
   }
 }
 
-/* What an explanation shares with all others (`common`), or what it has of its own: "a together
- * with b". */
+/* Writes the effects that an explanation shares with all others (`common`), or those that it has
+ * alone: "a together with b". */
 static void put_words(const fg_explanations *explanations, size_t explanation, bool common,
                       char words[FG_SCAN_RESULT_WORDS]) {
   size_t used = 0;
@@ -90,7 +90,7 @@ static void put_words(const fg_explanations *explanations, size_t explanation, b
   }
 }
 
-/* Two forms of one effect are one explanation. */
+/* Two bases of one effect are one explanation. */
 static void put_explanations(const fg_explanations *from, fg_scan_result *result) {
   size_t shown[FG_EXPLANATIONS_MAX];
   for (size_t m = 0; m < from->count; m++) {
@@ -194,7 +194,7 @@ static fg_status put_claims(fg_context *ctx, const fg_scan_loop *loop, fg_scan_r
   return FG_OK;
 }
 
-/* ---- what is not claimed ---- */
+/* ---- effects that are not claimed ---- */
 
 static bool is_claimed(const fg_effect_set *set, const fg_effect *kind) {
   for (size_t i = 0; i < set->count; i++)
@@ -228,7 +228,7 @@ static void put_width_unclaimed(const fg_width_findings *width, fg_scan_result *
   }
 }
 
-/* Of two forms of one effect the first speaks for both. */
+/* Of two bases of one effect the first stands for both. */
 static void put_unclaimed(const fg_scan_loop *loop, fg_scan_result *result) {
   const fg_explanations *explanations = &loop->explanations;
   for (size_t e = 0; e < explanations->candidate_count; e++) {
@@ -303,7 +303,7 @@ static void put_numbers(const fg_scan_loop *loop, fg_scan_result *result) {
   result->left_out = loop->left_out;
   result->note = (const char *const *)loop->bumps.note;
   result->notes = loop->bumps.notes;
-  /* What was found must hold on scans that had no say in finding it. */
+  /* Effects must also hold on scans that were not used to find them. */
   result->corrected = loop->set.count > 0;
   result->held_out = held_out_of(loop);
   result->contradicted = result->corrected && result->held_out == FG_SCAN_HELD_OUT_SCANS &&

@@ -8,7 +8,7 @@
 #include "core/select.h"
 #include "foilgauge/distribution.h"
 
-/* Halvings of the interval that holds tau²: more than a double has digits. */
+/* Halvings of the interval of tau²: more than a double has digits. */
 enum { STEPS = 60 };
 
 static double centre_at(const fg_group_mean *groups, size_t count, double tau2, double *weight) {
@@ -30,7 +30,8 @@ static double spread_at(const fg_group_mean *groups, size_t count, double tau2) 
   return sum;
 }
 
-/* Where the spread comes to `target`; 0 when it is less at once. `high` is beyond. */
+/* Finds tau² at which the spread equals `target`; 0 when it is smaller already at 0. `high` is an
+ * upper bound. */
 static double solve(const fg_group_mean *groups, size_t count, double target) {
   double low = 0, high = 0, min = groups[0].mean, max = min;
   for (size_t i = 1; i < count; i++) {

@@ -29,7 +29,7 @@ static void apply(const double f[2], double c, double n, const double v[2], doub
   out[1] = n * first + c * second;
 }
 
-/* What the clusters add up to: the variance, and what its degrees of freedom need. */
+/* Sums over the clusters: the variance, and the terms of its dof. */
 typedef struct total {
   double variance, trace, squares, products[2][2];
 } total;
@@ -39,7 +39,8 @@ static void add_cluster(sums *cluster, total *t) {
   double value[2], c, n, root[2], weight[2], image[2] = {0}, score[2], p[2], d[2];
   decompose(cluster->s, value, &c, &n);
   for (int i = 0; i < 2; i++) {
-    double rest = 1 - value[i]; /* 0: the cluster alone decides; its residuals say nothing there */
+    double rest = 1 - value[i]; /* 0: the cluster alone determines the fit; its residuals have no
+                                   information there */
     root[i] = rest > 1e-9 ? 1 / sqrt(rest) : 0;
     weight[i] = rest > 1e-9 ? value[i] / rest : 0;
     image[i] = root[i] * value[i];

@@ -12,7 +12,7 @@ double fg_chart_c4(size_t n) {
   return sqrt(2 / dof) * exp(lgamma((double)n / 2) - lgamma(dof / 2));
 }
 
-/* Simpson's rule over ±9 sigma: what lies beyond is below 1e-18. */
+/* Simpson's rule over ±9 sigma: the density beyond is below 1e-18. */
 double fg_chart_d2(size_t n) {
   enum { STEPS = 2000 };
   if (n < 2) return NAN;
@@ -47,8 +47,8 @@ static double zone(const fg_chart *chart, size_t i) {
   return point->value == chart->centre ? 0 : copysign(INFINITY, point->value - chart->centre);
 }
 
-/* Whether at least `least` of the last `length` points lie beyond `limit` on the side of `sign`,
- * the last one among them. */
+/* Returns true when at least `min` of the last `length` points lie beyond `limit` on the side of
+ * `sign`, the last one among them. */
 static bool beyond(const fg_chart *chart, size_t i, size_t length, size_t min, double limit,
                    double sign) {
   size_t found = 0;
@@ -85,7 +85,7 @@ static bool all_zones(const fg_chart *chart, size_t i, size_t length, bool withi
   return true;
 }
 
-/* Rule 8 says "on both sides": eight on one side only are rule 6. */
+/* Rule 8 requires points on both sides: eight on one side only are rule 6. */
 static bool mixed(const fg_chart *chart, size_t i) {
   bool above = false, below = false;
   if (!all_zones(chart, i, 8, false)) return false;
@@ -214,8 +214,8 @@ static void plot_means(const subgroups *all, unsigned rules, fg_chart *chart) {
   apply_rules(chart, rules);
 }
 
-/* s has the mean c4 sigma and the variance (1 - c4²) sigma². The centre is that of the commonest
- * subgroup, the largest. */
+/* s has the mean c4 sigma and the variance (1 - c4²) sigma². The centre line is that of the most
+ * frequent subgroup size, of several the largest. */
 static void plot_deviations(const subgroups *all, unsigned rules, fg_chart *chart) {
   size_t at = 0, plotted = 0, largest = 0;
   for (size_t i = 0; i < all->count; at += all->size[i++]) {

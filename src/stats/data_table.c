@@ -68,7 +68,7 @@ fg_status fg_table_add_words(fg_context *ctx, fg_table *table, const char *name,
   return drop_last(table, status);
 }
 
-/* As many as a message has place for. */
+/* Lists as many columns as a message has room for. */
 static fg_status list_columns(fg_context *ctx, const fg_table *table, char **known) {
   enum { SHOWN = 40 };
   for (size_t i = 0; i < table->columns && i < SHOWN; i++)
@@ -100,7 +100,7 @@ fg_status fg_table_drop(fg_context *ctx, fg_table *table, const char *name) {
   return FG_OK;
 }
 
-/* "runs.csv: row 3 (line 4), column 'T': " and the rest. */
+/* Fails with "runs.csv: row 3 (line 4), column 'T': " and the reason. */
 static fg_status fail_at(fg_context *ctx, const fg_table *table, const fg_column *column,
                          size_t row, const char *what) {
   const char *source = table->source ? table->source : "table";

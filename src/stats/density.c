@@ -45,14 +45,15 @@ static double sample_sd(const double *values, size_t count) {
   return sqrt(squares / (double)(count - 1));
 }
 
-/* min(s, IQR / divisor); where more than half of the values are equal the IQR says nothing. */
+/* min(s, IQR / divisor); where more than half of the values are equal the IQR is 0 and is ignored.
+ */
 static double robust_spread(const double *sorted, size_t count, double divisor) {
   double sd = sample_sd(sorted, count);
   double iqr = fg_sample_quantile(sorted, count, 0.75) - fg_sample_quantile(sorted, count, 0.25);
   return iqr > 0 ? fmin(sd, iqr / divisor) : sd;
 }
 
-/* How many pairs of values lie k bins apart: all that the functionals below need. */
+/* Number of pairs of values that lie k bins apart: the functionals below depend on nothing else. */
 typedef struct pair_counts {
   double pairs[PAIR_BINS];
   double width, count;
@@ -239,7 +240,7 @@ double fg_density_quantile(const fg_density *density, double probability) {
   return (low + high) / 2;
 }
 
-/* A look over the whole range, then a golden section about the best point. */
+/* Searches the whole range on a grid, then by golden section about the best point. */
 double fg_density_mode(const fg_density *density) {
   static const double golden = 0.61803398874989485;
   double first = density->value[0], span = density->value[density->count - 1] - first;

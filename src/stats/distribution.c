@@ -10,7 +10,7 @@
 double fg_distribution_t_two_sided(double t, double dof) {
   if (!(dof > 0) || isnan(t)) return NAN;
   if (isinf(t)) return 0;
-  /* t² / (freedom + t²) is beta distributed; the upper tail keeps its digits where t is large. */
+  /* t² / (dof + t²) is beta distributed; the upper tail keeps its digits where t is large. */
   return gsl_cdf_beta_P(dof / (dof + t * t), dof / 2, 0.5);
 }
 
@@ -37,8 +37,8 @@ double fg_distribution_chi2_quantile(double probability, double dof) {
   fg_numerics_start();
   double quantile = gsl_cdf_chisq_Pinv(probability, dof);
   if (isfinite(quantile)) return quantile;
-  /* GSL's iteration may not end where the degrees of freedom are thousands; there the cube root is
-   * normal (Wilson and Hilferty 1931). */
+  /* GSL's iteration may not converge for dof in the thousands; there the cube root is normal
+   * (Wilson and Hilferty 1931). */
   double share = 2 / (9 * dof);
   return dof * pow(1 - share + sqrt(share) * gsl_cdf_ugaussian_Pinv(probability), 3);
 }

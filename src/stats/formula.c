@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a parsed formula says of itself. */
+/* Text forms of a parsed formula and of its terms. */
 #include "foilgauge/formula.h"
 
 #include <stdlib.h>

@@ -299,7 +299,7 @@ static void remove_terms(term_set *set, const term_set *unwanted) {
   set->count = kept;
 }
 
-/* `- 1` takes the constant out, `- 0` and `+ 1` put it back in. */
+/* `- 1` removes the constant, `- 0` and `+ 1` restore it. */
 static fg_status take_out(parser *p, term_set *set, const term_set *unwanted) {
   const fg_term constant = {{0}};
   remove_terms(set, unwanted);

@@ -108,7 +108,7 @@ static double range_of(const layout *l, double (*mean)(const layout *, size_t), 
 
 /* d2* of one range of n values (Duncan 1955): sqrt(d2² + d3²), the root of E R². With the density
  * of the range from two order statistics this is a double integral; the trapezium rule over ±8
- * sigma is exact to nine digits for so smooth a function. */
+ * sigma is exact to nine digits for such a smooth function. */
 static double d2_star(size_t n) {
   enum { STEPS = 320 };
   double step = 16.0 / STEPS, sum = 0, m = (double)n;

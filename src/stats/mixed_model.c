@@ -10,12 +10,12 @@
 #include "core/extended.h"
 #include "core/memory.h"
 
-/* The ratio is searched over ln(1 + n r), n the largest group, in these steps. Beyond the last the
- * runs do not scatter at all; before the first a group's mean would be known far better than its
- * runs say. */
+/* Range and step of the search for the ratio, over ln(1 + n r), n the largest group. Beyond the
+ * last value the runs would not scatter at all; before the first a group's mean would be known far
+ * better than the runs imply. */
 static const double STEP = 0.25, FIRST = -3, LAST = 25;
-/* At this ratio a group's mean has 1e-6 of its weight among independent runs: groups are as good as
- * fixed. */
+/* At this ratio a group's mean has a weight of 1e-6 among independent runs: the groups are
+ * practically fixed. */
 static const double FIXED = 14;
 enum { HALVINGS = 60 };
 

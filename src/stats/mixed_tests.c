@@ -14,8 +14,8 @@ static double quadratic(const double *matrix, const double *row, size_t columns)
   return sum;
 }
 
-/* Degrees of freedom 2 v² / var(v), v by the unadjusted covariance: Kenward and Roger's for a
- * single contrast. */
+/* Returns the variance and its dof, 2 v² / var(v), with v by the unadjusted covariance: Kenward and
+ * Roger's for a single contrast. */
 double fg_mixed_variance(const fg_mixed_model *mixed, const double *row, bool run, double *dof) {
   double extra = run ? mixed->variance[0] + fmax(0, mixed->variance[1]) : 0, scatter = 0, slope[2];
   double variance = quadratic(mixed->covariance, row, mixed->columns) + extra;

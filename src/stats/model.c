@@ -35,7 +35,7 @@ static bool is_used(const fg_formula *formula, size_t variable) {
   return false;
 }
 
-/* A column of words is a factor, and so is factor(name); the rest must be numbers. */
+/* A column of words is a factor, and so is factor(name); all others must be numbers. */
 static fg_status bind_variable(fg_context *ctx, const fg_table *table, size_t i, fg_model *model) {
   const fg_variable *variable = &model->formula.variable[i];
   const fg_column *column = NULL;
@@ -70,8 +70,8 @@ static void collapse_factors(fg_model *model) {
   f->terms = kept;
 }
 
-/* R's rule (its TermCode): a factor in a term is coded by contrasts when what is left of the term
- * without it is in the model already: the constant, or a part of an earlier term. */
+/* R's rule (its TermCode): a factor in a term is coded by contrasts when the term without it is in
+ * the model already, as the constant or as a part of an earlier term. */
 static bool has_margin(const fg_model *model, size_t term, size_t variable) {
   const fg_formula *f = &model->formula;
   fg_term rest = f->term[term];
@@ -119,7 +119,7 @@ fg_status fg_model_check_size(fg_context *ctx, const char *source, size_t rows, 
   return FG_OK;
 }
 
-/* How many columns a term will have; what is beyond all limits stays there. */
+/* Returns the number of columns of a term, capped above all limits. */
 static size_t count_term_columns(const fg_model *model, size_t term) {
   const fg_formula *f = &model->formula;
   size_t count = 1;

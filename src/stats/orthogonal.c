@@ -28,7 +28,7 @@ static double binary_scale(const fg_extended *x, size_t rows) {
   return ldexp(1.0, exponent);
 }
 
-/* Takes the earlier columns out of column j, one after the other (modified Gram-Schmidt). */
+/* Projects column j beside the earlier columns, one after the other (modified Gram-Schmidt). */
 static void orthogonalise(fg_orthogonal *s, size_t j, double tolerance) {
   fg_extended *x = s->q + j * s->rows;
   double unit = binary_scale(x, s->rows);
@@ -52,7 +52,7 @@ static void orthogonalise(fg_orthogonal *s, size_t j, double tolerance) {
   s->kept[s->rank++] = j;
 }
 
-/* The response is treated as one more column: that is what makes the solution stable. */
+/* Treats the response as one more column, which makes the solution stable. */
 static void project_response(fg_orthogonal *s) {
   for (size_t k = 0; k < s->rank; k++) {
     const fg_extended *q = s->q + s->kept[k] * s->rows;

@@ -10,8 +10,8 @@
 #include "foilgauge/distribution.h"
 #include "stats/regression_parts.h"
 
-/* Rounding in 106 bits leaves some 1e-62 of the sum of squares; data typed with 20 digits and
- * differing in the last one leave 1e-40. */
+/* Rounding in 106 bits leaves some 1e-62 of the sum of squares; data typed with 20 digits that
+ * differ in the last one leave 1e-40. */
 static double clean_ss(double ss, double scale) {
   return ss <= 1e-50 * scale ? 0 : ss;
 }

@@ -137,7 +137,7 @@ static fg_extended pure_error(const fg_fit *fit, const size_t *order, size_t row
   return pure;
 }
 
-/* Whether what was taken out differs between repeated runs. */
+/* Returns true when the subtracted effects differ between repeated runs. */
 static bool differs_within(const fg_fit *fit, const size_t *order, size_t rows,
                            const double *taken) {
   void *model = (void *)(size_t)fit->model;
@@ -148,7 +148,8 @@ static bool differs_within(const fg_fit *fit, const size_t *order, size_t rows,
   return false;
 }
 
-/* Pure error and lack of fit share the residual freedom, which has paid for what was taken out. */
+/* Lowers the dof of pure error or of lack of fit, which sum to the residual dof, for the subtracted
+ * effects. */
 static void subtract_pure(size_t paid, bool within, fg_regression *reg) {
   if (within) reg->pure_dof = reg->pure_dof > paid ? reg->pure_dof - paid : 0;
   if (reg->pure_dof > reg->residual_dof) reg->pure_dof = reg->residual_dof;

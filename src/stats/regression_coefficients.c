@@ -66,7 +66,7 @@ fg_status fg_regression_coefficients(fg_context *ctx, const fg_fit *fit, fg_regr
   return FG_OK;
 }
 
-/* x_j = sum a_i x_i with a = R^-1 (Q' x_j); what is rounding only is left out. */
+/* x_j = sum a_i x_i with a = R^-1 (Q' x_j); coefficients of rounding size are left out. */
 static fg_status fill_alias(fg_context *ctx, const fg_orthogonal *s, size_t j, fg_alias *alias) {
   size_t n = s->columns;
   alias->column = j;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What each run does to the fit (Cook and Weisberg 1982). */
+/* Influence of each run on the fit (Cook and Weisberg 1982). */
 #include <math.h>
 
 #include "core/extended.h"

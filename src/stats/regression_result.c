@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a fitted regression says when it is asked, and its end. */
+/* Predictions of a fitted regression, its notes, and freeing it. */
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>

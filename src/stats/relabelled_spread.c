@@ -23,13 +23,13 @@ static const double ROUNDING = 1e-9;
 enum { VARIANCES, LEVENE, STATISTICS };
 
 typedef struct deal {
-  double *value; /* deviations; those of the first sample come first */
+  double *value; /* deviations; the first sample's come first */
   size_t *order; /* of the values; its first `first` are the first sample's */
   double *dealt, *sorted;
   size_t first, count;
 } deal;
 
-/* Distances from the median take the values' place. */
+/* Replaces the values by their distances from the median. */
 static void take_distances(double *value, double *sorted, size_t count) {
   memcpy(sorted, value, count * sizeof *sorted);
   fg_sort(sorted, count);
@@ -77,7 +77,7 @@ static bool count_exceeded(const deal *d, size_t enough, tally *t) {
   return done;
 }
 
-/* True where the first sample can be chosen in at most ALL_MAX ways. */
+/* Returns true when the first sample can be chosen in at most ALL_MAX ways. */
 static bool can_deal_all(size_t count, size_t first) {
   size_t chosen = first < count - first ? first : count - first;
   double ways = 1;
@@ -122,7 +122,7 @@ static void shuffle(const deal *d, uint64_t *seed) {
   }
 }
 
-/* `t` holds the statistics of the values as they are. */
+/* `t` holds the statistics of the original labels. */
 static void relabel(const deal *d, size_t draws, tally *t, fg_relabelled_spread *result) {
   uint64_t seed = 1;
   double p[STATISTICS];
@@ -135,8 +135,8 @@ static void relabel(const deal *d, size_t draws, tally *t, fg_relabelled_spread 
       shuffle(d, &seed);
       if (count_exceeded(d, EXCEEDED_MAX, t)) break;
     }
-  /* The labels as they are count among those drawn, unless the drawing ended before; among all
-   * there are they are one already. */
+  /* The original labels count among those drawn, unless the drawing ended before; the complete
+   * enumeration includes them. */
   for (int s = 0; s < STATISTICS; s++) {
     double exceeded = (double)t->exceeded[s], dealt = (double)t->dealt[s];
     bool own = !result->complete && t->exceeded[s] < EXCEEDED_MAX;
@@ -146,10 +146,10 @@ static void relabel(const deal *d, size_t draws, tally *t, fg_relabelled_spread 
   result->p_levene = p[LEVENE];
 }
 
-/* The difference of the means is taken out as far as it is beyond chance: by 1 - 4 / t², nothing
- * below two standard errors. Taken out whole, the values would lie nearer to their own sample's
- * median than any relabelled ones (Levene's p below 0.05 in 7 % of cases); left in, it would widen
- * the relabelled samples. */
+/* Returns the share of the difference of means that is removed, its significant part: 1 - 4 / t²,
+ * and 0 below two standard errors. Removed completely, the values would lie nearer to their own
+ * sample's median than any relabelled ones (Levene's p below 0.05 in 7 % of cases); left in, it
+ * would widen the relabelled samples. */
 static double share_taken(fg_sample a, fg_sample b, double mean_a, double mean_b) {
   static const double chance = 4;
   double na = (double)a.count, nb = (double)b.count;

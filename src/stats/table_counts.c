@@ -10,7 +10,7 @@
 #include "core/text.h"
 #include "stats/column.h"
 
-/* What a word counts, of a column of such words; NaN: nothing. */
+/* Returns the number that a word counts, in a column of such words; NaN: none. */
 typedef double counter(const char *word, const fg_column *column);
 
 static double count_date(const char *word, const fg_column *column) {

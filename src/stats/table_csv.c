@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* CSV text in and out. libcsv finds the cells; this file gives them rows, columns and lines. */
+/* CSV text in and out. libcsv splits the cells; this file assigns them rows, columns and lines. */
 #include <csv.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,7 +20,7 @@ typedef struct csv_reader {
   bool header;   /* the header is complete */
   bool empty;    /* all cells of this row so far are empty */
   unsigned char separator;
-  char **pending; /* cells of the row, held until it is known not to be empty */
+  char **pending; /* cells of the row, stored until one of them is not empty */
   size_t *pending_length;
   size_t pending_capacity, pending_length_capacity;
 } csv_reader;
@@ -67,8 +67,8 @@ static fg_status hold_cell(csv_reader *r, const char *text, size_t length) {
   return FG_OK;
 }
 
-/* True where the text can stand before a decimal comma (a sign, digits) or behind it (digits, an
- * exponent). */
+/* Returns true for text that can come before a decimal comma (a sign, digits) or after it (digits,
+ * an exponent). */
 static bool is_whole(const char *text, bool before) {
   if (before) text += *text == '-' || *text == '+';
   size_t digits = strspn(text, "0123456789");
@@ -82,7 +82,7 @@ static bool is_whole(const char *text, bool before) {
   return !*text;
 }
 
-/* Whether the row has too many cells as it has when decimal commas stand between commas. */
+/* Returns true when the row's surplus of cells is explained by decimal commas between commas. */
 static bool commas_in_numbers(const csv_reader *r) {
   if (r->separator != ',' || r->column <= r->table->columns) return false;
   size_t pairs = 0;
@@ -141,7 +141,8 @@ static fg_status fail_syntax(csv_reader *r) {
                  r->source, r->line);
 }
 
-/* Line by line, so that an error can say where: libcsv keeps its state between the calls. */
+/* Feeds line by line, so that an error can name the line: libcsv keeps its state between the calls.
+ */
 static fg_status feed(csv_reader *r, struct csv_parser *parser, const char *text, size_t size) {
   while (size && r->status == FG_OK) {
     const char *newline = memchr(text, '\n', size);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the numbers of a table may mean besides: decimal commas beside points, thousands. */
+/* Ambiguous numbers of a table: decimal commas beside points, thousands separators. */
 #include <string.h>
 
 #include "core/csv.h"
@@ -28,7 +28,7 @@ static const char *true_word(const fg_column *column) {
   return NULL;
 }
 
-/* Words that look like numbers: such a column would be names, or names among numbers. */
+/* Warns of words that look like numbers: such a column would be names, or names among numbers. */
 static fg_status warn_words(fg_context *ctx, const fg_table *table, fg_column *column,
                             unsigned char separator) {
   char what[500];
@@ -51,7 +51,8 @@ static fg_status warn_words(fg_context *ctx, const fg_table *table, fg_column *c
   return FG_OK;
 }
 
-/* The first column with a decimal comma, and whether one anywhere cannot be of thousands. */
+/* Finds the first column with a decimal comma; `proven` when a comma anywhere cannot separate
+ * thousands. */
 static const fg_column *find_comma(const fg_table *table, bool *proven) {
   const fg_column *first = NULL;
   *proven = false;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Level `bumps` on the page of the loop on scans: every bump's deviation from the declared
- * springback over its number, what was found of it, what is left. */
+ * springback over its number, the effects found, the residual. */
 #include <math.h>
 #include <string.h>
 
@@ -159,15 +159,16 @@ static void put_errors(FILE *out, const fg_scan_result_bumps *bumps) {
   fputs("</table></div>\n", out);
 }
 
-/* Which forming is declared, and how far its level lies off. */
+/* Writes the declared forming, and the deviation of its level. */
 static void put_declared(FILE *out, const fg_scan_result_bumps *bumps) {
   if (!bumps->declared_path) return;
   fputs("<p class=\"note\">Declared is what <code>", out);
   fg_html_text(out, bumps->declared_path);
-  fprintf(out,
-          "</code> (<code>foilgauge forming</code>, SHA-256 <code>%.12s</code>) predicts of each bump "
-          "by its number: its radius beside one level, and its arc length.",
-          bumps->declared_sha256);
+  fprintf(
+      out,
+      "</code> (<code>foilgauge forming</code>, SHA-256 <code>%.12s</code>) predicts of each bump "
+      "by its number: its radius beside one level, and its arc length.",
+      bumps->declared_sha256);
   for (size_t r = 0; r < FG_SCAN_RESULT_RESPONSES; r++) {
     const fg_scan_result_response *one = &bumps->response[r];
     if (isfinite(one->level))

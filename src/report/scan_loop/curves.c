@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What was found, drawn: curves over the coordinate it lives on, with the parameters beside them.
- */
+/* Drawings of the effects: curves over their coordinates, with the parameters. */
 #include <math.h>
 #include <string.h>
 
@@ -10,7 +9,7 @@
 
 enum { SAMPLES = FG_SCAN_RESULT_SAMPLES, WIDTH = 520, HEIGHT = 290 };
 
-/* Where the foils' edges lie: beyond, a curve is not held by data. */
+/* Marks the range of the foils' edges: beyond it, data do not determine a curve. */
 static void put_reach(const fg_plot *at, const fg_scan_result *result,
                       fg_scan_coordinate coordinate) {
   double low = INFINITY, high = -INFINITY;

@@ -17,10 +17,10 @@ typedef struct quantity {
   double to_fine;
   value before, after;
   const double *range; /* over tied explanations; NULL or both 0: none */
-  bool left;           /* as measured: its correction does not pay */
+  bool left;           /* as measured: its correction has no benefit */
 } quantity;
 
-/* As many decimals as U has with two digits, at most six. */
+/* Returns the decimals that give U two digits, at most six. */
 static int decimals_for(double u) {
   double expanded = FG_COVERAGE_FACTOR * u;
   if (!(expanded > 0) || !isfinite(expanded)) return 5;
@@ -140,8 +140,8 @@ static const fg_bump *find_bump(const fg_foil *foil, int number) {
   return NULL;
 }
 
-/* Two quantities beside each other: more of them, each before, after, changed and with its range,
- * are wider than a sheet of paper. */
+/* Writes two quantities side by side: more of them, each before, after, changed and with its range,
+ * would be wider than a sheet of paper. */
 static void put_bump_table(FILE *out, const fg_foil *b, const fg_foil *a, size_t from,
                            bool corrected, bool tied) {
   quantity q[BUMP_QUANTITIES];
@@ -232,8 +232,8 @@ static void put_discs(FILE *out, const fg_scan_result *result, size_t scan) {
   if (count) fg_html_disc_choice(out, &a->discs[0]);
 }
 
-/* Scans of one foil must give one radius for each bump: how far they are from that needs no truth.
- * The root mean square over the bumps of the difference to the first scan, um. */
+/* Returns the disagreement of scans of one foil: rms, over the bumps, of the difference in radius
+ * to the first scan, um. It needs no true value. */
 static double disagreement(const fg_scan_result *result, bool after) {
   double sum = 0, n = 0;
   const fg_measurement *first = after ? result->scan[0].after : result->scan[0].before;

@@ -10,18 +10,18 @@ typedef struct deformation {
   FILE *out;
   const fg_scan_result_grid *grid;
   double scale;     /* units of the drawing per mm */
-  double magnified; /* how much larger displacements are drawn */
+  double magnified; /* magnification of the displacements */
 } deformation;
 
-/* How far a point may be drawn off its place: within its cell, and without a ripple's lines passing
- * each other. */
+/* Returns the largest displacement that may be drawn: within a cell, and without crossing of a
+ * ripple's lines. */
 static double reach(const fg_scan_result_grid *grid) {
   return fmin(0.6 * grid->cell_mm, 0.13 * grid->period_mm);
 }
 
 static void put_line(const deformation *d, const fg_scan_result_grid_line *line, bool moved) {
   const fg_scan_result_grid *grid = d->grid;
-  int step = moved ? 1 : SAMPLES; /* what stands still is straight */
+  int step = moved ? 1 : SAMPLES; /* a line without displacement is straight */
   double magnified = moved ? d->magnified : 0;
   fprintf(d->out, "<path class=\"%s\" d=\"", moved ? "moved" : "still");
   for (int i = 0; i <= SAMPLES; i += step) {

@@ -18,7 +18,7 @@ static void write_parameters(fg_json *json, const fg_scan_result_claim *claim, b
   fg_json_object_end(json);
 }
 
-/* Of what every explanation holds it is empty. */
+/* Writes the explanations; empty when every explanation includes the effect. */
 static void write_explanations(fg_json *json, const fg_scan_result *result, bool sure) {
   fg_json_array(json, "alias_class");
   for (size_t k = 0; k < result->explanations && !sure; k++)
@@ -152,7 +152,7 @@ static fg_status write_side(fg_context *ctx, fg_json *json, const char *name,
   return FG_OK;
 }
 
-/* What is tied stands in `alias_class`. */
+/* Writes the rejected effects; tied ones are in `alias_class`. */
 static void write_rejected(fg_json *json, const fg_scan_result *result) {
   fg_json_array(json, "rejected");
   for (size_t i = 0; i < result->unclaimeds; i++) {

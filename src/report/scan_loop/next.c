@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What to do about what the loop on scans found: one sentence, and the commands for it. */
+/* Recommended next step after the loop on scans: one sentence, and its commands. */
 #include <string.h>
 
 #include "core/text.h"
 #include "report/scan_loop/parts.h"
 
-/* Where what was found sits, and so what must be corrected. */
+/* Sources of the effects found: they decide the correction to recommend. */
 typedef struct sources {
   bool scanner, part, width, bumps;
   bool curve; /* something without a name is among it */

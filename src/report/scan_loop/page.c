@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The page of the loop on scans: what was found and how sure; where the edges leave their circles;
- * the effect; the dimensions; what was tried. */
+/* Page of the loop on scans: the effects and their certainty; residuals of the edges; curves;
+ * dimensions; effects tried. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -137,8 +137,8 @@ static void put_name(FILE *out, const char *id, const char *words) {
   fputs("</i></td>", out);
 }
 
-/* The two last columns: what it alone would take of the residual, and how much of it the geometry
- * does not take over. */
+/* Writes the last two columns: share of the residual that the effect alone explains, and share of
+ * the effect that the geometry leaves. */
 static void put_shares(FILE *out, double alone, double share, bool of_width) {
   if (isnan(alone) && isnan(share))
     fputs("<td>–</td><td>–</td></tr>\n", out);
@@ -238,7 +238,7 @@ static void put_explanations(FILE *out, const fg_scan_result *result) {
   fputs("</section>\n", out);
 }
 
-/* Of a tie the first advice stands at the top, as what to do next. */
+/* Writes the first advice for a tie at the top, as the next step. */
 static void put_advice(FILE *out, const fg_scan_result *result) {
   size_t first = !result->named && !result->contradicted;
   if (result->advices <= first) return;

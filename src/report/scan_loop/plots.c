@@ -54,7 +54,7 @@ static void put_points(const fg_plot *at, const series *s, size_t scan, bool lig
   fputs("\"/>\n", at->out);
 }
 
-/* The mean of all rows in each bin: what the eye should follow. */
+/* Draws the mean of all rows in each bin, as a guide to the eye. */
 static void put_mean(const fg_plot *at, const series *s, size_t scan) {
   double sum[BINS] = {0}, n[BINS] = {0}, x, y, place[BINS];
   size_t rows = s->result->rows, count = 0;
@@ -129,8 +129,8 @@ static void put_all(FILE *out, const fg_scan_result *result, const double limit_
   fputs("</div>\n", out);
 }
 
-/* On the scale of what was there before, what is left is often a line: enlarged, it shows whether
- * it is noise. */
+/* Draws the residual after correction enlarged: on the scale of the one before it is often a line,
+ * and does not show whether it is noise. */
 static void put_enlarged(FILE *out, const fg_scan_result *result, const double limit_um[2]) {
   static const double worth = 3;
   char caption[80];

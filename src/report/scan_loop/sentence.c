@@ -18,7 +18,7 @@ static fg_status say_parameters(fg_context *ctx, const fg_scan_result_claim *cla
   return claim->parameters ? fg_text_append(ctx, text, ")") : FG_OK;
 }
 
-/* The effects that every explanation holds: listed ones, or free curves. */
+/* Appends the effects that every explanation includes: listed ones, or free curves. */
 static fg_status say_claims(fg_context *ctx, const fg_scan_result *result, bool free_curves,
                             char **text) {
   const char *before = !free_curves ? "Found: "
@@ -36,7 +36,7 @@ static fg_status say_claims(fg_context *ctx, const fg_scan_result *result, bool 
   return FG_OK;
 }
 
-/* What stands beside the common effects in each explanation. */
+/* Appends the effects of each explanation besides the common ones. */
 static fg_status say_explanations(fg_context *ctx, const fg_scan_result *result, char **text) {
   enum { NAMED = 3 };
   size_t count = result->explanations, total = count + result->unlisted;
@@ -77,7 +77,7 @@ static fg_status say_errors(fg_context *ctx, const fg_scan_result *result, char 
       result->after.held_out_rms <= result->before.held_out_rms ? "falls" : "rises", before, after);
 }
 
-/* How many of the foils, or scans of discs, keep a dimension as measured. */
+/* Numbers of foils, or of scans of discs, that keep a dimension as measured. */
 typedef struct kept {
   size_t left[FG_CORRECTED], tied[FG_CORRECTED], all;
 } kept;
@@ -99,7 +99,7 @@ static kept count_all_kept(const fg_scan_result *result) {
   return k;
 }
 
-/* What does not pay is left as measured, and said. */
+/* Appends the dimensions without a benefit, which stay as measured. */
 static fg_status say_kept(fg_context *ctx, const fg_scan_result *result, char **text) {
   const kept k = count_all_kept(result);
   size_t kinds = 0, whole = 0, tied = 0, at = 0;
@@ -162,7 +162,7 @@ static fg_status say_points(fg_context *ctx, const fg_scan_result *result, char 
   return say_kept(ctx, result, text);
 }
 
-/* What moves the edges apart stands for itself: the residual is without it. */
+/* Appends the effects of the width separately: the residual does not include them. */
 static fg_status say_width(fg_context *ctx, const fg_scan_result *result, char **text) {
   char value[64], before[32], after[32];
   for (size_t i = 0; i < result->claims; i++) {
@@ -194,7 +194,7 @@ static fg_status say_bump_claim(fg_context *ctx, const fg_scan_result_response *
                         claim->ties > 1 ? " or others" : "");
 }
 
-/* Appends what was found over the bumps. */
+/* Appends the effects over the bumps. */
 static fg_status say_bumps(fg_context *ctx, const fg_scan_result_bumps *bumps, char **text) {
   const char *first =
       bumps->declared_path ? " Over the bumps, beside the declared forming: " : " Over the bumps: ";

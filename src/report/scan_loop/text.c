@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The loop on scans for a terminal: what the page and the JSON say, in lines. */
+/* Terminal report of the loop on scans: the content of page and JSON, in lines. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -96,7 +96,7 @@ static void put_noise(FILE *out, const fg_scan_noise *noise) {
   fputc('\n', out);
 }
 
-/* What was left, and in a tie what was moved all the same. */
+/* Writes the values that stay as measured, and in a tie those that were corrected. */
 static void put_choice(FILE *out, const char *symbol, const fg_correction_choice *choice,
                        bool tied) {
   char words[FG_CHOICE_WORDS];
@@ -107,7 +107,8 @@ static void put_choice(FILE *out, const char *symbol, const fg_correction_choice
             2000 * choice->u_move_mm);
 }
 
-/* " R 3.37998 -> 3.33999 +- 0.00034 mm": before and after the loop, U = 2 u behind what stands. */
+/* " R 3.37998 -> 3.33999 +- 0.00034 mm": before and after the loop, U = 2 u of the reported value.
+ */
 static void put_moved(FILE *out, const char *symbol, double before_mm, double after_mm,
                       double u_mm) {
   fprintf(out, " %s %.5f -> %.5f", symbol, before_mm, after_mm);

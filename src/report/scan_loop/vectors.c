@@ -16,9 +16,9 @@ enum {
   NUMBERS_MAX = 40
 };
 enum { SCANS_DRAWN = 6 };
-/* The scale's bar, at most, in units of the drawing. */
+/* Maximum length of the scale's bar, in units of the drawing. */
 static const double bar_max = 88;
-/* Noise is drawn at most this long: a scan that holds nothing else must look as calm as it is. */
+/* Maximum length of noise in the drawing: a scan without effects must look calm. */
 static const double noise_length = 2;
 static const double needle_length = 44,
                     ring_needle_length = 16; /* of a large residual, in units of the drawing */
@@ -86,8 +86,8 @@ static void put_strip(const vectors *v) {
   }
 }
 
-/* Mean of a block of rows: where it is, and the tip of its needle. Rows that hardly weigh have
- * none. */
+/* Computes the mean of a block of rows: its place, and the tip of its needle. Rows of small weight
+ * have none. */
 static bool needle(const vectors *v, size_t from, size_t to, fg_point *base, fg_point *tip,
                    double *value) {
   fg_point at = {0, 0}, normal = {0, 0};
@@ -159,7 +159,7 @@ static void put_numbers(const vectors *v) {
   }
 }
 
-/* The scale of all drawings, said once. */
+/* Writes the scale of all drawings, once. */
 static void put_scale(const vectors *v) {
   double um = fg_scan_loop_nice_below(bar_max / v->unit_per_um), length = um * v->unit_per_um;
   char words[32];
@@ -234,8 +234,8 @@ static void put_scan(vectors *v) {
   fputs("</div>\n", v->out);
 }
 
-/* A large residual is as long as a needle may be; where it is not far above the noise, the noise
- * says how long it is. */
+/* Returns the scale: a large residual gets the maximum length; when it is not far above the noise,
+ * the noise determines the scale. */
 static double needle_per_um(const vectors *v, double limit_um) {
   double per_um = v->longest / limit_um, noise_um = v->result->noise_floor_um;
   bool clean = !v->result->corrected;

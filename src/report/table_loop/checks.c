@@ -26,7 +26,8 @@ static const fg_loop_coordinate *order_of(const fg_loop_report *report) {
   return NULL;
 }
 
-/* Columns that say what a setting is: those of the declared model, or all but orders. */
+/* Returns true for columns that define a setting: those of the declared model, or all but orders.
+ */
 static bool is_setting(const fg_loop_coordinate *at, fg_loop_check check) {
   unsigned no = FG_LOOP_ORDER | FG_LOOP_BUMP | FG_LOOP_SENSITIVITY | FG_LOOP_LEVEL;
   if (check == FG_LOOP_CHECK_REPEATS) return at->roles & FG_LOOP_DECLARED;

@@ -30,8 +30,8 @@ static bool is_outlier(const fg_loop_claim *claim) {
   return claim->candidate.effect->outlier != FG_LOOP_NOT_OUTLIER;
 }
 
-/* What turns the coefficient into a slope per unit of its column, or into a share of the arc
- * length; NaN for other forms. */
+/* Returns the factor from the coefficient to a slope per unit of its column, or to a share of the
+ * arc length; NaN for other bases. */
 static double natural_unit(const fg_loop_report *report, const fg_loop_claim *claim) {
   const fg_loop_coordinate *at = &report->problem->problem.coordinate[claim->candidate.a];
   if (claim->candidate.effect->from_zero) return 1 / fmax(fabs(at->low), fabs(at->high));
@@ -73,7 +73,7 @@ static void write_parameters(fg_json *json, const fg_loop_report *report,
   fg_json_object_end(json);
 }
 
-/* What the rows of a lone claim are called, where they have names. */
+/* Writes the names of the rows of a claim about single rows, if they have names. */
 static void write_row_names(fg_json *json, const fg_loop_report *report,
                             const fg_loop_claim *claim) {
   if (!report->row_name || !is_outlier(claim)) return;
@@ -164,7 +164,7 @@ static void write_residual_tests(fg_json *json, const fg_loop_report *report) {
   fg_json_array_end(json);
 }
 
-/* What is left by a test that fails, where no curve says it. */
+/* Writes the finding of the failed test, unless a curve describes it. */
 static void write_failed(fg_json *json, const fg_loop_report *report) {
   const fg_loop_result *result = report->result;
   const fg_loop_checked *failed = &result->check[result->failed];

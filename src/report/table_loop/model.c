@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* "foilgauge/loop-model/1": the declared model plus what was found, for the next analysis. */
+/* "foilgauge/loop-model/1": the declared model and the effects found, for the next analysis. */
 #include "core/file.h"
 #include "core/json_writer.h"
 #include "foilgauge/loop.h"

@@ -30,7 +30,7 @@ static void append(char text[FG_LOOP_STEP], const char *words) {
   fg_text_clip(text + used, FG_LOOP_STEP - used, "%s", words);
 }
 
-/* A name that a formula can hold as it is. */
+/* Returns true for a name that a formula accepts without quotes. */
 static bool is_plain(const char *name) {
   bool plain = isalpha((unsigned char)*name);
   for (; *name; name++)
@@ -46,7 +46,7 @@ static void append_column(const fg_loop_effect *effect, const fg_loop_coordinate
   if (factor) append(text, ")");
 }
 
-/* A power or an interaction stands beside its columns. */
+/* Appends the main terms of a power or an interaction. */
 static void append_main(const fg_loop_coordinate *at, bool alone, char text[FG_LOOP_STEP]) {
   if (alone || at->roles & FG_LOOP_DECLARED) return;
   append(text, at->name);
@@ -72,7 +72,8 @@ static void append_term(const fg_loop_report *report, const fg_loop_candidate *c
   }
 }
 
-/* A formula has it, over columns whose names a formula can hold; orders are no causes. */
+/* Returns true when a formula can express the effect, over columns with usable names; orders are no
+ * causes. */
 static bool has_term(const fg_loop_report *report, const fg_loop_candidate *candidate) {
   const fg_loop_coordinate *coordinate = report->problem->problem.coordinate;
   const fg_loop_coordinate *a = &coordinate[candidate->a], *b = &coordinate[candidate->b];
@@ -81,7 +82,8 @@ static bool has_term(const fg_loop_report *report, const fg_loop_candidate *cand
          is_plain(a->name) && is_plain(b->name);
 }
 
-/* All that it could be is of the same columns: only its form is open. */
+/* Returns true when all members of the alias class are of the same columns: only the basis is open.
+ */
 static bool only_basis_is_open(const fg_loop_claim *claim) {
   bool same = claim->aliases_unlisted == 0 && claim->candidate.effect->accepts;
   for (size_t k = 0; k < claim->aliases; k++) {
@@ -124,7 +126,8 @@ static void look_up_rows(const fg_loop_report *report, const fg_loop_claim *clai
                      : "they stand, and the process can do this");
 }
 
-/* n (1 - rho) / (1 + rho): what the mean of a correlated series is worth. */
+/* n (1 - rho) / (1 + rho): effective number of independent values in the mean of a correlated
+ * series. */
 static void count_independent(const fg_loop_report *report, const fg_loop_claim *claim,
                               char text[FG_LOOP_STEP]) {
   const fg_loop_problem *problem = &report->problem->problem;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The loop's page: the sentence, the residual before and after over the coordinate that explains
- * it, with the effect drawn over it, kept-aside rows apart; errors; candidates and verdicts. */
+/* Page of the loop on tables: the sentence; the residual before and after, over the coordinate that
+ * explains it, with the effect, held-out rows marked; errors; candidates and verdicts. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -30,14 +30,14 @@ static double nice_step(double range) {
                              : step;
 }
 
-/* Multiples of a step in a range; a step that vanishes beside its ends (10^17 and a range of 100)
- * would never get from one to the other. */
+/* Counts the multiples of a step in a range. A step that vanishes beside its ends (10^17 and a
+ * range of 100) would make the loop endless. */
 static size_t tick_count(double low, double high, double step) {
   double count = floor(high / step) - ceil(low / step) + 1;
   return count >= 1 && count <= 40 ? (size_t)count : 0;
 }
 
-/* As many names as there is room for, each cut to its room. */
+/* Writes as many names as there is room for, each cut to its room. */
 static void put_level_names(const loop_plot *at, const fg_loop_coordinate *coordinate) {
   enum { ROOM = 62 };
   size_t every = coordinate->levels / (ROOM / 8 + 1) + 1;
@@ -81,7 +81,7 @@ static void put_axes(const loop_plot *at, const fg_loop_coordinate *coordinate, 
   fputs("</text>\n", at->out);
 }
 
-/* At most this many points: more would only blacken the page. */
+/* Maximum number of points: more would only blacken the page. */
 enum { POINTS_MAX = 4000 };
 
 static double clip(const loop_plot *at, double y) {

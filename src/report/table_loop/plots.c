@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The plots of the loop's page: every finding over its coordinate, and what is left with it. */
+/* Plots of the page of the loop on tables: every finding over its coordinate, and the residual. */
 #include "report/table_loop/plots.h"
 
 #include <math.h>
@@ -22,9 +22,9 @@ static size_t order_coordinate(const fg_loop_problem *problem) {
   return 0;
 }
 
-/* What is left beside the mean: where neighbours are alike the result holds what the row before
- * does not say, from which it is summed up again. Beside unequal spread that is not known; then
- * that itself is shown. */
+/* Computes the residual beside the mean. Where neighbours are correlated the result has the
+ * innovations, which are summed up again. Beside unequal spread that is not possible; then the
+ * innovations are shown. */
 static void left_over(const fg_loop_report *report, double *left) {
   const fg_loop_problem *problem = &report->problem->problem;
   const fg_loop_result *result = report->result;
@@ -36,8 +36,8 @@ static void left_over(const fg_loop_report *report, double *left) {
   }
 }
 
-/* The effect over its coordinate between the rows as well; of two coordinates, of levels, and what
- * does not change along one axis alone is known at the rows only. */
+/* Returns true when the effect is known between the rows too. Effects of two coordinates, of
+ * levels, and effects that do not change along one axis alone are known at the rows only. */
 static bool is_curve(const fg_loop_problem *problem, const fg_loop_claim *claim) {
   const fg_loop_effect *effect = claim->candidate.effect;
   return !effect->pair && !effect->own_levels && effect->accepts &&
@@ -124,7 +124,7 @@ static void close_section(const fg_loop_report *report, FILE *out) {
   fputs("</section>\n", out);
 }
 
-/* The finding over what is left and itself, and what is left, on one scale. */
+/* Draws the finding over residual plus effect, and the residual, on one scale. */
 static fg_status put_pair(fg_context *ctx, FILE *out, const fg_loop_report *report,
                           fg_loop_panel *first, const double *left) {
   const fg_loop_problem *problem = &report->problem->problem;
@@ -253,8 +253,8 @@ static fg_status put_unattributed(fg_context *ctx, FILE *out, const fg_loop_repo
   return status;
 }
 
-/* What the battery finds: the settings with their means; the order, and rows against those so many
- * before. */
+/* Plots of the failed residual tests: the settings with their means; the order, and rows against
+ * those at the lag before. */
 static fg_status put_settings(fg_context *ctx, FILE *out, const fg_loop_report *report,
                               const double *left, double *work) {
   const fg_loop_problem *problem = &report->problem->problem;

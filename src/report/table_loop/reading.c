@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Words for the size of a finding, as its reader sees it: a difference between two levels, two
- * ends, two sides. The engine compares amplitudes, half a range each; a reader of a gauge would be
- * misled by them. */
+/* Words for the size of a finding in its reader's terms: a difference between two levels, two ends,
+ * two sides. The engine compares amplitudes, half a range each, which would mislead a reader of a
+ * gauge. */
 #include "report/table_loop/reading.h"
 
 #include <math.h>
@@ -139,7 +139,7 @@ static void read_step(const reading *r) {
                r->claim->coefficient[0] < 0 ? "lower" : "higher");
 }
 
-/* 2 exp(-x / l) - 1: from the first on; a length beyond the rows says nothing. */
+/* 2 exp(-x / l) - 1: from the first row on; a length beyond the rows is undetermined. */
 static void read_fade(const reading *r) {
   char range[VALUE_WORDS], place[VALUE_WORDS];
   const char *rows = fg_loop_row_words(r->a);
@@ -174,8 +174,8 @@ static void read_product(const reading *r) {
                c < 0 ? "lower" : "higher", high, low);
 }
 
-/* Slopes of the levels of a factor, half the change over the number's range; they add to nothing.
- * The u of a difference is at most the sum of both. */
+/* Slopes of the levels of a factor, half the change over the number's range; their sum is zero. The
+ * u of a difference is at most the sum of both. */
 static void read_slopes(const reading *r, const fg_loop_coordinate *factor,
                         const fg_loop_coordinate *number) {
   size_t low = 0, high = 0;

@@ -22,7 +22,7 @@ const char *fg_loop_noise_model(const fg_loop_result *result) {
                           : "independent";
 }
 
-/* At most this many members of an alias class are named in a sentence. */
+/* Maximum number of members of an alias class in a sentence. */
 enum { ALIASES_SAID = 3 };
 
 static fg_status say_aliases(fg_context *ctx, const fg_loop_report *report,
@@ -38,7 +38,8 @@ static fg_status say_aliases(fg_context *ctx, const fg_loop_report *report,
   return more ? fg_text_append(ctx, text, "; and %zu more", more) : FG_OK;
 }
 
-/* A sentence of its own: what is of the mean lacks in the model, the rest is a statement. */
+/* Appends a claim as a sentence: an effect of the mean is missing in the model, any other is a
+ * statement. */
 static fg_status say_claim(fg_context *ctx, const fg_loop_report *report, size_t i, char **text) {
   const fg_loop_claim *claim = &report->result->claim[i];
   const fg_loop_effect *effect = claim->candidate.effect;
@@ -92,7 +93,7 @@ static bool is_first(const fg_loop_result *result, size_t i) {
   return true;
 }
 
-/* Noise, or what noise alone would hardly do. */
+/* Appends the suspect: noise, or a deviation that noise alone hardly makes. */
 static fg_status say_suspect(fg_context *ctx, const fg_loop_report *report, char **text) {
   const fg_loop_rejected *suspect = fg_loop_suspect(report->result);
   fg_loop_check check;
@@ -112,7 +113,7 @@ static fg_status say_suspect(fg_context *ctx, const fg_loop_report *report, char
   return fg_text_append(ctx, text, "is noise as far as these data can tell.");
 }
 
-/* What was looked for where nothing was found: only that of which there was a candidate. */
+/* Appends the effects sought without success, of which there was a candidate. */
 static fg_status say_clean(fg_context *ctx, const fg_loop_report *report, char **text) {
   const fg_loop_result *result = report->result;
   size_t said = 0;
@@ -131,7 +132,7 @@ static fg_status say_clean(fg_context *ctx, const fg_loop_report *report, char *
   return said ? fg_text_append(ctx, text, ".") : FG_OK;
 }
 
-/* What the battery says of what is left. */
+/* Appends the finding of the failed residual test. */
 static fg_status say_failed(fg_context *ctx, const fg_loop_report *report, char **text) {
   const fg_loop_result *result = report->result;
   char words[FG_LOOP_WORDS];
@@ -232,7 +233,7 @@ static void write_rejected(const fg_loop_report *report, FILE *out) {
   free(list);
 }
 
-/* What it is first, its id in brackets behind it. */
+/* Writes a claim in words, its id in brackets. */
 static void write_claim(const fg_loop_report *report, const fg_loop_claim *claim, FILE *out) {
   char words[2 * FG_LOOP_WORDS], closeness[FG_LOOP_WORDS];
   fg_loop_claim_words(report, claim, words);

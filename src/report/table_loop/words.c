@@ -16,7 +16,7 @@ fg_loop_number fg_loop_number_text(const char *format, double value) {
   return out;
 }
 
-/* Below this a p-value says only that it is no chance. */
+/* P-value below which further digits have no meaning. */
 #define P_MIN 1e-12
 
 fg_loop_number fg_loop_p_cell(double p) {
@@ -33,7 +33,7 @@ static void append(char *text, const char *words) {
   fg_text_clip(text + used, FG_LOOP_WORDS - used, "%s", words);
 }
 
-/* "row 3", "rows 2, 5 and 54", or what the rows are called. */
+/* "row 3", "rows 2, 5 and 54", or the rows' own names. */
 static void list_rows(const fg_loop_report *report, const fg_loop_candidate *candidate,
                       char text[FG_LOOP_WORDS]) {
   size_t count = candidate->effect->outlier == FG_LOOP_EXCHANGED_ROWS ? 2 : candidate->rows;
@@ -109,7 +109,8 @@ const char *fg_loop_row_words(const fg_loop_coordinate *at) {
   return !strcmp(at->name, "run") ? "runs" : at->roles & FG_LOOP_BUMP ? "bumps" : "rows";
 }
 
-/* By how the logarithm of what is left goes with the coordinate: lone large rows do not decide. */
+/* By the slope of the residuals' log sizes over the coordinate, which single large rows hardly
+ * influence. */
 int fg_loop_spread_direction(const fg_loop_report *report, const fg_loop_claim *claim) {
   const fg_loop_problem *problem = &report->problem->problem;
   const fg_loop_coordinate *at = &problem->coordinate[claim->candidate.a];
@@ -184,8 +185,8 @@ bool fg_loop_has_after(const fg_loop_result *result) {
          fg_loop_claims_scatter(result, FG_LOOP_SERIAL);
 }
 
-/* A wrong row tells nothing of itself where it is left out, nor a neighbour where all are: then
- * what was found cannot be judged by leaving groups out with the finding as it is. */
+/* Returns true when left-out rows test the findings. A left-out outlier row predicts nothing, nor
+ * do neighbours when all of them are left out: then cross-validation cannot test the finding. */
 static bool left_out_tells(const fg_loop_result *result) {
   bool tells = fg_loop_has_after(result) && !fg_loop_claims_scatter(result, FG_LOOP_SERIAL);
   for (size_t i = 0; i < result->claims; i++)
