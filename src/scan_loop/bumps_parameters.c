@@ -62,7 +62,7 @@ bool fg_scan_loop_bumps_parameter(const fg_scan_loop_bumps *bumps, size_t respon
                                   double *value, double *u) {
   const fg_scan_loop_bump_level *level = &bumps->level[response];
   const fg_loop_coordinate *at = &level->problem.problem.coordinate[claim->candidate.a];
-  parameters p = {.count = 0};
+  parameters p;
   switch (claim->candidate.effect->over_bumps) {
   case FG_LOOP_BUMP_DECAY:
     p = decay_parameters(level, response, claim);
