@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What follows from the size of a cantilever: a flat foil with beams cut out of it, bent afterwards
- * so that every beam stands off its sheet by its sagitta (thesis section 5.11).
+/* Values derived from the size of a cantilever: a flat foil with beams cut out of it, bent
+ * afterwards so that every beam stands off its sheet by its sagitta (thesis section 5.11).
  *
  *   S = L³ / (3 E I), I = w t³ / 12                    compliance of a beam (eq 5.10)
  *   S / S_D = (L / L_D)³ (w_D / w) (t_D / t)³          against the design's, whatever E is
  *   s = s_D (L / L_D)²                                 sagitta at the curvature of the design
- *   dC = -(s - s_D)                                    what the bearing's clearance changes by
+ *   dC = -(s - s_D)                                    change of the bearing's clearance
  *
  * Every value is a product of powers of length, width and thickness. Its u is that of the product,
  * with no term of the powers left out: with r = u(x) / x the logarithm of x has the variance
@@ -30,7 +30,7 @@ typedef struct fg_beam_size {
   double correlation; /* of the errors of length and width, as by a common pixel pitch; 0: none */
 } fg_beam_size;
 
-/* NaN: it cannot be said, as the comment has it or because the size is not a number above 0. */
+/* NaN: unknown, for the stated reason or because the size is not a number above 0. */
 typedef struct fg_cantilever {
   double compliance_mm_per_n, u_compliance_mm_per_n;   /* NaN without elastic_modulus_gpa */
   double compliance_error_pct, u_compliance_error_pct; /* 100 (S - S_D) / S_D */
@@ -40,14 +40,14 @@ typedef struct fg_cantilever {
   double clearance_change_pct, u_clearance_change_pct; /* of clearance_mm; NaN without it */
 } fg_cantilever;
 
-/* What follows from a beam of this size in a checked design of form cantilever. The scan does not
- * see the thickness: it is the design's thickness_mm, and u_thickness_mm is its part of u. */
+/* Derives the values of a beam of this size in a checked design of kind cantilever. The scan does
+ * not show the thickness: it is the design's thickness_mm, and u_thickness_mm is its part of u. */
 fg_cantilever fg_cantilever_of(const fg_design *design, const fg_beam_size *size);
 
-/* The same of the beam as designed: all errors and changes are 0. */
+/* Values of the beam as designed: all errors and changes are 0. */
 fg_cantilever fg_cantilever_nominal(const fg_design *design);
 
-/* The same of a beam that deviates from the design by these percents, exactly known. */
+/* Values of a beam that deviates from the design by these percents, exactly known. */
 fg_cantilever fg_cantilever_deviating(const fg_design *design, double length_pct, double width_pct);
 
 /* I of the design's cross-section, mm⁴. */

@@ -27,7 +27,7 @@ typedef struct fg_circle {
   double radius; /* in the unit of the points */
 } fg_circle;
 
-/* How a fit went. */
+/* Result of a geometric fit. */
 typedef struct fg_circle_fit {
   fg_circle circle;
   double rms;              /* weighted root mean square of the orthogonal residuals */
@@ -42,13 +42,13 @@ typedef struct fg_circle_fit {
 fg_status fg_circle_estimate(fg_context *ctx, const fg_point *points, const double *weights,
                              size_t count, fg_circle *circle);
 
-/* Orthogonal-distance fit. `start` may be NULL: the algebraic estimate is used; a start that is
- * given may be bad: it is tried first only where it is better than the algebraic one. The same
- * errors as above. */
+/* Orthogonal-distance fit. `start` may be NULL: the algebraic estimate is used. A given start may
+ * be bad: it is tried first only where it is better than the algebraic one. Errors as
+ * fg_circle_estimate's. */
 fg_status fg_circle_fit_geometric(fg_context *ctx, const fg_point *points, const double *weights,
                                   size_t count, const fg_circle *start, fg_circle_fit *fit);
 
-/* The same minimum by Levenberg-Marquardt (GSL), for differential tests. */
+/* Finds the same minimum by Levenberg-Marquardt (GSL), for differential tests. */
 fg_status fg_circle_fit_levenberg(fg_context *ctx, const fg_point *points, const double *weights,
                                   size_t count, const fg_circle *start, fg_circle_fit *fit);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Checked memory: sizes are multiplied with a check, and a failure has words. */
+/* Checked memory: products of sizes are checked, and a failure has a message. */
 #ifndef FOILGAUGE_MEMORY_H
 #define FOILGAUGE_MEMORY_H
 

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* State of a picture: what a scanner's driver or the light has made of it, found from its pixels.
+/* State of a picture: the effects of a scanner's driver and of the light, found from its pixels.
  *
- * A length between two edges of opposite sense (a strip's thickness, a disc's diameter) rests on
- * the level at which an edge is placed: where the light is half of what it is on either side. A
- * tone curve T that is not known puts that level at T(1/2) instead. An error of q of the contrast
- * moves an edge of blur s by q s sqrt(2 pi), outwards on both sides of a strip; its middle stays.
+ * A length between two edges of opposite sense (a strip's thickness, a disc's diameter) depends on
+ * the level at which an edge is placed: half of the light between both sides. An unknown tone curve
+ * T puts that level at T(1/2) instead. An error of q of the contrast moves an edge of blur s by q s
+ * sqrt(2 pi), outwards on both sides of a strip; its middle stays.
  */
 #ifndef FOILGAUGE_PICTURE_H
 #define FOILGAUGE_PICTURE_H
@@ -33,20 +33,20 @@ typedef enum fg_picture_finding {
   FG_PICTURE_UNKNOWN_PROFILE = 1u << 12, /* "edge_profile": an edge that no model here explains */
 } fg_picture_finding;
 
-/* Bearings that a shadow is held by, evenly from x towards y. */
+/* Number of bearings at which a shadow is stored, evenly from x towards y. */
 enum { FG_PICTURE_BEARINGS = 24 };
 
-/* NaN: not known. Shares are of the contrast where nothing else is said. */
+/* NaN: not known. Shares are of the contrast where no other unit is stated. */
 typedef struct fg_picture_state {
   double gray_levels;               /* in use, of 8 bits */
   double missing_levels;            /* share of those between the ends in use that are empty */
   double clipped_low, clipped_high; /* share of the edges' pixels at either end of the scale */
   double undershoot, overshoot;     /* beyond the dark and the bright level beside edges */
-  double block_noise;        /* steps across multiples of 8 px over those elsewhere, less 1 */
-  int block_quality;         /* of the JPEG that its blocks tell, 1 to 100; 0: not known, or none */
-  double blur_px[2];         /* sd along the axis of most and of least blur */
-  double blur_direction_deg; /* of the first, from x towards y, 0 to 180 */
-  double noise;              /* sd of a pixel, counts of 255 */
+  double block_noise; /* steps across multiples of 8 px over those elsewhere, less 1 */
+  int block_quality;  /* of the JPEG whose blocks it shows, 1 to 100; 0: not known, or none */
+  double blur_px[2];  /* sd along the axis of max and of min blur */
+  double blur_direction_deg;             /* of the first, from x towards y, 0 to 180 */
+  double noise;                          /* sd of a pixel, counts of 255 */
   double noise_correlation[2];           /* to the next pixel along x and along y */
   double shadow;                         /* deepest band beside edges of one bearing */
   double shadow_direction_deg;           /* bearing of those edges' outward normals, x towards y */
@@ -56,32 +56,32 @@ typedef struct fg_picture_state {
   double gamma, u_gamma;                 /* exponent of the tone curve that the edges show */
   double tone_s;                         /* S-shaped part of it: (slope at the middle) - 1 */
   double sharpen_amount, sharpen_radius_px; /* of the unsharp mask that explains the overshoot */
-  double level, u_level;                    /* T(1/2) less what the model has, and its sd */
-  double u_cut;      /* of the level: what the ends of the scale may have cut off the edges */
-  double seen_blur;  /* of edges, over what a scanner's optics leave at the least; at most 1 */
-  bool level_known;  /* by a gauge or a scanner's model: u_level is all that is uncertain of it */
+  double level, u_level;                    /* T(1/2) minus the model's, and its sd */
+  double u_cut;      /* of the level: by edges that the ends of the scale may have cut off */
+  double seen_blur;  /* of edges, over the min blur of a scanner's optics; at most 1 */
+  bool level_known;  /* by a gauge or a scanner's model: u_level is its whole uncertainty */
   unsigned findings; /* fg_picture_finding */
 } fg_picture_state;
 
-/* All NaN, nothing found. */
+/* Returns a state of NaN without findings. */
 fg_picture_state fg_picture_unknown(void);
 
-/* The worse of both, member by member, and the findings of both. */
+/* Merges two states: the worse of both, member by member, and the findings of both. */
 void fg_picture_merge(fg_picture_state *state, const fg_picture_state *other);
 
-/* Words of a finding: for people, and what of a scanner's driver causes it. */
+/* Words of a finding: for people, and the settings of a scanner's driver that cause it. */
 typedef struct fg_picture_words {
   unsigned finding;
   const char *name;               /* in JSON and CSV */
-  const char *meaning;            /* what it does to the numbers */
-  const char *cure;               /* what to change */
+  const char *meaning;            /* effect on the numbers */
+  const char *cure;               /* remedy */
   const char *sane, *twain, *wia; /* settings by name; "": none */
 } fg_picture_words;
 
 /* Ends with a row whose name is NULL. */
 const fg_picture_words *fg_picture_finding_words(void);
 
-/* One member of the state, as JSON, page and terminal show it. */
+/* One member of the state, for JSON, page and terminal. */
 typedef struct fg_picture_member {
   const char *name, *unit, *words;
   size_t offset;

@@ -2,9 +2,9 @@
 /* The forward model: foils and a scanner in, a scan and its truth out.
  *
  * A spec is JSON with "schema": "foilgauge/render/1" (samples/render/ holds specs to start from).
- * What is drawn is exact: the strip's midline is made of lines and arcs, a sample of the picture is
+ * The drawing is exact: the strip's midline is made of lines and arcs, a sample of the picture is
  * the blurred strip at its signed distance, and the picture is low-passed in two dimensions, so
- * that what blur does to a curved edge is really there. The same spec and seed give the same bytes,
+ * that the effect of blur on a curved edge is real. The same spec and seed give the same bytes,
  * whatever the height of the strips it is drawn in. Memory is proportional to a strip of rows.
  *
  * How a pixel comes about, in this order:
@@ -59,7 +59,7 @@
  *       the driver interpolates, resampled_by "bilinear" or "bicubic" (Catmull-Rom) ["bilinear"],
  *       before its tone curve. What optics, sensor and carriage do (blur, halo, shadow, noise,
  *       colour lines, lost rows) is then in the sensor's pixels, everything else in the picture's
- *     what the driver does with the numbers, each channel by itself:
+ *     the driver's stages, each channel by itself:
  *       tone_curve [[in, out], ...]: 2 to 256 points in counts of 255, in ascending, out not
  *         falling; straight between points, constant beyond them; tone_bits [not rounded], 8 to 16:
  *         to which the numbers are rounded before: 8 leave gaps in the histogram of 8 bits
@@ -93,7 +93,7 @@
  *       edge_roughness_um, edge_common_um [0]: sd per edge, and of both together, along the strip
  *         with the correlation_um [50; 0.2 to 1e5] L and the correlation_form "gaussian",
  *         exp(-(d / L)²), or "exponential", exp(-d / L) ["gaussian"]. The sd is that of the edge
- *         itself: blur takes its share of what is finer than it. A disc's edge and that of a
+ *         itself: blur takes its share of finer scatter. A disc's edge and that of a
  *         cantilever have both sds
  *       halo {fraction, length_px}: that share of the light goes to two Gaussians, 0.6 and 1.6 L
  *       side_wall {amplitude, direction_deg, length_px, gap_px}: a band (negative: a shadow) beside
@@ -132,7 +132,7 @@ extern "C" {
 
 typedef struct fg_render_spec fg_render_spec;
 
-/* What one bump really is (midline), before part effects move it. theta by cos(theta) = (X² - R² -
+/* True values of one bump (midline), before part effects move it. theta by cos(theta) = (X² - R² -
  * R0²) / (2 R R0). */
 typedef struct fg_render_bump {
   int index;                     /* 1 is next to the lip */
@@ -145,14 +145,14 @@ typedef struct fg_render_bump {
   bool crushed;
 } fg_render_bump;
 
-/* What one beam of a cantilever really is. Its length is from the line of the roots (a comb's base,
- * the ends of the slits) to the free end, along the beam; its width that half way. */
+/* True values of one beam of a cantilever. Its length runs from the line of the roots (a comb's
+ * base, the ends of the slits) to the free end, along the beam; its width is measured half way. */
 typedef struct fg_render_beam {
   int number; /* from 1; in order along y where the beams point along x */
   double length_mm, width_mm;
   double taper_um;          /* width at the root less that at the free end */
   double bent_deg;          /* in the sheet's plane, about the root */
-  bool torn;                /* length_mm is the mean of what is left */
+  bool torn;                /* length_mm is the mean of the remainder */
   fg_point root_px, tip_px; /* on its middle line */
 } fg_render_beam;
 
@@ -176,7 +176,7 @@ typedef struct fg_render_disc {
   bool hole;
 } fg_render_disc;
 
-/* What is drawn; owned by the spec. */
+/* Content of the picture; owned by the spec. */
 typedef struct fg_render_truth {
   int64_t width_px, height_px;
   int bits;
@@ -188,12 +188,12 @@ typedef struct fg_render_truth {
   size_t disc_count;
 } fg_render_truth;
 
-/* Takes a row of the picture: `pixels` are width_px × channels values of 8 bit, or of 16 bit in
- * host byte order. Rows come in order. What it returns other than FG_OK ends the rendering. */
+/* Receives a row of the picture: `pixels` are width_px × channels values of 8 bit, or of 16 bit in
+ * host byte order. Rows come in order. A return other than FG_OK ends the rendering. */
 typedef fg_status fg_render_row(fg_context *ctx, void *user, int64_t row, const void *pixels);
 
-/* Reads a spec; `path` is for messages. FG_ERR_DATA names the member, its value and what would be
- * right. On success the caller frees with fg_render_free. */
+/* Reads a spec; `path` is for messages. FG_ERR_DATA names the member, its value and the allowed
+ * values. On success the caller frees with fg_render_free. */
 fg_status fg_render_parse(fg_context *ctx, const char *path, const char *json,
                           fg_render_spec **spec);
 fg_status fg_render_load(fg_context *ctx, const char *path, fg_render_spec **spec);
@@ -201,23 +201,23 @@ void fg_render_free(fg_render_spec *spec); /* NULL is fine */
 
 const fg_render_truth *fg_render_get_truth(const fg_render_spec *spec);
 
-/* A point of a foil's true midline at arc length s_mm from its first end (the lip's), in pixels;
- * part effects are in it, scanner effects and edge roughness are not. `foil` counts from 0.
- * FG_ERR_USAGE when there is no such foil or place, and for a cantilever. */
+/* Returns a point of a foil's true midline at arc length s_mm from its first end (the lip's), in
+ * pixels. It includes part effects, but not scanner effects and edge roughness. `foil` counts from
+ * 0. FG_ERR_USAGE when there is no such foil or place, and for a cantilever. */
 fg_status fg_render_midline(fg_context *ctx, const fg_render_spec *spec, size_t foil, double s_mm,
                             fg_point *point_px);
 
-/* Renders and hands out row after row. `strip_rows` is how many rows are drawn at a time (rounded
+/* Renders and hands out row after row. `strip_rows` is the number of rows drawn at a time (rounded
  * up to a multiple of 64); 0 is the default. It does not change the picture. */
 fg_status fg_render_rows(fg_context *ctx, const fg_render_spec *spec, int64_t strip_rows,
                          fg_render_row *row, void *user);
 
 /* Renders to a PNG file (gray or RGB, 8 or 16 bit, with pHYs) and, unless truth_path is NULL,
- * writes the truth as JSON ("schema": "foilgauge/truth/1"). Each appears only when whole. */
+ * writes the truth as JSON ("schema": "foilgauge/truth/1"). Each appears only when complete. */
 fg_status fg_render_scan(fg_context *ctx, const fg_render_spec *spec, const char *scan_path,
                          const char *truth_path);
 
-/* The truth as JSON text; the caller frees it with free(). */
+/* Writes the truth as JSON text; the caller frees it with free(). */
 fg_status fg_render_truth_json(fg_context *ctx, const fg_render_spec *spec, char **json);
 
 #ifdef __cplusplus

@@ -23,15 +23,15 @@
 extern "C" {
 #endif
 
-/* What a scanner can have been set to; anything else is taken for a mistake. */
+/* Range of resolutions that a scanner can have; others count as mistakes. */
 #define FG_SCAN_DPI_MIN 1.0
 #define FG_SCAN_DPI_MAX 1e6
-/* A row is held in memory whole. */
+/* Max width: a row is held in memory whole. */
 #define FG_SCAN_WIDTH_MAX_PX 1000000
 
 typedef struct fg_scan fg_scan;
 
-/* What of a colour scan becomes gray. */
+/* Channel of a colour scan that becomes gray. */
 typedef enum fg_channel {
   FG_CHANNEL_AUTO, /* the one of the three with the most contrast; costs a reading of its own */
   FG_CHANNEL_RED,
@@ -43,83 +43,83 @@ typedef enum fg_channel {
 #define FG_SCAN_PIXEL_CAP 4e9
 
 typedef struct fg_scan_options {
-  double dpi;          /* 0: as the file says; else used for both axes, file or not */
+  double dpi;          /* 0: the file's; else used for both axes, file or not */
   uint64_t pixel_cap;  /* refuse larger ones; 0: FG_SCAN_PIXEL_CAP */
   uint64_t memory_cap; /* bytes that the reader may hold at most; 0: no limit */
   fg_channel channel;
-  bool allow_lossy;    /* take what JPEG has compressed with loss, which moves edges */
+  bool allow_lossy;    /* accept lossy compression by JPEG, which moves edges */
   bool only_file;      /* refuse pipes and devices, which may never end */
   bool unsummed;       /* the SHA-256 will not be asked for */
-  unsigned threads;    /* 1: nothing runs beside the caller; 0: what is of use does */
-  char *failed_sha256; /* 65 bytes or NULL: that of a regular file which could be read, but is no
-                          scan; else "" */
+  unsigned threads;    /* 1: nothing runs beside the caller; 0: as many as are useful */
+  char *failed_sha256; /* 65 bytes or NULL: gets the SHA-256 of a regular file that can be read, but
+                          is no scan; else "" */
 } fg_scan_options;
 
-/* The quality of a JPEG is that of the Independent JPEG Group whose quantization table is the
- * nearest to the file's at the frequencies of edges. It is the last compression's: an image that
- * was saved twice has lost more. */
+/* The quality of a JPEG is that of the Independent JPEG Group whose quantization table is nearest
+ * to the file's at the frequencies of edges. It is the last compression's: an image that was saved
+ * twice has lost more. */
 typedef struct fg_scan_info {
   int64_t width_px, height_px;
   int bit_depth;         /* of the file: 1, 2, 4, 8, 16 */
   int bytes_per_pixel;   /* of the rows: 1 or 2 (host byte order, uint16_t) */
   double dpi[2];         /* x, y; snapped to the nearest whole dpi when within 0.02 dpi */
-  double dpi_file[2];    /* what the file says, before snapping; NaN when it says none */
+  double dpi_file[2];    /* of the file, before snapping; NaN when it states none */
   const char *format;    /* its name, one of fg_scan_format_names */
-  int jpeg_quality;      /* what has lost: 1 to 100, see below; 0: without loss */
+  int jpeg_quality;      /* of a lossy scan: 1 to 100, see above; 0: lossless */
   bool colour;           /* the file holds colours */
-  fg_channel channel;    /* what of them is taken; never FG_CHANNEL_AUTO */
+  fg_channel channel;    /* the channel in use; never FG_CHANNEL_AUTO */
   uint64_t memory_bytes; /* that the reader holds beyond a row */
-  char warning[256];     /* what is odd about the file; empty when nothing is */
+  char warning[256];     /* oddities of the file; empty: none */
 } fg_scan_info;
 
-/* The formats that are read, for people: "PNG, TIFF or PNM" with `before_last` " or ". */
+/* Lists the formats, for people: "PNG, TIFF or PNM" with `before_last` " or ". */
 void fg_scan_format_names(const char *before_last, char *text, size_t size);
 
-/* For a caller that takes a resolution from its user: FG_ERR_USAGE, with words, unless `dpi` is
- * finite, positive and from FG_SCAN_DPI_MIN to FG_SCAN_DPI_MAX. Zero is wrong here. */
+/* Checks a resolution from the user: FG_ERR_USAGE, with a message, unless `dpi` is finite, positive
+ * and from FG_SCAN_DPI_MIN to FG_SCAN_DPI_MAX. Zero is wrong here. */
 fg_status fg_scan_check_dpi(fg_context *ctx, double dpi);
 
 /* Opens a scan and reads its header. `path` "-" is standard input. Errors: FG_ERR_IO (cannot open
  * or read), FG_ERR_DATA (empty, no known format, broken, over the cap, no resolution and no dpi
- * given: the message says `--dpi`), FG_ERR_USAGE (options->dpi neither 0 nor as fg_scan_check_dpi
- * wants it). Rows and columns in error texts count from 1. NULL options are all zero. */
+ * given: the message says `--dpi`), FG_ERR_USAGE (options->dpi neither 0 nor valid by
+ * fg_scan_check_dpi). Rows and columns in error texts count from 1. NULL options are all zero. */
 fg_status fg_scan_open(fg_context *ctx, const char *path, const fg_scan_options *options,
                        fg_scan **scan);
 
 const fg_scan_info *fg_scan_get_info(const fg_scan *scan);
 
-/* The next `rows` rows, each `stride_bytes` after the one before. Rows beyond the end are an
+/* Reads the next `rows` rows, each `stride_bytes` after the one before. Rows beyond the end are an
  * FG_ERR_USAGE. After the last row everything up to the end of the file is read and checked. */
 fg_status fg_scan_read_rows(fg_context *ctx, fg_scan *scan, int64_t rows, void *out,
                             int64_t stride_bytes);
 
-/* Whether red, green and blue can be read apart, after everything else: a colour scan without loss
- * that is a regular file, or a pipe that was stored to find its channel. */
+/* Returns true when red, green and blue can be read apart, after everything else: a lossless colour
+ * scan that is a regular file, or a pipe that was stored to find its channel. */
 bool fg_scan_has_colours(const fg_scan *scan);
 
 /* Goes back to the first row, after the last one (and the SHA-256) was read, for
- * fg_scan_read_colours. FG_ERR_USAGE where fg_scan_has_colours says no. */
+ * fg_scan_read_colours. FG_ERR_USAGE unless fg_scan_has_colours. */
 fg_status fg_scan_begin_colours(fg_context *ctx, fg_scan *scan);
 
-/* The next row of each of red, green and blue, as gray rows of bytes_per_pixel. */
+/* Reads the next row of each of red, green and blue, as gray rows of bytes_per_pixel. */
 fg_status fg_scan_read_colours(fg_context *ctx, fg_scan *scan, void *const planes[3]);
 
-/* As it was opened. */
+/* Returns the threads of its options. */
 unsigned fg_scan_get_threads(const fg_scan *scan);
 
-/* Whether it is read from a regular file (a pipe that was stored counts; a pipe or device does
+/* Returns true when it is read from a regular file (a stored pipe counts; a pipe or device does
  * not). */
 bool fg_scan_is_file(const fg_scan *scan);
 
-/* SHA-256 of the bytes that the rows came from, to the end of the file, as 64 hex digits. It is
- * found as they are read, and known after the last row; called earlier on a regular file it reads
- * what is left, and no more rows come (of a pipe: FG_ERR_USAGE). */
+/* SHA-256 of the rows' bytes, to the end of the file, as 64 hex digits. It is found during reading,
+ * and known after the last row. Called earlier on a regular file it reads the remainder, and no
+ * more rows come (of a pipe: FG_ERR_USAGE). */
 fg_status fg_scan_sha256(fg_context *ctx, fg_scan *scan, char hex[65]);
 
-/* A format that jumps about in its file (TIFF) is summed in a reading of its own, through the same
- * open file: then fg_scan_sha256 may be called from another thread while rows are read. After both
- * fg_scan_check_unchanged is FG_ERR_IO when the two have seen different bytes (so is the sum itself
- * where it comes last). */
+/* Returns true when the scan's format reads its file at random (TIFF) and is summed in a reading of
+ * its own, through the same open file: then fg_scan_sha256 may be called from another thread while
+ * rows are read. After both, fg_scan_check_unchanged is FG_ERR_IO when the two have seen different
+ * bytes (and so is the sum itself when it comes last). */
 bool fg_scan_sums_apart(const fg_scan *scan);
 fg_status fg_scan_check_unchanged(fg_context *ctx, fg_scan *scan);
 

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a call came to, and the words that go with it.
+/* Status of a call, and the message of its error.
  *
- * Every public function that can fail returns fg_status; results come last in its parameters.
- * The words (which file, what is wrong, where, what to do) lie in a context that the caller owns,
- * one per thread. The library keeps no globals, never prints and never exits.
+ * Every public function that can fail returns fg_status; results come last in its parameters. The
+ * message (file, error, place, remedy) lies in a context that the caller owns, one per thread. The
+ * library keeps no globals, never prints and never exits.
  */
 #ifndef FOILGAUGE_STATUS_H
 #define FOILGAUGE_STATUS_H
@@ -24,20 +24,19 @@ typedef enum fg_status {
 } fg_status;
 
 typedef struct fg_context {
-  char message[1024]; /* the last error in words; empty when there was none */
+  char message[1024]; /* of the last error; empty when there was none */
 } fg_context;
 
-/* Writes the words into the context (NULL is allowed) and returns `status`, so that a caller can
- * say `return fg_fail(ctx, FG_ERR_DATA, "%s: ...", path);`. A message that is there already is
- * replaced. */
+/* Writes the message into the context (NULL is allowed) and returns `status`, so that a caller can
+ * write `return fg_fail(ctx, FG_ERR_DATA, "%s: ...", path);`. It replaces an earlier message. */
 fg_status fg_fail(fg_context *ctx, fg_status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-/* The status of a call of the system that failed with `error` (errno): FG_ERR_MEMORY where it was for
- * want of memory, else FG_ERR_IO. */
+/* Returns the status of a system call that failed with `error` (errno): FG_ERR_MEMORY for exhausted
+ * memory, else FG_ERR_IO. */
 fg_status fg_status_of_errno(int error);
 
-/* The exit code that goes with a status. */
+/* Returns the exit code of a status. */
 int fg_status_exit_code(fg_status status);
 
 /* Forwards an error to the caller. */
@@ -47,7 +46,8 @@ int fg_status_exit_code(fg_status status);
     if (fg_try_status_ != FG_OK) return fg_try_status_;                                            \
   } while (0)
 
-/* The same where there is something to free: sets `status` and jumps to the one `exit:` label. */
+/* Forwards an error in a function that has something to free: sets `status` and jumps to the one
+ * `exit:` label. */
 #define FG_TRY_EXIT(call)                                                                          \
   do {                                                                                             \
     status = (call);                                                                               \

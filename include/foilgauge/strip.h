@@ -20,7 +20,7 @@
 extern "C" {
 #endif
 
-/* Facts about a strip as it was seen; the recogniser turns them into flags. */
+/* Facts about a strip in the scan; the recogniser turns them into flags. */
 typedef enum fg_strip_fact {
   FG_STRIP_TOUCHES_BORDER = 1u << 0, /* the scan's border cuts it */
   FG_STRIP_TOUCHES_OTHER = 1u << 1,  /* something else of the same material touches it */
@@ -29,7 +29,7 @@ typedef enum fg_strip_fact {
   FG_STRIP_GAP = 1u << 4,            /* the strip is interrupted or its edge is hidden somewhere */
 } fg_strip_fact;
 
-/* What is the matter with one station that is not usable. */
+/* Defect of a station that is not usable. */
 typedef enum fg_station_fact {
   FG_STATION_DISTURBED = 1u << 0, /* its pixels are not those of a strip */
   FG_STATION_CUT = 1u << 1,       /* background shows all across the strip */
@@ -54,44 +54,44 @@ typedef struct fg_strip_end {
   bool found;           /* it is seen as a straight cut */
   bool at_border;       /* the scan's border hides it */
   fg_point left, right; /* where it meets the lines of the strip's edges, mm */
-  double u_um, u_skew;  /* standard deviation along the strip of its middle, and of its direction
-                           out of square (a ratio), from the pixels' misfit */
-  double blur_um;       /* sd of the blur across it */
+  double u_um, u_skew; /* standard deviation along the strip of its middle, and of its direction out
+                          of square (a ratio), by the pixels' misfit */
+  double blur_um;      /* sd of the blur across it */
 } fg_strip_end;
 
 typedef struct fg_strip {
   fg_station *stations; /* in order along the strip, from one end to the other; owned */
   size_t count;
-  fg_strip_end ends[2]; /* at the first station and at the last */
-  double step_mm;       /* nominal distance of stations */
-  double thickness_mm;  /* median distance of the edges */
-  double
-      u_thickness_mm; /* what it varies by along the strip; the tone curve's doubt is beside it: */
+  fg_strip_end ends[2];  /* at the first station and at the last */
+  double step_mm;        /* nominal distance of stations */
+  double thickness_mm;   /* median distance of the edges */
+  double u_thickness_mm; /* from its variation along the strip; the tone curve's uncertainty is
+                            separate: */
   double blur_left_um, blur_right_um; /* sd of the edge blur found on each side */
   double contrast;             /* strip minus background, in units of the scan's full scale */
   double noise;                /* pixel noise sd, same unit */
-  bool bright;                 /* brighter than what surrounds it */
-  double spread_px, asymmetry; /* of its edges, as vision/edge_spread.h says; NaN: not seen */
-  /* With counts taken for the light, whatever the edges say of the tone curve: thickness, blur and
-   * contrast (counts of 255). What a gauge is compared by. NaN: not measured. */
+  bool bright;                 /* brighter than its surroundings */
+  double spread_px, asymmetry; /* of its edges, see vision/edge_spread.h; NaN: not seen */
+  /* Thickness, blur and contrast (counts of 255) with counts used as light, whatever tone curve the
+   * edges show. A gauge is compared by them. NaN: not measured. */
   double plain_mm, plain_blur_um, plain_counts;
   bool plain_side_band; /* as FG_STRIP_SIDE_BAND */
-  double gamma;   /* exponent of the tone curve found */
-  double u_gamma; /* what its profiles leave in doubt */
-  double loss_um; /* u of each edge's place, outwards or inwards with the other, by what the scan
-                     has lost by JPEG; 0: nothing */
-  double loss_variance; /* and share by which it raises the variance that the residuals tell */
-  double tone_um; /* of thickness per unit of ln gamma: both edges lie where the light is half */
+  double gamma;         /* exponent of the tone curve found */
+  double u_gamma;       /* by its profiles */
+  double loss_um; /* u of each edge's place by JPEG's loss, outwards or inwards with the other edge;
+                     0: lossless */
+  double loss_variance; /* share by which the loss raises the variance from the residuals */
+  double tone_um; /* change of thickness per unit of ln gamma: both edges lie at half the light */
   unsigned facts; /* fg_strip_fact */
   fg_picture_state picture; /* beside its edges */
-  int64_t box_px[4];        /* x, y, width, height of what belongs to it in the scan */
+  int64_t box_px[4];        /* x, y, width, height of its area in the scan */
 } fg_strip;
 
 void fg_strip_free(fg_strip *strip); /* frees the stations; NULL is fine */
 
 /* Sets thickness and its uncertainty from the stations, also after their edges were moved: the
  * median distance of the edges, and the standard error of its mean over stretches of an eighth of
- * the strip, for neighbouring stations err alike. NaN without usable stations. */
+ * the strip, since neighbouring stations err alike. NaN without usable stations. */
 fg_status fg_strip_measure_thickness(fg_context *ctx, fg_strip *strip);
 
 #ifdef __cplusplus

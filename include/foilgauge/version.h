@@ -7,7 +7,8 @@
 extern "C" {
 #endif
 
-const char *fg_version(void); /* "0.1.0" */
+/* Returns "0.1.0" and the like. */
+const char *fg_version(void);
 
 #ifdef __cplusplus
 }

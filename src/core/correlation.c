@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-/* Standard errors of a correlation that are no chance. */
+/* Min size of a correlation beyond chance, in standard errors. */
 #define CHANCE_ERRORS 2.0
 
 static double correlation_at(const double *products, const double *pairs, size_t lag) {

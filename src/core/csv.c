@@ -20,7 +20,7 @@ bool fg_csv_needs_apostrophe(const char *text) {
   return kind == FG_CSV_WORD || kind == FG_CSV_THOUSANDS;
 }
 
-/* Spaces at the ends would be dropped by a reader. */
+/* Blanks at the ends need quotes, as a reader would drop them. */
 bool fg_csv_needs_quotes(const char *text) {
   size_t length = strlen(text);
   return strpbrk(text, ",;\t\"\r\n") || (length && (text[0] == ' ' || text[length - 1] == ' '));
@@ -50,7 +50,7 @@ void fg_csv_put_number(FILE *out, double value) {
   fputs(text, out);
 }
 
-void fg_csv_take_apostrophe(const char **text, size_t *length) {
+void fg_csv_drop_apostrophe(const char **text, size_t *length) {
   if (!*length || **text != '\'' || !begins_formula(*text, *length)) return;
   ++*text;
   --*length;

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Cells of comma-separated values: RFC 4180, as Europe writes it too (semicolons, decimal commas),
- * and no cell that a spreadsheet would take for a formula.
+/* Cells of comma-separated values: RFC 4180, also with semicolons and decimal commas, and no cell
+ * that a spreadsheet would take for a formula.
  *
  * A text that begins with = + - @, a tab or a carriage return gets an apostrophe before it, as
- * OWASP (CSV injection) says, unless it is a number, with a point or a comma. A text that begins
- * with apostrophes and one of these gets one as well, so that a reader who takes one away has the
- * text as it was written. */
+ * OWASP (CSV injection) demands, unless it is a number, with a point or a comma. A text that begins
+ * with apostrophes and one of these gets one as well: a reader that removes one apostrophe then has
+ * the original text. */
 #ifndef FG_CORE_CSV_H
 #define FG_CORE_CSV_H
 
@@ -16,28 +16,29 @@
 bool fg_csv_needs_apostrophe(const char *text);
 bool fg_csv_needs_quotes(const char *text);
 
-/* Writes one character of a text and returns how many bytes it took. */
+/* Writes one character of a text and returns the number of its bytes. */
 typedef size_t fg_csv_character(FILE *out, const char *text);
 
-/* A whole cell; `put` NULL writes the bytes as they are. */
+/* Writes a whole cell; `put` NULL writes the bytes unchanged. */
 void fg_csv_put_text(FILE *out, const char *text, fg_csv_character *put);
 
-/* A comma and the number, as JSON has it (core/json_writer.h); nothing behind the comma for what is
- * none. */
+/* Writes a comma and the number, as JSON has it (core/json_writer.h); nothing after the comma for
+ * NaN and infinities. */
 void fg_csv_put_number(FILE *out, double value);
 
-/* How many bytes the line `sep=;` at the begin takes that spreadsheets write, and its separator; 0
+/* Returns the length of the first line `sep=;`, which spreadsheets write, and its separator; 0
  * without one. */
 size_t fg_csv_hint(const char *text, size_t size, unsigned char *separator);
 
-/* Comma, semicolon or tab: whichever the first rows hold equally often as the header (where several
- * do, tab before semicolon before comma: only commas stand in numbers and names), else the one that
- * the header holds most. What stands in quotes does not count. */
+/* Finds the separator: comma, semicolon or tab. It is the one that the first rows hold equally
+ * often as the header. Of several, tab goes before semicolon before comma, since numbers and names
+ * hold commas only. Without any, it is the header's most frequent one. Text in quotes does not
+ * count. */
 unsigned char fg_csv_separator(const char *text, size_t size);
 
-/* How a cell writes a number. */
+/* Notation of a cell's number. */
 typedef enum fg_csv_number {
-  FG_CSV_WORD,      /* it is none */
+  FG_CSV_WORD,      /* no number */
   FG_CSV_WHOLE,     /* 12, 1e-3 */
   FG_CSV_POINT,     /* 1.5 */
   FG_CSV_COMMA,     /* 1,5 */
@@ -46,14 +47,15 @@ typedef enum fg_csv_number {
 
 fg_csv_number fg_csv_number_kind(const char *text, size_t length);
 
-/* Whether a number with a comma can as well be one of thousands: 1,234 but not 0,234 or 1,5. */
+/* Returns true when a number with a comma can as well be one of thousands: 1,234 but not 0,234 or
+ * 1,5. */
 bool fg_csv_may_be_thousands(const char *text, size_t length);
 
-/* The number in a cell of the kind FG_CSV_COMMA, with a point; `size` of the text at most, else
- * false. */
+/* Copies a cell of the kind FG_CSV_COMMA with a decimal point; false when it does not fit into
+ * `size`. */
 bool fg_csv_point(const char *cell, size_t length, char *text, size_t size);
 
-/* Takes away the apostrophe of a cell that was read, where one was put. */
-void fg_csv_take_apostrophe(const char **text, size_t *length);
+/* Removes the escaping apostrophe of a cell that was read. */
+void fg_csv_drop_apostrophe(const char **text, size_t *length);
 
 #endif

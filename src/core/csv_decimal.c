@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* CSV for spreadsheets whose decimal mark is a comma. Finished CSV is converted, so that its
- * writers need not know of it. */
+ * writers do not depend on it. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -9,7 +9,7 @@
 #include "core/memory.h"
 #include "foilgauge/file.h"
 
-/* Length of the cell at `text`. A quoted cell ends behind a quote that no other follows. */
+/* Length of the cell at `text`. A quoted cell ends after a quote that no other follows. */
 static size_t cell_length(const char *text, const char *end) {
   const char *at = text;
   bool quoted = at < end && *at == '"';
@@ -26,8 +26,8 @@ static size_t cell_length(const char *text, const char *end) {
   return (size_t)(end - text);
 }
 
-/* Quotes stay: whoever wrote them quotes semicolons as well (fg_csv_needs_quotes). */
-static void put_cell(FILE *out, const char *cell, size_t length) {
+/* Writes a cell with its quotes: the writer has quoted semicolons as well (fg_csv_needs_quotes). */
+static void write_decimal_cell(FILE *out, const char *cell, size_t length) {
   const char *point = memchr(cell, '.', length);
   if (!point || fg_csv_number_kind(cell, length) != FG_CSV_POINT) {
     fwrite(cell, 1, length, out);
@@ -38,12 +38,12 @@ static void put_cell(FILE *out, const char *cell, size_t length) {
   fwrite(point + 1, 1, length - (size_t)(point - cell) - 1, out);
 }
 
-static void convert(const char *text, size_t size, FILE *out) {
+static void convert_csv(const char *text, size_t size, FILE *out) {
   const char *end = text + size;
   fputs("\xef\xbb\xbf", out);
   while (text < end) {
     size_t length = cell_length(text, end);
-    put_cell(out, text, length);
+    write_decimal_cell(out, text, length);
     text += length;
     if (text < end) fputc(*text == ',' ? ';' : *text, out);
     text++;
@@ -59,7 +59,7 @@ fg_status fg_csv_write(fg_context *ctx, bool decimal_comma, fg_csv_writer *write
   if (!memory) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory");
   fg_status status = write(ctx, user, memory);
   if (fclose(memory) != 0 && status == FG_OK) status = fg_fail(ctx, FG_ERR_MEMORY, "out of memory");
-  if (status == FG_OK) convert(text, size, out);
+  if (status == FG_OK) convert_csv(text, size, out);
   free(text);
   return status == FG_OK ? fg_stream_finish(ctx, out, "the table") : status;
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* CSV as it is written where the decimal mark is a comma: separators and numbers. */
+/* CSV with a decimal comma: separators and numbers. */
 #include <string.h>
 #include <strings.h>
 
@@ -9,8 +9,8 @@
 static const unsigned char separators[] = {'\t', ';', ','};
 enum { SEPARATORS = sizeof separators };
 
-/* As many rows tell a separator from what stands in names and numbers. */
-enum { ROWS_LOOKED_AT = 20 };
+/* Number of rows inspected: enough to tell a separator from characters of names and numbers. */
+enum { ROWS_INSPECTED = 20 };
 
 size_t fg_csv_hint(const char *text, size_t size, unsigned char *separator) {
   if (size < 5 || strncasecmp(text, "sep=", 4) != 0) return 0;
@@ -23,7 +23,7 @@ size_t fg_csv_hint(const char *text, size_t size, unsigned char *separator) {
   return length;
 }
 
-/* Counts the separators outside quotes in the row at `text`, and returns where the next begins. */
+/* Counts the separators outside quotes in the row at `text`, and returns the begin of the next. */
 static size_t count_row(const char *text, size_t size, size_t counts[SEPARATORS]) {
   bool quoted = false;
   size_t i = 0;
@@ -47,7 +47,7 @@ unsigned char fg_csv_separator(const char *text, size_t size) {
   at += count_row(text + at, size - at, header);
   for (size_t k = 0; k < SEPARATORS; k++)
     alike[k] = header[k] > 0;
-  for (int row = 0; row < ROWS_LOOKED_AT && at < size; row++) {
+  for (int row = 0; row < ROWS_INSPECTED && at < size; row++) {
     at += count_row(text + at, size - at, counts);
     for (size_t k = 0; k < SEPARATORS; k++)
       alike[k] = alike[k] && counts[k] == header[k];
@@ -81,7 +81,7 @@ static size_t mark_at(const char *text, size_t length) {
   return 0;
 }
 
-/* One to three digits, then groups of three behind one and the same mark, then perhaps another mark
+/* One to three digits, then groups of three, each after the same mark, then perhaps another mark
  * and decimals. */
 static bool has_thousands(const char *text, size_t length) {
   size_t sign = length && (*text == '-' || *text == '+');

@@ -26,7 +26,7 @@ static bool is_day(int year, int month, int day) {
          day <= days[month - 1] - (month == 2 && !leap);
 }
 
-/* A time of day behind the date, in days; NaN: something else. */
+/* Time of day after the date, in days; NaN: other text. */
 static double read_time(const char *text) {
   int hour, minute, end = 0;
   double second = 0;
@@ -50,7 +50,7 @@ double fg_date_days(const char *text) {
   return end && is_day(year, month, day) ? days_of(year, month, day) + read_time(text + end) : NAN;
 }
 
-/* The same source, the other way. */
+/* The algorithm of days_of, inverted. */
 void fg_date_format(double days, char text[FG_DATE_TEXT]) {
   text[0] = '\0';
   if (!isfinite(days)) return;
@@ -77,4 +77,10 @@ void fg_date_of_file(const char *path, char day[FG_DATE_DAY]) {
   struct stat about;
   day[0] = '\0';
   if (stat(path, &about) == 0) fg_date_of_time(about.st_mtime, day);
+}
+
+double fg_clock_seconds(void) {
+  struct timespec now;
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }

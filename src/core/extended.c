@@ -24,7 +24,7 @@ fg_extended fg_extended_dot(const fg_extended *a, const fg_extended *b, size_t c
   return fg_extended_add(fg_extended_add(sum[0], sum[1]), fg_extended_add(sum[2], sum[3]));
 }
 
-/* The digits of a number as they are read: value × 10^exponent. */
+/* Digits of a number in reading: value × 10^exponent. */
 typedef struct digits {
   uint64_t high, low; /* high × 10^low_count + low */
   int high_count, low_count;
@@ -82,7 +82,7 @@ static fg_extended from_integer(uint64_t a) {
 static fg_extended scale_decimal(fg_extended a, int exponent) {
   const fg_extended ten = {10.0, 0.0};
   if (a.value == 0) return a;
-  /* In steps, so that the power itself does not overflow where the result would not. */
+  /* in steps, so that the power itself does not overflow where the result would not */
   for (; exponent < -300; exponent += 300)
     a = fg_extended_divide(a, fg_extended_power(ten, 300));
   for (; exponent > 300 && isfinite(a.value); exponent -= 300)

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Arithmetic on fg_extended: a number carried as the unevaluated sum of two doubles, 106 bits.
  *
- * Why: the columns of a polynomial in raw units are so nearly parallel (condition number 1e15 for
- * the Filip data) that 13 digits of a coefficient need some 30 digits on the way, from the decimal
- * text of the data on. The sums and products are Dekker's and Knuth's error-free transformations
- * (Dekker 1971; Hida, Li and Bailey 2001); they need plain IEEE doubles: no -ffast-math here.
+ * The columns of a polynomial in raw units are so nearly parallel (condition number 1e15 for the
+ * Filip data) that 13 digits of a coefficient need some 30 digits on the way, from the decimal text
+ * of the data on. The sums and products are Dekker's and Knuth's error-free transformations (Dekker
+ * 1971; Hida, Li and Bailey 2001); they need plain IEEE doubles: no -ffast-math here.
  */
 #ifndef FG_CORE_EXTENDED_H
 #define FG_CORE_EXTENDED_H
@@ -76,14 +76,14 @@ static inline fg_extended fg_extended_square(fg_extended a) {
   return fg_extended_multiply(a, a);
 }
 
-/* a to a whole power. */
+/* Returns a to a whole power. */
 fg_extended fg_extended_power(fg_extended a, unsigned power);
 
-/* Reads a decimal number (sign, digits, point, exponent; no locale) to all the digits that 106
- * bits hold. false when the text is anything else, nan and inf included. */
+/* Reads a decimal number (sign, digits, point, exponent; no locale) to all the digits that 106 bits
+ * hold; false for any other text, nan and inf included. */
 bool fg_extended_parse(const char *text, size_t length, fg_extended *number);
 
-/* The inner product of two columns. */
+/* Returns the inner product of two columns. */
 fg_extended fg_extended_dot(const fg_extended *a, const fg_extended *b, size_t count);
 
 #endif

@@ -39,15 +39,15 @@ fg_status fg_output_fail(fg_context *ctx, const char *path, int error) {
                  strerror(error), advice);
 }
 
-/* What the stream writes to. A stream alone remembers only that a write has failed, not why. */
+/* Sink of the stream. A stream alone remembers only that a write has failed, not the errno. */
 typedef struct fg_sink {
   int descriptor;
-  bool owned;              /* to be closed */
+  bool owned;              /* closed at the end */
   fg_temporary *temporary; /* owns the descriptor; NULL: written directly */
   int error;               /* of the first write that failed */
-  bool dropped;            /* what is still buffered is not wanted any more */
-  bool terminal;           /* gets nothing that it would obey */
-  char held[4];            /* for a terminal: the beginning of a character */
+  bool dropped;            /* buffered bytes are dropped */
+  bool terminal;           /* control characters are made visible */
+  char held[4];            /* for a terminal: the begin of a character */
   size_t held_count;
 } fg_sink;
 
@@ -63,7 +63,7 @@ static bool put_bytes(fg_sink *sink, const char *bytes, size_t size) {
   return !sink->error;
 }
 
-/* `last`: nothing comes after it. */
+/* Writes bytes with control characters made visible; `last`: no bytes follow. */
 static bool put_visible(fg_sink *sink, const char *bytes, size_t size, bool last) {
   enum { PIECE = 1024 };
   char piece[PIECE], visible[4 * PIECE];
@@ -88,7 +88,8 @@ static ssize_t write_to_sink(void *cookie, const char *bytes, size_t size) {
   return put ? (ssize_t)size : 0;
 }
 
-/* Where the bytes end up: a rename onto a symbolic link would replace the link, not its file. */
+/* Follows links to the final path: a rename onto a symbolic link would replace the link, not its
+ * file. */
 static fg_status resolve_links(fg_context *ctx, const char *path, char **resolved) {
   *resolved = realpath(path, NULL);
   if (!*resolved) *resolved = strdup(path);
@@ -96,8 +97,9 @@ static fg_status resolve_links(fg_context *ctx, const char *path, char **resolve
   return FG_OK;
 }
 
-/* Where the group cannot be kept, the new one may do what all may. */
-static void hand_down(int descriptor, const struct stat *old) {
+/* Passes on the old file's mode and owner. If the group cannot be kept, the new group gets the
+ * permissions of others. */
+static void pass_on_mode(int descriptor, const struct stat *old) {
   struct stat fresh;
   mode_t mode = old->st_mode & 0777;
   bool other =
@@ -108,19 +110,19 @@ static void hand_down(int descriptor, const struct stat *old) {
   fchmod(descriptor, mode);
 }
 
-/* `old`: the file that is replaced, or NULL. Until it has its mode, nobody else sees the new one.
- */
+/* `old`: the file that is replaced, or NULL. Until the new one has its mode, nobody else can read
+ * it. */
 static fg_status open_temporary(fg_context *ctx, fg_output *output, const struct stat *old) {
   fg_sink *sink = output->sink;
   int error = fg_temporary_create(output->path, old ? 0600 : 0666, &sink->temporary);
   if (error) return fg_output_fail(ctx, output->path, error);
   sink->descriptor = sink->temporary->descriptor;
-  if (old) hand_down(sink->descriptor, old);
+  if (old) pass_on_mode(sink->descriptor, old);
   return FG_OK;
 }
 
-/* The descriptor that a path stands for; -1: none. A new file under that path would pull it from
- * beneath whoever else writes to the descriptor. */
+/* Returns the descriptor that a path stands for; -1: none. A new file under that path would
+ * disconnect other writers to the descriptor. */
 static int descriptor_of(const char *path) {
   static const char *const folders[] = {"/dev/fd/", "/proc/self/fd/"};
   if (!strcmp(path, "/dev/stdout")) return STDOUT_FILENO;
@@ -178,7 +180,7 @@ fg_status fg_output_open(fg_context *ctx, const char *path, fg_output *output) {
   return status;
 }
 
-static const char *name_of(const fg_output *output) {
+static const char *output_name(const fg_output *output) {
   return output->path ? output->path : "standard output";
 }
 
@@ -186,12 +188,12 @@ fg_status fg_output_flush(fg_context *ctx, fg_output *output, fg_status status) 
   if (status != FG_OK && status != FG_ERR_IO) return status;
   bool broken = fflush(output->stream) != 0 || ferror(output->stream);
   if (output->sink->held_count) put_visible(output->sink, "", 0, true);
-  if (output->sink->error) return fg_output_fail(ctx, name_of(output), output->sink->error);
-  return broken && status == FG_OK ? fg_output_fail(ctx, name_of(output), EIO) : status;
+  if (output->sink->error) return fg_output_fail(ctx, output_name(output), output->sink->error);
+  return broken && status == FG_OK ? fg_output_fail(ctx, output_name(output), EIO) : status;
 }
 
-/* The rename itself is durable only when the folder is. Not every file system can sync a folder,
- * and the file is whole either way, so a failure here is none. */
+/* Syncs the folder: the rename itself is durable only then. Not every file system can sync a
+ * folder, and the file is complete either way, so a failure here is none. */
 static void sync_folder(const char *path) {
   const char *slash = strrchr(path, '/');
   char *folder = slash ? strndup(path, (size_t)(slash - path) + 1) : strdup(".");
@@ -204,23 +206,23 @@ static void sync_folder(const char *path) {
   free(folder);
 }
 
-static fg_status publish(fg_context *ctx, fg_output *output) {
+static fg_status publish_output(fg_context *ctx, fg_output *output) {
   fg_sink *sink = output->sink;
   FG_TRY(fg_output_flush(ctx, output, FG_OK));
   if (sink->owned) {
     sink->owned = false;
-    return close(sink->descriptor) == 0 ? FG_OK : fg_output_fail(ctx, name_of(output), errno);
+    return close(sink->descriptor) == 0 ? FG_OK : fg_output_fail(ctx, output_name(output), errno);
   }
   if (!sink->temporary) return FG_OK;
   int error = fsync(sink->descriptor) == 0 ? 0 : errno;
   if (!error) error = fg_temporary_rename(sink->temporary, output->path);
-  if (error) return fg_output_fail(ctx, name_of(output), error);
+  if (error) return fg_output_fail(ctx, output_name(output), error);
   sync_folder(output->path);
   return FG_OK;
 }
 
 fg_status fg_output_commit(fg_context *ctx, fg_output *output) {
-  fg_status status = publish(ctx, output);
+  fg_status status = publish_output(ctx, output);
   fg_output_discard(output);
   return status;
 }
@@ -284,7 +286,7 @@ fg_status fg_file_read_text(fg_context *ctx, const char *path, size_t cap, char 
   return status;
 }
 
-/* An earlier write may have failed, whose errno is long gone. */
+/* An earlier write may have failed, whose errno is lost. */
 fg_status fg_stream_finish(fg_context *ctx, FILE *out, const char *what) {
   bool failed = ferror(out) != 0;
   errno = 0;

@@ -16,8 +16,8 @@ static fg_status make_one(fg_context *ctx, const char *path) {
                  *path ? path : "''", strerror(error));
 }
 
-/* One that is there may lie in a folder where nothing can be made: it is asked for only where the
- * whole path cannot be made at once. */
+/* Parents are made only when the whole path cannot be made at once: an existing folder may lie in
+ * one that is not writable. */
 fg_status fg_folder_make(fg_context *ctx, const char *path) {
   if (mkdir(path, 0777) == 0) return FG_OK;
   if (errno != ENOENT || !*path) return make_one(ctx, path);

@@ -5,11 +5,10 @@
 
 #include "foilgauge/status.h"
 
-/* Makes the folder, and those that it lies in, where they are not there. FG_ERR_IO: which of them
- * cannot be made. */
+/* Makes the folder and its missing parents. FG_ERR_IO names the one that cannot be made. */
 fg_status fg_folder_make(fg_context *ctx, const char *path);
 
-/* FG_ERR_IO with its name where there is no such folder. */
+/* FG_ERR_IO with its name when there is no such folder. */
 fg_status fg_folder_require(fg_context *ctx, const char *path);
 
 #endif

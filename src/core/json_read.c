@@ -7,9 +7,9 @@
 
 enum { EXCERPT_MAX = 80 };
 
-/* Each function below takes the start of its part of RFC 8259 and returns its end, or NULL where
- * the text breaks the grammar. They allocate nothing. They are stricter than cJSON, never looser:
- * cJSON refuses a text that they accept only for want of memory. */
+/* Each function below gets the start of its part of RFC 8259 and returns its end, or NULL where the
+ * text breaks the grammar. They allocate nothing. They are stricter than cJSON, never looser: so
+ * when cJSON refuses a text that they accept, memory is exhausted. */
 static const char *skip_value(const char *at, int depth);
 
 static const char *skip_space(const char *at) {
@@ -26,7 +26,7 @@ static const char *skip_hex(const char *at, unsigned *code) {
   return at;
 }
 
-/* Behind `\u`: one code unit, or a surrogate pair. */
+/* Skips one code unit after `\u`, or a surrogate pair. */
 static const char *skip_code(const char *at) {
   unsigned first, second;
   at = skip_hex(at, &first);

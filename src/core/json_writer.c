@@ -37,7 +37,7 @@ static void put_string(FILE *out, const char *text) {
   fputc('"', out);
 }
 
-/* The comma and the line before a value, and its name. */
+/* Writes the comma, the line and the name before a value. */
 static void put_place(fg_json *json, const char *name) {
   if (json->has_members) fputs(json->line_depth ? ", " : ",", json->out);
   if (json->depth > 0 && json->line_depth == 0) fprintf(json->out, "\n%*s", json->depth, "");
@@ -91,7 +91,7 @@ static void put_digits(char text[32], int digits, double value) {
 }
 
 /* A host program's locale may write a comma. */
-static void put_point(char text[32]) {
+static void write_point(char text[32]) {
   char *comma = strchr(text, ',');
   if (comma) *comma = '.';
 }
@@ -102,17 +102,17 @@ void fg_json_format(char text[32], double value) {
     return;
   }
   put_digits(text, 10, value);
-  put_point(text);
+  write_point(text);
 }
 
-/* The fewest digits that are the same number when read. */
+/* Uses the fewest digits that read as the same number. */
 static void format_exactly(char text[32], double value) {
   enum { ENOUGH = 17 };
   int digits = 10;
   do
     put_digits(text, digits, value);
   while (digits++ < ENOUGH && strtod(text, NULL) != value);
-  put_point(text);
+  write_point(text);
 }
 
 void fg_json_number(fg_json *json, const char *name, double value) {

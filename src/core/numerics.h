@@ -1,14 +1,25 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* GSL set up for a library: errors come back as codes, never as an abort. */
+/* Basics of all numerics: GSL set up for a library (errors come back as codes, never as an abort),
+ * and the product of two vectors. */
 #ifndef FG_CORE_NUMERICS_H
 #define FG_CORE_NUMERICS_H
+
+#include <stddef.h>
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-/* Call before any GSL function; it may be called from several threads and more than once. */
+/* Turns off GSL's abort. Call it before any GSL function; it may be called from several threads and
+ * more than once. */
 void fg_numerics_start(void);
+
+static inline double fg_dot(const double *a, const double *b, size_t count) {
+  double sum = 0;
+  for (size_t i = 0; i < count; i++)
+    sum += a[i] * b[i];
+  return sum;
+}
 
 #ifdef __cplusplus
 }

@@ -13,7 +13,7 @@
 
 typedef enum place_kind { NOWHERE, A_FILE, A_NEW_FILE, A_STREAM } place_kind;
 
-/* Where a path leads. */
+/* Final place of a path. */
 typedef struct fg_output_place {
   const char *path;
   place_kind kind; /* A_STREAM: standard input or output that is no file */
@@ -63,7 +63,7 @@ static bool is_same(const fg_output_place *a, const fg_output_place *b) {
   return a->kind == A_NEW_FILE && !strcmp(a->canonical, b->canonical);
 }
 
-static const char *name_of(const fg_output_place *output) {
+static const char *place_name(const fg_output_place *output) {
   return strcmp(output->path, "-") ? output->path : "standard output";
 }
 
@@ -71,9 +71,9 @@ static fg_status check_pair(fg_context *ctx, const fg_output_place *a, const fg_
   bool both_standard = a->kind == A_STREAM && b->kind == A_STREAM;
   if (!both_standard && !is_same(a, b)) return FG_OK;
   if (!strcmp(a->path, b->path))
-    return fg_fail(ctx, FG_ERR_USAGE, "%s: two outputs cannot go to one file", name_of(a));
-  return fg_fail(ctx, FG_ERR_USAGE, "%s and %s: two outputs cannot go to one file", name_of(a),
-                 name_of(b));
+    return fg_fail(ctx, FG_ERR_USAGE, "%s: two outputs cannot go to one file", place_name(a));
+  return fg_fail(ctx, FG_ERR_USAGE, "%s and %s: two outputs cannot go to one file", place_name(a),
+                 place_name(b));
 }
 
 fg_status fg_overwrite_begin(fg_context *ctx, const char *const *outputs, size_t count,
@@ -104,7 +104,7 @@ fg_status fg_overwrite_check(fg_context *ctx, const fg_overwrite *overwrite, con
     return fg_fail(ctx, FG_ERR_USAGE, "%s: the output would overwrite %s; give it another name",
                    found->path, words);
   return fg_fail(ctx, FG_ERR_USAGE, "%s: the output would overwrite %s, %s; give it another name",
-                 name_of(found), words, strcmp(input, "-") ? input : "standard input");
+                 place_name(found), words, strcmp(input, "-") ? input : "standard input");
 }
 
 bool fg_overwrite_is_same(const char *a, const char *b) {

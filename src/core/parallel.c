@@ -14,7 +14,7 @@ static void *run_where_allowed(void *argument) {
   return thread->run(thread->argument);
 }
 
-/* What a worker needs, many times over; the usual 8 MiB count where address space is limited. */
+/* Many times a worker's stack; the usual 8 MiB matter where address space is limited. */
 #define STACK_BYTES ((size_t)2 << 20)
 
 /* Keeps a thread off the caller's core at its start. False: no other core. */
@@ -71,7 +71,7 @@ typedef struct worker {
   size_t failed; /* item of the first error */
 } worker;
 
-static void *work(void *argument) {
+static void *work_on_items(void *argument) {
   worker *w = argument;
   for (;;) {
     size_t item = atomic_fetch_add(&w->pool->next, 1);
@@ -98,9 +98,9 @@ fg_status fg_parallel_run(fg_context *ctx, unsigned threads, size_t count, fg_pa
   for (unsigned i = 0; i < threads || i == 0; i++)
     workers[i].pool = &p;
   while (started + 1 < threads &&
-         fg_thread_start(&handles[started], work, &workers[started + 1]) == FG_OK)
+         fg_thread_start(&handles[started], work_on_items, &workers[started + 1]) == FG_OK)
     started++;
-  work(&workers[0]);
+  work_on_items(&workers[0]);
   const worker *first = NULL;
   for (unsigned i = 0; i < started; i++)
     fg_thread_join(&handles[i]);

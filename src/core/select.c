@@ -33,13 +33,13 @@
 SELECTION(double, fg_select)
 SELECTION(float, fg_select_float)
 
-static int compare(const void *a, const void *b) {
+static int compare_doubles(const void *a, const void *b) {
   double x = *(const double *)a, y = *(const double *)b;
   return (x > y) - (x < y);
 }
 
 void fg_sort(double *values, size_t count) {
-  qsort(values, count, sizeof *values, compare);
+  qsort(values, count, sizeof *values, compare_doubles);
 }
 
 void fg_sort_items(void *items, size_t count, size_t size,

@@ -5,15 +5,16 @@
 
 #include <stddef.h>
 
-/* The value at position `k` of the sorted values (Hoare's selection); reorders them. count > k. */
+/* Returns the value at position `k` of the sorted values (Hoare's selection); reorders them. count
+ * > k. */
 double fg_select(double *values, size_t count, size_t k);
 float fg_select_float(float *values, size_t count, size_t k);
 
-/* qsort, which must not get the null pointer that stands for no items at all. */
+/* qsort that accepts NULL for no items. */
 void fg_sort_items(void *items, size_t count, size_t size,
                    int (*order)(const void *, const void *));
 
-/* Ascending. */
+/* Sorts in ascending order. */
 void fg_sort(double *values, size_t count);
 
 #endif

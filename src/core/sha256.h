@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* SHA-256 as reports state it: 64 lower-case hex digits. That of a file: foilgauge/file.h. */
+/* SHA-256 as in reports: 64 lower-case hex digits. foilgauge/file.h has that of a file. */
 #ifndef FG_CORE_SHA256_H
 #define FG_CORE_SHA256_H
 
@@ -13,7 +13,7 @@
 extern "C" {
 #endif
 
-/* Ends the sum; `sum` starts afresh. */
+/* Ends the sum and writes it; `sum` begins anew. */
 void fg_sha256_finish(struct sha256_ctx *sum, char hex[65]);
 
 void fg_sha256_text(const char *text, char hex[65]);

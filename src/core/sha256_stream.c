@@ -4,10 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* ALONE: what is summed before a thread is worth its start. */
+/* ALONE_BYTES: bytes summed before the start of a thread is worth it. */
 enum { RING_BYTES = 1 << 20, ALONE_BYTES = 1 << 20, PIECE_BYTES = 1 << 17 };
 
-static size_t min(size_t a, size_t b, size_t c) {
+static size_t min_of_three(size_t a, size_t b, size_t c) {
   size_t min = a < b ? a : b;
   return min < c ? min : c;
 }
@@ -20,7 +20,7 @@ static void *sum_ring(void *argument) {
       pthread_cond_wait(&s->changed, &s->lock);
     if (s->filled == s->taken) break;
     size_t at = (size_t)(s->taken % RING_BYTES);
-    size_t count = min((size_t)(s->filled - s->taken), RING_BYTES - at, PIECE_BYTES);
+    size_t count = min_of_three((size_t)(s->filled - s->taken), RING_BYTES - at, PIECE_BYTES);
     pthread_mutex_unlock(&s->lock);
     sha256_update(&s->sum, count, s->ring + at);
     pthread_mutex_lock(&s->lock);
@@ -63,7 +63,7 @@ static void fill_ring(fg_sha256_stream *s, const uint8_t *bytes, size_t left) {
     while (s->filled - s->taken == RING_BYTES)
       pthread_cond_wait(&s->changed, &s->lock);
     size_t at = (size_t)(s->filled % RING_BYTES);
-    size_t count = min(left, RING_BYTES - at, RING_BYTES - (size_t)(s->filled - s->taken));
+    size_t count = min_of_three(left, RING_BYTES - at, RING_BYTES - (size_t)(s->filled - s->taken));
     pthread_mutex_unlock(&s->lock);
     memcpy(s->ring + at, bytes, count);
     bytes += count;

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The SHA-256 of bytes as they come by. A long stream is summed on a thread of its own, beside
- * whoever feeds it; a short one, or where no thread is to be had or wanted, as it is fed. */
+/* SHA-256 of a stream of bytes.
+ *
+ * A long stream is summed on a thread of its own, beside the caller. A short one is summed as it is
+ * fed, and so is any stream when no thread is available or wanted. */
 #ifndef FG_CORE_SHA256_STREAM_H
 #define FG_CORE_SHA256_STREAM_H
 
@@ -12,12 +14,12 @@
 #include "core/parallel.h"
 #include "core/sha256.h"
 
-/* Stays where it is while it is in use: the thread knows its address. */
+/* Keeps its address while it is in use: the thread holds it. */
 typedef struct fg_sha256_stream {
-  struct sha256_ctx sum; /* of the thread, while there is one */
+  struct sha256_ctx sum; /* used by the thread, while there is one */
   uint8_t *ring;         /* NULL: no thread */
   uint64_t filled, taken;
-  bool ended, alone; /* alone: no thread is to be had, or (set after begin) wanted */
+  bool ended, alone; /* alone: no thread is available, or (set after begin) wanted */
   fg_thread thread;
   pthread_mutex_t lock;
   pthread_cond_t changed;
@@ -26,7 +28,7 @@ typedef struct fg_sha256_stream {
 void fg_sha256_stream_begin(fg_sha256_stream *stream);
 void fg_sha256_stream_feed(fg_sha256_stream *stream, const void *bytes, size_t count);
 
-/* The sum of all that was fed; the stream begins afresh. */
+/* Writes the sum of all bytes fed; the stream begins anew. */
 void fg_sha256_stream_finish(fg_sha256_stream *stream, char hex[65]);
 
 #endif

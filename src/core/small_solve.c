@@ -12,8 +12,9 @@ void fg_normal_clear(fg_normal_equations *system, size_t unknowns) {
     memset(system->matrix[i], 0, unknowns * sizeof *system->matrix[i]);
 }
 
-static inline __attribute__((always_inline)) void
-add(fg_normal_equations *system, const double *row, double value, double weight, size_t unknowns) {
+static inline __attribute__((always_inline)) void add_equation(fg_normal_equations *system,
+                                                               const double *row, double value,
+                                                               double weight, size_t unknowns) {
   for (size_t i = 0; i < unknowns; i++) {
     double scaled = weight * row[i];
     for (size_t j = 0; j <= i; j++)
@@ -23,24 +24,24 @@ add(fg_normal_equations *system, const double *row, double value, double weight,
   system->sum_squares += weight * value * value;
 }
 
-/* The compiler unrolls the loops where it knows the number: of a profile's fit, the innermost loop
- * of all that is measured, and of a parabola's. */
+/* The compiler unrolls the loops for known numbers of unknowns: of a profile's fit, the innermost
+ * loop of all measuring, and of a parabola's. */
 void fg_normal_add(fg_normal_equations *system, const double *row, double value, double weight) {
   switch (system->unknowns) {
   case 3:
-    add(system, row, value, weight, 3);
+    add_equation(system, row, value, weight, 3);
     break;
   case 9:
-    add(system, row, value, weight, 9);
+    add_equation(system, row, value, weight, 9);
     break;
   default:
-    add(system, row, value, weight, system->unknowns);
+    add_equation(system, row, value, weight, system->unknowns);
   }
 }
 
 /* Lower Cholesky factor of the damped matrix. */
-static bool factor(const fg_normal_equations *system, double damping,
-                   double lower[FG_SMALL_MAX][FG_SMALL_MAX]) {
+static bool factor_cholesky(const fg_normal_equations *system, double damping,
+                            double lower[FG_SMALL_MAX][FG_SMALL_MAX]) {
   for (size_t i = 0; i < system->unknowns; i++)
     for (size_t j = 0; j <= i; j++) {
       double sum = system->matrix[i][j];
@@ -57,7 +58,7 @@ static bool factor(const fg_normal_equations *system, double damping,
   return true;
 }
 
-static void substitute(size_t n, double lower[FG_SMALL_MAX][FG_SMALL_MAX], double *x) {
+static void substitute_lower(size_t n, double lower[FG_SMALL_MAX][FG_SMALL_MAX], double *x) {
   for (size_t i = 0; i < n; i++) {
     for (size_t k = 0; k < i; k++)
       x[i] -= lower[i][k] * x[k];
@@ -74,13 +75,13 @@ bool fg_normal_solve(const fg_normal_equations *system, double damping, double *
                      double inverse[FG_SMALL_MAX][FG_SMALL_MAX]) {
   double lower[FG_SMALL_MAX][FG_SMALL_MAX];
   size_t n = system->unknowns;
-  if (!factor(system, damping, lower)) return false;
+  if (!factor_cholesky(system, damping, lower)) return false;
   memcpy(x, system->right, n * sizeof *x);
-  substitute(n, lower, x);
+  substitute_lower(n, lower, x);
   for (size_t c = 0; inverse && c < n; c++) {
     double unit[FG_SMALL_MAX] = {0};
     unit[c] = 1;
-    substitute(n, lower, unit);
+    substitute_lower(n, lower, unit);
     for (size_t r = 0; r < n; r++)
       inverse[r][c] = unit[r];
   }

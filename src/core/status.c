@@ -5,6 +5,8 @@
 #include <stdarg.h>
 #include <stdio.h>
 
+#include "foilgauge/version.h"
+
 fg_status fg_fail(fg_context *ctx, fg_status status, const char *format, ...) {
   if (ctx) {
     va_list arguments;
@@ -38,4 +40,8 @@ int fg_status_exit_code(fg_status status) {
     return 2;
   }
   return 70;
+}
+
+const char *fg_version(void) {
+  return FOILGAUGE_VERSION;
 }

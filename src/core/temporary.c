@@ -16,11 +16,11 @@
 
 #include "foilgauge/file.h"
 
-/* Held while a name appears or goes, so that the list says at every moment what lies there. */
+/* Held while a name is added or removed, so that the list is right at every moment. */
 static pthread_mutex_t guard = PTHREAD_MUTEX_INITIALIZER;
 static fg_temporary *first;
 
-/* Of that many names for one output, each must be held by a run at work before it fails. */
+/* Max number of names for one output; creation fails when running processes hold all of them. */
 enum { NAMES = 64 };
 
 /* FNV-1a, of the last part of the path. */
@@ -42,8 +42,8 @@ static char *name_beside(const char *path, unsigned number) {
   return name;
 }
 
-/* A file that nobody holds is of a run that was killed. It is removed while it is locked: a run
- * that has just made it cannot lock it then, and takes another. */
+/* Removes a file that nobody holds: it belongs to a killed run. It is removed while it is locked: a
+ * run that has just made it cannot lock it then, and uses another. */
 static bool remove_stale(const char *name) {
   struct stat info;
   int descriptor = open(name, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
@@ -55,19 +55,19 @@ static bool remove_stale(const char *name) {
   return removed;
 }
 
-/* Where files cannot be locked, nobody removes a stale one either. */
-static bool take(int descriptor) {
+/* Locks a file. Where files cannot be locked, nobody removes a stale one either. */
+static bool lock_file(int descriptor) {
   struct stat info;
   if (flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) return false;
   return fstat(descriptor, &info) == 0 && info.st_nlink > 0;
 }
 
-/* An errno, or 0 with an open file of that name. EEXIST: another one is at work on it. */
+/* Returns an errno, or 0 with an open file of that name. EEXIST: another process uses it. */
 static int create_named(const char *name, mode_t mode, int *descriptor) {
   for (int attempt = 0; attempt < 2; attempt++) {
     *descriptor = open(name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
     if (*descriptor >= 0) {
-      if (take(*descriptor)) return 0;
+      if (lock_file(*descriptor)) return 0;
       close(*descriptor);
       return EEXIST;
     }

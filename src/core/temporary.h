@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The names that files have before they are whole.
+/* Temporary names of files that are not yet complete.
  *
- * A signal can come at any time, and is the process's: so is the list of these names, the only
- * state that the library keeps beyond a call. Whoever ends the process calls fg_temporaries_remove
- * (foilgauge/file.h). */
+ * A signal can come at any time, and belongs to the process. So does the list of these names: it is
+ * the only state that the library keeps beyond a call. The code that ends the process calls
+ * fg_temporaries_remove (foilgauge/file.h). */
 #ifndef FG_CORE_TEMPORARY_H
 #define FG_CORE_TEMPORARY_H
 
@@ -19,15 +19,15 @@ typedef struct fg_temporary {
   struct fg_temporary *next;
 } fg_temporary;
 
-/* A new file beside `path`. Its name follows from that of `path`, so that the next run that writes
- * there finds, and removes, what a killed one has left. Returns an errno, 0 when it is there. */
+/* Creates a new file beside `path`. Its name follows from that of `path`, so that the next run that
+ * writes there finds and removes the file of a killed one. Returns an errno, 0 on success. */
 int fg_temporary_create(const char *path, mode_t mode, fg_temporary **made);
 
-/* Gives it its final name, and takes it off the list; an errno, and nothing has changed, or 0. The
- * file stays open until fg_temporary_close. */
+/* Gives the file its final name, and takes it off the list. Returns 0, or an errno with nothing
+ * changed. The file stays open until fg_temporary_close. */
 int fg_temporary_rename(fg_temporary *temporary, const char *path);
 
-/* Removes it unless it was renamed, closes and frees it; NULL is fine. */
+/* Removes the file unless it was renamed, closes and frees it; NULL is fine. */
 void fg_temporary_close(fg_temporary *temporary);
 
 #ifdef __cplusplus

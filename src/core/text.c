@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/memory.h"
+
 fg_status fg_text_print(fg_context *ctx, char **text, const char *format, ...) {
   va_list arguments;
   va_start(arguments, format);
@@ -50,4 +52,19 @@ fg_status fg_text_append_word(fg_context *ctx, char **text, const char *word) {
 
 const char *fg_plural(size_t count) {
   return count == 1 ? "" : "s";
+}
+
+fg_status fg_notes_add(fg_context *ctx, char ***notes, size_t *count, size_t *capacity,
+                       const char *format, va_list values) {
+  char *text = NULL;
+  FG_TRY(fg_memory_reserve(ctx, *count + 1, sizeof **notes, capacity, (void **)notes));
+  if (vasprintf(&text, format, values) < 0) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory");
+  (*notes)[(*count)++] = text;
+  return FG_OK;
+}
+
+void fg_notes_free(char **notes, size_t count) {
+  for (size_t i = 0; i < count; i++)
+    free(notes[i]);
+  free(notes);
 }

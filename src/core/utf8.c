@@ -43,12 +43,12 @@ size_t fg_utf8_put(FILE *out, const char *text) {
   return length ? length : 1;
 }
 
-/* The bytes that a character's first one promises. */
-static size_t promised(unsigned char first) {
+/* Length of a character by its first byte. */
+static size_t promised_length(unsigned char first) {
   return first < 0xC2 ? 1 : first < 0xE0 ? 2 : first < 0xF0 ? 3 : first < 0xF5 ? 4 : 1;
 }
 
-/* C0, DEL, and C1 as UTF-8 has it. */
+/* C0, DEL, and C1 in UTF-8: a terminal would obey them. */
 static bool is_obeyed(const char *text, size_t length) {
   unsigned char first = (unsigned char)text[0], second = (unsigned char)text[length > 1];
   if (length == 1) return (first < 0x20 && first != '\n' && first != '\t') || first == 0x7F;
@@ -63,7 +63,7 @@ size_t fg_utf8_make_visible(const char *bytes, size_t size, bool last, char *vis
   while (at < size) {
     char next[5] = {0};
     memcpy(next, bytes + at, size - at < 4 ? size - at : 4);
-    if (!last && promised((unsigned char)next[0]) > size - at) break;
+    if (!last && promised_length((unsigned char)next[0]) > size - at) break;
     size_t taken = next[0] ? fg_utf8_length(next) : 1;
     bool plain = taken > 0 && !is_obeyed(next, taken);
     if (!taken) taken = 1;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Covariance of a fitted circle: noise correlated along the strip, deviations of whole ranges, and
- * what the half width says. */
+ * errors of the edge model by the half width. */
 #include "geometry/arcs.h"
 
 #include <gsl/gsl_cdf.h>
@@ -57,8 +57,8 @@ static void add_correlated(const fg_datum_line *line, const fg_arc *arc,
 }
 
 /* out = inverse × middle × inverse. */
-static void sandwich(double inverse[FG_SMALL_MAX][FG_SMALL_MAX], double middle[3][3],
-                     double out[3][3]) {
+static void multiply_sandwich(double inverse[FG_SMALL_MAX][FG_SMALL_MAX], double middle[3][3],
+                              double out[3][3]) {
   for (int p = 0; p < 3; p++)
     for (int q = 0; q < 3; q++) {
       double sum = 0;
@@ -78,7 +78,7 @@ void fg_arc_covariance(const fg_datum_line *line, const fg_noise_model *noise, f
     return;
   }
   add_correlated(line, arc, noise, middle);
-  sandwich(inverse, middle, arc->covariance);
+  multiply_sandwich(inverse, middle, arc->covariance);
   double white = noise->covariance[0] * fmax(1, noise->integral_stations);
   bool sound = true;
   for (int p = 0; p < 3; p++)
@@ -105,7 +105,7 @@ double fg_arc_cluster_covariance(const fg_datum_line *line, double p_limit, fg_a
       for (int q = 0; q < 3; q++)
         middle[p][q] += g[p] * g[q] * n / (n - 3);
   }
-  sandwich(inverse, middle, cluster);
+  multiply_sandwich(inverse, middle, cluster);
   double ratio = cluster[2][2] / arc->covariance[2][2];
   if (ratio * (n - 3) > gsl_cdf_chisq_Qinv(p_limit, n - 3))
     memcpy(arc->covariance, cluster, sizeof cluster);

@@ -7,27 +7,27 @@
 #include "core/memory.h"
 #include "geometry/foil_uncertainty.h"
 
-/* The circle rests on so many stretches, whose differences say whether it is one. */
+/* Number of stretches of the circle; their differences test that it is one. */
 enum { STRETCHES = 12, ROUNDS = 5, STATIONS_MIN = 64, BUMPS_MIN = 3 };
-/* It starts in so much of the middle: a lip is shorter than what is left. */
+/* Share of the strip in the first fit, around the middle: a lip is shorter than the remainder. */
 #define MIDDLE_SHARE 0.6
-/* What leaves the circle by so many thicknesses is bent away from it. Springback that is no circle
- * stays within: 0.1 mm. */
+/* Departure from the circle, in thicknesses, that is a bend. Springback deviates from a circle by
+ * less: 0.1 mm. */
 #define AWAY_THICKNESSES 1.0
-/* A lip's bend begins so many thicknesses before: the line leaves with the square of the way, t =
- * w² / (2 r) with a bend of r = 10 t. */
+/* Begin of a lip's bend before that departure, in thicknesses: the line leaves with the square of
+ * the distance, t = w² / (2 r) with a bend of r = 10 t. */
 #define BEND_THICKNESSES 5.0
-/* Away at an end for so many thicknesses is a lip; within the strip, a bump or a dent. */
+/* Min length of a departure, in thicknesses: at an end a lip, within the strip a bump or a dent. */
 #define LIP_THICKNESSES  3.0
 #define BUMP_THICKNESSES 5.0
-/* Less of the strip than this on the circle is another thing. */
+/* Min share of the strip on the circle; below it the object is another thing. */
 #define COVER_SHARE 0.5
 
 static double away_mm(const fg_strip *strip) {
   return AWAY_THICKNESSES * strip->thickness_mm;
 }
 
-/* Stations [from, to] of the strip as stretches of equal length. */
+/* Cuts stations [from, to] of the strip into stretches of equal length. */
 static void cut_stretches(fg_layout *layout, size_t from, size_t to) {
   size_t count = to - from + 1;
   for (size_t i = 0; i < STRETCHES; i++)
@@ -38,8 +38,8 @@ static void cut_stretches(fg_layout *layout, size_t from, size_t to) {
   layout->overall.range_count = STRETCHES;
 }
 
-/* The farthest station, from the middle in the direction of `step`, that is on the circle. */
-static size_t reach(const fg_layout *layout, int step) {
+/* Returns the farthest station on the circle from the middle in the direction of `step`. */
+static size_t reach_of_circle(const fg_layout *layout, int step) {
   const fg_strip *strip = layout->line.strip;
   double limit = away_mm(strip), gone = 0;
   size_t last = strip->count / 2;
@@ -68,10 +68,11 @@ static size_t stations_in(const fg_strip *strip, double mm) {
   return (size_t)ceil(mm / strip->step_mm);
 }
 
-/* One end of the circle's part. What is left beyond it, if it is more than a little, is a lip. */
+/* Finds one end of the circle's part. A remainder beyond it, if it is more than a little, is a lip.
+ */
 static size_t arc_end(fg_layout *layout, bool last) {
   const fg_strip *strip = layout->line.strip;
-  size_t at = reach(layout, last ? 1 : -1), end = end_station(strip, last);
+  size_t at = reach_of_circle(layout, last ? 1 : -1), end = end_station(strip, last);
   size_t beyond = last ? end - at : at - end, middle = strip->count / 2;
   if (beyond < stations_in(strip, LIP_THICKNESSES * strip->thickness_mm)) return end;
   *(last ? &layout->turning.lip_last : &layout->turning.lip_first) = true;
@@ -82,7 +83,7 @@ static size_t arc_end(fg_layout *layout, bool last) {
   return last ? at - back : at + back;
 }
 
-static fg_status fit(fg_context *ctx, fg_layout *layout) {
+static fg_status fit_arc_ends(fg_context *ctx, fg_layout *layout) {
   size_t count = layout->line.strip->count;
   size_t inset = (size_t)(0.5 * (1 - MIDDLE_SHARE) * (double)count);
   cut_stretches(layout, inset, count - 1 - inset);
@@ -99,7 +100,7 @@ static fg_status fit(fg_context *ctx, fg_layout *layout) {
 }
 
 /* Share of the circle's part that lies on it, and the longest stretch that does not. */
-static double cover(const fg_layout *layout, double *longest_mm) {
+static double arc_cover(const fg_layout *layout, double *longest_mm) {
   const fg_strip *strip = layout->line.strip;
   size_t from = layout->lands[0].first, to = layout->lands[STRETCHES - 1].last;
   size_t on = 0, all = 0, run = 0, longest = 0;
@@ -116,7 +117,7 @@ static double cover(const fg_layout *layout, double *longest_mm) {
   return all ? (double)on / (double)all : 0;
 }
 
-/* Three places of the middle say which way the strip turns. */
+/* Finds the strip's sense of turning from three places of the middle. */
 static bool centre_is_right(const fg_strip *strip) {
   size_t n = strip->count;
   fg_point a = fg_strip_middle(strip, n / 5), b = fg_strip_middle(strip, n / 2);
@@ -124,7 +125,7 @@ static bool centre_is_right(const fg_strip *strip) {
   return (b.x - a.x) * (c.y - b.y) - (b.y - a.y) * (c.x - b.x) > 0;
 }
 
-/* How many times the strip turns back: what a foil with bumps does. */
+/* Counts the strip's turns back: a foil with bumps has them. */
 static fg_status count_bumps(fg_context *ctx, const fg_strip *strip, size_t *bumps) {
   fg_turning turning;
   FG_TRY(fg_turning_find(ctx, strip, &turning));
@@ -154,8 +155,8 @@ fg_status fg_arc_foil_layout(fg_context *ctx, const fg_design *design, const fg_
   FG_TRY_EXIT(
       fg_datum_line_build(ctx, strip, design->datum, layout->inner_is_right, &layout->line));
   FG_TRY_EXIT(fg_memory_allocate(ctx, STRETCHES, sizeof(fg_range), (void **)&layout->lands));
-  status = fit(ctx, layout);
-  if (status == FG_ERR_NUMERIC || (status == FG_OK && cover(layout, &away) < COVER_SHARE))
+  status = fit_arc_ends(ctx, layout);
+  if (status == FG_ERR_NUMERIC || (status == FG_OK && arc_cover(layout, &away) < COVER_SHARE))
     *error = "the strip does not lie on one circle, as a design of form arc does";
   if (status == FG_ERR_NUMERIC) status = FG_OK;
   FG_TRY_EXIT(status);
@@ -166,7 +167,7 @@ exit:
   return status;
 }
 
-/* Where the cut crosses the datum line. */
+/* Crossing of the cut and the datum line. */
 static fg_point end_point(const fg_design *design, const fg_layout *layout,
                           const fg_strip_end *end) {
   fg_point inner = layout->inner_is_right ? end->right : end->left;
@@ -176,9 +177,9 @@ static fg_point end_point(const fg_design *design, const fg_layout *layout,
   return (fg_point){0.5 * (inner.x + outer.x), 0.5 * (inner.y + outer.y)};
 }
 
-/* Variance of an end's place along the strip, mm²: the pixels' part, the direction of the cut where
- * the datum is an edge, and the roughness that the cut has when it is as rough as the sides: its
- * mean over the thickness. */
+/* Variance of an end's place along the strip, mm²: the pixels' part; the direction of the cut where
+ * the datum is an edge; and the mean roughness of the cut over the thickness, if it is as rough as
+ * the sides. */
 static double end_variance(const fg_design *design, const fg_foil *foil, const fg_strip_end *end) {
   double thickness = foil->thickness_mm, rough = 1e-3 * foil->edge_rough_um;
   double share = fmin(1, foil->correlation_mm / thickness);
@@ -187,8 +188,8 @@ static double end_variance(const fg_design *design, const fg_foil *foil, const f
   return 1e-6 * end->u_um * end->u_um + skew * skew + rough * rough * share + shift * shift;
 }
 
-/* What the length is uncertain by because both cuts move outwards or inwards, as the edges of the
- * thickness do, mm. */
+/* Uncertainty of the length, mm, by both cuts: they move outwards or inwards together, as the edges
+ * of the thickness do. */
 static double cut_uncertainty(const fg_design *design, const fg_foil *foil) {
   const fg_strip *strip = &foil->strip;
   double sides = strip->blur_left_um + strip->blur_right_um;
@@ -196,12 +197,12 @@ static double cut_uncertainty(const fg_design *design, const fg_foil *foil) {
   return fg_foil_width_u_um(design, foil) / 1000 * (sides > 0 ? ends / sides : 1);
 }
 
-static void forget(fg_foil_arc *arc) {
+static void clear_arc(fg_foil_arc *arc) {
   *arc = (fg_foil_arc){NAN, NAN, NAN, NAN, NAN, NAN};
 }
 
 /* alpha = psi_2 - psi_1, the directions of the ends from O; d psi / dO = (sin, -cos) / r. */
-static void fill(const fg_design *design, const fg_layout *layout, fg_foil *foil) {
+static void fill_arc_values(const fg_design *design, const fg_layout *layout, fg_foil *foil) {
   const fg_overall *o = &foil->overall;
   double psi[2], gradient[3] = {0}, sense = layout->inner_is_right ? 1 : -1, cuts = 0;
   for (int i = 0; i < 2; i++) {
@@ -234,10 +235,10 @@ static void fill(const fg_design *design, const fg_layout *layout, fg_foil *foil
   foil->arc.u_subtended_angle_error_pct = 100 * foil->arc.u_subtended_angle_deg / design_deg;
 }
 
-/* What the intensity model shifts the line by along its normal it shifts by another amount
- * elsewhere along the strip: a bend of that size from the middle to the ends is no residual, the
- * circle takes it up. It changes R by the bend over 1 - cos of half the angle, and moves the centre
- * away from the middle of the arc by as much (reports/accuracy_arcs.md). */
+/* Widens by a bend. The intensity model's shift of the line along its normal differs along the
+ * strip. A bend of that size from the middle to the ends is no residual: the circle absorbs it. It
+ * changes R by the bend over 1 - cos of half the angle, and moves the centre away from the middle
+ * of the arc by as much (reports/accuracy_arcs.md). */
 static void widen_bend(fg_foil *foil) {
   fg_overall *o = &foil->overall;
   const fg_strip *strip = &foil->strip;
@@ -251,7 +252,7 @@ static void widen_bend(fg_foil *foil) {
       o->covariance[a][b] += move[a] * move[b];
 }
 
-static void take_uncertainties(const fg_design *design, fg_overall *o) {
+static void fill_uncertainties(const fg_design *design, fg_overall *o) {
   for (int i = 0; i < 2; i++)
     o->u_centre_mm[i] = sqrt(o->covariance[i][i]);
   o->u_radius_mm = sqrt(o->covariance[2][2]);
@@ -269,14 +270,14 @@ void fg_arc_foil_derive(const fg_design *design, const fg_layout *layout, fg_foi
     s += sin(psi);
   }
   foil->rotation_deg = atan2(s, c) * 180 / M_PI;
-  forget(&foil->arc);
+  clear_arc(&foil->arc);
   widen_bend(foil);
-  take_uncertainties(design, &foil->overall);
+  fill_uncertainties(design, &foil->overall);
   bool lip = layout->turning.lip_first || layout->turning.lip_last;
   for (int i = 0; i < 2; i++) {
     bool bent = i ? layout->turning.lip_last : layout->turning.lip_first;
     if (ends[i].at_border) foil->flags |= FG_FOIL_TOUCHES_BORDER;
     if (!ends[i].found && !ends[i].at_border && !bent) foil->flags |= FG_FOIL_NO_END;
   }
-  if (!lip && ends[0].found && ends[1].found) fill(design, layout, foil);
+  if (!lip && ends[0].found && ends[1].found) fill_arc_values(design, layout, foil);
 }

@@ -7,11 +7,11 @@
 
 #include "core/correlation.h"
 
-enum { RANGE_MAX = 4096 }; /* stations of one range that are looked at */
+enum { RANGE_MAX = 4096 }; /* max number of used stations of one range */
 
 /* One residual: of the datum line from its circle, or of the half width from its mean. */
-static double value_at(const fg_datum_line *line, const fg_arc *arc, size_t k, int values,
-                       double mean) {
+static double residual_at(const fg_datum_line *line, const fg_arc *arc, size_t k, int values,
+                          double mean) {
   if (!fg_arc_used(line, arc, k)) return NAN;
   return values ? line->half_width[k] - mean : fg_arc_residual(line, &arc->circle, k);
 }
@@ -37,7 +37,7 @@ static size_t list_values(const fg_datum_line *line, const fg_arc *arc, fg_range
   size_t n = range.last - range.first + 1;
   if (n > RANGE_MAX) n = RANGE_MAX;
   for (size_t i = 0; i < n; i++)
-    list[i] = value_at(line, arc, range.first + i, values, mean);
+    list[i] = residual_at(line, arc, range.first + i, values, mean);
   return n;
 }
 
@@ -55,13 +55,14 @@ static void add_arc(const fg_datum_line *line, const fg_arc *arc, int values, si
   }
 }
 
-/* A fit of three parameters takes variance out of slow residuals: the correlation that is seen is
- * less than the noise's. How much less follows for a typical arc from the projection M = I - P:
- * the mean of (M C M) over the diagonal of each lag, against C. */
-enum { TYPICAL_POINTS = 400 }; /* of the arc that stands for all */
+/* Number of points of the typical arc. A fit of three parameters removes variance of slow
+ * residuals: the visible correlation is lower than the noise's. The difference follows for a
+ * typical arc from the projection M = I - P: the mean of (M C M) over the diagonal of each lag,
+ * against C. */
+enum { TYPICAL_POINTS = 400 };
 
-/* Columns that span what a circle fit takes out of an arc of n points and half angle `half`:
- * 1, cos, sin of the angle, orthonormal. */
+/* Columns that span the variance that a circle's fit removes from an arc of n points and half angle
+ * `half`: 1, cos, sin of the angle, orthonormal. */
 static void span_fit(double half, size_t n, double q[3][TYPICAL_POINTS]) {
   for (size_t i = 0; i < n; i++) {
     double angle = half * (2 * (double)i / (double)(n - 1) - 1);
@@ -112,9 +113,8 @@ static void project_noise(double q[3][TYPICAL_POINTS], size_t n, const fg_noise_
   }
 }
 
-/* A fit of three parameters takes variance out of slow residuals: the correlation that is seen is
- * less than the noise's. How much less is computed for a typical arc from what was seen, and
- * given back, twice. */
+/* Undoes the projection: computes the removed correlation for a typical arc from the visible one,
+ * and adds it, twice. */
 static void undo_projection(const fg_datum_line *line, const fg_arc *arc, fg_noise_model *noise) {
   double q[3][TYPICAL_POINTS], seen[FG_NOISE_LAGS], first[FG_NOISE_LAGS];
   size_t n = arc->ranges[0].last - arc->ranges[0].first + 1;
@@ -137,7 +137,7 @@ void fg_noise_estimate(const fg_datum_line *line, const fg_arc *arcs, size_t cou
   noise->lags = 1;
   lag_sums sums = {0};
   double correlation[FG_NOISE_LAGS], variance = 0;
-  /* White noise is the common case: look at few lags first. */
+  /* White noise is the common case: few lags are tested first. */
   size_t cut = 1;
   for (size_t lags = 8; lags <= FG_NOISE_LAGS; lags *= 2) {
     memset(&sums, 0, sizeof sums);
@@ -151,7 +151,7 @@ void fg_noise_estimate(const fg_datum_line *line, const fg_arc *arcs, size_t cou
     if (cut < lags) break;
   }
   if (cut == 1) {
-    /* Three parameters of every circle took their share of the variance. */
+    /* Three parameters of every circle removed their share of the variance. */
     noise->covariance[0] = sums.products[0] / fmax(sums.pairs[0] - 3.0 * (double)count, 1);
     return;
   }

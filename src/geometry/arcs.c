@@ -84,7 +84,8 @@ static double find_scatter(const fg_datum_line *line, const fg_arc *arc, double 
 }
 
 /* Gathers the usable stations; with `all` outliers too. */
-static size_t gather(const fg_datum_line *line, const fg_arc *arc, bool all, fg_point *points) {
+static size_t gather_stations(const fg_datum_line *line, const fg_arc *arc, bool all,
+                              fg_point *points) {
   size_t n = 0;
   for (size_t i = 0; i < arc->range_count; i++)
     for (size_t k = arc->ranges[i].first; k <= arc->ranges[i].last; k++)
@@ -93,7 +94,7 @@ static size_t gather(const fg_datum_line *line, const fg_arc *arc, bool all, fg_
   return n;
 }
 
-/* A way to get a circle from points; sets the circle and rms_mm. */
+/* A method to find a circle through points; sets the circle and rms_mm. */
 typedef fg_status circle_method(fg_context *ctx, const fg_point *points, size_t count, fg_arc *arc);
 
 static fg_status by_estimate(fg_context *ctx, const fg_point *points, size_t count, fg_arc *arc) {
@@ -118,7 +119,7 @@ static fg_status fit_once(fg_context *ctx, const fg_datum_line *line, circle_met
   return FG_OK;
 }
 
-/* Fits, leaves outliers out, and fits again until the same points stay. */
+/* Fits, drops outliers, and fits again until the points stay the same. */
 static fg_status fit_robustly(fg_context *ctx, const fg_datum_line *line, circle_method *method,
                               fg_arc *arc) {
   size_t stations = count_stations(arc), usable = 0, before = 0;
@@ -127,12 +128,12 @@ static fg_status fit_robustly(fg_context *ctx, const fg_datum_line *line, circle
   fg_status status = FG_OK;
   FG_TRY_EXIT(fg_memory_allocate(ctx, stations, sizeof *points, (void **)&points));
   FG_TRY_EXIT(fg_memory_allocate(ctx, stations, sizeof *work, (void **)&work));
-  usable = gather(line, arc, true, points);
+  usable = gather_stations(line, arc, true, points);
   FG_TRY_EXIT(fit_once(ctx, line, method, points, usable, arc));
   before = usable;
   for (int round = 0; round < ROUNDS_MAX; round++) {
     arc->scatter_mm = find_scatter(line, arc, work);
-    size_t used = gather(line, arc, false, points);
+    size_t used = gather_stations(line, arc, false, points);
     if (used == before) break;
     FG_TRY_EXIT(fit_once(ctx, line, method, points, used, arc));
     before = used;
@@ -150,8 +151,7 @@ typedef struct line_arc {
   const fg_arc *arc;
 } line_arc;
 
-/* Inward shift of a station beyond what a round blur has: a curved edge is moved by the
- * blur along it. */
+/* Inward shift of a station beyond that of a round blur: the blur along it moves a curved edge. */
 static double uneven_shift(const void *user, size_t station) {
   const line_arc *of = user;
   const fg_picture_state *picture = &of->line->strip->picture;
@@ -168,7 +168,7 @@ static double uneven_shift(const void *user, size_t station) {
   return (outwards ? 1 : -1) * excess * blur_shift(of->line, circle->radius);
 }
 
-static void put_uneven_blur_back(const fg_datum_line *line, fg_arc *arc) {
+static void correct_uneven_blur(const fg_datum_line *line, fg_arc *arc) {
   double shift[3];
   const line_arc of = {line, arc};
   if (!(line->strip->picture.findings & FG_PICTURE_UNEVEN_BLUR) ||
@@ -181,7 +181,7 @@ static void put_uneven_blur_back(const fg_datum_line *line, fg_arc *arc) {
 
 fg_status fg_arc_fit(fg_context *ctx, const fg_datum_line *line, fg_arc *arc) {
   FG_TRY(fit_robustly(ctx, line, by_fit, arc));
-  put_uneven_blur_back(line, arc);
+  correct_uneven_blur(line, arc);
   return FG_OK;
 }
 
@@ -190,8 +190,8 @@ fg_status fg_arc_estimate(fg_context *ctx, const fg_datum_line *line, fg_arc *ar
 }
 
 /* Mean departure over a few stations beyond `at`, in the direction `step`; NaN outside. */
-static double departure(const fg_datum_line *line, const fg_arc *arc, double side, long at,
-                        long step, long low, long high) {
+static double departure_mm(const fg_datum_line *line, const fg_arc *arc, double side, long at,
+                           long step, long low, long high) {
   enum { MEAN_STATIONS = 3 };
   double sum = 0;
   int n = 0;
@@ -213,7 +213,7 @@ static double find_foot(const fg_datum_line *line, const fg_arc *arc, double sid
   double s0 = 0, s1 = 0, s2 = 0, r0 = 0, r1 = 0;
   long k = end;
   for (; k >= low && k <= high; k += step) {
-    double d = departure(line, arc, side, k, step, low, high);
+    double d = departure_mm(line, arc, side, k, step, low, high);
     if (d > max) break;
     if (d < min) s0 = s1 = s2 = r0 = r1 = 0; /* noise, not yet the fillet */
     if (!(d >= min)) continue;

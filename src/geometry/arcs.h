@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Arcs of a foil: which stations lie on one circle, the circle, and how sure it is.
+/* Arcs of a foil: the stations of one circle, the circle, and its covariance.
  *
  * Works on the datum line (midline, inner or outer edge) of a strip.
  */
@@ -35,7 +35,7 @@ typedef struct fg_range {
 typedef struct fg_arc {
   const fg_range *ranges;
   size_t range_count;
-  fg_circle circle;  /* as fitted, with the blur's shift put back */
+  fg_circle circle;  /* as fitted, corrected for the blur's shift */
   double scatter_mm; /* robust sd of the residuals */
   double rms_mm;     /* of the residuals that were used */
   size_t points, outliers;
@@ -43,31 +43,31 @@ typedef struct fg_arc {
 } fg_arc;
 
 /* Fits the circle to all usable stations of the ranges. Points further than 5 robust sd (and at
- * least 0.3 µm) off are left out; the fit is repeated until they stay the same. FG_ERR_NUMERIC
- * when there are fewer than 8. */
+ * least 0.3 µm) off are left out; the fit is repeated until they stay the same. FG_ERR_NUMERIC when
+ * there are fewer than 8. */
 fg_status fg_arc_fit(fg_context *ctx, const fg_datum_line *line, fg_arc *arc);
 
-/* The same with the algebraic circle alone, for the search of an arc's ends. */
+/* Fits the algebraic circle alone, for the search of an arc's ends. */
 fg_status fg_arc_estimate(fg_context *ctx, const fg_datum_line *line, fg_arc *arc);
 
-/* Radial residual of a station, outwards positive; NaN where the station is not usable. The blur's
- * shift is taken off. */
+/* Radial residual of a station, outwards positive; NaN where the station is not usable. It is
+ * corrected for the blur's shift. */
 double fg_arc_residual(const fg_datum_line *line, const fg_circle *circle, size_t station);
 
-/* Whether a station took part: usable and no outlier. */
+/* Returns true when a station is in the fit: usable and no outlier. */
 bool fg_arc_used(const fg_datum_line *line, const fg_arc *arc, size_t station);
 
-/* How far an arc reaches: grows `range` from its core, both ways, up to `bounds`, until the line
- * leaves the circle. `side` is +1 when it leaves outwards (a bump's fillets), -1 inwards (a
- * land's). A fillet leaves with the square of the distance from its tangent point; the root of the
- * departure is a straight line, whose foot is that point. The range ends 1.5 blurs before it. */
+/* Grows `range` from the arc's core, both ways, up to `bounds`, until the line leaves the circle.
+ * `side` is +1 when it leaves outwards (a bump's fillets), -1 inwards (a land's). A fillet leaves
+ * with the square of the distance from its tangent point. The root of the departure is a straight
+ * line, whose foot is that point. The range ends 1.5 blurs before it. */
 void fg_arc_grow(const fg_datum_line *line, const fg_arc *arc, double side, fg_range bounds,
                  fg_range *range);
 
 /* Autocovariance of residuals along the strip, pooled over arcs. */
 typedef struct fg_noise_model {
   double covariance[FG_NOISE_LAGS]; /* mm², by lag in stations; tapered to 0 */
-  size_t lags;                      /* of them that count; 1: white */
+  size_t lags;                      /* number of lags that count; 1: white */
   double integral_stations;         /* 1 + 2 sum of autocorrelation */
 } fg_noise_model;
 
@@ -76,24 +76,24 @@ void fg_noise_estimate(const fg_datum_line *line, const fg_arc *arcs, size_t cou
                        fg_noise_model *noise);
 
 /* Covariance of (x, y, R) of one arc under a noise model: A (sum_ij x_i x_j' c_|i-j|) A. Where the
- * estimated correlation is so uncertain that this is no covariance, the noise is taken as white
- * with the variance times the integral of the correlation (at least 1). */
+ * estimated correlation is so uncertain that this is no covariance, the noise counts as white with
+ * the variance times the integral of the correlation (at least 1). */
 void fg_arc_covariance(const fg_datum_line *line, const fg_noise_model *noise, fg_arc *arc);
 
-/* The same from the ranges as clusters: A (sum over ranges of g g') A × n/(n - 3), g the sum of x
- * times the residual over one range. It holds when whole ranges deviate together (lands that do
- * not lie on one circle). Returns the ratio of its variance of R to the one in `arc`, and replaces
- * that covariance when the ratio could come by chance with a probability of less than `p`. */
+/* Covariance from the ranges as clusters: A (sum over ranges of g g') A × n/(n - 3), g the sum of x
+ * times the residual over one range. It holds when whole ranges deviate together (lands that do not
+ * lie on one circle). Returns the ratio of its variance of R to the one in `arc`, and replaces that
+ * covariance when the ratio could come by chance with a probability of less than `p`. */
 double fg_arc_cluster_covariance(const fg_datum_line *line, double p, fg_arc *arc);
 
-/* Shift of the parameters (x, y, R) if every station of the line moved along its normal
- * by what `move` says, mm. */
+/* Shift of the parameters (x, y, R) if every station of the line moved along its normal by `move`,
+ * mm. */
 bool fg_arc_shift_by(const fg_datum_line *line, const fg_arc *arc,
                      double (*move)(const void *user, size_t station), const void *user,
                      double shift[3]);
 
-/* Shift of the parameters (x, y, R) if the half width's deviation from its mean were an
- * error of the line: the edge model's own systematic error shows there. */
+/* Shift of the parameters (x, y, R) if the half width's deviation from its mean were an error of
+ * the line. It shows the systematic error of the edge model. */
 bool fg_arc_half_width_shift(const fg_datum_line *line, const fg_arc *arc, double shift[3]);
 
 #endif

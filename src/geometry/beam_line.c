@@ -12,15 +12,15 @@
 #include "core/spread.h"
 
 enum { ROUNDS = 6, MIN_STATIONS = 4, BLOCK = 64, BLOCKS_MIN = 6, BESIDE = 2 };
-/* Stations further off than so many robust deviations, and at least so far, are left out. */
+/* Limits of an outlier: robust deviations, and a distance. */
 #define OUTLIER_DEVIATIONS 4.5
 #define OUTLIER_MIN_MM     0.0004
-/* Long stretches scatter more than the lags tell when their ratio is above this. */
+/* Min ratio at which long stretches scatter more than the lags predict. */
 #define LONG_RANGE_MIN 1.5
 /* The shape of the edge was fitted to the same pixels (geometry/disc_fit.c). */
 #define SHAPE_VARIANCE 1.12
 
-static const fg_disc_point *station(const fg_beam_line *line, size_t i) {
+static const fg_disc_point *station_at(const fg_beam_line *line, size_t i) {
   return &line->edge->stations[i];
 }
 
@@ -28,17 +28,17 @@ static double place_along(const fg_beam_line *line, fg_point p) {
   return line->along.x * (p.x - line->at.x) + line->along.y * (p.y - line->at.y);
 }
 
-/* The void is to the left as seen of a rim's way: to the right where y points up. */
+/* Distance across. The void is to the left of a rim as seen: to the right where y points up. */
 static double place_across(const fg_beam_line *line, fg_point p) {
   return line->along.y * (p.x - line->at.x) - line->along.x * (p.y - line->at.y);
 }
 
 static void fit_once(fg_beam_line *line) {
   double n = 0, sx = 0, sy = 0, xx = 0, xy = 0, yy = 0;
-  fg_point o = station(line, 0)->at;
+  fg_point o = station_at(line, 0)->at;
   for (size_t i = 0; i < line->edge->count; i++) {
     if (isnan(line->across[i])) continue;
-    double x = station(line, i)->at.x - o.x, y = station(line, i)->at.y - o.y;
+    double x = station_at(line, i)->at.x - o.x, y = station_at(line, i)->at.y - o.y;
     n++;
     sx += x;
     sy += y;
@@ -49,22 +49,22 @@ static void fit_once(fg_beam_line *line) {
   sx /= n;
   sy /= n;
   double angle = 0.5 * atan2(2 * (xy / n - sx * sy), xx / n - sx * sx - yy / n + sy * sy);
-  fg_point last = station(line, line->edge->count - 1)->at;
+  fg_point last = station_at(line, line->edge->count - 1)->at;
   line->at = (fg_point){o.x + sx, o.y + sy};
   line->along = (fg_point){cos(angle), sin(angle)};
   if (line->along.x * (last.x - o.x) + line->along.y * (last.y - o.y) < 0)
     line->along = (fg_point){-line->along.x, -line->along.y};
 }
 
-/* Usable stations within the limit of where the fit has them, and whose neighbours are: what
- * disturbs a station reaches to those beside it. */
-static void take_within(fg_beam_line *line, const double *off, double limit) {
+/* Uses the stations within the limit of the fit whose neighbours are, too: a disturbance reaches
+ * neighbouring stations. */
+static void use_within(fg_beam_line *line, const double *off, double limit) {
   double squares = 0;
   line->used = 0;
   for (size_t i = 0; i < line->edge->count; i++) {
     bool use = true;
     for (size_t k = i < BESIDE ? 0 : i - BESIDE; k <= i + BESIDE && k < line->edge->count; k++)
-      use = use && station(line, k)->used && fabs(off[k]) <= limit;
+      use = use && station_at(line, k)->used && fabs(off[k]) <= limit;
     line->across[i] = use ? off[i] : NAN;
     line->used += use;
     squares += use ? off[i] * off[i] : 0;
@@ -75,7 +75,7 @@ static void take_within(fg_beam_line *line, const double *off, double limit) {
 static double find_limit(const fg_beam_line *line, const double *off, double *scratch) {
   size_t n = 0;
   for (size_t i = 0; i < line->edge->count; i++)
-    if (station(line, i)->used) scratch[n++] = fabs(off[i]);
+    if (station_at(line, i)->used) scratch[n++] = fabs(off[i]);
   return fmax(fg_spread_limit(scratch, n, OUTLIER_DEVIATIONS), OUTLIER_MIN_MM);
 }
 
@@ -91,19 +91,22 @@ static void fit_apex(fg_beam_line *line, apex *a, double *off) {
   double x[FG_SMALL_MAX] = {0};
   fg_normal_clear(&system, 3);
   for (size_t i = 0; i < line->edge->count; i++) {
-    double dx = station(line, i)->at.x - a->circle.x, dy = station(line, i)->at.y - a->circle.y;
+    double dx = station_at(line, i)->at.x - a->circle.x,
+           dy = station_at(line, i)->at.y - a->circle.y;
     double r = hypot(dx, dy), c = (dx * a->axis.x + dy * a->axis.y) / r;
     double s = (dy * a->axis.x - dx * a->axis.y) / r;
     if (!isnan(line->across[i])) fg_normal_add(&system, (double[]){1, c, s}, r, 1);
   }
   fg_normal_solve(&system, 1e-12, x, NULL);
   for (size_t i = 0; i < line->edge->count; i++) {
-    double dx = station(line, i)->at.x - a->circle.x, dy = station(line, i)->at.y - a->circle.y;
+    double dx = station_at(line, i)->at.x - a->circle.x,
+           dy = station_at(line, i)->at.y - a->circle.y;
     double r = hypot(dx, dy), c = (dx * a->axis.x + dy * a->axis.y) / r;
     double s = (dy * a->axis.x - dx * a->axis.y) / r;
     off[i] = -(r - x[0] - x[1] * c - x[2] * s);
   }
-  /* c is b's and s is c's part of the centre's move, so the circle's own apex is at the sum. */
+  /* b and c are the centre's move along the axis and across it, so the circle's own apex is at the
+   * sum. */
   line->at = (fg_point){a->circle.x + (x[0] + x[1]) * a->axis.x - x[2] * a->axis.y,
                         a->circle.y + (x[0] + x[1]) * a->axis.y + x[2] * a->axis.x};
   line->along = (fg_point){-a->axis.y, a->axis.x};
@@ -115,7 +118,7 @@ static fg_status start_apex(fg_context *ctx, const fg_beam_line *line, fg_point 
   size_t used = 0;
   FG_TRY(fg_memory_allocate(ctx, n, sizeof *points, (void **)&points));
   for (size_t i = 0; i < n; i++)
-    if (station(line, i)->used) points[used++] = station(line, i)->at;
+    if (station_at(line, i)->used) points[used++] = station_at(line, i)->at;
   fg_status status = fg_circle_estimate(ctx, points, NULL, used, &a->circle);
   a->axis = (fg_point){-axis.x, -axis.y};
   free(points);
@@ -132,8 +135,8 @@ static fg_status fit_rounds(fg_context *ctx, fg_point axis, double *off, double 
     else
       fit_once(line);
     for (size_t i = 0; i < line->edge->count && !line->edge->round; i++)
-      off[i] = place_across(line, station(line, i)->at);
-    if (round + 1 < ROUNDS) take_within(line, off, find_limit(line, off, scratch));
+      off[i] = place_across(line, station_at(line, i)->at);
+    if (round + 1 < ROUNDS) use_within(line, off, find_limit(line, off, scratch));
     if (line->used < MIN_STATIONS || 2 * line->used < line->edge->count)
       return fg_fail(ctx, FG_ERR_NUMERIC, "only %zu of %zu stations of an edge are usable",
                      line->used, line->edge->count);
@@ -150,7 +153,7 @@ fg_status fg_beam_line_fit(fg_context *ctx, const fg_beam_edge *edge, fg_point a
   *line = (fg_beam_line){.edge = edge, .spread = 1};
   FG_TRY_EXIT(fg_memory_allocate(ctx, edge->count, sizeof *line->across, (void **)&line->across));
   FG_TRY_EXIT(fg_memory_allocate(ctx, edge->count, 2 * sizeof *block, (void **)&block));
-  take_within(line, block, INFINITY); /* block is all 0: what is usable */
+  use_within(line, block, INFINITY); /* block is all 0: the usable stations */
   line->usable = line->used;
   if (line->usable < MIN_STATIONS || 2 * line->usable < edge->count)
     status = fg_fail(ctx, FG_ERR_NUMERIC, "only %zu of %zu stations of an edge are usable",
@@ -168,7 +171,7 @@ void fg_beam_line_free(fg_beam_line *line) {
   *line = (fg_beam_line){0};
 }
 
-/* Weights whose sum with the stations' places across is what is asked. */
+/* Weights of the stations' places across in a property of the line. */
 typedef struct asked {
   const fg_beam_line *line;
   double half; /* length */
@@ -176,10 +179,10 @@ typedef struct asked {
 } asked;
 
 static double relative_along(const asked *a, size_t i) {
-  return place_along(a->line, station(a->line, i)->at) / a->half;
+  return place_along(a->line, station_at(a->line, i)->at) / a->half;
 }
 
-static void prepare(const fg_beam_line *line, asked *a) {
+static void prepare_weights(const fg_beam_line *line, asked *a) {
   double low = INFINITY, high = -INFINITY;
   *a = (asked){.line = line, .half = 1};
   for (size_t i = 0; i < line->edge->count; i++) {
@@ -202,7 +205,7 @@ static void prepare(const fg_beam_line *line, asked *a) {
   }
 }
 
-static double weight_of(const asked *a, size_t i, fg_beam_ask ask, double along_mm) {
+static double weight_of(const asked *a, size_t i, fg_beam_property ask, double along_mm) {
   double x = relative_along(a, i);
   if (isnan(a->line->across[i])) return 0;
   if (ask == FG_BEAM_PLACE) return 1 / a->n + along_mm / a->half * x / a->xx;
@@ -213,22 +216,22 @@ static double weight_of(const asked *a, size_t i, fg_beam_ask ask, double along_
 double fg_beam_line_parabola(const fg_beam_line *line) {
   asked a;
   double sum = 0;
-  prepare(line, &a);
+  prepare_weights(line, &a);
   for (size_t i = 0; i < line->edge->count; i++)
     if (!isnan(line->across[i])) sum += weight_of(&a, i, FG_BEAM_PARABOLA, 0) * line->across[i];
   return sum;
 }
 
-/* The apex of a round floor takes a row of (J'J)^-1 J' for a + b of fit_apex. */
+/* Weights of the apex of a round floor: a row of (J'J)^-1 J' for a + b of fit_apex. */
 static bool weigh_apex(const fg_beam_line *line, double *weights) {
   fg_normal_equations system;
   double x[FG_SMALL_MAX], inverse[FG_SMALL_MAX][FG_SMALL_MAX], half = 0;
   fg_normal_clear(&system, 3);
   for (size_t i = 0; i < line->edge->count; i++)
-    half = fmax(half, fabs(place_along(line, station(line, i)->at)));
+    half = fmax(half, fabs(place_along(line, station_at(line, i)->at)));
   for (int fill = 0; fill < 2; fill++) {
     for (size_t i = 0; i < line->edge->count; i++) {
-      double s = place_along(line, station(line, i)->at) / half;
+      double s = place_along(line, station_at(line, i)->at) / half;
       const double row[3] = {1, s, s * s};
       weights[i] = 0;
       if (isnan(line->across[i])) continue;
@@ -253,12 +256,12 @@ static double sum_covariance(const double *weights, size_t n, const fg_beam_nois
 }
 
 fg_status fg_beam_line_variance(fg_context *ctx, const fg_beam_line *line,
-                                const fg_beam_noise *noise, fg_beam_ask ask, double along_mm,
+                                const fg_beam_noise *noise, fg_beam_property ask, double along_mm,
                                 double *variance) {
   double *weights;
   asked a;
   FG_TRY(fg_memory_allocate(ctx, line->edge->count, sizeof *weights, (void **)&weights));
-  prepare(line, &a);
+  prepare_weights(line, &a);
   for (size_t i = 0; i < line->edge->count; i++)
     weights[i] = weight_of(&a, i, ask, along_mm);
   bool good = !line->edge->round || weigh_apex(line, weights);
@@ -269,19 +272,18 @@ fg_status fg_beam_line_variance(fg_context *ctx, const fg_beam_line *line,
   return FG_OK;
 }
 
-/* A long edge without its line and its parabola: what is left is scatter. */
+/* Scatter of a long edge: its residual without line and parabola. */
 static double scatter_at(const asked *a, size_t i, double parabola) {
   double x = relative_along(a, i);
   return a->line->across[i] - parabola * (x * x - a->mean_square);
 }
 
-/* The correlation is followed to this share of its start. */
+/* Share of its start down to which the correlation is extended. */
 #define TAIL_SHARE 0.01
-/* Values that lines and parabolas of two edges take out; the least freedom, and the most that is
- * made up for. */
-#define TAKEN_OUT   6.0
-#define DOF_MIN     4.0
-#define MADE_UP_MAX 2.0
+/* Values removed by lines and parabolas of two edges; min dof, and max correction. */
+#define FITTED_VALUES 6.0
+#define DOF_MIN       4.0
+#define MADE_UP_MAX   2.0
 
 typedef struct sums {
   double products[FG_BEAM_LAGS], pairs[FG_BEAM_LAGS];
@@ -305,7 +307,7 @@ static void add_edge(const fg_beam_line *line, double *values, sums *s) {
   asked a;
   size_t n = line->edge->count;
   double parabola = fg_beam_line_parabola(line);
-  prepare(line, &a);
+  prepare_weights(line, &a);
   for (size_t i = 0; i < n; i++)
     values[i] = scatter_at(&a, i, parabola);
   for (size_t lag = 0; lag < FG_BEAM_LAGS && lag < n; lag++)
@@ -318,7 +320,7 @@ static void add_edge(const fg_beam_line *line, double *values, sums *s) {
     add_block(values, n, first, s);
 }
 
-/* By what the means over blocks scatter more than the lags alone would have it. */
+/* Ratio of the scatter of means over blocks to the one by the lags alone. */
 static double compare_blocks(const sums *s, const fg_beam_noise *noise) {
   double expected = 0, n = s->block_stations / s->blocks;
   if (s->blocks < BLOCKS_MIN) return 1;
@@ -328,7 +330,7 @@ static double compare_blocks(const sums *s, const fg_beam_noise *noise) {
   return ratio > LONG_RANGE_MIN ? ratio : 1;
 }
 
-/* Values that count for one: the integral of the correlation. */
+/* Number of values that count as one: the integral of the correlation. */
 static double integral_of(const fg_beam_noise *noise) {
   double integral = 1;
   for (size_t lag = 1; lag < noise->lags; lag++)
@@ -336,9 +338,8 @@ static double integral_of(const fg_beam_noise *noise) {
   return integral;
 }
 
-/* Behind the last lag that is no chance the correlation goes on as an exponential of the length
- * that the lags have. */
-static void extend(fg_beam_noise *noise) {
+/* Extends the correlation after the last significant lag as an exponential of the lags' length. */
+static void extend_correlation(fg_beam_noise *noise) {
   double length = 0.5 * (integral_of(noise) - 1), ratio = length / (1 + length);
   if (noise->lags < 2) return;
   while (noise->lags < FG_BEAM_LAGS &&
@@ -348,10 +349,11 @@ static void extend(fg_beam_noise *noise) {
   }
 }
 
-/* A line and a parabola took three values of those that count out of either edge, and few values
- * do not tell their variance well: Student's factor makes 2 u mean 95 % all the same. */
-static void make_up(double stations, fg_beam_noise *noise) {
-  double count = stations / integral_of(noise), dof = fmax(count - TAKEN_OUT, DOF_MIN);
+/* Corrects for few dof. A line and a parabola removed three of the independent values of either
+ * edge, and few values do not determine their variance well: Student's factor makes 2 u mean 95 %
+ * all the same. */
+static void correct_for_dof(double stations, fg_beam_noise *noise) {
+  double count = stations / integral_of(noise), dof = fmax(count - FITTED_VALUES, DOF_MIN);
   double student = gsl_cdf_tdist_Pinv(0.975, dof) / 1.959964;
   for (size_t lag = 0; lag < noise->lags; lag++)
     noise->covariance[lag] *= fmin(count / dof, MADE_UP_MAX) * student * student;
@@ -359,7 +361,7 @@ static void make_up(double stations, fg_beam_noise *noise) {
 
 static double step_of(const fg_beam_line *line) {
   size_t n = line->edge->count;
-  fg_point a = station(line, 0)->at, b = station(line, n - 1)->at;
+  fg_point a = station_at(line, 0)->at, b = station_at(line, n - 1)->at;
   return hypot(b.x - a.x, b.y - a.y) / (double)(n - 1);
 }
 
@@ -376,9 +378,9 @@ fg_status fg_beam_noise_find(fg_context *ctx, const fg_beam_line *left, const fg
   noise->lags = fg_correlation_lags(s.products, s.pairs, FG_BEAM_LAGS);
   for (size_t lag = 0; lag < noise->lags; lag++)
     noise->covariance[lag] = s.products[lag] / s.pairs[lag];
-  extend(noise);
+  extend_correlation(noise);
   noise->long_range = compare_blocks(&s, noise);
-  make_up(s.pairs[0], noise);
+  correct_for_dof(s.pairs[0], noise);
   return FG_OK;
 }
 

@@ -7,8 +7,8 @@
 #include "core/memory.h"
 #include "core/select.h"
 
-/* Beams point the same way when none is further than this from their mean direction. */
-#define SAME_WAY 0.7071 /* cos 45 degrees */
+/* Cosine of the max angle to their mean direction at which beams are parallel. */
+#define PARALLEL_COSINE 0.7071 /* cos 45 degrees */
 
 /* A gap is a whole number of pitches when it is within this share of a pitch of it. */
 #define WHOLE_SHARE 0.25
@@ -17,7 +17,7 @@
  * with the missing beam, and cannot tell which end lacks one. */
 #define MIDDLE_SHARE 0.3
 
-/* Where a beam stands in the order. */
+/* Place of a beam in the order. */
 typedef struct place {
   fg_beam beam;
   double row, column;
@@ -35,7 +35,7 @@ static int by_column(const void *a, const void *b) {
   return (p->column > q->column) - (p->column < q->column);
 }
 
-static fg_point middle_of(const fg_beam *beam) {
+static fg_point beam_middle(const fg_beam *beam) {
   return (fg_point){0.5 * (beam->root_mm.x + beam->tip_mm.x),
                     0.5 * (beam->root_mm.y + beam->tip_mm.y)};
 }
@@ -44,7 +44,7 @@ static double length_of(const fg_beam *beam) {
   return hypot(beam->tip_mm.x - beam->root_mm.x, beam->tip_mm.y - beam->root_mm.y);
 }
 
-/* The mean direction, when all point that way. */
+/* Finds the mean direction, when all beams are parallel. */
 static bool find_direction(const fg_foil *foil, fg_point *mean) {
   *mean = (fg_point){0, 0};
   for (size_t i = 0; i < foil->beam_count; i++) {
@@ -58,12 +58,12 @@ static bool find_direction(const fg_foil *foil, fg_point *mean) {
   mean->y /= size;
   for (size_t i = 0; i < foil->beam_count; i++) {
     double angle = foil->beams[i].direction_deg * M_PI / 180;
-    if (cos(angle) * mean->x + sin(angle) * mean->y < SAME_WAY) return false;
+    if (cos(angle) * mean->x + sin(angle) * mean->y < PARALLEL_COSINE) return false;
   }
   return true;
 }
 
-/* Rows from the tips down, by the roots, which a beam that is torn off keeps; a row ends where the
+/* Sorts into rows from the tips down, by the roots, which a torn beam keeps; a row ends where the
  * next root lies half a length lower. */
 static size_t sort_rows(place *places, size_t count, fg_point up) {
   double longest = 0;
@@ -88,7 +88,7 @@ static size_t sort_rows(place *places, size_t count, fg_point up) {
   return rows;
 }
 
-/* The smallest gap, evened out over the others by how many times they hold it. */
+/* Finds the pitch: the smallest gap, evened out over the others by their multiples. */
 static double find_pitch(const double *gaps, size_t count) {
   double min = INFINITY, sum = 0, steps = 0;
   for (size_t i = 0; i < count; i++)
@@ -107,8 +107,8 @@ static size_t gaps_in_rows(const place *places, size_t count, double *gaps) {
   return n;
 }
 
-/* Of `missing` places at the ends of the rows, those before the first: the foil's middle is that of
- * its box. -1: it cannot be told. */
+/* Number of `missing` places before the first one, of those at the ends of the rows: the foil's
+ * middle is that of its box. -1: unknown. */
 static int count_before(const fg_foil *foil, fg_point up, double first, double pitch, int span,
                         int missing) {
   const double *box = foil->place_mm;
@@ -122,7 +122,8 @@ static int count_before(const fg_foil *foil, fg_point up, double first, double p
   return (int)whole;
 }
 
-/* Rows have the same places, at one pitch. False: the beams do not say which of them are empty. */
+/* Places beams in rows, which have the same places, at one pitch. False: the empty ones are
+ * unknown. */
 static bool place_in_rows(const fg_foil *foil, size_t stated, place *places, size_t rows,
                           fg_point up, double *gaps) {
   size_t count = foil->beam_count;
@@ -137,7 +138,7 @@ static bool place_in_rows(const fg_foil *foil, size_t stated, place *places, siz
     if (fabs(steps - places[i].index) > WHOLE_SHARE) return false;
     if (places[i].index >= span) span = places[i].index + 1;
   }
-  /* Beams so few that the pitch may be half of it: every other one may be missing. */
+  /* So few beams that the pitch may be half of it: every other one may be missing. */
   if (span > each || 2 * span - 1 <= each) return false;
   int before = count_before(foil, up, first, pitch, span, each - span);
   for (size_t i = 0; i < count; i++) {
@@ -151,12 +152,12 @@ static bool place_in_rows(const fg_foil *foil, size_t stated, place *places, siz
 static void sort_around(place *places, size_t count) {
   fg_point centre = {0, 0};
   for (size_t i = 0; i < count; i++) {
-    fg_point m = middle_of(&places[i].beam);
+    fg_point m = beam_middle(&places[i].beam);
     centre.x += m.x / (double)count;
     centre.y += m.y / (double)count;
   }
   for (size_t i = 0; i < count; i++) {
-    fg_point m = middle_of(&places[i].beam);
+    fg_point m = beam_middle(&places[i].beam);
     places[i].column = atan2(m.y - centre.y, m.x - centre.x);
   }
   fg_sort_items(places, count, sizeof *places, by_column);
@@ -179,7 +180,7 @@ static double turn_to(const place *from, const place *to) {
   return turn - 2 * M_PI * floor(turn / (2 * M_PI));
 }
 
-/* Places of the beams that follow the gap before `start`; 0: a gap is no whole number of pitches.
+/* Counts places of the beams after the gap before `start`; 0: a gap is no whole number of pitches.
  */
 static int count_around(const place *places, size_t count, size_t start, double pitch) {
   int index = 0;
@@ -191,8 +192,8 @@ static int count_around(const place *places, size_t count, size_t start, double 
   return index + 1;
 }
 
-/* The beams point away from the ring's middle, or turn with it. The order starts after the one gap
- * that leaves as many places as the design has beams. */
+/* Places beams around a ring: they point away from its middle, or turn with it. The order starts
+ * after the one gap that leaves as many places as the design has beams. */
 static bool place_around(const fg_foil *foil, size_t stated, place *places, double *gaps) {
   size_t count = foil->beam_count, starts = 0, start = 0;
   for (size_t i = 0; i < count; i++)
@@ -215,10 +216,9 @@ static bool place_around(const fg_foil *foil, size_t stated, place *places, doub
   return true;
 }
 
-/* Numbers by places where beams are missing; else, and where the places cannot be told, by order.
- */
-static void number(const fg_design *design, place *places, size_t rows, fg_point up, double *gaps,
-                   fg_foil *foil) {
+/* Numbers by places where beams are missing; else, and where the places are unknown, by order. */
+static void number_beams(const fg_design *design, place *places, size_t rows, fg_point up,
+                         double *gaps, fg_foil *foil) {
   size_t count = foil->beam_count, stated = design->beam_count;
   bool lacks = count && count < stated, placed = false;
   if (lacks && rows) placed = place_in_rows(foil, stated, places, rows, up, gaps);
@@ -237,18 +237,18 @@ fg_status fg_beams_number(fg_context *ctx, const fg_design *design, fg_foil *foi
   fg_point up;
   size_t count = foil->beam_count, rows = 0;
   fg_status status = FG_OK;
-  bool same_way = find_direction(foil, &up);
-  foil->rotation_deg = same_way ? atan2(up.y, up.x) * 180 / M_PI : NAN;
+  bool parallel = find_direction(foil, &up);
+  foil->rotation_deg = parallel ? atan2(up.y, up.x) * 180 / M_PI : NAN;
   foil->flags &= ~(unsigned)(FG_FOIL_MISSING_BEAM | FG_FOIL_BEAM_PLACES_UNKNOWN);
   FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *places, (void **)&places));
   FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *gaps, (void **)&gaps));
   for (size_t i = 0; i < count; i++)
     places[i].beam = foil->beams[i];
-  if (same_way)
+  if (parallel)
     rows = sort_rows(places, count, up);
   else
     sort_around(places, count);
-  number(design, places, rows, up, gaps, foil);
+  number_beams(design, places, rows, up, gaps, foil);
 exit:
   free(places);
   free(gaps);

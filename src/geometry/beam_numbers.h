@@ -5,7 +5,7 @@
 
 #include "foilgauge/foil.h"
 
-/* Sorts the beams, numbers them (foilgauge/foil.h says how), sets rotation_deg,
+/* Sorts the beams, numbers them by the rules of foilgauge/foil.h, sets rotation_deg,
  * FG_FOIL_MISSING_BEAM and FG_FOIL_BEAM_PLACES_UNKNOWN. FG_ERR_MEMORY. */
 fg_status fg_beams_number(fg_context *ctx, const fg_design *design, fg_foil *foil);
 

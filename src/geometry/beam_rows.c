@@ -3,8 +3,8 @@
  *
  * Every straight edge is a cubic along itself, and a jump of d at y0 adds d n_y [y > y0] to it,
  * with n its normal. Jumps are added one by one where they explain most over all edges together.
- * Steps of the part itself are told from them: a step of one edge alone, or steps of several that
- * are not one displacement of the rows. */
+ * The part itself may have steps: a step of one edge alone, or steps of several that are not one
+ * displacement of the rows. */
 #include "geometry/beam_rows.h"
 
 #include <math.h>
@@ -15,43 +15,44 @@
 #include "core/spread.h"
 
 enum { CUBIC = 4, COLUMNS = CUBIC + FG_BEAM_JUMPS_MAX, STATIONS_MIN = 40, REACH = 12 };
-/* Less of a normal along y than this shows nothing. */
+/* Min part of a normal along y: edges below show no jump. */
 #define CROSSING_MIN 0.01
-/* Of squares, over the variance: one value explains 1 by chance, at the best of a thousand rows 20.
- */
+/* Min gain in squares, over the variance: one value explains 1 by chance, at the best of a thousand
+ * rows 20. */
 #define GAIN_MIN     40.0
 #define JUMP_MIN_ROW 0.5
-#define CUT_SIGMAS   6.0 /* residuals count as no larger: dust */
-/* An edge is asked where the step would be so many sd of it; it may differ by that share. */
-#define ASKED_SIGMAS 4.0
-#define STEP_SHARE   0.5
+#define CUT_SIGMAS   6.0 /* residuals are clipped here: dust */
+/* An edge is tested where the expected step is so many of its sd; the step may differ by that
+ * share. */
+#define TESTED_SIGMAS 4.0
+#define STEP_SHARE    0.5
 enum { AGREE_MIN = 2, AGREE_FACTOR = 3 };
-/* Pixels of several rows tell where an edge is: jumps so near to each other are one. */
+/* Min distance of two jumps. The pixels of several rows determine an edge: nearer jumps are one. */
 #define APART_ROWS 12.0
 
 typedef struct row_place {
   double y, across, rest;
   double q[COLUMNS];
-  double tail_rest, tails[COLUMNS]; /* sums from here on */
+  double tail_residual, tails[COLUMNS]; /* sums from here on */
 } row_place;
 
 typedef struct row_edge {
   row_place *places; /* by y; owned */
   size_t count, columns;
   double normal_y, limit;
-  double variance; /* of a place; of found jumps raised by how alike neighbours are */
+  double variance; /* of a place; for found jumps multiplied by the correlation of neighbours */
 } row_edge;
 
 typedef struct row_search {
   row_edge *edges;
   size_t count;
-  double low, high, step; /* rows that are asked */
+  double low, high, step; /* range and step of the tested rows */
   double *scratch;
   fg_beam_jumps *jumps;
 } row_search;
 
-/* Makes the last column orthogonal to those before it; one that they hold already is dropped. */
-static void orthogonalise(row_edge *e) {
+/* Makes the last column orthogonal to those before it; one in their span is dropped. */
+static void orthogonalise_edge(row_edge *e) {
   size_t k = e->columns;
   double before = 0, square = 0;
   for (size_t i = 0; i < e->count; i++)
@@ -71,7 +72,7 @@ static void orthogonalise(row_edge *e) {
   e->columns++;
 }
 
-static void find_rest(row_edge *e) {
+static void find_residuals(row_edge *e) {
   for (size_t i = 0; i < e->count; i++)
     e->places[i].rest = e->places[i].across;
   for (size_t k = 0; k < e->columns; k++) {
@@ -83,7 +84,7 @@ static void find_rest(row_edge *e) {
   }
 }
 
-static double cut(const row_edge *e, double rest) {
+static double clip_residual(const row_edge *e, double rest) {
   return fmax(-e->limit, fmin(e->limit, rest));
 }
 
@@ -93,32 +94,33 @@ static void find_limit(row_edge *e, double *scratch) {
   e->limit = CUT_SIGMAS * fg_robust_sd(scratch, e->count);
 }
 
-/* The cubic and all jumps but one. */
-static void fill_columns(row_edge *e, const fg_beam_jumps *jumps, size_t without, double *scratch) {
+/* Fills the cubic and all jumps but one. */
+static void fill_edge_columns(row_edge *e, const fg_beam_jumps *jumps, size_t without,
+                              double *scratch) {
   e->columns = 0;
   double first = e->places[0].y, size = e->places[e->count - 1].y - first;
   for (int k = 0; k < CUBIC; k++) {
     for (size_t i = 0; i < e->count; i++)
       e->places[i].q[e->columns] = pow(2 * (e->places[i].y - first) / size - 1, k);
-    orthogonalise(e);
+    orthogonalise_edge(e);
   }
   for (size_t k = 0; k < jumps->count; k++) {
     for (size_t i = 0; k != without && i < e->count; i++)
       e->places[i].q[e->columns] = e->places[i].y > jumps->y_mm[k];
-    if (k != without) orthogonalise(e);
+    if (k != without) orthogonalise_edge(e);
   }
-  find_rest(e);
+  find_residuals(e);
   find_limit(e, scratch);
   for (size_t i = e->count; i-- > 0;) {
     row_place *p = &e->places[i];
     bool last = i + 1 == e->count;
-    p->tail_rest = cut(e, p->rest) + (last ? 0 : p[1].tail_rest);
+    p->tail_residual = clip_residual(e, p->rest) + (last ? 0 : p[1].tail_residual);
     for (size_t k = 0; k < e->columns; k++)
       p->tails[k] = p->q[k] + (last ? 0 : p[1].tails[k]);
   }
 }
 
-/* From second differences, to which jumps hardly add. */
+/* Finds the noise from second differences, to which jumps hardly add. */
 static void find_noise(row_edge *e, double *scratch) {
   for (size_t i = 1; i + 1 < e->count; i++) {
     const row_place *p = &e->places[i];
@@ -128,21 +130,20 @@ static void find_noise(row_edge *e, double *scratch) {
   e->variance = sd * sd / 1.5;
 }
 
-/* Residuals of neighbours are alike: by so much the variance of a step is more. */
+/* Finds the variance of a step: residuals of neighbours are alike, which raises it. */
 static void find_variance(row_edge *e) {
   double squares = 0, products = 0;
   for (size_t i = 0; i < e->count; i++) {
-    double here = cut(e, e->places[i].rest);
+    double here = clip_residual(e, e->places[i].rest);
     squares += here * here;
     for (size_t k = i + 1; k <= i + REACH && k < e->count; k++)
-      products += here * cut(e, e->places[k].rest);
+      products += here * clip_residual(e, e->places[k].rest);
   }
   e->variance = fmax(squares + 2 * products, squares) / (double)(e->count - e->columns);
 }
 
-/* Products of a step of the rows behind a place with an edge's residuals, and with itself.
- */
-static void ask_edge(const row_edge *e, double y, double sums[2]) {
+/* Products of a step of the rows beyond a place with an edge's residuals, and with itself. */
+static void test_edge(const row_edge *e, double y, double sums[2]) {
   size_t low = 0, high = e->count - 1;
   sums[0] = sums[1] = 0;
   if (!(y > e->places[0].y && y < e->places[e->count - 1].y) || !(e->variance > 0)) return;
@@ -154,7 +155,7 @@ static void ask_edge(const row_edge *e, double y, double sums[2]) {
   sums[1] = (double)(e->count - high);
   for (size_t k = 0; k < e->columns; k++)
     sums[1] -= p->tails[k] * p->tails[k];
-  sums[0] = p->tail_rest * e->normal_y / e->variance;
+  sums[0] = p->tail_residual * e->normal_y / e->variance;
   sums[1] = fmax(sums[1], 0) * e->normal_y * e->normal_y / e->variance;
 }
 
@@ -164,14 +165,14 @@ static bool is_beside_another(const fg_beam_jumps *jumps, double y) {
   return false;
 }
 
-/* True when the edges that would show a jump do: those of a part's own step do not agree. */
-static bool is_shown(const row_search *s, double y, double size) {
+/* Returns true when the edges that would show a jump do; a part's own steps do not agree. */
+static bool is_jump_shown(const row_search *s, double y, double size) {
   int agree = 0, differ = 0;
   for (size_t i = 0; i < s->count; i++) {
     double sums[2];
-    ask_edge(&s->edges[i], y, sums);
+    test_edge(&s->edges[i], y, sums);
     double sigmas = fabs(size) * sqrt(sums[1]);
-    if (sigmas < ASKED_SIGMAS) continue;
+    if (sigmas < TESTED_SIGMAS) continue;
     if (fabs(sums[0] / sums[1] / size - 1) < STEP_SHARE + 2 / sigmas)
       agree++;
     else
@@ -184,7 +185,7 @@ static void sum_edges(const row_search *s, double y, double sum[2]) {
   sum[0] = sum[1] = 0;
   for (size_t i = 0; i < s->count; i++) {
     double sums[2];
-    ask_edge(&s->edges[i], y, sums);
+    test_edge(&s->edges[i], y, sums);
     sum[0] += sums[0];
     sum[1] += sums[1];
   }
@@ -209,26 +210,26 @@ static bool add_jump(row_search *s) {
   return true;
 }
 
-static void refresh(row_search *s, size_t without) {
+static void refresh_edges(row_search *s, size_t without) {
   for (size_t i = 0; i < s->count; i++)
-    fill_columns(&s->edges[i], s->jumps, without, s->scratch);
+    fill_edge_columns(&s->edges[i], s->jumps, without, s->scratch);
 }
 
-/* Leaves out the weakest of those that chance or a part's form explains; false: all stay. */
+/* Drops the weakest jump that chance or the part's shape explains; false: all stay. */
 static bool drop_weakest(row_search *s) {
   fg_beam_jumps *jumps = s->jumps;
   double min = INFINITY;
   size_t weakest = 0;
-  refresh(s, jumps->count);
+  refresh_edges(s, jumps->count);
   for (size_t i = 0; i < s->count; i++)
     find_variance(&s->edges[i]);
   for (size_t k = 0; k < jumps->count; k++) {
     double sum[2];
-    refresh(s, k);
+    refresh_edges(s, k);
     sum_edges(s, jumps->y_mm[k], sum);
     double size = sum[1] > 0 ? sum[0] / sum[1] : 0, gain = sum[0] * size;
     bool stays = gain > GAIN_MIN && fabs(size) > JUMP_MIN_ROW * jumps->row_mm &&
-                 is_shown(s, jumps->y_mm[k], size);
+                 is_jump_shown(s, jumps->y_mm[k], size);
     jumps->size_mm[k] = size;
     if (stays || gain >= min) continue;
     min = gain;
@@ -242,18 +243,18 @@ static bool drop_weakest(row_search *s) {
 }
 
 static void find_jumps(row_search *s) {
-  refresh(s, 0);
+  refresh_edges(s, 0);
   for (size_t i = 0; i < s->count; i++)
     find_noise(&s->edges[i], s->scratch);
   while (s->jumps->count < FG_BEAM_JUMPS_MAX && add_jump(s))
-    refresh(s, s->jumps->count);
+    refresh_edges(s, s->jumps->count);
   while (s->jumps->count && drop_weakest(s))
     continue;
 }
 
-/* Stations of one edge in the order of y, as places across its chord. False when it shows nothing.
- */
-static fg_status take_edge(fg_context *ctx, const fg_beam_edge *from, row_search *s) {
+/* Adds one edge's stations in the order of y, as places across its chord. False when it shows
+ * nothing. */
+static fg_status add_edge(fg_context *ctx, const fg_beam_edge *from, row_search *s) {
   row_edge *e = &s->edges[s->count];
   if (from->round || from->count < STATIONS_MIN || !(from->row_mm > 0)) return FG_OK;
   fg_point a = from->stations[0].at, b = from->stations[from->count - 1].at;
@@ -294,7 +295,7 @@ fg_status fg_beam_jumps_find(fg_context *ctx, const fg_foil *foil, fg_beam_jumps
     for (int side = 0; side < FG_BEAM_SIDES; side++) {
       const fg_beam_edge *edge = &foil->beams[i].edges[side];
       if (edge->count > max) max = edge->count;
-      FG_TRY_EXIT(take_edge(ctx, edge, &s));
+      FG_TRY_EXIT(add_edge(ctx, edge, &s));
     }
   FG_TRY_EXIT(fg_memory_allocate(ctx, max, sizeof *s.scratch, (void **)&s.scratch));
   if (s.count >= AGREE_MIN) find_jumps(&s);
@@ -306,9 +307,9 @@ exit:
   return status;
 }
 
-/* Rows that jump between root and tip change the length by as much of the jumps as runs along the
- * axis, and a scanner that loses rows loses them all one way: sizes add up. Where they cross the
- * long edges they turn and bend these. */
+/* Widens a beam by the jumps across it. Rows that jump between root and tip change the length by
+ * their component along the axis. A scanner that loses rows loses them all one way: sizes add up.
+ * Jumps across the long edges turn and bend these. */
 void fg_beam_jumps_widen(const fg_beam_jumps *jumps, fg_beam *beam) {
   double angle = beam->direction_deg * M_PI / 180, low = INFINITY, high = -INFINITY, sum = 0;
   if (isnan(beam->width_mm)) return;

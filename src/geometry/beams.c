@@ -12,32 +12,31 @@
 #include "geometry/beam_numbers.h"
 #include "geometry/beam_rows.h"
 
-/* More than this share of stations left out is said. */
+/* Share of omitted stations that is flagged. */
 #define OUTLIER_SHARE   0.01
 #define DISTURBED_SHARE 0.05
-/* A bow counts above so many of its u, and this share of the length. */
+/* Min bow, in its u, and as a share of the length. */
 #define BENT_DEVIATIONS 4.0
 #define BENT_SHARE      0.002
-/* A short edge scatters more than the long ones when its variance is above so many times theirs. */
+/* Min ratio of a short edge's variance to that of the long ones. */
 #define SPREAD_MIN 2.0
-/* A tip is torn when it scatters so many times more than the long edges, and by more than this
- * share of the width. */
+/* Limits of a torn tip: its scatter against the long edges', and as a share of the width. */
 #define TORN_SPREAD 9.0
 #define TORN_SHARE  0.002
-/* Neighbouring stations of a rough edge err alike over more than so many steps. */
+/* Correlation length of a rough edge, in steps. */
 #define ROUGH_STEPS 3.0
 
-/* Beams are parallel when half of so many at the least are, within this angle; one leans that is
- * further off. */
+/* Beams are parallel when at least half of them (and so many) are, within this angle; a beam beyond
+ * it leans. */
 enum { PARALLEL_MIN = 4 };
 #define PARALLEL_DEG 0.05
 #define LEANING_DEG  0.25
 
-/* No cut is off by this factor in length and width alike, within this logarithm. */
+/* Ratio of size beyond any cut's error when length and width share it, within this logarithm. */
 #define SCALE_FACTOR 1.2
 #define SAME_FACTOR  0.05
 
-/* One beam at work. */
+/* One beam in work. */
 typedef struct beam_work {
   fg_beam *beam;
   fg_beam_line lines[FG_BEAM_SIDES];
@@ -47,17 +46,17 @@ typedef struct beam_work {
   double length;
 } beam_work;
 
-static void forget_size(fg_beam *beam) {
+static void clear_size(fg_beam *beam) {
   beam->length_mm = beam->u_length_mm = beam->width_mm = beam->u_width_mm = NAN;
   beam->taper_um_per_mm = beam->u_taper_um_per_mm = beam->bow_um = beam->u_bow_um = NAN;
   beam->rms_um = NAN;
 }
 
-static fg_point middle(fg_point a, fg_point b) {
+static fg_point middle_between(fg_point a, fg_point b) {
   return (fg_point){0.5 * (a.x + b.x), 0.5 * (a.y + b.y)};
 }
 
-/* Along the axis, and across it to the left as seen with the tip up. */
+/* Coordinates along the axis, and across it to the left as seen with the tip up. */
 static double along_axis(const beam_work *w, fg_point p) {
   return w->axis.x * (p.x - w->root.x) + w->axis.y * (p.y - w->root.y);
 }
@@ -71,8 +70,8 @@ static fg_point on_axis(const beam_work *w, double along, double left) {
                     w->root.y + along * w->axis.y - left * w->axis.x};
 }
 
-/* How far a long edge's line lies to the left of the axis at a place along it, and how far along
- * itself that is. */
+/* Distance of a long edge's line to the left of the axis at a place along it, and the place along
+ * the line itself. */
 static double edge_at(const beam_work *w, fg_beam_side side, double along, double *on_line) {
   const fg_beam_line *line = &w->lines[side];
   double forward = w->axis.x * line->along.x + w->axis.y * line->along.y;
@@ -86,7 +85,7 @@ static void find_axis(beam_work *w) {
   fg_point sum = {l->along.x - r->along.x, l->along.y - r->along.y};
   double size = hypot(sum.x, sum.y);
   w->axis = (fg_point){sum.x / size, sum.y / size};
-  w->root = middle(l->at, r->at);
+  w->root = middle_between(l->at, r->at);
   double on_line;
   double off =
       0.5 * (edge_at(w, FG_BEAM_LEFT, 0, &on_line) + edge_at(w, FG_BEAM_RIGHT, 0, &on_line));
@@ -98,12 +97,12 @@ static fg_point floor_place(const beam_work *w, fg_beam_side side) {
   const fg_beam_line *line = &w->lines[side];
   if (line->edge->round) return line->at;
   const fg_disc_point *s = line->edge->stations;
-  fg_point mid = middle(s[0].at, s[line->edge->count - 1].at);
+  fg_point mid = middle_between(s[0].at, s[line->edge->count - 1].at);
   double t = line->along.x * (mid.x - line->at.x) + line->along.y * (mid.y - line->at.y);
   return (fg_point){line->at.x + t * line->along.x, line->at.y + t * line->along.y};
 }
 
-/* Where the root line crosses the axis, and the share that each floor has in it. */
+/* Crossing of the root line and the axis, and the share of each floor in it. */
 static double find_root(const beam_work *w, double share[2]) {
   double along[2] = {0, 0}, left[2] = {0, 0};
   for (int i = 0; i < 2; i++) {
@@ -120,7 +119,7 @@ static double find_root(const beam_work *w, double share[2]) {
   return share[0] * along[0] + share[1] * along[1];
 }
 
-/* Where the tip's line crosses the axis, and where that is along the line. */
+/* Crossing of the tip's line and the axis, and its place along the line. */
 static double find_tip(const beam_work *w, double *on_line) {
   const fg_beam_line *t = &w->lines[FG_BEAM_TIP];
   double rate = w->axis.y * t->along.x - w->axis.x * t->along.y;
@@ -149,7 +148,7 @@ static fg_status find_length(fg_context *ctx, beam_work *w) {
     split += share[i] * edges[side].split_mm;
     uncertainty += share[i] * edges[side].u_mm_of_level;
   }
-  /* What moves an edge towards the void makes the beam longer at its tip and shorter at its root.
+  /* A move of the edges towards the void makes the beam longer at its tip and shorter at its root.
    */
   beam->u_length_mm = sqrt(sum + square(edges[FG_BEAM_TIP].split_mm - split) +
                            square(edges[FG_BEAM_TIP].u_mm_of_level - uncertainty));
@@ -158,8 +157,8 @@ static fg_status find_length(fg_context *ctx, beam_work *w) {
   return FG_OK;
 }
 
-/* Without tip or floor the axis ends where the long edges do. */
-static void take_length_of_edges(beam_work *w) {
+/* Ends the axis at the ends of the long edges, without tip or floor. */
+static void end_axis_at_edges(beam_work *w) {
   const fg_beam_edge *edge = &w->beam->edges[FG_BEAM_LEFT];
   fg_point from = edge->stations[0].at, to = edge->stations[edge->count - 1].at;
   w->length = along_axis(w, to) - along_axis(w, from);
@@ -195,7 +194,8 @@ static fg_status find_width(fg_context *ctx, beam_work *w) {
   return FG_OK;
 }
 
-/* Both long edges bow alike: the void is to the left of one and to the right of the other. */
+/* Finds the bow. Both long edges bow alike: the void is to the left of one and to the right of the
+ * other. */
 static fg_status find_bow(fg_context *ctx, beam_work *w) {
   double variance, sum = 0, parabola[2];
   for (int i = 0; i < 2; i++) {
@@ -230,8 +230,9 @@ static void count_points(beam_work *w) {
   if (unusable > DISTURBED_SHARE * all) w->beam->flags |= FG_BEAM_DISTURBED_EDGE;
 }
 
-/* A short edge that scatters more than the long ones has what it scatters more in its variance. */
-static void find_spread(beam_work *w) {
+/* Finds the ratio by which a short edge scatters more than the long ones; it raises its variance.
+ */
+static void compare_spreads(beam_work *w) {
   for (int i = FG_BEAM_TIP; i < FG_BEAM_SIDES; i++) {
     fg_beam_line *line = &w->lines[i];
     if (!w->fitted[i]) continue;
@@ -269,7 +270,7 @@ static fg_status measure_lines(fg_context *ctx, beam_work *w) {
     return FG_OK;
   }
   FG_TRY(fg_beam_noise_find(ctx, &w->lines[FG_BEAM_LEFT], &w->lines[FG_BEAM_RIGHT], &w->noise));
-  find_spread(w);
+  compare_spreads(w);
   bool left = w->fitted[FG_BEAM_ROOT_LEFT], right = w->fitted[FG_BEAM_ROOT_RIGHT];
   bool torn = is_torn(w);
   if (torn) beam->flags |= FG_BEAM_TORN_TIP;
@@ -278,7 +279,7 @@ static fg_status measure_lines(fg_context *ctx, beam_work *w) {
   if (!torn && (left || right))
     FG_TRY(find_length(ctx, w));
   else
-    take_length_of_edges(w);
+    end_axis_at_edges(w);
   FG_TRY(find_width(ctx, w));
   FG_TRY(find_bow(ctx, w));
   count_points(w);
@@ -286,7 +287,7 @@ static fg_status measure_lines(fg_context *ctx, beam_work *w) {
   return FG_OK;
 }
 
-static void put_errors(const fg_design *design, fg_beam *beam) {
+static void fill_beam_errors(const fg_design *design, fg_beam *beam) {
   beam->length_error_pct = 100 * (beam->length_mm / design->beam_length_mm - 1);
   beam->u_length_error_pct = 100 * beam->u_length_mm / design->beam_length_mm;
   beam->width_error_pct = 100 * (beam->width_mm / design->beam_width_mm - 1);
@@ -302,19 +303,19 @@ static fg_status measure_beam(fg_context *ctx, const fg_design *design, const fg
                               fg_beam *beam, fg_beam_noise *noise) {
   beam_work w = {.beam = beam};
   beam->flags &= FG_BEAM_TOUCHES_BORDER | FG_BEAM_NARROW_CUT;
-  forget_size(beam);
+  clear_size(beam);
   fg_status status = fit_lines(ctx, &w);
   if (status == FG_OK) status = measure_lines(ctx, &w);
   fg_beam_jumps_widen(jumps, beam);
-  put_errors(design, beam);
+  fill_beam_errors(design, beam);
   *noise = w.noise;
   for (int i = 0; i < FG_BEAM_SIDES; i++)
     if (w.fitted[i]) fg_beam_line_free(&w.lines[i]);
   return status;
 }
 
-/* The foil's scatter: the median of its beams'. */
-static void put_noise(fg_foil *foil, const fg_beam_noise *noises, double *scratch) {
+/* Sets the foil's scatter: the median of its beams'. */
+static void fill_foil_noise(fg_foil *foil, const fg_beam_noise *noises, double *scratch) {
   size_t n = 0;
   foil->noise_um = foil->correlation_mm = NAN;
   for (size_t i = 0; i < foil->beam_count; i++)
@@ -341,7 +342,7 @@ static double median_ratio(const fg_foil *foil, size_t offset, double design, do
   return n ? fg_select(scratch, n, n / 2) : NAN;
 }
 
-/* Beams of the design's shape in another size: the scan's resolution must be wrong. */
+/* Detects beams of the design's shape in another size: the scan's resolution must be wrong. */
 static void check_scale(const fg_design *design, double *scratch, fg_foil *foil) {
   double length = median_ratio(foil, offsetof(fg_beam, length_mm), design->beam_length_mm, scratch);
   double width = median_ratio(foil, offsetof(fg_beam, width_mm), design->beam_width_mm, scratch);
@@ -360,8 +361,8 @@ static double direction_off(const fg_beam *beam, double direction_deg) {
   return fabs(remainder(beam->direction_deg - direction_deg, 360));
 }
 
-/* Beams that are parallel but for a few: those lean. Beams of a foil whose beams point different
- * ways by design do not. */
+/* Flags the few beams that lean beside parallel ones. Foils whose beams point different ways by
+ * design have none. */
 static void flag_leaning(double *scratch, fg_foil *foil) {
   const fg_beam *beams = foil->beams;
   size_t count = foil->beam_count;
@@ -376,7 +377,7 @@ static void flag_leaning(double *scratch, fg_foil *foil) {
     if (direction_off(&beams[i], direction) > LEANING_DEG) foil->beams[i].flags |= FG_BEAM_BENT;
 }
 
-static void put_jumps(const fg_beam_jumps *jumps, fg_picture_state *picture) {
+static void fill_jumps(const fg_beam_jumps *jumps, fg_picture_state *picture) {
   double largest = 0;
   if (!(jumps->row_mm > 0)) return;
   for (size_t k = 0; k < jumps->count; k++)
@@ -393,12 +394,12 @@ fg_status fg_beams_measure(fg_context *ctx, const fg_design *design, fg_foil *fo
   fg_beam_jumps jumps;
   foil->flags &= ~(unsigned)(FG_FOIL_BEAM_COUNT | FG_FOIL_ROUGH_EDGE);
   FG_TRY_EXIT(fg_beam_jumps_find(ctx, foil, &jumps));
-  put_jumps(&jumps, &foil->strip.picture);
+  fill_jumps(&jumps, &foil->strip.picture);
   FG_TRY_EXIT(fg_memory_allocate(ctx, foil->beam_count, sizeof *noises, (void **)&noises));
   FG_TRY_EXIT(fg_memory_allocate(ctx, foil->beam_count, sizeof *scratch, (void **)&scratch));
   for (size_t i = 0; i < foil->beam_count; i++)
     FG_TRY_EXIT(measure_beam(ctx, design, &jumps, &foil->beams[i], &noises[i]));
-  put_noise(foil, noises, scratch);
+  fill_foil_noise(foil, noises, scratch);
   check_scale(design, scratch, foil);
   FG_TRY_EXIT(fg_beams_number(ctx, design, foil));
   flag_leaning(scratch, foil);

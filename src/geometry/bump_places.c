@@ -6,7 +6,7 @@
 #include "core/select.h"
 
 enum { GAPS_MAX = 512 };
-/* A gap is so many pitches when it is within this share of a pitch of it. */
+/* Max deviation of a gap from whole pitches, in pitches. */
 #define WHOLE_SHARE 0.25
 #define DEG         (180 / M_PI)
 
@@ -19,8 +19,8 @@ static double gap_before(const fg_foil *foil, size_t i) {
   return fabs(fg_places_turn(foil->bumps[i - 1].position_deg, foil->bumps[i].position_deg));
 }
 
-/* The design's pitch as springback has changed it: lengths along the strip stay. Where most gaps
- * are no multiple of it (another foil's design), their median is the pitch. */
+/* Finds the pitch: the design's, changed by springback, which keeps lengths along the strip. Where
+ * most gaps are no multiple of it (another foil's design), their median is the pitch. */
 static double find_pitch(const fg_design *design, const fg_foil *foil) {
   double pitch = design->pitch_deg * design->overall_radius_mm / foil->overall.radius_mm;
   double gaps[GAPS_MAX], units[GAPS_MAX];
@@ -49,7 +49,7 @@ static double end_direction(const fg_layout *layout, const fg_foil *foil, bool l
   return DEG * atan2(p.y - foil->overall.centre_mm.y, p.x - foil->overall.centre_mm.x);
 }
 
-/* Whether the bumps' order is against the stations'. */
+/* Returns true when the bumps' order is against the stations'. */
 static bool is_reversed(const fg_layout *layout, const fg_foil *foil) {
   if (foil->bump_count > 1)
     return foil->bumps[0].arc_start_mm > foil->bumps[foil->bump_count - 1].arc_start_mm;
@@ -57,8 +57,8 @@ static bool is_reversed(const fg_layout *layout, const fg_foil *foil) {
   return layout->turning.lip_last;
 }
 
-/* How many more bumps the land between the first or last bump in order and the strip's end next to
- * it could hold: the first needs its chord, every other one a pitch. */
+/* Number of additional bumps that fit on the land between the first or last bump in order and the
+ * strip's end next to it: the first needs its chord, every other one a pitch. */
 static double room_at(const fg_layout *layout, const fg_nominal *nominal, const fg_foil *foil,
                       bool last, double pitch_deg) {
   const fg_bump *bump = &foil->bumps[last ? foil->bump_count - 1 : 0];
@@ -68,7 +68,7 @@ static double room_at(const fg_layout *layout, const fg_nominal *nominal, const 
   return 1 + (land - 3 * foot) / pitch_deg;
 }
 
-/* Of `missing` bumps, those before the first: each goes to the end that has more room left. */
+/* Number of `missing` bumps before the first: each goes to the end that has more room left. */
 static int share_missing(const fg_layout *layout, const fg_nominal *nominal, fg_foil *foil,
                          double pitch_deg, int missing) {
   double first = room_at(layout, nominal, foil, false, pitch_deg);

@@ -4,8 +4,8 @@
 #include <math.h>
 #include <string.h>
 
-/* Beyond these a value is in another unit, or no foil's: no scanner's pitch is doubted by 5 %, no
- * alloy expands by more than 1e-4 per K, and a bed below 0 or above 60 °C scans nothing. */
+/* Limits beyond which a value has another unit, or no foil's: no pitch is uncertain by 5 %, no
+ * alloy expands by more than 1e-4 per K, and no scanner works below 0 or above 60 °C. */
 static const double scale_max = 0.05;
 static const double temperature_min_c = 0, temperature_max_c = 60, u_temperature_max_k = 20;
 static const double expansion_max_per_k = 1e-4;
@@ -63,8 +63,8 @@ fg_calibration_budget fg_calibration_terms(const fg_calibration *c) {
   return terms;
 }
 
-/* Covariance of what x and y are stretched by: [[x², c], [c, y²]], c what both have in common; its
- * Cholesky root, column by column. */
+/* Sources from the covariance of the stretches of x and y: [[x², c], [c, y²]], c their common part;
+ * its Cholesky root, column by column. */
 void fg_calibration_sources(const fg_calibration *c, double stretch[FG_CALIBRATION_SOURCES][2]) {
   fg_calibration_budget terms = fg_calibration_terms(c);
   double heat = hypot(terms.temperature, terms.expansion), x = terms.length[0];

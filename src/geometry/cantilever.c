@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-/* Relative standard uncertainties of what a beam's compliance depends on. */
+/* Relative standard uncertainties of the inputs of a beam's compliance. */
 typedef struct relative {
   double length, width, thickness, correlation;
 } relative;
@@ -16,13 +16,13 @@ static double cube(double x) {
   return x * x * x;
 }
 
-/* p² times the variance of the logarithm of x; a power that is not there needs no uncertainty. */
+/* p² times the variance of the logarithm of x; a power of 0 needs no uncertainty. */
 static double of_power(double p, double u_relative) {
   return p == 0 ? 0 : p * p * log1p(square(u_relative));
 }
 
-/* Of length^l width^w thickness^t: sqrt(exp(v) - 1), v the variance of its logarithm. A correlation
- * takes no more away than there is. NaN stays NaN: an unknown uncertainty is not none. */
+/* Relative u of length^l width^w thickness^t: sqrt(exp(v) - 1), v the variance of its logarithm. A
+ * correlation cannot make v negative. NaN stays NaN: an unknown uncertainty is not 0. */
 static double of_product(const relative *r, double l, double w, double t) {
   double v = of_power(l, r->length) + of_power(w, r->width) + of_power(t, r->thickness);
   if (l != 0 && w != 0) v += 2 * l * w * log1p(r->correlation * r->length * r->width);
@@ -37,8 +37,8 @@ double fg_cantilever_second_moment_mm4(const fg_design *design) {
   return design->beam_width_mm * cube(design->thickness_mm) / 12;
 }
 
-static void put_compliance(const fg_design *design, double ratio, const relative *r,
-                           fg_cantilever *out) {
+static void fill_compliance(const fg_design *design, double ratio, const relative *r,
+                            fg_cantilever *out) {
   double u = of_product(r, 3, -1, -3);
   double modulus_n_mm2 = 1000 * known(design->elastic_modulus_gpa);
   double nominal_mm_per_n =
@@ -49,8 +49,8 @@ static void put_compliance(const fg_design *design, double ratio, const relative
   out->u_compliance_error_pct = 100 * ratio * u;
 }
 
-static void put_sagitta(const fg_design *design, double ratio, const relative *r,
-                        fg_cantilever *out) {
+static void fill_sagitta(const fg_design *design, double ratio, const relative *r,
+                         fg_cantilever *out) {
   double u = ratio * of_product(r, 2, 0, 0);
   double sagitta_mm = known(design->sagitta_mm), clearance_mm = known(design->clearance_mm);
   out->sagitta_mm = sagitta_mm * ratio;
@@ -69,8 +69,8 @@ fg_cantilever fg_cantilever_of(const fg_design *design, const fg_beam_size *size
   double length = length_mm / design->beam_length_mm, width = width_mm / design->beam_width_mm;
   const relative r = {size->u_length_mm / length_mm, size->u_width_mm / width_mm,
                       design->u_thickness_mm / design->thickness_mm, size->correlation};
-  put_compliance(design, cube(length) / width, &r, &out);
-  put_sagitta(design, square(length), &r, &out);
+  fill_compliance(design, cube(length) / width, &r, &out);
+  fill_sagitta(design, square(length), &r, &out);
   return out;
 }
 

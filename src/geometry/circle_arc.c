@@ -78,8 +78,8 @@ fg_circle_arc fg_circle_arc_rebase(const fg_circle_arc *arc) {
   double x = -arc->curvature * arc->qx - arc->nx, y = -arc->curvature * arc->qy - arc->ny;
   double length = hypot(x, y);
   fg_circle_arc based = *arc;
-  /* Near the centre any point of the circle does as well, and the distance from there (S near 0)
-   * would lose digits. */
+  /* Near the centre any point of the circle serves, and the distance from there (S near 0) would
+   * lose digits. */
   if (length > 0.25) {
     double d = signed_distance(arc, 0, 0);
     based =

@@ -22,7 +22,7 @@ typedef struct moments {
   double z, xx, yy, xz, yz, variance_z;
 } moments;
 
-static moments take_moments(const fg_circle_scaled *scaled) {
+static moments compute_moments(const fg_circle_scaled *scaled) {
   moments m = {0};
   for (size_t i = 0; i < scaled->count; i++) {
     double x = scaled->x[i], y = scaled->y[i], w = scaled->weight[i];
@@ -40,7 +40,7 @@ static moments take_moments(const fg_circle_scaled *scaled) {
   return m;
 }
 
-static double characteristic(const moments *m, double eta, double *slope) {
+static double characteristic_value(const moments *m, double eta, double *slope) {
   double p = m->xz / (m->xx - eta), q = m->yz / (m->yy - eta);
   *slope = -4 * m->z - 8 * eta - p * p - q * q;
   return m->variance_z - 4 * eta * (m->z + eta) - p * m->xz - q * m->yz;
@@ -50,7 +50,7 @@ static double characteristic(const moments *m, double eta, double *slope) {
 static double smallest_eta(const moments *m) {
   double low = 0, high = m->yy, eta = 0;
   for (int i = 0; i < 100; i++) {
-    double slope, value = characteristic(m, eta, &slope);
+    double slope, value = characteristic_value(m, eta, &slope);
     if (value > 0)
       low = eta;
     else
@@ -65,7 +65,7 @@ static double smallest_eta(const moments *m) {
 
 fg_status fg_circle_estimate_scaled(fg_context *ctx, const fg_circle_scaled *scaled,
                                     fg_circle *circle) {
-  moments m = take_moments(scaled);
+  moments m = compute_moments(scaled);
   double eta = smallest_eta(&m);
   double x = m.xz / (2 * (m.xx - eta)), y = m.yz / (2 * (m.yy - eta));
   double radius = sqrt(x * x + y * y + m.z - 2 * eta);

@@ -35,7 +35,7 @@ static fg_circle_arc search_result(const search *s, const gsl_vector *at) {
 }
 
 enum { SEARCH_ITERATIONS_MAX = 400 };
-static const double search_size_end = 1e-6; /* of the simplex; the polish does the rest */
+static const double search_size_end = 1e-6; /* of the simplex; the polish gives the last digits */
 
 static fg_status nelder_mead(fg_context *ctx, search *s, size_t *iterations) {
   double at[2] = {0, 0}, steps[2] = {0.02 + 0.02 * s->start.curvature, 0.02};
@@ -55,10 +55,10 @@ static fg_status nelder_mead(fg_context *ctx, search *s, size_t *iterations) {
   return FG_OK;
 }
 
-/* Down to the minimum from one start. *reached says whether it is one: finite, converged, and no
+/* Descends to the minimum from one start. *reached is true for a minimum: finite, converged, and no
  * worse than the best line, which every proper minimum beats. */
-static fg_status descend(fg_context *ctx, const fg_circle_scaled *scaled, fg_circle_arc *arc,
-                         size_t *iterations, bool *reached) {
+static fg_status descend_simplex(fg_context *ctx, const fg_circle_scaled *scaled,
+                                 fg_circle_arc *arc, size_t *iterations, bool *reached) {
   search s = {scaled, fg_circle_arc_rebase(arc)};
   FG_TRY(nelder_mead(ctx, &s, iterations));
   *arc = s.start;
@@ -69,22 +69,22 @@ static fg_status descend(fg_context *ctx, const fg_circle_scaled *scaled, fg_cir
 
 enum { STARTS_MAX = 4 };
 
-static bool usable(const fg_circle *circle) {
+static bool is_usable_circle(const fg_circle *circle) {
   return isfinite(circle->x) && isfinite(circle->y) && isfinite(circle->radius) &&
          circle->radius > 0;
 }
 
-/* Starts in the order in which they are tried: the better of the given and the algebraic circle,
- * then the other, then the best line bent a little to either side (which is where the minimum lies
- * when the points are nearly straight but scatter more than their sagitta). A start that is far off
- * costs one evaluation. */
+/* Lists starts in the order of their trial: the better of the given and the algebraic circle, then
+ * the other, then the best line bent a little to either side (near the minimum when the points are
+ * nearly straight but scatter more than their sagitta). A start that is far off costs one
+ * evaluation. */
 static size_t list_starts(const fg_circle_scaled *scaled, const fg_circle *given,
                           fg_circle_arc starts[STARTS_MAX]) {
   size_t count = 0;
   fg_circle circle;
-  if (given && usable(given)) {
+  if (given && is_usable_circle(given)) {
     circle = fg_circle_into_scaled(scaled, given);
-    if (usable(&circle)) starts[count++] = fg_circle_arc_from(&circle);
+    if (is_usable_circle(&circle)) starts[count++] = fg_circle_arc_from(&circle);
   }
   if (fg_circle_estimate_scaled(NULL, scaled, &circle) == FG_OK)
     starts[count++] = fg_circle_arc_from(&circle);
@@ -100,7 +100,7 @@ static size_t list_starts(const fg_circle_scaled *scaled, const fg_circle *given
 }
 
 /* Points that clearly lie on an arc have one minimum. Where a circle explains little more than a
- * line does there may be several, and every start is tried. */
+ * line there may be several, and every start is tried. */
 static const double clear_share = 0.1;
 
 static fg_status best_arc(fg_context *ctx, const fg_circle_scaled *scaled, const fg_circle *given,
@@ -110,7 +110,7 @@ static fg_status best_arc(fg_context *ctx, const fg_circle_scaled *scaled, const
   double best_ms = INFINITY;
   for (size_t i = 0; i < count && best_ms > clear_share * scaled->line_ms; i++) {
     bool reached = false;
-    FG_TRY(descend(ctx, scaled, &starts[i], iterations, &reached));
+    FG_TRY(descend_simplex(ctx, scaled, &starts[i], iterations, &reached));
     double ms = fg_circle_arc_ms(scaled, &starts[i]);
     if (!reached || !(ms < best_ms)) continue;
     best_ms = ms;

@@ -8,9 +8,9 @@
 #include "core/numerics.h"
 #include "geometry/circle_scaled.h"
 
-/* Deliberately not the parameters of the geometric fit: centre and radius as they are, so that the
+/* Deliberately not the parameters of the geometric fit: centre and radius themselves, so that the
  * two share nothing but the scaled points. */
-static int residuals(const gsl_vector *at, void *parameters, gsl_vector *out) {
+static int fill_residuals(const gsl_vector *at, void *parameters, gsl_vector *out) {
   const fg_circle_scaled *scaled = parameters;
   double x = gsl_vector_get(at, 0), y = gsl_vector_get(at, 1), radius = gsl_vector_get(at, 2);
   for (size_t i = 0; i < scaled->count; i++) {
@@ -20,7 +20,7 @@ static int residuals(const gsl_vector *at, void *parameters, gsl_vector *out) {
   return GSL_SUCCESS;
 }
 
-static int jacobian(const gsl_vector *at, void *parameters, gsl_matrix *out) {
+static int fill_jacobian(const gsl_vector *at, void *parameters, gsl_matrix *out) {
   const fg_circle_scaled *scaled = parameters;
   double x = gsl_vector_get(at, 0), y = gsl_vector_get(at, 1);
   for (size_t i = 0; i < scaled->count; i++) {
@@ -33,8 +33,8 @@ static int jacobian(const gsl_vector *at, void *parameters, gsl_matrix *out) {
   return GSL_SUCCESS;
 }
 
-static fg_status publish(fg_context *ctx, const fg_circle_scaled *scaled,
-                         gsl_multifit_nlinear_workspace *work, fg_circle_fit *fit) {
+static fg_status publish_fit(fg_context *ctx, const fg_circle_scaled *scaled,
+                             gsl_multifit_nlinear_workspace *work, fg_circle_fit *fit) {
   double flat[9];
   gsl_matrix_view covariance = gsl_matrix_view_array(flat, 3, 3);
   const gsl_vector *at = gsl_multifit_nlinear_position(work);
@@ -58,23 +58,23 @@ static fg_status publish(fg_context *ctx, const fg_circle_scaled *scaled,
   return FG_OK;
 }
 
-static fg_status run(fg_context *ctx, fg_circle_scaled *scaled, const fg_circle *start,
-                     fg_circle_fit *fit) {
+static fg_status run_levenberg(fg_context *ctx, fg_circle_scaled *scaled, const fg_circle *start,
+                               fg_circle_fit *fit) {
   double at[3] = {start->x, start->y, start->radius};
   gsl_vector_view start_view = gsl_vector_view_array(at, 3);
   gsl_multifit_nlinear_parameters how = gsl_multifit_nlinear_default_parameters();
   gsl_multifit_nlinear_fdf problem = {
-      .f = residuals, .df = jacobian, .n = scaled->count, .p = 3, .params = scaled};
+      .f = fill_residuals, .df = fill_jacobian, .n = scaled->count, .p = 3, .params = scaled};
   gsl_multifit_nlinear_workspace *work =
       gsl_multifit_nlinear_alloc(gsl_multifit_nlinear_trust, &how, scaled->count, 3);
   if (!work) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: Levenberg-Marquardt");
   int info, code = gsl_multifit_nlinear_init(&start_view.vector, &problem, work);
   if (code == GSL_SUCCESS)
     code = gsl_multifit_nlinear_driver(500, 1e-14, 1e-14, 0, NULL, NULL, &info, work);
-  /* GSL_ENOPROG: no step helps any more, which is how an exact minimum looks. */
+  /* GSL_ENOPROG: no step improves, which is typical of an exact minimum. */
   fg_status status =
       code == GSL_SUCCESS || code == GSL_ENOPROG
-          ? publish(ctx, scaled, work, fit)
+          ? publish_fit(ctx, scaled, work, fit)
           : fg_fail(ctx, FG_ERR_NUMERIC, "circle fit: Levenberg-Marquardt: %s", gsl_strerror(code));
   gsl_multifit_nlinear_free(work);
   return status;
@@ -91,7 +91,7 @@ fg_status fg_circle_fit_levenberg(fg_context *ctx, const fg_point *points, const
     local = fg_circle_into_scaled(&scaled, start);
   else
     status = fg_circle_estimate_scaled(ctx, &scaled, &local);
-  if (status == FG_OK) status = run(ctx, &scaled, &local, fit);
+  if (status == FG_OK) status = run_levenberg(ctx, &scaled, &local, fit);
   fg_circle_scaled_free(&scaled);
   return status;
 }

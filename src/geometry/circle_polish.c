@@ -59,8 +59,8 @@ static void distance_of(const fg_circle_arc *arc, double x, double y, distance *
   hessian_of_distance(arc, p, s, g, p_gradient, d);
 }
 
-static void gather(const fg_circle_scaled *scaled, const fg_circle_arc *arc,
-                   normal_equations *sums) {
+static void gather_equations(const fg_circle_scaled *scaled, const fg_circle_arc *arc,
+                             normal_equations *sums) {
   memset(sums, 0, sizeof *sums);
   for (size_t n = 0; n < scaled->count; n++) {
     distance d;
@@ -80,8 +80,8 @@ static void gather(const fg_circle_scaled *scaled, const fg_circle_arc *arc,
 
 /* Cholesky of the lower triangle scaled by `diagonal`^1/2 on both sides (the shift of 1 and the
  * bend of 1 differ by the square of the arc's length). False unless clearly positive definite. */
-static bool factorise(double matrix[3][3], const double diagonal[3], double damping,
-                      double factor[3][3]) {
+static bool factorise_scaled(double matrix[3][3], const double diagonal[3], double damping,
+                             double factor[3][3]) {
   for (int i = 0; i < 3; i++) {
     if (!(diagonal[i] > 0)) return false;
     for (int j = 0; j <= i; j++) {
@@ -95,8 +95,8 @@ static bool factorise(double matrix[3][3], const double diagonal[3], double damp
   return true;
 }
 
-static void solve(double factor[3][3], const double diagonal[3], const double right[3],
-                  double solution[3]) {
+static void solve_factored(double factor[3][3], const double diagonal[3], const double right[3],
+                           double solution[3]) {
   for (int i = 0; i < 3; i++) {
     double sum = right[i] / sqrt(diagonal[i]);
     for (int k = 0; k < i; k++)
@@ -112,16 +112,16 @@ static void solve(double factor[3][3], const double diagonal[3], const double ri
     solution[i] /= sqrt(diagonal[i]);
 }
 
-/* A step with the least damping (from *damping upwards) that does not make things worse. Returns
- * its size relative to the arc, or a negative number when there is none. */
-static double take_step(const fg_circle_scaled *scaled, normal_equations *sums, fg_circle_arc *arc,
+/* Takes a step with the smallest damping (from *damping upwards) that does not increase the sum.
+ * Returns its size relative to the arc, or a negative number when there is none. */
+static double make_step(const fg_circle_scaled *scaled, normal_equations *sums, fg_circle_arc *arc,
                         double *damping) {
   const double diagonal[3] = {sums->gauss[0][0], sums->gauss[1][1], sums->gauss[2][2]};
   const double slack = 1e-13 * sums->ms + DBL_EPSILON * DBL_EPSILON;
   for (; *damping < 1e12; *damping = fmax(10 * *damping, 1e-4)) {
     double factor[3][3], step[3];
-    if (!factorise(sums->hessian, diagonal, *damping, factor)) continue;
-    solve(factor, diagonal, sums->gradient, step);
+    if (!factorise_scaled(sums->hessian, diagonal, *damping, factor)) continue;
+    solve_factored(factor, diagonal, sums->gradient, step);
     fg_circle_arc moved = fg_circle_arc_step(arc, -step[BEND], -step[TURN], -step[SHIFT]);
     if (!(fg_circle_arc_ms(scaled, &moved) <= sums->ms + slack)) continue;
     double scale = fmax(fabs(arc->curvature), FG_CIRCLE_FLAT);
@@ -132,14 +132,14 @@ static double take_step(const fg_circle_scaled *scaled, normal_equations *sums, 
 }
 
 /* Converged when a step is down to rounding, or when full Newton steps no longer shrink although
- * they are tiny: what is left is the rounding of the sums. */
+ * they are tiny: the remainder is the rounding of the sums. */
 bool fg_circle_arc_polish(const fg_circle_scaled *scaled, fg_circle_arc *arc) {
   double damping = 0, before = INFINITY;
   *arc = fg_circle_arc_rebase(arc);
   for (int iteration = 0; iteration < 200; iteration++) {
     normal_equations sums;
-    gather(scaled, arc, &sums);
-    double size = take_step(scaled, &sums, arc, &damping);
+    gather_equations(scaled, arc, &sums);
+    double size = make_step(scaled, &sums, arc, &damping);
     if (size < 0) return before < 1e-8;
     if (size < 4 * DBL_EPSILON) return true;
     if (damping == 0 && size < 1e-9 && size >= 0.5 * before) return true;
@@ -167,13 +167,13 @@ bool fg_circle_arc_covariance(const fg_circle_scaled *scaled, const fg_circle_ar
                               double covariance[3][3]) {
   normal_equations sums;
   double factor[3][3], derivative[3][3];
-  gather(scaled, arc, &sums);
+  gather_equations(scaled, arc, &sums);
   const double diagonal[3] = {sums.gauss[0][0], sums.gauss[1][1], sums.gauss[2][2]};
-  if (!factorise(sums.gauss, diagonal, 0, factor)) return false;
+  if (!factorise_scaled(sums.gauss, diagonal, 0, factor)) return false;
   derivatives_of_circle(scaled, arc, derivative);
   for (int j = 0; j < 3; j++) {
     double solution[3];
-    solve(factor, diagonal, derivative[j], solution);
+    solve_factored(factor, diagonal, derivative[j], solution);
     for (int i = 0; i < 3; i++) {
       covariance[i][j] = 0;
       for (int k = 0; k < 3; k++)

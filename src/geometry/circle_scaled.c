@@ -23,7 +23,7 @@ static fg_status check_points(fg_context *ctx, const fg_point *points, const dou
   return FG_OK;
 }
 
-/* Weighted mean in two passes: the second takes out the rounding of the first, which matters where
+/* Weighted mean in two passes: the second removes the rounding of the first, which matters where
  * the points lie far from zero. */
 static fg_point mean_point(const fg_circle_scaled *scaled, const fg_point *points) {
   fg_point mean = points[0];
@@ -39,7 +39,7 @@ static fg_point mean_point(const fg_circle_scaled *scaled, const fg_point *point
   return mean;
 }
 
-static void take_weights(fg_circle_scaled *scaled, const double *weights) {
+static void set_weights(fg_circle_scaled *scaled, const double *weights) {
   double sum = 0;
   for (size_t i = 0; i < scaled->count; i++)
     sum += weights ? weights[i] : 1;
@@ -78,7 +78,7 @@ static void turn_and_scale(fg_circle_scaled *scaled) {
 
 static fg_status fill_scaled(fg_context *ctx, const fg_point *points, const double *weights,
                              fg_circle_scaled *scaled) {
-  take_weights(scaled, weights);
+  set_weights(scaled, weights);
   centre_and_measure(scaled, points);
   double far = fmax(fabs(scaled->origin.x), fabs(scaled->origin.y));
   if (!isfinite(scaled->weight_sum) || !isfinite(scaled->scale))

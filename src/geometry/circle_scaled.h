@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Points made ready for a circle fit: centred on their weighted mean, turned to their principal
- * axes (x is the long one), scaled to a mean square distance of 1, weights summing to 1.
+/* Points prepared for a circle fit: centred on their weighted mean, turned to their principal axes
+ * (x is the long one), scaled to a mean square distance of 1, weights summing to 1.
  *
- * There nothing depends on where the points lie or on their unit, sums do not cancel, and
- * the mean square distance from the best line is just the mean of y².
+ * In these coordinates nothing depends on the points' place or unit, sums do not cancel, and the
+ * mean square distance from the best line is the mean of y².
  */
 #ifndef FG_GEOMETRY_CIRCLE_SCALED_H
 #define FG_GEOMETRY_CIRCLE_SCALED_H
@@ -34,7 +34,7 @@ void fg_circle_scaled_free(fg_circle_scaled *scaled);
 fg_circle fg_circle_into_scaled(const fg_circle_scaled *scaled, const fg_circle *circle);
 fg_circle fg_circle_out_of_scaled(const fg_circle_scaled *scaled, const fg_circle *circle);
 
-/* The hyper fit of them. FG_ERR_NUMERIC when a line fits better than any circle. */
+/* Hyper fit of the scaled points. FG_ERR_NUMERIC when a line fits better than any circle. */
 fg_status fg_circle_estimate_scaled(fg_context *ctx, const fg_circle_scaled *scaled,
                                     fg_circle *circle);
 

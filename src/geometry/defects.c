@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "geometry/defects.h"
 
-/* An arc is disturbed where so much of it is hidden in one piece, or altogether. */
+/* Min hidden share of a disturbed arc, in one piece or in total. */
 #define HIDDEN_RUN   0.15
 #define HIDDEN_SHARE 0.35
 

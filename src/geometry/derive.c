@@ -7,8 +7,8 @@
 
 static const double rad_per_deg = 3.14159265358979323846 / 180;
 
-/* What every quantity is a function of: distance of the centres, the two radii, the strip's
- * thickness, the design. */
+/* Arguments of every quantity: distance of the centres, the two radii, the strip's thickness, the
+ * design. */
 enum { BY_X, BY_R, BY_R0, BY_CIRCLES, BY_T = BY_CIRCLES, BY_COUNT };
 
 typedef struct geometry {
@@ -52,7 +52,7 @@ static double height(const geometry *g, double gradient[BY_COUNT]) {
   return g->r0 - (g->x - g->r);
 }
 
-static double scaled(double gradient[BY_COUNT], double factor) {
+static double scale_gradient(double gradient[BY_COUNT], double factor) {
   for (int i = 0; i < BY_COUNT; i++)
     gradient[i] *= factor;
   return factor;
@@ -60,14 +60,14 @@ static double scaled(double gradient[BY_COUNT], double factor) {
 
 static double clearance(const geometry *g, double gradient[BY_COUNT]) {
   double h = height(g, gradient);
-  scaled(gradient, -1);
+  scale_gradient(gradient, -1);
   gradient[BY_T] = -1;
   return fg_design_clearance_over(g->design, h, g->thickness);
 }
 
 static double clearance_error(const geometry *g, double gradient[BY_COUNT]) {
   double design = g->nominal->clearance_mm, local = clearance(g, gradient);
-  scaled(gradient, -1 / design);
+  scale_gradient(gradient, -1 / design);
   return (design - local) / design;
 }
 
@@ -87,7 +87,7 @@ static double height_fitted(const geometry *g, double gradient[BY_COUNT]) {
 
 static double clearance_fitted(const geometry *g, double gradient[BY_COUNT]) {
   double h = height_fitted(g, gradient);
-  scaled(gradient, -1);
+  scale_gradient(gradient, -1);
   gradient[BY_T] = -1;
   return fg_design_clearance_over(g->design, h, g->thickness);
 }
@@ -100,12 +100,12 @@ static double radius_error(const geometry *g, double gradient[BY_COUNT]) {
 
 static double bump_angle_error(const geometry *g, double gradient[BY_COUNT]) {
   double design = g->design->bump_angle_deg, angle = bump_angle(g, gradient);
-  return scaled(gradient, 100 / design) * (angle - design);
+  return scale_gradient(gradient, 100 / design) * (angle - design);
 }
 
 static double intersection_angle_error(const geometry *g, double gradient[BY_COUNT]) {
   double design = g->nominal->intersection_angle_deg, angle = intersection_angle(g, gradient);
-  return scaled(gradient, 100 / design) * (angle - design);
+  return scale_gradient(gradient, 100 / design) * (angle - design);
 }
 
 static double height_model(const geometry *g, double gradient[BY_COUNT]) {
@@ -148,7 +148,7 @@ typedef struct along {
   double centre, radius, both;
 } along;
 
-static along project(double covariance[3][3], double ux, double uy) {
+static along project_covariance(double covariance[3][3], double ux, double uy) {
   return (along){
       .centre =
           ux * ux * covariance[0][0] + 2 * ux * uy * covariance[0][1] + uy * uy * covariance[1][1],
@@ -157,11 +157,11 @@ static along project(double covariance[3][3], double ux, double uy) {
   };
 }
 
-/* One circle's share: (a, b)' V (a, b) with weights a on its centre and b on its radius. Only what
- * has a weight counts, so that a covariance that is not known (NaN) stays out of quantities that do
- * not depend on it. Written as a square plus what is left of the smaller term: R and the crown
+/* One circle's share: (a, b)' V (a, b) with weights a on its centre and b on its radius. Terms
+ * without a weight are skipped, so that an unknown covariance (NaN) does not spoil quantities that
+ * do not depend on it. Written as a square plus the remainder of the smaller term: R and the crown
  * correlate at -0.999, and a sum of three terms could come out negative. */
-static double share(const along *v, double a, double b) {
+static double circle_share(const along *v, double a, double b) {
   if (a == 0) return b == 0 ? 0 : b * b * v->radius;
   if (b == 0 || v->radius == 0) return a * a * v->centre;
   double regression = v->both / v->radius;
@@ -170,36 +170,38 @@ static double share(const along *v, double a, double b) {
   return a * a * (rest < 0 ? 0 : rest) + slope * slope * v->radius;
 }
 
-static double root(double variance) {
+static double sd_of_variance(double variance) {
   return variance < 0 ? 0 : sqrt(variance);
 }
 
-/* Only what depends on the thickness takes its uncertainty, which may not be known. */
+/* Contribution of the thickness, whose uncertainty may be unknown, only where the quantity depends
+ * on it. */
 static double by_thickness(double slope, double u_mm) {
   return slope == 0 ? 0 : slope * slope * u_mm * u_mm;
 }
 
-/* Common part of both radii and the thickness: the level of the edges, where one of them is
- * the datum. It is in the variance of each already; this adds the covariances. A height, which is
- * between two places of the same edge, is free of it. */
+/* Common part of both radii and the thickness: the level of the edges, where one of them is the
+ * datum. It is in the variance of each already; this adds the covariances. A height, which is
+ * between two places of the same edge, does not depend on it. */
 static double by_edges(const double gradient[BY_COUNT], const fg_thickness *strip) {
   double sign = strip->inner ? 1 : -1, t = strip->with_edge ? 2 * gradient[BY_T] : 0;
   double r = sign * gradient[BY_R], r0 = -sign * gradient[BY_R0];
   return 2 * strip->edge_mm * strip->edge_mm * (r * r0 + r * t + r0 * t);
 }
 
-static void fill(const geometry *g, const along *bump_along, const along *overall_along,
-                 const fg_thickness *strip, fg_bump *bump) {
+static void fill_quantities(const geometry *g, const along *bump_along, const along *overall_along,
+                            const fg_thickness *strip, fg_bump *bump) {
   for (size_t i = 0; i < sizeof quantities / sizeof *quantities; i++) {
     double gradient[BY_COUNT] = {0};
     double value = quantities[i].value(g, gradient);
-    double variance = share(bump_along, gradient[BY_X], gradient[BY_R]) +
-                      share(overall_along, -gradient[BY_X], gradient[BY_R0]) +
+    double variance = circle_share(bump_along, gradient[BY_X], gradient[BY_R]) +
+                      circle_share(overall_along, -gradient[BY_X], gradient[BY_R0]) +
                       by_thickness(gradient[BY_T], strip->u_mm);
     if (strip->edge_mm > 0) variance += by_edges(gradient, strip);
     bool defined = isfinite(value);
     *(double *)((char *)bump + quantities[i].at) = defined ? value : NAN;
-    *(double *)((char *)bump + quantities[i].uncertainty_at) = defined ? root(variance) : NAN;
+    *(double *)((char *)bump + quantities[i].uncertainty_at) =
+        defined ? sd_of_variance(variance) : NAN;
   }
 }
 
@@ -226,9 +228,9 @@ void fg_bump_widen(const fg_design *design, const fg_nominal *nominal, const fg_
     for (int a = 0; a < BY_CIRCLES; a++)
       for (int b = 0; b < BY_CIRCLES; b++)
         variance += gradient[a] * covariance[a][b] * gradient[b];
-    if (isfinite(variance)) *u = hypot(*u, root(variance));
+    if (isfinite(variance)) *u = hypot(*u, sd_of_variance(variance));
   }
-  bump->u_radius_mm = hypot(bump->u_radius_mm, root(covariance[BY_R][BY_R]));
+  bump->u_radius_mm = hypot(bump->u_radius_mm, sd_of_variance(covariance[BY_R][BY_R]));
 }
 
 fg_thickness fg_foil_thickness(const fg_design *design, const fg_foil *foil) {
@@ -252,13 +254,13 @@ void fg_bump_derive(const fg_design *design, const fg_nominal *nominal, const fg
   double dy = bump->centre_mm.y - overall->centre_mm.y;
   geometry g = geometry_of(design, nominal, overall, bump);
   g.thickness = strip->mm;
-  along bump_along = project(bump->covariance, dx / g.x, dy / g.x);
+  along bump_along = project_covariance(bump->covariance, dx / g.x, dy / g.x);
   fg_overall land = *overall; /* C has no implicit const for rows of a matrix */
-  along overall_along = project(land.covariance, dx / g.x, dy / g.x);
-  fill(&g, &bump_along, &overall_along, strip, bump);
-  bump->u_radius_mm = root(bump->covariance[2][2]);
+  along overall_along = project_covariance(land.covariance, dx / g.x, dy / g.x);
+  fill_quantities(&g, &bump_along, &overall_along, strip, bump);
+  bump->u_radius_mm = sd_of_variance(bump->covariance[2][2]);
   for (int i = 0; i < 2; i++)
-    bump->u_centre_mm[i] = root(bump->covariance[i][i]);
+    bump->u_centre_mm[i] = sd_of_variance(bump->covariance[i][i]);
   bump->position_deg = atan2(dy, dx) / rad_per_deg;
   bump->flags &= ~(unsigned)FG_BUMP_NO_CROSSING;
   bool fitted = isfinite(g.x) && isfinite(g.r) && isfinite(g.r0);

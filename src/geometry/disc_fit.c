@@ -12,18 +12,18 @@
 #include "core/spread.h"
 
 enum { ROUNDS = 4, BAND_FIRST = 12, HARMONICS_MAX = 400 };
-/* Points further off than so many robust deviations, and at least so far, are left out. */
+/* Limits of an outlier: robust deviations, and a distance. */
 #define OUTLIER_DEVIATIONS 5.0
 #define OUTLIER_MIN_MM     0.0003
 #define OUTLIERS_SHARE     0.01
-/* Neighbouring bands of the spectrum have one level unless chance makes them differ so rarely. */
+/* Max probability of chance at which neighbouring bands of the spectrum have different levels. */
 #define BAND_P 0.01
-/* The shape of the edge was fitted to the same pixels, so its noise moves whole turns of stations
- * together, unseen in their spectrum. How much more variance that is was measured on renders. */
+/* Factor of the variance by the edge's shape. It was fitted to the same pixels, so its noise moves
+ * whole turns of stations together, invisibly in their spectrum. Measured on renders. */
 #define SHAPE_VARIANCE 1.12
-/* A difference between the edge's core and flanks counts above so many of its own deviations. */
+/* Min difference between the edge's core and flanks, in its own deviations. */
 #define SPLIT_DEVIATIONS 3.0
-/* An edge that leaves its circle by more than this share of the radius (rms) is flagged. */
+/* Max rms deviation from the circle, as a share of the radius; beyond it an edge is flagged. */
 #define POOR_SHARE 0.006
 
 typedef struct fit_work {
@@ -36,7 +36,7 @@ typedef struct fit_work {
   fg_circle_fit fit;
 } fit_work;
 
-static double median(double *values, size_t n) {
+static double median_of_values(double *values, size_t n) {
   return n ? fg_select(values, n, n / 2) : NAN;
 }
 
@@ -46,7 +46,7 @@ static void find_residuals(fit_work *w) {
     w->residuals[i] = hypot(w->at[i].x - c->x, w->at[i].y - c->y) - c->radius;
 }
 
-/* Robust sd of the residuals of what is in the fit. */
+/* Robust sd of the residuals in the fit. */
 static double residual_scatter(fit_work *w) {
   size_t n = 0;
   for (size_t i = 0; i < w->count; i++)
@@ -54,12 +54,13 @@ static double residual_scatter(fit_work *w) {
   return fg_robust_sd(w->scratch, n);
 }
 
-/* Weights 1/(u² + s²): s is what the edge itself scatters by, beyond the pixels' noise. */
-static void weigh(fit_work *w, double scatter) {
+/* Weights 1/(u² + s²): s is the edge's own scatter, beyond the pixels' noise. */
+static void weigh_stations(fit_work *w, double scatter) {
   size_t n = 0;
   for (size_t i = 0; i < w->count; i++)
     if (w->points[i].used) w->scratch[n++] = w->points[i].u * w->points[i].u;
-  double noise = median(w->scratch, n), rough = fmax(0, scatter * scatter - noise), sum = 0;
+  double noise = median_of_values(w->scratch, n), rough = fmax(0, scatter * scatter - noise),
+         sum = 0;
   for (size_t i = 0; i < w->count; i++) {
     double u = w->points[i].u;
     w->weights[i] = w->points[i].used ? 1 / (u * u + rough + 1e-16) : 0;
@@ -74,7 +75,7 @@ static fg_status fit_robust(fg_context *ctx, fit_work *w) {
   double scatter = 0;
   size_t min = w->count / 2;
   for (int round = 0; round < ROUNDS; round++) {
-    weigh(w, scatter);
+    weigh_stations(w, scatter);
     if (w->used < min || w->used < 8)
       return fg_fail(ctx, FG_ERR_NUMERIC, "only %zu of %zu points of the edge are usable", w->used,
                      w->count);
@@ -105,9 +106,9 @@ static double band_power(const fit_work *w, size_t from, size_t to) {
   return total / (double)(to - from);
 }
 
-/* Level of the spectrum at its low end, as a variance per point: over the lowest band, widened as
- * long as the next band (of twice the width) has the same level. The factor of Student's t makes
- * up for the few harmonics, so that twice the deviation still means 95 %. */
+/* Level of the spectrum at its low end, as a variance per point: over the lowest band, widened
+ * while the next band (of twice the width) has the same level. Student's factor corrects for the
+ * few harmonics, so that twice the deviation still means 95 %. */
 static double low_level(const fit_work *w) {
   size_t max = w->count / 2 < HARMONICS_MAX ? w->count / 2 : HARMONICS_MAX, first = 2;
   size_t width = max - first < BAND_FIRST ? max - first : BAND_FIRST;
@@ -124,9 +125,9 @@ static double low_level(const fit_work *w) {
   return level * student * student;
 }
 
-/* Adds what the parameters would move by if the difference of the edge's core and flanks were an
- * error of the edge, where it is more than its own noise; `excess` is how much more the spectrum's
- * low end holds than white pixel noise does. */
+/* Adds the move of the parameters if the difference of the edge's core and flanks were an error of
+ * the edge, where it is more than its own noise; `excess` is the ratio of the spectrum's low end to
+ * white pixel noise. */
 static void add_split(const fit_work *w, double excess, double covariance[3][3]) {
   fg_normal_equations system;
   double row[3], x[FG_SMALL_MAX], inverse[FG_SMALL_MAX][FG_SMALL_MAX];
@@ -175,7 +176,7 @@ static void fill_circle(const fit_work *w, double level_u_mm, fg_disc *disc) {
   disc->coverage_deg = 360 * (double)w->used / (double)w->count;
 }
 
-/* Residuals without gaps: linear between the usable neighbours. */
+/* Bridges gaps in the residuals: linear between the usable neighbours. */
 static void bridge_gaps(fit_work *w) {
   size_t first = 0, n = w->count;
   while (first < n && !w->points[first].used)
@@ -217,9 +218,9 @@ static fg_status fill_points(fg_context *ctx, const fit_work *w, fg_disc *disc) 
 }
 
 /* Fills the circle, covariance, roundness, rms, coverage, points, edge and residuals of `disc`,
- * FG_BUMP_OUTLIERS and FG_BUMP_POOR_FIT. `points` are in order; what is left out of the fit loses
- * its `used`. `level_u_mm` adds to the radius' uncertainty. FG_ERR_NUMERIC when fewer than half
- * of the points are usable. */
+ * FG_BUMP_OUTLIERS and FG_BUMP_POOR_FIT. `points` are in order; a point outside of the fit loses
+ * its `used`. `level_u_mm` adds to the radius' uncertainty. FG_ERR_NUMERIC when fewer than half of
+ * the points are usable. */
 static fg_status fit_disc(fg_context *ctx, fg_disc_point *points, size_t count, double level_u_mm,
                           fg_disc *disc) {
   fit_work w = {.points = points, .count = count};

@@ -32,7 +32,7 @@ bool fg_foil_is_measured(const fg_foil *foil) {
   return !(foil->flags & (FG_FOIL_NOT_MEASURED | FG_FOIL_NOT_THIS_DESIGN));
 }
 
-static void forget(double *values, size_t count) {
+static void set_unknown(double *values, size_t count) {
   for (size_t i = 0; i < count; i++)
     values[i] = NAN;
 }
@@ -45,7 +45,7 @@ static void forget_overall(fg_overall *o) {
                     .springback_error_pct = NAN,
                     .u_springback_error_pct = NAN,
                     .rms_um = NAN};
-  forget(o->covariance[0], 9);
+  set_unknown(o->covariance[0], 9);
 }
 
 void fg_foil_give_up(fg_foil *foil, const char *why) {
@@ -86,7 +86,7 @@ static void fill_bump(const fg_layout *layout, size_t i, const fg_design *design
   if (!layout->fitted[i]) {
     bump->flags |= FG_BUMP_NOT_FITTED;
     bump->radius_mm = bump->centre_mm.x = bump->centre_mm.y = NAN;
-    forget(bump->covariance[0], 9);
+    set_unknown(bump->covariance[0], 9);
   }
   for (int k = 0; k < 2; k++)
     bump->u_centre_mm[k] = sqrt(bump->covariance[k][k]);

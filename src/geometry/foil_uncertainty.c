@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a foil's values are uncertain by: scatter of the edges, the edge model, the tone curve. */
+/* Uncertainties of a foil's values: scatter of the edges, the edge model, the tone curve. */
 #include "geometry/foil_uncertainty.h"
 
 #include <gsl/gsl_cdf.h>
@@ -11,15 +11,15 @@
 #include "geometry/level_uncertainty.h"
 #include "geometry/shadow_uncertainty.h"
 
-/* The edge model's systematic error counts when chance would show it less often than this. */
+/* Max probability of chance at which the edge model's systematic error counts. */
 #define EDGE_MODEL_P 0.005
-/* The overall circle has one half-width shift of its own, no mean of many: it counts beyond so many
- * standard deviations. */
+/* Min half-width shift of the overall circle, in standard deviations: it has a single one, no mean
+ * of many. */
 #define OVERALL_SHIFT_SIGMAS 3.0
-/* Where both edges blur into each other that place rests on the shape of the blur: the share grows
- * with the cube of the blur below so many blurs of width (reports/accuracy_hard.md). */
+/* Width, in blurs, below which both edges blur into each other and the line's place depends on the
+ * shape of the blur: the share grows with the cube of the blur (reports/accuracy_hard.md). */
 #define LINE_SHIFT_WIDTHS 3.0
-/* Correlation over more stations than this is roughness of the edge. */
+/* Correlation length, in stations, above which an edge is rough. */
 #define ROUGH_STATIONS 3.0
 
 /* Unit vectors of a bump: u from O to C, v across. */
@@ -80,7 +80,7 @@ static void add_systematic(const fg_layout *layout, double systematic[3][3], fg_
           arc->covariance[p][q] += turn[p][a] * systematic[a][b] * turn[q][b];
 }
 
-/* The overall circle's own half-width shift, where it is more than chance. */
+/* Adds the overall circle's own half-width shift, where it is more than chance. */
 static void add_overall_systematic(fg_layout *layout, const fg_noise_model *half_width) {
   fg_arc arc = layout->overall;
   double shift[3];
@@ -98,9 +98,9 @@ double fg_foil_widths_in_blurs(const fg_foil *foil) {
   return 1000 * foil->strip.thickness_mm / blur_um;
 }
 
-/* What the edge model itself is worth: a shift of the whole line along its normal. It moves the
- * radius of every circle and the crowns, and nothing else. What the scan has lost and the level of
- * the edges move an edge that is the datum; the middle of two edges they leave. */
+/* Adds the edge model's own error: a shift of the whole line along its normal. It moves the radius
+ * of every circle and the crowns, and nothing else. JPEG's loss and the level of the edges move an
+ * edge that is the datum, but not the middle of two edges. */
 static void add_line_shift(const fg_layout *layout, const fg_design *design, const fg_foil *foil,
                            fg_arc *arc) {
   double blur_um = fmax(foil->strip.blur_left_um, foil->strip.blur_right_um);
@@ -111,7 +111,7 @@ static void add_line_shift(const fg_layout *layout, const fg_design *design, con
   arc->covariance[2][2] += shift_mm * shift_mm + loss_mm * loss_mm + edge_mm * edge_mm;
 }
 
-/* What JPEG's blocks have in common along an edge is more than the residuals tell. */
+/* Adds the common error of JPEG's blocks along an edge, which the residuals do not show. */
 static void widen_by_loss(const fg_foil *foil, fg_arc *arc) {
   for (int p = 0; p < 3; p++)
     for (int q = 0; q < 3; q++)
@@ -206,8 +206,8 @@ double fg_foil_width_u_um(const fg_design *design, const fg_foil *foil) {
   return hypot(fg_foil_tone_u_um(design, foil), 2 * foil->strip.loss_um);
 }
 
-/* A strip this far off the design's, and by more than U, is another material, another setup or a
- * wrong edge. */
+/* Max deviation of a thickness from the design's, as a share, if it is more than U, too: beyond it
+ * is another material, another setup or a wrong edge. */
 #define OTHER_THICKNESS_SHARE 0.2
 #define COVERAGE              2.0
 
@@ -220,7 +220,7 @@ static void check_thickness(const fg_design *design, fg_foil *foil) {
   if (!(off > COVERAGE * u)) return;
   if (stated) {
     foil->flags |= FG_FOIL_THICKNESS_CONTRADICTS;
-    /* Which of both is wrong is not known: the value may be off by as much as they differ. */
+    /* Either may be wrong: the value may be off by as much as they differ. */
     foil->u_thickness_mm = hypot(foil->u_thickness_mm, off);
   } else if (off > OTHER_THICKNESS_SHARE * expected)
     foil->flags |= FG_FOIL_OTHER_THICKNESS;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Gauges as they are stated: words and limits. */
+/* Stated gauges: words and limits. */
 #include "foilgauge/gauge.h"
 
 #include <math.h>
@@ -7,8 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* No leaf, pin or ring beyond these is on a scanner's bed, and an uncertainty of a tenth of the
- * width tells nothing. */
+/* Limits of the width of a leaf, pin or ring on a scanner's bed, and of its uncertainty: a tenth of
+ * the width is useless. */
 #define WIDTH_MIN_MM 0.005
 #define WIDTH_MAX_MM 200.0
 #define U_SHARE_MAX  0.1
@@ -37,7 +37,7 @@ fg_status fg_gauge_check(fg_context *ctx, const char *name, const fg_gauge *gaug
   return FG_OK;
 }
 
-static const char *read_number(const char *text, double *value) {
+static const char *read_field(const char *text, double *value) {
   char *end;
   if (*text != ':') return NULL;
   *value = strtod(text + 1, &end);
@@ -49,8 +49,8 @@ fg_status fg_gauge_parse(fg_context *ctx, const char *text, fg_gauge *gauge) {
     size_t length = strlen(words[kind]);
     if (strncmp(text, words[kind], length) != 0 || text[length] != ':') continue;
     gauge->kind = (fg_gauge_kind)kind;
-    const char *at = read_number(text + length, &gauge->width_mm);
-    if (at) at = read_number(at, &gauge->u_mm);
+    const char *at = read_field(text + length, &gauge->width_mm);
+    if (at) at = read_field(at, &gauge->u_mm);
     if (!at || *at) break;
     char name[80];
     snprintf(name, sizeof name, "gauge '%.60s'", text);

@@ -6,7 +6,7 @@
 #include "core/memory.h"
 
 /* Radial distance of a point from a circle. */
-static double distance(const fg_circle *circle, fg_point p) {
+static double circle_distance(const fg_circle *circle, fg_point p) {
   return hypot(p.x - circle->x, p.y - circle->y) - circle->radius;
 }
 
@@ -23,9 +23,9 @@ static void fill_residuals(const fg_layout *layout, const fg_arc *arc, size_t k,
   label->residual_um = (float)(1000 * fg_arc_residual(&layout->line, &arc->circle, k));
   if (!(s->weight > 0)) return;
   label->residual_left_um =
-      (float)(1000 * (distance(&arc->circle, s->left) - middle + right + shift));
+      (float)(1000 * (circle_distance(&arc->circle, s->left) - middle + right + shift));
   label->residual_right_um =
-      (float)(1000 * (distance(&arc->circle, s->right) - middle - right + shift));
+      (float)(1000 * (circle_distance(&arc->circle, s->right) - middle - right + shift));
 }
 
 static void label_arc(const fg_layout *layout, const fg_arc *arc, fg_range range, fg_datum datum,
@@ -39,8 +39,9 @@ static void label_arc(const fg_layout *layout, const fg_arc *arc, fg_range range
   }
 }
 
-/* Between the first and last arc everything else is fillet; beyond them lip or free end. */
-static void label_rest(const fg_layout *layout, fg_foil *foil) {
+/* Labels the remaining stations: between the first and last arc fillet; beyond them lip or free
+ * end. */
+static void label_remaining(const fg_layout *layout, fg_foil *foil) {
   size_t count = foil->strip.count, first = count, last = 0;
   for (size_t k = 0; k < count; k++)
     if (foil->labels[k].kind != FG_ARC_NONE) {
@@ -60,7 +61,7 @@ static void label_rest(const fg_layout *layout, fg_foil *foil) {
 }
 
 /* The number of the bump whose arc starts at a station's arc length. */
-static int number_at(const fg_foil *foil, double s_mm) {
+static int bump_number_at(const fg_foil *foil, double s_mm) {
   for (size_t i = 0; i < foil->bump_count; i++)
     if (foil->bumps[i].arc_start_mm == s_mm) return foil->bumps[i].number;
   return 0;
@@ -82,8 +83,8 @@ fg_status fg_labels_fill(fg_context *ctx, const fg_layout *layout, fg_datum datu
     if (layout->fitted[i]) {
       fg_range range = layout->bump_ranges[i];
       label_arc(layout, &layout->bumps[i], range, datum, FG_ARC_BUMP,
-                number_at(foil, foil->strip.stations[range.first].s_mm), foil);
+                bump_number_at(foil, foil->strip.stations[range.first].s_mm), foil);
     }
-  label_rest(layout, foil);
+  label_remaining(layout, foil);
   return FG_OK;
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What every station belongs to, and its residual from the circle that was fitted there. */
+/* Labels of stations: part of the foil, and residual from the circle fitted there. */
 #ifndef FG_GEOMETRY_LABELS_H
 #define FG_GEOMETRY_LABELS_H
 

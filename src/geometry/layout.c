@@ -9,12 +9,12 @@
 #include "core/parallel.h"
 
 enum { GROW_ROUNDS = 3, LAND_POINTS_MIN = 24 };
-/* How far an arc's end may lie inside and outside the turning point, and where it is put else. */
+/* Limits of an arc's end inside and outside the turning point, and its place beyond them. */
 #define END_EARLY_MM  0.30
 #define END_LATE_MM   0.12
 #define END_INSIDE_MM 0.12
 
-/* Stretches between bumps, and what lies beyond the outer two: the places of lands. */
+/* Bounds of the stretches between bumps, and beyond the outer two: the places of lands. */
 static fg_range gap_bounds(const fg_layout *layout, size_t i) {
   const fg_turning *t = &layout->turning;
   size_t last = layout->line.strip->count - 1;
@@ -52,8 +52,8 @@ static fg_status start_overall(fg_context *ctx, fg_layout *layout) {
   return fg_arc_estimate(ctx, &layout->line, &layout->overall);
 }
 
-/* Every gap's land: grown from what lies nearest to the circle. End gaps have lip or free end on
- * one side. */
+/* Regrows every gap's land from its stations nearest to the circle. End gaps have lip or free end
+ * on one side. */
 static void regrow_lands(fg_layout *layout) {
   const fg_circle *circle = &layout->overall.circle;
   size_t n = 0;
@@ -83,9 +83,9 @@ static void regrow_lands(fg_layout *layout) {
   layout->overall.range_count = n;
 }
 
-/* The line's direction turns where a bump's arc meets its fillet: an end that was found far from
- * there (a rough edge left the circle early, or stayed near it too long) is put a little inside of
- * it. */
+/* Checks an arc's ends. The line's direction turns where a bump's arc meets its fillet: an end that
+ * was found far from there (a rough edge left the circle early, or stayed near it too long) is put
+ * a little inside of it. */
 static void check_ends(const fg_layout *layout, const fg_stretch *turns, fg_range *range) {
   double step = layout->line.strip->step_mm;
   long inside = lround(END_INSIDE_MM / step), early = lround(END_EARLY_MM / step);

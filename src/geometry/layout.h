@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The layout of a foil: its arcs in order, from what its midline does. */
+/* The layout of a foil: its arcs in order, from the turning of its midline. */
 #ifndef FG_GEOMETRY_LAYOUT_H
 #define FG_GEOMETRY_LAYOUT_H
 
@@ -12,7 +12,7 @@ typedef struct fg_layout {
   bool inner_is_right;   /* the shaft's side of the strip */
   fg_range *bump_ranges; /* turning.bump_count; owned */
   fg_arc *bumps;         /* one range each; owned */
-  bool *fitted;          /* whether the bump's circle was found; owned */
+  bool *fitted;          /* true when the bump's circle was found; owned */
   fg_range *lands;       /* owned */
   size_t land_count;
   fg_arc overall; /* over the lands */
@@ -25,7 +25,8 @@ fg_status fg_layout_find(fg_context *ctx, const fg_design *design, const fg_stri
 
 void fg_layout_free(fg_layout *layout);
 
-/* What the fit of the overall circle says, without what the pixels' noise adds to it. */
+/* Fills `overall` from its circle's fit, without the contribution of the pixels' noise to its
+ * covariance. */
 void fg_layout_overall(const fg_layout *layout, const fg_design *design, fg_overall *overall);
 
 #endif

@@ -4,10 +4,10 @@
 
 #include <math.h>
 
-/* An unknown tone curve T, after the one exponent that is fitted. Edges alone do not tell where T
- * has its middle: whatever the place, a monotone curve explains the profile. What is left to ask is
- * which curves scanners and their drivers have. Each row is a kind, uniform over its range; as the
- * kinds are independent, their variances add (GUM, Type B).
+/* Half-ranges of an unknown tone curve T, after the one fitted exponent. Edges alone do not
+ * determine the middle of T: whatever its place, a monotone curve explains the profile. So the rows
+ * state the curves that scanners and their drivers have. Each row is a kind, uniform over its
+ * range; as the kinds are independent, their variances add (GUM, Type B).
  *
  *   gamma      the fitted exponent is right only as far as the blur is symmetric; it may be wrong
  *              by 30 %. T(1/2) = 0.5^(1/gamma) then lies from 0.37 to 0.59: half-range 0.107
@@ -19,12 +19,12 @@
  * Together 0.080: a quarter of a pixel for each edge at a blur of 1.25 px. */
 static const double unknown_tone_half_ranges[] = {0.107, 0.072, 0.05};
 
-/* A sensor that is called linear is so within some 1 % of its scale. T(1/2) of a curve that bends
- * by that is off by half of it at the most: uniform. */
+/* A sensor that is called linear deviates by some 1 % of its scale. T(1/2) of such a curve is off
+ * by at most half of that: uniform. */
 #define LINEAR_TONE_SD 0.003
 
-/* Standard deviation of T(1/2) that a finding adds. A gauge in the same scan goes through the
- * same driver: it knows all of it but what is local. */
+/* Standard deviation of T(1/2) by a finding. A gauge in the same scan goes through the same driver:
+ * its level includes all but local effects. */
 typedef struct level_row {
   unsigned bit;
   double sd;
@@ -37,24 +37,23 @@ static const level_row findings[] = {
     /* A curve was applied after rounding: another unknown tone curve. */
     {FG_PICTURE_LEVEL_GAPS, 0.08, false},
     /* Light beyond the end of the scale differs by edge: its contrast and the light around it.
-     * How much may be cut off all of them is u_cut, which a gauge knows. */
+       u_cut covers the part that all edges may lose, which a gauge's level includes. */
     {FG_PICTURE_CLIPPED, 0.1, true},
     /* Both lobes of an unsharp mask are symmetric until one of them is cut or meets the strip's
-     * other edge; then one side is short of up to a third of the contrast, and half of that counts.
-     */
+       other edge; then one side lacks up to a third of the contrast, and half of that counts. */
     {FG_PICTURE_SHARPENED, 0.1, false},
-    /* Slopes up to 4: as above, three times as steep. */
+    /* Slopes up to 4: the S curve above, three times as steep. */
     {FG_PICTURE_TONE_CURVE, 0.15, false},
-    /* Quantised blocks take the level of what they hold most of. */
+    /* Quantised blocks have the level of most of their pixels. */
     {FG_PICTURE_BLOCK_NOISE, 0.08, true},
     {FG_PICTURE_UNEVEN_BLUR, 0.05, true},
-    /* A band of unknown depth beside one of two edges is taken for part of the strip. */
+    /* A band of unknown depth beside one of two edges may count as part of the strip. */
     {FG_PICTURE_SHADOW, 0.25, true},
     {FG_PICTURE_SHADING, 0.05, true},
     {FG_PICTURE_UNKNOWN_PROFILE, 0.2, false},
 };
 
-/* Of a foil: halo, wall or a cut-off level shape its edges, and all profiles say the same wrong
+/* Of a foil: halo, wall or a clipped level shape its edges, and all profiles give the same wrong
  * exponent: 0.23 of it is 0.08 of the level. */
 static const level_row foil_flags[] = {
     {FG_FOIL_ROUGH_EDGE, 0.08, true},
@@ -76,11 +75,11 @@ static double unknown_tone_variance(void) {
   return variance;
 }
 
-/* An unsharp mask alone, which the edge model holds: what its lobes leave is 0.006 at the most,
- * over 36 scans of two renderers. */
+/* An unsharp mask alone, which the edge model includes: its lobes leave at most 0.006, over 36
+ * scans of two renderers. */
 #define HELD_MASK_SD 0.01
 
-/* Findings whose rows count; those that an edge model holds are replaced by *held. */
+/* Findings whose rows count; those in the edge model are replaced by *held. */
 static unsigned open_findings(const fg_picture_state *picture, double *held) {
   const unsigned spoiling = FG_PICTURE_UNKNOWN_PROFILE | FG_PICTURE_TONE_CURVE |
                             FG_PICTURE_CLIPPED | FG_PICTURE_FEW_LEVELS | FG_PICTURE_BLOCK_NOISE;
@@ -89,8 +88,8 @@ static unsigned open_findings(const fg_picture_state *picture, double *held) {
   return holds ? picture->findings & ~(unsigned)FG_PICTURE_SHARPENED : picture->findings;
 }
 
-/* Level of the edges that the picture hides. Where only few levels or a part of the profile are
- * seen, an edge is wider than it is seen, and a share of the level moves it by as much more. */
+/* Variance of a hidden level. When only few levels or a part of the profile are visible, an edge is
+ * wider than it looks, and a share of the level moves it by as much more. */
 static double hidden_variance(const fg_picture_state *picture, bool known) {
   const unsigned hiding = FG_PICTURE_FEW_LEVELS | FG_PICTURE_CLIPPED;
   double variance = 0;

@@ -4,20 +4,21 @@
 #include <math.h>
 #include <stdio.h>
 
-/* A part is not the design's foil beyond these, chosen so that no foil of the design is, whatever
- * springback, damage and scanner have done to it. */
+/* Limits beyond which a part is not the design's foil, chosen so that no foil of the design exceeds
+ * them, whatever its springback and damage and the scanner. */
 #define OTHER_OVERALL 2.0 /* overall radius over the design's, or the inverse */
-/* Chord of the bump that is nearest to the design's, likewise. Springback of 40 % in the radius and
- * crushing move it by 5 % (the arc length stays), the radius itself by a factor of three. */
+/* Chord of the bump nearest to the design's, over the design's, or the inverse. Springback of 40 %
+ * in the radius and crushing move it by 5 % (the arc length stays), the radius itself by a factor
+ * of three. */
 #define OTHER_CHORD 2.0
-/* Bumps over the design's count. Fewer are bumps that are missing, a few more are lands or what
- * touches the foil, taken for bumps. */
+/* Bumps over the design's count. Missing bumps make fewer; lands or touching objects that look like
+ * bumps make a few more. */
 #define OTHER_COUNT 2.0
 #define FEW_BUMPS   4
-/* u of the overall radius, relative: what its lands lie on is no circle. Foils have below 0.1 %. */
+/* u of the overall radius, relative: its lands lie on no circle. Foils have below 0.1 %. */
 #define OTHER_U 0.1
 
-/* The logarithm of how many times a value is its design's; 0 when it is not known. */
+/* Logarithm of a value over its design's; 0 when it is unknown. */
 static double times_off(double value, double design) {
   return value > 0 ? fabs(log(value / design)) : 0;
 }
@@ -26,7 +27,7 @@ static double chord_mm(double radius_mm, double angle_deg) {
   return 2 * radius_mm * sin(angle_deg / 2 * M_PI / 180);
 }
 
-/* The chord that is nearest to the design's: NaN when no bump has one. */
+/* Chord nearest to the design's: NaN when no bump has one. */
 static double nearest_chord(double design_mm, const fg_foil *foil, size_t *fitted) {
   double nearest = NAN;
   *fitted = 0;

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Whether what was measured is a foil of its design at all. */
+/* Test that a measured part is a foil of its design. */
 #ifndef FG_GEOMETRY_RECOGNISE_H
 #define FG_GEOMETRY_RECOGNISE_H
 
 #include "foilgauge/foil.h"
 
-/* Flags a part that cannot be a foil of the design, whatever springback and damage have done, with
- * the reason in `error`. */
+/* Flags a part that cannot be a foil of the design, whatever its springback and damage, with the
+ * reason in `error`. */
 void fg_foil_recognise(const fg_design *design, fg_foil *foil);
 
 #endif

@@ -26,7 +26,7 @@ static double transmission(size_t harmonic) {
   return exp(-M_LN2 * ratio * ratio);
 }
 
-static void transform(const double *values, size_t n, double u, spectrum *s) {
+static void transform_to_harmonics(const double *values, size_t n, double u, spectrum *s) {
   s->count = n / 2 < HARMONICS ? n / 2 : HARMONICS;
   for (size_t i = 0; i < GRID; i++) {
     s->cosine[i] = cos(2 * M_PI * (double)i / GRID);
@@ -60,8 +60,9 @@ static double peak_to_valley(const spectrum *s, double c[HARMONICS][2]) {
   return high - low;
 }
 
-/* What of the harmonics is more than noise: power over a few neighbours against the noise's. */
-static void shrink(const spectrum *s, double c[HARMONICS][2]) {
+/* Shrinks the harmonics to their part beyond noise: power over a few neighbours against the
+ * noise's. */
+static void shrink_harmonics(const spectrum *s, double c[HARMONICS][2]) {
   for (size_t k = 2; k < s->count; k++) {
     double power = 0, noise = 0;
     for (size_t j = k < 2 + SMOOTH ? 2 : k - SMOOTH; j <= k + SMOOTH && j < s->count; j++) {
@@ -75,8 +76,8 @@ static void shrink(const spectrum *s, double c[HARMONICS][2]) {
 }
 
 /* Mean rise and scatter of the peak to valley when noise is added to the harmonics `c`. */
-static fg_status simulate(fg_context *ctx, const spectrum *s, double c[HARMONICS][2], double *rise,
-                          double *scatter) {
+static fg_status simulate_noise(fg_context *ctx, const spectrum *s, double c[HARMONICS][2],
+                                double *rise, double *scatter) {
   double noisy[HARMONICS][2], sum = 0, squares = 0, clean = peak_to_valley(s, c);
   fg_numerics_start();
   gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
@@ -101,10 +102,10 @@ fg_status fg_roundness(fg_context *ctx, const double *values, size_t count, doub
   double real[HARMONICS][2], rise = 0, scatter = 0;
   spectrum *s = NULL;
   FG_TRY(fg_memory_allocate(ctx, 1, sizeof *s, (void **)&s));
-  transform(values, count, u, s);
-  shrink(s, real);
+  transform_to_harmonics(values, count, u, s);
+  shrink_harmonics(s, real);
   double seen = peak_to_valley(s, s->c);
-  fg_status status = simulate(ctx, s, real, &rise, &scatter);
+  fg_status status = simulate_noise(ctx, s, real, &rise, &scatter);
   free(s);
   *roundness = fmax(0, seen - rise);
   *u_roundness = hypot(scatter, 0.25 * rise);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A shadow spoils the background's level right at the edges of some bearings: these edges lie
- * elsewhere by an amount that changes slowly with the bearing. */
+/* Error of circles by a shadow: it falsifies the background's level right at the edges of some
+ * bearings. These edges are displaced by an amount that changes slowly with the bearing. */
 #include "geometry/shadow_uncertainty.h"
 
 #include <math.h>
@@ -8,24 +8,24 @@
 #include "foilgauge/foil.h"
 #include "geometry/level_uncertainty.h"
 
-/* An edge moves by so many times depth × blur × sqrt(2 pi): half of what the background's level
- * errs by counts, and that is about the depth. Over renders of known truth errors have at most that
- * sd (tests/bench/driver.py, kinds shadow and wall). */
+/* Shift of an edge over depth × blur × sqrt(2 pi): half of the error of the background's level
+ * counts, and that is about the depth. Over renders of known truth errors have at most that sd
+ * (tests/bench/driver.py, kinds shadow and wall). */
 #define SHIFT_PER_DEPTH 0.5
-/* Shapes are smoothed over two harmonics of the bearing and over stretches of a bump that turn by
- * up to 50 degrees, which carries this share of the deepest band to edges that have none. */
+/* Share of the deepest band that edges without any get: shapes are smoothed over two harmonics of
+ * the bearing and over stretches of a bump that turn by up to 50 degrees. */
 #define CARRIED_SHARE 0.4
-/* A blur that differs over the bearing leaves as much at every edge as a band of this depth: what
- * smoothing its shape misses. */
+/* Depth of a band with the effect of a blur that differs over the bearing: the error of its shape's
+ * smoothing. */
 #define UNEVEN_DEPTH 0.005
-/* Shifts of bearings this far apart have nothing in common. */
+/* Number of bearings whose shifts are independent. */
 enum { PARTS = 12 };
 
 /* One independent part of the shifts: edges that face the bearing, or, without a part, all. */
 typedef struct shift_part {
   const fg_datum_line *line;
   int part;       /* -1: all bearings alike */
-  double carried; /* depth that every edge has beside its own */
+  double carried; /* depth at every edge in addition to its own */
 } shift_part;
 
 static double depth_at(const fg_picture_state *picture, double bearing) {
@@ -36,8 +36,9 @@ static double depth_at(const fg_picture_state *picture, double bearing) {
          share * picture->shadow_at[(i + 1) % FG_PICTURE_BEARINGS];
 }
 
-/* Parts overlap, so that the squares of their weights add up to 1 at every bearing. */
-static double weight_at(const shift_part *p, double bearing) {
+/* Weight of a part. Parts overlap, so that the squares of their weights add up to 1 at every
+ * bearing. */
+static double part_weight(const shift_part *p, double bearing) {
   if (p->part < 0) return 1;
   double step = 2 * M_PI / PARTS, off = fabs(remainder(bearing - p->part * step, 2 * M_PI));
   return off < step ? cos(M_PI / 2 * off / step) : 0;
@@ -50,10 +51,10 @@ static double edge_shift(const shift_part *p, const fg_station *s, bool right) {
   double blur_mm = (right ? strip->blur_right_um : strip->blur_left_um) / 1000;
   double depth = depth_at(&strip->picture, bearing);
   depth = p->part < 0 ? depth : hypot(depth, p->carried);
-  return SHIFT_PER_DEPTH * depth * fg_level_shift(blur_mm) * weight_at(p, bearing);
+  return SHIFT_PER_DEPTH * depth * fg_level_shift(blur_mm) * part_weight(p, bearing);
 }
 
-/* Of the line's place at a station: of an edge or of the middle between both. */
+/* Shift of the line's place at a station: of an edge or of the middle between both. */
 static double line_shift(const void *user, size_t station) {
   const shift_part *p = user;
   const fg_station *s = &p->line->strip->stations[station];
@@ -65,8 +66,8 @@ static double line_shift(const void *user, size_t station) {
              : -left;
 }
 
-/* Shift of the circle's parameters under each part: of how many, 0 without shadow and uneven
- * blur. */
+/* Finds the shift of the circle's parameters under each part; returns the number of parts, 0
+ * without shadow and uneven blur. */
 static size_t find_shifts(const fg_datum_line *line, const fg_arc *arc,
                           double shifts[PARTS + 1][3]) {
   const fg_picture_state *picture = &line->strip->picture;

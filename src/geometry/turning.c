@@ -15,24 +15,25 @@
 #define SHARP_RADIUS   0.5 /* and fillets are tighter than this share */
 enum { STRETCHES_MAX = 512, PAIRS_MIN = 8 };
 
-/* The usable station at or next to i, in the direction of `step`; i itself where there is none. */
-static size_t usable(const fg_strip *strip, size_t i, int step) {
+/* Returns the usable station at or next to i, in the direction of `step`; i itself where there is
+ * none. */
+static size_t usable_station(const fg_strip *strip, size_t i, int step) {
   for (size_t k = i; k < strip->count; k += (size_t)step)
     if (strip->stations[k].weight > 0) return k;
   return i;
 }
 
-/* Direction over ± TANGENT_MM, or further where stations are not usable. The ends, which are not
- * usable either, go on in the direction that was seen last. */
+/* Finds the direction over ± TANGENT_MM, or further where stations are not usable. The ends, which
+ * are not usable either, keep the last known direction. */
 static void find_directions(const fg_strip *strip, double *direction) {
   size_t reach = (size_t)(TANGENT_MM / strip->step_mm + 0.5);
   if (reach < 1) reach = 1;
   double before = 0;
-  size_t first = usable(strip, 0, 1), last = usable(strip, strip->count - 1, -1);
+  size_t first = usable_station(strip, 0, 1), last = usable_station(strip, strip->count - 1, -1);
   for (size_t i = 0; i < strip->count; i++) {
     size_t middle = i < first ? first : i > last ? last : i;
-    size_t a = usable(strip, middle > first + reach ? middle - reach : first, -1);
-    size_t b = usable(strip, middle + reach < last ? middle + reach : last, 1);
+    size_t a = usable_station(strip, middle > first + reach ? middle - reach : first, -1);
+    size_t b = usable_station(strip, middle + reach < last ? middle + reach : last, 1);
     fg_point p = fg_strip_middle(strip, a), q = fg_strip_middle(strip, b);
     double angle = a < b ? atan2(q.y - p.y, q.x - p.x) : before;
     if (i > 0) angle += 2 * M_PI * round((before - angle) / (2 * M_PI));
@@ -40,7 +41,7 @@ static void find_directions(const fg_strip *strip, double *direction) {
   }
 }
 
-/* Cuts the strip at the turning points of the direction. Returns how many stretches. */
+/* Cuts the strip at the turning points of the direction. Returns the number of stretches. */
 static size_t cut_stretches(const fg_strip *strip, const double *direction, fg_stretch *out) {
   size_t count = 0, from = 0, low = 0, high = 0;
   int rising = 0;
@@ -111,8 +112,8 @@ static double get_tightest(const fg_stretch *s) {
   return s->tightest_mm;
 }
 
-/* Radius where a turn of PROMINENCE_RAD takes the least length: a bump's own, and of a gap that of
- * its fillets, however long the land between them is. */
+/* Radius where a turn of PROMINENCE_RAD has the min length: a bump's own, and of a gap that of its
+ * fillets, however long the land between them is. */
 static double find_tightest(const fg_strip *strip, const double *direction, const fg_stretch *s) {
   double min = s->length_mm;
   double sign = s->turn_rad > 0 ? 1 : -1;
@@ -125,7 +126,7 @@ static double find_tightest(const fg_strip *strip, const double *direction, cons
   return min / PROMINENCE_RAD;
 }
 
-/* How much of a stretch's turn happens on radii below `limit_mm`. */
+/* Part of a stretch's turn on radii below `limit_mm`. */
 static double sharp_turn(const fg_strip *strip, const double *direction, const fg_stretch *s,
                          double limit_mm) {
   double sum = 0;
@@ -136,9 +137,9 @@ static double sharp_turn(const fg_strip *strip, const double *direction, const f
   return sum;
 }
 
-/* A bump and the gap beside it turn by a pitch or more round the overall circle, in the sense that
- * bumps do not have; the median holds when a bump is crushed. With few bumps the lip has too much
- * of a say, and gaps are what has fillets. */
+/* Finds the bumps' sense. A bump and the gap beside it turn by a pitch or more round the overall
+ * circle, in the sense that bumps do not have; the median holds when a bump is crushed. With few
+ * bumps the lip biases it, and the fillets mark the gaps. */
 static double find_sense(const fg_stretch *stretches, size_t count) {
   double sums[STRETCHES_MAX];
   size_t n = 0;
@@ -149,8 +150,8 @@ static double find_sense(const fg_stretch *stretches, size_t count) {
   return up > median_over(stretches, count, -1, get_tightest) ? 1 : -1;
 }
 
-/* Where a stretch has turned by half a right angle from one of its ends: the middle of a lip's
- * bend. */
+/* Middle of a lip's bend: the place where a stretch has turned by half a right angle from one of
+ * its ends. */
 static size_t bend_middle(const double *direction, const fg_stretch *s, bool from_last) {
   size_t at = from_last ? s->last : s->first, from = at;
   while (at != (from_last ? s->first : s->last) &&
@@ -163,8 +164,8 @@ static double get_sharp(const fg_stretch *s) {
   return s->sharp_rad;
 }
 
-/* A lip that is bent towards the shaft turns as the gaps do and is one with the first of them,
- * which then has a right angle more of sharp turn than the one fillet of its own. */
+/* Finds a lip that is bent towards the shaft. It turns as the gaps do and is one with the first of
+ * them, which then has a right angle more of sharp turn than the one fillet of its own. */
 static void find_lip_in_gaps(const double *direction, const fg_stretch *all, size_t count,
                              fg_turning *out) {
   const fg_stretch *first = &all[0], *last = &all[count - 1];
@@ -176,7 +177,7 @@ static void find_lip_in_gaps(const double *direction, const fg_stretch *all, siz
   if (out->lip_last) out->lip_end[1] = bend_middle(direction, last, true);
 }
 
-/* A tight bend in the bumps' sense, the first or last of its kind, is the lip's. */
+/* Returns true for a lip: a tight bend in the bumps' sense, the first or last of its kind. */
 static bool is_lip(const fg_stretch *s, double typical_radius) {
   return fabs(s->turn_rad) > LIP_TURN_MIN && get_radius(s) < typical_radius;
 }

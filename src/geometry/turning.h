@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Recognition of a foil from how its midline turns.
+/* Recognition of a foil from the turning of its midline.
  *
  * Along a foil the tangent's direction goes back and forth: a bump turns it one way, the fillet,
  * land and fillet between two bumps turn it the other way, and by one pitch more, since all of it
@@ -36,7 +36,7 @@ fg_status fg_turning_find(fg_context *ctx, const fg_strip *strip, fg_turning *tu
 
 void fg_turning_free(fg_turning *turning);
 
-/* The middle between the edges at a station. */
+/* Returns the middle between the edges at a station. */
 static inline fg_point fg_strip_middle(const fg_strip *strip, size_t i) {
   const fg_station *s = &strip->stations[i];
   return (fg_point){0.5 * (s->left.x + s->right.x), 0.5 * (s->left.y + s->right.y)};

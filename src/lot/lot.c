@@ -10,7 +10,6 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "core/clock.h"
 #include "core/date.h"
 #include "core/file.h"
 #include "core/folder.h"

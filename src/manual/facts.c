@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "cli/commands.h"
-#include "core/member_words.h"
+#include "core/json_read.h"
 #include "foilgauge/control.h"
 #include "foilgauge/picture.h"
 #include "foilgauge/quantity.h"

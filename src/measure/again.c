@@ -55,7 +55,7 @@ static fg_status copy_beams(fg_context *ctx, const fg_measure_mover *mover, cons
   return FG_OK;
 }
 
-/* A flat foil is its beams; everything else of it is theirs or the scan's. */
+/* Measures a flat foil by its beams; its other members are theirs or the scan's. */
 static fg_status measure_flat(fg_context *ctx, const fg_foil *foil, const fg_design *design,
                               const fg_measure_mover *mover, fg_foil *again) {
   *again = *foil;
@@ -73,7 +73,7 @@ static fg_status measure_foil(fg_context *ctx, const fg_foil *foil, const fg_des
   memset(again, 0, sizeof *again);
   memcpy(again->place_mm, foil->place_mm, sizeof again->place_mm);
   again->number = foil->number;
-  if (foil->flags & FG_FOIL_NOT_MEASURED) { /* nothing to measure; why stays as it is */
+  if (foil->flags & FG_FOIL_NOT_MEASURED) { /* nothing to measure; the reason stays */
     fg_foil_give_up(again, foil->error);
     again->flags = foil->flags;
     return FG_OK;
@@ -123,23 +123,23 @@ exit:
   return status;
 }
 
-static fg_point stretched(const void *user, fg_point at) {
+static fg_point stretched_point(const void *user, fg_point at) {
   const double *factor = user;
   return (fg_point){at.x * factor[0], at.y * factor[1]};
 }
 
 static void stretch_strip(const void *user, const fg_foil *foil, fg_strip *strip) {
   (void)foil;
-  fg_strip_move(strip, stretched, user);
+  fg_strip_move(strip, stretched_point, user);
 }
 
 static fg_point stretch_point(const void *user, const fg_disc *disc, fg_point at) {
   (void)disc;
-  return stretched(user, at);
+  return stretched_point(user, at);
 }
 
 fg_status fg_measure_stretched(fg_context *ctx, const fg_measurement *m, const double factor[2],
                                unsigned threads, fg_measurement *again) {
-  const fg_measure_mover mover = {stretch_strip, stretch_point, stretched, factor};
+  const fg_measure_mover mover = {stretch_strip, stretch_point, stretched_point, factor};
   return fg_measure_again(ctx, m, &mover, threads, again);
 }

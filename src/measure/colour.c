@@ -3,21 +3,22 @@
 
 #include <math.h>
 
-#include "measure/colour_course.h"
+#include "measure/colour_drift.h"
 #include "measure/colour_fit.h"
 #include "measure/colour_read.h"
 
 enum { RED, GREEN, BLUE, CHANNELS, ROWS_MIN = 30 };
-/* Contrast over noise from which on a channel shows edges. */
+/* Min ratio of contrast to noise of a channel that shows edges. */
 #define CONTRAST_MIN 4.0
-/* Cross-sections meet the pixels at phases that change slowly along an edge, which shows in no
- * correlation of so few: with less the intervals hold too seldom (reports/colour_lines.md). */
+/* Min factor of correlation. Cross-sections meet the pixels at phases that change slowly along an
+ * edge, which short lags do not show: with a smaller factor the intervals hold too seldom
+ * (reports/colour_lines.md). */
 #define CORRELATION_MIN 1.25
-/* What is seen to be apart must be so many u beyond 0. */
+/* Min distance of channels that are reported apart, in u. */
 #define APART_SIGMAS 3.0
 
-/* The channel that others are held against: the one that was measured; green where it was their
- * mean. */
+/* Returns the channel that others are compared with: the measured one; green where the mean of all
+ * was measured. */
 static int choose_reference(const fg_measurement *m) {
   return m->channel == FG_CHANNEL_LUMINANCE ? GREEN : (int)m->channel - FG_CHANNEL_RED;
 }
@@ -32,7 +33,7 @@ static void clear_shift(int channel, fg_colour_state state, fg_colour_shift *shi
                              .skew_ppm = none,
                              .largest_px = none,
                              .rms_um = none,
-                             .course_rms_um = none,
+                             .drift_rms_um = none,
                              .u_dx_px = NAN,
                              .u_dy_px = NAN,
                              .u_magnification_ppm = NAN,
@@ -46,7 +47,7 @@ static double u_of(const fg_colour_rows *rows, int unknown) {
   return sqrt(rows->covariance[unknown][unknown] * rows->scatter * correlation);
 }
 
-/* Along x within the parts that were measured. */
+/* Largest distance along x within the measured parts. */
 static double find_largest(const fg_colour_rows *rows) {
   const double *v = rows->values;
   double largest = 0;
@@ -59,7 +60,7 @@ static double find_largest(const fg_colour_rows *rows) {
   return largest;
 }
 
-static void write_values(const fg_colour_rows *rows, fg_colour_shift *shift) {
+static void fill_shift(const fg_colour_rows *rows, fg_colour_shift *shift) {
   const double *v = rows->values, um = 1e3 * sqrt(rows->pixel_mm[0] * rows->pixel_mm[1]);
   double ppm[2] = {1e6 * rows->pixel_mm[0], 1e6 * rows->pixel_mm[1]}, weight = 0;
   shift->dx_px = v[FG_COLOUR_DX];
@@ -80,16 +81,16 @@ static void write_values(const fg_colour_rows *rows, fg_colour_shift *shift) {
   shift->rms_um = um * sqrt(rows->scatter * (double)shift->stations / weight);
 }
 
-static fg_status compare(fg_context *ctx, const fg_colour_stations *stations,
-                         const fg_measurement *m, int against, int channel, fg_colour_shift *shift,
-                         double *x0_mm) {
+static fg_status compare_pair(fg_context *ctx, const fg_colour_stations *stations,
+                              const fg_measurement *m, int against, int channel,
+                              fg_colour_shift *shift, double *x0_mm) {
   fg_colour_rows rows = {0};
   fg_status status = fg_colour_rows_build(ctx, stations, against, channel, m->dpi, &rows);
   bool told = status == FG_OK && rows.count >= ROWS_MIN && fg_colour_rows_fit(&rows);
   clear_shift(channel, FG_COLOUR_MEASURED, shift);
-  if (told) status = fg_colour_course_find(ctx, &rows, shift, &told);
+  if (told) status = fg_colour_drift_find(ctx, &rows, shift, &told);
   if (told)
-    write_values(&rows, shift);
+    fill_shift(&rows, shift);
   else
     clear_shift(channel, FG_COLOUR_FEW_EDGES, shift);
   *x0_mm = rows.x0_mm;
@@ -97,12 +98,13 @@ static fg_status compare(fg_context *ctx, const fg_colour_stations *stations,
   return status;
 }
 
-/* Two channels hold the same pixels: of red and green, green and blue, blue and red. */
+/* Returns true when two channels hold the same pixels: of red and green, green and blue, blue and
+ * red. */
 static bool is_same(const bool same[CHANNELS], int one, int other) {
   return same[(one + 1) % CHANNELS == other ? one : other];
 }
 
-/* Each other channel against one, and the two others against each other. */
+/* Compares each other channel with the reference, and the two others with each other. */
 static bool find_apart(const fg_colour_lines *lines) {
   const fg_colour_shift *a = &lines->shifts[0], *b = &lines->shifts[1];
   double largest = 0, between = hypot(a->dx_px - b->dx_px, a->dy_px - b->dy_px), u = 0;
@@ -135,7 +137,7 @@ static fg_status compare_all(fg_context *ctx, const fg_colour_stations *stations
     else if (fmin(contrast[channel], contrast[against]) < CONTRAST_MIN)
       clear_shift(channel, FG_COLOUR_NO_CONTRAST, shift);
     else
-      FG_TRY(compare(ctx, stations, m, against, channel, shift, &lines->x0_mm));
+      FG_TRY(compare_pair(ctx, stations, m, against, channel, shift, &lines->x0_mm));
   }
   lines->apart = find_apart(lines);
   return FG_OK;

@@ -10,10 +10,10 @@
 #include "core/select.h"
 #include "core/small_solve.h"
 
-/* Rows that lie so many standard deviations off (by the median) are dust, or something else. */
+/* Limit of an outlier in standard deviations (by the median): dust, or a foreign object. */
 #define OUTLIER_SIGMAS 4.5
 #define ROUNDS         8
-/* The correlation is sought over so many neighbours: some 0.1 to 0.2 mm of edge. */
+/* Number of neighbours for the correlation: some 0.1 to 0.2 mm of edge. */
 enum { LAGS = 12 };
 #define MEDIAN_TO_SD 1.4826
 
@@ -38,7 +38,8 @@ double fg_colour_contrast(fg_context *ctx, const fg_colour_stations *stations, i
   if (median_of(ctx, stations, channel, false, &contrast) != FG_OK ||
       median_of(ctx, stations, channel, true, &noise) != FG_OK || isnan(contrast))
     return 0;
-  /* Rounding to whole counts is noise as well: a picture without any has no endless contrast. */
+  /* Rounding to whole counts is noise as well: a picture without noise does not have infinite
+   * contrast. */
   return fabs(contrast) / sqrt(fmax(noise, 1.0 / 12));
 }
 
@@ -65,7 +66,7 @@ fg_status fg_colour_rows_build(fg_context *ctx, const fg_colour_stations *statio
   FG_TRY(median_of(ctx, stations, channel, true, &noise[0]));
   FG_TRY(median_of(ctx, stations, against, true, &noise[1]));
   for (int i = 0; i < 2; i++)
-    noise[i] = fmax(noise[i], 1e-6); /* of a picture without noise the residuals tell */
+    noise[i] = fmax(noise[i], 1e-6); /* without noise the residuals decide */
   FG_TRY(fg_memory_allocate(ctx, stations->count, sizeof *rows->list, (void **)&rows->list));
   FG_TRY(fg_memory_allocate(ctx, stations->count, sizeof *rows->sizes, (void **)&rows->sizes));
   rows->unknowns =
@@ -106,7 +107,7 @@ static double residual_of(const fg_colour_rows *rows, const fg_colour_row *row) 
   return rest;
 }
 
-static bool solve(fg_colour_rows *rows) {
+static bool solve_unknowns(fg_colour_rows *rows) {
   double inverse[FG_SMALL_MAX][FG_SMALL_MAX], a[FG_COLOUR_UNKNOWNS];
   fg_normal_equations system;
   size_t used = 0;
@@ -149,12 +150,12 @@ static size_t drop_outliers(fg_colour_rows *rows) {
   return fg_colour_rows_keep(rows, OUTLIER_SIGMAS);
 }
 
-void fg_colour_rows_scatter(fg_colour_rows *rows, double (*course)(const void *user, double y_mm),
+void fg_colour_rows_scatter(fg_colour_rows *rows, double (*drift)(const void *user, double y_mm),
                             const void *user) {
   double products[LAGS] = {0}, pairs[LAGS] = {0}, used = 0;
   for (size_t i = 0; i < rows->count; i++) {
     fg_colour_row *row = &rows->list[i];
-    row->size = (residual_of(rows, row) - row->ny * course(user, row->y_mm)) * sqrt(row->weight);
+    row->size = (residual_of(rows, row) - row->ny * drift(user, row->y_mm)) * sqrt(row->weight);
     for (size_t lag = 0; row->used && lag < LAGS && lag <= i; lag++) {
       const fg_colour_row *before = row - lag;
       if (!before->used || before->part != row->part) continue;
@@ -167,16 +168,16 @@ void fg_colour_rows_scatter(fg_colour_rows *rows, double (*course)(const void *u
   rows->correlation = fg_correlation_integral(products, pairs, LAGS);
 }
 
-static bool fit(fg_colour_rows *rows) {
-  bool fine = rows->count > 0 && solve(rows);
+static bool fit_unknowns(fg_colour_rows *rows) {
+  bool fine = rows->count > 0 && solve_unknowns(rows);
   for (int round = 0; round < ROUNDS && fine && drop_outliers(rows); round++)
-    fine = solve(rows);
+    fine = solve_unknowns(rows);
   return fine;
 }
 
-/* A bent strip that lies off along itself, too, shows that along its normal: n = bend t² / 2 moved
+/* Corrects the shift along a bent strip, which appears along its normal, too: n = bend t² / 2 moved
  * by (t, n) passes t = 0 at n + bend t² / 2. In a fillet that is some 0.003 px. */
-static void straighten(fg_colour_rows *rows) {
+static void correct_bends(fg_colour_rows *rows) {
   const double *v = rows->values;
   for (size_t i = 0; i < rows->count; i++) {
     fg_colour_row *row = &rows->list[i];
@@ -189,7 +190,7 @@ static void straighten(fg_colour_rows *rows) {
 }
 
 bool fg_colour_rows_fit(fg_colour_rows *rows) {
-  if (!fit(rows)) return false;
-  straighten(rows);
-  return fit(rows);
+  if (!fit_unknowns(rows)) return false;
+  correct_bends(rows);
+  return fit_unknowns(rows);
 }

@@ -11,7 +11,7 @@ enum { LEVEL, CONTRAST, SHIFT, BLUR, VALUES, ROUNDS = 12, PIXELS_MIN = 12 };
 #define STEP_MAX_PX    1.0
 #define CONVERGED_PX   1e-4
 #define BLUR_CONVERGED 0.005
-#define OUTER_SHARE    0.8 /* of the reach: beyond it, what lies around is seen */
+#define OUTER_SHARE    0.8 /* share of the reach beyond which pixels belong to the surroundings */
 
 /* The profile at v = n - shift, without level and contrast: its value and its derivatives by v and
  * by the blur. */
@@ -43,10 +43,10 @@ static profile_shape profile_at(const fg_edge_tables *tables, const fg_colour_kn
   return add_edge(tables, sum, -1, v - known->half_width_px, blur);
 }
 
-/* Level outside; contrast and place from what the pixels have more than it: of a strip its centre
- * of gravity, of a lone edge how far it fills the reach. */
-static bool start(const fg_colour_known *known, const fg_colour_pixel *pixels, size_t count,
-                  int channel, double x[VALUES]) {
+/* First estimates: level outside; contrast and place from the pixels' excess over it. A strip's
+ * place is its centre of gravity, a single edge's the filled part of the reach. */
+static bool estimate_start(const fg_colour_known *known, const fg_colour_pixel *pixels,
+                           size_t count, int channel, double x[VALUES]) {
   bool outlier = isinf(known->half_width_px);
   double reach = 0, level = 0, outside = 0, inner = 0, inside = 0, sum = 0, moment = 0;
   for (size_t i = 0; i < count; i++)
@@ -75,7 +75,7 @@ static bool start(const fg_colour_known *known, const fg_colour_pixel *pixels, s
   return true;
 }
 
-/* What is fitted to. */
+/* Data of the fit. */
 typedef struct profile {
   const fg_edge_tables *tables;
   const fg_colour_known *known;
@@ -100,7 +100,7 @@ static double add_pixels(const profile *p, const double x[VALUES], fg_normal_equ
   return sum;
 }
 
-static void take_step(double x[VALUES], const double step[VALUES]) {
+static void add_step(double x[VALUES], const double step[VALUES]) {
   x[LEVEL] += step[LEVEL];
   x[CONTRAST] += step[CONTRAST];
   x[SHIFT] += fmax(-STEP_MAX_PX, fmin(STEP_MAX_PX, step[SHIFT]));
@@ -115,13 +115,13 @@ void fg_colour_profile_fit(const fg_edge_tables *tables, const fg_colour_known *
   double x[VALUES], step[VALUES], inverse[FG_SMALL_MAX][FG_SMALL_MAX];
   fg_normal_equations system;
   *place = (fg_colour_place){0};
-  if (count < PIXELS_MIN || !start(known, pixels, count, channel, x)) return;
+  if (count < PIXELS_MIN || !estimate_start(known, pixels, count, channel, x)) return;
   bool converged = false;
   double sum = 0;
   for (int round = 0; round < ROUNDS && !converged; round++) {
     sum = add_pixels(&p, x, &system);
     if (!fg_normal_solve(&system, 1e-9, step, inverse)) return;
-    take_step(x, step);
+    add_step(x, step);
     converged = fabs(step[SHIFT]) < CONVERGED_PX && fabs(step[BLUR]) < BLUR_CONVERGED * x[BLUR];
   }
   *place = (fg_colour_place){.shift_px = x[SHIFT],

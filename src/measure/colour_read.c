@@ -10,13 +10,13 @@
 
 enum {
   BATCH_ROWS = 128,
-  PIXELS_MAX = 1024, /* of one cross-section; a larger one is not looked at */
+  PIXELS_MAX = 1024, /* of one cross-section; a larger one is skipped */
 };
 
 /* Rows of the scan, the newest in the place of the oldest. */
 typedef struct ring {
   fg_colour_stations *stations;
-  int64_t width_px, rows, read; /* that the ring holds; that were read */
+  int64_t width_px, rows, read; /* rows in the ring; rows read */
   int bytes_per_pixel;
   uint8_t *planes[3];
   fg_edge_tables *tables;
@@ -29,7 +29,7 @@ static uint8_t *row_of(const ring *r, int channel, int64_t y) {
          (size_t)(y % r->rows) * (size_t)r->width_px * (size_t)r->bytes_per_pixel;
 }
 
-static float value_at(const ring *r, int channel, int64_t x, int64_t y) {
+static float ring_value(const ring *r, int channel, int64_t x, int64_t y) {
   const uint8_t *row = row_of(r, channel, y);
   if (r->bytes_per_pixel == 1) return (float)row[x];
   return (float)((const uint16_t *)(const void *)row)[x] * (1.0F / 257.0F);
@@ -38,11 +38,11 @@ static float value_at(const ring *r, int channel, int64_t x, int64_t y) {
 static fg_colour_pixel pixel_at(const ring *r, int64_t x, int64_t y, double across) {
   return (fg_colour_pixel){
       .across_px = (float)across,
-      .value = {value_at(r, 0, x, y), value_at(r, 1, x, y), value_at(r, 2, x, y)}};
+      .value = {ring_value(r, 0, x, y), ring_value(r, 1, x, y), ring_value(r, 2, x, y)}};
 }
 
-/* The pixels of one cross-section: a rectangle along the normal. */
-static size_t collect(const ring *r, const fg_colour_station *s, fg_colour_pixel *pixels) {
+/* Collects the pixels of one cross-section: a rectangle along the normal. */
+static size_t collect_pixels(const ring *r, const fg_colour_station *s, fg_colour_pixel *pixels) {
   size_t count = 0;
   double wide = fabs(s->nx) * s->half_across_px + fabs(s->ny) * s->half_along_px;
   for (int64_t y = s->top; y <= s->bottom; y++)
@@ -56,7 +56,7 @@ static size_t collect(const ring *r, const fg_colour_station *s, fg_colour_pixel
   return count;
 }
 
-static void compare(ring *r, const fg_colour_pixel *pixels, size_t count) {
+static void compare_channels(ring *r, const fg_colour_pixel *pixels, size_t count) {
   for (int k = 0; k < 3; k++) {
     if (atomic_load(&r->differ[k])) continue;
     for (size_t i = 0; i < count; i++)
@@ -64,25 +64,25 @@ static void compare(ring *r, const fg_colour_pixel *pixels, size_t count) {
   }
 }
 
-static fg_status look(fg_context *ctx, void *shared, size_t item) {
+static fg_status fit_station(fg_context *ctx, void *shared, size_t item) {
   (void)ctx;
   ring *r = shared;
   fg_colour_station *s = &r->stations->list[r->stations->order[r->first + item]];
   fg_colour_pixel pixels[PIXELS_MAX];
-  size_t count = collect(r, s, pixels);
-  compare(r, pixels, count);
+  size_t count = collect_pixels(r, s, pixels);
+  compare_channels(r, pixels, count);
   for (int channel = 0; channel < 3; channel++)
     fg_colour_profile_fit(r->tables, &s->known, pixels, count, channel, &s->place[channel]);
   return FG_OK;
 }
 
-/* Cross-sections whose last row has come. */
-static fg_status look_at_batch(fg_context *ctx, ring *r, unsigned threads) {
+/* Fits the cross-sections whose last row has been read. */
+static fg_status fit_batch(fg_context *ctx, ring *r, unsigned threads) {
   const fg_colour_stations *stations = r->stations;
   size_t next = r->first;
   while (next < stations->count && stations->list[stations->order[next]].bottom < r->read)
     next++;
-  FG_TRY(fg_parallel_run(ctx, threads, next - r->first, look, r));
+  FG_TRY(fg_parallel_run(ctx, threads, next - r->first, fit_station, r));
   r->first = next;
   return FG_OK;
 }
@@ -97,7 +97,7 @@ static fg_status read_batch(fg_context *ctx, fg_scan *scan, ring *r, int64_t hei
   return FG_OK;
 }
 
-static fg_status read_rows(fg_context *ctx, fg_scan *scan, unsigned threads, ring *r) {
+static fg_status read_all_rows(fg_context *ctx, fg_scan *scan, unsigned threads, ring *r) {
   size_t bytes = (size_t)r->rows * (size_t)r->width_px * (size_t)r->bytes_per_pixel;
   for (int k = 0; k < 3; k++)
     FG_TRY(fg_memory_allocate(ctx, bytes, 1, (void **)&r->planes[k]));
@@ -106,7 +106,7 @@ static fg_status read_rows(fg_context *ctx, fg_scan *scan, unsigned threads, rin
   FG_TRY(fg_scan_begin_colours(ctx, scan));
   while (r->first < r->stations->count) {
     FG_TRY(read_batch(ctx, scan, r, fg_scan_get_info(scan)->height_px));
-    FG_TRY(look_at_batch(ctx, r, threads));
+    FG_TRY(fit_batch(ctx, r, threads));
   }
   return FG_OK;
 }
@@ -119,9 +119,9 @@ fg_status fg_colour_read(fg_context *ctx, fg_scan *scan, fg_budget *budget, unsi
             .rows = stations->rows_max + BATCH_ROWS,
             .bytes_per_pixel = info->bytes_per_pixel};
   size_t bytes = 3 * (size_t)r.rows * (size_t)r.width_px * (size_t)r.bytes_per_pixel;
-  FG_TRY(fg_budget_take(ctx, budget, bytes));
-  fg_status status = read_rows(ctx, scan, threads, &r);
-  fg_budget_give(budget, bytes);
+  FG_TRY(fg_budget_reserve(ctx, budget, bytes));
+  fg_status status = read_all_rows(ctx, scan, threads, &r);
+  fg_budget_release(budget, bytes);
   free(r.tables);
   for (int k = 0; k < 3; k++) {
     same[k] = !atomic_load(&r.differ[k]);

@@ -7,13 +7,13 @@
 
 #include "core/memory.h"
 
-/* Length of a cross-section along the strip, so that it holds pixels enough for its own fit. */
+/* Length of a cross-section along the strip: it must hold enough pixels for its own fit. */
 #define ALONG_PX 3.0
-#define RUN_PX   5.0 /* to either side, over which it is seen how the strip bends */
-/* More than this say no more that is of use, and cost time. */
+#define RUN_PX   5.0 /* reach to either side for the strip's bend */
+/* Max number; more are of no use, and cost time. */
 #define STATIONS_MAX 20000
-/* Pixels are taken as far from the edges as their blur reaches, and as the channels may be apart.
- */
+/* Reach of the pixels from the edges: that of their blur, and the possible distance of the
+ * channels. */
 #define REACH_BLURS 3.5
 #define APART_PX    4.0
 #define REACH_MAX   24.0
@@ -25,7 +25,7 @@ typedef struct chooser {
   double stride; /* in lengths of a cross-section */
 } chooser;
 
-static fg_status add(fg_context *ctx, const chooser *c, fg_colour_station *s) {
+static fg_status add_station(fg_context *ctx, const chooser *c, fg_colour_station *s) {
   fg_colour_stations *to = c->to;
   double up = fabs(s->ny) * s->half_across_px + fabs(s->nx) * s->half_along_px;
   double wide = fabs(s->nx) * s->half_across_px + fabs(s->ny) * s->half_along_px;
@@ -58,7 +58,7 @@ static fg_colour_station across_strip(const chooser *c, const fg_station *from,
   fg_point middle = {0.5 * (from->left.x + from->right.x), 0.5 * (from->left.y + from->right.y)};
   double nx = from->normal.x * c->pixel_mm[0], ny = from->normal.y * c->pixel_mm[1];
   double norm = hypot(nx, ny), mm = sqrt(c->pixel_mm[0] * c->pixel_mm[1]);
-  /* Where the resolutions differ, the strip has as many pixels as lie along this normal. */
+  /* The strip has the number of pixels along this normal, as the resolutions may differ. */
   double share =
       mm * (from->normal.x * nx / c->pixel_mm[0] + from->normal.y * ny / c->pixel_mm[1]) / norm;
   fg_colour_known here = {known->half_width_px * share, known->blur_px};
@@ -72,9 +72,9 @@ static fg_colour_station across_strip(const chooser *c, const fg_station *from,
                              .part = part};
 }
 
-/* Turns the normal to how the strip runs past a cross-section as its neighbours show it, and finds
- * how it bends there: where it begins to bend, the normal that the edges were sought along is some
- * 0.02 rad off, and channels that lie apart along the strip would seem to lie apart across it. */
+/* Turns the normal to the strip's direction at a cross-section by its neighbours, and finds its
+ * bend there. Where the strip begins to bend, the normal of the edges' search is some 0.02 rad off,
+ * and a shift along the strip would look like one across it. */
 static void find_run(const chooser *c, const fg_strip *strip, size_t i, fg_colour_station *s) {
   double mm = sqrt(c->pixel_mm[0] * c->pixel_mm[1]), across[2], along[2];
   size_t reach = (size_t)fmax(1, ceil(RUN_PX * mm / strip->step_mm));
@@ -96,8 +96,9 @@ static void find_run(const chooser *c, const fg_strip *strip, size_t i, fg_colou
   s->ny = (s->ny - slope * nx) / norm;
 }
 
-/* What is cut or touched is no place to look at. */
-static fg_status add_foil(fg_context *ctx, const chooser *c, const fg_foil *foil, int part) {
+/* Adds a foil's cross-sections, but for cut or touched ones. */
+static fg_status add_foil_stations(fg_context *ctx, const chooser *c, const fg_foil *foil,
+                                   int part) {
   const fg_strip *strip = &foil->strip;
   const double mm = sqrt(c->pixel_mm[0] * c->pixel_mm[1]);
   fg_colour_known known = known_of(strip, c->pixel_mm);
@@ -107,7 +108,7 @@ static fg_status add_foil(fg_context *ctx, const chooser *c, const fg_foil *foil
     if (strip->stations[i].weight <= 0) continue;
     fg_colour_station s = across_strip(c, &strip->stations[i], &known, part);
     find_run(c, strip, i, &s);
-    if (isfinite(s.x) && isfinite(s.y)) FG_TRY(add(ctx, c, &s));
+    if (isfinite(s.x) && isfinite(s.y)) FG_TRY(add_station(ctx, c, &s));
   }
   return FG_OK;
 }
@@ -132,12 +133,12 @@ static fg_status add_disc(fg_context *ctx, const chooser *c, const fg_disc *disc
                            .known = {.half_width_px = INFINITY, .blur_px = blur},
                            .part = part,
                            .outlier = true};
-    FG_TRY(add(ctx, c, &s));
+    FG_TRY(add_station(ctx, c, &s));
   }
   return FG_OK;
 }
 
-/* By how much the cross-sections must lie apart for there to be no more than are of use. */
+/* Returns the distance of cross-sections that keeps their number below the maximum. */
 static double find_stride(const fg_measurement *m, const double pixel_mm[2]) {
   double length_mm = 0;
   for (size_t i = 0; i < m->foil_count; i++)
@@ -172,7 +173,7 @@ fg_status fg_colour_stations_choose(fg_context *ctx, const fg_measurement *m,
   chooser c = {.m = m, .pixel_mm = {25.4 / m->dpi[0], 25.4 / m->dpi[1]}, .to = stations};
   c.stride = find_stride(m, c.pixel_mm);
   for (size_t i = 0; i < m->foil_count; i++)
-    FG_TRY_EXIT(add_foil(ctx, &c, &m->foils[i], (int)i));
+    FG_TRY_EXIT(add_foil_stations(ctx, &c, &m->foils[i], (int)i));
   for (size_t i = 0; i < m->disc_count; i++)
     FG_TRY_EXIT(add_disc(ctx, &c, &m->discs[i], (int)(m->foil_count + i)));
   FG_TRY_EXIT(sort_stations(ctx, stations));

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which stated gauge is which of the things that lie in a scan. */
+/* Assignment of the stated gauges to the objects of a scan. */
 #include "measure/gauges.h"
 
 #include <math.h>
@@ -9,14 +9,14 @@
 #include "core/memory.h"
 #include "core/text.h"
 
-/* A strip is taken for a leaf, and a round feature for a pin or a ring, whose width it has within
- * these factors. A tone curve widens a leaf of ten pixels by a fifth, a disc of a hundred by less
- * than a twentieth. */
+/* Max ratio of widths for a strip that may be a leaf, and a round feature that may be a pin or a
+ * ring. A tone curve widens a leaf of ten pixels by a fifth, a disc of a hundred by less than a
+ * twentieth. */
 #define LEAF_FACTOR 1.25
 #define DISC_FACTOR 1.05
-/* Shortest leaf that is traced, in widths (vision/trace.c). */
+/* Min length of a traced leaf, in widths (vision/trace.c). */
 #define LEAF_WIDTHS 12.0
-/* Of the smallest disc's stated diameter. */
+/* Min size, as a share of the smallest disc's stated diameter. */
 #define DISC_SHARE 0.7
 
 fg_status fg_gauge_sightings_add(fg_context *ctx, fg_gauge_sightings *sightings,
@@ -36,8 +36,8 @@ double fg_gauge_min_px(const fg_measurement *m) {
   return min * sqrt(m->dpi[0] * m->dpi[1]) / 25.4;
 }
 
-fg_status fg_gauge_see_discs(fg_context *ctx, const fg_measurement *m,
-                             fg_gauge_sightings *sightings) {
+fg_status fg_gauge_find_discs(fg_context *ctx, const fg_measurement *m,
+                              fg_gauge_sightings *sightings) {
   for (size_t d = 0; d < m->disc_count; d++) {
     const fg_disc *disc = &m->discs[d];
     double r = disc->radius_mm, level = disc->level_u_mm;
@@ -61,12 +61,12 @@ static bool is_of_kind(fg_gauge_kind stated, fg_gauge_kind seen) {
 
 /* Distance of a sighting from a gauge: the logarithm of their widths' ratio, INFINITY for another
  * kind. */
-static double distance(const fg_gauge *gauge, const fg_gauge_sighting *seen) {
+static double width_distance(const fg_gauge *gauge, const fg_gauge_sighting *seen) {
   return is_of_kind(gauge->kind, seen->kind) ? fabs(log(seen->width_mm / gauge->width_mm))
                                              : INFINITY;
 }
 
-static void take(const fg_gauge_sighting *seen, fg_gauge_reading *reading) {
+static void fill_reading(const fg_gauge_sighting *seen, fg_gauge_reading *reading) {
   *reading = (fg_gauge_reading){.found = true,
                                 .used = !seen->spoiled,
                                 .measured_mm = seen->width_mm,
@@ -80,26 +80,26 @@ static void take(const fg_gauge_sighting *seen, fg_gauge_reading *reading) {
   if (seen->spoiled) fg_text_clip(reading->note, sizeof reading->note, "%s", seen->spoiled);
 }
 
-/* Which sighting each gauge is, by gauge; a gauge that is not found is none. */
+/* Sighting of each gauge, by gauge; none for a gauge that was not found. */
 typedef struct matches {
   size_t of[FG_GAUGES_MAX];
 } matches;
 
-static bool is_taken(const fg_measurement *m, const matches *taken, size_t sighting) {
+static bool is_assigned(const fg_measurement *m, const matches *taken, size_t sighting) {
   for (size_t k = 0; k < m->design.gauge_count; k++)
     if (m->gauges[k].found && taken->of[k] == sighting) return true;
   return false;
 }
 
-/* Object of its kind that is nearest in width. */
-static void say_missing(const fg_gauge_sightings *sightings, const matches *taken, size_t missing,
-                        fg_measurement *m) {
+/* Names the object of its kind that is nearest in width. */
+static void note_missing(const fg_gauge_sightings *sightings, const matches *taken, size_t missing,
+                         fg_measurement *m) {
   const fg_gauge *gauge = &m->design.gauges[missing];
   fg_gauge_reading *reading = &m->gauges[missing];
   const fg_gauge_sighting *nearest = NULL;
   for (size_t i = 0; i < sightings->count; i++)
-    if (isfinite(distance(gauge, &sightings->list[i])) &&
-        (!nearest || distance(gauge, &sightings->list[i]) < distance(gauge, nearest)))
+    if (isfinite(width_distance(gauge, &sightings->list[i])) &&
+        (!nearest || width_distance(gauge, &sightings->list[i]) < width_distance(gauge, nearest)))
       nearest = &sightings->list[i];
   const char *what = gauge->kind == FG_GAUGE_LEAF  ? "straight strip"
                      : gauge->kind == FG_GAUGE_PIN ? "disc"
@@ -110,7 +110,7 @@ static void say_missing(const fg_gauge_sightings *sightings, const matches *take
     fg_text_clip(reading->note, sizeof reading->note,
                  "the nearest %s reads %.4f mm, at x %.1f, y %.1f mm%s", what, nearest->width_mm,
                  nearest->place_mm[0], nearest->place_mm[1],
-                 is_taken(m, taken, (size_t)(nearest - sightings->list))
+                 is_assigned(m, taken, (size_t)(nearest - sightings->list))
                      ? ", and is taken for another stated gauge"
                      : "");
 }
@@ -124,8 +124,8 @@ void fg_gauges_match(const fg_gauge_sightings *sightings, fg_measurement *m) {
     for (size_t g = 0; g < count; g++) {
       double limit = log(m->design.gauges[g].kind == FG_GAUGE_LEAF ? LEAF_FACTOR : DISC_FACTOR);
       for (size_t i = 0; i < sightings->count && !m->gauges[g].found; i++) {
-        double far = distance(&m->design.gauges[g], &sightings->list[i]);
-        if (is_taken(m, &taken, i) || far > limit || far >= best) continue;
+        double far = width_distance(&m->design.gauges[g], &sightings->list[i]);
+        if (is_assigned(m, &taken, i) || far > limit || far >= best) continue;
         best = far;
         gauge = g;
         sighting = i;
@@ -133,8 +133,8 @@ void fg_gauges_match(const fg_gauge_sightings *sightings, fg_measurement *m) {
     }
     if (gauge == count) break;
     taken.of[gauge] = sighting;
-    take(&sightings->list[sighting], &m->gauges[gauge]);
+    fill_reading(&sightings->list[sighting], &m->gauges[gauge]);
   }
   for (size_t g = 0; g < count; g++)
-    if (!m->gauges[g].found) say_missing(sightings, &taken, g, m);
+    if (!m->gauges[g].found) note_missing(sightings, &taken, g, m);
 }

@@ -5,26 +5,26 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "measure/discs.h"
 #include "measure/gauges.h"
-#include "measure/measure_discs.h"
 #include "vision/disc_find.h"
 #include "vision/edges.h"
 
-/* A leaf stands straight, or is bent evenly by less than this share of its length; where the foil
- * itself is a plain arc, by less than this share of what that is. Evenly: a parabola runs within
- * half its width all along, which no strip with bumps does. */
+/* Limits of a leaf's bend. A leaf stands straight, or is bent evenly by less than this share of its
+ * length; where the foil itself is a plain arc, by less than this share of the foil's bend. Evenly:
+ * a parabola runs within half its width all along, which is not so for a strip with bumps. */
 #define BEND_MAX       0.1
 #define BEND_ARC_SHARE 0.4
 #define EVEN_WIDTHS    0.5
-/* A round object's box is as wide as high, within this share of it, and as wide as a stated gauge
- * within that, beside the blocks at its borders. */
+/* Tolerances of a round object's box: its aspect, and its width against a stated gauge's, beside
+ * the blocks at its borders. */
 #define ASPECT_SHARE 0.1
 #define SIZE_SHARE   0.1
-/* Blocks that hold part of an edge count to the object: its outline lies so far outside. */
+/* Max distance of an object's outline outside its edge: blocks that hold part of an edge count to
+ * the object. */
 #define OUTLINE_PX 3.0
 #define U_PX       8.0
-/* Smallest radius of a disc's edge, and share of the smallest gauge's width (vision/disc_find.h).
- */
+/* Min radius of a disc's edge, and share of the smallest gauge's width (vision/disc_find.h). */
 #define RADIUS_MIN_PX  14.0
 #define DISC_MIN_SHARE 0.5
 
@@ -36,8 +36,8 @@ static bool is_stated(const fg_design *design, fg_gauge_kind from, fg_gauge_kind
 
 /* ---- leaves ---- */
 
-/* Distance of a point of the trace from the chord of its ends, px, and how far along it is, -1 to
- * 1. */
+/* Distance of a point of the trace from the chord of its ends, px, and its place along it, -1 to 1.
+ */
 static double off_chord(const fg_trace *trace, size_t i, double *along) {
   fg_point a = trace->points[0], b = trace->points[trace->count - 1], p = trace->points[i];
   double dx = b.x - a.x, dy = b.y - a.y, chord = hypot(dx, dy);
@@ -93,8 +93,8 @@ static fg_gauge_sighting sighting_of(const fg_gauge_object *object, const fg_str
   return one;
 }
 
-fg_status fg_gauge_see_leaf(fg_context *ctx, const fg_gauge_object *object, const fg_trace *trace,
-                            unsigned threads, fg_gauge_sightings *sightings, bool *taken) {
+fg_status fg_gauge_test_leaf(fg_context *ctx, const fg_gauge_object *object, const fg_trace *trace,
+                             unsigned threads, fg_gauge_sightings *sightings, bool *taken) {
   const fg_measurement *m = object->measurement;
   fg_strip strip = {0};
   *taken = false;
@@ -126,7 +126,7 @@ fg_status fg_gauge_trace_leaf(fg_context *ctx, const fg_gauge_object *object, un
                            gauge->width_mm * sqrt(m->dpi[0] * m->dpi[1]) / 25.4, &list));
     fg_status status = FG_OK;
     for (size_t k = 0; k < list.count && status == FG_OK && !*taken; k++)
-      status = fg_gauge_see_leaf(ctx, object, &list.traces[k], threads, sightings, taken);
+      status = fg_gauge_test_leaf(ctx, object, &list.traces[k], threads, sightings, taken);
     fg_trace_list_free(&list);
     FG_TRY(status);
   }
@@ -140,8 +140,8 @@ static bool is_square(const fg_pixel_shape *shape, const fg_object *o) {
   return fabs(width - height) <= ASPECT_SHARE * fmax(width, height) + 1.5;
 }
 
-/* A disc wider than a few tiles is seen by its rim alone, as its middle is taken for background:
- * the box tells its size. */
+/* A disc wider than a few tiles shows by its rim alone, as its middle counts as background: its box
+ * gives its size. */
 static bool is_round(const fg_design *design, const fg_pixel_shape *shape, const fg_object *o) {
   double width = o->width * shape->scale[0], height = o->height * shape->scale[1];
   double diameter_mm = 0.5 * (width + height) * FG_BLOCK_PX * shape->um / 1000;
@@ -163,10 +163,10 @@ static fg_disc_candidate circle_of(const fg_pixel_shape *shape, const fg_object 
   return (fg_disc_candidate){{x * shape->scale[0], y * shape->scale[1], radius}, U_PX, 1};
 }
 
-/* Measures one round feature; taken: it is one. */
-static fg_status see_circle(fg_context *ctx, const fg_gauge_object *object,
-                            const fg_disc_candidate *candidate, bool hole,
-                            fg_gauge_sightings *sightings, bool *taken) {
+/* Measures one round feature; *taken: it is a gauge. */
+static fg_status measure_circle(fg_context *ctx, const fg_gauge_object *object,
+                                const fg_disc_candidate *candidate, bool hole,
+                                fg_gauge_sightings *sightings, bool *taken) {
   const fg_measurement *m = object->measurement;
   const fg_pixel_shape shape = fg_pixel_shape_of(m->dpi);
   fg_measurement one = {.disc_count = 1};
@@ -177,20 +177,20 @@ static fg_status see_circle(fg_context *ctx, const fg_gauge_object *object,
   disc.centre_mm.x += (double)object->origin_px[0] * 25.4 / m->dpi[0];
   disc.centre_mm.y += (double)object->origin_px[1] * 25.4 / m->dpi[1];
   one.discs = &disc;
-  fg_status status = fg_gauge_see_discs(ctx, &one, sightings);
+  fg_status status = fg_gauge_find_discs(ctx, &one, sightings);
   fg_disc_free(&disc);
   *taken = true;
   return status;
 }
 
-static fg_status see_outline(fg_context *ctx, const fg_gauge_object *object,
-                             fg_gauge_sightings *sightings, bool *taken) {
+static fg_status measure_outline(fg_context *ctx, const fg_gauge_object *object,
+                                 fg_gauge_sightings *sightings, bool *taken) {
   const fg_pixel_shape shape = fg_pixel_shape_of(object->measurement->dpi);
   const fg_object *o = object->object;
   const fg_disc_candidate candidate = circle_of(&shape, o);
   if (!is_round(&object->measurement->design, &shape, o) || candidate.circle.radius < RADIUS_MIN_PX)
     return FG_OK;
-  return see_circle(ctx, object, &candidate, false, sightings, taken);
+  return measure_circle(ctx, object, &candidate, false, sightings, taken);
 }
 
 /* A circle inside the object's outline, as wide as a stated ring or hole. */
@@ -213,10 +213,10 @@ static bool is_hole(const fg_gauge_object *object, const fg_pixel_shape *shape,
   return false;
 }
 
-/* Holes are sought by the outlines of their levels, as in a scan of discs: the middle of a wide
- * disc, or of its hole, is background to some tiles and none to others, by where tiles begin. */
-static fg_status see_holes(fg_context *ctx, const fg_gauge_object *object,
-                           fg_gauge_sightings *sightings, bool *taken) {
+/* Finds holes by the outlines of their levels, as in a scan of discs. The middle of a wide disc, or
+ * of its hole, is background to some tiles and not to others, depending on the corners of tiles. */
+static fg_status find_holes(fg_context *ctx, const fg_gauge_object *object,
+                            fg_gauge_sightings *sightings, bool *taken) {
   const fg_pixel_shape shape = fg_pixel_shape_of(object->measurement->dpi);
   double min = DISC_MIN_SHARE * fg_gauge_min_px(object->measurement);
   fg_disc_candidates found = {0};
@@ -225,18 +225,18 @@ static fg_status see_holes(fg_context *ctx, const fg_gauge_object *object,
   fg_status status = FG_OK;
   for (size_t i = 0; i < found.count && status == FG_OK; i++)
     if (is_hole(object, &shape, &found.list[i].circle))
-      status = see_circle(ctx, object, &found.list[i], true, sightings, taken);
+      status = measure_circle(ctx, object, &found.list[i], true, sightings, taken);
   fg_disc_candidates_free(&found);
   return status;
 }
 
-fg_status fg_gauge_see_round(fg_context *ctx, const fg_gauge_object *object,
-                             fg_gauge_sightings *sightings, bool *taken) {
+fg_status fg_gauge_find_round(fg_context *ctx, const fg_gauge_object *object,
+                              fg_gauge_sightings *sightings, bool *taken) {
   const fg_design *design = &object->measurement->design;
   *taken = false;
   if (!is_stated(design, FG_GAUGE_PIN, FG_GAUGE_HOLE)) return FG_OK;
-  FG_TRY(see_outline(ctx, object, sightings, taken));
+  FG_TRY(measure_outline(ctx, object, sightings, taken));
   if (is_stated(design, FG_GAUGE_RING, FG_GAUGE_HOLE))
-    FG_TRY(see_holes(ctx, object, sightings, taken));
+    FG_TRY(find_holes(ctx, object, sightings, taken));
   return FG_OK;
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* See foilgauge/gauge.h for the equation. */
+/* foilgauge/gauge.h has the equation. */
 #include "measure/level.h"
 
 #include <gsl/gsl_cdf.h>
@@ -17,16 +17,17 @@
 #define LEVEL_MAX 0.5
 /* Standard deviation of T(1/2) by an unknown tone curve (geometry/level_uncertainty.c). */
 #define LEVEL_UNKNOWN_SD 0.08
-/* Beyond it few drivers' tone curves put it: a wrong width would look alike. */
+/* Limit of a usual level: few drivers' tone curves lie beyond, and a wrong width would look alike.
+ */
 #define LEVEL_UNUSUAL 0.25
-/* Uncertainty of a level that is carried from one edge to another: share of the shift by edges of
- * other directions and slopes of the tone curve, and of the contrast by its own ratio: a curve that
- * bends over one range bends by as much less over a part of it. */
+/* Uncertainty of a level that is transferred from one edge to another. It is a share of the shift,
+ * for edges of other directions and slopes of the tone curve; and a share of the contrast by its
+ * own ratio, for a curve that bends over one range bends by as much less over a part of it. */
 #define CARRY_SHARE          0.05
 #define CARRY_CONTRAST_SHARE 0.1
-/* The same, where the edges' profile is not that of any tone curve here. */
+/* Share of the shift where no tone curve explains the edges' profile. */
 #define CARRY_UNEXPLAINED_SHARE 0.15
-/* Gauges contradict each other when chance would show it less often. */
+/* Max probability of chance at which gauges contradict each other. */
 #define CONTRADICTION_P 0.005
 
 /* Width of a bright gauge per unit of level, mm. */
@@ -40,7 +41,7 @@ static double u_scale(const fg_design *design) {
   return c->stated ? fmax(c->u_scale[0], c->u_scale[1]) : SCALE_UNKNOWN;
 }
 
-/* Limit of an edge's shift: no tone curve does more. */
+/* Findings that allow an edge's shift beyond all tone curves. */
 #define BEYOND_TONE ((unsigned)FG_PICTURE_CLIPPED | (unsigned)FG_PICTURE_FEW_LEVELS)
 
 static unsigned findings_of(const fg_measurement *m) {
@@ -128,14 +129,13 @@ bool fg_level_of_gauges(fg_measurement *m, fg_level *level) {
 
 /* ---- moving the edges ---- */
 
-/* A part as the edge model has it, and with counts taken for the light. */
+/* A part by the edge model, and with counts used as light. */
 typedef struct placed_part {
   double width_mm, plain_mm, blur_um, plain_blur_um, contrast;
   bool bright;
 } placed_part;
 
-/* Shift of a part's edges with its u: as a level in units of the
- * edge model's blur. */
+/* Sets the shift of a part's edges with its u: as a level in units of the edge model's blur. */
 static void set_level(const fg_level *level, const placed_part *part, fg_picture_state *picture) {
   double per_plain = sqrt(2 * M_PI) * part->plain_blur_um / 1000;
   double per_model = sqrt(2 * M_PI) * part->blur_um / 1000;
@@ -159,8 +159,7 @@ static void set_strip(const fg_level *level, fg_strip *s) {
   set_level(level, &part, &s->picture);
 }
 
-/* The level that the edge's own pixels left uncertain is known now, but for what JPEG has lost.
- */
+/* Sets a disc's level uncertainty. The level is now known by gauges, except for JPEG's loss. */
 static void set_disc(const fg_level *level, const fg_measurement *m, fg_disc *disc) {
   double um = 25400 / sqrt(m->dpi[0] * m->dpi[1]);
   const placed_part part = {disc->diameter_mm,   disc->plain_mm, disc->blur_um,
@@ -179,7 +178,7 @@ static void set_levels(const fg_level *level, fg_measurement *m) {
     set_disc(level, m, &m->discs[d]);
 }
 
-/* Share of the mean blur that edges of this normal have, where blur is uneven. */
+/* Share of the mean blur for edges of this normal, where blur is uneven. */
 static double blur_towards(const fg_picture_state *picture, fg_point normal) {
   double turn = picture->blur_direction_deg * M_PI / 180;
   double along = normal.x * cos(turn) + normal.y * sin(turn);
@@ -196,24 +195,24 @@ static double mean_blur(const fg_strip *strip) {
   return sum / count;
 }
 
-/* Reach of an edge towards its dark side, mm. */
+/* Shift of an edge towards its dark side, mm. */
 static double shift_of(const fg_strip *strip, double blur_um) {
   double outwards = strip->picture.level * sqrt(2 * M_PI) * blur_um / 1000;
   return strip->bright ? outwards : -outwards;
 }
 
-static fg_point moved(fg_point at, fg_point towards, double by) {
+static fg_point moved_point(fg_point at, fg_point towards, double by) {
   return (fg_point){at.x + by * towards.x, at.y + by * towards.y};
 }
 
-/* A cut runs from edge to edge and lies across the strip: its corners move with the edges, and
- * along the strip with the cut. */
+/* Moves the corners of a cut. It runs from edge to edge and lies across the strip: its corners move
+ * with the edges, and along the strip with the cut. */
 static void move_end(const fg_strip *strip, const fg_station *station, double inwards,
                      const double shift[2], fg_strip_end *end) {
   fg_point normal = station->normal, along = {normal.y, -normal.x};
   double cut = inwards * (isfinite(end->blur_um) ? shift_of(strip, end->blur_um) : 0);
-  end->left = moved(moved(end->left, normal, shift[0]), along, cut);
-  end->right = moved(moved(end->right, normal, -shift[1]), along, cut);
+  end->left = moved_point(moved_point(end->left, normal, shift[0]), along, cut);
+  end->right = moved_point(moved_point(end->right, normal, -shift[1]), along, cut);
 }
 
 static void move_strip(const void *user, const fg_foil *foil, fg_strip *strip) {
@@ -226,8 +225,8 @@ static void move_strip(const void *user, const fg_foil *foil, fg_strip *strip) {
   for (size_t k = 0; k < strip->count; k++) {
     fg_station *s = &strip->stations[k];
     double share = isfinite(mean) ? blur_towards(&strip->picture, s->normal) / mean : 1;
-    s->left = moved(s->left, s->normal, share * shift[0]);
-    s->right = moved(s->right, s->normal, -share * shift[1]);
+    s->left = moved_point(s->left, s->normal, share * shift[0]);
+    s->right = moved_point(s->right, s->normal, -share * shift[1]);
   }
   move_end(strip, &strip->stations[0], 1, shift, &strip->ends[0]);
   move_end(strip, &strip->stations[strip->count - 1], -1, shift, &strip->ends[1]);
@@ -238,11 +237,12 @@ static fg_point move_point(const void *user, const fg_disc *disc, fg_point at) {
   double dx = at.x - disc->centre_mm.x, dy = at.y - disc->centre_mm.y, r = hypot(dx, dy);
   double outwards = disc->picture.level * sqrt(2 * M_PI) * disc->blur_um / 1000;
   if (!disc->bright) outwards = -outwards;
-  return r > 0 && disc->picture.level_known ? moved(at, (fg_point){dx / r, dy / r}, -outwards) : at;
+  return r > 0 && disc->picture.level_known ? moved_point(at, (fg_point){dx / r, dy / r}, -outwards)
+                                            : at;
 }
 
-/* The picture's level is that of the part that is known worst. */
-static void take_level(const fg_picture_state *from, fg_picture_state *to) {
+/* Keeps the level of the part with the largest uncertainty for the picture. */
+static void keep_worst_level(const fg_picture_state *from, fg_picture_state *to) {
   if (to->level_known && !(from->u_level > to->u_level)) return;
   to->level = from->level;
   to->u_level = from->u_level;
@@ -252,9 +252,9 @@ static void take_level(const fg_picture_state *from, fg_picture_state *to) {
 static void set_picture(fg_measurement *m) {
   m->picture.level_known = false;
   for (size_t f = 0; f < m->foil_count; f++)
-    if (m->foils[f].strip.count) take_level(&m->foils[f].strip.picture, &m->picture);
+    if (m->foils[f].strip.count) keep_worst_level(&m->foils[f].strip.picture, &m->picture);
   for (size_t d = 0; d < m->disc_count; d++)
-    take_level(&m->discs[d].picture, &m->picture);
+    keep_worst_level(&m->discs[d].picture, &m->picture);
 }
 
 fg_status fg_level_apply(fg_context *ctx, const fg_level *level, unsigned threads,

@@ -5,14 +5,15 @@
 
 #include "scan/jpeg_tables.h"
 
-/* A step rounds every profile across an edge in a like way, and tone curve and levels are fitted to
- * them: the edges of a scan move together, the more the larger the steps are against the contrast,
- * and the sharper the edge is, for more of it lies at frequencies of large steps. Edges as sharp as
- * no scanner's are taken for as sharp as can be. */
+/* Variance of an edge's place by a quantization step, px². A step rounds all profiles across an
+ * edge alike, and tone curve and levels are fitted to them: the edges of a scan move together. The
+ * move grows with the steps over the contrast, and with the edge's sharpness, as more of it lies at
+ * frequencies of large steps. Sharper edges than any scanner's count as the sharpest possible. */
 #define EDGE_PX2_PER_STEP 1.9
 #define BLUR_MIN_PX       0.5
-/* Along an edge that runs with the rows or columns, neighbouring blocks are rounded alike: that is
- * not the noise that the rest has. Per gray value of step; a strip's two edges share less of it. */
+/* Additional variance per gray value of step along an edge that runs with the rows or columns:
+ * neighbouring blocks are rounded alike there, unlike elsewhere. A strip's two edges share less of
+ * it. */
 #define TURN_VARIANCE_PER_STEP 0.04
 #define ARC_VARIANCE_PER_STEP  0.02
 

@@ -11,18 +11,18 @@
 #include "foilgauge/scan.h"
 #include "measure/again.h"
 #include "measure/colour.h"
+#include "measure/discs.h"
 #include "measure/gauges.h"
 #include "measure/level.h"
-#include "measure/measure_discs.h"
 #include "measure/picture_gather.h"
 #include "measure/reader.h"
 #include "measure/session.h"
 
-/* A resolution that was given contradicts the file's from this share of it; x and y differ from
- * this ratio's logarithm: less is a scanner's own scale, as it was calibrated. */
+/* Limits of resolutions: a stated one contradicts the file's beyond this share of it; x and y
+ * differ beyond this logarithm of their ratio. Less is a scanner's own scale, as calibrated. */
 #define CONTRADICTION 0.005
 #define UNEQUAL       0.05
-/* A strip narrower than so many pixels is not sure to be found. */
+/* Min width of a strip that is surely found, px. */
 #define STRIP_MIN_PX     2.0
 #define MEMORY_CAP_BYTES ((size_t)FG_MEASURE_MEMORY_CAP_MIB << 20)
 
@@ -30,7 +30,7 @@ static size_t memory_cap(const fg_measure_options *options) {
   return options->memory_cap ? options->memory_cap : MEMORY_CAP_BYTES;
 }
 
-/* What fg_reader_run visits with. */
+/* Data of fg_reader_run's visitor. */
 typedef struct visit {
   fg_session *session;
   const fg_measure_options *options;
@@ -55,7 +55,8 @@ static fg_status fail_without_beams(fg_context *ctx, const fg_measurement *m) {
                  m->scan, m->specks, m->design.beam_length_mm, m->design.beam_width_mm, m->dpi[0]);
 }
 
-/* Nothing was found: the strip may be too thin for this resolution, if that is the right one. */
+/* Explains an empty scan: the strip may be too thin for this resolution, or the resolution wrong.
+ */
 static fg_status fail_empty(fg_context *ctx, const fg_measurement *m) {
   if (m->design.kind == FG_FOIL_CANTILEVER) return fail_without_beams(ctx, m);
   double dpi = fmin(m->dpi[0], m->dpi[1]), width_px = m->design.thickness_mm * dpi / 25.4;
@@ -78,7 +79,7 @@ static fg_status measure_foils(fg_context *ctx, fg_scan *scan, const fg_measure_
   fg_tiles tiles = {0};
   visit v = {.options = options};
   fg_status status = FG_OK;
-  FG_TRY_EXIT(fg_budget_take(ctx, &budget, (size_t)fg_scan_get_info(scan)->memory_bytes));
+  FG_TRY_EXIT(fg_budget_reserve(ctx, &budget, (size_t)fg_scan_get_info(scan)->memory_bytes));
   FG_TRY_EXIT(fg_session_create(ctx, m, options->threads, &v.session));
   FG_TRY_EXIT(fg_reader_run(ctx, scan, visit_strip, &v, &budget, &tiles, m->sha256));
   FG_TRY_EXIT(fg_session_finish(ctx, v.session));
@@ -89,7 +90,8 @@ exit:
   return status;
 }
 
-/* A part with round features may fill the scan: its tiles are all kept to the end. */
+/* Keeps reading: a part with round features may fill the scan, and all its tiles are kept to the
+ * end. */
 static fg_status keep_reading(fg_context *ctx, fg_tiles *tiles, void *data) {
   (void)ctx;
   (void)tiles;
@@ -97,11 +99,11 @@ static fg_status keep_reading(fg_context *ctx, fg_tiles *tiles, void *data) {
   return FG_OK;
 }
 
-/* Gauges of a scan of discs are discs, and stay among them. */
+/* Matches gauges of a scan of discs; they are discs, and stay among them. */
 static fg_status match_discs(fg_context *ctx, fg_measurement *m) {
   fg_gauge_sightings sightings = {0};
   if (!m->design.gauge_count) return FG_OK;
-  fg_status status = fg_gauge_see_discs(ctx, m, &sightings);
+  fg_status status = fg_gauge_find_discs(ctx, m, &sightings);
   if (status == FG_OK) fg_gauges_match(&sightings, m);
   free(sightings.list);
   return status;
@@ -111,7 +113,7 @@ static fg_status measure_discs(fg_context *ctx, fg_scan *scan, const fg_measure_
                                fg_measurement *m) {
   fg_budget budget = {.name = m->scan, .limit = memory_cap(options)};
   fg_tiles tiles = {0};
-  FG_TRY(fg_budget_take(ctx, &budget, (size_t)fg_scan_get_info(scan)->memory_bytes));
+  FG_TRY(fg_budget_reserve(ctx, &budget, (size_t)fg_scan_get_info(scan)->memory_bytes));
   fg_status status = fg_reader_run(ctx, scan, keep_reading, NULL, &budget, &tiles, m->sha256);
   if (status == FG_OK) status = fg_measure_discs(ctx, &tiles, options->threads, m);
   if (status == FG_OK) status = match_discs(ctx, m);
@@ -148,7 +150,7 @@ static fg_status open_scan(fg_context *ctx, const char *path, const fg_measure_o
   return FG_OK;
 }
 
-/* Leaves nothing but the sum of what was read, where it is wanted. */
+/* Clears the measurement but for the sum of the file, if requested. */
 static void clear_failed(const fg_measure_options *options, fg_scan *scan, fg_measurement *m) {
   char sum[65] = "";
   if (!options->sum_failed) {
@@ -163,7 +165,7 @@ static void clear_failed(const fg_measure_options *options, fg_scan *scan, fg_me
   memcpy(m->sha256, sum, sizeof sum);
 }
 
-/* What is odd about the resolution: a note of the scan, and a flag of its foils. */
+/* Checks the resolution: a note of the scan, and a flag of its foils. */
 static unsigned check_resolution(fg_measurement *m) {
   unsigned flags = 0;
   for (int axis = 0; axis < 2; axis++)
@@ -181,9 +183,9 @@ static unsigned check_resolution(fg_measurement *m) {
   return flags;
 }
 
-/* Lengths at 20 °C: the edges as they were found, with longer or shorter pixels. To find them anew
- * with such pixels would draw other stations, and move a radius by as much as its u. */
-static fg_status refer(fg_context *ctx, unsigned threads, fg_measurement *m) {
+/* Refers lengths to 20 °C: scales the edges as they were found. A new search with other pixels
+ * would find other stations, and move a radius by as much as its u. */
+static fg_status refer_lengths(fg_context *ctx, unsigned threads, fg_measurement *m) {
   double factor = fg_calibration_factor(&m->design.calibration);
   const double factors[2] = {factor, factor};
   fg_measurement again;
@@ -196,7 +198,7 @@ static fg_status refer(fg_context *ctx, unsigned threads, fg_measurement *m) {
   return FG_OK;
 }
 
-/* Gauges' lengths at 20 °C, as the parts'. */
+/* Refers the gauges' lengths to 20 °C, like the parts'. */
 static void refer_gauges(fg_measurement *m) {
   double factor = fg_calibration_factor(&m->design.calibration);
   for (size_t i = 0; i < m->design.gauge_count; i++) {
@@ -207,8 +209,8 @@ static void refer_gauges(fg_measurement *m) {
   }
 }
 
-/* Note on the gauges where nothing else is odd. */
-static void tell_gauges(fg_measurement *m) {
+/* Notes the gauges when nothing else is odd. */
+static void note_gauges(fg_measurement *m) {
   size_t found = 0, used = 0;
   for (size_t i = 0; i < m->design.gauge_count; i++) {
     found += m->gauges[i].found;
@@ -225,18 +227,18 @@ static void tell_gauges(fg_measurement *m) {
                   : "widths keep the uncertainty of an unknown tone curve");
 }
 
-/* Moves all edges to the level that the gauges on the glass tell. */
+/* Moves all edges to the level given by the gauges on the glass. */
 static fg_status use_gauges(fg_context *ctx, unsigned threads, fg_measurement *m) {
   fg_level level;
   if (!m->design.gauge_count) return FG_OK;
   refer_gauges(m);
   if (fg_level_of_gauges(m, &level)) FG_TRY(fg_level_apply(ctx, &level, threads, m));
-  tell_gauges(m);
+  note_gauges(m);
   return FG_OK;
 }
 
-/* A note, where nothing else is odd, and a flag of all that was measured. */
-static void tell_loss(fg_measurement *m) {
+/* Notes JPEG's loss when nothing else is odd, and flags all measured parts. */
+static void note_loss(fg_measurement *m) {
   for (size_t i = 0; i < m->foil_count; i++)
     m->foils[i].flags |= FG_FOIL_LOSSY;
   for (size_t i = 0; i < m->disc_count; i++)
@@ -249,8 +251,8 @@ static void tell_loss(fg_measurement *m) {
         m->jpeg_quality);
 }
 
-/* A note, where nothing else is odd. */
-static void tell_apart(fg_measurement *m) {
+/* Notes channels apart when nothing else is odd. */
+static void note_apart(fg_measurement *m) {
   const fg_colour_lines *lines = &m->colour_lines;
   double max = 0;
   for (int k = 0; k < 2; k++)
@@ -284,13 +286,13 @@ fg_status fg_measure_scan(fg_context *ctx, const char *path, const fg_design *de
   else
     FG_TRY_EXIT(measure_foils(ctx, scan, options, measurement));
   FG_TRY_EXIT(fg_colour_measure(ctx, scan, memory_cap(options), options->threads, measurement));
-  FG_TRY_EXIT(refer(ctx, options->threads, measurement));
+  FG_TRY_EXIT(refer_lengths(ctx, options->threads, measurement));
   FG_TRY_EXIT(use_gauges(ctx, options->threads, measurement));
   unsigned flags = check_resolution(measurement);
   for (size_t i = 0; i < measurement->foil_count; i++)
     measurement->foils[i].flags |= flags;
-  if (measurement->jpeg_quality) tell_loss(measurement);
-  if (measurement->colour_lines.apart) tell_apart(measurement);
+  if (measurement->jpeg_quality) note_loss(measurement);
+  if (measurement->colour_lines.apart) note_apart(measurement);
   fg_picture_gather(measurement);
 exit:
   if (status != FG_OK) clear_failed(options, scan, measurement);

@@ -4,8 +4,8 @@
 #include <math.h>
 #include <stdio.h>
 
-/* Of channels that differ in magnification nothing says which is right, nor does their majority: so
- * much makes a radius of 3 mm wrong by as much as its u. */
+/* Min difference of the channels' magnifications. Nothing tells the right one, nor does their
+ * majority: this difference makes a radius of 3 mm wrong by as much as its u. */
 #define MAGNIFICATION_PPM   60.0
 #define MAGNIFICATION_SIGMA 3.0
 #define RINGING_SHARE       0.015
@@ -14,11 +14,11 @@ static double is_certain(double difference, double u) {
   return fabs(difference) - MAGNIFICATION_SIGMA * u;
 }
 
-/* The largest difference between any two channels' magnifications, beyond doubt, ppm. */
+/* Returns the largest certain difference between any two channels' magnifications, ppm. */
 static double max_magnification(const fg_colour_lines *lines) {
   const fg_colour_shift *a = &lines->shifts[0], *b = &lines->shifts[1];
   double max = 0;
-  /* fmax prefers the number to NaN: of a channel that is not measured nothing is known */
+  /* fmax prefers the number to NaN: a channel that is not measured is unknown */
   max = fmax(max, is_certain(a->magnification_ppm, a->u_magnification_ppm));
   max = fmax(max, is_certain(b->magnification_ppm, b->u_magnification_ppm));
   double u = hypot(a->u_magnification_ppm, b->u_magnification_ppm);
@@ -32,8 +32,9 @@ static void add_finding(fg_measurement *m, unsigned finding) {
     m->discs[i].picture.findings |= finding;
 }
 
-/* JPEG makes edges ring, which looks like a little sharpening or an odd tone curve; and a file that
- * says itself that it is a JPEG needs not be told: its edges' uncertainties hold that already. */
+/* Decides findings under JPEG. It makes edges ring, which looks like a little sharpening or an odd
+ * tone curve. A file that declares itself a JPEG needs no finding: its edges' uncertainties include
+ * the loss already. */
 static void decide_blocks(bool jpeg, fg_picture_state *state) {
   const unsigned looks = FG_PICTURE_SHARPENED | FG_PICTURE_TONE_CURVE | FG_PICTURE_UNKNOWN_PROFILE;
   if (!jpeg && !(state->findings & FG_PICTURE_BLOCK_NOISE)) return;
@@ -57,8 +58,8 @@ static void merge_all(fg_measurement *m) {
     fg_picture_merge(&m->picture, &m->discs[i].picture);
 }
 
-/* Names of what was found, one after the other. */
-static void tell_findings(fg_measurement *m) {
+/* Appends the names of all findings. */
+static void note_findings(fg_measurement *m) {
   size_t used = (size_t)snprintf(m->warning, sizeof m->warning, "state of the picture:");
   const char *before = " ";
   for (const fg_picture_words *words = fg_picture_finding_words(); words->name; words++) {
@@ -74,5 +75,5 @@ void fg_picture_gather(fg_measurement *m) {
   if (m->colour_lines.seen && max_magnification(&m->colour_lines) > MAGNIFICATION_PPM)
     add_finding(m, FG_PICTURE_CHANNEL_SCALE);
   merge_all(m);
-  if (m->picture.findings && !m->warning[0]) tell_findings(m);
+  if (m->picture.findings && !m->warning[0]) note_findings(m);
 }

@@ -18,7 +18,7 @@ void fg_place_from_trace(const fg_trace *trace, fg_foil *foil) {
   }
 }
 
-static void move(fg_point *p, const double by_mm[2]) {
+static void move_point(fg_point *p, const double by_mm[2]) {
   p->x += by_mm[0];
   p->y += by_mm[1];
 }
@@ -31,15 +31,15 @@ void fg_place_move(const int64_t origin_px[2], const double dpi[2], fg_foil *foi
     foil->place_mm[k] = (double)foil->strip.box_px[k] * 25.4 / dpi[k];
     foil->place_mm[2 + k] = (double)foil->strip.box_px[2 + k] * 25.4 / dpi[k];
   }
-  move(&foil->overall.centre_mm, by_mm);
+  move_point(&foil->overall.centre_mm, by_mm);
   for (size_t i = 0; i < foil->bump_count; i++)
-    move(&foil->bumps[i].centre_mm, by_mm);
+    move_point(&foil->bumps[i].centre_mm, by_mm);
   for (size_t i = 0; i < foil->strip.count; i++) {
-    move(&foil->strip.stations[i].left, by_mm);
-    move(&foil->strip.stations[i].right, by_mm);
+    move_point(&foil->strip.stations[i].left, by_mm);
+    move_point(&foil->strip.stations[i].right, by_mm);
   }
   for (int i = 0; i < 2; i++) {
-    move(&foil->strip.ends[i].left, by_mm);
-    move(&foil->strip.ends[i].right, by_mm);
+    move_point(&foil->strip.ends[i].left, by_mm);
+    move_point(&foil->strip.ends[i].right, by_mm);
   }
 }

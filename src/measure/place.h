@@ -1,16 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Where a foil lies in the scan. */
+/* Place of a foil in the scan. */
 #ifndef FG_MEASURE_PLACE_H
 #define FG_MEASURE_PLACE_H
 
 #include "foilgauge/foil.h"
 #include "vision/trace.h"
 
-/* The box of a foil that has a trace and nothing more. */
+/* Sets the box of a foil that has a trace and nothing more. */
 void fg_place_from_trace(const fg_trace *trace, fg_foil *foil);
 
-/* Moves everything of a foil that is a position from a view of the scan into the scan, and
- * fills its place_mm. */
+/* Moves all positions of a foil from a view of the scan into the scan, and fills its place_mm. */
 void fg_place_move(const int64_t origin_px[2], const double dpi[2], fg_foil *foil);
 
 #endif

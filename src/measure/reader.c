@@ -6,7 +6,7 @@
 
 #include "core/parallel.h"
 
-/* The decoding thread fills the tiles' strips ahead of the caller, who takes them. */
+/* The decoding thread fills the tiles' strips ahead of the caller, who consumes them. */
 typedef struct ring {
   fg_scan *scan;
   fg_tiles *tiles;
@@ -14,7 +14,7 @@ typedef struct ring {
   void *data;
   fg_context decode_context;
   fg_status decode_status;
-  int32_t filled, taken; /* strips */
+  int32_t filled, taken; /* number of strips */
   bool stop;
   pthread_mutex_t lock;
   pthread_cond_t changed;
@@ -26,8 +26,8 @@ static fg_status decode_strip(fg_context *ctx, ring *r, int32_t strip) {
                            r->tiles->width_px * r->tiles->bytes_per_pixel);
 }
 
-/* Waits until the place of a strip is free: the strip that lay there has been taken, and so has
- * the one after it. False when the other side has given up. */
+/* Waits until the place of a strip is free: its earlier strip has been consumed, and so has the one
+ * after that. False when the other side has given up. */
 static bool wait_for_place(ring *r, int32_t strip) {
   pthread_mutex_lock(&r->lock);
   while (strip >= r->taken + FG_TILE_STRIPS - 1 && !r->stop)
@@ -37,7 +37,7 @@ static bool wait_for_place(ring *r, int32_t strip) {
   return go_on;
 }
 
-static void *decode(void *argument) {
+static void *decode_strips(void *argument) {
   ring *r = argument;
   fg_status status = FG_OK;
   for (int32_t strip = 0; strip < r->tiles->rows && status == FG_OK; strip++) {
@@ -62,7 +62,7 @@ static fg_status wait_for_strip(fg_context *ctx, ring *r, int32_t strip) {
   return status == FG_OK ? FG_OK : fg_fail(ctx, status, "%s", r->decode_context.message);
 }
 
-static void release(ring *r, bool stop) {
+static void release_ring(ring *r, bool stop) {
   pthread_mutex_lock(&r->lock);
   r->taken++;
   r->stop |= stop;
@@ -70,34 +70,34 @@ static void release(ring *r, bool stop) {
   pthread_mutex_unlock(&r->lock);
 }
 
-static fg_status take_strip(fg_context *ctx, ring *r) {
-  FG_TRY(fg_tiles_take_strip(ctx, r->tiles));
+static fg_status accept_strip(fg_context *ctx, ring *r) {
+  FG_TRY(fg_tiles_accept_strip(ctx, r->tiles));
   return r->visit(ctx, r->tiles, r->data);
 }
 
-static fg_status consume(fg_context *ctx, ring *r, bool threaded) {
+static fg_status consume_strips(fg_context *ctx, ring *r, bool threaded) {
   fg_status status = FG_OK;
   for (int32_t strip = 0; strip < r->tiles->rows && status == FG_OK; strip++) {
     status = threaded ? wait_for_strip(ctx, r, strip) : decode_strip(ctx, r, strip);
-    if (status == FG_OK) status = take_strip(ctx, r);
-    if (threaded) release(r, status != FG_OK);
+    if (status == FG_OK) status = accept_strip(ctx, r);
+    if (threaded) release_ring(r, status != FG_OK);
   }
   if (status == FG_OK) status = fg_tiles_finish(ctx, r->tiles);
   return status == FG_OK ? r->visit(ctx, r->tiles, r->data) : status;
 }
 
-/* Runs both sides. Where no second thread is to be had or wanted, it is one after the other. */
+/* Runs both sides; one after the other, if no second thread is available or wanted. */
 static fg_status run_ring(fg_context *ctx, ring *r) {
   fg_thread decoder;
   bool threaded =
-      fg_scan_get_threads(r->scan) != 1 && fg_thread_start(&decoder, decode, r) == FG_OK;
-  fg_status status = consume(ctx, r, threaded);
+      fg_scan_get_threads(r->scan) != 1 && fg_thread_start(&decoder, decode_strips, r) == FG_OK;
+  fg_status status = consume_strips(ctx, r, threaded);
   if (threaded) fg_thread_join(&decoder);
   return status;
 }
 
-/* The file's digest: of a format that jumps about computed beside the decoding, else known after
- * it. */
+/* The file's digest: of a format that reads at random computed beside the decoding, else known
+ * after it. */
 typedef struct digest {
   fg_scan *scan;
   fg_context context;
@@ -125,7 +125,7 @@ static fg_status run_with_digest(fg_context *ctx, ring *r, char sha256[65]) {
   if (status == FG_OK && d.status != FG_OK)
     status = fg_fail(ctx, d.status, "%s", d.context.message);
   fg_status unchanged =
-      fg_scan_check_unchanged(ctx, r->scan); /* else whatever failed is no wonder */
+      fg_scan_check_unchanged(ctx, r->scan); /* a changed file explains any other failure */
   if (unchanged != FG_OK) sha256[0] = '\0';
   return unchanged != FG_OK ? unchanged : status;
 }

@@ -10,7 +10,7 @@
 typedef fg_status fg_reader_visit(fg_context *ctx, fg_tiles *tiles, void *data);
 
 /* Reads the whole scan into `tiles` (created here; the caller frees them), and its SHA-256. The
- * tiles do not depend on threads: strips are taken in order. */
+ * tiles do not depend on threads: strips are accepted in order. */
 fg_status fg_reader_run(fg_context *ctx, fg_scan *scan, fg_reader_visit *visit, void *data,
                         fg_budget *budget, fg_tiles *tiles, char sha256[65]);
 

@@ -10,8 +10,8 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "core/select.h"
+#include "measure/beams.h"
 #include "measure/gauges.h"
-#include "measure/measure_beams.h"
 #include "measure/place.h"
 #include "vision/anchor.h"
 #include "vision/edges.h"
@@ -65,7 +65,7 @@ struct fg_session {
 };
 
 /* Puts a measured foil into the results; on failure it is freed. */
-static fg_status add_foil(fg_context *ctx, fg_session *s, fg_foil *foil) {
+static fg_status append_foil(fg_context *ctx, fg_session *s, fg_foil *foil) {
   fg_measurement *m = s->measurement;
   pthread_mutex_lock(&s->lock);
   fg_status status = fg_memory_reserve(ctx, m->foil_count + 1, sizeof *m->foils, &s->foil_capacity,
@@ -134,7 +134,7 @@ static fg_status measure_trace(fg_context *ctx, fg_session *s, const job *j,
     return status;
   }
   fg_place_move(j->origin_px, m->dpi, &foil);
-  return add_foil(ctx, s, &foil);
+  return append_foil(ctx, s, &foil);
 }
 
 /* Traces of an island's objects that are measured already. */
@@ -166,7 +166,7 @@ static fg_status measure_gauge_or_foil(fg_context *ctx, fg_session *s, const job
                                        const fg_gauge_object *object, const fg_trace *trace,
                                        fg_gauge_sightings *seen) {
   bool taken;
-  FG_TRY(fg_gauge_see_leaf(ctx, object, trace, s->threads, seen, &taken));
+  FG_TRY(fg_gauge_test_leaf(ctx, object, trace, s->threads, seen, &taken));
   return taken ? FG_OK : measure_trace(ctx, s, j, object->segmentation, trace);
 }
 
@@ -177,7 +177,7 @@ static fg_status measure_object(fg_context *ctx, fg_session *s, const job *j,
   fg_trace_list *list = &done->lists[done->count++];
   double diagonal = FG_BLOCK_PX * hypot(object.object->width, object.object->height);
   bool taken = false, sought = s->measurement->design.gauge_count > 0;
-  if (sought) FG_TRY(fg_gauge_see_round(ctx, &object, seen, &taken));
+  if (sought) FG_TRY(fg_gauge_find_round(ctx, &object, seen, &taken));
   if (taken) return FG_OK;
   if (diagonal >= min_foil_px(s->measurement))
     FG_TRY(fg_trace_object(ctx, &j->view, seg, object.object, expected_width_px(s->measurement),
@@ -212,7 +212,7 @@ static void free_job(job *j) {
 }
 
 /* Puts the island on tiles of its own. */
-static fg_status anchor(fg_context *ctx, fg_session *s, job *j) {
+static fg_status anchor_job(fg_context *ctx, fg_session *s, job *j) {
   const fg_anchor_options options = {.min_px = min_object_px(s->measurement),
                                      .border_px =
                                          BORDER_WIDTHS * expected_width_px(s->measurement)};
@@ -243,7 +243,7 @@ static fg_status measure_flat(fg_context *ctx, fg_session *s, const job *j) {
 static fg_status measure_island(fg_context *ctx, fg_session *s, job *j) {
   fg_segmentation seg;
   if (s->measurement->design.kind == FG_FOIL_CANTILEVER) return measure_flat(ctx, s, j);
-  FG_TRY(anchor(ctx, s, j));
+  FG_TRY(anchor_job(ctx, s, j));
   FG_TRY(fg_segment(ctx, &j->view, &j->island, min_object_px(s->measurement), &seg));
   count_specks(s, seg.speck_count);
   pthread_mutex_lock(&s->lock);
@@ -359,7 +359,7 @@ static fg_status find_background(fg_context *ctx, const fg_tiles *tiles, double 
 /* Hands an island to the workers; dust is counted and forgotten. */
 static fg_status take_island(fg_context *ctx, fg_session *s, fg_tiles *tiles, fg_island *island) {
   if (hypot(island->width, island->height) * FG_TILE_PX < min_object_px(s->measurement)) {
-    fg_island_forget(tiles, island);
+    fg_island_release(tiles, island);
     fg_island_free(island);
     count_specks(s, 1);
     return FG_OK;

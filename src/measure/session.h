@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Foils measured while their scan is still read: islands go to worker threads as they are
- * complete, and their tiles are let go when they are measured. The reader lends a hand when the
- * workers fall behind, so what waits is bounded. */
+/* Foils measured while their scan is still read.
+ *
+ * Complete islands go to worker threads, and their tiles are released after measuring. The reader
+ * helps when the workers fall behind, so the queue is bounded. */
 #ifndef FG_MEASURE_SESSION_H
 #define FG_MEASURE_SESSION_H
 
@@ -14,11 +15,11 @@ typedef struct fg_session fg_session;
 fg_status fg_session_create(fg_context *ctx, fg_measurement *measurement, unsigned threads,
                             fg_session **session);
 
-/* Takes in the strips that came since the last call (fg_reader_visit). */
+/* Accepts the strips since the last call (fg_reader_visit). */
 fg_status fg_session_advance(fg_context *ctx, fg_tiles *tiles, void *session);
 
-/* Waits for what is under way and puts the foils into reading order: rows of foils from top to
- * bottom, each from left to right. */
+/* Waits for running work and puts the foils into reading order: rows of foils from top to bottom,
+ * each from left to right. */
 fg_status fg_session_finish(fg_context *ctx, fg_session *session);
 
 void fg_session_free(fg_session *session); /* stops the workers; NULL is fine */

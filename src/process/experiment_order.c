@@ -8,9 +8,9 @@
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>
 
-#include "core/dot.h"
 #include "core/extended.h"
 #include "core/memory.h"
+#include "core/numerics.h"
 #include "foilgauge/distribution.h"
 #include "process/experiment_parts.h"
 

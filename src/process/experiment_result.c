@@ -3,7 +3,7 @@
 #include <stdarg.h>
 #include <stdlib.h>
 
-#include "core/notes.h"
+#include "core/text.h"
 #include "process/experiment_parts.h"
 
 fg_status fg_experiment_note(fg_context *ctx, fg_experiment *e, const char *format, ...) {

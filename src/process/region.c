@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "core/dot.h"
+#include "core/numerics.h"
 #include "foilgauge/surface.h"
 
 enum {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a calibration does not know makes every value less certain. */
+/* Uncertainty of every value by a calibration. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,14 +8,14 @@
 #include "measure/again.h"
 #include "quantity/quantity_rows.h"
 
-/* The edges are stretched by this much, and what that moves is taken in proportion: large beside
- * what the last digit of a fit's end moves, small enough to be linear (a thousandth of itself). */
+/* Relative stretch of the edges; their moves are proportional to it. Large beside the rounding of a
+ * fit, small enough to be linear (within a thousandth). */
 static const double step = 1e-3;
 
-static void take(fg_quantity_owner owner, const void *from, const void *to, double share,
-                 double *move) {
+static void add_moves(fg_quantity_owner owner, const void *from, const void *to, double share,
+                      double *move) {
   memset(move, 0, FG_CALIBRATED_MAX * sizeof *move);
-  fg_quantity_take_moves(owner, from, to, move);
+  fg_quantity_keep_farthest(owner, from, to, move);
   for (size_t k = 0; k < fg_quantity_moves(owner); k++)
     move[k] *= share;
 }
@@ -40,12 +40,13 @@ static const fg_beam *beam_of(const fg_foil *foil, int number) {
   return NULL;
 }
 
-static void take_beams(const fg_foil *from, const fg_foil *to, double share, size_t source,
-                       fg_foil *foil) {
+static void add_beam_moves(const fg_foil *from, const fg_foil *to, double share, size_t source,
+                           fg_foil *foil) {
   for (size_t b = 0; b < foil->beam_count; b++) {
     fg_beam *beam = &foil->beams[b];
     const fg_beam *here = beam_of(from, beam->number), *there = beam_of(to, beam->number);
-    if (here && there) take(FG_QUANTITY_OF_BEAM, here, there, share, beam->calibrated.move[source]);
+    if (here && there)
+      add_moves(FG_QUANTITY_OF_BEAM, here, there, share, beam->calibrated.move[source]);
   }
 }
 
@@ -53,15 +54,15 @@ static bool is_lost(double value, const double *here, const double *there) {
   return isfinite(value) && !(here && there && isfinite(*there - *here));
 }
 
-static void take_foil(const fg_foil *from, const fg_foil *to, double share, size_t source,
-                      fg_foil *foil) {
+static void add_foil_moves(const fg_foil *from, const fg_foil *to, double share, size_t source,
+                           fg_foil *foil) {
   if (foil->flags & FG_FOIL_NOT_MEASURED) return;
-  take_beams(from, to, share, source, foil);
+  add_beam_moves(from, to, share, source, foil);
   if (is_lost(foil->overall.radius_mm, &from->overall.radius_mm, &to->overall.radius_mm)) {
     give_up(foil);
     return;
   }
-  take(FG_QUANTITY_OF_FOIL, from, to, share, foil->calibrated.move[source]);
+  add_moves(FG_QUANTITY_OF_FOIL, from, to, share, foil->calibrated.move[source]);
   for (size_t b = 0; b < foil->bump_count; b++) {
     fg_bump *bump = &foil->bumps[b];
     const fg_bump *here = bump_of(from, bump->number), *there = bump_of(to, bump->number);
@@ -70,17 +71,18 @@ static void take_foil(const fg_foil *from, const fg_foil *to, double share, size
       give_up(foil);
       return;
     }
-    if (here && there) take(FG_QUANTITY_OF_BUMP, here, there, share, bump->calibrated.move[source]);
+    if (here && there)
+      add_moves(FG_QUANTITY_OF_BUMP, here, there, share, bump->calibrated.move[source]);
   }
 }
 
-static void take_all(const fg_measurement *from, const fg_measurement *to, double share,
-                     size_t source, fg_measurement *m) {
+static void add_all_moves(const fg_measurement *from, const fg_measurement *to, double share,
+                          size_t source, fg_measurement *m) {
   for (size_t f = 0; f < m->foil_count; f++)
-    take_foil(&from->foils[f], &to->foils[f], share, source, &m->foils[f]);
+    add_foil_moves(&from->foils[f], &to->foils[f], share, source, &m->foils[f]);
   for (size_t d = 0; d < m->disc_count; d++)
-    take(FG_QUANTITY_OF_DISC, &from->discs[d], &to->discs[d], share,
-         m->discs[d].calibrated.move[source]);
+    add_moves(FG_QUANTITY_OF_DISC, &from->discs[d], &to->discs[d], share,
+              m->discs[d].calibrated.move[source]);
 }
 
 void fg_quantity_widen_calibrated(fg_quantity_owner owner, void *object,
@@ -111,14 +113,15 @@ static fg_status find_source(fg_context *ctx, const fg_measurement *same, const 
   if (max == 0) return FG_OK;
   const double factor[2] = {1 + stretch[0] / share, 1 + stretch[1] / share};
   FG_TRY(fg_measure_stretched(ctx, m, factor, threads, &other));
-  take_all(same, &other, share, source, m);
+  add_all_moves(same, &other, share, source, m);
   fg_measurement_free(&other);
   return FG_OK;
 }
 
 fg_status fg_measurement_calibrate(fg_context *ctx, unsigned threads, fg_measurement *m) {
   double stretch[FG_CALIBRATION_SOURCES][2];
-  fg_measurement same; /* a correction that was left in part is none of edges: both are measured */
+  fg_measurement
+      same; /* a partly omitted correction is not one of the edges: both states are measured */
   if (!m->design.calibration.stated || m->calibrated) return FG_OK;
   fg_calibration_sources(&m->design.calibration, stretch);
   FG_TRY(fg_measure_stretched(ctx, m, (const double[]){1, 1}, threads, &same));

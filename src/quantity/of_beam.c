@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What is reported of a beam of a cantilever foil. Values: geometry/beams.c. */
+/* Quantities of a beam of a cantilever foil. Values: geometry/beams.c. */
 #include <stddef.h>
 
 #include "quantity/rows.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a lot reports of a bearing that its foils are built into. */
+/* Quantities of a bearing with foils of a lot. */
 #include <stddef.h>
 
 #include "foilgauge/bearing.h"
@@ -7,13 +7,13 @@
 
 enum { PAGE = FG_QUANTITY_ON_PAGE };
 
-/* Of foils as designed: the same everywhere. */
+/* Clearance with foils as designed: the same everywhere. */
 static double clearance_of(const fg_design *design, const fg_nominal *nominal) {
   (void)design;
   return nominal->clearance_mm;
 }
 
-static double nothing(const fg_design *design, const fg_nominal *nominal) {
+static double zero_clearance(const fg_design *design, const fg_nominal *nominal) {
   (void)design;
   (void)nominal;
   return 0;
@@ -71,7 +71,7 @@ static const fg_quantity rows[] = {
      .decimals = 4,
      .uses = PAGE,
      .characteristic = "Length",
-     .nominal = nothing},
+     .nominal = zero_clearance},
     {.name = "offset_mm",
      .unit = "mm",
      .symbol = "offset",

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What is reported of a bump. Values and gradients: geometry/derive.c. */
+/* Quantities of a bump. Values and gradients: geometry/derive.c. */
 #include <math.h>
 #include <stddef.h>
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What is reported of a round hole or disc. */
+/* Quantities of a round hole or disc. */
 #include <stddef.h>
 
 #include "quantity/rows.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What is reported of a whole foil. */
+/* Quantities of a whole foil. */
 #include <stddef.h>
 
 #include "quantity/rows.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What is reported of a strip as it was traced: the scan's state, nothing of the part. */
+/* Quantities of a traced strip: the scan's state, not the part's. */
 #include <stddef.h>
 
 #include "quantity/rows.h"

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The numbered parts of a foil, whatever they are: its bumps, or a cantilever's beams. */
+/* The numbered parts of a foil of any kind: its bumps, or a cantilever's beams. */
 #ifndef FG_QUANTITY_PARTS_H
 #define FG_QUANTITY_PARTS_H
 
 #include "foilgauge/quantity.h"
 
-/* One of them, as what asks no more than numbers sees it. */
+/* One part, for readers of numbers alone. */
 typedef struct fg_foil_part {
   int number;
   unsigned flags;
@@ -13,7 +13,7 @@ typedef struct fg_foil_part {
   const fg_calibrated *calibrated;
 } fg_foil_part;
 
-/* What the parts of a form are. */
+/* Returns the owner type of the parts of a kind. */
 fg_quantity_owner fg_foil_kind_parts(fg_foil_kind kind);
 bool fg_owner_is_part(fg_quantity_owner owner);
 

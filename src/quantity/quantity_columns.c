@@ -7,8 +7,8 @@
 
 enum { NAME_BYTES = 96 };
 
-/* Whether a column (dots turned into underscores) is called like the k-th number of a row, with or
- * without the name of what it belongs to. */
+/* Returns true when a column (dots turned into underscores) has the name of the k-th number of a
+ * row, with or without the name of its owner. */
 static bool is_called(const fg_quantity *row, const char *part, size_t k, const char *column) {
   char name[NAME_BYTES], text[2 * NAME_BYTES];
   fg_quantity bare = *row;
@@ -27,7 +27,7 @@ static bool is_called(const fg_quantity *row, const char *part, size_t k, const 
   return !strcmp(column, text);
 }
 
-/* An uncertainty is a result, whatever its value is. */
+/* Returns true for results; an uncertainty is a result, even of a cause. */
 static bool is_result_of(const fg_quantity *row, const char *part, const char *column) {
   size_t values = row->kind == FG_QUANTITY_PAIR ? 2 : 1;
   for (size_t k = row->uses & FG_QUANTITY_IS_CAUSE ? values : 0; k < fg_quantity_width(row); k++)
@@ -35,7 +35,7 @@ static bool is_result_of(const fg_quantity *row, const char *part, const char *c
   return false;
 }
 
-/* What a lot's tables say of foils and bumps beside their quantities. */
+/* Columns of a lot's tables about foils and bumps that are no quantities. */
 static bool is_judgement(const char *column) {
   static const char *const names[] = {"normalised_stiffness", "verdict", "flags", "error"};
   for (size_t i = 0; i < sizeof names / sizeof *names; i++)

@@ -10,13 +10,13 @@ typedef struct fg_quantity_rows {
   size_t count;
 } fg_quantity_rows;
 
-extern const fg_quantity_rows fg_quantities_of_foil, fg_quantities_of_bump, fg_quantities_of_beam, fg_quantities_of_disc,
-    fg_quantities_of_strip, fg_quantities_of_bearing;
+extern const fg_quantity_rows fg_quantities_of_foil, fg_quantities_of_bump, fg_quantities_of_beam,
+    fg_quantities_of_disc, fg_quantities_of_strip, fg_quantities_of_bearing;
 
 #define FG_QUANTITY_ROWS(table)                                                                    \
   { table, sizeof(table) / sizeof(table)[0] }
 
-/* Where the value of `member` lies, alone or with its uncertainty beside it. */
+/* Offset of `member`, alone or with its uncertainty beside it. */
 #define FG_AT(type, member) .offset = offsetof(type, member), .u_offset = FG_NO_UNCERTAINTY
 #define FG_AT_U(type, member, u_member)                                                            \
   .offset = offsetof(type, member), .u_offset = offsetof(type, u_member)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a scanner's model does not know makes every value less certain. */
+/* Uncertainty of every value by a scanner's model. */
 #include <math.h>
 #include <stddef.h>
 
@@ -15,8 +15,8 @@ size_t fg_quantity_moves(fg_quantity_owner owner) {
   return moves;
 }
 
-void fg_quantity_take_moves(fg_quantity_owner owner, const void *object, const void *other,
-                            double *farthest) {
+void fg_quantity_keep_farthest(fg_quantity_owner owner, const void *object, const void *other,
+                               double *farthest) {
   size_t count;
   const fg_quantity *rows = fg_quantities(owner, &count);
   for (size_t i = 0; i < count; i++) {
@@ -29,7 +29,7 @@ void fg_quantity_take_moves(fg_quantity_owner owner, const void *object, const v
   }
 }
 
-/* What moves a circle as a whole moves its centre and its radius together. */
+/* Widens a circle's covariance: a move of the whole circle moves centre and radius together. */
 static void widen_covariance(void *object, size_t offset, const double move[CIRCLE]) {
   double *covariance = (double *)(void *)((char *)object + offset);
   for (int i = 0; i < CIRCLE; i++)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which segments and shapes are near which block of 8 × 8 pixels, for one band of rows. */
+/* Lists of the segments and shapes near each block of 8 × 8 pixels, for one band of rows. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,8 +11,8 @@ static size_t thing_count(const fg_sampler *sampler) {
   return sampler->spec->scene.segment_count + sampler->spec->scene.shape_count;
 }
 
-/* Where a true position appears in the picture: p + d(p) = P, by iteration (d is small and smooth;
- * blocks are marked with room to spare). Pixels. */
+/* Place of a true position in the picture: p + d(p) = P, by iteration (d is small and smooth;
+ * blocks are marked with a margin). Pixels. */
 static fg_point nominal_px(const fg_sampler *sampler, double x, double y) {
   double px = x, py = y, d[2];
   for (int i = 0; sampler->has_field && i < 3; i++) {
@@ -23,7 +23,7 @@ static fg_point nominal_px(const fg_sampler *sampler, double x, double y) {
   return (fg_point){px / sampler->pixel_mm[0], py / sampler->pixel_mm[1]};
 }
 
-/* In pixels, with room for the step between marks and for jumps of a field. */
+/* Reach in pixels, with margin for the step between marks and for jumps of a field. */
 static double reach_px(const fg_sampler *sampler, double half_width_mm, double reach_mm) {
   double pixel = fmin(sampler->pixel_mm[0], sampler->pixel_mm[1]);
   double field = fg_jumps_reach_mm(&sampler->spec->effects.jumps);
@@ -56,8 +56,8 @@ static fg_point mark_point(const fg_sampler *sampler, const fg_segment *segment,
   return nominal_px(sampler, p.x, p.y);
 }
 
-/* The outlines of a sheet are marked over a block's diagonal more: who finds none of them in a list
- * is away from all, and as far inside or outside as the whole block. */
+/* Reach of a segment. The outlines of a sheet are marked over a block's diagonal more: a block
+ * without any of them in its list is away from all, and wholly inside or outside. */
 static double segment_reach_px(const fg_sampler *sampler, const fg_segment *segment) {
   const fg_drawn_foil *drawn = &sampler->spec->scene.drawn[segment->foil];
   return reach_px(sampler, drawn->half_thickness_mm, sampler->reach_mm) +
@@ -112,9 +112,9 @@ void fg_band_free(fg_band *band) {
   *band = (fg_band){0};
 }
 
-/* Marks the blocks that the box touches. A thing is marked in one go, so a block that has it
- * already has it at its head. */
-static fg_status mark(fg_context *ctx, fg_band *band, const double box_px[4], size_t id) {
+/* Marks the blocks that the box touches. All blocks of a thing are marked in one go, so a block
+ * that has it already has it at its head. */
+static fg_status mark_blocks(fg_context *ctx, fg_band *band, const double box_px[4], size_t id) {
   int64_t x0 = (int64_t)floor(box_px[0] / FG_BLOCK_PX) - band->column0;
   int64_t y0 = (int64_t)floor(box_px[1] / FG_BLOCK_PX) - band->row0;
   int64_t x1 = (int64_t)floor(box_px[2] / FG_BLOCK_PX) - band->column0;
@@ -146,7 +146,7 @@ static fg_status mark_segment(fg_context *ctx, const fg_sampler *sampler, size_t
     fg_point p = mark_point(sampler, segment, k, steps);
     if (p.y < top || p.y > bottom) continue;
     double box[4] = {p.x - reach, p.y - reach, p.x + reach, p.y + reach};
-    FG_TRY(mark(ctx, band, box, id));
+    FG_TRY(mark_blocks(ctx, band, box, id));
   }
   return FG_OK;
 }
@@ -168,7 +168,7 @@ static fg_point true_middle(const fg_sampler *sampler, const fg_band *band, int6
   return (fg_point){mm[0] + d[0], mm[1] + d[1]};
 }
 
-/* Along a row of blocks what is filled changes only across blocks that list the outlines. */
+/* Fills a row of blocks: inside and outside change only across blocks that list the outlines. */
 static void fill_sheet_row(const fg_sampler *sampler, size_t foil, int64_t y, fg_band *band) {
   const fg_scene *scene = &sampler->spec->scene;
   bool known = false, inside = false;
@@ -220,7 +220,7 @@ fg_status fg_band_fill(fg_context *ctx, const fg_sampler *sampler, int64_t y0_px
     } else {
       double box[4];
       shape_box(sampler, &scene->shapes[i - scene->segment_count], box);
-      FG_TRY(mark(ctx, band, box, i));
+      FG_TRY(mark_blocks(ctx, band, box, i));
     }
   }
   fill_sheets(sampler, band);

@@ -28,8 +28,8 @@ static fg_status check_names(const fg_place *place, const cJSON *object) {
   return fg_members_read(place, object, known, NULL);
 }
 
-static fg_status read_member(const fg_place *place, const cJSON *object,
-                             const struct line_member *member, fg_colour_lines *lines) {
+static fg_status read_line_member(const fg_place *place, const cJSON *object,
+                                  const struct line_member *member, fg_colour_lines *lines) {
   const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, member->name);
   double values[FG_COLOUR_LINES];
   int count;
@@ -41,7 +41,7 @@ static fg_status read_member(const fg_place *place, const cJSON *object,
   return FG_OK;
 }
 
-/* A line may see no contrast at all: a foil of the very colour of what lies behind it. */
+/* A line may have no contrast at all: a foil of the very colour of its background. */
 static fg_status check_tones(const fg_place *place, const cJSON *object,
                              const fg_colour_lines *lines) {
   for (int i = 0; i < FG_COLOUR_LINES; i++) {
@@ -63,7 +63,7 @@ fg_status fg_colour_lines_read(const fg_place *place, const cJSON *scanner, doub
   fg_place inner = fg_place_inside(place, "colour_lines");
   FG_TRY(check_names(&inner, object));
   for (int i = 0; i < LINE_MEMBERS; i++)
-    FG_TRY(read_member(&inner, object, &line_members[i], lines));
+    FG_TRY(read_line_member(&inner, object, &line_members[i], lines));
   lines->stated = true;
   return check_tones(&inner, object, lines);
 }

@@ -4,9 +4,9 @@
 #include <math.h>
 #include <stdio.h>
 
-enum { STEPS = 16 }; /* per interval, where extremes are looked for */
+enum { STEPS = 16 }; /* steps per interval in the search for extremes */
 
-/* The interval that a place lies in. */
+/* The interval of a place. */
 typedef struct span {
   size_t left, right;
   double width, t; /* t: 0 at the left knot, 1 at the right one */
@@ -17,8 +17,8 @@ static double width_after(const fg_curve *curve, size_t i) {
   return curve->at[0] + curve->period - curve->at[i];
 }
 
-/* For a spline that is no longer there (before the first knot, after the last, no period) the width
- * is 0. */
+/* Finds the interval. Outside of the spline (before the first knot, after the last, no period) the
+ * width is 0. */
 static span find_span(const fg_curve *curve, double at) {
   size_t last = curve->count - 1, low = 0, high = last;
   if (curve->period > 0) at -= curve->period * floor((at - curve->at[0]) / curve->period);
@@ -47,7 +47,7 @@ double fg_curve_value_um(const fg_curve *curve, double at) {
              s.width * s.width / 6;
 }
 
-/* At the last knot, and at the first, the slope is the curve's own, not that of what is beyond. */
+/* At the first and last knot the slope is the curve's own, not that beyond. */
 double fg_curve_slope_um(const fg_curve *curve, double at) {
   span s = find_span(curve, at);
   size_t last = curve->count - 1;
@@ -61,7 +61,7 @@ double fg_curve_slope_um(const fg_curve *curve, double at) {
              s.width / 6;
 }
 
-static double largest(const fg_curve *curve, double (*of)(const fg_curve *, double)) {
+static double largest_value(const fg_curve *curve, double (*of)(const fg_curve *, double)) {
   double result = 0;
   size_t spans = curve->period > 0 ? curve->count : curve->count - 1;
   for (size_t i = 0; i < spans; i++)
@@ -72,12 +72,12 @@ static double largest(const fg_curve *curve, double (*of)(const fg_curve *, doub
 }
 
 double fg_curve_largest_um(const fg_curve *curve) {
-  return largest(curve, fg_curve_value_um);
+  return largest_value(curve, fg_curve_value_um);
 }
 
-/* Second derivatives: h[i-1] m[i-1] + 2 (h[i-1] + h[i]) m[i] + h[i] m[i+1] = 6 × the change of the
- * slope. The diagonal is twice the rest of its row, so a sweep of Gauss-Seidel at least halves the
- * error, closed or not: 64 sweeps are exact. */
+/* Solves for the second derivatives: h[i-1] m[i-1] + 2 (h[i-1] + h[i]) m[i] + h[i] m[i+1] = 6 × the
+ * change of the slope. The diagonal is twice the sum of its row's other terms, so a sweep of
+ * Gauss-Seidel at least halves the error, closed or not: 64 sweeps are exact. */
 static void solve_bends(fg_curve *curve) {
   size_t n = curve->count, first = curve->period > 0 ? 0 : 1, end = curve->period > 0 ? n : n - 1;
   for (size_t i = 0; i < n; i++)
@@ -127,7 +127,7 @@ fg_status fg_curve_parse(const fg_place *place, const cJSON *knots, const fg_cur
   if (axis->period > 0 && curve->at[index - 1] - curve->at[0] >= axis->period)
     return fg_member_fail(place, "knots", knots, "0 and 360 are one direction: leave one out");
   solve_bends(curve);
-  double steepest = largest(curve, fg_curve_slope_um);
+  double steepest = largest_value(curve, fg_curve_slope_um);
   if (axis->steepest_um_mm > 0 && steepest > axis->steepest_um_mm) {
     char what[128];
     snprintf(what, sizeof what, "the curve changes by %.4g um per mm; at most %g", steepest,

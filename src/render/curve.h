@@ -10,12 +10,12 @@
 
 enum { FG_CURVE_KNOTS_MAX = 64 };
 
-/* What a curve's coordinate may be. */
+/* Range and unit of a curve's coordinate. */
 typedef struct fg_curve_axis {
   const char *unit;
   double low, high;
   double period;         /* 0: none */
-  double steepest_um_mm; /* slope that is refused; 0: any */
+  double steepest_um_mm; /* steeper curves are refused; 0: any slope */
 } fg_curve_axis;
 
 typedef struct fg_curve {

@@ -33,7 +33,7 @@ static void index_tone(fg_tone_curve *tone) {
   }
 }
 
-/* Whole bits of the numbers that the curve gets. */
+/* Reads the bits of the numbers before the curve. */
 static fg_status read_tone_bits(const fg_place *place, const cJSON *scanner, fg_tone_curve *tone) {
   const cJSON *bits = cJSON_GetObjectItemCaseSensitive(scanner, "tone_bits");
   double number = 0;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The driver's work on rounded numbers, row after row. A row is finished once all that its unsharp
- * mask and its JPEG block need has come, so strips of any height give the same picture. */
+/* The driver's work on rounded numbers, row after row. A row is finished once all input of its
+ * unsharp mask and its JPEG block is there, so strips of any height give the same picture. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -57,8 +57,8 @@ void fg_driver_free(fg_driver *driver) {
   *driver = (fg_driver){0};
 }
 
-/* The JPEG blocks that a row completes. */
-static fg_status give_block(fg_context *ctx, fg_driver *driver, const void *pixels) {
+/* Compresses the JPEG blocks that a row completes. */
+static fg_status compress_block(fg_context *ctx, fg_driver *driver, const void *pixels) {
   size_t bytes = row_values(driver);
   int64_t last = driver->given % JPEG_ROWS, first = driver->given - last;
   memcpy(driver->block + (size_t)last * bytes, pixels, bytes);
@@ -72,7 +72,7 @@ static fg_status give_block(fg_context *ctx, fg_driver *driver, const void *pixe
 }
 
 /* The nearest of the levels, which divide the scale evenly; of two by the threshold. */
-static float level(const fg_driver *driver, float value) {
+static float nearest_level(const fg_driver *driver, float value) {
   float top = top_value(driver), steps = (float)(driver->settings->levels - 1);
   if (isfinite(driver->settings->threshold))
     return value >= (float)driver->settings->threshold * (top / 255) ? top : 0;
@@ -84,18 +84,19 @@ static void apply_levels(const fg_driver *driver, void *pixels) {
   uint8_t *narrow = pixels;
   uint16_t *wide = pixels;
   for (size_t i = 0; driver->picture.wide && i < values; i++)
-    wide[i] = (uint16_t)level(driver, wide[i]);
+    wide[i] = (uint16_t)nearest_level(driver, wide[i]);
   for (size_t i = 0; !driver->picture.wide && i < values; i++)
-    narrow[i] = (uint8_t)level(driver, narrow[i]);
+    narrow[i] = (uint8_t)nearest_level(driver, narrow[i]);
 }
 
 static fg_status finish_row(fg_context *ctx, fg_driver *driver, void *pixels) {
   if (driver->settings->levels) apply_levels(driver, pixels);
-  if (driver->block) return give_block(ctx, driver, pixels);
+  if (driver->block) return compress_block(ctx, driver, pixels);
   return driver->row(ctx, driver->user, driver->given++, pixels);
 }
 
-/* A row and its blur along x go to the rings. Beyond the picture its outermost pixels go on. */
+/* Stores a row and its blur along x in the rings. Beyond the picture the outermost pixels repeat.
+ */
 static void keep_row(fg_driver *driver, const void *pixels) {
   int64_t width = driver->picture.width, channels = driver->picture.channels;
   int64_t slot = driver->taken % driver->kept * width * channels;
@@ -131,7 +132,7 @@ static void blur_row(fg_driver *driver, int64_t y) {
   }
 }
 
-static float sharpen(const fg_unsharp_mask *mask, float value, float blurred, float top) {
+static float sharpen_value(const fg_unsharp_mask *mask, float value, float blurred, float top) {
   float difference = value - blurred;
   if (fabsf(difference) < (float)mask->threshold * (top / 255)) return value;
   float out = floorf(value + (float)(mask->amount_pct / 100) * difference + 0.5F);
@@ -146,7 +147,7 @@ static void sharpen_row(fg_driver *driver, int64_t y) {
   for (int64_t c = 0; c < channels; c++)
     for (int64_t x = 0; x < width; x++) {
       int64_t i = c * width + x;
-      float value = sharpen(&driver->settings->unsharp, numbers[i], driver->blurred[i], top);
+      float value = sharpen_value(&driver->settings->unsharp, numbers[i], driver->blurred[i], top);
       if (driver->picture.wide)
         ((uint16_t *)driver->sharpened)[x * channels + c] = (uint16_t)value;
       else
@@ -154,7 +155,7 @@ static void sharpen_row(fg_driver *driver, int64_t y) {
     }
 }
 
-fg_status fg_driver_take_row(fg_context *ctx, fg_driver *driver, void *pixels) {
+fg_status fg_driver_add_row(fg_context *ctx, fg_driver *driver, void *pixels) {
   if (!driver->kernel) return finish_row(ctx, driver, pixels);
   keep_row(driver, pixels);
   int64_t behind = driver->taken < driver->picture.height ? driver->taps : 0;

@@ -19,7 +19,8 @@ typedef struct png_out {
   fg_status status; /* of the call that failed */
 } png_out;
 
-/* libpng and zlib have no code for want of memory: "insufficient memory", "Out of memory". */
+/* libpng and zlib have no code for exhausted memory, only words: "insufficient memory", "Out of
+ * memory". */
 static void on_error(png_structp png, png_const_charp words) {
   png_out *out = png_get_error_ptr(png);
   out->status = strcasestr(words, "memory") ? FG_ERR_MEMORY : FG_ERR_IO;
@@ -40,7 +41,7 @@ static void write_header(png_out *out, const fg_render_truth *truth) {
                PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
   png_set_pHYs(out->png, out->info, (png_uint_32)lround(truth->dpi[0] / 0.0254),
                (png_uint_32)lround(truth->dpi[1] / 0.0254), PNG_RESOLUTION_METER);
-  /* Noise does not repeat: what is won comes from the frequencies of single values alone. */
+  /* Noise does not repeat: only the frequencies of single values compress. */
   png_set_filter(out->png, PNG_FILTER_TYPE_BASE, PNG_FILTER_NONE);
   png_set_compression_level(out->png, 1);
   png_set_compression_strategy(out->png, 2 /* Z_HUFFMAN_ONLY */);
@@ -55,7 +56,7 @@ static fg_status put_header(png_out *out, const fg_render_truth *truth) {
   return FG_OK;
 }
 
-static fg_status put_row(fg_context *ctx, void *user, int64_t row, const void *pixels) {
+static fg_status write_png_row(fg_context *ctx, void *user, int64_t row, const void *pixels) {
   (void)ctx;
   (void)row;
   png_out *out = user;
@@ -75,7 +76,7 @@ static fg_status write_png(fg_context *ctx, const fg_render_spec *spec, png_out 
   out->info = out->png ? png_create_info_struct(out->png) : NULL;
   if (!out->info) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory for libpng");
   FG_TRY(put_header(out, fg_render_get_truth(spec)));
-  FG_TRY(fg_render_rows(ctx, spec, 0, put_row, out));
+  FG_TRY(fg_render_rows(ctx, spec, 0, write_png_row, out));
   return put_end(out);
 }
 

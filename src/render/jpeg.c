@@ -31,8 +31,8 @@ void fg_jpeg_init(int quality, fg_jpeg *jpeg) {
           (float)(sqrt(k ? 0.25 : 0.125) * cos((2 * n + 1) * k * 3.14159265358979323846 / 16));
 }
 
-static void transform(const float cosines[8][8], int inverse, const float in[8][8],
-                      float out[8][8]) {
+static void transform_cosine(const float cosines[8][8], int inverse, const float in[8][8],
+                             float out[8][8]) {
   float half[8][8];
   for (int i = 0; i < 8; i++)
     for (int j = 0; j < 8; j++) {
@@ -53,10 +53,10 @@ static void transform(const float cosines[8][8], int inverse, const float in[8][
 /* A block of numbers about 0, through its rounded coefficients. */
 static void code_block(const fg_jpeg *jpeg, const float steps[64], float block[8][8]) {
   float spectrum[8][8];
-  transform(jpeg->cosines, 0, (const float(*)[8])block, spectrum);
+  transform_cosine(jpeg->cosines, 0, (const float(*)[8])block, spectrum);
   for (int i = 0; i < 64; i++)
     spectrum[i / 8][i % 8] = steps[i] * roundf(spectrum[i / 8][i % 8] / steps[i]);
-  transform(jpeg->cosines, 1, (const float(*)[8])spectrum, block);
+  transform_cosine(jpeg->cosines, 1, (const float(*)[8])spectrum, block);
 }
 
 static uint8_t to_byte(float value) {

@@ -6,7 +6,7 @@
 
 enum { ROWS_MAX = 1000 };
 
-/* The array of a member, NULL without; too long or none: refused. */
+/* Finds the array of a member, NULL without; FG_ERR_DATA when it is too long or no array. */
 static fg_status find_array(const fg_place *place, const cJSON *scanner, const char *name,
                             const cJSON **array) {
   *array = cJSON_GetObjectItemCaseSensitive(scanner, name);
@@ -15,8 +15,8 @@ static fg_status find_array(const fg_place *place, const cJSON *scanner, const c
   return fg_member_fail(place, name, *array, "must be an array of at most 64 objects");
 }
 
-static fg_status read_rows(const fg_place *place, const cJSON *scanner,
-                           fg_jump_requests *requests) {
+static fg_status read_rows_lost(const fg_place *place, const cJSON *scanner,
+                                fg_jump_requests *requests) {
   static const fg_member table[] = {
       {"y_mm", FG_MEMBER_NUMBER, offsetof(fg_rows_lost, y_mm), 0, 10000},
       {"count", FG_MEMBER_INTEGER, offsetof(fg_rows_lost, count), -ROWS_MAX, ROWS_MAX},
@@ -81,7 +81,7 @@ static fg_status read_stitches(const fg_place *place, const cJSON *scanner,
 }
 
 fg_status fg_jumps_read(const fg_place *place, const cJSON *scanner, fg_jump_requests *requests) {
-  FG_TRY(read_rows(place, scanner, requests));
+  FG_TRY(read_rows_lost(place, scanner, requests));
   FG_TRY(read_stitches(place, scanner, requests));
   return read_seams(place, scanner, requests);
 }
@@ -94,13 +94,13 @@ static fg_status check_inside(const fg_place *place, const char *name, size_t in
                  name, index, at_mm, size_mm);
 }
 
-/* Half way before the first pixel beyond the place. */
+/* Returns the middle between the last pixel before the place and the first one beyond it. */
 static double between_pixels(double at_mm, double pixel_mm) {
   return (floor(at_mm / pixel_mm) + 0.5) * pixel_mm;
 }
 
-/* Rows that are lost are one jump. A carriage that stands still falls back by one row at every row
- * that it reads again. */
+/* Jump of lost rows: they are one jump. A carriage that stands still falls back by one row at every
+ * row that it reads again. */
 static fg_render_jump rows_jump(const fg_rows_lost *lost, double pitch_mm) {
   bool again = lost->count < 0;
   return (fg_render_jump){.axis = 1,

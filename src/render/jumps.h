@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Jumps of a whole row or column: rows that a scanner lost or read twice, pieces
- * of a scan that were stitched, seams between the chips of a contact image sensor. They come after
- * the optics, so they are sharp. */
+/* Jumps of a whole row or column: rows that a scanner lost or read twice, pieces of a scan that
+ * were stitched, seams between the chips of a contact image sensor. They come after the optics, so
+ * they are sharp. */
 #ifndef FG_RENDER_JUMPS_H
 #define FG_RENDER_JUMPS_H
 
@@ -9,7 +9,7 @@
 
 enum { FG_RENDER_JUMPS_MAX = 64 /* of each kind */ };
 
-/* Behind the place `count` rows of the glass were never read; negative: the carriage stood still,
+/* After the place `count` rows of the glass were never read; negative: the carriage stood still,
  * and the row before it was read as often again. */
 typedef struct fg_rows_lost {
   double y_mm;
@@ -20,7 +20,7 @@ typedef struct fg_chip_seam {
   double x_mm, shift_um, shift_y_um; /* of all that lies at larger x */
 } fg_chip_seam;
 
-/* Behind the place the picture goes on so many rows further on; negative: the rows before it come a
+/* After the place the picture goes on `rows` rows further on; negative: the rows before it come a
  * second time. */
 typedef struct fg_stitch {
   double y_mm, shift_um; /* along x */
@@ -36,7 +36,7 @@ typedef struct fg_jump_requests {
 
 /* True = nominal + d beyond at_mm; `repeats` times in all, every_mm apart. */
 typedef struct fg_render_jump {
-  int axis; /* 0 x, 1 y: along which it is met */
+  int axis; /* 0 x, 1 y: axis across the jump */
   double at_mm, every_mm;
   int repeats;
   double d_mm[2]; /* of one */
@@ -47,18 +47,18 @@ typedef struct fg_render_jump_list {
   size_t count;
 } fg_render_jump_list;
 
-/* Members rows_lost, stitches and chip_seams of a spec's scanner. */
+/* Reads members rows_lost, stitches and chip_seams of a spec's scanner. */
 fg_status fg_jumps_read(const fg_place *place, const cJSON *scanner, fg_jump_requests *requests);
 
-/* Puts the jumps between two pixels. FG_ERR_DATA for one outside the picture. */
+/* Builds the list, with each jump between two pixels. FG_ERR_DATA for one outside the picture. */
 fg_status fg_jumps_build(const fg_place *place, const fg_jump_requests *requests,
                          const double pixel_mm[2], const double size_mm[2],
                          fg_render_jump_list *list);
 
-/* By how much rows that are seen twice push what follows down the picture. */
+/* Returns the shift down the picture by rows that are seen twice. */
 double fg_jumps_rows_more(const fg_jump_requests *requests);
 
-/* Adds to d(x, y); `side_mm` says on which side of a jump we are. */
+/* Adds to d(x, y); `side_mm` decides the side of a jump. */
 void fg_jumps_field(const fg_render_jump_list *list, const double side_mm[2], double d_mm[2]);
 
 /* The first jump along an axis at or above low_mm and below high_mm; NaN without. */

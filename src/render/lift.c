@@ -23,33 +23,33 @@ static const fg_member table[] = {
     {"values_um", FG_MEMBER_OTHER, 0, 0, 0},
     {0}};
 
-static bool has(const cJSON *object, const char *name) {
+static bool has_member(const cJSON *object, const char *name) {
   return cJSON_GetObjectItemCaseSensitive(object, name) != NULL;
 }
 
-/* Exactly one way to say which bumps, and nothing that belongs to another way. */
-static fg_status check_ways(const fg_place *place, const cJSON *object) {
-  const char *ways[] = {"bumps", "every", "period_bumps", "values_um"};
+/* Checks that exactly one way to name bumps is used, without members of another way. */
+static fg_status check_selectors(const fg_place *place, const cJSON *object) {
+  const char *selectors[] = {"bumps", "every", "period_bumps", "values_um"};
   const char *belongs[][2] = {{"first", "every"}, {"phase_deg", "period_bumps"}};
   int given = 0;
-  for (size_t i = 0; i < sizeof ways / sizeof *ways; i++)
-    given += has(object, ways[i]);
+  for (size_t i = 0; i < sizeof selectors / sizeof *selectors; i++)
+    given += has_member(object, selectors[i]);
   if (given != 1)
     return fg_member_fail(place, "", object,
                           "say which bumps, one way: bumps, every, period_bumps or values_um");
   for (size_t i = 0; i < 2; i++)
-    if (has(object, belongs[i][0]) && !has(object, belongs[i][1]))
+    if (has_member(object, belongs[i][0]) && !has_member(object, belongs[i][1]))
       return fg_member_fail(place, belongs[i][0],
                             cJSON_GetObjectItemCaseSensitive(object, belongs[i][0]),
                             i ? "belongs to period_bumps" : "belongs to every");
-  if (has(object, "values_um") == has(object, "amplitude_um"))
+  if (has_member(object, "values_um") == has_member(object, "amplitude_um"))
     return fg_member_fail(place, "amplitude_um",
                           cJSON_GetObjectItemCaseSensitive(object, "amplitude_um"),
                           "bumps, every and period_bumps need it, values_um does not");
   return FG_OK;
 }
 
-/* The numbers of bumps that are named. */
+/* Reads the numbers of the named bumps. */
 static fg_status fill_named(const fg_place *place, const cJSON *array, double amplitude_um,
                             fg_lift *lift) {
   double numbers[FG_LIFT_BUMPS_MAX];
@@ -86,11 +86,11 @@ fg_status fg_lift_parse(const fg_place *place, const cJSON *object, fg_lift *lif
   FG_TRY(fg_members_read(place, object, table, &request));
   FG_TRY(fg_member_choice(place, object, "form", (const char *const[]){"crown", "whole"}, &whole));
   lift->whole = whole == 1;
-  FG_TRY(check_ways(place, object));
-  if (has(object, "bumps"))
+  FG_TRY(check_selectors(place, object));
+  if (has_member(object, "bumps"))
     return fill_named(place, cJSON_GetObjectItemCaseSensitive(object, "bumps"),
                       request.amplitude_um, lift);
-  if (has(object, "values_um"))
+  if (has_member(object, "values_um"))
     return fg_member_numbers(place, "values_um",
                              cJSON_GetObjectItemCaseSensitive(object, "values_um"), -50, 50, 1,
                              FG_LIFT_BUMPS_MAX, lift->um, &lift->last);

@@ -15,7 +15,7 @@ typedef enum fg_member_kind {
   FG_MEMBER_NUMBER,  /* double */
   FG_MEMBER_INTEGER, /* int */
   FG_MEMBER_BOOL,    /* bool */
-  FG_MEMBER_OTHER,   /* known, read by the caller */
+  FG_MEMBER_OTHER,   /* known, but read by the caller */
 } fg_member_kind;
 
 typedef struct fg_member {
@@ -25,7 +25,7 @@ typedef struct fg_member {
   double low, high; /* of numbers, both allowed */
 } fg_member;
 
-/* Where we are in which file, for messages. */
+/* Place in a file, for messages. */
 typedef struct fg_place {
   fg_context *ctx;
   const char *path;
@@ -48,11 +48,11 @@ fg_status fg_members_read(const fg_place *place, const cJSON *object, const fg_m
 fg_status fg_member_number(const fg_place *place, const char *name, const cJSON *item, double low,
                            double high, double *value);
 
-/* An array of numbers; *count is what it has, at least `least`, at most `most`. */
+/* Reads an array of numbers; *count is their number, at least `min`, at most `max`. */
 fg_status fg_member_numbers(const fg_place *place, const char *name, const cJSON *item, double low,
                             double high, int min, int max, double *values, int *count);
 
-/* One of two words, as its number; absent: *choice stays. */
+/* Reads one of two words, as its number; absent: *choice stays. */
 fg_status fg_member_choice(const fg_place *place, const cJSON *object, const char *name,
                            const char *const words[2], int *choice);
 

@@ -9,12 +9,12 @@
 
 static const double pi = 3.14159265358979323846;
 
-/* One bump as it will be drawn: its circle, and where the fillets join it to the lands. */
+/* One bump as drawn: its circle, and its joints with the fillets and lands. */
 typedef struct bump_plan {
   double axis_rad; /* direction of C seen from O */
   double radius, centre_distance;
-  double land_rad; /* gamma: from the axis to where the fillet meets the land, at O */
-  double arc_rad;  /* delta: from the axis to where the fillet meets the bump, at C */
+  double land_rad; /* gamma: from the axis to the joint of fillet and land, at O */
+  double arc_rad;  /* delta: from the axis to the joint of fillet and bump, at C */
   bool present;
 } bump_plan;
 
@@ -65,8 +65,8 @@ static void derive_bump(const fg_foil_request *request, fg_render_bump *bump) {
       180 / pi * safe_acos((x * x - r * r - overall * overall) / (2 * r * overall));
 }
 
-/* The circle moves towards O as it is; the law of cosines says where it crosses the overall circle
- * then, and the fillets follow. */
+/* Moves the circle towards O; the law of cosines gives its new crossings with the overall circle,
+ * and the fillets follow. */
 static void raise_bump(double overall, double by_mm, fg_render_bump *bump) {
   if (by_mm == 0) return;
   double x = bump->centre_to_centre_mm - by_mm, r = bump->radius_mm;
@@ -120,18 +120,18 @@ fg_status fg_scene_append(fg_context *ctx, fg_scene *scene, size_t foil, double 
   return FG_OK;
 }
 
-static fg_status append(outline *o, fg_segment segment) {
+static fg_status append_segment(outline *o, fg_segment segment) {
   return fg_scene_append(o->place->ctx, o->scene, o->foil, &o->s_mm, segment);
 }
 
 static fg_status append_arc(outline *o, fg_segment arc) {
-  /* Half-plane tests tell what belongs to an arc; they need less than half a turn. */
+  /* Half-plane tests decide the points of an arc; they need less than half a turn. */
   int pieces = (int)ceil(fabs(arc.sweep) / 3.0);
   if (fabs(arc.sweep) < 1e-12) return FG_OK;
   arc.sweep /= pieces;
   arc.length_mm = fabs(arc.sweep) * arc.radius;
   for (int i = 0; i < pieces; i++) {
-    FG_TRY(append(o, arc));
+    FG_TRY(append_segment(o, arc));
     arc.angle += arc.sweep;
   }
   return FG_OK;
@@ -142,15 +142,15 @@ static fg_status append_lip(outline *o, double land_start_rad) {
   double ux = cos(land_start_rad), uy = sin(land_start_rad), out = lip->outwards ? 1 : -1;
   double centre = o->request->overall_radius_mm + out * lip->bend_radius_mm;
   double x = centre * ux + lip->bend_radius_mm * uy, y = centre * uy - lip->bend_radius_mm * ux;
-  FG_TRY(append(o, (fg_segment){.line = true,
-                                .x = x + out * lip->length_mm * ux,
-                                .y = y + out * lip->length_mm * uy,
-                                .ax = -out * ux,
-                                .ay = -out * uy,
-                                .bx = out * uy,
-                                .by = -out * ux,
-                                .side = 1,
-                                .length_mm = lip->length_mm}));
+  FG_TRY(append_segment(o, (fg_segment){.line = true,
+                                        .x = x + out * lip->length_mm * ux,
+                                        .y = y + out * lip->length_mm * uy,
+                                        .ax = -out * ux,
+                                        .ay = -out * uy,
+                                        .bx = out * uy,
+                                        .by = -out * ux,
+                                        .side = 1,
+                                        .length_mm = lip->length_mm}));
   /* From the lip's foot, a quarter turn to the land; the bend's centre is on the lip's side. */
   return append_arc(o, (fg_segment){.x = centre * ux,
                                     .y = centre * uy,
@@ -205,7 +205,7 @@ static fg_status make_bumps(outline *o, bump_plan *plans, fg_render_bump *bumps,
   fg_random_seed(&random, o->spec->seed, FG_STREAM_SPRINGBACK, o->foil);
   *count = 0;
   for (int i = 0; i < design->bump_count; i++) {
-    /* Drawn for missing bumps too: taking one out leaves the others as they were. */
+    /* Drawn for missing bumps too, so that removing one does not change the others. */
     double scatter = request->springback_sd * fg_random_normal(&random);
     plans[i] =
         (bump_plan){.axis_rad = (i - 0.5 * (design->bump_count - 1)) * design->pitch_deg * pi / 180,
@@ -232,7 +232,7 @@ static fg_status make_bumps(outline *o, bump_plan *plans, fg_render_bump *bumps,
   return FG_OK;
 }
 
-/* Where lands begin and end; a missing bump leaves its place to the land. */
+/* Appends lands, fillets and bumps; a missing bump leaves its place to the land. */
 static fg_status append_all(outline *o, const bump_plan *plans, double start_rad, double end_rad) {
   double land_from = start_rad;
   if (o->request->has_lip) FG_TRY(append_lip(o, start_rad));
@@ -250,7 +250,7 @@ static fg_status append_all(outline *o, const bump_plan *plans, double start_rad
   return append_land(o, land_from, end_rad);
 }
 
-static fg_status finish(outline *o, double start_rad, double end_rad) {
+static fg_status finish_outline(outline *o, double start_rad, double end_rad) {
   fg_scene *scene = o->scene;
   fg_drawn_foil *drawn = &scene->drawn[o->foil];
   drawn->segment_count = scene->segment_count - drawn->first_segment;
@@ -265,7 +265,7 @@ static fg_status finish(outline *o, double start_rad, double end_rad) {
   return FG_OK;
 }
 
-/* A plain strip, with a lip where one is asked for. */
+/* Builds a plain strip, with a lip if requested. */
 static fg_status build_arc(outline *o) {
   double half_rad = 0.5 * o->request->subtended_angle_deg * pi / 180;
   fg_drawn_foil *drawn = &o->scene->drawn[o->foil];
@@ -277,7 +277,7 @@ static fg_status build_arc(outline *o) {
   o->scene->foils[o->foil].subtended_angle_deg = o->request->subtended_angle_deg;
   if (o->request->has_lip) FG_TRY(append_lip(o, -half_rad));
   FG_TRY(append_land(o, -half_rad, half_rad));
-  return finish(o, -half_rad, half_rad);
+  return finish_outline(o, -half_rad, half_rad);
 }
 
 fg_status fg_outline_build(const fg_place *place, const fg_render_spec *spec,
@@ -305,5 +305,5 @@ fg_status fg_outline_build(const fg_place *place, const fg_render_spec *spec,
     return fg_fail(place->ctx, FG_ERR_DATA, "%s: %s: the foil is longer than a full turn",
                    place->path, place->member);
   FG_TRY(append_all(&o, plans, start, end));
-  return finish(&o, start, end);
+  return finish_outline(&o, start, end);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* From JSON to requests. */
+/* Parsing of JSON to requests. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -5,7 +5,7 @@
 
 #include "render/spec.h"
 
-/* Rows of a table of members: those of a struct by their own names. */
+/* Rows of a table of members: members of a struct under their own names. */
 #define FG_SPEC_NUMBER(type, member, low, high)                                                    \
   { #member, FG_MEMBER_NUMBER, offsetof(type, member), low, high }
 #define FG_SPEC_INTEGER(type, member, low, high)                                                   \
@@ -15,7 +15,7 @@
 #define FG_SPEC_END                                                                                \
   { NULL, FG_MEMBER_END, 0, 0, 0 }
 
-/* The member, or NULL. */
+/* Returns the member, or NULL. */
 static inline const cJSON *fg_spec_member(const cJSON *object, const char *name) {
   return cJSON_GetObjectItemCaseSensitive(object, name);
 }

@@ -5,7 +5,7 @@
 
 #include "render/parse.h"
 
-/* What a foil has that is bent. */
+/* Members of bent foils only. */
 static const char *const of_bumps[] = {"overall_radius_mm",
                                        "subtended_angle_deg",
                                        "first_land_mm",
@@ -70,7 +70,7 @@ static fg_status read_missing(const fg_place *place, const cJSON *beams, int cou
   return FG_OK;
 }
 
-/* One beam and a number, in a list of such. */
+/* One beam and a number, in a list of defects. */
 typedef struct defect {
   int beam;
   double length_factor, angle_deg;
@@ -93,7 +93,8 @@ static fg_status read_defects(const fg_place *place, const cJSON *beams, const c
   return FG_OK;
 }
 
-static fg_status read_values(const fg_place *place, const cJSON *object, fg_beams_request *beams) {
+static fg_status read_beam_values(const fg_place *place, const cJSON *object,
+                                  fg_beams_request *beams) {
   static const fg_member table[] = {
       FG_SPEC_NUMBER(fg_beams_request, pitch_mm, 0.01, 1000),
       FG_SPEC_NUMBER(fg_beams_request, base_mm, 0.05, 1000),
@@ -157,7 +158,7 @@ fg_status fg_spec_read_beams(const fg_place *place, const cJSON *foil, fg_foil_r
   if (!object) return FG_OK;
   int count = request->design.beam_count;
   fg_place inner = fg_place_inside(place, "beams");
-  FG_TRY(read_values(&inner, object, beams));
+  FG_TRY(read_beam_values(&inner, object, beams));
   FG_TRY(read_scatter(&inner, object, "length", &beams->length));
   FG_TRY(read_scatter(&inner, object, "width", &beams->width));
   FG_TRY(read_each(&inner, object, "length_um", count, beams->length_um));

@@ -23,8 +23,8 @@ static fg_status read_litter(const fg_place *place, const cJSON *parent, const c
   return fg_members_read(&inner, object, table, litter);
 }
 
-static fg_status read_part(const fg_place *place, const cJSON *parent, const char *name,
-                           const fg_member *table, void *base) {
+static fg_status read_object(const fg_place *place, const cJSON *parent, const char *name,
+                             const fg_member *table, void *base) {
   const cJSON *object = fg_spec_member(parent, name);
   if (!object) return FG_OK;
   fg_place inner = fg_place_inside(place, name);
@@ -88,9 +88,9 @@ static fg_status read_rough(const fg_place *place, const cJSON *rough, fg_scanne
                           (const char *const[]){"gaussian", "exponential"}, &exponential));
   scanner->one_sided_way = against ? -1 : 1;
   scanner->edge_exponential = exponential == 1;
-  FG_TRY(read_part(place, rough, "halo", halo, scanner));
-  FG_TRY(read_part(place, rough, "side_wall", wall, scanner));
-  return read_part(place, rough, "jpeg", jpeg, scanner);
+  FG_TRY(read_object(place, rough, "halo", halo, scanner));
+  FG_TRY(read_object(place, rough, "side_wall", wall, scanner));
+  return read_object(place, rough, "jpeg", jpeg, scanner);
 }
 
 /* One number for both axes, or [x, y]. */
@@ -208,7 +208,7 @@ fg_status fg_spec_read_scanner(const fg_place *place, const cJSON *object, fg_sc
   FG_TRY(read_resampling(place, object, scanner));
   FG_TRY(check_blur(place, object, scanner));
   FG_TRY(fg_jumps_read(place, object, &scanner->jumps));
-  FG_TRY(read_part(place, object, "shading", shading, scanner));
+  FG_TRY(read_object(place, object, "shading", shading, scanner));
   FG_TRY(read_litter(place, object, "dust", &scanner->dust));
   FG_TRY(read_litter(place, object, "specks", &scanner->specks));
   FG_TRY(read_litter(place, object, "scratches", &scanner->scratches));

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* From coverage to pixels, row after row: light, shading, tone, noise, clipping; from the sensor's
- * grid to the picture's; the driver's tone curve, rounding. What the driver does then is in
- * driver_rows.c. */
+ * grid to the picture's; the driver's tone curve, rounding. driver_rows.c has the driver's later
+ * stages. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -70,7 +70,7 @@ static fg_status create_resampler(fg_context *ctx, picture *p) {
   return fg_resampler_create(ctx, &way, finish_resampled, p, &p->resampler);
 }
 
-/* The picture's pixels, and what lies between them and the sensor's values. */
+/* Creates the picture's pixels, and the stages between them and the sensor's values. */
 static fg_status create_finish(fg_context *ctx, picture *p) {
   size_t bytes = (p->spec->scanner.bits == 16 ? 2 : 1) * (size_t)p->channels;
   if (!is_resampled(p->spec))
@@ -175,7 +175,7 @@ static void noise_row(picture *p, int line, int64_t y) {
   memcpy(above, p->noise, (size_t)p->width * sizeof *p->noise);
 }
 
-/* Sensor's numbers: with noise, within its range. */
+/* Sensor's numbers: with noise, clipped to its range. */
 static void sense_row(picture *p, int line, int64_t y, float *values) {
   const fg_scanner *scanner = &p->spec->scanner;
   float top = isnan(scanner->clip_white) ? 255.0F : (float)scanner->clip_white;
@@ -208,16 +208,16 @@ static fg_status finish_resampled(fg_context *ctx, void *user, float *values) {
   int64_t width = p->spec->truth.width_px;
   for (int line = 0; line < p->channels; line++)
     quantise_row(p, line, values + line * width, width, p->pixels);
-  return fg_driver_take_row(ctx, &p->driver, p->pixels);
+  return fg_driver_add_row(ctx, &p->driver, p->pixels);
 }
 
 static size_t row_bytes(const picture *p) {
   return (size_t)p->padded * (size_t)p->channels * (p->spec->scanner.bits == 16 ? 2 : 1);
 }
 
-/* One channel of the strip's rows. Noise of a colour scan is each line's own. */
+/* Draws one channel of the strip's rows. Noise of a colour scan is each line's own. */
 static void draw_channel(picture *p, int line, int64_t y0, int64_t rows) {
-  if (p->spec->scanner.colour.stated) fg_sampler_take_line(&p->sampler, line);
+  if (p->spec->scanner.colour.stated) fg_sampler_use_line(&p->sampler, line);
   draw_coverage(p, y0);
   for (int64_t y = 0; y < rows; y++) {
     float *values = p->sensed ? p->sensed + (y * p->channels + line) * p->padded : p->values;
@@ -236,10 +236,10 @@ static fg_status draw_strip(fg_context *ctx, picture *p, int64_t y0) {
     draw_channel(p, line, y0, rows);
   for (int64_t y = 0; y < rows; y++)
     if (p->sensed)
-      FG_TRY(fg_resampler_take_row(ctx, &p->resampler, p->sensed + y * p->channels * p->padded,
-                                   p->padded));
+      FG_TRY(fg_resampler_add_row(ctx, &p->resampler, p->sensed + y * p->channels * p->padded,
+                                  p->padded));
     else
-      FG_TRY(fg_driver_take_row(ctx, &p->driver, (char *)p->pixels + (size_t)y * row_bytes(p)));
+      FG_TRY(fg_driver_add_row(ctx, &p->driver, (char *)p->pixels + (size_t)y * row_bytes(p)));
   return FG_OK;
 }
 

@@ -5,7 +5,7 @@
 
 #include <gsl/gsl_cdf.h>
 
-static uint64_t splitmix(uint64_t *state) {
+static uint64_t splitmix_next(uint64_t *state) {
   uint64_t z = (*state += 0x9e3779b97f4a7c15u);
   z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
   z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
@@ -18,13 +18,13 @@ static uint64_t rotate_left(uint64_t value, int bits) {
 
 void fg_random_seed(fg_random *random, uint64_t seed, uint64_t stream, uint64_t index) {
   uint64_t state = seed;
-  state = splitmix(&state) ^ stream;
-  state = splitmix(&state) ^ index;
+  state = splitmix_next(&state) ^ stream;
+  state = splitmix_next(&state) ^ index;
   for (int i = 0; i < 4; i++)
-    random->state[i] = splitmix(&state);
+    random->state[i] = splitmix_next(&state);
 }
 
-static uint64_t next(fg_random *random) {
+static uint64_t next_bits(fg_random *random) {
   uint64_t *s = random->state;
   uint64_t result = rotate_left(s[0] + s[3], 23) + s[0];
   uint64_t t = s[1] << 17;
@@ -38,11 +38,11 @@ static uint64_t next(fg_random *random) {
 }
 
 double fg_random_uniform(fg_random *random) {
-  return (double)(next(random) >> 11) * 0x1p-53;
+  return (double)(next_bits(random) >> 11) * 0x1p-53;
 }
 
 double fg_random_normal(fg_random *random) {
-  return gsl_cdf_ugaussian_Pinv(((double)(next(random) >> 12) + 0.5) * 0x1p-52);
+  return gsl_cdf_ugaussian_Pinv(((double)(next_bits(random) >> 12) + 0.5) * 0x1p-52);
 }
 
 void fg_noise_table_fill(fg_noise_table *table) {
@@ -52,7 +52,8 @@ void fg_noise_table_fill(fg_noise_table *table) {
     quantiles[i] = gsl_cdf_ugaussian_Pinv((i + 0.5) / FG_NOISE_QUANTILES);
     sum_of_squares += quantiles[i] * quantiles[i];
   }
-  /* Cutting the law into quantiles takes a little off its variance; two of them make 1. */
+  /* Cutting the normal law into quantiles lowers its variance a little; the sum of two is scaled
+   * to 1. */
   double scale = sqrt(0.5 * FG_NOISE_QUANTILES / sum_of_squares);
   for (int i = 0; i < FG_NOISE_QUANTILES; i++)
     table->quantiles[i] = (float)(scale * quantiles[i]);
@@ -64,12 +65,12 @@ void fg_noise_draw(const fg_noise_table *table, fg_random *random, float *out, s
   fg_random local = *random;
   size_t i = 0;
   for (; i + 2 <= count; i += 2) {
-    uint64_t bits = next(&local);
+    uint64_t bits = next_bits(&local);
     out[i] = q[bits & mask] + q[(bits >> 11) & mask];
     out[i + 1] = q[(bits >> 22) & mask] + q[(bits >> 33) & mask];
   }
   if (i < count) {
-    uint64_t bits = next(&local);
+    uint64_t bits = next_bits(&local);
     out[i] = q[bits & mask] + q[(bits >> 11) & mask];
   }
   *random = local;

@@ -27,8 +27,8 @@ static taps taps_at(const fg_resampling *way, int axis, int64_t to) {
   return result;
 }
 
-/* The outermost pixels go on beyond the picture. */
-static int64_t within(int64_t at, int64_t count) {
+/* Index within the picture; the outermost pixels repeat beyond it. */
+static int64_t clamp_index(int64_t at, int64_t count) {
   return at < 0 ? 0 : at >= count ? count - 1 : at;
 }
 
@@ -62,19 +62,19 @@ static void keep_row(fg_resampler *resampler, const float *values, int64_t strid
     for (int64_t c = 0; c < way->channels; c++) {
       float sum = 0;
       for (int k = 0; k < TAPS; k++)
-        sum += at.weight[k] * values[c * stride + within(at.first + k, way->from_px[0])];
+        sum += at.weight[k] * values[c * stride + clamp_index(at.first + k, way->from_px[0])];
       kept[c * way->to_px[0] + x] = sum;
     }
   }
   resampler->taken++;
 }
 
-/* A cubic overshoots; numbers end at the ends of the scale. */
+/* Interpolates a row. A cubic overshoots; numbers are clipped to the scale. */
 static void interpolate_row(const fg_resampler *resampler, const taps *at) {
   size_t values = row_values(resampler);
   const float *rows[TAPS];
   for (int k = 0; k < TAPS; k++) {
-    int64_t row = within(at->first + k, resampler->way.from_px[1]);
+    int64_t row = clamp_index(at->first + k, resampler->way.from_px[1]);
     rows[k] = resampler->rows + (size_t)(row % TAPS) * values;
   }
   for (size_t i = 0; i < values; i++) {
@@ -85,13 +85,13 @@ static void interpolate_row(const fg_resampler *resampler, const taps *at) {
   }
 }
 
-fg_status fg_resampler_take_row(fg_context *ctx, fg_resampler *resampler, const float *values,
-                                int64_t stride) {
+fg_status fg_resampler_add_row(fg_context *ctx, fg_resampler *resampler, const float *values,
+                               int64_t stride) {
   const fg_resampling *way = &resampler->way;
   keep_row(resampler, values, stride);
   while (resampler->given < way->to_px[1]) {
     taps at = taps_at(way, 1, resampler->given);
-    if (within(at.first + TAPS - 1, way->from_px[1]) >= resampler->taken) return FG_OK;
+    if (clamp_index(at.first + TAPS - 1, way->from_px[1]) >= resampler->taken) return FG_OK;
     interpolate_row(resampler, &at);
     resampler->given++;
     FG_TRY(resampler->row(ctx, resampler->user, resampler->out));

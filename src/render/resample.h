@@ -9,7 +9,7 @@
 
 #include "foilgauge/status.h"
 
-/* From the sensor's grid to that of the finished picture. */
+/* Mapping from the sensor's grid to that of the finished picture. */
 typedef struct fg_resampling {
   int64_t from_px[2], to_px[2]; /* width, height */
   double step[2];               /* sensor pixels per finished one; at most 1 */
@@ -17,7 +17,7 @@ typedef struct fg_resampling {
   int64_t channels;
 } fg_resampling;
 
-/* Takes a finished row, channel after channel; it may be changed. */
+/* Receives a finished row, channel after channel; it may change it. */
 typedef fg_status fg_resampled_row(fg_context *ctx, void *user, float *values);
 
 typedef struct fg_resampler {
@@ -33,12 +33,12 @@ fg_status fg_resampler_create(fg_context *ctx, const fg_resampling *way, fg_resa
                               void *user, fg_resampler *resampler);
 void fg_resampler_free(fg_resampler *resampler);
 
-/* Takes the sensor's next row, whose channels lie `stride` values apart, and hands out the finished
- * rows that need no later one. */
-fg_status fg_resampler_take_row(fg_context *ctx, fg_resampler *resampler, const float *values,
-                                int64_t stride);
+/* Accepts the sensor's next row, whose channels lie `stride` values apart, and hands out the
+ * finished rows that need no later one. */
+fg_status fg_resampler_add_row(fg_context *ctx, fg_resampler *resampler, const float *values,
+                               int64_t stride);
 
-/* Number of the sensor's pixels that so many finished ones need. */
+/* Returns the number of the sensor's pixels that `to_px` finished ones need. */
 int64_t fg_resampling_need(int64_t to_px, double step);
 
 #endif

@@ -9,9 +9,9 @@
 
 static const double pi = 3.14159265358979323846;
 
-/* A drawn sequence has STEPS_PER_CORRELATION values per correlation length. Samples of the picture
- * are smoothed across the edge (sampler.h), and with the same Gaussian along it: else scatter that
- * is finer than a sample would be taken at points, and not as its mean. */
+/* Values of a drawn sequence per correlation length, and per sd of the smoothing. Samples of the
+ * picture are smoothed across the edge (sampler.h), and with the same Gaussian along it: else
+ * scatter finer than a sample would enter by points, and not by its mean. */
 enum { STEPS_PER_CORRELATION = 4, STEPS_PER_SMOOTHING = 2 };
 
 static const double SAMPLED_PX = 0.3; /* sd of the sampling */
@@ -44,7 +44,8 @@ static fg_status make_kernel(fg_context *ctx, sequence *q) {
   return FG_OK;
 }
 
-/* A closed sequence may be shorter than the kernel, which then goes round more than once. */
+/* Length of the white noise. A closed sequence may be shorter than the kernel, which then goes
+ * round more than once. */
 static size_t white_count(const sequence *q) {
   return q->closed ? q->count : q->count + 2 * (size_t)q->half;
 }
@@ -55,7 +56,7 @@ static double white_at(const sequence *q, size_t i, int k) {
   return (double)q->white[at < 0 ? at + count : at];
 }
 
-/* Factor that gives the smoothed sequence its variance: of the edge before the smoothing 1. */
+/* Factor that gives the smoothed sequence its variance: 1 for the edge before the smoothing. */
 static double gaussian_scale(const sequence *q) {
   double squares = 0;
   if (!q->closed) {
@@ -74,7 +75,7 @@ static double gaussian_scale(const sequence *q) {
 }
 
 /* Turns white noise of variance 1 into an autoregression of first order: exactly exp(-d/L) at the
- * steps. What is closed goes on where it ends. */
+ * steps. A closed sequence continues at its begin. */
 static void make_exponential(sequence *q) {
   size_t count = white_count(q);
   double rho = exp(-q->step_mm / q->length_mm), fresh = sqrt(1 - rho * rho);
@@ -83,7 +84,7 @@ static void make_exponential(sequence *q) {
     double round = 0, lap = exp(-q->step_mm * (double)count / q->length_mm);
     for (size_t i = 0; i < count; i++)
       round = rho * round + fresh * (double)q->white[i];
-    /* Round for ever has the variance (1 + lap) / (1 - lap). */
+    /* An endless repetition has the variance (1 + lap) / (1 - lap). */
     double scale = sqrt((1 - lap) / (1 + lap));
     fresh *= scale;
     at = scale * round / (1 - lap);
@@ -116,7 +117,7 @@ static void draw_sequence(fg_random *random, sequence *q, double sd, float *out)
   }
 }
 
-static sequence describe(const fg_render_spec *spec, bool closed) {
+static sequence describe_sequence(const fg_render_spec *spec, bool closed) {
   sequence q = {.length_mm = 1e-3 * spec->scanner.edge_correlation_um,
                 .smooth_mm = SAMPLED_PX * fmax(spec->sensor.pixel_mm[0], spec->sensor.pixel_mm[1]),
                 .exponential = spec->scanner.edge_exponential,
@@ -126,13 +127,13 @@ static sequence describe(const fg_render_spec *spec, bool closed) {
   return q;
 }
 
-static fg_status prepare(fg_context *ctx, sequence *q) {
+static fg_status prepare_sequence(fg_context *ctx, sequence *q) {
   FG_TRY(make_kernel(ctx, q));
   return fg_memory_allocate(ctx, white_count(q), sizeof *q->white, (void **)&q->white);
 }
 
-/* Drawn behind the edges, so that those stay what they are. `q` is the edges', whose kernel and
- * noise serve here too: a strip is thinner than it is long. */
+/* Draws the cuts' roughness after that of the edges, which so does not change. `q` is the edges',
+ * whose kernel and noise buffers serve here too: a strip is thinner than it is long. */
 static fg_status build_cuts(fg_context *ctx, fg_random *random, sequence q,
                             const fg_scanner *scanner, fg_drawn_foil *drawn) {
   double sd = 1e-3 * hypot(scanner->edge_roughness_um, scanner->edge_common_um);
@@ -160,11 +161,11 @@ fg_status fg_roughness_build(fg_context *ctx, const fg_render_spec *spec, size_t
   fg_status status = FG_OK;
   fg_random random;
   fg_random_seed(&random, spec->seed, FG_STREAM_ROUGHNESS, foil);
-  sequence q = describe(spec, false);
+  sequence q = describe_sequence(spec, false);
   q.count = (size_t)(drawn->length_mm / q.step_mm) + 4;
   drawn->roughness_step_mm = q.step_mm;
   drawn->roughness_count = q.count;
-  FG_TRY_EXIT(prepare(ctx, &q));
+  FG_TRY_EXIT(prepare_sequence(ctx, &q));
   FG_TRY_EXIT(fg_memory_allocate(ctx, q.count, sizeof *common, (void **)&common));
   draw_sequence(&random, &q, 1e-3 * scanner->edge_common_um, common);
   for (int edge = 0; edge < (drawn->sheet ? 1 : 2); edge++) {
@@ -189,11 +190,11 @@ fg_status fg_roughness_build_disc(fg_context *ctx, const fg_render_spec *spec, s
   fg_status status = FG_OK;
   fg_random random;
   fg_random_seed(&random, spec->seed, FG_STREAM_ROUGHNESS, FG_RENDER_FOILS_MAX + disc);
-  sequence q = describe(spec, true);
+  sequence q = describe_sequence(spec, true);
   double round_mm = 2 * pi * shape->radius;
   q.count = (size_t)fmax(MIN_COUNT, ceil(round_mm / q.step_mm));
   q.step_mm = round_mm / (double)q.count;
-  FG_TRY_EXIT(prepare(ctx, &q));
+  FG_TRY_EXIT(prepare_sequence(ctx, &q));
   FG_TRY_EXIT(fg_memory_allocate(ctx, q.count + 4, sizeof(float), (void **)&shape->roughness));
   draw_sequence(&random, &q, sd, shape->roughness + 1);
   shape->roughness[0] = shape->roughness[q.count];

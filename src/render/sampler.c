@@ -4,7 +4,7 @@
 #include <math.h>
 
 static const double phi_limit = 5;  /* 1 - Phi(5) = 3e-7 */
-static const double band_reach = 6; /* decay lengths */
+static const double band_reach = 6; /* in decay lengths */
 static const double pi = 3.14159265358979323846;
 
 static fg_side_band make_band(double amplitude, double direction_deg, double length_mm,
@@ -17,7 +17,8 @@ static fg_side_band make_band(double amplitude, double direction_deg, double len
                         .gap_mm = gap_mm};
 }
 
-/* A shadow's amplitude is light, which less coverage is where the scan is dark on light. */
+/* Adds the bands. A shadow's amplitude is light, which is negative coverage where the scan is dark
+ * on light. */
 static void add_bands(fg_sampler *sampler) {
   const fg_scanner *scanner = &sampler->spec->scanner;
   const fg_shadow *shadow = &scanner->shadow;
@@ -69,7 +70,7 @@ void fg_sampler_init(const fg_render_spec *spec, fg_sampler *sampler) {
   }
 }
 
-void fg_sampler_take_line(fg_sampler *sampler, int line) {
+void fg_sampler_use_line(fg_sampler *sampler, int line) {
   const fg_colour_line *from = &sampler->spec->scanner.colour.line[line];
   sampler->has_line = true;
   for (int axis = 0; axis < 2; axis++)
@@ -90,11 +91,11 @@ static double phi(const fg_sampler *sampler, double u) {
   return low + (place - i) * (high - low);
 }
 
-/* The cross-section that a place belongs to. */
+/* The cross-section of a place. */
 typedef struct cross_section {
   const fg_segment *segment;
   double n;      /* distance from the midline, towards the inner side */
-  double nx, ny; /* that direction */
+  double nx, ny; /* direction of n */
   double dx, dy; /* from the segment's centre or start */
   double bend;   /* side / r: curvature of the line of equal distance here */
 } cross_section;
@@ -122,7 +123,7 @@ static void try_segment(const fg_segment *segment, double x, double y, cross_sec
   *best = (cross_section){segment, n, dx * scale, dy * scale, dx, dy, scale};
 }
 
-/* What a Gaussian of sd s does to an edge of curvature k: its profile moves by k s² / 2 towards the
+/* Shift of an edge of curvature k by a Gaussian of sd s: its profile moves by k s² / 2 towards the
  * centre of curvature (diffusion moves a level line with half its curvature). */
 static double bend_shift(double bend, double sd) {
   double shift = 0.5 * bend * sd * sd;
@@ -130,7 +131,7 @@ static double bend_shift(double bend, double sd) {
 }
 
 /* Arc length from the segment's start. */
-static double along(const cross_section *at) {
+static double arc_length_of(const cross_section *at) {
   const fg_segment *segment = at->segment;
   if (segment->line) return at->dx * segment->ax + at->dy * segment->ay;
   double turned = atan2(segment->mx * at->dy - segment->my * at->dx,
@@ -138,23 +139,24 @@ static double along(const cross_section *at) {
   return segment->length_mm * (0.5 + turned / segment->sweep);
 }
 
-static double roughness(const fg_drawn_foil *drawn, int edge, double s_mm) {
+static double roughness_of(const fg_drawn_foil *drawn, int edge, double s_mm) {
   double place = s_mm / drawn->roughness_step_mm + 1;
   double last = (double)drawn->roughness_count - 3;
   place = place < 1 ? 1 : place > last ? last : place;
   return fg_roughness_at(drawn->roughness[edge], place);
 }
 
-/* A disc's values have one before the first and three behind the last, of the circle that closes.
- */
+/* Roughness of a disc. Its values have one before the first and three after the last, of the circle
+ * that closes. */
 static double disc_roughness(const fg_shape *shape, double dx, double dy) {
   double turn = atan2(dy, dx) / (2 * pi);
   return fg_roughness_at(shape->roughness,
                          1 + (turn - floor(turn)) * (double)shape->roughness_count);
 }
 
-/* Bright-to-dark edges, along the carriage's way, are blurred more. (mx, my) points
- * out of the bright-or-dark thing; `bright` is +1 when the thing is brighter than around it. */
+/* Blur of an edge: bright-to-dark edges, along the carriage's direction, are blurred more. (mx, my)
+ * points out of the bright or dark thing; `bright` is +1 when the thing is brighter than its
+ * surroundings. */
 static double edge_sd(const fg_sampler *sampler, double sd, double my, double bright) {
   my *= sampler->spec->scanner.one_sided_way;
   if (sampler->one_sided_mm <= 0 || my * bright <= 0) return sd;
@@ -170,7 +172,7 @@ static double band_share(const fg_side_band *band, double nx, double ny) {
   return turn < band->width_rad ? 0.5 * (1 + cos(pi * turn / band->width_rad)) : 0;
 }
 
-/* At a distance from an edge that faces (nx, ny). */
+/* Value of a band at a distance from an edge that faces (nx, ny). */
 static double band_value(const fg_side_band *band, double nx, double ny, double distance) {
   double share = band_share(band, nx, ny);
   if (share <= 0) return 0;
@@ -181,7 +183,7 @@ static double band_value(const fg_side_band *band, double nx, double ny, double 
   return strength * exp(-0.5 * u * u);
 }
 
-/* Sum of the bands beside a strip, on the side that the place is on. */
+/* Sum of the bands beside a strip, on the side of the place. */
 static double side_bands(const fg_sampler *sampler, const cross_section *at, double inner,
                          double outer) {
   bool inside = at->n > 0.5 * (inner + outer);
@@ -206,20 +208,20 @@ static double half_thickness(const fg_sampler *sampler, const fg_drawn_foil *dra
   return drawn->half_thickness_mm + shape_at(sampler, drawn, at, FG_RENDER_EFFECT_WIDTH);
 }
 
-/* Beyond the reach of the edges there is a band or nothing. */
+/* Value beyond the reach of the edges: a band or 0. */
 static double far_value(const fg_sampler *sampler, const fg_drawn_foil *drawn,
                         const cross_section *at, double sd) {
   const fg_segment *segment = at->segment;
   if (!sampler->band_count) return 0;
   double half = half_thickness(sampler, drawn, at), value = side_bands(sampler, at, half, -half);
   if (value == 0 || !(segment->open_start || segment->open_end)) return value;
-  double t = along(at);
+  double t = arc_length_of(at);
   if (segment->open_start) value *= phi(sampler, t / sd);
   if (segment->open_end) value *= phi(sampler, (segment->length_mm - t) / sd);
   return value;
 }
 
-/* How far an arc's cut lies outwards of its place, where a line at n crosses it. */
+/* Outward shift of an arc's cut at the crossing of a line at n. */
 static double cut_shift(const fg_drawn_foil *drawn, int end, double n) {
   if (!drawn->cut[end]) return 0;
   double place = (n + drawn->half_thickness_mm) / drawn->roughness_step_mm + 1;
@@ -234,7 +236,7 @@ static double strip_value(const fg_sampler *sampler, const fg_drawn_foil *drawn,
   double t = 0;
   bool ends = segment->open_start || segment->open_end;
   bool bump = sampler->has_bump && (segment->bump || segment->joins);
-  if (ends || drawn->roughness[0] || bump) t = along(at);
+  if (ends || drawn->roughness[0] || bump) t = arc_length_of(at);
   if (bump) {
     double shift = fg_segment_bump_shift(&sampler->spec->effects, segment, t);
     inner += shift;
@@ -252,8 +254,8 @@ static double strip_value(const fg_sampler *sampler, const fg_drawn_foil *drawn,
     outer += shift[1];
   }
   if (drawn->roughness[0]) {
-    inner += roughness(drawn, 0, segment->s_mm + t);
-    outer += roughness(drawn, 1, segment->s_mm + t);
+    inner += roughness_of(drawn, 0, segment->s_mm + t);
+    outer += roughness_of(drawn, 1, segment->s_mm + t);
   }
   double bright = sampler->spec->scanner.contrast > 0 ? 1 : -1;
   double inner_sd = edge_sd(sampler, sd, at->ny, bright);
@@ -274,16 +276,17 @@ bool fg_sheet_inside(const fg_scene *scene, const fg_drawn_foil *drawn, double x
   return best.segment && best.n > 0;
 }
 
-/* How far the scatter and the effects move a sheet's edge outwards. */
+/* Outward shift of a sheet's edge by scatter and effects. */
 static double sheet_shift(const fg_sampler *sampler, const fg_drawn_foil *drawn,
                           const cross_section *at) {
   double shift[2] = {0};
   if (sampler->has_edge) fg_render_effects_edges(&sampler->spec->effects, -at->nx, -at->ny, shift);
-  if (drawn->roughness[0]) shift[0] += roughness(drawn, 0, at->segment->s_mm + along(at));
+  if (drawn->roughness[0])
+    shift[0] += roughness_of(drawn, 0, at->segment->s_mm + arc_length_of(at));
   return shift[0];
 }
 
-/* The strongest of the bands beside edges that face this place: a band goes on where another edge
+/* The strongest of the bands beside edges that face this place: a band continues where another edge
  * is nearer. */
 static double sheet_bands(const fg_sampler *sampler, const size_t *ids, size_t count, double x,
                           double y) {
@@ -340,8 +343,8 @@ static double foil_value(const fg_sampler *sampler, const size_t *ids, size_t co
   return strip_value(sampler, drawn, &best, sd);
 }
 
-/* Bands beside a disc's edge, or within a hole; `out` is the way from its centre, `edge` the
- * distance from its edge, `cover` what it covers here. */
+/* Bands beside a disc's edge, or within a hole; `out` is the vector from its centre, `edge` the
+ * distance from its edge, `cover` its coverage here. */
 static double disc_bands(const fg_sampler *sampler, const fg_shape *shape, const double out[2],
                          double edge, double cover, double value) {
   bool hole = shape->value < 0.5;
@@ -370,7 +373,7 @@ static double shape_value(const fg_sampler *sampler, const fg_shape *shape, doub
   if (shape->roughness && fabs(edge) < sampler->edge_reach_mm + phi_limit * sd)
     edge -= disc_roughness(shape, dx, dy);
   if (!shape->adds && r > 0 && sampler->has_edge) {
-    /* A hole's edge looks inwards: its normal, and what moves it, turn round. */
+    /* A hole's edge faces inwards: its normal and its shift are reversed. */
     double out = shape->value > 0.5 ? 1 : -1, shift[2];
     fg_render_effects_edges(&sampler->spec->effects, out * dx / r, out * dy / r, shift);
     edge -= out * shift[0];

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Foils and discs put in their places, the size of the picture, litter, truth. */
+/* Foils and discs at their places, the size of the picture, litter, truth. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -42,18 +42,19 @@ double fg_foil_psi(const fg_drawn_foil *drawn, double x_mm, double y_mm) {
 }
 
 /* From the foil's own coordinates (middle along x) to the true ones. */
-static fg_point turn(const fg_drawn_foil *drawn, double x, double y) {
+static fg_point turn_point(const fg_drawn_foil *drawn, double x, double y) {
   double c = cos(drawn->axis_rad), s = sin(drawn->axis_rad);
   y *= drawn->mirror;
   return (fg_point){c * x - s * y, s * x + c * y};
 }
 
 static void turn_segment(const fg_drawn_foil *drawn, fg_segment *segment) {
-  fg_point at = turn(drawn, segment->x, segment->y);
+  fg_point at = turn_point(drawn, segment->x, segment->y);
   segment->x = at.x;
   segment->y = at.y;
   if (segment->line) {
-    fg_point a = turn(drawn, segment->ax, segment->ay), b = turn(drawn, segment->bx, segment->by);
+    fg_point a = turn_point(drawn, segment->ax, segment->ay),
+             b = turn_point(drawn, segment->bx, segment->by);
     segment->ax = a.x;
     segment->ay = a.y;
     segment->bx = b.x;
@@ -118,7 +119,7 @@ static void place_automatically(fg_render_spec *spec, fg_drawn_foil *drawn, cons
   if (at->x_px > margin && at->x_px + width + margin > limit) {
     *at = (shelf){margin, at->y_px + at->height_px + margin, 0};
   }
-  /* Somewhere within a pixel: no foil sits on the grid by rule. */
+  /* a random part of a pixel, so that no foil lies on the grid */
   fg_random random;
   fg_random_seed(&random, spec->seed, FG_STREAM_PLACE, foil);
   double dx = fg_random_uniform(&random), dy = fg_random_uniform(&random);
@@ -134,7 +135,7 @@ static void finish_foil_truth(const fg_render_spec *spec, const fg_drawn_foil *d
   foil->overall_centre_px = (fg_point){drawn->x / spec->pixel_mm[0], drawn->y / spec->pixel_mm[1]};
   fg_render_bump *bumps = (fg_render_bump *)foil->bumps;
   for (size_t i = 0; i < foil->bump_count; i++) {
-    fg_point c = turn(drawn, bumps[i].centre_px.x, bumps[i].centre_px.y);
+    fg_point c = turn_point(drawn, bumps[i].centre_px.x, bumps[i].centre_px.y);
     bumps[i].centre_px =
         (fg_point){(drawn->x + c.x) / spec->pixel_mm[0], (drawn->y + c.y) / spec->pixel_mm[1]};
   }
@@ -142,7 +143,7 @@ static void finish_foil_truth(const fg_render_spec *spec, const fg_drawn_foil *d
   for (size_t i = 0; i < foil->beam_count; i++) {
     fg_point *const ends[] = {&beams[i].root_px, &beams[i].tip_px};
     for (int k = 0; k < 2; k++) {
-      fg_point p = turn(drawn, ends[k]->x, ends[k]->y);
+      fg_point p = turn_point(drawn, ends[k]->x, ends[k]->y);
       *ends[k] =
           (fg_point){(drawn->x + p.x) / spec->pixel_mm[0], (drawn->y + p.y) / spec->pixel_mm[1]};
     }
@@ -250,7 +251,7 @@ int fg_scene_max_bumps(const fg_render_spec *spec) {
   return max;
 }
 
-/* A bump that is raised by its number is there on some foil. */
+/* Checks that every bump raised by its number exists on some foil. */
 static fg_status check_lifts(const fg_place *place, const fg_render_spec *spec) {
   int max = fg_scene_max_bumps(spec);
   for (size_t i = 0; i < spec->effects.count; i++)
@@ -261,7 +262,7 @@ static fg_status check_lifts(const fg_place *place, const fg_render_spec *spec) 
   return FG_OK;
 }
 
-/* What moves a midline has nothing to move on a flat sheet. */
+/* Refuses effects on a midline for a flat sheet, which has none. */
 static fg_status check_sheets(const fg_place *place, const fg_render_spec *spec) {
   bool sheets = false;
   for (size_t i = 0; i < spec->request_count; i++)

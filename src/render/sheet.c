@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A flat sheet with beams: its outlines as lines and arcs, the material to the left of their way in
- * the sheet's own coordinates. */
+/* A flat sheet with beams: its outlines as lines and arcs, the material to their left in the
+ * sheet's own coordinates. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -10,11 +10,11 @@
 
 static const double pi = 3.14159265358979323846;
 
-/* The ends of slits are round: two corners of nearly half the kerf, so that a rest of the line
- * between them stays, whatever rounding does. */
+/* Radius of the round ends of slits: two corners of nearly half the kerf, so that a piece of the
+ * line between them remains in spite of rounding. */
 static const double ROUND_END = 0.5 * (1 - 1e-9);
 
-/* Across a torn end, in widths of the beam: places of its teeth, and how far they stand out. */
+/* Teeth across a torn end, in widths of the beam: places and heights. */
 enum { TEETH = 4 };
 static const double TOOTH_AT[TEETH] = {-0.5, -0.2, 0.15, 0.5};
 static const double TOOTH_OUT[TEETH] = {0.07, -0.1, 0.08, -0.06};
@@ -45,25 +45,26 @@ typedef struct sheet {
   double s_mm;
 } sheet;
 
-static void add(outline *o, double x, double y, double radius) {
+static void add_corner(outline *o, double x, double y, double radius) {
   o->corners[o->count++] = (corner){x, y, radius};
 }
 
-static const corner *at(const outline *o, size_t i) {
+static const corner *corner_at(const outline *o, size_t i) {
   return &o->corners[i % o->count];
 }
 
 static double signed_area(const outline *o) {
   double sum = 0;
   for (size_t i = 0; i < o->count; i++) {
-    const corner *a = at(o, i), *b = at(o, i + 1);
+    const corner *a = corner_at(o, i), *b = corner_at(o, i + 1);
     sum += 0.5 * (a->x * b->y - b->x * a->y);
   }
   return sum;
 }
 
-/* Material lies to the left: outside goes round against the clock, a hole with it. */
-static void orient(outline *o, bool hole) {
+/* Orients an outline, with the material to its left: an outer one counterclockwise, a hole
+ * clockwise. */
+static void orient_outline(outline *o, bool hole) {
   if ((signed_area(o) > 0) != hole) return;
   for (size_t i = 0; i < o->count / 2; i++) {
     corner kept = o->corners[i];
@@ -72,34 +73,33 @@ static void orient(outline *o, bool hole) {
   }
 }
 
-/* A line's way from a corner to the next. */
-typedef struct way {
+/* The line from a corner to the next. */
+typedef struct leg {
   double x, y, length;
-} way;
+} leg;
 
-static way way_from(const outline *o, size_t i) {
-  const corner *a = at(o, i), *b = at(o, i + 1);
+static leg leg_from(const outline *o, size_t i) {
+  const corner *a = corner_at(o, i), *b = corner_at(o, i + 1);
   double dx = b->x - a->x, dy = b->y - a->y, length = hypot(dx, dy);
-  return (way){dx / length, dy / length, length};
+  return (leg){dx / length, dy / length, length};
 }
 
-static double turn_at(const way *in, const way *out) {
+static double turn_at(const leg *in, const leg *out) {
   return atan2(in->x * out->y - in->y * out->x, in->x * out->x + in->y * out->y);
 }
 
-/* What the rounding takes of the lines at a corner. */
+/* Length of the lines that the rounding of a corner replaces. */
 static double cut_at(const outline *o, size_t i) {
-  way in = way_from(o, i + o->count - 1), out = way_from(o, i);
-  return at(o, i)->radius * tan(0.5 * fabs(turn_at(&in, &out)));
+  leg in = leg_from(o, i + o->count - 1), out = leg_from(o, i);
+  return corner_at(o, i)->radius * tan(0.5 * fabs(turn_at(&in, &out)));
 }
 
 static fg_status append_corner(sheet *s, const outline *o, size_t i) {
-  const corner *c = at(o, i);
-  way in = way_from(o, i + o->count - 1), out = way_from(o, i);
+  const corner *c = corner_at(o, i);
+  leg in = leg_from(o, i + o->count - 1), out = leg_from(o, i);
   double turn = turn_at(&in, &out), cut = cut_at(o, i), left = turn > 0 ? 1 : -1;
   if (fabs(turn) < 1e-9) return FG_OK;
-  /* The centre lies to the side that the way turns to; a turn to the left has the material there.
-   */
+  /* The centre lies on the side of the turn; a turn to the left has the material there. */
   double x = c->x - cut * in.x - left * c->radius * in.y;
   double y = c->y - cut * in.y + left * c->radius * in.x;
   return fg_scene_append(s->place->ctx, s->scene, s->foil, &s->s_mm,
@@ -113,15 +113,15 @@ static fg_status append_corner(sheet *s, const outline *o, size_t i) {
 }
 
 static fg_status append_line(sheet *s, const outline *o, size_t i) {
-  const corner *from = at(o, i);
-  way w = way_from(o, i);
+  const corner *from = corner_at(o, i);
+  leg w = leg_from(o, i);
   double cut = cut_at(o, i), length = w.length - cut - cut_at(o, i + 1);
   if (length < -1e-9 || !isfinite(length))
     return fg_fail(s->place->ctx, FG_ERR_DATA,
                    "%s: %s: no room is left for the corners between (%.4g, %.4g) and (%.4g, %.4g) "
                    "mm: take smaller corner_radius_mm or root_radius_mm, or a wider pitch_mm",
-                   s->place->path, s->place->member, from->x, from->y, at(o, i + 1)->x,
-                   at(o, i + 1)->y);
+                   s->place->path, s->place->member, from->x, from->y, corner_at(o, i + 1)->x,
+                   corner_at(o, i + 1)->y);
   if (length <= 0) return FG_OK;
   return fg_scene_append(s->place->ctx, s->scene, s->foil, &s->s_mm,
                          (fg_segment){.line = true,
@@ -136,7 +136,7 @@ static fg_status append_line(sheet *s, const outline *o, size_t i) {
 }
 
 static fg_status append_outline(sheet *s, outline *o, bool hole) {
-  orient(o, hole);
+  orient_outline(o, hole);
   for (size_t i = 0; i < o->count; i++) {
     FG_TRY(append_corner(s, o, i));
     FG_TRY(append_line(s, o, i));
@@ -144,18 +144,18 @@ static fg_status append_outline(sheet *s, outline *o, bool hole) {
   return FG_OK;
 }
 
-/* A place of a beam: along its middle line from the root, and across. */
+/* Adds a point of a beam: along its middle line from the root, and across. */
 static void add_on_beam(outline *o, const beam_plan *beam, double along, double across,
                         double radius) {
   double c = cos(beam->angle_rad), s = sin(beam->angle_rad);
-  add(o, along * c - across * s, beam->root_y + along * s + across * c, radius);
+  add_corner(o, along * c - across * s, beam->root_y + along * s + across * c, radius);
 }
 
 static double half_width(const beam_plan *beam, double along) {
   return beam->half_root + (beam->half_tip - beam->half_root) * along / beam->length;
 }
 
-/* Where the beam's edge on one side (-1, 1) leaves the line of the roots, x = 0. */
+/* Place where the beam's edge on one side (-1, 1) leaves the line of the roots, x = 0. */
 static double root_along(const beam_plan *beam, double side) {
   double c = cos(beam->angle_rad), s = sin(beam->angle_rad);
   double slope = (beam->half_tip - beam->half_root) / beam->length;
@@ -181,7 +181,8 @@ static fg_status fail_beam(const sheet *s, int beam, const char *what) {
                  beam, what);
 }
 
-/* Its deviations are drawn of missing beams too: taking one out leaves the others as they were. */
+/* Plans the beams. Deviations are drawn for missing beams too, so that removing one does not change
+ * the others. */
 static fg_status plan_beams(const sheet *s, const fg_render_spec *spec, beam_plan *plans) {
   const fg_render_design *design = &s->request->design;
   const fg_beams_request *beams = &s->request->beams;
@@ -205,7 +206,7 @@ static fg_status plan_beams(const sheet *s, const fg_render_spec *spec, beam_pla
   return FG_OK;
 }
 
-/* How far a beam reaches to one side of its row, at its root or its free end. */
+/* Reach of a beam to one side of its row, at its root or its free end. */
 static double reach_y(const beam_plan *beam, double side, bool tip) {
   if (!tip) return beam->root_y + side * beam->half_root;
   return beam->root_y + beam->length * sin(beam->angle_rad) +
@@ -242,28 +243,28 @@ static fg_status build_comb(sheet *s, const beam_plan *plans) {
   double half = half_row(s) + beams->shoulder_mm, corner_radius = beams->corner_radius_mm;
   outline *o = NULL;
   FG_TRY(fg_memory_allocate(s->place->ctx, 1, sizeof *o, (void **)&o));
-  add(o, -beams->base_mm, -half, corner_radius);
-  add(o, 0, -half, corner_radius);
+  add_corner(o, -beams->base_mm, -half, corner_radius);
+  add_corner(o, 0, -half, corner_radius);
   for (int i = 0; i < s->request->design.beam_count; i++)
     if (!beams->missing[i]) add_beam(o, &plans[i], beams->root_radius_mm, corner_radius);
-  add(o, 0, half, corner_radius);
-  add(o, -beams->base_mm, half, corner_radius);
+  add_corner(o, 0, half, corner_radius);
+  add_corner(o, -beams->base_mm, half, corner_radius);
   fg_status status = append_outline(s, o, false);
   free(o);
   return status;
 }
 
-/* The slit goes around the beam as it was cut: before it was torn or bent. */
+/* Appends a slit, which goes around the beam as it was cut: before it was torn or bent. */
 static fg_status append_slit(sheet *s, outline *o, const beam_plan *beam, double whole_mm) {
   const fg_beams_request *beams = &s->request->beams;
   double kerf = beams->kerf_mm, end = ROUND_END * kerf, y = beam->root_y;
   double grown = beams->corner_radius_mm + kerf, out = whole_mm + kerf;
   o->count = 0;
   add_beam(o, beam, end, beams->corner_radius_mm);
-  add(o, 0, y + beam->half_root + kerf, end);
-  add(o, out, y + beam->half_tip + kerf, grown);
-  add(o, out, y - beam->half_tip - kerf, grown);
-  add(o, 0, y - beam->half_root - kerf, end);
+  add_corner(o, 0, y + beam->half_root + kerf, end);
+  add_corner(o, out, y + beam->half_tip + kerf, grown);
+  add_corner(o, out, y - beam->half_tip - kerf, grown);
+  add_corner(o, 0, y - beam->half_root - kerf, end);
   return append_outline(s, o, true);
 }
 
@@ -275,10 +276,10 @@ static fg_status build_slits(sheet *s, const beam_plan *plans) {
   fg_status status = FG_OK;
   outline *o = NULL;
   FG_TRY(fg_memory_allocate(s->place->ctx, 1, sizeof *o, (void **)&o));
-  add(o, -beams->base_mm, -half, corner_radius);
-  add(o, far, -half, corner_radius);
-  add(o, far, half, corner_radius);
-  add(o, -beams->base_mm, half, corner_radius);
+  add_corner(o, -beams->base_mm, -half, corner_radius);
+  add_corner(o, far, -half, corner_radius);
+  add_corner(o, far, half, corner_radius);
+  add_corner(o, -beams->base_mm, half, corner_radius);
   FG_TRY_EXIT(append_outline(s, o, false));
   for (int i = 0; i < design->beam_count; i++)
     if (!beams->missing[i])

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a spec asks for, as read; and the scene that is made of it. */
+/* A spec as read, and the scene that is made of it. */
 #ifndef FG_RENDER_SPEC_H
 #define FG_RENDER_SPEC_H
 
@@ -17,17 +17,17 @@ enum { FG_RENDER_BUMPS_MAX = 64, FG_RENDER_FOILS_MAX = 4096 };
 
 /* Design members that the renderer needs (the same names as in a design file). */
 typedef struct fg_render_design {
-  bool arc;        /* form "arc": a plain strip, bump_count 0 */
-  bool cantilever; /* form "cantilever": a flat sheet with beams, bump_count 0 */
+  bool arc;        /* kind "arc": a plain strip, bump_count 0 */
+  bool cantilever; /* kind "cantilever": a flat sheet with beams, bump_count 0 */
   int bump_count;
   double bump_radius_mm, bump_angle_deg, overall_radius_mm, sleeve_radius_mm, pitch_deg;
   double fillet_radius_mm, thickness_mm, rotor_diameter_mm;
   double subtended_angle_deg; /* of an arc */
-  int beam_count;             /* of a cantilever, as what follows */
+  int beam_count;             /* of a cantilever, as the following members */
   double beam_length_mm, beam_width_mm, sagitta_mm, clearance_mm; /* NaN: not stated */
 } fg_render_design;
 
-/* Mean and standard deviation over the beams of what their length or width deviates by. */
+/* Mean and standard deviation of the deviation of length or width over the beams. */
 typedef struct fg_beam_scatter {
   double mean_um, sd_um;
 } fg_beam_scatter;
@@ -37,10 +37,11 @@ typedef struct fg_beams_request {
   bool slits; /* cut free inside a sheet by U-shaped slits; else a comb */
   double pitch_mm, base_mm, shoulder_mm, kerf_mm, corner_radius_mm, root_radius_mm;
   fg_beam_scatter length, width;
-  double length_um[FG_RENDER_BUMPS_MAX], width_um[FG_RENDER_BUMPS_MAX]; /* deviations, as well */
-  double taper_um[FG_RENDER_BUMPS_MAX];                                 /* root less free end */
+  double length_um[FG_RENDER_BUMPS_MAX],
+      width_um[FG_RENDER_BUMPS_MAX];    /* deviations, added to the scattered ones */
+  double taper_um[FG_RENDER_BUMPS_MAX]; /* root less free end */
   bool missing[FG_RENDER_BUMPS_MAX];
-  double torn[FG_RENDER_BUMPS_MAX]; /* share of the length that is left; 1: whole */
+  double torn[FG_RENDER_BUMPS_MAX]; /* remaining share of the length; 1: whole */
   double bent_deg[FG_RENDER_BUMPS_MAX];
 } fg_beams_request;
 
@@ -75,13 +76,13 @@ typedef struct fg_disc_request {
   double lobe_um, lobe_phase_deg; /* r = radius + lobe cos(lobes (phi - phase)) */
 } fg_disc_request;
 
-/* Things that lie on the glass, drawn at random places. Contrast in DN, either sign. */
+/* Objects on the glass, drawn at random places. Contrast in DN, either sign. */
 typedef struct fg_litter {
   int count;
   double radius_px, length_px, contrast;
 } fg_litter;
 
-/* The light from one side: a band beside edges whose normal lies in a sector of directions. */
+/* Light from one side: a band beside edges whose normal lies in a sector of directions. */
 typedef struct fg_shadow {
   double amplitude; /* of the contrast; negative: darker. 0: none */
   double direction_deg, width_deg;
@@ -102,7 +103,7 @@ typedef struct fg_scanner {
   double one_sided_blur_px;
   int one_sided_way; /* +1: the carriage went along rising rows, -1: against them */
   double edge_roughness_um, edge_common_um, edge_correlation_um;
-  bool edge_exponential; /* the scatter's autocorrelation; else Gaussian */
+  bool edge_exponential; /* autocorrelation of the roughness: exponential; else Gaussian */
   double halo_fraction, halo_length_px;
   double wall_amplitude, wall_direction_deg, wall_length_px, wall_gap_px;
   fg_shadow shadow;
@@ -116,16 +117,16 @@ typedef struct fg_scanner {
 typedef struct fg_segment {
   bool line;
   bool open_start, open_end; /* the strip ends here */
-  double x, y;               /* the arc's centre, or where the line starts */
+  double x, y;               /* the arc's centre, or the begin of the line */
   double radius;
-  double angle, sweep;    /* of the arc: where it starts, and how far it turns; signed */
+  double angle, sweep;    /* of the arc: its first angle and its signed turn */
   double ax, ay, bx, by;  /* arc: unit vectors from the centre to start and end;
                              line: unit tangent and unit normal towards the inner side */
   double mx, my;          /* arc: unit vector from the centre to the middle */
   double side;            /* +1: the inner side (towards the bearing) is outside the arc */
-  double s_mm, length_mm; /* of the start, and along it */
+  double s_mm, length_mm; /* of the start; length along it */
   int bump;               /* from 1; 0 for others */
-  int joins;              /* a fillet: -1 it ends, 1 it starts where the bump has u = -1, 1 */
+  int joins;              /* a fillet: -1 it ends, 1 it starts at the end u = -1, 1 of the bump */
   double bump_mm;         /* a fillet: length of that bump's arc */
   size_t foil;
 } fg_segment;
@@ -137,16 +138,16 @@ typedef struct fg_drawn_foil {
   float *roughness[2]; /* inner and outer edge, shift to the inner side in mm; NULL: none */
   size_t roughness_count;
   double roughness_step_mm;
-  bool rough_cuts; /* of an arc the ends are as rough as its edges */
+  bool rough_cuts; /* the ends of an arc are as rough as its edges */
   float *cut[2];   /* at its start and end, across, outwards, mm; NULL: none */
   size_t cut_count;
-  bool sheet; /* no strip: its segments are the outlines of a flat part, its thickness 0 */
+  bool sheet; /* no strip: its segments are the outlines of a flat part, its thickness is 0 */
 } fg_drawn_foil;
 
 /* Discs, dust and scratches: a capsule, or a circle with lobes. */
 typedef struct fg_shape {
   double x0, y0, x1, y1, radius; /* mm, true coordinates */
-  double value;                  /* what it sets coverage to, or adds to it */
+  double value;                  /* coverage inside it, or the addition to it */
   bool adds;
   int lobes;
   double lobe_mm, lobe_phase_rad;
@@ -166,7 +167,7 @@ typedef struct fg_scene {
   size_t disc_count;
 } fg_scene;
 
-/* The grid that the sensor reads; the finished picture's own, unless the driver resamples. */
+/* Grid of the sensor; the finished picture's own, unless the driver resamples. */
 typedef struct fg_sensor_grid {
   double pixel_mm[2];
   int64_t width_px, height_px;
@@ -187,7 +188,8 @@ struct fg_render_spec {
   fg_render_truth truth;
 };
 
-/* Streams of random numbers: one per purpose, so that a change in one leaves the others alone. */
+/* Streams of random numbers: one per purpose, so that a change in one does not change the others.
+ */
 typedef enum fg_random_stream {
   FG_STREAM_SPRINGBACK = 1,
   FG_STREAM_PLACE,
@@ -198,11 +200,11 @@ typedef enum fg_random_stream {
   FG_STREAM_NOISE,
 } fg_random_stream;
 
-/* Turns the requests into segments, shapes, size and truth. */
+/* Makes segments, shapes, size and truth of the requests. */
 fg_status fg_scene_build(const fg_place *place, fg_render_spec *spec);
 void fg_scene_free(fg_scene *scene);
 
-int fg_scene_max_bumps(const fg_render_spec *spec); /* of a foil, as designed */
+int fg_scene_max_bumps(const fg_render_spec *spec); /* of any foil, as designed */
 
 /* Point at distance t along a segment. */
 fg_point fg_segment_point(const fg_segment *segment, double t_mm);
@@ -210,30 +212,30 @@ fg_point fg_segment_point(const fg_segment *segment, double t_mm);
 /* Direction of a place about O, from the foil's middle towards its free end. */
 double fg_foil_psi(const fg_drawn_foil *drawn, double x_mm, double y_mm);
 
-/* Shift of a bump's arc by its effects, towards the inner side, mm; on a fillet that joins it, what
- * fades the shift out. */
+/* Shift of a bump's arc by its effects, towards the inner side, mm; on a fillet that joins it, the
+ * shift's fading. */
 double fg_segment_bump_shift(const fg_render_effect_list *effects, const fg_segment *segment,
                              double t_mm);
 
 /* Appends the segments of one foil in its own coordinates (O at the origin, the middle along x,
- * bump numbers along rising angle), and fills its bumps (places in mm, the same) and what is drawn
- * of it. */
+ * bump numbers along rising angle). Fills its bumps (places in mm, in the same coordinates) and its
+ * drawing data. */
 fg_status fg_outline_build(const fg_place *place, const fg_render_spec *spec,
                            const fg_foil_request *request, fg_scene *scene, size_t foil);
 
-/* Appends a segment that begins where the ones before it have come to, *s_mm, which it moves on. */
+/* Appends a segment that begins at *s_mm, the end of the segments before it, and advances *s_mm. */
 fg_status fg_scene_append(fg_context *ctx, fg_scene *scene, size_t foil, double *s_mm,
                           fg_segment segment);
 
-/* The same of a cantilever: the outlines of the sheet in its own coordinates (the middle of the
- * roots at the origin, beams along x, their numbers along rising y). */
+/* Appends the outlines of a cantilever's sheet in its own coordinates (the middle of the roots at
+ * the origin, beams along x, their numbers along rising y). */
 fg_status fg_sheet_build(const fg_place *place, const fg_render_spec *spec,
                          const fg_foil_request *request, fg_scene *scene, size_t foil);
 
-/* X, theta and h of a bump as designed. */
+/* Returns X, theta and h of a bump as designed. */
 fg_render_bump fg_outline_nominal(const fg_render_design *design);
 
-/* The edges' random deviation of one foil, where the scanner asks for it. */
+/* Draws the random deviation of the edges of one foil, if the scanner has any. */
 fg_status fg_roughness_build(fg_context *ctx, const fg_render_spec *spec, size_t foil,
                              fg_drawn_foil *drawn);
 fg_status fg_roughness_build_disc(fg_context *ctx, const fg_render_spec *spec, size_t disc,

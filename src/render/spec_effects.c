@@ -7,7 +7,7 @@
 
 static const double pi = 3.14159265358979323846;
 
-/* Parameters arrive in the unit of their name: um are turned into mm here. */
+/* Parameters arrive in the unit of their name: um are converted to mm here. */
 
 static void scale_y(const double *p, double x, double y, double d[2]) {
   (void)x;
@@ -67,7 +67,7 @@ static double spiral(const double *p, double psi, double half_span) {
   return 1e-3 * p[0] * u * u * u;
 }
 
-/* Half of it to either edge, and half of that at either end of the foil. */
+/* Half of the taper to either edge, and half of that at either end of the foil. */
 static double thickness_taper(const double *p, double psi, double half_span) {
   return 1e-3 * p[0] * 0.25 * psi / half_span;
 }
@@ -79,7 +79,7 @@ static double bump_crown(const double *p, double u, double unused) {
   return 1e-3 * p[0] * v * v;
 }
 
-/* The same times u, scaled so that its largest value, at u = 1/sqrt(5), is the amplitude. */
+/* The crown times u, scaled so that its largest value, at u = 1/sqrt(5), is the amplitude. */
 static double bump_skew(const double *p, double u, double unused) {
   (void)unused;
   double v = 1 - u * u;
@@ -96,7 +96,7 @@ static double stretch(const double *p, double beyond_mm, double unused) {
   return 1 + p[0] + p[1] * beyond_mm;
 }
 
-/* Where a picture's place is looked for at its true position takes fields that change slowly. */
+/* The inverse of a field is sought at the true position: the field must change slowly. */
 static const fg_curve_axis along_mm = {"mm", -1000, 1000, 0, 100};
 static const fg_curve_axis unit_axis = {"u", -1, 1, 0, 0};
 static const fg_curve_axis direction = {"deg", 0, 360, 360, 0};

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Effects: what makes the picture or the part differ from the declared model. One row each.
+/* Effects: deviations of the picture or the part from the declared model. One row each.
  *
  * A scanner effect is a field: true position = nominal position + d(x, y), in mm. A part effect
  * moves the midline in the foil's coordinates, changes the strip's thickness, or changes the table
@@ -20,13 +20,12 @@ enum { FG_RENDER_EFFECT_PARAMETERS_MAX = 4, FG_RENDER_EFFECTS_MAX = 16 };
 
 typedef enum fg_render_effect_target {
   FG_RENDER_EFFECT_SCANNER, /* field(p, x_mm, y_mm, d) adds to d */
-  FG_RENDER_EFFECT_STEP,    /* the same, but a jump at p[1] of the row's axis: it comes after the
-                               optics, so it is sharp in the picture and not blurred */
+  FG_RENDER_EFFECT_STEP, /* field(...) as for the scanner, but a jump at p[1] of the row's axis: it
+                            comes after the optics, so it is sharp in the picture and not blurred */
   FG_RENDER_EFFECT_PART, /* shape(p, psi_rad, ·): radial shift about O in mm, outwards positive; psi
                      is counted from the foil's middle, towards the free end */
-  FG_RENDER_EFFECT_NORMAL, /* the same along the midline's normal: a part effect whose `along` says
-                              so */
-  FG_RENDER_EFFECT_WIDTH,  /* the same of half the strip's thickness: what it adds, mm */
+  FG_RENDER_EFFECT_NORMAL, /* shift along the midline's normal: a part effect with member `along` */
+  FG_RENDER_EFFECT_WIDTH,  /* change of half the strip's thickness, mm */
   FG_RENDER_EFFECT_BUMP,  /* shape(p, u, ·): shift in mm away from the bump's centre; u is -1 and 1
                       where the arc meets its fillets */
   FG_RENDER_EFFECT_LIFT,  /* of single bumps: lift.h */
@@ -39,7 +38,7 @@ typedef enum fg_render_effect_target {
 
 typedef struct fg_render_effect_parameter {
   const char *name;
-  double fallback; /* NaN: must be given; +inf: the middle of the picture, mm */
+  double fallback; /* default; NaN: required; +inf: the middle of the picture, mm */
   double low, high;
 } fg_render_effect_parameter;
 
@@ -49,8 +48,8 @@ typedef struct fg_render_effect_row {
   fg_render_effect_parameter parameters[FG_RENDER_EFFECT_PARAMETERS_MAX];
   void (*field)(const double *p, double x_mm, double y_mm, double d_mm[2]);
   double (*shape)(const double *p, double coordinate, double extent);
-  int axis; /* 0 x, 1 y: of whose middle a fallback of +inf is, or what a curve runs over */
-  const fg_curve_axis *curve; /* NULL: none. With one, it takes the place of field or shape */
+  int axis;                   /* 0 x, 1 y: axis of a fallback of +inf, or of a curve's coordinate */
+  const fg_curve_axis *curve; /* NULL: none. With one, it replaces field or shape */
 } fg_render_effect_row;
 
 typedef struct fg_render_effect {
@@ -76,13 +75,14 @@ const fg_render_effect_row *fg_render_effect_rows(void);
 fg_status fg_render_effects_parse(const fg_place *place, const cJSON *array,
                                   fg_render_effect_list *list);
 
-/* Fills in parameters that refer to the picture's middle. From here on: spec_effects_apply.c */
+/* Fills in parameters that refer to the picture's middle. Defined with all below in
+ * spec_effects_apply.c */
 void fg_render_effects_resolve(fg_render_effect_list *list, double width_mm, double height_mm);
 
 bool fg_render_effects_have(const fg_render_effect_list *list, fg_render_effect_target target);
 
-/* d(x, y) of all scanner effects. `side_mm` is x, y of the picture's pixel that is being made: it
- * says on which side of a jump we are. */
+/* d(x, y) of all scanner effects. `side_mm` is x, y of the drawn pixel: it decides the side of a
+ * jump. */
 void fg_render_effects_field(const fg_render_effect_list *list, double x_mm, double y_mm,
                              const double side_mm[2], double d_mm[2]);
 
@@ -94,12 +94,12 @@ double fg_render_effects_next_step(const fg_render_effect_list *list, int axis, 
 double fg_render_effects_shape(const fg_render_effect_list *list, fg_render_effect_target target,
                                double coordinate, double extent);
 
-/* A bump's curves need not end at 0: the fillets take over with their value and slope (per u,
- * outwards) at the end u = -1 or 1, and fade them out. */
+/* Value and slope (per u, outwards) of a bump's curves at its end u = -1 or 1. They need not be 0
+ * there: the fillets continue and fade them out. */
 void fg_render_effects_bump_end(const fg_render_effect_list *list, double u, double *value_mm,
                                 double *slope_mm);
 
-/* How far a bump is raised, mm: with its flanks, or at its middle alone. */
+/* Returns the height by which a bump is raised, mm: with its flanks, or at its middle alone. */
 double fg_render_effects_lift(const fg_render_effect_list *list, int bump, bool whole);
 
 /* Shift of the two edges of a strip whose inner side lies in the direction (nx, ny) of the scan, to
@@ -107,7 +107,7 @@ double fg_render_effects_lift(const fg_render_effect_list *list, int bump, bool 
 void fg_render_effects_edges(const fg_render_effect_list *list, double nx, double ny,
                              double shift_mm[2]);
 
-/* The farthest that a part, width, bump or edge effect moves anything, mm. */
+/* Returns the largest move by a part, width, bump or edge effect, mm. */
 double fg_render_effects_reach(const fg_render_effect_list *list);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the effects of a list do at a place. */
+/* Values of a list's effects at a place. */
 #include <math.h>
 
 #include "render/spec_effects.h"
@@ -19,7 +19,7 @@ bool fg_render_effects_have(const fg_render_effect_list *list, fg_render_effect_
   return false;
 }
 
-/* Of a radius about O, a bump's circle or an edge: in mm. */
+/* Value of a radius about O, a bump's circle or an edge: in mm. */
 static double effect_shape(const fg_render_effect *effect, double coordinate, double extent) {
   if (effect->row->curve) return 1e-3 * fg_curve_value_um(&effect->curve, coordinate / extent);
   return effect->row->shape(effect->p, coordinate, extent);
@@ -97,8 +97,8 @@ void fg_render_effects_edges(const fg_render_effect_list *list, double nx, doubl
   }
 }
 
-/* The listed shapes never exceed their amplitude by much inside the foil's span; a fillet that
- * fades a bump's curve out overshoots it by less than as much again. */
+/* Returns a bound: the listed shapes never exceed their amplitude by much inside the foil's span; a
+ * fillet that fades a bump's curve out overshoots it by less than as much again. */
 double fg_render_effects_reach(const fg_render_effect_list *list) {
   double reach = 0;
   for (size_t i = 0; i < list->count; i++) {

@@ -7,32 +7,33 @@
 
 #include "core/memory.h"
 
-enum { MARGIN_MAX_PX = 64 }; /* of the widest blur: 10 px and a motion of 20 px */
+enum { MARGIN_MAX_PX = 64 }; /* for the widest blur: 10 px and a motion of 20 px */
 
 static int64_t round_up(double value, int64_t step) {
   return step * (int64_t)ceil(value / (double)step);
 }
 
 /* Integral of the normal distribution function of sd `sigma`. */
-static double ramp(double u, double sigma) {
+static double ramp_integral(double u, double sigma) {
   double z = u / sigma;
   return 0.5 * u * erfc(-z / sqrt(2.0)) +
          sigma * exp(-0.5 * z * z) / sqrt(2 * 3.14159265358979323846);
 }
 
-/* Gaussian of sd `sigma` through the pixel's box, and through that of the motion while it is read:
- * a box is the difference of what it integrates, and two boxes that of its integral. */
+/* Gaussian of sd `sigma` through the pixel's box, and through that of the motion during its
+ * reading. A box is a difference of the integral, two boxes a difference of the integral's
+ * integral. */
 static double kernel_weight(double u, double sigma, double motion_px) {
   const double still_px = 0.01; /* below this the difference of ramps loses digits */
   double half = 0.5 * motion_px;
   if (motion_px < still_px)
     return 0.5 * (erf((u + 0.5) / (sigma * sqrt(2.0))) - erf((u - 0.5) / (sigma * sqrt(2.0))));
-  return (ramp(u + 0.5 + half, sigma) - ramp(u + 0.5 - half, sigma) - ramp(u - 0.5 + half, sigma) +
-          ramp(u - 0.5 - half, sigma)) /
+  return (ramp_integral(u + 0.5 + half, sigma) - ramp_integral(u + 0.5 - half, sigma) -
+          ramp_integral(u - 0.5 + half, sigma) + ramp_integral(u - 0.5 - half, sigma)) /
          motion_px;
 }
 
-/* At samples: what the sampling has already smoothed is taken off first. The sum is 1, so plateaus
+/* Kernel for samples: the smoothing by the sampling is subtracted first. The sum is 1, so plateaus
  * keep their value. */
 static fg_status make_kernel(fg_context *ctx, double blur_px, double motion_px, double sampled_px,
                              int *taps, float **kernel) {
@@ -53,8 +54,9 @@ static fg_status make_kernel(fg_context *ctx, double blur_px, double motion_px, 
   return FG_OK;
 }
 
-/* Light scattered within the scanner, as two Gaussians of sd 0.6 L and 1.6 L with equal shares: its
- * foot falls to 1/e about L from an edge. Rows: pixel offset within a cell; columns: cells. */
+/* Cells of the halo: light scattered within the scanner, as two Gaussians of sd 0.6 L and 1.6 L
+ * with equal shares. Its foot falls to 1/e about L from an edge. Rows: pixel offset within a cell;
+ * columns: cells. */
 static int halo_cells(const fg_tiler *tiler) {
   return (int)((FG_TILE_PX + 2 * tiler->halo_px) / FG_COARSE_PX);
 }
@@ -137,7 +139,7 @@ int64_t fg_tiler_reach_px(const fg_tiler *tiler) {
   return tiler->margin_px > tiler->halo_px ? tiler->margin_px : tiler->halo_px;
 }
 
-/* One block's samples into the tile's sample buffer. */
+/* Fills one block's samples into the tile's sample buffer. */
 static void sample_block(const fg_tiler *tiler, const fg_near *near, int64_t x_px, int64_t y_px,
                          float *out, int64_t stride) {
   const fg_sampler *sampler = tiler->sampler;
@@ -164,7 +166,7 @@ static void sample_tile(const fg_tiler *tiler, const fg_band *band, int64_t x0, 
     }
 }
 
-/* Down the columns first, to one value per pixel row: the inner loop runs along memory. */
+/* Blurs down the columns first, to one value per pixel row: the inner loop runs along memory. */
 static void blur_tile(const fg_tiler *tiler, float *out, int64_t stride) {
   int64_t side = sample_side(tiler);
   float line[FG_SAMPLES * (FG_TILE_PX + 2 * MARGIN_MAX_PX)];
@@ -198,7 +200,7 @@ static void blur_tile_turned(const fg_tiler *tiler, float *out, int64_t stride) 
     fg_turned_blur_row(&tiler->turned, &square, y, out + y * stride);
 }
 
-/* Mean of a cell, by 2 × 2 samples smoothed with 1.2 px: enough for what is blurred by 6 px. */
+/* Mean of a cell, by 2 × 2 samples smoothed with 1.2 px: enough under a blur of 6 px. */
 static float sample_cell(const fg_tiler *tiler, const fg_near *near, double x_px, double y_px) {
   const fg_sampler *sampler = tiler->sampler;
   double sum = 0;
@@ -277,7 +279,7 @@ static void draw_plain(fg_tiler *tiler, const fg_band *band, int64_t x0, int64_t
   if (tiler->halo_px) add_halo(tiler, band, x0, y0, out, stride);
 }
 
-/* The next jump, where the line that is drawn meets it; NaN without. */
+/* The next jump at the place where the drawn line meets it; NaN without. */
 static double next_jump(const fg_tiler *tiler, int axis, double low_mm, double high_mm) {
   const fg_sampler *sampler = tiler->sampler;
   double lag = axis ? sampler->lag_mm : 0;
@@ -285,7 +287,7 @@ static double next_jump(const fg_tiler *tiler, int axis, double low_mm, double h
          lag;
 }
 
-/* First pixel behind `from` that lies beyond the next jump along an axis, within the tile. */
+/* First pixel after `from` that lies beyond the next jump along an axis, within the tile. */
 static int64_t run_end(const fg_tiler *tiler, int axis, int64_t origin, int64_t from) {
   double pixel = tiler->sampler->pixel_mm[axis], at = (double)(origin + from) * pixel;
   double jump = next_jump(tiler, axis, at, INFINITY);
@@ -295,8 +297,8 @@ static int64_t run_end(const fg_tiler *tiler, int axis, int64_t origin, int64_t 
   return end;
 }
 
-/* Pixels between two jumps see the whole neighbourhood from their own side of the jumps: the tile
- * is drawn once for every such run of rows and columns. */
+/* Draws a tile with jumps: once for every run of rows and columns between jumps, as such pixels see
+ * the whole neighbourhood from their own side of the jumps. */
 static void draw_with_jumps(fg_tiler *tiler, const fg_band *band, int64_t x0, int64_t y0,
                             float *out, int64_t stride) {
   fg_sampler *sampler = tiler->sampler;
@@ -315,7 +317,7 @@ static void draw_with_jumps(fg_tiler *tiler, const fg_band *band, int64_t x0, in
   sampler->side_mm[0] = sampler->side_mm[1] = NAN;
 }
 
-/* Whether a jump lies where the tile's pixels can see it. */
+/* Returns true when a jump lies within reach of the tile's pixels. */
 static bool has_jump(const fg_tiler *tiler, int axis, int64_t origin_px) {
   int64_t reach = fg_tiler_reach_px(tiler);
   double pixel = tiler->sampler->pixel_mm[axis];

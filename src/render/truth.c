@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The truth of a render as JSON: what was drawn, with the names of a report. */
+/* The truth of a render as JSON, with the names of a report. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -8,12 +8,12 @@
 
 enum { PROFILE_POINTS = 201 }; /* of a colour line, along y */
 
-static void put_pair(fg_json *json, const char *name, double first, double second) {
+static void write_true_pair(fg_json *json, const char *name, double first, double second) {
   const double pair[2] = {first, second};
   fg_json_numbers(json, name, pair, 2);
 }
 
-static void put_bumps(fg_json *json, const fg_render_foil *truth) {
+static void write_true_bumps(fg_json *json, const fg_render_foil *truth) {
   fg_json_array(json, "bumps");
   for (size_t i = 0; i < truth->bump_count; i++) {
     const fg_render_bump *bump = &truth->bumps[i];
@@ -24,7 +24,7 @@ static void put_bumps(fg_json *json, const fg_render_foil *truth) {
     fg_json_number(json, "intersection_angle_deg", bump->intersection_angle_deg);
     fg_json_number(json, "centre_to_centre_mm", bump->centre_to_centre_mm);
     fg_json_number(json, "height_mm", bump->height_mm);
-    put_pair(json, "centre_px", bump->centre_px.x, bump->centre_px.y);
+    write_true_pair(json, "centre_px", bump->centre_px.x, bump->centre_px.y);
     if (bump->crushed) fg_json_bool(json, "crushed", true);
     fg_json_object_end(json);
   }
@@ -63,7 +63,7 @@ static void put_arc_design(fg_json *json, const fg_render_design *design) {
   fg_json_object_end(json);
 }
 
-/* What is stated of sagitta and clearance. */
+/* Writes a stated sagitta or clearance. */
 static void put_stated(fg_json *json, const char *name, double value) {
   if (isfinite(value)) fg_json_number(json, name, value);
 }
@@ -80,7 +80,7 @@ static void put_cantilever_design(fg_json *json, const fg_render_design *design)
   fg_json_object_end(json);
 }
 
-/* S goes with L³ / w (eq 5.10), s with L². */
+/* Writes compliance and sagitta errors: S goes with L³ / w (eq 5.10), s with L². */
 static void put_consequences(fg_json *json, const fg_render_beam *beam,
                              const fg_render_design *design) {
   double length = beam->length_mm / design->beam_length_mm;
@@ -103,8 +103,8 @@ static void put_beams(fg_json *json, const fg_render_foil *truth, const fg_rende
     fg_json_number(json, "width_mm", beam->width_mm);
     put_consequences(json, beam, design);
     fg_json_number(json, "taper_um", beam->taper_um);
-    put_pair(json, "root_px", beam->root_px.x, beam->root_px.y);
-    put_pair(json, "tip_px", beam->tip_px.x, beam->tip_px.y);
+    write_true_pair(json, "root_px", beam->root_px.x, beam->root_px.y);
+    write_true_pair(json, "tip_px", beam->tip_px.x, beam->tip_px.y);
     if (beam->torn) fg_json_bool(json, "torn", true);
     if (beam->bent_deg != 0) fg_json_number(json, "bent_deg", beam->bent_deg);
     fg_json_object_end(json);
@@ -114,7 +114,7 @@ static void put_beams(fg_json *json, const fg_render_foil *truth, const fg_rende
 
 static void put_cantilever(fg_json *json, const fg_render_foil *truth,
                            const fg_render_design *design) {
-  put_pair(json, "root_centre_px", truth->overall_centre_px.x, truth->overall_centre_px.y);
+  write_true_pair(json, "root_centre_px", truth->overall_centre_px.x, truth->overall_centre_px.y);
   fg_json_number(json, "thickness_mm", truth->thickness_mm);
   fg_json_number(json, "rotate_deg", truth->rotate_deg);
   fg_json_bool(json, "mirror", truth->mirror);
@@ -122,13 +122,15 @@ static void put_cantilever(fg_json *json, const fg_render_foil *truth,
   put_beams(json, truth, design);
 }
 
-static void put_foil(fg_json *json, const fg_render_foil *truth, const fg_render_design *design) {
+static void write_true_foil(fg_json *json, const fg_render_foil *truth,
+                            const fg_render_design *design) {
   if (design->cantilever) {
     put_cantilever(json, truth, design);
     return;
   }
   fg_json_number(json, "overall_radius_mm", truth->overall_radius_mm);
-  put_pair(json, "overall_centre_px", truth->overall_centre_px.x, truth->overall_centre_px.y);
+  write_true_pair(json, "overall_centre_px", truth->overall_centre_px.x,
+                  truth->overall_centre_px.y);
   fg_json_number(json, "thickness_mm", truth->thickness_mm);
   if (design->arc) {
     fg_json_number(json, "subtended_angle_deg", truth->subtended_angle_deg);
@@ -143,10 +145,10 @@ static void put_foil(fg_json *json, const fg_render_foil *truth, const fg_render
     return;
   }
   put_design(json, design);
-  put_bumps(json, truth);
+  write_true_bumps(json, truth);
 }
 
-/* One number where both axes agree. */
+/* Writes one number where both axes agree. */
 static void put_axes(fg_json *json, const char *name, const double value[2]) {
   if (value[0] == value[1])
     fg_json_number(json, name, value[0]);
@@ -171,7 +173,7 @@ static void put_resampling(fg_json *json, const fg_scanner *scanner) {
   fg_json_string(json, "resampled_by", scanner->bicubic ? "bicubic" : "bilinear");
 }
 
-static void put_scan(fg_json *json, const fg_render_spec *spec) {
+static void write_true_scan(fg_json *json, const fg_render_spec *spec) {
   const fg_scanner *scanner = &spec->scanner;
   fg_json_object(json, "scan");
   put_axes(json, "dpi", scanner->dpi);
@@ -201,18 +203,18 @@ static void put_scan(fg_json *json, const fg_render_spec *spec) {
   fg_json_object_end(json);
 }
 
-static void put_curve(fg_json *json, const fg_render_effect *effect) {
+static void write_true_curve(fg_json *json, const fg_render_effect *effect) {
   if (effect->row->target == FG_RENDER_EFFECT_SCANNER)
     fg_json_string(json, "moves", effect->moves ? "y" : "x");
   if (effect->row->target == FG_RENDER_EFFECT_EDGE)
     fg_json_string(json, "edges", effect->apart ? "apart" : "together");
   fg_json_array(json, "knots");
   for (size_t i = 0; i < effect->curve.count; i++)
-    put_pair(json, NULL, effect->curve.at[i], effect->curve.value_um[i]);
+    write_true_pair(json, NULL, effect->curve.at[i], effect->curve.value_um[i]);
   fg_json_array_end(json);
 }
 
-/* Lost rows, stitches and seams are effects under the names that reports give them. */
+/* Writes lost rows, stitches and seams as effects under the names of reports. */
 static void put_jump(fg_json *json, const fg_render_jump *jump) {
   fg_json_object(json, NULL);
   double along = jump->repeats * jump->d_mm[jump->axis];
@@ -240,7 +242,7 @@ static void put_effects(fg_json *json, const fg_render_spec *spec) {
     fg_json_string(json, "id", effect->row->id);
     for (int k = 0; k < FG_RENDER_EFFECT_PARAMETERS_MAX && effect->row->parameters[k].name; k++)
       fg_json_number(json, effect->row->parameters[k].name, effect->p[k]);
-    if (effect->row->curve) put_curve(json, effect);
+    if (effect->row->curve) write_true_curve(json, effect);
     if (effect->target == FG_RENDER_EFFECT_LIFT) put_lift(json, effect, fg_scene_max_bumps(spec));
     fg_json_object_end(json);
   }
@@ -249,12 +251,13 @@ static void put_effects(fg_json *json, const fg_render_spec *spec) {
   fg_json_array_end(json);
 }
 
-static void put_discs(fg_json *json, const fg_render_spec *spec) {
+static void write_true_discs(fg_json *json, const fg_render_spec *spec) {
   if (spec->truth.disc_count == 0) return;
   fg_json_array(json, "discs");
   for (size_t i = 0; i < spec->truth.disc_count; i++) {
     fg_json_object(json, NULL);
-    put_pair(json, "centre_px", spec->truth.discs[i].centre_px.x, spec->truth.discs[i].centre_px.y);
+    write_true_pair(json, "centre_px", spec->truth.discs[i].centre_px.x,
+                    spec->truth.discs[i].centre_px.y);
     fg_json_number(json, "radius_mm", spec->truth.discs[i].radius_mm);
     fg_json_bool(json, "hole", spec->truth.discs[i].hole);
     fg_json_object_end(json);
@@ -270,12 +273,12 @@ static const fg_render_design *design_of(const fg_render_spec *spec, size_t foil
 }
 
 static void put_foils(fg_json *json, const fg_render_spec *spec) {
-  if (spec->truth.foil_count == 1) put_foil(json, &spec->truth.foils[0], design_of(spec, 0));
+  if (spec->truth.foil_count == 1) write_true_foil(json, &spec->truth.foils[0], design_of(spec, 0));
   if (spec->truth.foil_count < 2) return;
   fg_json_array(json, "foils");
   for (size_t i = 0; i < spec->truth.foil_count; i++) {
     fg_json_object(json, NULL);
-    put_foil(json, &spec->truth.foils[i], design_of(spec, i));
+    write_true_foil(json, &spec->truth.foils[i], design_of(spec, i));
     fg_json_object_end(json);
   }
   fg_json_array_end(json);
@@ -338,14 +341,14 @@ static void write_truth(const fg_render_spec *spec, FILE *out) {
   fg_json_object(&json, NULL);
   fg_json_string(&json, "schema", "foilgauge/truth/1");
   put_foils(&json, spec);
-  put_discs(&json, spec);
-  put_scan(&json, spec);
+  write_true_discs(&json, spec);
+  write_true_scan(&json, spec);
   put_effects(&json, spec);
   put_colour_lines(&json, spec);
   fg_json_object_end(&json);
 }
 
-/* The stream in memory keeps an allocation's failure until it is asked. */
+/* The stream in memory reports a failed allocation only at its end. */
 fg_status fg_render_truth_json(fg_context *ctx, const fg_render_spec *spec, char **json) {
   size_t length;
   *json = NULL;

@@ -12,7 +12,7 @@ static const double KERNEL_REACH = 4.5; /* sd */
 static const double NEGLIGIBLE = 1e-9;  /* of the largest weight */
 enum { STEPS_PER_PX = 24 };             /* of the integral along y; a multiple of any sampling */
 
-/* Covariance of the Gaussian that the samples still lack. */
+/* Covariance of the Gaussian that remains after the samples' smoothing. */
 typedef struct covariance {
   double xx, xy, yy;
 } covariance;
@@ -38,10 +38,10 @@ static double box_height(double distance, double motion) {
   return fmax(0, overlap) / motion;
 }
 
-/* At t along y the Gaussian along x has its middle at t xy / yy and the variance xx - xy² / yy:
- * through the pixel's box along x that is a difference of error functions; through the boxes along
- * y a sum of midpoints, between which the pixel's box ends. */
-static double weight_at(const covariance *v, double motion, double x, double y) {
+/* Weight of a sample. At t along y the Gaussian along x has its middle at t xy / yy and the
+ * variance xx - xy² / yy. Through the pixel's box along x that is a difference of error functions;
+ * through the boxes along y a sum of midpoints, between which the pixel's box ends. */
+static double sample_weight(const covariance *v, double motion, double x, double y) {
   double slope = v->xy / v->yy, scale = 1 / sqrt(2 * (v->xx - v->xy * slope));
   int half = (int)ceil((0.5 + 0.5 * motion) * STEPS_PER_PX);
   double sum = 0;
@@ -58,7 +58,7 @@ static double weight_at(const covariance *v, double motion, double x, double y) 
 /* Weights below the negligible are 0, the others sum to 1. */
 static void fill_weights(fg_turned_blur *blur, const covariance *v, double motion) {
   int columns = 2 * blur->taps[0] + 1, rows = 2 * blur->taps[1] + 1;
-  double min = NEGLIGIBLE * weight_at(v, motion, 0, 0), sum = 0;
+  double min = NEGLIGIBLE * sample_weight(v, motion, 0, 0), sum = 0;
   for (int pass = 0; pass < 2; pass++)
     for (int j = 0; j < rows; j++)
       for (int i = 0; i < columns; i++) {
@@ -67,8 +67,8 @@ static void fill_weights(fg_turned_blur *blur, const covariance *v, double motio
           *weight = (float)((double)*weight / sum);
           continue;
         }
-        double value = weight_at(v, motion, (double)(i - blur->taps[0]) / blur->samples,
-                                 (double)(j - blur->taps[1]) / blur->samples);
+        double value = sample_weight(v, motion, (double)(i - blur->taps[0]) / blur->samples,
+                                     (double)(j - blur->taps[1]) / blur->samples);
         *weight = value > min ? (float)value : 0;
         sum += (double)*weight;
       }

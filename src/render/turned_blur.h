@@ -14,37 +14,38 @@ typedef struct fg_turned_blur {
   int samples; /* per pixel */
   int taps[2]; /* each side of the centre, along x and y */
   float *weights;
-  int *first, *end; /* of each row, where its weights are not negligible */
+  int *first, *end; /* of each row: range of its weights that are not negligible */
 } fg_turned_blur;
 
-/* Picture to be blurred, and its blur in pixels. */
+/* The blur of a picture, in pixels. */
 typedef struct fg_blur_ellipse {
   double sd[2];      /* along its own axes */
   double angle_deg;  /* of the first axis, from x (right) towards y (down) */
-  double sampled[2]; /* sd that samples have already, along x and y */
+  double sampled[2]; /* sd of the samples themselves, along x and y */
   double motion;     /* length of a box along y */
 } fg_blur_ellipse;
 
-/* True for a kernel of its own: an ellipse, not a circle, off the rows and columns. */
+/* Returns true when a two-dimensional kernel is needed: an ellipse, not a circle, off the rows and
+ * columns. */
 bool fg_blur_is_turned(const fg_blur_ellipse *ellipse);
 
 fg_status fg_turned_blur_create(fg_context *ctx, const fg_blur_ellipse *ellipse, int samples,
                                 fg_turned_blur *blur);
 void fg_turned_blur_free(fg_turned_blur *blur);
 
-/* The samples that the blur starts from; sorted by fg_turned_blur_sort. */
+/* Samples to be blurred; sorted by fg_turned_blur_sort. */
 typedef struct fg_sample_square {
   float *values;    /* `side` rows of `side` */
   int64_t side;     /* a multiple of the samples per pixel */
-  int64_t margin;   /* pixels around those that are wanted */
-  int64_t width_px; /* that are wanted of each row */
+  int64_t margin;   /* pixels around the output */
+  int64_t width_px; /* output pixels of each row */
 } fg_sample_square;
 
-/* Puts the first samples of all pixels of a row before all second ones, and so on, so that what one
- * tap needs of neighbouring pixels lies side by side. `line` has room for a row. */
+/* Puts the first samples of all pixels of a row before all second ones, and so on, so that the
+ * values that one tap needs of neighbouring pixels lie side by side. `line` has room for a row. */
 void fg_turned_blur_sort(const fg_turned_blur *blur, const fg_sample_square *square, float *line);
 
-/* One row of pixels, counted from the first that is wanted. */
+/* Blurs one row of output pixels, counted from the first. */
 void fg_turned_blur_row(const fg_turned_blur *blur, const fg_sample_square *square, int64_t y_px,
                         float *out);
 

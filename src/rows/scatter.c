@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/dot.h"
 #include "core/memory.h"
+#include "core/numerics.h"
 
 /* Bounds of the range: the scatter of edges is correlated over 0.02 to 0.1 mm of arc on real
  * flatbeds (reports/real); a margin on either side keeps estimates off the bound. */

@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/dot.h"
 #include "core/memory.h"
+#include "core/numerics.h"
 #include "rows/scatter.h"
 
 /* Number of polynomials that the search can follow over a bump's arc (effect/curves.c), with the

@@ -7,11 +7,12 @@ enum {
   RANGE_MIN = 24, /* in 8-bit counts */
 };
 
-static unsigned value_at(const fg_scan_header *header, const void *samples, size_t x, int channel) {
+static unsigned sample_at(const fg_scan_header *header, const void *samples, size_t x,
+                          int channel) {
   size_t at = x * (size_t)header->channels + (size_t)channel;
   if (header->has_palette) {
     uint8_t index = ((const uint8_t *)samples)[x * (size_t)header->channels];
-    const fg_scan_loop_colour *c = &header->palette[index];
+    const fg_scan_colour *c = &header->palette[index];
     return channel == 0 ? c->red : channel == 1 ? c->green : c->blue;
   }
   if (header->bit_depth == 16) return ((const uint16_t *)samples)[at] >> 8;
@@ -22,7 +23,7 @@ static unsigned range_of_run(const fg_scan_header *header, const void *samples, 
                              int channel) {
   unsigned low = UINT32_MAX, high = 0;
   for (size_t x = from; x < from + RUN_PX && x < header->width_px; x++) {
-    unsigned value = value_at(header, samples, x, channel);
+    unsigned value = sample_at(header, samples, x, channel);
     if (value < low) low = value;
     if (value > high) high = value;
   }

@@ -71,7 +71,7 @@ bool fg_format_has_name(const char *name) {
   return false;
 }
 
-static void append(char *text, size_t size, const char *separator, const char *word) {
+static void append_word(char *text, size_t size, const char *separator, const char *word) {
   size_t used = strlen(text);
   fg_text_clip(text + used, size - used, "%s%s", used ? separator : "", word);
 }
@@ -80,13 +80,13 @@ void fg_format_list_endings(char *text, size_t size) {
   text[0] = '\0';
   for (size_t i = 0; i < READABLE; i++)
     for (const char *const *ending = readable[i]->endings; *ending; ending++)
-      append(text, size, ", ", *ending);
+      append_word(text, size, ", ", *ending);
 }
 
 void fg_scan_format_names(const char *before_last, char *text, size_t size) {
   text[0] = '\0';
   for (size_t i = 0; i < READABLE; i++)
-    append(text, size, i + 1 < READABLE ? ", " : before_last, readable[i]->name);
+    append_word(text, size, i + 1 < READABLE ? ", " : before_last, readable[i]->name);
 }
 
 static const char *known_problem(const uint8_t *head, size_t length) {

@@ -13,22 +13,23 @@ static inline uint32_t luminance(uint32_t red, uint32_t green, uint32_t blue) {
   return (RED_WEIGHT * red + GREEN_WEIGHT * green + BLUE_WEIGHT * blue + 32768) >> 16;
 }
 
-static void look_up(const fg_gray *gray, const void *samples, size_t width, void *out) {
+static void convert_by_table(const fg_gray *gray, const void *samples, size_t width, void *out) {
   const uint8_t *in = samples;
   uint8_t *row = out;
   for (size_t x = 0; x < width; x++)
     row[x] = gray->table[in[x]];
 }
 
-/* A table over one of several channels. */
-static void look_up_one(const fg_gray *gray, const void *samples, size_t width, void *out) {
+/* Looks up one of several channels in the table. */
+static void convert_one_by_table(const fg_gray *gray, const void *samples, size_t width,
+                                 void *out) {
   const uint8_t *in = (const uint8_t *)samples + gray->taken;
   uint8_t *row = out;
   for (size_t x = 0; x < width; x++, in += gray->channels)
     row[x] = gray->table[*in];
 }
 
-static void take_one_8(const fg_gray *gray, const void *samples, size_t width, void *out) {
+static void copy_one_8(const fg_gray *gray, const void *samples, size_t width, void *out) {
   const uint8_t *in = (const uint8_t *)samples + gray->taken;
   uint8_t *row = out;
   for (size_t x = 0; x < width; x++, in += gray->channels)
@@ -40,7 +41,7 @@ static uint16_t spread_16(unsigned value, unsigned white) {
   return (uint16_t)(((uint64_t)value * 65535 + white / 2) / white);
 }
 
-static void take_one_16(const fg_gray *gray, const void *samples, size_t width, void *out) {
+static void copy_one_16(const fg_gray *gray, const void *samples, size_t width, void *out) {
   const uint16_t *in = (const uint16_t *)samples + gray->taken;
   for (size_t x = 0; x < width; x++, in += gray->channels) {
     uint16_t value = spread_16(*in, gray->white);
@@ -74,7 +75,7 @@ static void mix_colours_16(const fg_gray *gray, const void *samples, size_t widt
 static void fill_palette(const fg_scan_header *header, fg_channel channel, fg_gray *gray) {
   gray->table_size = header->palette_size < 256 ? header->palette_size : 256;
   for (size_t i = 0; i < gray->table_size; i++) {
-    const fg_scan_loop_colour *c = &header->palette[i];
+    const fg_scan_colour *c = &header->palette[i];
     uint32_t values[] = {[FG_CHANNEL_LUMINANCE] = luminance(c->red, c->green, c->blue),
                          [FG_CHANNEL_RED] = c->red,
                          [FG_CHANNEL_GREEN] = c->green,
@@ -83,7 +84,7 @@ static void fill_palette(const fg_scan_header *header, fg_channel channel, fg_gr
   }
 }
 
-/* 0 to `white` over 0 to 255, or back to front. */
+/* Fills the table: 0 to `white` over 0 to 255, or inverted. */
 static void fill_spread(const fg_scan_header *header, fg_gray *gray) {
   unsigned white = header->white ? header->white : (1u << header->bit_depth) - 1;
   gray->table_size = header->white ? white + 1 : (size_t)1 << header->bit_depth;
@@ -93,21 +94,22 @@ static void fill_spread(const fg_scan_header *header, fg_gray *gray) {
   }
 }
 
-/* Whether 8-bit gray samples are gray values as they are. */
-static bool is_plain(const fg_scan_header *header) {
+/* Returns true when 8-bit gray samples are gray values already. */
+static bool is_gray_already(const fg_scan_header *header) {
   return header->bit_depth == 8 && !header->inverted && !header->white;
 }
 
 static fg_gray_convert *choose_8(const fg_scan_header *header, const fg_gray *gray, bool mix) {
   if (mix) return mix_colours_8;
-  if (is_plain(header) && !header->has_palette) return header->channels > 1 ? take_one_8 : NULL;
-  return gray->channels > 1 ? look_up_one : look_up;
+  if (is_gray_already(header) && !header->has_palette)
+    return header->channels > 1 ? copy_one_8 : NULL;
+  return gray->channels > 1 ? convert_one_by_table : convert_by_table;
 }
 
 static fg_gray_convert *choose_16(const fg_scan_header *header, bool mix) {
   if (mix) return mix_colours_16;
   if (header->inverted) return invert_one_16;
-  return header->channels > 1 || header->white ? take_one_16 : NULL;
+  return header->channels > 1 || header->white ? copy_one_16 : NULL;
 }
 
 void fg_gray_init(const fg_scan_header *header, fg_channel channel, fg_gray *gray) {
@@ -122,7 +124,7 @@ void fg_gray_init(const fg_scan_header *header, fg_channel channel, fg_gray *gra
   }
   if (header->has_palette)
     fill_palette(header, channel, gray);
-  else if (mix || !is_plain(header))
+  else if (mix || !is_gray_already(header))
     fill_spread(header, gray);
   gray->convert = choose_8(header, gray, mix);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the reader of any format says of a scan before its first row. */
+/* Header of a scan of any format, before its first row, and its resolution. */
 #ifndef FG_SCAN_HEADER_H
 #define FG_SCAN_HEADER_H
 
@@ -7,9 +7,11 @@
 #include <stddef.h>
 #include <stdint.h>
 
-typedef struct fg_scan_loop_colour {
+#include "foilgauge/scan.h"
+
+typedef struct fg_scan_colour {
   uint8_t red, green, blue;
-} fg_scan_loop_colour;
+} fg_scan_colour;
 
 /* A row of samples holds `channels` per pixel: one to a byte (up to 8 bits), one to a uint16_t in
  * host order (16 bits). */
@@ -17,20 +19,25 @@ typedef struct fg_scan_header {
   uint64_t width_px, height_px;
   int bit_depth; /* of a sample: 1, 2, 4, 8, 16 */
   int channels;  /* samples of a pixel */
-  bool colour;   /* the first three are red, green, blue; else the first is gray; others are left */
-  bool inverted; /* gray: 0 is white */
-  bool luminance_only; /* it has colours, of which the reader gives the luminance as gray */
-  int jpeg_quality;    /* of what has lost: as its quantization tables tell; 0: without loss */
-  unsigned white;      /* a sample's largest value where that is not 2^bit_depth - 1; else 0 */
+  bool
+      colour; /* the first three are red, green, blue; else the first is gray; others are ignored */
+  bool inverted;       /* gray: 0 is white */
+  bool luminance_only; /* it has colours, of which the reader returns the luminance as gray */
+  int jpeg_quality;    /* of a lossy image: by its quantization tables; 0: lossless */
+  unsigned white;      /* max of a sample where that is not 2^bit_depth - 1; else 0 */
   bool has_palette;    /* samples are indices into `palette` */
   size_t palette_size;
-  fg_scan_loop_colour palette[256];
-  double dpi[2];         /* as the file says, x and y; NaN when it says none */
-  const char *no_dpi;    /* then: why, in words; NULL: the format has no resolution */
-  char dpi_source[64];   /* which field says it, for error texts */
-  double bytes_min;      /* that the file must have to hold the image; 0: not known */
-  uint64_t memory_bytes; /* that the reader will hold: a whole image, a row of tiles */
-  char warning[256];     /* what is odd and not wrong; empty when nothing is */
+  fg_scan_colour palette[256];
+  double dpi[2];         /* stated in the file, x and y; NaN when not stated */
+  const char *no_dpi;    /* then: the reason, in words; NULL: the format has no resolution */
+  char dpi_source[64];   /* the field that states it, for error texts */
+  double bytes_min;      /* min size of the file for its image; 0: not known */
+  uint64_t memory_bytes; /* memory of the reader: a whole image, a row of tiles */
+  char warning[256];     /* odd, but no error; empty: none */
 } fg_scan_header;
+
+/* Fills dpi and dpi_file of `info`. `dpi` 0 uses the file's. Errors as fg_scan_open's. */
+fg_status fg_resolution_find(fg_context *ctx, const char *name, const fg_scan_header *header,
+                             double dpi, fg_scan_info *info);
 
 #endif

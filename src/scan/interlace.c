@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-/* Adam7 (PNG specification, section 8.2): where each pass begins and how it steps. */
+/* Adam7 (PNG specification, section 8.2): begin and step of each pass. */
 static const struct pass {
   uint8_t x, y, step_x, step_y;
 } passes[] = {{0, 0, 8, 8}, {4, 0, 8, 8}, {0, 4, 4, 8}, {2, 0, 4, 4},

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* JPEG as one of the formats, for those who allow loss. */
+/* JPEG as one of the formats, where the options allow loss. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,11 +8,12 @@
 #include "scan/format.h"
 #include "scan/jpeg_reader.h"
 
-/* A block takes two codes of one bit at least. */
+/* Min bits of a block: two codes of one bit. */
 #define BITS_PER_BLOCK 2.0
-/* A progressive image's blocks may share one bit for a band of them all. */
+/* Min bits of a progressive image's block: a band of all blocks may share one bit. */
 #define BITS_PER_BLOCK_PROGRESSIVE 1.0
-/* JFIF and EXIF state one resolution where they differ by less: EXIF has fractions. */
+/* Max ratio, less 1, of JFIF's and EXIF's resolution when they state the same: EXIF has fractions.
+ */
 #define SAME_RESOLUTION 0.01
 
 typedef struct jpeg_reader {
@@ -20,28 +21,28 @@ typedef struct jpeg_reader {
   bool luminance;
 } jpeg_reader;
 
-static bool matches(const uint8_t *head, size_t length) {
+static bool matches_jpeg(const uint8_t *head, size_t length) {
   static const uint8_t magic[3] = {0xff, 0xd8, 0xff};
   for (size_t i = 0; i < length && i < sizeof magic; i++)
     if (head[i] != magic[i]) return false;
   return true;
 }
 
-/* Which colours it has stands behind what may be a long way of EXIF data. */
-static bool has_colour(const uint8_t *head, size_t length) {
+/* The colours are stated after EXIF data, which may be long. */
+static bool has_jpeg_colour(const uint8_t *head, size_t length) {
   (void)head;
   (void)length;
   return true;
 }
 
-/* As JFIF states it; NaN without. */
+/* Resolution by JFIF; NaN without. */
 static double jfif_dpi(const fg_jpeg_header *jpeg, int axis) {
   static const double per_inch[] = {NAN, 1, 2.54};
   if (!jpeg->has_density || jpeg->density_unit < 1 || jpeg->density_unit > 2) return NAN;
   return jpeg->density[axis] * per_inch[jpeg->density_unit];
 }
 
-static bool contradict(double a, double b) {
+static bool is_contradiction(double a, double b) {
   return a > 0 && b > 0 && fabs(log(a / b)) > SAME_RESOLUTION;
 }
 
@@ -50,7 +51,7 @@ static void fill_resolution(const fg_jpeg_header *jpeg, fg_scan_header *header) 
   const double *exif = jpeg->exif.dpi;
   for (int axis = 0; axis < 2; axis++) {
     header->dpi[axis] = jfif ? jfif_dpi(jpeg, axis) : exif[axis];
-    if (jfif && contradict(header->dpi[axis], exif[axis]))
+    if (jfif && is_contradiction(header->dpi[axis], exif[axis]))
       header->no_dpi = "its JFIF header and its EXIF data contradict each other";
   }
   if (!(header->dpi[0] > 0 && header->dpi[1] > 0))
@@ -85,23 +86,23 @@ static fg_status open_jpeg(fg_context *ctx, fg_source *source, const fg_scan_opt
   jpeg_reader *reader = *out;
   FG_TRY(fg_jpeg_open(ctx, source, &reader->jpeg));
   const fg_jpeg_header *jpeg = fg_jpeg_get_header(reader->jpeg);
-  /* Of YCbCr the Y is kept best: that is taken where nothing else is asked for. */
+  /* JPEG keeps the Y of YCbCr best: it is the default. */
   bool any = options->channel == FG_CHANNEL_AUTO || options->channel == FG_CHANNEL_LUMINANCE;
   reader->luminance = jpeg->has_luminance && (any || !jpeg->colour);
   fill_header(jpeg, reader->luminance, header);
   return FG_OK;
 }
 
-static fg_status start(fg_context *ctx, void *r) {
+static fg_status start_jpeg(fg_context *ctx, void *r) {
   jpeg_reader *reader = r;
   return fg_jpeg_start(ctx, reader->jpeg, reader->luminance);
 }
 
-static fg_status read_row(fg_context *ctx, void *r, void *samples) {
+static fg_status read_jpeg_row(fg_context *ctx, void *r, void *samples) {
   return fg_jpeg_read_row(ctx, ((jpeg_reader *)r)->jpeg, samples);
 }
 
-static fg_status finish(fg_context *ctx, void *r) {
+static fg_status finish_jpeg(fg_context *ctx, void *r) {
   return fg_jpeg_finish(ctx, ((jpeg_reader *)r)->jpeg);
 }
 
@@ -116,10 +117,10 @@ static const char *const endings[] = {".jpg", ".jpeg", NULL};
 
 const fg_format fg_format_jpeg = {.name = "JPEG",
                                   .endings = endings,
-                                  .matches = matches,
-                                  .has_colour = has_colour,
+                                  .matches = matches_jpeg,
+                                  .has_colour = has_jpeg_colour,
                                   .open = open_jpeg,
-                                  .start = start,
-                                  .read_row = read_row,
-                                  .finish = finish,
+                                  .start = start_jpeg,
+                                  .read_row = read_jpeg_row,
+                                  .finish = finish_jpeg,
                                   .close = close_jpeg};

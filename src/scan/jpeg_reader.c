@@ -15,8 +15,9 @@
 #include "scan/jpeg_tables.h"
 
 enum { BUFFER_BYTES = 1 << 16, SEGMENT_BYTES_MAX = 0xffff };
-/* A progressive file has ten scans or so. Every scan of a file that was made to harm goes through
- * all of a large image, for a few bytes each (libjpeg-turbo's own tools stop at a number, too). */
+/* Limit of the scans of a progressive file, which has some ten. Every scan of a malicious file goes
+ * through all of a large image, for a few bytes each (libjpeg-turbo's own tools have a limit, too).
+ */
 enum { SCANS_MAX = 100 };
 
 struct fg_jpeg_in {
@@ -38,7 +39,7 @@ static void fail_with_words(j_common_ptr jpeg) {
   longjmp(reader->failed, 1);
 }
 
-/* What libjpeg only warns of leaves pixels that are wrong, but for a few. */
+/* Returns true for the few of libjpeg's warnings that leave all pixels right. */
 static bool is_harmless(const fg_jpeg_in *reader) {
   int code = reader->errors.msg_code;
   bool filled = code == JWRN_EXTRANEOUS_DATA;
@@ -88,8 +89,8 @@ static void watch_scans(j_common_ptr common) {
   longjmp(reader->failed, 1);
 }
 
-/* The one setjmp: runs `step` and says whether libjpeg came through. */
-static bool run(fg_jpeg_in *reader, void (*step)(fg_jpeg_in *, void *), void *row) {
+/* The one setjmp: runs `step`; false when libjpeg failed. */
+static bool run_libjpeg(fg_jpeg_in *reader, void (*step)(fg_jpeg_in *, void *), void *row) {
   if (setjmp(reader->failed)) return false;
   step(reader, row);
   return true;
@@ -106,7 +107,7 @@ static void describe_place(const fg_jpeg_in *reader, char *place, size_t size) {
     snprintf(place + length, size - (size_t)length, ", after the last row");
 }
 
-static fg_status fail(fg_context *ctx, const fg_jpeg_in *reader) {
+static fg_status fail_jpeg(fg_context *ctx, const fg_jpeg_in *reader) {
   const char *name = reader->source->name;
   int code = reader->errors.msg_code;
   char place[96];
@@ -123,7 +124,7 @@ static fg_status fail(fg_context *ctx, const fg_jpeg_in *reader) {
                  reader->words, place);
 }
 
-static void create(fg_jpeg_in *reader, void *unused) {
+static void create_libjpeg(fg_jpeg_in *reader, void *unused) {
   (void)unused;
   struct jpeg_decompress_struct *jpeg = &reader->jpeg;
   jpeg_create_decompress(jpeg);
@@ -149,7 +150,7 @@ static void read_exif(fg_jpeg_in *reader) {
   }
 }
 
-/* What whole images hold: every coefficient, two bytes each. */
+/* Memory of whole images: every coefficient, two bytes each. */
 static void count_blocks(fg_jpeg_in *reader) {
   const struct jpeg_decompress_struct *jpeg = &reader->jpeg;
   fg_jpeg_header *header = &reader->header;
@@ -209,7 +210,8 @@ static fg_status open_reader(fg_context *ctx, fg_jpeg_in *reader) {
   reader->errors.error_exit = fail_with_words;
   reader->errors.emit_message = on_message;
   reader->errors.output_message = on_output;
-  if (!run(reader, create, NULL) || !run(reader, read_header, NULL)) return fail(ctx, reader);
+  if (!run_libjpeg(reader, create_libjpeg, NULL) || !run_libjpeg(reader, read_header, NULL))
+    return fail_jpeg(ctx, reader);
   if (reader->header.colour || reader->header.has_luminance) return FG_OK;
   return fg_fail(
       ctx, FG_ERR_DATA,
@@ -236,8 +238,8 @@ const fg_jpeg_header *fg_jpeg_get_header(const fg_jpeg_in *jpeg) {
   return &jpeg->header;
 }
 
-/* Smoothing would make up what a cut-off progressive file lacks. */
-static void start(fg_jpeg_in *reader, void *unused) {
+/* Starts without smoothing, which would invent the missing part of a cut-off progressive file. */
+static void start_libjpeg(fg_jpeg_in *reader, void *unused) {
   (void)unused;
   struct jpeg_decompress_struct *jpeg = &reader->jpeg;
   jpeg->out_color_space = reader->luminance ? JCS_GRAYSCALE : JCS_RGB;
@@ -248,25 +250,25 @@ static void start(fg_jpeg_in *reader, void *unused) {
 fg_status fg_jpeg_start(fg_context *ctx, fg_jpeg_in *jpeg, bool luminance) {
   jpeg->luminance = luminance;
   jpeg->in_image = true;
-  return run(jpeg, start, NULL) ? FG_OK : fail(ctx, jpeg);
+  return run_libjpeg(jpeg, start_libjpeg, NULL) ? FG_OK : fail_jpeg(ctx, jpeg);
 }
 
-static void read_row(fg_jpeg_in *reader, void *samples) {
+static void read_libjpeg_row(fg_jpeg_in *reader, void *samples) {
   JSAMPROW row = samples;
   jpeg_read_scanlines(&reader->jpeg, &row, 1);
 }
 
 fg_status fg_jpeg_read_row(fg_context *ctx, fg_jpeg_in *jpeg, void *samples) {
-  return run(jpeg, read_row, samples) ? FG_OK : fail(ctx, jpeg);
+  return run_libjpeg(jpeg, read_libjpeg_row, samples) ? FG_OK : fail_jpeg(ctx, jpeg);
 }
 
-static void finish(fg_jpeg_in *reader, void *unused) {
+static void finish_libjpeg(fg_jpeg_in *reader, void *unused) {
   (void)unused;
   jpeg_finish_decompress(&reader->jpeg);
 }
 
 fg_status fg_jpeg_finish(fg_context *ctx, fg_jpeg_in *jpeg) {
-  return run(jpeg, finish, NULL) ? FG_OK : fail(ctx, jpeg);
+  return run_libjpeg(jpeg, finish_libjpeg, NULL) ? FG_OK : fail_jpeg(ctx, jpeg);
 }
 
 void fg_jpeg_close(fg_jpeg_in *jpeg) {

@@ -8,7 +8,7 @@ static const uint8_t natural_order[64] = {
     41, 34, 27, 20, 13, 6,  7,  14, 21, 28, 35, 42, 49, 56, 57, 50, 43, 36, 29, 22, 15, 23,
     30, 37, 44, 51, 58, 59, 52, 45, 38, 31, 39, 46, 53, 60, 61, 54, 47, 55, 62, 63};
 
-/* ITU-T T.81, table K.1, in zigzag order, as far as it counts. */
+/* ITU-T T.81, table K.1, in zigzag order, up to FG_JPEG_STEPS. */
 static const uint8_t luminance[FG_JPEG_STEPS] = {16, 11, 12, 14, 12, 10, 16, 14, 13, 14,
                                                  18, 17, 16, 19, 24, 40, 26, 24, 22, 22,
                                                  24, 49, 35, 37, 29, 40, 58, 51};
@@ -47,7 +47,7 @@ int fg_jpeg_quality_of(const uint16_t zigzag[64]) {
     sum += (double)zigzag[i] * zigzag[i];
   for (int q = 100; q >= 1; q--) {
     double distance = fabs(log(square_of_quality(q) / fmax(sum, 1)));
-    if (distance <= nearest) quality = q; /* of 99 and 100, which differ above, 99 */
+    if (distance <= nearest) quality = q; /* 99 and 100 differ only in higher frequencies: 99 */
     nearest = fmin(nearest, distance);
   }
   return quality;

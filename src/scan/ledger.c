@@ -20,13 +20,14 @@ void fg_ledger_close(fg_ledger *ledger) {
   ledger->mark = NULL;
 }
 
-static uint64_t stir(uint64_t lane, uint64_t word) {
+static uint64_t stir_lane(uint64_t lane, uint64_t word) {
   lane = (lane ^ word) * 0x9E3779B97F4A7C15u;
   return lane ^ lane >> 29;
 }
 
-/* Every step is one to one in what came before, so that a change of one word is never lost, and of
- * several with a chance of 2^-64; four lanes, as fast as memory. Never 0. */
+/* Mark of a block. Every step is one to one in its input, so that a change of one word always
+ * changes the mark, and of several with a chance of 1 - 2^-64; four lanes, as fast as memory. Never
+ * 0. */
 static uint64_t mark_of(const uint8_t *bytes, size_t length) {
   uint64_t lane[4] = {length, 1, 2, 3}, word[4];
   for (size_t at = 0; at < length; at += sizeof word) {
@@ -34,11 +35,11 @@ static uint64_t mark_of(const uint8_t *bytes, size_t length) {
     if (left < sizeof word) memset(word, 0, sizeof word);
     memcpy(word, bytes + at, left < sizeof word ? left : sizeof word);
     for (int i = 0; i < 4; i++)
-      lane[i] = stir(lane[i], word[i]);
+      lane[i] = stir_lane(lane[i], word[i]);
   }
   uint64_t mark = lane[0];
   for (int i = 1; i < 4; i++)
-    mark = stir(mark, lane[i]);
+    mark = stir_lane(mark, lane[i]);
   return mark ? mark : 1;
 }
 

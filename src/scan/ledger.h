@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a file held when it was read: a mark for every block, by all who read it.
+/* A ledger of a file's content at reading: a mark for every block, by all its readers.
  *
- * A format that jumps about in its file cannot be summed as it is decoded: its SHA-256 is found in
- * a reading of its own. Each reading notes the mark of every block that it sees; where two marks of
- * one block differ, the file has changed in between. */
+ * A format that reads its file at random cannot be summed as it is decoded: its SHA-256 needs a
+ * reading of its own. Each reading notes the mark of every block. Where two marks of one block
+ * differ, the file has changed in between. */
 #ifndef FG_SCAN_LEDGER_H
 #define FG_SCAN_LEDGER_H
 
@@ -22,11 +22,11 @@ typedef struct fg_ledger {
   atomic_bool changed;
 } fg_ledger;
 
-/* For a file of `size` bytes. FG_ERR_MEMORY. */
+/* Opens a ledger of a file of `size` bytes. FG_ERR_MEMORY. */
 fg_status fg_ledger_open(fg_context *ctx, uint64_t size, fg_ledger *ledger);
 void fg_ledger_close(fg_ledger *ledger);
 
-/* A whole block, or what the file has of it; from any thread. */
+/* Notes a whole block, or the file's part of it; from any thread. */
 void fg_ledger_note(fg_ledger *ledger, uint64_t block, const uint8_t *bytes, size_t length);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* PNG as one of the formats: the header in common words, interlaced images decoded whole. */
+/* PNG as one of the formats: the common header; interlaced images decoded whole. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,9 +11,9 @@
 #include "scan/png_reader.h"
 
 #define METRES_PER_INCH 0.0254
-/* An interlaced image lies in memory whole; a scanner does not write such files. */
+/* Limit of an interlaced image, which lies in memory whole; a scanner does not write such files. */
 #define INTERLACED_BYTES_CAP ((uint64_t)1 << 30)
-/* The most that deflate can make of a byte: 258 bytes from 2 bits. */
+/* Max expansion by deflate: 258 bytes from 2 bits. */
 #define DEFLATE_RATIO_MAX 1032.0
 
 typedef struct png_reader {
@@ -25,13 +25,13 @@ typedef struct png_reader {
   size_t rows_read;
 } png_reader;
 
-static bool matches(const uint8_t *head, size_t length) {
+static bool matches_png(const uint8_t *head, size_t length) {
   static const uint8_t signature[8] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
   return !memcmp(head, signature, length < sizeof signature ? length : sizeof signature);
 }
 
 /* Colour type, byte 25: the second bit says colour (or palette). */
-static bool has_colour(const uint8_t *head, size_t length) {
+static bool has_png_colour(const uint8_t *head, size_t length) {
   return length > 25 && head[25] & 2;
 }
 
@@ -81,7 +81,7 @@ static fg_status open_png(fg_context *ctx, fg_source *source, const fg_scan_opti
   return FG_OK;
 }
 
-static fg_status start(fg_context *ctx, void *r) {
+static fg_status start_png(fg_context *ctx, void *r) {
   png_reader *reader = r;
   return fg_png_start(ctx, reader->png, reader->beside);
 }
@@ -98,7 +98,7 @@ exit:
   return status;
 }
 
-static fg_status read_row(fg_context *ctx, void *r, void *samples) {
+static fg_status read_png_row(fg_context *ctx, void *r, void *samples) {
   png_reader *reader = r;
   if (!fg_png_get_header(reader->png)->interlaced)
     return fg_png_read_row(ctx, reader->png, samples);
@@ -107,11 +107,11 @@ static fg_status read_row(fg_context *ctx, void *r, void *samples) {
   return FG_OK;
 }
 
-static fg_status finish(fg_context *ctx, void *r) {
+static fg_status finish_png(fg_context *ctx, void *r) {
   return fg_png_finish(ctx, ((png_reader *)r)->png);
 }
 
-static void stop(void *r) {
+static void stop_png(void *r) {
   fg_png_stop(((png_reader *)r)->png);
 }
 
@@ -127,11 +127,11 @@ static const char *const endings[] = {".png", NULL};
 
 const fg_format fg_format_png = {.name = "PNG",
                                  .endings = endings,
-                                 .matches = matches,
-                                 .has_colour = has_colour,
+                                 .matches = matches_png,
+                                 .has_colour = has_png_colour,
                                  .open = open_png,
-                                 .start = start,
-                                 .read_row = read_row,
-                                 .finish = finish,
-                                 .stop = stop,
+                                 .start = start_png,
+                                 .read_row = read_png_row,
+                                 .finish = finish_png,
+                                 .stop = stop_png,
                                  .close = close_png};

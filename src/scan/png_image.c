@@ -11,7 +11,7 @@
 
 /* A block stays in the processor's second cache from its decompression to its rows' conversion. */
 enum { BLOCK_BYTES = 1 << 17, BLOCKS = 4 };
-/* Less is decompressed before a thread is worth its start. */
+/* Bytes decompressed before the start of a thread is worth it. */
 #define BESIDE_BYTES_MIN ((size_t)1 << 20)
 
 typedef struct block {
@@ -24,12 +24,12 @@ struct fg_png_image {
   fg_png_image_layout layout;
   size_t block_rows, block_count;
   block blocks[BLOCKS]; /* a ring */
-  uint8_t *above;       /* the last row that was taken of the block before */
-  block *hand;          /* whose rows are taken; NULL: none */
-  size_t taken_rows;    /* of that */
+  uint8_t *above;       /* the last row read of the block before */
+  block *hand;          /* block in reading; NULL: none */
+  size_t rows_read;     /* of `hand` */
   bool beside;          /* a thread is to start with the first row */
   bool bad_filter;
-  /* Of the thread, where there is one, too: */
+  /* shared with the thread, if there is one: */
   uint32_t rows_left; /* to decompress */
   uint64_t filled, taken;
   bool ended; /* nothing more will be filled */
@@ -43,7 +43,8 @@ static block *block_at(fg_png_image *image, uint64_t number) {
   return &image->blocks[number % image->block_count];
 }
 
-/* The next rows, still filtered. False: they are the last, or fewer than there should be. */
+/* Fills a block with the next rows, still filtered. False: they are the last, or fewer than
+ * expected. */
 static bool fill_block(fg_png_image *image, block *b) {
   size_t line = image->layout.row_bytes + 1;
   size_t wanted = image->rows_left < image->block_rows ? image->rows_left : image->block_rows;
@@ -61,7 +62,7 @@ static bool wait_for_room(fg_png_image *image) {
   return go_on;
 }
 
-static void *decompress(void *argument) {
+static void *decompress_blocks(void *argument) {
   fg_png_image *image = argument;
   bool more = true;
   while (more && wait_for_room(image)) {
@@ -75,18 +76,18 @@ static void *decompress(void *argument) {
   return NULL;
 }
 
-/* Where no thread is to be had, blocks are filled as they are wanted. */
+/* Starts the thread. Without one, blocks are filled on demand. */
 static void start_thread(fg_png_image *image) {
   image->beside = false;
-  image->threaded = fg_thread_start(&image->thread, decompress, image) == FG_OK;
+  image->threaded = fg_thread_start(&image->thread, decompress_blocks, image) == FG_OK;
 }
 
-/* Gives back the block in hand, whose last row the next one needs. */
+/* Gives back the block in hand; the next one needs its last row. */
 static void give_back(fg_png_image *image) {
   size_t size = image->layout.row_bytes, line = size + 1;
   memcpy(image->above, image->hand->lines + image->hand->rows * line - size, size);
   image->hand = NULL;
-  image->taken_rows = 0;
+  image->rows_read = 0;
   pthread_mutex_lock(&image->lock);
   image->taken++;
   pthread_cond_signal(&image->changed);
@@ -109,27 +110,27 @@ static bool fill_now(fg_png_image *image) {
 }
 
 /* False: there are no more rows. */
-static bool take_block(fg_png_image *image) {
+static bool use_next_block(fg_png_image *image) {
   if (image->beside) start_thread(image);
   if (image->threaded ? !wait_for_block(image) : !fill_now(image)) return false;
   image->hand = block_at(image, image->taken);
   return image->hand->rows > 0;
 }
 
-static const uint8_t *fail(fg_png_image *image) {
+static const uint8_t *fail_rows(fg_png_image *image) {
   fg_png_image_stop(image);
   return NULL;
 }
 
 const uint8_t *fg_png_image_next(fg_png_image *image) {
   size_t size = image->layout.row_bytes;
-  if (image->hand && image->taken_rows == image->hand->rows) give_back(image);
-  if (!image->hand && !take_block(image)) return fail(image);
-  uint8_t *line = image->hand->lines + image->taken_rows * (size + 1);
-  const uint8_t *above = image->taken_rows ? line - size : image->above;
+  if (image->hand && image->rows_read == image->hand->rows) give_back(image);
+  if (!image->hand && !use_next_block(image)) return fail_rows(image);
+  uint8_t *line = image->hand->lines + image->rows_read * (size + 1);
+  const uint8_t *above = image->rows_read ? line - size : image->above;
   image->bad_filter = !fg_png_unfilter(line[0], image->layout.pixel_bytes, above, line + 1, size);
-  if (image->bad_filter) return fail(image);
-  image->taken_rows++;
+  if (image->bad_filter) return fail_rows(image);
+  image->rows_read++;
   return line + 1;
 }
 
@@ -142,7 +143,7 @@ const char *fg_png_image_problem(const fg_png_image *image) {
   return image->bad_filter ? "bad adaptive filter value" : fg_png_stream_problem(image->stream);
 }
 
-static fg_status allocate(fg_context *ctx, fg_png_image *image) {
+static fg_status allocate_blocks(fg_context *ctx, fg_png_image *image) {
   size_t line = image->layout.row_bytes + 1;
   image->block_rows = BLOCK_BYTES / line > 0 ? BLOCK_BYTES / line : 1;
   if (image->block_rows > image->layout.height_px) image->block_rows = image->layout.height_px;
@@ -166,7 +167,7 @@ fg_status fg_png_image_create(fg_context *ctx, fg_source *source,
   image->beside = beside && (layout->row_bytes + 1) * layout->height_px >= BESIDE_BYTES_MIN &&
                   fg_core_count() > 1;
   image->block_count = image->beside ? BLOCKS : 1;
-  FG_TRY_EXIT(allocate(ctx, image));
+  FG_TRY_EXIT(allocate_blocks(ctx, image));
   FG_TRY_EXIT(fg_png_stream_open(ctx, source, head, &image->stream));
   *out = image;
 exit:

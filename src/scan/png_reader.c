@@ -18,8 +18,8 @@ struct fg_png {
   png_infop info;
   fg_source *source;
   fg_png_header header;
-  bool by_libpng;      /* all of it */
-  fg_png_image *image; /* reads the rows in libpng's stead; NULL: it reads them itself */
+  bool by_libpng;      /* libpng reads the whole image */
+  fg_png_image *image; /* reads the rows instead of libpng; NULL: libpng reads them */
   uint8_t head[FG_PNG_CHUNK_HEAD_BYTES]; /* of the last chunk */
   bool head_waits;                       /* for libpng to read it */
   bool in_image;
@@ -35,7 +35,7 @@ static void on_error(png_structp png, png_const_charp words) {
   png_longjmp(png, 1);
 }
 
-/* libpng only warns where the compressed data are wrong behind the last row (their checksum, rows
+/* libpng only warns when the compressed data are wrong after the last row (their checksum, rows
  * beyond the header's). Then the rows cannot be trusted. Bytes after a sound stream do no harm. */
 static void on_warning(png_structp png, png_const_charp words) {
   fg_png *reader = png_get_error_ptr(png);
@@ -44,8 +44,8 @@ static void on_warning(png_structp png, png_const_charp words) {
   if (in_image && !strstr(words, "Extra compressed data")) png_error(png, words);
 }
 
-/* A chunk's head is what libpng reads in one piece of its size; it is kept for whoever reads the
- * image, who gives back the head that follows it. */
+/* libpng reads a chunk's head in one piece of its size. The head is kept for the reader of the
+ * image, which returns the head after it. */
 static void on_read(png_structp png, png_bytep out, size_t wanted) {
   fg_png *reader = png_get_io_ptr(png);
   bool waited = reader->head_waits && wanted == sizeof reader->head;
@@ -62,14 +62,14 @@ static void on_read(png_structp png, png_bytep out, size_t wanted) {
   png_error(png, "cut off");
 }
 
-/* The one setjmp: runs `step` and says whether libpng came through. */
-static bool run(fg_png *reader, void (*step)(fg_png *, void *), void *row) {
+/* The one setjmp: runs `step`; false when libpng failed. */
+static bool run_libpng(fg_png *reader, void (*step)(fg_png *, void *), void *row) {
   if (setjmp(png_jmpbuf(reader->png))) return false;
   step(reader, row);
   return true;
 }
 
-static const char *explain(const char *words) {
+static const char *explain_libpng(const char *words) {
   static const char *const table[][2] = {
       {"CRC error", "its checksum (CRC) is wrong"},
       {"incorrect data check", "the checksum of the compressed image is wrong"},
@@ -85,7 +85,7 @@ static const char *explain(const char *words) {
   return words;
 }
 
-/* libpng puts the chunk's name before its words where it knows it. */
+/* libpng puts the chunk's name before its message when it is known. */
 static const char *split_chunk(const fg_png *reader, char chunk[24]) {
   const char *colon = strstr(reader->words, ": ");
   if (colon && colon - reader->words >= 4 && colon - reader->words < 24) {
@@ -117,7 +117,7 @@ static void describe_place(const fg_png *reader, char *place, size_t size) {
     snprintf(place + length, size - (size_t)length, ", after the last row");
 }
 
-static fg_status fail(fg_context *ctx, const fg_png *reader) {
+static fg_status fail_png(fg_context *ctx, const fg_png *reader) {
   const char *name = reader->source->name;
   char place[128], chunk[24];
   describe_place(reader, place, sizeof place);
@@ -127,12 +127,12 @@ static fg_status fail(fg_context *ctx, const fg_png *reader) {
     return fg_fail(ctx, FG_ERR_MEMORY, "%s: out of memory (%s)", name, place);
   if (!strcmp(words, "Invalid IHDR data")) words = reader->warning;
   return fg_fail(ctx, FG_ERR_DATA, "%s: is a damaged PNG: %s (%s); copy or scan it again", name,
-                 explain(words), place);
+                 explain_libpng(words), place);
 }
 
-/* Only the resolution matters of all that is not the image: whatever else stands in the file is
- * checked by its CRC and not looked into. */
-static void configure(png_structp png) {
+/* Of all chunks but the image only the resolution matters: the others are checked by their CRC and
+ * not parsed. */
+static void configure_libpng(png_structp png) {
   static const png_byte phys[] = "pHYs", trns[] = "tRNS";
   png_set_crc_action(png, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
   png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, NULL, -1);
@@ -146,7 +146,7 @@ static void read_header(fg_png *reader, void *unused) {
   (void)unused;
   png_structp png = reader->png;
   fg_png_header *header = &reader->header;
-  configure(png);
+  configure_libpng(png);
   png_read_info(png, reader->info);
   header->width_px = png_get_image_width(png, reader->info);
   header->height_px = png_get_image_height(png, reader->info);
@@ -167,10 +167,10 @@ static void copy_palette(fg_png *reader) {
   if (!header->has_palette || !png_get_PLTE(reader->png, reader->info, &colours, &count)) return;
   header->palette_size = (size_t)count;
   for (int i = 0; i < count && i < 256; i++)
-    header->palette[i] = (fg_scan_loop_colour){colours[i].red, colours[i].green, colours[i].blue};
+    header->palette[i] = (fg_scan_colour){colours[i].red, colours[i].green, colours[i].blue};
 }
 
-static fg_status create(fg_context *ctx, fg_png *reader) {
+static fg_status create_libpng(fg_context *ctx, fg_png *reader) {
   reader->png = png_create_read_struct(PNG_LIBPNG_VER_STRING, reader, on_error, on_warning);
   if (reader->png) reader->info = png_create_info_struct(reader->png);
   if (!reader->info) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: libpng's reader");
@@ -184,8 +184,8 @@ static fg_status open_png(fg_context *ctx, fg_source *source, bool by_libpng, fg
   FG_TRY(fg_memory_allocate(ctx, 1, sizeof *reader, (void **)&reader));
   reader->source = source;
   reader->by_libpng = by_libpng;
-  fg_status status = create(ctx, reader);
-  if (status == FG_OK && !run(reader, read_header, NULL)) status = fail(ctx, reader);
+  fg_status status = create_libpng(ctx, reader);
+  if (status == FG_OK && !run_libpng(reader, read_header, NULL)) status = fail_png(ctx, reader);
   if (status != FG_OK) {
     fg_png_close(reader);
     return status;
@@ -212,22 +212,22 @@ static bool is_little_endian(void) {
   return *(const uint8_t *)&one == 1;
 }
 
-static void start(fg_png *reader, void *unused) {
+static void start_libpng(fg_png *reader, void *unused) {
   (void)unused;
   if (reader->header.bit_depth < 8) png_set_packing(reader->png);
   if (reader->header.bit_depth == 16 && is_little_endian()) png_set_swap(reader->png);
   png_start_read_image(reader->png);
 }
 
-/* The kinds that scanners write. */
+/* Returns true for the kinds that scanners write. */
 static bool is_common(const fg_png_header *header) {
   return !header->interlaced && !header->has_palette && header->bit_depth >= 8;
 }
 
 /* True where no distance in the compressed stream can exceed the window that its first byte
  * declares (RFC 1950): 32 KiB, or at least the bytes of the image. ISA-L only rejects distances
- * beyond the start of the stream; libpng also rejects those beyond the window. So images for which
- * the two may disagree are left to libpng. */
+ * beyond the start of the stream; libpng also rejects those beyond the window. So libpng reads the
+ * images for which the two may disagree. */
 static bool window_covers_image(const fg_png *png) {
   enum { WINDOW_BITS_MIN = 8, WINDOW_BITS_MAX = 15 };
   const uint8_t *first;
@@ -253,7 +253,7 @@ fg_status fg_png_start(fg_context *ctx, fg_png *png, bool beside) {
   png->in_image = true;
   if (is_common(&png->header) && !png->by_libpng && window_covers_image(png))
     return start_image(ctx, png, beside);
-  return run(png, start, NULL) ? FG_OK : fail(ctx, png);
+  return run_libpng(png, start_libpng, NULL) ? FG_OK : fail_png(ctx, png);
 }
 
 /* An error of the image in libpng's words, as libpng's own. */
@@ -261,7 +261,7 @@ static fg_status fail_image(fg_context *ctx, fg_png *png) {
   const char *words = fg_png_image_problem(png->image);
   png->cut_off = !words;
   snprintf(png->words, sizeof png->words, "%s", words ? words : "cut off");
-  return fail(ctx, png);
+  return fail_png(ctx, png);
 }
 
 static void copy_samples(const fg_png_header *header, const uint8_t *row, void *samples) {
@@ -285,18 +285,18 @@ static fg_status read_image_row(fg_context *ctx, fg_png *png, void *samples) {
   return FG_OK;
 }
 
-static void read_row(fg_png *reader, void *row) {
+static void read_libpng_row(fg_png *reader, void *row) {
   png_read_row(reader->png, row, NULL);
   reader->rows_read++;
 }
 
 fg_status fg_png_read_row(fg_context *ctx, fg_png *png, void *samples) {
   if (png->image) return read_image_row(ctx, png, samples);
-  return run(png, read_row, samples) ? FG_OK : fail(ctx, png);
+  return run_libpng(png, read_libpng_row, samples) ? FG_OK : fail_png(ctx, png);
 }
 
-/* libpng goes on behind the image as if it had skipped it. What the image took is free for what is
- * done with its rows. */
+/* libpng goes on after the image as if it had skipped it. The image's memory is freed for the
+ * processing of its rows. */
 static fg_status finish_image(fg_context *ctx, fg_png *png) {
   static const png_byte idat[] = "IDAT";
   if (!fg_png_image_finish(png->image, png->head)) return fail_image(ctx, png);
@@ -307,14 +307,14 @@ static fg_status finish_image(fg_context *ctx, fg_png *png) {
   return FG_OK;
 }
 
-static void finish(fg_png *reader, void *unused) {
+static void finish_libpng(fg_png *reader, void *unused) {
   (void)unused;
   png_read_end(reader->png, NULL);
 }
 
 fg_status fg_png_finish(fg_context *ctx, fg_png *png) {
   if (png->image) FG_TRY(finish_image(ctx, png));
-  return run(png, finish, NULL) ? FG_OK : fail(ctx, png);
+  return run_libpng(png, finish_libpng, NULL) ? FG_OK : fail_png(ctx, png);
 }
 
 void fg_png_stop(fg_png *png) {

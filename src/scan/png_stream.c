@@ -21,8 +21,8 @@ struct fg_png_stream {
   uint32_t chunk_left, crc;
   bool run_ended;
   uint8_t next_head[FG_PNG_CHUNK_HEAD_BYTES]; /* of the chunk that ended it */
-  problem input_problem;                      /* counts when all before it is decompressed */
-  /* What they hold: */
+  problem input_problem;                      /* valid when all input before it is decompressed */
+  /* Their content: */
   struct inflate_state *state;
   bool begun, ended;
   problem problem;
@@ -47,12 +47,12 @@ static bool fail_input(fg_png_stream *stream, const char *words) {
   return false;
 }
 
-static bool fail(fg_png_stream *stream, const char *words) {
+static bool fail_stream(fg_png_stream *stream, const char *words) {
   if (!stream->problem.found) stream->problem = (problem){true, words};
   return false;
 }
 
-/* Behind a chunk's data: its checksum and the head of the next chunk. */
+/* Ends a chunk: reads its checksum and the head of the next chunk. */
 static bool end_chunk(fg_png_stream *stream) {
   uint8_t bytes[CRC_BYTES + FG_PNG_CHUNK_HEAD_BYTES];
   size_t got = fg_source_read(stream->source, bytes, sizeof bytes);
@@ -69,9 +69,9 @@ static bool end_chunk(fg_png_stream *stream) {
   return false;
 }
 
-/* At most `wanted` bytes of the chunks' data; fewer at the end of the run or before what is wrong
- * with it. */
-static size_t receive(fg_png_stream *stream, uint8_t *out, size_t wanted) {
+/* Reads at most `wanted` bytes of the chunks' data; fewer at the end of the run or before an error.
+ */
+static size_t receive_data(fg_png_stream *stream, uint8_t *out, size_t wanted) {
   size_t done = 0;
   while (done < wanted && !stream->run_ended && !stream->input_problem.found) {
     size_t part = wanted - done < stream->chunk_left ? wanted - done : stream->chunk_left;
@@ -90,14 +90,14 @@ static size_t receive(fg_png_stream *stream, uint8_t *out, size_t wanted) {
 /* RFC 1950: method, window and their check. */
 static bool begin_stream(fg_png_stream *stream) {
   uint8_t head[ZLIB_HEAD_BYTES];
-  if (receive(stream, head, sizeof head) < sizeof head) {
-    if (stream->input_problem.found) return fail(stream, stream->input_problem.words);
-    return fail(stream, "Not enough image data");
+  if (receive_data(stream, head, sizeof head) < sizeof head) {
+    if (stream->input_problem.found) return fail_stream(stream, stream->input_problem.words);
+    return fail_stream(stream, "Not enough image data");
   }
-  if ((head[0] * 256u + head[1]) % 31) return fail(stream, "incorrect header check");
-  if ((head[0] & 0xf) != 8) return fail(stream, "unknown compression method");
-  if (head[0] >> 4 > 7) return fail(stream, "invalid window size");
-  if (head[1] & 0x20) return fail(stream, "missing LZ dictionary");
+  if ((head[0] * 256u + head[1]) % 31) return fail_stream(stream, "incorrect header check");
+  if ((head[0] & 0xf) != 8) return fail_stream(stream, "unknown compression method");
+  if (head[0] >> 4 > 7) return fail_stream(stream, "invalid window size");
+  if (head[1] & 0x20) return fail_stream(stream, "missing LZ dictionary");
   isal_inflate_init(stream->state);
   stream->state->crc_flag = ISAL_ZLIB_NO_HDR_VER;
   stream->state->hist_bits = (head[0] >> 4) + 8u;
@@ -105,7 +105,7 @@ static bool begin_stream(fg_png_stream *stream) {
   return true;
 }
 
-static const char *explain(int code) {
+static const char *explain_inflate(int code) {
   switch (code) {
   case ISAL_INVALID_BLOCK:
     return "invalid block of compressed data";
@@ -118,10 +118,11 @@ static const char *explain(int code) {
   }
 }
 
-/* What stopped a stream that wants more input than there is. */
+/* Error of a stream that needs more input than there is. */
 static bool fail_for_want(fg_png_stream *stream) {
-  if (stream->input_problem.found) return fail(stream, stream->input_problem.words);
-  return fail(stream, stream->run_ended ? "Not enough image data" : "invalid compressed data");
+  if (stream->input_problem.found) return fail_stream(stream, stream->input_problem.words);
+  return fail_stream(stream,
+                     stream->run_ended ? "Not enough image data" : "invalid compressed data");
 }
 
 size_t fg_png_stream_read(fg_png_stream *stream, uint8_t *out, size_t wanted) {
@@ -132,13 +133,13 @@ size_t fg_png_stream_read(fg_png_stream *stream, uint8_t *out, size_t wanted) {
   while (state->avail_out > 0 && !stream->ended && !stream->problem.found) {
     if (state->avail_in == 0) {
       state->next_in = stream->input;
-      state->avail_in = (uint32_t)receive(stream, stream->input, INPUT_BYTES);
+      state->avail_in = (uint32_t)receive_data(stream, stream->input, INPUT_BYTES);
     }
     uint32_t given = state->avail_in, room = state->avail_out;
     int code = isal_inflate(state);
     stream->ended = code == ISAL_DECOMP_OK && state->block_state == ISAL_BLOCK_FINISH;
     if (code != ISAL_DECOMP_OK)
-      fail(stream, explain(code));
+      fail_stream(stream, explain_inflate(code));
     else if (!stream->ended && state->avail_in == given && state->avail_out == room)
       fail_for_want(stream);
   }
@@ -147,11 +148,11 @@ size_t fg_png_stream_read(fg_png_stream *stream, uint8_t *out, size_t wanted) {
 
 bool fg_png_stream_finish(fg_png_stream *stream, uint8_t head[FG_PNG_CHUNK_HEAD_BYTES]) {
   uint8_t beyond;
-  if (fg_png_stream_read(stream, &beyond, 1) > 0) return fail(stream, "Too much image data");
+  if (fg_png_stream_read(stream, &beyond, 1) > 0) return fail_stream(stream, "Too much image data");
   if (!stream->ended || stream->problem.found) return false;
-  while (receive(stream, stream->input, INPUT_BYTES) > 0)
+  while (receive_data(stream, stream->input, INPUT_BYTES) > 0)
     continue;
-  if (stream->input_problem.found) return fail(stream, stream->input_problem.words);
+  if (stream->input_problem.found) return fail_stream(stream, stream->input_problem.words);
   memcpy(head, stream->next_head, FG_PNG_CHUNK_HEAD_BYTES);
   return true;
 }

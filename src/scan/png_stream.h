@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the IDAT chunks of a PNG hold, decompressed: ISA-L's inflate, which takes a third of the
- * time that zlib takes. Every chunk's CRC, the stream's head and its Adler-32 are checked.
+/* The decompressed content of the IDAT chunks of a PNG, by ISA-L's inflate, which takes a third of
+ * zlib's time.
  *
- * What is wrong is told in the words that libpng has for it. */
+ * Every chunk's CRC, the stream's head and its Adler-32 are checked. Errors have libpng's words. */
 #ifndef FG_SCAN_PNG_STREAM_H
 #define FG_SCAN_PNG_STREAM_H
 
@@ -17,20 +17,20 @@ enum { FG_PNG_CHUNK_HEAD_BYTES = 8 };
 
 typedef struct fg_png_stream fg_png_stream;
 
-/* The source stands behind the head of the first IDAT chunk, which is `head`. FG_ERR_MEMORY. */
+/* The source stands after the head of the first IDAT chunk, which is `head`. FG_ERR_MEMORY. */
 fg_status fg_png_stream_open(fg_context *ctx, fg_source *source,
                              const uint8_t head[FG_PNG_CHUNK_HEAD_BYTES], fg_png_stream **stream);
 void fg_png_stream_close(fg_png_stream *stream); /* NULL is fine */
 
-/* The next bytes; fewer at the stream's end, or before what is wrong with it. */
+/* Reads the next bytes; fewer at the stream's end, or before an error. */
 size_t fg_png_stream_read(fg_png_stream *stream, uint8_t *out, size_t wanted);
 
-/* Checks that the stream ends here (bytes of IDAT behind it do no harm), and goes to the first
- * chunk that is no IDAT, whose head goes to `head`. False: an error. */
+/* Checks that the stream ends here (bytes of IDAT after it do no harm), and goes to the first chunk
+ * that is no IDAT, whose head goes to `head`. False: an error. */
 bool fg_png_stream_finish(fg_png_stream *stream, uint8_t head[FG_PNG_CHUNK_HEAD_BYTES]);
 
-/* What is wrong, when a read or the finish fell short; NULL: the file ends too early, or cannot be
- * read on. */
+/* Describes the error after a short read or a failed finish; NULL: the file ends too early, or
+ * cannot be read on. */
 const char *fg_png_stream_problem(const fg_png_stream *stream);
 
 #endif

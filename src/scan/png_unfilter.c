@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Up has no order and is left to the compiler. Sub is a running sum: within sixteen bytes by
+/* Up needs no order and is left to the compiler. Sub is a running sum: within sixteen bytes by
  * doubling steps, so that only one addition waits for the sixteen before. Average and Paeth go from
  * pixel to pixel: with three bytes or more, all of a pixel at once; with one or two, a byte at a
  * time without branches. */
@@ -61,7 +61,7 @@ INLINE void undo_sub(uint8_t *row, size_t size, size_t pixel_bytes) {
   undo_sub_bytewise(row, i, size, pixel_bytes);
 }
 
-/* Bytes beyond the pixel come along: FG_PNG_ROW_SLACK. */
+/* Loads bytes beyond the pixel, too: FG_PNG_ROW_SLACK. */
 INLINE words_8 load_pixel(const uint8_t *from, size_t pixel_bytes) {
   uint64_t wide = 0;
   bytes_8 bytes;
@@ -70,8 +70,8 @@ INLINE words_8 load_pixel(const uint8_t *from, size_t pixel_bytes) {
   return __builtin_convertvector(bytes, words_8);
 }
 
-/* Modulo 256, as the filters count; returns what was stored. In the sizes that a processor stores.
- */
+/* Stores modulo 256, as the filters count, in the sizes that a processor stores; returns the stored
+ * bytes. */
 INLINE words_8 store_pixel(uint8_t *to, words_8 value, size_t pixel_bytes) {
   bytes_8 bytes = __builtin_convertvector(value, bytes_8);
   uint64_t wide;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* PNM: P4 (1 bit), P5 (gray), P6 (colour), binary, 8 or 16 bit. What `scanimage` writes to a pipe.
+/* PNM: P4 (1 bit), P5 (gray), P6 (colour), binary, 8 or 16 bit, as `scanimage` writes it to a pipe.
  *
  * Netpbm's header: the magic, then width, height and (not in P4) the largest value, separated by
  * white space and comments from # to the end of the line; one white space; then the rows, 16-bit
@@ -15,20 +15,20 @@
 
 typedef struct pnm_reader {
   fg_source *source;
-  size_t row_samples, row_bytes; /* of a row as it stands in the file */
+  size_t row_samples, row_bytes; /* of a row in the file */
   size_t rows_read, height;
   unsigned white;
   bool bits; /* P4 */
   uint8_t *packed;
 } pnm_reader;
 
-static bool matches(const uint8_t *head, size_t length) {
+static bool matches_pnm(const uint8_t *head, size_t length) {
   if (head[0] != 'P') return false;
   if (length >= 2 && (head[1] < '4' || head[1] > '6')) return false;
   return length < 3 || head[2] == '#' || strchr(" \t\r\n\v\f", head[2]) != NULL;
 }
 
-static bool has_colour(const uint8_t *head, size_t length) {
+static bool has_pnm_colour(const uint8_t *head, size_t length) {
   return length > 1 && head[1] == '6';
 }
 
@@ -49,8 +49,9 @@ static bool is_space(int c) {
   return c == ' ' || (c >= '\t' && c <= '\r');
 }
 
-/* The next number of the header with the one white space after it. */
-static fg_status read_number(fg_context *ctx, fg_source *source, const char *what, uint64_t *out) {
+/* Reads the next number of the header with the one white space after it. */
+static fg_status read_header_number(fg_context *ctx, fg_source *source, const char *what,
+                                    uint64_t *out) {
   int c = next_byte(source);
   while (is_space(c) || c == '#') {
     while (c == '#' || (c >= 0 && c != '\n' && !is_space(c))) {
@@ -79,10 +80,10 @@ static fg_status read_header(fg_context *ctx, pnm_reader *reader, fg_scan_header
   char magic[2] = "";
   if (fg_source_read(source, magic, 2) != 2)
     return fail_header(ctx, source, "it is cut off in its header");
-  FG_TRY(read_number(ctx, source, "no width", &header->width_px));
-  FG_TRY(read_number(ctx, source, "no height", &header->height_px));
+  FG_TRY(read_header_number(ctx, source, "no width", &header->width_px));
+  FG_TRY(read_header_number(ctx, source, "no height", &header->height_px));
   reader->bits = magic[1] == '4';
-  if (!reader->bits) FG_TRY(read_number(ctx, source, "no largest value", &white));
+  if (!reader->bits) FG_TRY(read_header_number(ctx, source, "no largest value", &white));
   if (header->width_px == 0 || header->height_px == 0)
     return fail_header(ctx, source, "its width or height is zero");
   if (white == 0 || white > 65535)
@@ -115,7 +116,7 @@ static fg_status open_pnm(fg_context *ctx, fg_source *source, const fg_scan_opti
   return FG_OK;
 }
 
-static fg_status start(fg_context *ctx, void *r) {
+static fg_status start_pnm(fg_context *ctx, void *r) {
   pnm_reader *reader = r;
   return reader->bits ? fg_memory_allocate(ctx, reader->row_bytes, 1, (void **)&reader->packed)
                       : FG_OK;
@@ -140,7 +141,7 @@ static size_t find_too_large(const pnm_reader *reader, const void *samples) {
   return i;
 }
 
-static fg_status read_row(fg_context *ctx, void *r, void *samples) {
+static fg_status read_pnm_row(fg_context *ctx, void *r, void *samples) {
   pnm_reader *reader = r;
   fg_source *source = reader->source;
   uint8_t *to = reader->bits ? reader->packed : samples;
@@ -163,8 +164,8 @@ static fg_status read_row(fg_context *ctx, void *r, void *samples) {
                  source->name, bad + 1, reader->rows_read, reader->white);
 }
 
-/* What follows would be another image, or a header that does not fit. */
-static fg_status finish(fg_context *ctx, void *r) {
+/* Any further bytes would be another image, or a header that does not fit. */
+static fg_status finish_pnm(fg_context *ctx, void *r) {
   pnm_reader *reader = r;
   if (next_byte(reader->source) < 0) return FG_OK;
   return fg_fail(
@@ -185,10 +186,10 @@ static const char *const endings[] = {".pnm", ".pgm", ".ppm", ".pbm", NULL};
 
 const fg_format fg_format_pnm = {.name = "PNM",
                                  .endings = endings,
-                                 .matches = matches,
-                                 .has_colour = has_colour,
+                                 .matches = matches_pnm,
+                                 .has_colour = has_pnm_colour,
                                  .open = open_pnm,
-                                 .start = start,
-                                 .read_row = read_row,
-                                 .finish = finish,
+                                 .start = start_pnm,
+                                 .read_row = read_pnm_row,
+                                 .finish = finish_pnm,
                                  .close = close_pnm};

@@ -10,10 +10,10 @@
 #include "scan/contrast.h"
 #include "scan/format.h"
 #include "scan/gray.h"
-#include "scan/resolution.h"
+#include "scan/header.h"
 #include "scan/source.h"
 
-enum { HEAD_BYTES = 512 }; /* that tell the format */
+enum { HEAD_BYTES = 512 }; /* bytes that tell the format */
 
 struct fg_scan {
   fg_source source;
@@ -21,12 +21,12 @@ struct fg_scan {
   void *reader; /* of the format */
   fg_scan_header header;
   fg_gray gray;
-  fg_gray colours[3]; /* once they are read apart */
-  void *samples;      /* room for a row of samples; NULL where they need no conversion */
+  fg_gray colours[3]; /* after fg_scan_begin_colours */
+  void *samples;      /* buffer for a row of samples; NULL where they need no conversion */
   fg_scan_info info;
   unsigned threads;
   int64_t rows_read;
-  bool broken; /* an error ended it */
+  bool broken; /* an error ended the reading */
   bool ended;  /* all was read and checked, to the end of the file */
 };
 
@@ -47,8 +47,8 @@ static fg_status find_format(fg_context *ctx, const fg_scan_options *options, fg
   return twice || scan->format->needs_file ? fg_source_store(ctx, source) : FG_OK;
 }
 
-/* A few bytes can declare a size that fills the memory or takes days: refuse it before any of it
- * is decoded. */
+/* Refuses sizes over the cap before anything is decoded: a few bytes can declare a size that fills
+ * the memory or takes days. */
 static fg_status check_size(fg_context *ctx, const fg_scan *scan, uint64_t cap) {
   const fg_scan_header *header = &scan->header;
   const char *name = scan->source.name;
@@ -156,7 +156,7 @@ static fg_status open_scan(fg_context *ctx, const char *path, const fg_scan_opti
   return prepare_rows(ctx, options, scan);
 }
 
-/* Of a file that was opened but is no scan. */
+/* Sums a file that was opened but is no scan. */
 static void sum_failed(const fg_scan_options *options, fg_scan *scan) {
   char *hex = options->failed_sha256;
   if (!hex) return;
@@ -185,7 +185,7 @@ const fg_scan_info *fg_scan_get_info(const fg_scan *scan) {
   return &scan->info;
 }
 
-static fg_status finish(fg_context *ctx, fg_scan *scan) {
+static fg_status finish_scan(fg_context *ctx, fg_scan *scan) {
   FG_TRY(scan->format->finish(ctx, scan->reader));
   FG_TRY(fg_source_drain(ctx, &scan->source));
   scan->ended = true;
@@ -217,12 +217,12 @@ static fg_status read_one_row(fg_context *ctx, fg_scan *scan, void *out) {
   return FG_OK;
 }
 
-static fg_status read_rows(fg_context *ctx, fg_scan *scan, int64_t rows, void *out,
-                           int64_t stride_bytes) {
+static fg_status read_gray_rows(fg_context *ctx, fg_scan *scan, int64_t rows, void *out,
+                                int64_t stride_bytes) {
   for (int64_t i = 0; i < rows; i++)
     FG_TRY(read_one_row(ctx, scan, (char *)out + i * stride_bytes));
   bool complete = scan->rows_read == scan->info.height_px;
-  return complete && !scan->ended ? finish(ctx, scan) : FG_OK;
+  return complete && !scan->ended ? finish_scan(ctx, scan) : FG_OK;
 }
 
 fg_status fg_scan_read_rows(fg_context *ctx, fg_scan *scan, int64_t rows, void *out,
@@ -235,7 +235,7 @@ fg_status fg_scan_read_rows(fg_context *ctx, fg_scan *scan, int64_t rows, void *
   if (rows > 1 && stride_bytes < (int64_t)count_row_bytes(scan))
     return fg_fail(ctx, FG_ERR_USAGE, "%s: rows of %zu bytes do not fit a stride of %" PRId64, name,
                    count_row_bytes(scan), stride_bytes);
-  fg_status status = read_rows(ctx, scan, rows, out, stride_bytes);
+  fg_status status = read_gray_rows(ctx, scan, rows, out, stride_bytes);
   scan->broken = status != FG_OK;
   return status;
 }
@@ -253,7 +253,7 @@ fg_status fg_scan_begin_colours(fg_context *ctx, fg_scan *scan) {
       .allow_lossy = true, .pixel_cap = UINT64_MAX, .unsummed = true, .threads = scan->threads};
   for (int i = 0; i < 3; i++)
     fg_gray_init(&scan->header, (fg_channel)(FG_CHANNEL_RED + i), &scan->colours[i]);
-  scan->source.unsummed = true; /* it is known, or nobody has asked */
+  scan->source.unsummed = true; /* it is known, or not requested */
   scan->broken = true;          /* its gray rows are over */
   return begin_again(ctx, &options, scan);
 }

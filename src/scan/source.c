@@ -10,13 +10,13 @@
 
 #include "core/memory.h"
 
-/* CONSUMED_BYTES: what a pipe may hold behind its image. */
+/* CONSUMED_BYTES: max bytes of a pipe after its image. */
 #define CONSUMED_BYTES ((uint64_t)1 << 30)
-/* What is stored of one at most: the largest scan that is read, of four channels. */
+/* Limit of a stored pipe: the largest accepted scan, of four channels. */
 #define STORE_BYTES ((uint64_t)32 << 30)
 enum { BUFFER_BYTES = FG_LEDGER_BLOCK_BYTES };
 
-static fg_status examine(fg_context *ctx, fg_source *source) {
+static fg_status examine_file(fg_context *ctx, fg_source *source) {
   struct stat entry;
   if (fstat(source->descriptor, &entry) != 0)
     return fg_fail(ctx, fg_status_of_errno(errno), "%s: cannot be read: %s", source->name,
@@ -48,7 +48,7 @@ fg_status fg_source_open(fg_context *ctx, const char *path, bool only_file, fg_s
                    errno == EACCES   ? "ask for permission to read it"
                    : errno == ENOMEM ? "close other programs"
                                      : "check the name");
-  FG_TRY(examine(ctx, source));
+  FG_TRY(examine_file(ctx, source));
   if (only_file && !source->regular)
     return fg_fail(ctx, FG_ERR_IO, "%s: is a pipe or a device, not a file; give a scan's file",
                    source->name);
@@ -65,7 +65,7 @@ void fg_source_close(fg_source *source) {
   *source = (fg_source){.descriptor = -1};
 }
 
-static size_t receive(fg_source *source, void *out, size_t wanted) {
+static size_t receive_bytes(fg_source *source, void *out, size_t wanted) {
   if (source->ended || source->error) return 0;
   ssize_t got;
   do
@@ -85,7 +85,7 @@ size_t fg_source_peek(fg_source *source, size_t wanted, const uint8_t **bytes) {
     source->begin = 0;
   }
   while (source->end < wanted) {
-    size_t got = receive(source, source->buffer + source->end, BUFFER_BYTES - source->end);
+    size_t got = receive_bytes(source, source->buffer + source->end, BUFFER_BYTES - source->end);
     if (got == 0) break;
     source->end += got;
   }
@@ -93,7 +93,7 @@ size_t fg_source_peek(fg_source *source, size_t wanted, const uint8_t **bytes) {
   return source->end < wanted ? source->end : wanted;
 }
 
-static size_t take(fg_source *source, uint8_t *out, size_t wanted) {
+static size_t hand_out(fg_source *source, uint8_t *out, size_t wanted) {
   size_t held = source->end - source->begin;
   size_t taken = held < wanted ? held : wanted;
   memcpy(out, source->buffer + source->begin, taken);
@@ -101,20 +101,20 @@ static size_t take(fg_source *source, uint8_t *out, size_t wanted) {
   return taken;
 }
 
-/* Large requests go past the buffer, straight to where they are wanted: one copy less. */
+/* Large requests bypass the buffer: one copy less. */
 size_t fg_source_read(fg_source *source, void *out, size_t wanted) {
   uint8_t *bytes = out;
-  size_t done = take(source, bytes, wanted);
+  size_t done = hand_out(source, bytes, wanted);
   while (done < wanted) {
     size_t missing = wanted - done;
     size_t got;
     if (missing >= BUFFER_BYTES / 2) {
-      got = receive(source, bytes + done, missing);
+      got = receive_bytes(source, bytes + done, missing);
       done += got;
     } else {
       source->begin = 0;
-      source->end = got = receive(source, source->buffer, BUFFER_BYTES);
-      done += take(source, bytes + done, missing);
+      source->end = got = receive_bytes(source, source->buffer, BUFFER_BYTES);
+      done += hand_out(source, bytes + done, missing);
     }
     if (got == 0) break;
   }
@@ -151,7 +151,7 @@ static fg_status copy_to_store(fg_context *ctx, fg_source *source, int store) {
                        source->name, strerror(errno));
       done += (size_t)wrote;
     }
-    held = receive(source, source->buffer, BUFFER_BYTES);
+    held = receive_bytes(source, source->buffer, BUFFER_BYTES);
   } while (held > 0);
   if (!source->error) return FG_OK;
   return fg_fail(ctx, fg_status_of_errno(source->error), "%s: cannot be read: %s", source->name,
@@ -184,7 +184,7 @@ fg_status fg_source_jump(fg_context *ctx, fg_source *source) {
   return fg_ledger_open(ctx, source->size, &source->ledger);
 }
 
-/* One block of the file, or what it has of it. */
+/* Reads one block of the file, or the file's part of it. */
 static ssize_t read_block(const fg_source *source, uint64_t block, uint8_t *out) {
   size_t done = 0;
   while (done < FG_LEDGER_BLOCK_BYTES) {
@@ -261,7 +261,7 @@ fg_status fg_source_drain(fg_context *ctx, fg_source *source) {
   size_t got;
   if (source->jumps || (source->regular && (source->stored || source->unsummed))) return FG_OK;
   source->begin = source->end = 0;
-  while ((got = receive(source, source->buffer, BUFFER_BYTES)) > 0)
+  while ((got = receive_bytes(source, source->buffer, BUFFER_BYTES)) > 0)
     if ((past += got) > CONSUMED_BYTES && !source->regular)
       return fg_fail(ctx, FG_ERR_DATA,
                      "%s: goes on for more than %d MiB behind its image; give one image",
@@ -271,7 +271,7 @@ fg_status fg_source_drain(fg_context *ctx, fg_source *source) {
                  source->name, strerror(source->error));
 }
 
-/* The reading of its own: block by block beside the other's. */
+/* Sums the file in a reading of its own: block by block beside the other's. */
 static fg_status sum_blocks(fg_context *ctx, fg_source *source, char hex[65]) {
   struct sha256_ctx sum;
   void *block;

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The bytes of a scan: a file or a pipe, read once from front to back through one buffer, and
- * summed as they come by. A format that jumps about (fg_source_read_at) is summed in a reading of
- * its own, and a ledger says when the two saw different bytes. */
+ * summed on the way.
+ *
+ * A format that reads at random (fg_source_read_at) is summed in a reading of its own, and a ledger
+ * detects when the two saw different bytes. */
 #ifndef FG_SCAN_SOURCE_H
 #define FG_SCAN_SOURCE_H
 
@@ -14,11 +16,11 @@
 #include "foilgauge/status.h"
 #include "scan/ledger.h"
 
-/* A block of a file that is read by jumps, for one reader of it. */
+/* A block of a file that is read at random, for one reader of it. */
 typedef struct fg_source_window {
   uint8_t *buffer; /* FG_LEDGER_BLOCK_BYTES */
   uint64_t block;
-  size_t length; /* what the file has of it; 0: none is held */
+  size_t length; /* number of bytes that the file has of it; 0: none is held */
   int error;     /* errno of a failed read */
 } fg_source_window;
 
@@ -27,35 +29,35 @@ typedef struct fg_source {
   int descriptor;  /* -1: none */
   bool owned;      /* close it */
   bool regular;    /* a regular file: has a size, can be read anywhere */
-  bool stored;     /* a pipe in a file that nobody else knows */
+  bool stored;     /* a pipe stored in an unnamed file */
   bool unsummed;   /* nobody will ask for the sum */
   bool jumps;      /* read by fg_source_read_at */
-  off_t start;     /* of a regular file: where the scan begins */
+  off_t start;     /* of a regular file: begin of the scan */
   uint64_t size;   /* of a regular file, from `start` */
   uint64_t offset; /* bytes handed out so far */
   bool ended;      /* the end of the file was seen */
   int error;       /* errno of a failed read */
   uint8_t *buffer;
-  size_t begin, end;    /* what of the buffer is filled and not yet handed out */
+  size_t begin, end;    /* filled part of the buffer that is not yet handed out */
   fg_sha256_stream sum; /* over all bytes received */
   char sha256[65];      /* "": not known yet */
   fg_ledger ledger;
-  fg_source_window window; /* jumping */
+  fg_source_window window; /* for reading at random */
 } fg_source;
 
 /* "-" is standard input. FG_ERR_IO: missing, a folder, no permission; with `only_file`: a pipe or a
- * device, which could keep the caller waiting for ever. The source stays where it is. */
+ * device, which could block the caller for ever. The source keeps its address. */
 fg_status fg_source_open(fg_context *ctx, const char *path, bool only_file, fg_source *source);
 void fg_source_close(fg_source *source);
 
-/* At most `wanted` (≤ 4096) bytes from where it stands, without consuming them; fewer at the end
- * of the file or after a failure (source->error). */
+/* Shows at most `wanted` (≤ 4096) bytes from the present place, without consuming them; fewer at
+ * the end of the file or after a failure (source->error). */
 size_t fg_source_peek(fg_source *source, size_t wanted, const uint8_t **bytes);
 
 /* Hands out exactly `wanted` bytes, or fewer at the end of the file or after a failure. */
 size_t fg_source_read(fg_source *source, void *out, size_t wanted);
 
-/* Why a decoder got fewer bytes than it asked for, at `place`: FG_ERR_IO when reading failed,
+/* Reports why a decoder got fewer bytes than requested, at `place`: FG_ERR_IO when reading failed,
  * FG_ERR_DATA when the file ended (`cut_off`); else FG_OK. */
 fg_status fg_source_check(fg_context *ctx, const fg_source *source, bool cut_off,
                           const char *place);
@@ -64,28 +66,28 @@ fg_status fg_source_check(fg_context *ctx, const fg_source *source, bool cut_off
  * regular file; nothing may have been handed out. A regular file stays. */
 fg_status fg_source_store(fg_context *ctx, fg_source *source);
 
-/* From here on the file is read by fg_source_read_at only. FG_ERR_MEMORY. */
+/* Switches to random reading by fg_source_read_at only. FG_ERR_MEMORY. */
 fg_status fg_source_jump(fg_context *ctx, fg_source *source);
 
-/* At most `wanted` bytes from `offset` of a regular file; 0 at its end; -1: source->error. */
+/* Reads at most `wanted` bytes from `offset` of a regular file; 0 at its end; -1: source->error. */
 ssize_t fg_source_read_at(fg_source *source, void *out, size_t wanted, uint64_t offset);
 
-/* The same through a window of one's own, whose errors it holds: from any thread. */
+/* Reading through the caller's own window, which holds its errors: from any thread. */
 fg_status fg_source_window_open(fg_context *ctx, fg_source_window *window);
 void fg_source_window_close(fg_source_window *window);
 ssize_t fg_source_read_window(fg_source *source, fg_source_window *window, void *out, size_t wanted,
                               uint64_t offset);
 
-/* Back to the first byte of a regular file. */
+/* Goes back to the first byte of a regular file. */
 fg_status fg_source_rewind(fg_context *ctx, fg_source *source);
 
-/* Receives what is left; nothing is left of a file that is read by jumps. FG_ERR_IO, FG_ERR_DATA: a
- * pipe that goes on and on. */
+/* Receives the remainder; nothing remains of a file that is read at random. FG_ERR_IO, FG_ERR_DATA:
+ * an endless pipe. */
 fg_status fg_source_drain(fg_context *ctx, fg_source *source);
 
-/* SHA-256 of the bytes that were read, with what is left. Where the file is read by jumps it is
- * found in a reading of its own, which another thread may do meanwhile; FG_ERR_IO when the two have
- * seen different bytes so far. */
+/* Writes the SHA-256 of the whole scan. Where the file is read at random a reading of its own finds
+ * it, which another thread may do meanwhile; FG_ERR_IO when the two have seen different bytes so
+ * far. */
 fg_status fg_source_sha256(fg_context *ctx, fg_source *source, char hex[65]);
 
 /* FG_ERR_IO when two readings of one block have seen different bytes. */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Compressed strips and tiles, decoded by several threads at once: each has a view of the file of
- * its own, and takes the next part (a strip, a tile) until the batch is done. */
+/* Compressed strips and tiles, decoded by several threads at once. Each thread has its own view of
+ * the file, and decodes the next part (a strip, a tile) until the batch is done. */
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,7 +11,7 @@
 
 /* A longer strip is read row by row: it may be the whole image. */
 #define STRIP_BYTES_MAX ((size_t)1 << 22)
-/* Each thread decodes about so much of a batch of strips, which pays for its start. */
+/* Bytes of a batch of strips per thread that make up for its start. */
 #define SHARE_BYTES ((size_t)1 << 19)
 
 /* Codecs without state beyond a strip or a tile, and without settings of their own. */
@@ -48,7 +48,7 @@ uint64_t fg_tiff_batch_memory(const fg_tiff *r) {
   return r->batch_rows * r->row_bytes + r->tile_bytes * r->threads;
 }
 
-/* A view beside the reader's; without it there are fewer threads. */
+/* Opens a view beside the reader's; without it there are fewer threads. */
 static bool open_view(fg_context *ctx, fg_tiff *r, fg_tiff_worker *w) {
   if (fg_source_window_open(ctx, &w->window) != FG_OK) return false;
   w->own = (fg_tiff_handle){.source = r->source, .window = &w->window};
@@ -125,8 +125,8 @@ static fg_status decode_parts(fg_context *ctx, void *shared, size_t item) {
   return FG_OK;
 }
 
-/* The first part that failed tells, whoever had it. */
-static fg_status fail(fg_context *ctx, fg_tiff *r) {
+/* Reports the first part that failed, in any thread. */
+static fg_status fail_batch(fg_context *ctx, fg_tiff *r) {
   fg_tiff_worker *first = NULL;
   for (unsigned i = 0; i < r->threads; i++) {
     fg_tiff_worker *w = &r->workers[i];
@@ -144,7 +144,7 @@ static fg_status decode_batch(fg_context *ctx, fg_tiff *r) {
   b.parts = r->tile_bytes ? (r->width + r->tile_width - 1) / r->tile_width
                           : (rows + r->rows_per_strip - 1) / r->rows_per_strip;
   FG_TRY(fg_parallel_run(ctx, r->threads, r->threads, decode_parts, &b));
-  return fail(ctx, r);
+  return fail_batch(ctx, r);
 }
 
 fg_status fg_tiff_fetch_batch(fg_context *ctx, fg_tiff *r, uint8_t *row) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* TIFF and BigTIFF as one of the formats: what the tags say. */
+/* TIFF and BigTIFF as one of the formats: meaning of the tags. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,10 +10,10 @@
 #include "scan/jpeg_tables.h"
 #include "scan/tiff_reader.h"
 
-/* Of an image's markers before its quantization table. */
+/* Max bytes of an image's markers before its quantization table. */
 enum { TABLES_BYTES_MAX = 4096 };
 
-/* ratio: the most that a byte can become; 0: not known. */
+/* ratio: max bytes that a byte can become; 0: not known. */
 static const struct {
   uint16_t code;
   const char *name;
@@ -33,7 +33,7 @@ static const struct {
     {COMPRESSION_JPEG, "JPEG", true, false, 0},
 };
 
-static bool matches(const uint8_t *head, size_t length) {
+static bool matches_tiff(const uint8_t *head, size_t length) {
   static const char *const magics[] = {"II*", "MM\0*", "II+", "MM\0+"};
   size_t compared = length < 4 ? length : 4;
   for (size_t i = 0; i < sizeof magics / sizeof magics[0] && length >= 2; i++)
@@ -41,14 +41,14 @@ static bool matches(const uint8_t *head, size_t length) {
   return false;
 }
 
-/* Everything of a TIFF is stored before it is read. */
-static bool has_colour(const uint8_t *head, size_t length) {
+/* A pipe with a TIFF is always stored before it is read. */
+static bool has_tiff_colour(const uint8_t *head, size_t length) {
   (void)head;
   (void)length;
   return false;
 }
 
-static fg_status refuse(fg_context *ctx, const fg_tiff *r, const char *what, unsigned value) {
+static fg_status refuse_tag(fg_context *ctx, const fg_tiff *r, const char *what, unsigned value) {
   return fg_fail(ctx, FG_ERR_DATA,
                  "%s: has %s (%u), which is not read; "
                  "save it as 8- or 16-bit "
@@ -74,11 +74,11 @@ static fg_status check_compression(fg_context *ctx, fg_tiff *r, const fg_scan_op
     r->main.strict = compressions[i].strict;
     if (TIFFIsCODECConfigured(r->compression)) return FG_OK;
   }
-  return refuse(ctx, r, "an unknown compression", r->compression);
+  return refuse_tag(ctx, r, "an unknown compression", r->compression);
 }
 
-/* The quantization table of JPEG: in a tag of its own, or before the first strip's or tile's image.
- */
+/* Finds JPEG's quantization table: in a tag of its own, or before the first strip's or tile's
+ * image. */
 static fg_status find_quality(fg_context *ctx, const fg_tiff *r, fg_scan_header *header) {
   uint8_t head[TABLES_BYTES_MAX];
   uint16_t zigzag[64];
@@ -108,11 +108,11 @@ static fg_status check_samples(fg_context *ctx, fg_tiff *r) {
   TIFFGetFieldDefaulted(r->main.tiff, TIFFTAG_PLANARCONFIG, &planar);
   if (width == 0 || height == 0) return fg_tiff_fail(ctx, r, "its width or height is zero");
   if (bits != 1 && bits != 2 && bits != 4 && bits != 8 && bits != 16)
-    return refuse(ctx, r, "samples of odd size", bits);
+    return refuse_tag(ctx, r, "samples of odd size", bits);
   if (channels == 0 || channels > 8 || (channels > 1 && bits < 8))
-    return refuse(ctx, r, "an odd number of channels", channels);
+    return refuse_tag(ctx, r, "an odd number of channels", channels);
   if (format != SAMPLEFORMAT_UINT && format != SAMPLEFORMAT_VOID)
-    return refuse(ctx, r, "signed or floating-point samples", format);
+    return refuse_tag(ctx, r, "signed or floating-point samples", format);
   r->width = width;
   r->height = height;
   r->bits = bits;
@@ -129,8 +129,8 @@ static fg_status copy_palette(fg_context *ctx, fg_tiff *r, fg_scan_header *heade
   header->has_palette = true;
   header->palette_size = (size_t)1 << r->bits;
   for (size_t i = 0; i < header->palette_size; i++)
-    header->palette[i] = (fg_scan_loop_colour){(uint8_t)(red[i] >> 8), (uint8_t)(green[i] >> 8),
-                                               (uint8_t)(blue[i] >> 8)};
+    header->palette[i] =
+        (fg_scan_colour){(uint8_t)(red[i] >> 8), (uint8_t)(green[i] >> 8), (uint8_t)(blue[i] >> 8)};
   return FG_OK;
 }
 
@@ -158,7 +158,7 @@ static fg_status check_colours(fg_context *ctx, fg_tiff *r, fg_scan_header *head
   default:
     break;
   }
-  return refuse(ctx, r, "an odd kind of colours", photometric);
+  return refuse_tag(ctx, r, "an odd kind of colours", photometric);
 }
 
 static void fill_resolution(const fg_tiff *r, fg_scan_header *header) {
@@ -223,20 +223,20 @@ static fg_status open_format(fg_context *ctx, fg_source *source, const fg_scan_o
   r->threads = options->threads;
   FG_TRY(read_tags(ctx, r, options, header));
   note_oddities(r, header);
-  /* Rows are planned when the size has been agreed to, and for that no row may be too wide. */
+  /* Rows are planned after the size is accepted, so no row may be too wide. */
   if (r->width > FG_SCAN_WIDTH_MAX_PX) return FG_OK;
   return header->bytes_min > (double)source->size ? FG_OK : fg_tiff_plan_rows(ctx, r, header);
 }
 
-static fg_status start(fg_context *ctx, void *reader) {
+static fg_status start_tiff(fg_context *ctx, void *reader) {
   return fg_tiff_start_rows(ctx, reader);
 }
 
-static fg_status read_row(fg_context *ctx, void *reader, void *samples) {
+static fg_status read_tiff_row(fg_context *ctx, void *reader, void *samples) {
   return fg_tiff_read_row(ctx, reader, samples);
 }
 
-static fg_status finish(fg_context *ctx, void *reader) {
+static fg_status finish_tiff(fg_context *ctx, void *reader) {
   (void)ctx;
   (void)reader;
   return FG_OK;
@@ -254,11 +254,11 @@ static const char *const endings[] = {".tif", ".tiff", NULL};
 
 const fg_format fg_format_tiff = {.name = "TIFF",
                                   .endings = endings,
-                                  .matches = matches,
+                                  .matches = matches_tiff,
                                   .needs_file = true,
-                                  .has_colour = has_colour,
+                                  .has_colour = has_tiff_colour,
                                   .open = open_format,
-                                  .start = start,
-                                  .read_row = read_row,
-                                  .finish = finish,
+                                  .start = start_tiff,
+                                  .read_row = read_tiff_row,
+                                  .finish = finish_tiff,
                                   .close = close_format};

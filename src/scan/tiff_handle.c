@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What libtiff reads through, and where its complaints go. */
+/* libtiff's access to the source, and its messages. */
 #include <ctype.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "scan/tiff_reader.h"
 
-/* The most that libtiff may allocate at once. */
+/* Max bytes of one allocation by libtiff. */
 #define ALLOCATION_MAX ((tmsize_t)1 << 30)
 
 static tmsize_t on_read(thandle_t handle, void *out, tmsize_t wanted) {
@@ -47,7 +47,7 @@ static int on_error(TIFF *tiff, void *user, const char *module, const char *form
   (void)tiff;
   (void)module;
   fg_tiff_handle *h = user;
-  if (h->complained) return 1; /* the first one tells */
+  if (h->complained) return 1; /* the first message is the cause */
   vsnprintf(h->words, sizeof h->words, format, values);
   for (char *c = h->words; *c; c++)
     if (!isprint((unsigned char)*c)) *c = '?';
@@ -79,4 +79,16 @@ bool fg_tiff_handle_open(fg_tiff_handle *h) {
 void fg_tiff_handle_close(fg_tiff_handle *h) {
   if (h->tiff) TIFFClose(h->tiff);
   h->tiff = NULL;
+}
+
+fg_status fg_tiff_fail(fg_context *ctx, const fg_tiff *r, const char *what) {
+  char place[64] = "";
+  if (r->main.in_image)
+    snprintf(place, sizeof place, " (row %llu of %llu)", (unsigned long long)r->row + 1,
+             (unsigned long long)r->height);
+  if (r->source->error)
+    return fg_fail(ctx, FG_ERR_IO, "%s: cannot be read%s: %s; check the disk or copy it again",
+                   r->source->name, place, strerror(r->source->error));
+  return fg_fail(ctx, FG_ERR_DATA, "%s: is a damaged TIFF: %s%s; copy or scan it again",
+                 r->source->name, *what ? what : "it cannot be decoded", place);
 }

@@ -8,7 +8,8 @@
 #include "scan/header.h"
 #include "scan/source.h"
 
-/* libtiff's view of the file. Several see one file at once, each from a thread of its own. */
+/* libtiff's view of the file. Several handles read one file at once, each from a thread of its own.
+ */
 typedef struct fg_tiff_handle {
   TIFF *tiff;
   fg_source *source;
@@ -22,8 +23,8 @@ typedef struct fg_tiff_handle {
 
 typedef struct fg_tiff fg_tiff;
 
-/* The next row as it stands in the file, all channels of a pixel together, samples of fewer than 8
- * bits packed. */
+/* Fetches the next row in the file's layout, all channels of a pixel together, samples of fewer
+ * than 8 bits packed. */
 typedef fg_status fg_tiff_fetch(fg_context *ctx, fg_tiff *reader, uint8_t *row);
 
 /* A thread's share in decoding a batch. */
@@ -40,14 +41,14 @@ enum { FG_TIFF_WORKERS_MAX = 8 };
 struct fg_tiff {
   fg_tiff_handle main;
   fg_source *source;
-  unsigned threads; /* that may decode */
+  unsigned threads; /* max number of decoding threads */
   uint64_t width, height, row;
   int bits, channels; /* of a sample; of a pixel */
   uint16_t compression;
   bool separate; /* each channel in a plane of its own */
   fg_tiff_fetch *fetch;
   size_t row_bytes;  /* of a packed row, all channels */
-  uint8_t *packed;   /* room for it where samples must be unpacked or interleaved */
+  uint8_t *packed;   /* buffer where samples must be unpacked or interleaved */
   uint64_t *offsets; /* of strips, where they are read directly */
   uint64_t strip_count, rows_per_strip;
   /* Rows that are decoded together: a row of tiles, or some strips. */
@@ -58,25 +59,24 @@ struct fg_tiff {
   fg_tiff_worker workers[FG_TIFF_WORKERS_MAX];
 };
 
-/* Opens the file as libtiff sees it; source, window and strictness are set. False: the words say
- * why; none: out of memory. tiff_handle.c */
+/* Opens the file for libtiff; source, window and strictness are set. False: the words give the
+ * reason; no words: out of memory. tiff_handle.c */
 bool fg_tiff_handle_open(fg_tiff_handle *handle);
 void fg_tiff_handle_close(fg_tiff_handle *handle);
 
-/* Words for what libtiff said or what the file lacks. tiff_words.c */
+/* Explains libtiff's error or a missing part of the file. tiff_handle.c */
 fg_status fg_tiff_fail(fg_context *ctx, const fg_tiff *reader, const char *what);
 
-/* Chooses how rows are fetched, checks that the file holds them, and says how much memory that
- * takes. tiff_rows.c */
+/* Chooses how rows are fetched, checks that the file holds them, and returns the memory for that in
+ * `header`. tiff_rows.c */
 fg_status fg_tiff_plan_rows(fg_context *ctx, fg_tiff *reader, fg_scan_header *header);
 fg_status fg_tiff_start_rows(fg_context *ctx, fg_tiff *reader);
 fg_status fg_tiff_read_row(fg_context *ctx, fg_tiff *reader, void *samples);
 void fg_tiff_free_rows(fg_tiff *reader);
 
-/* Rows that are decoded in batches, on as many threads as there are; the layout of strips or tiles
- * is set. A handle that cannot be had, or a codec that keeps things to itself, leaves fewer.
- * tiff_batch.c */
-bool fg_tiff_plan_strips(fg_tiff *reader); /* false: strips are not to be decoded so */
+/* Rows decoded in batches, on up to reader->threads threads; the layout of strips or tiles is set.
+ * Fewer threads are used when a handle cannot be opened, or a codec keeps state. tiff_batch.c */
+bool fg_tiff_plan_strips(fg_tiff *reader); /* false: the strips cannot be decoded in batches */
 void fg_tiff_plan_tiles(fg_tiff *reader);
 uint64_t fg_tiff_batch_memory(const fg_tiff *reader);
 fg_status fg_tiff_start_batch(fg_context *ctx, fg_tiff *reader);

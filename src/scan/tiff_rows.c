@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Rows of a TIFF. Uncompressed strips are read directly, by their offsets: a row at a time, however
- * long the strip is, and whatever its byte count says (in files beyond 4 GiB the 32-bit count has
- * wrapped round). Compressed strips and tiles are decoded in batches (tiff_batch.c); long strips,
- * and those of odd codecs, go through TIFFReadScanline. */
+/* Rows of a TIFF.
+ *
+ * Uncompressed strips are read directly, by their offsets: a row at a time, whatever the strip's
+ * length and byte count (in files beyond 4 GiB the 32-bit count has wrapped round). Compressed
+ * strips and tiles are decoded in batches (tiff_batch.c); long strips, and those of odd codecs, go
+ * through TIFFReadScanline. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,7 +12,7 @@
 #include "core/memory.h"
 #include "scan/tiff_reader.h"
 
-/* Larger tiles are no scanner's. */
+/* Max bytes of a tile; scanners write smaller ones. */
 #define TILE_BYTES_MAX ((uint64_t)64 << 20)
 
 static size_t plane_row_bytes(const fg_tiff *r) {
@@ -77,7 +79,7 @@ static fg_status plan_tiles(fg_context *ctx, fg_tiff *r, fg_scan_header *header)
   return FG_OK;
 }
 
-/* A row of the file must lie in the file: what it lacks is said before it is missed. */
+/* Reports rows outside of the file before they are read. */
 static fg_status check_offsets(fg_context *ctx, const fg_tiff *r, uint64_t planes) {
   size_t bytes = plane_row_bytes(r);
   for (uint64_t plane = 0; plane < planes; plane++)
@@ -91,7 +93,7 @@ static fg_status check_offsets(fg_context *ctx, const fg_tiff *r, uint64_t plane
   return FG_OK;
 }
 
-/* Says it when byte counts are wrong; the offsets are what counts. */
+/* Notes wrong byte counts; only the offsets are used. */
 static void note_counts(const fg_tiff *r, const uint64_t *counts, fg_scan_header *header) {
   bool wrong = r->main.counts_replaced;
   for (uint64_t strip = 0; strip < r->strip_count && !wrong; strip++) {

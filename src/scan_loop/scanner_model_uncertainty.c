@@ -35,7 +35,7 @@ typedef struct moves {
 
 static void take_moves(fg_quantity_owner owner, void *object, const void *same, void *user) {
   moves *m = user;
-  if (m->each && same) fg_quantity_take_moves(owner, object, same, m->each + m->at);
+  if (m->each && same) fg_quantity_keep_farthest(owner, object, same, m->each + m->at);
   m->at += fg_quantity_moves(owner);
 }
 

@@ -7,7 +7,7 @@
 #include <sys/socket.h>
 #include <time.h>
 
-#include "core/clock.h"
+#include "core/date.h"
 
 /* SECONDS: time limit of a request, and of an answer. BYTES_PER_S: a radio link at the far end of a
  * hall has more. TICK_MS: largest delay of the clock. FILES: other open descriptors. */

@@ -5,7 +5,7 @@
 #include <sys/stat.h>
 #include <time.h>
 
-#include "core/clock.h"
+#include "core/date.h"
 #include "core/text.h"
 #include "foilgauge/station.h"
 #include "station/stored_name.h"

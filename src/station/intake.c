@@ -9,7 +9,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "core/clock.h"
+#include "core/date.h"
 #include "core/memory.h"
 #include "core/text.h"
 #include "foilgauge/measure.h"

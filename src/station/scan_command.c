@@ -14,7 +14,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "core/clock.h"
+#include "core/date.h"
 #include "core/memory.h"
 #include "core/text.h"
 #include "station/actions.h"

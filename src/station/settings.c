@@ -9,7 +9,6 @@
 
 #include "core/file.h"
 #include "core/json_read.h"
-#include "core/member_words.h"
 #include "core/text.h"
 #include "foilgauge/station.h"
 #include "station/naming.h"

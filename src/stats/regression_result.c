@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 #include "core/extended.h"
-#include "core/notes.h"
+#include "core/text.h"
 #include "foilgauge/distribution.h"
 #include "stats/regression_parts.h"
 

@@ -120,7 +120,7 @@ static void on_cell(void *text, size_t length, void *reader) {
   csv_reader *r = reader;
   if (r->status != FG_OK) return;
   const char *cell = text ? text : "";
-  fg_csv_take_apostrophe(&cell, &length);
+  fg_csv_drop_apostrophe(&cell, &length);
   r->status = r->header ? hold_cell(r, cell, length) : add_name(r, cell, length);
 }
 

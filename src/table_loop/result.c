@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "core/notes.h"
+#include "core/text.h"
 #include "table_loop/run.h"
 
 const char *fg_loop_verdict_word(fg_loop_verdict verdict) {

@@ -12,10 +12,10 @@
 
 enum {
   BLOCKS = FG_BLOCKS_PER_TILE * FG_BLOCKS_PER_TILE,
-  MARGIN_TILES = 4, /* around what is hot: the view's border is not the scan's */
+  MARGIN_TILES = 4, /* tiles around the kept parts: the view's border is not the scan's */
   /* Blocks around a hot one that are kept. The scan keeps a tile around each that it wants, so that
-   * 64 pixels around every one of a wanted tile are there; a strip's corner may reach some pixels
-   * into a tile that is not wanted. */
+     64 pixels around every one of a wanted tile are available; a strip's corner may reach some
+     pixels into a tile that is not wanted. */
   REACH_BLOCKS = 6,
   PIECE_BLOCKS = 8, /* a part of fewer hot blocks is dust, not a piece of a strip */
   ROUNDS_MAX = 6,
@@ -28,7 +28,7 @@ typedef struct work {
   const fg_tiles *tiles;
   const fg_island *island;
   const fg_anchor_options *options;
-  uint8_t *own; /* of each of `tiles`: it is the island's */
+  uint8_t *own; /* of each of `tiles`: it belongs to the island */
   int64_t corner_px[2];
   fg_sheet sheet;
   int32_t width, height; /* of the sheet, in blocks */
@@ -64,7 +64,7 @@ static void reach_out(const fg_tile *tile, int bytes_per_pixel, const fg_levels 
     }
 }
 
-/* Where to begin: at the island's outermost hot pixels, those of dust as well. */
+/* First guess of the corner: the island's outermost hot pixels, dust included. */
 static void guess_corner(const work *w, const fg_levels *l, int64_t low_px[2]) {
   low_px[0] = w->tiles->width_px - 1;
   low_px[1] = w->tiles->height_px - 1;
@@ -85,7 +85,7 @@ static void free_sheet(work *w) {
   w->labels = NULL;
 }
 
-/* Up to the island's end, and as much around it as what is hot needs. */
+/* Cuts the sheet up to the island's end, with the margin that hot pixels need. */
 static fg_status cut_sheet(fg_context *ctx, work *w, const int64_t low_px[2]) {
   int32_t size[2];
   const int32_t end[2] = {w->island->x + w->island->width, w->island->y + w->island->height};
@@ -108,7 +108,7 @@ static size_t block_at(const work *w, int32_t x, int32_t y) {
   return (size_t)y * (size_t)w->width + (size_t)x;
 }
 
-/* The tile that a block of the sheet lies on, and the block's first pixel in it. */
+/* Returns the tile that a block of the sheet lies on, and the block's first pixel in it. */
 static const fg_tile *tile_of(const work *w, int32_t x, int32_t y, size_t *first) {
   *first = (size_t)(y % FG_BLOCKS_PER_TILE * FG_BLOCK_PX * FG_TILE_PX +
                     x % FG_BLOCKS_PER_TILE * FG_BLOCK_PX);
@@ -144,7 +144,8 @@ static fg_status mark_hot(fg_context *ctx, work *w, const fg_levels *l) {
   return FG_OK;
 }
 
-/* Whether a block's middle lies on a tile of the island: what lies on none is another's. */
+/* Returns true when a block's middle lies on a tile of the island; any other block is another
+ * island's. */
 static bool is_own(const work *w, int32_t x, int32_t y) {
   int64_t px = w->corner_px[0] + (int64_t)x * FG_BLOCK_PX + FG_BLOCK_PX / 2;
   int64_t py = w->corner_px[1] + (int64_t)y * FG_BLOCK_PX + FG_BLOCK_PX / 2;
@@ -182,7 +183,7 @@ static bool is_kept(const work *w, int32_t x, int32_t y) {
   return label && w->kept[label - 1];
 }
 
-/* Marks what lies around the kept parts. False: it reaches beyond the sheet. */
+/* Marks the surroundings of the kept parts. False: they reach beyond the sheet. */
 static bool mark_near(work *w) {
   memset(w->near, 0, (size_t)w->width * (size_t)w->height);
   for (size_t i = 0; i < w->block_count; i++) {
@@ -233,7 +234,7 @@ static uint64_t bits_of(const work *w, const uint8_t *mask, int32_t column, int3
   return bits;
 }
 
-/* False: not all that is near is there. */
+/* Finds the levels of the near blocks; false when some of them are not available. */
 static bool find_near_levels(const work *w, fg_levels *l) {
   size_t histogram[FG_LEVEL_COUNTS] = {0};
   for (int32_t row = 0; row < w->sheet.tiles.rows; row++)
@@ -248,7 +249,7 @@ static bool find_near_levels(const work *w, fg_levels *l) {
   return true;
 }
 
-/* Whether the kept parts lie clear of the scan's border. */
+/* Returns true when the kept parts lie clear of the scan's border. */
 static bool is_inside(const work *w) {
   double margin = w->options->border_px;
   for (int32_t i = 0; i < w->part_count; i++) {
@@ -263,8 +264,9 @@ static bool is_inside(const work *w) {
   return true;
 }
 
-/* Repeats until corner and levels stand. False: they do not, or the island cannot be cut anew. */
-static fg_status iterate(fg_context *ctx, work *w, size_t *specks, bool *converged) {
+/* Repeats until corner and levels converge. False: they do not, or the island cannot be cut anew.
+ */
+static fg_status iterate_corner(fg_context *ctx, work *w, size_t *specks, bool *converged) {
   int64_t low_px[2], found_px[2];
   bool large, moved = true;
   fg_levels l = find_own_levels(w);
@@ -296,8 +298,9 @@ static float tile_median(const fg_tile *tile, uint64_t near, uint64_t hot) {
   return fg_select_float(values, count, count / 2);
 }
 
-/* What is not near is not known; its pixels are background to whoever looks across. */
-static void forget_far(fg_tile *tile, int bytes_per_pixel, uint64_t near, float median) {
+/* Marks blocks that are not near as unknown; their pixels become background, for cuts that cross
+ * them. */
+static void clear_far(fg_tile *tile, int bytes_per_pixel, uint64_t near, float median) {
   for (size_t b = 0; b < BLOCKS; b++) {
     if (near >> b & 1) continue;
     size_t first =
@@ -333,12 +336,12 @@ static fg_status finish_tile(fg_context *ctx, work *w, int32_t column, int32_t r
     return FG_OK;
   }
   view->medians[at] = tile_median(view->tiles[at], near, bits_of(w, w->hot, column, row));
-  forget_far(view->tiles[at], view->bytes_per_pixel, near, view->medians[at]);
+  clear_far(view->tiles[at], view->bytes_per_pixel, near, view->medians[at]);
   view->wanted[at] = holds_kept(w, column, row);
   return view->wanted[at] ? fg_island_append(ctx, island, view->columns, column, row) : FG_OK;
 }
 
-static fg_status finish(fg_context *ctx, work *w, fg_anchored *out) {
+static fg_status finish_anchor(fg_context *ctx, work *w, fg_anchored *out) {
   fg_island island = {0};
   fg_status status = FG_OK;
   for (int32_t row = 0; row < w->sheet.tiles.rows && status == FG_OK; row++)
@@ -373,8 +376,8 @@ fg_status fg_anchor_island(fg_context *ctx, const fg_tiles *tiles, const fg_isla
   FG_TRY(fg_memory_allocate(ctx, (size_t)tiles->columns * (size_t)tiles->rows, 1, (void **)&w.own));
   for (size_t i = 0; i < island->count; i++)
     w.own[island->tiles[i]] = 1;
-  fg_status status = iterate(&inner, &w, &out->specks, &converged);
-  if (status == FG_OK && converged) status = finish(&inner, &w, out);
+  fg_status status = iterate_corner(&inner, &w, &out->specks, &converged);
+  if (status == FG_OK && converged) status = finish_anchor(&inner, &w, out);
   free_work(&w);
   if (status == FG_ERR_DATA) return FG_OK; /* the budget does not hold both */
   return status == FG_OK ? FG_OK : fg_fail(ctx, status, "%s", inner.message);

@@ -7,28 +7,28 @@
 #include "core/memory.h"
 #include "vision/cut_floor.h"
 
-/* A design's beam may be shorter or longer, narrower or wider by these factors: what is torn off
- * or of another size is told by its values, not left out. */
+/* Factors of a design's beam length and width within which a beam is accepted. A torn beam or one
+ * of another size is reported by its values, not left out. */
 #define LENGTH_MIN 0.3
 #define LENGTH_MAX 3.0
 #define WIDTH_MIN  0.3
 #define WIDTH_MAX  3.0
-/* Straight to this share of the width, within limits in px. */
+/* Straightness tolerance as a share of the width, within limits in px. */
 #define TOLERANCE_SHARE 0.01
 #define TOLERANCE_MIN   2.0
 #define TOLERANCE_MAX   5.0
-/* Both long sides are parallel, and the tip is across them, within these angles. */
+/* Max angles between both long sides, and of the tip from across them. */
 #define PARALLEL_RAD 0.15
 #define ACROSS_RAD   0.45
-/* A tip that is straight over less than this share of the width is none. */
+/* Min straight part of a tip, as a share of the width. */
 #define TIP_SHARE 0.3
-/* A tip is torn when more than this share of its middle half lies so many tolerances off its line:
- * a burr or dust is less. */
+/* A tip is torn when more than this share of its middle half deviates from its line by more than so
+ * many tolerances: a burr or dust is smaller. */
 #define TORN_SHARE      0.3
 #define TORN_TOLERANCES 1.3
-/* The rim over the tip is at most so many widths long. */
+/* Max length of the rim over the tip, in widths. */
 #define TIP_WIDTHS 4.0
-/* Lines are fitted without this share at either end. */
+/* Share at either end that a line's fit leaves out. */
 #define TRIM 0.1
 
 fg_beam_limits fg_beam_limits_of(const fg_design *design, const fg_pixel_shape *shape) {
@@ -48,23 +48,23 @@ static bool is_long(const fg_polygon_side *side, const fg_beam_limits *limits) {
   return side->length >= limits->length_px[0];
 }
 
-/* The side that leads back from the tip of one that leads there; 0 where there is none, else how
- * many sides later. */
-static size_t find_way_back(const fg_polygon *rim, const fg_beam_limits *limits, size_t a) {
+/* Finds the side that leads back from the tip for a side that leads there; returns its distance in
+ * sides, 0 for none. */
+static size_t find_side_back(const fg_polygon *rim, const fg_beam_limits *limits, size_t a) {
   double turn = 0;
   for (size_t k = 1; k < rim->count; k++) {
     const fg_polygon_side *before = side_at(rim, a + k - 1), *side = side_at(rim, a + k);
     turn += fg_polygon_turn(before->angle, side->angle);
     double way = (double)fg_polygon_span(rim, side_at(rim, a)->last, side->first);
     if (turn < -1 || turn > 4 || way > TIP_WIDTHS * limits->width_px[1]) return 0;
-    /* Another side that leads there: the tip is its. */
+    /* Another side leads to the tip: the tip belongs to it. */
     if (fabs(turn) < PARALLEL_RAD && is_long(side, limits)) return 0;
     if (fabs(turn - M_PI) < PARALLEL_RAD && is_long(side, limits)) return k;
   }
   return 0;
 }
 
-/* The side across the tip; its index, or `a` where there is none. */
+/* Returns the index of the side across the tip, or `a` where there is none. */
 static size_t find_tip(const fg_polygon *rim, size_t a, size_t back, double width) {
   size_t best = a;
   double longest = TIP_SHARE * width;
@@ -83,7 +83,8 @@ static fg_straight straight_of(const fg_polygon *rim, size_t i) {
   return fg_polygon_straight(rim, side->first, side->last, TRIM);
 }
 
-/* Part of a line between two of its points, less what is not straight at either. */
+/* Cuts the part of a line between two of its points, without the parts near either that are not
+ * straight. */
 static bool cut_stretch(const fg_straight *line, fg_point from, fg_point to, double off_from,
                         double off_to, fg_stretch *stretch) {
   double a = line->along.x * (from.x - line->at.x) + line->along.y * (from.y - line->at.y);
@@ -96,7 +97,7 @@ static bool cut_stretch(const fg_straight *line, fg_point from, fg_point to, dou
   return b - a >= FG_STRETCH_MIN_PX;
 }
 
-/* A beam at work. */
+/* A beam in work. */
 typedef struct beam_work {
   const fg_polygon *rim;
   size_t a, b, tip;             /* sides */
@@ -104,7 +105,7 @@ typedef struct beam_work {
   fg_cut_floor floors[2];
 } beam_work;
 
-/* Whether the rim over the tip follows the tip's line. */
+/* Returns true when the rim over the tip follows the tip's line. */
 static bool is_straight_tip(const beam_work *w, double width, double tolerance) {
   const fg_polygon *rim = w->rim;
   size_t first = side_at(rim, w->a)->last, middle = 0, off = 0;
@@ -123,7 +124,7 @@ static fg_point foot_of(const fg_straight *line, fg_point p) {
   return (fg_point){line->at.x + t * line->along.x, line->at.y + t * line->along.y};
 }
 
-/* Where a long side ends at the root: at its own floor, or beside the other's. */
+/* Returns the root end of a long side: at its own floor, or beside the other side's. */
 static fg_point root_of(const beam_work *w, int side) {
   const fg_straight *line = side ? &w->right : &w->left;
   return foot_of(line, w->floors[w->floors[side].found ? side : !side].place);
@@ -164,7 +165,7 @@ static void place_sides(const beam_work *w, fg_beam_place *place) {
   place->length_px = hypot(place->tip.x - place->root.x, place->tip.y - place->root.y);
 }
 
-/* A beam between two long sides, if there is one. */
+/* Makes a beam of two long sides, if they bound one. */
 static bool make_place(const fg_polygon *rim, const fg_beam_limits *limits, size_t a, size_t back,
                        fg_beam_place *place) {
   beam_work w = {.rim = rim, .a = a, .b = a + back};
@@ -189,9 +190,9 @@ static bool make_place(const fg_polygon *rim, const fg_beam_limits *limits, size
          place->length_px >= limits->length_px[0] && place->length_px <= limits->length_px[1];
 }
 
-/* Beside the base of a comb a beam and the base's shoulder can each be taken for a beam that has
- * the other for its floor. */
-static bool exclude(const fg_beam_place *a, const fg_beam_place *b) {
+/* Returns true when two beams exclude each other. Beside the base of a comb a beam and the base's
+ * shoulder can each be mistaken for a beam that has the other for its floor. */
+static bool is_exclusive(const fg_beam_place *a, const fg_beam_place *b) {
   for (int i = 0; i < 2; i++)
     for (int k = 0; k < 2; k++)
       if (a->floor_sides[i] == b->edge_sides[k] || b->floor_sides[i] == a->edge_sides[k] ||
@@ -200,25 +201,25 @@ static bool exclude(const fg_beam_place *a, const fg_beam_place *b) {
   return false;
 }
 
-/* How far a beam's size is off the design's. */
-static double oddness(const fg_beam_place *place, const fg_beam_limits *limits) {
+/* Deviation of a beam's size from the design's. */
+static double size_deviation(const fg_beam_place *place, const fg_beam_limits *limits) {
   double length = sqrt(limits->length_px[0] * limits->length_px[1] / (LENGTH_MIN * LENGTH_MAX));
   double width = sqrt(limits->width_px[0] * limits->width_px[1] / (WIDTH_MIN * WIDTH_MAX));
   return fabs(log(place->length_px / length)) + fabs(log(place->width_px / width));
 }
 
-/* Of places that exclude each other the one that is more like the design stays. */
+/* Keeps, of places that exclude each other, the one that is more like the design. */
 static void drop_odd(const fg_beam_limits *limits, size_t first, fg_beam_places *places) {
   for (size_t i = first; i < places->count; i++)
     for (size_t k = i + 1; k < places->count;) {
       fg_beam_place *a = &places->list[i], *b = &places->list[k];
-      if (!exclude(a, b)) {
+      if (!is_exclusive(a, b)) {
         k++;
         continue;
       }
-      if (oddness(b, limits) < oddness(a, limits)) {
+      if (size_deviation(b, limits) < size_deviation(a, limits)) {
         *a = *b;
-        k = i + 1; /* what it excludes may lie before it */
+        k = i + 1; /* an excluded place may lie before it */
       }
       size_t at = (size_t)(b - places->list);
       memmove(b, b + 1, (places->count - at - 1) * sizeof *b);
@@ -232,7 +233,7 @@ fg_status fg_beams_find(fg_context *ctx, const fg_polygon *rim, const fg_beam_li
   for (size_t a = 0; a < rim->count; a++) {
     fg_beam_place place;
     if (!is_long(&rim->sides[a], limits)) continue;
-    size_t back = find_way_back(rim, limits, a);
+    size_t back = find_side_back(rim, limits, a);
     if (!back || !make_place(rim, limits, a, back, &place)) continue;
     FG_TRY(fg_memory_reserve(ctx, places->count + 1, sizeof *places->list, &places->capacity,
                              (void **)&places->list));

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Where the beams of a flat cantilever foil are, from its rims: to within a pixel.
+/* Finds the beams of a flat cantilever foil from its rims, to within a pixel.
  *
- * A beam is found by the way of its rim, the material to the left of it (vision/rims.h): a long
- * side towards the tip, a convex turn of half a circle over the tip, a long side back. Before and
- * after it the rim turns the other way, into the floor of the cut, where there is one. That holds
- * for beams of a comb and for those cut out of a sheet alike. Lengths are square pixels.
+ * A rim has the material to its left (vision/rims.h). Along a beam it runs a long side towards the
+ * tip, a convex turn of half a circle over the tip, and a long side back. Before and after the beam
+ * it turns the other way, into the floor of the cut, where there is one. That holds for beams of a
+ * comb and for beams cut out of a sheet. Lengths are square pixels.
  */
 #ifndef FG_VISION_BEAM_FIND_H
 #define FG_VISION_BEAM_FIND_H
@@ -13,21 +13,21 @@
 #include "vision/line_edge.h"
 #include "vision/polygon.h"
 
-/* What is taken for a beam. */
+/* Sizes that a beam may have. */
 typedef struct fg_beam_limits {
-  double length_px[2], width_px[2]; /* least, most */
-  double tolerance_px;              /* of a straight side */
+  double length_px[2], width_px[2]; /* min, max */
+  double tolerance_px;              /* straightness tolerance of a side */
 } fg_beam_limits;
 
 fg_beam_limits fg_beam_limits_of(const fg_design *design, const fg_pixel_shape *shape);
 
 typedef struct fg_beam_place {
-  fg_stretch sides[FG_BEAM_SIDES]; /* the straight part of each, without what corners round */
+  fg_stretch sides[FG_BEAM_SIDES]; /* straight part of each side, without the rounding at corners */
   bool there[FG_BEAM_SIDES];
   unsigned flags;     /* fg_beam_flag */
-  fg_point root, tip; /* middle of its root and of its tip */
+  fg_point root, tip; /* middles of root and tip */
   double length_px, width_px;
-  size_t edge_sides[2], floor_sides[2]; /* of the rim's polygon */
+  size_t edge_sides[2], floor_sides[2]; /* indices into the rim's polygon */
 } fg_beam_place;
 
 typedef struct fg_beam_places {

@@ -5,67 +5,68 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Directions against the beam's side: across it, and back along it. */
+/* Cosines of directions against the beam's side: across it, and back along it. */
 #define ACROSS_FROM 0.96
 #define ACROSS_TO   2.18
 #define OPPOSITE    2.84
 #define ALONG       0.5
-/* The side that leads back is at least this long against what runs across, and in px; a rounded
- * end has facets that lead back, too. */
+/* Min length of the side that leads back, against the part across and in px; facets of a rounded
+ * end lead back, too. */
 #define OPPOSITE_SHARE 0.7
 #define OPPOSITE_MIN   30.0
-/* A blurred sharp corner stays so far from where its lines meet (its level line runs through
- * Phi(a)² = 1/2, and blur is about 1.5 px), and a pixel's side is uncertain by a part of itself. */
+/* Distance of a blurred sharp corner from the crossing of its lines (its level line runs through
+ * Phi(a)² = 1/2, and blur is about 1.5 px). A pixel's side is uncertain by a part of itself. */
 #define CORNER_BLUR_PX 1.5
 #define CORNER_SHARE   0.4142 /* sqrt(2) - 1: of a corner's radius */
-/* A floor that bulges by more than this share of its width, from its middle to halfway out, is
- * round. A half circle does by 0.053. */
+/* A floor is round when it bulges by more than this share of its width, from its middle to halfway
+ * out. A half circle bulges by 0.053. */
 #define BULGE_SHARE 0.03
 #define INNER_SHARE 0.08
 #define OUTER_FROM  0.2
 #define OUTER_TO    0.25
-/* Of a round end: points used for its circle, and the arc about its apex. */
+/* Parts of a round end: points used for its circle, and the arc about its apex. */
 #define ROUND_SHARE 0.36
 #define ARC_RAD     0.8
-/* Margin from the corners of a floor; narrow ones have none to spare. */
+/* Margin from the corners of a floor; narrow floors have no more. */
 #define FLOOR_MARGIN_PX 4.0
-/* A shoulder reaches at most so many widths to the side. */
+/* Max reach of a shoulder to the side, in widths. */
 #define SHOULDER_WIDTHS 3.0
 
-/* The way from the beam's side to the other side of the cut. */
-typedef struct way {
+/* The rim from the beam's side to the other side of the cut. */
+typedef struct rim_path {
   size_t first, last; /* points, in the rim's order */
-  double across;      /* how much of it runs across the beam */
-  size_t longest;     /* side that does; FG_NO_SIDE: none */
+  double across;      /* length of its part across the beam */
+  size_t longest;     /* longest side in that part; FG_NO_SIDE: none */
   bool opposite;      /* it ends at a side that runs back along the beam */
-  size_t other;       /* that side, or the last one that was looked at */
-} way;
+  size_t other;       /* that side, or the last one inspected */
+} rim_path;
 
-static bool is_way_back(const fg_polygon_side *side, const way *w) {
+static bool is_side_back(const fg_polygon_side *side, const rim_path *w) {
   return side->length > OPPOSITE_MIN && side->length > OPPOSITE_SHARE * w->across;
 }
 
-static void take_across(const fg_polygon *rim, size_t at, way *w) {
+static void add_across(const fg_polygon *rim, size_t at, rim_path *w) {
   w->across += rim->sides[at].length;
   if (w->longest == FG_NO_SIDE || rim->sides[at].length > rim->sides[w->longest].length)
     w->longest = at;
 }
 
-static bool walk(const fg_polygon *rim, size_t side, bool after, way *w) {
+static bool walk_to_floor(const fg_polygon *rim, size_t side, bool after, rim_path *w) {
   double turn = 0;
   size_t at = side % rim->count;
-  *w = (way){.first = rim->sides[at].last, .last = rim->sides[at].first, .longest = FG_NO_SIDE};
+  *w =
+      (rim_path){.first = rim->sides[at].last, .last = rim->sides[at].first, .longest = FG_NO_SIDE};
   for (size_t k = 1; k < rim->count; k++) {
     size_t next = after ? (at + 1) % rim->count : (at + rim->count - 1) % rim->count;
     turn += after ? fg_polygon_turn(rim->sides[at].angle, rim->sides[next].angle)
                   : fg_polygon_turn(rim->sides[next].angle, rim->sides[at].angle);
     at = next;
-    if (-turn > OPPOSITE && is_way_back(&rim->sides[at], w)) {
+    if (-turn > OPPOSITE && is_side_back(&rim->sides[at], w)) {
       w->opposite = true;
       break;
     }
     if (turn > ALONG || (w->across > 0 && -turn < ALONG)) break;
-    if (-turn > ACROSS_FROM && -turn < ACROSS_TO) take_across(rim, at, w);
+    if (-turn > ACROSS_FROM && -turn < ACROSS_TO) add_across(rim, at, w);
   }
   w->other = at;
   if (after)
@@ -89,9 +90,9 @@ double fg_corner_radius(const fg_polygon *rim, size_t first, size_t last, fg_poi
 typedef struct frame {
   const fg_polygon *rim;
   const fg_straight *line;
-  double sign; /* of what is towards the root along the line */
+  double sign; /* sign of u along the line */
   double gap;  /* width of the cut at the floor */
-  way way;
+  rim_path path;
 } frame;
 
 static void place_in(const frame *f, fg_point p, double *u, double *v) {
@@ -109,10 +110,10 @@ static fg_point place_out(const frame *f, double u, double v) {
 
 /* Mean of u over points whose v lies that far from the cut's middle; NaN without any. */
 static double mean_depth(const frame *f, double from, double to) {
-  size_t n = fg_polygon_span(f->rim, f->way.first, f->way.last);
+  size_t n = fg_polygon_span(f->rim, f->path.first, f->path.last);
   double sum = 0, used = 0, u, v;
   for (size_t i = 0; i < n; i++) {
-    place_in(f, f->rim->points[(f->way.first + i) % f->rim->point_count], &u, &v);
+    place_in(f, f->rim->points[(f->path.first + i) % f->rim->point_count], &u, &v);
     double off = fabs(v / f->gap - 0.5);
     if (off < from || off > to) continue;
     sum += u;
@@ -131,10 +132,10 @@ static fg_stretch stretch_of(const frame *f, double u0, double v0, double u1, do
 
 /* u = a + b v over the middle of the floor. */
 static void fit_floor(const frame *f, double share, double *a, double *b) {
-  size_t n = fg_polygon_span(f->rim, f->way.first, f->way.last);
+  size_t n = fg_polygon_span(f->rim, f->path.first, f->path.last);
   double s = 0, sv = 0, su = 0, vv = 0, uv = 0, u, v;
   for (size_t i = 0; i < n; i++) {
-    place_in(f, f->rim->points[(f->way.first + i) % f->rim->point_count], &u, &v);
+    place_in(f, f->rim->points[(f->path.first + i) % f->rim->point_count], &u, &v);
     if (fabs(v / f->gap - 0.5) > share) continue;
     s++;
     sv += v;
@@ -151,9 +152,9 @@ static bool place_straight(const frame *f, fg_cut_floor *floor) {
   double a, b, gap = f->gap;
   fit_floor(f, OUTER_TO, &a, &b);
   fg_point near = place_out(f, a, 0), far = place_out(f, a + b * gap, gap);
-  double corner[2] = {fg_corner_radius(f->rim, f->way.first, f->way.last, near),
-                      f->way.opposite ? fg_corner_radius(f->rim, f->way.first, f->way.last, far)
-                                      : 0};
+  double corner[2] = {fg_corner_radius(f->rim, f->path.first, f->path.last, near),
+                      f->path.opposite ? fg_corner_radius(f->rim, f->path.first, f->path.last, far)
+                                       : 0};
   double from = corner[0] + FLOOR_MARGIN_PX, to = gap - corner[1] - FLOOR_MARGIN_PX;
   floor->corner = corner[0];
   floor->place = place_out(f, a + 0.5 * b * gap, 0.5 * gap);
@@ -161,8 +162,9 @@ static bool place_straight(const frame *f, fg_cut_floor *floor) {
   return to - from >= FG_STRETCH_MIN_PX;
 }
 
-/* The circle of a round end: u = a + b v + c v² near its apex would do for its place; the circle
- * of half the cut's width is what a cutter leaves, and its radius follows from the points. */
+/* Places a round end by its circle. The parabola u = a + b v + c v² near the apex would do for its
+ * place. But a cutter leaves the circle of half the cut's width, and its radius follows from the
+ * points. */
 static void place_round(const frame *f, fg_cut_floor *floor) {
   double top = mean_depth(f, 0, INNER_SHARE), gap = f->gap,
          side = mean_depth(f, OUTER_TO, ROUND_SHARE);
@@ -178,14 +180,14 @@ static void place_round(const frame *f, fg_cut_floor *floor) {
 /* Width of the cut at its floor: to the other side's line, or to the end of a shoulder. */
 static double find_gap(const frame *f, double width_px) {
   double u, v, depth = -INFINITY, gap = 0;
-  size_t n = fg_polygon_span(f->rim, f->way.first, f->way.last);
+  size_t n = fg_polygon_span(f->rim, f->path.first, f->path.last);
   for (size_t i = 0; i < n; i++) {
-    place_in(f, f->rim->points[(f->way.first + i) % f->rim->point_count], &u, &v);
+    place_in(f, f->rim->points[(f->path.first + i) % f->rim->point_count], &u, &v);
     depth = fmax(depth, u);
     gap = fmax(gap, v);
   }
-  if (!f->way.opposite) return fmin(gap, SHOULDER_WIDTHS * width_px);
-  const fg_polygon_side *side = &f->rim->sides[f->way.other];
+  if (!f->path.opposite) return fmin(gap, SHOULDER_WIDTHS * width_px);
+  const fg_polygon_side *side = &f->rim->sides[f->path.other];
   fg_straight other = fg_polygon_straight(f->rim, side->first, side->last, 0.1);
   fg_straight across = {place_out(f, depth, 0), {f->line->along.y, -f->line->along.x}};
   fg_point meet = fg_straight_meet(&other, &across);
@@ -197,12 +199,12 @@ void fg_cut_floor_find(const fg_polygon *rim, size_t side, bool after, const fg_
                        double width_px, fg_cut_floor *floor) {
   frame f = {.rim = rim, .line = line, .sign = after ? 1 : -1};
   *floor = (fg_cut_floor){.side = FG_NO_SIDE};
-  if (!walk(rim, side, after, &f.way)) return;
+  if (!walk_to_floor(rim, side, after, &f.path)) return;
   f.gap = find_gap(&f, width_px);
   if (!(f.gap > 2)) return;
   double bulge = mean_depth(&f, 0, INNER_SHARE) - mean_depth(&f, OUTER_FROM, OUTER_TO);
   if (isnan(bulge)) return;
   if (!(bulge < BULGE_SHARE * f.gap && place_straight(&f, floor))) place_round(&f, floor);
   floor->found = true;
-  floor->side = f.way.longest;
+  floor->side = f.path.longest;
 }

@@ -92,6 +92,6 @@ static fg_status draw_text(fg_context *ctx, fg_rgb *rgb, const char *text, const
   }
 }
 
-/* The one symbol that is seen from outside. */
+/* The only exported symbol. */
 extern "C" __attribute__((visibility("default")))
 const fg_cv_functions fg_cv_module = {FOILGAUGE_VERSION, contours, draw_line, draw_text};

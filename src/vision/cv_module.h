@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Types and functions of the module around OpenCV. It is loaded where it is first needed
- * (cv_bridge.c), as OpenCV brings thirty shared objects that most commands never use. */
+/* Types and functions of the module around OpenCV. cv_bridge.c loads it at the first use, because
+ * OpenCV brings thirty shared objects that most commands never use. */
 #ifndef FG_VISION_CV_MODULE_H
 #define FG_VISION_CV_MODULE_H
 
@@ -29,18 +29,18 @@ typedef struct fg_rgb {
   int32_t width, height;
 } fg_rgb;
 
-/* Style of a text. */
+/* Size, place and colour of drawn text. */
 typedef struct fg_text_style {
-  double height_px;     /* of its capitals */
-  double anchor;        /* moves it to the left by that share of its width */
+  double height_px;     /* of the capitals */
+  double anchor;        /* share of the text's width by which it moves to the left */
   uint32_t colour;      /* 0xRRGGBB */
   int32_t thickness_px; /* of the strokes */
-  int32_t rim_px;       /* of a dark rim around them; 0: none */
+  int32_t rim_px;       /* of the dark rim around the strokes; 0: none */
 } fg_text_style;
 
 /* Each is the function of cv_bridge.h of that name. */
 typedef struct fg_cv_functions {
-  const char *version; /* of the program that it was built with */
+  const char *version; /* version of the program that the module was built with */
   fg_status (*contours)(fg_context *ctx, const uint8_t *picture, int32_t width, int32_t height,
                         double level, int32_t min, fg_contours *out);
   fg_status (*draw_line)(fg_context *ctx, fg_rgb *rgb, const double *xy_px, size_t count,

@@ -4,14 +4,14 @@
 #include <math.h>
 #include <string.h>
 
-/* A circle must be seen over so much of a turn; one that is only a part of a longer outline, for
- * which a rounded corner or the end of a slot must not be taken, over more. */
+/* Min visible turn of a circle, degrees; and of a circle that is only a part of a longer outline,
+ * for which a rounded corner or the end of a slot could be mistaken. */
 #define TURN_MIN      200.0
 #define TURN_MIN_PART 250.0
 /* Tolerated rms of an outline's points about the circle: cells, and share of the radius. */
 #define RMS_CELLS 0.6
 #define RMS_SHARE 0.02
-/* Points further off than so many tolerances are none of the circle's. */
+/* Max distance of a circle's points, in tolerances. */
 #define INLIER_TOLERANCES 2.5
 enum {
   REFITS = 4,
@@ -27,7 +27,7 @@ static double tolerance_of(const fg_outline *o, double radius) {
 }
 
 /* Weighs the points of the circle 1, the others 0; counts them, their rms and their turn. */
-static double weigh(fg_outline *o, fg_round *r) {
+static double weigh_points(fg_outline *o, fg_round *r) {
   bool seen[TURN_BINS] = {false};
   double sum = 0, limit = INLIER_TOLERANCES * tolerance_of(o, r->circle.radius);
   int bins = 0;
@@ -48,9 +48,9 @@ static double weigh(fg_outline *o, fg_round *r) {
   return bins * 360.0 / TURN_BINS;
 }
 
-/* Refits to the inliers until they stay; returns the turn that they cover. */
-static double iterate(fg_outline *o, fg_round *r) {
-  double turn = weigh(o, r);
+/* Refits to the inliers until they stay the same; returns the turn that they cover. */
+static double iterate_fit(fg_outline *o, fg_round *r) {
+  double turn = weigh_points(o, r);
   for (int i = 0; i < REFITS; i++) {
     size_t before = r->inliers;
     fg_circle next;
@@ -58,7 +58,7 @@ static double iterate(fg_outline *o, fg_round *r) {
         fg_circle_estimate(NULL, o->points, o->weights, o->count, &next) != FG_OK)
       return 0;
     r->circle = next;
-    turn = weigh(o, r);
+    turn = weigh_points(o, r);
     if (r->inliers == before) break;
   }
   return turn;
@@ -73,7 +73,7 @@ static bool is_round(const fg_outline *o, const fg_round *r, double turn, double
 
 static bool try_whole(fg_outline *o, fg_round *r) {
   if (fg_circle_estimate(NULL, o->points, NULL, o->count, &r->circle) != FG_OK) return false;
-  double turn = iterate(o, r);
+  double turn = iterate_fit(o, r);
   return is_round(o, r, turn, TURN_MIN) && r->inliers * 10 >= o->count * 7;
 }
 
@@ -86,7 +86,7 @@ static bool try_stretches(fg_outline *o, fg_round *best) {
     fg_round r = {0};
     if (fg_circle_estimate(NULL, o->points + first, NULL, window, &r.circle) != FG_OK) continue;
     if (r.circle.radius < 0.5 * o->min_radius) continue;
-    double turn = iterate(o, &r);
+    double turn = iterate_fit(o, &r);
     if (is_round(o, &r, turn, TURN_MIN_PART) && r.inliers > best->inliers) *best = r;
   }
   return best->inliers > 0;
@@ -94,13 +94,13 @@ static bool try_stretches(fg_outline *o, fg_round *best) {
 
 static void remove_inliers(fg_outline *o, fg_round *r) {
   size_t kept = 0;
-  weigh(o, r);
+  weigh_points(o, r);
   for (size_t i = 0; i < o->count; i++)
     if (o->weights[i] == 0) o->points[kept++] = o->points[i];
   o->count = kept;
 }
 
-bool fg_outline_take_circle(fg_outline *outline, fg_round *round) {
+bool fg_outline_extract_circle(fg_outline *outline, fg_round *round) {
   memset(round, 0, sizeof *round);
   if (outline->count < POINTS_MIN) return false;
   if (!try_whole(outline, round) && !try_stretches(outline, round)) return false;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Whether an outline is round, or holds a round part. */
+/* Circles in outlines: a whole round outline, or the round part of one. */
 #ifndef FG_VISION_DISC_CONTOUR_H
 #define FG_VISION_DISC_CONTOUR_H
 
@@ -14,17 +14,17 @@ typedef struct fg_round {
   size_t inliers;
 } fg_round;
 
-/* An outline at work; points that are taken move behind `count`. */
+/* An outline in work; points of extracted circles move behind `count`. */
 typedef struct fg_outline {
   fg_point *points; /* in order along it */
-  double *weights;  /* scratch, as many */
+  double *weights;  /* scratch, one per point */
   size_t count;
-  double cell; /* what a point is uncertain by */
+  double cell; /* uncertainty of a point */
   double min_radius;
 } fg_outline;
 
-/* Takes the largest circle out of what is left of the outline: its points are removed. False when
- * there is none. The whole outline is tried first, then stretches of it (two discs that touch). */
-bool fg_outline_take_circle(fg_outline *outline, fg_round *round);
+/* Extracts the largest circle from the outline and removes its points; false when there is none.
+ * The whole outline is tried first, then stretches of it (two discs that touch). */
+bool fg_outline_extract_circle(fg_outline *outline, fg_round *round);
 
 #endif

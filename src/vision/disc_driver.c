@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Driver model of a round edge: asked only where one step without it misses
- * the sectors' mean profiles, see driver_choice.h. */
+/* Driver model of a round edge: sought only where one step without it does not explain the sectors'
+ * mean profiles, see driver_choice.h. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,11 +9,11 @@
 #include "vision/disc_work.h"
 #include "vision/driver_choice.h"
 
-/* sd of a pixel, counts, that the fits start from. */
+/* First estimate of a pixel's sd, counts. */
 #define START_NOISE 1.5
 #define SECTORS_MIN 6
 
-static double count_of(const fg_disc_work *work, double light) {
+static double driven_count(const fg_disc_work *work, double light) {
   double rate;
   return work->driver ? fg_driver_tone_at(work->driver_tone, light, &rate)
                       : fg_edge_count(work->gamma, light);
@@ -24,14 +24,15 @@ static double light_of(const fg_disc_work *work, double count) {
                       : fg_edge_light(work->gamma, count);
 }
 
-/* Slopes of a driven profile are over the contrast. */
+/* Factor from a slope in light to a driven profile's, which is over the contrast. */
 static double contrast_ratio(const double *x, double counts) {
   double light = x[FG_STEP_OUTSIDE] - x[FG_STEP_INSIDE];
   return light != 0 && counts != 0 ? counts / light : 1;
 }
 
 void fg_disc_driven_values(const fg_disc_work *work, const double *x, double *values) {
-  double inside = count_of(work, x[FG_STEP_INSIDE]), outside = count_of(work, x[FG_STEP_OUTSIDE]);
+  double inside = driven_count(work, x[FG_STEP_INSIDE]),
+         outside = driven_count(work, x[FG_STEP_OUTSIDE]);
   double ratio = contrast_ratio(x, outside - inside);
   values[FG_DRIVEN_LEFT] = values[FG_DRIVEN_RIGHT] = x[FG_STEP_EDGE];
   values[FG_DRIVEN_PLATEAU] = inside;
@@ -41,7 +42,7 @@ void fg_disc_driven_values(const fg_disc_work *work, const double *x, double *va
   values[FG_DRIVEN_BLUR_L] = values[FG_DRIVEN_BLUR_R] = x[FG_STEP_BLUR];
 }
 
-/* Of one edge alone the left one is not there. */
+/* Held values for one edge alone: the profile has no left edge. */
 static unsigned held_of(unsigned held) {
   unsigned driven = 1u << FG_DRIVEN_LEFT | 1u << FG_DRIVEN_LEVEL_L | 1u << FG_DRIVEN_BLUR_L;
   if (held >> FG_STEP_SLOPE_IN & 1) driven |= 1u << FG_DRIVEN_SLOPE_L;
@@ -58,8 +59,9 @@ static fg_driven_profile profile_of(const fg_disc_work *work, size_t sector, fg_
   return p;
 }
 
-/* A sector's fit with the driver held, in light. */
-static void take_profile(const fg_disc_work *work, const fg_driven_profile *p, fg_step_fit *fit) {
+/* Converts a sector's fit with the driver held to light. */
+static void convert_profile(const fg_disc_work *work, const fg_driven_profile *p,
+                            fg_step_fit *fit) {
   static const int from[] = {FG_DRIVEN_RIGHT,   FG_DRIVEN_PLATEAU, FG_DRIVEN_LEVEL_R,
                              FG_DRIVEN_SLOPE_L, FG_DRIVEN_SLOPE_R, FG_DRIVEN_BLUR_R};
   double *x = fit->values, rate[2];
@@ -80,7 +82,7 @@ static void take_profile(const fg_disc_work *work, const fg_driven_profile *p, f
   }
 }
 
-/* All sectors again, the driver held. */
+/* Fits all sectors again with the driver held. */
 static fg_status fit_driven(fg_context *ctx, fg_disc_work *work) {
   fg_profile_bin bins[FG_DRIVEN_MAX];
   for (size_t s = 0; s < work->ring.sector_count; s++) {
@@ -90,12 +92,12 @@ static fg_status fit_driven(fg_context *ctx, fg_disc_work *work) {
     fg_driven_profile p = profile_of(work, s, bins);
     FG_TRY(fg_driver_fit_profiles(ctx, &p, 1, &driven));
     fit->good = driven.good && fabs(p.values[FG_DRIVEN_RIGHT]) < work->ring.reach_px;
-    if (fit->good) take_profile(work, &p, fit);
+    if (fit->good) convert_profile(work, &p, fit);
   }
   return FG_OK;
 }
 
-/* Sectors that are asked, and their bins. */
+/* Sectors of the driver's fit, and their bins. */
 typedef struct sample {
   fg_driven_profile profiles[FG_DRIVER_PROFILES];
   fg_profile_bin *bins;
@@ -124,7 +126,7 @@ static fg_status draw_sample(fg_context *ctx, const fg_disc_work *work, sample *
   return FG_OK;
 }
 
-static fg_status adopt(fg_context *ctx, fg_disc_work *work, const fg_found_driver *found) {
+static fg_status adopt_driver(fg_context *ctx, fg_disc_work *work, const fg_found_driver *found) {
   FG_TRY(fg_memory_allocate(ctx, 1, sizeof *work->driver_tone, (void **)&work->driver_tone));
   FG_TRY(fg_memory_allocate(ctx, 1, sizeof *work->driver, (void **)&work->driver));
   *work->driver = found->driver;
@@ -135,7 +137,7 @@ static fg_status adopt(fg_context *ctx, fg_disc_work *work, const fg_found_drive
   return FG_OK;
 }
 
-/* The sectors' fits in light of the new tone curve, as a start. */
+/* Converts the sectors' fits to light of the new tone curve, as a start. */
 static void convert_sectors(fg_disc_work *work, double gamma) {
   for (size_t s = 0; s < work->ring.sector_count; s++) {
     double *x = work->sectors[s].values, counts[2];
@@ -155,10 +157,10 @@ fg_found_driver fg_disc_found_driver(const fg_disc_work *work) {
   return (fg_found_driver){true, *work->driver, work->u_driver_px, work->unexplained};
 }
 
-fg_status fg_disc_take_driver(fg_context *ctx, fg_disc_work *work, const fg_found_driver *found) {
+fg_status fg_disc_use_driver(fg_context *ctx, fg_disc_work *work, const fg_found_driver *found) {
   double gamma = work->gamma;
   if (!found->found || work->white[0] || work->white[1]) return FG_OK;
-  FG_TRY(adopt(ctx, work, found));
+  FG_TRY(adopt_driver(ctx, work, found));
   convert_sectors(work, gamma);
   return fit_driven(ctx, work);
 }
@@ -181,7 +183,7 @@ fg_status fg_disc_find_driver(fg_context *ctx, fg_disc_work *work) {
   FG_TRY_EXIT(fg_driver_choose(ctx, s.profiles, s.count, s.ends, gamma, START_NOISE, &choice));
   if (!choice.fit.good) goto exit;
   const fg_found_driver found = {true, choice.fit.driver, choice.u_edge_px, choice.missed};
-  FG_TRY_EXIT(fg_disc_take_driver(ctx, work, &found));
+  FG_TRY_EXIT(fg_disc_use_driver(ctx, work, &found));
 exit:
   free(tone);
   free(s.bins);

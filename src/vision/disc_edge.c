@@ -13,25 +13,27 @@
 enum { CENTRE_ROUNDS = 3, TRIM_ROUNDS = 4, SECTORS_MIN = 12, SECTORS_MAX = 64 };
 #define SECTOR_PX  48.0
 #define STATION_PX 1.5
-/* The ring reaches so far on both sides of the edge, for the levels and slopes to be known. */
+/* Reach of the ring on both sides of the edge, enough for levels and slopes. */
 #define REACH_PX    8.0
 #define REACH_BLURS 6.0
 #define START_PX    12.0
 #define SOUND_SHARE 0.01
-/* A sector whose step is below this share of the typical one has no edge. */
+/* Min step of a sector with an edge, as a share of the typical one. */
 #define STEP_SHARE 0.3
-/* Less contrast than this many counts is no edge. */
+/* Min contrast of an edge, counts. */
 #define CONTRAST_MIN    6.0
 #define TRIM_DEVIATIONS 2.5
 #define TRIM_MIN_PX     0.3
-/* Clipped light may exceed the end of the scale by this share of the contrast. */
+/* Uncertainty of clipped light, as a share of the contrast: it may lie beyond the end of the scale.
+ */
 #define WHITE_U 0.1
 
 static double step_of(const fg_step_fit *fit) {
   return fit->values[FG_STEP_OUTSIDE] - fit->values[FG_STEP_INSIDE];
 }
 
-/* Sectors with a much smaller step than usual, or one the other way, have no edge of this kind. */
+/* Drops sectors with a much smaller step than usual, or one the other way: they have no edge of
+ * this kind. */
 static fg_status drop_weak(fg_context *ctx, fg_disc_work *work) {
   size_t count = work->ring.sector_count, n = 0;
   double *steps;
@@ -68,9 +70,10 @@ static fg_status fill_ring(fg_context *ctx, fg_disc_work *work, double reach_px)
   return fg_disc_stack_sectors(ctx, work);
 }
 
-/* One trim: weights of the sectors' points by their distance from the circle. Their rms. */
-static double trim(const fg_point *points, size_t n, const fg_circle *circle, double *weights,
-                   double *scratch) {
+/* Weighs the sectors' points by their distance from the circle, as one step of a trimmed fit.
+ * Returns their rms. */
+static double trim_points(const fg_point *points, size_t n, const fg_circle *circle,
+                          double *weights, double *scratch) {
   double sum = 0, used = 0;
   for (size_t i = 0; i < n; i++)
     scratch[i] = fabs(hypot(points[i].x - circle->x, points[i].y - circle->y) - circle->radius);
@@ -90,7 +93,7 @@ static fg_status fit_trimmed(fg_context *ctx, fg_point *points, size_t n, double
     block[i] = 1;
   for (int round = 0; round < TRIM_ROUNDS; round++) {
     FG_TRY(fg_circle_estimate(ctx, points, block, n, circle));
-    *rms = trim(points, n, circle, block, block + n);
+    *rms = trim_points(points, n, circle, block, block + n);
   }
   return FG_OK;
 }
@@ -139,15 +142,15 @@ static fg_status find_ring(fg_context *ctx, fg_disc_work *work, const fg_disc_ca
     FG_TRY(fit_sectors(ctx, work,
                        1u << FG_STEP_GAMMA | 1u << FG_STEP_SLOPE_IN | 1u << FG_STEP_SLOPE_OUT));
     FG_TRY(centre_ring(ctx, work, rms));
-    /* An edge that is damaged or not round keeps the first reach: a wider one takes in what lies
-     * beside it. */
+    /* An edge that is damaged or not round keeps the first reach: a wider one would include its
+     * surroundings. */
     if (*rms < SOUND_SHARE * work->ring.circle.radius)
       reach = REACH_PX + REACH_BLURS * typical_blur(work) + 3 * *rms;
   }
   return fill_ring(ctx, work, reach);
 }
 
-/* The sectors' final fits: slopes only where there are any. */
+/* Makes the sectors' final fits, with slopes only where they are significant. */
 static fg_status find_shape(fg_context *ctx, fg_disc_work *work) {
   unsigned held = 1u << FG_STEP_GAMMA;
   FG_TRY(fit_sectors(ctx, work, held));
@@ -177,8 +180,9 @@ exit:
   return status;
 }
 
-/* A doubt of the levels or the tone curve moves the count that is taken for the edge; over the
- * profile's slope there, contrast / (s sqrt(2 pi)), that is a shift. */
+/* Uncertainty of an edge's place by its level. An error of the levels or the tone curve moves the
+ * count that marks the edge; over the profile's slope there, contrast / (s sqrt(2 pi)), that is a
+ * shift. */
 double fg_disc_level_uncertainty(const fg_disc_work *work, const fg_tone *tone,
                                  const fg_disc_edge *edge) {
   double per_contrast = edge->blur_px * sqrt(2 * M_PI), white = 0, change = 0;
@@ -195,8 +199,8 @@ double fg_disc_level_uncertainty(const fg_disc_work *work, const fg_tone *tone,
   return hypot(white, change);
 }
 
-/* The sectors' mean profiles. */
-static void find_spread(const fg_disc_work *work, fg_disc_edge *edge) {
+/* Adds the sectors' mean profiles to the edge's spread. */
+static void add_disc_spread(const fg_disc_work *work, fg_disc_edge *edge) {
   fg_edge_spread spread = {.sum = {0}};
   for (size_t s = 0; s < work->ring.sector_count; s++) {
     const fg_step_fit *fit = &work->sectors[s];
@@ -216,11 +220,12 @@ static void find_spread(const fg_disc_work *work, fg_disc_edge *edge) {
   fg_edge_spread_measure(&spread, &edge->spread_px, &edge->asymmetry);
 }
 
-static fg_status run(fg_context *ctx, fg_disc_work *work, const fg_disc_candidate *candidate,
-                     const fg_tone *tone, fg_disc_edge *edge) {
+static fg_status measure_disc_edge(fg_context *ctx, fg_disc_work *work,
+                                   const fg_disc_candidate *candidate, const fg_tone *tone,
+                                   fg_disc_edge *edge) {
   FG_TRY(find_ring(ctx, work, candidate, &edge->sector_rms_px));
   FG_TRY(find_shape(ctx, work));
-  find_spread(work, edge);
+  add_disc_spread(work, edge);
   if (!tone->plain) FG_TRY(fg_disc_find_driver(ctx, work));
   edge->gamma = work->gamma;
   edge->driven = work->driver != NULL;
@@ -240,7 +245,7 @@ fg_status fg_disc_edge_measure(fg_context *ctx, const fg_tiles *tiles, const fg_
   memset(edge, 0, sizeof *edge);
   edge->picture = fg_picture_unknown();
   edge->gamma = tone->gamma;
-  fg_status status = run(ctx, &work, candidate, tone, edge);
+  fg_status status = measure_disc_edge(ctx, &work, candidate, tone, edge);
   if (status == FG_OK) status = fg_picture_of_ring(ctx, &work, edge, &edge->picture);
   if (status == FG_OK && isnan(edge->picture.gamma) && tone->found > 0) {
     edge->picture.gamma = tone->found;

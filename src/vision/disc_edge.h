@@ -4,24 +4,24 @@
  * (1) Mean profiles of sectors tell the shape (levels, slopes, blur, tone curve) and centre the
  * circle. (2) The shape is smoothed around the circle by its first harmonics: blur is one-sided
  * along the carriage, the wall of a hole shows on one side. (3) With the shape held, the edge of
- * every station follows from its pixels by Gauss-Newton. What the pixels of the core and those of
- * the flanks say apart from each other is kept: where they differ the model's symmetry is wrong.
+ * every station follows from its pixels by Gauss-Newton. The edge is also estimated from the core's
+ * pixels and from the flanks' pixels alone: where the two differ, the model's symmetry is wrong.
  *
  * A Gaussian blur of sd s moves the edge towards the centre by s²/(2R), whichever side is bright;
- * the stations have it put back. Lengths are square pixels (vision/disc_find.h).
+ * the stations are corrected for it. Lengths are square pixels (vision/disc_find.h).
  */
 #ifndef FG_VISION_DISC_EDGE_H
 #define FG_VISION_DISC_EDGE_H
 
 #include "vision/disc_work.h"
 
-/* What the edge around a candidate says of the tone curve: its asymmetry, where no side is white.
- * FG_ERR_NUMERIC when there is no edge. One feature says too little: pool them. */
+/* Estimates the tone curve from the edge around a candidate: from its asymmetry, where no side is
+ * white. FG_ERR_NUMERIC when there is no edge. One feature is too uncertain: pool them. */
 fg_status fg_disc_edge_tone(fg_context *ctx, const fg_tiles *tiles, const fg_pixel_shape *shape,
                             const fg_disc_candidate *candidate, fg_tone *tone);
 
-/* One tone curve for all; gamma is 1, without doubt, unless they agree on another value. Where
- * slopes hide the tone curve it is 1 with a large doubt. */
+/* One tone curve for all features. gamma is 1, with uncertainty 0, unless the features agree on
+ * another value. Where slopes hide the tone curve, gamma is 1 with a large uncertainty. */
 fg_tone fg_tone_linear(void);
 fg_tone fg_tone_pool(const fg_tone *tones, size_t count);
 fg_tone fg_tone_pool_within(const fg_tone *tones, size_t count, const double range[2]);

@@ -32,7 +32,7 @@ fg_pixel_shape fg_pixel_shape_of(const double dpi[2]) {
   return (fg_pixel_shape){.scale = {k, 1 / k}, .um = 25400 / sqrt(dpi[0] * dpi[1])};
 }
 
-/* Levels spread over the picture's range; a few cells at either end do not count. */
+/* Spreads levels over the picture's range, without a few cells at either end. */
 static void choose_levels(search *s) {
   size_t counts[256] = {0}, n = (size_t)s->picture.width * (size_t)s->picture.height, sum = 0;
   int low = 0, high = 255;
@@ -47,7 +47,7 @@ static void choose_levels(search *s) {
     s->levels[i].level = low + (i + 0.5) * step;
 }
 
-/* The outline in square px, without what runs along the scan's border. */
+/* Fills the outline in square px, without its part along the scan's border. */
 static void fill_outline(const search *s, const fg_contours *c, size_t index, fg_outline *o) {
   const fg_reduced *p = &s->picture;
   o->count = 0;
@@ -60,10 +60,10 @@ static void fill_outline(const search *s, const fg_contours *c, size_t index, fg
   }
 }
 
-static fg_status take_circles(fg_context *ctx, fg_outline *o, level_rounds *level) {
+static fg_status extract_circles(fg_context *ctx, fg_outline *o, level_rounds *level) {
   fg_round round;
   size_t taken = 0;
-  while (fg_outline_take_circle(o, &round)) {
+  while (fg_outline_extract_circle(o, &round)) {
     FG_TRY(fg_memory_reserve(ctx, level->count + 1, sizeof *level->rounds, &level->capacity,
                              (void **)&level->rounds));
     level->rounds[level->count++] = round;
@@ -87,7 +87,7 @@ static fg_status search_level(fg_context *ctx, void *shared, size_t index) {
   FG_TRY_EXIT(fg_memory_allocate(ctx, points, sizeof *outline.weights, (void **)&outline.weights));
   for (size_t i = 0; i < contours.count; i++) {
     fill_outline(s, &contours, i, &outline);
-    FG_TRY_EXIT(take_circles(ctx, &outline, level));
+    FG_TRY_EXIT(extract_circles(ctx, &outline, level));
   }
 exit:
   fg_contours_free(&contours);
@@ -97,7 +97,7 @@ exit:
 }
 
 /* All levels' circles in one list. */
-static fg_status gather(fg_context *ctx, const search *s, fg_round **all, size_t *count) {
+static fg_status gather_rounds(fg_context *ctx, const search *s, fg_round **all, size_t *count) {
   *count = 0;
   for (int i = 0; i < LEVELS; i++)
     *count += s->levels[i].count;
@@ -109,26 +109,27 @@ static fg_status gather(fg_context *ctx, const search *s, fg_round **all, size_t
   return FG_OK;
 }
 
-/* Two outlines of one edge: outlines of gaps run one cell outside those of what is bright. */
-static bool agree(const fg_circle *a, const fg_circle *b, double cell) {
+/* Returns true when two circles are outlines of one edge: outlines of gaps run one cell outside
+ * those of bright areas. */
+static bool is_same_edge(const fg_circle *a, const fg_circle *b, double cell) {
   double limit = cell + 0.015 * fmin(a->radius, b->radius);
   return hypot(a->x - b->x, a->y - b->y) <= limit && fabs(a->radius - b->radius) <= limit;
 }
 
-/* Two round features lie apart or one well inside the other; circles that do neither are two views
- * of one feature. */
-static bool collide(const fg_circle *a, const fg_circle *b) {
+/* Returns true when two circles are views of one feature: two features lie apart, or one well
+ * inside the other. */
+static bool is_same_feature(const fg_circle *a, const fg_circle *b) {
   double distance = hypot(a->x - b->x, a->y - b->y);
   double small = fmin(a->radius, b->radius), large = fmax(a->radius, b->radius);
   return distance < 0.95 * (small + large) && distance + small > 0.85 * large;
 }
 
-/* How many levels agree with a circle; cleaner outlines count for more. */
+/* Returns the number of levels that agree with a circle; cleaner outlines count for more. */
 static double support_of(const fg_round *all, size_t count, size_t i, double cell, int *levels) {
   double sum = 0;
   *levels = 0;
   for (size_t k = 0; k < count; k++) {
-    if (!agree(&all[i].circle, &all[k].circle, cell)) continue;
+    if (!is_same_edge(&all[i].circle, &all[k].circle, cell)) continue;
     sum += 1 / (1 + all[k].rms * all[k].rms / (cell * cell));
     ++*levels;
   }
@@ -161,20 +162,20 @@ static void keep_best(const fg_round *all, const ranked *ranks, size_t count, do
     const fg_circle *circle = &all[ranks[i].index].circle;
     bool free_place = ranks[i].levels >= LEVELS_AGREE;
     for (size_t k = 0; k < found->count && free_place; k++)
-      free_place = !collide(circle, &found->list[k].circle);
+      free_place = !is_same_feature(circle, &found->list[k].circle);
     if (!free_place) continue;
     found->list[found->count++] = (fg_disc_candidate){
         .circle = *circle, .levels = ranks[i].levels, .u_px = 1.5 * cell + 0.02 * circle->radius};
   }
 }
 
-static fg_status choose(fg_context *ctx, const search *s, fg_disc_candidates *found) {
+static fg_status choose_circles(fg_context *ctx, const search *s, fg_disc_candidates *found) {
   fg_round *all = NULL;
   ranked *ranks = NULL;
   size_t count;
   double cell = s->picture.cell_px;
   fg_status status = FG_OK;
-  FG_TRY_EXIT(gather(ctx, s, &all, &count));
+  FG_TRY_EXIT(gather_rounds(ctx, s, &all, &count));
   FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *ranks, (void **)&ranks));
   FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *found->list, (void **)&found->list));
   for (size_t i = 0; i < count; i++) {
@@ -198,7 +199,7 @@ fg_status fg_discs_find(fg_context *ctx, const fg_tiles *tiles, const fg_pixel_s
   FG_TRY_EXIT(fg_reduce(ctx, tiles, CELLS_MAX, &s.picture));
   choose_levels(&s);
   FG_TRY_EXIT(fg_parallel_run(ctx, threads, LEVELS, search_level, &s));
-  FG_TRY_EXIT(choose(ctx, &s, found));
+  FG_TRY_EXIT(choose_circles(ctx, &s, found));
   found->other_shapes = s.levels[LEVELS / 2].rejected;
 exit:
   for (int i = 0; i < LEVELS; i++)

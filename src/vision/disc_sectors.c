@@ -23,7 +23,7 @@ static double side_level(const fg_disc_work *work, const fg_profile_bin *bins, i
   return n > 0 ? sum / n : NAN;
 }
 
-/* Where the profile crosses the middle of its two levels, nearest to the circle. */
+/* Finds the crossing of the middle of the profile's two levels nearest to the circle. */
 static double find_crossing(const fg_disc_work *work, const fg_profile_bin *bins, double inside,
                             double outside) {
   double middle = 0.5 * (inside + outside), sign = outside > inside ? 1 : -1, best = NAN;
@@ -55,7 +55,7 @@ static void start_sector(const fg_disc_work *work, size_t s, unsigned held, fg_s
   fit->values[FG_STEP_GAMMA] = work->gamma;
 }
 
-/* A side is white when it is so in half of the sectors. */
+/* Sets white[]: a side is white when it is so in half of the sectors. */
 static void find_white(fg_disc_work *work) {
   size_t count = work->ring.sector_count;
   for (int side = 0; side < 2; side++) {

@@ -10,13 +10,13 @@
 #include "core/select.h"
 
 enum { ROUNDS = 4 };
-/* A pixel this far off the model is dust or damage: so many noise sd plus a share of contrast. */
+/* Limit for a pixel of dust or damage: noise sd plus a share of the contrast. */
 #define OUTLIER_SIGMAS 6.0
 #define OUTLIER_SHARE  0.25
-/* Pixels up to so many blurs from the edge tell where it is. */
+/* Reach of an edge, in blurs: pixels beyond it do not depend on the edge's place. */
 #define REACH_BLURS 4.0f
 #define MOVE_MAX_PX 3.0f
-/* Pixels nearer to the edge than this hold half of what all know about it. */
+/* Half width of the core, in blurs: its pixels hold half of the information about the edge. */
 #define CORE_BLURS 0.48f
 
 static void clear_sums(fg_disc_station *s) {
@@ -28,7 +28,7 @@ static void clear_sums(fg_disc_station *s) {
 static inline void add_residual(fg_disc_station *s, float value, float model, float by_edge,
                                 bool core, float limit) {
   if ((model >= 254.5f && value >= 254.5f) || (model <= 0.5f && value <= 0.5f)) return;
-  s->seen++; /* what is cut off at an end of the scale tells nothing, and is no outlier */
+  s->seen++; /* a pixel cut off at an end of the scale is neither evidence nor an outlier */
   float residual = value - model;
   if (fabsf(residual) > limit) return;
   s->m[!core] += by_edge * by_edge;
@@ -52,7 +52,7 @@ static void add_pixel(const fg_edge_tables *tables, fg_disc_station *s, const fg
   add_residual(s, p->value, model, -rate * step * density / blur, fabsf(t) <= CORE_BLURS, limit);
 }
 
-/* u and split are for pixels of unit sd. */
+/* Moves a station's edge; u and split are for pixels of unit sd. */
 static void move_edge(fg_disc_station *s) {
   float m = s->m[0] + s->m[1];
   s->weight = 0;
@@ -121,9 +121,9 @@ static double blur_shift(const fg_disc_work *work, double blur) {
   return ((1 + amount) * blur - amount * wide) / ((1 + amount) / blur - amount / wide);
 }
 
-/* Scales the deviations, drops stations whose pixels miss the model far more than usual or that
- * lie in a sector without an edge, and puts the blur's shift back. */
-static void conclude(const fg_disc_work *work, fg_disc_edge *edge) {
+/* Scales the deviations, drops stations whose pixels miss the model far more than usual or that lie
+ * in a sector without an edge, and corrects the blur's shift. */
+static void finish_stations(const fg_disc_work *work, fg_disc_edge *edge) {
   size_t per_sector = edge->count / work->ring.sector_count;
   double contrast = fabs(edge->outside - edge->inside);
   double limit = 9 * edge->noise * edge->noise + 0.002 * contrast * contrast;
@@ -154,7 +154,7 @@ fg_status fg_disc_solve(fg_context *ctx, const fg_disc_work *work, fg_disc_edge 
     limit =
         (float)(OUTLIER_SIGMAS * edge->noise + OUTLIER_SHARE * fabs(edge->outside - edge->inside));
   }
-  conclude(work, edge);
+  finish_stations(work, edge);
 exit:
   free(tables);
   fg_driven_tables_free(&driven);

@@ -7,19 +7,19 @@
 #include "core/memory.h"
 #include "core/select.h"
 
-/* A change of gamma counts above so many of its own deviations, and only in a scanner's range:
- * values beyond are a wall or a halo beside the edge. */
+/* Limits of an accepted gamma: so many of its own deviations from 1, and a scanner's range. Values
+ * beyond come from a wall or a halo beside the edge. */
 #define GAMMA_DEVIATIONS 4.0
 #define GAMMA_MIN_CHANGE 0.003
 static const double range_of_gamma[2] = {0.4, 2.8};
-/* Beside a halo or a wall gamma cannot be told: it is taken for 1, which may be wrong by this. */
+/* Uncertainty of gamma = 1 beside a halo or a wall, which hide the tone curve. */
 #define GAMMA_U 0.4
-/* Sectors that scatter by more than so many of their own deviations do not show a tone curve. */
+/* Max scatter of sectors that show a tone curve, in their own deviations. */
 #define SECTOR_SCATTER 3.0
 enum { SECTORS_MIN = 6 };
 
-/* Median of the sectors' gammas; both arrays are reordered. */
-static fg_tone judge(double *values, double *sd, size_t n) {
+/* Returns the median of the sectors' gammas; reorders both arrays. */
+static fg_tone pool_gammas(double *values, double *sd, size_t n) {
   fg_tone none = {.gamma = 1, .uncertainty = INFINITY};
   if (n < SECTORS_MIN) return none;
   double upper = fg_select(values, n, n * 3 / 4), lower = fg_select(values, n, n / 4);
@@ -49,7 +49,7 @@ fg_status fg_disc_find_tone(fg_context *ctx, fg_disc_work *work, fg_tone *tone) 
   *tone = (fg_tone){.gamma = 1, .uncertainty = INFINITY};
   if (work->white[0] || work->white[1]) return FG_OK;
   FG_TRY(fg_memory_allocate(ctx, count, 2 * sizeof *values, (void **)&values));
-  /* A tone curve that is not in the model looks like slopes, so both are asked at once. */
+  /* A tone curve that is not in the model looks like slopes, so both are fitted at once. */
   fit_sectors(work, true);
   bool slopes =
       fg_disc_has_slope(work, FG_STEP_SLOPE_IN) || fg_disc_has_slope(work, FG_STEP_SLOPE_OUT);
@@ -60,7 +60,7 @@ fg_status fg_disc_find_tone(fg_context *ctx, fg_disc_work *work, fg_tone *tone) 
     values[n] = fit->values[FG_STEP_GAMMA];
     values[count + n++] = fit->sd[FG_STEP_GAMMA];
   }
-  *tone = judge(values, values + count, n);
+  *tone = pool_gammas(values, values + count, n);
   tone->slopes = slopes;
   free(values);
   return FG_OK;

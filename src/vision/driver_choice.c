@@ -7,16 +7,16 @@
 
 #include "core/memory.h"
 
-/* A misfit above so many sd of chance, and this share of the contrast, is one. */
+/* A misfit counts above so many sd of chance, and above this share of the contrast. */
 #define MISSED_SDS   6.0
 #define MISSED_SHARE 0.0004
-/* Cells that lie within a blur of each other miss together. */
+/* Number of cells within a blur of each other, whose misfits are not independent. */
 #define CELLS_TOGETHER 2.0
 
-/* Less than this is not called sharpening, and less of a slope no tone curve. */
+/* Min amount of sharpening, and min slope of a tone curve. */
 #define AMOUNT_MIN 0.05
 #define SLOPE_MIN  0.05
-/* Of two information criteria that differ by more, the data speak for one model (exp(-5)). */
+/* Difference of two information criteria from which the data decide for one model (exp(-5)). */
 #define SCORE_CLEAR 10.0
 
 #define FREE(value) (1u << (value))
@@ -26,12 +26,13 @@
 #define HALO        (FREE(FG_DRIVER_HALO) | FREE(FG_DRIVER_HALO_PX))
 #define MASK        (FREE(FG_DRIVER_AMOUNT) | FREE(FG_DRIVER_RADIUS))
 
-/* The models, from the simplest on: what is free, which of two simpler ones it starts from (-1: the
- * plain fit), and where. A stage is asked where none before explains the profiles.
+/* The models, from the simplest on: the free values, the one of two simpler models that it starts
+ * from (-1: the plain fit), and the start values. A stage is fitted only when no earlier one
+ * explains the profiles.
  *
  * S and unsharp mask make an edge steeper, so they start from wider blurs. A steeper S of a wider
  * edge looks much like a flatter one of a narrower edge, along a valley that is not straight: the
- * models of given steepness sum over it, where the free one's standard deviation falls short. */
+ * models of given steepness sum over it, where the free one's standard deviation is too small. */
 static const struct family {
   unsigned free;
   int stage, from[2];
@@ -63,16 +64,16 @@ void fg_driver_describe(const fg_driver *driver, fg_picture_state *state) {
   state->sharpen_amount = fmax(driver->values[FG_DRIVER_AMOUNT], 0);
   if (state->tone_s > SLOPE_MIN) state->findings |= FG_PICTURE_TONE_CURVE;
   if (!(state->sharpen_amount > AMOUNT_MIN)) return;
-  /* A mask makes up for much that is none: a tone curve of another form, or blocks. Its own mark is
-   * overshoot, or that nothing else does as well. */
+  /* A mask also makes up for other defects: an S of another shape, or blocks. Only overshoot, or
+   * that no other model does as well, proves it. */
   bool seen = state->findings & FG_PICTURE_SHARPENED;
   if (!seen && (!driver->sharpens || state->findings & FG_PICTURE_BLOCK_NOISE)) {
     state->sharpen_amount = NAN;
     return;
   }
   state->sharpen_radius_px = driver->values[FG_DRIVER_RADIUS];
-  /* Levels that are cut off make an edge as steep as an unsharp mask does, and cut its overshoot
-   * off, too: then a mask is not told from them. */
+  /* Clipped levels make an edge as steep as an unsharp mask does, and cut its overshoot off, too:
+   * then a mask cannot be told from them. */
   if (!(state->findings & FG_PICTURE_CLIPPED)) state->findings |= FG_PICTURE_SHARPENED;
 }
 
@@ -96,14 +97,14 @@ static double count_free(unsigned free) {
   return n;
 }
 
-/* The pooled misfit is that of so many independent cells; its own chance stays in it, so that a
- * model gains nothing below the noise. */
+/* Score of a model. The pooled misfit stands for `misfit->cells / CELLS_TOGETHER` independent
+ * cells; its own chance stays in it, so that a model gains nothing below the noise. */
 static double score_of(const fg_driver_misfit *misfit, unsigned free) {
   double n = misfit->cells / CELLS_TOGETHER;
   return n * log((misfit->squares + misfit->expected) / n) + count_free(free) * log(n);
 }
 
-/* The better of the simpler models, and what this one has beside it. */
+/* Starts a model from the better of its simpler ones, with its own values added. */
 static void start_family(const struct family *family, const candidate *candidates,
                          const candidate *start, candidate *c) {
   const int *from = family->from;
@@ -137,10 +138,10 @@ static fg_status try_family(fg_context *ctx, const struct family *family,
   return FG_OK;
 }
 
-/* The best, and the edges' place over all models, each weighing exp(-score/2). Where S and unsharp
- * mask are both in play every one of them misses a little, and that little is as large as what
- * tells them apart: `sharpness` below 1 lets more of them count. */
-static size_t weigh(const candidate *candidates, double sharpness, double *u_edge_px) {
+/* Returns the best model, and the edges' place over all models, each weighing exp(-score/2). Where
+ * S and unsharp mask compete every model misses a little, by as much as they differ. `sharpness`
+ * below 1 lets more of them count. */
+static size_t weigh_models(const candidate *candidates, double sharpness, double *u_edge_px) {
   size_t best = 0;
   double weights = 0, square = 0;
   for (size_t i = 1; i < FAMILIES; i++)
@@ -157,8 +158,8 @@ static size_t weigh(const candidate *candidates, double sharpness, double *u_edg
   return best;
 }
 
-/* True when the best has a mask, and those without one are far behind: of a model that is missed,
- * too, the order among models says nothing. */
+/* Returns true when the best model has a mask, and those without one are far behind. When the best
+ * misses too, the order among models means nothing. */
 static bool is_sharpened(const candidate *candidates, size_t best, bool missed) {
   double without = INFINITY;
   for (size_t i = 0; i < FAMILIES; i++)
@@ -185,7 +186,7 @@ fg_status fg_driver_choose(fg_context *ctx, fg_driven_profile *profiles, size_t 
     for (; i < FAMILIES && families[i].stage == stage; i++)
       if (!choice->linear || !(families[i].free & (GAMMA | S_CURVE)))
         FG_TRY_EXIT(try_family(ctx, &families[i], candidates, start, count, tone, &candidates[i]));
-    best = weigh(candidates, stage == STAGES - 1 ? VALLEY_SHARPNESS : 1, &choice->u_edge_px);
+    best = weigh_models(candidates, stage == STAGES - 1 ? VALLEY_SHARPNESS : 1, &choice->u_edge_px);
     choice->missed = fg_driver_is_missed(&candidates[best].misfit, ends[1] - ends[0]);
   }
   choice->fit = candidates[best].fit;

@@ -15,11 +15,11 @@
 enum { ITERATIONS_MAX = 25, ALL = FG_DRIVEN_VALUES + FG_DRIVER_VALUES };
 #define GAIN_MIN    1e-4
 #define DAMPING_MAX 1e5
-/* Optics are Gaussian to this share of the contrast: where a tone curve is steep, little light
- * beside the edge, its blur's tails, moves many counts. */
+/* Share of the contrast to which optics are Gaussian. Where a tone curve is steep, the little light
+ * of a blur's tails beside the edge moves many counts. */
 #define TAIL_SHARE 0.001
 
-/* Steps of numerical derivatives, ranges, and what is known beforehand (sd 0: nothing). */
+/* Steps of numerical derivatives, ranges, and priors (sd 0: none). */
 static const struct {
   double step, low, high, prior, prior_sd;
 } driver_values[FG_DRIVER_VALUES] = {
@@ -54,16 +54,17 @@ typedef struct solver {
   double *trial;                /* profiles' values */
 } solver;
 
-static double *column(const solver *s, size_t i) {
+static double *derivative_column(const solver *s, size_t i) {
   return s->counts + i * FG_DRIVEN_MAX;
 }
 
 /* The model and its derivatives for one profile. */
-static void differentiate(const solver *s, const fg_driven_profile *p, const fg_driver *driver) {
-  double *base = column(s, 0), values[FG_DRIVEN_VALUES];
+static void differentiate_profile(const solver *s, const fg_driven_profile *p,
+                                  const fg_driver *driver) {
+  double *base = derivative_column(s, 0), values[FG_DRIVEN_VALUES];
   fg_driven_counts(driver, s->tone, p, p->values, base);
   for (size_t k = 0; k < FG_DRIVEN_VALUES + s->q; k++) {
-    double *to = column(s, 1 + k), step;
+    double *to = derivative_column(s, 1 + k), step;
     if (k < FG_DRIVEN_VALUES) {
       if (p->held >> k & 1) {
         memset(to, 0, p->count * sizeof *to);
@@ -83,7 +84,7 @@ static void differentiate(const solver *s, const fg_driven_profile *p, const fg_
   }
 }
 
-/* Weight of a bin: what the tails of the optics are in counts adds to its variance. */
+/* Weight of a bin; the uncertainty of the optics' tails, in counts, adds to its variance. */
 static double weight_of(const fg_driven_profile *p, size_t i, double noise) {
   const fg_profile_bin *b = &p->bins[i];
   double tails = p->tails ? TAIL_SHARE * p->tails[i] : 0;
@@ -95,12 +96,12 @@ static double add_profile(const solver *s, const fg_driven_profile *p, profile_e
   memset(part, 0, sizeof *part);
   fg_normal_clear(&part->system, FG_DRIVEN_VALUES);
   for (size_t i = 0; i < p->count; i++) {
-    double residual = p->bins[i].value - column(s, 0)[i];
+    double residual = p->bins[i].value - derivative_column(s, 0)[i];
     double weight = weight_of(p, i, s->fit->noise);
     for (size_t k = 0; k < FG_DRIVEN_VALUES; k++)
-      row[k] = column(s, 1 + k)[i];
+      row[k] = derivative_column(s, 1 + k)[i];
     for (size_t k = 0; k < s->q; k++)
-      common[k] = column(s, 1 + FG_DRIVEN_VALUES + k)[i];
+      common[k] = derivative_column(s, 1 + FG_DRIVEN_VALUES + k)[i];
     fg_normal_add(&part->system, row, residual, weight);
     for (size_t k = 0; k < s->q; k++) {
       for (size_t j = 0; j < FG_DRIVEN_VALUES; j++)
@@ -116,7 +117,7 @@ static double add_profile(const solver *s, const fg_driven_profile *p, profile_e
   return squares;
 }
 
-/* What is known beforehand of the driver, as a sum of squares. */
+/* Sum of squares of the driver's priors. */
 static double prior_squares(const solver *s, const fg_driver *driver) {
   double sum = 0;
   for (size_t k = 0; k < s->q; k++) {
@@ -128,7 +129,7 @@ static double prior_squares(const solver *s, const fg_driver *driver) {
   return sum;
 }
 
-static double build(const solver *s) {
+static double build_equations(const solver *s) {
   const fg_driver *driver = &s->fit->driver;
   double squares = prior_squares(s, driver);
   fg_driver_tone_fill(driver, s->tone);
@@ -138,7 +139,7 @@ static double build(const solver *s) {
     fg_driver_tone_fill(&other, &s->moved[k]);
   }
   for (size_t i = 0; i < s->count; i++) {
-    differentiate(s, &s->profiles[i], driver);
+    differentiate_profile(s, &s->profiles[i], driver);
     squares += add_profile(s, &s->profiles[i], &s->equations[i]);
   }
   return squares;
@@ -149,18 +150,18 @@ static double squares_at(const solver *s, const fg_driver *driver, const double 
   fg_driver_tone_fill(driver, s->tone);
   for (size_t i = 0; i < s->count; i++) {
     const fg_driven_profile *p = &s->profiles[i];
-    fg_driven_counts(driver, s->tone, p, values + i * FG_DRIVEN_VALUES, column(s, 0));
+    fg_driven_counts(driver, s->tone, p, values + i * FG_DRIVEN_VALUES, derivative_column(s, 0));
     for (size_t k = 0; k < p->count; k++) {
-      double residual = p->bins[k].value - column(s, 0)[k];
+      double residual = p->bins[k].value - derivative_column(s, 0)[k];
       squares += weight_of(p, k, s->fit->noise) * residual * residual;
     }
   }
   return squares;
 }
 
-/* Takes a profile's own unknowns out: B A⁻¹ B' and B A⁻¹ g from the system of the driver. */
-static bool eliminate(const solver *s, profile_equations *part, double damping,
-                      fg_normal_equations *system) {
+/* Eliminates a profile's own unknowns: subtracts B A⁻¹ B' and B A⁻¹ g from the driver's system. */
+static bool eliminate_unknowns(const solver *s, profile_equations *part, double damping,
+                               fg_normal_equations *system) {
   if (!fg_normal_solve(&part->system, damping, part->own, part->inverse)) return false;
   for (size_t k = 0; k < s->q; k++) {
     double row[FG_DRIVEN_VALUES] = {0};
@@ -179,8 +180,8 @@ static bool eliminate(const solver *s, profile_equations *part, double damping,
   return true;
 }
 
-/* The system of the driver's free values; false where a profile cannot be solved. */
-static bool reduce(const solver *s, double damping, fg_normal_equations *system) {
+/* Builds the system of the driver's free values; false where a profile cannot be solved. */
+static bool reduce_system(const solver *s, double damping, fg_normal_equations *system) {
   fg_normal_clear(system, s->q);
   for (size_t k = 0; k < s->q; k++) {
     size_t i = s->index[k];
@@ -190,25 +191,25 @@ static bool reduce(const solver *s, double damping, fg_normal_equations *system)
     system->right[k] += weight * (driver_values[i].prior - s->fit->driver.values[i]);
   }
   for (size_t i = 0; i < s->count; i++)
-    if (!eliminate(s, &s->equations[i], damping, system)) return false;
+    if (!eliminate_unknowns(s, &s->equations[i], damping, system)) return false;
   return true;
 }
 
-static double within(double value, double low, double high) {
+static double clamp_value(double value, double low, double high) {
   return fmin(fmax(value, low), high);
 }
 
-/* A damped step of everything into s->trial and *driver. */
-static bool propose(const solver *s, double damping, fg_driver *driver) {
+/* Proposes a damped step of all values in s->trial and *driver. */
+static bool propose_step(const solver *s, double damping, fg_driver *driver) {
   fg_normal_equations system;
   double step[FG_SMALL_MAX] = {0};
-  if (!reduce(s, damping, &system)) return false;
+  if (!reduce_system(s, damping, &system)) return false;
   if (s->q && !fg_normal_solve(&system, damping, step, NULL)) return false;
   *driver = s->fit->driver;
   for (size_t k = 0; k < s->q; k++) {
     size_t i = s->index[k];
     double to = driver->values[i] + step[k];
-    driver->values[i] = within(to, driver_values[i].low, driver_values[i].high);
+    driver->values[i] = clamp_value(to, driver_values[i].low, driver_values[i].high);
     step[k] = driver->values[i] - s->fit->driver.values[i];
   }
   for (size_t i = 0; i < s->count; i++) {
@@ -220,13 +221,13 @@ static bool propose(const solver *s, double damping, fg_driver *driver) {
           move -= part->inverse[j][l] * part->cross[k][l] * step[k];
       double to = s->profiles[i].values[j] + (s->profiles[i].held >> j & 1 ? 0 : move);
       s->trial[i * FG_DRIVEN_VALUES + j] =
-          within(to, profile_values[j].low, profile_values[j].high);
+          clamp_value(to, profile_values[j].low, profile_values[j].high);
     }
   }
   return true;
 }
 
-static void accept(const solver *s, const fg_driver *driver) {
+static void accept_step(const solver *s, const fg_driver *driver) {
   s->fit->driver = *driver;
   for (size_t i = 0; i < s->count; i++)
     memcpy(s->profiles[i].values, s->trial + i * FG_DRIVEN_VALUES, sizeof s->profiles[i].values);
@@ -251,7 +252,7 @@ static double edge_place(const solver *s, double *by_driver) {
   return sum / (double)s->count;
 }
 
-/* Variance of v' θ from how the profiles differ among each other: the sandwich C J C. */
+/* Variance of v' θ from the differences among the profiles: the sandwich C J C. */
 static double scattered_variance(const solver *s, double inverse[FG_SMALL_MAX][FG_SMALL_MAX],
                                  const double *v) {
   double sum = 0;
@@ -280,7 +281,7 @@ static double variance_of(const solver *s, double inverse[FG_SMALL_MAX][FG_SMALL
 }
 
 /* Standard deviations; the squares are in units of fit->noise. */
-static void conclude(const solver *s, double squares) {
+static void find_deviations(const solver *s, double squares) {
   fg_normal_equations system;
   double x[FG_SMALL_MAX], inverse[FG_SMALL_MAX][FG_SMALL_MAX], by_driver[FG_DRIVER_VALUES] = {0};
   double dof = -(double)s->q;
@@ -288,7 +289,7 @@ static void conclude(const solver *s, double squares) {
   for (size_t i = 0; i < s->count; i++)
     dof += (double)s->profiles[i].count - FG_DRIVEN_VALUES;
   double scale = dof > 0 ? squares / dof : 1;
-  fit->good = reduce(s, 0, &system) && (!s->q || fg_normal_solve(&system, 0, x, inverse));
+  fit->good = reduce_system(s, 0, &system) && (!s->q || fg_normal_solve(&system, 0, x, inverse));
   if (!fit->good) return;
   fit->edge_px = edge_place(s, by_driver);
   fit->u_edge_px = sqrt(variance_of(s, inverse, by_driver, fmax(scale, 1)));
@@ -304,11 +305,11 @@ static void conclude(const solver *s, double squares) {
   fit->noise *= sqrt(scale);
 }
 
-static void iterate(const solver *s) {
-  double damping = 1e-3, squares = build(s);
+static void iterate_steps(const solver *s) {
+  double damping = 1e-3, squares = build_equations(s);
   fg_driver driver;
   for (int i = 0; i < ITERATIONS_MAX && damping < DAMPING_MAX; i++) {
-    if (!propose(s, damping, &driver)) {
+    if (!propose_step(s, damping, &driver)) {
       damping *= 10;
       continue;
     }
@@ -318,12 +319,12 @@ static void iterate(const solver *s) {
       continue;
     }
     double gain = squares - next;
-    accept(s, &driver);
-    squares = build(s);
+    accept_step(s, &driver);
+    squares = build_equations(s);
     damping = fmax(damping * 0.1, 1e-9);
     if (gain < GAIN_MIN * squares) break;
   }
-  conclude(s, squares);
+  find_deviations(s, squares);
 }
 
 fg_status fg_driver_fit_profiles(fg_context *ctx, fg_driven_profile *profiles, size_t count,
@@ -340,7 +341,7 @@ fg_status fg_driver_fit_profiles(fg_context *ctx, fg_driven_profile *profiles, s
   FG_TRY_EXIT(
       fg_memory_allocate(ctx, count * FG_DRIVEN_VALUES, sizeof *s.trial, (void **)&s.trial));
   s.moved = s.tone + 1;
-  iterate(&s);
+  iterate_steps(&s);
 exit:
   free(s.equations);
   free(s.tone);

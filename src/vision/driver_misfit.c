@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a model leaves of many profiles, the same on all of them. */
+/* Residuals of a model that many profiles share. */
 #include <math.h>
 #include <string.h>
 
@@ -31,7 +31,7 @@ static void add_half(const fg_driven_profile *p, const double *counts, int side,
   }
 }
 
-/* Mean and its standard error over the half profiles: medians, for dust lies on some. */
+/* Pools the mean and its standard error over the half profiles: medians, since some carry dust. */
 static bool pool_cell(const cells *halves, size_t count, int cell, double *mean, double *error) {
   double values[HALVES_MAX];
   size_t n = 0;

@@ -1,19 +1,20 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a scanner's driver makes of the counts: a tone curve of few numbers, and an unsharp mask.
+/* Model of a scanner's driver: a tone curve of few parameters, and an unsharp mask.
  *
- *   counts = (1 + a) C - a (C * normal(r)),   C = G((1 - h) light + h (light * exp(-|x|/l)/2l))
- *   G(u) = A + (B - A) S( (255 (u/255)^(1/gamma) - A) / (B - A) )
- *   S(x) = (L(x) - L(0)) / (L(1) - L(0)),   L(x) = 1 / (1 + exp(-k (x - m)))
+ *  counts = (1 + a) C - a (C * normal(r)),   C = G((1 - h) light + h (light * exp(-|x|/l)/2l))
+ *  G(u) = A + (B - A) S( (255 (u/255)^(1/gamma) - A) / (B - A) )
+ *  S(x) = (L(x) - L(0)) / (L(1) - L(0)),   L(x) = 1 / (1 + exp(-k (x - m)))
  *
- * A power of the light, then an S of steepness k about m between the counts A and B of both levels
- * that an edge has, which it leaves where they are (k = 0: none), then the unsharp mask: what the
- * counts differ from their own Gaussian blur is added `a` times. Of the optics a halo belongs to
- * it: light that is spread wide looks like a tone curve where the model has no place for it.
+ * First a power of the light. Then an S of steepness k about m between the counts A and B of the
+ * edge's two levels, which it leaves in place (k = 0: none). Then the unsharp mask: it adds `a`
+ * times the difference of the counts from their own Gaussian blur. The halo h belongs to the
+ * optics, but has its place here: a model without it takes light that is spread wide for a tone
+ * curve.
  *
- * The mean profile of one edge says little of them: another place and blur of the edge make up for
- * much of a tone curve. So many profiles are fitted at once, each with its own levels, slopes,
- * blurs and edges, and one driver for all; how far the edges move with what is left open of the
- * driver is part of the result.
+ * The mean profile of one edge tells little of the driver: another place and blur of the edge make
+ * up for much of a tone curve. So many profiles are fitted at once, each with its own levels,
+ * slopes, blurs and edges, and one driver for all. The result holds the uncertainty of the edges
+ * that the driver's uncertainty causes.
  */
 #ifndef FG_VISION_DRIVER_MODEL_H
 #define FG_VISION_DRIVER_MODEL_H
@@ -39,7 +40,7 @@ enum { FG_DRIVER_TONE_STEPS = 2048, FG_DRIVER_LIGHT_MAX = 330 };
 typedef struct fg_driver {
   double values[FG_DRIVER_VALUES];
   double ends[2]; /* A < B, counts */
-  bool sharpens;  /* no model without an unsharp mask explains the profiles nearly as well */
+  bool sharpens;  /* every model without an unsharp mask explains the profiles clearly worse */
 } fg_driver;
 
 /* No tone curve, no unsharp mask. */
@@ -47,7 +48,7 @@ fg_driver fg_driver_none(const double ends[2]);
 
 /* G as a table over all light, dense where powers are steep. */
 typedef struct fg_driver_tone {
-  bool linear;                            /* the counts are the light, there is no table */
+  bool linear;                            /* G is the identity, there is no table */
   double count[FG_DRIVER_TONE_STEPS + 2]; /* at FG_DRIVER_LIGHT_MAX i² / steps² */
   double below;                           /* counts per light below 0 */
 } fg_driver_tone;
@@ -61,9 +62,9 @@ double fg_driver_tone_inverse(const fg_driver_tone *tone, double count);
 /* Slope of S in its middle, less 1. */
 double fg_driver_extra_slope(const fg_driver *driver);
 
-/* The profile of one edge, or of both of a strip: levels as counts before the unsharp mask, slopes
- * in light per px, as counts over the contrast in both; edges and blurs in px. Of one edge alone
- * the plateau is the level inside, and SLOPE_L the slope there. */
+/* Values of the profile of one edge, or of both of a strip. Levels are counts before the unsharp
+ * mask; slopes are light per px, as counts over the contrast in both; edges and blurs are px. Of
+ * one edge alone the plateau is the level inside, and SLOPE_L the slope there. */
 enum {
   FG_DRIVEN_LEFT,
   FG_DRIVEN_RIGHT,
@@ -79,15 +80,15 @@ enum {
 
 typedef struct fg_driven_profile {
   const fg_profile_bin *bins; /* none of them empty, at most FG_DRIVEN_MAX - 8 */
-  const double *tails;        /* of each bin: counts per contrast of light; NULL: not looked at */
+  const double *tails;        /* of each bin: counts per contrast of light; NULL: not used */
   size_t count;
   double values[FG_DRIVEN_VALUES];
   double sd[FG_DRIVEN_VALUES]; /* with the driver held */
-  unsigned held;               /* bit i: values[i] stays as it is */
-  bool single;                 /* one edge */
+  unsigned held;               /* bit i: values[i] is not fitted */
+  bool single;                 /* one edge, not both of a strip */
 } fg_driven_profile;
 
-/* Most values of one profile, those at the ends of the convolution among them. */
+/* Max number of values of one profile, with those at the ends of the convolution. */
 enum { FG_DRIVEN_MAX = 1024 };
 #define FG_DRIVEN_STEP_PX 0.25
 
@@ -103,14 +104,14 @@ typedef struct fg_driver_fit {
   fg_driver driver;
   unsigned free; /* bit i: driver.values[i] is fitted */
   double sd[FG_DRIVER_VALUES];
-  double u_edge_px; /* sd of an edge's place, outwards, that the free values leave */
+  double u_edge_px; /* sd of an edge's place, outwards, caused by the free values */
   double edge_px;   /* mean place of the edges, outwards from the middle */
-  double noise;     /* sd of a pixel: as expected, then as the misfit says */
+  double noise;     /* sd of a pixel: in: as expected; out: by the misfit */
   bool good;        /* it converged */
 } fg_driver_fit;
 
-/* Fits the profiles and what is free of the driver to all of them at once. `profiles` and
- * fit->driver hold the start. */
+/* Fits all profiles and the free values of the driver at once. `profiles` and fit->driver hold the
+ * start. */
 fg_status fg_driver_fit_profiles(fg_context *ctx, fg_driven_profile *profiles, size_t count,
                                  fg_driver_fit *fit);
 

@@ -4,7 +4,7 @@
 
 #include "vision/driver_model.h"
 
-/* A Gaussian ends at so many sd. */
+/* Reach of a Gaussian kernel, in sd. */
 #define KERNEL_REACH 4.0
 enum { KERNEL_MAX = 128 };
 
@@ -52,8 +52,8 @@ static double scaled_tail(double x, double y) {
   return 0.5 * exp(x) * erfc(y * M_SQRT1_2);
 }
 
-/* What a halo of length l takes from a blurred step of 1: the step less its own blur by
- * exp(-|x|/l)/2l, in closed form. */
+/* Loss of a blurred step of 1 to a halo of length l: the step less its own blur by exp(-|x|/l)/2l,
+ * in closed form. */
 static double halo_loss(double d, double blur, double length) {
   double r = blur / length, t = d / blur;
   if (fabs(d) > 30 * length) return 0;
@@ -85,10 +85,10 @@ static double plain_count(const lit *l, const fg_driver_tone *tone, double acros
 
 typedef struct kernel {
   int reach;
-  double weights[KERNEL_MAX + 1]; /* from the middle on */
+  double weights[KERNEL_MAX + 1]; /* from the middle outwards */
 } kernel;
 
-static kernel gaussian(double radius_px) {
+static kernel gaussian_kernel(double radius_px) {
   kernel k = {.reach = (int)ceil(KERNEL_REACH * radius_px / FG_DRIVEN_STEP_PX)};
   double sum = 0;
   if (k.reach > KERNEL_MAX) k.reach = KERNEL_MAX;
@@ -106,7 +106,7 @@ static kernel gaussian(double radius_px) {
 static void blurred_grid(const fg_driver *driver, const fg_driver_tone *tone, const lit *l,
                          double from_px, size_t count, double *blurred) {
   double raw[FG_DRIVEN_MAX + 2 * KERNEL_MAX];
-  kernel k = gaussian(driver->values[FG_DRIVER_RADIUS]);
+  kernel k = gaussian_kernel(driver->values[FG_DRIVER_RADIUS]);
   size_t reach = (size_t)k.reach;
   for (size_t i = 0; i < count + 2 * reach; i++)
     raw[i] = plain_count(l, tone, from_px + ((double)i - (double)reach) * FG_DRIVEN_STEP_PX);
@@ -132,7 +132,7 @@ static double on_scale(double count) {
   return fmin(fmax(count, 0), 255);
 }
 
-static double sharpen(const fg_driver *driver, double count, double blurred) {
+static double sharpen_count(const fg_driver *driver, double count, double blurred) {
   double amount = driver->values[FG_DRIVER_AMOUNT];
   return on_scale((1 + amount) * count - amount * blurred);
 }
@@ -143,8 +143,8 @@ void fg_driven_grid(const fg_driver *driver, const fg_driver_tone *tone, const d
   if (driver->values[FG_DRIVER_AMOUNT] != 0) blurred_grid(driver, tone, &l, from_px, count, counts);
   for (size_t i = 0; i < count; i++) {
     double plain = plain_count(&l, tone, from_px + (double)i * FG_DRIVEN_STEP_PX);
-    counts[i] =
-        driver->values[FG_DRIVER_AMOUNT] == 0 ? on_scale(plain) : sharpen(driver, plain, counts[i]);
+    counts[i] = driver->values[FG_DRIVER_AMOUNT] == 0 ? on_scale(plain)
+                                                      : sharpen_count(driver, plain, counts[i]);
   }
 }
 
@@ -163,7 +163,7 @@ void fg_driven_counts(const fg_driver *driver, const fg_driver_tone *tone,
   for (size_t i = 0; i < profile->count; i++) {
     double across = profile->bins[i].across_px, plain = plain_count(&l, tone, across);
     counts[i] = !grid ? on_scale(plain)
-                      : sharpen(driver, plain,
-                                cubic_at(blurred, grid, (across - from) / FG_DRIVEN_STEP_PX));
+                      : sharpen_count(driver, plain,
+                                      cubic_at(blurred, grid, (across - from) / FG_DRIVEN_STEP_PX));
   }
 }

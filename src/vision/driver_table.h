@@ -5,8 +5,8 @@
 
 #include "vision/driver_model.h"
 
-/* One profile about 0, and how it rises there without slopes, which are the least certain part of
- * an edge's shape. */
+/* One profile about 0, and its rise there without slopes, which are the least certain part of an
+ * edge's shape. */
 typedef struct fg_driven_table {
   float *counts, *rates;
   double from_px;
@@ -20,7 +20,7 @@ typedef struct fg_driven_tables {
   size_t size; /* of one table */
 } fg_driven_tables;
 
-/* Tables that reach so far on both sides of 0; fg_driven_tables_free them. */
+/* Allocates tables from -reach_px to reach_px; fg_driven_tables_free them. */
 fg_status fg_driven_tables_create(fg_context *ctx, size_t count, double reach_px,
                                   fg_driven_tables *tables);
 void fg_driven_tables_free(fg_driven_tables *tables);

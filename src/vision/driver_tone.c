@@ -4,7 +4,7 @@
 
 #include "vision/driver_model.h"
 
-/* Below this steepness the S is a straight line. */
+/* Min steepness of an S: below it is a straight line. */
 #define STEEPNESS_MIN 1e-3
 
 fg_driver fg_driver_none(const double ends[2]) {
@@ -17,7 +17,7 @@ static double logistic(double x) {
   return 1 / (1 + exp(-x));
 }
 
-/* S at x, without and with its ends put to 0 and 1. */
+/* S at x, without and with its ends scaled to 0 and 1. */
 static double s_curve(double k, double m, double x) {
   double low = logistic(-k * m), high = logistic(k * (1 - m));
   return k < STEEPNESS_MIN ? x : (logistic(k * (x - m)) - low) / (high - low);
@@ -28,7 +28,7 @@ bool fg_driver_is_linear(const fg_driver *driver) {
          driver->values[FG_DRIVER_STEEPNESS] < STEEPNESS_MIN;
 }
 
-/* Below no light at all a power has nothing; without one light and counts go on. */
+/* Returns G. Below light 0 a power is not defined; without one the line goes on. */
 double fg_driver_count(const fg_driver *driver, double light) {
   double ln_gamma = driver->values[FG_DRIVER_LN_GAMMA];
   double count = ln_gamma == 0 ? light : 255 * pow(fmax(light, 0) / 255, exp(-ln_gamma));

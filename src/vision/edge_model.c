@@ -68,7 +68,7 @@ static step step_at(const fg_edge_tables *tables, double d, double level, double
   return s;
 }
 
-static void pack(const fg_profile_fit *fit, double *x) {
+static void pack_unknowns(const fg_profile_fit *fit, double *x) {
   const double values[UNKNOWNS] = {
       fit->edge_px[0],       fit->edge_px[1],     fit->shape.plateau,  fit->shape.level[0],
       fit->shape.level[1],   fit->shape.slope[0], fit->shape.slope[1], fit->shape.blur_px[0],
@@ -76,7 +76,7 @@ static void pack(const fg_profile_fit *fit, double *x) {
   memcpy(x, values, sizeof values);
 }
 
-static void unpack(const double *x, fg_profile_fit *fit) {
+static void unpack_unknowns(const double *x, fg_profile_fit *fit) {
   fit->edge_px[0] = x[EDGE_LEFT];
   fit->edge_px[1] = x[EDGE_RIGHT];
   fit->shape = (fg_edge_shape){.plateau = x[PLATEAU],
@@ -111,9 +111,9 @@ static double model_at(const fg_edge_tables *tables, const double *x, double acr
   return value;
 }
 
-/* Levels are in light, so a step in gamma must carry them along: fitted are the counts at the
- * plateau and the two backgrounds, kept while gamma changes. Here the derivative by gamma at
- * fixed counts: subtract what the levels' own change would do. */
+/* Makes the derivative by gamma one at constant counts. Levels are in light, so a step in gamma
+ * must carry them along: the fitted values are the counts at the plateau and the two backgrounds.
+ * So the row loses the change that the levels' own change would cause. */
 static void hold_counts(const double *x, double *row) {
   double gamma = x[GAMMA];
   const int levels[3] = {PLATEAU, LEVEL_L, LEVEL_R};
@@ -123,8 +123,9 @@ static void hold_counts(const double *x, double *row) {
   }
 }
 
-static void build(const fg_edge_tables *tables, const fg_profile_bin *bins, size_t count,
-                  const double *x, size_t unknowns, fg_normal_equations *system) {
+static void build_profile_equations(const fg_edge_tables *tables, const fg_profile_bin *bins,
+                                    size_t count, const double *x, size_t unknowns,
+                                    fg_normal_equations *system) {
   fg_normal_clear(system, unknowns);
   double row[UNKNOWNS];
   for (size_t i = 0; i < count; i++) {
@@ -140,8 +141,8 @@ static bool is_sensible(const double *x) {
          x[BLUR_R] < 12 && x[GAMMA] > 0.25 && x[GAMMA] < 5 && x[PLATEAU] > -20 && x[PLATEAU] < 600;
 }
 
-/* A step in the unknowns; the levels follow gamma at constant counts. */
-static void advance(const double *x, const double *dx, size_t unknowns, double *moved) {
+/* Steps the unknowns; the levels follow gamma at constant counts. */
+static void advance_unknowns(const double *x, const double *dx, size_t unknowns, double *moved) {
   memcpy(moved, x, UNKNOWNS * sizeof *x);
   double gamma = x[GAMMA] + (unknowns > GAMMA ? dx[GAMMA] : 0);
   const int levels[3] = {PLATEAU, LEVEL_L, LEVEL_R};
@@ -153,8 +154,8 @@ static void advance(const double *x, const double *dx, size_t unknowns, double *
   moved[GAMMA] = gamma;
 }
 
-static void conclude(const fg_profile_bin *bins, size_t count, size_t unknowns,
-                     const fg_normal_equations *system, fg_profile_fit *fit) {
+static void finish_profile_fit(const fg_profile_bin *bins, size_t count, size_t unknowns,
+                               const fg_normal_equations *system, fg_profile_fit *fit) {
   double x[UNKNOWNS], inverse[FG_SMALL_MAX][FG_SMALL_MAX];
   size_t used = 0;
   for (size_t i = 0; i < count; i++)
@@ -171,16 +172,16 @@ void fg_profile_fit_model(const fg_edge_tables *tables, const fg_profile_bin *bi
   size_t unknowns = free_gamma ? UNKNOWNS : GAMMA;
   double x[UNKNOWNS], trial[UNKNOWNS], dx[FG_SMALL_MAX], damping = 1e-4;
   fg_normal_equations system, next;
-  pack(fit, x);
-  build(tables, bins, count, x, unknowns, &system);
+  pack_unknowns(fit, x);
+  build_profile_equations(tables, bins, count, x, unknowns, &system);
   fit->good = 0;
   for (int i = 0; i < ITERATIONS_MAX && damping < 1e6; i++) {
     if (!fg_normal_solve(&system, damping, dx, NULL)) {
       damping = fmax(damping * 10, 1e-6);
       continue;
     }
-    advance(x, dx, unknowns, trial);
-    if (is_sensible(trial)) build(tables, bins, count, trial, unknowns, &next);
+    advance_unknowns(x, dx, unknowns, trial);
+    if (is_sensible(trial)) build_profile_equations(tables, bins, count, trial, unknowns, &next);
     if (!is_sensible(trial) || !(next.sum_squares <= system.sum_squares)) {
       damping *= 10;
       continue;
@@ -192,6 +193,6 @@ void fg_profile_fit_model(const fg_edge_tables *tables, const fg_profile_bin *bi
     fit->good = 1;
     if (gain <= 1e-5 * system.sum_squares) break;
   }
-  unpack(x, fit);
-  conclude(bins, count, unknowns, &system, fit);
+  unpack_unknowns(x, fit);
+  finish_profile_fit(bins, count, unknowns, &system, fit);
 }

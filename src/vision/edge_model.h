@@ -4,12 +4,12 @@
  * With d1 = e1 - n and d2 = n - e2 (distance outwards from the left and the right edge), and the
  * tone curve G,
  *
- *   I(n) = G( P + T(d1; bL, gL, sL) + T(d2; bR, gR, sR) )
- *   T(d; b, g, s) = (b + g d - P) Phi(d/s) + g s phi(d/s)
+ *  I(n) = G( P + T(d1; bL, gL, sL) + T(d2; bR, gR, sR) )
+ *  T(d; b, g, s) = (b + g d - P) Phi(d/s) + g s phi(d/s)
  *
- * which is a plateau P between two backgrounds that start with level b at the edge and run with
- * slope g (a halo, the part's wall), each step blurred with a Gaussian of sd s. Both edges stand
- * in one model because they overlap: the strip is 19 px wide and the blur reaches 3 px.
+ * a plateau P between two backgrounds that start with level b at the edge and run with slope g (a
+ * halo, the part's wall), each step blurred with a Gaussian of sd s. Both edges stand in one model
+ * because they overlap: the strip is 19 px wide and the blur reaches 3 px.
  *
  * Levels are in counts of light on a scale of 0 to 255; G(u) = 255 (u/255)^(1/gamma).
  */
@@ -24,7 +24,7 @@
 extern "C" {
 #endif
 
-/* What the profile looks like apart from where its edges are. */
+/* Shape of the profile: all values but the edges' places. */
 typedef struct fg_edge_shape {
   double plateau;    /* P */
   double level[2];   /* bL, bR */
@@ -80,7 +80,7 @@ static inline void fg_edge_tone(const fg_edge_tables *tables, float u, float *va
   *rate = step * (FG_TONE_STEPS / 255.0f);
 }
 
-/* G, and light for a count: its inverse. */
+/* G, and its inverse. */
 double fg_edge_count(double gamma, double light);
 double fg_edge_light(double gamma, double count);
 
@@ -92,19 +92,18 @@ typedef struct fg_profile_bin {
   double across_px, value, count;
 } fg_profile_bin;
 
-/* What a fit of one mean profile gives. */
+/* Fit of one mean profile. */
 typedef struct fg_profile_fit {
   fg_edge_shape shape;
   double edge_px[2];
   double gamma, u_gamma;
   double sd[FG_EDGE_SHAPE_VALUES]; /* of the shape's values, in the order of the struct */
-  double noise;                    /* sd of one pixel as the misfit says */
-  int good;                        /* it converged to something sensible */
+  double noise;                    /* sd of one pixel, by the misfit */
+  int good;                        /* 1: the fit converged to plausible values */
 } fg_profile_fit;
 
 /* Fits the model to a mean profile by damped Gauss-Newton; `fit` holds the start. gamma is fitted
- * when free_gamma is set, else taken as it is. Of the tables only the normal distribution is
- * used. */
+ * when free_gamma is set, else held. Of the tables only the normal distribution is used. */
 void fg_profile_fit_model(const fg_edge_tables *tables, const fg_profile_bin *bins, size_t count,
                           int free_gamma, fg_profile_fit *fit);
 

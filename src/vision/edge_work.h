@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One strip while its edges are found (edges.h), as the steps of that share it. */
+/* State of one strip during the search of its edges (edges.h), shared by its steps. */
 #ifndef FG_VISION_EDGE_WORK_H
 #define FG_VISION_EDGE_WORK_H
 
@@ -11,7 +11,7 @@
 #include "vision/segment.h"
 #include "vision/trace.h"
 
-/* One station at work. */
+/* One station in work. */
 typedef struct fg_edge_station {
   float middle_px;        /* centre of the strip, from the reference line */
   float edge_px[2];       /* left and right, from the reference line */
@@ -24,11 +24,11 @@ typedef struct fg_edge_station {
   unsigned facts; /* fg_station_fact */
 } fg_edge_station;
 
-/* Pixels up to so many blurs beyond an edge tell where the edge is. */
+/* Reach of an edge, in blurs: pixels beyond it do not depend on the edge's place. */
 #define FG_REACH_BLURS 4.0
 
-/* Counts that are farther apart make a staircase of an edge's profile, which noise of a count or
- * two does not smooth. */
+/* Max distance of neighbouring counts. Counts farther apart make a staircase of an edge's profile,
+ * which noise of a count or two does not smooth. */
 #define FG_LEVEL_STEP_MAX 5.0
 
 /* Stations are worked on in chunks, each with its own pixels; a chunk is a unit of parallel work,
@@ -46,7 +46,7 @@ typedef struct fg_segment_profile {
   fg_profile_fit fit;
 } fg_segment_profile;
 
-/* What one strip is measured with. */
+/* One strip in work: its pixels, stations and segments, and their common values. */
 typedef struct fg_edge_work {
   const fg_tiles *tiles;
   const fg_segmentation *segmentation;
@@ -59,67 +59,71 @@ typedef struct fg_edge_work {
   fg_segment_profile *segments;
   fg_profile_bin *bins; /* segment_count × bin_count */
   size_t segment_count, bin_count;
-  size_t good_segments; /* whose profile could be fitted */
+  size_t good_segments; /* number of segments whose profile could be fitted */
   fg_edge_tables *tables;
   double width_px; /* of the strip */
   double reach_px; /* of the band beyond the strip's edges */
   double noise;    /* sd of a pixel, counts */
   double contrast; /* |P - b|, counts */
   bool clipped, side_band;
-  bool linear; /* gamma is 1, as was stated */
+  bool linear; /* gamma is 1, as the user states */
   double thickness_px, blur_px[2];
   double gamma, u_gamma;
-  double tone_px;    /* of thickness per unit of ln gamma, the counts of all levels kept */
-  bool bright;       /* the strip */
-  fg_driver *driver; /* NULL: a power of the light, which is gamma, is all that it does */
+  double
+      tone_px; /* change of the thickness per unit of ln gamma at constant counts of all levels */
+  bool bright; /* the strip is brighter than its background */
+  fg_driver *driver; /* NULL: the power gamma of the light describes the driver fully */
   fg_driver_tone *driver_tone;
-  double u_driver_px; /* of an edge, outwards: what is left open of the driver; NaN: not asked */
+  double u_driver_px; /* of an edge, outwards: from the driver's uncertainty; NaN: no driver was
+                         sought */
   double level_step;  /* mean distance of the counts in use */
   bool unexplained;   /* no driver's model explains the profiles */
-  bool plain;         /* counts are taken for the light, whatever the profiles say */
-  int round;          /* of Gauss-Newton */
-  bool again; /* stations are known: foreign pixels beside the strip are left out of the shape */
+  bool plain;         /* counts are used as light, whatever the profiles show */
+  int round;          /* number of the round of Gauss-Newton */
+  bool again; /* second pass, stations are known: foreign pixels beside the strip are left out of
+                 the shape */
 } fg_edge_work;
 
 /* Stations [*first, *last] of a chunk. edges_pixels.c */
 void fg_edges_chunk(const fg_edge_work *work, size_t chunk, size_t *first, size_t *last);
 
-/* Pixels of all chunks, and the middle of each station, smoothed over its neighbours.
+/* Collects the pixels of all chunks, and the middle of each station, smoothed over its neighbours.
  * edges_pixels.c */
 fg_status fg_edges_collect(fg_context *ctx, fg_edge_work *work);
 
-/* Step 1 and 2: the tone curve and the shape of every station from its middle. edges_shape.c,
- * edges_smooth.c */
+/* Steps 1 and 2: finds the tone curve and the shape of every station from its middle.
+ * edges_shape.c, edges_smooth.c */
 fg_status fg_edges_find_shape(fg_context *ctx, fg_edge_work *work);
 
-/* Where the plain model misses the segments' profiles: what the driver has made of them. *found:
- * segments are to be fitted again. edges_driver.c */
+/* Finds the driver's model where the plain model misses the segments' profiles. *found: segments
+ * are to be fitted again. edges_driver.c */
 fg_status fg_edges_find_driver(fg_context *ctx, fg_edge_work *work, bool *found);
 void fg_edges_free_driver(fg_edge_work *work);
 
-/* A segment's fit with work->driver held; segment->fit holds the start. */
+/* Fits a segment with work->driver held; segment->fit holds the start. */
 fg_status fg_edges_fit_driven(fg_context *ctx, const fg_edge_work *work,
                               fg_segment_profile *segment);
 
-/* Counts for light, and back, whatever the driver is, before its unsharp mask. */
+/* Counts of light, and light of counts, under any driver, before its unsharp mask. */
 double fg_edges_count(const fg_edge_work *work, double light, double *rate);
 double fg_edges_light(const fg_edge_work *work, double count);
 
-/* What was found of tone curve and unsharp mask. */
+/* Fills the findings of tone curve and unsharp mask. */
 void fg_edges_describe_driver(const fg_edge_work *work, fg_picture_state *state);
 
-/* The smoothed shape of every station from the segments' fits; with `local` as much of each
- * segment's own as is more than chance. */
+/* Smooths the shape of every station from the segments' fits; with `local` it adds the part of each
+ * segment's own shape that is more than chance. */
 fg_status fg_edges_smooth_shape(fg_context *ctx, fg_edge_work *work, bool local);
 
-/* Stations where something lies on or beside the strip are marked and lose their weight. Returns
- * how many have lost it in *found. edges_disturbed.c */
+/* Marks stations where something lies on or beside the strip; they lose their weight. *found:
+ * number of stations that lost it. edges_disturbed.c */
 fg_status fg_edges_drop_disturbed(fg_context *ctx, fg_edge_work *work, size_t *found);
 
-/* What it is that disturbs: facts of the stations, and of the strip in *facts. edges_trouble.c */
+/* Names the kind of each disturbance: facts of the stations, and of the strip in *facts.
+ * edges_defects.c */
 fg_status fg_edges_name_defect(fg_context *ctx, fg_edge_work *work, unsigned *facts);
 
-/* The shape again, from what is left of the segments. edges_shape.c */
+/* Finds the shape again, from the undisturbed part of the segments. edges_shape.c */
 fg_status fg_edges_repeat_shape(fg_context *ctx, fg_edge_work *work);
 
 /* Step 3: `rounds` of Gauss-Newton on all stations. edges_solve.c */

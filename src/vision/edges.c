@@ -13,20 +13,21 @@
 #include "vision/picture.h"
 
 /* Distance of stations, and half window of the reference line. Both are lengths of the foil, whose
- * fillets are 0.2 mm long: a line that is smoothed over more cuts the corner and bends the scale
- * across. They are held to what so many pixels can tell. */
+ * fillets are 0.2 mm long: a line smoothed over more cuts the corner and bends the scale across.
+ * Pixels set their lower limits. */
 #define STEP_MM        0.022
 #define STEP_MIN_PX    1.0
 #define STEP_MAX_PX    2.0
 #define SMOOTH_MM      0.32
 #define SMOOTH_MIN_PX  8.0
 #define SMOOTH_MAX_PX  30.0
-#define BAND_BLURS     4.0 /* the band reaches so many blurs beyond the strip's edges */
-#define BAND_MARGIN_PX 4.0 /* and so much background */
+#define BAND_BLURS     4.0 /* reach of the band beyond the strip's edges, in blurs */
+#define BAND_MARGIN_PX 4.0 /* and the background beyond that */
 #define BAND_MAX_PX    18.0
 enum { SOLVE_ROUNDS = 2 };
 
-/* Ends are round and cut: nothing within a width of them is an edge of the strip's side. */
+/* Marks the ends. They are round and cut: within a width of them there is no edge of the strip's
+ * side. */
 static void mark_ends(fg_edge_work *work) {
   size_t count = work->reference->count;
   size_t margin = (size_t)((work->width_px + 2 * fmax(work->blur_px[0], work->blur_px[1])) /
@@ -35,9 +36,9 @@ static void mark_ends(fg_edge_work *work) {
     if (i < margin || i + margin >= count) work->stations[i].weight = 0;
 }
 
-/* Neighbouring edges scatter by more than white pixel noise explains when pixels are correlated or
- * the edge itself is rough; the standard deviations follow. The second difference of three
- * independent neighbours has the variance 1.5 u². */
+/* Scales the standard deviations by the scatter of neighbouring edges. It exceeds that of white
+ * pixel noise when pixels are correlated or the edge itself is rough. The second difference of
+ * three independent neighbours has the variance 1.5 u². */
 static void scale_uncertainties(fg_edge_work *work) {
   double sum = 0, expected = 0;
   for (size_t i = 1; i + 1 < work->reference->count; i++) {
@@ -78,8 +79,8 @@ static void fill_stations(const fg_edge_work *work, const double dpi[2], fg_stri
   }
 }
 
-/* The segments' mean profiles, each side up to the strip's middle. */
-static void find_spread(const fg_edge_work *work, fg_strip *strip) {
+/* Adds the segments' mean profiles to the spread, each side up to the strip's middle. */
+static void add_strip_spread(const fg_edge_work *work, fg_strip *strip) {
   fg_edge_spread spread = {.sum = {0}};
   for (size_t k = 0; k < work->segment_count; k++) {
     const fg_profile_fit *fit = &work->segments[k].fit;
@@ -99,8 +100,8 @@ static void find_spread(const fg_edge_work *work, fg_strip *strip) {
   fg_edge_spread_measure(&spread, &strip->spread_px, &strip->asymmetry);
 }
 
-static fg_status summarise(fg_context *ctx, const fg_edge_work *work, const double dpi[2],
-                           fg_strip *strip) {
+static fg_status summarise_strip(fg_context *ctx, const fg_edge_work *work, const double dpi[2],
+                                 fg_strip *strip) {
   double um = 25400 / sqrt(dpi[0] * dpi[1]);
   FG_TRY(fg_strip_measure_thickness(ctx, strip));
   strip->step_mm = work->reference->step_px * um / 1000;
@@ -111,7 +112,7 @@ static fg_status summarise(fg_context *ctx, const fg_edge_work *work, const doub
   fg_edges_describe_driver(work, &strip->picture);
   strip->gamma = work->gamma;
   strip->u_gamma = work->u_gamma;
-  find_spread(work, strip);
+  add_strip_spread(work, strip);
   strip->bright = work->bright;
   strip->tone_um = work->tone_px * um;
   if (work->clipped) strip->facts |= FG_STRIP_CLIPPED;
@@ -155,14 +156,15 @@ static void free_work(fg_edge_work *work) {
   fg_edges_free_driver(work);
 }
 
-/* What lies on the strip has bent the shape of a whole segment, too. */
+/* Solves again without disturbed stations: an object on the strip has bent the shape of a whole
+ * segment, too. */
 static fg_status solve_again(fg_context *ctx, fg_edge_work *work, size_t *disturbed) {
   FG_TRY(fg_edges_repeat_shape(ctx, work));
   FG_TRY(fg_edges_solve(ctx, work, SOLVE_ROUNDS));
   return fg_edges_drop_disturbed(ctx, work, disturbed);
 }
 
-static fg_status run(fg_context *ctx, fg_edge_work *work, unsigned *facts) {
+static fg_status measure_edges(fg_context *ctx, fg_edge_work *work, unsigned *facts) {
   size_t disturbed;
   FG_TRY(fg_edges_collect(ctx, work));
   FG_TRY(fg_edges_find_shape(ctx, work));
@@ -203,7 +205,7 @@ static fg_edge_work begin_work(const fg_tiles *tiles, const fg_segmentation *seg
                         .contrast = trace->contrast};
 }
 
-static void take_plain(const fg_edge_work *work, const fg_strip *from, const double dpi[2],
+static void copy_plain(const fg_edge_work *work, const fg_strip *from, const double dpi[2],
                        fg_strip *strip) {
   double um = 25400 / sqrt(dpi[0] * dpi[1]);
   strip->plain_mm = from->thickness_mm;
@@ -212,7 +214,7 @@ static void take_plain(const fg_edge_work *work, const fg_strip *from, const dou
   strip->plain_side_band = work->side_band;
 }
 
-/* The strip once more with counts taken for the light. */
+/* Measures the strip once more with counts used as light. */
 static fg_status find_plain(fg_context *ctx, const fg_edge_work *model,
                             const fg_edge_options *options, fg_strip *strip) {
   fg_edge_work work =
@@ -225,10 +227,10 @@ static fg_status find_plain(fg_context *ctx, const fg_edge_work *model,
   FG_TRY_EXIT(fg_memory_allocate(ctx, model->reference->count, sizeof *plain.stations,
                                  (void **)&plain.stations));
   plain.count = model->reference->count;
-  FG_TRY_EXIT(run(ctx, &work, &facts));
+  FG_TRY_EXIT(measure_edges(ctx, &work, &facts));
   fill_stations(&work, options->dpi, &plain);
   FG_TRY_EXIT(fg_strip_measure_thickness(ctx, &plain));
-  take_plain(&work, &plain, options->dpi, strip);
+  copy_plain(&work, &plain, options->dpi, strip);
 exit:
   free_work(&work);
   fg_strip_free(&plain);
@@ -248,18 +250,18 @@ fg_status fg_edges_measure(fg_context *ctx, const fg_tiles *tiles,
       fg_memory_allocate(ctx, reference.count, sizeof *strip->stations, (void **)&strip->stations));
   strip->facts = trace->facts;
   strip->picture = fg_picture_unknown();
-  FG_TRY_EXIT(run(ctx, &work, &strip->facts));
+  FG_TRY_EXIT(measure_edges(ctx, &work, &strip->facts));
   FG_TRY_EXIT(fg_picture_of_strip(ctx, &work, &strip->picture));
   strip->count = reference.count;
   fill_stations(&work, dpi, strip);
   find_box(&reference, strip);
   fg_ends_measure(&work, dpi, strip);
-  FG_TRY_EXIT(summarise(ctx, &work, dpi, strip));
+  FG_TRY_EXIT(summarise_strip(ctx, &work, dpi, strip));
   strip->plain_mm = NAN;
   if (work.gamma != 1 || work.driver)
     FG_TRY_EXIT(find_plain(ctx, &work, options, strip));
   else
-    take_plain(&work, strip, dpi, strip);
+    copy_plain(&work, strip, dpi, strip);
 exit:
   fg_reference_free(&reference);
   free_work(&work);

@@ -3,13 +3,14 @@
  *
  * Three steps. (1) Mean profiles of short segments tell the shape: levels, slopes, blur, tone
  * curve. (2) The shape is smoothed along the strip as a function of the edge's direction and place,
- * for it changes with those alone (shading, one-sided blur of the carriage, a wall on one side),
- * and what is left over enters only as far as it exceeds its own uncertainty. (3) With the shape
- * held, both edges of every station follow from its pixels by Gauss-Newton: the maximum-likelihood
- * estimate, whose variance is the bound (n/A)² 2 s sqrt(pi) for an edge that stands alone.
+ * for it changes with those alone (shading, one-sided blur of the carriage, a wall on one side).
+ * Local deviations from that function enter only as far as they exceed their own uncertainty. (3)
+ * With the shape held, both edges of every station follow from its pixels by Gauss-Newton: the
+ * maximum-likelihood estimate, whose variance is the bound (n/A)² 2 s sqrt(pi) for an edge that
+ * stands alone.
  *
  * A Gaussian blur of sd s moves a curved edge towards its centre of curvature by s²/(2R). The
- * stations hold the edge as it is seen; the fits of circles put the shift back.
+ * stations hold the edge as seen; the fits of circles correct the shift.
  */
 #ifndef FG_VISION_EDGES_H
 #define FG_VISION_EDGES_H

@@ -8,12 +8,12 @@
 #include "core/spread.h"
 #include "vision/edge_work.h"
 
-/* The misfit is looked at over so many stations to either side; it is no chance when it is above
- * the usual one by so many times the scatter. */
+/* Number of stations to either side in a misfit, and the limit above the usual misfit, in units of
+ * its scatter. */
 enum { MISFIT_REACH = 2 };
 #define MISFIT_SPREADS 5.0
-/* Where the curvature changes the model's own misfit is up to such a share of the contrast's square
- * more. */
+/* Additional misfit of the model itself where the curvature changes, as a share of the contrast's
+ * square. */
 #define MISFIT_SHARE 6e-5
 #define MARGIN_BLURS 2.0
 
@@ -29,8 +29,8 @@ static double misfit_around(const fg_edge_work *work, size_t i) {
   return used > 0 ? sum / used : NAN;
 }
 
-/* The usual misfit along the strip, and how far it scatters: of its logarithm, for what the model
- * lacks everywhere (halo, JPEG blocks) raises it by a factor. */
+/* Returns the usual misfit along the strip, and its scatter: of its logarithm, since general errors
+ * of the model (halo, JPEG blocks) raise it by a factor. */
 static double usual_misfit(const double *misfit, size_t count, double *work, double *spread) {
   size_t n = 0;
   for (size_t i = 0; i < count; i++)
@@ -43,9 +43,9 @@ static double usual_misfit(const double *misfit, size_t count, double *work, dou
   return median;
 }
 
-/* Dust that lies near an edge moves it long before its pixels are outliers, and blur carries it to
- * stations where no pixel stands out: where the misfit of neighbouring stations is beyond chance,
- * they and those within two blurs are left out. */
+/* Drops the stations whose neighbourhood has a misfit beyond chance, and those within two blurs of
+ * them. Dust near an edge moves it long before its pixels are outliers, and blur carries it to
+ * stations where no pixel stands out. */
 fg_status fg_edges_drop_disturbed(fg_context *ctx, fg_edge_work *work, size_t *found) {
   size_t count = work->reference->count;
   double *misfit = NULL, spread = 0;

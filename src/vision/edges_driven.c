@@ -31,7 +31,7 @@ static void mean_shape(const fg_edge_work *work, size_t first, size_t last, doub
   }
 }
 
-/* The nearer edge tells where a pixel is. */
+/* Adds a pixel, whose place is counted from the nearer edge. */
 static void add_pixel(const fg_driven_table *table, double half_px, double radius_px,
                       fg_edge_station *s, const fg_band_pixel *p, float limit) {
   float left = s->edge_px[0] - p->across_px, right = p->across_px - s->edge_px[1];
@@ -41,7 +41,7 @@ static void add_pixel(const fg_driven_table *table, double half_px, double radiu
   float from_middle = (float)half_px + d;
   if (!fg_driven_table_at(table, side ? from_middle : -from_middle, &model, &rate)) return;
   if ((model >= 254.5f && p->value >= 254.5f) || (model <= 0.5f && p->value <= 0.5f)) return;
-  s->seen++; /* what is cut off at an end of the scale tells nothing, and is no outlier */
+  s->seen++; /* a pixel cut off at an end of the scale is neither evidence nor an outlier */
   float residual = p->value - model;
   if (fabsf(residual) > limit) return;
   float f1 = side ? 0 : -rate, f2 = side ? -rate : 0;

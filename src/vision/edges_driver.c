@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the scanner's driver has made of a strip's edges: asked only where the plain model of
- * edge_model.h misses the mean profiles. What is found is held for the whole strip. */
+/* Driver model of a strip's edges: sought only where the plain model of edge_model.h misses the
+ * mean profiles, and then held for the whole strip. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,14 +11,15 @@
 #include "vision/edge_work.h"
 #include "vision/picture.h"
 
-/* Profiles one by one do not tell a power beyond this well: all of them are asked together. */
+/* Max |ln gamma| that single profiles determine well; beyond it all profiles are fitted together.
+ */
 #define LN_GAMMA_MAX   0.8
 #define NOISE_FACTOR   1.3
 #define MERGED_BLUR_PX 1.6
-/* sd of a pixel, counts, that the fits start from. */
+/* First estimate of a pixel's sd, counts. */
 #define START_NOISE 1.5
 
-/* Profiles that are asked, and their bins, none of them empty. */
+/* Profiles of the driver's fit, and their bins, none of them empty. */
 typedef struct sample {
   fg_driven_profile profiles[FG_DRIVER_PROFILES];
   fg_profile_bin *bins;
@@ -40,7 +41,7 @@ double fg_edges_light(const fg_edge_work *work, double count) {
                       : fg_edge_light(work->gamma, count);
 }
 
-/* A fit in counts. Slopes are over the contrast. */
+/* Converts a fit to counts. Slopes are over the contrast. */
 static fg_driven_profile driven_profile(const fg_edge_work *work, const fg_profile_fit *fit) {
   const fg_edge_shape *shape = &fit->shape;
   double rate, plateau = fg_edges_count(work, fmax(shape->plateau, 1e-3), &rate);
@@ -55,9 +56,9 @@ static fg_driven_profile driven_profile(const fg_edge_work *work, const fg_profi
   return p;
 }
 
-/* And back, with the standard deviations. */
-static void take_profile(const fg_edge_work *work, const fg_driven_profile *p,
-                         fg_profile_fit *fit) {
+/* Converts a driven profile back to a fit, with the standard deviations. */
+static void accept_profile(const fg_edge_work *work, const fg_driven_profile *p,
+                           fg_profile_fit *fit) {
   fg_edge_shape *shape = &fit->shape;
   double rate;
   shape->plateau = fg_edges_light(work, p->values[FG_DRIVEN_PLATEAU]);
@@ -77,29 +78,29 @@ static void take_profile(const fg_edge_work *work, const fg_driven_profile *p,
   }
 }
 
-/* Two neighbours as one. */
-static fg_profile_bin merge(const fg_profile_bin *a, const fg_profile_bin *b) {
+/* Merges two neighbouring bins. */
+static fg_profile_bin merge_bins(const fg_profile_bin *a, const fg_profile_bin *b) {
   double count = a->count + b->count;
   return (fg_profile_bin){.across_px = (a->count * a->across_px + b->count * b->across_px) / count,
                           .value = (a->count * a->value + b->count * b->value) / count,
                           .count = count};
 }
 
-/* What is not empty; blurred edges are told by bins of twice the width as well, in half the time.
- */
+/* Copies the bins that are not empty; blurred edges need only bins of twice the width, in half the
+ * time. */
 static size_t copy_bins(const fg_edge_work *work, const fg_segment_profile *segment,
                         fg_profile_bin *bins) {
   const double *blur = segment->fit.shape.blur_px;
   size_t n = 0, step = fmin(blur[0], blur[1]) > MERGED_BLUR_PX ? 2 : 1;
   for (size_t i = 0; i + step <= work->bin_count && n + 8 < FG_DRIVEN_MAX; i += step) {
     fg_profile_bin bin = segment->bins[i];
-    if (step == 2) bin = merge(&segment->bins[i], &segment->bins[i + 1]);
+    if (step == 2) bin = merge_bins(&segment->bins[i], &segment->bins[i + 1]);
     if (bin.count > 0) bins[n++] = bin;
   }
   return n;
 }
 
-/* A segment with a fillet, an end or dust misses any model, and is not asked. */
+/* Finds the noise limit of sound segments: one with a fillet, an end or dust misses any model. */
 static fg_status find_noise_limit(fg_context *ctx, const fg_edge_work *work, double *limit) {
   double *noise;
   size_t n = 0;
@@ -127,7 +128,7 @@ static void add_to_sample(const fg_edge_work *work, const fg_segment_profile *se
   }
 }
 
-/* Sound segments, spread along the strip. */
+/* Chooses sound segments, spread along the strip. */
 static fg_status draw_sample(fg_context *ctx, const fg_edge_work *work, sample *s) {
   size_t sound = 0, seen = 0;
   double limit;
@@ -144,7 +145,7 @@ static fg_status draw_sample(fg_context *ctx, const fg_edge_work *work, sample *
   return FG_OK;
 }
 
-/* Whether the plain model leaves more than chance. */
+/* Returns true when the plain model leaves more than chance. */
 static bool is_missed(const fg_edge_work *work, const sample *s, fg_driver_tone *tone) {
   fg_driver plain = fg_driver_none(s->ends);
   fg_driver_misfit misfit;
@@ -153,8 +154,8 @@ static bool is_missed(const fg_edge_work *work, const sample *s, fg_driver_tone 
   return fg_driver_is_missed(&misfit, s->ends[1] - s->ends[0]);
 }
 
-/* What was chosen, for all steps to come. */
-static fg_status adopt(fg_context *ctx, fg_edge_work *work, const fg_driver_choice *choice) {
+/* Adopts the chosen driver for all later steps. */
+static fg_status adopt_choice(fg_context *ctx, fg_edge_work *work, const fg_driver_choice *choice) {
   const fg_driver *driver = &choice->fit.driver;
   work->gamma = exp(driver->values[FG_DRIVER_LN_GAMMA]);
   work->u_gamma = choice->fit.sd[FG_DRIVER_LN_GAMMA] * work->gamma;
@@ -187,7 +188,7 @@ fg_status fg_edges_fit_driven(fg_context *ctx, const fg_edge_work *work,
   FG_TRY(fg_driver_fit_profiles(ctx, &p, 1, &fit));
   segment->fit.good = fit.good;
   segment->fit.noise = fit.noise;
-  if (fit.good) take_profile(work, &p, &segment->fit);
+  if (fit.good) accept_profile(work, &p, &segment->fit);
   return FG_OK;
 }
 
@@ -196,7 +197,7 @@ void fg_edges_describe_driver(const fg_edge_work *work, fg_picture_state *state)
   double u_edge_px = work->u_driver_px;
   if (isnan(u_edge_px)) u_edge_px = 0.5 * work->tone_px * work->u_gamma / work->gamma;
   if (work->level_step > FG_LEVEL_STEP_MAX) {
-    /* Either level, and with it the half between them, is anywhere within a step. */
+    /* Either level, and with it the half between them, lies anywhere within a step. */
     double share = work->level_step / sqrt(12) / work->contrast;
     u_edge_px = hypot(u_edge_px, share * per_level);
     u_edge_px *= fmax(1, FG_HIDDEN_BLUR_PX * sqrt(2 * M_PI) / per_level);
@@ -225,7 +226,7 @@ fg_status fg_edges_find_driver(fg_context *ctx, fg_edge_work *work, bool *found)
   FG_TRY_EXIT(
       fg_driver_choose(ctx, s.profiles, s.count, s.ends, work->gamma, START_NOISE, &choice));
   if (choice.fit.good)
-    FG_TRY_EXIT(adopt(ctx, work, &choice));
+    FG_TRY_EXIT(adopt_choice(ctx, work, &choice));
   else
     work->unexplained = true;
 exit:

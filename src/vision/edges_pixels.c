@@ -5,7 +5,7 @@
 #include "core/parallel.h"
 #include "vision/edge_work.h"
 
-enum { MIDDLE_STATIONS = 4 }; /* the middle is smoothed over so many stations to either side */
+enum { MIDDLE_STATIONS = 4 }; /* stations to either side over which the middle is smoothed */
 
 void fg_edges_chunk(const fg_edge_work *work, size_t chunk, size_t *first, size_t *last) {
   *first = chunk * FG_CHUNK_STATIONS;
@@ -22,8 +22,8 @@ static float background_at(const fg_edge_work *work, size_t station) {
   return fg_segmentation_background(seg, (int32_t)bx, (int32_t)by);
 }
 
-/* Weight of the stations' middles in one chunk: counts between 30 and 70 % of the contrast rise
- * from 0 to 1, so that neither halo nor band pulls. */
+/* Weighs the stations' middles in one chunk: counts between 30 and 70 % of the contrast rise from 0
+ * to 1, so that neither halo nor band pulls. */
 static void weigh_pixels(const fg_edge_work *work, size_t chunk) {
   const fg_pixel_band *band = &work->bands[chunk];
   float scale = 2.5f / (float)work->trace->contrast, reach = (float)(work->width_px / 2 + 6);

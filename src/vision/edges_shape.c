@@ -9,11 +9,11 @@
 #include "core/parallel.h"
 
 #define BIN_PX 0.25
-/* A pixel of the background is dust when it is so many noise sd plus a share of contrast off. */
+/* Limit of a pixel of the background that is no dust: noise sd plus a share of the contrast. */
 #define FOREIGN_SIGMAS 4.0
 #define FOREIGN_SHARE  0.01
 enum {
-  GAMMA_SEGMENTS = 8, /* profiles that are asked for the tone curve */
+  GAMMA_SEGMENTS = 8, /* number of profiles in the tone curve's fit */
 };
 /* Pixels are clipped when more than this share of them has one value, twice as many as the next,
  * and less than that share lies beyond. */
@@ -35,8 +35,8 @@ static fg_status allocate_segments(fg_context *ctx, fg_edge_work *work) {
   return FG_OK;
 }
 
-/* Whether a pixel belongs to a disturbed station, or lies beyond what the edges' fit looks at and
- * is not the background there. */
+/* Returns true when a pixel belongs to a disturbed station, or lies outside the reach of the edges'
+ * fit and differs from the background there. */
 static bool is_foreign(const fg_edge_work *work, const fg_band_pixel *p) {
   const fg_edge_station *s = &work->stations[p->station];
   if (s->facts & FG_STATION_DISTURBED) return true;
@@ -134,12 +134,13 @@ static fg_status fit_tone(fg_context *ctx, void *shared, size_t i) {
   return FG_OK;
 }
 
-/* Counts of a strip's pixels by value. */
+/* Numbers of a strip's pixels by value. */
 typedef struct value_counts {
   size_t of[256], total;
 } value_counts;
 
-/* Pixels of one value, to less than a step of 16 bits: the outermost within a count of `end`. */
+/* Number of pixels of one value, to less than a step of 16 bits: the outermost within a count of
+ * `end`. */
 static size_t count_equal(const fg_edge_work *work, int end, bool high) {
   double outermost = high ? -INFINITY : INFINITY;
   size_t count = 0;
@@ -170,8 +171,8 @@ static bool piles_up(const fg_edge_work *work, const value_counts *counts, bool 
          (double)count_equal(work, end, high) > min;
 }
 
-/* Clipped values pile up at one end of what the strip's pixels have, wherever the scanner's driver
- * cut them off. Both ends do where a picture is without noise. */
+/* Returns true when values pile up at one end of the strip's pixels, wherever the scanner's driver
+ * cut them off. In a picture without noise both ends do. */
 static bool find_clipping(const fg_edge_work *work, const value_counts *counts) {
   return counts->total && piles_up(work, counts, true) != piles_up(work, counts, false);
 }
@@ -187,7 +188,7 @@ static value_counts count_values(const fg_edge_work *work) {
   return counts;
 }
 
-/* Mean distance of the counts that are in use; fewer pixels than a share are dust's. */
+/* Returns the mean distance of the counts in use; values of too few pixels are dust's. */
 static double find_level_step(const value_counts *counts) {
   int first = -1, last = -1, used = 0;
   for (int i = 0; i < 256; i++) {
@@ -199,19 +200,18 @@ static double find_level_step(const value_counts *counts) {
   return used > 1 ? (double)(last - first) / (used - 1) : 1;
 }
 
-/* Beside a halo, a wall or a level that is cut off gamma cannot be told: it is taken for 1, which
- * may be wrong by this. */
+/* Uncertainty of gamma = 1 beside a halo, a wall or a clipped level, which hide gamma. */
 #define GAMMA_U 0.4
 
-/* gamma from a few profiles; 1 when it does not differ from 1 by more than its uncertainty. The
- * middle of the sorted values stands for all: a profile that holds a fillet or dust is no vote. */
+/* Finds gamma from a few profiles; 1 when it does not differ from 1 by more than its uncertainty.
+ * Only the middle of the sorted values counts: a profile with a fillet or dust has no vote. */
 static fg_status find_gamma(fg_context *ctx, fg_edge_work *work) {
   tone_task task = {.work = work};
   double values[GAMMA_SEGMENTS], u = 0;
   int count = 0;
   const value_counts pixels = count_values(work);
   work->gamma = 1;
-  /* A level that is cut off looks like a tone curve, and so does a staircase. */
+  /* A clipped level looks like a tone curve, and so does a staircase. */
   work->clipped = find_clipping(work, &pixels);
   work->level_step = find_level_step(&pixels);
   if (work->linear) return FG_OK;
@@ -235,7 +235,8 @@ static fg_status find_gamma(fg_context *ctx, fg_edge_work *work) {
   return FG_OK;
 }
 
-/* The edges tell the middle better than the threshold did. */
+/* Moves the stations' middles to those of the fitted edges, which are more accurate than the
+ * threshold's. */
 static void move_middles(fg_edge_work *work) {
   enum { REACH = 4 };
   size_t count = work->reference->count;

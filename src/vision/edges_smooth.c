@@ -9,12 +9,12 @@
 #include "core/memory.h"
 #include "core/select.h"
 #include "core/small_solve.h"
-#include "vision/course.h"
+#include "vision/shape_curve.h"
 
 enum { BASIS_MAX = 7 };
 
-/* One value of the shape over all segments. */
-typedef struct course {
+/* One value of the shape over all segments, and its curve. */
+typedef struct strip_curve {
   const fg_edge_work *work;
   double (*basis)[BASIS_MAX]; /* per segment */
   double *values;             /* per segment; NaN where the fit failed */
@@ -22,8 +22,8 @@ typedef struct course {
   const double *sd;           /* per segment */
   size_t unknowns;
   double coefficients[BASIS_MAX];
-  double real; /* share of the scatter about the course that is more than the fits' own */
-} course;
+  double real; /* share of the scatter about the curve beyond the fits' own */
+} strip_curve;
 
 /* Functions of the normal's direction (two harmonics) and of the place (linear), about -1 to 1. */
 static void fill_basis(const fg_reference *reference, size_t station, double *basis) {
@@ -40,7 +40,7 @@ static void fill_basis(const fg_reference *reference, size_t station, double *ba
   basis[6] = (s->y - m->y) * scale;
 }
 
-static double predict(const course *c, const double *basis) {
+static double evaluate_curve(const strip_curve *c, const double *basis) {
   double sum = 0;
   for (size_t b = 0; b < c->unknowns; b++)
     sum += c->coefficients[b] * basis[b];
@@ -51,35 +51,36 @@ static double median_in_place(double *values, size_t count) {
   return count ? fg_select(values, count, count / 2) : NAN;
 }
 
-/* Least squares over the segments within `limit` of the present course; the share of the scatter
- * that is real comes from the sum of squares against the fits' own variances. */
-static bool fit_course(course *c, double limit) {
+/* Fits the curve to the segments within `limit` of the present one. The real share of the scatter
+ * comes from the sum of squares against the fits' own variances. */
+static bool fit_strip_curve(strip_curve *c, double limit) {
   fg_normal_equations system;
   fg_normal_clear(&system, c->unknowns);
-  fg_course_sums sums = {0};
+  fg_shape_curve_sums sums = {0};
   for (size_t s = 0; s < c->work->segment_count; s++) {
-    double deviation = c->values[s] - predict(c, c->basis[s]);
+    double deviation = c->values[s] - evaluate_curve(c, c->basis[s]);
     if (!isfinite(c->values[s]) || fabs(deviation) > limit) continue;
     sums.squares += deviation * deviation;
     sums.expected += c->sd[s] * c->sd[s];
     sums.count++;
     fg_normal_add(&system, c->basis[s], c->values[s], 1);
   }
-  return fg_course_solve(&system, &sums, isfinite(limit), c->coefficients, &c->real);
+  return fg_shape_curve_solve(&system, &sums, isfinite(limit), c->coefficients, &c->real);
 }
 
-static double deviation_limit(course *c) {
+static double deviation_limit(strip_curve *c) {
   size_t n = 0;
   for (size_t s = 0; s < c->work->segment_count; s++)
-    if (isfinite(c->values[s])) c->scratch[n++] = fabs(c->values[s] - predict(c, c->basis[s]));
-  return fg_course_limit(c->scratch, n);
+    if (isfinite(c->values[s]))
+      c->scratch[n++] = fabs(c->values[s] - evaluate_curve(c, c->basis[s]));
+  return fg_shape_curve_limit(c->scratch, n);
 }
 
-static void find_course(course *c) {
+static void find_strip_curve(strip_curve *c) {
   memset(c->coefficients, 0, sizeof c->coefficients);
   c->real = 0;
   double limit = INFINITY;
-  for (int round = 0; round < 3 && fit_course(c, limit); round++)
+  for (int round = 0; round < 3 && fit_strip_curve(c, limit); round++)
     limit = deviation_limit(c);
 }
 
@@ -96,14 +97,14 @@ static double segment_value(const fg_profile_fit *fit, int i) {
   return fit->good ? values[i] : NAN;
 }
 
-/* The course at every station, plus the real share of the segments' own deviation, linear between
- * their middles. */
-static void spread_course(const course *c, int i) {
+/* Evaluates the curve at every station, plus the real share of the segments' own deviation, linear
+ * between their middles. */
+static void spread_curve(const strip_curve *c, int i) {
   const fg_edge_work *work = c->work;
   double basis[BASIS_MAX];
   for (size_t k = 0; k < work->reference->count; k++) {
     fill_basis(work->reference, k, basis);
-    double value = predict(c, basis);
+    double value = evaluate_curve(c, basis);
     double at = ((double)k - FG_SEGMENT_STATIONS / 2.0) / FG_SEGMENT_STATIONS;
     at = fmin(fmax(at, 0), (double)work->segment_count - 1);
     size_t s0 = (size_t)at, s1 = s0 + 1 < work->segment_count ? s0 + 1 : s0;
@@ -111,7 +112,7 @@ static void spread_course(const course *c, int i) {
       size_t s = side ? s1 : s0;
       double share = side ? at - (double)s0 : 1 - (at - (double)s0);
       if (isfinite(c->values[s]))
-        value += c->real * share * (c->values[s] - predict(c, c->basis[s]));
+        value += c->real * share * (c->values[s] - evaluate_curve(c, c->basis[s]));
     }
     *station_value(&work->stations[k], i) = (float)(i >= 5 ? fmax(value, 0.3) : value);
   }
@@ -158,8 +159,8 @@ static double get_level_right(const fg_profile_fit *fit) {
   return fit->shape.level[1];
 }
 
-/* Another gamma puts both edges at another count, over the profile's slope there, contrast /
- * (s sqrt(2 pi)): the strip becomes wider or narrower on both sides. */
+/* Shift of both edges by another gamma. It puts them at another count, over the profile's slope
+ * there, contrast / (s sqrt(2 pi)): the strip becomes wider or narrower on both sides. */
 static double tone_shift(const fg_edge_work *work, double plateau, const double level[2]) {
   static const double step = 0.01;
   double shift = 0;
@@ -176,7 +177,7 @@ static double tone_shift(const fg_edge_work *work, double plateau, const double 
   return isfinite(shift) ? shift : 0;
 }
 
-static void summarise(fg_edge_work *work, double *scratch) {
+static void summarise_shape(fg_edge_work *work, double *scratch) {
   double left = median_of(work, scratch, get_left), right = median_of(work, scratch, get_right);
   work->thickness_px = right - left;
   work->contrast = median_of(work, scratch, get_step);
@@ -202,7 +203,7 @@ static void summarise(fg_edge_work *work, double *scratch) {
 
 fg_status fg_edges_smooth_shape(fg_context *ctx, fg_edge_work *work, bool local) {
   size_t count = work->segment_count, good = work->good_segments;
-  course c = {.work = work, .unknowns = good >= 20 ? BASIS_MAX : good >= 8 ? 3 : 1};
+  strip_curve c = {.work = work, .unknowns = good >= 20 ? BASIS_MAX : good >= 8 ? 3 : 1};
   double *memory = NULL;
   FG_TRY(fg_memory_allocate(ctx, count, (BASIS_MAX + 3) * sizeof *memory, (void **)&memory));
   c.basis = (double(*)[BASIS_MAX])memory;
@@ -220,11 +221,11 @@ fg_status fg_edges_smooth_shape(fg_context *ctx, fg_edge_work *work, bool local)
       c.values[s] = segment_value(&work->segments[s].fit, i);
       sd[s] = work->segments[s].fit.sd[i];
     }
-    find_course(&c);
+    find_strip_curve(&c);
     if (!local) c.real = 0;
-    spread_course(&c, i);
+    spread_curve(&c, i);
   }
-  summarise(work, c.scratch);
+  summarise_shape(work, c.scratch);
   free(memory);
   return FG_OK;
 }

@@ -7,16 +7,16 @@
 
 #include "core/parallel.h"
 
-/* A pixel this far off the model is dust or a burr: so many noise sd plus a share of contrast. */
+/* Limit for a pixel of dust or a burr: noise sd plus a share of the contrast. */
 #define OUTLIER_SIGMAS 6.0
 #define OUTLIER_SHARE  0.25
 
-/* Of a station, what every pixel of it asks for. */
+/* Values of a station that all its pixels share. */
 typedef struct held {
   float edge_px[2], blur_inverse[2], plateau, step[2], slope[2], slope_blur[2];
 } held;
 
-static held hold(const fg_edge_station *s) {
+static held held_of_station(const fg_edge_station *s) {
   return (held){.edge_px = {s->edge_px[0], s->edge_px[1]},
                 .blur_inverse = {1.0f / s->blur_px[0], 1.0f / s->blur_px[1]},
                 .plateau = s->plateau,
@@ -40,10 +40,10 @@ static inline void add_pixel(const fg_edge_tables *tables, const held *h, fg_edg
   float model, rate;
   fg_edge_tone(tables, light, &model, &rate);
   if ((model >= 254.5f && value >= 254.5f) || (model <= 0.5f && value <= 0.5f)) return;
-  s->seen++; /* what is cut off at an end of the scale tells nothing, and is no outlier */
+  s->seen++; /* a pixel cut off at an end of the scale is neither evidence nor an outlier */
   float residual = value - model;
   if (fabsf(residual) > limit) return;
-  /* The filters leave the slopes out: a slope is the least certain part of the shape. */
+  /* The filters omit the slopes: a slope is the least certain part of the shape. */
   float f1 = rate * h->step[0] * p1 * i1, f2 = -rate * h->step[1] * p2 * i2;
   s->m11 += f1 * f1;
   s->m12 += f1 * f2;
@@ -86,7 +86,7 @@ static double estimate_noise(const fg_edge_work *work) {
   return dof > 0 ? sqrt(sum / dof) : 1;
 }
 
-/* Stations whose pixels miss the model far more than usual carry dust or a burr. */
+/* Drops stations whose pixels miss the model far more than usual: they carry dust or a burr. */
 static void drop_misfits(fg_edge_work *work) {
   double limit = 9 * work->noise * work->noise + 0.001 * work->contrast * work->contrast;
   for (size_t i = 0; i < work->reference->count; i++) {
@@ -100,7 +100,7 @@ static void add_plain(const fg_edge_work *work, size_t chunk, size_t first, size
                       float limit) {
   held holds[FG_CHUNK_STATIONS];
   for (size_t i = first; i <= last; i++)
-    holds[i - first] = hold(&work->stations[i]);
+    holds[i - first] = held_of_station(&work->stations[i]);
   const fg_pixel_band *band = &work->bands[chunk];
   for (size_t i = 0; i < band->count; i++) {
     const fg_band_pixel *p = &band->pixels[i];

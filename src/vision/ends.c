@@ -6,23 +6,24 @@
 
 #include "core/small_solve.h"
 
-/* The middle beyond the last stations is that of so many before them: 1 mm at 4800 dpi. */
-enum { COURSE_STATIONS = 96, COURSE_MIN = 12 };
-/* The cut is looked for so many strip widths beyond the last usable station. */
+/* Number of stations whose middle is continued beyond the last one: 1 mm at 4800 dpi. */
+enum { TAIL_STATIONS = 96, TAIL_MIN = 12 };
+/* Reach of the search for a cut beyond the last usable station, in strip widths. */
 #define REACH_WIDTHS 4.0
-/* Pixels so many blurs and so many more to either side of the cut are fitted. */
+/* Window of fitted pixels to either side of the cut: blurs, and more pixels. */
 #define WINDOW_BLURS 4.0
 #define WINDOW_PX    5.0
-/* Pixels so many blurs inside of the strip's edges tell of the cut; of a narrow strip this share.
- */
+/* Distance of the fitted pixels from the strip's edges, in blurs; of a narrow strip this share. */
 #define INSIDE_BLURS 1.0
 #define INSIDE_SHARE 0.35
-/* A cut: its step is no less than this share of the sides', its blur and its slope no more. */
+/* Limits of a cut: its step is at least this share of the sides', its blur and slope at most so
+ * much. */
 #define STEP_SHARE 0.5
 #define BLUR_MAX   12.0
 #define SKEW_MAX   0.7
-/* A pixel this far off is dust, as at the sides: noise sd and a share of the contrast; so many of
- * them hide the cut, and a misfit of this share of the contrast says that it is none. */
+/* Limit of a pixel that is no dust, as at the sides: noise sd and a share of the contrast. The cut
+ * is hidden by so many dust pixels, and a misfit of this share of the contrast means that there is
+ * no cut. */
 #define OUTLIER_SIGMAS 6.0
 #define OUTLIER_SHARE  0.25
 #define USED_SHARE     0.75
@@ -31,14 +32,14 @@ enum { ROUNDS = 40, REWEIGHTS = 3, ROWS_MAX = 256, ROWS_TOGETHER = 3, BLOCKS_MIN
 
 enum { PLACE, SKEW, BLUR, LEVEL, SLOPE, GAIN, FALL, UNKNOWNS };
 
-/* What an end is looked at with. */
+/* One end of the strip in work. */
 typedef struct end_view {
   const fg_edge_work *work;
-  double x, y, ux, uy; /* where u is 0, and its direction, outwards; v runs along (vx, vy) */
+  double x, y, ux, uy; /* origin of u, and its direction, outwards; v runs along (vx, vy) */
   double vx, vy;
-  double course[3]; /* v of the middle: a + b u + c u² */
-  double half_px;   /* of the strip's width */
-  double inside_px; /* pixels up to so far from the middle are used */
+  double parabola[3]; /* v of the middle: a + b u + c u² */
+  double half_px;     /* of the strip's width */
+  double inside_px;   /* max distance of used pixels from the middle */
   const fg_edge_station *shape;
   double fit[UNKNOWNS], limit;
 } end_view;
@@ -47,7 +48,7 @@ static bool is_good(const fg_edge_work *work, size_t i) {
   return work->stations[i].weight > 0;
 }
 
-/* The station next to an end that is usable; the count where there is none. */
+/* Returns the usable station next to an end; the count where there is none. */
 static size_t last_good(const fg_edge_work *work, bool last) {
   size_t count = work->reference->count;
   for (size_t k = 0; k < count; k++) {
@@ -57,8 +58,8 @@ static size_t last_good(const fg_edge_work *work, bool last) {
   return count;
 }
 
-/* The middle near the end as a parabola, and the mean half width. */
-static bool find_course(end_view *view, size_t from, bool last) {
+/* Fits the middle near the end as a parabola, and the mean half width. */
+static bool fit_middle(end_view *view, size_t from, bool last) {
   const fg_edge_work *work = view->work;
   const fg_reference_station *at = &work->reference->stations[from];
   size_t count = work->reference->count, used = 0;
@@ -71,7 +72,7 @@ static bool find_course(end_view *view, size_t from, bool last) {
   view->vx = -at->ty;
   view->vy = at->tx;
   fg_normal_clear(&system, 3);
-  for (size_t k = 0; k < COURSE_STATIONS && k < count; k++) {
+  for (size_t k = 0; k < TAIL_STATIONS && k < count; k++) {
     if (last ? k > from : from + k >= count) break;
     size_t i = last ? from - k : from + k;
     if (!is_good(work, i)) continue;
@@ -85,7 +86,7 @@ static bool find_course(end_view *view, size_t from, bool last) {
     width += edge[1] - edge[0];
     used++;
   }
-  if (used < COURSE_MIN || !fg_normal_solve(&system, 0, view->course, NULL)) return false;
+  if (used < TAIL_MIN || !fg_normal_solve(&system, 0, view->parabola, NULL)) return false;
   view->half_px = 0.5 * width / (double)used;
   view->shape = &work->stations[from];
   double blur = fmax(work->blur_px[0], work->blur_px[1]);
@@ -94,7 +95,7 @@ static bool find_course(end_view *view, size_t from, bool last) {
 }
 
 static double middle_at(const end_view *view, double u) {
-  return view->course[0] + u * (view->course[1] + u * view->course[2]);
+  return view->parabola[0] + u * (view->parabola[1] + u * view->parabola[2]);
 }
 
 static fg_point point_at(const end_view *view, double u, double v) {
@@ -138,8 +139,9 @@ static double model_at(const end_view *view, const double *x, double u, double v
 
 typedef void visit_pixel(const end_view *view, double u, double v, double value, void *data);
 
-/* Every pixel between two places along, within `inside` of the middle. */
-static void visit(const end_view *view, double from, double to, visit_pixel *take, void *data) {
+/* Visits every pixel between two places along, within `inside` of the middle. */
+static void visit_pixels(const end_view *view, double from, double to, visit_pixel *take,
+                         void *data) {
   double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
   for (int k = 0; k < 6; k++) {
     double u = from + (to - from) * (k / 2) / 2;
@@ -171,7 +173,7 @@ static double background_light(const end_view *view) {
   return (double)s->plateau + 0.5 * ((double)s->step[0] + s->step[1]);
 }
 
-static void take_depth(const end_view *view, double u, double v, double value, void *data) {
+static void add_depth(const end_view *view, double u, double v, double value, void *data) {
   depth *all = data;
   double light = fg_edges_light(view->work, value), own = strip_light(view, v);
   size_t bin = (size_t)(u - all->from);
@@ -180,11 +182,11 @@ static void take_depth(const end_view *view, double u, double v, double value, v
   all->count[bin]++;
 }
 
-/* Where the strip's level falls by half for good. False: nowhere. */
+/* Finds the place where the strip's level falls by half for good; false: nowhere. */
 static bool find_rough(const end_view *view, double *u) {
   double reach = REACH_WIDTHS * 2 * view->half_px;
   depth all = {.from = -reach / 4, .bins = (size_t)fmin(1.25 * reach, 1023)};
-  visit(view, all.from, all.from + (double)all.bins, take_depth, &all);
+  visit_pixels(view, all.from, all.from + (double)all.bins, add_depth, &all);
   size_t first = 0;
   while (first < all.bins && all.count[first] > 0 && all.sum[first] < 0.5 * all.count[first])
     first++;
@@ -201,7 +203,7 @@ typedef struct sums {
   size_t used, seen;
 } sums;
 
-static void take_sums(const end_view *view, double u, double v, double value, void *data) {
+static void add_sums(const end_view *view, double u, double v, double value, void *data) {
   sums *all = data;
   double row[UNKNOWNS], residual = value - model_at(view, all->x, u, v, row);
   all->seen++;
@@ -210,7 +212,7 @@ static void take_sums(const end_view *view, double u, double v, double value, vo
   all->used++;
 }
 
-static void window(const end_view *view, double at, double blur, double *from, double *to) {
+static void find_window(const end_view *view, double at, double blur, double *from, double *to) {
   double skew = fabs(view->fit[SKEW]) * view->inside_px;
   double reach = WINDOW_BLURS * blur + WINDOW_PX + skew;
   *from = at - reach;
@@ -224,25 +226,25 @@ static bool is_sensible(const end_view *view, const double *x, double from, doub
          x[BLUR] < BLUR_MAX && step > STEP_SHARE * side && x[GAIN] > 0.3 && x[GAIN] < 3;
 }
 
-static void gather(const end_view *view, const double *x, double from, double to, sums *all) {
+static void gather_sums(const end_view *view, const double *x, double from, double to, sums *all) {
   fg_normal_clear(&all->system, UNKNOWNS);
   all->x = x;
   all->used = all->seen = 0;
-  visit(view, from, to, take_sums, all);
+  visit_pixels(view, from, to, add_sums, all);
 }
 
 /* Damped Gauss-Newton within one window; *all holds the sums at the result. */
 static bool fit_window(end_view *view, double from, double to, sums *all) {
   double damping = 1e-4, dx[FG_SMALL_MAX], trial[UNKNOWNS];
   sums next;
-  gather(view, view->fit, from, to, all);
+  gather_sums(view, view->fit, from, to, all);
   bool moved = false;
   for (int i = 0; i < ROUNDS && damping < 1e6; i++) {
     if (all->used < 3 * UNKNOWNS || !fg_normal_solve(&all->system, damping, dx, NULL)) return false;
     for (int k = 0; k < UNKNOWNS; k++)
       trial[k] = view->fit[k] + dx[k];
     bool sensible = is_sensible(view, trial, from, to);
-    if (sensible) gather(view, trial, from, to, &next);
+    if (sensible) gather_sums(view, trial, from, to, &next);
     if (!sensible || !(next.system.sum_squares / (double)next.used <=
                        all->system.sum_squares / (double)all->used)) {
       damping = fmax(10 * damping, 1e-6);
@@ -259,13 +261,13 @@ static bool fit_window(end_view *view, double from, double to, sums *all) {
   return moved;
 }
 
-/* What the cut's place is off by in each row of pixels along it. */
+/* Deviation of the cut's place in each row of pixels along it. */
 typedef struct rows {
   const double *x;
   double top[ROWS_MAX], weight[ROWS_MAX];
 } rows;
 
-static void take_row(const end_view *view, double u, double v, double value, void *data) {
+static void add_end_row(const end_view *view, double u, double v, double value, void *data) {
   rows *all = data;
   double row[UNKNOWNS], residual = value - model_at(view, all->x, u, v, row);
   size_t bin = (size_t)(v + view->inside_px);
@@ -274,13 +276,13 @@ static void take_row(const end_view *view, double u, double v, double value, voi
   all->weight[bin] += row[PLACE] * row[PLACE];
 }
 
-/* Standard deviation of the place from how blocks of rows differ: what neighbouring pixels share,
- * and the cut's own roughness, is in it. */
+/* Standard deviation of the place from the differences of blocks of rows: it includes correlation
+ * of pixels, and the cut's own roughness. */
 static double scatter_of_rows(const end_view *view, double from, double to) {
   rows all = {.x = view->fit};
   double mean = 0, squares = 0, weights = 0, value[ROWS_MAX], weight[ROWS_MAX];
   size_t count = (size_t)fmin(2 * view->inside_px, ROWS_MAX), blocks = 0;
-  visit(view, from, to, take_row, &all);
+  visit_pixels(view, from, to, add_end_row, &all);
   for (size_t i = 0; i + ROWS_TOGETHER <= count; i += ROWS_TOGETHER) {
     double top = 0, sum = 0;
     for (size_t k = i; k < i + ROWS_TOGETHER; k++) {
@@ -297,11 +299,11 @@ static double scatter_of_rows(const end_view *view, double from, double to) {
   mean /= weights;
   for (size_t i = 0; i < blocks; i++)
     squares += weight[i] * (value[i] - mean) * (value[i] - mean);
-  /* Two of the blocks' degrees of freedom went into place and skew. */
+  /* Place and skew use two of the blocks' degrees of freedom. */
   return sqrt(squares / weights / (double)(blocks - 2));
 }
 
-/* From the cut in pixels to mm. */
+/* Converts the cut from pixels to mm. */
 static void fill_end(const end_view *view, const sums *all, double from, double to,
                      const double dpi[2], fg_strip_end *end) {
   double kx = 25.4 / dpi[0], ky = 25.4 / dpi[1], inverse[FG_SMALL_MAX][FG_SMALL_MAX];
@@ -329,7 +331,7 @@ static bool fit_end(end_view *view, double rough, const double dpi[2], fg_strip_
   memcpy(view->fit, start, sizeof start);
   for (int round = 0; round < REWEIGHTS; round++) {
     view->limit = round ? OUTLIER_SIGMAS * work->noise + OUTLIER_SHARE * work->contrast : INFINITY;
-    window(view, view->fit[PLACE], fmax(view->fit[BLUR], blur), &from, &to);
+    find_window(view, view->fit[PLACE], fmax(view->fit[BLUR], blur), &from, &to);
     if (!fit_window(view, from, to, &all) && round == 0) return false;
   }
   if ((double)all.used < USED_SHARE * (double)all.seen || all.used < 3 * UNKNOWNS) return false;
@@ -347,7 +349,7 @@ static void measure_end(const fg_edge_work *work, bool last, const double dpi[2]
   end_view view = {.work = work};
   size_t from = last_good(work, last);
   double rough = 0;
-  if (from == work->reference->count || !find_course(&view, from, last)) return;
+  if (from == work->reference->count || !fit_middle(&view, from, last)) return;
   if (find_rough(&view, &rough) && fit_end(&view, rough, dpi, end)) return;
   end->at_border = is_outside(work->tiles, point_at(&view, REACH_WIDTHS * 2 * view.half_px, 0));
 }

@@ -8,7 +8,7 @@
 #include "core/memory.h"
 #include "core/select.h"
 
-/* Labels on their way: parents[i] <= i is a label of the same component, itself at a root. */
+/* Provisional labels: parents[i] <= i is a label of the same component, itself at a root. */
 typedef struct forest {
   int32_t *parents; /* [0] is the background */
   size_t count, capacity;
@@ -20,8 +20,8 @@ static int32_t find_root(const forest *f, int32_t label) {
   return label;
 }
 
-/* The smaller root takes in the other, and every label on the way points to it. */
-static int32_t join(forest *f, int32_t a, int32_t b) {
+/* Joins two components under the smaller root, and points every label on the path to it. */
+static int32_t join_components(forest *f, int32_t a, int32_t b) {
   int32_t ra = find_root(f, a), rb = find_root(f, b), root = ra < rb ? ra : rb;
   f->parents[ra] = f->parents[rb] = root;
   f->parents[a] = f->parents[b] = root;
@@ -36,7 +36,7 @@ static fg_status add_label(fg_context *ctx, forest *f, int32_t *label) {
   return FG_OK;
 }
 
-/* One row: a cell takes the labels of its neighbours before it, which are then one. */
+/* Labels one row: a cell gets the label of its neighbours before it, which then become one. */
 static fg_status label_row(fg_context *ctx, forest *f, const uint8_t *mask, int32_t width,
                            const int32_t *above, int32_t *here) {
   for (int32_t x = 0; x < width; x++) {
@@ -45,14 +45,15 @@ static fg_status label_row(fg_context *ctx, forest *f, const uint8_t *mask, int3
     if (!mask[x]) continue;
     if (x > 0) label = here[x - 1];
     for (int32_t c = x > 0 ? x - 1 : 0; above && c <= x + 1 && c < width; c++)
-      if (above[c]) label = label && label != above[c] ? join(f, label, above[c]) : above[c];
+      if (above[c])
+        label = label && label != above[c] ? join_components(f, label, above[c]) : above[c];
     if (!label) FG_TRY(add_label(ctx, f, &label));
     here[x] = label;
   }
   return FG_OK;
 }
 
-/* Roots become 1, 2, ...; parents[i] is then the number of i's component. */
+/* Numbers the roots 1, 2, ...; parents[i] is then the number of i's component. */
 static int32_t number_roots(forest *f) {
   int32_t count = 0;
   for (size_t i = 1; i < f->count; i++) {
@@ -62,7 +63,7 @@ static int32_t number_roots(forest *f) {
   return count;
 }
 
-static void take_cell(fg_blob *b, int32_t x, int32_t y) {
+static void add_cell(fg_blob *b, int32_t x, int32_t y) {
   if (b->area++ == 0) {
     b->x = x;
     b->y = y;
@@ -82,7 +83,7 @@ static void measure_blobs(const forest *f, int32_t width, int32_t height, int32_
       int32_t *label = &labels[(size_t)y * (size_t)width + (size_t)x];
       if (!*label) continue;
       *label = f->parents[*label];
-      take_cell(&blobs[*label - 1], x, y);
+      add_cell(&blobs[*label - 1], x, y);
     }
 }
 
@@ -110,11 +111,11 @@ exit:
 
 enum { MEDIAN_REACH = 2, MEDIAN_CELLS = (2 * MEDIAN_REACH + 1) * (2 * MEDIAN_REACH + 1) };
 
-static int32_t clamp(int32_t value, int32_t high) {
+static int32_t clamp_index(int32_t value, int32_t high) {
   return value < 0 ? 0 : value > high ? high : value;
 }
 
-/* Moves what is known to the front and takes its median; NaN: nothing is. */
+/* Moves the known values to the front and returns their median; NaN: none is known. */
 static float median_of_known(float *values, size_t count) {
   size_t known = 0;
   for (size_t i = 0; i < count; i++)
@@ -127,12 +128,12 @@ static float median_at(const float *grid, int32_t width, int32_t height, int32_t
   size_t count = 0;
   for (int32_t v = y - MEDIAN_REACH; v <= y + MEDIAN_REACH; v++)
     for (int32_t u = x - MEDIAN_REACH; u <= x + MEDIAN_REACH; u++)
-      values[count++] =
-          grid[(size_t)clamp(v, height - 1) * (size_t)width + (size_t)clamp(u, width - 1)];
+      values[count++] = grid[(size_t)clamp_index(v, height - 1) * (size_t)width +
+                             (size_t)clamp_index(u, width - 1)];
   return median_of_known(values, count);
 }
 
-/* Cells without a known neighbour; `copy` is the grid as it was, and scratch. */
+/* Fills cells without a known neighbour; `copy` is the grid as it was, and scratch. */
 static void fill_unknown(float *grid, float *copy, size_t count) {
   float whole = NAN;
   for (size_t i = 0; i < count; i++) {

@@ -23,9 +23,9 @@ typedef struct fg_blob {
 fg_status fg_grid_label(fg_context *ctx, const uint8_t *mask, int32_t width, int32_t height,
                         int32_t *labels, fg_blob **blobs, int32_t *blob_count);
 
-/* Median over 5 × 5 of a grid, in place, borders repeated. Cells that are NaN are not known: they
- * do not count, and become the median of the neighbours that are, or of the whole grid where none
- * is (0 where nothing is known at all). FG_ERR_MEMORY. */
+/* Median over 5 × 5 of a grid, in place, borders repeated. NaN cells are unknown: they do not
+ * count. They become the median of their known neighbours, or of the whole grid where none is known
+ * (0 in an unknown grid). FG_ERR_MEMORY. */
 fg_status fg_grid_median(fg_context *ctx, float *grid, int32_t width, int32_t height);
 
 #ifdef __cplusplus

@@ -8,14 +8,13 @@
 
 enum {
   ROWS_AFTER = 3
-}; /* rows of tiles beyond an island that must be there: its neighbours, and
-      the background over two tiles */
+}; /* rows of tiles needed beyond an island: its neighbours, and the background over two tiles */
 
-/* A group on its way. Groups that are merged point to the one that took them in. */
+/* A growing group. A merged group points to the one that absorbed it. */
 typedef struct group {
   fg_island island;
   int32_t last_row;
-  size_t into; /* itself, or the group that took it in */
+  size_t into; /* itself, or the group that absorbed it */
   bool closed;
 } group;
 
@@ -24,7 +23,7 @@ struct fg_islands {
   group *groups;
   size_t count, capacity;
   size_t *above, *here; /* 1 + group of each column in the row before and in this one; 0: none */
-  int32_t row;          /* rows taken in */
+  int32_t row;          /* number of rows processed */
   size_t *ready;        /* closed groups in order; owned */
   size_t ready_count, ready_capacity, handed_out;
   size_t first_open; /* groups before it are closed or merged */
@@ -45,7 +44,7 @@ exit:
   return status;
 }
 
-static size_t find(const fg_islands *islands, size_t i) {
+static size_t find_group(const fg_islands *islands, size_t i) {
   while (islands->groups[i].into != i)
     i = islands->groups[i].into;
   return i;
@@ -58,7 +57,7 @@ static fg_status append_tile(fg_context *ctx, fg_island *island, int32_t tile) {
   return FG_OK;
 }
 
-static void widen(fg_island *island, int32_t x, int32_t y, int32_t width, int32_t height) {
+static void widen_box(fg_island *island, int32_t x, int32_t y, int32_t width, int32_t height) {
   int32_t right = island->x + island->width, low = island->y + island->height;
   if (x + width > right) right = x + width;
   if (y + height > low) low = y + height;
@@ -75,14 +74,15 @@ fg_status fg_island_append(fg_context *ctx, fg_island *island, int32_t columns, 
     island->x = column;
     island->y = row;
   }
-  widen(island, column, row, 1, 1);
+  widen_box(island, column, row, 1, 1);
   return FG_OK;
 }
 
-/* The larger of two groups takes in the other. */
-static fg_status merge(fg_context *ctx, fg_islands *islands, size_t a, size_t b, size_t *into) {
-  a = find(islands, a);
-  b = find(islands, b);
+/* Merges two groups into the larger one. */
+static fg_status merge_groups(fg_context *ctx, fg_islands *islands, size_t a, size_t b,
+                              size_t *into) {
+  a = find_group(islands, a);
+  b = find_group(islands, b);
   *into = a;
   if (a == b) return FG_OK;
   if (islands->groups[b].island.count > islands->groups[a].island.count) {
@@ -93,7 +93,7 @@ static fg_status merge(fg_context *ctx, fg_islands *islands, size_t a, size_t b,
   group *to = &islands->groups[a], *from = &islands->groups[b];
   for (size_t i = 0; i < from->island.count; i++)
     FG_TRY(append_tile(ctx, &to->island, from->island.tiles[i]));
-  widen(&to->island, from->island.x, from->island.y, from->island.width, from->island.height);
+  widen_box(&to->island, from->island.x, from->island.y, from->island.width, from->island.height);
   if (from->last_row > to->last_row) to->last_row = from->last_row;
   from->into = a;
   fg_island_free(&from->island);
@@ -110,29 +110,29 @@ static fg_status start_group(fg_context *ctx, fg_islands *islands, int32_t x, si
   return FG_OK;
 }
 
-/* Puts a wanted tile into the group of its neighbours to the left and above, joining them. */
-static fg_status take_tile(fg_context *ctx, fg_islands *islands, int32_t x) {
+/* Adds a wanted tile to the group of its neighbours to the left and above, joining them. */
+static fg_status process_tile(fg_context *ctx, fg_islands *islands, int32_t x) {
   size_t found = 0;
   for (int32_t d = -1; d <= 2; d++) {
     int32_t c = d == 2 ? x - 1 : x + d;
     if (c < 0 || c >= islands->tiles->columns) continue;
     size_t other = d == 2 ? islands->here[c] : islands->above[c];
     if (!other) continue;
-    size_t into = find(islands, other - 1);
-    if (found) FG_TRY(merge(ctx, islands, found - 1, into, &into));
+    size_t into = find_group(islands, other - 1);
+    if (found) FG_TRY(merge_groups(ctx, islands, found - 1, into, &into));
     found = into + 1;
   }
   size_t at = found - 1;
   if (!found) FG_TRY(start_group(ctx, islands, x, &at));
   group *g = &islands->groups[at];
   FG_TRY(append_tile(ctx, &g->island, islands->row * islands->tiles->columns + x));
-  widen(&g->island, x, islands->row, 1, 1);
+  widen_box(&g->island, x, islands->row, 1, 1);
   g->last_row = islands->row;
   islands->here[x] = at + 1;
   return FG_OK;
 }
 
-/* Groups that the row just taken in did not touch are complete. */
+/* Closes the groups that the last row did not touch: they are complete. */
 static fg_status close_groups(fg_context *ctx, fg_islands *islands, int32_t before_row) {
   bool all_before = true;
   for (size_t i = islands->first_open; i < islands->count; i++) {
@@ -149,12 +149,12 @@ static fg_status close_groups(fg_context *ctx, fg_islands *islands, int32_t befo
   return FG_OK;
 }
 
-static fg_status take_row(fg_context *ctx, fg_islands *islands) {
+static fg_status process_row(fg_context *ctx, fg_islands *islands) {
   const uint8_t *wanted =
       islands->tiles->wanted + (size_t)islands->row * (size_t)islands->tiles->columns;
   memset(islands->here, 0, (size_t)islands->tiles->columns * sizeof *islands->here);
   for (int32_t x = 0; x < islands->tiles->columns; x++)
-    if (wanted[x]) FG_TRY(take_tile(ctx, islands, x));
+    if (wanted[x]) FG_TRY(process_tile(ctx, islands, x));
   size_t *swap = islands->above;
   islands->above = islands->here;
   islands->here = swap;
@@ -165,7 +165,7 @@ static fg_status take_row(fg_context *ctx, fg_islands *islands) {
 
 fg_status fg_islands_advance(fg_context *ctx, fg_islands *islands) {
   while (islands->row < islands->tiles->received)
-    FG_TRY(take_row(ctx, islands));
+    FG_TRY(process_row(ctx, islands));
   return FG_OK;
 }
 
@@ -199,11 +199,11 @@ void fg_island_free(fg_island *island) {
 }
 
 enum {
-  REACH = 2,       /* tiles around an island that its pixels are taken from */
-  VIEW_MARGIN = 4, /* tiles that a view is wider than its island: its edge is not the scan's */
+  REACH = 2,       /* tiles around an island that contribute pixels */
+  VIEW_MARGIN = 4, /* tiles by which a view is wider than its island: its edge is not the scan's */
 };
 
-/* Whether any tile within reach is wanted and not yet taken. */
+/* Returns true when any tile within reach is wanted and not yet processed. */
 static bool is_needed(const fg_tiles *tiles, int32_t column, int32_t row) {
   for (int32_t y = row - REACH; y <= row + REACH; y++)
     for (int32_t x = column - REACH; x <= column + REACH; x++)
@@ -213,7 +213,7 @@ static bool is_needed(const fg_tiles *tiles, int32_t column, int32_t row) {
   return false;
 }
 
-void fg_island_forget(fg_tiles *tiles, const fg_island *island) {
+void fg_island_release(fg_tiles *tiles, const fg_island *island) {
   for (size_t i = 0; i < island->count; i++)
     tiles->wanted[island->tiles[i]] = 2;
   for (size_t i = 0; i < island->count; i++) {
@@ -234,7 +234,7 @@ static int32_t max(int32_t a, int32_t b) {
   return a > b ? a : b;
 }
 
-/* Medians and wants of the view's area, and the tiles within reach of the island. */
+/* Fills the view with the area's medians and wants, and the tiles within reach of the island. */
 static void fill_view(const fg_tiles *tiles, const fg_island *island, int32_t x0, int32_t y0,
                       fg_tiles *view) {
   size_t width = (size_t)view->columns;
@@ -282,7 +282,7 @@ fg_status fg_island_cut(fg_context *ctx, fg_tiles *tiles, fg_island *island, fg_
     return status;
   }
   fill_view(tiles, island, x0, y0, view);
-  fg_island_forget(tiles, island);
+  fg_island_release(tiles, island);
   move_island(island, tiles->columns, x0, y0, view->columns);
   return FG_OK;
 }

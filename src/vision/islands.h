@@ -25,11 +25,11 @@ typedef struct fg_islands fg_islands;
 
 fg_status fg_islands_create(fg_context *ctx, const fg_tiles *tiles, fg_islands **islands);
 
-/* Takes in the rows of tiles that were received since the last call. */
+/* Adds the rows of tiles that were received since the last call. */
 fg_status fg_islands_advance(fg_context *ctx, fg_islands *islands);
 
-/* The next island that is complete: true, and the caller frees it with fg_island_free. Islands come
- * in the order of their last rows, then columns. */
+/* Hands out the next complete island: true, and the caller frees it with fg_island_free. Islands
+ * come in the order of their last rows, then columns. */
 bool fg_islands_next(fg_islands *islands, fg_island *island);
 
 void fg_islands_free(fg_islands *islands);
@@ -39,16 +39,16 @@ fg_status fg_island_append(fg_context *ctx, fg_island *island, int32_t columns, 
                            int32_t row);
 void fg_island_free(fg_island *island);
 
-/* Cuts an island out of the scan: `view` shows its tiles and what lies around them, in coordinates
- * of its own (origin_px is where its pixel (0, 0) lies in the scan), and the island is then in
- * these coordinates too. What an island measures can so depend on its surroundings alone. The scan
- * lets go the tiles that no other island needs. The caller frees `view` with fg_tiles_free; that
- * and measuring it are safe in another thread. */
+/* Cuts an island out of the scan. `view` shows its tiles and those around them, in coordinates of
+ * its own; origin_px is the place of its pixel (0, 0) in the scan. The island is converted to these
+ * coordinates. So an island's measurement can depend on its surroundings alone. The scan releases
+ * the tiles that no other island needs. The caller frees `view` with fg_tiles_free; that and
+ * measuring it are safe in another thread. */
 fg_status fg_island_cut(fg_context *ctx, fg_tiles *tiles, fg_island *island, fg_tiles *view,
                         int64_t origin_px[2]);
 
-/* Lets go the tiles of an island that is not worth measuring, as far as no other needs them. */
-void fg_island_forget(fg_tiles *tiles, const fg_island *island);
+/* Releases the tiles of an island that is not worth measuring, as far as no other needs them. */
+void fg_island_release(fg_tiles *tiles, const fg_island *island);
 
 #ifdef __cplusplus
 }

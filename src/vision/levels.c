@@ -5,12 +5,12 @@
 
 enum {
   COUNTS = FG_LEVEL_COUNTS,
-  PIXELS_MIN = 64,  /* fewer beyond the noise are no object */
-  LIMIT_MIN = 4,    /* counts: what differs less from the background is none of the foil */
-  SAMPLED_ROWS = 4, /* every so many rows of a tile are looked at */
+  PIXELS_MIN = 64,  /* min number of pixels of an object */
+  LIMIT_MIN = 4,    /* counts: min difference of the foil from the background */
+  SAMPLED_ROWS = 4, /* distance of the sampled rows of a tile */
 };
-/* A pixel is hot when it differs from the background by this share of the typical contrast, and by
- * so many standard deviations. The share is that of the segmentation. */
+/* Limits of a hot pixel's difference from the background: a share of the typical contrast, and
+ * standard deviations. The share is that of the segmentation. */
 #define HOT_SHARE    0.3
 #define HOT_SIGMAS   6.0
 #define MAD_TO_SIGMA 1.4826
@@ -25,7 +25,7 @@ void fg_levels_count(const fg_tile *tile, int bytes_per_pixel, uint64_t blocks,
     }
 }
 
-static int quantile(const size_t *counts, double share) {
+static int count_quantile(const size_t *counts, double share) {
   size_t total = 0, below = 0;
   int bin = 0;
   for (int i = 0; i < COUNTS; i++)
@@ -35,15 +35,15 @@ static int quantile(const size_t *counts, double share) {
   return bin;
 }
 
-/* Background is what most pixels are; the contrast is the 80th percentile of what is beyond its
- * noise, on the side where more is. */
+/* Background is the most frequent count. The contrast is the 80th percentile of the counts beyond
+ * its noise, on the side with more of them. */
 fg_levels fg_levels_find(const size_t histogram[COUNTS]) {
   size_t off[COUNTS] = {0}, beyond[2][COUNTS] = {{0}}, number[2] = {0};
   double sum[2] = {0};
-  int background = quantile(histogram, 0.5);
+  int background = count_quantile(histogram, 0.5);
   for (int i = 0; i < COUNTS; i++)
     off[abs(i - background)] += histogram[i];
-  double sigma = MAD_TO_SIGMA * quantile(off, 0.5);
+  double sigma = MAD_TO_SIGMA * count_quantile(off, 0.5);
   int noise = (int)fmax(LIMIT_MIN, ceil(HOT_SIGMAS * sigma));
   for (int i = 0; i < COUNTS; i++) {
     int excess = abs(i - background), light = i > background;
@@ -53,7 +53,7 @@ fg_levels fg_levels_find(const size_t histogram[COUNTS]) {
     beyond[light][excess] = histogram[i];
   }
   bool light = sum[1] >= sum[0];
-  int excess = (int)fmax(noise, round(HOT_SHARE * quantile(beyond[light], 0.8)));
+  int excess = (int)fmax(noise, round(HOT_SHARE * count_quantile(beyond[light], 0.8)));
   return (fg_levels){.light = light,
                      .limit = light ? background + excess : background - excess,
                      .found = number[light] >= PIXELS_MIN};

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* From which count on a pixel is the foil's, by the pixels alone. */
+/* The count that separates the foil's pixels from the background's, by the pixels alone. */
 #ifndef FG_VISION_LEVELS_H
 #define FG_VISION_LEVELS_H
 
@@ -7,8 +7,9 @@
 
 enum { FG_LEVEL_COUNTS = 256 }; /* 8-bit counts */
 
-/* Hot is a count of at least the limit where the foil is light, of at most the limit where it is
- * dark. Whole counts: the same whatever a few pixels more or less of background were looked at. */
+/* A pixel is hot with a count of at least the limit where the foil is light, of at most the limit
+ * where it is dark. The limit is a whole count, so that a few more pixels of background do not
+ * change it. */
 typedef struct fg_levels {
   int limit;
   bool light;
@@ -25,7 +26,7 @@ static inline bool fg_levels_is_hot(const fg_levels *levels, int count) {
   return levels->light ? count >= levels->limit : count <= levels->limit;
 }
 
-/* Adds the pixels of those blocks of a tile whose bits are set; not every row is looked at. */
+/* Adds the pixels of those blocks of a tile whose bits are set; rows are sampled. */
 void fg_levels_count(const fg_tile *tile, int bytes_per_pixel, uint64_t blocks,
                      size_t histogram[FG_LEVEL_COUNTS]);
 

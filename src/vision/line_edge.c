@@ -9,22 +9,22 @@
 #include "core/select.h"
 #include "vision/picture.h"
 
-/* What the driver has done is asked of so many sectors at the least, so those of a short stretch
- * are shorter. */
+/* Min number of sectors for a driver's model, so those of a short stretch are shorter. */
 enum { SECTORS_MAX = 24, SECTORS_WANTED = 10, STATIONS_MIN = 4, PLACES = 9 };
 #define SECTOR_PX     96.0
 #define SECTOR_MIN_PX 24.0
 #define STATION_PX    1.5
 #define REACH_PX      15.0 /* of the band, on either side */
 #define REACH_MIN     2.5
-/* The band ends before the next edge: at this share of the way. */
+/* End of the band before the next edge, as a share of its distance. */
 #define NEXT_EDGE_SHARE 0.45
-/* An arc's band ends at this share of its radius. */
+/* End of an arc's band, as a share of its radius. */
 #define RADIUS_SHARE 0.6
-/* From so much reach on the levels may run with slopes. */
+/* Min reach for levels with slopes. */
 #define SLOPE_REACH_PX 10.0
 #define CONTRAST_MIN   6.0
-/* Dust differs from its side by this share of the contrast, so many blurs and px off the edge. */
+/* Dust differs from its side by this share of the contrast, at so many blurs and px from the edge.
+ */
 #define DUST_SHARE 0.2
 #define DUST_BLURS 3.0
 #define DUST_PX    1.5
@@ -50,14 +50,15 @@ static frame frame_of(const fg_stretch *s) {
              .length = fg_stretch_length(s)};
   if (isinf(s->radius)) return f;
   double off = sqrt(fmax(0, s->radius * s->radius - 0.25 * chord * chord));
-  /* Outwards of the material is (y, -x) of the way. */
+  /* Outwards of the material is (y, -x) of the stretch's direction. */
   f.centre = (fg_point){0.5 * (s->from.x + s->to.x) + off * f.along.y,
                         0.5 * (s->from.y + s->to.y) - off * f.along.x};
   f.start = atan2(s->from.y - f.centre.y, s->from.x - f.centre.x);
   return f;
 }
 
-/* The material lies outside of an arc, which so runs the other way round than a disc's edge. */
+/* Point of the frame. The material lies outside of an arc, so it runs the other way round than a
+ * disc's edge. */
 static fg_point point_of(const frame *f, double along, double outwards) {
   if (isinf(f->radius))
     return (fg_point){f->from.x + along * f->along.x + outwards * f->along.y,
@@ -71,8 +72,8 @@ fg_point fg_stretch_point(const fg_stretch *stretch, double share, double outwar
   return point_of(&f, share * f.length, outwards);
 }
 
-/* Where a pixel lies in the band. */
-static void place_of(const frame *f, double x, double y, double *along, double *outwards) {
+/* Place of a pixel in the band. */
+static void band_place(const frame *f, double x, double y, double *along, double *outwards) {
   if (isinf(f->radius)) {
     double dx = x - f->from.x, dy = y - f->from.y;
     *along = dx * f->along.x + dy * f->along.y;
@@ -84,8 +85,8 @@ static void place_of(const frame *f, double x, double y, double *along, double *
   *outwards = f->radius - hypot(dx, dy);
 }
 
-/* Narrows [from, to] to where low <= at + rate x <= high. */
-static void clip(double at, double rate, double low, double high, double *from, double *to) {
+/* Narrows [from, to] to the part with low <= at + rate x <= high. */
+static void clip_range(double at, double rate, double low, double high, double *from, double *to) {
   if (fabs(rate) < 1e-12) {
     if (at < low || at > high) *to = *from - 1;
     return;
@@ -99,13 +100,13 @@ static void clip(double at, double rate, double low, double high, double *from, 
 static void find_columns(const frame *f, double reach, double v, double *from, double *to) {
   if (isinf(f->radius)) {
     double dy = v - f->from.y;
-    clip(dy * f->along.y - f->from.x * f->along.x, f->along.x, 0, f->length, from, to);
-    clip(-dy * f->along.x - f->from.x * f->along.y, f->along.y, -reach, reach, from, to);
+    clip_range(dy * f->along.y - f->from.x * f->along.x, f->along.x, 0, f->length, from, to);
+    clip_range(-dy * f->along.x - f->from.x * f->along.y, f->along.y, -reach, reach, from, to);
     return;
   }
   double far = f->radius + reach, dv = v - f->centre.y;
-  clip(-f->centre.x, 1, -sqrt(fmax(0, far * far - dv * dv)), sqrt(fmax(0, far * far - dv * dv)),
-       from, to);
+  clip_range(-f->centre.x, 1, -sqrt(fmax(0, far * far - dv * dv)),
+             sqrt(fmax(0, far * far - dv * dv)), from, to);
 }
 
 static fg_status collect_row(fg_context *ctx, const fg_disc_work *work, const frame *f, int64_t y,
@@ -121,7 +122,7 @@ static fg_status collect_row(fg_context *ctx, const fg_disc_work *work, const fr
     float value = fg_tiles_pixel(work->tiles, x, y);
     double along, outwards;
     if (isnan(value)) continue;
-    place_of(f, (double)x * scale[0], v, &along, &outwards);
+    band_place(f, (double)x * scale[0], v, &along, &outwards);
     if (!(along >= 0 && along < f->length) || fabs(outwards) > ring->reach_px) continue;
     size_t station = (size_t)(along / f->length * (double)ring->station_count);
     if (station >= ring->station_count) station = ring->station_count - 1;
@@ -145,7 +146,7 @@ static void find_rows(const fg_disc_work *work, const frame *f, int64_t rows[2])
                           floor((high + spare) / work->shape->scale[1]));
 }
 
-static fg_status collect(fg_context *ctx, fg_disc_work *work, const frame *f) {
+static fg_status collect_band(fg_context *ctx, fg_disc_work *work, const frame *f) {
   int64_t rows[2];
   work->ring.count = 0;
   find_rows(work, f, rows);
@@ -159,7 +160,7 @@ static double pixel_at(const fg_disc_work *work, fg_point at) {
                                 (int64_t)lround(at.y / work->shape->scale[1]));
 }
 
-/* How far the next edge is from the stretch, on one side: where the count passes the middle. */
+/* Distance of the next edge from the stretch, on one side: where the count passes the middle. */
 static double next_edge(const fg_disc_work *work, const frame *f, double along, int side,
                         double middle) {
   bool bright = pixel_at(work, point_of(f, along, 3 * side)) > middle;
@@ -170,7 +171,7 @@ static double next_edge(const fg_disc_work *work, const frame *f, double along, 
   return INFINITY;
 }
 
-/* Half of the band's width: the median over places of what the next edge leaves. */
+/* Half of the band's width: the median over places of the room before the next edge. */
 static double find_reach(const fg_disc_work *work, const frame *f, double middle, double *near) {
   double reach = fmin(REACH_PX, RADIUS_SHARE * f->radius);
   *near = INFINITY;
@@ -185,9 +186,9 @@ static double find_reach(const fg_disc_work *work, const frame *f, double middle
   return fmax(reach, REACH_MIN);
 }
 
-/* At the end of the band the next edge has taken Phi(-(1 - share) next / s) of the contrast: as
- * much as the level there may be wrong by, and half of it, over the profile's slope, is a shift.
- * Twice that holds the errors of renders. */
+/* Shift of an edge by the next one's blur. At the end of the band the next edge has changed the
+ * level by Phi(-(1 - share) next / s) of the contrast. Half of that, over the profile's slope, is a
+ * shift. Twice that covers the errors of renders. */
 double fg_line_edge_overlap(double next_px, double blur_px) {
   double taken = 0.5 * erfc((1 - NEXT_EDGE_SHARE) * next_px / blur_px * M_SQRT1_2);
   return isinf(next_px) ? 0 : taken * blur_px * sqrt(2 * M_PI);
@@ -210,8 +211,8 @@ static fg_status check_sectors(fg_context *ctx, const fg_disc_work *work) {
   return fg_fail(ctx, FG_ERR_NUMERIC, "no edge along a side");
 }
 
-/* The value that half of the good sectors are below. */
-static double typical(const fg_disc_work *work, int value) {
+/* Median of a value over the good sectors. */
+static double typical_value(const fg_disc_work *work, int value) {
   double values[SECTORS_MAX];
   size_t n = 0;
   for (size_t s = 0; s < work->ring.sector_count; s++)
@@ -219,16 +220,16 @@ static double typical(const fg_disc_work *work, int value) {
   return fg_select(values, n, n / 2);
 }
 
-static double count_of(const fg_disc_work *work, int value) {
-  return 255 * pow(fmax(typical(work, value), 0) / 255, 1 / work->gamma);
+static double level_count(const fg_disc_work *work, int value) {
+  return 255 * pow(fmax(typical_value(work, value), 0) / 255, 1 / work->gamma);
 }
 
-/* Dust beside the edge: a pixel off the edge's blur whose count is not that of its side. It would
- * pull the levels of its sector. True when there was any. */
+/* Drops pixels of dust beside the edge: off the edge's blur, with a count that is not that of its
+ * side. They would bias the levels of their sector. True when there were any. */
 static bool drop_dust(fg_disc_work *work) {
   fg_ring *ring = &work->ring;
-  double inside = count_of(work, FG_STEP_INSIDE), outside = count_of(work, FG_STEP_OUTSIDE);
-  double edge = typical(work, FG_STEP_EDGE), blur = typical(work, FG_STEP_BLUR);
+  double inside = level_count(work, FG_STEP_INSIDE), outside = level_count(work, FG_STEP_OUTSIDE);
+  double edge = typical_value(work, FG_STEP_EDGE), blur = typical_value(work, FG_STEP_BLUR);
   double limit = DUST_SHARE * fabs(outside - inside), clear = DUST_BLURS * blur + DUST_PX;
   size_t kept = 0;
   for (size_t i = 0; i < ring->count; i++) {
@@ -247,7 +248,7 @@ static size_t count_sectors(double length) {
   return (size_t)fmin(fmax(fmax(length / SECTOR_PX, wanted), 1), SECTORS_MAX);
 }
 
-/* The band with its profiles, and a step without slopes to each. */
+/* Collects the band with its profiles, and fits a step without slopes to each. */
 static fg_status open_band(fg_context *ctx, const fg_stretch *stretch, double middle,
                            fg_disc_work *work, double *next_px) {
   frame f = frame_of(stretch);
@@ -260,7 +261,7 @@ static fg_status open_band(fg_context *ctx, const fg_stretch *stretch, double mi
   ring->sector_count = count_sectors(f.length);
   size_t per_sector = (size_t)(f.length / STATION_PX / (double)ring->sector_count);
   ring->station_count = per_sector * ring->sector_count;
-  FG_TRY(collect(ctx, work, &f));
+  FG_TRY(collect_band(ctx, work, &f));
   FG_TRY(fg_disc_stack_sectors(ctx, work));
   const unsigned held = 1u << FG_STEP_GAMMA | 1u << FG_STEP_SLOPE_IN | 1u << FG_STEP_SLOPE_OUT;
   fg_disc_fit_sectors(work, held);
@@ -283,8 +284,8 @@ exit:
   return status;
 }
 
-/* Slopes only where the band is wide enough to tell them from the edge's blur, and there are any.
- */
+/* Fits slopes only where they are significant and the band is wide enough to tell them from the
+ * edge's blur. */
 static fg_status find_shape(fg_context *ctx, fg_disc_work *work) {
   unsigned held = 1u << FG_STEP_GAMMA;
   if (work->ring.reach_px < SLOPE_REACH_PX) return FG_OK;
@@ -297,11 +298,11 @@ static fg_status find_shape(fg_context *ctx, fg_disc_work *work) {
 }
 
 /* The edge of an open band. */
-static fg_status solve(fg_context *ctx, fg_disc_work *work, const fg_stretch *stretch,
-                       const fg_line_tone *tone, fg_disc_edge *edge) {
+static fg_status solve_band(fg_context *ctx, fg_disc_work *work, const fg_stretch *stretch,
+                            const fg_line_tone *tone, fg_disc_edge *edge) {
   FG_TRY(find_shape(ctx, work));
   if (tone->driver) {
-    FG_TRY(fg_disc_take_driver(ctx, work, tone->driver));
+    FG_TRY(fg_disc_use_driver(ctx, work, tone->driver));
     FG_TRY(check_sectors(ctx, work));
   } else {
     FG_TRY(fg_disc_find_driver(ctx, work));
@@ -326,7 +327,7 @@ fg_status fg_line_edge_measure(fg_context *ctx, const fg_line_view *view, const 
   edge->picture = fg_picture_unknown();
   edge->gamma = tone->tone.gamma;
   fg_status status = open_band(ctx, stretch, view->middle, &work, &found->next_px);
-  if (status == FG_OK) status = solve(ctx, &work, stretch, tone, edge);
+  if (status == FG_OK) status = solve_band(ctx, &work, stretch, tone, edge);
   if (status == FG_OK) status = fg_picture_of_ring(ctx, &work, edge, &edge->picture);
   if (status == FG_OK && tone->tone.found > 0) {
     edge->picture.gamma = tone->tone.found;

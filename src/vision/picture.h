@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a scanner's driver or the light has made of a picture, found from the pixels that were
- * collected around its edges, and from a few tiles beside them. Fills those members of a state that
- * pixels tell without a model; the others stay as they are. */
+/* Findings about the driver and the light, from the pixels around a picture's edges and from a few
+ * tiles beside them.
+ *
+ * Fills the members of a state that pixels tell without a model; the others stay unchanged. */
 #ifndef FG_VISION_PICTURE_H
 #define FG_VISION_PICTURE_H
 
@@ -10,10 +11,10 @@
 #include "vision/edge_work.h"
 #include "vision/picture_profile.h"
 
-/* Of a strip whose edges are found. picture_strip.c */
+/* State of a strip whose edges are found. picture_strip.c */
 fg_status fg_picture_of_strip(fg_context *ctx, const fg_edge_work *work, fg_picture_state *state);
 
-/* Of one round or straight edge. picture_ring.c */
+/* State of one round or straight edge. picture_ring.c */
 fg_status fg_picture_of_ring(fg_context *ctx, const fg_disc_work *work, const fg_disc_edge *edge,
                              fg_picture_state *state);
 
@@ -39,16 +40,16 @@ static inline void fg_value_counts_add(fg_value_counts *counts, float value) {
 void fg_picture_inspect_levels(const fg_value_counts *counts, const double levels[2],
                                fg_picture_state *state);
 
-/* A scanner's optics blur an edge by this at the least; a picture of few levels, or one that is cut
- * off, may hide it. */
+/* Min blur that a scanner's optics give an edge; a picture of few levels, or a clipped one, may
+ * hide it. */
 #define FG_HIDDEN_BLUR_PX 1.2
 
-/* What the ends of the scale may have cut off: state->u_cut where the finding is there, and
- * state->seen_blur. `blur_px`: that of the edge's model. picture_cut.c */
+/* Estimates the blur that the ends of the scale may have cut off: state->u_cut where the finding is
+ * there, and state->seen_blur. `blur_px`: that of the edge's model. picture_cut.c */
 void fg_picture_inspect_cut(const fg_edge_profile *profiles, size_t count, double blur_px,
                             fg_picture_state *state);
 
-/* Tiles to look at, all of which are kept. */
+/* Tiles to inspect, all of which are kept. */
 typedef struct fg_tile_choice {
   const fg_tile *tiles[16];
   size_t count;
@@ -68,17 +69,17 @@ static inline double fg_tile_count(const fg_tile *tile, int bytes_per_pixel, siz
   return ((const uint16_t *)(const void *)tile->pixels)[at] * (1.0 / 257);
 }
 
-/* Quality of the Independent JPEG Group that the coefficients of 8 x 8 blocks were rounded with; 0:
- * they fit none, as where the picture was changed afterwards. `first`: where the first block of a
- * tile begins along x and y. picture_jpeg.c */
+/* Returns the quality of the Independent JPEG Group by which the coefficients of 8 x 8 blocks were
+ * quantised; 0: none fits, as where the picture was changed afterwards. `first`: begin of a tile's
+ * first block along x and y. picture_jpeg.c */
 int fg_picture_jpeg_quality(const fg_tile_choice *choice, int bytes_per_pixel,
                             const size_t first[2]);
 
-/* Where both edges of the strip jump along y at one row. picture_rows.c */
+/* Finds rows at which both edges of the strip jump along y. picture_rows.c */
 fg_status fg_picture_inspect_rows(fg_context *ctx, const fg_edge_work *work,
                                   fg_picture_state *state);
 
-/* Where both limbs of a round edge jump at one row, along y or x. picture_ring_rows.c */
+/* Finds rows at which both limbs of a round edge jump, along y or x. picture_ring_rows.c */
 fg_status fg_picture_inspect_ring_rows(fg_context *ctx, const fg_disc_work *work,
                                        const fg_disc_edge *edge, fg_picture_state *state);
 

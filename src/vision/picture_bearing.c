@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What profiles of many bearings tell: under- and overshoot, blur and shadow by direction. */
+/* Findings of profiles of many bearings: under- and overshoot, blur and shadow by direction. */
 #include "vision/picture_profile.h"
 
 #include <math.h>
@@ -12,30 +12,30 @@
 
 enum { PROFILES_MIN = 8, BLUR_TERMS = 5 };
 
-/* A median over n values has this over the mean's standard deviation. */
+/* Ratio of the sd of a median to that of a mean. */
 #define MEDIAN_OVER_MEAN 1.2533
-/* Overshoot turns a profile back; so much of the contrast moves a strip's edges by their u, and is
- * so many standard deviations. */
+/* Limits of an overshoot, which turns a profile back: the share of the contrast that moves a
+ * strip's edges by their u, and standard deviations. */
 #define TURN_SHARE     0.002
 #define TURN_SIGMAS    6.0
-#define TURN_OF_BLOCKS 0.015 /* JPEG makes edges ring by as much */
-/* Profiles of opposite quarters of the bearings show at least so much of it each. */
+#define TURN_OF_BLOCKS 0.015 /* ringing of edges in a JPEG */
+/* Min share of it that profiles of opposite quarters of the bearings show each. */
 #define QUARTER_SHARE 0.3
-/* Beyond so many px outwards the next thing may lie. */
+/* Max distance outwards; beyond it may lie the next object. */
 #define TURN_MAX_PX 10.0
-/* Flatbeds blur along the carriage by up to half more than across. */
+/* Max ratio of a flatbed's blur along the carriage to that across. */
 #define BLUR_RATIO  1.6
 #define BLUR_SIGMAS 5.0
 
 typedef struct inspection {
   const fg_edge_profile *profiles;
   size_t count;
-  double *scratch; /* count */
+  double *scratch; /* one per profile */
   double blur_px;
-  int quarter; /* of the bearings that are looked at, -1: all */
+  int quarter; /* of the bearings in use, -1: all */
 } inspection;
 
-/* Whether a profile faces one quarter of all bearings, whose middles are the axes. */
+/* Returns true when a profile faces one quarter of all bearings, whose middles are the axes. */
 static bool is_in_quarter(double bearing, int quarter) {
   return quarter < 0 || fabs(remainder(bearing - quarter * M_PI / 2, 2 * M_PI)) <= M_PI / 4;
 }
@@ -59,8 +59,8 @@ static double median_share(const inspection *in, size_t i, double *sd) {
   return median;
 }
 
-/* How far the mean profile turns back on its way from the edge, inwards (way -1) or outwards: an
- * edge that was blurred by whatever spreads light, with any tone curve, never does. */
+/* Size by which the mean profile turns back going away from the edge, inwards (way -1) or outwards.
+ * An edge under any spread of light, with any tone curve, never turns back. */
 static double find_turn(const double *shares, const double *sd, int way, double *u, int places[2]) {
   double extreme = -INFINITY, turn = 0, u_extreme = 0;
   int at_extreme = 0;
@@ -85,7 +85,7 @@ static double find_turn(const double *shares, const double *sd, int way, double 
   return turn;
 }
 
-/* How far the profiles of one quarter of all bearings turn back between two places. */
+/* Size by which the profiles of one quarter of all bearings turn back between two places. */
 static double turn_of_quarter(inspection *in, int quarter, const int places[2]) {
   double mean[2] = {0, 0}, sd;
   inspection part = *in;
@@ -96,7 +96,8 @@ static double turn_of_quarter(inspection *in, int quarter, const int places[2]) 
   return fabs(mean[1] - mean[0]);
 }
 
-/* Sharpening works along both ways of a direction, a shadow on one side. */
+/* Returns true when opposite quarters both turn back. Sharpening works on both sides of a
+ * direction, a shadow on one. */
 static bool is_two_sided(inspection *in, double turn, const int places[2]) {
   bool shown[4];
   for (int quarter = 0; quarter < 4; quarter++) {
@@ -181,8 +182,7 @@ static void inspect_blur(const inspection *in, fg_picture_state *state) {
     state->findings |= FG_PICTURE_UNEVEN_BLUR;
 }
 
-/* Mean share of the band beside an edge, from where its own blur has ended, over the background's.
- */
+/* Mean share of the band beside an edge, from the end of its own blur, over the background's. */
 static double band_of(const inspection *in, const fg_edge_profile *p) {
   double from = fg_band_from(fmax(in->blur_px, p->blur_px)), sum = 0, n = 0;
   for (size_t i = FG_SHARES_INSIDE; i < FG_SHARES; i++) {

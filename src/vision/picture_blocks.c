@@ -5,14 +5,14 @@
 #include "vision/picture.h"
 
 enum { PHASES = 8 };
-/* Pixels within this share of the contrast of their tile's background are looked at. */
+/* Max distance of a used pixel from its tile's background, as a share of the contrast. */
 #define FLAT_SHARE  0.06
 #define FLAT_NOISES 3.0
 #define RATIO_MAX   9.99
 #define RATIO_MIN   0.15
-/* Either axis has one phase that leads by so many sd, and both together by so many: of the largest
- * of eight chances one in 100 leads by 2.5, of both axes at once by 6 one in 10 million. Few blocks
- * step where a picture is quite flat, so more is not asked. */
+/* Min lead of one phase in sd, on each axis and on both together. The largest of eight chances
+ * leads by 2.5 in one of 100 cases, both axes at once by 6 in one of 10 million. Few blocks step
+ * where a picture is quite flat, so the limits are no higher. */
 #define LEAD_SIGMAS 2.5
 #define BOTH_SIGMAS 6.0
 
@@ -40,7 +40,7 @@ static void add_tile(const fg_tile *tile, int bytes_per_pixel, double level, dou
     }
 }
 
-/* The phase that steps most: by how many sd it leads the second, and its mean step over the mean of
+/* The phase of the largest step: its lead over the second in sd, and its mean step over the mean of
  * the others, less 1. */
 typedef struct leader {
   double sigmas, ratio;

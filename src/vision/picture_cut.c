@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* How far an edge may lie off because an end of the scale cuts its profile.
+/* Possible shift of an edge whose profile an end of the scale cuts.
  *
- * What is cut off cannot be seen, except by how abruptly the profile ends. Let shares a (towards
- * the background) and b (towards the material) of a Gaussian edge's contrast be cut. Share v of
- * what is left is then light a + (1 - a - b) v, and lies at x(v) = c + s z(a + (1 - a - b) v) with
- * z the normal quantile. Every pair (a, b) that the mean profile allows says where half of the
- * light is: s z(1/2 + (a - b)/2) off the half of what is left. The doubt is the largest of them. */
+ * The cut part is not visible, except by the abrupt end of the profile. Let shares a (towards the
+ * background) and b (towards the material) of a Gaussian edge's contrast be cut. Share v of the
+ * remainder is then light a + (1 - a - b) v, and lies at x(v) = c + s z(a + (1 - a - b) v) with z
+ * the normal quantile. Every pair (a, b) that the mean profile allows gives a place of half the
+ * light: s z(1/2 + (a - b)/2) from the half of the remainder. The uncertainty follows from the
+ * largest of these shifts. */
 #include <gsl/gsl_cdf.h>
 #include <math.h>
 #include <stdbool.h>
@@ -14,29 +15,31 @@
 #include "vision/picture_profile.h"
 
 enum { PLACES = 10, CUTS = 20 };
-/* Less than this of the contrast tells no profile. */
+/* Min share of the contrast that shows a profile. */
 #define VISIBLE_MIN 0.01
-/* A profile that misses by this share of its own width, root mean square, beyond the best is still
- * allowed: lenses and the tone curve before the cut bend it by as much. */
+/* Max misfit beyond the best, root mean square, as a share of the profile's own width: lenses and
+ * the tone curve before the cut bend it by as much. */
 #define MISFIT_SHARE 0.02
-/* From share 0.05 to 0.95 an uncut edge is so many blurs wide. A picture that shows less than a
+/* Width of an uncut edge from share 0.05 to 0.95, in blurs. A picture that shows less than a
  * quarter of an edge's width is one of few levels. */
 #define WHOLE_WIDTH 3.29
 #define BLURS_MAX   4.0
-/* Of the largest shift that is allowed: uniform up to it would be 1 / 1.73. */
+/* Ratio of the sd to the largest allowed shift: a uniform distribution up to it would give 1
+ * / 1.73. */
 #define SD_OF_LARGEST 0.6
 
 typedef struct cut_profile {
-  double px[PLACES]; /* where the shares lie, outwards */
-  bool open[2];      /* whether background and material may be cut */
+  double px[PLACES]; /* places of the shares, outwards */
+  bool open[2];      /* background and material may be cut */
 } cut_profile;
 
-/* One pair of cuts: how far the profile misses, and where half of the light then is. */
+/* One pair of cuts: its misfit to the profile, and its place of half the light. */
 typedef struct cut_fit {
   double misfit_px, shift_px;
 } cut_fit;
 
-/* Cuts to be tried lie closer where little is left, as blur and shift change most there. */
+/* Returns the i-th cut to be tried. They are closer where little remains, as blur and shift change
+ * most there. */
 static double cut_at(int i) {
   return 1 - pow(1 - (double)i / CUTS, 1.5);
 }
@@ -55,7 +58,7 @@ static double mean_share(const fg_edge_profile *profiles, size_t count, size_t i
   return n > 0 ? sum / n : NAN;
 }
 
-/* From the edge's middle outwards (way 1) or inwards to where the mean passes a share. */
+/* Place outwards from the edge's middle (way 1), or inwards, where the mean passes a share. */
 static double find_share(const double *shares, double share) {
   int way = share < 0.5 ? 1 : -1, i = FG_SHARES_INSIDE - (way > 0);
   while (i - way >= 0 && i - way < FG_SHARES && way * (shares[i] - share) < 0)
@@ -69,8 +72,8 @@ static double find_share(const double *shares, double share) {
   return NAN;
 }
 
-static bool take_profile(const fg_edge_profile *profiles, size_t count,
-                         const fg_picture_state *state, cut_profile *profile) {
+static bool make_cut_profile(const fg_edge_profile *profiles, size_t count,
+                             const fg_picture_state *state, cut_profile *profile) {
   double shares[FG_SHARES], bright = 0;
   for (size_t i = 0; i < FG_SHARES; i++)
     shares[i] = mean_share(profiles, count, i);
@@ -86,7 +89,7 @@ static bool take_profile(const fg_edge_profile *profiles, size_t count,
   return true;
 }
 
-/* Regression of the places on the quantiles of the light that they have. */
+/* Regression of the places on the quantiles of their light. */
 static cut_fit fit_cuts(const cut_profile *profile, double a, double b) {
   double z[PLACES], mean_z = 0, mean_x = 0, zz = 0, zx = 0, misfit = 0;
   for (int p = 0; p < PLACES; p++) {
@@ -108,7 +111,7 @@ static cut_fit fit_cuts(const cut_profile *profile, double a, double b) {
   return (cut_fit){sqrt(misfit), blur * fabs(gsl_cdf_ugaussian_Pinv(0.5 + 0.5 * (a - b)))};
 }
 
-/* The largest shift, of those cuts that miss by no more than a limit. */
+/* Returns the largest shift of the cuts whose misfit is within a limit. */
 static double largest_shift(const cut_profile *profile, double limit_px, double *best_px) {
   double largest = 0;
   *best_px = INFINITY;
@@ -129,9 +132,9 @@ void fg_picture_inspect_cut(const fg_edge_profile *profiles, size_t count, doubl
   double per_level = blur_px * sqrt(2 * M_PI), best;
   state->seen_blur = fmin(1, blur_px / FG_HIDDEN_BLUR_PX);
   if (!(state->findings & FG_PICTURE_CLIPPED)) return;
-  /* Without a profile that tells: half of the scale or more may be cut. */
+  /* Without a usable profile half of the scale or more may be cut. */
   double shift = FG_HIDDEN_BLUR_PX * gsl_cdf_ugaussian_Pinv(1 - VISIBLE_MIN / 2);
-  if (take_profile(profiles, count, state, &profile)) {
+  if (make_cut_profile(profiles, count, state, &profile)) {
     double width = fabs(profile.px[PLACES - 1] - profile.px[0]);
     largest_shift(&profile, 0, &best);
     shift = largest_shift(&profile, best + MISFIT_SHARE * width, &best);

@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The quality of a JPEG from its pixels alone. Its coefficients were rounded to whole steps, so
- * those of its blocks lie at multiples of the steps, but for the rounding of pixels to counts (an
- * sd of 0.29). Finer steps always fit, coarse ones by chance where a step is wide: a quality scores
- * what fits beyond chance. */
+/* The quality of a JPEG from its pixels alone.
+ *
+ * Its coefficients were rounded to whole steps, so those of its blocks lie at multiples of the
+ * steps, but for the rounding of pixels to counts (an sd of 0.29). Finer steps always fit, coarse
+ * ones by chance where a step is wide: a quality's score is its fit beyond chance. */
 #include <math.h>
 
 #include "scan/jpeg_tables.h"
 #include "vision/picture.h"
 
 enum { SIDE = 8, FIRST_AC = 1, QUALITIES = 100, COEFFICIENTS_MIN = 200 };
-#define NEAR     1.0 /* 3.4 sd of the pixels' rounding; what is nearer to 0 tells nothing */
+#define NEAR     1.0 /* 3.4 sd of the pixels' rounding; nearer to 0 a coefficient is no evidence */
 #define FITS_MIN 0.9 /* share of coefficients */
 
 typedef struct quality_search {
@@ -19,7 +20,7 @@ typedef struct quality_search {
   double fits[QUALITIES], beyond_chance[QUALITIES], count;
 } quality_search;
 
-static void prepare(quality_search *s) {
+static void prepare_search(quality_search *s) {
   for (int u = 0; u < SIDE; u++)
     for (int x = 0; x < SIDE; x++)
       s->cosines[u][x] = (u ? 0.5 : sqrt(0.125)) * cos((2 * x + 1) * u * M_PI / (2 * SIDE));
@@ -75,7 +76,7 @@ int fg_picture_jpeg_quality(const fg_tile_choice *choice, int bytes_per_pixel,
                             const size_t first[2]) {
   quality_search s = {.count = 0};
   int best = 0;
-  prepare(&s);
+  prepare_search(&s);
   for (size_t i = 0; i < choice->count; i++)
     add_tile(&s, choice->tiles[i], bytes_per_pixel, first);
   if (s.count < COEFFICIENTS_MIN) return 0;

@@ -1,25 +1,25 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Gray levels in use, gaps between them, and values that the ends of the scale have cut. */
+/* Gray levels in use, gaps between them, and values cut by the ends of the scale. */
 #include <math.h>
 #include <stdbool.h>
 
 #include "vision/picture.h"
 
-/* Levels further apart than this share of the contrast, and than so many sd of the noise, which
- * spreads a value over its neighbours, move the place of an edge. */
+/* Distances of levels that move an edge: above this share of the contrast, and above so many sd of
+ * the noise, which spreads a value over its neighbours. */
 #define STEP_SHARE  0.02
 #define STEP_SIGMAS 2.5
-/* A small disc has few pixels; they suffice to tell levels that are very few. */
+/* Numbers of pixels. A small disc has few; they suffice to show that levels are very few. */
 enum { PIXELS_MIN = 4000, PIXELS_FEW = 400, LEVELS_FEW = 16 };
-/* The ends of what is in use: but for this share of the pixels. */
+/* Share of the pixels beyond either end of the range in use. */
 #define END_SHARE 0.002
-/* Counts that are to be expected at a level tell whether it is missing from here on; they come from
- * so many levels on either side. */
+/* Min expected count for a missing level, and the number of levels on either side that give the
+ * expectation. */
 #define EXPECTED_MIN 1.0
 enum { AROUND = 12 };
-/* Shares count beyond so many of their own deviations. */
+/* Min size of a share, in its own deviations. */
 #define GAPS_SIGMAS 4.0
-/* A curve that is straight leaves gaps that are alike everywhere, and moves no edge. */
+/* Min gaps that count. A straight curve leaves equal gaps everywhere, and moves no edge. */
 #define GAPS_SHARE      0.03
 #define GAPS_DIFFERENCE 0.1
 enum { PARTS = 6 };
@@ -32,7 +32,7 @@ void fg_value_counts_clear(fg_value_counts *counts) {
     counts->low_byte[i] = -1;
 }
 
-/* The outermost count on one side, but for END_SHARE of the pixels. */
+/* Returns the outermost count on one side, but for END_SHARE of the pixels. */
 static int find_end(const fg_value_counts *counts, int from, int step) {
   double seen = 0, limit = END_SHARE * (double)counts->total;
   int at = from;
@@ -52,7 +52,8 @@ static double mean_beside(const fg_value_counts *counts, int at, int step, int l
   return n ? sum / n : 0;
 }
 
-/* The lower of both sides: levels beside a plateau are few however many pixels that has. */
+/* Returns the lower mean of both sides: levels beside a plateau are few, whatever its number of
+ * pixels. */
 static double expected_at(const fg_value_counts *counts, int at, int low, int high) {
   return fmin(mean_beside(counts, at, -1, low, high), mean_beside(counts, at, 1, low, high));
 }
@@ -62,8 +63,8 @@ typedef struct level_share {
   double share, sd;
 } level_share;
 
-/* Share of the levels between two that are missing, beyond those that few pixels leave out by
- * chance: with λ expected, exp(-λ) of the levels. NaN where too few levels tell. */
+/* Share of the levels between two that are missing, beyond those missing by chance: with λ
+ * expected, exp(-λ) of the levels. NaN with too few levels. */
 static level_share missing_between(const fg_value_counts *counts, int low, int high) {
   double known = 0, missing = 0, variance = 0;
   for (int i = low + 1; i < high; i++) {
@@ -95,7 +96,7 @@ static void inspect_gaps(const fg_value_counts *counts, int low, int high,
     state->findings |= FG_PICTURE_LEVEL_GAPS;
 }
 
-/* Levels in use between the two sides of the edge: their mean distance. */
+/* Finds the mean distance of the levels in use between the two sides of the edge. */
 static void inspect_steps(const fg_value_counts *counts, const double levels[2],
                           fg_picture_state *state) {
   int low = (int)lround(fmin(levels[0], levels[1])), high = (int)lround(fmax(levels[0], levels[1]));
@@ -107,15 +108,15 @@ static void inspect_steps(const fg_value_counts *counts, const double levels[2],
   }
   double step = contrast / (used + 1);
   bool enough = counts->total > PIXELS_MIN || (used < LEVELS_FEW && counts->total > PIXELS_FEW);
-  /* Where noise is what a fit leaves, it holds the steps of two levels: any other noise would have
-   * put more levels between them. */
+  /* Noise from a fit's misfit includes the steps of two levels: any other noise would have put more
+   * levels between them. */
   bool two = state->gray_levels <= 2;
   if (step > STEP_SHARE * contrast && (two || step > STEP_SIGMAS * noise) && enough)
     state->findings |= FG_PICTURE_FEW_LEVELS;
 }
 
-/* Share of the pixels that have the last value of all on one side, where it is the end of the scale
- * or more have it than noise explains. */
+/* Share of the pixels with the last value on one side, where that is the end of the scale or has
+ * more pixels than noise explains. */
 static double share_cut(const fg_value_counts *counts, int end, int step) {
   double share = (double)counts->of[end] / (double)counts->total;
   if (end == 0 || end == 255) return share;

@@ -6,17 +6,17 @@
 #include "vision/picture.h"
 
 enum { LAG_FAR = 6, ROW_STEP = 2 };
-/* Noise of flatbeds at their best resolution is correlated by up to 0.7 of neighbours. */
+/* Max correlation of neighbours: flatbeds at their best resolution reach 0.7. */
 #define CORRELATION_MAX 0.85
-/* Rounding to whole counts is noise that has nothing to say of the scanner. */
+/* Min noise; rounding to whole counts is no property of the scanner. */
 #define NOISE_MIN 0.2
 
-/* Mean squared differences of pixels that lie one and six apart. */
+/* Mean squared differences of pixels one and six apart. */
 typedef struct tile_noise {
   double far, near[2];
 } tile_noise;
 
-static double value_at(const fg_tile *tile, int bytes_per_pixel, size_t at) {
+static double tile_count_at(const fg_tile *tile, int bytes_per_pixel, size_t at) {
   if (bytes_per_pixel == 1) return tile->pixels[at];
   return ((const uint16_t *)(const void *)tile->pixels)[at] * (1.0 / 257);
 }
@@ -26,11 +26,11 @@ static tile_noise measure_tile(const fg_tile *tile, int bytes_per_pixel) {
   for (size_t y = 0; y + LAG_FAR < FG_TILE_PX; y += ROW_STEP)
     for (size_t x = 0; x + LAG_FAR < FG_TILE_PX; x++) {
       size_t at = y * FG_TILE_PX + x;
-      double value = value_at(tile, bytes_per_pixel, at);
-      double right = value - value_at(tile, bytes_per_pixel, at + 1);
-      double down = value - value_at(tile, bytes_per_pixel, at + FG_TILE_PX);
-      double off = value - value_at(tile, bytes_per_pixel, at + LAG_FAR);
-      double below = value - value_at(tile, bytes_per_pixel, at + LAG_FAR * FG_TILE_PX);
+      double value = tile_count_at(tile, bytes_per_pixel, at);
+      double right = value - tile_count_at(tile, bytes_per_pixel, at + 1);
+      double down = value - tile_count_at(tile, bytes_per_pixel, at + FG_TILE_PX);
+      double off = value - tile_count_at(tile, bytes_per_pixel, at + LAG_FAR);
+      double below = value - tile_count_at(tile, bytes_per_pixel, at + LAG_FAR * FG_TILE_PX);
       near[0] += right * right;
       near[1] += down * down;
       far += 0.5 * (off * off + below * below);

@@ -8,11 +8,11 @@
 #include "core/select.h"
 
 enum { BINS_MAX = 256 };
-/* Less contrast than this many counts is no edge. */
+/* Min contrast of an edge, counts. */
 #define CONTRAST_MIN 6.0
 
 /* Distance of a bin from the source's middle, outwards. */
-static double outwards(const fg_profile_source *s, const fg_profile_bin *bin) {
+static double distance_outwards(const fg_profile_source *s, const fg_profile_bin *bin) {
   return s->way * (bin->across_px - s->middle_px);
 }
 
@@ -26,19 +26,19 @@ static double level_between(const fg_profile_source *s, double from, double to) 
   double values[BINS_MAX];
   size_t n = 0;
   for (size_t i = 0; i < s->count && n < BINS_MAX; i++) {
-    double at = outwards(s, &s->bins[i]);
+    double at = distance_outwards(s, &s->bins[i]);
     if (s->bins[i].count > 0 && at >= from && at <= to) values[n++] = s->bins[i].value;
   }
   return n ? fg_select(values, n, n / 2) : NAN;
 }
 
-/* Where the profile first crosses the middle of its levels on its way outwards. */
+/* Returns the first crossing of the middle of the profile's levels, outwards. */
 static double find_crossing(const fg_profile_source *s, double inside, double outside) {
   double half = 0.5 * (inside + outside), sign = outside > inside ? 1 : -1;
   const fg_profile_bin *last = NULL;
   for (size_t i = 0; i < s->count; i++) {
     const fg_profile_bin *bin = bin_at(s, i);
-    if (bin->count <= 0 || outwards(s, bin) < -s->plateau_px) continue;
+    if (bin->count <= 0 || distance_outwards(s, bin) < -s->plateau_px) continue;
     double rise = last ? bin->value - last->value : 0;
     if (last && sign * (last->value - half) < 0 && sign * (bin->value - half) >= 0)
       return s->way * (last->across_px - s->middle_px +
@@ -48,8 +48,8 @@ static double find_crossing(const fg_profile_source *s, double inside, double ou
   return NAN;
 }
 
-bool fg_edge_profile_take(const fg_profile_source *s, fg_edge_profile *profile) {
-  double last_px = outwards(s, bin_at(s, s->count - 1));
+bool fg_edge_profile_make(const fg_profile_source *s, fg_edge_profile *profile) {
+  double last_px = distance_outwards(s, bin_at(s, s->count - 1));
   double inside = level_between(s, -s->plateau_px, s->plateau_px);
   double outside = level_between(s, last_px - s->reach_px, INFINITY);
   double edge = find_crossing(s, inside, outside);
@@ -57,7 +57,7 @@ bool fg_edge_profile_take(const fg_profile_source *s, fg_edge_profile *profile) 
   double sums[FG_SHARES] = {0}, counts[FG_SHARES] = {0};
   for (size_t i = 0; i < s->count; i++) {
     const fg_profile_bin *bin = &s->bins[i];
-    double at = (outwards(s, bin) - edge) / FG_SHARE_STEP_PX + FG_SHARES_INSIDE;
+    double at = (distance_outwards(s, bin) - edge) / FG_SHARE_STEP_PX + FG_SHARES_INSIDE;
     if (bin->count <= 0 || !(at >= 0 && at < FG_SHARES)) continue;
     sums[(size_t)at] += bin->count * (bin->value - outside) / (inside - outside);
     counts[(size_t)at] += bin->count;

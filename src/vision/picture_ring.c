@@ -10,12 +10,12 @@
 enum { PIXEL_STEP = 5, TILES_MAX = 16 };
 #define OUTER_SHARE 0.25 /* of the band's reach: the levels' stretches at its ends */
 
-/* A straight edge has one bearing, which is of no matter here. */
+/* Bearing of a sector; a straight edge has a single one, which does not matter here. */
 static double bearing_of(const fg_disc_work *work, size_t sector) {
   return work->open ? 0 : ((double)sector + 0.5) * 2 * M_PI / (double)work->ring.sector_count;
 }
 
-static size_t take_sectors(const fg_disc_work *work, fg_edge_profile *profiles) {
+static size_t make_profiles(const fg_disc_work *work, fg_edge_profile *profiles) {
   const fg_ring *ring = &work->ring;
   double outer = OUTER_SHARE * ring->reach_px;
   size_t n = 0;
@@ -31,12 +31,12 @@ static size_t take_sectors(const fg_disc_work *work, fg_edge_profile *profiles) 
                                       .bearing = bearing_of(work, i),
                                       .blur_px = fit->values[FG_STEP_BLUR],
                                       .background = NAN};
-    n += fg_edge_profile_take(&source, &profiles[n]);
+    n += fg_edge_profile_make(&source, &profiles[n]);
   }
   return n;
 }
 
-static double count_of(double gamma, double light) {
+static double count_at_gamma(double gamma, double light) {
   return 255 * pow(fmax(light, 0) / 255, 1 / gamma);
 }
 
@@ -48,7 +48,7 @@ static void inspect_levels(const fg_disc_work *work, const fg_disc_edge *edge,
   for (size_t i = 0; i < work->ring.count; i += PIXEL_STEP)
     fg_value_counts_add(&counts, work->ring.pixels[i].value);
   for (int side = 0; side < 2; side++)
-    levels[side] = count_of(edge->gamma, side ? edge->outside : edge->inside);
+    levels[side] = count_at_gamma(edge->gamma, side ? edge->outside : edge->inside);
   fg_picture_inspect_levels(&counts, levels, state);
   if (work->white[0] || work->white[1]) state->findings |= FG_PICTURE_CLIPPED;
 }
@@ -59,7 +59,7 @@ static bool is_chosen(const fg_tile_choice *choice, const fg_tile *tile) {
   return false;
 }
 
-/* Whole tiles that the edge runs through, evenly around it. */
+/* Chooses whole tiles that the edge crosses, evenly around it. */
 static void choose_around(const fg_disc_work *work, fg_tile_choice *choice) {
   const fg_circle *c = &work->ring.circle;
   choice->count = 0;
@@ -81,7 +81,7 @@ static void inspect_blocks(const fg_disc_work *work, const fg_disc_edge *edge,
   fg_tile_choice choice;
   choose_around(work, &choice);
   double contrast =
-      fabs(count_of(edge->gamma, edge->inside) - count_of(edge->gamma, edge->outside));
+      fabs(count_at_gamma(edge->gamma, edge->inside) - count_at_gamma(edge->gamma, edge->outside));
   fg_picture_inspect_blocks(&choice, work->tiles->bytes_per_pixel, contrast, state);
 }
 
@@ -93,7 +93,7 @@ fg_status fg_picture_of_ring(fg_context *ctx, const fg_disc_work *work, const fg
   if (!work->open) inspect_blocks(work, edge, state);
   if (!work->open) FG_TRY(fg_picture_inspect_ring_rows(ctx, work, edge, state));
   FG_TRY(fg_memory_allocate(ctx, work->ring.sector_count, sizeof *profiles, (void **)&profiles));
-  size_t count = take_sectors(work, profiles);
+  size_t count = make_profiles(work, profiles);
   fg_picture_inspect_cut(profiles, count, edge->blur_px, state);
   fg_status status = fg_picture_inspect_profiles(ctx, profiles, count, state);
   free(profiles);

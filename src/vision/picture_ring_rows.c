@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Where rows of a picture jump beside a round edge. Behind a jump all of the edge is displaced by
- * (dx, dy): rho = base + [y > y0] (dx cos phi + dy sin phi), rho outwards from the circle. Both
- * limbs step at one row, by what one displacement makes of them. That also holds where the limbs
- * run along y and rho does not step but bends.
+/* Jumps of rows beside a round edge.
  *
- * Jumps are added one by one where they explain most. A part that is not round is told by three
- * things: harmonics explain it better, one limb shows nothing, or the limbs do not step there. */
+ * Beyond a jump all of the edge is displaced by (dx, dy): rho = base + [y > y0] (dx cos phi + dy
+ * sin phi), rho outwards from the circle. Both limbs step at one row, as one displacement demands.
+ * That also holds where the limbs run along y and rho does not step but bends.
+ *
+ * Jumps are added one by one where they explain most. Three things show that a part is not round
+ * instead: harmonics explain it better, one limb shows nothing, or the limbs do not step there. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,21 +17,22 @@
 #include "core/spread.h"
 #include "vision/picture.h"
 
-/* Base: a circle and what different scales of x and y, or a blur of one side, make of it. Its
- * rival has as many values as all jumps and more. */
+/* Size of the base: a circle under different scales of x and y, or a blur of one side. Its rival
+ * has at least as many values as all jumps. */
 enum { BASE = 7, RIVAL = 27, JUMPS_MAX = 6, STATIONS_MIN = 120, ENDS = 24 };
-/* What bends beside a step: a cubic over so many stations of one limb. */
+/* A cubic over so many stations of one limb models the bend beside a step. */
 enum { BENDS = 4, FIT_REACH = 12, LIMBS = 2 };
 #define GAIN_MIN    40.0 /* of squares, over the variance: two values explain 2 by chance */
 #define JUMP_MIN_PX 0.5
-#define LIMB_SHARE  0.2 /* the limb that steps less does so by that share of the other */
-#define STEP_SIGMAS 4.0 /* of the expected step, for a limb to be asked */
-#define STEP_SHARE  0.5 /* that the step may differ by from what is expected */
+#define LIMB_SHARE  0.2 /* min step of the weaker limb, as a share of the other's */
+#define STEP_SIGMAS 4.0 /* min expected step of a limb that is tested */
+#define STEP_SHARE  0.5 /* max difference of the step from the expected one */
 #define RIVAL_SHARE 1.1
-#define CUT_SIGMAS  4.0 /* residuals count as no larger: dust */
+#define CUT_SIGMAS  4.0 /* residuals are clipped here: dust */
 #define ROW_STEP_PX 1.0
-/* Pixels of several rows tell where an edge is, so one jump looks like two of one limb each that
- * lie a few rows apart; of real ones so near to each other the sum is found. */
+/* Min distance of two jumps. The pixels of several rows determine an edge, so one jump looks like
+ * two of one limb each that lie a few rows apart; of two real ones so near to each other the sum is
+ * found. */
 #define APART_PX 12.0
 
 typedef struct ring_row {
@@ -40,14 +42,14 @@ typedef struct ring_row {
 } ring_row;
 
 typedef struct row_jump {
-  size_t from; /* the first station behind it, by y */
+  size_t from; /* the first station beyond it, by y */
   double dx, dy, gain;
 } row_jump;
 
 typedef struct ring_search {
   ring_row *rows; /* by y */
   size_t count, columns;
-  double *scratch; /* count */
+  double *scratch; /* one per row */
   double noise;    /* sd of one station, from neighbours */
   double sd;       /* of the residuals, not less than the noise */
   row_jump jumps[JUMPS_MAX];
@@ -59,7 +61,7 @@ static int compare_y(const void *a, const void *b) {
   return (p > q) - (p < q);
 }
 
-static void take_stations(const fg_disc_work *work, const fg_disc_edge *edge, ring_search *s) {
+static void list_stations(const fg_disc_work *work, const fg_disc_edge *edge, ring_search *s) {
   for (size_t i = 0; i < edge->count; i++) {
     const fg_disc_station *station = &edge->stations[i];
     double angle = fg_ring_angle(&work->ring, i), rho = (double)station->edge_px;
@@ -72,8 +74,8 @@ static void take_stations(const fg_disc_work *work, const fg_disc_edge *edge, ri
   }
 }
 
-/* From the second differences of neighbours around the turn: what an edge that is not round or
- * jumps at a few places hardly adds to. */
+/* Returns the noise from the second differences of neighbours around the turn, to which an edge
+ * that is not round or jumps at a few places hardly adds. */
 static double find_noise(ring_search *s) {
   size_t n = 0;
   for (size_t i = 1; i + 1 < s->count; i++) {
@@ -84,9 +86,9 @@ static double find_noise(ring_search *s) {
   return n ? fmax(fg_robust_sd(s->scratch, n) / sqrt(1.5), 1e-3) : NAN;
 }
 
-/* Makes the last column orthogonal to those before it, and takes it out of the residuals; a column
- * that they hold already is dropped. */
-static void orthogonalise(ring_search *s) {
+/* Makes the last column orthogonal to those before it, and subtracts it from the residuals; a
+ * column in their span is dropped. */
+static void orthogonalise_column(ring_search *s) {
   size_t k = s->columns;
   double square = 0, share = 0, before = 0;
   for (size_t i = 0; i < s->count; i++)
@@ -120,7 +122,7 @@ static void add_harmonics(ring_search *s, size_t values) {
       double angle = order * atan2(s->rows[i].sine, s->rows[i].cosine);
       s->rows[i].q[s->columns] = k % 2 ? cos(angle) : sin(angle + M_PI_2 * (k == 0));
     }
-    orthogonalise(s);
+    orthogonalise_column(s);
   }
 }
 
@@ -128,12 +130,12 @@ static void add_jump(ring_search *s, const row_jump *jump) {
   for (int k = 0; k < 2; k++) {
     for (size_t i = 0; i < s->count; i++)
       s->rows[i].q[s->columns] = i < jump->from ? 0 : (k ? s->rows[i].sine : s->rows[i].cosine);
-    orthogonalise(s);
+    orthogonalise_column(s);
   }
 }
 
-/* Sums over the stations behind a row: what a jump there has in common with the columns, with
- * itself and with the residuals. */
+/* Sums over the stations beyond a row: products of a jump there with the columns, with itself and
+ * with the residuals. */
 typedef struct jump_sums {
   double columns[2][RIVAL], own[3], rest[2];
 } jump_sums;
@@ -207,13 +209,13 @@ static void find_jumps(ring_search *s) {
   }
 }
 
-static double robust_sd_of_rest(ring_search *s) {
+static double robust_sd_of_residuals(ring_search *s) {
   for (size_t i = 0; i < s->count; i++)
     s->scratch[i] = fabs(s->rows[i].rest);
   return fg_robust_sd(s->scratch, s->count);
 }
 
-/* Mean square of the residuals, those of dust cut off. */
+/* Mean square of the residuals, clipped against dust. */
 static double variance_of(const ring_search *s) {
   double sum = 0, limit = CUT_SIGMAS * s->sd;
   for (size_t i = 0; i < s->count; i++)
@@ -221,7 +223,7 @@ static double variance_of(const ring_search *s) {
   return sum / (double)(s->count - s->columns);
 }
 
-/* Neighbours of a rough edge are alike: by so much the variance of their mean is more. */
+/* Factor of the variance of a mean of neighbours: on a rough edge they are alike. */
 static double correlation_of(const ring_search *s) {
   double limit = CUT_SIGMAS * s->sd, squares = 0, products = 0;
   for (size_t i = 0; i + 1 < s->count; i++) {
@@ -234,14 +236,14 @@ static double correlation_of(const ring_search *s) {
   return squares > 0 ? fmax(1, 1 + 2 * products / squares) : 1;
 }
 
-/* What a jump does to one limb: the right one, cos phi > 0, or the left one. */
+/* Step of one limb under a jump: the right one, cos phi > 0, or the left one. */
 static double step_of(const ring_search *s, const row_jump *jump, int limb) {
   const ring_row *at = &s->rows[jump->from];
   return jump->dx * (limb ? -1 : 1) * fabs(at->cosine) + jump->dy * at->sine;
 }
 
-/* The step of one limb beside a cubic, from stations about the row, over the expected one, and
- * 1 / sd² of that ratio. */
+/* Fits the step of one limb beside a cubic, to stations about the row: its ratio to the expected
+ * one, and 1 / sd² of that ratio. */
 static bool fit_limb(const ring_search *s, const row_jump *jump, int limb, double ratio[2]) {
   double x[FG_SMALL_MAX], inverse[FG_SMALL_MAX][FG_SMALL_MAX], expected = step_of(s, jump, limb);
   fg_normal_equations system;
@@ -252,7 +254,7 @@ static bool fit_limb(const ring_search *s, const row_jump *jump, int limb, doubl
          i += (size_t)way) {
       const ring_row *r = &s->rows[i];
       if ((r->cosine < 0) != (limb == 1)) continue;
-      if (seen++ == 0) continue; /* its pixels are of both sides */
+      if (seen++ == 0) continue; /* its pixels come from both sides */
       double t = way * (seen - 0.5) / FIT_REACH;
       const double row[BENDS + 1] = {1, t, t * t, t * t * t, way > 0};
       fg_normal_add(&system, row, r->rho, 1);
@@ -265,8 +267,8 @@ static bool fit_limb(const ring_search *s, const row_jump *jump, int limb, doubl
   return true;
 }
 
-/* Whether both limbs step as the jump has it, where a step would show. */
-static bool is_shown(const ring_search *s, const row_jump *jump) {
+/* Returns true when both limbs step as the jump demands, where a step would show. */
+static bool is_jump_on_limbs(const ring_search *s, const row_jump *jump) {
   double sizes[LIMBS];
   for (int limb = 0; limb < LIMBS; limb++) {
     double ratio[2];
@@ -284,14 +286,14 @@ static void find_again(ring_search *s) {
   }
 }
 
-/* Fits the base and all jumps. Squares that each must explain beside the others. */
+/* Fits the base and all jumps. Returns the min squares that each must explain beside the others. */
 static double find_gain_min(ring_search *s) {
   fit_without(s, s->jump_count);
-  s->sd = fmax(robust_sd_of_rest(s), s->noise);
+  s->sd = fmax(robust_sd_of_residuals(s), s->noise);
   return GAIN_MIN * variance_of(s) * correlation_of(s);
 }
 
-/* Leaves out the jump that explains least, where that is chance or too small. */
+/* Drops the jump that explains least, where that is chance or too small. */
 static bool drop_weakest(ring_search *s) {
   double min = find_gain_min(s);
   size_t weakest = 0;
@@ -303,7 +305,7 @@ static bool drop_weakest(ring_search *s) {
   return true;
 }
 
-/* Whether jumps, and not the part's form, are what the edge shows. */
+/* Returns true when jumps, and not deviations of the part from roundness, explain the edge. */
 static bool is_explained(ring_search *s) {
   find_gain_min(s);
   double own = variance_of(s);
@@ -315,7 +317,7 @@ static void count_jumps(const ring_search *s, double px_per_row, fg_picture_stat
   double jumps = 0, largest = 0;
   for (size_t k = 0; k < s->jump_count; k++) {
     const row_jump *jump = &s->jumps[k];
-    if (!is_shown(s, jump)) continue;
+    if (!is_jump_on_limbs(s, jump)) continue;
     double px = fabs(jump->dy) >= fabs(jump->dx) ? jump->dy / px_per_row : jump->dx * px_per_row;
     if (fabs(px) > fabs(largest)) largest = px;
     jumps++;
@@ -326,7 +328,8 @@ static void count_jumps(const ring_search *s, double px_per_row, fg_picture_stat
   state->findings |= FG_PICTURE_ROW_JUMPS;
 }
 
-/* Around the turn the neighbours of a station are there; by y they are the other limb's. */
+/* Searches by row. Around the turn a station's neighbours are its own limb's; by y they are the
+ * other limb's. */
 static void search_rows(ring_search *s, double px_per_row, fg_picture_state *state) {
   s->noise = find_noise(s);
   fg_sort_items(s->rows, s->count, sizeof *s->rows, compare_y);
@@ -343,7 +346,7 @@ fg_status fg_picture_inspect_ring_rows(fg_context *ctx, const fg_disc_work *work
   fg_status status = FG_OK;
   FG_TRY_EXIT(fg_memory_allocate(ctx, edge->count, sizeof *s.rows, (void **)&s.rows));
   FG_TRY_EXIT(fg_memory_allocate(ctx, edge->count, sizeof *s.scratch, (void **)&s.scratch));
-  take_stations(work, edge, &s);
+  list_stations(work, edge, &s);
   if (s.count >= STATIONS_MIN && 4 * s.count > 3 * edge->count)
     search_rows(&s, work->shape->scale[1], state);
 exit:

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Where rows of a picture jump: the edges of a strip do so at one row, wherever they cross it. */
+/* Jumps of rows of a picture: both edges of a strip jump at one row, wherever they cross it. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,32 +10,32 @@
 #include "core/spread.h"
 #include "vision/picture.h"
 
-/* The edge on either side of a place, as means over two stretches of stations: a step there, and a
- * straight line along it. */
+/* Means over two stretches of stations on either side of a place: a step there, and a straight line
+ * along it. */
 enum { STRETCHES = 2, PEAK = 5, ENDS = 24 };
 static const int stretches[STRETCHES][2] = {{1, 3}, {4, 7}};
-/* What bends at a step is a cubic over so many stations. */
+/* A cubic over so many stations models the bend at a step. */
 enum { BENDS = 4, FIT_REACH = 12, SHIFT_MAX = 5 };
-/* An edge that runs along the rows does not say where it crosses one. */
+/* Min angle of crossing: an edge along the rows has no definite place of crossing. */
 #define CROSSING_MIN 0.2
-/* A fillet bends both edges at one station, a jump moves them at one row: where these lie so many
- * rows apart they can be told. An edge that runs across the rows shows no jump. */
-#define FIT_SIGMAS  5.0
-#define TOLD_ROWS   3.5
-#define STEP_SIGMAS 4.0
-#define JUMP_MIN_PX 0.5
-/* Both edges agree in row and in size, and places that show one jump do. */
+/* A fillet bends both edges at one station, a jump moves them at one row: the two can be told apart
+ * where these lie so many rows apart. An edge that runs across the rows shows no jump. */
+#define FIT_SIGMAS    5.0
+#define DISTINCT_ROWS 3.5
+#define STEP_SIGMAS   4.0
+#define JUMP_MIN_PX   0.5
+/* Max differences in row and size, between both edges and between places of one jump. */
 #define SAME_ROWS      2.0
 #define APART_STATIONS 2.0
 #define BESIDE_WIDTHS  6.0
-/* A driver loses or doubles whole rows; an edge may run along them, and show a little less. */
+/* Max deviation from whole rows: a driver loses or doubles whole rows, and an edge may run along
+ * them and show a little less. */
 #define WHOLE_SHARE 0.25
 #define SAME_SHARE  0.15
 #define SAME_PX     0.2
 
-/* Tiles in which a row must be the same as the next; noise of less than NOISE_MIN counts would
- * leave it so. Where more than a tenth of the rows are doubled the driver has enlarged the picture.
- */
+/* Number of tiles in which a row must equal the next; with noise of less than NOISE_MIN counts it
+ * could. Where more than a tenth of the rows are doubled the driver has enlarged the picture. */
 enum { DOUBLED_TILES = 3 };
 #define NOISE_MIN     0.4
 #define DOUBLED_SHARE 0.1
@@ -56,7 +56,7 @@ typedef struct row_search {
   size_t crossing_count, capacity;
 } row_search;
 
-/* Weights of what the stretches of both sides differ by: a step counts in full, a line vanishes. */
+/* Weights of the stretches on both sides: a step counts in full, a line vanishes. */
 static void find_weights(double weights[STRETCHES]) {
   double middle[STRETCHES];
   for (int k = 0; k < STRETCHES; k++)
@@ -65,7 +65,7 @@ static void find_weights(double weights[STRETCHES]) {
   weights[1] = 1 - weights[0];
 }
 
-/* Where the edge lies at a station. */
+/* Place of the edge at a station. */
 static fg_point edge_at(const row_search *r, size_t i, int side) {
   const fg_reference_station *at = &r->work->reference->stations[i];
   double across = (double)r->work->stations[i].edge_px[side];
@@ -121,7 +121,7 @@ static step_fit fit_step(const row_search *r, size_t c, int side, size_t normal)
   size_t n = 0;
   fg_normal_clear(&system, BENDS + 1);
   for (size_t k = c - FIT_REACH + 1; k <= c + FIT_REACH; k++) {
-    if (k == c || k == c + 1) continue; /* their pixels are of both sides */
+    if (k == c || k == c + 1) continue; /* their pixels come from both sides */
     fg_point p = edge_at(r, k, side);
     double s = ((double)k - (double)c - 0.5) / FIT_REACH;
     const double row[BENDS + 1] = {1, s, s * s, s * s * s, k > c};
@@ -136,7 +136,7 @@ static step_fit fit_step(const row_search *r, size_t c, int side, size_t normal)
   return (step_fit){c, x[BENDS], sqrt(variance * inverse[BENDS][BENDS]), squares};
 }
 
-/* The step that explains the edge around a peak best. */
+/* Finds the step that best explains the edge around a peak. */
 static step_fit find_step(const row_search *r, size_t i, int side) {
   step_fit best = {.misfit = INFINITY};
   for (size_t c = i - SHIFT_MAX; c <= i + SHIFT_MAX; c++) {
@@ -153,14 +153,14 @@ static bool is_peak(const row_search *r, size_t i) {
   return true;
 }
 
-/* Peaks of one side that are more than chance, as jumps of rows. */
+/* Finds peaks of one side that are more than chance, as jumps of rows. */
 static fg_status find_crossings(fg_context *ctx, row_search *r, int side) {
   find_steps(r, side);
   double sd = steps_sd(r);
   for (size_t i = 0; i < r->work->reference->count; i++) {
     const fg_reference_station *at = &r->work->reference->stations[i];
     if (!(fabs(r->steps[i]) > STEP_SIGMAS * sd) || fabs(at->ty) < CROSSING_MIN ||
-        fabs(at->tx) * r->work->width_px < TOLD_ROWS || !is_peak(r, i))
+        fabs(at->tx) * r->work->width_px < DISTINCT_ROWS || !is_peak(r, i))
       continue;
     step_fit fit = find_step(r, i, side);
     double jump = fit.step * (at->ty > 0 ? 1 : -1) / at->tx;
@@ -179,9 +179,9 @@ static bool is_same_jump(const crossing *a, const crossing *b) {
          fabs(a->jump_px - b->jump_px) <= SAME_PX + SAME_SHARE * fabs(a->jump_px);
 }
 
-/* Whether the strip's edges show the jump of one crossing: both beside it, at one row and so at
- * stations that differ; and another place as well, where it is not a whole row. */
-static bool is_shown(const row_search *r, const crossing *a) {
+/* Returns true when the strip's edges show the jump of one crossing: both beside it, at one row and
+ * so at different stations; and another place as well, unless it is a whole row. */
+static bool is_crossing_shown(const row_search *r, const crossing *a) {
   double beside = BESIDE_WIDTHS * r->work->width_px / r->work->reference->step_px;
   bool paired = false, elsewhere = false;
   for (size_t k = 0; k < r->crossing_count; k++) {
@@ -207,7 +207,7 @@ static void count_jumps(row_search *r, fg_picture_state *state) {
   state->row_jump_px = 0;
   for (size_t i = 0; i < r->crossing_count; i++) {
     const crossing *c = &r->crossings[i];
-    if (!is_shown(r, c)) continue;
+    if (!is_crossing_shown(r, c)) continue;
     if (c->y - last > 2 * SAME_ROWS) state->row_jumps++;
     last = c->y;
     if (fabs(c->jump_px) > fabs(state->row_jump_px)) state->row_jump_px = c->jump_px;
@@ -215,7 +215,7 @@ static void count_jumps(row_search *r, fg_picture_state *state) {
   if (state->row_jumps > 0) state->findings |= FG_PICTURE_ROW_JUMPS;
 }
 
-/* Whether noise shows in a row of a tile: what lies outside the scan has none. */
+/* Returns true when a row of a tile has noise: rows outside the scan have none. */
 static bool has_noise(const uint8_t *row, size_t bytes) {
   size_t changes = 0;
   for (size_t i = 2; i < bytes; i++)
@@ -223,7 +223,7 @@ static bool has_noise(const uint8_t *row, size_t bytes) {
   return 4 * changes > bytes;
 }
 
-/* Whether a row of a tile is the same as the one below it. */
+/* Returns true when a row of a tile equals the one below it. */
 static bool is_doubled(const fg_tiles *tiles, int32_t column, int64_t y) {
   const fg_tile *tile = fg_tiles_at(tiles, column, (int32_t)(y / FG_TILE_PX));
   const fg_tile *next = fg_tiles_at(tiles, column, (int32_t)((y + 1) / FG_TILE_PX));
@@ -234,7 +234,7 @@ static bool is_doubled(const fg_tiles *tiles, int32_t column, int64_t y) {
          has_noise(row, bytes);
 }
 
-/* Kept tiles that lie all inside the scan in the row of tiles that holds row y and the next. */
+/* Lists kept tiles that lie inside the scan in the row of tiles that holds row y and the next. */
 static size_t tiles_of_row(const fg_tiles *tiles, int64_t y, int32_t columns[DOUBLED_TILES]) {
   size_t n = 0;
   for (int32_t c = 0; (int64_t)(c + 1) * FG_TILE_PX <= tiles->width_px && n < DOUBLED_TILES; c++)
@@ -244,7 +244,7 @@ static size_t tiles_of_row(const fg_tiles *tiles, int64_t y, int32_t columns[DOU
   return n;
 }
 
-/* Rows that are the same as the next one in several tiles, which noise never makes. */
+/* Number of rows that equal the next one in several tiles, which noise never makes. */
 static double count_doubled(const fg_tiles *tiles, double *rows) {
   int32_t columns[DOUBLED_TILES];
   double doubled = 0;

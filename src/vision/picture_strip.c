@@ -21,8 +21,8 @@ static double background_at(const fg_edge_work *work, const fg_reference_station
   return (double)fg_segmentation_background(seg, (int32_t)x, (int32_t)y);
 }
 
-/* Profiles of both edges of one segment; how many there are. */
-static size_t take_segment(const fg_edge_work *work, size_t i, fg_edge_profile *profiles) {
+/* Makes the profiles of both edges of one segment; returns their number. */
+static size_t make_profiles(const fg_edge_work *work, size_t i, fg_edge_profile *profiles) {
   const fg_segment_profile *s = &work->segments[i];
   size_t middle = i * FG_SEGMENT_STATIONS + FG_SEGMENT_STATIONS / 2, n = 0;
   if (middle >= work->reference->count) return 0;
@@ -37,7 +37,7 @@ static size_t take_segment(const fg_edge_work *work, size_t i, fg_edge_profile *
                                       .bearing = atan2(way * r->tx, -way * r->ty),
                                       .blur_px = s->fit.good ? s->fit.shape.blur_px[side] : NAN,
                                       .background = background_at(work, r)};
-    n += fg_edge_profile_take(&source, &profiles[n]);
+    n += fg_edge_profile_make(&source, &profiles[n]);
   }
   return n;
 }
@@ -56,7 +56,7 @@ static void count_values(const fg_edge_work *work, fg_value_counts *counts) {
       fg_value_counts_add(counts, work->bands[c].pixels[i].value);
 }
 
-/* Whether a kept tile lies inside the scan and holds no part of an object. */
+/* Returns true when a kept tile lies inside the scan and holds no part of an object. */
 static bool is_flat(const fg_segmentation *seg, int32_t column, int32_t row) {
   const fg_tiles *tiles = seg->tiles;
   if ((int64_t)(column + 1) * FG_TILE_PX > tiles->width_px ||
@@ -69,7 +69,7 @@ static bool is_flat(const fg_segmentation *seg, int32_t column, int32_t row) {
   return true;
 }
 
-/* Up to TILES_MAX of the flat tiles, spread over all. */
+/* Chooses up to TILES_MAX of the flat tiles, spread over all. */
 static void choose_flat(const fg_segmentation *seg, fg_tile_choice *choice) {
   size_t seen = 0, step = 1;
   choice->count = 0;
@@ -86,7 +86,7 @@ static void choose_flat(const fg_segmentation *seg, fg_tile_choice *choice) {
     }
 }
 
-/* Tiles that the strip runs through, evenly along it. */
+/* Chooses tiles that the strip crosses, evenly along it. */
 static void choose_along(const fg_edge_work *work, fg_tile_choice *choice) {
   size_t count = work->reference->count;
   choice->count = 0;
@@ -113,11 +113,11 @@ static double find_shading(const fg_edge_work *work, double contrast) {
   return (high - low) / contrast;
 }
 
-/* Stations whose pixels make one band: a bump turns by so little over them that a shadow of a few
+/* Stations whose pixels make one band: a bump turns so little over them that a shadow of a few
  * bearings does not fade among others. */
 enum { BAND_STATIONS = 16 };
 
-/* Where pixels of the bands beside the edges are added up, left and right of every stretch. */
+/* Sums of the pixels of the bands beside the edges, left and right of every stretch. */
 typedef struct band_sums {
   double *sums, *counts;
 } band_sums;
@@ -179,22 +179,22 @@ exit:
   return status;
 }
 
-/* Up to here the background between tiles follows the light. */
+/* Max shading; up to it the background between tiles follows the light. */
 #define SHADING_SHARE 1.0
 
-/* A picture without noise piles up at both ends without being cut: not one whose edges have noise,
- * unless that is of levels that are far apart. */
+/* Returns true when values are clipped. A picture without noise piles up at both ends without
+ * clipping: not one whose edges have noise, unless its levels are far apart. */
 static bool is_clipped(const fg_edge_work *work, const fg_picture_state *state) {
   if (work->clipped) return true;
   return state->clipped_low > 0 && state->clipped_high > 0 && work->noise > CLIPPED_NOISE &&
          !(state->findings & FG_PICTURE_FEW_LEVELS);
 }
 
-static fg_status inspect(fg_context *ctx, const fg_edge_work *work, fg_edge_profile *profiles,
-                         double *scratch, fg_picture_state *state) {
+static fg_status inspect_strip(fg_context *ctx, const fg_edge_work *work, fg_edge_profile *profiles,
+                               double *scratch, fg_picture_state *state) {
   size_t count = 0;
   for (size_t i = 0; i < work->segment_count; i++)
-    count += take_segment(work, i, profiles + count);
+    count += make_profiles(work, i, profiles + count);
   if (!count) return FG_OK;
   const double levels[2] = {median_level(profiles, count, true, scratch),
                             median_level(profiles, count, false, scratch)};
@@ -205,7 +205,7 @@ static fg_status inspect(fg_context *ctx, const fg_edge_work *work, fg_edge_prof
   fg_picture_inspect_noise(&choice, work->tiles->bytes_per_pixel, state);
   choose_along(work, &choice);
   fg_picture_inspect_blocks(&choice, work->tiles->bytes_per_pixel, contrast, state);
-  if (state->findings & FG_PICTURE_BLOCK_NOISE) /* which is why neighbours are alike */
+  if (state->findings & FG_PICTURE_BLOCK_NOISE) /* the blocks make neighbours alike */
     state->findings &= ~(unsigned)FG_PICTURE_CORRELATED_NOISE;
   count_values(work, &counts);
   fg_picture_inspect_levels(&counts, levels, state);
@@ -226,7 +226,7 @@ fg_status fg_picture_of_strip(fg_context *ctx, const fg_edge_work *work, fg_pict
   if (!max) return FG_OK;
   FG_TRY_EXIT(fg_memory_allocate(ctx, max, sizeof *profiles, (void **)&profiles));
   FG_TRY_EXIT(fg_memory_allocate(ctx, max, sizeof *scratch, (void **)&scratch));
-  FG_TRY_EXIT(inspect(ctx, work, profiles, scratch, state));
+  FG_TRY_EXIT(inspect_strip(ctx, work, profiles, scratch, state));
 exit:
   free(profiles);
   free(scratch);

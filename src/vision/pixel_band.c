@@ -29,10 +29,11 @@ static view view_station(const run *r, size_t i) {
   return (view){s->x, s->y, s->tx, s->ty};
 }
 
-/* The station nearest to a pixel, from a guess, and the pixel's distance from the line: measured
- * from that station's own osculating circle, at most half a step away, so that a line whose
- * curvature changes (the start of a fillet) does not bend the scale. */
-static long project(const fg_reference *line, double x, double y, long station, double *across) {
+/* Finds the station nearest to a pixel, from a guess, and the pixel's distance from the line:
+ * measured from that station's own osculating circle, at most half a step away, so that a line
+ * whose curvature changes (the start of a fillet) does not bend the scale. */
+static long project_pixel(const fg_reference *line, double x, double y, long station,
+                          double *across) {
   double along, half = 0.5 * line->step_px;
   *across = INFINITY;
   for (int i = 0; i < 4; i++) {
@@ -49,7 +50,7 @@ static long project(const fg_reference *line, double x, double y, long station, 
   return station;
 }
 
-/* All pixels of one lattice line that crosses the reference between stations i and i+1. */
+/* Collects all pixels of one lattice line that crosses the reference between stations i and i+1. */
 static fg_status collect_line(fg_context *ctx, const run *r, size_t i, const view *a, const view *b,
                               int64_t u, fg_pixel_band *band) {
   double step = r->reference->step_px, f = ((double)u - a->u) / (b->u - a->u);
@@ -67,7 +68,7 @@ static fg_status collect_line(fg_context *ctx, const run *r, size_t i, const vie
     double dv = (double)v - v0, across;
     double guess = (double)i + f + dv * slope / (1 - bend * dv);
     int64_t x = r->steep ? v : u, y = r->steep ? u : v;
-    long station = project(r->reference, (double)x, (double)y, (long)(guess + 0.5), &across);
+    long station = project_pixel(r->reference, (double)x, (double)y, (long)(guess + 0.5), &across);
     if (station < (long)r->first || station > (long)r->last) continue;
     if (fabs(across) > r->reach_px) continue;
     float value = fg_tiles_pixel(r->tiles, x, y);

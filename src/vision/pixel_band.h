@@ -17,7 +17,7 @@ extern "C" {
 typedef struct fg_band_pixel {
   float across_px; /* signed distance from the reference line, along its normal */
   float value;     /* 8-bit counts */
-  int32_t station; /* whose step it falls into */
+  int32_t station; /* station whose step contains it */
 } fg_band_pixel;
 
 typedef struct fg_pixel_band {

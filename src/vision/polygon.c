@@ -7,10 +7,10 @@
 
 #include "core/memory.h"
 
-/* Two sides are one that something small parts, or roughness: their directions differ by less than
- * this and what so many tolerances make of the shorter one, the ends between them are as near to
- * their common chord, what lies between is at most this share of them, and neither is a facet of
- * the other. */
+/* Limits for joining two sides parted by something small, or by roughness. Their directions differ
+ * by less than this angle and the one of so many tolerances over the shorter side. The ends between
+ * them are as near to their common chord. The gap is at most this share of them, and neither is a
+ * facet of the other. */
 #define JOIN_RAD        0.03
 #define JOIN_TOLERANCES 2.5
 #define JOIN_SHARE      0.25
@@ -45,25 +45,25 @@ typedef struct corners {
   size_t count, capacity;
 } corners;
 
-static fg_status push(fg_context *ctx, corners *c, size_t at) {
+static fg_status push_corner(fg_context *ctx, corners *c, size_t at) {
   FG_TRY(fg_memory_reserve(ctx, c->count + 1, sizeof *c->at, &c->capacity, (void **)&c->at));
   c->at[c->count++] = at;
   return FG_OK;
 }
 
-/* Corners between two places of the line, by an explicit stack of what is still to be split. */
-static fg_status split(fg_context *ctx, const fg_point *points, size_t count, double tolerance,
-                       size_t first, size_t last, corners *found) {
+/* Finds corners between two places of the line, by an explicit stack of the parts to be split. */
+static fg_status split_line(fg_context *ctx, const fg_point *points, size_t count, double tolerance,
+                            size_t first, size_t last, corners *found) {
   corners stack = {0};
   fg_status status = FG_OK;
-  FG_TRY_EXIT(push(ctx, &stack, last));
+  FG_TRY_EXIT(push_corner(ctx, &stack, last));
   while (stack.count) {
     size_t end = stack.at[stack.count - 1], farthest = 0;
     if (find_farthest(points, count, first, end, &farthest) > tolerance) {
-      FG_TRY_EXIT(push(ctx, &stack, farthest));
+      FG_TRY_EXIT(push_corner(ctx, &stack, farthest));
       continue;
     }
-    FG_TRY_EXIT(push(ctx, found, end));
+    FG_TRY_EXIT(push_corner(ctx, found, end));
     first = end;
     stack.count--;
   }
@@ -95,8 +95,8 @@ static bool is_one(const fg_polygon *p, const fg_polygon_side *a, const fg_polyg
          fabs(fg_straight_left(&chord, p->points[b->first])) < near;
 }
 
-/* The next side after `i` that goes on with it; 0 where there is none. */
-static size_t find_rest(const fg_polygon *p, size_t i, double tolerance) {
+/* Returns the next side after `i` that continues it; 0 where there is none. */
+static size_t find_continuation(const fg_polygon *p, size_t i, double tolerance) {
   size_t best = 0;
   for (size_t k = 1; k + 1 < p->count && k < 12; k++) {
     const fg_polygon_side *next = &p->sides[(i + k) % p->count];
@@ -108,9 +108,9 @@ static size_t find_rest(const fg_polygon *p, size_t i, double tolerance) {
   return best;
 }
 
-static void join(fg_polygon *p, double tolerance) {
+static void join_sides(fg_polygon *p, double tolerance) {
   for (size_t i = 0; i < p->count;) {
-    size_t rest = find_rest(p, i, tolerance);
+    size_t rest = find_continuation(p, i, tolerance);
     if (!rest || i + rest >= p->count) {
       i++;
       continue;
@@ -122,7 +122,7 @@ static void join(fg_polygon *p, double tolerance) {
   }
 }
 
-/* The line starts at a corner: the point farthest from its middle one. */
+/* Returns a corner to start at: the point farthest from the line's middle one. */
 static size_t find_start(const fg_point *points, size_t count, const fg_point *from) {
   double max = -1;
   size_t start = 0;
@@ -147,8 +147,8 @@ fg_status fg_polygon_make(fg_context *ctx, const fg_point *points, size_t count,
   for (size_t i = 0; i < count; i++)
     turned[i] = points[(start + i) % count];
   size_t other = find_start(turned, count, &turned[0]);
-  FG_TRY_EXIT(split(ctx, turned, count, tolerance, 0, other, &found));
-  FG_TRY_EXIT(split(ctx, turned, count, tolerance, other, count, &found));
+  FG_TRY_EXIT(split_line(ctx, turned, count, tolerance, 0, other, &found));
+  FG_TRY_EXIT(split_line(ctx, turned, count, tolerance, other, count, &found));
   FG_TRY_EXIT(
       fg_memory_allocate(ctx, found.count, sizeof *polygon->sides, (void **)&polygon->sides));
   size_t first = 0;
@@ -158,7 +158,7 @@ fg_status fg_polygon_make(fg_context *ctx, const fg_point *points, size_t count,
               &polygon->sides[polygon->count++]);
     first = last;
   }
-  join(polygon, tolerance);
+  join_sides(polygon, tolerance);
 exit:
   free(turned);
   free(found.at);
@@ -170,9 +170,9 @@ void fg_polygon_free(fg_polygon *polygon) {
   memset(polygon, 0, sizeof *polygon);
 }
 
-/* Sums over the points of a stretch that lie within `limit` of a line. */
-static fg_straight fit(const fg_polygon *p, size_t first, size_t n, const fg_straight *near,
-                       double limit) {
+/* Fits a line to the points of a stretch within `limit` of a line. */
+static fg_straight fit_line(const fg_polygon *p, size_t first, size_t n, const fg_straight *near,
+                            double limit) {
   double sx = 0, sy = 0, xx = 0, xy = 0, yy = 0, used = 0;
   fg_point o = p->points[first % p->point_count];
   for (size_t i = 0; i < n; i++) {
@@ -195,8 +195,8 @@ static fg_straight fit(const fg_polygon *p, size_t first, size_t n, const fg_str
 fg_straight fg_polygon_straight(const fg_polygon *polygon, size_t first, size_t last, double trim) {
   size_t n = fg_polygon_span(polygon, first, last), cut = (size_t)(trim * (double)n);
   const fg_point *a = &polygon->points[first], *b = &polygon->points[last];
-  fg_straight line = fit(polygon, first + cut, n - 2 * cut, NULL, 0);
-  line = fit(polygon, first + cut, n - 2 * cut, &line, 3);
+  fg_straight line = fit_line(polygon, first + cut, n - 2 * cut, NULL, 0);
+  line = fit_line(polygon, first + cut, n - 2 * cut, &line, 3);
   if (line.along.x * (b->x - a->x) + line.along.y * (b->y - a->y) < 0)
     line.along = (fg_point){-line.along.x, -line.along.y};
   return line;

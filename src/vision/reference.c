@@ -43,7 +43,7 @@ static bool smooth_node(const fg_point *points, const double *chord, size_t coun
 }
 
 /* Cubic Hermite between two nodes at the fraction f. */
-static fg_reference_station between(const node *a, const node *b, double length, double f) {
+static fg_reference_station point_between(const node *a, const node *b, double length, double f) {
   double f2 = f * f, f3 = f2 * f;
   double h0 = 2 * f3 - 3 * f2 + 1, h1 = f3 - 2 * f2 + f, h2 = 3 * f2 - 2 * f3, h3 = f3 - f2;
   double d0 = 6 * (f2 - f), d1 = 3 * f2 - 4 * f + 1, d3 = 3 * f2 - 2 * f;
@@ -66,8 +66,8 @@ static double arc_between(const node *a, const node *b) {
   return chord * (1 + k * k * chord * chord / 24);
 }
 
-static fg_status resample(fg_context *ctx, const node *nodes, size_t count, double step_px,
-                          fg_reference *out) {
+static fg_status resample_nodes(fg_context *ctx, const node *nodes, size_t count, double step_px,
+                                fg_reference *out) {
   double total = 0;
   for (size_t i = 1; i < count; i++)
     total += arc_between(&nodes[i - 1], &nodes[i]);
@@ -77,7 +77,8 @@ static fg_status resample(fg_context *ctx, const node *nodes, size_t count, doub
   for (size_t i = 1; i < count; i++) {
     double length = arc_between(&nodes[i - 1], &nodes[i]);
     while (next <= at + length && out->count < wanted && length > 0) {
-      out->stations[out->count++] = between(&nodes[i - 1], &nodes[i], length, (next - at) / length);
+      out->stations[out->count++] =
+          point_between(&nodes[i - 1], &nodes[i], length, (next - at) / length);
       next += step_px;
     }
     at += length;
@@ -86,10 +87,10 @@ static fg_status resample(fg_context *ctx, const node *nodes, size_t count, doub
   return FG_OK;
 }
 
-/* Tangent and curvature as the line itself has them (central differences over two steps): a local
+/* Sets tangent and curvature of the line itself (central differences over two steps). A local
  * parabola's own slope and curvature belong to a smoother line than its positions do, and the
  * difference would shift pixels that lie obliquely to their station. */
-static void differentiate(fg_reference *line) {
+static void differentiate_line(fg_reference *line) {
   enum { REACH = 2 };
   if (line->count <= 2 * REACH) return;
   double h = REACH * line->step_px;
@@ -118,8 +119,8 @@ fg_status fg_reference_build(fg_context *ctx, const fg_point *points, size_t cou
     chord[i] = chord[i - 1] + hypot(points[i].x - points[i - 1].x, points[i].y - points[i - 1].y);
   for (size_t i = 0; i < count; i++)
     if (smooth_node(points, chord, count, i, window_px, &nodes[kept])) kept++;
-  FG_TRY_EXIT(resample(ctx, nodes, kept, step_px, reference));
-  differentiate(reference);
+  FG_TRY_EXIT(resample_nodes(ctx, nodes, kept, step_px, reference));
+  differentiate_line(reference);
 exit:
   free(chord);
   free(nodes);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A smooth reference line along a strip: stations at equal steps with tangent and curvature.
  *
- * Pixels get their place (along, across) from this line; where exactly it lies in the strip does
- * not matter, that it is smooth does.
+ * Pixels get their place (along, across) from this line. It must be smooth; its exact place in the
+ * strip does not matter.
  */
 #ifndef FG_VISION_REFERENCE_H
 #define FG_VISION_REFERENCE_H

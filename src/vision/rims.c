@@ -13,20 +13,20 @@ enum {
   COUNTS = FG_LEVEL_COUNTS,
   CONTRAST_MIN = 12, /* counts */
 };
-/* The levels must differ by so many times the spread of the counts on either side. */
+/* Min difference of the levels, in spreads of the counts on either side. */
 #define CONTRAST_SPREADS 3.0
 
-/* A rim's way: right, down, left, up as the scan is seen. */
+/* Directions of a rim: right, down, left, up as the scan is seen. */
 static const int32_t step_x[4] = {1, 0, -1, 0}, step_y[4] = {0, 1, 0, -1};
 
 typedef struct tracer {
   const fg_tiles *tiles;
   double limit;
   bool light;
-  uint8_t *mine; /* tiles of the island */
+  uint8_t *mine; /* true for tiles of the island */
   uint8_t *seen; /* a bit per upright side of a pixel, in every ROW_STEP-th row */
   size_t row_bytes;
-  fg_point *points; /* of the rim that is followed */
+  fg_point *points; /* of the rim in work */
   size_t count, capacity;
 } tracer;
 
@@ -45,21 +45,22 @@ static bool is_seen(const tracer *t, int32_t x, int32_t y) {
   return t->seen[(size_t)(y / ROW_STEP) * t->row_bytes + (size_t)x / 8] >> (x % 8) & 1;
 }
 
-static void see(const tracer *t, int32_t x, int32_t y) {
+static void mark_seen(const tracer *t, int32_t x, int32_t y) {
   if (y % ROW_STEP == 0)
     t->seen[(size_t)(y / ROW_STEP) * t->row_bytes + (size_t)x / 8] |= (uint8_t)(1u << (x % 8));
 }
 
-/* Where the way goes on at the corner (x, y): diagonal neighbours hang together. Pixel (i, j) has
- * its corners at (i, j) to (i + 1, j + 1). */
+/* Returns the direction after the corner (x, y): diagonal neighbours are connected. Pixel (i, j)
+ * has its corners at (i, j) to (i + 1, j + 1). */
 static int turn_at(const tracer *t, int32_t x, int32_t y, int way) {
   static const int32_t right_x[4] = {0, -1, -1, 0}, right_y[4] = {0, 0, -1, -1};
-  int cold = (way + 3) % 4; /* the pixel ahead on the other side is that of this way's right */
+  int cold =
+      (way + 3) % 4; /* the pixel ahead on the other side is to the right of this direction */
   if (is_hot(t, x + right_x[cold], y + right_y[cold])) return cold;
   return is_hot(t, x + right_x[way], y + right_y[way]) ? way : (way + 1) % 4;
 }
 
-static fg_status follow(fg_context *ctx, tracer *t, int32_t x0, int32_t y0, int way0) {
+static fg_status follow_rim(fg_context *ctx, tracer *t, int32_t x0, int32_t y0, int way0) {
   int32_t x = x0, y = y0;
   int way = way0;
   t->count = 0;
@@ -67,8 +68,8 @@ static fg_status follow(fg_context *ctx, tracer *t, int32_t x0, int32_t y0, int 
     FG_TRY(
         fg_memory_reserve(ctx, t->count + 1, sizeof *t->points, &t->capacity, (void **)&t->points));
     t->points[t->count++] = (fg_point){x + 0.5 * step_x[way] - 0.5, y + 0.5 * step_y[way] - 0.5};
-    if (way == 1) see(t, x, y);
-    if (way == 3) see(t, x, y - 1);
+    if (way == 1) mark_seen(t, x, y);
+    if (way == 3) mark_seen(t, x, y - 1);
     x += step_x[way];
     y += step_y[way];
     way = turn_at(t, x, y, way);
@@ -76,7 +77,7 @@ static fg_status follow(fg_context *ctx, tracer *t, int32_t x0, int32_t y0, int 
   return FG_OK;
 }
 
-static void describe(const tracer *t, fg_rim *rim) {
+static void describe_rim(const tracer *t, fg_rim *rim) {
   double area = 0, low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
   for (size_t i = 0; i < t->count; i++) {
     const fg_point *p = &t->points[i], *q = &t->points[i + 1 < t->count ? i + 1 : 0];
@@ -95,9 +96,9 @@ static void describe(const tracer *t, fg_rim *rim) {
                         high[1] > (double)t->tiles->height_px - 2;
 }
 
-static fg_status keep(fg_context *ctx, const tracer *t, double min_px, fg_rims *rims) {
+static fg_status keep_rim(fg_context *ctx, const tracer *t, double min_px, fg_rims *rims) {
   fg_rim rim = {.count = t->count};
-  describe(t, &rim);
+  describe_rim(t, &rim);
   if (hypot(rim.box_px[2], rim.box_px[3]) < min_px) {
     rims->specks++;
     return FG_OK;
@@ -110,7 +111,7 @@ static fg_status keep(fg_context *ctx, const tracer *t, double min_px, fg_rims *
   return FG_OK;
 }
 
-/* Rims that cross a row of one tile. */
+/* Traces the rims that cross a row of one tile. */
 static fg_status trace_row(fg_context *ctx, tracer *t, int32_t x0, int32_t y, double min_px,
                            fg_rims *rims) {
   int32_t end = x0 + FG_TILE_PX;
@@ -119,8 +120,8 @@ static fg_status trace_row(fg_context *ctx, tracer *t, int32_t x0, int32_t y, do
   for (int32_t x = x0; x < end; x++) {
     bool right = is_hot(t, x, y);
     if (left != right && !is_seen(t, x, y)) {
-      FG_TRY(left ? follow(ctx, t, x, y, 1) : follow(ctx, t, x, y + 1, 3));
-      FG_TRY(keep(ctx, t, min_px, rims));
+      FG_TRY(left ? follow_rim(ctx, t, x, y, 1) : follow_rim(ctx, t, x, y + 1, 3));
+      FG_TRY(keep_rim(ctx, t, min_px, rims));
     }
     left = right;
   }
@@ -164,7 +165,8 @@ void fg_rims_free(fg_rims *rims) {
   memset(rims, 0, sizeof *rims);
 }
 
-/* The count that parts the two classes: the one that their means are farthest apart at. */
+/* Returns the count that parts the two classes: the one with the largest distance of their means.
+ */
 static int part_counts(const size_t counts[COUNTS]) {
   double total = 0, moment = 0, below = 0, below_moment = 0, best = -1;
   int at = 0;
@@ -186,8 +188,9 @@ static int part_counts(const size_t counts[COUNTS]) {
   return at;
 }
 
-/* The count below which lies that share of those from `first` to `last`, and its place in it. */
-static double quantile(const size_t counts[COUNTS], int first, int last, double share) {
+/* Returns the count below which that share of those from `first` to `last` lies, with its fraction.
+ */
+static double class_quantile(const size_t counts[COUNTS], int first, int last, double share) {
   double total = 0, below = 0;
   for (int i = first; i <= last; i++)
     total += (double)counts[i];
@@ -199,7 +202,7 @@ static double quantile(const size_t counts[COUNTS], int first, int last, double 
   return last + 0.5;
 }
 
-/* Pixels of a tile that lie inside the scan; every fourth row. */
+/* Counts every fourth row of a tile's pixels inside the scan. */
 static void count_tile(const fg_tiles *tiles, size_t at, size_t counts[COUNTS]) {
   const fg_tile *tile = tiles->tiles[at];
   int64_t x0 = (int64_t)(at % (size_t)tiles->columns) * FG_TILE_PX;
@@ -214,12 +217,12 @@ fg_two_levels fg_two_levels_find(const fg_tiles *tiles, const fg_island *island)
   for (size_t i = 0; i < island->count; i++)
     count_tile(tiles, (size_t)island->tiles[i], counts);
   int middle = part_counts(counts);
-  fg_two_levels levels = {.low = quantile(counts, 0, middle, 0.5),
-                          .high = quantile(counts, middle + 1, COUNTS - 1, 0.5)};
+  fg_two_levels levels = {.low = class_quantile(counts, 0, middle, 0.5),
+                          .high = class_quantile(counts, middle + 1, COUNTS - 1, 0.5)};
   /* The upper quartile of the lower class and the lower one of the upper are its spreads without
    * the pixels of the edges between them. */
-  double spread = fmax(levels.low - quantile(counts, 0, middle, 0.16),
-                       quantile(counts, middle + 1, COUNTS - 1, 0.84) - levels.high);
+  double spread = fmax(levels.low - class_quantile(counts, 0, middle, 0.16),
+                       class_quantile(counts, middle + 1, COUNTS - 1, 0.84) - levels.high);
   double contrast = levels.high - levels.low;
   levels.found = contrast > CONTRAST_MIN && contrast > CONTRAST_SPREADS * spread;
   return levels;

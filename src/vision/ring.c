@@ -6,12 +6,12 @@
 
 #include "core/memory.h"
 
-/* One row of the scan as the ring sees it. */
+/* One row of the scan in the ring's coordinates. */
 typedef struct ring_row {
   const fg_tiles *tiles;
   const fg_pixel_shape *shape;
   int64_t y;
-  double dv; /* of the row from the centre */
+  double dv; /* distance of the row from the centre */
 } ring_row;
 
 /* Pixels of a row between two distances du from the centre, both included. */

@@ -13,7 +13,7 @@
 typedef struct fg_ring_pixel {
   float across_px; /* outwards from the circle */
   float value;     /* 8-bit counts */
-  int32_t station; /* whose share of the turn it falls into */
+  int32_t station; /* station whose share of the turn contains it */
 } fg_ring_pixel;
 
 /* A turn is divided into sectors, a sector into stations; station 0 starts in the direction +x and
@@ -31,11 +31,11 @@ static inline double fg_ring_angle(const fg_ring *ring, size_t station) {
   return ((double)station + 0.5) * 2 * M_PI / (double)ring->station_count;
 }
 
-/* All kept pixels within ring->reach_px of ring->circle; the counts of sectors and stations and
- * the circle are the caller's. What was collected before is replaced. */
+/* Collects all kept pixels within ring->reach_px of ring->circle. The caller sets circle and counts
+ * of sectors and stations. Pixels of an earlier call are replaced. */
 fg_status fg_ring_collect(fg_context *ctx, const fg_tiles *tiles, const fg_pixel_shape *shape,
                           fg_ring *ring);
-void fg_ring_free(fg_ring *ring); /* the pixels only */
+void fg_ring_free(fg_ring *ring); /* frees the pixels only */
 
 /* Mean profiles: bins[sector × bin_count + i], FG_RING_BIN_PX wide, from -reach_px. */
 #define FG_RING_BIN_PX 0.25

@@ -12,7 +12,7 @@
  * this many standard deviations of the background. */
 #define MASK_SHARE  0.3f
 #define MASK_SIGMAS 6.0f
-/* Contrasts below this many 8-bit counts are no object. */
+/* Min contrast of an object, 8-bit counts. */
 #define CONTRAST_MIN 8.0f
 
 static int compare_floats(const void *a, const void *b) {
@@ -20,19 +20,19 @@ static int compare_floats(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-enum { BACKGROUND_REACH = 3 }; /* tiles beyond the island that its background rests on */
+enum { BACKGROUND_REACH = 3 }; /* tiles beyond the island that contribute to its background */
 
-static int32_t clamp(int32_t value, int32_t low, int32_t high) {
+static int32_t clamp_index(int32_t value, int32_t low, int32_t high) {
   return value < low ? low : value > high ? high : value;
 }
 
-/* The smoothed medians of the island's box and what lies around it. */
+/* Fills the smoothed medians of the island's box and its surroundings. */
 static fg_status find_background(fg_context *ctx, const fg_island *island, fg_segmentation *out) {
   const fg_tiles *tiles = out->tiles;
-  out->grid_x = clamp(island->x - BACKGROUND_REACH, 0, tiles->columns - 1);
-  out->grid_y = clamp(island->y - BACKGROUND_REACH, 0, tiles->rows - 1);
-  int32_t right = clamp(island->x + island->width + BACKGROUND_REACH, 1, tiles->columns);
-  int32_t low = clamp(island->y + island->height + BACKGROUND_REACH, 1, tiles->rows);
+  out->grid_x = clamp_index(island->x - BACKGROUND_REACH, 0, tiles->columns - 1);
+  out->grid_y = clamp_index(island->y - BACKGROUND_REACH, 0, tiles->rows - 1);
+  int32_t right = clamp_index(island->x + island->width + BACKGROUND_REACH, 1, tiles->columns);
+  int32_t low = clamp_index(island->y + island->height + BACKGROUND_REACH, 1, tiles->rows);
   out->grid_columns = right - out->grid_x;
   out->grid_rows = low - out->grid_y;
   size_t width = (size_t)out->grid_columns;
@@ -46,7 +46,7 @@ static fg_status find_background(fg_context *ctx, const fg_island *island, fg_se
   return fg_grid_median(ctx, out->grid, out->grid_columns, out->grid_rows);
 }
 
-/* Calls for every block inside the scan of one tile; the excess is NaN where it is not known. */
+/* Visitor of every block of one tile inside the scan; the excess is NaN where it is not known. */
 typedef void visit_block(fg_segmentation *out, int32_t x, int32_t y, float excess, void *data);
 
 static void visit_tile(fg_segmentation *out, int32_t column, int32_t row, visit_block *visit,
@@ -69,7 +69,7 @@ typedef struct sample {
   size_t count;
 } sample;
 
-static void take_sample(fg_segmentation *out, int32_t x, int32_t y, float excess, void *data) {
+static void add_sample(fg_segmentation *out, int32_t x, int32_t y, float excess, void *data) {
   (void)out;
   sample *s = data;
   if ((x + y) % 3 == 0 && !isnan(excess)) s->values[s->count++] = fabsf(excess);
@@ -90,7 +90,7 @@ static fg_status estimate_noise(fg_context *ctx, const fg_island *island, fg_seg
       for (int32_t x = column - 1; x <= column + 1; x++)
         if (x >= 0 && y >= 0 && x < tiles->columns && y < tiles->rows && fg_tiles_at(tiles, x, y) &&
             !tiles->wanted[(size_t)y * (size_t)tiles->columns + (size_t)x])
-          visit_tile(out, x, y, take_sample, &s);
+          visit_tile(out, x, y, add_sample, &s);
   }
   fg_sort_items(s.values, s.count, sizeof *s.values, compare_floats);
   out->noise = (s.count ? 1.4826f * s.values[s.count / 2] : 0) + 0.02f;

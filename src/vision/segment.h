@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Segmentation of an island: which of its blocks belong to objects that differ from the background.
+/* Segmentation of an island: the blocks that belong to objects which differ from the background.
  *
  * Works on the block means of fg_tiles. The background is the median of each tile, smoothed over
- * neighbours, so that uneven illumination does not count; polarity is what the larger part of the
- * contrast says. Nothing outside the island and its neighbours plays a part: a foil on a full bed
- * is segmented as if it were alone.
+ * neighbours, so that uneven illumination does not count. The sign of the larger part of the
+ * contrast decides the polarity. Nothing outside the island and its neighbours plays a part: a foil
+ * on a full bed is segmented as if it were alone.
  */
 #ifndef FG_VISION_SEGMENT_H
 #define FG_VISION_SEGMENT_H
@@ -20,7 +20,7 @@ extern "C" {
 typedef struct fg_object {
   int32_t label;               /* its value in `labels` */
   int32_t x, y, width, height; /* bounding box in blocks of the scan */
-  int32_t blocks;              /* how many blocks */
+  int32_t blocks;              /* number of blocks */
   bool touches_border;         /* within one block of the scan's border */
 } fg_object;
 
@@ -33,9 +33,9 @@ typedef struct fg_segmentation {
   bool light_on_dark;
   float contrast;     /* typical excess of the objects, 8-bit counts */
   float noise;        /* sd of background block means, 8-bit counts */
-  fg_object *objects; /* large ones, in reading order of their boxes; owned */
+  fg_object *objects; /* objects of at least min_px, in reading order of their boxes; owned */
   size_t object_count;
-  size_t speck_count; /* small ones, left alone */
+  size_t speck_count; /* number of smaller objects, which are ignored */
 } fg_segmentation;
 
 /* Background at the centre of a block of the scan, bilinear between tile centres. */
@@ -66,7 +66,7 @@ static inline int32_t fg_segmentation_label(const fg_segmentation *s, int32_t x,
   return s->labels[(size_t)v * (size_t)s->width + (size_t)u];
 }
 
-/* Objects whose box has a diagonal of at least `min_px`. No object is not an error here. */
+/* Finds the objects whose box has a diagonal of at least `min_px`. None is no error here. */
 fg_status fg_segment(fg_context *ctx, const fg_tiles *tiles, const fg_island *island, double min_px,
                      fg_segmentation *segmentation);
 

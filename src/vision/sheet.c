@@ -10,10 +10,10 @@
 typedef struct span {
   int32_t source; /* column or row of the scan's tile */
   int from, to;   /* pixels of the sheet's tile, from ≤ i < to */
-  int at;         /* where the first of them lies in the scan's tile */
+  int at;         /* place of the first of them in the scan's tile */
 } span;
 
-/* What lies outside the scan belongs to no span. */
+/* Finds the spans; pixels outside the scan belong to none. */
 static int find_spans(int64_t first_px, int64_t limit_px, span spans[2]) {
   int count = 0;
   for (int from = 0; from < FG_TILE_PX;) {
@@ -32,7 +32,7 @@ static int find_spans(int64_t first_px, int64_t limit_px, span spans[2]) {
   return count;
 }
 
-/* Bits of the blocks of one row or column that lie in the spans; spans[i] counts where bit i of
+/* Bits of the blocks of one row or column that lie in the spans; spans[i] counts only if bit i of
  * `there` is set. */
 static unsigned whole_blocks(const span *spans, int count, unsigned there) {
   unsigned bits = 0;
@@ -49,8 +49,7 @@ static unsigned whole_blocks(const span *spans, int count, unsigned there) {
   return bits;
 }
 
-/* A block is whole when each span of columns it lies on is there in each span of rows it lies on.
- */
+/* Finds whole blocks: every span of columns under the block exists in every span of rows. */
 static uint64_t find_whole(const span *across, int columns, const span *down, int rows,
                            const unsigned there[2]) {
   uint64_t whole = 0;
@@ -80,8 +79,8 @@ static void copy_part(const fg_tile *from, const span *x, const span *y, size_t 
   }
 }
 
-/* Sum, least and largest of the eight rows of a row of blocks, column by column: loops that the
- * compiler turns into a few wide instructions. */
+/* Sum, min and max of the eight rows of a row of blocks, column by column: loops that the compiler
+ * turns into a few wide instructions. */
 #define REDUCE_ROWS(type)                                                                          \
   const type *rows = (const type *)(const void *)tile->pixels + first_row * FG_TILE_PX;            \
   for (int x = 0; x < FG_TILE_PX; x++) {                                                           \

@@ -5,21 +5,21 @@
 
 #include "vision/tiles.h"
 
-/* The least and the largest count of a block, 8 bit, rounded down. */
+/* Min and max count of a block, 8 bit, rounded down. */
 typedef struct fg_range {
   uint8_t low, high;
 } fg_range;
 
 /* Tiles whose corner lies at corner_px of those they were cut from. A block is whole when all its
- * pixels were there; the mean of any other is NaN, and its pixels say nothing. */
+ * pixels were there. The mean of any other block is NaN, and its pixels are invalid. */
 typedef struct fg_sheet {
   fg_tiles tiles;
   uint64_t *whole;  /* of each tile: a bit per block, row by row */
   fg_range *ranges; /* of each tile's blocks, as in fg_tile */
 } fg_sheet;
 
-/* Cuts columns × rows of tiles. FG_ERR_MEMORY; FG_ERR_DATA when they go beyond the budget. The
- * caller frees the sheet, also after an error. */
+/* Cuts columns × rows of tiles. FG_ERR_MEMORY; FG_ERR_DATA beyond the budget. The caller frees the
+ * sheet, also after an error. */
 fg_status fg_sheet_cut(fg_context *ctx, const fg_tiles *from, const int64_t corner_px[2],
                        int32_t columns, int32_t rows, fg_sheet *sheet);
 void fg_sheet_free(fg_sheet *sheet);

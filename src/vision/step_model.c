@@ -40,8 +40,8 @@ static void hold_counts(const double *x, double *row) {
   }
 }
 
-static void build(const fg_profile_bin *bins, size_t count, const double *x, unsigned held,
-                  fg_normal_equations *system) {
+static void build_step_equations(const fg_profile_bin *bins, size_t count, const double *x,
+                                 unsigned held, fg_normal_equations *system) {
   double row[FG_STEP_VALUES];
   fg_normal_clear(system, FG_STEP_VALUES);
   for (size_t i = 0; i < count; i++) {
@@ -63,7 +63,7 @@ static bool is_sensible(const double *x) {
          x[FG_STEP_OUTSIDE] > -30 && x[FG_STEP_OUTSIDE] < 600;
 }
 
-static void advance(const double *x, const double *dx, double *moved) {
+static void advance_step_values(const double *x, const double *dx, double *moved) {
   double gamma = x[FG_STEP_GAMMA] + dx[FG_STEP_GAMMA];
   for (int i = 0; i < FG_STEP_VALUES; i++)
     moved[i] = x[i] + dx[i];
@@ -72,8 +72,8 @@ static void advance(const double *x, const double *dx, double *moved) {
     moved[i] = dx[i] + 255 * pow(fmax(x[i], 1e-3) / 255, gamma / x[FG_STEP_GAMMA]);
 }
 
-static void conclude(const fg_profile_bin *bins, size_t count, const fg_normal_equations *system,
-                     fg_step_fit *fit) {
+static void finish_step_fit(const fg_profile_bin *bins, size_t count,
+                            const fg_normal_equations *system, fg_step_fit *fit) {
   double x[FG_SMALL_MAX], inverse[FG_SMALL_MAX][FG_SMALL_MAX], used = 0;
   for (size_t i = 0; i < count; i++)
     used += bins[i].count > 0;
@@ -87,13 +87,13 @@ void fg_step_fit_model(const fg_profile_bin *bins, size_t count, fg_step_fit *fi
   double x[FG_STEP_VALUES], trial[FG_STEP_VALUES], dx[FG_SMALL_MAX], damping = 1e-4;
   fg_normal_equations system, next;
   memcpy(x, fit->values, sizeof x);
-  build(bins, count, x, fit->held, &system);
+  build_step_equations(bins, count, x, fit->held, &system);
   fit->good = false;
   for (int i = 0; i < ITERATIONS_MAX && damping < 1e6; i++) {
     bool solved = fg_normal_solve(&system, damping, dx, NULL);
-    if (solved) advance(x, dx, trial);
+    if (solved) advance_step_values(x, dx, trial);
     solved = solved && is_sensible(trial);
-    if (solved) build(bins, count, trial, fit->held, &next);
+    if (solved) build_step_equations(bins, count, trial, fit->held, &next);
     if (!solved || !(next.sum_squares <= system.sum_squares)) {
       damping *= 10;
       continue;
@@ -106,5 +106,5 @@ void fg_step_fit_model(const fg_profile_bin *bins, size_t count, fg_step_fit *fi
     if (gain <= 1e-6 * system.sum_squares) break;
   }
   memcpy(fit->values, x, sizeof x);
-  conclude(bins, count, &system, fit);
+  finish_step_fit(bins, count, &system, fit);
 }

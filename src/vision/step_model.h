@@ -4,10 +4,10 @@
  * With d = n - e (distance outwards from the edge), levels a and b and slopes g and h inside and
  * outside, blur s and the tone curve G of vision/edge_model.h:
  *
- *   I(n) = G( (a + g d) (1 - Phi(d/s)) + (b + h d) Phi(d/s) + (h - g) s phi(d/s) )
+ *  I(n) = G( (a + g d) (1 - Phi(d/s)) + (b + h d) Phi(d/s) + (h - g) s phi(d/s) )
  *
  * the Gaussian blur of a step between two straight lines. Counts at the end of the scale are
- * censored: they say only that the light is at least that much.
+ * censored: they give only a lower bound of the light.
  */
 #ifndef FG_VISION_STEP_MODEL_H
 #define FG_VISION_STEP_MODEL_H
@@ -28,18 +28,18 @@ enum {
   FG_STEP_VALUES
 };
 
-#define FG_COUNT_WHITE 253.5 /* mean counts above are taken for the end of the scale */
+#define FG_COUNT_WHITE 253.5 /* mean counts above count as the end of the scale */
 
 typedef struct fg_step_fit {
   double values[FG_STEP_VALUES]; /* px, light, light per px */
   double sd[FG_STEP_VALUES];     /* 0 for those that were held */
   unsigned held;                 /* bit i: values[i] stays as given */
-  double noise;                  /* sd of one pixel as the misfit says */
-  bool good;                     /* it converged to something sensible */
+  double noise;                  /* sd of one pixel, by the misfit */
+  bool good;                     /* the fit converged to plausible values */
 } fg_step_fit;
 
-/* Fits the model to a mean profile by damped Gauss-Newton; `fit` holds the start and what is
- * held. */
+/* Fits the model to a mean profile by damped Gauss-Newton; `fit` holds the start and the bits of
+ * held values. */
 void fg_step_fit_model(const fg_profile_bin *bins, size_t count, fg_step_fit *fit);
 
 #endif

@@ -8,11 +8,11 @@
 #include "core/memory.h"
 #include "core/select.h"
 
-/* Contrast (range) of a tile's block means, in 8-bit counts, above which it is kept: as many times
- * the median step between neighbouring blocks, which a strip through the tile hardly changes. For
- * white noise the range over 64 blocks is 5 of these steps. Never less than MIN (noise) nor more
- * than MAX (texture must not hide a part). A tile is judged by itself alone, so that a foil is kept
- * in the same way whatever else lies on the bed. */
+/* Range of a tile's block means, in 8-bit counts, above which it is kept: this multiple of the
+ * median step between neighbouring blocks, which a strip through the tile hardly changes. For white
+ * noise the range over 64 blocks is 5 of these steps. Never below MIN (noise) nor above MAX
+ * (texture must not hide a part). A tile is judged by itself alone, so that a foil is kept in the
+ * same way whatever else lies on the bed. */
 enum { CONTRAST_MIN = 3, CONTRAST_MAX = 12, CONTRAST_OVER_STEP = 27 };
 
 static size_t row_bytes(const fg_tiles *tiles) {
@@ -40,7 +40,7 @@ static size_t strip_bytes(const fg_tiles *tiles) {
 }
 
 static fg_status allocate_strip(fg_context *ctx, fg_tiles *tiles, int i) {
-  FG_TRY(fg_budget_take(ctx, tiles->budget, strip_bytes(tiles)));
+  FG_TRY(fg_budget_reserve(ctx, tiles->budget, strip_bytes(tiles)));
   tiles->strip_budget += strip_bytes(tiles);
   FG_TRY(fg_memory_allocate(ctx, row_bytes(tiles), FG_TILE_PX, (void **)&tiles->strips[i]));
   return fg_memory_allocate(ctx, blocks_across(tiles), FG_BLOCKS_PER_TILE * sizeof(float),
@@ -67,8 +67,8 @@ int64_t fg_tiles_strip_rows(const fg_tiles *tiles, int32_t strip) {
   return left < FG_TILE_PX ? left : FG_TILE_PX;
 }
 
-/* Sums of FG_BLOCK_PX rows, column by column: all rows of a column at once, so that nothing but the
- * sum is stored. */
+/* Sums of FG_BLOCK_PX rows, column by column: all rows of a column at once, so that only the sum is
+ * stored. */
 #define SUM_ROWS(type, narrow, name)                                                               \
   __attribute__((target_clones("avx2", "default"))) static void name(                              \
       const type *restrict r, size_t width, uint32_t *restrict sums) {                             \
@@ -84,7 +84,7 @@ int64_t fg_tiles_strip_rows(const fg_tiles *tiles, int32_t strip) {
 SUM_ROWS(uint8_t, uint16_t, sum_rows_8)
 SUM_ROWS(uint16_t, uint32_t, sum_rows_16)
 
-/* The same for fewer rows, at the end of the scan. */
+/* Sums fewer rows, at the end of the scan. */
 static void sum_last_rows(const fg_tiles *tiles, const uint8_t *rows, int64_t count,
                           uint32_t *sums) {
   size_t width = (size_t)tiles->width_px;
@@ -186,7 +186,7 @@ static void mark_wanted(fg_tiles *tiles, int32_t strip) {
   }
 }
 
-/* Wanted itself, or beside a wanted tile. */
+/* Returns true when a tile is wanted, or beside a wanted one. */
 static int is_kept(const fg_tiles *tiles, int32_t column, int32_t strip) {
   for (int32_t y = strip - 1; y <= strip + 1; y++)
     for (int32_t x = column - 1; x <= column + 1; x++)
@@ -203,10 +203,10 @@ static size_t tile_bytes(const fg_tiles *tiles) {
 fg_status fg_tiles_add(fg_context *ctx, fg_tiles *tiles, int32_t column, int32_t row,
                        fg_tile **tile) {
   size_t size = tile_bytes(tiles);
-  FG_TRY(fg_budget_take(ctx, tiles->budget, size));
+  FG_TRY(fg_budget_reserve(ctx, tiles->budget, size));
   fg_status status = fg_memory_allocate(ctx, 1, size, (void **)tile);
   if (status != FG_OK) {
-    fg_budget_give(tiles->budget, size);
+    fg_budget_release(tiles->budget, size);
     return status;
   }
   atomic_init(&(*tile)->holders, 1);
@@ -232,7 +232,7 @@ static fg_status keep_tiles(fg_context *ctx, fg_tiles *tiles, int32_t strip) {
   return FG_OK;
 }
 
-fg_status fg_tiles_take_strip(fg_context *ctx, fg_tiles *tiles) {
+fg_status fg_tiles_accept_strip(fg_context *ctx, fg_tiles *tiles) {
   int32_t strip = tiles->received;
   if (strip >= tiles->rows) return fg_fail(ctx, FG_ERR_USAGE, "more rows than the scan has");
   FG_TRY(reduce_strip(ctx, tiles, strip));
@@ -250,7 +250,7 @@ fg_status fg_tiles_add_strip(fg_context *ctx, fg_tiles *tiles, const void *rows,
   for (int64_t y = 0; y < fg_tiles_strip_rows(tiles, strip); y++)
     memcpy(target + (size_t)y * row_bytes(tiles), (const uint8_t *)rows + y * stride_bytes,
            row_bytes(tiles));
-  return fg_tiles_take_strip(ctx, tiles);
+  return fg_tiles_accept_strip(ctx, tiles);
 }
 
 static void free_strips(fg_tiles *tiles) {
@@ -260,7 +260,7 @@ static void free_strips(fg_tiles *tiles) {
     tiles->strips[i] = NULL;
     tiles->strip_blocks[i] = NULL;
   }
-  fg_budget_give(tiles->budget, tiles->strip_budget);
+  fg_budget_release(tiles->budget, tiles->strip_budget);
   tiles->strip_budget = 0;
 }
 
@@ -277,7 +277,7 @@ static void let_go(fg_tiles *tiles, size_t at) {
   tiles->tiles[at] = NULL;
   if (!tile || atomic_fetch_sub(&tile->holders, 1) != 1) return;
   free(tile);
-  fg_budget_give(tiles->budget, tile_bytes(tiles));
+  fg_budget_release(tiles->budget, tile_bytes(tiles));
 }
 
 void fg_tiles_drop(fg_tiles *tiles, int32_t column, int32_t row) {

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A scan kept as sparse tiles: only what differs from the background stays in memory.
+/* A scan kept as sparse tiles: only areas that differ from the background stay in memory.
  *
  * Rows arrive in strips of FG_TILE_PX rows. Every strip is reduced to block means (FG_BLOCK_PX a
- * side); a tile whose block means differ by more than its own scatter is wanted, and kept with its
- * eight neighbours; of all others the median stays. Memory follows the area of the foils, not of
- * the bed. What is kept depends on the pixels around alone: not on threads, not on how the strips
- * arrive, not on what else lies on the bed.
+ * side). A tile whose block means differ by more than its own scatter is wanted, and kept with its
+ * eight neighbours; of all others only the median stays. Memory follows the area of the foils, not
+ * of the bed. The choice of kept tiles depends on the surrounding pixels alone: not on threads, not
+ * on the arrival of the strips, not on other objects on the bed.
  */
 #ifndef FG_VISION_TILES_H
 #define FG_VISION_TILES_H
@@ -16,7 +16,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "core/budget.h"
+#include "core/memory.h"
 #include "foilgauge/status.h"
 
 #ifdef __cplusplus
@@ -27,7 +27,7 @@ enum {
   FG_TILE_PX = 64,
   FG_BLOCK_PX = 8,
   FG_BLOCKS_PER_TILE = FG_TILE_PX / FG_BLOCK_PX,
-  FG_TILE_STRIPS = 8, /* strips that are held until their tiles are decided */
+  FG_TILE_STRIPS = 8, /* strips held until their tiles are decided */
 };
 
 /* A tile that was kept. Pixels outside the scan are 0, blocks outside repeat the last one. */
@@ -46,48 +46,48 @@ typedef struct fg_tiles {
   fg_tile **tiles;                   /* columns × rows; NULL: background */
   float *medians;                    /* columns × rows: median of each tile's block means */
   uint8_t *wanted;                   /* columns × rows: contrast above the background's scatter */
-  int32_t received;                  /* strips so far */
-  /* of the strips that are still undecided: */
+  int32_t received;                  /* number of strips so far */
+  /* of the undecided strips: */
   uint8_t *strips[FG_TILE_STRIPS];     /* rows of width_px pixels */
   float *strip_blocks[FG_TILE_STRIPS]; /* FG_BLOCKS_PER_TILE rows of columns × FG_BLOCKS_PER_TILE */
-  size_t strip_budget;                 /* bytes that they took from the budget */
+  size_t strip_budget;                 /* bytes that they reserve of the budget */
 } fg_tiles;
 
 /* `budget` (NULL: none) must outlive the tiles. */
 fg_status fg_tiles_create(fg_context *ctx, int64_t width_px, int64_t height_px, int bytes_per_pixel,
                           fg_budget *budget, fg_tiles *tiles);
 
-/* Where the rows of a strip go, one after the other without padding. It may be filled while
- * strips before it are taken, as long as strip < received + FG_TILE_STRIPS - 1. */
+/* Address for the rows of a strip, one after the other without padding. It may be filled while
+ * strips before it are processed, as long as strip < received + FG_TILE_STRIPS - 1. */
 static inline void *fg_tiles_strip(const fg_tiles *tiles, int32_t strip) {
   return tiles->strips[strip % FG_TILE_STRIPS];
 }
 
-/* Rows of a strip: FG_TILE_PX, fewer in the last. */
+/* Number of rows of a strip: FG_TILE_PX, fewer in the last. */
 int64_t fg_tiles_strip_rows(const fg_tiles *tiles, int32_t strip);
 
-/* Takes the next strip, whose rows are in place: decides the tiles of the strip before it. */
-fg_status fg_tiles_take_strip(fg_context *ctx, fg_tiles *tiles);
+/* Accepts the next strip, whose rows are in place: decides the tiles of the strip before it. */
+fg_status fg_tiles_accept_strip(fg_context *ctx, fg_tiles *tiles);
 
-/* The same for rows that lie elsewhere, `stride_bytes` apart. */
+/* Copies rows from elsewhere, `stride_bytes` apart, and accepts them as the next strip. */
 fg_status fg_tiles_add_strip(fg_context *ctx, fg_tiles *tiles, const void *rows,
                              int64_t stride_bytes);
 
-/* After the last strip. */
+/* Decides the last tiles; call it after the last strip. */
 fg_status fg_tiles_finish(fg_context *ctx, fg_tiles *tiles);
 
 /* Makes a tile of zeros where there is none. FG_ERR_MEMORY; FG_ERR_DATA: beyond the budget. */
 fg_status fg_tiles_add(fg_context *ctx, fg_tiles *tiles, int32_t column, int32_t row,
                        fg_tile **tile);
 
-/* Lets one tile go. Its memory is free when nobody else shows it. */
+/* Releases one tile. Its memory is freed with its last holder. */
 void fg_tiles_drop(fg_tiles *tiles, int32_t column, int32_t row);
 
-/* Lets `to` show a tile of `from` as well, where both exist and `to` has none there yet. */
+/* Lets `to` hold a tile of `from` as well, where both exist and `to` has none there yet. */
 void fg_tiles_share(const fg_tiles *from, int32_t column, int32_t row, fg_tiles *to,
                     int32_t to_column, int32_t to_row);
 
-/* Memory for the tables of an area whose width, height and bytes_per_pixel are set. */
+/* Allocates the tables of an area whose width, height and bytes_per_pixel are set. */
 fg_status fg_tiles_allocate(fg_context *ctx, fg_tiles *tiles);
 
 void fg_tiles_free(fg_tiles *tiles);

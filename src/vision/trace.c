@@ -13,14 +13,14 @@ enum {
   POINTS_MIN = 8,  /* of a strip */
 };
 #define LENGTH_MIN 12.0 /* shortest strip, in strip widths */
-/* Two traces are one strip when so much of the shorter lies on the longer. */
+/* Min share of the shorter of two traces that lies on the longer, for one strip. */
 #define OVERLAP_SHARE 0.5
-/* The first cuts reach so far to either side: a strip of four times the width that the design
- * expects fits in, and so much background. */
+/* Half width of the first cuts: they hold a strip of four times the design's width, and background
+ * beside it. */
 #define SEED_WINDOW_WIDTHS 3.0
 #define SEED_WINDOW_PX     8.0
 
-/* Clears the blocks of the object that lie along a trace, and returns how many are left. */
+/* Clears the blocks of the object that lie along a trace, and returns the number of the others. */
 static int32_t clear_along(const fg_trace *trace, const fg_trace_walker *w, fg_point seed,
                            uint8_t *open) {
   const fg_object *o = w->object;
@@ -83,7 +83,7 @@ bool fg_trace_is_same(const fg_trace *a, const fg_trace *b) {
   return (double)on > OVERLAP_SHARE * (double)brief->count;
 }
 
-/* Keeps a trace that is long enough to be a strip; of one strip the longest trace stays. */
+/* Keeps a trace that is long enough for a strip; of one strip the longest trace stays. */
 static void keep_or_drop(fg_trace *trace, fg_trace_list *list) {
   double length = 0;
   for (size_t k = 0; k < list->count; k++) {

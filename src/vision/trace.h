@@ -3,8 +3,8 @@
  *
  * From a seed inside the strip the walk steps along the tangent, cuts the strip across, and puts
  * the next point into the middle of the cut. It goes on through short gaps (a scratch, a speck of
- * dust) and stops where the strip ends. Points are good to a few tenths of a pixel: a reference
- * line for the edges, not a measurement.
+ * dust) and stops at the strip's end. Points are good to a few tenths of a pixel: a reference line
+ * for the edges, not a measurement.
  */
 #ifndef FG_VISION_TRACE_H
 #define FG_VISION_TRACE_H
@@ -22,13 +22,13 @@ typedef struct fg_trace_list {
   size_t count;
 } fg_trace_list;
 
-/* All strips of one object. `width_px` is what the design expects; strips of a quarter to four
+/* Traces all strips of one object. `width_px` is the design's width; strips of a quarter to four
  * times that are traced. An object that is no strip gives an empty list. */
 fg_status fg_trace_object(fg_context *ctx, const fg_tiles *tiles,
                           const fg_segmentation *segmentation, const fg_object *object,
                           double width_px, fg_trace_list *list);
 
-/* Whether the shorter of two traces lies on the longer: they are one strip. */
+/* Returns true when the shorter of two traces lies on the longer: they are one strip. */
 bool fg_trace_is_same(const fg_trace *a, const fg_trace *b);
 
 void fg_trace_list_free(fg_trace_list *list);

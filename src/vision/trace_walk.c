@@ -11,26 +11,26 @@
 enum {
   PROFILE_MAX = 1024,   /* samples across */
   SEED_ANGLES = 24,     /* directions tried at a seed */
-  SEED_ROUNDS = 3,      /* each from the middle that the one before found */
-  TANGENT_POINTS = 3,   /* the tangent is taken over so many steps */
-  CONTRAST_HALF_PX = 8, /* the contrast is that of so many pixels to either side of the seed */
+  SEED_ROUNDS = 3,      /* each from the middle that the round before found */
+  TANGENT_POINTS = 3,   /* steps over which the tangent is taken */
+  CONTRAST_HALF_PX = 8, /* pixels to either side of the seed that give the contrast */
 };
 #define GAP_WIDTHS 4.0 /* longest gap that is bridged, in strip widths */
-/* The contrast follows the illumination: a share of every step's own, within these factors of the
- * seed's. */
+/* Contrast along the walk: it follows the illumination by a share of every step's own, within these
+ * factors of the seed's. */
 #define CONTRAST_SHARE 0.1
 #define CONTRAST_RANGE 3.0
-/* A strip that ends so many widths from the scan's border is cut by it. */
+/* Distance from the scan's border, in widths, within which a strip that ends is cut by it. */
 #define BORDER_WIDTHS 1.5
-/* Wider than so many widths is more than one strip; narrower than so many is none. */
+/* Limits of the width: a wider cut is more than one strip, a narrower one is none. */
 #define JOINED_WIDTHS 1.6
 #define NARROW_WIDTHS 0.5
-/* Of the walk; but no step is shorter than this. */
+/* Steps of the walk; none is shorter than this. */
 #define STEPS_PER_WIDTH 3.0
 #define STEP_MIN_PX     3.0
 /* Background on either side of a cut along the strip. */
 #define WINDOW_MARGIN_PX 6.0
-/* Where no flank was seen. */
+/* Blur without a visible flank. */
 #define BLUR_UNKNOWN_PX 2.0
 /* From 75 to 25 % of a normal distribution, in its sd. */
 #define QUARTILES_SD 1.349
@@ -56,9 +56,9 @@ static float background_at(const fg_trace_walker *w, fg_point p) {
                                     (int32_t)(fmin(fmax(p.y, 0), low) / FG_BLOCK_PX));
 }
 
-/* Blur of the flank that falls from inside the strip through j in the direction `step`: the way
- * from 75 to 25 % of the contrast is 1.349 sd. */
-static double flank(const float *profile, int count, int j, int step, float half) {
+/* Blur of the flank that falls from inside the strip through j in the direction `step`: the
+ * distance from 75 to 25 % of the contrast is 1.349 sd. */
+static double flank_blur(const float *profile, int count, int j, int step, float half) {
   int inner = j, outer = j;
   while (inner - step >= 0 && inner - step < count && profile[inner] < 1.5f * half &&
          profile[inner - step] > profile[inner])
@@ -108,12 +108,12 @@ static bool cut_across(const fg_trace_walker *w, fg_point p, fg_point tangent, d
   out->peak = 0;
   for (int j = from; j <= to; j++)
     out->peak = fmax(out->peak, profile[j]);
-  out->blur_px =
-      0.5 * (flank(profile, count, from, -1, limit) + flank(profile, count, to, 1, limit));
+  out->blur_px = 0.5 * (flank_blur(profile, count, from, -1, limit) +
+                        flank_blur(profile, count, to, 1, limit));
   return true;
 }
 
-static fg_point along(fg_point p, fg_point direction, double length) {
+static fg_point point_along(fg_point p, fg_point direction, double length) {
   return (fg_point){p.x + length * direction.x, p.y + length * direction.y};
 }
 
@@ -134,28 +134,28 @@ static bool find_direction(fg_trace_walker *w, fg_point *p, fg_point *tangent) {
       direction = t;
     }
     if (!isfinite(narrowest.width_px)) return false;
-    *p = along(*p, normal_of(direction), narrowest.offset_px);
+    *p = point_along(*p, normal_of(direction), narrowest.offset_px);
     *tangent = direction;
     w->width_px = narrowest.width_px;
   }
   return true;
 }
 
-static bool outside(const fg_trace_walker *w, fg_point p, double margin) {
+static bool is_outside(const fg_trace_walker *w, fg_point p, double margin) {
   return p.x < margin || p.y < margin || p.x > (double)w->tiles->width_px - 1 - margin ||
          p.y > (double)w->tiles->height_px - 1 - margin;
 }
 
-static fg_status append(fg_context *ctx, fg_trace *trace, fg_point p) {
+static fg_status append_point(fg_context *ctx, fg_trace *trace, fg_point p) {
   FG_TRY(fg_memory_reserve(ctx, trace->count + 1, sizeof *trace->points, &trace->capacity,
                            (void **)&trace->points));
   trace->points[trace->count++] = p;
   return FG_OK;
 }
 
-/* The walk may not come back to where it was: a strip is no ring. Every other point is looked at,
- * they are closer than half a width. */
-static bool visited(const fg_trace *trace, fg_point p, double width) {
+/* Returns true when the walk comes back to an earlier place: a strip is no ring. Every other point
+ * is tested, they are closer than half a width. */
+static bool is_visited(const fg_trace *trace, fg_point p, double width) {
   size_t recent = (size_t)(8 * TANGENT_POINTS);
   double limit = 0.25 * width * width;
   for (size_t i = 0; i + recent < trace->count; i += 2) {
@@ -173,9 +173,9 @@ static fg_point tangent_at_end(const fg_trace *trace, fg_point fallback) {
   return length > 0 ? (fg_point){(b.x - a.x) / length, (b.y - a.y) / length} : fallback;
 }
 
-/* The strip's cut one step ahead of p, which lies `missed` past the last good point. Where it is
- * not straight ahead, a little to either side is tried: a tight bend in few pixels turns faster
- * than the direction follows. */
+/* Cuts the strip one step ahead of p, which lies `missed` past the last good point. When it is not
+ * straight ahead, a little to either side is tried: a tight bend in few pixels turns faster than
+ * the direction follows. */
 static bool step_ahead(const fg_trace_walker *w, fg_point p, fg_point *direction, double length,
                        double missed, double contrast, fg_point *next, cut *c) {
   static const double turns[] = {0, 0.26, -0.26, 0.52, -0.52};
@@ -185,8 +185,8 @@ static bool step_ahead(const fg_trace_walker *w, fg_point p, fg_point *direction
     double cosine = cos(turns[i]), sine = sin(turns[i]);
     fg_point d = {cosine * direction->x - sine * direction->y,
                   sine * direction->x + cosine * direction->y};
-    *next = along(p, d, length);
-    if (outside(w, *next, 0)) continue;
+    *next = point_along(p, d, length);
+    if (is_outside(w, *next, 0)) continue;
     bool found = cut_across(w, *next, d, contrast, c);
     if (i == 0) straight_px = c->width_px;
     if (!found || c->width_px >= JOINED_WIDTHS * w->width_px ||
@@ -196,21 +196,21 @@ static bool step_ahead(const fg_trace_walker *w, fg_point p, fg_point *direction
     *direction = d;
     return true;
   }
-  *next = along(p, *direction, length);
+  *next = point_along(p, *direction, length);
   c->width_px = straight_px;
   return false;
 }
 
 /* Walks from p in one direction, appending points (p itself excluded). */
-static fg_status walk(fg_context *ctx, fg_trace_walker *w, fg_point p, fg_point tangent,
-                      fg_trace *trace) {
+static fg_status walk_strip(fg_context *ctx, fg_trace_walker *w, fg_point p, fg_point tangent,
+                            fg_trace *trace) {
   double step = fmax(STEP_MIN_PX, w->width_px / STEPS_PER_WIDTH), missed = 0,
          contrast = w->contrast;
   fg_point direction = tangent;
-  bool joined = false; /* since the last good point the strip was too wide: something lies on it */
+  bool joined = false; /* since the last good point the strip was too wide: an object lies on it */
   while (missed <= GAP_WIDTHS * w->width_px) {
-    fg_point next = along(p, direction, step + missed);
-    if (outside(w, next, 0)) break;
+    fg_point next = point_along(p, direction, step + missed);
+    if (is_outside(w, next, 0)) break;
     cut c;
     bool good = step_ahead(w, p, &direction, step + missed, missed, contrast, &next, &c);
     if (!good) {
@@ -224,19 +224,19 @@ static fg_status walk(fg_context *ctx, fg_trace_walker *w, fg_point p, fg_point 
     missed = 0;
     contrast += CONTRAST_SHARE * (c.peak - contrast);
     contrast = fmin(fmax(contrast, w->contrast / CONTRAST_RANGE), w->contrast * CONTRAST_RANGE);
-    p = along(next, normal_of(direction), c.offset_px);
-    if (visited(trace, p, w->width_px)) break;
+    p = point_along(next, normal_of(direction), c.offset_px);
+    if (is_visited(trace, p, w->width_px)) break;
     w->blur_sum += c.blur_px;
     w->blur_count++;
-    FG_TRY(append(ctx, trace, p));
+    FG_TRY(append_point(ctx, trace, p));
     direction = tangent_at_end(trace, direction);
   }
   if (joined) trace->facts |= FG_STRIP_TOUCHES_OTHER;
-  if (outside(w, p, BORDER_WIDTHS * w->width_px)) trace->facts |= FG_STRIP_TOUCHES_BORDER;
+  if (is_outside(w, p, BORDER_WIDTHS * w->width_px)) trace->facts |= FG_STRIP_TOUCHES_BORDER;
   return FG_OK;
 }
 
-static void reverse(fg_trace *trace) {
+static void reverse_trace(fg_trace *trace) {
   for (size_t i = 0, j = trace->count; i + 1 < j; i++, j--) {
     fg_point swap = trace->points[i];
     trace->points[i] = trace->points[j - 1];
@@ -248,10 +248,10 @@ fg_status fg_trace_from_seed(fg_context *ctx, fg_trace_walker *w, fg_point seed,
   fg_point tangent;
   if (!find_direction(w, &seed, &tangent)) return FG_OK;
   w->half_window_px = w->width_px + WINDOW_MARGIN_PX;
-  FG_TRY(walk(ctx, w, seed, (fg_point){-tangent.x, -tangent.y}, trace));
-  reverse(trace);
-  FG_TRY(append(ctx, trace, seed));
-  FG_TRY(walk(ctx, w, seed, tangent, trace));
+  FG_TRY(walk_strip(ctx, w, seed, (fg_point){-tangent.x, -tangent.y}, trace));
+  reverse_trace(trace);
+  FG_TRY(append_point(ctx, trace, seed));
+  FG_TRY(walk_strip(ctx, w, seed, tangent, trace));
   trace->width_px = w->width_px;
   trace->contrast = w->contrast;
   trace->blur_px = w->blur_count ? w->blur_sum / (double)w->blur_count : BLUR_UNKNOWN_PX;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One walk along a strip. trace.c says from which seeds, and which walks are strips. */
+/* One walk along a strip. trace.c chooses the seeds, and decides which walks are strips. */
 #ifndef FG_VISION_TRACE_WALK_H
 #define FG_VISION_TRACE_WALK_H
 
@@ -30,7 +30,7 @@ typedef struct fg_trace_walker {
  * extremes (a 90th percentile). */
 double fg_trace_contrast_at(const fg_trace_walker *walker, fg_point seed);
 
-/* Both ways from a seed; a seed on no strip leaves the trace empty. */
+/* Walks both ways from a seed; a seed on no strip leaves the trace empty. */
 fg_status fg_trace_from_seed(fg_context *ctx, fg_trace_walker *walker, fg_point seed,
                              fg_trace *trace);
 

@@ -68,7 +68,7 @@ static void add_rows(fg_context *ctx, const sheet *bed, fg_session *session, fg_
         ((uint16_t *)rows)[i] = from[i];
       else
         ((uint8_t *)rows)[i] = (uint8_t)(from[i] / 257);
-    assert_ok(ctx, fg_tiles_take_strip(ctx, tiles));
+    assert_ok(ctx, fg_tiles_accept_strip(ctx, tiles));
     assert_ok(ctx, fg_session_advance(ctx, tiles, session));
   }
 }

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/member_words.h"
+#include "core/json_read.h"
 #include "foilgauge/lot.h"
 #include "foilgauge/station.h"
 #include "support/test.h"

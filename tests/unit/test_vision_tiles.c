@@ -43,7 +43,7 @@ static fg_tiles fill(const scene *s, int bytes, bool strip_by_strip) {
     char *to = fg_tiles_strip(&tiles, strip);
     for (int y = 0; y < fg_tiles_strip_rows(&tiles, strip); y++)
       memcpy(to + y * WIDTH * bytes, rows[strip * FG_TILE_PX + y], (size_t)(WIDTH * bytes));
-    assert_ok(&ctx, fg_tiles_take_strip(&ctx, &tiles));
+    assert_ok(&ctx, fg_tiles_accept_strip(&ctx, &tiles));
   }
   assert_ok(&ctx, fg_tiles_finish(&ctx, &tiles));
   return tiles;

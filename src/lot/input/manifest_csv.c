@@ -40,7 +40,7 @@ static fg_status add_heading(csv_reader *r, const char *text, size_t length) {
 }
 
 static fg_status accept_cell(csv_reader *r, const char *text, size_t length) {
-  fg_csv_take_apostrophe(&text, &length);
+  fg_csv_drop_apostrophe(&text, &length);
   if (!r->named && r->columns == COLUMNS_MAX)
     return fg_fail(r->ctx, FG_ERR_DATA,
                    "%s: more than %d columns, which every line of the reports would repeat; keep "

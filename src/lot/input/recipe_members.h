@@ -6,8 +6,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "core/json_read.h"
 #include "core/json_writer.h"
-#include "core/member_words.h"
 #include "foilgauge/lot.h"
 
 typedef enum fg_recipe_kind {

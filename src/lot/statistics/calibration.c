@@ -32,7 +32,7 @@ static double move_by_thickness(const reading *r, const fg_foil *foil, const fg_
   thick.thickness_mm += u;
   if (thick.u_thickness_scan_mm > 0) thick.thickness_scan_mm += thick.u_thickness_scan_mm;
   if (!part) {
-    fg_quantity_take_moves(FG_QUANTITY_OF_FOIL, foil, &thick, moves);
+    fg_quantity_keep_farthest(FG_QUANTITY_OF_FOIL, foil, &thick, moves);
     return moves[r->at];
   }
   const fg_thickness strip[] = {fg_foil_thickness(design, foil), fg_foil_thickness(design, &thick)};
@@ -40,7 +40,7 @@ static double move_by_thickness(const reading *r, const fg_foil *foil, const fg_
   fg_bump both[] = {*bump, *bump};
   for (int i = 0; i < 2; i++)
     fg_bump_derive(design, &r->analysis->lot->nominal, &foil->overall, &strip[i], &both[i]);
-  fg_quantity_take_moves(FG_QUANTITY_OF_BUMP, &both[0], &both[1], moves);
+  fg_quantity_keep_farthest(FG_QUANTITY_OF_BUMP, &both[0], &both[1], moves);
   return moves[r->at];
 }
 

@@ -10,7 +10,6 @@
 
 #include "core/file.h"
 #include "core/json_read.h"
-#include "core/member_words.h"
 #include "core/text.h"
 #include "foilgauge/design.h"
 #include "foilgauge/report.h"

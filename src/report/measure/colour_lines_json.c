@@ -40,7 +40,7 @@ static void write_shift(fg_json *json, const fg_measurement *m, const fg_colour_
   fg_json_integer(json, "stations", (int64_t)shift->stations);
   fg_json_number(json, "rms_um", shift->rms_um);
   fg_json_number(json, "correlation", shift->correlation);
-  fg_json_number(json, "course_rms_um", shift->course_rms_um);
+  fg_json_number(json, "course_rms_um", shift->drift_rms_um);
   fg_json_number(json, "p_constant", shift->p_constant);
   fg_json_array(json, "course");
   for (size_t i = 0; i < shift->window_count; i++)

@@ -45,7 +45,7 @@ static void put_row(FILE *out, const fg_measurement *m, const fg_colour_shift *s
   put_value(out, shift->dy_px * 25400 / m->dpi[1], shift->u_dy_px * 25400 / m->dpi[1], 2);
   put_value(out, shift->magnification_ppm, shift->u_magnification_ppm, 1);
   put_value(out, shift->skew_ppm, shift->u_skew_ppm, 1);
-  fprintf(out, "<td>%.2g</td><td>%.2g</td></tr>\n", shift->course_rms_um, shift->p_constant);
+  fprintf(out, "<td>%.2g</td><td>%.2g</td></tr>\n", shift->drift_rms_um, shift->p_constant);
 }
 
 static void put_table(FILE *out, const fg_measurement *m) {

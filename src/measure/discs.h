@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Every round feature of a scan. */
-#ifndef FG_MEASURE_MEASURE_DISCS_H
-#define FG_MEASURE_MEASURE_DISCS_H
+#ifndef FG_MEASURE_DISCS_H
+#define FG_MEASURE_DISCS_H
 
 #include "foilgauge/foil.h"
 #include "vision/disc_find.h"
@@ -12,8 +12,8 @@
 fg_status fg_measure_discs(fg_context *ctx, const fg_tiles *tiles, unsigned threads,
                            fg_measurement *m);
 
-/* The round feature near a candidate in tiles of the scan of `m`. Without points: there is none.
- * The caller frees it. */
+/* Measures the round feature near a candidate in tiles of the scan of `m`. Without points: there is
+ * none. The caller frees it. */
 fg_status fg_measure_disc_near(fg_context *ctx, const fg_tiles *tiles, const fg_pixel_shape *shape,
                                const fg_measurement *m, const fg_disc_candidate *candidate,
                                fg_disc *disc);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "measure/colour_course.h"
+#include "measure/colour_drift.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -11,17 +11,18 @@
 #include "foilgauge/distribution.h"
 
 enum {
-  WINDOW_ROWS = 6, /* cross-sections that a window must hold on average */
-  WINDOW_PX = 4,   /* its least length */
-  COARSE = 8,      /* windows of the test for slow courses */
+  WINDOW_ROWS = 6, /* min mean number of cross-sections in a window */
+  WINDOW_PX = 4,   /* min length of a window */
+  COARSE = 8,      /* number of windows in the test for slow drifts */
   ROUNDS = 3,
   SHARED = FG_COLOUR_SHARED, /* unknowns beside dy */
-  BANDWIDTHS = 16,           /* that are tried, each by the factor shorter than the one before */
+  BANDWIDTHS = 16, /* number of bandwidths tried, each shorter than the one before by the factor */
 };
 #define BANDWIDTH_FACTOR 1.5
-/* Windows that tell less than this share of what the middle one tells are left out. */
+/* Min information of a window, as a share of the middle one's. */
 #define TELLING_SHARE 0.1
-/* A row so many standard deviations off its own window is something else than the carriage. */
+/* Limit of a row's deviation from its own window, in standard deviations: a larger one has another
+ * cause than the carriage. */
 #define OUTLIER_SIGMAS 4.5
 
 /* Sums over the rows of one window: of w ny², w ny value, w ny a (a: coefficients of what all
@@ -31,7 +32,7 @@ typedef struct window {
   size_t rows;
 } window;
 
-/* A dy of its own for every window, beside what they share. */
+/* A separate dy for every window, beside the unknowns that they share. */
 typedef struct windows {
   window list[FG_COLOUR_WINDOWS_MAX];
   size_t count;
@@ -50,7 +51,7 @@ static size_t window_of(const windows *w, double y_mm) {
   return place >= (double)w->count ? w->count - 1 : (size_t)place;
 }
 
-/* Windows of equal length over all rows; at most so many. */
+/* Lays out windows of equal length over all rows; at most `max`. */
 static void lay_out(const fg_colour_rows *rows, size_t max, windows *w) {
   double low = INFINITY, high = -INFINITY;
   for (size_t i = 0; i < rows->count; i++) {
@@ -65,7 +66,7 @@ static void lay_out(const fg_colour_rows *rows, size_t max, windows *w) {
   w->length_mm = fmax((high - low) / (double)w->count, 1e-9);
 }
 
-/* Of foils nothing swells. */
+/* Number of shared unknowns; only discs swell. */
 static size_t shared_count(const fg_colour_rows *rows) {
   return rows->unknowns - 1;
 }
@@ -96,7 +97,7 @@ static void fill_windows(const fg_colour_rows *rows, windows *w, fg_normal_equat
   }
 }
 
-/* What a row shows beyond what all share, and beyond its window's dy. */
+/* Residual of a row beyond the shared unknowns, and beyond its window's dy. */
 static double residual_of(const fg_colour_rows *rows, const windows *w, const fg_colour_row *row) {
   double a[SHARED], rest = row->value - row->ny * w->list[window_of(w, row->y_mm)].dy;
   fill_shared(rows, row, a);
@@ -105,8 +106,8 @@ static double residual_of(const fg_colour_rows *rows, const windows *w, const fg
   return rest;
 }
 
-/* Every window's dy, with what they share as it is. */
-static void find_means(windows *w, size_t shared) {
+/* Finds every window's dy with the shared unknowns held. */
+static void find_window_means(windows *w, size_t shared) {
   for (size_t i = 0; i < w->count; i++) {
     window *at = &w->list[i];
     if (!(at->weight > 0)) continue;
@@ -117,7 +118,7 @@ static void find_means(windows *w, size_t shared) {
   }
 }
 
-static void factorise(windows *w, size_t count) {
+static void factorise_shared(windows *w, size_t count) {
   memset(w->factor, 0, sizeof w->factor);
   for (size_t i = 0; i < count; i++)
     for (size_t k = 0; k <= i; k++) {
@@ -128,8 +129,8 @@ static void factorise(windows *w, size_t count) {
     }
 }
 
-/* Least squares over the rows that are used: every window's dy is eliminated, which leaves a small
- * system in what they share. False: that is not told beside so free a course. */
+/* Least squares over the used rows: every window's dy is eliminated, which leaves a small system in
+ * the shared unknowns. False: beside so free a drift they are not determined. */
 static bool solve_windows(const fg_colour_rows *rows, windows *w) {
   fg_normal_equations system;
   double inverse[FG_SMALL_MAX][FG_SMALL_MAX];
@@ -141,8 +142,8 @@ static bool solve_windows(const fg_colour_rows *rows, windows *w) {
   if (!fg_normal_solve(&system, 1e-9, w->shared, inverse)) return false;
   for (size_t k = 0; k < shared; k++)
     memcpy(w->covariance[k], inverse[k], sizeof w->covariance[k]);
-  factorise(w, shared);
-  find_means(w, shared);
+  factorise_shared(w, shared);
+  find_window_means(w, shared);
   w->misfit = 0;
   for (size_t i = 0; i < rows->count; i++) {
     double rest = rows->list[i].used ? residual_of(rows, w, &rows->list[i]) : 0;
@@ -151,8 +152,8 @@ static bool solve_windows(const fg_colour_rows *rows, windows *w) {
   return true;
 }
 
-/* From all rows: what lies off a constant dy may be the carriage, what lies off its own window is
- * not. */
+/* Solves from all rows: an outlier of a constant dy may be the carriage's, an outlier of its own
+ * window is not. */
 static bool find_windows(fg_colour_rows *rows, windows *w) {
   for (size_t i = 0; i < rows->count; i++)
     rows->list[i].used = true;
@@ -173,7 +174,7 @@ static double middle_weight(const windows *w) {
   return fg_select(weights, w->count, w->count / 2);
 }
 
-/* A window's dy with its uncertainty: its own, and that of what all share. */
+/* Returns a window's dy with its uncertainty: its own, and that of the shared unknowns. */
 static fg_colour_window point_of(const fg_colour_rows *rows, const windows *w, const window *from) {
   double um = 1e3 * rows->pixel_mm[1], variance = rows->scatter * rows->correlation;
   double own = um * sqrt(variance / from->weight), lean[SHARED] = {0};
@@ -183,7 +184,8 @@ static fg_colour_window point_of(const fg_colour_rows *rows, const windows *w, c
   double all = own * own;
   for (size_t k = 0; k < shared_count(rows); k++)
     lean[k] = -from->shared[k] / from->weight;
-  /* With the Cholesky factor L of the covariance of what is shared, L' lean are independent. */
+  /* With the Cholesky factor L of the covariance of the shared unknowns, L' lean are independent.
+   */
   for (size_t k = 0; k < shared_count(rows); k++) {
     double sum = 0;
     for (size_t i = k; i < shared_count(rows); i++)
@@ -195,7 +197,7 @@ static fg_colour_window point_of(const fg_colour_rows *rows, const windows *w, c
   return point;
 }
 
-/* Windows that tell something, as points of the course. */
+/* Writes the windows with enough information, as points of the drift. */
 static void write_points(const fg_colour_rows *rows, const windows *w, fg_colour_shift *shift) {
   double min = TELLING_SHARE * middle_weight(w);
   shift->window_count = 0;
@@ -204,8 +206,8 @@ static void write_points(const fg_colour_rows *rows, const windows *w, fg_colour
       shift->windows[shift->window_count++] = point_of(rows, w, &w->list[i]);
 }
 
-/* Weight of a neighbour: 1 / u² of its own, and by how near it is (tricube). */
-static double weigh(const fg_colour_window *p, double away_mm, double reach_mm) {
+/* Weight of a neighbour: 1 / u² of its own, times its nearness (tricube). */
+static double window_weight(const fg_colour_window *p, double away_mm, double reach_mm) {
   double near = fabs(away_mm) / reach_mm, u = (double)p->u_own_um;
   if (near >= 1) return 0;
   double rest = 1 - near * near * near;
@@ -221,7 +223,8 @@ static line fit_line(const fg_colour_shift *shift, double y_mm, double reach_mm)
   double s0 = 0, s1 = 0, s2 = 0, t0 = 0, t1 = 0;
   for (size_t i = 0; i < shift->window_count; i++) {
     const fg_colour_window *p = &shift->windows[i];
-    double d = (double)p->y_mm - y_mm, weight = weigh(p, d, reach_mm), value = (double)p->dy_um;
+    double d = (double)p->y_mm - y_mm, weight = window_weight(p, d, reach_mm),
+           value = (double)p->dy_um;
     s0 += weight;
     s1 += weight * d;
     s2 += weight * d * d;
@@ -233,14 +236,14 @@ static line fit_line(const fg_colour_shift *shift, double y_mm, double reach_mm)
   return (line){(s2 * t0 - s1 * t1) / det, s2 / det, -s1 / det};
 }
 
-/* Uncertainty of the line's value: of the windows' own, and of what they share. */
+/* Uncertainty of the line's value: from the windows' own errors, and from shared ones. */
 static double uncertainty_of(const fg_colour_shift *shift, const line *at, double y_mm,
                              double reach_mm) {
   double own = 0, lean[SHARED] = {0};
   for (size_t i = 0; i < shift->window_count; i++) {
     const fg_colour_window *p = &shift->windows[i];
     double d = (double)p->y_mm - y_mm, u = (double)p->u_own_um;
-    double share = (at->c0 + at->c1 * d) * weigh(p, d, reach_mm);
+    double share = (at->c0 + at->c1 * d) * window_weight(p, d, reach_mm);
     own += share * share * u * u;
     for (int k = 0; k < SHARED; k++)
       lean[k] += share * (double)p->shared_um[k];
@@ -250,13 +253,13 @@ static double uncertainty_of(const fg_colour_shift *shift, const line *at, doubl
   return sqrt(own);
 }
 
-/* Weighted error of every point as the others tell it. */
+/* Weighted error of predicting every point from the others. */
 static double left_out_error(const fg_colour_shift *shift, double reach_mm) {
   double sum = 0;
   for (size_t i = 0; i < shift->window_count; i++) {
     const fg_colour_window *p = &shift->windows[i];
     line at = fit_line(shift, (double)p->y_mm, reach_mm);
-    double share = at.c0 * weigh(p, 0, reach_mm); /* of the point in its own value */
+    double share = at.c0 * window_weight(p, 0, reach_mm); /* of the point in its own value */
     if (share >= 0.999) return INFINITY;
     double error = ((double)p->dy_um - at.value) / (1 - share) / (double)p->u_own_um;
     sum += error * error;
@@ -264,9 +267,8 @@ static double left_out_error(const fg_colour_shift *shift, double reach_mm) {
   return sum;
 }
 
-/* The smooth curve: of the reaches that are tried, the one with which the points tell each other
- * best. */
-static void smooth(fg_colour_shift *shift) {
+/* Smooths with the reach of smallest cross-validation error. */
+static void smooth_drift(fg_colour_shift *shift) {
   size_t count = shift->window_count;
   if (!count) return;
   double span = (double)(shift->windows[count - 1].y_mm - shift->windows[0].y_mm);
@@ -285,7 +287,7 @@ static void smooth(fg_colour_shift *shift) {
   }
 }
 
-double fg_colour_course_at(const fg_colour_shift *shift, double y_mm) {
+double fg_colour_drift_at(const fg_colour_shift *shift, double y_mm) {
   size_t count = shift->window_count, next = 0;
   if (!count) return 0;
   while (next < count && (double)shift->windows[next].y_mm < y_mm)
@@ -296,15 +298,15 @@ double fg_colour_course_at(const fg_colour_shift *shift, double y_mm) {
   return (1 - share) * (double)a->smooth_um + share * (double)b->smooth_um;
 }
 
-/* The course about its mean, px. */
+/* The drift about its mean, px. */
 typedef struct about_mean {
   const fg_colour_shift *shift;
   double mean_um, pixel_um;
 } about_mean;
 
-static double course_px(const void *user, double y_mm) {
+static double drift_px(const void *user, double y_mm) {
   const about_mean *about = user;
-  return (fg_colour_course_at(about->shift, y_mm) - about->mean_um) / about->pixel_um;
+  return (fg_colour_drift_at(about->shift, y_mm) - about->mean_um) / about->pixel_um;
 }
 
 static about_mean find_mean(const fg_colour_rows *rows, fg_colour_shift *shift) {
@@ -317,12 +319,12 @@ static about_mean find_mean(const fg_colour_rows *rows, fg_colour_shift *shift) 
     squares += w * at * at;
   }
   double mean = weight > 0 ? sum / weight : 0;
-  shift->course_rms_um = weight > 0 ? sqrt(fmax(0, squares / weight - mean * mean)) : NAN;
+  shift->drift_rms_um = weight > 0 ? sqrt(fmax(0, squares / weight - mean * mean)) : NAN;
   return (about_mean){shift, mean, 1e3 * rows->pixel_mm[1]};
 }
 
-/* What the windows share and the mean of their dy, as the values of the rows. */
-static void take_values(fg_colour_rows *rows, const windows *w) {
+/* Puts the shared unknowns and the mean of the windows' dy into the values of the rows. */
+static void set_shared_values(fg_colour_rows *rows, const windows *w) {
   double weight = 0, sum = 0, lean[SHARED] = {0}, variance = 0;
   size_t shared = shared_count(rows);
   memset(rows->covariance, 0, sizeof rows->covariance);
@@ -343,20 +345,20 @@ static void take_values(fg_colour_rows *rows, const windows *w) {
   rows->covariance[FG_COLOUR_DY][FG_COLOUR_DY] = 1 / weight + variance;
 }
 
-/* Where nothing says that dy is not constant, what the windows share is told best beside one dy for
- * all: a course as free as theirs would leave the doubt about it in every window. */
-static void take_constants(const fg_colour_rows *rows, windows *w) {
+/* Takes the shared unknowns from a fit with one dy, when nothing contradicts a constant dy. Beside
+ * a drift as free as the windows' their uncertainty would stay in every window. */
+static void use_constant_fit(const fg_colour_rows *rows, windows *w) {
   size_t shared = shared_count(rows);
   for (size_t i = 0; i < shared; i++) {
     w->shared[i] = rows->values[shared_unknowns[i]];
     for (size_t k = 0; k < shared; k++)
       w->covariance[i][k] = rows->covariance[shared_unknowns[i]][shared_unknowns[k]];
   }
-  factorise(w, shared);
-  find_means(w, shared);
+  factorise_shared(w, shared);
+  find_window_means(w, shared);
 }
 
-/* F of a dy for every window against one for all, on the same rows. Slow courses show in few
+/* F of a dy for every window against one for all, on the same rows. Slow drifts show in few
  * windows, steps and ripples in many: the better of two tests. */
 static double test_constant(fg_colour_rows *rows, const windows *fine, windows *scratch) {
   double used = 0, constant, min = 1;
@@ -378,36 +380,35 @@ static double test_constant(fg_colour_rows *rows, const windows *fine, windows *
   return fmin(1, 2 * min);
 }
 
-/* The rows' scatter and its correlation are those about the smooth course: about a constant they
- * would hold the course itself. */
-static bool find_course(fg_colour_rows *rows, windows *w, windows *scratch,
-                        fg_colour_shift *shift) {
+/* Finds the drift. The rows' scatter and its correlation are those about the smooth drift:
+ * about a constant they would hold the drift itself. */
+static bool fit_drift(fg_colour_rows *rows, windows *w, windows *scratch, fg_colour_shift *shift) {
   fg_colour_rows constant = *rows;
   lay_out(rows, FG_COLOUR_WINDOWS_MAX, w);
   shift->window_mm = w->length_mm;
   if (!find_windows(rows, w)) return false;
-  take_values(rows, w);
+  set_shared_values(rows, w);
   write_points(rows, w, shift);
-  smooth(shift);
+  smooth_drift(shift);
   about_mean about = find_mean(rows, shift);
-  fg_colour_rows_scatter(rows, course_px, &about);
+  fg_colour_rows_scatter(rows, drift_px, &about);
   shift->p_constant = test_constant(rows, w, scratch);
   if (!(shift->p_constant < FG_COLOUR_UNEVEN_P)) {
     memcpy(rows->values, constant.values, sizeof rows->values);
     memcpy(rows->covariance, constant.covariance, sizeof rows->covariance);
-    take_constants(rows, w);
+    use_constant_fit(rows, w);
   }
   write_points(rows, w, shift);
-  smooth(shift);
+  smooth_drift(shift);
   find_mean(rows, shift);
   return true;
 }
 
-fg_status fg_colour_course_find(fg_context *ctx, fg_colour_rows *rows, fg_colour_shift *shift,
-                                bool *told) {
+fg_status fg_colour_drift_find(fg_context *ctx, fg_colour_rows *rows, fg_colour_shift *shift,
+                               bool *told) {
   windows *w;
   FG_TRY(fg_memory_allocate(ctx, 2, sizeof *w, (void **)&w));
-  *told = find_course(rows, &w[0], &w[1], shift);
+  *told = fit_drift(rows, &w[0], &w[1], shift);
   free(w);
   return FG_OK;
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "measure/measure_beams.h"
+#include "measure/beams.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -13,28 +13,28 @@
 #include "vision/beam_find.h"
 #include "vision/rims.h"
 
-/* What is smaller than this share of a beam's length is dust. */
+/* Min size of an object that is no dust, as a share of a beam's length. */
 #define MIN_SHARE 0.3
-/* A difference between the edge's core and flanks counts above so many of its own deviations
- * (geometry/disc_fit.c). */
+/* Min difference between the edge's core and flanks, in its own deviations (geometry/disc_fit.c).
+ */
 #define SPLIT_DEVIATIONS 3.0
-/* A Gaussian's shift along a curved edge, s²/2R, is right but for this share of (s/R)². */
+/* Error of a Gaussian's shift along a curved edge, s²/2R, as a share of (s/R)². */
 #define CURVED_U 0.5
-/* A tone curve is known no better than this, in px, whatever its own doubt makes of the place of
- * the edge (reports/accuracy_discs.md: gamma 1.8). */
+/* Min uncertainty of an edge by its tone curve, px, whatever the curve's own uncertainty
+ * (reports/accuracy_discs.md: gamma 1.8). */
 #define TONE_U_PX 0.015
-/* An edge that ends so near to the border is cut by it: a corner's margin, and some. */
+/* Distance from the border within which an edge's end is cut by it: a corner's margin, and some. */
 #define BORDER_PX 12.0
-/* The next edge is too near when its blur may move this one by more, px. */
+/* Max shift by the next edge's blur, px; beyond it the cut is too narrow. */
 #define NARROW_PX 0.01
 
-/* Less of an exponent than this is no finding: edges of a linear scan show as much. */
+/* Min difference of an exponent from 1 that is a finding: edges of a linear scan show as much. */
 #define BENT_MIN 0.05
-/* Straight edges have no wall or ring about them that looks like a tone curve, so more of one is
- * believed than of discs. */
+/* Range of accepted exponents. Straight edges have no wall or ring around them that looks like a
+ * tone curve, so the range is wider than that of discs. */
 static const double range_of_gamma[2] = {0.25, 3.5};
 
-/* An island at work. */
+/* An island in work. */
 typedef struct flat_work {
   fg_line_view view;
   const int64_t *origin_px;
@@ -42,13 +42,14 @@ typedef struct flat_work {
   fg_rims rims;
   fg_polygon *polygons; /* one per rim */
   fg_beam_places places;
-  size_t *place_rim; /* which rim a place lies on */
+  size_t *place_rim; /* rim of each place */
   fg_tone *tones;    /* two per place */
   fg_tone tone;
-  double bent_gamma; /* what the edges show where the tone is stated as linear; 1: they agree */
+  double bent_gamma; /* exponent shown by the edges where the tone is stated as linear; 1: they
+                        agree */
   fg_beam *beams;    /* one per place */
   int *driven;       /* long edges per place that show a driver's model */
-  bool plain;        /* no edge is asked for one */
+  bool plain;        /* no driver is sought at any edge */
 } flat_work;
 
 static double min_px(const fg_measurement *m, const fg_pixel_shape *shape) {
@@ -90,8 +91,8 @@ static fg_status find_tone(fg_context *ctx, void *shared, size_t i) {
   return status == FG_ERR_NUMERIC ? FG_OK : status;
 }
 
-/* What the flanks and the core of the whole edge differ by, beyond what chance makes of it. The
- * sum's own variance is that of its stations, raised by how much more they scatter. */
+/* Difference of the whole edge's flanks and core, beyond chance. The sum's own variance is that of
+ * its stations, raised by the ratio of their scatter. */
 static double find_split(const fg_disc_edge *edge) {
   double sum = 0, weights = 0, squares = 0, n = 0;
   for (size_t i = 0; i < edge->count; i++) {
@@ -110,7 +111,7 @@ static double find_split(const fg_disc_edge *edge) {
   return copysign(sqrt(mean * mean - variance), mean);
 }
 
-/* What the level of an edge may move it by, px. */
+/* Uncertainty of an edge's place by its level, px. */
 static double find_uncertainty(const flat_work *w, const fg_stretch *side,
                                const fg_disc_edge *found, double overlap_px) {
   double contrast = fabs(found->inside - found->outside), ratio = found->blur_px / side->radius;
@@ -122,7 +123,7 @@ static double find_uncertainty(const flat_work *w, const fg_stretch *side,
   return hypot(hypot(found->level_u_px, loss_px), hypot(tone_px, overlap_px)) + curved_px;
 }
 
-static fg_status take_edge(fg_context *ctx, const flat_work *w, const fg_stretch *side,
+static fg_status copy_edge(fg_context *ctx, const flat_work *w, const fg_stretch *side,
                            const fg_disc_edge *found, double u_px, fg_beam_edge *edge) {
   double mm = w->view.shape.um / 1000;
   const double origin[2] = {(double)w->origin_px[0] * w->view.shape.scale[0],
@@ -154,8 +155,8 @@ static fg_point to_mm(const flat_work *w, fg_point p) {
                     (p.y + (double)w->origin_px[1] * w->view.shape.scale[1]) * mm};
 }
 
-/* What moves the apex of a round floor is blur along it, which is what blurs the beam's long edges;
- * its own blur was taken for it. */
+/* Corrects the apex of a round floor: blur along it moves the apex, and that is the blur of the
+ * beam's long edges; its own blur was used before. */
 static void mend_curved(const flat_work *w, const fg_stretch *side, const fg_beam_edge *left,
                         fg_disc_edge *found) {
   double along_px = left->blur_mm * 1000 / w->view.shape.um;
@@ -165,14 +166,14 @@ static void mend_curved(const flat_work *w, const fg_stretch *side, const fg_bea
     found->stations[i].edge_px += (float)shift;
 }
 
-/* By how much the count of half the light is off the middle of an edge's levels, as a share. */
+/* Offset of the count of half the light from the middle of an edge's levels, as a share. */
 static double level_of(double gamma, const fg_disc_edge *edge) {
   double light = 0.5 * (fg_edge_light(gamma, edge->inside) + fg_edge_light(gamma, edge->outside));
   double off = fg_edge_count(gamma, light) - edge->inside;
   return off / (edge->outside - edge->inside) - 0.5;
 }
 
-/* The tone is stated as linear, and the edges show another one. */
+/* Adds the uncertainty of a tone that is stated as linear when the edges show another one. */
 static void u_linear(const flat_work *w, fg_disc_edge *edge) {
   if (w->bent_gamma == 1) return;
   edge->picture.level = 0;
@@ -195,14 +196,14 @@ static fg_status measure_edge(fg_context *ctx, const flat_work *w, const fg_stre
     mend_curved(w, side, &beam->edges[FG_BEAM_LEFT], at);
     u_linear(w, at);
     fg_picture_merge(&beam->picture, &at->picture);
-    status = take_edge(ctx, w, side, at, find_uncertainty(w, side, at, overlap_px), edge);
+    status = copy_edge(ctx, w, side, at, find_uncertainty(w, side, at, overlap_px), edge);
   }
   fg_disc_edge_free(at);
   return status == FG_ERR_NUMERIC ? FG_OK : status;
 }
 
-/* Tip and floor are short: both are seen through what a long edge shows of the driver, so that
- * between them it cancels. */
+/* Measures tip and floor, which are short, with the driver of a long edge, so that its error
+ * cancels between them. */
 static fg_status measure_sides(fg_context *ctx, const flat_work *w, const fg_beam_place *place,
                                fg_beam *beam, int *driven) {
   fg_line_found found;
@@ -217,7 +218,8 @@ static fg_status measure_sides(fg_context *ctx, const flat_work *w, const fg_bea
   return FG_OK;
 }
 
-/* An edge of it ends at the border of the scan: of the view, whose other borders are far away. */
+/* Returns true when an edge of it ends at the border of the scan, which is the view's; its other
+ * borders are far away. */
 static bool is_at_border(const flat_work *w, const fg_beam_place *place) {
   const double high[2] = {(double)w->view.tiles->width_px - BORDER_PX,
                           (double)w->view.tiles->height_px - BORDER_PX};
@@ -230,7 +232,7 @@ static bool is_at_border(const flat_work *w, const fg_beam_place *place) {
   return false;
 }
 
-/* The edges of one beam, and where it lies as far as that is known. */
+/* Measures the edges of one beam, and its place as far as it is known. */
 static fg_status measure_edges(fg_context *ctx, void *shared, size_t i) {
   flat_work *w = shared;
   const fg_beam_place *place = &w->places.list[i];
@@ -244,7 +246,7 @@ static fg_status measure_edges(fg_context *ctx, void *shared, size_t i) {
   return measure_sides(ctx, w, place, beam, &w->driven[i]);
 }
 
-static fg_status take_part(fg_context *ctx, flat_work *w, size_t r, fg_flat_part *part) {
+static fg_status make_part(fg_context *ctx, flat_work *w, size_t r, fg_flat_part *part) {
   const fg_rim *rim = &w->rims.list[r];
   const fg_polygon *polygon = &w->polygons[r];
   size_t count = 0;
@@ -266,20 +268,21 @@ static fg_status take_part(fg_context *ctx, flat_work *w, size_t r, fg_flat_part
   return FG_OK;
 }
 
-static fg_status take_parts(fg_context *ctx, flat_work *w, bool light, fg_flat_parts *parts) {
+static fg_status make_parts(fg_context *ctx, flat_work *w, bool light, fg_flat_parts *parts) {
   for (size_t r = 0; r < w->rims.count; r++) {
     fg_flat_part *part;
     FG_TRY(fg_memory_reserve(ctx, parts->count + 1, sizeof *parts->list, &parts->capacity,
                              (void **)&parts->list));
     part = &parts->list[parts->count++];
     *part = (fg_flat_part){.light = light};
-    FG_TRY(take_part(ctx, w, r, part));
+    FG_TRY(make_part(ctx, w, r, part));
   }
   parts->specks += w->rims.specks;
   return FG_OK;
 }
 
-/* A tone that is stated stays in force; what the edges say against it is their doubt. */
+/* Finds the common tone. A stated tone stays in force; its contradiction by the edges is their
+ * uncertainty. */
 static void find_common_tone(flat_work *w, size_t count) {
   const fg_tone shown = fg_tone_pool_within(w->tones, count, range_of_gamma);
   w->bent_gamma = 1;
@@ -303,7 +306,7 @@ static fg_status measure_places(fg_context *ctx, flat_work *w, unsigned threads)
   for (size_t i = 0; i < count; i++)
     driven += w->driven[i];
   if (driven == 0 || (size_t)driven > count) return FG_OK;
-  /* A driver works on all edges: what half of them or less show is their own roughness. */
+  /* A driver affects all edges: deviations of half of them or less are their own roughness. */
   w->plain = true;
   for (size_t i = 0; i < count; i++)
     fg_beam_free(&w->beams[i]);
@@ -344,7 +347,7 @@ fg_status fg_flat_island_measure(fg_context *ctx, const fg_flat_island *island,
   FG_TRY_EXIT(fg_rims_trace(ctx, island->view, island->island, &options, &w.rims));
   FG_TRY_EXIT(find_places(ctx, &w, threads));
   FG_TRY_EXIT(measure_places(ctx, &w, threads));
-  FG_TRY_EXIT(take_parts(ctx, &w, light, parts));
+  FG_TRY_EXIT(make_parts(ctx, &w, light, parts));
 exit:
   free_work(&w);
   return status;
@@ -387,7 +390,7 @@ static bool is_inside(const fg_flat_part *outline, fg_point p) {
   return inside;
 }
 
-/* The smallest outline around a hole, or the outline itself; NULL where there is none. */
+/* Returns the smallest outline around a hole, or the outline itself; NULL without one. */
 static fg_flat_part *find_outline(const fg_flat_parts *parts, fg_flat_part *part) {
   fg_flat_part *best = NULL;
   if (!part->hole) return part;
@@ -401,7 +404,7 @@ static fg_flat_part *find_outline(const fg_flat_parts *parts, fg_flat_part *part
 }
 
 /* Moves a hole's beams to its outline. */
-static fg_status hand_over(fg_context *ctx, fg_flat_part *from, fg_flat_part *to) {
+static fg_status move_beams(fg_context *ctx, fg_flat_part *from, fg_flat_part *to) {
   size_t capacity = to->beam_count;
   if (from == to || !from->beam_count) return FG_OK;
   FG_TRY(fg_memory_reserve(ctx, to->beam_count + from->beam_count, sizeof *to->beams, &capacity,
@@ -439,7 +442,7 @@ fg_status fg_flat_foils_assemble(fg_context *ctx, fg_flat_parts *parts, fg_measu
   size_t light = 0;
   for (size_t i = 0; i < parts->count; i++) {
     fg_flat_part *outline = find_outline(parts, &parts->list[i]);
-    if (outline) FG_TRY(hand_over(ctx, &parts->list[i], outline));
+    if (outline) FG_TRY(move_beams(ctx, &parts->list[i], outline));
     light += parts->list[i].light;
   }
   m->light_on_dark = 2 * light >= parts->count;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What disturbs the strip: a cut through it, or something that lies on it or beside it. */
+/* Kinds of disturbance of a strip: a cut through it, or an object on it or beside it. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,19 +7,21 @@
 #include "core/memory.h"
 #include "vision/edge_work.h"
 
-/* Inside is so many blurs from the edges (or the middle third), beside so many and a pixel. */
+/* Distances from the edges, in blurs, of pixels that count as inside (or the middle third) and as
+ * beside (and a pixel). */
 #define INSIDE_BLURS 1.5
 #define BESIDE_BLURS 2.0
-/* A cut of one row shows so much background in each third of the width, of its area. */
+/* Min share of background in each third of the width at a cut of one row, of its area. */
 #define CUT_SHARE 0.6
-/* Something beside the strip covers so much of the band over a length of one strip's width. */
+/* Min share of the band that an object beside the strip covers, over a length of one strip's width.
+ */
 #define TOUCH_SHARE 0.3
 enum { THIRDS = 3 };
 
-/* Pixels of one station by where they lie. */
+/* Pixels of one station by their place. */
 typedef struct tally {
-  float blank[THIRDS]; /* of the background's level, within the strip */
-  float foreign[2];    /* of the strip's level, beside it */
+  float blank[THIRDS]; /* number at the background's level, within the strip */
+  float foreign[2];    /* number at the strip's level, beside it */
 } tally;
 
 typedef struct defect {
@@ -33,7 +35,7 @@ static bool is_disturbed(const fg_edge_work *work, size_t i) {
   return work->stations[i].facts & FG_STATION_DISTURBED;
 }
 
-/* Where the strip must be: between the good stations on either side of a disturbed run. */
+/* Interpolates the strip's middle between the good stations on either side of a disturbed run. */
 static void find_middles(defect *t) {
   const fg_edge_work *work = t->work;
   size_t count = work->reference->count, good = count;
@@ -101,7 +103,7 @@ static unsigned name_run(const defect *t, size_t first, size_t last) {
   return (cut ? FG_STATION_CUT : 0) | (touched ? FG_STATION_TOUCHED : 0);
 }
 
-/* Only within the strip's ends: beyond them there is background. */
+/* Names the runs within the strip's ends: beyond them there is background. */
 static void name_runs(const defect *t, unsigned *facts) {
   const fg_edge_work *work = t->work;
   size_t count = work->reference->count;

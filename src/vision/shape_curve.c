@@ -1,23 +1,23 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "vision/course.h"
+#include "vision/shape_curve.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "core/spread.h"
 
-/* Stations further than this many robust deviations from the smooth course are left out of it; the
- * floor is for values that are all the same. */
+/* Stations further than this many robust deviations from the smooth curve are left out of it; the
+ * floor is for values that are all equal. */
 #define OUTLIER_DEVIATIONS 4.0
 #define LIMIT_MIN          1e-9
-/* Of the constant's weight, on every other coefficient: a course that turns nowhere stays solvable.
- */
+/* Ridge on every coefficient but the constant, as a share of the constant's weight: a curve over
+ * equal directions stays solvable. */
 #define RIDGE 1e-3
-/* Fewer degrees of freedom than these tell nothing of the scatter. */
+/* Min degrees of freedom for an estimate of the scatter. */
 #define DOF_MIN 4
 
-bool fg_course_solve(fg_normal_equations *system, const fg_course_sums *sums, bool judged,
-                     double *coefficients, double *real) {
+bool fg_shape_curve_solve(fg_normal_equations *system, const fg_shape_curve_sums *sums, bool judged,
+                          double *coefficients, double *real) {
   double x[FG_SMALL_MAX];
   for (size_t b = 1; b < system->unknowns; b++)
     system->matrix[b][b] += RIDGE * system->matrix[0][0];
@@ -29,6 +29,6 @@ bool fg_course_solve(fg_normal_equations *system, const fg_course_sums *sums, bo
   return true;
 }
 
-double fg_course_limit(double *sizes, size_t count) {
+double fg_shape_curve_limit(double *sizes, size_t count) {
   return fg_spread_limit(sizes, count, OUTLIER_DEVIATIONS) + LIMIT_MIN;
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "measure/measure_discs.h"
+#include "measure/discs.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -14,15 +14,14 @@
 #include "vision/disc_edge.h"
 #include "vision/disc_find.h"
 
-/* Round features below this radius are dust, unless the design states smaller ones; an edge needs
- * so many pixels of radius at the least. */
+/* Min radius of a round feature that is no dust, unless the design states smaller ones; and of an
+ * edge, in pixels. */
 #define RADIUS_MIN_MM 0.2
 #define RADIUS_MIN_PX 14.0
 #define DESIGN_SHARE  0.7
-/* Edges that leave their circle by more than this share of the radius (rms) are no round feature.
- */
+/* Max rms deviation of a round feature's edge from its circle, as a share of the radius. */
 #define ROUND_SHARE 0.04
-/* What surrounds a disc is background when it is this near to it, as a share of the contrast. */
+/* Max difference of a disc's surroundings from background, as a share of the contrast. */
 #define BACKGROUND_SHARE 0.3
 
 typedef struct disc_work {
@@ -65,8 +64,8 @@ static fg_status find_background(fg_context *ctx, const fg_tiles *tiles, double 
   return FG_OK;
 }
 
-/* Stations of the edge as points in mm, and their circle. The picture's state and the blur are
- * there. */
+/* Converts stations of the edge to points in mm, and fits their circle. The picture's state and the
+ * blur are set already. */
 static fg_status fit_edge(fg_context *ctx, const disc_work *work, const fg_disc_edge *edge,
                           fg_disc *disc) {
   fg_disc_point *points;
@@ -93,7 +92,7 @@ static fg_status fit_edge(fg_context *ctx, const disc_work *work, const fg_disc_
   return fg_disc_measure_again(ctx, disc);
 }
 
-static double count_of(double gamma, double light) {
+static double count_at_gamma(double gamma, double light) {
   return 255 * pow(fmax(light, 0) / 255, 1 / gamma);
 }
 
@@ -107,7 +106,7 @@ static double mean_radius_px(const fg_disc_edge *edge) {
   return edge->circle.radius + sum / n;
 }
 
-/* Diameter and blur with counts taken for the light. */
+/* Measures diameter and blur with counts used as light. */
 static fg_status find_plain(fg_context *ctx, const disc_work *work,
                             const fg_disc_candidate *candidate, const fg_disc_edge *edge,
                             fg_disc *disc) {
@@ -125,7 +124,7 @@ static fg_status find_plain(fg_context *ctx, const disc_work *work,
   return FG_OK;
 }
 
-static void describe(const disc_work *work, const fg_disc_edge *edge, fg_disc *disc) {
+static void describe_disc(const disc_work *work, const fg_disc_edge *edge, fg_disc *disc) {
   disc->picture = edge->picture;
   double contrast = fabs(edge->inside - edge->outside);
   disc->bright = edge->inside > edge->outside;
@@ -133,7 +132,8 @@ static void describe(const disc_work *work, const fg_disc_edge *edge, fg_disc *d
   disc->blur_um = edge->blur_px * work->shape.um;
   disc->spread_px = edge->spread_px;
   disc->asymmetry = edge->asymmetry;
-  disc->contrast = fabs(count_of(edge->gamma, edge->inside) - count_of(edge->gamma, edge->outside));
+  disc->contrast =
+      fabs(count_at_gamma(edge->gamma, edge->inside) - count_at_gamma(edge->gamma, edge->outside));
 }
 
 static fg_status find_tone(fg_context *ctx, void *shared, size_t i) {
@@ -144,14 +144,14 @@ static fg_status find_tone(fg_context *ctx, void *shared, size_t i) {
   return status == FG_ERR_NUMERIC ? FG_OK : status;
 }
 
-/* One candidate; what turns out to be no round feature is left without points. */
+/* Measures one candidate; one that is no round feature stays without points. */
 static fg_status measure_candidate(fg_context *ctx, void *shared, size_t i) {
   disc_work *work = shared;
   fg_disc *disc = &work->discs[i];
   fg_disc_edge edge = {0};
   fg_status status = fg_disc_edge_measure(ctx, work->tiles, &work->shape, &work->found->list[i],
                                           &work->tone, &edge);
-  if (status == FG_OK) describe(work, &edge, disc);
+  if (status == FG_OK) describe_disc(work, &edge, disc);
   if (status == FG_OK) status = fit_edge(ctx, work, &edge, disc);
   if (status == FG_OK) status = find_plain(ctx, work, &work->found->list[i], &edge, disc);
   if (status == FG_OK && disc->rms_um > ROUND_SHARE * 1000 * disc->radius_mm) fg_disc_free(disc);
@@ -179,7 +179,7 @@ fg_status fg_measure_disc_near(fg_context *ctx, const fg_tiles *tiles, const fg_
   return measure_candidate(ctx, &work, 0);
 }
 
-/* Two candidates may have led to one edge: the one that is seen over more of the turn stays. */
+/* Returns true when two candidates led to one edge: the one seen over more of the turn stays. */
 static bool is_same(const fg_disc *a, const fg_disc *b) {
   double distance = hypot(a->centre_mm.x - b->centre_mm.x, a->centre_mm.y - b->centre_mm.y);
   double limit = 0.05 * fmin(a->radius_mm, b->radius_mm);
@@ -195,9 +195,9 @@ static void drop_doubles(const disc_work *work) {
     }
 }
 
-/* Discs in reading order; the polarity is that of what lies on the background, or of what holes
- * are surrounded by. */
-static void hand_over(disc_work *work, fg_measurement *m) {
+/* Hands over the discs in reading order. The polarity is that of parts on the background, or of the
+ * surroundings of holes. */
+static void hand_out_discs(disc_work *work, fg_measurement *m) {
   int votes = 0;
   size_t count = work->found->count;
   drop_doubles(work);
@@ -226,7 +226,7 @@ static fg_status measure_candidates(fg_context *ctx, disc_work *work, unsigned t
   if (!linear) FG_TRY_EXIT(fg_parallel_run(ctx, threads, count, find_tone, work));
   work->tone = linear ? fg_tone_linear() : fg_tone_pool(work->tones, count);
   FG_TRY_EXIT(fg_parallel_run(ctx, threads, count, measure_candidate, work));
-  hand_over(work, m);
+  hand_out_discs(work, m);
 exit:
   for (size_t i = 0; work->discs && i < count; i++)
     fg_disc_free(&work->discs[i]);
