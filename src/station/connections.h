@@ -28,7 +28,7 @@ typedef struct fg_connection {
   struct MHD_Connection *connection; /* NULL: none here */
   int socket;
   fg_client client;
-  double until; /* when it is cut off (core/clock.h); 0: not, it is being answered */
+  double until; /* when it is cut off (fg_clock_seconds); 0: not, it is being answered */
   bool cut;     /* it is closed as soon as the library sees that */
 } fg_connection;
 

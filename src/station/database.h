@@ -23,7 +23,7 @@ typedef struct fg_station_database {
   dev_t device; /* which file it is: another one may come under its name */
   ino_t inode;
   int64_t in_file;   /* the writer's changes that are in the file itself, not in its journal only */
-  double in_file_at; /* when that was so (core/clock.h) */
+  double in_file_at; /* when that was so (fg_clock_seconds) */
 } fg_station_database;
 
 /* Opens or makes folder/FG_STATION_DATABASE and brings it up to date. FG_ERR_DATA: damaged, no
