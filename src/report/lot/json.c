@@ -337,49 +337,62 @@ static void write_lot_dies(fg_json *json, const fg_lot_analysis *analysis) {
   fg_json_object_end(json);
 }
 
+static void write_lot_head(fg_json *json, const fg_lot_analysis *analysis) {
+  const fg_lot *lot = analysis->lot;
+  const char *model_sha256 = lot->settings.model_sha256;
+  fg_json_head(json, "foilgauge/lot/1");
+  fg_json_string(json, "name", lot->settings.name);
+  write_lot_date(json, lot);
+  fg_json_verdict(json, analysis->outcome.verdict);
+  write_foil_counts(json, analysis);
+  fg_lot_json_process(json, analysis);
+  fg_json_string(json, "recipe_sha256", lot->head.recipe_sha256);
+  fg_json_string(json, "manifest_sha256", lot->head.manifest_sha256);
+  fg_json_string(json, "model_sha256", model_sha256[0] ? model_sha256 : NULL);
+  fg_json_scan_model(json, "model", lot->model);
+  fg_correction max = fg_lot_correction_largest(analysis);
+  fg_json_correction(json, &max);
+  fg_json_calibration_used(json, "calibration", &lot->settings.design.calibration);
+  fg_json_design(json, "design", &lot->settings.design);
+}
+
+static void write_lot_quantities(fg_json *json, const fg_lot_analysis *analysis) {
+  fg_json_object(json, "quantities");
+  for (size_t i = 0; i < analysis->quantity_count; i++)
+    write_lot_quantity(json, analysis, &analysis->quantities[i]);
+  fg_json_object_end(json);
+  if (analysis->has_correlation) write_correlation(json, &analysis->correlation);
+  write_thickness(json, analysis);
+}
+
+static void write_lot_comparisons(fg_json *json, const fg_lot_analysis *analysis) {
+  fg_json_array(json, "comparisons");
+  for (size_t i = 0; i < analysis->difference_count; i++)
+    write_difference(json, &analysis->differences[i]);
+  fg_json_array_end(json);
+  fg_json_array(json, "gauge_studies");
+  for (size_t i = 0; i < analysis->gauge_count; i++)
+    write_gauge(json, fg_lot_words_of(analysis), &analysis->gauges[i]);
+  fg_json_array_end(json);
+}
+
 fg_status fg_lot_write_json(fg_context *ctx, const fg_lot_analysis *analysis, FILE *out) {
   const fg_lot *lot = analysis->lot;
+  bool bumps = fg_foil_kind_has_bumps(lot->settings.design.kind);
   fg_json json;
   fg_json_begin(&json, out);
   fg_json_object(&json, NULL);
-  fg_json_head(&json, "foilgauge/lot/1");
-  fg_json_string(&json, "name", lot->settings.name);
-  write_lot_date(&json, lot);
-  fg_json_verdict(&json, analysis->outcome.verdict);
-  write_foil_counts(&json, analysis);
-  fg_lot_json_process(&json, analysis);
-  fg_json_string(&json, "recipe_sha256", lot->head.recipe_sha256);
-  fg_json_string(&json, "manifest_sha256", lot->head.manifest_sha256);
-  fg_json_string(&json, "model_sha256",
-                 lot->settings.model_sha256[0] ? lot->settings.model_sha256 : NULL);
-  fg_json_scan_model(&json, "model", lot->model);
-  fg_correction max = fg_lot_correction_largest(analysis);
-  fg_json_correction(&json, &max);
-  fg_json_calibration_used(&json, "calibration", &lot->settings.design.calibration);
-  fg_json_design(&json, "design", &lot->settings.design);
-  bool bumps = fg_foil_kind_has_bumps(lot->settings.design.kind);
+  write_lot_head(&json, analysis);
   if (bumps) fg_json_nominal(&json, "nominal", &lot->nominal);
   write_lot_inputs(&json, lot);
   write_lot_foils(&json, analysis);
-  fg_json_object(&json, "quantities");
-  for (size_t i = 0; i < analysis->quantity_count; i++)
-    write_lot_quantity(&json, analysis, &analysis->quantities[i]);
-  fg_json_object_end(&json);
-  if (analysis->has_correlation) write_correlation(&json, &analysis->correlation);
-  write_thickness(&json, analysis);
+  write_lot_quantities(&json, analysis);
   if (bumps) fg_lot_json_stiffness(&json, analysis);
   if (bumps) fg_lot_json_bearings(&json, analysis);
   if (bumps) write_lot_dies(&json, analysis);
   fg_reference_curve_write(&json, "reference_curve", &lot->settings);
   if (bumps) fg_lot_json_assembly(&json, analysis);
-  fg_json_array(&json, "comparisons");
-  for (size_t i = 0; i < analysis->difference_count; i++)
-    write_difference(&json, &analysis->differences[i]);
-  fg_json_array_end(&json);
-  fg_json_array(&json, "gauge_studies");
-  for (size_t i = 0; i < analysis->gauge_count; i++)
-    write_gauge(&json, fg_lot_words_of(analysis), &analysis->gauges[i]);
-  fg_json_array_end(&json);
+  write_lot_comparisons(&json, analysis);
   fg_json_object_end(&json);
   fg_json_end(&json);
   return fg_stream_finish(ctx, out, "lot.json");

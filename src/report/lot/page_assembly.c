@@ -65,28 +65,34 @@ static void put_value_limits(const fg_plot *plot, const fg_assembly_plan *plan,
   }
 }
 
+/* Fits the axes to both curves and to the limits of the quantity. */
+static void fit_axes(const fg_lot_assembly *assembly, size_t value, curve *drawn, curve *design,
+                     fg_plot *plot) {
+  const fg_assembly_plan *plan = &assembly->plan;
+  find_value_range(&assembly->drawn, value, drawn, plot);
+  find_value_range(&assembly->design, value, design, plot);
+  for (size_t i = 0; i < plan->limits; i++) {
+    const double limit[] = {plan->limit[i].lower, plan->limit[i].upper};
+    for (int k = 0; k < 2; k++)
+      if (plan->limit[i].row == fg_assembly_row(value) && isfinite(limit[k])) {
+        plot->x_low = fmin(plot->x_low, UM_PER_MM * limit[k] - 2);
+        plot->x_high = fmax(plot->x_high, UM_PER_MM * limit[k] + 2);
+      }
+  }
+  for (int i = 0; i <= POINTS && drawn->there; i++)
+    plot->y_high =
+        fmax(plot->y_high,
+             1.25 * find_height(drawn, plot->x_low + (plot->x_high - plot->x_low) * i / POINTS));
+}
+
 void fg_lot_plot_assembly(FILE *out, const fg_lot_analysis *analysis, size_t value) {
   const fg_lot_assembly *assembly = &analysis->assembly;
-  const fg_assembly_plan *plan = &assembly->plan;
   const fg_quantity *row = fg_assembly_row(value);
   curve drawn = make_value_curve(&assembly->drawn, value),
         design = make_value_curve(&assembly->design, value);
   fg_plot plot = {out, PLOT_WIDTH, 92, 985, 14, 230, INFINITY, -INFINITY, 0, 0};
   char title[160];
-  find_value_range(&assembly->drawn, value, &drawn, &plot);
-  find_value_range(&assembly->design, value, &design, &plot);
-  for (size_t i = 0; i < plan->limits; i++) {
-    const double limit[] = {plan->limit[i].lower, plan->limit[i].upper};
-    for (int k = 0; k < 2; k++)
-      if (plan->limit[i].row == row && isfinite(limit[k])) {
-        plot.x_low = fmin(plot.x_low, UM_PER_MM * limit[k] - 2);
-        plot.x_high = fmax(plot.x_high, UM_PER_MM * limit[k] + 2);
-      }
-  }
-  for (int i = 0; i <= POINTS && drawn.there; i++)
-    plot.y_high =
-        fmax(plot.y_high,
-             1.25 * find_height(&drawn, plot.x_low + (plot.x_high - plot.x_low) * i / POINTS));
+  fit_axes(assembly, value, &drawn, &design, &plot);
   if (drawn.there && plot.y_high > 0) {
     snprintf(title, sizeof title, "%s, µm", row->words);
     fg_plot_begin(&plot, 280, title);
@@ -95,7 +101,7 @@ void fg_lot_plot_assembly(FILE *out, const fg_lot_analysis *analysis, size_t val
     fg_plot_x_title(&plot, title);
     put_value_curve(&plot, &design, "hypothesis");
     put_value_curve(&plot, &drawn, "curve");
-    put_value_limits(&plot, plan, row);
+    put_value_limits(&plot, &assembly->plan, row);
     double middle = UM_PER_MM * assembly->design.quantile[value][FG_ASSEMBLY_QUANTILES / 2];
     bool right = middle > (plot.x_low + plot.x_high) / 2;
     if (design.there)
