@@ -116,6 +116,7 @@ for wrong in 'temperature_C=675' 'temperature_C 675, duration_h=4' 'temp=675, du
     --model 'temperature_C*duration_h' --at "$wrong" -o wrong.json
 done
 
+brief && exit $failed
 # Axial runs are not asked of a plan that has them.
 coding=(--code temperature_C=550:650 --code duration_h=3:5 --code pressure_bar=16:24)
 analyse axial ccd.csv springback_um 'temperature_C + duration_h + pressure_bar' "${coding[@]}"

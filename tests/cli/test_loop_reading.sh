@@ -67,6 +67,7 @@ for where, said in (("summary", report["summary"]), ("terminal", text), ("page",
 assert any(re.search(pattern, c["sentence"]) for c in json.load(open(name + ".model.json"))["claims"])
 P
 }
+if ! brief; then
 reads factor x 'operator B reads # µm higher than operator A' 0.5
 reads levels x 'die M reads # µm higher than die N, the lowest of 4' 1.2
 reads drift x 'it rises by # µm from the first run to the last' 0.7
@@ -75,6 +76,7 @@ reads trend x 'it falls by # µm from humidity 30 % to 60 %' 0.9
 reads step x 'beyond it the response is # µm higher' 0.8
 reads cycle x 'it swings by # µm from peak to valley' 0.8
 reads bend x '°C, and # µm higher at t 700 °C' 2.6667
+fi
 reads product 't_C + d_h' 'the change from t 500 °C to 600 °C is # µm higher at d 5 h than at d 3 h' 1.6
 reads slopes 't_C + die' 'the change from t 500 °C to 600 °C is # µm higher for die L than for die K' 1.2
 reads cells 'operator + die' 'operator B over operator A is # µm higher for die L than for die K' 0.6

@@ -63,9 +63,14 @@ valid() {
   [ $code -eq 0 ] || [ $code -eq 77 ] || [ $code -eq 127 ] || fail "$* does not validate"
 }
 
+# brief: whether this build is slow, and fewer cases of the same code are enough.
+brief() {
+  [ -n "${FOILGAUGE_TEST_BRIEF-}" ] && [ -z "${FOILGAUGE_TEST_LONG-}" ]
+}
+
 # Builds with sanitizers are slow: what says little more there than other scripts is left to their long tier.
 skip_when_slow() {
-  [ -n "${FOILGAUGE_TEST_BRIEF-}" ] && [ -z "${FOILGAUGE_TEST_LONG-}" ] || return 0
+  brief || return 0
   echo "skipped: this build is slow; tests/run.sh --long runs it"
   exit 77
 }
