@@ -227,6 +227,29 @@ fg_status fg_experiment_predict(fg_context *ctx, const fg_experiment *experiment
  */
 const fg_experiment *fg_experiment_best(const fg_experiment *experiment);
 
+/* Returns the best setting: the one that can be made, where that was asked for. */
+const fg_optimum *fg_experiment_best_point(const fg_experiment *experiment);
+
+/* Returns the p value to judge a column by: its own, or Lenth's where no error is known; NaN:
+ * neither. */
+double fg_experiment_p_value(const fg_experiment *experiment, size_t column);
+
+/* Returns true for a column of the model that is neither constant, nor block, nor aliased. */
+bool fg_experiment_of_interest(const fg_experiment *experiment, size_t column);
+
+/* Returns the numeric factor whose first power alone the column is, or NULL. */
+const fg_factor *fg_experiment_main_factor(const fg_experiment *experiment, size_t column);
+
+/* Returns the factor of the surface's axis k. */
+const fg_factor *fg_surface_factor(const fg_experiment *experiment, size_t k);
+
+/* Returns true where repeated runs show lack of fit. */
+bool fg_experiment_lacks_fit(const fg_experiment *experiment);
+
+/* Returns true where a test of the order is significant; where any of them is. */
+bool fg_order_shows(double p_value);
+bool fg_order_seen(const fg_order_check *order);
+
 /* Converts a factor's value to real units. */
 double fg_factor_real(const fg_factor *factor, double x);
 

@@ -9,9 +9,9 @@
 #include "foilgauge/words.h"
 #include "lots/index.h"
 #include "page/page.h"
-#include "page/provenance.h"
 #include "page/verdict.h"
 #include "report/lot/page_parts.h"
+#include "report/provenance.h"
 
 enum {
   LOTS_FIRST_MAX = 20,

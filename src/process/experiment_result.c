@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Predictions of an analysed experiment, its notes, and freeing it. */
+/* Questions to an analysed experiment, its notes, and freeing it. */
+#include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
 
@@ -49,4 +50,47 @@ void fg_experiment_free(fg_experiment *e) {
   free(e->block);
   free(e->whole_plot);
   *e = (fg_experiment){0};
+}
+
+double fg_experiment_p_value(const fg_experiment *e, size_t column) {
+  double p_value = e->effect[column].p_value;
+  return e->regression.residual_dof ? p_value : e->effect[column].lenth_p_value;
+}
+
+bool fg_experiment_of_interest(const fg_experiment *e, size_t column) {
+  const fg_coefficient *c = &e->regression.coefficient[column];
+  return c->term != FG_MODEL_CONSTANT && !c->aliased && !e->effect[column].block;
+}
+
+bool fg_experiment_lacks_fit(const fg_experiment *e) {
+  const fg_regression *r = &e->regression;
+  return r->pure_dof && r->lack_dof && !e->has_split_plot && r->lack_p_value < 1 - e->confidence;
+}
+
+bool fg_order_shows(double p_value) {
+  return isfinite(p_value) && p_value < FG_ORDER_LEVEL;
+}
+
+bool fg_order_seen(const fg_order_check *order) {
+  return fg_order_shows(order->drift_p) || fg_order_shows(order->neighbours_p) ||
+         fg_order_shows(order->farthest_p);
+}
+
+const fg_factor *fg_surface_factor(const fg_experiment *e, size_t k) {
+  for (size_t f = 0; f < e->factors; f++)
+    if (e->factor[f].variable == e->surface.variable[k]) return &e->factor[f];
+  return NULL;
+}
+
+const fg_factor *fg_experiment_main_factor(const fg_experiment *e, size_t column) {
+  const fg_model_column *c = &e->model.column[column];
+  if (c->parts != 1 || c->part[0].level != FG_PART_NUMBER || c->part[0].power != 1) return NULL;
+  for (size_t f = 0; f < e->factors; f++)
+    if (e->factor[f].variable == c->part[0].variable && e->factor[f].coded) return &e->factor[f];
+  return NULL;
+}
+
+const fg_optimum *fg_experiment_best_point(const fg_experiment *e) {
+  const fg_experiment *best = fg_experiment_best(e);
+  return best->has_rounded ? &best->rounded : &best->optimum;
 }

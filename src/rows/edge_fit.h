@@ -185,7 +185,4 @@ size_t fg_edge_fit_geometry_size(const fg_edge_fit *edge_fit);
 void fg_edge_fit_geometry_save(const fg_edge_fit *edge_fit, double *numbers);
 void fg_edge_fit_geometry_load(fg_edge_fit *edge_fit, double *numbers);
 
-/* Writes the name of a geometry parameter, for reports; `name` holds 48 bytes. */
-void fg_edge_fit_parameter_name(const fg_edge_fit *edge_fit, size_t parameter, char *name);
-
 #endif

@@ -2,7 +2,6 @@
 /* Residuals of the points from one geometry, their Jacobian, and the fit. */
 #include <gsl/gsl_linalg.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -42,22 +41,6 @@ static size_t first_of_view(const fg_edge_fit *edge_fit, size_t view) {
 
 void fg_edge_fit_count_parameters(fg_edge_fit *edge_fit) {
   edge_fit->parameters = first_of_view(edge_fit, edge_fit->view_count);
-}
-
-void fg_edge_fit_parameter_name(const fg_edge_fit *edge_fit, size_t parameter, char *name) {
-  for (size_t p = 0; p < edge_fit->part_count; p++) {
-    size_t at = first_of_part(edge_fit, p), count = 1 + 3 * edge_fit->parts[p].bump_count;
-    if (parameter < at || parameter >= at + count) continue;
-    static const char *const names[3] = {"centre_to_centre_mm", "direction_rad", "radius_mm"};
-    size_t k = parameter - at;
-    if (k == 0)
-      snprintf(name, 48, "foil %zu overall.radius_mm", p + 1);
-    else
-      snprintf(name, 48, "foil %zu bump %d %s", p + 1, edge_fit->parts[p].bumps[(k - 1) / 3].number,
-               names[(k - 1) % 3]);
-    return;
-  }
-  snprintf(name, 48, "pose %zu", parameter);
 }
 
 void fg_edge_fit_places(const fg_edge_fit_row *row, fg_point middle,

@@ -90,10 +90,6 @@ static const char *const migrations[] = {
 
 enum { VERSION = sizeof migrations / sizeof *migrations, BUSY_MS = 5000, IN_FILE_EVERY_S = 5 };
 
-int fg_station_database_version(void) {
-  return VERSION;
-}
-
 int64_t fg_station_now(void) {
   struct timespec now;
   clock_gettime(CLOCK_REALTIME, &now);

@@ -13,9 +13,6 @@
 
 #include "station/sql.h"
 
-/* PRAGMA user_version of what this program writes: the number of steps in migrations. */
-int fg_station_database_version(void);
-
 typedef struct fg_station_database {
   sqlite3 *writer, *reader;
   pthread_mutex_t writing, reading;

@@ -90,12 +90,6 @@ void fg_query_number(fg_query *query, double value) {
                                 : sqlite3_bind_null(query->statement, query->bound));
 }
 
-void fg_query_bytes(fg_query *query, const void *bytes, size_t size) {
-  query->bound++;
-  if (query->error == SQLITE_OK)
-    note(query, sqlite3_bind_blob64(query->statement, query->bound, bytes, size, SQLITE_TRANSIENT));
-}
-
 bool fg_query_row(fg_query *query) {
   if (query->error != SQLITE_OK) return false;
   int code = sqlite3_step(query->statement);

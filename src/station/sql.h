@@ -31,7 +31,6 @@ void fg_query_begin(sqlite3 *connection, const char *sql, fg_query *query);
 void fg_query_text(fg_query *query, const char *text);
 void fg_query_integer(fg_query *query, int64_t value);
 void fg_query_number(fg_query *query, double value);
-void fg_query_bytes(fg_query *query, const void *bytes, size_t size);
 /* The next row, or false. */
 bool fg_query_row(fg_query *query);
 /* Of the row, by the column's place from 0: "" and NaN for null. Valid until the next row. */

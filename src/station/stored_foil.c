@@ -9,9 +9,9 @@
 #include "core/text.h"
 #include "foilgauge/scan_loop.h"
 #include "page/page.h"
-#include "page/provenance.h"
 #include "page/verdict.h"
 #include "report/foil_html.h"
+#include "report/provenance.h"
 
 /* NULL where the database has none. */
 static fg_status copy(fg_context *ctx, const fg_query *query, int column, char **text) {

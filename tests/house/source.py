@@ -230,6 +230,12 @@ class _CParser:
         name = self._called_name()
         return (name[0], self.statement[0][1], 'static' in texts) if name else None
 
+    def _stands_in_commented_paragraph(self, offset):
+        """A comment above a group of prototypes is of all of them; one behind a prototype is its own."""
+        text = self.file.text
+        above = text[text.rfind('\n\n', 0, offset) + 1:offset]
+        return '/*' in above or '/*' in text[offset:text.find('\n', text.find(';', offset))]
+
     def _note_prototype(self):
         texts = [t for t, _ in self.statement]
         if '(' not in texts or '{' in texts or texts[0] == 'typedef':
@@ -237,7 +243,7 @@ class _CParser:
         name = self._called_name()
         if name:
             self.file.prototypes.setdefault(name[0], name[1])
-            if self.statement_has_comment:
+            if self.statement_has_comment or self._stands_in_commented_paragraph(name[1]):
                 self.file.documented.add(name[0])
 
 

@@ -22,7 +22,7 @@ ROOM = {
     'src/README.md': MAP,
     'README.md': 'Read `src/core/add.c`, `core/gone.c`, fg_add and fg_gone, ./tests/run.sh.\n',
     'tests/run.sh': '#!/bin/sh\n# Whether it runs.\necho "# What"  # Where it ends\n',
-    'include/foilgauge/add.h': '/* Sum. */\nint fg_add(int a, int b);\nint fg_plain(void);\n',
+    'include/foilgauge/add.h': '/* Sum. */\nint fg_add(int a, int b);\nint fg_plain(void);\n\n/* Both. */\nint fg_grouped(void);\nint fg_other(void);\n\nint fg_bare(void);\nint fg_noted(void); /* 1 */\n',
     'src/core/add.h': '#include "core/take.h"\n',
     'src/core/add.c': '// SPDX-License-Identifier: GPL-3.0-or-later\n// What is\n// added.\n#include "core/add.h"\n'
                       'int fg_add(int a, int b) {\n  /* The sum says what it was. */\n  return a + b; // "what is" is text\n}\n'
@@ -33,6 +33,8 @@ ROOM = {
     'src/stats/stats.h': 'int fg_plain(void);\n',
     'src/stats/stats.c': 'extern "C" {\nint fg_plain(void) {\n  return fg_add(1, (int)sizeof "{");\n}\n}\n' + '\n' * 40,
     'src/report/page.c': '#include "core/add.h"\n#include "foilgauge/add.h"\n' + '\n' * 500,
+    'src/core/public.c': ''.join('int %s(void) {\n  return 1;\n}\n' % name for name in (
+        'fg_grouped', 'fg_other', 'fg_bare', 'fg_noted')) + '\n' * 40,
     'src/report/long.c': 'static const int rows[] = {1, 2};\nvoid fg_long(void) {\n' + '  fg_plain();\n' * 60 + '}\n'
                          '#define USE fg_long()\n',
 }
@@ -68,10 +70,10 @@ class Rules(unittest.TestCase):
                          ['`core/gone.c` does not exist', '`fg_gone` does not exist'])
 
     def test_functions_are_measured_and_their_callers_counted(self):
-        self.assertEqual(self.places(functions.uncalled_functions), ['src/core/take.c:4'])
+        self.assertEqual(self.places(functions.uncalled_functions), ['src/core/public.c:7', 'src/core/take.c:4'])
         self.assertEqual(self.places(functions.bare_verbs), ['src/core/add.c:10'])
         self.assertEqual(self.places(functions.long_functions), ['src/report/long.c:2'])
-        self.assertEqual(functions.function_lengths(self.tree), [3, 3, 3, 4, 62])
+        self.assertEqual(functions.function_lengths(self.tree), [3, 3, 3, 3, 3, 3, 3, 4, 62])
         self.assertEqual(self.places(functions.repeated_static_names), [])
 
     def test_files_are_counted_with_the_file_beside_them(self):

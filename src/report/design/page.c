@@ -6,8 +6,8 @@
 #include "foilgauge/design_report.h"
 #include "foilgauge/words.h"
 #include "page/page.h"
-#include "page/provenance.h"
 #include "page/tile.h"
+#include "report/provenance.h"
 #include "report/stiffness/map.h"
 #include "report/stiffness/table.h"
 

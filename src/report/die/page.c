@@ -7,10 +7,10 @@
 #include "foilgauge/die_report.h"
 #include "foilgauge/words.h"
 #include "page/page.h"
-#include "page/provenance.h"
 #include "page/tile.h"
 #include "page/verdict.h"
 #include "report/die/plots.h"
+#include "report/provenance.h"
 
 static const char *const datum_words[] = {"midline", "inner side", "outer side"};
 static const char *const half_words[FG_DIE_HALVES] = {

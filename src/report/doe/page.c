@@ -6,11 +6,11 @@
 #include "core/file.h"
 #include "foilgauge/words.h"
 #include "page/page.h"
-#include "page/provenance.h"
 #include "page/tile.h"
 #include "report/doe/answer.h"
 #include "report/doe/plots.h"
 #include "report/doe/words.h"
+#include "report/provenance.h"
 #include "report/unit_words.h"
 
 enum { RUNS_SHOWN = 200 };

@@ -32,22 +32,6 @@ const char *fg_goal_word(fg_goal goal) {
   return goal == FG_GOAL_LOWEST ? "lowest" : goal == FG_GOAL_HIGHEST ? "highest" : "target";
 }
 
-double fg_experiment_p_value(const fg_experiment *e, size_t column) {
-  double p_value = e->effect[column].p_value;
-  return e->regression.residual_dof ? p_value : e->effect[column].lenth_p_value;
-}
-
-bool fg_experiment_of_interest(const fg_experiment *e, size_t column) {
-  const fg_coefficient *c = &e->regression.coefficient[column];
-  return c->term != FG_MODEL_CONSTANT && !c->aliased && !e->effect[column].block;
-}
-
-const fg_factor *fg_surface_factor(const fg_experiment *e, size_t k) {
-  for (size_t f = 0; f < e->factors; f++)
-    if (e->factor[f].variable == e->surface.variable[k]) return &e->factor[f];
-  return NULL;
-}
-
 void fg_p_value_text(char text[16], double p_value) {
   if (!isfinite(p_value))
     strcpy(text, "–");
@@ -81,14 +65,6 @@ void fg_sentences_free(fg_sentences *s) {
     free(s->text[i]);
   free(s->text);
   *s = (fg_sentences){0};
-}
-
-const fg_factor *fg_experiment_main_factor(const fg_experiment *e, size_t column) {
-  const fg_model_column *c = &e->model.column[column];
-  if (c->parts != 1 || c->part[0].level != FG_PART_NUMBER || c->part[0].power != 1) return NULL;
-  for (size_t f = 0; f < e->factors; f++)
-    if (e->factor[f].variable == c->part[0].variable && e->factor[f].coded) return &e->factor[f];
-  return NULL;
 }
 
 static fg_status say_effect(fg_context *ctx, const fg_experiment *e, size_t j, fg_sentences *s) {

@@ -40,19 +40,6 @@ fg_status fg_experiment_say_lack(fg_context *ctx, const fg_experiment *experimen
 fg_status fg_experiment_say_asked(fg_context *ctx, const fg_experiment *experiment,
                                   fg_sentences *sentences);
 
-/* True where repeated runs show lack of fit. */
-bool fg_experiment_lacks_fit(const fg_experiment *experiment);
-
-/* Returns the best setting: among those a machine has, where steps were given. */
-const fg_optimum *fg_experiment_best_point(const fg_experiment *experiment);
-
-/* Returns the numeric factor whose first power the column is, or NULL. */
-const fg_factor *fg_experiment_main_factor(const fg_experiment *experiment, size_t column);
-
-/* True when a test of the order is reported; when any is. */
-bool fg_order_shows(double p_value);
-bool fg_order_seen(const fg_order_check *order);
-
 /* Returns the command of the loop on tables for the same data and model. The caller frees it. */
 fg_status fg_experiment_loop_command(fg_context *ctx, const fg_experiment_report *report,
                                      char **command);
@@ -68,15 +55,6 @@ void fg_experiment_setting_words(const fg_experiment *experiment, const double *
 
 const char *fg_surface_kind_word(fg_surface_kind kind);
 const char *fg_goal_word(fg_goal goal);
-
-/* Returns the p value of a column: its own, or Lenth's where there is no error; NaN: neither. */
-double fg_experiment_p_value(const fg_experiment *experiment, size_t column);
-
-/* True for a column of the model that is neither constant, nor block, nor aliased. */
-bool fg_experiment_of_interest(const fg_experiment *experiment, size_t column);
-
-/* Returns the factor of the surface's axis k. */
-const fg_factor *fg_surface_factor(const fg_experiment *experiment, size_t k);
 
 /* "0.0037", "< 0.0001", "–". */
 void fg_p_value_text(char text[16], double p_value);

@@ -7,16 +7,6 @@
 #include "report/doe/words.h"
 #include "report/unit_words.h"
 
-const fg_optimum *fg_experiment_best_point(const fg_experiment *e) {
-  const fg_experiment *best = fg_experiment_best(e);
-  return best->has_rounded ? &best->rounded : &best->optimum;
-}
-
-bool fg_experiment_lacks_fit(const fg_experiment *e) {
-  const fg_regression *r = &e->regression;
-  return r->pure_dof && r->lack_dof && !e->has_split_plot && r->lack_p_value < 1 - e->confidence;
-}
-
 static const fg_idle_factor *idle_of(const fg_experiment *e, size_t variable) {
   for (size_t i = 0; i < e->idles; i++)
     if (e->idle[i].variable == variable) return &e->idle[i];

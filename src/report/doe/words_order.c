@@ -68,10 +68,6 @@ fg_status fg_experiment_say_taken(fg_context *ctx, const fg_experiment_report *r
                           e->regression.residual_dof + e->dof_taken);
 }
 
-bool fg_order_shows(double p_value) {
-  return isfinite(p_value) && p_value < FG_ORDER_LEVEL;
-}
-
 static fg_status say_farthest(fg_context *ctx, const fg_experiment_report *report,
                               fg_sentences *s) {
   const fg_order_check *o = &report->experiment->order;
@@ -146,9 +142,4 @@ fg_status fg_experiment_say_order(fg_context *ctx, const fg_experiment_report *r
 
 bool fg_sentence_is_command(const char *text) {
   return !strncmp(text, program, sizeof program - 1);
-}
-
-bool fg_order_seen(const fg_order_check *order) {
-  return fg_order_shows(order->drift_p) || fg_order_shows(order->neighbours_p) ||
-         fg_order_shows(order->farthest_p);
 }

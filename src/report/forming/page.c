@@ -6,10 +6,10 @@
 #include "core/file.h"
 #include "foilgauge/words.h"
 #include "page/page.h"
-#include "page/provenance.h"
 #include "page/tile.h"
 #include "report/forming/plots.h"
 #include "report/forming/words.h"
+#include "report/provenance.h"
 
 static void put_forming_tile(FILE *out, const char *title, double value, int decimals,
                              const char *unit, const char *small) {

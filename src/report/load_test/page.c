@@ -8,10 +8,10 @@
 #include "foilgauge/load_report.h"
 #include "foilgauge/words.h"
 #include "page/page.h"
-#include "page/provenance.h"
 #include "page/tile.h"
 #include "page/verdict.h"
 #include "report/load_test/plots.h"
+#include "report/provenance.h"
 
 /* Azimuths of a bearing that are drawn with their loops, at most; all are in the table. */
 enum { LOOPS_MAX = 24 };

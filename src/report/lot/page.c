@@ -5,11 +5,11 @@
 #include "core/file.h"
 #include "lot/run/date.h"
 #include "lot/statistics/dies.h"
-#include "page/provenance.h"
 #include "report/lot/files.h"
 #include "report/lot/page_parts.h"
 #include "report/lot/plots.h"
 #include "report/measure/scan_model_words.h"
+#include "report/provenance.h"
 
 /* Puts the effects that the model does not know well enough to correct. */
 static void put_uncorrected(FILE *out, const fg_lot_analysis *analysis) {

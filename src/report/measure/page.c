@@ -5,7 +5,6 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "foilgauge/scan_loop.h"
-#include "page/provenance.h"
 #include "report/correction_words.h"
 #include "report/measure/colour_lines_report.h"
 #include "report/measure/drawing.h"
@@ -15,6 +14,7 @@
 #include "report/measure/scan_model_words.h"
 #include "report/measure/thickness_budget.h"
 #include "report/measure/uncertainty_budget.h"
+#include "report/provenance.h"
 
 static void put_flag_list(FILE *out, const fg_flag_words *words, unsigned flags,
                           unsigned findings) {

@@ -7,8 +7,8 @@
 
 #include "core/file.h"
 #include "core/text.h"
-#include "page/provenance.h"
 #include "page/tile.h"
+#include "report/provenance.h"
 #include "report/scan_loop/parts.h"
 
 static void put_tiles(FILE *out, const fg_scan_result *result) {

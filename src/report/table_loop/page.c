@@ -10,7 +10,7 @@
 #include "core/text.h"
 #include "foilgauge/loop.h"
 #include "page/page.h"
-#include "page/provenance.h"
+#include "report/provenance.h"
 #include "report/table_loop/checks.h"
 #include "report/table_loop/next.h"
 #include "report/table_loop/plots.h"

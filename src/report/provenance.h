@@ -2,8 +2,8 @@
 /* Provenance of a report: the same rows, in the same words, at the end of every page. The date
  * is that of the inputs, never that of the writing: the same inputs give the same bytes, today
  * and in a year. */
-#ifndef FG_PAGE_PROVENANCE_H
-#define FG_PAGE_PROVENANCE_H
+#ifndef FG_REPORT_PROVENANCE_H
+#define FG_REPORT_PROVENANCE_H
 
 #include <stdio.h>
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "page/provenance.h"
+#include "report/provenance.h"
 
 #include <math.h>
 #include <stdlib.h>
