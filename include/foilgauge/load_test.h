@@ -179,10 +179,10 @@ typedef struct fg_load_point {
 
 enum { FG_LOAD_POINTS = 61 }; /* of each side */
 
-typedef struct fg_load_course {
+typedef struct fg_load_profile {
   fg_load_point point[FG_LOAD_POINTS];
   size_t count;
-} fg_load_course;
+} fg_load_profile;
 
 enum { FG_LOAD_PULL, FG_LOAD_PUSH, FG_LOAD_SIDES };
 
@@ -217,7 +217,7 @@ typedef struct fg_load_direction {
   fg_load_value secant;                       /* N/mm, of the loops' ends */
   fg_load_value loss, loss_secant, loss_foil; /* of the test with K or secant; of the foils alone */
   fg_load_friction friction;
-  fg_load_course course[FG_LOAD_SIDES];
+  fg_load_profile profile[FG_LOAD_SIDES];
   fg_load_value predicted;  /* predicted from the lot, mm; NaN: no prediction */
   fg_load_value difference; /* gap - predicted */
   int predicted_pad; /* from 1: pad of the place that is touched first on both sides; 0: none */

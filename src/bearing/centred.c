@@ -36,7 +36,8 @@ static bool surrounded(const fg_places *p) {
 }
 
 /* `target` as a sum of the directions (1, x, y) of three places. */
-static bool weigh(const fg_places *p, const size_t at[3], const double target[3], double w[3]) {
+static bool weigh_places(const fg_places *p, const size_t at[3], const double target[3],
+                         double w[3]) {
   double a[3][3];
   for (int i = 0; i < 3; i++) {
     a[0][i] = 1;
@@ -48,7 +49,7 @@ static bool weigh(const fg_places *p, const size_t at[3], const double target[3]
 
 static bool surround(const fg_places *p, const size_t at[3], double w[3]) {
   static const double axis[3] = {1, 0, 0};
-  return weigh(p, at, axis, w) && w[0] >= -tiny && w[1] >= -tiny && w[2] >= -tiny;
+  return weigh_places(p, at, axis, w) && w[0] >= -tiny && w[1] >= -tiny && w[2] >= -tiny;
 }
 
 /* Rotor (m, a, b) that touches three crowns alike. */
@@ -74,7 +75,7 @@ static bool find_start(const fg_places *p, size_t at[3], double w[3]) {
 }
 
 /* The places nearest to thirds of a turn from the first; of all triples where these do not. */
-static bool start(const fg_places *p, size_t at[3], double w[3]) {
+static bool find_start_places(const fg_places *p, size_t at[3], double w[3]) {
   static const double third[2][2] = {{-0.5, 0.8660254037844386}, {-0.5, -0.8660254037844386}};
   at[0] = at[1] = at[2] = 0;
   for (int side = 0; side < 2; side++) {
@@ -108,7 +109,7 @@ static int leaving(const fg_places *p, const size_t at[3], const double w[3], si
   const double direction[3] = {1, p->x[next], p->y[next]};
   double v[3], min = INFINITY;
   int out = -1;
-  if (!weigh(p, at, direction, v)) return -1;
+  if (!weigh_places(p, at, direction, v)) return -1;
   for (int i = 0; i < 3; i++) {
     if (!(v[i] > tiny) || !(w[i] / v[i] < min)) continue;
     min = w[i] / v[i];
@@ -119,7 +120,7 @@ static int leaving(const fg_places *p, const size_t at[3], const double w[3], si
 
 static bool exchange(const fg_places *p, size_t at[3], double rotor[3]) {
   double w[3], room;
-  if (!start(p, at, w)) return false;
+  if (!find_start_places(p, at, w)) return false;
   for (int i = 0; i < EXCHANGES_MAX; i++) {
     if (!touch_three(p, at, rotor)) return false;
     size_t next = most_overlapped(p, rotor, &room);

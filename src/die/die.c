@@ -17,7 +17,7 @@ typedef struct repeats {
   size_t count;
 } repeats;
 
-static const fg_bump *find_bump(const fg_die_trace *trace, int number) {
+static const fg_bump *find_trace_bump(const fg_die_trace *trace, int number) {
   for (size_t i = 0; i < trace->bump_count; i++)
     if (trace->bumps[i].number == number) return &trace->bumps[i];
   return NULL;
@@ -27,7 +27,7 @@ static void find_repeats(const fg_die *die, fg_die_half half, int number, repeat
   of->count = 0;
   for (size_t i = 0; i < die->trace_count; i++) {
     const fg_die_trace *trace = &die->traces[i];
-    const fg_bump *bump = trace->half == half ? find_bump(trace, number) : NULL;
+    const fg_bump *bump = trace->half == half ? find_trace_bump(trace, number) : NULL;
     if (!bump) continue;
     of->trace[of->count] = trace;
     of->bump[of->count++] = bump;
@@ -35,7 +35,8 @@ static void find_repeats(const fg_die *die, fg_die_half half, int number, repeat
 }
 
 /* Computes mean and sd over repeats; v->u: root mean square of the traces' own u. */
-static void sum_up(const fg_design *design, const repeats *of, fg_die_quantity q, fg_die_value *v) {
+static void sum_up_repeats(const fg_design *design, const repeats *of, fg_die_quantity q,
+                           fg_die_value *v) {
   double n = (double)of->count, sum = 0, square = 0, u_square = 0, u;
   for (size_t i = 0; i < of->count; i++) {
     sum += fg_die_value_of(design, of->trace[i], of->bump[i], q, &u);
@@ -141,7 +142,7 @@ static fg_status list_numbers(fg_context *ctx, const fg_die *die, fg_die_half ha
                             (void **)&side->bumps));
   for (int number = low; number <= high; number++)
     for (size_t i = 0; i < die->trace_count; i++)
-      if (die->traces[i].half == half && find_bump(&die->traces[i], number)) {
+      if (die->traces[i].half == half && find_trace_bump(&die->traces[i], number)) {
         side->bumps[side->bump_count++].number = number;
         break;
       }
@@ -156,7 +157,7 @@ static fg_status bring_half_together(fg_context *ctx, fg_die *die, fg_die_half h
     find_repeats(die, half, side->bumps[i].number, of);
     side->bumps[i].count = of->count;
     for (int q = 0; q < FG_DIE_QUANTITIES; q++)
-      sum_up(&die->design, of, (fg_die_quantity)q, &side->bumps[i].value[q]);
+      sum_up_repeats(&die->design, of, (fg_die_quantity)q, &side->bumps[i].value[q]);
   }
   for (int q = 0; q < FG_DIE_QUANTITIES; q++) {
     double pooled = pooled_sd(side, (fg_die_quantity)q);
@@ -178,7 +179,7 @@ static const fg_die_bump *side_bump(const fg_die_side *side, int number) {
 }
 
 /* Half way between the halves; of one half alone, its value. */
-static fg_die_value between(const fg_die_value *a, const fg_die_value *b) {
+static fg_die_value mean_of_halves(const fg_die_value *a, const fg_die_value *b) {
   if (!a || !b)
     return a ? (fg_die_value){a->value, NAN, a->u} : (fg_die_value){b->value, NAN, b->u};
   return (fg_die_value){0.5 * (a->value + b->value), fabs(a->value - b->value) * M_SQRT1_2,
@@ -189,7 +190,7 @@ static void join_bump(const fg_die_bump *a, const fg_die_bump *b, fg_die_bump *o
   out->number = a ? a->number : b->number;
   out->count = (size_t)(a != NULL) + (size_t)(b != NULL);
   for (int q = 0; q < FG_DIE_QUANTITIES; q++)
-    out->value[q] = between(a ? &a->value[q] : NULL, b ? &b->value[q] : NULL);
+    out->value[q] = mean_of_halves(a ? &a->value[q] : NULL, b ? &b->value[q] : NULL);
 }
 
 static fg_status join_halves(fg_context *ctx, fg_die *die) {
@@ -210,11 +211,11 @@ static fg_status join_halves(fg_context *ctx, fg_die *die) {
   bool both = a->traces && b->traces;
   const fg_die_side *only = a->traces ? a : b;
   for (int q = 0; q < FG_DIE_QUANTITIES; q++)
-    whole->mean[q] = both ? between(&a->mean[q], &b->mean[q]) : only->mean[q];
+    whole->mean[q] = both ? mean_of_halves(&a->mean[q], &b->mean[q]) : only->mean[q];
   whole->overall_radius_mm =
-      both ? between(&a->overall_radius_mm, &b->overall_radius_mm) : only->overall_radius_mm;
+      both ? mean_of_halves(&a->overall_radius_mm, &b->overall_radius_mm) : only->overall_radius_mm;
   whole->overall_error_pct =
-      both ? between(&a->overall_error_pct, &b->overall_error_pct) : only->overall_error_pct;
+      both ? mean_of_halves(&a->overall_error_pct, &b->overall_error_pct) : only->overall_error_pct;
   return FG_OK;
 }
 

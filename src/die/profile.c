@@ -220,7 +220,7 @@ static fg_status check_count(const reader *r, const fg_die_header *header,
       r->source->path, header->points, p->count);
 }
 
-static fg_status read_text(reader *r, fg_die_profile *p) {
+static fg_status read_profile_text(reader *r, fg_die_profile *p) {
   fg_die_header header;
   fg_die_field fields[FG_DIE_FIELDS_MAX];
   FG_TRY(find_data(r));
@@ -259,7 +259,7 @@ fg_status fg_die_profile_load(fg_context *ctx, const fg_die_source *source,
   fg_sha256_text(text, profile->sha256);
   const char *begin = !strncmp(text, "\xef\xbb\xbf", 3) ? text + 3 : text;
   reader r = {.ctx = ctx, .source = source, .text = begin};
-  status = read_text(&r, profile);
+  status = read_profile_text(&r, profile);
 exit:
   free(text);
   if (status != FG_OK) fg_die_profile_free(profile);

@@ -86,7 +86,7 @@ static size_t leave_out_steep(double max_slope_deg, fg_strip *strip) {
 }
 
 /* Seen whole: neither cut by an end of the trace nor by a flank that is too steep. */
-static bool is_whole(const fg_layout *layout, size_t i, double angle_deg) {
+static bool is_complete_arc(const fg_layout *layout, size_t i, double angle_deg) {
   if (!layout->fitted[i]) return false;
   const fg_arc *arc = &layout->bumps[i];
   const fg_strip *strip = layout->line.strip;
@@ -108,7 +108,7 @@ static void drop_bent_arcs(double angle_deg, fg_layout *layout) {
   double rms[BUMPS_MAX];
   size_t n = 0;
   for (size_t i = 0; i < layout->turning.bump_count && n < BUMPS_MAX; i++)
-    if (is_whole(layout, i, angle_deg)) rms[n++] = layout->bumps[i].rms_mm;
+    if (is_complete_arc(layout, i, angle_deg)) rms[n++] = layout->bumps[i].rms_mm;
   if (n < 3) return;
   double limit = POOR_SCATTER * fg_select(rms, n, n / 2);
   for (size_t i = 0; i < layout->turning.bump_count; i++)
@@ -123,7 +123,7 @@ static fg_status find_covariances(fg_context *ctx, fg_layout *layout, double ang
   FG_TRY(fg_memory_allocate(ctx, layout->turning.bump_count, sizeof *whole, (void **)&whole));
   double square = 0;
   for (size_t i = 0; i < layout->turning.bump_count; i++)
-    if (is_whole(layout, i, angle_deg)) {
+    if (is_complete_arc(layout, i, angle_deg)) {
       whole[n++] = &layout->bumps[i];
       square += layout->bumps[i].rms_mm * layout->bumps[i].rms_mm;
     }
@@ -234,7 +234,7 @@ static int places_between(const fg_design *design, const fg_layout *layout, size
   return (int)lround(turn / design->pitch_deg);
 }
 
-static int number_at(const fg_die_source *source, int along, int last) {
+static int bump_number_at(const fg_die_source *source, int along, int last) {
   return (source->first_bump ? source->first_bump : 1) + (source->reversed ? last - along : along);
 }
 
@@ -242,7 +242,7 @@ static int number_at(const fg_die_source *source, int along, int last) {
 static void number_bumps(const fg_die_source *source, int last, fg_die_trace *trace) {
   size_t n = trace->bump_count;
   for (size_t i = 0; i < n; i++)
-    trace->bumps[i].number = number_at(source, trace->bumps[i].number, last);
+    trace->bumps[i].number = bump_number_at(source, trace->bumps[i].number, last);
   for (size_t i = 0; source->reversed && i < n / 2; i++) {
     fg_bump swap = trace->bumps[i];
     trace->bumps[i] = trace->bumps[n - 1 - i];
@@ -263,7 +263,7 @@ static fg_status find_lost(fg_context *ctx, const fg_design *design, const fg_no
       measured = measured || trace->bumps[b].number == along;
     double at_deg = from + rising * design->pitch_deg * (along - at);
     if (!measured && is_traced(layout, nominal, at_deg))
-      trace->lost[trace->lost_count++] = number_at(source, along, last);
+      trace->lost[trace->lost_count++] = bump_number_at(source, along, last);
   }
   return FG_OK;
 }
@@ -276,7 +276,7 @@ static fg_status fill_bumps(fg_context *ctx, const fg_design *design, const fg_l
   FG_TRY(fg_design_derive(ctx, design, &nominal));
   FG_TRY(fg_memory_allocate(ctx, count, sizeof *trace->bumps, (void **)&trace->bumps));
   for (size_t i = 0; i < count; i++) {
-    if (!is_whole(layout, i, design->bump_angle_deg)) continue;
+    if (!is_complete_arc(layout, i, design->bump_angle_deg)) continue;
     fg_bump *bump = &trace->bumps[trace->bump_count++];
     fill_bump(layout, i, design, &nominal, &trace->overall, bump);
     along += trace->bump_count == 1 ? crowns_beyond(design, &nominal, layout, i, -1)

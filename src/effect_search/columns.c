@@ -77,7 +77,7 @@ static double weight_of(const fg_search_columns *s, size_t i) {
   return fg_edge_fit_root_weight(&s->edge_fit->rows[s->row[i]]);
 }
 
-static size_t weigh(const fg_search_columns *s, size_t count, double *out) {
+static size_t weigh_rows(const fg_search_columns *s, size_t count, double *out) {
   for (size_t c = 0; c < count; c++)
     for (size_t i = 0; i < s->rows; i++)
       out[c * s->rows + i] = weight_of(s, i) * s->work[c * s->edge_fit->row_count + s->row[i]];
@@ -127,7 +127,7 @@ size_t fg_search_columns_add(fg_search_columns *s, const fg_effect *effect, cons
   }
   *share = whole > 0 ? left / whole : 0;
   memset(strain, 0, count * s->rows * sizeof *strain);
-  weigh(s, fg_effect_width_columns(s->edge_fit, effect, shape, s->work), strain);
+  weigh_rows(s, fg_effect_width_columns(s->edge_fit, effect, shape, s->work), strain);
   s->count += count;
   fill_products(s, *first);
   return count;
@@ -340,7 +340,7 @@ static fg_status list_rows(fg_context *ctx, fg_search_columns *s) {
   return FG_OK;
 }
 
-static fg_status allocate(fg_context *ctx, fg_search_columns *s) {
+static fg_status allocate_columns(fg_context *ctx, fg_search_columns *s) {
   size_t vector = s->rows * sizeof(double), all = FG_SEARCH_COLUMNS;
   FG_TRY(fg_memory_allocate(ctx, s->edge_fit->parameters + all, vector, (void **)&s->basis));
   size_t max = s->edge_fit->parameters + all;
@@ -399,7 +399,7 @@ fg_status fg_search_columns_open(fg_context *ctx, const fg_edge_fit *edge_fit,
   const fg_scatter *scatter = &edge_fit->scatter;
   s->integral = scatter->share > 0 ? scatter->integral : 1;
   fg_status status = list_rows(ctx, s);
-  if (status == FG_OK) status = allocate(ctx, s);
+  if (status == FG_OK) status = allocate_columns(ctx, s);
   if (status != FG_OK) {
     fg_search_columns_close(s);
     return status;

@@ -18,7 +18,7 @@ typedef struct sums {
   double xx, xl, ll, xr, lr, rr, count;
 } sums;
 
-static double weight_at(const fg_edge_fit *edge_fit, size_t i) {
+static double gauge_weight_at(const fg_edge_fit *edge_fit, size_t i) {
   const fg_edge_fit_row *row = &edge_fit->rows[i];
   return edge_fit->views[row->view].held_out ? 0 : row->weight / FG_EDGE_FIT_BLOCK;
 }
@@ -28,14 +28,15 @@ static const fg_disc *disc_at(const fg_edge_fit *edge_fit, size_t i) {
 }
 
 /* Rows of a view are neighbours; each gauge counts by the mean of its rows. */
-static sums sum_up(const fg_edge_fit *edge_fit, const double *scale, const double *residual_um) {
+static sums sum_up_gauges(const fg_edge_fit *edge_fit, const double *scale,
+                          const double *residual_um) {
   sums sum = {0};
   for (size_t first = 0, last; first < edge_fit->row_count; first = last) {
     double weight = 0, x = 0, r = 0;
     for (last = first;
          last < edge_fit->row_count && edge_fit->rows[last].view == edge_fit->rows[first].view;
          last++) {
-      double w = weight_at(edge_fit, last);
+      double w = gauge_weight_at(edge_fit, last);
       weight += w;
       x += w * scale[last];
       r += w * residual_um[last];
@@ -66,7 +67,7 @@ static double stated_u_um(const fg_edge_fit *edge_fit) {
 double fg_common_level_left(const fg_edge_fit *edge_fit, const double *scale,
                             const double *residual_um) {
   double stated = stated_u_um(edge_fit);
-  sums s = sum_up(edge_fit, scale, residual_um);
+  sums s = sum_up_gauges(edge_fit, scale, residual_um);
   double determinant = s.xx * s.ll - s.xl * s.xl;
   if (s.count < GAUGES_MIN || !(determinant > 1e-9 * s.xx * s.ll)) return stated;
   double level = (s.xx * s.lr - s.xl * s.xr) / determinant;

@@ -54,7 +54,7 @@ typedef struct confirmation {
   size_t group_count, columns_used, index[FG_EFFECT_COLUMNS_MAX];
 } confirmation;
 
-static double weight_at(const fg_edge_fit *edge_fit, size_t i) {
+static double row_weight_at(const fg_edge_fit *edge_fit, size_t i) {
   const fg_edge_fit_row *row = &edge_fit->rows[i];
   return edge_fit->views[row->view].held_out ? 0 : row->weight / FG_EDGE_FIT_BLOCK;
 }
@@ -89,7 +89,7 @@ static void remove_roundness_error(const fg_edge_fit *edge_fit, size_t first, si
   fg_normal_clear(&system, unknowns);
   for (size_t i = first; i < last; i++) {
     roundness_basis(edge_fit, i, of, basis);
-    fg_normal_add(&system, basis, values[i], weight_at(edge_fit, i));
+    fg_normal_add(&system, basis, values[i], row_weight_at(edge_fit, i));
   }
   if (!fg_normal_solve(&system, ROUNDNESS_SINGULAR, x, NULL)) return;
   for (size_t i = first; i < last; i++) {
@@ -120,7 +120,7 @@ static void fill_groups(confirmation *c, bool sides) {
     size_t g = sides ? 2 * at->view + (at->normal.x > 0) : at->view;
     for (size_t k = 0; k < c->columns_used; k++)
       row[k] = c->columns[c->index[k] * rows + i];
-    fg_normal_add(&c->groups[g], row, c->residual[i], weight_at(c->edge_fit, i));
+    fg_normal_add(&c->groups[g], row, c->residual[i], row_weight_at(c->edge_fit, i));
   }
 }
 
@@ -202,7 +202,7 @@ static bool solve_whole(confirmation *c, bool sides, fg_normal_equations *whole,
 }
 
 /* Returns a positive number when discs confirm the effect, larger for stronger confirmation. */
-static double judge_discs(confirmation *c, double needed_p, double needed_errors) {
+static double confirm_by_discs(confirmation *c, double needed_p, double needed_errors) {
   fg_normal_equations whole;
   double x[FG_SMALL_MAX];
   if (!solve_whole(c, false, &whole, x, NULL)) return -INFINITY;
@@ -214,13 +214,13 @@ static double judge_discs(confirmation *c, double needed_p, double needed_errors
 
 /* Returns the variance of the residual beside the effect, per unit of weight, for correlated noise;
  * removes the effect from the residual. */
-static double rest_variance(const confirmation *c, const double *x) {
+static double residual_variance(const confirmation *c, const double *x) {
   double square = 0, count = 0;
   size_t rows = c->edge_fit->row_count;
   for (size_t i = 0; i < rows; i++) {
     for (size_t k = 0; k < c->columns_used; k++)
       c->residual[i] -= x[k] * c->columns[c->index[k] * rows + i];
-    c->residual[i] *= sqrt(weight_at(c->edge_fit, i));
+    c->residual[i] *= sqrt(row_weight_at(c->edge_fit, i));
     square += c->residual[i] * c->residual[i];
     count += c->residual[i] != 0;
   }
@@ -228,15 +228,16 @@ static double rest_variance(const confirmation *c, const double *x) {
                    : INFINITY;
 }
 
-/* As confirm_by_discs, for a step or a ripple beside the form error of every disc, from side to
+/* As the test by discs, for a step or a ripple beside the form error of every disc, from side to
  * side. */
-static double judge_sides(confirmation *c) {
+static double confirm_by_sides(confirmation *c) {
   fg_normal_equations whole;
   double x[FG_SMALL_MAX];
   if (!solve_whole(c, true, &whole, x, NULL)) return -INFINITY;
   if (effective_groups(c, x) < GROUPS_MIN) return -INFINITY;
   double gain = validated_gain(c, &whole) - LISTED_ERRORS;
-  return quadratic(&whole, x) < fg_search_policy_of(c->edge_fit)->placed_chi2 * rest_variance(c, x)
+  return quadratic(&whole, x) <
+                 fg_search_policy_of(c->edge_fit)->placed_chi2 * residual_variance(c, x)
              ? -INFINITY
              : gain;
 }
@@ -278,15 +279,15 @@ static void widen_by_level(const confirmation *c, fg_effect_found *effect) {
   for (size_t i = 0; i < c->edge_fit->row_count; i++) {
     const fg_edge_fit_row *row = &c->edge_fit->rows[i];
     if (!c->edge_fit->parts[row->part].radius_known) continue;
-    along += weight_at(c->edge_fit, i) * c->columns[i];
-    square += weight_at(c->edge_fit, i) * c->columns[i] * c->columns[i];
+    along += row_weight_at(c->edge_fit, i) * c->columns[i];
+    square += row_weight_at(c->edge_fit, i) * c->columns[i] * c->columns[i];
   }
   double uncertainty = fg_common_level_left(c->edge_fit, c->columns, c->residual);
   if (square > 0)
     effect->u_coefficient_um[0] = hypot(effect->u_coefficient_um[0], uncertainty * along / square);
 }
 
-static void prepare(confirmation *c, const double *residual_um, size_t harmonics) {
+static void prepare_confirmation(confirmation *c, const double *residual_um, size_t harmonics) {
   const fg_effect_found *effect = c->effect;
   const roundness of = {harmonics, effect->kind->scales};
   size_t rows = c->edge_fit->row_count;
@@ -299,7 +300,7 @@ static void prepare(confirmation *c, const double *residual_um, size_t harmonics
       c->residual[i] += effect->coefficient_um[k] * column[i];
     remove_roundness_errors(c->edge_fit, of, column);
     for (size_t i = 0; i < rows; i++)
-      square += weight_at(c->edge_fit, i) * column[i] * column[i];
+      square += row_weight_at(c->edge_fit, i) * column[i] * column[i];
     if (square > NOTHING_UM2) c->index[c->columns_used++] = k;
   }
   remove_roundness_errors(c->edge_fit, of, c->residual);
@@ -316,19 +317,19 @@ static double amplitude_errors(const fg_effect_found *effect) {
   return noise > 0 ? square / sqrt(noise) : INFINITY;
 }
 
-static double judge(confirmation *c, fg_effect_found *effect, const double *residual_um) {
+static double judge_effect(confirmation *c, fg_effect_found *effect, const double *residual_um) {
   bool free_curve = fg_effect_is_free(effect->kind), shaped = effect->shapes > 0;
-  prepare(c, residual_um, 1);
-  double confirmed = judge_discs(c,
-                                 free_curve ? 0
-                                 : shaped   ? CONFIRM_SHAPED_P
-                                            : CONFIRM_P,
-                                 free_curve ? FREE_ERRORS : LISTED_ERRORS);
+  prepare_confirmation(c, residual_um, 1);
+  double confirmed = confirm_by_discs(c,
+                                      free_curve ? 0
+                                      : shaped   ? CONFIRM_SHAPED_P
+                                                 : CONFIRM_P,
+                                      free_curve ? FREE_ERRORS : LISTED_ERRORS);
   widen_by_scatter(c, effect);
   if (effect->kind->scales) widen_by_level(c, effect);
   if (shaped && !(confirmed > 0)) {
-    prepare(c, residual_um, ROUNDNESS_HARMONICS);
-    confirmed = judge_sides(c);
+    prepare_confirmation(c, residual_um, ROUNDNESS_HARMONICS);
+    confirmed = confirm_by_sides(c);
   }
   if (!free_curve && amplitude_errors(effect) < AMPLITUDE_ERRORS) return -INFINITY;
   return confirmed;
@@ -344,7 +345,7 @@ fg_status fg_search_confirm(fg_context *ctx, const fg_edge_fit *edge_fit, fg_eff
                                  (void **)&c.columns));
   FG_TRY_EXIT(
       fg_memory_allocate(ctx, edge_fit->view_count, 2 * sizeof *c.groups, (void **)&c.groups));
-  *confirmed = judge(&c, effect, residual_um);
+  *confirmed = judge_effect(&c, effect, residual_um);
 exit:
   free(c.residual);
   free(c.columns);

@@ -64,8 +64,8 @@ static fg_status deal(fg_context *ctx, cross_fit *c) {
 }
 
 /* Computes the residual of a set over all rows. */
-static fg_status leave(fg_context *ctx, const fg_edge_fit *edge_fit, const fg_effect_set *set,
-                       double *residual_um) {
+static fg_status find_residual(fg_context *ctx, const fg_edge_fit *edge_fit,
+                               const fg_effect_set *set, double *residual_um) {
   fg_edge_fit all;
   FG_TRY(fg_edge_fit_subset(ctx, edge_fit, NULL, &all));
   fg_status status = fg_joint_fit_geometry(ctx, &all, set, residual_um);
@@ -119,7 +119,7 @@ static fg_status judge_fold(fg_context *ctx, cross_fit *c, size_t fold) {
   double *left = NULL;
   FG_TRY(search_without(ctx, c, fold, &set));
   FG_TRY(fg_memory_allocate(ctx, edge_fit->row_count, sizeof *left, (void **)&left));
-  fg_status status = leave(ctx, edge_fit, &set, left);
+  fg_status status = find_residual(ctx, edge_fit, &set, left);
   for (size_t i = 0; i < edge_fit->row_count && status == FG_OK; i++)
     if (c->fold[i] == fold) c->after_um[i] = left[i];
   free(left);
@@ -131,7 +131,7 @@ static fg_status take_item(fg_context *ctx, void *shared, size_t item) {
   cross_fit *c = shared;
   const fg_effect_set none = {.count = 0};
   fg_status status =
-      item ? judge_fold(ctx, c, item - 1) : leave(ctx, c->edge_fit, &none, c->before_um);
+      item ? judge_fold(ctx, c, item - 1) : find_residual(ctx, c->edge_fit, &none, c->before_um);
   if (status == FG_OK || status == FG_ERR_MEMORY) return status;
   c->cannot[item] = true;
   return FG_OK;
@@ -143,7 +143,7 @@ static bool are_one(const cross_fit *c, size_t a, size_t b) {
 }
 
 /* Mean squares, and how far their difference varies from unit to unit. */
-static void sum_up(const cross_fit *c, fg_cross_fit *result) {
+static void sum_up_errors(const cross_fit *c, fg_cross_fit *result) {
   const fg_edge_fit *edge_fit = c->edge_fit;
   double before = 0, after = 0, weight = 0, square = 0, units = 0;
   for (size_t i = 0, to; i < edge_fit->row_count; i = to) {
@@ -185,7 +185,7 @@ fg_status fg_search_cross_fit(fg_context *ctx, const fg_edge_fit *edge_fit,
   FG_TRY_EXIT(fg_parallel_run(ctx, threads, c.folds + 1, take_item, &c));
   for (size_t item = 0; item <= c.folds; item++)
     cannot = cannot || c.cannot[item];
-  if (!cannot) sum_up(&c, result);
+  if (!cannot) sum_up_errors(&c, result);
 exit:
   free(c.fold);
   free(c.before_um);

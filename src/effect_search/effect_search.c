@@ -80,7 +80,7 @@ static void add_ring_alias(fg_explanations *explanations) {
 
 /* Restores the start of every search: a set that is barred now may have dropped rows as outliers,
  * or bent the geometry out of reach. */
-static void start_again(fg_edge_fit *edge_fit, const double *weights) {
+static void restore_start(fg_edge_fit *edge_fit, const double *weights) {
   for (size_t i = 0; i < edge_fit->row_count; i++)
     edge_fit->rows[i].weight = weights[i];
   for (size_t v = 0; v < edge_fit->view_count; v++) {
@@ -105,7 +105,7 @@ static fg_status iterate_until_confirmed(fg_context *ctx, fg_edge_fit *edge_fit,
   bool more = true;
   while (more) {
     size_t before = barred.count;
-    start_again(edge_fit, weights);
+    restore_start(edge_fit, weights);
     FG_TRY_EXIT(fg_search_iterate(ctx, &request, set, explanations, residual_um));
     FG_TRY_EXIT(bar_unconfirmed(ctx, edge_fit, set, explanations, residual_um, &barred));
     more = barred.count > before;

@@ -91,7 +91,7 @@ exit:
 }
 
 /* Returns true when an effect's numbers exceed its uncertainty. */
-static bool is_there(const fg_effect_found *effect) {
+static bool exceeds_uncertainty(const fg_effect_found *effect) {
   for (size_t c = 0; c < effect->columns; c++)
     if (!(fabs(effect->coefficient_um[c]) < THERE_SIGMAS * effect->u_coefficient_um[c]))
       return true;
@@ -103,10 +103,10 @@ static bool is_there(const fg_effect_found *effect) {
 static void drop_nothings(fg_effect_set *set) {
   size_t kept = 0, there = 0;
   for (size_t e = 0; e < set->count; e++)
-    there += is_there(&set->effects[e]);
+    there += exceeds_uncertainty(&set->effects[e]);
   if (!there) return; /* each could go, but not all: they are collinear */
   for (size_t e = 0; e < set->count; e++)
-    if (is_there(&set->effects[e])) set->effects[kept++] = set->effects[e];
+    if (exceeds_uncertainty(&set->effects[e])) set->effects[kept++] = set->effects[e];
   set->count = kept;
 }
 
@@ -146,7 +146,7 @@ static bool is_sane(const fg_edge_fit *edge_fit, const double *geometry, const f
 
 /* Fits a set from the present geometry. A fit that runs away, or leaves more than `none` (the
  * residual without effects), is given up: then the set is empty. */
-static fg_status fit(fg_context *ctx, fg_edge_fit *edge_fit, double none, settling *at) {
+static fg_status fit_set(fg_context *ctx, fg_edge_fit *edge_fit, double none, settling *at) {
   fg_edge_fit_geometry_save(edge_fit, at->geometry);
   fg_status status = fg_joint_fit(ctx, edge_fit, &at->set, at->residual_um);
   if (status != FG_OK && status != FG_ERR_NUMERIC) return status;
@@ -189,7 +189,7 @@ static bool was_right_before(const round_end *end, int round) {
 }
 
 /* Keeps, of a set, the one effect that alone explains most. */
-static void take_best_alone(const fg_explanations *explanations, const fg_effect_set *from,
+static void keep_best_alone(const fg_explanations *explanations, const fg_effect_set *from,
                             fg_effect_set *to) {
   double max = -1;
   for (size_t e = 0; e < from->count; e++)
@@ -208,10 +208,10 @@ static void take_best_alone(const fg_explanations *explanations, const fg_effect
 static fg_status fit_or_best_alone(fg_context *ctx, fg_edge_fit *edge_fit, double none,
                                    settling *at) {
   const fg_effect_set next = at->set;
-  FG_TRY(fit(ctx, edge_fit, none, at));
+  FG_TRY(fit_set(ctx, edge_fit, none, at));
   if (!at->policy->falls_back || next.count < 2 || at->set.count) return FG_OK;
-  take_best_alone(&at->explanations, &next, &at->set);
-  return fit(ctx, edge_fit, none, at);
+  keep_best_alone(&at->explanations, &next, &at->set);
+  return fit_set(ctx, edge_fit, none, at);
 }
 
 /* The first explanation, or one of the effects that are preferred (NULL: none are). */
@@ -226,9 +226,9 @@ static void take_likeliest(const fg_explanations *explanations, const fg_effect_
 
 /* Runs one turn: the search at the present geometry, and the fit of the set found, `next`. The
  * request holds the members that differ from turn to turn. */
-static fg_status take_turn(fg_context *ctx, fg_edge_fit *edge_fit, fg_search_request request,
-                           const fg_effect_set *prefer, double none, settling *at,
-                           fg_effect_set *next) {
+static fg_status run_turn(fg_context *ctx, fg_edge_fit *edge_fit, fg_search_request request,
+                          const fg_effect_set *prefer, double none, settling *at,
+                          fg_effect_set *next) {
   const fg_search_policy *policy = at->policy;
   request.policy = policy;
   request.residual_um = at->residual_um;
@@ -268,7 +268,7 @@ static fg_status iterate_from(fg_context *ctx, fg_edge_fit *edge_fit, fg_search_
                                        .look = how.seeds_placed_first || round > 0,
                                        .two_curves = how.two_curves,
                                        .hopeless = hopeless};
-    FG_TRY(take_turn(ctx, edge_fit, request, NULL, none, at, &next));
+    FG_TRY(run_turn(ctx, edge_fit, request, NULL, none, at, &next));
     bool same = same_effects(policy->converges_in_force ? &in_force : &last, &next);
     last = next;
     if (!at->explanations.right) tried = next;
@@ -298,11 +298,11 @@ static fg_status iterate_from_set(fg_context *ctx, fg_edge_fit *edge_fit, const 
   FG_TRY(fg_joint_fit(ctx, edge_fit, &at->set, at->residual_um));
   double none = square_of(edge_fit, at->residual_um);
   at->set = *set;
-  FG_TRY(fit(ctx, edge_fit, none, at));
+  FG_TRY(fit_set(ctx, edge_fit, none, at));
   fg_effect_set next;
   const fg_search_request request = {
       .look = true, .two_curves = count_free(set) > 1, .hopeless = true};
-  return take_turn(ctx, edge_fit, request, set, none, at, &next);
+  return run_turn(ctx, edge_fit, request, set, none, at, &next);
 }
 
 /* Tries the strategies of the policy in order until one converges at a right explanation; the best

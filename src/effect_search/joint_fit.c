@@ -176,7 +176,7 @@ static void assemble(refit *r) {
   }
 }
 
-static fg_status solve(fg_context *ctx, refit *r) {
+static fg_status solve_equations(fg_context *ctx, refit *r) {
   assemble(r);
   if (gsl_linalg_cholesky_decomp1(r->normal) || gsl_linalg_cholesky_svx(r->normal, r->right))
     return fg_fail(ctx, FG_ERR_NUMERIC, "geometry and effects cannot be told apart");
@@ -184,7 +184,7 @@ static fg_status solve(fg_context *ctx, refit *r) {
 }
 
 /* Moves coefficients and shapes; returns the largest move in um of residual. */
-static double move(refit *r) {
+static double move_effects(refit *r) {
   double largest = 0;
   for (size_t k = 0; k < r->unknowns; k++) {
     fg_effect_found *effect = &r->set->effects[r->list[k].effect];
@@ -333,7 +333,7 @@ static fg_status evaluate(fg_context *ctx, refit *r) {
   return fit_geometry(ctx, r->edge_fit, r->set, r->residual, r->jacobian);
 }
 
-static fg_status allocate(fg_context *ctx, refit *r) {
+static fg_status allocate_refit(fg_context *ctx, refit *r) {
   size_t rows = r->edge_fit->row_count, n = r->parameters + r->unknowns;
   FG_TRY(fg_whitening_open(ctx, r->edge_fit, &r->whitening));
   FG_TRY(fg_memory_allocate(ctx, rows, sizeof(double), (void **)&r->white));
@@ -358,8 +358,8 @@ static void release(refit *r) {
   gsl_vector_free(r->right);
 }
 
-static fg_status run(fg_context *ctx, fg_edge_fit *edge_fit, fg_effect_set *set,
-                     double *residual_um, fg_joint_fit_part *parts) {
+static fg_status run_joint_fit(fg_context *ctx, fg_edge_fit *edge_fit, fg_effect_set *set,
+                               double *residual_um, fg_joint_fit_part *parts) {
   refit r = {.edge_fit = edge_fit, .set = set, .parts = parts};
   gsl_matrix *alone = NULL;
   fg_status status = FG_OK;
@@ -367,14 +367,14 @@ static fg_status run(fg_context *ctx, fg_edge_fit *edge_fit, fg_effect_set *set,
   FG_TRY(fg_edge_fit_fit(ctx, edge_fit, NULL));
   r.parameters = edge_fit->parameters;
   r.unknowns = list_unknowns(set, r.list);
-  FG_TRY_EXIT(allocate(ctx, &r));
+  FG_TRY_EXIT(allocate_refit(ctx, &r));
   for (int round = 0; round < REFIT_ROUNDS; round++) {
     FG_TRY_EXIT(evaluate(ctx, &r));
     if (!r.unknowns) break;
     effect_design(edge_fit, set, r.list, r.unknowns, r.work, r.design);
     whiten_all(&r);
-    FG_TRY_EXIT(solve(ctx, &r));
-    if (move(&r) < STEP_END_UM) break;
+    FG_TRY_EXIT(solve_equations(ctx, &r));
+    if (move_effects(&r) < STEP_END_UM) break;
   }
   if (r.unknowns) {
     FG_TRY_EXIT(evaluate(ctx, &r));
@@ -393,7 +393,7 @@ exit:
 
 fg_status fg_joint_fit(fg_context *ctx, fg_edge_fit *edge_fit, fg_effect_set *set,
                        double *residual_um) {
-  return run(ctx, edge_fit, set, residual_um, NULL);
+  return run_joint_fit(ctx, edge_fit, set, residual_um, NULL);
 }
 
 static fg_status open_parts(fg_context *ctx, const fg_edge_fit *edge_fit,
@@ -425,7 +425,7 @@ fg_status fg_joint_fit_open(fg_context *ctx, fg_edge_fit *edge_fit, const fg_eff
   *result = (fg_joint_fit_result){.edge_fit = edge_fit, .set = *set};
   fg_status status = FG_OK;
   FG_TRY_EXIT(open_parts(ctx, edge_fit, result));
-  FG_TRY_EXIT(run(ctx, edge_fit, &result->set, NULL, result->parts));
+  FG_TRY_EXIT(run_joint_fit(ctx, edge_fit, &result->set, NULL, result->parts));
   fg_effect_set_fields(edge_fit, &result->set, &result->fields);
   FG_TRY_EXIT(find_shift(ctx, edge_fit, result));
 exit:

@@ -70,7 +70,7 @@ static double find_middle(const fg_search *s, const fg_search_baseline *y, set_t
   return at;
 }
 
-static double middle_of(const fg_search *s, const fg_candidate *effect, double t) {
+static double find_polynomial_middle(const fg_search *s, const fg_candidate *effect, double t) {
   return s->columns.edge_fit->frame.centre_mm[effect->kind->axis] + FG_FIELD_HALF_MM * t;
 }
 
@@ -144,7 +144,7 @@ static bool has_forming(const fg_search *s, const fg_search_baseline *y, const s
   double t = 0;
   if (effect->polynomial == FG_EFFECT_QUADRATIC) {
     if (!is_quadratic(s, y, set, e, x, sum, &t)) return false;
-    explanation->middle_mm[e] = middle_of(s, effect, t);
+    explanation->middle_mm[e] = find_polynomial_middle(s, effect, t);
   }
   if (effect->kind->numbers == FG_EFFECT_LED) return is_led(&s->columns, effect, x + set->first[e]);
   return true;
@@ -159,7 +159,7 @@ fg_explanation fg_search_try(const fg_search *s, const fg_search_baseline *y, un
   list_terms(out, mask, &set);
   if (set.cubic < FG_CANDIDATES_MAX)
     explanation.middle_mm[set.cubic] =
-        middle_of(s, &out->candidates[set.cubic], find_middle(s, y, &set));
+        find_polynomial_middle(s, &out->candidates[set.cubic], find_middle(s, y, &set));
   double sum = fg_search_solve(&s->columns, set.term, set.count, x, NULL, &rank);
   size_t held = hold_middles(s, y, mask, x, &set);
   if (held) sum = fg_search_solve(&s->columns, set.term, set.count, x, NULL, &rank);

@@ -54,7 +54,7 @@ static bool is_small(unsigned mask, placed_masks placed, size_t max) {
 }
 
 /* Returns true when a mask holds exactly the effects of a set. */
-static bool holds(const fg_search *s, const fg_effect_set *set, unsigned mask) {
+static bool is_mask_of(const fg_search *s, const fg_effect_set *set, unsigned mask) {
   size_t count = 0;
   for (size_t e = 0; e < s->out->candidate_count; e++) {
     if (!(mask >> e & 1)) continue;
@@ -66,7 +66,7 @@ static bool holds(const fg_search *s, const fg_effect_set *set, unsigned mask) {
 
 static bool was_given_up(const fg_search *s, unsigned mask) {
   for (size_t i = 0; i < s->given_up_count; i++)
-    if (holds(s, &s->given_up[i], mask)) return true;
+    if (is_mask_of(s, &s->given_up[i], mask)) return true;
   return false;
 }
 
@@ -287,7 +287,7 @@ bool fg_search_hopes_for_shape(const fg_search *s, const fg_search_baseline *y,
   bool one_curve = fg_search_bits(curve->mask) == 1 && curve->excess < share * share * y->none;
   if (one_curve && fg_search_bits(best->mask) > FEW) return false;
   return (best->mask & s->unfitted) && best->excess < FITTING_SHARE * y->none &&
-         !(s->tried && holds(s, s->tried, best->mask)) &&
+         !(s->tried && is_mask_of(s, s->tried, best->mask)) &&
          best->excess < FITTING_TIMES * (curve->excess + y->dof);
 }
 

@@ -88,7 +88,7 @@ static void put_effects(width_fit *f, const fg_width_findings *findings, double 
 }
 
 /* Removes the stretch by the scanner's fields: it is no effect of the width. */
-static void take_stretch_out(width_fit *f, const fg_effect_set *set, double *work) {
+static void remove_stretch(width_fit *f, const fg_effect_set *set, double *work) {
   for (size_t e = 0; e < set->count; e++) {
     const fg_effect_found *effect = &set->effects[e];
     size_t count = fg_effect_width_columns(f->edge_fit, effect->kind, effect->shape, work);
@@ -105,7 +105,7 @@ static void add_to_mean(double *mean, double value, double share) {
   *mean += share * (value - *mean);
 }
 
-static void find_means(width_fit *f) {
+static void find_view_means(width_fit *f) {
   memset(f->views, 0, f->edge_fit->view_count * sizeof *f->views);
   for (size_t i = 0; i < f->count; i++) {
     const width_row *row = &f->rows[i];
@@ -149,7 +149,7 @@ static void drop_vanished(width_fit *f) {
 }
 
 static void fill_system(width_fit *f) {
-  find_means(f);
+  find_view_means(f);
   fg_normal_clear(&f->system, f->unknowns);
   for (size_t i = 0; i < f->count; i++) {
     width_row r = beside(f, &f->rows[i]);
@@ -157,7 +157,7 @@ static void fill_system(width_fit *f) {
   }
 }
 
-static bool fit(width_fit *f) {
+static bool fit_widths(width_fit *f) {
   fill_system(f);
   size_t before = f->unknowns;
   drop_vanished(f);
@@ -235,7 +235,7 @@ static size_t find_variances(const width_fit *f, double *variance) {
 
 /* Returns the change of an effect by an error of 1 um at FG_FIELD_HALF_MM along an axis of the
  * glass. */
-static double leans(const width_fit *f, size_t e, size_t axis) {
+static double change_by_place_error(const width_fit *f, size_t e, size_t axis) {
   double sum = 0;
   for (size_t i = 0; i < f->count; i++) {
     width_row r = beside(f, &f->rows[i]);
@@ -247,10 +247,11 @@ static double leans(const width_fit *f, size_t e, size_t axis) {
 
 /* ---- claims ---- */
 
-static void judge(const width_fit *f, size_t e, double variance, size_t groups,
-                  fg_width_effect *one) {
+static void assess_width_effect(const width_fit *f, size_t e, double variance, size_t groups,
+                                fg_width_effect *one) {
   double square = f->system.matrix[e][e], right = f->system.right[e];
-  double place = PLACE_UM * hypot(leans(f, e, 0), leans(f, e, 1)), dof = (double)groups - 1;
+  double place = PLACE_UM * hypot(change_by_place_error(f, e, 0), change_by_place_error(f, e, 1)),
+         dof = (double)groups - 1;
   double u = sqrt(variance + place * place);
   one->effect.coefficient_um[0] = f->x[e];
   one->effect.u_coefficient_um[0] = u;
@@ -274,17 +275,17 @@ static double rms_um(const width_fit *f, const fg_width_findings *findings, bool
   return sqrt(sum / weight);
 }
 
-static fg_status search(fg_context *ctx, width_fit *f, fg_width_findings *findings) {
+static fg_status search_widths(fg_context *ctx, width_fit *f, fg_width_findings *findings) {
   double variance[FG_WIDTH_EFFECTS_MAX];
-  bool solved = fit(f);
+  bool solved = fit_widths(f);
   for (int round = 0; solved && round < OUTLIER_ROUNDS; round++) {
     FG_TRY(drop_outliers(ctx, f));
-    solved = fit(f);
+    solved = fit_widths(f);
   }
   size_t groups = solved ? find_variances(f, variance) : 0;
   if (groups < GROUPS_MIN) return FG_OK;
   for (size_t e = 0; e < f->effects; e++) {
-    judge(f, e, variance[e], groups, &findings->each[e]);
+    assess_width_effect(f, e, variance[e], groups, &findings->each[e]);
     findings->found += findings->each[e].found;
   }
   return FG_OK;
@@ -316,10 +317,10 @@ fg_status fg_search_width(fg_context *ctx, const fg_edge_fit *edge_fit, const fg
   FG_TRY_EXIT(fg_memory_allocate(ctx, rows, FG_EFFECT_COLUMNS_MAX * sizeof *work, (void **)&work));
   list_rows(f);
   put_effects(f, findings, work);
-  find_means(f);
+  find_view_means(f);
   findings->rms_before_um = rms_um(f, findings, false);
-  take_stretch_out(f, set, work);
-  FG_TRY_EXIT(search(ctx, f, findings));
+  remove_stretch(f, set, work);
+  FG_TRY_EXIT(search_widths(ctx, f, findings));
   findings->rms_after_um = rms_um(f, findings, true);
 exit:
   if (f) free(f->rows);

@@ -13,8 +13,8 @@
 
 enum { BYTES_MAX = 64 << 20 };
 
-static fg_status read_number(fg_context *ctx, const cJSON *object, const char *name, double low,
-                             double high, double *value) {
+static fg_status read_die_number(fg_context *ctx, const cJSON *object, const char *name, double low,
+                                 double high, double *value) {
   const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, name);
   if (!cJSON_IsNumber(item) || !(item->valuedouble > low && item->valuedouble < high))
     return fg_fail(ctx, FG_ERR_DATA, "%s must be a number between %g and %g", name, low, high);
@@ -26,9 +26,10 @@ static fg_status read_bump(fg_context *ctx, const cJSON *item, fg_forming_die *d
   double number = 0;
   if (die->count == FG_FORMING_BUMPS_MAX)
     return fg_fail(ctx, FG_ERR_DATA, "more than %d bumps", FG_FORMING_BUMPS_MAX);
-  FG_TRY(read_number(ctx, item, "number", 0, 1e6, &number));
-  FG_TRY(read_number(ctx, item, "radius_mm", 0, 1e4, &die->bump[die->count].radius_mm));
-  FG_TRY(read_number(ctx, item, "bump_angle_deg", 0, 180, &die->bump[die->count].bump_angle_deg));
+  FG_TRY(read_die_number(ctx, item, "number", 0, 1e6, &number));
+  FG_TRY(read_die_number(ctx, item, "radius_mm", 0, 1e4, &die->bump[die->count].radius_mm));
+  FG_TRY(
+      read_die_number(ctx, item, "bump_angle_deg", 0, 180, &die->bump[die->count].bump_angle_deg));
   die->bump[die->count++].number = (int)number;
   return FG_OK;
 }
@@ -37,7 +38,7 @@ static fg_status read_bump(fg_context *ctx, const cJSON *item, fg_forming_die *d
 static fg_status check_design(fg_context *ctx, const cJSON *of, const fg_design *design) {
   const cJSON *datum = cJSON_GetObjectItemCaseSensitive(of, "datum");
   double thickness = 0;
-  FG_TRY(read_number(ctx, of, "thickness_mm", 0, 1e4, &thickness));
+  FG_TRY(read_die_number(ctx, of, "thickness_mm", 0, 1e4, &thickness));
   if (fabs(thickness - design->thickness_mm) > 1e-9)
     return fg_fail(ctx, FG_ERR_DATA, "the die was measured for a strip of %g mm, not %g", thickness,
                    design->thickness_mm);
@@ -48,8 +49,8 @@ static fg_status check_design(fg_context *ctx, const cJSON *of, const fg_design 
   return FG_OK;
 }
 
-static fg_status read_root(fg_context *ctx, const cJSON *root, const fg_design *design,
-                           fg_forming_die *die) {
+static fg_status read_die_root(fg_context *ctx, const cJSON *root, const fg_design *design,
+                               fg_forming_die *die) {
   const cJSON *schema = cJSON_GetObjectItemCaseSensitive(root, "schema"), *bump;
   const cJSON *whole = cJSON_GetObjectItemCaseSensitive(root, "die");
   const cJSON *mean = cJSON_GetObjectItemCaseSensitive(whole, "mean");
@@ -57,9 +58,9 @@ static fg_status read_root(fg_context *ctx, const cJSON *root, const fg_design *
   if (!cJSON_IsString(schema) || strcmp(schema->valuestring, "foilgauge/die/1") != 0)
     return fg_fail(ctx, FG_ERR_DATA, "not a report of `foilgauge die -o`");
   FG_TRY(check_design(ctx, cJSON_GetObjectItemCaseSensitive(root, "design"), design));
-  FG_TRY(read_number(ctx, overall, "radius_mm", 0, 1e4, &die->overall_radius_mm));
-  FG_TRY(read_number(ctx, mean, "radius_mm", 0, 1e4, &die->mean_radius_mm));
-  FG_TRY(read_number(ctx, mean, "bump_angle_deg", 0, 180, &die->mean_angle_deg));
+  FG_TRY(read_die_number(ctx, overall, "radius_mm", 0, 1e4, &die->overall_radius_mm));
+  FG_TRY(read_die_number(ctx, mean, "radius_mm", 0, 1e4, &die->mean_radius_mm));
+  FG_TRY(read_die_number(ctx, mean, "bump_angle_deg", 0, 180, &die->mean_angle_deg));
   cJSON_ArrayForEach(bump, cJSON_GetObjectItemCaseSensitive(whole, "bumps"))
       FG_TRY(read_bump(ctx, bump, die));
   return FG_OK;
@@ -77,7 +78,7 @@ fg_status fg_forming_die_load(fg_context *ctx, const char *path, const fg_design
   fg_status status = fg_json_read(ctx, path, text, &root);
   free(text);
   FG_TRY(status);
-  status = read_root(&words, root, design, die);
+  status = read_die_root(&words, root, design, die);
   cJSON_Delete(root);
   return status == FG_OK ? FG_OK : fg_fail(ctx, status, "%s: %.*s", path, 700, words.message);
 }

@@ -104,7 +104,7 @@ static void find_overall(fg_forming *forming) {
   forming->strip_springback_error_pct = opened_pct(&forming->design, forming->strip_radius_mm);
 }
 
-static void find_means(fg_forming *forming) {
+static void find_mean_radii(fg_forming *forming) {
   for (size_t i = 0; i < forming->count; i++) {
     const fg_forming_piece *piece = &forming->pieces[i];
     double weight = piece->length_mm / forming->length_mm;
@@ -131,7 +131,7 @@ static fg_forming_bump *bump_at(fg_forming *forming, const fg_bump *fitted) {
 }
 
 /* Nothing is known of it. */
-static void forget(fg_bump *bump) {
+static void clear_bump(fg_bump *bump) {
   size_t count;
   const fg_quantity *rows = fg_quantities(FG_QUANTITY_OF_BUMP, &count);
   double unknown[FG_QUANTITY_NUMBERS_MAX] = {NAN, NAN, NAN, NAN};
@@ -231,7 +231,7 @@ fg_status fg_forming_bend(fg_context *ctx, const fg_design *design,
   FG_TRY(fg_forming_lay_out(ctx, forming));
   FG_TRY(bend_all(ctx, forming));
   find_overall(forming);
-  find_means(forming);
+  find_mean_radii(forming);
   find_crowns(forming);
   return FG_OK;
 }
@@ -241,7 +241,7 @@ fg_status fg_forming_run(fg_context *ctx, const fg_design *design,
                          const fg_forming_options *options, fg_forming *forming) {
   fg_status status = fg_forming_bend(ctx, design, material, schedule, options, forming);
   for (size_t i = 0; status == FG_OK && i < forming->bump_count; i++)
-    forget(&forming->bumps[i].fitted);
+    clear_bump(&forming->bumps[i].fitted);
   if (status == FG_OK && forming->bump_count) status = fit_circles(ctx, forming);
   if (status != FG_OK) fg_forming_free(forming);
   return status;

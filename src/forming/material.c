@@ -107,15 +107,16 @@ fg_status fg_forming_material_check(fg_context *ctx, const fg_forming_material *
 
 /* ---- the file ---- */
 
-static fg_status read_number(fg_context *ctx, const char *name, const cJSON *item, double *value) {
+static fg_status read_constant_value(fg_context *ctx, const char *name, const cJSON *item,
+                                     double *value) {
   if (!cJSON_IsNumber(item) || !isfinite(item->valuedouble))
     return fg_fail(ctx, FG_ERR_DATA, "%s must be a number", name);
   *value = item->valuedouble;
   return FG_OK;
 }
 
-static fg_status read_text(fg_context *ctx, const char *name, const cJSON *item, char *text,
-                           size_t size) {
+static fg_status read_source(fg_context *ctx, const char *name, const cJSON *item, char *text,
+                             size_t size) {
   if (!cJSON_IsString(item)) return fg_fail(ctx, FG_ERR_DATA, "%s must be a text", name);
   if (strlen(item->valuestring) >= size)
     return fg_fail(ctx, FG_ERR_DATA, "%s has more than %zu bytes", name, size - 1);
@@ -129,15 +130,16 @@ static fg_status read_constant(fg_context *ctx, const cJSON *item, int c,
                                fg_forming_material *material) {
   char *source = material->source[c];
   fg_text_clip(source, FG_FORMING_SOURCE, "as given, without a source");
-  if (!cJSON_IsObject(item)) return read_number(ctx, rows[c].name, item, &material->value[c]);
+  if (!cJSON_IsObject(item))
+    return read_constant_value(ctx, rows[c].name, item, &material->value[c]);
   const cJSON *member;
   bool valued = false;
   cJSON_ArrayForEach(member, item) {
     if (!strcmp(member->string, "value")) {
-      FG_TRY(read_number(ctx, rows[c].name, member, &material->value[c]));
+      FG_TRY(read_constant_value(ctx, rows[c].name, member, &material->value[c]));
       valued = true;
     } else if (!strcmp(member->string, "source")) {
-      FG_TRY(read_text(ctx, "source", member, source, FG_FORMING_SOURCE));
+      FG_TRY(read_source(ctx, "source", member, source, FG_FORMING_SOURCE));
     } else if (strcmp(member->string, "unit") != 0) {
       return fg_fail(ctx, FG_ERR_DATA, "%s.%.40s is not known; there are value, source, unit",
                      rows[c].name, member->string);
@@ -148,15 +150,15 @@ static fg_status read_constant(fg_context *ctx, const cJSON *item, int c,
   return valued ? FG_OK : fg_fail(ctx, FG_ERR_DATA, "%s.value is missing", rows[c].name);
 }
 
-static fg_status read_numbers(fg_context *ctx, const char *name, const cJSON *item, double *values,
-                              size_t *count) {
+static fg_status read_curve_numbers(fg_context *ctx, const char *name, const cJSON *item,
+                                    double *values, size_t *count) {
   const cJSON *entry;
   size_t n = 0;
   if (!cJSON_IsArray(item)) return fg_fail(ctx, FG_ERR_DATA, "%s must be an array", name);
   cJSON_ArrayForEach(entry, item) {
     if (n == FG_FORMING_CURVE_MAX)
       return fg_fail(ctx, FG_ERR_DATA, "%s has more than %d values", name, FG_FORMING_CURVE_MAX);
-    FG_TRY(read_number(ctx, name, entry, &values[n]));
+    FG_TRY(read_constant_value(ctx, name, entry, &values[n]));
     n++;
   }
   *count = n;
@@ -171,12 +173,12 @@ static fg_status read_curve(fg_context *ctx, const cJSON *item, fg_forming_mater
   cJSON_ArrayForEach(member, item) {
     const char *name = member->string;
     if (!strcmp(name, "temperature_C"))
-      FG_TRY(read_numbers(ctx, "yield_curve.temperature_C", member, m->curve_temperature_C,
-                          &temperatures));
+      FG_TRY(read_curve_numbers(ctx, "yield_curve.temperature_C", member, m->curve_temperature_C,
+                                &temperatures));
     else if (!strcmp(name, "share"))
-      FG_TRY(read_numbers(ctx, "yield_curve.share", member, m->curve_share, &shares));
+      FG_TRY(read_curve_numbers(ctx, "yield_curve.share", member, m->curve_share, &shares));
     else if (!strcmp(name, "source"))
-      FG_TRY(read_text(ctx, "yield_curve.source", member, m->curve_source, FG_FORMING_SOURCE));
+      FG_TRY(read_source(ctx, "yield_curve.source", member, m->curve_source, FG_FORMING_SOURCE));
     else
       return fg_fail(ctx, FG_ERR_DATA,
                      "yield_curve.%.40s is not known; there are temperature_C, share, source",
@@ -190,14 +192,15 @@ static fg_status read_curve(fg_context *ctx, const cJSON *item, fg_forming_mater
   return FG_OK;
 }
 
-static fg_status read_member(fg_context *ctx, const cJSON *item, fg_forming_material *material) {
+static fg_status read_material_member(fg_context *ctx, const cJSON *item,
+                                      fg_forming_material *material) {
   const char *name = item->string;
   if (!strcmp(name, "schema"))
     return cJSON_IsString(item) && !strcmp(item->valuestring, schema)
                ? FG_OK
                : fg_fail(ctx, FG_ERR_DATA, "schema must be \"%s\"", schema);
   if (!strcmp(name, "name"))
-    return read_text(ctx, name, item, material->name, sizeof material->name);
+    return read_source(ctx, name, item, material->name, sizeof material->name);
   if (!strcmp(name, "version")) return FG_OK; /* of whoever wrote it */
   if (!strcmp(name, "yield_curve")) return read_curve(ctx, item, material);
   for (int c = 0; c < FG_FORMING_CONSTANTS; c++)
@@ -211,14 +214,15 @@ static fg_status read_member(fg_context *ctx, const cJSON *item, fg_forming_mate
                  "%.40s is not a member of a material; there are %sname, yield_curve", name, known);
 }
 
-static fg_status read_root(fg_context *ctx, const cJSON *root, fg_forming_material *material) {
+static fg_status read_material_root(fg_context *ctx, const cJSON *root,
+                                    fg_forming_material *material) {
   const cJSON *item;
   if (!cJSON_IsObject(root)) return fg_fail(ctx, FG_ERR_DATA, "not a JSON object");
   cJSON_ArrayForEach(item, root) {
     for (const cJSON *other = root->child; other != item; other = other->next)
       if (!strcmp(other->string, item->string))
         return fg_fail(ctx, FG_ERR_DATA, "%.40s is given twice", item->string);
-    FG_TRY(read_member(ctx, item, material));
+    FG_TRY(read_material_member(ctx, item, material));
   }
   if (!cJSON_GetObjectItemCaseSensitive(root, "schema"))
     return fg_fail(ctx, FG_ERR_DATA, "schema is missing; a material has \"schema\": \"%s\"",
@@ -238,7 +242,7 @@ fg_status fg_forming_material_load(fg_context *ctx, const char *path,
   fg_status status = fg_json_read(ctx, path, text, &root);
   free(text);
   FG_TRY(status);
-  status = read_root(&words, root, &read);
+  status = read_material_root(&words, root, &read);
   cJSON_Delete(root);
   if (status != FG_OK) return fg_fail(ctx, status, "%s: %.*s", path, 700, words.message);
   *material = read;

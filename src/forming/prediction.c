@@ -37,7 +37,8 @@ static fg_status read_bump(fg_context *ctx, const cJSON *item, fg_bump *bump) {
                  bump->number);
 }
 
-static fg_status read_root(fg_context *ctx, const cJSON *root, fg_forming_prediction *prediction) {
+static fg_status read_prediction_root(fg_context *ctx, const cJSON *root,
+                                      fg_forming_prediction *prediction) {
   const cJSON *schema = cJSON_GetObjectItemCaseSensitive(root, "schema"), *bump;
   if (!cJSON_IsString(schema) || strcmp(schema->valuestring, "foilgauge/form/1") != 0)
     return fg_fail(ctx, FG_ERR_DATA, "not a report of `foilgauge forming -o`");
@@ -62,7 +63,7 @@ fg_status fg_forming_prediction_load(fg_context *ctx, const char *path,
   fg_status status = fg_json_read(ctx, path, text, &root);
   free(text);
   FG_TRY(status);
-  status = read_root(&words, root, prediction);
+  status = read_prediction_root(&words, root, prediction);
   cJSON_Delete(root);
   return status == FG_OK ? FG_OK : fg_fail(ctx, status, "%s: %.*s", path, 700, words.message);
 }

@@ -69,8 +69,8 @@ static fg_status plan_crest(fg_context *ctx, const fg_forming *forming, double r
                  forming->design.fillet_radius_mm);
 }
 
-static void add(fg_forming *forming, fg_arc_kind kind, int number, double curvature,
-                double length) {
+static void add_piece(fg_forming *forming, fg_arc_kind kind, int number, double curvature,
+                      double length) {
   forming->pieces[forming->count++] = (fg_forming_piece){.kind = kind,
                                                          .number = number,
                                                          .start_mm = forming->length_mm,
@@ -84,12 +84,12 @@ static void add_arcs(fg_forming *forming, const crest *plan) {
   double fillet = forming->design.fillet_radius_mm + in;
   double land = (forming->design.pitch_deg * RAD / 2 - plan->land_rad) * overall;
   double joint = (plan->land_rad + plan->arc_rad) * fillet;
-  add(forming, FG_ARC_LAND, plan->number, 1 / overall, land);
-  add(forming, FG_ARC_FILLET, plan->number, 1 / fillet, joint);
-  add(forming, FG_ARC_BUMP, plan->number, -1 / plan->radius_mm,
-      2 * plan->arc_rad * plan->radius_mm);
-  add(forming, FG_ARC_FILLET, plan->number, 1 / fillet, joint);
-  add(forming, FG_ARC_LAND, plan->number + 1, 1 / overall, land);
+  add_piece(forming, FG_ARC_LAND, plan->number, 1 / overall, land);
+  add_piece(forming, FG_ARC_FILLET, plan->number, 1 / fillet, joint);
+  add_piece(forming, FG_ARC_BUMP, plan->number, -1 / plan->radius_mm,
+            2 * plan->arc_rad * plan->radius_mm);
+  add_piece(forming, FG_ARC_FILLET, plan->number, 1 / fillet, joint);
+  add_piece(forming, FG_ARC_LAND, plan->number + 1, 1 / overall, land);
 }
 
 /* r = R0 - h (1 + cos N psi) / 2 about the bump's axis, psi from -1/2 to 1/2 of a pitch; curvature
@@ -104,14 +104,14 @@ static void add_sine(fg_forming *forming, int number) {
     double square = r * r + r1 * r1;
     double curvature = (square + r1 * r1 - r * r2) / (square * sqrt(square));
     bool bump = curvature < 0;
-    add(forming, bump ? FG_ARC_BUMP : FG_ARC_LAND, number + (!bump && psi > 0), curvature,
-        sqrt(square) * pitch / SINE_PIECES);
+    add_piece(forming, bump ? FG_ARC_BUMP : FG_ARC_LAND, number + (!bump && psi > 0), curvature,
+              sqrt(square) * pitch / SINE_PIECES);
   }
 }
 
 static fg_status add_bumps(fg_context *ctx, fg_forming *forming) {
   double overall = overall_mm(forming);
-  add(forming, FG_ARC_LAND, 1, 1 / overall, end_land_mm);
+  add_piece(forming, FG_ARC_LAND, 1, 1 / overall, end_land_mm);
   for (size_t i = 0; i < forming->bump_count; i++) {
     fg_forming_bump *bump = &forming->bumps[i];
     crest plan = {.number = (int)i + 1};
@@ -124,14 +124,15 @@ static fg_status add_bumps(fg_context *ctx, fg_forming *forming) {
     FG_TRY(plan_crest(ctx, forming, bump->die_radius_mm, bump->die_angle_deg, &plan));
     add_arcs(forming, &plan);
   }
-  add(forming, FG_ARC_LAND, (int)forming->bump_count + 1, 1 / overall, end_land_mm);
+  add_piece(forming, FG_ARC_LAND, (int)forming->bump_count + 1, 1 / overall, end_land_mm);
   return FG_OK;
 }
 
 static fg_status lay_arc(fg_context *ctx, fg_forming *forming) {
   double overall = overall_mm(forming);
   FG_TRY(fg_memory_allocate(ctx, 1, sizeof *forming->pieces, (void **)&forming->pieces));
-  add(forming, FG_ARC_LAND, 1, 1 / overall, overall * forming->design.subtended_angle_deg * RAD);
+  add_piece(forming, FG_ARC_LAND, 1, 1 / overall,
+            overall * forming->design.subtended_angle_deg * RAD);
   return FG_OK;
 }
 
@@ -159,7 +160,7 @@ typedef struct pose {
 } pose;
 
 /* Along an arc: its chord is 2 sin(turn / 2) / curvature, half a turn ahead. */
-static pose go(pose at, double curvature, double length) {
+static pose move_along_arc(pose at, double curvature, double length) {
   double turn = curvature * length, half = turn / 2;
   double chord = fabs(half) < 1e-8 ? length : length * sin(half) / half;
   return (pose){at.x + chord * cos(at.heading + half), at.y + chord * sin(at.heading + half),
@@ -196,10 +197,11 @@ fg_status fg_forming_draw(fg_context *ctx, const fg_forming *forming, fg_strip *
     double s = strip->step_mm * (double)k;
     const fg_forming_piece *here = &forming->pieces[piece];
     while (piece + 1 < forming->count && s > here->start_mm + here->length_mm) {
-      at = go(at, here->curvature, here->length_mm);
+      at = move_along_arc(at, here->curvature, here->length_mm);
       here = &forming->pieces[++piece];
     }
-    put_station(go(at, here->curvature, s - here->start_mm), s, thickness / 2, &strip->stations[k]);
+    put_station(move_along_arc(at, here->curvature, s - here->start_mm), s, thickness / 2,
+                &strip->stations[k]);
   }
   return FG_OK;
 }
@@ -214,7 +216,7 @@ fg_forming_pitch fg_forming_pitch_of(const fg_forming *forming, bool of_die) {
     pose at = {0};
     for (size_t i = 0; i < each; i++) {
       const fg_forming_piece *piece = &forming->pieces[ends + p * each + i];
-      at = go(at, curvature_of(piece, of_die), piece->length_mm);
+      at = move_along_arc(at, curvature_of(piece, of_die), piece->length_mm);
     }
     mean.turn_rad += at.heading / (double)pitches;
     mean.chord_mm += hypot(at.x, at.y) / (double)pitches;

@@ -74,14 +74,15 @@ static double turned_term(const curve *c, size_t k, double deg, int derivative) 
          term(c, k, deg + (c->order[k] ? 90.0 * derivative / c->order[k] : 0));
 }
 
-static double value_at(const curve *c, double deg, int derivative) {
+static double curve_value_at(const curve *c, double deg, int derivative) {
   double sum = 0;
   for (size_t k = derivative ? 1 : 0; k < c->count; k++)
     sum += c->x[k] * turned_term(c, k, deg, derivative);
   return sum;
 }
 
-static bool fit(const fg_load_test *test, size_t bearing, curve *c, fg_load_scatter *scatter) {
+static bool fit_curve(const fg_load_test *test, size_t bearing, curve *c,
+                      fg_load_scatter *scatter) {
   fg_normal_equations system;
   fg_normal_clear(&system, c->count);
   scatter->dof = -(double)c->count;
@@ -102,8 +103,8 @@ static bool fit(const fg_load_test *test, size_t bearing, curve *c, fg_load_scat
 }
 
 static bool is_minimum(const curve *c, double deg, double step) {
-  double here = value_at(c, deg, 0);
-  return here < value_at(c, deg - step, 0) && here <= value_at(c, deg + step, 0);
+  double here = curve_value_at(c, deg, 0);
+  return here < curve_value_at(c, deg - step, 0) && here <= curve_value_at(c, deg + step, 0);
 }
 
 /* Variance of the curve's value at one place less that at another. */
@@ -124,7 +125,7 @@ static bool has_rival(const curve *c, double best, double birge) {
     double deg = i * step;
     if (fabs(remainder(deg - best, half_turn_deg)) < 2 * step || !is_minimum(c, deg, step))
       continue;
-    double more = value_at(c, deg, 0) - value_at(c, best, 0);
+    double more = curve_value_at(c, deg, 0) - curve_value_at(c, best, 0);
     if (more < rival_reach * birge * sqrt(variance_between(c, deg, best))) return true;
   }
   return false;
@@ -134,14 +135,14 @@ static bool has_rival(const curve *c, double best, double birge) {
 static fg_load_axis find_axis(const curve *c, double birge, fg_load_bearing *sum) {
   double best = 0, variance = 0;
   for (int i = 1; i < STEPS; i++)
-    if (value_at(c, i * half_turn_deg / STEPS, 0) < value_at(c, best, 0))
+    if (curve_value_at(c, i * half_turn_deg / STEPS, 0) < curve_value_at(c, best, 0))
       best = i * half_turn_deg / STEPS;
   for (int i = 0; i < 8; i++) /* derivatives are per radian */
-    best -= value_at(c, best, 1) / fmax(value_at(c, best, 2), 1e-12) * 180 / M_PI;
+    best -= curve_value_at(c, best, 1) / fmax(curve_value_at(c, best, 2), 1e-12) * 180 / M_PI;
   for (size_t i = 1; i < c->count; i++)
     for (size_t k = 1; k < c->count; k++)
       variance += turned_term(c, i, best, 1) * c->inverse[i][k] * turned_term(c, k, best, 1);
-  double bend = value_at(c, best, 2), u = birge * sqrt(variance) / bend * 180 / M_PI;
+  double bend = curve_value_at(c, best, 2), u = birge * sqrt(variance) / bend * 180 / M_PI;
   if (!(bend > 0 && u > 0)) return FG_LOAD_AXIS_ROUND;
   if (has_rival(c, best, birge)) return FG_LOAD_AXIS_RIVALS;
   sum->min_at_deg = best - half_turn_deg * floor(best / half_turn_deg);
@@ -208,7 +209,7 @@ static void sum_noise(const fg_load_test *test, size_t bearing, fg_load_bearing 
 /* Sum of squares about the weighted mean. */
 static bool fit_flat(const fg_load_test *test, size_t bearing, fg_load_scatter *scatter) {
   curve flat = {.count = 1};
-  return fit(test, bearing, &flat, scatter);
+  return fit_curve(test, bearing, &flat, scatter);
 }
 
 /* Chi-squared test of equal directions: the uncertainties are taken for known. */
@@ -246,7 +247,7 @@ void fg_load_sum_bearing(const fg_load_test *test, size_t bearing, fg_load_beari
   sum_noise(test, bearing, sum);
   if (!sum->measured) return;
   curve c = make_curve(count_axes(test, bearing));
-  if (!fit(test, bearing, &c, &scatter) || !fit_flat(test, bearing, &flat)) return;
+  if (!fit_curve(test, bearing, &c, &scatter) || !fit_flat(test, bearing, &flat)) return;
   double birge = fg_load_birge(&scatter), scale = test->options.u_displacement_pct / 100;
   sum->mean_mm = c.x[0];
   sum->u_mean_mm = hypot(birge * sqrt(c.inverse[0][0]), scale * c.x[0]);

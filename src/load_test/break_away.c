@@ -101,7 +101,7 @@ static double residual(const pulls *p, const line *l, size_t unknowns, size_t i)
   return sum;
 }
 
-static bool fit(const pulls *p, size_t unknowns, line *l) {
+static bool fit_line(const pulls *p, size_t unknowns, line *l) {
   fg_normal_equations system;
   fg_normal_clear(&system, unknowns);
   for (size_t i = 0; i < p->test->pull_count; i++) {
@@ -145,7 +145,7 @@ static double test_curve(const pulls *p, const line *straight) {
   double covariance[CURVE][CURVE];
   if (p->weights < CHECKED_WEIGHTS_MIN || p->count < CHECKED_PULLS_MIN) return NAN;
   if (!(straight->squares > rounding * straight->all_squares)) return 1;
-  if (!fit(p, CURVE, &curve)) return NAN;
+  if (!fit_line(p, CURVE, &curve)) return NAN;
   if (!(curve.squares > rounding * curve.all_squares)) return 0;
   find_covariance(p, &curve, CURVE, covariance);
   double t = curve.x[CURVE - 1] / sqrt(covariance[CURVE - 1][CURVE - 1]);
@@ -164,7 +164,7 @@ static double to_kpa(const fg_load_options *o, double newtons) {
 
 /* Computes mu, mu P and P of the line. The load cell's scale is in F and so in mu and in mu P; in P
  * only through the rig's friction. The weights' scale is in mu and P. */
-static void take_line(const pulls *p, const line *l, fg_load_bearing *sum) {
+static void fill_from_line(const pulls *p, const line *l, fg_load_bearing *sum) {
   const fg_load_options *o = &p->test->options;
   fg_break_away *out = &sum->break_away;
   double covariance[CURVE][CURVE], u_rig, rig = rig_friction(o, &u_rig);
@@ -194,7 +194,7 @@ static bool has_gap(const fg_load_test *test, size_t bearing) {
 }
 
 /* Withholds values that the pulls do not support, each with its reason as a flag. */
-static void check(const pulls *p, fg_load_bearing *sum) {
+static void withhold_unsupported(const pulls *p, fg_load_bearing *sum) {
   const fg_load_value none = {NAN, NAN, NAN};
   fg_break_away *out = &sum->break_away;
   bool curved = out->p_curved < p_curved_max;
@@ -234,13 +234,13 @@ void fg_load_sum_break_away(const fg_load_test *test, size_t bearing, fg_load_be
                          .residual_n = NAN,
                          .p_curved = NAN};
   if (!p.count) return;
-  if (p.count < PULLS_MIN || p.weights < LINE || !fit(&p, LINE, &straight)) {
+  if (p.count < PULLS_MIN || p.weights < LINE || !fit_line(&p, LINE, &straight)) {
     out->flags |= FG_BREAK_TOO_FEW;
     return;
   }
   out->p_curved = test_curve(&p, &straight);
-  take_line(&p, &straight, sum);
-  check(&p, sum);
+  fill_from_line(&p, &straight, sum);
+  withhold_unsupported(&p, sum);
   sum->preload_kpa = (fg_load_value){to_kpa(o, sum->preload_n.value), to_kpa(o, sum->preload_n.u),
                                      to_kpa(o, sum->preload_n.u_repeat)};
 }

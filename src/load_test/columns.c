@@ -99,8 +99,8 @@ static fg_status fail_unit(fg_context *ctx, const fg_table *table, const char *n
                  row->wanted);
 }
 
-static fg_status take(fg_context *ctx, const fg_table *table, size_t number, fg_load_measured which,
-                      const char *text, fg_load_columns *columns) {
+static fg_status assign_column(fg_context *ctx, const fg_table *table, size_t number,
+                               fg_load_measured which, const char *text, fg_load_columns *columns) {
   const char *name = table->column[number].name;
   const unit *u = rows[which].units;
   while (u->word && strcmp(u->word, text) != 0)
@@ -127,7 +127,7 @@ static fg_status sort_column(fg_context *ctx, const fg_table *table, size_t numb
   char text[32];
   for (int which = 0; which < FG_LOAD_MEASURED; which++)
     if (is_of_table(which, kind) && unit_text(column->name, which, text, sizeof text))
-      return take(ctx, table, number, (fg_load_measured)which, text, columns);
+      return assign_column(ctx, table, number, (fg_load_measured)which, text, columns);
   if (is_word(column, "bearing", &columns->bearing)) return FG_OK;
   if (kind == LOAD_TABLE &&
       (is_word(column, "cycle", &columns->cycle) || is_word(column, "pad", &columns->pad)))

@@ -26,7 +26,7 @@ typedef struct between {
   size_t count;                                   /* of strokes that are means */
 } between;
 
-static bool is_whole(const fg_load_stroke *s, const fg_load_direction *direction) {
+static bool spans_travel(const fg_load_stroke *s, const fg_load_direction *direction) {
   return s->high_mm - s->low_mm > 0.9 * direction->travel_mm;
 }
 
@@ -36,7 +36,7 @@ static fg_status fit_forces(fg_context *ctx, const fg_load_strokes *strokes,
   b->low = -INFINITY, b->high = INFINITY;
   for (size_t i = 0; i < strokes->count; i++) {
     const fg_load_stroke *s = &strokes->stroke[i];
-    if (!is_whole(s, direction)) continue;
+    if (!spans_travel(s, direction)) continue;
     b->low = fmax(b->low, s->low_mm);
     b->high = fmin(b->high, s->high_mm);
   }
@@ -47,7 +47,7 @@ static fg_status fit_forces(fg_context *ctx, const fg_load_strokes *strokes,
     b->x[k] = b->low + share * (b->high - b->low);
     for (size_t i = 0; i < strokes->count; i++) {
       fg_local_fit fit;
-      bool known = is_whole(&strokes->stroke[i], direction) &&
+      bool known = spans_travel(&strokes->stroke[i], direction) &&
                    fg_local_fit_near(&strokes->stroke[i], b->x[k], window, &fit);
       (*forces)[i * PLACES + k] = known ? fit.value : NAN;
     }
@@ -70,7 +70,7 @@ static double time_until(const fg_load_stroke *s, double x) {
 /* Compares each stroke with those before and after it, at the time when it passes the place, which
  * removes drift. A place that it passes at p of its time was passed p before its begin and will be
  * passed 1 - p after its end. A stroke with only one neighbour is compared with that. */
-static void compare(const fg_load_strokes *strokes, const double *forces, between *b) {
+static void compare_strokes(const fg_load_strokes *strokes, const double *forces, between *b) {
   for (int pairs = 0; pairs < 2 && !b->count; pairs++)
     for (size_t i = 1; i <= strokes->count; i++) {
       bool before = follows(strokes, forces, i - 1);
@@ -131,7 +131,7 @@ static void find_uncertainty(const between *b, double zero, double step, fg_load
   f->u_b = sqrt(variance * inverse[1][1]);
 }
 
-static fg_load_friction fit(const between *b, double zero) {
+static fg_load_friction fit_friction(const between *b, double zero) {
   fg_load_friction f = {NAN, NAN, NAN, NAN, NAN};
   double min = INFINITY, step = way_share_max * (b->high - b->low) / (WAYS - 1), ab[2];
   for (int i = 0; i < WAYS; i++) {
@@ -190,8 +190,8 @@ static double count_between(const fg_load_strokes *strokes, int sense, double lo
 /* Computes a in a gap: the mean of H over it, without any model of the foils. Its u is the largest
  * of three: by the places' scatter, whose neighbours are correlated, by the samples' noise, by the
  * strokes. */
-static void take_gap(const between *b, const fg_load_strokes *strokes,
-                     const fg_load_direction *direction, double centre, fg_load_friction *f) {
+static void average_gap(const between *b, const fg_load_strokes *strokes,
+                        const fg_load_direction *direction, double centre, fg_load_friction *f) {
   enum { GAP_PLACES_MIN = 4 };
   double reach = gap_share * direction->gap.value / 2, low = centre - reach, high = centre + reach;
   double count = 0, mean = 0, sum = 0, cross = 0, last = NAN;
@@ -221,14 +221,14 @@ fg_status fg_load_find_friction(fg_context *ctx, const fg_load_strokes *strokes,
   size_t zero = 0;
   direction->friction = (fg_load_friction){NAN, NAN, NAN, NAN, NAN};
   fg_status status = fit_forces(ctx, strokes, direction, &b, &forces);
-  if (status == FG_OK) compare(strokes, forces, &b);
+  if (status == FG_OK) compare_strokes(strokes, forces, &b);
   free(forces);
   if (status != FG_OK || !b.count || !isfinite(centre)) return status;
   for (size_t k = 0; k < PLACES; k++)
     if (fabs(b.x[k] - centre) < fabs(b.x[zero] - centre)) zero = k;
   /* In the middle between the points no foil pulls: the cell's reading there is its zero. */
-  direction->friction = fit(&b, b.middle[zero]);
-  take_gap(&b, strokes, direction, centre, &direction->friction);
+  direction->friction = fit_friction(&b, b.middle[zero]);
+  average_gap(&b, strokes, direction, centre, &direction->friction);
   return FG_OK;
 }
 

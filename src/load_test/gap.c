@@ -43,8 +43,8 @@ typedef struct branch {
 } branch;
 
 /* A sample of the branch; false: it is none. */
-static bool take_sample(const branch *b, const fg_load_stroke *s, size_t k, double *force,
-                        double *x) {
+static bool sample_of_branch(const branch *b, const fg_load_stroke *s, size_t k, double *force,
+                             double *x) {
   *force = b->side * (s->f[k] - b->zero_n);
   double out = b->side * (s->x[k] - s->shift_mm);
   *x = out - b->origin_mm;
@@ -58,7 +58,7 @@ static bool count_samples(branch *b) {
   b->count[0] = b->count[1] = b->origin_mm = 0;
   for (size_t i = 0; i < b->strokes->count; i++)
     for (size_t k = 0; k < b->strokes->stroke[i].count; k++)
-      if (take_sample(b, &b->strokes->stroke[i], k, &force, &x)) {
+      if (sample_of_branch(b, &b->strokes->stroke[i], k, &force, &x)) {
         b->count[b->strokes->stroke[i].sense != b->side]++;
         sum += x;
       }
@@ -99,7 +99,7 @@ static bool fit_exponent(const branch *b, double exponent, branch_fit *fit) {
     const fg_load_stroke *s = &b->strokes->stroke[i];
     double sense = s->sense == b->side ? 1 : -1;
     for (size_t k = 0; k < s->count; k++) {
-      if (!take_sample(b, s, k, &force, &x)) continue;
+      if (!sample_of_branch(b, s, k, &force, &x)) continue;
       double e = pow(force / b->high_n, 1 / exponent);
       fg_normal_add(&system, (const double[TERMS]){1, e, e * e, sense, sense * e}, x, 1);
     }
@@ -123,7 +123,7 @@ typedef struct touched {
 
 /* Weights exponents by their fit. But friction that reverses at the contact bends the branch as an
  * exponent does, so half of the weight is equal for all of them. */
-static touched weigh(const branch *b, const branch_fit fits[EXPONENTS]) {
+static touched weigh_exponents(const branch *b, const branch_fit fits[EXPONENTS]) {
   double min = INFINITY, low = INFINITY, high = -INFINITY, weights = 0;
   double contact = 0, variance = 0, parted = 0, plain = 0;
   for (int i = 0; i < EXPONENTS; i++) {
@@ -152,7 +152,7 @@ static bool find_touched(const branch *b, touched *out) {
     double exponent = exponent_min + (exponent_max - exponent_min) * i / (EXPONENTS - 1);
     if (!fit_exponent(b, exponent, &fits[i])) return false;
   }
-  *out = weigh(b, fits);
+  *out = weigh_exponents(b, fits);
   return isfinite(out->x_mm + out->u_mm);
 }
 

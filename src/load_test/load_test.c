@@ -92,7 +92,7 @@ static void find_ranges(const fg_load_test *test, fg_load_direction *d) {
 }
 
 /* Corrects the force's sign: a load cell may read the pushing or the resisting force. */
-static void turn_force(fg_load_test *test, fg_load_direction *d) {
+static void negate_force(fg_load_test *test, fg_load_direction *d) {
   fg_load_sample *s = test->samples + d->first;
   double x = 0, f = 0, together = 0, n = (double)d->count;
   for (size_t i = 0; i < d->count; i++)
@@ -171,7 +171,7 @@ static void check_clearance(const fg_load_test *test, const fg_load_zero *zero,
 
 /* Discards everything for rows that are not in the order of time: loading and unloading may be
  * exchanged. */
-static void forget_all(fg_load_direction *d) {
+static void withhold_all(fg_load_direction *d) {
   const fg_load_value none = {NAN, NAN, NAN};
   forget_clearance(d);
   d->stiffness = d->secant = d->loss = d->loss_secant = d->loss_foil = none;
@@ -210,7 +210,7 @@ static fg_status measure_direction(fg_context *ctx, fg_load_test *test,
   const fg_load_value none = {NAN, NAN, NAN};
   d->predicted = d->difference = none;
   FG_TRY_EXIT(fg_load_bridge_outliers(ctx, test, d));
-  turn_force(test, d);
+  negate_force(test, d);
   find_ranges(test, d);
   d->step_mm = fg_load_find_step(test->samples + d->first, d->count);
   FG_TRY_EXIT(fg_load_strokes_cut(ctx, test, d, records, &strokes));
@@ -232,14 +232,14 @@ static fg_status measure_direction(fg_context *ctx, fg_load_test *test,
   if (d->stiffness.value > stiffness_max_n_mm) d->flags |= FG_LOAD_UNITS;
   FG_TRY_EXIT(fg_load_find_loops(ctx, test, &strokes, &zero, d));
   FG_TRY_EXIT(fg_load_find_friction(ctx, &strokes, d));
-  if (d->flags & FG_LOAD_WRONG_WAY) forget_all(d);
+  if (d->flags & FG_LOAD_WRONG_WAY) withhold_all(d);
   say_why_not(test, d);
 exit:
   fg_load_strokes_free(&strokes);
   return status;
 }
 
-static void widen(fg_load_value *value, double birge, double scale_pct, double more) {
+static void widen_value(fg_load_value *value, double birge, double scale_pct, double more) {
   value->u_repeat *= birge;
   value->u = sqrt(pow(value->u_repeat, 2) + pow(scale_pct / 100 * value->value, 2) + more * more);
 }
@@ -269,16 +269,16 @@ static void finish_bearing(fg_load_test *test, const fg_load_findings *findings,
     fg_load_direction *d = &test->directions[i];
     if (d->bearing != bearing) continue;
     double threshold = o->threshold_n * o->u_force_pct / 100 * findings[i].compliance_mm_n;
-    widen(&d->clearance, birge, o->u_displacement_pct, threshold);
-    widen(&d->gap, birge, o->u_displacement_pct, 0);
-    widen(&d->unloading, birge, o->u_displacement_pct, threshold);
-    widen(&d->stiffness, steep, both, 0);
-    widen(&d->area, 1, both, 0);
-    widen(&d->secant, 1, both, 0);
+    widen_value(&d->clearance, birge, o->u_displacement_pct, threshold);
+    widen_value(&d->gap, birge, o->u_displacement_pct, 0);
+    widen_value(&d->unloading, birge, o->u_displacement_pct, threshold);
+    widen_value(&d->stiffness, steep, both, 0);
+    widen_value(&d->area, 1, both, 0);
+    widen_value(&d->secant, 1, both, 0);
     widen_loss(d);
     for (int side = 0; side < FG_LOAD_SIDES; side++)
-      for (size_t k = 0; k < d->course[side].count; k++)
-        d->course[side].point[k].u_stiffness_n_mm *= steep;
+      for (size_t k = 0; k < d->profile[side].count; k++)
+        d->profile[side].point[k].u_stiffness_n_mm *= steep;
   }
 }
 

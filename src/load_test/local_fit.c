@@ -46,8 +46,8 @@ typedef struct sums {
 
 /* Finds the first sample and the one after the last within the window about x, without crossing
  * unsampled stretches; false: x lies in one. */
-static bool find_range(const fg_load_stroke *s, double x, double window, size_t *first,
-                       size_t *end) {
+static bool find_window(const fg_load_stroke *s, double x, double window, size_t *first,
+                        size_t *end) {
   size_t at = fg_load_stroke_from(s, x);
   if (at < s->count && s->after_hole[at] && x < s->x[at]) return false;
   *first = *end = at;
@@ -62,7 +62,7 @@ static bool find_range(const fg_load_stroke *s, double x, double window, size_t 
 static sums sum_window(const fg_load_stroke *s, double x, double window) {
   sums all = {0};
   size_t first, end;
-  if (!find_range(s, x, window, &first, &end)) return all;
+  if (!find_window(s, x, window, &first, &end)) return all;
   for (size_t i = first; i < end; i++) {
     double z = (s->x[i] - x) / window, w = 1 - fabs(z * z * z), power[3] = {1, z, z * z};
     w *= w * w;
@@ -227,7 +227,7 @@ bool fg_local_across(const fg_load_stroke *stroke, double x, fg_local_fit *fit) 
 typedef enum looked { NOWHERE, SAMPLED, UNSAMPLED } looked;
 
 /* Coarsely, at places of a grid and on both borders of every unsampled stretch. */
-static looked look(look_around *l) {
+static looked find_crossing(look_around *l) {
   const fg_load_stroke *s = l->stroke;
   double low = s->x[0], high = s->x[s->count - 1], step = (high - low) / LOOK_PLACES;
   size_t i = s->count - 1;
@@ -303,7 +303,7 @@ static bool is_within(const look_around *l, double x) {
   return x >= l->stroke->x[first] && x <= l->stroke->x[last];
 }
 
-static bool solve(const look_around *l, double *x, double *u_x, fg_local_fit *fit) {
+static bool solve_crossing(const look_around *l, double *x, double *u_x, fg_local_fit *fit) {
   const fg_load_stroke *stroke = l->stroke;
   double window = 0, u = 0;
   *x = (l->inner_x + l->outer_x) / 2;
@@ -328,8 +328,8 @@ bool fg_local_crossing(const fg_load_stroke *stroke, double level_n, double *x, 
                        fg_local_fit *fit) {
   look_around l = {.stroke = stroke, .level = level_n};
   if (stroke->count < SAMPLES_MIN || !(stroke->x[stroke->count - 1] > stroke->x[0])) return false;
-  looked where = look(&l);
+  looked where = find_crossing(&l);
   if (where == NOWHERE) return false;
   if (where == UNSAMPLED) return bracket(&l, x, u_x, fit);
-  return solve(&l, x, u_x, fit) || bracket_places(&l, x, u_x, fit);
+  return solve_crossing(&l, x, u_x, fit) || bracket_places(&l, x, u_x, fit);
 }

@@ -20,7 +20,7 @@ typedef struct tally {
   double sum, squares, count;
 } tally;
 
-static void add(tally *t, double area) {
+static void add_area(tally *t, double area) {
   t->sum += area;
   t->squares += area * area;
   t->count++;
@@ -51,7 +51,7 @@ static double loop_area(const fg_load_sample *s, const fg_load_direction *direct
   double area = polygon(s, first, last), noise = 0;
   for (size_t i = first + 1; i < last; i++)
     noise += variance * pow((s[i + 1].x_mm - s[i - 1].x_mm) / 2, 2);
-  add(&all->single, area);
+  add_area(&all->single, area);
   all->noise = noise;
   return area;
 }
@@ -77,7 +77,7 @@ static loops find_loops(const fg_load_sample *samples, const fg_load_strokes *st
     double area = follows(strokes, i) ? loop_area(samples, direction, strokes->stroke[i].first,
                                                   strokes->stroke[i + 1].last, variance, &all)
                                       : NAN;
-    if (isfinite(area + last)) add(&all.pair, (area + last) / 2);
+    if (isfinite(area + last)) add_area(&all.pair, (area + last) / 2);
     last = area;
   }
   /* One cycle from the middle back to the middle has no turning point twice. */
@@ -115,24 +115,25 @@ typedef struct mean_loop {
   fg_load_turn turn[FG_LOAD_SIDES];
 } mean_loop;
 
-static bool is_whole(const fg_load_stroke *s, const fg_load_direction *direction) {
+static bool is_whole_loop_stroke(const fg_load_stroke *s, const fg_load_direction *direction) {
   return s->high_mm - s->low_mm > (1 - 2 * close_share) * direction->travel_mm;
 }
 
 /* Whole strokes; all of them where a sense has none, as in one cycle from the middle to the middle.
  */
-static void choose(const fg_load_strokes *strokes, const fg_load_direction *direction,
-                   fg_load_loop_strokes *c) {
+static void choose_loop_strokes(const fg_load_strokes *strokes, const fg_load_direction *direction,
+                                fg_load_loop_strokes *c) {
   bool has[SENSES] = {false};
   for (size_t i = 0; i < strokes->count; i++)
-    if (is_whole(&strokes->stroke[i], direction)) has[strokes->stroke[i].sense < 0] = true;
+    if (is_whole_loop_stroke(&strokes->stroke[i], direction))
+      has[strokes->stroke[i].sense < 0] = true;
   for (size_t i = 0; i < strokes->count; i++)
-    if (!(has[UP] && has[DOWN]) || is_whole(&strokes->stroke[i], direction))
+    if (!(has[UP] && has[DOWN]) || is_whole_loop_stroke(&strokes->stroke[i], direction))
       c->stroke[c->count++] = &strokes->stroke[i];
 }
 
-static fg_status merge(fg_context *ctx, const fg_load_loop_strokes *c, int sense,
-                       fg_load_stroke *branch) {
+static fg_status merge_branch(fg_context *ctx, const fg_load_loop_strokes *c, int sense,
+                              fg_load_stroke *branch) {
   const fg_load_stroke **of;
   size_t count = 0;
   FG_TRY(fg_memory_allocate(ctx, c->count + 1, sizeof *of, (void **)&of));
@@ -149,9 +150,9 @@ static fg_status make_loop(fg_context *ctx, const fg_load_sample *samples,
   fg_load_loop_strokes c = {.noise_mm = strokes->noise_mm};
   fg_status status = FG_OK;
   FG_TRY(fg_memory_allocate(ctx, strokes->count, sizeof(fg_load_stroke *), (void **)&c.stroke));
-  choose(strokes, direction, &c);
+  choose_loop_strokes(strokes, direction, &c);
   for (int sense = UP; sense < SENSES; sense++)
-    FG_TRY_EXIT(merge(ctx, &c, sense, &loop->branch[sense]));
+    FG_TRY_EXIT(merge_branch(ctx, &c, sense, &loop->branch[sense]));
   for (int side = 0; side < FG_LOAD_SIDES; side++)
     FG_TRY_EXIT(
         fg_load_find_turn(ctx, samples, &c, side == FG_LOAD_PUSH ? 1 : -1, &loop->turn[side]));

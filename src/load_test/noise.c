@@ -113,7 +113,7 @@ static void add_moments(const fg_load_stroke *s, const pilot *p, variances v, mo
 }
 
 /* Solves with the displacement's variance at least `min`. */
-static variances solve(const moments *m, double min) {
+static variances solve_variances(const moments *m, double min) {
   double determinant = m->one * m->kk - m->k * m->k;
   variances v = {m->q / m->one, 0};
   if (determinant > 1e-9 * m->one * m->kk) {
@@ -152,7 +152,7 @@ static variances find_variances(const fg_load_strokes *strokes, const pilot p[2]
     for (size_t i = 0; i < strokes->count; i++)
       add_moments(&strokes->stroke[i], &p[strokes->stroke[i].sense > 0], v, &m);
     if (!(m.one > 0)) break;
-    v = solve(&m, min);
+    v = solve_variances(&m, min);
   }
   return v;
 }

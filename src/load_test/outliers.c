@@ -18,16 +18,16 @@ static const double apart = 3;
 
 enum { RUN_MAX = 2, COLUMNS = 2 };
 
-static double *value_at(fg_load_sample *sample, int column) {
+static double *reading_at(fg_load_sample *sample, int column) {
   return column ? &sample->force_n : &sample->x_mm;
 }
 
 /* Returns the distance of a run's reading from the line between its neighbours, and from the
  * extrapolations of each side's last two: at a turn of the stroke one of these fits. */
-static double distance(fg_load_sample *s, size_t run, size_t k, int column) {
-  double before[2] = {*value_at(s - 2, column), *value_at(s - 1, column)};
-  double after[2] = {*value_at(s + run, column), *value_at(s + run + 1, column)};
-  double here = *value_at(s + k, column), at = (double)(k + 1), back = (double)(run - k);
+static double distance_from_lines(fg_load_sample *s, size_t run, size_t k, int column) {
+  double before[2] = {*reading_at(s - 2, column), *reading_at(s - 1, column)};
+  double after[2] = {*reading_at(s + run, column), *reading_at(s + run + 1, column)};
+  double here = *reading_at(s + k, column), at = (double)(k + 1), back = (double)(run - k);
   double between = before[1] + (after[0] - before[1]) * at / (double)(run + 1);
   double from_left = before[1] + at * (before[1] - before[0]);
   double from_right = after[0] + back * (after[0] - after[1]);
@@ -36,27 +36,27 @@ static double distance(fg_load_sample *s, size_t run, size_t k, int column) {
 }
 
 static bool is_isolated(fg_load_sample *s, size_t run, int column, double limit) {
-  double gap = fabs(*value_at(s + run, column) - *value_at(s - 1, column));
+  double gap = fabs(*reading_at(s + run, column) - *reading_at(s - 1, column));
   for (size_t k = 0; k < run; k++) {
-    double d = distance(s, run, k, column);
+    double d = distance_from_lines(s, run, k, column);
     if (!(d > limit && d > apart * gap)) return false;
   }
   return true;
 }
 
 static void bridge(fg_load_sample *s, size_t run, int column) {
-  double from = *value_at(s - 1, column), to = *value_at(s + run, column);
+  double from = *reading_at(s - 1, column), to = *reading_at(s + run, column);
   for (size_t k = 0; k < run; k++)
-    *value_at(s + k, column) = from + (to - from) * (double)(k + 1) / (double)(run + 1);
+    *reading_at(s + k, column) = from + (to - from) * (double)(k + 1) / (double)(run + 1);
 }
 
 static double find_limit(fg_load_sample *s, size_t count, int column, double *room) {
   size_t n = 0;
   for (size_t i = 2; i + 2 < count; i++)
-    room[n++] = distance(s + i, 1, 0, column);
+    room[n++] = distance_from_lines(s + i, 1, 0, column);
   double median = fg_select(room, n, n / 2);
   for (size_t i = 0; i < count; i++)
-    room[i] = *value_at(s + i, column);
+    room[i] = *reading_at(s + i, column);
   /* Quantiles, because wrong readings must not widen the range that they are compared with. */
   double low = fg_select(room, count, count / 20);
   double high = fg_select(room, count, count - 1 - count / 20);

@@ -62,11 +62,11 @@ typedef struct joined {
   fg_load_scatter scatter;
 } joined;
 
-static double middle_of(const fg_load_stroke *s) {
+static double middle_between_turns(const fg_load_stroke *s) {
   return (fg_load_stroke_turn(s, false) + fg_load_stroke_turn(s, true)) / 2;
 }
 
-static bool is_whole(const fg_load_stroke *s, const fg_load_strokes *strokes) {
+static bool has_both_turns(const fg_load_stroke *s, const fg_load_strokes *strokes) {
   double longest = 0;
   for (size_t i = 0; i < strokes->count; i++)
     longest = fmax(longest, strokes->stroke[i].high_mm - strokes->stroke[i].low_mm);
@@ -80,24 +80,24 @@ static void align(fg_load_strokes *strokes, fg_load_levels levels, const double 
                   double variance) {
   double middle = 0, count = 0;
   for (size_t i = 0; i < strokes->count; i++) {
-    if (!is_whole(&strokes->stroke[i], strokes)) continue;
-    middle += middle_of(&strokes->stroke[i]);
+    if (!has_both_turns(&strokes->stroke[i], strokes)) continue;
+    middle += middle_between_turns(&strokes->stroke[i]);
     count++;
   }
   for (size_t i = 0; i < strokes->count; i++) {
     fg_load_stroke *s = &strokes->stroke[i];
     point p = find_point(s, levels);
-    if (!p.found || !is_whole(s, strokes)) continue;
+    if (!p.found || !has_both_turns(s, strokes)) continue;
     double share = variance / (variance + p.u * p.u);
     double by_point = share * (p.x - x[p.side] - s->shift_mm);
-    double by_middle = middle_of(s) - middle / count;
+    double by_middle = middle_between_turns(s) - middle / count;
     if (by_point * by_middle <= 0) continue;
     s->shift_mm += fabs(by_point) < fabs(by_middle) ? by_point : by_middle;
   }
 }
 
 /* Fits the points of all strokes, with their drift; false when a side has none. */
-static bool join(fg_load_strokes *strokes, fg_load_levels levels, joined *out) {
+static bool fit_points(fg_load_strokes *strokes, fg_load_levels levels, joined *out) {
   fg_normal_equations system;
   plan all = make_plan(strokes, levels);
   double x[FG_SMALL_MAX], inverse[FG_SMALL_MAX][FG_SMALL_MAX];
@@ -177,7 +177,7 @@ fg_status fg_load_find_points(fg_context *ctx, fg_load_strokes *strokes, fg_load
   fg_load_value none = {NAN, NAN, NAN};
   direction->clearance = direction->unloading = none;
   direction->push_mm = direction->pull_mm = direction->drift_um_cycle = NAN;
-  if (!join(strokes, levels, &all)) return FG_OK;
+  if (!fit_points(strokes, levels, &all)) return FG_OK;
   direction->drift_um_cycle = 2000 * all.drift;
   findings->points = all.scatter;
   for (int side = PUSH; side <= PULL; side++) {

@@ -27,7 +27,7 @@ typedef struct places {
       u_mm[FG_BEARING_BUMPS_MAX];
 } places;
 
-static size_t read_numbers(const cJSON *object, const char *name, double *numbers) {
+static size_t read_place_numbers(const cJSON *object, const char *name, double *numbers) {
   const cJSON *array = cJSON_GetObjectItemCaseSensitive(object, name), *item;
   size_t count = 0;
   cJSON_ArrayForEach(item, array) {
@@ -37,7 +37,7 @@ static size_t read_numbers(const cJSON *object, const char *name, double *number
   return count;
 }
 
-static void name_of(const cJSON *bearing, char *text, size_t size) {
+static void read_bearing_name(const cJSON *bearing, char *text, size_t size) {
   const cJSON *name = cJSON_GetObjectItemCaseSensitive(bearing, "name");
   const cJSON *number = cJSON_GetObjectItemCaseSensitive(bearing, "number");
   if (cJSON_IsString(name))
@@ -58,9 +58,9 @@ static const char *check_place(const places *p, size_t i) {
 static fg_status read_places(fg_context *ctx, const cJSON *bearing, const char *path,
                              const char *name, places *p) {
   *p = (places){0};
-  p->count = read_numbers(bearing, "angle_deg", p->angle_deg);
-  if (!p->count || read_numbers(bearing, "clearance_mm", p->clearance_mm) != p->count ||
-      read_numbers(bearing, "u_clearance_mm", p->u_mm) != p->count)
+  p->count = read_place_numbers(bearing, "angle_deg", p->angle_deg);
+  if (!p->count || read_place_numbers(bearing, "clearance_mm", p->clearance_mm) != p->count ||
+      read_place_numbers(bearing, "u_clearance_mm", p->u_mm) != p->count)
     return fg_fail(ctx, FG_ERR_DATA, "%s: the bearing '%s' has no clearances", path, name);
   for (size_t i = 0; i < p->count; i++) {
     const char *wrong = check_place(p, i);
@@ -96,7 +96,7 @@ static size_t first_met(const places *p, double deg, double *way, double *u) {
   return met;
 }
 
-static void predict(const fg_load_test *test, const places *p, fg_load_direction *d) {
+static void predict_direction(const fg_load_test *test, const places *p, fg_load_direction *d) {
   double way[2], u[2] = {NAN, NAN};
   double deg = d->azimuth_deg - test->options.azimuth_zero_deg;
   size_t push = first_met(p, deg, &way[0], &u[0]), pull = first_met(p, deg + 180, &way[1], &u[1]);
@@ -115,7 +115,7 @@ static fg_status take_bearings(fg_context *ctx, fg_load_test *test, const cJSON 
   cJSON_ArrayForEach(bearing, bearings) {
     char name[128];
     places p;
-    name_of(bearing, name, sizeof name);
+    read_bearing_name(bearing, name, sizeof name);
     for (size_t i = 0; i < test->bearing_count; i++) {
       if (strcmp(test->bearings[i].name, name) != 0) continue;
       met++;
@@ -123,7 +123,7 @@ static fg_status take_bearings(fg_context *ctx, fg_load_test *test, const cJSON 
       test->bearings[i].in_lot = true;
       test->bearings[i].unknown_places = p.unknown;
       for (size_t k = 0; k < test->direction_count; k++)
-        if (test->directions[k].bearing == i) predict(test, &p, &test->directions[k]);
+        if (test->directions[k].bearing == i) predict_direction(test, &p, &test->directions[k]);
     }
   }
   if (met) return FG_OK;

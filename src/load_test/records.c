@@ -108,15 +108,15 @@ static fg_status check_order(reading *r, const fg_table *table, const fg_load_co
   return FG_OK;
 }
 
-static double value_at(const fg_load_columns *columns, fg_load_measured which, size_t i) {
+static double cell_value_at(const fg_load_columns *columns, fg_load_measured which, size_t i) {
   return columns->number[which][i].value * columns->scale[which];
 }
 
 static fg_status check_size(reading *r, const fg_table *table, const fg_load_columns *columns,
                             size_t i) {
   static const char *const words[] = {"displacement", "force"};
-  const double value[] = {value_at(columns, FG_LOAD_DISPLACEMENT, i),
-                          value_at(columns, FG_LOAD_FORCE, i)};
+  const double value[] = {cell_value_at(columns, FG_LOAD_DISPLACEMENT, i),
+                          cell_value_at(columns, FG_LOAD_FORCE, i)};
   const double max[] = {displacement_max_mm, force_max_n};
   for (int k = 0; k < 2; k++)
     if (!(fabs(value[k]) <= max[k]))
@@ -141,7 +141,8 @@ static fg_status take_row(reading *r, const fg_table *table, const fg_load_colum
   char name[128];
   fg_load_direction key = {.azimuth_deg = source->azimuth_deg};
   size_t direction;
-  if (columns->number[FG_LOAD_AZIMUTH]) key.azimuth_deg = value_at(columns, FG_LOAD_AZIMUTH, i);
+  if (columns->number[FG_LOAD_AZIMUTH])
+    key.azimuth_deg = cell_value_at(columns, FG_LOAD_AZIMUTH, i);
   if (columns->bearing)
     FG_TRY(fg_load_columns_text(r->ctx, table, columns->bearing, i, name, sizeof name));
   else if (source->bearing)
@@ -155,10 +156,10 @@ static fg_status take_row(reading *r, const fg_table *table, const fg_load_colum
   FG_TRY(find_direction(r, &key, r->count ? r->rows[r->count - 1].direction : 0, &direction));
   FG_TRY(check_order(r, table, columns, i, direction));
   FG_TRY(fg_memory_reserve(r->ctx, r->count + 1, sizeof *r->rows, &r->capacity, (void **)&r->rows));
-  r->rows[r->count++] =
-      (row){{value_at(columns, FG_LOAD_DISPLACEMENT, i), value_at(columns, FG_LOAD_FORCE, i)},
-            direction,
-            r->test->file_count - 1};
+  r->rows[r->count++] = (row){
+      {cell_value_at(columns, FG_LOAD_DISPLACEMENT, i), cell_value_at(columns, FG_LOAD_FORCE, i)},
+      direction,
+      r->test->file_count - 1};
   return FG_OK;
 }
 
@@ -246,7 +247,7 @@ static int by_number(const void *left, const void *right) {
 }
 
 /* The rows of each direction together, in their order. */
-static fg_status gather(reading *r, fg_load_records *records) {
+static fg_status gather_rows(reading *r, fg_load_records *records) {
   fg_load_test *test = r->test;
   size_t first = 0, *next = NULL, *file = NULL;
   fg_status status = FG_OK;
@@ -281,7 +282,7 @@ fg_status fg_load_records_read(fg_context *ctx, const fg_load_source *sources, s
   for (size_t i = 0; i < count; i++)
     FG_TRY_EXIT(read_file(&r, &sources[i]));
   FG_TRY_EXIT(sort_directions(&r));
-  FG_TRY_EXIT(gather(&r, records));
+  FG_TRY_EXIT(gather_rows(&r, records));
 exit:
   free(r.rows);
   free(r.last_time);

@@ -30,7 +30,7 @@ void fg_load_strokes_free(fg_load_strokes *strokes) {
   *strokes = (fg_load_strokes){0};
 }
 
-static fg_status allocate(fg_context *ctx, size_t count, fg_load_stroke *stroke) {
+static fg_status allocate_stroke(fg_context *ctx, size_t count, fg_load_stroke *stroke) {
   stroke->count = count;
   FG_TRY(fg_memory_allocate(ctx, count, sizeof *stroke->x, (void **)&stroke->x));
   FG_TRY(fg_memory_allocate(ctx, count, sizeof *stroke->f, (void **)&stroke->f));
@@ -72,11 +72,12 @@ static int by_x(const void *left, const void *right) {
   return (a->order > b->order) - (a->order < b->order);
 }
 
-static fg_status fill(fg_context *ctx, const fg_load_sample *samples, fg_load_stroke *stroke) {
+static fg_status fill_stroke(fg_context *ctx, const fg_load_sample *samples,
+                             fg_load_stroke *stroke) {
   placed *sorted = NULL;
   fg_status status = FG_OK;
   size_t count = stroke->last - stroke->first + 1;
-  FG_TRY_EXIT(allocate(ctx, count, stroke));
+  FG_TRY_EXIT(allocate_stroke(ctx, count, stroke));
   FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *sorted, (void **)&sorted));
   for (size_t i = 0; i < count; i++) {
     const fg_load_sample *s = &samples[stroke->first + i];
@@ -99,7 +100,7 @@ static fg_status add_stroke(fg_context *ctx, const fg_load_sample *samples, fg_l
   FG_TRY(fg_memory_reserve(ctx, strokes->count + 1, sizeof *strokes->stroke, &strokes->capacity,
                            (void **)&strokes->stroke));
   strokes->stroke[strokes->count++] = stroke;
-  return fill(ctx, samples, &strokes->stroke[strokes->count - 1]);
+  return fill_stroke(ctx, samples, &strokes->stroke[strokes->count - 1]);
 }
 
 /* Cuts strokes of one record: from one extreme to the next at a distance of at least `way`. */
@@ -199,7 +200,7 @@ fg_status fg_load_strokes_merge(fg_context *ctx, const fg_load_stroke *const *ch
                              .resolution_mm = count ? chosen[0]->resolution_mm : 0};
   for (size_t i = 0; i < count; i++)
     total += chosen[i]->count;
-  FG_TRY_EXIT(allocate(ctx, total, merged));
+  FG_TRY_EXIT(allocate_stroke(ctx, total, merged));
   FG_TRY_EXIT(fg_memory_allocate(ctx, total, sizeof *cells, (void **)&cells));
   for (size_t i = 0; i < count; i++)
     for (size_t k = 0; k < chosen[i]->count; k++, n++)
@@ -247,7 +248,7 @@ fg_status fg_load_stroke_half(fg_context *ctx, const fg_load_stroke *stroke, siz
   *half = *stroke;
   half->x = half->f = half->variance = half->scatter = NULL;
   half->after_hole = NULL;
-  FG_TRY(allocate(ctx, (stroke->count - from + 1) / 2, half));
+  FG_TRY(allocate_stroke(ctx, (stroke->count - from + 1) / 2, half));
   for (size_t i = 0; i < half->count; i++) {
     half->x[i] = stroke->x[2 * i + from];
     half->f[i] = stroke->f[2 * i + from];

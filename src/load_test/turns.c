@@ -48,7 +48,7 @@ typedef struct parabola {
   double c0, c1, u_c0;
 } parabola;
 
-static bool solve(const fg_normal_equations *system, size_t count, parabola *p) {
+static bool solve_parabola(const fg_normal_equations *system, size_t count, parabola *p) {
   double c[FG_SMALL_MAX], inverse[FG_SMALL_MAX][FG_SMALL_MAX];
   if (count <= PARAMETERS || !fg_normal_solve(system, 0, c, inverse)) return false;
   double squares = system->sum_squares;
@@ -59,7 +59,7 @@ static bool solve(const fg_normal_equations *system, size_t count, parabola *p) 
   return true;
 }
 
-static void add(fg_normal_equations *system, double z, double y) {
+static void add_parabola_point(fg_normal_equations *system, double z, double y) {
   fg_normal_add(system, (const double[PARAMETERS]){1, z, z * z}, y, 1);
 }
 
@@ -70,8 +70,8 @@ static bool fit_force(const fg_load_sample *samples, size_t at, int sign, turn *
   double here = samples[at].force_n;
   fg_normal_clear(&system, PARAMETERS);
   for (size_t i = 0; i < BEFORE; i++)
-    add(&system, -(double)i / BEFORE, sign * (samples[at - i].force_n - here));
-  if (!solve(&system, BEFORE, &p)) return false;
+    add_parabola_point(&system, -(double)i / BEFORE, sign * (samples[at - i].force_n - here));
+  if (!solve_parabola(&system, BEFORE, &p)) return false;
   double rise = fmax(0, p.c1) / BEFORE;
   *t = (turn){sign * here + p.c0 + rise / 2, p.u_c0, rise, 0, at};
   return true;
@@ -137,8 +137,8 @@ static void drop_lost(branch *b) {
 }
 
 /* Strokes that load this side and turn as far out as any. */
-static void choose(const fg_load_sample *samples, const fg_load_loop_strokes *strokes, int sense,
-                   branch *b) {
+static void choose_turning_strokes(const fg_load_sample *samples,
+                                   const fg_load_loop_strokes *strokes, int sense, branch *b) {
   size_t outermost = 0, kept = 0;
   for (size_t i = 0; i < strokes->count; i++)
     if (strokes->stroke[i]->sense == sense &&
@@ -194,7 +194,7 @@ static size_t add_samples(const fg_load_sample *samples, const fg_load_stroke *s
     double z = s->sense * (samples[i].force_n - t->force_n) / window;
     double share = ((double)(i - s->first) + 0.5) / (double)(s->last - s->first + 1);
     if (z < -1) continue;
-    add(system, z, samples[i].x_mm - fg_load_stroke_drifted(s, share) - t->place_mm);
+    add_parabola_point(system, z, samples[i].x_mm - fg_load_stroke_drifted(s, share) - t->place_mm);
     count++;
   }
   return count;
@@ -213,7 +213,7 @@ static bool find_place(const fg_load_sample *samples, const branch *b, fg_load_t
     for (size_t i = 0; i < b->count; i++)
       count += add_samples(samples, b->stroke[i], b->turns[i].at, window, t, &system);
     if (count < PLACE_SAMPLES_MIN && window < max) continue;
-    if (!solve(&system, count, &p)) return false;
+    if (!solve_parabola(&system, count, &p)) return false;
     t->place_mm += p.c0;
     t->u_place_mm = p.u_c0;
     t->compliance_mm_n = fabs(p.c1) / window;
@@ -229,7 +229,7 @@ fg_status fg_load_find_turn(fg_context *ctx, const fg_load_sample *samples,
   *t = (fg_load_turn){0};
   FG_TRY_EXIT(fg_memory_allocate(ctx, strokes->count + 1, sizeof *b.stroke, (void **)&b.stroke));
   FG_TRY_EXIT(fg_memory_allocate(ctx, strokes->count + 1, sizeof *b.turns, (void **)&b.turns));
-  choose(samples, strokes, sense, &b);
+  choose_turning_strokes(samples, strokes, sense, &b);
   if (b.count) {
     mean_force(&b, sense, t);
     t->found = find_place(samples, &b, t);

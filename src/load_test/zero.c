@@ -25,15 +25,15 @@ static bool fit_at(const fg_load_stroke *stroke, double x, double span, fg_local
 }
 
 /* Forces of both senses where both are known, and the slope of their mean. */
-typedef struct course {
+typedef struct mean_curve {
   double x[PLACES], middle[PLACES], half[PLACES], u[PLACES], slope[PLACES], min, max;
   size_t count;
-} course;
+} mean_curve;
 
-static void look(const fg_load_stroke *up, const fg_load_stroke *down, course *c) {
+static void compare_forces(const fg_load_stroke *up, const fg_load_stroke *down, mean_curve *c) {
   double low = fmax(up->x[0], down->x[0]);
   double high = fmin(up->x[up->count - 1], down->x[down->count - 1]);
-  *c = (course){.min = INFINITY};
+  *c = (mean_curve){.min = INFINITY};
   for (size_t k = 0; k < PLACES && high > low; k++) {
     double share = end_left_out + (1 - 2 * end_left_out) * (double)k / (PLACES - 1);
     double x = low + share * (high - low);
@@ -50,13 +50,13 @@ static void look(const fg_load_stroke *up, const fg_load_stroke *down, course *c
   }
 }
 
-static bool is_flat(const course *c, size_t k) {
+static bool is_flat(const mean_curve *c, size_t k) {
   return c->slope[k] <= c->min + gap_share * c->max;
 }
 
 /* Averages over the middle half of the flat places: windows of the others reach to the foils.
  * Neighbouring places share samples, so the mean's u is that of one of them. */
-static fg_load_zero mean_of_gap(const course *c) {
+static fg_load_zero mean_of_gap(const mean_curve *c) {
   fg_load_zero zero = {0, 0, 0, 0};
   double count = 0, first = INFINITY, last = -INFINITY;
   if (!(c->min < flat_share * c->max)) return (fg_load_zero){NAN, NAN, NAN, NAN};
@@ -80,13 +80,13 @@ static fg_load_zero mean_of_gap(const course *c) {
 
 fg_status fg_load_find_zero(fg_context *ctx, const fg_load_strokes *strokes, fg_load_zero *zero) {
   fg_load_stroke up = {0}, down = {0};
-  course c;
+  mean_curve c;
   fg_status status = FG_OK;
   *zero = (fg_load_zero){NAN, NAN, NAN, NAN};
   FG_TRY_EXIT(fg_load_strokes_merge_sense(ctx, strokes, 1, &up));
   FG_TRY_EXIT(fg_load_strokes_merge_sense(ctx, strokes, -1, &down));
   if (up.count && down.count) {
-    look(&up, &down, &c);
+    compare_forces(&up, &down, &c);
     *zero = mean_of_gap(&c);
   }
 exit:

@@ -92,7 +92,7 @@ static fg_status read_options(fg_context *ctx, const fg_experiment_options *opti
 }
 
 /* A number enters the model as itself in every variable that names the column. */
-static bool is_plain(const fg_formula *formula, const char *column) {
+static bool is_untransformed(const fg_formula *formula, const char *column) {
   for (size_t v = 0; v < formula->variables; v++)
     if (!strcmp(formula->variable[v].column, column) &&
         formula->variable[v].transform != FG_TRANSFORM_NONE)
@@ -131,7 +131,7 @@ static fg_status add_factor(fg_context *ctx, const fg_experiment_options *option
   fg_factor *factor = &e->factor[e->factors++];
   const fg_coding *given = given_coding(options, name);
   *factor = (fg_factor){.name = column->name, .variable = variable};
-  factor->transformed = !is_plain(formula, name);
+  factor->transformed = !is_untransformed(formula, name);
   if (factor->transformed && given)
     return fg_fail(ctx, FG_ERR_USAGE, "'%s' cannot be coded: the formula puts it in a function",
                    name);
@@ -231,7 +231,7 @@ static fg_status read_uncertainty(fg_context *ctx, const fg_experiment_options *
   return FG_OK;
 }
 
-static fg_status fit(fg_context *ctx, fg_experiment *e) {
+static fg_status fit_experiment(fg_context *ctx, fg_experiment *e) {
   const fg_regression_options options = {
       .confidence = e->confidence, .dof_taken = e->dof_taken, .taken = e->taken_out};
   const fg_extended *y = NULL;
@@ -285,7 +285,7 @@ fg_status fg_experiment_fit(fg_context *ctx, const fg_table *runs,
   FG_TRY(build_model(ctx, e));
   FG_TRY(fill_settings(ctx, e));
   FG_TRY(read_uncertainty(ctx, options, e));
-  FG_TRY(fit(ctx, e));
+  FG_TRY(fit_experiment(ctx, e));
   FG_TRY(note_forgotten(ctx, e));
   FG_TRY(fg_experiment_effects(ctx, e));
   return fg_experiment_check_order(ctx, e);

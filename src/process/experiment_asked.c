@@ -18,7 +18,7 @@ static fg_status fail_at(fg_context *ctx, const char *text, const char *at, cons
                  text, (size_t)(at - text) + 1, what);
 }
 
-static const fg_factor *factor_of(const fg_experiment *e, size_t variable) {
+static const fg_factor *find_asked_factor(const fg_experiment *e, size_t variable) {
   for (size_t f = 0; f < e->factors; f++)
     if (e->factor[f].variable == variable) return &e->factor[f];
   return NULL;
@@ -42,7 +42,7 @@ static size_t variable_of(const fg_experiment *e, const char *name, size_t lengt
 static bool read_value(const fg_experiment *e, size_t v, const char *text, size_t length,
                        double *value) {
   const fg_levels *levels = &e->model.levels[v];
-  const fg_factor *factor = factor_of(e, v);
+  const fg_factor *factor = find_asked_factor(e, v);
   char *end;
   for (size_t k = 0; k < levels->count; k++)
     if (strlen(levels->name[k]) == length && !memcmp(levels->name[k], text, length)) {
@@ -133,7 +133,8 @@ static fg_status best_along(fg_context *ctx, const fg_experiment *e, const fg_fa
   return FG_OK;
 }
 
-static fg_status ask(fg_context *ctx, const fg_experiment *e, const char *text, fg_asked *asked) {
+static fg_status predict_request(fg_context *ctx, const fg_experiment *e, const char *text,
+                                 fg_asked *asked) {
   *asked = (fg_asked){.text = NULL};
   FG_TRY(read_setting(ctx, e, text, asked->setting));
   FG_TRY(fg_experiment_predict(ctx, e, asked->setting, &asked->prediction));
@@ -154,7 +155,7 @@ fg_status fg_experiment_ask(fg_context *ctx, const fg_experiment_options *option
   e->target = options->target;
   FG_TRY(fg_memory_allocate(ctx, options->ats, sizeof *e->asked, (void **)&e->asked));
   for (size_t i = 0; i < options->ats; i++) {
-    FG_TRY(ask(ctx, e, options->at[i], &e->asked[i]));
+    FG_TRY(predict_request(ctx, e, options->at[i], &e->asked[i]));
     e->askeds++;
   }
   return FG_OK;

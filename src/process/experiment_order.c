@@ -188,7 +188,7 @@ static void check_farthest(const checking *c, fg_order_check *order) {
   order->farthest_p = fmin(1, one * (double)c->rows);
 }
 
-static fg_status check(fg_context *ctx, checking *c, fg_experiment *e) {
+static fg_status check_residuals(fg_context *ctx, checking *c, fg_experiment *e) {
   fg_order_check *order = &e->order;
   size_t rows = c->rows;
   FG_TRY(fg_memory_allocate(ctx, rows, sizeof *e->order_value, (void **)&e->order_value));
@@ -228,7 +228,7 @@ fg_status fg_experiment_check_order(fg_context *ctx, fg_experiment *e) {
         "%zu runs and %zu coefficients: the residuals were not looked at over "
         "the order of the runs",
         r->rows, r->columns);
-  fg_status status = check(ctx, &c, e);
+  fg_status status = check_residuals(ctx, &c, e);
   free(c.basis);
   free(c.residual);
   free(c.in_order);

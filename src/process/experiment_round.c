@@ -8,7 +8,7 @@
 /* Steps that are tried on each side of the optimum: next to a border the nearest may be outside. */
 enum { REACH = 2, SIDES = 2 * REACH, TRIED_MAX = 1 << 16 };
 
-static const fg_factor *factor_of(const fg_experiment *e, size_t k) {
+static const fg_factor *rounded_factor(const fg_experiment *e, size_t k) {
   for (size_t f = 0; f < e->factors; f++)
     if (e->factor[f].variable == e->surface.variable[k]) return &e->factor[f];
   return NULL;
@@ -19,7 +19,7 @@ static fg_status find_steps(fg_context *ctx, const fg_experiment_options *option
   for (size_t r = 0; r < options->rounds; r++) {
     bool found = false;
     for (size_t k = 0; k < e->surface.factors; k++) {
-      if (strcmp(factor_of(e, k)->name, options->round[r].name) != 0) continue;
+      if (strcmp(rounded_factor(e, k)->name, options->round[r].name) != 0) continue;
       e->step[k] = options->round[r].step;
       found = e->has_rounded = true;
     }
@@ -43,7 +43,7 @@ static void combine(const fg_experiment *e, size_t number, double *x) {
   memcpy(x, e->optimum.x, sizeof e->optimum.x);
   for (size_t k = 0; k < e->surface.factors; k++) {
     if (!(e->step[k] > 0)) continue;
-    x[k] = multiple(factor_of(e, k), e->step[k], x[k], number % SIDES);
+    x[k] = multiple(rounded_factor(e, k), e->step[k], x[k], number % SIDES);
     number /= SIDES;
   }
 }

@@ -14,7 +14,7 @@ enum { COMBINATIONS = 4096 };
  */
 static const double BORDER = 1e-6;
 
-static const fg_factor *factor_of(const fg_experiment *e, size_t k) {
+static const fg_factor *surface_factor(const fg_experiment *e, size_t k) {
   for (size_t f = 0; f < e->factors; f++)
     if (e->factor[f].variable == e->surface.variable[k]) return &e->factor[f];
   return NULL;
@@ -25,7 +25,7 @@ static void region_of_data(const fg_experiment *e, fg_region *r) {
   size_t variables = e->model.formula.variables;
   *r = (fg_region){.factors = e->surface.factors};
   for (size_t k = 0; k < r->factors; k++) {
-    const fg_factor *factor = factor_of(e, k);
+    const fg_factor *factor = surface_factor(e, k);
     r->low[k] = factor->lowest;
     r->high[k] = factor->highest;
     r->centre[k] = (r->low[k] + r->high[k]) / 2;
@@ -43,7 +43,7 @@ static void region_of_data(const fg_experiment *e, fg_region *r) {
 /* Without a common scale a ball means nothing: factors in real units have the box only. */
 static void drop_ball_of_mixed_units(const fg_experiment *e, fg_region *r) {
   for (size_t k = 0; k < r->factors; k++)
-    if (!factor_of(e, k)->coded) r->radius = INFINITY;
+    if (!surface_factor(e, k)->coded) r->radius = INFINITY;
 }
 
 /* Of an experiment without some factors, the constraints are those of the whole one. */

@@ -23,7 +23,7 @@ enum {
 /* Distance from the region, as a share of its size, within which a point counts as inside. */
 static const double SLACK = 1e-9;
 
-static double distance(const double *a, const double *b, size_t count) {
+static double distance_between(const double *a, const double *b, size_t count) {
   double sum = 0;
   for (size_t i = 0; i < count; i++)
     sum += (a[i] - b[i]) * (a[i] - b[i]);
@@ -31,13 +31,13 @@ static double distance(const double *a, const double *b, size_t count) {
 }
 
 static double size_of(const fg_region *r) {
-  return distance(r->low, r->high, r->factors);
+  return distance_between(r->low, r->high, r->factors);
 }
 
 bool fg_region_contains(const fg_region *r, const double *x, double tolerance) {
   for (size_t i = 0; i < r->factors; i++)
     if (!(x[i] >= r->low[i] - tolerance && x[i] <= r->high[i] + tolerance)) return false;
-  if (distance(x, r->centre, r->factors) > r->radius + tolerance) return false;
+  if (distance_between(x, r->centre, r->factors) > r->radius + tolerance) return false;
   for (size_t p = 0; p < r->planes; p++) {
     double length = sqrt(fg_dot(r->normal[p], r->normal[p], r->factors));
     if (fg_dot(r->normal[p], x, r->factors) > r->limit[p] + tolerance * length) return false;
@@ -52,7 +52,7 @@ static void project_on(const fg_region *r, size_t set, double *x) {
     for (size_t i = 0; i < n; i++)
       x[i] = fmin(fmax(x[i], r->low[i]), r->high[i]);
   } else if (set == 1) {
-    double away = distance(x, r->centre, n);
+    double away = distance_between(x, r->centre, n);
     for (size_t i = 0; away > r->radius && i < n; i++)
       x[i] = r->centre[i] + (x[i] - r->centre[i]) * r->radius / away;
   } else {
@@ -123,7 +123,7 @@ static void gradient(const objective *o, const double *x, double *slope) {
 
 /* Descends by projected gradients. A step is accepted when it lowers the cost by a tenth of the
  * slope's prediction; it doubles after a success and halves after a failure. */
-static double walk(const objective *o, const fg_region *r, double *x) {
+static double descend_from(const objective *o, const fg_region *r, double *x) {
   size_t n = r->factors;
   double here = cost(o, x), slope[MAX], next[MAX] = {0}, size = size_of(r);
   gradient(o, x, slope);
@@ -133,7 +133,7 @@ static double walk(const objective *o, const fg_region *r, double *x) {
     for (size_t k = 0; k < n; k++)
       next[k] = x[k] - step * slope[k];
     project(r, next);
-    double there = cost(o, next), moved = distance(x, next, n);
+    double there = cost(o, next), moved = distance_between(x, next, n);
     if (moved == 0) break;
     if (there > here - 0.1 * moved * moved / step) {
       step /= 2;
@@ -214,10 +214,11 @@ fg_status fg_surface_optimum_region(fg_context *ctx, const fg_surface *surface, 
   }
   keep_exact(&o, region, starts, &count);
   for (size_t i = 0; i < count; i++) {
-    starts[i].cost = walk(&o, region, starts[i].x);
+    starts[i].cost = descend_from(&o, region, starts[i].x);
     bool better = starts[i].cost < best - 1e-12 * spread;
     bool as_good = starts[i].cost <= best + 1e-12 * spread;
-    bool nearer = distance(starts[i].x, region->centre, n) < distance(x, region->centre, n) - SLACK;
+    bool nearer = distance_between(starts[i].x, region->centre, n) <
+                  distance_between(x, region->centre, n) - SLACK;
     if (i > 0 && !better && !(as_good && nearer)) continue;
     best = starts[i].cost;
     memcpy(x, starts[i].x, n * sizeof *x);

@@ -65,7 +65,7 @@ static void add_plots(strata *s) {
 }
 
 /* The joint model borrows names; only its own arrays are freed. */
-static fg_status join(fg_context *ctx, strata *s) {
+static fg_status join_terms(fg_context *ctx, strata *s) {
   const fg_model *m = s->model;
   size_t columns = m->columns + s->plots->count, terms = m->formula.terms + 1;
   s->joint = (fg_model){.rows = m->rows};
@@ -272,7 +272,7 @@ fg_status fg_split_plot_analyse(fg_context *ctx, const fg_table *table, const fg
   FG_TRY_EXIT(fg_model_check_size(ctx, table->source, table->rows, model.columns + plots.count,
                                   plot, plots.count));
   FG_TRY_EXIT(mark_whole_terms(ctx, &s, result));
-  FG_TRY_EXIT(join(ctx, &s));
+  FG_TRY_EXIT(join_terms(ctx, &s));
   FG_TRY_EXIT(fg_regression_fit(ctx, &s.joint, y, NULL, &reg));
   FG_TRY_EXIT(read_strata(ctx, &s, &reg, result));
   FG_TRY_EXIT(fit_mixed(ctx, &s, y, result));

@@ -13,8 +13,8 @@ enum { MAX = FG_SURFACE_FACTORS };
 static const double FLAT = 1e-9;
 
 /* Returns the variable's index among the surface's factors; a new one is appended. */
-static fg_status factor_of(fg_context *ctx, const fg_model *model, size_t variable, fg_surface *s,
-                           size_t *factor) {
+static fg_status find_or_add_factor(fg_context *ctx, const fg_model *model, size_t variable,
+                                    fg_surface *s, size_t *factor) {
   const fg_variable *v = &model->formula.variable[variable];
   for (*factor = 0; *factor < s->factors; ++*factor)
     if (s->variable[*factor] == variable) return FG_OK;
@@ -39,7 +39,7 @@ static fg_status add_column(fg_context *ctx, const fg_model *model, const fg_mod
       continue;
     }
     size_t index = 0;
-    FG_TRY(factor_of(ctx, model, part->variable, s, &index));
+    FG_TRY(find_or_add_factor(ctx, model, part->variable, s, &index));
     for (unsigned p = 0; p < part->power; p++) {
       if (degree == 2)
         return fg_fail(ctx, FG_ERR_USAGE,

@@ -45,8 +45,8 @@ static void know_radius(fg_edge_fit *edge_fit, size_t view, double diameter_mm) 
 
 /* Assigns known diameters to discs, each used once. Equal numbers are assigned by rank, which is
  * independent of the scale; else the nearest pairs go first. */
-static void match(fg_edge_fit *edge_fit, const sized *discs, size_t count, const sized *known,
-                  size_t known_count, bool *taken) {
+static void match_known_diameters(fg_edge_fit *edge_fit, const sized *discs, size_t count,
+                                  const sized *known, size_t known_count, bool *taken) {
   for (size_t i = 0; i < count && count == known_count; i++)
     know_radius(edge_fit, discs[i].index, known[i].diameter_mm);
   if (count == known_count) return;
@@ -82,7 +82,7 @@ static fg_status match_scan(fg_context *ctx, fg_edge_fit *edge_fit, size_t first
     discs[count + k] = (sized){design->diameters_mm[k], k};
   qsort(discs, count, sizeof *discs, compare_sized);
   qsort(discs + count, known_count, sizeof *discs, compare_sized);
-  match(edge_fit, discs, count, discs + count, known_count, taken);
+  match_known_diameters(edge_fit, discs, count, discs + count, known_count, taken);
 exit:
   free(discs);
   free(taken);
@@ -171,7 +171,7 @@ static int compare_places(const void *a, const void *b) {
 }
 
 /* Weights in units of the cleanest disc's row. */
-static fg_status weigh(fg_context *ctx, fg_edge_fit *edge_fit, size_t block) {
+static fg_status weigh_discs(fg_context *ctx, fg_edge_fit *edge_fit, size_t block) {
   double *noise = NULL, *work = NULL, min = INFINITY;
   fg_status status = FG_OK;
   FG_TRY_EXIT(fg_memory_allocate(ctx, edge_fit->view_count, sizeof *noise, (void **)&noise));
@@ -217,7 +217,7 @@ fg_status fg_edge_fit_build_discs(fg_context *ctx, const fg_edge_fit_view *views
   FG_TRY_EXIT(match_diameters(ctx, edge_fit));
   for (size_t v = 0; v < count; v++)
     FG_TRY_EXIT(add_disc(ctx, edge_fit, v, block));
-  FG_TRY_EXIT(weigh(ctx, edge_fit, block));
+  FG_TRY_EXIT(weigh_discs(ctx, edge_fit, block));
   fg_edge_fit_find_frame(edge_fit);
   fg_edge_fit_count_parameters(edge_fit);
 exit:

@@ -23,7 +23,7 @@ static double bump_direction(const fg_foil *foil, const fg_bump *bump) {
 }
 
 /* Of the strip at a station, from O. */
-static fg_point middle_of(const fg_foil *foil, size_t station) {
+static fg_point strip_middle_at(const fg_foil *foil, size_t station) {
   const fg_station *s = &foil->strip.stations[station];
   return (fg_point){0.5 * (s->left.x + s->right.x) - foil->overall.centre_mm.x,
                     0.5 * (s->left.y + s->right.y) - foil->overall.centre_mm.y};
@@ -39,7 +39,7 @@ static double end_to_end(const fg_foil *foil) {
   size_t last = foil->strip.count;
   for (size_t k = 0; k < foil->strip.count; k++) {
     if (foil->labels[k].kind == FG_ARC_LIP || !(foil->strip.stations[k].weight > 0)) continue;
-    fg_point to = middle_of(foil, k), from = middle_of(foil, last < k ? last : k);
+    fg_point to = strip_middle_at(foil, k), from = strip_middle_at(foil, last < k ? last : k);
     span += atan2(from.x * to.y - from.y * to.x, from.x * to.x + from.y * to.y);
     last = k;
   }
@@ -73,7 +73,7 @@ static fg_status start_part(fg_context *ctx, const fg_foil *foil, fg_edge_fit_pa
   return FG_OK;
 }
 
-static const fg_bump *find_bump(const fg_foil *foil, int number) {
+static const fg_bump *find_numbered_bump(const fg_foil *foil, int number) {
   for (size_t i = 0; i < foil->bump_count; i++)
     if (foil->bumps[i].number == number && is_usable(&foil->bumps[i])) return &foil->bumps[i];
   return NULL;
@@ -85,7 +85,7 @@ static fg_status start_pose(fg_context *ctx, const fg_edge_fit_part *part, const
   double c = 0, s = 0, sense = foil->orientation == FG_CLOCKWISE ? 1 : -1;
   size_t matched = 0;
   for (size_t i = 0; i < part->bump_count; i++) {
-    const fg_bump *bump = find_bump(foil, part->bumps[i].number);
+    const fg_bump *bump = find_numbered_bump(foil, part->bumps[i].number);
     if (!bump) continue;
     double turn = bump_direction(foil, bump) - part->bumps[i].direction_rad;
     c += cos(turn);
@@ -247,7 +247,7 @@ static fg_status pack_groups(fg_context *ctx, fg_edge_fit *edge_fit, size_t max)
   return FG_OK;
 }
 
-static fg_status fill(fg_context *ctx, fg_edge_fit *edge_fit) {
+static fg_status fill_rows(fg_context *ctx, fg_edge_fit *edge_fit) {
   size_t first_group = 0;
   FG_TRY(fg_memory_allocate(ctx, edge_fit->part_count, sizeof *edge_fit->parts,
                             (void **)&edge_fit->parts));
@@ -275,7 +275,7 @@ static fg_status fill(fg_context *ctx, fg_edge_fit *edge_fit) {
 
 /* Copies the usable views. A part may lose all its views, and with them its geometry: parts are
  * renumbered 0 .. part_count - 1 in the order of their first views. */
-static fg_status take_views(fg_context *ctx, const fg_edge_fit_view *views, size_t count,
+static fg_status copy_views(fg_context *ctx, const fg_edge_fit_view *views, size_t count,
                             fg_edge_fit *edge_fit) {
   size_t *given = NULL; /* the caller's number of each new part */
   FG_TRY(fg_memory_allocate(ctx, count, sizeof *given, (void **)&given));
@@ -301,7 +301,7 @@ static int compare_rows(const void *a, const void *b) {
 }
 
 /* Range of the rows' psi as the measured circles place them. */
-static fg_status find_range(fg_context *ctx, fg_edge_fit *edge_fit) {
+static fg_status find_psi_range(fg_context *ctx, fg_edge_fit *edge_fit) {
   double *residual = NULL;
   FG_TRY(fg_memory_allocate(ctx, edge_fit->row_count, sizeof *residual, (void **)&residual));
   fg_edge_fit_residual(edge_fit, NULL, residual, NULL);
@@ -320,11 +320,11 @@ fg_status fg_edge_fit_build_foils(fg_context *ctx, const fg_edge_fit_view *views
   fg_status status = FG_OK;
   FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *views, (void **)&edge_fit->views));
   FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *edge_fit->poses, (void **)&edge_fit->poses));
-  FG_TRY_EXIT(take_views(ctx, views, count, edge_fit));
-  FG_TRY_EXIT(fill(ctx, edge_fit));
+  FG_TRY_EXIT(copy_views(ctx, views, count, edge_fit));
+  FG_TRY_EXIT(fill_rows(ctx, edge_fit));
   fg_edge_fit_count_parameters(edge_fit);
   fg_sort_items(edge_fit->rows, edge_fit->row_count, sizeof *edge_fit->rows, compare_rows);
-  FG_TRY_EXIT(find_range(ctx, edge_fit));
+  FG_TRY_EXIT(find_psi_range(ctx, edge_fit));
 exit:
   if (status != FG_OK) fg_edge_fit_free(edge_fit);
   return status;

@@ -87,7 +87,7 @@ static void fill_polynomials(search *s) {
 }
 
 /* Projects one arc beside its polynomials; returns ln of the determinant of their products. */
-static double take_out(search *s, arc *a) {
+static double project_arc(search *s, arc *a) {
   size_t rows = s->edge_fit->row_count, n = a->to - a->from;
   double determinant = 0, *left = s->left + a->from;
   a->dof = (double)a->rows;
@@ -134,7 +134,7 @@ static fg_status deviance(search *s, const fg_scatter *scatter, double *value) {
     fg_whitening_apply(&whitening, s->columns + p * rows);
   for (size_t k = 0; k < s->arc_count; k++) {
     arc *a = &s->arcs[k];
-    double determinant = take_out(s, a);
+    double determinant = project_arc(s, a);
     if (a->out) continue;
     for (size_t i = a->from; whitening.band && i < a->to; i++)
       if (whitening.used[i]) determinant -= 2 * log(whitening.scale[i]);
@@ -211,7 +211,7 @@ static fg_status climb(search *s, trial *best) {
 }
 
 /* The first time over a grid, later from where it was. */
-static fg_status find(search *s, fg_scatter from, trial *best) {
+static fg_status find_best_scatter(search *s, fg_scatter from, trial *best) {
   bool better;
   fg_scatter none = {.integral = 1};
   best->deviance = INFINITY;
@@ -228,7 +228,7 @@ static fg_status find(search *s, fg_scatter from, trial *best) {
   return FG_OK;
 }
 
-static int compare(const void *a, const void *b) {
+static int compare_squares(const void *a, const void *b) {
   double p = *(const double *)a, q = *(const double *)b;
   return (p > q) - (p < q);
 }
@@ -241,7 +241,7 @@ static fg_status leave_out(search *s, const fg_scatter *scatter, size_t *out) {
   FG_TRY(fg_memory_allocate(s->ctx, s->arc_count, sizeof *each, (void **)&each));
   for (size_t k = 0; k < s->arc_count; k++)
     each[k] = s->arcs[k].square / fmax(s->arcs[k].dof, 1);
-  qsort(each, s->arc_count, sizeof *each, compare);
+  qsort(each, s->arc_count, sizeof *each, compare_squares);
   double median = each[s->arc_count / 2],
          max = each[(size_t)((1 - ARCS_MAX) * (double)s->arc_count)];
   free(each);
@@ -328,7 +328,7 @@ static double integral_of(const fg_edge_fit *edge_fit, const fg_scatter *s) {
   return sum;
 }
 
-static fg_status open(search *s) {
+static fg_status open_search(search *s) {
   size_t rows = s->edge_fit->row_count, columns = POLYNOMIALS_MAX * rows;
   FG_TRY(list_arcs(s));
   FG_TRY(fg_memory_allocate(s->ctx, columns, sizeof(double), (void **)&s->polynomials));
@@ -347,7 +347,7 @@ static double polynomials_of_bumps(const search *s) {
 
 /* Removes the shape common to the bumps, estimated from arcs that show no deviation of their own
  * before the noise is known. */
-static fg_status take_shared(search *s, double *weighted) {
+static fg_status remove_shared(search *s, double *weighted) {
   const fg_scatter white = {.integral = 1};
   bool *left_out = NULL;
   size_t out, numbers;
@@ -377,12 +377,12 @@ fg_status fg_edge_fit_find_scatter(fg_context *ctx, fg_edge_fit *edge_fit,
   for (size_t i = 0; i < edge_fit->row_count; i++)
     weighted[i] = residual_um[i] * fg_edge_fit_root_weight(&edge_fit->rows[i]);
   s.weighted = weighted;
-  FG_TRY_EXIT(open(&s));
+  FG_TRY_EXIT(open_search(&s));
   if (!s.arc_count) goto exit;
-  FG_TRY_EXIT(take_shared(&s, weighted));
-  FG_TRY_EXIT(find(&s, from, &best));
+  FG_TRY_EXIT(remove_shared(&s, weighted));
+  FG_TRY_EXIT(find_best_scatter(&s, from, &best));
   FG_TRY_EXIT(leave_out(&s, &best.scatter, &out));
-  if (out) FG_TRY_EXIT(find(&s, best.scatter, &best));
+  if (out) FG_TRY_EXIT(find_best_scatter(&s, best.scatter, &best));
   FG_TRY_EXIT(find_swell(&s, &best.scatter));
   best.scatter.integral = integral_of(edge_fit, &best.scatter);
 exit:

@@ -15,14 +15,14 @@ enum { POLYNOMIALS = 18, BUMPS_MIN = 4 };
 /* Rounding limit: a polynomial lies in the span of those before it. */
 #define REST_MIN 1e-9
 
-static void take(const double *unit, size_t n, double *from) {
+static void remove_part(const double *unit, size_t n, double *from) {
   double along = fg_dot(unit, from, n);
   for (size_t i = 0; i < n; i++)
     from[i] -= along * unit[i];
 }
 
 /* Chebyshev's over every arc of a bump that counts, weighted; returns how many there are. */
-static size_t fill(const fg_edge_fit *edge_fit, const bool *left_out, double *basis) {
+static size_t fill_polynomials(const fg_edge_fit *edge_fit, const bool *left_out, double *basis) {
   size_t bumps = 0;
   for (size_t from = 0, to; from < edge_fit->row_count; from = to) {
     to = fg_edge_fit_arc_end(edge_fit, from);
@@ -45,11 +45,11 @@ fg_status fg_edge_fit_take_shared(fg_context *ctx, const fg_edge_fit *edge_fit,
   double *basis = NULL;
   *numbers = 0;
   FG_TRY(fg_memory_allocate(ctx, n, POLYNOMIALS * sizeof *basis, (void **)&basis));
-  size_t bumps = fill(edge_fit, left_out, basis);
+  size_t bumps = fill_polynomials(edge_fit, left_out, basis);
   for (size_t p = 0; bumps >= BUMPS_MIN && p < POLYNOMIALS; p++) {
     double *own = basis + p * n, before = sqrt(fg_dot(own, own, n));
     for (size_t q = 0; q < p; q++)
-      take(basis + q * n, n, own);
+      remove_part(basis + q * n, n, own);
     double rest = sqrt(fg_dot(own, own, n));
     if (!(rest > REST_MIN * before)) {
       memset(own, 0, n * sizeof *own);
@@ -57,7 +57,7 @@ fg_status fg_edge_fit_take_shared(fg_context *ctx, const fg_edge_fit *edge_fit,
     }
     for (size_t i = 0; i < n; i++)
       own[i] /= rest;
-    take(own, n, weighted);
+    remove_part(own, n, weighted);
     ++*numbers;
   }
   free(basis);

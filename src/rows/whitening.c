@@ -26,7 +26,7 @@ size_t fg_edge_fit_arc_end(const fg_edge_fit *edge_fit, size_t from) {
   return to;
 }
 
-static double distance(const fg_edge_fit *edge_fit, size_t a, size_t b) {
+static double distance_of_rows(const fg_edge_fit *edge_fit, size_t a, size_t b) {
   return fabs(edge_fit->rows[a].s_mm - edge_fit->rows[b].s_mm);
 }
 
@@ -38,7 +38,7 @@ static size_t rows_within(const fg_edge_fit *edge_fit, double length_mm) {
       from = i;
       end = fg_edge_fit_arc_end(edge_fit, i);
     }
-    while (distance(edge_fit, i, from) > length_mm)
+    while (distance_of_rows(edge_fit, i, from) > length_mm)
       from++;
     max = i - from > max ? i - from : max;
   }
@@ -54,7 +54,7 @@ static void factor_row(const fg_edge_fit *edge_fit, const fg_whitening *w, size_
   double *own = lower + i * width, square = 1;
   for (size_t k = reach; k > 0; k--) { /* with row i - k */
     const double *other = own - k * width;
-    double d = distance(edge_fit, i, i - k) / s->range_mm, sum = s->share * exp(-d * d);
+    double d = distance_of_rows(edge_fit, i, i - k) / s->range_mm, sum = s->share * exp(-d * d);
     if (!w->used[i - k]) continue;
     for (size_t m = k + 1; m <= reach && m - k <= w->band; m++)
       sum -= own[m] * other[m - k];
@@ -88,7 +88,7 @@ static void filter(const fg_edge_fit *edge_fit, fg_whitening *w) {
   for (size_t i = 0; i < w->rows; i++) {
     if (w->first[i]) last = w->rows;
     if (!w->used[i]) continue;
-    double keep = last < w->rows ? exp(-distance(edge_fit, i, last) / s->range_mm) : 0;
+    double keep = last < w->rows ? exp(-distance_of_rows(edge_fit, i, last) / s->range_mm) : 0;
     known = keep * keep * known + (1 - keep * keep) * s->share;
     double square = known + 1 - s->share, gain = known / square;
     known *= 1 - gain;
@@ -100,7 +100,7 @@ static void filter(const fg_edge_fit *edge_fit, fg_whitening *w) {
   }
 }
 
-static fg_status allocate(fg_context *ctx, const fg_edge_fit *edge_fit, fg_whitening *w) {
+static fg_status allocate_whitening(fg_context *ctx, const fg_edge_fit *edge_fit, fg_whitening *w) {
   const fg_scatter *s = &edge_fit->scatter;
   w->rows = edge_fit->row_count;
   w->exponential = s->model == FG_SCATTER_EXPONENTIAL;
@@ -115,7 +115,7 @@ fg_status fg_whitening_open(fg_context *ctx, const fg_edge_fit *edge_fit, fg_whi
   *w = (fg_whitening){.rows = edge_fit->row_count};
   if (!(edge_fit->scatter.share > 0) || !edge_fit->row_count) return FG_OK;
   fg_status status = FG_OK;
-  FG_TRY_EXIT(allocate(ctx, edge_fit, w));
+  FG_TRY_EXIT(allocate_whitening(ctx, edge_fit, w));
   for (size_t i = 0; i < w->rows; i++)
     w->used[i] = edge_fit->rows[i].weight > 0;
   for (size_t i = 0; i < w->rows; i = fg_edge_fit_arc_end(edge_fit, i))

@@ -92,7 +92,7 @@ static void moves_of(const fg_foil *from, const fg_foil *to, size_t item,
 
 /* Replaces the moves of an explanation that shows other bumps by those of the one in force, so that
  * scans of one foil have the same explanations. */
-static void say_nothing(fg_benefit *benefit, size_t at) {
+static void copy_moves_in_force(fg_benefit *benefit, size_t at) {
   benefit->centre[at] = benefit->centre[0];
   for (size_t i = 0; i < benefit->items; i++) {
     memcpy(benefit->item[i].move[at], benefit->item[i].move[0], sizeof benefit->item[i].move[at]);
@@ -100,12 +100,12 @@ static void say_nothing(fg_benefit *benefit, size_t at) {
   }
 }
 
-static void add_foil(fg_benefit *benefit, const fg_foil *before, const fg_foil *corrected) {
+static void add_foil_moves(fg_benefit *benefit, const fg_foil *before, const fg_foil *corrected) {
   if (!is_measured(before) || benefit->lost || benefit->explanations == FG_BENEFIT_EXPLANATIONS_MAX)
     return;
   size_t at = benefit->explanations++;
   if (!same_bumps(before, corrected)) {
-    if (at) say_nothing(benefit, at);
+    if (at) copy_moves_in_force(benefit, at);
     benefit->lost = !at;
     return;
   }
@@ -133,7 +133,7 @@ static void add_discs(fg_benefit *benefit, const fg_measurement *before,
 void fg_benefits_add(fg_benefits *benefits, const fg_measurement *before,
                      const fg_measurement *corrected) {
   for (size_t f = 0; f < benefits->foils; f++)
-    add_foil(&benefits->foil[f], &before->foils[f], &corrected->foils[f]);
+    add_foil_moves(&benefits->foil[f], &before->foils[f], &corrected->foils[f]);
   add_discs(&benefits->discs, before, corrected);
 }
 
@@ -195,7 +195,7 @@ static bool is_known(const fg_benefit *benefit, size_t item, int k) {
   return benefit->explanations > 0;
 }
 
-static void sum_up(const fg_benefit *benefit, int k, sums *s) {
+static void sum_up_dimension(const fg_benefit *benefit, int k, sums *s) {
   if (benefit->explanations > s->explanations) s->explanations = benefit->explanations;
   s->curve = s->curve || benefit->curve;
   for (size_t i = 0; i < benefit->items; i++) {
@@ -211,7 +211,7 @@ static void sum_up(const fg_benefit *benefit, int k, sums *s) {
 }
 
 /* Products of the move that is made of these parts: with one explanation's, and with itself. */
-static double along(const sums *s, const double *part, size_t explanation) {
+static double move_products(const sums *s, const double *part, size_t explanation) {
   double sum = 0;
   for (size_t e = 0; e < s->explanations; e++)
     sum += part[e] * s->product[explanation][e];
@@ -221,7 +221,7 @@ static double along(const sums *s, const double *part, size_t explanation) {
 static double size_of(const sums *s, const double *part) {
   double sum = 0;
   for (size_t e = 0; e < s->explanations; e++)
-    sum += part[e] * along(s, part, e);
+    sum += part[e] * move_products(s, part, e);
   return sum;
 }
 
@@ -230,24 +230,24 @@ static double scatter_about(const sums *s, const double *part) {
   double sum = 0, size = size_of(s, part);
   if (s->explanations < 2) return 0;
   for (size_t e = 0; e < s->explanations; e++)
-    sum += s->product[e][e] - 2 * along(s, part, e) + size;
+    sum += s->product[e][e] - 2 * move_products(s, part, e) + size;
   return fmax(0, sum) / (double)s->explanations;
 }
 
-static void put_mean(size_t explanations, double *part) {
+static void fill_mean(size_t explanations, double *part) {
   for (size_t e = 0; e < FG_BENEFIT_EXPLANATIONS_MAX; e++)
     part[e] = e < explanations ? 1 / (double)explanations : 0;
 }
 
 /* Finds the shortest move: steps towards the explanation of the smallest gain, until its gain
  * equals that of the others (Gilbert 1966). */
-static void put_shortest(const sums *s, double *part) {
-  put_mean(s->explanations, part);
+static void fill_shortest(const sums *s, double *part) {
+  fill_mean(s->explanations, part);
   for (int step = 0; step < SHORTEST_STEPS && s->explanations > 1; step++) {
     size_t worst = 0;
     for (size_t e = 1; e < s->explanations; e++)
-      if (along(s, part, e) < along(s, part, worst)) worst = e;
-    double size = size_of(s, part), min = along(s, part, worst);
+      if (move_products(s, part, e) < move_products(s, part, worst)) worst = e;
+    double size = size_of(s, part), min = move_products(s, part, worst);
     double apart = size - 2 * min + s->product[worst][worst];
     if (!(size - min > SHORTEST_END * size) || !(apart > 0)) return;
     double share = fmin(1, (size - min) / apart);
@@ -257,20 +257,20 @@ static void put_shortest(const sums *s, double *part) {
 }
 
 /* Returns true when every explanation gains at least `min`. */
-static bool gains(const sums *s, const double *part, double min) {
+static bool all_gain(const sums *s, const double *part, double min) {
   double size = size_of(s, part);
   for (size_t e = 0; e < s->explanations; e++)
-    if (2 * along(s, part, e) - size < min) return false;
+    if (2 * move_products(s, part, e) - size < min) return false;
   return true;
 }
 
 /* Finds the agreed move: from the shortest one towards the mean, which is best on average, as far
  * as every explanation keeps its share of the shortest one's gain. Returns that gain. */
-static double put_agreed(const sums *s, double *part) {
+static double fill_agreed(const sums *s, double *part) {
   double shortest[FG_BENEFIT_EXPLANATIONS_MAX], mean[FG_BENEFIT_EXPLANATIONS_MAX];
   double low = 0, high = 1;
-  put_shortest(s, shortest);
-  put_mean(s->explanations, mean);
+  fill_shortest(s, shortest);
+  fill_mean(s->explanations, mean);
   memcpy(part, shortest, sizeof shortest);
   double gain = size_of(s, shortest);
   for (int step = 0; step < AGREED_STEPS && s->explanations > 1; step++) {
@@ -278,7 +278,7 @@ static double put_agreed(const sums *s, double *part) {
     double tried[FG_BENEFIT_EXPLANATIONS_MAX] = {0};
     for (size_t e = 0; e < s->explanations; e++)
       tried[e] = (1 - share) * shortest[e] + share * mean[e];
-    bool good = gains(s, tried, KEPT_GAIN * gain);
+    bool good = all_gain(s, tried, KEPT_GAIN * gain);
     if (good) memcpy(part, tried, sizeof tried);
     if (good && !step) break;
     *(good ? &low : &high) = share;
@@ -287,13 +287,13 @@ static double put_agreed(const sums *s, double *part) {
 }
 
 /* Decides: `part` gets the move that the explanations agree about, else their mean. */
-static fg_correction_reason judge(const sums *s, double *part) {
+static fg_correction_reason decide_move(const sums *s, double *part) {
   double agreed[FG_BENEFIT_EXPLANATIONS_MAX];
-  put_mean(s->explanations, part);
+  fill_mean(s->explanations, part);
   if (s->items < 1) return FG_CORRECTION_NONE;
   double mean = size_of(s, part), scatter = scatter_about(s, part);
   if (mean + s->noise + scatter <= SMALL_SHARE * SMALL_SHARE * s->own) return FG_CORRECTION_SMALL;
-  double gain = put_agreed(s, agreed);
+  double gain = fill_agreed(s, agreed);
   double ratio = s->curve ? CURVE_BENEFIT_RATIO : BENEFIT_RATIO;
   if (!(gain > ratio * s->noise) || !(gain >= AGREED_SHARE * AGREED_SHARE * mean))
     return scatter > s->noise ? FG_CORRECTION_TIED : FG_CORRECTION_DOUBTFUL;
@@ -309,10 +309,10 @@ static double move_of(const fg_benefit *benefit, size_t item, int k, const doubl
 }
 
 /* R0 has its sign; of many values the root of the mean square. */
-static void tell(const fg_benefit *benefit, int k, const double *part,
-                 fg_correction_choice *choice) {
+static void report_choice(const fg_benefit *benefit, int k, const double *part,
+                          fg_correction_choice *choice) {
   sums s = {.items = 0};
-  sum_up(benefit, k, &s);
+  sum_up_dimension(benefit, k, &s);
   choice->move_mm = sqrt(size_of(&s, part) / s.items);
   choice->u_move_mm = sqrt((s.noise + scatter_about(&s, part)) / s.items);
   if (k == FG_CORRECTED_OVERALL_RADIUS && s.items > 0)
@@ -322,7 +322,7 @@ static void tell(const fg_benefit *benefit, int k, const double *part,
 static void put_decision(const fg_benefit *benefit, int k, const double *part,
                          fg_benefit_decision *decision) {
   fg_correction_choice *choice = &decision->choice[k];
-  tell(benefit, k, part, choice);
+  report_choice(benefit, k, part, choice);
   for (size_t e = 0; e < FG_BENEFIT_EXPLANATIONS_MAX; e++)
     decision->part[k][e] = choice->moved ? part[e] : 0;
 }
@@ -337,8 +337,8 @@ void fg_benefit_decide(const fg_benefit *const *benefit, size_t count,
   for (int k = 0; k < FG_CORRECTED; k++) {
     sums s = {.items = 0};
     for (size_t i = 0; i < count; i++)
-      sum_up(benefit[i], k, &s);
-    reason[k] = judge(&s, part[k]);
+      sum_up_dimension(benefit[i], k, &s);
+    reason[k] = decide_move(&s, part[k]);
     if (lost) reason[k] = FG_CORRECTION_LOST;
     moved = moved || reason[k] == FG_CORRECTION_HELPS;
     left = left || reason[k] >= FG_CORRECTION_DOUBTFUL;

@@ -170,7 +170,7 @@ static void find_errors(fg_scan_loop_bump_level *level, const fg_scan_loop_bumps
 
 /* Uses the engine's cross-fitted error, without held-out bumps, when its claims are accepted
  * unchanged. */
-static void take_cross_fitted(fg_scan_loop_bump_level *level, const fg_loop_result *found) {
+static void use_cross_fitted(fg_scan_loop_bump_level *level, const fg_loop_result *found) {
   fg_loop_result *result = &level->result;
   double *held_out = level->error.held_out_rms;
   if (isfinite(held_out[0])) return;
@@ -205,8 +205,8 @@ static void strip_aliases(fg_loop_claim *claim) {
 
 /* Accepts or rejects a claim. An outlier is a note, no claim; an effect no larger than the
  * uncertainty that the edges leave is no claim, however constant. */
-static fg_status judge_claim(fg_context *ctx, fg_scan_loop_bumps *bumps, size_t response,
-                             uint64_t seed, fg_loop_claim *claim, bool *kept) {
+static fg_status test_claim(fg_context *ctx, fg_scan_loop_bumps *bumps, size_t response,
+                            uint64_t seed, fg_loop_claim *claim, bool *kept) {
   const fg_scan_loop_bump_level *level = &bumps->level[response];
   const fg_loop_problem *problem = &level->problem.problem;
   const fg_scan_loop_bump_response *what = &fg_scan_loop_bump_responses[response];
@@ -281,7 +281,7 @@ static fg_status judge_claims(fg_context *ctx, fg_scan_loop_bumps *bumps, size_t
   size_t count = 0;
   for (size_t m = 0; m < result->claims; m++) {
     bool kept;
-    FG_TRY(judge_claim(ctx, bumps, response, seed, &result->claim[m], &kept));
+    FG_TRY(test_claim(ctx, bumps, response, seed, &result->claim[m], &kept));
     if (kept)
       result->claim[count++] = result->claim[m];
     else
@@ -295,8 +295,8 @@ static fg_status judge_claims(fg_context *ctx, fg_scan_loop_bumps *bumps, size_t
   return find_effects(ctx, level);
 }
 
-static fg_status judge(fg_context *ctx, const fg_design *design, uint64_t seed, size_t response,
-                       const fg_table *table, fg_scan_loop_bumps *bumps) {
+static fg_status test_response(fg_context *ctx, const fg_design *design, uint64_t seed,
+                               size_t response, const fg_table *table, fg_scan_loop_bumps *bumps) {
   fg_scan_loop_bump_level *level = &bumps->level[response];
   double sum = 0, n = 0;
   FG_TRY(build_problem(ctx, bumps, table, design, response, &level->problem));
@@ -321,7 +321,7 @@ static fg_status judge(fg_context *ctx, const fg_design *design, uint64_t seed, 
   const fg_loop_result found = level->result; /* only counted */
   FG_TRY(judge_claims(ctx, bumps, response, seed));
   find_errors(level, bumps, response == RADIUS);
-  take_cross_fitted(level, &found);
+  use_cross_fitted(level, &found);
   return FG_OK;
 }
 
@@ -371,8 +371,8 @@ static fg_status say_power(fg_context *ctx, fg_scan_loop_bumps *bumps, size_t ro
       rows < ORDERS ? " (6 for a trend over their number)" : "");
 }
 
-static fg_status run(fg_context *ctx, const fg_scan_loop_bumps_request *request,
-                     fg_scan_loop_bumps *bumps) {
+static fg_status run_bumps(fg_context *ctx, const fg_scan_loop_bumps_request *request,
+                           fg_scan_loop_bumps *bumps) {
   const fg_design *design = &request->before[0].design;
   fg_status status = FG_OK;
   fg_table table = {0};
@@ -383,7 +383,7 @@ static fg_status run(fg_context *ctx, const fg_scan_loop_bumps_request *request,
   if (rows < FG_SCAN_LOOP_BUMP_ROWS + bumps->parts - 1) return FG_OK;
   FG_TRY_EXIT(build_table(ctx, bumps, design, &table));
   for (size_t r = 0; r < FG_SCAN_LOOP_BUMP_RESPONSES; r++)
-    FG_TRY_EXIT(judge(ctx, design, request->seed, r, &table, bumps));
+    FG_TRY_EXIT(test_response(ctx, design, request->seed, r, &table, bumps));
   find_height_errors(bumps);
 exit:
   fg_table_free(&table);
@@ -405,7 +405,7 @@ fg_status fg_scan_loop_bumps_run(fg_context *ctx, const fg_scan_loop_bumps_reque
   choose_effects(bumps);
   fg_status status = fg_scan_loop_bumps_collect(ctx, request, bumps);
   if (status == FG_OK) status = fg_scan_loop_bumps_declare(ctx, &request->before[0].design, bumps);
-  if (status == FG_OK) status = run(ctx, request, bumps);
+  if (status == FG_OK) status = run_bumps(ctx, request, bumps);
   if (status != FG_OK) fg_scan_loop_bumps_free(bumps);
   return status;
 }

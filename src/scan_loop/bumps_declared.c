@@ -11,7 +11,7 @@
 
 enum { RADIUS = FG_SCAN_LOOP_BUMP_RADIUS, ANGLE = FG_SCAN_LOOP_BUMP_ANGLE };
 
-static const fg_bump *find_bump(const fg_forming_prediction *forming, int number) {
+static const fg_bump *find_predicted_bump(const fg_forming_prediction *forming, int number) {
   for (size_t i = 0; i < forming->count; i++)
     if (forming->bump[i].number == number) return &forming->bump[i];
   return NULL;
@@ -25,7 +25,7 @@ fg_status fg_scan_loop_bumps_check_forming(fg_context *ctx, const fg_forming_pre
       const fg_foil *foil = &measured[s].foils[f];
       if (foil->flags & (FG_FOIL_NOT_MEASURED | FG_FOIL_NO_LIP)) continue;
       for (size_t b = 0; b < foil->bump_count; b++)
-        if (!find_bump(forming, foil->bumps[b].number))
+        if (!find_predicted_bump(forming, foil->bumps[b].number))
           return fg_fail(ctx, FG_ERR_DATA,
                          "%s: it has no bump %d, which foil %d of %s has; form a strip of that "
                          "many bumps (bump_count of its design)",
@@ -35,7 +35,7 @@ fg_status fg_scan_loop_bumps_check_forming(fg_context *ctx, const fg_forming_pre
 }
 
 /* Radius and arc length, means over its bumps. */
-static void find_means(const fg_forming_prediction *forming, double mean[2]) {
+static void find_predicted_means(const fg_forming_prediction *forming, double mean[2]) {
   mean[0] = mean[1] = 0;
   for (size_t i = 0; i < forming->count; i++) {
     const fg_bump *bump = &forming->bump[i];
@@ -47,11 +47,11 @@ static void find_means(const fg_forming_prediction *forming, double mean[2]) {
 fg_status fg_scan_loop_bumps_declare(fg_context *ctx, const fg_design *design,
                                      fg_scan_loop_bumps *bumps) {
   double mean[2] = {0, design->bump_radius_mm * design->bump_angle_deg};
-  if (bumps->forming) find_means(bumps->forming, mean);
+  if (bumps->forming) find_predicted_means(bumps->forming, mean);
   for (size_t i = 0; i < bumps->count; i++) {
     fg_scan_loop_bump *bump = &bumps->bump[i];
     const fg_bump *predicted =
-        bumps->forming && bumps->lip ? find_bump(bumps->forming, bump->number) : NULL;
+        bumps->forming && bumps->lip ? find_predicted_bump(bumps->forming, bump->number) : NULL;
     bump->declared_mm = predicted ? predicted->radius_mm : mean[0];
     bump->declared_arc = predicted ? predicted->radius_mm * predicted->bump_angle_deg : mean[1];
   }

@@ -60,8 +60,8 @@ static int by_place(const void *a, const void *b) {
   return (x->number > y->number) - (x->number < y->number);
 }
 
-static void add_foil(const fg_scan_loop_bumps_request *request, size_t scan, size_t foil,
-                     size_t part, fg_scan_loop_bumps *bumps, double *views) {
+static void add_foil_bumps(const fg_scan_loop_bumps_request *request, size_t scan, size_t foil,
+                           size_t part, fg_scan_loop_bumps *bumps, double *views) {
   const fg_foil *after = &request->after[scan].foils[foil];
   const fg_foil *before = &request->before[scan].foils[foil];
   if (after->flags & FG_FOIL_NOT_MEASURED) return;
@@ -93,7 +93,7 @@ fg_status fg_scan_loop_bumps_collect(fg_context *ctx, const fg_scan_loop_bumps_r
   for (size_t s = 0; s < request->scan_count; s++) {
     if (request->same_foil && request->hold_out[s]) continue;
     for (size_t f = 0; f < request->after[s].foil_count; f++)
-      add_foil(request, s, f, request->same_foil ? f : part++, bumps, views);
+      add_foil_bumps(request, s, f, request->same_foil ? f : part++, bumps, views);
   }
   for (size_t i = 0; i < bumps->count; i++)
     divide(&bumps->bump[i], views[i]);

@@ -13,8 +13,9 @@
 
 /* Collects the means of the numbers over the foils, each foil relative to its own mean, beside the
  * effects found. */
-static bool collect(const fg_scan_loop_bumps *bumps, const fg_scan_loop_bump_level *level,
-                    size_t coordinate, fg_bump_values *out) {
+static bool collect_bump_means(const fg_scan_loop_bumps *bumps,
+                               const fg_scan_loop_bump_level *level, size_t coordinate,
+                               fg_bump_values *out) {
   const fg_loop_problem *problem = &level->problem.problem;
   const double *number = problem->coordinate[coordinate].value;
   double count[FG_BUMP_PATTERN_MAX] = {0};
@@ -48,8 +49,9 @@ static bool collect(const fg_scan_loop_bumps *bumps, const fg_scan_loop_bump_lev
   return out->n >= FG_BUMP_PATTERN_MIN;
 }
 
-static fg_status put_curve(fg_context *ctx, const fg_bump_values *at, const fg_bump_pattern *found,
-                           double p_value, size_t coordinate, fg_loop_result *result) {
+static fg_status fill_single_bump_curve(fg_context *ctx, const fg_bump_values *at,
+                                        const fg_bump_pattern *found, double p_value,
+                                        size_t coordinate, fg_loop_result *result) {
   fg_loop_curve *curve = &result->curve;
   double square = 0;
   free(curve->shape);
@@ -89,8 +91,8 @@ static void list_numbers(const fg_bump_pattern *found, const fg_bump_values *at,
                          : "th");
 }
 
-static fg_status say(fg_context *ctx, fg_scan_loop_bumps *bumps, size_t response,
-                     const fg_bump_values *at, const fg_bump_pattern *found) {
+static fg_status note_pattern(fg_context *ctx, fg_scan_loop_bumps *bumps, size_t response,
+                              const fg_bump_values *at, const fg_bump_pattern *found) {
   const fg_scan_loop_bump_response *what = &fg_scan_loop_bump_responses[response];
   char words[200];
   if (found->period > 0)
@@ -117,12 +119,12 @@ fg_status fg_scan_loop_bumps_find_single(fg_context *ctx, fg_scan_loop_bumps *bu
   size_t coordinate;
   fg_bump_values at;
   if (level->result.has_curve || !find_coordinate(&level->problem.problem, &coordinate) ||
-      !collect(bumps, level, coordinate, &at))
+      !collect_bump_means(bumps, level, coordinate, &at))
     return FG_OK;
   double p_value;
   const fg_bump_pattern found = fg_bump_pattern_find(&at, seed, &p_value);
   p_value = fmin(1, FG_SCAN_LOOP_BUMP_RESPONSES * p_value);
   if (!(p_value < FG_BUMP_PATTERN_P) || !(fabs(found.by) > level->min)) return FG_OK;
-  FG_TRY(put_curve(ctx, &at, &found, p_value, coordinate, &level->result));
-  return say(ctx, bumps, response, &at, &found);
+  FG_TRY(fill_single_bump_curve(ctx, &at, &found, p_value, coordinate, &level->result));
+  return note_pattern(ctx, bumps, response, &at, &found);
 }

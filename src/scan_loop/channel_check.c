@@ -35,7 +35,7 @@ typedef struct carriage {
 typedef struct evidence {
   double weight, sum;      /* the factor is sum / weight, its u 1 / sqrt(weight) */
   double uneven, expected; /* chi-squared above the windows' number; mean square of it, um² */
-  size_t courses;
+  size_t profiles;
 } evidence;
 
 static double error_um(const carriage *c, const fg_field_list *fields, double y_mm) {
@@ -43,8 +43,8 @@ static double error_um(const carriage *c, const fg_field_list *fields, double y_
 }
 
 /* Returns the prediction of dy in one window. */
-static double predict(const carriage *c, const fg_field_list *fields, const fg_colour_shift *shift,
-                      double y_mm, double gap_mm) {
+static double predict_shift(const carriage *c, const fg_field_list *fields,
+                            const fg_colour_shift *shift, double y_mm, double gap_mm) {
   double sum = 0;
   for (int k = 0; k < WINDOW_STEPS; k++) {
     double y = y_mm + shift->window_mm * ((k + 0.5) / WINDOW_STEPS - 0.5);
@@ -83,8 +83,8 @@ static void fill_system(const fg_colour_shift *shift, const predictions *p, bool
 
 /* Solves for the factor and its variance; `left` is the weighted residual sum. False: the profile
  * cannot separate the prediction from a constant. */
-static bool solve(const fg_colour_shift *shift, const predictions *p, bool with_factor,
-                  double *left, double *factor, double *variance) {
+static bool solve_profile(const fg_colour_shift *shift, const predictions *p, bool with_factor,
+                          double *left, double *factor, double *variance) {
   fg_normal_equations system;
   double x[UNKNOWNS], inverse[FG_SMALL_MAX][FG_SMALL_MAX];
   fill_system(shift, p, with_factor, &system);
@@ -100,22 +100,22 @@ static bool solve(const fg_colour_shift *shift, const predictions *p, bool with_
 
 /* Adds one profile. Where windows scatter more than their u implies, even beside the prediction,
  * the carriage has further errors, and the profile's weight is lowered. */
-static void add_course(const carriage *c, const fg_colour_shift *shift, double gap_mm,
-                       evidence *to) {
+static void add_profile(const carriage *c, const fg_colour_shift *shift, double gap_mm,
+                        evidence *to) {
   predictions p;
   double before, after, factor, variance, mean = 0, squares = 0;
   double count = (double)shift->window_count;
   for (size_t i = 0; i < shift->window_count; i++) {
     double y_mm = (double)shift->windows[i].y_mm;
-    p.asked[i] = predict(c, &c->fields, shift, y_mm, gap_mm);
-    p.others[i] = predict(c, &c->others, shift, y_mm, gap_mm);
+    p.asked[i] = predict_shift(c, &c->fields, shift, y_mm, gap_mm);
+    p.others[i] = predict_shift(c, &c->others, shift, y_mm, gap_mm);
     mean += p.asked[i] / count;
     squares += p.asked[i] * p.asked[i] / count;
   }
-  to->courses++;
+  to->profiles++;
   to->expected += fmax(0, squares - mean * mean);
-  if (!solve(shift, &p, false, &before, &factor, &variance)) return;
-  bool told = solve(shift, &p, true, &after, &factor, &variance);
+  if (!solve_profile(shift, &p, false, &before, &factor, &variance)) return;
+  bool told = solve_profile(shift, &p, true, &after, &factor, &variance);
   double scatter = fmax(1, (told ? after : before) / fmax(1, count - 2));
   to->uneven += fmax(0, before / scatter - (count - 1));
   if (!told) return;
@@ -147,7 +147,8 @@ static int line_of(fg_channel channel) {
 
 /* Collects the evidence of one line, or of all (-1). Profiles and gaps are relative to the measured
  * line, which also saw the carriage's error as found. */
-static evidence ask(const fg_scan_loop *loop, const carriage *c, int line, const double gap_px[]) {
+static evidence collect_evidence(const fg_scan_loop *loop, const carriage *c, int line,
+                                 const double gap_px[]) {
   evidence all = {0};
   for (size_t i = 0; i < loop->scan_count; i++)
     for (int k = 0; k < 2; k++) {
@@ -156,7 +157,7 @@ static evidence ask(const fg_scan_loop *loop, const carriage *c, int line, const
       int of = line_of(shift->channel);
       if (!lines->seen || !speaks(shift) || (line >= 0 && of != line)) continue;
       double ahead_px = gap_px[of] - gap_px[line_of(lines->against)];
-      add_course(c, shift, ahead_px * pixel_mm(loop), &all);
+      add_profile(c, shift, ahead_px * pixel_mm(loop), &all);
     }
   return all;
 }
@@ -189,13 +190,13 @@ static void decide(fg_channel_check *w, bool max, const char *why_not) {
 
 /* Checks with known gaps, where the expected size is known too. Returns the gain over a constant.
  */
-static double judge_size(const fg_scan_loop *loop, const carriage *c, fg_channel_check *w) {
+static double check_known_gaps(const fg_scan_loop *loop, const carriage *c, fg_channel_check *w) {
   double gap_px[LINES] = {loop->options.colour_gap_px[0], 0, loop->options.colour_gap_px[1]};
-  evidence e = ask(loop, c, -1, gap_px);
+  evidence e = collect_evidence(loop, c, -1, gap_px);
   w->gap_stated = true;
   for (int k = 0; k < LINES; k++)
     w->gap_px[k] = gap_px[k];
-  w->expected_um = e.courses ? sqrt(e.expected / (double)e.courses) : NAN;
+  w->expected_um = e.profiles ? sqrt(e.expected / (double)e.profiles) : NAN;
   if (!(e.weight > 0)) {
     w->verdict = FG_CHANNEL_CHECK_CANNOT_TELL;
     w->reason = "it makes the same between the lines everywhere, which the scanner takes out";
@@ -218,7 +219,7 @@ static double find_gap(const fg_scan_loop *loop, const carriage *c, int line, ev
   *best = (evidence){0};
   for (double gap = -GAP_MAX_PX; gap <= GAP_MAX_PX; gap += GAP_STEP_PX) {
     gaps[line] = gap;
-    evidence e = ask(loop, c, line, gaps);
+    evidence e = collect_evidence(loop, c, line, gaps);
     if (!(gain(&e) > gain(best))) continue;
     *best = e;
     likeliest = gap;
@@ -228,20 +229,20 @@ static double find_gap(const fg_scan_loop *loop, const carriage *c, int line, ev
 
 /* Checks with unknown gaps: each line's gap is fitted. Gap and factor are two dof; the best line is
  * corrected for the number of lines. */
-static double judge_shape(const fg_scan_loop *loop, const carriage *c, fg_channel_check *w) {
+static double check_fitted_gaps(const fg_scan_loop *loop, const carriage *c, fg_channel_check *w) {
   double min = 1, lines = 0, all = 0;
   bool max = false;
   for (int line = 0; line < LINES; line++) {
     evidence e;
     double gap = find_gap(loop, c, line, &e), p = fmax(P_MIN, exp(-0.5 * fmax(0, gain(&e))));
-    w->gap_px[line] = e.courses ? gap : NAN;
-    lines += e.courses > 0;
+    w->gap_px[line] = e.profiles ? gap : NAN;
+    lines += e.profiles > 0;
     all += fmax(0, gain(&e));
     if (!(p < min)) continue;
     min = p;
     max = gain(&e) >= SHARE_MIN * e.uneven;
     w->factor = 1;
-    w->expected_um = sqrt(e.expected / (double)e.courses);
+    w->expected_um = sqrt(e.expected / (double)e.profiles);
   }
   w->p_value = fmin(1, fmax(1, lines) * min);
   w->p_against = NAN;
@@ -261,7 +262,7 @@ static fg_channel_check ask_of(const fg_scan_loop *loop, const carriage *c, doub
                         .expected_um = NAN,
                         .gap_px = {NAN, NAN, NAN}};
   bool stated = loop->options.colour_gap_px[0] != 0 || loop->options.colour_gap_px[1] != 0;
-  *better = (stated ? judge_size : judge_shape)(loop, c, &w);
+  *better = (stated ? check_known_gaps : check_fitted_gaps)(loop, c, &w);
   return w;
 }
 
@@ -332,7 +333,7 @@ typedef struct contest {
 /* Enters an explanation. In a tie the numbers of the carriage's effects are too uncertain to
  * separate these from each other (reports/colour_lines.md), but not from explanations that predict
  * a constant. */
-static void enter(const fg_scan_loop *loop, const fg_effect_set *set, contest *to) {
+static void enter_explanation(const fg_scan_loop *loop, const fg_effect_set *set, contest *to) {
   carriage c = carriage_of(loop, set);
   fg_channel_check w = {.expected_um = NAN};
   double better = 0;
@@ -355,9 +356,9 @@ static void enter(const fg_scan_loop *loop, const fg_effect_set *set, contest *t
 static void ask_tie(const fg_scan_loop *loop, fg_scan_result *result) {
   contest all = {0};
   char gaps[96];
-  enter(loop, &loop->set, &all);
+  enter_explanation(loop, &loop->set, &all);
   for (size_t k = 0; k < loop->tie_count; k++)
-    enter(loop, &loop->tie[k], &all);
+    enter_explanation(loop, &loop->tie[k], &all);
   if (!all.holds || !all.lacks || all.channel_check.verdict != FG_CHANNEL_CHECK_FOR ||
       !(all.channel_check.p_value < CERTAIN_P) || result->advices == FG_SCAN_RESULT_ADVICE)
     return;

@@ -74,8 +74,8 @@ static fg_point correct_point(const void *user, const fg_disc *disc, fg_point at
   return (fg_point){at.x - d.x, at.y - d.y};
 }
 
-static fg_status correct(fg_context *ctx, const fg_measurement *m, const correction *c,
-                         unsigned threads, fg_measurement *corrected) {
+static fg_status correct_measurement(fg_context *ctx, const fg_measurement *m, const correction *c,
+                                     unsigned threads, fg_measurement *corrected) {
   const fg_measure_mover mover = {.strip = correct_strip, .point = correct_point, .user = c};
   return fg_measure_again(ctx, m, &mover, threads, corrected);
 }
@@ -83,7 +83,7 @@ static fg_status correct(fg_context *ctx, const fg_measurement *m, const correct
 fg_status fg_scan_loop_correct(fg_context *ctx, const fg_measurement *m,
                                const fg_field_list *fields, unsigned threads,
                                fg_measurement *corrected) {
-  return correct(ctx, m, &(correction){.fields = fields}, threads, corrected);
+  return correct_measurement(ctx, m, &(correction){.fields = fields}, threads, corrected);
 }
 
 /* Widens the foils' uncertainties by the contribution of the set's effects to the geometry's
@@ -110,7 +110,7 @@ static void widen_by_effects(const fg_joint_fit_result *fit, const fg_measuremen
 fg_status fg_scan_loop_correct_fitted(fg_context *ctx, const fg_measurement *m,
                                       const fg_joint_fit_result *fit, unsigned threads,
                                       fg_measurement *corrected) {
-  FG_TRY(correct(ctx, m, &(correction){&fit->fields, fit}, threads, corrected));
+  FG_TRY(correct_measurement(ctx, m, &(correction){&fit->fields, fit}, threads, corrected));
   if (fit->set.count) widen_by_effects(fit, m, corrected);
   return FG_OK;
 }

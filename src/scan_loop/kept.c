@@ -70,7 +70,7 @@ static void put_overall(const fg_benefit_foil *of, fg_overall *overall) {
 
 /* Sets R and h as decided, X = R0 + R - h, in the direction that belongs to R0. A bump whose move
  * is unknown stays as corrected. */
-static void put_bump(const fg_benefit_foil *of, size_t item, const fg_overall *overall,
+static void set_bump(const fg_benefit_foil *of, size_t item, const fg_overall *overall,
                      fg_bump *bump) {
   const fg_bump *from = &of->before->bumps[item];
   double move[FG_CORRECTED];
@@ -116,7 +116,7 @@ static void put_dimensions(const fg_benefit_foil *of, fg_foil *foil) {
   const fg_thickness strip = fg_foil_thickness(&of->m->design, foil);
   put_overall(of, &foil->overall);
   for (size_t b = 0; b < foil->bump_count; b++) {
-    put_bump(of, b, &foil->overall, &foil->bumps[b]);
+    set_bump(of, b, &foil->overall, &foil->bumps[b]);
     fg_bump_derive(&of->m->design, &of->m->nominal, &foil->overall, &strip, &foil->bumps[b]);
   }
 }

@@ -10,7 +10,7 @@
 /* Standard uncertainties that a range reaches beyond its values: 95 %. */
 #define COVERAGE 2.0
 
-static void widen(double range[2], double value) {
+static void widen_range(double range[2], double value) {
   if (!isfinite(value)) return;
   if (!(value >= range[0])) range[0] = value;
   if (!(value <= range[1])) range[1] = value;
@@ -22,13 +22,15 @@ static void widen_ranges(const fg_measurement *m, fg_scan_loop_range *ranges, si
     /* A range includes its value's own uncertainty: it shall contain the true value, not only the
      * fits. */
     double ur = COVERAGE * f->bumps[b].u_radius_mm, uh = COVERAGE * f->bumps[b].u_height_mm;
-    widen(ranges[b].radius_mm, f->bumps[b].radius_mm - ur);
-    widen(ranges[b].radius_mm, f->bumps[b].radius_mm + ur);
-    widen(ranges[b].height_mm, f->bumps[b].height_mm - uh);
-    widen(ranges[b].height_mm, f->bumps[b].height_mm + uh);
+    widen_range(ranges[b].radius_mm, f->bumps[b].radius_mm - ur);
+    widen_range(ranges[b].radius_mm, f->bumps[b].radius_mm + ur);
+    widen_range(ranges[b].height_mm, f->bumps[b].height_mm - uh);
+    widen_range(ranges[b].height_mm, f->bumps[b].height_mm + uh);
   }
-  widen(ranges[f->bump_count].radius_mm, f->overall.radius_mm - COVERAGE * f->overall.u_radius_mm);
-  widen(ranges[f->bump_count].radius_mm, f->overall.radius_mm + COVERAGE * f->overall.u_radius_mm);
+  widen_range(ranges[f->bump_count].radius_mm,
+              f->overall.radius_mm - COVERAGE * f->overall.u_radius_mm);
+  widen_range(ranges[f->bump_count].radius_mm,
+              f->overall.radius_mm + COVERAGE * f->overall.u_radius_mm);
 }
 
 static fg_status allocate_ranges(fg_context *ctx, fg_scan_loop *loop) {
@@ -51,8 +53,8 @@ static void widen_discs(fg_measurement *after, const fg_measurement *m) {
   for (size_t d = 0; d < after->disc_count && d < m->disc_count; d++) {
     double *range = after->discs[d].radius_range_mm;
     if (range[0] == 0 && range[1] == 0) range[0] = range[1] = NAN;
-    widen(range, m->discs[d].radius_mm - COVERAGE * m->discs[d].u_radius_mm);
-    widen(range, m->discs[d].radius_mm + COVERAGE * m->discs[d].u_radius_mm);
+    widen_range(range, m->discs[d].radius_mm - COVERAGE * m->discs[d].u_radius_mm);
+    widen_range(range, m->discs[d].radius_mm + COVERAGE * m->discs[d].u_radius_mm);
   }
 }
 
@@ -73,17 +75,17 @@ void fg_scan_loop_put_ranges(fg_scan_loop *loop) {
       fg_foil *foil = &loop->after[i].foils[f];
       size_t count = loop->before[i].foils[f].bump_count;
       for (size_t b = 0; b < foil->bump_count && foil->bump_count == count; b++) {
-        widen(loop->ranges[k][b].radius_mm, foil->bumps[b].radius_mm);
-        widen(loop->ranges[k][b].height_mm, foil->bumps[b].height_mm);
+        widen_range(loop->ranges[k][b].radius_mm, foil->bumps[b].radius_mm);
+        widen_range(loop->ranges[k][b].height_mm, foil->bumps[b].height_mm);
         memcpy(foil->bumps[b].radius_range_mm, loop->ranges[k][b].radius_mm, 2 * sizeof(double));
         memcpy(foil->bumps[b].height_range_mm, loop->ranges[k][b].height_mm, 2 * sizeof(double));
       }
-      widen(loop->ranges[k][count].radius_mm, foil->overall.radius_mm);
+      widen_range(loop->ranges[k][count].radius_mm, foil->overall.radius_mm);
       memcpy(foil->overall.radius_range_mm, loop->ranges[k][count].radius_mm, 2 * sizeof(double));
     }
   for (size_t i = 0; i < loop->scan_count; i++)
     for (size_t d = 0; d < loop->after[i].disc_count; d++)
-      widen(loop->after[i].discs[d].radius_range_mm, loop->after[i].discs[d].radius_mm);
+      widen_range(loop->after[i].discs[d].radius_range_mm, loop->after[i].discs[d].radius_mm);
 }
 
 /* A step that may lie elsewhere: its place is known to the interval's uniform distribution. */

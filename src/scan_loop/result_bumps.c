@@ -31,8 +31,8 @@ static void put_ties(const fg_loop_claim *claim, fg_scan_result_bump_claim *out)
   out->ties = claim->aliases;
 }
 
-static void put_claim(const source *from, const fg_loop_claim *claim,
-                      fg_scan_result_bump_claim *out) {
+static void fill_bump_claim(const source *from, const fg_loop_claim *claim,
+                            fg_scan_result_bump_claim *out) {
   *out = (fg_scan_result_bump_claim){
       .id = claim->candidate.effect->id,
       .words = claim->candidate.effect->bump_words,
@@ -73,8 +73,8 @@ static void visit_unclaimed(size_t r, const fg_loop_rejected *one, void *user) {
   response->unclaimeds++;
 }
 
-static fg_status put_unclaimed(fg_context *ctx, const fg_scan_loop_bumps *bumps,
-                               fg_scan_result *result) {
+static fg_status fill_bump_unclaimed(fg_context *ctx, const fg_scan_loop_bumps *bumps,
+                                     fg_scan_result *result) {
   unclaimed_list list = {result, true};
   fg_scan_loop_bumps_rejected(bumps, visit_unclaimed, &list);
   for (size_t r = 0; r < FG_SCAN_RESULT_RESPONSES; r++) {
@@ -126,7 +126,8 @@ static fg_status put_rows(fg_context *ctx, const source *from, fg_scan_result_re
   return FG_OK;
 }
 
-static fg_status put_curve(fg_context *ctx, const source *from, fg_scan_result_response *out) {
+static fg_status fill_bump_curve(fg_context *ctx, const source *from,
+                                 fg_scan_result_response *out) {
   const fg_loop_result *result = &from->level->result;
   const fg_loop_curve *curve = &result->curve;
   out->has_curve = result->has_curve;
@@ -165,10 +166,10 @@ static fg_status put_response(fg_context *ctx, const fg_scan_loop_bumps *bumps, 
   out->judged = from.level->judged;
   out->error = scaled(&from.level->error, what->scale);
   for (size_t m = 0; m < from.level->result.claims; m++)
-    put_claim(&from, &from.level->result.claim[m], &out->claim[out->claims++]);
+    fill_bump_claim(&from, &from.level->result.claim[m], &out->claim[out->claims++]);
   if (!out->judged) return FG_OK;
   FG_TRY(put_rows(ctx, &from, out));
-  return put_curve(ctx, &from, out);
+  return fill_bump_curve(ctx, &from, out);
 }
 
 fg_status fg_scan_result_put_bumps(fg_context *ctx, const fg_scan_loop *loop,
@@ -186,7 +187,7 @@ fg_status fg_scan_result_put_bumps(fg_context *ctx, const fg_scan_loop *loop,
     out->declared_sha256 = bumps->forming->sha256;
   }
   out->height_um = scaled(&bumps->height, 1000);
-  FG_TRY(put_unclaimed(ctx, bumps, result));
+  FG_TRY(fill_bump_unclaimed(ctx, bumps, result));
   for (size_t r = 0; r < FG_SCAN_RESULT_RESPONSES; r++) {
     FG_TRY(put_response(ctx, bumps, r, &out->response[r]));
     if (out->response[r].has_curve && !out->curve) out->curve = &out->response[r];

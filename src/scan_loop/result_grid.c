@@ -36,8 +36,8 @@ static int lines_along(const fg_scan_result_grid *grid, int axis) {
   return (int)fmin(LINES_MAX, fmax(4, ceil(lines)));
 }
 
-static void put_line(const fg_field_list *fields, int axis, double across,
-                     fg_scan_result_grid_line *line) {
+static void fill_grid_line(const fg_field_list *fields, int axis, double across,
+                           fg_scan_result_grid_line *line) {
   const fg_field_frame *f = &fields->frame;
   int along = 1 - axis;
   line->axis = axis;
@@ -69,7 +69,7 @@ fg_status fg_scan_result_put_grid(fg_context *ctx, const fg_scan_loop *loop,
                             (void **)&grid->line));
   for (int axis = 0; axis < 2; axis++)
     for (int i = 0; i <= count[axis]; i++)
-      put_line(&fields, axis, f->low_mm[axis] + (axis ? height : width) * i / count[axis],
-               &grid->line[grid->lines++]);
+      fill_grid_line(&fields, axis, f->low_mm[axis] + (axis ? height : width) * i / count[axis],
+                     &grid->line[grid->lines++]);
   return FG_OK;
 }

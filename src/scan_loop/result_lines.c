@@ -151,7 +151,7 @@ static fg_status sum_parts(fg_context *ctx, const fg_scan_loop *loop,
 
 /* Removes from a free curve the part that circles absorb: the bump's own, or the overall circle
  * with its centre. */
-static void take_circles(fg_effect_coordinate coordinate, drawn_line *line) {
+static void remove_circles(fg_effect_coordinate coordinate, drawn_line *line) {
   double columns[3 * SAMPLES], basis[3 * SAMPLES], d[SAMPLES];
   size_t n = 0, at[SAMPLES];
   for (size_t i = 0; i < SAMPLES; i++)
@@ -170,7 +170,7 @@ static void take_circles(fg_effect_coordinate coordinate, drawn_line *line) {
 }
 
 /* Bridges gaps of a few bins; wider ones stay, because no edge has these directions. */
-static void bridge(drawn_line *line) {
+static void bridge_gaps(drawn_line *line) {
   enum { WIDEST = 12 };
   size_t last = SAMPLES;
   for (size_t i = 0; i < SAMPLES; i++) {
@@ -190,8 +190,8 @@ static bool has_free(const fg_effect_set *set, fg_effect_coordinate coordinate) 
   return false;
 }
 
-static fg_status put_part(fg_context *ctx, const fg_scan_loop *loop,
-                          fg_effect_coordinate coordinate, fg_scan_result *result) {
+static fg_status fill_part_line(fg_context *ctx, const fg_scan_loop *loop,
+                                fg_effect_coordinate coordinate, fg_scan_result *result) {
   drawn_line *line = &result->line[result->lines];
   size_t count;
   *line = (drawn_line){0};
@@ -201,8 +201,8 @@ static fg_status put_part(fg_context *ctx, const fg_scan_loop *loop,
   line->free = has_free(&loop->set, coordinate);
   /* Effects of single bumps are relative to their circles already. */
   if (line->free && coordinate != FG_EFFECT_NORMAL && coordinate != FG_EFFECT_INDEX)
-    take_circles(coordinate, line);
-  bridge(line);
+    remove_circles(coordinate, line);
+  bridge_gaps(line);
   result->lines++;
   return FG_OK;
 }
@@ -221,10 +221,10 @@ fg_status fg_scan_result_put_lines(fg_context *ctx, const fg_scan_loop *loop,
       *line = (drawn_line){
           .coordinate = axis ? FG_SCAN_Y : FG_SCAN_X, .glass = true, .axis = direction ? 'y' : 'x'};
       if (!sum_fields(&fields, axis, line)) continue;
-      bridge(line);
+      bridge_gaps(line);
       result->lines++;
     }
   for (int c = FG_EFFECT_FOIL; c < FG_EFFECT_COORDINATES; c++)
-    FG_TRY(put_part(ctx, loop, (fg_effect_coordinate)c, result));
+    FG_TRY(fill_part_line(ctx, loop, (fg_effect_coordinate)c, result));
   return FG_OK;
 }

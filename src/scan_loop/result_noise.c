@@ -12,7 +12,8 @@ static const char *model_of(const fg_scatter *scatter) {
 }
 
 /* A disc's rows weigh by their own noise: that of a whole row of the cleanest edge is the unit. */
-static fg_status put_discs(fg_context *ctx, const fg_edge_fit *edge_fit, fg_scan_noise *noise) {
+static fg_status fill_disc_noise(fg_context *ctx, const fg_edge_fit *edge_fit,
+                                 fg_scan_noise *noise) {
   FG_TRY(fg_memory_allocate(ctx, edge_fit->view_count, sizeof *noise->disc_um,
                             (void **)&noise->disc_um));
   noise->discs = edge_fit->view_count;
@@ -37,5 +38,5 @@ fg_status fg_scan_result_put_noise(fg_context *ctx, const fg_scan_loop *loop,
                            .correlation = scatter->share,
                            .range_mm = scatter->share > 0 ? scatter->range_mm : 0,
                            .long_waves = fmax(scatter->swell, 1)};
-  return loop->edge_fit.discs ? put_discs(ctx, &loop->edge_fit, noise) : FG_OK;
+  return loop->edge_fit.discs ? fill_disc_noise(ctx, &loop->edge_fit, noise) : FG_OK;
 }

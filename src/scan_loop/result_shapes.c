@@ -10,7 +10,7 @@
 
 enum { SHAPE_POINTS = 81 };
 
-static void put_point(fg_scan_result_claim *claim, double at, double um) {
+static void fill_shape_point(fg_scan_result_claim *claim, double at, double um) {
   claim->shape[claim->shape_points][0] = at;
   claim->shape[claim->shape_points++][1] = um;
 }
@@ -25,19 +25,19 @@ static void put_field(const fg_scan_loop *loop, const fg_effect_found *effect,
     double t = i / (SHAPE_POINTS - 1.0);
     double at = f->first_mm[along] + t * (f->last_mm[along] - f->first_mm[along]);
     fg_point d = fg_field_at(&list, (fg_point){at, at});
-    put_point(claim, at, 1000 * (moves_x ? d.x : d.y));
+    fill_shape_point(claim, at, 1000 * (moves_x ? d.x : d.y));
   }
 }
 
-static void put_foil(const fg_scan_loop *loop, const fg_effect_found *effect,
-                     fg_scan_result_claim *claim) {
+static void fill_foil_shape(const fg_scan_loop *loop, const fg_effect_found *effect,
+                            fg_scan_result_claim *claim) {
   const double *psi = loop->edge_fit.psi_rad;
   for (int i = 0; i < SHAPE_POINTS; i++) {
     double values[FG_FIELD_COLUMNS], t = i / (SHAPE_POINTS - 1.0), sum = 0;
     fg_field_splines(psi[0], psi[1], FG_FIELD_COLUMNS, psi[0] + t * (psi[1] - psi[0]), values);
     for (size_t c = 0; c < effect->columns; c++)
       sum += effect->coefficient_um[c] * values[c];
-    put_point(claim, 2 * t - 1, sum);
+    fill_shape_point(claim, 2 * t - 1, sum);
   }
 }
 
@@ -54,8 +54,8 @@ static double fillet_to_fillet_rad(const fg_edge_fit *edge_fit, const fg_edge_fi
 }
 
 /* Returns the row's place on the coordinate; NaN: none. */
-static double place_of(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row,
-                       fg_effect_coordinate coordinate) {
+static double shape_coordinate_of(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row,
+                                  fg_effect_coordinate coordinate) {
   if (coordinate == FG_EFFECT_INDEX) return fg_edge_fit_along_bumps(row);
   if (coordinate == FG_EFFECT_PHI)
     return row->bump ? row->phi * edge_fit->parts[row->part].half_arc_rad /
@@ -66,8 +66,8 @@ static double place_of(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row,
 }
 
 /* Means of a deviation at the rows, which are where it is known. */
-static fg_status put_part(fg_context *ctx, const fg_scan_loop *loop, const fg_effect_found *effect,
-                          fg_scan_result_claim *claim) {
+static fg_status fill_part_shape(fg_context *ctx, const fg_scan_loop *loop,
+                                 const fg_effect_found *effect, fg_scan_result_claim *claim) {
   const fg_edge_fit *edge_fit = &loop->edge_fit;
   fg_effect_coordinate over = effect->kind->coordinate;
   double low = INFINITY, high = -INFINITY, sum[SHAPE_POINTS] = {0}, at[SHAPE_POINTS] = {0};
@@ -75,11 +75,11 @@ static fg_status put_part(fg_context *ctx, const fg_scan_loop *loop, const fg_ef
   fg_effect_set alone = {.effects = {*effect}, .count = 1};
   FG_TRY(fg_effect_set_shift(ctx, edge_fit, &alone, &shift));
   for (size_t i = 0; i < edge_fit->row_count; i++) {
-    low = fmin(low, place_of(edge_fit, &edge_fit->rows[i], over));
-    high = fmax(high, place_of(edge_fit, &edge_fit->rows[i], over));
+    low = fmin(low, shape_coordinate_of(edge_fit, &edge_fit->rows[i], over));
+    high = fmax(high, shape_coordinate_of(edge_fit, &edge_fit->rows[i], over));
   }
   for (size_t i = 0; i < edge_fit->row_count; i++) {
-    double place = place_of(edge_fit, &edge_fit->rows[i], over);
+    double place = shape_coordinate_of(edge_fit, &edge_fit->rows[i], over);
     if (!isfinite(place)) continue;
     size_t bin = (size_t)fmin(SHAPE_POINTS - 1, (place - low) / (high - low) * SHAPE_POINTS);
     sum[bin] += 1000 * shift[i];
@@ -88,7 +88,7 @@ static fg_status put_part(fg_context *ctx, const fg_scan_loop *loop, const fg_ef
   }
   free(shift);
   for (int k = 0; k < SHAPE_POINTS; k++)
-    if (count[k] > 0) put_point(claim, at[k] / count[k], sum[k] / count[k]);
+    if (count[k] > 0) fill_shape_point(claim, at[k] / count[k], sum[k] / count[k]);
   return FG_OK;
 }
 
@@ -98,8 +98,8 @@ fg_status fg_scan_result_put_shape(fg_context *ctx, const fg_scan_loop *loop,
   if (effect->kind->glass)
     put_field(loop, effect, claim);
   else if (effect->kind->coordinate == FG_EFFECT_FOIL)
-    put_foil(loop, effect, claim);
+    fill_foil_shape(loop, effect, claim);
   else
-    return put_part(ctx, loop, effect, claim);
+    return fill_part_shape(ctx, loop, effect, claim);
   return FG_OK;
 }

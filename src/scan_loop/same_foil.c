@@ -89,7 +89,7 @@ static double preference(const fg_scan_loop *loop, const apart *a) {
 }
 
 /* Names the bump that differs most between two views of a part, as measured. */
-static fg_status say_two_foils(fg_context *ctx, const fg_scan_loop *loop, const apart *a) {
+static fg_status fail_two_foils(fg_context *ctx, const fg_scan_loop *loop, const apart *a) {
   const fg_edge_fit *edge_fit = &loop->edge_fit;
   const fg_bump *one = NULL, *other = NULL;
   for (size_t v = 0; v < edge_fit->view_count; v++)
@@ -127,7 +127,7 @@ fg_status fg_scan_loop_check_one_foil(fg_context *ctx, const fg_scan_loop *loop)
   if (status != FG_ERR_MEMORY) status = FG_OK; /* too few rows for a geometry each: no conclusion */
   if (told && a.explanations.right && !has_curve(&a.set) && a.set.count <= EFFECTS_MAX &&
       preference(loop, &a) > PREFERENCE_MIN)
-    status = say_two_foils(ctx, loop, &a);
+    status = fail_two_foils(ctx, loop, &a);
   fg_edge_fit_free(&a.edge_fit);
   free(a.residual_um);
   return status;

@@ -34,7 +34,7 @@ static fg_loop_claim *find_stretch(fg_scan_loop_bumps *bumps, double *rel) {
   return NULL;
 }
 
-static void widen(double range[2], double value, double u, double scale) {
+static void widen_interval(double range[2], double value, double u, double scale) {
   if (!isfinite(value)) return;
   if (range[0] == 0 && range[1] == 0) range[0] = range[1] = value;
   for (int side = -1; side <= 1; side += 2)
@@ -48,11 +48,11 @@ static void widen(double range[2], double value, double u, double scale) {
 static void widen_foil(fg_foil *foil, double scale) {
   for (size_t b = 0; b < foil->bump_count; b++) {
     fg_bump *bump = &foil->bumps[b];
-    widen(bump->radius_range_mm, bump->radius_mm, bump->u_radius_mm, scale);
-    widen(bump->height_range_mm, bump->height_mm, bump->u_height_mm, scale);
+    widen_interval(bump->radius_range_mm, bump->radius_mm, bump->u_radius_mm, scale);
+    widen_interval(bump->height_range_mm, bump->height_mm, bump->u_height_mm, scale);
   }
   fg_overall *overall = &foil->overall;
-  widen(overall->radius_range_mm, overall->radius_mm, overall->u_radius_mm, scale);
+  widen_interval(overall->radius_range_mm, overall->radius_mm, overall->u_radius_mm, scale);
 }
 
 /* Names the same effects with the scale instead of the stretch; a scale that is in the set already

@@ -81,8 +81,8 @@ static fg_status build_points(fg_context *ctx, fg_scan_loop *loop) {
   return FG_OK;
 }
 
-static fg_scan_loop_error summarise(fg_context *ctx, const fg_edge_fit *edge_fit,
-                                    const double *residual) {
+static fg_scan_loop_error summarise_residual(fg_context *ctx, const fg_edge_fit *edge_fit,
+                                             const double *residual) {
   fg_scan_loop_error e = {NAN, NAN, NAN, NAN, NAN};
   double sum = 0, n = 0, held = 0, held_n = 0, *absolute = NULL; /* n: weights */
   size_t count = 0;
@@ -112,7 +112,7 @@ static fg_scan_loop_error summarise(fg_context *ctx, const fg_edge_fit *edge_fit
 
 /* Notes when most effects of the relevant size could not have been detected: `absent` effects must
  * not look like a clean scanner. */
-static fg_status say_reach(fg_context *ctx, fg_scan_loop *loop) {
+static fg_status note_reach(fg_context *ctx, fg_scan_loop *loop) {
   size_t listed = 0, hidden = 0;
   for (size_t e = 0; e < loop->explanations.candidate_count; e++) {
     bool is_listed = !fg_effect_is_free(loop->explanations.candidates[e].kind);
@@ -180,7 +180,7 @@ static fg_status search_bumps(fg_context *ctx, fg_scan_loop *loop) {
       .seed = loop->options.seed,
   };
   FG_TRY(fg_scan_loop_bumps_run(ctx, &request, &loop->bumps));
-  FG_TRY(loop->edge_fit.discs ? note_forming(ctx, loop) : say_reach(ctx, loop));
+  FG_TRY(loop->edge_fit.discs ? note_forming(ctx, loop) : note_reach(ctx, loop));
   FG_TRY(fg_scan_loop_say_held_out(ctx, loop));
   FG_TRY(fg_scan_loop_say_left_out(ctx, loop));
   FG_TRY(say_lossy(ctx, loop));
@@ -189,7 +189,7 @@ static fg_status search_bumps(fg_context *ctx, fg_scan_loop *loop) {
 }
 
 /* The winner fitted once more, and every scan corrected by it. */
-static fg_status correct(fg_context *ctx, fg_scan_loop *loop) {
+static fg_status correct_by_winner(fg_context *ctx, fg_scan_loop *loop) {
   fg_joint_fit_result fit;
   FG_TRY(fg_joint_fit_open(ctx, &loop->edge_fit, &loop->set, &fit));
   loop->set = fit.set;
@@ -215,7 +215,7 @@ static void widen_scales(fg_scan_loop *loop) {
     widen_scale(loop->tone.u_scale, &loop->tie[k]);
 }
 
-static fg_status search(fg_context *ctx, fg_scan_loop *loop) {
+static fg_status search_effects(fg_context *ctx, fg_scan_loop *loop) {
   size_t rows = loop->edge_fit.row_count;
   FG_TRY(fg_memory_allocate(ctx, rows, sizeof(double), (void **)&loop->residual_before));
   FG_TRY(fg_memory_allocate(ctx, rows, sizeof(double), (void **)&loop->residual_after));
@@ -224,12 +224,12 @@ static fg_status search(fg_context *ctx, fg_scan_loop *loop) {
       fg_search_run(ctx, &loop->edge_fit, &loop->set, &loop->explanations, loop->residual_after));
   FG_TRY(fg_scan_loop_find_single_bumps(ctx, loop));
   FG_TRY(fg_scan_loop_check_one_foil(ctx, loop));
-  loop->error_before = summarise(ctx, &loop->edge_fit, loop->residual_before);
-  loop->error_after = summarise(ctx, &loop->edge_fit, loop->residual_after);
+  loop->error_before = summarise_residual(ctx, &loop->edge_fit, loop->residual_before);
+  loop->error_after = summarise_residual(ctx, &loop->edge_fit, loop->residual_after);
   FG_TRY(fg_scan_loop_find_held_out(ctx, loop));
   loop->noise_floor_um = loop->explanations.noise_um;
   loop->tied = loop->explanations.count > 1;
-  FG_TRY(correct(ctx, loop));
+  FG_TRY(correct_by_winner(ctx, loop));
   if (loop->tied) FG_TRY(fg_scan_loop_find_ranges(ctx, loop));
   FG_TRY(fg_scan_loop_keep_beneficial(ctx, loop));
   if (loop->tied) fg_scan_loop_put_ranges(loop);
@@ -241,8 +241,8 @@ static fg_status search(fg_context *ctx, fg_scan_loop *loop) {
   return fg_scan_loop_decide(ctx, loop);
 }
 
-static fg_status create(fg_context *ctx, const bool *hold_out, size_t count,
-                        const fg_scan_loop_options *options, fg_scan_loop **out) {
+static fg_status create_loop(fg_context *ctx, const bool *hold_out, size_t count,
+                             const fg_scan_loop_options *options, fg_scan_loop **out) {
   fg_scan_loop *loop = NULL;
   fg_status status = FG_OK;
   FG_TRY(fg_memory_allocate(ctx, 1, sizeof *loop, (void **)&loop));
@@ -275,7 +275,7 @@ static fg_status close_loop(fg_context *ctx, fg_scan_loop *loop, fg_scan_loop **
 static fg_status level_again(fg_context *ctx, fg_scan_loop *loop, fg_scan_loop **result) {
   fg_scan_loop *next = NULL;
   fg_status status = FG_OK;
-  FG_TRY_EXIT(create(ctx, loop->hold_out, loop->scan_count, &loop->options, &next));
+  FG_TRY_EXIT(create_loop(ctx, loop->hold_out, loop->scan_count, &loop->options, &next));
   memcpy(next->before, loop->before, loop->scan_count * sizeof *loop->before);
   memset(loop->before, 0, loop->scan_count * sizeof *loop->before);
   next->levelled = true;
@@ -299,7 +299,7 @@ static fg_status close_loop(fg_context *ctx, fg_scan_loop *loop, fg_scan_loop **
   loop->tone = fg_scan_loop_find_tone(loop, false);
   if (!loop->levelled && fg_model_tone_is_significant(&loop->tone))
     return level_again(ctx, loop, result);
-  FG_TRY_EXIT(search(ctx, loop));
+  FG_TRY_EXIT(search_effects(ctx, loop));
   if (!loop->levelled && fg_model_tone_is_significant(&loop->tone))
     return level_again(ctx, loop, result);
   FG_TRY_EXIT(calibrate(ctx, loop));
@@ -314,7 +314,7 @@ fg_status fg_scan_loop_run(fg_context *ctx, const char *const *paths, const bool
                            const fg_scan_loop_options *options, fg_scan_loop **result) {
   fg_scan_loop *loop;
   *result = NULL;
-  FG_TRY(create(ctx, hold_out, count, options, &loop));
+  FG_TRY(create_loop(ctx, hold_out, count, options, &loop));
   fg_status status = measure_all(ctx, paths, design, loop);
   if (status == FG_OK) return close_loop(ctx, loop, result);
   fg_scan_loop_free(loop);
@@ -326,7 +326,7 @@ fg_status fg_scan_loop_run_measured(fg_context *ctx, fg_measurement *measurement
                                     const fg_scan_loop_options *options, fg_scan_loop **result) {
   fg_scan_loop *loop;
   *result = NULL;
-  FG_TRY(create(ctx, hold_out, count, options, &loop));
+  FG_TRY(create_loop(ctx, hold_out, count, options, &loop));
   memcpy(loop->before, measurements, count * sizeof *measurements);
   memset(measurements, 0, count * sizeof *measurements);
   return close_loop(ctx, loop, result);

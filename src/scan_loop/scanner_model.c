@@ -119,7 +119,8 @@ static bool is_left_disc(const fg_correction_choice *choice) {
   return !choice->moved && choice->reason != FG_CORRECTION_NONE;
 }
 
-static void sum_up(const fg_measurement *before, const fg_measurement *own, fg_measurement *m) {
+static void sum_up_correction(const fg_measurement *before, const fg_measurement *own,
+                              fg_measurement *m) {
   for (size_t f = 0; f < m->foil_count; f++)
     sum_up_foil(&before->foils[f], &own->foils[f], &m->foils[f]);
   for (size_t d = 0; d < m->disc_count; d++) {
@@ -180,7 +181,7 @@ fg_status fg_scanner_model_apply(fg_context *ctx, const fg_scanner_model *model,
     FG_TRY_EXIT(keep_beneficial(ctx, m, &uncertainty, &corrected));
   FG_TRY_EXIT(fg_model_uncertainty_widen(ctx, &uncertainty, &corrected));
   flag_reach(&model->fields.frame, &corrected);
-  sum_up(m, &uncertainty.each[0], &corrected);
+  sum_up_correction(m, &uncertainty.each[0], &corrected);
   replace(m, &corrected);
   memcpy(m->model_sha256, model->sha256, sizeof m->model_sha256);
   m->model = model;

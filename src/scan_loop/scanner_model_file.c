@@ -18,8 +18,8 @@ _Static_assert((int)FG_EFFECT_SET_MAX <= (int)FG_FIELDS_MAX, "what is written ca
 
 /* Reads exactly `wanted` numbers of an array member; NaN for null. Their ranges are checked later.
  */
-static fg_status read_numbers(fg_context *ctx, const cJSON *object, const char *before,
-                              const char *name, double *out, size_t wanted) {
+static fg_status read_model_numbers(fg_context *ctx, const cJSON *object, const char *before,
+                                    const char *name, double *out, size_t wanted) {
   const cJSON *array = cJSON_GetObjectItemCaseSensitive(object, name);
   size_t count = cJSON_IsArray(array) ? (size_t)cJSON_GetArraySize(array) : 0;
   if (!cJSON_IsArray(array) || count != wanted)
@@ -46,12 +46,12 @@ static fg_status read_field(fg_context *ctx, const char *member, const cJSON *it
   fg_text_clip(before, sizeof before, "%s[%zu].", member, list->count);
   fg_field *f = &list->fields[list->count++];
   *f = fg_effect_field(kind);
-  FG_TRY(read_numbers(ctx, item, before, "amplitude_mm", f->amplitude_mm, f->columns));
-  FG_TRY(read_numbers(ctx, item, before, "u_amplitude_mm", f->u_amplitude_mm, f->columns));
-  FG_TRY(read_numbers(ctx, item, before, "shape", f->shape, f->shapes));
+  FG_TRY(read_model_numbers(ctx, item, before, "amplitude_mm", f->amplitude_mm, f->columns));
+  FG_TRY(read_model_numbers(ctx, item, before, "u_amplitude_mm", f->u_amplitude_mm, f->columns));
+  FG_TRY(read_model_numbers(ctx, item, before, "shape", f->shape, f->shapes));
   /* Not in every file; a shape that was not refined has none. */
   if (cJSON_GetObjectItemCaseSensitive(item, "u_shape"))
-    FG_TRY(read_numbers(ctx, item, before, "u_shape", f->u_shape, f->shapes));
+    FG_TRY(read_model_numbers(ctx, item, before, "u_shape", f->u_shape, f->shapes));
   for (size_t s = 0; s < f->shapes; s++)
     if (isnan(f->u_shape[s])) f->u_shape[s] = 0;
   return FG_OK;
@@ -85,11 +85,11 @@ static fg_status read_knots(fg_context *ctx, const cJSON *root, size_t *knots) {
 static fg_status read_place(fg_context *ctx, const cJSON *root, fg_scanner_model *model) {
   fg_field_frame *frame = &model->fields.frame;
   double region[4], curve[4];
-  FG_TRY(read_numbers(ctx, root, "", "dpi", model->dpi, 2));
-  FG_TRY(read_numbers(ctx, root, "", "region_mm", region, 4));
+  FG_TRY(read_model_numbers(ctx, root, "", "dpi", model->dpi, 2));
+  FG_TRY(read_model_numbers(ctx, root, "", "region_mm", region, 4));
   memcpy(curve, region, sizeof curve); /* a file without free curves may lack the member */
   if (cJSON_GetObjectItemCaseSensitive(root, "curve_mm"))
-    FG_TRY(read_numbers(ctx, root, "", "curve_mm", curve, 4));
+    FG_TRY(read_model_numbers(ctx, root, "", "curve_mm", curve, 4));
   FG_TRY(read_knots(ctx, root, &frame->knots));
   for (int axis = 0; axis < 2; axis++) {
     frame->first_mm[axis] = curve[axis];

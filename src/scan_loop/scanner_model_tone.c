@@ -69,8 +69,8 @@ static const tone_row rows[] = {
 #undef ROW
 enum { ROWS = sizeof rows / sizeof *rows, GAUGES_MAX = 1000000 };
 
-static fg_status read_row(fg_context *ctx, const cJSON *object, const tone_row *row,
-                          fg_model_tone *tone) {
+static fg_status read_tone_row(fg_context *ctx, const cJSON *object, const tone_row *row,
+                               fg_model_tone *tone) {
   const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, row->name);
   double *value = (double *)((char *)tone + row->offset);
   *value = cJSON_IsNumber(item) ? item->valuedouble : NAN;
@@ -103,7 +103,7 @@ fg_status fg_model_tone_read(fg_context *ctx, const cJSON *root, fg_model_tone *
   if (!cJSON_IsObject(object))
     return fg_fail(ctx, FG_ERR_DATA, "`tone` is no object; an object or null is allowed");
   for (size_t i = 0; i < ROWS; i++)
-    FG_TRY(read_row(ctx, object, &rows[i], tone));
+    FG_TRY(read_tone_row(ctx, object, &rows[i], tone));
   const cJSON *gauges = cJSON_GetObjectItemCaseSensitive(object, "gauges");
   double count = cJSON_IsNumber(gauges) ? gauges->valuedouble : NAN;
   if (!(count >= 1 && count <= GAUGES_MAX && count == floor(count)))

@@ -39,7 +39,7 @@ static void take_moves(fg_quantity_owner owner, void *object, const void *same, 
   m->at += fg_quantity_moves(owner);
 }
 
-static void widen(fg_quantity_owner owner, void *object, const void *same, void *user) {
+static void widen_value_u(fg_quantity_owner owner, void *object, const void *same, void *user) {
   moves *m = user;
   (void)same;
   fg_quantity_widen(owner, object, m->each + m->at, m->share);
@@ -57,7 +57,7 @@ static fg_status find_moves(fg_context *ctx, fg_measurement *from, const fg_meas
 }
 
 static void add_moves(fg_measurement *m, double *each, double share) {
-  visit_all(m, NULL, widen, &(moves){.each = each, .share = share});
+  visit_all(m, NULL, widen_value_u, &(moves){.each = each, .share = share});
 }
 
 static size_t number_count(const fg_field *field) {
@@ -73,8 +73,8 @@ static bool move_number(fg_field *field, size_t k) {
 }
 
 /* Measures `own` again with one number of the model displaced. */
-static fg_status step(fg_context *ctx, const fg_field_list *fields, const fg_measurement *m,
-                      unsigned threads, fg_model_uncertainty *uncertainty) {
+static fg_status step_number(fg_context *ctx, const fg_field_list *fields, const fg_measurement *m,
+                             unsigned threads, fg_model_uncertainty *uncertainty) {
   fg_measurement other;
   FG_TRY(fg_scan_loop_correct(ctx, m, fields, threads, &other));
   fg_benefits_add_step(&uncertainty->benefits, &uncertainty->each[0], &other);
@@ -91,7 +91,7 @@ static fg_status step_all(fg_context *ctx, const fg_field_list *fields, const fg
     for (size_t c = 0; c < number_count(&fields->fields[f]); c++) {
       fg_field_list moved = *fields;
       if (!move_number(&moved.fields[f], c)) continue;
-      FG_TRY(step(ctx, &moved, m, threads, uncertainty));
+      FG_TRY(step_number(ctx, &moved, m, threads, uncertainty));
     }
   return FG_OK;
 }

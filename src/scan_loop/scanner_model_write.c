@@ -70,7 +70,7 @@ static void write_fields(fg_json *json, const char *name, const fg_field_list *l
   fg_json_array_end(json);
 }
 
-static void write_inputs(fg_json *json, const fg_scan_result *result) {
+static void write_model_inputs(fg_json *json, const fg_scan_result *result) {
   fg_json_array(json, "inputs");
   for (size_t i = 0; i < result->scans; i++) {
     fg_json_object(json, NULL);
@@ -83,7 +83,7 @@ static void write_inputs(fg_json *json, const fg_scan_result *result) {
 }
 
 /* Refuses a model that the reader would refuse. */
-static fg_status check(fg_context *ctx, const fg_scanner_model *model) {
+static fg_status check_readable(fg_context *ctx, const fg_scanner_model *model) {
   fg_context inner = {.message = ""};
   fg_status status = fg_scanner_model_check_place(&inner, model->dpi, &model->fields.frame);
   if (status == FG_OK) status = fg_scanner_model_check_fields(&inner, "fields", &model->fields);
@@ -128,7 +128,7 @@ fg_status fg_scan_loop_write_model(fg_context *ctx, const fg_scan_loop *loop, FI
   const fg_scanner_model *model = loop->result.model;
   fg_json json;
   FG_TRY(check_pictures(ctx, loop));
-  FG_TRY(check(ctx, model));
+  FG_TRY(check_readable(ctx, model));
   fg_json_begin(&json, out);
   json.exact = true; /* a model that is read corrects as the loop did */
   fg_json_object(&json, NULL);
@@ -137,7 +137,7 @@ fg_status fg_scan_loop_write_model(fg_context *ctx, const fg_scan_loop *loop, FI
   fg_json_string(&json, "date", model->date[0] ? model->date : NULL);
   fg_json_string(&json, "level", "points");
   write_place(&json, model);
-  write_inputs(&json, &loop->result);
+  write_model_inputs(&json, &loop->result);
   fg_json_integer(&json, "known_diameters", (int64_t)model->known_diameters);
   fg_model_tone_write(&json, &model->tone);
   fg_json_bool(&json, "tied", model->tied);

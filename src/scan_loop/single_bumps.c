@@ -73,8 +73,8 @@ static fg_status without_directions(fg_context *ctx, const fg_scan_loop *loop, d
 
 /* Fills polynomials over the visible part of the arc: a raised bump turns back sooner, and over the
  * shorter arc polynomials of the common one are nearly collinear. */
-static void fill_columns(const fg_edge_fit *edge_fit, const size_t *row, size_t n,
-                         double *columns) {
+static void fill_polynomial_columns(const fg_edge_fit *edge_fit, const size_t *row, size_t n,
+                                    double *columns) {
   double low = INFINITY, high = -INFINITY;
   for (size_t i = 0; i < n; i++) {
     low = fmin(low, edge_fit->rows[row[i]].phi);
@@ -103,8 +103,8 @@ static amplitudes *find_number(amplitudes *list, size_t *count, int number) {
 }
 
 /* Every bump of every view; rows of a bump on a view are neighbours. */
-static fg_status collect(fg_context *ctx, const fg_scan_loop *loop, amplitudes *list,
-                         size_t *count) {
+static fg_status collect_amplitudes(fg_context *ctx, const fg_scan_loop *loop, amplitudes *list,
+                                    size_t *count) {
   const fg_edge_fit *edge_fit = &loop->edge_fit;
   size_t rows = edge_fit->row_count, *row = NULL;
   double *value = NULL, *work = NULL;
@@ -126,7 +126,7 @@ static fg_status collect(fg_context *ctx, const fg_scan_loop *loop, amplitudes *
     }
     amplitudes *of = first->bump && n >= ROWS_MIN ? find_number(list, count, first->bump) : NULL;
     if (!of) continue;
-    fill_columns(edge_fit, row, n, columns);
+    fill_polynomial_columns(edge_fit, row, n, columns);
     add_view(columns, own, n, work, of);
   }
 exit:
@@ -168,7 +168,7 @@ static double find_p(const amplitudes *list, size_t count, uint64_t seed) {
 }
 
 /* The curve of single bumps joins every explanation, and is fitted beside the winner. */
-static fg_status join(fg_context *ctx, fg_scan_loop *loop, size_t candidate, double p_value) {
+static fg_status join_curve(fg_context *ctx, fg_scan_loop *loop, size_t candidate, double p_value) {
   fg_explanations *explanations = &loop->explanations;
   for (size_t m = 0; m < explanations->count; m++)
     explanations->each[m].mask |= 1u << candidate;
@@ -194,8 +194,8 @@ fg_status fg_scan_loop_find_single_bumps(fg_context *ctx, fg_scan_loop *loop) {
          explanations->candidates[candidate].kind->coordinate != FG_EFFECT_INDEX)
     candidate++;
   if (candidate == explanations->candidate_count) return FG_OK;
-  FG_TRY(collect(ctx, loop, list, &count));
+  FG_TRY(collect_amplitudes(ctx, loop, list, &count));
   if (count < FG_BUMP_PATTERN_MIN) return FG_OK;
   double p_value = find_p(list, count, loop->options.seed);
-  return p_value < FG_BUMP_PATTERN_P ? join(ctx, loop, candidate, p_value) : FG_OK;
+  return p_value < FG_BUMP_PATTERN_P ? join_curve(ctx, loop, candidate, p_value) : FG_OK;
 }

@@ -1,19 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The level of a scanner's edges from discs of known diameter. */
+/* Level of a scanner's edges, from discs of known diameter. */
 #include <math.h>
 
 #include "scan_loop/state.h"
 
-/* Standard uncertainty of a known diameter where the design does not state it: a pin gauge within
- * 1 um. */
+/* Standard uncertainty of a known diameter if the design does not state it: a pin gauge within 1
+ * um. */
 #define U_DIAMETER_MM 0.0005
-/* Discs tell the level with any scale of the scanner beside it when they are of several sizes: it
- * is known when half as well again as an unknown tone curve leaves it. */
+/* Limits of u. Discs of several sizes separate the level from any scale of the scanner: the level
+ * counts as known when its u is at most half of the uncertainty by an unknown tone curve. */
 #define SCALE_FREE  0.05
 #define LEVEL_KNOWN 0.04
 enum { DISCS_MIN = 3 };
 
-/* Diameters of the corrected scan, edges as they were found. */
+/* Adds the diameter of the corrected scan; the edge level is as found. */
 static void add_disc(const fg_disc *disc, const fg_disc *corrected, double known_mm, double u_mm,
                      fg_level_sum *sum) {
   double level = disc->level_u_mm;

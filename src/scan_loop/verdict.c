@@ -62,8 +62,8 @@ static bool covers(const fg_explanations *explanations, size_t explanation, size
 }
 
 /* The effects of an explanation as a sum of ids. */
-static void put_name(const fg_explanations *explanations, size_t explanation,
-                     char name[FG_SCAN_RESULT_WORDS]) {
+static void fill_explanation_name(const fg_explanations *explanations, size_t explanation,
+                                  char name[FG_SCAN_RESULT_WORDS]) {
   size_t used = 0;
   name[0] = 0;
   for (size_t e = 0; e < explanations->candidate_count && used + 1 < FG_SCAN_RESULT_WORDS; e++) {
@@ -100,7 +100,7 @@ static void put_explanations(const fg_explanations *from, fg_scan_result *result
     if (known) continue;
     fg_scan_result_explanation *one = &result->explanation[result->explanations];
     shown[result->explanations++] = m;
-    put_name(from, m, one->name);
+    fill_explanation_name(from, m, one->name);
     put_words(from, m, false, one->words);
   }
   if (from->count) put_words(from, 0, true, result->common);
@@ -123,8 +123,8 @@ static void put_shares(const fg_explanations *explanations, const fg_effect *kin
     }
 }
 
-static fg_status put_claim(fg_context *ctx, const fg_scan_loop *loop, const fg_effect_found *effect,
-                           fg_scan_result_claim *claim) {
+static fg_status fill_claim(fg_context *ctx, const fg_scan_loop *loop,
+                            const fg_effect_found *effect, fg_scan_result_claim *claim) {
   const fg_effect *kind = effect->kind;
   *claim = (fg_scan_result_claim){
       .id = kind->id,
@@ -180,7 +180,7 @@ static void put_width(const fg_width_findings *width, fg_scan_result *result) {
 static fg_status put_claims(fg_context *ctx, const fg_scan_loop *loop, fg_scan_result *result) {
   for (size_t i = 0; i < loop->set.count; i++) {
     fg_scan_result_claim *claim = &result->claim[result->claims++];
-    FG_TRY(put_claim(ctx, loop, &loop->set.effects[i], claim));
+    FG_TRY(fill_claim(ctx, loop, &loop->set.effects[i], claim));
     if (claim->free && (!result->curve || claim->amplitude_um > result->curve->amplitude_um))
       result->curve = claim;
   }
@@ -208,7 +208,7 @@ static bool is_listed(const fg_scan_result *result, const fg_effect *kind) {
   return false;
 }
 
-static fg_loop_verdict judge(double smallest_um, double share) {
+static fg_loop_verdict verdict_on(double smallest_um, double share) {
   if (fg_scan_loop_would_show(smallest_um)) return FG_LOOP_ABSENT;
   return share < ABSORBED_SHARE ? FG_LOOP_ABSORBED : FG_LOOP_INCONCLUSIVE;
 }
@@ -221,7 +221,7 @@ static void put_width_unclaimed(const fg_width_findings *width, fg_scan_result *
         (fg_scan_result_unclaimed){.id = one->effect.kind->id,
                                    .words = one->effect.kind->words,
                                    .of_width = true,
-                                   .verdict = judge(one->smallest_um, one->share),
+                                   .verdict = verdict_on(one->smallest_um, one->share),
                                    .would_explain = one->would_explain,
                                    .retained_share = one->share,
                                    .smallest_um = one->smallest_um};
@@ -229,7 +229,7 @@ static void put_width_unclaimed(const fg_width_findings *width, fg_scan_result *
 }
 
 /* Of two bases of one effect the first stands for both. */
-static void put_unclaimed(const fg_scan_loop *loop, fg_scan_result *result) {
+static void fill_unclaimed(const fg_scan_loop *loop, fg_scan_result *result) {
   const fg_explanations *explanations = &loop->explanations;
   for (size_t e = 0; e < explanations->candidate_count; e++) {
     const fg_effect *kind = explanations->candidates[e].kind;
@@ -239,7 +239,7 @@ static void put_unclaimed(const fg_scan_loop *loop, fg_scan_result *result) {
         .words = kind->words,
         .verdict = any_member_holds(explanations, kind)
                        ? FG_LOOP_TIED
-                       : judge(explanations->smallest_um[e], explanations->share[e]),
+                       : verdict_on(explanations->smallest_um[e], explanations->share[e]),
         .would_explain = explanations->alone[e],
         .retained_share = explanations->share[e],
         .smallest_um = explanations->smallest_um[e]};
@@ -285,7 +285,7 @@ static fg_scan_held_out held_out_of(const fg_scan_loop *loop) {
   return loop->cross_fit.folds ? FG_SCAN_HELD_OUT_FOLDS : FG_SCAN_HELD_OUT_NOTHING;
 }
 
-static void put_numbers(const fg_scan_loop *loop, fg_scan_result *result) {
+static void fill_numbers(const fg_scan_loop *loop, fg_scan_result *result) {
   result->verdict = loop->verdict;
   result->same_foil = loop->options.same_foil;
   result->discs = loop->edge_fit.discs;
@@ -324,12 +324,12 @@ static fg_status put_model(fg_context *ctx, const fg_scan_loop *loop, fg_scan_re
 fg_status fg_scan_loop_decide(fg_context *ctx, fg_scan_loop *loop) {
   fg_scan_result *result = &loop->result;
   fg_scan_result_free(result);
-  put_numbers(loop, result);
+  fill_numbers(loop, result);
   FG_TRY(fg_scan_result_put_noise(ctx, loop, result));
   put_explanations(&loop->explanations, result);
   FG_TRY(put_claims(ctx, loop, result));
   put_width(&loop->width, result);
-  put_unclaimed(loop, result);
+  fill_unclaimed(loop, result);
   put_width_unclaimed(&loop->width, result);
   put_advice(loop, result);
   fg_scan_loop_check_channels(loop, result);

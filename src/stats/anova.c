@@ -46,7 +46,7 @@ static void sum_between(const group_sum *sums, size_t rows, fg_anova_oneway *ano
   anova->within_ss = within.value;
 }
 
-static void finish(fg_anova_oneway *a) {
+static void finish_oneway(fg_anova_oneway *a) {
   a->between_dof = a->groups - 1;
   a->within_dof = a->rows - a->groups;
   a->between_ms = a->between_ss / (double)a->between_dof;
@@ -87,7 +87,7 @@ fg_status fg_anova_oneway_compute(fg_context *ctx, const fg_table *table, const 
   anova->rows = levels.rows;
   sum_groups(&levels, y, sums);
   sum_between(sums, levels.rows, anova);
-  finish(anova);
+  finish_oneway(anova);
   FG_TRY_EXIT(describe_groups(ctx, &levels, sums, anova));
 exit:
   free(sums);

@@ -32,7 +32,7 @@ static double spread_at(const fg_group_mean *groups, size_t count, double tau2) 
 
 /* Finds tau² at which the spread equals `target`; 0 when it is smaller already at 0. `high` is an
  * upper bound. */
-static double solve(const fg_group_mean *groups, size_t count, double target) {
+static double solve_tau_square(const fg_group_mean *groups, size_t count, double target) {
   double low = 0, high = 0, min = groups[0].mean, max = min;
   for (size_t i = 1; i < count; i++) {
     min = fmin(min, groups[i].mean);
@@ -55,12 +55,12 @@ static double solve(const fg_group_mean *groups, size_t count, double target) {
 fg_between fg_between_groups(const fg_group_mean *groups, size_t count, double confidence) {
   fg_between result = {NAN, NAN, NAN, NAN, NAN};
   if (count < 2) return result;
-  double weight, dof = (double)count - 1, tau2 = solve(groups, count, dof);
+  double weight, dof = (double)count - 1, tau2 = solve_tau_square(groups, count, dof);
   result.sd = sqrt(tau2);
-  result.sd_low =
-      sqrt(solve(groups, count, fg_distribution_chi2_quantile((1 + confidence) / 2, dof)));
-  result.sd_high =
-      sqrt(solve(groups, count, fg_distribution_chi2_quantile((1 - confidence) / 2, dof)));
+  result.sd_low = sqrt(
+      solve_tau_square(groups, count, fg_distribution_chi2_quantile((1 + confidence) / 2, dof)));
+  result.sd_high = sqrt(
+      solve_tau_square(groups, count, fg_distribution_chi2_quantile((1 - confidence) / 2, dof)));
   result.centre = centre_at(groups, count, fmax(tau2, 1e-300), &weight);
   result.u_centre = 1 / sqrt(weight);
   return result;
@@ -78,7 +78,7 @@ typedef struct ranked {
   size_t place;
 } ranked;
 
-static int by_p(const void *left, const void *right) {
+static int compare_p(const void *left, const void *right) {
   const ranked *a = left, *b = right;
   if (a->p != b->p) return a->p < b->p ? -1 : 1;
   return a->place < b->place ? -1 : a->place > b->place;
@@ -93,7 +93,7 @@ fg_status fg_holm_adjust(fg_context *ctx, const double *p, size_t count, double 
     adjusted[i] = NAN;
     if (!isnan(p[i])) list[members++] = (ranked){p[i], i};
   }
-  fg_sort_items(list, members, sizeof *list, by_p);
+  fg_sort_items(list, members, sizeof *list, compare_p);
   double max = 0;
   for (size_t i = 0; i < members; i++) {
     max = fmax(max, fmin(1, (double)(members - i) * list[i].p));

@@ -12,7 +12,7 @@
 
 enum { NORMALITY_MIN = 8 };
 
-static void describe(const double *values, size_t count, double *mean, double *sd) {
+static void find_mean_and_sd(const double *values, size_t count, double *mean, double *sd) {
   double squares = 0;
   *mean = 0;
   for (size_t i = 0; i < count; i++)
@@ -56,7 +56,7 @@ fg_status fg_normality_test(fg_context *ctx, const double *values, size_t count,
   double *sorted = block;
   memcpy(sorted, values, count * sizeof *values);
   fg_sort(sorted, count);
-  describe(sorted, count, &mean, &sd);
+  find_mean_and_sd(sorted, count, &mean, &sd);
   if (sd > 0) {
     normality->a2 = anderson_darling(sorted, count, mean, sd);
     normality->p_value = anderson_darling_p(normality->a2);
@@ -110,7 +110,7 @@ fg_status fg_capability_compute(fg_context *ctx, const fg_capability_input *inpu
                                 .stable = input->stable};
   if (!isfinite(input->lower) && !isfinite(input->upper))
     return fg_fail(ctx, FG_ERR_USAGE, "a capability needs a limit");
-  describe(input->values, input->count, &capability->mean, &capability->sd);
+  find_mean_and_sd(input->values, input->count, &capability->mean, &capability->sd);
   if (!(capability->sd > 0))
     return fg_fail(ctx, FG_ERR_DATA, "a capability needs two different values at least");
   double distance = fg_margin_to(input->lower, input->upper, capability->mean).inside;

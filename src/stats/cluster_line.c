@@ -23,7 +23,8 @@ static void decompose(double s[2][2], double value[2], double *c, double *n) {
 }
 
 /* (V diag(f) V' v) for the decomposition above. */
-static void apply(const double f[2], double c, double n, const double v[2], double out[2]) {
+static void apply_decomposition(const double f[2], double c, double n, const double v[2],
+                                double out[2]) {
   double first = f[0] * (c * v[0] + n * v[1]), second = f[1] * (-n * v[0] + c * v[1]);
   out[0] = c * first - n * second;
   out[1] = n * first + c * second;
@@ -45,9 +46,9 @@ static void add_cluster(sums *cluster, total *t) {
     weight[i] = rest > 1e-9 ? value[i] / rest : 0;
     image[i] = root[i] * value[i];
   }
-  apply(root, c, n, cluster->score, score);
-  apply(weight, c, n, slope, d);
-  apply(image, c, n, slope, p);
+  apply_decomposition(root, c, n, cluster->score, score);
+  apply_decomposition(weight, c, n, slope, d);
+  apply_decomposition(image, c, n, slope, p);
   t->variance += score[1] * score[1];
   double own = d[1], shared = p[0] * p[0] + p[1] * p[1];
   t->trace += own - shared;

@@ -170,8 +170,8 @@ static bool is_missing(const char *text, size_t length) {
 }
 
 /* false: it is no number. */
-static bool read_number(fg_column *column, size_t row, const char *text, size_t length, bool commas,
-                        fg_extended *number) {
+static bool parse_cell_number(fg_column *column, size_t row, const char *text, size_t length,
+                              bool commas, fg_extended *number) {
   char pointed[128];
   if (fg_extended_parse(text, length, number)) {
     if (!column->point_row && memchr(text, '.', length)) column->point_row = row + 1;
@@ -191,7 +191,7 @@ fg_status fg_column_push_text(fg_context *ctx, fg_column *column, size_t row, co
     text++, length--;
   while (length && (text[length - 1] == ' ' || text[length - 1] == '\t'))
     length--;
-  if (read_number(column, row, text, length, commas, &number))
+  if (parse_cell_number(column, row, text, length, commas, &number))
     return fg_column_push_number(ctx, column, row, number);
   if (is_missing(text, length)) return fg_column_push_missing(ctx, column, row);
   char *word = NULL;

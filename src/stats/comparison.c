@@ -14,7 +14,7 @@ typedef struct moments {
   double mean, variance, n;
 } moments;
 
-static moments describe(fg_sample sample) {
+static moments moments_of(fg_sample sample) {
   moments m = {.n = (double)sample.count};
   for (size_t i = 0; i < sample.count; i++)
     m.mean += (sample.values[i] - sample.values[0]) / m.n;
@@ -71,8 +71,8 @@ static fg_status compare_spreads(fg_context *ctx, fg_sample a, fg_sample b, fg_c
   double *distance = block;
   take_distances(a, distance);
   take_distances(b, distance + a.count);
-  moments first = describe((fg_sample){distance, a.count});
-  moments second = describe((fg_sample){distance + a.count, b.count});
+  moments first = moments_of((fg_sample){distance, a.count});
+  moments second = moments_of((fg_sample){distance + a.count, b.count});
   free(distance);
   double n = first.n + second.n, grand = (first.n * first.mean + second.n * second.mean) / n;
   double between = first.n * pow(first.mean - grand, 2) + second.n * pow(second.mean - grand, 2);
@@ -87,7 +87,7 @@ fg_status fg_comparison_compute(fg_context *ctx, fg_sample a, fg_sample b, doubl
   *result = (fg_comparison){0};
   if (a.count < 2 || b.count < 2)
     return fg_fail(ctx, FG_ERR_DATA, "a comparison needs two values on each side");
-  moments first = describe(a), second = describe(b);
+  moments first = moments_of(a), second = moments_of(b);
   if (!(first.variance + second.variance > 0))
     return fg_fail(ctx, FG_ERR_DATA, "a comparison needs values that differ");
   compare_means(first, second, confidence, result);

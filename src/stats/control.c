@@ -49,8 +49,8 @@ static double zone(const fg_chart *chart, size_t i) {
 
 /* Returns true when at least `min` of the last `length` points lie beyond `limit` on the side of
  * `sign`, the last one among them. */
-static bool beyond(const fg_chart *chart, size_t i, size_t length, size_t min, double limit,
-                   double sign) {
+static bool is_beyond(const fg_chart *chart, size_t i, size_t length, size_t min, double limit,
+                      double sign) {
   size_t found = 0;
   if (i + 1 < length || !(sign * zone(chart, i) > limit)) return false;
   for (size_t k = i + 1 - length; k <= i; k++)
@@ -59,7 +59,7 @@ static bool beyond(const fg_chart *chart, size_t i, size_t length, size_t min, d
 }
 
 static bool either_side(const fg_chart *chart, size_t i, size_t length, size_t min, double limit) {
-  return beyond(chart, i, length, min, limit, 1) || beyond(chart, i, length, min, limit, -1);
+  return is_beyond(chart, i, length, min, limit, 1) || is_beyond(chart, i, length, min, limit, -1);
 }
 
 static bool monotonic(const fg_chart *chart, size_t i, size_t length, double sign) {
@@ -160,7 +160,7 @@ typedef struct subgroup {
   double mean, sd, range;
 } subgroup;
 
-static subgroup describe(const double *values, size_t count) {
+static subgroup describe_subgroup(const double *values, size_t count) {
   subgroup group = {.mean = 0};
   double low = INFINITY, high = -INFINITY, squares = 0;
   for (size_t i = 0; i < count; i++) {
@@ -186,7 +186,7 @@ typedef struct subgroups {
 static fg_status find_sigma(fg_context *ctx, fg_sigma_from from, subgroups *all) {
   size_t used = 0, total = 0, at = 0;
   for (size_t i = 0; i < all->count; at += all->size[i++]) {
-    subgroup group = describe(all->values + at, all->size[i]);
+    subgroup group = describe_subgroup(all->values + at, all->size[i]);
     total += all->size[i];
     if (all->size[i]) all->grand_mean += group.mean * (double)all->size[i];
     if (all->size[i] < 2) continue;
@@ -207,8 +207,9 @@ static void plot_means(const subgroups *all, unsigned rules, fg_chart *chart) {
   for (size_t i = 0; i < all->count; at += all->size[i++]) {
     if (!all->size[i]) continue;
     double reach = 3 * all->sigma / sqrt((double)all->size[i]);
-    chart->point[plotted++] = (fg_chart_point){describe(all->values + at, all->size[i]).mean,
-                                               chart->centre - reach, chart->centre + reach, 0};
+    chart->point[plotted++] =
+        (fg_chart_point){describe_subgroup(all->values + at, all->size[i]).mean,
+                         chart->centre - reach, chart->centre + reach, 0};
   }
   chart->count = plotted;
   apply_rules(chart, rules);
@@ -223,7 +224,7 @@ static void plot_deviations(const subgroups *all, unsigned rules, fg_chart *char
     double c4 = fg_chart_c4(all->size[i]), centre = c4 * all->sigma;
     double reach = 3 * all->sigma * sqrt(1 - c4 * c4);
     if (all->size[i] > largest) largest = all->size[i];
-    chart->point[plotted++] = (fg_chart_point){describe(all->values + at, all->size[i]).sd,
+    chart->point[plotted++] = (fg_chart_point){describe_subgroup(all->values + at, all->size[i]).sd,
                                                fmax(0, centre - reach), centre + reach, 0};
   }
   chart->count = plotted;

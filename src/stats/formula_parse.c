@@ -45,7 +45,7 @@ static fg_status fail_here(const parser *p, const char *what) {
                  (size_t)(p->at - p->text) + 1, what);
 }
 
-static bool accept(parser *p, char symbol) {
+static bool accept_symbol(parser *p, char symbol) {
   while (isspace((unsigned char)*p->at))
     p->at++;
   if (*p->at != symbol) return false;
@@ -167,7 +167,7 @@ static fg_status parse_function(parser *p, const char *name, term_set *set) {
   char *column = NULL;
   if (strcmp(name, "I") == 0) {
     FG_TRY(parse_sum(p, set));
-    return accept(p, ')') ? FG_OK : fail_here(p, "a ) is missing");
+    return accept_symbol(p, ')') ? FG_OK : fail_here(p, "a ) is missing");
   }
   for (size_t i = 0; i < FUNCTION_COUNT; i++) {
     if (strcmp(name, FUNCTIONS[i].name) != 0) continue;
@@ -175,7 +175,7 @@ static fg_status parse_function(parser *p, const char *name, term_set *set) {
     if (status == FG_OK) status = add_variable(p, column, FUNCTIONS[i].transform, set);
     free(column);
     if (status != FG_OK) return status;
-    return accept(p, ')') ? FG_OK : fail_here(p, "a ) is missing");
+    return accept_symbol(p, ')') ? FG_OK : fail_here(p, "a ) is missing");
   }
   return fail_here(p, "there are factor, log, log10, exp, sqrt, inverse and I, no other function");
 }
@@ -194,16 +194,17 @@ static fg_status parse_constant(parser *p, term_set *set) {
 
 static fg_status parse_atom(parser *p, term_set *set) {
   char *name = NULL;
-  if (accept(p, '(')) {
+  if (accept_symbol(p, '(')) {
     FG_TRY(parse_sum(p, set));
     set->single = false;
-    return accept(p, ')') ? FG_OK : fail_here(p, "a ) is missing");
+    return accept_symbol(p, ')') ? FG_OK : fail_here(p, "a ) is missing");
   }
   if (isdigit((unsigned char)*p->at)) return parse_constant(p, set);
   bool quoted = *p->at == '`';
   FG_TRY(parse_name(p, &name));
-  fg_status status = !quoted && accept(p, '(') ? parse_function(p, name, set)
-                                               : add_variable(p, name, FG_TRANSFORM_NONE, set);
+  fg_status status = !quoted && accept_symbol(p, '(')
+                         ? parse_function(p, name, set)
+                         : add_variable(p, name, FG_TRANSFORM_NONE, set);
   free(name);
   return status;
 }
@@ -225,7 +226,7 @@ static fg_status raise_set(const parser *p, long power, term_set *set) {
 
 static fg_status parse_power(parser *p, term_set *set) {
   FG_TRY(parse_atom(p, set));
-  if (!accept(p, '^')) return FG_OK;
+  if (!accept_symbol(p, '^')) return FG_OK;
   char *end = NULL;
   while (isspace((unsigned char)*p->at))
     p->at++;
@@ -243,7 +244,7 @@ static fg_status parse_chain(parser *p, term_set *set) {
   fg_status status = FG_OK;
   term_set right = {0}, product = {0};
   FG_TRY_EXIT(parse_power(p, set));
-  while (accept(p, ':')) {
+  while (accept_symbol(p, ':')) {
     FG_TRY_EXIT(parse_power(p, &right));
     FG_TRY_EXIT(cross_sets(p, set, &right, &product));
     replace(set, &product);
@@ -272,8 +273,8 @@ static fg_status parse_product(parser *p, term_set *set) {
   term_set right = {0}, product = {0};
   FG_TRY_EXIT(parse_chain(p, set));
   for (;;) {
-    bool star = accept(p, '*');
-    if (!star && !accept(p, '/')) break;
+    bool star = accept_symbol(p, '*');
+    if (!star && !accept_symbol(p, '/')) break;
     right.count = 0;
     FG_TRY_EXIT(parse_chain(p, &right));
     set->single = false;
@@ -300,7 +301,7 @@ static void remove_terms(term_set *set, const term_set *unwanted) {
 }
 
 /* `- 1` removes the constant, `- 0` and `+ 1` restore it. */
-static fg_status take_out(parser *p, term_set *set, const term_set *unwanted) {
+static fg_status subtract_terms(parser *p, term_set *set, const term_set *unwanted) {
   const fg_term constant = {{0}};
   remove_terms(set, unwanted);
   if (find_term(unwanted, &constant) < unwanted->count) p->formula->constant = false;
@@ -311,21 +312,21 @@ static fg_status parse_sum(parser *p, term_set *set) {
   fg_status status = FG_OK;
   term_set right = {0};
   if (++p->depth > DEEPEST) return fail_here(p, "too many brackets");
-  bool minus = accept(p, '-');
-  if (!minus) accept(p, '+');
+  bool minus = accept_symbol(p, '-');
+  if (!minus) accept_symbol(p, '+');
   bool first = true;
   do {
     right.count = 0;
     right.single = false;
     FG_TRY_EXIT(parse_product(p, &right));
     if (minus)
-      FG_TRY_EXIT(take_out(p, set, &right));
+      FG_TRY_EXIT(subtract_terms(p, set, &right));
     else
       FG_TRY_EXIT(add_all(p, set, &right));
     set->single = first && !minus && right.single;
     first = false;
-    minus = accept(p, '-');
-  } while (minus || accept(p, '+'));
+    minus = accept_symbol(p, '-');
+  } while (minus || accept_symbol(p, '+'));
 exit:
   p->depth--;
   free(right.term);
@@ -360,9 +361,9 @@ static void order_terms(fg_formula *formula, term_set *set) {
 /* "y ~" in front, when there is a ~. */
 static fg_status parse_response(parser *p) {
   if (!strchr(p->text, '~')) return FG_OK;
-  if (accept(p, '~')) return FG_OK;
+  if (accept_symbol(p, '~')) return FG_OK;
   FG_TRY(parse_name(p, &p->formula->response));
-  return accept(p, '~') ? FG_OK : fail_here(p, "a ~ is expected after the response");
+  return accept_symbol(p, '~') ? FG_OK : fail_here(p, "a ~ is expected after the response");
 }
 
 fg_status fg_formula_parse(fg_context *ctx, const char *text, fg_formula *formula) {
@@ -372,7 +373,7 @@ fg_status fg_formula_parse(fg_context *ctx, const char *text, fg_formula *formul
   *formula = (fg_formula){.constant = true};
   FG_TRY_EXIT(parse_response(&p));
   FG_TRY_EXIT(parse_sum(&p, &set));
-  accept(&p, ' ');
+  accept_symbol(&p, ' ');
   if (*p.at) FG_TRY_EXIT(fail_here(&p, "+, -, :, * or the end is expected here"));
   order_terms(formula, &set);
   return FG_OK;

@@ -48,7 +48,7 @@ static void add_sums(const setting *s, const double *weight, gsl_matrix *matrix)
 
 /* Estimate at a ratio: W = (I + r Z Z')^-1, of a group I - (1 - d) / n 1 1'. Returns the residual
  * sum of squares; NaN where the system cannot be solved. */
-static double solve(const setting *s, double ratio, double *weight, double *determinant) {
+static double solve_at_ratio(const setting *s, double ratio, double *weight, double *determinant) {
   double squares = s->squares;
   gsl_vector_set_zero(s->shift);
   gsl_matrix_set_identity(s->a);
@@ -76,7 +76,7 @@ static double solve(const setting *s, double ratio, double *weight, double *dete
 }
 
 static double minus_two_log_likelihood(const setting *s, double ratio, double *weight) {
-  double determinant, squares = solve(s, ratio, weight, &determinant);
+  double determinant, squares = solve_at_ratio(s, ratio, weight, &determinant);
   double value = (double)(s->rows - s->rank) * log(squares) + determinant;
   for (size_t g = 0; g < s->groups; g++)
     value -= log(eigenvalue(s, g, ratio));
@@ -84,7 +84,7 @@ static double minus_two_log_likelihood(const setting *s, double ratio, double *w
 }
 
 /* x' M y of two group sums. */
-static double between(const setting *s, const gsl_matrix *m, size_t g) {
+static double product_of_sums(const setting *s, const gsl_matrix *m, size_t g) {
   const double *sum = s->sum + g * s->rank;
   double total = 0;
   for (size_t i = 0; i < s->rank; i++)
@@ -102,12 +102,12 @@ static double left_over(const setting *s, size_t g) {
 }
 
 /* Slope of the restricted log likelihood over the ratio, up to a positive factor. */
-static double score(const setting *s, double ratio, double *weight) {
-  double determinant, squares = solve(s, ratio, weight, &determinant), slope = 0;
+static double likelihood_slope(const setting *s, double ratio, double *weight) {
+  double determinant, squares = solve_at_ratio(s, ratio, weight, &determinant), slope = 0;
   double scale = squares / (double)(s->rows - s->rank);
   for (size_t g = 0; g < s->groups; g++) {
     double d = eigenvalue(s, g, ratio), left = left_over(s, g);
-    slope += d * d * (left * left / scale + between(s, s->inverse, g)) - s->size[g] * d;
+    slope += d * d * (left * left / scale + product_of_sums(s, s->inverse, g)) - s->size[g] * d;
   }
   return slope;
 }
@@ -128,7 +128,7 @@ static double find_ratio(const setting *s, double *weight) {
   double low = fmax(FIRST, best - STEP), high = best + STEP;
   for (int i = 0; i < HALVINGS; i++) {
     double middle = (low + high) / 2;
-    if (score(s, ratio_at(s, middle), weight) > 0)
+    if (likelihood_slope(s, ratio_at(s, middle), weight) > 0)
       low = middle;
     else
       high = middle;
@@ -207,8 +207,8 @@ static bool invert_information(const double information[2][2], double inverse[2]
  * with B_i = Q' V^-1 V_i V^-1 Q = -P_i and their Q_ij: information I_ij = (tr(V^-1 V_i V^-1 V_j)
  * - 2 tr(Phi Q_ij) + tr(Phi P_i Phi P_j)) / 2, the correction
  * 2 Phi sum of W_ij (Q_ij - P_i Phi P_j) Phi, and dPhi / dtheta_i = Phi B_i Phi. */
-static bool correct(const setting *s, double ratio, double *weight, gsl_matrix *const m[MATRICES],
-                    double w[2][2]) {
+static bool correct_covariance(const setting *s, double ratio, double *weight,
+                               gsl_matrix *const m[MATRICES], double w[2][2]) {
   double information[2][2];
   const gsl_matrix *phi = s->inverse;
   fill_product(s, ratio, 2, 0, weight, m[SLOPE_RUNS]);
@@ -253,7 +253,7 @@ static void scale_only(const setting *s, gsl_matrix *const m[MATRICES], double w
 static fg_status fill_result(fg_context *ctx, const setting *s, double ratio, double *weight,
                              const fg_regression *ols, fg_mixed_model *mixed) {
   gsl_matrix *m[MATRICES] = {0};
-  double w[2][2] = {{0}}, determinant, squares = solve(s, ratio, weight, &determinant);
+  double w[2][2] = {{0}}, determinant, squares = solve_at_ratio(s, ratio, weight, &determinant);
   double scale = squares / (double)(s->rows - s->rank);
   fg_status status = FG_OK;
   for (int i = 0; i < MATRICES; i++)
@@ -261,7 +261,7 @@ static fg_status fill_result(fg_context *ctx, const setting *s, double ratio, do
       FG_TRY_EXIT(fg_fail(ctx, FG_ERR_MEMORY, "out of memory"));
   if (mixed->fixed_groups)
     scale_only(s, m, w);
-  else if (!correct(s, ratio, weight, m, w))
+  else if (!correct_covariance(s, ratio, weight, m, w))
     FG_TRY_EXIT(fg_fail(ctx, FG_ERR_NUMERIC,
                         "the scatter of the groups cannot be told from that of the runs in them"));
   mixed->variance[FG_MIXED_RUNS] = scale;

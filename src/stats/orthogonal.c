@@ -79,7 +79,7 @@ static void invert(fg_orthogonal *s) {
   }
 }
 
-static fg_status allocate(fg_context *ctx, fg_orthogonal *s) {
+static fg_status allocate_factors(fg_context *ctx, fg_orthogonal *s) {
   size_t n = s->columns, square = n * n, cells = n * s->rows;
   if (n && (square / n != n || cells / n != s->rows))
     return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: %zu rows of %zu columns", s->rows, n);
@@ -102,7 +102,7 @@ fg_status fg_orthogonal_solve(fg_context *ctx, const fg_least_squares *problem,
                               fg_orthogonal *solution) {
   fg_status status = FG_OK;
   *solution = (fg_orthogonal){.rows = problem->rows, .columns = problem->columns};
-  FG_TRY_EXIT(allocate(ctx, solution));
+  FG_TRY_EXIT(allocate_factors(ctx, solution));
   copy_scaled(problem->response, problem->scale, problem->rows, solution->residual);
   for (size_t j = 0; j < problem->columns; j++) {
     copy_scaled(problem->matrix + j * problem->rows, problem->scale, problem->rows,

@@ -36,7 +36,7 @@ static void sum_squares(const fg_fit *fit, fg_regression *reg) {
   reg->r2 = reg->total_ss > 0 ? reg->model_ss / reg->total_ss : NAN;
 }
 
-static void summarise(fg_regression *reg) {
+static void summarise_fit(fg_regression *reg) {
   size_t model_dof = reg->rank - (reg->constant ? 1 : 0);
   double dof = (double)reg->residual_dof;
   double mean_square = reg->residual_dof ? reg->residual_ss / dof : NAN;
@@ -96,7 +96,7 @@ static fg_status check_input(fg_context *ctx, const fg_model *model, const fg_ex
   return check_size(ctx, "the response", "", response, model->rows);
 }
 
-static fg_status solve(fg_context *ctx, fg_fit *fit, double tolerance) {
+static fg_status solve_least_squares(fg_context *ctx, fg_fit *fit, double tolerance) {
   fg_extended *scale = NULL;
   size_t rows = fit->model->rows;
   if (fit->weights) {
@@ -138,11 +138,11 @@ fg_status fg_regression_fit(fg_context *ctx, const fg_model *model, const fg_ext
                                 .constant = model->formula.constant,
                                 .confidence = options->confidence > 0 ? options->confidence : 0.95};
   FG_TRY_EXIT(check_input(ctx, model, response, options->weights));
-  FG_TRY_EXIT(solve(ctx, &fit, options->alias_tolerance));
+  FG_TRY_EXIT(solve_least_squares(ctx, &fit, options->alias_tolerance));
   regression->rank = fit.solution.rank;
   FG_TRY_EXIT(subtract_dof(ctx, options, regression));
   sum_squares(&fit, regression);
-  summarise(regression);
+  summarise_fit(regression);
   FG_TRY_EXIT(note_limits(ctx, regression));
   FG_TRY_EXIT(fg_regression_coefficients(ctx, &fit, regression));
   FG_TRY_EXIT(fg_regression_aliases(ctx, &fit, regression));

@@ -9,7 +9,7 @@
 /* A run with less than this of its variance left determines a coefficient alone. */
 static const double MIN_DOF = 1e-10;
 
-static fg_status allocate(fg_context *ctx, fg_regression *reg) {
+static fg_status allocate_diagnostics(fg_context *ctx, fg_regression *reg) {
   double **vectors[] = {&reg->fitted,   &reg->residual, &reg->leverage,
                         &reg->internal, &reg->external, &reg->cook};
   for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++)
@@ -65,7 +65,7 @@ static fg_status sum_press(fg_context *ctx, fg_regression *reg, const fg_orthogo
 fg_status fg_regression_diagnostics(fg_context *ctx, const fg_fit *fit, fg_regression *reg) {
   const fg_orthogonal *s = &fit->solution;
   double lowest = INFINITY, highest = -INFINITY;
-  FG_TRY(allocate(ctx, reg));
+  FG_TRY(allocate_diagnostics(ctx, reg));
   leverages(s, reg->leverage);
   for (size_t i = 0; i < reg->rows; i++) {
     fg_extended root = fg_extended_sqrt(fg_extended_of(fit->weights ? fit->weights[i] : 1));

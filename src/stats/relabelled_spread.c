@@ -30,7 +30,7 @@ typedef struct deal {
 } deal;
 
 /* Replaces the values by their distances from the median. */
-static void take_distances(double *value, double *sorted, size_t count) {
+static void replace_by_distances(double *value, double *sorted, size_t count) {
   memcpy(sorted, value, count * sizeof *sorted);
   fg_sort(sorted, count);
   double median = fg_sample_quantile(sorted, count, 0.5);
@@ -51,8 +51,8 @@ static void find_statistics(const deal *d, double statistic[STATISTICS]) {
   double va = fg_squares_about(a, na, fg_mean(a, na)) / (double)(na - 1),
          vb = fg_squares_about(b, nb, fg_mean(b, nb)) / (double)(nb - 1);
   statistic[VARIANCES] = or_zero(fabs(log(va / vb)));
-  take_distances(a, d->sorted, na);
-  take_distances(b, d->sorted, nb);
+  replace_by_distances(a, d->sorted, na);
+  replace_by_distances(b, d->sorted, nb);
   double ma = fg_mean(a, na), mb = fg_mean(b, nb);
   statistic[LEVENE] =
       or_zero((ma - mb) * (ma - mb) / (fg_squares_about(a, na, ma) + fg_squares_about(b, nb, mb)));

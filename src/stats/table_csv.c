@@ -69,7 +69,7 @@ static fg_status hold_cell(csv_reader *r, const char *text, size_t length) {
 
 /* Returns true for text that can come before a decimal comma (a sign, digits) or after it (digits,
  * an exponent). */
-static bool is_whole(const char *text, bool before) {
+static bool is_comma_part(const char *text, bool before) {
   if (before) text += *text == '-' || *text == '+';
   size_t digits = strspn(text, "0123456789");
   if (!digits || before) return digits && !text[digits];
@@ -87,7 +87,7 @@ static bool commas_in_numbers(const csv_reader *r) {
   if (r->separator != ',' || r->column <= r->table->columns) return false;
   size_t pairs = 0;
   for (size_t i = 0; i + 1 < r->column; i++)
-    if (is_whole(r->pending[i], true) && is_whole(r->pending[i + 1], false)) {
+    if (is_comma_part(r->pending[i], true) && is_comma_part(r->pending[i + 1], false)) {
       pairs++;
       i++;
     }
@@ -143,7 +143,8 @@ static fg_status fail_syntax(csv_reader *r) {
 
 /* Feeds line by line, so that an error can name the line: libcsv keeps its state between the calls.
  */
-static fg_status feed(csv_reader *r, struct csv_parser *parser, const char *text, size_t size) {
+static fg_status feed_lines(csv_reader *r, struct csv_parser *parser, const char *text,
+                            size_t size) {
   while (size && r->status == FG_OK) {
     const char *newline = memchr(text, '\n', size);
     size_t length = newline ? (size_t)(newline - text) + 1 : size;
@@ -188,7 +189,7 @@ fg_status fg_table_parse(fg_context *ctx, const char *source, const char *text, 
     return fg_fail(ctx, FG_ERR_MEMORY, "out of memory");
   csv_set_delim(&parser, reader.separator);
   FG_TRY_EXIT(fg_text_print(ctx, &table->source, "%s", source));
-  FG_TRY_EXIT(feed(&reader, &parser, text, size));
+  FG_TRY_EXIT(feed_lines(&reader, &parser, text, size));
   if (!reader.header)
     FG_TRY_EXIT(fg_fail(ctx, FG_ERR_DATA, "%s: empty; the first row must name columns", source));
   if (!table->rows) FG_TRY_EXIT(fg_fail(ctx, FG_ERR_DATA, "%s: a header, but no rows", source));
@@ -238,7 +239,7 @@ static fg_status write_number(fg_context *ctx, writer *w, double number) {
   return write_bytes(ctx, w, text, strlen(text));
 }
 
-static fg_status write_cell(fg_context *ctx, writer *w, const fg_column *column, size_t row) {
+static fg_status write_csv_cell(fg_context *ctx, writer *w, const fg_column *column, size_t row) {
   size_t mark = column->word ? column->word[row] : FG_TABLE_NOT_A_WORD;
   if (mark == FG_TABLE_MISSING) return FG_OK;
   if (mark == FG_TABLE_NOT_A_WORD) return write_number(ctx, w, column->number[row].value);
@@ -257,7 +258,7 @@ fg_status fg_table_format(fg_context *ctx, const fg_table *table, char **text) {
   for (size_t row = 0; row < table->rows; row++) {
     for (size_t i = 0; i < table->columns; i++) {
       if (i) FG_TRY_EXIT(write_bytes(ctx, &w, ",", 1));
-      FG_TRY_EXIT(write_cell(ctx, &w, &table->column[i], row));
+      FG_TRY_EXIT(write_csv_cell(ctx, &w, &table->column[i], row));
     }
     FG_TRY_EXIT(write_bytes(ctx, &w, "\n", 1));
   }

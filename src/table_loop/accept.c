@@ -59,8 +59,8 @@ static fg_status noise_beside(fg_context *ctx, const fg_engine_run *run,
 }
 
 /* Refines a stand's shape off the grid of its start values. */
-static fg_status sharpen(fg_context *ctx, const fg_engine_run *run, fg_engine_noise noise,
-                         fg_engine_stand *stand) {
+static fg_status refine_stand(fg_context *ctx, const fg_engine_run *run, fg_engine_noise noise,
+                              fg_engine_stand *stand) {
   fg_engine_set with;
   fg_engine_set_extend(run, stand, &with);
   FG_TRY(fg_engine_refine(ctx, run->problem, run->train, noise, &with));
@@ -151,7 +151,7 @@ static fg_status take_curve(fg_context *ctx, fg_engine_run *run, fg_engine_step 
   FG_TRY(noise_beside(ctx, run, &step->stand[curve], &noise));
   FG_TRY(hinges_on_a_row(ctx, run, step, noise, curve, &hinges));
   if (hinges) return FG_OK;
-  FG_TRY(sharpen(ctx, run, noise, &step->stand[curve]));
+  FG_TRY(refine_stand(ctx, run, noise, &step->stand[curve]));
   fg_engine_set_extend(run, &step->stand[curve], &with);
   FG_TRY(gate(ctx, run, &with, noise, &unused, accepted));
   if (!*accepted) return FG_OK;
@@ -164,8 +164,8 @@ static fg_status take_curve(fg_context *ctx, fg_engine_run *run, fg_engine_step 
 
 /* Accepts the given curve, or the next best one over the same coordinate: cross-validation chooses
  * the knots. */
-static fg_status take_best_curve(fg_context *ctx, fg_engine_run *run, fg_engine_step *step,
-                                 size_t curve, bool *accepted) {
+static fg_status accept_best_curve(fg_context *ctx, fg_engine_run *run, fg_engine_step *step,
+                                   size_t curve, bool *accepted) {
   double below = step->stand[curve].z;
   size_t coordinate = step->stand[curve].candidate.a, next = curve;
   while (next < run->means) {
@@ -194,7 +194,7 @@ static fg_status take_claim(fg_context *ctx, fg_engine_run *run, const fg_engine
   fg_engine_stand refined = step->stand[winner];
   fg_engine_describe_claim(run, step, winner, &claim);
   FG_TRY(noise_beside(ctx, run, &refined, &noise));
-  FG_TRY(sharpen(ctx, run, noise, &refined));
+  FG_TRY(refine_stand(ctx, run, noise, &refined));
   if (!fg_engine_is_outlier(&claim.candidate)) {
     bool passes, hinges;
     FG_TRY(hinges_on_a_row(ctx, run, step, noise, winner, &hinges));
@@ -272,7 +272,7 @@ static fg_status second_basis(fg_context *ctx, fg_engine_run *run, const fg_engi
         (best == run->means || other.stand[c].z > other.stand[best].z))
       best = c;
   fg_status status = FG_OK;
-  if (best < run->means) status = take_best_curve(ctx, &without, &other, best, accepted);
+  if (best < run->means) status = accept_best_curve(ctx, &without, &other, best, accepted);
   if (status == FG_OK && *accepted) {
     fg_engine_drop_claim(run, m);
     *run = without;
@@ -310,7 +310,7 @@ static fg_status decide_listed(fg_context *ctx, fg_engine_run *run, fg_engine_st
                                size_t winner, bool *accepted) {
   basis_choice choice = {.winner = winner};
   FG_TRY(noise_beside(ctx, run, &step->stand[winner], &choice.noise));
-  FG_TRY(sharpen(ctx, run, choice.noise, &step->stand[winner]));
+  FG_TRY(refine_stand(ctx, run, choice.noise, &step->stand[winner]));
   FG_TRY(prefer_recorded(ctx, run, step, choice.noise, &choice.winner));
   FG_TRY(wrong_basis(ctx, run, step, &choice));
   size_t stand = choice.wrong ? choice.curve : choice.winner;
@@ -326,7 +326,7 @@ static fg_status decide_listed(fg_context *ctx, fg_engine_run *run, fg_engine_st
   if (word == FG_ENGINE_CORRELATION)
     return fg_engine_take_noise(ctx, run, step, serial, fg_engine_stand_p(run, step, stand),
                                 accepted);
-  if (choice.wrong) FG_TRY(take_best_curve(ctx, run, step, choice.curve, accepted));
+  if (choice.wrong) FG_TRY(accept_best_curve(ctx, run, step, choice.curve, accepted));
   if (choice.wrong && *accepted) return FG_OK;
   FG_TRY(fg_engine_simplify(ctx, &step->training, choice.noise, step->stand, run->means,
                             choice.winner, &choice.winner));
@@ -342,7 +342,7 @@ static fg_status decide_curve(fg_context *ctx, fg_engine_run *run, fg_engine_ste
   if (word != FG_ENGINE_EFFECT)
     return fg_engine_take_noise(ctx, run, step, fg_engine_serial_candidate(run),
                                 fg_engine_stand_p(run, step, curve), accepted);
-  return take_best_curve(ctx, run, step, curve, accepted);
+  return accept_best_curve(ctx, run, step, curve, accepted);
 }
 
 static fg_status decide(fg_context *ctx, fg_engine_run *run, fg_engine_step *step, bool *accepted) {

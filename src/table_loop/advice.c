@@ -100,8 +100,8 @@ static double axis_value(const setting_axes *axes, size_t axis, size_t setting) 
 }
 
 /* Holds other coordinates of the models at their middle. */
-static fg_status hold(fg_context *ctx, const setting_axes *axes, size_t coordinate,
-                      fg_loop_problem *grid) {
+static fg_status hold_coordinate(fg_context *ctx, const setting_axes *axes, size_t coordinate,
+                                 fg_loop_problem *grid) {
   const fg_loop_coordinate *at = &grid->coordinate[coordinate];
   double *value = NULL;
   for (size_t k = 0; k < axes->count; k++)
@@ -127,19 +127,20 @@ static fg_status open_settings(fg_context *ctx, const fg_engine_run *run, const 
       value[i] = axis_value(axes, k, i);
   }
   for (size_t c = 0; c < problem->coordinates; c++)
-    if (problem->coordinate[c].roles & FG_LOOP_DECLARED) FG_TRY(hold(ctx, axes, c, grid));
+    if (problem->coordinate[c].roles & FG_LOOP_DECLARED)
+      FG_TRY(hold_coordinate(ctx, axes, c, grid));
   for (size_t m = 0; m < run->set.count; m++) {
     if (fg_engine_is_outlier(&run->set.candidate[m])) continue;
-    FG_TRY(hold(ctx, axes, run->set.candidate[m].a, grid));
-    FG_TRY(hold(ctx, axes, run->set.candidate[m].b, grid));
+    FG_TRY(hold_coordinate(ctx, axes, run->set.candidate[m].a, grid));
+    FG_TRY(hold_coordinate(ctx, axes, run->set.candidate[m].b, grid));
   }
   return FG_OK;
 }
 
 /* value += sign × prediction of the whole model at the rows of a grid. Effects of single rows do
  * not apply. */
-static fg_status predict(fg_context *ctx, const fg_engine_run *run, const whole_model *whole,
-                         const fg_loop_problem *grid, double sign, double *value) {
+static fg_status add_prediction(fg_context *ctx, const fg_engine_run *run, const whole_model *whole,
+                                const fg_loop_problem *grid, double sign, double *value) {
   size_t rows = grid->rows, parameters = run->problem->parameters;
   const int *column = run->units->column;
   double *work = NULL;
@@ -171,8 +172,8 @@ static fg_status best_settings(fg_context *ctx, const fg_engine_run *run, const 
   fg_status status = FG_OK;
   FG_TRY_EXIT(open_settings(ctx, run, axes, &grid));
   FG_TRY_EXIT(fg_memory_allocate(ctx, grid.rows, sizeof *difference, (void **)&difference));
-  FG_TRY_EXIT(predict(ctx, run, winner, &grid, 1, difference));
-  FG_TRY_EXIT(predict(ctx, run, rival, &grid, -1, difference));
+  FG_TRY_EXIT(add_prediction(ctx, run, winner, &grid, 1, difference));
+  FG_TRY_EXIT(add_prediction(ctx, run, rival, &grid, -1, difference));
   for (size_t i = 0; i < grid.rows; i++) {
     if (!isfinite(difference[i])) continue;
     if (difference[i] > highest) highest = difference[i], best[0] = i;
@@ -236,8 +237,8 @@ static void say_repeats(const fg_loop_problem *problem, const fg_loop_claim *cla
 
 /* Advises to repeat the settings of the first runs at the end: a lasting effect changes them,
  * correlation of neighbours does not. */
-static void say_order(const fg_loop_problem *problem, const fg_loop_claim *claim,
-                      fg_loop_advice *advice) {
+static void advise_order(const fg_loop_problem *problem, const fg_loop_claim *claim,
+                         fg_loop_advice *advice) {
   enum { REPEATS = 4 };
   pair_words words;
   say_pair(problem, claim, " together with ", &words);
@@ -326,7 +327,7 @@ static fg_status advise_settings(fg_context *ctx, const fg_engine_run *run, size
   if (can_be_set(problem, &axes))
     say_settings(run, &run->result->claim[m], &axes, best, apart, advice);
   else
-    say_order(problem, &run->result->claim[m], advice);
+    advise_order(problem, &run->result->claim[m], advice);
 exit:
   free(with.parameter);
   free(other.parameter);
@@ -343,7 +344,7 @@ static fg_status advise_one(fg_context *ctx, const fg_engine_run *run, size_t m,
   else if (claim->candidate.effect->scatter == FG_LOOP_SPREAD)
     say_spread(run->problem, claim, advice);
   else if (fg_engine_is_noise(&claim->candidate) || fg_engine_is_noise(&nearest->candidate))
-    say_order(run->problem, claim, advice);
+    advise_order(run->problem, claim, advice);
   else if (nearest->sum)
     say_sum(run->problem, claim, advice);
   else

@@ -142,9 +142,10 @@ static void error_beside(const alias_workspace *workspace, size_t count, double 
 }
 
 /* The winner beside one rival, or a sum of two. */
-static fg_status compare(fg_context *ctx, alias_workspace *workspace, const fg_engine_stand *winner,
-                         const fg_engine_stand *rival, const fg_engine_stand *second,
-                         const double *winner_fit, alias_test *test) {
+static fg_status compare_with_rival(fg_context *ctx, alias_workspace *workspace,
+                                    const fg_engine_stand *winner, const fg_engine_stand *rival,
+                                    const fg_engine_stand *second, const double *winner_fit,
+                                    alias_test *test) {
   size_t more = 0;
   double shapes = (double)rival->candidate.effect->shapes;
   FG_TRY(extend(ctx, workspace, rival, workspace->null.rank, &test->rank));
@@ -177,7 +178,7 @@ fg_status fg_engine_beside(fg_context *ctx, const fg_engine_training *training,
   alias_workspace workspace = {0};
   alias_test test = {0};
   fg_status status = open_workspace(ctx, training, noise, &workspace);
-  if (status == FG_OK) status = compare(ctx, &workspace, other, base, NULL, NULL, &test);
+  if (status == FG_OK) status = compare_with_rival(ctx, &workspace, other, base, NULL, NULL, &test);
   *p_value = test.p_value;
   close_workspace(&workspace);
   return status;
@@ -202,7 +203,7 @@ fg_status fg_engine_simplify(fg_context *ctx, const fg_engine_training *training
     FG_TRY_EXIT(extend(ctx, &workspace, &stand[winner], workspace.null.rank, &rank));
     FG_TRY_EXIT(extend(ctx, &workspace, &stand[c], workspace.null.rank + rank, &inside));
     if (inside > 0) continue;
-    FG_TRY_EXIT(compare(ctx, &workspace, &stand[winner], &stand[c], NULL, NULL, &test));
+    FG_TRY_EXIT(compare_with_rival(ctx, &workspace, &stand[winner], &stand[c], NULL, NULL, &test));
     if (test.rank + stand[c].candidate.effect->shapes >= whole || test.p_value < SIMPLER_P)
       continue;
     if (stand[c].z > best) {
@@ -258,7 +259,7 @@ static fg_status find_pairs(fg_context *ctx, alias_workspace *workspace,
   for (size_t i = 0; i < pooled && i < PAIR_POOL; i++)
     for (size_t k = 0; k < i; k++) {
       alias_test test;
-      FG_TRY(compare(ctx, workspace, winner, pool[k], pool[i], winner_fit, &test));
+      FG_TRY(compare_with_rival(ctx, workspace, winner, pool[k], pool[i], winner_fit, &test));
       bool contains = test.more == 0 && test.rank > winner_rank;
       if (contains || test.p_value < FG_ENGINE_SHOWS || test.gain < (1 - pair_loss) * gain)
         continue;
@@ -272,7 +273,7 @@ static fg_status suggests_more(fg_context *ctx, alias_workspace *workspace,
                                const fg_engine_stand *rival, const fg_engine_stand *winner,
                                bool *contains) {
   alias_test test;
-  FG_TRY(compare(ctx, workspace, rival, winner, NULL, NULL, &test));
+  FG_TRY(compare_with_rival(ctx, workspace, rival, winner, NULL, NULL, &test));
   *contains = test.p_value > SUGGESTED_P;
   return FG_OK;
 }
@@ -299,7 +300,7 @@ fg_status fg_engine_alias_class(fg_context *ctx, const fg_engine_training *train
   qsort(pool, listed, sizeof *pool, by_gain);
   for (size_t c = 0; c < listed; c++) {
     alias_test test;
-    FG_TRY_EXIT(compare(ctx, &workspace, winner, pool[c], NULL, winner_fit, &test));
+    FG_TRY_EXIT(compare_with_rival(ctx, &workspace, winner, pool[c], NULL, winner_fit, &test));
     bool contains = test.more == 0 && test.rank > rank;
     if (contains) FG_TRY_EXIT(suggests_more(ctx, &workspace, pool[c], winner, &contains));
     if (test.gain < MIN_SHARE * gain) continue;

@@ -125,7 +125,7 @@ static own_scale scale_of(const drawing *d, size_t kind, double *sorted) {
 
 /* Returns the number of independent tests whose maximum is as large as often as that of the draws.
  */
-static double looks(const drawing *d, const own_scale *scale, double *maxima) {
+static double count_tests(const drawing *d, const own_scale *scale, double *maxima) {
   size_t draws = d->null->draws;
   for (size_t b = 0; b < draws; b++) {
     maxima[b] = -INFINITY;
@@ -163,8 +163,8 @@ static void take_critical(const fg_score_workspace *workspace, const fg_engine_n
 }
 
 /* `raw` are the data's deviates before scaling by the draws. */
-static fg_status judge_drawn(fg_context *ctx, drawing *d, const double *raw,
-                             fg_engine_judgement *judgement) {
+static fg_status assess_drawn(fg_context *ctx, drawing *d, const double *raw,
+                              fg_engine_judgement *judgement) {
   size_t draws = d->null->draws, batches = (draws + FG_ENGINE_BATCH - 1) / FG_ENGINE_BATCH;
   fg_status status = FG_OK;
   own_scale *scale = NULL;
@@ -175,7 +175,7 @@ static fg_status judge_drawn(fg_context *ctx, drawing *d, const double *raw,
   FG_TRY_EXIT(fg_parallel_run(ctx, 0, batches, draw_batch, d));
   for (size_t c = 0; c < d->kinds; c++)
     scale[c] = scale_of(d, c, sorted);
-  judgement->tests = looks(d, scale, sorted);
+  judgement->tests = count_tests(d, scale, sorted);
   for (size_t c = 0; c < d->kinds; c++)
     judgement->z[c] = (raw[c] - scale[c].middle) / scale[c].spread;
   take_critical(d->workspace, d->null, scale, judgement);
@@ -195,7 +195,7 @@ static double smallest_p(const fg_engine_judgement *judgement) {
 }
 
 /* Assesses with few draws first, and with all of them if that leaves a doubt. */
-static fg_status judge_in_turns(fg_context *ctx, drawing *d, fg_engine_judgement *judgement) {
+static fg_status assess_in_turns(fg_context *ctx, drawing *d, fg_engine_judgement *judgement) {
   size_t all = judgement->candidates + 1;
   fg_engine_null first = *d->null, whole = *d->null;
   double *raw = NULL;
@@ -205,22 +205,22 @@ static fg_status judge_in_turns(fg_context *ctx, drawing *d, fg_engine_judgement
   if (first.draws > FIRST_DRAWS) first.draws = FIRST_DRAWS;
   d->null = &first;
   fg_score_workspace_tell(d->workspace, 1, 3);
-  FG_TRY_EXIT(judge_drawn(ctx, d, raw, judgement));
+  FG_TRY_EXIT(assess_drawn(ctx, d, raw, judgement));
   double p = smallest_p(judgement);
   if (first.draws == whole.draws || p < whole.accept_p / UNCERTAINTY ||
       p > whole.accept_p * UNCERTAINTY)
     goto exit;
   d->null = &whole;
   fg_score_workspace_tell(d->workspace, 2, 3);
-  FG_TRY_EXIT(judge_drawn(ctx, d, raw, judgement));
+  FG_TRY_EXIT(assess_drawn(ctx, d, raw, judgement));
 exit:
   free(raw);
   return status;
 }
 
 /* Assesses many rows: every version of every candidate counts as one test of a normal deviate. */
-static void judge_by_count(const fg_score_workspace *workspace, const fg_engine_null *null,
-                           fg_engine_judgement *judgement) {
+static void assess_by_count(const fg_score_workspace *workspace, const fg_engine_null *null,
+                            fg_engine_judgement *judgement) {
   judgement->tests = (double)(workspace->versions + judgement->candidates - judgement->means);
   take_critical(workspace, null, NULL, judgement);
 }
@@ -236,8 +236,8 @@ static void null_residual(const fg_engine_training *training, fg_engine_noise no
     white[i] /= fg_engine_span_kept_sd(null, i);
 }
 
-static fg_status allocate(fg_context *ctx, size_t means, size_t noises,
-                          fg_engine_judgement *judgement) {
+static fg_status allocate_assessment(fg_context *ctx, size_t means, size_t noises,
+                                     fg_engine_judgement *judgement) {
   size_t all = means + noises + 1, size = sizeof(double);
   *judgement =
       (fg_engine_judgement){.means = means, .candidates = means + noises, .exchange_ratio = NAN};
@@ -299,7 +299,7 @@ fg_status fg_engine_judge(fg_context *ctx, const fg_score_workspace *workspace,
   double *white = NULL;
   fg_status status = FG_OK;
   bool few = training->n <= FG_ENGINE_SMALL_ROWS, exchanges = may_exchange(training);
-  FG_TRY_EXIT(allocate(ctx, workspace->candidates, noises, judgement));
+  FG_TRY_EXIT(allocate_assessment(ctx, workspace->candidates, noises, judgement));
   if (workspace->dof < 2) goto exit;
   fg_score_workspace_score_data(workspace, judgement->score, &judgement->noise);
   fg_engine_noise at = workspace->noise[judgement->noise];
@@ -314,9 +314,9 @@ fg_status fg_engine_judge(fg_context *ctx, const fg_score_workspace *workspace,
       at,        white,         workspace->dof >= PERMUTED_DOF, judgement->candidates + exchanges,
       NULL};
   if (few)
-    FG_TRY_EXIT(judge_in_turns(ctx, &d, judgement));
+    FG_TRY_EXIT(assess_in_turns(ctx, &d, judgement));
   else
-    judge_by_count(workspace, null, judgement);
+    assess_by_count(workspace, null, judgement);
   fg_score_workspace_tell(workspace, 3, 3);
   for (size_t c = 0; c <= judgement->candidates; c++)
     judgement->p[c] = over_all(judgement->z[c], judgement->tests);

@@ -118,9 +118,9 @@ static void describe_noise(const fg_engine_training *training, const noise_fit *
   claim->amplitude = noise->sd * (high - low) / 2;
 }
 
-static void describe(const fg_engine_training *training, const fg_engine_fit *fit,
-                     const fg_engine_fit *wide, const fg_engine_set *set, const noise_fit *noise,
-                     double dof, fg_loop_claim *claim) {
+static void describe_claims(const fg_engine_training *training, const fg_engine_fit *fit,
+                            const fg_engine_fit *wide, const fg_engine_set *set,
+                            const noise_fit *noise, double dof, fg_loop_claim *claim) {
   double variance = noise->sd * noise->sd;
   size_t first = training->problem->parameters, slope = fit->columns;
   for (size_t m = 0; m < set->count; m++) {
@@ -180,7 +180,7 @@ fg_status fg_engine_fit_claims(fg_context *ctx, const fg_loop_problem *problem, 
   double dof = training.n > used ? (double)(training.n - used) : NAN;
   double variance = fit.rss / dof;
   const noise_fit row = {noise, sqrt(variance)};
-  describe(&training, &fit, &wide, set, &row, dof, claim);
+  describe_claims(&training, &fit, &wide, set, &row, dof, claim);
   for (size_t k = 0; k < problem->parameters; k++) {
     parameter[k] = fit.beta[k];
     parameter_u[k] = sqrt(variance * wide.inverse[k * wide.columns + k]);

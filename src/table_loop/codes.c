@@ -73,8 +73,8 @@ static bool has_part(const fg_loop_coordinate *at) {
 }
 
 /* Chooses which of two columns with the same content goes; SIZE_MAX: neither. */
-static fg_status superfluous(fg_context *ctx, const fg_loop_problem *problem, size_t a, size_t b,
-                             size_t *gone) {
+static fg_status find_superfluous(fg_context *ctx, const fg_loop_problem *problem, size_t a,
+                                  size_t b, size_t *gone) {
   fg_loop_coordinate *x = &problem->coordinate[a], *y = &problem->coordinate[b];
   bool words = x->levels && y->levels, numbers = !x->levels && !y->levels, same = false;
   *gone = SIZE_MAX;
@@ -147,7 +147,7 @@ fg_status fg_loop_table_merge_codes(fg_context *ctx, const fg_loop_table_state *
     for (size_t b = a + 1; b < problem->coordinates; b++) {
       size_t gone;
       char why[FG_LOOP_NAME + 40];
-      FG_TRY(superfluous(ctx, problem, a, b, &gone));
+      FG_TRY(find_superfluous(ctx, problem, a, b, &gone));
       if (gone == SIZE_MAX) continue;
       fg_text_clip(why, sizeof why, "says the same as %s", problem->coordinate[a + b - gone].name);
       FG_TRY(fg_loop_table_leave_out(ctx, build, problem->coordinate[gone].name, why));

@@ -53,7 +53,7 @@ static fg_status take_out_neighbours(fg_context *ctx, const fg_engine_run *fold,
 
 /* Computes residuals of the held-out rows, without effects and with those of the fold's own search.
  */
-static fg_status predict(fg_context *ctx, fg_engine_run *fold, double *before, double *after) {
+static fg_status predict_fold(fg_context *ctx, fg_engine_run *fold, double *before, double *after) {
   const fg_engine_set none = {0};
   fg_engine_noise noise = {0};
   FG_TRY(
@@ -117,7 +117,7 @@ static fg_status fit_fold(fg_context *ctx, void *shared, size_t f) {
   fold.options.simulations = DRAWS;
   for (size_t i = 0; i < rows; i++)
     train[i] = problem->group[i] % all->folds != f;
-  FG_TRY_EXIT(predict(ctx, &fold, residual, residual + rows));
+  FG_TRY_EXIT(predict_fold(ctx, &fold, residual, residual + rows));
   correct_outlier(all->run, residual + rows);
 exit:
   free(train);

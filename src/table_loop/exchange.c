@@ -96,7 +96,7 @@ static double apply_independent(const fg_engine_exchange *exchange, const double
 }
 
 /* ay = A y, and y'Ay. */
-static double apply(const fg_engine_exchange *exchange, const double *y, double *ay) {
+static double apply_quadratic(const fg_engine_exchange *exchange, const double *y, double *ay) {
   double sum = 0;
   if (!exchange->a) return apply_independent(exchange, y, ay);
   for (size_t i = 0; i < exchange->n; i++) {
@@ -126,7 +126,7 @@ static size_t largest(size_t n, const double *ay, double sign, size_t row[TRIED]
 double fg_engine_exchange_best(const fg_engine_exchange *exchange, const double *y,
                                const double *response, double *work, size_t row[2]) {
   size_t n = exchange->n, high[TRIED], low[TRIED];
-  double rss = apply(exchange, y, work), best = INFINITY;
+  double rss = apply_quadratic(exchange, y, work), best = INFINITY;
   size_t highs = largest(n, work, 1, high), lows = largest(n, work, -1, low);
   for (size_t p = 0; p < highs; p++)
     for (size_t q = 0; q < lows; q++) {

@@ -16,8 +16,8 @@
  * the sd of a row larger than the scatter that these rows show. */
 #define FLOOR_OVER_RMS 1.25
 
-static fg_status measure(fg_context *ctx, const fg_engine_run *run, const double *residual,
-                         fg_loop_error *error) {
+static fg_status measure_error(fg_context *ctx, const fg_engine_run *run, const double *residual,
+                               fg_loop_error *error) {
   size_t count = 0, rows = run->problem->rows, held = 0;
   double *size = NULL, squares = 0, held_squares = 0;
   FG_TRY(fg_memory_allocate(ctx, rows, sizeof *size, (void **)&size));
@@ -115,7 +115,7 @@ exit:
 /* Returns +1 when the held-out error falls by more than one standard error of the change
  * (confirmed), -2 when it rises by more than two (contradicted), -1 when no row is held out, else
  * 0. */
-static int confirm(const fg_engine_run *run) {
+static int confirm_held_out(const fg_engine_run *run) {
   const fg_loop_problem *problem = run->problem;
   const double *before = run->result->before_fit, *after = run->result->after_fit;
   double sum = 0, squares = 0, group_sum = 0;
@@ -225,8 +225,8 @@ static fg_status errors(fg_context *ctx, fg_engine_run *run, fg_engine_noise *no
     memcpy(result->after_fit, result->before_fit, run->problem->rows * sizeof(double));
   result->noise.rho = noise->rho;
   result->noise.lambda = noise->lambda;
-  FG_TRY(measure(ctx, run, result->before_fit, &result->before));
-  FG_TRY(measure(ctx, run, result->after_fit, &result->after));
+  FG_TRY(measure_error(ctx, run, result->before_fit, &result->before));
+  FG_TRY(measure_error(ctx, run, result->after_fit, &result->after));
   result->noise_floor = fmin(result->noise.sd, FLOOR_OVER_RMS * result->after.rms);
   FG_TRY(cross_validated(ctx, run, &none, first, &result->before.cross_validated_rms));
   FG_TRY(cross_validated(ctx, run, &run->set, run->set.count ? *noise : first,
@@ -295,7 +295,7 @@ fg_status fg_engine_finish(fg_context *ctx, fg_engine_run *run) {
   fg_loop_result *result = run->result;
   fg_engine_noise noise = {0};
   FG_TRY(errors(ctx, run, &noise));
-  int confirmed = confirm(run);
+  int confirmed = confirm_held_out(run);
   if (confirmed == -2 && run->set.count) {
     FG_TRY(fg_engine_note(ctx, result,
                           "What was found made the kept-aside rows worse by more than two standard "

@@ -159,8 +159,8 @@ static fg_status find_response(fg_context *ctx, const char *response, const fg_q
 }
 
 /* The prediction with an arc longer by the share `stretch`; nothing else of the design changes. */
-static double predict(const fg_design *design, const fg_nominal *nominal, double radius_mm,
-                      double stretch, const fg_quantity *response) {
+static double predict_response(const fg_design *design, const fg_nominal *nominal, double radius_mm,
+                               double stretch, const fg_quantity *response) {
   fg_design stretched = *design;
   fg_springback model;
   stretched.bump_angle_deg *= 1 + stretch;
@@ -197,9 +197,9 @@ fg_status fg_loop_table_fill_arc_length(fg_context *ctx, const fg_loop_table_sta
     if (!(r > 0))
       return fg_fail(ctx, FG_ERR_DATA, "%s: row %zu: the bump radius is %g mm; it must be above 0",
                      build->table->source, row + 1, r);
-    problem->residual[i] -= predict(design, &nominal, r, 0, response);
-    constant->value[i] = (predict(design, &nominal, r, small, response) -
-                          predict(design, &nominal, r, -small, response)) /
+    problem->residual[i] -= predict_response(design, &nominal, r, 0, response);
+    constant->value[i] = (predict_response(design, &nominal, r, small, response) -
+                          predict_response(design, &nominal, r, -small, response)) /
                          (2 * small);
     slope->value[i] = constant->value[i] * (r / design->bump_radius_mm - 1);
   }

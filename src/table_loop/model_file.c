@@ -260,7 +260,7 @@ static double number_or(const cJSON *json, const char *name, double otherwise) {
 }
 
 /* "a trend with humidity"; an id that is not in the table of effects concerns single rows. */
-static void describe(const cJSON *json, fg_loop_taken *taken) {
+static void describe_effect(const cJSON *json, fg_loop_taken *taken) {
   const cJSON *at = cJSON_GetObjectItemCaseSensitive(json, "coordinates");
   const cJSON *id = cJSON_GetObjectItemCaseSensitive(json, "id");
   const cJSON *name = cJSON_GetObjectItemCaseSensitive(json, "name");
@@ -317,8 +317,8 @@ static void measure_step(const double *change, double *before, size_t rows, fg_l
   if (isnan(taken->amplitude)) taken->amplitude = (taken->high - taken->low) / 2;
 }
 
-static fg_status take_all(fg_context *ctx, const fg_loop_model *model, const fg_table *table,
-                          fg_loop_takings *out) {
+static fg_status subtract_all(fg_context *ctx, const fg_loop_model *model, const fg_table *table,
+                              fg_loop_takings *out) {
   const cJSON *claims = cJSON_GetObjectItemCaseSensitive(model->json, "claims"), *claim;
   const cJSON *curve = cJSON_GetObjectItemCaseSensitive(model->json, "unattributed");
   size_t rows = table->rows, max = (size_t)cJSON_GetArraySize(claims) + 1;
@@ -329,7 +329,7 @@ static fg_status take_all(fg_context *ctx, const fg_loop_model *model, const fg_
   FG_TRY(fg_memory_allocate(ctx, rows + 1, sizeof *before, (void **)&before));
   cJSON_ArrayForEach(claim, claims) {
     FG_TRY_EXIT(apply_claim(ctx, model, claim, table, out->change));
-    describe(claim, &out->one[out->count]);
+    describe_effect(claim, &out->one[out->count]);
     measure_step(out->change, before, rows, &out->one[out->count++]);
   }
   if (cJSON_IsObject(curve)) {
@@ -347,7 +347,7 @@ fg_status fg_loop_model_take(fg_context *ctx, const fg_loop_model *model, fg_tab
   const fg_extended *response;
   *takings = (fg_loop_takings){0};
   FG_TRY(fg_table_numbers(ctx, table, model->response, &response));
-  fg_status status = take_all(ctx, model, table, takings);
+  fg_status status = subtract_all(ctx, model, table, takings);
   for (size_t c = 0; status == FG_OK && c < table->columns; c++)
     for (size_t i = 0; !strcmp(table->column[c].name, model->response) && i < table->rows; i++) {
       fg_extended *number = &table->column[c].number[i];

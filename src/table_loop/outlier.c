@@ -96,7 +96,7 @@ static void fill_unit(const outlier_rows *rows, size_t i) {
 
 /* Assesses a row beside all others: the residual of its response along its own whitened indicator.
  */
-static double judge_correlated(outlier_rows *rows, size_t i) {
+static double assess_correlated(outlier_rows *rows, size_t i) {
   size_t n = rows->n;
   double along = 0, kept = 0;
   fill_unit(rows, i);
@@ -115,9 +115,9 @@ static double judge_correlated(outlier_rows *rows, size_t i) {
 }
 
 /* Assesses rows; where they are many and correlated, by their innovations alone. */
-static void judge_rows(outlier_rows *rows) {
+static void assess_rows(outlier_rows *rows) {
   for (size_t i = 0; i < rows->n; i++) {
-    double along = whole_covariance(rows) ? judge_correlated(rows, i) : rows->white[i];
+    double along = whole_covariance(rows) ? assess_correlated(rows, i) : rows->white[i];
     rows->t[i] = rows->kept[i] > HELD_ALONE ? along / sqrt(rows->kept[i]) : 0;
   }
 }
@@ -241,7 +241,7 @@ static double normal_p(const outlier_rows *rows, double size) {
   return fmin((double)rows->n * beyond(size, INFINITY, dof), 1);
 }
 
-static void search(outlier_rows *rows, double accept_p, fg_engine_outlier *outlier) {
+static void search_outliers(outlier_rows *rows, double accept_p, fg_engine_outlier *outlier) {
   const fg_engine_training *training = rows->training;
   fg_loop_candidate taken = outlier->candidate;
   double whole = rows->rss, alike = 1;
@@ -251,7 +251,7 @@ static void search(outlier_rows *rows, double accept_p, fg_engine_outlier *outli
     if (worst == rows->n || rows->rank + 3 >= rows->n) break;
     double t = rows->taken[j - 1] = rows->t[worst];
     take_out(rows, worst);
-    judge_rows(rows);
+    assess_rows(rows);
     taken.row[taken.rows++] = training->row[worst];
     double p = fmin(row_p(rows, t, j) / FG_ENGINE_SHARE_OF_ROWS, 1);
     alike = fmin(alike, tail_p(rows, j, 0));
@@ -282,12 +282,12 @@ fg_status fg_engine_assess_outlier(fg_context *ctx, const fg_engine_training *tr
   if (!training->problem->exchangeable || training->n < training->columns + 5) return FG_OK;
   FG_TRY_EXIT(open_rows(ctx, training, noise, null, &rows));
   if (!(rows.rss > 0)) goto exit;
-  judge_rows(&rows);
+  assess_rows(&rows);
   for (size_t i = 0; i < rows.n; i++)
     sum += rows.kept[i];
   outlier->length = sum / (double)rows.n;
   outlier->f_critical = critical_f(&rows, accept_p * FG_ENGINE_SHARE_OF_ROWS, accept_p);
-  search(&rows, accept_p, outlier);
+  search_outliers(&rows, accept_p, outlier);
 exit:
   close_rows(&rows);
   return status;

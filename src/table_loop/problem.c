@@ -89,7 +89,7 @@ exit:
   return status;
 }
 
-static fg_status allocate(fg_context *ctx, size_t rows, fg_loop_table_problem *out) {
+static fg_status allocate_rows(fg_context *ctx, size_t rows, fg_loop_table_problem *out) {
   fg_loop_problem *problem = &out->problem;
   problem->rows = rows;
   FG_TRY(fg_memory_allocate(ctx, rows, sizeof *out->row, (void **)&out->row));
@@ -120,7 +120,7 @@ static fg_status fill_response(fg_context *ctx, const fg_loop_table_state *build
 
 /* Subtracts the first response as origin, with all digits of the table, where the declared model
  * has a constant, which absorbs it. */
-static fg_status take_origin(fg_context *ctx, const fg_loop_table_state *build) {
+static fg_status subtract_origin(fg_context *ctx, const fg_loop_table_state *build) {
   fg_loop_problem *problem = &build->out->problem;
   const fg_extended *response;
   size_t k = 0, rows = problem->rows;
@@ -143,7 +143,7 @@ static fg_status take_origin(fg_context *ctx, const fg_loop_table_state *build) 
 
 /* Subtracts the offset column from the residual. The response stays as measured: exchanged
  * responses are exchanged with it. */
-static fg_status take_offset(fg_context *ctx, const fg_loop_table_state *build) {
+static fg_status subtract_offset(fg_context *ctx, const fg_loop_table_state *build) {
   fg_loop_problem *problem = &build->out->problem;
   const char *name = build->spec->offset;
   const fg_extended *offset;
@@ -184,7 +184,7 @@ static fg_status build_all(fg_context *ctx, fg_loop_table_state *build) {
   size_t rows = build->table->rows;
   if (rows == 0) return fg_fail(ctx, FG_ERR_DATA, "%s: no rows", build->table->source);
   FG_TRY(choose_order(ctx, build));
-  FG_TRY(allocate(ctx, rows, build->out));
+  FG_TRY(allocate_rows(ctx, rows, build->out));
   FG_TRY(sort_rows(ctx, build));
   FG_TRY(fill_response(ctx, build));
   FG_TRY(fg_loop_table_fill_coordinates(ctx, build));
@@ -192,8 +192,8 @@ static fg_status build_all(fg_context *ctx, fg_loop_table_state *build) {
     FG_TRY(fg_loop_table_fill_arc_length(ctx, build));
   else
     FG_TRY(fg_loop_table_fill_model(ctx, build));
-  if (!fg_loop_table_is_arc_length(build->spec)) FG_TRY(take_origin(ctx, build));
-  FG_TRY(take_offset(ctx, build));
+  if (!fg_loop_table_is_arc_length(build->spec)) FG_TRY(subtract_origin(ctx, build));
+  FG_TRY(subtract_offset(ctx, build));
   bool grouped = build->spec->group != NULL;
   problem->level = grouped ? "bumps" : "runs";
   problem->group_level = grouped && rows >= 2 * problem->groups;

@@ -140,7 +140,7 @@ typedef struct triangle {
 } triangle;
 
 /* Projects v beside the columns kept so far; along[k] is its part along each. */
-static double take_kept(size_t n, const triangle *t, double *v, double *along) {
+static double project_kept(size_t n, const triangle *t, double *v, double *along) {
   memset(along, 0, t->rank * sizeof *along);
   if (n > FG_ENGINE_SMALL_ROWS) return project_many(n, t->basis, t->rank, v, along);
   for (int pass = 0; pass < 2; pass++)
@@ -158,7 +158,7 @@ static void decompose(size_t n, const double *x, double *along, triangle *t) {
   for (size_t k = 0; k < t->columns; k++) {
     double *v = t->basis + t->rank * n;
     memcpy(v, x + k * n, n * sizeof *v);
-    double whole = dot(n, v, v), left = take_kept(n, t, v, along);
+    double whole = dot(n, v, v), left = project_kept(n, t, v, along);
     if (!(left > (k < t->declared ? declared_span : same_span) * whole)) continue;
     for (size_t i = 0; i < t->rank; i++)
       t->r[i * t->columns + t->rank] = along[i];
@@ -180,7 +180,7 @@ static void invert_column(const triangle *t, size_t j, double *u) {
   }
 }
 
-static void solve(const triangle *t, const double *along, double *u, fg_engine_fit *fit) {
+static void solve_triangle(const triangle *t, const double *along, double *u, fg_engine_fit *fit) {
   for (size_t j = 0; j < t->rank; j++) {
     invert_column(t, j, u);
     fit->log_det += 2 * log(t->r[j * t->columns + j]);
@@ -219,7 +219,7 @@ fg_status fg_engine_least_squares(fg_context *ctx, const fg_engine_training *tra
   decompose(n, x, small, &t);
   for (size_t k = 0; k < t.rank; k++)
     small[k] = dot(n, t.basis + k * n, y);
-  solve(&t, small, small + columns, fit);
+  solve_triangle(&t, small, small + columns, fit);
   fit->rank = t.rank;
   fit->rss = fg_engine_project_out(n, t.basis, t.rank, y);
 exit:

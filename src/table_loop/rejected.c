@@ -45,8 +45,8 @@ static fg_loop_verdict judge_rejected(const fg_engine_run *run, const fg_loop_re
   return FG_LOOP_INCONCLUSIVE;
 }
 
-static void describe(const fg_engine_step *step, size_t c, double sd_white, const double *amplitude,
-                     fg_loop_rejected *one) {
+static void describe_rejected(const fg_engine_step *step, size_t c, double sd_white,
+                              const double *amplitude, fg_loop_rejected *one) {
   const fg_engine_judgement *judgement = &step->judgement;
   const fg_engine_version *version = &step->workspace.version[judgement->score[c].version];
   if (isfinite(judgement->score[c].z)) {
@@ -64,7 +64,7 @@ static void describe(const fg_engine_step *step, size_t c, double sd_white, cons
 }
 
 /* Describes single rows; candidates of the scatter have no detectable amplitude. */
-static void describe_rest(const fg_engine_run *run, const fg_engine_step *step, size_t stand,
+static void describe_rows(const fg_engine_run *run, const fg_engine_step *step, size_t stand,
                           double sd_white, fg_loop_rejected *one) {
   one->would_explain = stand < run->candidates ? NAN : 0;
   one->retained_share = 1;
@@ -90,9 +90,9 @@ static void list_one(const fg_engine_run *run, const fg_engine_step *step, size_
   fg_engine_candidate_name(run->problem, candidate, one->name);
   one->p_value = fg_engine_stand_p(run, step, stand);
   if (stand < run->means)
-    describe(step, stand, sd_white, amplitude, one);
+    describe_rejected(step, stand, sd_white, amplitude, one);
   else
-    describe_rest(run, step, stand, sd_white, one);
+    describe_rows(run, step, stand, sd_white, one);
   one->verdict = judge_rejected(run, one);
 }
 

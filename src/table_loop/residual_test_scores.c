@@ -43,7 +43,7 @@ static void fill_keys(const fg_engine_training *training, size_t width, double *
   }
 }
 
-static void weigh(const fg_engine_training *training, fg_engine_cells *cells) {
+static void weigh_cells(const fg_engine_training *training, fg_engine_cells *cells) {
   for (size_t i = 0; i < training->n; i++) {
     double scale = training->scale ? training->scale[i] : 1;
     cells->weight[cells->cell[i]] += 1 / (scale * scale);
@@ -71,7 +71,7 @@ fg_status fg_engine_cells_open(fg_context *ctx, const fg_engine_training *traini
   }
   FG_TRY_EXIT(fg_memory_allocate(ctx, cells->count, sizeof(double), (void **)&cells->weight));
   FG_TRY_EXIT(fg_memory_allocate(ctx, cells->count, sizeof(double), (void **)&cells->sum));
-  weigh(training, cells);
+  weigh_cells(training, cells);
   cells->dof[0] = (double)cells->count - (double)rank;
   cells->dof[1] = (double)n - (double)cells->count;
 exit:

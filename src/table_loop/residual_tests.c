@@ -96,8 +96,8 @@ static void close_residual_tests(residual_tests *b) {
 }
 
 /* NaN: the table offers no such test. */
-static void score(residual_tests *b, const double *white, double value[FG_LOOP_CHECKS],
-                  size_t *lag) {
+static void score_tests(residual_tests *b, const double *white, double value[FG_LOOP_CHECKS],
+                        size_t *lag) {
   double sum = 0, largest = 0;
   *lag = 0;
   for (size_t k = 0; k < 2; k++)
@@ -116,7 +116,7 @@ static void score(residual_tests *b, const double *white, double value[FG_LOOP_C
   if (b->one_lags >= 2) value[FG_LOOP_CHECK_ONE_LAG] = largest;
 }
 
-static void draw(const residual_tests *b, bool permuted, uint64_t *seed, double *y) {
+static void draw_residuals(const residual_tests *b, bool permuted, uint64_t *seed, double *y) {
   size_t n = b->training.n;
   for (size_t i = 0; i < n; i++)
     y[i] = permuted ? b->kept[i] : fg_engine_random_normal(seed);
@@ -136,8 +136,8 @@ static fg_status p_by_draws(fg_context *ctx, residual_tests *b, const double *va
   double *y = NULL, other[FG_LOOP_CHECKS];
   FG_TRY(fg_memory_allocate(ctx, n, sizeof *y, (void **)&y));
   while (draws < DRAWS && often < FG_LOOP_CHECKS) {
-    draw(b, permuted, &seed, y);
-    score(b, y, other, &lag);
+    draw_residuals(b, permuted, &seed, y);
+    score_tests(b, y, other, &lag);
     draws++;
     often = 0;
     for (size_t k = 0; k < FG_LOOP_CHECKS; k++) {
@@ -189,7 +189,7 @@ static void name_worst(const residual_tests *b, const fg_engine_cells *cells,
 
 /* rms: of the deviations of the settings' means, or of the part of a row that the other row
  * predicts. */
-static void describe(residual_tests *b, size_t lag, fg_loop_checked *check) {
+static void describe_deviation(residual_tests *b, size_t lag, fg_loop_checked *check) {
   double mean_square = 0;
   for (size_t i = 0; i < b->training.n; i++)
     mean_square += b->white[i] * b->white[i] / (double)b->training.n;
@@ -221,8 +221,8 @@ static fg_status keep_cells(fg_context *ctx, const residual_tests *b, size_t whi
 }
 
 /* Selects the failed test that is most significant relative to its level. */
-static fg_status judge(fg_context *ctx, const residual_tests *b, const double *value,
-                       const double *p, fg_loop_result *result) {
+static fg_status choose_failed(fg_context *ctx, const residual_tests *b, const double *value,
+                               const double *p, fg_loop_result *result) {
   double tests = 0, min = INFINITY;
   for (size_t k = 0; k < FG_LOOP_CHECKS; k++)
     tests += isfinite(value[k]);
@@ -251,13 +251,13 @@ fg_status fg_engine_check(fg_context *ctx, const fg_engine_run *run, fg_engine_n
   if (run->problem->few || !run->worth) return FG_OK;
   FG_TRY_EXIT(open_residual_tests(ctx, run, noise, &b));
   if (b.training.n < b.null.rank + 3) goto exit;
-  score(&b, b.white, value, &lag);
-  describe(&b, lag, run->result->check);
+  score_tests(&b, b.white, value, &lag);
+  describe_deviation(&b, lag, run->result->check);
   if (b.training.n <= FG_ENGINE_SMALL_ROWS)
     FG_TRY_EXIT(p_by_draws(ctx, &b, value, p));
   else
     p_by_distribution(&b, value, p);
-  FG_TRY_EXIT(judge(ctx, &b, value, p, run->result));
+  FG_TRY_EXIT(choose_failed(ctx, &b, value, p, run->result));
 exit:
   close_residual_tests(&b);
   return status;

@@ -57,7 +57,7 @@ static double share_left(double whole, double gain) {
 
 /* Stores the version's score if it is the candidate's best; `gain` is its reduction of the residual
  * sum. */
-static void take_version(const fg_score_workspace *workspace, size_t v, size_t j,
+static void keep_version(const fg_score_workspace *workspace, size_t v, size_t j,
                          residual_sums sums, double gain, fg_engine_score *score) {
   const fg_engine_version *version = &workspace->version[v];
   fg_engine_score *best = &score[version->candidate];
@@ -96,7 +96,7 @@ void fg_score_workspace_score_data(const fg_score_workspace *workspace, fg_engin
     if (workspace->rss[j] * workspace->weight[j] < workspace->rss[*null] * workspace->weight[*null])
       *null = j;
     for (size_t v = 0; v < workspace->versions; v++)
-      take_version(workspace, v, j, (residual_sums){workspace->rss[j], workspace->between_rss[j]},
+      keep_version(workspace, v, j, (residual_sums){workspace->rss[j], workspace->between_rss[j]},
                    gain[v], score);
   }
   finish_scores(workspace, workspace->rss[*null] * workspace->weight[*null], score);
@@ -176,7 +176,7 @@ static void score_at(const fg_score_workspace *workspace, size_t j, const double
     for (size_t v = 0; v < workspace->versions; v++) {
       const fg_engine_version *version = &workspace->version[v];
       double gain = sum_of_squares(sums + version->first * FG_ENGINE_BATCH, version->rank);
-      take_version(workspace, v, j, whole, gain, score + b * workspace->candidates);
+      keep_version(workspace, v, j, whole, gain, score + b * workspace->candidates);
     }
   }
 }

@@ -137,7 +137,7 @@ static fg_status look_at(fg_context *ctx, const many *m, size_t c, first_look *l
 }
 
 /* Scores, over binned sums, all candidates of one coordinate. */
-static fg_status look_over(fg_context *ctx, void *shared, size_t coordinate) {
+static fg_status score_binned(fg_context *ctx, void *shared, size_t coordinate) {
   const many *m = shared;
   fg_score_workspace *workspace = m->workspace;
   first_look look = {0};
@@ -210,7 +210,7 @@ fg_status fg_score_workspace_fill_many(fg_context *ctx, fg_score_workspace *work
     m.first[workspace->version[v].candidate + 1] = v + 1;
   for (size_t c = 1; c <= workspace->candidates; c++)
     if (m.first[c] < m.first[c - 1]) m.first[c] = m.first[c - 1];
-  FG_TRY_EXIT(fg_parallel_run(ctx, 0, coordinates, look_over, &m));
+  FG_TRY_EXIT(fg_parallel_run(ctx, 0, coordinates, score_binned, &m));
   FG_TRY_EXIT(fg_parallel_run(ctx, 0, workspace->candidates, score_candidate, &m));
 exit:
   free(m.vectors);

@@ -74,7 +74,7 @@ static fg_status note_aliased(fg_context *ctx, fg_engine_run *run, const fg_engi
 }
 
 /* Enough rows, and a residual that is more than rounding? */
-static fg_status check(fg_context *ctx, fg_engine_run *run, bool *worth) {
+static fg_status check_rows(fg_context *ctx, fg_engine_run *run, bool *worth) {
   fg_engine_training training;
   fg_engine_fit fit = {0};
   double size = 0;
@@ -136,7 +136,7 @@ fg_status fg_loop_run(fg_context *ctx, const fg_loop_problem *problem,
   memset(result, 0, sizeof *result);
   FG_TRY_EXIT(fg_engine_units_open(ctx, problem, &units));
   FG_TRY_EXIT(open_run(ctx, &units, options, result, &run));
-  FG_TRY_EXIT(check(ctx, &run, &run.worth));
+  FG_TRY_EXIT(check_rows(ctx, &run, &run.worth));
   if (run.worth) FG_TRY_EXIT(note_cycles(ctx, &run));
   if (run.worth) FG_TRY_EXIT(fg_engine_search(ctx, &run));
   FG_TRY_EXIT(fg_engine_finish(ctx, &run));

@@ -15,7 +15,8 @@ static size_t set_columns(const fg_loop_problem *problem, const fg_engine_set *s
   return count;
 }
 
-static fg_status allocate(fg_context *ctx, fg_engine_training *training, const fg_engine_set *set) {
+static fg_status allocate_training(fg_context *ctx, fg_engine_training *training,
+                                   const fg_engine_set *set) {
   const fg_loop_problem *problem = training->problem;
   training->columns = problem->parameters + set_columns(problem, set);
   size_t n = training->n;
@@ -58,8 +59,8 @@ static void put_back(fg_engine_training *training, const fg_loop_candidate *exch
   }
 }
 
-static fg_status fill_columns(fg_context *ctx, fg_engine_training *training,
-                              const fg_engine_set *set) {
+static fg_status fill_null_columns(fg_context *ctx, fg_engine_training *training,
+                                   const fg_engine_set *set) {
   const fg_loop_problem *problem = training->problem;
   double *next = training->x;
   for (size_t k = 0; k < problem->parameters; k++)
@@ -87,11 +88,11 @@ fg_status fg_engine_training_build(fg_context *ctx, const fg_loop_problem *probl
   *training = (fg_engine_training){.problem = problem};
   for (size_t i = 0; i < problem->rows; i++)
     training->n += !keep || keep[i];
-  FG_TRY_EXIT(allocate(ctx, training, set));
+  FG_TRY_EXIT(allocate_training(ctx, training, set));
   for (size_t i = 0, k = 0; i < problem->rows; i++)
     if (!keep || keep[i]) training->row[k++] = i;
   FG_TRY_EXIT(number_rows(ctx, training));
-  FG_TRY_EXIT(fill_columns(ctx, training, set));
+  FG_TRY_EXIT(fill_null_columns(ctx, training, set));
   FG_TRY_EXIT(fg_engine_estimate_scale(ctx, training, set));
 exit:
   if (status != FG_OK) fg_engine_training_free(training);

@@ -22,10 +22,11 @@ static void write_flag_names(fg_json *json, const fg_load_flag *flag, unsigned f
   fg_json_line_end(json);
 }
 
-static void write_course(fg_json *json, const char *name, const fg_load_course *course) {
+static void write_stiffness_profile(fg_json *json, const char *name,
+                                    const fg_load_profile *profile) {
   fg_json_array(json, name);
-  for (size_t i = 0; i < course->count; i++) {
-    const fg_load_point *p = &course->point[i];
+  for (size_t i = 0; i < profile->count; i++) {
+    const fg_load_point *p = &profile->point[i];
     fg_json_numbers(json, NULL,
                     (const double[]){p->x_mm, p->force_n, p->stiffness_n_mm, p->u_stiffness_n_mm},
                     4);
@@ -78,8 +79,8 @@ static void write_direction(fg_json *json, const fg_load_test *test, const fg_lo
   write_value(json, "predicted_clearance_mm", &d->predicted);
   write_value(json, "clearance_difference_mm", &d->difference);
   fg_json_integer(json, "predicted_pad", d->predicted_pad);
-  write_course(json, "course_push", &d->course[FG_LOAD_PUSH]);
-  write_course(json, "course_pull", &d->course[FG_LOAD_PULL]);
+  write_stiffness_profile(json, "course_push", &d->profile[FG_LOAD_PUSH]);
+  write_stiffness_profile(json, "course_pull", &d->profile[FG_LOAD_PULL]);
   fg_json_object_end(json);
 }
 

@@ -76,30 +76,30 @@ void fg_load_plot_loops(FILE *out, const fg_load_test *test, const fg_load_direc
   fg_plot_end(&at);
 }
 
-static void put_course(const fg_plot *at, const fg_load_course *course) {
+static void put_stiffness_profile(const fg_plot *at, const fg_load_profile *profile) {
   double x[FG_LOAD_POINTS], y[FG_LOAD_POINTS];
-  if (!course->count) return;
+  if (!profile->count) return;
   fputs("<path class=\"ci\" style=\"fill:#1f6fd0;fill-opacity:.14\" d=\"", at->out);
-  for (size_t i = 0; i < 2 * course->count; i++) {
-    bool back = i >= course->count;
-    const fg_load_point *p = &course->point[back ? 2 * course->count - 1 - i : i];
+  for (size_t i = 0; i < 2 * profile->count; i++) {
+    bool back = i >= profile->count;
+    const fg_load_point *p = &profile->point[back ? 2 * profile->count - 1 - i : i];
     double reach = (back ? -1 : 1) * FG_COVERAGE_FACTOR * p->u_stiffness_n_mm;
     double value = fmax(at->y_low, fmin(at->y_high, p->stiffness_n_mm + reach));
     fprintf(at->out, "%c%.1f %.1f", i ? 'L' : 'M', fg_plot_x(at, p->x_mm), fg_plot_y(at, value));
   }
   fputs("Z\"/>\n", at->out);
-  for (size_t i = 0; i < course->count; i++) {
-    x[i] = course->point[i].x_mm;
-    y[i] = course->point[i].stiffness_n_mm;
+  for (size_t i = 0; i < profile->count; i++) {
+    x[i] = profile->point[i].x_mm;
+    y[i] = profile->point[i].stiffness_n_mm;
   }
-  fg_plot_line(at, x, y, course->count, "s2");
+  fg_plot_line(at, x, y, profile->count, "s2");
 }
 
 void fg_load_plot_stiffness(FILE *out, const fg_load_direction *d) {
   double x[2] = {INFINITY, -INFINITY}, k[2] = {0, 0};
   for (int side = 0; side < FG_LOAD_SIDES; side++)
-    for (size_t i = 0; i < d->course[side].count; i++) {
-      const fg_load_point *p = &d->course[side].point[i];
+    for (size_t i = 0; i < d->profile[side].count; i++) {
+      const fg_load_point *p = &d->profile[side].point[i];
       widen(x, p->x_mm, p->x_mm);
       widen(k, p->stiffness_n_mm, p->stiffness_n_mm);
     }
@@ -113,7 +113,7 @@ void fg_load_plot_stiffness(FILE *out, const fg_load_direction *d) {
   fg_plot_x_numbers(&at);
   fg_plot_x_title(&at, "displacement, mm");
   for (int side = 0; side < FG_LOAD_SIDES; side++)
-    put_course(&at, &d->course[side]);
+    put_stiffness_profile(&at, &d->profile[side]);
   if (isfinite(d->stiffness.value))
     fg_plot_dot(&at, d->stiffness_at_mm, d->stiffness.value, 5, "s1");
   fg_plot_end(&at);

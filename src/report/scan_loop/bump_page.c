@@ -18,23 +18,23 @@ typedef struct view {
   const fg_scan_result_response *response;
 } view;
 
-static double place_of(const view *v, const fg_scan_result_bump *bump) {
+static double bump_abscissa(const view *v, const fg_scan_result_bump *bump) {
   double parts = (double)v->bumps->parts;
   return bump->number + (parts > 1 ? 0.5 * ((double)bump->part / (parts - 1) - 0.5) : 0);
 }
 
-static void put_bumps(const fg_plot *at, const view *v, bool after) {
+static void put_bump_marks(const fg_plot *at, const view *v, bool after) {
   for (size_t i = 0; i < v->response->bumps; i++) {
     const fg_scan_result_bump *bump = &v->response->bump[i];
-    double x = place_of(v, bump), y = after ? bump->after : bump->before;
+    double x = bump_abscissa(v, bump), y = after ? bump->after : bump->before;
     if (!after && bump->effect != 0)
       fg_plot_segment(at, x - 0.3, bump->effect, x + 0.3, bump->effect, "effect");
     fg_plot_dot(at, x, y, v->bumps->parts > 4 ? 3 : 5, bump->held_out ? "run" : "bar");
   }
 }
 
-static void put_plot(FILE *out, const view *v, const double range[4], bool after,
-                     const char *caption) {
+static void put_bump_plot(FILE *out, const view *v, const double range[4], bool after,
+                          const char *caption) {
   fg_plot at = {out, WIDTH, 72, 510, 12, 214, range[0], range[1], range[2], range[3]};
   char title[64];
   snprintf(title, sizeof title, "off the model, %s", fg_scan_loop_unit_words(v->response->unit));
@@ -43,17 +43,17 @@ static void put_plot(FILE *out, const view *v, const double range[4], bool after
   fg_plot_y_axis(&at, title);
   fg_plot_x_numbers(&at);
   fg_plot_x_title(&at, v->bumps->lip ? "bump, 1 is next to the lip" : "bump");
-  put_bumps(&at, v, after);
+  put_bump_marks(&at, v, after);
   fg_plot_end(&at);
   fputs("</figure>\n", out);
 }
 
-static void find_range(const view *v, double range[4]) {
+static void find_bump_range(const view *v, double range[4]) {
   range[0] = range[2] = INFINITY;
   range[1] = range[3] = -INFINITY;
   for (size_t i = 0; i < v->response->bumps; i++) {
     const fg_scan_result_bump *bump = &v->response->bump[i];
-    double x = place_of(v, bump);
+    double x = bump_abscissa(v, bump);
     range[0] = fmin(range[0], x - 0.6);
     range[1] = fmax(range[1], x + 0.6);
     range[2] = fmin(range[2], fmin(bump->before, bump->after));
@@ -71,28 +71,28 @@ static void put_response(FILE *out, const fg_scan_result_bumps *bumps,
   double range[4];
   char caption[120];
   if (!response->bumps) return;
-  find_range(&v, range);
+  find_bump_range(&v, range);
   fg_text_clip(caption, sizeof caption, "%s, off %s%s", response->words, response->model,
                found ? ": before" : "");
-  put_plot(out, &v, range, false, caption);
+  put_bump_plot(out, &v, range, false, caption);
   fg_text_clip(caption, sizeof caption, "%s: after", response->words);
-  if (found) put_plot(out, &v, range, true, caption);
+  if (found) put_bump_plot(out, &v, range, true, caption);
 }
 
 /* ---- tables ---- */
 
-static void put_name(FILE *out, const char *id, const char *words,
-                     const fg_scan_result_response *response) {
+static void put_bump_effect_name(FILE *out, const char *id, const char *words,
+                                 const fg_scan_result_response *response) {
   fputs("<td class=\"words\">", out);
   fg_html_text(out, words);
   fprintf(out, ", %s<i>%s</i></td>", response->words, id);
 }
 
-static void put_claim(FILE *out, const fg_scan_result_response *response,
-                      const fg_scan_result_bump_claim *claim) {
+static void put_bump_claim(FILE *out, const fg_scan_result_response *response,
+                           const fg_scan_result_bump_claim *claim) {
   char words[64];
   fputs("<tr class=\"on\">", out);
-  put_name(out, claim->id, claim->words, response);
+  put_bump_effect_name(out, claim->id, claim->words, response);
   bool tied = claim->verdict == FG_LOOP_TIED;
   fprintf(out, "<td class=\"w\"><span class=\"tag %s\">%s</span></td><td class=\"words\">",
           tied ? "tied" : "found", fg_loop_verdict_word(claim->verdict));
@@ -107,10 +107,10 @@ static void put_claim(FILE *out, const fg_scan_result_response *response,
   fprintf(out, "%s</td><td>%.2g</td></tr>\n", claim->ties ? "</i>" : "", claim->p_value);
 }
 
-static void put_unclaimed(FILE *out, const fg_scan_result_response *response,
-                          const fg_scan_result_bump_unclaimed *one) {
+static void put_bump_unclaimed(FILE *out, const fg_scan_result_response *response,
+                               const fg_scan_result_bump_unclaimed *one) {
   fputs("<tr>", out);
-  put_name(out, one->id, one->words, response);
+  put_bump_effect_name(out, one->id, one->words, response);
   fprintf(out, "<td class=\"w\"><span class=\"tag %s\">%s</span></td><td class=\"w\">",
           one->verdict == FG_LOOP_ABSENT ? "absent" : "open", fg_loop_verdict_word(one->verdict));
   if (isfinite(one->smallest))
@@ -128,15 +128,15 @@ static void put_candidates(FILE *out, const fg_scan_result_bumps *bumps) {
       out);
   for (size_t r = 0; r < FG_SCAN_RESULT_RESPONSES; r++)
     for (size_t m = 0; m < bumps->response[r].claims; m++)
-      put_claim(out, &bumps->response[r], &bumps->response[r].claim[m]);
+      put_bump_claim(out, &bumps->response[r], &bumps->response[r].claim[m]);
   for (size_t r = 0; r < FG_SCAN_RESULT_RESPONSES; r++)
     for (size_t k = 0; k < bumps->response[r].unclaimeds; k++)
-      put_unclaimed(out, &bumps->response[r], &bumps->response[r].unclaimed[k]);
+      put_bump_unclaimed(out, &bumps->response[r], &bumps->response[r].unclaimed[k]);
   fputs("</table></div>\n", out);
 }
 
-static void put_error(FILE *out, const char *name, const char *model, const char *unit,
-                      const fg_scan_result_bump_error *e) {
+static void put_bump_error(FILE *out, const char *name, const char *model, const char *unit,
+                           const fg_scan_result_bump_error *e) {
   if (!isfinite(e->rms[0])) return;
   fprintf(out, "<tr><td>%s, %s</td><td class=\"w\">%s</td><td>%.3g</td><td>%.3g</td>", name,
           fg_scan_loop_unit_words(unit), model, e->rms[0], e->rms[1]);
@@ -146,16 +146,16 @@ static void put_error(FILE *out, const char *name, const char *model, const char
     fputs("<td>–</td><td>–</td></tr>\n", out);
 }
 
-static void put_errors(FILE *out, const fg_scan_result_bumps *bumps) {
+static void put_bump_errors(FILE *out, const fg_scan_result_bumps *bumps) {
   fputs(
       "<div class=\"scroll\"><table><tr><th>rms about the declared model</th><th class=\"w\">model"
       "</th><th>before</th><th>after</th><th>took no part:<br>before</th><th>after</th></tr>\n",
       out);
   for (size_t r = 0; r < FG_SCAN_RESULT_RESPONSES; r++) {
     const fg_scan_result_response *one = &bumps->response[r];
-    put_error(out, one->words, one->model, one->unit, &one->error);
+    put_bump_error(out, one->words, one->model, one->unit, &one->error);
   }
-  put_error(out, "height", "follows from both", "um", &bumps->height_um);
+  put_bump_error(out, "height", "follows from both", "um", &bumps->height_um);
   fputs("</table></div>\n", out);
 }
 
@@ -199,7 +199,7 @@ void fg_scan_loop_page_bumps(FILE *out, const fg_scan_result *result) {
   put_declared(out, bumps);
   if (judged) put_drawings(out, bumps);
   if (any) put_candidates(out, bumps);
-  if (judged) put_errors(out, bumps);
+  if (judged) put_bump_errors(out, bumps);
   for (size_t i = 0; i < result->notes; i++) {
     fputs("<p class=\"note\">", out);
     fg_html_text(out, result->note[i]);

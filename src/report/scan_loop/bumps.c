@@ -18,8 +18,8 @@ static void write_parameters(fg_json *json, const fg_scan_result_bump_claim *cla
   fg_json_object_end(json);
 }
 
-static void write_claim(fg_json *json, const fg_scan_result_response *response,
-                        const fg_scan_result_bump_claim *claim) {
+static void write_bump_claim(fg_json *json, const fg_scan_result_response *response,
+                             const fg_scan_result_bump_claim *claim) {
   fg_json_object(json, NULL);
   fg_json_string(json, "id", claim->id);
   fg_json_string(json, "level", "bumps");
@@ -39,11 +39,11 @@ static void write_claim(fg_json *json, const fg_scan_result_response *response,
 void fg_json_bump_claims(fg_json *json, const fg_scan_result_bumps *bumps) {
   for (size_t r = 0; r < FG_SCAN_RESULT_RESPONSES; r++)
     for (size_t m = 0; m < bumps->response[r].claims; m++)
-      write_claim(json, &bumps->response[r], &bumps->response[r].claim[m]);
+      write_bump_claim(json, &bumps->response[r], &bumps->response[r].claim[m]);
 }
 
-static void write_rejected(fg_json *json, const fg_scan_result_response *response,
-                           const fg_scan_result_bump_unclaimed *one) {
+static void write_bump_rejected(fg_json *json, const fg_scan_result_response *response,
+                                const fg_scan_result_bump_unclaimed *one) {
   fg_json_object(json, NULL);
   fg_json_string(json, "id", one->id);
   fg_json_string(json, "level", "bumps");
@@ -60,7 +60,7 @@ static void write_rejected(fg_json *json, const fg_scan_result_response *respons
 void fg_json_bump_rejected(fg_json *json, const fg_scan_result_bumps *bumps) {
   for (size_t r = 0; r < FG_SCAN_RESULT_RESPONSES; r++)
     for (size_t k = 0; k < bumps->response[r].unclaimeds; k++)
-      write_rejected(json, &bumps->response[r], &bumps->response[r].unclaimed[k]);
+      write_bump_rejected(json, &bumps->response[r], &bumps->response[r].unclaimed[k]);
 }
 
 bool fg_json_bump_curve(fg_json *json, const fg_scan_result_bumps *bumps) {
@@ -137,7 +137,8 @@ static void text_claim(const fg_scan_result_response *response,
 
 void fg_text_bumps(const fg_scan_result_bumps *bumps, FILE *out) {
   if (bumps->declared_path)
-    fprintf(out, "  bumps: declared is what %s (foilgauge forming) predicts of each by its number\n",
+    fprintf(out,
+            "  bumps: declared is what %s (foilgauge forming) predicts of each by its number\n",
             bumps->declared_path);
   for (size_t r = 0; r < FG_SCAN_RESULT_RESPONSES; r++) {
     const fg_scan_result_response *one = &bumps->response[r];

@@ -62,7 +62,7 @@ static const char *caption_words(const fg_scan_result_line *line) {
 }
 
 /* The range with the band; returns how wide the band is. */
-static double find_range(const fg_scan_result_line *line, double range[2]) {
+static double find_curve_range(const fg_scan_result_line *line, double range[2]) {
   double widest = 0;
   range[0] = range[1] = 0;
   for (size_t i = 0; i < SAMPLES; i++) {
@@ -75,8 +75,9 @@ static double find_range(const fg_scan_result_line *line, double range[2]) {
   return widest;
 }
 
-static void put_line(FILE *out, const fg_scan_result *result, const fg_scan_result_line *line) {
-  double range[2], widest = find_range(line, range);
+static void put_curve_line(FILE *out, const fg_scan_result *result,
+                           const fg_scan_result_line *line) {
+  double range[2], widest = find_curve_range(line, range);
   double margin = 0.08 * (range[1] - range[0]) + 1e-6;
   fg_plot at = {out,
                 WIDTH,
@@ -109,7 +110,7 @@ static void put_line(FILE *out, const fg_scan_result *result, const fg_scan_resu
   fputs(".</figcaption></figure>\n", out);
 }
 
-static void put_claim(FILE *out, const fg_scan_result_claim *claim) {
+static void put_effect_details(FILE *out, const fg_scan_result_claim *claim) {
   char words[120];
   fputs("<tr><td class=\"words\">", out);
   fg_html_text(out, claim->words);
@@ -132,7 +133,7 @@ static void put_parameters(FILE *out, const fg_scan_result *result) {
         "<th class=\"w\">parameters, ± U = 2u</th></tr>\n",
         out);
   for (size_t i = 0; i < result->claims; i++)
-    put_claim(out, &result->claim[i]);
+    put_effect_details(out, &result->claim[i]);
   fputs(
       "</table></div>\n<p class=\"note\">x, y: of scale and shear from the middle of the picture, "
       "else from its top left. ψ: about O from the foil's middle.</p>\n",
@@ -146,6 +147,6 @@ void fg_scan_loop_page_effects(FILE *out, const fg_scan_result *result) {
   fputs("<div class=\"two\">\n", out);
   fg_scan_loop_page_grid(out, result);
   for (size_t i = 0; i < result->lines; i++)
-    put_line(out, result, &result->line[i]);
+    put_curve_line(out, result, &result->line[i]);
   fputs("</div></section>\n", out);
 }

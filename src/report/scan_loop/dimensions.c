@@ -27,7 +27,7 @@ static int decimals_for(double u) {
   return (int)fmin(6, fmax(0, 1 - floor(log10(expanded))));
 }
 
-static void put_value(FILE *out, value v) {
+static void put_dimension(FILE *out, value v) {
   if (!isfinite(v.value)) {
     fputs("<td>–</td>", out);
     return;
@@ -69,9 +69,9 @@ static void put_range(FILE *out, const quantity *q) {
 }
 
 static void put_quantity(FILE *out, const quantity *q, bool corrected, bool tied) {
-  put_value(out, q->before);
+  put_dimension(out, q->before);
   if (!corrected) return;
-  put_value(out, q->after);
+  put_dimension(out, q->after);
   put_change(out, q);
   if (tied) put_range(out, q);
 }
@@ -134,7 +134,7 @@ static void put_heads(FILE *out, const quantity *q, size_t count, const char *fi
   fputs("</tr></thead>\n<tbody>\n", out);
 }
 
-static const fg_bump *find_bump(const fg_foil *foil, int number) {
+static const fg_bump *find_foil_bump(const fg_foil *foil, int number) {
   for (size_t i = 0; i < foil->bump_count; i++)
     if (foil->bumps[i].number == number) return &foil->bumps[i];
   return NULL;
@@ -147,7 +147,7 @@ static void put_bump_table(FILE *out, const fg_foil *b, const fg_foil *a, size_t
   quantity q[BUMP_QUANTITIES];
   bool opened = false;
   for (size_t i = 0; i < b->bump_count; i++) {
-    const fg_bump *after = find_bump(a, b->bumps[i].number);
+    const fg_bump *after = find_foil_bump(a, b->bumps[i].number);
     if (!after) continue;
     bump_quantities(&b->bumps[i], after, q);
     q[0].left = fg_choice_is_left(&a->choice[FG_CORRECTED_RADIUS]);
@@ -177,7 +177,7 @@ static void put_overall(FILE *out, const fg_foil *b, const fg_foil *a, bool corr
   fputs("</tr></tbody></table></div>\n", out);
 }
 
-static void put_foil(FILE *out, const fg_scan_result *result, size_t scan, size_t f) {
+static void put_foil_dimensions(FILE *out, const fg_scan_result *result, size_t scan, size_t f) {
   const fg_foil *b = &result->scan[scan].before->foils[f], *a = &result->scan[scan].after->foils[f];
   fputs("<h3>", out);
   fg_html_text(out, result->scan[scan].before->scan);
@@ -195,7 +195,7 @@ static void put_foil(FILE *out, const fg_scan_result *result, size_t scan, size_
     put_bump_table(out, b, a, from, result->corrected, tied);
 }
 
-static void put_discs(FILE *out, const fg_scan_result *result, size_t scan) {
+static void put_disc_dimensions(FILE *out, const fg_scan_result *result, size_t scan) {
   const fg_measurement *b = result->scan[scan].before, *a = result->scan[scan].after;
   bool corrected = result->corrected;
   size_t count = b->disc_count < a->disc_count ? b->disc_count : a->disc_count;
@@ -242,7 +242,7 @@ static double disagreement(const fg_scan_result *result, bool after) {
     for (size_t f = 0; f < m->foil_count && f < first->foil_count; f++)
       for (size_t i = 0; i < m->foils[f].bump_count; i++) {
         const fg_bump *one = &m->foils[f].bumps[i];
-        const fg_bump *other = find_bump(&first->foils[f], one->number);
+        const fg_bump *other = find_foil_bump(&first->foils[f], one->number);
         if (!other || !isfinite(one->radius_mm) || !isfinite(other->radius_mm)) continue;
         sum += pow(1000 * (one->radius_mm - other->radius_mm), 2);
         n++;
@@ -280,8 +280,8 @@ void fg_scan_loop_page_dimensions(FILE *out, const fg_scan_result *result) {
   for (size_t i = 0; i < result->scans; i++) {
     const fg_scan_result_scan *scan = &result->scan[i];
     for (size_t f = 0; f < scan->before->foil_count && f < scan->after->foil_count; f++)
-      put_foil(out, result, i, f);
-    put_discs(out, result, i);
+      put_foil_dimensions(out, result, i, f);
+    put_disc_dimensions(out, result, i);
   }
   fputs("</section>\n", out);
 }

@@ -19,7 +19,7 @@ static double reach(const fg_scan_result_grid *grid) {
   return fmin(0.6 * grid->cell_mm, 0.13 * grid->period_mm);
 }
 
-static void put_line(const deformation *d, const fg_scan_result_grid_line *line, bool moved) {
+static void put_grid_line(const deformation *d, const fg_scan_result_grid_line *line, bool moved) {
   const fg_scan_result_grid *grid = d->grid;
   int step = moved ? 1 : SAMPLES; /* a line without displacement is straight */
   double magnified = moved ? d->magnified : 0;
@@ -66,7 +66,7 @@ void fg_scan_loop_page_grid(FILE *out, const fg_scan_result *result) {
           WIDTH, tall);
   for (int moved = 0; moved < 2; moved++)
     for (size_t i = 0; i < grid->lines; i++)
-      put_line(&d, &grid->line[i], moved);
+      put_grid_line(&d, &grid->line[i], moved);
   put_edges(&d, result);
   put_bar(&d, tall);
   fprintf(out,

@@ -52,8 +52,8 @@ static void write_channel_check(fg_json *json, const fg_channel_check *channel_c
   fg_json_object_end(json);
 }
 
-static void write_claim(fg_json *json, const fg_scan_result *result,
-                        const fg_scan_result_claim *claim) {
+static void write_scan_claim(fg_json *json, const fg_scan_result *result,
+                             const fg_scan_result_claim *claim) {
   fg_json_object(json, NULL);
   fg_json_string(json, "id", claim->id);
   if (claim->direction) fg_json_string(json, "form", claim->direction);
@@ -76,7 +76,7 @@ static void write_claim(fg_json *json, const fg_scan_result *result,
 static void write_claims(fg_json *json, const fg_scan_result *result) {
   fg_json_array(json, "claims");
   for (size_t i = 0; i < result->claims; i++)
-    if (!result->claim[i].free) write_claim(json, result, &result->claim[i]);
+    if (!result->claim[i].free) write_scan_claim(json, result, &result->claim[i]);
   fg_json_bump_claims(json, &result->bumps);
   fg_json_array_end(json);
 }
@@ -153,7 +153,7 @@ static fg_status write_side(fg_context *ctx, fg_json *json, const char *name,
 }
 
 /* Writes the rejected effects; tied ones are in `alias_class`. */
-static void write_rejected(fg_json *json, const fg_scan_result *result) {
+static void write_scan_rejected(fg_json *json, const fg_scan_result *result) {
   fg_json_array(json, "rejected");
   for (size_t i = 0; i < result->unclaimeds; i++) {
     const fg_scan_result_unclaimed *one = &result->unclaimed[i];
@@ -172,7 +172,7 @@ static void write_rejected(fg_json *json, const fg_scan_result *result) {
   fg_json_array_end(json);
 }
 
-static void write_inputs(fg_json *json, const fg_scan_result *result) {
+static void write_scan_inputs(fg_json *json, const fg_scan_result *result) {
   fg_json_array(json, "inputs");
   for (size_t i = 0; i < result->scans; i++) {
     fg_json_object(json, NULL);
@@ -219,7 +219,7 @@ fg_status fg_scan_loop_write_json(fg_context *ctx, const fg_scan_loop *loop, FIL
   fg_json_string(&json, "verdict", fg_loop_outcome_word(result->verdict));
   fg_json_string(&json, "summary", sentence);
   free(sentence);
-  write_inputs(&json, result);
+  write_scan_inputs(&json, result);
   fg_json_calibration_used(&json, "calibration", &result->scan[0].before->design.calibration);
   fg_json_bool(&json, "same_foil", result->same_foil);
   fg_json_number(&json, "p_value", result->p_value);
@@ -235,7 +235,7 @@ fg_status fg_scan_loop_write_json(fg_context *ctx, const fg_scan_loop *loop, FIL
   fg_json_integer(&json, "folds", (int64_t)result->folds);
   fg_json_string(&json, "fold_of", result->fold_of);
   fg_json_object_end(&json);
-  write_rejected(&json, result);
+  write_scan_rejected(&json, result);
   fg_json_strings(&json, "separating_measurement", result->advice, result->advices);
   fg_json_bumps(&json, &result->bumps);
   fg_json_strings(&json, "notes", result->note, result->notes);

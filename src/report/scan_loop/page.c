@@ -11,7 +11,7 @@
 #include "report/provenance.h"
 #include "report/scan_loop/parts.h"
 
-static void put_tiles(FILE *out, const fg_scan_result *result) {
+static void put_loop_tiles(FILE *out, const fg_scan_result *result) {
   char words[32], small[80];
   const fg_scan_loop_error *before = &result->before, *after = &result->after;
   fputs("<dl class=\"tiles\">\n", out);
@@ -109,8 +109,8 @@ static fg_status put_next(fg_context *ctx, FILE *out, const fg_scan_result *resu
   return status;
 }
 
-static fg_status put_head(fg_context *ctx, FILE *out, const fg_scan_result *result,
-                          const char *sentence) {
+static fg_status put_loop_head(fg_context *ctx, FILE *out, const fg_scan_result *result,
+                               const char *sentence) {
   static const char *const classes[] = {"clean", "explained", "partly", "unattributed"};
   fprintf(out,
           "<section><header><h1>Closing the loop</h1>%s<span class=\"verdict loop-%s\">%s</span>"
@@ -121,7 +121,7 @@ static fg_status put_head(fg_context *ctx, FILE *out, const fg_scan_result *resu
   fputs("</p>\n", out);
   put_uncertainty(out, result);
   FG_TRY(put_next(ctx, out, result));
-  put_tiles(out, result);
+  put_loop_tiles(out, result);
   put_inputs(out, result);
   fputs("</section>\n", out);
   return FG_OK;
@@ -129,7 +129,7 @@ static fg_status put_head(fg_context *ctx, FILE *out, const fg_scan_result *resu
 
 /* ---- candidates ---- */
 
-static void put_name(FILE *out, const char *id, const char *words) {
+static void put_effect_name(FILE *out, const char *id, const char *words) {
   fputs("<td class=\"words\">", out);
   fg_html_text(out, words);
   fputs("<i>", out);
@@ -155,10 +155,10 @@ static void put_channel_check(FILE *out, const fg_channel_check *channel_check) 
   fputs("</span>", out);
 }
 
-static void put_claim(FILE *out, const fg_scan_result_claim *claim) {
+static void put_claim_row(FILE *out, const fg_scan_result_claim *claim) {
   char words[64];
   fputs("<tr class=\"on\">", out);
-  put_name(out, claim->id, claim->words);
+  put_effect_name(out, claim->id, claim->words);
   fprintf(out, "<td class=\"w\"><span class=\"tag %s\">%s</span></td><td class=\"w\">",
           claim->sure ? claim->free ? "open" : "found" : "tied",
           claim->free ? "unattributed" : fg_loop_verdict_word(claim->verdict));
@@ -174,11 +174,11 @@ static void put_claim(FILE *out, const fg_scan_result_claim *claim) {
   put_shares(out, claim->would_explain, claim->retained_share, claim->of_width);
 }
 
-static void put_unclaimed(FILE *out, const fg_scan_result_unclaimed *one) {
+static void put_unclaimed_row(FILE *out, const fg_scan_result_unclaimed *one) {
   fg_loop_verdict verdict = one->verdict;
   char words[32];
   fputs("<tr>", out);
-  put_name(out, one->id, one->words);
+  put_effect_name(out, one->id, one->words);
   fg_scan_loop_length_words(one->smallest_um, words, sizeof words);
   fprintf(out, "<td class=\"w\"><span class=\"tag %s\">%s</span></td><td class=\"w\">",
           verdict == FG_LOOP_TIED     ? "tied"
@@ -200,9 +200,9 @@ static void put_candidates(FILE *out, const fg_scan_result *result) {
         "</tr>\n",
         out);
   for (size_t i = 0; i < result->claims; i++)
-    put_claim(out, &result->claim[i]);
+    put_claim_row(out, &result->claim[i]);
   for (size_t i = 0; i < result->unclaimeds; i++)
-    put_unclaimed(out, &result->unclaimed[i]);
+    put_unclaimed_row(out, &result->unclaimed[i]);
   fprintf(out,
           "</table></div>\n<p class=\"note\">Absent: %g µm of it would have shown. Inconclusive: "
           "the data could not have shown that much. Absorbed by geometry: circles that move and "
@@ -263,7 +263,7 @@ static void put_scale(FILE *out, const fg_scan_result *result) {
 
 /* ---- errors ---- */
 
-static void put_error(FILE *out, const char *name, double before, double after) {
+static void put_error_row(FILE *out, const char *name, double before, double after) {
   char words[2][32];
   if (!isfinite(before)) return;
   fg_scan_loop_length_words(before, words[0], sizeof words[0]);
@@ -303,7 +303,7 @@ static void put_edge_noise(FILE *out, const fg_scan_noise *noise) {
             words[0]);
 }
 
-static void put_noise(FILE *out, const fg_scan_noise *noise) {
+static void put_noise_words(FILE *out, const fg_scan_noise *noise) {
   fputs("<div class=\"scroll\"><table><tr><th>noise of a row</th><th>white, sd</th>"
         "<th>shared by<br>neighbours, sd</th><th>over</th></tr>\n",
         out);
@@ -325,7 +325,7 @@ static void put_held_out(FILE *out, const fg_scan_result *result) {
   fputs(".</p>\n", out);
 }
 
-static void put_errors(FILE *out, const fg_scan_result *result) {
+static void put_error_table(FILE *out, const fg_scan_result *result) {
   const fg_scan_loop_error *b = &result->before, *a = &result->after;
   size_t left_out = 0;
   char words[FG_HELD_OUT_WORDS];
@@ -334,14 +334,14 @@ static void put_errors(FILE *out, const fg_scan_result *result) {
   fputs("<section><h2 class=\"first\">Errors of the edge rows</h2>\n<div class=\"scroll\"><table>"
         "<tr><th>error</th><th>before</th><th>after</th><th>ratio</th></tr>\n",
         out);
-  put_error(out, "rms", b->rms, a->rms);
-  put_error(out, "robust sd", b->robust_sd, a->robust_sd);
-  put_error(out, "95th percentile", b->p95, a->p95);
-  put_error(out, "maximum", b->maximum, a->maximum);
+  put_error_row(out, "rms", b->rms, a->rms);
+  put_error_row(out, "robust sd", b->robust_sd, a->robust_sd);
+  put_error_row(out, "95th percentile", b->p95, a->p95);
+  put_error_row(out, "maximum", b->maximum, a->maximum);
   fg_scan_loop_held_out_words(result, words);
-  if (words[0]) put_error(out, words, b->held_out_rms, a->held_out_rms);
+  if (words[0]) put_error_row(out, words, b->held_out_rms, a->held_out_rms);
   if (result->of_width)
-    put_error(out, "half the width, rms", result->width_before_um, result->width_after_um);
+    put_error_row(out, "half the width, rms", result->width_before_um, result->width_after_um);
   fg_scan_loop_length_words(result->noise_floor_um, words, sizeof words);
   fputs("</table></div>\n", out);
   fprintf(out,
@@ -351,11 +351,11 @@ static void put_errors(FILE *out, const fg_scan_result *result) {
           result->rows, result->row_stations, left_out, words, a->rms / result->noise_floor_um);
   fputs("</p>\n", out);
   put_held_out(out, result);
-  put_noise(out, &result->noise);
+  put_noise_words(out, &result->noise);
   fputs("</section>\n", out);
 }
 
-static fg_status put_origin(fg_context *ctx, FILE *out, const fg_scan_result *result) {
+static fg_status put_model_origin(fg_context *ctx, FILE *out, const fg_scan_result *result) {
   fg_provenance from = {.design = &result->scan[0].before->design, .of_scans = true};
   for (size_t i = 0; i < result->scans; i++)
     fg_provenance_take_date(&from, result->scan[i].before->date);
@@ -367,7 +367,7 @@ fg_status fg_scan_loop_write_html(fg_context *ctx, const fg_scan_loop *loop, FIL
   char *sentence = NULL;
   FG_TRY(fg_scan_loop_sentence(ctx, result, &sentence));
   fg_html_begin(out, "Closing the loop");
-  fg_status status = put_head(ctx, out, result, sentence);
+  fg_status status = put_loop_head(ctx, out, result, sentence);
   free(sentence);
   FG_TRY(status);
   put_explanations(out, result);
@@ -379,8 +379,8 @@ fg_status fg_scan_loop_write_html(fg_context *ctx, const fg_scan_loop *loop, FIL
   fg_scan_loop_page_dimensions(out, result);
   fg_scan_loop_page_bumps(out, result);
   put_candidates(out, result);
-  put_errors(out, result);
-  FG_TRY(put_origin(ctx, out, result));
+  put_error_table(out, result);
+  FG_TRY(put_model_origin(ctx, out, result));
   fg_html_end(out);
   return fg_stream_finish(ctx, out, "the loop's page");
 }

@@ -55,7 +55,7 @@ static void put_points(const fg_plot *at, const series *s, size_t scan, bool lig
 }
 
 /* Draws the mean of all rows in each bin, as a guide to the eye. */
-static void put_mean(const fg_plot *at, const series *s, size_t scan) {
+static void put_bin_means(const fg_plot *at, const series *s, size_t scan) {
   double sum[BINS] = {0}, n[BINS] = {0}, x, y, place[BINS];
   size_t rows = s->result->rows, count = 0;
   for (size_t i = 0; i < rows; i++)
@@ -78,19 +78,19 @@ static void put_mean(const fg_plot *at, const series *s, size_t scan) {
   fg_plot_line(at, place, sum, bins, style);
 }
 
-static void put_noise(const fg_plot *at, double noise_um) {
+static void put_noise_band(const fg_plot *at, double noise_um) {
   double top = fmin(2 * noise_um, at->y_high);
   fprintf(at->out, "<rect class=\"noise\" x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\"/>\n",
           at->left, fg_plot_y(at, top), at->right - at->left,
           fmax(1, fg_plot_y(at, -top) - fg_plot_y(at, top)));
 }
 
-static void put_plot(FILE *out, const series *s, const double range[2], double limit_um,
-                     const char *caption) {
+static void put_residual_plot(FILE *out, const series *s, const double range[2], double limit_um,
+                              const char *caption) {
   fg_plot at = {out, WIDTH, 70, 510, 12, 214, range[0], range[1], -limit_um, limit_um};
   fprintf(out, "<figure><figcaption><b>%s</b></figcaption>", caption);
   fg_plot_begin(&at, HEIGHT, caption);
-  put_noise(&at, s->result->noise_floor_um);
+  put_noise_band(&at, s->result->noise_floor_um);
   fg_plot_y_axis(&at, "residual, µm");
   fg_plot_x_numbers(&at);
   fg_plot_x_title(&at, s->result->coordinate_title[s->coordinate]);
@@ -98,12 +98,12 @@ static void put_plot(FILE *out, const series *s, const double range[2], double l
     for (int light = 1; light >= 0; light--)
       put_points(&at, s, scan, light);
   for (size_t scan = 0; scan < s->result->scans && scan < COLOURS; scan++)
-    put_mean(&at, s, scan);
+    put_bin_means(&at, s, scan);
   fg_plot_end(&at);
   fputs("</figure>\n", out);
 }
 
-static bool find_range(const series *s, double range[2]) {
+static bool find_abscissa_range(const series *s, double range[2]) {
   double x, y;
   range[0] = INFINITY;
   range[1] = -INFINITY;
@@ -121,10 +121,11 @@ static void put_all(FILE *out, const fg_scan_result *result, const double limit_
   for (int c = 0; c < FG_SCAN_COORDINATES; c++) {
     series s = {result, (fg_scan_coordinate)c, false};
     double range[2];
-    if (!find_range(&s, range)) continue;
-    put_plot(out, &s, range, limit_um[0], result->corrected ? "Before" : "As measured");
+    if (!find_abscissa_range(&s, range)) continue;
+    put_residual_plot(out, &s, range, limit_um[0], result->corrected ? "Before" : "As measured");
     s.after = true;
-    if (result->corrected) put_plot(out, &s, range, limit_um[0], "After, to the same scale");
+    if (result->corrected)
+      put_residual_plot(out, &s, range, limit_um[0], "After, to the same scale");
   }
   fputs("</div>\n", out);
 }
@@ -143,7 +144,7 @@ static void put_enlarged(FILE *out, const fg_scan_result *result, const double l
   for (int c = 0; c < FG_SCAN_COORDINATES; c++) {
     series s = {result, (fg_scan_coordinate)c, true};
     double range[2];
-    if (find_range(&s, range)) put_plot(out, &s, range, limit_um[1], caption);
+    if (find_abscissa_range(&s, range)) put_residual_plot(out, &s, range, limit_um[1], caption);
   }
   fputs("</div></details>\n", out);
 }
@@ -168,7 +169,7 @@ static void put_scan_keys(FILE *out, const fg_scan_result *result) {
   fputs(".", out);
 }
 
-static void put_key(FILE *out, const fg_scan_result *result) {
+static void put_plot_key(FILE *out, const fg_scan_result *result) {
   fputs("<p class=\"note\">Dots: edge rows (thinned). Line: their mean. Grey band: two sd of the "
         "noise of one row.",
         out);
@@ -189,7 +190,7 @@ fg_status fg_scan_loop_page_residuals(fg_context *ctx, FILE *out, const fg_scan_
     limit[i] = fmax(1.15 * limit[i], 3 * result->noise_floor_um);
   if (!(limit[0] > 0)) return FG_OK;
   fputs("<section><h2 class=\"first\">Residual against each coordinate</h2>\n", out);
-  put_key(out, result);
+  put_plot_key(out, result);
   put_all(out, result, limit);
   put_enlarged(out, result, limit);
   fputs("</section>\n", out);

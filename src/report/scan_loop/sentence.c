@@ -19,8 +19,8 @@ static fg_status say_parameters(fg_context *ctx, const fg_scan_result_claim *cla
 }
 
 /* Appends the effects that every explanation includes: listed ones, or free curves. */
-static fg_status say_claims(fg_context *ctx, const fg_scan_result *result, bool free_curves,
-                            char **text) {
+static fg_status append_claims(fg_context *ctx, const fg_scan_result *result, bool free_curves,
+                               char **text) {
   const char *before = !free_curves ? "Found: "
                        : *text      ? "; no listed effect explains "
                                     : "No listed effect explains ";
@@ -37,7 +37,7 @@ static fg_status say_claims(fg_context *ctx, const fg_scan_result *result, bool 
 }
 
 /* Appends the effects of each explanation besides the common ones. */
-static fg_status say_explanations(fg_context *ctx, const fg_scan_result *result, char **text) {
+static fg_status append_explanations(fg_context *ctx, const fg_scan_result *result, char **text) {
   enum { NAMED = 3 };
   size_t count = result->explanations, total = count + result->unlisted;
   size_t named = total <= NAMED ? count : NAMED - 1;
@@ -100,7 +100,7 @@ static kept count_all_kept(const fg_scan_result *result) {
 }
 
 /* Appends the dimensions without a benefit, which stay as measured. */
-static fg_status say_kept(fg_context *ctx, const fg_scan_result *result, char **text) {
+static fg_status append_kept(fg_context *ctx, const fg_scan_result *result, char **text) {
   const kept k = count_all_kept(result);
   size_t kinds = 0, whole = 0, tied = 0, at = 0;
   for (int d = 0; d < FG_CORRECTED; d++) {
@@ -153,17 +153,17 @@ static fg_status say_edges(fg_context *ctx, const fg_scan_result *result, char *
 static fg_status say_points(fg_context *ctx, const fg_scan_result *result, char **text) {
   if (result->verdict == FG_LOOP_CLEAN) return say_clean(ctx, result, text);
   if (!result->corrected) return say_edges(ctx, result, text);
-  FG_TRY(say_claims(ctx, result, false, text));
-  FG_TRY(say_claims(ctx, result, true, text));
-  if (result->tied) FG_TRY(say_explanations(ctx, result, text));
+  FG_TRY(append_claims(ctx, result, false, text));
+  FG_TRY(append_claims(ctx, result, true, text));
+  if (result->tied) FG_TRY(append_explanations(ctx, result, text));
   FG_TRY(fg_text_append(ctx, text, ". "));
   FG_TRY(say_chance(ctx, result->p_value, text));
   FG_TRY(say_errors(ctx, result, text));
-  return say_kept(ctx, result, text);
+  return append_kept(ctx, result, text);
 }
 
 /* Appends the effects of the width separately: the residual does not include them. */
-static fg_status say_width(fg_context *ctx, const fg_scan_result *result, char **text) {
+static fg_status append_width(fg_context *ctx, const fg_scan_result *result, char **text) {
   char value[64], before[32], after[32];
   for (size_t i = 0; i < result->claims; i++) {
     const fg_scan_result_claim *claim = &result->claim[i];
@@ -195,7 +195,7 @@ static fg_status say_bump_claim(fg_context *ctx, const fg_scan_result_response *
 }
 
 /* Appends the effects over the bumps. */
-static fg_status say_bumps(fg_context *ctx, const fg_scan_result_bumps *bumps, char **text) {
+static fg_status append_bumps(fg_context *ctx, const fg_scan_result_bumps *bumps, char **text) {
   const char *first =
       bumps->declared_path ? " Over the bumps, beside the declared forming: " : " Over the bumps: ";
   const char *lead = first;
@@ -213,6 +213,6 @@ static fg_status say_bumps(fg_context *ctx, const fg_scan_result_bumps *bumps, c
 fg_status fg_scan_loop_sentence(fg_context *ctx, const fg_scan_result *result, char **text) {
   *text = NULL;
   FG_TRY(say_points(ctx, result, text));
-  if (result->of_width) FG_TRY(say_width(ctx, result, text));
-  return say_bumps(ctx, &result->bumps, text);
+  if (result->of_width) FG_TRY(append_width(ctx, result, text));
+  return append_bumps(ctx, &result->bumps, text);
 }

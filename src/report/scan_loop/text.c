@@ -49,7 +49,7 @@ static void put_explanations(FILE *out, const fg_scan_result *result) {
     fprintf(out, "To tell: %s.\n", result->advice[i]);
 }
 
-static void put_unclaimed(FILE *out, const fg_scan_result *result) {
+static void print_unclaimed(FILE *out, const fg_scan_result *result) {
   for (size_t i = 0; i < result->unclaimeds; i++) {
     const fg_scan_result_unclaimed *one = &result->unclaimed[i];
     if (one->verdict == FG_LOOP_TIED) continue; /* in an explanation */
@@ -60,28 +60,28 @@ static void put_unclaimed(FILE *out, const fg_scan_result *result) {
   }
 }
 
-static void put_error(FILE *out, const char *name, double before, double after) {
+static void print_error(FILE *out, const char *name, double before, double after) {
   if (isfinite(before)) fprintf(out, "  %-22s %10.4g %10.4g\n", name, before, after);
 }
 
-static void put_errors(FILE *out, const fg_scan_result *result) {
+static void print_errors(FILE *out, const fg_scan_result *result) {
   const fg_scan_loop_error *b = &result->before, *a = &result->after;
   fputs("errors of the edge rows, um   before      after\n", out);
-  put_error(out, "rms", b->rms, a->rms);
-  put_error(out, "robust sd", b->robust_sd, a->robust_sd);
-  put_error(out, "95th percentile", b->p95, a->p95);
-  put_error(out, "maximum", b->maximum, a->maximum);
+  print_error(out, "rms", b->rms, a->rms);
+  print_error(out, "robust sd", b->robust_sd, a->robust_sd);
+  print_error(out, "95th percentile", b->p95, a->p95);
+  print_error(out, "maximum", b->maximum, a->maximum);
   char held_out[FG_HELD_OUT_WORDS];
   fg_scan_loop_held_out_words(result, held_out);
   if (held_out[0]) {
     fprintf(out, "  %s:\n", held_out);
-    put_error(out, "rms", b->held_out_rms, a->held_out_rms);
+    print_error(out, "rms", b->held_out_rms, a->held_out_rms);
   }
   if (result->of_width)
-    put_error(out, "half the width, rms", result->width_before_um, result->width_after_um);
+    print_error(out, "half the width, rms", result->width_before_um, result->width_after_um);
 }
 
-static void put_noise(FILE *out, const fg_scan_noise *noise) {
+static void print_noise(FILE *out, const fg_scan_noise *noise) {
   if (noise->discs) {
     fputs("noise of a row, um: white, of every disc its own:", out);
     for (size_t d = 0; d < noise->discs; d++)
@@ -116,7 +116,7 @@ static void put_moved(FILE *out, const char *symbol, double before_mm, double af
   fputs(" mm", out);
 }
 
-static void put_bump(FILE *out, const fg_bump *before, const fg_bump *after) {
+static void print_bump(FILE *out, const fg_bump *before, const fg_bump *after) {
   fprintf(out, "  bump %d:", before->number);
   if (!isfinite(before->radius_mm) || !isfinite(after->radius_mm)) {
     fputs(" not fitted\n", out);
@@ -140,7 +140,7 @@ static void put_foils(FILE *out, const fg_measurement *before, const fg_measurem
     put_moved(out, "R0", b->overall.radius_mm, a->overall.radius_mm, a->overall.u_radius_mm);
     fputc('\n', out);
     for (size_t k = 0; k < b->bump_count && k < a->bump_count; k++)
-      put_bump(out, &b->bumps[k], &a->bumps[k]);
+      print_bump(out, &b->bumps[k], &a->bumps[k]);
     for (int k = 0; k < FG_CORRECTED; k++)
       put_choice(out, fg_corrected_symbol((fg_corrected)k), &a->choice[k], tied);
   }
@@ -184,10 +184,10 @@ fg_status fg_scan_loop_write_text(fg_context *ctx, const fg_scan_loop *loop, FIL
   for (size_t i = 0; i < result->scans; i++)
     put_foils(out, result->scan[i].before, result->scan[i].after, result->tied);
   fputs("not claimed:\n", out);
-  put_unclaimed(out, result);
+  print_unclaimed(out, result);
   fg_text_bumps_rejected(&result->bumps, out);
-  put_errors(out, result);
-  put_noise(out, &result->noise);
+  print_errors(out, result);
+  print_noise(out, &result->noise);
   fputs("+- is U = 2 u.\n", out);
   return fg_stream_finish(ctx, out, "the loop's report");
 }

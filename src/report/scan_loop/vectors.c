@@ -54,11 +54,11 @@ fg_status fg_scan_loop_residual_limit(fg_context *ctx, const fg_scan_result *res
   return FG_OK;
 }
 
-static bool is_shown(const vectors *v, size_t i) {
+static bool is_row_shown(const vectors *v, size_t i) {
   return v->result->row[i].scan == v->scan;
 }
 
-static fg_point place(const vectors *v, fg_point mm) {
+static fg_point place_in_drawing(const vectors *v, fg_point mm) {
   return (fg_point){MARGIN + v->scale * (mm.x - v->low[0]), MARGIN + v->scale * (mm.y - v->low[1])};
 }
 
@@ -78,8 +78,8 @@ static void put_strip(const vectors *v) {
     fputs("<path class=\"strip\" d=\"", v->out);
     for (size_t i = 0; i < foil->strip.count; i += step) {
       const fg_station *s = &foil->strip.stations[i];
-      fg_point p =
-          place(v, (fg_point){0.5 * (s->left.x + s->right.x), 0.5 * (s->left.y + s->right.y)});
+      fg_point p = place_in_drawing(
+          v, (fg_point){0.5 * (s->left.x + s->right.x), 0.5 * (s->left.y + s->right.y)});
       fprintf(v->out, "%c%.1f %.1f", i ? 'L' : 'M', p.x, p.y);
     }
     fputs("\"/>\n", v->out);
@@ -105,7 +105,7 @@ static bool needle(const vectors *v, size_t from, size_t to, fg_point *base, fg_
   double length = hypot(normal.x, normal.y);
   if (!(n > 0) || !(length > 0)) return false;
   *value = sum / n;
-  *base = place(v, (fg_point){at.x / n, at.y / n});
+  *base = place_in_drawing(v, (fg_point){at.x / n, at.y / n});
   if (v->result->row[from].weight <= v->result->light_weight) *value = 0;
   double reach = fmax(-1.6, fmin(1.6, *value * v->unit_per_um / v->longest)) * v->longest;
   *tip = (fg_point){base->x + reach * normal.x / length, base->y + reach * normal.y / length};
@@ -125,7 +125,7 @@ static void put_needles(const vectors *v, needle_part part) {
   for (size_t i = 0, end; i < v->result->rows; i = end) {
     end = arc_end(v, i);
     bool open = false;
-    for (size_t k = i; k < end && is_shown(v, i); k += v->block) {
+    for (size_t k = i; k < end && is_row_shown(v, i); k += v->block) {
       fg_point base, tip;
       double value;
       if (!needle(v, k, k + v->block < end ? k + v->block : end, &base, &tip, &value)) continue;
@@ -143,7 +143,7 @@ static void put_needles(const vectors *v, needle_part part) {
 }
 
 /* Numbers inside the bumps, away from the needles. */
-static void put_numbers(const vectors *v) {
+static void put_bump_numbers(const vectors *v) {
   const fg_scan_result *result = v->result;
   size_t count = 0;
   for (size_t k = 0; k < result->views; k++)
@@ -152,8 +152,8 @@ static void put_numbers(const vectors *v) {
   for (size_t i = 0, end; i < result->rows; i = end) {
     end = arc_end(v, i);
     const fg_scan_result_row *row = &result->row[i + (end - i) / 2];
-    if (!row->bump || !is_shown(v, i)) continue;
-    fg_point p = place(v, row->ideal_mm);
+    if (!row->bump || !is_row_shown(v, i)) continue;
+    fg_point p = place_in_drawing(v, row->ideal_mm);
     fprintf(v->out, "<text class=\"bump\" x=\"%.1f\" y=\"%.1f\">%d</text>\n",
             p.x - 22 * row->normal.x, p.y - 22 * row->normal.y + 5, row->bump);
   }
@@ -176,7 +176,7 @@ static double rms_of(const vectors *v) {
   double sum = 0, n = 0;
   for (size_t i = 0; i < v->result->rows; i++) {
     const fg_scan_result_row *row = &v->result->row[i];
-    if (!is_shown(v, i) || !(row->weight > 0)) continue;
+    if (!is_row_shown(v, i) || !(row->weight > 0)) continue;
     sum += row->weight * row->residual_um[v->after] * row->residual_um[v->after];
     n += row->weight;
   }
@@ -195,7 +195,7 @@ static void put_figure(const vectors *v, const char *when) {
   put_strip(v);
   for (int part = NEEDLES_OUT; part <= BASES; part++)
     put_needles(v, (needle_part)part);
-  put_numbers(v);
+  put_bump_numbers(v);
   fputs("</svg></figure>\n", v->out);
 }
 
@@ -207,7 +207,7 @@ static void find_box(vectors *v) {
   }
   for (size_t i = 0; i < v->result->rows; i++) {
     const fg_scan_result_row *row = &v->result->row[i];
-    if (!is_shown(v, i)) continue;
+    if (!is_row_shown(v, i)) continue;
     count++;
     v->low[0] = fmin(v->low[0], row->at_mm.x);
     v->low[1] = fmin(v->low[1], row->at_mm.y);
@@ -219,7 +219,7 @@ static void find_box(vectors *v) {
                   (HEIGHT_MAX - 2.0 * MARGIN) / (v->high[1] - v->low[1]));
 }
 
-static void put_scan(vectors *v) {
+static void put_scan_vectors(vectors *v) {
   const fg_scan_result_scan *scan = &v->result->scan[v->scan];
   if (v->result->scans > 1) {
     fputs("<h3>", v->out);
@@ -259,7 +259,7 @@ static void put_scans(FILE *out, const fg_scan_result *result, double limit_um) 
           fg_scan_loop_nice_below(1000 * needle_per_um(&v, limit_um) / scale) * scale / 1000;
       if (drawn) {
         v.drawings += v.result->corrected ? 2 : 1;
-        put_scan(&v);
+        put_scan_vectors(&v);
       }
     }
   if (v.drawings) put_scale(&v);

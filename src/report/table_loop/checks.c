@@ -12,7 +12,7 @@ const char *fg_loop_check_id(fg_loop_check check) {
   return ids[check];
 }
 
-static void append(char text[FG_LOOP_WORDS], const char *words) {
+static void append_check_words(char text[FG_LOOP_WORDS], const char *words) {
   size_t used = strlen(text);
   fg_text_clip(text + used, FG_LOOP_WORDS - used, "%s", words);
 }
@@ -40,8 +40,8 @@ static void settings_of(const fg_loop_report *report, fg_loop_check check,
   *text = 0;
   for (size_t i = 0; i < problem->coordinates; i++) {
     if (!is_setting(&problem->coordinate[i], check)) continue;
-    if (*text) append(text, ", ");
-    append(text, problem->coordinate[i].name);
+    if (*text) append_check_words(text, ", ");
+    append_check_words(text, problem->coordinate[i].name);
   }
 }
 
@@ -83,11 +83,12 @@ static void name_worst(const fg_loop_report *report, const fg_loop_checked *chec
       fg_text_clip(number, sizeof number, "%s", report->row_name[row]);
     else
       fg_text_clip(number, sizeof number, "%zu", row + 1);
-    append(text, !k                              ? "; most at the settings of "
-                 : k + 1 == checked->worst_count ? " and "
-                                                 : ", ");
-    if (!k && !report->row_name) append(text, checked->worst_count > 1 ? "rows " : "row ");
-    append(text, number);
+    append_check_words(text, !k                              ? "; most at the settings of "
+                             : k + 1 == checked->worst_count ? " and "
+                                                             : ", ");
+    if (!k && !report->row_name)
+      append_check_words(text, checked->worst_count > 1 ? "rows " : "row ");
+    append_check_words(text, number);
   }
 }
 

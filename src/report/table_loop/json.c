@@ -84,7 +84,8 @@ static void write_row_names(fg_json *json, const fg_loop_report *report,
   fg_json_array_end(json);
 }
 
-static void write_claim(fg_json *json, const fg_loop_report *report, const fg_loop_claim *claim) {
+static void write_table_claim(fg_json *json, const fg_loop_report *report,
+                              const fg_loop_claim *claim) {
   static const char *const held_out[] = {"none kept aside", "not contradicted", "confirmed"};
   fg_json_object(json, NULL);
   fg_json_string(json, "id", claim->candidate.effect->id);
@@ -135,7 +136,7 @@ static void write_claim(fg_json *json, const fg_loop_report *report, const fg_lo
   fg_json_object_end(json);
 }
 
-static void write_row(fg_json *json, const fg_loop_report *report, size_t row) {
+static void write_row_index(fg_json *json, const fg_loop_report *report, size_t row) {
   fg_json_integer(json, NULL, (int64_t)report->problem->row[row] + 1);
 }
 
@@ -179,7 +180,7 @@ static void write_failed(fg_json *json, const fg_loop_report *report) {
   fg_json_number(json, "p_value", failed->p_value);
   fg_json_array(json, "nearest");
   for (size_t i = 0; i < failed->worst_count; i++)
-    write_row(json, report, failed->worst[i]);
+    write_row_index(json, report, failed->worst[i]);
   fg_json_array_end(json);
   fg_json_object_end(json);
 }
@@ -202,12 +203,12 @@ static void write_curve(fg_json *json, const fg_loop_report *report) {
   fg_json_number(json, "p_value", curve->p_value);
   fg_json_array(json, "nearest");
   for (size_t i = 0; i < curve->nearest_count; i++)
-    write_row(json, report, curve->nearest[i]);
+    write_row_index(json, report, curve->nearest[i]);
   fg_json_array_end(json);
   fg_json_object_end(json);
 }
 
-static void write_rejected(fg_json *json, const fg_loop_rejected *one) {
+static void write_table_rejected(fg_json *json, const fg_loop_rejected *one) {
   fg_json_object(json, NULL);
   fg_json_line(json);
   fg_json_string(json, "id", one->candidate.effect->id);
@@ -223,7 +224,7 @@ static void write_rejected(fg_json *json, const fg_loop_rejected *one) {
 
 enum { LISTED_HELD_OUT = 1000 }; /* rows; more are only counted */
 
-static void write_inputs(fg_json *json, const fg_loop_report *report) {
+static void write_table_inputs(fg_json *json, const fg_loop_report *report) {
   const fg_loop_problem *problem = &report->problem->problem;
   size_t held_out = 0;
   for (size_t i = 0; i < problem->rows; i++)
@@ -281,7 +282,7 @@ static void write_findings(fg_json *json, const fg_loop_report *report) {
   write_error(json, "before", &result->before);
   fg_json_array(json, "claims");
   for (size_t i = 0; i < result->claims; i++)
-    write_claim(json, report, &result->claim[i]);
+    write_table_claim(json, report, &result->claim[i]);
   fg_json_array_end(json);
   if (result->fails && !result->has_curve)
     write_failed(json, report);
@@ -300,7 +301,7 @@ static void write_findings(fg_json *json, const fg_loop_report *report) {
   write_model(json, report);
   fg_json_array(json, "rejected");
   for (size_t i = 0; i < result->rejects; i++)
-    write_rejected(json, &result->rejected[i]);
+    write_table_rejected(json, &result->rejected[i]);
   fg_json_array_end(json);
   fg_json_array(json, "separating_measurement");
   for (size_t i = 0; i < result->advices; i++) {
@@ -339,7 +340,7 @@ fg_status fg_loop_write_json(fg_context *ctx, const fg_loop_report *report, FILE
   fg_json_string(&json, "domain", "table");
   fg_json_string(&json, "verdict", fg_loop_outcome_word(result->verdict));
   fg_json_string(&json, "summary", sentence);
-  write_inputs(&json, report);
+  write_table_inputs(&json, report);
   fg_json_number(&json, "noise_floor", result->noise_floor);
   fg_json_number(&json, "family_p_value", result->family_p);
   fg_json_object(&json, "noise");

@@ -24,7 +24,8 @@ static void write_coordinate(fg_json *json, const fg_loop_coordinate *at) {
   fg_json_object_end(json);
 }
 
-static void write_claim(fg_json *json, const fg_loop_report *report, const fg_loop_claim *claim) {
+static void write_model_claim(fg_json *json, const fg_loop_report *report,
+                              const fg_loop_claim *claim) {
   const fg_loop_coordinate *at = report->problem->problem.coordinate;
   const fg_loop_effect *effect = claim->candidate.effect;
   fg_json_object(json, NULL);
@@ -73,7 +74,7 @@ fg_status fg_loop_write_model(fg_context *ctx, const fg_loop_report *report, FIL
   fg_json_number(&json, "noise_sd", result->noise.sd);
   fg_json_array(&json, "claims");
   for (size_t i = 0; i < result->claims; i++)
-    write_claim(&json, report, &result->claim[i]);
+    write_model_claim(&json, report, &result->claim[i]);
   fg_json_array_end(&json);
   if (result->has_curve) {
     fg_json_object(&json, "unattributed");

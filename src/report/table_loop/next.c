@@ -25,13 +25,13 @@ const char *fg_loop_outcome_meaning(const fg_loop_result *result) {
              : "The declared model may stand, but not one size of scatter for all rows.";
 }
 
-static void append(char text[FG_LOOP_STEP], const char *words) {
+static void append_step_words(char text[FG_LOOP_STEP], const char *words) {
   size_t used = strlen(text);
   fg_text_clip(text + used, FG_LOOP_STEP - used, "%s", words);
 }
 
 /* Returns true for a name that a formula accepts without quotes. */
-static bool is_plain(const char *name) {
+static bool is_plain_name(const char *name) {
   bool plain = isalpha((unsigned char)*name);
   for (; *name; name++)
     plain = plain && (isalnum((unsigned char)*name) || *name == '_' || *name == '.');
@@ -41,16 +41,16 @@ static bool is_plain(const char *name) {
 static void append_column(const fg_loop_effect *effect, const fg_loop_coordinate *at,
                           char text[FG_LOOP_STEP]) {
   bool factor = effect->own_levels && !at->levels;
-  if (factor) append(text, "factor(");
-  append(text, at->name);
-  if (factor) append(text, ")");
+  if (factor) append_step_words(text, "factor(");
+  append_step_words(text, at->name);
+  if (factor) append_step_words(text, ")");
 }
 
 /* Appends the main terms of a power or an interaction. */
 static void append_main(const fg_loop_coordinate *at, bool alone, char text[FG_LOOP_STEP]) {
   if (alone || at->roles & FG_LOOP_DECLARED) return;
-  append(text, at->name);
-  append(text, " + ");
+  append_step_words(text, at->name);
+  append_step_words(text, " + ");
 }
 
 static void append_term(const fg_loop_report *report, const fg_loop_candidate *candidate,
@@ -59,7 +59,7 @@ static void append_term(const fg_loop_report *report, const fg_loop_candidate *c
   const fg_loop_coordinate *a = &coordinate[candidate->a], *b = &coordinate[candidate->b];
   const char *term = candidate->effect->term;
   bool alone = !strcmp(term, "{a}");
-  append(text, " + ");
+  append_step_words(text, " + ");
   append_main(a, alone, text);
   if (candidate->effect->pair) append_main(b, alone, text);
   for (; *term; term++) {
@@ -67,7 +67,7 @@ static void append_term(const fg_loop_report *report, const fg_loop_candidate *c
       append_column(candidate->effect, term[1] == 'a' ? a : b, text);
       term += 2;
     } else {
-      append(text, (char[]){*term, 0});
+      append_step_words(text, (char[]){*term, 0});
     }
   }
 }
@@ -79,7 +79,7 @@ static bool has_term(const fg_loop_report *report, const fg_loop_candidate *cand
   const fg_loop_coordinate *a = &coordinate[candidate->a], *b = &coordinate[candidate->b];
   bool order = a->roles & (FG_LOOP_ORDER | FG_LOOP_BUMP);
   return candidate->effect->term && !order && strcmp(report->spec->model, "arc_length") != 0 &&
-         is_plain(a->name) && is_plain(b->name);
+         is_plain_name(a->name) && is_plain_name(b->name);
 }
 
 /* Returns true when all members of the alias class are of the same columns: only the basis is open.
@@ -230,9 +230,9 @@ static void step_of_curve(const fg_loop_report *report, char text[FG_LOOP_STEP])
       fg_text_clip(number, sizeof number, "%s%s", k ? ", " : ", most at ", report->row_name[row]);
     else
       fg_text_clip(number, sizeof number, "%s%zu", k ? ", " : ", most at rows ", row + 1);
-    append(text, number);
+    append_step_words(text, number);
   }
-  append(text, ", give it as a column, and run again.");
+  append_step_words(text, ", give it as a column, and run again.");
 }
 
 size_t fg_loop_next_count(const fg_loop_report *report) {

@@ -64,7 +64,7 @@ static const char style[] =
     "td,th{padding:2px 6px}.say,.mean{font-size:15px}.soft{font-size:12px}.plot{font-size:14px}"
     "*{print-color-adjust:exact;-webkit-print-color-adjust:exact}}";
 
-static void put_errors(FILE *out, const fg_loop_report *report) {
+static void put_table_errors(FILE *out, const fg_loop_report *report) {
   const fg_loop_result *result = report->result;
   fg_loop_error_row row[FG_LOOP_ERROR_ROWS];
   size_t rows = fg_loop_error_rows(report, row);
@@ -125,7 +125,7 @@ static void put_residual_tests(FILE *out, const fg_loop_report *report) {
 }
 
 /* Words first, the id small. */
-static void put_name(FILE *out, const char *words, const char *id) {
+static void put_candidate_name(FILE *out, const char *words, const char *id) {
   fg_html_text(out, words);
   fputs(" <small>", out);
   fg_html_text(out, id);
@@ -144,7 +144,7 @@ static void put_claim_row(FILE *out, const fg_loop_report *report, const fg_loop
   fg_loop_claim_words(report, claim, words);
   fg_loop_claim_size(report, claim, size);
   fputs("<tr><td>", out);
-  put_name(out, words, claim->name);
+  put_candidate_name(out, words, claim->name);
   fprintf(out, "</td><td class=\"w\"><b>%s</b></td><td class=\"w\">",
           fg_loop_verdict_word(claim->verdict));
   fg_html_text(out, size);
@@ -152,7 +152,7 @@ static void put_claim_row(FILE *out, const fg_loop_report *report, const fg_loop
   if (aliases) fputs("<td class=\"w\">", out);
   for (size_t k = 0; k < claim->aliases; k++) {
     fg_loop_alias_words(report, &claim->alias[k], words);
-    put_name(out, words, claim->alias[k].name);
+    put_candidate_name(out, words, claim->alias[k].name);
   }
   fputs(aliases ? "</td></tr>\n" : "</tr>\n", out);
 }
@@ -162,7 +162,7 @@ static void put_rejected_row(FILE *out, const fg_loop_report *report, const fg_l
   char words[FG_LOOP_WORDS];
   fg_loop_candidate_words(report, &one->candidate, words);
   fputs("<tr><td>", out);
-  put_name(out, words, one->name);
+  put_candidate_name(out, words, one->name);
   double shows = fg_loop_readable_size(&one->candidate, one->smallest_detectable);
   fprintf(out,
           "</td><td class=\"w\">%s</td><td class=\"w\">%s</td><td class=\"n\">%s</td>%s</tr>\n",
@@ -223,7 +223,7 @@ static void put_next(FILE *out, const fg_loop_report *report) {
   fputs("</ul></div>", out);
 }
 
-static void put_head(FILE *out, const fg_loop_report *report, const char *sentence) {
+static void put_table_head(FILE *out, const fg_loop_report *report, const char *sentence) {
   static const char *const classes[] = {"clean", "explained", "partly", "unattributed"};
   fg_loop_check check;
   bool suspected =
@@ -258,10 +258,10 @@ static void put_head(FILE *out, const fg_loop_report *report, const char *senten
 fg_status fg_loop_write_html(fg_context *ctx, const fg_loop_report *report, FILE *out) {
   char *sentence = NULL;
   FG_TRY(fg_loop_sentence(ctx, report, &sentence));
-  put_head(out, report, sentence);
+  put_table_head(out, report, sentence);
   free(sentence);
   FG_TRY(fg_loop_plots_put(ctx, out, report));
-  put_errors(out, report);
+  put_table_errors(out, report);
   put_residual_tests(out, report);
   put_notes(out, report);
   put_candidates(out, report);

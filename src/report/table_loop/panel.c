@@ -89,7 +89,7 @@ static double clip(const loop_plot *at, double y) {
 }
 
 /* Levels are spread a little, so that rows do not hide each other. */
-static double place_of(const fg_loop_coordinate *at, size_t row) {
+static double abscissa_of_row(const fg_loop_coordinate *at, size_t row) {
   return at->value[row] + (at->levels ? 0.16 * sin(12.9898 * (double)row) : 0);
 }
 
@@ -101,7 +101,8 @@ static void put_points(const loop_plot *at, const fg_loop_problem *problem,
       if ((problem->held_out && problem->held_out[i]) != held || !isfinite(panel->at->value[i]))
         continue;
       fprintf(at->out, "<circle class=\"%s\" cx=\"%.1f\" cy=\"%.1f\" r=\"%.1f\"/>\n",
-              held ? "held" : "fit", at_x(at, place_of(panel->at, i)), clip(at, panel->residual[i]),
+              held ? "held" : "fit", at_x(at, abscissa_of_row(panel->at, i)),
+              clip(at, panel->residual[i]),
               problem->rows > 400   ? 1.6
               : problem->rows > 100 ? 2.4
                                     : 3.4);
@@ -125,7 +126,7 @@ static void put_marked(const loop_plot *at, const fg_loop_report *report,
   size_t count = marked->effect->outlier == FG_LOOP_EXCHANGED_ROWS ? 2 : marked->rows;
   for (size_t k = 0; k < count; k++) {
     size_t i = marked->row[k], row = report->problem->row[i];
-    double x = at_x(at, place_of(panel->at, i)), y = clip(at, panel->residual[i]);
+    double x = at_x(at, abscissa_of_row(panel->at, i)), y = clip(at, panel->residual[i]);
     bool right = x < (LEFT + RIGHT) / 2.0;
     fprintf(at->out,
             "<circle class=\"mark\" cx=\"%.1f\" cy=\"%.1f\" r=\"5\"/><text class=\"%s\" x=\"%.1f\" "
@@ -163,7 +164,7 @@ static void put_band(const loop_plot *at, const fg_loop_panel *panel) {
   fputs("z\"/>\n", at->out);
 }
 
-static void put_line(const loop_plot *at, const fg_loop_panel *panel) {
+static void put_panel_line(const loop_plot *at, const fg_loop_panel *panel) {
   double half = half_dash(panel);
   if (!panel->points) return;
   fputs("<path class=\"effect\" d=\"", at->out);
@@ -192,7 +193,7 @@ fg_status fg_loop_panel_put(fg_context *ctx, FILE *out, const fg_loop_report *re
   if (panel->band) put_band(&at, panel);
   if (panel->joined) put_joined(&at, problem, panel);
   put_points(&at, problem, panel);
-  if (!panel->band) put_line(&at, panel);
+  if (!panel->band) put_panel_line(&at, panel);
   if (panel->marked) put_marked(&at, report, panel);
   fprintf(out, "</svg><figcaption>%s</figcaption></figure>\n", panel->caption);
   return FG_OK;

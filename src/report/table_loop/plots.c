@@ -25,7 +25,7 @@ static size_t order_coordinate(const fg_loop_problem *problem) {
 /* Computes the residual beside the mean. Where neighbours are correlated the result has the
  * innovations, which are summed up again. Beside unequal spread that is not possible; then the
  * innovations are shown. */
-static void left_over(const fg_loop_report *report, double *left) {
+static void find_left_over(const fg_loop_report *report, double *left) {
   const fg_loop_problem *problem = &report->problem->problem;
   const fg_loop_result *result = report->result;
   bool sum = fg_loop_claims_scatter(result, FG_LOOP_SERIAL) &&
@@ -125,8 +125,8 @@ static void close_section(const fg_loop_report *report, FILE *out) {
 }
 
 /* Draws the finding over residual plus effect, and the residual, on one scale. */
-static fg_status put_pair(fg_context *ctx, FILE *out, const fg_loop_report *report,
-                          fg_loop_panel *first, const double *left) {
+static fg_status put_finding_and_residual(fg_context *ctx, FILE *out, const fg_loop_report *report,
+                                          fg_loop_panel *first, const double *left) {
   const fg_loop_problem *problem = &report->problem->problem;
   fg_loop_panel second = {.at = first->at, .residual = left, .caption = "What is left with it"};
   set_limit(problem, first);
@@ -135,8 +135,8 @@ static fg_status put_pair(fg_context *ctx, FILE *out, const fg_loop_report *repo
   return fg_loop_panel_put(ctx, out, report, &second);
 }
 
-static fg_status put_mean(fg_context *ctx, FILE *out, const fg_loop_report *report,
-                          const fg_loop_claim *claim, const double *left, double *work) {
+static fg_status put_mean_claim(fg_context *ctx, FILE *out, const fg_loop_report *report,
+                                const fg_loop_claim *claim, const double *left, double *work) {
   const fg_loop_problem *problem = &report->problem->problem;
   const fg_loop_effect *effect = claim->candidate.effect;
   size_t rows = problem->rows;
@@ -155,7 +155,7 @@ static fg_status put_mean(fg_context *ctx, FILE *out, const fg_loop_report *repo
     FG_TRY_EXIT(draw_curve(ctx, problem, claim, mean, &panel));
   else if (!outlier)
     FG_TRY_EXIT(draw_levels(ctx, problem, work, mean, &panel));
-  FG_TRY_EXIT(put_pair(ctx, out, report, &panel, left));
+  FG_TRY_EXIT(put_finding_and_residual(ctx, out, report, &panel, left));
 exit:
   free(panel.line);
   return status;
@@ -218,15 +218,15 @@ exit:
   return status;
 }
 
-static fg_status put_claim(fg_context *ctx, FILE *out, const fg_loop_report *report,
-                           const fg_loop_claim *claim, const double *left, double *work) {
+static fg_status put_claim_plots(fg_context *ctx, FILE *out, const fg_loop_report *report,
+                                 const fg_loop_claim *claim, const double *left, double *work) {
   fg_loop_scatter scatter = claim->candidate.effect->scatter;
   char words[FG_LOOP_WORDS];
   fg_loop_claim_words(report, claim, words);
   open_section(out, words, claim->name);
   FG_TRY(scatter == FG_LOOP_SERIAL   ? put_serial(ctx, out, report, claim, left)
          : scatter == FG_LOOP_SPREAD ? put_spread(ctx, out, report, claim, work)
-                                     : put_mean(ctx, out, report, claim, left, work));
+                                     : put_mean_claim(ctx, out, report, claim, left, work));
   close_section(report, out);
   return FG_OK;
 }
@@ -247,7 +247,7 @@ static fg_status put_unattributed(fg_context *ctx, FILE *out, const fg_loop_repo
   for (size_t i = 0; i < curve->count; i++)
     panel.line[panel.points++] = (fg_loop_point){curve->shape[i][0], curve->shape[i][1]};
   open_section(out, words, "unattributed");
-  fg_status status = put_pair(ctx, out, report, &panel, left);
+  fg_status status = put_finding_and_residual(ctx, out, report, &panel, left);
   close_section(report, out);
   free(panel.line);
   return status;
@@ -331,9 +331,9 @@ fg_status fg_loop_plots_put(fg_context *ctx, FILE *out, const fg_loop_report *re
   fg_status status = FG_OK;
   if (!problem->coordinates || !result->after_fit) return FG_OK;
   FG_TRY(fg_memory_allocate(ctx, problem->rows, 3 * sizeof *left, (void **)&left));
-  left_over(report, left);
+  find_left_over(report, left);
   for (size_t m = 0; m < result->claims; m++)
-    FG_TRY_EXIT(put_claim(ctx, out, report, &result->claim[m], left, left + problem->rows));
+    FG_TRY_EXIT(put_claim_plots(ctx, out, report, &result->claim[m], left, left + problem->rows));
   if (result->has_curve)
     FG_TRY_EXIT(put_unattributed(ctx, out, report, left, left + problem->rows));
   if (result->fails) FG_TRY_EXIT(put_failed(ctx, out, report, left, left + problem->rows));

@@ -229,7 +229,7 @@ static void read_slope_differs(const reading *r) {
 }
 
 /* Every wrong row has a size of its own. */
-static void read_rows(const reading *r) {
+static void read_outlier_rows(const reading *r) {
   const fg_loop_claim *claim = r->claim;
   *r->text = '\0';
   for (size_t k = 0; k < claim->columns; k++) {
@@ -258,11 +258,11 @@ static void read_exchange(const reading *r) {
 static void write_reading(const fg_loop_report *report, const fg_loop_claim *claim,
                           char text[FG_LOOP_WORDS]) {
   static void (*const readers[FG_LOOP_READINGS])(const reading *) = {
-      [FG_LOOP_READS_RANGE] = read_range, [FG_LOOP_READS_SLOPE] = read_slope,
-      [FG_LOOP_READS_BEND] = read_bend,   [FG_LOOP_READS_LEVELS] = read_levels,
-      [FG_LOOP_READS_STEP] = read_step,   [FG_LOOP_READS_FADE] = read_fade,
-      [FG_LOOP_READS_SWING] = read_swing, [FG_LOOP_READS_SLOPES] = read_slope_differs,
-      [FG_LOOP_READS_ROWS] = read_rows,   [FG_LOOP_READS_EXCHANGE] = read_exchange,
+      [FG_LOOP_READS_RANGE] = read_range,       [FG_LOOP_READS_SLOPE] = read_slope,
+      [FG_LOOP_READS_BEND] = read_bend,         [FG_LOOP_READS_LEVELS] = read_levels,
+      [FG_LOOP_READS_STEP] = read_step,         [FG_LOOP_READS_FADE] = read_fade,
+      [FG_LOOP_READS_SWING] = read_swing,       [FG_LOOP_READS_SLOPES] = read_slope_differs,
+      [FG_LOOP_READS_ROWS] = read_outlier_rows, [FG_LOOP_READS_EXCHANGE] = read_exchange,
   };
   const fg_loop_coordinate *at = report->problem->problem.coordinate;
   bool own = claim->candidate.effect->accepts != NULL;

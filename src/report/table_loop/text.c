@@ -40,7 +40,8 @@ static fg_status say_aliases(fg_context *ctx, const fg_loop_report *report,
 
 /* Appends a claim as a sentence: an effect of the mean is missing in the model, any other is a
  * statement. */
-static fg_status say_claim(fg_context *ctx, const fg_loop_report *report, size_t i, char **text) {
+static fg_status append_claim(fg_context *ctx, const fg_loop_report *report, size_t i,
+                              char **text) {
   const fg_loop_claim *claim = &report->result->claim[i];
   const fg_loop_effect *effect = claim->candidate.effect;
   bool lacks = effect->accepts && effect->scatter == FG_LOOP_OF_THE_MEAN;
@@ -94,7 +95,7 @@ static bool is_first(const fg_loop_result *result, size_t i) {
 }
 
 /* Appends the suspect: noise, or a deviation that noise alone hardly makes. */
-static fg_status say_suspect(fg_context *ctx, const fg_loop_report *report, char **text) {
+static fg_status append_suspect(fg_context *ctx, const fg_loop_report *report, char **text) {
   const fg_loop_rejected *suspect = fg_loop_suspect(report->result);
   fg_loop_check check;
   char words[FG_LOOP_WORDS];
@@ -114,12 +115,12 @@ static fg_status say_suspect(fg_context *ctx, const fg_loop_report *report, char
 }
 
 /* Appends the effects sought without success, of which there was a candidate. */
-static fg_status say_clean(fg_context *ctx, const fg_loop_report *report, char **text) {
+static fg_status append_clean(fg_context *ctx, const fg_loop_report *report, char **text) {
   const fg_loop_result *result = report->result;
   size_t said = 0;
   FG_TRY(fg_text_append(ctx, text, "Nothing is claimed: in %zu rows the residual (%.3g rms) ",
                         report->problem->problem.rows, result->before.rms));
-  FG_TRY(say_suspect(ctx, report, text));
+  FG_TRY(append_suspect(ctx, report, text));
   for (size_t i = 0; i < result->rejects; i++)
     if (is_first(result, i))
       FG_TRY(fg_text_append(ctx, text, "%s%s", said++ ? ", " : " Looked for: ",
@@ -133,7 +134,7 @@ static fg_status say_clean(fg_context *ctx, const fg_loop_report *report, char *
 }
 
 /* Appends the finding of the failed residual test. */
-static fg_status say_failed(fg_context *ctx, const fg_loop_report *report, char **text) {
+static fg_status append_failed(fg_context *ctx, const fg_loop_report *report, char **text) {
   const fg_loop_result *result = report->result;
   char words[FG_LOOP_WORDS];
   fg_loop_failed_words(report, words);
@@ -148,9 +149,9 @@ static fg_status say_failed(fg_context *ctx, const fg_loop_report *report, char 
 fg_status fg_loop_sentence(fg_context *ctx, const fg_loop_report *report, char **text) {
   const fg_loop_result *result = report->result;
   *text = NULL;
-  if (result->verdict == FG_LOOP_CLEAN) return say_clean(ctx, report, text);
+  if (result->verdict == FG_LOOP_CLEAN) return append_clean(ctx, report, text);
   for (size_t i = 0; i < result->claims; i++)
-    FG_TRY(say_claim(ctx, report, i, text));
+    FG_TRY(append_claim(ctx, report, i, text));
   if (result->has_curve)
     FG_TRY(fg_text_append(ctx, text,
                           "%s lacks something over %s that no listed effect explains (%.3g rms, "
@@ -158,7 +159,7 @@ fg_status fg_loop_sentence(fg_context *ctx, const fg_loop_report *report, char *
                           result->claims ? " The model also" : "The declared model",
                           result->curve.name, result->curve.rms,
                           fg_loop_p_text(result->curve.p_value).text));
-  if (result->fails) FG_TRY(say_failed(ctx, report, text));
+  if (result->fails) FG_TRY(append_failed(ctx, report, text));
   bool nothing = !result->claims && !result->has_curve;
   return nothing ? FG_OK : say_errors(ctx, result, text);
 }
@@ -204,14 +205,14 @@ static void write_next(const fg_loop_report *report, FILE *out) {
   }
 }
 
-static int by_p(const void *a, const void *b) {
+static int by_rejected_p(const void *a, const void *b) {
   const fg_loop_rejected *x = *(const fg_loop_rejected *const *)a;
   const fg_loop_rejected *y = *(const fg_loop_rejected *const *)b;
   if (x->p_value != y->p_value) return x->p_value < y->p_value ? -1 : 1;
   return (x > y) - (x < y);
 }
 
-static void write_rejected(const fg_loop_report *report, FILE *out) {
+static void print_rejected(const fg_loop_report *report, FILE *out) {
   enum { SHOWN = 12 };
   const fg_loop_result *result = report->result;
   char words[FG_LOOP_WORDS];
@@ -219,7 +220,7 @@ static void write_rejected(const fg_loop_report *report, FILE *out) {
   if (!list) return;
   for (size_t i = 0; i < result->rejects; i++)
     list[i] = &result->rejected[i];
-  qsort(list, result->rejects, sizeof *list, by_p);
+  qsort(list, result->rejects, sizeof *list, by_rejected_p);
   fprintf(out, "\n%-52s %-20s %7s %9s\n", "not claimed", "verdict", "p", "would show");
   for (size_t i = 0; i < result->rejects && i < SHOWN; i++) {
     fg_loop_candidate_words(report, &list[i]->candidate, words);
@@ -234,7 +235,7 @@ static void write_rejected(const fg_loop_report *report, FILE *out) {
 }
 
 /* Writes a claim in words, its id in brackets. */
-static void write_claim(const fg_loop_report *report, const fg_loop_claim *claim, FILE *out) {
+static void print_claim(const fg_loop_report *report, const fg_loop_claim *claim, FILE *out) {
   char words[2 * FG_LOOP_WORDS], closeness[FG_LOOP_WORDS];
   fg_loop_claim_words(report, claim, words);
   fprintf(out, "  %s: %s [%s]\n", words, fg_loop_verdict_word(claim->verdict), claim->name);
@@ -275,10 +276,10 @@ fg_status fg_loop_write_text(fg_context *ctx, const fg_loop_report *report, FILE
   write_next(report, out);
   if (result->claims) fputs("\nwhat was found\n", out);
   for (size_t i = 0; i < result->claims; i++)
-    write_claim(report, &result->claim[i], out);
+    print_claim(report, &result->claim[i], out);
   write_errors(report, out);
   write_residual_tests(report, out);
-  write_rejected(report, out);
+  print_rejected(report, out);
   write_notes(report, out);
   return fg_stream_finish(ctx, out, "the loop's report");
 }

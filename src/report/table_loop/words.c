@@ -28,7 +28,7 @@ fg_loop_number fg_loop_p_text(double p) {
   return fg_loop_number_text(p < P_MIN ? "p < %.0e" : "p = %.2g", fmax(p, P_MIN));
 }
 
-static void append(char *text, const char *words) {
+static void append_words(char *text, const char *words) {
   size_t used = strlen(text);
   fg_text_clip(text + used, FG_LOOP_WORDS - used, "%s", words);
 }
@@ -40,10 +40,10 @@ static void list_rows(const fg_loop_report *report, const fg_loop_candidate *can
   for (size_t k = 0; k < count; k++) {
     size_t row = report->problem->row[candidate->row[k]];
     char number[32];
-    if (k) append(text, k + 1 == count ? " and " : ", ");
-    if (!k && !report->row_name) append(text, count > 1 ? "rows " : "row ");
+    if (k) append_words(text, k + 1 == count ? " and " : ", ");
+    if (!k && !report->row_name) append_words(text, count > 1 ? "rows " : "row ");
     snprintf(number, sizeof number, "%zu", row + 1);
-    append(text, report->row_name ? report->row_name[row] : number);
+    append_words(text, report->row_name ? report->row_name[row] : number);
   }
 }
 
@@ -57,12 +57,12 @@ static void outlier_words(const fg_loop_report *report, const fg_loop_candidate 
                           char text[FG_LOOP_WORDS]) {
   bool exchange = candidate->effect->outlier == FG_LOOP_EXCHANGED_ROWS;
   if (!exchange && !candidate->rows) {
-    append(text, candidate->effect->words);
+    append_words(text, candidate->effect->words);
     return;
   }
-  append(text, exchange              ? "an exchange of "
-               : candidate->rows > 1 ? "wrong responses in "
-                                     : "a wrong response in ");
+  append_words(text, exchange              ? "an exchange of "
+                     : candidate->rows > 1 ? "wrong responses in "
+                                           : "a wrong response in ");
   list_rows(report, candidate, text);
 }
 
@@ -99,9 +99,9 @@ void fg_loop_closeness_words(const fg_loop_alias *alias, char text[FG_LOOP_WORDS
 static void outlier_statement(const fg_loop_report *report, const fg_loop_candidate *candidate,
                               char text[FG_LOOP_WORDS]) {
   list_rows(report, candidate, text);
-  append(text, candidate->effect->outlier == FG_LOOP_EXCHANGED_ROWS ? " changed places"
-               : candidate->rows > 1                                ? " are wrong"
-                                                                    : " is wrong");
+  append_words(text, candidate->effect->outlier == FG_LOOP_EXCHANGED_ROWS ? " changed places"
+                     : candidate->rows > 1                                ? " are wrong"
+                                                                          : " is wrong");
 }
 
 const char *fg_loop_row_words(const fg_loop_coordinate *at) {
@@ -151,7 +151,7 @@ static void mean_statement(const fg_loop_report *report, const fg_loop_claim *cl
   if (!period && !at) return;
   fg_text_clip(place, sizeof place, period ? " that returns every %.3g" : " at %.6g",
                claim->shape[0]);
-  append(text, place);
+  append_words(text, place);
 }
 
 void fg_loop_claim_words(const fg_loop_report *report, const fg_loop_claim *claim,

@@ -46,8 +46,8 @@ static void free_side(side *s) {
   free(s);
 }
 
-static fg_status choose(fg_context *ctx, const fg_load_strokes *strokes,
-                        const fg_load_direction *direction, int which, side *s) {
+static fg_status choose_side_strokes(fg_context *ctx, const fg_load_strokes *strokes,
+                                     const fg_load_direction *direction, int which, side *s) {
   double low = INFINITY, high = -INFINITY;
   for (size_t i = 0; i < strokes->count; i++) {
     low = fmin(low, strokes->stroke[i].x[0]);
@@ -82,7 +82,7 @@ static fg_status make_parts(fg_context *ctx, side *s) {
 }
 
 /* From the middle between the points to where the first stroke turns. */
-static void place(const fg_load_direction *direction, int which, double noise_mm, side *s) {
+static void place_points(const fg_load_direction *direction, int which, double noise_mm, side *s) {
   double middle = (direction->push_mm + direction->pull_mm) / 2;
   double end = which == FG_LOAD_PUSH ? INFINITY : -INFINITY;
   for (size_t i = 0; i < s->count; i++) {
@@ -144,11 +144,11 @@ static size_t steepest(const side *s, int part) {
   return best;
 }
 
-static void write_course(const side *s, fg_load_course *course) {
+static void write_stiffness_profile(const side *s, fg_load_profile *profile) {
   for (size_t g = 0; g < FG_LOAD_POINTS; g++) {
     const fg_local_fit *fit = &s->fit[WHOLE][g];
     if (s->seen[g])
-      course->point[course->count++] =
+      profile->point[profile->count++] =
           (fg_load_point){s->x[g], fit->value, fit->slope, fit->u_slope};
   }
 }
@@ -192,12 +192,12 @@ fg_status fg_load_find_stiffness(fg_context *ctx, const fg_load_strokes *strokes
   for (int which = 0; which < FG_LOAD_SIDES; which++) {
     side *s;
     FG_TRY(fg_memory_allocate(ctx, 1, sizeof *s, (void **)&s));
-    fg_status status = choose(ctx, strokes, direction, which, s);
+    fg_status status = choose_side_strokes(ctx, strokes, direction, which, s);
     if (status == FG_OK && s->count) status = make_parts(ctx, s);
     if (status == FG_OK && s->count) {
-      place(direction, which, strokes->noise_mm, s);
+      place_points(direction, which, strokes->noise_mm, s);
       fit_slopes(s);
-      write_course(s, &direction->course[which]);
+      write_stiffness_profile(s, &direction->profile[which]);
       take_largest(s, direction, &findings->slopes);
     }
     free_side(s);
