@@ -45,6 +45,8 @@ if command -v lintian >/dev/null; then
 fi
 # Every library that the program, the shared library and the module are linked with is of a package that is depended on.
 dpkg-deb -x "$deb" "$work/open"
+dangling=$(find "$work/open" -xtype l)
+[ -z "$dangling" ] || fail "links to nothing: $dangling"
 links "$work/open/usr/share/doc/foilgauge/README.md"
 depends=$(field "$deb" Depends)
 find "$work/open" -type f -exec readelf -d {} + 2>/dev/null | sed -n 's/.*NEEDED.*\[\(.*\)\]/\1/p' | sort -u >"$work/needed"
