@@ -26,9 +26,10 @@ typedef enum fg_foil_kind {
   FG_FOIL_CANTILEVER, /* a flat foil with beams cut out of it, measured before they are bent */
 } fg_foil_kind;
 
-static inline bool fg_foil_kind_has_bumps(fg_foil_kind kind) {
-  return kind == FG_FOIL_CLASSICAL || kind == FG_FOIL_SINUSOIDAL;
-}
+enum { FG_FOIL_KINDS = FG_FOIL_CANTILEVER + 1 };
+
+/* Whether foils of this kind have bumps: the design's `bumps` are stated. */
+bool fg_foil_kind_has_bumps(fg_foil_kind kind);
 
 /* Which line of the strip the lengths belong to: R, R0 (and so alpha, theta) of the design and of
  * the fits are of this line. X and h do not depend on it: the edges are parallel to the midline, so
@@ -73,35 +74,68 @@ fg_margin fg_margin_to(double lower, double upper, double value);
 
 enum { FG_TOLERANCES_MAX = 32, FG_DIAMETERS_MAX = 256 };
 
+/* Dimensions of a foil with bumps, classical or sinusoidal, and of the bearing it goes into. */
+typedef struct fg_design_bumps {
+  size_t count;                 /* expected; 0: not stated */
+  double radius_mm;             /* R_D */
+  double angle_deg;             /* alpha_D */
+  double sleeve_radius_mm;      /* R_sleeve; default: overall_radius_mm */
+  double pitch_deg;             /* angle from bump to bump about O; default 13 1/3 */
+  double fillet_radius_mm;      /* default 0.35 */
+  double top_foil_thickness_mm; /* the plain foil between bumps and rotor; 0: none */
+  double rotor_diameter_mm;     /* D */
+} fg_design_bumps;
+
+/* Dimensions of an arc beside its overall radius. */
+typedef struct fg_design_arc {
+  double subtended_angle_deg; /* from end to end about its centre */
+} fg_design_arc;
+
+/* Dimensions of a cantilever's beams. */
+typedef struct fg_design_beams {
+  size_t count;               /* expected; 0: not stated */
+  double length_mm;           /* L, from the root to the free end */
+  double width_mm;            /* w */
+  double u_thickness_mm;      /* standard uncertainty of thickness_mm; 0: none stated */
+  double sagitta_mm;          /* s_D, of a beam as bent; 0: not stated */
+  double elastic_modulus_gpa; /* E; 0: not stated */
+  double clearance_mm;        /* C_D of the bearing, which s_D belongs to; 0: not stated */
+} fg_design_beams;
+
+/* Known diameters of discs, in any order. */
+typedef struct fg_design_discs {
+  size_t count;
+  double diameters_mm[FG_DIAMETERS_MAX];
+  double u_diameters_mm; /* standard uncertainty of each of them; 0: not stated */
+} fg_design_discs;
+
+/* One of them. */
+typedef union fg_design_values {
+  fg_design_bumps bumps; /* classical, sinusoidal */
+  fg_design_arc arc;
+  fg_design_beams beams; /* cantilever */
+  fg_design_discs discs;
+} fg_design_values;
+
+/* `kind` tells which member of the union is valid: reading another one is an error. Set `kind` with
+ * fg_design_become, which fills the union with that kind's defaults. */
 typedef struct fg_design {
   char name[64];
   fg_foil_kind kind;
   fg_datum datum;
-  size_t bump_count;            /* expected; 0: not stated */
-  double bump_radius_mm;        /* R_D */
-  double bump_angle_deg;        /* alpha_D */
-  double overall_radius_mm;     /* of the foil as designed; also R0_design of eq e */
-  double sleeve_radius_mm;      /* R_sleeve; default: overall_radius_mm */
-  double pitch_deg;             /* angle from bump to bump about O; default 13 1/3 */
-  double fillet_radius_mm;      /* default 0.35 */
-  double thickness_mm;          /* t */
+  double overall_radius_mm;     /* of foils with bumps, as designed, and of arcs; R0_design of
+                                   eq e */
+  double thickness_mm;          /* t, of every foil */
   double thickness_measured_mm; /* of the strip, by a micrometer, at 20 °C; 0: none stated */
   double u_thickness_measured_mm;
-  fg_tone_statement tone;       /* what is said of the scanner's counts */
-  double top_foil_thickness_mm; /* the plain foil between bumps and rotor; 0: none */
-  double rotor_diameter_mm;     /* D */
-  double subtended_angle_deg;   /* of an arc, from end to end about its centre; else 0 */
-  size_t beam_count;            /* of a cantilever, as all that follow up to clearance_mm, and 0 of
-                                   other forms; expected; 0: not stated */
-  double beam_length_mm;        /* L, from the root to the free end */
-  double beam_width_mm;         /* w */
-  double u_thickness_mm;        /* standard uncertainty of thickness_mm; 0: none stated */
-  double sagitta_mm;            /* s_D, of a beam as bent; 0: not stated */
-  double elastic_modulus_gpa;   /* E; 0: not stated */
-  double clearance_mm;          /* C_D of the bearing, which s_D belongs to; 0: not stated */
-  size_t diameter_count;        /* discs only: known diameters, in any order */
-  double diameters_mm[FG_DIAMETERS_MAX];
-  double u_diameters_mm; /* standard uncertainty of each of them; 0: not stated */
+  fg_tone_statement tone; /* what is said of the scanner's counts */
+  union {
+    fg_design_bumps bumps;
+    fg_design_arc arc;
+    fg_design_beams beams;
+    fg_design_discs discs;
+    fg_design_values values;
+  };
   size_t tolerance_count;
   fg_tolerance tolerances[FG_TOLERANCES_MAX];
   fg_calibration calibration; /* of the scanner that measures it, and the part's temperature */
@@ -134,6 +168,11 @@ typedef struct fg_springback {
 /* The Gen II design of thesis table 5.6: R 3.32 mm, alpha 63.15 degrees, overall 20.73 mm,
  * t 0.1 mm, rotor 40 mm, nine bumps, classical, datum mid. */
 void fg_design_default(fg_design *design);
+
+/* Makes it a design of another kind: dimensions that the new kind does not have are dropped, those
+ * of its own begin at their defaults. FG_ERR_DATA when the design states dimensions that the new
+ * kind refuses, such as the subtended angle of an arc. */
+fg_status fg_design_become(fg_context *ctx, fg_foil_kind kind, fg_design *design);
 
 /* FG_ERR_DATA when a value is missing, not finite, not positive or contradicts another one (a bump
  * circle that cannot meet the overall circle at alpha, bumps that overlap at this pitch). The

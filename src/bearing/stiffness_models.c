@@ -6,6 +6,7 @@
 #include <stdio.h>
 
 #include "bearing/arch.h"
+#include "foilgauge/foil_kind.h"
 
 static const double rad_per_deg = 3.14159265358979323846 / 180;
 
@@ -27,13 +28,7 @@ fg_arch fg_design_arch(const fg_design *design, double thickness_mm, double radi
 }
 
 double fg_design_pitch_mm(const fg_design *design) {
-  return design->pitch_deg * rad_per_deg * design->sleeve_radius_mm;
-}
-
-const char *fg_stiffness_kind_note(fg_foil_kind kind) {
-  if (kind != FG_FOIL_SINUSOIDAL) return NULL;
-  return "The model is the classical bump's: a circular arch on its two feet. The long fillets of "
-         "these sinusoidal foils bend too, and are not in it: these bumps are softer.";
+  return design->bumps.pitch_deg * rad_per_deg * design->bumps.sleeve_radius_mm;
 }
 
 static fg_status arch_stiffness(fg_context *ctx, const fg_arch *arch,

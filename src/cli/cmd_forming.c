@@ -8,6 +8,7 @@
 #include "cli/commands.h"
 #include "cli/facts.h"
 #include "cli/output_set.h"
+#include "foilgauge/foil_kind.h"
 #include "foilgauge/forming.h"
 
 enum { OUT_JSON, OUT_HTML, OUT_TEXT, OUT_BUMPS, OUT_STRIP, OUT_MATERIAL, OUT_COUNT };
@@ -256,15 +257,8 @@ static fg_status load(fg_context *ctx, forming_run *run) {
   FG_TRY(fg_output_set_check(ctx, &run->outputs, inputs, sizeof inputs / sizeof *inputs));
   fg_design_default(&run->design);
   if (run->design_path) FG_TRY(fg_design_load(ctx, run->design_path, &run->design));
-  if (run->design.kind == FG_FOIL_DISCS)
-    return fg_fail(ctx, FG_ERR_DATA, "%s: form \"discs\" has no strip that is bent",
-                   run->design_path);
-  if (run->design.kind == FG_FOIL_CANTILEVER)
-    return fg_fail(
-        ctx, FG_ERR_DATA,
-        "%s: form \"cantilever\" lies flat, and its die is not stated: there is no strip "
-        "along a die to bend",
-        run->design_path);
+  const char *why_not = fg_foil_traits_of(run->design.kind)->why_no_forming;
+  if (why_not) return fg_fail(ctx, FG_ERR_DATA, "%s: %s", run->design_path, why_not);
   fg_forming_material_default(&run->material);
   if (run->material_path) FG_TRY(fg_forming_material_load(ctx, run->material_path, &run->material));
   return FG_OK;

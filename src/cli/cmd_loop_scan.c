@@ -11,6 +11,7 @@
 #include "cli/facts.h"
 #include "cli/known.h"
 #include "cli/loop_outputs.h"
+#include "foilgauge/foil_kind.h"
 #include "foilgauge/forming.h"
 #include "foilgauge/memory.h"
 #include "foilgauge/scan.h"
@@ -247,22 +248,14 @@ static void tell_pictures(const fg_scan_result *result) {
 }
 
 static fg_status check_design(fg_context *ctx, const arguments *a, const fg_design *design) {
-  if (design->kind == FG_FOIL_DISCS && a->options.same_foil)
+  const fg_foil_traits *kind = fg_foil_traits_of(design->kind);
+  if (!kind->is_foil && a->options.same_foil)
     return fg_fail(ctx, FG_ERR_USAGE,
                    "--same-foil is for foils: a disc does not show how far it was turned");
-  if (design->kind == FG_FOIL_DISCS && a->forming_model)
+  if (!kind->is_foil && a->forming_model)
     return fg_fail(ctx, FG_ERR_USAGE, "--form-model is of the bumps of foils: discs have none");
-  if (design->kind == FG_FOIL_ARC)
-    return fg_fail(ctx, FG_ERR_USAGE,
-                   "%s: form is arc, and the loop needs bumps or discs: one circle takes up what a "
-                   "scanner does to it. Scan round gauges (--form discs) and apply what they say "
-                   "with measure --model",
-                   a->design_path);
-  if (design->kind == FG_FOIL_CANTILEVER)
-    return fg_fail(ctx, FG_ERR_USAGE,
-                   "%s: form is cantilever, and the loop needs bumps or discs. Scan round gauges "
-                   "(--form discs) to see what the scanner does to lengths",
-                   a->design_path);
+  if (kind->why_no_loop)
+    return fg_fail(ctx, FG_ERR_USAGE, "%s: %s", a->design_path, kind->why_no_loop);
   return FG_OK;
 }
 

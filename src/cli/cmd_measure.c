@@ -233,7 +233,7 @@ static fg_status load_design(fg_context *ctx, measure_run *run) {
   fg_cli_apply_known(&run->arguments.known, &run->design);
   FG_TRY(apply_gauges(ctx, &run->arguments, &run->design));
   FG_TRY(fg_design_check(ctx, &run->design));
-  if (run->design.kind != FG_FOIL_DISCS) FG_TRY(fg_design_derive(ctx, &run->design, &run->nominal));
+  FG_TRY(fg_design_derive(ctx, &run->design, &run->nominal));
   const char *path = run->arguments.design_path;
   return name_file(ctx, path ? path : "the built-in design",
                    fg_report_check_tolerances(ctx, &run->design));

@@ -3,35 +3,37 @@
 #include <string.h>
 
 #include "cli/commands.h"
-
-/* Kinds of foil that the built-in design can have. */
-static const struct {
-  const char *name;
-  fg_foil_kind kind;
-} kinds[] = {
-    {"classical", FG_FOIL_CLASSICAL}, {"sinusoidal", FG_FOIL_SINUSOIDAL}, {"discs", FG_FOIL_DISCS}};
-
-enum { KINDS = sizeof kinds / sizeof *kinds };
+#include "foilgauge/foil_kind.h"
 
 void fg_cli_write_usages(FILE *out) {
-  for (size_t i = 0; i < KINDS; i++)
-    fprintf(out, "%s%s", i == 0 ? "" : i + 1 < KINDS ? ", " : " or ", kinds[i].name);
+  char list[200];
+  fg_foil_kind_list(true, "", " or ", list, sizeof list);
+  fputs(list, out);
 }
 
-fg_status fg_cli_apply_forming(fg_context *ctx, const char *kind, fg_design *design) {
-  if (kind && !strcmp(kind, "arc"))
-    return fg_fail(ctx, FG_ERR_USAGE,
-                   "--form: an arc has no built-in design; state it in a file: --design F with "
-                   "\"form\": \"arc\", overall_radius_mm, subtended_angle_deg, thickness_mm");
-  if (kind && !strcmp(kind, "cantilever"))
-    return fg_fail(ctx, FG_ERR_USAGE,
-                   "--form: a cantilever has no built-in design; state it in a file: --design F "
-                   "with \"form\": \"cantilever\", beam_length_mm, beam_width_mm, thickness_mm");
-  if (!kind) return FG_OK;
-  for (size_t i = 0; i < KINDS; i++) {
-    if (strcmp(kind, kinds[i].name) != 0) continue;
-    design->kind = kinds[i].kind;
-    return FG_OK;
+/* "overall_radius_mm, subtended_angle_deg, thickness_mm" */
+static void list_needed(const fg_foil_traits *traits, char *text, size_t size) {
+  text[0] = 0;
+  for (size_t i = 0; traits->needed[i]; i++) {
+    size_t used = strlen(text);
+    snprintf(text + used, size - used, "%s%s", i ? ", " : "", traits->needed[i]);
   }
-  return fg_fail(ctx, FG_ERR_USAGE, "--form: '%s' is none of classical, sinusoidal, discs", kind);
+}
+
+fg_status fg_cli_apply_forming(fg_context *ctx, const char *name, fg_design *design) {
+  fg_foil_kind kind;
+  char list[300];
+  if (!name) return FG_OK;
+  if (!fg_foil_kind_find(name, &kind)) {
+    fg_foil_kind_list(true, "", ", ", list, sizeof list);
+    return fg_fail(ctx, FG_ERR_USAGE, "--form: '%s' is none of %s", name, list);
+  }
+  const fg_foil_traits *traits = fg_foil_traits_of(kind);
+  list_needed(traits, list, sizeof list);
+  if (!traits->built_in)
+    return fg_fail(ctx, FG_ERR_USAGE,
+                   "--form: %s has no built-in design; state it in a file: --design F with "
+                   "\"form\": \"%s\", %s",
+                   traits->noun, name, list);
+  return fg_design_become(ctx, kind, design);
 }

@@ -18,8 +18,8 @@ static const double rad_per_deg = 3.14159265358979323846 / 180;
 
 /* Between the crowns of the first and last of `bumps`. */
 static double span_mm(const fg_design *design, double bumps) {
-  double half = 0.5 * (bumps - 1) * design->pitch_deg * rad_per_deg;
-  return 2 * (design->overall_radius_mm - design->bump_radius_mm * 0.2) *
+  double half = 0.5 * (bumps - 1) * design->bumps.pitch_deg * rad_per_deg;
+  return 2 * (design->overall_radius_mm - design->bumps.radius_mm * 0.2) *
          sin(half < M_PI / 2 ? half : M_PI / 2);
 }
 
@@ -42,7 +42,7 @@ static fg_status fail_length(fg_context *ctx, const fg_design *design, const cha
                  "%s: the trace is %.4g mm long; a trace of this design (%s, R0 %.4g mm) has %d "
                  "bumps or more, %.3g mm: check --design, and trace further",
                  path, mm, design->name, design->overall_radius_mm, BUMPS_MIN,
-                 span_mm(design, BUMPS_MIN) + design->bump_radius_mm);
+                 span_mm(design, BUMPS_MIN) + design->bumps.radius_mm);
 }
 
 /* Refuses impossible heights: they differ by less than the diameter of the die's overall circle. A
@@ -71,22 +71,22 @@ fg_status fg_die_check_size(fg_context *ctx, const fg_design *design, const char
                             const fg_die_profile *p) {
   double mm = p->points[p->count - 1].x - p->points[0].x;
   if (!length_fits(design, mm)) return fail_length(ctx, design, path, p, mm);
-  double per_bump = (double)p->count * design->bump_radius_mm / mm;
+  double per_bump = (double)p->count * design->bumps.radius_mm / mm;
   if (per_bump >= POINTS_PER_BUMP) return check_heights(ctx, design, path, p);
   return fg_fail(ctx, FG_ERR_DATA,
                  "%s: %zu points over %.4g mm are too few; a bump needs %d, so trace with a point "
                  "every %.2g mm or closer",
-                 path, p->count, mm, POINTS_PER_BUMP, design->bump_radius_mm / POINTS_PER_BUMP);
+                 path, p->count, mm, POINTS_PER_BUMP, design->bumps.radius_mm / POINTS_PER_BUMP);
 }
 
 fg_status fg_die_check_tip(fg_context *ctx, const fg_design *design, const char *path,
                            const fg_die_profile *p) {
-  double tip = p->tip_um / 1000, surface = design->bump_radius_mm + design->thickness_mm / 2;
+  double tip = p->tip_um / 1000, surface = design->bumps.radius_mm + design->thickness_mm / 2;
   if (!(tip >= surface / RADIUS_FACTOR)) return FG_OK;
   return fg_fail(ctx, FG_ERR_DATA,
                  "%s: a tip of %g mm does not fit a bump of %g mm; --tip-um (or the header) is the "
                  "tip's radius in um",
-                 path, tip, design->bump_radius_mm);
+                 path, tip, design->bumps.radius_mm);
 }
 
 /* The overall circle's centre lies below a dome of lands, above a bowl. */
@@ -134,13 +134,14 @@ fg_status fg_die_check_trace(fg_context *ctx, const fg_design *design, const cha
                    "them: trace further, or with the die tilted",
                    path, trace->bump_count, trace->bump_count == 1 ? " is" : "s are",
                    trace->cut_bumps ? " (others are cut off or too steep)" : "", BUMPS_MIN);
-  if (design->bump_count && trace->last_number > (int)design->bump_count)
+  if (design->bumps.count && trace->last_number > (int)design->bumps.count)
     return fg_fail(ctx, FG_ERR_DATA,
                    "%s: the bumps that are seen would have numbers up to %d, and the design has "
                    "%zu: --first-bump (the lowest whose crown is seen) or --design is wrong",
-                   path, trace->last_number, design->bump_count);
+                   path, trace->last_number, design->bumps.count);
   for (size_t i = 0; i < trace->bump_count; i++)
-    if (is_far(trace->bumps[i].radius_mm, design->bump_radius_mm))
-      return fail_radius(ctx, path, p, "a bump", trace->bumps[i].radius_mm, design->bump_radius_mm);
+    if (is_far(trace->bumps[i].radius_mm, design->bumps.radius_mm))
+      return fail_radius(ctx, path, p, "a bump", trace->bumps[i].radius_mm,
+                         design->bumps.radius_mm);
   return FG_OK;
 }

@@ -221,7 +221,7 @@ static bool is_traced(const fg_layout *layout, const fg_nominal *nominal, double
 static int crowns_beyond(const fg_design *design, const fg_nominal *nominal,
                          const fg_layout *layout, size_t i, int way) {
   double rising = layout->turning.sense < 0 ? 1 : -1; /* of the direction along x: dome, bowl */
-  double pitch = rising * way * design->pitch_deg, from = bump_direction_deg(layout, i);
+  double pitch = rising * way * design->bumps.pitch_deg, from = bump_direction_deg(layout, i);
   int count = 0;
   while (count < CROWNS_MAX && has_crown(layout, from + (count + 1) * pitch, nominal->height_mm))
     count++;
@@ -231,7 +231,7 @@ static int crowns_beyond(const fg_design *design, const fg_nominal *nominal,
 /* Places from one bump to a later one. */
 static int places_between(const fg_design *design, const fg_layout *layout, size_t a, size_t b) {
   double turn = fabs(fg_places_turn(bump_direction_deg(layout, a), bump_direction_deg(layout, b)));
-  return (int)lround(turn / design->pitch_deg);
+  return (int)lround(turn / design->bumps.pitch_deg);
 }
 
 static int bump_number_at(const fg_die_source *source, int along, int last) {
@@ -261,7 +261,7 @@ static fg_status find_lost(fg_context *ctx, const fg_design *design, const fg_no
     bool measured = false;
     for (size_t b = 0; b < trace->bump_count; b++)
       measured = measured || trace->bumps[b].number == along;
-    double at_deg = from + rising * design->pitch_deg * (along - at);
+    double at_deg = from + rising * design->bumps.pitch_deg * (along - at);
     if (!measured && is_traced(layout, nominal, at_deg))
       trace->lost[trace->lost_count++] = bump_number_at(source, along, last);
   }
@@ -276,7 +276,7 @@ static fg_status fill_bumps(fg_context *ctx, const fg_design *design, const fg_l
   FG_TRY(fg_design_derive(ctx, design, &nominal));
   FG_TRY(fg_memory_allocate(ctx, count, sizeof *trace->bumps, (void **)&trace->bumps));
   for (size_t i = 0; i < count; i++) {
-    if (!is_complete_arc(layout, i, design->bump_angle_deg)) continue;
+    if (!is_complete_arc(layout, i, design->bumps.angle_deg)) continue;
     fg_bump *bump = &trace->bumps[trace->bump_count++];
     fill_bump(layout, i, design, &nominal, &trace->overall, bump);
     along += trace->bump_count == 1 ? crowns_beyond(design, &nominal, layout, i, -1)
@@ -336,8 +336,8 @@ static fg_status take_layout(fg_context *ctx, const fg_design *design, const fg_
                              const fg_die_profile *profile, fg_layout *layout,
                              fg_die_trace *trace) {
   FG_TRY(fg_die_check_half(ctx, source->path, profile, layout));
-  drop_bent_arcs(design->bump_angle_deg, layout);
-  FG_TRY(find_covariances(ctx, layout, design->bump_angle_deg, trace));
+  drop_bent_arcs(design->bumps.angle_deg, layout);
+  FG_TRY(find_covariances(ctx, layout, design->bumps.angle_deg, trace));
   FG_TRY(fill_stations(ctx, layout, trace));
   trace->lands = layout->land_count;
   trace->shift_mm = datum_shift(design, profile);

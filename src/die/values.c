@@ -36,9 +36,9 @@ double fg_die_nominal(const fg_design *design, const fg_nominal *nominal,
                       fg_die_quantity quantity) {
   switch (quantity) {
   case FG_DIE_RADIUS:
-    return design->bump_radius_mm;
+    return design->bumps.radius_mm;
   case FG_DIE_ANGLE:
-    return design->bump_angle_deg;
+    return design->bumps.angle_deg;
   case FG_DIE_CENTRE:
     return nominal->centre_to_centre_mm;
   case FG_DIE_HEIGHT:
@@ -70,9 +70,10 @@ static double direction_deg(const fg_die_trace *trace, const fg_bump *bump) {
 /* From where the design has it, with the mean over the trace's bumps as the trace's rotation. */
 static double place_error_deg(const fg_design *design, const fg_die_trace *trace,
                               const fg_bump *bump) {
-  double mean = 0, here = direction_deg(trace, bump) - bump->number * design->pitch_deg;
+  double mean = 0, here = direction_deg(trace, bump) - bump->number * design->bumps.pitch_deg;
   for (size_t i = 0; i < trace->bump_count; i++)
-    mean += direction_deg(trace, &trace->bumps[i]) - trace->bumps[i].number * design->pitch_deg;
+    mean +=
+        direction_deg(trace, &trace->bumps[i]) - trace->bumps[i].number * design->bumps.pitch_deg;
   return here - mean / (double)trace->bump_count;
 }
 

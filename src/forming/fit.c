@@ -8,6 +8,7 @@
 #include "core/memory.h"
 #include "core/numerics.h"
 #include "core/text.h"
+#include "foilgauge/foil_kind.h"
 #include "foilgauge/regression.h"
 #include "forming/forming.h"
 #include "forming/search.h"
@@ -276,7 +277,7 @@ static fg_status check_request(fg_context *ctx, const fg_table *table,
   if (table->rows < request->free_count + 2)
     return fg_fail(ctx, FG_ERR_DATA, "%s: %zu runs; to find %zu constants takes %zu at least",
                    table->source, table->rows, request->free_count, request->free_count + 2);
-  if (!fg_foil_kind_has_bumps(request->design->kind) && request->design->kind != FG_FOIL_ARC)
+  if (fg_foil_traits_of(request->design->kind)->why_no_forming)
     return fg_fail(ctx, FG_ERR_DATA, "the design's form has no strip that is bent");
   return fg_forming_material_check(ctx, request->material);
 }
@@ -284,9 +285,9 @@ static fg_status check_request(fg_context *ctx, const fg_table *table,
 /* The lands for themselves: a plain strip of the same overall circle. */
 static fg_design design_of(const fg_forming_fit_request *request) {
   fg_design design = *request->design;
-  if (request->response == FG_FORMING_OF_FOIL || design.kind == FG_FOIL_ARC) return design;
-  design.kind = FG_FOIL_ARC;
-  design.subtended_angle_deg = 90;
+  if (request->response == FG_FORMING_OF_FOIL || fg_foil_traits_of(design.kind)->is_plain_strip)
+    return design;
+  fg_design_become_lands(90, &design);
   return design;
 }
 

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "foilgauge/foil_kind.h"
 
 #define RAD (M_PI / 180)
 
@@ -39,8 +40,8 @@ static double overall_mm(const fg_forming *forming) {
 
 static void find_die_bump(const fg_forming *forming, int number, double *radius, double *angle) {
   const fg_forming_die *die = &forming->die;
-  *radius = forming->options.die ? die->mean_radius_mm : forming->design.bump_radius_mm;
-  *angle = forming->options.die ? die->mean_angle_deg : forming->design.bump_angle_deg;
+  *radius = forming->options.die ? die->mean_radius_mm : forming->design.bumps.radius_mm;
+  *angle = forming->options.die ? die->mean_angle_deg : forming->design.bumps.angle_deg;
   for (size_t i = 0; forming->options.die && i < die->count; i++)
     if (die->bump[i].number == number) {
       *radius = die->bump[i].radius_mm;
@@ -55,18 +56,18 @@ static fg_status plan_crest(fg_context *ctx, const fg_forming *forming, double r
   double in = inwards_mm(&forming->design), overall = overall_mm(forming) - in;
   double half = angle_deg * RAD / 2, chord = radius * sin(half);
   double x = radius * cos(half) + sqrt(overall * overall - chord * chord);
-  double fillet = forming->design.fillet_radius_mm + in;
+  double fillet = forming->design.bumps.fillet_radius_mm + in;
   plan->radius_mm = radius - in;
   double from_o = overall_mm(forming) - fillet, from_c = plan->radius_mm + fillet;
   plan->land_rad = acos((from_o * from_o + x * x - from_c * from_c) / (2 * from_o * x));
   plan->arc_rad = acos((x * x + from_c * from_c - from_o * from_o) / (2 * x * from_c));
-  double room = forming->design.pitch_deg * RAD / 2;
+  double room = forming->design.bumps.pitch_deg * RAD / 2;
   if (plan->radius_mm > 0 && fillet > 0 && plan->land_rad < room && plan->arc_rad > 0) return FG_OK;
   return fg_fail(ctx, FG_ERR_DATA,
                  "bump %d of the die (radius %g mm, angle %g degrees) does not fit into the pitch "
                  "of %g degrees with fillets of %g mm",
-                 plan->number, radius, angle_deg, forming->design.pitch_deg,
-                 forming->design.fillet_radius_mm);
+                 plan->number, radius, angle_deg, forming->design.bumps.pitch_deg,
+                 forming->design.bumps.fillet_radius_mm);
 }
 
 static void add_piece(fg_forming *forming, fg_arc_kind kind, int number, double curvature,
@@ -81,8 +82,8 @@ static void add_piece(fg_forming *forming, fg_arc_kind kind, int number, double 
 
 static void add_arcs(fg_forming *forming, const crest *plan) {
   double in = inwards_mm(&forming->design), overall = overall_mm(forming);
-  double fillet = forming->design.fillet_radius_mm + in;
-  double land = (forming->design.pitch_deg * RAD / 2 - plan->land_rad) * overall;
+  double fillet = forming->design.bumps.fillet_radius_mm + in;
+  double land = (forming->design.bumps.pitch_deg * RAD / 2 - plan->land_rad) * overall;
   double joint = (plan->land_rad + plan->arc_rad) * fillet;
   add_piece(forming, FG_ARC_LAND, plan->number, 1 / overall, land);
   add_piece(forming, FG_ARC_FILLET, plan->number, 1 / fillet, joint);
@@ -96,7 +97,7 @@ static void add_arcs(fg_forming *forming, const crest *plan) {
  * (r² + 2 r'² - r r'') / (r² + r'²)^(3/2). */
 static void add_sine(fg_forming *forming, int number) {
   double overall = overall_mm(forming), height = forming->nominal.height_mm;
-  double pitch = forming->design.pitch_deg * RAD, waves = 2 * M_PI / pitch;
+  double pitch = forming->design.bumps.pitch_deg * RAD, waves = 2 * M_PI / pitch;
   for (int i = 0; i < SINE_PIECES; i++) {
     double psi = pitch * ((i + 0.5) / SINE_PIECES - 0.5), wave = waves * psi;
     double r = overall - 0.5 * height * (1 + cos(wave));
@@ -132,16 +133,17 @@ static fg_status lay_arc(fg_context *ctx, fg_forming *forming) {
   double overall = overall_mm(forming);
   FG_TRY(fg_memory_allocate(ctx, 1, sizeof *forming->pieces, (void **)&forming->pieces));
   add_piece(forming, FG_ARC_LAND, 1, 1 / overall,
-            overall * forming->design.subtended_angle_deg * RAD);
+            overall * forming->design.arc.subtended_angle_deg * RAD);
   return FG_OK;
 }
 
 fg_status fg_forming_lay_out(fg_context *ctx, fg_forming *forming) {
   const fg_design *design = &forming->design;
-  if (design->kind == FG_FOIL_ARC) return lay_arc(ctx, forming);
-  if (!fg_foil_kind_has_bumps(design->kind))
+  const fg_foil_traits *kind = fg_foil_traits_of(design->kind);
+  if (kind->is_plain_strip) return lay_arc(ctx, forming);
+  if (!kind->has_bumps)
     return fg_fail(ctx, FG_ERR_DATA, "the design's form has no strip that is bent");
-  forming->bump_count = design->bump_count ? design->bump_count : FG_FORMING_BUMPS_DEFAULT;
+  forming->bump_count = design->bumps.count ? design->bumps.count : FG_FORMING_BUMPS_DEFAULT;
   if (forming->bump_count > FG_FORMING_BUMPS_MAX)
     return fg_fail(ctx, FG_ERR_DATA, "bump_count is %zu; at most %d here", forming->bump_count,
                    FG_FORMING_BUMPS_MAX);

@@ -229,7 +229,7 @@ static void fill_arc_values(const fg_design *design, const fg_layout *layout, fg
                             .u_subtended_angle_deg = u_rad * 180 / M_PI,
                             .length_mm = radius * alpha,
                             .u_length_mm = sqrt(fmax(length, 0) + cuts)};
-  double design_deg = design->subtended_angle_deg;
+  double design_deg = design->arc.subtended_angle_deg;
   foil->arc.subtended_angle_error_pct =
       100 * (foil->arc.subtended_angle_deg - design_deg) / design_deg;
   foil->arc.u_subtended_angle_error_pct = 100 * foil->arc.u_subtended_angle_deg / design_deg;

@@ -219,7 +219,7 @@ static bool place_around(const fg_foil *foil, size_t stated, place *places, doub
 /* Numbers by places where beams are missing; else, and where the places are unknown, by order. */
 static void number_beams(const fg_design *design, place *places, size_t rows, fg_point up,
                          double *gaps, fg_foil *foil) {
-  size_t count = foil->beam_count, stated = design->beam_count;
+  size_t count = foil->beam_count, stated = design->beams.count;
   bool lacks = count && count < stated, placed = false;
   if (lacks && rows) placed = place_in_rows(foil, stated, places, rows, up, gaps);
   if (lacks && !rows) placed = place_around(foil, stated, places, gaps);

@@ -288,10 +288,10 @@ static fg_status measure_lines(fg_context *ctx, beam_work *w) {
 }
 
 static void fill_beam_errors(const fg_design *design, fg_beam *beam) {
-  beam->length_error_pct = 100 * (beam->length_mm / design->beam_length_mm - 1);
-  beam->u_length_error_pct = 100 * beam->u_length_mm / design->beam_length_mm;
-  beam->width_error_pct = 100 * (beam->width_mm / design->beam_width_mm - 1);
-  beam->u_width_error_pct = 100 * beam->u_width_mm / design->beam_width_mm;
+  beam->length_error_pct = 100 * (beam->length_mm / design->beams.length_mm - 1);
+  beam->u_length_error_pct = 100 * beam->u_length_mm / design->beams.length_mm;
+  beam->width_error_pct = 100 * (beam->width_mm / design->beams.width_mm - 1);
+  beam->u_width_error_pct = 100 * beam->u_width_mm / design->beams.width_mm;
   const fg_beam_size size = {.length_mm = beam->length_mm,
                              .u_length_mm = beam->u_length_mm,
                              .width_mm = beam->width_mm,
@@ -344,8 +344,9 @@ static double median_ratio(const fg_foil *foil, size_t offset, double design, do
 
 /* Detects beams of the design's shape in another size: the scan's resolution must be wrong. */
 static void check_scale(const fg_design *design, double *scratch, fg_foil *foil) {
-  double length = median_ratio(foil, offsetof(fg_beam, length_mm), design->beam_length_mm, scratch);
-  double width = median_ratio(foil, offsetof(fg_beam, width_mm), design->beam_width_mm, scratch);
+  double length =
+      median_ratio(foil, offsetof(fg_beam, length_mm), design->beams.length_mm, scratch);
+  double width = median_ratio(foil, offsetof(fg_beam, width_mm), design->beams.width_mm, scratch);
   double factor = sqrt(length * width);
   foil->flags &= ~(unsigned)FG_FOIL_NOT_THIS_DESIGN;
   foil->error[0] = '\0';
@@ -403,7 +404,7 @@ fg_status fg_beams_measure(fg_context *ctx, const fg_design *design, fg_foil *fo
   check_scale(design, scratch, foil);
   FG_TRY_EXIT(fg_beams_number(ctx, design, foil));
   flag_leaning(scratch, foil);
-  if (design->beam_count && foil->beam_count != design->beam_count)
+  if (design->beams.count && foil->beam_count != design->beams.count)
     foil->flags |= FG_FOIL_BEAM_COUNT;
 exit:
   free(noises);

@@ -22,7 +22,7 @@ static double gap_before(const fg_foil *foil, size_t i) {
 /* Finds the pitch: the design's, changed by springback, which keeps lengths along the strip. Where
  * most gaps are no multiple of it (another foil's design), their median is the pitch. */
 static double find_pitch(const fg_design *design, const fg_foil *foil) {
-  double pitch = design->pitch_deg * design->overall_radius_mm / foil->overall.radius_mm;
+  double pitch = design->bumps.pitch_deg * design->overall_radius_mm / foil->overall.radius_mm;
   double gaps[GAPS_MAX], units[GAPS_MAX];
   size_t count = 0, whole = 0;
   for (size_t i = 1; i < foil->bump_count && count < GAPS_MAX; i++) {
@@ -90,11 +90,11 @@ void fg_places_number(const fg_layout *layout, const fg_design *design, const fg
   for (size_t i = 1; i < n; i++)
     places += places_before(foil, i, pitch);
   if (places > (int)n) foil->flags |= FG_FOIL_MISSING_BUMP;
-  int missing = (int)design->bump_count - places;
+  int missing = (int)design->bumps.count - places;
   int number = 1 + share_missing(layout, nominal, foil, pitch, missing);
   for (size_t i = 0; i < n; i++) {
     if (i > 0) number += places_before(foil, i, pitch);
     foil->bumps[i].number = number;
   }
-  if (design->bump_count && n != design->bump_count) foil->flags |= FG_FOIL_BUMP_COUNT;
+  if (design->bumps.count && n != design->bumps.count) foil->flags |= FG_FOIL_BUMP_COUNT;
 }

@@ -34,15 +34,15 @@ static double known(double value) {
 }
 
 double fg_cantilever_second_moment_mm4(const fg_design *design) {
-  return design->beam_width_mm * cube(design->thickness_mm) / 12;
+  return design->beams.width_mm * cube(design->thickness_mm) / 12;
 }
 
 static void fill_compliance(const fg_design *design, double ratio, const relative *r,
                             fg_cantilever *out) {
   double u = of_product(r, 3, -1, -3);
-  double modulus_n_mm2 = 1000 * known(design->elastic_modulus_gpa);
+  double modulus_n_mm2 = 1000 * known(design->beams.elastic_modulus_gpa);
   double nominal_mm_per_n =
-      cube(design->beam_length_mm) / (3 * modulus_n_mm2 * fg_cantilever_second_moment_mm4(design));
+      cube(design->beams.length_mm) / (3 * modulus_n_mm2 * fg_cantilever_second_moment_mm4(design));
   out->compliance_mm_per_n = nominal_mm_per_n * ratio;
   out->u_compliance_mm_per_n = nominal_mm_per_n * ratio * u;
   out->compliance_error_pct = 100 * (ratio - 1);
@@ -52,7 +52,8 @@ static void fill_compliance(const fg_design *design, double ratio, const relativ
 static void fill_sagitta(const fg_design *design, double ratio, const relative *r,
                          fg_cantilever *out) {
   double u = ratio * of_product(r, 2, 0, 0);
-  double sagitta_mm = known(design->sagitta_mm), clearance_mm = known(design->clearance_mm);
+  double sagitta_mm = known(design->beams.sagitta_mm),
+         clearance_mm = known(design->beams.clearance_mm);
   out->sagitta_mm = sagitta_mm * ratio;
   out->u_sagitta_mm = sagitta_mm * u;
   out->sagitta_error_pct = 100 * (ratio - 1);
@@ -66,9 +67,9 @@ static void fill_sagitta(const fg_design *design, double ratio, const relative *
 fg_cantilever fg_cantilever_of(const fg_design *design, const fg_beam_size *size) {
   fg_cantilever out;
   double length_mm = known(size->length_mm), width_mm = known(size->width_mm);
-  double length = length_mm / design->beam_length_mm, width = width_mm / design->beam_width_mm;
+  double length = length_mm / design->beams.length_mm, width = width_mm / design->beams.width_mm;
   const relative r = {size->u_length_mm / length_mm, size->u_width_mm / width_mm,
-                      design->u_thickness_mm / design->thickness_mm, size->correlation};
+                      design->beams.u_thickness_mm / design->thickness_mm, size->correlation};
   fill_compliance(design, cube(length) / width, &r, &out);
   fill_sagitta(design, square(length), &r, &out);
   return out;
@@ -76,8 +77,8 @@ fg_cantilever fg_cantilever_of(const fg_design *design, const fg_beam_size *size
 
 fg_cantilever fg_cantilever_deviating(const fg_design *design, double length_pct,
                                       double width_pct) {
-  const fg_beam_size size = {.length_mm = design->beam_length_mm * (1 + length_pct / 100),
-                             .width_mm = design->beam_width_mm * (1 + width_pct / 100)};
+  const fg_beam_size size = {.length_mm = design->beams.length_mm * (1 + length_pct / 100),
+                             .width_mm = design->beams.width_mm * (1 + width_pct / 100)};
   return fg_cantilever_of(design, &size);
 }
 

@@ -76,7 +76,7 @@ static double clearance_error(const geometry *g, double gradient[BY_COUNT]) {
  * / sqrt(...), and phi follows X, R and R0 as alpha / 2 does. */
 static double height_fitted(const geometry *g, double gradient[BY_COUNT]) {
   double phi = bump_angle(g, gradient) * rad_per_deg / 2;
-  double sleeve = g->design->sleeve_radius_mm, chord = g->r * sin(phi);
+  double sleeve = g->design->bumps.sleeve_radius_mm, chord = g->r * sin(phi);
   double root = sqrt((sleeve - chord) * (sleeve + chord)), half_sine = sin(phi / 2);
   double bump_arc = 2 * half_sine * half_sine;
   for (int i = 0; i < BY_COUNT; i++)
@@ -93,13 +93,13 @@ static double clearance_fitted(const geometry *g, double gradient[BY_COUNT]) {
 }
 
 static double radius_error(const geometry *g, double gradient[BY_COUNT]) {
-  double design = g->design->bump_radius_mm;
+  double design = g->design->bumps.radius_mm;
   gradient[BY_R] = 100 / design;
   return 100 * (g->r - design) / design;
 }
 
 static double bump_angle_error(const geometry *g, double gradient[BY_COUNT]) {
-  double design = g->design->bump_angle_deg, angle = bump_angle(g, gradient);
+  double design = g->design->bumps.angle_deg, angle = bump_angle(g, gradient);
   return scale_gradient(gradient, 100 / design) * (angle - design);
 }
 

@@ -12,6 +12,7 @@
 #include "geometry/arc_foil.h"
 #include "geometry/bump_places.h"
 #include "geometry/defects.h"
+#include "geometry/foil_kind.h"
 #include "geometry/foil_uncertainty.h"
 #include "geometry/labels.h"
 #include "geometry/recognise.h"
@@ -133,9 +134,9 @@ static void flag_bumps(fg_context *ctx, const fg_design *design, const fg_nomina
                        fg_foil *foil) {
   double height = median_of(ctx, foil, get_height), radius = median_of(ctx, foil, get_radius);
   if (height < CRUSHED_HEIGHT * nominal->height_mm ||
-      is_beyond(radius, design->bump_radius_mm, CRUSHED_RADIUS)) {
+      is_beyond(radius, design->bumps.radius_mm, CRUSHED_RADIUS)) {
     height = nominal->height_mm;
-    radius = design->bump_radius_mm;
+    radius = design->bumps.radius_mm;
   }
   double rms = median_of(ctx, foil, get_rms);
   for (size_t i = 0; i < foil->bump_count; i++) {
@@ -194,8 +195,8 @@ static void take_over_facts(fg_foil *foil) {
   if (foil->strip.loss_um > 0) foil->flags |= FG_FOIL_LOSSY;
 }
 
-static fg_status fill_foil(fg_context *ctx, const fg_design *design, fg_layout *layout,
-                           fg_foil *foil) {
+fg_status fg_foil_fill_bumps(fg_context *ctx, const fg_design *design, fg_layout *layout,
+                             fg_foil *foil) {
   fg_nominal nominal;
   FG_TRY(fg_design_derive(ctx, design, &nominal));
   size_t n = layout->turning.bump_count;
@@ -218,20 +219,6 @@ static fg_status fill_foil(fg_context *ctx, const fg_design *design, fg_layout *
   return fg_labels_fill(ctx, layout, design->datum, foil);
 }
 
-/* A plain strip. */
-static fg_status fill_arc(fg_context *ctx, const fg_design *design, fg_layout *layout,
-                          fg_foil *foil) {
-  fg_foil_find_arc_uncertainty(layout, design, foil);
-  fg_foil_find_thickness(design, foil);
-  fg_layout_overall(layout, design, &foil->overall);
-  fg_arc_foil_derive(design, layout, foil);
-  fg_foil_recognise(design, foil);
-  FG_TRY(fg_labels_fill(ctx, layout, design->datum, foil));
-  for (size_t k = 0; k < foil->strip.count; k++)
-    if (foil->labels[k].kind == FG_ARC_LAND) foil->labels[k].number = 1;
-  return FG_OK;
-}
-
 /* A plain strip that was taken for a foil with bumps: the design is wrong, not the scan. */
 static fg_status hint_at_arc(fg_context *ctx, const fg_design *design, const fg_strip *strip,
                              const char **error) {
@@ -245,10 +232,8 @@ static fg_status hint_at_arc(fg_context *ctx, const fg_design *design, const fg_
   return FG_OK;
 }
 
-static fg_status find_layout(fg_context *ctx, const fg_design *design, unsigned threads,
-                             fg_foil *foil, fg_layout *layout, const char **error) {
-  if (design->kind == FG_FOIL_ARC)
-    return fg_arc_foil_layout(ctx, design, &foil->strip, layout, &foil->flags, error);
+fg_status fg_foil_lay_out_bumps(fg_context *ctx, const fg_design *design, unsigned threads,
+                                fg_foil *foil, fg_layout *layout, const char **error) {
   FG_TRY(fg_layout_find(ctx, design, &foil->strip, threads, layout, error));
   if (!*error) return FG_OK;
   fg_status status = hint_at_arc(ctx, design, &foil->strip, error);
@@ -267,6 +252,7 @@ static bool is_off_scale(const fg_design *design, const fg_layout *layout, const
 
 fg_status fg_foil_measure(fg_context *ctx, const fg_design *design, unsigned threads,
                           fg_foil *foil) {
+  const fg_foil_row *kind = fg_foil_row_of(design->kind);
   fg_layout layout;
   const char *error;
   foil->thickness_mm = foil->thickness_scan_mm = foil->strip.thickness_mm;
@@ -275,7 +261,7 @@ fg_status fg_foil_measure(fg_context *ctx, const fg_design *design, unsigned thr
   foil->arc = (fg_foil_arc){NAN, NAN, NAN, NAN, NAN, NAN};
   take_over_facts(foil);
   if (fg_foil_widths_in_blurs(foil) < COARSE_WIDTHS) foil->flags |= FG_FOIL_COARSE_RESOLUTION;
-  FG_TRY(find_layout(ctx, design, threads, foil, &layout, &error));
+  FG_TRY(kind->lay_out(ctx, design, threads, foil, &layout, &error));
   fg_status status = FG_OK;
   double factor;
   if (error) {
@@ -288,7 +274,7 @@ fg_status fg_foil_measure(fg_context *ctx, const fg_design *design, unsigned thr
              factor);
     fg_foil_give_up(foil, why);
   } else {
-    status = (design->kind == FG_FOIL_ARC ? fill_arc : fill_foil)(ctx, design, &layout, foil);
+    status = kind->fill(ctx, design, &layout, foil);
   }
   fg_layout_free(&layout);
   return status;

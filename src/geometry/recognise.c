@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "geometry/recognise.h"
+#include "foilgauge/foil_kind.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -41,11 +42,22 @@ static double nearest_chord(double design_mm, const fg_foil *foil, size_t *fitte
   return nearest;
 }
 
+/* What speaks against a foil's bumps; nothing is written when they are the design's. */
+static void tell_other_bumps(const fg_design *design, const fg_foil *foil, char *why, size_t size) {
+  size_t fitted, stated = design->bumps.count, bumps = foil->bump_count;
+  double design_mm = chord_mm(design->bumps.radius_mm, design->bumps.angle_deg);
+  double bump_mm = nearest_chord(design_mm, foil, &fitted);
+  if (2 * fitted < bumps)
+    snprintf(why, size, "%zu of %zu bumps have no circle", bumps - fitted, bumps);
+  else if (times_off(bump_mm, design_mm) > log(OTHER_CHORD))
+    snprintf(why, size, "no bump is as wide as the design's (%.3g mm), the nearest has %.3g mm",
+             design_mm, bump_mm);
+  else if (stated && (double)bumps > OTHER_COUNT * (double)stated && bumps > stated + FEW_BUMPS)
+    snprintf(why, size, "%zu bumps, where the design has %zu", bumps, stated);
+}
+
 void fg_foil_recognise(const fg_design *design, fg_foil *foil) {
   const fg_overall *o = &foil->overall;
-  size_t fitted, stated = design->bump_count, bumps = foil->bump_count;
-  double design_mm = chord_mm(design->bump_radius_mm, design->bump_angle_deg);
-  double bump_mm = nearest_chord(design_mm, foil, &fitted);
   char why[sizeof foil->error - 64] = "";
   if (times_off(o->radius_mm, design->overall_radius_mm) > log(OTHER_OVERALL))
     snprintf(why, sizeof why, "an overall radius of %.4g mm, where the design has %.4g mm",
@@ -53,14 +65,8 @@ void fg_foil_recognise(const fg_design *design, fg_foil *foil) {
   else if (o->u_radius_mm > OTHER_U * o->radius_mm)
     snprintf(why, sizeof why, "an overall radius of %.4g mm that is uncertain by %.2g mm",
              o->radius_mm, o->u_radius_mm);
-  else if (2 * fitted < bumps)
-    snprintf(why, sizeof why, "%zu of %zu bumps have no circle", bumps - fitted, bumps);
-  else if (times_off(bump_mm, design_mm) > log(OTHER_CHORD))
-    snprintf(why, sizeof why,
-             "no bump is as wide as the design's (%.3g mm), the nearest has %.3g mm", design_mm,
-             bump_mm);
-  else if (stated && (double)bumps > OTHER_COUNT * (double)stated && bumps > stated + FEW_BUMPS)
-    snprintf(why, sizeof why, "%zu bumps, where the design has %zu", bumps, stated);
+  else if (fg_foil_traits_of(design->kind)->has_bumps)
+    tell_other_bumps(design, foil, why, sizeof why);
   if (!why[0]) return;
   foil->flags |= FG_FOIL_NOT_THIS_DESIGN;
   snprintf(foil->error, sizeof foil->error,

@@ -7,6 +7,7 @@
 #include "core/file.h"
 #include "core/memory.h"
 #include "core/text.h"
+#include "foilgauge/foil_kind.h"
 #include "foilgauge/table.h"
 #include "foilgauge/words.h"
 #include "lot/statistics/analysis.h"
@@ -188,13 +189,13 @@ static fg_status read_ratios(fg_context *ctx, reading *r) {
     double value = cell_number(column, row);
     if (r->owner[row] == FG_INDEX_NONE || !isfinite(value)) continue;
     lot->ratio_foil[lot->ratios] = r->owner[row];
-    lot->ratio[lot->ratios++] = value / lot->design.bump_radius_mm;
+    lot->ratio[lot->ratios++] = value / lot->design.bumps.radius_mm;
   }
   return FG_OK;
 }
 
 static const char *parts_file_name(const fg_index_lot *lot) {
-  return lot->design.kind == FG_FOIL_CANTILEVER ? "beams.csv" : "bumps.csv";
+  return fg_foil_traits_of(lot->design.kind)->parts_file;
 }
 
 /* Checks the files against lot.json: another run may have written one of them. */

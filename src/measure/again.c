@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "foilgauge/foil_kind.h"
 #include "geometry/disc_fit.h"
 
 static fg_status copy_strip(fg_context *ctx, const fg_strip *from, fg_strip *to) {
@@ -69,7 +70,8 @@ static fg_status measure_flat(fg_context *ctx, const fg_foil *foil, const fg_des
 
 static fg_status measure_foil(fg_context *ctx, const fg_foil *foil, const fg_design *design,
                               const fg_measure_mover *mover, unsigned threads, fg_foil *again) {
-  if (design->kind == FG_FOIL_CANTILEVER) return measure_flat(ctx, foil, design, mover, again);
+  if (fg_foil_traits_of(design->kind)->lies_flat)
+    return measure_flat(ctx, foil, design, mover, again);
   memset(again, 0, sizeof *again);
   memcpy(again->place_mm, foil->place_mm, sizeof again->place_mm);
   again->number = foil->number;

@@ -53,7 +53,7 @@ typedef struct flat_work {
 } flat_work;
 
 static double min_px(const fg_measurement *m, const fg_pixel_shape *shape) {
-  return MIN_SHARE * m->design.beam_length_mm * 1000 / shape->um;
+  return MIN_SHARE * m->design.beams.length_mm * 1000 / shape->um;
 }
 
 static fg_status find_polygon(fg_context *ctx, void *shared, size_t i) {

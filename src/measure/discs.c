@@ -38,8 +38,8 @@ typedef struct disc_work {
 
 static double min_radius_px(const fg_design *design, const fg_pixel_shape *shape) {
   double min = RADIUS_MIN_MM;
-  for (size_t i = 0; i < design->diameter_count; i++) {
-    double stated = DESIGN_SHARE * 0.5 * design->diameters_mm[i];
+  for (size_t i = 0; i < design->discs.count; i++) {
+    double stated = DESIGN_SHARE * 0.5 * design->discs.diameters_mm[i];
     min = i == 0 ? stated : fmin(min, stated);
   }
   return fmax(min * 1000 / shape->um, RADIUS_MIN_PX);

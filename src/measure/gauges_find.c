@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "geometry/foil_kind.h"
 #include "measure/discs.h"
 #include "measure/gauges.h"
 #include "vision/disc_find.h"
@@ -64,9 +65,9 @@ static double bend_of(const fg_trace *trace) {
 }
 
 static double bend_max(const fg_design *design) {
-  if (design->kind != FG_FOIL_ARC) return BEND_MAX;
-  double sagitta = 0.5 * tan(design->subtended_angle_deg * M_PI / 720); /* over the chord */
-  return fmin(BEND_MAX, BEND_ARC_SHARE * sagitta);
+  const fg_foil_row *kind = fg_foil_row_of(design->kind);
+  if (!kind->sagitta_over_chord) return BEND_MAX;
+  return fmin(BEND_MAX, BEND_ARC_SHARE * kind->sagitta_over_chord(design));
 }
 
 static const char *why_spoiled(const fg_strip *strip) {

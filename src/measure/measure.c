@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "core/date.h"
+#include "foilgauge/foil_kind.h"
 #include "foilgauge/scan.h"
 #include "measure/again.h"
 #include "measure/colour.h"
@@ -52,13 +53,14 @@ static fg_status fail_without_beams(fg_context *ctx, const fg_measurement *m) {
                  "%s: no foil with beams in the picture (%zu other objects or specks): form "
                  "cantilever is a flat foil with beams of about %g × %g mm that are free at one "
                  "end; is it that foil, is the design right, or the resolution of %g dpi wrong?",
-                 m->scan, m->specks, m->design.beam_length_mm, m->design.beam_width_mm, m->dpi[0]);
+                 m->scan, m->specks, m->design.beams.length_mm, m->design.beams.width_mm,
+                 m->dpi[0]);
 }
 
 /* Explains an empty scan: the strip may be too thin for this resolution, or the resolution wrong.
  */
 static fg_status fail_empty(fg_context *ctx, const fg_measurement *m) {
-  if (m->design.kind == FG_FOIL_CANTILEVER) return fail_without_beams(ctx, m);
+  if (fg_foil_traits_of(m->design.kind)->lies_flat) return fail_without_beams(ctx, m);
   double dpi = fmin(m->dpi[0], m->dpi[1]), width_px = m->design.thickness_mm * dpi / 25.4;
   if (width_px >= STRIP_MIN_PX)
     return fg_fail(ctx, FG_ERR_DATA,
@@ -281,10 +283,10 @@ fg_status fg_measure_scan(fg_context *ctx, const char *path, const fg_design *de
   if (!options) options = &defaults;
   FG_TRY_EXIT(fg_design_derive(ctx, design, &measurement->nominal));
   FG_TRY_EXIT(open_scan(ctx, path, options, &scan, measurement));
-  if (design->kind == FG_FOIL_DISCS)
-    FG_TRY_EXIT(measure_discs(ctx, scan, options, measurement));
-  else
+  if (fg_foil_traits_of(design->kind)->is_foil)
     FG_TRY_EXIT(measure_foils(ctx, scan, options, measurement));
+  else
+    FG_TRY_EXIT(measure_discs(ctx, scan, options, measurement));
   FG_TRY_EXIT(fg_colour_measure(ctx, scan, memory_cap(options), options->threads, measurement));
   FG_TRY_EXIT(refer_lengths(ctx, options->threads, measurement));
   FG_TRY_EXIT(use_gauges(ctx, options->threads, measurement));

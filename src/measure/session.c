@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "measure/session.h"
+#include "geometry/foil_kind.h"
 #include "measure/loss.h"
 
 #include <math.h>
@@ -19,12 +20,6 @@
 #include "vision/trace.h"
 
 enum { WORKERS_MAX = 63 };
-/* An object smaller than this share of the design's bump radius is dust. */
-#define OBJECT_MIN 1.0
-/* Of an arc: than this share of its length, or of a radian of it. */
-#define ARC_MIN 0.25
-/* Of a cantilever: than this share of a beam's length. */
-#define BEAM_MIN 0.3
 /* A strip without bumps is a foil that failed when its width is the design's within this factor,
  * and some other thing (a scratch, a hair) when it is not. */
 #define WIDTH_FACTOR 1.6
@@ -82,19 +77,18 @@ static void count_specks(fg_session *s, size_t specks) {
   pthread_mutex_unlock(&s->lock);
 }
 
+static const fg_foil_traits *kind_of(const fg_measurement *m) {
+  return fg_foil_traits_of(m->design.kind);
+}
+
 static double expected_width_px(const fg_measurement *m) {
   return m->design.thickness_mm * sqrt(m->dpi[0] * m->dpi[1]) / 25.4;
 }
 
-static double min_object_mm(const fg_design *design) {
-  if (design->kind == FG_FOIL_CANTILEVER) return BEAM_MIN * design->beam_length_mm;
-  if (design->kind != FG_FOIL_ARC) return OBJECT_MIN * design->bump_radius_mm;
-  return ARC_MIN * design->overall_radius_mm * fmin(design->subtended_angle_deg * M_PI / 180, 1);
-}
-
 /* Diagonal of the smallest object that may be a foil. */
 static double min_foil_px(const fg_measurement *m) {
-  return min_object_mm(&m->design) * sqrt(m->dpi[0] * m->dpi[1]) / 25.4;
+  return fg_foil_row_of(m->design.kind)->min_object_mm(&m->design) * sqrt(m->dpi[0] * m->dpi[1]) /
+         25.4;
 }
 
 /* Of the smallest that is no dust: a foil or a gauge. */
@@ -242,7 +236,7 @@ static fg_status measure_flat(fg_context *ctx, fg_session *s, const job *j) {
 
 static fg_status measure_island(fg_context *ctx, fg_session *s, job *j) {
   fg_segmentation seg;
-  if (s->measurement->design.kind == FG_FOIL_CANTILEVER) return measure_flat(ctx, s, j);
+  if (kind_of(s->measurement)->lies_flat) return measure_flat(ctx, s, j);
   FG_TRY(anchor_job(ctx, s, j));
   FG_TRY(fg_segment(ctx, &j->view, &j->island, min_object_px(s->measurement), &seg));
   count_specks(s, seg.speck_count);
@@ -366,8 +360,7 @@ static fg_status take_island(fg_context *ctx, fg_session *s, fg_tiles *tiles, fg
   }
   job j = {.island = *island};
   fg_status status = FG_OK;
-  if (s->measurement->design.kind == FG_FOIL_CANTILEVER)
-    status = find_background(ctx, tiles, &j.background);
+  if (kind_of(s->measurement)->lies_flat) status = find_background(ctx, tiles, &j.background);
   if (status == FG_OK) status = fg_island_cut(ctx, tiles, &j.island, &j.view, j.origin_px);
   if (status == FG_OK) status = push_job(ctx, s, &j);
   if (status != FG_OK) free_job(&j);
@@ -458,7 +451,7 @@ fg_status fg_session_finish(fg_context *ctx, fg_session *s) {
   s->worker_count = 0;
   if (s->status != FG_OK) return fg_fail(ctx, s->status, "%s", s->context.message);
   s->measurement->light_on_dark = s->light >= s->dark;
-  if (s->measurement->design.kind == FG_FOIL_CANTILEVER)
+  if (kind_of(s->measurement)->lies_flat)
     FG_TRY(fg_flat_foils_assemble(ctx, &s->parts, s->measurement));
   sort_foils(s->measurement);
   fg_gauges_match(&s->sightings, s->measurement);

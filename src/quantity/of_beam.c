@@ -15,12 +15,12 @@ enum {
 
 static double length_of(const fg_design *design, const fg_nominal *nominal) {
   (void)nominal;
-  return design->beam_length_mm;
+  return design->beams.length_mm;
 }
 
 static double width_of(const fg_design *design, const fg_nominal *nominal) {
   (void)nominal;
-  return design->beam_width_mm;
+  return design->beams.width_mm;
 }
 
 static double compliance_of(const fg_design *design, const fg_nominal *nominal) {

@@ -18,12 +18,12 @@ enum {
 
 static double radius_of(const fg_design *design, const fg_nominal *nominal) {
   (void)nominal;
-  return design->bump_radius_mm;
+  return design->bumps.radius_mm;
 }
 
 static double bump_angle_of(const fg_design *design, const fg_nominal *nominal) {
   (void)nominal;
-  return design->bump_angle_deg;
+  return design->bumps.angle_deg;
 }
 
 static double height_of(const fg_design *design, const fg_nominal *nominal) {

@@ -27,7 +27,7 @@ static double thickness_of(const fg_design *design, const fg_nominal *nominal) {
 
 static double subtended_angle_of(const fg_design *design, const fg_nominal *nominal) {
   (void)nominal;
-  return design->subtended_angle_deg;
+  return design->arc.subtended_angle_deg;
 }
 
 static double arc_length_of(const fg_design *design, const fg_nominal *nominal) {

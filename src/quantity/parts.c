@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "quantity/parts.h"
+#include "foilgauge/foil_kind.h"
 
 fg_quantity_owner fg_foil_kind_parts(fg_foil_kind kind) {
-  return kind == FG_FOIL_CANTILEVER ? FG_QUANTITY_OF_BEAM : FG_QUANTITY_OF_BUMP;
+  return fg_foil_traits_of(kind)->part;
 }
 
 bool fg_owner_is_part(fg_quantity_owner owner) {

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/text.h"
+#include "foilgauge/foil_kind.h"
 #include "quantity/rows.h"
 
 const fg_quantity *fg_quantities(fg_quantity_owner owner, size_t *count) {
@@ -21,12 +22,11 @@ const fg_quantity *fg_quantities(fg_quantity_owner owner, size_t *count) {
 }
 
 bool fg_quantity_applies(fg_quantity_owner owner, const fg_quantity *quantity, fg_foil_kind kind) {
-  if (owner == FG_QUANTITY_OF_BEAM || kind == FG_FOIL_CANTILEVER)
-    return kind == FG_FOIL_CANTILEVER &&
-           (owner == FG_QUANTITY_OF_BEAM ||
-            (owner == FG_QUANTITY_OF_FOIL && quantity->uses & FG_QUANTITY_OF_FLAT));
-  if (kind == FG_FOIL_ARC) return owner == FG_QUANTITY_OF_FOIL;
-  return !(quantity->uses & FG_QUANTITY_OF_ARC);
+  const fg_foil_traits *traits = fg_foil_traits_of(kind);
+  if (!(traits->owners & 1u << owner)) return false;
+  if (owner != FG_QUANTITY_OF_FOIL) return true;
+  return (quantity->uses & traits->foil_uses) == traits->foil_uses &&
+         !(quantity->uses & traits->foil_not);
 }
 
 const fg_quantity *fg_quantity_find(fg_quantity_owner owner, const char *name) {

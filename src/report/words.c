@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/text.h"
+#include "foilgauge/foil_kind.h"
 
 static const fg_flag_words foil_flags[] = {
     {FG_FOIL_TOUCHES_BORDER, "touches_border",
@@ -115,7 +116,8 @@ const fg_flag_words *fg_foil_flag_words(void) {
 }
 
 unsigned fg_foil_flags_told(const fg_design *design, const fg_foil *foil) {
-  bool without_lip = design->kind == FG_FOIL_SINUSOIDAL;
+  const fg_foil_traits *kind = fg_foil_traits_of(design->kind);
+  bool without_lip = kind->has_bumps && !kind->has_lip;
   return without_lip ? foil->flags & ~(unsigned)FG_FOIL_NO_LIP : foil->flags;
 }
 
@@ -149,22 +151,6 @@ const char *fg_colour_state_word(fg_colour_state state) {
     return "no_contrast";
   case FG_COLOUR_FEW_EDGES:
     return "few_edges";
-  }
-  return "";
-}
-
-const char *fg_foil_kind_word(fg_foil_kind kind) {
-  switch (kind) {
-  case FG_FOIL_CLASSICAL:
-    return "classical";
-  case FG_FOIL_SINUSOIDAL:
-    return "sinusoidal";
-  case FG_FOIL_DISCS:
-    return "discs";
-  case FG_FOIL_ARC:
-    return "arc";
-  case FG_FOIL_CANTILEVER:
-    return "cantilever";
   }
   return "";
 }

@@ -69,7 +69,7 @@ static void match_known_diameters(fg_edge_fit *edge_fit, const sized *discs, siz
 /* Known diameters of the views [first, last), which are of one scan. */
 static fg_status match_scan(fg_context *ctx, fg_edge_fit *edge_fit, size_t first, size_t last) {
   const fg_design *design = &edge_fit->views[first].measurement->design;
-  size_t count = last - first, known_count = design->diameter_count;
+  size_t count = last - first, known_count = design->discs.count;
   sized *discs = NULL;
   bool *taken = NULL;
   fg_status status = FG_OK;
@@ -79,7 +79,7 @@ static fg_status match_scan(fg_context *ctx, fg_edge_fit *edge_fit, size_t first
   for (size_t i = 0; i < count; i++)
     discs[i] = (sized){edge_fit->views[first + i].disc->diameter_mm, first + i};
   for (size_t k = 0; k < known_count; k++)
-    discs[count + k] = (sized){design->diameters_mm[k], k};
+    discs[count + k] = (sized){design->discs.diameters_mm[k], k};
   qsort(discs, count, sizeof *discs, compare_sized);
   qsort(discs + count, known_count, sizeof *discs, compare_sized);
   match_known_diameters(edge_fit, discs, count, discs + count, known_count, taken);

@@ -8,6 +8,7 @@
 
 #include "core/memory.h"
 #include "core/text.h"
+#include "foilgauge/foil_kind.h"
 
 const fg_scan_loop_bump_response fg_scan_loop_bump_responses[FG_SCAN_LOOP_BUMP_RESPONSES] = {
     {"bump_radius_mm", "bump radius", "um", "uniform springback", "what form predicts of it", 1000},
@@ -396,7 +397,8 @@ fg_status fg_scan_loop_bumps_run(fg_context *ctx, const fg_scan_loop_bumps_reque
       .forming = request->forming,
       .height = {{NAN, NAN}, {NAN, NAN}},
       .level = {{.error = {{NAN, NAN}, {NAN, NAN}}}, {.error = {{NAN, NAN}, {NAN, NAN}}}}};
-  if (request->before[0].design.kind == FG_FOIL_DISCS) return FG_OK; /* discs have no bumps */
+  if (!fg_foil_traits_of(request->before[0].design.kind)->is_foil)
+    return FG_OK; /* discs have no bumps */
   if (request->bent)
     return fg_scan_loop_bumps_note(
         ctx, bumps,

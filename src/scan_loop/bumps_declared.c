@@ -7,6 +7,7 @@
  * predicted keep their arc length. */
 #include <math.h>
 
+#include "foilgauge/foil_kind.h"
 #include "scan_loop/bumps.h"
 
 enum { RADIUS = FG_SCAN_LOOP_BUMP_RADIUS, ANGLE = FG_SCAN_LOOP_BUMP_ANGLE };
@@ -19,7 +20,7 @@ static const fg_bump *find_predicted_bump(const fg_forming_prediction *forming, 
 
 fg_status fg_scan_loop_bumps_check_forming(fg_context *ctx, const fg_forming_prediction *forming,
                                            const fg_measurement *measured, size_t scan_count) {
-  if (!forming || measured[0].design.kind != FG_FOIL_CLASSICAL) return FG_OK;
+  if (!forming || !fg_foil_traits_of(measured[0].design.kind)->has_lip) return FG_OK;
   for (size_t s = 0; s < scan_count; s++)
     for (size_t f = 0; f < measured[s].foil_count; f++) {
       const fg_foil *foil = &measured[s].foils[f];
@@ -46,7 +47,7 @@ static void find_predicted_means(const fg_forming_prediction *forming, double me
 
 fg_status fg_scan_loop_bumps_declare(fg_context *ctx, const fg_design *design,
                                      fg_scan_loop_bumps *bumps) {
-  double mean[2] = {0, design->bump_radius_mm * design->bump_angle_deg};
+  double mean[2] = {0, design->bumps.radius_mm * design->bumps.angle_deg};
   if (bumps->forming) find_predicted_means(bumps->forming, mean);
   for (size_t i = 0; i < bumps->count; i++) {
     fg_scan_loop_bump *bump = &bumps->bump[i];
@@ -64,7 +65,7 @@ fg_status fg_scan_loop_bumps_declare(fg_context *ctx, const fg_design *design,
 double fg_scan_loop_bumps_offset(const fg_design *design, const fg_scan_loop_bump *bump,
                                  size_t response) {
   if (response == RADIUS) return bump->declared_mm;
-  double designed = design->bump_radius_mm * design->bump_angle_deg;
+  double designed = design->bumps.radius_mm * design->bumps.angle_deg;
   return (bump->declared_arc - designed) / bump->value[RADIUS];
 }
 

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "core/memory.h"
+#include "foilgauge/foil_kind.h"
 #include "scan_loop/bumps.h"
 
 enum { RADIUS = FG_SCAN_LOOP_BUMP_RADIUS, ANGLE = FG_SCAN_LOOP_BUMP_ANGLE };
@@ -89,7 +90,7 @@ fg_status fg_scan_loop_bumps_collect(fg_context *ctx, const fg_scan_loop_bumps_r
       total += request->after[s].foils[f].bump_count;
   FG_TRY(fg_memory_allocate(ctx, total, sizeof *bumps->bump, (void **)&bumps->bump));
   FG_TRY(fg_memory_allocate(ctx, total, sizeof *views, (void **)&views));
-  bumps->lip = request->before[0].design.kind == FG_FOIL_CLASSICAL;
+  bumps->lip = fg_foil_traits_of(request->before[0].design.kind)->has_lip;
   for (size_t s = 0; s < request->scan_count; s++) {
     if (request->same_foil && request->hold_out[s]) continue;
     for (size_t f = 0; f < request->after[s].foil_count; f++)

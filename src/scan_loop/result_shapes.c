@@ -47,7 +47,7 @@ static void fill_foil_shape(const fg_scan_loop *loop, const fg_effect_found *eff
 static double fillet_to_fillet_rad(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row) {
   const fg_edge_fit_part *part = &edge_fit->parts[row->part];
   const fg_edge_fit_bump *bump = &part->bumps[row->bump_index];
-  double r = edge_fit->views[row->view].measurement->design.fillet_radius_mm;
+  double r = edge_fit->views[row->view].measurement->design.bumps.fillet_radius_mm;
   double x = bump->distance_mm, from_o = part->overall_radius_mm - r, from_c = bump->radius_mm + r;
   double angle = acos((x * x + from_c * from_c - from_o * from_o) / (2 * x * from_c));
   return isfinite(angle) ? angle : part->half_arc_rad;

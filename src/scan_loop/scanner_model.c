@@ -7,6 +7,7 @@
 
 #include "core/memory.h"
 #include "core/text.h"
+#include "foilgauge/foil_kind.h"
 #include "scan_loop/scanner_model.h"
 #include "scan_loop/state.h"
 
@@ -162,13 +163,8 @@ static fg_status keep_beneficial(fg_context *ctx, const fg_measurement *m,
 fg_status fg_scanner_model_apply(fg_context *ctx, const fg_scanner_model *model, fg_measurement *m,
                                  unsigned threads, char *warning) {
   if (warning) warning[0] = 0;
-  /* Benefits are decided on radii and heights, which beams lack. */
-  if (m->design.kind == FG_FOIL_CANTILEVER)
-    return fg_fail(ctx, FG_ERR_USAGE,
-                   "%s: a scanner's model corrects bumps and discs, not the beams of form "
-                   "cantilever: measure without --model; what the scanner's scale is wrong by "
-                   "belongs into the design's calibration",
-                   m->scan);
+  const char *why_not = fg_foil_traits_of(m->design.kind)->why_no_model;
+  if (why_not) return fg_fail(ctx, FG_ERR_USAGE, "%s: %s", m->scan, why_not);
   FG_TRY(check_place(ctx, model, m, warning));
   FG_TRY(fg_model_tone_apply(ctx, &model->tone, threads, m));
   if (!m->warning[0]) fg_text_clip(m->warning, sizeof m->warning, "%s", m->tone_note);

@@ -28,8 +28,8 @@ typedef struct says {
 
 static double known_diameter(const fg_design *design, const fg_disc *disc) {
   double best = NAN;
-  for (size_t i = 0; i < design->diameter_count; i++) {
-    double known = design->diameters_mm[i];
+  for (size_t i = 0; i < design->discs.count; i++) {
+    double known = design->discs.diameters_mm[i];
     bool nearer = isnan(best) || fabs(known - disc->diameter_mm) < fabs(best - disc->diameter_mm);
     if (nearer && fabs(known - disc->diameter_mm) < SAME_DIAMETER * known) best = known;
   }
@@ -178,7 +178,7 @@ fg_status fg_check_fit_plate(fg_context *ctx, const fg_design *design,
   if (!fit->discs)
     return fg_fail(ctx, FG_ERR_NOT_MEASURED,
                    "none of %zu discs in the scan has one of the %zu known diameters",
-                   measurement->disc_count, design->diameter_count);
+                   measurement->disc_count, design->discs.count);
   conclude(discs, fit);
   return FG_OK;
 }

@@ -10,6 +10,7 @@
 #include "core/file.h"
 #include "core/json_read.h"
 #include "core/text.h"
+#include "foilgauge/foil_kind.h"
 #include "foilgauge/station.h"
 #include "station/naming.h"
 
@@ -175,10 +176,9 @@ fg_status fg_station_settings_load(fg_context *ctx, const char *recipe, const ch
   if (recipe) FG_TRY(fg_lot_settings_load(ctx, recipe, &settings->lot));
   if (recipe) FG_TRY(load_station(ctx, recipe, settings));
   if (design) FG_TRY(fg_lot_settings_load_design(ctx, design, &settings->lot));
-  if (settings->lot.design.kind == FG_FOIL_CANTILEVER)
-    return fg_fail(ctx, FG_ERR_DATA,
-                   "design.form is cantilever: a station keeps foils with bumps and plain strips; "
-                   "measure beams with `foilgauge lot`");
+  const fg_foil_traits *kind = fg_foil_traits_of(settings->lot.design.kind);
+  if (kind->why_no_station)
+    return fg_fail(ctx, FG_ERR_DATA, "design.form is %s: %s", kind->name, kind->why_no_station);
   return design ? fg_lot_settings_check(ctx, &settings->lot) : FG_OK;
 }
 

@@ -5,6 +5,7 @@
 #include <sys/random.h>
 #include <unistd.h>
 
+#include "foilgauge/foil_kind.h"
 #include "lot/run/folder_lock.h"
 #include "station/close.h"
 #include "station/export.h"
@@ -24,7 +25,7 @@ static fg_status load_check(fg_context *ctx, fg_inspection *station) {
   if (!path[0]) return FG_OK;
   fg_design_default(&station->check_design);
   FG_TRY(fg_design_load(ctx, path, &station->check_design));
-  if (station->check_design.kind != FG_FOIL_DISCS || !station->check_design.diameter_count)
+  if (fg_foil_traits_of(station->check_design.kind)->is_foil || !station->check_design.discs.count)
     return fg_fail(ctx, FG_ERR_DATA,
                    "%.300s: a check needs a design of the form \"discs\" with diameters_mm", path);
   station->check_design_known = true;

@@ -32,12 +32,12 @@ static fg_status take_design(fg_context *ctx, const fg_loop_declaration *declare
     const char *name;
     double *value;
   } members[] = {
-      {"bump_radius_mm", &design->bump_radius_mm},
-      {"bump_angle_deg", &design->bump_angle_deg},
+      {"bump_radius_mm", &design->bumps.radius_mm},
+      {"bump_angle_deg", &design->bumps.angle_deg},
       {"overall_radius_mm", &design->overall_radius_mm},
       {"thickness_mm", &design->thickness_mm},
-      {"top_foil_thickness_mm", &design->top_foil_thickness_mm},
-      {"rotor_diameter_mm", &design->rotor_diameter_mm},
+      {"top_foil_thickness_mm", &design->bumps.top_foil_thickness_mm},
+      {"rotor_diameter_mm", &design->bumps.rotor_diameter_mm},
   };
   const size_t count = sizeof members / sizeof *members;
   const cJSON *object = cJSON_GetObjectItemCaseSensitive(declared->json, "design"), *item;

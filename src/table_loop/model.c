@@ -163,7 +163,7 @@ static double predict_response(const fg_design *design, const fg_nominal *nomina
                                double stretch, const fg_quantity *response) {
   fg_design stretched = *design;
   fg_springback model;
-  stretched.bump_angle_deg *= 1 + stretch;
+  stretched.bumps.angle_deg *= 1 + stretch;
   fg_design_springback(&stretched, nominal, radius_mm, &model);
   return response->by_arc_length(design, &model);
 }
@@ -201,7 +201,7 @@ fg_status fg_loop_table_fill_arc_length(fg_context *ctx, const fg_loop_table_sta
     constant->value[i] = (predict_response(design, &nominal, r, small, response) -
                           predict_response(design, &nominal, r, -small, response)) /
                          (2 * small);
-    slope->value[i] = constant->value[i] * (r / design->bump_radius_mm - 1);
+    slope->value[i] = constant->value[i] * (r / design->bumps.radius_mm - 1);
   }
   fg_loop_table_finish_coordinate(problem, constant);
   fg_loop_table_finish_coordinate(problem, slope);

@@ -32,8 +32,8 @@
 #define TRIM 0.1
 
 fg_beam_limits fg_beam_limits_of(const fg_design *design, const fg_pixel_shape *shape) {
-  double length = design->beam_length_mm * 1000 / shape->um;
-  double width = design->beam_width_mm * 1000 / shape->um;
+  double length = design->beams.length_mm * 1000 / shape->um;
+  double width = design->beams.width_mm * 1000 / shape->um;
   return (fg_beam_limits){.length_px = {LENGTH_MIN * length, LENGTH_MAX * length},
                           .width_px = {WIDTH_MIN * width, WIDTH_MAX * width},
                           .tolerance_px =

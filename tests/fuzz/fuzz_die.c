@@ -19,10 +19,10 @@ static double height_mm(const fg_design *design, double x_mm) {
   fg_nominal nominal;
   (void)fg_design_derive(&ctx, design, &nominal);
   double lands = design->overall_radius_mm - design->thickness_mm / 2;
-  double groove = design->bump_radius_mm + design->thickness_mm / 2;
+  double groove = design->bumps.radius_mm + design->thickness_mm / 2;
   double z = sqrt(lands * lands - x_mm * x_mm);
   for (int i = -1; i <= 1; i++) {
-    double at = i * design->pitch_deg * M_PI / 180;
+    double at = i * design->bumps.pitch_deg * M_PI / 180;
     double off = x_mm - nominal.centre_to_centre_mm * sin(at);
     if (fabs(off) < groove)
       z = fmin(z, nominal.centre_to_centre_mm * cos(at) - sqrt(groove * groove - off * off));

@@ -32,7 +32,7 @@ static void run(const fg_forming_material *material, const fg_forming_schedule *
   const fg_forming_options options = {.die = die, .layers = LAYERS, .steps = STEPS};
   fg_forming_schedule hold = {0};
   fg_design_default(&design);
-  design.bump_count = 3;
+  design.bumps.count = 3;
   fg_forming_material_default(&usual);
   if (!schedule && fg_forming_schedule_hold(&ctx, 650, 2, &hold) != FG_OK) return;
   if (fg_forming_run(&ctx, &design, material ? material : &usual, schedule ? schedule : &hold,

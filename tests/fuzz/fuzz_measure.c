@@ -24,7 +24,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   fg_measurement measurement;
   fg_design_default(&design);
   design.thickness_mm = 0.2;
-  design.bump_count = 3;
+  design.bumps.count = 3;
   const fg_measure_options options = {
       .dpi = 600, .threads = 1, .pixel_cap = 1 << 18, .memory_cap = 64 << 20};
   if (fg_measure_scan(&ctx, fuzz_file(data, size), &design, &options, &measurement) != FG_OK)

@@ -324,9 +324,9 @@ static inline void odd_read(const uint8_t *data, size_t size, odd_input *in) {
   in->scans = 1 + (what & 1) + (what & 1 && what & 2);
   in->same_foil = what & 4;
   if (what & 8) in->design.kind = FG_FOIL_SINUSOIDAL;
-  if (what & 16) in->design.kind = FG_FOIL_DISCS;
+  if (what & 16) (void)fg_design_become(NULL, FG_FOIL_DISCS, &in->design);
   for (size_t i = 0; in->design.kind == FG_FOIL_DISCS && what & 64 && i < 4; i++)
-    in->design.diameters_mm[in->design.diameter_count++] = odd_between(&b, 0.2, 16);
+    in->design.discs.diameters_mm[in->design.discs.count++] = odd_between(&b, 0.2, 16);
   for (size_t i = 0; i < in->scans; i++) {
     odd_scan *scan = &in->scan[i];
     unsigned count = odd_byte(&b);

@@ -23,15 +23,15 @@ static inline fg_design synthetic_design(void) {
   fg_design design = {.name = "Gen II <test> & \"quoted\"",
                       .kind = FG_FOIL_CLASSICAL,
                       .datum = FG_DATUM_MID,
-                      .bump_count = SYNTHETIC_BUMPS,
-                      .bump_radius_mm = 3.32,
-                      .bump_angle_deg = 63.15,
+                      .bumps.count = SYNTHETIC_BUMPS,
+                      .bumps.radius_mm = 3.32,
+                      .bumps.angle_deg = 63.15,
                       .overall_radius_mm = 20.73,
-                      .sleeve_radius_mm = 20.73,
-                      .pitch_deg = 40.0 / 3,
-                      .fillet_radius_mm = 0.35,
+                      .bumps.sleeve_radius_mm = 20.73,
+                      .bumps.pitch_deg = 40.0 / 3,
+                      .bumps.fillet_radius_mm = 0.35,
                       .thickness_mm = 0.1,
-                      .rotor_diameter_mm = 40.0};
+                      .bumps.rotor_diameter_mm = 40.0};
   return design;
 }
 
@@ -44,10 +44,10 @@ static inline void synthetic_tolerance(fg_design *design, const char *quantity, 
 }
 
 static inline fg_nominal synthetic_nominal(const fg_design *design) {
-  double half = design->bump_angle_deg * synthetic_pi / 360, radius = design->bump_radius_mm;
+  double half = design->bumps.angle_deg * synthetic_pi / 360, radius = design->bumps.radius_mm;
   double overall = design->overall_radius_mm;
   double x = radius * cos(half) + sqrt(overall * overall - pow(radius * sin(half), 2));
-  double height = radius - (x - design->sleeve_radius_mm);
+  double height = radius - (x - design->bumps.sleeve_radius_mm);
   return (fg_nominal){.centre_to_centre_mm = x,
                       .half_chord_mm = radius * sin(half),
                       .arc_length_mm = 2 * half * radius,
@@ -55,12 +55,12 @@ static inline fg_nominal synthetic_nominal(const fg_design *design) {
                           (x * x - radius * radius - overall * overall) / (2 * radius * overall))),
                       .height_mm = height,
                       .die_height_mm = design->thickness_mm + radius - radius * cos(half),
-                      .clearance_mm = design->sleeve_radius_mm - height -
-                                      design->rotor_diameter_mm / 2 - design->thickness_mm};
+                      .clearance_mm = design->bumps.sleeve_radius_mm - height -
+                                      design->bumps.rotor_diameter_mm / 2 - design->thickness_mm};
 }
 
 static inline double synthetic_psi(const fg_design *design, int number) {
-  return (design->pitch_deg * (number - 5) - 90) * synthetic_pi / 180;
+  return (design->bumps.pitch_deg * (number - 5) - 90) * synthetic_pi / 180;
 }
 
 static inline fg_bump synthetic_bump(const fg_design *design, const fg_nominal *nominal,
@@ -104,7 +104,7 @@ static inline fg_bump synthetic_bump(const fg_design *design, const fg_nominal *
   bump.clearance_mm = 20.73 - bump.height_mm - 20 - 0.1;
   bump.intersection_angle_error_pct =
       100 * (bump.intersection_angle_deg / nominal->intersection_angle_deg - 1);
-  double chord = radius * sin(angle / 2), sleeve = design->sleeve_radius_mm;
+  double chord = radius * sin(angle / 2), sleeve = design->bumps.sleeve_radius_mm;
   bump.height_fitted_mm =
       radius * (1 - cos(angle / 2)) + sleeve - sqrt(sleeve * sleeve - chord * chord);
   bump.clearance_fitted_mm = sleeve - bump.height_fitted_mm - 20 - 0.1;

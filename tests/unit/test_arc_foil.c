@@ -10,11 +10,10 @@ static const double many_u = 4.5;
 static fg_design arc_design(fg_datum datum, double radius_mm) {
   fg_design design;
   fg_design_default(&design);
-  design.kind = FG_FOIL_ARC;
+  assert_int_equal(fg_design_become(NULL, FG_FOIL_ARC, &design), FG_OK);
   design.datum = datum;
-  design.bump_count = 0;
   design.overall_radius_mm = radius_mm;
-  design.subtended_angle_deg = 40;
+  design.arc.subtended_angle_deg = 40;
   return design;
 }
 

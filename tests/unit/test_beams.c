@@ -14,11 +14,11 @@ static const double pi = 3.14159265358979323846;
 
 static fg_design design_of_beams(void) {
   return (fg_design){.kind = FG_FOIL_CANTILEVER,
-                     .beam_count = BEAMS,
-                     .beam_length_mm = 4,
-                     .beam_width_mm = 1,
+                     .beams.count = BEAMS,
+                     .beams.length_mm = 4,
+                     .beams.width_mm = 1,
                      .thickness_mm = 0.1,
-                     .sagitta_mm = 0.5};
+                     .beams.sagitta_mm = 0.5};
 }
 
 /* A beam in its own frame: root line at y = 0, tip at y = length, x from -width / 2 on; then turned
@@ -226,7 +226,7 @@ static fg_foil comb_without(int stated, int rows, unsigned lost, double turn, bo
   int each = stated / rows;
   shape row = {.turn = turn, .at = {60, 60}};
   *design = design_of_beams();
-  design->beam_count = (size_t)stated;
+  design->beams.count = (size_t)stated;
   for (int i = 0; i < stated; i++)
     if (!(lost >> i & 1))
       beams[count++] = make_beam((shape){4, 1 + 0.01 * i, 0, 0, 0, turn,
@@ -353,7 +353,7 @@ static void beams_of_a_ring_run_clockwise(void **state) {
 static void beam_numbers_in_a_ring_skip_missing_beams(void **state) {
   (void)state;
   fg_design design = design_of_beams();
-  design.beam_count = 6;
+  design.beams.count = 6;
   for (int lost = 1; lost < 5; lost++) {
     fg_context ctx = {0};
     fg_beam beams[6];

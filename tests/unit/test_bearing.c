@@ -18,9 +18,9 @@ static void bores_of_the_thesis(void **state) {
   fg_design design;
   double angle[6], clearance[6];
   fg_design_default(&design);
-  design.rotor_diameter_mm = 39.37;
+  design.bumps.rotor_diameter_mm = 39.37;
   for (size_t i = 0; i < 6; i++) {
-    double height = design.sleeve_radius_mm - design.thickness_mm - bore_mm[i % 3] / 2;
+    double height = design.bumps.sleeve_radius_mm - design.thickness_mm - bore_mm[i % 3] / 2;
     angle[i] = 60 * (double)i;
     clearance[i] = fg_design_clearance(&design, height);
     assert_near(1000 * clearance[i], wanted_um[i % 3], 1e-9);
@@ -234,7 +234,7 @@ static void names_are_known(void **state) {
   strcpy(design.tolerances[1].quantity, "min_mm");
   assert_status(&ctx, fg_report_check_tolerances(&ctx, &design), FG_ERR_DATA);
   assert_non_null(strstr(ctx.message, "clearance_centred_min_mm"));
-  design.kind = FG_FOIL_DISCS;
+  assert_int_equal(fg_design_become(NULL, FG_FOIL_DISCS, &design), FG_OK);
   strcpy(design.tolerances[0].quantity, "circularity_mm");
   assert_status(&ctx, fg_report_check_tolerances(&ctx, &design), FG_ERR_DATA);
 }

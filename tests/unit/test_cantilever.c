@@ -9,13 +9,13 @@
 
 static fg_design design_of_thesis(void) {
   return (fg_design){.kind = FG_FOIL_CANTILEVER,
-                     .beam_count = 8,
-                     .beam_length_mm = 9,
-                     .beam_width_mm = 3,
+                     .beams.count = 8,
+                     .beams.length_mm = 9,
+                     .beams.width_mm = 3,
                      .thickness_mm = 0.1,
-                     .sagitta_mm = 1,
-                     .clearance_mm = 0.126,
-                     .elastic_modulus_gpa = 214};
+                     .beams.sagitta_mm = 1,
+                     .beams.clearance_mm = 0.126,
+                     .beams.elastic_modulus_gpa = 214};
 }
 
 /* Section 5.11: length 0.44 %, width 2.19 %, printed +-3.56 % of compliance, 0.9 % of sagitta, 7 %
@@ -70,9 +70,9 @@ static void uncertainties_are_those_of_drawn_beams(void **state) {
   enum { DRAWS = 200000 };
   for (int alike = 0; alike < 2; alike++) {
     fg_design design = design_of_thesis();
-    design.u_thickness_mm = alike ? 0 : 0.004;
+    design.beams.u_thickness_mm = alike ? 0 : 0.004;
     const double rel_length = 0.10, rel_width = 0.08, rho = alike ? 0.9 : 0;
-    const double rel_thickness = design.u_thickness_mm / design.thickness_mm;
+    const double rel_thickness = design.beams.u_thickness_mm / design.thickness_mm;
     const fg_beam_size size = {9, 9 * rel_length, 3, 3 * rel_width, rho};
     spread compliance = {0}, sagitta = {0};
     uint64_t seed = 5 + (uint64_t)alike;
@@ -131,7 +131,7 @@ static void impossible_sizes_give_nan(void **state) {
   assert_true(isnan(beam.compliance_error_pct) && isnan(beam.u_compliance_mm_per_n));
   assert_near(beam.sagitta_error_pct, 0, 1e-12);
   assert_near(beam.u_sagitta_error_pct, 200 * 0.004 / 9, 1e-6);
-  design.sagitta_mm = design.clearance_mm = design.elastic_modulus_gpa = 0;
+  design.beams.sagitta_mm = design.beams.clearance_mm = design.beams.elastic_modulus_gpa = 0;
   beam = fg_cantilever_nominal(&design);
   assert_true(isnan(beam.sagitta_mm) && isnan(beam.clearance_change_mm));
   assert_true(isnan(beam.compliance_mm_per_n) && isnan(beam.clearance_change_pct));

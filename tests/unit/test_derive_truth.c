@@ -30,10 +30,10 @@ static void check_nominal(const cJSON *truth, fg_design *design, fg_nominal *nom
   const cJSON *stated = cJSON_GetObjectItem(truth, "design");
   const cJSON *derived = cJSON_GetObjectItem(truth, "nominal");
   fg_design_default(design);
-  design->bump_radius_mm = number(stated, "bump_radius_mm");
-  design->bump_angle_deg = number(stated, "bump_angle_deg");
-  design->fillet_radius_mm = number(stated, "fillet_radius_mm");
-  design->overall_radius_mm = design->sleeve_radius_mm = number(stated, "overall_radius_mm");
+  design->bumps.radius_mm = number(stated, "bump_radius_mm");
+  design->bumps.angle_deg = number(stated, "bump_angle_deg");
+  design->bumps.fillet_radius_mm = number(stated, "fillet_radius_mm");
+  design->overall_radius_mm = design->bumps.sleeve_radius_mm = number(stated, "overall_radius_mm");
   assert_ok(&test_context, fg_design_derive(&test_context, design, nominal));
   assert_true(fabs(nominal->centre_to_centre_mm - number(derived, "centre_to_centre_mm")) < 1e-9);
   assert_true(fabs(nominal->height_mm - number(derived, "height_mm")) < 1e-9);

@@ -40,7 +40,7 @@ static void sleeve_and_datum_enter_where_they_should(void **state) {
   fg_nominal plain, wide;
   fg_design_default(&design);
   assert_ok(&test_context, fg_design_derive(&test_context, &design, &plain));
-  design.sleeve_radius_mm += 0.05;
+  design.bumps.sleeve_radius_mm += 0.05;
   assert_ok(&test_context, fg_design_derive(&test_context, &design, &wide));
   assert_near(wide.centre_to_centre_mm, plain.centre_to_centre_mm, 0);
   assert_near(wide.height_mm, plain.height_mm + 0.05, 1e-14);
@@ -56,11 +56,11 @@ static void top_foil_is_taken_off_every_clearance(void **state) {
   fg_design_default(&design);
   assert_ok(&test_context, fg_design_derive(&test_context, &design, &plain));
   double over = fg_design_clearance_over(&design, 0.5, 0.12);
-  design.top_foil_thickness_mm = 0.05;
+  design.bumps.top_foil_thickness_mm = 0.05;
   assert_ok(&test_context, fg_design_derive(&test_context, &design, &covered));
   assert_near(covered.clearance_mm, plain.clearance_mm - 0.05, 1e-14);
   assert_near(fg_design_clearance_over(&design, 0.5, 0.12), over - 0.05, 1e-14);
-  fg_design_springback(&design, &covered, design.bump_radius_mm, &model);
+  fg_design_springback(&design, &covered, design.bumps.radius_mm, &model);
   assert_near(model.clearance_mm, covered.clearance_mm, 1e-10);
   covered.clearance_mm = plain.clearance_mm;
   assert_memory_equal(&covered, &plain, sizeof plain);
@@ -118,11 +118,11 @@ static void file_is_read(void **state) {
   assert_string_equal(design.name, "sheet 7");
   assert_int_equal(design.kind, FG_FOIL_SINUSOIDAL);
   assert_int_equal(design.datum, FG_DATUM_OUTER);
-  assert_int_equal(design.bump_count, 7);
-  assert_near(design.bump_radius_mm, 3.2, 0);
-  assert_near(design.sleeve_radius_mm, 20.7, 0); /* follows the overall radius */
-  assert_near(design.pitch_deg, 14, 0);
-  assert_near(design.rotor_diameter_mm, 39.9, 0);
+  assert_int_equal(design.bumps.count, 7);
+  assert_near(design.bumps.radius_mm, 3.2, 0);
+  assert_near(design.bumps.sleeve_radius_mm, 20.7, 0); /* follows the overall radius */
+  assert_near(design.bumps.pitch_deg, 14, 0);
+  assert_near(design.bumps.rotor_diameter_mm, 39.9, 0);
   assert_int_equal(design.tolerance_count, 2);
   assert_string_equal(design.tolerances[1].quantity, "overall.radius_mm");
   assert_near(design.tolerances[0].lower, 0.4, 0);
@@ -134,12 +134,12 @@ static void absent_members_keep_their_values(void **state) {
   (void)state;
   fg_design design;
   fg_design_default(&design);
-  design.pitch_deg = 15;
+  design.bumps.pitch_deg = 15;
   assert_ok(&test_context, fg_design_parse(&test_context, "x",
                                            "{" SCHEMA ", \"fillet_radius_mm\": 0.4}", &design));
-  assert_near(design.pitch_deg, 15, 0);
-  assert_near(design.fillet_radius_mm, 0.4, 0);
-  assert_near(design.bump_radius_mm, 3.32, 0);
+  assert_near(design.bumps.pitch_deg, 15, 0);
+  assert_near(design.bumps.fillet_radius_mm, 0.4, 0);
+  assert_near(design.bumps.radius_mm, 3.32, 0);
 }
 
 static void discs_need_no_bump_values(void **state) {
@@ -148,8 +148,8 @@ static void discs_need_no_bump_values(void **state) {
   fg_nominal nominal;
   const char *json = "{" SCHEMA ", \"form\": \"discs\", \"diameters_mm\": [4, 6.5]}";
   assert_ok(&test_context, fg_design_parse(&test_context, "x", json, &design));
-  assert_int_equal(design.diameter_count, 2);
-  assert_near(design.diameters_mm[1], 6.5, 0);
+  assert_int_equal(design.discs.count, 2);
+  assert_near(design.discs.diameters_mm[1], 6.5, 0);
   assert_ok(&test_context, fg_design_derive(&test_context, &design, &nominal));
   assert_true(isnan(nominal.height_mm));
 }
@@ -167,10 +167,9 @@ static void cantilever_is_read(void **state) {
                                       "\"clearance_mm\": 0.126, \"elastic_modulus_gpa\": 214}";
   assert_ok(&test_context, fg_design_parse(&test_context, "x", json, &design));
   assert_int_equal(design.kind, FG_FOIL_CANTILEVER);
-  assert_int_equal(design.beam_count, 8);
-  assert_int_equal(design.bump_count, 0);
+  assert_int_equal(design.beams.count, 8);
   assert_string_equal(design.name, "cantilever");
-  assert_near(design.clearance_mm, 0.126, 0);
+  assert_near(design.beams.clearance_mm, 0.126, 0);
   assert_ok(&test_context, fg_design_derive(&test_context, &design, &nominal));
   assert_true(isnan(nominal.height_mm));
 }

@@ -17,7 +17,7 @@ static fg_status measure_file(fg_context *ctx, const char *path, unsigned thread
   fg_design design;
   fg_measure_options options = {.threads = threads};
   fg_design_default(&design);
-  design.kind = FG_FOIL_DISCS;
+  assert_int_equal(fg_design_become(NULL, FG_FOIL_DISCS, &design), FG_OK);
   design.tone = linear ? FG_TONE_LINEAR : FG_TONE_UNKNOWN;
   return fg_measure_scan(ctx, path, &design, &options, m);
 }

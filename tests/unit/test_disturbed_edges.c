@@ -134,7 +134,7 @@ static void overlapping_foils_flag_their_bumps(void **state) {
   size_t silent = 0, touched = 0, sound_bumps = 0, step = test_step(2);
   fg_design design;
   fg_design_default(&design);
-  design.bump_count = 4;
+  design.bumps.count = 4;
   for (size_t i = 0; i < sizeof others / sizeof others[0]; i += step) {
     char json[1024];
     snprintf(json, sizeof json,

@@ -55,7 +55,7 @@ static measured check_foil(int bumps, const char *members, const char *scanner, 
   char json[4096];
   fg_design design;
   fg_design_default(&design);
-  design.bump_count = (size_t)bumps;
+  design.bumps.count = (size_t)bumps;
   small_foil(json, sizeof json, bumps, members, "%s", scanner);
   measured m = measure_render(json, &design);
   assert_ok(NULL, m.status);

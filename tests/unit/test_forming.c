@@ -195,9 +195,9 @@ static fg_design sinusoidal_design(void) {
   fg_design design;
   fg_design_default(&design);
   design.kind = FG_FOIL_SINUSOIDAL;
-  design.bump_radius_mm = 3.2;
-  design.bump_angle_deg = 60;
-  design.fillet_radius_mm = 1.1;
+  design.bumps.radius_mm = 3.2;
+  design.bumps.angle_deg = 60;
+  design.bumps.fillet_radius_mm = 1.1;
   return design;
 }
 
@@ -223,8 +223,8 @@ static void die_comes_back(void **state) {
     assert_true(fabs(f.foil.overall.radius_mm - 20.73) < 1e-5);
     for (size_t b = 0; b < 9; b++) {
       assert_int_equal(f.bumps[b].number, b + 1);
-      assert_true(fabs(f.bumps[b].fitted.radius_mm - designs[i].bump_radius_mm) < 1e-5);
-      assert_true(fabs(f.bumps[b].fitted.bump_angle_deg - designs[i].bump_angle_deg) < 1e-3);
+      assert_true(fabs(f.bumps[b].fitted.radius_mm - designs[i].bumps.radius_mm) < 1e-5);
+      assert_true(fabs(f.bumps[b].fitted.bump_angle_deg - designs[i].bumps.angle_deg) < 1e-3);
       assert_true(fabs(f.bumps[b].fitted.height_mm - f.nominal.height_mm) < 1e-5);
     }
     fg_forming_free(&f);

@@ -297,7 +297,7 @@ static void scanners_far_out_of_line(void **state) {
 static odd_input plate(size_t discs, bool one_size, bool in_line) {
   odd_input in = {.scans = 1};
   fg_design_default(&in.design);
-  in.design.kind = FG_FOIL_DISCS;
+  assert_int_equal(fg_design_become(NULL, FG_FOIL_DISCS, &in.design), FG_OK);
   in.scan[0].discs = discs;
   for (size_t d = 0; d < discs; d++)
     in.scan[0].disc[d] = (odd_disc){.x_mm = 3 + 5 * (double)(d % 7),
@@ -339,8 +339,8 @@ static void discs_with_faults(void **state) {
   for (size_t d = 0; d < 5; d++)
     in.scan[0].disc[d].noise_um = 0;
   check(&in, true, "discs without noise");
-  in.design.diameter_count = 2;
-  in.design.diameters_mm[0] = in.design.diameters_mm[1] = 1;
+  in.design.discs.count = 2;
+  in.design.discs.diameters_mm[0] = in.design.discs.diameters_mm[1] = 1;
   check(&in, true, "discs without noise, two diameters known");
   in = plate(3, true, true);
   for (size_t d = 0; d < 3; d++)

@@ -66,7 +66,7 @@ static void the_largest_change_wins(void **state) {
   fg_design design;
   fg_lot_analysis analysis;
   fg_design_default(&design);
-  design.rotor_diameter_mm = 40.11; /* 10.5 um at design, at 3.20 mm less than nothing */
+  design.bumps.rotor_diameter_mm = 40.11; /* 10.5 um at design, at 3.20 mm less than nothing */
   fg_lot lot = lot_of(&design, 6, low, 0.001, "", NULL);
   const fg_lot_assembly *assembly = analyse(&lot, &analysis);
   assert_int_equal(assembly->drawn.assembled.count, 0);

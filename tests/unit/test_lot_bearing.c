@@ -5,11 +5,11 @@
 
 /* Three foils of the design; bump 9 of the second stands highest. */
 static fg_lot nine_bumps(const fg_design *design) {
-  fg_lot lot = made_lot(design, 3, design->bump_count, "", NULL);
+  fg_lot lot = made_lot(design, 3, design->bumps.count, "", NULL);
   for (size_t i = 0; i < 3; i++)
-    for (size_t k = 0; k < design->bump_count; k++)
+    for (size_t k = 0; k < design->bumps.count; k++)
       made_bump(&lot, i, k, 3.40, 63.15 * 3.32 / 3.40);
-  made_bump(&lot, 1, design->bump_count - 1, 3.20, 65.6);
+  made_bump(&lot, 1, design->bumps.count - 1, 3.20, 65.6);
   return lot;
 }
 
@@ -45,8 +45,8 @@ static void pads_are_as_many_as_fit(void **state) {
   fg_design design;
   fg_lot_analysis analysis;
   fg_design_default(&design);
-  design.bump_count = 7;
-  design.pitch_deg = 14.5;
+  design.bumps.count = 7;
+  design.bumps.pitch_deg = 14.5;
   fg_lot lot = nine_bumps(&design);
   const fg_lot_bearing *bearing = only_bearing(&lot, &analysis);
   assert_int_equal(analysis.layout.pads, 3);
@@ -86,7 +86,7 @@ static void bumps_that_the_design_does_not_count_are_counted(void **state) {
   fg_lot_analysis analysis;
   fg_design_default(&design);
   fg_lot lot = nine_bumps(&design);
-  lot.settings.design.bump_count = 0;
+  lot.settings.design.bumps.count = 0;
   assert_int_equal(only_bearing(&lot, &analysis)->places, 27);
   fg_lot_analysis_free(&analysis);
   made_lot_free(&lot);
@@ -99,8 +99,8 @@ static void a_crowded_design_keeps_within_the_bearing(void **state) {
   fg_lot_analysis analysis;
   fg_design_default(&design);
   fg_lot lot = nine_bumps(&design);
-  lot.settings.design.bump_count = 400;
-  lot.settings.design.pitch_deg = 0.9;
+  lot.settings.design.bumps.count = 400;
+  lot.settings.design.bumps.pitch_deg = 0.9;
   assert_ok(&test_context, fg_lot_analyse(&test_context, &lot, &analysis));
   assert_true(analysis.layout.pads * analysis.layout.bumps_per_pad <= FG_BEARING_BUMPS_MAX);
   assert_non_null(strstr(analysis.layout_note, "400 bumps"));

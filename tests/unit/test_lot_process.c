@@ -27,7 +27,7 @@ static fg_lot_quantity radius_of(const char *const *cells, const double *offset_
   fg_lot_analysis analysis;
   size_t size;
   fg_design_default(&design);
-  design.bump_count = BUMPS;
+  design.bumps.count = BUMPS;
   design.tolerance_count = 1;
   design.tolerances[0] = (fg_tolerance){.quantity = "radius_mm", .lower = 3.3, .upper = 3.5};
   fg_lot lot = lot_of(&design, cells, offset_mm);
@@ -185,7 +185,7 @@ static void the_margin_of_the_worst_is_told(void **state) {
   fg_design design;
   fg_lot_analysis analysis;
   fg_design_default(&design);
-  design.bump_count = BUMPS;
+  design.bumps.count = BUMPS;
   design.tolerance_count = 1;
   design.tolerances[0] = (fg_tolerance){.quantity = "radius_mm", .lower = 3.3, .upper = 3.4};
   const double offset[FOILS] = {[7] = 0.05};

@@ -24,7 +24,7 @@ static fg_measurement measure_discs(const char *json) {
   assert_true(file >= 0);
   close(file);
   fg_design_default(&design);
-  design.kind = FG_FOIL_DISCS;
+  assert_int_equal(fg_design_become(NULL, FG_FOIL_DISCS, &design), FG_OK);
   if (fg_render_parse(&ctx, "disc.json", json, &spec) != FG_OK) fail_msg("%s", ctx.message);
   assert_ok(&ctx, fg_render_scan(&ctx, spec, path, NULL));
   assert_ok(&ctx, fg_measure_scan(&ctx, path, &design, &options, &result));

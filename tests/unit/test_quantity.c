@@ -177,7 +177,8 @@ static void reports_hold_every_row_of_arcs(void **state) {
   fg_nominal nominal = synthetic_nominal(&design);
   fg_measurement measurement = synthetic_measurement(&design);
   fg_foil *foil = &measurement.foils[0];
-  design.kind = measurement.design.kind = FG_FOIL_ARC;
+  assert_int_equal(fg_design_become(NULL, FG_FOIL_ARC, &design), FG_OK);
+  measurement.design = design;
   foil->bump_count = 0;
   foil->correction = (fg_correction){1e-3, 2e-4, 3e-3, 4e-4, 5e-3, 6e-4};
   foil->arc = (fg_foil_arc){110.5, 0.001, 0.45, 0.0009, 39.8, 0.002};
@@ -197,7 +198,7 @@ static void reports_hold_every_row_of_arcs(void **state) {
 static void reports_hold_every_row_of_discs(void **state) {
   (void)state;
   fg_design design = synthetic_design();
-  design.kind = FG_FOIL_DISCS;
+  assert_int_equal(fg_design_become(NULL, FG_FOIL_DISCS, &design), FG_OK);
   fg_nominal nominal = {0};
   fg_disc disc = synthetic_disc(1, 1.5);
   fg_measurement measurement = {.dpi = {1200, 1200}, .discs = &disc, .disc_count = 1};
@@ -272,7 +273,7 @@ static void lots_know_every_row(void **state) {
   enum { FOILS = 3, BUMPS = 3 };
   fg_context ctx = {0};
   fg_design design = synthetic_design();
-  design.bump_count = BUMPS;
+  design.bumps.count = BUMPS;
   fg_lot lot = made_lot(&design, FOILS, BUMPS, "", NULL);
   for (size_t f = 0; f < FOILS; f++)
     for (size_t b = 0; b < BUMPS; b++)

@@ -193,7 +193,7 @@ static void a_page_says_the_verdict_and_why(void **state) {
 static void a_page_of_discs_lists_them(void **state) {
   (void)state;
   fg_design design = synthetic_design();
-  design.kind = FG_FOIL_DISCS;
+  assert_int_equal(fg_design_become(NULL, FG_FOIL_DISCS, &design), FG_OK);
   synthetic_tolerance(&design, "roundness_um", -INFINITY, 5); /* 4.2 ± 1.2: either */
   fg_measurement measurement = measurement_of("-");
   measurement.discs = calloc(2, sizeof *measurement.discs);

@@ -57,10 +57,10 @@ static void a_foil_is_valid(void **state) {
 static void discs_are_valid(void **state) {
   (void)state;
   fg_design design = synthetic_design();
-  design.kind = FG_FOIL_DISCS;
-  design.diameter_count = 2;
-  design.diameters_mm[0] = 3;
-  design.diameters_mm[1] = 5.5;
+  assert_int_equal(fg_design_become(NULL, FG_FOIL_DISCS, &design), FG_OK);
+  design.discs.count = 2;
+  design.discs.diameters_mm[0] = 3;
+  design.discs.diameters_mm[1] = 5.5;
   synthetic_tolerance(&design, "roundness_um", -INFINITY, 5);
   fg_nominal nominal = {0};
   fg_disc discs[2] = {synthetic_disc(1, 1.5), synthetic_disc(2, 2.75)};

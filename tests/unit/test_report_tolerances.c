@@ -184,7 +184,7 @@ static void an_unknown_tolerance_is_refused(void **state) {
   assert_status(&ctx, fg_report_check_tolerances(&ctx, &all->design), FG_ERR_DATA);
   assert_non_null(strstr(ctx.message, "tolerances.hight_mm"));
   assert_non_null(strstr(ctx.message, "height_mm,"));
-  all->design.kind = FG_FOIL_DISCS;
+  assert_int_equal(fg_design_become(NULL, FG_FOIL_DISCS, &all->design), FG_OK);
   all->design.tolerance_count = 1;
   assert_status(&ctx, fg_report_check_tolerances(&ctx, &all->design), FG_ERR_DATA);
 }

@@ -39,7 +39,7 @@ static odd_input foil_input(void) {
 static odd_input ring_input(void) {
   odd_input in = {.scans = 1};
   fg_design_default(&in.design);
-  in.design.kind = FG_FOIL_DISCS;
+  assert_int_equal(fg_design_become(NULL, FG_FOIL_DISCS, &in.design), FG_OK);
   in.scan[0].discs = 1;
   in.scan[0].disc[0] = (odd_disc){
       .x_mm = 20, .y_mm = 20, .radius_mm = 15, .noise_um = 0.3, .stations = 2000, .seed = 3};

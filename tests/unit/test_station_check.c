@@ -41,10 +41,10 @@ static void write_spec(char *json, size_t size, const scanner *is, unsigned seed
 
 static void design_plate(fg_design *design) {
   fg_design_default(design);
-  design->kind = FG_FOIL_DISCS;
-  design->diameter_count = DISCS;
+  assert_int_equal(fg_design_become(NULL, FG_FOIL_DISCS, design), FG_OK);
+  design->discs.count = DISCS;
   for (size_t i = 0; i < DISCS; i++)
-    design->diameters_mm[i] = 2 * radii_mm[i];
+    design->discs.diameters_mm[i] = 2 * radii_mm[i];
 }
 
 static fg_check_fit check(const scanner *is, unsigned seed, const char *picture) {

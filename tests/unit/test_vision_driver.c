@@ -161,7 +161,7 @@ static void discs_stay_round_and_right(void **state) {
   };
   fg_design design;
   fg_design_default(&design);
-  design.kind = FG_FOIL_DISCS;
+  assert_int_equal(fg_design_become(NULL, FG_FOIL_DISCS, &design), FG_OK);
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
     in_row("cases[%zu]", i);
     const driver_case *c = &cases[i];

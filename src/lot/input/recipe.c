@@ -12,6 +12,7 @@
 #include "core/memory.h"
 #include "core/text.h"
 #include "foilgauge/control.h"
+#include "foilgauge/foil_kind.h"
 #include "foilgauge/lot.h"
 #include "foilgauge/scan_loop.h"
 #include "foilgauge/stiffness.h"
@@ -57,8 +58,9 @@ fg_status fg_lot_settings_check(fg_context *ctx, const fg_lot_settings *settings
     FG_TRY(check_number(ctx, &fg_recipe_assembly.rows[i],
                         fg_recipe_number(&fg_recipe_assembly.rows[i], settings)));
   FG_TRY(check_layout(ctx, &settings->layout));
-  if (settings->design.kind == FG_FOIL_DISCS)
-    return fg_fail(ctx, FG_ERR_DATA, "design.form is discs; a lot is made of foils");
+  const fg_foil_traits *kind = fg_foil_traits_of(settings->design.kind);
+  if (!kind->is_foil)
+    return fg_fail(ctx, FG_ERR_DATA, "design.form is %s; a lot is made of foils", kind->name);
   FG_TRY(fg_design_check(ctx, &settings->design));
   FG_TRY(fg_lot_dies_check(ctx, settings));
   FG_TRY(fg_reference_curve_check(ctx, settings));

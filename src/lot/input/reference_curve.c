@@ -132,7 +132,7 @@ void fg_reference_curve_write(fg_json *json, const char *name, const fg_lot_sett
 
 fg_status fg_reference_curve_check(fg_context *ctx, const fg_lot_settings *settings) {
   const fg_lot_curve *curve = &settings->curve;
-  size_t bumps = settings->design.bump_count;
+  size_t bumps = settings->design.bumps.count;
   if (!curve->count) return FG_OK;
   if (!fg_foil_kind_has_bumps(settings->design.kind))
     return fg_fail(ctx, FG_ERR_DATA,

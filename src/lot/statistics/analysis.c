@@ -6,6 +6,7 @@
 #include <stdlib.h>
 
 #include "core/memory.h"
+#include "foilgauge/foil_kind.h"
 #include "report/measure/scan_model_words.h"
 
 static fg_status list_lot_foils(fg_context *ctx, fg_lot_analysis *analysis) {
@@ -55,25 +56,26 @@ static fg_status decide_foil(fg_context *ctx, fg_lot_analysis *analysis, fg_lot_
   return FG_OK;
 }
 
-/* Ranks plain strips, which have no heights, by the distance of their radius from the lot's mean.
- */
-static void rank_arcs_by_spread(fg_lot_analysis *analysis) {
-  const fg_lot_quantity *radius = fg_lot_find_quantity(analysis, "overall.radius_mm");
-  for (size_t i = 0; radius && radius->sd > 0 && i < analysis->foil_count; i++) {
+/* Ranks foils without ranking parts by the distance of one of their own quantities from the lot's
+ * mean. */
+static void rank_foils_by_spread(fg_lot_analysis *analysis, const char *name) {
+  const fg_lot_quantity *quantity = fg_lot_find_quantity(analysis, name);
+  for (size_t i = 0; quantity && quantity->sd > 0 && i < analysis->foil_count; i++) {
     fg_lot_foil *foil = &analysis->foils[i];
     if (!fg_foil_is_measured(foil->foil)) continue;
-    foil->worst_row = radius->row;
-    foil->worst_value = foil->foil->overall.radius_mm;
-    foil->worst_u = fg_quantity_uncertainty(radius->row, foil->foil);
-    foil->severity = fabs(foil->worst_value - radius->mean) / radius->sd;
+    foil->worst_row = quantity->row;
+    foil->worst_value = fg_quantity_value(quantity->row, foil->foil);
+    foil->worst_u = fg_quantity_uncertainty(quantity->row, foil->foil);
+    foil->severity = fabs(foil->worst_value - quantity->mean) / quantity->sd;
   }
 }
 
 /* Ranks foils without tolerances by the distance of the leading quantity (heights of bumps) from
  * the lot's mean. */
 static void rank_by_spread(fg_lot_analysis *analysis) {
-  if (analysis->lot->settings.design.kind == FG_FOIL_ARC) {
-    rank_arcs_by_spread(analysis);
+  const char *of_foils = fg_foil_traits_of(analysis->lot->settings.design.kind)->ranked_by;
+  if (of_foils) {
+    rank_foils_by_spread(analysis, of_foils);
     return;
   }
   const fg_lot_quantity *leading = fg_lot_leading_quantity(analysis);

@@ -125,7 +125,7 @@ static void plan_assembly(fg_lot_analysis *analysis) {
  * arc length, the foil fitted into the sleeve. */
 static double move_clearance(const fg_lot *lot, const fg_bump *bump, double radius_mm) {
   const fg_design *design = &lot->settings.design;
-  const fg_overall sleeve = {.radius_mm = design->sleeve_radius_mm};
+  const fg_overall sleeve = {.radius_mm = design->bumps.sleeve_radius_mm};
   const fg_thickness strip = {.mm = design->thickness_mm};
   double clearance[2];
   for (int moved = 0; moved < 2; moved++) {
@@ -157,7 +157,7 @@ static fg_status centre_radii(const fg_lot_analysis *analysis, fg_stock *stock) 
         else
           stock->clearance_mm[at * places + place] += move_clearance(
               analysis->lot, bump,
-              bump->radius_mm + analysis->lot->settings.design.bump_radius_mm - mean);
+              bump->radius_mm + analysis->lot->settings.design.bumps.radius_mm - mean);
       }
       at += (size_t)pass;
     }

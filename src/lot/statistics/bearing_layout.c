@@ -27,7 +27,7 @@ static void resolve_layout(const fg_lot_analysis *analysis, size_t bumps,
   const fg_lot_settings *settings = &analysis->lot->settings;
   *layout = settings->layout;
   bool equal = layout->pads && layout->bumps_per_pad && !(layout->pitch_deg > 0);
-  double pitch = layout->pitch_deg > 0 ? layout->pitch_deg : settings->design.pitch_deg;
+  double pitch = layout->pitch_deg > 0 ? layout->pitch_deg : settings->design.bumps.pitch_deg;
   if (!layout->bumps_per_pad)
     layout->bumps_per_pad = bumps >= layout->first_bump ? bumps + 1 - layout->first_bump : 1;
   layout->bumps_per_pad = clamp_count(layout->bumps_per_pad, 1, FG_BEARING_BUMPS_MAX);
@@ -50,11 +50,11 @@ static void describe_contradiction(const fg_design *design, const fg_bearing_lay
                             "The bearing has places for bumps %zu to %zu of each foil, the design "
                             "has %zu bumps: the others are in no bearing. ",
                             layout->first_bump, last, bumps);
-  if (fabs(pitch / design->pitch_deg - 1) > 0.005)
+  if (fabs(pitch / design->bumps.pitch_deg - 1) > 0.005)
     snprintf(note + used, size - used,
              "Its places are %.4g° apart, the design's bumps %.4g°: clearances stand at other "
              "angles than the bumps. ",
-             pitch, design->pitch_deg);
+             pitch, design->bumps.pitch_deg);
   if (note[0])
     snprintf(note + strlen(note), size - strlen(note),
              "pads, bumps_per_pad and bump_pitch_deg of the recipe say so; null takes the "
@@ -63,7 +63,7 @@ static void describe_contradiction(const fg_design *design, const fg_bearing_lay
 
 void fg_lot_find_layout(fg_lot_analysis *analysis) {
   const fg_design *design = &analysis->lot->settings.design;
-  size_t bumps = design->bump_count ? design->bump_count : find_highest_bump(analysis);
+  size_t bumps = design->bumps.count ? design->bumps.count : find_highest_bump(analysis);
   resolve_layout(analysis, bumps, &analysis->layout);
   describe_contradiction(design, &analysis->layout, bumps, analysis->layout_note,
                          sizeof analysis->layout_note);

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "foilgauge/foil_kind.h"
 #include "lot/statistics/analysis.h"
 #include "quantity/quantity_rows.h"
 
@@ -26,7 +27,7 @@ static double move_by_thickness(const reading *r, const fg_foil *foil, const fg_
   double moves[FG_CALIBRATED_MAX] = {0};
   const fg_design *design = &r->analysis->lot->settings.design;
   fg_foil thick = *foil;
-  if (design->kind == FG_FOIL_CANTILEVER) return 0;
+  if (fg_foil_traits_of(design->kind)->lies_flat) return 0;
   fg_quantity_narrow_calibrated(FG_QUANTITY_OF_FOIL, &thick, &foil->calibrated);
   double u = isfinite(thick.u_thickness_mm) ? thick.u_thickness_mm : 0;
   thick.thickness_mm += u;

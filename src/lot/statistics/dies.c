@@ -33,7 +33,7 @@ typedef struct sums {
 
 static void add_die_error(const fg_lot_analysis *analysis, const fg_bump *bump,
                           const fg_lot_to_die *to, sums *s) {
-  double design_mm = analysis->lot->settings.design.bump_radius_mm;
+  double design_mm = analysis->lot->settings.design.bumps.radius_mm;
   double error = bump->radius_error_pct;
   s->count++;
   s->design += error;

@@ -37,8 +37,8 @@ static double stiffness_ratio(const fg_lot_settings *settings, const fg_lot_stif
 static fg_status stiffness_of_design(fg_context *ctx, const fg_lot_settings *settings,
                                      fg_lot_stiffness *result) {
   const fg_design *design = &settings->design;
-  fg_arch arch =
-      fg_design_arch(design, design->thickness_mm, design->bump_radius_mm, design->bump_angle_deg);
+  fg_arch arch = fg_design_arch(design, design->thickness_mm, design->bumps.radius_mm,
+                                design->bumps.angle_deg);
   result->cases[FG_LOT_CASE_DESIGN] =
       (fg_stiffness_case){.title = "as designed", .name = "design", .arch = arch};
   fg_stiffness_compare(&arch, &settings->material, result->cases[FG_LOT_CASE_DESIGN].lines);

@@ -9,6 +9,7 @@
 #include "core/file.h"
 #include "core/memory.h"
 #include "core/text.h"
+#include "foilgauge/foil_kind.h"
 #include "lot/statistics/analysis.h"
 #include "quantity/quantity_rows.h"
 
@@ -38,11 +39,8 @@ typedef struct reading {
   size_t failed, foreign, crushed, unknown;
 } reading;
 
-/* Finds the response. A lot of plain strips holds the quantities of a lot with bumps, but no values
- * of most. */
 static fg_status find_response(fg_context *ctx, reading *r) {
-  fg_foil_kind kind =
-      r->out->design.kind == FG_FOIL_CANTILEVER ? FG_FOIL_CANTILEVER : FG_FOIL_CLASSICAL;
+  fg_foil_kind kind = r->out->design.kind;
   const fg_quantity_owner owners[] = {fg_foil_kind_parts(kind), FG_QUANTITY_OF_FOIL};
   char list[700] = "";
   for (size_t i = 0; i < 2; i++) {
@@ -161,12 +159,12 @@ static fg_status make_rows(fg_context *ctx, reading *r) {
       FG_TRY(append_foil_rows(ctx, r, i, &record->foils[f]));
   }
   if (r->rows) return FG_OK;
-  if (is_of_parts(r) && r->out->design.kind == FG_FOIL_ARC)
-    return fg_fail(
-        ctx, FG_ERR_DATA,
-        "%s: a lot of plain strips (form arc) has no %s, which is of bumps; choose another "
-        "--response, such as overall.radius_mm or arc.subtended_angle_deg",
-        r->folder, r->options->quantity);
+  const fg_foil_traits *kind = fg_foil_traits_of(r->out->design.kind);
+  if (is_of_parts(r) && kind->is_plain_strip)
+    return fg_fail(ctx, FG_ERR_DATA,
+                   "%s: a lot of %s (form %s) has no %s, which is of bumps; choose another "
+                   "--response, such as %s",
+                   r->folder, kind->plural, kind->name, r->options->quantity, kind->own_quantities);
   return fg_fail(ctx, FG_ERR_DATA, "%s: not one value of %s in %zu scans", r->folder,
                  r->options->quantity, r->lot.manifest.items);
 }

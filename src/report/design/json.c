@@ -12,6 +12,7 @@
 #include "core/json_read.h"
 #include "core/text.h"
 #include "foilgauge/design.h"
+#include "foilgauge/foil_kind.h"
 #include "foilgauge/report.h"
 #include "report/design/calibration_json.h"
 
@@ -84,13 +85,10 @@ static fg_status read_word(const reader *r, const char *name, const cJSON *item,
 }
 
 static fg_status read_kind(const reader *r, const char *name, const cJSON *item, void *out) {
-  static const char *const words[] = {"classical", "sinusoidal", "discs",
-                                      "arc",       "cantilever", NULL};
-  int place = 0;
-  FG_TRY(read_word(r, name, item, words,
-                   "\"classical\", \"sinusoidal\", \"discs\", \"arc\" or \"cantilever\"", &place));
-  *(fg_foil_kind *)out = (fg_foil_kind)place;
-  return FG_OK;
+  char choices[200];
+  if (cJSON_IsString(item) && fg_foil_kind_find(item->valuestring, out)) return FG_OK;
+  fg_foil_kind_list(false, "\"", " or ", choices, sizeof choices);
+  return fail(r, name, "must be %s", choices);
 }
 
 static fg_status read_datum(const reader *r, const char *name, const cJSON *item, void *out) {
@@ -147,16 +145,16 @@ static fg_status read_tolerances(const reader *r, const char *name, const cJSON 
 }
 
 static fg_status read_diameters(const reader *r, const char *name, const cJSON *item, void *out) {
-  fg_design *design = out;
+  fg_design_discs *discs = out;
   if (!cJSON_IsArray(item)) return fail(r, name, "must be an array of numbers");
-  design->diameter_count = 0;
+  discs->count = 0;
   for (const cJSON *entry = item->child; entry; entry = entry->next) {
     char full[48];
-    snprintf(full, sizeof full, "%s[%zu]", name, design->diameter_count);
-    if (design->diameter_count == FG_DIAMETERS_MAX)
+    snprintf(full, sizeof full, "%s[%zu]", name, discs->count);
+    if (discs->count == FG_DIAMETERS_MAX)
       return fail(r, name, "more than %d values", FG_DIAMETERS_MAX);
-    FG_TRY(read_number(r, full, entry, &design->diameters_mm[design->diameter_count]));
-    design->diameter_count++;
+    FG_TRY(read_number(r, full, entry, &discs->diameters_mm[discs->count]));
+    discs->count++;
   }
   return FG_OK;
 }
@@ -253,37 +251,44 @@ static fg_status read_gauges(const reader *r, const char *name, const cJSON *ite
   return FG_OK;
 }
 
-/* One row per member; offset 0 hands the whole design to the reader. */
+/* One row per member; offset 0 hands the whole design, or its group, to the reader. */
 typedef struct member_row {
   const char *name;
   read_value *read;
-  size_t offset;
+  fg_design_group group;
+  size_t offset;       /* in the design, or in the group */
   const char *meaning; /* foilgauge-design(5) */
 } member_row;
 
 #define MEMBER(name, read, meaning)                                                                \
-  { #name, read, offsetof(fg_design, name), meaning }
+  { #name, read, FG_DESIGN_COMMON, offsetof(fg_design, name), meaning }
+#define OF(group, name, type, member, read, meaning)                                               \
+  { name, read, group, offsetof(type, member), meaning }
+#define BUMPS(name, member, read, meaning)                                                         \
+  OF(FG_DESIGN_BUMPS, name, fg_design_bumps, member, read, meaning)
+#define BEAMS(name, member, read, meaning)                                                         \
+  OF(FG_DESIGN_BEAMS, name, fg_design_beams, member, read, meaning)
 static const member_row member_rows[] = {
-    {"schema", read_schema, 0, "Must be \"foilgauge/design/1\"."},
+    {"schema", read_schema, FG_DESIGN_COMMON, 0, "Must be \"foilgauge/design/1\"."},
     MEMBER(name, read_name, "Of the design, as reports show it."),
-    {"form", read_kind, offsetof(fg_design, kind),
+    {"form", read_kind, FG_DESIGN_COMMON, offsetof(fg_design, kind),
      "\"classical\" (bumps, lands, a lip at one end), \"sinusoidal\" (long fillets, short "
      "lands, no lip), \"arc\" (a plain strip, as a top foil), \"cantilever\" (a flat foil with "
      "beams cut out of it) or \"discs\" (no foil: round gauges)."},
     MEMBER(datum, read_datum,
            "Which line of the strip the lengths belong to: \"mid\", \"inner\" (the shaft's side) "
            "or \"outer\" (the sleeve's)."),
-    MEMBER(bump_count, read_count, "Bumps of a foil; 0: not stated."),
-    MEMBER(bump_radius_mm, read_number, "R, of the circle of a bump."),
-    MEMBER(bump_angle_deg, read_number,
-           "alpha, at the bump's centre between the crossings with the overall circle."),
+    BUMPS("bump_count", count, read_count, "Bumps of a foil; 0: not stated."),
+    BUMPS("bump_radius_mm", radius_mm, read_number, "R, of the circle of a bump."),
+    BUMPS("bump_angle_deg", angle_deg, read_number,
+          "alpha, at the bump's centre between the crossings with the overall circle."),
     MEMBER(overall_radius_mm, read_number, "R0, of the circle through the lands, or of an arc."),
-    MEMBER(sleeve_radius_mm, read_number,
-           "Of the bore that the foil is pressed into; without it, `overall_radius_mm`."),
-    MEMBER(pitch_deg, read_number, "From bump to bump about the overall centre."),
-    MEMBER(fillet_radius_mm, read_number, "Between a bump and its lands."),
+    BUMPS("sleeve_radius_mm", sleeve_radius_mm, read_number,
+          "Of the bore that the foil is pressed into; without it, `overall_radius_mm`."),
+    BUMPS("pitch_deg", pitch_deg, read_number, "From bump to bump about the overall centre."),
+    BUMPS("fillet_radius_mm", fillet_radius_mm, read_number, "Between a bump and its lands."),
     MEMBER(thickness_mm, read_number, "Of the strip."),
-    {"thickness_measured", read_thickness_measured, 0,
+    {"thickness_measured", read_thickness_measured, FG_DESIGN_COMMON, 0,
      "Of the strip by a micrometer, at 20 °C: an object with `value_mm` and its standard "
      "uncertainty `u_mm`. It is the thickness in force, of clearances and stiffness, and the "
      "scan's is held against it."},
@@ -291,42 +296,46 @@ static const member_row member_rows[] = {
            "\"linear\" says that the scanner's counts are proportional to the light, and you vouch "
            "for it: thickness, diameters and clearances then hold no unknown tone curve. Without "
            "it, \"unknown\"."),
-    MEMBER(top_foil_thickness_mm, read_number,
-           "Of the plain foil between bumps and rotor, 0 for none: it is taken off every "
-           "clearance, that of the design too; one that leaves no clearance is refused."),
-    MEMBER(rotor_diameter_mm, read_number, "Of the rotor in the bearing."),
-    MEMBER(subtended_angle_deg, read_number,
-           "Of form \"arc\" alone: from end to end, about the centre."),
-    MEMBER(beam_count, read_count,
-           "Of form \"cantilever\" alone, as all up to `clearance_mm`: beams of a foil; 0: not "
-           "stated."),
-    MEMBER(beam_length_mm, read_number, "L, from the root of a beam to its free end."),
-    MEMBER(beam_width_mm, read_number, "w, of a beam."),
-    MEMBER(u_thickness_mm, read_number,
-           "Standard uncertainty of `thickness_mm`, which goes into that of the compliance; a scan "
-           "does not see the thickness of what lies flat."),
-    MEMBER(sagitta_mm, read_number, "s, by which a beam stands off its sheet once it is bent."),
-    MEMBER(elastic_modulus_gpa, read_number,
-           "E of the sheet; without it the compliance is told against the design's alone."),
-    MEMBER(clearance_mm, read_number,
-           "Of the bearing with beams of this sagitta; its change is then told in percent, too."),
-    {"diameters_mm", read_diameters, 0,
+    BUMPS("top_foil_thickness_mm", top_foil_thickness_mm, read_number,
+          "Of the plain foil between bumps and rotor, 0 for none: it is taken off every "
+          "clearance, that of the design too; one that leaves no clearance is refused."),
+    BUMPS("rotor_diameter_mm", rotor_diameter_mm, read_number, "Of the rotor in the bearing."),
+    OF(FG_DESIGN_ARC, "subtended_angle_deg", fg_design_arc, subtended_angle_deg, read_number,
+       "Of form \"arc\" alone: from end to end, about the centre."),
+    BEAMS("beam_count", count, read_count,
+          "Of form \"cantilever\" alone, as all up to `clearance_mm`: beams of a foil; 0: not "
+          "stated."),
+    BEAMS("beam_length_mm", length_mm, read_number, "L, from the root of a beam to its free end."),
+    BEAMS("beam_width_mm", width_mm, read_number, "w, of a beam."),
+    BEAMS("u_thickness_mm", u_thickness_mm, read_number,
+          "Standard uncertainty of `thickness_mm`, which goes into that of the compliance; a scan "
+          "does not see the thickness of what lies flat."),
+    BEAMS("sagitta_mm", sagitta_mm, read_number,
+          "s, by which a beam stands off its sheet once it is bent."),
+    BEAMS("elastic_modulus_gpa", elastic_modulus_gpa, read_number,
+          "E of the sheet; without it the compliance is told against the design's alone."),
+    BEAMS("clearance_mm", clearance_mm, read_number,
+          "Of the bearing with beams of this sagitta; its change is then told in percent, too."),
+    {"diameters_mm", read_diameters, FG_DESIGN_DISCS, 0,
      "Of form \"discs\" alone: known diameters of the gauges, in any order."},
-    MEMBER(u_diameters_mm, read_number,
-           "Standard uncertainty of each of these diameters; without it 0.0005 where the level of "
-           "edges is told from them."),
-    {"tolerances", read_tolerances, 0,
+    OF(FG_DESIGN_DISCS, "u_diameters_mm", fg_design_discs, u_diameters_mm, read_number,
+       "Standard uncertainty of each of these diameters; without it 0.0005 where the level of "
+       "edges is told from them."),
+    {"tolerances", read_tolerances, FG_DESIGN_COMMON, 0,
      "An object of quantities with \"min\", \"max\" or both; below."},
     MEMBER(calibration, read_calibration,
            "What the statistics of a scan cannot know: how long a pixel is, how warm the part was; "
            "below."),
-    {"gauges", read_gauges, 0,
+    {"gauges", read_gauges, FG_DESIGN_COMMON, 0,
      "An array of gauges that lie on the glass in the same scan, as {\"kind\": \"leaf\", "
      "\"width_mm\": 0.1, \"u_mm\": 0.0005}: a \"leaf\" of a feeler gauge standing on its edge, a "
      "\"pin\" seen end-on, a \"ring\" of known bore or a \"hole\", with its known width and the "
      "standard uncertainty of that. They tell at which level edges lie."},
 };
 #undef MEMBER
+#undef OF
+#undef BUMPS
+#undef BEAMS
 
 enum { MEMBER_ROWS = sizeof member_rows / sizeof *member_rows };
 
@@ -339,10 +348,20 @@ static fg_status fail_unknown(const reader *r, const char *name) {
   return fail(r, name, "is not a member of a design; there are %s", known);
 }
 
-static fg_status read_member(const reader *r, const cJSON *item, fg_design *design) {
-  for (size_t i = 0; i < MEMBER_ROWS; i++)
-    if (!strcmp(item->string, member_rows[i].name))
-      return member_rows[i].read(r, item->string, item, (char *)design + member_rows[i].offset);
+/* A design while it is read: members of every group, as `form` may come last. */
+typedef struct stated_design {
+  fg_design design;
+  fg_design_values groups[FG_DESIGN_GROUPS];
+} stated_design;
+
+static fg_status read_member(const reader *r, const cJSON *item, stated_design *stated) {
+  for (size_t i = 0; i < MEMBER_ROWS; i++) {
+    const member_row *row = &member_rows[i];
+    if (strcmp(item->string, row->name) != 0) continue;
+    char *place = row->group == FG_DESIGN_COMMON ? (char *)&stated->design
+                                                 : (char *)&stated->groups[row->group];
+    return row->read(r, item->string, item, place + row->offset);
+  }
   return fail_unknown(r, item->string);
 }
 
@@ -365,67 +384,55 @@ static bool has_member(const cJSON *root, const char *name) {
   return cJSON_GetObjectItemCaseSensitive(root, name) != NULL;
 }
 
-/* Members of a foil kind without defaults: those that it must state, and those of other kinds,
- * which would be ignored. */
-typedef struct kind_members {
-  const char *kind, *part;
-  const char *needed[4], *others[12];
-} kind_members;
-
-static const kind_members arc_members = {
-    "arc",
-    "an arc",
-    {"overall_radius_mm", "subtended_angle_deg", "thickness_mm"},
-    {"bump_count", "bump_radius_mm", "bump_angle_deg", "sleeve_radius_mm", "pitch_deg",
-     "fillet_radius_mm", "rotor_diameter_mm", "top_foil_thickness_mm"}};
-
-static const kind_members cantilever_members = {
-    "cantilever",
-    "a cantilever",
-    {"beam_length_mm", "beam_width_mm", "thickness_mm"},
-    {"bump_count", "bump_radius_mm", "bump_angle_deg", "sleeve_radius_mm", "pitch_deg",
-     "fillet_radius_mm", "rotor_diameter_mm", "top_foil_thickness_mm", "overall_radius_mm",
-     "datum"}};
-
-static fg_status check_kind_members(const reader *r, const cJSON *root, const kind_members *own) {
-  for (size_t i = 0; own->needed[i]; i++)
-    if (!has_member(root, own->needed[i]))
-      return fail(r, own->needed[i], "is missing; %s must state it", own->part);
-  for (size_t i = 0; own->others[i]; i++)
-    if (has_member(root, own->others[i]))
-      return fail(r, own->others[i], "belongs to a foil with bumps; form is \"%s\"", own->kind);
+/* A kind without defaults: members that it needs, and those of other kinds, which would be ignored.
+ */
+static fg_status check_kind_members(const reader *r, const cJSON *root,
+                                    const fg_foil_traits *kind) {
+  for (size_t i = 0; kind->needed[i]; i++)
+    if (!has_member(root, kind->needed[i]))
+      return fail(r, kind->needed[i], "is missing; %s must state it", kind->noun);
+  for (size_t i = 0; kind->foreign[i]; i++)
+    if (has_member(root, kind->foreign[i]))
+      return fail(r, kind->foreign[i], "belongs to a foil with bumps; form is \"%s\"", kind->name);
   return FG_OK;
 }
 
-static fg_status read_kind_alone(const reader *r, const cJSON *root, const kind_members *own,
-                                 fg_design *design) {
-  FG_TRY(check_kind_members(r, root, own));
-  design->bump_count = 0;
-  if (!has_member(root, "name")) strcpy(design->name, own->kind);
+static fg_status check_members(const reader *r, const cJSON *root, stated_design *stated) {
+  fg_design *design = &stated->design;
+  const fg_foil_traits *kind = fg_foil_traits_of(design->kind);
+  if (kind->needed[0]) {
+    FG_TRY(check_kind_members(r, root, kind));
+    if (!has_member(root, "name"))
+      fg_text_clip(design->name, sizeof design->name, "%s", kind->name);
+    return FG_OK;
+  }
+  FG_TRY(check_complete(r, root, design));
+  if (has_member(root, "overall_radius_mm") && !has_member(root, "sleeve_radius_mm"))
+    stated->groups[FG_DESIGN_BUMPS].bumps.sleeve_radius_mm = design->overall_radius_mm;
   return FG_OK;
 }
 
-static fg_status read_root(const reader *r, const cJSON *root, fg_design *design) {
+static fg_status read_root(const reader *r, const cJSON *root, stated_design *stated) {
   if (!cJSON_IsObject(root)) return fail(r, "the design", "must be a JSON object");
   for (const cJSON *item = root->child; item; item = item->next) {
     if (earlier_duplicate(root, item)) return fail(r, item->string, "is given twice");
-    FG_TRY(read_member(r, item, design));
+    FG_TRY(read_member(r, item, stated));
   }
-  if (!cJSON_GetObjectItemCaseSensitive(root, "schema"))
+  if (!has_member(root, "schema"))
     return fail(r, "schema", "is missing; a design has \"schema\": \"" DESIGN_SCHEMA "\"");
-  if (design->kind == FG_FOIL_ARC) return read_kind_alone(r, root, &arc_members, design);
-  if (design->kind == FG_FOIL_CANTILEVER)
-    return read_kind_alone(r, root, &cantilever_members, design);
-  FG_TRY(check_complete(r, root, design));
-  if (cJSON_GetObjectItemCaseSensitive(root, "overall_radius_mm") &&
-      !cJSON_GetObjectItemCaseSensitive(root, "sleeve_radius_mm"))
-    design->sleeve_radius_mm = design->overall_radius_mm;
+  FG_TRY(check_members(r, root, stated));
+  stated->design.values = stated->groups[fg_foil_traits_of(stated->design.kind)->group];
   return FG_OK;
 }
 
-static fg_status check_design(const reader *r, const fg_design *design) {
+static fg_status check_design(const reader *r, const stated_design *stated) {
+  const fg_design *design = &stated->design;
   fg_context words = {0};
-  fg_status status = fg_design_check(&words, design);
+  fg_status status = fg_design_check_common(&words, design);
+  for (int group = 0; group < FG_DESIGN_GROUPS && status == FG_OK; group++)
+    status = fg_design_check_refused(&words, design->kind, (fg_design_group)group,
+                                     &stated->groups[group]);
+  if (status == FG_OK) status = fg_design_check(&words, design);
   if (status == FG_OK) status = fg_report_check_tolerances(&words, design);
   if (status == FG_OK) return FG_OK;
   return fg_fail(r->ctx, status, "%s: %.*s", r->path, MESSAGE_MAX, words.message);
@@ -433,13 +440,16 @@ static fg_status check_design(const reader *r, const fg_design *design) {
 
 fg_status fg_design_parse(fg_context *ctx, const char *path, const char *json, fg_design *design) {
   const reader r = {ctx, path};
-  fg_design read = *design;
+  stated_design stated = {.design = *design};
   cJSON *root;
+  for (int group = 0; group < FG_DESIGN_GROUPS; group++)
+    fg_design_group_default((fg_design_group)group, &stated.groups[group]);
+  stated.groups[fg_foil_traits_of(design->kind)->group] = design->values;
   FG_TRY(fg_json_read(ctx, path, json, &root));
-  fg_status status = read_root(&r, root, &read);
+  fg_status status = read_root(&r, root, &stated);
   cJSON_Delete(root);
-  if (status == FG_OK) status = check_design(&r, &read);
-  if (status == FG_OK) *design = read;
+  if (status == FG_OK) status = check_design(&r, &stated);
+  if (status == FG_OK) *design = stated.design;
   return status;
 }
 
@@ -457,7 +467,11 @@ size_t fg_design_members(fg_member_words *list, size_t max) {
   fg_design_default(&usual);
   for (size_t i = 0; i < MEMBER_ROWS && i < max; i++) {
     const member_row *row = &member_rows[i];
-    const char *place = (const char *)&usual + row->offset;
+    fg_design_values values;
+    fg_design_group_default(row->group, &values);
+    const char *from =
+        row->group == FG_DESIGN_COMMON ? (const char *)&usual : (const char *)&values;
+    const char *place = from + row->offset;
     list[i] = (fg_member_words){.meaning = row->meaning};
     fg_text_clip(list[i].name, sizeof list[i].name, "%s", row->name);
     if (row->read == read_number && *(const double *)place > 0)

@@ -19,8 +19,8 @@ static void put_stated_tile(FILE *out, const char *title, double value, const ch
 static void put_tiles(FILE *out, const fg_design_report *report) {
   const fg_design *design = report->design;
   fputs("<dl class=\"tiles four\">\n", out);
-  put_stated_tile(out, "bump radius", design->bump_radius_mm, "mm", "R<sub>D</sub>, stated");
-  put_stated_tile(out, "bump angle", design->bump_angle_deg, "°", "α<sub>D</sub>, stated");
+  put_stated_tile(out, "bump radius", design->bumps.radius_mm, "mm", "R<sub>D</sub>, stated");
+  put_stated_tile(out, "bump angle", design->bumps.angle_deg, "°", "α<sub>D</sub>, stated");
   put_stated_tile(out, "overall radius", design->overall_radius_mm, "mm", "stated");
   put_stated_tile(out, "thickness", design->thickness_mm, "mm", "stated");
   put_stated_tile(out, "bump height", report->nominal->height_mm, "mm", "h<sub>D</sub>, eq 5.5");

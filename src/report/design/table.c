@@ -24,16 +24,16 @@ static void write_known(const fg_design *design, FILE *out) {
 }
 
 static void write_stated(const fg_design *design, FILE *out) {
-  write_row(out, "bump radius", "R_D", design->bump_radius_mm, "mm");
-  write_row(out, "bump angle", "alpha_D", design->bump_angle_deg, "deg");
+  write_row(out, "bump radius", "R_D", design->bumps.radius_mm, "mm");
+  write_row(out, "bump angle", "alpha_D", design->bumps.angle_deg, "deg");
   write_row(out, "overall radius", "R0", design->overall_radius_mm, "mm");
-  write_row(out, "sleeve radius", "R_sleeve", design->sleeve_radius_mm, "mm");
-  write_row(out, "pitch", "", design->pitch_deg, "deg");
-  write_row(out, "fillet radius", "", design->fillet_radius_mm, "mm");
+  write_row(out, "sleeve radius", "R_sleeve", design->bumps.sleeve_radius_mm, "mm");
+  write_row(out, "pitch", "", design->bumps.pitch_deg, "deg");
+  write_row(out, "fillet radius", "", design->bumps.fillet_radius_mm, "mm");
   write_row(out, "thickness", "t", design->thickness_mm, "mm");
-  if (design->top_foil_thickness_mm > 0)
-    write_row(out, "top foil thickness", "", design->top_foil_thickness_mm, "mm");
-  write_row(out, "rotor diameter", "D", design->rotor_diameter_mm, "mm");
+  if (design->bumps.top_foil_thickness_mm > 0)
+    write_row(out, "top foil thickness", "", design->bumps.top_foil_thickness_mm, "mm");
+  write_row(out, "rotor diameter", "D", design->bumps.rotor_diameter_mm, "mm");
   write_known(design, out);
 }
 
@@ -50,7 +50,7 @@ static void write_derived(const fg_nominal *nominal, FILE *out) {
 static void write_arc(const fg_design *design, const fg_nominal *nominal, FILE *out) {
   fprintf(out, ", datum %s\n\nstated\n", fg_datum_word(design->datum));
   write_row(out, "overall radius", "R0", design->overall_radius_mm, "mm");
-  write_row(out, "subtended angle", "", design->subtended_angle_deg, "deg");
+  write_row(out, "subtended angle", "", design->arc.subtended_angle_deg, "deg");
   write_row(out, "thickness", "t", design->thickness_mm, "mm");
   write_known(design, out);
   fputs("\nderived\n", out);
@@ -58,15 +58,17 @@ static void write_arc(const fg_design *design, const fg_nominal *nominal, FILE *
 }
 
 static void write_beam(const fg_design *design, FILE *out) {
-  write_row(out, "beam length", "L", design->beam_length_mm, "mm");
-  write_row(out, "beam width", "w", design->beam_width_mm, "mm");
+  write_row(out, "beam length", "L", design->beams.length_mm, "mm");
+  write_row(out, "beam width", "w", design->beams.width_mm, "mm");
   write_row(out, "thickness", "t", design->thickness_mm, "mm");
-  if (design->u_thickness_mm > 0)
-    write_row(out, "its standard uncertainty", "u(t)", design->u_thickness_mm, "mm");
-  if (design->sagitta_mm > 0) write_row(out, "sagitta, as bent", "sag", design->sagitta_mm, "mm");
-  if (design->clearance_mm > 0) write_row(out, "clearance", "C", design->clearance_mm, "mm");
-  if (design->elastic_modulus_gpa > 0)
-    write_row(out, "elastic modulus", "E", design->elastic_modulus_gpa, "GPa");
+  if (design->beams.u_thickness_mm > 0)
+    write_row(out, "its standard uncertainty", "u(t)", design->beams.u_thickness_mm, "mm");
+  if (design->beams.sagitta_mm > 0)
+    write_row(out, "sagitta, as bent", "sag", design->beams.sagitta_mm, "mm");
+  if (design->beams.clearance_mm > 0)
+    write_row(out, "clearance", "C", design->beams.clearance_mm, "mm");
+  if (design->beams.elastic_modulus_gpa > 0)
+    write_row(out, "elastic modulus", "E", design->beams.elastic_modulus_gpa, "GPa");
 }
 
 /* Writes one line; sagitta and clearance that are not known are left out of it. */
@@ -83,14 +85,14 @@ static void write_deviating(const fg_design *design, double length_pct, double w
 
 static void write_cantilever(const fg_design *design, FILE *out) {
   const fg_cantilever beam = fg_cantilever_nominal(design);
-  if (design->beam_count) fprintf(out, ", %zu beams", design->beam_count);
+  if (design->beams.count) fprintf(out, ", %zu beams", design->beams.count);
   fputs("\n\nstated\n", out);
   write_beam(design, out);
   fputs("\nderived\n", out);
   write_row(out, "second moment w t^3 / 12", "I", fg_cantilever_second_moment_mm4(design), "mm4");
   if (isfinite(beam.compliance_mm_per_n))
     write_row(out, "compliance L^3 / (3 E I), eq 5.10", "S", beam.compliance_mm_per_n, "mm/N");
-  if (design->elastic_modulus_gpa > 0 && design->u_thickness_mm > 0)
+  if (design->beams.elastic_modulus_gpa > 0 && design->beams.u_thickness_mm > 0)
     write_row(out, "its u by that of the thickness", "u(S)", beam.u_compliance_mm_per_n, "mm/N");
   fputs("\nwhat a deviation of the beams does; the last two are the thesis's\n", out);
   for (size_t i = 0; i < FG_BEAM_DEVIATIONS; i++)
@@ -140,16 +142,16 @@ fg_status fg_design_write_table(fg_context *ctx, const fg_design_report *report,
   const fg_design *design = report->design;
   fprintf(out, "design %s, form %s", design->name, fg_foil_kind_word(design->kind));
   if (design->kind == FG_FOIL_DISCS) {
-    fprintf(out, "\n  %zu known diameters\n", design->diameter_count);
-    for (size_t i = 0; i < design->diameter_count; i++)
-      write_row(out, "diameter", "", design->diameters_mm[i], "mm");
+    fprintf(out, "\n  %zu known diameters\n", design->discs.count);
+    for (size_t i = 0; i < design->discs.count; i++)
+      write_row(out, "diameter", "", design->discs.diameters_mm[i], "mm");
   } else if (design->kind == FG_FOIL_ARC) {
     write_arc(design, report->nominal, out);
   } else if (design->kind == FG_FOIL_CANTILEVER) {
     write_cantilever(design, out);
   } else {
     fprintf(out, ", datum %s", fg_datum_word(design->datum));
-    if (design->bump_count) fprintf(out, ", %zu bumps", design->bump_count);
+    if (design->bumps.count) fprintf(out, ", %zu bumps", design->bumps.count);
     fputs("\n\nstated\n", out);
     write_stated(design, out);
     fputs("\nderived\n", out);
@@ -177,7 +179,7 @@ fg_status fg_design_write_curve(fg_context *ctx, const fg_design_report *report,
         out);
   for (int percent = CURVE_FROM_PCT; percent <= CURVE_TO_PCT; percent++) {
     fg_springback model;
-    double radius_mm = design->bump_radius_mm * (100 + percent) / 100;
+    double radius_mm = design->bumps.radius_mm * (100 + percent) / 100;
     fg_design_springback(design, report->nominal, radius_mm, &model);
     fprintf(out, "%d,%.6f,%.6f,%.6f,%.6f,%.6f,%.4f\n", percent, radius_mm, model.bump_angle_deg,
             model.height_mm, model.clearance_mm, (nominal_mm - model.clearance_mm) / nominal_mm,

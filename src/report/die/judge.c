@@ -61,7 +61,7 @@ static size_t count_unseen(const fg_die *die, fg_die_half half, fg_die_unseen_ki
                            char *words, size_t size) {
   size_t count = 0, length = 0;
   if (words) words[0] = '\0';
-  for (int number = 1; number <= (int)die->design.bump_count; number++) {
+  for (int number = 1; number <= (int)die->design.bumps.count; number++) {
     if (is_seen(&die->half[half], number)) continue;
     bool lost = is_lost(die, half, number);
     if (kind != FG_DIE_UNSEEN && lost != (kind == FG_DIE_LOST)) continue;

@@ -69,7 +69,7 @@ static void put_sentences(FILE *out, const fg_die *die) {
             "<li>The %s half's bumps have a radius of %.5f ± %.5f mm: %+.3f ± %.3f %% of the "
             "design's %.4f mm%s.",
             fg_die_half_word((fg_die_half)half), radius->value, FG_COVERAGE_FACTOR * radius->u,
-            error->value, FG_COVERAGE_FACTOR * error->u, die->design.bump_radius_mm,
+            error->value, FG_COVERAGE_FACTOR * error->u, die->design.bumps.radius_mm,
             sure ? "" : ", which is within U");
     if (fg_die_unseen(die, (fg_die_half)half, FG_DIE_UNTRACED, unseen, sizeof unseen))
       fprintf(out, " No trace shows bump %s whole.", unseen);

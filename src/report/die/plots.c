@@ -163,7 +163,7 @@ static void put_circles(const fg_plot *at, const fg_die *die, const fg_die_trace
     double towards = atan2(o->centre_mm.y - bump->centre_mm.y, o->centre_mm.x - bump->centre_mm.x);
     double radius = bump->radius_mm - trace->shift_mm,
            label = radius + 14 / (fg_plot_x(at, 1) - fg_plot_x(at, 0));
-    put_arc(at, bump->centre_mm, radius, towards, 0.5 * die->design.bump_angle_deg / DEG, "s1");
+    put_arc(at, bump->centre_mm, radius, towards, 0.5 * die->design.bumps.angle_deg / DEG, "s1");
     snprintf(number, sizeof number, "%d", bump->number);
     fg_plot_text(at, bump->centre_mm.x + label * cos(towards),
                  bump->centre_mm.y + label * sin(towards) -
@@ -192,7 +192,7 @@ typedef struct along {
 static double pitches(const fg_die *die, const fg_die_trace *trace, double x, double z) {
   double dz = z - trace->overall.centre_mm.y;
   return atan2(x - trace->overall.centre_mm.x, trace->half == FG_DIE_CONCAVE ? dz : -dz) * DEG /
-         die->design.pitch_deg;
+         die->design.bumps.pitch_deg;
 }
 
 static along along_of(const fg_die *die, const fg_die_trace *trace) {
@@ -261,7 +261,7 @@ static double residual_limit(const fg_die *die, fg_die_half half) {
 static void put_bands(const fg_plot *at, const fg_die *die, fg_die_half half) {
   char number[16];
   double wide = 0.8 * die->nominal.half_chord_mm / die->design.overall_radius_mm * DEG /
-                die->design.pitch_deg;
+                die->design.bumps.pitch_deg;
   for (size_t i = 0; i < die->half[half].bump_count; i++) {
     int n = die->half[half].bumps[i].number;
     double from = fg_plot_x(at, n - wide), to = fg_plot_x(at, n + wide);

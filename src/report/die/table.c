@@ -62,7 +62,7 @@ fg_status fg_die_write_table(fg_context *ctx, const fg_die *die, FILE *out) {
   fg_report_outcome outcome;
   fg_die_judge(die, &outcome, words, sizeof words);
   fprintf(out, "die against design %s: R %.4f mm, alpha %.3f deg, R0 %.4f mm, of the strip's %s\n",
-          die->design.name, die->design.bump_radius_mm, die->design.bump_angle_deg,
+          die->design.name, die->design.bumps.radius_mm, die->design.bumps.angle_deg,
           die->design.overall_radius_mm, datum_words[die->design.datum]);
   fprintf(out, "%s: %s\n", fg_verdict_word(outcome.verdict), words);
   for (int half = 0; half < FG_DIE_HALVES; half++)

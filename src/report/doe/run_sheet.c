@@ -7,6 +7,7 @@
 
 #include "core/memory.h"
 #include "core/text.h"
+#include "foilgauge/foil_kind.h"
 #include "foilgauge/report.h"
 #include "quantity/parts.h"
 #include "quantity/quantity_rows.h"
@@ -35,16 +36,12 @@ typedef struct measuring {
 } measuring;
 
 static fg_status find_quantity(fg_context *ctx, measuring *m) {
-  static const fg_quantity_owner discs[] = {FG_QUANTITY_OF_DISC};
   fg_foil_kind kind = m->options->design->kind;
-  const fg_quantity_owner foils[] = {FG_QUANTITY_OF_FOIL, fg_foil_kind_parts(kind)};
-  bool is_disc = kind == FG_FOIL_DISCS;
-  const fg_quantity_owner *owners = is_disc ? discs : foils;
+  const fg_quantity_owner owners[] = {FG_QUANTITY_OF_FOIL, fg_foil_kind_parts(kind)};
   char list[700] = "";
-  for (size_t i = 0; i < (is_disc ? 1 : 2); i++) {
+  for (size_t i = fg_foil_traits_of(kind)->is_foil ? 0 : 1; i < 2; i++) {
     const fg_quantity *found = fg_quantity_find(owners[i], m->options->quantity);
-    fg_quantity_list(owners[i], kind == FG_FOIL_CANTILEVER ? kind : FG_FOIL_CLASSICAL, false, list,
-                     sizeof list);
+    fg_quantity_list(owners[i], kind, false, list, sizeof list);
     if (!found || found->kind != FG_QUANTITY_NUMBER) continue;
     m->row = found;
     m->owner = owners[i];

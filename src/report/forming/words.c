@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/text.h"
+#include "foilgauge/foil_kind.h"
 
 const char fg_forming_out_of_reach[] =
     "Out of reach of this model: what needs contact and friction (thesis figures 5.14 to 5.16): "
@@ -196,7 +197,7 @@ size_t fg_forming_fit_notes(const fg_forming_fit *fit,
   n += note_sign(fit, notes[n]);
   n += note_bounds(fit, notes[n]);
   n += note_open(fit, notes[n]);
-  if (fit->response == FG_FORMING_OF_STRIP && fit->design.kind != FG_FOIL_ARC)
+  if (fit->response == FG_FORMING_OF_STRIP && fg_foil_traits_of(fit->design.kind)->has_bumps)
     fg_text_clip(notes[n++], FG_FORMING_NOTE,
                  "The response is taken as that of the lands alone, a plain strip of the overall "
                  "radius. Integrated with its bumps the beam's foil closes where measured ones "

@@ -5,6 +5,7 @@
 
 #include "core/file.h"
 #include "core/text.h"
+#include "foilgauge/foil_kind.h"
 #include "lot/run/date.h"
 #include "report/lot/files.h"
 #include "report/lot/foil_pages.h"
@@ -41,7 +42,7 @@ static fg_status write_report_file(fg_context *ctx, const char *folder, size_t i
                                    const fg_lot_analysis *analysis) {
   char *path;
   fg_output output;
-  bool flat = analysis->lot->settings.design.kind == FG_FOIL_CANTILEVER;
+  bool flat = fg_foil_traits_of(analysis->lot->settings.design.kind)->lies_flat;
   if (files[i].of == (flat ? CURVED : FLAT)) return FG_OK;
   FG_TRY(fg_lot_path(ctx, folder, files[i].name, &path));
   fg_status status = fg_output_open(ctx, path, &output);

@@ -3,6 +3,7 @@
 
 #include "page/page.h"
 #include "core/file.h"
+#include "foilgauge/foil_kind.h"
 #include "lot/run/date.h"
 #include "lot/statistics/dies.h"
 #include "report/lot/files.h"
@@ -108,7 +109,7 @@ static void put_foil_row(FILE *out, const fg_lot_analysis *analysis, const fg_lo
   fputs("</td>", out);
   fg_lot_put_verdict(out, foil->verdict);
   fprintf(out, "<td>%zu</td>", fg_part_count(foil->foil, analysis->parts));
-  if (analysis->lot->settings.design.kind != FG_FOIL_CANTILEVER) {
+  if (!fg_foil_traits_of(analysis->lot->settings.design.kind)->lies_flat) {
     fputs("<td>", out);
     fg_lot_put_number(out, foil->foil->overall.radius_mm, 6);
     fputs("</td>", out);
@@ -142,7 +143,7 @@ static void put_where_pages_are(FILE *out, const fg_lot_analysis *analysis) {
 /* Puts the list of foils; those that do not pass come first. */
 static void put_foil_list(FILE *out, const fg_lot_analysis *analysis) {
   size_t rows = 0;
-  bool flat = analysis->lot->settings.design.kind == FG_FOIL_CANTILEVER;
+  bool flat = fg_foil_traits_of(analysis->lot->settings.design.kind)->lies_flat;
   fprintf(out,
           "<section class=\"part\">\n<h1>Foils</h1>\n<div class=\"scroll lots\"><table><thead><tr>"
           "<th>foil</th><th class=\"w\">scan</th><th>verdict</th><th>%s</th>%s"

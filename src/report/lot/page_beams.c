@@ -25,8 +25,8 @@ static void put_compliance_spread(FILE *out, const fg_lot_analysis *analysis) {
   const fg_lot_quantity *width = fg_lot_find_quantity(analysis, "width_mm");
   const fg_lot_quantity *compliance = fg_lot_find_quantity(analysis, "compliance_error_pct");
   if (!length || !width || !compliance || !(compliance->sd > 0)) return;
-  double by_length = 300 * length->sd / design->beam_length_mm;
-  double by_width = 100 * width->sd / design->beam_width_mm;
+  double by_length = 300 * length->sd / design->beams.length_mm;
+  double by_width = 100 * width->sd / design->beams.width_mm;
   fprintf(out,
           "<p>Compliance S = L³ / (3 E I), I = w t³ / 12 (eq 5.10), against the design at the same "
           "thickness: mean %+.2f %%, standard deviation %.2f %%. The spread of the length makes "

@@ -61,8 +61,8 @@ static void put_bearing_row(FILE *out, const fg_lot_analysis *analysis,
   fputs("</td>", out);
   put_bearing_verdict(out, analysis, bearing);
   const fg_quantity *shown[FG_QUANTITY_SHOWN_MAX];
-  size_t count =
-      fg_quantity_shown(FG_QUANTITY_OF_BEARING, FG_QUANTITY_ON_PAGE, FG_FOIL_CLASSICAL, shown);
+  size_t count = fg_quantity_shown(FG_QUANTITY_OF_BEARING, FG_QUANTITY_ON_PAGE,
+                                   analysis->lot->settings.design.kind, shown);
   for (size_t i = 0; i < count; i++) {
     double u = UM_PER_MM * fg_quantity_uncertainty(shown[i], &bearing->clearance);
     fputs("<td>", out);
@@ -77,8 +77,8 @@ static void put_bearing_row(FILE *out, const fg_lot_analysis *analysis,
 static void put_limit_row(FILE *out, const fg_lot_analysis *analysis) {
   const fg_design *design = &analysis->lot->settings.design;
   const fg_quantity *shown[FG_QUANTITY_SHOWN_MAX];
-  size_t count =
-      fg_quantity_shown(FG_QUANTITY_OF_BEARING, FG_QUANTITY_ON_PAGE, FG_FOIL_CLASSICAL, shown);
+  size_t count = fg_quantity_shown(FG_QUANTITY_OF_BEARING, FG_QUANTITY_ON_PAGE,
+                                   analysis->lot->settings.design.kind, shown);
   if (!is_bearing_judged(analysis)) return;
   fputs("<tr class=\"limits\"><td>tolerance</td><td></td><td></td>", out);
   for (size_t i = 0; i < count; i++) {
@@ -103,8 +103,8 @@ static void put_limit_row(FILE *out, const fg_lot_analysis *analysis) {
 
 static void put_bearing_table(FILE *out, const fg_lot_analysis *analysis) {
   const fg_quantity *shown[FG_QUANTITY_SHOWN_MAX];
-  size_t count =
-      fg_quantity_shown(FG_QUANTITY_OF_BEARING, FG_QUANTITY_ON_PAGE, FG_FOIL_CLASSICAL, shown);
+  size_t count = fg_quantity_shown(FG_QUANTITY_OF_BEARING, FG_QUANTITY_ON_PAGE,
+                                   analysis->lot->settings.design.kind, shown);
   fputs("<div class=\"scroll\"><table><thead><tr><th>bearing</th><th>pads</th>", out);
   if (is_bearing_judged(analysis)) fputs("<th>verdict</th>", out);
   for (size_t i = 0; i < count; i++)

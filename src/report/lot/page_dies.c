@@ -17,7 +17,7 @@ typedef struct curve {
 } curve;
 
 static void find_die_curve(const fg_lot_analysis *analysis, const fg_lot_die *die, curve *out) {
-  double design_mm = analysis->lot->settings.design.bump_radius_mm;
+  double design_mm = analysis->lot->settings.design.bumps.radius_mm;
   out->count = 0;
   for (int number = 1; number <= NUMBERS_MAX; number++) {
     double sum = 0, n = 0, own = NAN;

@@ -6,6 +6,7 @@
 
 #include "core/text.h"
 #include "foilgauge/distribution.h"
+#include "foilgauge/foil_kind.h"
 #include "foilgauge/report.h"
 #include "foilgauge/words.h"
 #include "page/page.h"
@@ -36,7 +37,7 @@ static void put_scan_tiles(FILE *out, const fg_lot_analysis *analysis) {
     fg_html_count_tile(out, FG_TILE_OPEN, "of them there twice", repeats,
                        "the same bytes under another name");
   fg_html_count_tile(out, FG_TILE_PLAIN, "Foils on them", analysis->foil_count, "");
-  if (analysis->lot->settings.design.kind != FG_FOIL_ARC) {
+  if (!fg_foil_traits_of(analysis->lot->settings.design.kind)->is_plain_strip) {
     const fg_lot_words *words = fg_lot_words_of(analysis);
     fg_html_count_tile(out, FG_TILE_PLAIN, words->counted, analysis->part_count, "");
     if (analysis->left_out)

@@ -216,7 +216,7 @@ void fg_lot_put_springback(FILE *out, const fg_lot_analysis *analysis) {
   fputs("<section class=\"part\">\n<h1>Springback</h1>\n<figure>", out);
   put_errors_by_bump(out, analysis);
   fputs("<h2>Radius over design</h2>\n<figure>", out);
-  fg_lot_plot_density(out, radius, 1 / analysis->lot->settings.design.bump_radius_mm, 0,
+  fg_lot_plot_density(out, radius, 1 / analysis->lot->settings.design.bumps.radius_mm, 0,
                       "radius over design");
   fputs("<figcaption>Histogram and kernel density.</figcaption></figure>\n", out);
   if (analysis->has_correlation) {
@@ -246,7 +246,7 @@ void fg_lot_put_arcs(FILE *out, const fg_lot_analysis *analysis) {
     double design;
   } shown[] = {
       {"overall.radius_mm", "radius over design", design->overall_radius_mm},
-      {"arc.subtended_angle_deg", "angle over design", design->subtended_angle_deg},
+      {"arc.subtended_angle_deg", "angle over design", design->arc.subtended_angle_deg},
   };
   fputs("<section class=\"part\">\n<h1>Springback</h1>\n", out);
   for (size_t i = 0; i < sizeof shown / sizeof *shown; i++) {

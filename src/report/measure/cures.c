@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Cures of a verdict of "cannot tell", the cheapest first. */
 #include "report/measure/cures.h"
+#include "foilgauge/foil_kind.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -20,11 +21,12 @@ static const char midline[] =
     "known width beside it (gauges)." NOT_KNOWN;
 
 const char *fg_cure_of(const fg_design *design, const fg_quantity *row) {
-  bool of_strip = fg_foil_kind_has_bumps(design->kind) || !strncmp(row->name, "thickness", 9);
+  const fg_foil_traits *kind = fg_foil_traits_of(design->kind);
+  bool of_strip = kind->has_bumps || !strncmp(row->name, "thickness", 9);
   if (design->tone == FG_TONE_LINEAR) return NULL;
   if (row->uses & FG_QUANTITY_OF_DATUM && design->datum != FG_DATUM_MID) return midline;
   if (!(row->uses & FG_QUANTITY_BETWEEN_EDGES)) return NULL;
-  if (design->kind == FG_FOIL_DISCS) return gauge_diameter;
+  if (!kind->is_foil) return gauge_diameter;
   if (!of_strip) return gauge_width;
   return design->thickness_measured_mm > 0 ? NULL : micrometer;
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report/measure/foil_parts.h"
 
+#include "foilgauge/foil_kind.h"
 #include "quantity/parts.h"
 
 fg_foil_parts fg_foil_parts_of(const fg_design *design, const fg_foil *foil) {
@@ -11,7 +12,7 @@ fg_foil_parts fg_foil_parts_of(const fg_design *design, const fg_foil *foil) {
                          .plural = beams ? "beams" : "bumps",
                          .foil = foil,
                          .count = fg_part_count(foil, owner),
-                         .stated = beams ? design->beam_count : design->bump_count};
+                         .stated = fg_design_stated_parts(design)};
 }
 
 static fg_foil_part part_at(const fg_foil_parts *parts, size_t i) {

@@ -41,14 +41,14 @@ static void write_stated(fg_json *json, const char *name, double value) {
 }
 
 static void write_cantilever(fg_json *json, const fg_design *design) {
-  fg_json_integer(json, "beam_count", (int64_t)design->beam_count);
-  fg_json_number(json, "beam_length_mm", design->beam_length_mm);
-  fg_json_number(json, "beam_width_mm", design->beam_width_mm);
+  fg_json_integer(json, "beam_count", (int64_t)design->beams.count);
+  fg_json_number(json, "beam_length_mm", design->beams.length_mm);
+  fg_json_number(json, "beam_width_mm", design->beams.width_mm);
   fg_json_number(json, "thickness_mm", design->thickness_mm);
-  write_stated(json, "u_thickness_mm", design->u_thickness_mm);
-  write_stated(json, "sagitta_mm", design->sagitta_mm);
-  write_stated(json, "elastic_modulus_gpa", design->elastic_modulus_gpa);
-  write_stated(json, "clearance_mm", design->clearance_mm);
+  write_stated(json, "u_thickness_mm", design->beams.u_thickness_mm);
+  write_stated(json, "sagitta_mm", design->beams.sagitta_mm);
+  write_stated(json, "elastic_modulus_gpa", design->beams.elastic_modulus_gpa);
+  write_stated(json, "clearance_mm", design->beams.clearance_mm);
 }
 
 static void write_known(fg_json *json, const fg_design *design) {
@@ -66,28 +66,28 @@ void fg_json_design(fg_json *json, const char *name, const fg_design *design) {
   fg_json_string(json, "name", design->name);
   fg_json_string(json, "form", fg_foil_kind_word(design->kind));
   if (design->kind == FG_FOIL_DISCS) {
-    fg_json_numbers(json, "diameters_mm", design->diameters_mm, design->diameter_count);
-    write_stated(json, "u_diameters_mm", design->u_diameters_mm);
+    fg_json_numbers(json, "diameters_mm", design->discs.diameters_mm, design->discs.count);
+    write_stated(json, "u_diameters_mm", design->discs.u_diameters_mm);
   } else if (design->kind == FG_FOIL_ARC) {
     fg_json_string(json, "datum", fg_datum_word(design->datum));
     fg_json_number(json, "overall_radius_mm", design->overall_radius_mm);
-    fg_json_number(json, "subtended_angle_deg", design->subtended_angle_deg);
+    fg_json_number(json, "subtended_angle_deg", design->arc.subtended_angle_deg);
     fg_json_number(json, "thickness_mm", design->thickness_mm);
   } else if (design->kind == FG_FOIL_CANTILEVER) {
     write_cantilever(json, design);
   } else {
     fg_json_string(json, "datum", fg_datum_word(design->datum));
-    fg_json_integer(json, "bump_count", (int64_t)design->bump_count);
-    fg_json_number(json, "bump_radius_mm", design->bump_radius_mm);
-    fg_json_number(json, "bump_angle_deg", design->bump_angle_deg);
+    fg_json_integer(json, "bump_count", (int64_t)design->bumps.count);
+    fg_json_number(json, "bump_radius_mm", design->bumps.radius_mm);
+    fg_json_number(json, "bump_angle_deg", design->bumps.angle_deg);
     fg_json_number(json, "overall_radius_mm", design->overall_radius_mm);
-    fg_json_number(json, "sleeve_radius_mm", design->sleeve_radius_mm);
-    fg_json_number(json, "pitch_deg", design->pitch_deg);
-    fg_json_number(json, "fillet_radius_mm", design->fillet_radius_mm);
+    fg_json_number(json, "sleeve_radius_mm", design->bumps.sleeve_radius_mm);
+    fg_json_number(json, "pitch_deg", design->bumps.pitch_deg);
+    fg_json_number(json, "fillet_radius_mm", design->bumps.fillet_radius_mm);
     fg_json_number(json, "thickness_mm", design->thickness_mm);
-    if (design->top_foil_thickness_mm > 0)
-      fg_json_number(json, "top_foil_thickness_mm", design->top_foil_thickness_mm);
-    fg_json_number(json, "rotor_diameter_mm", design->rotor_diameter_mm);
+    if (design->bumps.top_foil_thickness_mm > 0)
+      fg_json_number(json, "top_foil_thickness_mm", design->bumps.top_foil_thickness_mm);
+    fg_json_number(json, "rotor_diameter_mm", design->bumps.rotor_diameter_mm);
   }
   write_known(json, design);
   write_tolerances(json, design);

@@ -92,7 +92,7 @@ static void put_beam_words(FILE *out, const fg_design *design) {
   fprintf(out,
           "The scan does not show the thickness: t is the design's %.6g mm%s. The scan is of the "
           "flat foil, before it is bent.</p>\n",
-          design->thickness_mm, design->u_thickness_mm > 0 ? ", its u is in that of S" : "");
+          design->thickness_mm, design->beams.u_thickness_mm > 0 ? ", its u is in that of S" : "");
 }
 
 static void put_free_and_fitted(FILE *out) {

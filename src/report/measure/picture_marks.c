@@ -142,7 +142,7 @@ static void add_bump(marks *at, const fg_decision *decision, const fg_bump *bump
 static void add_beam(marks *at, const fg_decision *decision, const fg_beam *beam) {
   fg_point middle = {0.5 * (beam->root_mm.x + beam->tip_mm.x),
                      0.5 * (beam->root_mm.y + beam->tip_mm.y)};
-  double width = isfinite(beam->width_mm) ? beam->width_mm : at->measurement->design.beam_width_mm;
+  double width = isfinite(beam->width_mm) ? beam->width_mm : at->measurement->design.beams.width_mm;
   char text[TEXT_BYTES];
   const fg_judgement *worst = find_worst(decision, beam->number);
   if (worst || isfinite(beam->length_mm)) {
@@ -337,7 +337,7 @@ static bool find_gap(const fg_foil *foil, int number, fg_point *at) {
 /* Adds marks for bumps without values: missing ones, and those whose circle could not be fitted. */
 static void add_gaps(marks *at) {
   const double half_chord_mm = 1.8; /* of a ring around nothing */
-  int last = (int)at->measurement->design.bump_count;
+  int last = (int)at->measurement->design.bumps.count;
   for (size_t i = 0; i < at->foil->bump_count; i++)
     if (at->foil->bumps[i].number > last) last = at->foil->bumps[i].number;
   for (int number = 1; number <= last; number++) {

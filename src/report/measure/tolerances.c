@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "foilgauge/foil_kind.h"
 #include "foilgauge/report.h"
 #include "quantity/parts.h"
 #include "quantity/quantity_rows.h"
@@ -151,20 +152,16 @@ static int last_found(const fg_foil *foil, fg_quantity_owner owner) {
   return last;
 }
 
-static size_t stated_parts(const fg_design *design) {
-  return fg_foil_kind_parts(design->kind) == FG_QUANTITY_OF_BEAM ? design->beam_count
-                                                                 : design->bump_count;
-}
-
 static int last_number(const fg_design *design, const fg_foil *foil) {
-  int last = last_found(foil, fg_foil_kind_parts(design->kind)), stated = (int)stated_parts(design);
+  int last = last_found(foil, fg_foil_kind_parts(design->kind)),
+      stated = (int)fg_design_stated_parts(design);
   if (foil->flags & FG_FOIL_BEAM_PLACES_UNKNOWN) return last;
   return last > stated ? last : stated;
 }
 
 static bool lacks_parts(const fg_design *design, const fg_foil *foil) {
   return design->tolerance_count &&
-         fg_part_count(foil, fg_foil_kind_parts(design->kind)) < stated_parts(design);
+         fg_part_count(foil, fg_foil_kind_parts(design->kind)) < fg_design_stated_parts(design);
 }
 
 static bool may_be_hidden(const fg_foil *foil) {
@@ -192,7 +189,7 @@ static int count_missing(const fg_foil *foil, fg_quantity_owner owner, int last)
 static void name_missing(const fg_design *design, const fg_foil *foil, char *words, size_t size) {
   enum { NAMED_MAX = 12 };
   fg_quantity_owner owner = fg_foil_kind_parts(design->kind);
-  size_t found = fg_part_count(foil, owner), stated = stated_parts(design);
+  size_t found = fg_part_count(foil, owner), stated = fg_design_stated_parts(design);
   const char *word = fg_part_word(owner);
   int last = last_found(foil, owner), missing = count_missing(foil, owner, last);
   if (foil->flags & FG_FOIL_BEAM_PLACES_UNKNOWN) {
@@ -229,7 +226,7 @@ bool fg_foil_defect(const fg_design *design, const fg_foil *foil, char *words, s
     name_missing(design, foil, words, size);
     return true;
   }
-  size_t found = fg_part_count(foil, owner), stated = stated_parts(design);
+  size_t found = fg_part_count(foil, owner), stated = fg_design_stated_parts(design);
   if (!design->tolerance_count || !stated || found <= stated) return false;
   add_words(words, size, "%zu %ss where the design has %zu", found, fg_part_word(owner), stated);
   return true;
@@ -456,20 +453,17 @@ size_t fg_report_of_bearing(const fg_design *design, char *names, size_t size) {
 }
 
 fg_status fg_report_check_tolerances(fg_context *ctx, const fg_design *design) {
-  bool discs = design->kind == FG_FOIL_DISCS, beams = design->kind == FG_FOIL_CANTILEVER;
-  fg_quantity_owner part = discs   ? FG_QUANTITY_OF_DISC
-                           : beams ? FG_QUANTITY_OF_BEAM
-                                   : FG_QUANTITY_OF_BUMP;
+  const fg_foil_traits *kind = fg_foil_traits_of(design->kind);
   for (size_t i = 0; i < design->tolerance_count; i++) {
     const char *quantity = design->tolerances[i].quantity;
-    if (has_quantity(part, design->kind, quantity)) continue;
-    if (!discs && has_quantity(FG_QUANTITY_OF_FOIL, design->kind, quantity)) continue;
-    bool bumps = fg_foil_kind_has_bumps(design->kind);
-    if (bumps && fg_quantity_of_bearing_for(quantity)) continue;
+    if (has_quantity(kind->part, design->kind, quantity)) continue;
+    if (kind->is_foil && has_quantity(FG_QUANTITY_OF_FOIL, design->kind, quantity)) continue;
+    if (kind->has_bumps && fg_quantity_of_bearing_for(quantity)) continue;
     char names[1000] = "";
-    fg_quantity_list(part, design->kind, true, names, sizeof names);
-    if (!discs) fg_quantity_list(FG_QUANTITY_OF_FOIL, design->kind, true, names, sizeof names);
-    if (bumps) list_bearing(names, sizeof names);
+    fg_quantity_list(kind->part, design->kind, true, names, sizeof names);
+    if (kind->is_foil)
+      fg_quantity_list(FG_QUANTITY_OF_FOIL, design->kind, true, names, sizeof names);
+    if (kind->has_bumps) list_bearing(names, sizeof names);
     return fg_fail(ctx, FG_ERR_DATA, "tolerances.%s: no such quantity is reported; there are: %s",
                    quantity, names);
   }

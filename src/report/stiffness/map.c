@@ -21,8 +21,8 @@ static double stiffness_at(const fg_stiffness_map *map, double radius_ratio, dou
   fg_arch_stiffness stiffness;
   fg_context unused;
   const fg_arch arch =
-      fg_design_arch(design, design->thickness_mm, design->bump_radius_mm * radius_ratio,
-                     design->bump_angle_deg * angle_ratio);
+      fg_design_arch(design, design->thickness_mm, design->bumps.radius_mm * radius_ratio,
+                     design->bumps.angle_deg * angle_ratio);
   if (fg_arch_free(&unused, &arch, map->material, &stiffness) != FG_OK) return NAN;
   return stiffness.stiffness_n_mm2;
 }
@@ -66,7 +66,7 @@ static const double half_circle_deg = 179.9;
 static double angle_of(const fg_plot *at, const fg_stiffness_map *map, double radius,
                        double level) {
   enum { HALVINGS = 20 }; /* far finer than a pixel */
-  double low = at->y_low, high = fmin(at->y_high, half_circle_deg / map->design->bump_angle_deg);
+  double low = at->y_low, high = fmin(at->y_high, half_circle_deg / map->design->bumps.angle_deg);
   double sought = level * stiffness_at(map, 1, 1);
   if (!(stiffness_at(map, radius, low) > sought && stiffness_at(map, radius, high) < sought))
     return NAN;

@@ -8,8 +8,9 @@
 fg_stiffness_case fg_stiffness_case_of(const fg_design *design, const fg_arch_material *material) {
   fg_stiffness_case bump = {.title = "as designed",
                             .name = "design",
-                            .arch = fg_design_arch(design, design->thickness_mm,
-                                                   design->bump_radius_mm, design->bump_angle_deg)};
+                            .arch =
+                                fg_design_arch(design, design->thickness_mm,
+                                               design->bumps.radius_mm, design->bumps.angle_deg)};
   fg_stiffness_compare(&bump.arch, material, bump.lines);
   return bump;
 }
