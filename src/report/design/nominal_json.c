@@ -4,6 +4,7 @@
 #include "foilgauge/cantilever.h"
 #include "foilgauge/design_report.h"
 #include "report/design/beam_deviations.h"
+#include "report/measure/foil_view.h"
 #include "report/measure/json.h"
 #include "report/stiffness/map.h"
 #include "report/stiffness/table.h"
@@ -53,7 +54,8 @@ static void write_deviating(fg_json *json, const fg_design *design, double lengt
   fg_json_line_end(json);
 }
 
-static void write_cantilever(fg_json *json, const fg_design *design) {
+void fg_nominal_json_of_beams(fg_json *json, const fg_design_report *report) {
+  const fg_design *design = report->design;
   const fg_cantilever beam = fg_cantilever_nominal(design);
   fg_json_object(json, "nominal");
   fg_json_number(json, "second_moment_mm4", fg_cantilever_second_moment_mm4(design));
@@ -66,22 +68,26 @@ static void write_cantilever(fg_json *json, const fg_design *design) {
   fg_json_object_end(json);
 }
 
+void fg_nominal_json_of_bumps(fg_json *json, const fg_design_report *report) {
+  fg_json_nominal(json, "nominal", report->nominal);
+  write_stiffness(json, report);
+}
+
+void fg_nominal_json_of_arc(fg_json *json, const fg_design_report *report) {
+  fg_json_object(json, "nominal");
+  fg_json_number(json, "arc_length_mm", report->nominal->arc_length_mm);
+  fg_json_object_end(json);
+}
+
 fg_status fg_design_write_json(fg_context *ctx, const fg_design_report *report, FILE *out) {
   const fg_design *design = report->design;
-  bool bumps = fg_foil_kind_has_bumps(design->kind);
+  const fg_foil_view *view = fg_foil_view_of(design->kind);
   fg_json json;
   fg_json_begin(&json, out);
   fg_json_object(&json, NULL);
   fg_json_head(&json, "foilgauge/nominal/1");
   fg_json_design(&json, "design", design);
-  if (bumps) fg_json_nominal(&json, "nominal", report->nominal);
-  if (bumps) write_stiffness(&json, report);
-  if (design->kind == FG_FOIL_ARC) {
-    fg_json_object(&json, "nominal");
-    fg_json_number(&json, "arc_length_mm", report->nominal->arc_length_mm);
-    fg_json_object_end(&json);
-  }
-  if (design->kind == FG_FOIL_CANTILEVER) write_cantilever(&json, design);
+  if (view->nominal_json) view->nominal_json(&json, report);
   fg_json_object_end(&json);
   fg_json_end(&json);
   return fg_stream_finish(ctx, out, "the design");

@@ -7,6 +7,7 @@
 #include "foilgauge/design_report.h"
 #include "foilgauge/words.h"
 #include "report/design/beam_deviations.h"
+#include "report/measure/foil_view.h"
 #include "report/stiffness/table.h"
 
 static void write_row(FILE *out, const char *words, const char *symbol, double value,
@@ -47,7 +48,9 @@ static void write_derived(const fg_nominal *nominal, FILE *out) {
   write_row(out, "clearance (eq 5.8)", "C_D", nominal->clearance_mm, "mm");
 }
 
-static void write_arc(const fg_design *design, const fg_nominal *nominal, FILE *out) {
+void fg_design_table_of_arc(const fg_design_report *report, FILE *out) {
+  const fg_design *design = report->design;
+  const fg_nominal *nominal = report->nominal;
   fprintf(out, ", datum %s\n\nstated\n", fg_datum_word(design->datum));
   write_row(out, "overall radius", "R0", design->overall_radius_mm, "mm");
   write_row(out, "subtended angle", "", design->arc.subtended_angle_deg, "deg");
@@ -83,7 +86,8 @@ static void write_deviating(const fg_design *design, double length_pct, double w
   fputc('\n', out);
 }
 
-static void write_cantilever(const fg_design *design, FILE *out) {
+void fg_design_table_of_beams(const fg_design_report *report, FILE *out) {
+  const fg_design *design = report->design;
   const fg_cantilever beam = fg_cantilever_nominal(design);
   if (design->beams.count) fprintf(out, ", %zu beams", design->beams.count);
   fputs("\n\nstated\n", out);
@@ -138,29 +142,29 @@ static void write_calibration(const fg_calibration *c, FILE *out) {
           k * terms.length[1]);
 }
 
+void fg_design_table_of_discs(const fg_design_report *report, FILE *out) {
+  const fg_design *design = report->design;
+  fprintf(out, "\n  %zu known diameters\n", design->discs.count);
+  for (size_t i = 0; i < design->discs.count; i++)
+    write_row(out, "diameter", "", design->discs.diameters_mm[i], "mm");
+}
+
+void fg_design_table_of_bumps(const fg_design_report *report, FILE *out) {
+  const fg_design *design = report->design;
+  const fg_stiffness_case bump = fg_stiffness_case_of(design, report->material);
+  fprintf(out, ", datum %s", fg_datum_word(design->datum));
+  if (design->bumps.count) fprintf(out, ", %zu bumps", design->bumps.count);
+  fputs("\n\nstated\n", out);
+  write_stated(design, out);
+  fputs("\nderived\n", out);
+  write_derived(report->nominal, out);
+  fg_text_stiffness_table(out, &bump, fg_design_pitch_mm(design));
+}
+
 fg_status fg_design_write_table(fg_context *ctx, const fg_design_report *report, FILE *out) {
   const fg_design *design = report->design;
   fprintf(out, "design %s, form %s", design->name, fg_foil_kind_word(design->kind));
-  if (design->kind == FG_FOIL_DISCS) {
-    fprintf(out, "\n  %zu known diameters\n", design->discs.count);
-    for (size_t i = 0; i < design->discs.count; i++)
-      write_row(out, "diameter", "", design->discs.diameters_mm[i], "mm");
-  } else if (design->kind == FG_FOIL_ARC) {
-    write_arc(design, report->nominal, out);
-  } else if (design->kind == FG_FOIL_CANTILEVER) {
-    write_cantilever(design, out);
-  } else {
-    fprintf(out, ", datum %s", fg_datum_word(design->datum));
-    if (design->bumps.count) fprintf(out, ", %zu bumps", design->bumps.count);
-    fputs("\n\nstated\n", out);
-    write_stated(design, out);
-    fputs("\nderived\n", out);
-    write_derived(report->nominal, out);
-  }
-  if (fg_foil_kind_has_bumps(design->kind)) {
-    const fg_stiffness_case bump = fg_stiffness_case_of(design, report->material);
-    fg_text_stiffness_table(out, &bump, fg_design_pitch_mm(design));
-  }
+  fg_foil_view_of(design->kind)->design_table(report, out);
   write_tolerances(design, out);
   write_calibration(&design->calibration, out);
   return fg_stream_finish(ctx, out, "the design");

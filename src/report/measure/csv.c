@@ -9,6 +9,7 @@
 #include "foilgauge/words.h"
 #include "quantity/quantity_rows.h"
 #include "report/flag_names.h"
+#include "report/measure/foil_view.h"
 
 static void put_names(FILE *out, const fg_quantity *quantity) {
   for (size_t k = 0; k < fg_quantity_width(quantity); k++) {
@@ -68,12 +69,6 @@ static void put_beam(FILE *out, const scan_lines *scan, const fg_foil *foil, con
   put_end(out, scan, fg_beam_verdict(scan->design, foil, beam), foil);
 }
 
-static fg_quantity_owner owner_of_lines(fg_foil_kind kind) {
-  if (kind == FG_FOIL_DISCS) return FG_QUANTITY_OF_DISC;
-  if (kind == FG_FOIL_CANTILEVER) return FG_QUANTITY_OF_BEAM;
-  return kind == FG_FOIL_ARC ? FG_QUANTITY_OF_FOIL : FG_QUANTITY_OF_BUMP;
-}
-
 static size_t count_numbers(fg_quantity_owner owner) {
   size_t count, numbers = 0;
   const fg_quantity *rows = fg_quantities(owner, &count);
@@ -87,7 +82,7 @@ static void put_bare_foil(FILE *out, const scan_lines *scan, const fg_foil *foil
   fg_csv_put_text(out, scan->path, NULL);
   fprintf(out, ",%d,", foil->number);
   fg_csv_put_flags(out, fg_foil_flag_words(), foil->flags, foil->strip.picture.findings);
-  for (size_t i = count_numbers(owner_of_lines(scan->design->kind)); i-- > 0;)
+  for (size_t i = count_numbers(fg_foil_view_of(scan->design->kind)->lines); i-- > 0;)
     fputc(',', out);
   put_end(out, scan, FG_VERDICT_NOT_MEASURED, foil);
 }
@@ -105,8 +100,9 @@ static fg_status put_disc(fg_context *ctx, FILE *out, const scan_lines *scan, co
   return FG_OK;
 }
 
-/* A plain strip: a line per foil. */
-static fg_status put_arc(fg_context *ctx, FILE *out, const scan_lines *scan, const fg_foil *foil) {
+/* A line per foil, of one without parts. */
+static fg_status put_whole_foil(fg_context *ctx, FILE *out, const scan_lines *scan,
+                                const fg_foil *foil) {
   fg_decision decision;
   FG_TRY(fg_foil_decide(ctx, scan->design, foil, &decision));
   fg_csv_put_text(out, scan->path, NULL);
@@ -134,7 +130,8 @@ static void put_heading(FILE *out, fg_quantity_owner owner) {
 }
 
 static fg_status put_foil(fg_context *ctx, FILE *out, const scan_lines *scan, const fg_foil *foil) {
-  if (scan->design->kind == FG_FOIL_ARC) return put_arc(ctx, out, scan, foil);
+  if (fg_foil_view_of(scan->design->kind)->lines == FG_QUANTITY_OF_FOIL)
+    return put_whole_foil(ctx, out, scan, foil);
   if (!foil->bump_count && !foil->beam_count) put_bare_foil(out, scan, foil);
   for (size_t b = 0; b < foil->bump_count; b++)
     put_bump(out, scan, foil, &foil->bumps[b]);
@@ -144,7 +141,7 @@ static fg_status put_foil(fg_context *ctx, FILE *out, const scan_lines *scan, co
 }
 
 fg_status fg_report_write_csv(fg_context *ctx, const fg_report *report, FILE *out) {
-  put_heading(out, owner_of_lines(report->design->kind));
+  put_heading(out, fg_foil_view_of(report->design->kind)->lines);
   for (size_t i = 0; i < report->scan_count; i++) {
     const fg_measurement *measurement = report->scans[i].measurement;
     const scan_lines scan = {report->scans[i].path, report->design, measurement};
@@ -206,12 +203,6 @@ static void put_beam_points(FILE *out, size_t scan, const fg_foil *foil, const f
     }
 }
 
-static const char *heading_of_points(fg_foil_kind kind) {
-  if (kind == FG_FOIL_DISCS) return "scan,disc,point,x_mm,y_mm,residual_um\n";
-  if (kind == FG_FOIL_CANTILEVER) return "scan,foil,beam,side,station,x_mm,y_mm,u_um,usable\n";
-  return "scan,foil,station,s_mm,side,x_mm,y_mm,u_um,arc,number,fitted,residual_um\n";
-}
-
 static void put_foil_points(FILE *out, size_t scan, const fg_foil *foil) {
   char place[80];
   for (size_t b = 0; b < foil->beam_count; b++)
@@ -231,7 +222,7 @@ static void put_disc_points(FILE *out, size_t scan, const fg_disc *disc) {
 }
 
 fg_status fg_report_write_points(fg_context *ctx, const fg_report *report, FILE *out) {
-  fputs(heading_of_points(report->design->kind), out);
+  fputs(fg_foil_view_of(report->design->kind)->points_heading, out);
   for (size_t i = 0; i < report->scan_count; i++) {
     const fg_measurement *measurement = report->scans[i].measurement;
     for (size_t k = 0; measurement && k < measurement->foil_count; k++)

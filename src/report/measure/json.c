@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report/measure/json.h"
 #include "report/flag_names.h"
+#include "report/measure/foil_view.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -8,6 +9,7 @@
 
 #include "core/file.h"
 #include "foilgauge/words.h"
+#include "quantity/parts.h"
 #include "report/correction_words.h"
 #include "report/design/calibration_json.h"
 #include "report/measure/colour_lines_report.h"
@@ -40,7 +42,7 @@ static void write_stated(fg_json *json, const char *name, double value) {
   if (value != 0) fg_json_number(json, name, value);
 }
 
-static void write_cantilever(fg_json *json, const fg_design *design) {
+void fg_design_json_of_beams(fg_json *json, const fg_design *design) {
   fg_json_integer(json, "beam_count", (int64_t)design->beams.count);
   fg_json_number(json, "beam_length_mm", design->beams.length_mm);
   fg_json_number(json, "beam_width_mm", design->beams.width_mm);
@@ -49,6 +51,33 @@ static void write_cantilever(fg_json *json, const fg_design *design) {
   write_stated(json, "sagitta_mm", design->beams.sagitta_mm);
   write_stated(json, "elastic_modulus_gpa", design->beams.elastic_modulus_gpa);
   write_stated(json, "clearance_mm", design->beams.clearance_mm);
+}
+
+void fg_design_json_of_discs(fg_json *json, const fg_design *design) {
+  fg_json_numbers(json, "diameters_mm", design->discs.diameters_mm, design->discs.count);
+  write_stated(json, "u_diameters_mm", design->discs.u_diameters_mm);
+}
+
+void fg_design_json_of_arc(fg_json *json, const fg_design *design) {
+  fg_json_string(json, "datum", fg_datum_word(design->datum));
+  fg_json_number(json, "overall_radius_mm", design->overall_radius_mm);
+  fg_json_number(json, "subtended_angle_deg", design->arc.subtended_angle_deg);
+  fg_json_number(json, "thickness_mm", design->thickness_mm);
+}
+
+void fg_design_json_of_bumps(fg_json *json, const fg_design *design) {
+  fg_json_string(json, "datum", fg_datum_word(design->datum));
+  fg_json_integer(json, "bump_count", (int64_t)design->bumps.count);
+  fg_json_number(json, "bump_radius_mm", design->bumps.radius_mm);
+  fg_json_number(json, "bump_angle_deg", design->bumps.angle_deg);
+  fg_json_number(json, "overall_radius_mm", design->overall_radius_mm);
+  fg_json_number(json, "sleeve_radius_mm", design->bumps.sleeve_radius_mm);
+  fg_json_number(json, "pitch_deg", design->bumps.pitch_deg);
+  fg_json_number(json, "fillet_radius_mm", design->bumps.fillet_radius_mm);
+  fg_json_number(json, "thickness_mm", design->thickness_mm);
+  if (design->bumps.top_foil_thickness_mm > 0)
+    fg_json_number(json, "top_foil_thickness_mm", design->bumps.top_foil_thickness_mm);
+  fg_json_number(json, "rotor_diameter_mm", design->bumps.rotor_diameter_mm);
 }
 
 static void write_known(fg_json *json, const fg_design *design) {
@@ -65,30 +94,7 @@ void fg_json_design(fg_json *json, const char *name, const fg_design *design) {
   fg_json_string(json, "schema", "foilgauge/design/1");
   fg_json_string(json, "name", design->name);
   fg_json_string(json, "form", fg_foil_kind_word(design->kind));
-  if (design->kind == FG_FOIL_DISCS) {
-    fg_json_numbers(json, "diameters_mm", design->discs.diameters_mm, design->discs.count);
-    write_stated(json, "u_diameters_mm", design->discs.u_diameters_mm);
-  } else if (design->kind == FG_FOIL_ARC) {
-    fg_json_string(json, "datum", fg_datum_word(design->datum));
-    fg_json_number(json, "overall_radius_mm", design->overall_radius_mm);
-    fg_json_number(json, "subtended_angle_deg", design->arc.subtended_angle_deg);
-    fg_json_number(json, "thickness_mm", design->thickness_mm);
-  } else if (design->kind == FG_FOIL_CANTILEVER) {
-    write_cantilever(json, design);
-  } else {
-    fg_json_string(json, "datum", fg_datum_word(design->datum));
-    fg_json_integer(json, "bump_count", (int64_t)design->bumps.count);
-    fg_json_number(json, "bump_radius_mm", design->bumps.radius_mm);
-    fg_json_number(json, "bump_angle_deg", design->bumps.angle_deg);
-    fg_json_number(json, "overall_radius_mm", design->overall_radius_mm);
-    fg_json_number(json, "sleeve_radius_mm", design->bumps.sleeve_radius_mm);
-    fg_json_number(json, "pitch_deg", design->bumps.pitch_deg);
-    fg_json_number(json, "fillet_radius_mm", design->bumps.fillet_radius_mm);
-    fg_json_number(json, "thickness_mm", design->thickness_mm);
-    if (design->bumps.top_foil_thickness_mm > 0)
-      fg_json_number(json, "top_foil_thickness_mm", design->bumps.top_foil_thickness_mm);
-    fg_json_number(json, "rotor_diameter_mm", design->bumps.rotor_diameter_mm);
-  }
+  fg_foil_view_of(design->kind)->design_json(json, design);
   write_known(json, design);
   write_tolerances(json, design);
   if (design->calibration.stated) fg_json_calibration(json, "calibration", &design->calibration);
@@ -236,7 +242,7 @@ static void write_beam(fg_json *json, const fg_design *design, const fg_foil *fo
 }
 
 /* Writes the values that a flat foil shares with others, and its beams. */
-static void write_flat_values(fg_json *json, const fg_design *design, const fg_foil *foil) {
+void fg_values_json_of_beams(fg_json *json, const fg_design *design, const fg_foil *foil) {
   size_t count;
   const fg_quantity *rows = fg_quantities(FG_QUANTITY_OF_FOIL, &count);
   for (size_t i = 0; i < count; i++)
@@ -249,8 +255,10 @@ static void write_flat_values(fg_json *json, const fg_design *design, const fg_f
   fg_json_array_end(json);
 }
 
-static void write_foil_values(fg_json *json, const fg_design *design, const fg_foil *foil) {
-  bool arc = design->kind == FG_FOIL_ARC, turns = !(foil->flags & FG_FOIL_NOT_MEASURED) && !arc;
+void fg_values_json_of_strip(fg_json *json, const fg_design *design, const fg_foil *foil) {
+  const char *own = fg_foil_view_of(design->kind)->own;
+  bool turns =
+      !(foil->flags & FG_FOIL_NOT_MEASURED) && !fg_foil_traits_of(design->kind)->is_plain_strip;
   fg_json_string(json, "orientation", turns ? fg_orientation_word(foil->orientation) : NULL);
   fg_json_quantities(json, FG_QUANTITY_OF_FOIL, "", foil, true);
   const fg_thickness strip = fg_foil_thickness(design, foil);
@@ -262,9 +270,11 @@ static void write_foil_values(fg_json *json, const fg_design *design, const fg_f
   write_covariance(json, foil->overall.covariance);
   write_range(json, "radius_range_mm", foil->overall.radius_range_mm);
   fg_json_object_end(json);
-  if (arc) {
-    fg_json_object(json, "arc");
-    fg_json_quantities(json, FG_QUANTITY_OF_FOIL, "arc.", foil, true);
+  if (own) {
+    char prefix[32];
+    snprintf(prefix, sizeof prefix, "%s.", own);
+    fg_json_object(json, own);
+    fg_json_quantities(json, FG_QUANTITY_OF_FOIL, prefix, foil, true);
     fg_json_object_end(json);
   }
   fg_json_correction(json, &foil->correction);
@@ -289,12 +299,9 @@ fg_status fg_json_foil(fg_context *ctx, fg_json *json, const fg_design *design,
   fg_json_string(json, "error", foil->error[0] ? foil->error : NULL);
   fg_json_verdict(json, decision.outcome.verdict);
   fg_json_string(json, "defect", rejected ? defect : NULL);
-  bool flat = design->kind == FG_FOIL_CANTILEVER;
-  if (fg_foil_is_measured(foil)) fg_json_judgements(json, &decision, flat ? "beam" : "bump");
-  if (flat)
-    write_flat_values(json, design, foil);
-  else
-    write_foil_values(json, design, foil);
+  const char *part = fg_part_word(fg_foil_kind_parts(design->kind));
+  if (fg_foil_is_measured(foil)) fg_json_judgements(json, &decision, part);
+  fg_foil_view_of(design->kind)->values_json(json, design, foil);
   fg_json_object_end(json);
   fg_decision_free(&decision);
   return FG_OK;
@@ -333,7 +340,7 @@ static fg_status write_scan(fg_context *ctx, fg_json *json, const fg_report *rep
   for (size_t i = 0; i < measurement->foil_count; i++)
     FG_TRY(fg_json_foil(ctx, json, report->design, &measurement->foils[i]));
   fg_json_array_end(json);
-  if (report->design->kind != FG_FOIL_DISCS) return FG_OK;
+  if (fg_foil_traits_of(report->design->kind)->is_foil) return FG_OK;
   fg_json_array(json, "discs");
   for (size_t i = 0; i < measurement->disc_count; i++)
     FG_TRY(fg_json_disc(ctx, json, report->design, &measurement->discs[i]));

@@ -10,20 +10,21 @@
 #include "quantity/quantity_rows.h"
 #include "report/measure/drawing.h"
 #include "report/measure/foil_parts.h"
+#include "report/measure/foil_view.h"
 
 enum { WIDTH_MAX = 8000, LEGEND_FOILS_MAX = 6, LINE_MAX_LENGTH = 256 };
 static const double pixels_max = 48e6;
 
 /* The legend: text in lines and columns under the picture. */
-typedef struct legend {
+struct fg_overlay_legend {
   fg_rgb *rgb;
   double left_px, top_px;
   double em_px; /* height of capitals */
   double line;  /* the next line's number */
-} legend;
+};
 
-static fg_status put_text(fg_context *ctx, const legend *at, double column_em, uint32_t colour,
-                          const char *text) {
+static fg_status put_text(fg_context *ctx, const fg_overlay_legend *at, double column_em,
+                          uint32_t colour, const char *text) {
   char ascii[LINE_MAX_LENGTH];
   const double where[2] = {at->left_px + column_em * at->em_px,
                            at->top_px + (at->line + 1) * 2.0 * at->em_px};
@@ -44,8 +45,8 @@ static void value_text(const fg_quantity *row, const void *object, char *text, s
     snprintf(text, size, "%.*f", decimals, value);
 }
 
-static fg_status put_heading(fg_context *ctx, legend *at, const fg_quantity *const *columns,
-                             size_t count) {
+static fg_status put_heading(fg_context *ctx, fg_overlay_legend *at,
+                             const fg_quantity *const *columns, size_t count) {
   for (size_t i = 0; i < count; i++) {
     char text[64];
     snprintf(text, sizeof text, "%s %s", columns[i]->symbol, columns[i]->unit);
@@ -55,7 +56,7 @@ static fg_status put_heading(fg_context *ctx, legend *at, const fg_quantity *con
   return FG_OK;
 }
 
-static fg_status put_row(fg_context *ctx, legend *at, const fg_quantity *const *columns,
+static fg_status put_row(fg_context *ctx, fg_overlay_legend *at, const fg_quantity *const *columns,
                          size_t count, int number, bool bad, const void *object) {
   char text[64];
   uint32_t colour = bad ? 0xff6b6b : 0xf0f3f6;
@@ -69,7 +70,7 @@ static fg_status put_row(fg_context *ctx, legend *at, const fg_quantity *const *
   return FG_OK;
 }
 
-static fg_status put_arc(fg_context *ctx, legend *at, const fg_foil *foil) {
+static fg_status put_arc(fg_context *ctx, fg_overlay_legend *at, const fg_foil *foil) {
   char text[LINE_MAX_LENGTH], angle[64], error[64], length[64];
   value_text(fg_quantity_find(FG_QUANTITY_OF_FOIL, "arc.subtended_angle_deg"), foil, angle,
              sizeof angle);
@@ -84,12 +85,12 @@ static fg_status put_arc(fg_context *ctx, legend *at, const fg_foil *foil) {
 }
 
 static bool is_flagged(const fg_design *design, const fg_foil *foil, size_t i) {
-  if (design->kind == FG_FOIL_CANTILEVER)
+  if (fg_foil_traits_of(design->kind)->part == FG_QUANTITY_OF_BEAM)
     return fg_beam_flags(design, foil, &foil->beams[i]) & ~(unsigned)FG_BEAM_ONE_FLOOR;
   return fg_bump_flags(design, foil, &foil->bumps[i]) != 0;
 }
 
-static fg_status put_parts(fg_context *ctx, legend *at, const fg_design *design,
+static fg_status put_parts(fg_context *ctx, fg_overlay_legend *at, const fg_design *design,
                            const fg_foil *foil) {
   const fg_foil_parts parts = fg_foil_parts_of(design, foil);
   const fg_quantity *columns[FG_QUANTITY_SHOWN_MAX];
@@ -101,8 +102,8 @@ static fg_status put_parts(fg_context *ctx, legend *at, const fg_design *design,
   return FG_OK;
 }
 
-static fg_status put_flat(fg_context *ctx, legend *at, const fg_design *design, const fg_foil *foil,
-                          bool all) {
+fg_status fg_overlay_of_beams(fg_context *ctx, fg_overlay_legend *at, const fg_design *design,
+                              const fg_foil *foil, bool all) {
   char text[LINE_MAX_LENGTH];
   snprintf(text, sizeof text, "Foil %d: flat, %zu beams", foil->number, foil->beam_count);
   FG_TRY(put_text(ctx, at, 0, FG_COLOUR_OVERALL, text));
@@ -110,9 +111,8 @@ static fg_status put_flat(fg_context *ctx, legend *at, const fg_design *design, 
   return all ? put_parts(ctx, at, design, foil) : FG_OK;
 }
 
-static fg_status put_foil(fg_context *ctx, legend *at, const fg_design *design, const fg_foil *foil,
-                          bool all) {
-  if (design->kind == FG_FOIL_CANTILEVER) return put_flat(ctx, at, design, foil, all);
+/* What foils that are bent about a centre have in common. */
+static fg_status put_bent_foil(fg_context *ctx, fg_overlay_legend *at, const fg_foil *foil) {
   char text[LINE_MAX_LENGTH], radius[64], error[64], thickness[64];
   value_text(fg_quantity_find(FG_QUANTITY_OF_FOIL, "overall.radius_mm"), foil, radius,
              sizeof radius);
@@ -127,14 +127,27 @@ static fg_status put_foil(fg_context *ctx, legend *at, const fg_design *design, 
              radius, error, thickness);
   FG_TRY(put_text(ctx, at, 0, FG_COLOUR_OVERALL, text));
   at->line++;
-  if (design->kind == FG_FOIL_ARC) return put_arc(ctx, at, foil);
+  return FG_OK;
+}
+
+fg_status fg_overlay_of_arc(fg_context *ctx, fg_overlay_legend *at, const fg_design *design,
+                            const fg_foil *foil, bool all) {
+  (void)design, (void)all;
+  FG_TRY(put_bent_foil(ctx, at, foil));
+  return put_arc(ctx, at, foil);
+}
+
+fg_status fg_overlay_of_bumps(fg_context *ctx, fg_overlay_legend *at, const fg_design *design,
+                              const fg_foil *foil, bool all) {
+  FG_TRY(put_bent_foil(ctx, at, foil));
   return all ? put_parts(ctx, at, design, foil) : FG_OK;
 }
 
-static fg_status put_discs(fg_context *ctx, legend *at, const fg_measurement *measurement) {
+static fg_status put_discs(fg_context *ctx, fg_overlay_legend *at,
+                           const fg_measurement *measurement) {
   const fg_quantity *columns[FG_QUANTITY_SHOWN_MAX];
-  size_t count =
-      fg_quantity_shown(FG_QUANTITY_OF_DISC, FG_QUANTITY_ON_PICTURE, FG_FOIL_DISCS, columns);
+  size_t count = fg_quantity_shown(FG_QUANTITY_OF_DISC, FG_QUANTITY_ON_PICTURE,
+                                   measurement->design.kind, columns);
   FG_TRY(put_heading(ctx, at, columns, count));
   for (size_t i = 0; i < measurement->disc_count; i++)
     FG_TRY(put_row(ctx, at, columns, count, measurement->discs[i].number,
@@ -154,17 +167,14 @@ static size_t legend_lines(const fg_measurement *measurement) {
   return lines + (measurement->disc_count ? measurement->disc_count + 1 : 0);
 }
 
-static fg_status draw_legend(fg_context *ctx, legend *at, const fg_measurement *measurement) {
+static fg_status draw_legend(fg_context *ctx, fg_overlay_legend *at,
+                             const fg_measurement *measurement) {
+  const fg_foil_view *view = fg_foil_view_of(measurement->design.kind);
   for (size_t i = 0; i < measurement->foil_count; i++)
-    FG_TRY(put_foil(ctx, at, &measurement->design, &measurement->foils[i],
-                    legend_has_bumps(measurement)));
+    FG_TRY(view->overlay(ctx, at, &measurement->design, &measurement->foils[i],
+                         legend_has_bumps(measurement)));
   if (measurement->disc_count) FG_TRY(put_discs(ctx, at, measurement));
-  return put_text(ctx, at, 0, 0xa8b4c0,
-                  measurement->design.kind == FG_FOIL_CANTILEVER
-                      ? "± is U = 2 u (k = 2, about 95 %). Orange: fitted edges; blue: root line "
-                        "and axis. Whiskers: residuals."
-                      : "± is U = 2 u (k = 2, about 95 %). Solid arc: used by the fit; dashed: "
-                        "beyond. Whiskers: residuals.");
+  return put_text(ctx, at, 0, 0xa8b4c0, view->overlay_note);
 }
 
 /* The gray picture on top, a dark panel for the legend below. */
@@ -191,7 +201,7 @@ static fg_status draw_overlay(fg_context *ctx, const fg_measurement *measurement
   fg_rgb upper = {rgb->pixels, picture->width, picture->height}; /* nothing reaches the legend */
   canvas.rgb = &upper;
   FG_TRY(fg_draw_measurement(ctx, &canvas, measurement, 0));
-  legend at = {rgb, 2 * em_px, picture->height + em_px, em_px, 0};
+  fg_overlay_legend at = {rgb, 2 * em_px, picture->height + em_px, em_px, 0};
   return draw_legend(ctx, &at, measurement);
 }
 

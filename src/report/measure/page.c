@@ -8,6 +8,7 @@
 #include "report/correction_words.h"
 #include "report/measure/colour_lines_report.h"
 #include "report/measure/drawing.h"
+#include "report/measure/foil_view.h"
 #include "report/measure/gauge_report.h"
 #include "report/measure/page_tables.h"
 #include "report/measure/picture_report.h"
@@ -62,20 +63,19 @@ static fg_status put_facts(fg_context *ctx, FILE *out, const fg_design *design,
 static void put_uncertainty(FILE *out, const fg_measurement *measurement, const fg_foil *foil) {
   char scale[FG_SCALE_WORDS];
   fg_scale_words(measurement->model, &measurement->design.calibration, scale, sizeof scale);
-  bool flat = measurement->design.kind == FG_FOIL_CANTILEVER;
+  const fg_foil_view *view = fg_foil_view_of(measurement->design.kind);
   fprintf(
       out,
       "<h2>What ± means</h2>\n<p class=\"note\">± is the expanded uncertainty U = 2 u (coverage "
       "factor k = 2, about 95 %%). u comes from the residuals with their correlation along the "
       "edge and from what %s. ",
-      flat ? "the flanks and the core of every edge say against each other"
-           : "the two edges say against each other");
+      view->u_from);
   fg_html_text(out, scale);
   fputs(" A value passes when value ± U lies inside its tolerance, fails when "
         "it lies outside, and cannot be told when a limit runs through it.",
         out);
-  if (foil && measurement->design.kind != FG_FOIL_ARC)
-    fprintf(out, " s is the standard deviation over the n %s.", flat ? "beams" : "bumps");
+  if (foil && view->spread_over)
+    fprintf(out, " s is the standard deviation over the n %s.", view->spread_over);
   fputs("</p>\n", out);
   fg_html_uncertainty_budget(out, measurement, foil);
 }
@@ -106,28 +106,12 @@ static void put_free_and_fitted(FILE *out) {
       out);
 }
 
-/* Returns the legend of the picture's colours. */
-static const char *legend_of(fg_foil_kind kind) {
-  if (kind == FG_FOIL_DISCS)
-    return "Orange: the circle that was fitted to each feature, with its number. Magenta: how far "
-           "the edge lies from it. A red ring and value: beyond a limit.";
-  if (kind == FG_FOIL_CANTILEVER)
-    return "Orange: the fitted edges of every beam, with its number. Blue, dashed: root line and "
-           "axis. Magenta: residuals, longer than drawn are cut at 1 mm. A red ring and value: "
-           "beyond a limit, or no length; amber, with a question mark: cannot be told.";
-  if (kind == FG_FOIL_ARC)
-    return "Blue, dashed: the circle; orange: the cuts at the ends, with their directions from the "
-           "centre. Magenta: residuals.";
-  return "Orange: bump circles, solid where the fit used them. Blue, dashed: overall circle. "
-         "Magenta: residuals. A red ring and value: beyond a limit; amber, with a question mark: "
-         "cannot be told.";
-}
-
 static fg_status put_picture(fg_context *ctx, FILE *out, const fg_report *report,
                              const fg_measurement *measurement, const fg_foil *foil) {
   fputs("<figure>", out);
   FG_TRY(fg_html_picture(ctx, out, measurement, foil, fg_drawing_magnification(report)));
-  fprintf(out, "<figcaption>%s</figcaption></figure>\n", legend_of(report->design->kind));
+  fprintf(out, "<figcaption>%s</figcaption></figure>\n",
+          fg_foil_view_of(report->design->kind)->legend);
   return FG_OK;
 }
 
@@ -140,7 +124,7 @@ static void put_residuals(FILE *out, const fg_foil *foil, const char *against) {
           against, foil->noise_um, foil->correlation_mm);
 }
 
-static void put_arc_details(FILE *out, const fg_design *design, const fg_foil *foil) {
+void fg_details_of_arc(FILE *out, const fg_design *design, const fg_foil *foil) {
   fg_html_foil_table(out, design, foil);
   fg_html_thickness_budget(out, design, foil);
   put_residuals(out, foil, "its circle");
@@ -151,7 +135,7 @@ static void put_arc_details(FILE *out, const fg_design *design, const fg_foil *f
         out);
 }
 
-static void put_flat_details(FILE *out, const fg_design *design, const fg_foil *foil) {
+void fg_details_of_beams(FILE *out, const fg_design *design, const fg_foil *foil) {
   fg_html_limits(out, design, foil);
   fputs("<h2>Beams</h2>\n", out);
   fg_html_part_table(out, design, foil);
@@ -164,7 +148,7 @@ static void put_flat_details(FILE *out, const fg_design *design, const fg_foil *
   put_beam_words(out, design);
 }
 
-static void put_foil_details(FILE *out, const fg_design *design, const fg_foil *foil) {
+void fg_details_of_bumps(FILE *out, const fg_design *design, const fg_foil *foil) {
   fg_html_limits(out, design, foil);
   fputs("<h2>Bumps</h2>\n", out);
   fg_html_part_table(out, design, foil);
@@ -177,15 +161,7 @@ static void put_foil_details(FILE *out, const fg_design *design, const fg_foil *
   fg_html_errors(out, design, foil);
   fputs("</figure>\n", out);
   put_residuals(out, foil, "its fitted circles: lands in blue, bumps in orange");
-}
-
-static void put_details(FILE *out, const fg_design *design, const fg_foil *foil) {
-  if (design->kind == FG_FOIL_ARC)
-    put_arc_details(out, design, foil);
-  else if (design->kind == FG_FOIL_CANTILEVER)
-    put_flat_details(out, design, foil);
-  else
-    put_foil_details(out, design, foil);
+  put_free_and_fitted(out);
 }
 
 static void put_not_judged(FILE *out, const fg_design *design) {
@@ -221,13 +197,7 @@ static void put_judged(FILE *out, const fg_design *design, const fg_report_scan 
     fg_html_outcome(out, &decision->outcome);
   fputs("<p>", out);
   fg_html_text(out, fg_html_base_name(scan->measurement->scan));
-  if (design->kind == FG_FOIL_ARC)
-    fputs(" · a plain strip", out);
-  else if (design->kind == FG_FOIL_CANTILEVER)
-    fprintf(out, " · a flat foil, %zu beams", foil->beam_count);
-  else if (!(foil->flags & FG_FOIL_NOT_MEASURED))
-    fprintf(out, " · %zu bump%s, %s", foil->bump_count, fg_plural(foil->bump_count),
-            fg_orientation_word(foil->orientation));
+  fg_foil_view_of(design->kind)->page_heading(foil, out);
   fputs("</p></header>\n", out);
   fg_html_defect(out, design, foil);
   for (size_t i = 0; i < sizeof told / sizeof *told; i++)
@@ -249,17 +219,15 @@ static fg_status put_foil_section(fg_context *ctx, FILE *out, const fg_report *r
   const fg_design *design = report->design;
   char moved[FG_CORRECTION_WORDS], added[FG_CORRECTION_WORDS];
   bool measured = !(foil->flags & FG_FOIL_NOT_MEASURED);
-  bool bumps = fg_foil_kind_has_bumps(design->kind);
   put_error(out, foil);
   put_flags(out, design, foil);
   fg_correction_moved(&foil->correction, moved, sizeof moved);
   fg_correction_added(&foil->correction, added, sizeof added);
   if (measured) FG_TRY(fg_html_corrected(ctx, out, measurement->model, moved, added));
   fg_html_choices(out, foil);
-  if (measured) fg_html_tiles(out, design, foil);
+  if (measured) fg_foil_view_of(design->kind)->tiles(out, design, foil);
   FG_TRY(put_picture(ctx, out, report, measurement, foil));
-  if (measured) put_details(out, design, foil);
-  if (measured && bumps) put_free_and_fitted(out);
+  if (measured) fg_foil_view_of(design->kind)->details(out, design, foil);
   if (foil == measurement->foils) {
     fg_html_colour_lines(out, measurement);
     fg_html_picture_state(out, measurement);
@@ -347,7 +315,8 @@ static fg_status put_scan(fg_context *ctx, FILE *out, const fg_report *report,
     put_no_scan(out, scan, ++*number);
     return FG_OK;
   }
-  if (report->design->kind == FG_FOIL_DISCS) return put_discs(ctx, out, report, scan, ++*number);
+  if (!fg_foil_traits_of(report->design->kind)->is_foil)
+    return put_discs(ctx, out, report, scan, ++*number);
   for (size_t i = 0; i < measurement->foil_count; i++)
     FG_TRY(put_foil(ctx, out, report, scan, &measurement->foils[i], ++*number));
   return FG_OK;

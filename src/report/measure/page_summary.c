@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "report/measure/foil_parts.h"
+#include "report/measure/foil_view.h"
 #include "report/measure/page_tables.h"
 
 const char *fg_html_base_name(const char *path) {
@@ -12,7 +13,7 @@ const char *fg_html_base_name(const char *path) {
 }
 
 static size_t sections_of(const fg_report *report, const fg_report_scan *scan) {
-  if (!scan->measurement || report->design->kind == FG_FOIL_DISCS) return 1;
+  if (!scan->measurement || !fg_foil_traits_of(report->design->kind)->is_foil) return 1;
   return scan->measurement->foil_count;
 }
 
@@ -51,18 +52,20 @@ static double mean_of(const fg_design *design, const fg_foil *foil, const char *
   return count > 0 ? sum / count : NAN;
 }
 
-static void put_numbers(FILE *out, const fg_design *design, const fg_foil *foil) {
-  if (design->kind == FG_FOIL_CANTILEVER) {
-    put_number(out, foil ? mean_of(design, foil, "length_mm") : NAN, 4);
-    put_number(out, foil ? mean_of(design, foil, "width_mm") : NAN, 4);
-    put_number(out, foil ? mean_of(design, foil, "compliance_error_pct") : NAN, 3);
-    return;
-  }
+void fg_summary_of_beams(FILE *out, const fg_design *design, const fg_foil *foil) {
+  put_number(out, foil ? mean_of(design, foil, "length_mm") : NAN, 4);
+  put_number(out, foil ? mean_of(design, foil, "width_mm") : NAN, 4);
+  put_number(out, foil ? mean_of(design, foil, "compliance_error_pct") : NAN, 3);
+}
+
+void fg_summary_of_arc(FILE *out, const fg_design *design, const fg_foil *foil) {
+  (void)design;
   put_number(out, foil ? foil->overall.radius_mm : NAN, 4);
-  if (design->kind == FG_FOIL_ARC) {
-    put_number(out, foil ? foil->arc.subtended_angle_deg : NAN, 3);
-    return;
-  }
+  put_number(out, foil ? foil->arc.subtended_angle_deg : NAN, 3);
+}
+
+void fg_summary_of_bumps(FILE *out, const fg_design *design, const fg_foil *foil) {
+  put_number(out, foil ? foil->overall.radius_mm : NAN, 4);
   put_number(out, foil ? mean_of(design, foil, "radius_mm") : NAN, 4);
   put_number(out, foil ? mean_of(design, foil, "height_mm") : NAN, 4);
 }
@@ -73,7 +76,8 @@ static fg_status put_foil(fg_context *ctx, FILE *out, const fg_report *report,
   FG_TRY(fg_foil_decide(ctx, report->design, foil, &decision));
   put_link(out, section, scan->name ? scan->name : scan->path);
   put_verdict_cell(out, decision.outcome.verdict, fg_html_verdict_title(decision.outcome.verdict));
-  put_numbers(out, report->design, foil->flags & FG_FOIL_NOT_MEASURED ? NULL : foil);
+  fg_foil_view_of(report->design->kind)
+      ->summary(out, report->design, foil->flags & FG_FOIL_NOT_MEASURED ? NULL : foil);
   fputs("<td class=\"words\">", out);
   fg_html_why(out, report->design, foil, &decision);
   fputs("</td></tr>\n", out);
@@ -87,7 +91,8 @@ static fg_status put_whole_scan(fg_context *ctx, FILE *out, const fg_report *rep
   FG_TRY(fg_report_judge_scan(ctx, report->design, scan, &outcome));
   put_link(out, section, scan->path);
   put_verdict_cell(out, outcome.verdict, fg_html_verdict_title(outcome.verdict));
-  if (report->design->kind != FG_FOIL_DISCS) put_numbers(out, report->design, NULL);
+  const fg_foil_view *view = fg_foil_view_of(report->design->kind);
+  if (view->summary) view->summary(out, report->design, NULL);
   fputs("<td class=\"words\">", out);
   if (scan->measurement)
     fprintf(out, "%zu round features", scan->measurement->disc_count);
@@ -100,7 +105,7 @@ static fg_status put_whole_scan(fg_context *ctx, FILE *out, const fg_report *rep
 static fg_status count_verdicts(fg_context *ctx, const fg_report *report, size_t counts[5]) {
   for (size_t i = 0; i < report->scan_count; i++) {
     const fg_report_scan *scan = &report->scans[i];
-    bool whole = !scan->measurement || report->design->kind == FG_FOIL_DISCS;
+    bool whole = !scan->measurement || !fg_foil_traits_of(report->design->kind)->is_foil;
     fg_report_outcome outcome;
     FG_TRY(fg_report_judge_scan(ctx, report->design, scan, &outcome));
     if (whole) counts[outcome.verdict]++;
@@ -132,16 +137,7 @@ static void put_heads(FILE *out, const fg_design *design) {
         "class=\"w\">scan</th>"
         "<th class=\"w\">verdict</th>",
         out);
-  if (design->kind == FG_FOIL_ARC)
-    fputs("<th>radius<br>mm</th><th>angle<br>°</th>", out);
-  else if (design->kind == FG_FOIL_CANTILEVER)
-    fputs("<th>length, mean<br>mm</th><th>width, mean<br>mm</th><th>compliance against the "
-          "design, mean<br>%</th>",
-          out);
-  else if (design->kind != FG_FOIL_DISCS)
-    fputs(
-        "<th>overall radius<br>mm</th><th>bump radius, mean<br>mm</th><th>height, mean<br>mm</th>",
-        out);
+  fputs(fg_foil_view_of(design->kind)->summary_heads, out);
   fputs("<th class=\"w\">why</th></tr></thead>\n<tbody>\n", out);
 }
 
@@ -152,14 +148,14 @@ fg_status fg_html_summary(fg_context *ctx, FILE *out, const fg_report *report) {
   FG_TRY(count_verdicts(ctx, report, counts));
   fprintf(out, "<section class=\"judged %s\">\n<header><h1>%zu %s</h1>",
           fg_verdict_word(outcome.verdict), fg_html_sections(report),
-          report->design->kind == FG_FOIL_DISCS ? "scans" : "foils");
+          fg_foil_traits_of(report->design->kind)->is_foil ? "foils" : "scans");
   fg_html_outcome(out, &outcome);
   put_counts(out, report, counts);
   fputs("</header>\n", out);
   put_heads(out, report->design);
   for (size_t i = 0; i < report->scan_count; i++) {
     const fg_report_scan *scan = &report->scans[i];
-    bool whole = !scan->measurement || report->design->kind == FG_FOIL_DISCS;
+    bool whole = !scan->measurement || !fg_foil_traits_of(report->design->kind)->is_foil;
     if (whole) FG_TRY(put_whole_scan(ctx, out, report, scan, ++section));
     for (size_t k = 0; !whole && k < scan->measurement->foil_count; k++)
       FG_TRY(put_foil(ctx, out, report, scan, &scan->measurement->foils[k], ++section));

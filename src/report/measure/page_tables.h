@@ -11,7 +11,6 @@ void fg_html_disc_table(FILE *out, const fg_design *design, const fg_measurement
 
 /* Key numbers (page_tiles.c). */
 
-void fg_html_tiles(FILE *out, const fg_design *design, const fg_foil *foil);
 void fg_html_disc_tiles(FILE *out, const fg_measurement *measurement);
 
 /* Reasons of a verdict (page_reasons.c). */

@@ -4,6 +4,7 @@
 
 #include "page/tile.h"
 #include "report/measure/foil_parts.h"
+#include "report/measure/foil_view.h"
 #include "report/measure/page_tables.h"
 
 static void put_quantity_tile(FILE *out, fg_quantity_owner owner, const char *name,
@@ -43,7 +44,8 @@ static void put_mean_tile(FILE *out, const fg_foil_parts *parts, const char *nam
                row->unit);
 }
 
-static void put_arc_tiles(FILE *out, const fg_foil *foil) {
+void fg_tiles_of_arc(FILE *out, const fg_design *design, const fg_foil *foil) {
+  (void)design;
   fputs("<dl class=\"tiles\">\n", out);
   put_quantity_tile(out, FG_QUANTITY_OF_FOIL, "overall.radius_mm", "Radius", foil);
   put_quantity_tile(out, FG_QUANTITY_OF_FOIL, "overall.springback_error_pct",
@@ -57,37 +59,29 @@ static void put_arc_tiles(FILE *out, const fg_foil *foil) {
   fputs("</dl>\n", out);
 }
 
-static void put_flat_tiles(FILE *out, const fg_foil_parts *beams) {
+void fg_tiles_of_beams(FILE *out, const fg_design *design, const fg_foil *foil) {
+  const fg_foil_parts beams = fg_foil_parts_of(design, foil);
   fputs("<dl class=\"tiles\">\n", out);
-  put_mean_tile(out, beams, "length_mm", "Length, mean");
-  put_mean_tile(out, beams, "width_mm", "Width, mean");
-  put_mean_tile(out, beams, "compliance_error_pct", "Compliance against the design, mean");
-  put_mean_tile(out, beams, "sagitta_error_pct", "Sagitta against the design, mean");
-  put_mean_tile(out, beams, "clearance_change_mm", "Clearance change, mean");
+  put_mean_tile(out, &beams, "length_mm", "Length, mean");
+  put_mean_tile(out, &beams, "width_mm", "Width, mean");
+  put_mean_tile(out, &beams, "compliance_error_pct", "Compliance against the design, mean");
+  put_mean_tile(out, &beams, "sagitta_error_pct", "Sagitta against the design, mean");
+  put_mean_tile(out, &beams, "clearance_change_mm", "Clearance change, mean");
   fputs("</dl>\n", out);
 }
 
-static void put_foil_tiles(FILE *out, const fg_foil *foil, const fg_foil_parts *bumps) {
+void fg_tiles_of_bumps(FILE *out, const fg_design *design, const fg_foil *foil) {
+  const fg_foil_parts bumps = fg_foil_parts_of(design, foil);
   fputs("<dl class=\"tiles\">\n", out);
   put_quantity_tile(out, FG_QUANTITY_OF_FOIL, "overall.radius_mm", "Overall radius", foil);
   put_quantity_tile(out, FG_QUANTITY_OF_FOIL, "overall.springback_error_pct", "Overall springback",
                     foil);
-  put_mean_tile(out, bumps, "radius_mm", "Bump radius, mean");
-  put_mean_tile(out, bumps, "height_mm", "Bump height, mean");
-  put_mean_tile(out, bumps, "clearance_mm", "Clearance, free, mean");
-  put_mean_tile(out, bumps, "clearance_fitted_mm", "Clearance, fitted, mean");
+  put_mean_tile(out, &bumps, "radius_mm", "Bump radius, mean");
+  put_mean_tile(out, &bumps, "height_mm", "Bump height, mean");
+  put_mean_tile(out, &bumps, "clearance_mm", "Clearance, free, mean");
+  put_mean_tile(out, &bumps, "clearance_fitted_mm", "Clearance, fitted, mean");
   put_quantity_tile(out, FG_QUANTITY_OF_FOIL, "thickness_mm", "Thickness", foil);
   fputs("</dl>\n", out);
-}
-
-void fg_html_tiles(FILE *out, const fg_design *design, const fg_foil *foil) {
-  const fg_foil_parts parts = fg_foil_parts_of(design, foil);
-  if (design->kind == FG_FOIL_ARC)
-    put_arc_tiles(out, foil);
-  else if (design->kind == FG_FOIL_CANTILEVER)
-    put_flat_tiles(out, &parts);
-  else
-    put_foil_tiles(out, foil, &parts);
 }
 
 /* The disc that is farthest from round, the smallest and the largest. */

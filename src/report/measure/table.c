@@ -10,6 +10,7 @@
 #include "quantity/quantity_rows.h"
 #include "report/correction_words.h"
 #include "report/measure/colour_lines_report.h"
+#include "report/measure/foil_view.h"
 #include "report/measure/gauge_report.h"
 #include "report/measure/outcome_words.h"
 #include "report/measure/picture_report.h"
@@ -120,9 +121,8 @@ static void put_row(FILE *out, const column *columns, size_t count, int number,
   }
 }
 
-static size_t make_columns(const row_set *rows, column *columns) {
+static size_t make_columns(const row_set *rows, fg_foil_kind kind, column *columns) {
   const fg_quantity *shown[FG_QUANTITY_SHOWN_MAX];
-  fg_foil_kind kind = rows->owner == FG_QUANTITY_OF_BEAM ? FG_FOIL_CANTILEVER : FG_FOIL_CLASSICAL;
   size_t count = fg_quantity_shown(rows->owner, FG_QUANTITY_ON_TERMINAL, kind, shown);
   for (size_t i = 0; i < count; i++) {
     columns[i].row = shown[i];
@@ -131,11 +131,11 @@ static size_t make_columns(const row_set *rows, column *columns) {
   return count;
 }
 
-static void put_bumps(FILE *out, const fg_design *design, const fg_foil *foil) {
+void fg_part_table_of_bumps(FILE *out, const fg_design *design, const fg_foil *foil) {
   const row_set rows = {FG_QUANTITY_OF_BUMP, (const char *)foil->bumps, foil->bump_count,
                         sizeof *foil->bumps};
   column columns[FG_QUANTITY_SHOWN_MAX];
-  size_t count = make_columns(&rows, columns);
+  size_t count = make_columns(&rows, design->kind, columns);
   fputs("bump", out);
   put_cells(out, columns, count, false);
   fputs("    ", out);
@@ -147,11 +147,11 @@ static void put_bumps(FILE *out, const fg_design *design, const fg_foil *foil) {
   }
 }
 
-static void put_beams(FILE *out, const fg_design *design, const fg_foil *foil) {
+void fg_part_table_of_beams(FILE *out, const fg_design *design, const fg_foil *foil) {
   const row_set rows = {FG_QUANTITY_OF_BEAM, (const char *)foil->beams, foil->beam_count,
                         sizeof *foil->beams};
   column columns[FG_QUANTITY_SHOWN_MAX];
-  size_t count = make_columns(&rows, columns);
+  size_t count = make_columns(&rows, design->kind, columns);
   fputs("beam", out);
   put_cells(out, columns, count, false);
   fputs("    ", out);
@@ -167,7 +167,7 @@ static void put_discs(FILE *out, const fg_design *design, const fg_measurement *
   const row_set rows = {FG_QUANTITY_OF_DISC, (const char *)measurement->discs,
                         measurement->disc_count, sizeof *measurement->discs};
   column columns[FG_QUANTITY_SHOWN_MAX];
-  size_t count = make_columns(&rows, columns);
+  size_t count = make_columns(&rows, design->kind, columns);
   fputs("disc", out);
   put_cells(out, columns, count, false);
   fputs("    ", out);
@@ -230,6 +230,7 @@ static void put_quantities(FILE *out, const fg_design *design, const fg_foil *fo
 }
 
 static void put_foil(FILE *out, const fg_design *design, const fg_foil *foil) {
+  const fg_foil_view *view = fg_foil_view_of(design->kind);
   char defect[200];
   if (foil->flags & FG_FOIL_NOT_MEASURED) {
     fprintf(out, "\nfoil %d: not measured: %s\n", foil->number, foil->error);
@@ -237,13 +238,9 @@ static void put_foil(FILE *out, const fg_design *design, const fg_foil *foil) {
     put_foil_flags(out, fg_foil_flags_told(design, foil) & ~(unsigned)FG_FOIL_NOT_MEASURED);
     return;
   }
-  if (design->kind == FG_FOIL_ARC)
-    fprintf(out, "\nfoil %d: a plain strip\n", foil->number);
-  else if (design->kind == FG_FOIL_CANTILEVER)
-    fprintf(out, "\nfoil %d: flat, %zu beams\n", foil->number, foil->beam_count);
-  else
-    fprintf(out, "\nfoil %d: %zu bump%s, %s\n", foil->number, foil->bump_count,
-            fg_plural(foil->bump_count), fg_orientation_word(foil->orientation));
+  fprintf(out, "\nfoil %d: ", foil->number);
+  view->foil_heading(foil, out);
+  fputc('\n', out);
   if (foil->flags & FG_FOIL_NOT_THIS_DESIGN) fprintf(out, "  NOT MEASURED: %s\n", foil->error);
   if (fg_foil_defect(design, foil, defect, sizeof defect)) fprintf(out, "  REJECTED: %s\n", defect);
   put_place(out, foil);
@@ -251,10 +248,7 @@ static void put_foil(FILE *out, const fg_design *design, const fg_foil *foil) {
   fg_text_thickness_budget(out, design, foil);
   put_correction(out, foil);
   put_foil_flags(out, fg_foil_flags_told(design, foil));
-  if (design->kind == FG_FOIL_CANTILEVER)
-    put_beams(out, design, foil);
-  else if (design->kind != FG_FOIL_ARC)
-    put_bumps(out, design, foil);
+  if (view->part_table) view->part_table(out, design, foil);
 }
 
 /* An error begins with the scan's name where it knows it. */
@@ -300,7 +294,7 @@ static fg_status put_outcome(fg_context *ctx, FILE *out, const fg_report *report
   }
   if (outcome->rejected)
     fprintf(out, "REJECTED: %zu foil(s) with %s missing or too many.\n", outcome->rejected,
-            design->kind == FG_FOIL_CANTILEVER ? "beams" : "bumps");
+            fg_foil_view_of(design->kind)->parts);
   if (outcome->not_measured)
     fprintf(out, "INCOMPLETE: %zu without a value.\n", outcome->not_measured);
   if (outcome->undecided) {
@@ -331,10 +325,8 @@ fg_status fg_report_write_table(fg_context *ctx, const fg_report *report, FILE *
   FG_TRY(put_outcome(ctx, out, report, &outcome));
   char scale[FG_SCALE_WORDS];
   fg_scale_words(fg_report_model(report), &report->design->calibration, scale, sizeof scale);
-  if (fg_foil_kind_has_bumps(report->design->kind))
-    fputs("h and C_loc: the foil free, as scanned. C_fit: pressed into the sleeve.\n", out);
-  if (report->design->kind == FG_FOIL_CANTILEVER)
-    fputs("e_S, e_s: compliance and sagitta against the design's, of L and w as measured.\n", out);
+  const char *note = fg_foil_view_of(report->design->kind)->table_note;
+  if (note) fputs(note, out);
   fprintf(out, "± is U = 2 u (k = 2, about 95 %%).\n%s\n", scale);
   return fg_stream_finish(ctx, out, "the table");
 }

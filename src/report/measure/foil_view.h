@@ -1,0 +1,83 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* How each kind of foil is shown: one row per kind of words, and of functions that write what the
+ * kind alone has. Writers ask the row; no other line of a report tells kinds apart. How a kind is
+ * measured is a row of geometry/foil_kind.h.
+ */
+#ifndef FG_REPORT_MEASURE_FOIL_VIEW_H
+#define FG_REPORT_MEASURE_FOIL_VIEW_H
+
+#include <stdio.h>
+
+#include "core/json_writer.h"
+#include "foilgauge/design_report.h"
+#include "foilgauge/foil_kind.h"
+#include "foilgauge/report.h"
+
+typedef struct fg_overlay_legend fg_overlay_legend;
+
+typedef struct fg_foil_view {
+  const char *parts;          /* "bumps", which may be missing or too many */
+  const char *u_from;         /* what the uncertainty comes from, beside the residuals */
+  const char *spread_over;    /* what a standard deviation s on a tile is over; NULL: no s */
+  const char *legend;         /* colours of a page's picture */
+  const char *overlay_note;   /* colours of the overlay */
+  const char *table_note;     /* last lines of the terminal's table; NULL */
+  const char *summary_heads;  /* HTML: columns of a page's summary */
+  const char *points_heading; /* CSV of edge points */
+  fg_quantity_owner lines;    /* CSV of values: a line is of this */
+  const char *own;            /* JSON object of quantities that this kind alone has; NULL */
+  /* JSON: dimensions of a design, what follows from them, values of a foil. */
+  void (*design_json)(fg_json *json, const fg_design *design);
+  void (*nominal_json)(fg_json *json, const fg_design_report *report);
+  void (*values_json)(fg_json *json, const fg_design *design, const fg_foil *foil);
+  /* Terminal: a design, what a foil is, its parts (NULL: none). */
+  void (*design_table)(const fg_design_report *report, FILE *out);
+  void (*foil_heading)(const fg_foil *foil, FILE *out);
+  void (*part_table)(FILE *out, const fg_design *design, const fg_foil *foil);
+  /* Page: what a foil is, tiles, everything below the picture, cells of the summary (foil NULL: not
+   * measured). */
+  void (*page_heading)(const fg_foil *foil, FILE *out);
+  void (*tiles)(FILE *out, const fg_design *design, const fg_foil *foil);
+  void (*details)(FILE *out, const fg_design *design, const fg_foil *foil);
+  void (*summary)(FILE *out, const fg_design *design, const fg_foil *foil);
+  /* Legend under the overlay; `all` with every part. */
+  fg_status (*overlay)(fg_context *ctx, fg_overlay_legend *legend, const fg_design *design,
+                       const fg_foil *foil, bool all);
+} fg_foil_view;
+
+const fg_foil_view *fg_foil_view_of(fg_foil_kind kind);
+
+/* ---- functions of rows ---- */
+
+void fg_design_json_of_bumps(fg_json *json, const fg_design *design);
+void fg_design_json_of_arc(fg_json *json, const fg_design *design);
+void fg_design_json_of_beams(fg_json *json, const fg_design *design);
+void fg_design_json_of_discs(fg_json *json, const fg_design *design);
+void fg_nominal_json_of_bumps(fg_json *json, const fg_design_report *report);
+void fg_nominal_json_of_arc(fg_json *json, const fg_design_report *report);
+void fg_nominal_json_of_beams(fg_json *json, const fg_design_report *report);
+void fg_values_json_of_strip(fg_json *json, const fg_design *design, const fg_foil *foil);
+void fg_values_json_of_beams(fg_json *json, const fg_design *design, const fg_foil *foil);
+void fg_design_table_of_bumps(const fg_design_report *report, FILE *out);
+void fg_design_table_of_arc(const fg_design_report *report, FILE *out);
+void fg_design_table_of_beams(const fg_design_report *report, FILE *out);
+void fg_design_table_of_discs(const fg_design_report *report, FILE *out);
+void fg_part_table_of_bumps(FILE *out, const fg_design *design, const fg_foil *foil);
+void fg_part_table_of_beams(FILE *out, const fg_design *design, const fg_foil *foil);
+void fg_tiles_of_bumps(FILE *out, const fg_design *design, const fg_foil *foil);
+void fg_tiles_of_arc(FILE *out, const fg_design *design, const fg_foil *foil);
+void fg_tiles_of_beams(FILE *out, const fg_design *design, const fg_foil *foil);
+void fg_details_of_bumps(FILE *out, const fg_design *design, const fg_foil *foil);
+void fg_details_of_arc(FILE *out, const fg_design *design, const fg_foil *foil);
+void fg_details_of_beams(FILE *out, const fg_design *design, const fg_foil *foil);
+void fg_summary_of_bumps(FILE *out, const fg_design *design, const fg_foil *foil);
+void fg_summary_of_arc(FILE *out, const fg_design *design, const fg_foil *foil);
+void fg_summary_of_beams(FILE *out, const fg_design *design, const fg_foil *foil);
+fg_status fg_overlay_of_bumps(fg_context *ctx, fg_overlay_legend *legend, const fg_design *design,
+                              const fg_foil *foil, bool all);
+fg_status fg_overlay_of_arc(fg_context *ctx, fg_overlay_legend *legend, const fg_design *design,
+                            const fg_foil *foil, bool all);
+fg_status fg_overlay_of_beams(fg_context *ctx, fg_overlay_legend *legend, const fg_design *design,
+                              const fg_foil *foil, bool all);
+
+#endif
