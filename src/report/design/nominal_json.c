@@ -73,12 +73,6 @@ void fg_nominal_json_of_bumps(fg_json *json, const fg_design_report *report) {
   write_stiffness(json, report);
 }
 
-void fg_nominal_json_of_arc(fg_json *json, const fg_design_report *report) {
-  fg_json_object(json, "nominal");
-  fg_json_number(json, "arc_length_mm", report->nominal->arc_length_mm);
-  fg_json_object_end(json);
-}
-
 fg_status fg_design_write_json(fg_context *ctx, const fg_design_report *report, FILE *out) {
   const fg_design *design = report->design;
   const fg_foil_view *view = fg_foil_view_of(design->kind);

@@ -7,71 +7,62 @@
 #include "foilgauge/design_report.h"
 #include "foilgauge/words.h"
 #include "report/design/beam_deviations.h"
+#include "report/design/parts.h"
 #include "report/measure/foil_view.h"
 #include "report/stiffness/table.h"
 
-static void write_row(FILE *out, const char *words, const char *symbol, double value,
-                      const char *unit) {
+void fg_design_put_row(FILE *out, const char *words, const char *symbol, double value,
+                       const char *unit) {
   fprintf(out, "  %-34s %-9s %12.6f %s\n", words, symbol, value, unit);
 }
 
 /* Knowledge beside the design, as of the strip that was made. */
-static void write_known(const fg_design *design, FILE *out) {
+void fg_design_put_known(const fg_design *design, FILE *out) {
   if (design->thickness_measured_mm > 0) {
-    write_row(out, "thickness as measured", "t", design->thickness_measured_mm, "mm");
-    write_row(out, "its standard uncertainty", "u(t)", design->u_thickness_measured_mm, "mm");
+    fg_design_put_row(out, "thickness as measured", "t", design->thickness_measured_mm, "mm");
+    fg_design_put_row(out, "its standard uncertainty", "u(t)", design->u_thickness_measured_mm,
+                      "mm");
   }
   if (design->tone == FG_TONE_LINEAR) fputs("  tone of the scanner: linear, as stated\n", out);
 }
 
 static void write_stated(const fg_design *design, FILE *out) {
-  write_row(out, "bump radius", "R_D", design->bumps.radius_mm, "mm");
-  write_row(out, "bump angle", "alpha_D", design->bumps.angle_deg, "deg");
-  write_row(out, "overall radius", "R0", design->overall_radius_mm, "mm");
-  write_row(out, "sleeve radius", "R_sleeve", design->bumps.sleeve_radius_mm, "mm");
-  write_row(out, "pitch", "", design->bumps.pitch_deg, "deg");
-  write_row(out, "fillet radius", "", design->bumps.fillet_radius_mm, "mm");
-  write_row(out, "thickness", "t", design->thickness_mm, "mm");
+  fg_design_put_row(out, "bump radius", "R_D", design->bumps.radius_mm, "mm");
+  fg_design_put_row(out, "bump angle", "alpha_D", design->bumps.angle_deg, "deg");
+  fg_design_put_row(out, "overall radius", "R0", design->overall_radius_mm, "mm");
+  fg_design_put_row(out, "sleeve radius", "R_sleeve", design->bumps.sleeve_radius_mm, "mm");
+  fg_design_put_row(out, "pitch", "", design->bumps.pitch_deg, "deg");
+  fg_design_put_row(out, "fillet radius", "", design->bumps.fillet_radius_mm, "mm");
+  fg_design_put_row(out, "thickness", "t", design->thickness_mm, "mm");
   if (design->bumps.top_foil_thickness_mm > 0)
-    write_row(out, "top foil thickness", "", design->bumps.top_foil_thickness_mm, "mm");
-  write_row(out, "rotor diameter", "D", design->bumps.rotor_diameter_mm, "mm");
-  write_known(design, out);
+    fg_design_put_row(out, "top foil thickness", "", design->bumps.top_foil_thickness_mm, "mm");
+  fg_design_put_row(out, "rotor diameter", "D", design->bumps.rotor_diameter_mm, "mm");
+  fg_design_put_known(design, out);
 }
 
 static void write_derived(const fg_nominal *nominal, FILE *out) {
-  write_row(out, "bump centre to overall centre", "X_D", nominal->centre_to_centre_mm, "mm");
-  write_row(out, "half chord (eq 5.2)", "l0", nominal->half_chord_mm, "mm");
-  write_row(out, "arc length of a bump", "", nominal->arc_length_mm, "mm");
-  write_row(out, "intersection angle", "theta_D", nominal->intersection_angle_deg, "deg");
-  write_row(out, "bump height (eq 5.5)", "h_D", nominal->height_mm, "mm");
-  write_row(out, "die height (eq 5.1)", "h_b", nominal->die_height_mm, "mm");
-  write_row(out, "clearance (eq 5.8)", "C_D", nominal->clearance_mm, "mm");
-}
-
-void fg_design_table_of_arc(const fg_design_report *report, FILE *out) {
-  const fg_design *design = report->design;
-  const fg_nominal *nominal = report->nominal;
-  fprintf(out, ", datum %s\n\nstated\n", fg_datum_word(design->datum));
-  write_row(out, "overall radius", "R0", design->overall_radius_mm, "mm");
-  write_row(out, "subtended angle", "", design->arc.subtended_angle_deg, "deg");
-  write_row(out, "thickness", "t", design->thickness_mm, "mm");
-  write_known(design, out);
-  fputs("\nderived\n", out);
-  write_row(out, "arc length", "", nominal->arc_length_mm, "mm");
+  fg_design_put_row(out, "bump centre to overall centre", "X_D", nominal->centre_to_centre_mm,
+                    "mm");
+  fg_design_put_row(out, "half chord (eq 5.2)", "l0", nominal->half_chord_mm, "mm");
+  fg_design_put_row(out, "arc length of a bump", "", nominal->arc_length_mm, "mm");
+  fg_design_put_row(out, "intersection angle", "theta_D", nominal->intersection_angle_deg, "deg");
+  fg_design_put_row(out, "bump height (eq 5.5)", "h_D", nominal->height_mm, "mm");
+  fg_design_put_row(out, "die height (eq 5.1)", "h_b", nominal->die_height_mm, "mm");
+  fg_design_put_row(out, "clearance (eq 5.8)", "C_D", nominal->clearance_mm, "mm");
 }
 
 static void write_beam(const fg_design *design, FILE *out) {
-  write_row(out, "beam length", "L", design->beams.length_mm, "mm");
-  write_row(out, "beam width", "w", design->beams.width_mm, "mm");
-  write_row(out, "thickness", "t", design->thickness_mm, "mm");
+  fg_design_put_row(out, "beam length", "L", design->beams.length_mm, "mm");
+  fg_design_put_row(out, "beam width", "w", design->beams.width_mm, "mm");
+  fg_design_put_row(out, "thickness", "t", design->thickness_mm, "mm");
   if (design->beams.u_thickness_mm > 0)
-    write_row(out, "its standard uncertainty", "u(t)", design->beams.u_thickness_mm, "mm");
+    fg_design_put_row(out, "its standard uncertainty", "u(t)", design->beams.u_thickness_mm, "mm");
   if (design->beams.sagitta_mm > 0)
-    write_row(out, "sagitta, as bent", "sag", design->beams.sagitta_mm, "mm");
+    fg_design_put_row(out, "sagitta, as bent", "sag", design->beams.sagitta_mm, "mm");
   if (design->beams.clearance_mm > 0)
-    write_row(out, "clearance", "C", design->beams.clearance_mm, "mm");
+    fg_design_put_row(out, "clearance", "C", design->beams.clearance_mm, "mm");
   if (design->beams.elastic_modulus_gpa > 0)
-    write_row(out, "elastic modulus", "E", design->beams.elastic_modulus_gpa, "GPa");
+    fg_design_put_row(out, "elastic modulus", "E", design->beams.elastic_modulus_gpa, "GPa");
 }
 
 /* Writes one line; sagitta and clearance that are not known are left out of it. */
@@ -93,11 +84,14 @@ void fg_design_table_of_beams(const fg_design_report *report, FILE *out) {
   fputs("\n\nstated\n", out);
   write_beam(design, out);
   fputs("\nderived\n", out);
-  write_row(out, "second moment w t^3 / 12", "I", fg_cantilever_second_moment_mm4(design), "mm4");
+  fg_design_put_row(out, "second moment w t^3 / 12", "I", fg_cantilever_second_moment_mm4(design),
+                    "mm4");
   if (isfinite(beam.compliance_mm_per_n))
-    write_row(out, "compliance L^3 / (3 E I), eq 5.10", "S", beam.compliance_mm_per_n, "mm/N");
+    fg_design_put_row(out, "compliance L^3 / (3 E I), eq 5.10", "S", beam.compliance_mm_per_n,
+                      "mm/N");
   if (design->beams.elastic_modulus_gpa > 0 && design->beams.u_thickness_mm > 0)
-    write_row(out, "its u by that of the thickness", "u(S)", beam.u_compliance_mm_per_n, "mm/N");
+    fg_design_put_row(out, "its u by that of the thickness", "u(S)", beam.u_compliance_mm_per_n,
+                      "mm/N");
   fputs("\nwhat a deviation of the beams does; the last two are the thesis's\n", out);
   for (size_t i = 0; i < FG_BEAM_DEVIATIONS; i++)
     write_deviating(design, fg_beam_deviations_pct[i][0], fg_beam_deviations_pct[i][1], out);
@@ -146,7 +140,7 @@ void fg_design_table_of_discs(const fg_design_report *report, FILE *out) {
   const fg_design *design = report->design;
   fprintf(out, "\n  %zu known diameters\n", design->discs.count);
   for (size_t i = 0; i < design->discs.count; i++)
-    write_row(out, "diameter", "", design->discs.diameters_mm[i], "mm");
+    fg_design_put_row(out, "diameter", "", design->discs.diameters_mm[i], "mm");
 }
 
 void fg_design_table_of_bumps(const fg_design_report *report, FILE *out) {

@@ -6,13 +6,6 @@
 #include "core/text.h"
 #include "foilgauge/words.h"
 
-static const char edges_say[] = "the two edges say against each other";
-static const char arcs_note[] =
-    "± is U = 2 u (k = 2, about 95 %). Solid arc: used by the fit; dashed: beyond. Whiskers: "
-    "residuals.";
-static const char stations_heading[] =
-    "scan,foil,station,s_mm,side,x_mm,y_mm,u_um,arc,number,fitted,residual_um\n";
-
 static void head_bumps(const fg_foil *foil, FILE *out) {
   fprintf(out, "%zu bump%s, %s", foil->bump_count, fg_plural(foil->bump_count),
           fg_orientation_word(foil->orientation));
@@ -26,16 +19,16 @@ static void head_bumps_on_page(const fg_foil *foil, FILE *out) {
 
 static const fg_foil_view bumps = {
     .parts = "bumps",
-    .u_from = edges_say,
+    .u_from = FG_EDGES_SAY,
     .spread_over = "bumps",
     .legend = "Orange: bump circles, solid where the fit used them. Blue, dashed: overall circle. "
               "Magenta: residuals. A red ring and value: beyond a limit; amber, with a question "
               "mark: cannot be told.",
-    .overlay_note = arcs_note,
+    .overlay_note = FG_ARCS_NOTE,
     .table_note = "h and C_loc: the foil free, as scanned. C_fit: pressed into the sleeve.\n",
     .summary_heads = "<th>overall radius<br>mm</th><th>bump radius, mean<br>mm</th><th>height, "
                      "mean<br>mm</th>",
-    .points_heading = stations_heading,
+    .points_heading = FG_STATIONS_HEADING,
     .lines = FG_QUANTITY_OF_BUMP,
     .design_json = fg_design_json_of_bumps,
     .nominal_json = fg_nominal_json_of_bumps,
@@ -48,38 +41,6 @@ static const fg_foil_view bumps = {
     .details = fg_details_of_bumps,
     .summary = fg_summary_of_bumps,
     .overlay = fg_overlay_of_bumps,
-};
-
-static void head_arc(const fg_foil *foil, FILE *out) {
-  (void)foil;
-  fputs("a plain strip", out);
-}
-
-static void head_arc_on_page(const fg_foil *foil, FILE *out) {
-  (void)foil;
-  fputs(" · a plain strip", out);
-}
-
-static const fg_foil_view arc = {
-    .parts = "bumps",
-    .u_from = edges_say,
-    .legend = "Blue, dashed: the circle; orange: the cuts at the ends, with their directions from "
-              "the centre. Magenta: residuals.",
-    .overlay_note = arcs_note,
-    .summary_heads = "<th>radius<br>mm</th><th>angle<br>°</th>",
-    .points_heading = stations_heading,
-    .lines = FG_QUANTITY_OF_FOIL,
-    .own = "arc",
-    .design_json = fg_design_json_of_arc,
-    .nominal_json = fg_nominal_json_of_arc,
-    .values_json = fg_values_json_of_strip,
-    .design_table = fg_design_table_of_arc,
-    .foil_heading = head_arc,
-    .page_heading = head_arc_on_page,
-    .tiles = fg_tiles_of_arc,
-    .details = fg_details_of_arc,
-    .summary = fg_summary_of_arc,
-    .overlay = fg_overlay_of_arc,
 };
 
 static void head_beams(const fg_foil *foil, FILE *out) {
@@ -121,11 +82,11 @@ static const fg_foil_view beams = {
 /* A scan of discs has no foils: functions of foils are those of foils with bumps. */
 static const fg_foil_view discs = {
     .parts = "bumps",
-    .u_from = edges_say,
+    .u_from = FG_EDGES_SAY,
     .spread_over = "bumps",
     .legend = "Orange: the circle that was fitted to each feature, with its number. Magenta: how "
               "far the edge lies from it. A red ring and value: beyond a limit.",
-    .overlay_note = arcs_note,
+    .overlay_note = FG_ARCS_NOTE,
     .summary_heads = "",
     .points_heading = "scan,disc,point,x_mm,y_mm,residual_um\n",
     .lines = FG_QUANTITY_OF_DISC,
@@ -141,8 +102,8 @@ static const fg_foil_view discs = {
 };
 
 static const fg_foil_view *const views[] = {
-    [FG_FOIL_CLASSICAL] = &bumps, [FG_FOIL_SINUSOIDAL] = &bumps, [FG_FOIL_DISCS] = &discs,
-    [FG_FOIL_ARC] = &arc,         [FG_FOIL_CANTILEVER] = &beams,
+    [FG_FOIL_CLASSICAL] = &bumps,      [FG_FOIL_SINUSOIDAL] = &bumps, [FG_FOIL_DISCS] = &discs,
+    [FG_FOIL_ARC] = &fg_foil_view_arc, [FG_FOIL_CANTILEVER] = &beams,
 };
 static_assert(sizeof views / sizeof *views == FG_FOIL_KINDS, "every kind of foil has a view");
 

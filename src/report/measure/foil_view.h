@@ -47,36 +47,38 @@ typedef struct fg_foil_view {
 
 const fg_foil_view *fg_foil_view_of(fg_foil_kind kind);
 
+extern const fg_foil_view fg_foil_view_arc;
+
+/* Words of every strip that is seen from its edge. */
+#define FG_EDGES_SAY "the two edges say against each other"
+#define FG_ARCS_NOTE                                                                               \
+  "± is U = 2 u (k = 2, about 95 %). Solid arc: used by the fit; dashed: beyond. Whiskers: "      \
+  "residuals."
+#define FG_STATIONS_HEADING                                                                        \
+  "scan,foil,station,s_mm,side,x_mm,y_mm,u_um,arc,number,fitted,residual_um\n"
+
 /* ---- functions of rows ---- */
 
 void fg_design_json_of_bumps(fg_json *json, const fg_design *design);
-void fg_design_json_of_arc(fg_json *json, const fg_design *design);
 void fg_design_json_of_beams(fg_json *json, const fg_design *design);
 void fg_design_json_of_discs(fg_json *json, const fg_design *design);
 void fg_nominal_json_of_bumps(fg_json *json, const fg_design_report *report);
-void fg_nominal_json_of_arc(fg_json *json, const fg_design_report *report);
 void fg_nominal_json_of_beams(fg_json *json, const fg_design_report *report);
 void fg_values_json_of_strip(fg_json *json, const fg_design *design, const fg_foil *foil);
 void fg_values_json_of_beams(fg_json *json, const fg_design *design, const fg_foil *foil);
 void fg_design_table_of_bumps(const fg_design_report *report, FILE *out);
-void fg_design_table_of_arc(const fg_design_report *report, FILE *out);
 void fg_design_table_of_beams(const fg_design_report *report, FILE *out);
 void fg_design_table_of_discs(const fg_design_report *report, FILE *out);
 void fg_part_table_of_bumps(FILE *out, const fg_design *design, const fg_foil *foil);
 void fg_part_table_of_beams(FILE *out, const fg_design *design, const fg_foil *foil);
 void fg_tiles_of_bumps(FILE *out, const fg_design *design, const fg_foil *foil);
-void fg_tiles_of_arc(FILE *out, const fg_design *design, const fg_foil *foil);
 void fg_tiles_of_beams(FILE *out, const fg_design *design, const fg_foil *foil);
 void fg_details_of_bumps(FILE *out, const fg_design *design, const fg_foil *foil);
-void fg_details_of_arc(FILE *out, const fg_design *design, const fg_foil *foil);
 void fg_details_of_beams(FILE *out, const fg_design *design, const fg_foil *foil);
 void fg_summary_of_bumps(FILE *out, const fg_design *design, const fg_foil *foil);
-void fg_summary_of_arc(FILE *out, const fg_design *design, const fg_foil *foil);
 void fg_summary_of_beams(FILE *out, const fg_design *design, const fg_foil *foil);
 fg_status fg_overlay_of_bumps(fg_context *ctx, fg_overlay_legend *legend, const fg_design *design,
                               const fg_foil *foil, bool all);
-fg_status fg_overlay_of_arc(fg_context *ctx, fg_overlay_legend *legend, const fg_design *design,
-                            const fg_foil *foil, bool all);
 fg_status fg_overlay_of_beams(fg_context *ctx, fg_overlay_legend *legend, const fg_design *design,
                               const fg_foil *foil, bool all);
 

@@ -58,13 +58,6 @@ void fg_design_json_of_discs(fg_json *json, const fg_design *design) {
   write_stated(json, "u_diameters_mm", design->discs.u_diameters_mm);
 }
 
-void fg_design_json_of_arc(fg_json *json, const fg_design *design) {
-  fg_json_string(json, "datum", fg_datum_word(design->datum));
-  fg_json_number(json, "overall_radius_mm", design->overall_radius_mm);
-  fg_json_number(json, "subtended_angle_deg", design->arc.subtended_angle_deg);
-  fg_json_number(json, "thickness_mm", design->thickness_mm);
-}
-
 void fg_design_json_of_bumps(fg_json *json, const fg_design *design) {
   fg_json_string(json, "datum", fg_datum_word(design->datum));
   fg_json_integer(json, "bump_count", (int64_t)design->bumps.count);

@@ -11,8 +11,9 @@
 #include "report/measure/drawing.h"
 #include "report/measure/foil_parts.h"
 #include "report/measure/foil_view.h"
+#include "report/measure/overlay.h"
 
-enum { WIDTH_MAX = 8000, LEGEND_FOILS_MAX = 6, LINE_MAX_LENGTH = 256 };
+enum { WIDTH_MAX = 8000, LEGEND_FOILS_MAX = 6, LINE_MAX_LENGTH = FG_OVERLAY_LINE };
 static const double pixels_max = 48e6;
 
 /* The legend: text in lines and columns under the picture. */
@@ -34,7 +35,14 @@ static fg_status put_text(fg_context *ctx, const fg_overlay_legend *at, double c
   return fg_cv_draw_text(ctx, at->rgb, ascii, where, &style);
 }
 
-static void value_text(const fg_quantity *row, const void *object, char *text, size_t size) {
+fg_status fg_overlay_put_line(fg_context *ctx, fg_overlay_legend *legend, double column_em,
+                              const char *text) {
+  FG_TRY(put_text(ctx, legend, column_em, 0xf0f3f6, text));
+  legend->line++;
+  return FG_OK;
+}
+
+void fg_overlay_value_text(const fg_quantity *row, const void *object, char *text, size_t size) {
   double value = fg_quantity_value(row, object), u = fg_quantity_uncertainty(row, object);
   int decimals = fg_report_decimals(row, u);
   if (!isfinite(value))
@@ -63,23 +71,9 @@ static fg_status put_row(fg_context *ctx, fg_overlay_legend *at, const fg_quanti
   snprintf(text, sizeof text, "%d", number);
   FG_TRY(put_text(ctx, at, 0, FG_COLOUR_BUMP, text));
   for (size_t i = 0; i < count; i++) {
-    value_text(columns[i], object, text, sizeof text);
+    fg_overlay_value_text(columns[i], object, text, sizeof text);
     FG_TRY(put_text(ctx, at, 4 + 17.0 * (double)i, colour, text));
   }
-  at->line++;
-  return FG_OK;
-}
-
-static fg_status put_arc(fg_context *ctx, fg_overlay_legend *at, const fg_foil *foil) {
-  char text[LINE_MAX_LENGTH], angle[64], error[64], length[64];
-  value_text(fg_quantity_find(FG_QUANTITY_OF_FOIL, "arc.subtended_angle_deg"), foil, angle,
-             sizeof angle);
-  value_text(fg_quantity_find(FG_QUANTITY_OF_FOIL, "arc.subtended_angle_error_pct"), foil, error,
-             sizeof error);
-  value_text(fg_quantity_find(FG_QUANTITY_OF_FOIL, "arc.length_mm"), foil, length, sizeof length);
-  snprintf(text, sizeof text, "angle between the ends %s °, against the design %s %%, length %s mm",
-           angle, error, length);
-  FG_TRY(put_text(ctx, at, 4, 0xf0f3f6, text));
   at->line++;
   return FG_OK;
 }
@@ -111,15 +105,14 @@ fg_status fg_overlay_of_beams(fg_context *ctx, fg_overlay_legend *at, const fg_d
   return all ? put_parts(ctx, at, design, foil) : FG_OK;
 }
 
-/* What foils that are bent about a centre have in common. */
-static fg_status put_bent_foil(fg_context *ctx, fg_overlay_legend *at, const fg_foil *foil) {
+fg_status fg_overlay_put_bent_foil(fg_context *ctx, fg_overlay_legend *at, const fg_foil *foil) {
   char text[LINE_MAX_LENGTH], radius[64], error[64], thickness[64];
-  value_text(fg_quantity_find(FG_QUANTITY_OF_FOIL, "overall.radius_mm"), foil, radius,
-             sizeof radius);
-  value_text(fg_quantity_find(FG_QUANTITY_OF_FOIL, "overall.springback_error_pct"), foil, error,
-             sizeof error);
-  value_text(fg_quantity_find(FG_QUANTITY_OF_FOIL, "thickness_mm"), foil, thickness,
-             sizeof thickness);
+  fg_overlay_value_text(fg_quantity_find(FG_QUANTITY_OF_FOIL, "overall.radius_mm"), foil, radius,
+                        sizeof radius);
+  fg_overlay_value_text(fg_quantity_find(FG_QUANTITY_OF_FOIL, "overall.springback_error_pct"), foil,
+                        error, sizeof error);
+  fg_overlay_value_text(fg_quantity_find(FG_QUANTITY_OF_FOIL, "thickness_mm"), foil, thickness,
+                        sizeof thickness);
   if (!fg_foil_is_measured(foil))
     snprintf(text, sizeof text, "Foil %d: not measured: %.180s", foil->number, foil->error);
   else
@@ -130,16 +123,9 @@ static fg_status put_bent_foil(fg_context *ctx, fg_overlay_legend *at, const fg_
   return FG_OK;
 }
 
-fg_status fg_overlay_of_arc(fg_context *ctx, fg_overlay_legend *at, const fg_design *design,
-                            const fg_foil *foil, bool all) {
-  (void)design, (void)all;
-  FG_TRY(put_bent_foil(ctx, at, foil));
-  return put_arc(ctx, at, foil);
-}
-
 fg_status fg_overlay_of_bumps(fg_context *ctx, fg_overlay_legend *at, const fg_design *design,
                               const fg_foil *foil, bool all) {
-  FG_TRY(put_bent_foil(ctx, at, foil));
+  FG_TRY(fg_overlay_put_bent_foil(ctx, at, foil));
   return all ? put_parts(ctx, at, design, foil) : FG_OK;
 }
 

@@ -115,24 +115,13 @@ static fg_status put_picture(fg_context *ctx, FILE *out, const fg_report *report
   return FG_OK;
 }
 
-static void put_residuals(FILE *out, const fg_foil *foil, const char *against) {
+void fg_html_residual_figure(FILE *out, const fg_foil *foil, const char *against) {
   fputs("<h2>Residual along the foil</h2>\n<figure>", out);
   fg_html_residuals(out, foil);
   fprintf(out,
           "<figcaption>The midline against %s. Standard deviation %.3g µm, correlation length %.3g "
           "mm.</figcaption></figure>\n",
           against, foil->noise_um, foil->correlation_mm);
-}
-
-void fg_details_of_arc(FILE *out, const fg_design *design, const fg_foil *foil) {
-  fg_html_foil_table(out, design, foil);
-  fg_html_thickness_budget(out, design, foil);
-  put_residuals(out, foil, "its circle");
-  fputs("<h2>What the errors mean</h2>\n<p class=\"note\">Springback of the radius is 100 (design "
-        "− actual) / design, that of the angle 100 (actual − design) / design: of a foil that has "
-        "opened both are below 0. The angle is that between the two cuts, seen from the centre."
-        "</p>\n",
-        out);
 }
 
 void fg_details_of_beams(FILE *out, const fg_design *design, const fg_foil *foil) {
@@ -160,7 +149,7 @@ void fg_details_of_bumps(FILE *out, const fg_design *design, const fg_foil *foil
   fputs("<h2>Springback error per bump</h2>\n<figure>", out);
   fg_html_errors(out, design, foil);
   fputs("</figure>\n", out);
-  put_residuals(out, foil, "its fitted circles: lands in blue, bumps in orange");
+  fg_html_residual_figure(out, foil, "its fitted circles: lands in blue, bumps in orange");
   put_free_and_fitted(out);
 }
 

@@ -34,7 +34,7 @@ static void put_link(FILE *out, size_t section, const char *scan) {
   fputs("</td>", out);
 }
 
-static void put_number(FILE *out, double value, int decimals) {
+void fg_html_summary_number(FILE *out, double value, int decimals) {
   if (isfinite(value))
     fprintf(out, "<td>%s%.*f</td>", value < 0 ? "−" : "", decimals, fabs(value));
   else
@@ -53,21 +53,15 @@ static double mean_of(const fg_design *design, const fg_foil *foil, const char *
 }
 
 void fg_summary_of_beams(FILE *out, const fg_design *design, const fg_foil *foil) {
-  put_number(out, foil ? mean_of(design, foil, "length_mm") : NAN, 4);
-  put_number(out, foil ? mean_of(design, foil, "width_mm") : NAN, 4);
-  put_number(out, foil ? mean_of(design, foil, "compliance_error_pct") : NAN, 3);
-}
-
-void fg_summary_of_arc(FILE *out, const fg_design *design, const fg_foil *foil) {
-  (void)design;
-  put_number(out, foil ? foil->overall.radius_mm : NAN, 4);
-  put_number(out, foil ? foil->arc.subtended_angle_deg : NAN, 3);
+  fg_html_summary_number(out, foil ? mean_of(design, foil, "length_mm") : NAN, 4);
+  fg_html_summary_number(out, foil ? mean_of(design, foil, "width_mm") : NAN, 4);
+  fg_html_summary_number(out, foil ? mean_of(design, foil, "compliance_error_pct") : NAN, 3);
 }
 
 void fg_summary_of_bumps(FILE *out, const fg_design *design, const fg_foil *foil) {
-  put_number(out, foil ? foil->overall.radius_mm : NAN, 4);
-  put_number(out, foil ? mean_of(design, foil, "radius_mm") : NAN, 4);
-  put_number(out, foil ? mean_of(design, foil, "height_mm") : NAN, 4);
+  fg_html_summary_number(out, foil ? foil->overall.radius_mm : NAN, 4);
+  fg_html_summary_number(out, foil ? mean_of(design, foil, "radius_mm") : NAN, 4);
+  fg_html_summary_number(out, foil ? mean_of(design, foil, "height_mm") : NAN, 4);
 }
 
 static fg_status put_foil(fg_context *ctx, FILE *out, const fg_report *report,

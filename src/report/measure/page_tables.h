@@ -11,6 +11,8 @@ void fg_html_disc_table(FILE *out, const fg_design *design, const fg_measurement
 
 /* Key numbers (page_tiles.c). */
 
+void fg_html_quantity_tile(FILE *out, fg_quantity_owner owner, const char *name, const char *title,
+                           const void *object);
 void fg_html_disc_tiles(FILE *out, const fg_measurement *measurement);
 
 /* Reasons of a verdict (page_reasons.c). */
@@ -42,6 +44,10 @@ void fg_html_limit_lines(const fg_plot *at, fg_plot_label *labels, size_t count)
 const char *fg_html_base_name(const char *path);
 /* Returns the number of sections: one for each foil and each unmeasured scan, "part1" ... */
 size_t fg_html_sections(const fg_report *report);
+/* A cell with a number, or a dash. */
+void fg_html_summary_number(FILE *out, double value, int decimals);
+/* Residuals along a foil, with a heading and what they are against. */
+void fg_html_residual_figure(FILE *out, const fg_foil *foil, const char *against);
 fg_status fg_html_summary(fg_context *ctx, FILE *out, const fg_report *report);
 
 #endif

@@ -7,8 +7,8 @@
 #include "report/measure/foil_view.h"
 #include "report/measure/page_tables.h"
 
-static void put_quantity_tile(FILE *out, fg_quantity_owner owner, const char *name,
-                              const char *title, const void *object) {
+void fg_html_quantity_tile(FILE *out, fg_quantity_owner owner, const char *name, const char *title,
+                           const void *object) {
   const fg_quantity *row = fg_quantity_find(owner, name);
   double value = fg_quantity_value(row, object), u = fg_quantity_uncertainty(row, object);
   int decimals = fg_report_decimals(row, u);
@@ -44,21 +44,6 @@ static void put_mean_tile(FILE *out, const fg_foil_parts *parts, const char *nam
                row->unit);
 }
 
-void fg_tiles_of_arc(FILE *out, const fg_design *design, const fg_foil *foil) {
-  (void)design;
-  fputs("<dl class=\"tiles\">\n", out);
-  put_quantity_tile(out, FG_QUANTITY_OF_FOIL, "overall.radius_mm", "Radius", foil);
-  put_quantity_tile(out, FG_QUANTITY_OF_FOIL, "overall.springback_error_pct",
-                    "Springback of the radius", foil);
-  put_quantity_tile(out, FG_QUANTITY_OF_FOIL, "arc.subtended_angle_deg", "Angle between the ends",
-                    foil);
-  put_quantity_tile(out, FG_QUANTITY_OF_FOIL, "arc.subtended_angle_error_pct",
-                    "Angle against the design", foil);
-  put_quantity_tile(out, FG_QUANTITY_OF_FOIL, "arc.length_mm", "Length", foil);
-  put_quantity_tile(out, FG_QUANTITY_OF_FOIL, "thickness_mm", "Thickness", foil);
-  fputs("</dl>\n", out);
-}
-
 void fg_tiles_of_beams(FILE *out, const fg_design *design, const fg_foil *foil) {
   const fg_foil_parts beams = fg_foil_parts_of(design, foil);
   fputs("<dl class=\"tiles\">\n", out);
@@ -73,14 +58,14 @@ void fg_tiles_of_beams(FILE *out, const fg_design *design, const fg_foil *foil) 
 void fg_tiles_of_bumps(FILE *out, const fg_design *design, const fg_foil *foil) {
   const fg_foil_parts bumps = fg_foil_parts_of(design, foil);
   fputs("<dl class=\"tiles\">\n", out);
-  put_quantity_tile(out, FG_QUANTITY_OF_FOIL, "overall.radius_mm", "Overall radius", foil);
-  put_quantity_tile(out, FG_QUANTITY_OF_FOIL, "overall.springback_error_pct", "Overall springback",
-                    foil);
+  fg_html_quantity_tile(out, FG_QUANTITY_OF_FOIL, "overall.radius_mm", "Overall radius", foil);
+  fg_html_quantity_tile(out, FG_QUANTITY_OF_FOIL, "overall.springback_error_pct",
+                        "Overall springback", foil);
   put_mean_tile(out, &bumps, "radius_mm", "Bump radius, mean");
   put_mean_tile(out, &bumps, "height_mm", "Bump height, mean");
   put_mean_tile(out, &bumps, "clearance_mm", "Clearance, free, mean");
   put_mean_tile(out, &bumps, "clearance_fitted_mm", "Clearance, fitted, mean");
-  put_quantity_tile(out, FG_QUANTITY_OF_FOIL, "thickness_mm", "Thickness", foil);
+  fg_html_quantity_tile(out, FG_QUANTITY_OF_FOIL, "thickness_mm", "Thickness", foil);
   fputs("</dl>\n", out);
 }
 
@@ -98,10 +83,10 @@ void fg_html_disc_tiles(FILE *out, const fg_measurement *measurement) {
   char title[64];
   fputs("<dl class=\"tiles\">\n", out);
   snprintf(title, sizeof title, "Smallest diameter, disc %d", small->number);
-  put_quantity_tile(out, FG_QUANTITY_OF_DISC, "diameter_mm", title, small);
+  fg_html_quantity_tile(out, FG_QUANTITY_OF_DISC, "diameter_mm", title, small);
   snprintf(title, sizeof title, "Largest diameter, disc %d", large->number);
-  put_quantity_tile(out, FG_QUANTITY_OF_DISC, "diameter_mm", title, large);
+  fg_html_quantity_tile(out, FG_QUANTITY_OF_DISC, "diameter_mm", title, large);
   snprintf(title, sizeof title, "Farthest from round, disc %d", odd->number);
-  put_quantity_tile(out, FG_QUANTITY_OF_DISC, "roundness_um", title, odd);
+  fg_html_quantity_tile(out, FG_QUANTITY_OF_DISC, "roundness_um", title, odd);
   fputs("</dl>\n", out);
 }
