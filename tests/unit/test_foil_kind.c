@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/member_words.h"
+#include "core/json_read.h"
 #include "foilgauge/design_report.h"
 #include "foilgauge/stiffness.h"
 #include "foilgauge/words.h"
