@@ -2,7 +2,7 @@
 /* Files: outputs that appear under their final name only when they are whole, a guard against
  * overwriting inputs, and inputs that are read whole.
  *
- * A writer of reports goes so:
+ * Pattern of a writer of reports:
  *
  *     fg_output output;
  *     FG_TRY(fg_output_open(ctx, "report.json", &output));

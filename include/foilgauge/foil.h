@@ -209,7 +209,7 @@ typedef struct fg_disc_point {
   bool used; /* usable */
 } fg_disc_point;
 
-/* A BEAM of a flat foil (form cantilever) is a tongue of material that is free at one end: two long
+/* A BEAM of a flat foil (kind cantilever) is a tongue of material that is free at one end: two long
  * edges that face each other across it, joined at the tip by a straight edge across. It may stand
  * out from a common base, as the tooth of a comb, or lie inside a sheet, cut free by a slit. Every
  * edge lies where the scan's light is halfway between both sides. Its line is fitted to all of it

@@ -25,8 +25,8 @@ enum {
  * cause than the carriage. */
 #define OUTLIER_SIGMAS 4.5
 
-/* Sums over the rows of one window: of w ny², w ny value, w ny a (a: coefficients of what all
- * windows share), w ny² y. */
+/* Sums over the rows of one window: of w ny², w ny value, w ny a (a: coefficients of the shared
+ * unknowns), w ny² y. */
 typedef struct window {
   double weight, value, shared[SHARED], y, dy;
   size_t rows;

@@ -106,7 +106,7 @@ static void code_luminance(const fg_jpeg *jpeg, float values[16][16]) {
   }
 }
 
-/* The mean of 2 × 2 pixels stands for all four. */
+/* Replaces 2 × 2 pixels by their mean. */
 static void code_difference(const fg_jpeg *jpeg, float values[16][16]) {
   float block[8][8];
   for (int i = 0; i < 64; i++) {

@@ -128,7 +128,7 @@ static fg_status read_resampling(const fg_place *place, const cJSON *object, fg_
   return FG_OK;
 }
 
-/* Samples are smoothed alike along both axes, by what the coarser one needs. */
+/* Samples are smoothed alike along both axes, by the need of the coarser one. */
 static fg_status check_blur(const fg_place *place, const cJSON *object, const fg_scanner *scanner) {
   const double dpi[2] = {sensor_dpi(scanner, 0), sensor_dpi(scanner, 1)};
   double coarsest = fmin(dpi[0], dpi[1]);

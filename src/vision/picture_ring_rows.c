@@ -20,7 +20,8 @@
 /* Size of the base: a circle under different scales of x and y, or a blur of one side. Its rival
  * has at least as many values as all jumps. */
 enum { BASE = 7, RIVAL = 27, JUMPS_MAX = 6, STATIONS_MIN = 120, ENDS = 24 };
-/* A cubic over so many stations of one limb models the bend beside a step. */
+/* BENDS: terms of a cubic that models the bend beside a step; FIT_REACH: stations of one limb that
+ * it covers. */
 enum { BENDS = 4, FIT_REACH = 12, LIMBS = 2 };
 #define GAIN_MIN    40.0 /* of squares, over the variance: two values explain 2 by chance */
 #define JUMP_MIN_PX 0.5

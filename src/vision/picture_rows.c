@@ -14,7 +14,7 @@
  * along it. */
 enum { STRETCHES = 2, PEAK = 5, ENDS = 24 };
 static const int stretches[STRETCHES][2] = {{1, 3}, {4, 7}};
-/* A cubic over so many stations models the bend at a step. */
+/* BENDS: terms of a cubic that models the bend at a step; FIT_REACH: stations that it covers. */
 enum { BENDS = 4, FIT_REACH = 12, SHIFT_MAX = 5 };
 /* Min angle of crossing: an edge along the rows has no definite place of crossing. */
 #define CROSSING_MIN 0.2

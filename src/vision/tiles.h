@@ -46,7 +46,7 @@ typedef struct fg_tiles {
   fg_tile **tiles;                   /* columns × rows; NULL: background */
   float *medians;                    /* columns × rows: median of each tile's block means */
   uint8_t *wanted;                   /* columns × rows: contrast above the background's scatter */
-  int32_t received;                  /* number of strips so far */
+  int32_t received;                  /* number of received strips */
   /* of the undecided strips: */
   uint8_t *strips[FG_TILE_STRIPS];     /* rows of width_px pixels */
   float *strip_blocks[FG_TILE_STRIPS]; /* FG_BLOCKS_PER_TILE rows of columns × FG_BLOCKS_PER_TILE */
