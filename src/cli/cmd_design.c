@@ -62,8 +62,8 @@ static const char doc[] =
     "say formula, source and what a model leaves out.\n\n"
     "@exit_done@";
 
-static error_t parse_number(const char *name, const char *text, double low, double high,
-                            double *value, struct argp_state *state) {
+static error_t parse_design_number(const char *name, const char *text, double low, double high,
+                                   double *value, struct argp_state *state) {
   char *end;
   *value = strtod(text, &end);
   if (end == text || *end || !(*value >= low && *value <= high))
@@ -71,7 +71,7 @@ static error_t parse_number(const char *name, const char *text, double low, doub
   return 0;
 }
 
-static error_t parse_option(int key, char *text, struct argp_state *state) {
+static error_t parse_design_option(int key, char *text, struct argp_state *state) {
   design_arguments *arguments = state->input;
   switch (key) {
   case 'o':
@@ -88,12 +88,13 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
     break;
   /* The bounds are those of a recipe. */
   case OPTION_MODULUS:
-    return parse_number("youngs-modulus-gpa", text, 1e-3, 1e4,
-                        &arguments->material.youngs_modulus_gpa, state);
+    return parse_design_number("youngs-modulus-gpa", text, 1e-3, 1e4,
+                               &arguments->material.youngs_modulus_gpa, state);
   case OPTION_POISSON:
-    return parse_number("poisson-ratio", text, 0, 0.499, &arguments->material.poisson_ratio, state);
+    return parse_design_number("poisson-ratio", text, 0, 0.499, &arguments->material.poisson_ratio,
+                               state);
   case OPTION_FRICTION:
-    return parse_number("friction", text, 0, 10, &arguments->material.friction, state);
+    return parse_design_number("friction", text, 0, 10, &arguments->material.friction, state);
   case FG_CLI_DECIMAL_COMMA:
     arguments->outputs.decimal_comma = true;
     break;
@@ -148,8 +149,8 @@ static fg_status show_design(fg_context *ctx, design_arguments *arguments) {
   return fg_output_set_write(ctx, &arguments->outputs, write_view, &view);
 }
 
-const struct argp fg_design_parser = {options, parse_option, "[DESIGN]", doc,
-                                      NULL,    fg_cli_fill,  NULL};
+const struct argp fg_design_parser = {options, parse_design_option, "[DESIGN]", doc,
+                                      NULL,    fg_cli_fill,         NULL};
 
 int fg_cmd_design(int argc, char **argv) {
   fg_context ctx = {0};

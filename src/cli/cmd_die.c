@@ -95,7 +95,7 @@ static const char doc[] =
     "  foilgauge die --tip-um 2 --unit um --half concave a1.txt a2.txt --half convex b1.txt\n\n"
     "@exit_judged@";
 
-static void take(die_run *run, fg_status status) {
+static void note_die_status(die_run *run, fg_status status) {
   if (run->status == FG_OK) run->status = status;
 }
 
@@ -111,7 +111,7 @@ static void check_end(const die_run *run, const struct argp_state *state) {
              option->name);
 }
 
-static error_t parse_option(int key, char *text, struct argp_state *state) {
+static error_t parse_die_option(int key, char *text, struct argp_state *state) {
   die_run *run = state->input;
   if (key >= OPTION_HALF && key <= OPTION_FORWARD) run->unused = key;
   switch (key) {
@@ -164,7 +164,7 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
   case ARGP_KEY_ARG:
     run->said.path = text;
     run->unused = 0;
-    take(run, fg_die_sources_add(run->ctx, &run->sources, &run->said));
+    note_die_status(run, fg_die_sources_add(run->ctx, &run->sources, &run->said));
     break;
   case ARGP_KEY_END:
     check_end(run, state);
@@ -175,14 +175,14 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
   return 0;
 }
 
-static fg_status write_output(fg_context *ctx, void *user, size_t kind, FILE *out) {
+static fg_status write_die_output(fg_context *ctx, void *user, size_t kind, FILE *out) {
   const die_run *run = user;
   if (kind == OUT_JSON) return fg_die_write_json(ctx, &run->die, out);
   return kind == OUT_HTML ? fg_die_write_html(ctx, &run->die, out)
                           : fg_die_write_table(ctx, &run->die, out);
 }
 
-static fg_status load(fg_context *ctx, die_run *run, fg_design *design) {
+static fg_status load_die_design(fg_context *ctx, die_run *run, fg_design *design) {
   const fg_input others[] = {{run->design_path, "the design"}, {run->list_path, "the list"}};
   FG_TRY(run->status);
   fg_output_set_choose_standard(&run->outputs, OUT_JSON, OUT_TABLE, false);
@@ -231,21 +231,21 @@ static void tell_unseen(const fg_die *die) {
   tell_lost_by_trace(die);
 }
 
-static fg_status measure(fg_context *ctx, die_run *run, int *code) {
+static fg_status measure_die(fg_context *ctx, die_run *run, int *code) {
   fg_design design;
   fg_report_outcome outcome;
-  FG_TRY(load(ctx, run, &design));
+  FG_TRY(load_die_design(ctx, run, &design));
   FG_TRY(fg_output_set_open(ctx, &run->outputs));
   FG_TRY(fg_die_measure(ctx, &design, &run->options, run->sources.source, run->sources.count,
                         &run->die));
   tell_unseen(&run->die);
   fg_die_judge(&run->die, &outcome, NULL, 0);
   *code = fg_outcome_exit_code(&outcome);
-  return fg_output_set_write(ctx, &run->outputs, write_output, run);
+  return fg_output_set_write(ctx, &run->outputs, write_die_output, run);
 }
 
-const struct argp fg_die_parser = {options,     parse_option, "[PROFILE...]", doc, NULL,
-                                   fg_cli_fill, NULL};
+const struct argp fg_die_parser = {
+    options, parse_die_option, "[PROFILE...]", doc, NULL, fg_cli_fill, NULL};
 
 int fg_cmd_die(int argc, char **argv) {
   fg_context ctx = {0};
@@ -257,7 +257,7 @@ int fg_cmd_die(int argc, char **argv) {
   /* In order: an option counts for the profiles behind it. */
   fg_status parsed = fg_cli_parse_in_order(&ctx, &fg_die_parser, argc, argv, &run);
   if (parsed != FG_OK) run.status = parsed;
-  fg_status status = measure(&ctx, &run, &code);
+  fg_status status = measure_die(&ctx, &run, &code);
   fg_output_set_close(&run.outputs);
   fg_die_sources_free(&run.sources);
   fg_die_free(&run.die);

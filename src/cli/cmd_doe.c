@@ -224,7 +224,7 @@ static void check_arguments(struct argp_state *state, const doe_arguments *a) {
     argp_error(state, "--scans brings its own uncertainty: drop --uncertainty");
 }
 
-static error_t parse_option(int key, char *text, struct argp_state *state) {
+static error_t parse_doe_option(int key, char *text, struct argp_state *state) {
   doe_run *run = state->input;
   doe_arguments *a = &run->arguments;
   const char **place = text_option(key, run);
@@ -319,7 +319,7 @@ static fg_status measure_scans(fg_context *ctx, doe_run *run) {
   return FG_OK;
 }
 
-static fg_status write_output(fg_context *ctx, void *user, size_t kind, FILE *out) {
+static fg_status write_doe_output(fg_context *ctx, void *user, size_t kind, FILE *out) {
   const doe_run *run = user;
   const fg_experiment_report report = {.experiment = &run->experiment,
                                        .path = run->arguments.data,
@@ -394,7 +394,7 @@ static fg_status analyse(fg_context *ctx, doe_run *run) {
   FG_TRY(fg_doe_plan_take(ctx, &plan, &run->plan));
   FG_TRY(fg_experiment_analyse(ctx, a->scans ? &run->measured.table : &run->sheet, &a->options,
                                &run->experiment));
-  return fg_output_set_write(ctx, &run->outputs, write_output, run);
+  return fg_output_set_write(ctx, &run->outputs, write_doe_output, run);
 }
 
 static void free_run(doe_run *run) {
@@ -409,7 +409,8 @@ static void free_run(doe_run *run) {
   fg_doe_plan_free(&run->plan);
 }
 
-const struct argp fg_doe_parser = {options, parse_option, "DATA.csv", doc, NULL, fg_cli_fill, NULL};
+const struct argp fg_doe_parser = {options, parse_doe_option, "DATA.csv", doc,
+                                   NULL,    fg_cli_fill,      NULL};
 
 int fg_cmd_doe(int argc, char **argv) {
   if (argc > 1 && !strcmp(argv[1], "plan")) {

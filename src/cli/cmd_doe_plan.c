@@ -141,7 +141,7 @@ static void parse_axial(struct argp_state *state, const char *text, plan_argumen
     argp_error(state, "--axial: '%s' is not a number from 0 to 100", text);
 }
 
-static error_t parse_option(int key, char *text, struct argp_state *state) {
+static error_t parse_plan_option(int key, char *text, struct argp_state *state) {
   plan_arguments *a = state->input;
   switch (key) {
   case OPTION_KIND:
@@ -264,7 +264,7 @@ exit:
   return status;
 }
 
-static fg_status tell(fg_context *ctx, const fg_plan *plan) {
+static fg_status describe_plan(fg_context *ctx, const fg_plan *plan) {
   char *relation = NULL, *aliases = NULL;
   fprintf(stderr, "%zu run%s", plan->runs, fg_plural(plan->runs));
   if (plan->blocks > 1) fprintf(stderr, " in %zu blocks", plan->blocks);
@@ -302,7 +302,7 @@ static fg_status write_beside(fg_context *ctx, const plan_arguments *a, const fg
   return fg_output_end(ctx, &output, fg_plan_write_json(ctx, plan, output.stream));
 }
 
-static fg_status write_page(fg_context *ctx, const plan_arguments *a, const fg_plan *plan) {
+static fg_status write_plan_page(fg_context *ctx, const plan_arguments *a, const fg_plan *plan) {
   fg_output output;
   if (!a->page_path) return FG_OK;
   FG_TRY(fg_output_open(ctx, a->page_path, &output));
@@ -339,13 +339,13 @@ static fg_status write_plan(fg_context *ctx, const plan_arguments *a, const fg_p
   FG_TRY(fg_output_end(ctx, &output,
                        fg_csv_write(ctx, a->decimal_comma, write_sheet, &of, output.stream)));
   FG_TRY(write_beside(ctx, a, plan));
-  FG_TRY(write_page(ctx, a, plan));
+  FG_TRY(write_plan_page(ctx, a, plan));
   FG_TRY(tell_notes(ctx, plan));
-  return tell(ctx, plan);
+  return describe_plan(ctx, plan);
 }
 
 const struct argp fg_doe_plan_parser = {
-    options, parse_option, "--factor NAME=LOW:HIGH...", doc, NULL, fg_cli_fill, NULL};
+    options, parse_plan_option, "--factor NAME=LOW:HIGH...", doc, NULL, fg_cli_fill, NULL};
 
 int fg_cmd_doe_plan(int argc, char **argv) {
   fg_context ctx = {0};

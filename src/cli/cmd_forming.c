@@ -147,14 +147,14 @@ static void check_end(const forming_run *run, struct argp_state *state) {
 }
 
 /* Words with few choices: the place of the text among them. */
-static int choose(struct argp_state *state, const char *option, const char *text, const char *first,
-                  const char *second) {
+static int parse_choice_of_two(struct argp_state *state, const char *option, const char *text,
+                               const char *first, const char *second) {
   if (strcmp(text, first) != 0 && strcmp(text, second) != 0)
     argp_error(state, "--%s: '%s' is neither %s nor %s", option, text, first, second);
   return !strcmp(text, second);
 }
 
-static error_t parse_number(int key, const char *text, struct argp_state *state) {
+static error_t parse_forming_number(int key, const char *text, struct argp_state *state) {
   forming_run *run = state->input;
   switch (key) {
   case OPTION_TEMPERATURE:
@@ -177,7 +177,7 @@ static error_t parse_number(int key, const char *text, struct argp_state *state)
   }
 }
 
-static error_t parse_option(int key, char *text, struct argp_state *state) {
+static error_t parse_forming_option(int key, char *text, struct argp_state *state) {
   forming_run *run = state->input;
   const struct {
     int key;
@@ -202,12 +202,14 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
     }
   switch (key) {
   case OPTION_SHAPE:
-    run->options.shape =
-        choose(state, "shape", text, "arcs", "sine") ? FG_FORMING_SINE : FG_FORMING_ARCS;
+    run->options.shape = parse_choice_of_two(state, "shape", text, "arcs", "sine")
+                             ? FG_FORMING_SINE
+                             : FG_FORMING_ARCS;
     return 0;
   case OPTION_OF:
     run->of_given = true;
-    run->of = choose(state, "of", text, "strip", "foil") ? FG_FORMING_OF_FOIL : FG_FORMING_OF_STRIP;
+    run->of = parse_choice_of_two(state, "of", text, "strip", "foil") ? FG_FORMING_OF_FOIL
+                                                                      : FG_FORMING_OF_STRIP;
     return 0;
   case OPTION_FREE:
     take_free(state, run, text);
@@ -223,11 +225,11 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
     check_end(run, state);
     return 0;
   default:
-    return parse_number(key, text, state);
+    return parse_forming_number(key, text, state);
   }
 }
 
-static fg_status write_form(fg_context *ctx, void *user, size_t kind, FILE *out) {
+static fg_status write_forming_output(fg_context *ctx, void *user, size_t kind, FILE *out) {
   const forming_run *run = user;
   typedef fg_status writer(fg_context *, const fg_forming *, FILE *);
   static writer *const writers[] = {
@@ -247,7 +249,7 @@ static fg_status write_fit(fg_context *ctx, void *user, size_t kind, FILE *out) 
                           : fg_forming_fit_write_text(ctx, &run->fit, out);
 }
 
-static fg_status load(fg_context *ctx, forming_run *run) {
+static fg_status load_forming_inputs(fg_context *ctx, forming_run *run) {
   const fg_input inputs[] = {{run->design_path, "the design"},
                              {run->die_path, "the die"},
                              {run->material_path, "the material"},
@@ -302,17 +304,17 @@ static fg_status forming_strip(fg_context *ctx, forming_run *run) {
       fg_forming_run(ctx, &run->design, &run->material, &schedule, &run->options, &run->forming);
   fg_forming_schedule_free(&schedule);
   FG_TRY(status);
-  return fg_output_set_write(ctx, &run->outputs, write_form, run);
+  return fg_output_set_write(ctx, &run->outputs, write_forming_output, run);
 }
 
 static fg_status kind(fg_context *ctx, forming_run *run) {
-  FG_TRY(load(ctx, run));
+  FG_TRY(load_forming_inputs(ctx, run));
   FG_TRY(fg_output_set_open(ctx, &run->outputs));
   return run->fit_path ? fit_runs(ctx, run) : forming_strip(ctx, run);
 }
 
-const struct argp fg_forming_parser = {options, parse_option, "[DESIGN]", doc,
-                                       NULL,    fg_cli_fill,  NULL};
+const struct argp fg_forming_parser = {options, parse_forming_option, "[DESIGN]", doc,
+                                       NULL,    fg_cli_fill,          NULL};
 
 int fg_cmd_forming(int argc, char **argv) {
   fg_context ctx = {0};

@@ -86,7 +86,8 @@ static const struct argp_option options[] = {
     {"offset", OPTION_OFFSET, "COLUMN", 0,
      "What is predicted of the response besides the model: taken from it, and no candidate", 0},
     {"form-model", OPTION_FORMING_MODEL, "FORM.json", 0,
-     "A report of `foilgauge forming -o` as the declared model: what it predicts of the response of "
+     "A report of `foilgauge forming -o` as the declared model: what it predicts of the response "
+     "of "
      "each bump is the offset, a column `declared`; needs a column `bump` (--lot has it)",
      0},
     {"group", OPTION_GROUP, "COLUMN", 0, "Rows of a group share its level (foil)", 0},
@@ -129,8 +130,8 @@ static const char doc[] =
     "elsewhere.\n\n"
     "@exit_partly@";
 
-static void parse_number(struct argp_state *state, const char *name, const char *text,
-                         double *value) {
+static void parse_loop_number(struct argp_state *state, const char *name, const char *text,
+                              double *value) {
   char *end;
   *value = strtod(text, &end);
   if (*end || end == text || !(*value > 0)) argp_error(state, "--%s %s: above 0", name, text);
@@ -149,7 +150,7 @@ static void check_source(struct argp_state *state, const fg_loop_source_request 
   if (source->scans && !source->runs) argp_error(state, "--scans belongs to --doe RUNS.csv");
 }
 
-static error_t parse_option(int key, char *text, struct argp_state *state) {
+static error_t parse_loop_option(int key, char *text, struct argp_state *state) {
   loop_arguments *arguments = state->input;
   const struct {
     int key;
@@ -179,13 +180,13 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
     }
   switch (key) {
   case OPTION_MATTERS:
-    parse_number(state, "matters", text, &arguments->matters);
+    parse_loop_number(state, "matters", text, &arguments->matters);
     return 0;
   case OPTION_MINUTES:
-    parse_number(state, "minutes", text, &arguments->minutes);
+    parse_loop_number(state, "minutes", text, &arguments->minutes);
     return 0;
   case OPTION_MEMORY:
-    parse_number(state, "memory", text, &arguments->mebibytes);
+    parse_loop_number(state, "memory", text, &arguments->mebibytes);
     return 0;
   case OPTION_SEED:
     parse_seed(state, text, &arguments->spec.seed);
@@ -230,7 +231,7 @@ static fg_status read_declared(fg_context *ctx, loop_arguments *arguments, fg_de
   return FG_OK;
 }
 
-static fg_status write_output(fg_context *ctx, void *user, size_t kind, FILE *out) {
+static fg_status write_loop_output(fg_context *ctx, void *user, size_t kind, FILE *out) {
   return writers[kind](ctx, user, out);
 }
 
@@ -248,8 +249,8 @@ static void show_progress(void *user, size_t found, double share) {
   fg_progress_show(progress, (int64_t)(1000 * share), 1000);
 }
 
-static fg_status search(fg_context *ctx, const loop_arguments *arguments, const char *path,
-                        const fg_loop_problem *problem, fg_loop_result *result) {
+static fg_status run_table_loop(fg_context *ctx, const loop_arguments *arguments, const char *path,
+                                const fg_loop_problem *problem, fg_loop_result *result) {
   fg_progress progress;
   const fg_loop_options how = {.effects = fg_loop_table_effects(),
                                .seed = arguments->spec.seed,
@@ -283,7 +284,7 @@ static fg_status run_loop(fg_context *ctx, loop_arguments *arguments, bool *fail
                                   &arguments->outputs, spec, &design, &source));
   FG_TRY_EXIT(fg_output_set_open(ctx, &arguments->outputs));
   FG_TRY_EXIT(fg_loop_table_problem_build(ctx, source.table, spec, &problem));
-  FG_TRY_EXIT(search(ctx, arguments, source.path, &problem.problem, &result));
+  FG_TRY_EXIT(run_table_loop(ctx, arguments, source.path, &problem.problem, &result));
   fg_loop_report report = {.path = source.path,
                            .sha256 = source.sha256,
                            .spec = spec,
@@ -294,7 +295,7 @@ static fg_status run_loop(fg_context *ctx, loop_arguments *arguments, bool *fail
                            .inputs = source.inputs,
                            .row_name = source.row_name,
                            .said = source.said};
-  FG_TRY_EXIT(fg_output_set_write(ctx, &arguments->outputs, write_output, &report));
+  FG_TRY_EXIT(fg_output_set_write(ctx, &arguments->outputs, write_loop_output, &report));
 exit:
   *failed = source.failed;
   fg_output_set_close(&arguments->outputs);
@@ -315,9 +316,13 @@ static bool is_about_a_table(int argc, char **argv) {
   return false;
 }
 
-const struct argp fg_loop_table_parser = {
-    options,     parse_option, "--table DATA.csv\n--lot DIR\n--doe RUNS.csv", doc, NULL,
-    fg_cli_fill, NULL};
+const struct argp fg_loop_table_parser = {options,
+                                          parse_loop_option,
+                                          "--table DATA.csv\n--lot DIR\n--doe RUNS.csv",
+                                          doc,
+                                          NULL,
+                                          fg_cli_fill,
+                                          NULL};
 
 int fg_cmd_loop(int argc, char **argv) {
   if (!is_about_a_table(argc, argv)) return fg_cmd_loop_scan(argc, argv);

@@ -102,7 +102,7 @@ static const char doc[] =
     "--doe RUNS.csv on an experiment's scans: `foilgauge loop --table --help`.\n\n"
     "@exit_partly@";
 
-static void add_scan(struct argp_state *state, const char *path, bool held_out) {
+static void add_scan_argument(struct argp_state *state, const char *path, bool held_out) {
   arguments *a = state->input;
   for (size_t i = 0; i < a->count; i++)
     if (!strcmp(a->paths[i], path)) argp_error(state, "%s is given twice", path);
@@ -112,7 +112,7 @@ static void add_scan(struct argp_state *state, const char *path, bool held_out) 
   a->paths[a->count++] = path;
 }
 
-static double parse_number(struct argp_state *state, const char *name, const char *text) {
+static double parse_scan_loop_number(struct argp_state *state, const char *name, const char *text) {
   char *end;
   double value = strtod(text, &end);
   if (*end || end == text || !(value > 0))
@@ -140,7 +140,7 @@ static void parse_gaps(struct argp_state *state, const char *text, double gap_px
                text, GAP_MAX_PX, GAP_MAX_PX);
 }
 
-static error_t parse_option(int key, char *text, struct argp_state *state) {
+static error_t parse_scan_loop_option(int key, char *text, struct argp_state *state) {
   arguments *a = state->input;
   switch (key) {
   case OPTION_DESIGN:
@@ -153,7 +153,7 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
     a->forming_model = text;
     return 0;
   case OPTION_DPI:
-    a->options.dpi = parse_number(state, "dpi", text);
+    a->options.dpi = parse_scan_loop_number(state, "dpi", text);
     return 0;
   case OPTION_ALLOW_LOSSY:
     a->options.allow_lossy = true;
@@ -162,7 +162,7 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
     a->options.same_foil = true;
     return 0;
   case OPTION_HOLD_OUT:
-    add_scan(state, text, true);
+    add_scan_argument(state, text, true);
     return 0;
   case OPTION_MODEL_OUT:
     a->outputs.path[FG_LOOP_MODEL] = text;
@@ -179,16 +179,16 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
     parse_gaps(state, text, a->options.colour_gap_px);
     return 0;
   case OPTION_SEED:
-    a->options.seed = (uint64_t)parse_number(state, "seed", text);
+    a->options.seed = (uint64_t)parse_scan_loop_number(state, "seed", text);
     return 0;
   case OPTION_THREADS:
-    a->options.threads = (unsigned)parse_number(state, "threads", text);
+    a->options.threads = (unsigned)parse_scan_loop_number(state, "threads", text);
     return 0;
   case 'o':
     a->outputs.path[FG_LOOP_JSON] = text;
     return 0;
   case ARGP_KEY_ARG:
-    add_scan(state, text, false);
+    add_scan_argument(state, text, false);
     return 0;
   case ARGP_KEY_END:
     if (a->count == a->held_out)
@@ -199,7 +199,7 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
   }
 }
 
-static fg_status write_output(fg_context *ctx, void *user, size_t kind, FILE *out) {
+static fg_status write_scan_loop_output(fg_context *ctx, void *user, size_t kind, FILE *out) {
   return writers[kind](ctx, user, out);
 }
 
@@ -266,7 +266,7 @@ static fg_status read_forming(fg_context *ctx, const char *path,
   return fg_forming_prediction_load(ctx, path, *prediction);
 }
 
-static fg_status run(fg_context *ctx, arguments *a, int *code) {
+static fg_status run_scan_loop(fg_context *ctx, arguments *a, int *code) {
   fg_design design;
   fg_scan_loop *loop = NULL;
   fg_forming_prediction *prediction = NULL;
@@ -285,7 +285,7 @@ static fg_status run(fg_context *ctx, arguments *a, int *code) {
   FG_TRY_EXIT(fg_scan_loop_run(ctx, a->paths, a->hold_out, a->count, &design, &a->options, &loop));
   *code = fg_scan_loop_result(loop)->left_out ? 2 : 0;
   tell_pictures(fg_scan_loop_result(loop));
-  FG_TRY_EXIT(fg_output_set_write(ctx, &a->outputs, write_output, loop));
+  FG_TRY_EXIT(fg_output_set_write(ctx, &a->outputs, write_scan_loop_output, loop));
   tell_empty_model(a, fg_scan_loop_result(loop));
 exit:
   fg_scan_loop_free(loop);
@@ -293,7 +293,8 @@ exit:
   return status;
 }
 
-const struct argp fg_loop_parser = {options, parse_option, "SCAN...", doc, NULL, fg_cli_fill, NULL};
+const struct argp fg_loop_parser = {
+    options, parse_scan_loop_option, "SCAN...", doc, NULL, fg_cli_fill, NULL};
 
 int fg_cmd_loop_scan(int argc, char **argv) {
   fg_context ctx = {0};
@@ -302,7 +303,7 @@ int fg_cmd_loop_scan(int argc, char **argv) {
   fg_status status = fg_cli_parse_in_order(&ctx, &fg_loop_parser, argc, argv, &a);
   if (status != FG_OK) return fg_cli_fail(&ctx, status);
   int code = 0;
-  status = run(&ctx, &a, &code);
+  status = run_scan_loop(&ctx, &a, &code);
   fg_output_set_close(&a.outputs);
   return status == FG_OK ? code : fg_cli_fail(&ctx, status);
 }

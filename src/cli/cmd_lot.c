@@ -108,7 +108,7 @@ static fg_lot_pages parse_pages(struct argp_state *state, const char *text) {
   return FG_LOT_PAGES_ALL;
 }
 
-static error_t parse_option(int key, char *text, struct argp_state *state) {
+static error_t parse_lot_option(int key, char *text, struct argp_state *state) {
   lot_arguments *arguments = state->input;
   switch (key) {
   case 'o':
@@ -355,7 +355,7 @@ static fg_status make_index(fg_context *ctx, const lot_arguments *arguments, int
   return FG_OK;
 }
 
-static fg_status run(fg_context *ctx, const lot_arguments *arguments, int *code) {
+static fg_status run_lot(fg_context *ctx, const lot_arguments *arguments, int *code) {
   fg_lot_settings settings;
   fg_lot_outcome outcome;
   bool terminal = isatty(STDERR_FILENO);
@@ -411,7 +411,8 @@ static fg_status run(fg_context *ctx, const lot_arguments *arguments, int *code)
   return FG_OK;
 }
 
-const struct argp fg_lot_parser = {options, parse_option, "PATH...", doc, NULL, fg_cli_fill, NULL};
+const struct argp fg_lot_parser = {options, parse_lot_option, "PATH...", doc,
+                                   NULL,    fg_cli_fill,      NULL};
 
 int fg_cmd_lot(int argc, char **argv) {
   fg_context ctx = {0};
@@ -419,6 +420,6 @@ int fg_cmd_lot(int argc, char **argv) {
   int code = 0;
   fg_status status = fg_cli_parse(&ctx, &fg_lot_parser, argc, argv, &arguments);
   if (status != FG_OK) return fg_cli_fail(&ctx, status);
-  status = run(&ctx, &arguments, &code);
+  status = run_lot(&ctx, &arguments, &code);
   return status == FG_OK ? code : fg_cli_fail(&ctx, status);
 }

@@ -120,7 +120,7 @@ static fg_channel parse_channel(struct argp_state *state, const char *text) {
   return FG_CHANNEL_AUTO;
 }
 
-static error_t parse_option(int key, char *text, struct argp_state *state) {
+static error_t parse_measure_option(int key, char *text, struct argp_state *state) {
   measure_run *run = state->input;
   measure_arguments *arguments = &run->arguments;
   switch (key) {
@@ -318,7 +318,7 @@ static fg_status measure_all(fg_context *ctx, measure_run *run) {
                  run->arguments.scan_count);
 }
 
-static fg_status write_output(fg_context *ctx, void *user, size_t kind, FILE *out) {
+static fg_status write_measure_output(fg_context *ctx, void *user, size_t kind, FILE *out) {
   const measure_run *run = user;
   const fg_report report = {&run->design, &run->nominal, run->scans, run->arguments.scan_count,
                             NULL};
@@ -368,7 +368,7 @@ static void tell_not_judged(const fg_design *design) {
             names);
 }
 
-static fg_status measure(fg_context *ctx, measure_run *run, int *code) {
+static fg_status measure_scans(fg_context *ctx, measure_run *run, int *code) {
   fg_output_set_choose_standard(&run->outputs, OUT_JSON, OUT_TABLE, true);
   FG_TRY(check_arguments(ctx, run));
   FG_TRY(load_design(ctx, run));
@@ -377,11 +377,11 @@ static fg_status measure(fg_context *ctx, measure_run *run, int *code) {
   FG_TRY(fg_output_set_open(ctx, &run->outputs));
   FG_TRY(measure_all(ctx, run));
   FG_TRY(outcome_code(ctx, run, code)); /* first: it can fail, and files that are written stay */
-  return fg_output_set_write(ctx, &run->outputs, write_output, run);
+  return fg_output_set_write(ctx, &run->outputs, write_measure_output, run);
 }
 
-const struct argp fg_measure_parser = {options, parse_option, "SCAN...", doc,
-                                       NULL,    fg_cli_fill,  NULL};
+const struct argp fg_measure_parser = {options, parse_measure_option, "SCAN...", doc,
+                                       NULL,    fg_cli_fill,          NULL};
 
 int fg_cmd_measure(int argc, char **argv) {
   fg_context ctx = {0};
@@ -389,7 +389,7 @@ int fg_cmd_measure(int argc, char **argv) {
   int code = 0;
   fg_status parsed = fg_cli_parse(&ctx, &fg_measure_parser, argc, argv, &run);
   if (parsed != FG_OK) return fg_cli_fail(&ctx, parsed);
-  fg_status status = measure(&ctx, &run, &code);
+  fg_status status = measure_scans(&ctx, &run, &code);
   free_run(&run);
   return status == FG_OK ? code : fg_cli_fail(&ctx, status);
 }

@@ -24,7 +24,7 @@ static const char doc[] =
     "version. The report and the exit code are those of one run, whatever the number of shards.\n\n"
     "@exit_judged@";
 
-static error_t parse_option(int key, char *text, struct argp_state *state) {
+static error_t parse_merge_option(int key, char *text, struct argp_state *state) {
   merge_arguments *arguments = state->input;
   switch (key) {
   case 'o':
@@ -47,7 +47,8 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
   return 0;
 }
 
-const struct argp fg_merge_parser = {options, parse_option, "DIR...", doc, NULL, fg_cli_fill, NULL};
+const struct argp fg_merge_parser = {options, parse_merge_option, "DIR...", doc,
+                                     NULL,    fg_cli_fill,        NULL};
 
 int fg_cmd_merge(int argc, char **argv) {
   fg_context ctx = {0};

@@ -24,7 +24,7 @@ static const char doc[] =
     "include/foilgauge/render.h lists their members. The same spec gives the same bytes."
     "\n\n@exit_done@";
 
-static error_t parse_option(int key, char *value, struct argp_state *state) {
+static error_t parse_render_option(int key, char *value, struct argp_state *state) {
   render_arguments *arguments = state->input;
   switch (key) {
   case 'o':
@@ -58,8 +58,8 @@ static fg_status render(fg_context *ctx, const render_arguments *arguments) {
   return status;
 }
 
-const struct argp fg_render_parser = {options, parse_option, "SPEC.json", doc,
-                                      NULL,    fg_cli_fill,  NULL};
+const struct argp fg_render_parser = {options, parse_render_option, "SPEC.json", doc,
+                                      NULL,    fg_cli_fill,         NULL};
 
 int fg_cmd_render(int argc, char **argv) {
   render_arguments arguments = {0};

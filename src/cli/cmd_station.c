@@ -72,7 +72,7 @@ static const char doc[] =
     "FOLDER/" FG_STATION_DATABASE ". Scans are never changed.\n\n"
     "@exit_judged@ So with --once and --export; else 130, by which it is ended.";
 
-static error_t parse_option(int key, char *text, struct argp_state *state) {
+static error_t parse_station_option(int key, char *text, struct argp_state *state) {
   station_arguments *arguments = state->input;
   fg_station_request *request = &arguments->request;
   switch (key) {
@@ -158,8 +158,8 @@ static void say_file(void *user, const char *file, const char *words) {
   fprintf(stderr, "foilgauge: %s\n", line);
 }
 
-const struct argp fg_station_parser = {options, parse_option, "FOLDER", doc,
-                                       NULL,    fg_cli_fill,  NULL};
+const struct argp fg_station_parser = {options, parse_station_option, "FOLDER", doc,
+                                       NULL,    fg_cli_fill,          NULL};
 
 int fg_cmd_station(int argc, char **argv) {
   static fg_station_settings settings;

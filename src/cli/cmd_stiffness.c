@@ -136,7 +136,7 @@ static const char doc[] =
     "  foilgauge loop --table t.csv --response difference_um --model 1\n\n"
     "@exit_judged@";
 
-static void take(stiffness_run *run, fg_status status) {
+static void note_stiffness_status(stiffness_run *run, fg_status status) {
   if (run->status == FG_OK) run->status = status;
 }
 
@@ -207,7 +207,7 @@ static error_t parse_break_away(int key, char *text, struct argp_state *state) {
   stiffness_run *run = state->input;
   switch (key) {
   case OPTION_BREAK_AWAY:
-    take(run, add_break_away(run, text));
+    note_stiffness_status(run, add_break_away(run, text));
     return 0;
   case OPTION_LEVER:
     run->options.lever_mm = fg_cli_number(state, "lever", text, 1e-3, 1e6);
@@ -235,7 +235,7 @@ static void check_arguments(const stiffness_run *run, struct argp_state *state) 
     argp_error(state, "--u-rig-torque without --rig-torque");
 }
 
-static error_t parse_option(int key, char *text, struct argp_state *state) {
+static error_t parse_stiffness_option(int key, char *text, struct argp_state *state) {
   stiffness_run *run = state->input;
   switch (key) {
   case OPTION_BEARING:
@@ -272,7 +272,7 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
     run->outputs.decimal_comma = true;
     break;
   case ARGP_KEY_ARG:
-    take(run, add_source(run, text));
+    note_stiffness_status(run, add_source(run, text));
     break;
   case ARGP_KEY_END:
     check_arguments(run, state);
@@ -283,7 +283,7 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
   return 0;
 }
 
-static fg_status write_output(fg_context *ctx, void *user, size_t kind, FILE *out) {
+static fg_status write_stiffness_output(fg_context *ctx, void *user, size_t kind, FILE *out) {
   typedef fg_status writer(fg_context *, const fg_load_test *, FILE *);
   static writer *const writers[OUT_COUNT] = {
       [OUT_JSON] = fg_load_write_json,   [OUT_HTML] = fg_load_write_html,
@@ -303,7 +303,7 @@ static fg_status check_lot(fg_context *ctx, stiffness_run *run) {
   return status;
 }
 
-static fg_status measure(fg_context *ctx, stiffness_run *run, int *code) {
+static fg_status measure_load_tests(fg_context *ctx, stiffness_run *run, int *code) {
   fg_report_outcome outcome;
   FG_TRY(run->status);
   fg_output_set_choose_standard(&run->outputs, OUT_JSON, OUT_TEXT, false);
@@ -318,11 +318,11 @@ static fg_status measure(fg_context *ctx, stiffness_run *run, int *code) {
   FG_TRY(fg_load_test_measure(ctx, &run->options, run->sources, run->count, &run->test));
   fg_load_judge(&run->test, &outcome, NULL, 0);
   *code = fg_outcome_exit_code(&outcome);
-  return fg_output_set_write(ctx, &run->outputs, write_output, run);
+  return fg_output_set_write(ctx, &run->outputs, write_stiffness_output, run);
 }
 
-const struct argp fg_stiffness_parser = {options, parse_option, "TEST...", doc,
-                                         NULL,    fg_cli_fill,  NULL};
+const struct argp fg_stiffness_parser = {
+    options, parse_stiffness_option, "TEST...", doc, NULL, fg_cli_fill, NULL};
 
 int fg_cmd_stiffness(int argc, char **argv) {
   fg_context ctx = {0};
@@ -335,7 +335,7 @@ int fg_cmd_stiffness(int argc, char **argv) {
   /* In order: an option counts for the files behind it. */
   fg_status parsed = fg_cli_parse_in_order(&ctx, &fg_stiffness_parser, argc, argv, &run);
   if (parsed != FG_OK) run.status = parsed;
-  fg_status status = measure(&ctx, &run, &code);
+  fg_status status = measure_load_tests(&ctx, &run, &code);
   fg_output_set_close(&run.outputs);
   free(run.sources);
   free(run.break_away);

@@ -46,7 +46,7 @@ static void flush_output(int code, void *unused) {
 
 /* Messages may hold names and texts from files; no control character of those reaches a terminal
  * or a log. */
-static ssize_t say(void *unused, const char *bytes, size_t size) {
+static ssize_t write_standard_output(void *unused, const char *bytes, size_t size) {
   enum { PIECE = 1024 };
   char visible[4 * PIECE];
   (void)unused;
@@ -59,7 +59,7 @@ static ssize_t say(void *unused, const char *bytes, size_t size) {
 }
 
 static void filter_errors(void) {
-  static const cookie_io_functions_t functions = {.write = say};
+  static const cookie_io_functions_t functions = {.write = write_standard_output};
   FILE *stream = fopencookie(NULL, "w", functions);
   if (!stream) return;
   setvbuf(stream, NULL, _IONBF, 0);

@@ -31,7 +31,7 @@ static int complain(const char *path, const char *what) {
   return 1;
 }
 
-static FILE *create(const char *folder, const char *name) {
+static FILE *create_page_file(const char *folder, const char *name) {
   char path[4096];
   snprintf(path, sizeof path, "%s/%s", folder, name);
   FILE *out = fopen(path, "w");
@@ -58,7 +58,7 @@ static int link_alias(const manual *all, const fg_command *command) {
   return symlink(page, link) == 0 ? 0 : complain(link, strerror(errno));
 }
 
-static int write_page(manual *all, const char *path, const fg_manual_text *text) {
+static int write_manual_page(manual *all, const char *path, const fg_manual_text *text) {
   char name[80], place[100];
   const fg_command *command = command_of(text);
   if (command && !command->name) return complain(path, "there is no such command");
@@ -66,7 +66,7 @@ static int write_page(manual *all, const char *path, const fg_manual_text *text)
   snprintf(name, sizeof name, "%.64s.%c", text->name, text->section);
   strcpy(all->name[all->pages++], name);
   snprintf(place, sizeof place, "man/%s", name);
-  FILE *out = create(all->folder, place);
+  FILE *out = create_page_file(all->folder, place);
   if (!out) return 1;
   bool known = fg_manual_write_page(text, command, out);
   fprintf(all->examples, "# %s\n", name);
@@ -100,7 +100,7 @@ static int read_page(manual *all, const char *path) {
   int failed = !known    ? complain(path, wrong)
                : !titled ? complain(path, "does not begin with `# name(section) - summary`")
                : !same   ? complain(path, "its title says something else than `foilgauge help`")
-                         : write_page(all, path, &text);
+                         : write_manual_page(all, path, &text);
   free(whole);
   return failed;
 }
@@ -129,8 +129,8 @@ int main(int argc, char **argv) {
     snprintf(path, sizeof path, "%s%s", argv[1], folders[i]);
     if (mkdir(path, 0777) != 0 && errno != EEXIST) return complain(path, strerror(errno));
   }
-  FILE *completion = create(all.folder, "completion/foilgauge");
-  all.examples = create(all.folder, "man/examples");
+  FILE *completion = create_page_file(all.folder, "completion/foilgauge");
+  all.examples = create_page_file(all.folder, "man/examples");
   if (!completion || !all.examples) return 1;
   for (int i = 2; i < argc; i++)
     failed |= read_page(&all, argv[i]);

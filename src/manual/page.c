@@ -14,7 +14,7 @@ static const struct {
 } see_also[] = {{"foilgauge-design", '5'}, {"foilgauge-recipe", '5'}, {"foilgauge-scanning", '7'}};
 
 /* Fills the facts of the code into a parser's text; the caller frees. */
-static void fill(const char *text, bool *known, char **whole) {
+static void fill_facts(const char *text, bool *known, char **whole) {
   size_t size;
   FILE *out = open_memstream(whole, &size);
   if (!out) abort();
@@ -22,13 +22,14 @@ static void fill(const char *text, bool *known, char **whole) {
   if (fclose(out) != 0) abort();
 }
 
-static void write_name(const char *text, FILE *out) {
+static void write_command_name(const char *text, FILE *out) {
   fg_roff_escape(text, strlen(text), out);
 }
 
-static void write_call(const char *words, const char *arguments, size_t length, FILE *out) {
+static void write_synopsis_call(const char *words, const char *arguments, size_t length,
+                                FILE *out) {
   fputs(".br\n.B foilgauge ", out);
-  write_name(words, out);
+  write_command_name(words, out);
   fputs("\n[\\fIOPTION\\fR...] \\fI", out);
   fg_roff_escape(arguments, length, out);
   fputs("\\fR\n", out);
@@ -41,7 +42,7 @@ static void write_synopsis(const fg_command *command, FILE *out) {
     const char *arguments = command->usage[i].parser->args_doc;
     do {
       size_t length = strcspn(arguments, "\n");
-      write_call(command->usage[i].words, arguments, length, out);
+      write_synopsis_call(command->usage[i].words, arguments, length, out);
       arguments += length;
     } while (*arguments++ == '\n');
   }
@@ -78,7 +79,7 @@ static void write_description(const fg_command_usage *usage, bool *known, FILE *
   if (end) *end = '\0';
   if (after) *after = '\n';
   char *whole = NULL;
-  fill(doc, known, &whole);
+  fill_facts(doc, known, &whole);
   char *line = after ? strchr(whole, '\n') : NULL;
   if (line) *line = '\0';
   *known = write_paragraphs(whole, out) && *known;
@@ -92,16 +93,16 @@ static void write_option(const struct argp_option *option, bool *known, FILE *ou
   fputs(".TP\n", out);
   if (option->key > ' ' && option->key < 127) fprintf(out, "\\fB\\-%c\\fR, ", option->key);
   fputs("\\fB\\-\\-", out);
-  write_name(option->name, out);
+  write_command_name(option->name, out);
   fputs("\\fR", out);
   if (option->arg) {
     fputs(optional ? "[=\\fI" : "=\\fI", out);
-    write_name(option->arg, out);
+    write_command_name(option->arg, out);
     fputs(optional ? "\\fR]" : "\\fR", out);
   }
   fputc('\n', out);
   char *words = NULL;
-  fill(option->doc, known, &words);
+  fill_facts(option->doc, known, &words);
   fg_roff_inline(words, strlen(words), out);
   fputc('\n', out);
   free(words);
@@ -141,7 +142,7 @@ static void write_exit_status(const fg_command *command, bool *known, FILE *out)
     if (command->usage[i].title) fprintf(out, ".SS %s\n", command->usage[i].title);
     write_exit_codes(found + 1, out);
     char *rest = NULL;
-    fill(found + 2 + strcspn(found + 1, "@"), known, &rest);
+    fill_facts(found + 2 + strcspn(found + 1, "@"), known, &rest);
     if (*rest) fputs(".PP\n", out);
     *known = write_paragraphs(rest, out) && *known;
     free(rest);
@@ -180,9 +181,9 @@ static void write_head(const fg_manual_text *text, FILE *out) {
     fputc(*c >= 'a' && *c <= 'z' ? *c - 32 : *c, out);
   fprintf(out, "\" \"%c\" \"\" \"foilgauge %s\" \"foilgauge\"\n.ad l\n.SH NAME\n", text->section,
           FOILGAUGE_VERSION);
-  write_name(text->name, out);
+  write_command_name(text->name, out);
   fputs(" \\- ", out);
-  write_name(text->summary, out);
+  write_command_name(text->summary, out);
   fputc('\n', out);
 }
 

@@ -150,7 +150,7 @@ static void read_headings(writer *w, const char *at, const char *end) {
 }
 
 /* Writes the text of a cell, its bars without their escape. */
-static void write_cell(const char *cell, size_t length, FILE *out) {
+static void write_roff_cell(const char *cell, size_t length, FILE *out) {
   char *plain = malloc(length + 1);
   size_t count = 0;
   if (!plain) abort();
@@ -162,7 +162,7 @@ static void write_cell(const char *cell, size_t length, FILE *out) {
 
 /* Writes a row as a tagged paragraph: the first cell, then the others, named where there are
  * several. */
-static void write_row(writer *w, const char *at, const char *end) {
+static void write_roff_row(writer *w, const char *at, const char *end) {
   const char *cell;
   size_t length;
   for (size_t column = 0; next_cell(&at, end, &cell, &length); column++) {
@@ -171,7 +171,7 @@ static void write_row(writer *w, const char *at, const char *end) {
       fg_roff_inline(w->heading[column], strlen(w->heading[column]), w->out);
       fputs(": ", w->out);
     }
-    write_cell(cell, length, w->out);
+    write_roff_cell(cell, length, w->out);
     fputs(column > 0 && column + 1 < w->columns ? ";\n" : "\n", w->out);
   }
 }
@@ -183,7 +183,7 @@ static void write_table_line(writer *w, const char *line, size_t length) {
   if (!w->in_table)
     read_headings(w, line, line + length);
   else if (strncmp(line, "|---", 4) != 0)
-    write_row(w, line, line + length);
+    write_roff_row(w, line, line + length);
   w->in_table = true;
 }
 

@@ -46,7 +46,7 @@ static const struct {
 enum { PAGES = sizeof pages / sizeof *pages, ACTIONS = sizeof actions / sizeof *actions };
 
 /* A page of its own for what went wrong, in the answer. */
-static void say(fg_answer *answer, int code, const char *words) {
+static void answer_words(fg_answer *answer, int code, const char *words) {
   free(answer->body);
   *answer = (fg_answer){.code = code, .type = HTML};
   FILE *out = open_memstream(&answer->body, &answer->size);
@@ -115,14 +115,15 @@ static bool is_page(const char *path) {
 static bool may_ask(const fg_inspection *station, const fg_request *request, fg_answer *answer) {
   const char *token = station->request->token, *origin = station->request->origin;
   if (!fg_reach_is_host(station, request->host)) {
-    say(answer, 421,
+    answer_words(
+        answer, 421,
         "This address is not the station's: use one that it printed, or start it with --host for "
         "another name.");
     return false;
   }
   if (token && !has_cookie(request, token)) {
     if (!request->post && same_secret(fg_request_get(request, "token"), token)) {
-      say(answer, 303, "");
+      answer_words(answer, 303, "");
       /* To a page of our own: what else the address holds may lead anywhere ("//elsewhere"). */
       strcpy(answer->location, is_page(request->path) ? request->path : "/");
       snprintf(answer->cookie, sizeof answer->cookie,
@@ -130,23 +131,24 @@ static bool may_ask(const fg_inspection *station, const fg_request *request, fg_
                origin && !strncmp(origin, "https:", 6) ? "; Secure" : "");
       return false;
     }
-    say(answer, 401, "Open the address that the station printed: it carries the token.");
+    answer_words(answer, 401, "Open the address that the station printed: it carries the token.");
     return false;
   }
   if (request->post && !has_our_csrf_token(station, request)) {
-    say(answer, 403,
+    answer_words(
+        answer, 403,
         "This form is not from this station as it runs now: go back and load the page again.");
     return false;
   }
   return true;
 }
 
-static void write_page(fg_inspection *station, const fg_request *request, const route *page,
-                       fg_answer *answer) {
+static void write_route_page(fg_inspection *station, const fg_request *request, const route *page,
+                             fg_answer *answer) {
   fg_context ctx = {.message = ""};
   FILE *out = open_memstream(&answer->body, &answer->size);
   if (!out) {
-    say(answer, 500, "out of memory");
+    answer_words(answer, 500, "out of memory");
     return;
   }
   if (!page->slow) pthread_mutex_lock(&station->database.reading);
@@ -158,7 +160,7 @@ static void write_page(fg_inspection *station, const fg_request *request, const 
                         .own_style = page->own_style,
                         .body = answer->body,
                         .size = answer->size};
-  if (status != FG_OK) say(answer, code_of(status), ctx.message);
+  if (status != FG_OK) answer_words(answer, code_of(status), ctx.message);
 }
 
 static void give_text(fg_answer *answer, const char *type, const char *text) {
@@ -173,7 +175,7 @@ static void act(fg_inspection *station, const fg_request *request, fg_action *ac
   fg_context ctx = {.message = ""};
   *answer = (fg_answer){.code = 303, .type = HTML};
   fg_status status = action(&ctx, station, request, answer);
-  if (status != FG_OK) say(answer, code_of(status), ctx.message);
+  if (status != FG_OK) answer_words(answer, code_of(status), ctx.message);
 }
 
 /* The count of news, for pages that wait for more. The reply ends the connection: the browser asks
@@ -225,7 +227,7 @@ void fg_station_answer(fg_inspection *station, const fg_request *request, fg_ans
   if (!request->post && give_fixed(station, request, answer)) return;
   for (size_t i = 0; i < PAGES && !request->post; i++)
     if (!strcmp(request->path, pages[i].path)) {
-      write_page(station, request, &pages[i], answer);
+      write_route_page(station, request, &pages[i], answer);
       return;
     }
   for (size_t i = 0; i < ACTIONS && request->post; i++)
@@ -233,5 +235,5 @@ void fg_station_answer(fg_inspection *station, const fg_request *request, fg_ans
       act(station, request, actions[i].act, answer);
       return;
     }
-  say(answer, 404, "There is no such page.");
+  answer_words(answer, 404, "There is no such page.");
 }

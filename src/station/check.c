@@ -71,8 +71,8 @@ static fg_status keep_check(fg_context *ctx, fg_inspection *station, const check
   return fg_station_database_end(ctx, database, status);
 }
 
-static fg_status refuse(fg_context *ctx, fg_inspection *station, const fg_station_file *file,
-                        const char *words) {
+static fg_status refuse_check(fg_context *ctx, fg_inspection *station, const fg_station_file *file,
+                              const char *words) {
   station->outcome->refused++;
   station->outcome->judged.not_measured++;
   return fg_station_keep_card(ctx, &station->database, file, FG_CARD_UNREADABLE, words, 0);
@@ -122,7 +122,7 @@ fg_status fg_station_take_check(fg_context *ctx, fg_inspection *station, const c
   if (!station->check_design_known) {
     fg_text_clip(words, size,
                  "is called as a check of the scanner, but the recipe has no station.check.design");
-    return refuse(ctx, station, file, words);
+    return refuse_check(ctx, station, file, words);
   }
   const fg_measure_options options = {.dpi = station->settings->lot.dpi,
                                       .allow_lossy = station->settings->lot.allow_lossy,
@@ -139,7 +139,7 @@ fg_status fg_station_take_check(fg_context *ctx, fg_inspection *station, const c
   }
   if (failure != FG_OK) {
     fg_text_clip(words, size, "the scanner was not checked: %s", inner.message);
-    return refuse(ctx, station, file, words);
+    return refuse_check(ctx, station, file, words);
   }
   status = judge_check(ctx, station, &measurement, &check, words, size);
   if (status == FG_OK) status = keep_check(ctx, station, &check);

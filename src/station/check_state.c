@@ -119,7 +119,7 @@ double fg_check_state_allowed(const fg_check_state *state, const fg_check_state 
   return fmax(chance, fmax(row->smallest_change, row->share * fabs(baseline->value[k])));
 }
 
-static void put(char *words, size_t size, const char *text) {
+static void append_state_words(char *words, size_t size, const char *text) {
   size_t used = strlen(words);
   fg_text_clip(words + used, size - used, "%s%s", used ? ", " : "", text);
 }
@@ -139,12 +139,12 @@ size_t fg_check_state_compare(const fg_check_state *state, const fg_check_state 
     fg_text_clip(text, sizeof text, "%s %.*f%s%s (was %.*f, allowed ± %.*f)", row->words,
                  row->decimals, state->value[k], row->unit[0] ? " " : "", row->unit, row->decimals,
                  baseline->value[k], row->decimals, fg_check_state_allowed(state, baseline, k));
-    put(words, size, text);
+    append_state_words(words, size, text);
     count++;
   }
   for (const fg_picture_words *found = fg_picture_finding_words(); found->name; found++) {
     if (!(new_findings & found->finding)) continue;
-    put(words, size, found->name);
+    append_state_words(words, size, found->name);
     count++;
   }
   return count;
@@ -153,7 +153,7 @@ size_t fg_check_state_compare(const fg_check_state *state, const fg_check_state 
 static void name_findings(unsigned findings, char *names, size_t size) {
   names[0] = '\0';
   for (const fg_picture_words *found = fg_picture_finding_words(); found->name; found++)
-    if (findings & found->finding) put(names, size, found->name);
+    if (findings & found->finding) append_state_words(names, size, found->name);
 }
 
 static unsigned read_findings(const char *names) {

@@ -53,7 +53,7 @@ static fg_status close_lot(fg_context *ctx, fg_inspection *station) {
   return keep_lot(ctx, &station->database, closing, &exported);
 }
 
-static void *run(void *user) {
+static void *run_closing(void *user) {
   fg_inspection *station = user;
   fg_closing *closing = &station->closing;
   fg_context ctx = {.message = ""};
@@ -89,13 +89,14 @@ static fg_status begin(fg_context *ctx, fg_inspection *station, const char *lot,
   fg_text_clip(closing->by, sizeof closing->by, "%s", by);
   closing->error[0] = '\0';
   closing->running = true;
-  closing->started = pthread_create(&closing->thread, NULL, run, station) == 0;
+  closing->started = pthread_create(&closing->thread, NULL, run_closing, station) == 0;
   if (closing->started) return FG_OK;
   closing->running = false;
   return fg_fail(ctx, FG_ERR_MEMORY, "There is no thread for it now: try again.");
 }
 
-static fg_status start(fg_context *ctx, fg_inspection *station, const char *lot, const char *by) {
+static fg_status start_closing(fg_context *ctx, fg_inspection *station, const char *lot,
+                               const char *by) {
   pthread_mutex_lock(&station->closing.mutex);
   fg_status status = begin(ctx, station, lot, by);
   pthread_mutex_unlock(&station->closing.mutex);
@@ -123,7 +124,7 @@ fg_status fg_action_close(fg_context *ctx, fg_inspection *station, const fg_requ
   if (!by[strspn(by, " ")])
     return fg_fail(ctx, FG_ERR_DATA, "Who closes the lot? Go back and fill in the name.");
   FG_TRY(check_lot(ctx, station, lot));
-  FG_TRY(start(ctx, station, lot, by));
+  FG_TRY(start_closing(ctx, station, lot, by));
   for (int i = 0; i < WAITS && is_running(&station->closing); i++)
     nanosleep(&pause, NULL);
   strcpy(answer->location, "/lots");

@@ -87,13 +87,14 @@ static void make_room(fg_connections *all, const fg_client *client) {
   }
 }
 
-static fg_connection *find(fg_connections *all, const struct MHD_Connection *connection) {
+static fg_connection *find_connection(fg_connections *all,
+                                      const struct MHD_Connection *connection) {
   for (size_t i = 0; i < 2 * FG_CONNECTIONS; i++)
     if (all->one[i].connection == connection) return &all->one[i];
   return NULL;
 }
 
-static void add(fg_connections *all, struct MHD_Connection *connection) {
+static void add_connection(fg_connections *all, struct MHD_Connection *connection) {
   const union MHD_ConnectionInfo *info =
       MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CONNECTION_FD);
   if (!info) return;
@@ -102,7 +103,7 @@ static void add(fg_connections *all, struct MHD_Connection *connection) {
                              .client = fg_connection_client(connection),
                              .until = fg_clock_seconds() + SECONDS};
   make_room(all, &new.client);
-  fg_connection *place = find(all, NULL);
+  fg_connection *place = find_connection(all, NULL);
   if (place)
     *place = new;
   else
@@ -114,31 +115,32 @@ void fg_connections_notify(void *user, struct MHD_Connection *connection, void *
   fg_connections *all = user;
   (void)unused;
   pthread_mutex_lock(&all->mutex);
-  fg_connection *known = find(all, connection);
+  fg_connection *known = find_connection(all, connection);
   if (code == MHD_CONNECTION_NOTIFY_STARTED)
-    add(all, connection);
+    add_connection(all, connection);
   else if (known)
     *known = (fg_connection){0};
   pthread_mutex_unlock(&all->mutex);
 }
 
-static void set(fg_connections *all, const struct MHD_Connection *connection, double until) {
+static void set_deadline(fg_connections *all, const struct MHD_Connection *connection,
+                         double until) {
   pthread_mutex_lock(&all->mutex);
-  fg_connection *known = find(all, connection);
+  fg_connection *known = find_connection(all, connection);
   if (known) known->until = until;
   pthread_mutex_unlock(&all->mutex);
 }
 
 void fg_connections_asked(fg_connections *all, struct MHD_Connection *connection) {
-  set(all, connection, 0);
+  set_deadline(all, connection, 0);
 }
 
 void fg_connections_sending(fg_connections *all, struct MHD_Connection *connection, size_t bytes) {
-  set(all, connection, fg_clock_seconds() + SECONDS + (double)bytes / BYTES_PER_S);
+  set_deadline(all, connection, fg_clock_seconds() + SECONDS + (double)bytes / BYTES_PER_S);
 }
 
 void fg_connections_answered(fg_connections *all, struct MHD_Connection *connection) {
-  set(all, connection, fg_clock_seconds() + SECONDS);
+  set_deadline(all, connection, fg_clock_seconds() + SECONDS);
 }
 
 static void *run_clock(void *user) {

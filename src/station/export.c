@@ -278,7 +278,8 @@ static fg_status write_folder(fg_context *ctx, export *at) {
   return write_report(ctx, at);
 }
 
-static void append(char *words, size_t size, size_t count, const char *one, const char *many) {
+static void append_count(char *words, size_t size, size_t count, const char *one,
+                         const char *many) {
   size_t length = strlen(words);
   if (count)
     fg_text_clip(words + length, size - length, "; %zu %s", count, count == 1 ? one : many);
@@ -291,20 +292,21 @@ static void find_words(fg_exported_lot *exported) {
   fg_text_clip(words, size, "%zu foil%s of %zu scan%s: %zu pass, %zu fail, %zu cannot be told",
                outcome->foils, fg_plural(outcome->foils), outcome->scans, fg_plural(outcome->scans),
                by[FG_VERDICT_PASS], by[FG_VERDICT_FAIL], by[FG_VERDICT_UNDECIDED]);
-  append(words, size, by[FG_VERDICT_NONE], "without tolerances", "without tolerances");
-  append(words, size, by[FG_VERDICT_NOT_MEASURED], "foil not measured", "foils not measured");
-  append(words, size, exported->replaced, "foil counts with its later scan",
-         "foils count with their later scans");
-  append(words, size, exported->withheld, "verdict does not hold: the scanner's check was due",
-         "verdicts do not hold: the scanner's check was due");
-  append(words, size, exported->again, "scan was measured again with the lot's newest setup",
-         "scans were measured again with the lot's newest setup");
-  append(words, size, exported->lost,
-         "scan is of another setup and cannot be measured again: not measured",
-         "scans are of another setup and cannot be measured again: not measured");
+  append_count(words, size, by[FG_VERDICT_NONE], "without tolerances", "without tolerances");
+  append_count(words, size, by[FG_VERDICT_NOT_MEASURED], "foil not measured", "foils not measured");
+  append_count(words, size, exported->replaced, "foil counts with its later scan",
+               "foils count with their later scans");
+  append_count(words, size, exported->withheld,
+               "verdict does not hold: the scanner's check was due",
+               "verdicts do not hold: the scanner's check was due");
+  append_count(words, size, exported->again, "scan was measured again with the lot's newest setup",
+               "scans were measured again with the lot's newest setup");
+  append_count(words, size, exported->lost,
+               "scan is of another setup and cannot be measured again: not measured",
+               "scans are of another setup and cannot be measured again: not measured");
 }
 
-static fg_status work(fg_context *ctx, export *at, const char *lot) {
+static fg_status export_lot(fg_context *ctx, export *at, const char *lot) {
   char *recipe = NULL;
   fg_status status = read_database(ctx, at, lot, &recipe);
   if (status == FG_OK) status = make_manifest(ctx, at, lot);
@@ -327,7 +329,7 @@ fg_status fg_station_export_lot(fg_context *ctx, fg_inspection *station, const c
                                 const char *folder, fg_exported_lot *exported) {
   export at = {.station = station, .folder = folder, .exported = exported, .lock = -1};
   *exported = (fg_exported_lot){.outcome.judged.verdict = FG_VERDICT_NONE};
-  fg_status status = work(ctx, &at, lot);
+  fg_status status = export_lot(ctx, &at, lot);
   if (at.lock >= 0) close(at.lock);
   if (at.model) fg_scanner_model_free(at.model);
   fg_lot_content_free(&at.content);

@@ -45,13 +45,13 @@ static fg_status reserve_slots(fg_context *ctx, fg_file_stability *stability) {
   return FG_OK;
 }
 
-static fg_resting *find(const fg_file_stability *stability, const char *name) {
+static fg_resting *find_watched_file(const fg_file_stability *stability, const char *name) {
   size_t index = stability->slot_count ? *find_slot(stability, name) : 0;
   return index ? &stability->files[index - 1] : NULL;
 }
 
-static fg_status add(fg_context *ctx, fg_file_stability *stability, const char *name,
-                     fg_resting **file) {
+static fg_status add_watched_file(fg_context *ctx, fg_file_stability *stability, const char *name,
+                                  fg_resting **file) {
   void *block = stability->files;
   FG_TRY(reserve_slots(ctx, stability));
   FG_TRY(fg_memory_reserve(ctx, stability->count + 1, sizeof *stability->files,
@@ -67,8 +67,8 @@ static fg_status add(fg_context *ctx, fg_file_stability *stability, const char *
 fg_status fg_file_stability_look(fg_context *ctx, fg_file_stability *stability, const char *name,
                                  int64_t bytes, int64_t modified_ns, int64_t now_ns,
                                  fg_resting **found) {
-  fg_resting *file = find(stability, name);
-  if (!file) FG_TRY(add(ctx, stability, name, &file));
+  fg_resting *file = find_watched_file(stability, name);
+  if (!file) FG_TRY(add_watched_file(ctx, stability, name, &file));
   if (file->bytes != bytes || file->modified_ns != modified_ns) {
     file->bytes = bytes;
     file->modified_ns = modified_ns;

@@ -89,7 +89,7 @@ static fg_card inspect_ends(intake *at) {
 }
 
 /* What cannot be read today may be readable tomorrow without any change to the file itself. */
-static fg_status refuse(fg_context *ctx, intake *at, fg_card card, bool try_again) {
+static fg_status refuse_intake(fg_context *ctx, intake *at, fg_card card, bool try_again) {
   fg_station_file file = at->file;
   if (try_again) file.modified_ns = -1;
   if (try_again)
@@ -227,7 +227,7 @@ static bool is_readable(const char *path) {
 }
 
 /* Memory that ran out is the station's trouble, not the scan's. */
-static fg_status measure(fg_context *ctx, intake *at) {
+static fg_status measure_intake(fg_context *ctx, intake *at) {
   const fg_lot_settings *settings = &at->station->settings->lot;
   const fg_measure_options options = {
       .dpi = settings->dpi, .allow_lossy = settings->allow_lossy, .only_file = true};
@@ -244,7 +244,7 @@ static fg_status measure(fg_context *ctx, intake *at) {
   }
   if (failure != FG_OK) {
     take_words(at, inner.message);
-    return refuse(ctx, at, FG_CARD_UNREADABLE, failure == FG_ERR_IO);
+    return refuse_intake(ctx, at, FG_CARD_UNREADABLE, failure == FG_ERR_IO);
   }
   fg_status status = take_measurement(ctx, at, &measurement);
   fg_measurement_free(&measurement);
@@ -262,7 +262,7 @@ static bool is_check(const fg_inspection *station, intake *at) {
   return called || (fits && at->named.check[0]);
 }
 
-static void say(const intake *at) {
+static void tell_intake(const intake *at) {
   const fg_station_request *request = at->station->request;
   if (request->looked_at) request->looked_at(request->user, at->file.name, at->words);
   fg_station_tell(at->station);
@@ -275,17 +275,17 @@ static fg_status leave(intake *at) {
   fg_text_clip(at->words, WORDS, "is being written: it is left for the next time");
   at->station->outcome->refused++;
   at->station->outcome->judged.not_measured++;
-  say(at);
+  tell_intake(at);
   return FG_OK;
 }
 
 static fg_status take_card(fg_context *ctx, intake *at, fg_card card) {
   fg_inspection *station = at->station;
   bool check = is_check(station, at);
-  if (card != FG_CARD_MEASURED) return refuse(ctx, at, card, card == FG_CARD_UNREADABLE);
+  if (card != FG_CARD_MEASURED) return refuse_intake(ctx, at, card, card == FG_CARD_UNREADABLE);
   fg_station_set_stage(station, FG_STAGE_MEASURING, at->file.name);
   if (check) return fg_station_take_check(ctx, station, at->path, &at->file, at->words, WORDS);
-  return measure(ctx, at);
+  return measure_intake(ctx, at);
 }
 
 /* True where more of the file may come, given the card by its ends. */
@@ -295,7 +295,7 @@ static bool is_awaited(const intake *at, fg_card card) {
   return at->writer == FG_WRITER_WRITES;
 }
 
-static fg_status take(fg_context *ctx, intake *at) {
+static fg_status take_scan(fg_context *ctx, intake *at) {
   struct stat now;
   bool done;
   if (stat(at->path, &now) != 0 || !S_ISREG(now.st_mode)) return FG_OK; /* gone, or no file */
@@ -309,7 +309,7 @@ static fg_status take(fg_context *ctx, intake *at) {
   if (at->later) return FG_OK;
   FG_TRY(take_card(ctx, at, card));
   if (at->later) return leave(at);
-  if (!at->silent || at->station->request->once) say(at);
+  if (!at->silent || at->station->request->once) tell_intake(at);
   return FG_OK;
 }
 
@@ -328,7 +328,7 @@ fg_status fg_station_take_file(fg_context *ctx, fg_inspection *station, const ch
   FG_TRY(fg_stored_name(ctx, name, &at.stored));
   at.file.name = at.stored;
   fg_status status = fg_text_print(ctx, &at.path, "%s/%s", station->request->folder, name);
-  if (status == FG_OK) status = take(ctx, &at);
+  if (status == FG_OK) status = take_scan(ctx, &at);
   set_stage(&at);
   *later = at.later;
   free(at.path);

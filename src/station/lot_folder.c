@@ -16,13 +16,13 @@
 enum { LONGEST = 200, SUM_DIGITS = 16 };
 
 /* What file systems of any kind take as it is, not at the edges of a name where some cut it off. */
-static bool is_plain(const char *at, bool edge) {
+static bool is_plain_character(const char *at, bool edge) {
   unsigned char c = (unsigned char)*at;
   if (c < ' ' || c == 0x7f || strchr("%/\\:*?\"<>|", c)) return false;
   return !edge || (c != '.' && c != ' ');
 }
 
-static size_t put(char *name, const char *at, size_t bytes, bool plain) {
+static size_t put_name_bytes(char *name, const char *at, size_t bytes, bool plain) {
   size_t length = 0;
   for (size_t i = 0; i < bytes; i++)
     length += (size_t)snprintf(name + length, 4, plain ? "%c" : "%%%02X", (unsigned char)at[i]);
@@ -38,7 +38,8 @@ void fg_lot_folder_name(const char *lot, char name[FG_LOT_FOLDER_NAME]) {
     size_t valid = fg_utf8_length(at), bytes = valid ? valid : 1;
     bool edge = at == lot || !at[bytes];
     bool reserved = at == lot && !strcmp(lot, WITHOUT_LOT);
-    length += put(name + length, at, bytes, valid && !reserved && is_plain(at, edge));
+    length += put_name_bytes(name + length, at, bytes,
+                             valid && !reserved && is_plain_character(at, edge));
     at += bytes;
   }
   if (!*lot) strcpy(name, WITHOUT_LOT);

@@ -55,7 +55,7 @@ fg_status fg_naming_check(fg_context *ctx, const char *pattern) {
 }
 
 /* The name of a file is any bytes, that of a foil is a text that people read, type and search. */
-static void keep(fg_named *named, size_t field, const char *text, size_t length) {
+static void keep_named_field(fg_named *named, size_t field, const char *text, size_t length) {
   static const char unknown[] = "\xEF\xBF\xBD";
   char *to = (char *)named + fields[field].offset;
   size_t kept = 0;
@@ -116,7 +116,7 @@ static bool match(const char *pattern, const char *name, const char *end, fg_nam
     if ((size_t)(end - name) < min) return false;
     const char *place = find_text(&at, !*pattern, name + min, end);
     if (!place) return false;
-    if (at.field < FIELDS) keep(named, at.field, name, (size_t)(place - name));
+    if (at.field < FIELDS) keep_named_field(named, at.field, name, (size_t)(place - name));
     name = place + at.length;
   }
   return true;
@@ -127,6 +127,6 @@ bool fg_naming_take(const char *pattern, const char *file, fg_named *named) {
   *named = (fg_named){0};
   if (match(pattern, file, last, named)) return true;
   *named = (fg_named){0};
-  keep(named, 0, file, (size_t)(last - file));
+  keep_named_field(named, 0, file, (size_t)(last - file));
   return false;
 }

@@ -45,7 +45,7 @@ static int64_t read_day(const char *text, int days) {
   return at < 0 ? -1 : (int64_t)at * 1000;
 }
 
-static void add(search *at, const char *condition) {
+static void add_condition(search *at, const char *condition) {
   size_t length = strlen(at->where);
   snprintf(at->where + length, sizeof at->where - length, "%s%s", length ? " AND " : " WHERE ",
            condition);
@@ -71,12 +71,12 @@ static void read_search(const fg_request *request, search *at) {
   at->to_ms = read_day(at->to, 1);
   if (*end || at->page < 1 || at->page > PAGES_MAX) at->page = 1;
   if (!is_verdict(at->verdict)) at->verdict = "";
-  if (at->serial[0]) add(at, "instr(lower(serial), lower(?))");
-  if (at->lot[0]) add(at, "lot = ? COLLATE NOCASE");
-  if (at->die[0]) add(at, "die = ? COLLATE NOCASE");
-  if (at->from_ms >= 0) add(at, "at >= ?");
-  if (at->to_ms >= 0) add(at, "at < ?");
-  if (at->verdict[0]) add(at, "foils.verdict = ?");
+  if (at->serial[0]) add_condition(at, "instr(lower(serial), lower(?))");
+  if (at->lot[0]) add_condition(at, "lot = ? COLLATE NOCASE");
+  if (at->die[0]) add_condition(at, "die = ? COLLATE NOCASE");
+  if (at->from_ms >= 0) add_condition(at, "at >= ?");
+  if (at->to_ms >= 0) add_condition(at, "at < ?");
+  if (at->verdict[0]) add_condition(at, "foils.verdict = ?");
 }
 
 /* The values of the conditions, in their order. */
@@ -123,7 +123,7 @@ static fg_status write_suggestions(fg_context *ctx, sqlite3 *reader, const char 
   return fg_query_end(ctx, &query, "reading the lots");
 }
 
-static fg_status write_form(fg_context *ctx, sqlite3 *reader, const search *at, FILE *out) {
+static fg_status write_search_form(fg_context *ctx, sqlite3 *reader, const search *at, FILE *out) {
   fputs("<form class=\"fields\" method=\"get\" action=\"/history\">", out);
   write_input(out, "Serial", "serial",
               " type=\"search\" maxlength=\"127\" autocomplete=\"off\" autofocus data-focus",
@@ -147,7 +147,7 @@ static fg_status write_form(fg_context *ctx, sqlite3 *reader, const search *at, 
                            out);
 }
 
-static void write_cell(FILE *out, const char *style, const char *name, const char *text) {
+static void write_history_cell(FILE *out, const char *style, const char *name, const char *text) {
   fprintf(out, "<td class=\"text%s\"", style);
   if (text[0]) fprintf(out, " data-name=\"%s\"", name);
   fputc('>', out);
@@ -155,7 +155,7 @@ static void write_cell(FILE *out, const char *style, const char *name, const cha
   fputs("</td>", out);
 }
 
-static void write_row(const fg_query *at, FILE *out) {
+static void write_history_row(const fg_query *at, FILE *out) {
   long long id = (long long)fg_query_get_integer(at, 0);
   const char *verdict = fg_query_get_text(at, 6);
   bool withheld = !fg_query_is_null(at, 7);
@@ -165,9 +165,9 @@ static void write_row(const fg_query *at, FILE *out) {
           fg_page_verdict_class(verdict, withheld), fg_page_verdict_words(verdict, withheld));
   fg_page_time(out, fg_query_get_integer(at, 5));
   fputs("</td>", out);
-  write_cell(out, "", "lot", fg_query_get_text(at, 2));
-  write_cell(out, "", "die", fg_query_get_text(at, 3));
-  write_cell(out, " wide", "operator", fg_query_get_text(at, 4));
+  write_history_cell(out, "", "lot", fg_query_get_text(at, 2));
+  write_history_cell(out, "", "die", fg_query_get_text(at, 3));
+  write_history_cell(out, " wide", "operator", fg_query_get_text(at, 4));
   fputs("<td class=\"wide\">", out);
   if (!fg_query_is_null(at, 9)) fg_page_decided_line(at, 9, out);
   fputs("</td></tr>\n", out);
@@ -194,7 +194,7 @@ static fg_status write_rows(fg_context *ctx, sqlite3 *reader, const search *at, 
       "<th class=\"wide\">Nearest its limit</th></tr></thead>\n<tbody>\n",
       out);
   while (fg_query_row(&query))
-    write_row(&query, out);
+    write_history_row(&query, out);
   fputs("</tbody></table></div>\n", out);
   return fg_query_end(ctx, &query, "searching foils");
 }
@@ -242,7 +242,7 @@ fg_status fg_page_history(fg_context *ctx, fg_inspection *station, sqlite3 *read
   if (at.page > pages) at.page = pages > 0 ? pages : 1;
   FG_TRY(fg_page_begin(ctx, station, reader, out, FG_TAB_HISTORY, "History"));
   fputs("<section>\n", out);
-  FG_TRY(write_form(ctx, reader, &at, out));
+  FG_TRY(write_search_form(ctx, reader, &at, out));
   fprintf(out, "<p class=\"note\">%lld %s%s</p>\n", (long long)found, found == 1 ? "foil" : "foils",
           at.where[0] ? " found" : "");
   if (found) FG_TRY(write_rows(ctx, reader, &at, out));

@@ -10,7 +10,7 @@
 
 enum { LOTS_SHOWN = 25, LOTS_MAX = 1000000 };
 
-static void write_name(FILE *out, const char *lot) {
+static void write_lot_name(FILE *out, const char *lot) {
   fg_html_text(out, *lot ? lot : "without lot");
 }
 
@@ -61,7 +61,7 @@ static void write_open_lot(FILE *out, const fg_query *row) {
   fputs("<tr><td><a href=\"/history?lot=", out);
   write_encoded(out, lot);
   fputs("\">", out);
-  write_name(out, lot);
+  write_lot_name(out, lot);
   fputs("</a></td>", out);
   write_counts(out, row, 2);
   fputs("<td data-name=\"newest\">", out);
@@ -122,7 +122,7 @@ static void write_closed_lot(const fg_inspection *station, FILE *out, const fg_q
           fg_page_verdict_class(verdict, withheld), fg_page_verdict_words(verdict, withheld));
   write_encoded(out, lot);
   fputs("\">", out);
-  write_name(out, lot);
+  write_lot_name(out, lot);
   fputs("</a> ", out);
   write_link(out, "/lot?name=", lot, "Report");
   fputs("<span>", out);
@@ -190,7 +190,7 @@ static fg_status write_question(fg_context *ctx, const fg_inspection *station, s
                  &query);
   fg_query_text(&query, lot);
   fputs("<section><h2 class=\"first\">Close the lot ", out);
-  write_name(out, lot);
+  write_lot_name(out, lot);
   fputs("?</h2>\n<table "
         "class=\"left rows\"><thead><tr><th>Foils</th><th>Verdicts</th></tr></thead><tbody><tr>",
         out);
@@ -221,7 +221,7 @@ static void write_closing(fg_inspection *station, FILE *out) {
   else if (closing->error[0])
     fputs("<p class=\"banner\" role=\"alert\">The lot ", out);
   if (closing->running || closing->error[0]) {
-    write_name(out, closing->lot);
+    write_lot_name(out, closing->lot);
     fputs(closing->running ? " is being closed." : " could not be closed: ", out);
     if (!closing->running) fg_html_text(out, closing->error);
     fputs("</p>\n", out);

@@ -79,7 +79,7 @@ static void write_arrival(FILE *out, int64_t id, const char *words) {
   fprintf(out, " data-arrival=\"%lld\" data-words=\"%s\"", (long long)id, words);
 }
 
-static void write_call(FILE *out, const card *newest) {
+static void write_newest_call(FILE *out, const card *newest) {
   const fg_card_look look =
       fg_page_card_look(newest->kind, newest->verdict, newest->withheld[0] != '\0');
   fprintf(out, "<div class=\"call %s%s\" role=\"status\"", look.style,
@@ -280,7 +280,7 @@ fg_status fg_page_now(fg_context *ctx, fg_inspection *station, sqlite3 *reader,
   FG_TRY(read_newest(ctx, reader, &newest));
   fputs(newest.foils > 1 ? "<section class=\"many\" data-live>\n" : "<section data-live>\n", out);
   bool arriving = write_stage(out, station);
-  if (newest.id && !arriving) write_call(out, &newest);
+  if (newest.id && !arriving) write_newest_call(out, &newest);
   if (!newest.id && !arriving) write_ready(station, out);
   fputs("<div data-typing></div>\n", out);
   write_scan_button(station, out);

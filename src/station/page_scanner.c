@@ -68,7 +68,7 @@ static const char *call_words(const fg_station_health *health) {
                                            : "IN ORDER";
 }
 
-static void write_call(FILE *out, const fg_station_health *health) {
+static void write_scanner_call(FILE *out, const fg_station_health *health) {
   fprintf(out, "<div class=\"call %s\" role=\"status\"><b>%s</b><span>",
           health->failed || health->changed ? "fail"
           : health->due                     ? "again"
@@ -263,7 +263,7 @@ static fg_status write_checks(fg_context *ctx, const fg_inspection *station, sql
   history *all = block;
   fg_status status = read_history(ctx, reader, max, all);
   if (status == FG_OK) {
-    write_call(out, &health);
+    write_scanner_call(out, &health);
     write_next(out, check, &health);
     status = write_all(ctx, station, reader, all, out);
   }

@@ -9,8 +9,8 @@
 /* Some 150 KB each; a foil whose picture is gone is drawn from its scan. */
 enum { PICTURES_KEPT = 400 };
 
-static fg_status draw(fg_context *ctx, const fg_measurement *measurement, const fg_foil *foil,
-                      char **html) {
+static fg_status draw_foil_picture(fg_context *ctx, const fg_measurement *measurement,
+                                   const fg_foil *foil, char **html) {
   size_t size;
   FILE *out = open_memstream(html, &size);
   if (!out) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a picture");
@@ -20,8 +20,8 @@ static fg_status draw(fg_context *ctx, const fg_measurement *measurement, const 
   return status;
 }
 
-static fg_status keep(fg_context *ctx, sqlite3 *writer, int64_t scan, int number,
-                      const char *html) {
+static fg_status keep_foil_picture(fg_context *ctx, sqlite3 *writer, int64_t scan, int number,
+                                   const char *html) {
   fg_query query;
   fg_query_begin(writer,
                  "INSERT OR REPLACE INTO pictures (foil, html)"
@@ -49,11 +49,11 @@ fg_status fg_station_keep_pictures(fg_context *ctx, fg_station_database *databas
   for (size_t i = 0; i < measurement->foil_count; i++) {
     fg_context inner;
     char *html = NULL;
-    fg_status status = draw(&inner, measurement, &measurement->foils[i], &html);
+    fg_status status = draw_foil_picture(&inner, measurement, &measurement->foils[i], &html);
     if (status == FG_OK) {
       status = fg_station_database_begin(ctx, database);
       if (status == FG_OK) {
-        status = keep(ctx, database->writer, scan, measurement->foils[i].number, html);
+        status = keep_foil_picture(ctx, database->writer, scan, measurement->foils[i].number, html);
         if (status == FG_OK) status = forget_old(ctx, database->writer);
         status = fg_station_database_end(ctx, database, status);
       }

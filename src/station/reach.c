@@ -129,7 +129,7 @@ fg_status fg_reach_find(fg_context *ctx, const fg_station_request *request,
   return request->token ? check_token(ctx, request->token) : FG_OK;
 }
 
-static void write_name(const struct sockaddr *address, char name[INET6_ADDRSTRLEN]) {
+static void write_address(const struct sockaddr *address, char name[INET6_ADDRSTRLEN]) {
   const void *bytes =
       address->sa_family == AF_INET
           ? (const void *)&((const struct sockaddr_in *)(const void *)address)->sin_addr
@@ -142,7 +142,7 @@ void fg_reach_write(const struct sockaddr_storage *address, unsigned port, char 
                     size_t size) {
   char name[INET6_ADDRSTRLEN];
   bool six = address->ss_family == AF_INET6;
-  write_name((const void *)address, name);
+  write_address((const void *)address, name);
   snprintf(text, size, "%s%s%s:%u", six ? "[" : "", name, six ? "]" : "", port);
 }
 
@@ -158,10 +158,10 @@ static bool is_address_of_machine(const char *name) {
   bool found = false;
   if (!read_address(name, 0, &given) || getifaddrs(&all) != 0) return false;
   char wanted[INET6_ADDRSTRLEN], own[INET6_ADDRSTRLEN];
-  write_name((const void *)&given, wanted);
+  write_address((const void *)&given, wanted);
   for (const struct ifaddrs *at = all; at && !found; at = at->ifa_next) {
     if (!is_internet(at) || at->ifa_addr->sa_family != given.ss_family) continue;
-    write_name(at->ifa_addr, own);
+    write_address(at->ifa_addr, own);
     found = !strcmp(own, wanted);
   }
   freeifaddrs(all);
@@ -208,7 +208,7 @@ bool fg_reach_is_origin(const fg_inspection *station, const char *host, const ch
   return !strncmp(origin, "http://", 7) && !strcmp(origin + 7, host);
 }
 
-static void tell(const fg_inspection *station, const char *scheme, const char *host) {
+static void announce_address(const fg_inspection *station, const char *scheme, const char *host) {
   const fg_station_request *request = station->request;
   char url[600];
   snprintf(url, sizeof url, "%s%s/%s%s", scheme, host, request->token ? "?token=" : "",
@@ -237,21 +237,21 @@ static void tell_all(const fg_inspection *station, const place *own) {
            at->ifa_addr->sa_family == AF_INET ? sizeof(struct sockaddr_in)
                                               : sizeof(struct sockaddr_in6));
     fg_reach_write(&address, own->port, host, sizeof host);
-    tell(station, "http://", host);
+    announce_address(station, "http://", host);
     told++;
   }
   freeifaddrs(all);
   snprintf(host, sizeof host, "127.0.0.1:%u", own->port);
-  if (!told) tell(station, "http://", host);
+  if (!told) announce_address(station, "http://", host);
 }
 
 void fg_reach_tell(const fg_inspection *station) {
   const fg_station_request *request = station->request;
   place own;
   if (!request->ready || !read_place(station->host, &own)) return;
-  if (request->origin) tell(station, "", request->origin);
+  if (request->origin) announce_address(station, "", request->origin);
   if (station->reach == FG_REACH_ANY)
     tell_all(station, &own);
   else
-    tell(station, "http://", station->host);
+    announce_address(station, "http://", station->host);
 }

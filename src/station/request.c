@@ -43,7 +43,7 @@ static bool read_all(const char *at, const char *end, char *text, size_t size) {
   return is_clean(text);
 }
 
-static bool read_text(const char *encoded, char *text, size_t size) {
+static bool decode_text(const char *encoded, char *text, size_t size) {
   return read_all(encoded, encoded + strlen(encoded), text, size);
 }
 
@@ -59,8 +59,8 @@ bool fg_request_add_field(fg_request *request, const char *name, const char *val
   if (request->fields == FG_FIELDS_MAX) return false;
   fg_field *field = &request->field[request->fields];
   /* Nothing ends either: their separators are gone already, and what looks like one is text. */
-  if (!read_text(name, field->name, sizeof field->name) ||
-      !read_text(value ? value : "", field->value, sizeof field->value))
+  if (!decode_text(name, field->name, sizeof field->name) ||
+      !decode_text(value ? value : "", field->value, sizeof field->value))
     return false;
   request->fields += field->name[0] != '\0';
   return true;

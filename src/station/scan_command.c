@@ -175,7 +175,7 @@ static bool is_there(const char *folder, const char *name) {
 }
 
 /* FG_OK: the hidden file is there. */
-static fg_status run(fg_context *ctx, scanner *at, words *said) {
+static fg_status run_scan_command(fg_context *ctx, scanner *at, words *said) {
   const char *folder = at->station->request->folder;
   char *command;
   int pipes[2], ended = 0;
@@ -209,7 +209,7 @@ static fg_status run(fg_context *ctx, scanner *at, words *said) {
 }
 
 /* A link and not a new name, which would replace a file that came to be there. */
-static fg_status publish(fg_context *ctx, const scanner *at) {
+static fg_status publish_scan(fg_context *ctx, const scanner *at) {
   const char *folder = at->station->request->folder;
   int error = EIO, open_folder = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (open_folder >= 0) {
@@ -247,8 +247,8 @@ static void *scan(void *argument) {
   fg_inspection *station = at->station;
   fg_context ctx = {.message = ""};
   words said = {.length = 0};
-  fg_status status = run(&ctx, at, &said);
-  if (status == FG_OK) status = publish(&ctx, at);
+  fg_status status = run_scan_command(&ctx, at, &said);
+  if (status == FG_OK) status = publish_scan(&ctx, at);
   if (status != FG_OK && !atomic_load(&at->stop)) keep_failure(at, ctx.message, &said);
   if (status != FG_OK) remove_hidden(at);
   atomic_store(&station->scanning, false);
@@ -257,7 +257,7 @@ static void *scan(void *argument) {
 }
 
 /* The thread of the scan before has come to its end, or is about to. */
-static void forget(fg_inspection *station) {
+static void forget_scan_process(fg_inspection *station) {
   if (!station->scanner) return;
   pthread_join(station->scanner->thread, NULL);
   free(station->scanner);
@@ -267,7 +267,7 @@ static void forget(fg_inspection *station) {
 fg_status fg_station_scan_begin(fg_context *ctx, fg_inspection *station, bool check) {
   void *block;
   if (atomic_exchange(&station->scanning, true)) return FG_OK;
-  forget(station);
+  forget_scan_process(station);
   fg_status status = fg_memory_allocate(ctx, 1, sizeof(scanner), &block);
   if (status != FG_OK) {
     atomic_store(&station->scanning, false);
@@ -288,7 +288,7 @@ fg_status fg_station_scan_begin(fg_context *ctx, fg_inspection *station, bool ch
 
 void fg_station_scan_stop(fg_inspection *station) {
   if (station->scanner) atomic_store(&station->scanner->stop, true);
-  forget(station);
+  forget_scan_process(station);
 }
 
 fg_status fg_action_scan(fg_context *ctx, fg_inspection *station, const fg_request *request,

@@ -58,7 +58,7 @@ static enum MHD_Result take_query(void *user, enum MHD_ValueKind kind, const cha
   return at->broken ? MHD_NO : MHD_YES;
 }
 
-static long long read_number(const char *text) {
+static long long read_identifier(const char *text) {
   char *end;
   long long number = text ? strtoll(text, &end, 10) : -1;
   return text && end != text && !*end && number >= 0 ? number : -1;
@@ -74,7 +74,7 @@ static call *begin_call(struct MHD_Connection *connection, const char *method) {
   request->site = MHD_lookup_connection_value(connection, MHD_HEADER_KIND, "Sec-Fetch-Site");
   request->cookie = MHD_lookup_connection_value(connection, MHD_HEADER_KIND, "Cookie");
   request->last_event =
-      read_number(MHD_lookup_connection_value(connection, MHD_HEADER_KIND, "Last-Event-ID"));
+      read_identifier(MHD_lookup_connection_value(connection, MHD_HEADER_KIND, "Last-Event-ID"));
   MHD_get_connection_values(connection, MHD_GET_ARGUMENT_KIND, take_query, at);
   return at;
 }
@@ -129,8 +129,8 @@ static enum MHD_Result send_answer(server *at, struct MHD_Connection *connection
   return result;
 }
 
-static enum MHD_Result refuse(server *at, struct MHD_Connection *connection, int code,
-                              const char *words) {
+static enum MHD_Result refuse_request(server *at, struct MHD_Connection *connection, int code,
+                                      const char *words) {
   fg_answer answer = {.code = code, .type = "text/plain; charset=utf-8", .body = strdup(words)};
   answer.size = answer.body ? strlen(words) : 0;
   return send_answer(at, connection, &answer);
@@ -198,7 +198,7 @@ static enum MHD_Result answer_call(server *at, struct MHD_Connection *connection
   fg_connections_asked(&at->connections, connection);
   if (asked->request.post && !fg_request_read_fields(&asked->request, asked->body, asked->size))
     asked->broken = true;
-  if (asked->broken) return refuse(at, connection, 400, "The fields cannot be read.\n");
+  if (asked->broken) return refuse_request(at, connection, 400, "The fields cannot be read.\n");
   unsigned long seen = count_news(at);
   fg_station_answer(at->station, &asked->request, &answer);
   if (answer.wait && !asked->waited) {
@@ -217,16 +217,16 @@ static enum MHD_Result begin(server *at, struct MHD_Connection *connection, cons
   const char *length =
       MHD_lookup_connection_value(connection, MHD_HEADER_KIND, MHD_HTTP_HEADER_CONTENT_LENGTH);
   if (strcmp(method, "GET") != 0 && strcmp(method, "HEAD") != 0 && strcmp(method, "POST") != 0)
-    return refuse(at, connection, 405, "GET and POST are answered.\n");
-  if (length && (strlen(length) > 9 || read_number(length) > FG_BODY_MAX))
-    return refuse(at, connection, 413, "The form is too long.\n");
+    return refuse_request(at, connection, 405, "GET and POST are answered.\n");
+  if (length && (strlen(length) > 9 || read_identifier(length) > FG_BODY_MAX))
+    return refuse_request(at, connection, 413, "The form is too long.\n");
   *place = begin_call(connection, method);
   return *place ? MHD_YES : MHD_NO;
 }
 
-static enum MHD_Result handle(void *user, struct MHD_Connection *connection, const char *path,
-                              const char *method, const char *version, const char *bytes,
-                              size_t *size, void **place) {
+static enum MHD_Result handle_request(void *user, struct MHD_Connection *connection,
+                                      const char *path, const char *method, const char *version,
+                                      const char *bytes, size_t *size, void **place) {
   server *at = user;
   call *asked = *place;
   (void)version;
@@ -259,16 +259,18 @@ static unsigned flags_of(const struct sockaddr_storage *address, fg_reach reach)
   return flags;
 }
 
-static fg_status start(fg_context *ctx, server *at, const struct sockaddr_storage *address) {
+static fg_status start_listener(fg_context *ctx, server *at,
+                                const struct sockaddr_storage *address) {
   const fg_station_request *request = at->station->request;
   errno = 0;
   at->daemon = MHD_start_daemon(
-      flags_of(address, at->station->reach), 0, NULL, NULL, handle, at, MHD_OPTION_SOCK_ADDR,
-      address, MHD_OPTION_NOTIFY_COMPLETED, end_call, at, MHD_OPTION_NOTIFY_CONNECTION,
-      fg_connections_notify, &at->connections, MHD_OPTION_UNESCAPE_CALLBACK, leave_encoded, NULL,
-      MHD_OPTION_THREAD_POOL_SIZE, (unsigned)THREADS, MHD_OPTION_CONNECTION_LIMIT,
-      (unsigned)(THREADS * 2 * FG_CONNECTIONS), MHD_OPTION_CONNECTION_TIMEOUT, (unsigned)SECONDS,
-      MHD_OPTION_CONNECTION_MEMORY_LIMIT, (size_t)HEADER_BYTES, MHD_OPTION_END);
+      flags_of(address, at->station->reach), 0, NULL, NULL, handle_request, at,
+      MHD_OPTION_SOCK_ADDR, address, MHD_OPTION_NOTIFY_COMPLETED, end_call, at,
+      MHD_OPTION_NOTIFY_CONNECTION, fg_connections_notify, &at->connections,
+      MHD_OPTION_UNESCAPE_CALLBACK, leave_encoded, NULL, MHD_OPTION_THREAD_POOL_SIZE,
+      (unsigned)THREADS, MHD_OPTION_CONNECTION_LIMIT, (unsigned)(THREADS * 2 * FG_CONNECTIONS),
+      MHD_OPTION_CONNECTION_TIMEOUT, (unsigned)SECONDS, MHD_OPTION_CONNECTION_MEMORY_LIMIT,
+      (size_t)HEADER_BYTES, MHD_OPTION_END);
   if (at->daemon) return FG_OK;
   return fg_fail(ctx, FG_ERR_IO, "%s:%u: pages cannot be served there: %s; choose another --port",
                  request->listen ? request->listen : "127.0.0.1", request->port,
@@ -285,7 +287,7 @@ fg_status fg_station_server_start(fg_context *ctx, fg_inspection *station) {
   at->station = station;
   pthread_mutex_init(&at->mutex, NULL);
   fg_status status = fg_connections_begin(&at->connections)
-                         ? start(ctx, at, &address)
+                         ? start_listener(ctx, at, &address)
                          : fg_fail(ctx, FG_ERR_MEMORY, "there is no thread for the pages");
   if (status != FG_OK) {
     fg_connections_end(&at->connections);

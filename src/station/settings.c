@@ -73,7 +73,7 @@ static const char check_meaning[] =
     "An object with the members that follow: when the scanner has to prove itself by known "
     "diameters. With a `scan_command` the Scanner tab has a button for it.";
 
-static fg_status read_text(fg_context *ctx, const cJSON *value, char *text, size_t size) {
+static fg_status read_station_text(fg_context *ctx, const cJSON *value, char *text, size_t size) {
   if (!cJSON_IsString(value))
     return fg_fail(ctx, FG_ERR_DATA, "%.60s must be a text in quotes", value->string);
   if (strlen(value->valuestring) >= size)
@@ -83,7 +83,8 @@ static fg_status read_text(fg_context *ctx, const cJSON *value, char *text, size
   return FG_OK;
 }
 
-static fg_status read_number(fg_context *ctx, const cJSON *value, double highest, double *number) {
+static fg_status read_station_number(fg_context *ctx, const cJSON *value, double highest,
+                                     double *number) {
   double given = cJSON_IsNumber(value) ? value->valuedouble : NAN;
   if (!(given >= 0 && given <= highest))
     return fg_fail(ctx, FG_ERR_DATA, "%.60s must be a number from 0 to %g", value->string, highest);
@@ -91,8 +92,8 @@ static fg_status read_number(fg_context *ctx, const cJSON *value, double highest
   return FG_OK;
 }
 
-static fg_status read_member(fg_context *ctx, const cJSON *value, const member *rows, size_t count,
-                             fg_station_settings *settings) {
+static fg_status read_station_member(fg_context *ctx, const cJSON *value, const member *rows,
+                                     size_t count, fg_station_settings *settings) {
   char known[300] = "";
   for (size_t i = 0; i < count; i++) {
     const member *row = &rows[i];
@@ -100,8 +101,8 @@ static fg_status read_member(fg_context *ctx, const cJSON *value, const member *
     fg_text_clip(known + strlen(known), sizeof known - strlen(known), "%s%s", i ? ", " : "",
                  row->name);
     if (strcmp(value->string, row->name) != 0) continue;
-    if (row->kind == WORDS) return read_text(ctx, value, place, row->size);
-    if (row->kind == NUMBER) return read_number(ctx, value, row->highest, place);
+    if (row->kind == WORDS) return read_station_text(ctx, value, place, row->size);
+    if (row->kind == NUMBER) return read_station_number(ctx, value, row->highest, place);
     if (!cJSON_IsBool(value))
       return fg_fail(ctx, FG_ERR_DATA, "%s must be true or false", row->name);
     *(bool *)place = cJSON_IsTrue(value);
@@ -115,7 +116,7 @@ static fg_status read_check(fg_context *ctx, const cJSON *object, fg_station_set
   const cJSON *value;
   if (!cJSON_IsObject(object)) return fg_fail(ctx, FG_ERR_DATA, "check must be an object");
   cJSON_ArrayForEach(value, object)
-      FG_TRY(read_member(ctx, value, check_members, CHECK_MEMBERS, settings));
+      FG_TRY(read_station_member(ctx, value, check_members, CHECK_MEMBERS, settings));
   if (!settings->check.design[0])
     return fg_fail(ctx, FG_ERR_DATA, "check needs the design of the plate or ring (form discs)");
   return fg_naming_check(ctx, settings->check.file_name);
@@ -128,7 +129,7 @@ static fg_status read_station(fg_context *ctx, const cJSON *object, fg_station_s
     if (!strcmp(value->string, check_name))
       FG_TRY(read_check(ctx, value, settings));
     else
-      FG_TRY(read_member(ctx, value, members, MEMBERS, settings));
+      FG_TRY(read_station_member(ctx, value, members, MEMBERS, settings));
   }
   if (settings->scan_command[0] && !strstr(settings->scan_command, "{file}"))
     return fg_fail(ctx, FG_ERR_DATA, "scan_command: {file}, the scan to write, is not in it");

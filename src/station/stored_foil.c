@@ -44,7 +44,7 @@ static fg_status understand(fg_context *ctx, const char *recipe, const char *rec
   return stored->foil ? FG_OK : fg_fail(ctx, FG_ERR_DATA, "the record does not hold this foil");
 }
 
-static fg_status read_row(fg_context *ctx, const fg_query *query, fg_stored_foil *stored) {
+static fg_status read_stored_row(fg_context *ctx, const fg_query *query, fg_stored_foil *stored) {
   fg_context inner = {.message = ""};
   FG_TRY(copy_all(ctx, query, stored));
   fg_status status =
@@ -58,7 +58,7 @@ static fg_status read_row(fg_context *ctx, const fg_query *query, fg_stored_foil
   return FG_OK;
 }
 
-static fg_status load(fg_context *ctx, sqlite3 *reader, fg_stored_foil *stored) {
+static fg_status load_stored_foil(fg_context *ctx, sqlite3 *reader, fg_stored_foil *stored) {
   fg_query query;
   fg_query_begin(reader,
                  "SELECT serial, lot, die, operator, foils.verdict, reasons, path, scans.sha256,"
@@ -68,7 +68,7 @@ static fg_status load(fg_context *ctx, sqlite3 *reader, fg_stored_foil *stored) 
                  &query);
   fg_query_integer(&query, stored->id);
   bool found = fg_query_row(&query);
-  fg_status status = found ? read_row(ctx, &query, stored) : FG_OK;
+  fg_status status = found ? read_stored_row(ctx, &query, stored) : FG_OK;
   fg_status ended = fg_query_end(status == FG_OK ? ctx : NULL, &query, "reading a foil");
   if (status == FG_OK) status = ended;
   if (status == FG_OK && !found) status = fg_fail(ctx, FG_ERR_USAGE, "There is no such foil.");
@@ -85,7 +85,7 @@ fg_status fg_stored_foil_load(fg_context *ctx, sqlite3 *reader, const char *id,
   FG_TRY(fg_memory_allocate(ctx, 1, sizeof **stored, &block));
   *stored = block;
   **stored = (fg_stored_foil){.id = number};
-  fg_status status = load(ctx, reader, *stored);
+  fg_status status = load_stored_foil(ctx, reader, *stored);
   if (status == FG_OK) return FG_OK;
   fg_stored_foil_free(*stored);
   *stored = NULL;

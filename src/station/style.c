@@ -16,7 +16,7 @@ const char fg_station_icon[] =
 
 static char *whole;
 
-static void join(void) {
+static void join_styles(void) {
   size_t size;
   FILE *out = open_memstream(&whole, &size);
   if (!out) return;
@@ -28,6 +28,6 @@ static void join(void) {
 
 const char *fg_station_style_text(void) {
   static pthread_once_t once = PTHREAD_ONCE_INIT;
-  pthread_once(&once, join);
+  pthread_once(&once, join_styles);
   return whole ? whole : fg_station_style;
 }

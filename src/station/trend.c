@@ -124,7 +124,7 @@ static void choose_points(fg_trend *trend) {
   trend->last = to - trend->before;
 }
 
-static void find_spread(fg_lot_quantity *quantity) {
+static void find_trend_spread(fg_lot_quantity *quantity) {
   double squares = 0;
   quantity->mean = 0;
   for (size_t i = 0; i < quantity->count; i++)
@@ -152,7 +152,7 @@ static const fg_tolerance *find_tolerance(const fg_design *design, const fg_quan
 }
 
 /* Of too few values it comes to nothing, which is no error. */
-static void judge(const fg_lot_settings *settings, fg_lot_quantity *quantity) {
+static void judge_trend(const fg_lot_settings *settings, fg_lot_quantity *quantity) {
   fg_context unused;
   if (fg_lot_judge_capability(&unused, settings->confidence, quantity) != FG_OK)
     quantity->has_capability = false;
@@ -162,11 +162,11 @@ static fg_status read_and_chart(fg_context *ctx, const fg_lot_settings *settings
                                 fg_trend *trend) {
   FG_TRY(read_values(ctx, reader, trend));
   choose_points(trend);
-  find_spread(&trend->quantity);
+  find_trend_spread(&trend->quantity);
   if (trend->choice->by_lots) return chart_lots(settings->run_rules, trend);
   if (!trend->count) return FG_OK;
   FG_TRY(fg_lot_chart_quantity(ctx, settings->run_rules, trend->count, &trend->quantity));
-  if (trend->quantity.stable) judge(settings, &trend->quantity);
+  if (trend->quantity.stable) judge_trend(settings, &trend->quantity);
   return FG_OK;
 }
 

@@ -26,7 +26,7 @@ typedef struct drawing {
   double upper, lower; /* tolerances that are drawn; NaN */
 } drawing;
 
-static double place(const drawing *d, size_t point) {
+static double place_trend_point(const drawing *d, size_t point) {
   return (double)fg_trend_number(d->trend, point);
 }
 
@@ -71,8 +71,8 @@ static void set_axes(drawing *d) {
   double room = 0.07 * (high - low);
   d->at.y_low = low - room;
   d->at.y_high = high + room;
-  d->at.x_low = place(d, d->trend->first) - 0.5;
-  d->at.x_high = place(d, d->trend->last) + 0.5;
+  d->at.x_low = place_trend_point(d, d->trend->first) - 0.5;
+  d->at.x_high = place_trend_point(d, d->trend->last) + 0.5;
   double step = fg_plot_nice_step(d->at.y_high - d->at.y_low);
   d->decimals = step < 1 ? (int)ceil(-log10(step) - 1e-9) : 0;
 }
@@ -122,7 +122,7 @@ static void draw_limit(const drawing *d, bool upper) {
   fprintf(d->at.out, "<path class=\"control\" d=\"");
   for (size_t i = trend->first; i <= trend->last; i++) {
     double limit = upper ? d->chart->point[i].upper : d->chart->point[i].lower;
-    double y = fg_plot_y(&d->at, limit), x = fg_plot_x(&d->at, place(d, i) - 0.5);
+    double y = fg_plot_y(&d->at, limit), x = fg_plot_x(&d->at, place_trend_point(d, i) - 0.5);
     bool differs = !(fabs(y - before) < 0.05);
     if (isnan(before))
       fprintf(d->at.out, "M%.1f %.1f", x, y);
@@ -148,7 +148,7 @@ static void draw_course(const drawing *d) {
     }
     const size_t ends[] = {min < max ? min : max, min < max ? max : min};
     for (int e = ends[0] == ends[1]; e < 2; e++, letter = 'L')
-      fprintf(d->at.out, "%c%.1f %.1f", letter, fg_plot_x(&d->at, place(d, ends[e])),
+      fprintf(d->at.out, "%c%.1f %.1f", letter, fg_plot_x(&d->at, place_trend_point(d, ends[e])),
               fg_plot_y(&d->at, d->chart->point[ends[e]].value));
   }
   fputs("\"/>\n", d->at.out);
@@ -162,7 +162,7 @@ static void draw_dot(const drawing *d, size_t i) {
     fprintf(d->at.out, "<a href=\"/foil?id=%lld\"%s>", (long long)d->trend->foil[i],
             point->rules ? "" : " tabindex=\"-1\"");
   fprintf(d->at.out, "<circle class=\"%s\" cx=\"%.1f\" cy=\"%.1f\" r=\"%.3g\"><title>",
-          point->rules ? "signal" : "s2", fg_plot_x(&d->at, place(d, i)),
+          point->rules ? "signal" : "s2", fg_plot_x(&d->at, place_trend_point(d, i)),
           fg_plot_y(&d->at, point->value), point->rules ? SIGNAL_PX : DOT_PX);
   fg_html_text(d->at.out, name);
   fprintf(d->at.out, " (no. %zu): %.*f ", fg_trend_number(d->trend, i), d->decimals + 1,
@@ -180,7 +180,7 @@ static void draw_dots(const drawing *d) {
   double x_before = -INFINITY, y_before = 0;
   for (size_t i = trend->first; i <= trend->last; i++) {
     const fg_chart_point *point = &d->chart->point[i];
-    double x = fg_plot_x(&d->at, place(d, i)), y = fg_plot_y(&d->at, point->value);
+    double x = fg_plot_x(&d->at, place_trend_point(d, i)), y = fg_plot_y(&d->at, point->value);
     if (few) {
       draw_dot(d, i);
     } else if (point->rules && hypot(x - x_before, y - y_before) >= SIGNAL_PX) {
@@ -201,7 +201,7 @@ static void draw_runs(const drawing *d, const fg_trend_run *runs, size_t count) 
   for (size_t i = 0; i < count; i++) {
     if (runs[i].last < trend->first || runs[i].last > trend->last) continue;
     const fg_chart_point *point = &d->chart->point[runs[i].last];
-    double x = fg_plot_x(&d->at, place(d, runs[i].last)), nearest = INFINITY;
+    double x = fg_plot_x(&d->at, place_trend_point(d, runs[i].last)), nearest = INFINITY;
     for (size_t k = 0; k < marks; k++)
       nearest = fmin(nearest, fabs(drawn[k] - x));
     if (nearest < LABEL_GAP_PX) continue;
@@ -216,7 +216,7 @@ static void draw_changes(const drawing *d) {
   fg_trend_change change[FG_TREND_CHANGES];
   size_t count = fg_trend_changes(d->reader, d->trend, change);
   for (size_t i = 0; i < count; i++) {
-    double x = fg_plot_x(&d->at, place(d, change[i].point) - 0.5);
+    double x = fg_plot_x(&d->at, place_trend_point(d, change[i].point) - 0.5);
     fprintf(d->at.out, "<path class=\"change\" d=\"M%.1f %.1fV%.1f\"/>\n", x, d->at.top,
             d->at.bottom);
   }
@@ -242,7 +242,7 @@ static void draw_labels(const drawing *d) {
   fg_plot_labels(&d->at, labels, count, LABEL_GAP_PX);
 }
 
-static void draw(const drawing *d, const fg_trend_run *runs, size_t run_count) {
+static void draw_trend(const drawing *d, const fg_trend_run *runs, size_t run_count) {
   fg_plot_begin(&d->at, d->height, "Control chart; its limits and signals are told below it");
   draw_zone(d, d->upper, true);
   draw_zone(d, d->lower, false);
@@ -275,6 +275,6 @@ void fg_trend_plot(FILE *out, sqlite3 *reader, const fg_trend *trend, const fg_t
           "data-to=\"%zu\">\n",
           narrow ? "narrow" : "wide", d.at.left / d.at.width, d.at.right / d.at.width,
           fg_trend_number(trend, trend->first), fg_trend_number(trend, trend->last));
-  draw(&d, runs, run_count);
+  draw_trend(&d, runs, run_count);
   fputs("</figure>\n", out);
 }

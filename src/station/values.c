@@ -36,7 +36,7 @@ static decided read_decided(const fg_query *at, int column) {
 }
 
 /* "Bump 3: radius", as people say it. */
-static void write_name(FILE *out, const decided *at) {
+static void write_quantity_name(FILE *out, const decided *at) {
   if (at->bump) fprintf(out, "Bump %lld: ", (long long)at->bump);
   fg_html_text(out, at->row ? at->row->words : at->name);
 }
@@ -54,7 +54,7 @@ static void write_limits(FILE *out, const decided *at) {
   fg_html_text(out, at->unit);
 }
 
-static void write_value(FILE *out, const decided *at) {
+static void write_decided_value(FILE *out, const decided *at) {
   if (isnan(at->value)) {
     fputs("missing", out);
     return;
@@ -67,9 +67,9 @@ static void write_value(FILE *out, const decided *at) {
 
 static void write_decided(FILE *out, const decided *at) {
   fprintf(out, "<li class=\"%s\">", at->verdict);
-  write_name(out, at);
+  write_quantity_name(out, at);
   fputs("<strong>", out);
-  write_value(out, at);
+  write_decided_value(out, at);
   fputs("</strong><small>", out);
   write_limits(out, at);
   fputs("</small></li>\n", out);
@@ -81,7 +81,7 @@ void fg_page_decided_line(const fg_query *at, int column, FILE *out) {
   if (read.bump) fprintf(out, "bump %lld ", (long long)read.bump);
   fg_html_text(out, read.row ? read.row->symbol : read.name);
   fputc(' ', out);
-  write_value(out, &read);
+  write_decided_value(out, &read);
   fprintf(out, margin.upper ? ", ≤ " LIMIT_FORMAT : ", ≥ " LIMIT_FORMAT, margin.limit);
 }
 

@@ -76,7 +76,8 @@ static int64_t modified_ns(const struct stat *file) {
   return (int64_t)file->st_mtim.tv_sec * 1000000000 + file->st_mtim.tv_nsec;
 }
 
-static fg_status add(fg_context *ctx, watch *at, const char *name, const struct stat *file) {
+static fg_status add_changed_file(fg_context *ctx, watch *at, const char *name,
+                                  const struct stat *file) {
   void *block = at->files;
   FG_TRY(fg_memory_reserve(ctx, at->count + 1, sizeof *at->files, &at->capacity, &block));
   at->files = block;
@@ -135,13 +136,13 @@ static fg_status list_entries(fg_context *ctx, watch *at, DIR *open, fg_done_fil
       continue;
     ++*files;
     FG_TRY(is_done(ctx, done, entry->d_name, &file, &known));
-    if (!known) FG_TRY(add(ctx, at, entry->d_name, &file));
+    if (!known) FG_TRY(add_changed_file(ctx, at, entry->d_name, &file));
     if (at->count == 2 * FG_STATION_FILES && !at->once) keep_first(at);
   }
   return FG_OK;
 }
 
-static fg_status list(fg_context *ctx, watch *at) {
+static fg_status list_folder(fg_context *ctx, watch *at) {
   const char *folder = at->station->request->folder;
   fg_done_files done;
   size_t files = 0;
@@ -280,7 +281,7 @@ static fg_status take_all(fg_context *ctx, watch *at, bool once) {
   fg_status short_of_memory = FG_OK;
   fg_context inner = {.message = ""};
   at->pending = false;
-  FG_TRY(list(ctx, at));
+  FG_TRY(list_folder(ctx, at));
   fg_station_begin_round(at->station);
   for (size_t i = 0; i < at->count; i++) {
     FG_TRY(attend(ctx, at));
@@ -328,7 +329,7 @@ static fg_status wait_and_take(fg_context *ctx, watch *at, bool in_recovery) {
 
 /* A station goes on in any trouble: a full disk, a missing folder or a damaged database is put
  * right while it runs. */
-static fg_status run(fg_context *ctx, watch *at) {
+static fg_status run_watch(fg_context *ctx, watch *at) {
   fg_context inner = {.message = ""};
   fg_status status;
   listen_to(at);
@@ -343,7 +344,7 @@ static fg_status run(fg_context *ctx, watch *at) {
 
 fg_status fg_station_watch(fg_context *ctx, fg_inspection *station, bool once) {
   watch at = {.station = station, .inotify = -1, .once = once};
-  fg_status status = once ? take_all(ctx, &at, true) : run(ctx, &at);
+  fg_status status = once ? take_all(ctx, &at, true) : run_watch(ctx, &at);
   stop_listening(&at);
   clear(&at);
   free(at.files);
