@@ -9,9 +9,8 @@
 #include "core/file.h"
 #include "support/test.h"
 
-/* The whole file, NUL-terminated; without it the test fails. The caller frees it. (Inlined, gcc 12
- * takes the text for the local variable that points to it, and warns of dangling pointers.) */
-static __attribute__((noinline)) char *data_read(const char *name) {
+/* Returns the whole file, NUL-terminated; without it the test fails. The caller frees it. */
+static inline char *data_read(const char *name) {
   enum { BYTES_MAX = 1 << 20 };
   fg_context ctx = {0};
   char path[200], *text = NULL;

@@ -93,8 +93,7 @@ static void shares_of_causes_that_go_together_are_the_whole(void **state) {
   }
 }
 
-static __attribute__((noinline)) char *text_of(const fg_lot_analysis *analysis,
-                                               fg_lot_writer *writer) {
+static char *text_of(const fg_lot_analysis *analysis, fg_lot_writer *writer) {
   char *text;
   size_t size;
   FILE *out = open_memstream(&text, &size);
