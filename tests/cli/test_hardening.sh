@@ -38,3 +38,4 @@ if command -v cpack >/dev/null && command -v dpkg-shlibdeps >/dev/null && comman
   done < <(find "$work/open" -type f \( -path '*/bin/*' -o -name '*.so*' \))
   [ "$count" -eq 3 ] || fail "$count binaries in the package, not program, library and module"
 fi
+exit $failed
