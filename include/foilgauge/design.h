@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The design of a foil: its nominal dimensions and tolerances.
+/* The design of a foil: what the part should be, and the tolerances it is judged by.
  *
- * Lengths are in mm, angles in degrees. Words and equations: thesis chapter 5, eq 5.1 to 5.9. A
- * design file is JSON with "schema": "foilgauge/design/1"; the member names are those below.
+ * Lengths are in mm, angles in degrees. Words and equations: thesis chapter 5, eq 5.1 to 5.9.
+ * A design file is JSON with "schema": "foilgauge/design/1"; the member names are those below.
  */
 #ifndef FOILGAUGE_DESIGN_H
 #define FOILGAUGE_DESIGN_H
@@ -28,15 +28,15 @@ typedef enum fg_foil_kind {
 
 enum { FG_FOIL_KINDS = FG_FOIL_CANTILEVER + 1 };
 
-/* Returns true when foils of this kind have bumps: the design's `bumps` are stated. */
+/* Whether foils of this kind have bumps: the design's `bumps` are stated. */
 bool fg_foil_kind_has_bumps(fg_foil_kind kind);
 
-/* Line of the strip to which the lengths belong: R, R0 (and so alpha, theta) of the design and of
+/* Which line of the strip the lengths belong to: R, R0 (and so alpha, theta) of the design and of
  * the fits are of this line. X and h do not depend on it: the edges are parallel to the midline, so
  * at a crown R + offset meets R0 - offset and h = R0 - (X - R) keeps its value. R_sleeve is the
  * bore that the lands rest on and t the whole thickness, so the crown's shaft side stands h + t
- * above the bore and eq 5.8 holds unchanged for every datum. Eq 5.5 takes R_sleeve for the radius
- * of the datum line of the lands once the foil is in the bearing. */
+ * above the bore and eq 5.8 holds as it stands for every datum. Eq 5.5 takes R_sleeve for the
+ * radius of the datum line of the lands once the foil is in the bearing. */
 typedef enum fg_datum {
   FG_DATUM_MID,   /* the midline */
   FG_DATUM_INNER, /* the edge on the shaft's side */
@@ -52,8 +52,8 @@ typedef enum fg_datum {
  */
 /* The stated tone curve, by which a scanner's counts follow the light. */
 typedef enum fg_tone_statement {
-  FG_TONE_UNKNOWN, /* the uncertainty of lengths between two edges includes an unknown curve */
-  FG_TONE_LINEAR,  /* the user states that counts are proportional to the light */
+  FG_TONE_UNKNOWN, /* lengths between two edges hold what it may do to them */
+  FG_TONE_LINEAR,  /* the user vouches that counts are proportional to the light */
 } fg_tone_statement;
 
 typedef struct fg_tolerance {
@@ -61,16 +61,15 @@ typedef struct fg_tolerance {
   double lower, upper;
 } fg_tolerance;
 
-/* Position of a value against a limit: the nearest one, or the one that it exceeds most. With one
- * limit it is that one. */
+/* Position of a value against a limit: the nearest one, or the one that it is farthest beyond. With
+ * one limit it is that one. */
 typedef struct fg_margin {
   double limit;  /* not finite: there is none */
   double inside; /* distance to the limit; negative: beyond it; NaN without a value */
   bool upper;    /* the limit is the upper one */
 } fg_margin;
 
-/* Finds the margin of a value; all distances to limits come from here. Limits that are not set are
- * -inf, +inf. */
+/* Every distance to a limit is this one. Limits that are not set are -inf, +inf. */
 fg_margin fg_margin_to(double lower, double upper, double value);
 
 enum { FG_TOLERANCES_MAX = 32, FG_DIAMETERS_MAX = 256 };
@@ -110,7 +109,7 @@ typedef struct fg_design_discs {
   double u_diameters_mm; /* standard uncertainty of each of them; 0: not stated */
 } fg_design_discs;
 
-/* Dimensions of one kind. */
+/* One of them. */
 typedef union fg_design_values {
   fg_design_bumps bumps; /* classical, sinusoidal */
   fg_design_arc arc;
@@ -129,7 +128,7 @@ typedef struct fg_design {
   double thickness_mm;          /* t, of every foil */
   double thickness_measured_mm; /* of the strip, by a micrometer, at 20 °C; 0: none stated */
   double u_thickness_measured_mm;
-  fg_tone_statement tone; /* stated tone curve of the scanner */
+  fg_tone_statement tone; /* what is said of the scanner's counts */
   union {
     fg_design_bumps bumps;
     fg_design_arc arc;
@@ -144,7 +143,7 @@ typedef struct fg_design {
   fg_gauge gauges[FG_GAUGES_MAX]; /* known widths that lie on the glass in the same scan */
 } fg_design;
 
-/* Values derived from a design (thesis eq 5.1, 5.2, 5.5, 5.8). */
+/* What follows from a design (thesis eq 5.1, 5.2, 5.5, 5.8). */
 typedef struct fg_nominal {
   double centre_to_centre_mm;    /* X_D: distance of bump centre from overall centre, from
                                     R_D, alpha_D and the overall radius */
@@ -156,7 +155,7 @@ typedef struct fg_nominal {
   double clearance_mm;           /* C_D = R_sleeve - h_D - D/2 - t, eq 5.8, less the top foil */
 } fg_nominal;
 
-/* Prediction of the declared springback model (thesis eq 5.6 and 5.7) for a bump from its radius
+/* What the declared springback model (thesis eq 5.6 and 5.7) predicts of a bump from its radius
  * alone: arc length and crown keep their place. */
 typedef struct fg_springback {
   double bump_angle_deg;   /* alpha_m = alpha_D R_D / R */
@@ -170,29 +169,29 @@ typedef struct fg_springback {
  * t 0.1 mm, rotor 40 mm, nine bumps, classical, datum mid. */
 void fg_design_default(fg_design *design);
 
-/* Changes the kind of a design: dimensions that the new kind does not have are dropped, those of
- * its own begin at their defaults. FG_ERR_DATA when the design states dimensions that the new kind
- * refuses, such as the subtended angle of an arc. */
+/* Makes it a design of another kind: dimensions that the new kind does not have are dropped, those
+ * of its own begin at their defaults. FG_ERR_DATA when the design states dimensions that the new
+ * kind refuses, such as the subtended angle of an arc. */
 fg_status fg_design_become(fg_context *ctx, fg_foil_kind kind, fg_design *design);
 
 /* FG_ERR_DATA when a value is missing, not finite, not positive or contradicts another one (a bump
  * circle that cannot meet the overall circle at alpha, bumps that overlap at this pitch). The
- * message names the member, its value and the allowed values. */
+ * message names the member, its value and what would be right. */
 fg_status fg_design_check(fg_context *ctx, const fg_design *design);
 
-/* Derives the nominal values; checks the design first. All NaN for kind discs, and for a cantilever
+/* The derived nominal values; checks the design first. All NaN for form discs, and for a cantilever
  * (foilgauge/cantilever.h has its values); of an arc the arc length is that from end to end, and
  * the others are NaN. */
 fg_status fg_design_derive(fg_context *ctx, const fg_design *design, fg_nominal *nominal);
 
-/* Returns the clearance over a bump of this height: eq 5.8 less the top foil's thickness, mm, with
- * the design's thickness of the bump foil. */
+/* Clearance over a bump of this height: eq 5.8 less the top foil's thickness, mm, with the design's
+ * thickness of the bump foil. */
 double fg_design_clearance(const fg_design *design, double height_mm);
 
-/* Returns the clearance over a strip of another thickness. */
+/* The same over a strip of another thickness. */
 double fg_design_clearance_over(const fg_design *design, double height_mm, double thickness_mm);
 
-/* Predicts a bump by the declared springback model at a radius above 0. */
+/* The declared springback model at a bump radius above 0. */
 void fg_design_springback(const fg_design *design, const fg_nominal *nominal, double radius_mm,
                           fg_springback *model);
 
@@ -206,7 +205,7 @@ void fg_design_springback(const fg_design *design, const fg_nominal *nominal, do
  * `path` is for messages. Checks with fg_design_check; `design` changes on success only. */
 fg_status fg_design_parse(fg_context *ctx, const char *path, const char *json, fg_design *design);
 
-/* Reads a design from a JSON file. */
+/* The same from a file. */
 fg_status fg_design_load(fg_context *ctx, const char *path, fg_design *design);
 
 #ifdef __cplusplus

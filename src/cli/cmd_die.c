@@ -95,7 +95,7 @@ static const char doc[] =
     "  foilgauge die --tip-um 2 --unit um --half concave a1.txt a2.txt --half convex b1.txt\n\n"
     "@exit_judged@";
 
-static void note_die_status(die_run *run, fg_status status) {
+static void keep_status(die_run *run, fg_status status) {
   if (run->status == FG_OK) run->status = status;
 }
 
@@ -164,7 +164,7 @@ static error_t parse_die_option(int key, char *text, struct argp_state *state) {
   case ARGP_KEY_ARG:
     run->said.path = text;
     run->unused = 0;
-    note_die_status(run, fg_die_sources_add(run->ctx, &run->sources, &run->said));
+    keep_status(run, fg_die_sources_add(run->ctx, &run->sources, &run->said));
     break;
   case ARGP_KEY_END:
     check_end(run, state);
@@ -200,7 +200,7 @@ static fg_status load_die_design(fg_context *ctx, die_run *run, fg_design *desig
 }
 
 /* A bump that one trace lost and another measured. */
-static void tell_lost_by_trace(const fg_die *die) {
+static void note_lost_by_trace(const fg_die *die) {
   for (size_t i = 0; i < die->trace_count; i++) {
     const fg_die_trace *trace = &die->traces[i];
     const fg_die_side *side = &die->half[trace->half];
@@ -213,7 +213,7 @@ static void tell_lost_by_trace(const fg_die *die) {
   }
 }
 
-static void tell_unseen(const fg_die *die) {
+static void note_unseen(const fg_die *die) {
   char numbers[200];
   for (int h = 0; h < FG_DIE_HALVES; h++) {
     fg_die_half half = (fg_die_half)h;
@@ -228,7 +228,7 @@ static void tell_unseen(const fg_die *die) {
       fprintf(stderr, "foilgauge: note: %s half: bump%s %s: no trace shows %s whole\n",
               fg_die_half_word(half), fg_plural(count), numbers, count == 1 ? "it" : "them");
   }
-  tell_lost_by_trace(die);
+  note_lost_by_trace(die);
 }
 
 static fg_status measure_die(fg_context *ctx, die_run *run, int *code) {
@@ -238,7 +238,7 @@ static fg_status measure_die(fg_context *ctx, die_run *run, int *code) {
   FG_TRY(fg_output_set_open(ctx, &run->outputs));
   FG_TRY(fg_die_measure(ctx, &design, &run->options, run->sources.source, run->sources.count,
                         &run->die));
-  tell_unseen(&run->die);
+  note_unseen(&run->die);
   fg_die_judge(&run->die, &outcome, NULL, 0);
   *code = fg_outcome_exit_code(&outcome);
   return fg_output_set_write(ctx, &run->outputs, write_die_output, run);

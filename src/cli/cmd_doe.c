@@ -9,7 +9,6 @@
 
 #include "cli/commands.h"
 #include "cli/doe_kept_plan.h"
-#include "cli/doe_plan.h"
 #include "cli/facts.h"
 #include "cli/runs.h"
 #include "foilgauge/loop.h"
@@ -363,7 +362,7 @@ static fg_status describe_taken(fg_context *ctx, doe_run *run) {
 
 /* The effects of a model file are taken out of the response, and its formula is the one to analyse.
  */
-static fg_status take_loop_model(fg_context *ctx, doe_run *run, fg_table *table) {
+static fg_status apply_loop_model(fg_context *ctx, doe_run *run, fg_table *table) {
   const char *name = run->model_path = run->arguments.options.formula;
   if (!is_model_file(name)) return FG_OK;
   FG_TRY(fg_loop_model_load(ctx, name, &run->loop_model));
@@ -388,10 +387,10 @@ static fg_status analyse(fg_context *ctx, doe_run *run) {
   FG_TRY(fg_table_load(ctx, a->data, &run->sheet, run->sha256));
   FG_TRY(fg_output_set_open(ctx, &run->outputs));
   if (a->scans) FG_TRY(measure_scans(ctx, run));
-  FG_TRY(take_loop_model(ctx, run, a->scans ? &run->measured.table : &run->sheet));
+  FG_TRY(apply_loop_model(ctx, run, a->scans ? &run->measured.table : &run->sheet));
   const fg_doe_plan_request plan = {a->plan_path, a->data,   &run->sheet,
                                     &a->options,  a->coding, a->round};
-  FG_TRY(fg_doe_plan_take(ctx, &plan, &run->plan));
+  FG_TRY(fg_doe_plan_find(ctx, &plan, &run->plan));
   FG_TRY(fg_experiment_analyse(ctx, a->scans ? &run->measured.table : &run->sheet, &a->options,
                                &run->experiment));
   return fg_output_set_write(ctx, &run->outputs, write_doe_output, run);

@@ -7,7 +7,6 @@
 #include <unistd.h>
 
 #include "cli/commands.h"
-#include "cli/doe_plan.h"
 #include "cli/facts.h"
 #include "foilgauge/doe.h"
 #include "foilgauge/file.h"
@@ -264,7 +263,7 @@ exit:
   return status;
 }
 
-static fg_status describe_plan(fg_context *ctx, const fg_plan *plan) {
+static fg_status print_plan_summary(fg_context *ctx, const fg_plan *plan) {
   char *relation = NULL, *aliases = NULL;
   fprintf(stderr, "%zu run%s", plan->runs, fg_plural(plan->runs));
   if (plan->blocks > 1) fprintf(stderr, " in %zu blocks", plan->blocks);
@@ -280,7 +279,7 @@ static fg_status describe_plan(fg_context *ctx, const fg_plan *plan) {
   return status;
 }
 
-static fg_status tell_notes(fg_context *ctx, const fg_plan *plan) {
+static fg_status print_notes(fg_context *ctx, const fg_plan *plan) {
   char *notes, *rest = NULL;
   FG_TRY(fg_plan_notes(ctx, plan, &notes));
   for (char *line = strtok_r(notes, "\n", &rest); line; line = strtok_r(NULL, "\n", &rest))
@@ -340,8 +339,8 @@ static fg_status write_plan(fg_context *ctx, const plan_arguments *a, const fg_p
                        fg_csv_write(ctx, a->decimal_comma, write_sheet, &of, output.stream)));
   FG_TRY(write_beside(ctx, a, plan));
   FG_TRY(write_plan_page(ctx, a, plan));
-  FG_TRY(tell_notes(ctx, plan));
-  return describe_plan(ctx, plan);
+  FG_TRY(print_notes(ctx, plan));
+  return print_plan_summary(ctx, plan);
 }
 
 const struct argp fg_doe_plan_parser = {

@@ -112,7 +112,7 @@ static const char doc[] =
     "hydrostatic in plane strain: it neither yields nor creeps.\n\n"
     "@exit_done@";
 
-static void take_free(struct argp_state *state, forming_run *run, const char *text) {
+static void parse_free(struct argp_state *state, forming_run *run, const char *text) {
   run->free_count = 0;
   while (*text) {
     size_t length = strcspn(text, ",");
@@ -147,8 +147,8 @@ static void check_end(const forming_run *run, struct argp_state *state) {
 }
 
 /* Words with few choices: the place of the text among them. */
-static int parse_choice_of_two(struct argp_state *state, const char *option, const char *text,
-                               const char *first, const char *second) {
+static int choose_word(struct argp_state *state, const char *option, const char *text,
+                       const char *first, const char *second) {
   if (strcmp(text, first) != 0 && strcmp(text, second) != 0)
     argp_error(state, "--%s: '%s' is neither %s nor %s", option, text, first, second);
   return !strcmp(text, second);
@@ -202,17 +202,16 @@ static error_t parse_forming_option(int key, char *text, struct argp_state *stat
     }
   switch (key) {
   case OPTION_SHAPE:
-    run->options.shape = parse_choice_of_two(state, "shape", text, "arcs", "sine")
-                             ? FG_FORMING_SINE
-                             : FG_FORMING_ARCS;
+    run->options.shape =
+        choose_word(state, "shape", text, "arcs", "sine") ? FG_FORMING_SINE : FG_FORMING_ARCS;
     return 0;
   case OPTION_OF:
     run->of_given = true;
-    run->of = parse_choice_of_two(state, "of", text, "strip", "foil") ? FG_FORMING_OF_FOIL
-                                                                      : FG_FORMING_OF_STRIP;
+    run->of =
+        choose_word(state, "of", text, "strip", "foil") ? FG_FORMING_OF_FOIL : FG_FORMING_OF_STRIP;
     return 0;
   case OPTION_FREE:
-    take_free(state, run, text);
+    parse_free(state, run, text);
     return 0;
   case FG_CLI_DECIMAL_COMMA:
     run->outputs.decimal_comma = true;
@@ -307,7 +306,7 @@ static fg_status forming_strip(fg_context *ctx, forming_run *run) {
   return fg_output_set_write(ctx, &run->outputs, write_forming_output, run);
 }
 
-static fg_status kind(fg_context *ctx, forming_run *run) {
+static fg_status run_forming(fg_context *ctx, forming_run *run) {
   FG_TRY(load_forming_inputs(ctx, run));
   FG_TRY(fg_output_set_open(ctx, &run->outputs));
   return run->fit_path ? fit_runs(ctx, run) : forming_strip(ctx, run);
@@ -324,7 +323,7 @@ int fg_cmd_forming(int argc, char **argv) {
                      .hours = NAN,
                      .pressure_bar = NAN};
   fg_status status = fg_cli_parse(&ctx, &fg_forming_parser, argc, argv, &run);
-  if (status == FG_OK) status = kind(&ctx, &run);
+  if (status == FG_OK) status = run_forming(&ctx, &run);
   fg_output_set_close(&run.outputs);
   fg_forming_free(&run.forming);
   fg_forming_fit_free(&run.fit);

@@ -8,8 +8,8 @@
 
 #include "cli/commands.h"
 #include "cli/facts.h"
-#include "cli/loop_outputs.h"
 #include "cli/loop_source.h"
+#include "cli/output_set.h"
 #include "cli/progress.h"
 #include "foilgauge/file.h"
 
@@ -150,7 +150,7 @@ static void check_source(struct argp_state *state, const fg_loop_source_request 
   if (source->scans && !source->runs) argp_error(state, "--scans belongs to --doe RUNS.csv");
 }
 
-static error_t parse_loop_option(int key, char *text, struct argp_state *state) {
+static error_t parse_loop_table_option(int key, char *text, struct argp_state *state) {
   loop_arguments *arguments = state->input;
   const struct {
     int key;
@@ -231,7 +231,7 @@ static fg_status read_declared(fg_context *ctx, loop_arguments *arguments, fg_de
   return FG_OK;
 }
 
-static fg_status write_loop_output(fg_context *ctx, void *user, size_t kind, FILE *out) {
+static fg_status write_loop_table_output(fg_context *ctx, void *user, size_t kind, FILE *out) {
   return writers[kind](ctx, user, out);
 }
 
@@ -249,8 +249,8 @@ static void show_progress(void *user, size_t found, double share) {
   fg_progress_show(progress, (int64_t)(1000 * share), 1000);
 }
 
-static fg_status run_table_loop(fg_context *ctx, const loop_arguments *arguments, const char *path,
-                                const fg_loop_problem *problem, fg_loop_result *result) {
+static fg_status search_table(fg_context *ctx, const loop_arguments *arguments, const char *path,
+                              const fg_loop_problem *problem, fg_loop_result *result) {
   fg_progress progress;
   const fg_loop_options how = {.effects = fg_loop_table_effects(),
                                .seed = arguments->spec.seed,
@@ -284,7 +284,7 @@ static fg_status run_loop(fg_context *ctx, loop_arguments *arguments, bool *fail
                                   &arguments->outputs, spec, &design, &source));
   FG_TRY_EXIT(fg_output_set_open(ctx, &arguments->outputs));
   FG_TRY_EXIT(fg_loop_table_problem_build(ctx, source.table, spec, &problem));
-  FG_TRY_EXIT(run_table_loop(ctx, arguments, source.path, &problem.problem, &result));
+  FG_TRY_EXIT(search_table(ctx, arguments, source.path, &problem.problem, &result));
   fg_loop_report report = {.path = source.path,
                            .sha256 = source.sha256,
                            .spec = spec,
@@ -295,7 +295,7 @@ static fg_status run_loop(fg_context *ctx, loop_arguments *arguments, bool *fail
                            .inputs = source.inputs,
                            .row_name = source.row_name,
                            .said = source.said};
-  FG_TRY_EXIT(fg_output_set_write(ctx, &arguments->outputs, write_loop_output, &report));
+  FG_TRY_EXIT(fg_output_set_write(ctx, &arguments->outputs, write_loop_table_output, &report));
 exit:
   *failed = source.failed;
   fg_output_set_close(&arguments->outputs);
@@ -317,7 +317,7 @@ static bool is_about_a_table(int argc, char **argv) {
 }
 
 const struct argp fg_loop_table_parser = {options,
-                                          parse_loop_option,
+                                          parse_loop_table_option,
                                           "--table DATA.csv\n--lot DIR\n--doe RUNS.csv",
                                           doc,
                                           NULL,

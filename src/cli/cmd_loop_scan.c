@@ -10,7 +10,7 @@
 #include "cli/commands.h"
 #include "cli/facts.h"
 #include "cli/known.h"
-#include "cli/loop_outputs.h"
+#include "cli/output_set.h"
 #include "foilgauge/foil_kind.h"
 #include "foilgauge/forming.h"
 #include "foilgauge/memory.h"
@@ -102,7 +102,7 @@ static const char doc[] =
     "--doe RUNS.csv on an experiment's scans: `foilgauge loop --table --help`.\n\n"
     "@exit_partly@";
 
-static void add_scan_argument(struct argp_state *state, const char *path, bool held_out) {
+static void add_scan(struct argp_state *state, const char *path, bool held_out) {
   arguments *a = state->input;
   for (size_t i = 0; i < a->count; i++)
     if (!strcmp(a->paths[i], path)) argp_error(state, "%s is given twice", path);
@@ -112,7 +112,7 @@ static void add_scan_argument(struct argp_state *state, const char *path, bool h
   a->paths[a->count++] = path;
 }
 
-static double parse_scan_loop_number(struct argp_state *state, const char *name, const char *text) {
+static double parse_number(struct argp_state *state, const char *name, const char *text) {
   char *end;
   double value = strtod(text, &end);
   if (*end || end == text || !(value > 0))
@@ -140,7 +140,7 @@ static void parse_gaps(struct argp_state *state, const char *text, double gap_px
                text, GAP_MAX_PX, GAP_MAX_PX);
 }
 
-static error_t parse_scan_loop_option(int key, char *text, struct argp_state *state) {
+static error_t parse_option(int key, char *text, struct argp_state *state) {
   arguments *a = state->input;
   switch (key) {
   case OPTION_DESIGN:
@@ -153,7 +153,7 @@ static error_t parse_scan_loop_option(int key, char *text, struct argp_state *st
     a->forming_model = text;
     return 0;
   case OPTION_DPI:
-    a->options.dpi = parse_scan_loop_number(state, "dpi", text);
+    a->options.dpi = parse_number(state, "dpi", text);
     return 0;
   case OPTION_ALLOW_LOSSY:
     a->options.allow_lossy = true;
@@ -162,7 +162,7 @@ static error_t parse_scan_loop_option(int key, char *text, struct argp_state *st
     a->options.same_foil = true;
     return 0;
   case OPTION_HOLD_OUT:
-    add_scan_argument(state, text, true);
+    add_scan(state, text, true);
     return 0;
   case OPTION_MODEL_OUT:
     a->outputs.path[FG_LOOP_MODEL] = text;
@@ -179,27 +179,27 @@ static error_t parse_scan_loop_option(int key, char *text, struct argp_state *st
     parse_gaps(state, text, a->options.colour_gap_px);
     return 0;
   case OPTION_SEED:
-    a->options.seed = (uint64_t)parse_scan_loop_number(state, "seed", text);
+    a->options.seed = (uint64_t)parse_number(state, "seed", text);
     return 0;
   case OPTION_THREADS:
-    a->options.threads = (unsigned)parse_scan_loop_number(state, "threads", text);
+    a->options.threads = (unsigned)parse_number(state, "threads", text);
     return 0;
   case 'o':
     a->outputs.path[FG_LOOP_JSON] = text;
     return 0;
   case ARGP_KEY_ARG:
-    add_scan_argument(state, text, false);
+    add_scan(state, text, false);
     return 0;
   case ARGP_KEY_END:
     if (a->count == a->held_out)
       argp_error(state, "give a scan, or --table DATA.csv, --lot DIR, --doe RUNS.csv");
     return 0;
   default:
-    return fg_cli_take_known(state, key, text, &a->known) ? 0 : ARGP_ERR_UNKNOWN;
+    return fg_cli_parse_known(state, key, text, &a->known) ? 0 : ARGP_ERR_UNKNOWN;
   }
 }
 
-static fg_status write_scan_loop_output(fg_context *ctx, void *user, size_t kind, FILE *out) {
+static fg_status write_output(fg_context *ctx, void *user, size_t kind, FILE *out) {
   return writers[kind](ctx, user, out);
 }
 
@@ -229,7 +229,7 @@ static int64_t find_date(const arguments *a) {
 }
 
 /* A scanner without faults has a model too: it states the search, and its scans. */
-static void tell_empty_model(const arguments *a, const fg_scan_result *result) {
+static void note_empty_model(const arguments *a, const fg_scan_result *result) {
   const char *path = a->outputs.path[FG_LOOP_MODEL];
   if (path && fg_scanner_model_is_empty(result->model))
     fprintf(stderr,
@@ -239,7 +239,7 @@ static void tell_empty_model(const arguments *a, const fg_scan_result *result) {
 }
 
 /* Notes the pictures' findings in the words of `measure`. */
-static void tell_pictures(const fg_scan_result *result) {
+static void note_pictures(const fg_scan_result *result) {
   for (size_t i = 0; i < result->scans; i++)
     for (const fg_picture_words *words = fg_picture_finding_words(); words->name; words++)
       if (result->scan[i].before->picture.findings & words->finding)
@@ -266,7 +266,7 @@ static fg_status read_forming(fg_context *ctx, const char *path,
   return fg_forming_prediction_load(ctx, path, *prediction);
 }
 
-static fg_status run_scan_loop(fg_context *ctx, arguments *a, int *code) {
+static fg_status run(fg_context *ctx, arguments *a, int *code) {
   fg_design design;
   fg_scan_loop *loop = NULL;
   fg_forming_prediction *prediction = NULL;
@@ -274,7 +274,7 @@ static fg_status run_scan_loop(fg_context *ctx, arguments *a, int *code) {
   FG_TRY_EXIT(check_outputs(ctx, a));
   fg_design_default(&design);
   if (a->design_path) FG_TRY_EXIT(fg_design_load(ctx, a->design_path, &design));
-  FG_TRY_EXIT(fg_cli_apply_forming(ctx, a->kind, &design));
+  FG_TRY_EXIT(fg_cli_apply_foil_kind(ctx, a->kind, &design));
   fg_cli_apply_known(&a->known, &design);
   FG_TRY_EXIT(fg_design_check(ctx, &design));
   FG_TRY_EXIT(check_design(ctx, a, &design));
@@ -284,17 +284,16 @@ static fg_status run_scan_loop(fg_context *ctx, arguments *a, int *code) {
   a->options.forming = prediction;
   FG_TRY_EXIT(fg_scan_loop_run(ctx, a->paths, a->hold_out, a->count, &design, &a->options, &loop));
   *code = fg_scan_loop_result(loop)->left_out ? 2 : 0;
-  tell_pictures(fg_scan_loop_result(loop));
-  FG_TRY_EXIT(fg_output_set_write(ctx, &a->outputs, write_scan_loop_output, loop));
-  tell_empty_model(a, fg_scan_loop_result(loop));
+  note_pictures(fg_scan_loop_result(loop));
+  FG_TRY_EXIT(fg_output_set_write(ctx, &a->outputs, write_output, loop));
+  note_empty_model(a, fg_scan_loop_result(loop));
 exit:
   fg_scan_loop_free(loop);
   free(prediction);
   return status;
 }
 
-const struct argp fg_loop_parser = {
-    options, parse_scan_loop_option, "SCAN...", doc, NULL, fg_cli_fill, NULL};
+const struct argp fg_loop_parser = {options, parse_option, "SCAN...", doc, NULL, fg_cli_fill, NULL};
 
 int fg_cmd_loop_scan(int argc, char **argv) {
   fg_context ctx = {0};
@@ -303,7 +302,7 @@ int fg_cmd_loop_scan(int argc, char **argv) {
   fg_status status = fg_cli_parse_in_order(&ctx, &fg_loop_parser, argc, argv, &a);
   if (status != FG_OK) return fg_cli_fail(&ctx, status);
   int code = 0;
-  status = run_scan_loop(&ctx, &a, &code);
+  status = run(&ctx, &a, &code);
   fg_output_set_close(&a.outputs);
   return status == FG_OK ? code : fg_cli_fail(&ctx, status);
 }

@@ -200,8 +200,8 @@ static fg_status set_text(fg_context *ctx, const char *option, const char *text,
   return FG_OK;
 }
 
-static fg_status take_dies(fg_context *ctx, const lot_arguments *arguments,
-                           fg_lot_settings *settings) {
+static fg_status read_die_options(fg_context *ctx, const lot_arguments *arguments,
+                                  fg_lot_settings *settings) {
   if (arguments->die_count) settings->die_count = 0; /* they overrule the recipe's */
   for (size_t i = 0; i < arguments->die_count; i++) {
     char name[sizeof settings->dies[0].name];
@@ -226,7 +226,7 @@ static fg_status load_settings(fg_context *ctx, const lot_arguments *arguments,
     return fg_fail(ctx, FG_ERR_USAGE, "--scanner says which scanner --model must be of: give one");
   if (arguments->model || arguments->scanner)
     FG_TRY(fg_lot_settings_load_model(ctx, model, arguments->scanner, settings));
-  FG_TRY(take_dies(ctx, arguments, settings));
+  FG_TRY(read_die_options(ctx, arguments, settings));
   if (arguments->curve) FG_TRY(fg_lot_settings_load_curve(ctx, arguments->curve, settings));
   if (arguments->jobs > 0) settings->jobs = (unsigned)arguments->jobs;
   if (arguments->dpi > 0) settings->dpi = arguments->dpi;
@@ -261,7 +261,7 @@ static void show_progress(void *user, const fg_lot_progress *progress) {
           progress->done == progress->total ? "\n" : "");
 }
 
-static void say_bearings(const fg_lot_outcome *outcome) {
+static void print_bearings(const fg_lot_outcome *outcome) {
   const size_t *by = outcome->bearings_by_verdict;
   fprintf(stderr, "%zu bearing%s: %zu pass, %zu fail, %zu cannot be told, %zu not measured%s\n",
           outcome->bearings, fg_plural(outcome->bearings), by[FG_VERDICT_PASS], by[FG_VERDICT_FAIL],
@@ -293,14 +293,14 @@ int fg_cli_lot_summary(const fg_lot_outcome *outcome, const char *folder) {
     fprintf(stderr, "; not measured: %zu foil%s, %zu scan%s", by[FG_VERDICT_NOT_MEASURED],
             fg_plural(by[FG_VERDICT_NOT_MEASURED]), outcome->failed, fg_plural(outcome->failed));
   fputc('\n', stderr);
-  if (outcome->bearings_judged) say_bearings(outcome);
+  if (outcome->bearings_judged) print_bearings(outcome);
   for (size_t i = 0; i < sizeof outcome->assembly / sizeof *outcome->assembly; i++)
     if (outcome->assembly[i][0]) fprintf(stderr, "%s\n", outcome->assembly[i]);
   fprintf(stderr, "%s/index.html\n", folder);
   return fg_outcome_exit_code(&outcome->judged);
 }
 
-static void say_plan(const fg_lot_outcome *outcome) {
+static void print_plan(const fg_lot_outcome *outcome) {
   printf("%zu scan%s, %zu to measure, %zu kept", outcome->scans, fg_plural(outcome->scans),
          outcome->to_measure, outcome->kept);
   if (outcome->redrawn) printf(", %zu of them for their pages", outcome->redrawn);
@@ -310,7 +310,7 @@ static void say_plan(const fg_lot_outcome *outcome) {
   putchar('\n');
 }
 
-static int say_shard(const lot_arguments *arguments, const fg_lot_outcome *outcome) {
+static int print_shard(const lot_arguments *arguments, const fg_lot_outcome *outcome) {
   fprintf(stderr, "shard %zu/%zu: %zu scan%s measured, %zu kept, %zu could not be measured\n",
           arguments->shard.index, arguments->shard.count, outcome->measured,
           fg_plural(outcome->measured), outcome->kept, outcome->failed);
@@ -330,7 +330,7 @@ static fg_status print_recipe(fg_context *ctx, const fg_lot_settings *settings) 
   return status;
 }
 
-static void say_lines(const char *words, const char *text) {
+static void print_lines(const char *words, const char *text) {
   for (; text && *text; text += strcspn(text, "\n"), text += *text == '\n')
     fprintf(stderr, "%s%.*s\n", words, (int)strcspn(text, "\n"), text);
 }
@@ -345,8 +345,8 @@ static fg_status make_index(fg_context *ctx, const lot_arguments *arguments, int
                                         .csv = arguments->csv,
                                         .decimal_comma = arguments->decimal_comma};
   FG_TRY(fg_lot_index(ctx, &request, &outcome));
-  say_lines("foilgauge: note: ", outcome.notes);
-  say_lines("", outcome.summary);
+  print_lines("foilgauge: note: ", outcome.notes);
+  print_lines("", outcome.summary);
   fprintf(stderr, "%zu lot%s", outcome.lots, fg_plural(outcome.lots));
   if (outcome.not_read) fprintf(stderr, ", %zu could not be read", outcome.not_read);
   fprintf(stderr, "\n%s\n", arguments->index);
@@ -404,9 +404,9 @@ static fg_status run_lot(fg_context *ctx, const lot_arguments *arguments, int *c
     fprintf(stderr, "foilgauge: note: %zu page%s could not be drawn; the first: %s\n",
             outcome.not_drawn, fg_plural(outcome.not_drawn), outcome.first_not_drawn);
   if (arguments->dry_run)
-    say_plan(&outcome);
+    print_plan(&outcome);
   else
-    *code = arguments->shard.count > 1 ? say_shard(arguments, &outcome)
+    *code = arguments->shard.count > 1 ? print_shard(arguments, &outcome)
                                        : fg_cli_lot_summary(&outcome, arguments->folder);
   return FG_OK;
 }

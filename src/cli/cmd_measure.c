@@ -186,7 +186,7 @@ static error_t parse_measure_option(int key, char *text, struct argp_state *stat
     argp_error(state, "no SCAN was given");
     break;
   default:
-    return fg_cli_take_known(state, key, text, &arguments->known) ? 0 : ARGP_ERR_UNKNOWN;
+    return fg_cli_parse_known(state, key, text, &arguments->known) ? 0 : ARGP_ERR_UNKNOWN;
   }
   return 0;
 }
@@ -229,7 +229,7 @@ static fg_status load_design(fg_context *ctx, measure_run *run) {
   fg_design_default(&run->design);
   if (run->arguments.design_path)
     FG_TRY(fg_design_load(ctx, run->arguments.design_path, &run->design));
-  FG_TRY(fg_cli_apply_forming(ctx, run->arguments.kind, &run->design));
+  FG_TRY(fg_cli_apply_foil_kind(ctx, run->arguments.kind, &run->design));
   fg_cli_apply_known(&run->arguments.known, &run->design);
   FG_TRY(apply_gauges(ctx, &run->arguments, &run->design));
   FG_TRY(fg_design_check(ctx, &run->design));
@@ -252,7 +252,7 @@ static fg_status allocate_scans(fg_context *ctx, measure_run *run) {
 }
 
 /* Notes foils that could not be measured on standard error: the report may go to a file. */
-static void tell_failures(const fg_measurement *measurement) {
+static void note_failures(const fg_measurement *measurement) {
   for (size_t i = 0; i < measurement->foil_count; i++) {
     const fg_foil *foil = &measurement->foils[i];
     if (!fg_foil_is_measured(foil))
@@ -296,7 +296,7 @@ static fg_status measure_one(fg_context *ctx, measure_run *run, size_t index) {
     scan->measurement = &run->measurements[index];
     if (run->measurements[index].warning[0])
       fprintf(stderr, "foilgauge: %s: note: %s\n", path, run->measurements[index].warning);
-    tell_failures(&run->measurements[index]);
+    note_failures(&run->measurements[index]);
     run->measured++;
     return FG_OK;
   }
@@ -359,7 +359,7 @@ static fg_status load_model(fg_context *ctx, measure_run *run) {
   return FG_OK;
 }
 
-static void tell_not_judged(const fg_design *design) {
+static void note_not_judged(const fg_design *design) {
   char names[400];
   if (fg_report_of_bearing(design, names, sizeof names))
     fprintf(stderr,
@@ -372,7 +372,7 @@ static fg_status measure_scans(fg_context *ctx, measure_run *run, int *code) {
   fg_output_set_choose_standard(&run->outputs, OUT_JSON, OUT_TABLE, true);
   FG_TRY(check_arguments(ctx, run));
   FG_TRY(load_design(ctx, run));
-  tell_not_judged(&run->design);
+  note_not_judged(&run->design);
   FG_TRY(load_model(ctx, run));
   FG_TRY(fg_output_set_open(ctx, &run->outputs));
   FG_TRY(measure_all(ctx, run));

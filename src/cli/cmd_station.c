@@ -141,7 +141,7 @@ static fg_status read_token(fg_context *ctx, const char *path, char token[TOKEN_
   return FG_OK;
 }
 
-static void say_address(void *user, const char *address) {
+static void print_address(void *user, const char *address) {
   (void)user;
   printf("%s\n", address);
   fflush(stdout);
@@ -149,7 +149,7 @@ static void say_address(void *user, const char *address) {
 
 /* A line per file, whatever bytes its name has: a line break in a name would pass for a line of the
  * program. */
-static void say_file(void *user, const char *file, const char *words) {
+static void print_file(void *user, const char *file, const char *words) {
   char line[4096];
   (void)user;
   fg_text_clip(line, sizeof line, "%s%s%s", file, words[0] ? " " : "", words);
@@ -179,8 +179,8 @@ int fg_cmd_station(int argc, char **argv) {
   arguments.request.hosts = arguments.hosts;
   settings.lot.allow_lossy |= arguments.allow_lossy;
   arguments.request.settings = &settings;
-  arguments.request.ready = say_address;
-  arguments.request.looked_at = say_file;
+  arguments.request.ready = print_address;
+  arguments.request.looked_at = print_file;
   if (!arguments.request.export_path) arguments.request.end_descriptor = fg_interrupt_defer();
   status = fg_station_run(&ctx, &arguments.request, &outcome);
   if (status != FG_OK) return fg_cli_fail(&ctx, status);

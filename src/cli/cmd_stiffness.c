@@ -136,7 +136,7 @@ static const char doc[] =
     "  foilgauge loop --table t.csv --response difference_um --model 1\n\n"
     "@exit_judged@";
 
-static void note_stiffness_status(stiffness_run *run, fg_status status) {
+static void keep_status(stiffness_run *run, fg_status status) {
   if (run->status == FG_OK) run->status = status;
 }
 
@@ -207,7 +207,7 @@ static error_t parse_break_away(int key, char *text, struct argp_state *state) {
   stiffness_run *run = state->input;
   switch (key) {
   case OPTION_BREAK_AWAY:
-    note_stiffness_status(run, add_break_away(run, text));
+    keep_status(run, add_break_away(run, text));
     return 0;
   case OPTION_LEVER:
     run->options.lever_mm = fg_cli_number(state, "lever", text, 1e-3, 1e6);
@@ -272,7 +272,7 @@ static error_t parse_stiffness_option(int key, char *text, struct argp_state *st
     run->outputs.decimal_comma = true;
     break;
   case ARGP_KEY_ARG:
-    note_stiffness_status(run, add_source(run, text));
+    keep_status(run, add_source(run, text));
     break;
   case ARGP_KEY_END:
     check_arguments(run, state);
@@ -303,7 +303,7 @@ static fg_status check_lot(fg_context *ctx, stiffness_run *run) {
   return status;
 }
 
-static fg_status measure_load_tests(fg_context *ctx, stiffness_run *run, int *code) {
+static fg_status measure_tests(fg_context *ctx, stiffness_run *run, int *code) {
   fg_report_outcome outcome;
   FG_TRY(run->status);
   fg_output_set_choose_standard(&run->outputs, OUT_JSON, OUT_TEXT, false);
@@ -335,7 +335,7 @@ int fg_cmd_stiffness(int argc, char **argv) {
   /* In order: an option counts for the files behind it. */
   fg_status parsed = fg_cli_parse_in_order(&ctx, &fg_stiffness_parser, argc, argv, &run);
   if (parsed != FG_OK) run.status = parsed;
-  fg_status status = measure_load_tests(&ctx, &run, &code);
+  fg_status status = measure_tests(&ctx, &run, &code);
   fg_output_set_close(&run.outputs);
   free(run.sources);
   free(run.break_away);

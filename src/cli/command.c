@@ -22,8 +22,8 @@ static void answer_help(const struct argp *parser, int argc, char **argv) {
   }
 }
 
-static fg_status parse_arguments(fg_context *ctx, const struct argp *parser, unsigned flags,
-                                 int argc, char **argv, void *input) {
+static fg_status parse_command_line(fg_context *ctx, const struct argp *parser, unsigned flags,
+                                    int argc, char **argv, void *input) {
   answer_help(parser, argc, argv);
   if (argp_parse(parser, argc, argv, flags, NULL, input) == 0) return FG_OK;
   return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: the command line");
@@ -31,12 +31,12 @@ static fg_status parse_arguments(fg_context *ctx, const struct argp *parser, uns
 
 fg_status fg_cli_parse(fg_context *ctx, const struct argp *parser, int argc, char **argv,
                        void *input) {
-  return parse_arguments(ctx, parser, 0, argc, argv, input);
+  return parse_command_line(ctx, parser, 0, argc, argv, input);
 }
 
 fg_status fg_cli_parse_in_order(fg_context *ctx, const struct argp *parser, int argc, char **argv,
                                 void *input) {
-  return parse_arguments(ctx, parser, ARGP_IN_ORDER, argc, argv, input);
+  return parse_command_line(ctx, parser, ARGP_IN_ORDER, argc, argv, input);
 }
 
 double fg_cli_number(struct argp_state *state, const char *name, const char *text, double lowest,

@@ -37,6 +37,7 @@ extern const fg_command fg_commands[]; /* ends with a row without a name */
 
 fg_command_run fg_cmd_measure;
 fg_command_run fg_cmd_doe;
+fg_command_run fg_cmd_doe_plan; /* `doe plan`: writes a run sheet */
 fg_command_run fg_cmd_design;
 fg_command_run fg_cmd_forming;
 fg_command_run fg_cmd_render;
@@ -87,9 +88,5 @@ enum { FG_CLI_DECIMAL_COMMA = 0x7001 };
 #define FG_CLI_ALLOW_LOSSY                                                                         \
   "Take scans that JPEG has compressed with loss, with the wider uncertainties that belong to "    \
   "them"
-
-/* Applies --form, which overrules the design's kind; NULL leaves it. */
-fg_status fg_cli_apply_forming(fg_context *ctx, const char *usage, fg_design *design);
-void fg_cli_write_usages(FILE *out); /* writes "classical, sinusoidal or discs" */
 
 #endif

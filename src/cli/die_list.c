@@ -83,43 +83,42 @@ static const char *word_at(const list *l, const char *name) {
   return column->words[column->word[l->row]];
 }
 
-static bool read_die_cell(const list *l, const char *name, double *value) {
+static bool read_number_at(const list *l, const char *name, double *value) {
   const fg_column *column = column_of(l, name);
   if (!column || (column->word && column->word[l->row] != FG_TABLE_NOT_A_WORD)) return false;
   *value = column->number[l->row].value;
   return true;
 }
 
-static fg_status refuse_die_column(const list *l, const char *name, const char *wanted) {
+static fg_status fail_at_cell(const list *l, const char *name, const char *wanted) {
   return fg_fail(l->ctx, FG_ERR_DATA, "%s: row %zu: %s must be %s", l->path, l->row + 1, name,
                  wanted);
 }
 
 static fg_status read_die_numbers(const list *l, fg_die_source *source) {
   double value;
-  if (read_die_cell(l, "tip_um", &value)) source->tip_um = value;
+  if (read_number_at(l, "tip_um", &value)) source->tip_um = value;
   if (word_at(l, "tip_um") || source->tip_um < 0)
-    return refuse_die_column(l, "tip_um", "a number from 0");
-  if (read_die_cell(l, "first_bump", &value)) {
+    return fail_at_cell(l, "tip_um", "a number from 0");
+  if (read_number_at(l, "first_bump", &value)) {
     if (value < 1 || value > 1000 || value != floor(value))
-      return refuse_die_column(l, "first_bump", "a whole number from 1");
+      return fail_at_cell(l, "first_bump", "a whole number from 1");
     source->first_bump = (int)value;
   }
-  return word_at(l, "first_bump") ? refuse_die_column(l, "first_bump", "a whole number from 1")
-                                  : FG_OK;
+  return word_at(l, "first_bump") ? fail_at_cell(l, "first_bump", "a whole number from 1") : FG_OK;
 }
 
 static fg_status read_words(const list *l, fg_die_source *source) {
   const char *half = word_at(l, "half"), *unit = word_at(l, "unit");
   const char *columns = word_at(l, "columns"), *reversed = word_at(l, "reversed");
   if (half && !fg_die_read_half(half, &source->half))
-    return refuse_die_column(l, "half", "concave or convex");
+    return fail_at_cell(l, "half", "concave or convex");
   if (unit && !fg_die_read_units(unit, source->unit))
-    return refuse_die_column(l, "unit", "mm, um or nm, or two of them: mm,um");
+    return fail_at_cell(l, "unit", "mm, um or nm, or two of them: mm,um");
   if (columns && !fg_die_read_columns(columns, source->column))
-    return refuse_die_column(l, "columns", "two numbers from 1: 1,3");
+    return fail_at_cell(l, "columns", "two numbers from 1: 1,3");
   if (reversed && strcmp(reversed, "yes") != 0 && strcmp(reversed, "no") != 0)
-    return refuse_die_column(l, "reversed", "yes or no");
+    return fail_at_cell(l, "reversed", "yes or no");
   if (reversed) source->reversed = !strcmp(reversed, "yes");
   return FG_OK;
 }
@@ -152,7 +151,7 @@ static fg_status read_die_rows(list *l, const fg_die_source *said, fg_die_source
   for (l->row = 0; l->row < l->table->rows; l->row++) {
     fg_die_source source = *said;
     const char *name = word_at(l, "profile");
-    if (!name) return refuse_die_column(l, "profile", "the name of a file");
+    if (!name) return fail_at_cell(l, "profile", "the name of a file");
     FG_TRY(read_words(l, &source));
     FG_TRY(read_die_numbers(l, &source));
     FG_TRY(make_path(l, name, sources, &source.path));

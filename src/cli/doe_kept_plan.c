@@ -83,7 +83,7 @@ static fg_status load_plan(fg_context *ctx, fg_doe_plan *plan) {
       inner.message);
 }
 
-fg_status fg_doe_plan_take(fg_context *ctx, const fg_doe_plan_request *request, fg_doe_plan *plan) {
+fg_status fg_doe_plan_find(fg_context *ctx, const fg_doe_plan_request *request, fg_doe_plan *plan) {
   fg_formula formula;
   if (!request->path && !strcmp(request->data, "-")) return FG_OK;
   if (request->path)

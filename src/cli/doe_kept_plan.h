@@ -26,7 +26,7 @@ typedef struct fg_doe_plan_request {
 
 /* FG_ERR_IO, FG_ERR_DATA as fg_plan_limits_load; the message says how to go on. Free with
  * fg_doe_plan_free. */
-fg_status fg_doe_plan_take(fg_context *ctx, const fg_doe_plan_request *request, fg_doe_plan *plan);
+fg_status fg_doe_plan_find(fg_context *ctx, const fg_doe_plan_request *request, fg_doe_plan *plan);
 void fg_doe_plan_free(fg_doe_plan *plan);
 
 #endif

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "cli/commands.h"
+#include "cli/known.h"
 #include "foilgauge/die.h"
 #include "foilgauge/experiment.h"
 #include "foilgauge/load_test.h"
@@ -167,7 +168,7 @@ static const fg_fact facts[] = {
     {"exit_partly", write_exit_partly},
     {"exit_done", write_exit_done},
     {"formats", write_formats},
-    {"forms", fg_cli_write_usages},
+    {"forms", fg_cli_write_foil_kinds},
     {"channels", write_channels},
     {"pages", write_pages},
     {"pixel_cap", write_pixel_cap},

@@ -2,10 +2,10 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "cli/commands.h"
+#include "cli/known.h"
 #include "foilgauge/foil_kind.h"
 
-void fg_cli_write_usages(FILE *out) {
+void fg_cli_write_foil_kinds(FILE *out) {
   char list[200];
   fg_foil_kind_list(true, "", " or ", list, sizeof list);
   fputs(list, out);
@@ -20,7 +20,7 @@ static void list_needed(const fg_foil_traits *traits, char *text, size_t size) {
   }
 }
 
-fg_status fg_cli_apply_forming(fg_context *ctx, const char *name, fg_design *design) {
+fg_status fg_cli_apply_foil_kind(fg_context *ctx, const char *name, fg_design *design) {
   fg_foil_kind kind;
   char list[300];
   if (!name) return FG_OK;

@@ -37,7 +37,7 @@ static void read_thickness(struct argp_state *state, const char *text, fg_cli_kn
                text);
 }
 
-bool fg_cli_take_known(struct argp_state *state, int key, const char *text, fg_cli_known *known) {
+bool fg_cli_parse_known(struct argp_state *state, int key, const char *text, fg_cli_known *known) {
   if (key == FG_CLI_TONE)
     read_tone(state, text, known);
   else if (key == FG_CLI_THICKNESS)

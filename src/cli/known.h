@@ -3,6 +3,8 @@
 #ifndef FG_CLI_KNOWN_H
 #define FG_CLI_KNOWN_H
 
+#include <stdio.h>
+
 #include "foilgauge/design.h"
 
 struct argp_state;
@@ -31,10 +33,14 @@ enum { FG_CLI_TONE = 0x7002, FG_CLI_THICKNESS = 0x7003 };
   }
 
 /* Reads an option of these rows; false: it is another one. A wrong argument ends the program. */
-bool fg_cli_take_known(struct argp_state *state, int key, const char *text, fg_cli_known *known);
+bool fg_cli_parse_known(struct argp_state *state, int key, const char *text, fg_cli_known *known);
 
-/* Writes it into the design, and notes on standard error what it overrules. Check the design
+/* Writes it into the design, and notes the overruled values on standard error. Check the design
  * afterwards. */
 void fg_cli_apply_known(const fg_cli_known *known, fg_design *design);
+
+/* Applies --form, which overrules the design's kind; NULL leaves it. */
+fg_status fg_cli_apply_foil_kind(fg_context *ctx, const char *kind, fg_design *design);
+void fg_cli_write_foil_kinds(FILE *out); /* writes "classical, sinusoidal or discs" */
 
 #endif

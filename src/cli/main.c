@@ -6,7 +6,6 @@
 
 #include "cli/commands.h"
 #include "cli/interrupt.h"
-#include "cli/stack.h"
 #include "cli/standard.h"
 
 static void print_help(FILE *out) {

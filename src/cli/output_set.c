@@ -65,7 +65,7 @@ static fg_status write_one(fg_context *ctx, fg_output_set *set, size_t kind,
 }
 
 /* Removes committed outputs when a later one fails: none may look finished. */
-static void take_back(const fg_output_set *set, size_t committed) {
+static void remove_committed(const fg_output_set *set, size_t committed) {
   for (size_t kind = 0; kind < committed; kind++) {
     const char *path = set->path[kind];
     struct stat info;
@@ -84,7 +84,7 @@ fg_status fg_output_set_write(fg_context *ctx, fg_output_set *set, fg_output_wri
     if (!set->open[kind]) continue;
     fg_status status = fg_output_commit(ctx, &set->output[kind]);
     if (status == FG_OK) continue;
-    take_back(set, kind);
+    remove_committed(set, kind);
     return status;
   }
   return FG_OK;
@@ -94,4 +94,12 @@ void fg_output_set_close(fg_output_set *set) {
   fg_overwrite_free(&set->overwrite);
   for (size_t kind = 0; kind < set->count; kind++)
     if (set->open[kind]) fg_output_discard(&set->output[kind]);
+}
+
+void fg_loop_outputs_choose(fg_output_set *set) {
+  if (set->path[FG_LOOP_JSON] || fg_output_set_has_standard(set)) return;
+  if (isatty(STDOUT_FILENO))
+    set->path[FG_LOOP_TEXT] = "-";
+  else if (!set->path[FG_LOOP_HTML] && !set->path[FG_LOOP_MODEL])
+    set->path[FG_LOOP_JSON] = "-";
 }

@@ -51,4 +51,17 @@ fg_status fg_output_set_write(fg_context *ctx, fg_output_set *set, fg_output_wri
                               void *user);
 void fg_output_set_close(fg_output_set *set); /* removes outputs that were not committed */
 
+/* Outputs of `loop`, on tables and on scans. */
+typedef enum fg_loop_output {
+  FG_LOOP_HTML,
+  FG_LOOP_MODEL,
+  FG_LOOP_JSON,
+  FG_LOOP_TEXT,
+  FG_LOOP_OUTPUTS
+} fg_loop_output;
+
+/* Sends results without -o to standard output: as text on a terminal, else as JSON where no file
+ * was asked for. */
+void fg_loop_outputs_choose(fg_output_set *set);
+
 #endif

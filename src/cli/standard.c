@@ -3,8 +3,11 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include "foilgauge/file.h"
@@ -46,7 +49,7 @@ static void flush_output(int code, void *unused) {
 
 /* Messages may hold names and texts from files; no control character of those reaches a terminal
  * or a log. */
-static ssize_t write_standard_output(void *unused, const char *bytes, size_t size) {
+static ssize_t write_visible(void *unused, const char *bytes, size_t size) {
   enum { PIECE = 1024 };
   char visible[4 * PIECE];
   (void)unused;
@@ -59,7 +62,7 @@ static ssize_t write_standard_output(void *unused, const char *bytes, size_t siz
 }
 
 static void filter_errors(void) {
-  static const cookie_io_functions_t functions = {.write = write_standard_output};
+  static const cookie_io_functions_t functions = {.write = write_visible};
   FILE *stream = fopencookie(NULL, "w", functions);
   if (!stream) return;
   setvbuf(stream, NULL, _IONBF, 0);
@@ -73,4 +76,25 @@ void fg_standard_start(void) {
   if (!isatty(STDOUT_FILENO)) setvbuf(stdout, buffer, _IOFBF, sizeof buffer);
   on_exit(flush_output, NULL);
   filter_errors();
+}
+
+/* SLACK: the stack in use already, and the gap below it. */
+enum { RESERVED_BYTES = 2 << 20, SLACK_BYTES = 1 << 17 };
+
+static __attribute__((noinline)) void touch_far_end(void) {
+  char block[RESERVED_BYTES];
+  __asm__ volatile("" : : "r"(block) : "memory"); /* it is there, for all that the compiler knows */
+  *(volatile char *)block = 0;
+}
+
+bool fg_stack_reserve(void) {
+  struct rlimit stack;
+  if (getrlimit(RLIMIT_STACK, &stack) == 0 && stack.rlim_cur < 2 * RESERVED_BYTES) return true;
+  /* Growing would be fatal where it fails; asking for as much is not. */
+  void *probe = mmap(NULL, RESERVED_BYTES + SLACK_BYTES, PROT_READ | PROT_WRITE,
+                     MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (probe == MAP_FAILED) return false;
+  munmap(probe, RESERVED_BYTES + SLACK_BYTES);
+  touch_far_end();
+  return true;
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Designs of every kind: their common members, and the change of a kind. */
+/* Designs of every kind: what they have in common, and how the kind is changed. */
 #include "geometry/foil_kind.h"
 
 #include <math.h>
@@ -11,10 +11,10 @@ fg_status fg_design_check_positive(fg_context *ctx, const char *member, double v
   return fg_fail(ctx, FG_ERR_DATA, "%s is %g; it must be a number above 0", member, value);
 }
 
-/* A thickness this many times the design's, or its inverse, has another unit. */
+/* A thickness this many times the design's, or its inverse, is in another unit. */
 static const double thickness_times = 10;
 
-/* Checks a stated thickness; 0: not stated. The scan of a flat or round part shows no thickness. */
+/* 0: not stated. The scan of what lies flat, or is round, shows no thickness. */
 static fg_status check_thickness_measured(fg_context *ctx, const fg_design *design) {
   static const char *const name = "thickness_measured";
   double value = design->thickness_measured_mm, u = design->u_thickness_measured_mm;
@@ -100,7 +100,7 @@ void fg_design_group_default(fg_design_group group, fg_design_values *values) {
   if (group == FG_DESIGN_BUMPS) values->bumps = gen2_bumps;
 }
 
-/* One member of a group, and its state. */
+/* One member of a group, for the question whether it is stated. */
 typedef struct stated_member {
   fg_design_group group;
   const char *name;

@@ -61,7 +61,7 @@ void fg_foil_give_up(fg_foil *foil, const char *why) {
   forget_overall(&foil->overall);
 }
 
-/* Position of a bump without a circle: the direction of the middle of its stretch of the strip. */
+/* Of a bump without a circle: the direction of the middle of its stretch of the strip. */
 static double stretch_position_deg(const fg_foil *foil, fg_range range) {
   double x = 0, y = 0;
   for (size_t k = range.first; k <= range.last; k++) {
@@ -128,8 +128,8 @@ static bool is_beyond(double value, double reference, double factor) {
   return value > factor * reference || value < reference / factor;
 }
 
-/* Flags bumps against their median, the design as changed by the foil's springback. A median far
- * off the design comes from crushed bumps, and is no reference. */
+/* Bumps are held against their median, which is what the foil's springback made of the design; one
+ * that is itself far off the design is that of crushed bumps, and no reference. */
 static void flag_bumps(fg_context *ctx, const fg_design *design, const fg_nominal *nominal,
                        fg_foil *foil) {
   double height = median_of(ctx, foil, get_height), radius = median_of(ctx, foil, get_radius);
@@ -147,7 +147,7 @@ static void flag_bumps(fg_context *ctx, const fg_design *design, const fg_nomina
   }
 }
 
-/* Orders the bumps from the lip, without one: clockwise as seen. */
+/* Puts the bumps into order from the lip, without one: clockwise as seen. */
 static void order_bumps(const fg_layout *layout, fg_foil *foil) {
   size_t n = foil->bump_count;
   double turn =
@@ -166,8 +166,7 @@ static void order_bumps(const fg_layout *layout, fg_foil *foil) {
   }
 }
 
-/* Flags bumps of a foil whose line may have gone over to another's: it is uncertain which bump
- * belongs to which. */
+/* Where a foil's line may have gone over to another's, which bump is whose cannot be trusted. */
 static void flag_mixed_bumps(fg_foil *foil) {
   if (!(foil->flags & FG_FOIL_TOUCHES_OTHER) || !(foil->flags & FG_FOIL_BUMP_COUNT)) return;
   for (size_t i = 0; i < foil->bump_count; i++)
@@ -220,8 +219,7 @@ fg_status fg_foil_fill_bumps(fg_context *ctx, const fg_design *design, fg_layout
   return fg_labels_fill(ctx, layout, design->datum, foil);
 }
 
-/* Suggests kind arc when a plain strip was measured as a foil with bumps: the design is wrong, not
- * the scan. */
+/* A plain strip that was taken for a foil with bumps: the design is wrong, not the scan. */
 static fg_status hint_at_arc(fg_context *ctx, const fg_design *design, const fg_strip *strip,
                              const char **error) {
   fg_layout plain;
@@ -243,8 +241,8 @@ fg_status fg_foil_lay_out_bumps(fg_context *ctx, const fg_design *design, unsign
   return status;
 }
 
-/* Returns true for a foil with the design's shape but not its size: it was scanned at another
- * resolution than stated, and every number would be wrong by the same factor. */
+/* A foil that is the design's in shape but not in size was scanned at another resolution than was
+ * said; every number would be wrong by the same factor. */
 static bool is_off_scale(const fg_design *design, const fg_layout *layout, const fg_strip *strip,
                          double *factor) {
   *factor = layout->overall.circle.radius / design->overall_radius_mm;

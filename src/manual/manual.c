@@ -31,7 +31,7 @@ static int complain(const char *path, const char *what) {
   return 1;
 }
 
-static FILE *create_page_file(const char *folder, const char *name) {
+static FILE *create_output(const char *folder, const char *name) {
   char path[4096];
   snprintf(path, sizeof path, "%s/%s", folder, name);
   FILE *out = fopen(path, "w");
@@ -66,7 +66,7 @@ static int write_manual_page(manual *all, const char *path, const fg_manual_text
   snprintf(name, sizeof name, "%.64s.%c", text->name, text->section);
   strcpy(all->name[all->pages++], name);
   snprintf(place, sizeof place, "man/%s", name);
-  FILE *out = create_page_file(all->folder, place);
+  FILE *out = create_output(all->folder, place);
   if (!out) return 1;
   bool known = fg_manual_write_page(text, command, out);
   fprintf(all->examples, "# %s\n", name);
@@ -129,8 +129,8 @@ int main(int argc, char **argv) {
     snprintf(path, sizeof path, "%s%s", argv[1], folders[i]);
     if (mkdir(path, 0777) != 0 && errno != EEXIST) return complain(path, strerror(errno));
   }
-  FILE *completion = create_page_file(all.folder, "completion/foilgauge");
-  all.examples = create_page_file(all.folder, "man/examples");
+  FILE *completion = create_output(all.folder, "completion/foilgauge");
+  all.examples = create_output(all.folder, "man/examples");
   if (!completion || !all.examples) return 1;
   for (int i = 2; i < argc; i++)
     failed |= read_page(&all, argv[i]);

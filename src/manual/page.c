@@ -22,14 +22,14 @@ static void fill_facts(const char *text, bool *known, char **whole) {
   if (fclose(out) != 0) abort();
 }
 
-static void write_command_name(const char *text, FILE *out) {
+static void write_escaped(const char *text, FILE *out) {
   fg_roff_escape(text, strlen(text), out);
 }
 
-static void write_synopsis_call(const char *words, const char *arguments, size_t length,
+static void write_synopsis_line(const char *words, const char *arguments, size_t length,
                                 FILE *out) {
   fputs(".br\n.B foilgauge ", out);
-  write_command_name(words, out);
+  write_escaped(words, out);
   fputs("\n[\\fIOPTION\\fR...] \\fI", out);
   fg_roff_escape(arguments, length, out);
   fputs("\\fR\n", out);
@@ -42,7 +42,7 @@ static void write_synopsis(const fg_command *command, FILE *out) {
     const char *arguments = command->usage[i].parser->args_doc;
     do {
       size_t length = strcspn(arguments, "\n");
-      write_synopsis_call(command->usage[i].words, arguments, length, out);
+      write_synopsis_line(command->usage[i].words, arguments, length, out);
       arguments += length;
     } while (*arguments++ == '\n');
   }
@@ -93,11 +93,11 @@ static void write_option(const struct argp_option *option, bool *known, FILE *ou
   fputs(".TP\n", out);
   if (option->key > ' ' && option->key < 127) fprintf(out, "\\fB\\-%c\\fR, ", option->key);
   fputs("\\fB\\-\\-", out);
-  write_command_name(option->name, out);
+  write_escaped(option->name, out);
   fputs("\\fR", out);
   if (option->arg) {
     fputs(optional ? "[=\\fI" : "=\\fI", out);
-    write_command_name(option->arg, out);
+    write_escaped(option->arg, out);
     fputs(optional ? "\\fR]" : "\\fR", out);
   }
   fputc('\n', out);
@@ -181,9 +181,9 @@ static void write_head(const fg_manual_text *text, FILE *out) {
     fputc(*c >= 'a' && *c <= 'z' ? *c - 32 : *c, out);
   fprintf(out, "\" \"%c\" \"\" \"foilgauge %s\" \"foilgauge\"\n.ad l\n.SH NAME\n", text->section,
           FOILGAUGE_VERSION);
-  write_command_name(text->name, out);
+  write_escaped(text->name, out);
   fputs(" \\- ", out);
-  write_command_name(text->summary, out);
+  write_escaped(text->summary, out);
   fputc('\n', out);
 }
 

@@ -31,12 +31,12 @@ enum { WORKERS_MAX = 63 };
  * fill the memory with tiles. */
 #define WAITING_BYTES_MAX ((size_t)32 << 20)
 
-/* An island in a worker. */
+/* An island on its way through a worker. */
 typedef struct job {
   fg_island island;
   fg_tiles view;
   int64_t origin_px[2];
-  double background; /* kind cantilever: level of the scan's border */
+  double background; /* form cantilever: level of the scan's border */
 } job;
 
 struct fg_session {
@@ -45,21 +45,21 @@ struct fg_session {
   unsigned threads;
   fg_thread workers[WORKERS_MAX];
   unsigned worker_count;
-  pthread_mutex_t lock; /* of all members below */
+  pthread_mutex_t lock; /* of everything below */
   pthread_cond_t changed;
   job *queue;
   size_t queued, queue_capacity, taken;
-  size_t waiting_bytes; /* of the jobs in the queue */
-  bool ended;           /* no more jobs will be queued */
+  size_t waiting_bytes; /* of the jobs that are queued and not taken */
+  bool ended;           /* nothing more will be queued */
   fg_status status;
   fg_context context;
-  size_t light, dark;  /* number of islands by polarity */
-  fg_flat_parts parts; /* kind cantilever */
+  size_t light, dark;  /* islands by polarity */
+  fg_flat_parts parts; /* form cantilever */
   fg_gauge_sightings sightings;
   size_t foil_capacity;
 };
 
-/* Adds a measured foil to the results; on failure it is freed. */
+/* Puts a measured foil into the results; on failure it is freed. */
 static fg_status append_foil(fg_context *ctx, fg_session *s, fg_foil *foil) {
   fg_measurement *m = s->measurement;
   pthread_mutex_lock(&s->lock);
@@ -85,18 +85,18 @@ static double expected_width_px(const fg_measurement *m) {
   return m->design.thickness_mm * sqrt(m->dpi[0] * m->dpi[1]) / 25.4;
 }
 
-/* Returns the diagonal of the smallest object that may be a foil. */
+/* Diagonal of the smallest object that may be a foil. */
 static double min_foil_px(const fg_measurement *m) {
   return fg_foil_row_of(m->design.kind)->min_object_mm(&m->design) * sqrt(m->dpi[0] * m->dpi[1]) /
          25.4;
 }
 
-/* Returns the diagonal of the smallest object that is no dust: a foil or a gauge. */
+/* Of the smallest that is no dust: a foil or a gauge. */
 static double min_object_px(const fg_measurement *m) {
   return fmin(min_foil_px(m), fg_gauge_min_px(m));
 }
 
-/* Finds the loss of a file that declares itself a JPEG, or whose pixels show one. */
+/* Of a file that says itself that it is a JPEG, or of one whose pixels do. */
 static void find_loss(const fg_measurement *m, fg_strip *strip) {
   int quality = m->jpeg_quality ? m->jpeg_quality : strip->picture.block_quality;
   double um = 25400 / sqrt(m->dpi[0] * m->dpi[1]);
@@ -105,8 +105,7 @@ static void find_loss(const fg_measurement *m, fg_strip *strip) {
   strip->loss_um = um * fg_loss_edge_px(quality, 255 * strip->contrast, blur_px);
 }
 
-/* Measures a foil from one trace. A failed measurement is a flag; a trace of another object is a
- * speck. */
+/* A foil from one trace. What cannot be measured is a flag; what is no foil is a speck. */
 static fg_status measure_trace(fg_context *ctx, fg_session *s, const job *j,
                                const fg_segmentation *seg, const fg_trace *trace) {
   const fg_measurement *m = s->measurement;
@@ -138,10 +137,9 @@ typedef struct traced {
   size_t count;
 } traced;
 
-/* Returns true for a trace of a measured strip: a gap parts a strip into two objects, and each
- * one's trace runs over it along the whole strip. */
+/* A gap parts a strip into two objects, and each one's trace runs over it along the whole strip. */
 static bool is_traced(const traced *done, const fg_trace *trace) {
-  for (size_t i = 0; i + 1 < done->count; i++) /* the last list belongs to the object itself */
+  for (size_t i = 0; i + 1 < done->count; i++) /* the last one is its own object's */
     for (size_t k = 0; k < done->lists[i].count; k++)
       if (fg_trace_is_same(&done->lists[i].traces[k], trace)) return true;
   return false;
@@ -157,7 +155,7 @@ static fg_status keep_sightings(fg_context *ctx, fg_session *s, fg_gauge_sightin
   return status;
 }
 
-/* Measures the object of a trace: a gauge, or a foil. */
+/* Object that a trace shows: a gauge, or a foil. */
 static fg_status measure_gauge_or_foil(fg_context *ctx, fg_session *s, const job *j,
                                        const fg_gauge_object *object, const fg_trace *trace,
                                        fg_gauge_sightings *seen) {
@@ -207,7 +205,7 @@ static void free_job(job *j) {
   fg_island_free(&j->island);
 }
 
-/* Moves the island to tiles of its own. */
+/* Puts the island on tiles of its own. */
 static fg_status anchor_job(fg_context *ctx, fg_session *s, job *j) {
   const fg_anchor_options options = {.min_px = min_object_px(s->measurement),
                                      .border_px =
@@ -224,7 +222,7 @@ static fg_status anchor_job(fg_context *ctx, fg_session *s, job *j) {
   return FG_OK;
 }
 
-/* Measures a flat island. It needs no anchor: its edges do not depend on the tiles' corners. */
+/* Its edges lie where its pixels have them, wherever tiles' corners are: it needs no anchor. */
 static fg_status measure_flat(fg_context *ctx, fg_session *s, const job *j) {
   fg_flat_parts parts = {0};
   const fg_flat_island island = {&j->view, &j->island, j->origin_px, j->background};
@@ -250,12 +248,12 @@ static fg_status measure_island(fg_context *ctx, fg_session *s, job *j) {
   return status;
 }
 
-/* Memory of a job's pixels, roughly, with the tiles around the island. */
+/* About what a job's pixels take, the tiles around the island with them. */
 static size_t job_bytes(const job *j) {
   return j->island.count * 3 * FG_TILE_PX * FG_TILE_PX * (size_t)j->view.bytes_per_pixel;
 }
 
-/* Returns the next job of the queue; waits for one while more may come. */
+/* The next job of the queue; waits for one while more may come. */
 static bool take_job(fg_session *s, bool wait, job *j) {
   pthread_mutex_lock(&s->lock);
   while (wait && s->taken == s->queued && !s->ended && s->status == FG_OK)
@@ -308,8 +306,8 @@ fg_status fg_session_create(fg_context *ctx, fg_measurement *measurement, unsign
   return FG_OK;
 }
 
-/* Starts the workers. Islands need the tiles' size, which is known with the first strip; workers
- * start with the first island: most scans need none before their end. */
+/* Islands are made from the tiles' size, which is known with the first strip. Workers start with
+ * the first island: most scans need none before their end. */
 static fg_status start_workers(fg_session *s) {
   while (s->worker_count + 1 < s->threads && s->worker_count < WORKERS_MAX &&
          fg_thread_start(&s->workers[s->worker_count], run_worker, s) == FG_OK)
@@ -334,7 +332,7 @@ static fg_status push_job(fg_context *ctx, fg_session *s, const job *j) {
   return status;
 }
 
-/* Finds the level of the border of the rows read so far: the median of its outermost blocks. */
+/* Level of the border of what has been read: the median of its outermost blocks. */
 static fg_status find_background(fg_context *ctx, const fg_tiles *tiles, double *level) {
   int32_t w = tiles->block_columns, h = tiles->received * FG_BLOCKS_PER_TILE;
   if (h > tiles->block_rows) h = tiles->block_rows;
@@ -352,7 +350,7 @@ static fg_status find_background(fg_context *ctx, const fg_tiles *tiles, double 
   return FG_OK;
 }
 
-/* Hands an island to the workers; dust is counted and released. */
+/* Hands an island to the workers; dust is counted and forgotten. */
 static fg_status take_island(fg_context *ctx, fg_session *s, fg_tiles *tiles, fg_island *island) {
   if (hypot(island->width, island->height) * FG_TILE_PX < min_object_px(s->measurement)) {
     fg_island_release(tiles, island);
@@ -403,8 +401,7 @@ static int compare_columns(const void *a, const void *b) {
   return (p[1] > q[1]) - (p[1] < q[1]);
 }
 
-/* Returns true when two foils lie side by side: their heights overlap by half of the lower one's.
- */
+/* Whether two foils lie side by side: their heights overlap by half of the lower one's. */
 static bool is_beside(const fg_foil *a, const fg_foil *b) {
   const int64_t *p = a->strip.box_px, *q = b->strip.box_px;
   int64_t top = p[1] > q[1] ? p[1] : q[1];
@@ -412,7 +409,7 @@ static bool is_beside(const fg_foil *a, const fg_foil *b) {
   return 2 * (low - top) > (p[3] < q[3] ? p[3] : q[3]);
 }
 
-/* Sorts foils into rows of the bed: those beside the tallest one, from its top on, are its row. */
+/* Foils that lie beside the tallest one of a row, from its top on, are that row of the bed. */
 static void sort_foils(fg_measurement *m) {
   if (!m->foil_count) return;
   qsort(m->foils, m->foil_count, sizeof *m->foils, compare_boxes);
@@ -429,7 +426,7 @@ static void sort_foils(fg_measurement *m) {
     m->foils[i].number = (int)i + 1;
 }
 
-/* Ends the queue: the workers finish it and end. */
+/* No more islands: the workers run out and end. */
 static void end_work(fg_session *s) {
   pthread_mutex_lock(&s->lock);
   s->ended = true;
@@ -437,7 +434,7 @@ static void end_work(fg_session *s) {
   pthread_mutex_unlock(&s->lock);
 }
 
-/* Counts strips and discs that are no gauge of the design. */
+/* Strips and discs that are no gauge of the design. */
 static void count_unmatched(fg_session *s) {
   size_t found = 0;
   for (size_t i = 0; i < s->measurement->design.gauge_count; i++)
@@ -465,7 +462,7 @@ fg_status fg_session_finish(fg_context *ctx, fg_session *s) {
 void fg_session_free(fg_session *s) {
   if (!s) return;
   pthread_mutex_lock(&s->lock);
-  if (s->status == FG_OK) s->status = FG_ERR_INTERRUPTED; /* islands are left in the queue */
+  if (s->status == FG_OK) s->status = FG_ERR_INTERRUPTED; /* queued islands are left */
   pthread_mutex_unlock(&s->lock);
   end_work(s);
   for (unsigned i = 0; i < s->worker_count; i++)

@@ -63,7 +63,7 @@ static void begin_path(const fg_canvas *canvas, fg_pen pen) {
   fputs(" d=\"", canvas->svg);
 }
 
-static void put_canvas_line(const fg_canvas *canvas, point_px *px, size_t count) {
+static void put_svg_line(const fg_canvas *canvas, point_px *px, size_t count) {
   for (size_t i = 0; i < count; i++)
     fprintf(canvas->svg, "%c%.2f %.2f", i ? 'L' : 'M', px[i][0] + 0.5, px[i][1] + 0.5);
 }
@@ -72,7 +72,7 @@ static fg_status draw_line(fg_context *ctx, fg_canvas *canvas, point_px *px, siz
                            fg_pen pen) {
   if (canvas->svg) {
     begin_path(canvas, pen);
-    put_canvas_line(canvas, px, count);
+    put_svg_line(canvas, px, count);
     fputs("\"/>\n", canvas->svg);
     return FG_OK;
   }
@@ -107,7 +107,7 @@ fg_status fg_canvas_segments(fg_context *ctx, fg_canvas *canvas, const fg_point 
     to_px(canvas, mm[i][0], ends[0]);
     to_px(canvas, mm[i][1], ends[1]);
     if (canvas->svg)
-      put_canvas_line(canvas, ends, 2);
+      put_svg_line(canvas, ends, 2);
     else
       FG_TRY(fg_cv_draw_line(ctx, canvas->rgb, ends[0], 2, pen.colour,
                              raster_width(canvas, pen.width)));

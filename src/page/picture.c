@@ -84,7 +84,7 @@ static fg_status reduce_rows(fg_context *ctx, reducer *work, fg_picture *picture
   return FG_OK;
 }
 
-static fg_status allocate_picture(fg_context *ctx, reducer *work, fg_picture *picture) {
+static fg_status allocate_reducer(fg_context *ctx, reducer *work, fg_picture *picture) {
   const fg_scan_info *info = fg_scan_get_info(work->scan);
   size_t width = (size_t)picture->width, columns = (size_t)work->box[2];
   void *block;
@@ -142,7 +142,7 @@ fg_status fg_picture_load(fg_context *ctx, const fg_measurement *measurement,
   choose_size(box_px, width_max, pixels_max, picture);
   FG_TRY_EXIT(fg_scan_open(ctx, measurement->scan, &options, &work.scan));
   FG_TRY_EXIT(check_same(ctx, measurement, work.scan));
-  FG_TRY_EXIT(allocate_picture(ctx, &work, picture));
+  FG_TRY_EXIT(allocate_reducer(ctx, &work, picture));
   FG_TRY_EXIT(reduce_rows(ctx, &work, picture));
 exit:
   fg_scan_close(work.scan);

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A number with its uncertainty, and a length, as sentences write them. */
 #include "report/value_words.h"
 
 #include <math.h>
+#include <stdbool.h>
+#include <string.h>
 
 #include "core/text.h"
 #include "foilgauge/report.h"
@@ -26,4 +27,21 @@ void fg_scan_loop_length_words(double um, char *words, size_t size) {
     fg_text_clip(words, size, "%.3g nm", 1000 * um);
   else
     fg_text_clip(words, size, "%.3g µm", um);
+}
+
+enum { LINE = 100 }; /* columns of a terminal */
+
+void fg_write_wrapped(FILE *out, const char *first, const char *indent, const char *text) {
+  size_t column = strlen(first);
+  fputs(first, out);
+  for (bool begin = true; *text; begin = false) {
+    size_t length = strcspn(text, " ");
+    bool fits = column + 1 + length <= LINE;
+    if (!begin) fputs(fits ? " " : "\n", out);
+    if (!begin && !fits) fputs(indent, out);
+    column = begin ? column + length : (fits ? column + 1 : strlen(indent)) + length;
+    fwrite(text, 1, length, out);
+    text += length + (text[length] == ' ');
+  }
+  fputc('\n', out);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Who may ask, and what: every request passes here. */
+/* Access and routes: every request passes here. */
 #include "station/answer.h"
 
 #include <stdlib.h>
@@ -7,7 +7,6 @@
 
 #include "core/text.h"
 #include "page/page.h"
-#include "station/actions.h"
 #include "station/news.h"
 #include "station/pages.h"
 #include "station/reach.h"
@@ -45,8 +44,8 @@ static const struct {
 
 enum { PAGES = sizeof pages / sizeof *pages, ACTIONS = sizeof actions / sizeof *actions };
 
-/* A page of its own for what went wrong, in the answer. */
-static void answer_words(fg_answer *answer, int code, const char *words) {
+/* Answers with a page that states the error. */
+static void write_error_page(fg_answer *answer, int code, const char *words) {
   free(answer->body);
   *answer = (fg_answer){.code = code, .type = HTML};
   FILE *out = open_memstream(&answer->body, &answer->size);
@@ -115,7 +114,7 @@ static bool is_page(const char *path) {
 static bool may_ask(const fg_inspection *station, const fg_request *request, fg_answer *answer) {
   const char *token = station->request->token, *origin = station->request->origin;
   if (!fg_reach_is_host(station, request->host)) {
-    answer_words(
+    write_error_page(
         answer, 421,
         "This address is not the station's: use one that it printed, or start it with --host for "
         "another name.");
@@ -123,19 +122,21 @@ static bool may_ask(const fg_inspection *station, const fg_request *request, fg_
   }
   if (token && !has_cookie(request, token)) {
     if (!request->post && same_secret(fg_request_get(request, "token"), token)) {
-      answer_words(answer, 303, "");
-      /* To a page of our own: what else the address holds may lead anywhere ("//elsewhere"). */
+      write_error_page(answer, 303, "");
+      /* Redirects to a page of this station alone: any other path may lead elsewhere
+       * ("//elsewhere"). */
       strcpy(answer->location, is_page(request->path) ? request->path : "/");
       snprintf(answer->cookie, sizeof answer->cookie,
                "foilgauge=%s; HttpOnly; SameSite=Strict; Path=/%s", token,
                origin && !strncmp(origin, "https:", 6) ? "; Secure" : "");
       return false;
     }
-    answer_words(answer, 401, "Open the address that the station printed: it carries the token.");
+    write_error_page(answer, 401,
+                     "Open the address that the station printed: it carries the token.");
     return false;
   }
   if (request->post && !has_our_csrf_token(station, request)) {
-    answer_words(
+    write_error_page(
         answer, 403,
         "This form is not from this station as it runs now: go back and load the page again.");
     return false;
@@ -148,7 +149,7 @@ static void write_route_page(fg_inspection *station, const fg_request *request, 
   fg_context ctx = {.message = ""};
   FILE *out = open_memstream(&answer->body, &answer->size);
   if (!out) {
-    answer_words(answer, 500, "out of memory");
+    write_error_page(answer, 500, "out of memory");
     return;
   }
   if (!page->slow) pthread_mutex_lock(&station->database.reading);
@@ -160,7 +161,7 @@ static void write_route_page(fg_inspection *station, const fg_request *request, 
                         .own_style = page->own_style,
                         .body = answer->body,
                         .size = answer->size};
-  if (status != FG_OK) answer_words(answer, code_of(status), ctx.message);
+  if (status != FG_OK) write_error_page(answer, code_of(status), ctx.message);
 }
 
 static void give_text(fg_answer *answer, const char *type, const char *text) {
@@ -175,12 +176,12 @@ static void act(fg_inspection *station, const fg_request *request, fg_action *ac
   fg_context ctx = {.message = ""};
   *answer = (fg_answer){.code = 303, .type = HTML};
   fg_status status = action(&ctx, station, request, answer);
-  if (status != FG_OK) answer_words(answer, code_of(status), ctx.message);
+  if (status != FG_OK) write_error_page(answer, code_of(status), ctx.message);
 }
 
 /* The count of news, for pages that wait for more. The reply ends the connection: the browser asks
  * again by itself. Nothing here waits for the database. */
-static void tell_events(fg_inspection *station, const fg_request *request, fg_answer *answer) {
+static void answer_events(fg_inspection *station, const fg_request *request, fg_answer *answer) {
   long long news = fg_station_news(station);
   *answer = (fg_answer){.code = 200, .type = "text/event-stream"};
   answer->wait = news == request->last_event;
@@ -191,9 +192,9 @@ static void tell_events(fg_inspection *station, const fg_request *request, fg_an
   fclose(out);
 }
 
-/* The heartbeat of a page: the count of news, and the time. A station that answers it stands behind
- * a page with that count. */
-static void tell_alive(fg_inspection *station, fg_answer *answer) {
+/* Answers a page's heartbeat: the count of news, and the time. The answer confirms a page with
+ * that count. */
+static void answer_heartbeat(fg_inspection *station, fg_answer *answer) {
   *answer = (fg_answer){.code = 200, .type = "text/plain; charset=utf-8"};
   FILE *out = open_memstream(&answer->body, &answer->size);
   if (!out) return;
@@ -213,9 +214,9 @@ static bool give_fixed(fg_inspection *station, const fg_request *request, fg_ans
   else if (!strcmp(request->path, "/trends.js"))
     give_text(answer, "text/javascript; charset=utf-8", fg_trend_script);
   else if (!strcmp(request->path, "/events"))
-    tell_events(station, request, answer);
+    answer_events(station, request, answer);
   else if (!strcmp(request->path, "/alive"))
-    tell_alive(station, answer);
+    answer_heartbeat(station, answer);
   else
     return false;
   return true;
@@ -235,5 +236,5 @@ void fg_station_answer(fg_inspection *station, const fg_request *request, fg_ans
       act(station, request, actions[i].act, answer);
       return;
     }
-  answer_words(answer, 404, "There is no such page.");
+  write_error_page(answer, 404, "There is no such page.");
 }

@@ -8,11 +8,11 @@
 
 #include "core/text.h"
 #include "foilgauge/measure.h"
-#include "station/actions.h"
 #include "station/check_fit.h"
 #include "station/check_state.h"
 #include "station/keep.h"
 #include "station/news.h"
+#include "station/pages.h"
 
 #define MS_PER_HOUR INT64_C(3600000)
 
@@ -55,7 +55,7 @@ static fg_status insert_check(fg_context *ctx, sqlite3 *writer, const check_resu
   return fg_query_end(ctx, &query, "keeping a check");
 }
 
-/* The same bytes a second time are no second check. */
+/* Keeps the state of a check; the same bytes again are no second check. */
 static fg_status insert_state(fg_context *ctx, sqlite3 *writer, const check_result *check) {
   if (!sqlite3_changes(writer)) return FG_OK;
   return fg_check_state_keep(ctx, writer, sqlite3_last_insert_rowid(writer), &check->state);
@@ -71,8 +71,8 @@ static fg_status keep_check(fg_context *ctx, fg_inspection *station, const check
   return fg_station_database_end(ctx, database, status);
 }
 
-static fg_status refuse_check(fg_context *ctx, fg_inspection *station, const fg_station_file *file,
-                              const char *words) {
+static fg_status keep_refused_check(fg_context *ctx, fg_inspection *station,
+                                    const fg_station_file *file, const char *words) {
   station->outcome->refused++;
   station->outcome->judged.not_measured++;
   return fg_station_keep_card(ctx, &station->database, file, FG_CARD_UNREADABLE, words, 0);
@@ -97,7 +97,8 @@ static void put_state_words(const check_result *check, int64_t baseline_at, char
                  day);
 }
 
-/* Scale and shear against what is allowed, the state of the picture against its baseline. */
+/* Judges scale and shear against the allowed deviation, the picture's state against its
+ * baseline. */
 static fg_status judge_check(fg_context *ctx, fg_inspection *station,
                              const fg_measurement *measurement, check_result *check, char *words,
                              size_t size) {
@@ -117,12 +118,12 @@ static fg_status judge_check(fg_context *ctx, fg_inspection *station,
   return FG_OK;
 }
 
-fg_status fg_station_take_check(fg_context *ctx, fg_inspection *station, const char *path,
-                                const fg_station_file *file, char *words, size_t size) {
+fg_status fg_station_measure_check(fg_context *ctx, fg_inspection *station, const char *path,
+                                   const fg_station_file *file, char *words, size_t size) {
   if (!station->check_design_known) {
     fg_text_clip(words, size,
                  "is called as a check of the scanner, but the recipe has no station.check.design");
-    return refuse_check(ctx, station, file, words);
+    return keep_refused_check(ctx, station, file, words);
   }
   const fg_measure_options options = {.dpi = station->settings->lot.dpi,
                                       .allow_lossy = station->settings->lot.allow_lossy,
@@ -139,7 +140,7 @@ fg_status fg_station_take_check(fg_context *ctx, fg_inspection *station, const c
   }
   if (failure != FG_OK) {
     fg_text_clip(words, size, "the scanner was not checked: %s", inner.message);
-    return refuse_check(ctx, station, file, words);
+    return keep_refused_check(ctx, station, file, words);
   }
   status = judge_check(ctx, station, &measurement, &check, words, size);
   if (status == FG_OK) status = keep_check(ctx, station, &check);
@@ -166,7 +167,7 @@ fg_status fg_action_baseline(fg_context *ctx, fg_inspection *station, const fg_r
                      "are as allowed: load the page again.");
   status = fg_station_database_end(ctx, &station->database, status);
   if (status != FG_OK) return status;
-  fg_station_tell(station);
+  fg_station_notify(station);
   strcpy(answer->location, "/scanner");
   return FG_OK;
 }

@@ -12,7 +12,7 @@
 #define COVERAGE_MIN  300.0 /* degrees: an arc says little of two axes */
 
 /* Variance of 1/radius over its mean square: radii of 1 and 1.03 mm have 0.0002. */
-#define LEVEL_TOLD 1e-3
+#define LEVEL_SEPARATED 1e-3
 
 /* Stretches of an edge, and the fewest points that are enough for as many. */
 enum { BLOCKS = 24, POINTS_MIN = 4 * BLOCKS };
@@ -144,7 +144,7 @@ static void find_level(const says *discs, size_t count, double *level_um, double
   }
   double determinant = ww * ll - wl * wl;
   *level_um = *u_um = NAN;
-  if (!(determinant > LEVEL_TOLD * ww * ll)) return;
+  if (!(determinant > LEVEL_SEPARATED * ww * ll)) return;
   double level = (ww * lv - wl * wv) / determinant, mean = (ll * wv - wl * lv) / determinant;
   for (size_t i = 0; i < count; i++)
     chi2 += pow(discs[i].value[MEAN] - mean - level * discs[i].level, 2) / discs[i].variance[MEAN];

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a plate of known diameters says of a scanner's two axes. */
+/* Fit of a scanner's two axes to a plate of known diameters. */
 #ifndef FG_STATION_CHECK_FIT_H
 #define FG_STATION_CHECK_FIT_H
 
@@ -11,18 +11,18 @@ typedef struct fg_check_fit {
   size_t discs;
   double scale[2], u_scale[2]; /* measured over true, less 1; x, y */
   double shear, u_shear;       /* rad; a right angle between +x and +y shows as so much less */
-  /* Edges of bright parts lie outwards by this, whatever the size: what the level at which edges
-   * are placed does. NaN: discs of one size do not tell it from the scale. */
+  /* Error of the level at which edges are placed: edges of bright parts lie outwards by it, for
+   * every size. NaN: discs of one size cannot separate it from the scale. */
   double level_um, u_level_um;
   bool passes;
 } fg_check_fit;
 
-/* Least squares over the edges of all discs that have a known diameter. FG_ERR_NOT_MEASURED: there
- * is none. */
+/* Fits by least squares over the edges of all discs of known diameter. FG_ERR_NOT_MEASURED:
+ * there is none. */
 fg_status fg_check_fit_plate(fg_context *ctx, const fg_design *design,
                              const fg_measurement *measurement, fg_check_fit *fit);
 
-/* Against the largest deviation of a scale that is allowed; `words` say what it came to. */
+/* Judges the fit against the largest deviation of a scale that is allowed; `words`: the result. */
 void fg_check_fit_judge(fg_check_fit *fit, double scale_max_ppm, char *words, size_t size);
 
 #endif

@@ -31,13 +31,13 @@ static fg_status read_newest(fg_context *ctx, sqlite3 *reader, newest_check *new
   return newest->id ? fg_check_state_load(ctx, reader, newest->id, &newest->state) : FG_OK;
 }
 
-static void write_check_value(FILE *out, const fg_check_quantity *row, const fg_check_state *state,
+static void write_state_value(FILE *out, const fg_check_quantity *row, const fg_check_state *state,
                               size_t k) {
   fprintf(out, "<td>%.*f ± %.*f</td>", row->decimals, state->value[k], row->decimals,
           2 * state->u[k]);
 }
 
-static void write_check_row(FILE *out, size_t k, const fg_check_state *state,
+static void write_state_row(FILE *out, size_t k, const fg_check_state *state,
                             const fg_check_state *baseline) {
   const fg_check_quantity *row = &fg_check_quantities[k];
   if (isnan(state->value[k])) return;
@@ -46,12 +46,12 @@ static void write_check_row(FILE *out, size_t k, const fg_check_state *state,
   fputs("<tr><td>", out);
   fg_html_text(out, row->words);
   fprintf(out, "%s%s</td>", row->unit[0] ? ", " : "", row->unit);
-  write_check_value(out, row, state, k);
+  write_state_value(out, row, state, k);
   if (isnan(baseline->value[k])) {
     fputs("<td></td><td></td><td></td><td></td></tr>\n", out);
     return;
   }
-  write_check_value(out, row, baseline, k);
+  write_state_value(out, row, baseline, k);
   bool changed = fabs(change) > allowed;
   fprintf(out, "<td>%s%+.*f%s</td><td>± %.*f</td><td class=\"words\">%s</td></tr>\n",
           changed ? "<b>" : "", row->decimals, change, changed ? "</b>" : "", row->decimals,
@@ -104,7 +104,7 @@ fg_status fg_page_scanner_state(fg_context *ctx, const fg_inspection *station, s
         "<th class=\"words\">what changes it</th></tr></thead><tbody>\n",
         out);
   for (size_t k = 0; k < FG_CHECK_QUANTITIES; k++)
-    write_check_row(out, k, &newest.state, &baseline);
+    write_state_row(out, k, &newest.state, &baseline);
   fputs("</tbody></table>\n", out);
   write_findings(out, newest.state.findings);
   if (newest.changed && newest.passed) write_accept(station, out, newest.id);

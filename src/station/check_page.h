@@ -9,7 +9,7 @@
 #include "station/state.h"
 
 /* Tone, sharpening and blur of the newest check beside its baseline, and where they have changed
- * the button that makes it the baseline. Nothing of checks that have no state. */
+ * the button that makes it the baseline. Nothing for checks without a state. */
 fg_status fg_page_scanner_state(fg_context *ctx, const fg_inspection *station, sqlite3 *reader,
                                 FILE *out);
 

@@ -48,11 +48,11 @@ static double get_noise_along_y(const fg_disc *disc) {
   return disc->picture.noise_correlation[1];
 }
 
-/* Smallest changes that matter: those that move the thickness of a strip by 0.5 µm at 2400 dpi and
- * a blur of 1 px. A level q of the contrast moves it by 2 q sqrt(2 pi) px: 0.01 does. Overshoot
- * stands for as much level; the middle of a power of the light moves by 0.35 per unit of gamma; an
- * S moves a thin strip's edges by a fifth of its slope's change. A blur that changes by a tenth,
- * and noise by half or in its correlation, tell of another focus, filter or resolution. */
+/* Smallest changes that matter: those that move the thickness of a strip by 0.5 µm at 2400 dpi
+ * and a blur of 1 px. A level q of the contrast moves it by 2 q sqrt(2 pi) px: 0.01 does.
+ * Overshoot equals as much level; the middle of a power of the light moves by 0.35 per unit of
+ * gamma; an S moves a thin strip's edges by a fifth of its slope's change. A blur that changes
+ * by a tenth, and noise by half or in its correlation, show another focus, filter or resolution. */
 const fg_check_quantity fg_check_quantities[FG_CHECK_QUANTITIES] = {
     {"level_um", "edges of bright parts, outwards", "µm", 2, 0.25, 0, NULL, NULL,
      "tone curve, contrast, brightness", 0},

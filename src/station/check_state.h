@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tone, sharpening and blur that a scan of the plate shows, and their change. */
+/* Tone, sharpening and blur of a scan of the plate, and their change. */
 #ifndef FG_STATION_CHECK_STATE_H
 #define FG_STATION_CHECK_STATE_H
 
@@ -15,16 +15,16 @@ typedef struct fg_check_quantity {
   double smallest_change, share;      /* that matters: in its unit, or as a share of the baseline */
   double (*of_disc)(const fg_disc *); /* NULL: of all discs together */
   double (*u_of_disc)(
-      const fg_disc *); /* where all discs share one estimate; NULL: their scatter */
-  const char *cause;    /* what of driver or scanner changes it */
-  unsigned findings;    /* that say the same by a threshold, without an uncertainty */
+      const fg_disc *); /* u where all discs share one estimate; NULL: u is their scatter */
+  const char *cause;    /* setting of driver or scanner that changes it */
+  unsigned findings;    /* findings of the same change by a threshold, without an uncertainty */
 } fg_check_quantity;
 
 enum { FG_CHECK_QUANTITIES = 11 };
 extern const fg_check_quantity fg_check_quantities[FG_CHECK_QUANTITIES];
 
-/* Values in the order of fg_check_quantities; NaN: not known. u: how much it varies over the glass,
- * as the plate lies elsewhere each time. */
+/* Values in the order of fg_check_quantities; NaN: not known. u covers the variation over the
+ * glass, as the plate lies elsewhere each time. */
 typedef struct fg_check_state {
   int64_t dpi; /* states of unequal resolution are not compared */
   double value[FG_CHECK_QUANTITIES], u[FG_CHECK_QUANTITIES];
@@ -34,12 +34,12 @@ typedef struct fg_check_state {
 void fg_check_state_find(const fg_measurement *measurement, const fg_check_fit *fit,
                          fg_check_state *state);
 
-/* Change of a quantity that the scatter and the smallest change that matters allow. */
+/* Returns the change of a quantity within its scatter and the smallest change that matters. */
 double fg_check_state_allowed(const fg_check_state *state, const fg_check_state *baseline,
                               size_t quantity);
 
-/* Quantities that have changed against the baseline, and findings that it did not have; in words,
- * "" where there are none. */
+/* Returns the number of quantities that have changed against the baseline and of new findings;
+ * lists them in words, "" where there are none. */
 size_t fg_check_state_compare(const fg_check_state *state, const fg_check_state *baseline,
                               char *words, size_t size);
 

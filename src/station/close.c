@@ -7,11 +7,11 @@
 
 #include "core/text.h"
 #include "foilgauge/words.h"
-#include "station/actions.h"
 #include "station/export.h"
 #include "station/lot_folder.h"
+#include "station/pages.h"
 
-/* The browser waits so long for a lot to be closed, then it is told that it goes on. */
+/* The answer waits WAITS times WAIT_MS for a lot to be closed, then states that it goes on. */
 enum { WAITS = 40, WAIT_MS = 25 };
 
 static fg_status insert_lot(fg_context *ctx, sqlite3 *writer, const fg_closing *closing,

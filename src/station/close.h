@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Closing a lot: its folder and report are written, and who did it is kept. */
+/* Closing a lot: writes its folder and report, and records who closed it. */
 #ifndef FG_STATION_CLOSE_H
 #define FG_STATION_CLOSE_H
 

@@ -36,13 +36,13 @@ bool fg_client_is(const fg_client *one, const fg_client *other) {
   return !memcmp(one->bytes, other->bytes, sizeof one->bytes);
 }
 
-/* True where the connection takes a place from others: it has not asked yet, or takes its answer.
- */
+/* True where the connection occupies a place without work of the station: it has sent no whole
+ * request, or is receiving its answer. */
 static bool is_slow(const fg_connection *at) {
   return at->connection && at->until > 0 && !at->cut;
 }
 
-/* The library closes what was shut down; its socket is its own until it has told of that. */
+/* Shuts the socket down; the library, which owns it until it has notified the end, closes it. */
 static void cut_off(fg_connection *at) {
   shutdown(at->socket, SHUT_RDWR);
   at->cut = true;

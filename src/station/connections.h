@@ -1,11 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The connections that are open, and who has to make room for others.
- *
- * A connection has a time for a whole request, header and body, and for taking the answer; a clock
- * cuts off who is over it. (The library's own limit starts again with every byte.) Where there are
- * too many connections that have not asked yet, or that take their answer slowly, the address with
- * the most of them loses the one that is nearest to its end: whoever opens how many connections,
- * somebody else's always finds a place. */
+/* The open connections, and which of them is closed to make room. A connection has a time limit
+ * for a whole request, header and body, and for receiving the answer; a clock cuts off those
+ * beyond it. (The library's own limit starts again with every byte.) Where too many connections
+ * have sent no request yet, or receive their answer slowly, the address with the most of them
+ * loses the one nearest to its limit: no client can keep the others out. */
 #ifndef FG_STATION_CONNECTIONS_H
 #define FG_STATION_CONNECTIONS_H
 
@@ -28,7 +26,7 @@ typedef struct fg_connection {
   struct MHD_Connection *connection; /* NULL: none here */
   int socket;
   fg_client client;
-  double until; /* when it is cut off (fg_clock_seconds); 0: not, it is being answered */
+  double until; /* time of its cut-off (fg_clock_seconds); 0: none, it is being answered */
   bool cut;     /* it is closed as soon as the library sees that */
 } fg_connection;
 
@@ -38,10 +36,10 @@ typedef struct fg_connections {
   pthread_t clock;
   bool running;
   size_t max;                            /* FG_CONNECTIONS, less where fewer files may be open */
-  fg_connection one[2 * FG_CONNECTIONS]; /* with those that are cut off */
+  fg_connection one[2 * FG_CONNECTIONS]; /* including those being cut off */
 } fg_connections;
 
-/* False: there is no thread for the clock. */
+/* Starts the clock's thread; false: there is none. */
 bool fg_connections_begin(fg_connections *connections);
 void fg_connections_end(fg_connections *connections);
 
@@ -49,7 +47,8 @@ void fg_connections_end(fg_connections *connections);
 void fg_connections_notify(void *connections, struct MHD_Connection *connection, void **unused,
                            enum MHD_ConnectionNotificationCode code);
 
-/* All of its request has come; `bytes` of an answer are sent; it is answered, and may ask again. */
+/* Note that a connection's whole request has come; that `bytes` of an answer are sent; that it
+ * is answered, and may ask again. */
 void fg_connections_asked(fg_connections *connections, struct MHD_Connection *connection);
 void fg_connections_sending(fg_connections *connections, struct MHD_Connection *connection,
                             size_t bytes);

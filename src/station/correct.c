@@ -2,15 +2,15 @@
 /* Corrections of a foil's identity, which its file's name gave: every change leaves a trail.
  *
  * A form carries the values that it showed (`was_serial` beside `serial`), so that only fields
- * changed in it are applied. A change that somebody else made meanwhile is not overwritten, and a
- * serial number of another foil is not taken: the page asks first. */
+ * changed in it are applied. A change that somebody else made meanwhile is not overwritten, and
+ * a serial number of another foil is not used: the page asks first. */
 #include "station/correct.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-#include "station/actions.h"
 #include "station/news.h"
+#include "station/pages.h"
 
 static const struct {
   const char *field, *was;
@@ -28,9 +28,9 @@ const char *fg_identity_field(size_t field) {
   return fields[field].field;
 }
 
-/* Without the spaces around it, which readers and fingers add. */
-static fg_status take_text(fg_context *ctx, const char *field, const char *given,
-                           char text[FG_IDENTITY_BYTES]) {
+/* Reads a text without the spaces around it, which readers and fingers add. */
+static fg_status read_identity_text(fg_context *ctx, const char *field, const char *given,
+                                    char text[FG_IDENTITY_BYTES]) {
   given += strspn(given, " ");
   size_t length = strlen(given);
   while (length && given[length - 1] == ' ')
@@ -49,12 +49,12 @@ static bool is_given(const fg_request *request, const char *name) {
   return false;
 }
 
-/* A field that the form does not have, or that stands in it as it was, stays as it is. */
-static fg_status take_field(fg_context *ctx, const fg_request *request, size_t i,
-                            fg_identity_change *asked) {
+/* Reads a field. One that the html form lacks, or shows unchanged, is not corrected. */
+static fg_status read_identity_field(fg_context *ctx, const fg_request *request, size_t i,
+                                     fg_identity_change *asked) {
   const char *name = fields[i].field;
-  FG_TRY(take_text(ctx, name, fg_request_get(request, name), asked->after[i]));
-  FG_TRY(take_text(ctx, name, fg_request_get(request, fields[i].was), asked->was[i]));
+  FG_TRY(read_identity_text(ctx, name, fg_request_get(request, name), asked->after[i]));
+  FG_TRY(read_identity_text(ctx, name, fg_request_get(request, fields[i].was), asked->was[i]));
   asked->was_given[i] = is_given(request, fields[i].was);
   asked->asked[i] =
       is_given(request, name) && !(asked->was_given[i] && !strcmp(asked->was[i], asked->after[i]));
@@ -68,14 +68,14 @@ static fg_status read_html_form(fg_context *ctx, const fg_request *request,
   *asked = (fg_identity_change){.foil = strtoll(id, &end, 10)};
   if (*end || asked->foil <= 0) return fg_fail(ctx, FG_ERR_USAGE, "There is no such foil.");
   for (size_t i = 0; i < FG_IDENTITY_FIELDS; i++)
-    FG_TRY(take_field(ctx, request, i, asked));
+    FG_TRY(read_identity_field(ctx, request, i, asked));
   if (asked->asked[SERIAL] && !asked->after[SERIAL][0])
     return fg_fail(ctx, FG_ERR_DATA,
                    "The serial number is empty: a foil needs one to be found again.");
-  /* A form returns to one of two pages of the station, whatever address it holds. */
+  /* An html form returns to one of two pages of the station, whatever address it holds. */
   asked->to_now = !strcmp(fg_request_get(request, "back"), "/");
-  FG_TRY(take_text(ctx, "serial", fg_request_get(request, "also"), asked->also));
-  return take_text(ctx, "name", fg_request_get(request, "by"), asked->by);
+  FG_TRY(read_identity_text(ctx, "serial", fg_request_get(request, "also"), asked->also));
+  return read_identity_text(ctx, "name", fg_request_get(request, "by"), asked->by);
 }
 
 static fg_status read_before(fg_context *ctx, sqlite3 *writer, fg_identity_change *asked) {
@@ -93,12 +93,12 @@ static fg_status read_before(fg_context *ctx, sqlite3 *writer, fg_identity_chang
 static bool is_overtaken(const fg_identity_change *asked, size_t i) {
   char before[FG_IDENTITY_BYTES];
   if (!asked->asked[i] || !asked->was_given[i]) return false;
-  if (take_text(NULL, "", asked->before[i], before) != FG_OK) return true;
+  if (read_identity_text(NULL, "", asked->before[i], before) != FG_OK) return true;
   return strcmp(before, asked->was[i]) != 0 && strcmp(before, asked->after[i]) != 0;
 }
 
 /* Finds another foil with the serial number, unless a shared number has been confirmed. */
-static fg_status look_for_owner(fg_context *ctx, sqlite3 *writer, fg_identity_change *asked) {
+static fg_status find_serial_owner(fg_context *ctx, sqlite3 *writer, fg_identity_change *asked) {
   fg_query query;
   const char *serial = asked->after[SERIAL];
   if (!asked->asked[SERIAL] || !strcmp(serial, asked->before[SERIAL]) ||
@@ -133,14 +133,14 @@ static fg_status set_field(fg_context *ctx, sqlite3 *writer, const fg_identity_c
   return fg_query_end(ctx, &query, "keeping a correction");
 }
 
-/* Whoever does not say who corrects is taken for the operator that the foil has then. */
+/* Applies a change. Its author, if not given, is the operator whom the foil then has. */
 static fg_status change(fg_context *ctx, sqlite3 *writer, fg_identity_change *asked) {
   FG_TRY(read_before(ctx, writer, asked));
   for (size_t i = 0; i < FG_IDENTITY_FIELDS; i++) {
     asked->overtaken[i] = is_overtaken(asked, i);
     asked->held = asked->held || asked->overtaken[i];
   }
-  FG_TRY(look_for_owner(ctx, writer, asked));
+  FG_TRY(find_serial_owner(ctx, writer, asked));
   asked->held = asked->held || asked->owned;
   if (asked->held) return FG_OK;
   if (!asked->by[0])
@@ -160,7 +160,7 @@ fg_status fg_action_correct(fg_context *ctx, fg_inspection *station, const fg_re
   FG_TRY(fg_station_database_end(ctx, &station->database,
                                  change(ctx, station->database.writer, &asked)));
   if (asked.held) return fg_page_identity(ctx, station, &asked, answer);
-  fg_station_tell(station);
+  fg_station_notify(station);
   if (asked.to_now)
     strcpy(answer->location, "/");
   else

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A change of a foil's identity (serial, lot, die, operator), and the page that asks before a
+/* Changes of a foil's identity (serial, lot, die, operator), and the page that asks before a
  * change in conflict. */
 #ifndef FG_STATION_CORRECT_H
 #define FG_STATION_CORRECT_H
@@ -20,9 +20,9 @@ typedef struct fg_identity_change {
   bool asked[FG_IDENTITY_FIELDS];     /* it was changed in the form */
   bool overtaken[FG_IDENTITY_FIELDS]; /* somebody else changed it meanwhile */
   bool owned;                         /* another foil has the serial number that is wanted */
-  bool held;                          /* nothing was changed: one of these is asked about first */
-  bool to_now;                        /* the form was that of Now */
-  char also[FG_IDENTITY_BYTES];       /* the serial number that was said to be shared; "": none */
+  bool held;                    /* nothing was changed: the page asks about one of these first */
+  bool to_now;                  /* the html form was on the page Now */
+  char also[FG_IDENTITY_BYTES]; /* the serial number that the user allowed to be shared; "": none */
   char by[FG_IDENTITY_BYTES];
 } fg_identity_change;
 

@@ -10,10 +10,9 @@
 #include "foilgauge/station.h"
 #include "station/stored_name.h"
 
-/* Each step takes a database from one version to the next; a step that was ever released is never
- * changed. */
+/* Each step brings a database from one version to the next; a released step is never changed. */
 static const char *const migrations[] = {
-    /* What scans were measured and judged with. */
+    /* Settings with which scans were measured and judged. */
     "CREATE TABLE setups (id INTEGER PRIMARY KEY, sha256 TEXT NOT NULL UNIQUE, program TEXT NOT "
     "NULL,"
     " recipe TEXT NOT NULL, model TEXT, model_sha256 TEXT, first_at INTEGER NOT NULL);"
@@ -31,7 +30,8 @@ static const char *const migrations[] = {
     "CREATE INDEX foils_by_die ON foils (die);"
     "CREATE TABLE bumps (foil INTEGER NOT NULL REFERENCES foils, number INTEGER NOT NULL,"
     " verdict TEXT NOT NULL, flags TEXT NOT NULL, PRIMARY KEY (foil, number)) WITHOUT ROWID;"
-    /* Trends leave out crushed bumps: few, and found by this without a look at all the others. */
+    /* Trends leave out crushed bumps: they are few, and this index finds them without reading
+     * the others. */
     "CREATE INDEX bumps_flagged ON bumps (foil, number) WHERE flags <> '';"
     "CREATE TABLE quantities (id INTEGER PRIMARY KEY, owner TEXT NOT NULL, name TEXT NOT NULL,"
     " unit TEXT NOT NULL, UNIQUE (owner, name));"
@@ -43,16 +43,16 @@ static const char *const migrations[] = {
     "CREATE TABLE deciding (foil INTEGER NOT NULL REFERENCES foils, rank INTEGER NOT NULL,"
     " quantity INTEGER NOT NULL REFERENCES quantities, bump INTEGER NOT NULL, value REAL, u REAL,"
     " lower REAL, upper REAL, verdict TEXT NOT NULL, PRIMARY KEY (foil, rank)) WITHOUT ROWID;"
-    /* Pictures of the newest foils, as they stand in pages. */
+    /* Pictures of the newest foils, as HTML. */
     "CREATE TABLE pictures (foil INTEGER PRIMARY KEY REFERENCES foils, html TEXT NOT NULL);"
-    /* A card for every file that was looked at; the newest of a path is what the file is. */
+    /* A card for every file that was inspected; the newest of a path is valid. */
     "CREATE TABLE arrivals (id INTEGER PRIMARY KEY AUTOINCREMENT, at INTEGER NOT NULL,"
     " path TEXT NOT NULL, kind TEXT NOT NULL, message TEXT NOT NULL, scan INTEGER REFERENCES scans,"
     " superseded INTEGER NOT NULL DEFAULT 0);"
     "CREATE TABLE files (path TEXT PRIMARY KEY, bytes INTEGER NOT NULL, modified_ns INTEGER NOT "
     "NULL,"
     " arrival INTEGER NOT NULL REFERENCES arrivals) WITHOUT ROWID;"
-    /* Who changed what of a foil, and when. */
+    /* Corrections of foils: author, field, time. */
     "CREATE TABLE corrections (id INTEGER PRIMARY KEY AUTOINCREMENT, foil INTEGER NOT NULL "
     "REFERENCES"
     " foils, field TEXT NOT NULL, before TEXT NOT NULL, after TEXT NOT NULL, by TEXT NOT NULL,"
@@ -107,8 +107,8 @@ static void store_name(sqlite3_context *call, int count, sqlite3_value **values)
     sqlite3_result_text(call, stored, -1, free);
 }
 
-/* journal_size_limit: what a large transaction or a slow reader made of the journal is given back.
- */
+/* journal_size_limit: a journal that a large transaction or a slow reader made large shrinks
+ * again. */
 static fg_status open_connection(fg_context *ctx, const char *path, bool write,
                                  sqlite3 **connection) {
   int flags = write ? SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE : SQLITE_OPEN_READWRITE;
@@ -201,8 +201,8 @@ bool fg_station_database_is_there(const fg_station_database *database) {
          file.st_ino == database->inode;
 }
 
-/* Where the file has gone from its name, a journal of that name is another database's: SQLite,
- * which removes journals by name, must leave it. */
+/* Keeps SQLite, which removes journals by name, from removing one: when the open file has lost
+ * its name, a journal of that name is another database's. */
 static void leave_journal(sqlite3 *connection) {
   int persist = 1;
   if (!connection) return;
@@ -279,7 +279,7 @@ fg_status fg_station_database_end(fg_context *ctx, fg_station_database *database
                                   fg_status status) {
   fg_context inner;
   if (status == FG_OK) status = fg_sql_run(ctx, database->writer, "COMMIT");
-  /* An error may have taken everything back already. */
+  /* An error may have rolled back already. */
   if (status != FG_OK && !sqlite3_get_autocommit(database->writer))
     fg_sql_run(&inner, database->writer, "ROLLBACK");
   pthread_mutex_unlock(&database->writing);

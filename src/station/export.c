@@ -78,7 +78,7 @@ static void keep_columns(export *at) {
   keep_column(at, at->settings.pad_column, usual.pad_column);
 }
 
-static fg_status take_setup(fg_context *ctx, export *at, const char *lot, const char *recipe) {
+static fg_status use_setup(fg_context *ctx, export *at, const char *lot, const char *recipe) {
   fg_lot_settings_default(&at->settings);
   FG_TRY(fg_lot_settings_parse(ctx, "the setup in the database", recipe, &at->settings));
   if (*lot) fg_text_clip(at->settings.name, sizeof at->settings.name, "%s", lot);
@@ -160,7 +160,7 @@ static fg_status make_head(fg_context *ctx, export *at) {
   return fg_lot_sum_settings(ctx, &at->settings, at->head.measured_with);
 }
 
-/* Of the lot's foils alone. */
+/* Formats the record of the lot's foils alone. */
 static fg_status format(fg_context *ctx, const export *at, size_t item, const fg_foil *foils,
                         size_t foil_count, const char *date, char **line, size_t *length) {
   const fg_lot_scan *scan = &at->content.scans[item];
@@ -180,7 +180,7 @@ static fg_status format(fg_context *ctx, const export *at, size_t item, const fg
   return status;
 }
 
-/* Without a sum it is never kept: --resume tries again. */
+/* Formats a record without a sum: --resume measures the scan again. */
 static fg_status format_lost(fg_context *ctx, export *at, size_t item, const char *why, char **line,
                              size_t *length) {
   fg_record record = {.scan = (char *)(uintptr_t)fg_manifest_scan(&at->manifest, item)};
@@ -195,7 +195,7 @@ static fg_status format_lost(fg_context *ctx, export *at, size_t item, const cha
   return status;
 }
 
-/* The record is not of the lot's setup: the scan is, when it is what it was. */
+/* Measures an unchanged scan again, as its record is of another setup than the lot's. */
 static fg_status measure_again(fg_context *ctx, export *at, size_t item, char **line,
                                size_t *length) {
   const fg_lot_scan *scan = &at->content.scans[item];
@@ -310,7 +310,7 @@ static fg_status export_lot(fg_context *ctx, export *at, const char *lot) {
   char *recipe = NULL;
   fg_status status = read_database(ctx, at, lot, &recipe);
   if (status == FG_OK) status = make_manifest(ctx, at, lot);
-  if (status == FG_OK) status = take_setup(ctx, at, lot, recipe);
+  if (status == FG_OK) status = use_setup(ctx, at, lot, recipe);
   free(recipe);
   FG_TRY(status);
   at->exported->replaced = at->content.replaced;

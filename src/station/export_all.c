@@ -33,7 +33,7 @@ static fg_status list_lots(fg_context *ctx, fg_inspection *station, lot_names *l
 }
 
 /* Nobody's results are overwritten. */
-static fg_status prepare_export_folder(fg_context *ctx, const char *folder) {
+static fg_status prepare_folder(fg_context *ctx, const char *folder) {
   char *results;
   FG_TRY(fg_folder_make(ctx, folder));
   FG_TRY(fg_lot_path(ctx, folder, "results.jsonl", &results));
@@ -50,7 +50,7 @@ static fg_status export_one(fg_context *ctx, fg_inspection *station, const char 
   fg_exported_lot exported;
   fg_lot_folder_name(lot, name);
   FG_TRY(fg_text_print(ctx, &folder, "%s/%s", below, name));
-  fg_status status = prepare_export_folder(ctx, folder);
+  fg_status status = prepare_folder(ctx, folder);
   if (status == FG_OK) status = fg_station_export_lot(ctx, station, lot, folder, &exported);
   if (status == FG_OK) {
     fg_outcome_add(&station->outcome->judged, &exported.outcome.judged);

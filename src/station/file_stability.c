@@ -32,7 +32,7 @@ static void fill_slots(fg_file_stability *stability) {
     *find_slot(stability, stability->files[i].name) = i + 1;
 }
 
-/* At least half of the slots are free: a search ends soon. */
+/* Keeps at least half of the slots free, so that a search is short. */
 static fg_status reserve_slots(fg_context *ctx, fg_file_stability *stability) {
   void *block;
   if (2 * (stability->count + 1) <= stability->slot_count) return FG_OK;
@@ -45,30 +45,30 @@ static fg_status reserve_slots(fg_context *ctx, fg_file_stability *stability) {
   return FG_OK;
 }
 
-static fg_resting *find_watched_file(const fg_file_stability *stability, const char *name) {
+static fg_stable_file *find_stable_file(const fg_file_stability *stability, const char *name) {
   size_t index = stability->slot_count ? *find_slot(stability, name) : 0;
   return index ? &stability->files[index - 1] : NULL;
 }
 
-static fg_status add_watched_file(fg_context *ctx, fg_file_stability *stability, const char *name,
-                                  fg_resting **file) {
+static fg_status add_stable_file(fg_context *ctx, fg_file_stability *stability, const char *name,
+                                 fg_stable_file **file) {
   void *block = stability->files;
   FG_TRY(reserve_slots(ctx, stability));
   FG_TRY(fg_memory_reserve(ctx, stability->count + 1, sizeof *stability->files,
                            &stability->capacity, &block));
   stability->files = block;
   *file = &stability->files[stability->count];
-  **file = (fg_resting){.bytes = -1};
+  **file = (fg_stable_file){.bytes = -1};
   FG_TRY(fg_text_print(ctx, &(*file)->name, "%s", name));
   *find_slot(stability, name) = ++stability->count;
   return FG_OK;
 }
 
-fg_status fg_file_stability_look(fg_context *ctx, fg_file_stability *stability, const char *name,
+fg_status fg_file_stability_note(fg_context *ctx, fg_file_stability *stability, const char *name,
                                  int64_t bytes, int64_t modified_ns, int64_t now_ns,
-                                 fg_resting **found) {
-  fg_resting *file = find_watched_file(stability, name);
-  if (!file) FG_TRY(add_watched_file(ctx, stability, name, &file));
+                                 fg_stable_file **found) {
+  fg_stable_file *file = find_stable_file(stability, name);
+  if (!file) FG_TRY(add_stable_file(ctx, stability, name, &file));
   if (file->bytes != bytes || file->modified_ns != modified_ns) {
     file->bytes = bytes;
     file->modified_ns = modified_ns;

@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Files that stay as they are, and for how long, as this machine's steady clock tells.
- *
- * The time of a file is its file system's, on the network another machine's: it only has to stay
- * the same. */
+/* File stability: how long files have not changed, by this machine's steady clock. A file's own
+ * time is its file system's, on the network another machine's: it only has to stay the same. */
 #ifndef FG_STATION_FILE_STABILITY_H
 #define FG_STATION_FILE_STABILITY_H
 
@@ -12,30 +10,30 @@
 
 #include "foilgauge/status.h"
 
-/* A whole file is taken when nothing has come for so long and nobody has said that it is closed. */
+/* A whole file that was not seen to be closed is read after this time without a change. */
 #define FG_STABLE_NS INT64_C(2000000000)
 
-/* A file as it was first seen so. */
-typedef struct fg_resting {
+/* A file's state when it was first seen unchanged. */
+typedef struct fg_stable_file {
   char *name;
   int64_t bytes, modified_ns, since_ns;
   bool seen;  /* in this round */
   bool tried; /* as it is; the caller's */
-} fg_resting;
+} fg_stable_file;
 
 typedef struct fg_file_stability {
-  fg_resting *files;
+  fg_stable_file *files;
   size_t count, capacity;
   size_t *slots, slot_count; /* a hash table: 1 + a file's index, by its name; 0: nothing */
 } fg_file_stability;
 
-/* Since when the file has been as it is: `now_ns` is of a clock that nobody sets, and it is
- * remembered from its first look on. *file is valid until the next call. */
-fg_status fg_file_stability_look(fg_context *ctx, fg_file_stability *stability, const char *name,
+/* Notes the file's state and finds the time since when it has been the same; `now_ns` is of a
+ * clock that nobody sets. *file is valid until the next call. */
+fg_status fg_file_stability_note(fg_context *ctx, fg_file_stability *stability, const char *name,
                                  int64_t bytes, int64_t modified_ns, int64_t now_ns,
-                                 fg_resting **file);
+                                 fg_stable_file **file);
 
-/* The end of a round: files that were not looked at in it are forgotten. */
+/* Ends a round: forgets files that were not noted in it. */
 void fg_file_stability_end_round(fg_file_stability *stability);
 void fg_file_stability_free(fg_file_stability *stability);
 

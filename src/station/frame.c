@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What every page of a station has around it. */
+/* The frame of every page of a station, its style and its icon. */
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
@@ -7,6 +10,7 @@
 #include "station/check.h"
 #include "station/news.h"
 #include "station/pages.h"
+#include "station/trend.h"
 
 static const struct {
   fg_tab tab;
@@ -48,10 +52,10 @@ const char *fg_page_verdict_class(const char *verdict, bool withheld) {
   return "again";
 }
 
-fg_card_look fg_page_card_look(const char *kind, const char *verdict, bool withheld) {
+fg_card_style fg_page_card_style(const char *kind, const char *verdict, bool withheld) {
   static const struct {
     const char *kind;
-    fg_card_look look;
+    fg_card_style look;
   } rows[] = {
       {"known", {"MEASURED BEFORE", "none"}},  {"duplicate", {"SAME SCAN", "again"}},
       {"check", {"CHECKED", "none"}},          {"foreign", {"NO SCAN", "again"}},
@@ -59,8 +63,8 @@ fg_card_look fg_page_card_look(const char *kind, const char *verdict, bool withh
   };
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
     if (!strcmp(kind, rows[i].kind)) return rows[i].look;
-  return (fg_card_look){fg_page_verdict_words(verdict, withheld),
-                        fg_page_verdict_class(verdict, withheld)};
+  return (fg_card_style){fg_page_verdict_words(verdict, withheld),
+                         fg_page_verdict_class(verdict, withheld)};
 }
 
 static void write_tabs(FILE *out, fg_tab here) {
@@ -136,4 +140,28 @@ fg_status fg_page_begin(fg_context *ctx, fg_inspection *station, sqlite3 *reader
 
 void fg_page_end(FILE *out) {
   fputs("</main>\n</body>\n</html>\n", out);
+}
+
+/* A bump of a foil. */
+const char fg_station_icon[] =
+    "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 32 32\"><rect width=\"32\" "
+    "height=\"32\" rx=\"6\" fill=\"#16202a\"/><path d=\"M2 23H7Q16 -3 25 23H30\" fill=\"none\" "
+    "stroke=\"#fff\" stroke-width=\"3.5\"/></svg>\n";
+
+static char *whole; /* the style that pages link to */
+
+static void join_styles(void) {
+  size_t size;
+  FILE *out = open_memstream(&whole, &size);
+  if (!out) return;
+  fputs(fg_page_style, out);
+  fputs(fg_station_style, out);
+  fputs(fg_trend_style, out);
+  fclose(out);
+}
+
+const char *fg_station_style_text(void) {
+  static pthread_once_t once = PTHREAD_ONCE_INIT;
+  pthread_once(&once, join_styles);
+  return whole ? whole : fg_station_style;
 }

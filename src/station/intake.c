@@ -88,8 +88,8 @@ static fg_card inspect_ends(intake *at) {
   return FG_CARD_UNFINISHED;
 }
 
-/* What cannot be read today may be readable tomorrow without any change to the file itself. */
-static fg_status refuse_intake(fg_context *ctx, intake *at, fg_card card, bool try_again) {
+/* Refuses a file. `try_again`: it may become readable without a change to the file itself. */
+static fg_status refuse_file(fg_context *ctx, intake *at, fg_card card, bool try_again) {
   fg_station_file file = at->file;
   if (try_again) file.modified_ns = -1;
   if (try_again)
@@ -103,7 +103,7 @@ static fg_status refuse_intake(fg_context *ctx, intake *at, fg_card card, bool t
 }
 
 /* The words without the file's path, which the card names. */
-static void take_words(intake *at, const char *message) {
+static void set_words(intake *at, const char *message) {
   size_t length = strlen(at->path);
   bool named = !strncmp(message, at->path, length) && !strncmp(message + length, ": ", 2);
   fg_text_clip(at->words, WORDS, "%s", named ? message + length + 2 : message);
@@ -148,16 +148,16 @@ static fg_status keep_known(fg_context *ctx, intake *at, int64_t scan) {
   return status;
 }
 
-/* Whether the file is still as it was when the look at it began; else what was read is no one
- * scan. */
+/* True when the file has not changed since its inspection began; else the data read are of no
+ * one scan. */
 static bool is_unchanged(const intake *at) {
   struct stat now;
   return stat(at->path, &now) == 0 && now.st_size == at->file.bytes &&
          (int64_t)now.st_mtim.tv_sec * 1000000000 + now.st_mtim.tv_nsec == at->file.modified_ns;
 }
 
-/* On the card, beside whatever else it says. */
-static void say_lossy(const fg_measurement *measurement, char *words) {
+/* Adds to the card's words that the scan is lossy. */
+static void note_lossy(const fg_measurement *measurement, char *words) {
   size_t used = strlen(words);
   if (measurement->jpeg_quality)
     fg_text_clip(words + used, WORDS - used,
@@ -172,7 +172,7 @@ static fg_status keep_new(fg_context *ctx, intake *at, const fg_measurement *mea
   char why[WORDS];
   bool withheld = fg_station_check_withholds(station, why, sizeof why);
   FG_TRY(fg_station_lot_note(ctx, &station->database, at->named.lot, at->words, WORDS));
-  say_lossy(measurement, at->words);
+  note_lossy(measurement, at->words);
   const fg_station_scan kept = {.file = at->file,
                                 .source = fg_station_is_scanned(at->name) ? "scanner" : "folder",
                                 .named = &at->named,
@@ -190,7 +190,7 @@ static fg_status keep_new(fg_context *ctx, intake *at, const fg_measurement *mea
   return fg_station_keep_pictures(ctx, &station->database, scan, measurement);
 }
 
-static fg_status take_measurement(fg_context *ctx, intake *at, const fg_measurement *measurement) {
+static fg_status keep_measurement(fg_context *ctx, intake *at, const fg_measurement *measurement) {
   int64_t known;
   FG_TRY(fg_station_find_scan(ctx, &at->station->database, measurement->sha256, &known));
   if (known) return keep_known(ctx, at, known);
@@ -227,7 +227,7 @@ static bool is_readable(const char *path) {
 }
 
 /* Memory that ran out is the station's trouble, not the scan's. */
-static fg_status measure_intake(fg_context *ctx, intake *at) {
+static fg_status measure_file(fg_context *ctx, intake *at) {
   const fg_lot_settings *settings = &at->station->settings->lot;
   const fg_measure_options options = {
       .dpi = settings->dpi, .allow_lossy = settings->allow_lossy, .only_file = true};
@@ -243,29 +243,29 @@ static fg_status measure_intake(fg_context *ctx, intake *at) {
     return FG_OK;
   }
   if (failure != FG_OK) {
-    take_words(at, inner.message);
-    return refuse_intake(ctx, at, FG_CARD_UNREADABLE, failure == FG_ERR_IO);
+    set_words(at, inner.message);
+    return refuse_file(ctx, at, FG_CARD_UNREADABLE, failure == FG_ERR_IO);
   }
-  fg_status status = take_measurement(ctx, at, &measurement);
+  fg_status status = keep_measurement(ctx, at, &measurement);
   fg_measurement_free(&measurement);
   return status;
 }
 
-/* By its name, as either pattern has it; fills what else the name says. */
+/* True for a check, by its name and either pattern; fills the name's other fields. */
 static bool is_check(const fg_inspection *station, intake *at) {
   const fg_station_settings *settings = station->settings;
   fg_named as_check;
-  bool called =
-      settings->check.design[0] && (fg_station_is_scanned_check(at->name) ||
-                                    fg_naming_take(settings->check.file_name, at->name, &as_check));
-  bool fits = fg_naming_take(settings->file_name, at->name, &at->named);
+  bool called = settings->check.design[0] &&
+                (fg_station_is_scanned_check(at->name) ||
+                 fg_naming_split(settings->check.file_name, at->name, &as_check));
+  bool fits = fg_naming_split(settings->file_name, at->name, &at->named);
   return called || (fits && at->named.check[0]);
 }
 
-static void tell_intake(const intake *at) {
+static void report_file(const intake *at) {
   const fg_station_request *request = at->station->request;
   if (request->looked_at) request->looked_at(request->user, at->file.name, at->words);
-  fg_station_tell(at->station);
+  fg_station_notify(at->station);
 }
 
 /* Somebody writes to it. */
@@ -275,17 +275,17 @@ static fg_status leave(intake *at) {
   fg_text_clip(at->words, WORDS, "is being written: it is left for the next time");
   at->station->outcome->refused++;
   at->station->outcome->judged.not_measured++;
-  tell_intake(at);
+  report_file(at);
   return FG_OK;
 }
 
-static fg_status take_card(fg_context *ctx, intake *at, fg_card card) {
+static fg_status handle_card(fg_context *ctx, intake *at, fg_card card) {
   fg_inspection *station = at->station;
   bool check = is_check(station, at);
-  if (card != FG_CARD_MEASURED) return refuse_intake(ctx, at, card, card == FG_CARD_UNREADABLE);
+  if (card != FG_CARD_MEASURED) return refuse_file(ctx, at, card, card == FG_CARD_UNREADABLE);
   fg_station_set_stage(station, FG_STAGE_MEASURING, at->file.name);
-  if (check) return fg_station_take_check(ctx, station, at->path, &at->file, at->words, WORDS);
-  return measure_intake(ctx, at);
+  if (check) return fg_station_measure_check(ctx, station, at->path, &at->file, at->words, WORDS);
+  return measure_file(ctx, at);
 }
 
 /* True where more of the file may come, given the card by its ends. */
@@ -295,7 +295,7 @@ static bool is_awaited(const intake *at, fg_card card) {
   return at->writer == FG_WRITER_WRITES;
 }
 
-static fg_status take_scan(fg_context *ctx, intake *at) {
+static fg_status inspect_scan(fg_context *ctx, intake *at) {
   struct stat now;
   bool done;
   if (stat(at->path, &now) != 0 || !S_ISREG(now.st_mode)) return FG_OK; /* gone, or no file */
@@ -307,9 +307,9 @@ static fg_status take_scan(fg_context *ctx, intake *at) {
   at->scan = card == FG_CARD_MEASURED || card == FG_CARD_UNFINISHED;
   at->later = is_awaited(at, card);
   if (at->later) return FG_OK;
-  FG_TRY(take_card(ctx, at, card));
+  FG_TRY(handle_card(ctx, at, card));
   if (at->later) return leave(at);
-  if (!at->silent || at->station->request->once) tell_intake(at);
+  if (!at->silent || at->station->request->once) report_file(at);
   return FG_OK;
 }
 
@@ -321,14 +321,14 @@ static void set_stage(const intake *at) {
     fg_station_end_stage(at->station, at->file.name);
 }
 
-fg_status fg_station_take_file(fg_context *ctx, fg_inspection *station, const char *name,
-                               fg_writer writer, bool *later) {
+fg_status fg_station_inspect_file(fg_context *ctx, fg_inspection *station, const char *name,
+                                  fg_writer writer, bool *later) {
   intake at = {.station = station, .name = name, .writer = writer, .arrived = fg_clock_seconds()};
   *later = false;
   FG_TRY(fg_stored_name(ctx, name, &at.stored));
   at.file.name = at.stored;
   fg_status status = fg_text_print(ctx, &at.path, "%s/%s", station->request->folder, name);
-  if (status == FG_OK) status = take_scan(ctx, &at);
+  if (status == FG_OK) status = inspect_scan(ctx, &at);
   set_stage(&at);
   *later = at.later;
   free(at.path);

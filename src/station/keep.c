@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What is known of files, and with what scans are measured. */
+/* Cards of files, and setups of scans, in the database. */
 #include "station/keep.h"
 
 #include <stdlib.h>
@@ -143,7 +143,7 @@ fg_status fg_station_find_scan(fg_context *ctx, fg_station_database *database, c
   return status;
 }
 
-/* The cards before it of the same file say what is no longer so, unless a scan was measured. */
+/* Marks earlier cards of the same file as outdated, unless a scan was measured. */
 static fg_status supersede(fg_context *ctx, fg_station_database *database, const char *path) {
   fg_query query;
   fg_query_begin(database->writer,

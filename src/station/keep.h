@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What goes into the database: scans with all that was measured, cards of files, setups. */
+/* Writing into the database: scans with all their measurements, cards of files, setups. */
 #ifndef FG_STATION_KEEP_H
 #define FG_STATION_KEEP_H
 
@@ -7,13 +7,13 @@
 #include "station/database.h"
 #include "station/naming.h"
 
-/* A file of the folder as it was when it was looked at. */
+/* A file of the folder, in its state when it was inspected. */
 typedef struct fg_station_file {
   const char *name; /* below the folder, as stored (stored_name.h) */
   int64_t bytes, modified_ns;
 } fg_station_file;
 
-/* What a card says of a file. */
+/* Kind of a card: the finding on a file. */
 typedef enum fg_card {
   FG_CARD_MEASURED,
   FG_CARD_KNOWN,      /* the same scan of the same foil was measured before */
@@ -21,39 +21,39 @@ typedef enum fg_card {
   FG_CARD_FOREIGN,    /* no scan */
   FG_CARD_UNREADABLE, /* a scan that could not be read or measured */
   FG_CARD_CHECK,      /* of the scanner */
-  FG_CARD_DUPLICATE,  /* the scan of another foil once more, byte for byte: it says nothing of this
-                       */
+  FG_CARD_DUPLICATE,  /* a copy of another foil's scan, byte for byte: it is no measurement of this
+                         one */
 } fg_card;
 const char *fg_card_word(fg_card card);
 
-/* With what scans are measured from now on; the same setup as before is the same row. */
+/* Keeps the setup of all scans from now on; a setup equal to an earlier one is the same row. */
 fg_status fg_station_keep_setup(fg_context *ctx, fg_station_database *database,
                                 const fg_lot_settings *settings, int64_t *setup);
 
-/* Whether the file was looked at as it is now, and found whole. */
+/* Returns true when the file was inspected in its present state and found whole. */
 fg_status fg_station_file_is_done(fg_context *ctx, fg_station_database *database,
                                   const fg_station_file *file, bool *done);
 
-/* Many files, as fg_station_file_is_done of each: the query is prepared once. The database is not
- * opened again meanwhile. */
+/* fg_station_file_is_done for many files: the query is prepared once. The database must not be
+ * reopened meanwhile. */
 typedef struct fg_done_files {
   fg_station_database *database;
   fg_query query;
 } fg_done_files;
 void fg_done_files_begin(fg_station_database *database, fg_done_files *files);
 bool fg_done_files_have(fg_done_files *files, const fg_station_file *file);
-fg_status fg_done_files_end(fg_context *ctx, fg_done_files *files); /* of all of it */
+fg_status fg_done_files_end(fg_context *ctx, fg_done_files *files); /* status of all calls */
 
-/* Whether that is what the file's newest card says of it already. */
+/* Returns true when the file's newest card is the same already. */
 fg_status fg_station_card_stands(fg_context *ctx, fg_station_database *database,
                                  const fg_station_file *file, fg_card card, const char *message,
                                  bool *stands);
 
-/* The scan with that sum: its number, 0 when there is none. */
+/* Finds the scan with that sum: its number, 0 when there is none. */
 fg_status fg_station_find_scan(fg_context *ctx, fg_station_database *database, const char *sha256,
                                int64_t *scan);
 
-/* A card alone; `scan` 0: none. */
+/* Keeps a card alone; `scan` 0: none. */
 fg_status fg_station_keep_card(fg_context *ctx, fg_station_database *database,
                                const fg_station_file *file, fg_card card, const char *message,
                                int64_t scan);
@@ -66,11 +66,11 @@ typedef struct fg_station_scan {
   int64_t setup;
   const fg_measurement *measurement;
   double seconds;       /* from the file's arrival */
-  const char *withheld; /* why there is no verdict; NULL: there is one */
-  const char *note;     /* what its card says beside the verdict, or "" */
+  const char *withheld; /* reason why there is no verdict; NULL: there is one */
+  const char *note;     /* note on its card beside the verdict, or "" */
 } fg_station_scan;
 
-/* All of a measured scan and its card, or nothing of it. `scan` is its number. */
+/* Keeps all of a measured scan with its card, or nothing. `scan` is its number. */
 fg_status fg_station_keep_scan(fg_context *ctx, fg_station_database *database,
                                const fg_station_scan *kept, int64_t *scan,
                                fg_report_outcome *outcome);

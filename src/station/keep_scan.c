@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A measured scan as rows: the scan, its foils and bumps, every quantity, what decided. */
+/* A measured scan as rows: the scan, its foils and bumps, every quantity, the deciding values. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -125,7 +125,7 @@ static fg_status keep_deciding(fg_context *ctx, sqlite3 *writer, fg_decision *de
   return status == FG_OK ? ended : status;
 }
 
-/* In plain words, what no value says. */
+/* Writes in plain words the reasons that no value gives. */
 static void find_reasons(const fg_design *design, const fg_foil *foil, char *text, size_t size) {
   char defect[256];
   if (!fg_foil_is_measured(foil))

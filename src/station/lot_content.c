@@ -15,7 +15,7 @@ static const char foils_of_lot[] =
     " f.number, f.serial, f.die, f.operator, s.withheld IS NOT NULL, " FG_LOT_REPLACED
     " FROM foils AS f JOIN scans AS s ON s.id = f.scan WHERE f.lot = ? ORDER BY s.id, f.number";
 
-static fg_status add_stored_scan(fg_context *ctx, fg_lot_content *content, const fg_query *row) {
+static fg_status add_content_scan(fg_context *ctx, fg_lot_content *content, const fg_query *row) {
   void *block = content->scans;
   FG_TRY(fg_memory_reserve(ctx, content->count + 1, sizeof *content->scans, &content->capacity,
                            &block));
@@ -28,7 +28,7 @@ static fg_status add_stored_scan(fg_context *ctx, fg_lot_content *content, const
   return fg_text_print(ctx, &scan->path, "%s", fg_query_get_text(row, FOIL_PATH));
 }
 
-/* Whether `word` is one of those of `text`, between blanks. */
+/* True when `word` is one of the words of `text`. */
 static bool has_word(const char *text, const char *word) {
   size_t length = strlen(word);
   for (const char *at = text; (at = strstr(at, word)); at++)
@@ -36,24 +36,24 @@ static bool has_word(const char *text, const char *word) {
   return false;
 }
 
-/* A row of a manifest is a scan: what its foils do not share stands there one beside the other. */
-static fg_status join_flag_words(fg_context *ctx, char **text, const char *word) {
+/* Joins values that a scan's foils do not share: a manifest has one row per scan. */
+static fg_status join_word(fg_context *ctx, char **text, const char *word) {
   if (!*text) return fg_text_print(ctx, text, "%s", word);
   if (!*word || has_word(*text, word)) return FG_OK;
   return fg_text_append(ctx, text, "%s%s", **text ? " " : "", word);
 }
 
-static fg_status add_stored_foil(fg_context *ctx, fg_lot_scan *scan, const fg_query *row) {
+static fg_status add_content_foil(fg_context *ctx, fg_lot_scan *scan, const fg_query *row) {
   void *block = scan->numbers;
   FG_TRY(fg_memory_reserve(ctx, scan->count + 1, sizeof *scan->numbers, &scan->capacity, &block));
   scan->numbers = block;
   scan->numbers[scan->count++] = (int)fg_query_get_integer(row, FOIL_NUMBER);
-  FG_TRY(join_flag_words(ctx, &scan->serial, fg_query_get_text(row, FOIL_SERIAL)));
-  FG_TRY(join_flag_words(ctx, &scan->die, fg_query_get_text(row, FOIL_DIE)));
-  return join_flag_words(ctx, &scan->operator_name, fg_query_get_text(row, FOIL_OPERATOR));
+  FG_TRY(join_word(ctx, &scan->serial, fg_query_get_text(row, FOIL_SERIAL)));
+  FG_TRY(join_word(ctx, &scan->die, fg_query_get_text(row, FOIL_DIE)));
+  return join_word(ctx, &scan->operator_name, fg_query_get_text(row, FOIL_OPERATOR));
 }
 
-static fg_status take_foil(fg_context *ctx, fg_lot_content *content, const fg_query *row) {
+static fg_status count_foil(fg_context *ctx, fg_lot_content *content, const fg_query *row) {
   int64_t scan = fg_query_get_integer(row, FOIL_SCAN);
   if (fg_query_get_integer(row, FOIL_REPLACED)) {
     content->replaced++;
@@ -61,8 +61,8 @@ static fg_status take_foil(fg_context *ctx, fg_lot_content *content, const fg_qu
   }
   content->withheld += fg_query_get_integer(row, FOIL_WITHHELD) != 0;
   if (!content->count || content->scans[content->count - 1].id != scan)
-    FG_TRY(add_stored_scan(ctx, content, row));
-  return add_stored_foil(ctx, &content->scans[content->count - 1], row);
+    FG_TRY(add_content_scan(ctx, content, row));
+  return add_content_foil(ctx, &content->scans[content->count - 1], row);
 }
 
 static fg_status read_state(fg_context *ctx, sqlite3 *reader, const char *lot,
@@ -83,7 +83,7 @@ fg_status fg_lot_content_read(fg_context *ctx, sqlite3 *reader, const char *lot,
   fg_query_begin(reader, foils_of_lot, &query);
   fg_query_text(&query, lot);
   while (status == FG_OK && fg_query_row(&query))
-    status = take_foil(ctx, content, &query);
+    status = count_foil(ctx, content, &query);
   fg_status ended = fg_query_end(ctx, &query, "reading the lot's foils");
   if (status == FG_OK) status = ended;
   if (status == FG_OK) status = read_state(ctx, reader, lot, content);

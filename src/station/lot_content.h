@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the database says of a lot: which foils of which scans belong to it. */
+/* Content of a lot in the database: its foils and their scans. */
 #ifndef FG_STATION_LOT_CONTENT_H
 #define FG_STATION_LOT_CONTENT_H
 
 #include "station/database.h"
 
-/* A scan with foils of the lot: of a bed, maybe not all. */
+/* A scan with foils of the lot; of a bed's foils some may be of other lots. */
 typedef struct fg_lot_scan {
   int64_t id;
   char *path; /* below the station's folder, as stored (stored_name.h) */
@@ -16,14 +16,14 @@ typedef struct fg_lot_scan {
   char *serial, *die, *operator_name;
 } fg_lot_scan;
 
-/* A foil that had to be scanned again (it could not be told, measured, or given a verdict) counts
- * with its later scans of the same serial number; one that fails stays. */
+/* A foil that had to be scanned again (not measured, undecided or without a verdict) counts with
+ * the later scan of its serial number; one that fails stays. */
 typedef struct fg_lot_content {
   fg_lot_scan *scans;
   size_t count, capacity;
   size_t replaced; /* foils that count with a later scan */
-  size_t withheld; /* foils that count, and have no verdict while the scanner's check was due */
-  int64_t setup;   /* with which the newest of its scans was measured */
+  size_t withheld; /* foils that count but have no verdict, as the scanner's check was due */
+  int64_t setup;   /* of the newest of its scans */
   char state[64];  /* changes with every foil that comes, goes or is corrected (FG_LOT_STATE) */
 } fg_lot_content;
 
@@ -33,19 +33,19 @@ typedef struct fg_lot_content {
   " AND EXISTS (SELECT 1 FROM foils AS g WHERE g.serial = f.serial AND g.lot = f.lot"              \
   " AND g.scan > f.scan))"
 
-/* What a lot holds, as a word; `name` is SQL. */
+/* State of a lot's content, as a text that changes with it; `name` is SQL. */
 #define FG_LOT_STATE(name)                                                                         \
   "(SELECT count(*) || ' ' || total(h.id) FROM foils AS h WHERE h.lot = " name ") || ' ' ||"       \
   " (SELECT coalesce(max(c.id), 0) FROM foils AS h JOIN corrections AS c ON c.foil = h.id"         \
   " WHERE h.lot = " name ")"
 
-/* FG_ERR_USAGE: there is no such lot. `reader`: nobody else uses it meanwhile. */
+/* Reads a lot. FG_ERR_USAGE: there is no such lot. The call alone may use `reader` meanwhile. */
 fg_status fg_lot_content_read(fg_context *ctx, sqlite3 *reader, const char *lot,
                               fg_lot_content *content);
 void fg_lot_content_free(fg_lot_content *content);
 
-/* What a foil of that lot has to say when it comes after the lot was closed; "" when it has not
- * been. */
+/* Writes the note for a foil of that lot that comes after the lot was closed; "" for an open
+ * lot. */
 fg_status fg_station_lot_note(fg_context *ctx, fg_station_database *database, const char *lot,
                               char *words, size_t size);
 

@@ -9,7 +9,6 @@
 
 #include "core/memory.h"
 #include "core/text.h"
-#include "station/actions.h"
 #include "station/lot_folder.h"
 #include "station/pages.h"
 
@@ -89,7 +88,7 @@ fg_status fg_page_lot(fg_context *ctx, fg_inspection *station, sqlite3 *reader,
   return FG_OK;
 }
 
-/* As a header takes it. */
+/* Makes a file name that an HTTP header can hold. */
 static void name_download(const char *lot, const char *file, char *name, size_t size) {
   char folder[FG_LOT_FOLDER_NAME];
   fg_lot_folder_name(lot, folder);

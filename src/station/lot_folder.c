@@ -12,17 +12,17 @@
 
 #define WITHOUT_LOT "without_lot"
 
-/* LONGEST leaves room in the 255 bytes of a name for the sum of what is cut off. */
+/* LONGEST leaves room in the 255 bytes of a name for the checksum of the part cut off. */
 enum { LONGEST = 200, SUM_DIGITS = 16 };
 
-/* What file systems of any kind take as it is, not at the edges of a name where some cut it off. */
-static bool is_plain_character(const char *at, bool edge) {
+/* True for bytes that all file systems accept; at the edges of a name some cut bytes off. */
+static bool is_plain_byte(const char *at, bool edge) {
   unsigned char c = (unsigned char)*at;
   if (c < ' ' || c == 0x7f || strchr("%/\\:*?\"<>|", c)) return false;
   return !edge || (c != '.' && c != ' ');
 }
 
-static size_t put_name_bytes(char *name, const char *at, size_t bytes, bool plain) {
+static size_t put_byte(char *name, const char *at, size_t bytes, bool plain) {
   size_t length = 0;
   for (size_t i = 0; i < bytes; i++)
     length += (size_t)snprintf(name + length, 4, plain ? "%c" : "%%%02X", (unsigned char)at[i]);
@@ -38,8 +38,7 @@ void fg_lot_folder_name(const char *lot, char name[FG_LOT_FOLDER_NAME]) {
     size_t valid = fg_utf8_length(at), bytes = valid ? valid : 1;
     bool edge = at == lot || !at[bytes];
     bool reserved = at == lot && !strcmp(lot, WITHOUT_LOT);
-    length += put_name_bytes(name + length, at, bytes,
-                             valid && !reserved && is_plain_character(at, edge));
+    length += put_byte(name + length, at, bytes, valid && !reserved && is_plain_byte(at, edge));
     at += bytes;
   }
   if (!*lot) strcpy(name, WITHOUT_LOT);

@@ -30,7 +30,7 @@ static size_t find_field(const char *at, const char **end) {
 }
 
 fg_status fg_naming_check(fg_context *ctx, const char *pattern) {
-  bool seen[FIELDS] = {false}, open = false; /* open: what stands before ends anywhere */
+  bool seen[FIELDS] = {false}, open = false; /* open: the field before may end anywhere */
   for (const char *at = pattern; *at;) {
     const char *end = at + 1;
     if (*at == '{') {
@@ -55,7 +55,7 @@ fg_status fg_naming_check(fg_context *ctx, const char *pattern) {
 }
 
 /* The name of a file is any bytes, that of a foil is a text that people read, type and search. */
-static void keep_named_field(fg_named *named, size_t field, const char *text, size_t length) {
+static void keep_field(fg_named *named, size_t field, const char *text, size_t length) {
   static const char unknown[] = "\xEF\xBF\xBD";
   char *to = (char *)named + fields[field].offset;
   size_t kept = 0;
@@ -79,8 +79,8 @@ typedef struct step {
   const char *text;
 } step;
 
-/* The step at `pattern`; returns what follows it. */
-static const char *take_step(const char *pattern, bool first, step *taken) {
+/* Reads the step at `pattern`; returns the rest of the pattern. */
+static const char *read_step(const char *pattern, bool first, step *taken) {
   const char *text = pattern;
   *taken = (step){.first = first, .field = FIELDS};
   if (!first) {
@@ -105,28 +105,29 @@ static const char *find_text(const step *at, bool last, const char *from, const 
   return memmem(from, (size_t)(end - from), at->text, at->length);
 }
 
-/* True where `name` up to `end` matches the pattern. Each text is looked for once: where the rest
- * fits behind a later place of it, it fits behind the nearest too, as the open place that follows
- * takes any length. So no step is ever tried again, and fields are as short as they can be. */
+/* True where `name` up to `end` matches the pattern. Each text is searched once: where the rest
+ * matches behind a later occurrence, it matches behind the nearest too, as the open place that
+ * follows has any length. So no step is ever tried again, and fields are as short as they can
+ * be. */
 static bool match(const char *pattern, const char *name, const char *end, fg_named *named) {
   for (bool first = true; first || *pattern; first = false) {
     step at;
-    pattern = take_step(pattern, first, &at);
+    pattern = read_step(pattern, first, &at);
     size_t min = at.field < FIELDS;
     if ((size_t)(end - name) < min) return false;
     const char *place = find_text(&at, !*pattern, name + min, end);
     if (!place) return false;
-    if (at.field < FIELDS) keep_named_field(named, at.field, name, (size_t)(place - name));
+    if (at.field < FIELDS) keep_field(named, at.field, name, (size_t)(place - name));
     name = place + at.length;
   }
   return true;
 }
 
-bool fg_naming_take(const char *pattern, const char *file, fg_named *named) {
+bool fg_naming_split(const char *pattern, const char *file, fg_named *named) {
   const char *dot = strrchr(file, '.'), *last = dot && dot > file ? dot : file + strlen(file);
   *named = (fg_named){0};
   if (match(pattern, file, last, named)) return true;
   *named = (fg_named){0};
-  keep_named_field(named, 0, file, (size_t)(last - file));
+  keep_field(named, 0, file, (size_t)(last - file));
   return false;
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a file's name says: a pattern of text, `*` for anything and fields in braces. */
+/* Fields in file names, by a pattern of text, `*` for anything and fields in braces. */
 #ifndef FG_STATION_NAMING_H
 #define FG_STATION_NAMING_H
 
@@ -14,14 +14,14 @@ typedef struct fg_named {
   char check[FG_NAMED_TEXT]; /* not "": the scan is one of the scanner's check */
 } fg_named;
 
-/* FG_ERR_DATA: a field that there is not, a brace that is not closed, two fields without a text
+/* Checks a pattern. FG_ERR_DATA: an unknown field, an open brace, two fields without text
  * between them, a field twice. */
 fg_status fg_naming_check(fg_context *ctx, const char *pattern);
 
-/* Takes a file's name (without folder) apart; bytes that are no UTF-8 or a control character become
- * U+FFFD. Its ending (from the last dot) does not count. A
- * field takes as little as it can, and at least one byte. False, and the whole name as the serial
- * number, when the name is not as the pattern says. */
-bool fg_naming_take(const char *pattern, const char *file, fg_named *named);
+/* Splits a file's name (without folder) into fields; bytes that are no UTF-8 or a control
+ * character become U+FFFD. Its ending (from the last dot) does not count. A field is as short as
+ * it can be, and one byte at least. False, with the whole name as the serial number, when the
+ * name does not match. */
+bool fg_naming_split(const char *pattern, const char *file, fg_named *named);
 
 #endif

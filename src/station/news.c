@@ -5,7 +5,7 @@
 
 #include "core/text.h"
 
-void fg_station_tell(fg_inspection *station) {
+void fg_station_notify(fg_inspection *station) {
   atomic_fetch_add(&station->news, 1);
   if (station->wake) station->wake(station->server);
 }
@@ -31,13 +31,13 @@ void fg_station_set_stage(fg_inspection *station, fg_stage stage, const char *fi
     at->seen = true;
   }
   pthread_mutex_unlock(&at->mutex);
-  if (changed) fg_station_tell(station);
+  if (changed) fg_station_notify(station);
 }
 
 static void end_if(fg_inspection *station, bool ends) {
   if (ends) station->arriving.stage = FG_STAGE_NONE;
   pthread_mutex_unlock(&station->arriving.mutex);
-  if (ends) fg_station_tell(station);
+  if (ends) fg_station_notify(station);
 }
 
 void fg_station_end_stage(fg_inspection *station, const char *file) {

@@ -5,24 +5,26 @@
 
 #include "station/state.h"
 
-/* Counts a change and wakes who waits for one. After it was kept: who is woken reads it. */
-void fg_station_tell(fg_inspection *station);
+/* Counts a change and wakes the waiting pages. Call it after the change was kept: they read it. */
+void fg_station_notify(fg_inspection *station);
 
-/* The count. It begins with the station's start, so that a page of an earlier run has another. */
+/* Returns the count. It begins with the time of the station's start, so that a page of an
+ * earlier run has another. */
 long long fg_station_news(fg_inspection *station);
 
-/* The stage of a file, a name below the folder, on its way to its card. One is shown: that of the
- * first which is received, until it is gone or one is measured. Tells who waits of a change. */
+/* Sets the stage of a file, a name below the folder, before its card. Pages show one: the first
+ * file that is received, until it is gone or one is measured. Wakes the waiting pages on a
+ * change. */
 void fg_station_set_stage(fg_inspection *station, fg_stage stage, const char *file);
 
-/* The file has its card, or is none any more. */
+/* Ends the stage of a file: it has its card, or is gone. */
 void fg_station_end_stage(fg_inspection *station, const char *file);
 
-/* Before and after a look at all files of the folder: one that is gone is received no more. */
+/* Enclose a pass over all files of the folder; they end the stage of a file that is gone. */
 void fg_station_begin_round(fg_inspection *station);
 void fg_station_end_round(fg_inspection *station);
 
-/* A copy, without its mutex. */
+/* Copies the stage, without its mutex. */
 void fg_station_read_stage(fg_inspection *station, fg_arriving *copy);
 
 #endif

@@ -9,7 +9,7 @@
 #include "station/pages.h"
 #include "station/values.h"
 
-static void write_correction_cell(FILE *out, const char *name, const char *text) {
+static void write_conflict_cell(FILE *out, const char *name, const char *text) {
   fprintf(out, "<td class=\"text\" data-name=\"%s\">", name);
   fg_html_text(out, text[0] ? text : "–");
   fputs("</td>", out);
@@ -46,10 +46,10 @@ static fg_status write_overtaken(fg_context *ctx, sqlite3 *reader, const fg_iden
   for (size_t i = 0; i < FG_IDENTITY_FIELDS; i++) {
     if (!asked->overtaken[i]) continue;
     fprintf(out, "<tr><td><b>%s</b></td>", fg_identity_field(i));
-    write_correction_cell(out, "now", asked->before[i]);
+    write_conflict_cell(out, "now", asked->before[i]);
     FG_TRY(write_last_change(ctx, reader, asked->foil, fg_identity_field(i), out));
-    write_correction_cell(out, "your page showed", asked->was[i]);
-    write_correction_cell(out, "you want", asked->after[i]);
+    write_conflict_cell(out, "your page showed", asked->was[i]);
+    write_conflict_cell(out, "you want", asked->after[i]);
     fputs("</tr>\n", out);
   }
   fputs("</tbody></table>\n<p>Keep what you want over it, or go back.</p>\n", out);
@@ -88,25 +88,25 @@ static fg_status write_owners(fg_context *ctx, sqlite3 *reader, const fg_identit
   return fg_query_end(ctx, &query, "reading the serial numbers");
 }
 
-static fg_status write_correction_form(fg_context *ctx, const fg_inspection *station,
-                                       sqlite3 *reader, const fg_identity_change *asked,
-                                       FILE *out) {
+static fg_status write_conflict_html_form(fg_context *ctx, const fg_inspection *station,
+                                          sqlite3 *reader, const fg_identity_change *asked,
+                                          FILE *out) {
   fg_query query;
-  fg_foil_form_error html_form = {.back = asked->to_now ? "/" : "/foil",
-                                  .focus = true,
-                                  .who = !asked->to_now,
-                                  .by = asked->by,
-                                  .also = asked->owned ? asked->after[0] : ""};
+  fg_foil_html_form html_form = {.back = asked->to_now ? "/" : "/foil",
+                                 .focus = true,
+                                 .who = !asked->to_now,
+                                 .by = asked->by,
+                                 .also = asked->owned ? asked->after[0] : ""};
   for (size_t i = 0; i < FG_IDENTITY_FIELDS; i++)
     html_form.asked[i] = asked->asked[i] ? asked->after[i] : NULL;
   fg_query_begin(reader, "SELECT id, serial, lot, die, operator FROM foils WHERE id = ?", &query);
   fg_query_integer(&query, asked->foil);
-  if (fg_query_row(&query)) fg_page_foil_form_error(station, &query, &html_form, out);
+  if (fg_query_row(&query)) fg_page_foil_html_form(station, &query, &html_form, out);
   return fg_query_end(ctx, &query, "reading a foil");
 }
 
-static fg_status write_correction_page(fg_context *ctx, fg_inspection *station,
-                                       const fg_identity_change *asked, FILE *out) {
+static fg_status write_conflict_page(fg_context *ctx, fg_inspection *station,
+                                     const fg_identity_change *asked, FILE *out) {
   sqlite3 *reader = station->database.reader;
   FG_TRY(fg_page_begin(ctx, station, reader, out, FG_TAB_HISTORY, "Correct a foil"));
   bool overtaken = false;
@@ -120,7 +120,7 @@ static fg_status write_correction_page(fg_context *ctx, fg_inspection *station,
   fputs("</h1>\n", out);
   if (overtaken) FG_TRY(write_overtaken(ctx, reader, asked, out));
   if (asked->owned) FG_TRY(write_owners(ctx, reader, asked, out));
-  FG_TRY(write_correction_form(ctx, station, reader, asked, out));
+  FG_TRY(write_conflict_html_form(ctx, station, reader, asked, out));
   if (asked->to_now)
     fputs("<p><a href=\"/\">Back to Now</a></p>\n</section>\n", out);
   else
@@ -136,7 +136,7 @@ fg_status fg_page_identity(fg_context *ctx, fg_inspection *station, const fg_ide
   FILE *out = open_memstream(&answer->body, &answer->size);
   if (!out) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory");
   pthread_mutex_lock(&station->database.reading);
-  fg_status status = write_correction_page(ctx, station, asked, out);
+  fg_status status = write_conflict_page(ctx, station, asked, out);
   pthread_mutex_unlock(&station->database.reading);
   if (fclose(out) != 0 && status == FG_OK) status = fg_fail(ctx, FG_ERR_MEMORY, "out of memory");
   answer->code = CONFLICT;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One foil: what was said of it and why, its picture, its values with their limits, its form, and
- * who changed what. */
+/* One foil: its verdict and the reasons, its picture, its values with their limits, its html
+ * form, and its corrections. */
 #include <string.h>
 
 #include "page/page.h"
@@ -15,7 +15,7 @@ static void write_fact(FILE *out, const char *title, const char *text) {
   fputs("</dd>\n", out);
 }
 
-static void write_verdict_call(const fg_stored_foil *stored, FILE *out) {
+static void write_foil_call(const fg_stored_foil *stored, FILE *out) {
   bool withheld = stored->withheld != NULL;
   fprintf(out, "<div class=\"call small %s\"><b>%s</b><span>",
           fg_page_verdict_class(stored->verdict, withheld),
@@ -88,13 +88,13 @@ static fg_status write_trail(fg_context *ctx, sqlite3 *reader, const fg_stored_f
   return fg_query_end(ctx, &query, "reading the corrections");
 }
 
-static fg_status write_foil_form(fg_context *ctx, const fg_inspection *station, sqlite3 *reader,
-                                 const fg_stored_foil *stored, FILE *out) {
+static fg_status write_foil_html_form(fg_context *ctx, const fg_inspection *station,
+                                      sqlite3 *reader, const fg_stored_foil *stored, FILE *out) {
   fg_query query;
   fg_query_begin(reader, "SELECT id, serial, lot, die, operator FROM foils WHERE id = ?", &query);
   fg_query_integer(&query, stored->id);
-  const fg_foil_form_error html_form = {.back = "/foil", .who = true};
-  if (fg_query_row(&query)) fg_page_foil_form_error(station, &query, &html_form, out);
+  const fg_foil_html_form html_form = {.back = "/foil", .who = true};
+  if (fg_query_row(&query)) fg_page_foil_html_form(station, &query, &html_form, out);
   return fg_query_end(ctx, &query, "reading a foil");
 }
 
@@ -102,7 +102,7 @@ static fg_status write_foil(fg_context *ctx, fg_inspection *station, sqlite3 *re
                             const fg_stored_foil *stored, FILE *out) {
   FG_TRY(fg_page_begin(ctx, station, reader, out, FG_TAB_HISTORY, stored->serial));
   fputs("<section>\n", out);
-  write_verdict_call(stored, out);
+  write_foil_call(stored, out);
   FG_TRY(fg_page_crushed(ctx, reader, stored->id, out));
   FG_TRY(fg_page_deciding(ctx, reader, stored->id, out));
   FG_TRY(fg_page_same_serial(ctx, reader, stored->id, out));
@@ -113,7 +113,7 @@ static fg_status write_foil(fg_context *ctx, fg_inspection *station, sqlite3 *re
           (long long)stored->id);
   fg_stored_foil_write_tables(stored, out);
   fputs("<h2 class=\"noprint\">Correct what is said of it</h2>\n", out);
-  FG_TRY(write_foil_form(ctx, station, reader, stored, out));
+  FG_TRY(write_foil_html_form(ctx, station, reader, stored, out));
   FG_TRY(write_trail(ctx, reader, stored, out));
   FG_TRY(write_facts(ctx, stored, out));
   fputs("</section>\n", out);

@@ -9,7 +9,7 @@
 #include "station/pages.h"
 #include "station/values.h"
 
-/* PAGE_FOILS: what one sheet of paper holds. SUGGESTED: lots and dies that a field proposes. */
+/* PAGE_FOILS: foils on one sheet of paper. SUGGESTED: lots and dies that a field proposes. */
 enum { PAGE_FOILS = 40, PAGES_MAX = 1000000, SUGGESTED = 200, WHERE_BYTES = 1024 };
 
 static const struct {
@@ -24,7 +24,7 @@ static const struct {
 
 enum { VERDICTS = sizeof verdicts / sizeof *verdicts };
 
-/* What is sought. Texts belong to the request. */
+/* A search. Texts belong to the request. */
 typedef struct search {
   const char *serial, *lot, *die, *from, *to, *verdict;
   int64_t from_ms, to_ms; /* -1: open */
@@ -57,7 +57,7 @@ static bool is_verdict(const char *word) {
   return false;
 }
 
-/* What is no date, no verdict or no page is as if it were not there. */
+/* Reads the search. Invalid parameters are ignored. */
 static void read_search(const fg_request *request, search *at) {
   char *end;
   *at = (search){.serial = fg_request_get(request, "serial"),
@@ -107,7 +107,7 @@ static void write_input(FILE *out, const char *label, const char *name, const ch
   fputs("\"></label>", out);
 }
 
-/* What there is, newest first, for a field that proposes it. */
+/* Writes the existing values, newest first, as proposals of a field. */
 static fg_status write_suggestions(fg_context *ctx, sqlite3 *reader, const char *id,
                                    const char *sql, FILE *out) {
   fg_query query;
@@ -123,7 +123,8 @@ static fg_status write_suggestions(fg_context *ctx, sqlite3 *reader, const char 
   return fg_query_end(ctx, &query, "reading the lots");
 }
 
-static fg_status write_search_form(fg_context *ctx, sqlite3 *reader, const search *at, FILE *out) {
+static fg_status write_search_html_form(fg_context *ctx, sqlite3 *reader, const search *at,
+                                        FILE *out) {
   fputs("<form class=\"fields\" method=\"get\" action=\"/history\">", out);
   write_input(out, "Serial", "serial",
               " type=\"search\" maxlength=\"127\" autocomplete=\"off\" autofocus data-focus",
@@ -147,7 +148,7 @@ static fg_status write_search_form(fg_context *ctx, sqlite3 *reader, const searc
                            out);
 }
 
-static void write_history_cell(FILE *out, const char *style, const char *name, const char *text) {
+static void write_found_cell(FILE *out, const char *style, const char *name, const char *text) {
   fprintf(out, "<td class=\"text%s\"", style);
   if (text[0]) fprintf(out, " data-name=\"%s\"", name);
   fputc('>', out);
@@ -155,7 +156,7 @@ static void write_history_cell(FILE *out, const char *style, const char *name, c
   fputs("</td>", out);
 }
 
-static void write_history_row(const fg_query *at, FILE *out) {
+static void write_found_row(const fg_query *at, FILE *out) {
   long long id = (long long)fg_query_get_integer(at, 0);
   const char *verdict = fg_query_get_text(at, 6);
   bool withheld = !fg_query_is_null(at, 7);
@@ -165,9 +166,9 @@ static void write_history_row(const fg_query *at, FILE *out) {
           fg_page_verdict_class(verdict, withheld), fg_page_verdict_words(verdict, withheld));
   fg_page_time(out, fg_query_get_integer(at, 5));
   fputs("</td>", out);
-  write_history_cell(out, "", "lot", fg_query_get_text(at, 2));
-  write_history_cell(out, "", "die", fg_query_get_text(at, 3));
-  write_history_cell(out, " wide", "operator", fg_query_get_text(at, 4));
+  write_found_cell(out, "", "lot", fg_query_get_text(at, 2));
+  write_found_cell(out, "", "die", fg_query_get_text(at, 3));
+  write_found_cell(out, " wide", "operator", fg_query_get_text(at, 4));
   fputs("<td class=\"wide\">", out);
   if (!fg_query_is_null(at, 9)) fg_page_decided_line(at, 9, out);
   fputs("</td></tr>\n", out);
@@ -194,12 +195,12 @@ static fg_status write_rows(fg_context *ctx, sqlite3 *reader, const search *at, 
       "<th class=\"wide\">Nearest its limit</th></tr></thead>\n<tbody>\n",
       out);
   while (fg_query_row(&query))
-    write_history_row(&query, out);
+    write_found_row(&query, out);
   fputs("</tbody></table></div>\n", out);
   return fg_query_end(ctx, &query, "searching foils");
 }
 
-/* As part of an address. */
+/* Writes a name and its value encoded for an address. */
 static void write_encoded(FILE *out, const char *name, const char *value) {
   fprintf(out, "%s=", name);
   for (; *value; value++) {
@@ -242,7 +243,7 @@ fg_status fg_page_history(fg_context *ctx, fg_inspection *station, sqlite3 *read
   if (at.page > pages) at.page = pages > 0 ? pages : 1;
   FG_TRY(fg_page_begin(ctx, station, reader, out, FG_TAB_HISTORY, "History"));
   fputs("<section>\n", out);
-  FG_TRY(write_search_form(ctx, reader, &at, out));
+  FG_TRY(write_search_html_form(ctx, reader, &at, out));
   fprintf(out, "<p class=\"note\">%lld %s%s</p>\n", (long long)found, found == 1 ? "foil" : "foils",
           at.where[0] ? " found" : "");
   if (found) FG_TRY(write_rows(ctx, reader, &at, out));

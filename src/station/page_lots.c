@@ -14,7 +14,7 @@ static void write_lot_name(FILE *out, const char *lot) {
   fg_html_text(out, *lot ? lot : "without lot");
 }
 
-/* As a value in a link. */
+/* Writes text encoded as a value in a link. */
 static void write_encoded(FILE *out, const char *text) {
   for (; *text; text++) {
     bool plain = (*text >= '0' && *text <= '9') || (*text >= 'A' && *text <= 'Z') ||
@@ -48,7 +48,7 @@ static void write_counts(FILE *out, const fg_query *row, int from) {
   fputs("</td>", out);
 }
 
-/* The newest first, LOTS_SHOWN on a page: which these are, the index of the lots alone tells. */
+/* Open lots, the newest first, LOTS_SHOWN on a page; the index of the lots alone finds them. */
 static const char open_lots[] =
     "WITH newest AS (SELECT lot, max(id) AS last FROM foils WHERE lot NOT IN (SELECT name FROM "
     "lots)"
@@ -164,8 +164,7 @@ static fg_status write_closed(fg_context *ctx, const fg_inspection *station, sql
   return fg_query_end(ctx, &query, "reading the closed lots");
 }
 
-/* What was found wrong with files of the folder that gave no scan: whose lot they are, nobody
- * knows. */
+/* Lists faults of files that gave no scan; their lot is unknown. */
 static fg_status write_refused(fg_context *ctx, sqlite3 *reader, FILE *out) {
   fg_query query;
   fg_query_begin(reader,
@@ -211,7 +210,7 @@ static fg_status write_question(fg_context *ctx, const fg_inspection *station, s
   return FG_OK;
 }
 
-/* The one that is being closed, or what was in the way of the last. */
+/* Writes the lot that is being closed, or the failure of the last. */
 static void write_closing(fg_inspection *station, FILE *out) {
   fg_closing *closing = &station->closing;
   pthread_mutex_lock(&closing->mutex);

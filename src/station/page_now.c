@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The newest card, in letters that are read from two metres; what to do next; those before it. */
+/* The page Now: the newest card, in letters that can be read from two metres, the next step,
+ * earlier cards. */
 #include <math.h>
 #include <string.h>
 
@@ -74,14 +75,15 @@ static const char *next_step(const card *newest) {
   return "The design states no tolerances, so nothing was judged.";
 }
 
-/* A script compares this number with that of the foil whose form is half typed. */
+/* Writes the arrival's number: a script compares it with that of the foil whose html form is
+ * half typed. */
 static void write_arrival(FILE *out, int64_t id, const char *words) {
   fprintf(out, " data-arrival=\"%lld\" data-words=\"%s\"", (long long)id, words);
 }
 
 static void write_newest_call(FILE *out, const card *newest) {
-  const fg_card_look look =
-      fg_page_card_look(newest->kind, newest->verdict, newest->withheld[0] != '\0');
+  const fg_card_style look =
+      fg_page_card_style(newest->kind, newest->verdict, newest->withheld[0] != '\0');
   fprintf(out, "<div class=\"call %s%s\" role=\"status\"", look.style,
           strlen(look.words) > LARGE_LETTERS ? " long" : "");
   write_arrival(out, newest->id, look.words);
@@ -149,17 +151,17 @@ static fg_status write_foil(fg_context *ctx, fg_inspection *station, sqlite3 *re
     fputs("</p>\n", out);
   }
   FG_TRY(fg_page_crushed(ctx, reader, id, out));
-  /* Without a verdict no colour of one, either. */
+  /* Without a verdict there is no colour of one. */
   fputs(withheld ? "<div class=\"withheld\">" : "<div>", out);
   FG_TRY(fg_page_deciding(ctx, reader, id, out));
   fputs("</div>\n", out);
-  const fg_foil_form_error html_form = {.back = "/", .focus = focus};
-  fg_page_foil_form_error(station, foil, &html_form, out);
+  const fg_foil_html_form html_form = {.back = "/", .focus = focus};
+  fg_page_foil_html_form(station, foil, &html_form, out);
   FG_TRY(fg_page_same_serial(ctx, reader, id, out));
   return write_picture(ctx, reader, id, out);
 }
 
-/* Of a bed: every foil with its verdict, and where it is on the page. */
+/* Writes an overview of a bed: every foil with its verdict, and a link to its place on the page. */
 static fg_status write_overview(fg_context *ctx, sqlite3 *reader, const card *newest, FILE *out) {
   fg_query foils;
   if (newest->foils < 2) return FG_OK;
@@ -224,7 +226,7 @@ static fg_status write_cards(fg_context *ctx, sqlite3 *reader, int64_t newest, F
   fg_query_integer(&query, CARDS);
   fputs("<section class=\"noprint\"><h2 class=\"first\">Before</h2>\n<ul class=\"cards\">", out);
   while (fg_query_row(&query)) {
-    const fg_card_look look = fg_page_card_look(
+    const fg_card_style look = fg_page_card_style(
         fg_query_get_text(&query, 2), fg_query_get_text(&query, 4), !fg_query_is_null(&query, 5));
     fputs("<li", out);
     write_arrival(out, fg_query_get_integer(&query, 7), look.words);
@@ -259,8 +261,8 @@ static fg_status write_scan(fg_context *ctx, fg_inspection *station, sqlite3 *re
 }
 
 static void write_before(FILE *out, const card *newest) {
-  const fg_card_look look =
-      fg_page_card_look(newest->kind, newest->verdict, newest->withheld[0] != '\0');
+  const fg_card_style look =
+      fg_page_card_style(newest->kind, newest->verdict, newest->withheld[0] != '\0');
   fputs("<p class=\"note\"", out);
   write_arrival(out, newest->id, look.words);
   fputs(">Before it: ", out);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A foil's whole report: measured again from its scan with the design and the model of then, or,
- * where the scan is gone or is another by now, what the record of then holds. */
+/* A foil's whole report: measured again from its scan with the design and the model of its first
+ * measurement; or its record, where the scan is gone or has changed. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -13,7 +13,7 @@
 #include "station/stored_foil.h"
 #include "station/stored_name.h"
 
-/* One at a time: each takes all cores for a second, and new scans come first. */
+/* One report at a time: each takes all cores for a second, and new scans come first. */
 static pthread_mutex_t measuring = PTHREAD_MUTEX_INITIALIZER;
 
 enum { WHY_BYTES = 400 };
@@ -51,7 +51,8 @@ static fg_status write_measured(fg_context *ctx, const fg_stored_foil *stored,
   return fg_report_write_html(ctx, &report, out);
 }
 
-/* FG_ERR_DATA, FG_ERR_IO: the scan is no longer what was measured, and why. */
+/* FG_ERR_DATA, FG_ERR_IO: the scan is no longer the one that was measured; the message has the
+ * reason. */
 static fg_status measure_again(fg_context *ctx, const char *folder, const fg_stored_foil *stored,
                                FILE *out) {
   char *path = NULL, sum[65];
@@ -108,7 +109,7 @@ static fg_status write_record(fg_context *ctx, const fg_stored_foil *stored, con
   return FG_OK;
 }
 
-/* Into memory first: what fails half-way is not shown. */
+/* Writes into memory first: a report that fails half-way is not shown. */
 static fg_status try_again(fg_context *ctx, const char *folder, const fg_stored_foil *stored,
                            FILE *out, char why[WHY_BYTES]) {
   char *page = NULL;

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The scanner's own health: what its last check came to, when the next is due, what it did over
- * time. */
+/* The page Scanner: result of the last check, due time of the next, results over time. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -68,7 +67,7 @@ static const char *call_words(const fg_station_health *health) {
                                            : "IN ORDER";
 }
 
-static void write_scanner_call(FILE *out, const fg_station_health *health) {
+static void write_check_call(FILE *out, const fg_station_health *health) {
   fprintf(out, "<div class=\"call %s\" role=\"status\"><b>%s</b><span>",
           health->failed || health->changed ? "fail"
           : health->due                     ? "again"
@@ -127,7 +126,7 @@ static double whole(double value) {
   return round(value) + 0.0;
 }
 
-/* What the newest says of each axis, against the first that is drawn. */
+/* Writes the newest values of each axis, against the first that is drawn. */
 static void write_tiles(FILE *out, const history *all, double allowed) {
   const check_row *last = &all->row[0], *first = &all->row[all->count - 1];
   fputs("<dl class=\"tiles\">", out);
@@ -142,7 +141,7 @@ static void write_tiles(FILE *out, const history *all, double allowed) {
   fputs("</dl>\n", out);
 }
 
-/* From the oldest, at 1. */
+/* Returns row i counted from the oldest. */
 static const check_row *in_order(const history *all, size_t i) {
   return &all->row[all->count - 1 - i];
 }
@@ -263,7 +262,7 @@ static fg_status write_checks(fg_context *ctx, const fg_inspection *station, sql
   history *all = block;
   fg_status status = read_history(ctx, reader, max, all);
   if (status == FG_OK) {
-    write_scanner_call(out, &health);
+    write_check_call(out, &health);
     write_next(out, check, &health);
     status = write_all(ctx, station, reader, all, out);
   }

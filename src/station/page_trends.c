@@ -7,7 +7,7 @@
 #include "station/trend.h"
 
 enum { NAME_BYTES = 140, NARROWEST = 10 };
-/* Points that a chart needs before its silence says that a process is stable (AIAG, Statistical
+/* Points that a chart without signals needs before it shows a stable process (AIAG, Statistical
  * Process Control, 2005: 25 subgroups). */
 enum { STABLE_MIN = 25 };
 
@@ -42,7 +42,7 @@ static void write_step(const page *p, const char *key, const char *words, size_t
   fprintf(p->out, "\">%s</a>\n", words);
 }
 
-/* Links that move what is drawn: what dragging does for those who drag. */
+/* Writes links that move the drawn range, as dragging does. */
 static void write_steps(const page *p) {
   const fg_trend *trend = p->trend;
   size_t from = fg_trend_number(trend, trend->first), to = fg_trend_number(trend, trend->last);
@@ -103,7 +103,7 @@ static void write_controls(const page *p) {
   fputs("</div>\n", p->out);
 }
 
-/* Of a foil: when it was measured. */
+/* Returns the time of a foil's measurement. */
 static int64_t time_of(const page *p, size_t point) {
   fg_query query;
   fg_context unused;
@@ -209,7 +209,7 @@ static void write_ratio(FILE *out, const char *name, const fg_ratio *ratio, cons
           name, ratio->value, ratio->low, ratio->high, words);
 }
 
-static void write_why_not(const page *p) {
+static void write_withheld_reasons(const page *p) {
   const fg_lot_quantity *quantity = &p->trend->quantity;
   FILE *out = p->out;
   fputs("<p class=\"next\">Not stated: ", out);
@@ -243,7 +243,7 @@ static void write_capability(const page *p) {
   fputs("<h2>Capability</h2>\n", out);
   if (p->choice->by_lots || !quantity->has_capability || !quantity->stable ||
       p->trend->count < STABLE_MIN) {
-    write_why_not(p);
+    write_withheld_reasons(p);
     return;
   }
   fputs("<dl class=\"tiles\">", out);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The pages of a station, and what they share. */
+/* The pages and actions of a station, and their common parts. */
 #ifndef FG_STATION_PAGES_H
 #define FG_STATION_PAGES_H
 
@@ -16,34 +16,45 @@ typedef enum fg_tab {
 fg_page_writer fg_page_now, fg_page_history, fg_page_trends, fg_page_scanner, fg_page_lots;
 fg_page_writer fg_page_foil;   /* one foil: its values, its trail, its form */
 fg_page_writer fg_page_report; /* its whole report, measured again from the scan */
-fg_page_writer fg_page_lot;    /* the report of a closed lot, as it lies in its folder */
+fg_page_writer fg_page_lot;    /* the report of a closed lot, from its folder */
 
-/* From the doctype to <main>, with the tabs and, where it is due, the scanner's banner. */
+/* Writes a page from its doctype to <main>, with the tabs and, where it is due, the scanner's
+ * banner. */
 fg_status fg_page_begin(fg_context *ctx, fg_inspection *station, sqlite3 *reader, FILE *out,
                         fg_tab tab, const char *title);
 void fg_page_end(FILE *out);
 
-/* "2026-03-01 14:02:33", local time. */
+/* Writes "2026-03-01 14:02:33", local time. */
 void fg_page_time(FILE *out, int64_t at);
 
-/* The hidden field that every form carries. */
+/* Writes the hidden field of every html form, which protects it from other sites (CSRF). */
 void fg_page_csrf_token(const fg_inspection *station, FILE *out);
 
-/* PASS, FAIL, SCAN AGAIN, MEASURED; and the CSS class that goes with it. */
+/* Return PASS, FAIL, SCAN AGAIN, MEASURED; and the CSS class for it. */
 const char *fg_page_verdict_words(const char *verdict, bool withheld);
 const char *fg_page_verdict_class(const char *verdict, bool withheld);
 
 /* Both of a card in the list of arrivals: its kind, and the verdict of its scan where it has one. A
  * scan that was measured before gives no verdict again. */
-typedef struct fg_card_look {
+typedef struct fg_card_style {
   const char *words, *style;
-} fg_card_look;
-fg_card_look fg_page_card_look(const char *kind, const char *verdict, bool withheld);
+} fg_card_style;
+fg_card_style fg_page_card_style(const char *kind, const char *verdict, bool withheld);
 
-/* The styles of the reports and the station's own. */
+/* Returns the styles of the reports and the station's own. */
 const char *fg_station_style_text(void);
 extern const char fg_station_style[];  /* station.css */
 extern const char fg_station_script[]; /* station.js */
 extern const char fg_station_icon[];   /* SVG */
+
+/* An action of an html form: the answer redirects the browser, or carries a file. */
+typedef fg_status fg_action(fg_context *ctx, fg_inspection *station, const fg_request *request,
+                            fg_answer *answer);
+
+fg_action fg_action_correct;  /* serial, lot, die, operator of a foil; leaves a trail */
+fg_action fg_action_scan;     /* runs the recipe's scan_command */
+fg_action fg_action_baseline; /* makes the newest check the baseline of later ones */
+fg_action fg_action_close;    /* a lot: writes its folder and report */
+fg_action fg_action_download; /* a lot's CSV, QIF, DFQ, report */
 
 #endif

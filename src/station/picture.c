@@ -6,11 +6,11 @@
 
 #include "report/foil_html.h"
 
-/* Some 150 KB each; a foil whose picture is gone is drawn from its scan. */
+/* Pictures that are kept, of some 150 KB each; that of an older foil is drawn from its scan. */
 enum { PICTURES_KEPT = 400 };
 
-static fg_status draw_foil_picture(fg_context *ctx, const fg_measurement *measurement,
-                                   const fg_foil *foil, char **html) {
+static fg_status draw_picture(fg_context *ctx, const fg_measurement *measurement,
+                              const fg_foil *foil, char **html) {
   size_t size;
   FILE *out = open_memstream(html, &size);
   if (!out) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a picture");
@@ -20,8 +20,8 @@ static fg_status draw_foil_picture(fg_context *ctx, const fg_measurement *measur
   return status;
 }
 
-static fg_status keep_foil_picture(fg_context *ctx, sqlite3 *writer, int64_t scan, int number,
-                                   const char *html) {
+static fg_status keep_picture(fg_context *ctx, sqlite3 *writer, int64_t scan, int number,
+                              const char *html) {
   fg_query query;
   fg_query_begin(writer,
                  "INSERT OR REPLACE INTO pictures (foil, html)"
@@ -43,17 +43,17 @@ static fg_status forget_old(fg_context *ctx, sqlite3 *writer) {
   return fg_query_end(ctx, &query, "keeping a picture");
 }
 
-/* A picture that cannot be drawn takes no result with it: the card stands without. */
+/* A picture that cannot be drawn is left out; the result is kept without it. */
 fg_status fg_station_keep_pictures(fg_context *ctx, fg_station_database *database, int64_t scan,
                                    const fg_measurement *measurement) {
   for (size_t i = 0; i < measurement->foil_count; i++) {
     fg_context inner;
     char *html = NULL;
-    fg_status status = draw_foil_picture(&inner, measurement, &measurement->foils[i], &html);
+    fg_status status = draw_picture(&inner, measurement, &measurement->foils[i], &html);
     if (status == FG_OK) {
       status = fg_station_database_begin(ctx, database);
       if (status == FG_OK) {
-        status = keep_foil_picture(ctx, database->writer, scan, measurement->foils[i].number, html);
+        status = keep_picture(ctx, database->writer, scan, measurement->foils[i].number, html);
         if (status == FG_OK) status = forget_old(ctx, database->writer);
         status = fg_station_database_end(ctx, database, status);
       }

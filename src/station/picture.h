@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Pictures of foils as they stand in pages: of the newest ones, others are drawn when asked for. */
+/* Pictures of foils in pages: those of the newest are kept, others are drawn on request. */
 #ifndef FG_STATION_PICTURE_H
 #define FG_STATION_PICTURE_H
 

@@ -50,7 +50,7 @@ static const char *host_of_origin(const char *origin) {
   return host ? host + 3 : "";
 }
 
-/* As a browser writes it: a scheme and a host, and nothing behind. */
+/* True for an origin as a browser writes it: a scheme and a host alone. */
 static bool is_origin(const char *origin) {
   place at;
   bool web = !strncmp(origin, "https://", 8) || !strncmp(origin, "http://", 7);
@@ -83,7 +83,7 @@ static fg_reach find_reach(const struct sockaddr_storage *address) {
                                         : FG_REACH_ADDRESS;
 }
 
-/* It stands in an address and in a cookie. */
+/* Checks a token: it must fit into an address and a cookie. */
 static fg_status check_token(fg_context *ctx, const char *token) {
   static const char allowed[] =
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_.~";
@@ -129,7 +129,7 @@ fg_status fg_reach_find(fg_context *ctx, const fg_station_request *request,
   return request->token ? check_token(ctx, request->token) : FG_OK;
 }
 
-static void write_address(const struct sockaddr *address, char name[INET6_ADDRSTRLEN]) {
+static void write_address_name(const struct sockaddr *address, char name[INET6_ADDRSTRLEN]) {
   const void *bytes =
       address->sa_family == AF_INET
           ? (const void *)&((const struct sockaddr_in *)(const void *)address)->sin_addr
@@ -142,7 +142,7 @@ void fg_reach_write(const struct sockaddr_storage *address, unsigned port, char 
                     size_t size) {
   char name[INET6_ADDRSTRLEN];
   bool six = address->ss_family == AF_INET6;
-  write_address((const void *)address, name);
+  write_address_name((const void *)address, name);
   snprintf(text, size, "%s%s%s:%u", six ? "[" : "", name, six ? "]" : "", port);
 }
 
@@ -158,10 +158,10 @@ static bool is_address_of_machine(const char *name) {
   bool found = false;
   if (!read_address(name, 0, &given) || getifaddrs(&all) != 0) return false;
   char wanted[INET6_ADDRSTRLEN], own[INET6_ADDRSTRLEN];
-  write_address((const void *)&given, wanted);
+  write_address_name((const void *)&given, wanted);
   for (const struct ifaddrs *at = all; at && !found; at = at->ifa_next) {
     if (!is_internet(at) || at->ifa_addr->sa_family != given.ss_family) continue;
-    write_address(at->ifa_addr, own);
+    write_address_name(at->ifa_addr, own);
     found = !strcmp(own, wanted);
   }
   freeifaddrs(all);
@@ -178,8 +178,8 @@ static bool is_name_of_machine(const char *name) {
   return !strcasecmp(name, own) || !strcasecmp(name, local);
 }
 
-/* A given name stands for itself with the station's port, and with the one that was given or none
- * behind a proxy. */
+/* True when a host is the given name: as it was given, or, given without a port, with the
+ * station's port. */
 static bool is_given(const char *given, const char *host, const place *at, unsigned port) {
   place own;
   if (!strcasecmp(given, host)) return true;
@@ -216,7 +216,8 @@ static void announce_address(const fg_inspection *station, const char *scheme, c
   request->ready(request->user, url);
 }
 
-/* Link-local addresses of IPv6 need the name of a network card, which no browser takes. */
+/* Link-local addresses of IPv6 are left out: they need the name of a network card, which no
+ * browser accepts. */
 static bool is_for_others(const struct ifaddrs *at, int family) {
   if (!is_internet(at) || at->ifa_flags & IFF_LOOPBACK) return false;
   if (at->ifa_addr->sa_family == AF_INET) return true;
@@ -224,7 +225,7 @@ static bool is_for_others(const struct ifaddrs *at, int family) {
   return family == AF_INET6 && !IN6_IS_ADDR_LINKLOCAL(&six->sin6_addr);
 }
 
-static void tell_all(const fg_inspection *station, const place *own) {
+static void announce_all(const fg_inspection *station, const place *own) {
   struct ifaddrs *all = NULL;
   char host[INET6_ADDRSTRLEN + 16];
   int family = strchr(own->name, ':') ? AF_INET6 : AF_INET;
@@ -245,13 +246,13 @@ static void tell_all(const fg_inspection *station, const place *own) {
   if (!told) announce_address(station, "http://", host);
 }
 
-void fg_reach_tell(const fg_inspection *station) {
+void fg_reach_announce(const fg_inspection *station) {
   const fg_station_request *request = station->request;
   place own;
   if (!request->ready || !read_place(station->host, &own)) return;
   if (request->origin) announce_address(station, "", request->origin);
   if (station->reach == FG_REACH_ANY)
-    tell_all(station, &own);
+    announce_all(station, &own);
   else
     announce_address(station, "http://", station->host);
 }

@@ -8,16 +8,17 @@
 
 #include "station/state.h"
 
-/* The address to listen at. FG_ERR_USAGE: it is none, or others can reach the station (there, or by
- * a proxy: --origin) and there is no token; a token, host or origin that is none. */
+/* Finds the address to listen at. FG_ERR_USAGE: it is no address; or other machines can reach
+ * the station (directly, or by a proxy: --origin) and there is no token; or a token, host or
+ * origin is not valid. */
 fg_status fg_reach_find(fg_context *ctx, const fg_station_request *request,
                         struct sockaddr_storage *address, fg_reach *reach);
 
-/* "192.168.1.20:8317", "[::1]:8317"; `port` is that of the socket. */
+/* Writes "192.168.1.20:8317" or "[::1]:8317"; `port` is that of the socket. */
 void fg_reach_write(const struct sockaddr_storage *address, unsigned port, char *text, size_t size);
 
-/* Tells the request's `ready` every address that a browser can open. */
-void fg_reach_tell(const fg_inspection *station);
+/* Calls the request's `ready` with every address that a browser can open. */
+void fg_reach_announce(const fg_inspection *station);
 
 /* True where a request's Host is this station's: its address, localhost where only this machine can
  * reach it, --host, the host of --origin; names of the machine where others can reach it, and every

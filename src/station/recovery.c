@@ -23,7 +23,7 @@ void fg_station_set_recovery(fg_inspection *station, const char *words) {
   if (request->looked_at)
     request->looked_at(request->user, *words ? words : "the station goes on:",
                        *words ? "(it is tried again)" : "what was in its way is over");
-  fg_station_tell(station);
+  fg_station_notify(station);
 }
 
 void fg_station_note_files(fg_inspection *station, size_t files, double seconds) {
@@ -43,7 +43,7 @@ void fg_station_note_files(fg_inspection *station, size_t files, double seconds)
   if (changed && request->looked_at)
     request->looked_at(request->user, request->folder,
                        words[0] ? words : "The folder does not hold too many files any more.");
-  if (changed) fg_station_tell(station);
+  if (changed) fg_station_notify(station);
 }
 
 static bool has_lock(const fg_inspection *station) {
@@ -57,7 +57,7 @@ static bool has_lock(const fg_inspection *station) {
 }
 
 /* The old lock is given back last: its folder is not another station's before this one has left. */
-static fg_status take_lock(fg_context *ctx, fg_inspection *station) {
+static fg_status acquire_lock(fg_context *ctx, fg_inspection *station) {
   int lock;
   FG_TRY(fg_folder_lock(ctx, station->request->folder, &lock));
   close(station->lock);
@@ -65,13 +65,13 @@ static fg_status take_lock(fg_context *ctx, fg_inspection *station) {
   return FG_OK;
 }
 
-fg_status fg_station_look_after_folder(fg_context *ctx, fg_inspection *station) {
+fg_status fg_station_ensure_folder(fg_context *ctx, fg_inspection *station) {
   struct stat info;
   const char *folder = station->request->folder;
   fg_station_database *database = &station->database;
   if (stat(folder, &info) != 0 || !S_ISDIR(info.st_mode))
     return fg_fail(ctx, FG_ERR_IO, "%s: the folder is gone", folder);
-  if (!has_lock(station)) FG_TRY(take_lock(ctx, station));
+  if (!has_lock(station)) FG_TRY(acquire_lock(ctx, station));
   if (fg_station_database_is_there(database)) return FG_OK;
   FG_TRY(fg_station_database_reopen(ctx, folder, database));
   return fg_station_keep_setup(ctx, database, &station->settings->lot, &station->setup);

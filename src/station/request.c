@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Fields of a query or a form. */
+/* Fields of a query or an html form. */
 #include <string.h>
 
 #include "core/utf8.h"
@@ -43,11 +43,11 @@ static bool read_all(const char *at, const char *end, char *text, size_t size) {
   return is_clean(text);
 }
 
-static bool decode_text(const char *encoded, char *text, size_t size) {
+static bool read_field_text(const char *encoded, char *text, size_t size) {
   return read_all(encoded, encoded + strlen(encoded), text, size);
 }
 
-/* Up to `stop` or the next field. */
+/* Reads up to `stop` or the next field. */
 static bool read_part(const char **at, const char *end, char stop, char *text, size_t size) {
   const char *from = *at;
   while (*at < end && **at != stop && **at != '&')
@@ -58,9 +58,9 @@ static bool read_part(const char **at, const char *end, char stop, char *text, s
 bool fg_request_add_field(fg_request *request, const char *name, const char *value) {
   if (request->fields == FG_FIELDS_MAX) return false;
   fg_field *field = &request->field[request->fields];
-  /* Nothing ends either: their separators are gone already, and what looks like one is text. */
-  if (!decode_text(name, field->name, sizeof field->name) ||
-      !decode_text(value ? value : "", field->value, sizeof field->value))
+  /* The separators are split off already; a character that looks like one is text. */
+  if (!read_field_text(name, field->name, sizeof field->name) ||
+      !read_field_text(value ? value : "", field->value, sizeof field->value))
     return false;
   request->fields += field->name[0] != '\0';
   return true;

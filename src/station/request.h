@@ -21,7 +21,7 @@ typedef struct fg_field {
 
 typedef struct fg_request {
   bool post;        /* else GET */
-  const char *path; /* as it was sent: routes are plain ASCII, nothing in them is encoded */
+  const char *path; /* as it was sent: routes are plain ASCII, without encoded characters */
   fg_field field[FG_FIELDS_MAX];
   size_t fields;
   const char *host, *origin, *site, *cookie; /* headers; NULL: absent. site: Sec-Fetch-Site */
@@ -35,22 +35,23 @@ typedef struct fg_answer {
   char cookie[128];   /* to set; "": none */
   char download[160]; /* name of a file to save; "": to be shown */
   bool own_style;     /* a report of its own: its styles are inline */
-  bool wait;          /* there is no event yet: ask again when there is one */
+  bool wait;          /* there is no event yet: call again when there is one */
   char *body;
   size_t size;
 } fg_answer;
 
-/* One field more, name and value (NULL: "") still encoded as in an address. False as below. */
+/* Adds a field; name and value (NULL: "") are encoded as in an address. False as below. */
 bool fg_request_add_field(fg_request *request, const char *name, const char *value);
 
-/* Fields of a query or a form body. False: too many, too long, or not encoded as it should be. */
+/* Reads the fields of a query or of an html form's body. False: too many, too long, or wrongly
+ * encoded. */
 bool fg_request_read_fields(fg_request *request, const char *text, size_t length);
 
 /* The value, or "". */
 const char *fg_request_get(const fg_request *request, const char *name);
 
-/* A page's writer: into `out`; `reader` is the database, and nobody else's meanwhile. FG_ERR_USAGE:
- * what was asked for does not exist (404). */
+/* Writes a page into `out`; the writer alone uses `reader`, the database, meanwhile.
+ * FG_ERR_USAGE: the requested item does not exist (404). */
 typedef fg_status fg_page_writer(fg_context *ctx, fg_inspection *station, sqlite3 *reader,
                                  const fg_request *request, FILE *out);
 

@@ -17,15 +17,15 @@
 #include "core/date.h"
 #include "core/memory.h"
 #include "core/text.h"
-#include "station/actions.h"
 #include "station/keep.h"
 #include "station/news.h"
+#include "station/pages.h"
 
 extern char **environ;
 
 /* SCAN_SECONDS: a bed at 4800 dpi takes a slow scanner some four minutes. TAIL_BYTES of the
- * command's words are looked at; SAID_BYTES go on the card. */
-enum { SCAN_SECONDS = 900, TAIL_BYTES = 4096, SAID_BYTES = 400, TURN_MS = 250, NAME_BYTES = 64 };
+ * command's output are read; OUTPUT_BYTES go on the card. */
+enum { SCAN_SECONDS = 900, TAIL_BYTES = 4096, OUTPUT_BYTES = 400, TURN_MS = 250, NAME_BYTES = 64 };
 
 #define PREFIX       "station-"
 #define CHECK_PREFIX "station-check-"
@@ -38,28 +38,28 @@ typedef struct fg_station_scanner {
   char hidden[NAME_BYTES], final[NAME_BYTES]; /* below the folder */
 } scanner;
 
-/* What the command has said, its end. */
+/* The end of the command's output. */
 typedef struct words {
   char text[TAIL_BYTES + 1];
   size_t length;
 } words;
 
-/* A 0 of the form is any digit. */
-static bool has_forming(const char *name, const char *html_form) {
-  for (; *html_form; html_form++, name++)
-    if (*html_form == '0' ? *name < '0' || *name > '9' : *name != *html_form) return false;
+/* True when a name matches a pattern, in which 0 is any digit. */
+static bool matches_pattern(const char *name, const char *pattern) {
+  for (; *pattern; pattern++, name++)
+    if (*pattern == '0' ? *name < '0' || *name > '9' : *name != *pattern) return false;
   return true;
 }
 
 bool fg_station_is_scanned_check(const char *name) {
-  return has_forming(name, CHECK_PREFIX "00000000-000000-000.");
+  return matches_pattern(name, CHECK_PREFIX "00000000-000000-000.");
 }
 
 bool fg_station_is_scanned(const char *name) {
-  return has_forming(name, PREFIX "00000000-000000-000.") || fg_station_is_scanned_check(name);
+  return matches_pattern(name, PREFIX "00000000-000000-000.") || fg_station_is_scanned_check(name);
 }
 
-/* What a scanner's program asks of its file's ending. */
+/* Returns the file's ending that a scanner's program requires. */
 static const char *ending_for(const char *command) {
   if (strcasestr(command, "tif")) return "tif";
   return strcasestr(command, "pnm") ? "pnm" : "png";
@@ -88,9 +88,9 @@ static fg_status build_command(fg_context *ctx, const scanner *at, char **comman
   return status == FG_OK ? fg_text_append(ctx, command, "%s", from) : status;
 }
 
-/* In the folder, in a group of its own so that all of it can be ended, with the signals that the
- * program holds back, and none of its files: a command that outlived the station would keep its
- * lock. */
+/* Starts the command in the folder: in a process group of its own, so that all of it can be
+ * ended; with the signals that the program blocks unblocked; and without its files, as a command
+ * that outlived the station would keep its lock. */
 static int spawn(const char *folder, const char *command, int output, pid_t *child) {
   posix_spawn_file_actions_t files;
   posix_spawnattr_t how;
@@ -134,7 +134,7 @@ static bool wait_for(scanner *at, pid_t child, int input, words *said, int *ende
   struct pollfd descriptor = {.fd = input, .events = POLLIN};
   while (!atomic_load(&at->stop) && fg_clock_seconds() < until) {
     if (poll(&descriptor, 1, TURN_MS) > 0 && descriptor.revents & (POLLHUP | POLLERR)) {
-      descriptor.fd = -1; /* it says no more */
+      descriptor.fd = -1; /* end of its output */
     }
     listen_to(input, said);
     if (waitpid(child, ended, WNOHANG) == child) {
@@ -147,9 +147,9 @@ static bool wait_for(scanner *at, pid_t child, int input, words *said, int *ende
   return false;
 }
 
-/* The end of what it said, on one line, without what is not for people. */
-static void find_last_words(const words *said, char text[SAID_BYTES + 1]) {
-  size_t length = 0, from = said->length > SAID_BYTES ? said->length - SAID_BYTES : 0;
+/* Copies the last words of the output on one line, without control characters. */
+static void find_last_words(const words *said, char text[OUTPUT_BYTES + 1]) {
+  size_t length = 0, from = said->length > OUTPUT_BYTES ? said->length - OUTPUT_BYTES : 0;
   /* Not from the middle of a character. */
   while (from && from < said->length && ((unsigned char)said->text[from] & 0xC0) == 0x80)
     from++;
@@ -175,7 +175,7 @@ static bool is_there(const char *folder, const char *name) {
 }
 
 /* FG_OK: the hidden file is there. */
-static fg_status run_scan_command(fg_context *ctx, scanner *at, words *said) {
+static fg_status run_command(fg_context *ctx, scanner *at, words *said) {
   const char *folder = at->station->request->folder;
   char *command;
   int pipes[2], ended = 0;
@@ -227,7 +227,7 @@ static fg_status publish_scan(fg_context *ctx, const scanner *at) {
 }
 
 static void keep_failure(scanner *at, const char *why, const words *said) {
-  char last[SAID_BYTES + 1], message[SAID_BYTES + 400];
+  char last[OUTPUT_BYTES + 1], message[OUTPUT_BYTES + 400];
   fg_context ctx;
   const fg_station_file file = {.name = at->final, .modified_ns = -1};
   find_last_words(said, last);
@@ -247,17 +247,17 @@ static void *scan(void *argument) {
   fg_inspection *station = at->station;
   fg_context ctx = {.message = ""};
   words said = {.length = 0};
-  fg_status status = run_scan_command(&ctx, at, &said);
+  fg_status status = run_command(&ctx, at, &said);
   if (status == FG_OK) status = publish_scan(&ctx, at);
   if (status != FG_OK && !atomic_load(&at->stop)) keep_failure(at, ctx.message, &said);
   if (status != FG_OK) remove_hidden(at);
   atomic_store(&station->scanning, false);
-  fg_station_tell(station);
+  fg_station_notify(station);
   return NULL;
 }
 
 /* The thread of the scan before has come to its end, or is about to. */
-static void forget_scan_process(fg_inspection *station) {
+static void forget_scanner(fg_inspection *station) {
   if (!station->scanner) return;
   pthread_join(station->scanner->thread, NULL);
   free(station->scanner);
@@ -267,7 +267,7 @@ static void forget_scan_process(fg_inspection *station) {
 fg_status fg_station_scan_begin(fg_context *ctx, fg_inspection *station, bool check) {
   void *block;
   if (atomic_exchange(&station->scanning, true)) return FG_OK;
-  forget_scan_process(station);
+  forget_scanner(station);
   fg_status status = fg_memory_allocate(ctx, 1, sizeof(scanner), &block);
   if (status != FG_OK) {
     atomic_store(&station->scanning, false);
@@ -288,7 +288,7 @@ fg_status fg_station_scan_begin(fg_context *ctx, fg_inspection *station, bool ch
 
 void fg_station_scan_stop(fg_inspection *station) {
   if (station->scanner) atomic_store(&station->scanner->stop, true);
-  forget_scan_process(station);
+  forget_scanner(station);
 }
 
 fg_status fg_action_scan(fg_context *ctx, fg_inspection *station, const fg_request *request,
@@ -297,7 +297,7 @@ fg_status fg_action_scan(fg_context *ctx, fg_inspection *station, const fg_reque
   if (!station->settings->scan_command[0])
     return fg_fail(ctx, FG_ERR_USAGE, "The recipe has no scan_command.");
   FG_TRY(fg_station_scan_begin(ctx, station, check));
-  fg_station_tell(station);
+  fg_station_notify(station);
   strcpy(answer->location, "/");
   return FG_OK;
 }

@@ -8,10 +8,10 @@
 /* Begins a scan, unless one is running: of foils, or of the plate. */
 fg_status fg_station_scan_begin(fg_context *ctx, fg_inspection *station, bool check);
 
-/* Ends the command that runs, if any, and waits for it. */
+/* Ends a running command and waits for it. */
 void fg_station_scan_stop(fg_inspection *station);
 
-/* Whether a file of the folder was written by the command: its name says so. */
+/* Returns true for a file that the command wrote, by its name. */
 bool fg_station_is_scanned(const char *name);
 bool fg_station_is_scanned_check(const char *name); /* of the plate */
 

@@ -5,9 +5,9 @@
 
 #include <stddef.h>
 
-/* Number of options of a shell command that spoil a scan, with a sentence for each: the option,
- * what it does to the scan, what to write instead. What a variable of the shell holds is not known,
- * and not told. */
+/* Returns the number of options of a shell command that spoil a scan, and writes a sentence for
+ * each: the option, its effect on the scan, the option to use instead. Values of shell variables
+ * are not known. */
 size_t fg_scan_options_inspect(const char *command, char *words, size_t size);
 
 #endif

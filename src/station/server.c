@@ -43,22 +43,22 @@ typedef struct call {
   bool broken, waited;
 } call;
 
-/* The library decodes nothing, so that one decoder looks at every field. */
+/* Keeps the library from decoding: one decoder reads every field. */
 static size_t leave_encoded(void *user, struct MHD_Connection *connection, char *text) {
   (void)user;
   (void)connection;
   return strlen(text);
 }
 
-static enum MHD_Result take_query(void *user, enum MHD_ValueKind kind, const char *name,
-                                  const char *value) {
+static enum MHD_Result read_query_field(void *user, enum MHD_ValueKind kind, const char *name,
+                                        const char *value) {
   call *at = user;
   (void)kind;
   if (!at->broken && !fg_request_add_field(&at->request, name, value)) at->broken = true;
   return at->broken ? MHD_NO : MHD_YES;
 }
 
-static long long read_identifier(const char *text) {
+static long long read_header_number(const char *text) {
   char *end;
   long long number = text ? strtoll(text, &end, 10) : -1;
   return text && end != text && !*end && number >= 0 ? number : -1;
@@ -74,13 +74,13 @@ static call *begin_call(struct MHD_Connection *connection, const char *method) {
   request->site = MHD_lookup_connection_value(connection, MHD_HEADER_KIND, "Sec-Fetch-Site");
   request->cookie = MHD_lookup_connection_value(connection, MHD_HEADER_KIND, "Cookie");
   request->last_event =
-      read_identifier(MHD_lookup_connection_value(connection, MHD_HEADER_KIND, "Last-Event-ID"));
-  MHD_get_connection_values(connection, MHD_GET_ARGUMENT_KIND, take_query, at);
+      read_header_number(MHD_lookup_connection_value(connection, MHD_HEADER_KIND, "Last-Event-ID"));
+  MHD_get_connection_values(connection, MHD_GET_ARGUMENT_KIND, read_query_field, at);
   return at;
 }
 
 /* False: too much. */
-static bool take_body(call *at, const char *bytes, size_t size) {
+static bool receive_body(call *at, const char *bytes, size_t size) {
   if (at->size + size > FG_BODY_MAX) return false;
   char *grown = realloc(at->body, at->size + size);
   if (!grown) return false;
@@ -91,8 +91,8 @@ static bool take_body(call *at, const char *bytes, size_t size) {
 }
 
 static void add_headers(struct MHD_Response *response, const fg_answer *answer) {
-  /* What a report brings with it is its own style; nothing on any page runs but the station's one
-   * script, and nothing is fetched from elsewhere. */
+  /* A report has inline styles of its own. On other pages only the station's scripts run, and no
+   * page fetches from elsewhere. */
   const char *policy =
       answer->own_style
           ? "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; "
@@ -211,14 +211,14 @@ static enum MHD_Result answer_call(server *at, struct MHD_Connection *connection
   return send_answer(at, connection, &answer);
 }
 
-/* What can be said before the body has come. */
+/* Begins a request; refuses unknown methods and bodies that are too long before they come. */
 static enum MHD_Result begin(server *at, struct MHD_Connection *connection, const char *method,
                              void **place) {
   const char *length =
       MHD_lookup_connection_value(connection, MHD_HEADER_KIND, MHD_HTTP_HEADER_CONTENT_LENGTH);
   if (strcmp(method, "GET") != 0 && strcmp(method, "HEAD") != 0 && strcmp(method, "POST") != 0)
     return refuse_request(at, connection, 405, "GET and POST are answered.\n");
-  if (length && (strlen(length) > 9 || read_identifier(length) > FG_BODY_MAX))
+  if (length && (strlen(length) > 9 || read_header_number(length) > FG_BODY_MAX))
     return refuse_request(at, connection, 413, "The form is too long.\n");
   *place = begin_call(connection, method);
   return *place ? MHD_YES : MHD_NO;
@@ -232,7 +232,7 @@ static enum MHD_Result handle_request(void *user, struct MHD_Connection *connect
   (void)version;
   if (!asked) return begin(at, connection, method, place);
   if (*size) {
-    bool taken = take_body(asked, bytes, *size);
+    bool taken = receive_body(asked, bytes, *size);
     *size = 0;
     return taken ? MHD_YES : MHD_NO;
   }
@@ -251,7 +251,7 @@ static void end_call(void *user, struct MHD_Connection *connection, void **place
   *place = NULL;
 }
 
-/* At `::` it answers to IPv4, too. */
+/* At `::` the station answers to IPv4 too. */
 static unsigned flags_of(const struct sockaddr_storage *address, fg_reach reach) {
   unsigned flags = MHD_USE_INTERNAL_POLLING_THREAD | MHD_USE_EPOLL | MHD_ALLOW_SUSPEND_RESUME;
   if (address->ss_family == AF_INET6)
@@ -259,8 +259,7 @@ static unsigned flags_of(const struct sockaddr_storage *address, fg_reach reach)
   return flags;
 }
 
-static fg_status start_listener(fg_context *ctx, server *at,
-                                const struct sockaddr_storage *address) {
+static fg_status start_daemon(fg_context *ctx, server *at, const struct sockaddr_storage *address) {
   const fg_station_request *request = at->station->request;
   errno = 0;
   at->daemon = MHD_start_daemon(
@@ -287,7 +286,7 @@ fg_status fg_station_server_start(fg_context *ctx, fg_inspection *station) {
   at->station = station;
   pthread_mutex_init(&at->mutex, NULL);
   fg_status status = fg_connections_begin(&at->connections)
-                         ? start_listener(ctx, at, &address)
+                         ? start_daemon(ctx, at, &address)
                          : fg_fail(ctx, FG_ERR_MEMORY, "there is no thread for the pages");
   if (status != FG_OK) {
     fg_connections_end(&at->connections);
@@ -298,7 +297,7 @@ fg_status fg_station_server_start(fg_context *ctx, fg_inspection *station) {
   fg_reach_write(&address, info ? info->port : request->port, station->host, sizeof station->host);
   station->server = at;
   station->wake = resume_all;
-  fg_reach_tell(station);
+  fg_reach_announce(station);
   return FG_OK;
 }
 

@@ -5,8 +5,8 @@
 
 #include "station/state.h"
 
-/* Listens, and tells the request's `ready` where. FG_ERR_IO: the address is taken or not ours;
- * FG_ERR_USAGE: an address beyond this machine without a token. */
+/* Listens, and calls the request's `ready` with the addresses. FG_ERR_IO: the address is taken
+ * or not ours; FG_ERR_USAGE: an address beyond this machine without a token. */
 fg_status fg_station_server_start(fg_context *ctx, fg_inspection *station);
 void fg_station_server_stop(fg_inspection *station);
 

@@ -54,8 +54,7 @@ static const member check_members[] = {
          "`diameters_mm`. Discs of different sizes make a check sharper: they tell the scanner's "
          "scale from the level at which edges are taken, and so show a tone curve."),
     TEXT("file_name", check.file_name, "How scans of it are called, as above."),
-    {"every_h", NUMBER, AT(check.every_h), 0, 1e5,
-     "Hours from check to check; 0: whenever somebody likes."},
+    {"every_h", NUMBER, AT(check.every_h), 0, 1e5, "Hours from check to check; 0: at any time."},
     {"scale_max_ppm", NUMBER, AT(check.scale_max_ppm), 0, 1e6,
      "A scale (ppm) or shear (µrad) that is further off, its 2 u counted, fails."},
     {"withhold", YES, AT(check.withhold), 0, 0,
@@ -73,7 +72,7 @@ static const char check_meaning[] =
     "An object with the members that follow: when the scanner has to prove itself by known "
     "diameters. With a `scan_command` the Scanner tab has a button for it.";
 
-static fg_status read_station_text(fg_context *ctx, const cJSON *value, char *text, size_t size) {
+static fg_status read_setting_text(fg_context *ctx, const cJSON *value, char *text, size_t size) {
   if (!cJSON_IsString(value))
     return fg_fail(ctx, FG_ERR_DATA, "%.60s must be a text in quotes", value->string);
   if (strlen(value->valuestring) >= size)
@@ -83,7 +82,7 @@ static fg_status read_station_text(fg_context *ctx, const cJSON *value, char *te
   return FG_OK;
 }
 
-static fg_status read_station_number(fg_context *ctx, const cJSON *value, double highest,
+static fg_status read_setting_number(fg_context *ctx, const cJSON *value, double highest,
                                      double *number) {
   double given = cJSON_IsNumber(value) ? value->valuedouble : NAN;
   if (!(given >= 0 && given <= highest))
@@ -92,7 +91,7 @@ static fg_status read_station_number(fg_context *ctx, const cJSON *value, double
   return FG_OK;
 }
 
-static fg_status read_station_member(fg_context *ctx, const cJSON *value, const member *rows,
+static fg_status read_setting_member(fg_context *ctx, const cJSON *value, const member *rows,
                                      size_t count, fg_station_settings *settings) {
   char known[300] = "";
   for (size_t i = 0; i < count; i++) {
@@ -101,8 +100,8 @@ static fg_status read_station_member(fg_context *ctx, const cJSON *value, const 
     fg_text_clip(known + strlen(known), sizeof known - strlen(known), "%s%s", i ? ", " : "",
                  row->name);
     if (strcmp(value->string, row->name) != 0) continue;
-    if (row->kind == WORDS) return read_station_text(ctx, value, place, row->size);
-    if (row->kind == NUMBER) return read_station_number(ctx, value, row->highest, place);
+    if (row->kind == WORDS) return read_setting_text(ctx, value, place, row->size);
+    if (row->kind == NUMBER) return read_setting_number(ctx, value, row->highest, place);
     if (!cJSON_IsBool(value))
       return fg_fail(ctx, FG_ERR_DATA, "%s must be true or false", row->name);
     *(bool *)place = cJSON_IsTrue(value);
@@ -116,7 +115,7 @@ static fg_status read_check(fg_context *ctx, const cJSON *object, fg_station_set
   const cJSON *value;
   if (!cJSON_IsObject(object)) return fg_fail(ctx, FG_ERR_DATA, "check must be an object");
   cJSON_ArrayForEach(value, object)
-      FG_TRY(read_station_member(ctx, value, check_members, CHECK_MEMBERS, settings));
+      FG_TRY(read_setting_member(ctx, value, check_members, CHECK_MEMBERS, settings));
   if (!settings->check.design[0])
     return fg_fail(ctx, FG_ERR_DATA, "check needs the design of the plate or ring (form discs)");
   return fg_naming_check(ctx, settings->check.file_name);
@@ -129,7 +128,7 @@ static fg_status read_station(fg_context *ctx, const cJSON *object, fg_station_s
     if (!strcmp(value->string, check_name))
       FG_TRY(read_check(ctx, value, settings));
     else
-      FG_TRY(read_station_member(ctx, value, members, MEMBERS, settings));
+      FG_TRY(read_setting_member(ctx, value, members, MEMBERS, settings));
   }
   if (settings->scan_command[0] && !strstr(settings->scan_command, "{file}"))
     return fg_fail(ctx, FG_ERR_DATA, "scan_command: {file}, the scan to write, is not in it");
@@ -183,8 +182,8 @@ fg_status fg_station_settings_load(fg_context *ctx, const char *recipe, const ch
   return design ? fg_lot_settings_check(ctx, &settings->lot) : FG_OK;
 }
 
-static void say_member(const char *object, const member *row, const fg_station_settings *usual,
-                       fg_member_words *words) {
+static void describe_member(const char *object, const member *row, const fg_station_settings *usual,
+                            fg_member_words *words) {
   const char *place = (const char *)usual + row->offset;
   *words = (fg_member_words){.meaning = row->meaning};
   fg_text_clip(words->name, sizeof words->name, "station.%s%s", object, row->name);
@@ -203,13 +202,13 @@ size_t fg_station_members(fg_member_words *list, size_t max) {
   size_t count = 0;
   set_usual(&usual);
   for (size_t i = 0; i < MEMBERS; i++, count++)
-    if (count < max) say_member("", &members[i], &usual, &list[count]);
+    if (count < max) describe_member("", &members[i], &usual, &list[count]);
   if (count < max) {
     list[count] = (fg_member_words){.meaning = check_meaning};
     fg_text_clip(list[count].name, sizeof list[count].name, "station.%s", check_name);
   }
   count++;
   for (size_t i = 0; i < CHECK_MEMBERS; i++, count++)
-    if (count < max) say_member("check.", &check_members[i], &usual, &list[count]);
+    if (count < max) describe_member("check.", &check_members[i], &usual, &list[count]);
   return count;
 }

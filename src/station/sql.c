@@ -47,7 +47,7 @@ void fg_query_begin(sqlite3 *connection, const char *sql, fg_query *query) {
   query->error = sqlite3_prepare_v2(connection, sql, -1, &query->statement, NULL);
 }
 
-static void note(fg_query *query, int code) {
+static void note_error(fg_query *query, int code) {
   if (query->error == SQLITE_OK && code != SQLITE_OK) query->error = code;
 }
 
@@ -58,10 +58,10 @@ static void bind_visible(fg_query *query, const char *text) {
   char *visible = malloc(4 * size);
   if (visible) {
     fg_utf8_make_visible(text, size, true, visible, &length);
-    note(query, sqlite3_bind_text64(query->statement, query->bound, visible, length,
-                                    SQLITE_TRANSIENT, SQLITE_UTF8));
+    note_error(query, sqlite3_bind_text64(query->statement, query->bound, visible, length,
+                                          SQLITE_TRANSIENT, SQLITE_UTF8));
   } else {
-    note(query, SQLITE_NOMEM);
+    note_error(query, SQLITE_NOMEM);
   }
   free(visible);
 }
@@ -73,28 +73,29 @@ void fg_query_text(fg_query *query, const char *text) {
     return;
   }
   if (query->error == SQLITE_OK)
-    note(query, text ? sqlite3_bind_text(query->statement, query->bound, text, -1, SQLITE_TRANSIENT)
-                     : sqlite3_bind_null(query->statement, query->bound));
+    note_error(query,
+               text ? sqlite3_bind_text(query->statement, query->bound, text, -1, SQLITE_TRANSIENT)
+                    : sqlite3_bind_null(query->statement, query->bound));
 }
 
 void fg_query_integer(fg_query *query, int64_t value) {
   query->bound++;
   if (query->error == SQLITE_OK)
-    note(query, sqlite3_bind_int64(query->statement, query->bound, value));
+    note_error(query, sqlite3_bind_int64(query->statement, query->bound, value));
 }
 
 void fg_query_number(fg_query *query, double value) {
   query->bound++;
   if (query->error == SQLITE_OK)
-    note(query, isfinite(value) ? sqlite3_bind_double(query->statement, query->bound, value)
-                                : sqlite3_bind_null(query->statement, query->bound));
+    note_error(query, isfinite(value) ? sqlite3_bind_double(query->statement, query->bound, value)
+                                      : sqlite3_bind_null(query->statement, query->bound));
 }
 
 bool fg_query_row(fg_query *query) {
   if (query->error != SQLITE_OK) return false;
   int code = sqlite3_step(query->statement);
   if (code == SQLITE_ROW) return true;
-  if (code != SQLITE_DONE) note(query, code);
+  if (code != SQLITE_DONE) note_error(query, code);
   return false;
 }
 
@@ -120,8 +121,7 @@ void fg_query_again(fg_query *query) {
   if (query->statement) sqlite3_reset(query->statement);
 }
 
-/* The connection's words are those of the last call: an error of an earlier one is told by its
- * code. */
+/* The connection's message is of the last call: an earlier error is reported by its code. */
 fg_status fg_query_end(fg_context *ctx, fg_query *query, const char *what) {
   fg_status status = FG_OK;
   if (query->error != SQLITE_OK) {

@@ -11,14 +11,14 @@
 
 #include "foilgauge/status.h"
 
-/* FG_ERR_IO with SQLite's words: disk full and what to do, damaged (FG_ERR_DATA), busy. */
+/* Fails with SQLite's words and advice: FG_ERR_IO (disk full, busy), FG_ERR_DATA (damaged). */
 fg_status fg_sql_fail(fg_context *ctx, sqlite3 *connection, const char *what);
 
-/* Several statements without values or rows. */
+/* Runs several statements without values or rows. */
 fg_status fg_sql_run(fg_context *ctx, sqlite3 *connection, const char *sql);
 
-/* One statement. Errors stay in it until fg_query_end: values can be bound and rows read without a
- * look at each. After a value that could not be bound there are no rows. */
+/* One statement. Errors stay in it until fg_query_end: no call in between has to be checked.
+ * After a value that could not be bound there are no rows. */
 typedef struct fg_query {
   sqlite3 *connection;
   sqlite3_stmt *statement;
@@ -26,21 +26,21 @@ typedef struct fg_query {
 } fg_query;
 
 void fg_query_begin(sqlite3 *connection, const char *sql, fg_query *query);
-/* Values in the order of the statement's question marks. NULL and NaN are null; texts are copied.
- */
+/* Bind values in the order of the statement's question marks. NULL and NaN are null; texts are
+ * copied. */
 void fg_query_text(fg_query *query, const char *text);
 void fg_query_integer(fg_query *query, int64_t value);
 void fg_query_number(fg_query *query, double value);
-/* The next row, or false. */
+/* Reads the next row; false: there is none. */
 bool fg_query_row(fg_query *query);
-/* Of the row, by the column's place from 0: "" and NaN for null. Valid until the next row. */
+/* Return a column of the row, counted from 0: "" and NaN for null. Valid until the next row. */
 const char *fg_query_get_text(const fg_query *query, int column);
 int64_t fg_query_get_integer(const fg_query *query, int column);
 double fg_query_get_number(const fg_query *query, int column);
 bool fg_query_is_null(const fg_query *query, int column);
-/* Makes it ready for other values; the rows of the last are gone. */
+/* Resets the statement for other values; its rows are gone. */
 void fg_query_again(fg_query *query);
-/* Frees it. The status is FG_OK when everything went well since the beginning. */
+/* Frees it and returns the status of all calls since the beginning. */
 fg_status fg_query_end(fg_context *ctx, fg_query *query, const char *what);
 
 #endif

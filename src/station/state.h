@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a running station holds. */
+/* State of a running station. */
 #ifndef FG_STATION_STATE_H
 #define FG_STATION_STATE_H
 
@@ -17,14 +17,14 @@ typedef struct fg_closing {
   pthread_t thread;
   bool started, running; /* started: there is a thread to join */
   char lot[1024], by[128];
-  char error[1024]; /* of the last that could not be closed; "": none */
+  char error[1024]; /* failure of the last that could not be closed; "": none */
 } fg_closing;
 
-/* What the station cannot do now and tries again: pages say it. */
+/* A failure from which the station tries to recover; pages show it. */
 typedef struct fg_recovery {
   pthread_mutex_t mutex;
   char words[1000]; /* "": all is well */
-  char crowd[200];  /* of a folder with very many files; "": it has not */
+  char crowd[200];  /* warning of a folder with very many files; "": there is none */
 } fg_recovery;
 
 /* Stage of the newest file before it has a card. */
@@ -39,7 +39,7 @@ typedef struct fg_arriving {
   fg_stage stage;
   int64_t since;
   char file[256]; /* below the folder; clipped */
-  bool seen;      /* in this round of looks at the folder */
+  bool seen;      /* in this pass over the folder */
 } fg_arriving;
 
 /* Machines that can reach the address listened at. */
@@ -55,12 +55,12 @@ typedef struct fg_inspection {
   fg_station_outcome *outcome;
   fg_station_database database;
   fg_scanner_model *model; /* that corrects every scan; NULL: none */
-  fg_design check_design;  /* of the plate or ring; check_design_known says whether there is one */
+  fg_design check_design;  /* of the plate or ring, if check_design_known */
   bool check_design_known;
   int64_t setup;
   int lock;
   char csrf_token[FG_CSRF_TOKEN]; /* carried by the html forms of this station's pages */
-  char host[128];                 /* "127.0.0.1:8317": where it listens */
+  char host[128];                 /* address that it listens at: "127.0.0.1:8317" */
   fg_reach reach;
   atomic_bool scanning;               /* the scan command runs */
   char scan_warning[1000];            /* options of it that spoil scans; "": none is known */
@@ -69,7 +69,7 @@ typedef struct fg_inspection {
   fg_recovery recovery;
   fg_arriving arriving;
   atomic_llong news;          /* station/news.h */
-  void (*wake)(void *server); /* there is news; NULL: nobody waits */
+  void (*wake)(void *server); /* called on news; NULL: no page waits */
   void *server;
 } fg_inspection;
 

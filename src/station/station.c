@@ -51,7 +51,7 @@ static void inspect_scan_command(fg_inspection *station) {
     request->looked_at(request->user, "scan_command:", warning);
 }
 
-static fg_status run_station(fg_context *ctx, fg_inspection *station) {
+static fg_status run_tasks(fg_context *ctx, fg_inspection *station) {
   const fg_station_request *request = station->request;
   FG_TRY(load_model(ctx, station));
   FG_TRY(load_check(ctx, station));
@@ -81,7 +81,7 @@ fg_status fg_station_run(fg_context *ctx, const fg_station_request *request,
   pthread_mutex_init(&station->recovery.mutex, NULL);
   pthread_mutex_init(&station->arriving.mutex, NULL);
   atomic_init(&station->news, fg_station_now());
-  fg_status status = run_station(ctx, station);
+  fg_status status = run_tasks(ctx, station);
   fg_closing_end(&station->closing);
   fg_station_database_close(&station->database);
   if (station->model) fg_scanner_model_free(station->model);

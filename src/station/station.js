@@ -1,9 +1,10 @@
 'use strict';
-/* A page of the station while it is open: whether the station still stands behind what it shows, and, on Now, new
- * results as they come.
+/* An open page of the station: it shows if the station still confirms it, and, on Now, new results
+ * as they come.
  *
- * The page is served grey (class `unconfirmed`) with the time of what it shows. It takes its colours only while the
- * station answers, and the time that counts is this clock's: a cable that was pulled ends no connection. */
+ * The page is served grey (class `unconfirmed`) with the time of its content. It takes its
+ * colours only while the station answers, and the time that counts is this clock's: a cable that
+ * was pulled ends no connection. */
 (function () {
   var BEAT_MS = 1000, ANSWER_MS = 2500, LOST_MS = 3500, LOOK_MS = 250, LOAD_MS = 15000, AGAIN_MS = 2000;
   var REFUSED_MAX = 2; /* a station that starts again refuses once or twice within a beat */
@@ -14,13 +15,13 @@
 
   function isRecent(since) {
     var age = Date.now() - since;
-    return age >= 0 && age < LOST_MS; /* a clock that was set back says nothing */
+    return age >= 0 && age < LOST_MS; /* a clock that was set back gives no age */
   }
 
   function sayLost(answers) {
     var words = (answers ? 'The station cannot show its newest result now. ' : 'No connection to the station. ') +
       'This page shows what was known at ' + known + '; what came later is not here.';
-    if (silent.textContent !== words) silent.textContent = words; /* said once to who listens to it */
+    if (silent.textContent !== words) silent.textContent = words; /* a screen reader says it once */
   }
 
   function show() {
@@ -41,7 +42,8 @@
       }).finally(function () { clearTimeout(clock); });
   }
 
-  /* What is confirmed is how things were when the question was sent. A page of older news is not: its next load is. */
+  /* An answer confirms the state of the time when the question was sent. It does not confirm a
+   * page of older news: that is loaded again. */
   function beat() {
     var sent = Date.now();
     if (beating) return;
@@ -69,7 +71,7 @@
     });
   }
 
-  /* A half-typed form that leaves its place: whose foil it is, and what has come since. */
+  /* A half-typed html form that leaves its place: names its foil, and the newer results. */
   function makeTyping(form, page) {
     var panel = document.createElement('div'), whose = document.createElement('p');
     var heading = page.querySelector('#foil' + form.dataset.foil);
@@ -93,7 +95,8 @@
     panel.querySelector('.newer').textContent = words.length ? words.length + ' newer: ' + words.join(', ') : '';
   }
 
-  /* What is half typed stays with its foil, also where newer ones take the page. True: it has the focus. */
+  /* Keeps a half-typed form with its foil, also when newer ones fill the page. True: it has the
+   * focus. */
   function keepTyped(page, next) {
     var at = document.activeElement, held = false;
     var from = at && at.selectionStart, to = at && at.selectionEnd;
@@ -138,7 +141,7 @@
     else takeFocus();
   }
 
-  /* One at a time: of two that overtake each other the older would stay. */
+  /* Loads one page at a time: of two that overtake each other the older would stay. */
   function load() {
     if (!live) return;
     again = loading;
@@ -152,7 +155,7 @@
     });
   }
 
-  /* A barcode reader types where the focus is, over what is marked, and ends with Enter. */
+  /* A barcode reader types where the focus is, over the selection, and ends with Enter. */
   function takeFocus() {
     var field = document.querySelector('[data-focus]');
     if (!field) return;
@@ -160,7 +163,7 @@
     field.select();
   }
 
-  /* Told of news at once; a beat that brings another number makes up for what this misses. */
+  /* Listens for news; a beat with another count makes up for missed ones. */
   function listen() {
     var events = new EventSource('/events');
     events.onmessage = function (news) { if (news.lastEventId !== shown) load(); };
@@ -169,8 +172,8 @@
     };
   }
 
-  /* Of a page that nobody saw, or that comes back from the browser's memory, nobody has asked for a while: it has no
-   * colours until the station answers, and is not called lost before that had time to. */
+  /* A hidden page, or one back from the browser's memory, has not asked for a while: it has no
+   * colours until the station answers, and is not called lost before the station had time to. */
   function wakeUp(event) {
     if (event && event.persisted) heard = 0;
     if (!isRecent(heard) && !root.classList.contains('lost')) {

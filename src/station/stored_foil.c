@@ -33,7 +33,7 @@ static fg_status copy_all(fg_context *ctx, const fg_query *query, fg_stored_foil
   return FG_OK;
 }
 
-/* What the setup and the record say, as far as this program can read it. */
+/* Reads setup and record, as far as this program can. */
 static fg_status understand(fg_context *ctx, const char *recipe, const char *record,
                             fg_stored_foil *stored) {
   fg_lot_settings_default(&stored->settings);

@@ -9,10 +9,11 @@
 
 #include "foilgauge/status.h"
 
-/* The caller frees both. A name that is stored so already stays the same. */
+/* Convert a name to its stored form and back; the caller frees both. A stored name stays the
+ * same. */
 fg_status fg_stored_name(fg_context *ctx, const char *name, char **stored);
 
-/* Path of a file by its stored name: folder/name. */
+/* Returns the path of a file by its stored name: folder/name. */
 fg_status fg_stored_name_path(fg_context *ctx, const char *folder, const char *stored, char **path);
 
 #endif

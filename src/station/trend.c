@@ -43,8 +43,8 @@ static void bind(fg_query *query, int64_t quantity, const fg_trend_choice *choic
   fg_query_text(query, choice->die);
 }
 
-/* Values of a quantity, foil by foil. A crushed bump says what became of it, not what the process
- * makes: it is in no chart, as in a lot's statistics. */
+/* Values of a quantity, foil by foil. Crushed bumps are left out of charts, as of a lot's
+ * statistics: they show damage, not the process. */
 #define CHOSEN                                                                                     \
   " quantity = ?1 AND value IS NOT NULL AND (?2 = 0 OR bump = ?2) AND (measured.foil, bump) NOT "  \
   "IN (SELECT foil, number FROM bumps WHERE flags <> '' AND instr(flags, 'crushed'))"
@@ -105,8 +105,8 @@ static void cut(fg_trend *trend, size_t first, size_t last) {
   quantity->count = kept;
 }
 
-/* Which points make the chart, and which of them are drawn: those of a range that begins before
- * the newest are in the chart, too. */
+/* Chooses the points of the chart, and those that are drawn: a drawn range that begins before
+ * the newest extends the chart. */
 static void choose_points(fg_trend *trend) {
   const fg_trend_choice *choice = trend->choice;
   size_t total = trend->total, first = 0;
@@ -151,7 +151,7 @@ static const fg_tolerance *find_tolerance(const fg_design *design, const fg_quan
   return NULL;
 }
 
-/* Of too few values it comes to nothing, which is no error. */
+/* Judges capability; too few values have none, which is no error. */
 static void judge_trend(const fg_lot_settings *settings, fg_lot_quantity *quantity) {
   fg_context unused;
   if (fg_lot_judge_capability(&unused, settings->confidence, quantity) != FG_OK)
@@ -212,7 +212,7 @@ void fg_trend_name(sqlite3 *reader, const fg_trend *trend, size_t point, char *n
   fg_query_end(&unused, &query, "reading a name");
 }
 
-/* Of how many points each rule speaks (control.h). */
+/* Returns the number of points that a rule covers (control.h). */
 static size_t rule_length(unsigned rule) {
   static const size_t lengths[FG_RUN_RULES] = {1, 9, 6, 14, 3, 5, 15, 8};
   return lengths[rule - 1];

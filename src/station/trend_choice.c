@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a trend is asked to show, from a query and back. */
+/* The choice of a trend, from a query and back. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,8 +8,8 @@
 #include "quantity/quantity_rows.h"
 #include "station/trend.h"
 
-/* How many points a chart has unless somebody asks for others: enough for limits, few enough that
- * what changed last year does not widen them. */
+/* NEWEST: points of a chart by default: enough for limits, few enough that last year's changes
+ * do not widen them. */
 enum { NEWEST = 200, NAME_BYTES = 80 };
 
 static const struct {
@@ -30,7 +30,7 @@ static bool find_row(const char *name, fg_trend_choice *choice) {
   return false;
 }
 
-/* What the design judges first, else the radius. */
+/* Chooses the design's first toleranced quantity, else the radius. */
 static void choose_first(const fg_design *design, fg_trend_choice *choice) {
   choice->owner = FG_QUANTITY_OF_BUMP;
   choice->row = fg_quantity_find(FG_QUANTITY_OF_BUMP, "radius_mm");
@@ -71,7 +71,8 @@ fg_status fg_trend_choose(fg_context *ctx, const fg_inspection *station, const f
   return FG_OK;
 }
 
-/* Of a query, and harmless in an attribute too: all but letters, digits and a few marks as %XX. */
+/* Encodes text for a query, harmless in an attribute too: all but letters, digits and a few
+ * marks become %XX. */
 static void write_encoded(FILE *out, const char *text) {
   for (; *text; text++) {
     unsigned char c = (unsigned char)*text;

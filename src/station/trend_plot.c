@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The control chart of a trend. Tolerances are broad red ground beyond a solid line, control limits
- * are dashed blue lines: they answer different questions, and are not to be taken for each other.
- */
+/* The control chart of a trend. Tolerances are broad red ground beyond a solid line, control
+ * limits are dashed blue lines: they answer different questions and must not look alike. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -11,7 +10,8 @@
 #include "station/trend.h"
 
 enum { DOTS_MAX = 120, COLUMNS_MAX = 450, NAME_BYTES = 140, LABELS = 5 };
-/* A tolerance is drawn while the plot grows by it to so many times what the values need. */
+/* A tolerance is drawn unless it makes the plot's range larger than GROWTH_MAX times that of the
+ * values. */
 #define GROWTH_MAX   4.0
 #define SIGNAL_PX    6.0
 #define DOT_PX       4.0
@@ -26,7 +26,7 @@ typedef struct drawing {
   double upper, lower; /* tolerances that are drawn; NaN */
 } drawing;
 
-static double place_trend_point(const drawing *d, size_t point) {
+static double place_of_point(const drawing *d, size_t point) {
   return (double)fg_trend_number(d->trend, point);
 }
 
@@ -53,7 +53,7 @@ static void find_span(const drawing *d, double *low, double *high) {
 }
 
 /* The tolerance's limits, as far as they are near enough not to press the values flat. */
-static void take_tolerance(drawing *d, double *low, double *high) {
+static void include_tolerance(drawing *d, double *low, double *high) {
   const fg_tolerance *tolerance = d->trend->quantity.tolerance;
   double span = *high - *low;
   d->upper = d->lower = NAN;
@@ -67,12 +67,12 @@ static void take_tolerance(drawing *d, double *low, double *high) {
 static void set_axes(drawing *d) {
   double low, high;
   find_span(d, &low, &high);
-  take_tolerance(d, &low, &high);
+  include_tolerance(d, &low, &high);
   double room = 0.07 * (high - low);
   d->at.y_low = low - room;
   d->at.y_high = high + room;
-  d->at.x_low = place_trend_point(d, d->trend->first) - 0.5;
-  d->at.x_high = place_trend_point(d, d->trend->last) + 0.5;
+  d->at.x_low = place_of_point(d, d->trend->first) - 0.5;
+  d->at.x_high = place_of_point(d, d->trend->last) + 0.5;
   double step = fg_plot_nice_step(d->at.y_high - d->at.y_low);
   d->decimals = step < 1 ? (int)ceil(-log10(step) - 1e-9) : 0;
 }
@@ -122,7 +122,7 @@ static void draw_limit(const drawing *d, bool upper) {
   fprintf(d->at.out, "<path class=\"control\" d=\"");
   for (size_t i = trend->first; i <= trend->last; i++) {
     double limit = upper ? d->chart->point[i].upper : d->chart->point[i].lower;
-    double y = fg_plot_y(&d->at, limit), x = fg_plot_x(&d->at, place_trend_point(d, i) - 0.5);
+    double y = fg_plot_y(&d->at, limit), x = fg_plot_x(&d->at, place_of_point(d, i) - 0.5);
     bool differs = !(fabs(y - before) < 0.05);
     if (isnan(before))
       fprintf(d->at.out, "M%.1f %.1f", x, y);
@@ -133,9 +133,9 @@ static void draw_limit(const drawing *d, bool upper) {
   fprintf(d->at.out, "H%.1f\"/>\n", d->at.right);
 }
 
-/* Of many points the lowest and the highest of each column: what stands out is seen, whatever the
+/* Draws many points as the lowest and the highest of each column, so that outliers show at any
  * number. */
-static void draw_course(const drawing *d) {
+static void draw_columns(const drawing *d) {
   const fg_trend *trend = d->trend;
   size_t count = trend->last - trend->first + 1, share = count / COLUMNS_MAX + 1;
   char letter = 'M';
@@ -148,7 +148,7 @@ static void draw_course(const drawing *d) {
     }
     const size_t ends[] = {min < max ? min : max, min < max ? max : min};
     for (int e = ends[0] == ends[1]; e < 2; e++, letter = 'L')
-      fprintf(d->at.out, "%c%.1f %.1f", letter, fg_plot_x(&d->at, place_trend_point(d, ends[e])),
+      fprintf(d->at.out, "%c%.1f %.1f", letter, fg_plot_x(&d->at, place_of_point(d, ends[e])),
               fg_plot_y(&d->at, d->chart->point[ends[e]].value));
   }
   fputs("\"/>\n", d->at.out);
@@ -162,7 +162,7 @@ static void draw_dot(const drawing *d, size_t i) {
     fprintf(d->at.out, "<a href=\"/foil?id=%lld\"%s>", (long long)d->trend->foil[i],
             point->rules ? "" : " tabindex=\"-1\"");
   fprintf(d->at.out, "<circle class=\"%s\" cx=\"%.1f\" cy=\"%.1f\" r=\"%.3g\"><title>",
-          point->rules ? "signal" : "s2", fg_plot_x(&d->at, place_trend_point(d, i)),
+          point->rules ? "signal" : "s2", fg_plot_x(&d->at, place_of_point(d, i)),
           fg_plot_y(&d->at, point->value), point->rules ? SIGNAL_PX : DOT_PX);
   fg_html_text(d->at.out, name);
   fprintf(d->at.out, " (no. %zu): %.*f ", fg_trend_number(d->trend, i), d->decimals + 1,
@@ -180,7 +180,7 @@ static void draw_dots(const drawing *d) {
   double x_before = -INFINITY, y_before = 0;
   for (size_t i = trend->first; i <= trend->last; i++) {
     const fg_chart_point *point = &d->chart->point[i];
-    double x = fg_plot_x(&d->at, place_trend_point(d, i)), y = fg_plot_y(&d->at, point->value);
+    double x = fg_plot_x(&d->at, place_of_point(d, i)), y = fg_plot_y(&d->at, point->value);
     if (few) {
       draw_dot(d, i);
     } else if (point->rules && hypot(x - x_before, y - y_before) >= SIGNAL_PX) {
@@ -201,7 +201,7 @@ static void draw_runs(const drawing *d, const fg_trend_run *runs, size_t count) 
   for (size_t i = 0; i < count; i++) {
     if (runs[i].last < trend->first || runs[i].last > trend->last) continue;
     const fg_chart_point *point = &d->chart->point[runs[i].last];
-    double x = fg_plot_x(&d->at, place_trend_point(d, runs[i].last)), nearest = INFINITY;
+    double x = fg_plot_x(&d->at, place_of_point(d, runs[i].last)), nearest = INFINITY;
     for (size_t k = 0; k < marks; k++)
       nearest = fmin(nearest, fabs(drawn[k] - x));
     if (nearest < LABEL_GAP_PX) continue;
@@ -216,7 +216,7 @@ static void draw_changes(const drawing *d) {
   fg_trend_change change[FG_TREND_CHANGES];
   size_t count = fg_trend_changes(d->reader, d->trend, change);
   for (size_t i = 0; i < count; i++) {
-    double x = fg_plot_x(&d->at, place_trend_point(d, change[i].point) - 0.5);
+    double x = fg_plot_x(&d->at, place_of_point(d, change[i].point) - 0.5);
     fprintf(d->at.out, "<path class=\"change\" d=\"M%.1f %.1fV%.1f\"/>\n", x, d->at.top,
             d->at.bottom);
   }
@@ -252,7 +252,7 @@ static void draw_trend(const drawing *d, const fg_trend_run *runs, size_t run_co
   draw_limit(d, true);
   draw_limit(d, false);
   draw_changes(d);
-  draw_course(d);
+  draw_columns(d);
   draw_dots(d);
   draw_runs(d, runs, run_count);
   draw_labels(d);

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Where the setup changed that foils are measured with: what a chart shows there may be its doing.
- */
+/* Changes of the setup: a shift of the chart there may come from it. */
 #include "station/trend.h"
 
 /* Changes of the setup from one foil to the next, the newest first. A foil measured again by an

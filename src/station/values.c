@@ -35,13 +35,13 @@ static decided read_decided(const fg_query *at, int column) {
   return read;
 }
 
-/* "Bump 3: radius", as people say it. */
-static void write_quantity_name(FILE *out, const decided *at) {
+/* Writes "Bump 3: radius". */
+static void write_decided_name(FILE *out, const decided *at) {
   if (at->bump) fprintf(out, "Bump %lld: ", (long long)at->bump);
   fg_html_text(out, at->row ? at->row->words : at->name);
 }
 
-/* As it was stated. */
+/* A limit with the digits that it was stated with. */
 #define LIMIT_FORMAT "%.8g"
 
 static void write_limits(FILE *out, const decided *at) {
@@ -67,7 +67,7 @@ static void write_decided_value(FILE *out, const decided *at) {
 
 static void write_decided(FILE *out, const decided *at) {
   fprintf(out, "<li class=\"%s\">", at->verdict);
-  write_quantity_name(out, at);
+  write_decided_name(out, at);
   fputs("<strong>", out);
   write_decided_value(out, at);
   fputs("</strong><small>", out);
@@ -169,7 +169,7 @@ static const struct {
 enum { FOIL_FIELDS = sizeof foil_fields / sizeof *foil_fields };
 
 /* Input for column i + 1 of the row; its value at display goes along, hidden. */
-static void write_field(const fg_query *foil, const fg_foil_form_error *html_form, int i,
+static void write_field(const fg_query *foil, const fg_foil_html_form *html_form, int i,
                         FILE *out) {
   const char *was = fg_query_get_text(foil, i + 1), *name = foil_fields[i].name;
   fprintf(out, "<input type=\"hidden\" name=\"was_%s\" value=\"", name);
@@ -182,7 +182,7 @@ static void write_field(const fg_query *foil, const fg_foil_form_error *html_for
 }
 
 /* Enter, which a barcode reader adds, presses the first button: never the one that shares. */
-static void write_buttons(const fg_foil_form_error *html_form, FILE *out) {
+static void write_buttons(const fg_foil_html_form *html_form, FILE *out) {
   fputs("<button>Keep</button>", out);
   if (!html_form->also || !html_form->also[0]) return;
   fputs("<button class=\"plain\" name=\"also\" value=\"", out);
@@ -192,8 +192,8 @@ static void write_buttons(const fg_foil_form_error *html_form, FILE *out) {
   fputs("</button>", out);
 }
 
-void fg_page_foil_form_error(const fg_inspection *station, const fg_query *foil,
-                             const fg_foil_form_error *html_form, FILE *out) {
+void fg_page_foil_html_form(const fg_inspection *station, const fg_query *foil,
+                            const fg_foil_html_form *html_form, FILE *out) {
   long long id = (long long)fg_query_get_integer(foil, 0);
   fprintf(out, "<form class=\"fields\" method=\"post\" action=\"/correct\" data-foil=\"%lld\">",
           id);

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Watches the folder. A file is inspected when its writer has closed or renamed it (inotify). Where
- * the system does not tell (network folders, files that were there before) it is inspected once it
- * has been at rest for a while. An incomplete file is waited for: its writer may only pause. The
- * folder is also listed now and then, to find events that inotify missed.
+ * the system does not notify (network folders, earlier files) it is inspected once it has not
+ * changed for a while. An incomplete file is waited for: its writer may only pause. The folder is
+ * also listed now and then, to find events that inotify missed.
  *
- * Tasks that the station cannot do now (a full disk, a folder that is gone) are on its pages as
- * trouble, and are tried again. */
+ * Tasks that the station cannot do now (a full disk, a folder that is gone) are shown on its
+ * pages, and are tried again. */
 #include "station/watch.h"
 
 #include <dirent.h>
@@ -30,8 +30,8 @@
 #include "station/recovery.h"
 #include "station/stored_name.h"
 
-/* TURN_MS: how long the station sleeps when nobody tells it anything. A folder that is removed
- * while somebody has a file of it open (the station its database) tells nothing. */
+/* TURN_MS: longest sleep without an event. A folder that is removed while one of its files is
+ * open (as the database is) sends none. */
 enum { LIST_EVERY_MS = 30000, LIST_SOON_MS = 500, TURN_MS = 500, EVENT_BYTES = 1 << 16 };
 
 typedef struct found {
@@ -48,7 +48,7 @@ typedef struct watch {
   size_t count, capacity;
   fg_file_stability stability;
   int64_t listed_ns; /* when the folder was, by the steady clock; 0: not yet */
-  int64_t took_ns;   /* the list, without what was measured */
+  int64_t took_ns;   /* for the list alone, without measuring */
   bool pending;      /* a file was not whole yet */
   bool once;
 } watch;
@@ -59,7 +59,7 @@ static int64_t now_ns(clockid_t clock) {
   return (int64_t)now.tv_sec * 1000000000 + now.tv_nsec;
 }
 
-/* What is the station's own, hidden, or on its way under a name of its own. */
+/* True for the station's own files, hidden ones, and files in transfer under a temporary name. */
 static bool is_ignored(const char *name) {
   static const char *const endings[] = {".tmp", ".part", ".crdownload", ".swp", "~"};
   size_t length = strlen(name);
@@ -76,8 +76,7 @@ static int64_t modified_ns(const struct stat *file) {
   return (int64_t)file->st_mtim.tv_sec * 1000000000 + file->st_mtim.tv_nsec;
 }
 
-static fg_status add_changed_file(fg_context *ctx, watch *at, const char *name,
-                                  const struct stat *file) {
+static fg_status add_found(fg_context *ctx, watch *at, const char *name, const struct stat *file) {
   void *block = at->files;
   FG_TRY(fg_memory_reserve(ctx, at->count + 1, sizeof *at->files, &at->capacity, &block));
   at->files = block;
@@ -93,7 +92,7 @@ static void clear(watch *at) {
   at->count = 0;
 }
 
-/* In order of arrival: a file that is copied keeps its own time, so that two of one time go by
+/* Compares files by arrival. A copied file keeps its own time; two of one time are ordered by
  * name. */
 static int by_arrival(const void *a, const void *b) {
   const found *one = a, *other = b;
@@ -125,7 +124,7 @@ static fg_status is_done(fg_context *ctx, fg_done_files *done, const char *name,
   return FG_OK;
 }
 
-/* Of all files that the folder holds, `*files` of them, those that are not done. */
+/* Lists the folder's files that are not done; `*files` is the number of all. */
 static fg_status list_entries(fg_context *ctx, watch *at, DIR *open, fg_done_files *done,
                               size_t *files) {
   for (struct dirent *entry; (entry = readdir(open));) {
@@ -136,7 +135,7 @@ static fg_status list_entries(fg_context *ctx, watch *at, DIR *open, fg_done_fil
       continue;
     ++*files;
     FG_TRY(is_done(ctx, done, entry->d_name, &file, &known));
-    if (!known) FG_TRY(add_changed_file(ctx, at, entry->d_name, &file));
+    if (!known) FG_TRY(add_found(ctx, at, entry->d_name, &file));
     if (at->count == 2 * FG_STATION_FILES && !at->once) keep_first(at);
   }
   return FG_OK;
@@ -162,9 +161,9 @@ static fg_status list_folder(fg_context *ctx, watch *at) {
   return status == FG_OK ? ended : status;
 }
 
-static fg_status take_closed(fg_context *ctx, watch *at, const char *name) {
+static fg_status inspect_closed(fg_context *ctx, watch *at, const char *name) {
   bool later;
-  FG_TRY(fg_station_take_file(ctx, at->station, name, FG_WRITER_PAUSES, &later));
+  FG_TRY(fg_station_inspect_file(ctx, at->station, name, FG_WRITER_PAUSES, &later));
   at->pending = at->pending || later;
   return FG_OK;
 }
@@ -179,8 +178,8 @@ static fg_writer writer_after(const watch *at, int64_t still_ns) {
   return still_ns < receive_ns(at) ? FG_WRITER_PAUSES : FG_WRITER_GONE;
 }
 
-/* Age, by this machine's clock, of a file that was there before the station began. For files of
- * other machines it says nothing. */
+/* Age, by this machine's clock, of a file that was there before the station began. The clocks of
+ * other machines are unknown. */
 static fg_writer first_writer(const watch *at, const found *file, bool once) {
   if (once) return FG_WRITER_GONE;
   if (at->listed_ns || at->station->request->poll_s > 0) return FG_WRITER_WRITES;
@@ -189,25 +188,26 @@ static fg_writer first_writer(const watch *at, const found *file, bool once) {
 
 /* A file that is read to its end and found to be cut off is not read again until it changes, or
  * until nothing more is waited for. */
-static fg_status take_listed(fg_context *ctx, watch *at, const found *file, bool once) {
+static fg_status inspect_listed(fg_context *ctx, watch *at, const found *file, bool once) {
   bool later;
-  fg_resting *resting;
+  fg_stable_file *resting;
   int64_t now = now_ns(CLOCK_MONOTONIC);
-  FG_TRY(fg_station_take_file(ctx, at->station, file->name, first_writer(at, file, once), &later));
+  FG_TRY(
+      fg_station_inspect_file(ctx, at->station, file->name, first_writer(at, file, once), &later));
   if (!later) return FG_OK;
-  FG_TRY(fg_file_stability_look(ctx, &at->stability, file->name, file->bytes, file->modified_ns,
+  FG_TRY(fg_file_stability_note(ctx, &at->stability, file->name, file->bytes, file->modified_ns,
                                 now, &resting));
   fg_writer writer = writer_after(at, now - resting->since_ns);
   if (writer == FG_WRITER_GONE || (writer == FG_WRITER_PAUSES && !resting->tried)) {
-    FG_TRY(fg_station_take_file(ctx, at->station, file->name, writer, &later));
+    FG_TRY(fg_station_inspect_file(ctx, at->station, file->name, writer, &later));
     resting->tried = true;
   }
   at->pending = at->pending || later;
   return FG_OK;
 }
 
-/* Waits for at most so long, less where the folder tells something. FG_ERR_INTERRUPTED: the station
- * is to end. */
+/* Waits until the time is over or the folder sends an event. FG_ERR_INTERRUPTED: the station is
+ * to end. */
 static fg_status wait_for_event(fg_context *ctx, const watch *at, bool of_folder, int wait_ms) {
   int end = at->station->request->end_descriptor;
   struct pollfd descriptors[] = {{.fd = end > 0 ? end : -1, .events = POLLIN},
@@ -221,15 +221,15 @@ static void stop_listening(watch *at) {
   at->inotify = -1;
 }
 
-/* True where another folder has taken the place of the one listened to. */
+/* True where another folder has replaced the one that is watched. */
 static bool is_another_folder(const watch *at) {
   struct stat folder;
   return at->inotify >= 0 && (stat(at->station->request->folder, &folder) != 0 ||
                               folder.st_dev != at->device || folder.st_ino != at->inode);
 }
 
-/* Where the system cannot tell, the folder is listed. IN_ATTRIB: what could not be read may be
- * readable now. */
+/* Starts listening for events; where the system has none, the folder is listed. IN_ATTRIB: a
+ * file may have become readable. */
 static void listen_to(watch *at) {
   static const uint32_t events = IN_CLOSE_WRITE | IN_MOVED_TO | IN_CREATE | IN_MODIFY | IN_ATTRIB |
                                  IN_DELETE_SELF | IN_MOVE_SELF | IN_ONLYDIR;
@@ -243,26 +243,26 @@ static void listen_to(watch *at) {
   if (at->inotify >= 0 && inotify_add_watch(at->inotify, folder, events) < 0) stop_listening(at);
 }
 
-static fg_status take_event(fg_context *ctx, watch *at, const struct inotify_event *event) {
+static fg_status handle_event(fg_context *ctx, watch *at, const struct inotify_event *event) {
   if (event->mask & (IN_DELETE_SELF | IN_MOVE_SELF | IN_IGNORED | IN_UNMOUNT | IN_Q_OVERFLOW)) {
     at->pending = true;
-    /* Listening ends with the folder; what comes under its name is another one. */
+    /* Listening ends with the folder; a later folder of its name is another one. */
     if (!(event->mask & IN_Q_OVERFLOW)) stop_listening(at);
     return FG_OK;
   }
   if (!event->len || is_ignored(event->name)) return FG_OK;
-  if (event->mask & (IN_CLOSE_WRITE | IN_MOVED_TO)) return take_closed(ctx, at, event->name);
+  if (event->mask & (IN_CLOSE_WRITE | IN_MOVED_TO)) return inspect_closed(ctx, at, event->name);
   at->pending = true; /* it is being written */
   return FG_OK;
 }
 
-/* Of events that come behind one that could not be handled the list tells. */
-static fg_status take_events(fg_context *ctx, watch *at) {
+/* Handles events; after one that failed, the list finds the files of the others. */
+static fg_status handle_events(fg_context *ctx, watch *at) {
   _Alignas(struct inotify_event) char bytes[EVENT_BYTES];
   ssize_t got = at->inotify >= 0 ? read(at->inotify, bytes, sizeof bytes) : -1;
   for (ssize_t i = 0; i < got;) {
     const struct inotify_event *event = (const void *)(bytes + i);
-    FG_TRY(take_event(ctx, at, event));
+    FG_TRY(handle_event(ctx, at, event));
     i += (ssize_t)sizeof *event + event->len;
   }
   return FG_OK;
@@ -272,12 +272,12 @@ static fg_status take_events(fg_context *ctx, watch *at) {
 static fg_status attend(fg_context *ctx, watch *at) {
   FG_TRY(wait_for_event(ctx, at, false, 0));
   fg_station_database_keep_up(&at->station->database);
-  return take_events(ctx, at);
+  return handle_events(ctx, at);
 }
 
-/* Everything that is there; `once` does not wait for anybody. One scan that takes more memory than
- * there is does not hold up the others. */
-static fg_status take_all(fg_context *ctx, watch *at, bool once) {
+/* Inspects all files; `once` does not wait for writers. A scan that needs more memory than there
+ * is does not hold up the others. */
+static fg_status inspect_all(fg_context *ctx, watch *at, bool once) {
   fg_status short_of_memory = FG_OK;
   fg_context inner = {.message = ""};
   at->pending = false;
@@ -285,7 +285,7 @@ static fg_status take_all(fg_context *ctx, watch *at, bool once) {
   fg_station_begin_round(at->station);
   for (size_t i = 0; i < at->count; i++) {
     FG_TRY(attend(ctx, at));
-    fg_status status = take_listed(&inner, at, &at->files[i], once);
+    fg_status status = inspect_listed(&inner, at, &at->files[i], once);
     if (status == FG_ERR_MEMORY)
       short_of_memory = fg_fail(ctx, status, "%s: %.900s", at->files[i].name, inner.message);
     else if (status != FG_OK)
@@ -297,8 +297,8 @@ static fg_status take_all(fg_context *ctx, watch *at, bool once) {
   return short_of_memory;
 }
 
-/* A list of very many files takes its time: it has a twentieth of all time, where a file is being
- * written a half. */
+/* Returns the pause before the next list. Listing very many files is slow: it may use a
+ * twentieth of all time, a half while a file is being written. */
 static int list_after_ms(const watch *at) {
   double poll_s = at->station->request->poll_s;
   int64_t took_ms = at->took_ns / 1000000;
@@ -311,12 +311,12 @@ static int list_after_ms(const watch *at) {
 
 /* Waits for the next thing to do: events that came, or the time to list. In trouble, events do not
  * bring the next attempt forward. */
-static fg_status wait_and_take(fg_context *ctx, watch *at, bool in_recovery) {
+static fg_status wait_and_handle(fg_context *ctx, watch *at, bool in_recovery) {
   int wait_ms = in_recovery ? TURN_MS : list_after_ms(at);
   FG_TRY(wait_for_event(ctx, at, !in_recovery, wait_ms < TURN_MS ? wait_ms : TURN_MS));
   fg_station_database_keep_up(&at->station->database);
-  FG_TRY(fg_station_look_after_folder(ctx, at->station));
-  FG_TRY(take_events(ctx, at));
+  FG_TRY(fg_station_ensure_folder(ctx, at->station));
+  FG_TRY(handle_events(ctx, at));
   if (is_another_folder(at)) {
     stop_listening(at);
     at->pending = true;
@@ -324,7 +324,7 @@ static fg_status wait_and_take(fg_context *ctx, watch *at, bool in_recovery) {
   if (at->inotify < 0) listen_to(at);
   int64_t since_ns = now_ns(CLOCK_MONOTONIC) - at->listed_ns;
   if (since_ns < (int64_t)list_after_ms(at) * 1000000) return FG_OK;
-  return take_all(ctx, at, false);
+  return inspect_all(ctx, at, false);
 }
 
 /* A station goes on in any trouble: a full disk, a missing folder or a damaged database is put
@@ -333,18 +333,18 @@ static fg_status run_watch(fg_context *ctx, watch *at) {
   fg_context inner = {.message = ""};
   fg_status status;
   listen_to(at);
-  status = take_all(&inner, at, false);
+  status = inspect_all(&inner, at, false);
   while (status != FG_ERR_INTERRUPTED) {
     fg_station_set_recovery(at->station, status == FG_OK ? "" : inner.message);
     at->pending = at->pending || status != FG_OK;
-    status = wait_and_take(&inner, at, status != FG_OK);
+    status = wait_and_handle(&inner, at, status != FG_OK);
   }
   return fg_fail(ctx, status, "%s", inner.message);
 }
 
 fg_status fg_station_watch(fg_context *ctx, fg_inspection *station, bool once) {
   watch at = {.station = station, .inotify = -1, .once = once};
-  fg_status status = once ? take_all(ctx, &at, true) : run_watch(ctx, &at);
+  fg_status status = once ? inspect_all(ctx, &at, true) : run_watch(ctx, &at);
   stop_listening(&at);
   clear(&at);
   free(at.files);

@@ -149,7 +149,7 @@ static void test_names_of_files(void **state) {
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
     in_row("rows[%zu]", i);
     fg_named named;
-    if (fg_naming_take(rows[i].pattern, rows[i].file, &named) != rows[i].fits)
+    if (fg_naming_split(rows[i].pattern, rows[i].file, &named) != rows[i].fits)
       fail_msg("%s %s", rows[i].pattern, rows[i].file);
     assert_string_equal(named.serial, rows[i].serial);
     assert_string_equal(named.lot, rows[i].lot);

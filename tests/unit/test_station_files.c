@@ -14,8 +14,8 @@
 static bool look(fg_file_stability *rest, const char *name, int64_t bytes, int64_t modified_ns,
                  int64_t now_ns) {
   fg_context ctx;
-  fg_resting *file;
-  assert_ok(&ctx, fg_file_stability_look(&ctx, rest, name, bytes, modified_ns, now_ns, &file));
+  fg_stable_file *file;
+  assert_ok(&ctx, fg_file_stability_note(&ctx, rest, name, bytes, modified_ns, now_ns, &file));
   return now_ns - file->since_ns >= FG_STABLE_NS;
 }
 
@@ -98,12 +98,12 @@ static void test_names_are_text(void **state) {
   fg_named named;
   char file[400] = "A\xFF\n-";
   (void)state;
-  assert_true(fg_naming_take("{lot}-{serial}", "A\xFF\n-b.png", &named));
+  assert_true(fg_naming_split("{lot}-{serial}", "A\xFF\n-b.png", &named));
   assert_string_equal(named.lot, "A\xEF\xBF\xBD\xEF\xBF\xBD");
   assert_string_equal(named.serial, "b");
   for (int i = 0; i < 60; i++) /* cut off between characters, never in one */
     strcat(file, "\xE2\x82\xAC");
-  assert_true(fg_naming_take("{lot}-{serial}", file, &named));
+  assert_true(fg_naming_split("{lot}-{serial}", file, &named));
   assert_true(fg_utf8_is_valid(named.serial));
   assert_int_equal(strlen(named.serial), 126);
 }

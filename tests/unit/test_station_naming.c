@@ -72,7 +72,7 @@ static void test_as_defined(void **state) {
     make_text(&seed, 12, name);
     if (!name[0]) continue;
     bool expected = match_slowly(pattern, name, place);
-    if (fg_naming_take(pattern, name, &named) != expected)
+    if (fg_naming_split(pattern, name, &named) != expected)
       fail_msg("'%s' as '%s' %s", name, pattern, expected ? "fits" : "does not fit");
     if (!expected) continue;
     fits++;
@@ -100,7 +100,7 @@ static void test_long_names(void **state) {
     fg_context ctx;
     fg_named named;
     assert_ok(&ctx, fg_naming_check(&ctx, patterns[i]));
-    assert_false(fg_naming_take(patterns[i], name, &named));
+    assert_false(fg_naming_split(patterns[i], name, &named));
     assert_int_equal(strlen(named.serial), FG_NAMED_TEXT - 1);
     assert_string_equal(named.lot, "");
   }

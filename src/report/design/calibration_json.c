@@ -12,10 +12,10 @@
 /* A certificate states U with a factor from 1 (68 %) to 4; beyond it is a slip. */
 static const double k_min = 1, k_max = 4;
 
-static fg_status fail(fg_context *ctx, const char *place, const char *format, ...)
+static fg_status fail_at_member(fg_context *ctx, const char *place, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-static fg_status fail(fg_context *ctx, const char *place, const char *format, ...) {
+static fg_status fail_at_member(fg_context *ctx, const char *place, const char *format, ...) {
   char words[400];
   va_list arguments;
   va_start(arguments, format);
@@ -24,7 +24,7 @@ static fg_status fail(fg_context *ctx, const char *place, const char *format, ..
   return fg_fail(ctx, FG_ERR_DATA, "%.120s: %s", place, words);
 }
 
-static void join(char *full, size_t size, const char *place, const char *name) {
+static void join_place(char *full, size_t size, const char *place, const char *name) {
   fg_text_clip(full, size, "%.80s.%.40s", place, name);
 }
 
@@ -32,31 +32,31 @@ static void join(char *full, size_t size, const char *place, const char *name) {
 static fg_status check_members(fg_context *ctx, const char *place, const cJSON *object,
                                const char *const *names) {
   char full[128], list[200] = "";
-  if (!cJSON_IsObject(object)) return fail(ctx, place, "must be an object");
+  if (!cJSON_IsObject(object)) return fail_at_member(ctx, place, "must be an object");
   for (size_t i = 0; names[i]; i++)
     fg_text_clip(list + strlen(list), sizeof list - strlen(list), "%s%s", i ? ", " : "", names[i]);
   for (const cJSON *item = object->child; item; item = item->next) {
     size_t i = 0;
-    join(full, sizeof full, place, item->string);
+    join_place(full, sizeof full, place, item->string);
     while (names[i] && strcmp(names[i], item->string) != 0)
       i++;
-    if (!names[i]) return fail(ctx, full, "is not known; there are %s", list);
+    if (!names[i]) return fail_at_member(ctx, full, "is not known; there are %s", list);
     if (cJSON_GetObjectItemCaseSensitive(object, item->string) != item)
-      return fail(ctx, full, "is given twice");
+      return fail_at_member(ctx, full, "is given twice");
   }
   return FG_OK;
 }
 
 /* NaN: it is not there. */
-static fg_status read_number(fg_context *ctx, const char *place, const cJSON *object,
-                             const char *name, double *value) {
+static fg_status read_calibration_number(fg_context *ctx, const char *place, const cJSON *object,
+                                         const char *name, double *value) {
   char full[128];
   const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, name);
   *value = NAN;
   if (!item) return FG_OK;
-  join(full, sizeof full, place, name);
-  if (!cJSON_IsNumber(item)) return fail(ctx, full, "must be a number");
-  if (!isfinite(item->valuedouble)) return fail(ctx, full, "the number is too large");
+  join_place(full, sizeof full, place, name);
+  if (!cJSON_IsNumber(item)) return fail_at_member(ctx, full, "must be a number");
+  if (!isfinite(item->valuedouble)) return fail_at_member(ctx, full, "the number is too large");
   *value = item->valuedouble;
   return FG_OK;
 }
@@ -73,19 +73,21 @@ static const stated expansion_names = {"value_per_K", "u_per_K", "U_per_K"};
 static fg_status read_u(fg_context *ctx, const char *place, const cJSON *object, const stated *s,
                         double *u) {
   double expanded, k;
-  FG_TRY(read_number(ctx, place, object, s->u, u));
-  FG_TRY(read_number(ctx, place, object, s->expanded, &expanded));
-  FG_TRY(read_number(ctx, place, object, "k", &k));
+  FG_TRY(read_calibration_number(ctx, place, object, s->u, u));
+  FG_TRY(read_calibration_number(ctx, place, object, s->expanded, &expanded));
+  FG_TRY(read_calibration_number(ctx, place, object, "k", &k));
   if (isnan(*u) == isnan(expanded))
-    return fail(ctx, place, "needs either %s, a standard uncertainty, or %s with its k", s->u,
-                s->expanded);
+    return fail_at_member(ctx, place, "needs either %s, a standard uncertainty, or %s with its k",
+                          s->u, s->expanded);
   if (isnan(expanded) && !isnan(k))
-    return fail(ctx, place, "k belongs to %s; %s is a standard uncertainty", s->expanded, s->u);
+    return fail_at_member(ctx, place, "k belongs to %s; %s is a standard uncertainty", s->expanded,
+                          s->u);
   if (isnan(expanded)) return FG_OK;
   if (isnan(k))
-    return fail(ctx, place, "%s needs its factor k, as the certificate says", s->expanded);
+    return fail_at_member(ctx, place, "%s needs its factor k, as the certificate says",
+                          s->expanded);
   if (!(k >= k_min && k <= k_max))
-    return fail(ctx, place, "k is %g; it must be from %g to %g", k, k_min, k_max);
+    return fail_at_member(ctx, place, "k is %g; it must be from %g to %g", k, k_min, k_max);
   *u = expanded / k;
   return FG_OK;
 }
@@ -94,8 +96,8 @@ static fg_status read_stated(fg_context *ctx, const char *place, const cJSON *ob
                              const stated *s, double *value, double *u) {
   const char *const names[] = {s->u, s->expanded, "k", s->value, NULL};
   FG_TRY(check_members(ctx, place, object, names));
-  if (s->value) FG_TRY(read_number(ctx, place, object, s->value, value));
-  if (s->value && isnan(*value)) return fail(ctx, place, "%s is missing", s->value);
+  if (s->value) FG_TRY(read_calibration_number(ctx, place, object, s->value, value));
+  if (s->value && isnan(*value)) return fail_at_member(ctx, place, "%s is missing", s->value);
   return read_u(ctx, place, object, s, u);
 }
 
@@ -112,8 +114,9 @@ static fg_status read_scale(fg_context *ctx, const cJSON *item, fg_calibration *
   for (int axis = 0; axis < 2; axis++) {
     char full[128];
     const cJSON *own = cJSON_GetObjectItemCaseSensitive(item, axes[axis]);
-    if (!own) return fail(ctx, place, "%s is missing; with one axis comes the other", axes[axis]);
-    join(full, sizeof full, place, axes[axis]);
+    if (!own)
+      return fail_at_member(ctx, place, "%s is missing; with one axis comes the other", axes[axis]);
+    join_place(full, sizeof full, place, axes[axis]);
     FG_TRY(read_stated(ctx, full, own, &scale_names, NULL, &c->u_scale[axis]));
   }
   return FG_OK;
@@ -125,25 +128,27 @@ static fg_status read_heat(fg_context *ctx, const cJSON *item, fg_calibration *c
   c->has_temperature = temperature || expansion;
   if (!c->has_temperature) return FG_OK;
   if (!temperature || !expansion)
-    return fail(ctx, "calibration", "%s is missing; temperature and expansion go together",
-                temperature ? "expansion" : "temperature");
+    return fail_at_member(ctx, "calibration",
+                          "%s is missing; temperature and expansion go together",
+                          temperature ? "expansion" : "temperature");
   FG_TRY(read_stated(ctx, "calibration.temperature", temperature, &temperature_names,
                      &c->temperature_c, &c->u_temperature_k));
   return read_stated(ctx, "calibration.expansion", expansion, &expansion_names, &c->expansion_per_k,
                      &c->u_expansion_per_k);
 }
 
-static fg_status read_text(fg_context *ctx, const cJSON *object, const char *name, char *text,
-                           size_t size) {
+static fg_status read_calibration_text(fg_context *ctx, const cJSON *object, const char *name,
+                                       char *text, size_t size) {
   char full[128];
   const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, name);
   if (!item) return FG_OK;
-  join(full, sizeof full, "calibration", name);
-  if (!cJSON_IsString(item)) return fail(ctx, full, "must be a text in quotes");
+  join_place(full, sizeof full, "calibration", name);
+  if (!cJSON_IsString(item)) return fail_at_member(ctx, full, "must be a text in quotes");
   if (strlen(item->valuestring) >= size)
-    return fail(ctx, full, "is too long; at most %zu bytes", size - 1);
+    return fail_at_member(ctx, full, "is too long; at most %zu bytes", size - 1);
   for (const char *c = item->valuestring; *c; c++)
-    if ((unsigned char)*c < ' ' || *c == 0x7f) return fail(ctx, full, "holds a control character");
+    if ((unsigned char)*c < ' ' || *c == 0x7f)
+      return fail_at_member(ctx, full, "holds a control character");
   strcpy(text, item->valuestring);
   return FG_OK;
 }
@@ -157,12 +162,14 @@ fg_status fg_calibration_read(fg_context *ctx, const cJSON *item, fg_calibration
     return FG_OK;
   }
   FG_TRY(check_members(ctx, "calibration", item, names));
-  FG_TRY(read_text(ctx, item, "certificate", c.certificate, sizeof c.certificate));
-  FG_TRY(read_text(ctx, item, "date", c.date, sizeof c.date));
+  FG_TRY(read_calibration_text(ctx, item, "certificate", c.certificate, sizeof c.certificate));
+  FG_TRY(read_calibration_text(ctx, item, "date", c.date, sizeof c.date));
   if (c.date[0] && (strlen(c.date) != 10 || isnan(fg_date_days(c.date))))
-    return fail(ctx, "calibration.date", "'%s' is no date; write it as 2026-03-14", c.date);
+    return fail_at_member(ctx, "calibration.date", "'%s' is no date; write it as 2026-03-14",
+                          c.date);
   if (!cJSON_GetObjectItemCaseSensitive(item, "scale"))
-    return fail(ctx, "calibration", "scale is missing: how well the pixel's pitch is known");
+    return fail_at_member(ctx, "calibration",
+                          "scale is missing: how well the pixel's pitch is known");
   FG_TRY(read_scale(ctx, cJSON_GetObjectItemCaseSensitive(item, "scale"), &c));
   FG_TRY(read_heat(ctx, item, &c));
   FG_TRY(fg_calibration_check(ctx, &c));
@@ -170,7 +177,8 @@ fg_status fg_calibration_read(fg_context *ctx, const cJSON *item, fg_calibration
   return FG_OK;
 }
 
-static void write_stated(fg_json *json, const char *name, const stated *s, double value, double u) {
+static void write_stated_value(fg_json *json, const char *name, const stated *s, double value,
+                               double u) {
   fg_json_object(json, name);
   fg_json_line(json);
   if (s->value) fg_json_number(json, s->value, value);
@@ -186,15 +194,17 @@ static void write_members(fg_json *json, const fg_calibration *c) {
   if (c->date[0]) fg_json_string(json, "date", c->date);
   if (c->per_axis) {
     fg_json_object(json, "scale");
-    write_stated(json, "x", &scale_names, 0, c->u_scale[0]);
-    write_stated(json, "y", &scale_names, 0, c->u_scale[1]);
+    write_stated_value(json, "x", &scale_names, 0, c->u_scale[0]);
+    write_stated_value(json, "y", &scale_names, 0, c->u_scale[1]);
     fg_json_object_end(json);
   } else {
-    write_stated(json, "scale", &scale_names, 0, c->u_scale[0]);
+    write_stated_value(json, "scale", &scale_names, 0, c->u_scale[0]);
   }
   if (c->has_temperature) {
-    write_stated(json, "temperature", &temperature_names, c->temperature_c, c->u_temperature_k);
-    write_stated(json, "expansion", &expansion_names, c->expansion_per_k, c->u_expansion_per_k);
+    write_stated_value(json, "temperature", &temperature_names, c->temperature_c,
+                       c->u_temperature_k);
+    write_stated_value(json, "expansion", &expansion_names, c->expansion_per_k,
+                       c->u_expansion_per_k);
   }
   json->exact = exact;
 }

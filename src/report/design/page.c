@@ -16,7 +16,7 @@ static void put_stated_tile(FILE *out, const char *title, double value, const ch
   fg_html_tile(out, title, source, "%s%.5g %s", value < 0 ? "−" : "", fabs(value), unit);
 }
 
-static void put_tiles(FILE *out, const fg_design_report *report) {
+static void put_design_tiles(FILE *out, const fg_design_report *report) {
   const fg_design *design = report->design;
   fputs("<dl class=\"tiles four\">\n", out);
   put_stated_tile(out, "bump radius", design->bumps.radius_mm, "mm", "R<sub>D</sub>, stated");
@@ -45,7 +45,7 @@ fg_status fg_design_write_html(fg_context *ctx, const fg_design_report *report, 
   fputs("<section>\n<header><h1>Design ", out);
   fg_html_text(out, report->design->name);
   fputs("</h1></header>\n", out);
-  put_tiles(out, report);
+  put_design_tiles(out, report);
   fputs("<h2>Stiffness of a bump</h2>\n", out);
   if (note) fprintf(out, "<p>%s</p>\n", note);
   fg_html_stiffness_table(out, &bump, 1, fg_design_pitch_mm(report->design));

@@ -7,7 +7,7 @@
 #include "report/measure/json.h"
 
 /* name, sd_name (as its own unit), u_name. */
-static void write_value(fg_json *json, const char *name, const fg_die_value *value) {
+static void write_die_value(fg_json *json, const char *name, const fg_die_value *value) {
   fg_json_number(json, name, value->value);
   fg_json_of(json, "sd_", name, value->sd);
   fg_json_of(json, "u_", name, value->u);
@@ -15,14 +15,14 @@ static void write_value(fg_json *json, const char *name, const fg_die_value *val
 
 static void write_values(fg_json *json, const fg_die_value values[FG_DIE_QUANTITIES]) {
   for (int q = 0; q < FG_DIE_QUANTITIES; q++)
-    write_value(json, fg_die_row_of((fg_die_quantity)q)->name, &values[q]);
+    write_die_value(json, fg_die_row_of((fg_die_quantity)q)->name, &values[q]);
 }
 
 static void write_side(fg_json *json, const fg_die *die, const fg_die_side *side,
                        const char *counted) {
   fg_json_object(json, "overall");
-  write_value(json, "radius_mm", &side->overall_radius_mm);
-  write_value(json, "radius_error_pct", &side->overall_error_pct);
+  write_die_value(json, "radius_mm", &side->overall_radius_mm);
+  write_die_value(json, "radius_error_pct", &side->overall_error_pct);
   fg_json_object_end(json);
   fg_json_object(json, "mean");
   write_values(json, side->mean);

@@ -113,7 +113,7 @@ static void add_lost(const fg_die *die, char *words, size_t size) {
   }
 }
 
-static void say(const fg_report_outcome *o, size_t lost, char *words, size_t size) {
+static void write_die_outcome(const fg_report_outcome *o, size_t lost, char *words, size_t size) {
   size_t untraced = o->not_measured - lost;
   if (o->verdict == FG_VERDICT_NONE)
     fg_text_clip(words, size, "the design states no limit for a die");
@@ -149,6 +149,6 @@ void fg_die_judge(const fg_die *die, fg_report_outcome *outcome, char *words, si
     for (int half = 0; half < FG_DIE_HALVES; half++)
       if (die->half[half].traces) judge_side(die, (fg_die_half)half, outcome);
   if (!words) return;
-  say(outcome, fg_die_tolerances(die) ? count_lost(die) : 0, words, size);
+  write_die_outcome(outcome, fg_die_tolerances(die) ? count_lost(die) : 0, words, size);
   add_lost(die, words, size);
 }

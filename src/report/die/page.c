@@ -32,7 +32,7 @@ static double largest_sd(const fg_die *die) {
   return max;
 }
 
-static void put_tiles(FILE *out, const fg_die *die) {
+static void put_die_tiles(FILE *out, const fg_die *die) {
   const fg_die_side *a = &die->half[FG_DIE_CONCAVE], *b = &die->half[FG_DIE_CONVEX];
   double sd = largest_sd(die);
   fputs("<dl class=\"tiles\">\n", out);
@@ -80,7 +80,7 @@ static void put_sentences(FILE *out, const fg_die *die) {
   fputs("</ul>\n", out);
 }
 
-static void put_value(FILE *out, const fg_die *die, const fg_die_value *v, fg_die_quantity q) {
+static void put_die_value(FILE *out, const fg_die *die, const fg_die_value *v, fg_die_quantity q) {
   const fg_die_row *row = fg_die_row_of(q);
   int decimals = row->decimals;
   double expanded = FG_COVERAGE_FACTOR * v->u;
@@ -97,7 +97,7 @@ static const fg_die_quantity columns[] = {FG_DIE_RADIUS,      FG_DIE_RADIUS_ERRO
                                           FG_DIE_PLACE};
 enum { COLUMNS = sizeof columns / sizeof *columns };
 
-static void put_head(FILE *out, const fg_die *die, const char *count, const char *sd) {
+static void put_die_head(FILE *out, const fg_die *die, const char *count, const char *sd) {
   fputs("<div class=\"scroll\"><table>\n<tr><th>bump</th>", out);
   for (size_t i = 0; i < COLUMNS; i++) {
     const fg_die_row *row = fg_die_row_of(columns[i]);
@@ -114,10 +114,10 @@ static void put_head(FILE *out, const fg_die *die, const char *count, const char
 }
 
 /* `of`: owner of s; NULL: the column's heading names it. */
-static void put_row(FILE *out, const fg_die *die, const fg_die_value v[FG_DIE_QUANTITIES],
-                    const char *of) {
+static void put_die_row(FILE *out, const fg_die *die, const fg_die_value v[FG_DIE_QUANTITIES],
+                        const char *of) {
   for (size_t i = 0; i < COLUMNS; i++) {
-    put_value(out, die, &v[columns[i]], columns[i]);
+    put_die_value(out, die, &v[columns[i]], columns[i]);
     if (columns[i] != FG_DIE_RADIUS) continue;
     if (isfinite(v[FG_DIE_RADIUS].sd))
       fprintf(out, "<td>%.2f", 1000 * v[FG_DIE_RADIUS].sd);
@@ -128,19 +128,19 @@ static void put_row(FILE *out, const fg_die *die, const fg_die_value v[FG_DIE_QU
   }
 }
 
-static void put_table(FILE *out, const fg_die *die, const fg_die_side *side, const char *count,
-                      const char *sd) {
+static void put_die_table(FILE *out, const fg_die *die, const fg_die_side *side, const char *count,
+                          const char *sd) {
   fg_die no_limits = *die;
   no_limits.design.tolerance_count = 0; /* limits are of single bumps of a half */
   const fg_die *judge = side == &die->whole ? &no_limits : die;
-  put_head(out, die, count, sd);
+  put_die_head(out, die, count, sd);
   for (size_t i = 0; i < side->bump_count; i++) {
     fprintf(out, "<tr><td>%d</td>", side->bumps[i].number);
-    put_row(out, judge, side->bumps[i].value, NULL);
+    put_die_row(out, judge, side->bumps[i].value, NULL);
     fprintf(out, "<td>%zu</td></tr>\n", side->bumps[i].count);
   }
   fputs("<tr class=\"total on\"><td>mean</td>", out);
-  put_row(out, &no_limits, side->mean, side == &die->whole ? NULL : "of the bumps");
+  put_die_row(out, &no_limits, side->mean, side == &die->whole ? NULL : "of the bumps");
   fputs("<td></td></tr>\n</table></div>\n", out);
   fprintf(
       out,
@@ -161,7 +161,7 @@ static void put_half(FILE *out, const fg_die *die, fg_die_half half) {
         "over 1/450 of the width. What all traces share is the die's form, what differs is the "
         "instrument.</figcaption></figure>\n",
         out);
-  put_table(out, die, &die->half[half], "repeats", "s of repeats");
+  put_die_table(out, die, &die->half[half], "repeats", "s of repeats");
   fputs("</section>\n", out);
 }
 
@@ -207,7 +207,7 @@ static void put_summary(FILE *out, const fg_die *die, const char *words,
           die->trace_count, die->trace_count == 1 ? "" : "s", datum_words[die->design.datum]);
   fg_html_text(out, words);
   fputs(".</p>\n", out);
-  put_tiles(out, die);
+  put_die_tiles(out, die);
   put_sentences(out, die);
   fputs("<figure>", out);
   fg_die_plot_errors(out, die, FG_DIE_RADIUS_ERROR);
@@ -234,7 +234,7 @@ fg_status fg_die_write_html(fg_context *ctx, const fg_die *die, FILE *out) {
           "constant thickness that is pressed between both has its midline half way between their "
           "surfaces. These values are a lot's reference of springback (recipe: dies).</p>\n",
           out);
-    put_table(out, die, &die->whole, "halves", "s of the two");
+    put_die_table(out, die, &die->whole, "halves", "s of the two");
   }
   FG_TRY(put_traces(ctx, out, die));
   fputs("</section>\n", out);

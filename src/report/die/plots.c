@@ -14,7 +14,7 @@ static const char *const half_style[FG_DIE_HALVES] = {"s2", "s1"};
 static const char *const half_words[FG_DIE_HALVES] = {"concave half (grooves)",
                                                       "convex half (ridges)"};
 
-static void widen(double range[2], double low, double high) {
+static void widen_die_range(double range[2], double low, double high) {
   if (isfinite(low)) range[0] = fmin(range[0], low);
   if (isfinite(high)) range[1] = fmax(range[1], high);
 }
@@ -36,13 +36,14 @@ static void error_range(const fg_die *die, fg_die_quantity q, double range[2]) {
   for (int half = 0; half < FG_DIE_HALVES; half++)
     for (size_t i = 0; i < die->half[half].bump_count; i++) {
       const fg_die_value *v = &die->half[half].bumps[i].value[q];
-      widen(range, v->value - FG_COVERAGE_FACTOR * v->u, v->value + FG_COVERAGE_FACTOR * v->u);
+      widen_die_range(range, v->value - FG_COVERAGE_FACTOR * v->u,
+                      v->value + FG_COVERAGE_FACTOR * v->u);
     }
   /* Limits that lie near; far ones would flatten everything. */
   const fg_tolerance *limits = find_tolerance(die, fg_die_row_of(q)->name);
   double span = range[1] - range[0];
-  if (limits && limits->lower > range[0] - span) widen(range, limits->lower, NAN);
-  if (limits && limits->upper < range[1] + span) widen(range, NAN, limits->upper);
+  if (limits && limits->lower > range[0] - span) widen_die_range(range, limits->lower, NAN);
+  if (limits && limits->upper < range[1] + span) widen_die_range(range, NAN, limits->upper);
   double margin = fmax(0.02, 0.1 * (range[1] - range[0]));
   range[0] -= margin;
   range[1] += margin;

@@ -12,7 +12,7 @@ static void write_number(FILE *out, double value, int width, int decimals, const
     fprintf(out, " %*s", width, "-");
 }
 
-static void write_row(FILE *out, const fg_die_value v[FG_DIE_QUANTITIES], double sd) {
+static void write_die_row(FILE *out, const fg_die_value v[FG_DIE_QUANTITIES], double sd) {
   write_number(out, v[FG_DIE_RADIUS].value, 9, 5, "");
   write_number(out, 2000 * v[FG_DIE_RADIUS].u, 6, 2, "");
   write_number(out, 1000 * sd, 6, 2, "");
@@ -31,13 +31,13 @@ static void write_side(FILE *out, const fg_die *die, const fg_die_side *side) {
     const fg_die_bump *bump = &side->bumps[i];
     fg_verdict verdict = fg_die_judge_bump(die, bump);
     fprintf(out, "  %4d", bump->number);
-    write_row(out, bump->value, bump->value[FG_DIE_RADIUS].sd);
+    write_die_row(out, bump->value, bump->value[FG_DIE_RADIUS].sd);
     fprintf(out, "%s%s\n", verdict == FG_VERDICT_NONE || verdict == FG_VERDICT_PASS ? "" : "  ",
             verdict == FG_VERDICT_NONE || verdict == FG_VERDICT_PASS ? ""
                                                                      : fg_verdict_word(verdict));
   }
   fputs("  mean", out);
-  write_row(out, side->mean, side->mean[FG_DIE_RADIUS].sd);
+  write_die_row(out, side->mean, side->mean[FG_DIE_RADIUS].sd);
   fprintf(out, "\n  lands: R0 = %.4f mm, U %.2f um, %+.3f %%\n", side->overall_radius_mm.value,
           2000 * side->overall_radius_mm.u, side->overall_error_pct.value);
 }

@@ -8,7 +8,7 @@
 #include "report/unit_words.h"
 
 /* Why there is no best setting, where there is none. */
-static const char *why_no_optimum(const fg_experiment *e) {
+static const char *explain_no_optimum(const fg_experiment *e) {
   for (size_t i = 0; i < e->notes; i++)
     if (!strncmp(e->note[i], "no optimum", 10)) return e->note[i];
   return "no optimum";
@@ -17,7 +17,7 @@ static const char *why_no_optimum(const fg_experiment *e) {
 /* Writes the strongest factor, the answer of a screening, which has no surface. */
 static void put_strongest(FILE *out, const fg_experiment *e, const fg_sentences *conclusions) {
   fputs("<p class=\"set\">No best setting</p>\n<p>", out);
-  fg_html_text(out, why_no_optimum(e));
+  fg_html_text(out, explain_no_optimum(e));
   fputs(".</p>\n", out);
   for (size_t i = 0; i < conclusions->count; i++)
     if (strstr(conclusions->text[i], " matters: ")) {

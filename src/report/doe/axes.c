@@ -12,7 +12,7 @@ void fg_range_add(double range[2], double value) {
   range[1] = fmax(range[1], value);
 }
 
-static void widen(const double range[2], double *low, double *high) {
+static void widen_axis_range(const double range[2], double *low, double *high) {
   *low = range[0];
   *high = range[1];
   if (!(range[0] <= range[1])) {
@@ -31,8 +31,8 @@ fg_plot fg_axes_begin(FILE *out, const char *title, const double x[2], const dou
                 .right = FG_AXES_WIDTH - 14,
                 .top = 12,
                 .bottom = FG_AXES_HEIGHT - 50};
-  widen(x, &at.x_low, &at.x_high);
-  widen(y, &at.y_low, &at.y_high);
+  widen_axis_range(x, &at.x_low, &at.x_high);
+  widen_axis_range(y, &at.y_low, &at.y_high);
   fputs("<figure><h3>", out);
   fg_html_text(out, title);
   fputs("</h3>", out);

@@ -34,7 +34,7 @@ typedef struct slice {
   double step, first;               /* of the contour levels */
 } slice;
 
-/* The best setting: the one that can be made, where that was asked for. */
+/* Returns the best setting: among those a machine has, where steps were given. */
 static const fg_optimum *best_of(const fg_experiment *e) {
   return e->has_rounded ? &e->rounded : &e->optimum;
 }
@@ -45,7 +45,7 @@ typedef struct places {
   size_t count;
 } places;
 
-static double along(const fg_factor *f, double share) {
+static double value_along_factor(const fg_factor *f, double share) {
   return f->lowest + (f->highest - f->lowest) * share;
 }
 
@@ -53,8 +53,8 @@ static void sample(slice *s) {
   double range[2] = {INFINITY, -INFINITY};
   for (int i = 0; i <= GRID; i++)
     for (int k = 0; k <= GRID; k++) {
-      s->x[s->a] = along(s->fa, (double)k / GRID);
-      s->x[s->b] = along(s->fb, (double)i / GRID);
+      s->x[s->a] = value_along_factor(s->fa, (double)k / GRID);
+      s->x[s->b] = value_along_factor(s->fb, (double)i / GRID);
       s->value[i][k] = fg_surface_value(&s->e->surface, s->x);
       fg_range_add(range, s->value[i][k]);
     }
@@ -63,11 +63,11 @@ static void sample(slice *s) {
 }
 
 static double real_a(const slice *s, double k) {
-  return fg_factor_real(s->fa, along(s->fa, k / GRID));
+  return fg_factor_real(s->fa, value_along_factor(s->fa, k / GRID));
 }
 
 static double real_b(const slice *s, double i) {
-  return fg_factor_real(s->fb, along(s->fb, i / GRID));
+  return fg_factor_real(s->fb, value_along_factor(s->fb, i / GRID));
 }
 
 /* Bands between the contour levels, from pale to blue: a cell is cut along its levels. */
@@ -152,8 +152,8 @@ static void put_bands(const fg_plot *at, const slice *s) {
 static bool is_inside(const slice *s, double k, double i) {
   double x[FG_SURFACE_FACTORS];
   memcpy(x, s->x, sizeof x);
-  x[s->a] = along(s->fa, k / GRID);
-  x[s->b] = along(s->fb, i / GRID);
+  x[s->a] = value_along_factor(s->fa, k / GRID);
+  x[s->b] = value_along_factor(s->fb, i / GRID);
   return fg_region_contains(&s->e->region, x, 1e-9);
 }
 
@@ -208,7 +208,7 @@ static void put_outside(const fg_plot *at, const slice *s) {
 
 /* Draws the level in a cell: it crosses the sides at two points, or at four at a saddle (paired
  * as met). */
-static void put_cell(const fg_plot *at, const slice *s, int i, int k, double level) {
+static void put_contour_cell(const fg_plot *at, const slice *s, int i, int k, double level) {
   const double corner[4][3] = {{k, i, s->value[i][k]},
                                {k + 1, i, s->value[i][k + 1]},
                                {k + 1, i + 1, s->value[i + 1][k + 1]},
@@ -234,7 +234,7 @@ static bool is_free(const fg_plot *at, const places *taken, double x, double y) 
   return true;
 }
 
-static void take_place(places *taken, double x, double y, double wide) {
+static void occupy_place(places *taken, double x, double y, double wide) {
   if (taken->count == PLACES_MAX) return;
   taken->x[taken->count] = x;
   taken->y[taken->count] = y;
@@ -252,7 +252,7 @@ static void put_label(const fg_plot *at, const slice *s, double level, places *t
       if ((here < level) == (next < level)) continue;
       double x = fg_plot_x(at, real_a(s, k - 0.5)), y = fg_plot_y(at, real_b(s, i + 0.5));
       if (!is_free(at, taken, x, y)) continue;
-      take_place(taken, x, y, LABEL_WIDE);
+      occupy_place(taken, x, y, LABEL_WIDE);
       fprintf(at->out, "<text class=\"x level\" x=\"%.1f\" y=\"%.1f\">%.4g</text>\n", x, y + 4,
               level);
       return;
@@ -266,26 +266,26 @@ static void put_lines(const fg_plot *at, const slice *s, places *taken) {
     fputs("<path class=\"contour\" d=\"M0 0", at->out);
     for (int i = 0; i < GRID; i++)
       for (int k = 0; k < GRID; k++)
-        put_cell(at, s, i, k, level);
+        put_contour_cell(at, s, i, k, level);
     fputs("\"/>\n", at->out);
     put_label(at, s, level, taken);
   }
 }
 
 /* Adds the places that words must leave free. */
-static void take_runs(const fg_plot *at, const slice *s, places *taken) {
+static void occupy_runs(const fg_plot *at, const slice *s, places *taken) {
   const fg_experiment *e = s->e;
   size_t variables = e->model.formula.variables;
   for (size_t i = 0; i < e->regression.rows; i++)
-    take_place(taken,
-               fg_plot_x(at, fg_factor_real(s->fa, e->setting[i * variables + s->fa->variable])),
-               fg_plot_y(at, fg_factor_real(s->fb, e->setting[i * variables + s->fb->variable])),
-               LABEL_WIDE / 2 + 8);
-  take_place(taken, fg_plot_x(at, fg_factor_real(s->fa, best_of(e)->x[s->a])),
-             fg_plot_y(at, fg_factor_real(s->fb, best_of(e)->x[s->b])), LABEL_WIDE / 2 + 10);
+    occupy_place(taken,
+                 fg_plot_x(at, fg_factor_real(s->fa, e->setting[i * variables + s->fa->variable])),
+                 fg_plot_y(at, fg_factor_real(s->fb, e->setting[i * variables + s->fb->variable])),
+                 LABEL_WIDE / 2 + 8);
+  occupy_place(taken, fg_plot_x(at, fg_factor_real(s->fa, best_of(e)->x[s->a])),
+               fg_plot_y(at, fg_factor_real(s->fb, best_of(e)->x[s->b])), LABEL_WIDE / 2 + 10);
 }
 
-static void put_runs(const fg_plot *at, const slice *s) {
+static void put_run_marks(const fg_plot *at, const slice *s) {
   const fg_experiment *e = s->e;
   size_t variables = e->model.formula.variables, step = e->regression.rows / POINTS_SHOWN + 1;
   for (size_t i = 0; i < e->regression.rows; i += step)
@@ -315,11 +315,11 @@ static void put_contour(FILE *out, const fg_experiment *e, size_t a, size_t b) {
   fg_plot_x_numbers(&at);
   fg_plot_x_title(&at, name_a);
   places taken = {.count = 0};
-  take_runs(&at, &s, &taken);
+  occupy_runs(&at, &s, &taken);
   put_bands(&at, &s);
   put_outside(&at, &s);
   put_lines(&at, &s, &taken);
-  put_runs(&at, &s);
+  put_run_marks(&at, &s);
   fg_axes_end(&at);
 }
 

@@ -227,7 +227,7 @@ static void put_split_plot(fg_json *json, const fg_experiment *e) {
   fg_json_object_end(json);
 }
 
-static void put_point(fg_json *json, const fg_experiment *e, const double *x) {
+static void put_doe_point(fg_json *json, const fg_experiment *e, const double *x) {
   double real[FG_SURFACE_FACTORS];
   for (size_t k = 0; k < e->surface.factors; k++)
     real[k] = fg_factor_real(fg_surface_factor(e, k), x[k]);
@@ -255,7 +255,7 @@ static void put_stationary(fg_json *json, const fg_experiment *e) {
     fg_json_numbers(json, NULL, s->eigenvector[k], s->factors);
   fg_json_array_end(json);
   if (!fg_doe_json_begin_part(json, "stationary", s->has_stationary)) return;
-  put_point(json, e, s->stationary);
+  put_doe_point(json, e, s->stationary);
   fg_json_bool(json, "inside_region", e->stationary_inside);
   put_prediction(json, &e->stationary);
   fg_json_object_end(json);
@@ -278,7 +278,7 @@ static void put_optimum(fg_json *json, const fg_experiment *e) {
   for (size_t i = 0; i < e->constraints; i++)
     fg_json_string(json, NULL, e->constraint[i]);
   fg_json_array_end(json);
-  put_point(json, e, e->optimum.x);
+  put_doe_point(json, e, e->optimum.x);
   put_levels(json, e);
   fg_json_bool(json, "on_border", e->optimum.on_border);
   put_prediction(json, &e->optimum.prediction);
@@ -292,7 +292,7 @@ static void put_rounded(fg_json *json, const fg_experiment *e) {
   for (size_t k = 0; k < e->surface.factors; k++)
     fg_json_number(json, NULL, e->step[k] > 0 ? e->step[k] : NAN);
   fg_json_array_end(json);
-  put_point(json, e, e->rounded.x);
+  put_doe_point(json, e, e->rounded.x);
   fg_json_bool(json, "on_border", e->rounded.on_border);
   put_prediction(json, &e->rounded.prediction);
   fg_json_object_end(json);
@@ -303,7 +303,7 @@ static void put_ridge(fg_json *json, const fg_experiment *e) {
   for (size_t i = 0; i < FG_RIDGE_POINTS && e->ridge[FG_RIDGE_POINTS - 1].radius > 0; i++) {
     fg_json_object(json, NULL);
     fg_json_number(json, "radius", e->ridge[i].radius);
-    put_point(json, e, e->ridge[i].x);
+    put_doe_point(json, e, e->ridge[i].x);
     fg_json_bool(json, "inside_region", e->ridge[i].inside);
     put_prediction(json, &e->ridge[i].prediction);
     fg_json_object_end(json);
@@ -365,7 +365,7 @@ static void put_asked(fg_json *json, const fg_experiment *e) {
   fg_json_array_end(json);
 }
 
-static void put_runs(fg_json *json, const fg_experiment_report *report) {
+static void put_doe_runs(fg_json *json, const fg_experiment_report *report) {
   const fg_experiment *e = report->experiment;
   const fg_regression *r = &e->regression;
   fg_json_array(json, "runs");
@@ -433,7 +433,7 @@ static fg_status put_report(fg_context *ctx, fg_json *json, const fg_experiment_
   FG_TRY(fg_doe_json_order(ctx, json, report));
   put_surface(json, e);
   put_asked(json, e);
-  put_runs(json, report);
+  put_doe_runs(json, report);
   return FG_OK;
 }
 

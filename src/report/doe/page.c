@@ -15,7 +15,7 @@
 
 enum { RUNS_SHOWN = 200 };
 
-static void put_cell(FILE *out, double value, int digits) {
+static void put_doe_cell(FILE *out, double value, int digits) {
   if (isfinite(value))
     fprintf(out, "<td>%s%.*g</td>", value < 0 ? "−" : "", digits, fabs(value));
   else
@@ -48,7 +48,7 @@ static void put_list(FILE *out, const char *style, char *const *text, size_t cou
   fputs("</ul>\n", out);
 }
 
-static void put_tiles(FILE *out, const fg_experiment *e) {
+static void put_doe_tiles(FILE *out, const fg_experiment *e) {
   const fg_regression *r = &e->regression;
   char value[64], small[96];
   fputs("<dl class=\"tiles\">\n", out);
@@ -77,15 +77,15 @@ static void put_coefficients(FILE *out, const fg_experiment *e) {
     bool on = fg_experiment_of_interest(e, j) && fg_experiment_p_value(e, j) < 1 - e->confidence;
     fputs(on ? "<tr class=\"on\">" : "<tr>", out);
     put_name_cell(out, c->name);
-    put_cell(out, c->estimate, 5);
-    put_cell(out, effect->relative_pct, 4);
-    put_cell(out, effect->standard_error, 4);
-    put_cell(out, effect->u_measurement, 3);
-    put_cell(out, effect->t, 4);
+    put_doe_cell(out, c->estimate, 5);
+    put_doe_cell(out, effect->relative_pct, 4);
+    put_doe_cell(out, effect->standard_error, 4);
+    put_doe_cell(out, effect->u_measurement, 3);
+    put_doe_cell(out, effect->t, 4);
     put_p_cell(out, fg_experiment_p_value(e, j));
-    put_cell(out, effect->low, 4);
-    put_cell(out, effect->high, 4);
-    put_cell(out, c->vif, 4);
+    put_doe_cell(out, effect->low, 4);
+    put_doe_cell(out, effect->high, 4);
+    put_doe_cell(out, c->vif, 4);
     fputs("</tr>\n", out);
   }
   fputs(
@@ -97,11 +97,11 @@ static void put_coefficients(FILE *out, const fg_experiment *e) {
 static void put_anova_row(FILE *out, const fg_anova_row *row, double partial, double partial_p) {
   put_name_cell(out, row->name);
   fprintf(out, "<td>%zu</td>", row->dof);
-  put_cell(out, row->sum_of_squares, 5);
-  put_cell(out, row->mean_square, 5);
-  put_cell(out, row->f, 4);
+  put_doe_cell(out, row->sum_of_squares, 5);
+  put_doe_cell(out, row->mean_square, 5);
+  put_doe_cell(out, row->f, 4);
   put_p_cell(out, row->p_value);
-  put_cell(out, partial, 5);
+  put_doe_cell(out, partial, 5);
   put_p_cell(out, partial_p);
   fputs("</tr>\n", out);
 }
@@ -137,8 +137,8 @@ static void put_mixed(FILE *out, const fg_experiment *e) {
     fputs(row->p_value < 1 - e->confidence ? "<tr class=\"on\">" : "<tr>", out);
     put_name_cell(out, row->name);
     fprintf(out, "<td>%zu</td>", row->dof);
-    put_cell(out, s->term[t].error_dof, 4);
-    put_cell(out, row->f, 4);
+    put_doe_cell(out, s->term[t].error_dof, 4);
+    put_doe_cell(out, row->f, 4);
     put_p_cell(out, row->p_value);
     fputs("</tr>\n", out);
   }
@@ -172,7 +172,7 @@ static void put_anova(FILE *out, const fg_experiment *e) {
         out);
 }
 
-static void put_runs(FILE *out, const fg_experiment_report *report) {
+static void put_doe_runs(FILE *out, const fg_experiment_report *report) {
   const fg_experiment *e = report->experiment;
   const fg_regression *r = &e->regression;
   fputs("<h2>Runs</h2>\n<div class=\"scroll\"><table><thead><tr><th>row</th>", out);
@@ -189,17 +189,18 @@ static void put_runs(FILE *out, const fg_experiment_report *report) {
   for (size_t i = 0; i < r->rows && i < RUNS_SHOWN; i++) {
     fprintf(out, "<tr><td>%zu</td>", report->row ? report->row[i] : i + 1);
     for (size_t k = 0; k < e->factors; k++)
-      put_cell(out,
-               fg_factor_real(&e->factor[k],
-                              e->setting[i * e->model.formula.variables + e->factor[k].variable]),
-               6);
-    put_cell(out, r->fitted[i] + r->residual[i], 5);
-    put_cell(out, e->u ? e->u[i] : NAN, 2);
-    put_cell(out, r->fitted[i], 5);
-    put_cell(out, r->residual_dof ? r->residual[i] : 0, 3);
-    put_cell(out, r->external[i], 3);
-    put_cell(out, r->leverage[i], 3);
-    put_cell(out, r->cook[i], 3);
+      put_doe_cell(
+          out,
+          fg_factor_real(&e->factor[k],
+                         e->setting[i * e->model.formula.variables + e->factor[k].variable]),
+          6);
+    put_doe_cell(out, r->fitted[i] + r->residual[i], 5);
+    put_doe_cell(out, e->u ? e->u[i] : NAN, 2);
+    put_doe_cell(out, r->fitted[i], 5);
+    put_doe_cell(out, r->residual_dof ? r->residual[i] : 0, 3);
+    put_doe_cell(out, r->external[i], 3);
+    put_doe_cell(out, r->leverage[i], 3);
+    put_doe_cell(out, r->cook[i], 3);
     fputs("</tr>\n", out);
   }
   fputs("</tbody></table></div>\n", out);
@@ -301,7 +302,7 @@ static fg_status put_page(fg_context *ctx, FILE *out, const fg_experiment_report
   fg_html_text(out, e->formula);
   fputs("</p></header>\n", out);
   fg_doe_put_answer(out, e, conclusions);
-  put_tiles(out, e);
+  put_doe_tiles(out, e);
   fg_doe_put_conclusions(out, conclusions);
   put_list(out, "flags", e->note, e->notes);
   if (report->plan_note) {
@@ -312,7 +313,7 @@ static fg_status put_page(fg_context *ctx, FILE *out, const fg_experiment_report
   FG_TRY(put_plots(ctx, out, report));
   put_anova(out, e);
   put_coefficients(out, e);
-  put_runs(out, report);
+  put_doe_runs(out, report);
   FG_TRY(put_facts(ctx, out, report, response));
   fputs("</section>\n", out);
   fg_html_end(out);

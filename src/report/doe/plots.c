@@ -38,7 +38,7 @@ typedef struct level_means {
   bool too_many;
 } level_means;
 
-static void find_means(const fg_experiment *e, size_t variable, level_means *m) {
+static void find_level_means(const fg_experiment *e, size_t variable, level_means *m) {
   size_t variables = e->model.formula.variables;
   *m = (level_means){0};
   for (size_t i = 0; i < e->regression.rows; i++) {
@@ -103,12 +103,12 @@ void fg_doe_plot_main_effects(FILE *out, const fg_experiment *e) {
   double y[2] = {INFINITY, -INFINITY};
   level_means m;
   for (size_t v = 0; v < e->model.formula.variables; v++) {
-    find_means(e, v, &m);
+    find_level_means(e, v, &m);
     for (size_t k = 0; !m.too_many && k < m.count; k++)
       fg_range_add(y, m.mean[k]);
   }
   for (size_t v = 0; v < e->model.formula.variables; v++) {
-    find_means(e, v, &m);
+    find_level_means(e, v, &m);
     sort_means(&m);
     if (!m.too_many) put_means(out, e, v, &m, y);
   }

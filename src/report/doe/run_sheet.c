@@ -18,7 +18,7 @@ typedef struct mean {
   size_t count;
 } mean;
 
-static void add(mean *m, double value, double u) {
+static void add_to_mean(mean *m, double value, double u) {
   if (!isfinite(value)) return;
   m->sum += value;
   m->squares += u * u;
@@ -52,7 +52,7 @@ static fg_status find_quantity(fg_context *ctx, measuring *m) {
 }
 
 static void add_object(const measuring *m, const void *object, mean *parts) {
-  add(parts, fg_quantity_value(m->row, object), fg_quantity_uncertainty(m->row, object));
+  add_to_mean(parts, fg_quantity_value(m->row, object), fg_quantity_uncertainty(m->row, object));
 }
 
 /* Mean over the bumps (or beams, or discs) of one foil; both kinds of uncertainty. */
@@ -60,7 +60,7 @@ static void add_parts(const measuring *m, const mean *parts, mean *foils) {
   if (!parts->count) return;
   double n = (double)parts->count;
   double u = m->row->uses & FG_QUANTITY_IS_OWN ? sqrt(parts->squares) / n : parts->common / n;
-  add(foils, parts->sum / n, u);
+  add_to_mean(foils, parts->sum / n, u);
 }
 
 static void read_measurement(const measuring *m, const fg_measurement *measurement,
@@ -92,17 +92,17 @@ static double mean_move(const measuring *m, const fg_measurement *measurement, s
     const fg_foil *foil = &measurement->foils[i];
     mean parts = {0};
     if (m->owner == FG_QUANTITY_OF_FOIL && isfinite(fg_quantity_value(m->row, foil)))
-      add(&parts, foil->calibrated.move[source][at], 0);
+      add_to_mean(&parts, foil->calibrated.move[source][at], 0);
     for (size_t k = 0; k < fg_part_count(foil, m->owner); k++) {
       const fg_foil_part part = fg_part_at(foil, m->owner, k);
       if (isfinite(fg_quantity_value(m->row, part.object)))
-        add(&parts, part.calibrated->move[source][at], 0);
+        add_to_mean(&parts, part.calibrated->move[source][at], 0);
     }
-    if (parts.count) add(&foils, parts.sum / (double)parts.count, 0);
+    if (parts.count) add_to_mean(&foils, parts.sum / (double)parts.count, 0);
   }
   for (size_t i = 0; m->owner == FG_QUANTITY_OF_DISC && i < measurement->disc_count; i++)
-    add(&discs, measurement->discs[i].calibrated.move[source][at], 0);
-  if (discs.count) add(&foils, discs.sum / (double)discs.count, 0);
+    add_to_mean(&discs, measurement->discs[i].calibrated.move[source][at], 0);
+  if (discs.count) add_to_mean(&foils, discs.sum / (double)discs.count, 0);
   return foils.count ? foils.sum / (double)foils.count : 0;
 }
 
@@ -153,7 +153,7 @@ static fg_status scan_path(fg_context *ctx, const measuring *m, const char *name
 }
 
 /* Takes over `path`. */
-static fg_status add_scan(fg_context *ctx, measuring *m, size_t run, char *path) {
+static fg_status add_run_scan(fg_context *ctx, measuring *m, size_t run, char *path) {
   fg_run_sheet *out = m->out;
   fg_status status = fg_memory_reserve(ctx, out->scans + 1, sizeof *out->scan, &m->scan_capacity,
                                        (void **)&out->scan);
@@ -174,7 +174,7 @@ static fg_status list_run(fg_context *ctx, measuring *m, size_t run, const char 
       end--;
     char *path = NULL;
     if (end) FG_TRY(scan_path(ctx, m, at, end, &path));
-    if (end) FG_TRY(add_scan(ctx, m, run, path));
+    if (end) FG_TRY(add_run_scan(ctx, m, run, path));
     at += length;
   }
   return FG_OK;
@@ -204,7 +204,7 @@ static double level_calibration(const fg_run_sheet *sheet) {
   for (size_t s = 0; s < FG_CALIBRATION_SOURCES; s++) {
     mean all = {0};
     for (size_t i = 0; i < sheet->scans; i++)
-      if (!sheet->scan[i].error) add(&all, sheet->scan[i].move[s], 0);
+      if (!sheet->scan[i].error) add_to_mean(&all, sheet->scan[i].move[s], 0);
     if (all.count) squares += pow(all.sum / (double)all.count, 2);
   }
   return sqrt(squares);
@@ -219,7 +219,7 @@ static fg_status measure_runs(fg_context *ctx, measuring *m) {
     for (; i < out->scans && out->scan[i].run == run; i++) {
       FG_TRY(measure_scan(ctx, m, &out->scan[i]));
       out->failed += out->scan[i].error != NULL;
-      add(&scans, out->scan[i].value, out->scan[i].u);
+      add_to_mean(&scans, out->scan[i].value, out->scan[i].u);
     }
     if (!scans.count) continue;
     m->value[kept] = scans.sum / (double)scans.count;

@@ -5,10 +5,10 @@
 
 #include "core/file.h"
 #include "foilgauge/words.h"
-#include "page/wrapped.h"
 #include "report/doe/words.h"
+#include "report/value_words.h"
 
-static void put_number(FILE *out, int width, double value) {
+static void put_doe_number(FILE *out, int width, double value) {
   if (isfinite(value))
     fprintf(out, "%*.*g", width, 4, value);
   else
@@ -36,22 +36,22 @@ static void put_coefficients(FILE *out, const fg_experiment *e) {
       fputs("  cannot be told from the ones above\n", out);
       continue;
     }
-    put_number(out, 11, c->estimate);
-    put_number(out, 9, effect->relative_pct);
-    put_number(out, 10, effect->standard_error);
-    put_number(out, 8, effect->t);
+    put_doe_number(out, 11, c->estimate);
+    put_doe_number(out, 9, effect->relative_pct);
+    put_doe_number(out, 10, effect->standard_error);
+    put_doe_number(out, 8, effect->t);
     put_p(out, fg_experiment_p_value(e, j));
-    put_number(out, 11, effect->low);
-    put_number(out, 10, effect->high);
+    put_doe_number(out, 11, effect->low);
+    put_doe_number(out, 10, effect->high);
     fputc('\n', out);
   }
 }
 
 static void put_anova_row(FILE *out, const fg_anova_row *row) {
   fprintf(out, "%-30s%6zu", row->name, row->dof);
-  put_number(out, 12, row->sum_of_squares);
-  put_number(out, 12, row->mean_square);
-  put_number(out, 10, row->f);
+  put_doe_number(out, 12, row->sum_of_squares);
+  put_doe_number(out, 12, row->mean_square);
+  put_doe_number(out, 10, row->f);
   put_p(out, row->p_value);
   fputc('\n', out);
 }
@@ -69,15 +69,15 @@ static void put_mixed(FILE *out, const fg_split_plot *s) {
   for (size_t t = 0; t < s->terms; t++) {
     const fg_anova_row *row = &s->term[t].row;
     fprintf(out, "%-30s%6zu", row->name, row->dof);
-    put_number(out, 12, s->term[t].error_dof);
-    put_number(out, 10, row->f);
+    put_doe_number(out, 12, s->term[t].error_dof);
+    put_doe_number(out, 10, row->f);
     put_p(out, row->p_value);
     fputc('\n', out);
   }
   fprintf(out, "standard deviation of whole plots");
-  put_number(out, 12, sqrt(s->plot_variance));
+  put_doe_number(out, 12, sqrt(s->plot_variance));
   fprintf(out, ", of runs within them");
-  put_number(out, 12, sqrt(s->run_variance));
+  put_doe_number(out, 12, sqrt(s->run_variance));
   fputc('\n', out);
 }
 
@@ -111,15 +111,15 @@ static void put_anova(FILE *out, const fg_experiment *e) {
 static void put_quality(FILE *out, const fg_experiment *e) {
   const fg_regression *r = &e->regression;
   fprintf(out, "\nR² %.4f, adjusted ", r->r2);
-  put_number(out, 0, r->adjusted_r2);
+  put_doe_number(out, 0, r->adjusted_r2);
   fputs(", predicted ", out);
-  put_number(out, 0, r->predicted_r2);
+  put_doe_number(out, 0, r->predicted_r2);
   fputs("; adequate precision ", out);
-  put_number(out, 0, r->adequate_precision);
+  put_doe_number(out, 0, r->adequate_precision);
   fprintf(out, "; condition number %.4g\n", r->condition_number);
 }
 
-static void put_head(FILE *out, const fg_experiment_report *report, const char *response) {
+static void put_doe_head(FILE *out, const fg_experiment_report *report, const char *response) {
   const fg_experiment *e = report->experiment;
   fprintf(out, "%s: %zu runs\nresponse: %s\nmodel: %s\n", report->path, e->regression.rows,
           response, e->formula);
@@ -137,7 +137,7 @@ fg_status fg_experiment_write_table(fg_context *ctx, const fg_experiment_report 
   fg_status status = FG_OK;
   FG_TRY_EXIT(fg_experiment_response_words(ctx, e, &response));
   FG_TRY_EXIT(fg_experiment_conclusions(ctx, report, &conclusions));
-  put_head(out, report, response);
+  put_doe_head(out, report, response);
   put_coefficients(out, e);
   put_anova(out, e);
   put_quality(out, e);

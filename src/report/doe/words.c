@@ -47,7 +47,7 @@ fg_status fg_experiment_response_words(fg_context *ctx, const fg_experiment *e, 
                        e->sign_chosen ? " (as in the thesis; --sign as-is keeps the sign)" : "");
 }
 
-fg_status fg_sentences_say(fg_context *ctx, fg_sentences *s, const char *format, ...) {
+fg_status fg_sentences_add(fg_context *ctx, fg_sentences *s, const char *format, ...) {
   char text[4096];
   va_list arguments;
   va_start(arguments, format);
@@ -67,7 +67,8 @@ void fg_sentences_free(fg_sentences *s) {
   *s = (fg_sentences){0};
 }
 
-static fg_status say_effect(fg_context *ctx, const fg_experiment *e, size_t j, fg_sentences *s) {
+static fg_status conclude_effect(fg_context *ctx, const fg_experiment *e, size_t j,
+                                 fg_sentences *s) {
   const fg_coefficient *c = &e->regression.coefficient[j];
   const fg_experiment_effect *effect = &e->effect[j];
   const fg_factor *factor = fg_experiment_main_factor(e, j);
@@ -86,15 +87,15 @@ static fg_status say_effect(fg_context *ctx, const fg_experiment *e, size_t j, f
     fg_value_with_unit(factor->name, fg_factor_real(factor, -1), 6, from, sizeof from);
     fg_value_with_unit(factor->name, fg_factor_real(factor, 1), 6, to, sizeof to);
     fg_value_with_unit(e->response, fabs(change), 3, by, sizeof by);
-    return fg_sentences_say(
+    return fg_sentences_add(
         ctx, s, "%s matters: from %s to %s it %s the response by %s%s (p %s%s).", name, from, to,
         change < 0 ? "lowers" : "raises", by, interval, equals, p_value);
   }
-  return fg_sentences_say(ctx, s, "%s matters: coefficient %.4g (p %s%s).", c->name, c->estimate,
+  return fg_sentences_add(ctx, s, "%s matters: coefficient %.4g (p %s%s).", c->name, c->estimate,
                           equals, p_value);
 }
 
-static fg_status say_effects(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
+static fg_status conclude_effects(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
   size_t found = 0, judged = 0;
   char rest[600] = "";
   for (size_t j = 0; j < e->regression.columns; j++) {
@@ -102,7 +103,7 @@ static fg_status say_effects(fg_context *ctx, const fg_experiment *e, fg_sentenc
     judged++;
     if (fg_experiment_p_value(e, j) < 1 - e->confidence) {
       found++;
-      FG_TRY(say_effect(ctx, e, j, s));
+      FG_TRY(conclude_effect(ctx, e, j, s));
     } else {
       size_t used = strlen(rest);
       fg_text_clip(rest + used, sizeof rest - used, "%s%s", used ? ", " : "",
@@ -110,23 +111,23 @@ static fg_status say_effects(fg_context *ctx, const fg_experiment *e, fg_sentenc
     }
   }
   if (!judged)
-    return fg_sentences_say(
+    return fg_sentences_add(
         ctx, s,
         "No effect can be judged: there is no error to compare it with. Repeat runs "
         "or leave terms out.");
   if (!found)
-    return fg_sentences_say(ctx, s, "No effect can be told from the scatter at %g %%: %s.",
+    return fg_sentences_add(ctx, s, "No effect can be told from the scatter at %g %%: %s.",
                             100 * e->confidence, rest);
   if (*rest)
-    return fg_sentences_say(ctx, s, "Not told from the scatter at %g %%: %s.", 100 * e->confidence,
+    return fg_sentences_add(ctx, s, "Not told from the scatter at %g %%: %s.", 100 * e->confidence,
                             rest);
   return FG_OK;
 }
 
-static fg_status say_quality(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
+static fg_status conclude_quality(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
   const fg_regression *r = &e->regression;
   if (!r->residual_dof) return FG_OK;
-  FG_TRY(fg_sentences_say(
+  FG_TRY(fg_sentences_add(
       ctx, s,
       "The model explains %.0f %% of the variation (adjusted %.0f %%) and would predict "
       "%.0f %% of it in runs that it has not seen. The runs scatter about it with a standard "
@@ -134,19 +135,19 @@ static fg_status say_quality(fg_context *ctx, const fg_experiment *e, fg_sentenc
       100 * r->r2, 100 * r->adjusted_r2, 100 * fmax(0, r->predicted_r2), r->residual_sd,
       r->residual_dof, fg_plural(r->residual_dof)));
   if (e->has_split_plot && isfinite(e->split_plot.plot_variance))
-    FG_TRY(fg_sentences_say(
+    FG_TRY(fg_sentences_add(
         ctx, s,
         "Of this scatter, whole plots differ by a standard deviation of %.3g, runs within "
         "them by %.3g.",
         sqrt(e->split_plot.plot_variance), sqrt(e->split_plot.run_variance)));
   if (fg_experiment_lacks_fit(e)) {
-    if (!fg_experiment_best(e)->has_optimum) FG_TRY(fg_experiment_say_lack(ctx, e, s));
+    if (!fg_experiment_best(e)->has_optimum) FG_TRY(fg_experiment_conclude_lack(ctx, e, s));
   } else if (r->pure_dof && r->lack_dof && isfinite(r->lack_p_value) && !e->has_split_plot)
-    FG_TRY(fg_sentences_say(ctx, s,
+    FG_TRY(fg_sentences_add(ctx, s,
                             "No lack of fit shows beside the scatter of repeated runs (p = %.4f).",
                             r->lack_p_value));
   if (e->has_box_cox && (e->box_cox.low > 1 || e->box_cox.high < 1))
-    FG_TRY(fg_sentences_say(
+    FG_TRY(fg_sentences_add(
         ctx, s,
         "A power of the response would suit the model better: lambda %.2g (%.2g to %.2g); "
         "0 is the logarithm.",
@@ -165,12 +166,12 @@ static bool has_squares(const fg_experiment *e) {
 
 /* Curvature at the centre is of no known factor: squares in the model show which, or need
  * further runs first. */
-static fg_status say_curvature(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
+static fg_status conclude_curvature(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
   char p_value[16];
   if (!e->has_curvature || !isfinite(e->curvature.p_value)) return FG_OK;
   fg_p_value_text(p_value, e->curvature.p_value);
   if (e->curvature.p_value < 1 - e->confidence)
-    return fg_sentences_say(
+    return fg_sentences_add(
         ctx, s,
         "The centre runs lie off the plane of the corners (p %s%s): the response is curved; %s.",
         *p_value == '<' ? "" : "= ", p_value,
@@ -178,14 +179,14 @@ static fg_status say_curvature(fg_context *ctx, const fg_experiment *e, fg_sente
         : e->curvature.others > 0 ? "the plan has runs beyond corners and centre: squares in the "
                                     "model (x^2) tell in which factor"
                                   : "axial runs would tell in which factor");
-  return fg_sentences_say(ctx, s, "The centre runs show no curvature (p = %.4f).",
+  return fg_sentences_add(ctx, s, "The centre runs show no curvature (p = %.4f).",
                           e->curvature.p_value);
 }
 
-static fg_status say_measurement(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
+static fg_status conclude_measurement(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
   double sd = e->regression.residual_sd;
   if (!e->u || e->weight || !e->regression.residual_dof || !(sd > 0)) return FG_OK;
-  return fg_sentences_say(
+  return fg_sentences_add(
       ctx, s,
       "Measurement: standard uncertainty %.3g, %.2g %% of the variance between runs; the "
       "rest is the process.",
@@ -193,16 +194,16 @@ static fg_status say_measurement(fg_context *ctx, const fg_experiment *e, fg_sen
 }
 
 /* The error that all scans share is in no run's u. */
-static fg_status say_calibration(fg_context *ctx, const fg_experiment_report *report,
-                                 fg_sentences *s) {
+static fg_status conclude_calibration(fg_context *ctx, const fg_experiment_report *report,
+                                      fg_sentences *s) {
   if (!report->scans || !report->design) return FG_OK;
   if (!report->design->calibration.stated)
-    return fg_sentences_say(
+    return fg_sentences_add(
         ctx, s,
         "No calibration is stated: u of the runs holds statistics only, and the "
         "scanner's scale is taken for right.");
   if (!(report->u_calibration > 0)) return FG_OK;
-  return fg_sentences_say(
+  return fg_sentences_add(
       ctx, s,
       "Calibration: its error is the same in every scan, so it is in no run's u and in no effect's "
       "interval; it moves the level of all runs by up to %.2g (U = 2 u).",
@@ -214,16 +215,16 @@ fg_status fg_experiment_conclusions(fg_context *ctx, const fg_experiment_report 
   const fg_experiment *e = report->experiment;
   *s = (fg_sentences){0};
   fg_status status = FG_OK;
-  FG_TRY_EXIT(fg_experiment_say_taken(ctx, report, s));
-  FG_TRY_EXIT(fg_experiment_say_best(ctx, e, s));
-  FG_TRY_EXIT(fg_experiment_say_asked(ctx, e, s));
-  FG_TRY_EXIT(say_effects(ctx, e, s));
-  FG_TRY_EXIT(say_quality(ctx, e, s));
-  FG_TRY_EXIT(say_curvature(ctx, e, s));
-  FG_TRY_EXIT(say_measurement(ctx, e, s));
-  FG_TRY_EXIT(say_calibration(ctx, report, s));
-  FG_TRY_EXIT(fg_experiment_say_order(ctx, report, s));
-  FG_TRY_EXIT(fg_experiment_say_stationary(ctx, e, s));
+  FG_TRY_EXIT(fg_experiment_conclude_taken(ctx, report, s));
+  FG_TRY_EXIT(fg_experiment_conclude_best(ctx, e, s));
+  FG_TRY_EXIT(fg_experiment_conclude_asked(ctx, e, s));
+  FG_TRY_EXIT(conclude_effects(ctx, e, s));
+  FG_TRY_EXIT(conclude_quality(ctx, e, s));
+  FG_TRY_EXIT(conclude_curvature(ctx, e, s));
+  FG_TRY_EXIT(conclude_measurement(ctx, e, s));
+  FG_TRY_EXIT(conclude_calibration(ctx, report, s));
+  FG_TRY_EXIT(fg_experiment_conclude_order(ctx, report, s));
+  FG_TRY_EXIT(fg_experiment_conclude_stationary(ctx, e, s));
 exit:
   if (status != FG_OK) fg_sentences_free(s);
   return status;

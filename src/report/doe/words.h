@@ -18,27 +18,27 @@ typedef struct fg_sentences {
 fg_status fg_experiment_conclusions(fg_context *ctx, const fg_experiment_report *report,
                                     fg_sentences *sentences);
 void fg_sentences_free(fg_sentences *sentences);
-fg_status fg_sentences_say(fg_context *ctx, fg_sentences *sentences, const char *format, ...)
+fg_status fg_sentences_add(fg_context *ctx, fg_sentences *sentences, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
 /* True when a sentence is a command, to be shown as it is typed. */
 bool fg_sentence_is_command(const char *text);
 
 /* Add parts of the conclusions: effects taken out before the analysis; effects over the order. */
-fg_status fg_experiment_say_taken(fg_context *ctx, const fg_experiment_report *report,
-                                  fg_sentences *sentences);
-fg_status fg_experiment_say_order(fg_context *ctx, const fg_experiment_report *report,
-                                  fg_sentences *sentences);
-
-fg_status fg_experiment_say_best(fg_context *ctx, const fg_experiment *experiment,
-                                 fg_sentences *sentences);
-fg_status fg_experiment_say_stationary(fg_context *ctx, const fg_experiment *experiment,
+fg_status fg_experiment_conclude_taken(fg_context *ctx, const fg_experiment_report *report,
                                        fg_sentences *sentences);
-fg_status fg_experiment_say_lack(fg_context *ctx, const fg_experiment *experiment,
-                                 fg_sentences *sentences);
+fg_status fg_experiment_conclude_order(fg_context *ctx, const fg_experiment_report *report,
+                                       fg_sentences *sentences);
 
-fg_status fg_experiment_say_asked(fg_context *ctx, const fg_experiment *experiment,
-                                  fg_sentences *sentences);
+fg_status fg_experiment_conclude_best(fg_context *ctx, const fg_experiment *experiment,
+                                      fg_sentences *sentences);
+fg_status fg_experiment_conclude_stationary(fg_context *ctx, const fg_experiment *experiment,
+                                            fg_sentences *sentences);
+fg_status fg_experiment_conclude_lack(fg_context *ctx, const fg_experiment *experiment,
+                                      fg_sentences *sentences);
+
+fg_status fg_experiment_conclude_asked(fg_context *ctx, const fg_experiment *experiment,
+                                       fg_sentences *sentences);
 
 /* Returns the command of the loop on tables for the same data and model. The caller frees it. */
 fg_status fg_experiment_loop_command(fg_context *ctx, const fg_experiment_report *report,

@@ -44,8 +44,8 @@ static void put_better(const fg_experiment *e, const fg_asked *asked, char *text
   }
 }
 
-static fg_status say_one(fg_context *ctx, const fg_experiment *e, const fg_asked *asked,
-                         fg_sentences *s) {
+static fg_status conclude_one_asked(fg_context *ctx, const fg_experiment *e, const fg_asked *asked,
+                                    fg_sentences *s) {
   const fg_prediction *p = &asked->prediction;
   const double numbers[5] = {p->mean, p->low, p->high, p->run_low, p->run_high};
   char setting[700], n[5][80], interval[400] = "", better[900];
@@ -56,7 +56,7 @@ static fg_status say_one(fg_context *ctx, const fg_experiment *e, const fg_asked
                  100 * e->confidence, n[1], n[2], n[3], n[4]);
   put_setting(e, asked, setting, sizeof setting);
   put_better(e, asked, better, sizeof better);
-  return fg_sentences_say(
+  return fg_sentences_add(
       ctx, s, "Asked for: at %s the model as given expects %s%s. %s%s%s%s", setting, n[0], interval,
       *better ? "That is not the best along each factor by itself: "
               : "It is the best along every factor",
@@ -64,8 +64,8 @@ static fg_status say_one(fg_context *ctx, const fg_experiment *e, const fg_asked
       asked->inside ? "" : " It lies beyond the runs: what is said of it is extrapolated.");
 }
 
-fg_status fg_experiment_say_asked(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
+fg_status fg_experiment_conclude_asked(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
   for (size_t i = 0; i < e->askeds; i++)
-    FG_TRY(say_one(ctx, e, &e->asked[i], s));
+    FG_TRY(conclude_one_asked(ctx, e, &e->asked[i], s));
   return FG_OK;
 }

@@ -14,7 +14,7 @@ static const fg_idle_factor *idle_of(const fg_experiment *e, size_t variable) {
 }
 
 /* The factor of the experiment that holds the variable, or NULL: it is of words. */
-static const fg_factor *factor_of(const fg_experiment *e, size_t variable) {
+static const fg_factor *find_variable_factor(const fg_experiment *e, size_t variable) {
   for (size_t f = 0; f < e->factors; f++)
     if (e->factor[f].variable == variable) return &e->factor[f];
   return NULL;
@@ -38,7 +38,8 @@ static void put_variable(const fg_experiment *best, const double *x, const char 
   for (size_t k = 0; k < best->surface.factors; k++) {
     if (best->surface.variable[k] != v) continue;
     fg_name_words(column, name, sizeof name);
-    fg_value_with_unit(column, fg_factor_real(factor_of(best, v), x[k]), 5, value, sizeof value);
+    fg_value_with_unit(column, fg_factor_real(find_variable_factor(best, v), x[k]), 5, value,
+                       sizeof value);
     fg_text_clip(text, size, "%s %s", name, value);
     return;
   }
@@ -78,35 +79,36 @@ void fg_experiment_setting_words(const fg_experiment *e, const double *x, char *
   put_setting(e, x, true, text, size);
 }
 
-fg_status fg_experiment_say_stationary(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
+fg_status fg_experiment_conclude_stationary(fg_context *ctx, const fg_experiment *e,
+                                            fg_sentences *s) {
   const fg_experiment *best = fg_experiment_best(e);
   char setting[700], value[80];
   if (!best->has_optimum || !best->surface.has_stationary || e->all_idle) return FG_OK;
   put_setting(e, best->surface.stationary, false, setting, sizeof setting);
   fg_value_with_unit(e->response, best->surface.stationary_value, 4, value, sizeof value);
-  return fg_sentences_say(ctx, s, "The surface is stationary at %s: a %s of %s, %s the region.",
+  return fg_sentences_add(ctx, s, "The surface is stationary at %s: a %s of %s, %s the region.",
                           setting, fg_surface_kind_word(best->surface.kind), value,
                           best->stationary_inside ? "inside" : "outside");
 }
 
 /* "Expected response 3.45 (95 % interval ...); one confirmation run should fall between ...". */
-static fg_status say_expected(fg_context *ctx, const fg_experiment *e, const char *what,
-                              const char *setting, const fg_prediction *p, fg_sentences *s) {
+static fg_status conclude_expected(fg_context *ctx, const fg_experiment *e, const char *what,
+                                   const char *setting, const fg_prediction *p, fg_sentences *s) {
   const double numbers[5] = {p->mean, p->low, p->high, p->run_low, p->run_high};
   char n[5][80];
   for (int i = 0; i < 5; i++)
     fg_value_with_unit(e->response, numbers[i], i ? 3 : 4, n[i], sizeof n[i]);
   if (!isfinite(p->low))
-    return fg_sentences_say(ctx, s, "%s (%s): %s. Expected response %s.", what,
+    return fg_sentences_add(ctx, s, "%s (%s): %s. Expected response %s.", what,
                             fg_goal_word(e->goal), setting, n[0]);
-  return fg_sentences_say(
+  return fg_sentences_add(
       ctx, s,
       "%s (%s): %s. Expected response %s (%g %% interval %s to %s); one confirmation run "
       "should fall between %s and %s.",
       what, fg_goal_word(e->goal), setting, n[0], 100 * e->confidence, n[1], n[2], n[3], n[4]);
 }
 
-static fg_status say_rounded(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
+static fg_status conclude_rounded(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
   const fg_experiment *best = fg_experiment_best(e);
   char setting[700], what[700] = "Best setting that can be made, in steps of ";
   const char *separator = "";
@@ -120,11 +122,11 @@ static fg_status say_rounded(fg_context *ctx, const fg_experiment *e, fg_sentenc
     separator = " and ";
   }
   put_setting(e, best->rounded.x, true, setting, sizeof setting);
-  return say_expected(ctx, e, what, setting, &best->rounded.prediction, s);
+  return conclude_expected(ctx, e, what, setting, &best->rounded.prediction, s);
 }
 
 /* The best setting of the model as given, with the factors that are only noise. */
-static fg_status say_as_given(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
+static fg_status conclude_as_given(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
   const fg_optimum *best = fg_experiment_best_point(e);
   char setting[700] = "", value[80];
   for (size_t v = 0; v < e->model.formula.variables; v++) {
@@ -134,27 +136,27 @@ static fg_status say_as_given(fg_context *ctx, const fg_experiment *e, fg_senten
     if (*one) fg_text_clip(setting + used, sizeof setting - used, "%s%s", used ? ", " : "", one);
   }
   fg_value_with_unit(e->response, best->prediction.mean, 4, value, sizeof value);
-  return fg_sentences_say(ctx, s,
+  return fg_sentences_add(ctx, s,
                           "The model as given, scatter and all, would lead to %s (%s): a setting "
                           "to test, not a finding.",
                           setting, value);
 }
 
-static fg_status say_no_best(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
+static fg_status conclude_no_best(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
   char setting[700], p_value[40] = "";
   if (isfinite(e->regression.model_p_value))
     fg_text_clip(p_value, sizeof p_value, " (all together: p = %.3f)", e->regression.model_p_value);
   put_setting(e, NULL, true, setting, sizeof setting);
-  FG_TRY(fg_sentences_say(
+  FG_TRY(fg_sentences_add(
       ctx, s, "No best setting (%s): %s. No factor can be told from the scatter at %g %%%s.",
       fg_goal_word(e->goal), setting, 100 * e->confidence, p_value));
-  return say_as_given(ctx, e, s);
+  return conclude_as_given(ctx, e, s);
 }
 
 /* Adds the size that may hide behind "any": "temperature cannot be told from the scatter ...,
  * from 500 °C to 600 °C it changes the response by 0.2 µm, 95 % interval −1.1 µm to 1.5 µm". */
-static fg_status say_idle(fg_context *ctx, const fg_experiment *e, const fg_idle_factor *idle,
-                          fg_sentences *s) {
+static fg_status conclude_idle(fg_context *ctx, const fg_experiment *e, const fg_idle_factor *idle,
+                               fg_sentences *s) {
   const char *column = e->model.formula.variable[idle->variable].column;
   char name[300], p_value[60] = "", p[16], change[400] = "", n[5][80];
   fg_name_words(column, name, sizeof name);
@@ -175,83 +177,83 @@ static fg_status say_idle(fg_context *ctx, const fg_experiment *e, const fg_idle
                  "; from %s to %s it changes the response by %s, %g %% interval %s to %s", n[0],
                  n[1], n[2], 100 * e->confidence, n[3], n[4]);
   }
-  return fg_sentences_say(ctx, s,
+  return fg_sentences_add(ctx, s,
                           "%s cannot be told from the scatter%s: as far as these runs tell any "
                           "setting will do, the cheapest first%s.",
                           name, p_value, change);
 }
 
-static fg_status say_idles(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
+static fg_status conclude_idles(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
   if (!e->reduced && !e->all_idle) return FG_OK;
   for (size_t i = 0; i < e->idles; i++)
-    FG_TRY(say_idle(ctx, e, &e->idle[i], s));
+    FG_TRY(conclude_idle(ctx, e, &e->idle[i], s));
   if (!e->reduced) return FG_OK;
-  return fg_sentences_say(ctx, s, "The best setting is that of the model without %s: %s.",
+  return fg_sentences_add(ctx, s, "The best setting is that of the model without %s: %s.",
                           e->idles > 1 ? "them" : "it", e->reduced->formula);
 }
 
-fg_status fg_experiment_say_lack(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
+fg_status fg_experiment_conclude_lack(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
   char p_value[16];
   fg_p_value_text(p_value, e->regression.lack_p_value);
-  return fg_sentences_say(ctx, s,
+  return fg_sentences_add(ctx, s,
                           "Not sure: the model does not fit; beside the scatter of repeated runs "
                           "the lack of fit is significant (p %s%s). Add terms or transform.",
                           *p_value == '<' ? "" : "= ", p_value);
 }
 
 /* Tells an optimum at the border of the runs from one that a constraint holds. */
-static fg_status say_border(fg_context *ctx, const fg_experiment *best, fg_sentences *s) {
+static fg_status conclude_border(fg_context *ctx, const fg_experiment *best, fg_sentences *s) {
   if (best->optimum.on_edge_of_runs)
-    return fg_sentences_say(ctx, s,
+    return fg_sentences_add(ctx, s,
                             "It lies on the border of the region: the best may lie beyond, where "
                             "there are no runs.");
-  return fg_sentences_say(ctx, s,
+  return fg_sentences_add(ctx, s,
                           "It lies on a constraint: the best may lie beyond what was allowed.");
 }
 
 /* Reasons for and against trust in the best setting, the gravest first. */
-static fg_status say_trust(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
+static fg_status conclude_trust(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
   const fg_experiment *best = fg_experiment_best(e);
   const fg_prediction *p = &fg_experiment_best_point(e)->prediction;
   size_t before = s->count;
   if (!e->all_idle && e->regression.model_p_value > 1 - e->confidence)
-    FG_TRY(fg_sentences_say(ctx, s,
+    FG_TRY(fg_sentences_add(ctx, s,
                             "Not sure: the model as a whole cannot be told from the mean (p = "
                             "%.3f). It is a setting to test, not a finding.",
                             e->regression.model_p_value));
-  if (fg_experiment_lacks_fit(e)) FG_TRY(fg_experiment_say_lack(ctx, e, s));
-  if (best->optimum.on_border && !e->all_idle) FG_TRY(say_border(ctx, best, s));
+  if (fg_experiment_lacks_fit(e)) FG_TRY(fg_experiment_conclude_lack(ctx, e, s));
+  if (best->optimum.on_border && !e->all_idle) FG_TRY(conclude_border(ctx, best, s));
   if (!isfinite(p->low))
-    FG_TRY(fg_sentences_say(ctx, s,
+    FG_TRY(fg_sentences_add(ctx, s,
                             "Not sure: how sure cannot be said, as no degree of freedom is left "
                             "for an error. Repeat runs."));
   if (s->count == before && !e->all_idle)
-    FG_TRY(fg_sentences_say(
+    FG_TRY(fg_sentences_add(
         ctx, s, "It lies inside the region of the runs, by a model that they do not contradict."));
   if (e->magnitude && !e->all_idle && isfinite(p->run_low) && p->run_low < 0)
-    FG_TRY(fg_sentences_say(
+    FG_TRY(fg_sentences_add(
         ctx, s, "A magnitude cannot be below 0: where an interval reaches further, read 0."));
   return FG_OK;
 }
 
-fg_status fg_experiment_say_best(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
+fg_status fg_experiment_conclude_best(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
   const fg_experiment *best = fg_experiment_best(e);
   char setting[700];
   s->trust = s->setting = s->count;
   if (!best->has_optimum) return FG_OK;
   if (e->all_idle) {
-    FG_TRY(say_no_best(ctx, e, s));
+    FG_TRY(conclude_no_best(ctx, e, s));
   } else {
-    FG_TRY(say_rounded(ctx, e, s));
+    FG_TRY(conclude_rounded(ctx, e, s));
     put_setting(e, best->optimum.x, true, setting, sizeof setting);
-    FG_TRY(say_expected(ctx, e,
-                        e->constraints
-                            ? "Best setting in the region of the data and the constraints"
-                            : "Best setting in the region of the data",
-                        setting, &best->optimum.prediction, s));
+    FG_TRY(conclude_expected(ctx, e,
+                             e->constraints
+                                 ? "Best setting in the region of the data and the constraints"
+                                 : "Best setting in the region of the data",
+                             setting, &best->optimum.prediction, s));
   }
   s->trust = s->count;
-  FG_TRY(say_trust(ctx, e, s));
+  FG_TRY(conclude_trust(ctx, e, s));
   s->trusts = s->count - s->trust;
-  return say_idles(ctx, e, s);
+  return conclude_idles(ctx, e, s);
 }

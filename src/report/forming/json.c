@@ -148,7 +148,7 @@ fg_status fg_forming_write_json(fg_context *ctx, const fg_forming *forming, FILE
   return fg_stream_finish(ctx, out, "the report");
 }
 
-static void put_number(FILE *out, double value) {
+static void put_forming_number(FILE *out, double value) {
   if (isfinite(value))
     fprintf(out, ",%.6f", value);
   else
@@ -176,7 +176,7 @@ fg_status fg_forming_write_bumps(fg_context *ctx, const fg_forming *forming, FIL
                              b->curvature_radius_mm};
     fprintf(out, "%d", b->number);
     for (size_t k = 0; k < sizeof values / sizeof *values; k++)
-      put_number(out, values[k]);
+      put_forming_number(out, values[k]);
     fputc('\n', out);
   }
   return fg_stream_finish(ctx, out, "the bumps");
@@ -193,7 +193,7 @@ fg_status fg_forming_write_strip(fg_context *ctx, const fg_forming *forming, FIL
                              p->stress_mpa[0], p->stress_mpa[1], p->stress_mpa[2]};
     fprintf(out, "%s,%d", fg_arc_kind_word(p->kind), p->number);
     for (size_t k = 0; k < sizeof values / sizeof *values; k++)
-      put_number(out, values[k]);
+      put_forming_number(out, values[k]);
     fputc('\n', out);
   }
   return fg_stream_finish(ctx, out, "the strip");

@@ -19,7 +19,7 @@ static void put_forming_tile(FILE *out, const char *title, double value, int dec
     fg_html_tile(out, title, small, "–");
 }
 
-static void put_tiles(FILE *out, const fg_forming *f) {
+static void put_forming_tiles(FILE *out, const fg_forming *f) {
   double sum = 0;
   for (size_t i = 0; i < f->bump_count; i++)
     sum += f->bumps[i].fitted.radius_error_pct / (double)f->bump_count;
@@ -48,14 +48,14 @@ static void put_notes(FILE *out, char notes[FG_FORMING_NOTES][FG_FORMING_NOTE], 
   fputs("</ul>\n", out);
 }
 
-static void put_cell(FILE *out, double value, int decimals) {
+static void put_forming_cell(FILE *out, double value, int decimals) {
   if (isfinite(value))
     fprintf(out, "<td>%.*f</td>", decimals, value);
   else
     fputs("<td>–</td>", out);
 }
 
-static void put_bumps(FILE *out, const fg_forming *f) {
+static void put_forming_bumps(FILE *out, const fg_forming *f) {
   fputs("<div class=\"scroll\"><table>\n<tr><th>bump</th><th>die R, mm</th><th>free R, mm</th>"
         "<th>e_R, %</th><th>alpha, °</th><th>e_alpha, %</th><th>e_theta, %</th><th>h, mm</th></tr>"
         "\n",
@@ -63,13 +63,13 @@ static void put_bumps(FILE *out, const fg_forming *f) {
   for (size_t i = 0; i < f->bump_count; i++) {
     const fg_forming_bump *b = &f->bumps[i];
     fprintf(out, "<tr><td>%d</td>", b->number);
-    put_cell(out, b->die_radius_mm, 4);
-    put_cell(out, b->fitted.radius_mm, 4);
-    put_cell(out, b->fitted.radius_error_pct, 2);
-    put_cell(out, b->fitted.bump_angle_deg, 3);
-    put_cell(out, b->fitted.bump_angle_error_pct, 2);
-    put_cell(out, b->fitted.intersection_angle_error_pct, 2);
-    put_cell(out, b->fitted.height_mm, 4);
+    put_forming_cell(out, b->die_radius_mm, 4);
+    put_forming_cell(out, b->fitted.radius_mm, 4);
+    put_forming_cell(out, b->fitted.radius_error_pct, 2);
+    put_forming_cell(out, b->fitted.bump_angle_deg, 3);
+    put_forming_cell(out, b->fitted.bump_angle_error_pct, 2);
+    put_forming_cell(out, b->fitted.intersection_angle_error_pct, 2);
+    put_forming_cell(out, b->fitted.height_mm, 4);
     fputs("</tr>\n", out);
   }
   fputs("</table></div>\n", out);
@@ -106,7 +106,7 @@ static void put_summary(FILE *out, const fg_forming *f) {
           fg_forming_shape_word(f->options.shape));
   fg_html_text(out, treatment);
   fputs(".</p>\n", out);
-  put_tiles(out, f);
+  put_forming_tiles(out, f);
   put_notes(out, notes, fg_forming_notes(f, notes));
   fputs("</section>\n", out);
 }
@@ -161,7 +161,7 @@ fg_status fg_forming_write_html(fg_context *ctx, const fg_forming *forming, FILE
     fputs("<figcaption>Errors against the design of the free strip's circles, fitted as "
           "<code>measure</code> fits them.</figcaption></figure>\n",
           out);
-    put_bumps(out, forming);
+    put_forming_bumps(out, forming);
   }
   put_material(out, &forming->material);
   fprintf(out,
@@ -194,7 +194,7 @@ static void put_found(FILE *out, const fg_forming_fit *fit) {
   fputs("</table></div>\n", out);
 }
 
-static void put_runs(FILE *out, const fg_forming_fit *fit) {
+static void put_forming_runs(FILE *out, const fg_forming_fit *fit) {
   fputs("<div class=\"scroll\"><table>\n<tr><th>temperature, °C</th><th>duration, h</th>"
         "<th>measured, %</th><th>fitted, %</th><th>by the other runs alone, %</th></tr>\n",
         out);
@@ -218,7 +218,7 @@ fg_status fg_forming_fit_write_html(fg_context *ctx, const fg_forming_fit *fit, 
   fputs("<figcaption>Each run as the model has it, and as it has it from the other runs "
         "alone.</figcaption></figure>\n",
         out);
-  put_runs(out, fit);
+  put_forming_runs(out, fit);
   fputs("</section>\n<section>\n", out);
   put_material(out, &fit->material);
   fputs("</section>\n", out);

@@ -51,8 +51,8 @@ static double inside(const fg_plot *at, double y) {
 }
 
 /* Draws a line with steps at the ends of stretches. Beyond the plot it runs along the edge. */
-static void put_line(const fg_plot *at, const fg_forming *f, piece_value *value,
-                     const char *style) {
+static void put_stretch_line(const fg_plot *at, const fg_forming *f, piece_value *value,
+                             const char *style) {
   fprintf(at->out, "<path class=\"%s\" d=\"", style);
   char mark = 'M';
   for (size_t i = 0; i < f->count; i++) {
@@ -66,7 +66,7 @@ static void put_line(const fg_plot *at, const fg_forming *f, piece_value *value,
   fputs("\"/>\n", at->out);
 }
 
-static void put_numbers(const fg_plot *at, const fg_forming *f) {
+static void put_bump_numbers(const fg_plot *at, const fg_forming *f) {
   char text[32];
   for (size_t b = 0; b < f->bump_count; b++) {
     double from = f->length_mm, to = 0;
@@ -108,8 +108,8 @@ static void put_along(FILE *out, const fg_forming *f, const line *lines, size_t 
   fg_plot_x_title(&at, "s along the midline, mm");
   fg_plot_segment(&at, at.x_low, 0, at.x_high, 0, "zero");
   for (size_t i = 0; i < count; i++)
-    put_line(&at, f, lines[i].value, lines[i].style);
-  put_numbers(&at, f);
+    put_stretch_line(&at, f, lines[i].value, lines[i].style);
+  put_bump_numbers(&at, f);
   put_key(&at, lines, count);
   fg_plot_end(&at);
 }

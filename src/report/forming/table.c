@@ -8,7 +8,7 @@
 
 enum { LINE = 100 };
 
-static void put(FILE *out, double value, int width, int decimals, const char *after) {
+static void put_column(FILE *out, double value, int width, int decimals, const char *after) {
   if (isfinite(value))
     fprintf(out, "%*.*f%s", width, decimals, value, after);
   else
@@ -27,19 +27,19 @@ static void put_words(FILE *out, const char *text) {
   fputc('\n', out);
 }
 
-static void put_bumps(FILE *out, const fg_forming *f) {
+static void put_bump_lines(FILE *out, const fg_forming *f) {
   fputs("\n  bump   die R mm  free R mm     e_R %   alpha deg  e_alpha %   theta %      h mm\n",
         out);
   for (size_t i = 0; i < f->bump_count; i++) {
     const fg_forming_bump *b = &f->bumps[i];
     fprintf(out, "  %4d", b->number);
-    put(out, b->die_radius_mm, 11, 4, "");
-    put(out, b->fitted.radius_mm, 11, 4, "");
-    put(out, b->fitted.radius_error_pct, 10, 2, "");
-    put(out, b->fitted.bump_angle_deg, 12, 3, "");
-    put(out, b->fitted.bump_angle_error_pct, 11, 2, "");
-    put(out, b->fitted.intersection_angle_error_pct, 10, 2, "");
-    put(out, b->fitted.height_mm, 10, 4, "\n");
+    put_column(out, b->die_radius_mm, 11, 4, "");
+    put_column(out, b->fitted.radius_mm, 11, 4, "");
+    put_column(out, b->fitted.radius_error_pct, 10, 2, "");
+    put_column(out, b->fitted.bump_angle_deg, 12, 3, "");
+    put_column(out, b->fitted.bump_angle_error_pct, 11, 2, "");
+    put_column(out, b->fitted.intersection_angle_error_pct, 10, 2, "");
+    put_column(out, b->fitted.height_mm, 10, 4, "\n");
   }
 }
 
@@ -50,15 +50,15 @@ fg_status fg_forming_write_text(fg_context *ctx, const fg_forming *f, FILE *out)
           fg_foil_kind_word(f->design.kind), f->options.die ? "as measured, " : "",
           fg_forming_shape_word(f->options.shape), treatment, f->material.name);
   fputs("  overall radius, strip integrated  ", out);
-  put(out, f->overall_radius_mm, 10, 4, " mm   ");
-  put(out, f->springback_error_pct, 8, 2, " %\n");
+  put_column(out, f->overall_radius_mm, 10, 4, " mm   ");
+  put_column(out, f->springback_error_pct, 8, 2, " %\n");
   fputs("  the lands alone, a plain strip    ", out);
-  put(out, f->strip_radius_mm, 10, 4, " mm   ");
-  put(out, f->strip_springback_error_pct, 8, 2, " %\n");
+  put_column(out, f->strip_radius_mm, 10, 4, " mm   ");
+  put_column(out, f->strip_springback_error_pct, 8, 2, " %\n");
   fprintf(out, "  moment that is left (rho)         %10.4f\n", f->mean_share);
   fprintf(out, "  stress at the face, mean          %10.0f MPa bent, %.0f heated, %.0f free\n",
           f->mean_stress_mpa[0], f->mean_stress_mpa[1], f->mean_stress_mpa[2]);
-  if (f->bump_count) put_bumps(out, f);
+  if (f->bump_count) put_bump_lines(out, f);
   size_t count = fg_forming_notes(f, notes);
   for (size_t i = 0; i < count; i++)
     put_words(out, notes[i]);

@@ -178,16 +178,15 @@ size_t fg_forming_fit_notes(const fg_forming_fit *fit,
     else
       fg_text_clip(missed, sizeof missed, ", without which the surface is none");
   }
-  fg_text_clip(notes[n++], FG_FORMING_NOTE,
-               "The beam model leaves %.2f points (residual sd, %zu constant%s)%s. Of runs that "
-               "took no part "
-               "it misses %.2f points (rms, each run left out in turn)%s.%s",
-               m->residual_sd, m->parameters, fg_plural(m->parameters), surface, m->left_out_rms,
-               missed,
-               m->left_out_rms > 2 * m->residual_sd
-                   ? " It may be believed between these runs and not beyond: without its outermost "
-                     "run it does not find it again."
-                   : "");
+  fg_text_clip(
+      notes[n++], FG_FORMING_NOTE,
+      "The beam model leaves %.2f points (residual sd, %zu constant%s)%s. On held-out runs "
+      "it errs by %.2f points (rms, each run left out in turn)%s.%s",
+      m->residual_sd, m->parameters, fg_plural(m->parameters), surface, m->left_out_rms, missed,
+      m->left_out_rms > 2 * m->residual_sd
+          ? " It may be believed between these runs and not beyond: without its outermost "
+            "run it does not find it again."
+          : "");
   if (isfinite(fit->repeat_sd))
     fg_text_clip(
         notes[n++], FG_FORMING_NOTE,

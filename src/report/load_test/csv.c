@@ -7,11 +7,11 @@
 #include "core/json_writer.h"
 #include "foilgauge/load_report.h"
 
-static void put_text(FILE *out, const char *text) {
+static void put_csv_text(FILE *out, const char *text) {
   fg_csv_put_text(out, text, fg_utf8_put);
 }
 
-static void put_value(FILE *out, const fg_load_value *value, double unit) {
+static void put_load_value(FILE *out, const fg_load_value *value, double unit) {
   fg_csv_put_number(out, unit * value->value);
   fg_csv_put_number(out, unit * value->u);
 }
@@ -29,25 +29,25 @@ fg_status fg_load_write_csv(fg_context *ctx, const fg_load_test *test, FILE *out
     const fg_load_direction *d = &test->directions[i];
     char flags[200];
     fg_load_flag_words(d->flags, false, flags, sizeof flags);
-    put_text(out, test->bearings[d->bearing].name);
+    put_csv_text(out, test->bearings[d->bearing].name);
     fg_csv_put_number(out, d->azimuth_deg);
     fputc(',', out);
-    put_text(out, d->pad);
+    put_csv_text(out, d->pad);
     fprintf(out, ",%s,%s,%zu", fg_verdict_word(fg_load_judge_direction(test, d)), flags, d->cycles);
-    put_value(out, &d->clearance, 1);
-    put_value(out, &d->unloading, 1);
-    put_value(out, &d->stiffness, 1);
+    put_load_value(out, &d->clearance, 1);
+    put_load_value(out, &d->unloading, 1);
+    put_load_value(out, &d->stiffness, 1);
     fg_csv_put_number(out, d->stiffness_at_mm);
-    put_value(out, &d->area, 1);
-    put_value(out, &d->loss, 1);
-    put_value(out, &d->loss_secant, 1);
-    put_value(out, &d->secant, 1);
-    put_value(out, &d->loss_foil, 1);
+    put_load_value(out, &d->area, 1);
+    put_load_value(out, &d->loss, 1);
+    put_load_value(out, &d->loss_secant, 1);
+    put_load_value(out, &d->secant, 1);
+    put_load_value(out, &d->loss_foil, 1);
     fg_csv_put_number(out, d->friction.a_n);
     fg_csv_put_number(out, d->friction.b);
-    put_value(out, &d->predicted, 1);
-    put_value(out, &d->difference, 1);
-    put_value(out, &d->gap, 1);
+    put_load_value(out, &d->predicted, 1);
+    put_load_value(out, &d->difference, 1);
+    put_load_value(out, &d->gap, 1);
     fputc('\n', out);
   }
   return fg_stream_finish(ctx, out, "the CSV");
@@ -80,11 +80,11 @@ fg_status fg_load_write_table(fg_context *ctx, const fg_load_test *test, FILE *o
     double angle = d->azimuth_deg * M_PI / 180;
     if (!isfinite(response->value)) continue;
     if (all.bearing) {
-      put_text(out, test->bearings[d->bearing].name);
+      put_csv_text(out, test->bearings[d->bearing].name);
       fputc(',', out);
     }
     if (all.pad) {
-      put_text(out, d->pad);
+      put_csv_text(out, d->pad);
       fputc(',', out);
     }
     if (all.predicted_pad) fprintf(out, "pad %d,", d->predicted_pad);

@@ -7,7 +7,7 @@
 #include "report/measure/json.h"
 
 /* Writes name, u_name, and the standard deviation of repeats alone. */
-static void write_value(fg_json *json, const char *name, const fg_load_value *value) {
+static void write_load_value(fg_json *json, const char *name, const fg_load_value *value) {
   fg_json_number(json, name, value->value);
   fg_json_of(json, "u_", name, value->u);
   fg_json_of(json, "u_repeat_", name, value->u_repeat);
@@ -62,22 +62,22 @@ static void write_direction(fg_json *json, const fg_load_test *test, const fg_lo
   fg_json_number(json, "force_noise_n", d->noise_n);
   fg_json_number(json, "displacement_noise_mm", d->noise_mm);
   fg_json_number(json, "displacement_step_mm", d->step_mm > 0 ? d->step_mm : NAN);
-  write_value(json, "clearance_mm", &d->clearance);
-  write_value(json, "gap_mm", &d->gap);
+  write_load_value(json, "clearance_mm", &d->clearance);
+  write_load_value(json, "gap_mm", &d->gap);
   fg_json_number(json, "push_mm", d->push_mm);
   fg_json_number(json, "pull_mm", d->pull_mm);
-  write_value(json, "clearance_unloading_mm", &d->unloading);
+  write_load_value(json, "clearance_unloading_mm", &d->unloading);
   fg_json_number(json, "drift_um_per_cycle", d->drift_um_cycle);
-  write_value(json, "stiffness_n_mm", &d->stiffness);
+  write_load_value(json, "stiffness_n_mm", &d->stiffness);
   fg_json_number(json, "stiffness_at_mm", d->stiffness_at_mm);
-  write_value(json, "stiffness_secant_n_mm", &d->secant);
-  write_value(json, "loop_area_n_mm", &d->area);
-  write_value(json, "loss_factor", &d->loss);
-  write_value(json, "loss_factor_secant", &d->loss_secant);
-  write_value(json, "loss_factor_foil", &d->loss_foil);
+  write_load_value(json, "stiffness_secant_n_mm", &d->secant);
+  write_load_value(json, "loop_area_n_mm", &d->area);
+  write_load_value(json, "loss_factor", &d->loss);
+  write_load_value(json, "loss_factor_secant", &d->loss_secant);
+  write_load_value(json, "loss_factor_foil", &d->loss_foil);
   write_friction(json, &d->friction);
-  write_value(json, "predicted_clearance_mm", &d->predicted);
-  write_value(json, "clearance_difference_mm", &d->difference);
+  write_load_value(json, "predicted_clearance_mm", &d->predicted);
+  write_load_value(json, "clearance_difference_mm", &d->difference);
   fg_json_integer(json, "predicted_pad", d->predicted_pad);
   write_stiffness_profile(json, "course_push", &d->profile[FG_LOAD_PUSH]);
   write_stiffness_profile(json, "course_pull", &d->profile[FG_LOAD_PULL]);
@@ -112,8 +112,8 @@ static void write_break_away(fg_json *json, const fg_break_away *b) {
   fg_json_numbers(json, "dead_weight_range_n", (const double[]){b->weight_low_n, b->weight_high_n},
                   2);
   write_flag_names(json, fg_break_away_flags(), b->flags);
-  write_value(json, "friction_coefficient", &b->friction);
-  write_value(json, "friction_no_weight_n", &b->intercept_n);
+  write_load_value(json, "friction_coefficient", &b->friction);
+  write_load_value(json, "friction_no_weight_n", &b->intercept_n);
   fg_json_number(json, "rig_friction_n", b->rig_n);
   fg_json_number(json, "residual_sd_n", b->residual_n);
   fg_json_number(json, "p_curved", b->p_curved);
@@ -127,9 +127,9 @@ static void write_bearing(fg_json *json, const fg_load_test *test, size_t bearin
   fg_json_string(json, "verdict", fg_verdict_word(fg_load_judge_bearing(test, bearing)));
   fg_json_integer(json, "azimuths", (int64_t)b->directions);
   fg_json_integer(json, "azimuths_measured", (int64_t)b->measured);
-  write_value(json, "clearance_min_mm", &b->min);
+  write_load_value(json, "clearance_min_mm", &b->min);
   fg_json_number(json, "clearance_min_at_deg", b->min_measured_at_deg);
-  write_value(json, "clearance_max_mm", &b->max);
+  write_load_value(json, "clearance_max_mm", &b->max);
   fg_json_number(json, "clearance_max_at_deg", b->max_measured_at_deg);
   fg_json_number(json, "clearance_mean_mm", b->mean_mm);
   fg_json_number(json, "u_clearance_mean_mm", b->u_mean_mm);
@@ -139,15 +139,15 @@ static void write_bearing(fg_json *json, const fg_load_test *test, size_t bearin
   fg_json_number(json, "u_smallest_at_deg", b->u_min_at_deg);
   fg_json_string(json, "smallest_not_known", fg_load_axis_words(b->axis));
   fg_json_number(json, "birge_ratio", b->birge);
-  write_value(json, "stiffness_n_mm", &b->stiffness);
-  write_value(json, "radial_hysteresis_n", &b->hysteresis_n);
+  write_load_value(json, "stiffness_n_mm", &b->stiffness);
+  write_load_value(json, "radial_hysteresis_n", &b->hysteresis_n);
   fg_json_number(json, "friction_intercept_n", b->hysteresis_n.value);
   fg_json_number(json, "u_friction_intercept_n", b->hysteresis_n.u_repeat);
   fg_json_number(json, "friction_slope", b->slope);
   fg_json_number(json, "u_friction_slope", b->u_slope);
   write_break_away(json, &b->break_away);
-  write_value(json, "preload_n", &b->preload_n);
-  write_value(json, "preload_kpa", &b->preload_kpa);
+  write_load_value(json, "preload_n", &b->preload_n);
+  write_load_value(json, "preload_kpa", &b->preload_kpa);
   fg_json_bool(json, "in_lot", b->in_lot);
   fg_json_integer(json, "places_unknown", (int64_t)b->unknown_places);
   fg_json_object_end(json);
@@ -181,7 +181,7 @@ static void write_options(fg_json *json, const fg_load_test *test) {
   fg_json_object_end(json);
 }
 
-static void write_inputs(fg_json *json, const fg_load_test *test) {
+static void write_load_inputs(fg_json *json, const fg_load_test *test) {
   fg_json_array(json, "inputs");
   for (size_t i = 0; i < test->file_count; i++) {
     fg_json_object(json, NULL);
@@ -204,7 +204,7 @@ fg_status fg_load_write_json(fg_context *ctx, const fg_load_test *test, FILE *ou
   fg_json_head(&json, "foilgauge/load_test/1");
   fg_json_verdict(&json, outcome.verdict);
   fg_json_string(&json, "summary", words);
-  write_inputs(&json, test);
+  write_load_inputs(&json, test);
   write_options(&json, test);
   fg_json_array(&json, "bearings");
   for (size_t i = 0; i < test->bearing_count; i++)

@@ -16,7 +16,7 @@ fg_verdict fg_load_judge_value(const fg_load_test *test, fg_load_quantity quanti
   return worst;
 }
 
-static void add(fg_verdict verdict, fg_report_outcome *sum) {
+static void count_verdict(fg_verdict verdict, fg_report_outcome *sum) {
   fg_outcome_add(sum, &(fg_report_outcome){.verdict = verdict,
                                            .exceeded = verdict == FG_VERDICT_FAIL,
                                            .undecided = verdict == FG_VERDICT_UNDECIDED,
@@ -34,12 +34,12 @@ static fg_report_outcome judge_direction(const fg_load_test *test, const fg_load
   if (clearance == FG_VERDICT_NOT_MEASURED && is_withheld(d)) {
     clearance = FG_VERDICT_UNDECIDED;
   } else if (!isfinite(d->clearance.value)) {
-    add(FG_VERDICT_NOT_MEASURED, &sum);
+    count_verdict(FG_VERDICT_NOT_MEASURED, &sum);
     if (!is_withheld(d)) return sum;
   }
-  add(clearance, &sum);
-  add(fg_load_judge_value(test, FG_LOAD_STIFFNESS, &d->stiffness), &sum);
-  add(fg_load_judge_value(test, FG_LOAD_LOSS, &d->loss), &sum);
+  count_verdict(clearance, &sum);
+  count_verdict(fg_load_judge_value(test, FG_LOAD_STIFFNESS, &d->stiffness), &sum);
+  count_verdict(fg_load_judge_value(test, FG_LOAD_LOSS, &d->loss), &sum);
   return sum;
 }
 
@@ -63,10 +63,11 @@ static fg_report_outcome judge_bearing(const fg_load_test *test, size_t bearing)
     fg_outcome_add(&sum, &part);
   }
   const fg_load_bearing *b = &test->bearings[bearing];
-  if (b->break_away.pulls && !isfinite(b->preload_kpa.value)) add(FG_VERDICT_NOT_MEASURED, &sum);
-  add(judge_preload(test, b), &sum);
-  add(fg_load_judge_value(test, FG_LOAD_HYSTERESIS, &b->hysteresis_n), &sum);
-  add(fg_load_judge_value(test, FG_LOAD_FRICTION, &b->break_away.friction), &sum);
+  if (b->break_away.pulls && !isfinite(b->preload_kpa.value))
+    count_verdict(FG_VERDICT_NOT_MEASURED, &sum);
+  count_verdict(judge_preload(test, b), &sum);
+  count_verdict(fg_load_judge_value(test, FG_LOAD_HYSTERESIS, &b->hysteresis_n), &sum);
+  count_verdict(fg_load_judge_value(test, FG_LOAD_FRICTION, &b->break_away.friction), &sum);
   return sum;
 }
 
@@ -93,7 +94,7 @@ void fg_break_away_flag_words(unsigned flags, bool plain, char *words, size_t si
   join_words(fg_break_away_flags(), flags, plain, words, size);
 }
 
-static void say_range(const fg_load_test *test, char *words, size_t size) {
+static void write_range_words(const fg_load_test *test, char *words, size_t size) {
   double low = INFINITY, high = -INFINITY;
   size_t measured = 0;
   for (size_t i = 0; i < test->direction_count; i++)
@@ -121,7 +122,7 @@ static void say_range(const fg_load_test *test, char *words, size_t size) {
 }
 
 /* Preloads of the break-away tests. */
-static void say_preload(const fg_load_test *test, char *words, size_t size) {
+static void write_preload_words(const fg_load_test *test, char *words, size_t size) {
   double low = INFINITY, high = -INFINITY;
   size_t tests = 0, known = 0, length = strlen(words);
   for (size_t i = 0; i < test->bearing_count; i++) {
@@ -156,8 +157,8 @@ void fg_load_judge(const fg_load_test *test, fg_report_outcome *outcome, char *w
     fg_outcome_add(outcome, &part);
   }
   if (!words) return;
-  say_range(test, words, size);
-  say_preload(test, words, size);
+  write_range_words(test, words, size);
+  write_preload_words(test, words, size);
   size_t length = strlen(words);
   if (outcome->exceeded)
     fg_text_clip(words + length, size - length, "; %zu value%s beyond a limit by more than U",

@@ -47,7 +47,7 @@ static void put_clearance_tile(FILE *out, const fg_load_test *test, size_t beari
     put_load_tile(out, title, v, 1000, 1, "µm", small);
 }
 
-static void put_tiles(FILE *out, const fg_load_test *test, size_t bearing) {
+static void put_load_tiles(FILE *out, const fg_load_test *test, size_t bearing) {
   const fg_load_bearing *b = &test->bearings[bearing];
   char min[60] = "", max[60] = "";
   if (isfinite(b->min.value)) {
@@ -71,8 +71,8 @@ static void put_tiles(FILE *out, const fg_load_test *test, size_t bearing) {
   fputs("</dl>\n", out);
 }
 
-static void put_cell(FILE *out, const fg_load_value *v, double unit, int decimals,
-                     fg_verdict verdict) {
+static void put_load_cell(FILE *out, const fg_load_value *v, double unit, int decimals,
+                          fg_verdict verdict) {
   if (isfinite(v->value))
     fprintf(out, "<td class=\"%s\">%.*f<i>± %.*f</i></td>", fg_verdict_word(verdict), decimals,
             unit * v->value, decimals, FG_COVERAGE_FACTOR * unit * v->u);
@@ -80,29 +80,31 @@ static void put_cell(FILE *out, const fg_load_value *v, double unit, int decimal
     fputs("<td>–</td>", out);
 }
 
-static void put_row(FILE *out, const fg_load_test *test, const fg_load_direction *d, bool lot) {
+static void put_load_row(FILE *out, const fg_load_test *test, const fg_load_direction *d,
+                         bool lot) {
   char flags[700];
   /* Said once of the bearing, above the table. */
   fg_load_flag_words(d->flags & ~(unsigned)FG_LOAD_AT_END, true, flags, sizeof flags);
   fprintf(out, "<tr><td>%g°</td>", d->azimuth_deg);
-  put_cell(out, &d->clearance, 1000, 1,
-           fg_load_judge_value(test, FG_LOAD_CLEARANCE, &d->clearance));
-  put_cell(out, &d->unloading, 1000, 1, FG_VERDICT_NONE);
-  put_cell(out, &d->gap, 1000, 1, FG_VERDICT_NONE);
-  put_cell(out, &d->stiffness, 1, 0, fg_load_judge_value(test, FG_LOAD_STIFFNESS, &d->stiffness));
-  put_cell(out, &d->loss, 1, 4, fg_load_judge_value(test, FG_LOAD_LOSS, &d->loss));
-  put_cell(out, &d->loss_secant, 1, 4, FG_VERDICT_NONE);
-  put_cell(out, &d->loss_foil, 1, 4, FG_VERDICT_NONE);
+  put_load_cell(out, &d->clearance, 1000, 1,
+                fg_load_judge_value(test, FG_LOAD_CLEARANCE, &d->clearance));
+  put_load_cell(out, &d->unloading, 1000, 1, FG_VERDICT_NONE);
+  put_load_cell(out, &d->gap, 1000, 1, FG_VERDICT_NONE);
+  put_load_cell(out, &d->stiffness, 1, 0,
+                fg_load_judge_value(test, FG_LOAD_STIFFNESS, &d->stiffness));
+  put_load_cell(out, &d->loss, 1, 4, fg_load_judge_value(test, FG_LOAD_LOSS, &d->loss));
+  put_load_cell(out, &d->loss_secant, 1, 4, FG_VERDICT_NONE);
+  put_load_cell(out, &d->loss_foil, 1, 4, FG_VERDICT_NONE);
   if (lot) {
-    put_cell(out, &d->predicted, 1000, 1, FG_VERDICT_NONE);
-    put_cell(out, &d->difference, 1000, 1, FG_VERDICT_NONE);
+    put_load_cell(out, &d->predicted, 1000, 1, FG_VERDICT_NONE);
+    put_load_cell(out, &d->difference, 1000, 1, FG_VERDICT_NONE);
   }
   fprintf(out, "<td>%zu</td><td class=\"words\">", d->cycles);
   fg_html_text(out, flags);
   fputs("</td></tr>\n", out);
 }
 
-static void put_table(FILE *out, const fg_load_test *test, size_t bearing) {
+static void put_load_table(FILE *out, const fg_load_test *test, size_t bearing) {
   bool lot = test->bearings[bearing].in_lot;
   fprintf(out,
           "<div class=\"scroll\"><table>\n<tr><th>azimuth</th><th>clearance,<br>µm</th><th>"
@@ -111,7 +113,7 @@ static void put_table(FILE *out, const fg_load_test *test, size_t bearing) {
           "<th class=\"w\">to know</th></tr>\n",
           lot ? "<th>gap by<br>the lot, µm</th><th>difference<br>of gaps, µm</th>" : "");
   for (size_t i = 0; i < test->direction_count; i++)
-    if (test->directions[i].bearing == bearing) put_row(out, test, &test->directions[i], lot);
+    if (test->directions[i].bearing == bearing) put_load_row(out, test, &test->directions[i], lot);
   fputs("</table></div>\n", out);
 }
 
@@ -217,7 +219,7 @@ static void put_directions(FILE *out, const fg_load_test *test, size_t bearing) 
             b->in_lot ? "; triangles the gap, orange the gap that the lot's foils leave a rotor"
                       : "");
   }
-  put_table(out, test, bearing);
+  put_load_table(out, test, bearing);
   fputs("<h2>Loops</h2>\n<p class=\"note\">Every cycle as recorded; the band is the threshold, "
         "orange where the loading strokes pass it. Beside it dF/dx of the loading strokes with U = "
         "2 u, orange its largest value up to just before the turn.</p>\n",
@@ -236,7 +238,7 @@ static void put_bearing(FILE *out, const fg_load_test *test, size_t bearing) {
             b->directions == 1 ? "" : "s", test->options.threshold_n);
   else
     fputs("<p>break-away test alone</p></header>\n", out);
-  if (b->directions) put_tiles(out, test, bearing);
+  if (b->directions) put_load_tiles(out, test, bearing);
   put_break_away(out, test, bearing);
   put_directions(out, test, bearing);
   fputs("</section>\n", out);

@@ -10,7 +10,7 @@
 /* LOOP_SAMPLES: samples drawn of a loop; more make the page larger, but no line finer. */
 enum { LOOP_SAMPLES = 1200, CURVE_STEPS = 180 };
 
-static void widen(double range[2], double low, double high) {
+static void widen_load_range(double range[2], double low, double high) {
   if (isfinite(low)) range[0] = fmin(range[0], low);
   if (isfinite(high)) range[1] = fmax(range[1], high);
 }
@@ -61,8 +61,8 @@ void fg_load_plot_loops(FILE *out, const fg_load_test *test, const fg_load_direc
   double x[2] = {INFINITY, -INFINITY}, f[2] = {d->force_low_n, d->force_high_n};
   double threshold = test->options.threshold_n;
   for (size_t i = 0; i < d->count; i++)
-    widen(x, s[i].x_mm, s[i].x_mm);
-  widen(f, zero_of(d) - threshold, zero_of(d) + threshold);
+    widen_load_range(x, s[i].x_mm, s[i].x_mm);
+  widen_load_range(f, zero_of(d) - threshold, zero_of(d) + threshold);
   add_margin(x, 0.04);
   add_margin(f, 0.08);
   fg_plot at = {out, 560, 66, 545, 14, 300, x[0], x[1], f[0], f[1]};
@@ -100,11 +100,11 @@ void fg_load_plot_stiffness(FILE *out, const fg_load_direction *d) {
   for (int side = 0; side < FG_LOAD_SIDES; side++)
     for (size_t i = 0; i < d->profile[side].count; i++) {
       const fg_load_point *p = &d->profile[side].point[i];
-      widen(x, p->x_mm, p->x_mm);
-      widen(k, p->stiffness_n_mm, p->stiffness_n_mm);
+      widen_load_range(x, p->x_mm, p->x_mm);
+      widen_load_range(k, p->stiffness_n_mm, p->stiffness_n_mm);
     }
   if (!(x[1] > x[0])) return;
-  widen(k, NAN, d->stiffness.value + 2 * d->stiffness.u);
+  widen_load_range(k, NAN, d->stiffness.value + 2 * d->stiffness.u);
   add_margin(x, 0.04);
   add_margin(k, 0.06);
   fg_plot at = {out, 560, 66, 545, 14, 300, x[0], x[1], k[0], k[1]};
@@ -128,7 +128,7 @@ static double curve_at(const fg_load_bearing *b, double deg) {
   return 1000 * sum;
 }
 
-static void put_curve(const fg_plot *at, const fg_load_bearing *b) {
+static void put_load_curve(const fg_plot *at, const fg_load_bearing *b) {
   double x[CURVE_STEPS + 1], y[CURVE_STEPS + 1];
   for (int i = 0; i <= CURVE_STEPS; i++) {
     x[i] = at->x_low + (at->x_high - at->x_low) * i / CURVE_STEPS;
@@ -157,11 +157,11 @@ void fg_load_plot_azimuths(FILE *out, const fg_load_test *test, size_t bearing) 
     const fg_load_direction *d = &test->directions[i];
     double reach = 1000 * FG_COVERAGE_FACTOR * d->clearance.u_repeat;
     if (d->bearing != bearing) continue;
-    widen(x, d->azimuth_deg, d->azimuth_deg);
-    widen(c, 1000 * d->clearance.value - reach, 1000 * d->clearance.value + reach);
+    widen_load_range(x, d->azimuth_deg, d->azimuth_deg);
+    widen_load_range(c, 1000 * d->clearance.value - reach, 1000 * d->clearance.value + reach);
     if (!isfinite(d->predicted.value)) continue;
-    widen(c, 1000 * d->predicted.value, 1000 * d->predicted.value);
-    widen(c, 1000 * d->gap.value, 1000 * d->gap.value);
+    widen_load_range(c, 1000 * d->predicted.value, 1000 * d->predicted.value);
+    widen_load_range(c, 1000 * d->gap.value, 1000 * d->gap.value);
   }
   if (!(c[1] >= c[0])) return;
   x[0] -= 10, x[1] += 10;
@@ -171,7 +171,7 @@ void fg_load_plot_azimuths(FILE *out, const fg_load_test *test, size_t bearing) 
   fg_plot_y_axis(&at, "clearance, µm");
   fg_plot_x_numbers(&at);
   fg_plot_x_title(&at, "azimuth, degrees");
-  put_curve(&at, &test->bearings[bearing]);
+  put_load_curve(&at, &test->bearings[bearing]);
   for (size_t i = 0; i < test->direction_count; i++)
     if (test->directions[i].bearing == bearing) put_direction(&at, &test->directions[i]);
   fg_plot_end(&at);
@@ -184,8 +184,8 @@ void fg_load_plot_break_away(FILE *out, const fg_load_test *test, size_t bearing
   double x[2] = {0, b->weight_high_n}, f[2] = {0, 0};
   for (size_t i = 0; i < test->pull_count; i++)
     if (test->pulls[i].bearing == bearing)
-      widen(f, test->pulls[i].friction_n, test->pulls[i].friction_n);
-  widen(f, start, end);
+      widen_load_range(f, test->pulls[i].friction_n, test->pulls[i].friction_n);
+  widen_load_range(f, start, end);
   add_margin(x, 0.04);
   add_margin(f, 0.08);
   fg_plot at = {out, 560, 66, 545, 14, 300, x[0], x[1], f[0], f[1]};

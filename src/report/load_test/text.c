@@ -5,7 +5,7 @@
 #include "core/file.h"
 #include "foilgauge/load_report.h"
 
-static void put(FILE *out, double value, int width, int decimals) {
+static void put_column(FILE *out, double value, int width, int decimals) {
   if (isfinite(value))
     fprintf(out, " %*.*f", width, decimals, value);
   else
@@ -16,18 +16,18 @@ static void put_direction(FILE *out, const fg_load_test *test, const fg_load_dir
                           bool lot) {
   char flags[600];
   fprintf(out, "  %8.1f", d->azimuth_deg);
-  put(out, 1000 * d->clearance.value, 9, 2);
-  put(out, 2000 * d->clearance.u, 7, 2);
-  put(out, 1000 * d->gap.value, 8, 1);
-  put(out, 2000 * d->gap.u, 6, 1);
-  put(out, d->stiffness.value, 9, 1);
-  put(out, 2 * d->stiffness.u, 7, 1);
-  put(out, d->loss.value, 8, 4);
-  put(out, d->loss_secant.value, 8, 4);
-  put(out, d->loss_foil.value, 8, 4);
+  put_column(out, 1000 * d->clearance.value, 9, 2);
+  put_column(out, 2000 * d->clearance.u, 7, 2);
+  put_column(out, 1000 * d->gap.value, 8, 1);
+  put_column(out, 2000 * d->gap.u, 6, 1);
+  put_column(out, d->stiffness.value, 9, 1);
+  put_column(out, 2 * d->stiffness.u, 7, 1);
+  put_column(out, d->loss.value, 8, 4);
+  put_column(out, d->loss_secant.value, 8, 4);
+  put_column(out, d->loss_foil.value, 8, 4);
   if (lot) {
-    put(out, 1000 * d->predicted.value, 9, 2);
-    put(out, 1000 * d->difference.value, 9, 2);
+    put_column(out, 1000 * d->predicted.value, 9, 2);
+    put_column(out, 1000 * d->difference.value, 9, 2);
   }
   fg_verdict verdict = fg_load_judge_direction(test, d);
   if (verdict != FG_VERDICT_NONE) fprintf(out, "  %s", fg_verdict_word(verdict));

@@ -15,7 +15,7 @@
 static const char *const line_style[2] = {"s1", "s2"};
 static const char *const uncertainty_style[2] = {"s1 uncertain", "s2 uncertain"};
 
-static void put_value(FILE *out, double value, double u, int decimals) {
+static void put_channel_value(FILE *out, double value, double u, int decimals) {
   fprintf(out, "<td>%+.*f ± %.*f</td>", decimals, value, decimals, FG_COVERAGE_FACTOR * u);
 }
 
@@ -33,28 +33,28 @@ static const char *without_values(fg_colour_state state) {
   return "";
 }
 
-static void put_row(FILE *out, const fg_measurement *m, const fg_colour_shift *shift) {
+static void put_channel_row(FILE *out, const fg_measurement *m, const fg_colour_shift *shift) {
   fprintf(out, "<tr><td>%s</td>", fg_channel_word(shift->channel));
   if (shift->state != FG_COLOUR_MEASURED) {
     fprintf(out, "<td colspan=\"8\">%s</td></tr>\n", without_values(shift->state));
     return;
   }
-  put_value(out, shift->dx_px, shift->u_dx_px, 3);
-  put_value(out, shift->dy_px, shift->u_dy_px, 3);
-  put_value(out, shift->dx_px * 25400 / m->dpi[0], shift->u_dx_px * 25400 / m->dpi[0], 2);
-  put_value(out, shift->dy_px * 25400 / m->dpi[1], shift->u_dy_px * 25400 / m->dpi[1], 2);
-  put_value(out, shift->magnification_ppm, shift->u_magnification_ppm, 1);
-  put_value(out, shift->skew_ppm, shift->u_skew_ppm, 1);
+  put_channel_value(out, shift->dx_px, shift->u_dx_px, 3);
+  put_channel_value(out, shift->dy_px, shift->u_dy_px, 3);
+  put_channel_value(out, shift->dx_px * 25400 / m->dpi[0], shift->u_dx_px * 25400 / m->dpi[0], 2);
+  put_channel_value(out, shift->dy_px * 25400 / m->dpi[1], shift->u_dy_px * 25400 / m->dpi[1], 2);
+  put_channel_value(out, shift->magnification_ppm, shift->u_magnification_ppm, 1);
+  put_channel_value(out, shift->skew_ppm, shift->u_skew_ppm, 1);
   fprintf(out, "<td>%.2g</td><td>%.2g</td></tr>\n", shift->drift_rms_um, shift->p_constant);
 }
 
-static void put_table(FILE *out, const fg_measurement *m) {
+static void put_channel_table(FILE *out, const fg_measurement *m) {
   fputs("<div class=\"scroll\"><table>\n<thead><tr><th>channel</th><th>dx, px</th><th>dy, px</th>"
         "<th>dx, µm</th><th>dy, µm</th><th>magnified, ppm</th><th>skew, ppm</th>"
         "<th>uneven, µm rms</th><th>p</th></tr></thead>\n<tbody>\n",
         out);
   for (int k = 0; k < 2; k++)
-    put_row(out, m, &m->colour_lines.shifts[k]);
+    put_channel_row(out, m, &m->colour_lines.shifts[k]);
   fputs("</tbody></table></div>\n", out);
 }
 
@@ -63,7 +63,7 @@ static double level_of(const fg_measurement *m, const fg_colour_shift *shift) {
   return shift->dy_px * 25400 / m->dpi[1];
 }
 
-static void widen(double range[2], double value) {
+static void widen_shift_range(double range[2], double value) {
   range[0] = fmin(range[0], value);
   range[1] = fmax(range[1], value);
 }
@@ -75,10 +75,10 @@ static bool find_ranges(const fg_measurement *m, double x[2], double y[2]) {
     const fg_colour_shift *shift = &m->colour_lines.shifts[k];
     for (size_t i = 0; i < shift->window_count; i++) {
       const fg_colour_window *w = &shift->windows[i];
-      widen(x, (double)w->y_mm);
+      widen_shift_range(x, (double)w->y_mm);
       for (int side = -1; side <= 1; side += 2)
-        widen(y, (double)w->smooth_um - level_of(m, shift) +
-                     side * FG_COVERAGE_FACTOR * (double)w->u_smooth_um);
+        widen_shift_range(y, (double)w->smooth_um - level_of(m, shift) +
+                                 side * FG_COVERAGE_FACTOR * (double)w->u_smooth_um);
     }
   }
   double margin = fmax(0.05, 0.15 * (y[1] - y[0]));
@@ -88,8 +88,8 @@ static bool find_ranges(const fg_measurement *m, double x[2], double y[2]) {
 }
 
 /* Draws a line, with gaps where there are no edges. */
-static void put_line(const fg_plot *at, const fg_colour_shift *shift, const double *x,
-                     const double *y, const char *style) {
+static void put_channel_line(const fg_plot *at, const fg_colour_shift *shift, const double *x,
+                             const double *y, const char *style) {
   size_t first = 0;
   for (size_t i = 1; i <= shift->window_count; i++) {
     if (i < shift->window_count && x[i] - x[i - 1] < GAP_WINDOWS * shift->window_mm) continue;
@@ -98,7 +98,7 @@ static void put_line(const fg_plot *at, const fg_colour_shift *shift, const doub
   }
 }
 
-static void put_course(const fg_plot *at, const fg_measurement *m, int k) {
+static void put_shift_profile(const fg_plot *at, const fg_measurement *m, int k) {
   const fg_colour_shift *shift = &m->colour_lines.shifts[k];
   double x[FG_COLOUR_WINDOWS_MAX], y[3][FG_COLOUR_WINDOWS_MAX], key = 80 + 330.0 * k;
   if (!shift->window_count) return;
@@ -112,7 +112,7 @@ static void put_course(const fg_plot *at, const fg_measurement *m, int k) {
     if (dot > at->y_low && dot < at->y_high) fg_plot_dot(at, x[i], dot, 2, line_style[k]);
   }
   for (int side = 0; side < 3; side++)
-    put_line(at, shift, x, y[side], side == 1 ? line_style[k] : uncertainty_style[k]);
+    put_channel_line(at, shift, x, y[side], side == 1 ? line_style[k] : uncertainty_style[k]);
   fprintf(at->out,
           "<circle class=\"%s\" cx=\"%.0f\" cy=\"14\" r=\"5\"/><text x=\"%.0f\" y=\"19\">%s, about "
           "%+.2f µm</text>\n",
@@ -129,12 +129,12 @@ static void put_plot(FILE *out, const fg_measurement *m) {
   fg_plot_x_numbers(&at);
   fg_plot_x_title(&at, "y of the scan, mm (the carriage's way)");
   for (int k = 0; k < 2; k++)
-    put_course(&at, m, k);
+    put_shift_profile(&at, m, k);
   fg_plot_end(&at);
   fputs("</figure>\n", out);
 }
 
-static const char *say_course(const fg_colour_lines *lines) {
+static const char *describe_profile(const fg_colour_lines *lines) {
   bool uneven = false;
   for (int k = 0; k < 2; k++)
     uneven = uneven || lines->shifts[k].p_constant < FG_COLOUR_UNEVEN_P;
@@ -159,7 +159,7 @@ void fg_html_colour_lines(FILE *out, const fg_measurement *m) {
       "is what the carriage's error differs by over the lines' gap, without anything that "
       "optics, part or edges do. Magnified: "
       "along x, by the colour of the optics; skew: dy over x, of a line that is turned. %s</p>\n",
-      fg_channel_word(lines->against), say_course(lines));
-  put_table(out, m);
+      fg_channel_word(lines->against), describe_profile(lines));
+  put_channel_table(out, m);
   put_plot(out, m);
 }

@@ -257,7 +257,7 @@ static fg_drawing_box scale_box(const fg_canvas *canvas, int corner) {
       low, {low.x + size_px[0] / canvas->px_per_mm[0], low.y + size_px[1] / canvas->px_per_mm[1]}};
 }
 
-static size_t crowd_of_beam(const fg_beam *beam, fg_drawing_box box) {
+static size_t count_beam_points(const fg_beam *beam, fg_drawing_box box) {
   size_t inside = 0;
   for (int side = 0; side < FG_BEAM_SIDES; side++)
     for (size_t k = 0; k < beam->edges[side].count; k++) {
@@ -273,7 +273,7 @@ static size_t crowd(const fg_measurement *measurement, fg_drawing_box box) {
   double margin = baseline_mm + whisker_mm;
   for (size_t i = 0; i < measurement->foil_count; i++)
     for (size_t b = 0; b < measurement->foils[i].beam_count; b++)
-      inside += crowd_of_beam(&measurement->foils[i].beams[b], box);
+      inside += count_beam_points(&measurement->foils[i].beams[b], box);
   for (size_t i = 0; i < measurement->foil_count; i++)
     for (size_t k = 0; k < measurement->foils[i].strip.count; k++) {
       fg_point at = midpoint(&measurement->foils[i].strip.stations[k]);

@@ -10,7 +10,7 @@
 
 enum { GAUGE_WORDS = 400 };
 
-static void write_stated(fg_json *json, const fg_gauge *gauge) {
+static void write_stated_gauge(fg_json *json, const fg_gauge *gauge) {
   fg_json_string(json, "kind", fg_gauge_word(gauge->kind));
   fg_json_number(json, "width_mm", gauge->width_mm);
   fg_json_number(json, "u_mm", gauge->u_mm);
@@ -20,7 +20,7 @@ void fg_json_gauges_stated(fg_json *json, const fg_design *design) {
   fg_json_array(json, "gauges");
   for (size_t i = 0; i < design->gauge_count; i++) {
     fg_json_object(json, NULL);
-    write_stated(json, &design->gauges[i]);
+    write_stated_gauge(json, &design->gauges[i]);
     fg_json_object_end(json);
   }
   fg_json_array_end(json);
@@ -44,7 +44,7 @@ void fg_json_gauges(fg_json *json, const fg_measurement *m) {
   fg_json_array(json, "gauges");
   for (size_t i = 0; i < m->design.gauge_count; i++) {
     fg_json_object(json, NULL);
-    write_stated(json, &m->design.gauges[i]);
+    write_stated_gauge(json, &m->design.gauges[i]);
     write_reading(json, &m->gauges[i]);
     fg_json_object_end(json);
   }
@@ -53,7 +53,8 @@ void fg_json_gauges(fg_json *json, const fg_measurement *m) {
 }
 
 /* "leaf of 0.1 mm: read 0.1043 ± 0.0002 mm at x 18.0, y 17.9 mm, ..." */
-static void describe(const fg_gauge *gauge, const fg_gauge_reading *r, char words[GAUGE_WORDS]) {
+static void describe_gauge(const fg_gauge *gauge, const fg_gauge_reading *r,
+                           char words[GAUGE_WORDS]) {
   if (!r->found) {
     fg_text_clip(words, GAUGE_WORDS,
                  "%s of %g mm: NOT FOUND: %s. Widths keep the uncertainty of an unknown tone curve",
@@ -79,7 +80,7 @@ static const char contradiction[] =
 void fg_text_gauges(FILE *out, const fg_measurement *m) {
   char words[GAUGE_WORDS];
   for (size_t i = 0; i < m->design.gauge_count; i++) {
-    describe(&m->design.gauges[i], &m->gauges[i], words);
+    describe_gauge(&m->design.gauges[i], &m->gauges[i], words);
     fprintf(out, "gauge: %s.\n", words);
   }
   if (m->gauges_contradict) fprintf(out, "gauges: %s\n", contradiction);
@@ -92,7 +93,7 @@ void fg_html_gauges(FILE *out, const fg_measurement *m) {
   if (!m->design.gauge_count) return;
   fputs("<h2>Gauges on the glass</h2>\n<ul class=\"flags\">\n", out);
   for (size_t i = 0; i < m->design.gauge_count; i++) {
-    describe(&m->design.gauges[i], &m->gauges[i], words);
+    describe_gauge(&m->design.gauges[i], &m->gauges[i], words);
     fputs("<li>", out);
     fg_html_text(out, words);
     fputs(".</li>\n", out);

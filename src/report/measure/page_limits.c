@@ -41,7 +41,7 @@ static double width_of(const panel *p) {
 }
 
 /* All that does not fail is drawn where it lies, however far it is from its limit. */
-static void find_range(panel *p) {
+static void find_limit_range(panel *p) {
   double low = p->limit->lower, high = p->limit->upper, reach = shown_beyond * width_of(p);
   double from = isfinite(low) ? low : high, to = isfinite(high) ? high : low;
   const double max[2] = {from - reach, to + reach};
@@ -122,7 +122,7 @@ static void put_nothing(const panel *p, int number, const char *why) {
           fg_plot_x(&p->at, number) + 5, (p->at.top + p->at.bottom) / 2, why);
 }
 
-static void put_value(const panel *p, size_t i) {
+static void put_limit_value(const panel *p, size_t i) {
   const void *part = fg_foil_part_at(p->parts, i);
   int number = fg_foil_part_number(p->parts, i);
   double value = fg_quantity_value(p->row, part), u = fg_quantity_uncertainty(p->row, part);
@@ -161,7 +161,7 @@ static void put_panel(FILE *out, const fg_design *design, const fg_foil *foil,
   char title[160];
   size_t count = fg_html_limit_labels(limit, "", labels);
   p.at.right -= fg_html_limit_room(labels, count);
-  find_range(&p);
+  find_limit_range(&p);
   fputs("<figure><h3>", out);
   fg_html_text(out, row->words);
   fputs("</h3>", out);
@@ -179,7 +179,7 @@ static void put_panel(FILE *out, const fg_design *design, const fg_foil *foil,
   }
   fg_plot_x_title(&p.at, parts.name);
   for (size_t i = 0; i < parts.count; i++)
-    put_value(&p, i);
+    put_limit_value(&p, i);
   fputs("</svg></figure>\n", out);
 }
 

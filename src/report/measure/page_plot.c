@@ -107,7 +107,7 @@ static const error_plot of_beams = {
 
 /* True when the plot's range must hold the part: crushed bumps lie far out, and would flatten
  * the others. */
-static bool is_shown(const fg_foil_parts *parts, size_t i) {
+static bool is_part_shown(const fg_foil_parts *parts, size_t i) {
   if (parts->owner != FG_QUANTITY_OF_BUMP) return true;
   return !(((const fg_bump *)fg_foil_part_at(parts, i))->flags & FG_BUMP_CRUSHED);
 }
@@ -126,7 +126,7 @@ static void error_range(const fg_design *design, const error_plot *plot, const f
     for (size_t i = 0; i < parts->count; i++) {
       double value = fg_quantity_value(row, fg_foil_part_at(parts, i));
       double u = fg_quantity_uncertainty(row, fg_foil_part_at(parts, i));
-      if (!isfinite(value) || !is_shown(parts, i)) continue;
+      if (!isfinite(value) || !is_part_shown(parts, i)) continue;
       double expanded = isfinite(u) ? FG_COVERAGE_FACTOR * u : 0;
       range[0] = fmin(range[0], value - expanded);
       range[1] = fmax(range[1], value + expanded);

@@ -7,7 +7,7 @@
 #include "report/measure/page_tables.h"
 
 /* "4.042 %, max 3" of the first that lies farthest out; the others by their numbers. */
-static void put_number(FILE *out, const fg_judgement *one) {
+static void put_judged_number(FILE *out, const fg_judgement *one) {
   int decimals = one->row->kind == FG_QUANTITY_COUNT ? 0 : fg_report_decimals(one->row, one->u);
   if (!isfinite(one->value)) return;
   fprintf(out, " (%s%.*f%s%s, %s %.7g)", one->value < 0 ? "−" : "", decimals, fabs(one->value),
@@ -15,7 +15,7 @@ static void put_number(FILE *out, const fg_judgement *one) {
           one->margin.limit);
 }
 
-static bool is_told(const fg_judgement *one, fg_verdict verdict) {
+static bool is_listed(const fg_judgement *one, fg_verdict verdict) {
   return one->verdict == verdict && !one->missing;
 }
 
@@ -25,14 +25,14 @@ static size_t put_list(FILE *out, const fg_decision *decision, fg_verdict verdic
   size_t told = 0;
   for (size_t i = 0; i < decision->count; i++) {
     const fg_judgement *one = &decision->judgements[i];
-    if (!is_told(one, verdict)) continue;
+    if (!is_listed(one, verdict)) continue;
     if (one->tolerance != last)
       fprintf(out, "%s%s%s%s", last ? "; " : "", one->row->words, one->number ? ": " : "",
               one->number ? fg_foil_part_word(one->row) : "");
     else
       fputc(',', out);
     if (one->number) fprintf(out, " %d", one->number);
-    put_number(out, one);
+    put_judged_number(out, one);
     last = one->tolerance;
     told++;
   }
@@ -52,7 +52,7 @@ void fg_html_reasons(FILE *out, const fg_decision *decision, fg_verdict verdict)
   size_t values = 0;
   fg_cures cures = {.count = 0};
   for (size_t i = 0; i < decision->count; i++)
-    values += is_told(&decision->judgements[i], verdict);
+    values += is_listed(&decision->judgements[i], verdict);
   if (!values) return;
   fprintf(out, "<p class=\"reasons\"><b>%s (%zu %s):</b> ", fg_html_verdict_title(verdict), values,
           values == 1 ? "value" : "values");
@@ -69,8 +69,8 @@ void fg_html_defect(FILE *out, const fg_design *design, const fg_foil *foil) {
     fprintf(out, "<p class=\"reasons\"><b>Rejected:</b> %s.</p>\n", words);
 }
 
-void fg_html_why(FILE *out, const fg_design *design, const fg_foil *foil,
-                 const fg_decision *decision) {
+void fg_html_reason_line(FILE *out, const fg_design *design, const fg_foil *foil,
+                         const fg_decision *decision) {
   static const fg_verdict told[] = {FG_VERDICT_FAIL, FG_VERDICT_NOT_MEASURED, FG_VERDICT_UNDECIDED};
   char words[200];
   bool any = false;
@@ -85,7 +85,7 @@ void fg_html_why(FILE *out, const fg_design *design, const fg_foil *foil,
   for (size_t k = 0; k < sizeof told / sizeof *told; k++) {
     size_t values = 0;
     for (size_t i = 0; i < decision->count; i++)
-      values += is_told(&decision->judgements[i], told[k]);
+      values += is_listed(&decision->judgements[i], told[k]);
     if (!values) continue;
     fputs(any ? "; " : "", out);
     if (told[k] != FG_VERDICT_FAIL) fprintf(out, "%s: ", fg_html_verdict_title(told[k]));
@@ -106,10 +106,10 @@ fg_status fg_html_disc_reasons(fg_context *ctx, FILE *out, const fg_design *desi
       FG_TRY(fg_disc_decide(ctx, design, &measurement->discs[i], &decision));
       for (size_t j = 0; j < decision.count; j++) {
         const fg_judgement *one = &decision.judgements[j];
-        if (!is_told(one, told[k])) continue;
+        if (!is_listed(one, told[k])) continue;
         if (!any) fprintf(out, "<p class=\"reasons\"><b>%s:</b> ", fg_html_verdict_title(told[k]));
         fprintf(out, "%s%s of disc %d", any ? "; " : "", one->row->words, one->number);
-        put_number(out, one);
+        put_judged_number(out, one);
         any = true;
       }
       if (told[k] == FG_VERDICT_UNDECIDED) fg_cures_add(&cures, &decision);

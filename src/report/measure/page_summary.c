@@ -73,7 +73,7 @@ static fg_status put_foil(fg_context *ctx, FILE *out, const fg_report *report,
   fg_foil_view_of(report->design->kind)
       ->summary(out, report->design, foil->flags & FG_FOIL_NOT_MEASURED ? NULL : foil);
   fputs("<td class=\"words\">", out);
-  fg_html_why(out, report->design, foil, &decision);
+  fg_html_reason_line(out, report->design, foil, &decision);
   fputs("</td></tr>\n", out);
   fg_decision_free(&decision);
   return FG_OK;

@@ -38,8 +38,8 @@ static void put_quantity_value(FILE *out, const fg_quantity *row, const void *ob
 }
 
 /* `judged`: the values are those of a part of the design. */
-static void put_cell(FILE *out, const fg_design *design, const fg_quantity *row, const void *object,
-                     bool judged) {
+static void put_part_cell(FILE *out, const fg_design *design, const fg_quantity *row,
+                          const void *object, bool judged) {
   const fg_tolerance *tolerance = find_tolerance(design, row->name);
   fg_verdict verdict = FG_VERDICT_NONE;
   if (tolerance && judged)
@@ -148,7 +148,7 @@ static void put_key(FILE *out, const fg_quantity *const *columns, size_t count) 
   fputs(". The small number below a value is its ±.</p>\n", out);
 }
 
-static void put_table(FILE *out, const fg_design *design, const table_rows *rows) {
+static void put_part_table(FILE *out, const fg_design *design, const table_rows *rows) {
   const fg_quantity *columns[PAGE_COLUMNS_MAX];
   size_t count = choose_columns(design, rows->owner, columns);
   put_key(out, columns, count);
@@ -161,7 +161,8 @@ static void put_table(FILE *out, const fg_design *design, const table_rows *rows
     else
       fprintf(out, "<tr><td>%d</td>", state.number);
     for (size_t k = 0; k < count && !state.unfitted; k++)
-      put_cell(out, design, columns[k], object, !rows->foil || fg_foil_is_measured(rows->foil));
+      put_part_cell(out, design, columns[k], object,
+                    !rows->foil || fg_foil_is_measured(rows->foil));
     put_flag_cell(out, state.words, state.flags, state.findings);
   }
   fputs("</tbody></table></div>\n", out);
@@ -175,7 +176,7 @@ void fg_html_foil_table(FILE *out, const fg_design *design, const fg_foil *foil)
         out);
   for (size_t i = 0; i < count; i++) {
     fprintf(out, "<tr><td>%s</td>", rows[i]->words);
-    put_cell(out, design, rows[i], foil, fg_foil_is_measured(foil));
+    put_part_cell(out, design, rows[i], foil, fg_foil_is_measured(foil));
     fprintf(out, "<td>%s</td><td>", rows[i]->unit);
     put_limits(out, find_tolerance(design, rows[i]->name));
     fputs("</td></tr>\n", out);
@@ -192,12 +193,12 @@ void fg_html_part_table(FILE *out, const fg_design *design, const fg_foil *foil)
                            parts.count,
                            beams ? sizeof *foil->beams : sizeof *foil->bumps,
                            foil};
-  put_table(out, design, &rows);
+  put_part_table(out, design, &rows);
 }
 
 void fg_html_disc_table(FILE *out, const fg_design *design, const fg_measurement *measurement) {
   const table_rows rows = {
       FG_QUANTITY_OF_DISC,        "disc", (const char *)measurement->discs, measurement->disc_count,
       sizeof *measurement->discs, NULL};
-  put_table(out, design, &rows);
+  put_part_table(out, design, &rows);
 }

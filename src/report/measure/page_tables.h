@@ -24,8 +24,8 @@ void fg_html_defect(FILE *out, const fg_design *design, const fg_foil *foil);
 fg_status fg_html_disc_reasons(fg_context *ctx, FILE *out, const fg_design *design,
                                const fg_measurement *measurement);
 /* Writes all reasons in one line, without a paragraph. */
-void fg_html_why(FILE *out, const fg_design *design, const fg_foil *foil,
-                 const fg_decision *decision);
+void fg_html_reason_line(FILE *out, const fg_design *design, const fg_foil *foil,
+                         const fg_decision *decision);
 
 /* Limits (page_limits.c). */
 

@@ -58,7 +58,7 @@ static fg_point to_mm(const fg_canvas *canvas, fg_point px) {
                     (px.y - canvas->origin_px[1]) / canvas->px_per_mm[1]};
 }
 
-static void take_box(cells *at, double left, double top, double right, double bottom) {
+static void occupy_box(cells *at, double left, double top, double right, double bottom) {
   int from = (int)fmax(0, floor(left / at->size_px)), to = (int)floor(right / at->size_px);
   int low = (int)fmax(0, floor(top / at->size_px)), high = (int)floor(bottom / at->size_px);
   for (int row = low; row <= high && row < at->rows; row++)
@@ -153,7 +153,7 @@ static void add_beam(marks *at, const fg_decision *decision, const fg_beam *beam
   add_text(at, text, middle, ring_over_width * width);
 }
 
-static void take_beams(marks *at) {
+static void occupy_beams(marks *at) {
   for (size_t i = 0; at->foil && i < at->foil->beam_count; i++) {
     const fg_beam *beam = &at->foil->beams[i];
     double length = hypot(beam->tip_mm.x - beam->root_mm.x, beam->tip_mm.y - beam->root_mm.y);
@@ -163,23 +163,23 @@ static void take_beams(marks *at) {
           to_px(at->canvas,
                 (fg_point){beam->root_mm.x + s / length * (beam->tip_mm.x - beam->root_mm.x),
                            beam->root_mm.y + s / length * (beam->tip_mm.y - beam->root_mm.y)});
-      take_box(&at->cells, px.x - half_px, px.y - half_px, px.x + half_px, px.y + half_px);
+      occupy_box(&at->cells, px.x - half_px, px.y - half_px, px.x + half_px, px.y + half_px);
     }
   }
 }
 
-static void take_strip(marks *at) {
+static void occupy_strip(marks *at) {
   const fg_canvas *canvas = at->canvas;
   double band_px = band_mm * canvas->px_per_mm[0];
   for (size_t i = 0; at->foil && i < at->foil->strip.count; i++) {
     const fg_station *station = &at->foil->strip.stations[i];
     fg_point px = to_px(canvas, (fg_point){(station->left.x + station->right.x) / 2,
                                            (station->left.y + station->right.y) / 2});
-    take_box(&at->cells, px.x - band_px, px.y - band_px, px.x + band_px, px.y + band_px);
+    occupy_box(&at->cells, px.x - band_px, px.y - band_px, px.x + band_px, px.y + band_px);
   }
 }
 
-static void take_numbers(marks *at) {
+static void occupy_numbers(marks *at) {
   const fg_canvas *canvas = at->canvas;
   double unit = canvas->unit_px;
   for (size_t i = 0; at->foil && i < at->foil->bump_count; i++) {
@@ -191,45 +191,46 @@ static void take_numbers(marks *at) {
     fg_point px =
         to_px(canvas, (fg_point){bump->centre_mm.x + share * (centre.x - bump->centre_mm.x),
                                  bump->centre_mm.y + share * (centre.y - bump->centre_mm.y)});
-    take_box(&at->cells, px.x - 14 * unit, px.y - 10 * unit, px.x + 14 * unit, px.y + 10 * unit);
+    occupy_box(&at->cells, px.x - 14 * unit, px.y - 10 * unit, px.x + 14 * unit, px.y + 10 * unit);
   }
 }
 
-static void take_centre(marks *at) {
+static void occupy_centre(marks *at) {
   if (!at->foil) return;
   fg_point centre = to_px(at->canvas, at->foil->overall.centre_mm);
   double around = 40 * at->canvas->unit_px;
   if (isfinite(centre.x + centre.y))
-    take_box(&at->cells, centre.x - around, centre.y - around, centre.x + around,
-             centre.y + around);
+    occupy_box(&at->cells, centre.x - around, centre.y - around, centre.x + around,
+               centre.y + around);
 }
 
-static void take_discs(marks *at) {
+static void occupy_discs(marks *at) {
   const fg_canvas *canvas = at->canvas;
   for (size_t i = 0; i < at->measurement->disc_count; i++) {
     const fg_disc *disc = &at->measurement->discs[i];
     double radius_px = ring_over_disc * disc->radius_mm * canvas->px_per_mm[0];
     fg_point px = to_px(canvas, disc->centre_mm);
     if (isfinite(px.x + px.y + radius_px))
-      take_box(&at->cells, px.x - radius_px, px.y - radius_px, px.x + radius_px, px.y + radius_px);
+      occupy_box(&at->cells, px.x - radius_px, px.y - radius_px, px.x + radius_px,
+                 px.y + radius_px);
   }
 }
 
 /* Marks the cells of the drawing as occupied. */
-static void take_drawing(marks *at) {
+static void occupy_drawing(marks *at) {
   const fg_canvas *canvas = at->canvas;
   fg_drawing_box scale = fg_drawing_scale_box(canvas, at->measurement);
   fg_point low = to_px(canvas, scale.low), high = to_px(canvas, scale.high);
-  take_box(&at->cells, low.x, low.y, high.x, high.y);
-  take_centre(at);
-  take_strip(at);
-  take_beams(at);
-  take_numbers(at);
-  take_discs(at);
+  occupy_box(&at->cells, low.x, low.y, high.x, high.y);
+  occupy_centre(at);
+  occupy_strip(at);
+  occupy_beams(at);
+  occupy_numbers(at);
+  occupy_discs(at);
   for (size_t i = 0; i < at->count; i++) {
     double ring_px = at->list[i].ring_mm * canvas->px_per_mm[0];
     fg_point px = to_px(canvas, at->list[i].at);
-    take_box(&at->cells, px.x - ring_px, px.y - ring_px, px.x + ring_px, px.y + ring_px);
+    occupy_box(&at->cells, px.x - ring_px, px.y - ring_px, px.x + ring_px, px.y + ring_px);
   }
 }
 
@@ -276,8 +277,8 @@ static fg_status draw_mark(fg_context *ctx, marks *at, const mark *one) {
   if (one->ring_mm > 0)
     FG_TRY(fg_canvas_arc(ctx, at->canvas, &ring, 0, full_turn_rad, (fg_pen){colour, 3, 0}));
   if (!find_place(at, one, &middle)) return FG_OK;
-  take_box(&at->cells, middle.x - one->width_px / 2, middle.y - one->height_px / 2,
-           middle.x + one->width_px / 2, middle.y + one->height_px / 2);
+  occupy_box(&at->cells, middle.x - one->width_px / 2, middle.y - one->height_px / 2,
+             middle.x + one->width_px / 2, middle.y + one->height_px / 2);
   if (one->ring_mm > 0) FG_TRY(draw_leader(ctx, at->canvas, one, middle, (fg_pen){colour, 1.4, 0}));
   return fg_canvas_text(ctx, at->canvas, to_mm(at->canvas, middle), letter_units, 0.5, colour,
                         one->text);
@@ -298,7 +299,7 @@ static fg_status draw_marks(fg_context *ctx, marks *at) {
   FG_TRY(fg_memory_allocate(ctx, (size_t)at->cells.columns, (size_t)at->cells.rows, &block));
   at->cells.taken = block;
   memset(block, 0, (size_t)at->cells.columns * (size_t)at->cells.rows);
-  take_drawing(at);
+  occupy_drawing(at);
   fg_sort_items(at->list, at->count, sizeof *at->list, by_excess);
   fg_status status = FG_OK;
   for (size_t i = 0; i < at->count && status == FG_OK; i++)
@@ -307,7 +308,7 @@ static fg_status draw_marks(fg_context *ctx, marks *at) {
   return status;
 }
 
-static const fg_bump *find_bump(const fg_foil *foil, int number) {
+static const fg_bump *find_bump_by_number(const fg_foil *foil, int number) {
   for (size_t i = 0; i < foil->bump_count; i++)
     if (foil->bumps[i].number == number && isfinite(foil->bumps[i].position_deg))
       return &foil->bumps[i];
@@ -318,14 +319,15 @@ static const fg_bump *find_bump(const fg_foil *foil, int number) {
  * one pitch beyond the last. False: too few of them are there. */
 static bool find_gap(const fg_foil *foil, int number, fg_point *at) {
   static const double radian = 3.14159265358979323846 / 180;
-  const fg_bump *before = find_bump(foil, number - 1), *behind = find_bump(foil, number + 1);
+  const fg_bump *before = find_bump_by_number(foil, number - 1),
+                *behind = find_bump_by_number(foil, number + 1);
   double turn_deg;
   if (before && behind) {
     turn_deg =
         before->position_deg + remainder(behind->position_deg - before->position_deg, 360) / 2;
   } else {
     const fg_bump *near = before ? before : behind;
-    const fg_bump *next = find_bump(foil, before ? number - 2 : number + 2);
+    const fg_bump *next = find_bump_by_number(foil, before ? number - 2 : number + 2);
     if (!near || !next) return false;
     turn_deg = near->position_deg + remainder(near->position_deg - next->position_deg, 360);
   }

@@ -14,7 +14,8 @@
 
 /* ---- the effects ---- */
 
-static fg_status say_effect(fg_context *ctx, const fg_scanner_model_effect *effect, char **text) {
+static fg_status append_effect(fg_context *ctx, const fg_scanner_model_effect *effect,
+                               char **text) {
   char value[64];
   FG_TRY(fg_text_append(ctx, text, "%s (", effect->words));
   for (size_t k = 0; k < effect->parameters; k++) {
@@ -36,7 +37,7 @@ static fg_status effects_of(fg_context *ctx, const fg_scanner_model *model, char
   if (!facts.effects) return fg_text_print(ctx, text, "nothing: no error of the scanner was found");
   for (size_t i = 0; i < facts.effects; i++) {
     if (i) FG_TRY(fg_text_append(ctx, text, "; "));
-    FG_TRY(say_effect(ctx, &facts.effect[i], text));
+    FG_TRY(append_effect(ctx, &facts.effect[i], text));
   }
   return FG_OK;
 }
@@ -113,7 +114,7 @@ void fg_scale_words(const fg_scanner_model *model, const fg_calibration *calibra
     fg_calibration_budget terms = fg_calibration_terms(calibration);
     double max = fmax(terms.length[0], terms.length[1]);
     fg_text_clip(words, size,
-                 "It holds what the stated calibration leaves in doubt: %.2g %% of a length, the "
+                 "It includes the uncertainty of the stated calibration: %.2g %% of a length, the "
                  "same in every foil of this scanner%s.",
                  100 * FG_COVERAGE_FACTOR * max,
                  model ? "; what the scanner's model corrects is in it too" : "");
@@ -191,7 +192,7 @@ void fg_json_correction(fg_json *json, const fg_correction *c) {
   fg_json_object_end(json);
 }
 
-static fg_status put_text(FILE *out, fg_status status, char *text) {
+static fg_status put_model_text(FILE *out, fg_status status, char *text) {
   if (status == FG_OK) fg_html_text(out, text);
   free(text);
   return status;
@@ -203,10 +204,10 @@ fg_status fg_html_corrected(fg_context *ctx, FILE *out, const fg_scanner_model *
   if (!model) return FG_OK;
   fputs("<p class=\"corrected\"><b>Corrected by the scanner&#39;s model</b> ", out);
   fg_status status = title_of(ctx, model, &text);
-  FG_TRY(put_text(out, status, text));
+  FG_TRY(put_model_text(out, status, text));
   fputs(". It corrects ", out);
   status = effects_of(ctx, model, &text);
-  FG_TRY(put_text(out, status, text));
+  FG_TRY(put_model_text(out, status, text));
   if (moved[0]) fprintf(out, ". It moved %s, and added %s", moved, added);
   fputs(fg_scanner_model_is_tied(model)
             ? ". Other explanations did as well when it was found; u holds how far from "
@@ -226,7 +227,7 @@ fg_status fg_html_model_facts(fg_context *ctx, FILE *out, const fg_scanner_model
   fg_scanner_model_facts facts;
   fg_scanner_model_describe(model, &facts);
   fg_status status = title_of(ctx, model, &text);
-  FG_TRY(put_text(out, status, text));
+  FG_TRY(put_model_text(out, status, text));
   fprintf(out,
           "</dd>\n<dt>Its SHA-256</dt><dd>%s</dd>\n<dt>Its region</dt><dd>x %.4g to %.4g, y %.4g "
           "to %.4g mm of the glass</dd>\n",

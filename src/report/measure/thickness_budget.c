@@ -19,7 +19,7 @@ static double tone_share(const fg_foil *foil) {
   return u > 0 ? tone * tone / (u * u) : NAN;
 }
 
-static void put_row(FILE *out, const char *words, double u_mm, double share) {
+static void put_thickness_row(FILE *out, const char *words, double u_mm, double share) {
   fprintf(out, "<tr><td class=\"w\">%s</td><td>%.2g</td><td>%.0f</td></tr>\n", words,
           expanded_um(u_mm), 100 * share);
 }
@@ -38,9 +38,10 @@ void fg_html_thickness_budget(FILE *out, const fg_design *design, const fg_foil 
         "<th class=\"w\">what its U holds</th><th>U, µm</th><th>% of u²</th></tr></thead>\n"
         "<tbody>\n",
         out);
-  put_row(out, tone_words(design, foil), foil->u_thickness_tone_mm, share);
-  put_row(out, "scatter along the strip, compression", u * sqrt(fmax(0, 1 - share)), 1 - share);
-  put_row(out, "thickness by the scan", u, 1);
+  put_thickness_row(out, tone_words(design, foil), foil->u_thickness_tone_mm, share);
+  put_thickness_row(out, "scatter along the strip, compression", u * sqrt(fmax(0, 1 - share)),
+                    1 - share);
+  put_thickness_row(out, "thickness by the scan", u, 1);
   fputs("</tbody></table></div>\n<p class=\"note\">", out);
   fprintf(out, "The scan: %.4f ± %.4f mm. ", foil->thickness_scan_mm, FG_COVERAGE_FACTOR * u);
   if (design->thickness_measured_mm > 0)

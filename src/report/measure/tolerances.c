@@ -101,8 +101,8 @@ static double severity_of(const fg_design *design, const fg_tolerance *tolerance
   return 1 - margin->inside / allowed_deviation(design, tolerance, row, margin->limit, u);
 }
 
-static fg_judgement judge(const fg_design *design, const fg_tolerance *tolerance,
-                          const fg_quantity *row, const void *object, int number) {
+static fg_judgement judge_quantity(const fg_design *design, const fg_tolerance *tolerance,
+                                   const fg_quantity *row, const void *object, int number) {
   double value = fg_quantity_value(row, object), u = fg_quantity_uncertainty(row, object);
   fg_verdict verdict = fg_judge_value(tolerance, value, u);
   fg_margin margin = fg_margin_to(tolerance->lower, tolerance->upper, value);
@@ -232,7 +232,8 @@ bool fg_foil_defect(const fg_design *design, const fg_foil *foil, char *words, s
   return true;
 }
 
-static fg_status allocate(fg_context *ctx, size_t count, size_t each, fg_decision *decision) {
+static fg_status allocate_judgements(fg_context *ctx, size_t count, size_t each,
+                                     fg_decision *decision) {
   void *block;
   *decision = (fg_decision){.outcome = {.verdict = FG_VERDICT_NONE}};
   FG_TRY(fg_memory_allocate(ctx, count, each * sizeof *decision->judgements, &block));
@@ -240,7 +241,7 @@ static fg_status allocate(fg_context *ctx, size_t count, size_t each, fg_decisio
   return FG_OK;
 }
 
-static void take(fg_decision *decision, fg_judgement judgement) {
+static void add_judgement(fg_decision *decision, fg_judgement judgement) {
   fg_report_outcome *outcome = &decision->outcome;
   decision->judgements[decision->count++] = judgement;
   outcome->verdict = fg_verdict_worse(outcome->verdict, judgement.verdict);
@@ -256,8 +257,8 @@ static void judge_parts(const fg_design *design, const fg_tolerance *tolerance,
   for (int number = 1; number <= last; number++) {
     const void *part = find_part(foil, owner, number);
     bool hidden = number > found && may_be_hidden(foil);
-    take(decision, part ? judge(design, tolerance, row, part, number)
-                        : judge_nothing(tolerance, row, number, hidden));
+    add_judgement(decision, part ? judge_quantity(design, tolerance, row, part, number)
+                                 : judge_nothing(tolerance, row, number, hidden));
   }
 }
 
@@ -265,7 +266,7 @@ static bool is_sized(const fg_beam *beam) {
   return isfinite(beam->length_mm) && isfinite(beam->width_mm);
 }
 
-static bool is_whole(const fg_design *design, const fg_foil *foil) {
+static bool is_foil_whole(const fg_design *design, const fg_foil *foil) {
   for (size_t i = 0; i < foil->beam_count; i++)
     if (!is_sized(&foil->beams[i])) return false;
   for (size_t i = 0; i < foil->bump_count; i++)
@@ -279,14 +280,14 @@ static void judge_whole(const fg_design *design, const fg_foil *foil, fg_report_
     outcome->verdict = FG_VERDICT_FAIL;
     outcome->rejected = 1;
   }
-  if (!outcome->not_measured && !is_whole(design, foil)) add_unmeasured(outcome);
+  if (!outcome->not_measured && !is_foil_whole(design, foil)) add_unmeasured(outcome);
 }
 
 fg_status fg_foil_decide(fg_context *ctx, const fg_design *design, const fg_foil *foil,
                          fg_decision *decision) {
   const fg_quantity_owner owner = fg_foil_kind_parts(design->kind);
   size_t parts = fg_owner_is_part(owner) ? (size_t)last_number(design, foil) : 0;
-  FG_TRY(allocate(ctx, design->tolerance_count, parts + 1, decision));
+  FG_TRY(allocate_judgements(ctx, design->tolerance_count, parts + 1, decision));
   if (!fg_foil_is_measured(foil)) {
     add_unmeasured(&decision->outcome);
     return FG_OK;
@@ -294,7 +295,7 @@ fg_status fg_foil_decide(fg_context *ctx, const fg_design *design, const fg_foil
   for (size_t i = 0; i < design->tolerance_count; i++) {
     const fg_tolerance *tolerance = &design->tolerances[i];
     const fg_quantity *row = fg_quantity_find(FG_QUANTITY_OF_FOIL, tolerance->quantity);
-    if (row) take(decision, judge(design, tolerance, row, foil, 0));
+    if (row) add_judgement(decision, judge_quantity(design, tolerance, row, foil, 0));
     row = fg_owner_is_part(owner) ? fg_quantity_find(owner, tolerance->quantity) : NULL;
     if (row) judge_parts(design, tolerance, row, owner, foil, decision);
   }
@@ -304,11 +305,11 @@ fg_status fg_foil_decide(fg_context *ctx, const fg_design *design, const fg_foil
 
 fg_status fg_disc_decide(fg_context *ctx, const fg_design *design, const fg_disc *disc,
                          fg_decision *decision) {
-  FG_TRY(allocate(ctx, design->tolerance_count, 1, decision));
+  FG_TRY(allocate_judgements(ctx, design->tolerance_count, 1, decision));
   for (size_t i = 0; i < design->tolerance_count; i++) {
     const fg_tolerance *tolerance = &design->tolerances[i];
     const fg_quantity *row = fg_quantity_find(FG_QUANTITY_OF_DISC, tolerance->quantity);
-    if (row) take(decision, judge(design, tolerance, row, disc, disc->number));
+    if (row) add_judgement(decision, judge_quantity(design, tolerance, row, disc, disc->number));
   }
   return FG_OK;
 }
@@ -335,13 +336,14 @@ fg_status fg_bearing_decide(fg_context *ctx, const fg_design *design,
       .circularity_mm = NAN,
       .centred_min_mm = NAN,
   };
-  FG_TRY(allocate(ctx, design->tolerance_count, 1, decision));
+  FG_TRY(allocate_judgements(ctx, design->tolerance_count, 1, decision));
   for (size_t i = 0; i < design->tolerance_count; i++) {
     const fg_tolerance *tolerance = &design->tolerances[i];
     const fg_quantity *row = fg_quantity_of_bearing_for(tolerance->quantity);
     if (!row) continue;
-    fg_judgement judgement = judge(design, tolerance, row, clearance ? clearance : &unknown, 0);
-    take(decision, clearance && whole ? judgement : judge_part(tolerance, judgement));
+    fg_judgement judgement =
+        judge_quantity(design, tolerance, row, clearance ? clearance : &unknown, 0);
+    add_judgement(decision, clearance && whole ? judgement : judge_part(tolerance, judgement));
   }
   return FG_OK;
 }
@@ -357,8 +359,8 @@ static fg_verdict object_verdict(const fg_design *design, fg_quantity_owner owne
   for (size_t i = 0; i < design->tolerance_count; i++) {
     const fg_quantity *row = fg_quantity_find(owner, design->tolerances[i].quantity);
     if (row)
-      verdict =
-          fg_verdict_worse(verdict, judge(design, &design->tolerances[i], row, object, 0).verdict);
+      verdict = fg_verdict_worse(
+          verdict, judge_quantity(design, &design->tolerances[i], row, object, 0).verdict);
   }
   return verdict;
 }

@@ -14,8 +14,8 @@ typedef struct line {
   size_t count;
 } line;
 
-static void add(line *sum, fg_quantity_owner owner, const fg_quantity *row, const void *object,
-                const fg_calibrated *calibrated) {
+static void add_object(line *sum, fg_quantity_owner owner, const fg_quantity *row,
+                       const void *object, const fg_calibrated *calibrated) {
   double u = fg_quantity_uncertainty(row, object);
   double own = fg_quantity_calibration(owner, row, calibrated);
   if (!isfinite(u) || !isfinite(own)) return;
@@ -24,24 +24,24 @@ static void add(line *sum, fg_quantity_owner owner, const fg_quantity *row, cons
   sum->count++;
 }
 
-static void add_foil(line *sum, fg_quantity_owner owner, const fg_quantity *row,
-                     const fg_foil *foil) {
+static void add_foil_budget(line *sum, fg_quantity_owner owner, const fg_quantity *row,
+                            const fg_foil *foil) {
   if (!fg_foil_is_measured(foil)) return;
-  if (owner == FG_QUANTITY_OF_FOIL) add(sum, owner, row, foil, &foil->calibrated);
+  if (owner == FG_QUANTITY_OF_FOIL) add_object(sum, owner, row, foil, &foil->calibrated);
   for (size_t b = 0; owner == FG_QUANTITY_OF_BUMP && b < foil->bump_count; b++)
-    add(sum, owner, row, &foil->bumps[b], &foil->bumps[b].calibrated);
+    add_object(sum, owner, row, &foil->bumps[b], &foil->bumps[b].calibrated);
   for (size_t b = 0; owner == FG_QUANTITY_OF_BEAM && b < foil->beam_count; b++)
-    add(sum, owner, row, &foil->beams[b], &foil->beams[b].calibrated);
+    add_object(sum, owner, row, &foil->beams[b], &foil->beams[b].calibrated);
 }
 
 /* `foil` NULL: every foil of the scan. */
-static void add_scan(line *sum, fg_quantity_owner owner, const fg_quantity *row,
-                     const fg_measurement *m, const fg_foil *foil) {
-  if (foil) add_foil(sum, owner, row, foil);
+static void add_scan_budget(line *sum, fg_quantity_owner owner, const fg_quantity *row,
+                            const fg_measurement *m, const fg_foil *foil) {
+  if (foil) add_foil_budget(sum, owner, row, foil);
   for (size_t f = 0; !foil && f < m->foil_count; f++)
-    add_foil(sum, owner, row, &m->foils[f]);
+    add_foil_budget(sum, owner, row, &m->foils[f]);
   for (size_t d = 0; owner == FG_QUANTITY_OF_DISC && d < m->disc_count; d++)
-    add(sum, owner, row, &m->discs[d], &m->discs[d].calibrated);
+    add_object(sum, owner, row, &m->discs[d], &m->discs[d].calibrated);
 }
 
 static const fg_quantity_owner owners[] = {FG_QUANTITY_OF_FOIL, FG_QUANTITY_OF_BUMP,
@@ -69,7 +69,7 @@ static void write_budget(fg_json *json, const fg_report *report, fg_quantity_own
     line sum = {0};
     for (size_t s = 0; s < report->scan_count; s++)
       if (report->scans[s].measurement)
-        add_scan(&sum, owner, shown[i], report->scans[s].measurement, NULL);
+        add_scan_budget(&sum, owner, shown[i], report->scans[s].measurement, NULL);
     if (sum.count) write_line(json, shown[i], &sum);
   }
 }
@@ -89,7 +89,7 @@ void fg_json_report_calibration(fg_json *json, const fg_report *report) {
   fg_json_object_end(json);
 }
 
-static void put_line(FILE *out, const fg_quantity *row, const line *sum) {
+static void put_budget_line(FILE *out, const fg_quantity *row, const line *sum) {
   double k = FG_COVERAGE_FACTOR, all = k * root_mean(sum->all, sum->count);
   int decimals = fg_report_decimals(row, all / k) + 1;
   fprintf(out,
@@ -109,8 +109,8 @@ void fg_html_uncertainty_budget(FILE *out, const fg_measurement *measurement, co
         fg_quantity_shown(owners[k], FG_QUANTITY_ON_PAGE, measurement->design.kind, shown);
     for (size_t i = 0; i < count; i++) {
       line sum = {0};
-      add_scan(&sum, owners[k], shown[i], measurement, foil);
-      if (sum.count) put_line(out, shown[i], &sum);
+      add_scan_budget(&sum, owners[k], shown[i], measurement, foil);
+      if (sum.count) put_budget_line(out, shown[i], &sum);
     }
   }
   fputs("</tbody></table></div>\n", out);

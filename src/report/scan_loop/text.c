@@ -8,10 +8,10 @@
 #include "core/file.h"
 #include "foilgauge/report.h"
 #include "foilgauge/scan_loop.h"
-#include "page/wrapped.h"
 #include "report/correction_words.h"
 #include "report/scan_loop/bumps.h"
 #include "report/scan_loop/parts.h"
+#include "report/value_words.h"
 
 static void put_channel_check(FILE *out, const fg_channel_check *channel_check) {
   if (channel_check->verdict == FG_CHANNEL_CHECK_NONE) return;

@@ -45,7 +45,7 @@ void fg_json_stiffness_case(fg_json *json, const fg_stiffness_case *bump, int mo
   fg_json_object_end(json);
 }
 
-static void put_number(FILE *out, double value, int digits, bool sign) {
+static void put_stiffness_number(FILE *out, double value, int digits, bool sign) {
   if (isfinite(value))
     fprintf(out, "<td>%s%.*g</td>", value < 0 ? "−" : sign ? "+" : "", digits, fabs(value));
   else
@@ -59,14 +59,14 @@ static void put_slope(FILE *out, double value) {
     fputs("<td>–</td>", out);
 }
 
-static void put_row(FILE *out, const char *title, const fg_stiffness_case *bump, int model,
-                    double pitch_mm) {
+static void put_stiffness_row(FILE *out, const char *title, const fg_stiffness_case *bump,
+                              int model, double pitch_mm) {
   const fg_stiffness_line *line = &bump->lines[model];
   const fg_arch_sensitivity *slope = &line->sensitivity;
   fprintf(out, "<tr><td>%s</td><td class=\"w\">%s</td>", title, bump->title);
-  put_number(out, line->stiffness_n_mm2, 4, false);
-  put_number(out, line->stiffness_n_mm2 / pitch_mm, 3, false);
-  put_number(out, line->stiffness_n_mm2 / bump->lines[0].stiffness_n_mm2, 3, false);
+  put_stiffness_number(out, line->stiffness_n_mm2, 4, false);
+  put_stiffness_number(out, line->stiffness_n_mm2 / pitch_mm, 3, false);
+  put_stiffness_number(out, line->stiffness_n_mm2 / bump->lines[0].stiffness_n_mm2, 3, false);
   put_slope(out, slope->radius);
   put_slope(out, slope->angle);
   put_slope(out, slope->radius_at_arc_length);
@@ -102,15 +102,16 @@ void fg_html_stiffness_table(FILE *out, const fg_stiffness_case *cases, size_t c
         out);
   for (int model = 0; model < FG_STIFFNESS_MODELS; model++)
     for (size_t i = 0; i < count; i++)
-      put_row(out, i ? "" : fg_stiffness_models()[model].title, &cases[i], model, pitch_mm);
+      put_stiffness_row(out, i ? "" : fg_stiffness_models()[model].title, &cases[i], model,
+                        pitch_mm);
   fputs("</tbody></table></div>\n", out);
   put_sources(out, &cases[count - 1]);
 }
 
-static void put_text(FILE *out, int width, const char *format, double value)
+static void put_stiffness_text(FILE *out, int width, const char *format, double value)
     __attribute__((format(printf, 3, 0)));
 
-static void put_text(FILE *out, int width, const char *format, double value) {
+static void put_stiffness_text(FILE *out, int width, const char *format, double value) {
   char number[32] = "-";
   if (isfinite(value)) snprintf(number, sizeof number, format, value);
   fprintf(out, " %*s", width, number);
@@ -128,10 +129,10 @@ void fg_text_stiffness_table(FILE *out, const fg_stiffness_case *bump, double pi
     const double slopes[] = {slope->radius, slope->angle, slope->radius_at_arc_length,
                              slope->thickness};
     fprintf(out, "  %-26s", fg_stiffness_models()[i].title);
-    put_text(out, 10, "%.4g", line->stiffness_n_mm2);
-    put_text(out, 10, "%.4g", line->stiffness_n_mm2 / pitch_mm);
+    put_stiffness_text(out, 10, "%.4g", line->stiffness_n_mm2);
+    put_stiffness_text(out, 10, "%.4g", line->stiffness_n_mm2 / pitch_mm);
     for (size_t k = 0; k < sizeof slopes / sizeof *slopes; k++)
-      put_text(out, 8, "%+.2f", slopes[k]);
+      put_stiffness_text(out, 8, "%+.2f", slopes[k]);
     fputs("\n", out);
     if (*line->words) fprintf(out, "    %s\n", line->words);
   }

@@ -7,11 +7,11 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "foilgauge/loop.h"
-#include "page/wrapped.h"
 #include "report/table_loop/checks.h"
 #include "report/table_loop/next.h"
 #include "report/table_loop/reading.h"
 #include "report/table_loop/words.h"
+#include "report/value_words.h"
 
 const char *fg_loop_noise_model(const fg_loop_result *result) {
   bool serial = fg_loop_claims_scatter(result, FG_LOOP_SERIAL);
