@@ -3,8 +3,8 @@
 #include <limits.h>
 #include <math.h>
 
+#include "effect/effect.h"
 #include "effect/midline.h"
-#include "effect/rows_of_effects.h"
 
 /* Weight of a curve's coefficients. It is larger for harmonics of the edge's direction, which are
  * less distinct from the geometry (tuned on reports/loop_scans.md, tier curves). */

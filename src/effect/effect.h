@@ -162,4 +162,7 @@ const char *fg_effect_coordinate_title(fg_effect_coordinate coordinate);
  * a trace on a disc, and some traces are the same as the disc's own form error. */
 bool fg_effect_shows(const fg_edge_fit *edge_fit, const fg_effect *effect);
 
+/* Rows of the table by subject, for table.c; each list ends with id NULL. */
+extern const fg_effect fg_effects_scanner[], fg_effects_part[], fg_effects_curves[];
+
 #endif

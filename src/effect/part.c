@@ -3,8 +3,8 @@
  * displacement. */
 #include <math.h>
 
+#include "effect/effect.h"
 #include "effect/midline.h"
-#include "effect/rows_of_effects.h"
 
 /* a cos 2(psi - psi0): a cosine and a sine. */
 static size_t cosines(const fg_edge_fit_row *row, double share, double *values) {

@@ -3,7 +3,7 @@
  */
 #include <math.h>
 
-#include "effect/rows_of_effects.h"
+#include "effect/effect.h"
 
 /* Starts of the search for a shape: a ripple's periods lie closer than a step's places. */
 enum { PERIOD_STARTS = 400, PLACE_STARTS = 200, LENGTH_STARTS = 60 };

@@ -13,6 +13,16 @@
 /* Maximum number of knots of free curves that the few places of discs determine. */
 enum { DISC_KNOTS = 12, COARSE_KNOTS = 6 };
 
+fg_status fg_edge_fit_build(fg_context *ctx, const fg_edge_fit_view *views, size_t count,
+                            fg_edge_fit *edge_fit) {
+  memset(edge_fit, 0, sizeof *edge_fit);
+  for (size_t i = 1; i < count; i++)
+    if (!views[i].disc != !views[0].disc)
+      return fg_fail(ctx, FG_ERR_DATA, "foils and discs in one loop: give scans of one kind");
+  if (count && views[0].disc) return fg_edge_fit_build_discs(ctx, views, count, edge_fit);
+  return fg_edge_fit_build_foils(ctx, views, count, edge_fit);
+}
+
 void fg_edge_fit_free(fg_edge_fit *edge_fit) {
   if (!edge_fit) return;
   for (size_t i = 0; edge_fit->parts && i < edge_fit->part_count; i++)
