@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a process can do against a tolerance (ISO 22514-2; Bissell 1990).
+/* Capability of a process against a tolerance (ISO 22514-2; Bissell 1990).
  *
  *   Pp  = (U - L) / 6 s        Ppk = min(U - mean, mean - L) / 3 s       s: of all values
  *   Cp  = (U - L) / 6 sigma    Cpk = min(U - mean, mean - L) / 3 sigma   sigma: within subgroups
- * Cp and Cpk speak of what the process will do, so they are stated only when a control chart says
- * that it is stable; otherwise Pp and Ppk tell what it did. Where values are not normal (Anderson
+ * Cp and Cpk predict the process, so they are stated only when a control chart shows it stable;
+ * Pp and Ppk describe the values at hand. Where values are not normal (Anderson
  * and Darling 1954, case of unknown mean and sd; p-value after D'Agostino and Stephens 1986), the
  * quantile method: 6 s becomes X99.865 - X0.135, the mean becomes X50, all of the kernel density.
  *

@@ -1,13 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Control charts: does the process run as it did, or has something changed?
+/* Control charts, which show whether a process has changed.
  *
- * Limits lie three sigma from the centre; sigma is what the process does within subgroups (or from
- * one value to the next), never the spread of everything, which would hide what the chart looks
- * for. Unbiasing factors follow from the normal distribution:
- *   c4(n) = sqrt(2 / (n-1)) Gamma(n/2) / Gamma((n-1)/2),
- *   d2(n) = ∫ (1 - (1 - Phi)^n - Phi^n) dx.
- * Subgroups may differ in size: sigma is the mean of s_i / c4(n_i) (or R_i / d2(n_i)) over
- * subgroups of two or more.
+ * Limits lie three sigma from the centre; sigma is the spread within subgroups (or from one
+ * value to the next), never that of all values, which would hide the changes that the chart seeks.
+ * Unbiasing factors follow from the normal distribution: c4(n) = sqrt(2 / (n-1)) Gamma(n/2) /
+ * Gamma((n-1)/2), d2(n) = ∫ (1 - (1 - Phi)^n - Phi^n) dx. Subgroups may differ in size: sigma is
+ * the mean of s_i / c4(n_i) (or R_i / d2(n_i)) over subgroups of two or more.
  *
  * Run rules (Nelson 1984), zones in sigma of the plotted points:
  *   1 one point beyond 3          5 two of three beyond 2 on one side

@@ -89,7 +89,7 @@ typedef struct fg_model_column {
 
 #define FG_MODEL_CONSTANT ((size_t)-1)
 
-/* The model matrix, with what is needed to evaluate it at a new setting. */
+/* The model matrix, with the levels and terms that evaluate it at a new setting. */
 typedef struct fg_model {
   fg_formula formula; /* terms deduplicated and ordered; owned */
   fg_levels *levels;  /* formula.variables; count 0 where the variable is a number */

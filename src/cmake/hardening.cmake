@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# What Debian asks of programs that read files from outside: a canary before each return address, lengths that the compiler
+# Hardening as Debian asks of programs that read files from outside: a canary before each return address, lengths that the compiler
 # knows checked at run time, and tables of addresses that are read-only once the program runs. Release builds only:
 # sanitizers have their own, and FORTIFY needs an optimizing compiler.
 set(OPTIMIZED $<CONFIG:Release,RelWithDebInfo,MinSizeRel>)

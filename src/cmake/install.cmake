@@ -42,7 +42,7 @@ target_link_options(foilgauge_shared PRIVATE
 target_link_libraries(foilgauge_shared PRIVATE ${LIBRARY_NEEDS})
 
 install(TARGETS foilgauge RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
-# Where the program and the library look for it (src/vision/cv_bridge.c).
+# The program and the library look for the module there (src/vision/cv_bridge.c).
 install(TARGETS foilgauge_opencv LIBRARY DESTINATION lib/foilgauge COMPONENT program)
 install(TARGETS foilgauge_shared EXPORT foilgaugeTargets
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT program NAMELINK_COMPONENT development

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# README.md as it is installed: its links lead to what is installed. Pictures and reports that it links to lie beside it;
+# README.md as it is installed: its links lead to installed files. Pictures and reports that it links to lie beside it;
 # a text of the manual becomes its page; what only the source tree has keeps its words alone.
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS README.md)
 file(READ README.md readme)

@@ -14,7 +14,7 @@ set(CPACK_DEBIAN_PACKAGE_MAINTAINER "foilgauge developers <foilgauge@localhost>"
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME foilgauge)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
-# What depends on the shared library, and that the loader's cache is refreshed by a trigger, not by a script.
+# Versions for packages that depend on the shared library; a trigger, not a script, refreshes the loader's cache.
 file(WRITE ${CMAKE_BINARY_DIR}/package/shlibs "libfoilgauge ${ABI_VERSION} foilgauge (= ${PROJECT_VERSION})\n")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_CONTROL_EXTRA
     ${CMAKE_BINARY_DIR}/package/shlibs ${CMAKE_SOURCE_DIR}/src/cmake/debian/triggers)

@@ -1,3 +1,3 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# What users run.
+# The build that users run.
 set(CMAKE_BUILD_TYPE Release CACHE STRING "")

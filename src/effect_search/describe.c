@@ -28,7 +28,7 @@ static void describe_effects(fg_search *s, const fg_search_baseline *y) {
   double none = s->columns.square, left[FG_CANDIDATES_MAX];
   unsigned beside = out->each[0].mask & fg_search_mask_of(out, false);
   for (size_t e = 0; e < out->candidate_count; e++) {
-    left[e] = fg_search_outlier_sum(s, y, e);
+    left[e] = fg_search_sum_of_one(s, y, e);
     out->alone[e] = none > 0 ? 1 - left[e] / none : 0;
     if (!fg_effect_is_free(out->candidates[e].kind))
       out->smallest_um[e] = SMALLEST_ERRORS * sqrt(y->unit) * fg_search_amplitude_u(s, beside, e);

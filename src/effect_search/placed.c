@@ -123,7 +123,7 @@ static double best_alone(fg_search *s) {
   double min = s->columns.square;
   for (size_t e = 0; e < s->out->candidate_count; e++)
     if (!fg_effect_is_free(s->out->candidates[e].kind))
-      min = fmin(min, fg_search_outlier_sum(s, &y, e));
+      min = fmin(min, fg_search_sum_of_one(s, &y, e));
   return (s->columns.square - min) / y.unit;
 }
 

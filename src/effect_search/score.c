@@ -208,7 +208,7 @@ double fg_search_gain_of_more(const fg_search *s, const fg_search_baseline *y, u
   return (sum - less) / y->unit;
 }
 
-double fg_search_outlier_sum(const fg_search *s, const fg_search_baseline *y, size_t e) {
+double fg_search_sum_of_one(const fg_search *s, const fg_search_baseline *y, size_t e) {
   set_terms set;
   size_t rank;
   list_terms(s->out, 1u << e, &set);

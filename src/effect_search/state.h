@@ -121,7 +121,7 @@ double fg_search_gain_of_more(const fg_search *s, const fg_search_baseline *y, u
 
 /* Residual sum of one effect alone; the standard deviation of its leading amplitude beside other
  * effects for noise of 1 um, INFINITY when it lies in their span. */
-double fg_search_outlier_sum(const fg_search *s, const fg_search_baseline *y, size_t e);
+double fg_search_sum_of_one(const fg_search *s, const fg_search_baseline *y, size_t e);
 double fg_search_amplitude_u(const fg_search *s, unsigned others, size_t e);
 
 /* ---- sets.c ---- */

@@ -79,7 +79,7 @@ const fg_foil_row fg_foil_kind_cantilever = {
             .why_no_loop =
                 "form is cantilever, and the loop needs bumps or discs. Scan round gauges "
                 "(--form discs) to see what the scanner does to lengths",
-            /* Which corrections pay is decided of radii and heights, and beams have none. */
+            /* Benefits of a correction are judged on radii and heights; beams have none. */
             .why_no_model =
                 "a scanner's model corrects bumps and discs, not the beams of form cantilever: "
                 "measure "

@@ -42,7 +42,7 @@ static double nearest_chord(double design_mm, const fg_foil *foil, size_t *fitte
   return nearest;
 }
 
-/* What speaks against a foil's bumps; nothing is written when they are the design's. */
+/* Writes how a foil's bumps differ from the design's; nothing when they agree. */
 static void tell_other_bumps(const fg_design *design, const fg_foil *foil, char *why, size_t size) {
   size_t fitted, stated = design->bumps.count, bumps = foil->bump_count;
   double design_mm = chord_mm(design->bumps.radius_mm, design->bumps.angle_deg);

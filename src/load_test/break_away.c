@@ -101,7 +101,7 @@ static double residual(const pulls *p, const line *l, size_t unknowns, size_t i)
   return sum;
 }
 
-static bool fit_line(const pulls *p, size_t unknowns, line *l) {
+static bool fit_break_away_line(const pulls *p, size_t unknowns, line *l) {
   fg_normal_equations system;
   fg_normal_clear(&system, unknowns);
   for (size_t i = 0; i < p->test->pull_count; i++) {
@@ -145,7 +145,7 @@ static double test_curve(const pulls *p, const line *straight) {
   double covariance[CURVE][CURVE];
   if (p->weights < CHECKED_WEIGHTS_MIN || p->count < CHECKED_PULLS_MIN) return NAN;
   if (!(straight->squares > rounding * straight->all_squares)) return 1;
-  if (!fit_line(p, CURVE, &curve)) return NAN;
+  if (!fit_break_away_line(p, CURVE, &curve)) return NAN;
   if (!(curve.squares > rounding * curve.all_squares)) return 0;
   find_covariance(p, &curve, CURVE, covariance);
   double t = curve.x[CURVE - 1] / sqrt(covariance[CURVE - 1][CURVE - 1]);
@@ -234,7 +234,7 @@ void fg_load_sum_break_away(const fg_load_test *test, size_t bearing, fg_load_be
                          .residual_n = NAN,
                          .p_curved = NAN};
   if (!p.count) return;
-  if (p.count < PULLS_MIN || p.weights < LINE || !fit_line(&p, LINE, &straight)) {
+  if (p.count < PULLS_MIN || p.weights < LINE || !fit_break_away_line(&p, LINE, &straight)) {
     out->flags |= FG_BREAK_TOO_FEW;
     return;
   }

@@ -15,7 +15,7 @@
 #include "core/text.h"
 #include "lots/index.h"
 #include "quantity/parts.h"
-#include "report/measure/json.h"
+#include "report/design/json.h"
 
 enum { LOT_BYTES_MAX = 1 << 30 };
 

@@ -12,7 +12,7 @@
 #include "foilgauge/report.h"
 #include "foilgauge/words.h"
 #include "page/page.h"
-#include "report/measure/json.h"
+#include "report/design/json.h"
 #include "report/measure/scan_model_words.h"
 
 void fg_provenance_take_date(fg_provenance *p, const char *date) {

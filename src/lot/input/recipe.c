@@ -20,7 +20,7 @@
 #include "lot/input/recipe_members.h"
 #include "lot/input/reference_curve.h"
 #include "report/design/calibration_json.h"
-#include "report/measure/json.h"
+#include "report/design/json.h"
 
 enum { RECIPE_BYTES_MAX = 1 << 20 };
 

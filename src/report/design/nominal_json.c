@@ -4,8 +4,8 @@
 #include "foilgauge/cantilever.h"
 #include "foilgauge/design_report.h"
 #include "report/design/beam_deviations.h"
+#include "report/design/json.h"
 #include "report/measure/foil_view.h"
-#include "report/measure/json.h"
 #include "report/stiffness/map.h"
 #include "report/stiffness/table.h"
 

@@ -4,6 +4,7 @@
 
 #include "core/file.h"
 #include "foilgauge/die_report.h"
+#include "report/design/json.h"
 #include "report/measure/json.h"
 
 /* name, sd_name (as its own unit), u_name. */

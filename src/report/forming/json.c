@@ -6,8 +6,8 @@
 #include "core/json_writer.h"
 #include "foilgauge/quantity.h"
 #include "foilgauge/words.h"
+#include "report/design/json.h"
 #include "report/forming/words.h"
-#include "report/measure/json.h"
 
 static void write_material(fg_json *json, const fg_forming_material *material) {
   fg_json_object(json, "material");

@@ -8,6 +8,7 @@
 #include "lot/run/date.h"
 #include "lot/statistics/dies.h"
 #include "report/design/calibration_json.h"
+#include "report/design/json.h"
 #include "report/flag_names.h"
 #include "report/lot/files.h"
 #include "report/lot/json.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* How arcs, plain strips, are shown. */
+/* View of arcs, which are plain strips. */
 #include <math.h>
 #include <stdio.h>
 

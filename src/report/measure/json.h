@@ -6,10 +6,6 @@
 #include "core/json_writer.h"
 #include "foilgauge/report.h"
 
-/* Writes the members as a design file has them; fg_design_parse reads them again. */
-void fg_json_design(fg_json *json, const char *name, const fg_design *design);
-void fg_json_nominal(fg_json *json, const char *name, const fg_nominal *nominal);
-
 /* Writes "in_tolerance", true only for a pass, null where nothing is judged; and "verdict". */
 void fg_json_verdict(fg_json *json, fg_verdict verdict);
 

@@ -46,7 +46,7 @@ const char *fg_html_base_name(const char *path);
 size_t fg_html_sections(const fg_report *report);
 /* A cell with a number, or a dash. */
 void fg_html_summary_number(FILE *out, double value, int decimals);
-/* Residuals along a foil, with a heading and what they are against. */
+/* Residuals along a foil; `against` names their reference in the heading. */
 void fg_html_residual_figure(FILE *out, const fg_foil *foil, const char *against);
 fg_status fg_html_summary(fg_context *ctx, FILE *out, const fg_report *report);
 
