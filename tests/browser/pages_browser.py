@@ -84,7 +84,7 @@ SPLIT = "load,temperature_C,duration_h,springback_error_pct\n" + "".join(
     f"{load},{500 + 100 * (load % 2)},{3 + 2 * (n % 2)},{9 - 3 * (load % 2) - 0.5 * (n % 2) + 0.2 * (load % 3) + 0.05 * n:.2f}\n"
     for load in range(1, 7) for n in range(4))
 
-# What `render` draws: the scan's name is that of its file.
+# Specs that `render` draws: the scan's name is that of its file.
 SCANS = {
     **LOT,
     "good.png": scan(1, -70), "bad.png": scan(2, -80, foil=BAD), "next.png": scan(5, -100),
@@ -102,7 +102,7 @@ SCANS = {
     "decay.png": scan(9, -70, foil=dict(FOIL, radius_mm=[3.60, 3.50, 3.45, 3.43, 3.42, 3.415, 3.41, 3.41, 3.41])),
 }
 
-# Other files: JSON of what is no text, text of more than one line as it is, else a file of the repository.
+# Other files: JSON of a value that is no text, text of more than one line as it is, else a file of the repository.
 FILES = {
     "limits.json": {"schema": "foilgauge/design/1", "name": "gen2", "bump_count": 9, "tolerances": LIMITS},
     "sinusoidal.json": {"schema": "foilgauge/design/1", "name": "sinus", "form": "sinusoidal"},
@@ -182,7 +182,7 @@ def expect(true, words):
 
 
 class Work:
-    """A folder in which commands run; what they need is made when they need it."""
+    """A folder in which commands run; files that they need are made when they are needed."""
 
     def __init__(self, folder, program, renderer):
         self.folder, self.program, self.renderer = folder, program, renderer
@@ -217,7 +217,7 @@ class Work:
         return file
 
 
-# What is clipped, in the words of the one who must mend it.
+# Clipped elements, in words for the person who must mend the page.
 CLIPPED = """
 const slack = %s, width = document.documentElement.clientWidth, found = [];
 const name = e => e.tagName.toLowerCase() + (e.className.baseVal ?? e.className ? '.' + (e.className.baseVal ?? e.className) : '');
@@ -288,7 +288,7 @@ class Reader:
         self.browser.get("file://" + file)
 
     def look(self, file):
-        """What is wrong with a page, on the screen and printed."""
+        """Defects of a page, on the screen and printed."""
         self.open(file)
         wrong = self.clipped(f"at {SCREEN_PX} px")
         headings = {squeezed(text) for text in self.browser.execute_script(HEADINGS)} - {""}
@@ -318,7 +318,7 @@ class Reader:
 
 
 def filled(pdf, page):
-    """How far down a printed page there is something, as a share of what lies between its margins."""
+    """Lowest ink of a printed page, as a share of the height between its margins."""
     picture = subprocess.run(["pdftoppm", "-gray", "-r", str(PICTURE_DPI), "-f", str(page), "-l", str(page), pdf],
                              capture_output=True, check=True).stdout
     width, height = (int(word) for word in picture.split(maxsplit=4)[1:3])

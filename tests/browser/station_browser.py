@@ -37,7 +37,7 @@ ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)
 TABS = (("now", "/"), ("history", "/history"), ("trends", "/trends?newest=all"), ("scanner", "/scanner"),
         ("lots", "/lots"))
 WIDTH = 1280
-TALLEST = {"now": 1000, "history": 900}  # px of a picture; what is below is more of the same
+TALLEST = {"now": 1000, "history": 900}  # px of a picture; the rest below is more of the same
 TALLEST_OTHERS = 1280
 LIMITS = {"radius_mm": {"min": 3.3, "max": 3.34}}  # of a foil that is drawn with 3.32 mm
 GOOD_MM, BAD_MM = 3.32, 3.4
@@ -49,7 +49,7 @@ GREY = "grayscale"
 
 
 def wait(what, seconds=WAIT_S):
-    """What `what` comes to, as soon as it is true. A page may change or go between finding an element and reading
+    """Returns the value of `what()` as soon as it is true. A page may change or go between finding an element and reading
     it: some drivers call that stale, others say that a node does not belong to the document, or that navigation
     has aborted a script."""
     end = time.time() + seconds
@@ -109,7 +109,7 @@ def open_browser(downloads):
 
 
 class Day:
-    """What an inspector does, one step after the other."""
+    """An inspector's day, one step after the other."""
 
     def __init__(self, browser, station, folder, work, renderer):
         self.browser, self.station, self.folder, self.work = browser, station, folder, work
@@ -198,13 +198,13 @@ class Day:
         expect("Foil SN-4711" in self.text("h2"), "the barcode was not taken: " + self.text("h2"))
 
     def is_grey(self):
-        """Whether the verdict has no colour, and the page says why."""
+        """The verdict has no colour, and the page says why."""
         return self.browser.execute_script(
             "var c=document.querySelector('.call'),s=document.getElementById('silent');"
             "return getComputedStyle(c).filter.includes(arguments[0])&&s.getClientRects().length>0", GREY)
 
     def half_typed(self):
-        """What is typed stays with its foil, and hides no result: "2 newer: FAIL, PASS"."""
+        """A half-typed serial stays with its foil, and hides no result: "2 newer: FAIL, PASS"."""
         self.go("/")
         self.drop("7_typed.png", GOOD_MM)
         self.card("7_typed.png", "PASS")
@@ -226,7 +226,7 @@ class Day:
         expect("newer2" in self.text("h2"), "the newest foil has another's serial: " + self.text("h2"))
         self.go("/history?serial=SN-4712")
         expect("1 foil found" in self.text(), "the serial was not kept: " + self.text())
-        # What is given up leaves no trace.
+        # A serial that is given up leaves no trace.
         self.go("/")
         ActionChains(self.browser).send_keys("nobody").perform()
         self.drop("7_newer3.png", GOOD_MM)
@@ -244,7 +244,7 @@ class Day:
         self.press(lambda: self.browser.find_elements(By.CSS_SELECTOR, "form[data-foil] button"))
 
     def two_at_once(self, other):
-        """Of a form that was loaded before somebody else's change only what was changed in it counts."""
+        """Only changed fields count of an HTML form that was loaded before somebody else's change."""
         self.go("/")
         foil = self.one("h2 a").get_attribute("href").rsplit("/", 1)[1]
         for day in self, other:

@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Plain strips (form "arc"): reports, lots, what is refused.
+# Plain strips (form "arc"): reports, lots, refused input.
 . tests/support/cli.sh
 listened="stdout stderr"
 
@@ -35,7 +35,7 @@ expect 0 "40.000000 deg" "$program" design design.json
 expect 0 "design arc, form arc" "$program" design design.json
 expect 65 "there is no curve" "$program" design --curve design.json
 
-# What is written loads again.
+# A written design loads again.
 "$program" design --json design.json | sed -n '/^ "design": {/,/^ }/p' | sed '1s/.*/{/; $s/.*/}/' >again.json
 expect 0 "40.000000 deg" "$program" design again.json
 

@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Flat foils with beams (form "cantilever"): combs and slits, what is wrong with them, what is refused.
+# Flat foils with beams (form "cantilever"): combs and slits, their defects, refused input.
 . tests/support/cli.sh
 listened="stdout stderr"
 
@@ -50,8 +50,8 @@ for k in 0 3; do
     "$(value comb.json "r['foils'][0]['beams'][$k]['length_mm']")" 0.002
 done
 
-# What a scanner's driver has done is seen beside beams that are a few hundred pixels long: a tone curve is held, or said where the
-# tone is stated to be linear; sharpening and rows that jump are said.
+# Traces of a scanner's driver are found beside beams that are a few hundred pixels long: a tone curve is held, or
+# reported where the tone is stated to be linear; sharpening and rows that jump are reported.
 seen() { # NAME FINDINGS UM [OPTION...]: flags of the foil, and every beam within 2 u of its truth and within UM.
   "$program" measure $1.png --design design.json -o $1.json "${@:4}" >/dev/null
   [ "$(value $1.json 'sorted(f["finding"] for f in r["picture"]["findings"])')" = "$2" ] ||
@@ -82,7 +82,7 @@ sheet rows "$spread" ', "rows_lost": [{"y_mm": 3.2, "count": 1}]' -80
 seen rows "['row_jumps']" 23
 [ "$(value rows.json 'abs(r["picture"]["row_jump_px"] + 1) < 0.1')" = True ] || fail "one row is lost, and not found so"
 
-# What is wrong with a foil is said, and judged.
+# Defects of a foil are reported and judged.
 sheet torn '"torn": [{"beam": 2}]'
 expect 2 'torn_tip' "$program" measure torn.png --design design.json
 sheet missing '"missing": [3]'

@@ -66,7 +66,7 @@ for words in "Break-away test" "6[.]84 kPa" "Friction coefficient" "0[.]0300" "c
 done
 run 0 "pass: 1 bearing: preload 6.84 kPa" --break-away thesis.csv --limit preload_kpa=5:8 --limit friction_coefficient=:0.05 --text -
 run 1 "fail: " --break-away thesis.csv --limit preload_kpa=:5 --text -
-# What cannot be known is withheld, with its reason.
+# Results that cannot be known are withheld, with the reason.
 run 2 "no straight line: neither coefficient nor preload" --break-away curved.csv --text -
 run 2 "known no better than to a third" --break-away flat.csv --text -
 run 2 "too few pulls" --break-away one.csv --text -

@@ -1,7 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# What the statistics cannot know: a calibration in the design or the recipe, in every U, in verdicts, in lots and loops;
-# and where a report comes from, in the same words on every page.
+# Uncertainty beyond the statistics: a calibration in the design or the recipe enters every U, verdicts, lots and loops;
+# and a report states its traceability in the same words on every page.
 #   test_calibration.sh PROGRAM
 . tests/support/cli.sh
 
@@ -56,7 +56,7 @@ expect 0 '' "$program" measure $scan --design limits.json -o sure.out
 expect 3 '' "$program" measure $scan --design both.json -o unsure.out
 [ "$(value unsure.out 'r["verdict"]')" = cannot_tell ] || fail "the limit lies within U"
 
-# Where it comes from, on every page.
+# Traceability on every page: that no calibration is stated, or the certificate.
 grep -q 'No calibration is stated: U holds statistics only' plain.html || fail "the page is silent about calibration"
 grep -q '<dt>Calibration</dt><dd>K 17 &lt;b&gt; of 2026-03-14: a length to ± 0.1 %' scale.html || fail "the certificate is not named"
 script -qec "'$program' measure $scan" /dev/null >plain.txt 2>/dev/null
@@ -138,7 +138,7 @@ P
 grep -q 'the same in every scan' doe_scale.html || fail "the experiment's page does not say what its calibration does"
 
 [ -n "${FOILGAUGE_TEST_LONG-}" ] || exit $failed
-# A loop: what it decides does not see it, the dimensions that it reports do.
+# A loop: its decisions ignore the calibration, the dimensions that it reports include it.
 for d in plain scale; do
   expect 0 '' "$program" loop $scan --design $d.json -o loop_$d.out --html loop.html
   valid loop_scan.schema.json loop_$d.out

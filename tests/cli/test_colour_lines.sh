@@ -113,7 +113,7 @@ valid measure.schema.json discs.report.json
 within discs dx_px red 0.3
 within discs dy_px blue -0.4
 
-# What a spec may not say.
+# Members that a spec refuses.
 bad() {
   echo '{"schema": "foilgauge/render/1", "scanner": {"colour_lines": '"$1"'}}' >bad.json
   expect 65 "$2" "$program" render bad.json -o bad.png

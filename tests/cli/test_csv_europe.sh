@@ -32,7 +32,7 @@ alike doe.point.json doe.comma.json
 alike loop.point.json loop.comma.json
 grep -q '"table.linear(humidity)"' loop.comma.json || fail "the humidity is not found"
 
-# What is refused, and where: line 4 is row 3.
+# Refused tables, each with its place: line 4 is row 3.
 awk -F, 'NR == 4 { sub(/\./, ",", $4); print $1 "," $2 "," $3 ",\"" $4 "\""; next } { print }' point.csv >quoted.csv
 awk -F, -v OFS=, 'NR > 1 { sub(/\./, ",", $3); $3 = "\"" $3 "\"" } { print }' point.csv >words.csv
 sed '4s/,\([0-9]*\)\(\r\)$/.\1\2/' comma.csv >mixed.csv
@@ -72,7 +72,7 @@ listened=stdout
 expect 0 'humidity: cells are missing' "$program" loop --table missing.csv --response y --model T_C -o -
 listened=stderr
 
-# A manifest: what it says of numbers is written with points in the lot's own tables.
+# A manifest: its numbers are written with points in the lot's own tables.
 printf '\xef\xbb\xbfscan;coil_mm;die\r\nnone.png;0,102;A, new\r\n' >lot.csv
 expect 2 '' "$program" lot lot.csv -o lot
 grep -q '^none.png,0.102,"A, new",' lot/foils.csv || fail "the lot's table: $(tail -1 lot/foils.csv)"

@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# `foilgauge design`: what it prints, what it refuses, and the committed clearance curve.
+# `foilgauge design`: its output, refused designs, and the committed clearance curve.
 . tests/support/cli.sh
 listened="stdout stderr"
 
@@ -77,7 +77,7 @@ expect 64 "form is cantilever" "$program" loop "$root/samples/gen2_foil.png" --d
 expect 64 "a cantilever has no built-in design" "$program" measure "$root/samples/gen2_foil.png" --form cantilever
 expect 65 "lies flat" "$program" form "$cantilever"
 
-# What is written loads again and gives the same.
+# A written design loads again and gives the same.
 "$program" design -o "$work/first.json" || fail "design -o"
 sed -n '/^ "design": {/,/^ }/p' "$work/first.json" | sed '1s/.*/{/; $s/.*/}/' >"$work/again.json"
 expect 0 "0.564527 mm" "$program" design "$work/again.json"

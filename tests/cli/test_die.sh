@@ -70,7 +70,7 @@ expect 65 "set/bad.csv: row 1: half must be concave or convex" "$program" die --
 printf 'profile,side\na.txt,concave\n' >set/bad.csv
 expect 65 "no column 'side' is read" "$program" die --list set/bad.csv
 
-# What the tip's radius is uncertain by moves radii as a whole.
+# The uncertainty of the tip's radius moves radii as a whole.
 "$program" die --u-tip-um 1 concave_1.txt -o doubt.json || fail "--u-tip-um"
 near "u of R" "$(value doubt.json '(r["halves"][0]["bumps"][0]["u_radius_mm"]**2 - 1e-6)**0.5')" \
   "$(value one.json 'r["halves"][0]["bumps"][0]["u_radius_mm"]')" 1e-8

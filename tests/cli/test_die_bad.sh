@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# What `foilgauge die` refuses: each with the file, the place and what to do.
+# Input that `foilgauge die` refuses: each with the file, the place and a remedy.
 . tests/support/cli.sh
 cp "$root"/samples/die/c*.txt .
 tr -d '\r' <concave_1.txt | grep '^[-0-9]' >good.txt

@@ -71,7 +71,7 @@ expect 0 "" "$program" lot lot.csv -o without --design design.json
 grep -q '"dies"' without/lot.json without/recipe.json && fail "dies of a lot without"
 grep -q 'die_radius_mm' without/bumps.csv && fail "a column of dies of a lot without"
 
-# What is wrong is said before anything is measured.
+# Errors are reported before anything is measured.
 expect 65 "there is no report; name it, or leave the cell empty" "$program" lot lot.csv -o bad --die A=a.json
 expect 65 "has no column 'die'" "$program" lot foil1.png -o bad --die A=a.json
 expect 65 "recipe.json: not a report of .foilgauge die" "$program" lot lot.csv -o bad --die A=recipe.json

@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# `foilgauge doe`: plans, analyses, what it says of bad tables, and that nothing half-written remains.
+# `foilgauge doe`: plans, analyses, messages on bad tables, and that nothing half-written remains.
 . tests/support/cli.sh
 cd "$root" || exit 1
 folder=$work

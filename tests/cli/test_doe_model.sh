@@ -23,7 +23,7 @@ assert abs(slope(after)["estimate"] - 0.01) < 3 * slope(after)["standard_error"]
 assert after["runs"][0]["response"] != before["runs"][0]["response"]
 P
 
-# What was taken out is said, with its uncertainty, and the residual pays for it.
+# A removed effect is reported with its uncertainty, and the residual loses its degree of freedom.
 checks - <<'P' || fail "what was taken out is not said or not paid for"
 import json
 before, after, model = (json.load(open(name + ".json")) for name in ("before", "after", "better"))

@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# `foilgauge doe` looks at its residuals over the order of the runs, says what it sees, and how to find out what it is.
+# `foilgauge doe` tests its residuals over the order of the runs, reports patterns, and advises how to find their cause.
 . tests/support/cli.sh
 listened="stdout stderr"
 
@@ -58,7 +58,7 @@ fi
 expect 0 '' "$program" doe unnamed.csv --response y --model T --html unnamed.html -o unnamed.json
 grep -q '<code>foilgauge loop --table unnamed.csv' unnamed.html || fail "the command on the page"
 
-# What cannot be looked at is null: no freedom, whole plots, a model that fits exactly.
+# A test that is impossible is null: no degree of freedom, whole plots, a model that fits exactly.
 printf 'A,B,y\n-1,-1,1\n1,-1,3\n-1,1,2\n1,1,5\n' >four.csv
 expect 0 '"order": null' "$program" doe four.csv --response y --model 'A*B' -o -
 awk -F, -v OFS=, '{ print $0, NR == 1 ? "load" : int((NR - 2) / 4) }' clean.csv >loads.csv

@@ -38,7 +38,7 @@ SPEC
 "$program" render "$work/spec.json" -o "$work/scan.png"
 "$program" measure "$work/scan.png" -o "$work/report.json"
 
-# Disk full: a limit on the size of files, at every KiB of what is written.
+# Disk full: a limit on the size of files, at every KiB of the report.
 size=$((($(stat -c %s "$work/report.json") + 1023) / 1024))
 for ((kib = 0; kib < size; kib++)); do
   code=0

@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# `foilgauge forming`: its outputs, a die that was measured, constants from runs, bad input. What it computes: unit/test_forming.c.
+# `foilgauge forming`: its outputs, a measured die, constants from runs, bad input. Its numbers: unit/test_forming.c.
 . tests/support/cli.sh
 listened="stdout stderr"
 
@@ -57,7 +57,7 @@ expect 0 "fitted to 13 runs" "$program" forming --material fitted.json --tempera
 
 fi
 
-# Bad input: what is wrong, and where.
+# Bad input: the error and its place.
 bad() {
   echo "$2" >bad.json
   expect 65 "bad.json: .*$1" "$program" forming --material bad.json
@@ -85,7 +85,7 @@ expect 65 "hot.csv: row 4: temperature_C: 2000 degrees C is beyond the material"
 printf 'temperature_K,duration_h,springback_error_pct\n773,3,-13\n773,3,-9\n873,3,-4\n873,5,-4\n873,7,-3\n' >kelvin.csv
 expect 65 "no column 'temperature_C'.*in degrees Celsius" "$program" forming --fit kelvin.csv
 
-# A constant that runs to the end of what it may be is not found: table, report, page and material say so.
+# A constant that runs to its bound is not identified: table, report, page and material say so.
 printf 'temperature_C,duration_h,springback_error_pct\n500,3,-900\n500,5,-900\n600,3,-900\n600,5,-900\n' >flat.csv
 expect 0 "" "$program" forming --fit flat.csv --free creep_rate_per_h -o bound.json --table bound.txt --html bound.html --material-out bound_material.json
 [ "$(value bound.json "[(f['at_bound'], f['identified']) for f in r['found']]")" = "[(True, False)]" ] || fail "a constant at its bound is called found"

@@ -50,7 +50,7 @@ END
 grep -q 'offset(declared)' loop.html || fail "the page does not name the prediction"
 grep -q 'measured minus predicted' loop.html || fail "the page does not say how far the prediction is off"
 
-# The same on scans, beside one that is kept aside; what is declared is named everywhere.
+# The same on scans, beside one that is held out; the declared model is named everywhere.
 scans="lot/1.png lot/2.png lot/3.png --hold-out lot/4.png"
 expect 0 "" "$program" loop $scans --form-model declared.json -o scans.json --html scans.html
 valid loop_scan.schema.json scans.json

@@ -139,10 +139,10 @@ assert "NOT FOUND" in open("missing.html").read()
 other = scan("other", [FOIL, leaf(0.15)], options=LEAF)
 assert not other["gauges"][0]["found"] and "reads 0.15" in other["gauges"][0]["note"] and other["specks"] == 1
 assert len(other["foils"]) == 1 and abs(other["foils"][0]["thickness_mm"] - plain) < 1e-4
-# It lies on the foil: neither is taken for what it is not.
+# A gauge lies on the foil: neither is mistaken for the other.
 touch = scan("touch", [WIDE, leaf(top=18, x=2)], options=LEAF)
 assert not touch["gauges"][0]["used"], touch["gauges"]
-# A stated width that is wrong: told by what it would ask of the tone curve, and by a second gauge.
+# A wrong stated width: revealed by the tone curve that it would demand, and by a second gauge.
 wrong = scan("wrong", [FOIL, leaf(0.12)], options=LEAF)
 assert "check that the stated width" in wrong["gauges"][0]["note"] or not wrong["gauges"][0]["used"], wrong["gauges"]
 two = scan("contradict", [FOIL, leaf(0.1), leaf(0.21, top=22)], options=[*LEAF, "--gauge", "leaf:0.2:0.0005"])
@@ -182,7 +182,7 @@ for name, options in ("linear", {}), ("blurred", {"curve": CURVE, "blur": 1.7}):
     assert "not applied" in with_it["tone_note"] and "not applied" in with_it["said"], name
     assert "not applied" in open(name + ".html").read(), name
     assert with_it["foils"][0]["u_thickness_mm"] > 0.003, name
-# What its edges show tells an exponent that has changed; what they cannot show is in u.
+# The edges of a scan reveal a changed exponent as far as they can; u covers the rest.
 for gamma in (0.8, 0.97, 1, 1.03, 1.1, 1.3) if LONG else (0.8,) if BRIEF else (0.8, 1, 1.03, 1.1):
     other = scan("exponent", [WIDE], gamma=gamma, options=["--model", "straight.model"])
     off, u = right(f"gamma {gamma}", other)

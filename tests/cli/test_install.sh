@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# What `cmake --install` puts in place works there, wherever that is: the program, its module, its manual, the library
+# Files that `cmake --install` puts in place work there, wherever that is: the program, its module, its manual, the library
 # with the public symbols and no other, in C and in C++, by pkg-config and by find_package.
 set -u
 if [ -n "${FOILGAUGE_TEST_BRIEF:-}" ]; then

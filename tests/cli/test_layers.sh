@@ -10,7 +10,7 @@ say() {
   failed=1
 }
 
-# Who may include whom follows from the floors in src/README.md.
+# Permitted includes follow from the floors in src/README.md.
 python3 -B tests/house/house.py layers circles || failed=1
 
 ids=$(grep -rhoE '(\.id = |OVER_GLASS\()"[^"]+"' src/effect | grep -oE '"[^"]+"')

@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# What `clean` rests on: a table in which nothing of a name shows, and which is no noise, is not called clean.
+# Basis of `clean`: a table that shows no named effect, but is not noise either, is not called clean.
 . tests/support/cli.sh
 
 python3 - <<'PYTHON'

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# What the colour lines of a scan say of an effect of the carriage that the loop found; a plate of gauges shows it quickest.
+# The colour lines of a scan check an effect of the carriage that the loop found; a plate of gauges shows it quickest.
 . tests/support/cli.sh
 skip_when_slow
 
@@ -15,7 +15,7 @@ SPEC
   "$renderer" render "$1.spec.json" -o "$1.png" || fail "$1 is not drawn"
 }
 
-# witness REPORT ID VERDICT: what is said beside the claim.
+# witness REPORT ID VERDICT: the channel check beside the claim.
 witness() {
   [ "$(value "$1" "[c['witness']['verdict'] for c in r['claims'] if c['id'] == '$2']")" = "['$3']" ] ||
     fail "$1: of $2: $(value "$1" "[(c['id'], c.get('witness')) for c in r['claims']]")"
@@ -46,7 +46,7 @@ draw scale 8 '{"id": "scan.scale_y", "value": 0.002}'
 expect 0 "" "$program" loop --form discs scale.png --colour-gap 8 -o scale.json
 witness scale.json scan.scale_y cannot_tell
 valid loop_scan.schema.json scale.json
-# What is none of the carriage's has no witness.
+# Effects of other parts than the carriage have no channel check.
 draw optics 8 '{"id": "scan.optical_quadratic", "amplitude_um": 30}'
 expect 0 "" "$program" loop --form discs optics.png -o optics.json
 [ "$(value optics.json "[c['id'] for c in r['claims'] if 'witness' in c]")" = "[]" ] || fail "the optics have a witness"

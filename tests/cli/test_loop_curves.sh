@@ -82,7 +82,7 @@ render four 15 10 "$four" 6,20 4800
 says four.out "sorted(claims) == ['scan.carriage_ripple', 'scan.row_step', 'scan.scale_y', 'scan.shear']"
 says four.out "e('after', 'R') < e('before', 'R') / 10 and e('after', 'R0') < e('before', 'R0') / 10"
 
-# On rough edges a small curve could be one over another coordinate: what is said names them, and moves nothing.
+# On rough edges a small curve could be one over another coordinate: the claim names them, and moves nothing.
 python3 - "$root/samples/render/rough.json" >faint.json <<'PYTHON'
 import json, sys
 spec = json.load(open(sys.argv[1]))

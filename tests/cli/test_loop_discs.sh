@@ -105,7 +105,7 @@ json.dump({'schema': 'foilgauge/design/1', 'name': 'plate', 'form': 'discs',
   fail "the noise of a plate is $(value known.out "r['noise']")"
 near "absolute scale" "$(value known.out "r['claims'][0]['parameters']['value']")" 0.002 0.00001
 near "radius at the known scale" "$(value known.out "max(d['radius_mm'] for d in r['after']['discs'])")" 3.006 0.0002
-# Where they have given it, nothing says that the scale is not known; without them a model's does.
+# Known diameters give the scale: nothing says that it is unknown. A model without them says so.
 "$program" measure clean.png --form discs --model absolute.json --html absolute.html -o absolute.out || fail "measure by it"
 [ "$(value absolute.out "r['model']['known_diameters']")" = 12 ] || fail "the model does not say that it knows diameters"
 [ "$(value plate.out "r['model']['known_diameters']")" = 0 ] || fail "a model without known diameters says that it has some"

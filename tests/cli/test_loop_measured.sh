@@ -1,7 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Tables that somebody measured, through `foilgauge loop`: what each is known for is claimed or in a claim's class, and
-# nothing is said of those that hold nothing (tests/data/measured/expected.json; its "not_yet" lists what is missed).
+# Tables that somebody measured, through `foilgauge loop`: their known findings are claimed or in a claim's class, and
+# nothing is claimed of those that hold nothing (tests/data/measured/expected.json; its "not_yet" lists missed findings).
 if ! command -v python3 >/dev/null; then
   echo "skipped: no python3"
   exit 77

@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The loop on what is no foil of the design: it says so, the foils beside it still count, nothing ends with a signal.
+# The loop on scans without a foil of the design: it says so, the foils beside it still count, nothing ends with a signal.
 . tests/support/loop.sh
 skip_when_slow
 

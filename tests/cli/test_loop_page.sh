@@ -90,8 +90,8 @@ page aside.html a.png --hold-out other.png
 holds aside.html 'only confirms' 'On scans kept aside' 'class="held-out k1"'
 page tie.html faint.png -o tie.out
 holds tie.html 'tied: not named' 'What the data cannot tell apart' 'an oval foil' '--same-foil' '<th>range</th>'
-# What could be it agrees about R0 and h, which are moved, and not about R, which stays as measured: the page, the
-# terminal and the JSON say so, and the ranges hold what is reported.
+# Tied explanations agree about R0 and h, which are moved, and not about R, which stays as measured: the page, the
+# terminal and the JSON say so, and the ranges hold the reported values.
 holds tie.html 'R stays as measured: these explanations would move' '<i>left</i>' 'R left as measured: the correction is' 'cannot tell apart' 'follow from R0, R and h'
 checks - <<'PYTHON' || fail "a tie moves what its explanations do not agree about, or does not say so"
 import json

@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# What `foilgauge loop --table` says of a finding is a difference that its reader can check, with U in the unit of the
+# A finding of `foilgauge loop --table` is stated as a difference that its reader can check, with U in the unit of the
 # response; a p-value between proven and common is neither proof nor all clear.
 . tests/support/cli.sh
 

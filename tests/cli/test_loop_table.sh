@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# `foilgauge loop --table`: what it prints and writes, what it refuses.
+# `foilgauge loop --table`: its output and files, refused input.
 . tests/support/cli.sh
 listened="stdout stderr"
 
@@ -48,7 +48,7 @@ expect 0 '"rows_kept_aside": 12' "$program" loop --table t.csv "${model[@]}" --h
 grep -q "trend with humidity" a.html || fail "the page does not say what was found"
 grep -qE "nan|inf[^a-z]" a.html && fail "the page holds numbers that are none"
 
-# Plain words: what is said of each kind of finding, and of none.
+# Plain words: the sentence for each kind of finding, and for none.
 awk 'BEGIN { srand(3); print "run,x,y"
   for (i = 1; i <= 60; i++) { e = rand() + rand() + rand() - 1.5
     printf "%d,%.3f,%.4f\n", i, 15 + 45 * rand(), 3 + e + (i == 2) * 20 - (i == 54) * 15 } }' >wrong.csv
@@ -70,7 +70,7 @@ says() { # says FILE WORDS...: in the summary and on the page, without ids and w
   grep -qE "table\.|nan|falls from ([^ ]*) to \1[;.]" summary.txt && fail "$file: ids or none: $(cat summary.txt)"
   sed 's/<style>.*<\/style>//' $file.html | grep -qE "[^a-z](nan|inf)[^a-z]" && fail "$file: the page holds numbers that are none"
 }
-# What is advised can be done, and helps.
+# The advice can be followed, and helps.
 grep -qF "Declare a trend with humidity: --model &#39;1 + T + humidity&#39;" a.html || fail "the page does not say what to do next"
 grep -qF '"verdict": "explained"' a.json || fail "what is found is not explained"
 expect 0 '"verdict": "clean"' "$program" loop --table t.csv --response y --model "1 + T + humidity" -o -
@@ -94,7 +94,7 @@ done
 says bent "a trend with temperature_C"
 grep -q '"advice": "No number of runs that one would make parts ' bent.json || fail "advice that cannot be carried out: $(grep advice bent.json)"
 
-# The page draws each as what it is: a band, joined neighbours, rows with their numbers, a line.
+# The page draws each kind of finding in its own way: a band, joined neighbours, rows with their numbers, a line.
 grep -q '>row 54</text>' wrong.html || fail "a wrong row has no number on the page"
 [ "$(grep -c 'class="mark"' wrong.html)" = 2 ] || fail "not both wrong rows are marked"
 grep -q 'class="band"' spread.html || fail "the spread is not drawn as a band"
@@ -114,7 +114,7 @@ echo '{"design": {"bump_radius": 3}}' >declared.json
 expect 65 "design.bump_radius" "$program" loop --table t.csv "${model[@]}" --declared declared.json
 expect 74 "none.json" "$program" loop --table t.csv "${model[@]}" --declared none.json
 
-# What would take too long is refused before it starts, with the limit and the way out.
+# A search that would take too long is refused before it starts, with the limit and the way out.
 awk 'BEGIN { print "x,y"; for (i = 0; i < 300000; i++) print i % 97 "," i % 89 }' >long.csv
 expect 65 "512 MiB. Leave out columns" "$program" loop --table long.csv --response y --model 1 -o never.json
 expect 65 "the limit is 0.001 minutes" "$program" loop --table t.csv "${model[@]}" --minutes 0.001 -o never.json

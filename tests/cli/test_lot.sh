@@ -53,7 +53,7 @@ grep -q '<script>' one/index.html one/results.qif && fail "a name became markup"
 grep -qF '&lt;b&gt;&quot;7&quot;&lt;/b&gt; &amp; ä' one/index.html || fail "the lot's name is not shown as such"
 grep -qF 'script&gt;&#39;&amp; ä漢.png' one/index.html || fail "the foil's name is not shown as such"
 
-# What is there is kept; what has changed is measured again; a tolerance changes no measurement.
+# Finished records are kept; changed scans are measured again; a tolerance changes no measurement.
 expect 64 '--resume' lot -o one
 expect 0 '12 scans, 0 to measure, 12 kept' lot -o one --resume --dry-run
 expect 2 '' lot -o one --resume
@@ -189,7 +189,7 @@ expect 64 'overwrite' "$program" merge one -o one
 expect 64 '1/0|from 1' lot -o no --shard 1/0
 expect 64 '' lot -o no --shard 3/2
 
-# Settings: all of them can be printed, and what is printed can be read.
+# Settings: all of them can be printed, and the printed recipe can be read.
 lot --print-recipe >printed.json
 expect 0 '' "$program" lot --recipe printed.json --print-recipe
 same stdout printed.json

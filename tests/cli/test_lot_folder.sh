@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# What lies in a lot's folder, and among its scans: records that were changed, names of any bytes.
+# Contents of a lot's folder, and of its scans' folder: records that were changed, names of any bytes.
 . tests/support/cli.sh
 listened="stdout stderr"
 
@@ -139,7 +139,7 @@ expect 65 "pad_column: .* no column 'pads'" timeout 60 "$program" lot lot.csv --
 expect 65 'more than 12 groups' lot many.csv --group die -o early
 expect 0 '2 foils of 2 scans' lot lot.csv --group die -o early
 
-# Who, when, out of what: quality systems get it; words that are no date are said to be none.
+# Operator, date and origin: quality systems get them; words that are no date are reported.
 printf 'scan,die,coil,operator,date\nscans/foil1.png,A,C7,"Kim ""K"" <b>",2026-02-03 14:05\nscans/foil2.png,B,,,2026-02-04\n' >traced.csv
 expect 0 '' lot traced.csv -o deep/er/traced
 grep -q 'no date' stderr && fail "dates are called none"

@@ -47,7 +47,7 @@ dated '2026-11-20 13:45' 2026-11-19 "['2026-11-19', '2026-11-20T13:45', 'manifes
 [ "$(value dated/lot.json 'r["date"]["from"]')" = manifest ] || fail "the manifest's dates are not taken"
 dated 11/20/2026 2026-11-19 "['2025-03-06', '$(date -u +%F -r scans/a.png)', 'scans', 1]"
 
-# The lots of the tests below: 12 foils of 3 bumps each, alike but for what is said here.
+# The lots of the tests below: 12 foils of 3 bumps each, alike but for the options listed here.
 cat >list <<'L'
 a --seed 1 --date 2026-01-10
 a2 --seed 4 --date 2026-01-10
@@ -88,7 +88,7 @@ cp -r b copy
 expect 0 'share 12 scans' index b copy
 is 'r["comparisons"]["tested"]' 0
 
-# Designs that differ stand on one axis only over what they ask for.
+# Designs that differ share an axis only relative to their nominal values.
 expect 0 'of 2 different designs' index a other
 is '[q["scale"] for q in r["quantities"] if q["name"] in ("radius_mm", "radius_error_pct")]' "['over_design', 'as_is']" \
   '[p["differs"] for p in pairs if p["quantity"] == "radius_mm"]' '[False]' \
@@ -119,7 +119,7 @@ is '[bool(lot["foils_unknown"]) for lot in r["lots"]]' "[False, True]"
 cp a/bumps.csv torn/bumps.csv
 expect 0 'other values of radius_mm than lot.json' index torn a
 
-# What cannot be read is named with what to do, and the others are shown.
+# Unreadable lots are named with a remedy, and the others are shown.
 bad() {
   expect 2 "$2" index a "$1" b
   grep -q '"lots_not_read": 1' i.json || fail "$1: i.json does not say so"

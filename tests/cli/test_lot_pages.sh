@@ -48,7 +48,7 @@ expect 1 '3 foils of 3 scans' lot a b -o one
 grep -l 'verdict fail' one/pages/*.html >failing
 [ "$(wc -l <failing)" = 1 ] || fail "the pages' verdicts"
 
-# Only what does not pass; none; and what is missing is drawn later, with the record as it was.
+# Pages only of foils that do not pass; no pages; and missing pages are drawn later, with the record as it was.
 expect 1 '' lot a b -o bad --pages bad
 [ "$(links bad)" = 1 ] || fail "--pages bad"
 expect 1 '' lot a b -o none --pages none
@@ -60,7 +60,7 @@ expect 1 '' lot a b -o none --resume
 same one none
 expect 0 '3 kept$' lot a b -o none --resume --pages none --dry-run
 
-# Other tolerances are another page; the record stands, and the old page goes. What is no page stays.
+# Other tolerances are another page; the record stands, and the old page goes. Files that are no pages stay.
 echo mine >none/pages/notes.html
 sed 's/10}/40}/' recipe.json >wide.json
 expect 0 '' timeout 60 "$program" lot --name "the lot" --recipe wide.json a b -o none --resume --jobs 1

@@ -43,7 +43,7 @@ for command in $commands; do
     say "$command: the page says something else than help"
 done
 
-# What a recipe is written with is in its page; samples hold nothing else.
+# Members of a written recipe are in its page; samples hold nothing else.
 plain "$man/foilgauge-recipe.5" >"$work/page"
 "$fg" lot --print-recipe | cat - samples/station/recipe.json | grep -oE '"[a-z_]+":' | tr -d '":' |
   sort -u >"$work/keys"
@@ -72,7 +72,7 @@ for text in src/manual/text/*.md; do
   grep -q 'of the table of commands' "$text" && say "$text has no summary of its own"
 done
 
-# Bars of a text stay; and the build says what is wrong with a text.
+# Bars of a text stay; and the build reports errors of a text.
 plain "$man/foilgauge-stiffness.1" | grep -qF 'a + b |F|' || say "the bars of a + b |F| are lost"
 mkdir "$work/text" "$work/bars"
 # refuse WORDS FILE EDIT: with this edit (of sed) of a text the manual is not made.
@@ -151,7 +151,7 @@ if command -v script >/dev/null; then
   done < <(sed 's/ *$//' README.md)
 fi
 
-# Examples: in a folder that has what they name. Every one ends with 0.
+# Examples: in a folder that has the files they name. Every one ends with 0.
 PATH=$build:$PATH
 spec() { # direction, seed, dpi: a foil of three bumps
   printf '{"schema": "foilgauge/render/1", "seed": %s, "foils": [{"design": {"bump_count": 3},

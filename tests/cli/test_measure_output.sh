@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# `foilgauge measure`: what it writes where, its exit codes, and that nothing half-written remains.
+# `foilgauge measure`: its output and files, its exit codes, and that nothing half-written remains.
 shared=${FOILGAUGE_SHARED:-../shared}
 scan=$(ls samples/*.png "$shared"/scans/p1_classical.png 2>/dev/null | head -n 1)
 if [ -z "$scan" ]; then

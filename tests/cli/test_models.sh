@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The model of a scanner: what it was made for, lots corrected by it, and every wrong model refused with words.
+# The model of a scanner: its own scanner, lots corrected by it, and every wrong model refused with words.
 . tests/support/loop.sh
 listened="stdout stderr"
 
@@ -18,12 +18,12 @@ expect 0 '' "$program" loop --same-foil a.png b.png --scanner 'left desk' --mode
   "('left desk', False, 'points', ['scan.scale_y'])" ] || fail "left.json is not what was asked for"
 [ "$(value left.json "r['inputs'][1]['sha256']")" = "$(sha256sum b.png | cut -c1-64)" ] || fail "left.json: inputs"
 
-# What it was made for.
+# A model corrects scans of its own scanner.
 expect 0 '' "$program" measure scans/s1.png --model left.json --scanner 'left desk' -o s1.out
 near "R0 corrected" "$(value s1.out "r['foils'][0]['overall']['radius_mm']")" 20.95 0.001
 [ "$(value s1.out "r['inputs'][0]['model_sha256']")" = "$(sha256sum left.json | cut -c1-64)" ] || fail "model_sha256"
 [ "$(value s1.out "r['foils'][0]['place_mm'][2] > 10")" = True ] || fail "a corrected foil has lost its place"
-# What is corrected says so, by what, and what that did: on the page, in the JSON, in the table, in the CSV.
+# Corrected values are marked, with the model and the change: on the page, in the JSON, in the table, in the CSV.
 expect 0 '' "$program" measure scans/s1.png --model left.json --html s1.html --csv s1.csv -o s1.out
 expect 0 '' "$program" measure scans/s1.png --html plain.html --csv plain.csv -o plain.out
 script -qec "$program measure scans/s1.png --model left.json" s1.txt >/dev/null </dev/null
@@ -204,7 +204,7 @@ assert all(abs(v - 20.95) < 0.001 for v in r0[0]), r0[0]
 assert max(abs(v - 20.95) for v in r0[1]) > 0.02, r0[1]
 P
 
-# What a tied model does not know well enough stays as scanned in a lot as well: the table flags it, the page counts it.
+# Quantities that a tied model knows too poorly stay as scanned in a lot as well: the table flags it, the page counts it.
 expect 0 '' "$program" lot scans --model tied.json -o open
 checks - open plain <<'P' || fail "a lot corrects by a tied model, or does not say that it does not"
 import csv, sys
@@ -248,7 +248,7 @@ cp half.png scans/half.png
 expect 2 '600 dpi' "$program" lot scans --model left.json -o mixed
 [ "$(value mixed/lot.json "r['counts']['foils'], r['counts']['scans_not_measured']")" = "(3, 1)" ] || fail "mixed lot"
 
-# What the loop refuses.
+# Input that the loop refuses.
 cp a.png copy.png
 render third 8 -70 ''
 sed -i 's/3.34,3.41/4.24,3.41/' third.json && "$program" render third.json -o third.png || fail "render another foil"
@@ -271,7 +271,7 @@ done <<'TABLE'
 74|nowhere|a.png -o /nowhere/x.json
 TABLE
 
-# Two bumps: done, and said what they cannot tell; of one bump hardly more rows are left than numbers would be fitted.
+# Two bumps: done, and their limits are stated; of one bump hardly more rows are left than numbers would be fitted.
 for bumps in 1 2; do
   cat >few.json <<SPEC
 {"schema":"foilgauge/render/1","seed":3,"foils":[{"design":{"bump_count":$bumps},"overall_radius_mm":20.95,

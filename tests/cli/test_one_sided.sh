@@ -16,7 +16,7 @@ design() { # NAME TOLERANCES
   echo "{\"schema\":\"foilgauge/design/1\",\"bump_count\":9,\"tolerances\":{$2}}" >"$1.json"
 }
 
-# What each plot of a page draws: arrows, crosses, and labels that lie over each other.
+# Marks that each plot of a page draws: arrows, crosses, and labels that lie over each other.
 cat >drawn.py <<'P'
 import re, sys
 page = open(sys.argv[1], encoding="utf-8").read()

@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The second renderer's driver does what its members say, and the benchmark of drivers counts what is silently wrong.
+# The second renderer's driver does as its members say, and the benchmark of drivers counts values that are silently wrong.
 . tests/support/loop.sh
 for python in python3 /usr/bin/python3 ""; do
   "$python" -c "import numpy" 2>/dev/null && break

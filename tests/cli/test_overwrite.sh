@@ -125,7 +125,7 @@ mine 'would overwrite the design' lot in/list.csv -d lots/mine/lot.json -o lots/
 mine 'would overwrite the scanner' lot in/list.csv --model lots/mine/scanner_model.json -o lots/mine
 mine 'would overwrite the scan' lot lots/mine/index.html -o lots/mine
 
-# What the lot wrote itself may be given back, from any folder.
+# Files that the lot wrote itself may be given back, from any folder.
 says() { # WORDS COMMAND...
   local words=$1
   shift

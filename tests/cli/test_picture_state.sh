@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The state of a picture in every form of the report: what is found is named with its cure, and a plain scan is told apart.
+# The state of a picture in every form of the report: findings are named with their cure, and a plain scan is told apart.
 if ! command -v python3 >/dev/null; then
   echo "skipped: no python3"
   exit 77

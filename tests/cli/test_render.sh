@@ -25,8 +25,8 @@ for tier in $tiers; do
   grep -q '"foilgauge/truth/1"' "$folder/$tier.json" || fail "$tier: no truth"
 done
 
-# 100 million pixels: held whole, coverage alone would be 400 MB. Address space is what counts, and
-# the shared libraries take most of what is allowed here. A sanitizer needs terabytes of it.
+# 100 million pixels: held whole, coverage alone would be 400 MB. The limit is on address space, and
+# the shared libraries take most of it. A sanitizer needs terabytes of it.
 cat >"$folder/wide.json" <<'END'
 {"schema":"foilgauge/render/1","width_px":25000,"height_px":4000,
  "foils":[{"repeat":2,"rotate_deg":-90}],"scanner":{"noise":0}}

@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# What is odd about a scan's resolution is said: on the terminal, in JSON and on the page.
+# Oddities of a scan's resolution are reported: on the terminal, in JSON and on the page.
 . tests/support/cli.sh
 cd "$root" || exit 1
 folder=$work

@@ -1,7 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# How to scan: samples/station/scan.sh sets every option that a scanner has, by what its driver says of
-# itself, and no other; the station names options of its scan_command that spoil a scan, and none else.
+# Scanning: samples/station/scan.sh sets every option that a scanner has, by its driver's own list,
+# and no other; the station names options of its scan_command that spoil a scan, and none else.
 # Usage: test_scan_command.sh PROGRAM
 set -euo pipefail
 program=$(realpath "$1")
@@ -15,7 +15,7 @@ fail() {
 }
 real=$(command -v scanimage || true)
 
-# Drivers as they list their options; some have them only in gray. What is asked of a scan is noted.
+# Drivers as they list their options; some have them only in gray. The arguments of each scan are noted.
 mkdir "$work/bin"
 cat >"$work/bin/scanimage" <<'S'
 #!/bin/bash
@@ -85,7 +85,7 @@ path=$PATH
 PATH=$work/bin:$PATH
 # shown DRIVER: the command that scan.sh would run, for a driver's list of options.
 shown() { DRIVER=$1 sh "$scan" --show 4800 || fail "scan.sh --show of $1"; }
-expect() { # DRIVER WORDS: what is set, besides format and file
+expect() { # DRIVER WORDS: the options that are set, besides format and file
   local is
   is=$(shown "$1")
   [ "$is" = "scanimage $2 --resolution=4800 --format=png --output-file={file}" ] || fail "$1: $is"
@@ -111,7 +111,7 @@ if [ -n "$real" ] && "$real" -d test --test-picture Grid -n 2>/dev/null; then
   [ "$(od -An -tu1 -j24 -N2 "$work/grid.png" | tr -d ' ')" = 160 ] || fail "the test backend: not gray of 16 bits"
 fi
 
-# start COMMAND: a station with this scan_command; what it says is in $work/err, its page in $work/page.
+# start COMMAND: a station with this scan_command; its messages are in $work/err, its page in $work/page.
 start() {
   rm -rf "$work/in" "$work/address"
   mkdir "$work/in"

@@ -89,7 +89,7 @@ for format in png tiff pnm; do
 done
 same_in_every_format "scanimage's pipe"
 
-# Where the format has a resolution, scanimage writes it.
+# Resolution: scanimage writes it in formats that have one.
 measure "$work/scan.png"
 measure "$work/scan.tiff"
 echo "$measured pictures measured"

@@ -1,7 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Nobody without a token can stop a station: requests that are none, and a folder in which somebody puts what is no scan
-# in the place of what is one. Usage: test_station_attacked.sh PROGRAM [SECONDS]
+# Nobody without a token can stop a station: malformed requests, and a folder in which somebody replaces scans by
+# other things. Usage: test_station_attacked.sh PROGRAM [SECONDS]
 name=test_station_attacked
 . "$(dirname "$0")/../support/station.sh"
 seconds=${2:-6}
@@ -80,10 +80,10 @@ print("%d requests, a page after %.2f s at most" % (sent, longest))
 PY
 (ulimit -n 4096 2>/dev/null || true; checks "$work/attack.py" "$(cat "$work/address")" "$seconds") >"$work/found" 2>>"$work/said" ||
   fail "requests"
-# Of the program alone: sanitizers keep what was freed.
+# Of the program alone: sanitizers keep freed memory.
 [ -n "${FOILGAUGE_TEST_BRIEF:-}" ] || [ "$(awk '/VmHWM/ { print int($2 / 1024) }' "/proc/$station/status")" -lt 250 ] || fail "memory"
 
-# In the folder: what was a scan when it was looked at is a pipe, a link, a folder when it is read.
+# In the folder: a scan becomes a pipe, a link or a folder between the look at it and its reading.
 python3 - "$work/in" "$work/2.png" "$seconds" <<'PY'
 import os, sys, time
 folder, scan, seconds = sys.argv[1], sys.argv[2], float(sys.argv[3])
@@ -117,7 +117,7 @@ before=$(python3 -c 'import sqlite3, sys; print(sqlite3.connect(sys.argv[1]).exe
 cp "$work/3.png" "$work/in/3.png"
 wait_for 20 measured "$work/in" $((before + 1))
 
-# What is the station's own is replaced: it says so, and goes on when that is over.
+# The station's own file is replaced: the station says so, and goes on when that is over.
 for what in garbage folder pipe other; do
   draw "$((RANDOM + 10))" "$work/next.png"
   : >"$work/said"

@@ -87,7 +87,7 @@ foil 18 "$work/in/B.png"
 once
 [ "$(ask "SELECT withheld IS NULL FROM scans WHERE path = 'B.png'")" = 1 ] || fail "withheld after a good check"
 
-# A change that is meant is accepted on the page, once, and is what later checks are held against.
+# A change that is meant is accepted on the page, once, and later checks are held against it.
 plate 19 "$work/in/check_new.png" "$plain, \"gamma\": 1.8"
 "$program" station "$work/in" --recipe "$work/recipe.json" --port 0 >"$work/address" 2>"$work/err" &
 station=$!

@@ -1,7 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# How a station ends: after a signal everything is in the database's one file, whoever else reads it, whatever hangs on;
-# and while it runs, what was measured is in that file some seconds later. Usage: test_station_ends.sh PROGRAM
+# The end of a station: after a signal everything is in the database's one file, whoever else reads it, whatever hangs on;
+# and while it runs, every measurement is in that file some seconds later. Usage: test_station_ends.sh PROGRAM
 name=test_station_ends
 . "$(dirname "$0")/../support/station.sh"
 reader=

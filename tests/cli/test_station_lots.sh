@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Lots of a station: what --export writes is what `lot` would have made of the same scans, to the
+# Lots of a station: --export writes the same as `lot` would have made of the same scans, to the
 # byte; a lot is closed in the browser, and nothing but its report can be had there.
 # Usage: test_station_lots.sh PROGRAM
 set -euo pipefail
@@ -80,7 +80,7 @@ grep -q 'bed.png,bed.1,L 1,,,1 of 2$' "$work/beds/L 1/manifest.csv" || fail "$(c
 [ "$(wc -l <"$work/beds/L 1/foils.csv")" -eq 4 ] || fail "a bed's foil of another lot is in the lot"
 "$program" merge "$work/beds/L 1" -o "$work/merged2" 2>/dev/null || fail "a part of a bed does not merge"
 
-# Another setup: measured again with the lot's newest; what is gone counts as not measured.
+# Another setup: measured again with the lot's newest; scans that are gone count as not measured.
 sed 's/"group/"dpi": 1201, "group/' "$work/recipe.json" >"$work/other.json"
 cp "$work/drawn/late.png" "$work/in/L 1-late.png"
 "$program" station "$work/in" --recipe "$work/other.json" --once 2>/dev/null
@@ -165,8 +165,8 @@ kill "$station"
 wait "$station" 2>/dev/null || true
 station=
 
-# What had to be scanned again counts with its later scan, what fails stays; what was measured while
-# the scanner's check was due is said.
+# A foil that was scanned again counts with its later scan, failed foils stay; verdicts given while
+# the scanner's check was due are reported.
 sql "UPDATE foils SET serial = 'again'" \
   "UPDATE foils SET verdict = 'cannot_tell' WHERE id = (SELECT min(id) FROM foils WHERE lot = 'L 1')" \
   "UPDATE foils SET verdict = 'fail' WHERE lot = 'L 1' AND verdict <> 'cannot_tell'" \

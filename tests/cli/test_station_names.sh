@@ -20,7 +20,7 @@ long=$(printf 'x%.0s' {1..251}).png
 ln "$work/in/ünï%FF 100%.png" "$work/in/$long"
 code=0
 timeout 60 "$program" station "$work/in" $recipe --once >"$work/out" 2>"$work/said" || code=$?
-# Two of them are the bytes of a third under other names: nothing is measured of what they are called.
+# Two of them are the bytes of a third under other names: nothing is measured again under another name.
 [ $code -eq 2 ] || fail "exit code $code"
 grep -q "3 measured, 2 known, 1 refused" "$work/said" || fail "counts"
 [ "$(grep -c '^foilgauge: ' "$work/said")" -eq "$(wc -l <"$work/said")" ] || fail "a line that is none of the program's"

@@ -27,7 +27,7 @@ draw 2 "$work/good.png"
 draw 3 "$work/late.png"
 cat >"$work/scan.sh" <<'S'
 #!/bin/sh
-# What the scanner does is in the file `mode`.
+# The file `mode` holds the scanner's behaviour.
 mode=$(cat "$(dirname "$0")/mode")
 case $mode in
 fail) echo "warming up"; echo "scanimage: device busy" >&2; printf x >"$1"; exit 3 ;;
@@ -67,7 +67,7 @@ assert now.count('stroke="#ff5252"') >= 2, now
 for bump in "1", "2":
     assert re.search(r'fill="#ff5252"[^>]*>%s: R [0-9.]+ mm, max 3<' % bump, now), bump
 
-# Who waits is told when there is news, at once.
+# A waiting reader is told when there is news, at once.
 def events(last):
     text = ask("/events", **{"Last-Event-ID": last})[1]
     return re.search(r"id: (\d+)\ndata: (\w+)", text).groups()
@@ -115,7 +115,7 @@ os.remove(folder + "/A_1.png")
 gone = page("/report?foil=1")
 assert "From the record" in gone and "No such file" in gone and radius in gone
 
-# What no browser sends.
+# Requests that no browser sends.
 address = base[7:].rstrip("/")
 def raw(text):
     host, port = address.split(":")

@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Where a station can be reached: every address and name of the machine, names that --host adds, a proxy with TLS before
+# Addresses of a station: every address and name of the machine, names that --host adds, a proxy with TLS before
 # it (nginx, where it is installed), and no other name. Usage: test_station_reach.sh PROGRAM
 name=test_station_reach
 . "$(dirname "$0")/../support/station.sh"

@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# A writer that pauses is waited for: RECEIVING, no card; when nothing more comes, what is wrong. A scan
+# A writer that pauses is waited for: RECEIVING, no card; when nothing more comes, the error. A scan
 # that comes again under the serial number of another foil is no measurement of that foil.
 # Usage: test_station_receiving.sh PROGRAM
 set -euo pipefail
@@ -45,7 +45,7 @@ shutil.copy(work + "/1.png", folder + ".a")
 os.rename(folder + ".a", folder + "7_1.png")
 wait_until(lambda: call() == ("PASS", "7_1.png"))
 
-# The writer closes the file and goes on three seconds later, twice; the old PASS is not what is in large letters.
+# The writer closes the file and goes on three seconds later, twice; the large letters do not show the old PASS.
 whole = open(work + "/2.png", "rb").read()
 third = len(whole) // 3
 for part in whole[:third], whole[third:2 * third]:
@@ -60,13 +60,13 @@ open(folder + "7_2.png", "ab").write(whole[2 * third:])
 wait_until(lambda: call() == ("PASS", "7_2.png"))
 assert cards() == [("7_1.png", "measured"), ("7_2.png", "measured")], cards()
 
-# One that is received and taken away again leaves what was there.
+# A file that is received and taken away again leaves the earlier result.
 open(folder + "7_x.png", "wb").write(whole[:third])
 wait_until(lambda: call() == ("RECEIVING", "7_x.png"))
 os.remove(folder + "7_x.png")
 wait_until(lambda: call() == ("PASS", "7_2.png"))
 
-# A writer that never goes on: after RECEIVE_S the page says what is missing.
+# A writer that never goes on: after RECEIVE_S the page names the missing part.
 open(folder + "7_3.png", "wb").write(whole[:third])
 began = time.time()
 wait_until(lambda: call() == ("RECEIVING", "7_3.png"))
@@ -74,7 +74,7 @@ wait_until(lambda: call() == ("SCAN AGAIN", "7_3.png"))
 assert RECEIVE_S - 1 < time.time() - began < RECEIVE_S + 5, time.time() - began
 assert "its end is missing" in page()
 
-# What is read to its end before it is known to be cut off: PNM. The same of one that is damaged otherwise, at once.
+# PNM is read to its end before it is known to be cut off. A file that is damaged otherwise is known at once.
 def pnm(source):
     data, at, pixels = open(source, "rb").read(), 8, b""
     while at < len(data):

@@ -11,7 +11,7 @@ shims=$(realpath "$(dirname "$program")")/tests
 at_end() {
   ! mountpoint -q "$work/full" || umount -l "$work/full"
 }
-# expect CODE WORDS COMMAND...: its exit code, and what it says.
+# expect CODE WORDS COMMAND...: its exit code, and words of its messages.
 expect() {
   local code=0 expected=$1 words=$2
   shift 2
@@ -78,7 +78,7 @@ open(sys.argv[2], "wb").write((head.ljust(180, b"\0") + struct.pack("<II", 600, 
 PY
 }
 
-# What is there, once and again.
+# Files already in the folder: measured or refused once; a second run finds nothing new.
 mkdir "$work/in"
 cp "$work"/scans/[12].png "$work/in"
 head -c 20000 "$work/scans/3.png" >"$work/in/half.png"

@@ -1,8 +1,8 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # `foilgauge stiffness`: tests of bearings with known clearance, stiffness and friction come back, in whatever way the
-# table is written; what a table can lack; limits and exit codes; a bearing against the lot's foils, and the table for
-# the loop, which finds what was planted there.
+# table is written; gaps of a table; limits and exit codes; a bearing against the lot's foils, and the table for
+# the loop, which finds the planted effect.
 . tests/support/cli.sh
 listened="stdout stderr"
 
@@ -63,7 +63,7 @@ for a in r["azimuths"]:
     if not abs(loss / a["loss_factor"] - 1) < 0.02:
         bad.append(("loss", loss))
 for b in r["bearings"]:
-    # What lies between the strokes is no preload: that takes a break-away test.
+    # The hysteresis between the strokes is no preload: that takes a break-away test.
     if not abs(b["radial_hysteresis_n"] - 1.032) < 2 * b["u_radial_hysteresis_n"] < 0.2:
         bad.append(("hysteresis", b["radial_hysteresis_n"], b["u_radial_hysteresis_n"]))
     if b["preload_n"] is not None or b["preload_kpa"] is not None:
@@ -130,7 +130,7 @@ fi
 awk -F, -v OFS=, 'NR > 1 { $3 = -$3 } { print }' a0.csv >turned.csv
 run 0 "the force runs against the displacement" --azimuth 0 turned.csv --text -
 
-# What cannot be measured has its reason; what can is still there.
+# Missing results have their reason; the others are still there.
 (echo $heading && make A 143.17 "0" && make A 143.17 "60" 3 push) >half.csv
 run 2 "" half.csv -o half.json
 run 2 "pushed or pulled only" half.csv --text -
@@ -164,7 +164,7 @@ grep -q energy_gained even.json && fail "energy gained by noise alone"
 run 0 "are the units what they say" --azimuth 0 a0.csv --diameter 3 --text -
 cp a0.csv again.csv
 run 65 "again.csv: the same bytes as a0.csv" --azimuth 0 a0.csv again.csv
-# What looks alike from every side has no direction of its own, and no u is below zero.
+# A bearing that is alike from every side has no direction of its own, and no u is below zero.
 changed '$3 += 0'
 for deg in 30 60 90 120; do changed '$2 += 0' && sed "s/^/$deg,/;1s/$deg,/azimuth_deg,/" changed.csv; done |
   awk 'NR == 1 || !/azimuth/' >alike.csv
@@ -206,7 +206,7 @@ run 0 "pass: " test.csv --limit clearance_mm=0.10:0.25 --limit radial_hysteresis
 run 1 "fail: .*beyond a limit" test.csv --limit clearance_mm=0.16: --text -
 run 3 "with a limit within U" test.csv --limit clearance_mm=:0.1802 --text -
 
-# Against a lot: a rotor meets the foils' places, which is its gap and not its travel at 20 N; what it differs by grows with the azimuth's cosine, and the loop says so.
+# Against a lot: a rotor meets the foils' places, which is its gap and not its travel at 20 N; the difference grows with the azimuth's cosine, and the loop says so.
 mkdir -p lot
 python3 - >lot/lot.json <<'END'
 import json

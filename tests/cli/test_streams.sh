@@ -128,7 +128,7 @@ for signal in TERM HUP; do
   interrupted $signal render large.json -o out/a.png -t out/t.json
 done
 
-# What is ignored stays ignored (nohup).
+# Ignored signals stay ignored (nohup).
 (trap '' HUP && exec "$program" measure - -o out/a.json <hold 2>said) &
 pid=$!
 sleep 0.3

@@ -1,7 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# What commands say: results on a terminal beside the files that were asked for, which quantities fail, what a lot is
-# called, folders and scans that are not there, where a file is no JSON.
+# Messages of commands: results on a terminal beside the files that were asked for, which quantities fail, a lot's name,
+# folders and scans that are not there, the place where a file is no JSON.
 if ! command -v python3 >/dev/null; then
   echo "skipped: no python3"
   exit 77
@@ -72,7 +72,7 @@ expect 0 '^3 scans, 2 to measure, 0 kept, 1 missing: scans/c.png$' "$program" lo
 expect 0 '^4 scans, 2 to measure, 0 kept, 2 missing: the first is d.png$' "$program" lot scans d.png scans/c.png -o none --dry-run
 listened=stderr
 
-# Where a file stops being JSON: line, column, and the line.
+# The place where a file stops being JSON: line, column, and the line.
 printf '{"schema": "foilgauge/recipe/1",\n "name": 3x}' >bad.json
 expect 65 'bad.json: line 2, column 11: this is not JSON: "name": 3x' "$program" lot scans --recipe bad.json -o none
 expect 65 'bad.json: line 2, column 11: this is not JSON: "name": 3x' "$program" render bad.json -o none.png

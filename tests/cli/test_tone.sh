@@ -53,7 +53,7 @@ grep -q 'differ by more than their uncertainty' other.html || fail "the page doe
 grep -q 'thickness as measured .*0.1003' <("$program" design measured.json) || fail "the design does not show what was measured"
 grep -q 'linear, as stated' <("$program" design linear.json) || fail "the design does not show its tone"
 
-# Where an edge is the datum it moves with the tone, and its radii; a height, between two places of one edge, does not.
+# An edge as datum moves with the tone, and its radii; a height, between two places of one edge, does not.
 design ', "datum": "inner"' inner.json
 "$program" measure plain.png --design inner.json -o inner.out
 checks - <<'P' || fail "radii of an edge do not hold the tone"
@@ -65,7 +65,7 @@ for bump in foil["bumps"]:
 assert abs(foil["overall"]["u_radius_mm"] / half - 1) < 0.1
 P
 
-# What is overruled is said; what cannot be is refused, with its unit.
+# An overruled member is reported; impossible values are refused, with their unit.
 expect 0 'overrules the design.s thickness_measured, 0.1003 mm' "$program" measure plain.png --design measured.json --thickness-measured 0.1:0.001 -o over.out
 [ "$(value over.out "r['design']['thickness_measured']['value_mm']")" = 0.1 ] || fail "the option does not overrule"
 expect 0 'overrules the design.s tone' "$program" measure plain.png --design linear.json --tone unknown -o over.out

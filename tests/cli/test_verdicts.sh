@@ -148,7 +148,7 @@ valid measure.schema.json a.json
 
 [ -n "${FOILGAUGE_TEST_LONG-}" ] || exit $failed
 
-# No foil of the design: it says what it is, and why, and is no success.
+# No foil of the design: the report names it, gives the reason, and is no success.
 design 5 '"height_mm":{"min":0.1,"max":1}'
 foreign() {
   holds a.json 'all("not_this_design" in g["flags"] and g["verdict"] == "not_measured" for g in r["foils"])' \
