@@ -91,7 +91,7 @@ typedef struct fg_thickness {
 /* Moves of every value that has an uncertainty, by one standard deviation of each error of a
  * calibration (calibration.h), in the order of the rows of quantities (quantity.h), two of a pair.
  * u_ includes them already. The errors are the same in every foil of a scanner. */
-enum { FG_CALIBRATED_MAX = 16 };
+enum { FG_CALIBRATED_MAX = 16 }; /* of the owner with most; unit.test_quantity checks it */
 typedef struct fg_calibrated {
   double move[FG_CALIBRATION_SOURCES][FG_CALIBRATED_MAX];
 } fg_calibrated;

@@ -72,7 +72,7 @@ typedef struct fg_quantity {
   size_t covariance_row;
   int decimals;  /* min number of decimals for people */
   unsigned uses; /* fg_quantity_use */
-  int rank;      /* rank for people, from 1; 0: after the ranked ones, in order of the rows */
+  int rank;      /* rank for people, from 1, no two alike; 0: after the ranked, in their order */
   /* For quality systems, which know lengths and angles: QIF's name of the characteristic (NULL:
    * not exported; ratios and percentages follow from the others). */
   const char *characteristic;

@@ -18,7 +18,8 @@ typedef struct geometry {
   fg_springback model;
 } geometry;
 
-/* A row per quantity: its value, and its gradient by (X, R, R0, t) on top of the zeros given. */
+/* Returns a quantity's value and fills its gradient by (X, R, R0, t), which comes zeroed: a
+ * function that combines two others gives the second one zeros of its own. */
 typedef double quantity_value(const geometry *g, double gradient[BY_COUNT]);
 
 static double centre_to_centre(const geometry *g, double gradient[BY_COUNT]) {

@@ -38,7 +38,8 @@ def main(folder, name, *files):
         report = json.loads(pathlib.Path(file).read_text(encoding="utf-8"))
         for error in validator(schemas, name).iter_errors(report):
             failed = True
-            print(f"{file}: {'/'.join(map(str, error.absolute_path))}: {error.message[:300]}")
+            place = "/".join(map(str, error.absolute_path))
+            print(f"{file}: {place}: {error.message[:300]} ({folder}/{name})")
     return 1 if failed else 0
 
 

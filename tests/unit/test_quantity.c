@@ -24,6 +24,7 @@ static void every_format_is_complete(void **state) {
     const fg_quantity *rows = fg_quantities(owner, &count);
     assert_true(count > 0);
     for (size_t i = 0; i < count; i++) {
+      in_row("%s", rows[i].name);
       assert_true(rows[i].name && rows[i].unit && rows[i].symbol && rows[i].words);
       assert_true(!rows[i].characteristic || rows[i].nominal); /* an export states it */
       /* What quality systems get is taken from a lot's statistics. */
@@ -42,10 +43,13 @@ static void a_name_is_there_once(void **state) {
     const fg_quantity *rows = fg_quantities(owner, &count);
     for (size_t i = 0; i < count; i++)
       for (size_t k = 0; k < i; k++) {
+        in_row("%s beside %s", rows[i].name, rows[k].name);
         assert_string_not_equal(rows[i].name, rows[k].name);
         assert_string_not_equal(rows[i].words, rows[k].words);
         assert_int_not_equal(rows[i].offset, rows[k].offset);
-        if (rows[i].rank) assert_int_not_equal(rows[i].rank, rows[k].rank);
+        if (rows[i].rank && rows[i].rank == rows[k].rank)
+          fail_msg("%s has the rank of %s, %d: each has its own", rows[i].name, rows[k].name,
+                   rows[i].rank);
         /* A column of S beside one of s is read as the other. */
         bool letters_tell_apart = strcmp(rows[i].symbol, rows[k].symbol) == 0 ||
                                   strcasecmp(rows[i].symbol, rows[k].symbol) != 0;
@@ -78,6 +82,19 @@ static void every_use_has_room(void **state) {
   fg_quantity_list(FG_QUANTITY_OF_BUMP, FG_FOIL_CLASSICAL, true, names, sizeof names);
   fg_quantity_list(FG_QUANTITY_OF_FOIL, FG_FOIL_CLASSICAL, true, names, sizeof names);
   assert_true(strlen(names) + 1 < sizeof names);
+}
+
+/* A calibration's moves beyond the room for them would be written over other members of the bump.
+ */
+static void a_calibration_has_room_for_every_row(void **state) {
+  (void)state;
+  for (fg_quantity_owner owner = 0; owner < FG_QUANTITY_OWNERS; owner++) {
+    size_t count, moves = fg_quantity_moves(owner);
+    if (moves > FG_CALIBRATED_MAX)
+      fail_msg("the owner of %s has %zu values with u_: raise FG_CALIBRATED_MAX, which is %d, in "
+               "include/foilgauge/foil.h",
+               fg_quantities(owner, &count)->name, moves, FG_CALIBRATED_MAX);
+  }
 }
 
 /* ---- reports ---- */
@@ -236,6 +253,12 @@ static const cJSON *properties_of(const cJSON *schema, const char *definition) {
   return cJSON_GetObjectItemCaseSensitive(one, "properties");
 }
 
+static bool has_word(const cJSON *list, const char *word) {
+  const cJSON *one;
+  cJSON_ArrayForEach(one, list) if (strcmp(one->valuestring, word) == 0) return true;
+  return false;
+}
+
 static void schemas_know_every_row(void **state) {
   (void)state;
   static const struct {
@@ -260,10 +283,44 @@ static void schemas_know_every_row(void **state) {
       const cJSON *known = properties_of(schema, dot ? group : schemas[owner].definition);
       if (!cJSON_HasObjectItem(known, name))
         fail_msg("%s lacks %s", schemas[owner].path, rows[i].name);
-      assert_int_equal(cJSON_HasObjectItem(known, u_name), fg_quantity_has_u(&rows[i]));
+      if (cJSON_HasObjectItem(known, u_name) != fg_quantity_has_u(&rows[i]))
+        fail_msg("%s: %s is there, or its row has an uncertainty, but not both",
+                 schemas[owner].path, u_name);
     }
     cJSON_Delete(schema);
   }
+}
+
+static void require(const char *path, const cJSON *definition, const char *name) {
+  if (!cJSON_HasObjectItem(cJSON_GetObjectItemCaseSensitive(definition, "properties"), name))
+    fail_msg("%s lacks %s", path, name);
+  if (!has_word(cJSON_GetObjectItemCaseSensitive(definition, "required"), name))
+    fail_msg("%s: `required` lacks %s", path, name);
+}
+
+/* Every bump has every row; `forming` writes those with an uncertainty, and none of the u_. */
+static void schemas_require_every_row_of_bumps(void **state) {
+  (void)state;
+  static const char measure[] = "reports/schema/measure.schema.json";
+  static const char forming[] = "reports/schema/form.schema.json";
+  cJSON *of_measure = load_schema(measure), *of_forming = load_schema(forming);
+  const cJSON *bump = cJSON_GetObjectItemCaseSensitive(
+      cJSON_GetObjectItemCaseSensitive(of_measure, "$defs"), "bump");
+  const cJSON *list = cJSON_GetObjectItemCaseSensitive(
+      cJSON_GetObjectItemCaseSensitive(of_forming, "properties"), "bumps");
+  const cJSON *formed_bump = cJSON_GetObjectItemCaseSensitive(list, "items");
+  size_t count;
+  const fg_quantity *rows = fg_quantities(FG_QUANTITY_OF_BUMP, &count);
+  for (size_t i = 0; i < count; i++) {
+    char u_name[96];
+    snprintf(u_name, sizeof u_name, "u_%s", rows[i].name);
+    require(measure, bump, rows[i].name);
+    if (!fg_quantity_has_u(&rows[i])) continue;
+    require(measure, bump, u_name);
+    if (rows[i].kind == FG_QUANTITY_NUMBER) require(forming, formed_bump, rows[i].name);
+  }
+  cJSON_Delete(of_measure);
+  cJSON_Delete(of_forming);
 }
 
 /* ---- lots ---- */
@@ -348,10 +405,12 @@ int main(void) {
       cmocka_unit_test(every_format_is_complete),
       cmocka_unit_test(a_name_is_there_once),
       cmocka_unit_test(every_use_has_room),
+      cmocka_unit_test(a_calibration_has_room_for_every_row),
       cmocka_unit_test(reports_hold_every_row),
       cmocka_unit_test(reports_hold_every_row_of_arcs),
       cmocka_unit_test(reports_hold_every_row_of_discs),
       cmocka_unit_test(schemas_know_every_row),
+      cmocka_unit_test(schemas_require_every_row_of_bumps),
       cmocka_unit_test(lots_know_every_row),
       cmocka_unit_test(tables_tell_results_from_causes),
   };
