@@ -77,7 +77,7 @@ def judge(record, foil, truth):
     record["u"] = uncertainties(foil, truth)
     record["bound"] = benchlib.foil_bounds(truth, sigma, end_lands_mm=record.get("end_lands_mm", (0, 0)))
     record["flags"] = foil.get("flags", [])
-    # What an effect of the scanner does to R is no wrong arc.
+    # An effect of the scanner changes R; that is no gross error of an arc.
     if "scan." not in record.get("effects", "") and np.max(np.abs(wrong["R"])) > GROSS_UM:
         k = int(np.argmax(np.abs(wrong["R"])))
         record["gross"] = f"bump {k + 1}: R off by {wrong['R'][k]:.1f} µm"

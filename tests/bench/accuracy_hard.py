@@ -20,7 +20,7 @@ import benchlib
 from accuracy_specs import foil_spec, levels, log_uniform, spec_of
 
 COARSE_DPI = (600, 700, 800, 1000, 1200)
-# What a flag must say for a value to count as flagged: that its u may not hold.
+# Flags that count as a warning of a value: its u may not hold.
 BUMP_FLAGS = {"disturbed_edge", "gap", "touches_other", "poor_fit", "not_fitted", "crushed"}
 FOIL_FLAGS = {"coarse_resolution"}
 QUANTITIES = ("R", "h", "R0")
@@ -51,7 +51,7 @@ def tidy(rng, index):
 
 
 def dusty(rng, index):
-    """Dust and larger specks, lighter and darker than what they lie on."""
+    """Dust and larger specks, lighter and darker than the surface under them."""
     spec = tidy(rng, index)
     sign = -1.0 if rng.uniform() < 0.5 else 1.0
     spec["scanner"]["dust"] = {
@@ -179,7 +179,7 @@ def write(results, options):
 
 
 def arguments(options):
-    """What was asked for beyond the defaults, for the page."""
+    """Options beyond the defaults, for the page."""
     given = [("--seed", options.seed, 1), ("--share", options.share, 1.0), ("--sets", options.sets, ",".join(SETS))]
     return "".join(f" {name} {value}" for name, value, default in given if value != default)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the benchmarks share: truth files, the accuracy bound, errors, tables."""
+"""Shared parts of the benchmarks: truth files, the accuracy bound, errors, tables."""
 
 import json
 import os
@@ -220,7 +220,7 @@ def table(header, rows):
 
 
 def number(value, digits=3):
-    """Fixed significant digits; a dash for what is not known."""
+    """Fixed significant digits; a dash for an unknown value."""
     if value is None or not np.isfinite(value):
         return "–"
     return f"{value:.{digits}g}"

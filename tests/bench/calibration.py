@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Coverage of U = 1.96 u where the scanner's pitch and the part's temperature are not what they are
-taken for: writes reports/calibration.md.
+"""Coverage of U = 1.96 u where the scanner's pitch and the part's temperature differ from their assumed
+values: writes reports/calibration.md.
 
 Every scan is rendered with an error of the pitch (and, of the second tier, another one along y) that is
 drawn from the uncertainty that the calibration states, and measured with that calibration, with one that
@@ -55,7 +55,7 @@ def run(task):
         "foils": [{"rotate_deg": rng.uniform(0, 360), "radius_springback": {"mean": 0.02, "sd": 0.007}}],
         "scanner": {"dpi": DPI, "blur_px": 1.2, "noise": 2.0},
     }
-    if y_over_x != 1:  # the carriage's way is longer: what it scans is shorter in rows
+    if y_over_x != 1:  # the carriage's way is longer: the scanned part is shorter in rows
         spec["effects"] = [{"id": "scan.scale_y", "value": 1 / y_over_x - 1}]
     with tempfile.TemporaryDirectory() as folder:
         path = lambda name: os.path.join(folder, name)

@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Coverage of U with and without a calibration where pitch and temperature are not what they are taken for: writes
+# Coverage of U with and without a calibration where pitch and temperature differ from their assumed values: writes
 # reports/calibration.md. --foils 30 takes a quick look.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)

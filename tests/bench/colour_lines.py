@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The channels of colour scans against known truth: how often the 95 % intervals hold, where the flag stands, what a constant
-course looks like, what the witness of the loop says and how large a ripple must be for it, and what it costs.
+"""The channels of colour scans against known truth: coverage of the 95 % intervals, place of the flag, p of a constant
+profile, verdict of the loop's channel check and the ripple that it needs, and the time that all this takes.
 
 Usage: colour_lines.py PROGRAM [--renders 30] [--seeds 3] [--before PROGRAM]; writes reports/colour_lines.md. --before: a
 build without the colour lines, to compare times."""
@@ -77,7 +77,7 @@ def farthest(report, at, x0_mm, middle_px):
 
 
 def compare(report, truth):
-    """(quantity, error / u, u) of both channels; what is known of the distance, what the flag says; p of a constant course."""
+    """(quantity, error / u, u) of both channels; the true distance, the flag; p of a constant profile."""
     lines, known = report["colour_lines"], truth["colour_lines"]
     pixel_mm = 25.4 / report["inputs"][0]["dpi"][0]
     rows, real = [], {"green": (0, 0)}
@@ -179,7 +179,7 @@ def ripple_spec(part, gap, amplitude, seed):
 
 
 def one_witness(task):
-    """What the lines say of the ripple without and with the gap stated; None: the loop did not claim it."""
+    """Verdicts of the channel check on the ripple without and with the gap stated; None: the loop did not claim it."""
     program, folder, part, gap, amplitude, seed, stated = task
     base = os.path.join(folder, f"w{part}_{gap}_{amplitude}_{seed}")
     draw(program, base, ripple_spec(part, gap, amplitude, seed))
@@ -226,7 +226,7 @@ TIE_GAP = 16
 
 
 def one_tie(task):
-    """Whether the explanations are tied, and what the lines are said to speak for, without and with the gap stated."""
+    """(The explanations are tied, the effect that the lines are said to speak for) without and with the gap stated."""
     program, folder, kind, seed = task
     base = os.path.join(folder, f"t{kind}_{seed}")
     rough = {"edge_roughness_um": 2, "edge_common_um": 2, "correlation_um": 60}

@@ -4,8 +4,8 @@
     python3 tests/bench/die_profiles.py FOLDER [--seed N] [--tip-um R] [--repeats N] [--bumps N] ...
 
 It knows nothing of how the program takes the tip off: the surface is a dense line of points, and the trace is the
-upper envelope of the tip (a sphere on a cone) that is set on each of them. Numbers of the midline are what a half's
-surface comes to half a thickness from it.
+upper envelope of the tip (a sphere on a cone) that is set on each of them. Numbers of the midline are those of a half's
+surface, moved by half a thickness.
 """
 import argparse
 import json
@@ -52,7 +52,7 @@ class Half:
             for n in self.numbers
         }
         mean = np.mean(list(self.radius.values())) if args.radius_sd_um else 0
-        for n in self.numbers:  # the mean is what was asked for
+        for n in self.numbers:  # the mean is the requested radius
             if args.radius_sd_um:
                 self.radius[n] += DESIGN["radius"] * (1 + error_pct / 100) - mean
         self.angle = {n: DESIGN["angle"] * (1 + args.angle_error_pct / 100) for n in self.numbers}

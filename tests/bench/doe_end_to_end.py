@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Rendered experiments with a known law: run sheet from `doe plan`, one scan per run, `doe --scans`.
 
-Every repetition draws its own law. What is counted: 95 % intervals that hold the true coefficient,
+Every repetition draws its own law. The benchmark counts 95 % intervals that hold the true coefficient,
 the true response at the best setting, and one more run there.
 """
 

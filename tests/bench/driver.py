@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Scans as a scanner's driver makes them: what is measured of them, whether U holds the truth, what is said, and what
-becomes of verdicts. Writes reports/driver.md.
+"""Scans as a scanner's driver makes them: the measured values, whether U holds the truth, the messages, and the
+verdicts. Writes reports/driver.md.
 
 Foils and pins of known size are drawn by two renderers (driver_kinds.py) with 21 kinds of what drivers and light do,
 each in three strengths, of three seeds, at two resolutions; every third part is too thick by 8.5 um. A value is flagged
@@ -105,7 +105,7 @@ def picture(program, cache, spec, renderer):
 
 
 def measure(program, folder, path, spec, words=()):
-    """(the report or None, what was said on standard error)."""
+    """(the report or None, the messages on standard error)."""
     with open(os.path.join(folder, "design.json"), "w", encoding="utf-8") as file:
         json.dump(kinds.design_of(spec), file)
     out = os.path.join(folder, "out.json")
@@ -197,7 +197,7 @@ def rows_of(case, variant, spec, report, plain_flags):
 
 
 def words_of(variant, spec):
-    """What the user knows, of a value that is off by its own uncertainty."""
+    """Options that state the user's known value, which is off by its own uncertainty."""
     if variant == "micrometer":
         rng = np.random.default_rng([32, spec["seed"]])
         value = spec["foils"][0]["design"]["thickness_mm"] + kinds.U_KNOWN_MM * rng.standard_normal()
@@ -233,7 +233,7 @@ def work(job):
 
 
 def variants_of(program, asked):
-    """What the program's own help knows of."""
+    """Variants that were asked for and whose option the program's own help lists."""
     text = subprocess.run([program, "measure", "--help"], capture_output=True, text=True).stdout
     return ["scan"] + [v for v, option in OPTIONS.items() if option in text and v in asked]
 

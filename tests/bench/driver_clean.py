@@ -28,7 +28,7 @@ def clean_spec(index):
 
 
 def flags_of(report):
-    """Every flag of foils, bumps and discs, and what is found of the picture."""
+    """Every flag of foils, bumps and discs, and every finding of the picture."""
     if report is None:
         return ["not_measured"]
     found = [f for part in report.get("foils", []) + report.get("discs", []) for f in part["flags"]]
@@ -64,7 +64,7 @@ def accuracy_row(name, title, scans, which):
 
 
 def paired_row(name, scans):
-    """How often the value and its u are the same, and the mean squares' ratio."""
+    """Number of pairs, ratio of the rms errors, largest change of a value in u, median ratio of u."""
     pairs = [(one[0][1][k], one[1][1][k]) for _, one in scans for k in one[0][1] if k[0] == name and k in one[1][1]]
     new, old = np.array([p[0] for p in pairs]), np.array([p[1] for p in pairs])
     moved = np.abs(new[:, 0] - old[:, 0]) / old[:, 1]

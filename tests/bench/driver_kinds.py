@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a scanner's driver and the light do to a scan, for driver.py: one row per kind, of three strengths, and parts of
+"""A scanner's driver and the light as they change a scan, for driver.py: one row per kind, of three strengths, and parts of
 known size that are drawn with it by `foilgauge render` and by other_scanner.py."""
 
 import math
@@ -140,7 +140,7 @@ def shading(scanner, share, rng):
 
 
 def defaults(scanner, amount, rng):
-    """What many drivers do when nobody says anything, in their order."""
+    """Defaults of many drivers, in the order in which they apply them."""
     scanner["tone_curve"] = auto_contrast(scanner, 0.02)
     unsharp(scanner, amount, rng)
     scanner["jpeg_quality"] = {50: 92, 100: 85, 150: 75}[amount]

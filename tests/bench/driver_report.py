@@ -38,7 +38,7 @@ def per_cent(values):
 
 
 def silent_words(rows):
-    """How many values of each quantity are silently beyond 4 u."""
+    """Number of values of each quantity that are silently beyond 4 u."""
     counts = {q: sum(is_silent(r) for r in rows if r["quantity"] == q) for q in QUANTITIES}
     return " ".join(f"{QUANTITIES[q]} {n}" for q, n in counts.items() if n)
 

@@ -59,7 +59,7 @@ def render(folder, law, rng, foils, dpi, scatter):
 
 
 def names(claim):
-    """Of a claim and of what it is tied with: of tables objects, of scans texts."""
+    """Ids of a claim and of those tied with it: of tables objects, of scans texts."""
     others = [a.get("id") if isinstance(a, dict) else a for a in claim.get("alias_class") or []]
     return [claim["id"], *others]
 

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What canaries, checked lengths and full RELRO cost: the program with and without them on the same work in turn, processor
+"""Cost of canaries, checked lengths and full RELRO: the program with and without them on the same work in turn, processor
 time of each pair as a ratio. Builds the program without them in build-unhardened/; writes reports/hardening.md."""
 
 import argparse

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What JPEG costs, and whether the uncertainties say so: writes reports/jpeg.md.
+"""Errors that JPEG adds, and whether the uncertainties cover them: writes reports/jpeg.md.
 
 Foils and plates of discs are rendered with known truth from seeded specs (accuracy_specs.py,
 accuracy_discs.py), saved as JPEG by libjpeg at several qualities, as gray and as colour with halved
@@ -183,7 +183,7 @@ better than that of as many scans where errors go together (R0 and t: one value 
 
 
 def constant(name):
-    """A number of src/measure/loss.c, so that the page says what is in force."""
+    """A number of src/measure/loss.c, so that the page states the one in force."""
     with open(os.path.join(lib.ROOT, "src", "measure", "loss.c"), encoding="utf-8") as file:
         return next(line.split()[2] for line in file if line.startswith(f"#define {name} "))
 

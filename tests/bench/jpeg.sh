@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# What JPEG costs, and whether the uncertainties say so: writes reports/jpeg.md. --seed N, --renders N.
+# Errors that JPEG adds, and whether the uncertainties cover them: writes reports/jpeg.md. --seed N, --renders N.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 . "$root/tests/packages.sh"

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Renders foils whose bumps depart from the declared springback model, or only scatter about it, runs
-`foilgauge loop` on them and counts what was claimed at the level `bumps`.
+`foilgauge loop` on them and counts the claims at the level `bumps`.
 
 Usage: loop_bumps.py PROGRAM [--count N] [--seed S]; writes reports/loop_bumps.md and loop_bumps.csv."""
 import argparse
@@ -17,7 +17,7 @@ ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
 BUMPS, R_D, ALPHA_D = 9, 3.32, 63.15
 SCATTER = 0.01  # of the springback from bump to bump, relative
 
-# name, scans, same foil in all of them, what is there, share of cases
+# name, scans, same foil in all of them, the effect in them, share of cases
 TIERS = [
     ("clean, one foil", 1, False, None, 1),
     ("clean, skewed scatter", 1, False, "skewed", 1),

@@ -127,7 +127,7 @@ def draw_effect(rng, kind, half_mm, ranges_mm, size=None):
 
 
 def relatives(coordinate, x, moves):
-    """What the table's effects, and the geometry, make of a coordinate."""
+    """Columns of the table's effects and of the geometry over a coordinate."""
     u = (x - x.mean()) / (np.ptp(x) / 2)
     if coordinate == "edge.normal":
         return np.stack([np.ones_like(x), np.cos(np.radians(x)), np.sin(np.radians(x))], axis=1)

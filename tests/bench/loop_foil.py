@@ -8,7 +8,7 @@ ARC_SHARE = 0.85
 
 
 def natural_spline(knots, at, period=0.0):
-    """What the renderer draws: a natural cubic spline, constant beyond; closed with a period."""
+    """A natural cubic spline as the renderer draws it: constant beyond the knots; closed with a period."""
     x, y = np.array(knots, dtype=float).T
     at = np.asarray(at, dtype=float)
     if period:
@@ -79,7 +79,7 @@ class Midline:
         return np.sum(radial * self.normal, axis=1)
 
     def part_shift_um(self, effects):
-        """What the spec's part effects move, along the normal."""
+        """Shift by the spec's part effects, along the normal."""
         shift = np.zeros(len(self.xy))
         for e in effects:
             share = np.sign(self.radial_share()) if e.get("along") == "normal" else self.radial_share()
@@ -147,7 +147,7 @@ class Midline:
         return number + 0.45 * sense * np.nan_to_num(self.u)
 
     def beside_circles(self, columns, left):
-        """What circles that were fitted to it leave of a deviation: those of the bumps, of the lands, that are `left`."""
+        """Residuals of a deviation from circles fitted to it: those of the bumps, of the lands, that are `left`."""
         columns = np.array(columns)
         for index in [i for i in range(self.count) if "bumps" in left] + [-1] * ("lands" in left):
             on = self.bump == index

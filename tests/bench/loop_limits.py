@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""reports/loop_limits.md: what the loop takes on tables of many rows and columns, beside its estimate, and whether
-what was put into them is found.
+"""reports/loop_limits.md: the loop's time and memory on tables of many rows and columns, beside its estimate, and whether
+the planted effects are found.
 
 Usage: python3 tests/bench/loop_limits.py build/foilgauge [ROWSxCOLUMNS...]
 """

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """loop_measured.py PROGRAM [--seeds N] [--check] [--units] [--accept] [--only TABLE] [--out FOLDER]
 
-The tables of tests/data/measured through `foilgauge loop`: what each is known for beside what is said, with
+The tables of tests/data/measured through `foilgauge loop`: the known findings of each beside the claims, with
 seeds 1 to N, and after a change of origin or unit. Writes loop_measured.md. With --check every table once, against
 tests/data/measured/expected.json (exit code 1 where they differ); with --units origins and units alone (exit code 1
 where a table depends on them and is not listed, or the other way round); --accept
-writes what is missed today into expected.json.
+writes the findings that are missed today into expected.json.
 """
 
 import argparse
@@ -59,7 +59,7 @@ def is_one(name, accepted):
 
 
 def judge(report, case):
-    """What is missed and what is claimed without being known, as words; nothing: right."""
+    """Missed findings and claims of unknown effects, as words; nothing: right."""
     said = classes(report)
     wrong = [f"misses {f['what']}" for f in case["findings"]
              if not any(is_one(n, f["accepted"]) for names in said for n in names)]
@@ -117,7 +117,7 @@ def moved(path, out, column, change):
 
 
 def far(scatter):
-    """1e9 scatters away: 1e-7 of a scatter is what a double then rounds to."""
+    """1e9 scatters away: a double then rounds to 1e-7 of a scatter."""
     return lambda values: [v + 1e9 * scatter for v in values]
 
 
@@ -157,8 +157,8 @@ def copied(path, out, response):
 
 
 def copy_differences(program, case):
-    """A column that codes another one is one candidate: what is found stays found, under either name, and what
-    is clean stays clean."""
+    """A column that codes another one is one candidate: findings stay, under either name, and clean tables
+    stay clean."""
     path = os.path.join(DATA, case["table"] + ".csv")
     plain = judge(ask(program, path, case, case["runs"][0]), case)
     with tempfile.TemporaryDirectory() as folder:
@@ -181,7 +181,7 @@ def amplitudes(report):
 
 
 def unit_differences(program, case):
-    """Words for every change of origin or unit that changes what is claimed."""
+    """Words for every change of origin or unit that changes the claims."""
     path = os.path.join(DATA, case["table"] + ".csv")
     before = ask(program, path, case, case["runs"][0])
     out = []
@@ -209,7 +209,7 @@ def all_differences(program, cases):
 
 
 def once(program, case):
-    """Of every option set: (options, report, what is wrong)."""
+    """Of every option set: (options, report, errors as words)."""
     path = os.path.join(DATA, case["table"] + ".csv")
     for options in case["runs"]:
         report = ask(program, path, case, options)
@@ -276,7 +276,7 @@ def check(program, cases):
 
 
 def check_units(program, cases):
-    """How many tables depend on an origin or unit without being listed as such, or the other way round."""
+    """Number of tables that depend on an origin or unit without being listed as such, or the other way round."""
     bad = 0
     for case in cases:
         differences, listed = all_differences(program, [case]), case.get("units_not_yet", False)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a report of `foilgauge loop --table` claims, as names: shared by what judges it."""
+"""Claims of a report of `foilgauge loop --table`, as names: shared by the benchmarks that judge it."""
 
 
 def member(name):
@@ -19,7 +19,7 @@ def members(claim):
 
 
 def curve_over(report):
-    """The coordinate of what is unattributed, or "". """
+    """The coordinate of the unattributed curve, or "". """
     return (report["unattributed"] or {}).get("coordinate", "")
 
 

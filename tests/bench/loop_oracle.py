@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How well an effect can be seen at all: generalised least squares with its form and the noise's
+"""Detectability of an effect at best: generalised least squares with its form and the noise's
 covariance known, every number of the geometry and the pose of each scan left free."""
 
 import math
@@ -13,7 +13,7 @@ STEP_MM = 4 * MM_PER_PX  # rows as the loop has them
 
 
 def scanner_shift_um(effect, at, middle_mm):
-    """What an effect of unit size moves places (mm), um along x and y; `middle_mm` of the picture."""
+    """Shift of places (mm) by an effect of unit size, um along x and y; `middle_mm` of the picture."""
     d = np.zeros_like(at)
     x, y = at.T
     name = effect["id"]
@@ -229,12 +229,12 @@ def standard_errors_apart(case):
     return *best, share_named(columns, groups, wanted[0])
 
 
-# What an oracle takes for possible: amplitudes up to so many standard errors, evenly. Draws of the noise.
+# Amplitudes that the oracle takes for possible, evenly, in standard errors. Draws of the noise.
 REACH, TRIALS = 10.0, 400
 
 
 def share_named(columns, groups, wanted, seed=1):
-    """How often the effect of the first column is the likeliest one by Bayes' rule: every listed one of any size and at any place
+    """Share in which the first column's effect is likeliest by Bayes' rule: every listed one of any size and at any place
     of its grid alike, the grid holding the true place, and geometry, form and covariance known. None can do better."""
     q, _ = np.linalg.qr(columns)
     noise = np.random.default_rng(seed).standard_normal((q.shape[1], TRIALS))

@@ -125,7 +125,7 @@ def worse(row, least):
 
 
 def glance(rows):
-    """(what, key of what is asked, value, of how many)."""
+    """(title, key of the requirement, value, number of cases)."""
     clean, real = [r for r in rows if not r["wanted"]], [r for r in rows if r["wanted"]]
     fixed = [r for r in real if number(r, "model")]
     percent = lambda own, test: 100 * float(np.mean([bool(test(r)) for r in own])) if own else None

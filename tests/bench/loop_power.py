@@ -72,11 +72,11 @@ def ask(program, design, y):
         return report, time.monotonic() - start
 
 
-# ---- what was said against what is so ----
+# ---- claims against the truth ----
 
 
 def right_member(name, truth):
-    """Whether that one name, or that sum of two, is the truth."""
+    """That one name, or that sum of two, is the truth."""
     parts = [member(part) for part in name.split(" + ")]
     rows = frozenset(str(r + 1) for r in truth.rows)
     if rows:  # lone values: the rows themselves, one by one, together or exchanged
@@ -138,7 +138,7 @@ ALLOWED = {"unequal_spread": "table.spread", "correlated": "table.serial_correla
 
 def judge_clean(report, kind):
     """found: a claim that the noise does not justify. Unequal spread may be called table.spread, correlation
-    table.serial_correlation or what is tied with it."""
+    table.serial_correlation or a name that is tied with it."""
     said = [members(c) for c in report["claims"]]
     allowed = ALLOWED.get(kind)
     false = [not any(allowed and member(n)[0] == allowed for n in names) for names in said]

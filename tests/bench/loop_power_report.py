@@ -51,7 +51,7 @@ def power(rows, tables):
 
 
 def oracle_line(rows):
-    """Of kinds whose size is of one amplitude: whether the tables are what they are said to be."""
+    """Check of the tables themselves, of kinds whose size is of one amplitude: the oracle's estimate less the size."""
     off = np.array([float(r["oracle_z"]) - float(r["size"]) for r in rows if r["oracle_z"] and r["kind"] != "masked_outliers"])
     if len(off) < 5:
         return []

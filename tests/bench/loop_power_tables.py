@@ -88,7 +88,7 @@ def series(rng, grouped=False):
 
 DESIGNS = {"experiment": experiment, "lot": lot, "series": series}
 
-# What each design offers a kind: columns to choose from.
+# Columns that each design offers a kind, to choose from.
 NUMBERS = {"experiment": ["humidity_pct"], "lot": ["room_C"], "series": ["pressure_bar"]}
 BENT = {"experiment": ["humidity_pct", "temperature_C", "duration_h"], "lot": ["room_C"], "series": ["pressure_bar"]}
 NUMBER_PAIRS = {"experiment": [("temperature_C", "humidity_pct"), ("duration_h", "humidity_pct")],
@@ -102,7 +102,7 @@ SPREAD = {"experiment": ["operator", "run", "humidity_pct"], "lot": ["coil", "bu
 
 
 class Truth:
-    """form: what is added, up to its amplitude. accepted: (id, its coordinates); rows: of lone values.
+    """form: the added effect, up to its amplitude. accepted: (id, its coordinates); rows: of outliers.
     anywhere: an effect of any id on that coordinate is right."""
 
     def __init__(self, accepted, form=None, rows=(), anywhere=None):
@@ -217,7 +217,7 @@ def outlier(rng, d):
 
 
 def curve(rng, d):
-    """What no effect lists: a hump, two humps of opposite sign, or a plateau."""
+    """A curve that no effect lists: a hump, two humps of opposite sign, or a plateau."""
     c = pick(rng, NUMBERS, d) if rng.random() < 0.5 else over_order(rng, d)[0]
     x = np.argsort(np.argsort(np.unique(d.columns[c]))) / (len(np.unique(d.columns[c])) - 1)
     x = x[np.unique(d.columns[c], return_inverse=True)[1]]
@@ -255,7 +255,7 @@ def masked_outliers_table(rng, design, size):
 
 
 def oracle_z(truth, design, y):
-    """What the oracle sees in this table: the size on average, with a standard deviation of 1."""
+    """Size as the oracle estimates it from this table: the true size on average, with a standard deviation of 1."""
     if truth.form is None:
         return ""
     a = design.projected()

@@ -2,7 +2,7 @@
 """loop_r_tables.py PROGRAM [--seeds N] [--only TABLE] [--out FOLDER] [--jobs N]
 
 Measured tables that come with R (loop_r_tables.R; needs Rscript with MASS, boot, nlme, lattice) through `foilgauge loop`:
-what the literature says of each beside what is said here. R's data go to a temporary folder only. Writes
+the findings of the literature beside the claims. R's data go to a temporary folder only. Writes
 loop_r_tables.md.
 """
 
@@ -22,7 +22,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 
 
 def as_case(c):
-    """What loop_measured.py judges. Where something is known to be lacking, more may be claimed; of a clean
+    """The case as loop_measured.py judges it. Where something is known to be lacking, more may be claimed; of a clean
     table nothing may."""
     findings = [{"what": " or ".join(names[:3]) + (" ..." if len(names) > 3 else ""), "accepted": names} for names in c["accepted"]]
     return {**c, "findings": findings, "allowed": ["*"] if findings else []}

@@ -84,7 +84,7 @@ def draw_rough(rng):
 
 
 def as_rough(scanner):
-    """What the oracle asks of the second renderer's scanner, by the first one's names."""
+    """The second renderer's scanner by the first one's names, as the oracle needs it."""
     um = scanner["scatter_px"] * 1000 * MM_PER_PX
     rough = {"edge_roughness_um": um * (1 - scanner["common"] ** 2) ** 0.5, "edge_common_um": um * scanner["common"],
              "correlation_um": scanner["correlation_px"] * 1000 * MM_PER_PX, "correlation_form": scanner["form"]}  # fmt: skip
@@ -146,7 +146,7 @@ def make_case(name, index, seed):
 
 
 def apart(row):
-    """How far the oracle holds a row's effect from the nearest other one: (standard errors, which, how often it names it)."""
+    """The oracle's distance of a row's effect from the nearest other: (standard errors, the other, share named)."""
     _, case = make_case(row["tier"], int(row["index"]), int(row["seed"]))
     return standard_errors_apart(for_oracle(case))
 
@@ -159,7 +159,7 @@ def render_others(program, folder, specs):
 
 
 def floor_um(program, folder, case, draw, row):
-    """Errors of the same foils with the same scatter and no effect, measured; not where the part is what is wrong."""
+    """Errors of the same foils with the same scatter and no effect, measured; not of effects of the part."""
     names = ("R", "h", "R0", "profile")
     if not case["effects"]:
         return {f"{q}_floor_um": row[f"{q}_before_um"] for q in names}

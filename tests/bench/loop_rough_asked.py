@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is asked of the loop on rough scans: which figures hold, and which are missed by how much."""
+"""Requirements on the loop on rough scans: which figures hold, and which are missed by how much."""
 
 import math
 
@@ -10,7 +10,7 @@ from loop_rough_judged import (claims, corrected, floors, is_curve, is_right, me
 from loop_rough_plot import kolmogorov_smirnov
 from loop_scans_report import QUANTITIES, is_scanner, markdown, number
 
-# What is asked for, and whether less or more of it is good.
+# Required figures, and whether less or more of each is good.
 ASKED = {
     "claims": ("≤", 1.0), "class": ("≥", 95.0), "wrong": ("≤", 1.0), "exact": ("≥", 95.0), "curves": ("≥", 90.0),
     "worse": ("≤", 2.0), "floor": ("≤", 1.2), "within": ("between", (93.0, 97.0)), "ranges": ("≥", 95.0),
@@ -79,7 +79,7 @@ def verdict_of(key, value):
 
 
 def short_by(key, value, count):
-    """How far a missed figure is from what was asked, in words."""
+    """Distance of a missed figure from its requirement, in words."""
     low, high = limits(key)
     missed = low - value if value < low else value - high
     side = "below" if value < low else "above"

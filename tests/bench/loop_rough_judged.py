@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a row of loop_rough.py's table says against what was there: claims, classes, floors, ranges."""
+"""A row of loop_rough.py's table against the truth: claims, classes, floors, ranges."""
 
 import numpy as np
 
 from loop_scans_report import QUANTITIES, is_scanner, number
 
 SLACK = 1.02  # an error that grew by less has not
-NOISE_TIMES = 1.2  # of the floor: what is as good as it
-BEYOND = 0.1  # of the median floor: what a change of an error must be to be more than noise
+NOISE_TIMES = 1.2  # of the floor: an error below this is as good as it
+BEYOND = 0.1  # of the median floor: a smaller growth of an error is noise
 
 
 def claims(row):
@@ -27,7 +27,7 @@ def right_place(row):
 
 
 def own_row(row):
-    """What no single row explains is called that, or has its own row (seams)."""
+    """An effect that no single row explains is unattributed, or has its own row (seams)."""
     said = set(filter(None, row["claims"].split(" + ")))
     return bool(row["unattributed"]) and not said or ("scan.column_step" in row["wanted"] and said == {"scan.column_step"})
 
@@ -48,8 +48,8 @@ def told(row):
 
 
 def judged_by(row):
-    """What a report states: the circles that everything else stands on. Where it says of the part what deviates from them, that
-    is one statement with them, the midline; in a tie it says nothing of the kind."""
+    """Quantities that a report states: the circles that everything else stands on. Deviations of the part from them are
+    one statement with them, the midline; in a tie the report states no such deviation."""
     said = not is_scanner(row) and row["wanted"] and not number(row, "tied")
     return ("profile",) if said else QUANTITIES
 
@@ -73,8 +73,8 @@ def worse(row, least):
 
 
 def worse_than_noise(row, least):
-    """And larger than the same scatter makes it where no effect is: an error may be small by chance, and grow to what it is
-    without an effect."""
+    """And larger than the same scatter makes it without an effect: an error may be small by chance, and grow to its usual
+    size without an effect."""
     beyond = lambda q: not row[q + "_floor_um"] or number(row, q + "_after_um") > NOISE_TIMES * number(row, q + "_floor_um")
     return any(grew(row, q, least) and beyond(q) for q in judged_by(row))
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Whether p-values are uniform: Kolmogorov-Smirnov's test, and a plot."""
+"""A test of p-values for uniformity: Kolmogorov-Smirnov's test, and a plot."""
 
 import math
 
@@ -7,7 +7,7 @@ import numpy as np
 
 COLOURS = ["#1b6ca8", "#c1432e"]
 SIDE, LEFT, TOP, GAP = 300, 60, 24, 80
-DECADES = 8  # of the second panel; what is less lies on its edge
+DECADES = 8  # of the second panel; smaller values lie on its edge
 
 
 def kolmogorov_smirnov(values):
@@ -39,7 +39,7 @@ def dots(left, values, place, colour):
 
 
 def band(left, n, colour):
-    """Where 95 of 100 uniform samples stay."""
+    """The band in which 95 of 100 uniform samples stay."""
     reach = 1.358 / math.sqrt(n)
     lines = []
     for a, b in (((0, reach), (1 - reach, 1)), ((reach, 0), (1, 1 - reach))):

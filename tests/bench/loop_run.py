@@ -80,7 +80,7 @@ def run_loop(program, folder, case, more=(), draw=render):
 
 
 def measured_foils(program, folder, case, draw=render):
-    """What `measure` says of every scan, or None."""
+    """Foils that `measure` reports of every scan, or None."""
     paths, out = draw(program, folder, case["specs"]), os.path.join(folder, "measure.json")
     command = [program, "measure", *paths, "--design", write_design(folder, case["design"]), "-o", out]
     subprocess.run(command, stderr=subprocess.DEVNULL)
@@ -154,7 +154,7 @@ def profile_um(case, pairs, report):
 
 
 def ranges(pairs):
-    """How many reported ranges hold the truth: {R, h, R0: (held, stated)}."""
+    """Number of reported ranges that hold the truth: {R, h, R0: (held, stated)}."""
     count = {"R": [0, 0], "h": [0, 0], "R0": [0, 0]}
 
     def look(name, circle, member, truth):
@@ -172,7 +172,7 @@ def ranges(pairs):
 
 
 def within(pairs):
-    """How many values lie within U = 2 u of the truth: {R, h, R0: (held, all)}."""
+    """Number of values within U = 2 u of the truth: {R, h, R0: (held, all)}."""
     count = {"R": [0, 0], "h": [0, 0], "R0": [0, 0]}
 
     def look(name, value, u, truth):
@@ -189,7 +189,7 @@ def within(pairs):
 
 
 def judge_names(report, wanted):
-    """named: the claims are what is there, and nothing else is. in_class: what is there is one of the
+    """named: the claims are the true effects, and no others. in_class: the true effects together are one of the
     explanations that the report says it cannot tell apart. Curves count as `unattributed`."""
     if "scan.carriage_quadratic" in wanted:  # about another middle it is the scale
         wanted = [w for w in wanted if w != "scan.scale_y"]
@@ -240,7 +240,7 @@ def judge(case, report, code, seconds):
 
 
 class Results:
-    """A CSV that grows by a row as each case is done; what it holds already is not done again."""
+    """A CSV that grows by a row as each case is done; cases that it holds already are not done again."""
 
     def __init__(self, path, fresh, column):
         self.path, self.rows, self.lock = path, [], threading.Lock()

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Whether `loop --same-foil` tells two foils from one: pairs of different clean foils must be refused, pairs of
+"""A test that `loop --same-foil` tells two foils from one: pairs of different clean foils must be refused, pairs of
 one foil must not, whatever the scanner or the part does.
 
 python3 tests/bench/loop_same_foil.py PROGRAM [--cases N] [--seed S] [--out reports/loop_same_foil.md]
@@ -44,7 +44,7 @@ def one_foil(rng, index, kinds):
 
 
 def run(program, case):
-    """'refused', another error's exit code, or what was claimed."""
+    """'refused', another error's exit code, or the claims."""
     folder = tempfile.mkdtemp()
     try:
         paths = render(program, folder, case["specs"])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The loop on rendered scans whose truth is known: what it names, and what it takes out of the error.
+"""The loop on rendered scans whose truth is known: the effects that it names, and the error that it removes.
 
 Usage: loop_scans.py PROGRAM [--cases N] [--tier NAME]... [--seed S] [--threads N] [--fresh] [--report-only]
        loop_scans.py PROGRAM --curve [--trials N] [--threads N] [--fresh]

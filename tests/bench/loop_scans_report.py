@@ -82,7 +82,7 @@ def reduction_header(quantities):
 
 
 def groups_of(rows, tiers):
-    """(title, rows): every tier, and what is in it effect by effect."""
+    """(title, rows): every tier, and its effects one by one."""
     for name in tiers:
         own = [r for r in rows if r["tier"] == name]
         if own:

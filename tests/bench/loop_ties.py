@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a second scan does to a tie: the range that one scan leaves, and what is left of it with the foil turned by 90 degrees.
+"""A tie with a second scan: the range that one scan leaves, and the range that remains with the foil turned by 90 degrees.
 
 Usage: loop_ties.py PROGRAM [--cases N] [--seed S]; writes reports/loop_ties.csv and .md."""
 
@@ -19,7 +19,7 @@ SIZES_UM = (0.5, 3.0)
 
 
 def widths(case, report):
-    """(what was said, {quantity: (width of the range or of U in um, whether it holds the truth)})."""
+    """(the claims or the verdict, {quantity: (width of the range or of U in um, share that holds the truth)})."""
     foils = pair_foils(case, report["after"]["foils"])
     midline, _, foil = foils[0]
     overall = foil["overall"]

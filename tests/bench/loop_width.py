@@ -18,7 +18,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 ID = "part.thickness_taper"
-# Group of renders: what it is; how many of them have no taper, and how many have each of the sizes, um.
+# Group of renders: its description; the number of them without a taper, and with each of the sizes, um.
 GROUPS = {
     "ideal": ("noise, blur, both polarities, 8 and 16 bits", {0: 20, 1: 10, 2: 10, 4: 10, 6: 10}),
     "shaded": ("also a gamma curve, shading over the glass, flare", {0: 10}),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What `foilgauge stiffness` is worth on the records of other_bearing.py, whose truth is known.
+"""Coverage of `foilgauge stiffness` on the records of other_bearing.py, whose truth is known.
 
 Usage: other_bearing_coverage.py build/foilgauge [--records N] [--kinds NAME...] [--seed S] [--csv FILE]
 
@@ -7,8 +7,8 @@ Usage: other_bearing_coverage.py build/foilgauge [--records N] [--kinds NAME...]
 
 A cell says, in percent: values within U = 2 u of the truth, of those that are given; withheld; given with a flag that
 casts doubt on them; beyond 2 U without such a flag (the silent failures). `-` stands where the report has no such
-member. Of a direction without a gap a clearance cannot be right; nor can an axis where all directions are alike: what
-is given there without a flag is a silent failure.
+member. Of a direction without a gap a clearance cannot be right; nor can an axis where all directions are alike: a value
+given there without a flag is a silent failure.
 
 Stiffness and loss factor are judged twice: `there` against the true slope where the report says that it has found it
 (at the force of its course beside stiffness_at_mm), `largest` against the largest over the whole test.

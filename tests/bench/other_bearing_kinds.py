@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Kinds of records that other_bearing.py makes: each a function of a random generator that draws a whole spec.
 
-KINDS names them with what is special about each. All else of a spec is drawn alike: gap, foil, friction, largest load,
+KINDS names and describes them. All else of a spec is drawn alike: gap, foil, friction, largest load,
 noise. A new kind is a new row."""
 
 import copy

@@ -5,7 +5,7 @@ Members of the scanner, beside those of other_scanner.py; without any of them a 
 
   blur_px [x, y], blur_angle_deg   the optics' Gaussian as an ellipse, its axes turned clockwise as the picture is seen
   shadow                           {"amplitude", "direction_deg", "length_px", "gap_px"}: the part stands above the
-                                   glass; what it shades lies from gap to gap + length towards the direction. The
+                                   glass; the shaded strip lies from gap to gap + length towards the direction. The
                                    amplitude is a share of the contrast; above 0 a lit wall, below 0 a shadow
   stitch [[share, rows], ...]      at that share of the height so many rows are lost (below 0: come twice)
   resampled_from_dpi               the sensor's dpi; `interpolation`: "nearest", "linear" or "cubic" makes the file's

@@ -71,7 +71,7 @@ def draw_other(rng):
 
 
 def field_mm(effects, at):
-    """What smooth effects of the scanner add to a place of the picture (mm) to give the true one."""
+    """Shift that smooth effects of the scanner add to a place of the picture (mm) to give the true one."""
     d, (x, y) = np.zeros_like(at), at.T
     for e in effects:
         name, mm = e["id"], e.get("amplitude_um", 0) / 1000
@@ -94,7 +94,7 @@ def field_mm(effects, at):
 
 
 def picture_mm(effects, true):
-    """Where a true place shows: at + d(at) = true. A ripple of 30 um over 0.8 mm contracts by 4 a turn."""
+    """The place in the picture of a true place: at + d(at) = true. A ripple of 30 um over 0.8 mm contracts by 4 a turn."""
     at = true.copy()
     for _ in range(14):
         at = true - field_mm(effects, at)
@@ -108,7 +108,7 @@ def with_middles(spec):
 
 
 def strips_between(effects, name, member, end, dpi):
-    """Where the picture jumps along one axis: [(from px, to px, shift mm)]."""
+    """Strips between the jumps of the picture along one axis: [(from px, to px, shift mm)]."""
     steps = sorted((e[member], e["amplitude_um"] / 1000) for e in effects if e["id"] == name)
     starts = [0] + [min(end, max(0, int(math.floor(at / 25.4 * dpi)) + 1)) for at, _ in steps] + [end]
     shifts = np.concatenate([[0], np.cumsum([a for _, a in steps])])
@@ -219,7 +219,7 @@ class Grain:
 
 
 def jpeg(picture, quality):
-    """What quantising the blocks of 8 x 8 does to it."""
+    """The picture with its blocks of 8 x 8 quantised."""
     scale = 5000 / quality if quality < 50 else 200 - 2 * quality
     table = np.clip((JPEG_TABLE * scale + 50) // 100, 1, 255).astype(np.float32)
     k = np.arange(8)

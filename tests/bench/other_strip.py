@@ -185,7 +185,7 @@ def cut(points):
 
 
 def split_long(points):
-    """So many points more that no side is longer than half a pixel."""
+    """The polygon with points added until no side is longer than half a pixel."""
     ends = np.roll(points, -1, axis=0)
     count = np.maximum(1, np.ceil(2 * np.hypot(*(ends - points).T)).astype(int))
     index = np.repeat(np.arange(len(points)), count)

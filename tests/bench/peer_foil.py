@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What both peers share: from sub-pixel edge points of a strip to the foil's dimensions.
+"""Shared parts of both peers: from sub-pixel edge points of a strip to the foil's dimensions.
 
 Written as a competent user of SciPy would: the design says roughly where bumps and lands are, the
 circles are Nelder-Mead fits on orthogonal distances. It uses nothing of foilgauge.

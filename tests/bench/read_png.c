@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What reading a scan costs: libpng alone, row by row, nothing kept. The yardstick for the time
+/* Cost of reading a scan: libpng alone, row by row, nothing kept. The baseline for the time
  * and memory that measuring takes.
  *
  * Usage: read_png SCAN.png; prints width, height and depth.

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The loop on a real scan of round holes, and what the rest of the picture says to it. Writes
+"""The loop on a real scan of round holes, and a check of its claims by the rest of the picture. Writes
 reports/real/loop.json, loop.html and loop.md; every number comes from the run.
 
     tests/bench/real_loop.py SCAN.png --dpi 1200
 
-The loop sees the edges of the round features alone. What it finds is then held against edges and
+The loop sees the edges of the round features alone. Its findings are then held against edges and
 texture of the same picture that it never saw, with numpy alone."""
 
 import argparse

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Runs a command and says what it cost: wall, user and system seconds, peak memory in KiB, exit
+/* Runs a command and writes its cost: wall, user and system seconds, peak memory in KiB, exit
  * code. It is a small program because the peak of a child counts what its parent held at the fork:
  * measured from a Python process, every command would seem to need Python's memory.
  *

@@ -108,7 +108,7 @@ def find_tracks(image, seam, used, half=45, least=15):
 
 
 def track_rest(track, half, rows):
-    """What a smooth curve leaves of an edge with `rows` rows put in below the seam."""
+    """Residuals of an edge from a smooth curve, with `rows` rows put in below the seam."""
     y = track[:, 0] - half
     basis = np.polynomial.legendre.legvander((y + rows * (y >= 0)) / half, 4)
     return track[:, 1] - basis @ np.linalg.lstsq(basis, track[:, 1], rcond=None)[0]

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How the time of a measurement grows with pixels, foils and noise, a whole bed, and where the time goes: see
+"""Growth of a measurement's time with pixels, foils and noise, a whole bed, and the share of each stage: see
 speed.sh. Every size is read with libpng alone, measured on all cores and measured on one, in turn."""
 
 import argparse
@@ -37,7 +37,7 @@ SERIES = [
     ("bed", "foils", [(24, *A4_PX, 24, 1.5, 2)]),
 ]
 
-# Which stage a symbol or a library belongs to: the first that fits.
+# Stages and the symbols or libraries that belong to them: the first that fits.
 STAGES = [
     ("inflate", r"libisal.*(inflate|decode_huffman|decode_next|make_inflate|huff)|libz\.so"),
     ("checksums of the PNG", r"crc32|adler"),
@@ -149,7 +149,7 @@ def profile(scan, folder):
 
 
 def copy_gb_per_second():
-    """What memory gives one core: the best of several copies of 256 MB."""
+    """Memory throughput of one core: the best of several copies of 256 MB."""
     source = np.ones(1 << 25)
     target = np.empty_like(source)
     best = 1e9

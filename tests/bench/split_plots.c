@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* How often the intervals of a split plot hold the truth when runs are missing. Writes a table in
+/* Coverage of a split plot's intervals when runs are missing. Writes a table in
  * Markdown. build/bench/split_plots [PLANS] >reports/split_plots.md */
 #include <math.h>
 #include <stdio.h>

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a station withstands: kills, slow connections, very many files, other machines through a proxy, hostile requests
+"""A station attacked by kills, slow connections, very many files, other machines through a proxy, hostile requests
 and files. Runs the tests of it at their full size and writes the last section of reports/station.md.
 
     /usr/bin/python3 tests/bench/station_attacked.py [PROGRAM] [--kills 200] [-o FILE]

@@ -23,7 +23,7 @@ ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)
 FOILGAUGE = os.path.join(ROOT, "build", "foilgauge")
 MINUTE_MS = 60_000
 FOILS_OF_LOT = 60
-# What a foil varies by, and a bump within it, as a share of the value (or absolute where it is about 0).
+# Spread of foils, and of bumps within a foil, as a share of the value (or absolute where it is about 0).
 SPREAD = {
     "radius_mm": (0.004, 0.006), "height_mm": (0.004, 0.006), "height_fitted_mm": (0.004, 0.006),
     "clearance_mm": (0.02, 0.03), "clearance_fitted_mm": (0.02, 0.03), "bump_angle_deg": (0.004, 0.006),
@@ -42,7 +42,7 @@ def insert(database, table, rows):
 
 
 def shift(index, total):
-    """What the process does slowly: wear, and a step that nobody announced."""
+    """Slow changes of the process: wear, and a step that nobody announced."""
     return 0.004 * index / total + (0.004 if 0.62 < index / total < 0.65 else 0)
 
 

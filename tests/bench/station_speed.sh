@@ -1,9 +1,9 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# What a station takes: pages and start with thousands of scans in the database, the time from a scan's arrival to its
+# Speed of a station: pages and start with thousands of scans in the database, the time from a scan's arrival to its
 # verdict on the page, memory over thousands of requests and over a day's scans. Writes reports/station.md.
 #   tests/bench/station_speed.sh [--scans 5000] [--requests 5000] [--day 1440] [-o FILE]
-# Needs 1 GB in $TMPDIR (/tmp); what it makes there it removes.
+# Needs 1 GB in $TMPDIR (/tmp); the files that it makes there it removes.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 . "$root/tests/packages.sh"

@@ -34,7 +34,7 @@ def splitmix(state):
 
 
 def picks(seed, draw, foils):
-    """Which foils the program builds into this draw."""
+    """Foils that the program builds into this draw."""
     state = seed ^ 0xD1342543DE82EF95
     state, z = splitmix(state)
     state = z ^ draw

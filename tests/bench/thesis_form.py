@@ -26,7 +26,7 @@ FOILS, BUMPS = 12, 9
 
 
 def form(folder, *options, name="form.json"):
-    # Pages name what was read: by its name, not by where it lay.
+    # Pages give the names of input files, not their folders.
     here = [option.removeprefix(folder + os.sep) for option in options]
     subprocess.run([lib.FOILGAUGE, "forming", *here, "-o", name], check=True, cwd=folder)
     return lib.load(os.path.join(folder, name))

@@ -40,7 +40,7 @@ class Lot:
         self.radii = [bump["radius_mm"] / RADIUS_MM for bump in bumps]
         self.arcs = [100 * (bump["radius_mm"] * bump["bump_angle_deg"] / (RADIUS_MM * ANGLE_DEG) - 1) for bump in bumps]
         self.gaps = self.relative([20.73 - bump["height_mm"] - 20 - 0.1 for bump in bumps])
-        # What eq 5.6 and 5.7 make of the measured radii: the thesis's own way to its clearances.
+        # Heights by eq 5.6 and 5.7 from the measured radii: the thesis's own way to its clearances.
         with open(folder / "lot" / "bumps.csv", newline="", encoding="utf-8") as file:
             self.model_gaps = self.relative([20.73 - float(row["height_model_mm"]) - 20 - 0.1 for row in csv.DictReader(file)])
 
@@ -91,7 +91,7 @@ def rows_of(lot):
 
 
 def budget_rows(lots):
-    """What each cause gives of the stiffness' relative s, percent, of every lot."""
+    """Contribution of each cause to the stiffness' relative s, percent, of every lot."""
     signed = lambda variance: math.copysign(math.sqrt(abs(variance)), variance)
     lines = []
     for words, member in (("radius, at constant arc length", "radius_at_arc_length"), ("arc length R alpha", "arc_length"),

@@ -14,7 +14,7 @@ THESIS = {
 }
 DESIGN_RADIUS_MM = {"classical": 3.32, "sinusoidal": 3.2}
 WORDS = {"mean": "mean", "mode": "mode", "relative_sd_pct": "relative s, %", "min": "least", "max": "most"}
-# What the page's style sheet says of the figure, for the figure alone.
+# The rules of the page's style sheet for the figure, for the figure alone.
 STYLE = (
     "text{font:14px sans-serif;fill:#16202a}path{fill:none}.x,.title{text-anchor:middle}.y{text-anchor:end}.title,.key,.soft{fill:#5b6875}"
     ".grid{stroke:#e6eaee}.zero{stroke:#8a96a1}.hypothesis{stroke:#5b6875;stroke-width:2;stroke-dasharray:7 5}"

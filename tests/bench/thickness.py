@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How well the strip's thickness is measured, and whether its uncertainty says so: foils of accuracy_specs.py are
+"""Error of the strip's measured thickness, and whether its uncertainty covers it: foils of accuracy_specs.py are
 rendered, measured and held against the 0.1 mm that they were drawn with, as scanned, with a tone that is stated as
 linear, and with a micrometer's value.
 
