@@ -166,7 +166,7 @@ def uneven_rows(results):
     return "\n".join(rows)
 
 
-# ---- the witness ----
+# ---- the channel check ----
 
 
 def ripple_spec(part, gap, amplitude, seed):

@@ -79,7 +79,7 @@ def right_member(name, truth):
     """That one name, or that sum of two, is the truth."""
     parts = [member(part) for part in name.split(" + ")]
     rows = frozenset(str(r + 1) for r in truth.rows)
-    if rows:  # lone values: the rows themselves, one by one, together or exchanged
+    if rows:  # outliers: the rows themselves, one by one, together or exchanged
         lone = [p for p in parts if p[0] in ("table.outlier", "table.exchanged_runs")]
         return len(lone) == len(parts) and frozenset().union(*(p[1] for p in lone)) == rows
     if len(parts) > 1:
@@ -109,7 +109,7 @@ def judge(report, truth):
     right = [any(right_member(n, truth) for n in names) for names in said]
     found = any(right) or bool(truth.anywhere and truth.anywhere in curve)
     exact = any(right_member(names[0], truth) for names in said) or bool(truth.anywhere and truth.anywhere in curve)
-    if truth.rows:  # several lone values may be claimed one by one
+    if truth.rows:  # several outliers may be claimed one by one
         all_of_them = {str(r + 1) for r in truth.rows} <= lone_rows(report)
         found, exact = found or all_of_them, exact or all_of_them
         right = [r or any(part_of_it(n, truth) for n in names) for r, names in zip(right, said)]

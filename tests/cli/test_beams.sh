@@ -101,7 +101,7 @@ expect 1 "out_of_tolerance" "$program" measure soft.png --design design.json
 sheet narrow '"layout": "slits", "kerf_mm": 0.1'
 expect 2 'narrow_cut' "$program" measure narrow.png --design design.json
 
-# Calibration widens; a length in doubt by 1e-3 doubts a compliance's error by 2e-3. A tone curve that is not known moves
+# Calibration widens; a u of 1e-3 of lengths is one of 2e-3 of a compliance's error. A tone curve that is not known moves
 # the two long edges apart, and both ends of a length alike.
 sed 's/"form"/"calibration": {"scale": {"u_rel": 0.001}}, "tone": "linear", "form"/' design.json >doubted.json
 "$program" measure comb.png --design doubted.json -o doubted.json.out

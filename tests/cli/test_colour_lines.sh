@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The channels of a colour scan against each other: how far apart, the flag, the course along y, and scans that have no such.
+# The channels of a colour scan against each other: distances, the flag, the profile along y, and scans that have no such.
 . tests/support/cli.sh
 
 # draw NAME LINES [EFFECTS]: a coarse foil with those colour lines.

@@ -70,7 +70,7 @@ expect 64 'character 1: this is no numeric factor' "$program" doe $composite \
   --response springback_error_pct --model "$second" --constraint 'temp <= 300' -o "$out/a.json"
 only
 
-# Saturated: Lenth's method; no freedom and few effects; a column that is another one.
+# Saturated: Lenth's method; no degree of freedom and few effects; a column that is another one.
 expect 0 '' "$program" doe $sample --response springback_error_pct \
   --model 'pressure_bar*temperature_C*duration_h' -o "$out/a.json"
 grep -q '"pseudo_standard_error": [0-9]' "$out/a.json" || fail "a saturated design has no Lenth"

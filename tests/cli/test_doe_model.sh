@@ -55,7 +55,7 @@ if command -v script >/dev/null; then
   script -qec "'$program' doe runs.csv --response y --model better.json --code none" typed >/dev/null
   grep -q 'Taken out before the analysis: a trend with humidity' typed || fail "the terminal does not say what was taken out"
 fi
-# A wrong row of the loop's own table is not taken out of another, and that is said; a curve has its freedom.
+# A wrong row of the loop's own table is not taken out of another, and that is said; a curve costs its degrees of freedom.
 python3 - <<'P'
 import json
 model = json.load(open("better.json"))
