@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the fuzz targets share. Each is a libFuzzer entry; driver.c runs one over files instead. */
+/* Shared parts of the fuzz targets. Each is a libFuzzer entry; driver.c runs one over files
+ * instead. */
 #ifndef FG_TESTS_FUZZ_H
 #define FG_TESTS_FUZZ_H
 

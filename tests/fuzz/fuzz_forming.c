@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What `forming` reads: a material, a schedule, a die's report, a prediction; one of them an input,
- * as its first byte says. What is read is used. */
+/* Inputs of `forming`: a material, a schedule, a die's report or a prediction, as the input's first
+ * byte says. An input that can be read is used. */
 #include <stdlib.h>
 #include <string.h>
 

@@ -8,7 +8,7 @@
 #include "fuzz.h"
 #include "scan_loop/state.h"
 
-/* What was written must be read again; its text is good until the next call. */
+/* A written model must be read again. */
 static void check_model(const fg_scan_loop *loop) {
   fg_context ctx = {0};
   char *text = NULL;

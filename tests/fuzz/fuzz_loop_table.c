@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The loop on a table, from the text of a CSV file to every report. The input is five lines
- * (response, model, group, order, what is kept aside; empty: none) and the table. A report that
- * holds a number that is none is a fault as much as a crash is. */
+ * (response, model, group, order, held-out rows; empty: none) and the table. A report that holds a
+ * number that is none is a fault as much as a crash is. */
 #include <stdlib.h>
 #include <string.h>
 

@@ -30,7 +30,7 @@ static void seal(const growing *file) {
     write_32(file->data + at + size - 4, (uint32_t)crc32(0, file->data + at + 4, (uInt)(size - 8)));
 }
 
-/* Where each byte of the compressed stream stands in the file. */
+/* Gathers the compressed stream, and the place of each of its bytes in the file. */
 static size_t gather(const growing *file, uint8_t *stream, size_t *places) {
   size_t count = 0;
   bool inside = false;

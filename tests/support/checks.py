@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Python of a shell test, whose failed assertions are sentences: what was expected, and what came.
+"""Python of a shell test, whose failed assertions are sentences: the expected value, and the one that came.
 
     checks.py SCRIPT LINE - [ARGUMENT...] <<'P'     as `python3 -`; called by `checks` of cli.sh and station.sh
     checks.py SCRIPT LINE FILE [ARGUMENT...]        as `python3 FILE`
@@ -7,7 +7,8 @@
 `assert a["u"] < 2 * b, name` that fails ends the script with
     test_x.sh, line 12: expected a["u"] < 2 * b; came a["u"] = 0.3, 2 * b = 0.1 (name: leaf)
 Beside what Python has, the code finds expect(value, wanted, what); and wait_until(lambda: condition, seconds=30), which
-returns the condition's value once it is true, or says which condition it waited for and what came last. that it imports from the test's own folder are told in the same way.
+returns the condition's value once it is true, or says which condition it waited for and what came last.
+Assertions of modules that it imports from the test's own folder are told in the same way.
 """
 import ast
 import importlib.machinery
@@ -80,7 +81,7 @@ def call(function, *arguments):
 
 
 class Rewriter(ast.NodeTransformer):
-    """Turns each assertion into the same one that keeps what it saw; nothing is evaluated twice."""
+    """Turns each assertion into the same one that keeps the values it saw; nothing is evaluated twice."""
 
     def operand(self, node):
         try:

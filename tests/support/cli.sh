@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# What the scripts that try the program share; sourced from the checkout with the program's path. Works in a folder of
-# its own, `work`; `root` is the checkout. A script ends with `exit $failed`.
+# Shared functions of the scripts that try the program; sourced from the checkout with the program's path. Works in a
+# folder of its own, `work`; `root` is the checkout. A script ends with `exit $failed`.
 set -u
 . "${BASH_SOURCE[0]%/*}/checks.sh"
 program=$(realpath "$1")
@@ -75,7 +75,7 @@ skip_when_slow() {
   exit 77
 }
 
-# What takes long and says more of accuracy than of right and wrong.
+# Skips, without --long, a script that takes long and says more of accuracy than of right and wrong.
 long_only() {
   [ -n "${FOILGAUGE_TEST_LONG-}" ] && return 0
   echo "skipped: tests/run.sh --long runs it"

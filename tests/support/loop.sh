@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# What the scripts that render and measure share beside cli.sh; sourced with the program's path.
+# Shared functions, beside cli.sh, of the scripts that render and measure; sourced with the program's path.
 . "${BASH_SOURCE[0]%/*}/cli.sh"
 
 # render_foil NAME SEED ROTATION EFFECTS DPI [MEMBERS OF THE SPEC] [MEMBERS OF THE FOIL], each with a comma behind it

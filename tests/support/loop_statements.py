@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Every statement of the loop's JSON stands on its page and in its text: verdict, claims, class, advice, what is not
-claimed, curves, notes, errors. Arguments: report.json page.html text.txt"""
+"""Every statement of the loop's JSON stands on its page and in its text: verdict, claims, class, advice, rejected
+candidates, curves, notes, errors. Arguments: report.json page.html text.txt"""
 import html, json, math, re, sys
 
 report = json.load(open(sys.argv[1]))

@@ -17,7 +17,7 @@
 
 enum { ODD_SCANS = 3, ODD_FOILS = 3, ODD_BUMPS = 40, ODD_DISCS = 40, ODD_STATIONS = 6000 };
 
-/* What is wrong with the edges of one foil or disc. */
+/* Faults of the edges of one foil or disc. */
 typedef enum odd_fault {
   ODD_NAN = 1,         /* some edges are nowhere */
   ODD_DOUBLED = 2,     /* stations stand on their neighbours */
@@ -45,7 +45,7 @@ typedef struct odd_disc {
   uint64_t seed;
 } odd_disc;
 
-/* What the scanner does to both axes. */
+/* Errors of the scanner along both axes. */
 typedef struct odd_scanner {
   double scale, shear, ripple_um, period_mm, step_um, step_mm, bend_um;
 } odd_scanner;
@@ -222,7 +222,7 @@ static inline void odd_add_foil(const odd_input *in, const odd_foil *f, const od
   if (f->faults & ODD_UNMEASURED) foil->flags |= FG_FOIL_NOT_MEASURED;
 }
 
-/* What is no circle is no disc: the measurement does not hand it on. */
+/* A disc without a fitted circle is left out, as the measurement leaves it out. */
 static inline void odd_add_disc(const odd_disc *d, const odd_scanner *scanner, fg_measurement *m) {
   fg_context ctx = {0};
   fg_disc *disc = &m->discs[m->disc_count];

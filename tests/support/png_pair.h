@@ -139,7 +139,7 @@ static inline growing make_pair_png(const recipe *r, const uint8_t *raw) {
   return png;
 }
 
-/* What one of the two readers made of a file. */
+/* Result of one of the two readers for a file. */
 typedef struct reading {
   fg_status status;
   fg_context context;

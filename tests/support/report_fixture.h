@@ -39,7 +39,7 @@ static inline int tear_down(void **state) {
 
 typedef fg_status report_writer(fg_context *ctx, const fg_report *report, FILE *out);
 
-/* What a writer writes, as text; the caller frees it. */
+/* Output of a writer, as text; the caller frees it. */
 static inline char *text_of(report_writer *write, const fg_report *report) {
   fg_context ctx = {0};
   char *text = NULL;

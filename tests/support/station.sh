@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# What the tests of a running station share; sourced from the checkout with the program's path and `name`, the test's.
-# Files go to $work, which is removed at the end, when the station is ended too.
+# Shared functions of the tests of a running station; sourced from the checkout with the program's path and `name`, the
+# test's. Files go to $work, which is removed at the end, when the station is ended too.
 set -euo pipefail
 . "${BASH_SOURCE[0]%/*}/checks.sh"
 program=$(realpath "$1")

@@ -132,7 +132,7 @@ static inline void put_32(uint8_t *at, uint32_t value) {
     at[i] = (uint8_t)(value >> (24 - 8 * i));
 }
 
-/* Where a chunk begins (at its length); aborts when there is none: the test is wrong then. */
+/* Place of a chunk (of its length); aborts when there is none: the test is wrong then. */
 static inline size_t find_chunk(const bytes *file, const char *type) {
   for (size_t at = 8; at + 12 <= file->size; at += 12 + get_32(file->data + at))
     if (!memcmp(file->data + at + 4, type, 4)) return at;

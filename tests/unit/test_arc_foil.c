@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Plain strips through the measuring chain: radius, angle and length within their uncertainty of
- * the truth on every datum, and what is no plain strip. */
+ * the truth on every datum; and foils that are no plain strip. */
 #include "support/measured_render.h"
 #include "support/test.h"
 
@@ -98,7 +98,7 @@ static void more_than_half_a_turn(void **state) {
             ",\"rotate_deg\":17,\"overall_radius_mm\":4,\"subtended_angle_deg\":230", CLEAN, 1e-3);
 }
 
-/* ---- what is no plain strip, or shows no angle ---- */
+/* ---- foils that are no plain strip, or show no angle ---- */
 
 static void a_lip_leaves_the_circle_and_no_angle(void **state) {
   (void)state;

@@ -51,7 +51,7 @@ static void free_arcs(arcs_strip *a) {
   free(a->strip.stations);
 }
 
-/* Ratio of the true variance of R to the mean of what is reported, over trials. */
+/* Ratio of the true variance of R to the mean of the reported variance, over trials. */
 static void covariance_is_monte_carlo(double rho, double low, double high) {
   uint64_t seed = 77;
   double square = 0, reported = 0, covered = 0, n = 0;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What clearances around a bearing come to, how well that is known, and what tolerances say. */
+/* Clearances around a bearing, their uncertainty, and their verdicts by tolerances. */
 #include <string.h>
 
 #include "foilgauge/report.h"
@@ -165,7 +165,7 @@ static void uncertainties_are_propagated(void **state) {
     assert_near(r.u_centred_min_mm, expected_u(angle, clearance, shared, own, centred), 1e-8);
     assert_true(r.u_min_mm > 1e-3); /* the shared part is in it */
   }
-  /* What all places share moves no circularity, and every clearance by all of it. */
+  /* An error that all places share moves no circularity, and every clearance by all of it. */
   memset(own, 0, sizeof own);
   const fg_bearing_uncertainty uncertainty = {shared, own, pad};
   fg_bearing_clearance r;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Whether a correction pays, and what is reported where it does not. */
+/* Benefit of a correction, and the report where there is none. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -124,7 +124,7 @@ static void a_tie_moves_as_far_as_all_explanations_agree(void **state) {
   }
 }
 
-/* What they agree about stays whole where they differ about one bump only. */
+/* A move that both explanations agree about stays whole where they differ about another bump. */
 static void one_undecided_bump_leaves_the_others_corrected(void **state) {
   (void)state;
   fg_benefit_item item[ITEMS];
@@ -234,9 +234,9 @@ static void misfitting_corrections_are_not_whole(void **state) {
   assert_false(fg_benefit_is_whole(&benefit, &decision));
 }
 
-/* ---- what is reported ---- */
+/* ---- reports ---- */
 
-/* The synthetic foil, and what a scanner's scale and shear make of it, as a pay of one foil. */
+/* The synthetic foil, its correction by a scale and a shear, and the benefits of that. */
 typedef struct fixture {
   foil_rows rows;
   fg_measurement corrected;
@@ -270,7 +270,7 @@ static void keep(fixture *f, const fg_benefit_decision *decision) {
   fg_benefit_widen_foil(&of, &f->corrected.foils[0]);
 }
 
-/* What a report derives must be what anyone derives of its circles. */
+/* Derived values of a report must be those that anyone derives from its circles. */
 static void hold_together(const fg_foil *foil) {
   const fg_overall *o = &foil->overall;
   for (size_t b = 0; b < foil->bump_count; b++) {

@@ -47,8 +47,8 @@ static void nothing_within_is_the_spread_of_the_means(void **state) {
   near(fg_between_groups(same, 2, 0.95).centre, 3, 1e-12);
 }
 
-/* How often the interval holds the true spread, and a further group lies outside its limits, of
- * groups whose sizes differ. */
+/* Coverage for groups of different sizes: the interval holds the true spread, and a further group
+ * lies outside its limits, as often as promised. */
 static void intervals_keep_their_promise(void **state) {
   (void)state;
   static const double truth[] = {0.5, 2};
@@ -68,7 +68,8 @@ static void intervals_keep_their_promise(void **state) {
       outside += fabs(groups[GROUPS].mean - between.centre) > reach;
     }
     assert_in_range(held, DRAWS * 935 / 1000, DRAWS * 965 / 1000);
-    /* Where little of the spread is estimated Student's t promises too little, never too much. */
+    /* Student's t makes the limits too wide, never too narrow, where little of the spread is
+     * estimated. */
     assert_in_range(outside, c ? DRAWS * 4 / 1000 : 0, DRAWS * 15 / 1000);
   }
 }

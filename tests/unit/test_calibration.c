@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a calibration states is read, or refused with its place; what it leaves in doubt is in every
- * u, by as much as another pixel moves the value. */
+/* Calibrations: a certificate is read, or refused with its place; its uncertainty is in every u, by
+ * as much as another pixel moves the value. */
 #include "foilgauge/calibration.h"
 #include "foilgauge/measure.h"
 #include "foilgauge/report.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What follows from a beam's length and width, against the thesis, against drawn beams and in the
- * cases where nothing can be said. */
+/* Quantities that follow from a beam's length and width, against the thesis, against drawn beams
+ * and in the cases where nothing can be said. */
 #include <math.h>
 
 #include "foilgauge/cantilever.h"

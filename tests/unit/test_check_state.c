@@ -84,7 +84,7 @@ static void a_new_finding_is_a_change_and_one_that_was_there_is_none(void **stat
   assert_int_equal(fg_check_state_compare(&now, &baseline, narrow, sizeof narrow), 2);
   now.findings = 0;
   assert_int_equal(fg_check_state_compare(&now, &baseline, words, sizeof words), 0);
-  /* Where the quantity of a threshold is known, that and its scatter decide. */
+  /* The quantity of a threshold decides, with its scatter, where it is known. */
   baseline.findings = 0;
   now.findings = FG_PICTURE_UNEVEN_BLUR;
   assert_int_equal(fg_check_state_compare(&now, &baseline, words, sizeof words), 1);
@@ -97,7 +97,7 @@ static void a_new_finding_is_a_change_and_one_that_was_there_is_none(void **stat
   assert_int_equal(fg_check_state_compare(&now, &baseline, words, sizeof words), 0);
 }
 
-/* A mean over whole discs, with what it varies by from disc to disc. */
+/* A mean over whole discs, with its scatter from disc to disc. */
 static void the_state_is_of_the_discs(void **state) {
   fg_disc discs[4] = {{.blur_um = 10, .coverage_deg = 360},
                       {.blur_um = 12, .coverage_deg = 360},

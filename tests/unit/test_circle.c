@@ -107,8 +107,8 @@ static void covariance_is_that_of_the_fits(void **state) {
   /* The variance of a variance from 3000 trials is worth 2.6 %. */
   for (int k = 0; k < 4; k++)
     assert_true(fabs(variance[k] / expected[k] - 1) < 0.1);
-  /* R and the crown of such an arc differ by a factor of 17 in what they are
-   * worth; were the correlation lost, the crown would come out as bad as R. */
+  /* The uncertainties of R and of the crown of such an arc differ by a factor of 17; were the
+   * correlation lost, the crown would come out as bad as R. */
   assert_true(expected[3] < 0.01 * expected[2]);
 }
 

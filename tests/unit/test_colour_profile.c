@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Where a channel shows a cross-section: profiles with a known place. */
+/* Place of a cross-section in each colour channel, on profiles with a known place. */
 
 #include <math.h>
 

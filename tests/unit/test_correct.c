@@ -33,7 +33,7 @@ static fg_field_list scanner(const foil_rows *f) {
   return fields;
 }
 
-/* Where a scanner with this field sees a place: true = seen + d(seen). */
+/* Place at which a scanner with this field sees a true one: true = seen + d(seen). */
 static fg_point seen_at(const fg_field_list *fields, fg_point truth) {
   fg_point seen = truth;
   for (int k = 0; k < 12; k++) {

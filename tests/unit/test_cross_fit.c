@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Errors on bumps that took no part in the search: what is there is foretold, what is not there is
- * not, and neither the copies nor the threads that this takes leave a trace. */
+/* Errors on held-out bumps: an effect that exists is foretold, noise is not, and neither the copies
+ * nor the threads that this takes leave a trace. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -95,7 +95,7 @@ static void taking_a_subset_leaves_the_full_set_unchanged(void **state) {
   close_foil(&f);
 }
 
-/* Without its fold the search finds what it found with it, and the fold is as well explained. */
+/* The search finds the same effect without its fold, and explains the fold as well. */
 static void a_true_effect_survives_cross_fitting(void **state) {
   (void)state;
   for (size_t scans = 1; scans <= 2; scans++) {

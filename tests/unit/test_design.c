@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Designs: nominal values against hand calculation, the declared model against the law of cosines,
- * what is refused and that the words name the member. */
+ * and refused designs, whose messages name the member. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -275,8 +275,8 @@ static void bad_files_are_refused(void **state) {
   }
 }
 
-/* What only a program can do: values that JSON cannot hold, and a bump whose chord is longer than
- * the overall circle is wide. */
+/* Values that only a program can set: numbers that JSON cannot hold, and a bump whose chord is
+ * longer than the overall circle is wide. */
 static void check_refuses_senseless_values(void **state) {
   (void)state;
   const double values[] = {0, -1, NAN, INFINITY};

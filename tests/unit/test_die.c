@@ -81,7 +81,7 @@ static void headers_say_units(void **state) {
       {"Unit: mm\n", '\t', FG_DIE_MM, FG_DIE_MM, 0, 0, 0},
       {"X-Unit = mm\nZ-Unit = nm\n", '\t', FG_DIE_MM, FG_DIE_NM, 0, 0, 0},
       {"Einheit: Mikrometer\n", ';', FG_DIE_UM, FG_DIE_UM, 0, 0, 0},
-      /* What is no unit of the columns. */
+      /* Texts that state no unit of the columns. */
       {"Length\t40 mm\nSpeed: 0.5 mm/s\n", '\t', FG_DIE_UNIT_NONE, FG_DIE_UNIT_NONE, 0, 0, 0},
       {"Tip radius: 0,005 mm\n", '\t', FG_DIE_UNIT_NONE, FG_DIE_UNIT_NONE, 0, 0, 5},
       {"Tastspitzenradius: 2 \xc2\xb5m\n", ';', FG_DIE_UNIT_NONE, FG_DIE_UNIT_NONE, 0, 0, 2},

@@ -22,8 +22,7 @@ static fg_status measure_file(fg_context *ctx, const char *path, unsigned thread
   return fg_measure_scan(ctx, path, &design, &options, m);
 }
 
-/* Draws a plate and measures it; `members` is what stands beside "discs" and "foils" in the spec.
- */
+/* Draws a plate and measures it; `members` are those of the spec beside "schema" and "seed". */
 static fg_status measure_stated(fg_context *ctx, const char *members, unsigned threads, bool linear,
                                 fg_measurement *m) {
   char json[4096], path[] = "/tmp/foilgauge_discs_XXXXXX";

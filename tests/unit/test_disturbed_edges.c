@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Dust, specks, cuts and other foils on the edges: what they spoil is left out or said. */
+/* Dust, specks, cuts and other foils on the edges: spoiled values are left out or flagged. */
 #include "support/brief.h"
 #include "support/measured_render.h"
 #include "support/test.h"
@@ -58,7 +58,7 @@ static void dust_does_not_move_a_bump(void **state) {
   }
 }
 
-/* Where bump i's crown lies, or the middle of the lip's leg (i < 0), px. */
+/* Crown of bump i, or the middle of the lip's leg (i < 0), px. */
 static fg_point place_of(const fg_render_spec *spec, int i) {
   const fg_render_foil *t = &fg_render_get_truth(spec)->foils[0];
   fg_context ctx = {0};

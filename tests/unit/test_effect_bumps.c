@@ -39,7 +39,7 @@ static double p3(double u) {
   return (5 * u * u * u - 3 * u) / 2;
 }
 
-/* What is left of a target in the space of the columns. */
+/* Length of the part of a target that lies outside the space of the columns. */
 static double rest(const fg_edge_fit *edge_fit, const double *columns, const double *target) {
   size_t n = edge_fit->row_count;
   double *basis = calloc(n * FG_FIELD_COLUMNS, sizeof *basis), left = 0;

@@ -119,8 +119,8 @@ static void every_effect_row_is_complete(void **state) {
   }
 }
 
-/* The renderer's curves are named without what they move, and parameters are asked for in words
- * other than those for a name that is not known. */
+/* The renderer names its curves without the quantity that they move, and asks for missing
+ * parameters in words other than those for a name that is not known. */
 static void the_renderer_knows_every_row(void **state) {
   (void)state;
   for (const fg_effect *effect = fg_effect_first(); effect; effect = fg_effect_next(effect)) {

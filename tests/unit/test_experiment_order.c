@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What `doe` sees over the order of its runs: against the same numbers by another way, on noise,
- * and on what it is to see. And what taking an effect out beforehand costs. */
+/* Tests of `doe` for the order of its runs: against the same numbers by another way, on noise, and
+ * on effects that they must see. And the cost of taking an effect out beforehand. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -105,8 +105,8 @@ static void tests_are_the_known_ones(void **state) {
   fg_experiment_free(&with_run);
 }
 
-/* Settings in blocks, not in random order: what the model takes out is alike in neighbouring runs,
- * and what it leaves is not. */
+/* Settings in blocks, not in random order: fitted values are alike in neighbouring runs, and
+ * residuals are not. */
 static void slow_down(made *m) {
   for (int i = 0; i < RUNS; i++) {
     m->t[i] = i / 8;
@@ -173,8 +173,8 @@ static void real_order_effects_are_found(void **state) {
   if (alike < 24) fail_msg("correlation of 0.8 is told in %d of 60", alike);
 }
 
-/* What was taken out is paid for by the residual, and by the error of repeated runs where it
- * differs between them. */
+/* An effect that was taken out costs degrees of freedom of the residual, and of the error of
+ * repeated runs where it differs between them. */
 static void removed_effects_cost_their_degrees_of_freedom(void **state) {
   (void)state;
   made m;

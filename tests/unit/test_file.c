@@ -53,7 +53,7 @@ static void mode_follows_the_umask(void **state) {
   assert_int_equal(entry.st_mode & 0777, 0640);
 }
 
-/* What may be read by few is not opened to all by being written again. */
+/* A file that few may read is not opened to all by being written again. */
 static void a_replaced_file_keeps_its_mode(void **state) {
   folder *where = *state;
   struct stat entry;
@@ -119,7 +119,7 @@ static void a_named_descriptor_is_written_in_place(void **state) {
   assert_non_null(strstr(ctx.message, name));
 }
 
-/* What a killed run has left goes with the next one; what is at work stays. */
+/* Leftovers of a killed run go with the next one; files that another run is writing stay. */
 static void leftovers_are_removed_and_others_kept(void **state) {
   folder *where = *state;
   fg_output one, other;
@@ -147,7 +147,7 @@ static void leftovers_are_removed_and_others_kept(void **state) {
   assert_int_equal(count_entries(where), 1);
 }
 
-/* What ends the process removes all that is on its way, and nothing appears after that. */
+/* The end of the process removes all files on their way, and nothing appears after that. */
 static void all_temporaries_go_at_once(void **state) {
   folder *where = *state;
   char second[300];

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What cannot be written is said, and leaves nothing behind. */
+/* A file that cannot be written is an error with words, and leaves nothing behind. */
 #include <dirent.h>
 #include <fcntl.h>
 #include <signal.h>
@@ -66,7 +66,7 @@ static void full_disk_leaves_the_old_file(void **state) {
   assert_int_equal(count_entries(where), 1);
 }
 
-/* Space that comes back before the commit does not bring back what was lost. */
+/* Space that comes back before the commit does not bring back the lost bytes. */
 static void passing_shortage_is_an_error(void **state) {
   folder *where = *state;
   struct rlimit before, low;

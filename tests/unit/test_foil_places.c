@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Bumps that are missing or crushed, in every combination: the others keep their numbers, no land
- * becomes a bump, and what is wrong is said. The strip is the renderer's true midline. */
+ * becomes a bump, and the defect is named. The strip is the renderer's true midline. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -276,7 +276,7 @@ static void coarse_scans_are_not_biased(void **state) {
   }
 }
 
-/* Where the edges blur into each other, the scan is called too coarse. */
+/* A scan whose edges blur into each other is called too coarse. */
 static void a_coarse_scan_is_flagged(void **state) {
   (void)state;
   static const struct {

@@ -29,7 +29,7 @@ static void every_format_is_complete(void **state) {
   }
 }
 
-/* How many rows have it. */
+/* Number of formats with this ending. */
 static int count_ending(const char *wanted) {
   size_t count;
   int found = 0;

@@ -252,7 +252,7 @@ static void linear_law_scales(void **state) {
   fg_forming_free(&f);
 }
 
-/* Where its lands' middles lie, and where `measure` says they do. */
+/* Overall radius: that of the middles of the lands, and the one that `measure` finds. */
 static void overall_radius_is_that_of_the_lands(void **state) {
   (void)state;
   fg_forming_material m;
@@ -378,8 +378,8 @@ static void constants_come_back(void **state) {
   }
 }
 
-/* What the thesis's runs leave, by this model and by a quadratic surface, and what that is worth.
- */
+/* Errors on the thesis's runs (residual, of a run left out, of repeats), of this model and of a
+ * quadratic surface. */
 static void thirteen_runs(void **state) {
   (void)state;
   fg_forming_fit result;

@@ -28,7 +28,7 @@ static void a_gauge_is_kind_width_and_uncertainty(void **state) {
     assert_status(&ctx, fg_gauge_parse(&ctx, beyond[i], &gauge), FG_ERR_DATA);
 }
 
-/* What a gauge reads whose edges lie at level h. */
+/* Reading of a gauge whose edges lie at level h. */
 static fg_gauge_reading reading_at(double width, double h, double blur, bool bright, double scale) {
   double wider = 2 * (h - 0.5) * blur * sqrt(2 * M_PI);
   return (fg_gauge_reading){.found = true,

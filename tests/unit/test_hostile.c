@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Bad files by the hundred: an error each time, never a crash, and never a number from a damaged
  * PNG (every one of its bytes is under a checksum). TIFF has no checksums: there a changed pixel is
- * a pixel, and what is asked is that nothing breaks and that what is missing is missed. */
+ * a pixel, and the tests ask that nothing breaks and that missing parts are missed. */
 
 #include <tiffio.h>
 
@@ -135,8 +135,8 @@ static bytes make_tiff(const char *mode, uint16_t compression, bool tiled) {
   return file;
 }
 
-/* Opens and reads all; any status is fine as long as an error has words and rows are what they say.
- */
+/* Opens the scan and reads all rows of the stated size; any status is fine as long as an error has
+ * words. */
 static fg_status read_scan(fixture *f, const bytes *file) {
   fg_context ctx = {0};
   fg_scan *scan = NULL;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the level of the edges is uncertain by, and who knows it. */
+/* Uncertainty of the level of the edges, and the knowledge that reduces it. */
 #include <math.h>
 
 #include "geometry/foil_uncertainty.h"
@@ -25,7 +25,8 @@ static void an_unknown_tone_curve_is_eight_percent(void **state) {
   assert_near(fg_level_uncertainty(&linear, &picture, 0), 0.06, 0.001);
 }
 
-/* A gauge goes through the same driver: it knows what is alike all over the scan, and no shadow. */
+/* A gauge goes through the same driver: it knows every error that is alike all over the scan, and
+ * no shadow. */
 static void a_gauge_removes_the_level_s_uncertainty_but_not_a_shadow_s(void **state) {
   (void)state;
   const fg_design unknown = design_of(FG_TONE_UNKNOWN);
@@ -130,7 +131,7 @@ static void another_thickness_is_flagged(void **state) {
   }
 }
 
-/* What is not known of the level of a disc's edge is in its radius. */
+/* The uncertainty of the level of a disc's edge is in its radius. */
 static void a_disc_holds_it(void **state) {
   (void)state;
   const fg_design design = design_of(FG_TONE_UNKNOWN);

@@ -115,8 +115,8 @@ static double largest_step(const char *winner, const char *rival, const rows_dat
   return high - low;
 }
 
-/* Compares what is advised; false where the noise came out correlated: the fits here take it as
- * white. */
+/* Compares the advice; false where the noise came out correlated: the fits here take it as white.
+ */
 static bool check_advice(const rows_data *data, const fg_loop_result *result) {
   const fg_loop_claim *claim = &result->claim[0];
   const fg_loop_advice *advice = &result->advice[0];

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The loop on tables whose truth is known: what it finds, what it leaves alone, what it ties. */
+/* The loop on tables whose truth is known: effects that it finds, leaves alone or ties. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -295,7 +295,8 @@ static double smallest_of(const fixture *f, const char *name) {
   return NAN;
 }
 
-/* What is asked of a claim is asked of what would have shown: a trend, and one wrong row. */
+/* The level that a claim must pass also sets the smallest effect that would have shown: a trend,
+ * and one wrong row. */
 static void smallest_detectable_effect_follows_the_level(void **state) {
   static const double level[] = {0.05, 0, 0.005}; /* 0: 0.01 */
   double trend[3], outlier[3];

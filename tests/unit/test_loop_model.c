@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The model file: what is written loads again, and takes the effect out of another table. */
+/* The model file: a written model loads again, and takes the effect out of another table. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

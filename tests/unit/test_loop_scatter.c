@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The loop on tables about what is no mean: neighbours that are alike, a scatter that changes,
- * wrong rows that hide each other; and which order rows have. */
+/* The loop on tables beyond the mean: neighbours that are alike, a scatter that changes, wrong rows
+ * that hide each other; and the order of the rows. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the loop finds depends neither on the units nor on the origin of its numbers, and whatever
- * it is given, no report holds a number that is none. */
+/* Results of the loop depend neither on the units nor on the origin of its numbers, and no report
+ * holds a number that is none, whatever the input. */
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>

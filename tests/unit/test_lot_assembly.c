@@ -57,7 +57,7 @@ static void a_good_lot_assembles(void **state) {
   made_lot_free(&lot);
 }
 
-/* Every bump is too high by the same: the mean radius is what would change it. */
+/* Every bump is too high by the same: a change of the mean radius is the cure. */
 static void the_largest_change_wins(void **state) {
   (void)state;
   static const double low[] = {3.20, 3.20, 3.20, 3.20, 3.20, 3.20};

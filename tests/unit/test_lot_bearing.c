@@ -58,7 +58,7 @@ static void pads_are_as_many_as_fit(void **state) {
   made_lot_free(&lot);
 }
 
-/* What a recipe states stands, and what of it contradicts the design is said. */
+/* The layout that a recipe states is kept, and a note names its contradictions to the design. */
 static void a_stated_layout_is_kept(void **state) {
   (void)state;
   fg_context ctx;

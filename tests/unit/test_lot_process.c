@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Whether the process runs as it did, what its signals come from, and what is said of it. */
+/* Stability of the process, the causes of its signals, and the words for both. */
 #include "report/lot/files.h"
 #include "support/made_lot.h"
 #include "support/random.h"
@@ -20,7 +20,7 @@ static fg_lot lot_of(const fg_design *design, const char *const *cells, const do
   return lot;
 }
 
-/* What there is to know of the bump radius; the page's text where `page` is not NULL. */
+/* Statistics of the bump radius; the page's text where `page` is not NULL. */
 static fg_lot_quantity radius_of(const char *const *cells, const double *offset_mm,
                                  fg_lot_process *process, char **page) {
   fg_design design;
@@ -73,7 +73,7 @@ static void dies_in_turn_explain_the_signals(void **state) {
   free(page);
 }
 
-/* 6 um a foil have nothing to do with the die of every other foil: the page says what they do. */
+/* 6 um a foil have nothing to do with the die of every other foil: the page states the trend. */
 static void a_drift_is_a_trend(void **state) {
   (void)state;
   const char *cells[FOILS];

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What enters a lot's statistics, and which arch a bump is taken for. */
+/* Values that enter a lot's statistics, and the arch that a bump is taken for. */
 #include "report/lot/files.h"
 #include "report/lot/plots.h"
 #include "support/made_lot.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the manual says of the members of recipes and designs is what their readers take. */
+/* The manual's words for the members of recipes and designs agree with their readers. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

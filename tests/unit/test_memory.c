@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Checked memory: overflow is an error with words, growth keeps what was there. */
+/* Checked memory: overflow is an error with words, growth keeps the contents. */
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The quality of a JPEG that became a PNG, from its pixels, and what it adds to the uncertainty. */
+/* The quality of a JPEG that became a PNG, from its pixels, and its share of the uncertainty. */
 #include "support/measured_render.h"
 #include "support/test.h"
 

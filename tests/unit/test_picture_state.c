@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a scanner's driver or the light has made of a picture, found from its pixels: each kind is
- * found and measured, and nothing is found on plain and on rough scans. */
+/* Traces of a scanner's driver or of the light in a picture's pixels: each kind is found and
+ * measured, and nothing is found on plain and on rough scans. */
 #include "support/measured_render.h"
 #include "support/test.h"
 

@@ -130,7 +130,8 @@ static void seal_all(growing *file) {
   }
 }
 
-/* How many files are refused by ours alone; what ours takes, libpng takes. */
+/* Number of files (0 or 1) that our reader alone refuses; a file that our reader accepts, libpng
+ * accepts. */
 static int count_alone(const growing *file, const char *what, size_t at) {
   pair p = read_bytes(file);
   bool alone;

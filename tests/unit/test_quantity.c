@@ -27,7 +27,7 @@ static void every_format_is_complete(void **state) {
       in_row("%s", rows[i].name);
       assert_true(rows[i].name && rows[i].unit && rows[i].symbol && rows[i].words);
       assert_true(!rows[i].characteristic || rows[i].nominal); /* an export states it */
-      /* What quality systems get is taken from a lot's statistics. */
+      /* Quality systems get characteristics from a lot's statistics. */
       if (rows[i].characteristic && owner != FG_QUANTITY_OF_BEARING)
         assert_true(rows[i].uses & FG_QUANTITY_IN_LOT);
       if (rows[i].by_arc_length) assert_int_equal(owner, FG_QUANTITY_OF_BUMP);

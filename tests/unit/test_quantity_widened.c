@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What widens an uncertainty knows every row of the quantities. */
+/* Functions that widen an uncertainty know every row of the quantities. */
 #include <stdbool.h>
 #include <sys/types.h>
 
@@ -27,8 +27,8 @@ static fg_bump bare_bump(const fg_bump *from) {
   return bump;
 }
 
-/* A row without its function would keep what was there before; what was corrected by a loop is
- * uncertain by (X, R, R0), and everything that follows from them grows. */
+/* A row without its function would keep its old value; a bump that a loop corrected is uncertain by
+ * (X, R, R0), and the u of everything that follows from them grows. */
 static void a_bumps_rows_are_derived_and_widened(void **state) {
   (void)state;
   fg_design design = synthetic_design();

@@ -63,7 +63,7 @@ static void slits_leave_their_widths_and_lengths(void **state) {
   check_width("slits");
 }
 
-/* Where the base's edge and the ends of slits lie: half way between two beams, and in a slit. */
+/* Place of the base's edge, half way between two beams, and of the end of a slit, in the slit. */
 static void beam_roots_agree_with_the_truth(void **state) {
   (void)state;
   for (int slits = 0; slits < 2; slits++) {

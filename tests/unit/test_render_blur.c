@@ -144,7 +144,7 @@ static void strips_of_any_height_give_one_picture(void **state) {
   drop(&other);
 }
 
-/* Widths are what they were: blur moves no edge of a straight strip, and makes no light. */
+/* Blur makes no light: the sum over the picture stays. */
 static void blur_keeps_the_light(void **state) {
   (void)state;
   const char *scanners[] = {"\"blur_px\":1", "\"blur_px\":[2.5,0.7]",

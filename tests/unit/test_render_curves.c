@@ -94,7 +94,7 @@ static void edges_move_apart(void **state) {
   drop(&p);
 }
 
-/* Where the midline of one foil lies against the same foil without the effect, all along it: the
+/* Distance of a foil's midline from that of the same foil without the effect, all along it: the
  * field at that place, joined at the fillets. */
 static void midline_follows_the_curve(void **state) {
   (void)state;

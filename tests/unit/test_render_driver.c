@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a scanner's driver does to finished numbers: tone curve, unsharp mask, gray levels, JPEG
+/* Effects of a scanner's driver on finished numbers: tone curve, unsharp mask, gray levels, JPEG
  * behind them all. Every test computes the driver's part again from the picture without it. */
 #include "render_picture.h"
 #include "support/test.h"
@@ -287,7 +287,7 @@ static void channels_are_worked_on_one_by_one(void **state) {
   }
 }
 
-/* Only what is stated is in the truth. */
+/* The truth records stated members alone. */
 static void truth_records_the_driver(void **state) {
   (void)state;
   fg_context ctx = {0};

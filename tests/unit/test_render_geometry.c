@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Where the renderer puts things: areas, centres, edges, the strip's lands and crowns, effects. */
+/* Places in the rendered picture: areas, centres, edges, the strip's lands and crowns, effects. */
 #include "render_picture.h"
 #include "support/test.h"
 
@@ -261,7 +261,7 @@ static void lip_stands_on_the_land(void **state) {
   }
 }
 
-/* Two foils share what they have in common: a bed places them apart. */
+/* A bed places its foils apart: foils that overlap would have less area than their sum. */
 static void foils_of_a_bed_lie_apart(void **state) {
   (void)state;
   picture one = draw(0, "{\"schema\":\"foilgauge/render/1\",\"foils\":[{\"rotate_deg\":-90,"

@@ -124,7 +124,7 @@ static void whole_bump_moves_with_its_flanks(void **state) {
   fg_render_free(spec);
 }
 
-/* What the midline says is what is drawn: the crown of an upright foil's middle bump. */
+/* The picture agrees with the midline: the crown of an upright foil's middle bump. */
 static void picture_shows_the_raised_crown(void **state) {
   (void)state;
   const char *extents[] = {"crown", "whole"};

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the rendered scanner does to light: tone, noise, clipping, JPEG, halo, wall; the
- * same bytes every time. */
+/* Effects of the rendered scanner on light: tone, noise, clipping, JPEG, halo, wall; the same bytes
+ * every time. */
 #include "render_picture.h"
 
 #include <unistd.h>

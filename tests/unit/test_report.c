@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reports of a measurement made of formulas: what is written is what was measured. */
+/* Reports of a measurement made of formulas: written values are the measured ones. */
 #include "core/json_writer.h"
 #include "foilgauge/words.h"
 #include "quantity/quantity_rows.h"

@@ -147,7 +147,7 @@ static void a_page_escapes_every_name(void **state) {
   assert_null(strstr(page, "http://"));
   assert_null(strstr(page, "https://"));
   assert_null(strstr(page, "nan"));
-  /* What each comes to stands before the first. */
+  /* The summary of all parts stands before the first. */
   assert_true(stands_before(page, "<h1>2 foils</h1>", "id=\"part1\""));
   free(page);
   synthetic_free(&measurement);

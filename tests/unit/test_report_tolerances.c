@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Values against tolerances, and what is missing: verdicts of reports. */
+/* Verdicts of reports: values against tolerances, and missing ones. */
 #include "core/json_writer.h"
 #include "support/report_fixture.h"
 #include "support/test.h"
@@ -106,7 +106,7 @@ static void a_missing_bump_rejects_the_foil(void **state) {
   assert_string_equal(words, "bump 4 is missing (8 found, the design has 9)");
 }
 
-/* Without tolerances nothing is judged but what is seen to be missing. */
+/* A gap between bumps is judged without tolerances; another count is not. */
 static void other_counts_without_tolerances_are_a_flag(void **state) {
   fixture *all = *state;
   fg_foil *foil = &all->measurement.foils[0];
@@ -133,7 +133,7 @@ static void what_the_border_hides_is_not_measured(void **state) {
   assert_int_equal(outcome_of(all).rejected, 0);
 }
 
-/* What was not measured is null, and never within tolerance. */
+/* Values that were not measured are null, and never within tolerance. */
 static void a_foil_that_was_given_up_has_no_values(void **state) {
   fixture *all = *state;
   fg_foil *foil = &all->measurement.foils[0];

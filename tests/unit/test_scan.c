@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Scans of every kind come out as the gray values that went in; the resolution is what pHYs or the
- * caller says; the SHA-256 is the file's. */
+/* Scans of every kind come out as the gray values that went in; the resolution is that of pHYs or
+ * of the caller; the SHA-256 is the file's. */
 #include <math.h>
 #include <pthread.h>
 #include <signal.h>
@@ -27,7 +27,7 @@ static const struct {
     {PNG_COLOR_TYPE_PALETTE, 2},     {PNG_COLOR_TYPE_PALETTE, 4},    {PNG_COLOR_TYPE_PALETTE, 8},
 };
 
-/* What the header promises, in floating point from the samples. */
+/* Gray value that the header promises, in floating point from the samples. */
 static double expected_gray(const picture *p, const uint16_t *pixel) {
   if (p->palette_size) {
     png_color c = p->palette[pixel[0]];

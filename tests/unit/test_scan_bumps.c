@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Level `bumps` of the loop on scans, on measured foils made by formula: what is there is found,
- * what is not is not, and foils that are too small say so. */
+/* Level `bumps` of the loop on scans, on measured foils made by formula: effects that exist are
+ * found, others are not, and foils that are too small say so. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,7 +12,7 @@
 
 enum { FOILS = 12, BUMPS = 9 };
 
-/* What the made foils hold. */
+/* Contents of the made foils. */
 typedef struct recipe {
   size_t foils, bumps;
   bool no_lip;
@@ -197,7 +197,7 @@ static void a_cycle_over_the_bumps_is_told(void **state) {
   fg_scan_loop_bumps_free(&s.bumps);
 }
 
-/* Steady as it may be: what is within the edges' own doubt is nobody's deviation. */
+/* A deviation within the uncertainty of the edges is that of no bump, however steady it is. */
 static void single_bumps_within_uncertainty_are_not_told(void **state) {
   recipe r = plain;
   scans s;

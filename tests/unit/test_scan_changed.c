@@ -130,7 +130,7 @@ static void completed_file_has_not_the_sum_of_the_cut_off_one(void **state) {
   fg_scan_close(scan);
 }
 
-/* What was not read for its rows is part of the sum, too. */
+/* Bytes that were not read for their rows are part of the sum, too. */
 static void sum_of_a_scan_that_failed_is_of_the_whole_file(void **state) {
   place *p = *state;
   char wanted[65];

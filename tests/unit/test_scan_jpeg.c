@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* JPEG of every kind that scanners write comes out as the picture that went in, within its loss;
- * the quality is that which it was made with; what is odd, wrong or made to harm is said. */
+ * the quality is that which it was made with; odd, wrong and hostile files are reported. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -99,7 +99,7 @@ typedef struct reading {
   double worst; /* of gray values against what went in */
 } reading;
 
-/* What a channel shows of fill_row. */
+/* Value of fill_row in a channel. */
 static double expected(const kind *k, fg_channel channel, int x, int y) {
   double blue = channels_of(k) == 3 ? 25 : 0;
   return gray_at(x, y) - (channel == FG_CHANNEL_BLUE  ? blue
@@ -270,8 +270,8 @@ static void cut_off_is_said_wherever_it_is(void **state) {
   }
 }
 
-/* JPEG has no checksum: some of it cannot be seen. What is seen must be said, and nothing may
- * break. */
+/* JPEG has no checksum: some damage cannot be seen. Damage that is seen must be reported, and
+ * nothing may break. */
 static void no_byte_breaks_it(void **state) {
   (void)state;
   bytes file = write_jpeg(&plain);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The model file of a scanner: what the loop writes is read again as it was, and what no scanner
- * can be is refused with the file, the member, its value and what is allowed. */
+/* The model file of a scanner: a model that the loop writes is read again as it was, and an
+ * impossible scanner is refused with the file, the member, its value and the values allowed. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -18,7 +18,7 @@ static char *suite_folder(void) {
 
 typedef void visit(const char *path, const char *name);
 
-/* How many PNGs of a folder of the suite were visited. */
+/* Visits all PNGs of a folder of the suite and returns their number. */
 static int visit_all(const char *part, visit *look) {
   char *suite = suite_folder(), *folder = NULL;
   if (asprintf(&folder, "%s/%s", suite, part) < 0) return 0;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The result of the loop on scans is what its reports say: every number of the struct stands in the
+/* The result of the loop on scans agrees with its reports: every number of the struct stands in the
  * JSON, and the JSON says nothing else. Small scans, made by formula: a ring that is tied, a clean
  * foil, a foil with a ripple. */
 #include <math.h>

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* TIFF and PNM of every kind come out as the values that went in; what is odd or wrong is said. */
+/* TIFF and PNM of every kind come out as the values that went in; odd and wrong files are reported.
+ */
 
 #include <tiffio.h>
 
@@ -359,7 +360,7 @@ static void wrapped_byte_counts_are_said_and_read(void **state) {
   free(path);
 }
 
-/* What scanimage leaves beyond 4 GiB: one strip, its count the low 32 bits. A file with holes. */
+/* scanimage's file beyond 4 GiB: one strip, its count the low 32 bits. A file with holes. */
 static void beyond_4_gib_the_last_rows_are_there(void **state) {
   (void)state;
   enum { BIG_WIDTH = 40000, BIG_HEIGHT = 60000 };

@@ -161,7 +161,7 @@ static void noise_at_long_waves_is_found_from_short_ones(void **state) {
       foil_rows f;
       foil_rows_open(&f);
       put_scatter(&f, &kinds[k], sd_um, seed);
-      /* What is smooth along an arc is no noise. */
+      /* A smooth curve along an arc is no noise. */
       double none = 0, much = 40;
       foil_rows_add_effect(&f, fg_effect_find("scan.shear"), &none, &much, 1);
       assert_ok(&ctx, fg_edge_fit_find_scatter(&ctx, &f.edge_fit, f.residual_um));
@@ -186,7 +186,8 @@ static void white_noise_stays_white(void **state) {
   foil_rows_close(&f);
 }
 
-/* Nor is what every bump has: short waves that polynomials along one arc do not follow. */
+/* Waves that every bump has are no noise, even when they are too short for polynomials along one
+ * arc. */
 static void waves_common_to_all_bumps_are_no_noise(void **state) {
   (void)state;
   fg_context ctx = {0};

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The score of a set: what it leaves beside everything at once, against a dense least squares of
- * the same rows; which sets are right, and which are none. */
+/* The score of a set: its residual in a fit beside everything at once, against a dense least
+ * squares of the same rows; and sets that are right or invalid. */
 #include <gsl/gsl_multifit.h>
 #include <math.h>
 #include <stdlib.h>
@@ -25,7 +25,7 @@ enum {
   CANDIDATES
 };
 
-/* What the rows hold: a shear and a ripple. */
+/* Effects in the rows: a shear and a ripple. */
 static const double shear_um = 6, ripple_um[2] = {0.8, -0.5};
 
 typedef struct candidate {

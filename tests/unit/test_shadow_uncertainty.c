@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A shadow or a lit wall beside edges of some bearings: u of every circle holds what it does,
- * against renders of known truth. */
+/* A shadow or a lit wall beside edges of some bearings: u of every circle holds the error that it
+ * causes, against renders of known truth. */
 #include "support/brief.h"
 #include "support/measured_render.h"
 #include "support/test.h"

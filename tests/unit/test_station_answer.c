@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a station answers to whom: fields, names of files, hosts, forms, tokens, hostile texts. */
+/* Answers of a station, and who gets them: fields, names of files, hosts, forms, tokens, hostile
+ * texts. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -346,7 +347,8 @@ static void test_corrections(void **state) {
   char wide[400] = FORM "foil=1&serial=";
   memset(wide + strlen(wide), 'x', 200);
   assert_int_equal(post("/correct", wide), 422);
-  /* Who, before and after; what did not change left none. */
+  /* The record of a change holds who made it and the values before and after; a value that did not
+   * change leaves none. */
   fg_query query;
   fg_context ctx;
   fg_query_begin(fixture.station.database.reader,

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a check says of a scanner, on plates of known diameters under scanners of known scale and
- * shear. */
+/* Statements of a check about a scanner, on plates of known diameters under scanners of known scale
+ * and shear. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,7 +15,8 @@
 
 #define NOMINAL_DPI 4800.0
 
-/* Measured over true, less 1; rad. What is said of its tone. */
+/* Errors of a scanner: scale, measured over true, less 1; shear, rad. And the statement about its
+ * tone. */
 typedef struct scanner {
   double scale_x, scale_y, shear;
   fg_tone_statement tone;
@@ -134,7 +135,7 @@ static void a_tone_curve_is_in_the_uncertainty(void **state) {
                  &(scanner){100e-6, 100e-6, -50e-6, FG_TONE_UNKNOWN}, 0, 1.8, 60);
 }
 
-/* Where the tone is not known, the level of the edges is one more unknown. */
+/* An unknown tone makes the level of the edges one more unknown. */
 static void rough_edges_are_in_the_uncertainty(void **state) {
   (void)state;
   check_coverage("\"noise\":2,\"rough\":{\"edge_roughness_um\":1,\"correlation_um\":50}",

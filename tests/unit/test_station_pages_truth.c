@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What pages may say: of a correction that others have overtaken, of a serial number that another
- * foil has, of a scan that came twice, of a file that is on its way, of crushed bumps, and of their
- * own age. */
+/* Statements that pages may make: of a correction that others have overtaken, of a serial number
+ * that another foil has, of a scan that came twice, of a file that is on its way, of crushed bumps,
+ * and of their own age. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -180,7 +180,7 @@ static void test_what_is_on_its_way_stands_before_the_last_verdict(void **state)
   expect_words("class=\"call pass");
 }
 
-/* What went wrong a moment ago is not lost behind what is on its way. */
+/* An error of a moment ago is not lost behind the file that is on its way. */
 static void test_the_message_of_the_card_before_stays(void **state) {
   (void)state;
   sql("INSERT INTO arrivals (id, at, path, kind, message) VALUES"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Where a lot's spread of stiffness comes from: causes put in come back out, what is not known is
- * not counted, and measurement's share is what drawing from it gives. */
+/* Causes of a lot's spread of stiffness: causes put in come back out, an unknown one is not
+ * counted, and measurement's share is that of drawn circles. */
 #include "lot/statistics/budget.h"
 #include "report/lot/files.h"
 #include "support/made_lot.h"

@@ -103,8 +103,8 @@ static void dialects_are_read(void **state) {
   }
 }
 
-/* 0.1 = 3602879701896397 / 2^55 - 5.55e-18; the tail is that difference, and value is what strtod
- * says for any text. */
+/* 0.1 = 3602879701896397 / 2^55 - 5.55e-18; the tail is that difference, and the value equals that
+ * of strtod for any text. */
 static void decimals_keep_their_digits(void **state) {
   static const char *const numbers[] = {"0.1",
                                         "1000000000000.4",
@@ -296,7 +296,8 @@ static void ambiguous_columns_are_refused(void **state) {
   }
 }
 
-/* What looks alike and is not: words, dates, names of samples, numbers with missing ones. */
+/* Sound columns that resemble refused ones: words, dates, names of samples, numbers with missing
+ * ones. */
 static void sound_columns_are_not_refused(void **state) {
   static const char *const texts[] = {
       "x,D\n1,2.5\n2,\n3,NA\n",       "x,D\n1,01.02.2024\n2,2.2.2024\n",
@@ -315,7 +316,7 @@ static void sound_columns_are_not_refused(void **state) {
   }
 }
 
-/* Dates become days, serial numbers their digits; what is neither stays words. */
+/* Dates become days, serial numbers their digits; other cells stay words. */
 static void words_that_count_are_numbers(void **state) {
   static const struct {
     const char *cells[4];

@@ -47,7 +47,7 @@ static void code_column(fg_table *table, const char *from, const char *to, const
   assert_ok(&ctx, fg_coding_apply(&ctx, &coding, table));
 }
 
-/* The row of the printed table that carries the term, and what is printed there. */
+/* Finds the row of the printed table that carries each term, and reads its values. */
 static void read_printed(const fg_table *printed, comparison *c) {
   fg_context ctx = {0};
   for (size_t i = 0; i < c->terms; i++) {
@@ -209,7 +209,7 @@ static void table_5_4_with_the_responses_of_5_1(void **state) {
 static const double OPTIMUM_C = 675, OPTIMUM_PCT = 2.2;
 enum { DURATIONS = 7, SURFACES = 2, TERMS = 6 };
 
-/* Eq 5.4 at one duration: a parabola in T, and what it says of the printed optimum. */
+/* Eq 5.4 at one duration: a parabola in T, and its value and slope at the printed optimum. */
 typedef struct section {
   double duration_h, vertex_C, vertex_pct, at_optimum_pct, slope; /* % per 10 °C, at 675 °C */
 } section;

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A blur that is longer along one axis moves a curved edge by what it has along the edge: circles
+/* A blur that is longer along one axis moves a curved edge by its extent along the edge: circles
  * and heights against renders of known truth. */
 #include "support/brief.h"
 #include "support/measured_render.h"
 #include "support/test.h"
 
-/* Without noise to speak of: what is left is the model's. Heights are free of what both circles
- * have in common. */
+/* Limits for errors of the model: there is no noise to speak of. Errors that both circles have in
+ * common leave heights alone. */
 #define HEIGHT_UM 0.05
 #define ANGLE_DEG 0.01
 

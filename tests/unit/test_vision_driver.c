@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a scanner's driver makes of edges: the model that explains them, and the thickness that
- * follows from it, against renders of known truth. */
+/* Edges after a scanner's driver: the model that explains them, and the thickness that follows from
+ * it, against renders of known truth. */
 #include "support/brief.h"
 #include "support/measured_render.h"
 
@@ -122,7 +122,7 @@ static void plain_edges_are_plain(void **state) {
   }
 }
 
-/* The strength of what was done comes out, too. */
+/* The strength of the sharpening comes out, too. */
 static void an_unsharp_mask_is_measured(void **state) {
   (void)state;
   static const driver_case c = {",\"bits\":16,\"unsharp_mask\":{\"amount_pct\":80,\"radius_px\":2}",

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Edges: every station against the true midline, the standard deviations against the scatter, and
- * what is found out about the scanner on the way. */
+ * findings about the scanner on the way. */
 #include "support/brief.h"
 #include "support/measured_render.h"
 #include "support/test.h"
@@ -121,8 +121,8 @@ static void edges_are_on_the_truth(void **state) {
   }
 }
 
-/* The scatter of the line is what its standard deviations say, and near the bound
- * (n / A) sqrt(2 s sqrt(pi)) / sqrt(px per station) of one edge, over sqrt(2) for two. */
+/* The scatter of the line agrees with its standard deviations, and lies near the bound (n / A)
+ * sqrt(2 s sqrt(pi)) / sqrt(px per station) of one edge, over sqrt(2) for two. */
 static void standard_deviations_are_the_scatter(void **state) {
   (void)state;
   static const struct {

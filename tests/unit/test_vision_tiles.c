@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tiles and segmentation: what is kept, that it is exact, and that nothing depends on the way. */
+/* Tiles and segmentation: kept pixels are exactly those of the scan, and nothing depends on the
+ * way. */
 #include "support/measured_render.h"
 
 #include "support/random.h"
