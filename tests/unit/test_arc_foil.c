@@ -4,7 +4,7 @@
 #include "support/measured_render.h"
 #include "support/test.h"
 
-/* One value of many may lie so many standard uncertainties off: 1 in 150,000. */
+/* Limit for one value of many, in standard uncertainties: exceeded by 1 in 150,000. */
 static const double many_u = 4.5;
 
 static fg_design arc_design(fg_datum datum, double radius_mm) {

@@ -181,7 +181,7 @@ static void intervals_are_exact(void **state) {
     }
 }
 
-/* Measurement's doubt: what lies within U of a limit is neither surely in nor surely out. */
+/* Measurement uncertainty: a value within U of a limit is neither surely in nor surely out. */
 static void uncertainty_is_a_share_of_its_own(void **state) {
   (void)state;
   fg_context ctx;

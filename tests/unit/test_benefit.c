@@ -142,7 +142,7 @@ static void one_undecided_bump_leaves_the_others_corrected(void **state) {
   assert_near(move[H], 1 * UM, 1e-9); /* their mean: neither loses by it */
 }
 
-/* Whichever of three is true, the error falls, and by at least the square of the move. */
+/* The error falls whichever of three is true, and by at least the square of the move. */
 static void no_explanation_is_made_worse(void **state) {
   (void)state;
   fg_benefit_item item[ITEMS];
