@@ -26,6 +26,7 @@ typedef enum fg_foil_kind {
   FG_FOIL_CANTILEVER, /* a flat foil with beams cut out of it, measured before they are bent */
 } fg_foil_kind;
 
+/* Up to the last kind: tables of kinds are held against it, so that new kinds stand at the end. */
 enum { FG_FOIL_KINDS = FG_FOIL_CANTILEVER + 1 };
 
 /* Whether foils of this kind have bumps: the design's `bumps` are stated. */

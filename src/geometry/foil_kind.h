@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Table of how each kind of foil is measured: one row per kind, in a file of its own (kind_*.c). */
+/* Table of how each kind of foil is measured: one row per kind, in files kind_*.c. Kinds
+ * that share functions share a file. */
 #ifndef FG_GEOMETRY_FOIL_KIND_H
 #define FG_GEOMETRY_FOIL_KIND_H
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Table of how each kind of foil is shown: one row per kind of words, and of functions that write
  * what the kind alone has. Writers ask the row; no other line of a report tells kinds apart. How a
- * kind is measured is a row of geometry/foil_kind.h.
+ * kind is measured is a row of geometry/foil_kind.h. Kinds that are shown alike share a row.
  */
 #ifndef FG_REPORT_MEASURE_FOIL_VIEW_H
 #define FG_REPORT_MEASURE_FOIL_VIEW_H
