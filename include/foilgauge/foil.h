@@ -24,7 +24,8 @@
 extern "C" {
 #endif
 
-/* Defects and conditions of one foil. JSON writes the words in `flags`. */
+/* Defects and conditions of one foil. JSON writes the words in `flags`; the sentences that people
+ * read are in words.h. */
 typedef enum fg_foil_flag {
   FG_FOIL_TOUCHES_BORDER = 1u << 0,     /* "touches_border" */
   FG_FOIL_TOUCHES_OTHER = 1u << 1,      /* "touches_other" */
@@ -32,9 +33,9 @@ typedef enum fg_foil_flag {
   FG_FOIL_BUMP_COUNT = 1u << 3,         /* "bump_count": not the number the design states */
   FG_FOIL_MISSING_BUMP = 1u << 4,       /* "missing_bump": a place at the pitch is empty */
   FG_FOIL_FEW_LANDS = 1u << 5,          /* "few_lands": the overall circle rests on little */
-  FG_FOIL_CLIPPED = 1u << 6,            /* "clipped" */
-  FG_FOIL_SIDE_BAND = 1u << 7,          /* "side_band" */
-  FG_FOIL_GAP = 1u << 8,                /* "gap" */
+  FG_FOIL_CLIPPED = 1u << 6,            /* "clipped": its edges reach the gray scale's end */
+  FG_FOIL_SIDE_BAND = 1u << 7,          /* "side_band": its wall shows beside an edge */
+  FG_FOIL_GAP = 1u << 8,                /* "gap": the strip or its edge is not seen somewhere */
   FG_FOIL_ROUGH_EDGE = 1u << 9,         /* "rough_edge": residuals are correlated along the strip */
   FG_FOIL_NOT_MEASURED = 1u << 10,      /* "not_measured": see `error` */
   FG_FOIL_COARSE_RESOLUTION = 1u << 11, /* "coarse_resolution": the edges blur into each other */
@@ -59,7 +60,7 @@ typedef enum fg_foil_flag {
   FG_FOIL_MISSING_BEAM = 1u << 24, /* "missing_beam": a place where a beam belongs is empty */
   /* "beam_places_unknown": beams are missing at unknown places: numbers are the order */
   FG_FOIL_BEAM_PLACES_UNKNOWN = 1u << 25,
-  /* "thickness_contradicts": the scan's thickness and the one stated as measured */
+  /* "thickness_contradicts": the scan's thickness is not the one stated as measured */
   FG_FOIL_THICKNESS_CONTRADICTS = 1u << 26,
   FG_FOIL_OTHER_THICKNESS = 1u << 27, /* "other_thickness": far from the design's */
 } fg_foil_flag;

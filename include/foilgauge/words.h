@@ -9,10 +9,12 @@
 extern "C" {
 #endif
 
+/* Flags of a foil are whole sentences, items of a list on its page. Flags of bumps and beams are
+ * clauses without a capital and a full stop: they stand in a cell, or after "beam 3: ". */
 typedef struct fg_flag_words {
   unsigned flag;
-  const char *name;  /* in JSON and CSV */
-  const char *plain; /* for people */
+  const char *name;  /* in JSON and CSV: released, it stays */
+  const char *plain; /* for people, on pages and the terminal: may be changed */
 } fg_flag_words;
 
 /* Tables that end with a row whose name is NULL. */

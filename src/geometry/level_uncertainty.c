@@ -54,7 +54,8 @@ static const level_row findings[] = {
 };
 
 /* Of a foil: halo, wall or a clipped level shape its edges, and all profiles give the same wrong
- * exponent: 0.23 of it is 0.08 of the level. */
+ * exponent gamma. 23 % of error in gamma near 1 move T(1/2) = 0.5^(1/gamma) by 0.5 ln 2 0.23 =
+ * 0.08. */
 static const level_row foil_flags[] = {
     {FG_FOIL_ROUGH_EDGE, 0.08, true},
     {FG_FOIL_SIDE_BAND, 0.08, true},

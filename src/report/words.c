@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Names and sentences of the flags of foils, bumps and beams (words.h says which form each has).
+ * The findings of a picture have theirs in report/measure/picture_words.c. */
 #include "foilgauge/words.h"
 
 #include <math.h>

@@ -99,6 +99,8 @@ static const char *split_chunk(const fg_png *reader, char chunk[24]) {
   return reader->words;
 }
 
+/* Writes the part of a message that tells the chunk, the byte, and the first row that could not be
+ * read; of an interlaced image, whose rows come in passes, the count over all passes. */
 static void describe_place(const fg_png *reader, char *place, size_t size) {
   char chunk[24];
   split_chunk(reader, chunk);

@@ -57,8 +57,9 @@ size_t fg_source_peek(fg_source *source, size_t wanted, const uint8_t **bytes);
 /* Hands out exactly `wanted` bytes, or fewer at the end of the file or after a failure. */
 size_t fg_source_read(fg_source *source, void *out, size_t wanted);
 
-/* Reports why a decoder got fewer bytes than requested, at `place`: FG_ERR_IO when reading failed,
- * FG_ERR_DATA when the file ended (`cut_off`); else FG_OK. */
+/* Reports why a decoder got fewer bytes than requested: FG_ERR_IO when reading failed, FG_ERR_DATA
+ * when the file ended (`cut_off`); else FG_OK. `place` is the message's part that the format knows
+ * (chunk, byte, row). */
 fg_status fg_source_check(fg_context *ctx, const fg_source *source, bool cut_off,
                           const char *place);
 

@@ -14,9 +14,11 @@
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <string.h>
 
 #include <cmocka.h>
 
@@ -130,6 +132,25 @@ static inline void test_status(const fg_context *ctx, fg_status status, fg_statu
 
 /* The call returns `wanted`. */
 #define assert_status(ctx, call, wanted) test_status(ctx, call, wanted, #call, TEST_PLACE)
+
+/* Returns the part of a page that its reader reads first, to be printed; any other text whole. */
+static inline const char *test_excerpt(const char *text) {
+  const char *note = strstr(text, "<p class=\"note\">"), *body = strstr(text, "<body");
+  return note ? note : body ? body : text;
+}
+
+/* A message, a page or another text has these words, or has them not; otherwise its beginning is
+ * printed. */
+#define assert_has(text, words)     test_has(text, words, true, #text, TEST_PLACE)
+#define assert_has_not(text, words) test_has(text, words, false, #text, TEST_PLACE)
+
+static inline void test_has(const char *text, const char *words, bool wanted, const char *name,
+                            const char *file, int line) {
+  if (text && (strstr(text, words) != NULL) == wanted) return;
+  print_error("ERROR: %s %s \"%s\":\n%.700s\n", name, wanted ? "lacks" : "has", words,
+              text ? test_excerpt(text) : "(NULL)");
+  _fail(file, line);
+}
 
 /* Two numbers agree within a tolerance; cmocka 1.1.5 knows only float. */
 #define assert_near(got, wanted, tolerance)                                                        \

@@ -232,7 +232,7 @@ static void too_few_foils_are_refused(void **state) {
   fg_assembly_plan plan = made_plan(10, 0.05);
   fg_assembly_result r;
   assert_status(&ctx, fg_assembly_draw(&ctx, &stock, &plan, true, &r), FG_ERR_DATA);
-  assert_non_null(strstr(ctx.message, "2 foils; a bearing takes 3"));
+  assert_has(ctx.message, "2 foils; a bearing takes 3");
   fg_stock_free(&stock);
 }
 

@@ -377,7 +377,7 @@ static void another_size_is_no_foil_of_the_design(void **state) {
   (void)state;
   fg_foil foil = measured((shape){8, 2, 0, 0, 0, 0, {5, 5}, 1});
   assert_true(foil.flags & FG_FOIL_NOT_THIS_DESIGN);
-  assert_non_null(strstr(foil.error, "2 times the design's"));
+  assert_has(foil.error, "2 times the design's");
   assert_true(foil.flags & FG_FOIL_BEAM_COUNT);
   fg_foil_free(&foil);
   foil = measured((shape){8, 1, 0, 0, 0, 0, {5, 5}, 1});

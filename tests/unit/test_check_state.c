@@ -42,7 +42,7 @@ static void a_change_counts_beyond_scatter_and_what_matters(void **state) {
   assert_string_equal(words, "");
   set(&now, "level_um", 0.36, 0.05);
   assert_int_equal(fg_check_state_compare(&now, &baseline, words, sizeof words), 1);
-  assert_non_null(strstr(words, "outwards 0.36 µm (was 0.10, allowed ± 0.25)"));
+  assert_has(words, "outwards 0.36 µm (was 0.10, allowed ± 0.25)");
   set(&now, "level_um", -0.16, 0.05);
   assert_int_equal(fg_check_state_compare(&now, &baseline, words, sizeof words), 1);
   set(&now, "level_um", 0.8, 0.3); /* 3 sd of 0.304 are 0.91 */

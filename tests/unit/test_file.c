@@ -116,7 +116,7 @@ static void a_named_descriptor_is_written_in_place(void **state) {
   fg_context ctx = {0};
   fg_output output;
   assert_status(&ctx, fg_output_open(&ctx, name, &output), FG_ERR_IO);
-  assert_non_null(strstr(ctx.message, name));
+  assert_has(ctx.message, name);
 }
 
 /* Leftovers of a killed run go with the next one; files that another run is writing stay. */
@@ -211,7 +211,7 @@ static void text_is_read_whole(void **state) {
   fg_context ctx = {0};
   assert_status(&ctx, fg_file_read_text(&ctx, where->file, 19999, &text), FG_ERR_DATA);
   assert_null(text);
-  assert_non_null(strstr(ctx.message, "19999"));
+  assert_has(ctx.message, "19999");
   write_file(where->file, "");
   assert_content(where->file, "");
 }
@@ -224,11 +224,11 @@ static void what_is_no_text_is_refused(void **state) {
   fwrite("ab\0cd", 1, 5, stream);
   fclose(stream);
   assert_status(&ctx, fg_file_read_text(&ctx, where->file, 100, &text), FG_ERR_DATA);
-  assert_non_null(strstr(ctx.message, "byte 2"));
+  assert_has(ctx.message, "byte 2");
   assert_status(&ctx, fg_file_read_text(&ctx, where->path, 100, &text), FG_ERR_IO);
-  assert_non_null(strstr(ctx.message, "directory"));
+  assert_has(ctx.message, "directory");
   assert_status(&ctx, fg_file_read_text(&ctx, "/nonexistent/design.json", 100, &text), FG_ERR_IO);
-  assert_non_null(strstr(ctx.message, "/nonexistent/design.json"));
+  assert_has(ctx.message, "/nonexistent/design.json");
   assert_null(text);
 }
 

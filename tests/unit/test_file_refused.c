@@ -38,10 +38,10 @@ static void full_device_is_an_error(void **state) {
   if (access("/dev/full", W_OK) != 0) skip();
   fg_context ctx = {0};
   assert_status(&ctx, write_much(&ctx, "/dev/full"), FG_ERR_IO);
-  assert_non_null(strstr(ctx.message, "/dev/full: cannot be written: No space left on device"));
-  assert_non_null(strstr(ctx.message, "free some space"));
+  assert_has(ctx.message, "/dev/full: cannot be written: No space left on device");
+  assert_has(ctx.message, "free some space");
   assert_status(&ctx, write_little(&ctx, "/dev/full"), FG_ERR_IO);
-  assert_non_null(strstr(ctx.message, "No space left"));
+  assert_has(ctx.message, "No space left");
 }
 
 static void full_disk_leaves_the_old_file(void **state) {
@@ -59,9 +59,9 @@ static void full_disk_leaves_the_old_file(void **state) {
   signal(SIGXFSZ, handler);
   assert_status(NULL, much_status, FG_ERR_IO);
   assert_status(NULL, little_status, FG_ERR_IO);
-  assert_non_null(strstr(much.message, where->file));
-  assert_non_null(strstr(much.message, "too large"));
-  assert_non_null(strstr(little.message, "too large"));
+  assert_has(much.message, where->file);
+  assert_has(much.message, "too large");
+  assert_has(little.message, "too large");
   assert_content(where->file, "old");
   assert_int_equal(count_entries(where), 1);
 }
@@ -82,8 +82,8 @@ static void passing_shortage_is_an_error(void **state) {
   setrlimit(RLIMIT_FSIZE, &before);
   signal(SIGXFSZ, handler);
   assert_status(&ctx, fg_output_commit(&ctx, &output), FG_ERR_IO);
-  assert_non_null(strstr(ctx.message, where->file));
-  assert_non_null(strstr(ctx.message, "too large"));
+  assert_has(ctx.message, where->file);
+  assert_has(ctx.message, "too large");
   assert_int_equal(count_entries(where), 0);
 }
 
@@ -123,7 +123,7 @@ static void read_only_file_is_respected(void **state) {
   fg_context ctx = {0};
   fg_output output;
   assert_status(&ctx, fg_output_open(&ctx, where->file, &output), FG_ERR_IO);
-  assert_non_null(strstr(ctx.message, "ermission"));
+  assert_has(ctx.message, "ermission");
   assert_content(where->file, "keep");
 }
 

@@ -63,7 +63,7 @@ static void manual_explains_every_kind(void **state) {
     char quoted[40];
     snprintf(quoted, sizeof quoted, "\"%s\" (", fg_foil_kind_word(all_kinds[i]));
     in_row("%s", quoted);
-    assert_non_null(strstr(members[form].meaning, quoted));
+    assert_has(members[form].meaning, quoted);
   }
 }
 
@@ -150,7 +150,7 @@ static void stated_dimensions_are_not_dropped_unsaid(void **state) {
   fg_design arc = design_of(FG_FOIL_ARC);
   fg_context ctx = {.message = ""};
   assert_int_equal(fg_design_become(&ctx, FG_FOIL_CLASSICAL, &arc), FG_ERR_DATA);
-  assert_non_null(strstr(ctx.message, "subtended_angle_deg belongs to form \"arc\" only"));
+  assert_has(ctx.message, "subtended_angle_deg belongs to form \"arc\" only");
   assert_int_equal(arc.kind, FG_FOIL_ARC);
 }
 

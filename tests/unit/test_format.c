@@ -69,7 +69,7 @@ static void a_lot_takes_every_ending(void **state) {
   for (size_t i = 0; i < count; i++)
     for (const char *const *ending = formats[i]->endings; *ending; ending++) {
       put_empty(folder, "scan", *ending);
-      assert_non_null(strstr(endings, *ending));
+      assert_has(endings, *ending);
       files++;
     }
   put_empty(folder, "notes", ".doc");
@@ -92,8 +92,8 @@ static void messages_name_every_row(void **state) {
   fg_scan_format_names(" or ", names, sizeof names);
   fg_format_problem(nothing, sizeof nothing, problem, sizeof problem);
   for (size_t i = 0; i < count; i++) {
-    assert_non_null(strstr(names, formats[i]->name));
-    assert_non_null(strstr(problem, formats[i]->name));
+    assert_has(names, formats[i]->name);
+    assert_has(problem, formats[i]->name);
   }
 }
 
@@ -131,7 +131,7 @@ static void documents_name_every_row(void **state) {
     cJSON_ArrayForEach(word, words) known = known || !strcmp(word->valuestring, formats[i]->name);
     assert_true(known);
     snprintf(row, sizeof row, "\n| %s", formats[i]->name);
-    assert_non_null(strstr(manual, row));
+    assert_has(manual, row);
   }
   cJSON_Delete(schema);
   free(manual);

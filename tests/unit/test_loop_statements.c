@@ -87,13 +87,13 @@ static void statements_on_a_foil_agree(void **state) {
   fg_scan_loop *loop = run_loop(FOIL SCALE, FG_FOIL_CLASSICAL);
   assert_consistent(loop, "a tie on one scan");
   assert_int_equal(loop->result.advices, 1);
-  assert_non_null(strstr(advice_of(loop, 0), "--same-foil"));
+  assert_has(advice_of(loop, 0), "--same-foil");
   loop->scale_tied = true;
   assert_consistent(loop, "a scale that the edges cannot see");
-  assert_non_null(strstr(advice_of(loop, 1), "gauge of known diameter"));
+  assert_has(advice_of(loop, 1), "gauge of known diameter");
   loop->options.same_foil = true;
   assert_consistent(loop, "a tie on several scans of a foil");
-  assert_non_null(strstr(advice_of(loop, 0), "another foil"));
+  assert_has(advice_of(loop, 0), "another foil");
   loop->explanations.count = 1;
   loop->scale_tied = loop->tied = false;
   assert_consistent(loop, "no tie");
@@ -120,7 +120,7 @@ static void statements_on_a_ring_agree(void **state) {
   fg_scan_loop *loop = run_loop(RING SCALE, FG_FOIL_DISCS);
   assert_consistent(loop, "a tie in a ring");
   assert_int_equal(loop->result.advices, 1);
-  assert_non_null(strstr(advice_of(loop, 0), "plate of several gauges"));
+  assert_has(advice_of(loop, 0), "plate of several gauges");
   fg_search_bars *bars = &loop->explanations.barred;
   fg_search_barred *barred = &bars->each[bars->count++];
   *barred = (fg_search_barred){

@@ -73,8 +73,8 @@ static void a_stated_layout_is_kept(void **state) {
   const fg_lot_bearing *bearing = only_bearing(&lot, &analysis);
   assert_int_equal(bearing->places, 21);
   assert_near(bearing->angle_deg[1], 360.0 / 21, 1e-9);
-  assert_non_null(strstr(analysis.layout_note, "bumps 1 to 7 of each foil"));
-  assert_non_null(strstr(analysis.layout_note, "17.14"));
+  assert_has(analysis.layout_note, "bumps 1 to 7 of each foil");
+  assert_has(analysis.layout_note, "17.14");
   fg_lot_analysis_free(&analysis);
   made_lot_free(&lot);
 }
@@ -103,7 +103,7 @@ static void a_crowded_design_keeps_within_the_bearing(void **state) {
   lot.settings.design.bumps.pitch_deg = 0.9;
   assert_ok(&test_context, fg_lot_analyse(&test_context, &lot, &analysis));
   assert_true(analysis.layout.pads * analysis.layout.bumps_per_pad <= FG_BEARING_BUMPS_MAX);
-  assert_non_null(strstr(analysis.layout_note, "400 bumps"));
+  assert_has(analysis.layout_note, "400 bumps");
   fg_lot_analysis_free(&analysis);
   made_lot_free(&lot);
 }

@@ -129,7 +129,7 @@ static void page_says_how_many_tests_differ(void **state) {
   FILE *out = open_memstream(&text, &size);
   assert_ok(NULL, fg_lot_write_page(NULL, &g.analysis, out));
   fclose(out);
-  assert_non_null(strstr(text, "tests find a difference</b> (5 % for all of them together)"));
+  assert_has(text, "tests find a difference</b> (5 % for all of them together)");
   free(text);
   group_lot_free(&g);
 }

@@ -180,10 +180,10 @@ static void journal_knows_earlier_ones_and_other_files(void **state) {
   assert_ok(&ctx, fg_journal_salvage(&ctx, path, &damage, note, &s));
   assert_true(damage.earlier);
   assert_status(&ctx, fg_journal_read(&ctx, path, &head, &damage, note, &s), FG_ERR_DATA);
-  assert_non_null(strstr(ctx.message, "earlier version"));
+  assert_has(ctx.message, "earlier version");
   write_text(path, "somebody's own text\nof two lines\n");
   assert_status(&ctx, fg_journal_salvage(&ctx, path, &damage, note, &s), FG_ERR_DATA);
-  assert_non_null(strstr(ctx.message, "another folder"));
+  assert_has(ctx.message, "another folder");
   assert_int_equal(s.count, 0);
   unlink(path);
   rmdir(folder);
@@ -197,7 +197,7 @@ static void folder_has_one_owner(void **state) {
   int first, second;
   assert_ok(&ctx, fg_folder_lock(&ctx, folder, &first));
   assert_status(&ctx, fg_folder_lock(&ctx, folder, &second), FG_ERR_IO);
-  assert_non_null(strstr(ctx.message, "another run"));
+  assert_has(ctx.message, "another run");
   close(first);
   assert_ok(&ctx, fg_folder_lock(&ctx, folder, &second));
   close(second);

@@ -65,8 +65,8 @@ static void crushed_bumps_are_in_no_statistics(void **state) {
   assert_int_equal(with.bearings[0].clearance.count, 26);
   assert_true(sound.bearings[0].clearance.max_mm == with.bearings[0].clearance.max_mm);
   char *json = text_of(&with, fg_lot_write_json), *page = text_of(&with, fg_lot_write_page);
-  assert_non_null(strstr(json, "\"bumps_crushed\": 1"));
-  assert_non_null(strstr(page, "1 of 54 bumps crushed:"));
+  assert_has(json, "\"bumps_crushed\": 1");
+  assert_has(page, "1 of 54 bumps crushed:");
   free(json);
   free(page);
   fg_lot_analysis_free(&sound);
@@ -130,11 +130,11 @@ static void strips_are_as_thick_as_they_are(void **state) {
   assert_true(fabs(slope - 3) < 0.1);
   char *json = text_of(&thick, fg_lot_write_json), *page = text_of(&thick, fg_lot_write_page);
   char *plain = text_of(&thin, fg_lot_write_page);
-  assert_non_null(strstr(json, "\"normalised_at_design_thickness\""));
-  assert_non_null(strstr(page, "0.105 ± 0.0004 mm and not 0.1 as the design says"));
-  assert_non_null(strstr(page, "clearances would be 5 µm larger"));
-  assert_non_null(strstr(page, "strips as thick as designed</td>"));
-  assert_null(strstr(plain, "as the design says"));
+  assert_has(json, "\"normalised_at_design_thickness\"");
+  assert_has(page, "0.105 ± 0.0004 mm and not 0.1 as the design says");
+  assert_has(page, "clearances would be 5 µm larger");
+  assert_has(page, "strips as thick as designed</td>");
+  assert_has_not(plain, "as the design says");
   free(json);
   free(page);
   free(plain);

@@ -123,7 +123,7 @@ static void montgomery_filtration(void **state) {
   assert_int_equal(e.reg.residual_dof, 0);
   assert_true(isnan(e.reg.residual_sd) && isnan(coefficient(&e, "A")->p_value));
   assert_int_equal(e.reg.notes, 1);
-  assert_non_null(strstr(e.reg.note[0], "Lenth"));
+  assert_has(e.reg.note[0], "Lenth");
   drop(&e);
 }
 

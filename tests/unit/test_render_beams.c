@@ -233,7 +233,7 @@ static void truth_holds_derived_values(void **state) {
                           "\"width_um\":[-32.85,0,0,0]}}]}";
   assert_ok(&ctx, fg_render_parse(&ctx, "spec.json", text, &spec));
   assert_ok(&ctx, fg_render_truth_json(&ctx, spec, &json));
-  assert_non_null(strstr(json, "\"form\": \"cantilever\""));
+  assert_has(json, "\"form\": \"cantilever\"");
   assert_near(strtod(strstr(json, "compliance_error_pct\":") + 22, NULL), 3.5939, 1e-3);
   assert_near(strtod(strstr(json, "sagitta_error_pct\":") + 19, NULL), 0.8819, 1e-3);
   assert_near(strtod(strstr(json, "clearance_change_pct\":") + 22, NULL), -4.4097, 1e-3);
@@ -288,7 +288,7 @@ static void bad_beams_are_refused(void **state) {
                                      "\"part.ovality\",\"amplitude_um\":5}]}",
                                 &spec),
                 FG_ERR_DATA);
-  assert_non_null(strstr(ctx.message, "effects[0] is part.ovality"));
+  assert_has(ctx.message, "effects[0] is part.ovality");
 }
 
 int main(void) {

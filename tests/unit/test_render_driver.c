@@ -294,10 +294,10 @@ static void truth_records_the_driver(void **state) {
   char *json = NULL;
   picture p = draw_format(DISC, 1, EIGHT), all;
   assert_ok(&ctx, fg_render_truth_json(&ctx, p.spec, &json));
-  assert_null(strstr(json, "tone_curve"));
-  assert_null(strstr(json, "unsharp"));
-  assert_null(strstr(json, "levels"));
-  assert_null(strstr(json, "threshold"));
+  assert_has_not(json, "tone_curve");
+  assert_has_not(json, "unsharp");
+  assert_has_not(json, "levels");
+  assert_has_not(json, "threshold");
   free(json);
   drop(&p);
   all = draw_format(DISC, 1,

@@ -145,9 +145,9 @@ static void truth_names_the_raised_bumps(void **state) {
   char *json = NULL;
   fg_render_spec *spec = parse(LIFT("\"amplitude_um\":4,\"every\":3,\"form\":\"whole\""));
   assert_ok(&ctx, fg_render_truth_json(&ctx, spec, &json));
-  assert_non_null(strstr(json, "\"id\": \"free.bump.index\""));
-  assert_non_null(strstr(json, "\"form\": \"whole\""));
-  assert_non_null(strstr(json, "\"values_um\": [0, 0, 4, 0, 0, 4, 0, 0, 4]"));
+  assert_has(json, "\"id\": \"free.bump.index\"");
+  assert_has(json, "\"form\": \"whole\"");
+  assert_has(json, "\"values_um\": [0, 0, 4, 0, 0, 4, 0, 0, 4]");
   free(json);
   fg_render_free(spec);
 }

@@ -89,9 +89,9 @@ static void truth_is_of_the_finished_picture(void **state) {
   char *json = NULL;
   picture p = draw_size(251, 241, "\"dpi\":4800,\"resampled_from_dpi\":1200");
   assert_ok(&ctx, fg_render_truth_json(&ctx, p.spec, &json));
-  assert_non_null(strstr(json, "\"resampled_from_dpi\": 1200"));
-  assert_non_null(strstr(json, "\"resampled_by\": \"bilinear\""));
-  assert_non_null(strstr(json, "\"dpi\": 4800"));
+  assert_has(json, "\"resampled_from_dpi\": 1200");
+  assert_has(json, "\"resampled_by\": \"bilinear\"");
+  assert_has(json, "\"dpi\": 4800");
   free(json);
   assert_near(p.truth->discs[0].centre_px.x, 0.66 / pixel, 1e-9);
   double sum = 0, first = 0;

@@ -94,7 +94,7 @@ static void a_table_says_a_name_once(void **state) {
   fixture *all = *state;
   all->report.scan_count = 2;
   char *text = text_of(fg_report_write_table, &all->report);
-  assert_non_null(strstr(text, "\nlost.png: not measured: cannot be opened\n"));
+  assert_has(text, "\nlost.png: not measured: cannot be opened\n");
   free(text);
 }
 
@@ -109,9 +109,9 @@ static void a_sinusoidal_foil_is_not_warned_of_its_lip(void **state) {
   char *told = text_of(fg_report_write_table, &all->report);
   char *json = text_of(fg_report_write_json, &all->report);
   design->kind = kind;
-  assert_non_null(strstr(warned, "no_lip"));
-  assert_null(strstr(told, "no_lip"));
-  assert_non_null(strstr(json, "no_lip"));
+  assert_has(warned, "no_lip");
+  assert_has_not(told, "no_lip");
+  assert_has(json, "no_lip");
   free(warned);
   free(told);
   free(json);
@@ -174,7 +174,7 @@ static void csv_has_a_line_per_bump(void **state) {
   const char *quoted = "\"foil, \"\"one\"\" <a&b>.png\",1,1,,3.39288342,0.00021,";
   assert_memory_equal(second, quoted, strlen(quoted));
   assert_int_equal(count_of(text, ','), count_of(second, ',') - 1); /* one is inside the quotes */
-  assert_non_null(strstr(text, ",centre_x_mm,centre_y_mm,u_centre_x_mm,u_centre_y_mm,"));
+  assert_has(text, ",centre_x_mm,centre_y_mm,u_centre_x_mm,u_centre_y_mm,");
   free(text);
 }
 
@@ -188,17 +188,17 @@ static void points_hold_both_edges_and_the_midline(void **state) {
   assert_int_equal(label->kind, FG_ARC_BUMP);
   snprintf(wanted, sizeof wanted, "\n1,1,3000,%.6f,right,%.6f,%.6f,0.1200,bump,5,1,%.4f\n",
            station->s_mm, station->right.x, station->right.y, label->residual_right_um);
-  assert_non_null(strstr(text, wanted));
+  assert_has(text, wanted);
   free(text);
 }
 
 static void table_says_what_plus_minus_is(void **state) {
   fixture *all = *state;
   char *text = text_of(fg_report_write_table, &all->report);
-  assert_non_null(strstr(text, "overall radius 20.9500 ± 0.0010 mm"));
-  assert_non_null(strstr(text, "3.39288 0.00042"));
-  assert_non_null(strstr(text, "C_fit: pressed into the sleeve"));
-  assert_non_null(strstr(text, "± is U = 2 u"));
+  assert_has(text, "overall radius 20.9500 ± 0.0010 mm");
+  assert_has(text, "3.39288 0.00042");
+  assert_has(text, "C_fit: pressed into the sleeve");
+  assert_has(text, "± is U = 2 u");
   free(text);
 }
 

@@ -137,16 +137,16 @@ static void a_page_escapes_every_name(void **state) {
                              {"x/<i>", NULL, "<u>broken</u>", NULL}};
   snprintf(measurement.scan, sizeof measurement.scan, "-"); /* no pixels: the drawing alone */
   char *page = page_of(&(fg_report){&design, &nominal, scans, 2, NULL});
-  assert_null(strstr(page, "<script"));
-  assert_null(strstr(page, "<b>\""));
-  assert_null(strstr(page, "<i></h1>"));
-  assert_null(strstr(page, "<u>"));
-  assert_non_null(strstr(page, "&lt;script&gt;alert(1)&lt;/script&gt;"));
-  assert_non_null(strstr(page, "&lt;u&gt;broken&lt;/u&gt;"));
-  assert_non_null(strstr(page, "&lt;b&gt;&quot;&amp;&#39;.png"));
-  assert_null(strstr(page, "http://"));
-  assert_null(strstr(page, "https://"));
-  assert_null(strstr(page, "nan"));
+  assert_has_not(page, "<script");
+  assert_has_not(page, "<b>\"");
+  assert_has_not(page, "<i></h1>");
+  assert_has_not(page, "<u>");
+  assert_has(page, "&lt;script&gt;alert(1)&lt;/script&gt;");
+  assert_has(page, "&lt;u&gt;broken&lt;/u&gt;");
+  assert_has(page, "&lt;b&gt;&quot;&amp;&#39;.png");
+  assert_has_not(page, "http://");
+  assert_has_not(page, "https://");
+  assert_has_not(page, "nan");
   /* The summary of all parts stands before the first. */
   assert_true(stands_before(page, "<h1>2 foils</h1>", "id=\"part1\""));
   free(page);
@@ -165,26 +165,25 @@ static void a_page_says_the_verdict_and_why(void **state) {
   fg_report_scan scan = {"-", &measurement, NULL, NULL};
   const fg_report report = {&design, &nominal, &scan, 1, NULL};
   char *page = page_of(&report);
-  assert_non_null(strstr(page, "<span class=\"verdict fail\">Out of tolerance</span>"));
-  assert_non_null(
-      strstr(page, "springback error of the bump radius: bump 1 (2.195 %, max 2).</p>"));
-  assert_non_null(strstr(page, "class=\"limits-of\""));          /* the limit is in the plot */
-  assert_non_null(strstr(page, "1: e_R 2.195 %, max 2</text>")); /* and the value on the picture */
-  assert_non_null(strstr(page, "The wall of the foil shows beside one edge"));
-  assert_non_null(strstr(page, "<td class=\"fail\">2.195 <i>± 0.013</i></td>"));
+  assert_has(page, "<span class=\"verdict fail\">Out of tolerance</span>");
+  assert_has(page, "springback error of the bump radius: bump 1 (2.195 %, max 2).</p>");
+  assert_has(page, "class=\"limits-of\"");          /* the limit is in the plot */
+  assert_has(page, "1: e_R 2.195 %, max 2</text>"); /* and the value on the picture */
+  assert_has(page, "The wall of the foil shows beside one edge");
+  assert_has(page, "<td class=\"fail\">2.195 <i>± 0.013</i></td>");
   free(page);
 
   foil->bumps[1].flags = FG_BUMP_NOT_FITTED;
   foil->bumps[1].radius_mm = foil->bumps[1].radius_error_pct = NAN;
   page = page_of(&report);
-  assert_non_null(strstr(page, "not fitted: it has no values"));
+  assert_has(page, "not fitted: it has no values");
   free(page);
 
   fg_foil_give_up(foil, "no arc was found");
   foil->bump_count = 0;
   foil->strip.count = 0;
   page = page_of(&report);
-  assert_non_null(strstr(page, "<span class=\"verdict not_measured\">"));
+  assert_has(page, "<span class=\"verdict not_measured\">");
   assert_true(stands_before(page, "no arc was found", "<svg class=\"picture"));
   free(page);
   synthetic_free(&measurement);
@@ -202,12 +201,12 @@ static void a_page_of_discs_lists_them(void **state) {
   measurement.discs[1] = synthetic_disc(2, 2.75);
   fg_report_scan scan = {"-", &measurement, NULL, NULL};
   char *page = page_of(&(fg_report){&design, NULL, &scan, 1, NULL});
-  assert_non_null(strstr(page, "2 round features"));
-  assert_null(strstr(page, "bump circle")); /* no legend of a foil */
-  assert_non_null(strstr(page, "the circle that was fitted to each feature"));
-  assert_non_null(strstr(page, "<span class=\"verdict cannot_tell\">"));
-  assert_non_null(strstr(page, "<td class=\"no_tolerance\">5.5000 <i>± 0.0020</i></td>"));
-  assert_non_null(strstr(page, "<td class=\"cannot_tell\">4.2 <i>± 1.2</i></td>"));
+  assert_has(page, "2 round features");
+  assert_has_not(page, "bump circle"); /* no legend of a foil */
+  assert_has(page, "the circle that was fitted to each feature");
+  assert_has(page, "<span class=\"verdict cannot_tell\">");
+  assert_has(page, "<td class=\"no_tolerance\">5.5000 <i>± 0.0020</i></td>");
+  assert_has(page, "<td class=\"cannot_tell\">4.2 <i>± 1.2</i></td>");
   free(page);
   synthetic_free(&measurement);
 }

@@ -246,7 +246,7 @@ static void zero_dpi_from_a_user_is_wrong(void **state) {
   (void)state;
   fg_context ctx = {0};
   assert_status(&ctx, fg_scan_check_dpi(&ctx, 0), FG_ERR_USAGE);
-  assert_non_null(strstr(ctx.message, "--dpi"));
+  assert_has(ctx.message, "--dpi");
   assert_ok(&ctx, fg_scan_check_dpi(&ctx, 4800));
 }
 

@@ -134,7 +134,7 @@ static void a_common_edge_error_is_no_claim(void **state) {
   assert_false(fg_scan_loop_bumps_claimed(&s.bumps));
   assert_int_equal(s.bumps.level[1].drops, 1);
   assert_int_equal(s.bumps.notes, 1);
-  assert_non_null(strstr(s.bumps.note[0], "in doubt"));
+  assert_has(s.bumps.note[0], "in doubt");
   assert_true(s.bumps.level[1].error.rms[0] == s.bumps.level[1].error.rms[1]);
   fg_scan_loop_bumps_free(&s.bumps);
 }
@@ -193,7 +193,7 @@ static void a_cycle_over_the_bumps_is_told(void **state) {
     double is = 0.1 * sin(2 * M_PI * number / 2.7);
     assert_true(fabs(fg_loop_curve_at(curve, number) - is) < 0.02);
   }
-  assert_non_null(strstr(s.bumps.note[0], "repeats every 2."));
+  assert_has(s.bumps.note[0], "repeats every 2.");
   fg_scan_loop_bumps_free(&s.bumps);
 }
 
@@ -221,7 +221,7 @@ static void small_foils_say_what_they_cannot_tell(void **state) {
     run(&r, 13, &s);
     assert_int_equal(s.bumps.count, bumps);
     assert_int_equal(s.bumps.notes >= 1, 1);
-    assert_non_null(strstr(s.bumps.note[0], bumps < 6 ? "no effect over them" : "no arc length"));
+    assert_has(s.bumps.note[0], bumps < 6 ? "no effect over them" : "no arc length");
     assert_int_equal(s.bumps.level[0].judged, bumps >= FG_SCAN_LOOP_BUMP_ROWS);
     if (bumps < 6) assert_false(fg_scan_loop_bumps_claimed(&s.bumps));
     fg_scan_loop_bumps_free(&s.bumps);
@@ -241,7 +241,7 @@ static void without_a_lip_there_is_no_decay(void **state) {
   for (size_t k = 0; k < s.bumps.level[0].result.rejects; k++)
     assert_int_not_equal(
         strncmp(s.bumps.level[0].result.rejected[k].candidate.effect->id, "part.", 5), 0);
-  assert_non_null(strstr(s.bumps.note[0], "without a lip"));
+  assert_has(s.bumps.note[0], "without a lip");
   fg_scan_loop_bumps_free(&s.bumps);
 }
 

@@ -138,7 +138,7 @@ static void unreadable_scanner_models_are_not_written(void **state) {
   loop->set.effects[1].coefficient_um[0] = 5000;
   decide(loop);
   assert_status(&ctx, fg_scan_loop_write_model(&ctx, loop, out), FG_ERR_DATA);
-  assert_non_null(strstr(ctx.message, "scan.carriage_ripple"));
+  assert_has(ctx.message, "scan.carriage_ripple");
   fclose(out);
   free_loop(loop);
 }

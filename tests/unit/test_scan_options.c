@@ -62,9 +62,9 @@ static void harmful_options_are_named_with_what_is_right(void **state) {
     while (found->name && strcmp(found->name, rows[i].finding) != 0)
       found++;
     assert_non_null(found->name);
-    assert_non_null(strstr(words, rows[i].option));
-    assert_non_null(strstr(words, found->meaning));
-    assert_non_null(strstr(words, rows[i].instead));
+    assert_has(words, rows[i].option);
+    assert_has(words, found->meaning);
+    assert_has(words, rows[i].instead);
   }
 }
 
@@ -73,8 +73,8 @@ static void every_option_of_a_command_is_told_and_clipped_to_the_room(void **sta
   static const char command[] = "scanimage --depth 1 --sharpness 1 --gamma 1.8 --format jpeg";
   (void)state;
   assert_int_equal(fg_scan_options_inspect(command, words, sizeof words), 4);
-  assert_non_null(strstr(words, "--depth 1:"));
-  assert_non_null(strstr(words, "--format jpeg:"));
+  assert_has(words, "--depth 1:");
+  assert_has(words, "--format jpeg:");
   assert_int_equal(fg_scan_options_inspect(command, narrow, sizeof narrow), 4);
   assert_true(strlen(narrow) < sizeof narrow);
 }

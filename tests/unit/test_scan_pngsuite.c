@@ -112,7 +112,7 @@ static void broken_is_refused(const char *path, const char *name) {
   fg_scan_info info = {0};
   uint8_t *rows = NULL;
   if (read_scan(&ctx, path, &info, &rows) != FG_ERR_DATA) fail_msg("%s: %s", name, ctx.message);
-  assert_non_null(strstr(ctx.message, name));
+  assert_has(ctx.message, name);
   free(rows);
 }
 

@@ -254,7 +254,7 @@ static void a_ring_is_tied(void **state) {
     assert_int_equal(other->verdict, FG_LOOP_TIED);
   }
   assert_int_equal(result->advices, 1);
-  assert_non_null(strstr(result->advice[0], "plate of several gauges"));
+  assert_has(result->advice[0], "plate of several gauges");
   fg_scan_loop_free(loop);
 }
 

@@ -237,7 +237,7 @@ static void loss_is_refused_unless_allowed(void **state) {
   if (!TIFFIsCODECConfigured(COMPRESSION_JPEG)) skip();
   char *path = write_tiff(&k);
   assert_status(&ctx, read_all(&ctx, path, &(fg_scan_options){.dpi = 600}, NULL), FG_ERR_DATA);
-  assert_non_null(strstr(ctx.message, "--allow-lossy"));
+  assert_has(ctx.message, "--allow-lossy");
   assert_ok(&ctx, read_all(&ctx, path, &(fg_scan_options){.dpi = 600, .allow_lossy = true}, NULL));
   unlink(path);
   free(path);
@@ -383,7 +383,7 @@ static void beyond_4_gib_the_last_rows_are_there(void **state) {
   fg_scan *scan = NULL;
   if (fg_scan_open(&ctx, path, &(fg_scan_options){.dpi = 4800}, &scan) != FG_OK)
     fail_msg("%s", ctx.message);
-  assert_non_null(strstr(fg_scan_get_info(scan)->warning, "wrap"));
+  assert_has(fg_scan_get_info(scan)->warning, "wrap");
   fg_scan_close(scan);
   assert_int_equal(truncate(path, 255 + 2ll * BIG_WIDTH * BIG_HEIGHT), 0);
   assert_status(&ctx, fg_scan_open(&ctx, path, &(fg_scan_options){.dpi = 4800}, &scan),

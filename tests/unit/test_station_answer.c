@@ -361,7 +361,7 @@ static void test_corrections(void **state) {
     assert_int_equal(fg_query_get_integer(&query, i), i ? 1 : 2);
   assert_ok(&ctx, fg_query_end(&ctx, &query, "trail"));
   assert_int_equal(get("/foil", "id=1"), 200);
-  assert_non_null(strstr(page, "Eva"));
+  assert_has(page, "Eva");
 }
 
 static void test_searches(void **state) {
@@ -403,9 +403,9 @@ static void test_answers_hold_without_scan_command_and_files(void **state) {
   (void)state;
   assert_int_equal(post("/scan", FORM), 404);
   assert_int_equal(get("/foil", "id=1"), 200);
-  assert_non_null(strstr(page, "cannot be read"));
+  assert_has(page, "cannot be read");
   assert_int_equal(get("/report", "foil=1"), 200);
-  assert_non_null(strstr(page, "From the record"));
+  assert_has(page, "From the record");
   assert_true(told.own_style);
 }
 

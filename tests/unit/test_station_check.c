@@ -189,11 +189,11 @@ static void the_judge_counts_the_uncertainty(void **state) {
   fg_check_fit fit = {.discs = 3, .scale = {250e-6, 0}, .u_scale = {20e-6, 20e-6}, .u_shear = 1e-6};
   fg_check_fit_judge(&fit, 300, words, sizeof words);
   assert_true(fit.passes);
-  assert_non_null(strstr(words, "in order"));
-  assert_non_null(strstr(words, "x +250 ± 40 ppm"));
+  assert_has(words, "in order");
+  assert_has(words, "x +250 ± 40 ppm");
   fg_check_fit_judge(&fit, 280, words, sizeof words);
   assert_false(fit.passes);
-  assert_non_null(strstr(words, "out of order"));
+  assert_has(words, "out of order");
   fit = (fg_check_fit){.discs = 3, .shear = -400e-6, .u_shear = 1e-6};
   fg_check_fit_judge(&fit, 300, words, sizeof words);
   assert_false(fit.passes);
@@ -208,7 +208,7 @@ static void a_plate_of_other_diameters_is_refused(void **state) {
   const fg_measurement measurement = {.discs = &disc, .disc_count = 1};
   design_plate(&design);
   assert_status(&ctx, fg_check_fit_plate(&ctx, &design, &measurement, &fit), FG_ERR_NOT_MEASURED);
-  assert_non_null(strstr(ctx.message, "none of 1 discs"));
+  assert_has(ctx.message, "none of 1 discs");
 }
 
 int main(void) {

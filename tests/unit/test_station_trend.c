@@ -111,23 +111,6 @@ static const char *get(fixture *f, const char *path, const char *query, int code
   return text;
 }
 
-/* Of a page that is not as it should be the words are enough. */
-static const char *words_of(const char *page) {
-  const char *words = strstr(page, "<p class=\"note\">");
-  return words ? words : page;
-}
-
-#define assert_has(text, part)                                                                     \
-  do {                                                                                             \
-    const char *text_ = (text);                                                                    \
-    if (!strstr(text_, part)) fail_msg("'%s' is not in: %.700s", part, words_of(text_));           \
-  } while (0)
-#define assert_has_not(text, part)                                                                 \
-  do {                                                                                             \
-    const char *text_ = (text);                                                                    \
-    if (strstr(text_, part)) fail_msg("'%s' is in: %.700s", part, words_of(text_));                \
-  } while (0)
-
 static size_t count(const char *text, const char *part) {
   size_t found = 0;
   for (const char *at = text; (at = strstr(at, part)); at++)

@@ -120,9 +120,8 @@ static void thickness_that_is_not_known_is_not_zero(void **state) {
     assert_near(sqrt(budget->sum_pct2) / budget->observed_pct, 1, 3e-3);
     char *page = text_of(&analysis, fg_lot_write_page),
          *json = text_of(&analysis, fg_lot_write_json);
-    assert_non_null(
-        strstr(page, one ? "it was measured on one foil only" : "it was measured on no foil"));
-    assert_non_null(strstr(json, "\"thickness\": {\"relative_sd_pct\": null"));
+    assert_has(page, one ? "it was measured on one foil only" : "it was measured on no foil");
+    assert_has(json, "\"thickness\": {\"relative_sd_pct\": null");
     free(page);
     free(json);
     fg_lot_analysis_free(&analysis);
@@ -142,11 +141,11 @@ static void one_bump_has_no_spread(void **state) {
   assert_ok(&test_context, fg_lot_analyse(&test_context, &lot, &analysis));
   assert_false(analysis.has_stiffness || analysis.stiffness.budget.known);
   char *page = text_of(&analysis, fg_lot_write_page), *json = text_of(&analysis, fg_lot_write_json);
-  assert_non_null(strstr(page, "How stiffness varies is not known"));
-  assert_non_null(strstr(page, "as designed"));
-  assert_null(strstr(page, ">the lot's mean<"));
-  assert_non_null(strstr(json, "\"id\": \"link_spring\""));
-  assert_null(strstr(json, "\"budget\""));
+  assert_has(page, "How stiffness varies is not known");
+  assert_has(page, "as designed");
+  assert_has_not(page, ">the lot's mean<");
+  assert_has(json, "\"id\": \"link_spring\"");
+  assert_has_not(json, "\"budget\"");
   free(page);
   free(json);
   fg_lot_analysis_free(&analysis);

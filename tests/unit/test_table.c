@@ -43,7 +43,7 @@ static void bad_text_is_named(void **state) {
   fg_context ctx = {0};
   fg_table table;
   assert_status(&ctx, fg_table_parse(&ctx, "runs.csv", "T,D\n1,\0\n", 8, &table), FG_ERR_DATA);
-  assert_non_null(strstr(ctx.message, "NUL byte"));
+  assert_has(ctx.message, "NUL byte");
 }
 
 static void bad_cells_are_named_where_used(void **state) {
@@ -163,8 +163,8 @@ static void words_among_numbers_need_factor(void **state) {
   (void)state;
   assert_ok(&ctx, parse(&ctx, "m\n10\n9\nspare\n9\n", &table));
   assert_status(&ctx, fg_table_levels(&ctx, &table, "m", false, &levels), FG_ERR_DATA);
-  assert_non_null(strstr(ctx.message, "row 3 (line 4), column 'm': 'spare' is not a number"));
-  assert_non_null(strstr(ctx.message, "factor(name)"));
+  assert_has(ctx.message, "row 3 (line 4), column 'm': 'spare' is not a number");
+  assert_has(ctx.message, "factor(name)");
   assert_ok(&ctx, fg_table_levels(&ctx, &table, "m", true, &levels));
   assert_int_equal(levels.count, 3);
   assert_string_equal(levels.name[0], "9");
