@@ -40,7 +40,7 @@ static fg_scan_loop *run_loop(const char *spec_json, fg_foil_kind kind) {
   if (fg_render_scan(&ctx, spec, path, NULL) != FG_OK) fail_msg("%s", ctx.message);
   fg_render_free(spec);
   fg_design_default(&design);
-  design.kind = kind;
+  assert_ok(&ctx, fg_design_become(&ctx, kind, &design));
   if (fg_scan_loop_run(&ctx, paths, (bool[]){false}, 1, &design, &options, &loop) != FG_OK)
     fail_msg("%s", ctx.message);
   unlink(path);

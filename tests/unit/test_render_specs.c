@@ -51,7 +51,7 @@ static void bad_specs_are_refused_by_name(void **state) {
       {HEAD "\"foils\":[3]}", "foils[0] is 3: must be an object"},
       {HEAD "\"foils\":[{\"overall_radius_mm\":-20}]}", "foils[0].overall_radius_mm is -20"},
       {HEAD "\"foils\":[{\"design\":{\"bump_radius_mm\":\"3\"}}]}",
-       "foils[0].design.bumps.radius_mm is \"3\": must be a number"},
+       "foils[0].design.bump_radius_mm is \"3\": must be a number"},
       {HEAD "\"foils\":[{\"design\":{\"bump_count\":2.5}}]}", "must be a whole number"},
       {HEAD "\"foils\":[{\"radius_mm\":[3.3]}]}", "foils[0].radius_mm is [3.3]: must be an array"},
       {HEAD "\"foils\":[{\"missing\":[10]}]}",
