@@ -29,10 +29,10 @@ typedef enum fg_foil_kind {
 /* Up to the last kind: tables of kinds are held against it, so that new kinds stand at the end. */
 enum { FG_FOIL_KINDS = FG_FOIL_CANTILEVER + 1 };
 
-/* Whether foils of this kind have bumps: the design's `bumps` are stated. */
+/* Returns true where foils of this kind have bumps: the design states `bumps`. */
 bool fg_foil_kind_has_bumps(fg_foil_kind kind);
 
-/* Which line of the strip the lengths belong to: R, R0 (and so alpha, theta) of the design and of
+/* Line of the strip that the lengths belong to: R, R0 (and so alpha, theta) of the design and of
  * the fits are of this line. X and h do not depend on it: the edges are parallel to the midline, so
  * at a crown R + offset meets R0 - offset and h = R0 - (X - R) keeps its value. R_sleeve is the
  * bore that the lands rest on and t the whole thickness, so the crown's shaft side stands h + t
@@ -44,6 +44,12 @@ typedef enum fg_datum {
   FG_DATUM_OUTER, /* the edge on the sleeve's side */
 } fg_datum;
 
+/* The stated tone curve, by which a scanner's counts follow the light. */
+typedef enum fg_tone_statement {
+  FG_TONE_UNKNOWN, /* u of lengths between two edges holds its possible effect */
+  FG_TONE_LINEAR,  /* the user vouches that counts are proportional to the light */
+} fg_tone_statement;
+
 /* A tolerance: lower <= value <= upper, in the unit of the quantity. Unset limits are -inf, +inf.
  * `quantity` is the JSON name of a reported quantity: of a bump ("height_mm"), or of the whole
  * foil ("overall.radius_mm", "thickness_mm"), or of a lot's bearings ("circularity_mm",
@@ -51,12 +57,6 @@ typedef enum fg_datum {
  * design file:
  *   "tolerances": { "height_mm": { "min": 0.55, "max": 0.58 }, "radius_error_pct": { "max": 5 } }
  */
-/* The stated tone curve, by which a scanner's counts follow the light. */
-typedef enum fg_tone_statement {
-  FG_TONE_UNKNOWN, /* lengths between two edges hold what it may do to them */
-  FG_TONE_LINEAR,  /* the user vouches that counts are proportional to the light */
-} fg_tone_statement;
-
 typedef struct fg_tolerance {
   char quantity[48];
   double lower, upper;
@@ -129,7 +129,7 @@ typedef struct fg_design {
   double thickness_mm;          /* t, of every foil */
   double thickness_measured_mm; /* of the strip, by a micrometer, at 20 °C; 0: none stated */
   double u_thickness_measured_mm;
-  fg_tone_statement tone; /* what is said of the scanner's counts */
+  fg_tone_statement tone; /* stated of the scanner's counts */
   union {
     fg_design_bumps bumps;
     fg_design_arc arc;
@@ -144,7 +144,7 @@ typedef struct fg_design {
   fg_gauge gauges[FG_GAUGES_MAX]; /* known widths that lie on the glass in the same scan */
 } fg_design;
 
-/* What follows from a design (thesis eq 5.1, 5.2, 5.5, 5.8). */
+/* Values derived from a design (thesis eq 5.1, 5.2, 5.5, 5.8). */
 typedef struct fg_nominal {
   double centre_to_centre_mm;    /* X_D: distance of bump centre from overall centre, from
                                     R_D, alpha_D and the overall radius */
@@ -156,7 +156,7 @@ typedef struct fg_nominal {
   double clearance_mm;           /* C_D = R_sleeve - h_D - D/2 - t, eq 5.8, less the top foil */
 } fg_nominal;
 
-/* What the declared springback model (thesis eq 5.6 and 5.7) predicts of a bump from its radius
+/* Prediction of a bump by the declared springback model (thesis eq 5.6 and 5.7) from its radius
  * alone: arc length and crown keep their place. */
 typedef struct fg_springback {
   double bump_angle_deg;   /* alpha_m = alpha_D R_D / R */

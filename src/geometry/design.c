@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Designs of every kind: what they have in common, and how the kind is changed. */
+/* Designs of every kind: their common members, and the change from one kind to another. */
 #include "geometry/foil_kind.h"
 
 #include <math.h>

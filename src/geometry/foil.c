@@ -128,7 +128,7 @@ static bool is_beyond(double value, double reference, double factor) {
   return value > factor * reference || value < reference / factor;
 }
 
-/* Bumps are held against their median, which is what the foil's springback made of the design; one
+/* Bumps are held against their median, the design after the foil's springback; a median
  * that is itself far off the design is that of crushed bumps, and no reference. */
 static void flag_bumps(fg_context *ctx, const fg_design *design, const fg_nominal *nominal,
                        fg_foil *foil) {
@@ -166,7 +166,7 @@ static void order_bumps(const fg_layout *layout, fg_foil *foil) {
   }
 }
 
-/* Where a foil's line may have gone over to another's, which bump is whose cannot be trusted. */
+/* Bumps of a foil whose line may have gone over to another's may belong to either. */
 static void flag_mixed_bumps(fg_foil *foil) {
   if (!(foil->flags & FG_FOIL_TOUCHES_OTHER) || !(foil->flags & FG_FOIL_BUMP_COUNT)) return;
   for (size_t i = 0; i < foil->bump_count; i++)

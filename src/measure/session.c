@@ -105,7 +105,8 @@ static void find_loss(const fg_measurement *m, fg_strip *strip) {
   strip->loss_um = um * fg_loss_edge_px(quality, 255 * strip->contrast, blur_px);
 }
 
-/* A foil from one trace. What cannot be measured is a flag; what is no foil is a speck. */
+/* Measures a foil from one trace. Values that cannot be measured are flagged; other objects are
+ * specks. */
 static fg_status measure_trace(fg_context *ctx, fg_session *s, const job *j,
                                const fg_segmentation *seg, const fg_trace *trace) {
   const fg_measurement *m = s->measurement;
@@ -401,7 +402,8 @@ static int compare_columns(const void *a, const void *b) {
   return (p[1] > q[1]) - (p[1] < q[1]);
 }
 
-/* Whether two foils lie side by side: their heights overlap by half of the lower one's. */
+/* Returns true where two foils lie side by side: their heights overlap by half of the lower one's.
+ */
 static bool is_beside(const fg_foil *a, const fg_foil *b) {
   const int64_t *p = a->strip.box_px, *q = b->strip.box_px;
   int64_t top = p[1] > q[1] ? p[1] : q[1];

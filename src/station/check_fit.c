@@ -20,8 +20,8 @@ enum { BLOCKS = 24, POINTS_MIN = 4 * BLOCKS };
  * independent of each other, and the level of the edge moves the mean alone. */
 enum { MEAN, DIFFERENCE, SHEAR, CENTRE_X, CENTRE_Y, UNKNOWNS, OF_SCANNER = SHEAR + 1 };
 
-/* What one disc says, with the variance of its own noise; how far the mean scale moves with the
- * level at which edges are taken, per mm of the edge; and how many mm are in doubt. */
+/* Indications of one disc with the variance of its noise; the move of the mean scale with the
+ * edges' level, per mm of the edge; and the uncertainty of that level in mm. */
 typedef struct says {
   double value[OF_SCANNER], variance[OF_SCANNER], level, u_mm_of_level;
 } says;
@@ -87,7 +87,7 @@ static bool fit_disc(const fg_disc *disc, double radius_mm, says *result) {
   return true;
 }
 
-/* Where discs differ by more than they say, their variances grow by that (Birge's ratio). */
+/* Discs that differ by more than their noise have their variances widened by Birge's ratio. */
 static double birge(double chi2, size_t count) {
   return count > 1 ? fmax(1, chi2 / (double)(count - 1)) : 1;
 }
