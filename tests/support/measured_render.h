@@ -121,11 +121,4 @@ small_foil(char *json, size_t size, int bumps, const char *foil, const char *sca
       bumps, foil, members);
 }
 
-#define assert_close(value, expected, tolerance)                                                   \
-  do {                                                                                             \
-    double value_ = (value), expected_ = (expected), tolerance_ = (tolerance);                     \
-    if (!(fabs(value_ - expected_) <= tolerance_))                                                 \
-      fail_msg("%s = %.9g, not %.9g within %.3g", #value, value_, expected_, tolerance_);          \
-  } while (0)
-
 #endif

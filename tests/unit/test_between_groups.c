@@ -10,23 +10,18 @@
 
 enum { GROUPS = 8, LOTS = 6, DRAWS = 4000 };
 
-static void near(double value, double expected, double tolerance) {
-  if (!(fabs(value - expected) <= tolerance))
-    fail_msg("%.12g, not %.12g within %g", value, expected, tolerance);
-}
-
 /* With equal variances v Paule and Mandel's tau² is the variance of the means less v. */
 static void equal_variances_have_a_closed_form(void **state) {
   (void)state;
   const fg_group_mean groups[] = {{1, 0.5}, {2, 0.5}, {4, 0.5}, {7, 0.5}};
   fg_between between = fg_between_groups(groups, 4, 0.95);
   const double variance = (6.25 + 2.25 + 0.25 + 12.25) / 3;
-  near(between.centre, 3.5, 1e-9);
-  near(between.sd * between.sd, variance - 0.5, 1e-9);
-  near(between.u_centre, sqrt(variance / 4), 1e-9);
+  assert_near(between.centre, 3.5, 1e-9);
+  assert_near(between.sd * between.sd, variance - 0.5, 1e-9);
+  assert_near(between.u_centre, sqrt(variance / 4), 1e-9);
   /* Its interval: 3 variance / (tau² + 0.5) at the quantiles of chi² with 3 degrees of freedom. */
-  near(between.sd_low * between.sd_low, 3 * variance / 9.348403604 - 0.5, 1e-6);
-  near(between.sd_high * between.sd_high, 3 * variance / 0.215795283 - 0.5, 1e-6);
+  assert_near(between.sd_low * between.sd_low, 3 * variance / 9.348403604 - 0.5, 1e-6);
+  assert_near(between.sd_high * between.sd_high, 3 * variance / 0.215795283 - 0.5, 1e-6);
 }
 
 static void means_that_agree_have_no_spread(void **state) {
@@ -34,7 +29,7 @@ static void means_that_agree_have_no_spread(void **state) {
   const fg_group_mean groups[] = {{1.0, 4}, {1.1, 4}, {0.9, 1}};
   fg_between between = fg_between_groups(groups, 3, 0.95);
   assert_true(between.sd == 0);
-  near(between.centre, (1.0 / 4 + 1.1 / 4 + 0.9) / 1.5, 1e-12);
+  assert_near(between.centre, (1.0 / 4 + 1.1 / 4 + 0.9) / 1.5, 1e-12);
   assert_true(isnan(fg_between_groups(groups, 1, 0.95).sd));
   assert_true(isnan(fg_between_reach(&between, 1, 0, 0.95)));
 }
@@ -42,9 +37,9 @@ static void means_that_agree_have_no_spread(void **state) {
 static void nothing_within_is_the_spread_of_the_means(void **state) {
   (void)state;
   const fg_group_mean groups[] = {{3, 0}, {5, 0}, {7, 0}}, same[] = {{3, 0}, {3, 0}};
-  near(fg_between_groups(groups, 3, 0.95).sd, 2, 1e-9);
+  assert_near(fg_between_groups(groups, 3, 0.95).sd, 2, 1e-9);
   assert_true(fg_between_groups(same, 2, 0.95).sd == 0);
-  near(fg_between_groups(same, 2, 0.95).centre, 3, 1e-12);
+  assert_near(fg_between_groups(same, 2, 0.95).centre, 3, 1e-12);
 }
 
 /* Coverage for groups of different sizes: the interval holds the true spread, and a further group
@@ -80,10 +75,10 @@ static void holm_adjusts_step_by_step(void **state) {
   const double p[] = {0.03, NAN, 0.01, 0.2, 0.02};
   double adjusted[5];
   assert_ok(&test_context, fg_holm_adjust(&test_context, p, 5, adjusted));
-  near(adjusted[2], 0.04, 1e-12);
-  near(adjusted[4], 0.06, 1e-12);
-  near(adjusted[0], 0.06, 1e-12);
-  near(adjusted[3], 0.2, 1e-12);
+  assert_near(adjusted[2], 0.04, 1e-12);
+  assert_near(adjusted[4], 0.06, 1e-12);
+  assert_near(adjusted[0], 0.06, 1e-12);
+  assert_near(adjusted[3], 0.2, 1e-12);
   assert_true(isnan(adjusted[1]));
   const double large[] = {0.6, 0.7};
   assert_ok(&test_context, fg_holm_adjust(&test_context, large, 2, adjusted));

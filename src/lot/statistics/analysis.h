@@ -186,7 +186,7 @@ typedef enum fg_lot_left_out {
   FG_LOT_NOT_MEASURED,
   FG_LOT_DEFECT,        /* fg_foil_defect */
   FG_LOT_FAILS,         /* fails its own tolerances */
-  FG_LOT_FLAGGED,       /* its flags cast doubt on its values */
+  FG_LOT_FLAGGED,       /* flags make its values unreliable */
   FG_LOT_CRUSHED,       /* a bump is crushed */
   FG_LOT_NO_CLEARANCE,  /* fewer bumps than the layout asks for, or a bump without a value */
   FG_LOT_SCANNED_AGAIN, /* of several scans of a part the first usable one counts */
