@@ -1,30 +1,58 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "page/tile.h"
 
-#include <stdarg.h>
+#include <math.h>
 
-static void end_tile(FILE *out, const char *small) {
-  if (small && *small) fprintf(out, "<small>%s</small>", small);
-  fputs("</dd></div>\n", out);
+#include "foilgauge/report.h"
+
+static void write_tile_value(FILE *out, const fg_tile *tile) {
+  bool minus = tile->value < 0 && tile->minus;
+  double value = minus ? -tile->value : tile->value;
+  if (!isfinite(value)) {
+    fputs("–", out);
+    return;
+  }
+  if (minus) fputs(tile->minus, out);
+  if (tile->digits)
+    fprintf(out, "%.*g", tile->digits, value);
+  else
+    fprintf(out, tile->plus ? "%+.*f" : "%.*f", tile->decimals, value);
+  if (tile->unit) fprintf(out, " %s", tile->unit);
 }
 
-void fg_html_tile(FILE *out, const char *title, const char *small, const char *format, ...) {
-  va_list values;
-  fprintf(out, "<div><dt>%s</dt><dd>", title);
-  va_start(values, format);
-  vfprintf(out, format, values);
-  va_end(values);
-  end_tile(out, small);
+static void write_tile_small(FILE *out, const fg_tile *tile) {
+  bool known = tile->text || isfinite(tile->value);
+  bool with_u = known && tile->u_words && isfinite(tile->u);
+  const char *words = !known && tile->unknown ? tile->unknown : tile->small ? tile->small : "";
+  if (!with_u && !*words) return;
+  fputs("<small>", out);
+  if (with_u)
+    fprintf(out, "± %.*f%s%s", tile->decimals, FG_COVERAGE_FACTOR * tile->u, tile->u_words,
+            *words ? ", " : "");
+  fprintf(out, "%s</small>", words);
 }
 
-void fg_html_count_tile(FILE *out, fg_tile_look look, const char *title, size_t count,
-                        const char *small) {
+void fg_html_tile(FILE *out, const fg_tile *tile) {
   static const struct {
     const char *style, *mark;
   } looks[FG_TILE_LOOKS] = {[FG_TILE_PLAIN] = {"", ""},
                             [FG_TILE_GOOD] = {" class=\"good\"", "✓ "},
                             [FG_TILE_BAD] = {" class=\"bad\"", "✗ "},
                             [FG_TILE_OPEN] = {" class=\"open\"", "? "}};
-  fprintf(out, "<div%s><dt>%s</dt><dd>%s%zu", looks[look].style, title, looks[look].mark, count);
-  end_tile(out, small);
+  if (!tile->title) return;
+  fprintf(out, "<div%s><dt>%s</dt><dd>%s", looks[tile->look].style, tile->title,
+          looks[tile->look].mark);
+  if (tile->text)
+    fputs(tile->text, out);
+  else
+    write_tile_value(out, tile);
+  write_tile_small(out, tile);
+  fputs("</dd></div>\n", out);
+}
+
+void fg_html_tiles(FILE *out, const char *style, const fg_tile *tiles, size_t count) {
+  fprintf(out, "<dl class=\"%s\">\n", style);
+  for (size_t i = 0; i < count; i++)
+    fg_html_tile(out, &tiles[i]);
+  fputs("</dl>\n", out);
 }

@@ -3,8 +3,11 @@
 #ifndef FG_PAGE_TILE_H
 #define FG_PAGE_TILE_H
 
+#include <stdbool.h>
+#include <stddef.h>
 #include <stdio.h>
 
+/* Good and bad news are told by a sign, then by a colour. */
 typedef enum fg_tile_look {
   FG_TILE_PLAIN,
   FG_TILE_GOOD,
@@ -13,13 +16,28 @@ typedef enum fg_tile_look {
   FG_TILE_LOOKS
 } fg_tile_look;
 
-/* Writes one tile: its title, its value as of printf, and smaller words under it (NULL or "":
- * none). All of it is markup already. */
-void fg_html_tile(FILE *out, const char *title, const char *small, const char *format, ...)
-    __attribute__((format(printf, 4, 5)));
+/* One tile. Its texts are markup already. A count is a value without unit and decimals. */
+typedef struct fg_tile {
+  const char *title; /* NULL: the tile is left out */
+  const char *text;  /* in place of the value; NULL: the value */
+  double value, u;   /* a value that is not finite is written as a dash */
+  const char *unit;  /* NULL: none, and no space for it */
+  int decimals;
+  int digits;          /* significant, in place of decimals; 0: decimals */
+  bool plus;           /* values above 0 have their sign */
+  const char *minus;   /* NULL: the hyphen of printf */
+  const char *u_words; /* behind "± U", which comes before the small words; NULL: U is not told */
+  const char *small;   /* smaller words under the value; NULL or "": none */
+  const char *unknown; /* the small words beside a dash; NULL: those of the value */
+  fg_tile_look look;
+} fg_tile;
 
-/* Writes a tile of a count that is good or bad news: by a sign, then by a colour. */
-void fg_html_count_tile(FILE *out, fg_tile_look look, const char *title, size_t count,
-                        const char *small);
+/* U of a page that does not say elsewhere which U it means. */
+#define FG_TILE_U_IS_2U " (U = 2 u)"
+
+void fg_html_tile(FILE *out, const fg_tile *tile);
+
+/* Writes the list of tiles; `style` is its class: "tiles", "tiles four". */
+void fg_html_tiles(FILE *out, const char *style, const fg_tile *tiles, size_t count);
 
 #endif

@@ -8,6 +8,7 @@
 #include "core/memory.h"
 #include "page/page.h"
 #include "page/plot_marks.h"
+#include "page/tile.h"
 #include "station/check.h"
 #include "station/check_page.h"
 #include "station/trend.h"
@@ -131,12 +132,13 @@ static void write_tiles(FILE *out, const history *all, double allowed) {
   const check_row *last = &all->row[0], *first = &all->row[all->count - 1];
   fputs("<dl class=\"tiles\">", out);
   for (int k = 0; k < AXES; k++) {
-    fprintf(out, "<div><dt>%s</dt><dd>%+.0f ± %.0f %s<small>allowed ± %.0f</small>",
-            axes[k].short_title, whole(last->value[k]), 2 * last->u[k], axes[k].unit, allowed);
+    char text[120], since[80] = "";
+    snprintf(text, sizeof text, "%+.0f ± %.0f %s<small>allowed ± %.0f</small>",
+             whole(last->value[k]), 2 * last->u[k], axes[k].unit, allowed);
     if (all->count > 1)
-      fprintf(out, "<small>%+.0f ± %.0f since the first that is drawn</small>",
-              whole(last->value[k] - first->value[k]), 2 * hypot(last->u[k], first->u[k]));
-    fputs("</dd></div>\n", out);
+      snprintf(since, sizeof since, "%+.0f ± %.0f since the first that is drawn",
+               whole(last->value[k] - first->value[k]), 2 * hypot(last->u[k], first->u[k]));
+    fg_html_tile(out, &(fg_tile){axes[k].short_title, .text = text, .small = since});
   }
   fputs("</dl>\n", out);
 }

@@ -4,6 +4,7 @@
 
 #include "core/text.h"
 #include "page/page.h"
+#include "page/tile.h"
 #include "station/trend.h"
 
 enum { NAME_BYTES = 140, NARROWEST = 10 };
@@ -205,8 +206,10 @@ static void write_runs(const page *p, const fg_trend_run *runs, size_t count, si
 
 static void write_ratio(FILE *out, const char *name, const fg_ratio *ratio, const char *words) {
   if (!isfinite(ratio->value)) return;
-  fprintf(out, "<div><dt>%s</dt><dd>%.2f<small>%.2f to %.2f</small><small>%s</small></dd></div>\n",
-          name, ratio->value, ratio->low, ratio->high, words);
+  char text[80];
+  snprintf(text, sizeof text, "%.2f<small>%.2f to %.2f</small>", ratio->value, ratio->low,
+           ratio->high);
+  fg_html_tile(out, &(fg_tile){name, .text = text, .small = words});
 }
 
 static void write_withheld_reasons(const page *p) {

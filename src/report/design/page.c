@@ -11,26 +11,26 @@
 #include "report/stiffness/map.h"
 #include "report/stiffness/table.h"
 
-static void put_stated_tile(FILE *out, const char *title, double value, const char *unit,
-                            const char *source) {
-  fg_html_tile(out, title, source, "%s%.5g %s", value < 0 ? "−" : "", fabs(value), unit);
+static fg_tile make_design_tile(const char *title, double value, const char *unit,
+                                const char *source) {
+  return (fg_tile){title, .value = value, .digits = 5, .unit = unit, .minus = "−", .small = source};
 }
 
 static void put_design_tiles(FILE *out, const fg_design_report *report) {
   const fg_design *design = report->design;
-  fputs("<dl class=\"tiles four\">\n", out);
-  put_stated_tile(out, "bump radius", design->bumps.radius_mm, "mm", "R<sub>D</sub>, stated");
-  put_stated_tile(out, "bump angle", design->bumps.angle_deg, "°", "α<sub>D</sub>, stated");
-  put_stated_tile(out, "overall radius", design->overall_radius_mm, "mm", "stated");
-  put_stated_tile(out, "thickness", design->thickness_mm, "mm", "stated");
-  put_stated_tile(out, "bump height", report->nominal->height_mm, "mm", "h<sub>D</sub>, eq 5.5");
-  put_stated_tile(out, "arc length of a bump", report->nominal->arc_length_mm, "mm",
-                  "α<sub>D</sub> R<sub>D</sub>");
-  put_stated_tile(out, "intersection angle", report->nominal->intersection_angle_deg, "°",
-                  "θ<sub>D</sub>");
-  put_stated_tile(out, "clearance", 1000 * report->nominal->clearance_mm, "µm",
-                  "C<sub>D</sub>, eq 5.8");
-  fputs("</dl>\n", out);
+  const fg_nominal *nominal = report->nominal;
+  const fg_tile tiles[] = {
+      make_design_tile("bump radius", design->bumps.radius_mm, "mm", "R<sub>D</sub>, stated"),
+      make_design_tile("bump angle", design->bumps.angle_deg, "°", "α<sub>D</sub>, stated"),
+      make_design_tile("overall radius", design->overall_radius_mm, "mm", "stated"),
+      make_design_tile("thickness", design->thickness_mm, "mm", "stated"),
+      make_design_tile("bump height", nominal->height_mm, "mm", "h<sub>D</sub>, eq 5.5"),
+      make_design_tile("arc length of a bump", nominal->arc_length_mm, "mm",
+                       "α<sub>D</sub> R<sub>D</sub>"),
+      make_design_tile("intersection angle", nominal->intersection_angle_deg, "°", "θ<sub>D</sub>"),
+      make_design_tile("clearance", 1000 * nominal->clearance_mm, "µm", "C<sub>D</sub>, eq 5.8"),
+  };
+  fg_html_tiles(out, "tiles four", tiles, sizeof tiles / sizeof *tiles);
 }
 
 fg_status fg_design_write_html(fg_context *ctx, const fg_design_report *report, FILE *out) {

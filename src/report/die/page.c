@@ -17,10 +17,9 @@ static const char *const half_words[FG_DIE_HALVES] = {
     "Concave half: grooves, touches the strip's inner side",
     "Convex half: ridges, touches the strip's outer side"};
 
-static void put_error_tile(FILE *out, const char *title, const fg_die_value *v, const char *unit) {
-  char small[64];
-  snprintf(small, sizeof small, "± %.3f (U = 2 u)", FG_COVERAGE_FACTOR * v->u);
-  fg_html_tile(out, title, small, "%+.3f %s", v->value, unit);
+static fg_tile make_error_tile(const char *title, const fg_die_value *v) {
+  return (fg_tile){title,        .value = v->value,         .u = v->u, .unit = "%", .decimals = 3,
+                   .plus = true, .u_words = FG_TILE_U_IS_2U};
 }
 
 /* Largest sd of one repeat over the bumps of both halves. */
@@ -34,21 +33,20 @@ static double largest_sd(const fg_die *die) {
 
 static void put_die_tiles(FILE *out, const fg_die *die) {
   const fg_die_side *a = &die->half[FG_DIE_CONCAVE], *b = &die->half[FG_DIE_CONVEX];
-  double sd = largest_sd(die);
-  fputs("<dl class=\"tiles\">\n", out);
-  if (a->traces)
-    put_error_tile(out, "Radius error, concave, mean", &a->mean[FG_DIE_RADIUS_ERROR], "%");
-  if (b->traces)
-    put_error_tile(out, "Radius error, convex, mean", &b->mean[FG_DIE_RADIUS_ERROR], "%");
-  if (a->traces && b->traces)
-    put_error_tile(out, "Radius error of the die", &die->whole.mean[FG_DIE_RADIUS_ERROR], "%");
-  put_error_tile(out, "Bump angle error, mean", &die->whole.mean[FG_DIE_ANGLE_ERROR], "%");
-  put_error_tile(out, "Overall radius error", &die->whole.overall_error_pct, "%");
-  if (isfinite(sd))
-    fg_html_tile(out, "Repeats of R, largest s", NULL, "%.2f µm", 1000 * sd);
-  else
-    fg_html_tile(out, "Repeats of R, largest s", "one trace of each half", "–");
-  fputs("</dl>\n", out);
+  const fg_die_side *whole = &die->whole;
+  const fg_tile tiles[] = {
+      make_error_tile(a->traces ? "Radius error, concave, mean" : NULL,
+                      &a->mean[FG_DIE_RADIUS_ERROR]),
+      make_error_tile(b->traces ? "Radius error, convex, mean" : NULL,
+                      &b->mean[FG_DIE_RADIUS_ERROR]),
+      make_error_tile(a->traces && b->traces ? "Radius error of the die" : NULL,
+                      &whole->mean[FG_DIE_RADIUS_ERROR]),
+      make_error_tile("Bump angle error, mean", &whole->mean[FG_DIE_ANGLE_ERROR]),
+      make_error_tile("Overall radius error", &whole->overall_error_pct),
+      {"Repeats of R, largest s", .value = 1000 * largest_sd(die), .decimals = 2, .unit = "µm",
+       .unknown = "one trace of each half"},
+  };
+  fg_html_tiles(out, "tiles", tiles, sizeof tiles / sizeof *tiles);
 }
 
 /* Writes the result of each half in a sentence. */

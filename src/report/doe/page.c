@@ -50,18 +50,21 @@ static void put_list(FILE *out, const char *style, char *const *text, size_t cou
 
 static void put_doe_tiles(FILE *out, const fg_experiment *e) {
   const fg_regression *r = &e->regression;
-  char value[64], small[96];
-  fputs("<dl class=\"tiles\">\n", out);
-  snprintf(small, sizeof small, "%zu for the error", r->residual_dof);
-  fg_html_tile(out, "Runs", small, "%zu", r->rows);
+  char dof[64], scatter[64] = "", r2[96] = "";
+  snprintf(dof, sizeof dof, "%zu for the error", r->residual_dof);
   if (r->residual_dof) {
-    fg_value_with_unit(e->response, r->residual_sd, 3, value, sizeof value);
-    fg_html_tile(out, "Scatter about the model", "standard deviation", "%s", value);
-    snprintf(small, sizeof small, "adjusted %.1f %%, predicted %.1f %%", 100 * r->adjusted_r2,
+    fg_value_with_unit(e->response, r->residual_sd, 3, scatter, sizeof scatter);
+    snprintf(r2, sizeof r2, "adjusted %.1f %%, predicted %.1f %%", 100 * r->adjusted_r2,
              100 * r->predicted_r2);
-    fg_html_tile(out, "R²", small, "%.1f %%", 100 * r->r2);
   }
-  fputs("</dl>\n", out);
+  const fg_tile tiles[] = {
+      {"Runs", .value = (double)r->rows, .small = dof},
+      {r->residual_dof ? "Scatter about the model" : NULL, .text = scatter,
+       .small = "standard deviation"},
+      {r->residual_dof ? "R²" : NULL, .value = 100 * r->r2, .decimals = 1, .unit = "%",
+       .small = r2},
+  };
+  fg_html_tiles(out, "tiles", tiles, sizeof tiles / sizeof *tiles);
 }
 
 static void put_coefficients(FILE *out, const fg_experiment *e) {

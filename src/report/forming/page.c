@@ -11,31 +11,25 @@
 #include "report/forming/words.h"
 #include "report/provenance.h"
 
-static void put_forming_tile(FILE *out, const char *title, double value, int decimals,
-                             const char *unit, const char *small) {
-  if (isfinite(value))
-    fg_html_tile(out, title, small, "%.*f %s", decimals, value, unit);
-  else
-    fg_html_tile(out, title, small, "–");
-}
-
 static void put_forming_tiles(FILE *out, const fg_forming *f) {
   double sum = 0;
   for (size_t i = 0; i < f->bump_count; i++)
     sum += f->bumps[i].fitted.radius_error_pct / (double)f->bump_count;
-  fputs("<dl class=\"tiles\">\n", out);
-  put_forming_tile(out, "Overall springback", f->springback_error_pct, 2, "%",
-                   "100 (R0 - R) / R0: below 0 the foil opens");
-  if (f->bump_count)
-    put_forming_tile(out, "Bump radius error, mean", sum, 2, "%", "fitted circles");
-  put_forming_tile(out, "The lands alone", f->strip_springback_error_pct, 2, "%",
-                   "as a plain strip of the overall radius");
-  put_forming_tile(out, "Moment that is left", f->mean_share, 3, "", "rho, over the strip");
-  put_forming_tile(out, "Mean stress, bent", f->mean_stress_mpa[FG_FORMING_BENT], 0, "MPa",
-                   "at the face");
-  put_forming_tile(out, "Mean stress, free", f->mean_stress_mpa[FG_FORMING_FREE], 0, "MPa",
-                   "at the face");
-  fputs("</dl>\n", out);
+  const fg_tile tiles[] = {
+      {"Overall springback", .value = f->springback_error_pct, .decimals = 2, .unit = "%",
+       .small = "100 (R0 - R) / R0: below 0 the foil opens"},
+      {f->bump_count ? "Bump radius error, mean" : NULL, .value = sum, .decimals = 2, .unit = "%",
+       .small = "fitted circles"},
+      {"The lands alone", .value = f->strip_springback_error_pct, .decimals = 2, .unit = "%",
+       .small = "as a plain strip of the overall radius"},
+      {"Moment that is left", .value = f->mean_share, .decimals = 3, .unit = "",
+       .small = "rho, over the strip"},
+      {"Mean stress, bent", .value = f->mean_stress_mpa[FG_FORMING_BENT], .unit = "MPa",
+       .small = "at the face"},
+      {"Mean stress, free", .value = f->mean_stress_mpa[FG_FORMING_FREE], .unit = "MPa",
+       .small = "at the face"},
+  };
+  fg_html_tiles(out, "tiles", tiles, sizeof tiles / sizeof *tiles);
 }
 
 static void put_notes(FILE *out, char notes[FG_FORMING_NOTES][FG_FORMING_NOTE], size_t count) {

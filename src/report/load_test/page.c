@@ -26,49 +26,47 @@ static size_t count_flagged(const fg_load_test *test, size_t bearing, unsigned f
   return count;
 }
 
-static void put_load_tile(FILE *out, const char *title, const fg_load_value *v, double unit,
-                          int decimals, const char *word, const char *small) {
-  char words[120];
-  snprintf(words, sizeof words, "± %.*f (U = 2 u)%s%s", decimals, FG_COVERAGE_FACTOR * unit * v->u,
-           small[0] ? ", " : "", small);
-  if (isfinite(v->value))
-    fg_html_tile(out, title, words, "%.*f %s", decimals, unit * v->value, word);
-  else
-    fg_html_tile(out, title, "not known", "–");
+static fg_tile make_load_tile(const char *title, const fg_load_value *v, double factor,
+                              int decimals, const char *unit, const char *small) {
+  return (fg_tile){
+      title,        .value = factor * v->value, .u = factor * v->u, .decimals = decimals,
+      .unit = unit, .u_words = FG_TILE_U_IS_2U, .small = small,     .unknown = "not known"};
 }
 
-/* A clearance of a bearing's directions; where foils press the rotor all around, why there is none.
- */
-static void put_clearance_tile(FILE *out, const fg_load_test *test, size_t bearing,
-                               const char *title, const fg_load_value *v, const char *small) {
-  if (count_flagged(test, bearing, FG_LOAD_NO_GAP) == test->bearings[bearing].directions)
-    fg_html_tile(out, title, "no gap", "–");
-  else
-    put_load_tile(out, title, v, 1000, 1, "µm", small);
+/* Makes the tile of a clearance in mm, shown in µm. Where foils press the rotor all around there
+ * is none. */
+static fg_tile make_clearance_tile(const fg_load_test *test, size_t bearing, const char *title,
+                                   const fg_load_value *v, const char *small) {
+  fg_tile tile = make_load_tile(title, v, 1000, 1, "µm", small);
+  if (count_flagged(test, bearing, FG_LOAD_NO_GAP) < test->bearings[bearing].directions)
+    return tile;
+  tile.value = NAN;
+  tile.unknown = "no gap";
+  return tile;
 }
 
 static void put_load_tiles(FILE *out, const fg_load_test *test, size_t bearing) {
   const fg_load_bearing *b = &test->bearings[bearing];
-  char min[60] = "", max[60] = "";
+  bool lower_bound = count_flagged(test, bearing, FG_LOAD_AT_END);
+  char min[60] = "", max[60] = "", axis[60], axis_u[60];
   if (isfinite(b->min.value)) {
     snprintf(min, sizeof min, "at %g°", b->min_measured_at_deg);
     snprintf(max, sizeof max, "at %g°", b->max_measured_at_deg);
   }
-  fputs("<dl class=\"tiles\">\n", out);
-  put_clearance_tile(out, test, bearing, "Smallest clearance", &b->min, min);
-  put_clearance_tile(out, test, bearing, "Largest clearance", &b->max, max);
-  put_load_tile(out, "Structural stiffness, mean", &b->stiffness, 1, 0, "N/mm",
-                count_flagged(test, bearing, FG_LOAD_AT_END) ? "a lower bound" : "");
-  put_load_tile(out, "Radial hysteresis", &b->hysteresis_n, 1, 2, "N", "no preload");
-  char axis[60];
-  snprintf(axis, sizeof axis, "± %.1f° (U = 2 u), fitted", 2 * b->u_min_at_deg);
-  if (b->axis == FG_LOAD_AXIS_KNOWN)
-    fg_html_tile(out, "Smallest along", axis, "%.1f° and %.1f°", b->min_at_deg,
-                 b->min_at_deg + 180);
-  else
-    fg_html_tile(out, "Smallest along", fg_load_axis_words(b->axis), "–");
-  if (b->break_away.pulls) put_load_tile(out, "Preload", &b->preload_kpa, 1, 2, "kPa", "");
-  fputs("</dl>\n", out);
+  bool axis_known = b->axis == FG_LOAD_AXIS_KNOWN;
+  snprintf(axis, sizeof axis, "%.1f° and %.1f°", b->min_at_deg, b->min_at_deg + 180);
+  snprintf(axis_u, sizeof axis_u, "± %.1f° (U = 2 u), fitted", 2 * b->u_min_at_deg);
+  const fg_tile tiles[] = {
+      make_clearance_tile(test, bearing, "Smallest clearance", &b->min, min),
+      make_clearance_tile(test, bearing, "Largest clearance", &b->max, max),
+      make_load_tile("Structural stiffness, mean", &b->stiffness, 1, 0, "N/mm",
+                     lower_bound ? "a lower bound" : ""),
+      make_load_tile("Radial hysteresis", &b->hysteresis_n, 1, 2, "N", "no preload"),
+      {"Smallest along", .text = axis_known ? axis : "–",
+       .small = axis_known ? axis_u : fg_load_axis_words(b->axis)},
+      make_load_tile(b->break_away.pulls ? "Preload" : NULL, &b->preload_kpa, 1, 2, "kPa", ""),
+  };
+  fg_html_tiles(out, "tiles", tiles, sizeof tiles / sizeof *tiles);
 }
 
 static void put_load_cell(FILE *out, const fg_load_value *v, double unit, int decimals,
@@ -186,13 +184,16 @@ static void put_break_away(FILE *out, const fg_load_test *test, size_t bearing) 
           "weight%s</h3>",
           a->pulls, fg_plural(a->pulls), a->weights, fg_plural(a->weights));
   fg_load_plot_break_away(out, test, bearing);
-  fputs("</figure>\n<div><dl class=\"tiles\">\n", out);
-  put_load_tile(out, "Friction coefficient", &a->friction, 1, 4, "", "");
-  put_load_tile(out, "Friction without a weight", &a->intercept_n, 1, 3, "N",
-                isfinite(a->rig_n) ? "less the rig's" : "");
-  put_load_tile(out, "Preload", &b->preload_n, 1, 1, "N", "");
-  put_load_tile(out, "over the bore", &b->preload_kpa, 1, 2, "kPa", "");
-  fputs("</dl>\n<p class=\"note\">Friction is torque over the rotor's radius. Its line over dead "
+  const fg_tile tiles[] = {
+      make_load_tile("Friction coefficient", &a->friction, 1, 4, "", ""),
+      make_load_tile("Friction without a weight", &a->intercept_n, 1, 3, "N",
+                     isfinite(a->rig_n) ? "less the rig's" : ""),
+      make_load_tile("Preload", &b->preload_n, 1, 1, "N", ""),
+      make_load_tile("over the bore", &b->preload_kpa, 1, 2, "kPa", ""),
+  };
+  fputs("</figure>\n<div>", out);
+  fg_html_tiles(out, "tiles", tiles, sizeof tiles / sizeof *tiles);
+  fputs("<p class=\"note\">Friction is torque over the rotor's radius. Its line over dead "
         "weight has the friction coefficient for a slope; intercept over slope is the preload, "
         "and over π D L its mean pressure.</p>\n",
         out);

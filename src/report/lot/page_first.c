@@ -17,8 +17,14 @@
 #include "report/lot/plots.h"
 #include "report/value_words.h"
 
-static fg_tile_look choose_look(size_t count, fg_tile_look look) {
-  return count ? look : FG_TILE_PLAIN;
+static fg_tile make_count_tile(const char *title, size_t count, fg_tile_look look,
+                               const char *small) {
+  return (fg_tile){title, .value = (double)count, .look = look, .small = small};
+}
+
+/* Makes the tile of a verdict's count, which is news only where there are some. */
+static fg_tile make_verdict_tile(const char *title, size_t count, fg_tile_look look) {
+  return make_count_tile(title, count, count ? look : FG_TILE_PLAIN, NULL);
 }
 
 static bool foils_are_judged(const fg_lot_analysis *analysis) {
@@ -28,61 +34,53 @@ static bool foils_are_judged(const fg_lot_analysis *analysis) {
 
 static void put_scan_tiles(FILE *out, const fg_lot_analysis *analysis) {
   size_t failed = analysis->failed_scans, scans = analysis->lot->manifest.items;
-  fputs("<dl class=\"tiles\">\n", out);
-  fg_html_count_tile(out, FG_TILE_PLAIN, "Scans", scans, failed ? "" : "all could be measured");
-  if (failed) fg_html_count_tile(out, FG_TILE_OPEN, "Scans not measured", failed, "named below");
   const fg_record *repeat;
   size_t repeats = fg_lot_count_repeats(analysis->lot, &repeat);
-  if (repeats)
-    fg_html_count_tile(out, FG_TILE_OPEN, "of them there twice", repeats,
-                       "the same bytes under another name");
-  fg_html_count_tile(out, FG_TILE_PLAIN, "Foils on them", analysis->foil_count, "");
-  if (!fg_foil_traits_of(analysis->lot->settings.design.kind)->is_plain_strip) {
-    const fg_lot_words *words = fg_lot_words_of(analysis);
-    fg_html_count_tile(out, FG_TILE_PLAIN, words->counted, analysis->part_count, "");
-    if (analysis->left_out)
-      fg_html_count_tile(out, FG_TILE_OPEN, words->damaged, analysis->left_out,
-                         "judged, but in no statistics of this page");
-  }
-  fputs("</dl>\n", out);
+  bool parts = !fg_foil_traits_of(analysis->lot->settings.design.kind)->is_plain_strip;
+  const fg_lot_words *words = fg_lot_words_of(analysis);
+  const fg_tile tiles[] = {
+      make_count_tile("Scans", scans, FG_TILE_PLAIN, failed ? "" : "all could be measured"),
+      make_count_tile(failed ? "Scans not measured" : NULL, failed, FG_TILE_OPEN, "named below"),
+      make_count_tile(repeats ? "of them there twice" : NULL, repeats, FG_TILE_OPEN,
+                      "the same bytes under another name"),
+      make_count_tile("Foils on them", analysis->foil_count, FG_TILE_PLAIN, ""),
+      make_count_tile(parts ? words->counted : NULL, analysis->part_count, FG_TILE_PLAIN, ""),
+      make_count_tile(parts && analysis->left_out ? words->damaged : NULL, analysis->left_out,
+                      FG_TILE_OPEN, "judged, but in no statistics of this page"),
+  };
+  fg_html_tiles(out, "tiles", tiles, sizeof tiles / sizeof *tiles);
 }
 
 static void put_verdict_tiles(FILE *out, const fg_lot_analysis *analysis) {
   const size_t *by = analysis->by_verdict;
   bool judged = foils_are_judged(analysis);
-  size_t not_measured = by[FG_VERDICT_NOT_MEASURED];
+  size_t undecided = by[FG_VERDICT_UNDECIDED], not_measured = by[FG_VERDICT_NOT_MEASURED];
   if (!judged && !by[FG_VERDICT_FAIL] && !not_measured) return;
-  fputs("<dl class=\"tiles\">\n", out);
-  if (judged)
-    fg_html_count_tile(out, choose_look(by[FG_VERDICT_PASS], FG_TILE_GOOD), "Foils pass",
-                       by[FG_VERDICT_PASS], "");
-  fg_html_count_tile(out, choose_look(by[FG_VERDICT_FAIL], FG_TILE_BAD), "Foils fail",
-                     by[FG_VERDICT_FAIL], "");
-  if (judged)
-    fg_html_count_tile(out, choose_look(by[FG_VERDICT_UNDECIDED], FG_TILE_OPEN),
-                       "Foils, cannot tell", by[FG_VERDICT_UNDECIDED],
-                       by[FG_VERDICT_UNDECIDED] ? "a limit lies within ± U" : "");
-  if (not_measured) fg_html_count_tile(out, FG_TILE_OPEN, "Foils not measured", not_measured, "");
-  fputs("</dl>\n", out);
+  fg_tile tiles[] = {
+      make_verdict_tile(judged ? "Foils pass" : NULL, by[FG_VERDICT_PASS], FG_TILE_GOOD),
+      make_verdict_tile("Foils fail", by[FG_VERDICT_FAIL], FG_TILE_BAD),
+      make_verdict_tile(judged ? "Foils, cannot tell" : NULL, undecided, FG_TILE_OPEN),
+      make_verdict_tile(not_measured ? "Foils not measured" : NULL, not_measured, FG_TILE_OPEN),
+  };
+  if (undecided) tiles[2].small = "a limit lies within ± U";
+  fg_html_tiles(out, "tiles", tiles, sizeof tiles / sizeof *tiles);
 }
 
 static void put_bearing_tiles(FILE *out, const fg_lot_analysis *analysis) {
   const fg_lot *lot = analysis->lot;
   const size_t *by = analysis->bearings_by_verdict;
+  size_t undecided = by[FG_VERDICT_UNDECIDED], not_measured = by[FG_VERDICT_NOT_MEASURED];
   if (!fg_report_of_bearing(&lot->settings.design, NULL, 0)) return;
   bool assumed = fg_manifest_column(&lot->manifest, lot->settings.bearing_column) == FG_NO_COLUMN;
-  fputs("<dl class=\"tiles\">\n", out);
-  fg_html_count_tile(out, FG_TILE_PLAIN, "Bearings", analysis->bearing_count,
-                     assumed ? "foils in a row" : "as the manifest says");
-  fg_html_count_tile(out, choose_look(by[FG_VERDICT_PASS], FG_TILE_GOOD), "Bearings pass",
-                     by[FG_VERDICT_PASS], "");
-  fg_html_count_tile(out, choose_look(by[FG_VERDICT_FAIL], FG_TILE_BAD), "Bearings fail",
-                     by[FG_VERDICT_FAIL], "");
-  if (by[FG_VERDICT_UNDECIDED])
-    fg_html_count_tile(out, FG_TILE_OPEN, "Bearings, cannot tell", by[FG_VERDICT_UNDECIDED], "");
-  if (by[FG_VERDICT_NOT_MEASURED])
-    fg_html_count_tile(out, FG_TILE_OPEN, "Bearings not measured", by[FG_VERDICT_NOT_MEASURED], "");
-  fputs("</dl>\n", out);
+  const fg_tile tiles[] = {
+      make_count_tile("Bearings", analysis->bearing_count, FG_TILE_PLAIN,
+                      assumed ? "foils in a row" : "as the manifest says"),
+      make_verdict_tile("Bearings pass", by[FG_VERDICT_PASS], FG_TILE_GOOD),
+      make_verdict_tile("Bearings fail", by[FG_VERDICT_FAIL], FG_TILE_BAD),
+      make_verdict_tile(undecided ? "Bearings, cannot tell" : NULL, undecided, FG_TILE_OPEN),
+      make_verdict_tile(not_measured ? "Bearings not measured" : NULL, not_measured, FG_TILE_OPEN),
+  };
+  fg_html_tiles(out, "tiles", tiles, sizeof tiles / sizeof *tiles);
 }
 
 void fg_lot_put_counts(FILE *out, const fg_lot_analysis *analysis) {

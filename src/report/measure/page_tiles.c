@@ -11,14 +11,9 @@ void fg_html_quantity_tile(FILE *out, fg_quantity_owner owner, const char *name,
                            const void *object) {
   const fg_quantity *row = fg_quantity_find(owner, name);
   double value = fg_quantity_value(row, object), u = fg_quantity_uncertainty(row, object);
-  int decimals = fg_report_decimals(row, u);
-  char small[64] = "";
-  if (isfinite(u)) snprintf(small, sizeof small, "± %.*f", decimals, FG_COVERAGE_FACTOR * u);
-  if (isfinite(value))
-    fg_html_tile(out, title, small, "%s%.*f %s", value < 0 ? "−" : "", decimals, fabs(value),
-                 row->unit);
-  else
-    fg_html_tile(out, title, small, "–");
+  fg_html_tile(out,
+               &(fg_tile){title, .value = value, .u = u, .unit = row->unit,
+                          .decimals = fg_report_decimals(row, u), .minus = "−", .u_words = ""});
 }
 
 /* Writes the mean over the parts, with their spread as a standard deviation. */
@@ -40,8 +35,8 @@ static void put_mean_tile(FILE *out, const fg_foil_parts *parts, const char *nam
   if (count > 1)
     snprintf(small, sizeof small, "s = %.*f, n = %zu", row->decimals,
              sqrt(squares / (double)(count - 1)), count);
-  fg_html_tile(out, title, small, "%s%.*f %s", sum < 0 ? "−" : "", row->decimals, fabs(sum),
-               row->unit);
+  fg_html_tile(out, &(fg_tile){title, .value = sum, .unit = row->unit, .decimals = row->decimals,
+                               .minus = "−", .small = small});
 }
 
 void fg_tiles_of_beams(FILE *out, const fg_design *design, const fg_foil *foil) {

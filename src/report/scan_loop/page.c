@@ -12,31 +12,31 @@
 #include "report/scan_loop/parts.h"
 
 static void put_loop_tiles(FILE *out, const fg_scan_result *result) {
-  char words[32], small[80];
+  char rms[32], rms_after[32], floor[32], held_out[32], smaller[80], left[80], share[80];
   const fg_scan_loop_error *before = &result->before, *after = &result->after;
-  fputs("<dl class=\"tiles\">\n", out);
-  fg_scan_loop_length_words(before->rms, words, sizeof words);
-  fg_html_tile(out, result->corrected ? "Edge residual before" : "Edge residual", "rms", "%s",
-               words);
-  if (result->corrected) {
-    fg_scan_loop_length_words(after->rms, words, sizeof words);
-    fg_html_tile(out, "Edge residual after", "rms", "%s", words);
-    fg_text_clip(words, sizeof words, "%.3g ×", before->rms / after->rms);
-    fg_text_clip(small, sizeof small, "after / before = %.3g", after->rms / before->rms);
-    fg_html_tile(out, "Smaller by", small, "%s", words);
-  }
-  fg_scan_loop_length_words(result->noise_floor_um, words, sizeof words);
-  fg_text_clip(small, sizeof small, "what is left is %.3g times this",
+  bool corrected = result->corrected,
+       apart = corrected && result->held_out != FG_SCAN_HELD_OUT_NOTHING;
+  fg_scan_loop_length_words(before->rms, rms, sizeof rms);
+  fg_scan_loop_length_words(after->rms, rms_after, sizeof rms_after);
+  fg_scan_loop_length_words(result->noise_floor_um, floor, sizeof floor);
+  fg_scan_loop_length_words(after->held_out_rms, held_out, sizeof held_out);
+  fg_text_clip(smaller, sizeof smaller, "after / before = %.3g", after->rms / before->rms);
+  fg_text_clip(left, sizeof left, "what is left is %.3g times this",
                after->rms / result->noise_floor_um);
-  fg_html_tile(out, "Noise floor", small, "%s", words);
-  if (result->corrected && result->held_out != FG_SCAN_HELD_OUT_NOTHING) {
-    fg_scan_loop_length_words(after->held_out_rms, words, sizeof words);
-    fg_text_clip(small, sizeof small, "after / before = %.3g",
-                 after->held_out_rms / before->held_out_rms);
-    fg_html_tile(out, result->folds ? "Cross-fitted, after" : "Scans kept aside, after", small,
-                 "%s", words);
-  }
-  fputs("</dl>\n", out);
+  fg_text_clip(share, sizeof share, "after / before = %.3g",
+               after->held_out_rms / before->held_out_rms);
+  const fg_tile tiles[] = {
+      {corrected ? "Edge residual before" : "Edge residual", .text = rms, .small = "rms"},
+      {corrected ? "Edge residual after" : NULL, .text = rms_after, .small = "rms"},
+      {corrected ? "Smaller by" : NULL, .value = before->rms / after->rms, .digits = 3, .unit = "×",
+       .small = smaller},
+      {"Noise floor", .text = floor, .small = left},
+      {!apart          ? NULL
+       : result->folds ? "Cross-fitted, after"
+                       : "Scans kept aside, after",
+       .text = held_out, .small = share},
+  };
+  fg_html_tiles(out, "tiles", tiles, sizeof tiles / sizeof *tiles);
 }
 
 static void put_inputs(FILE *out, const fg_scan_result *result) {
