@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Makes the manual's pages and the completion of the shell: foilgauge_manual FOLDER TEXT...
+/* Makes the manual's pages, the completion of the shell and the JSON schemas: foilgauge_manual
+ * FOLDER TEXT...
  *
- * FOLDER/man/<page>.<section>, FOLDER/completion/foilgauge, FOLDER/man/examples (a command a line:
- * the tests run them). A command without a text, a text of no command that names a section 1 page,
- * and a name that no fact has are errors. */
+ * FOLDER/man/<page>.<section>, FOLDER/completion/foilgauge, FOLDER/schema/<file>.schema.json,
+ * FOLDER/man/examples (a command a line: the tests run them). A command without a text, a text of
+ * no command that names a section 1 page, and a name that no fact has are errors. */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,6 +15,7 @@
 #include "cli/commands.h"
 #include "cli/facts.h"
 #include "core/file.h"
+#include "manual/documents.h"
 #include "manual/marks.h"
 #include "manual/page.h"
 
@@ -118,8 +120,21 @@ static int miss_commands(const manual *all) {
   return failed;
 }
 
+static int write_schemas(const manual *all) {
+  int failed = 0;
+  for (size_t i = 0; fg_documents[i]; i++) {
+    char name[100];
+    snprintf(name, sizeof name, "schema/%.60s.schema.json", fg_documents[i]->file);
+    FILE *out = create_output(all->folder, name);
+    if (!out) return 1;
+    fg_document_write_schema(fg_documents[i], out);
+    if (fclose(out) != 0) failed = complain(name, "cannot be written");
+  }
+  return failed;
+}
+
 int main(int argc, char **argv) {
-  static const char *const folders[] = {"", "/man", "/completion"};
+  static const char *const folders[] = {"", "/man", "/completion", "/schema"};
   manual all = {0};
   int failed = 0;
   if (argc < 3) return complain("usage", "foilgauge_manual FOLDER TEXT...");
@@ -135,6 +150,7 @@ int main(int argc, char **argv) {
   for (int i = 2; i < argc; i++)
     failed |= read_page(&all, argv[i]);
   failed |= miss_commands(&all);
+  failed |= write_schemas(&all);
   fg_manual_write_completion(completion);
   failed |= fclose(completion) != 0 || fclose(all.examples) != 0;
   return failed;

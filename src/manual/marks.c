@@ -5,20 +5,37 @@
 #include <string.h>
 
 #include "cli/facts.h"
+#include "manual/documents.h"
 #include "manual/facts.h"
 
 static const char begin[] = "<!--@", middle[] = "@-->", end[] = "<!--@-->";
 
+/* Returns the document whose members are asked for: "members_of_load_test". */
+static const fg_document *find_document(const char *name, size_t length) {
+  static const char prefix[] = "members_of_";
+  size_t start = sizeof prefix - 1;
+  if (length < start || strncmp(name, prefix, start) != 0) return NULL;
+  for (const fg_document *const *each = fg_documents; *each; each++)
+    if (strlen((*each)->file) == length - start &&
+        !strncmp((*each)->file, name + start, length - start))
+      return *each;
+  return NULL;
+}
+
 /* Returns the fact as the code states it; the caller frees. NULL: the fact is not known. */
 static char *text_of_fact(const char *name, size_t length) {
+  const fg_document *document = find_document(name, length);
   const fg_fact *fact = fg_fact_find(name, length);
   char *text = NULL;
   size_t size;
   if (!fact) fact = fg_manual_fact(name, length);
-  if (!fact) return NULL;
+  if (!fact && !document) return NULL;
   FILE *out = open_memstream(&text, &size);
   if (!out) abort();
-  fact->write(out);
+  if (document)
+    fg_document_write_list(document, out);
+  else
+    fact->write(out);
   if (fclose(out) != 0) abort();
   return text;
 }

@@ -4,52 +4,23 @@
 
 #include "core/csv.h"
 #include "core/file.h"
-#include "core/json_writer.h"
+#include "core/utf8.h"
 #include "foilgauge/load_report.h"
+#include "report/load_test/members.h"
 
 static void put_csv_text(FILE *out, const char *text) {
   fg_csv_put_text(out, text, fg_utf8_put);
 }
 
-static void put_load_value(FILE *out, const fg_load_value *value, double unit) {
-  fg_csv_put_number(out, unit * value->value);
-  fg_csv_put_number(out, unit * value->u);
+static bool find_csv_direction(const fg_subject *list, size_t i, fg_subject *element) {
+  const fg_load_test *test = list->object;
+  element->object = &test->directions[i];
+  return i < test->direction_count;
 }
 
 fg_status fg_load_write_csv(fg_context *ctx, const fg_load_test *test, FILE *out) {
-  fputs("bearing,azimuth_deg,pad,verdict,flags,cycles,clearance_mm,u_clearance_mm,"
-        "clearance_unloading_mm,u_clearance_unloading_mm,stiffness_n_mm,u_stiffness_n_mm,"
-        "stiffness_at_mm,loop_area_n_mm,u_loop_area_n_mm,loss_factor,u_loss_factor,"
-        "loss_factor_secant,u_loss_factor_secant,stiffness_secant_n_mm,u_stiffness_secant_n_mm,"
-        "loss_factor_foil,u_loss_factor_foil,friction_intercept_n,friction_slope,"
-        "predicted_clearance_mm,u_predicted_clearance_mm,clearance_difference_mm,"
-        "u_clearance_difference_mm,gap_mm,u_gap_mm\n",
-        out);
-  for (size_t i = 0; i < test->direction_count; i++) {
-    const fg_load_direction *d = &test->directions[i];
-    char flags[200];
-    fg_load_flag_words(d->flags, false, flags, sizeof flags);
-    put_csv_text(out, test->bearings[d->bearing].name);
-    fg_csv_put_number(out, d->azimuth_deg);
-    fputc(',', out);
-    put_csv_text(out, d->pad);
-    fprintf(out, ",%s,%s,%zu", fg_verdict_word(fg_load_judge_direction(test, d)), flags, d->cycles);
-    put_load_value(out, &d->clearance, 1);
-    put_load_value(out, &d->unloading, 1);
-    put_load_value(out, &d->stiffness, 1);
-    fg_csv_put_number(out, d->stiffness_at_mm);
-    put_load_value(out, &d->area, 1);
-    put_load_value(out, &d->loss, 1);
-    put_load_value(out, &d->loss_secant, 1);
-    put_load_value(out, &d->secant, 1);
-    put_load_value(out, &d->loss_foil, 1);
-    fg_csv_put_number(out, d->friction.a_n);
-    fg_csv_put_number(out, d->friction.b);
-    put_load_value(out, &d->predicted, 1);
-    put_load_value(out, &d->difference, 1);
-    put_load_value(out, &d->gap, 1);
-    fputc('\n', out);
-  }
+  fg_members_csv(out, &fg_load_direction_members, &(fg_subject){.object = test, .whole = test},
+                 find_csv_direction);
   return fg_stream_finish(ctx, out, "the CSV");
 }
 

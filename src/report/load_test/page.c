@@ -8,8 +8,10 @@
 #include "foilgauge/load_report.h"
 #include "foilgauge/words.h"
 #include "page/page.h"
+#include "page/table.h"
 #include "page/tile.h"
 #include "page/verdict.h"
+#include "report/load_test/members.h"
 #include "report/load_test/plots.h"
 #include "report/provenance.h"
 
@@ -69,50 +71,9 @@ static void put_load_tiles(FILE *out, const fg_load_test *test, size_t bearing) 
   fg_html_tiles(out, "tiles", tiles, sizeof tiles / sizeof *tiles);
 }
 
-static void put_load_cell(FILE *out, const fg_load_value *v, double unit, int decimals,
-                          fg_verdict verdict) {
-  if (isfinite(v->value))
-    fprintf(out, "<td class=\"%s\">%.*f<i>± %.*f</i></td>", fg_verdict_word(verdict), decimals,
-            unit * v->value, decimals, FG_COVERAGE_FACTOR * unit * v->u);
-  else
-    fputs("<td>–</td>", out);
-}
-
-static void put_load_row(FILE *out, const fg_load_test *test, const fg_load_direction *d,
-                         bool lot) {
-  char flags[700];
-  /* Said once of the bearing, above the table. */
-  fg_load_flag_words(d->flags & ~(unsigned)FG_LOAD_AT_END, true, flags, sizeof flags);
-  fprintf(out, "<tr><td>%g°</td>", d->azimuth_deg);
-  put_load_cell(out, &d->clearance, 1000, 1,
-                fg_load_judge_value(test, FG_LOAD_CLEARANCE, &d->clearance));
-  put_load_cell(out, &d->unloading, 1000, 1, FG_VERDICT_NONE);
-  put_load_cell(out, &d->gap, 1000, 1, FG_VERDICT_NONE);
-  put_load_cell(out, &d->stiffness, 1, 0,
-                fg_load_judge_value(test, FG_LOAD_STIFFNESS, &d->stiffness));
-  put_load_cell(out, &d->loss, 1, 4, fg_load_judge_value(test, FG_LOAD_LOSS, &d->loss));
-  put_load_cell(out, &d->loss_secant, 1, 4, FG_VERDICT_NONE);
-  put_load_cell(out, &d->loss_foil, 1, 4, FG_VERDICT_NONE);
-  if (lot) {
-    put_load_cell(out, &d->predicted, 1000, 1, FG_VERDICT_NONE);
-    put_load_cell(out, &d->difference, 1000, 1, FG_VERDICT_NONE);
-  }
-  fprintf(out, "<td>%zu</td><td class=\"words\">", d->cycles);
-  fg_html_text(out, flags);
-  fputs("</td></tr>\n", out);
-}
-
 static void put_load_table(FILE *out, const fg_load_test *test, size_t bearing) {
-  bool lot = test->bearings[bearing].in_lot;
-  fprintf(out,
-          "<div class=\"scroll\"><table>\n<tr><th>azimuth</th><th>clearance,<br>µm</th><th>"
-          "unloading,<br>µm</th><th>gap,<br>µm</th><th>stiffness,<br>N/mm</th><th>loss<br>factor"
-          "</th><th>of the<br>secant</th><th>of the<br>foil</th>%s<th>cycles</th>"
-          "<th class=\"w\">to know</th></tr>\n",
-          lot ? "<th>gap by<br>the lot, µm</th><th>difference<br>of gaps, µm</th>" : "");
-  for (size_t i = 0; i < test->direction_count; i++)
-    if (test->directions[i].bearing == bearing) put_load_row(out, test, &test->directions[i], lot);
-  fputs("</table></div>\n", out);
+  const fg_subject list = fg_load_bearing_subject(test, bearing);
+  fg_html_table(out, &fg_load_direction_members, &list, fg_load_direction_of_bearing);
 }
 
 static void put_loops(FILE *out, const fg_load_test *test, size_t bearing) {

@@ -4,36 +4,7 @@
 
 #include "core/file.h"
 #include "foilgauge/load_report.h"
-
-static void put_column(FILE *out, double value, int width, int decimals) {
-  if (isfinite(value))
-    fprintf(out, " %*.*f", width, decimals, value);
-  else
-    fprintf(out, " %*s", width, "-");
-}
-
-static void put_direction(FILE *out, const fg_load_test *test, const fg_load_direction *d,
-                          bool lot) {
-  char flags[600];
-  fprintf(out, "  %8.1f", d->azimuth_deg);
-  put_column(out, 1000 * d->clearance.value, 9, 2);
-  put_column(out, 2000 * d->clearance.u, 7, 2);
-  put_column(out, 1000 * d->gap.value, 8, 1);
-  put_column(out, 2000 * d->gap.u, 6, 1);
-  put_column(out, d->stiffness.value, 9, 1);
-  put_column(out, 2 * d->stiffness.u, 7, 1);
-  put_column(out, d->loss.value, 8, 4);
-  put_column(out, d->loss_secant.value, 8, 4);
-  put_column(out, d->loss_foil.value, 8, 4);
-  if (lot) {
-    put_column(out, 1000 * d->predicted.value, 9, 2);
-    put_column(out, 1000 * d->difference.value, 9, 2);
-  }
-  fg_verdict verdict = fg_load_judge_direction(test, d);
-  if (verdict != FG_VERDICT_NONE) fprintf(out, "  %s", fg_verdict_word(verdict));
-  fg_load_flag_words(d->flags, true, flags, sizeof flags);
-  fprintf(out, "%s%s\n", flags[0] ? "  " : "", flags);
-}
+#include "report/load_test/members.h"
 
 static void put_break_away(FILE *out, const fg_load_test *test, const fg_load_bearing *b) {
   char flags[1200];
@@ -55,19 +26,15 @@ static void put_break_away(FILE *out, const fg_load_test *test, const fg_load_be
 
 static void put_bearing(FILE *out, const fg_load_test *test, size_t bearing) {
   const fg_load_bearing *b = &test->bearings[bearing];
-  bool lot = b->in_lot;
   fprintf(out, "\nbearing %s", b->name);
   if (b->directions)
     fprintf(out, ", %zu azimuth%s\n", b->directions, b->directions == 1 ? "" : "s");
   else
     fputs(", break-away test alone\n", out);
-  if (b->directions)
-    fprintf(
-        out,
-        "  azimuth    c um    U um  gap um  U um    K N/mm  U N/mm    loss   secant    foil%s\n",
-        lot ? "   lot um  diff um" : "");
-  for (size_t i = 0; i < test->direction_count; i++)
-    if (test->directions[i].bearing == bearing) put_direction(out, test, &test->directions[i], lot);
+  if (b->directions) {
+    const fg_subject list = fg_load_bearing_subject(test, bearing);
+    fg_members_terminal(out, "  ", &fg_load_direction_members, &list, fg_load_direction_of_bearing);
+  }
   if (b->measured > 1)
     fprintf(out, "  clearance %.2f to %.2f um, mean %.2f, U %.2f\n", 1000 * b->min.value,
             1000 * b->max.value, 1000 * b->mean_mm, 2000 * b->u_mean_mm);

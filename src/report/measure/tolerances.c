@@ -12,22 +12,7 @@
 #include "quantity/parts.h"
 #include "quantity/quantity_rows.h"
 #include "report/measure/cures.h"
-
-const char *fg_verdict_word(fg_verdict verdict) {
-  switch (verdict) {
-  case FG_VERDICT_PASS:
-    return "pass";
-  case FG_VERDICT_FAIL:
-    return "fail";
-  case FG_VERDICT_UNDECIDED:
-    return "cannot_tell";
-  case FG_VERDICT_NOT_MEASURED:
-    return "not_measured";
-  case FG_VERDICT_NONE:
-    return "no_tolerance";
-  }
-  return "";
-}
+#include "report/verdict_members.h"
 
 fg_verdict fg_judge_value(const fg_tolerance *tolerance, double value, double u) {
   if (isnan(value)) return FG_VERDICT_NOT_MEASURED;
@@ -39,21 +24,8 @@ fg_verdict fg_judge_value(const fg_tolerance *tolerance, double value, double u)
   return FG_VERDICT_UNDECIDED;
 }
 
-/* Higher is worse. */
-static int rank_of(fg_verdict verdict) {
-  static const int rank[] = {
-      [FG_VERDICT_NONE] = 0,         [FG_VERDICT_PASS] = 1, [FG_VERDICT_UNDECIDED] = 2,
-      [FG_VERDICT_NOT_MEASURED] = 3, [FG_VERDICT_FAIL] = 4,
-  };
-  return rank[verdict];
-}
-
-fg_verdict fg_verdict_worse(fg_verdict a, fg_verdict b) {
-  return rank_of(a) >= rank_of(b) ? a : b;
-}
-
 int fg_judgement_compare(const fg_judgement *a, const fg_judgement *b) {
-  int ranks = rank_of(b->verdict) - rank_of(a->verdict);
+  int ranks = fg_verdict_rank(b->verdict) - fg_verdict_rank(a->verdict);
   if (ranks) return ranks;
   if (a->severity != b->severity) return a->severity > b->severity ? -1 : 1;
   return a->number - b->number;
