@@ -7,10 +7,9 @@
 #include "core/text.h"
 #include "lots/index.h"
 #include "page/page.h"
-#include "page/plot_marks.h"
+#include "page/plot_frame.h"
 
 enum {
-  WIDTH = 1000,
   CURVE_POINTS = 300,
   LINES_MAX = 8,    /* beyond this most curves are grey: more cannot be told apart */
   MARKED = 4,       /* number of coloured curves then */
@@ -116,18 +115,18 @@ static void choose_looks(curve *curves, size_t count) {
 }
 
 static void plot_curves(FILE *out, curve *curves, size_t count, const char *label) {
-  fg_plot plot = {out, WIDTH, 70, 740, 26, 330, INFINITY, -INFINITY, 0, 0};
+  double x[2] = {INFINITY, -INFINITY}, y[2] = {0, 0};
   for (size_t i = 0; i < count; i++) {
     double reach = 2.5 * curves[i].spread->density.bandwidth;
-    plot.x_low = fmin(plot.x_low, curves[i].spread->min - reach);
-    plot.x_high = fmax(plot.x_high, curves[i].spread->max + reach);
-    plot.y_high = fmax(plot.y_high, 1.1 * find_peak(&curves[i]));
+    fg_range_add(x, curves[i].spread->min, reach);
+    fg_range_add(x, curves[i].spread->max, reach);
+    fg_range_add(y, 1.1 * find_peak(&curves[i]), 0);
   }
   choose_looks(curves, count);
-  fg_plot_begin(&plot, 384, label);
-  fg_plot_y_axis(&plot, "density");
-  fg_plot_x_numbers(&plot);
-  fg_plot_x_title(&plot, "bump radius over design, R / R_D");
+  fg_plot plot = fg_plot_frame_begin(
+      out, &(fg_plot_frame){label, .height = 384, .left = 70, .right = 260, .top = 26, .bottom = 54,
+                            .x = x, .y = y, .y_title = "density",
+                            .x_title = "bump radius over design, R / R_D"});
   if (plot.x_low < 1 && plot.x_high > 1) {
     fg_plot_segment(&plot, 1, 0, 1, plot.y_high, "hypothesis");
     fg_plot_text(&plot, 1, plot.y_high * 1.01, "key", "design");
@@ -172,37 +171,25 @@ void fg_index_plot_dies(FILE *out, const fg_index *index) {
   free(curves);
 }
 
-static void widen_range(double value, double *low, double *high) {
-  if (!isfinite(value)) return;
-  *low = fmin(*low, value);
-  *high = fmax(*high, value);
-}
-
 /* Includes values and limits wholly, and expected intervals as far as 0.3 of that span at each
  * side: few lots expect almost anything. */
-static bool find_axis_range(const fg_index *index, const fg_index_axis *axis, fg_plot *plot) {
-  double low = INFINITY, high = -INFINITY;
+static bool find_axis_range(const fg_index *index, const fg_index_axis *axis, double range[2]) {
   for (size_t i = 0; i < index->read; i++) {
     const fg_index_stat *stat = fg_index_stat_of(axis, &index->lots[i]);
     if (!stat || !stat->count) continue;
-    double reach = isfinite(stat->sd) ? stat->sd : 0;
-    widen_range(stat->mean - reach, &low, &high);
-    widen_range(stat->mean + reach, &low, &high);
-    widen_range(stat->lower, &low, &high);
-    widen_range(stat->upper, &low, &high);
+    fg_range_add(range, stat->mean, stat->sd);
+    fg_range_add(range, stat->lower, 0);
+    fg_range_add(range, stat->upper, 0);
   }
-  if (!(high >= low)) return false;
-  double span = high - low, first = low - 0.3 * span, last = high + 0.3 * span;
+  if (!(range[1] >= range[0])) return false;
+  double span = range[1] - range[0], first = range[0] - 0.3 * span, last = range[1] + 0.3 * span;
   for (size_t i = 0; i < index->read; i++) {
     const fg_index_stat *stat = fg_index_stat_of(axis, &index->lots[i]);
     if (!stat) continue;
-    widen_range(fmax(first, stat->expected_low), &low, &high);
-    widen_range(fmin(last, stat->expected_high), &low, &high);
+    fg_range_add(range, fmax(first, stat->expected_low), 0);
+    fg_range_add(range, fmin(last, stat->expected_high), 0);
   }
-  double room = 0.07 * (high - low), min = 1e-9 * fmax(fabs(low), fabs(high));
-  if (!(room > min)) room = fabs(high) > 0 ? 0.01 * fabs(high) : 1;
-  plot->y_low = low - room;
-  plot->y_high = high + room;
+  fg_range_pad_by_size(range, 0.07);
   return true;
 }
 
@@ -258,18 +245,19 @@ static void put_lot_label(const fg_plot *plot, const fg_index *index, size_t i) 
 }
 
 void fg_index_plot_axis(FILE *out, const fg_index *index, const fg_index_axis *axis) {
-  fg_plot plot = {out, WIDTH, 92, 985, 14, 210, 0.5, (double)index->read + 0.5, 0, 0};
+  double range[2] = {INFINITY, -INFINITY};
   char title[96];
   const char *unit = fg_index_unit(axis);
-  if (!find_axis_range(index, axis, &plot)) return;
+  if (!find_axis_range(index, axis, range)) return;
   fg_text_clip(title, sizeof title, "%s%s%s%s", axis->row->symbol,
                axis->scale == FG_INDEX_OVER_DESIGN ? " over design" : "", *unit ? ", " : "", unit);
-  fg_plot_begin(&plot, index->read > DATES_MAX ? 238 : 254, axis->row->words);
+  int room = index->read > DATES_MAX ? 28 : 44;
+  fg_plot plot = fg_plot_open(out, &(fg_plot_frame){axis->row->words, .height = 210 + room, .left = 92, .bottom = room, .x = (double[]){0.5, (double)index->read + 0.5}, .y = range, .y_title = title, .ticks = FG_TICKS_OWN});
   for (size_t i = 0; i < index->read; i++) {
     const fg_index_stat *stat = fg_index_stat_of(axis, &index->lots[i]);
     if (stat) put_expected_band(&plot, (double)i + 1, stat);
   }
-  fg_plot_y_axis(&plot, title);
+  fg_plot_axes(&plot);
   for (size_t i = 0; i < index->read; i++) {
     const fg_index_stat *stat = fg_index_stat_of(axis, &index->lots[i]);
     put_lot_label(&plot, index, i);

@@ -16,6 +16,10 @@ double fg_plot_y(const fg_plot *at, double y) {
   return at->bottom - (y - at->y_low) / (at->y_high - at->y_low) * (at->bottom - at->top);
 }
 
+double fg_plot_inside(const fg_plot *plot, double y) {
+  return fmin(plot->y_high, fmax(plot->y_low, y));
+}
+
 double fg_plot_nice_step(double span) {
   double raw = span / TICKS_WANTED, power = pow(10, floor(log10(raw))), share = raw / power;
   return power * (share < 1.5 ? 1 : share < 3.5 ? 2 : share < 7.5 ? 5 : 10);
@@ -85,6 +89,12 @@ void fg_plot_x_label(const fg_plot *at, double x, const char *text) {
   fprintf(at->out, "<text class=\"x\" x=\"%.1f\" y=\"%.1f\">", x, at->bottom + 20);
   fg_html_text(at->out, text);
   fputs("</text>\n", at->out);
+}
+
+void fg_plot_x_number(const fg_plot *plot, int number) {
+  char text[16];
+  snprintf(text, sizeof text, "%d", number);
+  fg_plot_x_label(plot, fg_plot_x(plot, number), text);
 }
 
 static void put_x_numbers(const fg_plot *at, double step) {

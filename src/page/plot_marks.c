@@ -53,6 +53,68 @@ void fg_plot_segment(const fg_plot *at, double x1, double y1, double x2, double 
   fg_plot_line(at, (const double[]){x1, x2}, (const double[]){y1, y2}, 2, style);
 }
 
+void fg_plot_level(const fg_plot *plot, double y, const char *style) {
+  if (y > plot->y_low && y < plot->y_high)
+    fg_plot_segment(plot, plot->x_low, y, plot->x_high, y, style);
+}
+
+void fg_plot_tolerance(const fg_plot *plot, const fg_tolerance *tolerance) {
+  if (!tolerance) return;
+  fg_plot_level(plot, tolerance->lower, "limit");
+  fg_plot_level(plot, tolerance->upper, "limit");
+}
+
+void fg_plot_rect(const fg_plot *plot, const double x[2], const double y[2], const char *style) {
+  double left = fg_plot_x(plot, x[0]), top = fg_plot_y(plot, y[1]);
+  fprintf(plot->out, "<rect class=\"%s\" x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\"/>\n",
+          style, left, top, fg_plot_x(plot, x[1]) - left, fg_plot_y(plot, y[0]) - top);
+}
+
+void fg_plot_band(const fg_plot *plot, double low, double high, const char *style) {
+  fg_plot_rect(plot, (double[]){plot->x_low, plot->x_high}, (double[]){low, high}, style);
+}
+
+void fg_plot_bump_band(const fg_plot *plot, double from, double to, int number) {
+  double left = fg_plot_x(plot, from), right = fg_plot_x(plot, to);
+  fprintf(plot->out,
+          "<rect class=\"band\" x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\"/>"
+          "<text class=\"x bump\" x=\"%.1f\" y=\"%.1f\">%d</text>\n",
+          left, plot->top, right - left, plot->bottom - plot->top, (left + right) / 2,
+          plot->top - 6, number);
+}
+
+void fg_plot_ribbon(const fg_plot *plot, const double *x, const double *low, const double *high,
+                    size_t count, const char *style, const char *css) {
+  fprintf(plot->out, "<path class=\"%s\"", style);
+  if (css) fprintf(plot->out, " style=\"%s\"", css);
+  fputs(" d=\"", plot->out);
+  for (size_t i = 0; i < count; i++)
+    fprintf(plot->out, "%c%.1f %.1f", i ? 'L' : 'M', fg_plot_x(plot, x[i]),
+            fg_plot_y(plot, fg_plot_inside(plot, high[i])));
+  for (size_t i = count; i-- > 0;)
+    fprintf(plot->out, "L%.1f %.1f", fg_plot_x(plot, x[i]),
+            fg_plot_y(plot, fg_plot_inside(plot, low[i])));
+  fputs("Z\"/>\n", plot->out);
+}
+
+void fg_plot_interval(const fg_plot *plot, double x, double shift_px, double value, double reach,
+                      const char *style) {
+  double at = fg_plot_x(plot, x) + shift_px, middle = fg_plot_y(plot, value);
+  double low = fg_plot_y(plot, value - reach), high = fg_plot_y(plot, value + reach);
+  fprintf(plot->out,
+          "<path class=\"%s\" d=\"M%.1f %.1fV%.1fM%.1f %.1fh10M%.1f %.1fh10\"/>"
+          "<circle class=\"%s\" cx=\"%.1f\" cy=\"%.1f\" r=\"5\"/>\n",
+          style, at, low, high, at - 5, low, at - 5, high, style, at, middle);
+}
+
+void fg_plot_key(const fg_plot *plot, double x_px, const char *style, const char *words) {
+  fprintf(plot->out,
+          "<circle class=\"%s\" cx=\"%.0f\" cy=\"14\" r=\"5\"/><text x=\"%.0f\" y=\"19\">", style,
+          x_px, x_px + 12);
+  fg_html_text(plot->out, words);
+  fputs("</text>\n", plot->out);
+}
+
 void fg_plot_text(const fg_plot *at, double x, double y, const char *style, const char *text) {
   fprintf(at->out, "<text class=\"%s\" x=\"%.1f\" y=\"%.1f\">", style, fg_plot_x(at, x),
           fg_plot_y(at, y));

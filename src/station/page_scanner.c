@@ -7,7 +7,7 @@
 
 #include "core/memory.h"
 #include "page/page.h"
-#include "page/plot_marks.h"
+#include "page/plot_frame.h"
 #include "page/tile.h"
 #include "station/check.h"
 #include "station/check_page.h"
@@ -148,14 +148,11 @@ static const check_row *in_order(const history *all, size_t i) {
   return &all->row[all->count - 1 - i];
 }
 
-static void find_span(const history *all, int axis, double allowed, fg_plot *at) {
-  double reach = allowed;
-  for (size_t i = 0; i < all->count; i++) {
-    const check_row *row = &all->row[i];
-    if (isfinite(row->value[axis])) reach = fmax(reach, fabs(row->value[axis]) + 2 * row->u[axis]);
-  }
-  at->y_high = 1.12 * reach;
-  at->y_low = -at->y_high;
+static double find_span(const history *all, int axis, double allowed) {
+  double range[2] = {-allowed, allowed};
+  for (size_t i = 0; i < all->count; i++)
+    fg_range_add(range, fabs(all->row[i].value[axis]), 2 * all->row[i].u[axis]);
+  return 1.12 * range[1];
 }
 
 static void draw_day(const fg_plot *at, const history *all, size_t i, const char *anchor) {
@@ -181,18 +178,11 @@ static void draw_check(const fg_plot *at, const check_row *row, double x, int ax
 }
 
 static void draw_history(FILE *out, const history *all, int axis, double allowed) {
-  fg_plot at = {.out = out, .width = 560, .left = 66, .right = 545, .top = 10, .bottom = 190};
-  at.x_low = 0.5;
-  at.x_high = (double)all->count + 0.5;
-  find_span(all, axis, allowed, &at);
+  double span = find_span(all, axis, allowed);
   fprintf(out, "<figure><h3>%s, %s</h3>\n", axes[axis].title, axes[axis].unit);
-  fg_plot_begin(&at, 220, axes[axis].title);
-  fprintf(out, "<rect class=\"allowed\" x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\"/>\n",
-          at.left, fg_plot_y(&at, allowed), at.right - at.left,
-          fg_plot_y(&at, -allowed) - fg_plot_y(&at, allowed));
-  fg_plot_y_axis(&at, "");
-  for (int side = -1; side <= 1; side += 2)
-    fg_plot_segment(&at, at.x_low, side * allowed, at.x_high, side * allowed, "tolerance");
+  fg_plot at = fg_plot_frame_begin(out, &(fg_plot_frame){axes[axis].title, .width = 560, .height = 220, .left = 66, .top = 10, .bottom = 30, .x = (double[]){0.5, (double)all->count + 0.5}, .y = (double[]){-span, span}, .y_title = "", .ticks = FG_TICKS_OWN, .band = (double[]){-allowed, allowed}, .band_style = "allowed"});
+  fg_plot_level(&at, -allowed, "tolerance");
+  fg_plot_level(&at, allowed, "tolerance");
   for (size_t i = 0; i < all->count; i++)
     draw_check(&at, in_order(all, i), (double)i + 1, axis);
   draw_day(&at, all, 0, "start");

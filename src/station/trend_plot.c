@@ -6,7 +6,7 @@
 
 #include "core/select.h"
 #include "page/page.h"
-#include "page/plot_marks.h"
+#include "page/plot_frame.h"
 #include "station/trend.h"
 
 enum { DOTS_MAX = 120, COLUMNS_MAX = 450, NAME_BYTES = 140, LABELS = 5 };
@@ -30,47 +30,35 @@ static double place_of_point(const drawing *d, size_t point) {
   return (double)fg_trend_number(d->trend, point);
 }
 
-static void include(double value, double *low, double *high) {
-  if (!isfinite(value)) return;
-  *low = fmin(*low, value);
-  *high = fmax(*high, value);
-}
-
-static void find_span(const drawing *d, double *low, double *high) {
-  *low = INFINITY;
-  *high = -INFINITY;
+static void find_span(const drawing *d, double range[2]) {
   for (size_t i = d->trend->first; i <= d->trend->last; i++) {
     const fg_chart_point *point = &d->chart->point[i];
-    include(point->value, low, high);
-    include(point->lower, low, high);
-    include(point->upper, low, high);
+    fg_range_add(range, point->value, 0);
+    fg_range_add(range, point->lower, 0);
+    fg_range_add(range, point->upper, 0);
   }
-  if (!(*high > *low)) {
-    double room = fmax(fabs(*low) * 1e-6, 1e-9);
-    *low -= room;
-    *high += room;
-  }
+  if (!(range[1] > range[0])) fg_range_pad(range, 0, fmax(fabs(range[0]) * 1e-6, 1e-9));
 }
 
 /* The tolerance's limits, as far as they are near enough not to press the values flat. */
-static void include_tolerance(drawing *d, double *low, double *high) {
+static void include_tolerance(drawing *d, double range[2]) {
   const fg_tolerance *tolerance = d->trend->quantity.tolerance;
-  double span = *high - *low;
+  double span = range[1] - range[0];
   d->upper = d->lower = NAN;
   if (!tolerance) return;
-  if (fmax(tolerance->upper, *high) - *low <= GROWTH_MAX * span) d->upper = tolerance->upper;
-  if (*high - fmin(tolerance->lower, *low) <= GROWTH_MAX * span) d->lower = tolerance->lower;
-  include(d->upper, low, high);
-  include(d->lower, low, high);
+  if (fmax(tolerance->upper, range[1]) - range[0] <= GROWTH_MAX * span) d->upper = tolerance->upper;
+  if (range[1] - fmin(tolerance->lower, range[0]) <= GROWTH_MAX * span) d->lower = tolerance->lower;
+  fg_range_add(range, d->upper, 0);
+  fg_range_add(range, d->lower, 0);
 }
 
 static void set_axes(drawing *d) {
-  double low, high;
-  find_span(d, &low, &high);
-  include_tolerance(d, &low, &high);
-  double room = 0.07 * (high - low);
-  d->at.y_low = low - room;
-  d->at.y_high = high + room;
+  double range[2] = {INFINITY, -INFINITY};
+  find_span(d, range);
+  include_tolerance(d, range);
+  fg_range_pad(range, 0.07, 0);
+  d->at.y_low = range[0];
+  d->at.y_high = range[1];
   d->at.x_low = place_of_point(d, d->trend->first) - 0.5;
   d->at.x_high = place_of_point(d, d->trend->last) + 0.5;
   double step = fg_plot_nice_step(d->at.y_high - d->at.y_low);
@@ -109,10 +97,9 @@ static void draw_x_axis(const drawing *d) {
 static void draw_zone(const drawing *d, double limit, bool above) {
   const fg_plot *at = &d->at;
   if (!isfinite(limit)) return;
-  double y = fg_plot_y(at, limit), top = above ? at->top : y;
-  fprintf(at->out, "<rect class=\"zone\" x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\"/>\n",
-          at->left, top, at->right - at->left, (above ? y : at->bottom) - top);
-  fprintf(at->out, "<path class=\"tolerance\" d=\"M%.1f %.1fH%.1f\"/>\n", at->left, y, at->right);
+  fg_plot_band(at, above ? limit : at->y_low, above ? at->y_high : limit, "zone");
+  fprintf(at->out, "<path class=\"tolerance\" d=\"M%.1f %.1fH%.1f\"/>\n", at->left,
+          fg_plot_y(at, limit), at->right);
 }
 
 /* Steps where the limits follow the sizes of lots; where points are many, one in each column. */

@@ -5,19 +5,13 @@
 #include <string.h>
 
 #include "foilgauge/report.h"
-#include "page/plot.h"
-#include "page/plot_marks.h"
+#include "page/plot_frame.h"
 
 #define DEG (180 / M_PI)
 
 static const char *const half_style[FG_DIE_HALVES] = {"s2", "s1"};
 static const char *const half_words[FG_DIE_HALVES] = {"concave half (grooves)",
                                                       "convex half (ridges)"};
-
-static void widen_die_range(double range[2], double low, double high) {
-  if (isfinite(low)) range[0] = fmin(range[0], low);
-  if (isfinite(high)) range[1] = fmax(range[1], high);
-}
 
 static const fg_tolerance *find_tolerance(const fg_die *die, const char *name) {
   for (size_t i = 0; i < die->design.tolerance_count; i++)
@@ -36,70 +30,48 @@ static void error_range(const fg_die *die, fg_die_quantity q, double range[2]) {
   for (int half = 0; half < FG_DIE_HALVES; half++)
     for (size_t i = 0; i < die->half[half].bump_count; i++) {
       const fg_die_value *v = &die->half[half].bumps[i].value[q];
-      widen_die_range(range, v->value - FG_COVERAGE_FACTOR * v->u,
-                      v->value + FG_COVERAGE_FACTOR * v->u);
+      fg_range_add(range, v->value, FG_COVERAGE_FACTOR * v->u);
     }
   /* Limits that lie near; far ones would flatten everything. */
   const fg_tolerance *limits = find_tolerance(die, fg_die_row_of(q)->name);
   double span = range[1] - range[0];
-  if (limits && limits->lower > range[0] - span) widen_die_range(range, limits->lower, NAN);
-  if (limits && limits->upper < range[1] + span) widen_die_range(range, NAN, limits->upper);
-  double margin = fmax(0.02, 0.1 * (range[1] - range[0]));
-  range[0] -= margin;
-  range[1] += margin;
-}
-
-static void put_mark(const fg_plot *at, double number, double shift, const fg_die_value *v,
-                     const char *style) {
-  double x = fg_plot_x(at, number) + shift, half = FG_COVERAGE_FACTOR * v->u;
-  double low = fg_plot_y(at, v->value - half), high = fg_plot_y(at, v->value + half);
-  fprintf(at->out,
-          "<path class=\"%s\" d=\"M%.1f %.1fV%.1fM%.1f %.1fh10M%.1f %.1fh10\"/>"
-          "<circle class=\"%s\" cx=\"%.1f\" cy=\"%.1f\" r=\"5\"/>\n",
-          style, x, low, high, x - 5, low, x - 5, high, style, x, fg_plot_y(at, v->value));
-}
-
-static void put_limits(const fg_plot *at, const fg_tolerance *limits) {
-  const double sides[] = {limits ? limits->lower : NAN, limits ? limits->upper : NAN};
-  for (int i = 0; i < 2; i++)
-    if (sides[i] > at->y_low && sides[i] < at->y_high)
-      fg_plot_segment(at, at->x_low, sides[i], at->x_high, sides[i], "limit");
+  if (limits && limits->lower > range[0] - span) fg_range_add(range, limits->lower, 0);
+  if (limits && limits->upper < range[1] + span) fg_range_add(range, limits->upper, 0);
+  fg_range_pad(range, 0.1, 0.02);
 }
 
 static void put_half_errors(const fg_plot *at, const fg_die *die, fg_die_half half,
                             fg_die_quantity q) {
   const fg_die_side *side = &die->half[half];
-  double shift = half == FG_DIE_CONCAVE ? -7 : 7, key = 80 + 420.0 * (double)half;
+  char words[80];
   if (!side->traces) return;
-  fg_plot_segment(at, at->x_low, side->mean[q].value, at->x_high, side->mean[q].value,
-                  half == FG_DIE_CONCAVE ? "k0 faint" : "k1 faint");
-  for (size_t i = 0; i < side->bump_count; i++)
-    put_mark(at, side->bumps[i].number, shift, &side->bumps[i].value[q], half_style[half]);
-  fprintf(at->out,
-          "<circle class=\"%s\" cx=\"%.0f\" cy=\"14\" r=\"5\"/><text x=\"%.0f\" y=\"19\">%s, mean "
-          "%+.3f %%</text>\n",
-          half_style[half], key, key + 12, half_words[half], side->mean[q].value);
+  fg_plot_level(at, side->mean[q].value, half == FG_DIE_CONCAVE ? "k0 faint" : "k1 faint");
+  for (size_t i = 0; i < side->bump_count; i++) {
+    const fg_die_value *v = &side->bumps[i].value[q];
+    fg_plot_interval(at, side->bumps[i].number, half == FG_DIE_CONCAVE ? -7 : 7, v->value,
+                     FG_COVERAGE_FACTOR * v->u, half_style[half]);
+  }
+  snprintf(words, sizeof words, "%s, mean %+.3f %%", half_words[half], side->mean[q].value);
+  fg_plot_key(at, 80 + 420 * (double)half, half_style[half], words);
 }
 
 void fg_die_plot_errors(FILE *out, const fg_die *die, fg_die_quantity q) {
   double range[2];
   int numbers[2];
-  char text[80];
+  char label[80], title[80];
   const fg_die_row *row = fg_die_row_of(q);
   error_range(die, q, range);
   numbers_of(die, numbers);
-  fg_plot at = {out,      1000,    70, 985, 34, 240, numbers[0] - 0.6, numbers[1] + 0.6,
-                range[0], range[1]};
-  snprintf(text, sizeof text, "%s of every bump, by half", row->words);
-  fg_plot_begin(&at, 290, text);
-  snprintf(text, sizeof text, "%s, %s", row->words, row->unit);
-  fg_plot_y_axis(&at, text);
-  for (int number = numbers[0]; number <= numbers[1]; number++) {
-    snprintf(text, sizeof text, "%d", number);
-    fg_plot_x_label(&at, fg_plot_x(&at, number), text);
-  }
+  snprintf(label, sizeof label, "%s of every bump, by half", row->words);
+  snprintf(title, sizeof title, "%s, %s", row->words, row->unit);
+  fg_plot at = fg_plot_frame_begin(
+      out, &(fg_plot_frame){label, .height = 290, .left = 70, .top = 34,
+                            .x = (double[]){numbers[0] - 0.6, numbers[1] + 0.6}, .y = range,
+                            .y_title = title, .ticks = FG_TICKS_OWN});
+  for (int number = numbers[0]; number <= numbers[1]; number++)
+    fg_plot_x_number(&at, number);
   fg_plot_x_title(&at, "bump");
-  put_limits(&at, find_tolerance(die, row->name));
+  fg_plot_tolerance(&at, find_tolerance(die, row->name));
   for (int half = 0; half < FG_DIE_HALVES; half++)
     put_half_errors(&at, die, (fg_die_half)half, q);
   fg_plot_end(&at);
@@ -126,22 +98,15 @@ static void put_arc(const fg_plot *at, fg_point centre, double radius, double mi
 
 enum { TRACE_WIDTH = 1000, TRACE_EDGE = 20, LINE_POINTS = 1500 };
 
-static fg_plot trace_plot(FILE *out, const fg_die_trace *trace, int *height) {
-  double low = INFINITY, high = -INFINITY;
-  for (size_t i = 0; i < trace->station_count; i++) {
-    low = fmin(low, trace->stations[i].z);
-    high = fmax(high, trace->stations[i].z);
-  }
-  double from = trace->stations[0].x, to = trace->stations[trace->station_count - 1].x;
-  double scale = (TRACE_WIDTH - 2 * TRACE_EDGE) / (to - from);
-  low -= 16 / scale;
-  high += 30 / scale;
-  *height = (int)(scale * (high - low)) + 2 * TRACE_EDGE;
-  return (fg_plot){out,        TRACE_WIDTH,
-                   TRACE_EDGE, TRACE_WIDTH - TRACE_EDGE,
-                   TRACE_EDGE, *height - TRACE_EDGE,
-                   from,       to,
-                   low,        high};
+/* Opens a plot whose scale is the same along both axes. */
+static fg_plot open_trace_plot(FILE *out, const fg_die_trace *trace) {
+  double x[2] = {trace->stations[0].x, trace->stations[trace->station_count - 1].x};
+  double scale = (TRACE_WIDTH - 2 * TRACE_EDGE) / (x[1] - x[0]), z[2] = {INFINITY, -INFINITY};
+  for (size_t i = 0; i < trace->station_count; i++)
+    fg_range_add(z, trace->stations[i].z, 0);
+  z[0] -= 16 / scale;
+  z[1] += 30 / scale;
+  return fg_plot_open(out, &(fg_plot_frame){"A trace of this half with its circles", .height = (int)(scale * (z[1] - z[0])) + 2 * TRACE_EDGE, .left = TRACE_EDGE, .right = TRACE_EDGE, .top = TRACE_EDGE, .bottom = TRACE_EDGE, .x = x, .y = z});
 }
 
 static void put_trace_line(const fg_plot *at, const fg_die_trace *trace) {
@@ -175,10 +140,8 @@ static void put_circles(const fg_plot *at, const fg_die *die, const fg_die_trace
 
 void fg_die_plot_trace(FILE *out, const fg_die *die, fg_die_half half) {
   const fg_die_trace *trace = first_trace(die, half);
-  int height;
   if (!trace || trace->station_count < 2) return;
-  fg_plot at = trace_plot(out, trace, &height);
-  fg_plot_begin(&at, height, "A trace of this half with its circles");
+  fg_plot at = open_trace_plot(out, trace);
   put_trace_line(&at, trace);
   put_circles(&at, die, trace);
   fg_plot_end(&at);
@@ -218,9 +181,8 @@ typedef struct bin {
 
 static void end_bin(const fg_plot *at, const bin *b, int *kind_before) {
   if (!b->count) return;
-  double y = fmin(at->y_high, fmax(at->y_low, b->sum / b->count));
   fprintf(at->out, "%c%.0f %.1f", b->kind == *kind_before ? 'L' : 'M', b->column + BIN_PX / 2,
-          fg_plot_y(at, y));
+          fg_plot_y(at, fg_plot_inside(at, b->sum / b->count)));
   *kind_before = b->kind;
 }
 
@@ -260,17 +222,11 @@ static double residual_limit(const fg_die *die, fg_die_half half) {
 }
 
 static void put_bands(const fg_plot *at, const fg_die *die, fg_die_half half) {
-  char number[16];
   double wide = 0.8 * die->nominal.half_chord_mm / die->design.overall_radius_mm * DEG /
                 die->design.bumps.pitch_deg;
   for (size_t i = 0; i < die->half[half].bump_count; i++) {
-    int n = die->half[half].bumps[i].number;
-    double from = fg_plot_x(at, n - wide), to = fg_plot_x(at, n + wide);
-    snprintf(number, sizeof number, "%d", n);
-    fprintf(at->out,
-            "<rect class=\"band\" x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\"/>"
-            "<text class=\"x bump\" x=\"%.1f\" y=\"%.1f\">%s</text>\n",
-            from, at->top, to - from, at->bottom - at->top, (from + to) / 2, at->top - 6, number);
+    int number = die->half[half].bumps[i].number;
+    fg_plot_bump_band(at, number - wide, number + wide, number);
   }
 }
 
@@ -279,8 +235,7 @@ void fg_die_plot_residuals(FILE *out, const fg_die *die, fg_die_half half) {
   int numbers[2];
   size_t colour = 0;
   numbers_of(die, numbers);
-  fg_plot at = {out, 1000, 70, 985, 26, 220, numbers[0] - 0.75, numbers[1] + 0.75, -limit, limit};
-  fg_plot_begin(&at, 240, "Residuals of the traces from their circles");
+  fg_plot at = fg_plot_open(out, &(fg_plot_frame){"Residuals of the traces from their circles", .height = 240, .left = 70, .top = 26, .bottom = 20, .x = (double[]){numbers[0] - 0.75, numbers[1] + 0.75}, .y = (double[]){-limit, limit}});
   put_bands(&at, die, half);
   fg_plot_y_axis(&at, "residual, µm");
   for (size_t i = 0; i < die->trace_count; i++)

@@ -6,38 +6,29 @@
 
 #include "page/page.h"
 
-void fg_range_add(double range[2], double value) {
-  if (!isfinite(value)) return;
-  range[0] = fmin(range[0], value);
-  range[1] = fmax(range[1], value);
+static void pad_axis(const double data[2], double range[2]) {
+  bool known = data[0] <= data[1];
+  range[0] = known ? data[0] : -1;
+  range[1] = known ? data[1] : 1;
+  fg_range_pad(range, 0.06, range[1] > range[0] ? 0 : fmax(1e-9, 0.1 * fabs(range[1])));
 }
 
-static void widen_axis_range(const double range[2], double *low, double *high) {
-  *low = range[0];
-  *high = range[1];
-  if (!(range[0] <= range[1])) {
-    *low = -1;
-    *high = 1;
-  }
-  double margin = *high > *low ? 0.06 * (*high - *low) : fmax(1e-9, 0.1 * fabs(*high));
-  *low -= margin;
-  *high += margin;
-}
-
-fg_plot fg_axes_begin(FILE *out, const char *title, const double x[2], const double y[2]) {
-  fg_plot at = {.out = out,
-                .width = FG_AXES_WIDTH,
-                .left = 74,
-                .right = FG_AXES_WIDTH - 14,
-                .top = 12,
-                .bottom = FG_AXES_HEIGHT - 50};
-  widen_axis_range(x, &at.x_low, &at.x_high);
-  widen_axis_range(y, &at.y_low, &at.y_high);
+fg_plot fg_axes_begin(FILE *out, const fg_plot_frame *frame) {
+  double x[2], y[2];
+  fg_plot_frame axes = *frame;
+  axes.width = FG_AXES_WIDTH;
+  axes.height = FG_AXES_HEIGHT;
+  axes.left = 74;
+  axes.right = 14;
+  if (!(axes.top > 0)) axes.top = 12;
+  pad_axis(frame->x, x);
+  pad_axis(frame->y, y);
+  axes.x = x;
+  axes.y = y;
   fputs("<figure><h3>", out);
-  fg_html_text(out, title);
+  fg_html_text(out, frame->label);
   fputs("</h3>", out);
-  fg_plot_begin(&at, FG_AXES_HEIGHT, title);
-  return at;
+  return fg_plot_frame_begin(out, &axes);
 }
 
 void fg_axes_end(const fg_plot *at) {
@@ -49,12 +40,6 @@ void fg_axes_dot(const fg_plot *at, const char *style, double x, double y, doubl
   if (isfinite(x) && isfinite(y))
     fprintf(at->out, "<circle class=\"%s\" cx=\"%.1f\" cy=\"%.1f\" r=\"%.1f\"/>\n", style,
             fg_plot_x(at, x), fg_plot_y(at, y), radius);
-}
-
-void fg_axes_line(const fg_plot *at, const char *style, double x0, double y0, double x1,
-                  double y1) {
-  fprintf(at->out, "<path class=\"%s\" d=\"M%.1f %.1fL%.1f %.1f\"/>\n", style, fg_plot_x(at, x0),
-          fg_plot_y(at, y0), fg_plot_x(at, x1), fg_plot_y(at, y1));
 }
 
 void fg_axes_text(const fg_plot *at, double x, double y, const char *text) {

@@ -3,23 +3,19 @@
 #ifndef FG_REPORT_DOE_AXES_H
 #define FG_REPORT_DOE_AXES_H
 
-#include "page/plot.h"
+#include "page/plot_frame.h"
 
 enum { FG_AXES_WIDTH = 480, FG_AXES_HEIGHT = 330 };
 
 /* Points of a plot at most; of more, only some are drawn. */
 enum { FG_DOE_POINTS_SHOWN = 2000 };
 
-/* Opens <figure> and <svg> for data within these ranges, widened by a margin; ranges that are empty
- * or unknown become -1 to 1. */
-fg_plot fg_axes_begin(FILE *out, const char *title, const double x[2], const double y[2]);
+/* Opens <figure> and <svg> for data within the frame's ranges, widened by a margin; ranges that are
+ * empty or unknown become -1 to 1. The frame's label is the heading, its size is not read. */
+fg_plot fg_axes_begin(FILE *out, const fg_plot_frame *frame);
 void fg_axes_end(const fg_plot *at);
 
-/* Makes room for a value; ranges start as INFINITY, -INFINITY. */
-void fg_range_add(double range[2], double value);
-
 void fg_axes_dot(const fg_plot *at, const char *style, double x, double y, double radius);
-void fg_axes_line(const fg_plot *at, const char *style, double x0, double y0, double x1, double y1);
 /* Writes text beside a point: right of it where there is room, else left. */
 void fg_axes_text(const fg_plot *at, double x, double y, const char *text);
 

@@ -56,7 +56,7 @@ static void sample(slice *s) {
       s->x[s->a] = value_along_factor(s->fa, (double)k / GRID);
       s->x[s->b] = value_along_factor(s->fb, (double)i / GRID);
       s->value[i][k] = fg_surface_value(&s->e->surface, s->x);
-      fg_range_add(range, s->value[i][k]);
+      fg_range_add(range, s->value[i][k], 0);
     }
   s->step = range[1] > range[0] ? fg_plot_nice_step((range[1] - range[0]) / 2) : 1;
   s->first = floor(range[0] / s->step) * s->step;
@@ -308,12 +308,10 @@ static void put_contour(FILE *out, const fg_experiment *e, size_t a, size_t b) {
   fg_name_words(s.fa->name, name_a, sizeof name_a);
   fg_name_words(s.fb->name, name_b, sizeof name_b);
   snprintf(title, title_size, "%.250s and %.250s", name_a, name_b);
-  fg_plot at = fg_axes_begin(out, title, x, y);
   fg_axis_words(s.fa->name, name_a, sizeof name_a);
   fg_axis_words(s.fb->name, name_b, sizeof name_b);
-  fg_plot_y_axis(&at, name_b);
-  fg_plot_x_numbers(&at);
-  fg_plot_x_title(&at, name_a);
+  fg_plot at = fg_axes_begin(
+      out, &(fg_plot_frame){title, .x = x, .y = y, .y_title = name_b, .x_title = name_a});
   places taken = {.count = 0};
   occupy_runs(&at, &s, &taken);
   put_bands(&at, &s);

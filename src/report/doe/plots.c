@@ -82,18 +82,18 @@ static void put_means(FILE *out, const fg_experiment *e, size_t variable, const 
   double x[2] = {INFINITY, -INFINITY}, real[LEVELS_SHOWN];
   for (size_t k = 0; k < m->count; k++) {
     real[k] = factor ? fg_factor_real(factor, m->value[k]) : m->value[k];
-    fg_range_add(x, real[k]);
+    fg_range_add(x, real[k], 0);
   }
   char title[300];
   fg_name_words(name, title, sizeof title);
-  fg_plot at = fg_axes_begin(out, title, x, y);
+  fg_plot at = fg_axes_begin(out, &(fg_plot_frame){title, .x = x, .y = y, .ticks = FG_TICKS_OWN});
   put_y_axis(&at, e, "mean");
   for (size_t k = 0; k < m->count && levels->count; k++)
     fg_plot_x_label(&at, fg_plot_x(&at, real[k]), levels->name[(size_t)m->value[k]]);
   if (!levels->count) fg_plot_x_numbers(&at);
   put_x_title(&at, name);
   for (size_t k = 0; k + 1 < m->count; k++)
-    fg_axes_line(&at, "s1", real[k], m->mean[k], real[k + 1], m->mean[k + 1]);
+    fg_plot_segment(&at, real[k], m->mean[k], real[k + 1], m->mean[k + 1], "s1");
   for (size_t k = 0; k < m->count; k++)
     fg_axes_dot(&at, "s1", real[k], m->mean[k], 5);
   fg_axes_end(&at);
@@ -105,7 +105,7 @@ void fg_doe_plot_main_effects(FILE *out, const fg_experiment *e) {
   for (size_t v = 0; v < e->model.formula.variables; v++) {
     find_level_means(e, v, &m);
     for (size_t k = 0; !m.too_many && k < m.count; k++)
-      fg_range_add(y, m.mean[k]);
+      fg_range_add(y, m.mean[k], 0);
   }
   for (size_t v = 0; v < e->model.formula.variables; v++) {
     find_level_means(e, v, &m);
@@ -149,28 +149,26 @@ static fg_status sample_pair(fg_context *ctx, const fg_experiment *e, const fg_f
 
 static fg_status put_pair(fg_context *ctx, FILE *out, const fg_experiment *e, const fg_factor *a,
                           const fg_factor *b) {
-  double y[2][CURVE + 1], range[2] = {INFINITY, -INFINITY};
+  double y[2][CURVE + 1], place[CURVE + 1], range[2] = {INFINITY, -INFINITY};
   double x[2] = {fg_factor_real(a, a->lowest), fg_factor_real(a, a->highest)};
   char title[600], text[600], name[300], other[300];
   FG_TRY(sample_pair(ctx, e, a, b, y));
   for (int i = 0; i <= CURVE; i++) {
-    fg_range_add(range, y[0][i]);
-    fg_range_add(range, y[1][i]);
+    place[i] = x[0] + (x[1] - x[0]) * i / CURVE;
+    fg_range_add(range, y[0][i], 0);
+    fg_range_add(range, y[1][i], 0);
   }
   fg_name_words(a->name, name, sizeof name);
   fg_name_words(b->name, other, sizeof other);
   snprintf(title, sizeof title, "%.250s × %.250s", name, other);
-  fg_plot at = fg_axes_begin(out, title, x, range);
-  at.top = 48; /* the legend stands above */
+  /* The legend stands above. */
+  fg_plot at = fg_axes_begin(
+      out, &(fg_plot_frame){title, .top = 48, .x = x, .y = range, .ticks = FG_TICKS_OWN});
   put_y_axis(&at, e, "model");
   fg_plot_x_numbers(&at);
   put_x_title(&at, a->name);
   for (int side = 0; side < 2; side++) {
-    fprintf(out, "<path class=\"%s\" d=\"", side ? "s2" : "s1");
-    for (int i = 0; i <= CURVE; i++)
-      fprintf(out, "%c%.1f %.1f", i ? 'L' : 'M', fg_plot_x(&at, x[0] + (x[1] - x[0]) * i / CURVE),
-              fg_plot_y(&at, y[side][i]));
-    fputs("\"/>\n", out);
+    fg_plot_line(&at, place, y[side], CURVE + 1, side ? "s2" : "s1");
     fg_axes_dot(&at, side ? "s2" : "s1", x[0], y[side][0], 5);
     fg_axes_dot(&at, side ? "s2" : "s1", x[1], y[side][CURVE], 5);
     char value[80];
@@ -199,7 +197,8 @@ fg_status fg_doe_plot_interactions(fg_context *ctx, FILE *out, const fg_experime
 /* The mean with its interval along one factor, the others in the middle. */
 static fg_status put_profile(fg_context *ctx, FILE *out, const fg_experiment *e,
                              const fg_factor *f) {
-  fg_prediction p[2 * CURVE + 1];
+  fg_prediction p;
+  double place[2 * CURVE + 1], mean[2 * CURVE + 1], low[2 * CURVE + 1], high[2 * CURVE + 1];
   double setting[FG_FORMULA_VARIABLES], y[2] = {INFINITY, -INFINITY};
   double x[2] = {fg_factor_real(f, f->lowest), fg_factor_real(f, f->highest)};
   size_t variables = e->model.formula.variables,
@@ -208,39 +207,28 @@ static fg_status put_profile(fg_context *ctx, FILE *out, const fg_experiment *e,
   middle_setting(e, setting);
   for (int i = 0; i <= 2 * CURVE; i++) {
     set_column(e, f, f->lowest + (f->highest - f->lowest) * i / (2 * CURVE), setting);
-    FG_TRY(fg_experiment_predict(ctx, e, setting, &p[i]));
-    fg_range_add(y, p[i].mean);
+    FG_TRY(fg_experiment_predict(ctx, e, setting, &p));
+    place[i] = x[0] + (x[1] - x[0]) * i / (2 * CURVE);
+    mean[i] = p.mean;
+    low[i] = p.low;
+    high[i] = p.high;
+    fg_range_add(y, mean[i], 0);
   }
   for (size_t i = 0; i < e->regression.rows; i++)
-    fg_range_add(y, response_at(e, i));
+    fg_range_add(y, response_at(e, i), 0);
   double lowest = y[0] - (y[1] - y[0]), highest = y[1] + (y[1] - y[0]);
-  for (int i = 0; i <= 2 * CURVE && isfinite(p[0].low); i++) { /* the curve must not look flat */
-    fg_range_add(y, fmax(p[i].low, lowest));
-    fg_range_add(y, fmin(p[i].high, highest));
+  for (int i = 0; i <= 2 * CURVE && isfinite(low[0]); i++) { /* the curve must not look flat */
+    fg_range_add(y, fmax(low[i], lowest), 0);
+    fg_range_add(y, fmin(high[i], highest), 0);
   }
   fg_name_words(f->name, name, sizeof name);
   snprintf(title, sizeof title, "Response along %.300s", name);
-  fg_plot at = fg_axes_begin(out, title, x, y);
+  fg_plot at = fg_axes_begin(out, &(fg_plot_frame){title, .x = x, .y = y, .ticks = FG_TICKS_OWN});
   put_y_axis(&at, e, "response");
   fg_plot_x_numbers(&at);
   put_x_title(&at, f->name);
-  double at_x[2 * CURVE + 1];
-  for (int i = 0; i <= 2 * CURVE; i++)
-    at_x[i] = fg_plot_x(&at, x[0] + (x[1] - x[0]) * i / (2 * CURVE));
-  if (isfinite(p[0].low)) {
-    fputs("<path class=\"ci\" style=\"fill:#1f6fd0\" d=\"", out);
-    for (int i = 0; i <= 2 * CURVE; i++)
-      fprintf(out, "%c%.1f %.1f", i ? 'L' : 'M', at_x[i],
-              fg_plot_y(&at, fmin(at.y_high, fmax(at.y_low, p[i].high))));
-    for (int i = 2 * CURVE; i >= 0; i--)
-      fprintf(out, "L%.1f %.1f", at_x[i],
-              fg_plot_y(&at, fmin(at.y_high, fmax(at.y_low, p[i].low))));
-    fputs("Z\"/>\n", out);
-  }
-  fputs("<path class=\"s2\" d=\"", out);
-  for (int i = 0; i <= 2 * CURVE; i++)
-    fprintf(out, "%c%.1f %.1f", i ? 'L' : 'M', at_x[i], fg_plot_y(&at, p[i].mean));
-  fputs("\"/>\n", out);
+  if (isfinite(low[0])) fg_plot_ribbon(&at, place, low, high, 2 * CURVE + 1, "ci", "fill:#1f6fd0");
+  fg_plot_line(&at, place, mean, 2 * CURVE + 1, "s2");
   for (size_t i = 0; i < e->regression.rows; i += step)
     fg_axes_dot(&at, "run", fg_factor_real(f, e->setting[i * variables + f->variable]),
                 response_at(e, i), 4);

@@ -49,12 +49,12 @@ static void put_pareto(FILE *out, const fg_experiment *e, const bar *bars, size_
                            : e->lenth.margin;
   double longest = bars[0].size;
   if (!e->has_split_plot && limit > 0) longest = fmax(longest, limit);
-  fg_plot at = {out, FG_AXES_WIDTH, 190, FG_AXES_WIDTH - 14, 8, height - 50, 0, longest * 1.05, 0,
-                1};
   fputs("<figure><h3>Pareto of effects</h3>", out);
-  fg_plot_begin(&at, height, "Pareto of effects");
-  fg_plot_x_numbers(&at);
-  fg_plot_x_title(&at, has_error ? "|t|" : "|effect|, coefficient of ±1");
+  fg_plot at = fg_plot_frame_begin(
+      out, &(fg_plot_frame){"Pareto of effects", .width = FG_AXES_WIDTH, .height = height,
+                            .left = 190, .right = 14, .top = 8, .x = (double[]){0, longest * 1.05},
+                            .y = (double[]){0, 1},
+                            .x_title = has_error ? "|t|" : "|effect|, coefficient of ±1"});
   for (size_t i = 0; i < shown; i++) {
     char name[64];
     snprintf(name, sizeof name, "%.60s", e->regression.coefficient[bars[i].column].name);
@@ -69,7 +69,7 @@ static void put_pareto(FILE *out, const fg_experiment *e, const bar *bars, size_
     fputs("</text>\n", out);
   }
   if (!e->has_split_plot && (has_error || e->has_lenth))
-    fg_axes_line(&at, "limit", limit, 0, limit, 1);
+    fg_plot_segment(&at, limit, 0, limit, 1, "limit");
   fg_plot_end(&at);
   fprintf(out, "<figcaption>%s%s</figcaption></figure>\n",
           has_error ? "Orange: told from the scatter. "
@@ -121,17 +121,16 @@ static fg_status put_half_normal(fg_context *ctx, FILE *out, const fg_experiment
     contrast[i] = e->effect[bars[i].column].contrast;
   FG_TRY(fg_half_normal_points(ctx, contrast, count, points));
   for (size_t i = 0; i < count; i++) {
-    fg_range_add(x, points[i].magnitude);
-    fg_range_add(y, points[i].quantile);
+    fg_range_add(x, points[i].magnitude, 0);
+    fg_range_add(y, points[i].quantile, 0);
   }
-  fg_plot at = fg_axes_begin(out, "Half-normal plot of effects", x, y);
-  fg_plot_y_axis(&at, "half-normal quantile");
-  fg_plot_x_numbers(&at);
-  fg_plot_x_title(&at, "|effect|, coefficient of ±1");
+  fg_plot at = fg_axes_begin(out, &(fg_plot_frame){"Half-normal plot of effects", .x = x, .y = y,
+                                                   .y_title = "half-normal quantile",
+                                                   .x_title = "|effect|, coefficient of ±1"});
   size_t small = keep_untold(e, bars, points, count, line);
   double slope = small_slope(line, &small);
   if (slope > 0)
-    fg_axes_line(&at, "hint", 0, 0, fmin(x[1], slope * y[1]), fmin(x[1] / slope, y[1]));
+    fg_plot_segment(&at, 0, 0, fmin(x[1], slope * y[1]), fmin(x[1] / slope, y[1]), "hint");
   for (size_t i = 0; i < count; i++) {
     size_t column = bars[points[i].effect].column;
     fg_axes_dot(&at, is_on(e, column) ? "s1" : "s2", points[i].magnitude, points[i].quantile, 5);

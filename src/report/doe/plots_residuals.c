@@ -24,14 +24,12 @@ static void put_scatter(FILE *out, const scatter *s, bool zero) {
   double x[2] = {INFINITY, -INFINITY}, y[2] = {INFINITY, -INFINITY};
   size_t step = s->count / FG_DOE_POINTS_SHOWN + 1;
   for (size_t i = 0; i < s->count; i++) {
-    fg_range_add(x, s->x[i]);
-    fg_range_add(y, s->y[i]);
+    fg_range_add(x, s->x[i], 0);
+    fg_range_add(y, s->y[i], 0);
   }
-  if (zero) fg_range_add(y, 0);
-  fg_plot at = fg_axes_begin(out, s->title, x, y);
-  fg_plot_y_axis(&at, s->y_title);
-  fg_plot_x_numbers(&at);
-  fg_plot_x_title(&at, s->x_title);
+  if (zero) fg_range_add(y, 0, 0);
+  fg_plot at = fg_axes_begin(out, &(fg_plot_frame){s->title, .x = x, .y = y, .y_title = s->y_title,
+                                                   .x_title = s->x_title});
   for (size_t i = 0; i < s->count; i += step)
     fg_axes_dot(&at, "s2", s->x[i], s->y[i], s->count > 200 ? 2 : 4.5);
   fg_axes_end(&at);

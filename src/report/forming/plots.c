@@ -4,10 +4,9 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "page/plot.h"
-#include "page/plot_marks.h"
+#include "page/plot_frame.h"
 
-enum { WIDTH = 1000, HEIGHT = 330, SHOWN_BUMPS = 3 };
+enum { SHOWN_BUMPS = 3 };
 
 /* Returns the value of a stretch that a line shows. */
 typedef double piece_value(const fg_forming_piece *piece);
@@ -46,10 +45,6 @@ static void shown_range(const fg_forming *f, double range[2]) {
   }
 }
 
-static double inside(const fg_plot *at, double y) {
-  return fmin(at->y_high, fmax(at->y_low, y));
-}
-
 /* Draws a line with steps at the ends of stretches. Beyond the plot it runs along the edge. */
 static void put_stretch_line(const fg_plot *at, const fg_forming *f, piece_value *value,
                              const char *style) {
@@ -59,7 +54,7 @@ static void put_stretch_line(const fg_plot *at, const fg_forming *f, piece_value
     const fg_forming_piece *p = &f->pieces[i];
     double from = fmax(p->start_mm, at->x_low), to = fmin(p->start_mm + p->length_mm, at->x_high);
     if (to <= from) continue;
-    double y = fg_plot_y(at, inside(at, value(p)));
+    double y = fg_plot_y(at, fg_plot_inside(at, value(p)));
     fprintf(at->out, "%c%.1f %.1fH%.1f", mark, fg_plot_x(at, from), y, fg_plot_x(at, to));
     mark = 'L';
   }
@@ -101,12 +96,11 @@ static void put_along(FILE *out, const fg_forming *f, const line *lines, size_t 
                       const char *title) {
   double range[2];
   shown_range(f, range);
-  fg_plot at = {out, WIDTH, 76, 985, 34, HEIGHT - 50, range[0], range[1], -max, max};
-  fg_plot_begin(&at, HEIGHT, title);
-  fg_plot_y_axis(&at, title);
-  fg_plot_x_numbers(&at);
-  fg_plot_x_title(&at, "s along the midline, mm");
-  fg_plot_segment(&at, at.x_low, 0, at.x_high, 0, "zero");
+  fg_plot at = fg_plot_frame_begin(
+      out, &(fg_plot_frame){title, .height = 330, .left = 76, .top = 34, .x = range,
+                            .y = (double[]){-max, max}, .y_title = title,
+                            .x_title = "s along the midline, mm"});
+  fg_plot_level(&at, 0, "zero");
   for (size_t i = 0; i < count; i++)
     put_stretch_line(&at, f, lines[i].value, lines[i].style);
   put_bump_numbers(&at, f);
@@ -146,33 +140,25 @@ void fg_forming_plot_errors(FILE *out, const fg_forming *f) {
     const char *style, *words;
   } series[] = {{radius_error, "s1", "bump radius"},
                 {angle_error, "s2", "intersection angle theta"}};
-  double low = 0, high = 0;
-  char text[16];
+  double y[2] = {0, 0};
   for (size_t i = 0; i < f->bump_count; i++)
-    for (size_t s = 0; s < 2; s++) {
-      low = fmin(low, series[s].value(&f->bumps[i]));
-      high = fmax(high, series[s].value(&f->bumps[i]));
-    }
-  double margin = fmax(0.2, 0.1 * (high - low));
-  fg_plot at = {out,          WIDTH,        76, 985, 34, 240, 0.4, (double)f->bump_count + 0.6,
-                low - margin, high + margin};
-  fg_plot_begin(&at, 290, "Errors of radius and intersection angle of every bump");
-  fg_plot_y_axis(&at, "error, %");
-  for (size_t i = 0; i < f->bump_count; i++) {
-    snprintf(text, sizeof text, "%d", f->bumps[i].number);
-    fg_plot_x_label(&at, fg_plot_x(&at, f->bumps[i].number), text);
-  }
+    for (size_t s = 0; s < 2; s++)
+      fg_range_add(y, series[s].value(&f->bumps[i]), 0);
+  fg_range_pad(y, 0.1, 0.2);
+  fg_plot at = fg_plot_frame_begin(
+      out,
+      &(fg_plot_frame){"Errors of radius and intersection angle of every bump", .height = 290,
+                       .left = 76, .top = 34, .x = (double[]){0.4, (double)f->bump_count + 0.6},
+                       .y = y, .y_title = "error, %", .ticks = FG_TICKS_OWN});
+  for (size_t i = 0; i < f->bump_count; i++)
+    fg_plot_x_number(&at, f->bumps[i].number);
   fg_plot_x_title(&at, "bump");
-  fg_plot_segment(&at, at.x_low, 0, at.x_high, 0, "zero");
+  fg_plot_level(&at, 0, "zero");
   for (size_t s = 0; s < 2; s++) {
     for (size_t i = 0; i < f->bump_count; i++)
       if (isfinite(series[s].value(&f->bumps[i])))
         fg_plot_dot(&at, f->bumps[i].number, series[s].value(&f->bumps[i]), 5, series[s].style);
-    double x = 80 + 300 * (double)s;
-    fprintf(out,
-            "<circle class=\"%s\" cx=\"%.0f\" cy=\"14\" r=\"5\"/><text x=\"%.0f\" y=\"19\">%s"
-            "</text>\n",
-            series[s].style, x, x + 12, series[s].words);
+    fg_plot_key(&at, 80 + 300 * (double)s, series[s].style, series[s].words);
   }
   fg_plot_end(&at);
 }
@@ -180,19 +166,17 @@ void fg_forming_plot_errors(FILE *out, const fg_forming *f) {
 /* ---- a fit ---- */
 
 void fg_forming_plot_fit(FILE *out, const fg_forming_fit *fit) {
-  double low = INFINITY, high = -INFINITY;
+  double range[2] = {INFINITY, -INFINITY};
   for (size_t i = 0; i < fit->runs; i++) {
-    const fg_forming_run_fit *r = &fit->run[i];
-    low = fmin(low, fmin(r->measured, fmin(r->fitted, r->left_out)));
-    high = fmax(high, fmax(r->measured, fmax(r->fitted, r->left_out)));
+    fg_range_add(range, fit->run[i].measured, 0);
+    fg_range_add(range, fit->run[i].fitted, 0);
+    fg_range_add(range, fit->run[i].left_out, 0);
   }
-  double margin = fmax(1e-6, 0.06 * (high - low));
-  fg_plot at = {out,          WIDTH,         76,           985,          34, 380,
-                low - margin, high + margin, low - margin, high + margin};
-  fg_plot_begin(&at, 430, "Predicted against measured");
-  fg_plot_y_axis(&at, "predicted, %");
-  fg_plot_x_numbers(&at);
-  fg_plot_x_title(&at, "measured, %");
+  fg_range_pad(range, 0.06, 1e-6);
+  fg_plot at = fg_plot_frame_begin(
+      out, &(fg_plot_frame){"Predicted against measured", .height = 430, .left = 76, .top = 34,
+                            .x = range, .y = range, .y_title = "predicted, %",
+                            .x_title = "measured, %"});
   fg_plot_segment(&at, at.x_low, at.x_low, at.x_high, at.x_high, "hint");
   for (size_t i = 0; i < fit->runs; i++) {
     const fg_forming_run_fit *r = &fit->run[i];

@@ -4,28 +4,10 @@
 #include <math.h>
 
 #include "foilgauge/report.h"
-#include "page/plot.h"
-#include "page/plot_marks.h"
+#include "page/plot_frame.h"
 
 /* LOOP_SAMPLES: samples drawn of a loop; more make the page larger, but no line finer. */
 enum { LOOP_SAMPLES = 1200, CURVE_STEPS = 180 };
-
-static void widen_load_range(double range[2], double low, double high) {
-  if (isfinite(low)) range[0] = fmin(range[0], low);
-  if (isfinite(high)) range[1] = fmax(range[1], high);
-}
-
-static void add_margin(double range[2], double share) {
-  double margin = fmax(share * (range[1] - range[0]), 1e-9);
-  range[0] -= margin;
-  range[1] += margin;
-}
-
-static void put_band(const fg_plot *at, double y_low, double y_high, const char *style) {
-  double top = fg_plot_y(at, y_high), bottom = fg_plot_y(at, y_low);
-  fprintf(at->out, "<rect class=\"%s\" x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\"/>\n",
-          style, at->left, top, at->right - at->left, bottom - top);
-}
 
 static void put_record(const fg_plot *at, const fg_load_test *test, const fg_load_direction *d) {
   const fg_load_sample *s = test->samples + d->first;
@@ -61,37 +43,28 @@ void fg_load_plot_loops(FILE *out, const fg_load_test *test, const fg_load_direc
   double x[2] = {INFINITY, -INFINITY}, f[2] = {d->force_low_n, d->force_high_n};
   double threshold = test->options.threshold_n;
   for (size_t i = 0; i < d->count; i++)
-    widen_load_range(x, s[i].x_mm, s[i].x_mm);
-  widen_load_range(f, zero_of(d) - threshold, zero_of(d) + threshold);
-  add_margin(x, 0.04);
-  add_margin(f, 0.08);
-  fg_plot at = {out, 560, 66, 545, 14, 300, x[0], x[1], f[0], f[1]};
-  fg_plot_begin(&at, 350, "Force over displacement, every cycle");
-  put_band(&at, zero_of(d) - threshold, zero_of(d) + threshold, "band");
-  fg_plot_y_axis(&at, "force, N");
-  fg_plot_x_numbers(&at);
-  fg_plot_x_title(&at, "displacement, mm");
+    fg_range_add(x, s[i].x_mm, 0);
+  fg_range_add(f, zero_of(d), threshold);
+  fg_range_pad(x, 0.04, 1e-9);
+  fg_range_pad(f, 0.08, 1e-9);
+  fg_plot at = fg_plot_frame_begin(out, &(fg_plot_frame){"Force over displacement, every cycle", .width = 560, .height = 350, .left = 66, .x = x, .y = f, .y_title = "force, N", .x_title = "displacement, mm", .band = (double[]){zero_of(d) - threshold, zero_of(d) + threshold}, .band_style = "band"});
   put_record(&at, test, d);
   put_clearance(&at, d, threshold);
   fg_plot_end(&at);
 }
 
 static void put_stiffness_profile(const fg_plot *at, const fg_load_profile *profile) {
-  double x[FG_LOAD_POINTS], y[FG_LOAD_POINTS];
+  double x[FG_LOAD_POINTS], y[FG_LOAD_POINTS], low[FG_LOAD_POINTS], high[FG_LOAD_POINTS];
   if (!profile->count) return;
-  fputs("<path class=\"ci\" style=\"fill:#1f6fd0;fill-opacity:.14\" d=\"", at->out);
-  for (size_t i = 0; i < 2 * profile->count; i++) {
-    bool back = i >= profile->count;
-    const fg_load_point *p = &profile->point[back ? 2 * profile->count - 1 - i : i];
-    double reach = (back ? -1 : 1) * FG_COVERAGE_FACTOR * p->u_stiffness_n_mm;
-    double value = fmax(at->y_low, fmin(at->y_high, p->stiffness_n_mm + reach));
-    fprintf(at->out, "%c%.1f %.1f", i ? 'L' : 'M', fg_plot_x(at, p->x_mm), fg_plot_y(at, value));
-  }
-  fputs("Z\"/>\n", at->out);
   for (size_t i = 0; i < profile->count; i++) {
-    x[i] = profile->point[i].x_mm;
-    y[i] = profile->point[i].stiffness_n_mm;
+    const fg_load_point *p = &profile->point[i];
+    double reach = FG_COVERAGE_FACTOR * p->u_stiffness_n_mm;
+    x[i] = p->x_mm;
+    y[i] = p->stiffness_n_mm;
+    low[i] = y[i] - reach;
+    high[i] = y[i] + reach;
   }
+  fg_plot_ribbon(at, x, low, high, profile->count, "ci", "fill:#1f6fd0;fill-opacity:.14");
   fg_plot_line(at, x, y, profile->count, "s2");
 }
 
@@ -100,18 +73,17 @@ void fg_load_plot_stiffness(FILE *out, const fg_load_direction *d) {
   for (int side = 0; side < FG_LOAD_SIDES; side++)
     for (size_t i = 0; i < d->profile[side].count; i++) {
       const fg_load_point *p = &d->profile[side].point[i];
-      widen_load_range(x, p->x_mm, p->x_mm);
-      widen_load_range(k, p->stiffness_n_mm, p->stiffness_n_mm);
+      fg_range_add(x, p->x_mm, 0);
+      fg_range_add(k, p->stiffness_n_mm, 0);
     }
   if (!(x[1] > x[0])) return;
-  widen_load_range(k, NAN, d->stiffness.value + 2 * d->stiffness.u);
-  add_margin(x, 0.04);
-  add_margin(k, 0.06);
-  fg_plot at = {out, 560, 66, 545, 14, 300, x[0], x[1], k[0], k[1]};
-  fg_plot_begin(&at, 350, "Stiffness of the loading strokes over displacement");
-  fg_plot_y_axis(&at, "dF/dx, N/mm");
-  fg_plot_x_numbers(&at);
-  fg_plot_x_title(&at, "displacement, mm");
+  fg_range_add(k, d->stiffness.value + 2 * d->stiffness.u, 0);
+  fg_range_pad(x, 0.04, 1e-9);
+  fg_range_pad(k, 0.06, 1e-9);
+  fg_plot at = fg_plot_frame_begin(
+      out, &(fg_plot_frame){"Stiffness of the loading strokes over displacement", .width = 560,
+                            .height = 350, .left = 66, .x = x, .y = k, .y_title = "dF/dx, N/mm",
+                            .x_title = "displacement, mm"});
   for (int side = 0; side < FG_LOAD_SIDES; side++)
     put_stiffness_profile(&at, &d->profile[side]);
   if (isfinite(d->stiffness.value))
@@ -157,20 +129,17 @@ void fg_load_plot_azimuths(FILE *out, const fg_load_test *test, size_t bearing) 
     const fg_load_direction *d = &test->directions[i];
     double reach = 1000 * FG_COVERAGE_FACTOR * d->clearance.u_repeat;
     if (d->bearing != bearing) continue;
-    widen_load_range(x, d->azimuth_deg, d->azimuth_deg);
-    widen_load_range(c, 1000 * d->clearance.value - reach, 1000 * d->clearance.value + reach);
+    fg_range_add(x, d->azimuth_deg, 10);
+    fg_range_add(c, 1000 * d->clearance.value, reach);
     if (!isfinite(d->predicted.value)) continue;
-    widen_load_range(c, 1000 * d->predicted.value, 1000 * d->predicted.value);
-    widen_load_range(c, 1000 * d->gap.value, 1000 * d->gap.value);
+    fg_range_add(c, 1000 * d->predicted.value, 0);
+    fg_range_add(c, 1000 * d->gap.value, 0);
   }
   if (!(c[1] >= c[0])) return;
-  x[0] -= 10, x[1] += 10;
-  add_margin(c, 0.1);
-  fg_plot at = {out, 1000, 92, 985, 14, 240, x[0], x[1], c[0], c[1]};
-  fg_plot_begin(&at, 290, "Clearance over the azimuths");
-  fg_plot_y_axis(&at, "clearance, µm");
-  fg_plot_x_numbers(&at);
-  fg_plot_x_title(&at, "azimuth, degrees");
+  fg_range_pad(c, 0.1, 1e-9);
+  fg_plot at = fg_plot_frame_begin(
+      out, &(fg_plot_frame){"Clearance over the azimuths", .height = 290, .left = 92, .x = x,
+                            .y = c, .y_title = "clearance, µm", .x_title = "azimuth, degrees"});
   put_load_curve(&at, &test->bearings[bearing]);
   for (size_t i = 0; i < test->direction_count; i++)
     if (test->directions[i].bearing == bearing) put_direction(&at, &test->directions[i]);
@@ -183,16 +152,15 @@ void fg_load_plot_break_away(FILE *out, const fg_load_test *test, size_t bearing
   double start = b->intercept_n.value + rig, end = start + mu * b->weight_high_n;
   double x[2] = {0, b->weight_high_n}, f[2] = {0, 0};
   for (size_t i = 0; i < test->pull_count; i++)
-    if (test->pulls[i].bearing == bearing)
-      widen_load_range(f, test->pulls[i].friction_n, test->pulls[i].friction_n);
-  widen_load_range(f, start, end);
-  add_margin(x, 0.04);
-  add_margin(f, 0.08);
-  fg_plot at = {out, 560, 66, 545, 14, 300, x[0], x[1], f[0], f[1]};
-  fg_plot_begin(&at, 350, "Break-away friction over dead weight");
-  fg_plot_y_axis(&at, "friction, N");
-  fg_plot_x_numbers(&at);
-  fg_plot_x_title(&at, "dead weight, N");
+    if (test->pulls[i].bearing == bearing) fg_range_add(f, test->pulls[i].friction_n, 0);
+  fg_range_add(f, start, 0);
+  fg_range_add(f, end, 0);
+  fg_range_pad(x, 0.04, 1e-9);
+  fg_range_pad(f, 0.08, 1e-9);
+  fg_plot at = fg_plot_frame_begin(out, &(fg_plot_frame){"Break-away friction over dead weight",
+                                                         .width = 560, .height = 350, .left = 66,
+                                                         .x = x, .y = f, .y_title = "friction, N",
+                                                         .x_title = "dead weight, N"});
   if (isfinite(mu)) fg_plot_segment(&at, 0, start, b->weight_high_n, end, "s2");
   for (size_t i = 0; i < test->pull_count; i++)
     if (test->pulls[i].bearing == bearing)

@@ -4,11 +4,11 @@
 #include <stdlib.h>
 
 #include "page/page.h"
-#include "page/plot_marks.h"
+#include "page/plot_frame.h"
 #include "report/lot/page_parts.h"
 #include "report/lot/plots.h"
 
-enum { PLOT_WIDTH = 1000, POINTS = 200, UM_PER_MM = 1000 };
+enum { POINTS = 200, UM_PER_MM = 1000 };
 
 typedef struct curve {
   fg_density density;
@@ -28,12 +28,12 @@ static double find_height(const curve *c, double um) {
 }
 
 static void find_value_range(const fg_assembly_result *result, size_t value, const curve *c,
-                             fg_plot *plot) {
+                             double range[2]) {
   size_t count = result->values[value];
   if (!count) return;
   double room = c->there ? 2.5 * c->density.bandwidth : 1e-3;
-  plot->x_low = fmin(plot->x_low, UM_PER_MM * (result->value[value][0] - room));
-  plot->x_high = fmax(plot->x_high, UM_PER_MM * (result->value[value][count - 1] + room));
+  range[0] = fmin(range[0], UM_PER_MM * (result->value[value][0] - room));
+  range[1] = fmax(range[1], UM_PER_MM * (result->value[value][count - 1] + room));
 }
 
 static void put_value_curve(const fg_plot *plot, const curve *c, const char *style) {
@@ -67,22 +67,17 @@ static void put_value_limits(const fg_plot *plot, const fg_assembly_plan *plan,
 
 /* Fits the axes to both curves and to the limits of the quantity. */
 static void fit_axes(const fg_lot_assembly *assembly, size_t value, curve *drawn, curve *design,
-                     fg_plot *plot) {
+                     double x[2], double y[2]) {
   const fg_assembly_plan *plan = &assembly->plan;
-  find_value_range(&assembly->drawn, value, drawn, plot);
-  find_value_range(&assembly->design, value, design, plot);
-  for (size_t i = 0; i < plan->limits; i++) {
-    const double limit[] = {plan->limit[i].lower, plan->limit[i].upper};
-    for (int k = 0; k < 2; k++)
-      if (plan->limit[i].row == fg_assembly_row(value) && isfinite(limit[k])) {
-        plot->x_low = fmin(plot->x_low, UM_PER_MM * limit[k] - 2);
-        plot->x_high = fmax(plot->x_high, UM_PER_MM * limit[k] + 2);
-      }
-  }
+  find_value_range(&assembly->drawn, value, drawn, x);
+  find_value_range(&assembly->design, value, design, x);
+  for (size_t i = 0; i < plan->limits; i++)
+    if (plan->limit[i].row == fg_assembly_row(value)) {
+      fg_range_add(x, UM_PER_MM * plan->limit[i].lower, 2);
+      fg_range_add(x, UM_PER_MM * plan->limit[i].upper, 2);
+    }
   for (int i = 0; i <= POINTS && drawn->there; i++)
-    plot->y_high =
-        fmax(plot->y_high,
-             1.25 * find_height(drawn, plot->x_low + (plot->x_high - plot->x_low) * i / POINTS));
+    fg_range_add(y, 1.25 * find_height(drawn, x[0] + (x[1] - x[0]) * i / POINTS), 0);
 }
 
 void fg_lot_plot_assembly(FILE *out, const fg_lot_analysis *analysis, size_t value) {
@@ -90,15 +85,14 @@ void fg_lot_plot_assembly(FILE *out, const fg_lot_analysis *analysis, size_t val
   const fg_quantity *row = fg_assembly_row(value);
   curve drawn = make_value_curve(&assembly->drawn, value),
         design = make_value_curve(&assembly->design, value);
-  fg_plot plot = {out, PLOT_WIDTH, 92, 985, 14, 230, INFINITY, -INFINITY, 0, 0};
+  double x[2] = {INFINITY, -INFINITY}, y[2] = {0, 0};
   char title[160];
-  fit_axes(assembly, value, &drawn, &design, &plot);
-  if (drawn.there && plot.y_high > 0) {
+  fit_axes(assembly, value, &drawn, &design, x, y);
+  if (drawn.there && y[1] > 0) {
     snprintf(title, sizeof title, "%s, µm", row->words);
-    fg_plot_begin(&plot, 280, title);
-    fg_plot_y_axis(&plot, "density");
-    fg_plot_x_numbers(&plot);
-    fg_plot_x_title(&plot, title);
+    fg_plot plot =
+        fg_plot_frame_begin(out, &(fg_plot_frame){title, .height = 280, .left = 92, .x = x, .y = y,
+                                                  .y_title = "density", .x_title = title});
     put_value_curve(&plot, &design, "hypothesis");
     put_value_curve(&plot, &drawn, "curve");
     put_value_limits(&plot, &assembly->plan, row);

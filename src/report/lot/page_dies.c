@@ -2,10 +2,10 @@
 /* The lot's page: share of the deviation that the dies explain. */
 #include <math.h>
 
+#include "core/text.h"
 #include "lot/statistics/dies.h"
 #include "page/page.h"
-#include "page/plot.h"
-#include "page/plot_marks.h"
+#include "page/plot_frame.h"
 #include "report/lot/page_parts.h"
 
 enum { NUMBERS_MAX = FG_LOT_DIE_BUMPS_MAX };
@@ -40,37 +40,20 @@ static void find_die_curve(const fg_lot_analysis *analysis, const fg_lot_die *di
   }
 }
 
-static void put_die_key(FILE *out, const char *style, double x, const char *name,
-                        const char *words) {
-  fprintf(out, "<circle class=\"%s\" cx=\"%.0f\" cy=\"14\" r=\"5\"/><text x=\"%.0f\" y=\"19\">%s ",
-          style, x, x + 12, words);
-  fg_html_text(out, name);
-  fputs("</text>\n", out);
-}
-
 /* Puts the mean error of a die's foils, and the die's own. */
 static void put_die_plot(FILE *out, const fg_lot_analysis *analysis, const fg_lot_die *die,
                          const double range[2]) {
   curve c;
-  char text[16];
+  char text[200];
   find_die_curve(analysis, die, &c);
   if (!c.count) return;
-  double margin = fmax(0.05, 0.1 * (range[1] - range[0]));
-  fg_plot plot = {out,
-                  520,
-                  66,
-                  510,
-                  34,
-                  220,
-                  c.number[0] - 0.6,
-                  c.number[c.count - 1] + 0.6,
-                  range[0] - margin,
-                  range[1] + margin};
-  fg_plot_begin(&plot, 270, "Radius error of the foils and of their die, by bump number");
-  fg_plot_y_axis(&plot, "against design, %");
+  fg_plot plot = fg_plot_frame_begin(
+      out, &(fg_plot_frame){"Radius error of the foils and of their die, by bump number",
+                            .width = 520, .height = 270, .left = 66, .right = 10, .top = 34,
+                            .x = (double[]){c.number[0] - 0.6, c.number[c.count - 1] + 0.6},
+                            .y = range, .y_title = "against design, %", .ticks = FG_TICKS_OWN});
   for (size_t i = 0; i < c.count; i++) {
-    snprintf(text, sizeof text, "%.0f", c.number[i]);
-    fg_plot_x_label(&plot, fg_plot_x(&plot, c.number[i]), text);
+    fg_plot_x_number(&plot, (int)c.number[i]);
     fg_plot_segment(&plot, c.number[i], c.die[i], c.number[i], c.foils[i], "hint");
   }
   fg_plot_x_title(&plot, "bump");
@@ -80,8 +63,10 @@ static void put_die_plot(FILE *out, const fg_lot_analysis *analysis, const fg_lo
     fg_plot_dot(&plot, c.number[i], c.die[i], 5, "s2");
     fg_plot_dot(&plot, c.number[i], c.foils[i], 5, "s1");
   }
-  put_die_key(out, "s1", 80, die->name, "foils of die");
-  put_die_key(out, "s2", 300, die->name, "die");
+  fg_text_clip(text, sizeof text, "foils of die %s", die->name);
+  fg_plot_key(&plot, 80, "s1", text);
+  fg_text_clip(text, sizeof text, "die %s", die->name);
+  fg_plot_key(&plot, 300, "s2", text);
   fg_plot_end(&plot);
 }
 
@@ -92,10 +77,11 @@ static void find_error_range(const fg_lot_analysis *analysis, const fg_lot_dies 
     curve c;
     find_die_curve(analysis, dies->sum[d].die, &c);
     for (size_t i = 0; i < c.count; i++) {
-      range[0] = fmin(range[0], fmin(c.die[i], c.foils[i]));
-      range[1] = fmax(range[1], fmax(c.die[i], c.foils[i]));
+      fg_range_add(range, c.die[i], 0);
+      fg_range_add(range, c.foils[i], 0);
     }
   }
+  fg_range_pad(range, 0.1, 0.05);
 }
 
 static void put_die_sentences(FILE *out, const fg_lot_dies *dies) {

@@ -6,10 +6,10 @@
 #include <string.h>
 
 #include "page/page.h"
-#include "page/plot_marks.h"
+#include "page/plot_frame.h"
 #include "report/stiffness/map.h"
 
-enum { PLOT_WIDTH = 1000, CURVE_POINTS = 240, BARS = 30 };
+enum { CURVE_POINTS = 240, BARS = 30 };
 
 static void put_bars(const fg_plot *plot, const double *bars) {
   double width = (plot->x_high - plot->x_low) / BARS;
@@ -23,36 +23,35 @@ static void put_bars(const fg_plot *plot, const double *bars) {
 }
 
 static void fill_bars(const fg_lot_quantity *quantity, double scale, double shift,
-                      const fg_plot *plot, double *bars) {
-  double width = (plot->x_high - plot->x_low) / BARS;
+                      const double ends[2], double *bars) {
+  double width = (ends[1] - ends[0]) / BARS;
   for (size_t i = 0; i < quantity->count; i++) {
     double x = scale * quantity->value[i] + shift;
-    int bar = (int)floor((x - plot->x_low) / width);
+    int bar = (int)floor((x - ends[0]) / width);
     if (bar >= 0 && bar < BARS) bars[bar] += 1 / (width * (double)quantity->count);
   }
 }
 
 void fg_lot_plot_density(FILE *out, const fg_lot_quantity *quantity, double scale, double shift,
                          const char *title) {
-  double x[CURVE_POINTS + 1], y[CURVE_POINTS + 1], bars[BARS] = {0}, high = 0;
+  double x[CURVE_POINTS + 1], y[CURVE_POINTS + 1], bars[BARS] = {0};
   char mark[64];
   if (!quantity || !quantity->has_density) return;
   if (!(quantity->sd > 1e-9 * fabs(quantity->mean))) return; /* equal values have no density */
   double a = scale * quantity->min + shift, b = scale * quantity->max + shift;
-  fg_plot plot = {out, PLOT_WIDTH, 92, 985, 24, 250, fmin(a, b), fmax(a, b), 0, 1};
   double reach = 2.5 * quantity->density.bandwidth * fabs(scale);
-  plot.x_low -= reach;
-  plot.x_high += reach;
-  fill_bars(quantity, scale, shift, &plot, bars);
+  double ends[2] = {fmin(a, b) - reach, fmax(a, b) + reach}, high = 0;
+  fill_bars(quantity, scale, shift, ends, bars);
   for (int i = 0; i <= CURVE_POINTS; i++) {
-    x[i] = plot.x_low + (plot.x_high - plot.x_low) * i / CURVE_POINTS;
+    x[i] = ends[0] + (ends[1] - ends[0]) * i / CURVE_POINTS;
     y[i] = fg_density_at(&quantity->density, (x[i] - shift) / scale) / fabs(scale);
     high = fmax(high, y[i]);
   }
   for (int i = 0; i < BARS; i++)
     high = fmax(high, bars[i]);
-  plot.y_high = 1.08 * high;
-  fg_plot_begin(&plot, 300, "Histogram and kernel density");
+  fg_plot plot =
+      fg_plot_open(out, &(fg_plot_frame){"Histogram and kernel density", .height = 300, .left = 92,
+                                         .top = 24, .x = ends, .y = (double[]){0, 1.08 * high}});
   fg_plot_y_axis(&plot, "density");
   put_bars(&plot, bars);
   fg_plot_x_numbers(&plot);
@@ -110,28 +109,27 @@ static void put_error_line(const fg_plot *plot, double slope, double intercept) 
   if (x[1] > x[0]) fg_plot_line(plot, x, y, 2, "fit");
 }
 
-static bool error_axes(const fg_lot_analysis *analysis, fg_plot *plot) {
+static bool error_axes(const fg_lot_analysis *analysis, double x[2], double y[2]) {
   const fg_lot_quantity *radius = fg_lot_find_quantity(analysis, "radius_error_pct");
   const fg_lot_quantity *angle = fg_lot_find_quantity(analysis, "bump_angle_error_pct");
   if (!radius || !angle || radius->count < 2 || angle->count < 2) return false;
-  plot->x_low = fmin(0, radius->min);
-  plot->x_high = fmax(0, radius->max);
-  plot->y_low = fmin(0, angle->min);
-  plot->y_high = fmax(0, angle->max);
-  fg_lot_plot_widen(&plot->x_low, &plot->x_high, 0.06);
-  fg_lot_plot_widen(&plot->y_low, &plot->y_high, 0.06);
+  x[0] = fmin(0, radius->min);
+  x[1] = fmax(0, radius->max);
+  y[0] = fmin(0, angle->min);
+  y[1] = fmax(0, angle->max);
+  fg_range_pad_by_size(x, 0.06);
+  fg_range_pad_by_size(y, 0.06);
   return true;
 }
 
 void fg_lot_plot_correlation(FILE *out, const fg_lot_analysis *analysis) {
   const fg_lot_correlation *line = &analysis->correlation;
-  fg_plot plot = {
-      .out = out, .width = PLOT_WIDTH, .left = 92, .right = 985, .top = 14, .bottom = 380};
-  if (!analysis->has_correlation || !error_axes(analysis, &plot)) return;
-  fg_plot_begin(&plot, 430, "Angle error over radius error of every bump");
-  fg_plot_y_axis(&plot, "angle error, %");
-  fg_plot_x_numbers(&plot);
-  fg_plot_x_title(&plot, "radius error, %");
+  double x[2], y[2];
+  if (!analysis->has_correlation || !error_axes(analysis, x, y)) return;
+  fg_plot plot = fg_plot_frame_begin(
+      out,
+      &(fg_plot_frame){"Angle error over radius error of every bump", .height = 430, .left = 92,
+                       .x = x, .y = y, .y_title = "angle error, %", .x_title = "radius error, %"});
   put_arc_hypothesis(&plot);
   visit_bumps(&plot, analysis, put_error_dot);
   put_error_line(&plot, line->slope, line->intercept);
@@ -150,10 +148,10 @@ static void put_stiffness_dots(const fg_plot *plot, const void *user) {
 
 void fg_lot_plot_map(FILE *out, const fg_lot_analysis *analysis) {
   const fg_lot_settings *settings = &analysis->lot->settings;
-  fg_plot plot;
-  if (!error_axes(analysis, &plot)) return;
-  const fg_stiffness_map map = {&settings->design,     &settings->material,  1 + plot.x_low / 100,
-                                1 + plot.x_high / 100, 1 + plot.y_low / 100, 1 + plot.y_high / 100};
+  double x[2], y[2];
+  if (!error_axes(analysis, x, y)) return;
+  const fg_stiffness_map map = {&settings->design, &settings->material, 1 + x[0] / 100,
+                                1 + x[1] / 100,    1 + y[0] / 100,      1 + y[1] / 100};
   fg_stiffness_plot_map(out, &map, put_stiffness_dots, analysis);
 }
 

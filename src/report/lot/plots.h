@@ -10,9 +10,6 @@
 /* Maximum of dots: more cannot be told apart, and a page must open on a phone. */
 enum { FG_LOT_DOTS_MAX = 3000 };
 
-/* Adds room around an axis. */
-void fg_lot_plot_widen(double *low, double *high, double share);
-
 /* Plots mean ± 2 sd of each bump number with the foils beside them, the tolerance (thesis
  * figure 5.17), and the reference curve of this quantity, if any (NULL: none); and explains its
  * marks. */

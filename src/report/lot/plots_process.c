@@ -5,40 +5,17 @@
 
 #include "core/text.h"
 #include "page/page.h"
-#include "page/plot_marks.h"
+#include "page/plot_frame.h"
 #include "report/lot/page_parts.h"
 #include "report/lot/plots.h"
 
 /* Maximum of points; beyond it a chart is a line with its signals. */
-enum { PLOT_WIDTH = 1000, CHART_POINTS_MAX = 600, DOTS_DRAWN_MAX = 120 };
+enum { CHART_POINTS_MAX = 600, DOTS_DRAWN_MAX = 120 };
 
 /* Offsets of the mean and of the foils' dots from the place of a number. */
 #define MEAN_AT   (-0.17)
 #define FIRST_DOT (-0.05)
 #define LAST_DOT  0.35
-
-/* Widens an axis; one of equal values still gets room for numbers. */
-void fg_lot_plot_widen(double *low, double *high, double share) {
-  static const double min = 1e-9;
-  double size = fmax(fabs(*low), fabs(*high)), room = (*high - *low) * share;
-  if (!(room > min * size)) room = size > 0 ? 0.01 * size : 1;
-  *low -= room;
-  *high += room;
-}
-
-static void widen_to_value(double value, double *low, double *high) {
-  if (!isfinite(value)) return;
-  *low = fmin(*low, value);
-  *high = fmax(*high, value);
-}
-
-static void put_tolerance_lines(const fg_plot *plot, const fg_tolerance *tolerance) {
-  if (!tolerance) return;
-  const double limits[2] = {tolerance->lower, tolerance->upper};
-  for (int i = 0; i < 2; i++)
-    if (limits[i] > plot->y_low && limits[i] < plot->y_high)
-      fg_plot_segment(plot, plot->x_low, limits[i], plot->x_high, limits[i], "limit");
-}
 
 /* Shortens a name of more than thirty letters, which do not fit beside an axis, to its symbol. */
 static void format_axis_title(char *text, size_t size, const fg_quantity *row) {
@@ -111,12 +88,10 @@ static void put_all_dots(const fg_plot *plot, const fg_lot_analysis *analysis,
 }
 
 static void put_place_means(const fg_plot *plot, const fg_lot_quantity *quantity) {
-  char number[24];
   for (size_t i = 0; i < quantity->places; i++) {
     const fg_lot_place *place = &quantity->place[i];
     double x = (double)i + 1, mean_x = x + MEAN_AT;
-    snprintf(number, sizeof number, "%zu", i + 1);
-    fg_plot_x_label(plot, fg_plot_x(plot, x), number);
+    fg_plot_x_number(plot, (int)i + 1);
     if (!place->count) continue;
     if (isfinite(place->sd))
       fg_plot_segment(plot, mean_x, place->mean - 2 * place->sd, mean_x,
@@ -126,38 +101,36 @@ static void put_place_means(const fg_plot *plot, const fg_lot_quantity *quantity
 }
 
 static bool find_place_range(const fg_lot_quantity *quantity, const fg_lot_curve *curve,
-                             double *low, double *high) {
+                             double range[2]) {
   double value;
-  for (size_t i = 0; i < quantity->places; i++) {
-    double reach = isfinite(quantity->place[i].sd) ? 2 * quantity->place[i].sd : 0;
-    widen_to_value(quantity->place[i].mean - reach, low, high);
-    widen_to_value(quantity->place[i].mean + reach, low, high);
-  }
-  if (!(*high >= *low)) return false;
-  widen_to_value(quantity->min, low, high);
-  widen_to_value(quantity->max, low, high);
+  for (size_t i = 0; i < quantity->places; i++)
+    fg_range_add(range, quantity->place[i].mean, 2 * quantity->place[i].sd);
+  if (!(range[1] >= range[0])) return false;
+  fg_range_add(range, quantity->min, 0);
+  fg_range_add(range, quantity->max, 0);
   for (size_t i = 0; fg_lot_curve_value(curve, quantity->row, i, &value); i++)
-    widen_to_value(value, low, high);
+    fg_range_add(range, value, 0);
   if (quantity->tolerance) {
-    widen_to_value(quantity->tolerance->lower, low, high);
-    widen_to_value(quantity->tolerance->upper, low, high);
+    fg_range_add(range, quantity->tolerance->lower, 0);
+    fg_range_add(range, quantity->tolerance->upper, 0);
   }
-  fg_lot_plot_widen(low, high, 0.06);
+  fg_range_pad_by_size(range, 0.06);
   return true;
 }
 
 void fg_lot_plot_places(FILE *out, const fg_lot_analysis *analysis, const fg_lot_quantity *quantity,
                         const fg_lot_curve *curve) {
-  double low = INFINITY, high = -INFINITY;
+  double range[2] = {INFINITY, -INFINITY};
   char title[160];
-  if (!find_place_range(quantity, curve, &low, &high)) return;
-  fg_plot plot = {out, PLOT_WIDTH, 92, 985, 14, 250, 0.4, (double)quantity->places + 0.6,
-                  low, high};
+  if (!find_place_range(quantity, curve, range)) return;
   format_axis_title(title, sizeof title, quantity->row);
-  fg_plot_begin(&plot, 300, "By number: mean, two standard deviations, and every foil");
-  fg_plot_y_axis(&plot, title);
-  fg_plot_x_title(&plot, fg_lot_words_of(analysis)->numbers);
-  put_tolerance_lines(&plot, quantity->tolerance);
+  fg_plot plot = fg_plot_frame_begin(
+      out,
+      &(fg_plot_frame){"By number: mean, two standard deviations, and every foil", .height = 300,
+                       .left = 92, .x = (double[]){0.4, (double)quantity->places + 0.6}, .y = range,
+                       .y_title = title, .x_title = fg_lot_words_of(analysis)->numbers,
+                       .ticks = FG_TICKS_OWN});
+  fg_plot_tolerance(&plot, quantity->tolerance);
   put_all_dots(&plot, analysis, quantity);
   put_place_means(&plot, quantity);
   put_reference_curve(&plot, quantity->row, curve);
@@ -244,24 +217,22 @@ void fg_lot_plot_chart(FILE *out, const fg_lot_analysis *analysis,
   char title[160];
   if (!quantity->has_chart) return;
   bool groups = quantity->cause.column != FG_NO_COLUMN && chart->count <= DOTS_DRAWN_MAX;
-  double low = chart->point[0].lower, high = chart->point[0].upper, down = groups ? 20 : 0;
+  double range[2] = {chart->point[0].lower, chart->point[0].upper}, down = groups ? 20 : 0;
   for (size_t i = 0; i < chart->count; i++)
-    widen_to_value(chart->point[i].value, &low, &high);
-  fg_lot_plot_widen(&low, &high, 0.08);
-  fg_plot plot = {out, PLOT_WIDTH, 92, 985, 14 + down, 210 + down, 0.5, (double)chart->count + 0.5,
-                  low, high};
+    fg_range_add(range, chart->point[i].value, 0);
+  fg_range_pad_by_size(range, 0.08);
   size_t every = chart->count / CHART_POINTS_MAX + 1;
   format_axis_title(title, sizeof title, quantity->row);
-  fg_plot_begin(&plot, 260 + (int)down, "Control chart, foil after foil");
-  fg_plot_y_axis(&plot, title);
-  fg_plot_x_counts(&plot);
-  fg_plot_x_title(&plot,
-                  fg_owner_is_part(quantity->owner) ? fg_lot_words_of(analysis)->mean : "foil");
-  fg_plot_segment(&plot, plot.x_low, chart->centre, plot.x_high, chart->centre, "thin");
-  fg_plot_segment(&plot, plot.x_low, chart->point[0].lower, plot.x_high, chart->point[0].lower,
-                  "limit");
-  fg_plot_segment(&plot, plot.x_low, chart->point[0].upper, plot.x_high, chart->point[0].upper,
-                  "limit");
+  fg_plot plot = fg_plot_frame_begin(
+      out,
+      &(fg_plot_frame){
+          "Control chart, foil after foil", .height = 260 + (int)down, .left = 92, .top = 14 + down,
+          .x = (double[]){0.5, (double)chart->count + 0.5}, .y = range, .y_title = title,
+          .x_title = fg_owner_is_part(quantity->owner) ? fg_lot_words_of(analysis)->mean : "foil",
+          .ticks = FG_TICKS_COUNTS});
+  fg_plot_level(&plot, chart->centre, "thin");
+  fg_plot_level(&plot, chart->point[0].lower, "limit");
+  fg_plot_level(&plot, chart->point[0].upper, "limit");
   fputs("<path class=\"curve\" d=\"", out);
   for (size_t i = 0; i < chart->count; i += every)
     fprintf(out, "%c%.1f %.1f", i ? 'L' : 'M', fg_plot_x(&plot, (double)i + 1),

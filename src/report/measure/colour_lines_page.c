@@ -4,7 +4,7 @@
 
 #include "foilgauge/words.h"
 #include "page/page.h"
-#include "page/plot_marks.h"
+#include "page/plot_frame.h"
 #include "report/measure/colour_lines_report.h"
 
 /* Windows without edges from which on a line has a gap. */
@@ -63,11 +63,6 @@ static double level_of(const fg_measurement *m, const fg_colour_shift *shift) {
   return shift->dy_px * 25400 / m->dpi[1];
 }
 
-static void widen_shift_range(double range[2], double value) {
-  range[0] = fmin(range[0], value);
-  range[1] = fmax(range[1], value);
-}
-
 static bool find_ranges(const fg_measurement *m, double x[2], double y[2]) {
   x[0] = y[0] = INFINITY;
   x[1] = y[1] = -INFINITY;
@@ -75,15 +70,12 @@ static bool find_ranges(const fg_measurement *m, double x[2], double y[2]) {
     const fg_colour_shift *shift = &m->colour_lines.shifts[k];
     for (size_t i = 0; i < shift->window_count; i++) {
       const fg_colour_window *w = &shift->windows[i];
-      widen_shift_range(x, (double)w->y_mm);
-      for (int side = -1; side <= 1; side += 2)
-        widen_shift_range(y, (double)w->smooth_um - level_of(m, shift) +
-                                 side * FG_COVERAGE_FACTOR * (double)w->u_smooth_um);
+      fg_range_add(x, (double)w->y_mm, 0);
+      fg_range_add(y, (double)w->smooth_um - level_of(m, shift),
+                   FG_COVERAGE_FACTOR * (double)w->u_smooth_um);
     }
   }
-  double margin = fmax(0.05, 0.15 * (y[1] - y[0]));
-  y[0] -= margin;
-  y[1] += margin;
+  fg_range_pad(y, 0.15, 0.05);
   return x[1] > x[0];
 }
 
@@ -100,7 +92,8 @@ static void put_channel_line(const fg_plot *at, const fg_colour_shift *shift, co
 
 static void put_shift_profile(const fg_plot *at, const fg_measurement *m, int k) {
   const fg_colour_shift *shift = &m->colour_lines.shifts[k];
-  double x[FG_COLOUR_WINDOWS_MAX], y[3][FG_COLOUR_WINDOWS_MAX], key = 80 + 330.0 * k;
+  double x[FG_COLOUR_WINDOWS_MAX], y[3][FG_COLOUR_WINDOWS_MAX];
+  char words[80];
   if (!shift->window_count) return;
   for (size_t i = 0; i < shift->window_count; i++) {
     const fg_colour_window *w = &shift->windows[i];
@@ -113,21 +106,19 @@ static void put_shift_profile(const fg_plot *at, const fg_measurement *m, int k)
   }
   for (int side = 0; side < 3; side++)
     put_channel_line(at, shift, x, y[side], side == 1 ? line_style[k] : uncertainty_style[k]);
-  fprintf(at->out,
-          "<circle class=\"%s\" cx=\"%.0f\" cy=\"14\" r=\"5\"/><text x=\"%.0f\" y=\"19\">%s, about "
-          "%+.2f µm</text>\n",
-          line_style[k], key, key + 12, fg_channel_word(shift->channel), level_of(m, shift));
+  snprintf(words, sizeof words, "%s, about %+.2f µm", fg_channel_word(shift->channel),
+           level_of(m, shift));
+  fg_plot_key(at, 80 + 330 * k, line_style[k], words);
 }
 
 static void put_plot(FILE *out, const fg_measurement *m) {
   double x[2], y[2];
   if (!find_ranges(m, x, y)) return;
-  fg_plot at = {out, 1000, 70, 985, 34, 230, x[0], x[1], y[0], y[1]};
   fputs("<figure>", out);
-  fg_plot_begin(&at, 280, "Course of dy along y");
-  fg_plot_y_axis(&at, "dy about its mean, µm");
-  fg_plot_x_numbers(&at);
-  fg_plot_x_title(&at, "y of the scan, mm (the carriage's way)");
+  fg_plot at = fg_plot_frame_begin(
+      out, &(fg_plot_frame){"Course of dy along y", .height = 280, .left = 70, .top = 34, .x = x,
+                            .y = y, .y_title = "dy about its mean, µm",
+                            .x_title = "y of the scan, mm (the carriage's way)"});
   for (int k = 0; k < 2; k++)
     put_shift_profile(&at, m, k);
   fg_plot_end(&at);

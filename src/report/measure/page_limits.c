@@ -5,6 +5,7 @@
 
 #include "core/select.h"
 #include "core/utf8.h"
+#include "page/plot_frame.h"
 #include "report/measure/foil_parts.h"
 #include "report/measure/page_tables.h"
 
@@ -41,7 +42,7 @@ static double width_of(const panel *p) {
 }
 
 /* All that does not fail is drawn where it lies, however far it is from its limit. */
-static void find_limit_range(panel *p) {
+static void find_limit_range(const panel *p, double range[2]) {
   double low = p->limit->lower, high = p->limit->upper, reach = shown_beyond * width_of(p);
   double from = isfinite(low) ? low : high, to = isfinite(high) ? high : low;
   const double max[2] = {from - reach, to + reach};
@@ -54,9 +55,9 @@ static void find_limit_range(panel *p) {
     from = fmin(from, fmin(fails ? INFINITY : value, fmax(max[0], value - expanded)));
     to = fmax(to, fmax(fails ? -INFINITY : value, fmin(max[1], value + expanded)));
   }
-  double margin = margin_share * (to > from ? to - from : fmax(fabs(to), 1e-9));
-  p->at.y_low = from - margin;
-  p->at.y_high = to + margin;
+  range[0] = from;
+  range[1] = to;
+  fg_range_pad(range, margin_share, to > from ? 0 : margin_share * fmax(fabs(to), 1e-9));
 }
 
 size_t fg_html_limit_labels(const fg_tolerance *limit, const char *words, fg_plot_label labels[2]) {
@@ -144,36 +145,24 @@ static void put_limit_value(const panel *p, size_t i) {
   put_verdict(p, fg_judge_value(p->limit, value, u), x, y);
 }
 
-static void put_inside(const panel *p) {
-  double low = fmax(p->at.y_low, p->limit->lower), high = fmin(p->at.y_high, p->limit->upper);
-  fprintf(p->at.out,
-          "<rect class=\"inside\" x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\"/>\n",
-          p->at.left, fg_plot_y(&p->at, high), p->at.right - p->at.left,
-          fg_plot_y(&p->at, low) - fg_plot_y(&p->at, high));
-}
-
 static void put_panel(FILE *out, const fg_design *design, const fg_foil *foil,
                       const fg_tolerance *limit, const fg_quantity *row) {
   const fg_foil_parts parts = fg_foil_parts_of(design, foil);
   int last = fg_foil_parts_last(&parts);
-  panel p = {{out, 500, 70, 490, 14, 210, 0.4, last + 0.6, 0, 1}, design, foil, &parts, row, limit};
+  panel p = {.design = design, .foil = foil, .parts = &parts, .row = row, .limit = limit};
   fg_plot_label labels[2];
   char title[160];
+  double range[2];
   size_t count = fg_html_limit_labels(limit, "", labels);
-  p.at.right -= fg_html_limit_room(labels, count);
-  find_limit_range(&p);
+  find_limit_range(&p, range);
+  snprintf(title, sizeof title, "%s, %s", row->symbol, row->unit);
   fputs("<figure><h3>", out);
   fg_html_text(out, row->words);
   fputs("</h3>", out);
-  fg_plot_begin(&p.at, 258, row->words);
-  put_inside(&p);
-  snprintf(title, sizeof title, "%s, %s", row->symbol, row->unit);
-  fg_plot_y_axis(&p.at, row->unit[0] ? title : row->symbol);
+  p.at = fg_plot_frame_begin(out, &(fg_plot_frame){row->words, .width = 500, .height = 258, .left = 70, .right = 10 + fg_html_limit_room(labels, count), .bottom = 48, .x = (double[]){0.4, last + 0.6}, .y = range, .y_title = row->unit[0] ? title : row->symbol, .ticks = FG_TICKS_OWN, .band = (double[]){fmax(range[0], limit->lower), fmin(range[1], limit->upper)}, .band_style = "inside"});
   fg_html_limit_lines(&p.at, labels, count);
   for (int number = 1; number <= last; number++) {
-    char text[16];
-    snprintf(text, sizeof text, "%d", number);
-    fg_plot_x_label(&p.at, fg_plot_x(&p.at, number), text);
+    fg_plot_x_number(&p.at, number);
     if (!fg_foil_parts_have(&parts, number) && !(foil->flags & FG_FOIL_TOUCHES_BORDER))
       put_nothing(&p, number, "missing");
   }

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/select.h"
+#include "page/plot_frame.h"
 #include "report/measure/foil_parts.h"
 #include "report/measure/page_tables.h"
 
@@ -29,16 +30,10 @@ static double residual_limit(const fg_foil *foil) {
 }
 
 static void put_bump_bands(const fg_plot *at, const fg_foil *foil) {
-  char number[16];
   for (size_t i = 0; i < foil->bump_count; i++) {
     const fg_bump *bump = &foil->bumps[i];
-    if (!(bump->arc_end_mm > bump->arc_start_mm)) continue;
-    double from = fg_plot_x(at, bump->arc_start_mm), to = fg_plot_x(at, bump->arc_end_mm);
-    snprintf(number, sizeof number, "%d", bump->number);
-    fprintf(at->out,
-            "<rect class=\"band\" x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\"/>"
-            "<text class=\"x bump\" x=\"%.1f\" y=\"%.1f\">%s</text>\n",
-            from, at->top, to - from, at->bottom - at->top, (from + to) / 2, at->top - 6, number);
+    if (bump->arc_end_mm > bump->arc_start_mm)
+      fg_plot_bump_band(at, bump->arc_start_mm, bump->arc_end_mm, bump->number);
   }
 }
 
@@ -49,9 +44,8 @@ static void put_residual_strokes(const fg_plot *at, const fg_foil *foil, fg_arc_
   fprintf(at->out, "<path class=\"%s\" d=\"", style);
   for (size_t i = 0; i < foil->strip.count; i++) {
     if (!has_residual(&foil->labels[i]) || foil->labels[i].kind != kind) continue;
-    double value = foil->labels[i].residual_um;
+    double value = fg_plot_inside(at, foil->labels[i].residual_um);
     double x = floor(fg_plot_x(at, foil->strip.stations[i].s_mm)) + 0.5;
-    value = fmin(at->y_high, fmax(at->y_low, value));
     if (x != column && column >= 0)
       fprintf(at->out, "M%.1f %.1fV%.1f", column, fg_plot_y(at, low) + 0.7,
               fg_plot_y(at, high) - 0.7);
@@ -69,18 +63,15 @@ static void put_residual_strokes(const fg_plot *at, const fg_foil *foil, fg_arc_
 void fg_html_residuals(FILE *out, const fg_foil *foil) {
   if (!foil->labels || foil->strip.count < 2) return;
   double limit = residual_limit(foil);
-  fg_plot at = {out, 1000, 70, 985, 26, 240, 0, 1, -limit, limit};
-  at.x_low = foil->strip.stations[0].s_mm;
-  at.x_high = foil->strip.stations[foil->strip.count - 1].s_mm;
-  if (!(at.x_high > at.x_low)) return;
-  fg_plot_begin(&at, 290, "Residual of the midline along the foil");
+  const fg_station *stations = foil->strip.stations;
+  double ends[2] = {stations[0].s_mm, stations[foil->strip.count - 1].s_mm};
+  if (!(ends[1] > ends[0])) return;
+  fg_plot at = fg_plot_open(out, &(fg_plot_frame){"Residual of the midline along the foil", .height = 290, .left = 70, .top = 26, .x = ends, .y = (double[]){-limit, limit}, .y_title = "residual, µm", .x_title = "along the foil, mm"});
   put_bump_bands(&at, foil);
-  fg_plot_y_axis(&at, "residual, µm");
-  fg_plot_x_numbers(&at);
-  fg_plot_x_title(&at, "along the foil, mm");
+  fg_plot_axes(&at);
   put_residual_strokes(&at, foil, FG_ARC_LAND, "land");
   put_residual_strokes(&at, foil, FG_ARC_BUMP, "arc");
-  fputs("</svg>\n", out);
+  fg_plot_end(&at);
 }
 
 typedef struct series {
@@ -126,18 +117,13 @@ static void error_range(const fg_design *design, const error_plot *plot, const f
     for (size_t i = 0; i < parts->count; i++) {
       double value = fg_quantity_value(row, fg_foil_part_at(parts, i));
       double u = fg_quantity_uncertainty(row, fg_foil_part_at(parts, i));
-      if (!isfinite(value) || !is_part_shown(parts, i)) continue;
-      double expanded = isfinite(u) ? FG_COVERAGE_FACTOR * u : 0;
-      range[0] = fmin(range[0], value - expanded);
-      range[1] = fmax(range[1], value + expanded);
+      if (is_part_shown(parts, i)) fg_range_add(range, value, FG_COVERAGE_FACTOR * u);
     }
     const fg_tolerance *limit = limit_of(design, &plot->series[k]);
-    if (limit && isfinite(limit->lower)) range[0] = fmin(range[0], limit->lower);
-    if (limit && isfinite(limit->upper)) range[1] = fmax(range[1], limit->upper);
+    if (limit) fg_range_add(range, limit->lower, 0);
+    if (limit) fg_range_add(range, limit->upper, 0);
   }
-  double margin = fmax(0.05, 0.08 * (range[1] - range[0]));
-  range[0] -= margin;
-  range[1] += margin;
+  fg_range_pad(range, 0.08, 0.05);
 }
 
 /* Writes the value of a point beyond the plot, at the edge nearest to it. */
@@ -156,18 +142,12 @@ static void put_mark(const fg_plot *at, const series *one, const fg_foil_parts *
   double value = fg_quantity_value(row, fg_foil_part_at(parts, i));
   double u = fg_quantity_uncertainty(row, fg_foil_part_at(parts, i));
   if (!isfinite(value)) return;
-  double x = fg_plot_x(at, fg_foil_part_number(parts, i)) + one->shift, y = fg_plot_y(at, value);
-  if (value > at->y_high || value < at->y_low) {
-    put_outside(at, one, x, value);
-    return;
-  }
-  double expanded = isfinite(u) ? FG_COVERAGE_FACTOR * u : 0;
-  fprintf(at->out,
-          "<path class=\"%s\" d=\"M%.1f %.1fV%.1fM%.1f %.1fh10M%.1f %.1fh10\"/>"
-          "<circle class=\"%s\" cx=\"%.1f\" cy=\"%.1f\" r=\"5\"/>\n",
-          one->style, x, fg_plot_y(at, value - expanded), fg_plot_y(at, value + expanded), x - 5,
-          fg_plot_y(at, value - expanded), x - 5, fg_plot_y(at, value + expanded), one->style, x,
-          y);
+  int number = fg_foil_part_number(parts, i);
+  if (value > at->y_high || value < at->y_low)
+    put_outside(at, one, fg_plot_x(at, number) + one->shift, value);
+  else
+    fg_plot_interval(at, number, one->shift, value, isfinite(u) ? FG_COVERAGE_FACTOR * u : 0,
+                     one->style);
 }
 
 static const char *title_of_numbers(const fg_foil_parts *parts, const fg_foil *foil) {
@@ -196,25 +176,20 @@ void fg_html_errors(FILE *out, const fg_design *design, const fg_foil *foil) {
   error_range(design, plot, &parts, range);
   fg_plot_label labels[4];
   size_t count = limit_labels(design, plot, labels);
-  fg_plot at = {out, 1000, 70, 985, 34, 260, 0.4, last + 0.6, range[0], range[1]};
-  at.right -= fg_html_limit_room(labels, count);
-  fg_plot_begin(&at, 310, plot->title);
-  fg_plot_y_axis(&at, plot->axis);
-  for (size_t i = 0; i < parts.count; i++) {
-    char number[16];
-    snprintf(number, sizeof number, "%d", fg_foil_part_number(&parts, i));
-    fg_plot_x_label(&at, fg_plot_x(&at, fg_foil_part_number(&parts, i)), number);
-  }
+  fg_plot at = fg_plot_frame_begin(
+      out, &(fg_plot_frame){plot->title, .height = 310, .left = 70,
+                            .right = 15 + fg_html_limit_room(labels, count), .top = 34,
+                            .x = (double[]){0.4, last + 0.6}, .y = range, .y_title = plot->axis,
+                            .ticks = FG_TICKS_OWN});
+  for (size_t i = 0; i < parts.count; i++)
+    fg_plot_x_number(&at, fg_foil_part_number(&parts, i));
   fg_plot_x_title(&at, title_of_numbers(&parts, foil));
   fg_html_limit_lines(&at, labels, count);
   for (size_t k = 0; k < 2; k++) {
     const series *one = &plot->series[k];
     for (size_t i = 0; i < parts.count; i++)
       put_mark(&at, one, &parts, i);
-    fprintf(
-        out,
-        "<circle class=\"%s\" cx=\"%.0f\" cy=\"14\" r=\"5\"/><text x=\"%.0f\" y=\"19\">%s</text>\n",
-        one->style, 80 + 230.0 * (double)k, 92 + 230.0 * (double)k, one->words);
+    fg_plot_key(&at, 80 + 230 * (double)k, one->style, one->words);
   }
-  fputs("</svg>\n", out);
+  fg_plot_end(&at);
 }

@@ -5,11 +5,8 @@
 #include <string.h>
 
 #include "core/text.h"
-#include "page/plot.h"
-#include "page/plot_marks.h"
+#include "page/plot_frame.h"
 #include "report/scan_loop/parts.h"
-
-enum { WIDTH = 520, HEIGHT = 264 };
 
 /* ---- drawings ---- */
 
@@ -33,50 +30,43 @@ static void put_bump_marks(const fg_plot *at, const view *v, bool after) {
   }
 }
 
-static void put_bump_plot(FILE *out, const view *v, const double range[4], bool after,
-                          const char *caption) {
-  fg_plot at = {out, WIDTH, 72, 510, 12, 214, range[0], range[1], range[2], range[3]};
+static void put_bump_plot(FILE *out, const view *v, const double x[2], const double y[2],
+                          bool after, const char *caption) {
   char title[64];
   snprintf(title, sizeof title, "off the model, %s", fg_scan_loop_unit_words(v->response->unit));
   fprintf(out, "<figure><figcaption><b>%s</b></figcaption>", caption);
-  fg_plot_begin(&at, HEIGHT, caption);
-  fg_plot_y_axis(&at, title);
-  fg_plot_x_numbers(&at);
-  fg_plot_x_title(&at, v->bumps->lip ? "bump, 1 is next to the lip" : "bump");
+  fg_plot at = fg_plot_frame_begin(
+      out, &(fg_plot_frame){caption, .width = 520, .height = 264, .left = 72, .right = 10,
+                            .top = 12, .x = x, .y = y, .y_title = title,
+                            .x_title = v->bumps->lip ? "bump, 1 is next to the lip" : "bump"});
   put_bump_marks(&at, v, after);
   fg_plot_end(&at);
   fputs("</figure>\n", out);
 }
 
-static void find_bump_range(const view *v, double range[4]) {
-  range[0] = range[2] = INFINITY;
-  range[1] = range[3] = -INFINITY;
+static void find_bump_range(const view *v, double x[2], double y[2]) {
   for (size_t i = 0; i < v->response->bumps; i++) {
     const fg_scan_result_bump *bump = &v->response->bump[i];
-    double x = bump_abscissa(v, bump);
-    range[0] = fmin(range[0], x - 0.6);
-    range[1] = fmax(range[1], x + 0.6);
-    range[2] = fmin(range[2], fmin(bump->before, bump->after));
-    range[3] = fmax(range[3], fmax(bump->before, bump->after));
+    fg_range_add(x, bump_abscissa(v, bump), 0.6);
+    fg_range_add(y, bump->before, 0);
+    fg_range_add(y, bump->after, 0);
   }
-  double margin = 0.08 * (range[3] - range[2]) + 1e-9;
-  range[2] -= margin;
-  range[3] += margin;
+  fg_range_pad(y, 0.08, 1e-9);
 }
 
 static void put_response(FILE *out, const fg_scan_result_bumps *bumps,
                          const fg_scan_result_response *response) {
   const view v = {bumps, response};
   bool found = response->claims || response->has_curve;
-  double range[4];
+  double x[2] = {INFINITY, -INFINITY}, y[2] = {INFINITY, -INFINITY};
   char caption[120];
   if (!response->bumps) return;
-  find_bump_range(&v, range);
+  find_bump_range(&v, x, y);
   fg_text_clip(caption, sizeof caption, "%s, off %s%s", response->words, response->model,
                found ? ": before" : "");
-  put_bump_plot(out, &v, range, false, caption);
+  put_bump_plot(out, &v, x, y, false, caption);
   fg_text_clip(caption, sizeof caption, "%s: after", response->words);
-  if (found) put_bump_plot(out, &v, range, true, caption);
+  if (found) put_bump_plot(out, &v, x, y, true, caption);
 }
 
 /* ---- tables ---- */

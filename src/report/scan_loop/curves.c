@@ -3,41 +3,30 @@
 #include <math.h>
 #include <string.h>
 
-#include "page/plot.h"
-#include "page/plot_marks.h"
+#include "page/plot_frame.h"
 #include "report/scan_loop/parts.h"
 
-enum { SAMPLES = FG_SCAN_RESULT_SAMPLES, WIDTH = 520, HEIGHT = 290 };
+enum { SAMPLES = FG_SCAN_RESULT_SAMPLES };
 
 /* Marks the range of the foils' edges: beyond it, data do not determine a curve. */
 static void put_reach(const fg_plot *at, const fg_scan_result *result,
                       fg_scan_coordinate coordinate) {
-  double low = INFINITY, high = -INFINITY;
-  for (size_t i = 0; i < result->rows; i++) {
-    double x = result->row[i].place[coordinate];
-    low = fmin(low, x);
-    high = fmax(high, x);
-  }
-  if (!(high > low)) return;
-  fprintf(at->out,
-          "<rect class=\"beyond\" x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\"/>\n",
-          at->left, at->top, at->right - at->left, at->bottom - at->top);
-  fprintf(at->out, "<rect class=\"reach\" x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\"/>\n",
-          fg_plot_x(at, low), at->top, fg_plot_x(at, high) - fg_plot_x(at, low),
-          at->bottom - at->top);
+  double range[2] = {INFINITY, -INFINITY};
+  for (size_t i = 0; i < result->rows; i++)
+    fg_range_add(range, result->row[i].place[coordinate], 0);
+  if (!(range[1] > range[0])) return;
+  fg_plot_band(at, at->y_low, at->y_high, "beyond");
+  fg_plot_rect(at, range, (double[]){at->y_low, at->y_high}, "reach");
 }
 
 static void put_band(const fg_plot *at, const fg_scan_result_line *line) {
-  size_t count = SAMPLES;
+  double low[SAMPLES], high[SAMPLES];
   if (!isfinite(line->expanded_um[0])) return;
-  fputs("<path class=\"ci shape\" d=\"", at->out);
-  for (size_t i = 0; i < count; i++)
-    fprintf(at->out, "%c%.1f %.1f", i ? 'L' : 'M', fg_plot_x(at, line->x[i]),
-            fg_plot_y(at, line->um[i] + line->expanded_um[i]));
-  for (size_t i = count; i-- > 0;)
-    fprintf(at->out, "L%.1f %.1f", fg_plot_x(at, line->x[i]),
-            fg_plot_y(at, line->um[i] - line->expanded_um[i]));
-  fputs("Z\"/>\n", at->out);
+  for (size_t i = 0; i < SAMPLES; i++) {
+    low[i] = line->um[i] - line->expanded_um[i];
+    high[i] = line->um[i] + line->expanded_um[i];
+  }
+  fg_plot_ribbon(at, line->x, low, high, SAMPLES, "ci shape", NULL);
 }
 
 static const char *moves_words(const fg_scan_result_line *line) {
@@ -67,38 +56,22 @@ static double find_curve_range(const fg_scan_result_line *line, double range[2])
   range[0] = range[1] = 0;
   for (size_t i = 0; i < SAMPLES; i++) {
     if (!isfinite(line->um[i])) continue;
-    double u = isfinite(line->expanded_um[i]) ? line->expanded_um[i] : 0;
-    widest = fmax(widest, u);
-    range[0] = fmin(range[0], line->um[i] - u);
-    range[1] = fmax(range[1], line->um[i] + u);
+    widest = fmax(widest, line->expanded_um[i]);
+    fg_range_add(range, line->um[i], line->expanded_um[i]);
   }
+  fg_range_pad(range, 0.08, 1e-6);
   return widest;
 }
 
 static void put_curve_line(FILE *out, const fg_scan_result *result,
                            const fg_scan_result_line *line) {
   double range[2], widest = find_curve_range(line, range);
-  double margin = 0.08 * (range[1] - range[0]) + 1e-6;
-  fg_plot at = {out,
-                WIDTH,
-                72,
-                508,
-                14,
-                240,
-                line->x[0],
-                line->x[SAMPLES - 1],
-                range[0] - margin,
-                range[1] + margin};
   char title[64];
   snprintf(title, sizeof title, "%s, µm", moves_words(line));
   fputs("<figure>", out);
-  fg_plot_begin(&at, HEIGHT, title);
+  fg_plot at = fg_plot_open(out, &(fg_plot_frame){title, .width = 520, .height = 290, .left = 72, .right = 12, .x = (double[]){line->x[0], line->x[SAMPLES - 1]}, .y = range, .y_title = title, .x_title = line->coordinate == FG_SCAN_FOIL ? "angle from the foil's middle about O, °" : result->coordinate_title[line->coordinate]});
   if (line->glass) put_reach(&at, result, line->coordinate);
-  fg_plot_y_axis(&at, title);
-  fg_plot_x_numbers(&at);
-  fg_plot_x_title(&at, line->coordinate == FG_SCAN_FOIL
-                           ? "angle from the foil's middle about O, °"
-                           : result->coordinate_title[line->coordinate]);
+  fg_plot_axes(&at);
   put_band(&at, line);
   fg_plot_line(&at, line->x, line->um, SAMPLES, "effect");
   fg_plot_end(&at);

@@ -4,11 +4,10 @@
 #include <stdlib.h>
 
 #include "core/memory.h"
-#include "page/plot.h"
-#include "page/plot_marks.h"
+#include "page/plot_frame.h"
 #include "report/scan_loop/parts.h"
 
-enum { WIDTH = 520, HEIGHT = 264, POINTS_MAX = 1300, BINS = 150, ROWS_IN_BIN = 8, COLOURS = 4 };
+enum { POINTS_MAX = 1300, BINS = 150, ROWS_IN_BIN = 8, COLOURS = 4 };
 
 /* A plot's data: rows over one coordinate, before or after. */
 typedef struct series {
@@ -47,9 +46,8 @@ static void put_points(const fg_plot *at, const series *s, size_t scan, bool lig
   for (size_t i = 0; i < rows; i += stride) {
     double x, y;
     if (scan_of(s, i) != scan || is_light(s, i) != light || !point_at(s, i, &x, &y)) continue;
-    y = fmin(at->y_high, fmax(at->y_low, y));
     fprintf(at->out, held_out ? "M%.1f %.1fm-2-2l4 4m0-4l-4 4" : "M%.1f %.1fh0", fg_plot_x(at, x),
-            fg_plot_y(at, y));
+            fg_plot_y(at, fg_plot_inside(at, y)));
   }
   fputs("\"/>\n", at->out);
 }
@@ -71,7 +69,7 @@ static void put_bin_means(const fg_plot *at, const series *s, size_t scan) {
   }
   for (size_t b = 0; b < bins; b++) {
     place[b] = at->x_low + ((double)b + 0.5) / (double)bins * (at->x_high - at->x_low);
-    sum[b] = n[b] >= 2 ? fmin(at->y_high, fmax(at->y_low, sum[b] / n[b])) : NAN;
+    sum[b] = n[b] >= 2 ? fg_plot_inside(at, sum[b] / n[b]) : NAN;
   }
   char style[16];
   snprintf(style, sizeof style, "mean %s", colour(scan));
@@ -87,13 +85,10 @@ static void put_noise_band(const fg_plot *at, double noise_um) {
 
 static void put_residual_plot(FILE *out, const series *s, const double range[2], double limit_um,
                               const char *caption) {
-  fg_plot at = {out, WIDTH, 70, 510, 12, 214, range[0], range[1], -limit_um, limit_um};
   fprintf(out, "<figure><figcaption><b>%s</b></figcaption>", caption);
-  fg_plot_begin(&at, HEIGHT, caption);
+  fg_plot at = fg_plot_open(out, &(fg_plot_frame){caption, .width = 520, .height = 264, .left = 70, .right = 10, .top = 12, .x = range, .y = (double[]){-limit_um, limit_um}, .y_title = "residual, µm", .x_title = s->result->coordinate_title[s->coordinate]});
   put_noise_band(&at, s->result->noise_floor_um);
-  fg_plot_y_axis(&at, "residual, µm");
-  fg_plot_x_numbers(&at);
-  fg_plot_x_title(&at, s->result->coordinate_title[s->coordinate]);
+  fg_plot_axes(&at);
   for (size_t scan = 0; scan < s->result->scans; scan++)
     for (int light = 1; light >= 0; light--)
       put_points(&at, s, scan, light);
@@ -107,11 +102,8 @@ static bool find_abscissa_range(const series *s, double range[2]) {
   double x, y;
   range[0] = INFINITY;
   range[1] = -INFINITY;
-  for (size_t i = 0; i < s->result->rows; i++) {
-    if (!point_at(s, i, &x, &y)) continue;
-    range[0] = fmin(range[0], x);
-    range[1] = fmax(range[1], x);
-  }
+  for (size_t i = 0; i < s->result->rows; i++)
+    if (point_at(s, i, &x, &y)) fg_range_add(range, x, 0);
   return range[1] > range[0];
 }
 

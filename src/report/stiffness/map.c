@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "page/plot_marks.h"
+#include "page/plot_frame.h"
 
 /* Colour is full at ± 40 %: the stiffness of lots varies by less. */
 static const double full_colour = 0.4;
@@ -113,21 +113,9 @@ void fg_stiffness_plot_map(FILE *out, const fg_stiffness_map *map, fg_stiffness_
                            const void *user) {
   static const double levels[] = {0.4, 0.5, 0.6, 0.7,  0.8, 0.9, 1, 1.1,
                                   1.2, 1.3, 1.5, 1.75, 2,   2.5, 3};
-  fg_plot at = {out,
-                1000,
-                92,
-                985,
-                14,
-                380,
-                map->radius_low,
-                map->radius_high,
-                map->angle_low,
-                map->angle_high};
-  fg_plot_begin(&at, 430, "Stiffness of a bump over its radius and angle, all over the design's");
+  fg_plot at = fg_plot_open(out, &(fg_plot_frame){ "Stiffness of a bump over its radius and angle, all over the design's", .height = 430, .left = 92, .x = (double[]){map->radius_low, map->radius_high}, .y = (double[]){map->angle_low, map->angle_high}, .y_title = "angle over the design's", .x_title = "bump radius over the design's"});
   put_cells(&at, map);
-  fg_plot_y_axis(&at, "angle over the design's");
-  fg_plot_x_numbers(&at);
-  fg_plot_x_title(&at, "bump radius over the design's");
+  fg_plot_axes(&at);
   put_constant_arc(&at);
   for (size_t i = 0; i < sizeof levels / sizeof *levels; i++)
     put_level(&at, map, levels[i]);

@@ -6,21 +6,9 @@
 
 #include "core/text.h"
 #include "page/page.h"
+#include "page/plot_frame.h"
 
-typedef struct loop_plot {
-  FILE *out;
-  double x_low, x_high, y_low, y_high;
-} loop_plot;
-
-enum { LEFT = 84, RIGHT = 510, TOP = 14, BOTTOM = 250, WIDTH = 520, HEIGHT = 296 };
-
-static double at_x(const loop_plot *at, double x) {
-  return LEFT + (x - at->x_low) / (at->x_high - at->x_low) * (RIGHT - LEFT);
-}
-
-static double at_y(const loop_plot *at, double y) {
-  return BOTTOM - (y - at->y_low) / (at->y_high - at->y_low) * (BOTTOM - TOP);
-}
+enum { LEFT = 84, RIGHT = 510, BOTTOM = 250, WIDTH = 520, HEIGHT = 296 };
 
 static double nice_step(double range) {
   double step = pow(10, floor(log10(range / 5)));
@@ -38,7 +26,7 @@ static size_t tick_count(double low, double high, double step) {
 }
 
 /* Writes as many names as there is room for, each cut to its room. */
-static void put_level_names(const loop_plot *at, const fg_loop_coordinate *coordinate) {
+static void put_level_names(const fg_plot *at, const fg_loop_coordinate *coordinate) {
   enum { ROOM = 62 };
   size_t every = coordinate->levels / (ROOM / 8 + 1) + 1;
   size_t max = every > 1 ? 8 : ROOM / coordinate->levels;
@@ -46,13 +34,14 @@ static void put_level_names(const loop_plot *at, const fg_loop_coordinate *coord
     char name[FG_LOOP_NAME];
     fg_text_clip(name, max + 1 < sizeof name ? max + 1 : sizeof name, "%s",
                  coordinate->level_name[k]);
-    fprintf(at->out, "<text class=\"x\" x=\"%.1f\" y=\"%d\">", at_x(at, (double)k), BOTTOM + 18);
+    fprintf(at->out, "<text class=\"x\" x=\"%.1f\" y=\"%d\">", fg_plot_x(at, (double)k),
+            BOTTOM + 18);
     fg_html_text(at->out, name);
     fputs("</text>\n", at->out);
   }
 }
 
-static void put_axes(const loop_plot *at, const fg_loop_coordinate *coordinate, const char *title) {
+static void put_axes(const fg_plot *at, const fg_loop_coordinate *coordinate, const char *title) {
   double step = nice_step(at->y_high - at->y_low);
   size_t ticks = tick_count(at->y_low, at->y_high, step);
   for (size_t i = 0; i < ticks; i++) {
@@ -60,8 +49,8 @@ static void put_axes(const loop_plot *at, const fg_loop_coordinate *coordinate, 
     fprintf(at->out,
             "<path class=\"%s\" d=\"M%d %.1fH%d\"/><text class=\"y\" x=\"%d\" y=\"%.1f\">%.4g"
             "</text>\n",
-            fabs(y) < step / 1e6 ? "zero" : "grid", LEFT, at_y(at, y), RIGHT, LEFT - 6,
-            at_y(at, y) + 4, fabs(y) < step / 1e6 ? 0 : y);
+            fabs(y) < step / 1e6 ? "zero" : "grid", LEFT, fg_plot_y(at, y), RIGHT, LEFT - 6,
+            fg_plot_y(at, y) + 4, fabs(y) < step / 1e6 ? 0 : y);
   }
   if (coordinate->levels) {
     put_level_names(at, coordinate);
@@ -70,7 +59,7 @@ static void put_axes(const loop_plot *at, const fg_loop_coordinate *coordinate, 
     ticks = tick_count(at->x_low, at->x_high, step);
     for (size_t i = 0; i < ticks; i++) {
       double x = (ceil(at->x_low / step) + (double)i) * step;
-      fprintf(at->out, "<text class=\"x\" x=\"%.1f\" y=\"%d\">%.4g</text>\n", at_x(at, x),
+      fprintf(at->out, "<text class=\"x\" x=\"%.1f\" y=\"%d\">%.4g</text>\n", fg_plot_x(at, x),
               BOTTOM + 18, x);
     }
   }
@@ -84,8 +73,8 @@ static void put_axes(const loop_plot *at, const fg_loop_coordinate *coordinate, 
 /* Maximum number of points: more would only blacken the page. */
 enum { POINTS_MAX = 4000 };
 
-static double clip(const loop_plot *at, double y) {
-  return at_y(at, fmin(fmax(y, at->y_low), at->y_high));
+static double clip(const fg_plot *at, double y) {
+  return fg_plot_y(at, fg_plot_inside(at, y));
 }
 
 /* Levels are spread a little, so that rows do not hide each other. */
@@ -93,7 +82,7 @@ static double abscissa_of_row(const fg_loop_coordinate *at, size_t row) {
   return at->value[row] + (at->levels ? 0.16 * sin(12.9898 * (double)row) : 0);
 }
 
-static void put_points(const loop_plot *at, const fg_loop_problem *problem,
+static void put_points(const fg_plot *at, const fg_loop_problem *problem,
                        const fg_loop_panel *panel) {
   size_t stride = problem->rows / POINTS_MAX + 1;
   for (int held = 0; held < 2; held++)
@@ -101,7 +90,7 @@ static void put_points(const loop_plot *at, const fg_loop_problem *problem,
       if ((problem->held_out && problem->held_out[i]) != held || !isfinite(panel->at->value[i]))
         continue;
       fprintf(at->out, "<circle class=\"%s\" cx=\"%.1f\" cy=\"%.1f\" r=\"%.1f\"/>\n",
-              held ? "held" : "fit", at_x(at, abscissa_of_row(panel->at, i)),
+              held ? "held" : "fit", fg_plot_x(at, abscissa_of_row(panel->at, i)),
               clip(at, panel->residual[i]),
               problem->rows > 400   ? 1.6
               : problem->rows > 100 ? 2.4
@@ -110,23 +99,23 @@ static void put_points(const loop_plot *at, const fg_loop_problem *problem,
 }
 
 /* The rows of a series, joined. */
-static void put_joined(const loop_plot *at, const fg_loop_problem *problem,
+static void put_joined(const fg_plot *at, const fg_loop_problem *problem,
                        const fg_loop_panel *panel) {
   if (problem->rows > POINTS_MAX) return;
   fputs("<path class=\"joined\" d=\"", at->out);
   for (size_t i = 0; i < problem->rows; i++)
     fprintf(at->out, "%s%.1f %.1f", i && problem->series[i] == problem->series[i - 1] ? "L" : "M",
-            at_x(at, panel->at->value[i]), clip(at, panel->residual[i]));
+            fg_plot_x(at, panel->at->value[i]), clip(at, panel->residual[i]));
   fputs("\"/>\n", at->out);
 }
 
-static void put_marked(const loop_plot *at, const fg_loop_report *report,
+static void put_marked(const fg_plot *at, const fg_loop_report *report,
                        const fg_loop_panel *panel) {
   const fg_loop_candidate *marked = panel->marked;
   size_t count = marked->effect->outlier == FG_LOOP_EXCHANGED_ROWS ? 2 : marked->rows;
   for (size_t k = 0; k < count; k++) {
     size_t i = marked->row[k], row = report->problem->row[i];
-    double x = at_x(at, abscissa_of_row(panel->at, i)), y = clip(at, panel->residual[i]);
+    double x = fg_plot_x(at, abscissa_of_row(panel->at, i)), y = clip(at, panel->residual[i]);
     bool right = x < (LEFT + RIGHT) / 2.0;
     fprintf(at->out,
             "<circle class=\"mark\" cx=\"%.1f\" cy=\"%.1f\" r=\"5\"/><text class=\"%s\" x=\"%.1f\" "
@@ -145,31 +134,31 @@ static double half_dash(const fg_loop_panel *panel) {
   return fmin(28, 0.36 * (RIGHT - LEFT) / (double)(panel->points ? panel->points : 1));
 }
 
-static void put_band(const loop_plot *at, const fg_loop_panel *panel) {
+static void put_band(const fg_plot *at, const fg_loop_panel *panel) {
   double half = half_dash(panel);
   if (panel->dashes) {
     for (size_t i = 0; i < panel->points; i++) {
       double top = clip(at, panel->line[i].y), bottom = clip(at, -panel->line[i].y);
       fprintf(at->out, "<path class=\"band\" d=\"M%.1f %.1fh%.1fV%.1fh%.1fz\"/>\n",
-              at_x(at, panel->line[i].x) - half, top, 2 * half, bottom, -2 * half);
+              fg_plot_x(at, panel->line[i].x) - half, top, 2 * half, bottom, -2 * half);
     }
     return;
   }
   fputs("<path class=\"band\" d=\"", at->out);
   for (size_t i = 0; i < panel->points; i++)
-    fprintf(at->out, "%s%.1f %.1f", i ? "L" : "M", at_x(at, panel->line[i].x),
+    fprintf(at->out, "%s%.1f %.1f", i ? "L" : "M", fg_plot_x(at, panel->line[i].x),
             clip(at, panel->line[i].y));
   for (size_t i = panel->points; i-- > 0;)
-    fprintf(at->out, "L%.1f %.1f", at_x(at, panel->line[i].x), clip(at, -panel->line[i].y));
+    fprintf(at->out, "L%.1f %.1f", fg_plot_x(at, panel->line[i].x), clip(at, -panel->line[i].y));
   fputs("z\"/>\n", at->out);
 }
 
-static void put_panel_line(const loop_plot *at, const fg_loop_panel *panel) {
+static void put_panel_line(const fg_plot *at, const fg_loop_panel *panel) {
   double half = half_dash(panel);
   if (!panel->points) return;
   fputs("<path class=\"effect\" d=\"", at->out);
   for (size_t i = 0; i < panel->points; i++) {
-    double x = at_x(at, panel->line[i].x), y = clip(at, panel->line[i].y);
+    double x = fg_plot_x(at, panel->line[i].x), y = clip(at, panel->line[i].y);
     if (panel->dashes)
       fprintf(at->out, "M%.1f %.1fh%.1f", x - half, y, 2 * half);
     else
@@ -183,12 +172,14 @@ fg_status fg_loop_panel_put(fg_context *ctx, FILE *out, const fg_loop_report *re
   const fg_loop_problem *problem = &report->problem->problem;
   const fg_loop_coordinate *x = panel->at;
   double margin = x->levels ? 0.5 : 0.03 * (x->high - x->low);
-  loop_plot at = {out, x->low - margin, x->high + margin, -panel->limit, panel->limit};
+  double ends[2] = {x->low - margin, x->high + margin};
   (void)ctx;
-  if (!(at.x_high > at.x_low)) return FG_OK;
-  fprintf(out,
-          "<figure><svg class=\"plot\" viewBox=\"0 0 %d %d\" role=\"img\" aria-label=\"%s\">\n",
-          WIDTH, HEIGHT, panel->caption);
+  if (!(ends[1] > ends[0])) return FG_OK;
+  fputs("<figure>", out);
+  fg_plot at = fg_plot_open(out, &(fg_plot_frame){panel->caption, .width = WIDTH, .height = HEIGHT,
+                                                  .left = LEFT, .right = WIDTH - RIGHT,
+                                                  .bottom = HEIGHT - BOTTOM, .x = ends,
+                                                  .y = (double[]){-panel->limit, panel->limit}});
   put_axes(&at, x, report->spec->response);
   if (panel->band) put_band(&at, panel);
   if (panel->joined) put_joined(&at, problem, panel);
