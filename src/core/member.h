@@ -103,7 +103,8 @@ struct fg_member {
   fg_member_kind kind;
   unsigned options; /* fg_member_option */
   size_t offset;
-  size_t u_offset;      /* standard uncertainty, written under "u_" and the name; 0: none */
+  size_t u_offset;  /* standard uncertainty, written under "u_" and the name; 0: none */
+  size_t sd_offset; /* standard deviation, written between both as "sd_" and the name; 0: none */
   size_t repeat_offset; /* of repeats alone, "u_repeat_" and the name; 0: none */
   size_t count_offset;  /* number of a list's elements (size_t) */
   size_t stride;        /* bytes of a list's element; bytes of a text */
@@ -130,7 +131,8 @@ struct fg_member {
   const char *const *choices;         /* words that a text can be, up to a NULL */
   const char *(*choice_at)(size_t i); /* the same by a function; NULL behind the last */
   const char *schema;                 /* the schema's text, where the kind does not tell it */
-  double lowest, highest;             /* limits, where highest > lowest */
+  const char *pattern;                /* regular expression that a text fits, for the schema */
+  double lowest, highest; /* limits, where highest > lowest or lowest > 0; of a list: elements */
 
   /* For people. */
   const char *words;   /* meaning: schema and manual, title of a column */
@@ -182,6 +184,7 @@ struct fg_member {
             0 * sizeof(_Generic(&((object *)0)->field,                                             \
                 char **: (char)0, const char **: (char)0, char *const *: (char)0,                  \
                 const char *const *: (char)0))
+#define FG_SHA256(name_, object, field) FG_TEXT(name_, object, field), .pattern = "^[0-9a-f]{64}$"
 #define FG_WORD(name_, object, field, words_)                                                      \
   .name = (name_), .kind = FG_MEMBER_WORD, .choices = (words_),                                    \
   .offset =                                                                                        \

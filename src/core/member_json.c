@@ -12,15 +12,19 @@ static bool is_left_out(const fg_member *member, bool known) {
   return !known && member->options & FG_MEMBER_LEFT_OUT;
 }
 
+static double number_at(const fg_subject *subject, size_t offset) {
+  return *(const double *)(const void *)((const char *)subject->object + offset);
+}
+
 static void write_number(fg_json *json, const fg_member *member, const fg_subject *subject) {
+  const char *name = member->name;
   double value = fg_member_value(member, subject);
   if (is_left_out(member, isfinite(value))) return;
-  fg_json_number(json, member->name, value);
-  if (fg_member_has_u(member)) fg_json_of(json, "u_", member->name, fg_member_u(member, subject));
-  if (member->repeat_offset) {
-    const char *place = (const char *)subject->object + member->repeat_offset;
-    fg_json_of(json, "u_repeat_", member->name, *(const double *)(const void *)place);
-  }
+  fg_json_number(json, name, value);
+  if (member->sd_offset) fg_json_of(json, "sd_", name, number_at(subject, member->sd_offset));
+  if (fg_member_has_u(member)) fg_json_of(json, "u_", name, fg_member_u(member, subject));
+  if (member->repeat_offset)
+    fg_json_of(json, "u_repeat_", name, number_at(subject, member->repeat_offset));
 }
 
 static void write_whole_number(fg_json *json, const fg_member *member, const fg_subject *subject) {
@@ -42,11 +46,9 @@ static void write_text(fg_json *json, const fg_member *member, const fg_subject 
 }
 
 static void write_range(fg_json *json, const fg_member *member, const fg_subject *subject) {
-  const char *object = subject->object;
-  const double *low = (const double *)(const void *)(object + member->offset);
-  const double *high = (const double *)(const void *)(object + member->u_offset);
-  if (is_left_out(member, isfinite(*low) || isfinite(*high))) return;
-  fg_json_numbers(json, member->name, (const double[]){*low, *high}, 2);
+  const double range[] = {number_at(subject, member->offset), number_at(subject, member->u_offset)};
+  if (is_left_out(member, isfinite(range[0]) || isfinite(range[1]))) return;
+  fg_json_numbers(json, member->name, range, 2);
 }
 
 static void write_numbers(fg_json *json, const fg_member *member, const fg_subject *subject) {

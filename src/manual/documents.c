@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "manual/documents.h"
 
+#include "report/die/members.h"
 #include "report/load_test/members.h"
 
 const fg_document *const fg_documents[] = {
+    &fg_die_document,
     &fg_load_document,
     NULL,
 };

@@ -91,6 +91,10 @@ static cJSON *make_list(schema *all, const fg_member *row) {
   add_words(list, row);
   add_type(list, map ? "object" : "array", false);
   add_item(list, map ? "additionalProperties" : "items", make_element(all, row->members));
+  if (row->lowest > 0)
+    add_item(list, map ? "minProperties" : "minItems", cJSON_CreateNumber(row->lowest));
+  if (row->highest > 0)
+    add_item(list, map ? "maxProperties" : "maxItems", cJSON_CreateNumber(row->highest));
   return list;
 }
 
@@ -126,6 +130,7 @@ static cJSON *make_text(const fg_member *row, bool with_words) {
     add_choices(text, row, nullable);
   else
     add_type(text, "string", nullable);
+  if (row->pattern) add_item(text, "pattern", cJSON_CreateString(row->pattern));
   return text;
 }
 
@@ -154,6 +159,8 @@ static cJSON *make_number(const fg_member *row) {
   if (row->highest > row->lowest) {
     add_item(number, "minimum", cJSON_CreateNumber(row->lowest));
     add_item(number, "maximum", cJSON_CreateNumber(row->highest));
+  } else if (row->lowest > 0) {
+    add_item(number, "minimum", cJSON_CreateNumber(row->lowest));
   } else if (row->options & FG_MEMBER_NOT_NEGATIVE || row->kind == FG_MEMBER_COUNT ||
              row->kind == FG_MEMBER_UNSIGNED || row->kind == FG_MEMBER_SEED) {
     add_item(number, "minimum", cJSON_CreateNumber(0));
@@ -231,10 +238,12 @@ static void describe_row(schema *all, const fg_member *row, cJSON *properties, c
     for (size_t i = 0; row->row_at && row->row_at(i, &each); i++)
       describe_row(all, &each, properties, required, optional);
     if (row->members)
-      describe_members(all, row->members, properties, required, optional || row->part);
+      describe_members(all, row->members, properties, required,
+                       optional || (row->part && !(row->options & FG_MEMBER_NEVER_NULL)));
     return;
   }
   put_property(properties, required, row->name, make_member(all, row), optional);
+  if (row->sd_offset) put_uncertainty(row, "sd_", properties, required, optional);
   if (fg_member_has_u(row)) put_uncertainty(row, "u_", properties, required, optional);
   if (row->repeat_offset) put_uncertainty(row, "u_repeat_", properties, required, optional);
 }

@@ -7,8 +7,10 @@
 #include "foilgauge/die_report.h"
 #include "foilgauge/words.h"
 #include "page/page.h"
+#include "page/table.h"
 #include "page/tile.h"
 #include "page/verdict.h"
+#include "report/die/members.h"
 #include "report/die/plots.h"
 #include "report/provenance.h"
 
@@ -164,24 +166,11 @@ static void put_half(FILE *out, const fg_die *die, fg_die_half half) {
 }
 
 static fg_status put_traces(fg_context *ctx, FILE *out, const fg_die *die) {
-  fputs("<h2>Where it comes from</h2>\n<div class=\"scroll\"><table>\n<tr><th>profile</th><th "
-        "class=\"w\">half</th><th>bumps</th><th>points</th><th>length, mm</th><th>tip, µm</th>"
-        "<th>unit x, z</th><th>noise, µm</th><th>too steep</th><th class=\"w\">SHA-256</th></tr>\n",
-        out);
-  for (size_t i = 0; i < die->trace_count; i++) {
-    const fg_die_trace *t = &die->traces[i];
-    fputs("<tr><td class=\"path\">", out);
-    fg_html_text(out, t->path);
-    fprintf(out,
-            "</td><td class=\"w\">%s %d</td><td>%d…%d</td><td>%zu</td><td>%.2f</td><td>%g</td>"
-            "<td>%s, %s</td><td>%.3f</td><td>%.1f %%</td><td class=\"w\">%.12s…</td></tr>\n",
-            fg_die_half_word(t->half), t->repeat, t->bumps[0].number,
-            t->bumps[t->bump_count - 1].number, t->points, t->length_mm, t->tip_um,
-            fg_die_unit_word(t->unit[0]), fg_die_unit_word(t->unit[1]), t->noise_um,
-            100 * t->steep_share, t->sha256);
-  }
+  fputs("<h2>Where it comes from</h2>\n", out);
+  fg_html_table(out, &fg_die_trace_members, &(fg_subject){.object = die, .whole = die},
+                fg_die_trace_at);
   fprintf(out,
-          "</table></div>\n<p class=\"note\">The circles are fitted to the line of the tip's "
+          "<p class=\"note\">The circles are fitted to the line of the tip's "
           "centre; the tip's radius (u %.3g µm) and the way to the strip's %s are taken off each "
           "radius. Scale: u %.3g ppm. Flanks steeper than %g° take no part.</p>\n",
           die->options.u_tip_um, datum_words[die->design.datum], die->options.u_scale_ppm,

@@ -106,7 +106,11 @@ static fg_plot open_trace_plot(FILE *out, const fg_die_trace *trace) {
     fg_range_add(z, trace->stations[i].z, 0);
   z[0] -= 16 / scale;
   z[1] += 30 / scale;
-  return fg_plot_open(out, &(fg_plot_frame){"A trace of this half with its circles", .height = (int)(scale * (z[1] - z[0])) + 2 * TRACE_EDGE, .left = TRACE_EDGE, .right = TRACE_EDGE, .top = TRACE_EDGE, .bottom = TRACE_EDGE, .x = x, .y = z});
+  return fg_plot_open(out,
+                      &(fg_plot_frame){"A trace of this half with its circles",
+                                       .height = (int)(scale * (z[1] - z[0])) + 2 * TRACE_EDGE,
+                                       .left = TRACE_EDGE, .right = TRACE_EDGE, .top = TRACE_EDGE,
+                                       .bottom = TRACE_EDGE, .x = x, .y = z});
 }
 
 static void put_trace_line(const fg_plot *at, const fg_die_trace *trace) {
@@ -235,7 +239,11 @@ void fg_die_plot_residuals(FILE *out, const fg_die *die, fg_die_half half) {
   int numbers[2];
   size_t colour = 0;
   numbers_of(die, numbers);
-  fg_plot at = fg_plot_open(out, &(fg_plot_frame){"Residuals of the traces from their circles", .height = 240, .left = 70, .top = 26, .bottom = 20, .x = (double[]){numbers[0] - 0.75, numbers[1] + 0.75}, .y = (double[]){-limit, limit}});
+  fg_plot at =
+      fg_plot_open(out, &(fg_plot_frame){"Residuals of the traces from their circles",
+                                         .height = 240, .left = 70, .top = 26, .bottom = 20,
+                                         .x = (double[]){numbers[0] - 0.75, numbers[1] + 0.75},
+                                         .y = (double[]){-limit, limit}});
   put_bands(&at, die, half);
   fg_plot_y_axis(&at, "residual, µm");
   for (size_t i = 0; i < die->trace_count; i++)
