@@ -120,7 +120,7 @@ static const fg_member trace_bump_rows[] = {
 };
 static const fg_members trace_bump_members = FG_MEMBERS_DEFINED(trace_bump_rows, "trace_bump");
 
-static double find_form_sd_um(const fg_subject *subject) {
+static double find_form_error_sd_um(const fg_subject *subject) {
   return 1000 * ((const fg_die_form_error *)subject->object)->sd_mm;
 }
 
@@ -131,7 +131,7 @@ static int find_correlation(const fg_subject *subject) {
 static const char *const correlation_words[] = {"exponential", "smooth", NULL};
 
 static const fg_member form_error_rows[] = {
-    {FG_NUMBER_BY("sd_um", find_form_sd_um), .words = "of means over a small part of an arc"},
+    {FG_NUMBER_BY("sd_um", find_form_error_sd_um), .words = "of means over a small part of an arc"},
     {FG_NUMBER("white_share", fg_die_form_error, white_share),
      .words = "of the variance; the rest is correlated"},
     {FG_NUMBER("length_mm", fg_die_form_error, length_mm), .words = "of the correlation"},
