@@ -124,6 +124,7 @@ static void collect_columns(const fg_members *members, fg_member_medium medium,
 void fg_member_columns_of(const fg_members *members, fg_member_medium medium,
                           const fg_subject *list, fg_member_columns *columns) {
   columns->count = 0;
+  columns->members = members;
   collect_columns(members, medium, list, columns);
   for (size_t i = 1; i < columns->count; i++) { /* insertion: stable */
     const fg_member *row = columns->rows[i];
@@ -171,9 +172,10 @@ void fg_member_show(const fg_member *member, fg_member_medium medium, const fg_s
   else if (!isfinite(value))
     snprintf(text, size, "%s", unknown);
   else if (column->digits)
-    snprintf(text, size, "%.*g%s", column->digits, value, unit);
+    snprintf(text, size, column->plus ? "%+.*g%s" : "%.*g%s", column->digits, value, unit);
   else
-    snprintf(text, size, "%.*f%s", decimals_of(member, column, subject), value, unit);
+    snprintf(text, size, column->plus ? "%+.*f%s" : "%.*f%s", decimals_of(member, column, subject),
+             value, unit);
 }
 
 void fg_member_show_u(const fg_member *member, fg_member_medium medium, const fg_subject *subject,

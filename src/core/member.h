@@ -75,6 +75,7 @@ typedef struct fg_member_column {
   int digits;          /* > 0: significant digits (%.3g) in place of decimals */
   double scale;        /* from the member's unit to the heading's; 0: 1 */
   const char *unit;    /* written behind the value: "°"; NULL: the heading tells it */
+  bool plus;           /* values above 0 have their sign */
   bool no_u;           /* without its U, though it has one */
   bool words;          /* text for reading: aligned left, wrapped */
 } fg_member_column;
@@ -90,6 +91,8 @@ typedef struct fg_members {
    * to. NULL: described where it stands. */
   const char *definition;
   const char *file; /* schema that holds the definition ("measure"); NULL: the document's own */
+  /* Class of an element's line in the page's table ("total"); NULL: none, of either. */
+  const char *(*look)(const fg_subject *element);
 } fg_members;
 
 /* Finds element `i` of a list and returns false behind the last. An element with a NULL object is
@@ -140,16 +143,21 @@ struct fg_member {
   fg_member_column csv, page, terminal;
   /* False: page and terminal have no such column in the list's table; NULL: they always do. */
   bool (*column)(const fg_subject *list);
-  const char *(*look)(const fg_subject *); /* class of its cell: a verdict; NULL: none */
+  const char *(*look)(const fg_subject *);       /* class of its cell: a verdict; NULL: none */
+  void (*markup)(FILE *out, const fg_subject *); /* writes the page's cell; NULL: its text does */
 };
 
-#define FG_MEMBERS(rows)                                                                           \
-  { rows, sizeof(rows) / sizeof *(rows), NULL, NULL }
-#define FG_MEMBERS_DEFINED(rows, definition)                                                       \
-  { rows, sizeof(rows) / sizeof *(rows), definition, NULL }
+#define FG_MEMBERS(rows_)                      FG_MEMBERS_OF_FILE(rows_, NULL, NULL)
+#define FG_MEMBERS_DEFINED(rows_, definition_) FG_MEMBERS_OF_FILE(rows_, definition_, NULL)
 /* Described in another document's schema ("measure"), under the definition. */
-#define FG_MEMBERS_OF_FILE(rows, definition, file)                                                 \
-  { rows, sizeof(rows) / sizeof *(rows), definition, file }
+#define FG_MEMBERS_OF_FILE(rows_, definition_, file_)                                              \
+  {                                                                                                \
+    .rows = (rows_), .count = sizeof(rows_) / sizeof *(rows_), .definition = (definition_),        \
+    .file = (file_)                                                                                \
+  }
+/* Their lines in a page's table have a class. */
+#define FG_MEMBERS_LOOKED_AT(rows_, look_)                                                         \
+  { .rows = (rows_), .count = sizeof(rows_) / sizeof *(rows_), .look = (look_) }
 
 /* Offset of a field that must be of the type. */
 #define FG_FIELD(object, field, type)                                                              \
@@ -263,6 +271,7 @@ bool fg_list_next(const fg_subject *list, fg_member_element *element, size_t i, 
 typedef struct fg_member_columns {
   const fg_member *rows[FG_MEMBER_COLUMNS_MAX];
   size_t count;
+  const fg_members *members;
 } fg_member_columns;
 
 const fg_member_column *fg_member_column_of(const fg_member *member, fg_member_medium medium);

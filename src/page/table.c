@@ -39,6 +39,11 @@ static void put_cell(FILE *out, const fg_member *column, const fg_subject *eleme
   fputs("<td", out);
   if (look && *look) fprintf(out, " class=\"%s\"", look);
   fputc('>', out);
+  if (column->markup) {
+    column->markup(out, element);
+    fputs("</td>", out);
+    return;
+  }
   fg_member_show(column, FG_ON_PAGE, element, text, sizeof text);
   put_shown(out, column, text);
   fg_member_show_u(column, FG_ON_PAGE, element, text, sizeof text);
@@ -57,7 +62,10 @@ void fg_html_table_rows(FILE *out) {
 }
 
 void fg_html_table_row(FILE *out, const fg_member_columns *columns, const fg_subject *element) {
-  fputs("<tr>", out);
+  const char *look = columns->members->look ? columns->members->look(element) : NULL;
+  fputs("<tr", out);
+  if (look) fprintf(out, " class=\"%s\"", look);
+  fputc('>', out);
   for (size_t i = 0; i < columns->count; i++)
     put_cell(out, columns->rows[i], element);
 }

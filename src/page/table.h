@@ -7,7 +7,7 @@
 
 /* Writes a table of the members that the page shows, a row per element of the list. A heading's
  * tooltip is the member's words; U stands under its value; `look` of a member gives its cell's
- * class. */
+ * class, that of the members the line's. */
 void fg_html_table(FILE *out, const fg_members *members, const fg_subject *list,
                    fg_member_element *element);
 

@@ -130,12 +130,41 @@ static void page_has_headings_words_and_looks(void **state) {
       "</tbody></table></div>\n");
 }
 
+/* A table of the page alone. */
+static const char *look_at_line(const fg_subject *subject) {
+  return ((const part *)subject->object)->fitted ? NULL : "total";
+}
+
+static void put_link(FILE *out, const fg_subject *subject) {
+  fprintf(out, "<a href=\"#%d\">part</a>", ((const part *)subject->object)->number);
+}
+
+static const fg_member line_rows[] = {
+    {FG_INTEGER("number", part, number), .page = {1, .heading = "part"}, .markup = put_link},
+    {FG_NUMBER("radius_mm", part, radius_mm), .page = {2, .heading = "R", .plus = true}},
+};
+static const fg_members line_members = FG_MEMBERS_LOOKED_AT(line_rows, look_at_line);
+
+static void write_lines(FILE *out) {
+  fg_html_table(out, &line_members, &list, find_part);
+}
+
+static void page_has_classes_of_lines_signs_and_links(void **state) {
+  (void)state;
+  assert_written(write_lines,
+                 "<div class=\"scroll\"><table>\n<thead><tr><th>part</th><th>R</th></tr></thead>\n"
+                 "<tbody>\n<tr><td><a href=\"#1\">part</a></td><td>+2</td></tr>\n"
+                 "<tr class=\"total\"><td><a href=\"#2\">part</a></td><td>−2</td></tr>\n"
+                 "</tbody></table></div>\n");
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(json_has_every_row),
       cmocka_unit_test(csv_has_its_columns_by_rank),
       cmocka_unit_test(terminal_is_as_wide_as_its_cells),
       cmocka_unit_test(page_has_headings_words_and_looks),
+      cmocka_unit_test(page_has_classes_of_lines_signs_and_links),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
