@@ -48,10 +48,11 @@ typedef enum fg_member_kind {
   FG_MEMBER_TEXTS,    /* texts by `text_at` */
   FG_MEMBER_OBJECT,   /* object with members of its own */
   FG_MEMBER_LIST,     /* array of such objects */
-  FG_MEMBER_MAP,      /* object of such objects, each under the name that `key` gives */
-  FG_MEMBER_SAME,     /* members of another table beside these, without a name of their own */
-  FG_MEMBER_HEAD,     /* "schema" (`name`) and "version", which begin every document */
-  FG_MEMBER_WRITTEN,  /* by `write`, as `schema` has it */
+  FG_MEMBER_MAP,  /* object of such objects, each under the name that `key` gives; without a name,
+                     they stand in the object around it, and `choices` names them */
+  FG_MEMBER_SAME, /* members of another table beside these, without a name of their own */
+  FG_MEMBER_HEAD, /* "schema" (`name`) and "version", which begin every document */
+  FG_MEMBER_WRITTEN, /* by `write`, as `schema` has it */
 } fg_member_kind;
 
 typedef enum fg_member_option {
@@ -70,7 +71,7 @@ typedef enum fg_member_option {
 typedef struct fg_member_column {
   int rank;            /* from 1; 0: not shown */
   const char *heading; /* NULL: the row's; a line break where '\n' stands */
-  int decimals;        /* of a number; with `by_u` the least */
+  int decimals;        /* of a number; with `by_u` the least; CSV, 0: as JSON has it */
   bool by_u;           /* as many decimals as U = 2 u has with two digits */
   int digits;          /* > 0: significant digits (%.3g) in place of decimals */
   double scale;        /* from the member's unit to the heading's; 0: 1 */

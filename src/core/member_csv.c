@@ -18,7 +18,9 @@ void fg_members_csv_heading(FILE *out, const fg_member_columns *columns) {
 static void put_number(FILE *out, const fg_member *member, double value) {
   char digits[32];
   if (!isfinite(value)) return;
-  if (member->kind == FG_MEMBER_NUMBER) {
+  if (member->kind == FG_MEMBER_NUMBER && member->csv.decimals) {
+    fprintf(out, "%.*f", member->csv.decimals, value);
+  } else if (member->kind == FG_MEMBER_NUMBER) {
     fg_json_format(digits, member->csv.scale != 0 ? member->csv.scale * value : value);
     fputs(digits, out);
   } else if (member->kind == FG_MEMBER_FLAG) {

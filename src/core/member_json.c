@@ -93,15 +93,16 @@ static void write_object(fg_json *json, const fg_member *member, const fg_subjec
 
 static void write_list(fg_json *json, const fg_member *member, const fg_subject *subject) {
   bool map = member->kind == FG_MEMBER_MAP, line = member->options & FG_MEMBER_LIST_ON_LINE;
+  bool open = !map || member->name;
   fg_subject element;
   if (is_left_out(member, fg_member_element_at(member, subject, 0, &element))) return;
-  (map ? fg_json_object : fg_json_array)(json, member->name);
+  if (open) (map ? fg_json_object : fg_json_array)(json, member->name);
   if (line) fg_json_line(json);
   for (size_t i = 0; fg_member_element_at(member, subject, i, &element); i++)
     if (element.object)
       write_members(json, map ? member->key(&element) : NULL, member->members, &element,
                     member->options & FG_MEMBER_ON_LINE);
-  (map ? fg_json_object_end : fg_json_array_end)(json);
+  if (open) (map ? fg_json_object_end : fg_json_array_end)(json);
   if (line) fg_json_line_end(json);
 }
 

@@ -20,13 +20,15 @@ static int wider(int width, const char *text, size_t length) {
   return count > width ? count : width;
 }
 
-/* Returns line `k` of a heading and its length; the empty text behind the last. */
+/* Returns line `k` of a heading and its length, without the comma before a unit; the empty text
+ * behind the last. */
 static const char *heading_line(const char *heading, int k, size_t *length) {
   for (; k > 0 && *heading; k--) {
     heading += strcspn(heading, "\n");
     if (*heading) heading++;
   }
   *length = strcspn(heading, "\n");
+  if (*length && heading[*length] && heading[*length - 1] == ',') --*length;
   return heading;
 }
 

@@ -2,12 +2,11 @@
 #include "manual/documents.h"
 
 #include "report/die/members.h"
+#include "report/forming/members.h"
 #include "report/load_test/members.h"
 
 const fg_document *const fg_documents[] = {
-    &fg_die_document,
-    &fg_load_document,
-    NULL,
+    &fg_die_document, &fg_forming_document, &fg_forming_fit_document, &fg_load_document, NULL,
 };
 
 /* Writes the rows of an object, each with the names of the objects around it. */
@@ -25,6 +24,7 @@ static void write_member_row(const fg_member *row, const char *before, FILE *out
     return;
   }
   const char *name = row->kind == FG_MEMBER_HEAD ? "schema" : row->name;
+  if (!name && map) name = "*", map = false;
   if (!name) return;
   fprintf(out, "| `%s%s` | %s", before, name, row->words ? row->words : "");
   if (row->kind == FG_MEMBER_HEAD) fprintf(out, "`%s`; beside it `version`", row->name);

@@ -85,12 +85,29 @@ static cJSON *make_part(schema *all, const fg_member *row) {
   return either;
 }
 
+/* Word `i` that a member can be or have as a name; NULL behind the last. */
+static const char *choice_of(const fg_member *row, size_t i) {
+  return row->choice_at ? row->choice_at(i) : row->choices ? row->choices[i] : NULL;
+}
+
 static cJSON *make_list(schema *all, const fg_member *row) {
   cJSON *list = need(cJSON_CreateObject());
   bool map = row->kind == FG_MEMBER_MAP;
   add_words(list, row);
   add_type(list, map ? "object" : "array", false);
-  add_item(list, map ? "additionalProperties" : "items", make_element(all, row->members));
+  cJSON *known = map && choice_of(row, 0) ? need(cJSON_CreateObject()) : NULL;
+  for (size_t i = 0; known && choice_of(row, i); i++)
+    add_item(known, choice_of(row, i), make_element(all, row->members));
+  if (known) {
+    cJSON *names = need(cJSON_CreateArray());
+    for (size_t i = 0; choice_of(row, i); i++)
+      cJSON_AddItemToArray(names, need(cJSON_CreateString(choice_of(row, i))));
+    add_item(list, "properties", known);
+    add_item(list, "required", names);
+    add_item(list, "additionalProperties", cJSON_CreateFalse());
+  } else {
+    add_item(list, map ? "additionalProperties" : "items", make_element(all, row->members));
+  }
   if (row->lowest > 0)
     add_item(list, map ? "minProperties" : "minItems", cJSON_CreateNumber(row->lowest));
   if (row->highest > 0)
@@ -112,10 +129,8 @@ static cJSON *make_numbers(const fg_member *row, bool nullable, double min, doub
 
 static void add_choices(cJSON *object, const fg_member *row, bool nullable) {
   cJSON *choices = need(cJSON_CreateArray());
-  for (size_t i = 0; row->choices && row->choices[i]; i++)
-    cJSON_AddItemToArray(choices, need(cJSON_CreateString(row->choices[i])));
-  for (size_t i = 0; row->choice_at && row->choice_at(i); i++)
-    cJSON_AddItemToArray(choices, need(cJSON_CreateString(row->choice_at(i))));
+  for (size_t i = 0; choice_of(row, i); i++)
+    cJSON_AddItemToArray(choices, need(cJSON_CreateString(choice_of(row, i))));
   if (nullable) cJSON_AddItemToArray(choices, need(cJSON_CreateNull()));
   add_item(object, "enum", choices);
 }
@@ -240,6 +255,12 @@ static void describe_row(schema *all, const fg_member *row, cJSON *properties, c
     if (row->members)
       describe_members(all, row->members, properties, required,
                        optional || (row->part && !(row->options & FG_MEMBER_NEVER_NULL)));
+    return;
+  }
+  if (row->kind == FG_MEMBER_MAP && !row->name) {
+    for (size_t i = 0; choice_of(row, i); i++)
+      put_property(properties, required, choice_of(row, i), make_element(all, row->members),
+                   optional);
     return;
   }
   put_property(properties, required, row->name, make_member(all, row), optional);

@@ -6,9 +6,10 @@
 #include "core/file.h"
 #include "foilgauge/words.h"
 #include "page/page.h"
+#include "page/table.h"
 #include "page/tile.h"
+#include "report/forming/members.h"
 #include "report/forming/plots.h"
-#include "report/forming/words.h"
 #include "report/provenance.h"
 
 static void put_forming_tiles(FILE *out, const fg_forming *f) {
@@ -40,33 +41,6 @@ static void put_notes(FILE *out, char notes[FG_FORMING_NOTES][FG_FORMING_NOTE], 
     fputs("</li>\n", out);
   }
   fputs("</ul>\n", out);
-}
-
-static void put_forming_cell(FILE *out, double value, int decimals) {
-  if (isfinite(value))
-    fprintf(out, "<td>%.*f</td>", decimals, value);
-  else
-    fputs("<td>–</td>", out);
-}
-
-static void put_forming_bumps(FILE *out, const fg_forming *f) {
-  fputs("<div class=\"scroll\"><table>\n<tr><th>bump</th><th>die R, mm</th><th>free R, mm</th>"
-        "<th>e_R, %</th><th>alpha, °</th><th>e_alpha, %</th><th>e_theta, %</th><th>h, mm</th></tr>"
-        "\n",
-        out);
-  for (size_t i = 0; i < f->bump_count; i++) {
-    const fg_forming_bump *b = &f->bumps[i];
-    fprintf(out, "<tr><td>%d</td>", b->number);
-    put_forming_cell(out, b->die_radius_mm, 4);
-    put_forming_cell(out, b->fitted.radius_mm, 4);
-    put_forming_cell(out, b->fitted.radius_error_pct, 2);
-    put_forming_cell(out, b->fitted.bump_angle_deg, 3);
-    put_forming_cell(out, b->fitted.bump_angle_error_pct, 2);
-    put_forming_cell(out, b->fitted.intersection_angle_error_pct, 2);
-    put_forming_cell(out, b->fitted.height_mm, 4);
-    fputs("</tr>\n", out);
-  }
-  fputs("</table></div>\n", out);
 }
 
 static void put_material(FILE *out, const fg_forming_material *m) {
@@ -155,7 +129,8 @@ fg_status fg_forming_write_html(fg_context *ctx, const fg_forming *forming, FILE
     fputs("<figcaption>Errors against the design of the free strip's circles, fitted as "
           "<code>measure</code> fits them.</figcaption></figure>\n",
           out);
-    put_forming_bumps(out, forming);
+    fg_html_table(out, &fg_forming_bump_members, &(fg_subject){.object = forming, .whole = forming},
+                  fg_forming_bump_at);
   }
   put_material(out, &forming->material);
   fprintf(out,
@@ -173,46 +148,20 @@ fg_status fg_forming_write_html(fg_context *ctx, const fg_forming *forming, FILE
 
 /* ---- a fit ---- */
 
-static void put_found(FILE *out, const fg_forming_fit *fit) {
-  char words[80];
-  fputs("<div class=\"scroll\"><table>\n<tr><th>constant</th><th>value</th><th>95 % interval, "
-        "profile</th></tr>\n",
-        out);
-  for (size_t k = 0; k < fit->free; k++) {
-    const fg_forming_found *found = &fit->found[k];
-    const fg_forming_constant_row *row = fg_forming_constant_of(found->constant);
-    fg_forming_found_words(found, words, sizeof words);
-    fprintf(out, "<tr><td>%s, %s</td><td>%.5g %s</td><td>%s</td></tr>\n", row->words, row->symbol,
-            found->value, row->unit, words);
-  }
-  fputs("</table></div>\n", out);
-}
-
-static void put_forming_runs(FILE *out, const fg_forming_fit *fit) {
-  fputs("<div class=\"scroll\"><table>\n<tr><th>temperature, °C</th><th>duration, h</th>"
-        "<th>measured, %</th><th>fitted, %</th><th>by the other runs alone, %</th></tr>\n",
-        out);
-  for (size_t i = 0; i < fit->runs; i++) {
-    const fg_forming_run_fit *r = &fit->run[i];
-    fprintf(out, "<tr><td>%g</td><td>%g</td><td>%.2f</td><td>%.2f</td><td>%.2f</td></tr>\n",
-            r->temperature_C, r->duration_h, r->measured, r->fitted, r->left_out);
-  }
-  fputs("</table></div>\n", out);
-}
-
 fg_status fg_forming_fit_write_html(fg_context *ctx, const fg_forming_fit *fit, FILE *out) {
   char notes[FG_FORMING_NOTES][FG_FORMING_NOTE];
   fg_html_begin(out, "Constants of forming");
   fprintf(out, "<section>\n<header><h1>Constants of forming</h1><p>from %zu runs</p></header>\n",
           fit->runs);
   put_notes(out, notes, fg_forming_fit_notes(fit, notes));
-  put_found(out, fit);
+  const fg_subject all = {.object = fit, .whole = fit};
+  fg_html_table(out, &fg_forming_found_members, &all, fg_forming_found_at);
   fputs("<figure>", out);
   fg_forming_plot_fit(out, fit);
   fputs("<figcaption>Each run as the model has it, and as it has it from the other runs "
         "alone.</figcaption></figure>\n",
         out);
-  put_forming_runs(out, fit);
+  fg_html_table(out, &fg_forming_run_members, &all, fg_forming_run_at);
   fputs("</section>\n<section>\n", out);
   put_material(out, &fit->material);
   fputs("</section>\n", out);

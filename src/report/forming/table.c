@@ -4,7 +4,7 @@
 
 #include "core/file.h"
 #include "foilgauge/words.h"
-#include "report/forming/words.h"
+#include "report/forming/members.h"
 
 enum { LINE = 100 };
 
@@ -27,22 +27,6 @@ static void put_words(FILE *out, const char *text) {
   fputc('\n', out);
 }
 
-static void put_bump_lines(FILE *out, const fg_forming *f) {
-  fputs("\n  bump   die R mm  free R mm     e_R %   alpha deg  e_alpha %   theta %      h mm\n",
-        out);
-  for (size_t i = 0; i < f->bump_count; i++) {
-    const fg_forming_bump *b = &f->bumps[i];
-    fprintf(out, "  %4d", b->number);
-    put_column(out, b->die_radius_mm, 11, 4, "");
-    put_column(out, b->fitted.radius_mm, 11, 4, "");
-    put_column(out, b->fitted.radius_error_pct, 10, 2, "");
-    put_column(out, b->fitted.bump_angle_deg, 12, 3, "");
-    put_column(out, b->fitted.bump_angle_error_pct, 11, 2, "");
-    put_column(out, b->fitted.intersection_angle_error_pct, 10, 2, "");
-    put_column(out, b->fitted.height_mm, 10, 4, "\n");
-  }
-}
-
 fg_status fg_forming_write_text(fg_context *ctx, const fg_forming *f, FILE *out) {
   char notes[FG_FORMING_NOTES][FG_FORMING_NOTE], treatment[200];
   fg_forming_treatment(f, treatment, sizeof treatment);
@@ -58,7 +42,11 @@ fg_status fg_forming_write_text(fg_context *ctx, const fg_forming *f, FILE *out)
   fprintf(out, "  moment that is left (rho)         %10.4f\n", f->mean_share);
   fprintf(out, "  stress at the face, mean          %10.0f MPa bent, %.0f heated, %.0f free\n",
           f->mean_stress_mpa[0], f->mean_stress_mpa[1], f->mean_stress_mpa[2]);
-  if (f->bump_count) put_bump_lines(out, f);
+  if (f->bump_count) {
+    fputc('\n', out);
+    fg_members_terminal(out, "  ", &fg_forming_bump_members, &(fg_subject){.object = f, .whole = f},
+                        fg_forming_bump_at);
+  }
   size_t count = fg_forming_notes(f, notes);
   for (size_t i = 0; i < count; i++)
     put_words(out, notes[i]);
@@ -81,12 +69,9 @@ fg_status fg_forming_fit_write_text(fg_context *ctx, const fg_forming_fit *fit, 
   fprintf(out, "%zu runs, %s of %s\n\n", fit->runs, fit->response_name,
           fit->response == FG_FORMING_OF_FOIL ? "the whole foil" : "a plain strip");
   put_found(out, fit);
-  fputs("\n   temperature C  duration h   measured     fitted   without it\n", out);
-  for (size_t i = 0; i < fit->runs; i++) {
-    const fg_forming_run_fit *run = &fit->run[i];
-    fprintf(out, "  %14g %11g %10.2f %10.2f %12.2f\n", run->temperature_C, run->duration_h,
-            run->measured, run->fitted, run->left_out);
-  }
+  fputc('\n', out);
+  fg_members_terminal(out, "  ", &fg_forming_run_members,
+                      &(fg_subject){.object = fit, .whole = fit}, fg_forming_run_at);
   size_t count = fg_forming_fit_notes(fit, notes);
   for (size_t i = 0; i < count; i++)
     put_words(out, notes[i]);
