@@ -13,8 +13,6 @@
 
 enum { BYTES_MAX = 1 << 20 };
 
-#define MATERIAL_SCHEMA "foilgauge/material/1"
-
 static const fg_forming_constant_row rows[FG_FORMING_CONSTANTS] = {
     [FG_FORMING_MODULUS] = {"youngs_modulus_gpa", "E", "GPa", "Young's modulus at 20 °C", 1, 1000,
                             true, 193,
@@ -195,9 +193,9 @@ static fg_status read_material_member(fg_context *ctx, const cJSON *item,
                                       fg_forming_material *material) {
   const char *name = item->string;
   if (!strcmp(name, "schema"))
-    return cJSON_IsString(item) && !strcmp(item->valuestring, MATERIAL_SCHEMA)
+    return cJSON_IsString(item) && !strcmp(item->valuestring, FG_FORMING_MATERIAL_SCHEMA)
                ? FG_OK
-               : fg_fail(ctx, FG_ERR_DATA, "schema must be \"%s\"", MATERIAL_SCHEMA);
+               : fg_fail(ctx, FG_ERR_DATA, "schema must be \"%s\"", FG_FORMING_MATERIAL_SCHEMA);
   if (!strcmp(name, "name"))
     return read_source(ctx, name, item, material->name, sizeof material->name);
   if (!strcmp(name, "version")) return FG_OK; /* of whoever wrote it */
@@ -225,7 +223,7 @@ static fg_status read_material_root(fg_context *ctx, const cJSON *root,
   }
   if (!cJSON_GetObjectItemCaseSensitive(root, "schema"))
     return fg_fail(ctx, FG_ERR_DATA, "schema is missing; a material has \"schema\": \"%s\"",
-                   MATERIAL_SCHEMA);
+                   FG_FORMING_MATERIAL_SCHEMA);
   return fg_forming_material_check(ctx, material);
 }
 
@@ -246,82 +244,4 @@ fg_status fg_forming_material_load(fg_context *ctx, const char *path,
   if (status != FG_OK) return fg_fail(ctx, status, "%s: %.*s", path, 700, words.message);
   *material = read;
   return FG_OK;
-}
-
-/* A constant of the material: the subject's index says which. */
-static bool find_constant(const fg_subject *list, size_t c, fg_subject *element) {
-  element->object = list->object;
-  return c < FG_FORMING_CONSTANTS;
-}
-
-static const char *find_constant_name(const fg_subject *constant) {
-  return rows[constant->index].name;
-}
-
-static const char *constant_name_at(size_t c) {
-  return c < FG_FORMING_CONSTANTS ? rows[c].name : NULL;
-}
-
-static double find_constant_value(const fg_subject *constant) {
-  return ((const fg_forming_material *)constant->object)->value[constant->index];
-}
-
-static const char *find_constant_unit(const fg_subject *constant, char *buffer) {
-  (void)buffer;
-  return rows[constant->index].unit;
-}
-
-static const char *find_constant_source(const fg_subject *constant, char *buffer) {
-  (void)buffer;
-  return ((const fg_forming_material *)constant->object)->source[constant->index];
-}
-
-static const fg_member constant_rows[] = {
-    {FG_NUMBER_BY("value", find_constant_value), .options = FG_MEMBER_NEVER_NULL},
-    {FG_TEXT_BY("unit", find_constant_unit), .options = FG_MEMBER_NEVER_NULL},
-    {FG_TEXT_BY("source", find_constant_source), .options = FG_MEMBER_NEVER_NULL,
-     .words = "where the value is from"},
-};
-static const fg_members constant_members = FG_MEMBERS_DEFINED(constant_rows, "constant");
-
-static const double *list_temperatures(const fg_subject *s, double *buffer, size_t *count) {
-  const fg_forming_material *material = s->object;
-  (void)buffer;
-  *count = material->curve_count;
-  return material->curve_temperature_C;
-}
-
-static const double *list_shares(const fg_subject *s, double *buffer, size_t *count) {
-  const fg_forming_material *material = s->object;
-  (void)buffer;
-  *count = material->curve_count;
-  return material->curve_share;
-}
-
-static const fg_member curve_rows[] = {
-    {FG_NUMBERS_BY("temperature_C", list_temperatures), .options = FG_MEMBER_NEVER_NULL},
-    {FG_NUMBERS_BY("share", list_shares), .options = FG_MEMBER_NEVER_NULL,
-     .words = "of that at 20 °C"},
-    {FG_TEXT("source", fg_forming_material, curve_source)},
-};
-static const fg_members curve_members = FG_MEMBERS(curve_rows);
-
-static const fg_member material_rows[] = {
-    {FG_TEXT("name", fg_forming_material, name), .words = "of the material"},
-    {FG_MAP_BY(NULL, find_constant, find_constant_name, &constant_members),
-     .choice_at = constant_name_at, .words = "constants of foilgauge-forming(1)"},
-    {FG_GROUP("yield_curve", &curve_members), .words = "of yield and hardening over temperature"},
-};
-const fg_members fg_forming_material_members = FG_MEMBERS(material_rows);
-
-static const fg_member file_rows[] = {
-    {FG_HEAD(MATERIAL_SCHEMA)},
-    {FG_SAME(&fg_forming_material_members), .options = FG_MEMBER_EXACT},
-};
-static const fg_members file_members = FG_MEMBERS(file_rows);
-
-fg_status fg_forming_write_material(fg_context *ctx, const fg_forming_material *material,
-                                    FILE *out) {
-  fg_document_json(out, &file_members, material);
-  return fg_stream_finish(ctx, out, "the material");
 }

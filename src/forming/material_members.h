@@ -6,6 +6,8 @@
 #include "core/member.h"
 #include "foilgauge/forming.h"
 
+#define FG_FORMING_MATERIAL_SCHEMA "foilgauge/material/1"
+
 /* Of fg_forming_material. */
 extern const fg_members fg_forming_material_members;
 

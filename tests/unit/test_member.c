@@ -113,7 +113,7 @@ static void csv_has_its_columns_by_rank(void **state) {
 
 static void terminal_is_as_wide_as_its_cells(void **state) {
   (void)state;
-  assert_written(write_terminal, "       R,   ±  name\n"
+  assert_written(write_terminal, "        R   ±  name\n"
                                  "       µm\n"
                                  "   1500.0 2.4   a,b\n"
                                  "  -2000.0 4.0     -\n");

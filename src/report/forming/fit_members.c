@@ -157,7 +157,7 @@ static void write_fit_notes(fg_json *json, const char *name, const fg_subject *s
 static const fg_member fit_rows[] = {
     {FG_HEAD("foilgauge/form-fit/1")},
     {FG_GROUP("inputs", &input_members),
-     .words = "files that were read beside the design, by what they are"},
+     .words = "files that were read beside the design, by their role"},
     {FG_WRITTEN("design", write_fit_design, FG_REF("design.schema.json"))},
     {FG_TEXT("response", fg_forming_fit, response_name), .words = "column of the runs"},
     {FG_WORD("of", fg_forming_fit, response, response_words), .words = "the response's subject"},

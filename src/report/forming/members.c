@@ -15,7 +15,7 @@ static const fg_forming *forming_of(const fg_subject *subject) {
   return subject->whole;
 }
 
-/* Files that were read beside the design, by what they are. */
+/* Files that were read beside the design, by their role. */
 static const fg_member file_rows[] = {
     {FG_TEXT("path", fg_forming_file, path)},
     {FG_SHA256("sha256", fg_forming_file, sha256)},
@@ -257,7 +257,7 @@ static void write_forming_notes(fg_json *json, const char *name, const fg_subjec
 static const fg_member forming_rows[] = {
     {FG_HEAD("foilgauge/form/1")},
     {FG_GROUP("inputs", &input_members),
-     .words = "files that were read beside the design, by what they are"},
+     .words = "files that were read beside the design, by their role"},
     {FG_WRITTEN("design", write_forming_design, FG_REF("design.schema.json"))},
     {FG_OBJECT("material", fg_forming, material, &fg_forming_material_members)},
     {FG_TEXT_BY("treatment", find_treatment), .options = FG_MEMBER_NEVER_NULL,

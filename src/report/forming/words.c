@@ -17,11 +17,6 @@ const char *fg_forming_shape_word(fg_forming_shape shape) {
   return shape == FG_FORMING_SINE ? "sine" : "arcs";
 }
 
-const char *fg_forming_state_word(fg_forming_state state) {
-  static const char *const words[FG_FORMING_STATES] = {"bent", "heated", "free"};
-  return words[state];
-}
-
 void fg_forming_treatment(const fg_forming *forming, char *text, size_t size) {
   const fg_forming_schedule *s = &forming->schedule;
   double hottest = -INFINITY;

@@ -21,9 +21,8 @@ size_t fg_forming_fit_notes(const fg_forming_fit *fit,
 /* Describes the interval of a constant: "2.81 to open", "at its bound: not identified". */
 void fg_forming_found_words(const fg_forming_found *found, char *text, size_t size);
 
-/* Return the words of a shape and of a state: "arcs", "sine"; "bent", "heated", "free". */
+/* Returns the word of a shape: "arcs", "sine". */
 const char *fg_forming_shape_word(fg_forming_shape shape);
-const char *fg_forming_state_word(fg_forming_state state);
 
 extern const char fg_forming_out_of_reach[];
 
