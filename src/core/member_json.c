@@ -73,7 +73,9 @@ static void write_texts(fg_json *json, const fg_member *member, const fg_subject
 static void write_members(fg_json *json, const char *name, const fg_members *members,
                           const fg_subject *subject, bool line) {
   if (members->count == 1 && !members->rows[0].name && members->rows[0].kind != FG_MEMBER_SAME) {
-    fg_member_json(json, &members->rows[0], subject);
+    fg_member row = members->rows[0];
+    row.name = name;
+    fg_member_json(json, &row, subject);
     return;
   }
   fg_json_object(json, name);
