@@ -28,8 +28,10 @@ static void put_coefficients(FILE *out, const fg_doe_whole *whole) {
   fputc('\n', out);
   fg_members_terminal(out, "", &fg_doe_coefficient_members,
                       &(fg_subject){.object = whole, .whole = whole}, fg_doe_coefficient_at);
-  fprintf(out, "intervals: %g %%; terms without numbers cannot be told from the ones above\n",
-          100 * whole->e->confidence);
+  fprintf(out, "intervals: %g %%%s\n", 100 * whole->e->confidence,
+          whole->e->regression.aliases
+              ? "; terms without numbers cannot be told from the ones above"
+              : "");
 }
 
 static void put_anova_row(FILE *out, const fg_anova_row *row) {
