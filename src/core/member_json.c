@@ -53,8 +53,13 @@ static void write_range(fg_json *json, const fg_member *member, const fg_subject
 
 static void write_numbers(fg_json *json, const fg_member *member, const fg_subject *subject) {
   double buffer[FG_MEMBER_NUMBERS_MAX];
-  size_t count = 0;
-  const double *values = member->numbers(subject, buffer, &count);
+  const char *object = subject->object;
+  const double *values = (const double *)(const void *)(object + member->offset);
+  size_t count = (size_t)member->highest;
+  if (member->numbers)
+    values = member->numbers(subject, buffer, &count);
+  else if (member->count_offset)
+    count = *(const size_t *)(const void *)(object + member->count_offset);
   if (!is_left_out(member, count > 0)) fg_json_numbers(json, member->name, values, count);
 }
 
