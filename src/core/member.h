@@ -65,6 +65,7 @@ typedef enum fg_member_option {
   FG_MEMBER_NULLABLE = 1u << 6,      /* a count, integer or flag that may be null */
   FG_MEMBER_EXACT = 1u << 7,         /* its numbers lose no digit */
   FG_MEMBER_NOT_IN_JSON = 1u << 8,   /* a column of tables alone */
+  FG_MEMBER_ENDS_BELOW = 1u << 15, /* with ON_LINE, LIST_ON_LINE: its bracket closes on the next */
 } fg_member_option;
 
 /* A column of a table. Columns stand by rank, those of one rank in the order of the rows. */
@@ -130,6 +131,7 @@ struct fg_member {
                  fg_member *row); /* of SAME: rows made one by one; false behind the last */
   void (*write)(fg_json *, const char *name, const fg_subject *);
   bool (*present)(const fg_subject *); /* false: left out; NULL: always there */
+  bool (*line)(const fg_subject *);    /* of a list's element, in place of ON_LINE */
 
   const fg_members *members;          /* of OBJECT, LIST, MAP, SAME */
   const char *const *choices;         /* words that a text can be, up to a NULL */
@@ -205,14 +207,6 @@ struct fg_member {
   .u_offset = FG_FIELD(object, high, double)
 #define FG_NUMBERS_BY(name_, function)                                                             \
   .name = (name_), .kind = FG_MEMBER_NUMBERS, .numbers = (function)
-/* All of an array of doubles; the first of it, as many as a count says. */
-#define FG_NUMBERS(name_, object, field)                                                           \
-  .name = (name_), .kind = FG_MEMBER_NUMBERS, .offset = FG_FIELD(object, field[0], double),        \
-  .lowest = FG_SIZE_OF_FIELD(object, field) / sizeof(double),                                      \
-  .highest = FG_SIZE_OF_FIELD(object, field) / sizeof(double)
-#define FG_NUMBERS_OF(name_, object, field, count_)                                                \
-  .name = (name_), .kind = FG_MEMBER_NUMBERS, .offset = FG_FIELD(object, field[0], double),        \
-  .count_offset = FG_FIELD(object, count_, size_t)
 #define FG_TEXTS_BY(name_, function) .name = (name_), .kind = FG_MEMBER_TEXTS, .text_at = (function)
 /* A struct inside the struct; a group of members of the same object; an object that a function
  * finds. */

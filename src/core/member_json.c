@@ -27,12 +27,20 @@ static void write_number(fg_json *json, const fg_member *member, const fg_subjec
     fg_json_of(json, "u_repeat_", name, number_at(subject, member->repeat_offset));
 }
 
+/* A double would lose digits. */
+static int64_t seed_at(const fg_member *member, const fg_subject *subject) {
+  return (int64_t) *
+         (const uint64_t *)(const void *)((const char *)subject->object + member->offset);
+}
+
 static void write_whole_number(fg_json *json, const fg_member *member, const fg_subject *subject) {
   double value = fg_member_value(member, subject);
   bool known = isfinite(value) && !(value == 0 && member->options & FG_MEMBER_EMPTY_IS_NULL);
   if (is_left_out(member, known)) return;
   if (!known)
     write_null(json, member->name);
+  else if (member->kind == FG_MEMBER_SEED)
+    fg_json_integer(json, member->name, seed_at(member, subject));
   else if (member->kind == FG_MEMBER_FLAG)
     fg_json_bool(json, member->name, value != 0);
   else
@@ -53,13 +61,8 @@ static void write_range(fg_json *json, const fg_member *member, const fg_subject
 
 static void write_numbers(fg_json *json, const fg_member *member, const fg_subject *subject) {
   double buffer[FG_MEMBER_NUMBERS_MAX];
-  const char *object = subject->object;
-  const double *values = (const double *)(const void *)(object + member->offset);
-  size_t count = (size_t)member->highest;
-  if (member->numbers)
-    values = member->numbers(subject, buffer, &count);
-  else if (member->count_offset)
-    count = *(const size_t *)(const void *)(object + member->count_offset);
+  size_t count = 0;
+  const double *values = member->numbers(subject, buffer, &count);
   if (!is_left_out(member, count > 0)) fg_json_numbers(json, member->name, values, count);
 }
 
@@ -74,43 +77,62 @@ static void write_texts(fg_json *json, const fg_member *member, const fg_subject
   if (line) fg_json_line_end(json);
 }
 
+typedef enum line_style { LINES, ONE_LINE, ONE_LINE_ENDS_BELOW } line_style;
+
+static line_style style_of(const fg_member *member, bool line) {
+  return !line ? LINES : member->options & FG_MEMBER_ENDS_BELOW ? ONE_LINE_ENDS_BELOW : ONE_LINE;
+}
+
+static line_style line_of_list(const fg_member *member) {
+  return style_of(member, member->options & FG_MEMBER_LIST_ON_LINE);
+}
+
+/* Returns the style of an object, or of an element of a list. */
+static line_style line_of(const fg_member *member, const fg_subject *subject) {
+  return style_of(member,
+                  member->line ? member->line(subject) : member->options & FG_MEMBER_ON_LINE);
+}
+
+/* Closes an object or array; `close` NULL: none is open. */
+static void close_line(fg_json *json, line_style line, void (*close)(fg_json *)) {
+  if (line == ONE_LINE_ENDS_BELOW) fg_json_line_end(json);
+  if (close) close(json);
+  if (line == ONE_LINE) fg_json_line_end(json);
+}
+
 /* Writes an object under a name; one nameless member is written bare in its place. */
 static void write_members(fg_json *json, const char *name, const fg_members *members,
-                          const fg_subject *subject, bool line) {
+                          const fg_subject *subject, line_style line) {
   if (members->count == 1 && !members->rows[0].name && members->rows[0].kind != FG_MEMBER_SAME) {
-    fg_member row = members->rows[0];
-    row.name = name;
-    fg_member_json(json, &row, subject);
+    fg_member_json(json, &members->rows[0], subject);
     return;
   }
   fg_json_object(json, name);
   if (line) fg_json_line(json);
   fg_members_json(json, members, subject);
-  fg_json_object_end(json);
-  if (line) fg_json_line_end(json);
+  close_line(json, line, fg_json_object_end);
 }
 
 static void write_object(fg_json *json, const fg_member *member, const fg_subject *subject) {
   const fg_subject part = fg_member_part(member, subject);
   if (part.object)
-    write_members(json, member->name, member->members, &part, member->options & FG_MEMBER_ON_LINE);
+    write_members(json, member->name, member->members, &part, line_of(member, &part));
   else if (!is_left_out(member, false))
     write_null(json, member->name);
 }
 
 static void write_list(fg_json *json, const fg_member *member, const fg_subject *subject) {
-  bool map = member->kind == FG_MEMBER_MAP, line = member->options & FG_MEMBER_LIST_ON_LINE;
-  bool open = !map || member->name;
+  bool map = member->kind == FG_MEMBER_MAP, open = !map || member->name;
   fg_subject element;
   if (is_left_out(member, fg_member_element_at(member, subject, 0, &element))) return;
   if (open) (map ? fg_json_object : fg_json_array)(json, member->name);
-  if (line) fg_json_line(json);
+  if (line_of_list(member)) fg_json_line(json);
   for (size_t i = 0; fg_member_element_at(member, subject, i, &element); i++)
     if (element.object)
       write_members(json, map ? member->key(&element) : NULL, member->members, &element,
-                    member->options & FG_MEMBER_ON_LINE);
-  if (open) (map ? fg_json_object_end : fg_json_array_end)(json);
-  if (line) fg_json_line_end(json);
+                    line_of(member, &element));
+  close_line(json, line_of_list(member),
+             open ? map ? fg_json_object_end : fg_json_array_end : NULL);
 }
 
 static void write_same(fg_json *json, const fg_member *member, const fg_subject *subject) {

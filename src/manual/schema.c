@@ -74,7 +74,10 @@ static cJSON *make_part(schema *all, const fg_member *row) {
       (row->part || row->pointed) && !(row->options & (FG_MEMBER_LEFT_OUT | FG_MEMBER_NEVER_NULL));
   if (!row->members->definition) return make_object(all, row->members, row, nullable);
   cJSON *element = make_element(all, row->members);
-  if (!nullable) return element;
+  if (!nullable) {
+    add_words(element, row);
+    return element;
+  }
   cJSON *either = need(cJSON_CreateObject()), *choices = need(cJSON_CreateArray()),
         *null = need(cJSON_CreateObject());
   add_words(either, row);
@@ -198,7 +201,7 @@ static cJSON *make_member(schema *all, const fg_member *row) {
   case FG_MEMBER_MAP:
     return make_list(all, row);
   case FG_MEMBER_RANGE:
-    return make_numbers(row, true, 2, 2);
+    return make_numbers(row, !(row->options & FG_MEMBER_NEVER_NULL), 2, 2);
   case FG_MEMBER_NUMBERS:
     return make_numbers(row, !(row->options & FG_MEMBER_NEVER_NULL), row->lowest, row->highest);
   case FG_MEMBER_TEXTS:
