@@ -364,6 +364,8 @@ void fg_loop_result_free(fg_loop_result *result);
 /* Returns true for a spread with an sd of its own for every level, false for a slope. */
 bool fg_loop_spread_by_levels(const fg_loop_problem *problem, const fg_loop_candidate *candidate);
 
+/* Words by verdict and outcome; NULL behind the last. */
+extern const char *const fg_loop_verdict_words[], *const fg_loop_outcome_words[];
 const char *fg_loop_verdict_word(fg_loop_verdict verdict);
 const char *fg_loop_outcome_word(fg_loop_outcome outcome);
 

@@ -8,15 +8,18 @@
 #include "core/text.h"
 #include "table_loop/run.h"
 
+const char *const fg_loop_verdict_words[] = {
+    "found", "tied", "absent", "inconclusive", "absorbed by geometry", "explained by others", NULL};
+
 const char *fg_loop_verdict_word(fg_loop_verdict verdict) {
-  static const char *const words[] = {
-      "found", "tied", "absent", "inconclusive", "absorbed by geometry", "explained by others"};
-  return words[verdict];
+  return fg_loop_verdict_words[verdict];
 }
 
+const char *const fg_loop_outcome_words[] = {"clean", "explained", "partly explained",
+                                             "unattributed", NULL};
+
 const char *fg_loop_outcome_word(fg_loop_outcome outcome) {
-  static const char *const words[] = {"clean", "explained", "partly explained", "unattributed"};
-  return words[outcome];
+  return fg_loop_outcome_words[outcome];
 }
 
 fg_status fg_engine_note(fg_context *ctx, fg_loop_result *result, const char *format, ...) {

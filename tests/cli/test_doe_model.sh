@@ -9,6 +9,7 @@ awk 'BEGIN { srand(5); print "run,T,humidity,y,z"
     e = (rand() + rand() + rand() + rand() - 2) * 0.0866
     printf "%d,%d,%.3f,%.4f,%.4f\n", i, T, h, 3 + T / 100 + h / 10 + e, rand() } }' >runs.csv
 expect 0 '' "$program" loop --table runs.csv --response y --model '1 + T' --model-out better.json -o loop.json
+valid loop_model.schema.json better.json
 grep -q '"table.linear' better.json || fail "the loop has not found the humidity"
 
 expect 0 '' "$program" doe runs.csv --response y --model T --code none -o before.json

@@ -148,5 +148,6 @@ done
   loop.schema.json a.json b.json c.json wrong.json spread.json alike.json clean.json
 code=$?
 [ "$code" = 0 ] || [ "$code" = 77 ] || fail "the report does not validate"
+valid loop_model.schema.json a.model.json
 
 exit $failed

@@ -6,11 +6,12 @@
 
 #include "core/text.h"
 
-const char *fg_loop_check_id(fg_loop_check check) {
-  static const char *const ids[] = {"lack_of_fit", "lack_of_fit_all_columns",
-                                    "correlation_beyond_neighbours", "correlation_at_one_lag"};
-  return ids[check];
-}
+const char *const fg_loop_finding_kinds[] = {"curve",
+                                             "lack_of_fit",
+                                             "lack_of_fit_all_columns",
+                                             "correlation_beyond_neighbours",
+                                             "correlation_at_one_lag",
+                                             NULL};
 
 static void append_check_words(char text[FG_LOOP_WORDS], const char *words) {
   size_t used = strlen(text);

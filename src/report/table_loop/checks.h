@@ -5,8 +5,8 @@
 
 #include "report/table_loop/words.h"
 
-/* "lack_of_fit", as the JSON names it. */
-const char *fg_loop_check_id(fg_loop_check check);
+/* Names in JSON of findings that no effect explains: "curve", then the residual tests. */
+extern const char *const fg_loop_finding_kinds[];
 /* Writes a test's question, "yes" if it passes: "Are rows 2 to 10 apart independent?". */
 void fg_loop_check_words(const fg_loop_report *report, fg_loop_check check,
                          char text[FG_LOOP_WORDS]);
