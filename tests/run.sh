@@ -16,7 +16,7 @@ usage: tests/run.sh [--quick | --long | --help]
   --long     as without an option, and before that the benchmarks of accuracy, speed and beds, the rendered experiments,
              the thesis's experiments, the comparison with R, the station and every page in a browser and the loop on
              measured tables, which rewrite the tables in reports/; a minute of fuzzing for each target; a failure of
-             every single allocation
+             every single allocation; every JSON document of the tests against its schema
 
 After a build, `ctest --test-dir build -R NAME` runs the tests with NAME in theirs, and `ctest --test-dir build -L LABEL`
 those of a room, a command or a kind: station, loop, lot, render, unit, cli, fuzz (`ctest --test-dir build --print-labels`).
@@ -62,7 +62,8 @@ if [ $tier = long ]; then
   build/bench/split_plots >reports/split_plots.md
   python3 tests/bench/split_plots_r.py build/foilgauge 150 || [ $? = 77 ]
   tests/bench/thesis.sh
-  install_missing $FOILGAUGE_R_PACKAGES $FOILGAUGE_BROWSER_PACKAGES
+  install_missing $FOILGAUGE_R_PACKAGES $FOILGAUGE_BROWSER_PACKAGES $FOILGAUGE_SCHEMA_PACKAGES
+  tests/bench/json_documents.sh
   tests/bench/differential_r.sh 300 reports/differential_r.csv
   python3 tests/bench/loop_measured.py build/foilgauge
   python3 tests/bench/loop_r_tables.py build/foilgauge

@@ -207,6 +207,14 @@ struct fg_member {
   .u_offset = FG_FIELD(object, high, double)
 #define FG_NUMBERS_BY(name_, function)                                                             \
   .name = (name_), .kind = FG_MEMBER_NUMBERS, .numbers = (function)
+/* All of an array of doubles; the first of it, as many as a count says. */
+#define FG_NUMBERS(name_, object, field)                                                           \
+  .name = (name_), .kind = FG_MEMBER_NUMBERS, .offset = FG_FIELD(object, field[0], double),        \
+  .lowest = FG_SIZE_OF_FIELD(object, field) / sizeof(double),                                      \
+  .highest = FG_SIZE_OF_FIELD(object, field) / sizeof(double)
+#define FG_NUMBERS_OF(name_, object, field, count_)                                                \
+  .name = (name_), .kind = FG_MEMBER_NUMBERS, .offset = FG_FIELD(object, field[0], double),        \
+  .count_offset = FG_FIELD(object, count_, size_t)
 #define FG_TEXTS_BY(name_, function) .name = (name_), .kind = FG_MEMBER_TEXTS, .text_at = (function)
 /* A struct inside the struct; a group of members of the same object; an object that a function
  * finds. */

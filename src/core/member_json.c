@@ -61,8 +61,13 @@ static void write_range(fg_json *json, const fg_member *member, const fg_subject
 
 static void write_numbers(fg_json *json, const fg_member *member, const fg_subject *subject) {
   double buffer[FG_MEMBER_NUMBERS_MAX];
-  size_t count = 0;
-  const double *values = member->numbers(subject, buffer, &count);
+  const char *object = subject->object;
+  const double *values = (const double *)(const void *)(object + member->offset);
+  size_t count = (size_t)member->highest;
+  if (member->numbers)
+    values = member->numbers(subject, buffer, &count);
+  else if (member->count_offset)
+    count = *(const size_t *)(const void *)(object + member->count_offset);
   if (!is_left_out(member, count > 0)) fg_json_numbers(json, member->name, values, count);
 }
 
@@ -104,7 +109,9 @@ static void close_line(fg_json *json, line_style line, void (*close)(fg_json *))
 static void write_members(fg_json *json, const char *name, const fg_members *members,
                           const fg_subject *subject, line_style line) {
   if (members->count == 1 && !members->rows[0].name && members->rows[0].kind != FG_MEMBER_SAME) {
-    fg_member_json(json, &members->rows[0], subject);
+    fg_member row = members->rows[0];
+    row.name = name;
+    fg_member_json(json, &row, subject);
     return;
   }
   fg_json_object(json, name);

@@ -2,12 +2,14 @@
 #include "manual/documents.h"
 
 #include "report/die/members.h"
+#include "report/doe/members.h"
 #include "report/forming/members.h"
 #include "report/load_test/members.h"
 #include "report/table_loop/members.h"
 
 const fg_document *const fg_documents[] = {
     &fg_die_document,
+    &fg_doe_document,
     &fg_forming_document,
     &fg_forming_fit_document,
     &fg_load_document,
@@ -33,11 +35,14 @@ static void write_member_row(const fg_member *row, const char *before, FILE *out
   const char *name = row->kind == FG_MEMBER_HEAD ? "schema" : row->name;
   if (!name && map) name = "*", map = false;
   if (!name) return;
-  fprintf(out, "| `%s%s` | %s", before, name, row->words ? row->words : "");
+  fprintf(out, "| `%s%s` | ", before, name);
+  for (const char *c = row->words ? row->words : ""; *c; c++)
+    fputs(*c == '|' ? "\\|" : (char[]){*c, '\0'}, out);
   if (row->kind == FG_MEMBER_HEAD) fprintf(out, "`%s`; beside it `version`", row->name);
   if (row->highest > row->lowest && row->kind != FG_MEMBER_NUMBERS)
     fprintf(out, " From %.16g to %.16g.", row->lowest, row->highest);
   fputs(" |\n", out);
+  if (row->sd_offset) fprintf(out, "| `%ssd_%s` | its standard deviation |\n", before, name);
   if (fg_member_has_u(row)) fprintf(out, "| `%su_%s` | its standard uncertainty |\n", before, name);
   if (row->repeat_offset)
     fprintf(out, "| `%su_repeat_%s` | the same, of repeats alone |\n", before, name);

@@ -28,9 +28,12 @@ static inline fg_lot made_lot(const fg_design *design, size_t foils, size_t bump
   assert_ok(&ctx, fg_design_derive(&ctx, design, &lot.nominal));
   assert_ok(&ctx, fg_manifest_parse(&ctx, "made.csv", text, "", &lot.manifest));
   assert_int_equal(lot.manifest.items, foils);
+  memset(lot.head.recipe_sha256, 'a', sizeof lot.head.recipe_sha256 - 1);
+  memset(lot.head.manifest_sha256, 'b', sizeof lot.head.manifest_sha256 - 1);
   lot.records = calloc(foils, sizeof *lot.records);
   for (size_t i = 0; i < foils; i++) {
     fg_record *record = &lot.records[i];
+    record->scan = lot.manifest.cell[i * lot.manifest.columns];
     record->foils = calloc(1, sizeof *record->foils);
     record->foil_count = 1;
     fg_foil *foil = &record->foils[0];

@@ -11,21 +11,23 @@ except ImportError:
     jsonschema = None
 
 try:
-    from referencing import Registry, Resource
+    from referencing import Registry
+    from referencing.jsonschema import DRAFT202012
 except ImportError:
     Registry = None
 
 
-def validator(schemas, name):
-    """A validator that finds the schemas of the folder by their $id."""
+def validator(schemas, name, kind=None):
+    """A validator that finds the schemas of the folder by their $id; `kind`: its class."""
+    kind = kind or jsonschema.Draft202012Validator
     schema = schemas[name]
     if Registry:
         registry = Registry().with_resources(
-            (key, Resource.from_contents(value)) for key, value in schemas.items()
+            (key, DRAFT202012.create_resource(value)) for key, value in schemas.items()
         )
-        return jsonschema.Draft202012Validator(schema, registry=registry)
+        return kind(schema, registry=registry)
     resolver = jsonschema.RefResolver("", schema, store=schemas)  # jsonschema before 4.18
-    return jsonschema.Draft202012Validator(schema, resolver=resolver)
+    return kind(schema, resolver=resolver)
 
 
 def main(folder, name, *files):

@@ -158,12 +158,34 @@ static void page_has_classes_of_lines_signs_and_links(void **state) {
                  "</tbody></table></div>\n");
 }
 
+/* Arrays inside an object. */
+typedef struct arrays {
+  double all[3], first[4];
+  size_t count;
+} arrays;
+
+static const fg_member array_rows[] = {
+    {FG_NUMBERS("all", arrays, all)},
+    {FG_NUMBERS_OF("first", arrays, first, count)},
+};
+static const fg_members array_members = FG_MEMBERS(array_rows);
+
+static void write_arrays(FILE *out) {
+  fg_document_json(out, &array_members, &(arrays){{1, NAN, 3}, {4, 5, 6, 7}, 2});
+}
+
+static void json_has_arrays_of_the_object(void **state) {
+  (void)state;
+  assert_written(write_arrays, "{\n \"all\": [1, null, 3],\n \"first\": [4, 5]\n}\n");
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(json_has_every_row),
       cmocka_unit_test(csv_has_its_columns_by_rank),
       cmocka_unit_test(terminal_is_as_wide_as_its_cells),
       cmocka_unit_test(page_has_headings_words_and_looks),
+      cmocka_unit_test(json_has_arrays_of_the_object),
       cmocka_unit_test(page_has_classes_of_lines_signs_and_links),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

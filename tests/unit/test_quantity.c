@@ -195,6 +195,7 @@ static void reports_hold_every_row_of_arcs(void **state) {
   fg_measurement measurement = synthetic_measurement(&design);
   fg_foil *foil = &measurement.foils[0];
   assert_int_equal(fg_design_become(NULL, FG_FOIL_ARC, &design), FG_OK);
+  design.arc.subtended_angle_deg = 110;
   measurement.design = design;
   foil->bump_count = 0;
   foil->correction = (fg_correction){1e-3, 2e-4, 3e-3, 4e-4, 5e-3, 6e-4};
@@ -218,7 +219,9 @@ static void reports_hold_every_row_of_discs(void **state) {
   assert_int_equal(fg_design_become(NULL, FG_FOIL_DISCS, &design), FG_OK);
   fg_nominal nominal = {0};
   fg_disc disc = synthetic_disc(1, 1.5);
-  fg_measurement measurement = {.dpi = {1200, 1200}, .discs = &disc, .disc_count = 1};
+  fg_measurement measurement = {
+      .dpi = {1200, 1200}, .bit_depth = 8, .discs = &disc, .disc_count = 1};
+  memset(measurement.sha256, 'a', 64);
   fg_report_scan scan = {"discs.png", &measurement, NULL, NULL};
   fg_report report = {&design, &nominal, &scan, 1, NULL};
   char *text = text_of(&report, fg_report_write_json);

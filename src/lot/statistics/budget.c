@@ -113,7 +113,7 @@ static void find_shares(const fg_bump_columns *columns, bool thickness, fg_lot_b
 void fg_lot_analyse_budget(fg_lot_analysis *analysis, const fg_bump_columns *columns) {
   fg_lot_budget *budget = &analysis->stiffness.budget;
   const fg_arch_sensitivity *slope =
-      &analysis->stiffness.cases[FG_LOT_CASE_MEAN].lines[0].sensitivity;
+      &analysis->stiffness.cases[FG_LOT_CASE_MEAN].by_model[0].sensitivity;
   moments m = find_moments(columns->arch_radius, columns->arch_length, columns->count);
   moments t = find_moments(columns->strip, columns->strip, columns->count);
   budget->radius = (fg_lot_budget_term){relative_pct(m.xx, m.count, m.mean_x),

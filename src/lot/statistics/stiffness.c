@@ -40,8 +40,7 @@ static fg_status stiffness_of_design(fg_context *ctx, const fg_lot_settings *set
   fg_arch arch = fg_design_arch(design, design->thickness_mm, design->bumps.radius_mm,
                                 design->bumps.angle_deg);
   result->cases[FG_LOT_CASE_DESIGN] =
-      (fg_stiffness_case){.title = "as designed", .name = "design", .arch = arch};
-  fg_stiffness_compare(&arch, &settings->material, result->cases[FG_LOT_CASE_DESIGN].lines);
+      fg_stiffness_case_of("as designed", design, &arch, &settings->material);
   FG_TRY(fg_arch_free(ctx, &arch, &settings->material, &result->design_free));
   FG_TRY(fg_arch_welded(ctx, &arch, &settings->material, &result->design_welded));
   return fg_arch_sensitivities(ctx, &arch, &settings->material, &result->sensitivity);
@@ -87,7 +86,7 @@ static void add_model_ratios(const fg_lot_settings *settings, const fg_lot_stiff
     if (fg_stiffness_models()[i].stiffness(&unused, arch, &settings->material, &stiffness) != FG_OK)
       stiffness = NAN;
     columns->ratio[i][columns->count] =
-        stiffness / result->cases[FG_LOT_CASE_DESIGN].lines[i].stiffness_n_mm2;
+        stiffness / result->cases[FG_LOT_CASE_DESIGN].by_model[i].stiffness_n_mm2;
   }
 }
 
@@ -168,14 +167,11 @@ static bool has_different_values(const double *values, size_t count) {
 /* Finds the stiffness of a bump with the lot's mean radius, arc length and thickness. */
 static void find_mean_bump(const fg_lot_settings *settings, const fg_bump_columns *columns,
                            fg_lot_stiffness *result) {
-  fg_stiffness_case *bump = &result->cases[FG_LOT_CASE_MEAN];
   double radius = fg_mean(columns->arch_radius, columns->count);
-  *bump =
-      (fg_stiffness_case){.title = "the lot's mean",
-                          .name = "lot_mean",
-                          .arch = {radius, fg_mean(columns->arch_length, columns->count) / radius,
-                                   fg_mean(columns->thickness, columns->count)}};
-  fg_stiffness_compare(&bump->arch, &settings->material, bump->lines);
+  const fg_arch arch = {radius, fg_mean(columns->arch_length, columns->count) / radius,
+                        fg_mean(columns->thickness, columns->count)};
+  result->cases[FG_LOT_CASE_MEAN] =
+      fg_stiffness_case_of("the lot's mean", &settings->design, &arch, &settings->material);
 }
 
 /* A model without a stiffness for one of the bumps has no spread over them. */

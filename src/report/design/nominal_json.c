@@ -6,36 +6,13 @@
 #include "report/design/beam_deviations.h"
 #include "report/design/json.h"
 #include "report/measure/foil_view.h"
-#include "report/stiffness/map.h"
 #include "report/stiffness/table.h"
 
-static void write_material(fg_json *json, const fg_arch_material *material) {
-  fg_json_object(json, "material");
-  fg_json_line(json);
-  fg_json_number(json, "youngs_modulus_gpa", material->youngs_modulus_gpa);
-  fg_json_number(json, "poisson_ratio", material->poisson_ratio);
-  fg_json_number(json, "friction", material->friction);
-  fg_json_object_end(json);
-  fg_json_line_end(json);
-}
-
 static void write_stiffness(fg_json *json, const fg_design_report *report) {
-  const fg_stiffness_case bump = fg_stiffness_case_of(report->design, report->material);
-  const fg_stiffness_map map = fg_stiffness_map_around(report->design, report->material);
-  double pitch_mm = fg_design_pitch_mm(report->design);
+  const fg_stiffness_of_design stiffness =
+      fg_stiffness_find_of_design(report->design, report->material);
   fg_json_object(json, "stiffness");
-  write_material(json, report->material);
-  fg_json_number(json, "pitch_mm", pitch_mm);
-  fg_json_string(json, "note", fg_stiffness_kind_note(report->design->kind));
-  fg_json_array(json, "models");
-  for (int i = 0; i < FG_STIFFNESS_MODELS; i++) {
-    fg_json_object(json, NULL);
-    fg_json_stiffness_model(json, i);
-    fg_json_stiffness_case(json, &bump, i, pitch_mm);
-    fg_json_object_end(json);
-  }
-  fg_json_array_end(json);
-  fg_json_stiffness_map(json, "map", &map);
+  fg_members_json(json, &fg_stiffness_design_members, &(fg_subject){.object = &stiffness});
   fg_json_object_end(json);
 }
 

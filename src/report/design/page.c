@@ -37,27 +37,26 @@ fg_status fg_design_write_html(fg_context *ctx, const fg_design_report *report, 
   if (!fg_foil_kind_has_bumps(report->design->kind))
     return fg_fail(ctx, FG_ERR_DATA, "form \"%s\" has no bumps, so there is no page of them",
                    fg_foil_kind_word(report->design->kind));
-  const fg_stiffness_case bump = fg_stiffness_case_of(report->design, report->material);
-  const fg_stiffness_map map = fg_stiffness_map_around(report->design, report->material);
-  const char *note = fg_stiffness_kind_note(report->design->kind);
-  double along = bump.lines[0].sensitivity.radius_at_arc_length;
+  const fg_stiffness_of_design stiffness =
+      fg_stiffness_find_of_design(report->design, report->material);
+  double along = stiffness.bump.by_model[0].sensitivity.radius_at_arc_length;
   fg_html_begin(out, report->design->name);
   fputs("<section>\n<header><h1>Design ", out);
   fg_html_text(out, report->design->name);
   fputs("</h1></header>\n", out);
   put_design_tiles(out, report);
   fputs("<h2>Stiffness of a bump</h2>\n", out);
-  if (note) fprintf(out, "<p>%s</p>\n", note);
-  fg_html_stiffness_table(out, &bump, 1, fg_design_pitch_mm(report->design));
+  if (stiffness.note) fprintf(out, "<p>%s</p>\n", stiffness.note);
+  fg_html_stiffness_table(out, &stiffness.bump, 1);
   fprintf(
       out,
       "<p class=\"note\">E %.4g GPa, Poisson's ratio %.3g, friction %.3g; pitch s %.4g mm along "
       "the sleeve. A percent more thickness is worth three of stiffness in every model.</p>\n",
       report->material->youngs_modulus_gpa, report->material->poisson_ratio,
-      report->material->friction, fg_design_pitch_mm(report->design));
+      report->material->friction, stiffness.pitch_mm);
   fputs("</section>\n<section>\n<h2 class=\"first\">What springback does to it</h2>\n<figure>",
         out);
-  fg_stiffness_plot_map(out, &map, NULL, NULL);
+  fg_stiffness_plot_map(out, &stiffness.map, NULL, NULL);
   fputs("<figcaption>Stiffness of the arch over the design's: orange stiffer, blue softer; dashed: "
         "as designed. The thick orange line is springback at constant arc length",
         out);

@@ -145,14 +145,14 @@ void fg_design_table_of_discs(const fg_design_report *report, FILE *out) {
 
 void fg_design_table_of_bumps(const fg_design_report *report, FILE *out) {
   const fg_design *design = report->design;
-  const fg_stiffness_case bump = fg_stiffness_case_of(design, report->material);
+  const fg_stiffness_of_design stiffness = fg_stiffness_find_of_design(design, report->material);
   fprintf(out, ", datum %s", fg_datum_word(design->datum));
   if (design->bumps.count) fprintf(out, ", %zu bumps", design->bumps.count);
   fputs("\n\nstated\n", out);
   write_stated(design, out);
   fputs("\nderived\n", out);
   write_derived(report->nominal, out);
-  fg_text_stiffness_table(out, &bump, fg_design_pitch_mm(design));
+  fg_text_stiffness_table(out, &stiffness.bump);
 }
 
 fg_status fg_design_write_table(fg_context *ctx, const fg_design_report *report, FILE *out) {

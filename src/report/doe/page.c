@@ -6,8 +6,10 @@
 #include "core/file.h"
 #include "foilgauge/words.h"
 #include "page/page.h"
+#include "page/table.h"
 #include "page/tile.h"
 #include "report/doe/answer.h"
+#include "report/doe/members.h"
 #include "report/doe/plots.h"
 #include "report/doe/words.h"
 #include "report/provenance.h"
@@ -67,34 +69,14 @@ static void put_doe_tiles(FILE *out, const fg_experiment *e) {
   fg_html_tiles(out, "tiles", tiles, sizeof tiles / sizeof *tiles);
 }
 
-static void put_coefficients(FILE *out, const fg_experiment *e) {
+static void put_coefficients(FILE *out, const fg_doe_whole *whole) {
+  fprintf(out, "<h2>Coefficients</h2>\n");
+  fg_html_table(out, &fg_doe_coefficient_members, &(fg_subject){.object = whole, .whole = whole},
+                fg_doe_coefficient_at);
   fprintf(out,
-          "<h2>Coefficients</h2>\n<div class=\"scroll\"><table><thead><tr><th>term</th>"
-          "<th>estimate</th><th>relative<br>%%</th><th>standard<br>error</th>"
-          "<th>of it<br>measurement</th><th>t</th><th>%s</th><th colspan=\"2\">%g %% interval</th>"
-          "<th>VIF</th></tr></thead>\n<tbody>\n",
-          e->regression.residual_dof ? "p" : "p (Lenth)", 100 * e->confidence);
-  for (size_t j = 0; j < e->regression.columns; j++) {
-    const fg_coefficient *c = &e->regression.coefficient[j];
-    const fg_experiment_effect *effect = &e->effect[j];
-    bool on = fg_experiment_of_interest(e, j) && fg_experiment_p_value(e, j) < 1 - e->confidence;
-    fputs(on ? "<tr class=\"on\">" : "<tr>", out);
-    put_name_cell(out, c->name);
-    put_doe_cell(out, c->estimate, 5);
-    put_doe_cell(out, effect->relative_pct, 4);
-    put_doe_cell(out, effect->standard_error, 4);
-    put_doe_cell(out, effect->u_measurement, 3);
-    put_doe_cell(out, effect->t, 4);
-    put_p_cell(out, fg_experiment_p_value(e, j));
-    put_doe_cell(out, effect->low, 4);
-    put_doe_cell(out, effect->high, 4);
-    put_doe_cell(out, c->vif, 4);
-    fputs("</tr>\n", out);
-  }
-  fputs(
-      "</tbody></table></div>\n<p class=\"note\">A coefficient is the change of the response over "
-      "half the range of a factor; relative: over the constant.</p>\n",
-      out);
+          "<p class=\"note\">A coefficient is the change of the response over half the range of a "
+          "factor; relative: over the constant. Intervals: %g %%.</p>\n",
+          100 * whole->e->confidence);
 }
 
 static void put_anova_row(FILE *out, const fg_anova_row *row, double partial, double partial_p) {
@@ -315,7 +297,9 @@ static fg_status put_page(fg_context *ctx, FILE *out, const fg_experiment_report
   }
   FG_TRY(put_plots(ctx, out, report));
   put_anova(out, e);
-  put_coefficients(out, e);
+  fg_doe_whole whole;
+  fg_doe_whole_of(report, conclusions, &whole);
+  put_coefficients(out, &whole);
   put_doe_runs(out, report);
   FG_TRY(put_facts(ctx, out, report, response));
   fputs("</section>\n", out);

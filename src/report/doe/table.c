@@ -5,7 +5,7 @@
 
 #include "core/file.h"
 #include "foilgauge/words.h"
-#include "report/doe/words.h"
+#include "report/doe/members.h"
 #include "report/value_words.h"
 
 static void put_doe_number(FILE *out, int width, double value) {
@@ -24,27 +24,14 @@ static void put_p(FILE *out, double p_value) {
     fprintf(out, "%10.4f", p_value);
 }
 
-static void put_coefficients(FILE *out, const fg_experiment *e) {
-  bool lenth = !e->regression.residual_dof;
-  fprintf(out, "\n%-30s%11s%9s%10s%8s%10s   %g %% interval\n", "coefficient", "estimate", "rel. %",
-          "std.err", "t", lenth ? "p (Lenth)" : "p", 100 * e->confidence);
-  for (size_t j = 0; j < e->regression.columns; j++) {
-    const fg_coefficient *c = &e->regression.coefficient[j];
-    const fg_experiment_effect *effect = &e->effect[j];
-    fprintf(out, "%-30s", c->name);
-    if (c->aliased) {
-      fputs("  cannot be told from the ones above\n", out);
-      continue;
-    }
-    put_doe_number(out, 11, c->estimate);
-    put_doe_number(out, 9, effect->relative_pct);
-    put_doe_number(out, 10, effect->standard_error);
-    put_doe_number(out, 8, effect->t);
-    put_p(out, fg_experiment_p_value(e, j));
-    put_doe_number(out, 11, effect->low);
-    put_doe_number(out, 10, effect->high);
-    fputc('\n', out);
-  }
+static void put_coefficients(FILE *out, const fg_doe_whole *whole) {
+  fputc('\n', out);
+  fg_members_terminal(out, "", &fg_doe_coefficient_members,
+                      &(fg_subject){.object = whole, .whole = whole}, fg_doe_coefficient_at);
+  fprintf(out, "intervals: %g %%%s\n", 100 * whole->e->confidence,
+          whole->e->regression.aliases
+              ? "; terms without numbers cannot be told from the ones above"
+              : "");
 }
 
 static void put_anova_row(FILE *out, const fg_anova_row *row) {
@@ -138,7 +125,9 @@ fg_status fg_experiment_write_table(fg_context *ctx, const fg_experiment_report 
   FG_TRY_EXIT(fg_experiment_response_words(ctx, e, &response));
   FG_TRY_EXIT(fg_experiment_conclusions(ctx, report, &conclusions));
   put_doe_head(out, report, response);
-  put_coefficients(out, e);
+  fg_doe_whole whole;
+  fg_doe_whole_of(report, &conclusions, &whole);
+  put_coefficients(out, &whole);
   put_anova(out, e);
   put_quality(out, e);
   fputc('\n', out);

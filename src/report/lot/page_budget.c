@@ -2,42 +2,58 @@
 /* The lot's page: causes of the spread of the bumps' stiffness. */
 #include <math.h>
 
+#include "page/table.h"
 #include "report/lot/page_parts.h"
-
-static void put_term_cell(FILE *out, double value, int digits) {
-  fputs("<td>", out);
-  fg_lot_put_number(out, value, digits);
-  fputs("</td>", out);
-}
+#include "report/lot/parts_members.h"
 
 /* Returns the spread that a variance would give alone. */
 static double variance_to_spread(double variance_pct2) {
   return sqrt(variance_pct2);
 }
 
-/* Rounds to a tenth of a percent, which is fine enough. */
-static double round_share(double share_pct) {
-  return round(10 * share_pct) / 10;
+/* Line of the table of causes. */
+typedef struct budget_line {
+  fg_lot_budget_term term; /* first: its members are columns */
+  const char *cause, *look;
+} budget_line;
+
+static double find_spread_alone(const fg_subject *subject) {
+  const budget_line *line = subject->object;
+  return variance_to_spread(line->term.variance_pct2);
 }
 
-static void put_term_row(FILE *out, const char *title, const fg_lot_budget_term *term) {
-  fprintf(out, "<tr><td>%s</td>", title);
-  put_term_cell(out, term->spread_pct, 3);
-  if (isfinite(term->sensitivity))
-    fprintf(out, "<td>%s%.2f</td>", term->sensitivity < 0 ? "−" : "+", fabs(term->sensitivity));
-  else
-    fputs("<td></td>", out);
-  put_term_cell(out, variance_to_spread(term->variance_pct2), 3);
-  put_term_cell(out, round_share(term->share_pct), 3);
-  fputs("</tr>\n", out);
+static const fg_member budget_line_rows[] = {
+    {FG_STRING("cause", budget_line, cause), .page = {1, .heading = "cause"}},
+    {FG_SAME(&fg_lot_budget_term_members)},
+    {FG_NUMBER_BY("alone_pct", find_spread_alone),
+     .words = "spread of the stiffness from this cause alone",
+     .page = {3, .heading = "alone gives, %", .digits = 3}},
+};
+
+static const char *look_at_budget_line(const fg_subject *element) {
+  return ((const budget_line *)element->object)->look;
 }
 
-static void put_share(FILE *out, const char *style, const char *title, double spread_pct,
-                      double share_pct) {
-  fprintf(out, "<tr%s><td>%s</td><td></td><td></td>", style, title);
-  put_term_cell(out, spread_pct, 3);
-  put_term_cell(out, round_share(share_pct), 3);
-  fputs("</tr>\n", out);
+static const fg_members budget_line_members =
+    FG_MEMBERS_LOOKED_AT(budget_line_rows, look_at_budget_line);
+
+static bool find_budget_line(const fg_subject *list, size_t i, fg_subject *element) {
+  const budget_line *line = (const budget_line *)list->object + i;
+  element->object = line;
+  return line->cause;
+}
+
+static void put_budget_table(FILE *out, const fg_lot_budget *budget) {
+  double observed_pct2 = budget->observed_pct * budget->observed_pct;
+  const budget_line lines[] = {
+      {budget->radius, "radius, at constant arc length", NULL},
+      {budget->arc_length, "arc length R α of the bump", NULL},
+      {budget->thickness, "thickness of the strip", NULL},
+      {{NAN, NAN, NAN, budget->rest_share_pct}, "not explained by these", NULL},
+      {{NAN, NAN, observed_pct2, 100}, "observed", "total"},
+      {.cause = NULL},
+  };
+  fg_html_table(out, &budget_line_members, &(fg_subject){.object = lines}, find_budget_line);
 }
 
 static void put_budget_sentence(FILE *out, const fg_lot_budget *budget) {
@@ -104,16 +120,7 @@ void fg_lot_put_stiffness_budget(FILE *out, const fg_lot_analysis *analysis) {
   if (!budget->known) return;
   fputs("<h2>Where the spread comes from</h2>\n", out);
   put_budget_sentence(out, budget);
-  fputs("<div class=\"scroll\"><table><thead><tr><th>cause</th><th>varies by, %</th><th>% of "
-        "stiffness<br>per %</th><th>alone gives, %</th><th>share of the<br>variance, "
-        "%</th></tr></thead>\n<tbody>\n",
-        out);
-  put_term_row(out, "radius, at constant arc length", &budget->radius);
-  put_term_row(out, "arc length R α of the bump", &budget->arc_length);
-  put_term_row(out, "thickness of the strip", &budget->thickness);
-  put_share(out, "", "not explained by these", NAN, budget->rest_share_pct);
-  put_share(out, " class=\"total\"", "observed", budget->observed_pct, 100);
-  fputs("</tbody></table></div>\n", out);
+  put_budget_table(out, budget);
   put_thickness_note(out, analysis);
   put_unexplained(out, budget);
   put_calibration_note(out, analysis);

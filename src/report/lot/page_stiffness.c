@@ -1,18 +1,26 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The lot's page: stiffness of the bumps. */
+#include "page/table.h"
 #include "report/lot/page_parts.h"
+#include "report/lot/parts_members.h"
 #include "report/lot/plots.h"
 
-static void put_spread_row(FILE *out, const char *title, const fg_lot_spread *spread) {
-  fprintf(out, "<tr><td>%s</td><td>%zu</td>", title, spread->count);
-  const double values[] = {spread->mean, spread->mode, spread->relative_sd_pct, spread->min,
-                           spread->max};
-  for (size_t i = 0; i < sizeof values / sizeof *values; i++) {
-    fputs("<td>", out);
-    fg_lot_put_number(out, values[i], 4);
-    fputs("</td>", out);
-  }
-  fputs("</tr>\n", out);
+/* Line of the table of spreads. */
+typedef struct spread_line {
+  fg_lot_spread spread; /* first: its members are the columns */
+  const char *title;
+} spread_line;
+
+static const fg_member spread_line_rows[] = {
+    {FG_STRING("of", spread_line, title), .page = {1, .heading = "over the design's"}},
+    {FG_SAME(&fg_lot_spread_members)},
+};
+static const fg_members spread_line_members = FG_MEMBERS(spread_line_rows);
+
+static bool find_spread_line(const fg_subject *list, size_t i, fg_subject *element) {
+  const spread_line *line = (const spread_line *)list->object + i;
+  element->object = line->spread.count ? line : NULL;
+  return line->title;
 }
 
 /* Puts the mean over the design's ± its uncertainty by the thickness, and the origin of that
@@ -36,28 +44,26 @@ void fg_lot_put_thickness(FILE *out, const fg_lot_analysis *analysis) {
 
 static void put_stiffness_spreads(FILE *out, const fg_lot_analysis *analysis) {
   const fg_lot_stiffness *stiffness = &analysis->stiffness;
-  fputs("<div class=\"scroll\"><table><thead><tr><th>"
-        "over the design's</th><th>n</th><th>mean</th><th>mode</th><th>rel. s, %</th><th>min</th>"
-        "<th>max</th></tr></thead>\n<tbody>\n",
-        out);
-  put_spread_row(out, "measured bumps, arch", &stiffness->measured);
+  spread_line lines[FG_STIFFNESS_MODELS + 4] = {{stiffness->measured, "measured bumps, arch"}};
+  char titles[FG_STIFFNESS_MODELS][80];
+  size_t count = 1;
   if (analysis->thickness.differs)
-    put_spread_row(out, "the same, strips as thick as designed", &stiffness->at_design_thickness);
+    lines[count++] =
+        (spread_line){stiffness->at_design_thickness, "the same, strips as thick as designed"};
   for (int i = 1; i < FG_STIFFNESS_MODELS; i++) {
-    char title[80];
-    snprintf(title, sizeof title, "measured bumps, %s", fg_stiffness_models()[i].title);
-    if (stiffness->by_model[i].count) put_spread_row(out, title, &stiffness->by_model[i]);
+    snprintf(titles[i], sizeof titles[i], "measured bumps, %s", fg_stiffness_models()[i].title);
+    lines[count++] = (spread_line){stiffness->by_model[i], titles[i]};
   }
-  put_spread_row(out, "drawn from the bumps' densities, arch", &stiffness->resampled);
-  put_spread_row(out, "sideways, at the feet, arch", &stiffness->foot);
-  fputs("</tbody></table></div>\n", out);
+  lines[count++] = (spread_line){stiffness->resampled, "drawn from the bumps' densities, arch"};
+  lines[count] = (spread_line){stiffness->foot, "sideways, at the feet, arch"};
+  fg_html_table(out, &spread_line_members, &(fg_subject){.object = lines}, find_spread_line);
 }
 
 static void put_stiffness_models(FILE *out, const fg_lot_analysis *analysis, size_t cases) {
   const fg_arch_material *material = &analysis->lot->settings.material;
   double pitch_mm = fg_design_pitch_mm(&analysis->lot->settings.design);
   fputs("<h2>By model</h2>\n", out);
-  fg_html_stiffness_table(out, analysis->stiffness.cases, cases, pitch_mm);
+  fg_html_stiffness_table(out, analysis->stiffness.cases, cases);
   fprintf(out,
           "<p class=\"note\">E %.4g GPa, Poisson's ratio %.3g, friction %.3g; pitch %.4g mm along "
           "the sleeve. An arch with one end welded, as designed: %.4g N/mm²%s.</p>\n",

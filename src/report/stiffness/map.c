@@ -113,7 +113,12 @@ void fg_stiffness_plot_map(FILE *out, const fg_stiffness_map *map, fg_stiffness_
                            const void *user) {
   static const double levels[] = {0.4, 0.5, 0.6, 0.7,  0.8, 0.9, 1, 1.1,
                                   1.2, 1.3, 1.5, 1.75, 2,   2.5, 3};
-  fg_plot at = fg_plot_open(out, &(fg_plot_frame){ "Stiffness of a bump over its radius and angle, all over the design's", .height = 430, .left = 92, .x = (double[]){map->radius_low, map->radius_high}, .y = (double[]){map->angle_low, map->angle_high}, .y_title = "angle over the design's", .x_title = "bump radius over the design's"});
+  fg_plot at = fg_plot_open(
+      out, &(fg_plot_frame){
+               "Stiffness of a bump over its radius and angle, all over the design's",
+               .height = 430, .left = 92, .x = (double[]){map->radius_low, map->radius_high},
+               .y = (double[]){map->angle_low, map->angle_high},
+               .y_title = "angle over the design's", .x_title = "bump radius over the design's"});
   put_cells(&at, map);
   fg_plot_axes(&at);
   put_constant_arc(&at);
@@ -123,27 +128,55 @@ void fg_stiffness_plot_map(FILE *out, const fg_stiffness_map *map, fg_stiffness_
   fg_plot_end(&at);
 }
 
-static void write_axis(fg_json *json, const char *name, double low, double high) {
-  double values[JSON_STEPS + 1];
+/* Values of an axis in JSON. */
+static const double *list_axis(double low, double high, double *values, size_t *count) {
+  *count = JSON_STEPS + 1;
   for (int i = 0; i <= JSON_STEPS; i++)
     values[i] = low + (high - low) * i / JSON_STEPS;
-  fg_json_numbers(json, name, values, JSON_STEPS + 1);
+  return values;
 }
 
-void fg_json_stiffness_map(fg_json *json, const char *name, const fg_stiffness_map *map) {
-  double row[JSON_STEPS + 1];
-  fg_json_object(json, name);
-  fg_json_string(json, "model", fg_stiffness_models()[0].id);
-  write_axis(json, "radius_over_design", map->radius_low, map->radius_high);
-  write_axis(json, "bump_angle_over_design", map->angle_low, map->angle_high);
-  fg_json_array(json, "normalised");
-  for (int k = 0; k <= JSON_STEPS; k++) {
-    double angle = map->angle_low + (map->angle_high - map->angle_low) * k / JSON_STEPS;
-    for (int i = 0; i <= JSON_STEPS; i++)
-      row[i] = fg_stiffness_map_at(
-          map, map->radius_low + (map->radius_high - map->radius_low) * i / JSON_STEPS, angle);
-    fg_json_numbers(json, NULL, row, JSON_STEPS + 1);
-  }
-  fg_json_array_end(json);
-  fg_json_object_end(json);
+static const double *list_radii(const fg_subject *subject, double *values, size_t *count) {
+  const fg_stiffness_map *map = subject->object;
+  return list_axis(map->radius_low, map->radius_high, values, count);
 }
+
+static const double *list_angles(const fg_subject *subject, double *values, size_t *count) {
+  const fg_stiffness_map *map = subject->object;
+  return list_axis(map->angle_low, map->angle_high, values, count);
+}
+
+/* Stiffness at one angle, which the subject's index counts. */
+static const double *list_ratios(const fg_subject *subject, double *values, size_t *count) {
+  double angle[JSON_STEPS + 1];
+  list_angles(subject, angle, count);
+  list_radii(subject, values, count);
+  for (size_t i = 0; i < *count; i++)
+    values[i] = fg_stiffness_map_at(subject->object, values[i], angle[subject->index]);
+  return values;
+}
+
+static bool find_angle(const fg_subject *list, size_t i, fg_subject *element) {
+  element->object = list->object;
+  return i <= JSON_STEPS;
+}
+
+static const char *find_arch_id(const fg_subject *subject, char *buffer) {
+  (void)subject, (void)buffer;
+  return fg_stiffness_models()[0].id;
+}
+
+static const fg_member ratio_rows[] = {{FG_NUMBERS_BY(NULL, list_ratios)}};
+static const fg_members ratio_members = FG_MEMBERS(ratio_rows);
+
+static const fg_member map_rows[] = {
+    {FG_TEXT_BY("model", find_arch_id), .schema = "{\"const\": \"arch\"}"},
+    {FG_NUMBERS_BY("radius_over_design", list_radii), .options = FG_MEMBER_NEVER_NULL,
+     .lowest = JSON_STEPS + 1, .highest = JSON_STEPS + 1},
+    {FG_NUMBERS_BY("bump_angle_over_design", list_angles), .options = FG_MEMBER_NEVER_NULL,
+     .lowest = JSON_STEPS + 1, .highest = JSON_STEPS + 1},
+    {FG_LIST_BY("normalised", find_angle, &ratio_members),
+     .words = "normalised[k][i]: stiffness over the design's at bump_angle_over_design[k] and "
+              "radius_over_design[i]"},
+};
+const fg_members fg_stiffness_map_members = FG_MEMBERS_OF_FILE(map_rows, "map", "nominal");

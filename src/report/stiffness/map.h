@@ -4,7 +4,7 @@
 #ifndef FG_REPORT_STIFFNESS_MAP_H
 #define FG_REPORT_STIFFNESS_MAP_H
 
-#include "core/json_writer.h"
+#include "core/member.h"
 #include "foilgauge/stiffness.h"
 #include "page/plot.h"
 
@@ -29,6 +29,6 @@ typedef void fg_stiffness_dots(const fg_plot *at, const void *user);
 void fg_stiffness_plot_map(FILE *out, const fg_stiffness_map *map, fg_stiffness_dots *dots,
                            const void *user);
 
-void fg_json_stiffness_map(fg_json *json, const char *name, const fg_stiffness_map *map);
+extern const fg_members fg_stiffness_map_members;
 
 #endif

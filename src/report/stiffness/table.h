@@ -1,35 +1,50 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The models of a bump's stiffness side by side: as JSON, as a table of a page, as text. */
+/* The models of a bump's stiffness side by side: members of reports, tables of pages and terminal.
+ */
 #ifndef FG_REPORT_STIFFNESS_TABLE_H
 #define FG_REPORT_STIFFNESS_TABLE_H
 
-#include "core/json_writer.h"
+#include "core/member.h"
 #include "foilgauge/stiffness.h"
+#include "report/stiffness/map.h"
+
+/* A bump by one model. */
+typedef struct fg_stiffness_result {
+  fg_arch_sensitivity sensitivity; /* first, for its members are columns of the same table */
+  double stiffness_n_mm2, per_area_n_mm3, over_arch;
+  char reserve[FG_STIFFNESS_WORDS];
+  const fg_stiffness_model *model;
+  const char *title, *bump; /* of the model; of the bump: "as designed" */
+} fg_stiffness_result;
 
 /* A bump by every model: the design's, or one of a lot's mean. */
 typedef struct fg_stiffness_case {
-  const char *title; /* on pages: "as designed" */
-  const char *name;  /* in JSON */
-  fg_arch arch;
-  fg_stiffness_line lines[FG_STIFFNESS_MODELS];
+  fg_stiffness_result by_model[FG_STIFFNESS_MODELS];
 } fg_stiffness_case;
 
-/* Returns the design's bump. */
-fg_stiffness_case fg_stiffness_case_of(const fg_design *design, const fg_arch_material *material);
+fg_stiffness_case fg_stiffness_case_of(const char *title, const fg_design *design,
+                                       const fg_arch *arch, const fg_arch_material *material);
 
-void fg_json_sensitivity(fg_json *json, const char *name, const fg_arch_sensitivity *sensitivity);
+/* Stiffness of the design's bump. */
+typedef struct fg_stiffness_of_design {
+  const fg_arch_material *material;
+  double pitch_mm;
+  const char *note;
+  fg_stiffness_case bump;
+  fg_stiffness_map map;
+} fg_stiffness_of_design;
 
-/* Writes one member of the case's name: the bump, and its stiffness by this model. */
-void fg_json_stiffness_case(fg_json *json, const fg_stiffness_case *bump, int model,
-                            double pitch_mm);
+fg_stiffness_of_design fg_stiffness_find_of_design(const fg_design *design,
+                                                   const fg_arch_material *material);
 
-/* Writes the members that describe a model. */
-void fg_json_stiffness_model(fg_json *json, int model);
+/* Members of: fg_stiffness_of_design, of a model (id, formula, source), of an
+ * fg_stiffness_result, of an fg_arch_sensitivity. */
+extern const fg_members fg_stiffness_design_members, fg_stiffness_model_members,
+    fg_stiffness_result_members, fg_sensitivity_members;
 
 /* Writes a table, its columns explained, and the models' formulas, sources and reserves below. */
-void fg_html_stiffness_table(FILE *out, const fg_stiffness_case *cases, size_t count,
-                             double pitch_mm);
+void fg_html_stiffness_table(FILE *out, const fg_stiffness_case *cases, size_t count);
 
-void fg_text_stiffness_table(FILE *out, const fg_stiffness_case *bump, double pitch_mm);
+void fg_text_stiffness_table(FILE *out, const fg_stiffness_case *bump);
 
 #endif
