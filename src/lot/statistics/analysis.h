@@ -46,6 +46,7 @@ typedef struct fg_lot_trend {
   bool known;                       /* distinguished from noise; else all is 0 */
   double per_foil, u_per_foil, dof; /* slope, its u and degrees of freedom */
   double correlation;         /* serial correlation of the residuals, for which u is widened */
+  double first_to_last;       /* per_foil times the steps */
   double p_value;             /* p-value of no trend */
   size_t foils, signals_left; /* number of foils; signals of the chart without the trend */
 } fg_lot_trend;
@@ -215,6 +216,7 @@ typedef struct fg_lot_assembly {
   fg_assembly_plan plan;
   bool centred; /* the crowns surround the rotor, so that it has a place with most room */
   fg_assembly_result drawn, design;
+  double clearance_mm, deviation_pct; /* of the design's bearings */
   fg_lot_change change[FG_LOT_CHANGES_MAX];
   size_t changes, classes; /* boxes of the sorted foils */
   char statement[3][400];

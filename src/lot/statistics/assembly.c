@@ -252,8 +252,9 @@ static void find_foils_interval(const double *share, double confidence, double f
   for (size_t i = 0; i < SETS; i++)
     variance += (share[i] - mean) * (share[i] - mean) / (SETS - 1);
   double of_draws = mean * (1 - mean) / BEARINGS_OF_A_SET, bearings = foils / pads;
-  target->by_bootstrap = target->share > 0 && target->share < 1 && variance > of_draws && foils > 1;
-  if (target->by_bootstrap) {
+  bool shows = target->share > 0 && target->share < 1 && variance > of_draws && foils > 1;
+  target->foils_by = shows ? FG_ASSEMBLY_BY_BOOTSTRAP : FG_ASSEMBLY_BY_BEARINGS;
+  if (shows) {
     double of_foils = (variance - of_draws) * foils / (foils - 1);
     double wider =
         fg_distribution_t_quantile(tail, foils - 1) / fg_distribution_normal_quantile(tail);

@@ -62,9 +62,14 @@ typedef struct fg_assembly_share {
   double share;
   double draws_low, draws_high; /* interval by the number of draws */
   double foils_low, foils_high; /* interval by the number of foils; NaN: not asked */
-  bool by_bootstrap;            /* false: by foils / pads bearings */
+  const char *foils_by;         /* way to that interval, in JSON; NULL: not asked */
   double surely, possibly;      /* shares: value ± U within the limit; not surely outside */
 } fg_assembly_share;
+
+/* Ways to the interval by the number of foils: resampling them, or, where that shows nothing, as
+ * many bearings as they make. */
+#define FG_ASSEMBLY_BY_BOOTSTRAP "bootstrap"
+#define FG_ASSEMBLY_BY_BEARINGS  "independent bearings"
 
 typedef struct fg_assembly_result {
   fg_assembly_share assembled;

@@ -263,7 +263,8 @@ fg_status fg_lot_analyse_assembly(fg_context *ctx, fg_lot_analysis *analysis) {
   fg_lot_assembly *assembly = &analysis->assembly;
   const fg_lot_settings *settings = &analysis->lot->settings;
   size_t pads = analysis->layout.pads, places = pads * analysis->layout.bumps_per_pad;
-  double nominal = analysis->lot->nominal.clearance_mm;
+  assembly->clearance_mm = analysis->lot->nominal.clearance_mm;
+  assembly->deviation_pct = settings->assembly.design_deviation_pct;
   assembly->asked = settings->assembly.bearings > 0;
   if (!assembly->asked) return FG_OK;
   FG_TRY(fill_stock(ctx, analysis));
@@ -280,8 +281,8 @@ fg_status fg_lot_analyse_assembly(fg_context *ctx, fg_lot_analysis *analysis) {
   memcpy(assembly->statement[0], assembly->why, sizeof assembly->why);
   if (assembly->why[0]) return FG_OK;
   FG_TRY(fg_assembly_draw(ctx, &assembly->stock, &assembly->plan, true, &assembly->drawn));
-  FG_TRY(fg_assembly_draw_design(ctx, nominal,
-                                 fabs(nominal) * settings->assembly.design_deviation_pct / 100,
+  FG_TRY(fg_assembly_draw_design(ctx, assembly->clearance_mm,
+                                 fabs(assembly->clearance_mm) * assembly->deviation_pct / 100,
                                  &assembly->plan, &assembly->design));
   FG_TRY(try_changes(ctx, analysis));
   fg_lot_summarise_assembly(analysis);

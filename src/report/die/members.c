@@ -28,7 +28,7 @@ static bool make_value_row(size_t q, fg_member *row) {
 }
 
 static const fg_member value_rows[] = {{FG_SAME_BY(make_value_row)}};
-static const fg_members value_members = {value_rows, 1, "values", NULL};
+static const fg_members value_members = FG_MEMBERS_DEFINED(value_rows, "values");
 
 static fg_subject find_values(const fg_subject *subject) {
   const fg_die_bump *bump = subject->object;

@@ -5,7 +5,9 @@
 
 #include "page/page.h"
 #include "page/plot_frame.h"
+#include "page/table.h"
 #include "report/lot/page_parts.h"
+#include "report/lot/parts_members.h"
 #include "report/lot/plots.h"
 
 enum { POINTS = 200, UM_PER_MM = 1000 };
@@ -107,33 +109,12 @@ void fg_lot_plot_assembly(FILE *out, const fg_lot_analysis *analysis, size_t val
   if (design.there) fg_density_free(&design.density);
 }
 
-static void put_percent(FILE *out, double share) {
-  if (isfinite(share))
-    fprintf(out, "%.1f", 100 * share);
-  else
-    fputs("–", out);
-}
-
-static void put_share_range(FILE *out, double low, double high) {
-  fputs("<td>", out);
-  put_percent(out, low);
-  fputs(" … ", out);
-  put_percent(out, high);
-  fputs("</td>", out);
-}
-
-static void put_share_row(FILE *out, const char *words, const fg_assembly_share *share,
-                          const fg_assembly_share *design) {
-  fprintf(out, "<tr><td class=\"words\">%s</td><td><b>", words);
-  put_percent(out, share->share);
-  fputs("</b></td>", out);
-  put_share_range(out, share->draws_low, share->draws_high);
-  put_share_range(out, share->foils_low, share->foils_high);
-  put_share_range(out, share->surely, share->possibly);
-  fputs("<td>", out);
-  put_percent(out, design->share);
-  fputs("</td></tr>\n", out);
-}
+/* Line of the table of shares. */
+typedef struct share_line {
+  fg_assembly_share drawn; /* first: its members are columns */
+  double design;
+  const fg_assembly_limit *limit; /* NULL: all that are asked */
+} share_line;
 
 static void limit_words(const fg_assembly_limit *limit, char *text, size_t size) {
   bool low = isfinite(limit->lower), high = isfinite(limit->upper);
@@ -147,22 +128,43 @@ static void limit_words(const fg_assembly_limit *limit, char *text, size_t size)
     snprintf(text + used, size - (size_t)used, " µm%s", limit->asked ? "" : " (told, not asked)");
 }
 
+static const char *find_share_words(const fg_subject *subject, char *buffer) {
+  const share_line *line = subject->object;
+  if (!line->limit) return "assemble: all that is asked";
+  limit_words(line->limit, buffer, FG_MEMBER_TEXT_MAX);
+  return buffer;
+}
+
+static const fg_member share_line_rows[] = {
+    {FG_TEXT_BY("of", find_share_words),
+     .page = {1, .heading = "share of the bearings drawn, %", .words = true}},
+    {FG_SAME(&fg_lot_assembly_share_members)},
+    {FG_NUMBER("design", share_line, design),
+     .page = {3, .heading = "at design", .decimals = 1, .scale = 100}},
+};
+
+static const char *look_at_share_line(const fg_subject *element) {
+  return ((const share_line *)element->object)->limit ? NULL : "on";
+}
+
+static const fg_members share_line_members =
+    FG_MEMBERS_LOOKED_AT(share_line_rows, look_at_share_line);
+
+static bool find_share_line(const fg_subject *list, size_t i, fg_subject *element) {
+  const fg_lot_analysis *analysis = list->whole;
+  element->object = (const share_line *)list->object + i;
+  return i <= analysis->assembly.plan.limits;
+}
+
 static void put_share_table(FILE *out, const fg_lot_analysis *analysis) {
-  const fg_lot_assembly *assembly = &analysis->assembly;
-  const fg_assembly_plan *plan = &assembly->plan;
-  char words[240];
-  fprintf(out,
-          "<div class=\"scroll\"><table><thead><tr><th>share of the bearings drawn, %%</th><th>"
-          "</th><th>by number<br>of draws</th><th>by number<br>of foils</th><th>by measurement<br>"
-          "surely … possibly</th><th>at design<br>± %.3g %%</th></tr></thead>\n<tbody>\n",
-          analysis->lot->settings.assembly.design_deviation_pct);
-  put_share_row(out, "<b>assemble: all that is asked</b>", &assembly->drawn.assembled,
-                &assembly->design.assembled);
-  for (size_t i = 0; i < plan->limits; i++) {
-    limit_words(&plan->limit[i], words, sizeof words);
-    put_share_row(out, words, &assembly->drawn.within[i], &assembly->design.within[i]);
-  }
-  fputs("</tbody></table></div>\n", out);
+  const fg_assembly_plan *plan = &analysis->assembly.plan;
+  const fg_assembly_result *drawn = &analysis->assembly.drawn, *design = &analysis->assembly.design;
+  share_line lines[FG_ASSEMBLY_LIMITS_MAX + 1] = {
+      {drawn->assembled, design->assembled.share, NULL}};
+  for (size_t i = 0; i < plan->limits; i++)
+    lines[i + 1] = (share_line){drawn->within[i], design->within[i].share, &plan->limit[i]};
+  fg_html_table(out, &share_line_members, &(fg_subject){.object = lines, .whole = analysis},
+                find_share_line);
 }
 
 static void put_quantiles(FILE *out, const fg_lot_analysis *analysis) {
@@ -187,19 +189,15 @@ static void put_quantiles(FILE *out, const fg_lot_analysis *analysis) {
   fputs("</tbody></table></div>\n", out);
 }
 
+static bool find_change(const fg_subject *list, size_t i, fg_subject *element) {
+  const fg_lot_assembly *assembly = list->object;
+  element->object = &assembly->change[i];
+  return i < assembly->changes;
+}
+
 static void put_change_table(FILE *out, const fg_lot_assembly *assembly) {
-  if (!assembly->changes) return;
-  fputs("<div class=\"scroll\"><table><thead><tr><th>the same lot with</th><th>assemble, %</th>"
-        "<th>change</th></tr></thead>\n<tbody>\n",
-        out);
-  for (size_t i = 0; i < assembly->changes; i++) {
-    const fg_lot_change *change = &assembly->change[i];
-    fprintf(out, "<tr><td class=\"words\">%s</td><td>", change->words);
-    put_percent(out, change->share);
-    fprintf(out, "</td><td>%s%.1f%s</td></tr>\n", change->gain < 0 ? "−" : "+",
-            100 * fabs(change->gain), change->clear ? "" : " (chance)");
-  }
-  fputs("</tbody></table></div>\n", out);
+  if (assembly->changes)
+    fg_html_table(out, &fg_lot_change_members, &(fg_subject){.object = assembly}, find_change);
 }
 
 static void put_left_out(FILE *out, const fg_lot_analysis *analysis) {
@@ -230,9 +228,8 @@ static void put_meaning(FILE *out, const fg_lot_analysis *analysis) {
       "%.3g %% of the design&#39;s %.4g µm. A change is the same lot, drawn again.%s</p>\n",
       assembly->plan.layout.pads, (unsigned long long)assembly->plan.seed, assembly->plan.bearings,
       100 * assembly->plan.confidence, assembly->stock.foils,
-      assembly->stock.foils / assembly->plan.layout.pads,
-      analysis->lot->settings.assembly.design_deviation_pct,
-      UM_PER_MM * analysis->lot->nominal.clearance_mm,
+      assembly->stock.foils / assembly->plan.layout.pads, assembly->deviation_pct,
+      UM_PER_MM * assembly->clearance_mm,
       assembly->centred ? ""
                         : " The crowns leave half of the bearing open: the rotor has no place of "
                           "most room, and is asked to be free on the sleeve&#39;s axis.");

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Members of lot.json: spreads, stiffness of bumps. */
-#include "report/lot/json.h"
 #include "report/lot/parts_members.h"
+#include "report/lot/json.h"
 
 #define SPREAD_VALUE(name, heading_, words_)                                                       \
   {                                                                                                \

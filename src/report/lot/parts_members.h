@@ -9,4 +9,11 @@
 /* Of an fg_lot_spread; of an fg_lot_budget_term; of an fg_lot_stiffness. */
 extern const fg_members fg_lot_spread_members, fg_lot_budget_term_members, fg_lot_stiffness_members;
 
+/* Of the fg_lot_assembly of drawn bearings; of an fg_assembly_share; of an fg_lot_change. */
+extern const fg_members fg_lot_assembly_members, fg_lot_assembly_share_members,
+    fg_lot_change_members;
+
+/* Of the analysis: "process"; of an fg_lot_quantity with a chart: the causes of its signals. */
+extern const fg_members fg_lot_process_members, fg_lot_cause_members;
+
 #endif
