@@ -17,6 +17,7 @@ from collections import Counter, namedtuple
 import functions
 import rooms
 import words
+import writers
 from source import Tree
 
 HERE = os.path.dirname(os.path.abspath(__file__))
@@ -39,6 +40,8 @@ RULES = (
     Rule('long-file', 'files above 500 lines', functions.long_files),
     Rule('long-function', 'functions above 60 lines', functions.long_functions),
     Rule('foil-kind', 'lines that tell kinds of foil apart outside their tables', functions.kind_mentions),
+    Rule('literal-member', 'JSON members written by a call of their own, outside the rows of members', writers.literal_members),
+    Rule('hand-table', 'tables of a page written by hand', writers.hand_tables),
     Rule('layers', 'includes against the floors of src/README.md', rooms.layers),
     Rule('circles', 'circles of files', rooms.circles),
     Rule('document-name', 'files and functions that README, src/README.md or CONTRIBUTING.md name and that do not exist',

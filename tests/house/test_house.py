@@ -8,6 +8,7 @@ import unittest
 import functions
 import rooms
 import words
+import writers
 from source import Tree
 
 MAP = '''# Map
@@ -35,6 +36,9 @@ ROOM = {
     'src/report/page.c': '#include "core/add.h"\n#include "foilgauge/add.h"\n' + '\n' * 500,
     'src/core/public.c': ''.join('int %s(void) {\n  return 1;\n}\n' % name for name in (
         'fg_grouped', 'fg_other', 'fg_bare', 'fg_noted')) + '\n' * 40,
+    'src/report/writer.c': 'static const char page[] = "<table>";\n/* fg_json_number(json, "said", 1); */\n'
+                           '#define NUMBER\\\n  fg_json_number(json, "a_mm",\\\n                 a);\\\n  fg_json_string(&json, NULL, b);\\\n'
+                           '  fg_json_object(json_of(x), "part");\n' + '\n' * 40,
     'src/report/long.c': 'static const int rows[] = {1, 2};\nvoid fg_long(void) {\n' + '  fg_plain();\n' * 60 + '}\n'
                          '#define USE fg_long()\n',
 }
@@ -86,6 +90,10 @@ class Rules(unittest.TestCase):
 
     def test_includes_are_held_against_the_floors(self):
         self.assertEqual(self.places(rooms.layers), ['src/core/take.h:2', 'src/report/page.c:1', 'src/scan/scan.h:2'])
+
+    def test_members_and_tables_by_hand_are_found(self):
+        self.assertEqual(self.places(writers.literal_members), ['src/report/writer.c:4'])
+        self.assertEqual(self.places(writers.hand_tables), ['src/report/writer.c:1'])
 
     def test_circles_of_files_are_found(self):
         found = list(rooms.circles(self.tree))
