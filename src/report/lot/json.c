@@ -209,20 +209,6 @@ static void write_correlation(fg_json *json, const fg_lot_correlation *correlati
   fg_json_object_end(json);
 }
 
-void fg_lot_json_spread(fg_json *json, const char *name, const fg_lot_spread *spread) {
-  fg_json_object(json, name);
-  fg_json_line(json);
-  fg_json_integer(json, "count", (int64_t)spread->count);
-  fg_json_number(json, "mean", spread->mean);
-  fg_json_number(json, "mode", spread->mode);
-  fg_json_number(json, "sd", spread->sd);
-  fg_json_number(json, "relative_sd_pct", spread->relative_sd_pct);
-  fg_json_number(json, "min", spread->min);
-  fg_json_number(json, "max", spread->max);
-  fg_json_object_end(json);
-  fg_json_line_end(json);
-}
-
 static void write_thickness(fg_json *json, const fg_lot_analysis *analysis) {
   const fg_lot_thickness *thickness = &analysis->thickness;
   fg_json_object(json, "thickness");

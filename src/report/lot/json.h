@@ -6,7 +6,6 @@
 #include "core/json_writer.h"
 #include "lot/statistics/analysis.h"
 
-void fg_lot_json_spread(fg_json *json, const char *name, const fg_lot_spread *spread);
 /* Writes the state of the process; and the causes of one quantity's signals. */
 void fg_lot_json_process(fg_json *json, const fg_lot_analysis *analysis);
 void fg_lot_json_cause(fg_json *json, const fg_lot_analysis *analysis,

@@ -13,6 +13,9 @@ extern const fg_members fg_lot_spread_members, fg_lot_budget_term_members, fg_lo
 extern const fg_members fg_lot_assembly_members, fg_lot_assembly_share_members,
     fg_lot_change_members;
 
+/* Of the analysis: layout, bearings, clearances of all bumps. */
+extern const fg_members fg_lot_bearing_members;
+
 /* Of the analysis: "process"; of an fg_lot_quantity with a chart: the causes of its signals. */
 extern const fg_members fg_lot_process_members, fg_lot_cause_members;
 
