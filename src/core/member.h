@@ -95,6 +95,7 @@ typedef struct fg_members {
   const char *file; /* schema that holds the definition ("measure"); NULL: the document's own */
   /* Class of an element's line in the page's table ("total"); NULL: none, of either. */
   const char *(*look)(const fg_subject *element);
+  const char *frame; /* class around the page's table beside "scroll" ("lots"); NULL: none */
 } fg_members;
 
 /* Finds element `i` of a list and returns false behind the last. An element with a NULL object is

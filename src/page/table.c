@@ -52,7 +52,9 @@ static void put_cell(FILE *out, const fg_member *column, const fg_subject *eleme
 }
 
 void fg_html_table_begin(FILE *out, const fg_member_columns *columns) {
-  fputs("<div class=\"scroll\"><table>\n<thead><tr>", out);
+  const char *frame = columns->members ? columns->members->frame : NULL;
+  fprintf(out, "<div class=\"scroll%s%s\"><table>\n<thead><tr>", frame ? " " : "",
+          frame ? frame : "");
   for (size_t i = 0; i < columns->count; i++)
     put_column_heading(out, columns->rows[i]);
 }
