@@ -209,6 +209,7 @@ static void free_lot(fg_index_lot *lot) {
   free(lot->foils_unknown);
   free(lot->scan_sum);
   free(lot->die);
+  free(lot->die_names);
   free(lot->coils);
   free(lot->ratio);
   free(lot->ratio_foil);

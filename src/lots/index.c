@@ -69,6 +69,7 @@ static fg_status read_lots(fg_context *ctx, fg_index *index) {
 }
 
 static fg_status make_index(fg_context *ctx, const fg_lot_index_request *request, fg_index *index) {
+  index->page = request->page;
   FG_TRY(list_lots(ctx, request, index));
   FG_TRY(read_lots(ctx, index));
   FG_TRY(fg_index_arrange(ctx, index));
@@ -76,6 +77,7 @@ static fg_status make_index(fg_context *ctx, const fg_lot_index_request *request
   FG_TRY(fg_index_spreads(ctx, index));
   FG_TRY(fg_index_compare(ctx, index));
   FG_TRY(fg_index_compare_dies(ctx, index));
+  FG_TRY(fg_index_name_dies(ctx, index));
   return fg_index_make_sentences(ctx, index);
 }
 
@@ -85,7 +87,7 @@ static fg_status write_csv(fg_context *ctx, void *index, FILE *out) {
 
 static fg_status write_index_output(fg_context *ctx, const fg_lot_index_request *request,
                                     fg_index *index, int kind, FILE *out) {
-  if (kind == PAGE) return fg_index_write_page(ctx, index, request->page, out);
+  if (kind == PAGE) return fg_index_write_page(ctx, index, out);
   return kind == JSON ? fg_index_write_json(ctx, index, out)
                       : fg_csv_write(ctx, request->decimal_comma, write_csv, index, out);
 }

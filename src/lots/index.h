@@ -9,6 +9,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 
+#include "core/member.h"
 #include "foilgauge/density.h"
 #include "foilgauge/lot.h"
 #include "foilgauge/quantity.h"
@@ -60,9 +61,9 @@ typedef struct fg_index_lot {
   size_t stat_count;
   /* Foils of the design, one by one. */
   size_t foil_count;
-  size_t *die;   /* die by foil: index in fg_index.dies, or FG_INDEX_NONE; owned */
-  char *coils;   /* "A, B"; NULL: none */
-  double *ratio; /* radius of every bump over the design's; owned */
+  size_t *die;             /* die by foil: index in fg_index.dies, or FG_INDEX_NONE; owned */
+  char *die_names, *coils; /* "A, B"; NULL: none */
+  double *ratio;           /* radius of every bump over the design's; owned */
   size_t *ratio_foil, ratios;
   fg_index_spread spread;
 } fg_index_lot;
@@ -114,6 +115,7 @@ typedef struct fg_index_die {
 } fg_index_die;
 
 typedef struct fg_index {
+  const char *page;   /* path of the page, which its links begin at */
   fg_index_lot *lots; /* in order of date; unread ones last */
   size_t count, read;
   size_t doubles; /* folders that were named again */
@@ -182,20 +184,23 @@ void fg_index_clip_name(const char *name, size_t letters, char *text, size_t siz
 /* Returns the number of a lot on the page: its place in order of date, from 1. */
 size_t fg_index_number(const fg_index *index, const fg_index_lot *lot);
 
-/* Lists the names of the lot's dies: "A, B". The caller frees it. NULL: none. */
-fg_status fg_index_die_names(fg_context *ctx, const fg_index *index, const fg_index_lot *lot,
-                             char **names);
+/* Lists the names of the dies of every lot. */
+fg_status fg_index_name_dies(fg_context *ctx, fg_index *index);
 
 /* Outputs; each checks the stream at its end. */
 fg_status fg_index_write_json(fg_context *ctx, const fg_index *index, FILE *out);
 fg_status fg_index_write_csv(fg_context *ctx, const fg_index *index, FILE *out);
-fg_status fg_index_write_page(fg_context *ctx, const fg_index *index, const char *page, FILE *out);
+fg_status fg_index_write_page(fg_context *ctx, const fg_index *index, FILE *out);
 
-/* Sections of the page; cells of a spread, which end a row, and their headings. */
+/* Sections of the page. */
 void fg_index_put_pairs(FILE *out, const fg_index *index);
 void fg_index_put_dies(FILE *out, const fg_index *index);
-void fg_index_put_spread(FILE *out, const fg_index_spread *spread);
-extern const char fg_index_spread_heads[];
+
+/* Cells of the table of lots, which a lot is the object of. */
+void fg_index_put_lot_link(FILE *out, const fg_subject *lot);
+void fg_index_put_lot_date(FILE *out, const fg_subject *lot);
+void fg_index_put_lot_verdict(FILE *out, const fg_subject *lot);
+void fg_index_put_lot_design(FILE *out, const fg_subject *lot);
 
 /* Figures of the page: densities of R / R_D by lot or die, and a quantity over the lots. */
 void fg_index_plot_lots(FILE *out, const fg_index *index);

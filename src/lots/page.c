@@ -8,7 +8,9 @@
 #include "core/text.h"
 #include "foilgauge/words.h"
 #include "lots/index.h"
+#include "lots/members.h"
 #include "page/page.h"
+#include "page/table.h"
 #include "page/verdict.h"
 #include "report/lot/page_parts.h"
 #include "report/provenance.h"
@@ -41,8 +43,8 @@ static void put_text_lines(FILE *out, const char *text) {
   fputs("</ul>\n", out);
 }
 
-static void put_lot_date(FILE *out, const fg_index_lot *lot) {
-  const fg_lot_date *date = &lot->date;
+void fg_index_put_lot_date(FILE *out, const fg_subject *subject) {
+  const fg_lot_date *date = &((const fg_index_lot *)subject->object)->date;
   if (!date->from) {
     fputs("–<i>not known</i>", out);
     return;
@@ -52,64 +54,35 @@ static void put_lot_date(FILE *out, const fg_index_lot *lot) {
   if (!strcmp(date->from, FG_LOT_DATE_SCANS)) fputs("<i>of the scans&#39; files</i>", out);
 }
 
-static bool has_coils(const fg_index *index) {
-  for (size_t i = 0; i < index->read; i++)
-    if (index->lots[i].coils) return true;
-  return false;
-}
-
-static void put_words_cell(FILE *out, const char *words) {
-  fputs("<td class=\"words\">", out);
-  fg_html_text(out, words ? words : "–");
-  fputs("</td>", out);
-}
-
-static fg_status put_lot_row(fg_context *ctx, FILE *out, const fg_index *index,
-                             const fg_index_lot *lot, const char *page) {
-  char *dies;
-  const size_t counts[] = {lot->foils, lot->by_verdict[FG_VERDICT_PASS],
-                           lot->by_verdict[FG_VERDICT_FAIL], lot->by_verdict[FG_VERDICT_UNDECIDED],
-                           lot->by_verdict[FG_VERDICT_NOT_MEASURED] + lot->failed_scans};
-  FG_TRY(fg_index_die_names(ctx, index, lot, &dies));
-  fprintf(out, "<tr><td>%zu</td><td class=\"words\"><a href=\"", fg_index_number(index, lot));
-  fg_lot_put_href(out, strip_page_folder(page, lot->folder));
+void fg_index_put_lot_link(FILE *out, const fg_subject *subject) {
+  const fg_index *index = subject->whole;
+  const fg_index_lot *lot = subject->object;
+  fputs("<a href=\"", out);
+  fg_lot_put_href(out, strip_page_folder(index->page, lot->folder));
   fputs("/index.html\">", out);
   fg_html_text(out, lot->name);
   fputs("</a><i>", out);
   fg_html_text(out, lot->folder);
-  fputs("</i></td><td>", out);
-  put_lot_date(out, lot);
-  fputs("</td><td>", out);
-  fg_html_verdict(out, lot->verdict);
-  fputs("</td>", out);
-  for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
-    fprintf(out, "<td>%zu</td>", counts[i]);
-  if (index->die_count) put_words_cell(out, dies);
-  if (has_coils(index)) put_words_cell(out, lot->coils);
-  fputs("<td class=\"words\">", out);
-  fg_html_text(out, lot->design.name);
-  if (index->designs > 1) fprintf(out, "<i>design %zu</i>", lot->design_number);
-  fputs("</td></tr>\n", out);
-  free(dies);
-  return FG_OK;
+  fputs("</i>", out);
 }
 
-static fg_status put_lot_table(fg_context *ctx, FILE *out, const fg_index *index,
-                               const char *page) {
-  fputs(
-      "<div class=\"scroll lots\"><table><thead><tr><th>no.</th><th class=\"w\">lot</th><th>date"
-      "</th><th>verdict</th><th>foils</th><th>pass</th><th>fail</th><th>cannot<br>tell</th><th>not"
-      "<br>measured</th>",
-      out);
-  if (index->die_count) fputs("<th class=\"w\">die</th>", out);
-  if (has_coils(index)) fputs("<th class=\"w\">coil</th>", out);
-  fputs("<th class=\"w\">design</th></tr></thead>\n<tbody>\n", out);
-  for (size_t i = 0; i < index->read; i++)
-    FG_TRY(put_lot_row(ctx, out, index, &index->lots[i], page));
-  fputs("</tbody></table></div>\n<p class=\"note\">In order of date, by which every figure is "
-        "ordered and numbered. A lot is as good as its worst foil.</p>\n",
+void fg_index_put_lot_verdict(FILE *out, const fg_subject *subject) {
+  fg_html_verdict(out, ((const fg_index_lot *)subject->object)->verdict);
+}
+
+void fg_index_put_lot_design(FILE *out, const fg_subject *subject) {
+  const fg_index *index = subject->whole;
+  const fg_index_lot *lot = subject->object;
+  fg_html_text(out, lot->design.name);
+  if (index->designs > 1) fprintf(out, "<i>design %zu</i>", lot->design_number);
+}
+
+static void put_lot_table(FILE *out, const fg_index *index) {
+  fg_html_table(out, &fg_index_lot_members, &(fg_subject){.object = index, .whole = index},
+                fg_index_read_lot_at);
+  fputs("<p class=\"note\">In order of date, by which every figure is ordered and "
+        "numbered. A lot is as good as its worst foil.</p>\n",
         out);
-  return FG_OK;
 }
 
 /* Returns true when the table of the lots would push the figures out of sight. */
@@ -117,8 +90,7 @@ static bool has_many_lots(const fg_index *index) {
   return index->read > LOTS_FIRST_MAX;
 }
 
-static fg_status put_index_first_screen(fg_context *ctx, FILE *out, const fg_index *index,
-                                        const char *page) {
+static void put_index_first_screen(FILE *out, const fg_index *index) {
   fprintf(out,
           "<section class=\"part\">\n<header><h1>%zu lot%s, one after the other and against each "
           "other</h1>"
@@ -136,9 +108,8 @@ static fg_status put_index_first_screen(fg_context *ctx, FILE *out, const fg_ind
           "href=\"#lots\">the lots</a>, behind the figures.</p>\n",
           out);
   else
-    FG_TRY(put_lot_table(ctx, out, index, page));
+    put_lot_table(out, index);
   fputs("</section>\n", out);
-  return FG_OK;
 }
 
 static bool has_curves(const fg_index *index) {
@@ -148,15 +119,8 @@ static bool has_curves(const fg_index *index) {
 }
 
 static void put_spread_tables(FILE *out, const fg_index *index) {
-  fputs("<div class=\"scroll lots\"><table><thead><tr><th>no.</th><th class=\"w\">lot</th>", out);
-  fputs(fg_index_spread_heads, out);
-  for (size_t i = 0; i < index->read; i++) {
-    fprintf(out, "<tr><td>%zu</td><td class=\"words\">", i + 1);
-    fg_html_text(out, index->lots[i].name);
-    fputs("</td>", out);
-    fg_index_put_spread(out, &index->lots[i].spread);
-  }
-  fputs("</tbody></table></div>\n", out);
+  fg_html_table(out, &fg_index_lot_spread_members, &(fg_subject){.object = index, .whole = index},
+                fg_index_lot_spread_at);
 }
 
 static void put_densities(FILE *out, const fg_index *index) {
@@ -173,16 +137,14 @@ static void put_densities(FILE *out, const fg_index *index) {
 }
 
 /* Puts the tables of many lots behind the figures. */
-static fg_status put_tables_of_many(fg_context *ctx, FILE *out, const fg_index *index,
-                                    const char *page) {
-  if (!has_many_lots(index)) return FG_OK;
+static void put_tables_of_many(FILE *out, const fg_index *index) {
+  if (!has_many_lots(index)) return;
   fputs("<section id=\"lots\" class=\"part\">\n<h1>The lots</h1>\n", out);
-  FG_TRY(put_lot_table(ctx, out, index, page));
+  put_lot_table(out, index);
   fputs("</section>\n<section class=\"part\">\n<h1>Bump radius over design, lot by lot</h1>\n",
         out);
   put_spread_tables(out, index);
   fputs("</section>\n", out);
-  return FG_OK;
 }
 
 /* Puts the scatter of the lots' means beyond that of their foils. */
@@ -311,15 +273,15 @@ static fg_status put_index_provenance(fg_context *ctx, FILE *out, const fg_index
   return fg_html_provenance_section(ctx, out, &from);
 }
 
-fg_status fg_index_write_page(fg_context *ctx, const fg_index *index, const char *page, FILE *out) {
+fg_status fg_index_write_page(fg_context *ctx, const fg_index *index, FILE *out) {
   fg_html_begin(out, "Lots");
-  FG_TRY(put_index_first_screen(ctx, out, index, page));
+  put_index_first_screen(out, index);
   put_unread(out, index);
   put_densities(out, index);
   put_axis_figures(out, index);
   fg_index_put_pairs(out, index);
   fg_index_put_dies(out, index);
-  FG_TRY(put_tables_of_many(ctx, out, index, page));
+  put_tables_of_many(out, index);
   put_means_table(out, index);
   FG_TRY(put_index_provenance(ctx, out, index));
   fg_html_end(out);

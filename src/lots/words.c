@@ -74,15 +74,21 @@ void fg_index_p(double p, char *text, size_t size) {
     fg_text_clip(text, size, "%.2g", p);
 }
 
-fg_status fg_index_die_names(fg_context *ctx, const fg_index *index, const fg_index_lot *lot,
-                             char **names) {
-  *names = NULL;
+static fg_status name_dies_of(fg_context *ctx, const fg_index *index, fg_index_lot *lot) {
   for (size_t die = 0; die < index->die_count; die++) {
     bool has = false;
     for (size_t i = 0; i < lot->foil_count && !has; i++)
       has = lot->die[i] == die;
-    if (has) FG_TRY(fg_text_append(ctx, names, "%s%s", *names ? ", " : "", index->dies[die].name));
+    if (has)
+      FG_TRY(fg_text_append(ctx, &lot->die_names, "%s%s", lot->die_names ? ", " : "",
+                            index->dies[die].name));
   }
+  return FG_OK;
+}
+
+fg_status fg_index_name_dies(fg_context *ctx, fg_index *index) {
+  for (size_t i = 0; i < index->count; i++)
+    FG_TRY(name_dies_of(ctx, index, &index->lots[i]));
   return FG_OK;
 }
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "manual/documents.h"
 
+#include "lots/members.h"
 #include "report/die/members.h"
 #include "report/doe/members.h"
 #include "report/forming/members.h"
@@ -15,6 +16,7 @@ const fg_document *const fg_documents[] = {
     &fg_load_document,
     &fg_loop_document,
     &fg_loop_model_document,
+    &fg_index_document,
     NULL,
 };
 
