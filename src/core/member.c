@@ -171,6 +171,8 @@ void fg_member_show(const fg_member *member, fg_member_medium medium, const fg_s
     snprintf(text, size, "%s", value != 0 ? "yes" : "no");
   else if (!isfinite(value))
     snprintf(text, size, "%s", unknown);
+  else if (column->min > 0 && value < column->min)
+    snprintf(text, size, "< %.*g", column->digits, column->min);
   else if (column->digits)
     snprintf(text, size, column->plus ? "%+.*g%s" : "%.*g%s", column->digits, value, unit);
   else

@@ -75,6 +75,7 @@ typedef struct fg_member_column {
   int decimals;        /* of a number; with `by_u` the least; CSV, 0: as JSON has it */
   bool by_u;           /* as many decimals as U = 2 u has with two digits */
   int digits;          /* > 0: significant digits (%.3g) in place of decimals */
+  double min;          /* with `digits`: a value below is shown as "< 1e-12" */
   double scale;        /* from the member's unit to the heading's; 0: 1 */
   const char *unit;    /* written behind the value: "°"; NULL: the heading tells it */
   bool plus;           /* values above 0 have their sign */

@@ -179,9 +179,26 @@ static void json_has_arrays_of_the_object(void **state) {
   assert_written(write_arrays, "{\n \"all\": [1, null, 3],\n \"first\": [4, 5]\n}\n");
 }
 
+static void p_values_end_at_a_minimum(void **state) {
+  (void)state;
+  static const fg_member row = {FG_NUMBER("p", part, radius_mm),
+                                .page = {1, .digits = 2, .min = 1e-12}};
+  static const struct {
+    double p;
+    const char *text;
+  } cases[] = {{1e-20, "< 1e-12"}, {1e-12, "1e-12"}, {0.0123, "0.012"}, {NAN, "–"}};
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    const part one = {.radius_mm = cases[i].p};
+    char text[40];
+    fg_member_show(&row, FG_ON_PAGE, &(fg_subject){.object = &one}, text, sizeof text);
+    assert_string_equal(text, cases[i].text);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(json_has_every_row),
+      cmocka_unit_test(p_values_end_at_a_minimum),
       cmocka_unit_test(csv_has_its_columns_by_rank),
       cmocka_unit_test(terminal_is_as_wide_as_its_cells),
       cmocka_unit_test(page_has_headings_words_and_looks),

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "page/page.h"
 #include "report/table_loop/checks.h"
 #include "report/table_loop/reading.h"
 
@@ -166,13 +167,72 @@ static const char *const confirmations[] = {"none kept aside", "not contradicted
 #define NUMBERS_BY_NAME                                                                            \
   "{\"type\": \"object\", \"additionalProperties\": {\"type\": [\"number\", \"null\"]}}"
 
+/* Columns of people's tables. */
+#define P_VALUE_COLUMN(rank_)                                                                      \
+  { rank_, .heading = "p", .digits = 2, .min = 1e-12 }
+#define ALIASES_COLUMN                                                                             \
+  .name = "aliases", .kind = FG_MEMBER_STRING, .options = FG_MEMBER_NOT_IN_JSON,                   \
+  .page = {5, .heading = "could also be", .words = true}, .column = has_any_alias
+
+/* Words first, the id small. */
+static void put_effect_name(FILE *out, const char *words, const char *id) {
+  fg_html_text(out, words);
+  fputs(" <small>", out);
+  fg_html_text(out, id);
+  fputs("</small>", out);
+}
+
+static bool has_any_alias(const fg_subject *list) {
+  const fg_loop_result *result = report_of(list)->result;
+  size_t aliases = 0;
+  for (size_t i = 0; i < result->claims; i++)
+    aliases += result->claim[i].aliases;
+  return aliases > 0;
+}
+
+static const char *find_claim_words(const fg_subject *claim, char *buffer) {
+  fg_loop_claim_words(claim->whole, claim->object, buffer);
+  return buffer;
+}
+
+static void put_claim_name(FILE *out, const fg_subject *claim) {
+  char words[FG_MEMBER_TEXT_MAX];
+  put_effect_name(out, find_claim_words(claim, words),
+                  ((const fg_loop_claim *)claim->object)->name);
+}
+
+static const char *find_claim_size(const fg_subject *claim, char *buffer) {
+  fg_loop_claim_size(claim->whole, claim->object, buffer);
+  return buffer;
+}
+
+static void put_aliases(FILE *out, const fg_subject *subject) {
+  const fg_loop_claim *claim = subject->object;
+  char words[2 * FG_LOOP_WORDS];
+  for (size_t k = 0; k < claim->aliases; k++) {
+    fg_loop_alias_words(subject->whole, &claim->alias[k], words);
+    put_effect_name(out, words, claim->alias[k].name);
+  }
+}
+
+static const char *look_at_claim(const fg_subject *claim) {
+  (void)claim;
+  return "words claimed";
+}
+
 static const fg_member claim_rows[] = {
+    {FG_TEXT_BY("effect", find_claim_words), .options = FG_MEMBER_NOT_IN_JSON,
+     .page = {1, .heading = "effect", .words = true}, .markup = put_claim_name},
+    {FG_TEXT_BY("size", find_claim_size), .options = FG_MEMBER_NOT_IN_JSON,
+     .page = {3, .heading = "difference, or what\nwould have shown", .words = true}},
+    {ALIASES_COLUMN, .markup = put_aliases},
     {FG_TEXT_BY("id", find_claim_id), .options = FG_MEMBER_NEVER_NULL, .words = "effect"},
     {FG_TEXT("name", fg_loop_claim, name), .words = "effect with its columns"},
     {FG_TEXT_BY("level", find_claim_level), .options = FG_MEMBER_NEVER_NULL, .choices = levels,
      .words = "kind of the rows"},
     {FG_WORD("verdict", fg_loop_claim, verdict, claimed),
-     .words = "tied: the data cannot tell it from those of alias_class"},
+     .words = "tied: the data cannot tell it from those of alias_class",
+     .page = {2, .heading = "verdict", .words = true}, .look = look_at_claim},
     {FG_TEXTS_BY("coordinates", claim_coordinate_at), .words = "columns that it acts on"},
     {FG_ARRAY("rows", fg_loop_claim, candidate.row, candidate.rows, &fg_loop_row_members),
      .present = is_of_rows, .words = "of wrong or exchanged responses"},
@@ -189,7 +249,8 @@ static const fg_member claim_rows[] = {
      .words = "half the range of the effect over the rows"},
     {FG_RANGE("amplitude_interval_95", fg_loop_claim, interval[0], interval[1]),
      .words = "of the amplitude"},
-    {FG_NUMBER("p_value", fg_loop_claim, p_value), .words = "over all candidates together"},
+    {FG_NUMBER("p_value", fg_loop_claim, p_value), .words = "over all candidates together",
+     .page = P_VALUE_COLUMN(4)},
     {FG_NUMBER("retained_share", fg_loop_claim, retained_share),
      .words = "share of the effect that the declared model does not take up"},
     {FG_NUMBER_U("cross_validated_gain", fg_loop_claim, cv_gain, cv_gain_se),
@@ -213,7 +274,50 @@ static int find_rejection(const fg_subject *rejected) {
   return (int)((const fg_loop_rejected *)rejected->object)->verdict - FG_LOOP_ABSENT;
 }
 
+static const char *find_rejected_words(const fg_subject *subject, char *buffer) {
+  const fg_loop_rejected *rejected = subject->object;
+  fg_loop_candidate_words(subject->whole, &rejected->candidate, buffer);
+  return buffer;
+}
+
+static void put_rejected_name(FILE *out, const fg_subject *subject) {
+  char words[FG_MEMBER_TEXT_MAX];
+  put_effect_name(out, find_rejected_words(subject, words),
+                  ((const fg_loop_rejected *)subject->object)->name);
+}
+
+static const char *find_rejected_verdict(const fg_subject *rejected, char *buffer) {
+  (void)buffer;
+  return fg_loop_rejected_word(rejected->object);
+}
+
+static double find_shows(const fg_subject *subject) {
+  const fg_loop_rejected *rejected = subject->object;
+  return fg_loop_readable_size(&rejected->candidate, rejected->smallest_detectable);
+}
+
+static void put_shows(FILE *out, const fg_subject *rejected) {
+  double shows = find_shows(rejected);
+  if (isfinite(shows)) fprintf(out, "≥ %.3g", shows);
+  if (!isfinite(shows)) fputs("–", out);
+}
+
+static const char *find_no_alias(const fg_subject *rejected, char *buffer) {
+  (void)rejected;
+  (void)buffer;
+  return NULL;
+}
+
 static const fg_member rejected_rows[] = {
+    {FG_TEXT_BY("effect", find_rejected_words), .options = FG_MEMBER_NOT_IN_JSON,
+     .page = {1, .words = true}, .markup = put_rejected_name,
+     .terminal = {1, .heading = "not claimed", .words = true}},
+    {FG_TEXT_BY("verdict_words", find_rejected_verdict), .options = FG_MEMBER_NOT_IN_JSON,
+     .page = {2, .words = true}, .terminal = {2, .heading = "verdict", .words = true}},
+    {FG_NUMBER_BY("would_show", find_shows), .options = FG_MEMBER_NOT_IN_JSON,
+     .page = {3, .words = true}, .markup = put_shows,
+     .terminal = {4, .heading = "would show", .digits = 3}},
+    {ALIASES_COLUMN, .text = find_no_alias},
     {FG_TEXT_BY("id", find_rejected_id), .options = FG_MEMBER_NEVER_NULL, .words = "effect"},
     {FG_TEXT("name", fg_loop_rejected, name), .words = "effect with its columns"},
     {FG_WORD_BY("verdict", find_rejection, fg_loop_verdict_words + FG_LOOP_ABSENT),
@@ -222,7 +326,8 @@ static const fg_member rejected_rows[] = {
               "one would have; absorbed: the declared model takes it up"},
     {FG_NUMBER("would_explain", fg_loop_rejected, would_explain),
      .words = "share of the residual sum that it explains alone"},
-    {FG_NUMBER("p_value", fg_loop_rejected, p_value), .words = "over all candidates together"},
+    {FG_NUMBER("p_value", fg_loop_rejected, p_value), .words = "over all candidates together",
+     .page = P_VALUE_COLUMN(4), .terminal = P_VALUE_COLUMN(3)},
     {FG_NUMBER("retained_share", fg_loop_rejected, retained_share),
      .words = "share of the effect that the declared model does not take up"},
     {FG_NUMBER("smallest_amplitude", fg_loop_rejected, smallest_detectable),
@@ -263,14 +368,26 @@ static double is_passed(const fg_subject *check) {
   return !((const fg_loop_checked *)check->object)->failed;
 }
 
+static const char *find_answer(const fg_subject *check, char *buffer) {
+  (void)buffer;
+  return fg_loop_check_answer(check->object);
+}
+
+static const char *look_at_answer(const fg_subject *check) {
+  return ((const fg_loop_checked *)check->object)->failed ? "words no" : "words";
+}
+
 static const fg_member check_rows[] = {
+    {FG_TEXT_BY("answer", find_answer), .options = FG_MEMBER_NOT_IN_JSON,
+     .page = {2, .heading = "answer", .words = true}, .look = look_at_answer},
     {FG_WORD_BY("test", find_test, fg_loop_finding_kinds + 1), .options = FG_MEMBER_NEVER_NULL,
      .words = "lack_of_fit: rows of the same declared settings, an F ratio over their own scatter; "
               "lack_of_fit_all_columns: rows that agree in every recorded column; "
               "correlation_beyond_neighbours: rows 2 to lag apart, all together; "
               "correlation_at_one_lag: rows lag apart, the most alike or unlike"},
     {FG_TEXT_BY("asks", find_question), .options = FG_MEMBER_NEVER_NULL,
-     .words = "question that a passed test answers with yes"},
+     .words = "question that a passed test answers with yes",
+     .page = {1, .heading = "test of all that is left", .words = true}},
     {FG_NUMBER("statistic", fg_loop_checked, statistic),
      .words = "F ratio, sum of squares of normal deviates, or the largest deviate"},
     {FG_RANGE("degrees_of_freedom", fg_loop_checked, dof[0], dof[1]),
@@ -279,9 +396,42 @@ static const fg_member check_rows[] = {
     {FG_NUMBER("correlation", fg_loop_checked, correlation), .present = is_of_one_lag,
      .words = "at the lag"},
     {FG_NUMBER("p_value", fg_loop_checked, p_value), .options = FG_MEMBER_NEVER_NULL, .lowest = 0,
-     .highest = 1},
+     .highest = 1, .page = P_VALUE_COLUMN(3)},
     {FG_NUMBER("level", fg_loop_checked, level), .options = FG_MEMBER_NEVER_NULL, .lowest = 0,
      .highest = 1, .words = "p-value below which it fails: its part of the level of all"},
     {FG_FLAG_BY("passed", is_passed)},
 };
 const fg_members fg_loop_check_members = FG_MEMBERS(check_rows);
+
+/* Errors before and after, of people's tables alone. */
+bool fg_loop_find_error(const fg_subject *list, size_t i, fg_subject *element) {
+  element->object = (const fg_loop_error_row *)list->object + i;
+  return i < list->index;
+}
+
+static bool is_with_after(const fg_subject *list) {
+  return fg_loop_has_after(report_of(list)->result);
+}
+
+static bool is_before_alone(const fg_subject *list) {
+  return !is_with_after(list);
+}
+
+static double find_error_ratio(const fg_subject *subject) {
+  const fg_loop_error_row *row = subject->object;
+  return row->after / row->before;
+}
+
+static const fg_member shown_error_rows[] = {
+    {FG_STRING("error", fg_loop_error_row, name), .heading = "error", .page = {1, .words = true},
+     .terminal = {1, .words = true}},
+    {FG_NUMBER("before", fg_loop_error_row, before), .heading = "before", .page = {1, .digits = 4},
+     .terminal = {1, .digits = 5}, .column = is_with_after},
+    {FG_NUMBER("size", fg_loop_error_row, before), .heading = "size", .page = {1, .digits = 4},
+     .terminal = {1, .digits = 5}, .column = is_before_alone},
+    {FG_NUMBER("after", fg_loop_error_row, after), .heading = "after", .page = {1, .digits = 4},
+     .terminal = {1, .digits = 5}, .column = is_with_after},
+    {FG_NUMBER_BY("ratio", find_error_ratio), .heading = "ratio", .page = {1, .decimals = 3},
+     .terminal = {1, .decimals = 3}, .column = is_with_after},
+};
+const fg_members fg_loop_error_row_members = FG_MEMBERS(shown_error_rows);

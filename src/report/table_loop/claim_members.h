@@ -16,6 +16,10 @@ extern const fg_members fg_loop_row_members;
 extern const fg_members fg_loop_parameter_members, fg_loop_point_members;
 fg_member_element fg_loop_find_parameter;
 
+/* Of an fg_loop_error_row, in the list of those at `object`, whose number is `index`. */
+extern const fg_members fg_loop_error_row_members;
+fg_member_element fg_loop_find_error;
+
 /* Residual tests that were done. */
 fg_member_element fg_loop_find_check;
 /* Words and size of a claim. */

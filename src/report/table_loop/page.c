@@ -10,12 +10,11 @@
 #include "core/text.h"
 #include "foilgauge/loop.h"
 #include "page/page.h"
+#include "page/table.h"
 #include "report/provenance.h"
-#include "report/table_loop/checks.h"
+#include "report/table_loop/claim_members.h"
 #include "report/table_loop/next.h"
 #include "report/table_loop/plots.h"
-#include "report/table_loop/reading.h"
-#include "report/table_loop/words.h"
 
 static const char style[] =
     "dl.facts{display:grid;grid-template-columns:max-content 1fr;gap:2px 16px;margin:0;"
@@ -52,7 +51,8 @@ static const char style[] =
     ".scroll{overflow-x:auto}table{border-collapse:collapse;width:100%;font-size:13.5px;"
     "font-variant-numeric:tabular-nums}th,td{padding:5px 10px;text-align:right;"
     "border-bottom:1px solid var(--line)}th{color:var(--soft);font-weight:600}"
-    "th:first-child,td:first-child,th.w,td.w{text-align:left}td.n{white-space:nowrap}"
+    "th:first-child,td:first-child,th.w,td.words{text-align:left}td:not([class]){white-space:"
+    "nowrap}td.claimed{font-weight:650}"
     "td small{display:block;overflow-wrap:anywhere}td:first-child{min-width:13em}"
     "ul{margin:6px 0 0;padding-left:22px}@media(max-width:600px){main{padding:8px}section{padding:"
     "14px}.pair{grid-template-columns:1fr}.plot{font-size:16px}}"
@@ -67,21 +67,12 @@ static const char style[] =
 static void put_table_errors(FILE *out, const fg_loop_report *report) {
   const fg_loop_result *result = report->result;
   fg_loop_error_row row[FG_LOOP_ERROR_ROWS];
-  size_t rows = fg_loop_error_rows(report, row);
+  const fg_subject list = {row, report, fg_loop_error_rows(report, row)};
   bool after = fg_loop_has_after(result);
-  fprintf(out,
-          "<section><h2>%s</h2><div class=\"scroll\"><table><thead><tr><th>error</th><th>%s</th>%s"
-          "</tr></thead><tbody>\n",
-          after ? "Error before and after" : "Error of the declared model",
-          after ? "before" : "size", after ? "<th>after</th><th>ratio</th>" : "");
-  for (size_t i = 0; i < rows; i++) {
-    fprintf(out, "<tr><td>%s</td><td>%.4g</td>", row[i].name, row[i].before);
-    if (after)
-      fprintf(out, "<td>%s</td><td>%s</td>", fg_loop_number_text("%.4g", row[i].after).text,
-              fg_loop_number_text("%.3f", row[i].after / row[i].before).text);
-    fputs("</tr>\n", out);
-  }
-  fputs("</tbody></table></div><p class=\"soft\">", out);
+  fprintf(out, "<section><h2>%s</h2>",
+          after ? "Error before and after" : "Error of the declared model");
+  fg_html_table(out, &fg_loop_error_row_members, &list, fg_loop_find_error);
+  fputs("<p class=\"soft\">", out);
   if (fg_loop_claims_scatter(result, FG_LOOP_SERIAL))
     fputs("After: each row predicted from the one before it. ", out);
   fprintf(out, "The noise of one row has a standard deviation of %s",
@@ -98,95 +89,42 @@ static void put_table_errors(FILE *out, const fg_loop_report *report) {
 /* The tests of the whole residual. */
 static void put_residual_tests(FILE *out, const fg_loop_report *report) {
   const fg_loop_checked *check = report->result->check;
-  char words[FG_LOOP_WORDS];
   double level = 0;
   for (size_t k = 0; k < FG_LOOP_CHECKS; k++)
     level = fmax(level, check[k].done ? check[k].level : 0);
   if (!(level > 0)) return;
-  fputs("<section><h2>Is what is left only noise?</h2><div class=\"scroll\"><table><thead><tr>"
-        "<th>test of all that is left</th><th class=\"w\">answer</th><th>p</th></tr></thead>"
-        "<tbody>\n",
-        out);
-  for (size_t k = 0; k < FG_LOOP_CHECKS; k++) {
-    if (!check[k].done) continue;
-    fg_loop_check_words(report, (fg_loop_check)k, words);
-    fputs("<tr><td>", out);
-    fg_html_text(out, words);
-    fprintf(out, "</td><td class=\"w\">%s</td><td class=\"n\">%s</td></tr>\n",
-            check[k].failed ? "<span class=\"no\">no</span>" : fg_loop_check_answer(&check[k]),
-            fg_loop_p_cell(check[k].p_value).text);
-  }
+  fputs("<section><h2>Is what is left only noise?</h2>", out);
+  fg_html_table(out, &fg_loop_check_members, &(fg_subject){report, report, 0}, fg_loop_find_check);
   fprintf(out,
-          "</tbody></table></div><p class=\"soft\">No: p below %.2g. Not sure: p up to 0.1. What "
+          "<p class=\"soft\">No: p below %.2g. Not sure: p up to 0.1. What "
           "was looked for by name "
           "(neighbours that are alike, cycles, scatter that changes, lone values and more) is "
           "listed below.</p></section>\n",
           level);
 }
 
-/* Words first, the id small. */
-static void put_candidate_name(FILE *out, const char *words, const char *id) {
-  fg_html_text(out, words);
-  fputs(" <small>", out);
-  fg_html_text(out, id);
-  fputs("</small>", out);
-}
-
-static bool any_alias(const fg_loop_result *result) {
-  for (size_t i = 0; i < result->claims; i++)
-    if (result->claim[i].aliases) return true;
-  return false;
-}
-
-static void put_claim_row(FILE *out, const fg_loop_report *report, const fg_loop_claim *claim,
-                          bool aliases) {
-  char words[2 * FG_LOOP_WORDS], size[FG_LOOP_WORDS];
-  fg_loop_claim_words(report, claim, words);
-  fg_loop_claim_size(report, claim, size);
-  fputs("<tr><td>", out);
-  put_candidate_name(out, words, claim->name);
-  fprintf(out, "</td><td class=\"w\"><b>%s</b></td><td class=\"w\">",
-          fg_loop_verdict_word(claim->verdict));
-  fg_html_text(out, size);
-  fprintf(out, "</td><td class=\"n\">%s</td>", fg_loop_p_cell(claim->p_value).text);
-  if (aliases) fputs("<td class=\"w\">", out);
-  for (size_t k = 0; k < claim->aliases; k++) {
-    fg_loop_alias_words(report, &claim->alias[k], words);
-    put_candidate_name(out, words, claim->alias[k].name);
-  }
-  fputs(aliases ? "</td></tr>\n" : "</tr>\n", out);
-}
-
-static void put_rejected_row(FILE *out, const fg_loop_report *report, const fg_loop_rejected *one,
-                             bool aliases) {
-  char words[FG_LOOP_WORDS];
-  fg_loop_candidate_words(report, &one->candidate, words);
-  fputs("<tr><td>", out);
-  put_candidate_name(out, words, one->name);
-  double shows = fg_loop_readable_size(&one->candidate, one->smallest_detectable);
-  fprintf(out,
-          "</td><td class=\"w\">%s</td><td class=\"w\">%s</td><td class=\"n\">%s</td>%s</tr>\n",
-          fg_loop_rejected_word(one), fg_loop_number_text("≥ %.3g", shows).text,
-          fg_loop_p_cell(one->p_value).text, aliases ? "<td></td>" : "");
-}
-
 static void put_candidates(FILE *out, const fg_loop_report *report) {
   const fg_loop_result *result = report->result;
-  bool aliases = any_alias(result);
+  fg_subject subject = {report, report, 0};
+  fg_member_columns claimed, rejected;
   if (!result->claims && !result->rejects) return;
-  fprintf(out,
-          "<section class=\"long\"><h2>All that was looked for</h2><p class=\"soft key\">Absent: "
-          "it would have shown at the size that matters. Inconclusive: only a larger one would "
-          "have. In the model already: the declared model takes it up.</p><div class=\"scroll\">"
-          "<table><thead><tr><th>effect</th><th class=\"w\">verdict</th><th "
-          "class=\"w\">difference, or what "
-          "would have shown</th><th>p</th>%s</tr></thead><tbody>\n",
-          aliases ? "<th class=\"w\">could also be</th>" : "");
-  for (size_t i = 0; i < result->claims; i++)
-    put_claim_row(out, report, &result->claim[i], aliases);
-  for (size_t i = 0; i < result->rejects; i++)
-    put_rejected_row(out, report, &result->rejected[i], aliases);
-  fputs("</tbody></table></div></section>\n", out);
+  fg_member_columns_of(&fg_loop_claim_members, FG_ON_PAGE, &subject, &claimed);
+  fg_member_columns_of(&fg_loop_rejected_members, FG_ON_PAGE, &subject, &rejected);
+  fputs("<section class=\"long\"><h2>All that was looked for</h2><p class=\"soft key\">Absent: "
+        "it would have shown at the size that matters. Inconclusive: only a larger one would "
+        "have. In the model already: the declared model takes it up.</p>",
+        out);
+  fg_html_table_begin(out, &claimed);
+  fg_html_table_rows(out);
+  for (size_t i = 0; i < result->claims + result->rejects; i++) {
+    bool claim = i < result->claims;
+    subject.object =
+        claim ? (const void *)&result->claim[i] : &result->rejected[i - result->claims];
+    fg_html_table_row(out, claim ? &claimed : &rejected, &subject);
+    fputs("</tr>\n", out);
+  }
+  fg_html_table_end(out);
+  fputs("</section>\n", out);
 }
 
 static void put_notes(FILE *out, const fg_loop_report *report) {

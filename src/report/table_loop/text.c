@@ -8,6 +8,7 @@
 #include "core/text.h"
 #include "foilgauge/loop.h"
 #include "report/table_loop/checks.h"
+#include "report/table_loop/claim_members.h"
 #include "report/table_loop/next.h"
 #include "report/table_loop/reading.h"
 #include "report/table_loop/words.h"
@@ -165,21 +166,14 @@ fg_status fg_loop_sentence(fg_context *ctx, const fg_loop_report *report, char *
 }
 
 static void write_errors(const fg_loop_report *report, FILE *out) {
-  const fg_loop_result *result = report->result;
-  fg_loop_error_row row[FG_LOOP_ERROR_ROWS];
+  fg_loop_error_row row[FG_LOOP_ERROR_ROWS + 1];
   size_t rows = fg_loop_error_rows(report, row);
-  bool after = fg_loop_has_after(result);
-  fprintf(out, after ? "\n%-44s %12s %12s %8s\n" : "\n%-44s %12s\n", "error", after ? "before" : "",
-          "after", "ratio");
-  for (size_t i = 0; i < rows; i++) {
-    fprintf(out, "%-44s %12.5g", row[i].name, row[i].before);
-    if (after)
-      fprintf(out, " %12s %8s", fg_loop_number_text("%.5g", row[i].after).text,
-              fg_loop_number_text("%.3f", row[i].after / row[i].before).text);
-    fputc('\n', out);
-  }
-  fprintf(out, after ? "%-44s %12s %12s\n" : "%-44s%s %12s\n", "noise of one row (sd)", "",
-          fg_loop_number_text("%.5g", result->noise_floor).text);
+  double floor = report->result->noise_floor;
+  row[rows] = (fg_loop_error_row){"noise of one row (sd)",
+                                  fg_loop_has_after(report->result) ? NAN : floor, floor};
+  fputc('\n', out);
+  fg_members_terminal(out, "", &fg_loop_error_row_members, &(fg_subject){row, report, rows + 1},
+                      fg_loop_find_error);
 }
 
 static void write_residual_tests(const fg_loop_report *report, FILE *out) {
@@ -212,24 +206,24 @@ static int by_rejected_p(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
+/* Finds an element of the sorted list, of `index` elements. */
+static bool find_sorted_rejected(const fg_subject *list, size_t i, fg_subject *element) {
+  if (i < list->index) element->object = ((const fg_loop_rejected *const *)list->object)[i];
+  return i < list->index;
+}
+
 static void print_rejected(const fg_loop_report *report, FILE *out) {
   enum { SHOWN = 12 };
   const fg_loop_result *result = report->result;
-  char words[FG_LOOP_WORDS];
   const fg_loop_rejected **list = malloc((result->rejects + 1) * sizeof *list);
   if (!list) return;
   for (size_t i = 0; i < result->rejects; i++)
     list[i] = &result->rejected[i];
   qsort(list, result->rejects, sizeof *list, by_rejected_p);
-  fprintf(out, "\n%-52s %-20s %7s %9s\n", "not claimed", "verdict", "p", "would show");
-  for (size_t i = 0; i < result->rejects && i < SHOWN; i++) {
-    fg_loop_candidate_words(report, &list[i]->candidate, words);
-    fprintf(out, "%-52s %-20s %7s %9s\n", words, fg_loop_rejected_word(list[i]),
-            fg_loop_p_cell(list[i]->p_value).text,
-            fg_loop_number_text(
-                "%.3g", fg_loop_readable_size(&list[i]->candidate, list[i]->smallest_detectable))
-                .text);
-  }
+  size_t shown = result->rejects < SHOWN ? result->rejects : SHOWN;
+  fputc('\n', out);
+  fg_members_terminal(out, "", &fg_loop_rejected_members, &(fg_subject){list, report, shown},
+                      find_sorted_rejected);
   if (result->rejects > SHOWN) fprintf(out, "and %zu more\n", result->rejects - SHOWN);
   free(list);
 }

@@ -19,11 +19,6 @@ fg_loop_number fg_loop_number_text(const char *format, double value) {
 /* P-value below which further digits have no meaning. */
 #define P_MIN 1e-12
 
-fg_loop_number fg_loop_p_cell(double p) {
-  if (p < P_MIN) return fg_loop_number_text("< %.0e", P_MIN);
-  return fg_loop_number_text("%.2g", p);
-}
-
 fg_loop_number fg_loop_p_text(double p) {
   return fg_loop_number_text(p < P_MIN ? "p < %.0e" : "p = %.2g", fmax(p, P_MIN));
 }

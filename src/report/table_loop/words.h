@@ -13,9 +13,8 @@ typedef struct fg_loop_number {
 } fg_loop_number;
 
 fg_loop_number fg_loop_number_text(const char *format, double value);
-/* "p = 0.0021"; "p < 1e-12" below that; without "p = " for a cell. */
+/* "p = 0.0021"; "p < 1e-12" below that. */
 fg_loop_number fg_loop_p_text(double p);
-fg_loop_number fg_loop_p_cell(double p);
 /* "runs", "bumps" or "rows", by the name of their order. */
 const char *fg_loop_row_words(const fg_loop_coordinate *order);
 
