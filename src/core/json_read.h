@@ -27,6 +27,6 @@ typedef struct fg_member_words {
 /* Fills a list and returns the number of members, which may be more than `max`. */
 typedef size_t fg_member_words_list(fg_member_words *list, size_t max);
 
-fg_member_words_list fg_recipe_members, fg_station_members, fg_design_members;
+fg_member_words_list fg_recipe_members, fg_station_members;
 
 #endif

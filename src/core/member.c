@@ -50,9 +50,14 @@ double fg_member_u(const fg_member *member, const fg_subject *subject) {
   return *(const double *)place_at(subject, member->u_offset);
 }
 
+const char *fg_member_choice_at(const fg_member *member, size_t i) {
+  if (member->choice_at) return member->choice_at(i);
+  return member->choices ? member->choices[i] : NULL;
+}
+
 static const char *find_word(const fg_member *member, const fg_subject *subject) {
   int word = member->word ? member->word(subject) : *(const int *)place_at(subject, member->offset);
-  return word < 0 ? NULL : member->choices[word];
+  return word < 0 ? NULL : fg_member_choice_at(member, (size_t)word);
 }
 
 const char *fg_member_text(const fg_member *member, const fg_subject *subject,

@@ -60,12 +60,19 @@ typedef enum fg_member_option {
   FG_MEMBER_LEFT_OUT = 1u << 1,      /* left out where it is not known; else null */
   FG_MEMBER_NEVER_NULL = 1u << 2,    /* always known; numbers are null by default where unknown */
   FG_MEMBER_NOT_NEGATIVE = 1u << 3,  /* 0 or more, for the schema */
-  FG_MEMBER_EMPTY_IS_NULL = 1u << 4, /* the text "" is not known, and so is the count 0 */
+  FG_MEMBER_EMPTY_IS_NULL = 1u << 4, /* the text "" is not known, and so is the number 0 */
   FG_MEMBER_LIST_ON_LINE = 1u << 5,  /* of a list: all of it on one line */
   FG_MEMBER_NULLABLE = 1u << 6,      /* a count, integer or flag that may be null */
   FG_MEMBER_EXACT = 1u << 7,         /* its numbers lose no digit */
   FG_MEMBER_NOT_IN_JSON = 1u << 8,   /* a column of tables alone */
   FG_MEMBER_ENDS_BELOW = 1u << 15, /* with ON_LINE, LIST_ON_LINE: its bracket closes on the next */
+  FG_MEMBER_EITHER = 1u << 9,      /* the schema has it beside the row of this name before it */
+  FG_MEMBER_NO_VERSION = 1u << 10, /* of HEAD: the schema's name alone */
+  /* Of reading (core/member_read.h). */
+  FG_MEMBER_REQUIRED = 1u << 11,  /* must be there */
+  FG_MEMBER_NOT_EMPTY = 1u << 12, /* of a map's elements: an object with a member at least */
+  FG_MEMBER_ABOVE_0 = 1u << 13,   /* a number above 0, for the schema too */
+  FG_MEMBER_ANY_TEXT = 1u << 14,  /* a text may hold control characters, as a path or command may */
 } fg_member_option;
 
 /* A column of a table. Columns stand by rank, those of one rank in the order of the rows. */
@@ -93,6 +100,7 @@ typedef struct fg_members {
   /* Definition of the schema: the object is described once, under this name ("bump"), and referred
    * to. NULL: described where it stands. */
   const char *definition;
+  bool nullable;    /* the definition allows null in place of the object */
   const char *file; /* schema that holds the definition ("measure"); NULL: the document's own */
   /* Class of an element's line in the page's table ("total"); NULL: none, of either. */
   const char *(*look)(const fg_subject *element);
@@ -104,6 +112,13 @@ typedef struct fg_members {
 typedef bool fg_member_element(const fg_subject *list, size_t i, fg_subject *element);
 
 enum { FG_MEMBER_TEXT_MAX = 4096, FG_MEMBER_NUMBERS_MAX = 64 };
+
+struct cJSON;
+struct fg_reading;
+
+/* Reads a member by a function of its own; `object` is the struct that its row belongs to. */
+typedef fg_status fg_member_reader(const struct fg_reading *reading, const fg_member *member,
+                                   const struct cJSON *item, void *object);
 
 struct fg_member {
   const char *name; /* JSON name, unit included */
@@ -134,6 +149,9 @@ struct fg_member {
   void (*write)(fg_json *, const char *name, const fg_subject *);
   bool (*present)(const fg_subject *); /* false: left out; NULL: always there */
   bool (*line)(const fg_subject *);    /* of a list's element, in place of ON_LINE */
+  fg_member_reader *read;              /* NULL: by the row's kind */
+  const void *fresh; /* of LIST and MAP: an element before it is read; NULL: all of it is 0 */
+  size_t key_offset, key_size; /* of MAP: text of the element that has its name; size 0: `key` */
 
   const fg_members *members;          /* of OBJECT, LIST, MAP, SAME */
   const char *const *choices;         /* words that a text can be, up to a NULL */
@@ -244,6 +262,12 @@ struct fg_member {
 #define FG_MAP_BY(name_, function, key_, members_)                                                 \
   .name = (name_), .kind = FG_MEMBER_MAP, .element = (function), .key = (key_),                    \
   .members = (members_)
+/* Objects in an array of the struct, each under the name that its field `key_` has. */
+#define FG_MAP(name_, object, field, count_, key_, members_)                                       \
+  .name = (name_), .kind = FG_MEMBER_MAP, .offset = offsetof(object, field),                       \
+  .count_offset = FG_FIELD(object, count_, size_t), .stride = sizeof(((object *)0)->field[0]),     \
+  .key_offset = offsetof(object, field[0].key_) - offsetof(object, field[0]),                      \
+  .key_size = FG_SIZE_OF_FIELD(object, field[0].key_), .members = (members_)
 #define FG_SAME(members_)    .kind = FG_MEMBER_SAME, .members = (members_)
 #define FG_SAME_BY(function) .kind = FG_MEMBER_SAME, .row_at = (function)
 #define FG_HEAD(name_)       .name = (name_), .kind = FG_MEMBER_HEAD
@@ -263,6 +287,8 @@ bool fg_member_has_u(const fg_member *member);
 /* Text of a text, string or word; NULL where not known, and of other kinds. */
 const char *fg_member_text(const fg_member *member, const fg_subject *subject,
                            char buffer[FG_MEMBER_TEXT_MAX]);
+/* Choice `i` of a word; NULL behind the last. */
+const char *fg_member_choice_at(const fg_member *member, size_t i);
 /* Returns false where `present` leaves the member out. */
 bool fg_member_is_present(const fg_member *member, const fg_subject *subject);
 /* Subject of an OBJECT or SAME; its object is NULL where not known. */
@@ -317,13 +343,18 @@ void fg_members_csv_cells(FILE *out, const fg_member_columns *columns, const fg_
 void fg_members_terminal(FILE *out, const char *indent, const fg_members *members,
                          const fg_subject *list, fg_member_element *element);
 
-/* A document: the JSON that a command writes or reads. */
+/* A document: the JSON that a command writes or reads. Of one that people write the schema requires
+ * the members that reading requires, and the manual tells defaults. */
 typedef struct fg_document {
   const char *file;        /* of its schema: "load_test" */
   const char *title;       /* "foilgauge stiffness report" */
   const char *description; /* NULL: none */
   const char *made_by;     /* words for the manual: "`foilgauge stiffness -o`" */
   const fg_members *members;
+  bool is_read;                    /* people write it */
+  const void *(*find_usual)(void); /* object that a file without members gives; NULL: none */
+  const char *inside;              /* before each name of the manual: "station."; NULL: nothing */
+  const fg_members *const *describes; /* definitions of the schema for other documents, to a NULL */
 } fg_document;
 
 #endif

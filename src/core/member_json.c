@@ -19,6 +19,7 @@ static double number_at(const fg_subject *subject, size_t offset) {
 static void write_number(fg_json *json, const fg_member *member, const fg_subject *subject) {
   const char *name = member->name;
   double value = fg_member_value(member, subject);
+  if (value == 0 && member->options & FG_MEMBER_EMPTY_IS_NULL) value = NAN;
   if (is_left_out(member, isfinite(value))) return;
   fg_json_number(json, name, value);
   if (member->sd_offset) fg_json_of(json, "sd_", name, number_at(subject, member->sd_offset));
@@ -128,6 +129,12 @@ static void write_object(fg_json *json, const fg_member *member, const fg_subjec
     write_null(json, member->name);
 }
 
+static const char *find_key(const fg_member *member, const fg_subject *element) {
+  if (member->kind != FG_MEMBER_MAP) return NULL;
+  if (member->key) return member->key(element);
+  return (const char *)element->object + member->key_offset;
+}
+
 static void write_list(fg_json *json, const fg_member *member, const fg_subject *subject) {
   bool map = member->kind == FG_MEMBER_MAP, open = !map || member->name;
   fg_subject element;
@@ -136,7 +143,7 @@ static void write_list(fg_json *json, const fg_member *member, const fg_subject 
   if (line_of_list(member)) fg_json_line(json);
   for (size_t i = 0; fg_member_element_at(member, subject, i, &element); i++)
     if (element.object)
-      write_members(json, map ? member->key(&element) : NULL, member->members, &element,
+      write_members(json, find_key(member, &element), member->members, &element,
                     line_of(member, &element));
   close_line(json, line_of_list(member),
              open ? map ? fg_json_object_end : fg_json_array_end : NULL);
@@ -153,7 +160,10 @@ static void write_same(fg_json *json, const fg_member *member, const fg_subject 
 
 static void write_head(fg_json *json, const fg_member *member, const fg_subject *subject) {
   (void)subject;
-  fg_json_head(json, member->name);
+  if (member->options & FG_MEMBER_NO_VERSION)
+    fg_json_string(json, "schema", member->name);
+  else
+    fg_json_head(json, member->name);
 }
 
 static void write_by_function(fg_json *json, const fg_member *member, const fg_subject *subject) {

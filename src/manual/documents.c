@@ -1,7 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "manual/documents.h"
 
+#include <stdlib.h>
+#include <string.h>
+
 #include "lots/members.h"
+#include "report/design/members.h"
 #include "report/die/members.h"
 #include "report/doe/members.h"
 #include "report/forming/members.h"
@@ -9,6 +13,7 @@
 #include "report/table_loop/members.h"
 
 const fg_document *const fg_documents[] = {
+    &fg_design_document,
     &fg_die_document,
     &fg_doe_document,
     &fg_forming_document,
@@ -17,21 +22,54 @@ const fg_document *const fg_documents[] = {
     &fg_loop_document,
     &fg_loop_model_document,
     &fg_index_document,
+    &fg_nominal_document,
     NULL,
 };
 
-/* Writes the rows of an object, each with the names of the objects around it. */
-static void write_member_rows(const fg_members *members, const char *before, FILE *out);
+/* Writes the default of a member as JSON has it; nothing where there is none. */
+static void write_usual(const fg_member *row, const void *usual, FILE *out) {
+  char *text = NULL;
+  size_t size;
+  fg_json json;
+  const fg_subject subject = {.object = usual, .whole = usual};
+  if (!usual || row->kind == FG_MEMBER_HEAD || row->kind == FG_MEMBER_WRITTEN || row->members)
+    return;
+  FILE *stream = open_memstream(&text, &size);
+  if (!stream) abort();
+  fg_json_begin(&json, stream);
+  fg_json_object(&json, NULL);
+  fg_json_line(&json);
+  fg_member_json(&json, row, &subject);
+  fg_json_object_end(&json);
+  fg_json_end(&json);
+  if (fclose(stream) != 0) abort();
+  const char *value = strstr(text, "\": ");
+  if (value && !strchr(value, '{'))
+    fprintf(out, " Default: %.*s.", (int)strcspn(value + 3, "}"), value + 3);
+  free(text);
+}
 
-static void write_member_row(const fg_member *row, const char *before, FILE *out) {
+/* Writes the rows of an object, each with the names of the objects around it; `usual` is the object
+ * with its defaults, or NULL. */
+static void write_member_rows(const fg_members *members, const char *before, const void *usual,
+                              FILE *out);
+
+static const void *find_part(const fg_member *row, const void *usual) {
+  const fg_subject subject = {.object = usual, .whole = usual};
+  if (!usual || row->kind != FG_MEMBER_OBJECT || !fg_member_is_present(row, &subject)) return NULL;
+  return fg_member_part(row, &subject).object;
+}
+
+static void write_member_row(const fg_member *row, const char *before, const void *usual,
+                             FILE *out) {
   char inside[400];
   bool list = row->kind == FG_MEMBER_LIST, map = row->kind == FG_MEMBER_MAP;
   if (row->options & FG_MEMBER_NOT_IN_JSON) return;
   if (row->kind == FG_MEMBER_SAME) {
     fg_member each;
     for (size_t i = 0; row->row_at && row->row_at(i, &each); i++)
-      write_member_row(&each, before, out);
-    if (row->members) write_member_rows(row->members, before, out);
+      write_member_row(&each, before, usual, out);
+    if (row->members) write_member_rows(row->members, before, usual, out);
     return;
   }
   const char *name = row->kind == FG_MEMBER_HEAD ? "schema" : row->name;
@@ -40,9 +78,12 @@ static void write_member_row(const fg_member *row, const char *before, FILE *out
   fprintf(out, "| `%s%s` | ", before, name);
   for (const char *c = row->words ? row->words : ""; *c; c++)
     fputs(*c == '|' ? "\\|" : (char[]){*c, '\0'}, out);
-  if (row->kind == FG_MEMBER_HEAD) fprintf(out, "`%s`; beside it `version`", row->name);
+  if (row->kind == FG_MEMBER_HEAD)
+    fprintf(out, "`%s`%s", row->name,
+            row->options & FG_MEMBER_NO_VERSION ? "" : "; beside it `version`");
   if (row->highest > row->lowest && row->kind != FG_MEMBER_NUMBERS)
     fprintf(out, " From %.16g to %.16g.", row->lowest, row->highest);
+  write_usual(row, usual, out);
   fputs(" |\n", out);
   if (row->sd_offset) fprintf(out, "| `%ssd_%s` | its standard deviation |\n", before, name);
   if (fg_member_has_u(row)) fprintf(out, "| `%su_%s` | its standard uncertainty |\n", before, name);
@@ -50,15 +91,17 @@ static void write_member_row(const fg_member *row, const char *before, FILE *out
     fprintf(out, "| `%su_repeat_%s` | the same, of repeats alone |\n", before, name);
   if (!row->members) return;
   snprintf(inside, sizeof inside, "%s%s%s.", before, name, list ? "[]" : map ? ".*" : "");
-  write_member_rows(row->members, inside, out);
+  write_member_rows(row->members, inside, find_part(row, usual), out);
 }
 
-static void write_member_rows(const fg_members *members, const char *before, FILE *out) {
+static void write_member_rows(const fg_members *members, const char *before, const void *usual,
+                              FILE *out) {
   for (size_t i = 0; i < members->count; i++)
-    write_member_row(&members->rows[i], before, out);
+    write_member_row(&members->rows[i], before, usual, out);
 }
 
 void fg_document_write_list(const fg_document *document, FILE *out) {
   fputs("| member | what it is |\n|---|---|\n", out);
-  write_member_rows(document->members, "", out);
+  write_member_rows(document->members, document->inside ? document->inside : "",
+                    document->find_usual ? document->find_usual() : NULL, out);
 }

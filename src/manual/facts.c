@@ -55,10 +55,6 @@ static void write_station_members(FILE *out) {
   write_members(fg_station_members, out);
 }
 
-static void write_design_members(FILE *out) {
-  write_members(fg_design_members, out);
-}
-
 static void write_quantities(fg_quantity_owner owner, const char *prefix, FILE *out) {
   size_t count;
   const fg_quantity *rows = fg_quantities(owner, &count);
@@ -133,7 +129,6 @@ static void write_picture_members(FILE *out) {
 static const fg_fact facts[] = {
     {"recipe_members", write_recipe_members},
     {"station_members", write_station_members},
-    {"design_members", write_design_members},
     {"quantities_of_bump", write_quantities_of_bump},
     {"quantities_of_beam", write_quantities_of_beam},
     {"quantities_of_foil", write_quantities_of_foil},

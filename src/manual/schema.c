@@ -9,6 +9,7 @@
 typedef struct schema {
   const char *file;
   cJSON *definitions;
+  bool is_read; /* people write the document */
 } schema;
 
 /* The program ends without memory, as any tool of a build does. */
@@ -59,7 +60,7 @@ static cJSON *make_element(schema *all, const fg_members *members) {
   if (own && !cJSON_GetObjectItem(all->definitions, members->definition)) {
     add_item(all->definitions, members->definition,
              cJSON_CreateObject()); /* it may refer to itself */
-    cJSON *made = make_object(all, members, NULL, false);
+    cJSON *made = make_object(all, members, NULL, members->nullable);
     cJSON_ReplaceItemInObject(all->definitions, members->definition, made);
   }
   snprintf(place, sizeof place, "%s%s#/$defs/%s", own ? "" : members->file,
@@ -70,11 +71,11 @@ static cJSON *make_element(schema *all, const fg_members *members) {
 }
 
 static cJSON *make_part(schema *all, const fg_member *row) {
-  bool nullable =
-      (row->part || row->pointed) && !(row->options & (FG_MEMBER_LEFT_OUT | FG_MEMBER_NEVER_NULL));
+  bool nullable = (row->part || row->pointed || row->options & FG_MEMBER_NULLABLE) &&
+                  !(row->options & (FG_MEMBER_LEFT_OUT | FG_MEMBER_NEVER_NULL));
   if (!row->members->definition) return make_object(all, row->members, row, nullable);
   cJSON *element = make_element(all, row->members);
-  if (!nullable) {
+  if (!nullable || row->members->nullable) {
     add_words(element, row);
     return element;
   }
@@ -109,7 +110,10 @@ static cJSON *make_list(schema *all, const fg_member *row) {
     add_item(list, "required", names);
     add_item(list, "additionalProperties", cJSON_CreateFalse());
   } else {
-    add_item(list, map ? "additionalProperties" : "items", make_element(all, row->members));
+    cJSON *element = make_element(all, row->members);
+    if (row->options & FG_MEMBER_NOT_EMPTY)
+      add_item(element, "minProperties", cJSON_CreateNumber(1));
+    add_item(list, map ? "additionalProperties" : "items", element);
   }
   if (row->lowest > 0)
     add_item(list, map ? "minProperties" : "minItems", cJSON_CreateNumber(row->lowest));
@@ -138,9 +142,10 @@ static void add_choices(cJSON *object, const fg_member *row, bool nullable) {
   add_item(object, "enum", choices);
 }
 
-static cJSON *make_text(const fg_member *row, bool with_words) {
+static cJSON *make_text(const schema *all, const fg_member *row, bool with_words) {
   cJSON *text = need(cJSON_CreateObject());
-  bool always = row->kind == FG_MEMBER_TEXT || (row->kind == FG_MEMBER_WORD && !row->word);
+  bool always =
+      all->is_read || row->kind == FG_MEMBER_TEXT || (row->kind == FG_MEMBER_WORD && !row->word);
   bool nullable = (!always || row->options & FG_MEMBER_EMPTY_IS_NULL) &&
                   !(row->options & (FG_MEMBER_LEFT_OUT | FG_MEMBER_NEVER_NULL));
   if (with_words) add_words(text, row);
@@ -148,6 +153,8 @@ static cJSON *make_text(const fg_member *row, bool with_words) {
     add_choices(text, row, nullable);
   else
     add_type(text, "string", nullable);
+  if (all->is_read && row->kind == FG_MEMBER_TEXT)
+    add_item(text, "maxLength", cJSON_CreateNumber((double)row->stride - 1));
   if (row->pattern) add_item(text, "pattern", cJSON_CreateString(row->pattern));
   return text;
 }
@@ -164,16 +171,18 @@ static cJSON *make_texts(const fg_member *row) {
   return texts;
 }
 
-static cJSON *make_number(const fg_member *row) {
+static cJSON *make_number(const schema *all, const fg_member *row) {
   cJSON *number = need(cJSON_CreateObject());
   bool whole = row->kind != FG_MEMBER_NUMBER && row->kind != FG_MEMBER_FLAG;
   unsigned never = FG_MEMBER_LEFT_OUT | FG_MEMBER_NEVER_NULL;
   unsigned null = FG_MEMBER_NULLABLE | FG_MEMBER_EMPTY_IS_NULL;
-  bool nullable = row->kind == FG_MEMBER_NUMBER ? !(row->options & never)
-                                                : (row->options & null) && !(row->options & never);
+  bool nullable = row->kind == FG_MEMBER_NUMBER && !all->is_read
+                      ? !(row->options & never)
+                      : (row->options & null) && !(row->options & never);
   const char *type = row->kind == FG_MEMBER_FLAG ? "boolean" : whole ? "integer" : "number";
   add_words(number, row);
   add_type(number, type, nullable);
+  if (row->options & FG_MEMBER_ABOVE_0) add_item(number, "exclusiveMinimum", cJSON_CreateNumber(0));
   if (row->highest > row->lowest) {
     add_item(number, "minimum", cJSON_CreateNumber(row->lowest));
     add_item(number, "maximum", cJSON_CreateNumber(row->highest));
@@ -209,9 +218,9 @@ static cJSON *make_member(schema *all, const fg_member *row) {
   case FG_MEMBER_TEXT:
   case FG_MEMBER_STRING:
   case FG_MEMBER_WORD:
-    return make_text(row, true);
+    return make_text(all, row, true);
   default:
-    return make_number(row);
+    return make_number(all, row);
   }
 }
 
@@ -225,6 +234,20 @@ static void put_property(cJSON *properties, cJSON *required, const char *name, c
   if (!optional) cJSON_AddItemToArray(required, need(cJSON_CreateString(name)));
 }
 
+/* Adds a case to the property of this name. */
+static void put_either(cJSON *properties, const char *name, cJSON *made) {
+  cJSON *before = cJSON_DetachItemFromObjectCaseSensitive(properties, name);
+  cJSON *cases = cJSON_GetObjectItemCaseSensitive(before, "anyOf"), *either = before;
+  if (!cases) {
+    either = need(cJSON_CreateObject());
+    cases = need(cJSON_CreateArray());
+    cJSON_AddItemToArray(cases, need(before));
+    add_item(either, "anyOf", cases);
+  }
+  cJSON_AddItemToArray(cases, made);
+  add_item(properties, name, either);
+}
+
 static void put_uncertainty(const fg_member *row, const char *before, cJSON *properties,
                             cJSON *required, bool optional) {
   char name[200];
@@ -235,22 +258,32 @@ static void put_uncertainty(const fg_member *row, const char *before, cJSON *pro
   put_property(properties, required, name, u, optional);
 }
 
-static void describe_head(const fg_member *row, cJSON *properties, cJSON *required) {
+static void describe_head(const schema *all, const fg_member *row, cJSON *properties,
+                          cJSON *required) {
   cJSON *name = need(cJSON_CreateObject()), *version = need(cJSON_CreateObject());
   add_item(name, "const", cJSON_CreateString(row->name));
-  add_type(version, "string", false);
   put_property(properties, required, "schema", name, false);
-  put_property(properties, required, "version", version, false);
+  if (row->options & FG_MEMBER_NO_VERSION) {
+    cJSON_Delete(version);
+    return;
+  }
+  add_type(version, "string", false);
+  put_property(properties, required, "version", version, all->is_read);
 }
 
 static void describe_row(schema *all, const fg_member *row, cJSON *properties, cJSON *required,
                          bool optional) {
   if (row->options & FG_MEMBER_NOT_IN_JSON) return;
   if (row->kind == FG_MEMBER_HEAD) {
-    describe_head(row, properties, required);
+    describe_head(all, row, properties, required);
     return;
   }
   optional = optional || row->present || row->options & FG_MEMBER_LEFT_OUT;
+  if (all->is_read) optional = !(row->options & FG_MEMBER_REQUIRED);
+  if (row->options & FG_MEMBER_EITHER && cJSON_GetObjectItemCaseSensitive(properties, row->name)) {
+    put_either(properties, row->name, make_member(all, row));
+    return;
+  }
   if (row->kind == FG_MEMBER_SAME) {
     fg_member each;
     for (size_t i = 0; row->row_at && row->row_at(i, &each); i++)
@@ -302,7 +335,7 @@ static void write_tree(fg_json *json, const char *name, const cJSON *item) {
 void fg_document_write_schema(const fg_document *document, FILE *out) {
   char id[200];
   fg_json json;
-  schema all = {document->file, need(cJSON_CreateObject())};
+  schema all = {document->file, need(cJSON_CreateObject()), document->is_read};
   cJSON *root = need(cJSON_CreateObject());
   snprintf(id, sizeof id, "%s.schema.json", document->file);
   add_item(root, "$schema", cJSON_CreateString("https://json-schema.org/draft/2020-12/schema"));
@@ -319,6 +352,8 @@ void fg_document_write_schema(const fg_document *document, FILE *out) {
     free(name);
   }
   cJSON_Delete(object);
+  for (size_t i = 0; document->describes && document->describes[i]; i++)
+    cJSON_Delete(make_element(&all, document->describes[i]));
   if (all.definitions->child)
     add_item(root, "$defs", all.definitions);
   else

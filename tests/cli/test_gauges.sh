@@ -234,7 +234,7 @@ done <<'T'
 {}|must be an array
 [1]|must be an object
 [{"kind": "wire", "width_mm": 0.1, "u_mm": 0.001}]|must be "leaf"
-[{"kind": "leaf", "width_mm": 0.1}]|"u_mm" is missing
+[{"kind": "leaf", "width_mm": 0.1}]|u_mm is missing
 [{"kind": "leaf", "width_mm": 0.1, "u_mm": 0.001, "x": 1}]|is not known
 [{"kind": "leaf", "width_mm": 0.1, "width_mm": 0.1, "u_mm": 0.001}]|given twice
 [{"kind": "leaf", "width_mm": 1000, "u_mm": 0.001}]|must be from

@@ -12,8 +12,8 @@ for made in "$build"/schema/*.schema.json; do
     echo "FAIL: reports/schema/$name is not what the members say: cp $made reports/schema/"
     failed=1
   fi
-  if ! grep -q "@members_of_${name%.schema.json}@" "$source/src/manual/text/foilgauge-reports.5.md"; then
-    echo "FAIL: foilgauge-reports.5.md does not list the members of $name"
+  if ! grep -q "@members_of_${name%.schema.json}@" "$source"/src/manual/text/*.5.md; then
+    echo "FAIL: no page of section 5 lists the members of $name"
     failed=1
   fi
 done

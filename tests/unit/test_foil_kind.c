@@ -8,11 +8,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/json_read.h"
 #include "foilgauge/design_report.h"
 #include "foilgauge/stiffness.h"
 #include "foilgauge/words.h"
 #include "geometry/foil_kind.h"
+#include "report/design/members.h"
 #include "report/measure/foil_view.h"
 #include "support/test.h"
 
@@ -44,7 +44,7 @@ static void every_kind_has_a_view(void **state) {
     const fg_foil_view *view = fg_foil_view_of(all_kinds[i]);
     in_row("%s", fg_foil_kind_word(all_kinds[i]));
     assert_true(view->legend && view->overlay_note && view->points_heading && view->summary_heads);
-    assert_true(view->u_from && view->parts && view->design_json && view->values_json);
+    assert_true(view->u_from && view->parts && view->values_json);
     assert_true(view->design_table && view->foil_heading && view->page_heading);
     assert_true(view->tiles && view->details && view->overlay);
     assert_true(!view->own || fg_foil_traits_of(all_kinds[i])->is_plain_strip);
@@ -54,16 +54,14 @@ static void every_kind_has_a_view(void **state) {
 /* The manual's text on `form` is this member's. */
 static void manual_explains_every_kind(void **state) {
   (void)state;
-  fg_member_words members[64];
-  size_t count = fg_design_members(members, 64), form = 0;
-  while (form < count && strcmp(members[form].name, "form") != 0)
-    form++;
-  assert_true(form < count);
+  const fg_member *kind = fg_design_members.rows;
+  while (kind->kind == FG_MEMBER_HEAD || strcmp(kind->name, "form") != 0)
+    kind++;
   for (int i = 0; i < FG_FOIL_KINDS; i++) {
     char quoted[40];
     snprintf(quoted, sizeof quoted, "\"%s\" (", fg_foil_kind_word(all_kinds[i]));
     in_row("%s", quoted);
-    assert_has(members[form].meaning, quoted);
+    assert_has(kind->words, quoted);
   }
 }
 

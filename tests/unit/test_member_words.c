@@ -111,22 +111,6 @@ static void stations_take_what_is_listed(void **state) {
   assert_has(ctx.message, "there are design, file_name, every_h, scale_max_ppm");
 }
 
-static void designs_take_what_is_listed(void **state) {
-  (void)state;
-  static fg_member_words list[MAX];
-  static fg_design design;
-  size_t count = list_members(fg_design_members, list);
-  for (size_t i = 0; i < count; i++) {
-    char json[300];
-    fg_context ctx = {.message = ""};
-    snprintf(json, sizeof json, "{\"%s\": %s}", list[i].name,
-             list[i].usual[0] ? list[i].usual : "\"?\"");
-    fg_design_default(&design);
-    fg_design_parse(&ctx, "design", json, &design);
-    assert_has_not(ctx.message, "is not a member");
-  }
-}
-
 /* A page that is older than the code would say nothing of a new member. */
 static void the_pages_say_them(void **state) {
   (void)state;
@@ -134,10 +118,8 @@ static void the_pages_say_them(void **state) {
     fg_member_words_list *list;
     const char *page;
   } pages[] = {{fg_recipe_members, "@recipe_members@"},
-               {fg_station_members, "@station_members@"},
-               {fg_design_members, "@design_members@"}};
-  static const char *const texts[] = {"src/manual/text/foilgauge-recipe.5.md",
-                                      "src/manual/text/foilgauge-design.5.md"};
+               {fg_station_members, "@station_members@"}};
+  static const char *const texts[] = {"src/manual/text/foilgauge-recipe.5.md"};
   char *whole = NULL;
   size_t size;
   FILE *out = open_memstream(&whole, &size);
@@ -161,7 +143,6 @@ int main(void) {
       cmocka_unit_test(recipes_take_what_is_listed),
       cmocka_unit_test(recipes_refuse_what_lies_beyond),
       cmocka_unit_test(stations_take_what_is_listed),
-      cmocka_unit_test(designs_take_what_is_listed),
       cmocka_unit_test(the_pages_say_them),
   };
   return cmocka_run_group_tests_name("member_words", tests, NULL, NULL);

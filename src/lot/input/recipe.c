@@ -21,6 +21,7 @@
 #include "lot/input/reference_curve.h"
 #include "report/design/calibration_json.h"
 #include "report/design/json.h"
+#include "report/design/members.h"
 
 enum { RECIPE_BYTES_MAX = 1 << 20 };
 
@@ -234,7 +235,9 @@ static void overrule_calibration(fg_lot_settings *settings) {
 
 static fg_status read_calibration(fg_context *ctx, const cJSON *root, fg_lot_settings *settings) {
   const cJSON *value = cJSON_GetObjectItemCaseSensitive(root, "calibration");
-  if (value) FG_TRY(fg_calibration_read(ctx, value, &settings->calibration));
+  const fg_reading reading = {.ctx = ctx, .between = ": "};
+  const fg_member row = {.name = "calibration"};
+  if (value) FG_TRY(fg_calibration_read(&reading, &row, value, &settings->calibration));
   overrule_calibration(settings);
   return FG_OK;
 }

@@ -1,243 +1,316 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Members of a calibration. A certificate states an expanded uncertainty with its factor; a report
+ * writes the standard uncertainty. */
 #include "report/design/calibration_json.h"
 
 #include <math.h>
-#include <stdarg.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "core/date.h"
-#include "core/text.h"
+#include "report/design/members.h"
 
 /* A certificate states U with a factor from 1 (68 %) to 4; beyond it is a slip. */
 static const double k_min = 1, k_max = 4;
 
-static fg_status fail_at_member(fg_context *ctx, const char *place, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
-
-static fg_status fail_at_member(fg_context *ctx, const char *place, const char *format, ...) {
-  char words[400];
-  va_list arguments;
-  va_start(arguments, format);
-  vsnprintf(words, sizeof words, format, arguments);
-  va_end(arguments);
-  return fg_fail(ctx, FG_ERR_DATA, "%.120s: %s", place, words);
-}
-
-static void join_place(char *full, size_t size, const char *place, const char *name) {
-  fg_text_clip(full, size, "%.80s.%.40s", place, name);
-}
-
-/* Every member is one of the list, and there once. */
-static fg_status check_members(fg_context *ctx, const char *place, const cJSON *object,
-                               const char *const *names) {
-  char full[128], list[200] = "";
-  if (!cJSON_IsObject(object)) return fail_at_member(ctx, place, "must be an object");
-  for (size_t i = 0; names[i]; i++)
-    fg_text_clip(list + strlen(list), sizeof list - strlen(list), "%s%s", i ? ", " : "", names[i]);
-  for (const cJSON *item = object->child; item; item = item->next) {
-    size_t i = 0;
-    join_place(full, sizeof full, place, item->string);
-    while (names[i] && strcmp(names[i], item->string) != 0)
-      i++;
-    if (!names[i]) return fail_at_member(ctx, full, "is not known; there are %s", list);
-    if (cJSON_GetObjectItemCaseSensitive(object, item->string) != item)
-      return fail_at_member(ctx, full, "is given twice");
-  }
-  return FG_OK;
-}
-
-/* NaN: it is not there. */
-static fg_status read_calibration_number(fg_context *ctx, const char *place, const cJSON *object,
-                                         const char *name, double *value) {
-  char full[128];
-  const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, name);
-  *value = NAN;
-  if (!item) return FG_OK;
-  join_place(full, sizeof full, place, name);
-  if (!cJSON_IsNumber(item)) return fail_at_member(ctx, full, "must be a number");
-  if (!isfinite(item->valuedouble)) return fail_at_member(ctx, full, "the number is too large");
-  *value = item->valuedouble;
-  return FG_OK;
-}
-
-/* Members of an object: a value or NULL, and u or U with its k. */
+/* A value with its uncertainty, as stated: u, or U with its k. NaN: absent. */
 typedef struct stated {
-  const char *value, *u, *expanded;
+  double value, u, expanded, k;
 } stated;
 
-static const stated scale_names = {NULL, "u_rel", "U_rel"};
-static const stated temperature_names = {"value_C", "u_K", "U_K"};
-static const stated expansion_names = {"value_per_K", "u_per_K", "U_per_K"};
+static const stated nothing = {NAN, NAN, NAN, NAN};
 
-static fg_status read_u(fg_context *ctx, const char *place, const cJSON *object, const stated *s,
+#define STATED(name, field)                                                                        \
+  { FG_NUMBER(name, stated, field), .options = FG_MEMBER_LEFT_OUT }
+static const fg_member scale_rows[] = {
+    STATED("u_rel", u),
+    STATED("U_rel", expanded),
+    STATED("k", k),
+};
+static const fg_members scale_members = FG_MEMBERS(scale_rows);
+
+static const fg_member temperature_rows[] = {
+    {FG_NUMBER("value_C", stated, value), .options = FG_MEMBER_REQUIRED},
+    STATED("u_K", u),
+    STATED("U_K", expanded),
+    STATED("k", k),
+};
+static const fg_members temperature_members = FG_MEMBERS(temperature_rows);
+
+static const fg_member expansion_rows[] = {
+    {FG_NUMBER("value_per_K", stated, value), .options = FG_MEMBER_REQUIRED},
+    STATED("u_per_K", u),
+    STATED("U_per_K", expanded),
+    STATED("k", k),
+};
+static const fg_members expansion_members = FG_MEMBERS(expansion_rows);
+#undef STATED
+
+typedef struct axes {
+  stated x, y;
+} axes;
+
+static const fg_member axes_rows[] = {
+    {FG_OBJECT("x", axes, x, &scale_members), .options = FG_MEMBER_ON_LINE | FG_MEMBER_REQUIRED},
+    {FG_OBJECT("y", axes, y, &scale_members), .options = FG_MEMBER_ON_LINE | FG_MEMBER_REQUIRED},
+};
+static const fg_members axes_members = FG_MEMBERS(axes_rows);
+
+/* Standard uncertainty as stated; the last rows of the members are u, U and k. */
+static fg_status find_u(const fg_reading *reading, const fg_members *members, const stated *from,
                         double *u) {
-  double expanded, k;
-  FG_TRY(read_calibration_number(ctx, place, object, s->u, u));
-  FG_TRY(read_calibration_number(ctx, place, object, s->expanded, &expanded));
-  FG_TRY(read_calibration_number(ctx, place, object, "k", &k));
-  if (isnan(*u) == isnan(expanded))
-    return fail_at_member(ctx, place, "needs either %s, a standard uncertainty, or %s with its k",
-                          s->u, s->expanded);
-  if (isnan(expanded) && !isnan(k))
-    return fail_at_member(ctx, place, "k belongs to %s; %s is a standard uncertainty", s->expanded,
-                          s->u);
-  if (isnan(expanded)) return FG_OK;
-  if (isnan(k))
-    return fail_at_member(ctx, place, "%s needs its factor k, as the certificate says",
-                          s->expanded);
-  if (!(k >= k_min && k <= k_max))
-    return fail_at_member(ctx, place, "k is %g; it must be from %g to %g", k, k_min, k_max);
-  *u = expanded / k;
+  const char *u_name = members->rows[members->count - 3].name;
+  const char *expanded = members->rows[members->count - 2].name;
+  *u = from->u;
+  if (isnan(from->u) == isnan(from->expanded))
+    return fg_reading_fail(reading, NULL,
+                           "needs either %s, a standard uncertainty, or %s with its k", u_name,
+                           expanded);
+  if (isnan(from->expanded) && !isnan(from->k))
+    return fg_reading_fail(reading, NULL, "k belongs to %s; %s is a standard uncertainty", expanded,
+                           u_name);
+  if (isnan(from->expanded)) return FG_OK;
+  if (isnan(from->k))
+    return fg_reading_fail(reading, NULL, "%s needs its factor k, as the certificate says",
+                           expanded);
+  if (!(from->k >= k_min && from->k <= k_max))
+    return fg_reading_fail(reading, NULL, "k is %g; it must be from %g to %g", from->k, k_min,
+                           k_max);
+  *u = from->expanded / from->k;
   return FG_OK;
 }
 
-static fg_status read_stated(fg_context *ctx, const char *place, const cJSON *object,
-                             const stated *s, double *value, double *u) {
-  const char *const names[] = {s->u, s->expanded, "k", s->value, NULL};
-  FG_TRY(check_members(ctx, place, object, names));
-  if (s->value) FG_TRY(read_calibration_number(ctx, place, object, s->value, value));
-  if (s->value && isnan(*value)) return fail_at_member(ctx, place, "%s is missing", s->value);
-  return read_u(ctx, place, object, s, u);
+static fg_status read_stated(const fg_reading *reading, const char *name, const fg_members *members,
+                             const cJSON *item, double *value, double *u) {
+  const fg_reading inside = fg_reading_inside(reading, name);
+  stated from = nothing;
+  FG_TRY(fg_object_read(&inside, members, item, &from));
+  if (value) *value = from.value;
+  return find_u(&inside, members, &from, u);
 }
 
-static fg_status read_scale(fg_context *ctx, const cJSON *item, fg_calibration *c) {
-  static const char *const place = "calibration.scale", *const axes[] = {"x", "y", NULL};
+static fg_status read_scale(const fg_reading *reading, const fg_member *member, const cJSON *item,
+                            void *object) {
+  fg_calibration *c = object;
+  axes both = {nothing, nothing};
   c->per_axis = cJSON_GetObjectItemCaseSensitive(item, "x") != NULL ||
                 cJSON_GetObjectItemCaseSensitive(item, "y") != NULL;
   if (!c->per_axis) {
-    FG_TRY(read_stated(ctx, place, item, &scale_names, NULL, &c->u_scale[0]));
+    FG_TRY(read_stated(reading, member->name, &scale_members, item, NULL, &c->u_scale[0]));
     c->u_scale[1] = c->u_scale[0];
     return FG_OK;
   }
-  FG_TRY(check_members(ctx, place, item, axes));
-  for (int axis = 0; axis < 2; axis++) {
-    char full[128];
-    const cJSON *own = cJSON_GetObjectItemCaseSensitive(item, axes[axis]);
-    if (!own)
-      return fail_at_member(ctx, place, "%s is missing; with one axis comes the other", axes[axis]);
-    join_place(full, sizeof full, place, axes[axis]);
-    FG_TRY(read_stated(ctx, full, own, &scale_names, NULL, &c->u_scale[axis]));
-  }
-  return FG_OK;
+  const fg_reading inside = fg_reading_inside(reading, member->name);
+  FG_TRY(fg_object_read(&inside, &axes_members, item, &both));
+  const fg_reading x = fg_reading_inside(&inside, "x"), y = fg_reading_inside(&inside, "y");
+  FG_TRY(find_u(&x, &scale_members, &both.x, &c->u_scale[0]));
+  return find_u(&y, &scale_members, &both.y, &c->u_scale[1]);
 }
 
-static fg_status read_heat(fg_context *ctx, const cJSON *item, fg_calibration *c) {
-  const cJSON *temperature = cJSON_GetObjectItemCaseSensitive(item, "temperature");
-  const cJSON *expansion = cJSON_GetObjectItemCaseSensitive(item, "expansion");
-  c->has_temperature = temperature || expansion;
-  if (!c->has_temperature) return FG_OK;
-  if (!temperature || !expansion)
-    return fail_at_member(ctx, "calibration",
-                          "%s is missing; temperature and expansion go together",
-                          temperature ? "expansion" : "temperature");
-  FG_TRY(read_stated(ctx, "calibration.temperature", temperature, &temperature_names,
-                     &c->temperature_c, &c->u_temperature_k));
-  return read_stated(ctx, "calibration.expansion", expansion, &expansion_names, &c->expansion_per_k,
+static fg_status read_temperature(const fg_reading *reading, const fg_member *member,
+                                  const cJSON *item, void *object) {
+  fg_calibration *c = object;
+  c->has_temperature = true;
+  return read_stated(reading, member->name, &temperature_members, item, &c->temperature_c,
+                     &c->u_temperature_k);
+}
+
+static fg_status read_expansion(const fg_reading *reading, const fg_member *member,
+                                const cJSON *item, void *object) {
+  fg_calibration *c = object;
+  return read_stated(reading, member->name, &expansion_members, item, &c->expansion_per_k,
                      &c->u_expansion_per_k);
 }
 
-static fg_status read_calibration_text(fg_context *ctx, const cJSON *object, const char *name,
-                                       char *text, size_t size) {
-  char full[128];
-  const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, name);
-  if (!item) return FG_OK;
-  join_place(full, sizeof full, "calibration", name);
-  if (!cJSON_IsString(item)) return fail_at_member(ctx, full, "must be a text in quotes");
-  if (strlen(item->valuestring) >= size)
-    return fail_at_member(ctx, full, "is too long; at most %zu bytes", size - 1);
-  for (const char *c = item->valuestring; *c; c++)
-    if ((unsigned char)*c < ' ' || *c == 0x7f)
-      return fail_at_member(ctx, full, "holds a control character");
-  strcpy(text, item->valuestring);
-  return FG_OK;
+static void write_stated(fg_json *json, const char *name, const fg_members *members, double value,
+                         double u) {
+  const stated of = {value, u, NAN, NAN};
+  const fg_member row = {
+      .name = name, .kind = FG_MEMBER_OBJECT, .options = FG_MEMBER_ON_LINE, .members = members};
+  fg_member_json(json, &row, &(fg_subject){.object = &of});
 }
 
-fg_status fg_calibration_read(fg_context *ctx, const cJSON *item, fg_calibration *calibration) {
-  static const char *const names[] = {"certificate", "date",      "scale",
-                                      "temperature", "expansion", NULL};
+static void write_scale(fg_json *json, const char *name, const fg_subject *subject) {
+  const fg_calibration *c = subject->object;
+  const axes both = {{NAN, c->u_scale[0], NAN, NAN}, {NAN, c->u_scale[1], NAN, NAN}};
+  const fg_member row = {.name = name, .kind = FG_MEMBER_OBJECT, .members = &axes_members};
+  if (c->per_axis)
+    fg_member_json(json, &row, &(fg_subject){.object = &both});
+  else
+    write_stated(json, name, &scale_members, NAN, c->u_scale[0]);
+}
+
+static void write_temperature(fg_json *json, const char *name, const fg_subject *subject) {
+  const fg_calibration *c = subject->object;
+  write_stated(json, name, &temperature_members, c->temperature_c, c->u_temperature_k);
+}
+
+static void write_expansion(fg_json *json, const char *name, const fg_subject *subject) {
+  const fg_calibration *c = subject->object;
+  write_stated(json, name, &expansion_members, c->expansion_per_k, c->u_expansion_per_k);
+}
+
+static bool has_temperature(const fg_subject *subject) {
+  return ((const fg_calibration *)subject->object)->has_temperature;
+}
+
+/* Schemas: u alone, or U with its k; `value` is the first property, with its comma. */
+#define POSITIVE "{\"type\": \"number\", \"minimum\": 0}"
+#define WITH_U(value, required, u, expanded, max)                                                  \
+  "\"type\": \"object\", \"properties\": {" value "\"" u                                           \
+  "\": {\"type\": \"number\", \"minimum\": 0, \"maximum\": " max "}, \"" expanded "\": " POSITIVE  \
+  ", \"k\": {\"type\": \"number\", \"minimum\": 1, \"maximum\": 4}}, " required                    \
+  "\"oneOf\": [{\"required\": [\"" u                                                               \
+  "\"], \"not\": {\"anyOf\": [{\"required\": [\"k\"]}, {\"required\": [\"" expanded                \
+  "\"]}]}}, {\"required\": [\"" expanded "\", \"k\"], \"not\": {\"required\": [\"" u               \
+  "\"]}}], \"additionalProperties\": false"
+#define SCALE_OF_AXIS "{" WITH_U("", "", "u_rel", "U_rel", "0.05") "}"
+#define SCALE_SCHEMA                                                                               \
+  "{\"oneOf\": [" SCALE_OF_AXIS ", {\"type\": \"object\", \"properties\": {\"x\": " SCALE_OF_AXIS  \
+  ", \"y\": " SCALE_OF_AXIS "}, \"required\": [\"x\", \"y\"], \"additionalProperties\": false}]}"
+#define TEMPERATURE_SCHEMA                                                                         \
+  "{" WITH_U("\"value_C\": {\"type\": \"number\", \"minimum\": 0, \"maximum\": 60}, ",             \
+             "\"required\": [\"value_C\"], ", "u_K", "U_K", "20") "}"
+#define EXPANSION_SCHEMA                                                                           \
+  "{" WITH_U("\"value_per_K\": {\"type\": \"number\", \"minimum\": -1e-4, \"maximum\": 1e-4}, ",   \
+             "\"required\": [\"value_per_K\"], ", "u_per_K", "U_per_K", "1e-4") "}"
+
+/* A file that is read again must measure the same: no number loses a digit. */
+#define UNLESS_EMPTY .options = FG_MEMBER_LEFT_OUT | FG_MEMBER_EMPTY_IS_NULL
+static const fg_member calibration_rows[] = {
+    {FG_TEXT("certificate", fg_calibration, certificate), UNLESS_EMPTY,
+     .words = "Its name, as reports show it."},
+    {FG_TEXT("date", fg_calibration, date), UNLESS_EMPTY, .pattern = "^[0-9.-]{10}$",
+     .words = "Of the certificate, as 2026-03-14."},
+    {FG_WRITTEN("scale", write_scale, SCALE_SCHEMA), .read = read_scale,
+     .options = FG_MEMBER_EXACT | FG_MEMBER_REQUIRED,
+     .words = "How well the pixel's pitch is known, relative: `u_rel`, or `U_rel` with its factor "
+              "`k`; of both axes alike, or of `x` and `y` each by itself."},
+    {FG_WRITTEN("temperature", write_temperature, TEMPERATURE_SCHEMA), .read = read_temperature,
+     .options = FG_MEMBER_EXACT, .present = has_temperature,
+     .words = "Of the part while it was scanned: `value_C` with `u_K`, or `U_K` and `k`."},
+    {FG_WRITTEN("expansion", write_expansion, EXPANSION_SCHEMA), .read = read_expansion,
+     .options = FG_MEMBER_EXACT, .present = has_temperature,
+     .words = "Of the foil: `value_per_K` with `u_per_K`, or `U_per_K` and `k`; where the scale "
+              "was taken from a reference part at the same temperature, less that part's."},
+};
+const fg_members fg_calibration_members =
+    FG_MEMBERS_OF_FILE(calibration_rows, "calibration", "design");
+
+fg_status fg_calibration_read(const fg_reading *reading, const fg_member *member, const cJSON *item,
+                              void *object) {
+  fg_calibration *calibration = (void *)((char *)object + member->offset);
   fg_calibration c = {.stated = true};
+  fg_reading inside = fg_reading_inside(reading, member->name);
+  inside.between = ": ";
+  fg_context words = {0};
   if (cJSON_IsNull(item)) {
     *calibration = (fg_calibration){.stated = false};
     return FG_OK;
   }
-  FG_TRY(check_members(ctx, "calibration", item, names));
-  FG_TRY(read_calibration_text(ctx, item, "certificate", c.certificate, sizeof c.certificate));
-  FG_TRY(read_calibration_text(ctx, item, "date", c.date, sizeof c.date));
+  FG_TRY(fg_object_read(&inside, &fg_calibration_members, item, &c));
   if (c.date[0] && (strlen(c.date) != 10 || isnan(fg_date_days(c.date))))
-    return fail_at_member(ctx, "calibration.date", "'%s' is no date; write it as 2026-03-14",
-                          c.date);
-  if (!cJSON_GetObjectItemCaseSensitive(item, "scale"))
-    return fail_at_member(ctx, "calibration",
-                          "scale is missing: how well the pixel's pitch is known");
-  FG_TRY(read_scale(ctx, cJSON_GetObjectItemCaseSensitive(item, "scale"), &c));
-  FG_TRY(read_heat(ctx, item, &c));
-  FG_TRY(fg_calibration_check(ctx, &c));
+    return fg_reading_fail(&inside, "date", "'%s' is no date; write it as 2026-03-14", c.date);
+  bool expansion = cJSON_GetObjectItemCaseSensitive(item, "expansion") != NULL;
+  if (c.has_temperature != expansion)
+    return fg_reading_fail(&inside, NULL, "%s is missing; temperature and expansion go together",
+                           expansion ? "temperature" : "expansion");
+  fg_status status = fg_calibration_check(&words, &c);
+  if (status != FG_OK)
+    return fg_fail(reading->ctx, status, "%s%s%.900s", reading->path ? reading->path : "",
+                   reading->path ? ": " : "", words.message);
   *calibration = c;
   return FG_OK;
 }
 
-static void write_stated_value(fg_json *json, const char *name, const stated *s, double value,
-                               double u) {
-  fg_json_object(json, name);
-  fg_json_line(json);
-  if (s->value) fg_json_number(json, s->value, value);
-  fg_json_number(json, s->u, u);
-  fg_json_object_end(json);
-  fg_json_line_end(json);
+static double find_reference(const fg_subject *subject) {
+  (void)subject;
+  return FG_REFERENCE_TEMPERATURE_C;
 }
 
-static void write_members(fg_json *json, const fg_calibration *c) {
-  bool exact = json->exact;
-  json->exact = true; /* a file that is read again must measure the same */
-  if (c->certificate[0]) fg_json_string(json, "certificate", c->certificate);
-  if (c->date[0]) fg_json_string(json, "date", c->date);
-  if (c->per_axis) {
-    fg_json_object(json, "scale");
-    write_stated_value(json, "x", &scale_names, 0, c->u_scale[0]);
-    write_stated_value(json, "y", &scale_names, 0, c->u_scale[1]);
-    fg_json_object_end(json);
-  } else {
-    write_stated_value(json, "scale", &scale_names, 0, c->u_scale[0]);
-  }
-  if (c->has_temperature) {
-    write_stated_value(json, "temperature", &temperature_names, c->temperature_c,
-                       c->u_temperature_k);
-    write_stated_value(json, "expansion", &expansion_names, c->expansion_per_k,
-                       c->u_expansion_per_k);
-  }
-  json->exact = exact;
+static double find_factor(const fg_subject *subject) {
+  return fg_calibration_factor(subject->object);
+}
+
+static const double *find_u_scale(const fg_subject *subject, double *values, size_t *count) {
+  const fg_calibration_budget terms = fg_calibration_terms(subject->object);
+  *count = 2;
+  return memcpy(values, terms.scale, sizeof terms.scale);
+}
+
+static const double *find_u_length(const fg_subject *subject, double *values, size_t *count) {
+  const fg_calibration_budget terms = fg_calibration_terms(subject->object);
+  *count = 2;
+  return memcpy(values, terms.length, sizeof terms.length);
+}
+
+static double find_u_by_temperature(const fg_subject *subject) {
+  return fg_calibration_terms(subject->object).temperature;
+}
+
+static double find_u_by_expansion(const fg_subject *subject) {
+  return fg_calibration_terms(subject->object).expansion;
+}
+
+#define AXES_SCHEMA                                                                                \
+  "{\"type\": \"array\", \"items\": " POSITIVE ", \"minItems\": 2, \"maxItems\": 2}"
+#define KNOWN .options = FG_MEMBER_NEVER_NULL | FG_MEMBER_NOT_NEGATIVE
+static const fg_member u_rel_rows[] = {
+    {FG_NUMBERS_BY("scale", find_u_scale), .schema = AXES_SCHEMA,
+     .words = "by the pixel's pitch, along x and y"},
+    {FG_NUMBER_BY("temperature", find_u_by_temperature), KNOWN, .words = "by the part's"},
+    {FG_NUMBER_BY("expansion", find_u_by_expansion), KNOWN, .words = "by the part's"},
+    {FG_NUMBERS_BY("length", find_u_length), .schema = AXES_SCHEMA,
+     .words = "all of them, along x and y"},
+};
+static const fg_members u_rel_members = FG_MEMBERS(u_rel_rows);
+
+/* Rows of the derived values; a measurement's own member `budget` stands behind them. */
+static bool is_never(const fg_subject *subject) {
+  (void)subject;
+  return false;
+}
+
+#define BUDGET_SCHEMA                                                                                \
+  "{\"description\": \"u² = u_statistical² + u_calibration² of every quantity of the page, root " \
+  "mean squares over all parts; what the calibration leaves is the same error in all of them\", "    \
+  "\"type\": \"array\", \"items\": {\"type\": \"object\", \"properties\": {\"quantity\": "           \
+  "{\"type\": \"string\"}, \"u_statistical\": " POSITIVE ", \"u_calibration\": " POSITIVE            \
+  ", \"u\": " POSITIVE "}, \"required\": [\"quantity\", \"u_statistical\", \"u_calibration\", "      \
+  "\"u\"], \"additionalProperties\": false}}"
+
+static const fg_member used_rows[] = {
+    {FG_SAME(&fg_calibration_members)},
+    {FG_NUMBER_BY("reference_C", find_reference), .schema = "{\"const\": 20}",
+     .words = "lengths are those at this temperature"},
+    {FG_NUMBER_BY("length_factor", find_factor), .options = FG_MEMBER_NEVER_NULL,
+     .words = "length at 20 °C over length as scanned"},
+    {FG_GROUP("u_rel", &u_rel_members), .words = "relative standard uncertainties of a length"},
+    {FG_WRITTEN("budget", NULL, BUDGET_SCHEMA), .present = is_never},
+};
+const fg_members fg_calibration_used_members = {
+    .rows = used_rows,
+    .count = sizeof used_rows / sizeof *used_rows,
+    .definition = "calibration_used",
+    .file = "design",
+    .nullable = true,
+};
+
+void fg_json_calibration_members(fg_json *json, const fg_calibration *calibration) {
+  fg_members_json(json, &fg_calibration_used_members, &(fg_subject){.object = calibration});
+}
+
+static void write_calibration(fg_json *json, const char *name, const fg_members *members,
+                              const fg_calibration *calibration) {
+  const fg_member row = {
+      .name = name, .kind = FG_MEMBER_OBJECT, .pointed = true, .members = members};
+  const fg_calibration *stated_one = calibration->stated ? calibration : NULL;
+  fg_member_json(json, &row, &(fg_subject){.object = &stated_one});
 }
 
 void fg_json_calibration(fg_json *json, const char *name, const fg_calibration *calibration) {
-  if (!calibration->stated) {
-    fg_json_string(json, name, NULL);
-    return;
-  }
-  fg_json_object(json, name);
-  write_members(json, calibration);
-  fg_json_object_end(json);
-}
-
-void fg_json_calibration_members(fg_json *json, const fg_calibration *calibration) {
-  fg_calibration_budget terms = fg_calibration_terms(calibration);
-  write_members(json, calibration);
-  fg_json_number(json, "reference_C", FG_REFERENCE_TEMPERATURE_C);
-  fg_json_number(json, "length_factor", fg_calibration_factor(calibration));
-  fg_json_object(json, "u_rel");
-  fg_json_numbers(json, "scale", terms.scale, 2);
-  fg_json_number(json, "temperature", terms.temperature);
-  fg_json_number(json, "expansion", terms.expansion);
-  fg_json_numbers(json, "length", terms.length, 2);
-  fg_json_object_end(json);
+  write_calibration(json, name, &fg_calibration_members, calibration);
 }
 
 void fg_json_calibration_used(fg_json *json, const char *name, const fg_calibration *calibration) {
-  if (!calibration->stated) {
-    fg_json_string(json, name, NULL);
-    return;
-  }
-  fg_json_object(json, name);
-  fg_json_calibration_members(json, calibration);
-  fg_json_object_end(json);
+  write_calibration(json, name, &fg_calibration_used_members, calibration);
 }

@@ -1,65 +1,145 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A design and its derived values as JSON. */
+/* A design and its derived values: the document `foilgauge design -o` writes. */
 #include "core/file.h"
 #include "foilgauge/cantilever.h"
 #include "foilgauge/design_report.h"
+#include "foilgauge/foil_kind.h"
 #include "report/design/beam_deviations.h"
 #include "report/design/json.h"
-#include "report/measure/foil_view.h"
+#include "report/design/kind_members.h"
+#include "report/design/members.h"
 #include "report/stiffness/table.h"
 
-static void write_stiffness(fg_json *json, const fg_design_report *report) {
-  const fg_stiffness_of_design stiffness =
-      fg_stiffness_find_of_design(report->design, report->material);
-  fg_json_object(json, "stiffness");
-  fg_members_json(json, &fg_stiffness_design_members, &(fg_subject){.object = &stiffness});
-  fg_json_object_end(json);
+/* Values that follow from a design, in the report that is written. */
+typedef struct nominal_report {
+  const fg_design *design;
+  const fg_nominal *nominal;
+  fg_cantilever beam, deviating[FG_BEAM_DEVIATIONS];
+  double second_moment_mm4;
+  fg_stiffness_of_design stiffness;
+} nominal_report;
+
+#define KNOWN .options = FG_MEMBER_NEVER_NULL
+static const fg_member nominal_rows[] = {
+    {FG_NUMBER("centre_to_centre_mm", fg_nominal, centre_to_centre_mm), KNOWN,
+     .words = "X, from the bump's centre to the overall centre"},
+    {FG_NUMBER("half_chord_mm", fg_nominal, half_chord_mm), KNOWN,
+     .words = "l0 = R sin(alpha / 2)"},
+    {FG_NUMBER("arc_length_mm", fg_nominal, arc_length_mm), KNOWN, .words = "of a bump, alpha R"},
+    {FG_NUMBER("intersection_angle_deg", fg_nominal, intersection_angle_deg), KNOWN,
+     .words = "theta"},
+    {FG_NUMBER("height_mm", fg_nominal, height_mm), KNOWN, .words = "h of a bump"},
+    {FG_NUMBER("die_height_mm", fg_nominal, die_height_mm), KNOWN,
+     .words = "of the die, t + R - R cos(alpha / 2)"},
+    {FG_NUMBER("clearance_mm", fg_nominal, clearance_mm), KNOWN, .words = "of the bearing"},
+};
+const fg_members fg_nominal_members = FG_MEMBERS(nominal_rows);
+
+static const fg_member arc_rows[] = {
+    {FG_NUMBER("arc_length_mm", fg_nominal, arc_length_mm), KNOWN, .words = "from end to end"},
+};
+static const fg_members arc_members = FG_MEMBERS(arc_rows);
+
+static double find_length_error(const fg_subject *subject) {
+  return fg_beam_deviations_pct[subject->index][0];
 }
 
-static void write_deviating(fg_json *json, const fg_design *design, double length_pct,
-                            double width_pct) {
-  const fg_cantilever beam = fg_cantilever_deviating(design, length_pct, width_pct);
-  fg_json_object(json, NULL);
-  fg_json_line(json);
-  fg_json_number(json, "length_error_pct", length_pct);
-  fg_json_number(json, "width_error_pct", width_pct);
-  fg_json_number(json, "compliance_error_pct", beam.compliance_error_pct);
-  fg_json_number(json, "sagitta_error_pct", beam.sagitta_error_pct);
-  fg_json_number(json, "clearance_change_mm", beam.clearance_change_mm);
-  fg_json_number(json, "clearance_change_pct", beam.clearance_change_pct);
-  fg_json_object_end(json);
-  fg_json_line_end(json);
+static double find_width_error(const fg_subject *subject) {
+  return fg_beam_deviations_pct[subject->index][1];
 }
 
-void fg_nominal_json_of_beams(fg_json *json, const fg_design_report *report) {
-  const fg_design *design = report->design;
-  const fg_cantilever beam = fg_cantilever_nominal(design);
-  fg_json_object(json, "nominal");
-  fg_json_number(json, "second_moment_mm4", fg_cantilever_second_moment_mm4(design));
-  fg_json_number(json, "compliance_mm_per_n", beam.compliance_mm_per_n);
-  fg_json_number(json, "u_compliance_mm_per_n", beam.u_compliance_mm_per_n);
-  fg_json_array(json, "deviations");
-  for (size_t i = 0; i < FG_BEAM_DEVIATIONS; i++)
-    write_deviating(json, design, fg_beam_deviations_pct[i][0], fg_beam_deviations_pct[i][1]);
-  fg_json_array_end(json);
-  fg_json_object_end(json);
+static const fg_member deviation_rows[] = {
+    {FG_NUMBER_BY("length_error_pct", find_length_error), .options = FG_MEMBER_NEVER_NULL},
+    {FG_NUMBER_BY("width_error_pct", find_width_error), .options = FG_MEMBER_NEVER_NULL},
+    {FG_NUMBER("compliance_error_pct", fg_cantilever, compliance_error_pct),
+     .options = FG_MEMBER_NEVER_NULL},
+    {FG_NUMBER("sagitta_error_pct", fg_cantilever, sagitta_error_pct),
+     .options = FG_MEMBER_NEVER_NULL},
+    {FG_NUMBER("clearance_change_mm", fg_cantilever, clearance_change_mm),
+     .words = "null without sagitta_mm"},
+    {FG_NUMBER("clearance_change_pct", fg_cantilever, clearance_change_pct),
+     .words = "null without clearance_mm"},
+};
+static const fg_members deviation_members = FG_MEMBERS(deviation_rows);
+
+static bool find_deviation(const fg_subject *list, size_t i, fg_subject *element) {
+  element->object = &((const nominal_report *)list->object)->deviating[i];
+  return i < FG_BEAM_DEVIATIONS;
 }
 
-void fg_nominal_json_of_bumps(fg_json *json, const fg_design_report *report) {
-  fg_json_nominal(json, "nominal", report->nominal);
-  write_stiffness(json, report);
+static const fg_member beam_rows[] = {
+    {FG_NUMBER("second_moment_mm4", nominal_report, second_moment_mm4), KNOWN,
+     .words = "I = w t^3 / 12"},
+    {FG_NUMBER_U("compliance_mm_per_n", nominal_report, beam.compliance_mm_per_n,
+                 beam.u_compliance_mm_per_n),
+     .words = "L^3 / (3 E I); null without elastic_modulus_gpa"},
+    {FG_LIST_BY("deviations", find_deviation, &deviation_members), .options = FG_MEMBER_ON_LINE,
+     .words = "consequences of deviations of length and width"},
+};
+static const fg_members beam_members = FG_MEMBERS(beam_rows);
+
+static fg_subject design_of(const fg_subject *subject) {
+  return (fg_subject){.object = ((const nominal_report *)subject->object)->design};
+}
+
+static bool is_report_of_bumps(const fg_subject *subject) {
+  const fg_subject design = design_of(subject);
+  return fg_design_is_of_bumps(&design);
+}
+
+static bool is_report_of_arc(const fg_subject *subject) {
+  const fg_subject design = design_of(subject);
+  return fg_design_is_of_arc(&design);
+}
+
+static bool is_report_of_beams(const fg_subject *subject) {
+  const fg_subject design = design_of(subject);
+  return fg_design_is_of_beams(&design);
+}
+
+static const fg_member report_rows[] = {
+    {FG_HEAD("foilgauge/nominal/1")},
+    {FG_POINTED("design", nominal_report, design, &fg_design_members),
+     .schema = FG_REF("design.schema.json"), .words = "as stated"},
+    {FG_POINTED("nominal", nominal_report, nominal, &fg_nominal_members), KNOWN,
+     .present = is_report_of_bumps, .words = "of a foil with bumps (thesis eq 5.1, 5.2, 5.5, 5.8)"},
+    {FG_POINTED("nominal", nominal_report, nominal, &arc_members),
+     .options = FG_MEMBER_NEVER_NULL | FG_MEMBER_EITHER, .present = is_report_of_arc,
+     .words = "of an arc"},
+    {FG_GROUP("nominal", &beam_members), .options = FG_MEMBER_EITHER, .present = is_report_of_beams,
+     .words = "of a cantilever"},
+    {FG_OBJECT("stiffness", nominal_report, stiffness, &fg_stiffness_design_members),
+     .present = is_report_of_bumps,
+     .words = "of a bump, by three models (include/foilgauge/stiffness.h)"},
+};
+static const fg_members report_members = FG_MEMBERS(report_rows);
+
+const fg_document fg_nominal_document = {
+    .file = "nominal",
+    .title = "foilgauge design, with its derived values",
+    .made_by = "`foilgauge design -o`",
+    .members = &report_members,
+};
+
+void fg_json_nominal(fg_json *json, const char *name, const fg_nominal *nominal) {
+  fg_json_object(json, name);
+  fg_members_json(json, &fg_nominal_members, &(fg_subject){.object = nominal});
+  fg_json_object_end(json);
 }
 
 fg_status fg_design_write_json(fg_context *ctx, const fg_design_report *report, FILE *out) {
   const fg_design *design = report->design;
-  const fg_foil_view *view = fg_foil_view_of(design->kind);
-  fg_json json;
-  fg_json_begin(&json, out);
-  fg_json_object(&json, NULL);
-  fg_json_head(&json, "foilgauge/nominal/1");
-  fg_json_design(&json, "design", design);
-  if (view->nominal_json) view->nominal_json(&json, report);
-  fg_json_object_end(&json);
-  fg_json_end(&json);
+  const fg_design_group group = fg_foil_traits_of(design->kind)->group;
+  nominal_report made = {.design = design, .nominal = report->nominal};
+  if (group == FG_DESIGN_BEAMS) {
+    made.beam = fg_cantilever_nominal(design);
+    made.second_moment_mm4 = fg_cantilever_second_moment_mm4(design);
+    for (size_t i = 0; i < FG_BEAM_DEVIATIONS; i++)
+      made.deviating[i] = fg_cantilever_deviating(design, fg_beam_deviations_pct[i][0],
+                                                  fg_beam_deviations_pct[i][1]);
+  }
+  if (group == FG_DESIGN_BUMPS)
+    made.stiffness = fg_stiffness_find_of_design(design, report->material);
+  fg_document_json(out, &report_members, &made);
   return fg_stream_finish(ctx, out, "the design");
 }

@@ -26,9 +26,7 @@ typedef struct fg_foil_view {
   const char *points_heading; /* CSV of edge points */
   fg_quantity_owner lines;    /* CSV of values: a line is of this */
   const char *own;            /* JSON object of quantities that this kind alone has; NULL */
-  /* JSON: dimensions of a design, what follows from them, values of a foil. */
-  void (*design_json)(fg_json *json, const fg_design *design);
-  void (*nominal_json)(fg_json *json, const fg_design_report *report);
+  /* JSON: values of a foil. */
   void (*values_json)(fg_json *json, const fg_design *design, const fg_foil *foil);
   /* Terminal: a design, what a foil is, its parts (NULL: none). */
   void (*design_table)(const fg_design_report *report, FILE *out);
@@ -59,11 +57,6 @@ extern const fg_foil_view fg_foil_view_arc;
 
 /* ---- functions of rows ---- */
 
-void fg_design_json_of_bumps(fg_json *json, const fg_design *design);
-void fg_design_json_of_beams(fg_json *json, const fg_design *design);
-void fg_design_json_of_discs(fg_json *json, const fg_design *design);
-void fg_nominal_json_of_bumps(fg_json *json, const fg_design_report *report);
-void fg_nominal_json_of_beams(fg_json *json, const fg_design_report *report);
 void fg_values_json_of_strip(fg_json *json, const fg_design *design, const fg_foil *foil);
 void fg_values_json_of_beams(fg_json *json, const fg_design *design, const fg_foil *foil);
 void fg_design_table_of_bumps(const fg_design_report *report, FILE *out);

@@ -11,19 +11,6 @@
 #include "report/measure/page_tables.h"
 #include "report/measure/thickness_budget.h"
 
-static void design_json_of_arc(fg_json *json, const fg_design *design) {
-  fg_json_string(json, "datum", fg_datum_word(design->datum));
-  fg_json_number(json, "overall_radius_mm", design->overall_radius_mm);
-  fg_json_number(json, "subtended_angle_deg", design->arc.subtended_angle_deg);
-  fg_json_number(json, "thickness_mm", design->thickness_mm);
-}
-
-static void nominal_json_of_arc(fg_json *json, const fg_design_report *report) {
-  fg_json_object(json, "nominal");
-  fg_json_number(json, "arc_length_mm", report->nominal->arc_length_mm);
-  fg_json_object_end(json);
-}
-
 static void design_table_of_arc(const fg_design_report *report, FILE *out) {
   const fg_design *design = report->design;
   const fg_nominal *nominal = report->nominal;
@@ -108,8 +95,6 @@ const fg_foil_view fg_foil_view_arc = {
     .points_heading = FG_STATIONS_HEADING,
     .lines = FG_QUANTITY_OF_FOIL,
     .own = "arc",
-    .design_json = design_json_of_arc,
-    .nominal_json = nominal_json_of_arc,
     .values_json = fg_values_json_of_strip,
     .design_table = design_table_of_arc,
     .foil_heading = head_arc,

@@ -16,16 +16,6 @@ static void write_stated_gauge(fg_json *json, const fg_gauge *gauge) {
   fg_json_number(json, "u_mm", gauge->u_mm);
 }
 
-void fg_json_gauges_stated(fg_json *json, const fg_design *design) {
-  fg_json_array(json, "gauges");
-  for (size_t i = 0; i < design->gauge_count; i++) {
-    fg_json_object(json, NULL);
-    write_stated_gauge(json, &design->gauges[i]);
-    fg_json_object_end(json);
-  }
-  fg_json_array_end(json);
-}
-
 static void write_reading(fg_json *json, const fg_gauge_reading *reading) {
   fg_json_bool(json, "found", reading->found);
   fg_json_bool(json, "used", reading->used);

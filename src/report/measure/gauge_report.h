@@ -8,9 +8,6 @@
 #include "core/json_writer.h"
 #include "foilgauge/foil.h"
 
-/* Writes the member `gauges` of a design. */
-void fg_json_gauges_stated(fg_json *json, const fg_design *design);
-
 /* Writes the member `gauges` of one scan: as stated, and as found. */
 void fg_json_gauges(fg_json *json, const fg_measurement *measurement);
 
