@@ -158,24 +158,6 @@ void fg_json_of(fg_json *json, const char *before, const char *name, double valu
   fg_json_number(json, whole, value);
 }
 
-void fg_json_strings(fg_json *json, const char *name, const char *const *texts, size_t count) {
-  fg_json_array(json, name);
-  for (size_t i = 0; i < count; i++)
-    fg_json_string(json, NULL, texts[i]);
-  fg_json_array_end(json);
-}
-
-void fg_json_file(fg_json *json, const char *name, const char *path, const char *sha256) {
-  if (!path) {
-    fg_json_string(json, name, NULL);
-    return;
-  }
-  fg_json_object(json, name);
-  fg_json_string(json, "path", path);
-  fg_json_string(json, "sha256", sha256);
-  fg_json_object_end(json);
-}
-
 void fg_json_head(fg_json *json, const char *schema) {
   fg_json_string(json, "schema", schema);
   fg_json_string(json, "version", FOILGAUGE_VERSION);

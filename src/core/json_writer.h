@@ -49,10 +49,6 @@ void fg_json_numbers(fg_json *json, const char *name, const double *values, size
 
 /* Writes a number under its name with a word before it: "u_" and "radius_mm". */
 void fg_json_of(fg_json *json, const char *before, const char *name, double value);
-/* Writes an array of texts. */
-void fg_json_strings(fg_json *json, const char *name, const char *const *texts, size_t count);
-/* Writes an input file: an object of its path and SHA-256; null without a path. */
-void fg_json_file(fg_json *json, const char *name, const char *path, const char *sha256);
 
 /* Writes the digits of a number as in JSON, or "null". */
 void fg_json_format(char text[32], double value);

@@ -3,17 +3,9 @@
 #ifndef FG_REPORT_SCAN_LOOP_BUMPS_H
 #define FG_REPORT_SCAN_LOOP_BUMPS_H
 
-#include "core/json_writer.h"
-#include "foilgauge/scan_result.h"
+#include <stdio.h>
 
-/* Writes into the open arrays `claims` and `rejected`. */
-void fg_json_bump_claims(fg_json *json, const fg_scan_result_bumps *bumps);
-void fg_json_bump_rejected(fg_json *json, const fg_scan_result_bumps *bumps);
-/* Writes the member `unattributed`; returns false, and writes nothing, when the bumps have no such
- * curve. */
-bool fg_json_bump_curve(fg_json *json, const fg_scan_result_bumps *bumps);
-/* Writes the member `bumps`. */
-void fg_json_bumps(fg_json *json, const fg_scan_result_bumps *bumps);
+#include "foilgauge/scan_result.h"
 
 void fg_text_bumps(const fg_scan_result_bumps *bumps, FILE *out);
 /* Writes the effects that are not claimed. */

@@ -19,9 +19,6 @@ void fg_scan_loop_held_out_words(const fg_scan_result *result, char words[FG_HEL
 /* Returns the largest of 1, 2, 5 times a power of ten that is not above `max`. */
 double fg_scan_loop_nice_below(double max);
 
-/* "for", "against", "cannot_tell". */
-const char *fg_channel_check_word(fg_channel_check_verdict verdict);
-
 /* Writes the page's summary sentence; the caller frees it (sentence.c). */
 fg_status fg_scan_loop_sentence(fg_context *ctx, const fg_scan_result *result, char **text);
 

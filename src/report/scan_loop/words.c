@@ -22,17 +22,3 @@ void fg_scan_loop_held_out_words(const fg_scan_result *result, char words[FG_HEL
   if (result->held_out == FG_SCAN_HELD_OUT_FOLDS)
     fg_text_clip(words, FG_HELD_OUT_WORDS, "%s that took no part in the search", result->fold_of);
 }
-
-const char *fg_channel_check_word(fg_channel_check_verdict verdict) {
-  switch (verdict) {
-  case FG_CHANNEL_CHECK_FOR:
-    return "for";
-  case FG_CHANNEL_CHECK_AGAINST:
-    return "against";
-  case FG_CHANNEL_CHECK_CANNOT_TELL:
-    return "cannot_tell";
-  case FG_CHANNEL_CHECK_NONE:
-    break;
-  }
-  return "";
-}

@@ -1,0 +1,291 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "report/scan_loop/members.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "core/file.h"
+#include "foilgauge/scan_loop.h"
+#include "report/design/calibration_json.h"
+#include "report/measure/json.h"
+#include "report/scan_loop/parts.h"
+
+/* A member that has one word in every report. */
+#define CONSTANT(name_, word_)                                                                     \
+  FG_WORD_BY(name_, find_only_word, ((const char *const[]){word_, NULL})),                         \
+      .options = FG_MEMBER_NEVER_NULL
+
+static int find_only_word(const fg_subject *subject) {
+  (void)subject;
+  return 0;
+}
+
+/* Scans. */
+static const char *find_scan_path(const fg_subject *s, char *buffer) {
+  (void)buffer;
+  return ((const fg_scan_result_scan *)s->object)->before->scan;
+}
+
+static const char *find_scan_sha256(const fg_subject *s, char *buffer) {
+  (void)buffer;
+  return ((const fg_scan_result_scan *)s->object)->before->sha256;
+}
+
+static const fg_member input_rows[] = {
+    {FG_TEXT_BY("path", find_scan_path), .options = FG_MEMBER_NEVER_NULL},
+    {FG_TEXT_BY("sha256", find_scan_sha256), .options = FG_MEMBER_NEVER_NULL,
+     .pattern = "^[0-9a-f]{64}$"},
+    {FG_FLAG("hold_out", fg_scan_result_scan, hold_out), .words = "the scan only confirms"},
+};
+static const fg_members input_members = FG_MEMBERS(input_rows);
+
+/* Noise of a row, and half the strip's width. */
+static const char *const noise_words[] = {"white", "gaussian", "exponential", NULL};
+
+static const double *list_disc_noise(const fg_subject *s, double *buffer, size_t *count) {
+  const fg_scan_noise *noise = s->object;
+  (void)buffer;
+  *count = noise->discs;
+  return noise->disc_um;
+}
+
+static const fg_member noise_rows[] = {
+    {FG_STRING("form", fg_scan_noise, model), .choices = noise_words,
+     .options = FG_MEMBER_NEVER_NULL},
+    {FG_NUMBER("sd", fg_scan_noise, sd_um)},
+    {FG_NUMBER("white_sd", fg_scan_noise, white_um)},
+    {FG_NUMBER("correlated_sd", fg_scan_noise, correlated_um)},
+    {FG_NUMBER("correlation", fg_scan_noise, correlation), .lowest = 0, .highest = 1,
+     .options = FG_MEMBER_NEVER_NULL},
+    {FG_NUMBER("range_mm", fg_scan_noise, range_mm),
+     .options = FG_MEMBER_NEVER_NULL | FG_MEMBER_NOT_NEGATIVE},
+    {FG_NUMBER("long_waves", fg_scan_noise, long_waves), .lowest = 1,
+     .options = FG_MEMBER_NEVER_NULL},
+    {FG_NUMBERS_BY("sd_of_discs", list_disc_noise), .options = FG_MEMBER_LEFT_OUT,
+     .words = "form discs only: every disc has its own, in the order of before.discs; sd is that "
+              "of the cleanest one"},
+};
+static const fg_members noise_members = FG_MEMBERS(noise_rows);
+
+static const fg_member half_width_rows[] = {
+    {FG_NUMBER("rms", fg_scan_result, half_width_rms_um)},
+    {FG_NUMBER("smooth", fg_scan_result, half_width_smooth_um)},
+};
+static const fg_members half_width_members = FG_MEMBERS(half_width_rows);
+
+/* A side, before or after the correction: its errors, whose index is 1 after. */
+static fg_subject find_before(const fg_subject *s) {
+  return (fg_subject){&fg_scan_result_of(s)->before, s->whole, 0};
+}
+
+static fg_subject find_after(const fg_subject *s) {
+  return (fg_subject){&fg_scan_result_of(s)->after, s->whole, 1};
+}
+
+static bool is_of_width(const fg_subject *s) {
+  return fg_scan_result_of(s)->of_width;
+}
+
+static bool is_of_discs(const fg_subject *s) {
+  return fg_scan_result_of(s)->discs;
+}
+
+static double find_side_width(const fg_subject *s) {
+  const fg_scan_result *result = fg_scan_result_of(s);
+  return s->index ? result->width_after_um : result->width_before_um;
+}
+
+static const fg_member side_width_rows[] = {{FG_NUMBER_BY("rms", find_side_width)}};
+static const fg_members side_width_members = FG_MEMBERS(side_width_rows);
+
+/* Parts of all scans of a side: their index is twice the scan's, and 1 more after. */
+#define PARTS_OF_SIDE(function, count_, parts_)                                                    \
+  static bool function(const fg_subject *side, size_t i, fg_subject *element) {                    \
+    const fg_scan_result *result = fg_scan_result_of(side);                                        \
+    for (size_t k = 0; k < result->scans; k++) {                                                   \
+      const fg_scan_result_scan *scan = &result->scan[k];                                          \
+      const fg_measurement *m = side->index ? scan->after : scan->before;                          \
+      if (i < m->count_) {                                                                         \
+        element->object = &m->parts_[i];                                                           \
+        element->index = 2 * k + side->index;                                                      \
+        return true;                                                                               \
+      }                                                                                            \
+      i -= m->count_;                                                                              \
+    }                                                                                              \
+    return false;                                                                                  \
+  }
+PARTS_OF_SIDE(find_side_foil, foil_count, foils)
+PARTS_OF_SIDE(find_side_disc, disc_count, discs)
+
+/* Writes a part as the measurement does; keeps the first failure. */
+#define WRITE_PART(function, writer)                                                               \
+  static void function(fg_json *json, const char *name, const fg_subject *s) {                     \
+    (void)name;                                                                                    \
+    const fg_scan_report *report = s->whole;                                                       \
+    const fg_scan_result_scan *scan = &report->result->scan[s->index / 2];                         \
+    const fg_measurement *m = s->index % 2 ? scan->after : scan->before;                           \
+    fg_status status = writer(report->ctx, json, &m->design, s->object);                           \
+    if (*report->status == FG_OK) *report->status = status;                                        \
+  }
+WRITE_PART(write_side_foil, fg_json_foil)
+WRITE_PART(write_side_disc, fg_json_disc)
+
+static const fg_member foil_rows[] = {
+    {FG_WRITTEN(NULL, write_side_foil,
+                "{\"type\": \"object\", \"required\": [\"overall\", \"bumps\", \"flags\"]}")}};
+static const fg_members foil_members = FG_MEMBERS(foil_rows);
+static const fg_member disc_rows[] = {
+    {FG_WRITTEN(NULL, write_side_disc,
+                "{\"type\": \"object\", \"required\": [\"number\", \"radius_mm\", \"u_radius_mm\", "
+                "\"flags\"]}")}};
+static const fg_members disc_members = FG_MEMBERS(disc_rows);
+
+static const fg_member side_rows[] = {
+    {FG_NUMBER("rms", fg_scan_loop_error, rms), .words = "of the edge rows"},
+    {FG_NUMBER("held_out_rms", fg_scan_loop_error, held_out_rms),
+     .words =
+         "of scans kept aside; without, cross-fitted: bumps (discs; where a curve over a place was "
+         "found, short stretches of the edge) go round folds, the search is repeated without each, "
+         "and what it finds then is taken out of that fold, with the geometry fitted to all rows. "
+         "Before nothing but the geometry is fitted. Where nothing was found it is rms; null where "
+         "bumps are too few"},
+    {FG_NUMBER("robust_sd", fg_scan_loop_error, robust_sd)},
+    {FG_NUMBER("p95", fg_scan_loop_error, p95), .words = "95th percentile of their size"},
+    {FG_NUMBER("maximum", fg_scan_loop_error, maximum)},
+    {FG_GROUP("half_width", &side_width_members), .present = is_of_width,
+     .words = "only where an effect of the strip's width is claimed: half the width about its mean "
+              "over every view, without and with the scanner's stretch and what is claimed"},
+    {FG_LIST_BY("foils", find_side_foil, &foil_members),
+     .words = "every foil of every scan as `measure` reports it"},
+    {FG_LIST_BY("discs", find_side_disc, &disc_members), .present = is_of_discs,
+     .words = "form discs only: every hole and disc of every scan; `foils` is empty then"},
+};
+static const fg_members side_members = FG_MEMBERS_DEFINED(side_rows, "side");
+
+/* Errors after over those before. */
+static const char *const fold_words[] = {"bumps", "discs", "stretches of the edge", NULL};
+
+static double find_rms_ratio(const fg_subject *s) {
+  const fg_scan_result *result = fg_scan_result_of(s);
+  return result->after.rms / result->before.rms;
+}
+
+static double find_held_out_ratio(const fg_subject *s) {
+  const fg_scan_result *result = fg_scan_result_of(s);
+  return result->after.held_out_rms / result->before.held_out_rms;
+}
+
+static const fg_member ratio_rows[] = {
+    {FG_NUMBER_BY("rms", find_rms_ratio)},
+    {FG_NUMBER_BY("held_out", find_held_out_ratio)},
+    {FG_COUNT("folds", fg_scan_result, folds)},
+    {FG_STRING("fold_of", fg_scan_result, fold_of), .choices = fold_words},
+};
+static const fg_members ratio_members = FG_MEMBERS(ratio_rows);
+
+/* The report. */
+static const char *const outcome_words[] = {
+    [FG_LOOP_CLEAN] = "clean",
+    [FG_LOOP_EXPLAINED] = "explained",
+    [FG_LOOP_PARTLY] = "partly explained",
+    [FG_LOOP_UNATTRIBUTED] = "unattributed",
+    NULL,
+};
+
+static const char *find_sentence(const fg_subject *s, char *buffer) {
+  (void)buffer;
+  return ((const fg_scan_report *)s->whole)->sentence;
+}
+
+static void write_calibration(fg_json *json, const char *name, const fg_subject *s) {
+  fg_json_calibration_used(json, name, &fg_scan_result_of(s)->scan[0].before->design.calibration);
+}
+
+static const char *advice_at(const fg_subject *s, size_t i) {
+  const fg_scan_result *result = s->object;
+  return i < result->advices ? result->advice[i] : NULL;
+}
+
+static const char *note_at(const fg_subject *s, size_t i) {
+  const fg_scan_result *result = s->object;
+  return i < result->notes ? result->note[i] : NULL;
+}
+
+static const fg_member result_rows[] = {
+    {FG_HEAD("foilgauge/loop/1")},
+    {CONSTANT("domain", "scan"), .words = "a loop on scans, not on a table"},
+    {FG_WORD("verdict", fg_scan_result, verdict, outcome_words),
+     .words = "on the residual of the edges and of the bumps"},
+    {FG_TEXT_BY("summary", find_sentence), .options = FG_MEMBER_NEVER_NULL, .pattern = ".",
+     .words = "what was found and how sure it is, in words"},
+    {FG_LIST("inputs", fg_scan_result, scan, scans, &input_members), .lowest = 1,
+     .words = "scans, in their order"},
+    {FG_WRITTEN("calibration", write_calibration,
+                FG_REF("design.schema.json#/$defs/calibration_used")),
+     .words = "it is in u_ of the foils of before and after, and in nothing that the loop decides"},
+    {FG_FLAG("same_foil", fg_scan_result, same_foil), .words = "all scans show the same foil"},
+    {FG_NUMBER("p_value", fg_scan_result, p_value),
+     .words = "that no effect is needed: all candidates together against the noise"},
+    {FG_NUMBER("noise_floor", fg_scan_result, noise_floor_um),
+     .words = "sd of an edge row that all effects together leave"},
+    {FG_OBJECT("noise", fg_scan_result, noise, &noise_members),
+     .words =
+         "of an edge row, as the search left it beside what was found. form: white (rows are "
+         "independent), or how the correlation of two rows falls with their distance d along the "
+         "edge beside the white part: gaussian exp(-(d / range)^2), exponential exp(-d / range). "
+         "sd^2 = white_sd^2 + correlated_sd^2; correlation: correlated_sd^2 / sd^2; long_waves: "
+         "variance of waves of half a millimetre over what the form says of them"},
+    {FG_NUMBER("edge_model_error", fg_scan_result, edge_model_error_um),
+     .words = "of the edge model, allowed for in every decision"},
+    {FG_GROUP("half_width", &half_width_members),
+     .words = "half the strip's width along the edges, beside the scanner's stretch: all of it, "
+              "and what follows place or direction (threshold, flare, shading, one-sided blur move "
+              "the edges apart; geometry moves them together)"},
+    {CONSTANT("unit", "um"), .words = "of residuals and amplitudes"},
+    {FG_PART("before", find_before, &side_members), .options = FG_MEMBER_NEVER_NULL,
+     .words = "errors of the edge rows and the foils as measured"},
+    {FG_LIST_BY("claims", fg_scan_find_claim, &fg_scan_claim_members),
+     .words = "effects of the corrected model"},
+    {FG_PART("unattributed", fg_scan_find_curve, &fg_scan_curve_members),
+     .words = "largest curve that no listed effect explains; null: none"},
+    {FG_PART("after", find_after, &side_members), .options = FG_MEMBER_NEVER_NULL,
+     .words = "errors of the edge rows and the foils as corrected"},
+    {FG_GROUP("error_ratio", &ratio_members),
+     .words = "after / before. folds: that held_out is cross-fitted over; 0 where scans were kept "
+              "aside, nothing was found (the ratio is 1), or bumps are too few (null). fold_of: "
+              "what took turns; null where nothing did"},
+    {FG_LIST_BY("rejected", fg_scan_find_rejected, &fg_scan_rejected_members),
+     .words = "effects that are not claimed"},
+    {FG_TEXTS_BY("separating_measurement", advice_at),
+     .words = "measurements that would tell the explanations apart"},
+    {FG_OBJECT("bumps", fg_scan_result, bumps, &fg_scan_bumps_members),
+     .words = "the bumps of `after` against the declared springback, or against the declared "
+              "forming; views of one foil are averaged"},
+    {FG_TEXTS_BY("notes", note_at), .words = "what else is to be known"},
+};
+static const fg_members result_members = FG_MEMBERS(result_rows);
+
+static const fg_member report_rows[] = {
+    {FG_SAME(&result_members), .offset = offsetof(fg_scan_report, result), .pointed = true}};
+static const fg_members report_members = FG_MEMBERS(report_rows);
+
+const fg_document fg_scan_loop_document = {
+    .file = "loop_scan",
+    .title =
+        "foilgauge loop report of scans (\"schema\": \"foilgauge/loop/1\", \"domain\": \"scan\")",
+    .description = "What the scanner or the foil does that the geometry lacks. Residuals and "
+                   "amplitudes in um.",
+    .made_by = "`foilgauge loop SCAN -o`",
+    .members = &report_members,
+};
+
+fg_status fg_scan_loop_write_json(fg_context *ctx, const fg_scan_loop *loop, FILE *out) {
+  char *sentence = NULL;
+  fg_status status = FG_OK;
+  fg_scan_report report = {.result = fg_scan_loop_result(loop), .ctx = ctx, .status = &status};
+  FG_TRY(fg_scan_loop_sentence(ctx, report.result, &sentence));
+  report.sentence = sentence;
+  fg_document_json(out, &report_members, &report);
+  free(sentence);
+  return status;
+}
