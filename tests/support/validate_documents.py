@@ -18,7 +18,6 @@ from validate_schema import jsonschema, validator
 
 # Documents that have no schema in reports/schema.
 WITHOUT_SCHEMA = {
-    "foilgauge/loop-model/1",
     "foilgauge/recipe/1",
     "foilgauge/results/2",
     "foilgauge/truth/1",
