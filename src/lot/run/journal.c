@@ -11,6 +11,7 @@
 
 #include "core/file.h"
 #include "core/json_read.h"
+#include "core/member.h"
 #include "core/memory.h"
 #include "core/text.h"
 #include "lot/run/seal.h"
@@ -28,21 +29,37 @@ static fg_status fail_file(fg_context *ctx, const char *path, const char *what) 
                  strerror(errno), advice);
 }
 
+static const char *find_schema(const fg_subject *subject, char *buffer) {
+  (void)subject, (void)buffer;
+  return SCHEMA;
+}
+
+static const double *list_shard(const fg_subject *subject, double *values, size_t *count) {
+  const fg_lot_shard *shard = &((const fg_journal_head *)subject->object)->shard;
+  values[0] = (double)shard->index;
+  values[1] = (double)shard->count;
+  *count = 2;
+  return values;
+}
+
+/* Members of the first line, before the names of the values. */
+static const fg_member head_rows[] = {
+    {FG_TEXT_BY("schema", find_schema)},
+    {FG_TEXT("version", fg_journal_head, version)},
+    {FG_NUMBERS_BY("shard", list_shard)},
+    {FG_COUNT("items", fg_journal_head, items)},
+    {FG_TEXT("manifest_sha256", fg_journal_head, manifest_sha256)},
+    {FG_TEXT("recipe_sha256", fg_journal_head, recipe_sha256)},
+    {FG_TEXT("measured_with", fg_journal_head, measured_with)},
+};
+static const fg_members head_members = FG_MEMBERS(head_rows);
+
 static void write_head_members(FILE *out, const fg_journal_head *head) {
   fg_json json;
   fg_json_begin(&json, out);
   fg_json_line(&json);
   fg_json_object(&json, NULL);
-  fg_json_string(&json, "schema", SCHEMA);
-  fg_json_string(&json, "version", head->version);
-  fg_json_array(&json, "shard");
-  fg_json_integer(&json, NULL, (int64_t)head->shard.index);
-  fg_json_integer(&json, NULL, (int64_t)head->shard.count);
-  fg_json_array_end(&json);
-  fg_json_integer(&json, "items", (int64_t)head->items);
-  fg_json_string(&json, "manifest_sha256", head->manifest_sha256);
-  fg_json_string(&json, "recipe_sha256", head->recipe_sha256);
-  fg_json_string(&json, "measured_with", head->measured_with);
+  fg_members_json(&json, &head_members, &(fg_subject){.object = head});
   fg_record_write_names(&json);
   fg_json_object_end(&json);
   fg_json_end(&json);
@@ -64,10 +81,14 @@ static fg_status write_journal_head(fg_context *ctx, FILE *out, const fg_journal
   return FG_OK;
 }
 
-static bool read_head_text(const cJSON *root, const char *name, char *text, size_t size) {
-  const cJSON *value = cJSON_GetObjectItemCaseSensitive(root, name);
-  if (!cJSON_IsString(value) || strlen(value->valuestring) >= size) return false;
-  strcpy(text, value->valuestring);
+static bool read_head_texts(const cJSON *root, fg_journal_head *head) {
+  for (size_t i = 0; i < head_members.count; i++) {
+    const fg_member *row = &head_rows[i];
+    const cJSON *value = cJSON_GetObjectItemCaseSensitive(root, row->name);
+    if (row->kind != FG_MEMBER_TEXT) continue;
+    if (!cJSON_IsString(value) || strlen(value->valuestring) >= row->stride) return false;
+    strcpy((char *)head + row->offset, value->valuestring);
+  }
   return true;
 }
 
@@ -81,10 +102,7 @@ static bool read_head_members(const cJSON *root, fg_journal_head *head) {
     return false;
   head->shard = (fg_lot_shard){(size_t)index->valuedouble, (size_t)count->valuedouble};
   head->items = (size_t)items->valuedouble;
-  return read_head_text(root, "version", head->version, sizeof head->version) &&
-         read_head_text(root, "manifest_sha256", head->manifest_sha256, 65) &&
-         read_head_text(root, "recipe_sha256", head->recipe_sha256, 65) &&
-         read_head_text(root, "measured_with", head->measured_with, 65);
+  return read_head_texts(root, head);
 }
 
 static bool is_of_schema(const cJSON *root, const char *expected) {

@@ -9,6 +9,7 @@
 #include <cjson/cJSON.h>
 
 #include "core/date.h"
+#include "core/member.h"
 #include "core/memory.h"
 #include "core/text.h"
 #include "foilgauge/words.h"
@@ -109,18 +110,30 @@ static fg_status format_bytes(fg_context *ctx, const char *text, char **hex) {
   return FG_OK;
 }
 
-static void print_record(FILE *out, const fg_record *record, const char *scan_bytes,
-                         const fg_measurement *measurement) {
+/* A line of the journal, and the bytes of a scan's name as hex digits. */
+typedef struct record_line {
+  fg_record record;
+  char *scan_bytes; /* NULL: the name is UTF-8 */
+} record_line;
+
+/* Members before the foils, as they are written and read. Those of early versions had no date. */
+static const fg_member line_rows[] = {
+    {FG_STRING("scan", record_line, record.scan)},
+    {FG_STRING("scan_bytes", record_line, scan_bytes), .options = FG_MEMBER_LEFT_OUT},
+    {FG_TEXT("sha256", record_line, record.sha256), .options = FG_MEMBER_EMPTY_IS_NULL},
+    {FG_TEXT("date", record_line, record.date),
+     .options = FG_MEMBER_EMPTY_IS_NULL | FG_MEMBER_LEFT_OUT},
+    {FG_TEXT("measured_with", record_line, record.measured_with)},
+    {FG_STRING("error", record_line, record.error)},
+};
+static const fg_members line_members = FG_MEMBERS(line_rows);
+
+static void print_record(FILE *out, const record_line *line, const fg_measurement *measurement) {
   fg_json json;
   fg_json_begin(&json, out);
   fg_json_line(&json);
   fg_json_object(&json, NULL);
-  fg_json_string(&json, "scan", record->scan);
-  if (scan_bytes) fg_json_string(&json, "scan_bytes", scan_bytes);
-  fg_json_string(&json, "sha256", record->sha256[0] ? record->sha256 : NULL);
-  if (record->date[0]) fg_json_string(&json, "date", record->date);
-  fg_json_string(&json, "measured_with", record->measured_with);
-  fg_json_string(&json, "error", measurement ? NULL : record->error);
+  fg_members_json(&json, &line_members, &(fg_subject){.object = line});
   fg_json_array(&json, "foils");
   for (size_t i = 0; measurement && i < measurement->foil_count; i++)
     write_measured_foil(&json, &measurement->foils[i]);
@@ -131,12 +144,13 @@ static void print_record(FILE *out, const fg_record *record, const char *scan_by
 
 fg_status fg_record_format(fg_context *ctx, const fg_record *record,
                            const fg_measurement *measurement, char **line, size_t *length) {
-  char *scan_bytes;
+  record_line written = {.record = *record};
   *line = NULL;
-  FG_TRY(format_bytes(ctx, record->scan, &scan_bytes));
+  if (measurement) written.record.error = NULL;
+  FG_TRY(format_bytes(ctx, record->scan, &written.scan_bytes));
   FILE *out = open_memstream(line, length);
-  if (out) print_record(out, record, scan_bytes, measurement);
-  free(scan_bytes);
+  if (out) print_record(out, &written, measurement);
+  free(written.scan_bytes);
   if (!out) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a record");
   bool broken = ferror(out) != 0;
   if (fclose(out) == 0 && !broken) return fg_seal_line(ctx, line, length);
@@ -285,17 +299,20 @@ static fg_status restore_foil(fg_context *ctx, const cJSON *object, fg_foil *foi
   return read_beams(ctx, find_member(object, "beams"), foil);
 }
 
-static fg_status read_sum(fg_context *ctx, const cJSON *value, char sum[65]) {
+/* Reads a member where it is a text; checksums and dates have one length. */
+static fg_status read_line_member(fg_context *ctx, const fg_member *row, const cJSON *value,
+                                  record_line *line) {
+  char *place = (char *)line + row->offset;
   if (!cJSON_IsString(value)) return FG_OK;
-  if (strlen(value->valuestring) != 64) return fail_record(ctx, "a checksum of another length");
-  strcpy(sum, value->valuestring);
+  if (row->kind == FG_MEMBER_STRING) {
+    char *copy = strdup(value->valuestring);
+    *(char **)(void *)place = copy;
+    return copy ? FG_OK : fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a record");
+  }
+  if (strlen(value->valuestring) != row->stride - 1)
+    return fail_record(ctx, "a checksum or a date of another length");
+  strcpy(place, value->valuestring);
   return FG_OK;
-}
-
-static fg_status copy_words(fg_context *ctx, const cJSON *value, char **copy) {
-  if (!cJSON_IsString(value)) return FG_OK;
-  *copy = strdup(value->valuestring);
-  return *copy ? FG_OK : fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a record");
 }
 
 static int hex_digit(char hex) {
@@ -303,39 +320,31 @@ static int hex_digit(char hex) {
   return at ? (int)(at - digits) : -1;
 }
 
-/* Restores a name that was written as bytes. */
-static fg_status read_bytes(fg_context *ctx, const cJSON *value, char **text) {
-  if (!value) return FG_OK;
-  size_t length = cJSON_IsString(value) ? strlen(value->valuestring) : 0;
+/* Restores a name that was written as bytes: in place, for it is half as long. */
+static fg_status restore_name(fg_context *ctx, char *text) {
+  size_t length = strlen(text);
   if (length == 0 || length % 2) return fail_record(ctx, "scan_bytes that are none");
-  void *block;
-  FG_TRY(fg_memory_allocate(ctx, length / 2 + 1, 1, &block));
-  free(*text);
-  *text = block;
   for (size_t i = 0; i < length / 2; i++) {
-    int high = hex_digit(value->valuestring[2 * i]), low = hex_digit(value->valuestring[2 * i + 1]);
+    int high = hex_digit(text[2 * i]), low = hex_digit(text[2 * i + 1]);
     if (high < 0 || low < 0 || high + low == 0) return fail_record(ctx, "scan_bytes that are none");
-    (*text)[i] = (char)(high << 4 | low);
+    text[i] = (char)(high << 4 | low);
   }
-  return FG_OK;
-}
-
-/* Records of early versions have no date. */
-static fg_status read_scan_date(fg_context *ctx, const cJSON *value, char date[11]) {
-  if (!value) return FG_OK;
-  if (!cJSON_IsString(value) || strlen(value->valuestring) != 10)
-    return fail_record(ctx, "a date that is none");
-  strcpy(date, value->valuestring);
+  text[length / 2] = '\0';
   return FG_OK;
 }
 
 static fg_status read_head(fg_context *ctx, const cJSON *root, fg_record *record) {
-  FG_TRY(copy_words(ctx, find_member(root, "scan"), &record->scan));
-  FG_TRY(read_bytes(ctx, find_member(root, "scan_bytes"), &record->scan));
-  FG_TRY(read_sum(ctx, find_member(root, "sha256"), record->sha256));
-  FG_TRY(read_sum(ctx, find_member(root, "measured_with"), record->measured_with));
-  FG_TRY(read_scan_date(ctx, find_member(root, "date"), record->date));
-  FG_TRY(copy_words(ctx, find_member(root, "error"), &record->error));
+  record_line line = {.record = *record};
+  fg_status status = FG_OK;
+  for (size_t i = 0; i < line_members.count && status == FG_OK; i++)
+    status = read_line_member(ctx, &line_rows[i], find_member(root, line_rows[i].name), &line);
+  if (line.scan_bytes) {
+    if (status == FG_OK) status = restore_name(ctx, line.scan_bytes);
+    free(line.record.scan);
+    line.record.scan = line.scan_bytes;
+  }
+  *record = line.record;
+  FG_TRY(status);
   if (!record->scan || !record->measured_with[0] || !cJSON_IsArray(find_member(root, "foils")))
     return fail_record(ctx, "members are missing");
   return FG_OK;
