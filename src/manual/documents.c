@@ -12,11 +12,22 @@
 #include "report/load_test/members.h"
 #include "report/scan_loop/members.h"
 #include "report/table_loop/members.h"
+#include "scan_loop/scanner_model.h"
 
 const fg_document *const fg_documents[] = {
-    &fg_design_document,      &fg_die_document,     &fg_doe_document,       &fg_forming_document,
-    &fg_forming_fit_document, &fg_load_document,    &fg_loop_document,      &fg_loop_model_document,
-    &fg_index_document,       &fg_nominal_document, &fg_scan_loop_document, NULL,
+    &fg_design_document,
+    &fg_die_document,
+    &fg_doe_document,
+    &fg_forming_document,
+    &fg_forming_fit_document,
+    &fg_load_document,
+    &fg_loop_document,
+    &fg_loop_model_document,
+    &fg_index_document,
+    &fg_nominal_document,
+    &fg_scan_loop_document,
+    &fg_scanner_model_document,
+    NULL,
 };
 
 /* Writes the default of a member as JSON has it; nothing where there is none. */

@@ -32,6 +32,8 @@ struct fg_scanner_model {
 /* Makes a model of a loop's scanner effects; free with fg_scanner_model_free. */
 fg_status fg_scanner_model_of(fg_context *ctx, const fg_scan_loop *loop, fg_scanner_model **model);
 
+extern const fg_document fg_scanner_model_document;
+
 /* Checks that numbers are plausible for a scanner: FG_ERR_DATA names the member, its value and the
  * allowed range. Models written and read pass the same check. `member` is that of the list:
  * "fields", "alternatives[2]". */

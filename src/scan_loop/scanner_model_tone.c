@@ -46,38 +46,58 @@ bool fg_model_tone_is_significant(const fg_model_tone *tone) {
 
 /* ---- the file ---- */
 
-typedef struct tone_row {
-  const char *name;
-  size_t offset;
-  double low, high;
-  bool needed;
-} tone_row;
+static const char *finding_at(const fg_subject *tone, size_t i) {
+  const fg_picture_words *words = &fg_picture_finding_words()[i];
+  unsigned findings = ((const fg_model_tone *)tone->object)->findings;
+  return !words->name || findings & words->finding ? words->name : "";
+}
 
-#define ROW(name, member, low, high, needed)                                                       \
-  { name, offsetof(fg_model_tone, member), low, high, needed }
-static const tone_row rows[] = {
-    ROW("level", level.half, 0, 1, true),
-    ROW("u_level", level.u, 0, 0.5, true),
-    ROW("contrast", level.contrast, 1, 255, true),
-    ROW("blur_px", blur_px, 0.01, 100, true),
-    ROW("asymmetry", asymmetry, -1, 1, true),
-    ROW("shown_level", shown, -0.5, 0.5, false),
-    ROW("gamma", gamma, 0.1, 10, false),
-    ROW("sharpen_amount", sharpen_amount, 0, 20, false),
-    ROW("sharpen_radius_px", sharpen_radius_px, 0, 100, false),
+static bool is_written(const fg_subject *tone) {
+  (void)tone;
+  return true; /* a file of people may lack the member */
+}
+
+/* A number within limits; null only where its options allow it. */
+#define TONE_NUMBER(name_, field, lowest_, highest_)                                               \
+  FG_NUMBER(name_, fg_model_tone, field), .lowest = (lowest_), .highest = (highest_)
+enum { GAUGES_MAX = 1000000 };
+
+static const fg_member tone_rows[] = {
+    {TONE_NUMBER("level", level.half, 0, 1), .options = FG_MEMBER_NEVER_NULL,
+     .words = "share of the contrast, from dark to bright, at which edges lie; 0.5: counts follow "
+              "the light"},
+    {TONE_NUMBER("u_level", level.u, 0, 0.5), .options = FG_MEMBER_NEVER_NULL,
+     .words = "its standard uncertainty"},
+    {TONE_NUMBER("contrast", level.contrast, 1, 255), .options = FG_MEMBER_NEVER_NULL,
+     .words = "of the discs, counts of 255"},
+    {TONE_NUMBER("blur_px", blur_px, 0.01, 100), .options = FG_MEMBER_NEVER_NULL,
+     .words = "of edges"},
+    {TONE_NUMBER("asymmetry", asymmetry, -1, 1), .options = FG_MEMBER_NEVER_NULL,
+     .words = "of edges: the way from half to nine tenths of the contrast less that from a tenth "
+              "to half, over both"},
+    {TONE_NUMBER("shown_level", shown, -0.5, 0.5), .present = is_written,
+     .words = "share of the contrast at which the tone curve that explains their edges has half of "
+              "the light, less a half; a scan whose edges show another is not moved"},
+    {TONE_NUMBER("gamma", gamma, 0.1, 10),
+     .words = "exponent that their edges show; null: not known"},
+    {TONE_NUMBER("sharpen_amount", sharpen_amount, 0, 20), .words = "of a sharpening driver"},
+    {TONE_NUMBER("sharpen_radius_px", sharpen_radius_px, 0, 100)},
+    {FG_COUNT("gauges", fg_model_tone, gauges), .lowest = 1, .highest = GAUGES_MAX,
+     .words = "discs that told it"},
+    {FG_TEXTS_BY("findings", finding_at), .present = is_written,
+     .words = "of the picture's state, by name (picture.findings of a measurement)"},
 };
-#undef ROW
-enum { ROWS = sizeof rows / sizeof *rows, GAUGES_MAX = 1000000 };
+const fg_members fg_model_tone_members = FG_MEMBERS(tone_rows);
 
-static fg_status read_tone_row(fg_context *ctx, const cJSON *object, const tone_row *row,
+static fg_status read_tone_row(fg_context *ctx, const cJSON *object, const fg_member *row,
                                fg_model_tone *tone) {
   const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, row->name);
-  double *value = (double *)((char *)tone + row->offset);
+  double *value = (double *)(void *)((char *)tone + row->offset);
   *value = cJSON_IsNumber(item) ? item->valuedouble : NAN;
-  if (!row->needed && (!item || cJSON_IsNull(item))) return FG_OK;
-  if (*value >= row->low && *value <= row->high) return FG_OK;
+  if (!(row->options & FG_MEMBER_NEVER_NULL) && (!item || cJSON_IsNull(item))) return FG_OK;
+  if (*value >= row->lowest && *value <= row->highest) return FG_OK;
   return fg_fail(ctx, FG_ERR_DATA, "`tone.%s` is %g; %g to %g is allowed", row->name, *value,
-                 row->low, row->high);
+                 row->lowest, row->highest);
 }
 
 static fg_status read_findings(fg_context *ctx, const cJSON *object, fg_model_tone *tone) {
@@ -102,8 +122,9 @@ fg_status fg_model_tone_read(fg_context *ctx, const cJSON *root, fg_model_tone *
   if (!object || cJSON_IsNull(object)) return FG_OK;
   if (!cJSON_IsObject(object))
     return fg_fail(ctx, FG_ERR_DATA, "`tone` is no object; an object or null is allowed");
-  for (size_t i = 0; i < ROWS; i++)
-    FG_TRY(read_tone_row(ctx, object, &rows[i], tone));
+  for (size_t i = 0; i < fg_model_tone_members.count; i++)
+    if (tone_rows[i].kind == FG_MEMBER_NUMBER)
+      FG_TRY(read_tone_row(ctx, object, &tone_rows[i], tone));
   const cJSON *gauges = cJSON_GetObjectItemCaseSensitive(object, "gauges");
   double count = cJSON_IsNumber(gauges) ? gauges->valuedouble : NAN;
   if (!(count >= 1 && count <= GAUGES_MAX && count == floor(count)))
@@ -111,22 +132,6 @@ fg_status fg_model_tone_read(fg_context *ctx, const cJSON *root, fg_model_tone *
                    count, GAUGES_MAX);
   tone->gauges = (size_t)count;
   return read_findings(ctx, object, tone);
-}
-
-void fg_model_tone_write(fg_json *json, const fg_model_tone *tone) {
-  if (!tone->gauges) {
-    fg_json_string(json, "tone", NULL);
-    return;
-  }
-  fg_json_object(json, "tone");
-  for (size_t i = 0; i < ROWS; i++)
-    fg_json_number(json, rows[i].name, *(const double *)((const char *)tone + rows[i].offset));
-  fg_json_integer(json, "gauges", (int64_t)tone->gauges);
-  fg_json_array(json, "findings");
-  for (const fg_picture_words *words = fg_picture_finding_words(); words->name; words++)
-    if (tone->findings & words->finding) fg_json_string(json, NULL, words->name);
-  fg_json_array_end(json);
-  fg_json_object_end(json);
 }
 
 /* ---- applying it ---- */

@@ -6,7 +6,7 @@
 
 #include <cjson/cJSON.h>
 
-#include "core/json_writer.h"
+#include "core/member.h"
 #include "foilgauge/scan_loop.h"
 #include "measure/level.h"
 
@@ -29,7 +29,8 @@ bool fg_model_tone_is_significant(const fg_model_tone *tone);
 
 /* Reads member `tone` of a model; absent: unknown. */
 fg_status fg_model_tone_read(fg_context *ctx, const cJSON *root, fg_model_tone *tone);
-void fg_model_tone_write(fg_json *json, const fg_model_tone *tone);
+/* Members that it reads, and a model has. */
+extern const fg_members fg_model_tone_members;
 
 /* Moves the edges of a scan to the level. It does not when a gauge on the glass determined the
  * scan's own level, or when the scan was made with other settings: m->tone_note then has the

@@ -5,7 +5,6 @@
 #include <time.h>
 
 #include "core/file.h"
-#include "core/json_writer.h"
 #include "core/memory.h"
 #include "core/text.h"
 #include "scan_loop/scanner_model.h"
@@ -55,32 +54,153 @@ fg_status fg_scanner_model_of(fg_context *ctx, const fg_scan_loop *loop, fg_scan
 
 /* ---- the file ---- */
 
-static void write_fields(fg_json *json, const char *name, const fg_field_list *list) {
-  fg_json_array(json, name);
-  for (size_t i = 0; i < list->count; i++) {
-    const fg_field *f = &list->fields[i];
-    fg_json_object(json, NULL);
-    fg_json_string(json, "id", f->id);
-    fg_json_numbers(json, "amplitude_mm", f->amplitude_mm, f->columns);
-    fg_json_numbers(json, "u_amplitude_mm", f->u_amplitude_mm, f->columns);
-    fg_json_numbers(json, "shape", f->shape, f->shapes);
-    fg_json_numbers(json, "u_shape", f->u_shape, f->shapes);
-    fg_json_object_end(json);
-  }
-  fg_json_array_end(json);
+/* Whole of every subject: a model, and the result that it is of. */
+typedef struct made_model {
+  const fg_scanner_model *model;
+  const fg_scan_result *result;
+} made_model;
+
+/* A file of people may lack the member. */
+static bool is_in_every_model(const fg_subject *s) {
+  (void)s;
+  return true;
 }
 
-static void write_model_inputs(fg_json *json, const fg_scan_result *result) {
-  fg_json_array(json, "inputs");
-  for (size_t i = 0; i < result->scans; i++) {
-    fg_json_object(json, NULL);
-    fg_json_string(json, "path", result->scan[i].before->scan);
-    fg_json_string(json, "sha256", result->scan[i].before->sha256);
-    fg_json_bool(json, "hold_out", result->scan[i].hold_out);
-    fg_json_object_end(json);
-  }
-  fg_json_array_end(json);
+static const fg_member field_rows[] = {
+    {FG_STRING("id", fg_field, id), .options = FG_MEMBER_NEVER_NULL, .words = "of the effect"},
+    {FG_NUMBERS_OF("amplitude_mm", fg_field, amplitude_mm, columns),
+     .schema = "{\"type\": \"array\", \"items\": {\"type\": \"number\", \"minimum\": -1, "
+               "\"maximum\": 1}}",
+     .words = "displacement 18 mm from the middle of the scan"},
+    {FG_NUMBERS_OF("u_amplitude_mm", fg_field, u_amplitude_mm, columns),
+     .schema = "{\"type\": \"array\", \"items\": {\"type\": \"number\", \"minimum\": 0, "
+               "\"maximum\": 1}}",
+     .words = "its standard uncertainty"},
+    {FG_NUMBERS_OF("shape", fg_field, shape, shapes), .options = FG_MEMBER_NEVER_NULL,
+     .words = "numbers that enter without being an amplitude: a period, a place"},
+    {FG_NUMBERS_OF("u_shape", fg_field, u_shape, shapes),
+     .schema = "{\"type\": \"array\", \"items\": {\"type\": [\"number\", \"null\"], \"minimum\": "
+               "0}}",
+     .words = "their standard uncertainties; null: the place was not refined"},
+};
+static const fg_members field_members = FG_MEMBERS_DEFINED(field_rows, "field");
+
+static const fg_member other_rows[] = {
+    {FG_ARRAY(NULL, fg_field_list, fields, count, &field_members), .highest = FG_FIELDS_MAX}};
+static const fg_members other_members = FG_MEMBERS(other_rows);
+
+static const char *find_input_path(const fg_subject *scan, char *buffer) {
+  (void)buffer;
+  return ((const fg_scan_result_scan *)scan->object)->before->scan;
 }
+
+static const char *find_input_sha256(const fg_subject *scan, char *buffer) {
+  (void)buffer;
+  return ((const fg_scan_result_scan *)scan->object)->before->sha256;
+}
+
+static const fg_member input_rows[] = {
+    {FG_TEXT_BY("path", find_input_path), .options = FG_MEMBER_NEVER_NULL},
+    {FG_TEXT_BY("sha256", find_input_sha256), .options = FG_MEMBER_NEVER_NULL,
+     .pattern = "^[0-9a-f]{64}$"},
+    {FG_FLAG("hold_out", fg_scan_result_scan, hold_out), .words = "the scan only confirms"},
+};
+static const fg_members input_members = FG_MEMBERS(input_rows);
+
+static bool find_model_input(const fg_subject *list, size_t i, fg_subject *element) {
+  const fg_scan_result *result = ((const made_model *)list->whole)->result;
+  element->object = &result->scan[i];
+  return i < result->scans;
+}
+
+static const double *list_corners(const double first[2], const double opposite[2], double *numbers,
+                                  size_t *count) {
+  memcpy(numbers, first, 2 * sizeof *numbers);
+  memcpy(numbers + 2, opposite, 2 * sizeof *numbers);
+  *count = 4;
+  return numbers;
+}
+
+static const double *list_region(const fg_subject *s, double *numbers, size_t *count) {
+  const fg_field_frame *frame = &((const fg_scanner_model *)s->object)->fields.frame;
+  return list_corners(frame->low_mm, frame->high_mm, numbers, count);
+}
+
+static const double *list_curve_region(const fg_subject *s, double *numbers, size_t *count) {
+  const fg_field_frame *frame = &((const fg_scanner_model *)s->object)->fields.frame;
+  return list_corners(frame->first_mm, frame->last_mm, numbers, count);
+}
+
+static const char *const model_level_words[] = {"points", NULL};
+
+static int find_model_level(const fg_subject *s) {
+  (void)s;
+  return 0;
+}
+
+static fg_subject find_model_tone(const fg_subject *s) {
+  const fg_model_tone *tone = &((const fg_scanner_model *)s->object)->tone;
+  return (fg_subject){tone->gauges ? tone : NULL, s->whole, 0};
+}
+
+static const fg_member model_rows[] = {
+    {FG_HEAD("foilgauge/scan-model/1")},
+    {FG_TEXT("scanner", fg_scanner_model, scanner), .options = FG_MEMBER_EMPTY_IS_NULL,
+     .schema = "{\"type\": [\"string\", \"null\"], \"maxLength\": 127}",
+     .words = "as given with --scanner"},
+    {FG_TEXT("date", fg_scanner_model, date), .options = FG_MEMBER_EMPTY_IS_NULL,
+     .schema = "{\"type\": [\"string\", \"null\"], \"maxLength\": 31}",
+     .present = is_in_every_model,
+     .words = "of the newest scan that it was found on, UTC (SOURCE_DATE_EPOCH, where it is set); "
+              "null: not known"},
+    {FG_WORD_BY("level", find_model_level, model_level_words), .options = FG_MEMBER_NEVER_NULL,
+     .words = "of the effects: rows of the edges"},
+    {FG_NUMBERS("dpi", fg_scanner_model, dpi),
+     .schema = "{\"type\": \"array\", \"items\": {\"type\": \"number\", \"minimum\": 1, "
+               "\"maximum\": 1000000}, \"minItems\": 2, \"maxItems\": 2}",
+     .words = "x, y; scans of another resolution are refused"},
+    {FG_NUMBERS_BY("region_mm", list_region), .lowest = 4, .highest = 4,
+     .options = FG_MEMBER_NEVER_NULL, .words = "x, y of one corner and of the opposite one"},
+    {FG_NUMBERS_BY("curve_mm", list_curve_region), .lowest = 4, .highest = 4,
+     .options = FG_MEMBER_NEVER_NULL, .present = is_in_every_model,
+     .words = "likewise, where edges were measured: the knots of free curves lie there; absent: "
+              "region_mm"},
+    {FG_COUNT("curve_knots", fg_scanner_model, fields.frame.knots), .lowest = 4,
+     .highest = FG_FIELD_COLUMNS, .present = is_in_every_model,
+     .words = "of free curves; absent: 24"},
+    {FG_LIST_BY("inputs", find_model_input, &input_members), .lowest = 1,
+     .words = "scans that it was found on"},
+    {FG_COUNT("known_diameters", fg_scanner_model, known_diameters), .highest = 1000000,
+     .present = is_in_every_model,
+     .words = "gauges of known diameter that hold its absolute scale; absent or 0: an error of "
+              "scale equal in x and y is not corrected"},
+    {FG_PART("tone", find_model_tone, &fg_model_tone_members), .present = is_in_every_model,
+     .words = "level of the scanner's edges, from discs of known diameter; null or absent: not "
+              "known"},
+    {FG_FLAG("tied", fg_scanner_model, tied), .words = "other explanations did as well"},
+    {FG_ARRAY("fields", fg_scanner_model, fields.fields, fields.count, &field_members),
+     .highest = FG_FIELDS_MAX,
+     .words = "displacements by the scanner; an effect may stand there more than once; together "
+              "they bend the region by a tenth at most"},
+    {FG_ARRAY("alternatives", fg_scanner_model, other, others, &other_members),
+     .highest = FG_EXPLANATIONS_MAX, .words = "corrections by the other explanations"},
+};
+static const fg_members model_members = FG_MEMBERS(model_rows);
+
+/* A model that is read corrects as the loop did: its numbers lose no digit. */
+static const fg_member file_rows[] = {{FG_SAME(&model_members), .options = FG_MEMBER_EXACT,
+                                       .offset = offsetof(made_model, model), .pointed = true}};
+static const fg_members file_members = FG_MEMBERS(file_rows);
+
+const fg_document fg_scanner_model_document = {
+    .file = "scan_model",
+    .title = "a scanner's model (\"schema\": \"foilgauge/scan-model/1\")",
+    .description =
+        "Written by `foilgauge loop SCAN --model-out F`, applied by `measure --model F` and "
+        "`lot --model F`.",
+    .made_by = "`foilgauge loop SCAN --model-out`",
+    .members = &file_members,
+};
 
 /* Refuses a model that the reader would refuse. */
 static fg_status check_readable(fg_context *ctx, const fg_scanner_model *model) {
@@ -112,41 +232,10 @@ static fg_status check_pictures(fg_context *ctx, const fg_scan_loop *loop) {
   return FG_OK;
 }
 
-static void write_place(fg_json *json, const fg_scanner_model *model) {
-  const fg_field_frame *frame = &model->fields.frame;
-  fg_json_numbers(json, "dpi", model->dpi, 2);
-  fg_json_numbers(
-      json, "region_mm",
-      (double[]){frame->low_mm[0], frame->low_mm[1], frame->high_mm[0], frame->high_mm[1]}, 4);
-  fg_json_numbers(
-      json, "curve_mm",
-      (double[]){frame->first_mm[0], frame->first_mm[1], frame->last_mm[0], frame->last_mm[1]}, 4);
-  fg_json_integer(json, "curve_knots", (int64_t)frame->knots);
-}
-
 fg_status fg_scan_loop_write_model(fg_context *ctx, const fg_scan_loop *loop, FILE *out) {
-  const fg_scanner_model *model = loop->result.model;
-  fg_json json;
+  const made_model made = {loop->result.model, &loop->result};
   FG_TRY(check_pictures(ctx, loop));
-  FG_TRY(check_readable(ctx, model));
-  fg_json_begin(&json, out);
-  json.exact = true; /* a model that is read corrects as the loop did */
-  fg_json_object(&json, NULL);
-  fg_json_head(&json, "foilgauge/scan-model/1");
-  fg_json_string(&json, "scanner", model->scanner[0] ? model->scanner : NULL);
-  fg_json_string(&json, "date", model->date[0] ? model->date : NULL);
-  fg_json_string(&json, "level", "points");
-  write_place(&json, model);
-  write_model_inputs(&json, &loop->result);
-  fg_json_integer(&json, "known_diameters", (int64_t)model->known_diameters);
-  fg_model_tone_write(&json, &model->tone);
-  fg_json_bool(&json, "tied", model->tied);
-  write_fields(&json, "fields", &model->fields);
-  fg_json_array(&json, "alternatives");
-  for (size_t k = 0; k < model->others; k++)
-    write_fields(&json, NULL, &model->other[k]);
-  fg_json_array_end(&json);
-  fg_json_object_end(&json);
-  fg_json_end(&json);
+  FG_TRY(check_readable(ctx, made.model));
+  fg_document_json(out, &file_members, &made);
   return fg_stream_finish(ctx, out, "the model");
 }

@@ -6,7 +6,7 @@
 
 #include "core/file.h"
 #include "foilgauge/scan_loop.h"
-#include "report/design/calibration_json.h"
+#include "report/design/members.h"
 #include "report/measure/json.h"
 #include "report/scan_loop/parts.h"
 
@@ -197,8 +197,9 @@ static const char *find_sentence(const fg_subject *s, char *buffer) {
   return ((const fg_scan_report *)s->whole)->sentence;
 }
 
-static void write_calibration(fg_json *json, const char *name, const fg_subject *s) {
-  fg_json_calibration_used(json, name, &fg_scan_result_of(s)->scan[0].before->design.calibration);
+static fg_subject find_calibration_of_scans(const fg_subject *s) {
+  const fg_calibration *c = &fg_scan_result_of(s)->scan[0].before->design.calibration;
+  return (fg_subject){c->stated ? c : NULL, s->whole, 0};
 }
 
 static const char *advice_at(const fg_subject *s, size_t i) {
@@ -220,8 +221,7 @@ static const fg_member result_rows[] = {
      .words = "what was found and how sure it is, in words"},
     {FG_LIST("inputs", fg_scan_result, scan, scans, &input_members), .lowest = 1,
      .words = "scans, in their order"},
-    {FG_WRITTEN("calibration", write_calibration,
-                FG_REF("design.schema.json#/$defs/calibration_used")),
+    {FG_PART("calibration", find_calibration_of_scans, &fg_calibration_used_members),
      .words = "it is in u_ of the foils of before and after, and in nothing that the loop decides"},
     {FG_FLAG("same_foil", fg_scan_result, same_foil), .words = "all scans show the same foil"},
     {FG_NUMBER("p_value", fg_scan_result, p_value),
