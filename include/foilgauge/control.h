@@ -42,6 +42,7 @@ typedef struct fg_chart {
   fg_chart_point *point; /* owned */
   size_t count;
   size_t signals; /* points at which a rule ends */
+  double sigma;   /* of one value: the limits are made of it */
 } fg_chart;
 
 double fg_chart_c4(size_t n); /* NaN below 2 */
@@ -49,14 +50,14 @@ double fg_chart_d2(size_t n);
 
 /* Individuals: sigma = mean moving range / d2(2). FG_ERR_DATA for fewer than two values. */
 fg_status fg_chart_individuals(fg_context *ctx, const double *values, size_t count, unsigned rules,
-                               fg_chart *chart, double *sigma);
+                               fg_chart *chart);
 
 /* Means of subgroups: `values` in order of subgroup, size[i] of them each (0: left out). The chart
  * of the means, and of the standard deviations (run rule 1 only; subgroups of one are left out of
  * it with NaN); either may be NULL. FG_ERR_DATA when no subgroup has two values. */
 fg_status fg_chart_subgroups(fg_context *ctx, const double *values, const size_t *size,
                              size_t subgroups, fg_sigma_from from, unsigned rules, fg_chart *means,
-                             fg_chart *deviations, double *sigma);
+                             fg_chart *deviations);
 
 void fg_chart_free(fg_chart *chart);
 

@@ -157,6 +157,7 @@ static double scale_of(const fg_member_column *column) {
 static int decimals_of(const fg_member *member, const fg_member_column *column,
                        const fg_subject *subject) {
   if (member->kind != FG_MEMBER_NUMBER) return 0;
+  if (member->decimals_by) return member->decimals_by(subject);
   if (!column->by_u) return column->decimals;
   return fg_decimals_by_u(column->decimals, scale_of(column) * fg_member_u(member, subject));
 }

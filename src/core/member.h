@@ -166,7 +166,8 @@ struct fg_member {
   fg_member_column csv, page, terminal;
   /* False: page and terminal have no such column in the list's table; NULL: they always do. */
   bool (*column)(const fg_subject *list);
-  const char *(*look)(const fg_subject *);       /* class of its cell: a verdict; NULL: none */
+  int (*decimals_by)(const fg_subject *);  /* decimals of the element's value; NULL: the column's */
+  const char *(*look)(const fg_subject *); /* class of its cell: a verdict; NULL: none */
   void (*markup)(FILE *out, const fg_subject *); /* writes the page's cell; NULL: its text does */
 };
 

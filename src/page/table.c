@@ -27,9 +27,10 @@ static void put_column_heading(FILE *out, const fg_member *column) {
 
 /* Writes text, a number with the sign of print. */
 static void put_shown(FILE *out, const fg_member *column, const char *text) {
-  bool negative = fg_member_is_number(column) && text[0] == '-' && text[1];
+  bool number = fg_member_is_number(column) && text[0] == '-' && text[1];
+  bool negative = number && text[1 + strspn(text + 1, "0.")];
   if (negative) fputs("−", out);
-  fg_html_text(out, negative ? text + 1 : text);
+  fg_html_text(out, number ? text + 1 : text);
 }
 
 static void put_cell(FILE *out, const fg_member *column, const fg_subject *element) {

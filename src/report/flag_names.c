@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report/flag_names.h"
 
+#include <string.h>
+
+#include "core/text.h"
 #include "foilgauge/picture.h"
 
 void fg_json_flag_names(fg_json *json, const fg_flag_words *words, unsigned flags,
@@ -9,6 +12,29 @@ void fg_json_flag_names(fg_json *json, const fg_flag_words *words, unsigned flag
     if (flags & words->flag) fg_json_string(json, NULL, words->name);
   for (const fg_picture_words *found = fg_picture_finding_words(); found->name; found++)
     if (findings & found->finding) fg_json_string(json, NULL, found->name);
+}
+
+const char *fg_flag_name_at(const fg_flag_words *words, unsigned flags, unsigned findings,
+                            size_t i) {
+  for (; words->name && i > 0; words++)
+    i--;
+  if (words->name) return flags & words->flag ? words->name : "";
+  const fg_picture_words *found = &fg_picture_finding_words()[0];
+  for (; found->name && i > 0; found++)
+    i--;
+  return !found->name || findings & found->finding ? found->name : "";
+}
+
+void fg_flag_names(const fg_flag_words *words, unsigned flags, unsigned findings, char *text,
+                   size_t size) {
+  const char *name;
+  size_t used = 0;
+  text[0] = '\0';
+  for (size_t i = 0; (name = fg_flag_name_at(words, flags, findings, i)) != NULL; i++)
+    if (*name && used < size) {
+      fg_text_clip(text + used, size - used, "%s%s", used ? " " : "", name);
+      used += strlen(text + used);
+    }
 }
 
 void fg_csv_put_flags(FILE *out, const fg_flag_words *words, unsigned flags, unsigned findings) {

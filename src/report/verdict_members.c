@@ -31,3 +31,19 @@ int fg_verdict_rank(fg_verdict verdict) {
 fg_verdict fg_verdict_worse(fg_verdict a, fg_verdict b) {
   return fg_verdict_rank(a) >= fg_verdict_rank(b) ? a : b;
 }
+
+static double find_in_tolerance(const fg_subject *subject) {
+  return fg_is_in_tolerance(*(const fg_verdict *)subject->object);
+}
+
+static int find_verdict(const fg_subject *subject) {
+  return (int)*(const fg_verdict *)subject->object;
+}
+
+static const fg_member verdict_rows[] = {
+    {FG_FLAG_BY("in_tolerance", find_in_tolerance), .options = FG_MEMBER_NULLABLE,
+     .words = FG_IN_TOLERANCE_WORDS},
+    {FG_WORD_BY("verdict", find_verdict, fg_verdict_words), .options = FG_MEMBER_NEVER_NULL,
+     .words = FG_VERDICT_WORDS},
+};
+const fg_members fg_verdict_members = FG_MEMBERS(verdict_rows);

@@ -18,4 +18,12 @@ int fg_verdict_rank(fg_verdict verdict);
 #define FG_IN_TOLERANCE_WORDS "true only where every value passes; null: nothing is judged"
 #define FG_VERDICT_WORDS      "of all values against their tolerances, with U"
 
+/* Rows "in_tolerance" and "verdict" of an object with a field of type fg_verdict:
+ * {FG_VERDICT(fg_lot_foil, verdict)}. Their subject is the verdict. */
+extern const fg_members fg_verdict_members;
+#define FG_VERDICT(object_, field)                                                                 \
+  .kind = FG_MEMBER_SAME, .members = &fg_verdict_members,                                          \
+  .offset = offsetof(object_, field) + 0 * sizeof(_Generic(((object_ *)0)->field, fg_verdict       \
+                                                           : (char)0))
+
 #endif

@@ -158,12 +158,12 @@ static void write_caption(const page *p) {
     fprintf(p->out,
             ". Dashed blue: the chart's limits, three sigma of a lot's mean from the mean, by what "
             "foils vary within lots (σ %.4g).",
-            trend->quantity.within_sigma);
+            trend->quantity.means.sigma);
   else
     fprintf(p->out,
             ". Dashed blue: the chart's limits, three sigma from the mean, by what varies from one "
             "foil to the next (σ %.4g).",
-            trend->quantity.chart_sigma);
+            trend->quantity.chart.sigma);
   if (tolerance)
     fprintf(p->out, " Red: beyond the tolerance of the design (%s).",
             p->choice->owner == FG_QUANTITY_OF_BUMP && !p->choice->bump

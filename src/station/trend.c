@@ -140,7 +140,7 @@ static fg_status chart_lots(unsigned rules, fg_trend *trend) {
   quantity->has_chart =
       trend->count >= 2 &&
       fg_chart_subgroups(&unused, quantity->value, quantity->size, trend->count, FG_SIGMA_FROM_SD,
-                         rules, &quantity->means, NULL, &quantity->within_sigma) == FG_OK;
+                         rules, &quantity->means, NULL) == FG_OK;
   quantity->stable = quantity->has_chart && !quantity->means.signals;
   return FG_OK;
 }

@@ -136,7 +136,7 @@ void fg_chart_free(fg_chart *chart) {
 }
 
 fg_status fg_chart_individuals(fg_context *ctx, const double *values, size_t count, unsigned rules,
-                               fg_chart *chart, double *sigma) {
+                               fg_chart *chart) {
   *chart = (fg_chart){0};
   if (count < 2)
     return fg_fail(ctx, FG_ERR_DATA, "a chart of individuals needs two values; there are %zu",
@@ -148,10 +148,10 @@ fg_status fg_chart_individuals(fg_context *ctx, const double *values, size_t cou
     if (i) moving += fabs(values[i] - values[i - 1]) / (double)(count - 1);
   }
   chart->centre += values[0]; /* so that equal values have a mean that is theirs to the last bit */
-  *sigma = moving / fg_chart_d2(2);
+  chart->sigma = moving / fg_chart_d2(2);
   for (size_t i = 0; i < count; i++)
-    chart->point[i] =
-        (fg_chart_point){values[i], chart->centre - 3 * *sigma, chart->centre + 3 * *sigma, 0};
+    chart->point[i] = (fg_chart_point){values[i], chart->centre - 3 * chart->sigma,
+                                       chart->centre + 3 * chart->sigma, 0};
   apply_rules(chart, rules);
   return FG_OK;
 }
@@ -239,18 +239,19 @@ static void plot_deviations(const subgroups *all, unsigned rules, fg_chart *char
 
 fg_status fg_chart_subgroups(fg_context *ctx, const double *values, const size_t *size,
                              size_t count, fg_sigma_from from, unsigned rules, fg_chart *means,
-                             fg_chart *deviations, double *sigma) {
+                             fg_chart *deviations) {
   subgroups all = {.values = values, .size = size, .count = count};
   if (means) *means = (fg_chart){0};
   if (deviations) *deviations = (fg_chart){0};
   FG_TRY(find_sigma(ctx, from, &all));
-  *sigma = all.sigma;
   if (means) {
     FG_TRY(open_chart(ctx, count, means));
+    means->sigma = all.sigma;
     plot_means(&all, rules, means);
   }
   if (deviations) {
     FG_TRY(open_chart(ctx, count, deviations));
+    deviations->sigma = all.sigma;
     plot_deviations(&all, rules, deviations);
   }
   return FG_OK;

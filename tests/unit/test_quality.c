@@ -131,13 +131,12 @@ static void rules_end_where_they_should(void **state) {
     base[i] = random_gaussian(&seed);
   for (size_t p = 0; p < sizeof patterns / sizeof *patterns; p++) {
     in_row("patterns[%zu]", p);
-    double values[STEADY + LONGEST], sigma;
+    double values[STEADY + LONGEST];
     fg_chart chart;
     memcpy(values, base, sizeof base);
     values[STEADY - 1] = patterns[p].before;
     memcpy(values + STEADY, patterns[p].values, patterns[p].count * sizeof *values);
-    assert_ok(&ctx,
-              fg_chart_individuals(&ctx, values, STEADY + patterns[p].count, 0xFF, &chart, &sigma));
+    assert_ok(&ctx, fg_chart_individuals(&ctx, values, STEADY + patterns[p].count, 0xFF, &chart));
     unsigned bit = 1u << (patterns[p].rule - 1);
     assert_true(chart.point[STEADY + patterns[p].at].rules & bit);
     if (patterns[p].at > 0) assert_false(chart.point[STEADY + patterns[p].at - 1].rules & bit);
@@ -152,9 +151,10 @@ static void limits_follow_the_subgroups(void **state) {
   const double values[] = {1, 2, 3, 2, 4, 1, 3, 2, 2.5};
   const size_t size[] = {3, 2, 0, 4};
   fg_chart means, deviations;
-  double sigma;
-  assert_ok(&ctx, fg_chart_subgroups(&ctx, values, size, 4, FG_SIGMA_FROM_SD, 1, &means,
-                                     &deviations, &sigma));
+  assert_ok(&ctx,
+            fg_chart_subgroups(&ctx, values, size, 4, FG_SIGMA_FROM_SD, 1, &means, &deviations));
+  double sigma = means.sigma;
+  assert_near(deviations.sigma, sigma, 0);
   double squares = pow(1 - 2.125, 2) + pow(3 - 2.125, 2) + pow(2 - 2.125, 2) + pow(2.5 - 2.125, 2);
   double s[3] = {1, sqrt(2), sqrt(squares / 3)};
   double expected = (s[0] / fg_chart_c4(3) + s[1] / fg_chart_c4(2) + s[2] / fg_chart_c4(4)) / 3;
@@ -190,13 +190,13 @@ static void piston_rings(void **state) {
   (void)state;
   fg_context ctx;
   fg_table table = load("doe/qcc_pistonrings.csv");
-  double *values = numbers_of(&table, "diameter"), sigma;
+  double *values = numbers_of(&table, "diameter");
   size_t size[25] = {0};
   fg_chart chart;
   for (int i = 0; i < 25; i++)
     size[i] = 5;
-  assert_ok(&ctx, fg_chart_subgroups(&ctx, values, size, 25, FG_SIGMA_FROM_RANGE, 1, &chart, NULL,
-                                     &sigma));
+  assert_ok(&ctx, fg_chart_subgroups(&ctx, values, size, 25, FG_SIGMA_FROM_RANGE, 1, &chart, NULL));
+  double sigma = chart.sigma;
   assert_near(chart.centre, 74.001176, 5e-7);
   assert_near(sigma, 0.0097853, 5e-7);
   assert_near(chart.point[0].lower, 73.98805, 5e-6);

@@ -115,18 +115,30 @@ fg_status fg_reference_curve_read(fg_context *ctx, const char *path, const cJSON
   return FG_OK;
 }
 
+static const double *list_curve_point(const fg_subject *subject, double *values, size_t *count) {
+  const fg_lot_curve_point *p = subject->object;
+  memcpy(values, (const double[]){p->bump, p->radius_error_pct, p->angle_error_pct},
+         COLUMNS * sizeof *values);
+  *count = COLUMNS;
+  return values;
+}
+
+static const fg_member point_rows[] = {{FG_NUMBERS_BY(NULL, list_curve_point), .lowest = COLUMNS,
+                                        .highest = COLUMNS, .options = FG_MEMBER_NEVER_NULL}};
+static const fg_members point_members = FG_MEMBERS(point_rows);
+
+static const fg_member curve_rows[] = {
+    {FG_TEXT("name", fg_lot_curve, name), .words = "of its file"},
+    {FG_ARRAY("points", fg_lot_curve, point, count, &point_members), .lowest = 1,
+     .words = "bump, radius_error_pct, intersection_angle_error_pct"},
+};
+const fg_members fg_reference_curve_members = FG_MEMBERS(curve_rows);
+
 void fg_reference_curve_write(fg_json *json, const char *name, const fg_lot_settings *settings) {
-  const fg_lot_curve *curve = &settings->curve;
-  if (!curve->count) return;
+  const fg_subject curve = {.object = &settings->curve};
+  if (!settings->curve.count) return;
   fg_json_object(json, name);
-  fg_json_string(json, "name", curve->name);
-  fg_json_array(json, "points");
-  for (size_t i = 0; i < curve->count; i++) {
-    const fg_lot_curve_point *p = &curve->point[i];
-    const double numbers[] = {p->bump, p->radius_error_pct, p->angle_error_pct};
-    fg_json_numbers(json, NULL, numbers, COLUMNS);
-  }
-  fg_json_array_end(json);
+  fg_members_json(json, &fg_reference_curve_members, &curve);
   fg_json_object_end(json);
 }
 

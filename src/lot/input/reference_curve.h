@@ -5,7 +5,7 @@
 
 #include <cjson/cJSON.h>
 
-#include "core/json_writer.h"
+#include "core/member.h"
 #include "foilgauge/lot.h"
 
 /* Reads "reference_curve": the path of a CSV file beside the recipe, or the object that
@@ -13,6 +13,9 @@
  * reported again without the file. */
 fg_status fg_reference_curve_read(fg_context *ctx, const char *path, const cJSON *value,
                                   fg_lot_settings *settings);
+
+/* Of an fg_lot_curve, as recipe and report have it. */
+extern const fg_members fg_reference_curve_members;
 
 /* Writes nothing where the recipe has no curve. */
 void fg_reference_curve_write(fg_json *json, const char *name, const fg_lot_settings *settings);

@@ -22,6 +22,7 @@ static fg_status list_lot_foils(fg_context *ctx, fg_lot_analysis *analysis) {
     for (size_t k = 0; k < lot->records[i].foil_count; k++)
       analysis->foils[analysis->foil_count++] = (fg_lot_foil){.item = i,
                                                               .foil = &lot->records[i].foils[k],
+                                                              .worst_value = NAN,
                                                               .worst_u = NAN,
                                                               .worst_limit = NAN,
                                                               .worst_margin = NAN};
@@ -104,7 +105,7 @@ static bool is_worse_foil(const fg_lot_foil *foil, const fg_lot_foil *than) {
 }
 
 static void find_worst_three(fg_lot_analysis *analysis) {
-  for (int place = 0; place < 3; place++)
+  for (int place = 0; place < FG_LOT_WORST; place++)
     for (size_t i = 0; i < analysis->foil_count; i++) {
       const fg_lot_foil *foil = &analysis->foils[i];
       bool taken = false;
@@ -161,10 +162,16 @@ static fg_status analyse_records(fg_context *ctx, fg_lot_analysis *analysis) {
   analysis->parts = fg_foil_kind_parts(analysis->lot->settings.design.kind);
   FG_TRY(list_lot_foils(ctx, analysis));
   count_parts(analysis);
+  const fg_record *repeat;
+  const char *no_date;
+  analysis->repeated_scans = fg_lot_count_repeats(analysis->lot, &repeat);
+  analysis->invalid_dates = fg_lot_date_count_invalid(&analysis->lot->manifest, &no_date);
+  fg_lot_date_find(analysis->lot, &analysis->date);
   FG_TRY(decide_foils(ctx, analysis));
   choose_listed_foils(analysis);
   FG_TRY(fg_lot_analyse_quantities(ctx, analysis));
   FG_TRY(fg_lot_analyse_causes(ctx, analysis));
+  fg_lot_find_mean_u(analysis);
   bool bumps = fg_foil_kind_has_bumps(analysis->lot->settings.design.kind);
   if (bumps) FG_TRY(fg_lot_analyse_correlation(ctx, analysis));
   const fg_design *design = &analysis->lot->settings.design;
@@ -174,6 +181,7 @@ static fg_status analyse_records(fg_context *ctx, fg_lot_analysis *analysis) {
   if (bumps) FG_TRY(fg_lot_analyse_stiffness(ctx, analysis));
   if (bumps) FG_TRY(fg_lot_analyse_bearings(ctx, analysis));
   if (bumps) FG_TRY(fg_lot_analyse_assembly(ctx, analysis));
+  if (bumps) fg_lot_analyse_dies(analysis);
   FG_TRY(fg_lot_analyse_groups(ctx, analysis));
   return fg_lot_analyse_gauge(ctx, analysis);
 }

@@ -9,6 +9,7 @@
 #include "foilgauge/density.h"
 #include "foilgauge/stiffness.h"
 #include "lot/input/recipe.h"
+#include "lot/run/date.h"
 #include "lot/run/lot.h"
 #include "lot/statistics/assembly.h"
 #include "quantity/parts.h"
@@ -57,6 +58,11 @@ typedef struct fg_lot_place {
   double mean, sd; /* NaN with too few values */
 } fg_lot_place;
 
+/* Standard uncertainty of the mean of a lot's values; NaN: unknown. */
+typedef struct fg_lot_mean_u {
+  double u_statistical, u_calibration, u;
+} fg_lot_mean_u;
+
 /* Quantity over the lot. */
 typedef struct fg_lot_quantity {
   const fg_quantity *row;
@@ -66,18 +72,17 @@ typedef struct fg_lot_quantity {
   size_t count;
   size_t *size; /* number of values of each foil; owned */
   double mean, sd, min, max, median;
+  fg_lot_mean_u mean_u;
   fg_lot_place *place; /* by number - 1 of the part; owned */
   size_t places;
   bool has_density, has_chart, has_subgroups, has_capability;
   fg_density density;
   double mode;
-  fg_chart chart; /* chart of individuals: means of the foils */
-  double chart_sigma;
+  fg_chart chart;             /* chart of individuals: means of the foils */
   fg_chart means, deviations; /* charts of subgroups: the parts of a foil */
-  double within_sigma;
-  bool stable;        /* no signal on the charts of individuals and deviations */
-  fg_lot_cause cause; /* cause of the signals of the chart of individuals */
-  fg_lot_trend trend; /* sought where there are such signals */
+  bool stable;                /* no signal on the charts of individuals and deviations */
+  fg_lot_cause cause;         /* cause of the signals of the chart of individuals */
+  fg_lot_trend trend;         /* sought where there are such signals */
   fg_capability capability;
 } fg_lot_quantity;
 
@@ -112,11 +117,6 @@ typedef struct fg_lot_budget_term {
   double variance_pct2;           /* variance of the stiffness from it: (spread × sensitivity)² */
   double share_pct;               /* share of the observed variance, 0 to 100; NaN: unknown */
 } fg_lot_budget_term;
-
-/* Standard uncertainty of the mean of a lot's values; NaN: unknown. */
-typedef struct fg_lot_mean_u {
-  double u_statistical, u_calibration, u;
-} fg_lot_mean_u;
 
 /* Sources of the relative sd of the stiffness (arch), to first order about the lot's mean:
  *   rsd² = (s_arc sigma_R)² + (s_alpha sigma_arc)² + 2 r s_arc sigma_R s_alpha sigma_arc
@@ -173,6 +173,26 @@ typedef struct fg_lot_bearing {
   fg_bearing_clearance clearance;
   fg_decision decision; /* as fg_bearing_decide says; owned */
 } fg_lot_bearing;
+
+/* Sums over the bumps of a die's foils. */
+typedef struct fg_lot_die_sum {
+  const fg_lot_die *die; /* NULL: of all dies, with bumps and standard deviations alone */
+  size_t foils, bumps, by_mean;
+  double die_error_pct, u_die_error_pct; /* mean of the references relative to the design */
+  double design_mean_pct, design_sd_pct; /* errors of the bumps against the design */
+  double die_mean_pct, die_sd_pct;       /* errors of the bumps against the die */
+  double explained_pct;                  /* share of design_mean that the die explains */
+} fg_lot_die_sum;
+
+typedef struct fg_lot_dies {
+  fg_lot_die_sum sum[FG_LOT_DIES_MAX];
+  size_t count;                  /* 0: the recipe names no die, or no foil has one */
+  fg_lot_die_sum all;            /* sd: NaN with fewer than two bumps */
+  double explained_variance_pct; /* percentage of the variance that the dies explain */
+  /* With two dies: the difference of their foils (second minus first), of the dies, and its share.
+   * NaN otherwise. */
+  double foils_differ_pct, dies_differ_pct, explained_difference_pct;
+} fg_lot_dies;
 
 /* Foils that are in no bearing, by reason. */
 typedef struct fg_lot_unplaced {
@@ -258,6 +278,8 @@ typedef struct fg_lot_process {
   size_t explained; /* unstable ones whose signals groups explain entirely */
 } fg_lot_process;
 
+enum { FG_LOT_WORST = 3 };
+
 typedef struct fg_lot_analysis {
   const fg_lot *lot;
   const char *folder;      /* folder of the report, to which links are relative; NULL: unknown */
@@ -265,11 +287,14 @@ typedef struct fg_lot_analysis {
   fg_quantity_owner parts; /* kind of the foils' parts */
   fg_lot_foil *foils;
   size_t foil_count, failed_scans;
-  size_t part_count; /* parts of measured foils */
-  size_t left_out;   /* parts left out of statistics, as crushed bumps and torn beams */
+  size_t repeated_scans; /* with the bytes of an earlier one; among those that failed */
+  fg_lot_date date;
+  size_t invalid_dates; /* cells of the manifest's column that are no date */
+  size_t part_count;    /* parts of measured foils */
+  size_t left_out;      /* parts left out of statistics, as crushed bumps and torn beams */
   size_t by_verdict[FG_VERDICT_NONE + 1], exceeded; /* foils */
   fg_report_outcome outcome;                        /* of all foils, scans and bearings */
-  const fg_lot_foil *worst[3];
+  const fg_lot_foil *worst[FG_LOT_WORST];
   fg_lot_quantity *quantities;
   size_t quantity_count;
   fg_lot_process process;
@@ -290,6 +315,7 @@ typedef struct fg_lot_analysis {
   fg_lot_difference *differences;
   size_t difference_count, difference_capacity;
   size_t group_tests, group_tests_differ; /* tests made, and tests whose adjusted p-value differs */
+  fg_lot_dies dies;
   fg_lot_gauge *gauges;
   size_t gauge_count, gauge_capacity;
 } fg_lot_analysis;
@@ -376,6 +402,7 @@ fg_status fg_lot_chart_quantity(fg_context *ctx, unsigned rules, size_t foils,
 fg_status fg_lot_judge_capability(fg_context *ctx, double confidence, fg_lot_quantity *quantity);
 /* Finds causes of the charts' signals, and the state of the process as a whole. */
 fg_status fg_lot_analyse_causes(fg_context *ctx, fg_lot_analysis *analysis);
+void fg_lot_analyse_dies(fg_lot_analysis *analysis);
 fg_status fg_lot_analyse_correlation(fg_context *ctx, fg_lot_analysis *analysis);
 void fg_lot_analyse_thickness(fg_lot_analysis *analysis);
 fg_status fg_lot_analyse_stiffness(fg_context *ctx, fg_lot_analysis *analysis);
@@ -393,9 +420,9 @@ fg_status fg_lot_analyse_gauge(fg_context *ctx, fg_lot_analysis *analysis);
 fg_status fg_lot_find_spread(fg_context *ctx, const double *values, size_t count,
                              fg_bandwidth_rule rule, fg_lot_spread *spread);
 
-/* Returns the uncertainty of the mean of a quantity. Statistical errors average out over the foils;
- * the error of the calibration is the same in each and does not. */
-fg_lot_mean_u fg_lot_find_mean_u(const fg_lot_analysis *analysis, const fg_lot_quantity *quantity);
+/* Finds the uncertainty of the means of all quantities. Statistical errors average out over the
+ * foils; the error of the calibration is the same in each and does not. */
+void fg_lot_find_mean_u(fg_lot_analysis *analysis);
 
 /* Returns the relative u of the mean stiffness from the calibration. */
 double fg_lot_stiffness_calibration(const fg_lot_analysis *analysis);

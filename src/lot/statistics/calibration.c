@@ -85,7 +85,8 @@ static sums sum_foil(const reading *r, const fg_foil *foil) {
   return sum;
 }
 
-fg_lot_mean_u fg_lot_find_mean_u(const fg_lot_analysis *analysis, const fg_lot_quantity *quantity) {
+static fg_lot_mean_u find_quantity_mean_u(const fg_lot_analysis *analysis,
+                                          const fg_lot_quantity *quantity) {
   sums all = {0};
   const fg_lot_mean_u unknown = {NAN, NAN, NAN};
   bool own = (quantity->row->uses & FG_QUANTITY_IS_OWN) != 0;
@@ -103,6 +104,11 @@ fg_lot_mean_u fg_lot_find_mean_u(const fg_lot_analysis *analysis, const fg_lot_q
   double n = (double)all.count, calibration = hypot(all.move[0], all.move[1]) / n;
   double statistical = hypot(sqrt(all.squares), all.alike) / n;
   return (fg_lot_mean_u){statistical, calibration, hypot(statistical, calibration)};
+}
+
+void fg_lot_find_mean_u(fg_lot_analysis *analysis) {
+  for (size_t i = 0; i < analysis->quantity_count; i++)
+    analysis->quantities[i].mean_u = find_quantity_mean_u(analysis, &analysis->quantities[i]);
 }
 
 /* Returns the change of ln K by one standard deviation of a source. */

@@ -75,11 +75,10 @@ static fg_status count_unexplained_signals(fg_context *ctx, unsigned rules,
                                            const fg_lot_quantity *quantity, fg_lot_cause *cause,
                                            const grouping *by) {
   fg_chart chart;
-  double sigma;
   for (size_t i = 0; i < quantity->chart.count; i++)
     by->moved[i] =
         quantity->chart.point[i].value - cause->mean[by->group[i]] + quantity->chart.centre;
-  FG_TRY(fg_chart_individuals(ctx, by->moved, quantity->chart.count, rules, &chart, &sigma));
+  FG_TRY(fg_chart_individuals(ctx, by->moved, quantity->chart.count, rules, &chart));
   cause->signals_left = chart.signals;
   fg_chart_free(&chart);
   return FG_OK;

@@ -81,8 +81,9 @@ static void sum_die(const fg_lot_analysis *analysis, const fg_lot_die *die, sums
   if (s.count > 0) finish_die_sum(&s, sum);
 }
 
-void fg_lot_analyse_dies(const fg_lot_analysis *analysis, fg_lot_dies *dies) {
+void fg_lot_analyse_dies(fg_lot_analysis *analysis) {
   const fg_lot_settings *settings = &analysis->lot->settings;
+  fg_lot_dies *dies = &analysis->dies;
   sums all = {0};
   *dies = (fg_lot_dies){.explained_variance_pct = NAN,
                         .foils_differ_pct = NAN,
@@ -93,10 +94,17 @@ void fg_lot_analyse_dies(const fg_lot_analysis *analysis, fg_lot_dies *dies) {
     sum_die(analysis, &settings->dies[i], &all, sum);
     dies->count += sum->bumps > 0;
   }
-  dies->bumps = (size_t)all.count;
-  dies->design_sd_pct = sd_of_sums(all.count, all.design, all.design_square);
-  dies->die_sd_pct = sd_of_sums(all.count, all.die, all.die_square);
-  double ratio = dies->die_sd_pct / dies->design_sd_pct;
+  dies->all = (fg_lot_die_sum){.die_error_pct = NAN,
+                               .u_die_error_pct = NAN,
+                               .design_mean_pct = NAN,
+                               .die_mean_pct = NAN,
+                               .explained_pct = NAN};
+  for (size_t i = 0; i < dies->count; i++)
+    dies->all.foils += dies->sum[i].foils;
+  dies->all.bumps = (size_t)all.count;
+  dies->all.design_sd_pct = sd_of_sums(all.count, all.design, all.design_square);
+  dies->all.die_sd_pct = sd_of_sums(all.count, all.die, all.die_square);
+  double ratio = dies->all.die_sd_pct / dies->all.design_sd_pct;
   dies->explained_variance_pct = 100 * (1 - ratio * ratio);
   if (dies->count != 2) return;
   dies->foils_differ_pct = dies->sum[1].design_mean_pct - dies->sum[0].design_mean_pct;

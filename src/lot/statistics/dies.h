@@ -16,31 +16,6 @@ typedef struct fg_lot_to_die {
 
 fg_lot_to_die fg_lot_bump_to_die(const fg_lot *lot, const fg_lot_foil *foil, const fg_bump *bump);
 
-/* Sums over the bumps of a die's foils. */
-typedef struct fg_lot_die_sum {
-  const fg_lot_die *die;
-  size_t foils, bumps, by_mean;
-  double die_error_pct, u_die_error_pct; /* mean of the references relative to the design */
-  double design_mean_pct, design_sd_pct; /* errors of the bumps against the design */
-  double die_mean_pct, die_sd_pct;       /* errors of the bumps against the die */
-  double explained_pct;                  /* share of design_mean that the die explains */
-} fg_lot_die_sum;
-
-typedef struct fg_lot_dies {
-  fg_lot_die_sum sum[FG_LOT_DIES_MAX];
-  size_t count;
-  size_t bumps;
-  /* Over all bumps with a die: sd of the errors against design and die, and the percentage of the
-   * variance that the dies explain. NaN with fewer than two bumps. */
-  double design_sd_pct, die_sd_pct, explained_variance_pct;
-  /* With two dies: the difference of their foils (second minus first), of the dies, and its share.
-   * NaN otherwise. */
-  double foils_differ_pct, dies_differ_pct, explained_difference_pct;
-} fg_lot_dies;
-
-/* Sets count 0 when the recipe names no die, or no foil has one. */
-void fg_lot_analyse_dies(const fg_lot_analysis *analysis, fg_lot_dies *dies);
-
 void fg_lot_put_dies(FILE *out, const fg_lot_analysis *analysis);
 
 #endif

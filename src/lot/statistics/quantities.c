@@ -176,15 +176,14 @@ fg_status fg_lot_chart_quantity(fg_context *ctx, unsigned rules, size_t foils,
   fg_status status = FG_OK;
   quantity->has_chart = count >= 2;
   if (quantity->has_chart)
-    status =
-        fg_chart_individuals(ctx, means, count, rules, &quantity->chart, &quantity->chart_sigma);
+    status = fg_chart_individuals(ctx, means, count, rules, &quantity->chart);
   free(means);
   FG_TRY(status);
   fg_context unused;
   quantity->has_subgroups =
       fg_owner_is_part(quantity->owner) &&
       fg_chart_subgroups(&unused, quantity->value, quantity->size, foils, FG_SIGMA_FROM_SD, rules,
-                         &quantity->means, &quantity->deviations, &quantity->within_sigma) == FG_OK;
+                         &quantity->means, &quantity->deviations) == FG_OK;
   quantity->stable = quantity->has_chart && quantity->chart.signals == 0 &&
                      (!quantity->has_subgroups || quantity->deviations.signals == 0);
   return FG_OK;
@@ -195,10 +194,10 @@ fg_status fg_lot_chart_quantity(fg_context *ctx, unsigned rules, size_t foils,
  * added. The degrees of freedom are the smaller of that and those of a moving range (0.62 (n - 1),
  * Wetherill and Brown 1991). */
 static double process_sigma(const fg_lot_quantity *quantity) {
-  if (!quantity->has_subgroups) return quantity->chart_sigma;
+  if (!quantity->has_subgroups) return quantity->chart.sigma;
   double parts = (double)quantity->count / (double)quantity->chart.count;
-  double within = quantity->within_sigma * quantity->within_sigma;
-  double between = quantity->chart_sigma * quantity->chart_sigma - within / parts;
+  double within = quantity->means.sigma * quantity->means.sigma;
+  double between = quantity->chart.sigma * quantity->chart.sigma - within / parts;
   return sqrt(fmax(between, 0) + within);
 }
 

@@ -52,12 +52,11 @@ static fg_status count_signals_left(fg_context *ctx, unsigned rules, const line 
                                     const fg_chart *chart, size_t *signals) {
   void *block;
   fg_chart flat;
-  double sigma;
   FG_TRY(fg_memory_allocate(ctx, chart->count, sizeof(double), &block));
   double *value = block;
   for (size_t i = 0; i < chart->count; i++)
     value[i] = l->mean + residual_at(l, chart, i);
-  fg_status status = fg_chart_individuals(ctx, value, chart->count, rules, &flat, &sigma);
+  fg_status status = fg_chart_individuals(ctx, value, chart->count, rules, &flat);
   free(block);
   FG_TRY(status);
   *signals = flat.signals;

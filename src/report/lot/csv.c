@@ -7,12 +7,13 @@
 
 #include "core/csv.h"
 #include "core/file.h"
-#include "core/json_writer.h"
 #include "foilgauge/words.h"
 #include "lot/statistics/dies.h"
 #include "quantity/quantity_rows.h"
 #include "report/flag_names.h"
 #include "report/lot/files.h"
+#include "report/lot/members.h"
+#include "report/verdict_members.h"
 
 static void put_csv_text(FILE *out, const char *text) {
   fg_csv_put_text(out, text, fg_utf8_put);
@@ -25,15 +26,28 @@ static void put_manifest_cells(FILE *out, const fg_manifest *manifest, size_t it
   }
 }
 
-static void put_csv_heading(FILE *out, const fg_manifest *manifest, const char *more,
-                            fg_quantity_owner owner) {
+/* Finds the columns between the manifest's and the quantities'. */
+static void find_middle_columns(const fg_members *members, const fg_lot_analysis *analysis,
+                                fg_member_columns *columns) {
+  const fg_subject list = {.object = analysis, .whole = analysis};
+  size_t count = 0;
+  fg_member_columns_of(members, FG_ON_CSV, &list, columns);
+  for (size_t i = 0; i < columns->count; i++)
+    if (!columns->rows[i]->column || columns->rows[i]->column(&list))
+      columns->rows[count++] = columns->rows[i];
+  columns->count = count;
+}
+
+static void put_csv_heading(FILE *out, const fg_manifest *manifest,
+                            const fg_member_columns *columns, fg_quantity_owner owner) {
   size_t count;
   const fg_quantity *rows = fg_quantities(owner, &count);
   for (size_t i = 0; i < manifest->columns; i++) {
     if (i) fputc(',', out);
     put_csv_text(out, manifest->name[i]);
   }
-  fputs(more, out);
+  fputc(',', out);
+  fg_members_csv_heading(out, columns);
   for (size_t i = 0; i < count; i++) {
     if (rows[i].kind == FG_QUANTITY_PAIR) continue;
     fprintf(out, ",%s", rows[i].name);
@@ -73,75 +87,98 @@ static void put_failed_scan(FILE *out, const fg_lot *lot, size_t item) {
 fg_status fg_lot_write_foils_csv(fg_context *ctx, const fg_lot_analysis *analysis, FILE *out) {
   const fg_lot *lot = analysis->lot;
   size_t next = 0;
-  put_csv_heading(out, &lot->manifest, ",foil_number,page,verdict,flags,error",
-                  FG_QUANTITY_OF_FOIL);
+  fg_member_columns columns;
+  find_middle_columns(&fg_lot_foil_members, analysis, &columns);
+  put_csv_heading(out, &lot->manifest, &columns, FG_QUANTITY_OF_FOIL);
   for (size_t item = 0; item < lot->manifest.items; item++) {
     if (lot->records[item].error) put_failed_scan(out, lot, item);
     for (; next < analysis->foil_count && analysis->foils[next].item == item; next++) {
       const fg_lot_foil *foil = &analysis->foils[next];
       put_manifest_cells(out, &lot->manifest, item);
-      fprintf(out, ",%d,", foil->foil->number);
-      if (analysis->pages && analysis->pages[item]) put_csv_text(out, analysis->pages[item]);
-      fprintf(out, ",%s", fg_verdict_word(foil->verdict));
-      fg_csv_put_flags(out, fg_foil_flag_words(), foil->foil->flags,
-                       foil->foil->strip.picture.findings);
       fputc(',', out);
-      put_csv_text(out, foil->foil->error);
+      fg_members_csv_cells(out, &columns, &(fg_subject){.object = foil, .whole = analysis});
       put_quantity_cells(out, FG_QUANTITY_OF_FOIL, foil->foil);
     }
   }
   return fg_stream_finish(ctx, out, "foils.csv");
 }
 
-static void put_to_die(FILE *out, const fg_lot *lot, const fg_lot_foil *foil, const fg_bump *bump) {
-  fg_lot_to_die to = fg_lot_bump_to_die(lot, foil, bump);
-  fg_csv_put_number(out, to.radius_mm);
-  fg_csv_put_number(out, to.error_pct);
-  fg_csv_put_number(out, to.u_error_pct);
+/* A bump or beam of the lot, as a line of its table. */
+typedef struct part_line {
+  const fg_lot_foil *foil;
+  fg_foil_part part;
+  char flags[1000];
+  fg_verdict verdict;
+  double stiffness; /* of a bump, over the design's */
+  fg_lot_to_die to_die;
+} part_line;
+
+static void find_part_line(const fg_lot_analysis *analysis, const fg_lot_foil *foil, size_t k,
+                           part_line *line) {
+  const fg_design *design = &analysis->lot->settings.design;
+  bool beam = analysis->parts == FG_QUANTITY_OF_BEAM;
+  line->foil = foil;
+  line->part = fg_part_at(foil->foil, analysis->parts, k);
+  const void *part = line->part.object;
+  unsigned flags =
+      beam ? fg_beam_flags(design, foil->foil, part) : fg_bump_flags(design, foil->foil, part);
+  fg_flag_names(beam ? fg_beam_flag_words() : fg_bump_flag_words(), flags, 0, line->flags,
+                sizeof line->flags);
+  line->verdict =
+      beam ? fg_beam_verdict(design, foil->foil, part) : fg_bump_verdict(design, foil->foil, part);
+  if (!beam) line->to_die = fg_lot_bump_to_die(analysis->lot, foil, part);
+}
+
+static double find_part_foil(const fg_subject *subject) {
+  return ((const part_line *)subject->object)->foil->foil->number;
+}
+
+static bool lot_has_dies(const fg_subject *list) {
+  return ((const fg_lot_analysis *)list->whole)->lot->settings.die_count > 0;
+}
+
+static const fg_member part_rows[] = {
+    {FG_COUNT_BY("foil_number", find_part_foil), .csv = {1}},
+    {FG_INTEGER("bump", part_line, part.number), .csv = {1}, .column = fg_lot_has_no_beams},
+    {FG_INTEGER("beam", part_line, part.number), .csv = {1}, .column = fg_lot_has_beams},
+    {FG_TEXT("flags", part_line, flags), .csv = {1}},
+    {FG_NUMBER("normalised_stiffness", part_line, stiffness), .csv = {1},
+     .column = fg_lot_has_no_beams},
+    {FG_NUMBER("die_radius_mm", part_line, to_die.radius_mm), .csv = {1}, .column = lot_has_dies},
+    {FG_NUMBER_U("radius_error_to_die_pct", part_line, to_die.error_pct, to_die.u_error_pct),
+     .csv = {1}, .column = lot_has_dies},
+    {FG_WORD("verdict", part_line, verdict, fg_verdict_words), .csv = {1}},
+};
+static const fg_members part_members = FG_MEMBERS(part_rows);
+
+static void write_parts_csv(const fg_lot_analysis *analysis, FILE *out) {
+  const fg_manifest *manifest = &analysis->lot->manifest;
+  const double *stiffness = analysis->stiffness.normalised;
+  size_t at = 0;
+  part_line line;
+  fg_member_columns columns;
+  find_middle_columns(&part_members, analysis, &columns);
+  put_csv_heading(out, manifest, &columns, analysis->parts);
+  for (size_t i = 0; i < analysis->foil_count; i++) {
+    const fg_lot_foil *foil = &analysis->foils[i];
+    for (size_t k = 0; k < fg_part_count(foil->foil, analysis->parts); k++) {
+      find_part_line(analysis, foil, k, &line);
+      line.stiffness = stiffness ? stiffness[at++] : NAN;
+      put_manifest_cells(out, manifest, foil->item);
+      fputc(',', out);
+      fg_members_csv_cells(out, &columns, &(fg_subject){.object = &line, .whole = analysis});
+      put_quantity_cells(out, analysis->parts, line.part.object);
+    }
+  }
 }
 
 fg_status fg_lot_write_bumps_csv(fg_context *ctx, const fg_lot_analysis *analysis, FILE *out) {
-  const fg_manifest *manifest = &analysis->lot->manifest;
-  const fg_design *design = &analysis->lot->settings.design;
-  const double *stiffness = analysis->stiffness.normalised;
-  size_t at = 0;
-  bool dies = analysis->lot->settings.die_count > 0;
-  put_csv_heading(out, manifest,
-                  dies ? ",foil_number,bump,flags,normalised_stiffness,die_radius_mm,"
-                         "radius_error_to_die_pct,u_radius_error_to_die_pct,verdict"
-                       : ",foil_number,bump,flags,normalised_stiffness,verdict",
-                  FG_QUANTITY_OF_BUMP);
-  for (size_t i = 0; i < analysis->foil_count; i++) {
-    const fg_lot_foil *foil = &analysis->foils[i];
-    for (size_t k = 0; k < foil->foil->bump_count; k++) {
-      const fg_bump *bump = &foil->foil->bumps[k];
-      put_manifest_cells(out, manifest, foil->item);
-      fprintf(out, ",%d,%d", foil->foil->number, bump->number);
-      fg_csv_put_flags(out, fg_bump_flag_words(), fg_bump_flags(design, foil->foil, bump), 0);
-      fg_csv_put_number(out, stiffness[at++]);
-      if (dies) put_to_die(out, analysis->lot, foil, bump);
-      fprintf(out, ",%s", fg_verdict_word(fg_bump_verdict(design, foil->foil, bump)));
-      put_quantity_cells(out, FG_QUANTITY_OF_BUMP, bump);
-    }
-  }
+  write_parts_csv(analysis, out);
   return fg_stream_finish(ctx, out, "bumps.csv");
 }
 
 fg_status fg_lot_write_beams_csv(fg_context *ctx, const fg_lot_analysis *analysis, FILE *out) {
-  const fg_manifest *manifest = &analysis->lot->manifest;
-  const fg_design *design = &analysis->lot->settings.design;
-  put_csv_heading(out, manifest, ",foil_number,beam,flags,verdict", FG_QUANTITY_OF_BEAM);
-  for (size_t i = 0; i < analysis->foil_count; i++) {
-    const fg_foil *foil = analysis->foils[i].foil;
-    for (size_t k = 0; k < foil->beam_count; k++) {
-      const fg_beam *beam = &foil->beams[k];
-      put_manifest_cells(out, manifest, analysis->foils[i].item);
-      fprintf(out, ",%d,%d", foil->number, beam->number);
-      fg_csv_put_flags(out, fg_beam_flag_words(), fg_beam_flags(design, foil, beam), 0);
-      fprintf(out, ",%s", fg_verdict_word(fg_beam_verdict(design, foil, beam)));
-      put_quantity_cells(out, FG_QUANTITY_OF_BEAM, beam);
-    }
-  }
+  write_parts_csv(analysis, out);
   return fg_stream_finish(ctx, out, "beams.csv");
 }
 

@@ -2,7 +2,6 @@
 /* Member of lot.json about bearings drawn from the lot's foils. */
 #include <math.h>
 
-#include "report/lot/json.h"
 #include "report/lot/parts_members.h"
 
 /* Cells of the page's tables: percent, an interval of it, a gain that may be chance. */
@@ -253,11 +252,3 @@ static const fg_member assembly_rows[] = {
     {FG_SAME(&drawn_members), .part = find_drawn},
 };
 const fg_members fg_lot_assembly_members = FG_MEMBERS_DEFINED(assembly_rows, "assembly");
-
-void fg_lot_json_assembly(fg_json *json, const fg_lot_analysis *analysis) {
-  if (!analysis->assembly.asked) return;
-  fg_json_object(json, "assembly");
-  fg_members_json(json, &fg_lot_assembly_members,
-                  &(fg_subject){.object = &analysis->assembly, .whole = analysis});
-  fg_json_object_end(json);
-}

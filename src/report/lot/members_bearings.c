@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Members of lot.json about bearings. */
-#include "report/lot/json.h"
 #include "report/lot/parts_members.h"
 #include "report/measure/json.h"
 #include "report/quantity_json.h"
@@ -127,8 +126,3 @@ static const fg_member part_rows[] = {
      .words = "every bump, foils fitted into the sleeve"},
 };
 const fg_members fg_lot_bearing_members = FG_MEMBERS(part_rows);
-
-void fg_lot_json_bearings(fg_json *json, const fg_lot_analysis *analysis) {
-  fg_members_json(json, &fg_lot_bearing_members,
-                  &(fg_subject){.object = analysis, .whole = analysis});
-}

@@ -2,7 +2,6 @@
 /* Members of lot.json about the state of the process and the causes of its charts' signals. */
 #include <math.h>
 
-#include "report/lot/json.h"
 #include "report/lot/parts_members.h"
 
 #define SIGNALS_LEFT_WORDS "of the same chart "
@@ -92,12 +91,6 @@ static const fg_member cause_rows[] = {
 };
 const fg_members fg_lot_cause_members = FG_MEMBERS(cause_rows);
 
-void fg_lot_json_cause(fg_json *json, const fg_lot_analysis *analysis,
-                       const fg_lot_quantity *quantity) {
-  fg_members_json(json, &fg_lot_cause_members,
-                  &(fg_subject){.object = quantity, .whole = analysis});
-}
-
 /* State of the process. */
 static double is_process_stable(const fg_subject *subject) {
   const fg_lot_analysis *analysis = subject->object;
@@ -136,10 +129,3 @@ static const fg_member process_rows[] = {
      .words = "of those not stable: groups explain every signal"},
 };
 const fg_members fg_lot_process_members = FG_MEMBERS(process_rows);
-
-void fg_lot_json_process(fg_json *json, const fg_lot_analysis *analysis) {
-  fg_json_object(json, "process");
-  fg_members_json(json, &fg_lot_process_members,
-                  &(fg_subject){.object = analysis, .whole = analysis});
-  fg_json_object_end(json);
-}

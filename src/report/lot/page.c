@@ -4,7 +4,6 @@
 #include "page/page.h"
 #include "core/file.h"
 #include "foilgauge/foil_kind.h"
-#include "lot/run/date.h"
 #include "lot/statistics/dies.h"
 #include "report/lot/files.h"
 #include "report/lot/page_parts.h"
@@ -171,14 +170,12 @@ static fg_status put_lot_provenance(fg_context *ctx, FILE *out, const fg_lot_ana
   fg_scale_words(analysis->lot->model, &analysis->lot->settings.design.calibration, scale,
                  sizeof scale);
   const fg_lot *lot = analysis->lot;
-  fg_lot_date date;
-  fg_lot_date_find(lot, &date);
   fg_provenance from = {.version = lot->head.version,
                         .design = &lot->settings.design,
                         .of_scans = true,
                         .model = lot->model};
-  fg_provenance_take_date(&from, date.first);
-  fg_provenance_take_date(&from, date.last);
+  fg_provenance_take_date(&from, analysis->date.first);
+  fg_provenance_take_date(&from, analysis->date.last);
   fprintf(out,
           "<section class=\"part\">\n<h1>Where it comes from</h1>\n<dl "
           "class=\"facts\"><dt>Recipe, SHA-256</dt><dd>%s</dd><dt>Manifest, SHA-256</dt><dd>%s"

@@ -6,6 +6,8 @@
 #include "lot/statistics/dies.h"
 #include "page/page.h"
 #include "page/plot_frame.h"
+#include "page/table.h"
+#include "report/lot/members.h"
 #include "report/lot/page_parts.h"
 
 enum { NUMBERS_MAX = FG_LOT_DIE_BUMPS_MAX };
@@ -113,7 +115,7 @@ static void put_die_sentences(FILE *out, const fg_lot_dies *dies) {
     fprintf(out,
             "<li>Over all %zu bumps the standard deviation is %.3f %% against the design and %.3f "
             "%% against the dies: ",
-            dies->bumps, dies->design_sd_pct, dies->die_sd_pct);
+            dies->all.bumps, dies->all.design_sd_pct, dies->all.die_sd_pct);
     if (dies->explained_variance_pct > 0)
       fprintf(out, "the dies explain %.0f %% of the variance.</li>\n",
               dies->explained_variance_pct);
@@ -123,41 +125,24 @@ static void put_die_sentences(FILE *out, const fg_lot_dies *dies) {
   fputs("</ul>\n", out);
 }
 
-static void put_die_table(FILE *out, const fg_lot_dies *dies) {
-  fputs("<div class=\"scroll\"><table><thead><tr><th>die</th><th>foils</th><th>bumps</th><th>die "
-        "against<br>design, %</th><th>foils against<br>design, %</th><th>s</th><th>foils "
-        "against<br>die, "
-        "%</th><th>s</th><th>the die's share<br>of the mean, %</th></tr></thead>\n<tbody>\n",
-        out);
-  for (size_t i = 0; i < dies->count; i++) {
-    const fg_lot_die_sum *sum = &dies->sum[i];
-    fputs("<tr><td>", out);
-    fg_html_text(out, sum->die->name);
-    fprintf(out,
-            "</td><td>%zu</td><td>%zu</td><td>%+.3f ± %.3f</td><td>%+.3f</td><td>%.3f</td>"
-            "<td>%+.3f</td><td>%.3f</td><td>%.1f</td></tr>\n",
-            sum->foils, sum->bumps, sum->die_error_pct, FG_COVERAGE_FACTOR * sum->u_die_error_pct,
-            sum->design_mean_pct, sum->design_sd_pct, sum->die_mean_pct, sum->die_sd_pct,
-            sum->explained_pct);
-  }
-  fprintf(out,
-          "</tbody><tfoot><tr class=\"total\"><td>all</td><td></td><td>%zu</td><td></td><td></td>"
-          "<td>%.3f</td><td></td><td>%.3f</td><td></td></tr></tfoot></table></div>\n",
-          dies->bumps, dies->design_sd_pct, dies->die_sd_pct);
+/* Elements of the table: every die, then all of them. */
+static bool find_die_line(const fg_subject *list, size_t i, fg_subject *element) {
+  const fg_lot_dies *dies = list->object;
+  element->object = i < dies->count ? &dies->sum[i] : &dies->all;
+  return i <= dies->count;
 }
 
 void fg_lot_put_dies(FILE *out, const fg_lot_analysis *analysis) {
-  fg_lot_dies dies;
+  const fg_lot_dies *dies = &analysis->dies;
   double range[2];
-  fg_lot_analyse_dies(analysis, &dies);
-  if (!dies.count) return;
-  find_error_range(analysis, &dies, range);
+  if (!dies->count) return;
+  find_error_range(analysis, dies, range);
   fputs("<section class=\"part\">\n<h1>Dies: what of the deviation is theirs</h1>\n", out);
-  put_die_sentences(out, &dies);
+  put_die_sentences(out, dies);
   fputs("<div class=\"pair\">", out);
-  for (size_t i = 0; i < dies.count; i++) {
+  for (size_t i = 0; i < dies->count; i++) {
     fputs("<figure>", out);
-    put_die_plot(out, analysis, dies.sum[i].die, range);
+    put_die_plot(out, analysis, dies->sum[i].die, range);
     fputs("</figure>\n", out);
   }
   fputs(
@@ -165,7 +150,8 @@ void fg_lot_put_dies(FILE *out, const fg_lot_analysis *analysis) {
       "the die&#39;s, as <code>foilgauge die</code> measured it (mean of its halves); the dashed "
       "way between them is springback.</p>\n",
       out);
-  put_die_table(out, &dies);
+  fg_html_table(out, &fg_lot_die_sum_members, &(fg_subject){.object = dies, .whole = analysis},
+                find_die_line);
   fputs("<p class=\"note\">Bump by bump: radius_error_to_die_pct in bumps.csv. What all dies err "
         "by alike is no part of the scatter.</p>\n</section>\n",
         out);

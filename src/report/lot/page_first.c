@@ -34,8 +34,7 @@ static bool foils_are_judged(const fg_lot_analysis *analysis) {
 
 static void put_scan_tiles(FILE *out, const fg_lot_analysis *analysis) {
   size_t failed = analysis->failed_scans, scans = analysis->lot->manifest.items;
-  const fg_record *repeat;
-  size_t repeats = fg_lot_count_repeats(analysis->lot, &repeat);
+  size_t repeats = analysis->repeated_scans;
   bool parts = !fg_foil_traits_of(analysis->lot->settings.design.kind)->is_plain_strip;
   const fg_lot_words *words = fg_lot_words_of(analysis);
   const fg_tile tiles[] = {

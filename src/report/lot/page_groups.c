@@ -3,6 +3,8 @@
 #include <math.h>
 
 #include "page/page.h"
+#include "page/table.h"
+#include "report/lot/members.h"
 #include "report/lot/page_parts.h"
 
 static void put_group_number(FILE *out, double p) {
@@ -90,23 +92,15 @@ void fg_lot_put_comparisons(FILE *out, const fg_lot_analysis *analysis) {
   fputs("</section>\n", out);
 }
 
+static bool find_gauge(const fg_subject *list, size_t i, fg_subject *element) {
+  const fg_lot_analysis *analysis = list->whole;
+  element->object = &analysis->gauges[i];
+  return i < analysis->gauge_count;
+}
+
 void fg_lot_put_gauge(FILE *out, const fg_lot_analysis *analysis) {
   if (!analysis->gauge_count) return;
-  fprintf(out,
-          "<section class=\"part\">\n<h1>Gauge repeatability and reproducibility</h1>\n<div "
-          "class=\"scroll\"><table>"
-          "<thead><tr><th>quantity</th><th>%s</th><th>repeatability</th><th>reproducibility</th>"
-          "<th>GRR</th><th>part</th><th>GRR, %%</th><th>categories</th></tr></thead>\n<tbody>\n",
-          fg_lot_words_of(analysis)->one);
-  for (size_t i = 0; i < analysis->gauge_count; i++) {
-    const fg_lot_gauge *gauge = &analysis->gauges[i];
-    const fg_gauge_study *study = &gauge->study;
-    fprintf(out,
-            "<tr><td>%s</td><td>%d</td><td>%.3g</td><td>%.3g</td><td>%.3g</td><td>%.3g</td><td>%.3g"
-            "</td><td>%.0f</td></tr>\n",
-            gauge->quantity->row->words, gauge->number, study->repeatability,
-            study->reproducibility, study->grr, study->part, study->grr_pct,
-            floor(study->distinct_categories));
-  }
-  fputs("</tbody></table></div>\n</section>\n", out);
+  fputs("<section class=\"part\">\n<h1>Gauge repeatability and reproducibility</h1>\n", out);
+  fg_html_table(out, &fg_lot_gauge_members, &(fg_subject){.whole = analysis}, find_gauge);
+  fputs("</section>\n", out);
 }

@@ -50,9 +50,6 @@ void fg_lot_put_label(FILE *out, const fg_lot_analysis *analysis, const fg_lot_f
 /* Puts the thickness of the strips, and the design's where it differs. */
 void fg_lot_put_thickness(FILE *out, const fg_lot_analysis *analysis);
 
-/* Puts the uncertainty of the means: a part of the quantities' section. */
-void fg_lot_put_mean_u(FILE *out, const fg_lot_analysis *analysis);
-
 /* Puts the causes of the spread of the stiffness: a part of its section. */
 void fg_lot_put_stiffness_budget(FILE *out, const fg_lot_analysis *analysis);
 

@@ -6,35 +6,24 @@
 #include "core/text.h"
 #include "foilgauge/words.h"
 #include "page/page.h"
+#include "page/table.h"
+#include "report/lot/members.h"
 #include "report/lot/page_parts.h"
 #include "report/lot/plots.h"
 
+static bool find_stated(const fg_subject *list, size_t i, fg_subject *element) {
+  const fg_lot_analysis *analysis = list->whole;
+  const fg_lot_quantity *quantity = &analysis->quantities[i];
+  if (i >= analysis->quantity_count) return false;
+  bool unstated = !quantity->count && !quantity->tolerance; /* such as without a sagitta */
+  element->object = unstated && quantity->owner == FG_QUANTITY_OF_BEAM ? NULL : quantity;
+  return true;
+}
+
 static void put_quantity_rows(FILE *out, const fg_lot_analysis *analysis) {
-  fputs("<h1>Quantities</h1>\n<div class=\"scroll\"><table><thead><tr><th>quantity</th><th>unit"
-        "</th><th>n</th><th>mean</th><th>s</th><th>median</th><th>mode</th><th>min</th><th>max</th>"
-        "<th>runs</th></tr></thead>\n<tbody>\n",
-        out);
-  for (size_t i = 0; i < analysis->quantity_count; i++) {
-    const fg_lot_quantity *quantity = &analysis->quantities[i];
-    bool unstated = !quantity->count && !quantity->tolerance;
-    if (unstated && quantity->owner == FG_QUANTITY_OF_BEAM)
-      continue; /* such as without a sagitta */
-    const double values[] = {quantity->mean, quantity->sd,  quantity->median,
-                             quantity->mode, quantity->min, quantity->max};
-    fprintf(out, "<tr><td class=\"words\">%s</td><td>%s</td><td>%zu</td>", quantity->row->words,
-            quantity->row->unit, quantity->count);
-    for (size_t k = 0; k < sizeof values / sizeof *values; k++) {
-      fputs("<td>", out);
-      fg_lot_put_decimals(out, values[k], fg_report_decimals(quantity->row, quantity->sd));
-      fputs("</td>", out);
-    }
-    fprintf(out, "<td%s</td></tr>\n",
-            fg_lot_is_uninformative(quantity) ? ">–"
-            : quantity->stable                ? " class=\"pass\">stable"
-            : fg_lot_is_explained(quantity)   ? " class=\"cannot_tell\">groups differ"
-                                              : " class=\"cannot_tell\">not stable");
-  }
-  fputs("</tbody></table></div>\n", out);
+  fputs("<h1>Quantities</h1>\n", out);
+  fg_html_table(out, &fg_lot_quantity_members,
+                &(fg_subject){.whole = analysis, .index = FG_LOT_VALUES}, find_stated);
   if (analysis->left_out)
     fprintf(out,
             "<p class=\"reasons\"><b>%zu of %zu %s %s:</b> judged, but in no statistics%s of this "
@@ -44,50 +33,35 @@ static void put_quantity_rows(FILE *out, const fg_lot_analysis *analysis) {
             analysis->parts == FG_QUANTITY_OF_BUMP ? ", stiffness or clearance" : "");
 }
 
-static void put_capability_cell(FILE *out, double value, int digits) {
-  fputs("<td>", out);
-  fg_lot_put_number(out, value, digits);
-  fputs("</td>", out);
+static bool find_known(const fg_subject *list, size_t i, fg_subject *element) {
+  const fg_lot_analysis *analysis = list->whole;
+  if (i >= analysis->quantity_count) return false;
+  element->object = isfinite(analysis->quantities[i].mean_u.u) ? &analysis->quantities[i] : NULL;
+  return true;
 }
 
-/* Capability ratio from which a higher number tells nothing more. */
-static const double ratio_told = 100;
-
-static void put_capability_ratio(FILE *out, const fg_ratio *ratio) {
-  if (ratio->value > ratio_told) {
-    fprintf(out, "<td>&gt; %.0f</td>", ratio_told);
+static void put_mean_u(FILE *out, const fg_lot_analysis *analysis) {
+  const fg_calibration *calibration = &analysis->lot->settings.design.calibration;
+  if (!calibration->stated) {
+    fputs("<p class=\"note\">U holds statistics only: no calibration is stated.</p>\n", out);
     return;
   }
-  fputs("<td>", out);
-  fg_lot_put_number(out, ratio->value, 3);
-  if (isfinite(ratio->value)) {
-    fputs(" <i>", out);
-    fg_lot_put_number(out, ratio->low, 3);
-    fputs(" … ", out);
-    fg_lot_put_number(out, ratio->high, 3);
-    fputs("</i>", out);
-  }
-  fputs("</td>", out);
+  fputs("<h2>How well the means are known</h2>\n", out);
+  fg_html_table(out, &fg_lot_quantity_members,
+                &(fg_subject){.whole = analysis, .index = FG_LOT_MEAN_U}, find_known);
+  fputs("<p class=\"note\">What the scans&#39; statistics leave averages "
+        "out over the foils, but for the thickness, whose doubt they share; what the calibration "
+        "leaves is the same error in each, so no number "
+        "of foils makes it smaller. Spreads, charts and differences of foils of one scanner are "
+        "free of it.</p>\n",
+        out);
 }
 
-static void put_capability_row(FILE *out, const fg_lot_quantity *quantity) {
-  const fg_capability *capability = &quantity->capability;
-  fprintf(out, "<tr><td class=\"words\">%s</td><td>", quantity->row->words);
-  fg_lot_put_number(out, quantity->tolerance->lower, 6);
-  fputs(" … ", out);
-  fg_lot_put_number(out, quantity->tolerance->upper, 6);
-  fputs("</td>", out);
-  put_capability_ratio(out, &capability->p);
-  put_capability_ratio(out, &capability->pk);
-  put_capability_ratio(out, &capability->c);
-  put_capability_ratio(out, &capability->ck);
-  if (capability->quantile_pk > ratio_told)
-    fprintf(out, "<td>&gt; %.0f</td>", ratio_told);
-  else
-    put_capability_cell(out, capability->quantile_pk, 3);
-  fprintf(out, "<td class=\"words\">%s, %s</td></tr>\n",
-          capability->stable ? "stable" : "not stable",
-          capability->normal ? "normal" : "not normal: the quantile method holds");
+static bool find_capable(const fg_subject *list, size_t i, fg_subject *element) {
+  const fg_lot_analysis *analysis = list->whole;
+  if (i >= analysis->quantity_count) return false;
+  element->object = analysis->quantities[i].has_capability ? &analysis->quantities[i] : NULL;
+  return true;
 }
 
 static void put_capability(FILE *out, const fg_lot_analysis *analysis) {
@@ -95,19 +69,13 @@ static void put_capability(FILE *out, const fg_lot_analysis *analysis) {
   for (size_t i = 0; i < analysis->quantity_count; i++)
     any = any || analysis->quantities[i].has_capability;
   if (!any) return;
-  fputs(
-      "<h2>Capability</h2>\n<div class=\"scroll\"><table><thead><tr><th>quantity</th><th>"
-      "tolerance</th><th>Pp</th><th>Ppk</th><th>Cp</th><th>Cpk</th><th>Ppk by<br>quantiles</th><th>"
-      "</th></tr></thead>\n<tbody>\n",
-      out);
-  for (size_t i = 0; i < analysis->quantity_count; i++)
-    if (analysis->quantities[i].has_capability) put_capability_row(out, &analysis->quantities[i]);
-  fprintf(
-      out,
-      "</tbody></table></div>\n<p class=\"note\">Intervals at %.4g %%. Cp and Cpk speak of what "
-      "the process will do, so they are stated only while its control charts show no signal; "
-      "otherwise Pp and Ppk tell what it did.</p>\n",
-      100 * analysis->lot->settings.confidence);
+  fputs("<h2>Capability</h2>\n", out);
+  fg_html_table(out, &fg_lot_capability_members, &(fg_subject){.whole = analysis}, find_capable);
+  fprintf(out,
+          "<p class=\"note\">Intervals at %.4g %%. Cp and Cpk speak of what "
+          "the process will do, so they are stated only while its control charts show no signal; "
+          "otherwise Pp and Ppk tell what it did.</p>\n",
+          100 * analysis->lot->settings.confidence);
 }
 
 static void put_chart_signals(FILE *out, const fg_lot_quantity *quantity) {
@@ -154,7 +122,7 @@ static void put_charts(FILE *out, const fg_lot_analysis *analysis) {
 void fg_lot_put_quantities(FILE *out, const fg_lot_analysis *analysis) {
   fputs("<section class=\"part\">\n", out);
   put_quantity_rows(out, analysis);
-  fg_lot_put_mean_u(out, analysis);
+  put_mean_u(out, analysis);
   put_capability(out, analysis);
   put_charts(out, analysis);
   fputs("</section>\n", out);

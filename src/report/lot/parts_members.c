@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Members of lot.json: spreads, stiffness of bumps. */
 #include "report/lot/parts_members.h"
-#include "report/lot/json.h"
 
 #define SPREAD_VALUE(name, heading_, words_)                                                       \
   {                                                                                                \
@@ -159,10 +158,3 @@ static const fg_member stiffness_rows[] = {
               "lot's mean; variances in percent squared, null: not known"},
 };
 const fg_members fg_lot_stiffness_members = FG_MEMBERS(stiffness_rows);
-
-void fg_lot_json_stiffness(fg_json *json, const fg_lot_analysis *analysis) {
-  fg_json_object(json, "stiffness");
-  fg_members_json(json, &fg_lot_stiffness_members,
-                  &(fg_subject){.object = &analysis->stiffness, .whole = analysis});
-  fg_json_object_end(json);
-}
