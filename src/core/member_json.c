@@ -106,7 +106,8 @@ static void close_line(fg_json *json, line_style line, void (*close)(fg_json *))
   if (line == ONE_LINE) fg_json_line_end(json);
 }
 
-/* Writes an object under a name; one nameless member is written bare in its place. */
+/* Writes an object under a name; one nameless member is written bare in its place, as the name's
+ * value. */
 static void write_members(fg_json *json, const char *name, const fg_members *members,
                           const fg_subject *subject, line_style line) {
   if (members->count == 1 && !members->rows[0].name && members->rows[0].kind != FG_MEMBER_SAME) {

@@ -376,7 +376,7 @@ const fg_document fg_index_document = {
     .title = "foilgauge index of lots",
     .description = "Lots over time and against each other, in order of date. Units are in the "
                    "names of quantities. null is a value that is not known.",
-    .made_by = "`foilgauge lot --index`",
+    .made_by = "`foilgauge lot --index -o`",
     .members = &index_members,
 };
 

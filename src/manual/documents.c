@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "lots/members.h"
+#include "render/truth.h"
 #include "report/design/members.h"
 #include "report/die/members.h"
 #include "report/doe/members.h"
@@ -27,6 +28,7 @@ const fg_document *const fg_documents[] = {
     &fg_nominal_document,
     &fg_scan_loop_document,
     &fg_scanner_model_document,
+    &fg_render_truth_document,
     NULL,
 };
 

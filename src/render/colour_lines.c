@@ -22,9 +22,9 @@ static const struct line_member {
 enum { LINE_MEMBERS = sizeof line_members / sizeof *line_members };
 
 static fg_status check_names(const fg_place *place, const cJSON *object) {
-  fg_member known[LINE_MEMBERS + 1] = {{0}};
+  fg_spec_row known[LINE_MEMBERS + 1] = {{0}};
   for (int i = 0; i < LINE_MEMBERS; i++)
-    known[i] = (fg_member){line_members[i].name, FG_MEMBER_OTHER, 0, 0, 0};
+    known[i] = (fg_spec_row){line_members[i].name, FG_SPEC_OTHER, 0, 0, 0};
   return fg_members_read(place, object, known, NULL);
 }
 

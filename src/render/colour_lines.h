@@ -9,7 +9,6 @@
 
 #include <stdbool.h>
 
-#include "core/json_writer.h"
 #include "render/members.h"
 
 enum { FG_COLOUR_LINES = 3 }; /* red, green, blue */

@@ -61,10 +61,10 @@ static fg_status read_tone(const fg_place *place, const cJSON *scanner, fg_tone_
 }
 
 static fg_status read_unsharp(const fg_place *place, const cJSON *object, fg_unsharp_mask *mask) {
-  static const fg_member table[] = {
-      {"amount_pct", FG_MEMBER_NUMBER, offsetof(fg_unsharp_mask, amount_pct), 0, 1000},
-      {"radius_px", FG_MEMBER_NUMBER, offsetof(fg_unsharp_mask, radius_px), 0.1, 30},
-      {"threshold", FG_MEMBER_NUMBER, offsetof(fg_unsharp_mask, threshold), 0, 255},
+  static const fg_spec_row table[] = {
+      {"amount_pct", FG_SPEC_NUMBER, offsetof(fg_unsharp_mask, amount_pct), 0, 1000},
+      {"radius_px", FG_SPEC_NUMBER, offsetof(fg_unsharp_mask, radius_px), 0.1, 30},
+      {"threshold", FG_SPEC_NUMBER, offsetof(fg_unsharp_mask, threshold), 0, 255},
       {0}};
   if (!object) return FG_OK;
   fg_place inner = fg_place_inside(place, "unsharp_mask");
@@ -95,28 +95,6 @@ fg_status fg_driver_read(const fg_place *place, const cJSON *scanner, int bits,
   FG_TRY(read_unsharp(place, cJSON_GetObjectItemCaseSensitive(scanner, "unsharp_mask"),
                       &settings->unsharp));
   return read_levels(place, scanner, bits, settings);
-}
-
-static void put_unsharp(fg_json *json, const fg_unsharp_mask *mask) {
-  fg_json_object(json, "unsharp_mask");
-  fg_json_number(json, "amount_pct", mask->amount_pct);
-  fg_json_number(json, "radius_px", mask->radius_px);
-  fg_json_number(json, "threshold", mask->threshold);
-  fg_json_object_end(json);
-}
-
-void fg_driver_put_truth(fg_json *json, const fg_driver_settings *settings) {
-  const fg_tone_curve *tone = &settings->tone;
-  if (tone->count) {
-    fg_json_array(json, "tone_curve");
-    for (size_t i = 0; i < tone->count; i++)
-      fg_json_numbers(json, NULL, (const double[]){tone->in[i], tone->out[i]}, 2);
-    fg_json_array_end(json);
-    if (tone->bits) fg_json_number(json, "tone_bits", tone->bits);
-  }
-  if (settings->unsharp.amount_pct > 0) put_unsharp(json, &settings->unsharp);
-  if (settings->levels) fg_json_number(json, "levels", settings->levels);
-  if (isfinite(settings->threshold)) fg_json_number(json, "threshold", settings->threshold);
 }
 
 float fg_tone_curve_value(const fg_tone_curve *tone, float count) {

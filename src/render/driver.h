@@ -6,7 +6,6 @@
 #ifndef FG_RENDER_DRIVER_H
 #define FG_RENDER_DRIVER_H
 
-#include "core/json_writer.h"
 #include "foilgauge/render.h"
 #include "render/jpeg.h"
 #include "render/members.h"
@@ -39,9 +38,6 @@ typedef struct fg_driver_settings {
  * with `bits` bits. */
 fg_status fg_driver_read(const fg_place *place, const cJSON *scanner, int bits,
                          fg_driver_settings *settings);
-
-/* Writes the stated settings as truth. */
-void fg_driver_put_truth(fg_json *json, const fg_driver_settings *settings);
 
 /* Value of a curve that has points. */
 float fg_tone_curve_value(const fg_tone_curve *tone, float count);

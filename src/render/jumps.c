@@ -17,9 +17,9 @@ static fg_status find_array(const fg_place *place, const cJSON *scanner, const c
 
 static fg_status read_rows_lost(const fg_place *place, const cJSON *scanner,
                                 fg_jump_requests *requests) {
-  static const fg_member table[] = {
-      {"y_mm", FG_MEMBER_NUMBER, offsetof(fg_rows_lost, y_mm), 0, 10000},
-      {"count", FG_MEMBER_INTEGER, offsetof(fg_rows_lost, count), -ROWS_MAX, ROWS_MAX},
+  static const fg_spec_row table[] = {
+      {"y_mm", FG_SPEC_NUMBER, offsetof(fg_rows_lost, y_mm), 0, 10000},
+      {"count", FG_SPEC_INTEGER, offsetof(fg_rows_lost, count), -ROWS_MAX, ROWS_MAX},
       {0}};
   const cJSON *array, *item;
   FG_TRY(find_array(place, scanner, "rows_lost", &array));
@@ -38,10 +38,10 @@ static fg_status read_rows_lost(const fg_place *place, const cJSON *scanner,
 
 static fg_status read_seams(const fg_place *place, const cJSON *scanner,
                             fg_jump_requests *requests) {
-  static const fg_member table[] = {
-      {"x_mm", FG_MEMBER_NUMBER, offsetof(fg_chip_seam, x_mm), 0, 10000},
-      {"shift_um", FG_MEMBER_NUMBER, offsetof(fg_chip_seam, shift_um), -500, 500},
-      {"shift_y_um", FG_MEMBER_NUMBER, offsetof(fg_chip_seam, shift_y_um), -500, 500},
+  static const fg_spec_row table[] = {
+      {"x_mm", FG_SPEC_NUMBER, offsetof(fg_chip_seam, x_mm), 0, 10000},
+      {"shift_um", FG_SPEC_NUMBER, offsetof(fg_chip_seam, shift_um), -500, 500},
+      {"shift_y_um", FG_SPEC_NUMBER, offsetof(fg_chip_seam, shift_y_um), -500, 500},
       {0}};
   const cJSON *array, *item;
   FG_TRY(find_array(place, scanner, "chip_seams", &array));
@@ -60,10 +60,10 @@ static fg_status read_seams(const fg_place *place, const cJSON *scanner,
 
 static fg_status read_stitches(const fg_place *place, const cJSON *scanner,
                                fg_jump_requests *requests) {
-  static const fg_member table[] = {
-      {"y_mm", FG_MEMBER_NUMBER, offsetof(fg_stitch, y_mm), 0, 10000},
-      {"rows", FG_MEMBER_INTEGER, offsetof(fg_stitch, rows), -ROWS_MAX, ROWS_MAX},
-      {"shift_um", FG_MEMBER_NUMBER, offsetof(fg_stitch, shift_um), -500, 500},
+  static const fg_spec_row table[] = {
+      {"y_mm", FG_SPEC_NUMBER, offsetof(fg_stitch, y_mm), 0, 10000},
+      {"rows", FG_SPEC_INTEGER, offsetof(fg_stitch, rows), -ROWS_MAX, ROWS_MAX},
+      {"shift_um", FG_SPEC_NUMBER, offsetof(fg_stitch, shift_um), -500, 500},
       {0}};
   const cJSON *array, *item;
   FG_TRY(find_array(place, scanner, "stitches", &array));

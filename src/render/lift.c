@@ -11,16 +11,16 @@ typedef struct lift_request {
   int every, first;
 } lift_request;
 
-static const fg_member table[] = {
-    {"amplitude_um", FG_MEMBER_NUMBER, offsetof(lift_request, amplitude_um), -50, 50},
-    {"period_bumps", FG_MEMBER_NUMBER, offsetof(lift_request, period_bumps), 1.5, 1000},
-    {"phase_deg", FG_MEMBER_NUMBER, offsetof(lift_request, phase_deg), -360, 360},
-    {"every", FG_MEMBER_INTEGER, offsetof(lift_request, every), 1, FG_LIFT_BUMPS_MAX},
-    {"first", FG_MEMBER_INTEGER, offsetof(lift_request, first), 1, FG_LIFT_BUMPS_MAX},
-    {"id", FG_MEMBER_OTHER, 0, 0, 0},
-    {"form", FG_MEMBER_OTHER, 0, 0, 0},
-    {"bumps", FG_MEMBER_OTHER, 0, 0, 0},
-    {"values_um", FG_MEMBER_OTHER, 0, 0, 0},
+static const fg_spec_row table[] = {
+    {"amplitude_um", FG_SPEC_NUMBER, offsetof(lift_request, amplitude_um), -50, 50},
+    {"period_bumps", FG_SPEC_NUMBER, offsetof(lift_request, period_bumps), 1.5, 1000},
+    {"phase_deg", FG_SPEC_NUMBER, offsetof(lift_request, phase_deg), -360, 360},
+    {"every", FG_SPEC_INTEGER, offsetof(lift_request, every), 1, FG_LIFT_BUMPS_MAX},
+    {"first", FG_SPEC_INTEGER, offsetof(lift_request, first), 1, FG_LIFT_BUMPS_MAX},
+    {"id", FG_SPEC_OTHER, 0, 0, 0},
+    {"form", FG_SPEC_OTHER, 0, 0, 0},
+    {"bumps", FG_SPEC_OTHER, 0, 0, 0},
+    {"values_um", FG_SPEC_OTHER, 0, 0, 0},
     {0}};
 
 static bool has_member(const cJSON *object, const char *name) {

@@ -62,16 +62,16 @@ fg_status fg_member_numbers(const fg_place *place, const char *name, const cJSON
   return FG_OK;
 }
 
-static fg_status read_one(const fg_place *place, const cJSON *item, const fg_member *row,
+static fg_status read_one(const fg_place *place, const cJSON *item, const fg_spec_row *row,
                           void *base) {
   char *target = (char *)base + row->offset;
   double number = 0;
   switch (row->kind) {
-  case FG_MEMBER_NUMBER:
+  case FG_SPEC_NUMBER:
     FG_TRY(fg_member_number(place, row->name, item, row->low, row->high, &number));
     memcpy(target, &number, sizeof number);
     return FG_OK;
-  case FG_MEMBER_INTEGER: {
+  case FG_SPEC_INTEGER: {
     FG_TRY(fg_member_number(place, row->name, item, row->low, row->high, &number));
     if (number != floor(number))
       return fg_member_fail(place, row->name, item, "must be a whole number");
@@ -79,28 +79,28 @@ static fg_status read_one(const fg_place *place, const cJSON *item, const fg_mem
     memcpy(target, &whole, sizeof whole);
     return FG_OK;
   }
-  case FG_MEMBER_BOOL: {
+  case FG_SPEC_BOOL: {
     if (!cJSON_IsBool(item)) return fg_member_fail(place, row->name, item, "must be true or false");
     bool truth = cJSON_IsTrue(item);
     memcpy(target, &truth, sizeof truth);
     return FG_OK;
   }
-  case FG_MEMBER_OTHER:
-  case FG_MEMBER_END:
+  case FG_SPEC_OTHER:
+  case FG_SPEC_END:
     return FG_OK;
   }
   return FG_OK;
 }
 
-fg_status fg_members_read(const fg_place *place, const cJSON *object, const fg_member *table,
+fg_status fg_members_read(const fg_place *place, const cJSON *object, const fg_spec_row *table,
                           void *base) {
   if (!cJSON_IsObject(object)) return fg_member_fail(place, "", object, "must be an object");
   const cJSON *item;
   cJSON_ArrayForEach(item, object) {
-    const fg_member *row = table;
-    while (row->kind != FG_MEMBER_END && strcmp(row->name, item->string) != 0)
+    const fg_spec_row *row = table;
+    while (row->kind != FG_SPEC_END && strcmp(row->name, item->string) != 0)
       row++;
-    if (row->kind == FG_MEMBER_END)
+    if (row->kind == FG_SPEC_END)
       return fg_member_fail(place, item->string, item, "there is no such member");
     if (cJSON_GetObjectItemCaseSensitive(object, item->string) != item)
       return fg_member_fail(place, item->string, item, "given twice");

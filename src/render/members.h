@@ -10,20 +10,20 @@
 
 #include "foilgauge/status.h"
 
-typedef enum fg_member_kind {
-  FG_MEMBER_END,
-  FG_MEMBER_NUMBER,  /* double */
-  FG_MEMBER_INTEGER, /* int */
-  FG_MEMBER_BOOL,    /* bool */
-  FG_MEMBER_OTHER,   /* known, but read by the caller */
-} fg_member_kind;
+typedef enum fg_spec_row_kind {
+  FG_SPEC_END,
+  FG_SPEC_NUMBER,  /* double */
+  FG_SPEC_INTEGER, /* int */
+  FG_SPEC_BOOL,    /* bool */
+  FG_SPEC_OTHER,   /* known, but read by the caller */
+} fg_spec_row_kind;
 
-typedef struct fg_member {
+typedef struct fg_spec_row {
   const char *name;
-  fg_member_kind kind;
+  fg_spec_row_kind kind;
   size_t offset;
   double low, high; /* of numbers, both allowed */
-} fg_member;
+} fg_spec_row;
 
 /* Place in a file, for messages. */
 typedef struct fg_place {
@@ -42,7 +42,7 @@ fg_status fg_member_fail(const fg_place *place, const char *name, const cJSON *i
 /* Reads the members of `object` into `base`; absent ones keep their value. FG_ERR_DATA for an
  * object that is none, unknown members, members given twice, wrong types and values out of
  * range. */
-fg_status fg_members_read(const fg_place *place, const cJSON *object, const fg_member *table,
+fg_status fg_members_read(const fg_place *place, const cJSON *object, const fg_spec_row *table,
                           void *base);
 
 fg_status fg_member_number(const fg_place *place, const char *name, const cJSON *item, double low,

@@ -10,7 +10,7 @@
 #include "render/parse.h"
 
 static fg_status read_spec(const fg_place *place, const cJSON *root, fg_render_spec *spec) {
-  static const fg_member table[] = {
+  static const fg_spec_row table[] = {
       FG_SPEC_NUMBER(fg_render_spec, width_px, 16, 200000),
       FG_SPEC_NUMBER(fg_render_spec, height_px, 16, 200000),
       FG_SPEC_NUMBER(fg_render_spec, margin_px, 0, 100000),

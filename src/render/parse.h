@@ -7,13 +7,13 @@
 
 /* Rows of a table of members: members of a struct under their own names. */
 #define FG_SPEC_NUMBER(type, member, low, high)                                                    \
-  { #member, FG_MEMBER_NUMBER, offsetof(type, member), low, high }
+  { #member, FG_SPEC_NUMBER, offsetof(type, member), low, high }
 #define FG_SPEC_INTEGER(type, member, low, high)                                                   \
-  { #member, FG_MEMBER_INTEGER, offsetof(type, member), low, high }
+  { #member, FG_SPEC_INTEGER, offsetof(type, member), low, high }
 #define FG_SPEC_OTHER(name)                                                                        \
-  { name, FG_MEMBER_OTHER, 0, 0, 0 }
+  { name, FG_SPEC_OTHER, 0, 0, 0 }
 #define FG_SPEC_END                                                                                \
-  { NULL, FG_MEMBER_END, 0, 0, 0 }
+  { NULL, FG_SPEC_END, 0, 0, 0 }
 
 /* Returns the member, or NULL. */
 static inline const cJSON *fg_spec_member(const cJSON *object, const char *name) {

@@ -32,7 +32,7 @@ static fg_beams_request default_beams(const fg_render_design *design) {
 
 static fg_status read_scatter(const fg_place *place, const cJSON *beams, const char *name,
                               fg_beam_scatter *scatter) {
-  static const fg_member table[] = {
+  static const fg_spec_row table[] = {
       FG_SPEC_NUMBER(fg_beam_scatter, mean_um, -5000, 5000),
       FG_SPEC_NUMBER(fg_beam_scatter, sd_um, 0, 1000),
       FG_SPEC_END,
@@ -77,7 +77,7 @@ typedef struct defect {
 } defect;
 
 static fg_status read_defects(const fg_place *place, const cJSON *beams, const char *name,
-                              const fg_member *table, double *values) {
+                              const fg_spec_row *table, double *values) {
   const cJSON *array = fg_spec_member(beams, name), *item;
   int index = 0;
   if (!array) return FG_OK;
@@ -95,7 +95,7 @@ static fg_status read_defects(const fg_place *place, const cJSON *beams, const c
 
 static fg_status read_beam_values(const fg_place *place, const cJSON *object,
                                   fg_beams_request *beams) {
-  static const fg_member table[] = {
+  static const fg_spec_row table[] = {
       FG_SPEC_NUMBER(fg_beams_request, pitch_mm, 0.01, 1000),
       FG_SPEC_NUMBER(fg_beams_request, base_mm, 0.05, 1000),
       FG_SPEC_NUMBER(fg_beams_request, shoulder_mm, 0.05, 1000),
@@ -128,12 +128,12 @@ static fg_status read_beam_values(const fg_place *place, const cJSON *object,
 
 static fg_status read_defective(const fg_place *place, const cJSON *object, int count,
                                 fg_beams_request *beams) {
-  const fg_member torn[] = {
+  const fg_spec_row torn[] = {
       FG_SPEC_INTEGER(defect, beam, 1, count),
       FG_SPEC_NUMBER(defect, length_factor, 0.1, 1),
       FG_SPEC_END,
   };
-  const fg_member bent[] = {
+  const fg_spec_row bent[] = {
       FG_SPEC_INTEGER(defect, beam, 1, count),
       FG_SPEC_NUMBER(defect, angle_deg, -30, 30),
       FG_SPEC_END,

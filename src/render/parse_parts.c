@@ -7,7 +7,7 @@
 #include "render/parse.h"
 
 static fg_status read_design(const fg_place *place, const cJSON *object, fg_render_design *design) {
-  static const fg_member table[] = {
+  static const fg_spec_row table[] = {
       FG_SPEC_INTEGER(fg_render_design, bump_count, 1, FG_RENDER_BUMPS_MAX),
       FG_SPEC_NUMBER(fg_render_design, bump_radius_mm, 0.01, 1000),
       FG_SPEC_NUMBER(fg_render_design, bump_angle_deg, 0.1, 179),
@@ -45,7 +45,7 @@ static fg_status read_design(const fg_place *place, const cJSON *object, fg_rend
 }
 
 static fg_status read_lip(const fg_place *place, const cJSON *lip, fg_foil_request *request) {
-  static const fg_member table[] = {
+  static const fg_spec_row table[] = {
       FG_SPEC_NUMBER(fg_render_lip, length_mm, 0.01, 100),
       FG_SPEC_NUMBER(fg_render_lip, bend_radius_mm, 0.01, 100),
       FG_SPEC_OTHER("side"),
@@ -82,7 +82,7 @@ typedef struct crush {
 } crush;
 
 static fg_status read_crushed(const fg_place *place, const cJSON *array, fg_foil_request *request) {
-  const fg_member table[] = {
+  const fg_spec_row table[] = {
       FG_SPEC_INTEGER(crush, bump, 1, request->design.bump_count),
       FG_SPEC_NUMBER(crush, height_factor, 0.05, 1.5),
       FG_SPEC_END,
@@ -113,9 +113,9 @@ static fg_status read_list(const fg_place *place, const cJSON *foil, const char 
 
 static fg_status read_springback(const fg_place *place, const cJSON *object,
                                  fg_foil_request *request) {
-  static const fg_member table[] = {
-      {"mean", FG_MEMBER_NUMBER, offsetof(fg_foil_request, springback_mean), -0.5, 1},
-      {"sd", FG_MEMBER_NUMBER, offsetof(fg_foil_request, springback_sd), 0, 0.1},
+  static const fg_spec_row table[] = {
+      {"mean", FG_SPEC_NUMBER, offsetof(fg_foil_request, springback_mean), -0.5, 1},
+      {"sd", FG_SPEC_NUMBER, offsetof(fg_foil_request, springback_sd), 0, 0.1},
       FG_SPEC_END,
   };
   if (!object) return FG_OK;
@@ -158,14 +158,14 @@ fg_foil_request fg_spec_default_foil(void) {
 }
 
 static fg_status read_foil(const fg_place *place, const cJSON *foil, fg_foil_request *request) {
-  static const fg_member table[] = {
+  static const fg_spec_row table[] = {
       FG_SPEC_NUMBER(fg_foil_request, overall_radius_mm, 0.1, 10000),
       FG_SPEC_NUMBER(fg_foil_request, subtended_angle_deg, 0.1, 350),
       FG_SPEC_NUMBER(fg_foil_request, first_land_mm, 0, 1000),
       FG_SPEC_NUMBER(fg_foil_request, last_land_mm, 0, 1000),
       FG_SPEC_NUMBER(fg_foil_request, rotate_deg, -3600, 3600),
       FG_SPEC_NUMBER(fg_foil_request, rotate_step_deg, -3600, 3600),
-      {"mirror", FG_MEMBER_BOOL, offsetof(fg_foil_request, mirror), 0, 0},
+      {"mirror", FG_SPEC_BOOL, offsetof(fg_foil_request, mirror), 0, 0},
       FG_SPEC_INTEGER(fg_foil_request, repeat, 1, FG_RENDER_FOILS_MAX),
       FG_SPEC_OTHER("design"),
       FG_SPEC_OTHER("lip"),
@@ -224,9 +224,9 @@ fg_status fg_spec_read_foils(const fg_place *place, const cJSON *array, fg_rende
 }
 
 static fg_status read_disc(const fg_place *place, const cJSON *disc, fg_disc_request *request) {
-  static const fg_member table[] = {
+  static const fg_spec_row table[] = {
       FG_SPEC_NUMBER(fg_disc_request, radius_mm, 0.001, 1000),
-      {"hole", FG_MEMBER_BOOL, offsetof(fg_disc_request, hole), 0, 0},
+      {"hole", FG_SPEC_BOOL, offsetof(fg_disc_request, hole), 0, 0},
       FG_SPEC_INTEGER(fg_disc_request, lobes, 0, 500),
       FG_SPEC_NUMBER(fg_disc_request, lobe_um, -1000, 1000),
       FG_SPEC_NUMBER(fg_disc_request, lobe_phase_deg, -360, 360),

@@ -10,7 +10,7 @@ static const double MIN_BLUR_PX = 0.4; /* sampling at three per pixel smooths wi
 
 static fg_status read_litter(const fg_place *place, const cJSON *parent, const char *name,
                              fg_litter *litter) {
-  static const fg_member table[] = {
+  static const fg_spec_row table[] = {
       FG_SPEC_INTEGER(fg_litter, count, 0, 1000000),
       FG_SPEC_NUMBER(fg_litter, radius_px, 0.1, 1000),
       FG_SPEC_NUMBER(fg_litter, length_px, 0, 100000),
@@ -24,7 +24,7 @@ static fg_status read_litter(const fg_place *place, const cJSON *parent, const c
 }
 
 static fg_status read_object(const fg_place *place, const cJSON *parent, const char *name,
-                             const fg_member *table, void *base) {
+                             const fg_spec_row *table, void *base) {
   const cJSON *object = fg_spec_member(parent, name);
   if (!object) return FG_OK;
   fg_place inner = fg_place_inside(place, name);
@@ -32,7 +32,7 @@ static fg_status read_object(const fg_place *place, const cJSON *parent, const c
 }
 
 static fg_status read_shadow(const fg_place *place, const cJSON *scanner, fg_shadow *shadow) {
-  static const fg_member table[] = {
+  static const fg_spec_row table[] = {
       FG_SPEC_NUMBER(fg_shadow, amplitude, -1, 1),
       FG_SPEC_NUMBER(fg_shadow, direction_deg, -360, 360),
       FG_SPEC_NUMBER(fg_shadow, width_deg, 1, 180),
@@ -50,12 +50,12 @@ static fg_status read_shadow(const fg_place *place, const cJSON *scanner, fg_sha
 }
 
 static fg_status read_rough(const fg_place *place, const cJSON *rough, fg_scanner *scanner) {
-  static const fg_member table[] = {
+  static const fg_spec_row table[] = {
       FG_SPEC_NUMBER(fg_scanner, one_sided_blur_px, 0, 10),
       FG_SPEC_NUMBER(fg_scanner, motion_blur_px, 0, 20),
       FG_SPEC_NUMBER(fg_scanner, edge_roughness_um, 0, 20),
       FG_SPEC_NUMBER(fg_scanner, edge_common_um, 0, 20),
-      {"correlation_um", FG_MEMBER_NUMBER, offsetof(fg_scanner, edge_correlation_um), 0.2, 1e5},
+      {"correlation_um", FG_SPEC_NUMBER, offsetof(fg_scanner, edge_correlation_um), 0.2, 1e5},
       FG_SPEC_OTHER("one_sided_way"),
       FG_SPEC_OTHER("correlation_form"),
       FG_SPEC_OTHER("halo"),
@@ -63,20 +63,20 @@ static fg_status read_rough(const fg_place *place, const cJSON *rough, fg_scanne
       FG_SPEC_OTHER("jpeg"),
       FG_SPEC_END,
   };
-  static const fg_member halo[] = {
-      {"fraction", FG_MEMBER_NUMBER, offsetof(fg_scanner, halo_fraction), 0, 0.5},
-      {"length_px", FG_MEMBER_NUMBER, offsetof(fg_scanner, halo_length_px), 4, 60},
+  static const fg_spec_row halo[] = {
+      {"fraction", FG_SPEC_NUMBER, offsetof(fg_scanner, halo_fraction), 0, 0.5},
+      {"length_px", FG_SPEC_NUMBER, offsetof(fg_scanner, halo_length_px), 4, 60},
       FG_SPEC_END,
   };
-  static const fg_member wall[] = {
-      {"amplitude", FG_MEMBER_NUMBER, offsetof(fg_scanner, wall_amplitude), -1, 1},
-      {"direction_deg", FG_MEMBER_NUMBER, offsetof(fg_scanner, wall_direction_deg), -360, 360},
-      {"length_px", FG_MEMBER_NUMBER, offsetof(fg_scanner, wall_length_px), 1, 30},
-      {"gap_px", FG_MEMBER_NUMBER, offsetof(fg_scanner, wall_gap_px), 0, 30},
+  static const fg_spec_row wall[] = {
+      {"amplitude", FG_SPEC_NUMBER, offsetof(fg_scanner, wall_amplitude), -1, 1},
+      {"direction_deg", FG_SPEC_NUMBER, offsetof(fg_scanner, wall_direction_deg), -360, 360},
+      {"length_px", FG_SPEC_NUMBER, offsetof(fg_scanner, wall_length_px), 1, 30},
+      {"gap_px", FG_SPEC_NUMBER, offsetof(fg_scanner, wall_gap_px), 0, 30},
       FG_SPEC_END,
   };
-  static const fg_member jpeg[] = {
-      {"quality", FG_MEMBER_INTEGER, offsetof(fg_scanner, jpeg_quality), 1, 100},
+  static const fg_spec_row jpeg[] = {
+      {"quality", FG_SPEC_INTEGER, offsetof(fg_scanner, jpeg_quality), 1, 100},
       FG_SPEC_END,
   };
   if (!rough) return FG_OK;
@@ -162,7 +162,7 @@ static fg_status check_scanner(const fg_place *place, const cJSON *object,
 }
 
 fg_status fg_spec_read_scanner(const fg_place *place, const cJSON *object, fg_scanner *scanner) {
-  static const fg_member table[] = {
+  static const fg_spec_row table[] = {
       FG_SPEC_INTEGER(fg_scanner, bits, 8, 16),
       FG_SPEC_NUMBER(fg_scanner, background, 0, 255),
       FG_SPEC_NUMBER(fg_scanner, contrast, -255, 255),
@@ -192,11 +192,10 @@ fg_status fg_spec_read_scanner(const fg_place *place, const cJSON *object, fg_sc
       FG_SPEC_OTHER("threshold"),
       FG_SPEC_END,
   };
-  static const fg_member shading[] = {
-      {"x", FG_MEMBER_NUMBER, offsetof(fg_scanner, shading), -0.5, 0.5},
-      {"y", FG_MEMBER_NUMBER, offsetof(fg_scanner, shading) + sizeof(double), -0.5, 0.5},
-      {"quadratic", FG_MEMBER_NUMBER, offsetof(fg_scanner, shading) + 2 * sizeof(double), -0.5,
-       0.5},
+  static const fg_spec_row shading[] = {
+      {"x", FG_SPEC_NUMBER, offsetof(fg_scanner, shading), -0.5, 0.5},
+      {"y", FG_SPEC_NUMBER, offsetof(fg_scanner, shading) + sizeof(double), -0.5, 0.5},
+      {"quadratic", FG_SPEC_NUMBER, offsetof(fg_scanner, shading) + 2 * sizeof(double), -0.5, 0.5},
       FG_SPEC_END,
   };
   if (!object)

@@ -17,20 +17,20 @@ static fg_status parse_direction(const fg_place *place, const cJSON *object,
 }
 
 static fg_status parse_curve(const fg_place *place, const cJSON *object, fg_render_effect *effect) {
-  static const fg_member scan[] = {{"id", FG_MEMBER_OTHER, 0, 0, 0},
-                                   {"knots", FG_MEMBER_OTHER, 0, 0, 0},
-                                   {"moves", FG_MEMBER_OTHER, 0, 0, 0},
-                                   {0}};
-  static const fg_member edge[] = {{"id", FG_MEMBER_OTHER, 0, 0, 0},
-                                   {"knots", FG_MEMBER_OTHER, 0, 0, 0},
-                                   {"edges", FG_MEMBER_OTHER, 0, 0, 0},
-                                   {0}};
-  static const fg_member part[] = {{"id", FG_MEMBER_OTHER, 0, 0, 0},
-                                   {"knots", FG_MEMBER_OTHER, 0, 0, 0},
-                                   {"along", FG_MEMBER_OTHER, 0, 0, 0},
-                                   {0}};
-  static const fg_member bump[] = {
-      {"id", FG_MEMBER_OTHER, 0, 0, 0}, {"knots", FG_MEMBER_OTHER, 0, 0, 0}, {0}};
+  static const fg_spec_row scan[] = {{"id", FG_SPEC_OTHER, 0, 0, 0},
+                                     {"knots", FG_SPEC_OTHER, 0, 0, 0},
+                                     {"moves", FG_SPEC_OTHER, 0, 0, 0},
+                                     {0}};
+  static const fg_spec_row edge[] = {{"id", FG_SPEC_OTHER, 0, 0, 0},
+                                     {"knots", FG_SPEC_OTHER, 0, 0, 0},
+                                     {"edges", FG_SPEC_OTHER, 0, 0, 0},
+                                     {0}};
+  static const fg_spec_row part[] = {{"id", FG_SPEC_OTHER, 0, 0, 0},
+                                     {"knots", FG_SPEC_OTHER, 0, 0, 0},
+                                     {"along", FG_SPEC_OTHER, 0, 0, 0},
+                                     {0}};
+  static const fg_spec_row bump[] = {
+      {"id", FG_SPEC_OTHER, 0, 0, 0}, {"knots", FG_SPEC_OTHER, 0, 0, 0}, {0}};
   fg_render_effect_target target = effect->row->target;
   FG_TRY(fg_members_read(place, object,
                          target == FG_RENDER_EFFECT_SCANNER ? scan
@@ -50,17 +50,17 @@ static fg_status parse_curve(const fg_place *place, const cJSON *object, fg_rend
 
 static fg_status parse_parameters(const fg_place *place, const cJSON *object,
                                   fg_render_effect *effect) {
-  fg_member table[FG_RENDER_EFFECT_PARAMETERS_MAX + 3] = {{"id", FG_MEMBER_OTHER, 0, 0, 0}};
+  fg_spec_row table[FG_RENDER_EFFECT_PARAMETERS_MAX + 3] = {{"id", FG_SPEC_OTHER, 0, 0, 0}};
   size_t used = 1;
   for (int i = 0; i < FG_RENDER_EFFECT_PARAMETERS_MAX && effect->row->parameters[i].name; i++) {
     const fg_render_effect_parameter *parameter = &effect->row->parameters[i];
     effect->p[i] = parameter->fallback;
-    table[used++] = (fg_member){parameter->name, FG_MEMBER_NUMBER,
-                                offsetof(fg_render_effect, p) + (size_t)i * sizeof effect->p[0],
-                                parameter->low, parameter->high};
+    table[used++] = (fg_spec_row){parameter->name, FG_SPEC_NUMBER,
+                                  offsetof(fg_render_effect, p) + (size_t)i * sizeof effect->p[0],
+                                  parameter->low, parameter->high};
   }
   if (effect->row->target == FG_RENDER_EFFECT_PART)
-    table[used++] = (fg_member){"along", FG_MEMBER_OTHER, 0, 0, 0};
+    table[used++] = (fg_spec_row){"along", FG_SPEC_OTHER, 0, 0, 0};
   FG_TRY(fg_members_read(place, object, table, effect));
   for (int i = 0; i < FG_RENDER_EFFECT_PARAMETERS_MAX && effect->row->parameters[i].name; i++)
     if (isnan(effect->p[i]))

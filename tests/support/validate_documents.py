@@ -20,7 +20,6 @@ from validate_schema import jsonschema, validator
 WITHOUT_SCHEMA = {
     "foilgauge/recipe/1",
     "foilgauge/results/2",
-    "foilgauge/truth/1",
 }
 WORD = re.compile(r"[A-Za-z0-9_ ./-]{0,40}")
 NO_SCHEMA = "(no member schema)"
