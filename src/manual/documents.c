@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "lots/members.h"
+#include "process/plan_file.h"
 #include "render/truth.h"
 #include "report/design/members.h"
 #include "report/die/members.h"
@@ -28,6 +29,7 @@ const fg_document *const fg_documents[] = {
     &fg_nominal_document,
     &fg_scan_loop_document,
     &fg_scanner_model_document,
+    &fg_plan_document,
     &fg_render_truth_document,
     NULL,
 };

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Companion file of a run sheet: limits and steps of its factors, and every planned setting. */
+#include "process/plan_file.h"
+
 #include <cjson/cJSON.h>
 #include <math.h>
 #include <stdlib.h>
@@ -7,56 +9,96 @@
 
 #include "core/file.h"
 #include "core/json_read.h"
-#include "core/json_writer.h"
 #include "core/memory.h"
 #include "core/text.h"
 #include "foilgauge/plan.h"
+
+#define PLAN_SCHEMA "foilgauge/plan/1"
 
 enum { PLAN_BYTES_MAX = 1 << 26 };
 
 /* Relative rounding that a spreadsheet may apply to a number. */
 static const double same = 1e-6;
 
-static void write_factors(fg_json *json, const fg_plan *plan) {
-  fg_json_array(json, "factors");
-  for (size_t k = 0; k < plan->factors; k++) {
-    fg_json_object(json, NULL);
-    fg_json_line(json);
-    fg_json_string(json, "name", plan->name[k]);
-    fg_json_number(json, "low", plan->low[k]);
-    fg_json_number(json, "high", plan->high[k]);
-    fg_json_number(json, "step", plan->step[k] > 0 ? plan->step[k] : NAN);
-    fg_json_object_end(json);
-    fg_json_line_end(json);
+/* A factor: the subject's index is its place in the plan. */
+#define OF_FACTOR(function, value)                                                                 \
+  static double function(const fg_subject *s) {                                                    \
+    const fg_plan *plan = s->object;                                                               \
+    return value;                                                                                  \
   }
-  fg_json_array_end(json);
+OF_FACTOR(find_factor_low, plan->low[s->index])
+OF_FACTOR(find_factor_high, plan->high[s->index])
+OF_FACTOR(find_factor_step, plan->step[s->index] > 0 ? plan->step[s->index] : NAN)
+
+static const char *find_factor_name(const fg_subject *s, char *buffer) {
+  (void)buffer;
+  return ((const fg_plan *)s->object)->name[s->index];
 }
 
-static const fg_plan_run *run_of(const fg_plan *plan, size_t standard, size_t *place) {
-  for (*place = 0; *place < plan->runs; (*place)++)
-    if (plan->run[*place].standard == standard) return &plan->run[*place];
-  return NULL;
+static const fg_member factor_rows[] = {
+    {FG_TEXT_BY("name", find_factor_name), .options = FG_MEMBER_NEVER_NULL, .words = "its column"},
+    {FG_NUMBER_BY("low", find_factor_low), .options = FG_MEMBER_NEVER_NULL,
+     .words = "real value of -1"},
+    {FG_NUMBER_BY("high", find_factor_high), .options = FG_MEMBER_NEVER_NULL,
+     .words = "real value of +1"},
+    {FG_NUMBER_BY("step", find_factor_step),
+     .words = "settings are its multiples; null: not rounded"},
+};
+static const fg_members factor_members = FG_MEMBERS(factor_rows);
+
+static bool find_factor(const fg_subject *list, size_t i, fg_subject *element) {
+  const fg_plan *plan = list->object;
+  element->object = plan;
+  return i < plan->factors;
 }
+
+/* Settings of a run, by the standard order. */
+static const double *list_settings(const fg_subject *s, double *settings, size_t *count) {
+  const fg_plan *plan = s->object;
+  size_t run = 0;
+  while (run < plan->runs && plan->run[run].standard != s->index + 1)
+    run++;
+  *count = plan->factors;
+  for (size_t k = 0; k < plan->factors; k++)
+    settings[k] = run < plan->runs ? fg_plan_setting(plan, run, k) : 0;
+  return settings;
+}
+
+static const fg_member setting_rows[] = {
+    {FG_NUMBERS_BY(NULL, list_settings), .options = FG_MEMBER_NEVER_NULL}};
+static const fg_members setting_members = FG_MEMBERS(setting_rows);
+
+static bool find_run(const fg_subject *list, size_t i, fg_subject *element) {
+  const fg_plan *plan = list->object;
+  element->object = plan;
+  return i < plan->runs;
+}
+
+static double find_axial(const fg_subject *s) {
+  const fg_plan *plan = s->object;
+  return plan->axial > 0 ? plan->axial : NAN;
+}
+
+static const fg_member plan_rows[] = {
+    {FG_HEAD(PLAN_SCHEMA)},
+    {FG_NUMBER_BY("axial", find_axial),
+     .words = "coded distance of the axial runs; null: there are none"},
+    {FG_LIST_BY("factors", find_factor, &factor_members), .options = FG_MEMBER_ON_LINE, .lowest = 1,
+     .highest = FG_PLAN_FACTORS},
+    {FG_LIST_BY("settings", find_run, &setting_members),
+     .words = "by standard_order: what each factor is to be set to"},
+};
+static const fg_members plan_members = FG_MEMBERS(plan_rows);
+
+const fg_document fg_plan_document = {
+    .file = "plan",
+    .title = "foilgauge doe plan: what lies beside a run sheet",
+    .made_by = "`foilgauge doe plan -o`",
+    .members = &plan_members,
+};
 
 fg_status fg_plan_write_json(fg_context *ctx, const fg_plan *plan, FILE *out) {
-  fg_json json;
-  fg_json_begin(&json, out);
-  fg_json_object(&json, NULL);
-  fg_json_head(&json, "foilgauge/plan/1");
-  fg_json_number(&json, "axial", plan->axial > 0 ? plan->axial : NAN);
-  write_factors(&json, plan);
-  fg_json_array(&json, "settings");
-  for (size_t standard = 1; standard <= plan->runs; standard++) {
-    double setting[FG_PLAN_FACTORS] = {0};
-    size_t run;
-    if (run_of(plan, standard, &run))
-      for (size_t k = 0; k < plan->factors; k++)
-        setting[k] = fg_plan_setting(plan, run, k);
-    fg_json_numbers(&json, NULL, setting, plan->factors);
-  }
-  fg_json_array_end(&json);
-  fg_json_object_end(&json);
-  fg_json_end(&json);
+  fg_document_json(out, &plan_members, plan);
   return fg_stream_finish(ctx, out, "the plan");
 }
 
@@ -112,8 +154,8 @@ static fg_status read_plan(fg_context *ctx, const char *path, const cJSON *root,
                            fg_plan_limits *limits) {
   const cJSON *schema = cJSON_GetObjectItemCaseSensitive(root, "schema"),
               *factors = cJSON_GetObjectItemCaseSensitive(root, "factors"), *one;
-  if (!cJSON_IsString(schema) || strcmp(schema->valuestring, "foilgauge/plan/1") != 0)
-    return fg_fail(ctx, FG_ERR_DATA, "%s: is no plan: schema is not \"foilgauge/plan/1\"", path);
+  if (!cJSON_IsString(schema) || strcmp(schema->valuestring, PLAN_SCHEMA) != 0)
+    return fg_fail(ctx, FG_ERR_DATA, "%s: is no plan: schema is not \"" PLAN_SCHEMA "\"", path);
   if (!cJSON_IsArray(factors) || !cJSON_GetArraySize(factors) ||
       cJSON_GetArraySize(factors) > FG_PLAN_FACTORS)
     return fg_fail(ctx, FG_ERR_DATA, "%s: factors must be 1 to %d", path, FG_PLAN_FACTORS);
