@@ -12,6 +12,7 @@
 #include "report/doe/members.h"
 #include "report/forming/members.h"
 #include "report/load_test/members.h"
+#include "report/lot/members.h"
 #include "report/scan_loop/members.h"
 #include "report/table_loop/members.h"
 #include "scan_loop/scanner_model.h"
@@ -26,6 +27,7 @@ const fg_document *const fg_documents[] = {
     &fg_loop_document,
     &fg_loop_model_document,
     &fg_index_document,
+    &fg_lot_document,
     &fg_nominal_document,
     &fg_scan_loop_document,
     &fg_scanner_model_document,

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Members of lot.json about bearings. */
+#include "quantity/quantity_rows.h"
 #include "report/lot/parts_members.h"
 #include "report/measure/json.h"
-#include "report/quantity_json.h"
 #include "report/verdict_members.h"
 
 static double find_pitch(const fg_subject *subject) {
@@ -61,14 +61,27 @@ static void write_bearing_judgements(fg_json *json, const char *name, const fg_s
   fg_json_judgements(json, &((const fg_lot_bearing *)subject->object)->decision, "bearing");
 }
 
-static void write_clearance(fg_json *json, const char *name, const fg_subject *subject) {
-  (void)name;
-  const fg_lot_bearing *bearing = subject->object;
-  fg_json_quantities(json, FG_QUANTITY_OF_BEARING, "", &bearing->clearance, true);
+/* Makes the row of a quantity of a bearing. */
+static bool make_clearance_row(size_t i, fg_member *row) {
+  size_t count;
+  const fg_quantity *of = fg_quantities(FG_QUANTITY_OF_BEARING, &count) + i;
+  if (i >= count) return false;
+  bool pair = of->kind == FG_QUANTITY_PAIR;
+  *row = (fg_member){.name = of->name,
+                     .kind = pair                            ? FG_MEMBER_NUMBERS
+                             : of->kind == FG_QUANTITY_COUNT ? FG_MEMBER_COUNT
+                                                             : FG_MEMBER_NUMBER,
+                     .offset = of->offset,
+                     .u_offset = !pair && fg_quantity_has_u(of) ? of->u_offset : 0,
+                     .lowest = pair ? 2 : 0,
+                     .highest = pair ? 2 : 0,
+                     .words = of->words};
+  return true;
 }
 
-static bool is_clearance_known(const fg_subject *subject) {
-  return ((const fg_lot_bearing *)subject->object)->known;
+static fg_subject find_clearance(const fg_subject *subject) {
+  const fg_lot_bearing *bearing = subject->object;
+  return (fg_subject){.object = bearing->known ? &bearing->clearance : NULL};
 }
 
 static const fg_member bearing_rows[] = {
@@ -90,7 +103,7 @@ static const fg_member bearing_rows[] = {
          "{\"type\": \"array\", \"items\": " FG_REF("measure.schema.json#/$defs/judgement") "}"),
      .words = "by the tolerances of a bearing: circularity_mm, clearance_min_mm (min_mm here), "
               "clearance_centred_min_mm (centred_min_mm), clearance_mean_mm, clearance_max_mm"},
-    {FG_WRITTEN("clearance", write_clearance, "{}"), .present = is_clearance_known},
+    {FG_SAME_BY(make_clearance_row), .part = find_clearance, .options = FG_MEMBER_LEFT_OUT},
 };
 static const fg_members bearing_members = FG_MEMBERS_DEFINED(bearing_rows, "bearing");
 
