@@ -102,7 +102,7 @@ static const fg_member limit_rows[] = {
 static const fg_members limit_members = FG_MEMBERS(limit_rows);
 
 static const fg_member limit_result_rows[] = {
-    {FG_SAME(&limit_members), .part = find_limit_of_result},
+    {FG_SAME(&limit_members), .part = find_limit_of_result, .options = FG_MEMBER_NEVER_NULL},
     {FG_PART("within", find_within, &fg_lot_assembly_share_members),
      .options = FG_MEMBER_ON_LINE | FG_MEMBER_NEVER_NULL},
     {FG_COUNT_BY("rejected", find_rejected),

@@ -7,9 +7,10 @@
 #define SIGNALS_LEFT_WORDS "of the same chart "
 
 static const fg_member trend_rows[] = {
-    {FG_NUMBER_U("per_foil", fg_lot_trend, per_foil, u_per_foil),
-     .words = "slope; its u is widened for neighbours that are alike",
+    {FG_NUMBER("per_foil", fg_lot_trend, per_foil), .words = "slope",
      .options = FG_MEMBER_NEVER_NULL},
+    {FG_NUMBER("u_per_foil", fg_lot_trend, u_per_foil), .options = FG_MEMBER_NEVER_NULL,
+     .words = "its standard uncertainty, widened for neighbours that are alike"},
     {FG_NUMBER("freedom", fg_lot_trend, dof), .words = "degrees of freedom",
      .options = FG_MEMBER_NEVER_NULL},
     {FG_NUMBER("first_to_last", fg_lot_trend, first_to_last), .words = "of the foils",
