@@ -22,6 +22,11 @@ def both(words, what):
     text_says(words, what)
 
 
+def error_says(title, before, after):
+    page_says(f"<td>{title}</td><td>{length(before)}</td><td>{length(after)}</td>", "error")
+    if not re.search(rf"(?m)^{re.escape(title)} +{before:.4g} +{after:.4g}$", text): missing.append(f"text: error: {title}")
+
+
 def length(um):
     return f"{1000 * um:.3g} nm" if abs(um) < 1e-3 and um else f"{um:.3g} µm"
 
@@ -58,18 +63,15 @@ if report["unattributed"] and report["unattributed"]["coordinate"] != "bump.inde
 for name, title in (("rms", "rms"), ("robust_sd", "robust sd"), ("p95", "95th percentile"), ("maximum", "maximum")):
     before, after = report["before"][name], report["after"][name]
     if before is None: continue
-    page_says(f"<td>{title}</td><td>{length(before)}</td><td>{length(after)}</td>", "error")
-    text_says(f"  {title:22s} {before:10.4g} {after:10.4g}", "error")
+    error_says(title, before, after)
 ratio = report["error_ratio"]
 aside = any(scan["hold_out"] for scan in report["inputs"])
 if aside or ratio["folds"]:
     title = "scans kept aside" if aside else f"{ratio['fold_of']} that took no part in the search"
     before, after = report["before"]["held_out_rms"], report["after"]["held_out_rms"]
-    page_says(f"<td>{title}</td><td>{length(before)}</td><td>{length(after)}</td>", "error")
-    text_says(f"  {title}:\n  {'rms':22s} {before:10.4g} {after:10.4g}", "error")
+    error_says(title, before, after)
 if "half_width" in report["before"]:
     before, after = (report[side]["half_width"]["rms"] for side in ("before", "after"))
-    page_says(f"<td>half the width, rms</td><td>{length(before)}</td><td>{length(after)}</td>", "error")
-    text_says(f"  {'half the width, rms':22s} {before:10.4g} {after:10.4g}", "error")
+    error_says("half the width, rms", before, after)
 if missing: print("\n".join(missing))
 sys.exit(bool(missing))

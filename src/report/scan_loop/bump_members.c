@@ -2,7 +2,9 @@
 /* The bumps against the declared springback, or against a forming's prediction. */
 #include <math.h>
 
+#include "core/text.h"
 #include "report/scan_loop/members.h"
+#include "report/scan_loop/parts.h"
 
 static const char *const quantity_words[] = {"bump_radius_mm", "bump_angle_deg", "height_mm", NULL};
 static const char *const unit_words_of_bumps[] = {"um", "deg", NULL};
@@ -29,6 +31,7 @@ static bool find_bump_response(const fg_subject *list, size_t i, fg_subject *ele
 static fg_subject find_response_facts(const fg_subject *s) {
   static const fg_scan_result_response height = {
       .name = "height_mm",
+      .words = "height",
       .unit = "um",
       .model = "follows from radius and angle",
       .level = NAN,
@@ -52,20 +55,45 @@ static const fg_member fact_rows[] = {
 };
 static const fg_members fact_members = FG_MEMBERS(fact_rows);
 
+static const char *find_response_title(const fg_subject *s, char *buffer) {
+  const fg_scan_result_response *response = find_response_facts(s).object;
+  fg_text_clip(buffer, 80, "%s, %s", response->words, fg_scan_loop_unit_words(response->unit));
+  return buffer;
+}
+
+static const char *find_response_model(const fg_subject *s, char *buffer) {
+  (void)buffer;
+  return ((const fg_scan_result_response *)find_response_facts(s).object)->model;
+}
+
 static const fg_member response_rows[] = {
     {FG_SAME(&fact_members), .part = find_response_facts, .options = FG_MEMBER_NEVER_NULL},
+    {FG_TEXT_BY("response", find_response_title), .options = FG_MEMBER_NOT_IN_JSON,
+     .page = {1, "rms about the declared model"}},
+    {FG_TEXT_BY("model", find_response_model), .options = FG_MEMBER_NOT_IN_JSON,
+     .page = {1, "model", .words = true}},
     {FG_NUMBER("rms_before", fg_scan_result_bump_error, rms[0]),
-     .words = "about the declared model; null where too few bumps were measured"},
-    {FG_NUMBER("rms_after", fg_scan_result_bump_error, rms[1]), .words = "with what was found"},
+     .words = "about the declared model; null where too few bumps were measured",
+     .page = {1, "before", .digits = 3}},
+    {FG_NUMBER("rms_after", fg_scan_result_bump_error, rms[1]), .words = "with what was found",
+     .page = {1, "after", .digits = 3}},
     {FG_NUMBER("held_out_rms_before", fg_scan_result_bump_error, held_out_rms[0]),
      .words =
          "of scans kept aside; without, cross-fitted as tables are, where what was found first is "
          "what stands; without a finding rms_before. Heights follow from both others: null without "
-         "scans kept aside"},
+         "scans kept aside",
+     .page = {1, "took no part:\nbefore", .digits = 3}},
     {FG_NUMBER("held_out_rms_after", fg_scan_result_bump_error, held_out_rms[1]),
-     .words = "the same with what was found"},
+     .words = "the same with what was found", .page = {1, "after", .digits = 3}},
 };
-static const fg_members response_members = FG_MEMBERS(response_rows);
+const fg_members fg_scan_response_members = FG_MEMBERS(response_rows);
+
+bool fg_scan_find_judged(const fg_subject *list, size_t i, fg_subject *element) {
+  if (!find_bump_response(list, i, element)) return false;
+  const fg_scan_result_bump_error *error = element->object;
+  if (!isfinite(error->rms[0])) element->object = NULL;
+  return true;
+}
 
 static const fg_member bumps_rows[] = {
     {FG_COUNT("count", fg_scan_result_bumps, count), .words = "bumps that were tested"},
@@ -74,7 +102,7 @@ static const fg_member bumps_rows[] = {
     {FG_PART("declared", find_declared_forming, &declared_members),
      .words = "the report of `foilgauge form` that predicts every bump; null: the design's "
               "springback, one radius on all bumps and constant arc length"},
-    {FG_LIST_BY("responses", find_bump_response, &response_members), .lowest = 3, .highest = 3,
-     .words = "radius, angle and height"},
+    {FG_LIST_BY("responses", find_bump_response, &fg_scan_response_members), .lowest = 3,
+     .highest = 3, .words = "radius, angle and height"},
 };
 const fg_members fg_scan_bumps_members = FG_MEMBERS(bumps_rows);

@@ -6,6 +6,8 @@
 
 #include "core/text.h"
 #include "page/plot_frame.h"
+#include "page/table.h"
+#include "report/scan_loop/members.h"
 #include "report/scan_loop/parts.h"
 
 /* ---- drawings ---- */
@@ -125,30 +127,6 @@ static void put_candidates(FILE *out, const fg_scan_result_bumps *bumps) {
   fputs("</table></div>\n", out);
 }
 
-static void put_bump_error(FILE *out, const char *name, const char *model, const char *unit,
-                           const fg_scan_result_bump_error *e) {
-  if (!isfinite(e->rms[0])) return;
-  fprintf(out, "<tr><td>%s, %s</td><td class=\"w\">%s</td><td>%.3g</td><td>%.3g</td>", name,
-          fg_scan_loop_unit_words(unit), model, e->rms[0], e->rms[1]);
-  if (isfinite(e->held_out_rms[0]))
-    fprintf(out, "<td>%.3g</td><td>%.3g</td></tr>\n", e->held_out_rms[0], e->held_out_rms[1]);
-  else
-    fputs("<td>–</td><td>–</td></tr>\n", out);
-}
-
-static void put_bump_errors(FILE *out, const fg_scan_result_bumps *bumps) {
-  fputs(
-      "<div class=\"scroll\"><table><tr><th>rms about the declared model</th><th class=\"w\">model"
-      "</th><th>before</th><th>after</th><th>took no part:<br>before</th><th>after</th></tr>\n",
-      out);
-  for (size_t r = 0; r < FG_SCAN_RESULT_RESPONSES; r++) {
-    const fg_scan_result_response *one = &bumps->response[r];
-    put_bump_error(out, one->words, one->model, one->unit, &one->error);
-  }
-  put_bump_error(out, "height", "follows from both", "um", &bumps->height_um);
-  fputs("</table></div>\n", out);
-}
-
 /* Writes the declared forming, and the deviation of its level. */
 static void put_declared(FILE *out, const fg_scan_result_bumps *bumps) {
   if (!bumps->declared_path) return;
@@ -179,6 +157,7 @@ static void put_drawings(FILE *out, const fg_scan_result_bumps *bumps) {
 }
 
 void fg_scan_loop_page_bumps(FILE *out, const fg_scan_result *result) {
+  const fg_scan_report report = {.result = result};
   const fg_scan_result_bumps *bumps = &result->bumps;
   bool judged = false, any = bumps->count + bumps->held_out > 0;
   for (size_t r = 0; r < FG_SCAN_RESULT_RESPONSES; r++)
@@ -189,7 +168,9 @@ void fg_scan_loop_page_bumps(FILE *out, const fg_scan_result *result) {
   put_declared(out, bumps);
   if (judged) put_drawings(out, bumps);
   if (any) put_candidates(out, bumps);
-  if (judged) put_bump_errors(out, bumps);
+  if (judged)
+    fg_html_table(out, &fg_scan_response_members, &(fg_subject){.whole = &report},
+                  fg_scan_find_judged);
   for (size_t i = 0; i < result->notes; i++) {
     fputs("<p class=\"note\">", out);
     fg_html_text(out, result->note[i]);

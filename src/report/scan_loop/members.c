@@ -5,9 +5,9 @@
 #include <stdlib.h>
 
 #include "core/file.h"
+#include "core/text.h"
 #include "foilgauge/scan_loop.h"
 #include "report/design/members.h"
-#include "report/measure/json.h"
 #include "report/scan_loop/parts.h"
 
 /* A member that has one word in every report. */
@@ -31,13 +31,60 @@ static const char *find_scan_sha256(const fg_subject *s, char *buffer) {
   return ((const fg_scan_result_scan *)s->object)->before->sha256;
 }
 
+static const char *look_at_path(const fg_subject *s) {
+  (void)s;
+  return "path";
+}
+
+static void put_short_sha256(FILE *out, const fg_subject *s) {
+  fprintf(out, "<code>%.12s</code>", ((const fg_scan_result_scan *)s->object)->before->sha256);
+}
+
+static const char *find_dpi_words(const fg_subject *s, char *buffer) {
+  const double *dpi = ((const fg_scan_result_scan *)s->object)->before->dpi;
+  fg_text_clip(buffer, 64, "%.6g", dpi[0]);
+  if (fabs(dpi[1] / dpi[0] - 1) > 1e-9) fg_text_clip(buffer, 64, "%.6g × %.6g", dpi[0], dpi[1]);
+  return buffer;
+}
+
+static const char *find_parts_words(const fg_subject *s, char *buffer) {
+  const fg_measurement *m = ((const fg_scan_result_scan *)s->object)->before;
+  char foils[40] = "", discs[40] = "";
+  if (m->foil_count)
+    fg_text_clip(foils, sizeof foils, "%zu foil%s", m->foil_count, fg_plural(m->foil_count));
+  if (m->disc_count)
+    fg_text_clip(discs, sizeof discs, "%zu disc%s", m->disc_count, fg_plural(m->disc_count));
+  fg_text_clip(buffer, 100, "%s%s%s", foils, foils[0] && discs[0] ? ", " : "", discs);
+  return buffer;
+}
+
+static const char *find_role(const fg_subject *s, char *buffer) {
+  bool held_out = ((const fg_scan_result_scan *)s->object)->hold_out;
+  (void)buffer;
+  return held_out ? "kept aside: only confirms" : "searched";
+}
+
 static const fg_member input_rows[] = {
-    {FG_TEXT_BY("path", find_scan_path), .options = FG_MEMBER_NEVER_NULL},
+    {FG_TEXT_BY("path", find_scan_path), .options = FG_MEMBER_NEVER_NULL, .look = look_at_path,
+     .page = {1, "input"}},
     {FG_TEXT_BY("sha256", find_scan_sha256), .options = FG_MEMBER_NEVER_NULL,
-     .pattern = "^[0-9a-f]{64}$"},
+     .pattern = "^[0-9a-f]{64}$", .markup = put_short_sha256,
+     .page = {1, "SHA-256", .words = true}},
+    {FG_TEXT_BY("dpi", find_dpi_words), .options = FG_MEMBER_NOT_IN_JSON,
+     .page = {1, "dpi", .words = true}},
+    {FG_TEXT_BY("parts", find_parts_words), .options = FG_MEMBER_NOT_IN_JSON,
+     .page = {1, "shows", .words = true}},
     {FG_FLAG("hold_out", fg_scan_result_scan, hold_out), .words = "the scan only confirms"},
+    {FG_TEXT_BY("role", find_role), .options = FG_MEMBER_NOT_IN_JSON,
+     .page = {1, "role", .words = true}},
 };
-static const fg_members input_members = FG_MEMBERS(input_rows);
+const fg_members fg_scan_input_members = FG_MEMBERS(input_rows);
+
+bool fg_scan_find_input(const fg_subject *list, size_t i, fg_subject *element) {
+  const fg_scan_result *result = fg_scan_result_of(list);
+  element->object = &result->scan[i];
+  return i < result->scans;
+}
 
 /* Noise of a row, and half the strip's width. */
 static const char *const noise_words[] = {"white", "gaussian", "exponential", NULL};
@@ -72,95 +119,6 @@ static const fg_member half_width_rows[] = {
     {FG_NUMBER("smooth", fg_scan_result, half_width_smooth_um)},
 };
 static const fg_members half_width_members = FG_MEMBERS(half_width_rows);
-
-/* A side, before or after the correction: its errors, whose index is 1 after. */
-static fg_subject find_before(const fg_subject *s) {
-  return (fg_subject){&fg_scan_result_of(s)->before, s->whole, 0};
-}
-
-static fg_subject find_after(const fg_subject *s) {
-  return (fg_subject){&fg_scan_result_of(s)->after, s->whole, 1};
-}
-
-static bool is_of_width(const fg_subject *s) {
-  return fg_scan_result_of(s)->of_width;
-}
-
-static bool is_of_discs(const fg_subject *s) {
-  return fg_scan_result_of(s)->discs;
-}
-
-static double find_side_width(const fg_subject *s) {
-  const fg_scan_result *result = fg_scan_result_of(s);
-  return s->index ? result->width_after_um : result->width_before_um;
-}
-
-static const fg_member side_width_rows[] = {{FG_NUMBER_BY("rms", find_side_width)}};
-static const fg_members side_width_members = FG_MEMBERS(side_width_rows);
-
-/* Parts of all scans of a side: their index is twice the scan's, and 1 more after. */
-#define PARTS_OF_SIDE(function, count_, parts_)                                                    \
-  static bool function(const fg_subject *side, size_t i, fg_subject *element) {                    \
-    const fg_scan_result *result = fg_scan_result_of(side);                                        \
-    for (size_t k = 0; k < result->scans; k++) {                                                   \
-      const fg_scan_result_scan *scan = &result->scan[k];                                          \
-      const fg_measurement *m = side->index ? scan->after : scan->before;                          \
-      if (i < m->count_) {                                                                         \
-        element->object = &m->parts_[i];                                                           \
-        element->index = 2 * k + side->index;                                                      \
-        return true;                                                                               \
-      }                                                                                            \
-      i -= m->count_;                                                                              \
-    }                                                                                              \
-    return false;                                                                                  \
-  }
-PARTS_OF_SIDE(find_side_foil, foil_count, foils)
-PARTS_OF_SIDE(find_side_disc, disc_count, discs)
-
-/* Writes a part as the measurement does; keeps the first failure. */
-#define WRITE_PART(function, writer)                                                               \
-  static void function(fg_json *json, const char *name, const fg_subject *s) {                     \
-    (void)name;                                                                                    \
-    const fg_scan_report *report = s->whole;                                                       \
-    const fg_scan_result_scan *scan = &report->result->scan[s->index / 2];                         \
-    const fg_measurement *m = s->index % 2 ? scan->after : scan->before;                           \
-    fg_status status = writer(report->ctx, json, &m->design, s->object);                           \
-    if (*report->status == FG_OK) *report->status = status;                                        \
-  }
-WRITE_PART(write_side_foil, fg_json_foil)
-WRITE_PART(write_side_disc, fg_json_disc)
-
-static const fg_member foil_rows[] = {
-    {FG_WRITTEN(NULL, write_side_foil,
-                "{\"type\": \"object\", \"required\": [\"overall\", \"bumps\", \"flags\"]}")}};
-static const fg_members foil_members = FG_MEMBERS(foil_rows);
-static const fg_member disc_rows[] = {
-    {FG_WRITTEN(NULL, write_side_disc,
-                "{\"type\": \"object\", \"required\": [\"number\", \"radius_mm\", \"u_radius_mm\", "
-                "\"flags\"]}")}};
-static const fg_members disc_members = FG_MEMBERS(disc_rows);
-
-static const fg_member side_rows[] = {
-    {FG_NUMBER("rms", fg_scan_loop_error, rms), .words = "of the edge rows"},
-    {FG_NUMBER("held_out_rms", fg_scan_loop_error, held_out_rms),
-     .words =
-         "of scans kept aside; without, cross-fitted: bumps (discs; where a curve over a place was "
-         "found, short stretches of the edge) go round folds, the search is repeated without each, "
-         "and what it finds then is taken out of that fold, with the geometry fitted to all rows. "
-         "Before nothing but the geometry is fitted. Where nothing was found it is rms; null where "
-         "bumps are too few"},
-    {FG_NUMBER("robust_sd", fg_scan_loop_error, robust_sd)},
-    {FG_NUMBER("p95", fg_scan_loop_error, p95), .words = "95th percentile of their size"},
-    {FG_NUMBER("maximum", fg_scan_loop_error, maximum)},
-    {FG_GROUP("half_width", &side_width_members), .present = is_of_width,
-     .words = "only where an effect of the strip's width is claimed: half the width about its mean "
-              "over every view, without and with the scanner's stretch and what is claimed"},
-    {FG_LIST_BY("foils", find_side_foil, &foil_members),
-     .words = "every foil of every scan as `measure` reports it"},
-    {FG_LIST_BY("discs", find_side_disc, &disc_members), .present = is_of_discs,
-     .words = "form discs only: every hole and disc of every scan; `foils` is empty then"},
-};
-static const fg_members side_members = FG_MEMBERS_DEFINED(side_rows, "side");
 
 /* Errors after over those before. */
 static const char *const fold_words[] = {"bumps", "discs", "stretches of the edge", NULL};
@@ -219,7 +177,7 @@ static const fg_member result_rows[] = {
      .words = "on the residual of the edges and of the bumps"},
     {FG_TEXT_BY("summary", find_sentence), .options = FG_MEMBER_NEVER_NULL, .pattern = ".",
      .words = "what was found and how sure it is, in words"},
-    {FG_LIST("inputs", fg_scan_result, scan, scans, &input_members), .lowest = 1,
+    {FG_LIST_BY("inputs", fg_scan_find_input, &fg_scan_input_members), .lowest = 1,
      .words = "scans, in their order"},
     {FG_PART("calibration", find_calibration_of_scans, &fg_calibration_used_members),
      .words = "it is in u_ of the foils of before and after, and in nothing that the loop decides"},
@@ -242,13 +200,13 @@ static const fg_member result_rows[] = {
               "and what follows place or direction (threshold, flare, shading, one-sided blur move "
               "the edges apart; geometry moves them together)"},
     {CONSTANT("unit", "um"), .words = "of residuals and amplitudes"},
-    {FG_PART("before", find_before, &side_members), .options = FG_MEMBER_NEVER_NULL,
+    {FG_PART("before", fg_scan_find_before, &fg_scan_side_members), .options = FG_MEMBER_NEVER_NULL,
      .words = "errors of the edge rows and the foils as measured"},
     {FG_LIST_BY("claims", fg_scan_find_claim, &fg_scan_claim_members),
      .words = "effects of the corrected model"},
     {FG_PART("unattributed", fg_scan_find_curve, &fg_scan_curve_members),
      .words = "largest curve that no listed effect explains; null: none"},
-    {FG_PART("after", find_after, &side_members), .options = FG_MEMBER_NEVER_NULL,
+    {FG_PART("after", fg_scan_find_after, &fg_scan_side_members), .options = FG_MEMBER_NEVER_NULL,
      .words = "errors of the edge rows and the foils as corrected"},
     {FG_GROUP("error_ratio", &ratio_members),
      .words = "after / before. folds: that held_out is cross-fitted over; 0 where scans were kept "

@@ -18,6 +18,18 @@ static inline const fg_scan_result *fg_scan_result_of(const fg_subject *subject)
   return ((const fg_scan_report *)subject->whole)->result;
 }
 
+/* Of fg_scan_result_scan. */
+extern const fg_members fg_scan_input_members;
+fg_member_element fg_scan_find_input;
+
+/* Of a side, before or after the correction. */
+extern const fg_members fg_scan_side_members;
+fg_subject fg_scan_find_before(const fg_subject *subject);
+fg_subject fg_scan_find_after(const fg_subject *subject);
+/* Errors of both sides beside each other, of page and terminal. */
+extern const fg_members fg_scan_error_members;
+fg_member_element fg_scan_find_error;
+
 /* Claims and rejected effects: those of the rows have the index 0, those of response r of the
  * bumps r + 1. A list has both kinds, and a table of the page or of the terminal one. */
 extern const fg_members fg_scan_claim_members, fg_scan_rejected_members;
@@ -27,8 +39,9 @@ fg_member_element fg_scan_find_claim, fg_scan_find_rejected;
 extern const fg_members fg_scan_curve_members;
 fg_subject fg_scan_find_curve(const fg_subject *result);
 
-/* Of fg_scan_result_bumps. */
-extern const fg_members fg_scan_bumps_members;
+/* Of fg_scan_result_bumps; of its responses and the height, where page and terminal show them. */
+extern const fg_members fg_scan_bumps_members, fg_scan_response_members;
+fg_member_element fg_scan_find_judged;
 
 extern const fg_document fg_scan_loop_document;
 

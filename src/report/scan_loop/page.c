@@ -7,8 +7,10 @@
 
 #include "core/file.h"
 #include "core/text.h"
+#include "page/table.h"
 #include "page/tile.h"
 #include "report/provenance.h"
+#include "report/scan_loop/members.h"
 #include "report/scan_loop/parts.h"
 
 static void put_loop_tiles(FILE *out, const fg_scan_result *result) {
@@ -40,23 +42,16 @@ static void put_loop_tiles(FILE *out, const fg_scan_result *result) {
 }
 
 static void put_inputs(FILE *out, const fg_scan_result *result) {
-  fputs("<div class=\"scroll\"><table><tr><th>input</th><th class=\"w\">SHA-256</th>"
-        "<th class=\"w\">dpi</th><th class=\"w\">shows</th><th class=\"w\">role</th></tr>\n",
-        out);
-  for (size_t i = 0; i < result->scans; i++) {
-    const fg_measurement *m = result->scan[i].before;
-    fputs("<tr><td class=\"path\">", out);
-    fg_html_text(out, m->scan);
-    fprintf(out, "</td><td class=\"w\"><code>%.12s</code></td><td class=\"w\">%.6g", m->sha256,
-            m->dpi[0]);
-    if (fabs(m->dpi[1] / m->dpi[0] - 1) > 1e-9) fprintf(out, " × %.6g", m->dpi[1]);
-    fputs("</td><td class=\"w\">", out);
-    if (m->foil_count) fprintf(out, "%zu foil%s", m->foil_count, m->foil_count > 1 ? "s" : "");
-    if (m->disc_count)
-      fprintf(out, "%s%zu disc%s", m->foil_count ? ", " : "", m->disc_count,
-              m->disc_count > 1 ? "s" : "");
-    fprintf(out, "</td><td class=\"w\">%s</td></tr>\n",
-            result->scan[i].hold_out ? "kept aside: only confirms" : "searched");
+  const fg_scan_report report = {.result = result};
+  const fg_subject list = {.whole = &report};
+  fg_member_columns columns;
+  fg_subject row;
+  fg_member_columns_of(&fg_scan_input_members, FG_ON_PAGE, &list, &columns);
+  fg_html_table_begin(out, &columns);
+  fg_html_table_rows(out);
+  for (size_t i = 0; fg_list_next(&list, fg_scan_find_input, i, &row); i++) {
+    fg_html_table_row(out, &columns, &row);
+    fputs("</tr>\n", out);
   }
   if (result->bumps.declared_path) {
     fputs("<tr><td class=\"path\">", out);
@@ -66,7 +61,7 @@ static void put_inputs(FILE *out, const fg_scan_result *result) {
             "forming</td><td class=\"w\">declared of the bumps</td></tr>\n",
             result->bumps.declared_sha256);
   }
-  fputs("</table></div>\n", out);
+  fg_html_table_end(out);
   if (result->same_foil)
     fputs("<p class=\"note\">The scans show the same foil: what stays with the glass is the "
           "scanner, what turns is the part.</p>\n",
@@ -263,15 +258,6 @@ static void put_scale(FILE *out, const fg_scan_result *result) {
 
 /* ---- errors ---- */
 
-static void put_error_row(FILE *out, const char *name, double before, double after) {
-  char words[2][32];
-  if (!isfinite(before)) return;
-  fg_scan_loop_length_words(before, words[0], sizeof words[0]);
-  fg_scan_loop_length_words(after, words[1], sizeof words[1]);
-  fprintf(out, "<tr><td>%s</td><td>%s</td><td>%s</td><td>%.3g</td></tr>\n", name, words[0],
-          words[1], after / before);
-}
-
 static void put_disc_noise(FILE *out, const fg_scan_noise *noise) {
   char words[2][32];
   double low = INFINITY, high = 0;
@@ -326,29 +312,20 @@ static void put_held_out(FILE *out, const fg_scan_result *result) {
 }
 
 static void put_error_table(FILE *out, const fg_scan_result *result) {
-  const fg_scan_loop_error *b = &result->before, *a = &result->after;
+  const fg_scan_report report = {.result = result};
   size_t left_out = 0;
-  char words[FG_HELD_OUT_WORDS];
+  char words[32];
   for (size_t i = 0; i < result->rows; i++)
     left_out += !(result->row[i].weight > 0);
-  fputs("<section><h2 class=\"first\">Errors of the edge rows</h2>\n<div class=\"scroll\"><table>"
-        "<tr><th>error</th><th>before</th><th>after</th><th>ratio</th></tr>\n",
-        out);
-  put_error_row(out, "rms", b->rms, a->rms);
-  put_error_row(out, "robust sd", b->robust_sd, a->robust_sd);
-  put_error_row(out, "95th percentile", b->p95, a->p95);
-  put_error_row(out, "maximum", b->maximum, a->maximum);
-  fg_scan_loop_held_out_words(result, words);
-  if (words[0]) put_error_row(out, words, b->held_out_rms, a->held_out_rms);
-  if (result->of_width)
-    put_error_row(out, "half the width, rms", result->width_before_um, result->width_after_um);
+  fputs("<section><h2 class=\"first\">Errors of the edge rows</h2>\n", out);
+  fg_html_table(out, &fg_scan_error_members, &(fg_subject){.whole = &report}, fg_scan_find_error);
   fg_scan_loop_length_words(result->noise_floor_um, words, sizeof words);
-  fputs("</table></div>\n", out);
   fprintf(out,
           "<p class=\"note\">%zu rows, each the mean of %zu neighbours along the "
           "strip; %zu of them left out as outliers. Noise floor of a row: %s; after / noise floor "
           "= %.3g.",
-          result->rows, result->row_stations, left_out, words, a->rms / result->noise_floor_um);
+          result->rows, result->row_stations, left_out, words,
+          result->after.rms / result->noise_floor_um);
   fputs("</p>\n", out);
   put_held_out(out, result);
   put_noise_words(out, &result->noise);

@@ -10,6 +10,7 @@
 #include "foilgauge/scan_loop.h"
 #include "report/correction_words.h"
 #include "report/scan_loop/bumps.h"
+#include "report/scan_loop/members.h"
 #include "report/scan_loop/parts.h"
 #include "report/value_words.h"
 
@@ -58,27 +59,6 @@ static void print_unclaimed(FILE *out, const fg_scan_result *result) {
       fprintf(out, ", would have shown from %.3g um", one->smallest_um);
     fputs(one->barred ? "; seen, and not confirmed from disc to disc\n" : "\n", out);
   }
-}
-
-static void print_error(FILE *out, const char *name, double before, double after) {
-  if (isfinite(before)) fprintf(out, "  %-22s %10.4g %10.4g\n", name, before, after);
-}
-
-static void print_errors(FILE *out, const fg_scan_result *result) {
-  const fg_scan_loop_error *b = &result->before, *a = &result->after;
-  fputs("errors of the edge rows, um   before      after\n", out);
-  print_error(out, "rms", b->rms, a->rms);
-  print_error(out, "robust sd", b->robust_sd, a->robust_sd);
-  print_error(out, "95th percentile", b->p95, a->p95);
-  print_error(out, "maximum", b->maximum, a->maximum);
-  char held_out[FG_HELD_OUT_WORDS];
-  fg_scan_loop_held_out_words(result, held_out);
-  if (held_out[0]) {
-    fprintf(out, "  %s:\n", held_out);
-    print_error(out, "rms", b->held_out_rms, a->held_out_rms);
-  }
-  if (result->of_width)
-    print_error(out, "half the width, rms", result->width_before_um, result->width_after_um);
 }
 
 static void print_noise(FILE *out, const fg_scan_noise *noise) {
@@ -168,6 +148,7 @@ static fg_status put_next(fg_context *ctx, FILE *out, const fg_scan_result *resu
 
 fg_status fg_scan_loop_write_text(fg_context *ctx, const fg_scan_loop *loop, FILE *out) {
   const fg_scan_result *result = fg_scan_loop_result(loop);
+  const fg_scan_report report = {.result = result};
   char *sentence = NULL;
   FG_TRY(fg_scan_loop_sentence(ctx, result, &sentence));
   fprintf(out, "%s: edge residual %.3f um before, %.3f um after; noise %.3f um\n",
@@ -186,7 +167,8 @@ fg_status fg_scan_loop_write_text(fg_context *ctx, const fg_scan_loop *loop, FIL
   fputs("not claimed:\n", out);
   print_unclaimed(out, result);
   fg_text_bumps_rejected(&result->bumps, out);
-  print_errors(out, result);
+  fg_members_terminal(out, "", &fg_scan_error_members, &(fg_subject){.whole = &report},
+                      fg_scan_find_error);
   print_noise(out, &result->noise);
   fputs("+- is U = 2 u.\n", out);
   return fg_stream_finish(ctx, out, "the loop's report");
