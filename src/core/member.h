@@ -168,6 +168,7 @@ struct fg_member {
   bool (*column)(const fg_subject *list);
   int (*decimals_by)(const fg_subject *);  /* decimals of the element's value; NULL: the column's */
   const char *(*look)(const fg_subject *); /* class of its cell: a verdict; NULL: none */
+  const char *label; /* written before its cell where a narrow page has no heading; NULL: none */
   void (*markup)(FILE *out, const fg_subject *); /* writes the page's cell; NULL: its text does */
 };
 
