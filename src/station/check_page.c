@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "page/page.h"
+#include "page/table.h"
 #include "station/check_state.h"
 #include "station/pages.h"
 
@@ -31,31 +32,80 @@ static fg_status read_newest(fg_context *ctx, sqlite3 *reader, newest_check *new
   return newest->id ? fg_check_state_load(ctx, reader, newest->id, &newest->state) : FG_OK;
 }
 
-static void write_state_value(FILE *out, const fg_check_quantity *row, const fg_check_state *state,
-                              size_t k) {
-  fprintf(out, "<td>%.*f ± %.*f</td>", row->decimals, state->value[k], row->decimals,
-          2 * state->u[k]);
+/* The newest state against the baseline: the subject's index is the quantity's. */
+typedef struct compared_states {
+  const fg_check_state *now, *baseline;
+} compared_states;
+
+static const fg_check_quantity *quantity_of(const fg_subject *s) {
+  return &fg_check_quantities[s->index];
 }
 
-static void write_state_row(FILE *out, size_t k, const fg_check_state *state,
-                            const fg_check_state *baseline) {
-  const fg_check_quantity *row = &fg_check_quantities[k];
-  if (isnan(state->value[k])) return;
-  double allowed = fg_check_state_allowed(state, baseline, k);
-  double change = state->value[k] - baseline->value[k];
-  fputs("<tr><td>", out);
-  fg_html_text(out, row->words);
-  fprintf(out, "%s%s</td>", row->unit[0] ? ", " : "", row->unit);
-  write_state_value(out, row, state, k);
-  if (isnan(baseline->value[k])) {
-    fputs("<td></td><td></td><td></td><td></td></tr>\n", out);
-    return;
-  }
-  write_state_value(out, row, baseline, k);
-  bool changed = fabs(change) > allowed;
-  fprintf(out, "<td>%s%+.*f%s</td><td>± %.*f</td><td class=\"words\">%s</td></tr>\n",
-          changed ? "<b>" : "", row->decimals, change, changed ? "</b>" : "", row->decimals,
-          allowed, row->cause);
+static const char *find_quantity_words(const fg_subject *s, char *buffer) {
+  const fg_check_quantity *row = quantity_of(s);
+  snprintf(buffer, FG_MEMBER_TEXT_MAX, "%s%s%s", row->words, row->unit[0] ? ", " : "", row->unit);
+  return buffer;
+}
+
+static const char *show_state(const fg_subject *s, const fg_check_state *state, char *buffer) {
+  int decimals = quantity_of(s)->decimals;
+  snprintf(buffer, 80, "%.*f ± %.*f", decimals, state->value[s->index], decimals,
+           2 * state->u[s->index]);
+  return buffer;
+}
+
+static const char *find_now(const fg_subject *s, char *buffer) {
+  return show_state(s, ((const compared_states *)s->object)->now, buffer);
+}
+
+static bool has_baseline(const fg_subject *s) {
+  return !isnan(((const compared_states *)s->object)->baseline->value[s->index]);
+}
+
+static const char *find_baseline(const fg_subject *s, char *buffer) {
+  if (!has_baseline(s)) return "";
+  return show_state(s, ((const compared_states *)s->object)->baseline, buffer);
+}
+
+static double allowed_of(const fg_subject *s) {
+  const compared_states *states = s->object;
+  return fg_check_state_allowed(states->now, states->baseline, s->index);
+}
+
+static void write_state_change(FILE *out, const fg_subject *s) {
+  const compared_states *states = s->object;
+  if (!has_baseline(s)) return;
+  double change = states->now->value[s->index] - states->baseline->value[s->index];
+  bool changed = fabs(change) > allowed_of(s);
+  fprintf(out, changed ? "<b>%+.*f</b>" : "%+.*f", quantity_of(s)->decimals, change);
+}
+
+static const char *find_allowed(const fg_subject *s, char *buffer) {
+  if (!has_baseline(s)) return "";
+  snprintf(buffer, 80, "± %.*f", quantity_of(s)->decimals, allowed_of(s));
+  return buffer;
+}
+
+static const char *find_cause(const fg_subject *s, char *buffer) {
+  (void)buffer;
+  return has_baseline(s) ? quantity_of(s)->cause : "";
+}
+
+static const fg_member state_rows[] = {
+    {FG_TEXT_BY("quantity", find_quantity_words), .page = {1, ""}},
+    {FG_TEXT_BY("now", find_now), .page = {1, "now"}},
+    {FG_TEXT_BY("baseline", find_baseline), .page = {1, "baseline"}},
+    {FG_TEXT_BY("change", NULL), .markup = write_state_change, .page = {1, "change"}},
+    {FG_TEXT_BY("allowed", find_allowed), .page = {1, "allowed"}},
+    {FG_TEXT_BY("cause", find_cause), .page = {1, "what changes it", .words = true}},
+};
+static const fg_members state_members = FG_MEMBERS(state_rows);
+
+static bool find_compared(const fg_subject *list, size_t k, fg_subject *element) {
+  const compared_states *states = list->object;
+  if (k >= FG_CHECK_QUANTITIES) return false;
+  element->object = isnan(states->now->value[k]) ? NULL : states;
+  return true;
 }
 
 static void write_findings(FILE *out, unsigned findings) {
@@ -99,13 +149,9 @@ fg_status fg_page_scanner_state(fg_context *ctx, const fg_inspection *station, s
     fputs("There is no baseline yet: the first check with scale and shear as allowed becomes it.",
           out);
   }
-  fputs("</p>\n<table><thead><tr><th></th><th>now</th><th>baseline</th><th>change</th><th>allowed</"
-        "th>"
-        "<th class=\"words\">what changes it</th></tr></thead><tbody>\n",
-        out);
-  for (size_t k = 0; k < FG_CHECK_QUANTITIES; k++)
-    write_state_row(out, k, &newest.state, &baseline);
-  fputs("</tbody></table>\n", out);
+  fputs("</p>\n", out);
+  const compared_states states = {&newest.state, &baseline};
+  fg_html_table(out, &state_members, &(fg_subject){.object = &states}, find_compared);
   write_findings(out, newest.state.findings);
   if (newest.changed && newest.passed) write_accept(station, out, newest.id);
   return FG_OK;

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "page/page.h"
+#include "page/table.h"
 #include "station/pages.h"
 #include "station/stored_foil.h"
 #include "station/values.h"
@@ -56,35 +57,54 @@ static fg_status write_facts(fg_context *ctx, const fg_stored_foil *stored, FILE
   return FG_OK;
 }
 
-static void write_change(FILE *out, const fg_query *at) {
-  fputs("<tr><td>", out);
-  fg_page_time(out, fg_query_get_integer(at, 0));
-  for (int i = 1; i < 5; i++) {
-    const char *text = fg_query_get_text(at, i);
-    fputs("</td><td class=\"words\">", out);
-    fg_html_text(out, text[0] ? text : i == 1 ? "no name given" : "–");
-  }
-  fputs("</td></tr>\n", out);
+/* A change: the row of a query. */
+enum { CHANGE_AT, CHANGE_BY, CHANGE_FIELD, CHANGE_BEFORE, CHANGE_AFTER };
+
+static void write_change_time(FILE *out, const fg_subject *change) {
+  fg_page_time(out, fg_query_get_integer(change->object, CHANGE_AT));
 }
+
+#define CHANGE_TEXT(function, column, unknown)                                                     \
+  static const char *function(const fg_subject *change, char *buffer) {                            \
+    const char *text = fg_query_get_text(change->object, column);                                  \
+    (void)buffer;                                                                                  \
+    return text[0] ? text : (unknown);                                                             \
+  }
+CHANGE_TEXT(find_author, CHANGE_BY, "no name given")
+CHANGE_TEXT(find_field, CHANGE_FIELD, "–")
+CHANGE_TEXT(find_before, CHANGE_BEFORE, "–")
+CHANGE_TEXT(find_after, CHANGE_AFTER, "–")
+
+static const fg_member change_rows[] = {
+    {FG_TEXT_BY("at", NULL), .markup = write_change_time, .page = {1, "When"}},
+    {FG_TEXT_BY("by", find_author), .page = {1, "Who", .words = true}},
+    {FG_TEXT_BY("field", find_field), .page = {1, "What", .words = true}},
+    {FG_TEXT_BY("before", find_before), .page = {1, "Before", .words = true}},
+    {FG_TEXT_BY("after", find_after), .page = {1, "After", .words = true}},
+};
+static const fg_members change_members = {change_rows, 5, .frame = "left"};
 
 static fg_status write_trail(fg_context *ctx, sqlite3 *reader, const fg_stored_foil *stored,
                              FILE *out) {
   fg_query query;
+  fg_member_columns columns;
   bool any = false;
+  fg_member_columns_of(&change_members, FG_ON_PAGE, &(fg_subject){0}, &columns);
   fg_query_begin(reader,
                  "SELECT at, by, field, before, after FROM corrections WHERE foil = ? ORDER BY id",
                  &query);
   fg_query_integer(&query, stored->id);
   fputs("<h2>Corrections</h2>\n", out);
   while (fg_query_row(&query)) {
-    if (!any)
-      fputs("<div class=\"scroll\"><table class=\"left\"><thead><tr><th>When</th><th>Who</th>"
-            "<th>What</th><th>Before</th><th>After</th></tr></thead>\n<tbody>\n",
-            out);
+    if (!any) fg_html_table_begin(out, &columns), fg_html_table_rows(out);
     any = true;
-    write_change(out, &query);
+    fg_html_table_row(out, &columns, &(fg_subject){.object = &query});
+    fputs("</tr>\n", out);
   }
-  fputs(any ? "</tbody></table></div>\n" : "<p class=\"note\">None.</p>\n", out);
+  if (any)
+    fg_html_table_end(out);
+  else
+    fputs("<p class=\"note\">None.</p>\n", out);
   return fg_query_end(ctx, &query, "reading the corrections");
 }
 

@@ -5,6 +5,7 @@
 
 #include "core/text.h"
 #include "page/page.h"
+#include "page/table.h"
 #include "station/lot_content.h"
 #include "station/pages.h"
 
@@ -36,16 +37,61 @@ static void write_link(FILE *out, const char *page, const char *lot, const char 
   " total(f.verdict IN ('cannot_tell', 'not_measured') AND s.withheld IS NULL),"                   \
   " total(s.withheld IS NOT NULL)"
 
-static void write_counts(FILE *out, const fg_query *row, int from) {
+/* Columns of the queries, of open lots and of the one that is asked about. */
+enum { LOT_NAME, LOT_NEWEST, LOT_COUNTS };
+
+static double find_foils(const fg_subject *row) {
+  return (double)fg_query_get_integer(row->object, LOT_COUNTS);
+}
+
+static void write_verdicts(FILE *out, const fg_subject *row) {
   static const char *const words[] = {"PASS", "FAIL", "SCAN AGAIN", "NO VERDICT"};
   static const char *const styles[] = {"pass", "fail", "again", "again"};
-  long long foils = fg_query_get_integer(row, from);
-  fprintf(out, "<td data-name=\"foils\">%lld</td><td>", foils);
   for (int i = 0; i < 4; i++) {
-    long long count = fg_query_get_integer(row, from + 1 + i);
+    long long count = fg_query_get_integer(row->object, LOT_COUNTS + 1 + i);
     if (count) fprintf(out, "<span class=\"tag %s\">%lld %s</span> ", styles[i], count, words[i]);
   }
-  fputs("</td>", out);
+}
+
+static const fg_member count_rows[] = {
+    {FG_COUNT_BY("foils", find_foils), .label = "foils", .page = {2, "Foils"}},
+    {FG_TEXT_BY("verdicts", NULL), .markup = write_verdicts, .page = {2, "Verdicts"}},
+};
+static const fg_members count_members = {count_rows, 2, .frame = "left rows"};
+
+static void write_lot_link(FILE *out, const fg_subject *row) {
+  const char *lot = fg_query_get_text(row->object, LOT_NAME);
+  fputs("<a href=\"/history?lot=", out);
+  write_encoded(out, lot);
+  fputs("\">", out);
+  write_lot_name(out, lot);
+  fputs("</a>", out);
+}
+
+static void write_newest(FILE *out, const fg_subject *row) {
+  fg_page_time(out, fg_query_get_integer(row->object, LOT_NEWEST));
+}
+
+static void write_close(FILE *out, const fg_subject *row) {
+  write_link(out, "/lots?close=1&amp;lot=", fg_query_get_text(row->object, LOT_NAME), "Close …");
+}
+
+static const char *find_screen_class(const fg_subject *row) {
+  (void)row;
+  return "noprint";
+}
+
+static const fg_member open_rows[] = {
+    {FG_TEXT_BY("lot", NULL), .markup = write_lot_link, .page = {1, "Lot"}},
+    {FG_SAME(&count_members)},
+    {FG_TEXT_BY("newest", NULL), .markup = write_newest, .label = "newest", .page = {3, "Newest"}},
+    {FG_TEXT_BY("close", NULL), .markup = write_close, .look = find_screen_class, .page = {3, ""}},
+};
+static const fg_members open_members = {open_rows, 4, .frame = "left rows"};
+
+static void write_lot_row(FILE *out, const fg_member_columns *columns, const fg_query *query) {
+  fg_html_table_row(out, columns, &(fg_subject){.object = query});
+  fputs("</tr>\n", out);
 }
 
 /* Open lots, the newest first, LOTS_SHOWN on a page; the index of the lots alone finds them. */
@@ -56,38 +102,23 @@ static const char open_lots[] =
     " FROM newest CROSS JOIN foils AS f ON f.lot = newest.lot JOIN scans AS s ON s.id = f.scan"
     " WHERE NOT " FG_LOT_REPLACED " GROUP BY f.lot ORDER BY newest.last DESC";
 
-static void write_open_lot(FILE *out, const fg_query *row) {
-  const char *lot = fg_query_get_text(row, 0);
-  fputs("<tr><td><a href=\"/history?lot=", out);
-  write_encoded(out, lot);
-  fputs("\">", out);
-  write_lot_name(out, lot);
-  fputs("</a></td>", out);
-  write_counts(out, row, 2);
-  fputs("<td data-name=\"newest\">", out);
-  fg_page_time(out, fg_query_get_integer(row, 1));
-  fputs("</td><td class=\"noprint\">", out);
-  write_link(out, "/lots?close=1&amp;lot=", lot, "Close …");
-  fputs("</td></tr>\n", out);
-}
-
 static fg_status write_open(fg_context *ctx, sqlite3 *reader, int64_t from, FILE *out) {
   fg_query query;
+  fg_member_columns columns;
   int64_t count = 0;
+  fg_member_columns_of(&open_members, FG_ON_PAGE, &(fg_subject){0}, &columns);
   fg_query_begin(reader, open_lots, &query);
   fg_query_integer(&query, LOTS_SHOWN + 1);
   fg_query_integer(&query, from);
   fputs("<section><h2 class=\"first\">Open lots</h2>\n", out);
   for (; fg_query_row(&query) && count <= LOTS_SHOWN; count++) {
-    if (!count)
-      fputs("<table "
-            "class=\"left "
-            "rows\"><thead><tr><th>Lot</th><th>Foils</th><th>Verdicts</th><th>Newest</th>"
-            "<th class=\"noprint\"></th></tr></thead><tbody>\n",
-            out);
-    if (count < LOTS_SHOWN) write_open_lot(out, &query);
+    if (!count) fg_html_table_begin(out, &columns), fg_html_table_rows(out);
+    if (count < LOTS_SHOWN) write_lot_row(out, &columns, &query);
   }
-  fputs(count ? "</tbody></table>\n" : "<p>No lot is open.</p>\n", out);
+  if (count)
+    fg_html_table_end(out);
+  else
+    fputs("<p>No lot is open.</p>\n", out);
   if (count > LOTS_SHOWN)
     fprintf(out, "<p class=\"noprint\"><a href=\"/lots?from=%lld\">Older</a></p>\n",
             (long long)from + LOTS_SHOWN);
@@ -183,18 +214,22 @@ static fg_status write_refused(fg_context *ctx, sqlite3 *reader, FILE *out) {
 static fg_status write_question(fg_context *ctx, const fg_inspection *station, sqlite3 *reader,
                                 const char *lot, FILE *out) {
   fg_query query;
+  fg_member_columns columns;
+  fg_member_columns_of(&count_members, FG_ON_PAGE, &(fg_subject){0}, &columns);
   fg_query_begin(reader,
-                 "SELECT " COUNTS " FROM foils AS f JOIN scans AS s ON s.id = f.scan"
+                 "SELECT f.lot, max(s.at), " COUNTS
+                 " FROM foils AS f JOIN scans AS s ON s.id = f.scan"
                  " WHERE f.lot = ? AND NOT " FG_LOT_REPLACED,
                  &query);
   fg_query_text(&query, lot);
   fputs("<section><h2 class=\"first\">Close the lot ", out);
   write_lot_name(out, lot);
-  fputs("?</h2>\n<table "
-        "class=\"left rows\"><thead><tr><th>Foils</th><th>Verdicts</th></tr></thead><tbody><tr>",
-        out);
-  if (fg_query_row(&query)) write_counts(out, &query, 0);
-  fputs("</tr></tbody></table>\n<p>Its report is written into the folder lots of the station. "
+  fputs("?</h2>\n", out);
+  fg_html_table_begin(out, &columns);
+  fg_html_table_rows(out);
+  if (fg_query_row(&query)) write_lot_row(out, &columns, &query);
+  fg_html_table_end(out);
+  fputs("<p>Its report is written into the folder lots of the station. "
         "Foils can be corrected, and the lot closed again, later.</p>\n",
         out);
   FG_TRY(fg_query_end(ctx, &query, "reading the lot"));
