@@ -11,6 +11,7 @@
 
 #include "core/memory.h"
 #include "core/temporary.h"
+#include "core/text.h"
 #include "core/utf8.h"
 
 static const struct {
@@ -294,4 +295,10 @@ fg_status fg_stream_finish(fg_context *ctx, FILE *out, const char *what) {
   return fg_fail(ctx, fg_status_of_errno(errno),
                  "%s cannot be written: %s; is there space on the disk?", what,
                  errno ? strerror(errno) : "a write failed");
+}
+
+void fg_file_find_beside(const char *path, const char *name, char *file, size_t size) {
+  const char *slash = strrchr(path, '/');
+  bool beside = slash && name[0] != '/';
+  fg_text_clip(file, size, "%.*s%s", beside ? (int)(slash - path) + 1 : 0, path, name);
 }

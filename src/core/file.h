@@ -9,4 +9,7 @@
  * in words. */
 fg_status fg_stream_finish(fg_context *ctx, FILE *out, const char *what);
 
+/* Resolves `name` against the folder of the file `path`. */
+void fg_file_find_beside(const char *path, const char *name, char *file, size_t size);
+
 #endif

@@ -290,3 +290,25 @@ fg_status fg_object_read(const fg_reading *reading, const fg_members *members, c
   }
   return check_required(reading, members, item);
 }
+
+static bool is_limited_number(const fg_member *row) {
+  return row->kind <= FG_MEMBER_SEED && row->kind != FG_MEMBER_FLAG && !row->number &&
+         row->highest > row->lowest;
+}
+
+fg_status fg_object_check(const fg_reading *reading, const fg_members *members,
+                          const void *object) {
+  for (size_t i = 0; i < members->count; i++) {
+    const fg_member *row = &members->rows[i];
+    const fg_subject subject = {.object = object};
+    double value = fg_member_value(row, &subject);
+    bool unknown = value == 0 && row->options & FG_MEMBER_EMPTY_IS_NULL;
+    if (row->kind == FG_MEMBER_SAME) FG_TRY(fg_object_check(reading, row->members, object));
+    if (row->kind == FG_MEMBER_OBJECT && !row->read) {
+      const fg_reading inside = fg_reading_inside(reading, row->name);
+      FG_TRY(fg_object_check(&inside, row->members, (const char *)object + row->offset));
+    }
+    if (is_limited_number(row) && !unknown) FG_TRY(check_limits(reading, row, value));
+  }
+  return FG_OK;
+}

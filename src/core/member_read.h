@@ -20,6 +20,7 @@ typedef struct fg_reading {
   fg_context *ctx;
   const char *path;    /* of the file, before every message; NULL: the caller adds it */
   const char *between; /* a member's name and the words about it: " " or ": " */
+  const void *user;    /* for readers of rows */
   bool has_others;     /* members without a row are skipped */
   /* Struct that the row's value goes into; NULL: the object itself. */
   void *(*object_of)(const fg_member *member, void *object);
@@ -29,6 +30,9 @@ typedef struct fg_reading {
 /* Reads all members of an object. */
 fg_status fg_object_read(const fg_reading *reading, const fg_members *members, const cJSON *item,
                          void *object);
+
+/* Checks the limits of all numbers of an object that was not read. */
+fg_status fg_object_check(const fg_reading *reading, const fg_members *members, const void *object);
 
 /* Reads the elements of an array into a LIST or MAP in the struct; for readers that do more. */
 fg_status fg_member_read(const fg_reading *reading, const fg_member *member, const cJSON *item,

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "lot/input/recipe_members.h"
 #include "lots/members.h"
 #include "process/plan_file.h"
 #include "render/truth.h"
@@ -16,6 +17,7 @@
 #include "report/scan_loop/members.h"
 #include "report/table_loop/members.h"
 #include "scan_loop/scanner_model.h"
+#include "station/settings.h"
 
 const fg_document *const fg_documents[] = {
     &fg_design_document,
@@ -23,16 +25,18 @@ const fg_document *const fg_documents[] = {
     &fg_doe_document,
     &fg_forming_document,
     &fg_forming_fit_document,
+    &fg_index_document,
     &fg_load_document,
     &fg_loop_document,
     &fg_loop_model_document,
-    &fg_index_document,
     &fg_lot_document,
     &fg_nominal_document,
+    &fg_plan_document,
+    &fg_recipe_document,
+    &fg_render_truth_document,
     &fg_scan_loop_document,
     &fg_scanner_model_document,
-    &fg_plan_document,
-    &fg_render_truth_document,
+    &fg_station_settings_document,
     NULL,
 };
 
@@ -70,6 +74,11 @@ static const void *find_part(const fg_member *row, const void *usual) {
   return fg_member_part(row, &subject).object;
 }
 
+/* Members of another document stand in the list of that. */
+static bool is_elsewhere(const fg_member *row) {
+  return row->schema && strstr(row->schema, ".schema.json") != NULL;
+}
+
 static void write_member_row(const fg_member *row, const char *before, const void *usual,
                              FILE *out) {
   char inside[400];
@@ -88,18 +97,18 @@ static void write_member_row(const fg_member *row, const char *before, const voi
   fprintf(out, "| `%s%s` | ", before, name);
   for (const char *c = row->words ? row->words : ""; *c; c++)
     fputs(*c == '|' ? "\\|" : (char[]){*c, '\0'}, out);
-  if (row->kind == FG_MEMBER_HEAD)
-    fprintf(out, "`%s`%s", row->name,
-            row->options & FG_MEMBER_NO_VERSION ? "" : "; beside it `version`");
+  if (row->kind == FG_MEMBER_HEAD) fprintf(out, "`%s`", row->name);
   if (row->highest > row->lowest && row->kind != FG_MEMBER_NUMBERS)
     fprintf(out, " From %.16g to %.16g.", row->lowest, row->highest);
   write_usual(row, usual, out);
   fputs(" |\n", out);
+  if (row->kind == FG_MEMBER_HEAD && !(row->options & FG_MEMBER_NO_VERSION))
+    fprintf(out, "| `%sversion` | of the program that wrote it |\n", before);
   if (row->sd_offset) fprintf(out, "| `%ssd_%s` | its standard deviation |\n", before, name);
   if (fg_member_has_u(row)) fprintf(out, "| `%su_%s` | its standard uncertainty |\n", before, name);
   if (row->repeat_offset)
     fprintf(out, "| `%su_repeat_%s` | the same, of repeats alone |\n", before, name);
-  if (!row->members) return;
+  if (!row->members || is_elsewhere(row)) return;
   snprintf(inside, sizeof inside, "%s%s%s.", before, name, list ? "[]" : map ? ".*" : "");
   write_member_rows(row->members, inside, find_part(row, usual), out);
 }

@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "cli/commands.h"
-#include "core/json_read.h"
 #include "foilgauge/control.h"
 #include "foilgauge/picture.h"
 #include "foilgauge/quantity.h"
@@ -29,30 +28,6 @@ static void write_endings(FILE *out) {
   char text[200];
   fg_format_list_endings(text, sizeof text);
   fputs(text, out);
-}
-
-enum { MEMBERS_MAX = 128 };
-
-/* Writes the members of a JSON file, each with its default. */
-static void write_members(fg_member_words_list *list_all, FILE *out) {
-  static fg_member_words list[MEMBERS_MAX];
-  size_t count = list_all(list, MEMBERS_MAX);
-  fputs("| member | what it is |\n|---|---|\n", out);
-  for (size_t i = 0; i < count && i < MEMBERS_MAX; i++) {
-    const fg_member_words *words = &list[i];
-    fprintf(out, "| `%s` | %s", words->name, words->meaning ? words->meaning : "@missing@");
-    if (words->limits[0]) fprintf(out, " From %s.", words->limits);
-    if (words->usual[0]) fprintf(out, " Default: %s.", words->usual);
-    fputs(" |\n", out);
-  }
-}
-
-static void write_recipe_members(FILE *out) {
-  write_members(fg_recipe_members, out);
-}
-
-static void write_station_members(FILE *out) {
-  write_members(fg_station_members, out);
 }
 
 static void write_quantities(fg_quantity_owner owner, const char *prefix, FILE *out) {
@@ -127,8 +102,6 @@ static void write_picture_members(FILE *out) {
 }
 
 static const fg_fact facts[] = {
-    {"recipe_members", write_recipe_members},
-    {"station_members", write_station_members},
     {"quantities_of_bump", write_quantities_of_bump},
     {"quantities_of_beam", write_quantities_of_beam},
     {"quantities_of_foil", write_quantities_of_foil},

@@ -8,7 +8,6 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "foilgauge/table.h"
-#include "lot/input/recipe_members.h"
 
 enum { CURVE_BYTES_MAX = 1 << 20, CONTEXT_WORDS = 700 };
 
@@ -79,67 +78,62 @@ fg_status fg_lot_settings_load_curve(fg_context *ctx, const char *path, fg_lot_s
   return FG_OK;
 }
 
-/* Reads the numbers that fg_reference_curve_write keeps in a recipe. */
-static fg_status read_kept_curve(fg_context *ctx, const cJSON *value, fg_lot_curve *curve) {
-  const cJSON *name = cJSON_GetObjectItemCaseSensitive(value, "name"), *point;
+/* A point is kept as three numbers. */
+static const double *list_kept_point(const fg_subject *subject, double *values, size_t *count) {
+  const fg_lot_curve_point *point = subject->object;
+  const double numbers[] = {point->bump, point->radius_error_pct, point->angle_error_pct};
+  *count = COLUMNS;
+  return memcpy(values, numbers, sizeof numbers);
+}
+
+static fg_status read_kept_points(const fg_reading *reading, const fg_member *member,
+                                  const cJSON *value, void *object) {
+  fg_lot_curve *curve = object;
+  const cJSON *point;
   size_t row = 0;
-  if (!cJSON_IsString(name) || strlen(name->valuestring) >= sizeof curve->name)
-    return fg_fail(ctx, FG_ERR_DATA, "name must be a text of less than %zu bytes",
-                   sizeof curve->name);
-  strcpy(curve->name, name->valuestring);
-  cJSON_ArrayForEach(point, cJSON_GetObjectItemCaseSensitive(value, "points")) {
+  (void)member;
+  cJSON_ArrayForEach(point, value) {
     double numbers[COLUMNS];
     for (int i = 0; i < COLUMNS; i++) {
       const cJSON *item = cJSON_GetArrayItem(point, i);
       numbers[i] = cJSON_IsNumber(item) ? item->valuedouble : NAN;
     }
-    FG_TRY(insert_point(ctx, numbers, ++row, curve));
+    FG_TRY(insert_point(reading->ctx, numbers, ++row, curve));
   }
-  return row ? FG_OK : fg_fail(ctx, FG_ERR_DATA, "points are missing");
+  return row ? FG_OK : fg_fail(reading->ctx, FG_ERR_DATA, "points are missing");
 }
 
-fg_status fg_reference_curve_read(fg_context *ctx, const char *path, const cJSON *value,
-                                  fg_lot_settings *settings) {
-  fg_lot_curve curve = {.count = 0};
-  fg_context inner = {.message = ""};
-  if (cJSON_IsString(value)) {
-    char file[4096];
-    fg_recipe_find_file(path, value->valuestring, file, sizeof file);
-    return fg_lot_settings_load_curve(ctx, file, settings);
-  }
-  if (!cJSON_IsObject(value))
-    return fg_fail(ctx, FG_ERR_DATA, "reference_curve must be the path of a CSV file");
-  if (read_kept_curve(&inner, value, &curve) != FG_OK)
-    return fg_fail(ctx, FG_ERR_DATA, "reference_curve: %.*s", CONTEXT_WORDS, inner.message);
-  settings->curve = curve;
-  return FG_OK;
-}
-
-static const double *list_curve_point(const fg_subject *subject, double *values, size_t *count) {
-  const fg_lot_curve_point *p = subject->object;
-  memcpy(values, (const double[]){p->bump, p->radius_error_pct, p->angle_error_pct},
-         COLUMNS * sizeof *values);
-  *count = COLUMNS;
-  return values;
-}
-
-static const fg_member point_rows[] = {{FG_NUMBERS_BY(NULL, list_curve_point), .lowest = COLUMNS,
+static const fg_member point_rows[] = {{FG_NUMBERS_BY(NULL, list_kept_point), .lowest = COLUMNS,
                                         .highest = COLUMNS, .options = FG_MEMBER_NEVER_NULL}};
 static const fg_members point_members = FG_MEMBERS(point_rows);
 
 static const fg_member curve_rows[] = {
-    {FG_TEXT("name", fg_lot_curve, name), .words = "of its file"},
-    {FG_ARRAY("points", fg_lot_curve, point, count, &point_members), .lowest = 1,
-     .words = "bump, radius_error_pct, intersection_angle_error_pct"},
+    {FG_TEXT("name", fg_lot_curve, name), .options = FG_MEMBER_REQUIRED | FG_MEMBER_ANY_TEXT,
+     .words = "of its file"},
+    {FG_ARRAY("points", fg_lot_curve, point, count, &point_members), .read = read_kept_points,
+     .lowest = 1, .words = "bump, radius_error_pct, intersection_angle_error_pct",
+     .options = FG_MEMBER_REQUIRED},
 };
 const fg_members fg_reference_curve_members = FG_MEMBERS(curve_rows);
 
-void fg_reference_curve_write(fg_json *json, const char *name, const fg_lot_settings *settings) {
-  const fg_subject curve = {.object = &settings->curve};
-  if (!settings->curve.count) return;
-  fg_json_object(json, name);
-  fg_members_json(json, &fg_reference_curve_members, &curve);
-  fg_json_object_end(json);
+fg_status fg_reference_curve_read(const fg_reading *reading, const fg_member *member,
+                                  const cJSON *value, void *object) {
+  fg_lot_settings *settings = object;
+  fg_lot_curve curve = {.count = 0};
+  fg_context inner = {.message = ""};
+  const fg_reading kept = {.ctx = &inner, .between = " "};
+  if (cJSON_IsString(value)) {
+    char file[4096];
+    fg_file_find_beside(reading->user, value->valuestring, file, sizeof file);
+    return fg_lot_settings_load_curve(reading->ctx, file, settings);
+  }
+  if (!cJSON_IsObject(value))
+    return fg_reading_fail(reading, member->name, "must be the path of a CSV file");
+  if (fg_object_read(&kept, &fg_reference_curve_members, value, &curve) != FG_OK)
+    return fg_fail(reading->ctx, FG_ERR_DATA, "reference_curve: %.*s", CONTEXT_WORDS,
+                   inner.message);
+  settings->curve = curve;
+  return FG_OK;
 }
 
 fg_status fg_reference_curve_check(fg_context *ctx, const fg_lot_settings *settings) {

@@ -3,22 +3,16 @@
 #ifndef FG_LOT_INPUT_REFERENCE_CURVE_H
 #define FG_LOT_INPUT_REFERENCE_CURVE_H
 
-#include <cjson/cJSON.h>
-
-#include "core/member.h"
+#include "core/member_read.h"
 #include "foilgauge/lot.h"
 
 /* Reads "reference_curve": the path of a CSV file beside the recipe, or the object that
- * fg_reference_curve_write writes. The numbers stand in the lot's own recipe, so that it can be
+ * the members below have. The numbers stand in the lot's own recipe, so that it can be
  * reported again without the file. */
-fg_status fg_reference_curve_read(fg_context *ctx, const char *path, const cJSON *value,
-                                  fg_lot_settings *settings);
+fg_member_reader fg_reference_curve_read;
 
 /* Of an fg_lot_curve, as recipe and report have it. */
 extern const fg_members fg_reference_curve_members;
-
-/* Writes nothing where the recipe has no curve. */
-void fg_reference_curve_write(fg_json *json, const char *name, const fg_lot_settings *settings);
 
 /* Checks that the design has the curve's bumps. */
 fg_status fg_reference_curve_check(fg_context *ctx, const fg_lot_settings *settings);

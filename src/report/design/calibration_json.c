@@ -299,18 +299,11 @@ void fg_json_calibration_members(fg_json *json, const fg_calibration *calibratio
   fg_members_json(json, &fg_calibration_used_members, &(fg_subject){.object = calibration});
 }
 
-static void write_calibration(fg_json *json, const char *name, const fg_members *members,
-                              const fg_calibration *calibration) {
-  const fg_member row = {
-      .name = name, .kind = FG_MEMBER_OBJECT, .pointed = true, .members = members};
+void fg_json_calibration_used(fg_json *json, const char *name, const fg_calibration *calibration) {
+  const fg_member row = {.name = name,
+                         .kind = FG_MEMBER_OBJECT,
+                         .pointed = true,
+                         .members = &fg_calibration_used_members};
   const fg_calibration *stated_one = calibration->stated ? calibration : NULL;
   fg_member_json(json, &row, &(fg_subject){.object = &stated_one});
-}
-
-void fg_json_calibration(fg_json *json, const char *name, const fg_calibration *calibration) {
-  write_calibration(json, name, &fg_calibration_members, calibration);
-}
-
-void fg_json_calibration_used(fg_json *json, const char *name, const fg_calibration *calibration) {
-  write_calibration(json, name, &fg_calibration_used_members, calibration);
 }

@@ -7,9 +7,6 @@
 #include "core/json_writer.h"
 #include "foilgauge/calibration.h"
 
-/* Writes the member as it is read; null where none is stated. */
-void fg_json_calibration(fg_json *json, const char *name, const fg_calibration *calibration);
-
 /* Write it in a report with its derived values, null where none is stated; or its members alone. */
 void fg_json_calibration_used(fg_json *json, const char *name, const fg_calibration *calibration);
 void fg_json_calibration_members(fg_json *json, const fg_calibration *calibration);
