@@ -43,7 +43,7 @@ P
 expect 1 '3 foils of 3 scans' lot a b -o one
 [ "$(links one)" = 3 ] || fail "not three pages"
 [ "$(grep -c '<td class="words path"><b><a href="pages/' one/index.html)" = 3 ] || fail "the worst three have no links"
-[ "$(grep -c '^<tr id="foil-[0-9]*"><td class="words path"><a href="pages/' one/index.html)" = 3 ] || fail "the list has no links"
+[ "$(grep -c '^<tr><td class="words path"><span id="foil-[0-9]*"><a href="pages/' one/index.html)" = 3 ] || fail "the list has no links"
 [ "$(cut -d, -f3 one/foils.csv | grep -c '^pages/foil-')" = 2 ] || fail "foils.csv names no pages"
 grep -l 'verdict fail' one/pages/*.html >failing
 [ "$(wc -l <failing)" = 1 ] || fail "the pages' verdicts"

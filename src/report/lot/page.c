@@ -96,30 +96,6 @@ static void put_failed_scans(FILE *out, const fg_lot_analysis *analysis) {
   fputs("</section>\n", out);
 }
 
-static void put_foil_row(FILE *out, const fg_lot_analysis *analysis, const fg_lot_foil *foil) {
-  fprintf(out, "<tr id=\"foil-%zu\"><td class=\"words path\">",
-          (size_t)(foil - analysis->foils) + 1);
-  if (analysis->pages && analysis->pages[foil->item])
-    fg_lot_put_foil_link(out, analysis, foil);
-  else
-    fg_lot_put_label(out, analysis, foil);
-  fputs("</td><td class=\"words path\">", out);
-  fg_lot_put_scan(out, analysis, foil->item);
-  fputs("</td>", out);
-  fg_lot_put_verdict(out, foil->verdict);
-  fprintf(out, "<td>%zu</td>", fg_part_count(foil->foil, analysis->parts));
-  if (!fg_foil_traits_of(analysis->lot->settings.design.kind)->lies_flat) {
-    fputs("<td>", out);
-    fg_lot_put_number(out, foil->foil->overall.radius_mm, 6);
-    fputs("</td>", out);
-  }
-  fputs("<td class=\"words\">", out);
-  fg_lot_put_reason(out, analysis, foil);
-  fputs("</td>", out);
-  fg_lot_put_margin(out, analysis, foil);
-  fputs("</tr>\n", out);
-}
-
 static void put_where_pages_are(FILE *out, const fg_lot_analysis *analysis) {
   size_t without = 0, with = 0;
   for (size_t i = 0; i < analysis->foil_count; i++) {
@@ -139,24 +115,12 @@ static void put_where_pages_are(FILE *out, const fg_lot_analysis *analysis) {
   fputs(".</p>\n", out);
 }
 
-/* Puts the list of foils; those that do not pass come first. */
 static void put_foil_list(FILE *out, const fg_lot_analysis *analysis) {
   size_t rows = 0;
-  bool flat = fg_foil_traits_of(analysis->lot->settings.design.kind)->lies_flat;
-  fprintf(out,
-          "<section class=\"part\">\n<h1>Foils</h1>\n<div class=\"scroll lots\"><table><thead><tr>"
-          "<th>foil</th><th class=\"w\">scan</th><th>verdict</th><th>%s</th>%s"
-          "<th class=\"w\">what is farthest, or why not</th><th>value ± U</th><th>nearest<br>limit"
-          "</th><th>margin</th></tr></thead>\n<tbody>\n",
-          fg_lot_words_of(analysis)->many, flat ? "" : "<th>R0<br>mm</th>");
-  for (int good = 0; good < 2; good++)
-    for (size_t i = 0; i < analysis->foil_count; i++) {
-      const fg_lot_foil *foil = &analysis->foils[i];
-      if (!foil->row || fg_lot_foil_is_good(foil) != (good == 1)) continue;
-      put_foil_row(out, analysis, foil);
-      rows++;
-    }
-  fputs("</tbody></table></div>\n", out);
+  for (size_t i = 0; i < analysis->foil_count; i++)
+    rows += analysis->foils[i].row;
+  fputs("<section class=\"part\">\n<h1>Foils</h1>\n", out);
+  fg_lot_put_foil_table(out, analysis);
   if (rows < analysis->foil_count)
     fprintf(out,
             "<p class=\"note\">%zu of %zu, those that do not pass first; all: foils.csv.</p>\n",

@@ -228,105 +228,10 @@ void fg_lot_put_heading(FILE *out, const fg_lot_analysis *analysis) {
   put_causes(out, analysis);
 }
 
-/* Puts the first damaged beam with its defect; returns false where there is none. */
-static bool put_damage(FILE *out, const fg_foil *foil) {
-  for (size_t i = 0; i < foil->beam_count; i++) {
-    const fg_foil_part part = fg_part_at(foil, FG_QUANTITY_OF_BEAM, i);
-    if (fg_lot_part_counts(foil, FG_QUANTITY_OF_BEAM, &part)) continue;
-    for (const fg_flag_words *words = fg_beam_flag_words(); words->name; words++) {
-      if (!(part.flags & words->flag & FG_LOT_BEAM_DAMAGED)) continue;
-      fprintf(out, "beam %d: %s", part.number, words->plain);
-      return true;
-    }
-  }
-  return false;
-}
-
-/* Puts the main reason for rejection: a defect, or the value farthest beyond its limit. */
-void fg_lot_put_reason(FILE *out, const fg_lot_analysis *analysis, const fg_lot_foil *foil) {
-  char defect[200];
-  if (foil->foil->error[0]) {
-    fg_html_text(out, foil->foil->error);
-  } else if (fg_foil_defect(&analysis->lot->settings.design, foil->foil, defect, sizeof defect)) {
-    fputs(defect, out);
-  } else if (foil->verdict == FG_VERDICT_NOT_MEASURED && put_damage(out, foil->foil)) {
-    return;
-  } else if (foil->worst_row) {
-    fputs(foil->worst_row->words, out);
-    if (foil->worst_number)
-      fprintf(out, " of %s %d", fg_lot_words_of(analysis)->one, foil->worst_number);
-  }
-}
-
-static bool has_worst_value(const fg_lot_analysis *analysis, const fg_lot_foil *foil) {
-  return foil->worst_row && isfinite(foil->worst_value) && !foil->foil->error[0] &&
-         !fg_foil_defect(&analysis->lot->settings.design, foil->foil, NULL, 0);
-}
-
-/* Returns the decimals of the quantity, or more where its U would read 0.0000. */
-static int margin_decimals(const fg_quantity *row, double expanded) {
-  enum { MAX = 9 };
-  if (!(expanded > 0) || !isfinite(expanded)) return row->decimals;
-  int first = (int)-floor(log10(expanded)); /* place of the first digit */
-  return first > MAX ? MAX : first > row->decimals ? first : row->decimals;
-}
-
-/* Puts value ± U, its limit, and its distance from it. */
-void fg_lot_put_margin(FILE *out, const fg_lot_analysis *analysis, const fg_lot_foil *foil) {
-  const fg_quantity *row = foil->worst_row;
-  if (!has_worst_value(analysis, foil)) {
-    fputs("<td>–</td><td>–</td><td>–</td>", out);
-    return;
-  }
-  double expanded = FG_COVERAGE_FACTOR * foil->worst_u;
-  int decimals = margin_decimals(row, expanded);
-  fputs("<td>", out);
-  fg_lot_put_decimals(out, foil->worst_value, decimals);
-  if (isfinite(expanded)) {
-    fputs(" ± ", out);
-    fg_lot_put_decimals(out, expanded, decimals);
-  }
-  fprintf(out, " %s</td>", row->unit);
-  if (!isfinite(foil->worst_limit)) {
-    fputs("<td>–</td><td>–</td>", out);
-    return;
-  }
-  fputs("<td>", out);
-  fg_lot_put_number(out, foil->worst_limit, 6);
-  fprintf(out, " %s</td><td>", row->unit);
-  fg_lot_put_decimals(out, fabs(foil->worst_margin), decimals);
-  fprintf(out, " %s %s</td>", row->unit, foil->worst_margin < 0 ? "beyond" : "within");
-}
-
 void fg_lot_put_worst(FILE *out, const fg_lot_analysis *analysis) {
-  const fg_lot *lot = analysis->lot;
-  size_t die = fg_manifest_column(&lot->manifest, lot->settings.die_column);
   if (!analysis->worst[0]) return;
-  fprintf(out,
-          "<h2>The worst three</h2>\n<div class=\"scroll\"><table><thead><tr><th>foil</th><th "
-          "class=\"w\">scan</th>%s<th>verdict</th><th class=\"w\">what is farthest</th><th>value ± "
-          "U</th><th>nearest limit</th><th>margin</th></tr></thead>\n<tbody>\n",
-          die != FG_NO_COLUMN ? "<th>die</th>" : "");
-  for (int i = 0; i < 3 && analysis->worst[i]; i++) {
-    const fg_lot_foil *foil = analysis->worst[i];
-    fputs("<tr><td class=\"words path\"><b>", out);
-    fg_lot_put_foil_link(out, analysis, foil);
-    fputs("</b></td><td class=\"words path\">", out);
-    fg_lot_put_scan(out, analysis, foil->item);
-    fputs("</td>", out);
-    if (die != FG_NO_COLUMN) {
-      fputs("<td>", out);
-      fg_html_text(out, fg_manifest_cell(&lot->manifest, foil->item, die));
-      fputs("</td>", out);
-    }
-    fg_lot_put_verdict(out, foil->verdict);
-    fputs("<td class=\"words\">", out);
-    fg_lot_put_reason(out, analysis, foil);
-    fputs("</td>", out);
-    fg_lot_put_margin(out, analysis, foil);
-    fputs("</tr>\n", out);
-  }
-  fputs("</tbody></table></div>\n", out);
+  fputs("<h2>The worst three</h2>\n", out);
+  fg_lot_put_worst_table(out, analysis);
   if (!foils_are_judged(analysis))
     fputs("<p class=\"note\">No tolerance is stated: these lie farthest from the lot's "
           "mean.</p>\n",

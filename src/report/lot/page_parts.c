@@ -29,14 +29,6 @@ void fg_lot_put_decimals(FILE *out, double value, int decimals) {
   fprintf(out, "%s%s", value < 0 && !zero ? "−" : "", text);
 }
 
-void fg_lot_put_verdict(FILE *out, fg_verdict verdict) {
-  fprintf(out, "<td class=\"%s\">%s</td>", fg_verdict_word(verdict),
-          verdict == FG_VERDICT_UNDECIDED      ? "cannot tell"
-          : verdict == FG_VERDICT_NOT_MEASURED ? "not measured"
-          : verdict == FG_VERDICT_NONE         ? "–"
-                                               : fg_verdict_word(verdict));
-}
-
 void fg_lot_put_href(FILE *out, const char *path) {
   static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_./~";
   for (; *path; path++)

@@ -14,12 +14,9 @@ void fg_lot_put_number(FILE *out, double value, int digits);
 void fg_lot_put_value(FILE *out, const fg_quantity *row, double value);
 void fg_lot_put_decimals(FILE *out, double value, int decimals);
 
-/* Puts a coloured cell with the word of a verdict. */
-void fg_lot_put_verdict(FILE *out, fg_verdict verdict);
-
-/* Puts the main reason against a foil; and three cells: value ± U, limit, margin. */
-void fg_lot_put_reason(FILE *out, const fg_lot_analysis *analysis, const fg_lot_foil *foil);
-void fg_lot_put_margin(FILE *out, const fg_lot_analysis *analysis, const fg_lot_foil *foil);
+/* Puts the table of the worst foils; that of all foils that the page lists. */
+void fg_lot_put_worst_table(FILE *out, const fg_lot_analysis *analysis);
+void fg_lot_put_foil_table(FILE *out, const fg_lot_analysis *analysis);
 
 /* Puts the causes of the signals of a quantity's chart, as the rest of a sentence; nothing where
  * they are unknown. */
