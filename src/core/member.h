@@ -44,6 +44,7 @@ typedef enum fg_member_kind {
   FG_MEMBER_STRING,   /* const char *; NULL: not known */
   FG_MEMBER_WORD,     /* enum: an index of `choices` */
   FG_MEMBER_RANGE,    /* two doubles: those at `offset` and `u_offset` */
+  FG_MEMBER_PAIR,     /* two doubles beside each other, x and y; their u likewise */
   FG_MEMBER_NUMBERS,  /* doubles, on one line */
   FG_MEMBER_TEXTS,    /* texts by `text_at` */
   FG_MEMBER_OBJECT,   /* object with members of its own */
@@ -62,9 +63,9 @@ typedef enum fg_member_option {
   FG_MEMBER_NOT_NEGATIVE = 1u << 3,  /* 0 or more, for the schema */
   FG_MEMBER_EMPTY_IS_NULL = 1u << 4, /* the text "" is not known, and so is the number 0 */
   FG_MEMBER_LIST_ON_LINE = 1u << 5,  /* of a list: all of it on one line */
-  FG_MEMBER_NULLABLE = 1u << 6,      /* a count, integer or flag that may be null */
-  FG_MEMBER_EXACT = 1u << 7,         /* its numbers lose no digit */
-  FG_MEMBER_NOT_IN_JSON = 1u << 8,   /* a column of tables alone */
+  FG_MEMBER_NULLABLE = 1u << 6,    /* may be null: a count, integer, flag, object, empty NUMBERS */
+  FG_MEMBER_EXACT = 1u << 7,       /* its numbers lose no digit */
+  FG_MEMBER_NOT_IN_JSON = 1u << 8, /* a column of tables alone */
   FG_MEMBER_ENDS_BELOW = 1u << 15, /* with ON_LINE, LIST_ON_LINE: its bracket closes on the next */
   FG_MEMBER_EITHER = 1u << 9,      /* the schema has it beside the row of this name before it */
   FG_MEMBER_NO_VERSION = 1u << 10, /* of HEAD: the schema's name alone */
@@ -102,6 +103,8 @@ typedef struct fg_members {
   const char *definition;
   bool nullable;    /* the definition allows null in place of the object */
   const char *file; /* schema that holds the definition ("measure"); NULL: the document's own */
+  /* Limits of the object that no row has, members of its schema as JSON text; NULL: none. */
+  const char *limits;
   /* Class of an element's line in the page's table ("total"); NULL: none, of either. */
   const char *(*look)(const fg_subject *element);
   const char *frame; /* class around the page's table beside "scroll" ("lots"); NULL: none */
@@ -146,6 +149,7 @@ struct fg_member {
   const char *(*key)(const fg_subject *); /* of MAP: the element's name */
   bool (*row_at)(size_t i,
                  fg_member *row); /* of SAME: rows made one by one; false behind the last */
+  /* Of WRITTEN; of another kind it prepares what the rows read, and writes in place of the kind. */
   void (*write)(fg_json *, const char *name, const fg_subject *);
   bool (*present)(const fg_subject *); /* false: left out; NULL: always there */
   bool (*line)(const fg_subject *);    /* of a list's element, in place of ON_LINE */
@@ -217,7 +221,8 @@ struct fg_member {
             0 * sizeof(_Generic(&((object *)0)->field,                                             \
                 char **: (char)0, const char **: (char)0, char *const *: (char)0,                  \
                 const char *const *: (char)0))
-#define FG_SHA256(name_, object, field) FG_TEXT(name_, object, field), .pattern = "^[0-9a-f]{64}$"
+#define FG_SHA256_PATTERN               "^[0-9a-f]{64}$"
+#define FG_SHA256(name_, object, field) FG_TEXT(name_, object, field), .pattern = FG_SHA256_PATTERN
 #define FG_WORD(name_, object, field, words_)                                                      \
   .name = (name_), .kind = FG_MEMBER_WORD, .choices = (words_),                                    \
   .offset =                                                                                        \
@@ -227,6 +232,10 @@ struct fg_member {
 #define FG_RANGE(name_, object, low, high)                                                         \
   .name = (name_), .kind = FG_MEMBER_RANGE, .offset = FG_FIELD(object, low, double),               \
   .u_offset = FG_FIELD(object, high, double)
+#define FG_PAIR(name_, object, field)                                                              \
+  .name = (name_), .kind = FG_MEMBER_PAIR,                                                         \
+  .offset = offsetof(object, field) +                                                              \
+            0 * sizeof(char[FG_SIZE_OF_FIELD(object, field) == 2 * sizeof(double) ? 1 : -1])
 #define FG_NUMBERS_BY(name_, function)                                                             \
   .name = (name_), .kind = FG_MEMBER_NUMBERS, .numbers = (function)
 /* All of an array of doubles; the first of it, as many as a count says. */

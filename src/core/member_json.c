@@ -60,6 +60,15 @@ static void write_range(fg_json *json, const fg_member *member, const fg_subject
   fg_json_numbers(json, member->name, range, 2);
 }
 
+static void write_pair(fg_json *json, const fg_member *member, const fg_subject *subject) {
+  char u_name[96];
+  const char *object = subject->object;
+  fg_json_numbers(json, member->name, (const double *)(const void *)(object + member->offset), 2);
+  if (!member->u_offset) return;
+  snprintf(u_name, sizeof u_name, "u_%s", member->name);
+  fg_json_numbers(json, u_name, (const double *)(const void *)(object + member->u_offset), 2);
+}
+
 static void write_numbers(fg_json *json, const fg_member *member, const fg_subject *subject) {
   double buffer[FG_MEMBER_NUMBERS_MAX];
   const char *object = subject->object;
@@ -69,7 +78,10 @@ static void write_numbers(fg_json *json, const fg_member *member, const fg_subje
     values = member->numbers(subject, buffer, &count);
   else if (member->count_offset)
     count = *(const size_t *)(const void *)(object + member->count_offset);
-  if (!is_left_out(member, count > 0)) fg_json_numbers(json, member->name, values, count);
+  if (!count && member->options & FG_MEMBER_NULLABLE)
+    write_null(json, member->name);
+  else if (!is_left_out(member, count > 0))
+    fg_json_numbers(json, member->name, values, count);
 }
 
 static void write_texts(fg_json *json, const fg_member *member, const fg_subject *subject) {
@@ -184,6 +196,7 @@ static writer *const writers[] = {
     [FG_MEMBER_STRING] = write_text,
     [FG_MEMBER_WORD] = write_text,
     [FG_MEMBER_RANGE] = write_range,
+    [FG_MEMBER_PAIR] = write_pair,
     [FG_MEMBER_NUMBERS] = write_numbers,
     [FG_MEMBER_TEXTS] = write_texts,
     [FG_MEMBER_OBJECT] = write_object,
@@ -198,7 +211,7 @@ void fg_member_json(fg_json *json, const fg_member *member, const fg_subject *su
   bool exact = json->exact;
   if (member->options & FG_MEMBER_NOT_IN_JSON || !fg_member_is_present(member, subject)) return;
   json->exact = exact || member->options & FG_MEMBER_EXACT;
-  writers[member->kind](json, member, subject);
+  (member->write ? write_by_function : writers[member->kind])(json, member, subject);
   json->exact = exact;
 }
 

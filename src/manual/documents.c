@@ -14,6 +14,7 @@
 #include "report/forming/members.h"
 #include "report/load_test/members.h"
 #include "report/lot/members.h"
+#include "report/measure/members.h"
 #include "report/scan_loop/members.h"
 #include "report/table_loop/members.h"
 #include "scan_loop/scanner_model.h"
@@ -37,6 +38,7 @@ const fg_document *const fg_documents[] = {
     &fg_scan_loop_document,
     &fg_scanner_model_document,
     &fg_station_settings_document,
+    &fg_measure_document,
     NULL,
 };
 
@@ -105,7 +107,8 @@ static void write_member_row(const fg_member *row, const char *before, const voi
   if (row->kind == FG_MEMBER_HEAD && !(row->options & FG_MEMBER_NO_VERSION))
     fprintf(out, "| `%sversion` | of the program that wrote it |\n", before);
   if (row->sd_offset) fprintf(out, "| `%ssd_%s` | its standard deviation |\n", before, name);
-  if (fg_member_has_u(row)) fprintf(out, "| `%su_%s` | its standard uncertainty |\n", before, name);
+  if (fg_member_has_u(row) || (row->kind == FG_MEMBER_PAIR && row->u_offset))
+    fprintf(out, "| `%su_%s` | its standard uncertainty |\n", before, name);
   if (row->repeat_offset)
     fprintf(out, "| `%su_repeat_%s` | the same, of repeats alone |\n", before, name);
   if (!row->members || is_elsewhere(row)) return;

@@ -27,6 +27,17 @@ static void add_type(cJSON *object, const char *type, bool nullable) {
   add_item(object, "type", nullable ? cJSON_CreateStringArray(types, 2) : cJSON_CreateString(type));
 }
 
+static void move_items(cJSON *from, cJSON *to) {
+  while (from->child) {
+    cJSON *child = cJSON_DetachItemViaPointer(from, from->child);
+    char *name = child->string;
+    child->string = NULL;
+    add_item(to, name, child);
+    free(name);
+  }
+  cJSON_Delete(from);
+}
+
 static void add_words(cJSON *object, const fg_member *row) {
   if (row->words) add_item(object, "description", cJSON_CreateString(row->words));
 }
@@ -45,6 +56,7 @@ static cJSON *make_object(schema *all, const fg_members *members, const fg_membe
   add_item(object, "required", required);
   add_item(object, "additionalProperties", cJSON_CreateFalse());
   describe_members(all, members, properties, required, false);
+  if (members->limits) move_items(need(cJSON_Parse(members->limits)), object);
   return object;
 }
 
@@ -125,7 +137,7 @@ static cJSON *make_list(schema *all, const fg_member *row) {
 static cJSON *make_numbers(const fg_member *row, bool nullable, double min, double max) {
   cJSON *numbers = need(cJSON_CreateObject()), *items = need(cJSON_CreateObject());
   add_words(numbers, row);
-  add_type(numbers, "array", false);
+  add_type(numbers, "array", row->kind == FG_MEMBER_NUMBERS && row->options & FG_MEMBER_NULLABLE);
   add_type(items, "number", nullable);
   add_item(numbers, "items", items);
   if (max <= 0) return numbers;
@@ -168,6 +180,8 @@ static cJSON *make_texts(const fg_member *row) {
   else
     add_type(items, "string", false);
   add_item(texts, "items", items);
+  if (choice_of(row, 0)) add_item(texts, "uniqueItems", cJSON_CreateTrue());
+  if (row->lowest > 0) add_item(texts, "minItems", cJSON_CreateNumber(row->lowest));
   return texts;
 }
 
@@ -176,11 +190,16 @@ static cJSON *make_number(const schema *all, const fg_member *row) {
   bool whole = row->kind != FG_MEMBER_NUMBER && row->kind != FG_MEMBER_FLAG;
   unsigned never = FG_MEMBER_LEFT_OUT | FG_MEMBER_NEVER_NULL;
   unsigned null = FG_MEMBER_NULLABLE | FG_MEMBER_EMPTY_IS_NULL;
+  unsigned only_true = FG_MEMBER_LEFT_OUT | FG_MEMBER_EMPTY_IS_NULL;
   bool nullable = row->kind == FG_MEMBER_NUMBER && !all->is_read
                       ? !(row->options & never)
                       : (row->options & null) && !(row->options & never);
   const char *type = row->kind == FG_MEMBER_FLAG ? "boolean" : whole ? "integer" : "number";
   add_words(number, row);
+  if (row->kind == FG_MEMBER_FLAG && (row->options & only_true) == only_true) {
+    add_item(number, "const", cJSON_CreateTrue());
+    return number;
+  }
   add_type(number, type, nullable);
   if (row->options & FG_MEMBER_ABOVE_0) add_item(number, "exclusiveMinimum", cJSON_CreateNumber(0));
   if (row->highest > row->lowest) {
@@ -210,6 +229,7 @@ static cJSON *make_member(schema *all, const fg_member *row) {
   case FG_MEMBER_MAP:
     return make_list(all, row);
   case FG_MEMBER_RANGE:
+  case FG_MEMBER_PAIR:
     return make_numbers(row, !(row->options & FG_MEMBER_NEVER_NULL), 2, 2);
   case FG_MEMBER_NUMBERS:
     return make_numbers(row, !(row->options & FG_MEMBER_NEVER_NULL), row->lowest, row->highest);
@@ -303,6 +323,12 @@ static void describe_row(schema *all, const fg_member *row, cJSON *properties, c
   if (row->sd_offset) put_uncertainty(row, "sd_", properties, required, optional);
   if (fg_member_has_u(row)) put_uncertainty(row, "u_", properties, required, optional);
   if (row->repeat_offset) put_uncertainty(row, "u_repeat_", properties, required, optional);
+  if (row->kind == FG_MEMBER_PAIR && row->u_offset) {
+    const fg_member u = {.words = "their standard uncertainties"};
+    char name[200];
+    snprintf(name, sizeof name, "u_%s", row->name);
+    put_property(properties, required, name, make_numbers(&u, true, 2, 2), optional);
+  }
 }
 
 static void describe_members(schema *all, const fg_members *members, cJSON *properties,
@@ -344,14 +370,7 @@ void fg_document_write_schema(const fg_document *document, FILE *out) {
   if (document->description)
     add_item(root, "description", cJSON_CreateString(document->description));
   cJSON *object = make_object(&all, document->members, NULL, false);
-  while (object->child) {
-    cJSON *child = cJSON_DetachItemViaPointer(object, object->child);
-    char *name = child->string;
-    child->string = NULL;
-    add_item(root, name, child);
-    free(name);
-  }
-  cJSON_Delete(object);
+  move_items(object, root);
   for (size_t i = 0; document->describes && document->describes[i]; i++)
     cJSON_Delete(make_element(&all, document->describes[i]));
   if (all.definitions->child)

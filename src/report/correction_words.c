@@ -7,6 +7,7 @@
 #include "core/text.h"
 #include "foilgauge/report.h"
 #include "page/page.h"
+#include "report/quantity_members.h"
 #include "report/value_words.h"
 
 static const struct {
@@ -84,33 +85,66 @@ void fg_html_disc_choice(FILE *out, const fg_disc *disc) {
   if (opened) fputs(" (± is U = 2u, rms over the discs).</p>\n", out);
 }
 
-static void write_choice(fg_json *json, const char *name, const fg_correction_choice *choice) {
-  fg_json_object(json, NULL);
-  fg_json_line(json);
-  fg_json_string(json, "quantity", name);
-  fg_json_bool(json, "moved", choice->moved);
-  fg_json_number(json, "move_mm", choice->move_mm);
-  fg_json_number(json, "u_move_mm", choice->u_move_mm);
-  fg_json_string(json, "reason", fg_correction_reason_words(choice->reason));
-  fg_json_object_end(json);
-  fg_json_line_end(json);
+static const char *find_choice_quantity(const fg_subject *subject, char *buffer) {
+  (void)buffer;
+  return dimensions[subject->index].name;
 }
 
-void fg_json_choices(fg_json *json, const fg_foil *foil) {
+static const char *quantity_choice(size_t i) {
+  return i < FG_CORRECTED ? dimensions[i].name : NULL;
+}
+
+static const char *find_choice_reason(const fg_subject *subject, char *buffer) {
+  (void)buffer;
+  return fg_correction_reason_words(((const fg_correction_choice *)subject->object)->reason);
+}
+
+static const char *reason_choice(size_t i) {
+  return i < FG_CORRECTION_LOST ? fg_correction_reason_words((fg_correction_reason)(i + 1)) : NULL;
+}
+
+static const fg_member choice_rows[] = {
+    {FG_TEXT_BY("quantity", find_choice_quantity), .choice_at = quantity_choice,
+     .options = FG_MEMBER_NEVER_NULL, .words = "dimension of a foil's bumps or of the discs"},
+    {FG_FLAG("moved", fg_correction_choice, moved), .words = "it was corrected"},
+    {FG_NUMBER_U("move_mm", fg_correction_choice, move_mm, u_move_mm),
+     .words = "of the overall radius with its sign; of bumps and discs the root mean square; u_ "
+              "with how far explanations lie from it"},
+    {FG_TEXT_BY("reason", find_choice_reason), .choice_at = reason_choice,
+     .options = FG_MEMBER_NEVER_NULL, .words = "why it was moved or left: the correction ..."},
+};
+const fg_members fg_choice_members = FG_MEMBERS_OF_FILE(choice_rows, "choice", "measure");
+
+static bool find_choice(const fg_correction_choice *choice, fg_subject *element) {
+  element->object = choice->reason == FG_CORRECTION_NONE ? NULL : choice;
+  return true;
+}
+
+bool fg_foil_choice_at(const fg_subject *list, size_t i, fg_subject *element) {
+  return i < FG_CORRECTED && find_choice(&((const fg_foil *)list->object)->choice[i], element);
+}
+
+bool fg_foil_has_choices(const fg_subject *subject) {
+  const fg_foil *foil = subject->object;
   bool any = false;
   for (int k = 0; k < FG_CORRECTED; k++)
     any = any || foil->choice[k].reason != FG_CORRECTION_NONE;
-  if (!any) return;
-  fg_json_array(json, "corrections");
-  for (int k = 0; k < FG_CORRECTED; k++)
-    if (foil->choice[k].reason != FG_CORRECTION_NONE)
-      write_choice(json, dimensions[k].name, &foil->choice[k]);
-  fg_json_array_end(json);
+  return any;
 }
 
-void fg_json_disc_choice(fg_json *json, const fg_disc *disc) {
-  if (disc->choice.reason == FG_CORRECTION_NONE) return;
-  fg_json_array(json, "corrections");
-  write_choice(json, "radius_mm", &disc->choice);
-  fg_json_array_end(json);
+bool fg_disc_choice_at(const fg_subject *list, size_t i, fg_subject *element) {
+  element->index = FG_CORRECTED_RADIUS;
+  return i == 0 && find_choice(&((const fg_disc *)list->object)->choice, element);
+}
+
+bool fg_disc_has_choice(const fg_subject *subject) {
+  return ((const fg_disc *)subject->object)->choice.reason != FG_CORRECTION_NONE;
+}
+
+static const fg_member correction_rows[] = {{FG_SAME_BY(fg_correction_quantity_at)}};
+const fg_members fg_correction_members =
+    FG_MEMBERS_OF_FILE(correction_rows, "correction", "measure");
+
+bool fg_foil_is_corrected(const fg_subject *subject) {
+  return isfinite(((const fg_foil *)subject->object)->correction.overall_radius_mm);
 }

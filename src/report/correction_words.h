@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Results of a correction, dimension by dimension: words and JSON. */
+/* Results of a correction, dimension by dimension: words and members. */
 #ifndef FG_REPORT_CORRECTION_WORDS_H
 #define FG_REPORT_CORRECTION_WORDS_H
 
-#include "core/json_writer.h"
+#include "core/member.h"
 #include "foilgauge/foil.h"
 
 enum { FG_CHOICE_WORDS = 240 };
@@ -26,8 +26,29 @@ void fg_choice_words(const char *symbol, const fg_correction_choice *choice, boo
 void fg_html_choices(FILE *out, const fg_foil *foil);
 void fg_html_disc_choice(FILE *out, const fg_disc *disc);
 
-/* Writes the member `corrections` of a foil, and of a disc; nothing where nothing was corrected. */
-void fg_json_choices(fg_json *json, const fg_foil *foil);
-void fg_json_disc_choice(fg_json *json, const fg_disc *disc);
+/* Row "corrections" of an fg_foil or an fg_disc: FG_CHOICES(fg_foil_choice_at,
+ * fg_foil_has_choices).
+ */
+extern const fg_members fg_choice_members;
+bool fg_foil_choice_at(const fg_subject *list, size_t i, fg_subject *element);
+bool fg_foil_has_choices(const fg_subject *subject);
+bool fg_disc_choice_at(const fg_subject *list, size_t i, fg_subject *element);
+bool fg_disc_has_choice(const fg_subject *subject);
+#define FG_CHOICES(choice_at, has_choices)                                                         \
+  FG_LIST_BY("corrections", choice_at, &fg_choice_members),                                        \
+      .present = (has_choices), .options = FG_MEMBER_ON_LINE, .words = FG_CHOICES_WORDS
+#define FG_CHOICES_WORDS                                                                           \
+  "what a scanner's model or a loop would correct, dimension by dimension, over all bumps of a "   \
+  "foil or all discs of a scan: a dimension is moved only where that lowers the expected error, "  \
+  "and else left as measured"
+
+/* Rows of an fg_correction, and the presence of that of a foil. Definition "correction" of
+ * measure. */
+extern const fg_members fg_correction_members;
+bool fg_foil_is_corrected(const fg_subject *subject);
+#define FG_CORRECTION_WORDS_OF_MODEL                                                               \
+  "what the scanner's model did: corrected minus as scanned, of the bumps the largest; u_ is "     \
+  "what "                                                                                          \
+  "it added, in squares, to the u_ of that value"
 
 #endif

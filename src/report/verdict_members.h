@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* "in_tolerance" and "verdict" as members of every report that judges. */
+/* "in_tolerance", "verdict" and "judgements" as members of every report that judges. */
 #ifndef FG_REPORT_VERDICT_MEMBERS_H
 #define FG_REPORT_VERDICT_MEMBERS_H
 
@@ -15,8 +15,12 @@ double fg_is_in_tolerance(fg_verdict verdict);
 /* Higher is worse. */
 int fg_verdict_rank(fg_verdict verdict);
 
-#define FG_IN_TOLERANCE_WORDS "true only where every value passes; null: nothing is judged"
-#define FG_VERDICT_WORDS      "of all values against their tolerances, with U"
+#define FG_IN_TOLERANCE_WORDS                                                                      \
+  "true only when all was measured and the verdict is pass; false for fail, cannot_tell and "      \
+  "not_measured; null when no tolerance is stated and nothing rejects it"
+#define FG_VERDICT_WORDS                                                                            \
+  "value ± 2 u inside both limits (pass), outside one, or a part is missing (fail), a limit runs " \
+  "through it (cannot_tell); of several the worst: fail, not_measured, cannot_tell, pass"
 
 /* Rows "in_tolerance" and "verdict" of an object with a field of type fg_verdict:
  * {FG_VERDICT(fg_lot_foil, verdict)}. Their subject is the verdict. */
@@ -25,5 +29,12 @@ extern const fg_members fg_verdict_members;
   .kind = FG_MEMBER_SAME, .members = &fg_verdict_members,                                          \
   .offset = offsetof(object_, field) + 0 * sizeof(_Generic(((object_ *)0)->field, fg_verdict       \
                                                            : (char)0))
+
+/* Judgements of an fg_decision inside an object. Each names its part: "bump", "beam", "disc". */
+extern const fg_members fg_judgement_members;
+#define FG_JUDGEMENTS(object_, decision_)                                                          \
+  FG_LIST("judgements", object_, decision_.judgements, decision_.count, &fg_judgement_members),    \
+      .options = FG_MEMBER_ON_LINE
+#define FG_JUDGEMENTS_WORDS "tolerances of the design, applied to values"
 
 #endif

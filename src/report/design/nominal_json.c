@@ -33,7 +33,7 @@ static const fg_member nominal_rows[] = {
      .words = "of the die, t + R - R cos(alpha / 2)"},
     {FG_NUMBER("clearance_mm", fg_nominal, clearance_mm), KNOWN, .words = "of the bearing"},
 };
-const fg_members fg_nominal_members = FG_MEMBERS(nominal_rows);
+const fg_members fg_nominal_members = FG_MEMBERS_OF_FILE(nominal_rows, "nominal", "measure");
 
 static const fg_member arc_rows[] = {
     {FG_NUMBER("arc_length_mm", fg_nominal, arc_length_mm), KNOWN, .words = "from end to end"},

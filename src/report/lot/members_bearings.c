@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Members of lot.json about bearings. */
-#include "quantity/quantity_rows.h"
 #include "report/lot/parts_members.h"
-#include "report/measure/json.h"
+#include "report/quantity_members.h"
 #include "report/verdict_members.h"
 
 static double find_pitch(const fg_subject *subject) {
@@ -52,36 +51,8 @@ static bool find_pad(const fg_subject *list, size_t i, fg_subject *element) {
   return i < ((const fg_lot_analysis *)list->whole)->layout.pads;
 }
 
-static double is_bearing_in_tolerance(const fg_subject *subject) {
-  return fg_is_in_tolerance(((const fg_lot_bearing *)subject->object)->decision.outcome.verdict);
-}
-
-static void write_bearing_judgements(fg_json *json, const char *name, const fg_subject *subject) {
-  (void)name;
-  fg_json_judgements(json, &((const fg_lot_bearing *)subject->object)->decision, "bearing");
-}
-
-/* Makes the row of a quantity of a bearing. */
-static bool make_clearance_row(size_t i, fg_member *row) {
-  size_t count;
-  const fg_quantity *of = fg_quantities(FG_QUANTITY_OF_BEARING, &count) + i;
-  if (i >= count) return false;
-  bool pair = of->kind == FG_QUANTITY_PAIR;
-  *row = (fg_member){.name = of->name,
-                     .kind = pair                            ? FG_MEMBER_NUMBERS
-                             : of->kind == FG_QUANTITY_COUNT ? FG_MEMBER_COUNT
-                                                             : FG_MEMBER_NUMBER,
-                     .offset = of->offset,
-                     .u_offset = !pair && fg_quantity_has_u(of) ? of->u_offset : 0,
-                     .lowest = pair ? 2 : 0,
-                     .highest = pair ? 2 : 0,
-                     .words = of->words};
-  return true;
-}
-
-static fg_subject find_clearance(const fg_subject *subject) {
-  const fg_lot_bearing *bearing = subject->object;
-  return (fg_subject){.object = bearing->known ? &bearing->clearance : NULL};
+static bool is_clearance_known(const fg_subject *subject) {
+  return ((const fg_lot_bearing *)subject->object)->known;
 }
 
 static const fg_member bearing_rows[] = {
@@ -94,16 +65,12 @@ static const fg_member bearing_rows[] = {
      .words = "foils fitted into the sleeve; null: no value, or a crushed bump's"},
     {FG_NUMBERS_OF("u_clearance_mm", fg_lot_bearing, u_clearance_mm, places),
      .words = "standard uncertainty of each"},
-    {FG_FLAG_BY("in_tolerance", is_bearing_in_tolerance), .options = FG_MEMBER_NULLABLE,
-     .words = FG_IN_TOLERANCE_WORDS},
-    {FG_WORD("verdict", fg_lot_bearing, decision.outcome.verdict, fg_verdict_words),
-     .words = FG_VERDICT_WORDS},
-    {FG_WRITTEN(
-         "judgements", write_bearing_judgements,
-         "{\"type\": \"array\", \"items\": " FG_REF("measure.schema.json#/$defs/judgement") "}"),
+    {FG_VERDICT(fg_lot_bearing, decision.outcome.verdict)},
+    {FG_JUDGEMENTS(fg_lot_bearing, decision),
      .words = "by the tolerances of a bearing: circularity_mm, clearance_min_mm (min_mm here), "
               "clearance_centred_min_mm (centred_min_mm), clearance_mean_mm, clearance_max_mm"},
-    {FG_SAME_BY(make_clearance_row), .part = find_clearance, .options = FG_MEMBER_LEFT_OUT},
+    {FG_SAME_BY(fg_bearing_quantity_at), .offset = offsetof(fg_lot_bearing, clearance),
+     .present = is_clearance_known},
 };
 static const fg_members bearing_members = FG_MEMBERS_DEFINED(bearing_rows, "bearing");
 

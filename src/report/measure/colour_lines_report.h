@@ -5,11 +5,12 @@
 
 #include <stdio.h>
 
-#include "core/json_writer.h"
+#include "core/member.h"
 #include "foilgauge/foil.h"
 
-/* Writes the member `colour_lines` of a scan; nothing for a gray one. */
-void fg_json_colour_lines(fg_json *json, const fg_measurement *measurement);
+/* Rows of an fg_colour_lines, and of one channel of it (an fg_colour_shift). Their subjects' whole
+ * is the measurement. */
+extern const fg_members fg_colour_lines_members, fg_colour_shift_members;
 
 /* Writes one line for the terminal; nothing for a gray scan. */
 void fg_text_colour_lines(FILE *out, const fg_measurement *measurement);

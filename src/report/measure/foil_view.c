@@ -5,6 +5,7 @@
 
 #include "core/text.h"
 #include "foilgauge/words.h"
+#include "report/measure/foil_members.h"
 
 static void head_bumps(const fg_foil *foil, FILE *out) {
   fprintf(out, "%zu bump%s, %s", foil->bump_count, fg_plural(foil->bump_count),
@@ -30,7 +31,7 @@ static const fg_foil_view bumps = {
                      "mean<br>mm</th>",
     .points_heading = FG_STATIONS_HEADING,
     .lines = FG_QUANTITY_OF_BUMP,
-    .values_json = fg_values_json_of_strip,
+    .members = &fg_foil_members,
     .design_table = fg_design_table_of_bumps,
     .foil_heading = head_bumps,
     .part_table = fg_part_table_of_bumps,
@@ -64,7 +65,7 @@ static const fg_foil_view beams = {
                      "the design, mean<br>%</th>",
     .points_heading = "scan,foil,beam,side,station,x_mm,y_mm,u_um,usable\n",
     .lines = FG_QUANTITY_OF_BEAM,
-    .values_json = fg_values_json_of_beams,
+    .members = &fg_flat_foil_members,
     .design_table = fg_design_table_of_beams,
     .foil_heading = head_beams,
     .part_table = fg_part_table_of_beams,
@@ -86,7 +87,7 @@ static const fg_foil_view discs = {
     .summary_heads = "",
     .points_heading = "scan,disc,point,x_mm,y_mm,residual_um\n",
     .lines = FG_QUANTITY_OF_DISC,
-    .values_json = fg_values_json_of_strip,
+    .members = &fg_foil_members,
     .design_table = fg_design_table_of_discs,
     .foil_heading = head_bumps,
     .part_table = fg_part_table_of_bumps,

@@ -8,7 +8,7 @@
 
 #include <stdio.h>
 
-#include "core/json_writer.h"
+#include "core/member.h"
 #include "foilgauge/design_report.h"
 #include "foilgauge/foil_kind.h"
 #include "foilgauge/report.h"
@@ -25,9 +25,7 @@ typedef struct fg_foil_view {
   const char *summary_heads;  /* HTML: columns of a page's summary */
   const char *points_heading; /* CSV of edge points */
   fg_quantity_owner lines;    /* CSV of values: a line is of this */
-  const char *own;            /* JSON object of quantities that this kind alone has; NULL */
-  /* JSON: values of a foil. */
-  void (*values_json)(fg_json *json, const fg_design *design, const fg_foil *foil);
+  const fg_members *members;  /* JSON: of a foil with its decision (measure/foil_members.h) */
   /* Terminal: a design, what a foil is, its parts (NULL: none). */
   void (*design_table)(const fg_design_report *report, FILE *out);
   void (*foil_heading)(const fg_foil *foil, FILE *out);
@@ -57,8 +55,6 @@ extern const fg_foil_view fg_foil_view_arc;
 
 /* ---- functions of rows ---- */
 
-void fg_values_json_of_strip(fg_json *json, const fg_design *design, const fg_foil *foil);
-void fg_values_json_of_beams(fg_json *json, const fg_design *design, const fg_foil *foil);
 void fg_design_table_of_bumps(const fg_design_report *report, FILE *out);
 void fg_design_table_of_beams(const fg_design_report *report, FILE *out);
 void fg_design_table_of_discs(const fg_design_report *report, FILE *out);

@@ -6,6 +6,7 @@
 #include "foilgauge/words.h"
 #include "page/tile.h"
 #include "report/design/parts.h"
+#include "report/measure/foil_members.h"
 #include "report/measure/foil_view.h"
 #include "report/measure/overlay.h"
 #include "report/measure/page_tables.h"
@@ -94,8 +95,7 @@ const fg_foil_view fg_foil_view_arc = {
     .summary_heads = "<th>radius<br>mm</th><th>angle<br>°</th>",
     .points_heading = FG_STATIONS_HEADING,
     .lines = FG_QUANTITY_OF_FOIL,
-    .own = "arc",
-    .values_json = fg_values_json_of_strip,
+    .members = &fg_foil_members,
     .design_table = design_table_of_arc,
     .foil_heading = head_arc,
     .page_heading = head_arc_on_page,

@@ -7,39 +7,59 @@
 #include "foilgauge/report.h"
 #include "foilgauge/words.h"
 #include "page/page.h"
+#include "report/design/members.h"
 
 enum { GAUGE_WORDS = 400 };
 
-static void write_stated_gauge(fg_json *json, const fg_gauge *gauge) {
-  fg_json_string(json, "kind", fg_gauge_word(gauge->kind));
-  fg_json_number(json, "width_mm", gauge->width_mm);
-  fg_json_number(json, "u_mm", gauge->u_mm);
+/* Values of a gauge that was not found. */
+static const fg_gauge_reading not_found = {
+    .measured_mm = NAN, .u_measured_mm = NAN, .level = NAN, .u_level = NAN};
+
+static fg_subject find_reading(const fg_subject *subject) {
+  const fg_gauge_reading *reading = subject->object;
+  return (fg_subject){.object = reading->found ? reading : &not_found};
 }
 
-static void write_reading(fg_json *json, const fg_gauge_reading *reading) {
-  fg_json_bool(json, "found", reading->found);
-  fg_json_bool(json, "used", reading->used);
-  fg_json_number(json, "measured_mm", reading->found ? reading->measured_mm : NAN);
-  fg_json_number(json, "u_measured_mm", reading->found ? reading->u_measured_mm : NAN);
-  if (reading->found)
-    fg_json_numbers(json, "place_mm", reading->place_mm, 4);
-  else
-    fg_json_string(json, "place_mm", NULL);
-  fg_json_number(json, "level", reading->found ? reading->level : NAN);
-  fg_json_number(json, "u_level", reading->found ? reading->u_level : NAN);
-  fg_json_string(json, "note", reading->note[0] ? reading->note : NULL);
+static fg_subject find_stated(const fg_subject *subject) {
+  const fg_measurement *m = subject->whole;
+  return (fg_subject){.object = &m->design.gauges[subject->index]};
 }
 
-void fg_json_gauges(fg_json *json, const fg_measurement *m) {
-  fg_json_array(json, "gauges");
-  for (size_t i = 0; i < m->design.gauge_count; i++) {
-    fg_json_object(json, NULL);
-    write_stated_gauge(json, &m->design.gauges[i]);
-    write_reading(json, &m->gauges[i]);
-    fg_json_object_end(json);
-  }
-  fg_json_array_end(json);
-  if (m->gauges_contradict) fg_json_bool(json, "gauges_contradict", true);
+static const double *list_gauge_place(const fg_subject *subject, double *values, size_t *count) {
+  const fg_gauge_reading *reading = subject->object;
+  (void)values;
+  *count = reading->found ? 4 : 0;
+  return reading->place_mm;
+}
+
+static const fg_member measured_rows[] = {
+    {FG_NUMBER_U("measured_mm", fg_gauge_reading, measured_mm, u_measured_mm),
+     .words = "with its edges at half of the counts, before anything was moved; u by the scatter "
+              "of its edges"},
+    {FG_NUMBERS_BY("place_mm", list_gauge_place), .lowest = 4, .highest = 4,
+     .options = FG_MEMBER_NULLABLE | FG_MEMBER_NEVER_NULL,
+     .words = "box in the scan: x, y, width, height"},
+    {FG_NUMBER_U("level", fg_gauge_reading, level, u_level),
+     .words = "level of the edges by this gauge alone, less half, share of the contrast"},
+};
+static const fg_members measured_members = FG_MEMBERS(measured_rows);
+
+static const fg_member gauge_rows[] = {
+    {FG_SAME(&fg_gauge_members), .part = find_stated, .options = FG_MEMBER_NEVER_NULL},
+    {FG_FLAG("found", fg_gauge_reading, found)},
+    {FG_FLAG("used", fg_gauge_reading, used),
+     .words = "it tells the level of the scan's edges, and they were moved to it"},
+    {FG_SAME(&measured_members), .part = find_reading, .options = FG_MEMBER_NEVER_NULL},
+    {FG_TEXT("note", fg_gauge_reading, note), .options = FG_MEMBER_EMPTY_IS_NULL,
+     .words = "why it was not found, or is not used"},
+};
+const fg_members fg_gauge_reading_members = FG_MEMBERS_OF_FILE(gauge_rows, "gauge", "measure");
+
+bool fg_gauge_reading_at(const fg_subject *list, size_t i, fg_subject *element) {
+  const fg_measurement *m = list->object;
+  element->object = &m->gauges[i];
+  element->whole = m;
+  return i < m->design.gauge_count;
 }
 
 /* "leaf of 0.1 mm: read 0.1043 ± 0.0002 mm at x 18.0, y 17.9 mm, ..." */

@@ -5,11 +5,12 @@
 
 #include <stdio.h>
 
-#include "core/json_writer.h"
+#include "core/member.h"
 #include "foilgauge/foil.h"
 
-/* Writes the member `gauges` of one scan: as stated, and as found. */
-void fg_json_gauges(fg_json *json, const fg_measurement *measurement);
+/* Rows of a gauge of a scan, as stated and as found; its elements in an fg_measurement. */
+extern const fg_members fg_gauge_reading_members;
+bool fg_gauge_reading_at(const fg_subject *list, size_t i, fg_subject *element);
 
 /* Writes a line for each, for the terminal. */
 void fg_text_gauges(FILE *out, const fg_measurement *measurement);

@@ -159,7 +159,14 @@ static void put_panel(FILE *out, const fg_design *design, const fg_foil *foil,
   fputs("<figure><h3>", out);
   fg_html_text(out, row->words);
   fputs("</h3>", out);
-  p.at = fg_plot_frame_begin(out, &(fg_plot_frame){row->words, .width = 500, .height = 258, .left = 70, .right = 10 + fg_html_limit_room(labels, count), .bottom = 48, .x = (double[]){0.4, last + 0.6}, .y = range, .y_title = row->unit[0] ? title : row->symbol, .ticks = FG_TICKS_OWN, .band = (double[]){fmax(range[0], limit->lower), fmin(range[1], limit->upper)}, .band_style = "inside"});
+  p.at = fg_plot_frame_begin(
+      out, &(fg_plot_frame){
+               row->words, .width = 500, .height = 258, .left = 70,
+               .right = 10 + fg_html_limit_room(labels, count), .bottom = 48,
+               .x = (double[]){0.4, last + 0.6}, .y = range,
+               .y_title = row->unit[0] ? title : row->symbol, .ticks = FG_TICKS_OWN,
+               .band = (double[]){fmax(range[0], limit->lower), fmin(range[1], limit->upper)},
+               .band_style = "inside"});
   fg_html_limit_lines(&p.at, labels, count);
   for (int number = 1; number <= last; number++) {
     fg_plot_x_number(&p.at, number);

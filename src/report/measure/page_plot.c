@@ -66,7 +66,10 @@ void fg_html_residuals(FILE *out, const fg_foil *foil) {
   const fg_station *stations = foil->strip.stations;
   double ends[2] = {stations[0].s_mm, stations[foil->strip.count - 1].s_mm};
   if (!(ends[1] > ends[0])) return;
-  fg_plot at = fg_plot_open(out, &(fg_plot_frame){"Residual of the midline along the foil", .height = 290, .left = 70, .top = 26, .x = ends, .y = (double[]){-limit, limit}, .y_title = "residual, µm", .x_title = "along the foil, mm"});
+  fg_plot at = fg_plot_open(
+      out, &(fg_plot_frame){"Residual of the midline along the foil", .height = 290, .left = 70,
+                            .top = 26, .x = ends, .y = (double[]){-limit, limit},
+                            .y_title = "residual, µm", .x_title = "along the foil, mm"});
   put_bump_bands(&at, foil);
   fg_plot_axes(&at);
   put_residual_strokes(&at, foil, FG_ARC_LAND, "land");

@@ -5,34 +5,52 @@
 
 #include "foilgauge/picture.h"
 #include "page/page.h"
+#include "report/flag_names.h"
 #include "report/measure/drawing.h"
 
 static double value_of(const fg_picture_state *state, const fg_picture_member *member) {
   return *(const double *)((const char *)state + member->offset);
 }
 
-static void write_finding(fg_json *json, const fg_picture_words *words) {
-  fg_json_object(json, NULL);
-  fg_json_string(json, "finding", words->name);
-  fg_json_string(json, "meaning", words->meaning);
-  fg_json_string(json, "cure", words->cure);
-  fg_json_string(json, "sane", words->sane[0] ? words->sane : NULL);
-  fg_json_string(json, "twain", words->twain[0] ? words->twain : NULL);
-  fg_json_string(json, "wia", words->wia[0] ? words->wia : NULL);
-  fg_json_object_end(json);
+/* A value of the state. */
+static bool picture_row_at(size_t i, fg_member *row) {
+  const fg_picture_member *member = fg_picture_members();
+  for (; member->name && i > 0; i--)
+    member++;
+  *row = (fg_member){.name = member->name,
+                     .kind = FG_MEMBER_NUMBER,
+                     .offset = member->offset,
+                     .words = member->words};
+  return member->name != NULL;
 }
 
-void fg_json_picture_state(fg_json *json, const fg_measurement *measurement) {
-  const fg_picture_state *state = &measurement->picture;
-  fg_json_object(json, "picture");
-  for (const fg_picture_member *member = fg_picture_members(); member->name; member++)
-    fg_json_number(json, member->name, value_of(state, member));
-  fg_json_array(json, "findings");
-  for (const fg_picture_words *words = fg_picture_finding_words(); words->name; words++)
-    if (state->findings & words->finding) write_finding(json, words);
-  fg_json_array_end(json);
-  fg_json_object_end(json);
+static bool find_finding(const fg_subject *list, size_t i, fg_subject *element) {
+  const fg_picture_words *words = &fg_picture_finding_words()[i];
+  const fg_picture_state *state = list->object;
+  element->object = state->findings & words->finding ? words : NULL;
+  return words->name != NULL;
 }
+
+static const fg_member finding_rows[] = {
+    {FG_STRING("finding", fg_picture_words, name), .choice_at = fg_finding_choice,
+     .options = FG_MEMBER_NEVER_NULL},
+    {FG_STRING("meaning", fg_picture_words, meaning), .options = FG_MEMBER_NEVER_NULL},
+    {FG_STRING("cure", fg_picture_words, cure), .options = FG_MEMBER_NEVER_NULL},
+    {FG_STRING("sane", fg_picture_words, sane), .options = FG_MEMBER_EMPTY_IS_NULL,
+     .words = "options of scanimage"},
+    {FG_STRING("twain", fg_picture_words, twain), .options = FG_MEMBER_EMPTY_IS_NULL,
+     .words = "capabilities"},
+    {FG_STRING("wia", fg_picture_words, wia), .options = FG_MEMBER_EMPTY_IS_NULL,
+     .words = "properties"},
+};
+static const fg_members finding_members = FG_MEMBERS(finding_rows);
+
+static const fg_member picture_rows[] = {
+    {FG_SAME_BY(picture_row_at)},
+    {FG_LIST_BY("findings", find_finding, &finding_members),
+     .words = "what spoils lengths, with the settings that cause it"},
+};
+const fg_members fg_picture_state_members = FG_MEMBERS_OF_FILE(picture_rows, "picture", "measure");
 
 void fg_text_picture_state(FILE *out, const fg_measurement *measurement) {
   for (const fg_picture_words *words = fg_picture_finding_words(); words->name; words++)

@@ -5,12 +5,11 @@
 
 #include <stdio.h>
 
-#include "core/json_writer.h"
+#include "core/member.h"
 #include "foilgauge/foil.h"
 
-/* Writes the member `picture` of one scan: its state, and its findings with the settings that
- * cause them. */
-void fg_json_picture_state(fg_json *json, const fg_measurement *measurement);
+/* Rows of an fg_picture_state: its values, and its findings with the settings that cause them. */
+extern const fg_members fg_picture_state_members;
 
 /* Writes a line for each finding, for the terminal; nothing without findings. */
 void fg_text_picture_state(FILE *out, const fg_measurement *measurement);

@@ -9,7 +9,7 @@
 #include "foilgauge/scan_loop.h"
 #include "page/page.h"
 #include "quantity/quantity_rows.h"
-#include "report/quantity_json.h"
+#include "report/correction_words.h"
 #include "report/value_words.h"
 
 /* ---- the effects ---- */
@@ -42,44 +42,76 @@ static fg_status effects_of(fg_context *ctx, const fg_scanner_model *model, char
   return FG_OK;
 }
 
-static void write_effect(fg_json *json, const fg_scanner_model_effect *effect) {
-  fg_json_object(json, NULL);
-  fg_json_string(json, "id", effect->id);
-  fg_json_string(json, "words", effect->words);
-  for (int side = 0; side < 2; side++) {
-    fg_json_object(json, side ? "uncertainty" : "parameters");
-    for (size_t k = 0; k < effect->parameters; k++)
-      fg_json_number(json, effect->parameter[k].name,
-                     side ? effect->parameter[k].u : effect->parameter[k].value);
-    fg_json_object_end(json);
-  }
-  fg_json_number(json, "half_range_um", effect->half_range_um);
-  fg_json_object_end(json);
+static bool find_parameter(const fg_subject *list, size_t i, fg_subject *element) {
+  const fg_scanner_model_effect *effect = list->object;
+  element->object = &effect->parameter[i];
+  return i < effect->parameters;
 }
 
+static const char *name_parameter(const fg_subject *element) {
+  return ((const fg_scan_result_parameter *)element->object)->name;
+}
+
+static const fg_member value_rows[] = {{FG_NUMBER(NULL, fg_scan_result_parameter, value)}};
+static const fg_members value_members = FG_MEMBERS(value_rows);
+static const fg_member uncertainty_rows[] = {
+    {FG_NUMBER(NULL, fg_scan_result_parameter, u), .options = FG_MEMBER_NOT_NEGATIVE}};
+static const fg_members uncertainty_members = FG_MEMBERS(uncertainty_rows);
+
+static const fg_member effect_rows[] = {
+    {FG_STRING("id", fg_scanner_model_effect, id), .options = FG_MEMBER_NEVER_NULL},
+    {FG_STRING("words", fg_scanner_model_effect, words), .options = FG_MEMBER_NEVER_NULL},
+    {FG_MAP_BY("parameters", find_parameter, name_parameter, &value_members),
+     .words = "its parameters by name"},
+    {FG_MAP_BY("uncertainty", find_parameter, name_parameter, &uncertainty_members),
+     .words = "their standard uncertainties"},
+    {FG_NUMBER("half_range_um", fg_scanner_model_effect, half_range_um),
+     .words = "how far it moves anything in the region"},
+};
+static const fg_members effect_members = FG_MEMBERS(effect_rows);
+
+static const double *list_region(const fg_subject *subject, double *values, size_t *count) {
+  const fg_scanner_model_facts *facts = subject->object;
+  memcpy(values,
+         (double[]){facts->low_mm[0], facts->low_mm[1], facts->high_mm[0], facts->high_mm[1]},
+         4 * sizeof *values);
+  *count = 4;
+  return values;
+}
+
+static const fg_member model_rows[] = {
+    {FG_STRING("path", fg_scanner_model_facts, path), .options = FG_MEMBER_NEVER_NULL},
+    {FG_STRING("sha256", fg_scanner_model_facts, sha256), .options = FG_MEMBER_NEVER_NULL,
+     .pattern = FG_SHA256_PATTERN},
+    {FG_STRING("scanner", fg_scanner_model_facts, scanner), .words = "its name; null: not said"},
+    {FG_STRING("date", fg_scanner_model_facts, date),
+     .words = "of the newest scan that it was found on; null: not said"},
+    {FG_COUNT("scans", fg_scanner_model_facts, scans), .words = "that it was found on"},
+    {FG_NUMBERS_BY("region_mm", list_region), .lowest = 4, .highest = 4,
+     .options = FG_MEMBER_NEVER_NULL,
+     .words = "of the glass, that it was found in: x, y of one corner and of the opposite one"},
+    {FG_COUNT("known_diameters", fg_scanner_model_facts, known_diameters),
+     .words = "gauges of known diameter that hold its absolute scale; 0: an error of scale equal "
+              "in x and y is not in any u_"},
+    {FG_FLAG("tied", fg_scanner_model_facts, tied),
+     .words = "other explanations did as well; every u_ holds them"},
+    {FG_ARRAY("effects", fg_scanner_model_facts, effect, effects, &effect_members),
+     .words = "what it corrects"},
+};
+const fg_members fg_scan_model_members = {.rows = model_rows,
+                                          .count = sizeof model_rows / sizeof *model_rows,
+                                          .definition = "model",
+                                          .nullable = true,
+                                          .file = "measure"};
+
+/* A model's facts live as long as they are written. */
 void fg_json_scan_model(fg_json *json, const char *name, const fg_scanner_model *model) {
   fg_scanner_model_facts facts;
-  if (!model) {
-    fg_json_string(json, name, NULL);
-    return;
-  }
-  fg_scanner_model_describe(model, &facts);
-  fg_json_object(json, name);
-  fg_json_string(json, "path", facts.path);
-  fg_json_string(json, "sha256", facts.sha256);
-  fg_json_string(json, "scanner", facts.scanner);
-  fg_json_string(json, "date", facts.date);
-  fg_json_integer(json, "scans", (int64_t)facts.scans);
-  fg_json_numbers(json, "region_mm",
-                  (double[]){facts.low_mm[0], facts.low_mm[1], facts.high_mm[0], facts.high_mm[1]},
-                  4);
-  fg_json_integer(json, "known_diameters", (int64_t)facts.known_diameters);
-  fg_json_bool(json, "tied", facts.tied);
-  fg_json_array(json, "effects");
-  for (size_t i = 0; i < facts.effects; i++)
-    write_effect(json, &facts.effect[i]);
-  fg_json_array_end(json);
-  fg_json_object_end(json);
+  const fg_scanner_model_facts *place = model ? &facts : NULL;
+  const fg_member row = {
+      .name = name, .kind = FG_MEMBER_OBJECT, .pointed = true, .members = &fg_scan_model_members};
+  if (model) fg_scanner_model_describe(model, &facts);
+  fg_member_json(json, &row, &(fg_subject){.object = &place});
 }
 
 /* ---- words ---- */
@@ -186,10 +218,9 @@ void fg_correction_largest(fg_correction *max, const fg_correction *one) {
 }
 
 void fg_json_correction(fg_json *json, const fg_correction *c) {
-  if (!isfinite(c->overall_radius_mm)) return;
-  fg_json_object(json, "correction");
-  fg_json_quantities(json, FG_QUANTITY_OF_FOIL, "correction.", &(fg_foil){.correction = *c}, true);
-  fg_json_object_end(json);
+  const fg_member row = {
+      .name = "correction", .kind = FG_MEMBER_OBJECT, .members = &fg_correction_members};
+  if (isfinite(c->overall_radius_mm)) fg_member_json(json, &row, &(fg_subject){.object = c});
 }
 
 static fg_status put_model_text(FILE *out, fg_status status, char *text) {

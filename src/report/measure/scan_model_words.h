@@ -5,7 +5,7 @@
 
 #include <stdio.h>
 
-#include "core/json_writer.h"
+#include "core/member.h"
 #include "foilgauge/report.h"
 
 struct fg_scanner_model;
@@ -13,7 +13,13 @@ struct fg_scanner_model;
 /* Returns the model that corrected the scans of a report; NULL: none. */
 const struct fg_scanner_model *fg_report_model(const fg_report *report);
 
-/* Writes the model as an object; NULL: null. */
+/* Rows of an fg_scanner_model_facts, definition "model" of measure. FG_SCAN_MODEL is a row whose
+ * function calls fg_json_scan_model, which writes the model as an object; NULL: null. */
+extern const fg_members fg_scan_model_members;
+#define FG_SCAN_MODEL(name_, function)                                                             \
+  FG_GROUP(name_, &fg_scan_model_members), .write = (function), .options = FG_MEMBER_NULLABLE,     \
+                                           .words = FG_SCAN_MODEL_WORDS
+#define FG_SCAN_MODEL_WORDS "scanner's model that every scan was corrected by; null: none"
 void fg_json_scan_model(fg_json *json, const char *name, const struct fg_scanner_model *model);
 
 enum { FG_SCALE_WORDS = 480, FG_CORRECTION_WORDS = 256 };

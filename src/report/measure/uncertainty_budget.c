@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "core/member.h"
 #include "foilgauge/words.h"
 #include "page/page.h"
 #include "quantity/quantity_rows.h"
@@ -44,74 +45,92 @@ static void add_scan_budget(line *sum, fg_quantity_owner owner, const fg_quantit
     add_object(sum, owner, row, &m->discs[d], &m->discs[d].calibrated);
 }
 
-static const fg_quantity_owner owners[] = {FG_QUANTITY_OF_FOIL, FG_QUANTITY_OF_BUMP,
-                                           FG_QUANTITY_OF_BEAM, FG_QUANTITY_OF_DISC};
+enum { OWNERS = 4 };
+static const fg_quantity_owner owners[OWNERS] = {FG_QUANTITY_OF_FOIL, FG_QUANTITY_OF_BUMP,
+                                                 FG_QUANTITY_OF_BEAM, FG_QUANTITY_OF_DISC};
 
 static double root_mean(double squares, size_t count) {
   return sqrt(fmax(0, squares) / (double)count);
 }
 
-static void write_line(fg_json *json, const fg_quantity *row, const line *sum) {
-  fg_json_object(json, NULL);
-  fg_json_line(json);
-  fg_json_string(json, "quantity", row->name);
-  fg_json_number(json, "u_statistical", root_mean(sum->all - sum->calibration, sum->count));
-  fg_json_number(json, "u_calibration", root_mean(sum->calibration, sum->count));
-  fg_json_number(json, "u", root_mean(sum->all, sum->count));
-  fg_json_object_end(json);
-  fg_json_line_end(json);
+/* Lines of a budget. */
+typedef struct budget_line {
+  const fg_quantity *row;
+  const char *name;
+  double u_statistical, u_calibration, u; /* root mean squares */
+} budget_line;
+
+typedef struct budget {
+  budget_line lines[OWNERS * FG_QUANTITY_SHOWN_MAX];
+  size_t count;
+} budget;
+
+static void add_line(budget *to, const fg_quantity *row, const line *sum) {
+  if (sum->count)
+    to->lines[to->count++] =
+        (budget_line){row, row->name, root_mean(sum->all - sum->calibration, sum->count),
+                      root_mean(sum->calibration, sum->count), root_mean(sum->all, sum->count)};
 }
 
-static void write_budget(fg_json *json, const fg_report *report, fg_quantity_owner owner) {
-  const fg_quantity *shown[FG_QUANTITY_SHOWN_MAX];
-  size_t count = fg_quantity_shown(owner, FG_QUANTITY_ON_PAGE, report->design->kind, shown);
-  for (size_t i = 0; i < count; i++) {
-    line sum = {0};
-    for (size_t s = 0; s < report->scan_count; s++)
-      if (report->scans[s].measurement)
-        add_scan_budget(&sum, owner, shown[i], report->scans[s].measurement, NULL);
-    if (sum.count) write_line(json, shown[i], &sum);
+static const fg_member line_rows[] = {
+    {FG_STRING("quantity", budget_line, name), .options = FG_MEMBER_NEVER_NULL},
+    {FG_NUMBER("u_statistical", budget_line, u_statistical)},
+    {FG_NUMBER("u_calibration", budget_line, u_calibration)},
+    {FG_NUMBER("u", budget_line, u)},
+};
+static const fg_members line_members = FG_MEMBERS(line_rows);
+
+static const fg_member budget_row = {FG_ARRAY("budget", budget, lines, count, &line_members),
+                                     .options = FG_MEMBER_ON_LINE};
+
+/* Budget of all scans of a report, where foil is NULL, or of one foil of a scan. */
+static budget find_budget(const fg_report_scan *scans, size_t scan_count, fg_foil_kind kind,
+                          const fg_foil *foil) {
+  budget all = {.count = 0};
+  for (size_t k = 0; k < OWNERS; k++) {
+    const fg_quantity *shown[FG_QUANTITY_SHOWN_MAX];
+    size_t count = fg_quantity_shown(owners[k], FG_QUANTITY_ON_PAGE, kind, shown);
+    for (size_t i = 0; i < count; i++) {
+      line sum = {0};
+      for (size_t s = 0; s < scan_count; s++)
+        if (scans[s].measurement)
+          add_scan_budget(&sum, owners[k], shown[i], scans[s].measurement, foil);
+      add_line(&all, shown[i], &sum);
+    }
   }
+  return all;
 }
 
 void fg_json_report_calibration(fg_json *json, const fg_report *report) {
   const fg_calibration *calibration = &report->design->calibration;
+  const budget all = find_budget(report->scans, report->scan_count, report->design->kind, NULL);
   if (!calibration->stated) {
     fg_json_string(json, "calibration", NULL);
     return;
   }
   fg_json_object(json, "calibration");
   fg_json_calibration_members(json, calibration);
-  fg_json_array(json, "budget");
-  for (size_t k = 0; k < sizeof owners / sizeof *owners; k++)
-    write_budget(json, report, owners[k]);
-  fg_json_array_end(json);
+  fg_member_json(json, &budget_row, &(fg_subject){.object = &all});
   fg_json_object_end(json);
 }
 
-static void put_budget_line(FILE *out, const fg_quantity *row, const line *sum) {
-  double k = FG_COVERAGE_FACTOR, all = k * root_mean(sum->all, sum->count);
-  int decimals = fg_report_decimals(row, all / k) + 1;
+static void put_budget_line(FILE *out, const budget_line *of) {
+  double k = FG_COVERAGE_FACTOR;
+  int decimals = fg_report_decimals(of->row, of->u) + 1;
   fprintf(out,
           "<tr><td>%s</td><td>%.*f</td><td>%.*f</td><td>%.*f</td><td class=\"w\">%s</td></tr>\n",
-          row->words, decimals, k * root_mean(sum->all - sum->calibration, sum->count), decimals,
-          k * root_mean(sum->calibration, sum->count), decimals, all, row->unit);
+          of->row->words, decimals, k * of->u_statistical, decimals, k * of->u_calibration,
+          decimals, k * of->u, of->row->unit);
 }
 
 void fg_html_uncertainty_budget(FILE *out, const fg_measurement *measurement, const fg_foil *foil) {
+  const fg_report_scan scan = {.measurement = measurement};
   if (!measurement->calibrated) return;
+  const budget all = find_budget(&scan, 1, measurement->design.kind, foil);
   fputs("<div class=\"scroll\"><table><thead><tr><th>U, mean</th><th>statistics</th>"
         "<th>calibration</th><th>together</th><th class=\"w\">unit</th></tr></thead>\n<tbody>\n",
         out);
-  for (size_t k = 0; k < sizeof owners / sizeof *owners; k++) {
-    const fg_quantity *shown[FG_QUANTITY_SHOWN_MAX];
-    size_t count =
-        fg_quantity_shown(owners[k], FG_QUANTITY_ON_PAGE, measurement->design.kind, shown);
-    for (size_t i = 0; i < count; i++) {
-      line sum = {0};
-      add_scan_budget(&sum, owners[k], shown[i], measurement, foil);
-      if (sum.count) put_budget_line(out, shown[i], &sum);
-    }
-  }
+  for (size_t i = 0; i < all.count; i++)
+    put_budget_line(out, &all.lines[i]);
   fputs("</tbody></table></div>\n", out);
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include <math.h>
 
-#include "report/measure/json.h"
+#include "report/measure/members.h"
 #include "report/scan_loop/members.h"
 #include "report/scan_loop/parts.h"
 
