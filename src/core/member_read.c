@@ -42,6 +42,9 @@ static void add_name(char *list, size_t size, const char *name) {
   fg_text_clip(list + used, size - used, "%s%s", used ? ", " : "", name);
 }
 
+/* A short object's members are told where it is none. */
+enum { NAMES_TOLD_MAX = 4 };
+
 static void list_names(const fg_members *members, char *list, size_t size) {
   for (size_t i = 0; i < members->count; i++) {
     const fg_member *row = &members->rows[i];
@@ -276,7 +279,10 @@ static bool is_version(const fg_members *members, const char *name) {
 fg_status fg_object_read(const fg_reading *reading, const fg_members *members, const cJSON *item,
                          void *object) {
   char known[READ_WORDS] = "";
-  if (!cJSON_IsObject(item)) return fg_reading_fail(reading, NULL, "must be an object");
+  if (!cJSON_IsObject(item)) {
+    if (members->count <= NAMES_TOLD_MAX) list_names(members, known, sizeof known);
+    return fg_reading_fail(reading, NULL, "must be an object%s%s", *known ? " with " : "", known);
+  }
   for (const cJSON *each = item->child; each; each = each->next) {
     const fg_member *row = find_row_of(members, each->string);
     FG_TRY(check_doubled(reading, item, each));

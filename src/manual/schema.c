@@ -147,6 +147,10 @@ static cJSON *make_numbers(const fg_member *row, bool nullable, double min, doub
 }
 
 static void add_choices(cJSON *object, const fg_member *row, bool nullable) {
+  if (fg_member_choice_at(row, 0) && !fg_member_choice_at(row, 1) && !nullable) {
+    add_item(object, "const", cJSON_CreateString(fg_member_choice_at(row, 0)));
+    return;
+  }
   cJSON *choices = need(cJSON_CreateArray());
   for (size_t i = 0; choice_of(row, i); i++)
     cJSON_AddItemToArray(choices, need(cJSON_CreateString(choice_of(row, i))));

@@ -83,14 +83,14 @@ refused() {
 }
 refused '"tone": "gamma"' 'tone: must be "unknown" or "linear"'
 refused '"tone": 1' 'tone: must be'
-refused '"thickness_measured": 0.1' 'must be an object with value_mm and u_mm'
-refused '"thickness_measured": {"value_mm": 0.1}' 'u_mm: is missing'
-refused '"thickness_measured": {"value_mm": 0, "u_mm": 0.001}' 'value_mm: is 0; it must be above 0, in mm'
-refused '"thickness_measured": {"value_mm": 0.1, "u_mm": 0}' 'u_mm: is 0; it must be above 0, in mm'
+refused '"thickness_measured": 0.1' 'must be an object with value_mm, u_mm'
+refused '"thickness_measured": {"value_mm": 0.1}' 'u_mm is missing'
+refused '"thickness_measured": {"value_mm": 0, "u_mm": 0.001}' 'value_mm: is 0; it must be above 0'
+refused '"thickness_measured": {"value_mm": 0.1, "u_mm": 0}' 'u_mm: is 0; it must be above 0'
 refused '"thickness_measured": {"value_mm": -0.1, "u_mm": 0.001}' 'must be above 0'
 refused '"thickness_measured": {"value_mm": "0.1", "u_mm": 0.001}' 'must be a number'
 refused '"thickness_measured": {"value_mm": 100, "u_mm": 0.5}' 'is it in mm'
-refused '"thickness_measured": {"value_mm": 0.1, "u_mm": 0.001, "U_mm": 1}' "'U_mm' is not known"
+refused '"thickness_measured": {"value_mm": 0.1, "u_mm": 0.001, "U_mm": 1}' 'U_mm: is not known; there are value_mm, u_mm'
 refused '"form": "discs", "thickness_measured": {"value_mm": 0.1, "u_mm": 0.001}' 'belongs to strips'
 
 # A strip five times as thick as the design is not silent.
