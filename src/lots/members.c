@@ -133,6 +133,7 @@ static const fg_member stat_rows[] = {
     {FG_COUNT("count", fg_index_stat, count), .words = "bumps, beams or foils", .csv = {1}},
     {STAT("mean", mean), .words = "of single values; over_design: all over the design's"},
     {STAT("sd", sd), .words = "of single values"},
+    {STAT("median", median), .words = "of single values"},
     {STAT("min", min), .words = "smallest single value"},
     {STAT("max", max), .words = "largest single value"},
     {STAT("tolerance_min", lower), .words = "null: no such limit"},

@@ -23,4 +23,7 @@ const char *fg_part_word(fg_quantity_owner owner);
 size_t fg_part_count(const fg_foil *foil, fg_quantity_owner owner);
 fg_foil_part fg_part_at(const fg_foil *foil, fg_quantity_owner owner, size_t i);
 
+/* Median radius of the fitted ones of the bumps, mm; NaN without any. */
+double fg_bump_radius_median(const fg_bump *bumps, size_t count);
+
 #endif

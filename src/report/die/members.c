@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report/die/members.h"
+#include "quantity/parts.h"
 
 #include "core/file.h"
 #include "foilgauge/die_report.h"
@@ -186,6 +187,11 @@ static const char *find_short_sum(const fg_subject *subject, char *buffer) {
   return buffer;
 }
 
+static double find_trace_median(const fg_subject *subject) {
+  const fg_die_trace *trace = subject->object;
+  return fg_bump_radius_median(trace->bumps, trace->bump_count);
+}
+
 static const fg_member trace_rows[] = {
     {FG_STRING("path", fg_die_trace, path), .options = FG_MEMBER_NEVER_NULL,
      .words = "of the trace", .page = {1, .heading = "profile", .words = true}},
@@ -206,6 +212,9 @@ static const fg_member trace_rows[] = {
      .words = "tip and datum: added to a bump's traced radius, taken off that of the lands"},
     {FG_TEXT_BY("bumps", find_bump_range), .options = FG_MEMBER_NOT_IN_JSON,
      .page = {1, .heading = "bumps"}},
+    {FG_NUMBER_BY("bump_radius_median_mm", find_trace_median),
+     .words = "median radius of the trace's bumps",
+     .page = {2, .heading = "median R,\nmm", .decimals = 4}},
     {FG_COUNT("points", fg_die_trace, points), .words = "of the file",
      .page = {2, .heading = "points"}},
     {FG_NUMBER("length_mm", fg_die_trace, length_mm), .words = "along x",

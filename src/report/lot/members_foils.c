@@ -5,6 +5,7 @@
 #include "foilgauge/foil_kind.h"
 #include "foilgauge/words.h"
 #include "page/page.h"
+#include "quantity/parts.h"
 #include "report/flag_names.h"
 #include "report/lot/members.h"
 #include "report/lot/page_parts.h"
@@ -65,6 +66,11 @@ static const char *find_worst_quantity(const fg_subject *subject, char *buffer) 
   return row ? row->name : NULL;
 }
 
+static double find_bump_median_of_foil(const fg_subject *subject) {
+  const fg_foil *foil = foil_of(subject)->foil;
+  return fg_bump_radius_median(foil->bumps, foil->bump_count);
+}
+
 static const fg_member foil_rows[] = {
     {FG_COUNT("input", fg_lot_foil, item), .words = "place of its scan in `inputs`"},
     {FG_TEXT_BY("label", find_label), .options = FG_MEMBER_NEVER_NULL,
@@ -80,6 +86,8 @@ static const fg_member foil_rows[] = {
      .csv = {3}},
     {FG_TEXT_BY("error", find_error), .options = FG_MEMBER_NOT_IN_JSON, .csv = {5}},
     {FG_TEXT_BY("defect", find_defect), .words = "what rejects the foil whatever its values are"},
+    {FG_NUMBER_BY("bump_radius_median_mm", find_bump_median_of_foil), .options = FG_MEMBER_LEFT_OUT,
+     .words = "median radius of the fitted bumps"},
     {FG_FLAG("exceeded", fg_lot_foil, exceeded),
      .words = "a value is beyond a limit by more than U"},
     {FG_NUMBER("severity", fg_lot_foil, severity),

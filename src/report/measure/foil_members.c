@@ -232,6 +232,11 @@ static bool has_arc(const fg_subject *subject) {
 
 static const char *const thickness_sources[] = {"statement", "scan", NULL};
 
+static double find_bump_median(const fg_subject *subject) {
+  const fg_foil *foil = subject->object;
+  return fg_bump_radius_median(foil->bumps, foil->bump_count);
+}
+
 static const fg_member strip_value_rows[] = {
     {FG_TEXT_BY("orientation", find_orientation), .choice_at = orientation_choice,
      .words = "which way the bump numbers rise as the scan is seen"},
@@ -250,6 +255,8 @@ static const fg_member strip_value_rows[] = {
      .present = fg_foil_is_corrected, .words = FG_CORRECTION_WORDS_OF_MODEL},
     {FG_CHOICES(fg_foil_choice_at, fg_foil_has_choices)},
     {FG_OBJECT("strip", fg_foil, strip, &strip_members), .words = "the edges as they were traced"},
+    {FG_NUMBER_BY("bump_radius_median_mm", find_bump_median), .options = FG_MEMBER_LEFT_OUT,
+     .words = "median radius of the fitted bumps"},
     {FG_LIST_BY("bumps", find_bump, &bump_members), .words = "in the order of their numbers"},
 };
 static const fg_members strip_value_members = FG_MEMBERS(strip_value_rows);
