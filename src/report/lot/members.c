@@ -251,7 +251,14 @@ static const fg_member analysis_rows[] = {
     {FG_LIST("gauge_studies", fg_lot_analysis, gauges, gauge_count, &fg_lot_gauge_members),
      .options = FG_MEMBER_ON_LINE, .words = "repeatability and reproducibility"},
 };
-static const fg_members analysis_members = FG_MEMBERS(analysis_rows);
+static const fg_members analysis_members = {
+    .rows = analysis_rows,
+    .count = sizeof analysis_rows / sizeof *analysis_rows,
+    .limits =
+        "{\"if\": {\"properties\": {\"design\": {\"properties\": {\"form\": {\"enum\": [\"arc\", "
+        "\"cantilever\"]}}}}}, \"else\": {\"required\": [\"nominal\", \"stiffness\", "
+        "\"bearing_layout\", \"bearings_assumed\", \"bearings\"]}}",
+};
 
 const fg_document fg_lot_document = {
     .file = "lot",
