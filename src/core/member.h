@@ -10,8 +10,9 @@
  *
  *   static const fg_member direction_rows[] = {
  *       {FG_NUMBER_U("gap_mm", fg_load_direction, gap.value, gap.u),
- *        .words = "free travel of the rotor", .page = {3, "gap,\nµm", .decimals = 1, .scale =
- * 1000}, .csv = {14}}, {FG_COUNT("cycles", fg_load_direction, cycles), .words = "closed loops"},
+ *        .words = "free travel of the rotor", .page = {.rank = 3, .heading = "gap,\nµm", .decimals
+ * = 1, .scale = 1000}, .csv = {.rank = 14}}, {FG_COUNT("cycles", fg_load_direction, cycles), .words
+ * = "closed loops"},
  *   };
  *   static const fg_members direction_members = FG_MEMBERS(direction_rows);
  */

@@ -23,17 +23,18 @@ static const char *find_spread_range(const fg_subject *subject, char *buffer) {
 }
 
 static const fg_member spread_rows[] = {
-    {FG_COUNT("count", fg_index_spread, count), .words = "bumps", .page = {2, "bumps"}},
+    {FG_COUNT("count", fg_index_spread, count), .words = "bumps",
+     .page = {.rank = 2, .heading = "bumps"}},
     {FG_NUMBER("mean", fg_index_spread, mean), .words = "of R / R_D",
-     .page = {2, "mean", .decimals = 4}},
+     .page = {.rank = 2, .heading = "mean", .decimals = 4}},
     {FG_NUMBER("mode", fg_index_spread, mode), .words = "where the density is highest",
-     .page = {2, "mode", .decimals = 4}},
+     .page = {.rank = 2, .heading = "mode", .decimals = 4}},
     {FG_NUMBER("relative_sd_pct", fg_index_spread, relative_sd_pct), .words = "sd over the mean",
-     .page = {2, "relative s", .decimals = 2, .unit = " %"}},
+     .page = {.rank = 2, .heading = "relative s", .decimals = 2, .unit = " %"}},
     {FG_NUMBER("min", fg_index_spread, min), .words = "smallest"},
     {FG_NUMBER("max", fg_index_spread, max), .words = "largest"},
     {FG_TEXT_BY("range", find_spread_range), .options = FG_MEMBER_NOT_IN_JSON,
-     .page = {2, "range"}},
+     .page = {.rank = 2, .heading = "range"}},
 };
 static const fg_members spread_members = FG_MEMBERS_DEFINED(spread_rows, "spread");
 #define SPREAD_WORDS "radius of the bumps over the design's"
@@ -48,8 +49,8 @@ static double find_number(const fg_subject *subject) {
 }
 
 static const fg_member lot_spread_rows[] = {
-    {FG_COUNT_BY("number", find_number), .page = {1, "no."}},
-    {FG_TEXT_BY("name", find_lot_name), .page = {1, "lot", .words = true}},
+    {FG_COUNT_BY("number", find_number), .page = {.rank = 1, .heading = "no."}},
+    {FG_TEXT_BY("name", find_lot_name), .page = {.rank = 1, .heading = "lot", .words = true}},
     {FG_SAME(&spread_members)},
 };
 const fg_members fg_index_lot_spread_members = FG_INDEX_TABLE(lot_spread_rows, NULL, NULL);
@@ -118,8 +119,8 @@ static int find_stat_verdict(const fg_subject *subject) {
 }
 
 /* Columns of the table alone: the JSON has them around the quantity. */
-#define OF_TABLE          .options = FG_MEMBER_NOT_IN_JSON, .csv = {1}
-#define STAT(name, field) FG_NUMBER(name, fg_index_stat, field), .csv = {2}
+#define OF_TABLE          .options = FG_MEMBER_NOT_IN_JSON, .csv = {.rank = 1}
+#define STAT(name, field) FG_NUMBER(name, fg_index_stat, field), .csv = {.rank = 2}
 
 static const fg_member stat_rows[] = {
     {FG_COUNT_BY("lot", find_stat_lot), OF_TABLE},
@@ -130,7 +131,7 @@ static const fg_member stat_rows[] = {
     {FG_COUNT_BY("design", find_stat_design), OF_TABLE},
     {FG_TEXT_BY("quantity", find_stat_name), OF_TABLE},
     {FG_WORD_BY("scale", find_stat_scale, fg_index_scale_words), OF_TABLE},
-    {FG_COUNT("count", fg_index_stat, count), .words = "bumps, beams or foils", .csv = {1}},
+    {FG_COUNT("count", fg_index_stat, count), .words = "bumps, beams or foils", .csv = {.rank = 1}},
     {STAT("mean", mean), .words = "of single values; over_design: all over the design's"},
     {STAT("sd", sd), .words = "of single values"},
     {STAT("median", median), .words = "of single values"},
@@ -138,7 +139,7 @@ static const fg_member stat_rows[] = {
     {STAT("max", max), .words = "largest single value"},
     {STAT("tolerance_min", lower), .words = "null: no such limit"},
     {STAT("tolerance_max", upper), .words = "null: no such limit"},
-    {FG_COUNT("foils", fg_index_stat, foils), .words = "with a value", .csv = {1}},
+    {FG_COUNT("foils", fg_index_stat, foils), .words = "with a value", .csv = {.rank = 1}},
     {STAT("foil_mean", foil_mean), .words = "of the foils' means"},
     {STAT("foil_sd", foil_sd), .words = "of the foils' means"},
     {STAT("expected_low", expected_low),
@@ -170,14 +171,15 @@ static double count_not_measured(const fg_subject *subject) {
 static const fg_member count_rows[] = {
     {FG_COUNT("scans", fg_index_lot, scans), .words = "of the lot"},
     {FG_COUNT("scans_not_measured", fg_index_lot, failed_scans), .words = "without a foil"},
-    {FG_COUNT("foils", fg_index_lot, foils), .words = "of the lot", .page = {2, "foils"}},
-    {OF_VERDICT("pass", FG_VERDICT_PASS), .words = "foils", .page = {2, "pass"}},
-    {OF_VERDICT("fail", FG_VERDICT_FAIL), .words = "foils", .page = {2, "fail"}},
+    {FG_COUNT("foils", fg_index_lot, foils), .words = "of the lot",
+     .page = {.rank = 2, .heading = "foils"}},
+    {OF_VERDICT("pass", FG_VERDICT_PASS), .words = "foils", .page = {.rank = 2, .heading = "pass"}},
+    {OF_VERDICT("fail", FG_VERDICT_FAIL), .words = "foils", .page = {.rank = 2, .heading = "fail"}},
     {OF_VERDICT("cannot_tell", FG_VERDICT_UNDECIDED), .words = "foils",
-     .page = {2, "cannot\ntell"}},
+     .page = {.rank = 2, .heading = "cannot\ntell"}},
     {OF_VERDICT("not_measured", FG_VERDICT_NOT_MEASURED), .words = "foils"},
     {FG_COUNT_BY("not_measured", count_not_measured), .options = FG_MEMBER_NOT_IN_JSON,
-     .words = "foils, and scans without a foil", .page = {2, "not\nmeasured"}},
+     .words = "foils, and scans without a foil", .page = {.rank = 2, .heading = "not\nmeasured"}},
     {OF_VERDICT("no_tolerance", FG_VERDICT_NONE), .words = "foils"},
     {FG_COUNT("exceeded", fg_index_lot, exceeded), .words = "tolerances that a foil exceeds"},
 };
@@ -204,25 +206,26 @@ static bool has_coils(const fg_subject *list) {
 
 static const fg_member read_rows[] = {
     {FG_COUNT_BY("number", find_number), .options = FG_MEMBER_NOT_IN_JSON,
-     .words = "in order of date, by which every figure is numbered", .page = {1, "no."}},
+     .words = "in order of date, by which every figure is numbered",
+     .page = {.rank = 1, .heading = "no."}},
     {FG_STRING("name", fg_index_lot, name), .options = FG_MEMBER_NEVER_NULL, .words = "of the lot",
-     .page = {1, "lot", .words = true}, .markup = fg_index_put_lot_link},
+     .page = {.rank = 1, .heading = "lot", .words = true}, .markup = fg_index_put_lot_link},
     {FG_OBJECT("date", fg_index_lot, date, &date_members), .options = FG_MEMBER_ON_LINE},
     {FG_TEXT("date", fg_index_lot, date.first), .options = FG_MEMBER_NOT_IN_JSON,
-     .page = {1, "date"}, .markup = fg_index_put_lot_date},
+     .page = {.rank = 1, .heading = "date"}, .markup = fg_index_put_lot_date},
     {FG_TEXT("version", fg_index_lot, version), .words = "of the program that measured it"},
     {FG_FLAG_BY("in_tolerance", find_lot_in_tolerance), .options = FG_MEMBER_NULLABLE,
      .words = FG_IN_TOLERANCE_WORDS},
     {FG_WORD("verdict", fg_index_lot, verdict, fg_verdict_words), .words = "that of its worst foil",
-     .page = {1, "verdict"}, .markup = fg_index_put_lot_verdict},
+     .page = {.rank = 1, .heading = "verdict"}, .markup = fg_index_put_lot_verdict},
     {FG_GROUP("counts", &count_members), .options = FG_MEMBER_ON_LINE},
     {FG_SAME(&count_members), .options = FG_MEMBER_NOT_IN_JSON},
     {FG_STRING("dies", fg_index_lot, die_names), .words = "names of its foils' dies",
-     .page = {3, "die", .words = true}, .column = has_dies},
+     .page = {.rank = 3, .heading = "die", .words = true}, .column = has_dies},
     {FG_STRING("coils", fg_index_lot, coils), .words = "names of its foils' coils",
-     .page = {3, "coil", .words = true}, .column = has_coils},
+     .page = {.rank = 3, .heading = "coil", .words = true}, .column = has_coils},
     {FG_TEXT("design_name", fg_index_lot, design.name), .words = "as the lot's design says",
-     .page = {3, "design", .words = true}, .markup = fg_index_put_lot_design},
+     .page = {.rank = 3, .heading = "design", .words = true}, .markup = fg_index_put_lot_design},
     {FG_COUNT("design_number", fg_index_lot, design_number), .lowest = 1,
      .words = "lots of one number are of one design, whatever its name and tolerances"},
     {FG_STRING("foils_unknown", fg_index_lot, foils_unknown),
@@ -309,9 +312,9 @@ static double find_die_foils(const fg_subject *subject) {
 }
 
 static const fg_member die_spread_rows[] = {
-    {FG_TEXT_BY("name", find_die_name), .page = {1, "die"}},
-    {FG_COUNT_BY("lots", find_die_lots), .page = {1, "lots"}},
-    {FG_COUNT_BY("foils", find_die_foils), .page = {1, "foils"}},
+    {FG_TEXT_BY("name", find_die_name), .page = {.rank = 1, .heading = "die"}},
+    {FG_COUNT_BY("lots", find_die_lots), .page = {.rank = 1, .heading = "lots"}},
+    {FG_COUNT_BY("foils", find_die_foils), .page = {.rank = 1, .heading = "foils"}},
     {FG_SAME(&spread_members)},
 };
 const fg_members fg_index_die_spread_members = FG_INDEX_TABLE(die_spread_rows, NULL, NULL);

@@ -77,7 +77,7 @@ static const fg_member pair_head_rows[] = {
     {FG_TEXT_BY("quantity", find_pair_quantity), .options = FG_MEMBER_NEVER_NULL,
      .words = "its name"},
     {FG_TEXT_BY("quantity", find_pair_words), .options = FG_MEMBER_NOT_IN_JSON,
-     .page = {1, "quantity", .words = true}},
+     .page = {.rank = 1, .heading = "quantity", .words = true}},
     {FG_WORD_BY("scale", find_pair_scale, fg_index_scale_words), .options = FG_MEMBER_NEVER_NULL,
      .words = FG_INDEX_SCALE_WORDS},
 };
@@ -88,16 +88,19 @@ static const fg_member pair_value_rows[] = {
     {FG_COUNT("foils_smaller", fg_index_pair, foils_b), .words = "of the smaller"},
     {FG_NUMBER_U("difference", fg_index_pair, difference, u), .words = "of the means of foils"},
     {FG_TEXT_BY("difference", find_pair_difference), .options = FG_MEMBER_NOT_IN_JSON,
-     .words = "difference of the means of foils, with its 95 % interval", .page = {3, "by (95 %)"}},
-    {FG_TEXT_BY("foils", find_pair_foils), .options = FG_MEMBER_NOT_IN_JSON, .page = {3, "foils"}},
+     .words = "difference of the means of foils, with its 95 % interval",
+     .page = {.rank = 3, .heading = "by (95 %)"}},
+    {FG_TEXT_BY("foils", find_pair_foils), .options = FG_MEMBER_NOT_IN_JSON,
+     .page = {.rank = 3, .heading = "foils"}},
     {FG_NUMBER("freedom", fg_index_pair, dof), .words = "degrees of freedom (Welch)",
-     .page = {3, "degrees of\nfreedom", .decimals = 1}},
+     .page = {.rank = 3, .heading = "degrees of\nfreedom", .decimals = 1}},
     {FG_NUMBER("low", fg_index_pair, low), .words = "of the difference's 95 % interval"},
     {FG_NUMBER("high", fg_index_pair, high), .words = "of the difference's 95 % interval"},
     {FG_NUMBER("p", fg_index_pair, p), .words = "of this test alone"},
     {FG_NUMBER("p_holm", fg_index_pair, p_holm), .words = "of all tests as one family (Holm 1979)"},
     {FG_TEXT_BY("p_holm", find_pair_p), .options = FG_MEMBER_NOT_IN_JSON,
-     .words = "p-value, all tests as one family (Holm 1979)", .page = {3, "p, Holm"}},
+     .words = "p-value, all tests as one family (Holm 1979)",
+     .page = {.rank = 3, .heading = "p, Holm"}},
     {FG_FLAG_BY("differs", find_differs), .words = "beyond chance, by p_holm"},
 };
 static const fg_members pair_value_members = FG_MEMBERS(pair_value_rows);
@@ -109,9 +112,9 @@ static const fg_member lot_pair_rows[] = {
     {FG_TEXT_BY("smaller", find_smaller_folder), .options = FG_MEMBER_NEVER_NULL,
      .words = "folder of the other"},
     {FG_TEXT_BY("larger", find_larger_lot), .options = FG_MEMBER_NOT_IN_JSON,
-     .page = {2, "larger in lot", .words = true}},
+     .page = {.rank = 2, .heading = "larger in lot", .words = true}},
     {FG_TEXT_BY("smaller", find_smaller_lot), .options = FG_MEMBER_NOT_IN_JSON,
-     .page = {2, "than in", .words = true}},
+     .page = {.rank = 2, .heading = "than in", .words = true}},
     {FG_SAME(&pair_value_members)},
 };
 const fg_members fg_index_pair_members = FG_INDEX_TABLE(lot_pair_rows, "pair", look_at_pair);
@@ -137,15 +140,16 @@ static const char *find_basis(const fg_subject *subject, char *buffer) {
 static const fg_member die_pair_rows[] = {
     {FG_SAME(&pair_head_members)},
     {FG_TEXT_BY("larger", find_larger_die), .options = FG_MEMBER_NEVER_NULL,
-     .words = "die with the larger mean", .page = {2, "larger of die", .words = true}},
+     .words = "die with the larger mean",
+     .page = {.rank = 2, .heading = "larger of die", .words = true}},
     {FG_TEXT_BY("smaller", find_smaller_die), .options = FG_MEMBER_NEVER_NULL, .words = "the other",
-     .page = {2, "than of", .words = true}},
+     .page = {.rank = 2, .heading = "than of", .words = true}},
     {FG_SAME(&pair_value_members)},
     {FG_WORD("basis", fg_index_die_pair, basis, basis_words),
      .words = "foils of both dies in the same lots; means of lots that have one of them; neither"},
     {FG_COUNT("lots", fg_index_die_pair, lots), .words = "that the comparison rests on"},
     {FG_TEXT_BY("basis", find_basis), .options = FG_MEMBER_NOT_IN_JSON,
-     .page = {4, "by what", .words = true}},
+     .page = {.rank = 4, .heading = "by what", .words = true}},
 };
 const fg_members fg_index_die_pair_members =
     FG_INDEX_TABLE(die_pair_rows, "die_pair", look_at_pair);

@@ -92,12 +92,14 @@ static const char *find_cause(const fg_subject *s, char *buffer) {
 }
 
 static const fg_member state_rows[] = {
-    {FG_TEXT_BY("quantity", find_quantity_words), .page = {1, ""}},
-    {FG_TEXT_BY("now", find_now), .page = {1, "now"}},
-    {FG_TEXT_BY("baseline", find_baseline), .page = {1, "baseline"}},
-    {FG_TEXT_BY("change", NULL), .markup = write_state_change, .page = {1, "change"}},
-    {FG_TEXT_BY("allowed", find_allowed), .page = {1, "allowed"}},
-    {FG_TEXT_BY("cause", find_cause), .page = {1, "what changes it", .words = true}},
+    {FG_TEXT_BY("quantity", find_quantity_words), .page = {.rank = 1, .heading = ""}},
+    {FG_TEXT_BY("now", find_now), .page = {.rank = 1, .heading = "now"}},
+    {FG_TEXT_BY("baseline", find_baseline), .page = {.rank = 1, .heading = "baseline"}},
+    {FG_TEXT_BY("change", NULL), .markup = write_state_change,
+     .page = {.rank = 1, .heading = "change"}},
+    {FG_TEXT_BY("allowed", find_allowed), .page = {.rank = 1, .heading = "allowed"}},
+    {FG_TEXT_BY("cause", find_cause),
+     .page = {.rank = 1, .heading = "what changes it", .words = true}},
 };
 static const fg_members state_members = FG_MEMBERS(state_rows);
 

@@ -76,11 +76,11 @@ CHANGE_TEXT(find_before, CHANGE_BEFORE, "–")
 CHANGE_TEXT(find_after, CHANGE_AFTER, "–")
 
 static const fg_member change_rows[] = {
-    {FG_TEXT_BY("at", NULL), .markup = write_change_time, .page = {1, "When"}},
-    {FG_TEXT_BY("by", find_author), .page = {1, "Who", .words = true}},
-    {FG_TEXT_BY("field", find_field), .page = {1, "What", .words = true}},
-    {FG_TEXT_BY("before", find_before), .page = {1, "Before", .words = true}},
-    {FG_TEXT_BY("after", find_after), .page = {1, "After", .words = true}},
+    {FG_TEXT_BY("at", NULL), .markup = write_change_time, .page = {.rank = 1, .heading = "When"}},
+    {FG_TEXT_BY("by", find_author), .page = {.rank = 1, .heading = "Who", .words = true}},
+    {FG_TEXT_BY("field", find_field), .page = {.rank = 1, .heading = "What", .words = true}},
+    {FG_TEXT_BY("before", find_before), .page = {.rank = 1, .heading = "Before", .words = true}},
+    {FG_TEXT_BY("after", find_after), .page = {.rank = 1, .heading = "After", .words = true}},
 };
 static const fg_members change_members = {change_rows, 5, .frame = "left"};
 

@@ -54,8 +54,9 @@ static void write_verdicts(FILE *out, const fg_subject *row) {
 }
 
 static const fg_member count_rows[] = {
-    {FG_COUNT_BY("foils", find_foils), .label = "foils", .page = {2, "Foils"}},
-    {FG_TEXT_BY("verdicts", NULL), .markup = write_verdicts, .page = {2, "Verdicts"}},
+    {FG_COUNT_BY("foils", find_foils), .label = "foils", .page = {.rank = 2, .heading = "Foils"}},
+    {FG_TEXT_BY("verdicts", NULL), .markup = write_verdicts,
+     .page = {.rank = 2, .heading = "Verdicts"}},
 };
 static const fg_members count_members = {count_rows, 2, .frame = "left rows"};
 
@@ -82,10 +83,12 @@ static const char *find_screen_class(const fg_subject *row) {
 }
 
 static const fg_member open_rows[] = {
-    {FG_TEXT_BY("lot", NULL), .markup = write_lot_link, .page = {1, "Lot"}},
+    {FG_TEXT_BY("lot", NULL), .markup = write_lot_link, .page = {.rank = 1, .heading = "Lot"}},
     {FG_SAME(&count_members)},
-    {FG_TEXT_BY("newest", NULL), .markup = write_newest, .label = "newest", .page = {3, "Newest"}},
-    {FG_TEXT_BY("close", NULL), .markup = write_close, .look = find_screen_class, .page = {3, ""}},
+    {FG_TEXT_BY("newest", NULL), .markup = write_newest, .label = "newest",
+     .page = {.rank = 3, .heading = "Newest"}},
+    {FG_TEXT_BY("close", NULL), .markup = write_close, .look = find_screen_class,
+     .page = {.rank = 3, .heading = ""}},
 };
 static const fg_members open_members = {open_rows, 4, .frame = "left rows"};
 

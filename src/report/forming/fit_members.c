@@ -82,13 +82,13 @@ static const char *find_interval_words(const fg_subject *s, char *buffer) {
 
 static const fg_member found_rows[] = {
     {FG_TEXT_BY("constant", find_constant_title), .options = FG_MEMBER_NOT_IN_JSON,
-     .page = {1, .heading = "constant"}},
+     .page = {.rank = 1, .heading = "constant"}},
     {FG_TEXT_BY("constant", find_constant_name), .options = FG_MEMBER_NEVER_NULL,
      .choice_at = constant_at, .words = "its name in the material"},
     {FG_TEXT_BY("unit", find_constant_unit), .options = FG_MEMBER_NEVER_NULL},
     {FG_NUMBER("value", fg_forming_found, value), .words = "that fits the runs best"},
     {FG_TEXT_BY("value", find_value_words), .options = FG_MEMBER_NOT_IN_JSON,
-     .page = {1, .heading = "value"}},
+     .page = {.rank = 1, .heading = "value"}},
     {FG_NUMBER("u_of_logarithm", fg_forming_found, u), .present = is_by_factors,
      .words = "standard uncertainty of its logarithm"},
     {FG_NUMBER("u", fg_forming_found, u), .present = is_by_differences,
@@ -96,7 +96,7 @@ static const fg_member found_rows[] = {
     {FG_RANGE("interval_95", fg_forming_found, interval[0], interval[1]),
      .words = "by profile likelihood; null: an end that the runs do not close"},
     {FG_TEXT_BY("interval_95", find_interval_words), .options = FG_MEMBER_NOT_IN_JSON,
-     .page = {1, .heading = "95 % interval, profile"}},
+     .page = {.rank = 1, .heading = "95 % interval, profile"}},
     {FG_FLAG("at_bound", fg_forming_found, at_bound),
      .words = "the fit ran to the end of the constant's range: its value is meaningless"},
     {FG_FLAG_BY("identified", is_identified),
@@ -122,16 +122,16 @@ static const fg_members error_members = FG_MEMBERS(error_rows);
 
 static const fg_member run_rows[] = {
     {FG_NUMBER("temperature_C", fg_forming_run_fit, temperature_C), .heading = "temperature,\n°C",
-     .page = {1, .digits = 6}, .terminal = {1, .digits = 6}},
+     .page = {.rank = 1, .digits = 6}, .terminal = {.rank = 1, .digits = 6}},
     {FG_NUMBER("duration_h", fg_forming_run_fit, duration_h), .heading = "duration,\nh",
-     .page = {1, .digits = 6}, .terminal = {1, .digits = 6}},
+     .page = {.rank = 1, .digits = 6}, .terminal = {.rank = 1, .digits = 6}},
     {FG_NUMBER("measured", fg_forming_run_fit, measured), .heading = "measured,\n%",
-     .page = {1, .decimals = 2}, .terminal = {1, .decimals = 2}},
+     .page = {.rank = 1, .decimals = 2}, .terminal = {.rank = 1, .decimals = 2}},
     {FG_NUMBER("fitted", fg_forming_run_fit, fitted), .heading = "fitted,\n%",
-     .page = {1, .decimals = 2}, .terminal = {1, .decimals = 2}},
+     .page = {.rank = 1, .decimals = 2}, .terminal = {.rank = 1, .decimals = 2}},
     {FG_NUMBER("left_out", fg_forming_run_fit, left_out),
      .words = "as the other runs alone predict it", .heading = "by the other\nruns alone, %",
-     .page = {1, .decimals = 2}, .terminal = {1, .decimals = 2}},
+     .page = {.rank = 1, .decimals = 2}, .terminal = {.rank = 1, .decimals = 2}},
 };
 const fg_members fg_forming_run_members = FG_MEMBERS(run_rows);
 

@@ -154,7 +154,8 @@ static bool make_fitted_row(size_t i, fg_member *row) {
   {                                                                                                \
     FG_NUMBER(name, fg_forming_bump, fitted.field),                                                \
         .options = FG_MEMBER_NOT_IN_JSON, .heading = (heading_),                                   \
-        .csv = {(csv_rank), .decimals = 6}, .page = {2, .decimals = (places)}, .terminal = {       \
+        .csv = {.rank = (csv_rank), .decimals = 6}, .page = {.rank = 2, .decimals = (places)},     \
+        .terminal = {                                                                              \
           2,                                                                                       \
           .decimals = (places)                                                                     \
         }                                                                                          \
@@ -162,21 +163,22 @@ static bool make_fitted_row(size_t i, fg_member *row) {
 
 static const fg_member bump_rows[] = {
     {FG_INTEGER("number", fg_forming_bump, number), .words = "of the design, from 1",
-     .heading = "bump", .csv = {1, .heading = "bump"}, .page = {1}, .terminal = {1}},
+     .heading = "bump", .csv = {.rank = 1, .heading = "bump"}, .page = {.rank = 1},
+     .terminal = {.rank = 1}},
     {FG_NUMBER("die_radius_mm", fg_forming_bump, die_radius_mm), .words = "of the die's bump",
-     .heading = "die R,\nmm", .csv = {3, .decimals = 6}, .page = {1, .decimals = 4},
-     .terminal = {1, .decimals = 4}},
+     .heading = "die R,\nmm", .csv = {.rank = 3, .decimals = 6}, .page = {.rank = 1, .decimals = 4},
+     .terminal = {.rank = 1, .decimals = 4}},
     {FG_NUMBER("die_bump_angle_deg", fg_forming_bump, die_angle_deg), .words = "of the die's bump",
-     .csv = {3, .decimals = 6}},
+     .csv = {.rank = 3, .decimals = 6}},
     {FG_NUMBER("curvature_radius_mm", fg_forming_bump, curvature_radius_mm),
-     .words = "1 over the free strip's curvature at its crown", .csv = {3, .decimals = 6}},
+     .words = "1 over the free strip's curvature at its crown", .csv = {.rank = 3, .decimals = 6}},
     {FG_SAME_BY(make_fitted_row)},
     FITTED("radius_mm", radius_mm, 2, "free R,\nmm", 4),
     FITTED("radius_error_pct", radius_error_pct, 2, "e_R,\n%", 2),
     FITTED("bump_angle_deg", bump_angle_deg, 2, "alpha,\n°", 3),
     FITTED("bump_angle_error_pct", bump_angle_error_pct, 2, "e_alpha,\n%", 2),
     {FG_NUMBER("intersection_angle_deg", fg_forming_bump, fitted.intersection_angle_deg),
-     .options = FG_MEMBER_NOT_IN_JSON, .csv = {2, .decimals = 6}},
+     .options = FG_MEMBER_NOT_IN_JSON, .csv = {.rank = 2, .decimals = 6}},
     FITTED("intersection_angle_error_pct", intersection_angle_error_pct, 2, "e_theta,\n%", 2),
     FITTED("height_mm", height_mm, 2, "h,\nmm", 4),
 };
@@ -203,11 +205,12 @@ static const double *list_stresses(const fg_subject *s, double *buffer, size_t *
 }
 
 #define PIECE_NUMBER(name, field)                                                                  \
-  FG_NUMBER(name, fg_forming_piece, field), .csv = {1, .decimals = 6}
+  FG_NUMBER(name, fg_forming_piece, field), .csv = {.rank = 1, .decimals = 6}
 static const fg_member piece_rows[] = {
     {FG_TEXT_BY("kind", find_piece_word), .choices = piece_words, .options = FG_MEMBER_NEVER_NULL,
-     .csv = {1}},
-    {FG_INTEGER("number", fg_forming_piece, number), .words = "of its bump or land", .csv = {1}},
+     .csv = {.rank = 1}},
+    {FG_INTEGER("number", fg_forming_piece, number), .words = "of its bump or land",
+     .csv = {.rank = 1}},
     {PIECE_NUMBER("start_mm", start_mm), .words = "along the midline"},
     {PIECE_NUMBER("length_mm", length_mm), .words = "along the midline"},
     {PIECE_NUMBER("curvature_die_per_mm", curvature_die),
@@ -217,11 +220,11 @@ static const fg_member piece_rows[] = {
     {PIECE_NUMBER("moment_share", share), .words = "left at the end of the schedule (rho)"},
     {FG_NUMBERS_BY("face_stress_mpa", list_stresses), .words = "bent, heated, free"},
     {FG_NUMBER("face_stress_bent_mpa", fg_forming_piece, stress_mpa[FG_FORMING_BENT]),
-     .options = FG_MEMBER_NOT_IN_JSON, .csv = {1, .decimals = 6}},
+     .options = FG_MEMBER_NOT_IN_JSON, .csv = {.rank = 1, .decimals = 6}},
     {FG_NUMBER("face_stress_heated_mpa", fg_forming_piece, stress_mpa[FG_FORMING_HEATED]),
-     .options = FG_MEMBER_NOT_IN_JSON, .csv = {1, .decimals = 6}},
+     .options = FG_MEMBER_NOT_IN_JSON, .csv = {.rank = 1, .decimals = 6}},
     {FG_NUMBER("face_stress_free_mpa", fg_forming_piece, stress_mpa[FG_FORMING_FREE]),
-     .options = FG_MEMBER_NOT_IN_JSON, .csv = {1, .decimals = 6}},
+     .options = FG_MEMBER_NOT_IN_JSON, .csv = {.rank = 1, .decimals = 6}},
 };
 static const fg_members piece_members = FG_MEMBERS(piece_rows);
 

@@ -138,16 +138,17 @@ static bool lot_has_dies(const fg_subject *list) {
 }
 
 static const fg_member part_rows[] = {
-    {FG_COUNT_BY("foil_number", find_part_foil), .csv = {1}},
-    {FG_INTEGER("bump", part_line, part.number), .csv = {1}, .column = fg_lot_has_no_beams},
-    {FG_INTEGER("beam", part_line, part.number), .csv = {1}, .column = fg_lot_has_beams},
-    {FG_TEXT("flags", part_line, flags), .csv = {1}},
-    {FG_NUMBER("normalised_stiffness", part_line, stiffness), .csv = {1},
+    {FG_COUNT_BY("foil_number", find_part_foil), .csv = {.rank = 1}},
+    {FG_INTEGER("bump", part_line, part.number), .csv = {.rank = 1}, .column = fg_lot_has_no_beams},
+    {FG_INTEGER("beam", part_line, part.number), .csv = {.rank = 1}, .column = fg_lot_has_beams},
+    {FG_TEXT("flags", part_line, flags), .csv = {.rank = 1}},
+    {FG_NUMBER("normalised_stiffness", part_line, stiffness), .csv = {.rank = 1},
      .column = fg_lot_has_no_beams},
-    {FG_NUMBER("die_radius_mm", part_line, to_die.radius_mm), .csv = {1}, .column = lot_has_dies},
+    {FG_NUMBER("die_radius_mm", part_line, to_die.radius_mm), .csv = {.rank = 1},
+     .column = lot_has_dies},
     {FG_NUMBER_U("radius_error_to_die_pct", part_line, to_die.error_pct, to_die.u_error_pct),
-     .csv = {1}, .column = lot_has_dies},
-    {FG_WORD("verdict", part_line, verdict, fg_verdict_words), .csv = {1}},
+     .csv = {.rank = 1}, .column = lot_has_dies},
+    {FG_WORD("verdict", part_line, verdict, fg_verdict_words), .csv = {.rank = 1}},
 };
 static const fg_members part_members = FG_MEMBERS(part_rows);
 

@@ -45,21 +45,22 @@ static const char *const foils_by_words[] = {FG_ASSEMBLY_BY_BOOTSTRAP, FG_ASSEMB
 static const fg_member share_rows[] = {
     {FG_COUNT("count", fg_assembly_share, count), .words = "bearings"},
     {FG_NUMBER("share", fg_assembly_share, share), .words = "of the bearings drawn",
-     .page = {2, .heading = "drawn", .decimals = 1, .scale = 100}},
+     .page = {.rank = 2, .heading = "drawn", .decimals = 1, .scale = 100}},
     {FG_NUMBER("draws_low", fg_assembly_share, draws_low),
      .words = "by the number of draws: Clopper and Pearson, at the recipe's confidence",
-     .page = {2, .heading = "by number\nof draws"}, .markup = put_by_draws},
+     .page = {.rank = 2, .heading = "by number\nof draws"}, .markup = put_by_draws},
     {FG_NUMBER("draws_high", fg_assembly_share, draws_high)},
     {FG_NUMBER("foils_low", fg_assembly_share, foils_low),
      .words = "by the number of foils: Clopper and Pearson of as many independent bearings as "
               "these foils are worth",
-     .page = {2, .heading = "by number\nof foils"}, .markup = put_by_foils},
+     .page = {.rank = 2, .heading = "by number\nof foils"}, .markup = put_by_foils},
     {FG_NUMBER("foils_high", fg_assembly_share, foils_high)},
     {FG_STRING("foils_by", fg_assembly_share, foils_by), .choices = foils_by_words,
      .words = "where the number of independent bearings is from: bootstrap over foils, or, where "
               "that shows nothing, foils / pads"},
     {FG_NUMBER("surely", fg_assembly_share, surely), .words = "share whose value ± U lies within",
-     .page = {2, .heading = "by measurement\nsurely … possibly"}, .markup = put_by_measurement},
+     .page = {.rank = 2, .heading = "by measurement\nsurely … possibly"},
+     .markup = put_by_measurement},
     {FG_NUMBER("possibly", fg_assembly_share, possibly),
      .words = "share that is not outside by more than U"},
 };
@@ -158,11 +159,11 @@ static const fg_member change_rows[] = {
     {FG_STRING("change", fg_lot_change, name), .choices = change_names,
      .options = FG_MEMBER_NEVER_NULL},
     {FG_STRING("words", fg_lot_change, words), .options = FG_MEMBER_NEVER_NULL,
-     .page = {1, .heading = "the same lot with", .words = true}},
+     .page = {.rank = 1, .heading = "the same lot with", .words = true}},
     {FG_NUMBER("share", fg_lot_change, share), .words = "of the bearings that would assemble",
-     .page = {1, .heading = "assemble, %", .decimals = 1, .scale = 100}},
+     .page = {.rank = 1, .heading = "assemble, %", .decimals = 1, .scale = 100}},
     {FG_NUMBER("gain", fg_lot_change, gain), .words = "over the lot as it is",
-     .page = {1, .heading = "change"}, .markup = put_gain},
+     .page = {.rank = 1, .heading = "change"}, .markup = put_gain},
     {FG_FLAG("clear", fg_lot_change, clear), .words = "more than twice the scatter of the draws"},
 };
 const fg_members fg_lot_change_members = FG_MEMBERS(change_rows);

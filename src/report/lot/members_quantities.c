@@ -96,15 +96,15 @@ static const char *find_state(const fg_subject *subject, char *buffer) {
 #define RATIO(name, field, heading_, show_, words_)                                                \
   {                                                                                                \
     FG_OBJECT(name, fg_lot_quantity, capability.field, &ratio_members),                            \
-        .options = FG_MEMBER_ON_LINE, .words = (words_), .page = {3, .heading = (heading_)},       \
-        .markup = (show_)                                                                          \
+        .options = FG_MEMBER_ON_LINE, .words = (words_),                                           \
+        .page = {.rank = 3, .heading = (heading_)}, .markup = (show_)                              \
   }
 
 static const fg_member capability_rows[] = {
     {FG_TEXT_BY("quantity", find_quantity_words), .options = FG_MEMBER_NOT_IN_JSON,
-     .page = {1, .heading = "quantity", .words = true}},
+     .page = {.rank = 1, .heading = "quantity", .words = true}},
     {FG_TEXT_BY("tolerance", find_unit), .options = FG_MEMBER_NOT_IN_JSON, .markup = show_tolerance,
-     .page = {2, .heading = "tolerance"}},
+     .page = {.rank = 2, .heading = "tolerance"}},
     {FG_NUMBER_BY("min", find_lower), .words = "null: no lower limit"},
     {FG_NUMBER_BY("max", find_upper), .words = "null: no upper limit"},
     {FG_FLAG("stable", fg_lot_quantity, capability.stable),
@@ -123,11 +123,11 @@ static const fg_member capability_rows[] = {
      .words = "pp by the quantile method"},
     {FG_NUMBER("ppk_quantile", fg_lot_quantity, capability.quantile_pk),
      .words = "ppk by the quantile method", .markup = show_quantile_ppk,
-     .page = {3, .heading = "Ppk by\nquantiles"}},
+     .page = {.rank = 3, .heading = "Ppk by\nquantiles"}},
     {FG_NUMBERS("quantiles", fg_lot_quantity, capability.quantile),
      .words = "X0.135, X50 and X99.865 % of the kernel density"},
     {FG_TEXT_BY("state", find_state), .options = FG_MEMBER_NOT_IN_JSON,
-     .page = {4, .heading = "", .words = true}},
+     .page = {.rank = 4, .heading = "", .words = true}},
 };
 const fg_members fg_lot_capability_members = FG_MEMBERS_DEFINED(capability_rows, "capability");
 
@@ -234,26 +234,27 @@ static const char *look_at_runs(const fg_subject *subject) {
 #define VALUE(name, field, heading_, words_)                                                       \
   {                                                                                                \
     FG_NUMBER(name, fg_lot_quantity, field),                                                       \
-        .words = (words_), .page = {3, .heading = (heading_)}, .column = is_values_table,          \
+        .words = (words_), .page = {.rank = 3, .heading = (heading_)}, .column = is_values_table,  \
         .decimals_by = find_value_decimals                                                         \
   }
 /* Shown as U = 2 u. */
-#define MEAN_U(name, field, rank, heading_, words_)                                                \
+#define MEAN_U(name, field, rank_, heading_, words_)                                               \
   {                                                                                                \
     FG_NUMBER(name, fg_lot_quantity, mean_u.field),                                                \
-        .words = (words_), .page = {rank, .heading = (heading_), .scale = FG_COVERAGE_FACTOR},     \
+        .words = (words_),                                                                         \
+        .page = {.rank = rank_, .heading = (heading_), .scale = FG_COVERAGE_FACTOR},               \
         .column = is_mean_u_table, .decimals_by = find_u_decimals                                  \
   }
 
 static const fg_member quantity_rows[] = {
     {FG_TEXT_BY("quantity", find_quantity_words), .options = FG_MEMBER_NOT_IN_JSON,
-     .page = {1, .heading = "quantity", .words = true}, .column = is_values_table},
+     .page = {.rank = 1, .heading = "quantity", .words = true}, .column = is_values_table},
     {FG_TEXT_BY("quantity", find_quantity_words), .options = FG_MEMBER_NOT_IN_JSON,
-     .page = {1, .heading = "U of the mean", .words = true}, .column = is_mean_u_table},
+     .page = {.rank = 1, .heading = "U of the mean", .words = true}, .column = is_mean_u_table},
     {FG_TEXT_BY("unit", find_unit), .options = FG_MEMBER_NOT_IN_JSON,
-     .page = {1, .heading = "unit"}},
+     .page = {.rank = 1, .heading = "unit"}},
     {FG_COUNT("count", fg_lot_quantity, count), .words = "known values",
-     .page = {2, .heading = "n"}, .column = is_values_table},
+     .page = {.rank = 2, .heading = "n"}, .column = is_values_table},
     VALUE("mean", mean, "mean", NULL),
     VALUE("sd", sd, "s", "standard deviation of the values"),
     MEAN_U("u_mean", u, 4, "together",
@@ -276,7 +277,7 @@ static const fg_member quantity_rows[] = {
     {FG_FLAG("stable", fg_lot_quantity, stable), .present = has_chart,
      .words = "no signal on the charts of individuals and deviations"},
     {FG_TEXT_BY("runs", find_runs), .options = FG_MEMBER_NOT_IN_JSON, .look = look_at_runs,
-     .page = {4, .heading = "runs"}, .column = is_values_table},
+     .page = {.rank = 4, .heading = "runs"}, .column = is_values_table},
     {FG_SAME(&fg_lot_cause_members), .present = has_chart},
     {FG_OBJECT("means", fg_lot_quantity, means, &chart_members), .present = has_subgroups,
      .words = "chart of subgroups: a foil's parts"},
@@ -362,13 +363,13 @@ static double find_whole_categories(const fg_subject *subject) {
 static const fg_member gauge_rows[] = {
     {FG_TEXT_BY("quantity", find_gauge_name), .options = FG_MEMBER_NEVER_NULL},
     {FG_TEXT_BY("quantity", find_gauge_words), .options = FG_MEMBER_NOT_IN_JSON,
-     .page = {1, .heading = "quantity", .words = true}},
+     .page = {.rank = 1, .heading = "quantity", .words = true}},
     {FG_INTEGER("bump", fg_lot_gauge, number), .options = FG_MEMBER_NOT_NEGATIVE,
      .present = fg_lot_has_no_beams, .words = "its number; 0: the whole foil",
-     .page = {2, .heading = "bump"}, .column = fg_lot_has_no_beams},
+     .page = {.rank = 2, .heading = "bump"}, .column = fg_lot_has_no_beams},
     {FG_INTEGER("beam", fg_lot_gauge, number), .options = FG_MEMBER_NOT_NEGATIVE,
      .present = fg_lot_has_beams, .words = "of a cantilever, instead of bump",
-     .page = {2, .heading = "beam"}, .column = fg_lot_has_beams},
+     .page = {.rank = 2, .heading = "beam"}, .column = fg_lot_has_beams},
     {FG_COUNT("parts", fg_lot_gauge, study.parts)},
     {FG_COUNT("operators", fg_lot_gauge, study.operators)},
     {FG_COUNT("trials", fg_lot_gauge, study.trials), .words = "of each operator at each part"},
@@ -380,7 +381,8 @@ static const fg_member gauge_rows[] = {
     {FG_NUMBER("distinct_categories", fg_lot_gauge, study.distinct_categories),
      .words = "1.41 part / grr"},
     {FG_COUNT_BY("categories", find_whole_categories), .options = FG_MEMBER_NOT_IN_JSON,
-     .words = "classes of parts that the gauge tells apart", .page = {4, .heading = "categories"}},
+     .words = "classes of parts that the gauge tells apart",
+     .page = {.rank = 4, .heading = "categories"}},
     {FG_NUMBER("p_interaction", fg_lot_gauge, study.p_interaction),
      .words = "of no interaction of operator and part"},
 };

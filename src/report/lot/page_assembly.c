@@ -137,10 +137,10 @@ static const char *find_share_words(const fg_subject *subject, char *buffer) {
 
 static const fg_member share_line_rows[] = {
     {FG_TEXT_BY("of", find_share_words),
-     .page = {1, .heading = "share of the bearings drawn, %", .words = true}},
+     .page = {.rank = 1, .heading = "share of the bearings drawn, %", .words = true}},
     {FG_SAME(&fg_lot_assembly_share_members)},
     {FG_NUMBER("design", share_line, design),
-     .page = {3, .heading = "at design", .decimals = 1, .scale = 100}},
+     .page = {.rank = 3, .heading = "at design", .decimals = 1, .scale = 100}},
 };
 
 static const char *look_at_share_line(const fg_subject *element) {

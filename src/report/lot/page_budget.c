@@ -23,11 +23,11 @@ static double find_spread_alone(const fg_subject *subject) {
 }
 
 static const fg_member budget_line_rows[] = {
-    {FG_STRING("cause", budget_line, cause), .page = {1, .heading = "cause"}},
+    {FG_STRING("cause", budget_line, cause), .page = {.rank = 1, .heading = "cause"}},
     {FG_SAME(&fg_lot_budget_term_members)},
     {FG_NUMBER_BY("alone_pct", find_spread_alone),
      .words = "spread of the stiffness from this cause alone",
-     .page = {3, .heading = "alone gives, %", .digits = 3}},
+     .page = {.rank = 3, .heading = "alone gives, %", .digits = 3}},
 };
 
 static const char *look_at_budget_line(const fg_subject *element) {

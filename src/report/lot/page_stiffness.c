@@ -12,7 +12,7 @@ typedef struct spread_line {
 } spread_line;
 
 static const fg_member spread_line_rows[] = {
-    {FG_STRING("of", spread_line, title), .page = {1, .heading = "over the design's"}},
+    {FG_STRING("of", spread_line, title), .page = {.rank = 1, .heading = "over the design's"}},
     {FG_SAME(&fg_lot_spread_members)},
 };
 static const fg_members spread_line_members = FG_MEMBERS(spread_line_rows);

@@ -12,7 +12,8 @@
   }
 
 static const fg_member spread_rows[] = {
-    {FG_COUNT("count", fg_lot_spread, count), .words = "values", .page = {2, .heading = "n"}},
+    {FG_COUNT("count", fg_lot_spread, count), .words = "values",
+     .page = {.rank = 2, .heading = "n"}},
     SPREAD_VALUE(mean, "mean", NULL),
     SPREAD_VALUE(mode, "mode", "of the kernel density"),
     {FG_NUMBER("sd", fg_lot_spread, sd), .words = "standard deviation"},
@@ -71,16 +72,16 @@ static const fg_members model_members = FG_MEMBERS(model_rows);
 static const fg_member term_rows[] = {
     {FG_NUMBER("relative_sd_pct", fg_lot_budget_term, spread_pct),
      .words = "relative sd of the cause over the bumps",
-     .page = {2, .heading = "varies by, %", .digits = 3}},
+     .page = {.rank = 2, .heading = "varies by, %", .digits = 3}},
     {FG_NUMBER("sensitivity", fg_lot_budget_term, sensitivity),
      .words = "percent of stiffness per percent of the cause",
-     .page = {2, .heading = "% of stiffness\nper %", .decimals = 2, .plus = true}},
+     .page = {.rank = 2, .heading = "% of stiffness\nper %", .decimals = 2, .plus = true}},
     {FG_NUMBER("variance_pct2", fg_lot_budget_term, variance_pct2),
      .words = "variance of the stiffness from it"},
     {FG_NUMBER("share_pct", fg_lot_budget_term, share_pct),
      .words = "of the observed variance, 0 to 100: averaged over the orders of the causes "
               "(Lindeman, Merenda and Gold 1980)",
-     .page = {4, .heading = "share of the\nvariance, %", .decimals = 1}},
+     .page = {.rank = 4, .heading = "share of the\nvariance, %", .decimals = 1}},
 };
 const fg_members fg_lot_budget_term_members = FG_MEMBERS_DEFINED(term_rows, "budget_term");
 

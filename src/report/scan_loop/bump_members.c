@@ -69,22 +69,22 @@ static const char *find_response_model(const fg_subject *s, char *buffer) {
 static const fg_member response_rows[] = {
     {FG_SAME(&fact_members), .part = find_response_facts, .options = FG_MEMBER_NEVER_NULL},
     {FG_TEXT_BY("response", find_response_title), .options = FG_MEMBER_NOT_IN_JSON,
-     .page = {1, "rms about the declared model"}},
+     .page = {.rank = 1, .heading = "rms about the declared model"}},
     {FG_TEXT_BY("model", find_response_model), .options = FG_MEMBER_NOT_IN_JSON,
-     .page = {1, "model", .words = true}},
+     .page = {.rank = 1, .heading = "model", .words = true}},
     {FG_NUMBER("rms_before", fg_scan_result_bump_error, rms[0]),
      .words = "about the declared model; null where too few bumps were measured",
-     .page = {1, "before", .digits = 3}},
+     .page = {.rank = 1, .heading = "before", .digits = 3}},
     {FG_NUMBER("rms_after", fg_scan_result_bump_error, rms[1]), .words = "with what was found",
-     .page = {1, "after", .digits = 3}},
+     .page = {.rank = 1, .heading = "after", .digits = 3}},
     {FG_NUMBER("held_out_rms_before", fg_scan_result_bump_error, held_out_rms[0]),
      .words =
          "of scans kept aside; without, cross-fitted as tables are, where what was found first is "
          "what stands; without a finding rms_before. Heights follow from both others: null without "
          "scans kept aside",
-     .page = {1, "took no part:\nbefore", .digits = 3}},
+     .page = {.rank = 1, .heading = "took no part:\nbefore", .digits = 3}},
     {FG_NUMBER("held_out_rms_after", fg_scan_result_bump_error, held_out_rms[1]),
-     .words = "the same with what was found", .page = {1, "after", .digits = 3}},
+     .words = "the same with what was found", .page = {.rank = 1, .heading = "after", .digits = 3}},
 };
 const fg_members fg_scan_response_members = FG_MEMBERS(response_rows);
 

@@ -66,17 +66,17 @@ static const char *find_role(const fg_subject *s, char *buffer) {
 
 static const fg_member input_rows[] = {
     {FG_TEXT_BY("path", find_scan_path), .options = FG_MEMBER_NEVER_NULL, .look = look_at_path,
-     .page = {1, "input"}},
+     .page = {.rank = 1, .heading = "input"}},
     {FG_TEXT_BY("sha256", find_scan_sha256), .options = FG_MEMBER_NEVER_NULL,
      .pattern = "^[0-9a-f]{64}$", .markup = put_short_sha256,
-     .page = {1, "SHA-256", .words = true}},
+     .page = {.rank = 1, .heading = "SHA-256", .words = true}},
     {FG_TEXT_BY("dpi", find_dpi_words), .options = FG_MEMBER_NOT_IN_JSON,
-     .page = {1, "dpi", .words = true}},
+     .page = {.rank = 1, .heading = "dpi", .words = true}},
     {FG_TEXT_BY("parts", find_parts_words), .options = FG_MEMBER_NOT_IN_JSON,
-     .page = {1, "shows", .words = true}},
+     .page = {.rank = 1, .heading = "shows", .words = true}},
     {FG_FLAG("hold_out", fg_scan_result_scan, hold_out), .words = "the scan only confirms"},
     {FG_TEXT_BY("role", find_role), .options = FG_MEMBER_NOT_IN_JSON,
-     .page = {1, "role", .words = true}},
+     .page = {.rank = 1, .heading = "role", .words = true}},
 };
 const fg_members fg_scan_input_members = FG_MEMBERS(input_rows);
 

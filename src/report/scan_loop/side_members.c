@@ -78,7 +78,7 @@ static const fg_members disc_members = FG_MEMBERS(disc_rows);
 
 static const fg_member side_rows[] = {
     {FG_NUMBER("rms", fg_scan_loop_error, rms), .words = "of the edge rows", .heading = "rms",
-     .page = {1}},
+     .page = {.rank = 1}},
     {FG_NUMBER("held_out_rms", fg_scan_loop_error, held_out_rms),
      .words =
          "of scans kept aside; without, cross-fitted: bumps (discs; where a curve over a place was "
@@ -86,13 +86,14 @@ static const fg_member side_rows[] = {
          "and what it finds then is taken out of that fold, with the geometry fitted to all rows. "
          "Before nothing but the geometry is fitted. Where nothing was found it is rms; null where "
          "bumps are too few",
-     .column = is_held_out_apart, .page = {2}},
-    {FG_NUMBER("robust_sd", fg_scan_loop_error, robust_sd), .heading = "robust sd", .page = {1}},
+     .column = is_held_out_apart, .page = {.rank = 2}},
+    {FG_NUMBER("robust_sd", fg_scan_loop_error, robust_sd), .heading = "robust sd",
+     .page = {.rank = 1}},
     {FG_NUMBER("p95", fg_scan_loop_error, p95), .words = "of the size of the residuals",
-     .heading = "95th percentile", .page = {1}},
-    {FG_NUMBER("maximum", fg_scan_loop_error, maximum), .heading = "maximum", .page = {1}},
+     .heading = "95th percentile", .page = {.rank = 1}},
+    {FG_NUMBER("maximum", fg_scan_loop_error, maximum), .heading = "maximum", .page = {.rank = 1}},
     {FG_NUMBER_BY("half_width", find_side_width), .options = FG_MEMBER_NOT_IN_JSON,
-     .heading = "half the width, rms", .column = is_of_width, .page = {3}},
+     .heading = "half the width, rms", .column = is_of_width, .page = {.rank = 3}},
     {FG_GROUP("half_width", &side_width_members), .present = is_of_width,
      .words = "only where an effect of the strip's width is claimed: half the width about its mean "
               "over every view, without and with the scanner's stretch and what is claimed"},
@@ -151,12 +152,14 @@ static const char *find_words_after(const fg_subject *error, char *buffer) {
 }
 
 static const fg_member error_rows[] = {
-    {FG_TEXT_BY("error", find_error_name), .page = {1, "error"},
-     .terminal = {1, "errors of the edge rows, um", .words = true}},
-    {FG_TEXT_BY("before", find_words_before), .page = {1, "before"}},
-    {FG_TEXT_BY("after", find_words_after), .page = {1, "after"}},
-    {FG_NUMBER_BY("before", find_error_before), .terminal = {1, "before", .digits = 4}},
-    {FG_NUMBER_BY("after", find_error_after), .terminal = {1, "after", .digits = 4}},
-    {FG_NUMBER_BY("ratio", find_error_ratio), .page = {1, "ratio", .digits = 3}},
+    {FG_TEXT_BY("error", find_error_name), .page = {.rank = 1, .heading = "error"},
+     .terminal = {.rank = 1, .heading = "errors of the edge rows, um", .words = true}},
+    {FG_TEXT_BY("before", find_words_before), .page = {.rank = 1, .heading = "before"}},
+    {FG_TEXT_BY("after", find_words_after), .page = {.rank = 1, .heading = "after"}},
+    {FG_NUMBER_BY("before", find_error_before),
+     .terminal = {.rank = 1, .heading = "before", .digits = 4}},
+    {FG_NUMBER_BY("after", find_error_after),
+     .terminal = {.rank = 1, .heading = "after", .digits = 4}},
+    {FG_NUMBER_BY("ratio", find_error_ratio), .page = {.rank = 1, .heading = "ratio", .digits = 3}},
 };
 const fg_members fg_scan_error_members = FG_MEMBERS(error_rows);

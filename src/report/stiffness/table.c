@@ -42,8 +42,8 @@ fg_stiffness_of_design fg_stiffness_find_of_design(const fg_design *design,
 /* A column of percent of stiffness per percent of a parameter. */
 #define SENSITIVITY(name, heading_, symbol)                                                        \
   FG_NUMBER(#name, fg_arch_sensitivity, name),                                                     \
-      .page = {3, .heading = "% per %\nof " heading_, .decimals = 2, .plus = true},                \
-      .terminal = {3, .heading = (symbol), .decimals = 2, .plus = true}
+      .page = {.rank = 3, .heading = "% per %\nof " heading_, .decimals = 2, .plus = true},        \
+      .terminal = {.rank = 3, .heading = (symbol), .decimals = 2, .plus = true}
 
 static const fg_member sensitivity_rows[] = {
     {SENSITIVITY(radius, "radius\nalone", "R"),
@@ -58,18 +58,19 @@ const fg_members fg_sensitivity_members =
 
 static const fg_member result_rows[] = {
     {FG_STRING("model", fg_stiffness_result, title), .options = FG_MEMBER_NOT_IN_JSON,
-     .page = {1, .heading = "model", .words = true}, .terminal = {1, .words = true}},
+     .page = {.rank = 1, .heading = "model", .words = true},
+     .terminal = {.rank = 1, .words = true}},
     {FG_STRING("bump", fg_stiffness_result, bump), .options = FG_MEMBER_NOT_IN_JSON,
-     .page = {1, .heading = "bump", .words = true}},
+     .page = {.rank = 1, .heading = "bump", .words = true}},
     {FG_NUMBER("stiffness_n_mm2", fg_stiffness_result, stiffness_n_mm2),
      .words = "per bump and mm of width",
-     .page = {2, .heading = "K per mm\nof width,\nN/mm²", .digits = 4},
-     .terminal = {2, .heading = "N/mm2", .digits = 4}},
+     .page = {.rank = 2, .heading = "K per mm\nof width,\nN/mm²", .digits = 4},
+     .terminal = {.rank = 2, .heading = "N/mm2", .digits = 4}},
     {FG_NUMBER("per_area_n_mm3", fg_stiffness_result, per_area_n_mm3), .words = "over the pitch",
-     .page = {2, .heading = "per area,\nN/mm³", .digits = 3},
-     .terminal = {2, .heading = "N/mm3", .digits = 4}},
+     .page = {.rank = 2, .heading = "per area,\nN/mm³", .digits = 3},
+     .terminal = {.rank = 2, .heading = "N/mm3", .digits = 4}},
     {FG_NUMBER("over_arch", fg_stiffness_result, over_arch), .words = "over the arch's",
-     .page = {2, .heading = "over\nthe arch", .digits = 3}},
+     .page = {.rank = 2, .heading = "over\nthe arch", .digits = 3}},
     {FG_OBJECT("sensitivity", fg_stiffness_result, sensitivity, &fg_sensitivity_members),
      .options = FG_MEMBER_ON_LINE},
     {FG_SAME(&fg_sensitivity_members), .options = FG_MEMBER_NOT_IN_JSON},

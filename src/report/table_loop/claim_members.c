@@ -172,7 +172,7 @@ static const char *const confirmations[] = {"none kept aside", "not contradicted
   { rank_, .heading = "p", .digits = 2, .min = 1e-12 }
 #define ALIASES_COLUMN                                                                             \
   .name = "aliases", .kind = FG_MEMBER_STRING, .options = FG_MEMBER_NOT_IN_JSON,                   \
-  .page = {5, .heading = "could also be", .words = true}, .column = has_any_alias
+  .page = {.rank = 5, .heading = "could also be", .words = true}, .column = has_any_alias
 
 /* Words first, the id small. */
 static void put_effect_name(FILE *out, const char *words, const char *id) {
@@ -222,9 +222,9 @@ static const char *look_at_claim(const fg_subject *claim) {
 
 static const fg_member claim_rows[] = {
     {FG_TEXT_BY("effect", find_claim_words), .options = FG_MEMBER_NOT_IN_JSON,
-     .page = {1, .heading = "effect", .words = true}, .markup = put_claim_name},
+     .page = {.rank = 1, .heading = "effect", .words = true}, .markup = put_claim_name},
     {FG_TEXT_BY("size", find_claim_size), .options = FG_MEMBER_NOT_IN_JSON,
-     .page = {3, .heading = "difference, or what\nwould have shown", .words = true}},
+     .page = {.rank = 3, .heading = "difference, or what\nwould have shown", .words = true}},
     {ALIASES_COLUMN, .markup = put_aliases},
     {FG_TEXT_BY("id", find_claim_id), .options = FG_MEMBER_NEVER_NULL, .words = "effect"},
     {FG_TEXT("name", fg_loop_claim, name), .words = "effect with its columns"},
@@ -232,7 +232,7 @@ static const fg_member claim_rows[] = {
      .words = "kind of the rows"},
     {FG_WORD("verdict", fg_loop_claim, verdict, claimed),
      .words = "tied: the data cannot tell it from those of alias_class",
-     .page = {2, .heading = "verdict", .words = true}, .look = look_at_claim},
+     .page = {.rank = 2, .heading = "verdict", .words = true}, .look = look_at_claim},
     {FG_TEXTS_BY("coordinates", claim_coordinate_at), .words = "columns that it acts on"},
     {FG_ARRAY("rows", fg_loop_claim, candidate.row, candidate.rows, &fg_loop_row_members),
      .present = is_of_rows, .words = "of wrong or exchanged responses"},
@@ -310,13 +310,14 @@ static const char *find_no_alias(const fg_subject *rejected, char *buffer) {
 
 static const fg_member rejected_rows[] = {
     {FG_TEXT_BY("effect", find_rejected_words), .options = FG_MEMBER_NOT_IN_JSON,
-     .page = {1, .words = true}, .markup = put_rejected_name,
-     .terminal = {1, .heading = "not claimed", .words = true}},
+     .page = {.rank = 1, .words = true}, .markup = put_rejected_name,
+     .terminal = {.rank = 1, .heading = "not claimed", .words = true}},
     {FG_TEXT_BY("verdict_words", find_rejected_verdict), .options = FG_MEMBER_NOT_IN_JSON,
-     .page = {2, .words = true}, .terminal = {2, .heading = "verdict", .words = true}},
+     .page = {.rank = 2, .words = true},
+     .terminal = {.rank = 2, .heading = "verdict", .words = true}},
     {FG_NUMBER_BY("would_show", find_shows), .options = FG_MEMBER_NOT_IN_JSON,
-     .page = {3, .words = true}, .markup = put_shows,
-     .terminal = {4, .heading = "would show", .digits = 3}},
+     .page = {.rank = 3, .words = true}, .markup = put_shows,
+     .terminal = {.rank = 4, .heading = "would show", .digits = 3}},
     {ALIASES_COLUMN, .text = find_no_alias},
     {FG_TEXT_BY("id", find_rejected_id), .options = FG_MEMBER_NEVER_NULL, .words = "effect"},
     {FG_TEXT("name", fg_loop_rejected, name), .words = "effect with its columns"},
@@ -379,7 +380,7 @@ static const char *look_at_answer(const fg_subject *check) {
 
 static const fg_member check_rows[] = {
     {FG_TEXT_BY("answer", find_answer), .options = FG_MEMBER_NOT_IN_JSON,
-     .page = {2, .heading = "answer", .words = true}, .look = look_at_answer},
+     .page = {.rank = 2, .heading = "answer", .words = true}, .look = look_at_answer},
     {FG_WORD_BY("test", find_test, fg_loop_finding_kinds + 1), .options = FG_MEMBER_NEVER_NULL,
      .words = "lack_of_fit: rows of the same declared settings, an F ratio over their own scatter; "
               "lack_of_fit_all_columns: rows that agree in every recorded column; "
@@ -387,7 +388,7 @@ static const fg_member check_rows[] = {
               "correlation_at_one_lag: rows lag apart, the most alike or unlike"},
     {FG_TEXT_BY("asks", find_question), .options = FG_MEMBER_NEVER_NULL,
      .words = "question that a passed test answers with yes",
-     .page = {1, .heading = "test of all that is left", .words = true}},
+     .page = {.rank = 1, .heading = "test of all that is left", .words = true}},
     {FG_NUMBER("statistic", fg_loop_checked, statistic),
      .words = "F ratio, sum of squares of normal deviates, or the largest deviate"},
     {FG_RANGE("degrees_of_freedom", fg_loop_checked, dof[0], dof[1]),
@@ -423,15 +424,19 @@ static double find_error_ratio(const fg_subject *subject) {
 }
 
 static const fg_member shown_error_rows[] = {
-    {FG_STRING("error", fg_loop_error_row, name), .heading = "error", .page = {1, .words = true},
-     .terminal = {1, .words = true}},
-    {FG_NUMBER("before", fg_loop_error_row, before), .heading = "before", .page = {1, .digits = 4},
-     .terminal = {1, .digits = 5}, .column = is_with_after},
-    {FG_NUMBER("size", fg_loop_error_row, before), .heading = "size", .page = {1, .digits = 4},
-     .terminal = {1, .digits = 5}, .column = is_before_alone},
-    {FG_NUMBER("after", fg_loop_error_row, after), .heading = "after", .page = {1, .digits = 4},
-     .terminal = {1, .digits = 5}, .column = is_with_after},
-    {FG_NUMBER_BY("ratio", find_error_ratio), .heading = "ratio", .page = {1, .decimals = 3},
-     .terminal = {1, .decimals = 3}, .column = is_with_after},
+    {FG_STRING("error", fg_loop_error_row, name), .heading = "error",
+     .page = {.rank = 1, .words = true}, .terminal = {.rank = 1, .words = true}},
+    {FG_NUMBER("before", fg_loop_error_row, before), .heading = "before",
+     .page = {.rank = 1, .digits = 4}, .terminal = {.rank = 1, .digits = 5},
+     .column = is_with_after},
+    {FG_NUMBER("size", fg_loop_error_row, before), .heading = "size",
+     .page = {.rank = 1, .digits = 4}, .terminal = {.rank = 1, .digits = 5},
+     .column = is_before_alone},
+    {FG_NUMBER("after", fg_loop_error_row, after), .heading = "after",
+     .page = {.rank = 1, .digits = 4}, .terminal = {.rank = 1, .digits = 5},
+     .column = is_with_after},
+    {FG_NUMBER_BY("ratio", find_error_ratio), .heading = "ratio",
+     .page = {.rank = 1, .decimals = 3}, .terminal = {.rank = 1, .decimals = 3},
+     .column = is_with_after},
 };
 const fg_members fg_loop_error_row_members = FG_MEMBERS(shown_error_rows);
