@@ -5,7 +5,6 @@
 #include "foilgauge/design_report.h"
 #include "foilgauge/foil_kind.h"
 #include "report/design/beam_deviations.h"
-#include "report/design/json.h"
 #include "report/design/kind_members.h"
 #include "report/design/members.h"
 #include "report/stiffness/table.h"
@@ -120,12 +119,6 @@ const fg_document fg_nominal_document = {
     .made_by = "`foilgauge design -o`",
     .members = &report_members,
 };
-
-void fg_json_nominal(fg_json *json, const char *name, const fg_nominal *nominal) {
-  fg_json_object(json, name);
-  fg_members_json(json, &fg_nominal_members, &(fg_subject){.object = nominal});
-  fg_json_object_end(json);
-}
 
 fg_status fg_design_write_json(fg_context *ctx, const fg_design_report *report, FILE *out) {
   const fg_design *design = report->design;

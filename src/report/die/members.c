@@ -4,7 +4,7 @@
 
 #include "core/file.h"
 #include "foilgauge/die_report.h"
-#include "report/design/json.h"
+#include "report/design/members.h"
 #include "report/verdict_members.h"
 
 static const fg_die *die_of(const fg_subject *subject) {
@@ -273,14 +273,6 @@ static const char *find_die_summary(const fg_subject *subject, char *buffer) {
   return buffer;
 }
 
-static void write_die_design(fg_json *json, const char *name, const fg_subject *subject) {
-  fg_json_design(json, name, &die_of(subject)->design);
-}
-
-static void write_die_nominal(fg_json *json, const char *name, const fg_subject *subject) {
-  fg_json_nominal(json, name, &die_of(subject)->nominal);
-}
-
 static const fg_member report_rows[] = {
     {FG_HEAD("foilgauge/die/1")},
     {FG_FLAG_BY("in_tolerance", find_die_in_tolerance), .options = FG_MEMBER_NULLABLE,
@@ -289,8 +281,10 @@ static const fg_member report_rows[] = {
      .words = FG_VERDICT_WORDS},
     {FG_TEXT_BY("summary", find_die_summary), .options = FG_MEMBER_NEVER_NULL,
      .words = "outcome in a sentence"},
-    {FG_WRITTEN("design", write_die_design, FG_REF("design.schema.json"))},
-    {FG_WRITTEN("nominal", write_die_nominal, "{\"type\": \"object\"}")},
+    {FG_OBJECT("design", fg_die, design, &fg_design_members),
+     .schema = FG_REF("design.schema.json")},
+    {FG_OBJECT("nominal", fg_die, nominal, &fg_nominal_members),
+     .schema = "{\"type\": \"object\"}"},
     {FG_NUMBER("u_tip_um", fg_die, options.u_tip_um), .options = FG_MEMBER_NOT_NEGATIVE,
      .words = "of the tip's radius"},
     {FG_NUMBER("u_scale_ppm", fg_die, options.u_scale_ppm), .options = FG_MEMBER_NOT_NEGATIVE,

@@ -4,7 +4,7 @@
 
 #include "core/file.h"
 #include "forming/material_members.h"
-#include "report/design/json.h"
+#include "report/design/members.h"
 #include "report/forming/members.h"
 
 static const fg_forming_fit *fit_of(const fg_subject *subject) {
@@ -142,10 +142,6 @@ bool fg_forming_run_at(const fg_subject *list, size_t i, fg_subject *element) {
 }
 
 /* The report. */
-static void write_fit_design(fg_json *json, const char *name, const fg_subject *s) {
-  fg_json_design(json, name, &fit_of(s)->design);
-}
-
 static const char *const response_words[] = {
     [FG_FORMING_OF_STRIP] = "strip", [FG_FORMING_OF_FOIL] = "foil", NULL};
 
@@ -158,7 +154,8 @@ static const fg_member fit_rows[] = {
     {FG_HEAD("foilgauge/form-fit/1")},
     {FG_GROUP("inputs", &input_members),
      .words = "files that were read beside the design, by their role"},
-    {FG_WRITTEN("design", write_fit_design, FG_REF("design.schema.json"))},
+    {FG_OBJECT("design", fg_forming_fit, design, &fg_design_members),
+     .schema = FG_REF("design.schema.json")},
     {FG_TEXT("response", fg_forming_fit, response_name), .words = "column of the runs"},
     {FG_WORD("of", fg_forming_fit, response, response_words), .words = "the response's subject"},
     {FG_LIST_BY("found", fg_forming_found_at, &fg_forming_found_members),

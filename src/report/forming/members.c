@@ -8,7 +8,7 @@
 #include "foilgauge/quantity.h"
 #include "foilgauge/words.h"
 #include "forming/material_members.h"
-#include "report/design/json.h"
+#include "report/design/members.h"
 #include "report/forming/words.h"
 
 static const fg_forming *forming_of(const fg_subject *subject) {
@@ -235,10 +235,6 @@ static bool find_piece(const fg_subject *list, size_t i, fg_subject *element) {
 }
 
 /* The report. */
-static void write_forming_design(fg_json *json, const char *name, const fg_subject *s) {
-  fg_json_design(json, name, &forming_of(s)->design);
-}
-
 static const char *find_treatment(const fg_subject *s, char *buffer) {
   fg_forming_treatment(forming_of(s), buffer, 200);
   return buffer;
@@ -261,7 +257,8 @@ static const fg_member forming_rows[] = {
     {FG_HEAD("foilgauge/form/1")},
     {FG_GROUP("inputs", &input_members),
      .words = "files that were read beside the design, by their role"},
-    {FG_WRITTEN("design", write_forming_design, FG_REF("design.schema.json"))},
+    {FG_OBJECT("design", fg_forming, design, &fg_design_members),
+     .schema = FG_REF("design.schema.json")},
     {FG_OBJECT("material", fg_forming, material, &fg_forming_material_members)},
     {FG_TEXT_BY("treatment", find_treatment), .options = FG_MEMBER_NEVER_NULL,
      .words = "the schedule in words"},
