@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Members of a calibration. A certificate states an expanded uncertainty with its factor; a report
  * writes the standard uncertainty. */
-#include "report/design/calibration_json.h"
-
 #include <math.h>
 #include <string.h>
 
 #include "core/date.h"
+#include "foilgauge/calibration.h"
 #include "report/design/members.h"
 
 /* A certificate states U with a factor from 1 (68 %) to 4; beyond it is a slip. */
@@ -294,16 +293,3 @@ const fg_members fg_calibration_used_members = {
     .file = "design",
     .nullable = true,
 };
-
-void fg_json_calibration_members(fg_json *json, const fg_calibration *calibration) {
-  fg_members_json(json, &fg_calibration_used_members, &(fg_subject){.object = calibration});
-}
-
-void fg_json_calibration_used(fg_json *json, const char *name, const fg_calibration *calibration) {
-  const fg_member row = {.name = name,
-                         .kind = FG_MEMBER_OBJECT,
-                         .pointed = true,
-                         .members = &fg_calibration_used_members};
-  const fg_calibration *stated_one = calibration->stated ? calibration : NULL;
-  fg_member_json(json, &row, &(fg_subject){.object = &stated_one});
-}

@@ -3,7 +3,7 @@
 #include <math.h>
 
 #include "foilgauge/design.h"
-#include "report/design/calibration_json.h"
+#include "report/design/members.h"
 #include "report/doe/members.h"
 
 /* Analysis of variance. */
@@ -83,11 +83,9 @@ static bool is_calibration_stated(const fg_subject *s) {
   return report->design && report->design->calibration.stated;
 }
 
-static void write_doe_calibration(fg_json *json, const char *name, const fg_subject *s) {
-  if (is_calibration_stated(s))
-    fg_json_calibration_used(json, name, &fg_doe_whole_at(s)->report->design->calibration);
-  else
-    fg_json_string(json, name, NULL);
+static fg_subject find_calibration(const fg_subject *s) {
+  return (fg_subject){
+      .object = is_calibration_stated(s) ? &fg_doe_whole_at(s)->report->design->calibration : NULL};
 }
 
 static double find_u_calibration(const fg_subject *s) {
@@ -232,8 +230,8 @@ static const fg_member analysis_rows[] = {
     {FG_PART("fit", find_regression, &fit_members), .options = FG_MEMBER_NEVER_NULL},
     {FG_PART("measurement", find_measurement, &measurement_members),
      .words = "of the responses; null: their uncertainty is not known"},
-    {FG_WRITTEN("calibration", write_doe_calibration,
-                FG_REF("design.schema.json#/$defs/calibration_used")),
+    {FG_PART("calibration", find_calibration, &fg_calibration_used_members),
+     .schema = FG_REF("design.schema.json#/$defs/calibration_used"),
      .words = "of the scanner, by the design that the scans were measured with; null: no scans, or "
               "none is stated"},
     {FG_NUMBER_BY("u_calibration", find_u_calibration),

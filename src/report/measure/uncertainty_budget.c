@@ -7,7 +7,7 @@
 #include "foilgauge/words.h"
 #include "page/page.h"
 #include "quantity/quantity_rows.h"
-#include "report/design/calibration_json.h"
+#include "report/design/members.h"
 
 /* Root mean squares of one quantity over all parts that have it. */
 typedef struct line {
@@ -103,13 +103,13 @@ static budget find_budget(const fg_report_scan *scans, size_t scan_count, fg_foi
 
 void fg_json_report_calibration(fg_json *json, const fg_report *report) {
   const fg_calibration *calibration = &report->design->calibration;
-  const budget all = find_budget(report->scans, report->scan_count, report->design->kind, NULL);
   if (!calibration->stated) {
     fg_json_string(json, "calibration", NULL);
     return;
   }
+  const budget all = find_budget(report->scans, report->scan_count, report->design->kind, NULL);
   fg_json_object(json, "calibration");
-  fg_json_calibration_members(json, calibration);
+  fg_members_json(json, &fg_calibration_used_members, &(fg_subject){.object = calibration});
   fg_member_json(json, &budget_row, &(fg_subject){.object = &all});
   fg_json_object_end(json);
 }
