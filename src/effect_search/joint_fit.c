@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "effect_search/joint_fit.h"
 
+#include <gsl/gsl_blas.h>
 #include <gsl/gsl_linalg.h>
 #include <math.h>
 #include <stdlib.h>
@@ -238,24 +239,30 @@ static double row_variance(const refit *r) {
   return sum / dof * fmax(r->edge_fit->scatter.swell, integral);
 }
 
-/* Adds the effects' contribution to the covariance of two numbers of the geometry. `whole` is the
- * inverse of all normal equations N + H, H the prior of the free curves; `alone` that of the
- * geometry. Noise: V (N + H)^-1 N (N + H)^-1. Bias by the prior, for coefficients of size t: (N +
- * H)^-1 H t² H (N + H)^-1. */
+/* Sensitivity of the least-squares geometry to the effects' coefficients. */
+typedef struct sensitivity {
+  gsl_matrix *alone;  /* normal equations of the geometry, then their inverse */
+  gsl_matrix *direct; /* by every unknown of the scanner: -(N_gg)^-1 N_gs; 0 for the part's */
+  gsl_matrix *spread; /* `direct` times the inverse of all normal equations */
+} sensitivity;
+
+/* Covariance of two numbers of the geometry by the uncertainty of the scanner's effects. With the
+ * normal equations N and the prior H of the free curves: noise, V D (N + H)^-1 N (N + H)^-1 D';
+ * bias by the prior, for coefficients of size t: D (N + H)^-1 H t² H (N + H)^-1 D'. */
 static double effects_covariance(const refit *r, double variance, const double *size,
-                                 const gsl_matrix *whole, const gsl_matrix *alone, size_t a,
-                                 size_t b) {
-  double sum = variance * (gsl_matrix_get(whole, a, b) - gsl_matrix_get(alone, a, b));
+                                 const sensitivity *by, size_t a, size_t b) {
+  double sum = 0;
   for (size_t k = 0; k < r->unknowns; k++) {
-    size_t c = r->parameters + k;
     double hold = hold_of(r->edge_fit, &r->set->effects[r->list[k].effect], r->list[k].shape);
     double t = hold * size[r->list[k].effect];
-    sum += gsl_matrix_get(whole, a, c) * gsl_matrix_get(whole, b, c) * (t * t - variance * hold);
+    double spread = gsl_matrix_get(by->spread, a, k);
+    sum += variance * spread * gsl_matrix_get(by->direct, b, k);
+    sum += spread * gsl_matrix_get(by->spread, b, k) * (t * t - variance * hold);
   }
   return sum;
 }
 
-static void find_effects_covariance(refit *r, double variance, const gsl_matrix *alone) {
+static void find_effects_covariance(refit *r, double variance, const sensitivity *by) {
   double size[FG_EFFECT_SET_MAX] = {0};
   for (size_t e = 0; e < r->set->count; e++) {
     const fg_effect_found *effect = &r->set->effects[e];
@@ -264,26 +271,57 @@ static void find_effects_covariance(refit *r, double variance, const gsl_matrix 
   }
   for (size_t p = 0, at = 0; p < r->edge_fit->part_count; p++) {
     size_t bumps = r->edge_fit->parts[p].bump_count;
-    r->parts[p].overall = fmax(0, effects_covariance(r, variance, size, r->normal, alone, at, at));
+    r->parts[p].overall = fmax(0, effects_covariance(r, variance, size, by, at, at));
     for (size_t b = 0; b < bumps; b++) {
       size_t index[3] = {at + 1 + 3 * b, at + 3 + 3 * b, at}; /* X, R, R0 */
       for (int i = 0; i < 3; i++)
         for (int k = 0; k < 3; k++)
           r->parts[p].bumps[b][i][k] =
-              effects_covariance(r, variance, size, r->normal, alone, index[i], index[k]);
+              effects_covariance(r, variance, size, by, index[i], index[k]);
     }
     at += 1 + 3 * bumps;
   }
 }
 
-/* Finds the uncertainties of the effects, and of the geometry beside them; `alone` has room for the
- * geometry's block of the normal equations. */
-static void find_uncertainties(refit *r, gsl_matrix *alone) {
+static bool open_sensitivity(const refit *r, sensitivity *by) {
+  by->alone = gsl_matrix_alloc(r->parameters, r->parameters);
+  by->direct = gsl_matrix_calloc(r->parameters, r->unknowns);
+  by->spread = gsl_matrix_calloc(r->parameters, r->unknowns);
+  return by->alone && by->direct && by->spread;
+}
+
+static void close_sensitivity(sensitivity *by) {
+  gsl_matrix_free(by->alone);
+  gsl_matrix_free(by->direct);
+  gsl_matrix_free(by->spread);
+}
+
+/* Takes the geometry's block of the normal equations, and that beside the scanner's effects. */
+static void take_blocks(const refit *r, sensitivity *by) {
+  for (size_t a = 0; a < r->parameters; a++) {
+    for (size_t b = 0; b < r->parameters; b++)
+      gsl_matrix_set(by->alone, a, b, gsl_matrix_get(r->normal, a, b));
+    for (size_t k = 0; k < r->unknowns; k++)
+      if (r->set->effects[r->list[k].effect].kind->glass)
+        gsl_matrix_set(by->spread, a, k, gsl_matrix_get(r->normal, a, r->parameters + k));
+  }
+}
+
+/* Turns the blocks into sensitivities; `r->normal` is inverted. */
+static bool solve_sensitivity(const refit *r, sensitivity *by) {
+  if (gsl_linalg_cholesky_decomp1(by->alone) || gsl_linalg_cholesky_invert(by->alone)) return false;
+  gsl_matrix_const_view whole =
+      gsl_matrix_const_submatrix(r->normal, r->parameters, r->parameters, r->unknowns, r->unknowns);
+  gsl_blas_dgemm(CblasNoTrans, CblasNoTrans, -1, by->alone, by->spread, 0, by->direct);
+  gsl_blas_dgemm(CblasNoTrans, CblasNoTrans, 1, by->direct, &whole.matrix, 0, by->spread);
+  return true;
+}
+
+/* Finds the uncertainties of the effects, and of the geometry by them. */
+static void find_uncertainties(refit *r, sensitivity *by) {
   double variance = row_variance(r);
   assemble(r);
-  for (size_t a = 0; a < r->parameters; a++)
-    for (size_t b = 0; b < r->parameters; b++)
-      gsl_matrix_set(alone, a, b, gsl_matrix_get(r->normal, a, b));
+  take_blocks(r, by);
   if (gsl_linalg_cholesky_decomp1(r->normal) || gsl_linalg_cholesky_invert(r->normal)) return;
   for (size_t e = 0; e < r->set->count; e++)
     if (r->set->effects[e].kind->jumps)
@@ -296,8 +334,7 @@ static void find_uncertainties(refit *r, gsl_matrix *alone) {
     else
       effect->u_coefficient_um[r->list[k].index] = u;
   }
-  if (!r->parts || gsl_linalg_cholesky_decomp1(alone) || gsl_linalg_cholesky_invert(alone)) return;
-  find_effects_covariance(r, variance, alone);
+  if (r->parts && solve_sensitivity(r, by)) find_effects_covariance(r, variance, by);
 }
 
 /* Fits the geometry under the set's present correction; computes the residual in um and, unless
@@ -361,7 +398,7 @@ static void release(refit *r) {
 static fg_status run_joint_fit(fg_context *ctx, fg_edge_fit *edge_fit, fg_effect_set *set,
                                double *residual_um, fg_joint_fit_part *parts) {
   refit r = {.edge_fit = edge_fit, .set = set, .parts = parts};
-  gsl_matrix *alone = NULL;
+  sensitivity by = {.alone = NULL};
   fg_status status = FG_OK;
   fg_numerics_start();
   FG_TRY(fg_edge_fit_fit(ctx, edge_fit, NULL));
@@ -380,13 +417,14 @@ static fg_status run_joint_fit(fg_context *ctx, fg_edge_fit *edge_fit, fg_effect
     FG_TRY_EXIT(evaluate(ctx, &r));
     effect_design(edge_fit, set, r.list, r.unknowns, r.work, r.design);
     whiten_all(&r);
-    alone = gsl_matrix_alloc(r.parameters, r.parameters);
-    if (alone) find_uncertainties(&r, alone);
-    if (!alone) status = fg_fail(ctx, FG_ERR_MEMORY, "out of memory: %zu numbers", r.parameters);
+    if (open_sensitivity(&r, &by))
+      find_uncertainties(&r, &by);
+    else
+      status = fg_fail(ctx, FG_ERR_MEMORY, "out of memory: %zu numbers", r.parameters);
   }
   if (residual_um) memcpy(residual_um, r.residual, edge_fit->row_count * sizeof *residual_um);
 exit:
-  gsl_matrix_free(alone);
+  close_sensitivity(&by);
   release(&r);
   return status;
 }
@@ -406,20 +444,6 @@ static fg_status open_parts(fg_context *ctx, const fg_edge_fit *edge_fit,
   return FG_OK;
 }
 
-static fg_status find_shift(fg_context *ctx, const fg_edge_fit *edge_fit,
-                            fg_joint_fit_result *result) {
-  double *along = NULL;
-  FG_TRY(fg_memory_allocate(ctx, edge_fit->row_count, sizeof *result->shift_mm,
-                            (void **)&result->shift_mm));
-  FG_TRY(fg_effect_set_shift(ctx, edge_fit, &result->set, &along));
-  for (size_t i = 0; i < edge_fit->row_count; i++) {
-    fg_point n = edge_fit->rows[i].normal;
-    result->shift_mm[i] = (fg_point){along[i] * n.x, along[i] * n.y};
-  }
-  free(along);
-  return FG_OK;
-}
-
 fg_status fg_joint_fit_open(fg_context *ctx, fg_edge_fit *edge_fit, const fg_effect_set *set,
                             fg_joint_fit_result *result) {
   *result = (fg_joint_fit_result){.edge_fit = edge_fit, .set = *set};
@@ -427,7 +451,6 @@ fg_status fg_joint_fit_open(fg_context *ctx, fg_edge_fit *edge_fit, const fg_eff
   FG_TRY_EXIT(open_parts(ctx, edge_fit, result));
   FG_TRY_EXIT(run_joint_fit(ctx, edge_fit, &result->set, NULL, result->parts));
   fg_effect_set_fields(edge_fit, &result->set, &result->fields);
-  FG_TRY_EXIT(find_shift(ctx, edge_fit, result));
 exit:
   if (status != FG_OK) fg_joint_fit_close(result);
   return status;
@@ -437,6 +460,5 @@ void fg_joint_fit_close(fg_joint_fit_result *result) {
   for (size_t p = 0; result->parts && p < result->edge_fit->part_count; p++)
     free(result->parts[p].bumps);
   free(result->parts);
-  free(result->shift_mm);
   *result = (fg_joint_fit_result){.edge_fit = NULL};
 }

@@ -14,7 +14,9 @@ fg_status fg_joint_fit(fg_context *ctx, fg_edge_fit *edge_fit, fg_effect_set *se
 fg_status fg_joint_fit_geometry(fg_context *ctx, fg_edge_fit *edge_fit, const fg_effect_set *set,
                                 double *residual_um);
 
-/* Variance, mm², that the effects of a fit add to a part's geometry. */
+/* Variance, mm², of a part's geometry by the correction of the scanner's effects. The geometry is
+ * that of the least-squares circles, so effects of the part add nothing of their own: they count as
+ * far as they make the scanner's effects uncertain. */
 typedef struct fg_joint_fit_part {
   double overall;        /* variance of R0 */
   double (*bumps)[3][3]; /* owned; of (X, R, R0) of every bump */
@@ -26,7 +28,6 @@ typedef struct fg_joint_fit_result {
   const fg_edge_fit *edge_fit; /* source of rows and scans; its geometry is not read */
   fg_effect_set set;
   fg_field_list fields;     /* of the scanner */
-  fg_point *shift_mm;       /* owned; per row: displacement by the part's own effects */
   fg_joint_fit_part *parts; /* owned */
 } fg_joint_fit_result;
 

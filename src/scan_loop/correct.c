@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Foils with corrected edges, measured again. */
+/* Foils with corrected edges, measured again. Only fields of the scanner move edges: what deviates
+ * on the part is its form, and its circles are the least-squares circles through it as it is
+ * (ISO 12181's associated circle). */
 #include <math.h>
 
 #include "measure/again.h"
@@ -10,84 +12,27 @@ static fg_point moved(const void *user, fg_point at) {
   return (fg_point){at.x + d.x, at.y + d.y};
 }
 
-/* The row of a view that is nearest to a place; NULL: the view has none. */
-static const fg_edge_fit_row *nearest_row(const fg_edge_fit *edge_fit, size_t view, fg_point at) {
-  const fg_edge_fit_row *row = NULL;
-  double nearest = INFINITY;
-  for (size_t i = 0; i < edge_fit->row_count; i++) {
-    if (edge_fit->rows[i].view != view) continue;
-    double dx = edge_fit->rows[i].at.x - at.x, dy = edge_fit->rows[i].at.y - at.y;
-    if (dx * dx + dy * dy >= nearest) continue;
-    nearest = dx * dx + dy * dy;
-    row = &edge_fit->rows[i];
-  }
-  return row;
-}
-
-/* Displacement of edges to remove: a scanner's fields, and of a fit its part effects. */
-typedef struct correction {
-  const fg_field_list *fields;    /* NULL: none */
-  const fg_joint_fit_result *fit; /* NULL: none */
-} correction;
-
-/* The shift at a place, that of the nearest row of its view. */
-static fg_point shift_at(const fg_joint_fit_result *fit, size_t view, fg_point at) {
-  const fg_edge_fit_row *row = nearest_row(fit->edge_fit, view, at);
-  return row ? fit->shift_mm[row - fit->edge_fit->rows] : (fg_point){0, 0};
-}
-
-static void take_shift(const fg_joint_fit_result *fit, size_t view, fg_strip *strip) {
-  for (size_t k = 0; k < strip->count; k++) {
-    fg_station *s = &strip->stations[k];
-    fg_point middle = {0.5 * (s->left.x + s->right.x), 0.5 * (s->left.y + s->right.y)};
-    fg_point d = shift_at(fit, view, middle);
-    s->left.x -= d.x;
-    s->left.y -= d.y;
-    s->right.x -= d.x;
-    s->right.y -= d.y;
-  }
-}
-
-/* The view of a foil, or of a disc, in a fit; false: it has none. */
-static bool find_view(const fg_joint_fit_result *fit, const fg_foil *foil, const fg_disc *disc,
-                      size_t *view) {
-  for (*view = 0; fit && *view < fit->edge_fit->view_count; ++*view) {
-    const fg_edge_fit_view *one = &fit->edge_fit->views[*view];
-    if (foil ? one->foil == foil : one->disc == disc) return true;
-  }
-  return false;
-}
-
 static void correct_strip(const void *user, const fg_foil *foil, fg_strip *strip) {
-  const correction *c = user;
-  size_t view;
-  if (c->fields && c->fields->count) fg_strip_move(strip, moved, c->fields);
-  if (find_view(c->fit, foil, NULL, &view)) take_shift(c->fit, view, strip);
+  const fg_field_list *fields = user;
+  (void)foil;
+  if (fields && fields->count) fg_strip_move(strip, moved, fields);
 }
 
 static fg_point correct_point(const void *user, const fg_disc *disc, fg_point at) {
-  const correction *c = user;
-  size_t view;
-  if (c->fields) at = moved(c->fields, at);
-  if (!find_view(c->fit, NULL, disc, &view)) return at;
-  fg_point d = shift_at(c->fit, view, at);
-  return (fg_point){at.x - d.x, at.y - d.y};
-}
-
-static fg_status correct_measurement(fg_context *ctx, const fg_measurement *m, const correction *c,
-                                     unsigned threads, fg_measurement *corrected) {
-  const fg_measure_mover mover = {.strip = correct_strip, .point = correct_point, .user = c};
-  return fg_measure_again(ctx, m, &mover, threads, corrected);
+  const fg_field_list *fields = user;
+  (void)disc;
+  return fields ? moved(fields, at) : at;
 }
 
 fg_status fg_scan_loop_correct(fg_context *ctx, const fg_measurement *m,
                                const fg_field_list *fields, unsigned threads,
                                fg_measurement *corrected) {
-  return correct_measurement(ctx, m, &(correction){.fields = fields}, threads, corrected);
+  const fg_measure_mover mover = {.strip = correct_strip, .point = correct_point, .user = fields};
+  return fg_measure_again(ctx, m, &mover, threads, corrected);
 }
 
-/* Widens the foils' uncertainties by the contribution of the set's effects to the geometry's
- * covariance: the correction is not known exactly. */
+/* Widens the foils' uncertainties by those of the scanner's effects: the correction is not known
+ * exactly. */
 static void widen_by_effects(const fg_joint_fit_result *fit, const fg_measurement *before,
                              fg_measurement *after) {
   const fg_edge_fit *edge_fit = fit->edge_fit;
@@ -110,8 +55,8 @@ static void widen_by_effects(const fg_joint_fit_result *fit, const fg_measuremen
 fg_status fg_scan_loop_correct_fitted(fg_context *ctx, const fg_measurement *m,
                                       const fg_joint_fit_result *fit, unsigned threads,
                                       fg_measurement *corrected) {
-  FG_TRY(correct_measurement(ctx, m, &(correction){&fit->fields, fit}, threads, corrected));
-  if (fit->set.count) widen_by_effects(fit, m, corrected);
+  FG_TRY(fg_scan_loop_correct(ctx, m, &fit->fields, threads, corrected));
+  if (fit->fields.count) widen_by_effects(fit, m, corrected);
   return FG_OK;
 }
 

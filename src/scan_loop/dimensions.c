@@ -87,7 +87,8 @@ static bool holds_curve(const fg_explanations *explanations, size_t explanation)
   if (explanation >= explanations->count) return false;
   for (size_t e = 0; e < explanations->candidate_count; e++)
     if ((explanations->each[explanation].mask >> e & 1) &&
-        fg_effect_is_free(explanations->candidates[e].kind))
+        fg_effect_is_free(explanations->candidates[e].kind) &&
+        explanations->candidates[e].kind->glass)
       return true;
   return false;
 }

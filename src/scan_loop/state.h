@@ -82,8 +82,8 @@ fg_status fg_scan_loop_correct(fg_context *ctx, const fg_measurement *m,
                                const fg_field_list *fields, unsigned threads,
                                fg_measurement *corrected);
 
-/* Corrects by a joint fit to these edges: its fields, then the displacements of its part effects,
- * with the uncertainties that its effects add. */
+/* Corrects by the scanner's fields of a joint fit to these edges, with the uncertainties that they
+ * add. Effects of the part move no edge: they are form. */
 fg_status fg_scan_loop_correct_fitted(fg_context *ctx, const fg_measurement *m,
                                       const fg_joint_fit_result *fit, unsigned threads,
                                       fg_measurement *corrected);
