@@ -110,10 +110,22 @@ static void take_noise(fg_scan_loop *loop, const fg_joint_fit_result *fit, size_
   }
 }
 
+/* Effects of the part move no dimension: where no explanation holds one of the scanner, nothing is
+ * to decide. */
+static bool any_moves_edges(const fg_scan_loop *loop, const fg_joint_fit_result *fit) {
+  const fg_explanations *explanations = &loop->explanations;
+  for (size_t m = 0; m < explanations->count; m++)
+    for (size_t e = 0; e < explanations->candidate_count; e++)
+      if ((explanations->each[m].mask >> e & 1) && explanations->candidates[e].kind->glass)
+        return true;
+  return fit->fields.count > 0;
+}
+
 fg_status fg_scan_loop_take_moves(fg_context *ctx, fg_scan_loop *loop, size_t explanation,
                                   const fg_joint_fit_result *fit, const fg_measurement *corrected) {
   double scale = misfit_of(&loop->explanations, explanation);
   if (explanation && fg_scan_loop_is_unlikely(&loop->explanations, explanation)) return FG_OK;
+  if (!any_moves_edges(loop, fit)) return FG_OK;
   if (!loop->benefits) FG_TRY(open_all(ctx, loop));
   for (size_t i = 0; i < loop->scan_count; i++) {
     fg_benefits_add(&loop->benefits[i], &loop->before[i], &corrected[i]);
