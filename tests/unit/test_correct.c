@@ -146,8 +146,8 @@ static void a_part_s_own_deviation_stays(void **state) {
   foil_rows_close(&f);
 }
 
-/* Beside a part's effect of like shape, a scanner's effect is less sure, and so is what it
- * corrects. */
+/* Beside a part's effect of like shape, a scanner's effect is less sure, and so is its
+ * correction. */
 static void a_part_s_effect_makes_the_correction_less_sure(void **state) {
   (void)state;
   fg_context ctx = {0};
