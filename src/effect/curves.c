@@ -62,6 +62,28 @@ static void y_over_y(const fg_field_frame *frame, const double *shape, fg_point 
     d[i] = (fg_point){0, values[i]};
 }
 
+/* Products of Legendre polynomials of total degree 1 to 3; first all that move x. */
+static void over_plane(const fg_field_frame *frame, const double *shape, fg_point at, fg_point *d) {
+  enum { DEGREE = 3 };
+  (void)shape;
+  double u[2], p[2][DEGREE + 1];
+  for (int axis = 0; axis < 2; axis++) {
+    double low = frame->first_mm[axis], high = frame->last_mm[axis];
+    u[axis] = (2 * (axis ? at.y : at.x) - low - high) / fmax(high - low, 1e-3);
+    p[axis][0] = 1;
+    p[axis][1] = u[axis];
+    p[axis][2] = (3 * u[axis] * u[axis] - 1) / 2;
+    p[axis][3] = u[axis] * (5 * u[axis] * u[axis] - 3) / 2;
+  }
+  size_t count = 0;
+  for (int moved = 0; moved < 2; moved++)
+    for (int i = 0; i <= DEGREE; i++)
+      for (int k = 0; i + k <= DEGREE; k++) {
+        double value = p[0][i] * p[1][k];
+        if (i + k) d[count++] = moved ? (fg_point){0, value} : (fg_point){value, 0};
+      }
+}
+
 static size_t phi(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row, double *values) {
   size_t count = fg_midline_legendre(row, 3, 1, 16, values);
   count += fg_midline_stretch(edge_fit, row, 3, values + count);
@@ -163,6 +185,16 @@ const fg_effect fg_effects_curves[] = {
     OVER_GLASS("free.scan.x.dy", "a shift in y that varies over x", FG_EFFECT_X, "y", y_over_x),
     OVER_GLASS("free.scan.y.dx", "a shift in x that varies over y", FG_EFFECT_Y, "x", x_over_y),
     OVER_GLASS("free.scan.y.dy", "a shift in y that varies over y", FG_EFFECT_Y, "y", y_over_y),
+    {.id = "free.scan.xy",
+     .words = "a shift that varies over the picture",
+     A_CURVE,
+     .coordinate = FG_EFFECT_Y,
+     .moves = "x and y",
+     .by_evidence = true,
+     .columns = 18,
+     .glass = over_plane,
+     .coarse = FG_EFFECT_WHOLE,
+     .hold = FREE_HOLD},
     {.id = "free.foil.s",
      .direction = "normal",
      .words = "a deviation along the foil",

@@ -126,6 +126,7 @@ typedef struct fg_effect {
   double hold; /* weight of a curve's coefficients beside rows of weight FG_EDGE_FIT_BLOCK: of all
                   curves with the same residual the smallest one is chosen */
   bool bends;  /* bumps are no circles with it */
+  bool by_evidence; /* not a candidate of the search for sets: evidence alone asks for it */
   bool of_carriage; /* error of the carriage along its travel, the same for all x: the lines of a
                        colour sensor see it at different times */
   bool scales;      /* both axes alike: parts of known size determine it */

@@ -7,7 +7,7 @@
 bool fg_search_seeks(const fg_search *s, const fg_effect *kind) {
   for (size_t i = 0; i < s->out->barred.count; i++)
     if (fg_effect_same(s->out->barred.each[i].effect, kind)) return false;
-  return fg_effect_shows(s->columns.edge_fit, kind);
+  return !kind->by_evidence && fg_effect_shows(s->columns.edge_fit, kind);
 }
 
 void fg_search_add(fg_search *s, const fg_candidate *effect) {

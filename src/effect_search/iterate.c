@@ -61,10 +61,8 @@ static bool same_effects(const fg_effect_set *a, const fg_effect_set *b) {
   return true;
 }
 
-/* Computes residual (um) and Jacobian at the set's geometry, with the set's effects added back,
- * linearly. */
-static fg_status put_back(fg_context *ctx, fg_edge_fit *edge_fit, const fg_effect_set *set,
-                          double *residual_um, double *jacobian) {
+fg_status fg_search_put_back(fg_context *ctx, fg_edge_fit *edge_fit, const fg_effect_set *set,
+                             double *residual_um, double *jacobian) {
   size_t rows = edge_fit->row_count;
   fg_field_list fields;
   double *shift = NULL, *columns = NULL;
@@ -238,7 +236,7 @@ static fg_status run_turn(fg_context *ctx, fg_edge_fit *edge_fit, fg_search_requ
   request.given_up_count = policy->drops_nothings ? at->given_up_count : 0;
   request.barred = at->barred;
   if (policy->scatters) FG_TRY(fg_edge_fit_find_scatter(ctx, edge_fit, at->residual_um));
-  FG_TRY(put_back(ctx, edge_fit, &at->set, at->residual_um, at->jacobian));
+  FG_TRY(fg_search_put_back(ctx, edge_fit, &at->set, at->residual_um, at->jacobian));
   FG_TRY(fg_search_find(ctx, edge_fit, &request, &at->explanations));
   take_likeliest(&at->explanations, prefer, next);
   keep_numbers(&at->set, next);

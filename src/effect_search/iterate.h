@@ -23,4 +23,9 @@ fg_status fg_search_iterate(fg_context *ctx, const fg_iterate_request *request, 
 fg_status fg_search_iterate_again(fg_context *ctx, const fg_iterate_request *request,
                                   fg_effect_set *set, double *residual_um);
 
+/* Computes residual (um) and Jacobian (parameters × rows) at the set's geometry, with the set's
+ * effects added back, linearly. */
+fg_status fg_search_put_back(fg_context *ctx, fg_edge_fit *edge_fit, const fg_effect_set *set,
+                             double *residual_um, double *jacobian);
+
 #endif

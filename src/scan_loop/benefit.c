@@ -180,7 +180,9 @@ void fg_benefits_add_step(fg_benefits *benefits, const fg_measurement *corrected
  * their noise, and of the values' own u². */
 typedef struct sums {
   double items, noise, own;
-  bool curve; /* an explanation is a free curve */
+  bool curve;  /* an explanation is a free curve */
+  bool mean;   /* the one move is the mean over all models */
+  bool misfit; /* which do not follow all of the residual */
   double product[FG_BENEFIT_EXPLANATIONS_MAX][FG_BENEFIT_EXPLANATIONS_MAX];
   size_t explanations;
 } sums;
@@ -198,6 +200,8 @@ static bool is_known(const fg_benefit *benefit, size_t item, int k) {
 static void sum_up_dimension(const fg_benefit *benefit, int k, sums *s) {
   if (benefit->explanations > s->explanations) s->explanations = benefit->explanations;
   s->curve = s->curve || benefit->curve;
+  s->mean = s->mean || benefit->mean;
+  s->misfit = s->misfit || benefit->misfit;
   for (size_t i = 0; i < benefit->items; i++) {
     const fg_benefit_item *item = &benefit->item[i];
     if (!is_known(benefit, i, k)) continue;
@@ -293,6 +297,10 @@ static fg_correction_reason decide_move(const sums *s, double *part) {
   if (s->items < 1) return FG_CORRECTION_NONE;
   double mean = size_of(s, part), scatter = scatter_about(s, part);
   if (mean + s->noise + scatter <= SMALL_SHARE * SMALL_SHARE * s->own) return FG_CORRECTION_SMALL;
+  if (s->mean) {
+    bool helps = !s->misfit && mean > (s->curve ? CURVE_BENEFIT_RATIO : 1) * s->noise;
+    return helps ? FG_CORRECTION_HELPS : FG_CORRECTION_DOUBTFUL;
+  }
   double gain = fill_agreed(s, agreed);
   double ratio = s->curve ? CURVE_BENEFIT_RATIO : BENEFIT_RATIO;
   if (!(gain > ratio * s->noise) || !(gain >= AGREED_SHARE * AGREED_SHARE * mean))

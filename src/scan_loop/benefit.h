@@ -52,6 +52,7 @@ typedef struct fg_benefit {
   bool misfit; /* the residual of the explanation in force exceeds noise: the fit's own u is too
                   small */
   bool curve;  /* an explanation holds a free curve */
+  bool mean;   /* its one move is the mean over all models by their evidence: nothing is nearer */
   bool lost;   /* the explanation in force does not show the same bumps: the moves are unknown */
 } fg_benefit;
 

@@ -12,23 +12,42 @@ static fg_point moved(const void *user, fg_point at) {
   return (fg_point){at.x + d.x, at.y + d.y};
 }
 
+static fg_point displaced(const void *user, fg_point at) {
+  fg_point d = fg_displacement_at(user, at);
+  return (fg_point){at.x + d.x, at.y + d.y};
+}
+
+/* Displacement of edges by the scanner, which is removed. A deviation of the part is its form: it
+ * is reported beside the dimensions and stays in them. */
+typedef struct correction {
+  const fg_field_list *fields;         /* NULL: none */
+  const fg_displacement *displacement; /* NULL: none */
+} correction;
+
 static void correct_strip(const void *user, const fg_foil *foil, fg_strip *strip) {
-  const fg_field_list *fields = user;
+  const correction *c = user;
   (void)foil;
-  if (fields && fields->count) fg_strip_move(strip, moved, fields);
+  if (c->fields && c->fields->count) fg_strip_move(strip, moved, c->fields);
+  if (c->displacement) fg_strip_move(strip, displaced, c->displacement);
 }
 
 static fg_point correct_point(const void *user, const fg_disc *disc, fg_point at) {
-  const fg_field_list *fields = user;
+  const correction *c = user;
   (void)disc;
-  return fields ? moved(fields, at) : at;
+  if (c->fields) at = moved(c->fields, at);
+  return c->displacement ? displaced(c->displacement, at) : at;
+}
+
+static fg_status correct_measurement(fg_context *ctx, const fg_measurement *m, const correction *c,
+                                     unsigned threads, fg_measurement *corrected) {
+  const fg_measure_mover mover = {.strip = correct_strip, .point = correct_point, .user = c};
+  return fg_measure_again(ctx, m, &mover, threads, corrected);
 }
 
 fg_status fg_scan_loop_correct(fg_context *ctx, const fg_measurement *m,
                                const fg_field_list *fields, unsigned threads,
                                fg_measurement *corrected) {
-  const fg_measure_mover mover = {.strip = correct_strip, .point = correct_point, .user = fields};
-  return fg_measure_again(ctx, m, &mover, threads, corrected);
+  return correct_measurement(ctx, m, &(correction){.fields = fields}, threads, corrected);
 }
 
 /* Widens the foils' uncertainties by those of the scanner's effects: the correction is not known
@@ -55,7 +74,7 @@ static void widen_by_effects(const fg_joint_fit_result *fit, const fg_measuremen
 fg_status fg_scan_loop_correct_fitted(fg_context *ctx, const fg_measurement *m,
                                       const fg_joint_fit_result *fit, unsigned threads,
                                       fg_measurement *corrected) {
-  FG_TRY(fg_scan_loop_correct(ctx, m, &fit->fields, threads, corrected));
+  FG_TRY(correct_measurement(ctx, m, &(correction){.fields = &fit->fields}, threads, corrected));
   if (fit->fields.count) widen_by_effects(fit, m, corrected);
   return FG_OK;
 }
@@ -65,5 +84,15 @@ fg_status fg_scan_loop_correct_all(fg_context *ctx, const fg_scan_loop *loop,
   for (size_t i = 0; i < loop->scan_count; i++)
     FG_TRY(
         fg_scan_loop_correct_fitted(ctx, &loop->before[i], fit, loop->options.threads, &after[i]));
+  return FG_OK;
+}
+
+fg_status fg_scan_loop_correct_by_evidence(fg_context *ctx, const fg_scan_loop *loop,
+                                           const fg_joint_fit_result *fit, fg_measurement *after) {
+  const correction c = {.displacement = &loop->displacement};
+  for (size_t i = 0; i < loop->scan_count; i++) {
+    FG_TRY(correct_measurement(ctx, &loop->before[i], &c, loop->options.threads, &after[i]));
+    widen_by_effects(fit, &loop->before[i], &after[i]);
+  }
   return FG_OK;
 }

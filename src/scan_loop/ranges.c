@@ -113,7 +113,8 @@ static fg_status widen_by(fg_context *ctx, fg_scan_loop *loop, size_t explanatio
   loop->tie[loop->tie_count++] = fit.set;
   status = fg_scan_loop_correct_all(ctx, loop, &fit, tried);
   if (status == FG_OK) widen_all(loop, tried);
-  if (status == FG_OK) status = fg_scan_loop_take_moves(ctx, loop, explanation, &fit, tried);
+  if (status == FG_OK && !loop->by_evidence) /* its mean is over all of them */
+    status = fg_scan_loop_take_moves(ctx, loop, explanation, &fit, tried);
   for (size_t i = 0; i < loop->scan_count; i++)
     fg_measurement_free(&tried[i]);
   fg_joint_fit_close(&fit);

@@ -193,8 +193,11 @@ static fg_status correct_by_winner(fg_context *ctx, fg_scan_loop *loop) {
   fg_joint_fit_result fit;
   FG_TRY(fg_joint_fit_open(ctx, &loop->edge_fit, &loop->set, &fit));
   loop->set = fit.set;
-  fg_status status = fg_scan_loop_correct_all(ctx, loop, &fit, loop->after);
-  if (status == FG_OK && fit.set.count)
+  if (loop->by_evidence) fg_scan_loop_take_displacement(loop, &fit);
+  bool by_mean = loop->by_evidence && loop->scanner_is_suspect;
+  fg_status status = by_mean ? fg_scan_loop_correct_by_evidence(ctx, loop, &fit, loop->after)
+                             : fg_scan_loop_correct_all(ctx, loop, &fit, loop->after);
+  if (status == FG_OK && fit.set.count && (by_mean || !loop->by_evidence))
     status = fg_scan_loop_take_moves(ctx, loop, 0, &fit, loop->after);
   fg_joint_fit_close(&fit);
   return status;
@@ -222,6 +225,7 @@ static fg_status search_effects(fg_context *ctx, fg_scan_loop *loop) {
   FG_TRY(fg_joint_fit(ctx, &loop->edge_fit, &loop->set, loop->residual_before));
   FG_TRY(
       fg_search_run(ctx, &loop->edge_fit, &loop->set, &loop->explanations, loop->residual_after));
+  FG_TRY(fg_scan_loop_weigh_evidence(ctx, loop));
   FG_TRY(fg_scan_loop_find_single_bumps(ctx, loop));
   FG_TRY(fg_scan_loop_check_one_foil(ctx, loop));
   loop->error_before = summarise_residual(ctx, &loop->edge_fit, loop->residual_before);
@@ -352,6 +356,9 @@ void fg_scan_loop_free(fg_scan_loop *loop) {
     if (loop->after) fg_measurement_free(&loop->after[i]);
   }
   fg_scan_result_free(&loop->result);
+  for (size_t p = 0; loop->displacement_parts && p < loop->edge_fit.part_count; p++)
+    free(loop->displacement_parts[p].bumps);
+  free(loop->displacement_parts);
   fg_edge_fit_free(&loop->edge_fit);
   fg_scan_loop_bumps_free(&loop->bumps);
   free(loop->before);

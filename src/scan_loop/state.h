@@ -7,6 +7,7 @@
 #include "effect_search/effect_search.h"
 #include "effect_search/joint_fit.h"
 #include "effect_search/width_search.h"
+#include "evidence/displacement.h"
 #include "foilgauge/loop.h"
 #include "foilgauge/scan_loop.h"
 #include "rows/edge_fit.h"
@@ -30,7 +31,12 @@ struct fg_scan_loop {
   fg_effect_set set;                        /* the winner, fitted */
   double *residual_before, *residual_after; /* um, per row of the edge fit */
   fg_scan_loop_error error_before, error_after;
-  fg_cross_fit cross_fit; /* no folds: scans are held out, or no effect was found */
+  fg_cross_fit cross_fit;       /* no folds: scans are held out, or no effect was found */
+  bool by_evidence;             /* evidence decided: the correction is its mean over all models */
+  bool misfit;                  /* no model follows all of the residual */
+  bool scanner_is_suspect;      /* an explanation holds what a scanner does */
+  fg_displacement displacement; /* of the scanner, by evidence */
+  fg_displacement_part *displacement_parts; /* owned; per part of the edge fit */
   double noise_floor_um;
   bool tied;
   bool scale_tied;                        /* in scale_uncertainty.c */
@@ -59,6 +65,11 @@ fg_status fg_scan_loop_run_measured(fg_context *ctx, fg_measurement *measurement
 fg_status fg_scan_loop_leave_out(fg_context *ctx, fg_scan_loop *loop);
 /* Adds a note for each foil left out. */
 fg_status fg_scan_loop_say_left_out(fg_context *ctx, fg_scan_loop *loop);
+
+/* Weighs the search's explanation against all named effects and all rivals by their evidence. */
+fg_status fg_scan_loop_weigh_evidence(fg_context *ctx, fg_scan_loop *loop);
+/* Gives a fit the uncertainties of the mean over all models. */
+void fg_scan_loop_take_displacement(const fg_scan_loop *loop, fg_joint_fit_result *fit);
 
 /* Finds deviations of single bumps where the search found none, and adds them to the set. */
 fg_status fg_scan_loop_find_single_bumps(fg_context *ctx, fg_scan_loop *loop);
@@ -95,6 +106,11 @@ fg_status fg_scan_loop_correct_all(fg_context *ctx, const fg_scan_loop *loop,
  * search it uses the discs as scanned or as corrected, whichever agree better. gauges is 0 where
  * the discs do not determine the level. */
 fg_model_tone fg_scan_loop_find_tone(const fg_scan_loop *loop, bool searched);
+
+/* Corrects all of the loop's measurements by the mean displacement of the scanner over all models;
+ * the fit has the uncertainties that this adds. */
+fg_status fg_scan_loop_correct_by_evidence(fg_context *ctx, const fg_scan_loop *loop,
+                                           const fg_joint_fit_result *fit, fg_measurement *after);
 
 /* Finds, in a tie, the dimensions under every explanation. */
 fg_status fg_scan_loop_find_ranges(fg_context *ctx, fg_scan_loop *loop);

@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Displacement by the scanner, as the mean over all models that have weight, and the uncertainty of
+ * the part's circles that it leaves. */
+#ifndef FG_EVIDENCE_DISPLACEMENT_H
+#define FG_EVIDENCE_DISPLACEMENT_H
+
+#include "evidence/posterior.h"
+
+enum { FG_DISPLACEMENT_EFFECTS = 24, FG_DISPLACEMENT_RIVALS = 8 };
+
+/* Terms with mean amplitudes, um. */
+typedef struct fg_displacement {
+  fg_field_frame frame;
+  struct {
+    const fg_effect *effect; /* a polynomial: the powers of its axis */
+    double shape[FG_FIELD_SHAPES], um[FG_EFFECT_COLUMNS_MAX];
+    size_t columns;
+  } effect[FG_DISPLACEMENT_EFFECTS];
+  size_t effects;
+  struct {
+    const fg_rival *rival;
+    double um[FG_RIVAL_COLUMNS];
+  } rival[FG_DISPLACEMENT_RIVALS];
+  size_t rivals;
+} fg_displacement;
+
+/* Returns the displacement of a place on the glass, mm. */
+fg_point fg_displacement_at(const fg_displacement *displacement, fg_point at);
+
+/* Covariance that the scanner's amplitudes add to the geometry, mm²: of part p, (X, R, R0) of every
+ * bump, and R0 alone. */
+typedef struct fg_displacement_part {
+  double (*bumps)[3][3]; /* owned */
+  double overall;
+} fg_displacement_part;
+
+/* Fills the displacement and, per part of the edge fit, its covariance; `parts` are allocated. */
+fg_status fg_evidence_find_displacement(fg_context *ctx, fg_evidence_search *search,
+                                        fg_displacement *displacement, fg_displacement_part *parts);
+
+#endif

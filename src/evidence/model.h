@@ -1,0 +1,91 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Models: sets of named effects and of rivals, each a stretch of columns with prior variances, and
+ * their marginal likelihood.
+ *
+ * The scatter of the bumps about their common size is part of every model: bumps of one foil are
+ * alike, and a cause that would need bumps that are not is the less likely for it. */
+#ifndef FG_EVIDENCE_MODEL_H
+#define FG_EVIDENCE_MODEL_H
+
+#include "evidence/problem.h"
+#include "evidence/rivals.h"
+
+enum { FG_EVIDENCE_PARTS = 6, FG_EVIDENCE_MODEL_COLUMNS = 700 };
+
+/* A named effect (`effect`) or a rival; none of both: the scatter of the bumps. */
+typedef struct fg_evidence_part {
+  const fg_effect *effect;
+  const fg_rival *rival;
+  size_t stretch;                /* of a rival of stretches: its index */
+  double shape[FG_FIELD_SHAPES]; /* of the effect */
+  size_t first, count;           /* columns */
+  double variance[FG_RIVAL_COLUMNS];
+  double log_prior;
+} fg_evidence_part;
+
+typedef struct fg_evidence_model {
+  const fg_evidence_part *part[FG_EVIDENCE_PARTS]; /* of the search's store */
+  size_t parts, named;
+  double scatter_um[2];   /* of the bumps: radius and distance, place along the foil */
+  double evidence, score; /* ln; score: with the priors, less that of no effect */
+} fg_evidence_model;
+
+/* A model ready for candidates: Cholesky factor of I + A, A = q K q. */
+typedef struct fg_evidence_factor {
+  size_t count, column[FG_EVIDENCE_MODEL_COLUMNS];
+  double root[FG_EVIDENCE_MODEL_COLUMNS]; /* of the prior variances */
+  double *lower;                          /* owned; count × count */
+  double *solved;                         /* owned; forward solution of the right side */
+  double evidence;
+} fg_evidence_factor;
+
+/* Columns of the bumps' own sizes: per bump X, R and beta, in this order. */
+typedef struct fg_evidence_scatter {
+  size_t first, count; /* columns; count 0: no bumps */
+} fg_evidence_scatter;
+
+/* State of a search over models: its problem, the options that a model can hold, and the models. */
+enum { FG_EVIDENCE_MODELS = 1024, FG_EVIDENCE_STORE = 1024 };
+
+/* A named effect over its starting shapes, or a rival. */
+typedef struct fg_evidence_option {
+  const fg_effect *effect;
+  const fg_rival *rival;
+  size_t stretch, stretches; /* of a rival of stretches: which, of how many */
+  bool seeded;               /* of an effect: its one shape is `shape` */
+  double shape[FG_FIELD_SHAPES];
+  size_t first, sets, each; /* columns */
+} fg_evidence_option;
+
+typedef struct fg_evidence_search {
+  fg_evidence_problem problem;
+  fg_evidence_scatter scatter;
+  fg_evidence_part *store; /* owned; FG_EVIDENCE_STORE */
+  size_t stored;
+  fg_evidence_model *models; /* owned; FG_EVIDENCE_MODELS; [0]: no effect */
+  size_t count;
+  fg_evidence_option *options; /* owned */
+  size_t option_count;
+} fg_evidence_search;
+
+fg_status fg_evidence_factor_open(fg_context *ctx, fg_evidence_problem *problem,
+                                  const fg_evidence_scatter *scatter,
+                                  const fg_evidence_model *model, fg_evidence_factor *factor);
+void fg_evidence_factor_close(fg_evidence_factor *factor);
+
+/* Scores `sets` candidates of `each` consecutive columns beside the factor's model, with prior
+ * variances alike for all of them: ln evidence of each. */
+fg_status fg_evidence_score_sets(fg_context *ctx, fg_evidence_problem *problem,
+                                 const fg_evidence_factor *factor, size_t first, size_t sets,
+                                 size_t each, const double *variance, double *evidence);
+
+/* Products of consecutive columns beside the factor's model: `gram` count × count, `right`. */
+fg_status fg_evidence_beside(fg_context *ctx, fg_evidence_problem *problem,
+                             const fg_evidence_factor *factor, size_t first, size_t count,
+                             double *gram, double *right);
+
+/* ln evidence of columns with such products under prior variances; `work` count² numbers. */
+double fg_evidence_of(size_t count, const double *gram, const double *right, const double *variance,
+                      double *work);
+
+#endif

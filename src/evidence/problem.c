@@ -1,0 +1,231 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "evidence/problem.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+
+/* Share of a vector beside the basis, below which it lies in its span. */
+#define IN_SPAN 1e-10
+/* Error of the edge model, um, which is smooth along the edge: it bounds what evidence can tell
+ * (reports/loop_scans.md), and a share of the residual that linear columns leave of large effects.
+ */
+#define EDGE_ERROR_UM   0.005
+#define LINEARITY_SHARE 0.004
+/* Length over which such errors are alike, mm. */
+#define ERROR_LENGTH_MM 0.3
+
+static double product(size_t n, const double *a, const double *b) {
+  enum { LANES = 8 }; /* sums that do not wait for each other */
+  double sum[LANES] = {0};
+  size_t i = 0;
+  for (; i + LANES <= n; i += LANES)
+    for (size_t k = 0; k < LANES; k++)
+      sum[k] += a[i + k] * b[i + k];
+  for (; i < n; i++)
+    sum[0] += a[i] * b[i];
+  return ((sum[0] + sum[4]) + (sum[1] + sum[5])) + ((sum[2] + sum[6]) + (sum[3] + sum[7]));
+}
+
+/* Mean distance of neighbouring rows in use along their arcs, mm. */
+static double row_spacing_mm(const fg_evidence_problem *p) {
+  double sum = 0;
+  size_t count = 0;
+  for (size_t k = 1; k < p->rows; k++) {
+    const fg_edge_fit_row *a = &p->edge_fit->rows[p->row[k - 1]],
+                          *b = &p->edge_fit->rows[p->row[k]];
+    double apart = fabs(a->s_mm - b->s_mm);
+    if (a->view != b->view || a->group != b->group || apart > ERROR_LENGTH_MM) continue;
+    sum += apart;
+    count++;
+  }
+  return count ? sum / (double)count : ERROR_LENGTH_MM;
+}
+
+static void find_noise_um(fg_evidence_problem *p, const double *residual_um) {
+  const fg_scatter *s = &p->edge_fit->scatter;
+  double square = 0, weight = 0;
+  for (size_t k = 0; k < p->rows; k++) {
+    const fg_edge_fit_row *row = &p->edge_fit->rows[p->row[k]];
+    square += row->weight * residual_um[p->row[k]] * residual_um[p->row[k]];
+    weight += row->weight;
+  }
+  double error2 = EDGE_ERROR_UM * EDGE_ERROR_UM +
+                  LINEARITY_SHARE * LINEARITY_SHARE * (weight > 0 ? square / weight : 0);
+  double alike = fmax(1, sqrt(M_PI) * ERROR_LENGTH_MM / row_spacing_mm(p));
+  double integral = s->share > 0 ? s->integral : 1;
+  p->noise_um = sqrt(s->row_um * s->row_um * integral + error2 * alike);
+}
+
+static void whiten_rows(fg_evidence_problem *p, const double *values, double *out) {
+  for (size_t i = 0; i < p->edge_fit->row_count; i++)
+    p->white[i] = fg_edge_fit_root_weight(&p->edge_fit->rows[i]) * values[i] / p->noise_um;
+  fg_whitening_apply(&p->whitening, p->white);
+  for (size_t k = 0; k < p->rows; k++)
+    out[k] = p->white[p->row[k]];
+}
+
+/* Removes the flat directions; `along` gets the parts along them. */
+static void take_flat_out(const fg_evidence_problem *p, double *v, double *along) {
+  memset(along, 0, p->rank * sizeof *along);
+  for (int twice = 0; twice < 2; twice++)
+    for (size_t k = 0; k < p->rank; k++) {
+      const double *b = p->basis + k * p->rows;
+      double d = product(p->rows, b, v);
+      along[k] += d;
+      for (size_t i = 0; i < p->rows; i++)
+        v[i] -= d * b[i];
+    }
+}
+
+/* Extends the basis by a direction of the geometry, unless it lies in its span. */
+static void add_direction(fg_evidence_problem *p, const double *direction, const double *jacobian,
+                          double *column) {
+  size_t parameters = p->edge_fit->parameters, rows = p->edge_fit->row_count;
+  memset(column, 0, rows * sizeof *column);
+  for (size_t a = 0; a < parameters; a++)
+    for (size_t i = 0; direction[a] != 0 && i < rows; i++)
+      column[i] += direction[a] * jacobian[a * rows + i];
+  double *to = p->basis + p->rank * p->rows, *numbers = p->directions + p->rank * parameters;
+  whiten_rows(p, column, to);
+  double whole = product(p->rows, to, to), *along = p->residual_along;
+  take_flat_out(p, to, along);
+  double left = product(p->rows, to, to);
+  if (!(left > IN_SPAN * whole)) return;
+  memcpy(numbers, direction, parameters * sizeof *numbers);
+  for (size_t k = 0; k < p->rank; k++)
+    for (size_t a = 0; a < parameters; a++)
+      numbers[a] -= along[k] * p->directions[k * parameters + a];
+  for (size_t i = 0; i < p->rows; i++)
+    to[i] /= sqrt(left);
+  for (size_t a = 0; a < parameters; a++)
+    numbers[a] /= sqrt(left);
+  p->rank++;
+}
+
+/* Flat directions: of each part of several bumps the means of X, beta and R and their linear
+ * trends; every other parameter alone. */
+static fg_status find_flat_directions(fg_context *ctx, fg_evidence_problem *p,
+                                      const double *jacobian) {
+  const fg_edge_fit *edge_fit = p->edge_fit;
+  size_t parameters = edge_fit->parameters, at = 0;
+  double *direction = NULL;
+  FG_TRY(fg_memory_allocate(ctx, parameters + edge_fit->row_count, sizeof *direction,
+                            (void **)&direction));
+  double *column = direction + parameters;
+  for (size_t part = 0; part < edge_fit->part_count; part++) {
+    size_t bumps = edge_fit->parts[part].bump_count;
+    direction[at] = 1;
+    if (!edge_fit->parts[part].radius_known) add_direction(p, direction, jacobian, column);
+    direction[at] = 0;
+    for (size_t k = 0; bumps && k < 3; k++)
+      for (int trend = 0; trend < 2; trend++) {
+        for (size_t b = 0; b < bumps; b++)
+          direction[at + 1 + 3 * b + k] =
+              trend ? ((double)b - 0.5 * (double)(bumps - 1)) / (double)bumps : 1;
+        add_direction(p, direction, jacobian, column);
+        memset(direction, 0, parameters * sizeof *direction);
+      }
+    at += 1 + 3 * bumps;
+  }
+  for (; at < parameters; at++) { /* poses */
+    direction[at] = 1;
+    add_direction(p, direction, jacobian, column);
+    direction[at] = 0;
+  }
+  free(direction);
+  return FG_OK;
+}
+
+static fg_status allocate_problem(fg_context *ctx, fg_evidence_problem *p) {
+  size_t rows = p->edge_fit->row_count, parameters = p->edge_fit->parameters;
+  FG_TRY(fg_memory_allocate(ctx, rows, sizeof *p->row, (void **)&p->row));
+  FG_TRY(fg_memory_allocate(ctx, rows, sizeof *p->white, (void **)&p->white));
+  FG_TRY(fg_memory_allocate(ctx, rows * parameters, sizeof *p->basis, (void **)&p->basis));
+  FG_TRY(fg_memory_allocate(ctx, parameters * parameters, sizeof *p->directions,
+                            (void **)&p->directions));
+  FG_TRY(
+      fg_memory_allocate(ctx, parameters, sizeof *p->residual_along, (void **)&p->residual_along));
+  FG_TRY(fg_memory_allocate(ctx, rows, sizeof *p->residual, (void **)&p->residual));
+  FG_TRY(
+      fg_memory_allocate(ctx, FG_EVIDENCE_COLUMNS * rows, sizeof *p->values, (void **)&p->values));
+  FG_TRY(fg_memory_allocate(ctx, FG_EVIDENCE_COLUMNS * parameters, sizeof *p->along,
+                            (void **)&p->along));
+  FG_TRY(fg_memory_allocate(ctx, FG_EVIDENCE_COLUMNS, sizeof *p->right, (void **)&p->right));
+  return fg_memory_allocate(ctx, FG_EVIDENCE_COLUMNS, sizeof *p->gram, (void **)&p->gram);
+}
+
+fg_status fg_evidence_open(fg_context *ctx, const fg_edge_fit *edge_fit, const double *residual_um,
+                           const double *jacobian, double misfit_um, fg_evidence_problem *p) {
+  *p = (fg_evidence_problem){.edge_fit = edge_fit};
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(allocate_problem(ctx, p));
+  for (size_t i = 0; i < edge_fit->row_count; i++)
+    if (edge_fit->rows[i].weight > 0 && !edge_fit->views[edge_fit->rows[i].view].held_out)
+      p->row[p->rows++] = i;
+  FG_TRY_EXIT(fg_whitening_open(ctx, edge_fit, &p->whitening));
+  find_noise_um(p, residual_um);
+  p->noise_um = fmax(p->noise_um, misfit_um);
+  FG_TRY_EXIT(find_flat_directions(ctx, p, jacobian));
+  whiten_rows(p, residual_um, p->residual);
+  take_flat_out(p, p->residual, p->residual_along);
+  p->square = product(p->rows, p->residual, p->residual);
+exit:
+  if (status != FG_OK) fg_evidence_close(p);
+  return status;
+}
+
+void fg_evidence_close(fg_evidence_problem *p) {
+  for (size_t c = 0; p->gram && c < p->count; c++)
+    free(p->gram[c]);
+  fg_whitening_close(&p->whitening);
+  free(p->row);
+  free(p->white);
+  free(p->basis);
+  free(p->directions);
+  free(p->residual_along);
+  free(p->residual);
+  free(p->values);
+  free(p->along);
+  free(p->right);
+  free(p->gram);
+  *p = (fg_evidence_problem){.edge_fit = NULL};
+}
+
+size_t fg_evidence_add(fg_evidence_problem *p, const double *values) {
+  double *to = p->values + p->count * p->rows;
+  whiten_rows(p, values, to);
+  take_flat_out(p, to, p->along + p->count * p->rank);
+  p->right[p->count] = product(p->rows, to, p->residual);
+  return p->count++;
+}
+
+void fg_evidence_drop(fg_evidence_problem *p, size_t from) {
+  for (size_t c = 0; c < p->count; c++) {
+    if (c >= from) {
+      free(p->gram[c]);
+      p->gram[c] = NULL;
+    }
+    for (size_t k = from; p->gram[c] && k < p->count; k++)
+      p->gram[c][k] = NAN;
+  }
+  p->count = from;
+}
+
+void fg_evidence_products(fg_evidence_problem *p, size_t column, size_t first, size_t count,
+                          double *into) {
+  const double *own = p->values + column * p->rows;
+  if (!p->gram[column] && (p->gram[column] = malloc(FG_EVIDENCE_COLUMNS * sizeof(double))))
+    for (size_t c = 0; c < FG_EVIDENCE_COLUMNS; c++)
+      p->gram[column][c] = NAN;
+  double *known = p->gram[column];
+  for (size_t c = first; c < first + count; c++) {
+    double value = known ? known[c] : NAN;
+    if (isnan(value) && p->gram[c]) value = p->gram[c][column];
+    if (isnan(value)) value = product(p->rows, own, p->values + c * p->rows);
+    if (known) known[c] = value;
+    into[c - first] = value;
+  }
+}

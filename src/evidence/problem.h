@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Rows of an edge fit as one linear Gaussian problem: residual = geometry + effects + noise.
+ *
+ * All values are whitened, divided by the noise, and beside the geometry's flat directions: those
+ * that no prior bounds. Products of columns are computed when they are first asked for. */
+#ifndef FG_EVIDENCE_PROBLEM_H
+#define FG_EVIDENCE_PROBLEM_H
+
+#include "effect/effect.h"
+#include "rows/scatter.h"
+
+enum { FG_EVIDENCE_COLUMNS = 3200 };
+
+typedef struct fg_evidence_problem {
+  const fg_edge_fit *edge_fit;
+  size_t rows, *row; /* rows in use */
+  fg_whitening whitening;
+  double noise_um;    /* standard deviation of a whitened smooth value */
+  double *basis;      /* owned; rank × rows: flat directions of the geometry, orthonormal */
+  double *directions; /* owned; rank × parameters: those directions in the geometry's numbers */
+  size_t rank;
+  double *residual, square;
+  double *values; /* owned; FG_EVIDENCE_COLUMNS × rows */
+  double *along;  /* owned; FG_EVIDENCE_COLUMNS × rank: a column's part along the basis */
+  double *residual_along;
+  double *right; /* products with the residual */
+  size_t count;
+  double **gram; /* owned; per column: products with the others, NaN: not yet asked for */
+  double *white; /* all rows */
+} fg_evidence_problem;
+
+/* Opens a problem at the edge fit's geometry. `residual_um` has the effects put back; `jacobian` is
+ * parameters × rows (fg_edge_fit_residual); `misfit_um`: residual that no model follows (0:
+ * unknown). */
+fg_status fg_evidence_open(fg_context *ctx, const fg_edge_fit *edge_fit, const double *residual_um,
+                           const double *jacobian, double misfit_um, fg_evidence_problem *problem);
+void fg_evidence_close(fg_evidence_problem *problem);
+
+/* Appends a column, um along the normal per unit, one value per row of the edge fit; returns its
+ * index. The caller has seen that there is room (fg_evidence_has_room). */
+size_t fg_evidence_add(fg_evidence_problem *problem, const double *values);
+static inline bool fg_evidence_has_room(const fg_evidence_problem *problem, size_t columns) {
+  return problem->count + columns <= FG_EVIDENCE_COLUMNS;
+}
+/* Forgets the columns from one on. */
+void fg_evidence_drop(fg_evidence_problem *problem, size_t from);
+/* Fills `into` with the products of a column with columns [first, first + count). */
+void fg_evidence_products(fg_evidence_problem *problem, size_t column, size_t first, size_t count,
+                          double *into);
+
+#endif

@@ -1,0 +1,404 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "evidence/rivals.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "effect/midline.h"
+
+/* Sines of a Hilbert-space Gaussian process (Solin and Särkkä 2020) on a domain wider than the rows
+ * by REACH; and polynomials for waves longer than the domain. */
+enum { SINES = 36, LONG = 4, LINE_COLUMNS = SINES + LONG };
+#define REACH 1.3
+/* Highest total degree of a field over both axes; harmonics of a ring, from 2 on; of the edge's
+ * direction; polynomials of a bump, from 3 on. */
+enum {
+  DEGREE = 8,
+  RING_LAST = 9,
+  DIRECTION_LAST = 9,
+  BUMP_FIRST = 3,
+  BUMP_ORDERS = 8,
+  PHI_ORDERS = 11
+};
+
+/* ---- over a line ---- */
+
+typedef struct line {
+  double middle, half;
+} line;
+
+static double wave_number(const line *l, size_t j) {
+  return M_PI * (double)(j + 1) / (2 * REACH * l->half);
+}
+
+static void fill_line(const line *l, double at, double *values) {
+  double reach = REACH * l->half, u = fmax(-REACH, fmin(REACH, (at - l->middle) / l->half));
+  double angle = wave_number(l, 0) * (u * l->half + reach), s = sin(angle), c2 = 2 * cos(angle);
+  double before = 0, now = s, norm = 1 / sqrt(reach);
+  for (size_t j = 0; j < SINES; j++) {
+    values[j] = norm * now;
+    double next = c2 * now - before;
+    before = now;
+    now = next;
+  }
+  double *p = values + SINES;
+  p[0] = u;
+  p[1] = (3 * u * u - 1) / 2;
+  p[2] = u * (5 * u * u - 3) / 2;
+  p[3] = ((35 * u * u - 30) * u * u + 3) / 8;
+}
+
+/* Spectrum of a Matérn process of order 3/2; polynomials vary less the shorter the length is. */
+static void fill_line_variances(const line *l, double length, double *variance) {
+  static const double power[LONG] = {0, 1, 2, 4}, size[LONG] = {0.5, 0.25, 0.125, 0.06};
+  double k = sqrt(3) / length;
+  for (size_t j = 0; j < SINES; j++) {
+    double w = wave_number(l, j);
+    variance[j] = 4 * k * k * k / ((k * k + w * w) * (k * k + w * w));
+  }
+  for (size_t j = 0; j < LONG; j++)
+    variance[SINES + j] = size[j] * fmin(1, pow(length / l->half, power[j]));
+}
+
+static line line_of_axis(const fg_field_frame *frame, int axis) {
+  double low = frame->first_mm[axis], high = frame->last_mm[axis];
+  return (line){0.5 * (low + high), fmax(0.5005 * (high - low), 1e-3)};
+}
+
+static line line_of_foil(const fg_edge_fit *edge_fit) {
+  double radius = edge_fit->parts[0].overall_radius_mm;
+  double low = edge_fit->psi_rad[0] * radius, high = edge_fit->psi_rad[1] * radius;
+  return (line){0.5 * (low + high), fmax(0.5005 * (high - low), 1e-3)};
+}
+
+static bool line_variances(const line *l, double first, size_t i, double *variance) {
+  if (i >= 5) return false;
+  fill_line_variances(l, ldexp(first, (int)i), variance);
+  return true;
+}
+
+/* ---- of the scanner ---- */
+
+size_t fg_rival_columns(const fg_rival *rival, const fg_edge_fit *edge_fit,
+                        const fg_edge_fit_row *row, double *values) {
+  fg_point at[FG_EDGE_FIT_PLACES], d[FG_RIVAL_COLUMNS];
+  size_t count = 0;
+  if (rival->columns) return rival->columns(edge_fit, row, values);
+  fg_edge_fit_places(row, row->ideal, at);
+  for (int k = 0; k < FG_EDGE_FIT_PLACES; k++) {
+    count = rival->glass(&edge_fit->frame, at[k], d);
+    for (size_t c = 0; c < count; c++)
+      values[c] = (k ? values[c] : 0) -
+                  (d[c].x * row->normal.x + d[c].y * row->normal.y) / FG_EDGE_FIT_PLACES;
+  }
+  return count;
+}
+
+#define OVER_LINE(name, over, moved_x, moved_y)                                                    \
+  static size_t name##_glass(const fg_field_frame *frame, fg_point at, fg_point *d) {              \
+    double values[LINE_COLUMNS];                                                                   \
+    const line l = line_of_axis(frame, over);                                                      \
+    fill_line(&l, fg_point_along(at, over), values);                                               \
+    for (size_t c = 0; c < LINE_COLUMNS; c++)                                                      \
+      d[c] = (fg_point){(moved_x)*values[c], (moved_y)*values[c]};                                 \
+    return LINE_COLUMNS;                                                                           \
+  }
+OVER_LINE(x_over_x, 0, 1, 0)
+OVER_LINE(y_over_x, 0, 0, 1)
+OVER_LINE(x_over_y, 1, 1, 0)
+OVER_LINE(y_over_y, 1, 0, 1)
+
+static bool x_variances(const fg_edge_fit *edge_fit, size_t i, double *variance) {
+  const line l = line_of_axis(&edge_fit->frame, 0);
+  return line_variances(&l, 1, i, variance);
+}
+
+static bool y_variances(const fg_edge_fit *edge_fit, size_t i, double *variance) {
+  const line l = line_of_axis(&edge_fit->frame, 1);
+  return line_variances(&l, 1, i, variance);
+}
+
+static void fill_legendre(double u, size_t count, double *values) {
+  values[0] = 1;
+  values[1] = u;
+  for (size_t n = 1; n + 1 < count; n++)
+    values[n + 1] =
+        ((2 * (double)n + 1) * u * values[n] - (double)n * values[n - 1]) / ((double)n + 1);
+}
+
+/* Products of Legendre polynomials by total degree, 1 to DEGREE; each moves x, then y. */
+static size_t plane_glass(const fg_field_frame *frame, fg_point at, fg_point *d) {
+  const line x = line_of_axis(frame, 0), y = line_of_axis(frame, 1);
+  double px[DEGREE + 1], py[DEGREE + 1];
+  fill_legendre((at.x - x.middle) / x.half, DEGREE + 1, px);
+  fill_legendre((at.y - y.middle) / y.half, DEGREE + 1, py);
+  size_t count = 0;
+  for (int degree = 1; degree <= DEGREE; degree++)
+    for (int i = 0; i <= degree; i++) {
+      double value = px[i] * py[degree - i];
+      d[count++] = (fg_point){value, 0};
+      d[count++] = (fg_point){0, value};
+    }
+  return count;
+}
+
+static bool plane_variances(const fg_edge_fit *edge_fit, size_t length, double *variance) {
+  static const double falls[] = {0.1, 0.2, 0.35, 0.5, 0.65, 0.8};
+  (void)edge_fit;
+  if (length >= sizeof falls / sizeof *falls) return false;
+  size_t count = 0;
+  for (int degree = 1; degree <= DEGREE; degree++)
+    for (int i = 0; i < 2 * (degree + 1); i++)
+      variance[count++] = pow(falls[length], 2 * (degree - 1)) / (degree + 1);
+  return true;
+}
+
+/* ---- of the part ---- */
+
+static size_t along_foil(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row, double share,
+                         double *values) {
+  const line l = line_of_foil(edge_fit);
+  fill_line(&l, row->psi * edge_fit->parts[0].overall_radius_mm, values);
+  for (size_t c = 0; c < LINE_COLUMNS; c++)
+    values[c] *= share;
+  return LINE_COLUMNS;
+}
+
+static size_t over_foil(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row, double *values) {
+  return along_foil(edge_fit, row, fg_midline_along_normal(row), values);
+}
+
+static size_t over_foil_radial(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row,
+                               double *values) {
+  return along_foil(edge_fit, row, fg_midline_along_radius(row), values);
+}
+
+static bool foil_variances(const fg_edge_fit *edge_fit, size_t i, double *variance) {
+  const line l = line_of_foil(edge_fit);
+  return line_variances(&l, 1.5, i, variance);
+}
+
+static size_t harmonics(double angle, int last, double size, double *values) {
+  size_t count = 0;
+  for (int k = 2; k <= last; k++) {
+    values[count++] = size * cos(k * angle);
+    values[count++] = size * sin(k * angle);
+  }
+  return count;
+}
+
+static size_t on_ring(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row, double *values) {
+  (void)edge_fit;
+  return harmonics(row->psi, RING_LAST, fg_midline_along_normal(row), values);
+}
+
+static size_t on_ring_radial(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row,
+                             double *values) {
+  (void)edge_fit;
+  return harmonics(row->psi, RING_LAST, fg_midline_along_radius(row), values);
+}
+
+static size_t over_direction(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row,
+                             double *values) {
+  (void)edge_fit;
+  return harmonics(row->normal_rad, DIRECTION_LAST, 1, values);
+}
+
+static void fill_falling(int first, int last, int each, double power, double *variance) {
+  for (int k = first; k <= last; k++)
+    for (int e = 0; e < each; e++)
+      *variance++ = pow((double)first / k, power);
+}
+
+static bool ring_variances(const fg_edge_fit *edge_fit, size_t i, double *variance) {
+  (void)edge_fit;
+  if (i >= 4) return false;
+  fill_falling(2, RING_LAST, 2, 2 * (double)i, variance);
+  return true;
+}
+
+static bool direction_variances(const fg_edge_fit *edge_fit, size_t i, double *variance) {
+  (void)edge_fit;
+  if (i >= 2) return false;
+  fill_falling(2, DIRECTION_LAST, 2, i ? 3 : 1, variance);
+  return true;
+}
+
+static size_t over_phi(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row, double *values) {
+  (void)edge_fit;
+  return fg_midline_legendre(row, BUMP_FIRST, 1, PHI_ORDERS, values);
+}
+
+static bool phi_variances(const fg_edge_fit *edge_fit, size_t i, double *variance) {
+  (void)edge_fit;
+  if (i >= 3) return false;
+  fill_falling(BUMP_FIRST, BUMP_FIRST + PHI_ORDERS - 1, 1, 1 + 2 * (double)i, variance);
+  return true;
+}
+
+/* ---- of single bumps ---- */
+
+size_t fg_rival_bump_count(const fg_edge_fit *edge_fit) {
+  size_t count = 0;
+  for (size_t p = 0; p < edge_fit->part_count; p++)
+    count += edge_fit->parts[p].bump_count;
+  return count;
+}
+
+size_t fg_rival_bump_index(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row) {
+  size_t first = 0;
+  for (size_t p = 0; p < row->part; p++)
+    first += edge_fit->parts[p].bump_count;
+  return first + row->bump_index;
+}
+
+size_t fg_rival_orders(const fg_edge_fit *edge_fit) {
+  size_t count = fg_rival_bump_count(edge_fit), fit = count ? FG_RIVAL_COLUMNS / count : 0;
+  return fit < BUMP_ORDERS ? fit : BUMP_ORDERS;
+}
+
+static size_t over_each(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row, double *values) {
+  size_t orders = fg_rival_orders(edge_fit), count = orders * fg_rival_bump_count(edge_fit);
+  memset(values, 0, count * sizeof *values);
+  if (row->bump)
+    fg_midline_legendre(row, BUMP_FIRST, 1, (int)orders,
+                        values + orders * fg_rival_bump_index(edge_fit, row));
+  return count;
+}
+
+static bool fill_each(const fg_edge_fit *edge_fit, size_t bumps, size_t i, double *variance) {
+  static const double powers[] = {0, 1, 3};
+  size_t orders = fg_rival_orders(edge_fit);
+  if (i >= 3 || !orders) return false;
+  for (size_t b = 0; b < bumps; b++)
+    fill_falling(BUMP_FIRST, BUMP_FIRST + (int)orders - 1, 1, powers[i], variance + b * orders);
+  return true;
+}
+
+static bool each_variances(const fg_edge_fit *edge_fit, size_t i, double *variance) {
+  return fill_each(edge_fit, fg_rival_bump_count(edge_fit), i, variance);
+}
+
+static bool one_variances(const fg_edge_fit *edge_fit, size_t i, double *variance) {
+  return fill_each(edge_fit, 1, i, variance);
+}
+
+/* ---- one part of a rival alone ---- */
+
+static bool alike_variances(const fg_edge_fit *edge_fit, size_t i, double *variance) {
+  (void)edge_fit;
+  variance[0] = variance[1] = 1;
+  return i == 0;
+}
+
+/* Products of degree 1 are scales and a shear; powers of x that move x are the lens's, the square
+ * of y that moves y the carriage's. In the order of plane_glass. */
+static bool product_has_name(size_t k) {
+  enum { OF_DEGREE_1 = 4, Y2_MOVES_Y = 5, X2_MOVES_X = 8, X3_MOVES_X = 16 };
+  return k < OF_DEGREE_1 || k == Y2_MOVES_Y || k == X2_MOVES_X || k == X3_MOVES_X;
+}
+
+/* The first harmonic is an ovality. */
+static bool harmonic_has_name(size_t k) {
+  return k == 0;
+}
+
+static size_t one_column(const fg_edge_fit *edge_fit) {
+  (void)edge_fit;
+  return 1;
+}
+
+static size_t two_columns(const fg_edge_fit *edge_fit) {
+  (void)edge_fit;
+  return 2;
+}
+
+const fg_effect *fg_rival_curve(const fg_rival *rival) {
+  for (const fg_effect *effect = fg_effect_first(); effect; effect = fg_effect_next(effect))
+    if (fg_effect_is_free(effect) && effect->coordinate == rival->coordinate &&
+        (!rival->moves || !strcmp(effect->moves, rival->moves)))
+      return effect;
+  return NULL;
+}
+
+const fg_rival fg_rivals[] = {
+    {.name = "scan.x.dx",
+     .coordinate = FG_EFFECT_X,
+     .moves = "x",
+     .glass = x_over_x_glass,
+     .variances = x_variances},
+    {.name = "scan.x.dy",
+     .coordinate = FG_EFFECT_X,
+     .moves = "y",
+     .glass = y_over_x_glass,
+     .variances = x_variances},
+    {.name = "scan.y.dx",
+     .coordinate = FG_EFFECT_Y,
+     .moves = "x",
+     .glass = x_over_y_glass,
+     .variances = y_variances},
+    {.name = "scan.y.dy",
+     .coordinate = FG_EFFECT_Y,
+     .moves = "y",
+     .glass = y_over_y_glass,
+     .variances = y_variances},
+    {.name = "scan.xy",
+     .coordinate = FG_EFFECT_Y,
+     .moves = "x and y",
+     .glass = plane_glass,
+     .variances = plane_variances,
+     .loose = true},
+    {.name = "scan.xy of one product",
+     .coordinate = FG_EFFECT_Y,
+     .moves = "x and y",
+     .glass = plane_glass,
+     .variances = alike_variances,
+     .stretch = one_column,
+     .has_name = product_has_name},
+    {.name = "foil.s",
+     .coordinate = FG_EFFECT_FOIL,
+     .columns = over_foil,
+     .variances = foil_variances},
+    {.name = "foil.ring",
+     .coordinate = FG_EFFECT_FOIL,
+     .columns = on_ring,
+     .variances = ring_variances},
+    {.name = "foil.ring of one harmonic",
+     .coordinate = FG_EFFECT_FOIL,
+     .columns = on_ring,
+     .variances = alike_variances,
+     .stretch = two_columns,
+     .has_name = harmonic_has_name},
+    {.name = "foil.s, radial",
+     .coordinate = FG_EFFECT_FOIL,
+     .columns = over_foil_radial,
+     .variances = foil_variances},
+    {.name = "foil.ring, radial",
+     .coordinate = FG_EFFECT_FOIL,
+     .columns = on_ring_radial,
+     .variances = ring_variances},
+    {.name = "foil.ring of one harmonic, radial",
+     .coordinate = FG_EFFECT_FOIL,
+     .columns = on_ring_radial,
+     .variances = alike_variances,
+     .stretch = two_columns,
+     .has_name = harmonic_has_name},
+    {.name = "bump.phi",
+     .coordinate = FG_EFFECT_PHI,
+     .columns = over_phi,
+     .variances = phi_variances},
+    {.name = "bump.each",
+     .coordinate = FG_EFFECT_INDEX,
+     .columns = over_each,
+     .variances = each_variances},
+    {.name = "bump.each of one bump",
+     .coordinate = FG_EFFECT_INDEX,
+     .columns = over_each,
+     .variances = one_variances,
+     .stretch = fg_rival_orders},
+    {.name = "edge.normal",
+     .coordinate = FG_EFFECT_NORMAL,
+     .columns = over_direction,
+     .variances = direction_variances},
+    {.name = NULL},
+};

@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Rivals: causes that nobody has named, as fields with a Gaussian prior over a coordinate.
+ *
+ * A row of the table is a basis and the variances of its coefficients for unit amplitude, one list
+ * per length. A named effect must lead all rivals to be found. */
+#ifndef FG_EVIDENCE_RIVALS_H
+#define FG_EVIDENCE_RIVALS_H
+
+#include "effect/effect.h"
+
+enum { FG_RIVAL_COLUMNS = 128, FG_RIVAL_LENGTHS = 6 };
+
+/* One rival on these rows. */
+typedef struct fg_rival {
+  const char *name;
+  fg_effect_coordinate
+      coordinate; /* of the free curve that shows it, and the thing moved (NULL: any) */
+  const char *moves;
+  bool loose; /* of so many numbers that their prior shapes what the rows do not show: it explains a
+                 residual, but corrects nothing */
+  /* Of the part, and of the edge: columns of one row. */
+  size_t (*columns)(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row, double *values);
+  /* Of the scanner: displacement at a place, per column. */
+  size_t (*glass)(const fg_field_frame *frame, fg_point at, fg_point *d);
+  /* Fills the variances of the columns for length i; returns false beyond the last one. */
+  bool (*variances)(const fg_edge_fit *edge_fit, size_t i, double *variance);
+  /* A rival of its own for every stretch of `stretch` columns of the rival before it in the table,
+   * one bump, one harmonic, one product of powers. NULL: the whole rival. */
+  size_t (*stretch)(const fg_edge_fit *edge_fit);
+  bool (*has_name)(size_t stretch); /* a named effect is the same; NULL: none */
+} fg_rival;
+
+/* The rows; NULL-terminated by name. */
+extern const fg_rival fg_rivals[];
+
+/* Fills all columns of one row, um along its normal per unit; returns their number. What moves the
+ * glass moves the midline as fg_effect_columns has it. */
+size_t fg_rival_columns(const fg_rival *rival, const fg_edge_fit *edge_fit,
+                        const fg_edge_fit_row *row, double *values);
+
+/* Returns the free curve that shows a rival in reports. */
+const fg_effect *fg_rival_curve(const fg_rival *rival);
+
+/* Number of bumps of all parts together, and the index of a row's bump among them. */
+size_t fg_rival_bump_count(const fg_edge_fit *edge_fit);
+size_t fg_rival_bump_index(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row);
+/* Number of polynomials of each bump. */
+size_t fg_rival_orders(const fg_edge_fit *edge_fit);
+
+#endif

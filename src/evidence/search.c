@@ -1,0 +1,341 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "evidence/search.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "evidence/options.h"
+
+/* Models that are extended in a round: of named effects alone, and with rivals if they are no
+ * further than REACH from the best. */
+enum { NAMED_FRONT = 4, RIVAL_FRONT = 3, NAMED_MAX = 4, RIVALS_MAX = 2, ROUNDS = 4 };
+#define REACH 60.0
+/* Gain from which a place is refined; points of a finer grid, and how often. */
+#define REFINE_GAIN 6.0
+enum { FINER = 9, FINER_LEVELS = 2, COPIES_MAX = 3 };
+/* Amplitudes of a rival, um: from the first one on by a factor of two each. */
+#define AMPLITUDE_MIN_UM 0.03
+enum { AMPLITUDES = 11 };
+
+/* Scatter of bumps: shares of their radius, and um along the foil. */
+static const double radius_shares[] = {0.002, 0.004, 0.008, 0.016, 0.032};
+static const double along_um[] = {3, 10, 30, 100};
+enum {
+  SHARES = sizeof radius_shares / sizeof *radius_shares,
+  ALONGS = sizeof along_um / sizeof *along_um
+};
+
+static double add_logs(double a, double b) {
+  return a > b ? a + log1p(exp(b - a)) : b + log1p(exp(a - b));
+}
+
+bool fg_evidence_holds(const fg_evidence_model *model, const fg_effect *effect) {
+  for (size_t k = 0; k < model->parts; k++)
+    if (model->part[k]->effect && fg_effect_same(model->part[k]->effect, effect)) return true;
+  return false;
+}
+
+static double mean_radius_um(const fg_edge_fit *edge_fit) {
+  double sum = 0;
+  for (size_t p = 0; p < edge_fit->part_count; p++)
+    sum += edge_fit->parts[p].mean_radius_mm;
+  return edge_fit->part_count ? 1000 * sum / (double)edge_fit->part_count : 0;
+}
+
+/* ---- one model ---- */
+
+static fg_status evaluate(fg_context *ctx, fg_evidence_search *s, fg_evidence_model *model) {
+  fg_evidence_factor factor;
+  FG_TRY(fg_evidence_factor_open(ctx, &s->problem, &s->scatter, model, &factor));
+  model->evidence = factor.evidence;
+  fg_evidence_factor_close(&factor);
+  return FG_OK;
+}
+
+/* Finds the scatter of the bumps at which the model is likeliest. */
+static fg_status find_scatter(fg_context *ctx, fg_evidence_search *s, fg_evidence_model *model) {
+  double radius = mean_radius_um(s->problem.edge_fit);
+  fg_evidence_model best = *model;
+  if (!s->scatter.count) return evaluate(ctx, s, model);
+  FG_TRY(evaluate(ctx, s, &best));
+  for (int which = 0; which < 2; which++) {
+    fg_evidence_model tried = best;
+    for (size_t i = 0; i < (size_t)(which ? ALONGS : SHARES); i++) {
+      tried.scatter_um[which] = which ? along_um[i] : radius * radius_shares[i];
+      FG_TRY(evaluate(ctx, s, &tried));
+      if (tried.evidence > best.evidence) best = tried;
+    }
+  }
+  *model = best;
+  return FG_OK;
+}
+
+static void set_score(const fg_evidence_search *s, fg_evidence_model *model) {
+  double none = s->count ? s->models[0].evidence : model->evidence;
+  model->score = model->evidence - none;
+  for (size_t k = 0; k < model->parts; k++)
+    model->score += model->part[k]->log_prior;
+}
+
+/* ---- candidates ---- */
+
+/* Best set of an option's columns beside a model. */
+typedef struct hit {
+  double evidence, mass; /* mass: ln of the evidence summed over shapes, less that of the best */
+  size_t set;
+} hit;
+
+static fg_status score_option(fg_context *ctx, fg_evidence_search *s,
+                              const fg_evidence_factor *factor, size_t first, size_t sets,
+                              size_t each, const double *variance, hit *to) {
+  double *evidence = NULL, sum = -INFINITY;
+  FG_TRY(fg_memory_allocate(ctx, sets, sizeof *evidence, (void **)&evidence));
+  fg_status status =
+      fg_evidence_score_sets(ctx, &s->problem, factor, first, sets, each, variance, evidence);
+  *to = (hit){.evidence = -INFINITY};
+  for (size_t i = 0; status == FG_OK && i < sets; i++) {
+    sum = add_logs(sum, evidence[i]);
+    if (!(evidence[i] > to->evidence)) continue;
+    to->evidence = evidence[i];
+    to->set = i;
+  }
+  to->mass = sum - to->evidence;
+  free(evidence);
+  return status;
+}
+
+/* Moves a place to the best one between its neighbours; the columns of the best stay. */
+static fg_status refine_place(fg_context *ctx, fg_evidence_search *s,
+                              const fg_evidence_factor *factor, const fg_evidence_option *option,
+                              double low, double high, fg_evidence_part *part, double *evidence) {
+  fg_evidence_problem *p = &s->problem;
+  size_t from = p->count, each = part->count, first, count;
+  double best = part->shape[0];
+  for (int level = 0; level < FINER_LEVELS && fg_evidence_has_room(p, (FINER + 1) * each);
+       level++) {
+    hit found;
+    for (int i = 0; i < FINER; i++) {
+      double shape[FG_FIELD_SHAPES] = {low + (high - low) * (i + 1) / (FINER + 1)};
+      FG_TRY(fg_evidence_add_effect(ctx, p, option->effect, shape, &first, &count));
+    }
+    FG_TRY(score_option(ctx, s, factor, from, FINER, each, part->variance, &found));
+    fg_evidence_drop(p, from);
+    double step = (high - low) / (FINER + 1), at = low + step * (double)(found.set + 1);
+    if (found.evidence > *evidence) {
+      *evidence = found.evidence;
+      best = at;
+    }
+    low = best - step;
+    high = best + step;
+  }
+  if (best == part->shape[0] || !fg_evidence_has_room(p, each)) return FG_OK;
+  part->shape[0] = best;
+  return fg_evidence_add_effect(ctx, p, option->effect, part->shape, &part->first, &count);
+}
+
+static fg_status fit_effect(fg_context *ctx, fg_evidence_search *s,
+                            const fg_evidence_factor *factor, const fg_evidence_option *option,
+                            fg_evidence_part *part, double *evidence) {
+  const fg_effect *effect = option->effect;
+  const fg_field_frame *frame = &s->problem.edge_fit->frame;
+  hit found;
+  *part = (fg_evidence_part){.effect = effect, .count = option->each};
+  memcpy(part->shape, option->shape, sizeof part->shape);
+  fg_evidence_effect_variances(effect, option->each, part->variance);
+  FG_TRY(score_option(ctx, s, factor, option->first, option->sets, option->each, part->variance,
+                      &found));
+  *evidence = found.evidence;
+  part->first = option->first + found.set * option->each;
+  part->log_prior = log(FG_EVIDENCE_PRIOR) + found.mass - log((double)option->sets);
+  if (option->seeded) part->log_prior = log(FG_EVIDENCE_PRIOR) - log((double)effect->starts);
+  if (option->sets < 2) return FG_OK;
+  size_t last = option->sets - 1, i = found.set;
+  part->shape[0] = effect->start(frame, i, option->sets);
+  if (found.evidence < factor->evidence + REFINE_GAIN) return FG_OK;
+  return refine_place(ctx, s, factor, option, effect->start(frame, i ? i - 1 : 0, option->sets),
+                      effect->start(frame, i < last ? i + 1 : last, option->sets), part, evidence);
+}
+
+/* Likeliest length and amplitude of a rival; the mass is over all. */
+static fg_status fit_rival(fg_context *ctx, fg_evidence_search *s, const fg_evidence_factor *factor,
+                           const fg_evidence_option *option, fg_evidence_part *part,
+                           double *evidence) {
+  const fg_edge_fit *edge_fit = s->problem.edge_fit;
+  size_t n = option->each, tried = 0;
+  double *gram = NULL, variance[FG_RIVAL_COLUMNS], scaled[FG_RIVAL_COLUMNS], sum = -INFINITY;
+  double best = -INFINITY;
+  *part = (fg_evidence_part){
+      .rival = option->rival, .stretch = option->stretch, .first = option->first, .count = n};
+  FG_TRY(fg_memory_allocate(ctx, 2 * n * (n + 1), sizeof *gram, (void **)&gram));
+  double *right = gram + n * n, *work = right + n;
+  fg_status status = fg_evidence_beside(ctx, &s->problem, factor, option->first, n, gram, right);
+  for (size_t l = 0; status == FG_OK && option->rival->variances(edge_fit, l, variance); l++)
+    for (int a = 0; a < AMPLITUDES; a++) {
+      double size = ldexp(AMPLITUDE_MIN_UM, a);
+      for (size_t c = 0; c < n; c++)
+        scaled[c] = size * size * variance[c];
+      double value = fg_evidence_of(n, gram, right, scaled, work);
+      sum = add_logs(sum, value);
+      tried++;
+      if (!(value > best)) continue;
+      best = value;
+      memcpy(part->variance, scaled, n * sizeof *scaled);
+    }
+  *evidence = factor->evidence + best;
+  part->log_prior = log(FG_EVIDENCE_PRIOR) + sum - best - log((double)tried);
+  if (option->stretches) part->log_prior -= log((double)option->stretches);
+  free(gram);
+  return status;
+}
+
+/* ---- sets ---- */
+
+static size_t copies_of(const fg_evidence_model *model, const fg_effect *effect) {
+  size_t count = 0;
+  for (size_t k = 0; k < model->parts; k++)
+    count += model->part[k]->effect == effect;
+  return count;
+}
+
+static bool holds_rival(const fg_evidence_model *model, const fg_evidence_option *option) {
+  for (size_t k = 0; k < model->parts; k++)
+    if (model->part[k]->rival == option->rival && model->part[k]->stretch == option->stretch)
+      return true;
+  return false;
+}
+
+/* Ripples and steps may come several times, all others once, in one of their bases. */
+static bool may_join(const fg_evidence_model *model, const fg_evidence_option *option) {
+  if (model->parts == FG_EVIDENCE_PARTS) return false;
+  if (option->rival) return model->parts - model->named < RIVALS_MAX && !holds_rival(model, option);
+  if (model->named == NAMED_MAX) return false;
+  if (option->effect->sought == FG_EFFECT_PLACED)
+    return copies_of(model, option->effect) < COPIES_MAX;
+  return !fg_evidence_holds(model, option->effect);
+}
+
+static bool same_part(const fg_evidence_part *a, const fg_evidence_part *b) {
+  return a->effect == b->effect && a->rival == b->rival && a->stretch == b->stretch;
+}
+
+static bool same_parts(const fg_evidence_model *a, const fg_evidence_model *b) {
+  bool taken[FG_EVIDENCE_PARTS] = {false};
+  if (a->parts != b->parts) return false;
+  for (size_t i = 0; i < a->parts; i++) {
+    size_t k = 0;
+    while (k < b->parts && (taken[k] || !same_part(a->part[i], b->part[k])))
+      k++;
+    if (k == b->parts) return false;
+    taken[k] = true;
+  }
+  return true;
+}
+
+/* Adds a model, or puts it in the place of a worse one of the same parts. */
+static void keep_model(fg_evidence_search *s, const fg_evidence_model *model) {
+  for (size_t m = 0; m < s->count; m++)
+    if (same_parts(&s->models[m], model)) {
+      if (model->score > s->models[m].score) s->models[m] = *model;
+      return;
+    }
+  if (s->count < FG_EVIDENCE_MODELS) s->models[s->count++] = *model;
+}
+
+static fg_status extend_model(fg_context *ctx, fg_evidence_search *s,
+                              const fg_evidence_model *from) {
+  fg_evidence_factor factor;
+  fg_status status = FG_OK;
+  FG_TRY(fg_evidence_factor_open(ctx, &s->problem, &s->scatter, from, &factor));
+  for (size_t o = 0; o < s->option_count && s->stored < FG_EVIDENCE_STORE; o++) {
+    const fg_evidence_option *option = &s->options[o];
+    fg_evidence_part *part = &s->store[s->stored];
+    fg_evidence_model model = *from;
+    if (!may_join(from, option)) continue;
+    FG_TRY_EXIT(option->rival ? fit_rival(ctx, s, &factor, option, part, &model.evidence)
+                              : fit_effect(ctx, s, &factor, option, part, &model.evidence));
+    s->stored++;
+    model.part[model.parts++] = part;
+    model.named += !option->rival;
+    set_score(s, &model);
+    keep_model(s, &model);
+  }
+exit:
+  fg_evidence_factor_close(&factor);
+  return status;
+}
+
+static int compare_models(const void *a, const void *b) {
+  double x = ((const fg_evidence_model *)a)->score, y = ((const fg_evidence_model *)b)->score;
+  return (x < y) - (x > y);
+}
+
+/* Selects the models of `parts` parts that the next round extends. */
+static size_t choose_front(const fg_evidence_search *s, size_t parts, size_t *front) {
+  size_t named = 0, rivals = 0, count = 0;
+  double top = s->models[0].score;
+  for (size_t m = 0; m < s->count; m++)
+    top = fmax(top, s->models[m].score);
+  for (size_t m = 0; m < s->count; m++) {
+    const fg_evidence_model *model = &s->models[m];
+    if (model->parts != parts) continue;
+    if (fg_evidence_is_named(model) ? named == NAMED_FRONT
+                                    : rivals == RIVAL_FRONT || model->score < top - REACH)
+      continue;
+    fg_evidence_is_named(model) ? named++ : rivals++;
+    front[count++] = m;
+  }
+  return count;
+}
+
+static fg_status run_rounds(fg_context *ctx, fg_evidence_search *s) {
+  size_t front[NAMED_FRONT + RIVAL_FRONT];
+  for (size_t parts = 0; parts < ROUNDS; parts++) {
+    double before = s->models[0].score;
+    for (size_t m = 0; m < s->count; m++)
+      before = fmax(before, s->models[m].score);
+    size_t count = choose_front(s, parts, front);
+    for (size_t k = 0; k < count; k++) {
+      fg_evidence_model model = s->models[front[k]];
+      FG_TRY(find_scatter(ctx, s, &model));
+      set_score(s, &model);
+      s->models[front[k]] = model;
+      FG_TRY(extend_model(ctx, s, &model));
+    }
+    qsort(s->models + 1, s->count - 1, sizeof *s->models, compare_models);
+    if (parts > 1 && s->models[1].score <= before + 1) break;
+  }
+  return FG_OK;
+}
+
+fg_status fg_evidence_search_run(fg_context *ctx, const fg_edge_fit *edge_fit,
+                                 const fg_effect_set *seed, const double *residual_um,
+                                 const double *jacobian, double misfit_um, fg_evidence_search *s) {
+  *s = (fg_evidence_search){.count = 0};
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(fg_evidence_open(ctx, edge_fit, residual_um, jacobian, misfit_um, &s->problem));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, FG_EVIDENCE_STORE, sizeof *s->store, (void **)&s->store));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, FG_EVIDENCE_MODELS, sizeof *s->models, (void **)&s->models));
+  FG_TRY_EXIT(fg_evidence_list_options(ctx, seed, jacobian, s));
+  fg_evidence_model none = {.scatter_um = {0.01 * mean_radius_um(edge_fit), 30}};
+  FG_TRY_EXIT(find_scatter(ctx, s, &none));
+  s->models[s->count++] = none;
+  FG_TRY_EXIT(run_rounds(ctx, s));
+  for (size_t m = 0; m < s->count && m < 24; m++) { /* every model with its own scatter */
+    FG_TRY_EXIT(find_scatter(ctx, s, &s->models[m]));
+    set_score(s, &s->models[m]);
+  }
+  qsort(s->models, s->count, sizeof *s->models, compare_models);
+exit:
+  if (status != FG_OK) fg_evidence_search_close(s);
+  return status;
+}
+
+void fg_evidence_search_close(fg_evidence_search *s) {
+  fg_evidence_close(&s->problem);
+  free(s->store);
+  free(s->models);
+  free(s->options);
+  *s = (fg_evidence_search){.count = 0};
+}

@@ -1,0 +1,164 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "evidence/verdict.h"
+
+#include <float.h>
+#include <math.h>
+
+/* A cause leads by this factor (Kass and Raftery 1995: "very strong" from ln 150 on), and by a
+ * share of the whole evidence: with edges so sharp the error of linear columns decides. */
+#define LEAD       5.0
+#define LEAD_SHARE 3e-4
+#define CLEAN_P    0.01
+/* Standard errors of the number that gives a polynomial its name; largest distance of its middle,
+ * in picture sizes: else it is a lower one. */
+#define LEADING_SIGMAS 2.0
+#define MIDDLE_REACH   1.5
+/* Share of the lowest polynomial in a crown or skew. */
+#define LOWEST_SHARE 0.6
+
+/* ---- models whose numbers do not bear their name ---- */
+
+static bool polynomial_bears_name(const fg_evidence_search *s, const fg_evidence_part *part,
+                                  const double *mean, const double *covariance, size_t n,
+                                  double *middle_mm) {
+  size_t lead = part->count - 1;
+  const fg_field_frame *frame = &s->problem.edge_fit->frame;
+  int axis = part->effect->axis;
+  double extent = fmax(frame->high_mm[0] - frame->low_mm[0], frame->high_mm[1] - frame->low_mm[1]);
+  if (!lead) return true;
+  if (fabs(mean[lead]) < LEADING_SIGMAS * sqrt(covariance[lead * n + lead])) return false;
+  double t = -mean[lead - 1] / ((double)part->count * mean[lead]);
+  *middle_mm = frame->centre_mm[axis] + FG_FIELD_HALF_MM * t;
+  return fabs(t) * FG_FIELD_HALF_MM <= MIDDLE_REACH * extent;
+}
+
+static bool lowest_leads(fg_evidence_problem *p, const fg_evidence_part *part, const double *mean) {
+  double lead = 0, rest = 0;
+  for (size_t c = 0; c < part->count; c++) {
+    double square;
+    fg_evidence_products(p, part->first + c, part->first + c, 1, &square);
+    *(c ? &rest : &lead) += mean[c] * mean[c] * square;
+  }
+  return lead >= LOWEST_SHARE * (lead + rest);
+}
+
+static fg_status bears_names(fg_context *ctx, fg_evidence_search *s, const fg_evidence_model *model,
+                             double middle_mm[FG_EVIDENCE_PARTS], bool *bears) {
+  fg_evidence_posterior posterior;
+  *bears = true;
+  FG_TRY(fg_evidence_find_posterior(ctx, s, model, &posterior));
+  for (size_t k = 0; k < model->parts; k++) {
+    const fg_evidence_part *part = model->part[k];
+    size_t at = fg_evidence_first_of(s, model, k), n = posterior.count;
+    const double *mean = posterior.mean + at, *covariance = posterior.covariance + at * n + at;
+    middle_mm[k] = NAN;
+    if (!part->effect) continue;
+    if (part->effect->polynomial)
+      *bears = *bears && polynomial_bears_name(s, part, mean, covariance, n, &middle_mm[k]);
+    if (part->effect->bends) *bears = *bears && lowest_leads(&s->problem, part, mean);
+  }
+  fg_evidence_posterior_close(&posterior);
+  return FG_OK;
+}
+
+/* ---- what leads ---- */
+
+static bool holds_rival_of(const fg_evidence_model *model, const fg_evidence_part *rival) {
+  for (size_t k = 0; k < model->parts; k++)
+    if (model->part[k]->rival == rival->rival && model->part[k]->stretch == rival->stretch)
+      return true;
+  return false;
+}
+
+/* Returns true when a model holds all causes of another. */
+static bool includes(const fg_evidence_model *model, const fg_evidence_model *other) {
+  for (size_t k = 0; k < other->parts; k++) {
+    const fg_evidence_part *part = other->part[k];
+    if (part->effect ? !fg_evidence_holds(model, part->effect) : !holds_rival_of(model, part))
+      return false;
+  }
+  return true;
+}
+
+static double probability_of_none(const fg_evidence_search *s) {
+  double sum = 0, none = 0, top = 0;
+  for (size_t m = 0; m < s->count; m++)
+    top = fmax(top, s->models[m].score);
+  for (size_t m = 0; m < s->count; m++) {
+    double weight = exp(s->models[m].score - top);
+    sum += weight;
+    if (!s->models[m].parts) none = weight;
+  }
+  return none / sum;
+}
+
+/* Lists the models from `floor` on that include no other one of them. */
+static fg_status list_ties(fg_context *ctx, fg_evidence_search *s, double floor,
+                           fg_evidence_verdict *v) {
+  for (size_t m = 0; m < s->count && v->ties < FG_EVIDENCE_TIES; m++) {
+    const fg_evidence_model *model = &s->models[m];
+    bool bears = true, more = false;
+    if (model->score < floor) break; /* sorted */
+    for (size_t k = 0; k < v->ties && !more; k++)
+      more = includes(model, &v->tie[k]);
+    if (more) continue;
+    FG_TRY(bears_names(ctx, s, model, v->middle_mm[v->ties], &bears));
+    if (bears) v->tie[v->ties++] = *model;
+  }
+  /* a smaller one may have come later */
+  size_t kept = 0;
+  for (size_t k = 0; k < v->ties; k++) {
+    bool more = false;
+    for (size_t i = 0; i < v->ties && !more; i++)
+      more = i != k && v->tie[i].parts < v->tie[k].parts && includes(&v->tie[k], &v->tie[i]);
+    if (more) continue;
+    for (size_t i = 0; i < FG_EVIDENCE_PARTS; i++)
+      v->middle_mm[kept][i] = v->middle_mm[k][i];
+    v->tie[kept++] = v->tie[k];
+  }
+  v->ties = kept;
+  return FG_OK;
+}
+
+/* The score of the best set of named effects alone whose numbers bear their names; -INFINITY: none
+ * is within the margin of the best model. */
+static fg_status find_best_named(fg_context *ctx, fg_evidence_search *s, double margin,
+                                 double *score) {
+  double middle_mm[FG_EVIDENCE_PARTS], top = s->models[0].score;
+  *score = -INFINITY;
+  for (size_t m = 0; m < s->count && s->models[m].score >= top - margin; m++) {
+    bool bears = false;
+    if (!fg_evidence_is_named(&s->models[m])) continue;
+    FG_TRY(bears_names(ctx, s, &s->models[m], middle_mm, &bears));
+    if (!bears) continue;
+    *score = s->models[m].score;
+    break;
+  }
+  return FG_OK;
+}
+
+/* The likeliest model with a rival stands for all where none bears its names: its rivals are shown.
+ */
+static void take_likeliest_rivals(const fg_evidence_search *s, fg_evidence_verdict *v) {
+  size_t m = 0;
+  while (m + 1 < s->count && fg_evidence_is_named(&s->models[m]))
+    m++;
+  for (size_t k = 0; k < FG_EVIDENCE_PARTS; k++)
+    v->middle_mm[0][k] = NAN;
+  v->tie[v->ties++] = s->models[m];
+}
+
+/* Sharp edges show errors of the columns themselves: a set of named effects is adequate up to a
+ * share of the evidence. What leads it by less is no rival; what follows it closely is. */
+fg_status fg_evidence_decide(fg_context *ctx, fg_evidence_search *s, fg_evidence_verdict *v) {
+  *v = (fg_evidence_verdict){.outcome = FG_EVIDENCE_CLEAN, .p_null = probability_of_none(s)};
+  double top = s->models[0].score, named;
+  if (v->p_null > CLEAN_P || !s->models[0].parts) return FG_OK;
+  FG_TRY(find_best_named(ctx, s, fmax(LEAD, LEAD_SHARE * top), &named));
+  FG_TRY(list_ties(ctx, s, isfinite(named) ? named - LEAD : top - LEAD, v));
+  if (!v->ties) take_likeliest_rivals(s, v);
+  v->outcome = !isfinite(named) ? FG_EVIDENCE_UNATTRIBUTED
+               : v->ties > 1    ? FG_EVIDENCE_TIED
+                                : FG_EVIDENCE_FOUND;
+  return FG_OK;
+}

@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Verdict of evidence: which explanations remain. */
+#ifndef FG_EVIDENCE_VERDICT_H
+#define FG_EVIDENCE_VERDICT_H
+
+#include "evidence/posterior.h"
+
+enum { FG_EVIDENCE_TIES = 16 };
+
+typedef enum fg_evidence_outcome {
+  FG_EVIDENCE_CLEAN,        /* no effect is as likely as one in a hundred */
+  FG_EVIDENCE_FOUND,        /* one set of named effects leads all others */
+  FG_EVIDENCE_TIED,         /* several explanations, at least one of them of named effects alone */
+  FG_EVIDENCE_UNATTRIBUTED, /* a rival leads all sets of named effects */
+} fg_evidence_outcome;
+
+typedef struct fg_evidence_verdict {
+  fg_evidence_outcome outcome;
+  fg_evidence_model tie[FG_EVIDENCE_TIES]; /* likeliest first; of FOUND one, of CLEAN none */
+  double middle_mm[FG_EVIDENCE_TIES][FG_EVIDENCE_PARTS]; /* of polynomials: their middle */
+  size_t ties;
+  double p_null; /* posterior probability of no effect */
+} fg_evidence_verdict;
+
+fg_status fg_evidence_decide(fg_context *ctx, fg_evidence_search *search,
+                             fg_evidence_verdict *verdict);
+
+#endif

@@ -1,0 +1,249 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The search's explanation against all others, by evidence: what nobody named must be able to win.
+ */
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "effect_search/iterate.h"
+#include "evidence/verdict.h"
+#include "scan_loop/state.h"
+
+/* A fit of another set moves the geometry, and with it the columns: so often. */
+enum { LINEARISATIONS = 2 };
+/* Ratio of misfit to noise from which the misfit counts. */
+#define MISFIT_MIN 1.2
+/* Relative difference up to which two shapes are one. */
+#define SAME_SHAPE 0.02
+
+/* Returns the effect that shows a part in reports: a rival's is its free curve. */
+static const fg_effect *shown_as(const fg_evidence_part *part) {
+  return part->effect ? part->effect : fg_rival_curve(part->rival);
+}
+
+/* ---- explanations in the form of the search ---- */
+
+static bool is_used(const fg_explanations *explanations, size_t candidate) {
+  for (size_t m = 0; m < explanations->count; m++)
+    if (explanations->each[m].mask >> candidate & 1) return true;
+  return false;
+}
+
+/* Returns the candidate of an effect with this shape, adds it, or puts it in the place of one that
+ * no explanation has; FG_CANDIDATES_MAX: there is no room. */
+static size_t find_candidate(const fg_edge_fit *edge_fit, fg_explanations *to,
+                             const fg_effect *effect, const double *shape) {
+  double values[FG_FIELD_COLUMNS];
+  size_t at = FG_CANDIDATES_MAX;
+  for (size_t e = 0; e < to->candidate_count; e++) {
+    const fg_candidate *one = &to->candidates[e];
+    if (one->kind != effect) continue;
+    bool same = !effect->start || fabs(one->shape[0] - shape[0]) <= SAME_SHAPE * fabs(shape[0]);
+    if (same || !is_used(to, e)) at = e;
+    if (same) break;
+  }
+  if (at == FG_CANDIDATES_MAX && to->candidate_count < FG_CANDIDATES_MAX) {
+    at = to->candidate_count++;
+    to->alone[at] = to->share[at] = 0;
+    to->smallest_um[at] = NAN;
+  }
+  for (size_t e = 0; at == FG_CANDIDATES_MAX && e < to->candidate_count; e++)
+    if (!is_used(to, e) && to->candidates[e].kind->sought == FG_EFFECT_PLACED) at = e;
+  if (at == FG_CANDIDATES_MAX || to->candidates[at].kind == effect) {
+    if (at < FG_CANDIDATES_MAX && effect->start) to->candidates[at].shape[0] = shape[0];
+    return at;
+  }
+  to->candidates[at] =
+      (fg_candidate){.kind = effect,
+                     .polynomial = effect->polynomial,
+                     .columns = effect->midline ? effect->midline(edge_fit, edge_fit->rows, values)
+                                                : effect->columns,
+                     .shapes = effect->shapes,
+                     .shape = {shape[0]}};
+  return at;
+}
+
+static void add_explanation(const fg_edge_fit *edge_fit, const fg_evidence_model *model,
+                            const double *middle_mm, double top, bool rivals_alone,
+                            fg_explanations *to) {
+  if (to->count == FG_EXPLANATIONS_MAX) return;
+  fg_explanation one = {.dof = 1, .excess = 1 + 2 * (top - model->score)};
+  for (size_t k = 0; k < model->parts; k++) {
+    const fg_evidence_part *part = model->part[k];
+    const fg_effect *effect = shown_as(part);
+    if (rivals_alone && part->effect) continue;
+    size_t e = effect ? find_candidate(edge_fit, to, effect, part->shape) : FG_CANDIDATES_MAX;
+    if (e == FG_CANDIDATES_MAX) continue;
+    one.mask |= 1u << e;
+    if (part->effect && part->effect->polynomial)
+      one.middle_mm[e] =
+          isfinite(middle_mm[k]) ? middle_mm[k] : edge_fit->frame.centre_mm[part->effect->axis];
+  }
+  for (size_t m = 0; m < to->count; m++)
+    if (to->each[m].mask == one.mask) return;
+  to->each[to->count++] = one;
+  to->total = to->count;
+}
+
+/* A named effect beside a rival is not found: without it the rivals are an explanation, too. */
+static void put_verdict(const fg_edge_fit *edge_fit, const fg_evidence_verdict *v,
+                        fg_explanations *to) {
+  to->count = to->total = 0;
+  to->right = v->outcome != FG_EVIDENCE_UNATTRIBUTED;
+  if (v->outcome == FG_EVIDENCE_CLEAN) {
+    to->each[0] = (fg_explanation){.mask = 0};
+    to->count = to->total = 1;
+    to->p_value = fmax(to->p_value, v->p_null);
+    return;
+  }
+  if (!v->ties) to->count = 0;
+  for (size_t k = 0; k < v->ties; k++)
+    add_explanation(edge_fit, &v->tie[k], v->middle_mm[k], v->tie[0].score, false, to);
+  if (v->outcome == FG_EVIDENCE_UNATTRIBUTED && v->tie[0].named)
+    add_explanation(edge_fit, &v->tie[0], v->middle_mm[0], v->tie[0].score, true, to);
+  to->p_value = fmin(to->p_value, fmax(v->p_null, DBL_MIN));
+}
+
+/* ---- the loop's set ---- */
+
+static bool same_kinds(const fg_effect_set *a, const fg_effect_set *b) {
+  if (a->count != b->count) return false;
+  for (size_t i = 0; i < a->count; i++) {
+    size_t k = 0;
+    while (k < b->count && a->effects[i].kind != b->effects[k].kind)
+      k++;
+    if (k == b->count) return false;
+  }
+  return true;
+}
+
+static bool is_finite_fit(const fg_edge_fit *edge_fit, const double *residual_um) {
+  for (size_t i = 0; i < edge_fit->row_count; i++)
+    if (!isfinite(residual_um[i])) return false;
+  return true;
+}
+
+/* Fits the likeliest explanation; the explanations so far stay where it cannot be fitted. */
+static fg_status take_verdict(fg_context *ctx, fg_scan_loop *loop, const fg_evidence_verdict *v,
+                              bool *moved) {
+  fg_explanations next = loop->explanations;
+  fg_effect_set set;
+  put_verdict(&loop->edge_fit, v, &next);
+  fg_search_take(&next, 0, &set);
+  *moved = !same_kinds(&set, &loop->set);
+  if (!*moved) {
+    loop->explanations = next;
+    return FG_OK;
+  }
+  size_t numbers = fg_edge_fit_geometry_size(&loop->edge_fit);
+  double *geometry = NULL;
+  FG_TRY(fg_memory_allocate(ctx, numbers, sizeof *geometry, (void **)&geometry));
+  fg_edge_fit_geometry_save(&loop->edge_fit, geometry);
+  fg_status status = fg_joint_fit(ctx, &loop->edge_fit, &set, loop->residual_after);
+  if (status == FG_OK && !is_finite_fit(&loop->edge_fit, loop->residual_after))
+    status = FG_ERR_NUMERIC;
+  if (status == FG_OK) {
+    loop->set = set;
+    loop->explanations = next;
+  } else if (status == FG_ERR_NUMERIC) {
+    fg_edge_fit_geometry_load(&loop->edge_fit, geometry);
+    status = fg_joint_fit(ctx, &loop->edge_fit, &loop->set, loop->residual_after);
+    *moved = false;
+  }
+  free(geometry);
+  return status;
+}
+
+static fg_status find_displacement(fg_context *ctx, fg_scan_loop *loop,
+                                   fg_evidence_search *search) {
+  const fg_edge_fit *edge_fit = &loop->edge_fit;
+  if (!loop->displacement_parts) {
+    FG_TRY(fg_memory_allocate(ctx, edge_fit->part_count, sizeof *loop->displacement_parts,
+                              (void **)&loop->displacement_parts));
+    for (size_t p = 0; p < edge_fit->part_count; p++)
+      FG_TRY(fg_memory_allocate(ctx, edge_fit->parts[p].bump_count,
+                                sizeof *loop->displacement_parts[p].bumps,
+                                (void **)&loop->displacement_parts[p].bumps));
+  }
+  return fg_evidence_find_displacement(ctx, search, &loop->displacement, loop->displacement_parts);
+}
+
+/* Returns true when an explanation of the loop holds an effect or a curve of the scanner. */
+static bool holds_scanner(const fg_explanations *explanations) {
+  for (size_t e = 0; e < explanations->candidate_count; e++)
+    if (explanations->candidates[e].kind->glass && is_used(explanations, e)) return true;
+  return false;
+}
+
+void fg_scan_loop_take_displacement(const fg_scan_loop *loop, fg_joint_fit_result *fit) {
+  const fg_edge_fit *edge_fit = &loop->edge_fit;
+  for (size_t p = 0; p < edge_fit->part_count; p++) {
+    const fg_displacement_part *from = &loop->displacement_parts[p];
+    fit->parts[p].overall = loop->scanner_is_suspect ? from->overall : 0;
+    for (size_t b = 0; b < edge_fit->parts[p].bump_count; b++)
+      if (loop->scanner_is_suspect)
+        memcpy(fit->parts[p].bumps[b], from->bumps[b], sizeof from->bumps[b]);
+      else
+        memset(fit->parts[p].bumps[b], 0, sizeof from->bumps[b]);
+  }
+}
+
+/* A misfit of the best model is noise to all models: then the search is repeated with it. */
+static fg_status search_models(fg_context *ctx, fg_scan_loop *loop, const double *residual,
+                               const double *jacobian, fg_evidence_search *search) {
+  double misfit_um = 0;
+  for (int again = 0; again < 2; again++) {
+    FG_TRY(fg_evidence_search_run(ctx, &loop->edge_fit, &loop->set, residual, jacobian, misfit_um,
+                                  search));
+    if (again) break;
+    fg_status status = fg_evidence_find_misfit(ctx, search, &misfit_um);
+    loop->misfit = status == FG_OK && misfit_um > MISFIT_MIN * search->problem.noise_um;
+    if (status == FG_OK && !loop->misfit) break;
+    fg_evidence_search_close(search);
+    if (status != FG_OK) return status;
+  }
+  return FG_OK;
+}
+
+static bool is_loose(const fg_evidence_model *model) {
+  for (size_t k = 0; k < model->parts; k++)
+    if (model->part[k]->rival && model->part[k]->rival->loose) return true;
+  return false;
+}
+
+static fg_status weigh_once(fg_context *ctx, fg_scan_loop *loop, double *residual, double *jacobian,
+                            bool *moved) {
+  fg_evidence_search search = {.count = 0};
+  fg_evidence_verdict verdict;
+  fg_status status = FG_OK;
+  FG_TRY(fg_search_put_back(ctx, &loop->edge_fit, &loop->set, residual, jacobian));
+  FG_TRY(search_models(ctx, loop, residual, jacobian, &search));
+  FG_TRY_EXIT(fg_evidence_decide(ctx, &search, &verdict));
+  loop->misfit = loop->misfit || (verdict.ties && is_loose(&verdict.tie[0]));
+  FG_TRY_EXIT(find_displacement(ctx, loop, &search));
+  FG_TRY_EXIT(take_verdict(ctx, loop, &verdict, moved));
+exit:
+  fg_evidence_search_close(&search);
+  return status;
+}
+
+fg_status fg_scan_loop_weigh_evidence(fg_context *ctx, fg_scan_loop *loop) {
+  fg_edge_fit *edge_fit = &loop->edge_fit;
+  double *residual = NULL, *jacobian = NULL;
+  bool moved = true;
+  fg_status status = FG_OK;
+  if (edge_fit->discs || edge_fit->coarse) return FG_OK;
+  FG_TRY_EXIT(fg_memory_allocate(ctx, edge_fit->row_count, sizeof *residual, (void **)&residual));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, edge_fit->row_count, edge_fit->parameters * sizeof *jacobian,
+                                 (void **)&jacobian));
+  for (int round = 0; moved && round < LINEARISATIONS; round++)
+    FG_TRY_EXIT(weigh_once(ctx, loop, residual, jacobian, &moved));
+  loop->by_evidence = true;
+  loop->scanner_is_suspect = holds_scanner(&loop->explanations);
+exit:
+  free(residual);
+  free(jacobian);
+  return status;
+}
