@@ -12,10 +12,20 @@
 /* Error of the edge model, um, which is smooth along the edge: it bounds what evidence can tell
  * (reports/loop_scans.md), and a share of the residual that linear columns leave of large effects.
  */
-#define EDGE_ERROR_UM   0.005
+#define EDGE_ERROR_UM   0.02
 #define LINEARITY_SHARE 0.004
 /* Length over which such errors are alike, mm. */
 #define ERROR_LENGTH_MM 0.3
+
+/* Bumps of up to six foils; rows of as many. */
+enum { BUMPS_MAX = 60, ROWS_MAX = 8000 };
+
+bool fg_evidence_fits(const fg_edge_fit *edge_fit) {
+  size_t bumps = 0;
+  for (size_t p = 0; p < edge_fit->part_count; p++)
+    bumps += edge_fit->parts[p].bump_count;
+  return !edge_fit->discs && bumps && bumps <= BUMPS_MAX && edge_fit->row_count <= ROWS_MAX;
+}
 
 static double product(size_t n, const double *a, const double *b) {
   enum { LANES = 8 }; /* sums that do not wait for each other */
@@ -56,7 +66,7 @@ static void find_noise_um(fg_evidence_problem *p, const double *residual_um) {
                   LINEARITY_SHARE * LINEARITY_SHARE * (weight > 0 ? square / weight : 0);
   double alike = fmax(1, sqrt(M_PI) * ERROR_LENGTH_MM / row_spacing_mm(p));
   double integral = s->share > 0 ? s->integral : 1;
-  p->noise_um = sqrt(s->row_um * s->row_um * integral + error2 * alike);
+  p->noise_um = sqrt(s->row_um * s->row_um * integral * fmax(1, s->swell) + error2 * alike);
 }
 
 static void whiten_rows(fg_evidence_problem *p, const double *values, double *out) {

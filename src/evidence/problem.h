@@ -29,6 +29,10 @@ typedef struct fg_evidence_problem {
   double *white; /* all rows */
 } fg_evidence_problem;
 
+/* Returns true for rows of some foils, not of many: a problem's time grows with the cube of the
+ * number of bumps, its memory with the number of rows. */
+bool fg_evidence_fits(const fg_edge_fit *edge_fit);
+
 /* Opens a problem at the edge fit's geometry. `residual_um` has the effects put back; `jacobian` is
  * parameters × rows (fg_edge_fit_residual); `misfit_um`: residual that no model follows (0:
  * unknown). */

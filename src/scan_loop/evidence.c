@@ -234,7 +234,7 @@ fg_status fg_scan_loop_weigh_evidence(fg_context *ctx, fg_scan_loop *loop) {
   double *residual = NULL, *jacobian = NULL;
   bool moved = true;
   fg_status status = FG_OK;
-  if (edge_fit->discs || edge_fit->coarse) return FG_OK;
+  if (edge_fit->coarse || !fg_evidence_fits(edge_fit)) return FG_OK;
   FG_TRY_EXIT(fg_memory_allocate(ctx, edge_fit->row_count, sizeof *residual, (void **)&residual));
   FG_TRY_EXIT(fg_memory_allocate(ctx, edge_fit->row_count, edge_fit->parameters * sizeof *jacobian,
                                  (void **)&jacobian));
