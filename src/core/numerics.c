@@ -22,3 +22,15 @@ fg_margin fg_margin_to(double lower, double upper, double value) {
   if (!isfinite(lower) && !isfinite(upper)) is_upper = true;
   return (fg_margin){is_upper ? upper : lower, is_upper ? above : below, is_upper};
 }
+
+double fg_dot_in_lanes(const double *a, const double *b, size_t count) {
+  enum { LANES = 8 };
+  double sum[LANES] = {0};
+  size_t i = 0;
+  for (; i + LANES <= count; i += LANES)
+    for (size_t k = 0; k < LANES; k++)
+      sum[k] += a[i + k] * b[i + k];
+  for (; i < count; i++)
+    sum[0] += a[i] * b[i];
+  return ((sum[0] + sum[4]) + (sum[1] + sum[5])) + ((sum[2] + sum[6]) + (sum[3] + sum[7]));
+}

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/numerics.h"
 #include "effect/columns.h"
 
 /* Mean square below which a column counts as zero beside the geometry. */
@@ -21,21 +22,9 @@
 /* Ratio to the chance level from which smooth parts of the width are significant. */
 #define CHANCE_TIMES 3.0
 
-double fg_search_dot(size_t n, const double *a, const double *b) {
-  enum { LANES = 8 }; /* sums that do not wait for each other */
-  double sum[LANES] = {0};
-  size_t i = 0;
-  for (; i + LANES <= n; i += LANES)
-    for (size_t k = 0; k < LANES; k++)
-      sum[k] += a[i + k] * b[i + k];
-  for (; i < n; i++)
-    sum[0] += a[i] * b[i];
-  return ((sum[0] + sum[4]) + (sum[1] + sum[5])) + ((sum[2] + sum[6]) + (sum[3] + sum[7]));
-}
-
 double fg_search_along(const fg_search_columns *s, size_t k, const double *v) {
   size_t first = s->first[k];
-  return fg_search_dot(s->last[k] - first, s->basis + k * s->rows + first, v + first);
+  return fg_dot_in_lanes(s->basis + k * s->rows + first, v + first, s->last[k] - first);
 }
 
 void fg_search_take_out(const fg_search_columns *s, size_t rank, double *v) {
@@ -61,11 +50,11 @@ static void find_support(fg_search_columns *s, size_t rank) {
 
 /* Adds v to the basis unless it lies in its span, or its new part is no longer than `min`. */
 static bool extend(fg_search_columns *s, size_t rank, const double *v, double share, double min) {
-  double *to = s->basis + rank * s->rows, whole = fg_search_dot(s->rows, v, v);
+  double *to = s->basis + rank * s->rows, whole = fg_dot_in_lanes(v, v, s->rows);
   if (!(whole > min)) return false;
   memcpy(to, v, s->rows * sizeof *to);
   fg_search_take_out(s, rank, to);
-  double left = fg_search_dot(s->rows, to, to);
+  double left = fg_dot_in_lanes(to, to, s->rows);
   if (!(left > fmax(share * whole, min))) return false;
   for (size_t i = 0; i < s->rows; i++)
     to[i] /= sqrt(left);
@@ -105,10 +94,10 @@ size_t fg_search_gather(const fg_search_columns *s, const fg_effect *effect, con
 static void fill_products(fg_search_columns *s, size_t from) {
   for (size_t a = from; a < s->count; a++) {
     const double *p = s->values + a * s->rows;
-    s->right[a] = fg_search_dot(s->rows, p, s->residual);
+    s->right[a] = fg_dot_in_lanes(p, s->residual, s->rows);
     for (size_t b = 0; b <= a; b++)
       s->gram[a * FG_SEARCH_COLUMNS + b] = s->gram[b * FG_SEARCH_COLUMNS + a] =
-          fg_search_dot(s->rows, p, s->values + b * s->rows);
+          fg_dot_in_lanes(p, s->values + b * s->rows, s->rows);
   }
 }
 
@@ -119,11 +108,11 @@ size_t fg_search_columns_add(fg_search_columns *s, const fg_effect *effect, cons
   *first = s->count;
   size_t count = fg_search_gather(s, effect, shape, to);
   for (size_t c = 0; c < count; c++, to += s->rows) {
-    double square = fg_search_dot(s->rows, to, to);
+    double square = fg_dot_in_lanes(to, to, s->rows);
     if (square == 0) continue; /* a knot that is not used */
     whole += square;
     fg_search_take_out(s, s->geometry_rank, to);
-    left += fg_search_dot(s->rows, to, to);
+    left += fg_dot_in_lanes(to, to, s->rows);
   }
   *share = whole > 0 ? left / whole : 0;
   memset(strain, 0, count * s->rows * sizeof *strain);
@@ -314,10 +303,10 @@ fg_status fg_search_width_uncertainty(fg_context *ctx, fg_search_columns *s) {
   rank = span_more(s, rank, s->strain, s->count);
   memcpy(left, s->width, s->rows * sizeof *left);
   fg_search_take_out(s, rank, left);
-  double before = fg_search_dot(s->rows, left, left);
+  double before = fg_dot_in_lanes(left, left, s->rows);
   size_t more = span_more(s, rank, v, nuisance(s, v));
   fg_search_take_out(s, more, left);
-  double after = fg_search_dot(s->rows, left, left), n = (double)s->rows;
+  double after = fg_dot_in_lanes(left, left, s->rows), n = (double)s->rows;
   double chance = (double)(more - rank) * after / fmax(n - (double)more, 1);
   if (before - after > CHANCE_TIMES * chance) s->width_part = (before - after - chance) / n;
   memcpy(s->basis, kept, kept_size);
@@ -382,13 +371,13 @@ static void span_geometry(fg_search_columns *s, const double *residual_um, const
   double *column = s->left; /* borrowed */
   for (size_t a = 0; a < s->edge_fit->parameters; a++) {
     whiten(s, jacobian + a * s->edge_fit->row_count, column);
-    if (fg_search_dot(s->rows, column, column) > 0 &&
+    if (fg_dot_in_lanes(column, column, s->rows) > 0 &&
         extend(s, s->geometry_rank, column, IN_BASIS, 0))
       s->geometry_rank++;
   }
   whiten(s, residual_um, s->residual);
   fg_search_take_out(s, s->geometry_rank, s->residual);
-  s->square = fg_search_dot(s->rows, s->residual, s->residual);
+  s->square = fg_dot_in_lanes(s->residual, s->residual, s->rows);
 }
 
 fg_status fg_search_columns_open(fg_context *ctx, const fg_edge_fit *edge_fit,

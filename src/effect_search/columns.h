@@ -55,8 +55,6 @@ fg_status fg_search_columns_open(fg_context *ctx, const fg_edge_fit *edge_fit,
                                  fg_search_columns *columns);
 void fg_search_columns_close(fg_search_columns *columns);
 
-double fg_search_dot(size_t n, const double *a, const double *b);
-
 /* Writes weighted columns of an effect at the rows in use, not projected; returns their number. */
 size_t fg_search_gather(const fg_search_columns *columns, const fg_effect *effect,
                         const double *shape, double *out);

@@ -3,6 +3,7 @@
 #include <gsl/gsl_cdf.h>
 #include <math.h>
 
+#include "core/numerics.h"
 #include "effect_search/state.h"
 
 /* Share of the noise beside a curve's smoother part, below which all of its columns are needed. */
@@ -34,7 +35,7 @@ double fg_search_integral(const fg_search_columns *s) {
  * is larger than the noise by the root of the correlation's integral. */
 static double noise_of(const fg_search_columns *c, size_t rank) {
   double dof = fmax((double)c->rows - (double)rank, 1) * c->integral;
-  return fmax(sqrt(fg_search_dot(c->rows, c->left, c->left) / dof), NOISE_MIN_UM);
+  return fmax(sqrt(fg_dot_in_lanes(c->left, c->left, c->rows) / dof), NOISE_MIN_UM);
 }
 
 fg_status fg_search_check_rows(fg_context *ctx, const fg_search *s) {
@@ -47,7 +48,7 @@ fg_status fg_search_check_rows(fg_context *ctx, const fg_search *s) {
 }
 
 static void take_noise(fg_search *s, size_t rank) {
-  s->full = fg_search_dot(s->columns.rows, s->columns.left, s->columns.left);
+  s->full = fg_dot_in_lanes(s->columns.left, s->columns.left, s->columns.rows);
   s->dof = rank - s->columns.geometry_rank;
   s->out->noise_um = noise_of(&s->columns, rank);
   double swell = s->columns.edge_fit->scatter.swell;

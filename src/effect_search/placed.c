@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/numerics.h"
 #include "effect_search/policy.h"
 
 /* A step elsewhere is as good when its residual exceeds the best one's by no more than this (1 in
@@ -162,11 +163,11 @@ fg_status fg_search_find_in_place(fg_context *ctx, fg_search *s) {
 /* Returns the gain in units of the noise beside the effect: when the effect is most of the
  * residual, the noise estimate must not include it. */
 static double gain_over_rest(fg_search *s, size_t rank, const fg_candidate *effect) {
-  double before = fg_search_dot(s->columns.rows, s->columns.left, s->columns.left), share;
+  double before = fg_dot_in_lanes(s->columns.left, s->columns.left, s->columns.rows), share;
   size_t first, kept = s->columns.count;
   size_t count = fg_search_columns_add(&s->columns, effect->kind, effect->shape, &first, &share);
   rank = fg_search_columns_span_more(&s->columns, rank, first, first + count);
-  double after = fg_search_dot(s->columns.rows, s->columns.left, s->columns.left);
+  double after = fg_dot_in_lanes(s->columns.left, s->columns.left, s->columns.rows);
   double noise = after / fmax((double)s->columns.rows - (double)rank, 1);
   double gain = noise > 0 ? (before - after) / (noise * fg_search_integral(&s->columns)) : 0;
   s->columns.count = kept; /* it was on trial */

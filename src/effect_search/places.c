@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "core/numerics.h"
 #include "core/small_solve.h"
 #include "effect_search/state.h"
 
@@ -41,9 +42,9 @@ static fg_search_hit gain_of(const fg_search *s, size_t rank, double place, size
   for (size_t a = 0; a < count; a++) {
     /* `left` is beside the basis already; the products are corrected for the column's part in the
      * basis. */
-    system.right[a] = fg_search_dot(c->rows, columns + a * c->rows, c->left);
+    system.right[a] = fg_dot_in_lanes(columns + a * c->rows, c->left, c->rows);
     for (size_t b = 0; b <= a; b++)
-      system.matrix[a][b] = fg_search_dot(c->rows, columns + a * c->rows, columns + b * c->rows);
+      system.matrix[a][b] = fg_dot_in_lanes(columns + a * c->rows, columns + b * c->rows, c->rows);
   }
   for (size_t k = 0; k < rank; k++) {
     double along[FG_SMALL_MAX];
@@ -138,7 +139,7 @@ double fg_search_rest_of_step(const fg_search_columns *c, size_t rank, const fg_
   double shape[FG_FIELD_SHAPES] = {at_mm};
   if (!has_both_sides(c, kind, at_mm)) return INFINITY;
   fg_search_gather(c, kind, shape, work);
-  double rest = fg_search_dot(c->rows, work, work);
+  double rest = fg_dot_in_lanes(work, work, c->rows);
   for (size_t k = 0; k < rank; k++) {
     double along = fg_search_along(c, k, work);
     rest -= along * along;

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/numerics.h"
 
 /* Share of a vector beside the basis, below which it lies in its span. */
 #define IN_SPAN 1e-10
@@ -25,18 +26,6 @@ bool fg_evidence_fits(const fg_edge_fit *edge_fit) {
   for (size_t p = 0; p < edge_fit->part_count; p++)
     bumps += edge_fit->parts[p].bump_count;
   return !edge_fit->discs && bumps && bumps <= BUMPS_MAX && edge_fit->row_count <= ROWS_MAX;
-}
-
-static double product(size_t n, const double *a, const double *b) {
-  enum { LANES = 8 }; /* sums that do not wait for each other */
-  double sum[LANES] = {0};
-  size_t i = 0;
-  for (; i + LANES <= n; i += LANES)
-    for (size_t k = 0; k < LANES; k++)
-      sum[k] += a[i + k] * b[i + k];
-  for (; i < n; i++)
-    sum[0] += a[i] * b[i];
-  return ((sum[0] + sum[4]) + (sum[1] + sum[5])) + ((sum[2] + sum[6]) + (sum[3] + sum[7]));
 }
 
 /* Mean distance of neighbouring rows in use along their arcs, mm. */
@@ -83,7 +72,7 @@ static void take_flat_out(const fg_evidence_problem *p, double *v, double *along
   for (int twice = 0; twice < 2; twice++)
     for (size_t k = 0; k < p->rank; k++) {
       const double *b = p->basis + k * p->rows;
-      double d = product(p->rows, b, v);
+      double d = fg_dot_in_lanes(b, v, p->rows);
       along[k] += d;
       for (size_t i = 0; i < p->rows; i++)
         v[i] -= d * b[i];
@@ -100,9 +89,9 @@ static void add_direction(fg_evidence_problem *p, const double *direction, const
       column[i] += direction[a] * jacobian[a * rows + i];
   double *to = p->basis + p->rank * p->rows, *numbers = p->directions + p->rank * parameters;
   whiten_rows(p, column, to);
-  double whole = product(p->rows, to, to), *along = p->residual_along;
+  double whole = fg_dot_in_lanes(to, to, p->rows), *along = p->residual_along;
   take_flat_out(p, to, along);
-  double left = product(p->rows, to, to);
+  double left = fg_dot_in_lanes(to, to, p->rows);
   if (!(left > IN_SPAN * whole)) return;
   memcpy(numbers, direction, parameters * sizeof *numbers);
   for (size_t k = 0; k < p->rank; k++)
@@ -181,7 +170,7 @@ fg_status fg_evidence_open(fg_context *ctx, const fg_edge_fit *edge_fit, const d
   FG_TRY_EXIT(find_flat_directions(ctx, p, jacobian));
   whiten_rows(p, residual_um, p->residual);
   take_flat_out(p, p->residual, p->residual_along);
-  p->square = product(p->rows, p->residual, p->residual);
+  p->square = fg_dot_in_lanes(p->residual, p->residual, p->rows);
 exit:
   if (status != FG_OK) fg_evidence_close(p);
   return status;
@@ -208,7 +197,7 @@ size_t fg_evidence_add(fg_evidence_problem *p, const double *values) {
   double *to = p->values + p->count * p->rows;
   whiten_rows(p, values, to);
   take_flat_out(p, to, p->along + p->count * p->rank);
-  p->right[p->count] = product(p->rows, to, p->residual);
+  p->right[p->count] = fg_dot_in_lanes(to, p->residual, p->rows);
   return p->count++;
 }
 
@@ -234,7 +223,7 @@ void fg_evidence_products(fg_evidence_problem *p, size_t column, size_t first, s
   for (size_t c = first; c < first + count; c++) {
     double value = known ? known[c] : NAN;
     if (isnan(value) && p->gram[c]) value = p->gram[c][column];
-    if (isnan(value)) value = product(p->rows, own, p->values + c * p->rows);
+    if (isnan(value)) value = fg_dot_in_lanes(own, p->values + c * p->rows, p->rows);
     if (known) known[c] = value;
     into[c - first] = value;
   }
