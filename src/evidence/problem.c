@@ -170,7 +170,6 @@ fg_status fg_evidence_open(fg_context *ctx, const fg_edge_fit *edge_fit, const d
   FG_TRY_EXIT(find_flat_directions(ctx, p, jacobian));
   whiten_rows(p, residual_um, p->residual);
   take_flat_out(p, p->residual, p->residual_along);
-  p->square = fg_dot_in_lanes(p->residual, p->residual, p->rows);
 exit:
   if (status != FG_OK) fg_evidence_close(p);
   return status;

@@ -19,7 +19,7 @@ typedef struct fg_evidence_problem {
   double *basis;      /* owned; rank × rows: flat directions of the geometry, orthonormal */
   double *directions; /* owned; rank × parameters: those directions in the geometry's numbers */
   size_t rank;
-  double *residual, square;
+  double *residual;
   double *values; /* owned; FG_EVIDENCE_COLUMNS × rows */
   double *along;  /* owned; FG_EVIDENCE_COLUMNS × rank: a column's part along the basis */
   double *residual_along;

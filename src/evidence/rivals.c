@@ -238,37 +238,37 @@ static bool phi_variances(const fg_edge_fit *edge_fit, size_t i, double *varianc
 
 /* ---- of single bumps ---- */
 
-size_t fg_rival_bump_count(const fg_edge_fit *edge_fit) {
+static size_t count_bumps(const fg_edge_fit *edge_fit) {
   size_t count = 0;
   for (size_t p = 0; p < edge_fit->part_count; p++)
     count += edge_fit->parts[p].bump_count;
   return count;
 }
 
-size_t fg_rival_bump_index(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row) {
+static size_t bump_index_of(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row) {
   size_t first = 0;
   for (size_t p = 0; p < row->part; p++)
     first += edge_fit->parts[p].bump_count;
   return first + row->bump_index;
 }
 
-size_t fg_rival_orders(const fg_edge_fit *edge_fit) {
-  size_t count = fg_rival_bump_count(edge_fit), fit = count ? FG_RIVAL_COLUMNS / count : 0;
+static size_t orders_of_bump(const fg_edge_fit *edge_fit) {
+  size_t count = count_bumps(edge_fit), fit = count ? FG_RIVAL_COLUMNS / count : 0;
   return fit < BUMP_ORDERS ? fit : BUMP_ORDERS;
 }
 
 static size_t over_each(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row, double *values) {
-  size_t orders = fg_rival_orders(edge_fit), count = orders * fg_rival_bump_count(edge_fit);
+  size_t orders = orders_of_bump(edge_fit), count = orders * count_bumps(edge_fit);
   memset(values, 0, count * sizeof *values);
   if (row->bump)
     fg_midline_legendre(row, BUMP_FIRST, 1, (int)orders,
-                        values + orders * fg_rival_bump_index(edge_fit, row));
+                        values + orders * bump_index_of(edge_fit, row));
   return count;
 }
 
 static bool fill_each(const fg_edge_fit *edge_fit, size_t bumps, size_t i, double *variance) {
   static const double powers[] = {0, 1, 3};
-  size_t orders = fg_rival_orders(edge_fit);
+  size_t orders = orders_of_bump(edge_fit);
   if (i >= 3 || !orders) return false;
   for (size_t b = 0; b < bumps; b++)
     fill_falling(BUMP_FIRST, BUMP_FIRST + (int)orders - 1, 1, powers[i], variance + b * orders);
@@ -276,7 +276,7 @@ static bool fill_each(const fg_edge_fit *edge_fit, size_t bumps, size_t i, doubl
 }
 
 static bool each_variances(const fg_edge_fit *edge_fit, size_t i, double *variance) {
-  return fill_each(edge_fit, fg_rival_bump_count(edge_fit), i, variance);
+  return fill_each(edge_fit, count_bumps(edge_fit), i, variance);
 }
 
 static bool one_variances(const fg_edge_fit *edge_fit, size_t i, double *variance) {
@@ -395,7 +395,7 @@ const fg_rival fg_rivals[] = {
      .coordinate = FG_EFFECT_INDEX,
      .columns = over_each,
      .variances = one_variances,
-     .stretch = fg_rival_orders},
+     .stretch = orders_of_bump},
     {.name = "edge.normal",
      .coordinate = FG_EFFECT_NORMAL,
      .columns = over_direction,

@@ -8,7 +8,7 @@
 
 #include "effect/effect.h"
 
-enum { FG_RIVAL_COLUMNS = 128, FG_RIVAL_LENGTHS = 6 };
+enum { FG_RIVAL_COLUMNS = 128 };
 
 /* One rival on these rows. */
 typedef struct fg_rival {
@@ -40,11 +40,5 @@ size_t fg_rival_columns(const fg_rival *rival, const fg_edge_fit *edge_fit,
 
 /* Returns the free curve that shows a rival in reports. */
 const fg_effect *fg_rival_curve(const fg_rival *rival);
-
-/* Number of bumps of all parts together, and the index of a row's bump among them. */
-size_t fg_rival_bump_count(const fg_edge_fit *edge_fit);
-size_t fg_rival_bump_index(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row);
-/* Number of polynomials of each bump. */
-size_t fg_rival_orders(const fg_edge_fit *edge_fit);
 
 #endif

@@ -98,7 +98,6 @@ static void put_verdict(const fg_edge_fit *edge_fit, const fg_evidence_verdict *
     to->p_value = fmax(to->p_value, v->p_null);
     return;
   }
-  if (!v->ties) to->count = 0;
   for (size_t k = 0; k < v->ties; k++)
     add_explanation(edge_fit, &v->tie[k], v->middle_mm[k], v->tie[0].score, false, to);
   if (v->outcome == FG_EVIDENCE_UNATTRIBUTED && v->tie[0].named)
