@@ -97,6 +97,14 @@ typedef struct fg_calibrated {
   double move[FG_CALIBRATION_SOURCES][FG_CALIBRATED_MAX];
 } fg_calibrated;
 
+/* Form error: peak-to-valley deviation of the part from its least-squares circle (ISO 12181), as a
+ * loop finds it. NaN with a range: the edges do not tell the part's deviation from the scanner's;
+ * NaN without: too little of the arc is seen; all 0: nothing was looked for. */
+typedef struct fg_form_error {
+  double um, u_um;
+  double range_um[2];
+} fg_form_error;
+
 typedef struct fg_bump {
   int number;                    /* 1 is next to the lip */
   unsigned flags;                /* fg_bump_flag */
@@ -123,12 +131,14 @@ typedef struct fg_bump {
   double position_deg;             /* direction of C seen from O, about the scan's x axis */
   /* Min and max value over explanations that a loop could not tell apart; both 0: none. */
   double radius_range_mm[2], height_range_mm[2];
+  fg_form_error form_error;
   double covariance[3][3]; /* of (C_x, C_y, R), mm² */
   fg_calibrated calibrated;
 } fg_bump;
 
 typedef struct fg_overall {
   double radius_range_mm[2]; /* as of a bump; both 0: none */
+  fg_form_error form_error;  /* of the lands */
   fg_point centre_mm;        /* O */
   double u_centre_mm[2];
   double radius_mm, u_radius_mm; /* R0 */

@@ -132,6 +132,16 @@ extern "C" {
 
 typedef struct fg_render_spec fg_render_spec;
 
+/* The least-squares circle through an arc, or all lands, of the part as it is: with its effects,
+ * without those of the scanner. Where nothing deforms the part it is the ideal circle. */
+typedef struct fg_render_measurand {
+  double radius_mm; /* NaN: too short for a circle */
+  fg_point centre_px;
+  double form_error_um; /* peak-to-valley deviation from that circle */
+  /* X, h, alpha and theta of a bump, of its circle and that of the lands. */
+  double centre_to_centre_mm, height_mm, bump_angle_deg, intersection_angle_deg;
+} fg_render_measurand;
+
 /* True values of one bump (midline), before part effects move it. theta by cos(theta) = (X² - R² -
  * R0²) / (2 R R0). */
 typedef struct fg_render_bump {
@@ -143,6 +153,7 @@ typedef struct fg_render_bump {
   double height_mm;              /* h = R0 - (X - R) */
   fg_point centre_px;
   bool crushed;
+  fg_render_measurand measurand;
 } fg_render_bump;
 
 /* True values of one beam of a cantilever. Its length runs from the line of the roots (a comb's
@@ -164,7 +175,8 @@ typedef struct fg_render_foil {
   double rotate_deg; /* direction of the foil's middle seen from O, or of a cantilever's beams,
                         about the scan's x axis */
   bool mirror;       /* false: bump numbers rise clockwise as the scan is seen */
-  const fg_render_bump *bumps; /* without the missing ones */
+  fg_render_measurand measurand; /* of the lands; not of a cantilever */
+  const fg_render_bump *bumps;   /* without the missing ones */
   size_t bump_count;
   const fg_render_beam *beams; /* of a cantilever, without the missing ones; else NULL */
   size_t beam_count;

@@ -11,7 +11,7 @@
 static void list_columns(const fg_evidence_scatter *scatter, const fg_evidence_model *model,
                          fg_evidence_factor *f) {
   for (size_t c = 0; c < scatter->count; c++) {
-    double um = model->scatter_um[c % 3 == 2];
+    double um = model->scatter_um[c % FG_EVIDENCE_SCATTERS];
     f->column[f->count] = scatter->first + c;
     f->root[f->count++] = um;
   }
@@ -135,18 +135,19 @@ fg_status fg_evidence_beside(fg_context *ctx, fg_evidence_problem *p, const fg_e
 }
 
 fg_status fg_evidence_score_sets(fg_context *ctx, fg_evidence_problem *p,
-                                 const fg_evidence_factor *f, size_t first, size_t sets,
-                                 size_t each, const double *variance, double *evidence) {
+                                 const fg_evidence_factor *f, const fg_evidence_sets *sets,
+                                 const double *variance, double *evidence) {
   enum { EACH_MAX = 24 };
-  double *forward = NULL, gram[EACH_MAX * EACH_MAX], right[EACH_MAX];
+  double *forward = NULL, gram[EACH_MAX * EACH_MAX], right[EACH_MAX], scaled[EACH_MAX];
   double work[EACH_MAX * EACH_MAX + EACH_MAX];
-  size_t count = sets * each;
-  FG_TRY(solve_columns(ctx, p, f, first, count, &forward));
-  for (size_t s = 0; s < sets; s++) {
+  size_t each = sets->each, count = sets->count * each;
+  FG_TRY(solve_columns(ctx, p, f, sets->first, count, &forward));
+  for (size_t s = 0; s < sets->count; s++) {
+    size_t first = sets->first + s * each;
     for (size_t a = 0; a < each; a++) {
       size_t at = s * each + a;
-      fg_evidence_products(p, first + at, first + s * each, a + 1, gram + a * each);
-      right[a] = p->right[first + at];
+      fg_evidence_products(p, first + a, first, a + 1, gram + a * each);
+      right[a] = p->right[first + a];
       for (size_t i = 0; i < f->count; i++) {
         const double *own = forward + i * count;
         right[a] -= own[at] * f->solved[i];
@@ -154,7 +155,12 @@ fg_status fg_evidence_score_sets(fg_context *ctx, fg_evidence_problem *p,
           gram[a * each + b] -= own[at] * own[s * each + b];
       }
     }
-    evidence[s] = f->evidence + fg_evidence_of(each, gram, right, variance, work);
+    for (int size = 0; size < FG_EVIDENCE_SIZES; size++) {
+      for (size_t a = 0; a < each; a++)
+        scaled[a] = ldexp(variance[a], -2 * size);
+      evidence[s * FG_EVIDENCE_SIZES + (size_t)size] =
+          f->evidence + fg_evidence_of(each, gram, right, scaled, work);
+    }
   }
   free(forward);
   return FG_OK;

@@ -12,6 +12,10 @@
 
 enum { FG_EVIDENCE_PARTS = 6, FG_EVIDENCE_MODEL_COLUMNS = 700 };
 
+/* Numbers of a bump that scatter: its height above O at the crown, its radius at that height, its
+ * place along the foil. */
+enum { FG_EVIDENCE_HEIGHT, FG_EVIDENCE_RADIUS, FG_EVIDENCE_PLACE, FG_EVIDENCE_SCATTERS };
+
 /* A named effect (`effect`) or a rival; none of both: the scatter of the bumps. */
 typedef struct fg_evidence_part {
   const fg_effect *effect;
@@ -26,8 +30,8 @@ typedef struct fg_evidence_part {
 typedef struct fg_evidence_model {
   const fg_evidence_part *part[FG_EVIDENCE_PARTS]; /* of the search's store */
   size_t parts, named;
-  double scatter_um[2];   /* of the bumps: radius and distance, place along the foil */
-  double evidence, score; /* ln; score: with the priors, less that of no effect */
+  double scatter_um[FG_EVIDENCE_SCATTERS]; /* of the bumps */
+  double evidence, score;                  /* ln; score: with the priors, less that of no effect */
 } fg_evidence_model;
 
 /* A model ready for candidates: Cholesky factor of I + A, A = q K q. */
@@ -39,7 +43,7 @@ typedef struct fg_evidence_factor {
   double evidence;
 } fg_evidence_factor;
 
-/* Columns of the bumps' own sizes: per bump X, R and beta, in this order. */
+/* Columns of the bumps' own numbers: FG_EVIDENCE_SCATTERS of each. */
 typedef struct fg_evidence_scatter {
   size_t first, count; /* columns; count 0: no bumps */
 } fg_evidence_scatter;
@@ -73,11 +77,19 @@ fg_status fg_evidence_factor_open(fg_context *ctx, fg_evidence_problem *problem,
                                   const fg_evidence_model *model, fg_evidence_factor *factor);
 void fg_evidence_factor_close(fg_evidence_factor *factor);
 
-/* Scores `sets` candidates of `each` consecutive columns beside the factor's model, with prior
- * variances alike for all of them: ln evidence of each. */
+/* Candidates: `count` sets of `each` consecutive columns. */
+typedef struct fg_evidence_sets {
+  size_t first, count, each;
+} fg_evidence_sets;
+
+/* Sizes of an amplitude's prior: the row's, and from there down by a factor of two each. */
+enum { FG_EVIDENCE_SIZES = 7 };
+
+/* Scores candidates beside the factor's model, with prior variances alike for all of them: ln
+ * evidence, count × FG_EVIDENCE_SIZES. */
 fg_status fg_evidence_score_sets(fg_context *ctx, fg_evidence_problem *problem,
-                                 const fg_evidence_factor *factor, size_t first, size_t sets,
-                                 size_t each, const double *variance, double *evidence);
+                                 const fg_evidence_factor *factor, const fg_evidence_sets *sets,
+                                 const double *variance, double *evidence);
 
 /* Products of consecutive columns beside the factor's model: `gram` count × count, `right`. */
 fg_status fg_evidence_beside(fg_context *ctx, fg_evidence_problem *problem,

@@ -7,8 +7,9 @@
 
 #include "core/memory.h"
 #include "effect/columns.h"
+#include "evidence/unnamed.h"
 
-enum { OPTIONS_MAX = 128 };
+enum { OPTIONS_MAX = 160 };
 
 /* Standard deviations of amplitudes, um at FG_FIELD_HALF_MM, where the effect's row has none. */
 #define SIZE_UM 20.0
@@ -137,12 +138,10 @@ static fg_status add_rival_columns(fg_context *ctx, const fg_rival *rival, fg_ev
   return FG_OK;
 }
 
-/* Stretches of the whole rival `of`: products up to this degree, and all harmonics and bumps. */
-enum { PRODUCTS_MAX = 18 };
-static void add_stretches(const fg_rival *rival, const fg_evidence_option *of,
+static void add_stretches(const fg_rival *rival, const fg_evidence_sets *columns,
                           fg_evidence_search *s) {
-  size_t width = rival->stretch(s->problem.edge_fit), count = width ? of->each / width : 0;
-  if (rival->glass && count > PRODUCTS_MAX) count = PRODUCTS_MAX;
+  size_t width = rival->stretch(s->problem.edge_fit);
+  size_t count = width ? columns->count * columns->each / width : 0;
   for (size_t k = 0; k < count; k++) {
     if (rival->has_name && rival->has_name(k)) continue;
     fg_evidence_option *option = new_option(s);
@@ -150,29 +149,59 @@ static void add_stretches(const fg_rival *rival, const fg_evidence_option *of,
     option->rival = rival;
     option->stretch = k;
     option->stretches = count;
-    option->first = of->first + k * width;
+    option->first = columns->first + k * width;
     option->each = width;
   }
 }
 
 static fg_status add_rivals(fg_context *ctx, fg_evidence_search *s) {
-  const fg_evidence_option *whole = NULL;
+  fg_evidence_sets columns = {0};
   for (const fg_rival *rival = fg_rivals; rival->name; rival++) {
+    if (!rival->of_last) {
+      columns.count = 1;
+      FG_TRY(add_rival_columns(ctx, rival, &s->problem, &columns.first, &columns.each));
+    }
     if (rival->stretch) {
-      if (whole) add_stretches(rival, whole, s);
+      add_stretches(rival, &columns, s);
       continue;
     }
-    fg_evidence_option *option = new_option(s);
-    if (!option) return FG_OK;
+    fg_evidence_option *option = columns.each ? new_option(s) : NULL;
+    if (!option) continue;
     option->rival = rival;
-    FG_TRY(add_rival_columns(ctx, rival, &s->problem, &option->first, &option->each));
-    whole = option->each ? option : NULL;
-    if (!whole) s->option_count--;
+    option->first = columns.first;
+    option->each = columns.each;
   }
   return FG_OK;
 }
 
-/* Sizes and places of the bumps: per bump X, R, and the place along the foil, um per um. */
+/* ---- how the bumps scatter ---- */
+
+static double turn_from_first(const fg_edge_fit_part *part, size_t b) {
+  double turn = 0;
+  for (size_t k = 1; k <= b; k++)
+    turn += remainder(part->bumps[k].direction_rad - part->bumps[k - 1].direction_rad, 2 * M_PI);
+  return turn;
+}
+
+static double scattering_um(const fg_edge_fit_part *part, size_t b, int which) {
+  const fg_edge_fit_bump *bump = &part->bumps[b];
+  return 1000 * (which == FG_EVIDENCE_HEIGHT ? bump->distance_mm - bump->radius_mm
+                 : which == FG_EVIDENCE_RADIUS
+                     ? bump->radius_mm
+                     : turn_from_first(part, b) * part->bumps[0].distance_mm);
+}
+
+static void fill_scatter_column(const double *own, size_t rows, double distance_mm, int which,
+                                double *column) {
+  const double *distance = own, *direction = own + rows, *radius = own + 2 * rows;
+  for (size_t i = 0; i < rows; i++)
+    column[i] = which == FG_EVIDENCE_HEIGHT   ? distance[i]
+                : which == FG_EVIDENCE_RADIUS ? distance[i] + radius[i]
+                                              : direction[i] / distance_mm;
+}
+
+/* Bumps are alike in their size, not in how far the fit has moved them: the numbers of the fit
+ * are put back. */
 static fg_status add_scatter(fg_context *ctx, const double *jacobian, fg_evidence_search *s) {
   fg_evidence_problem *p = &s->problem;
   const fg_edge_fit *edge_fit = p->edge_fit;
@@ -180,17 +209,16 @@ static fg_status add_scatter(fg_context *ctx, const double *jacobian, fg_evidenc
   double *column = NULL;
   s->scatter.first = p->count;
   FG_TRY(fg_memory_allocate(ctx, rows, sizeof *column, (void **)&column));
-  for (size_t part = 0; part < edge_fit->part_count; part++) {
-    for (size_t b = 0; b < edge_fit->parts[part].bump_count && fg_evidence_has_room(p, 3); b++) {
-      const double *own = jacobian + (at + 1 + 3 * b) * rows;
-      double per_um = 1 / edge_fit->parts[part].bumps[b].distance_mm;
-      fg_evidence_add(p, own);
-      fg_evidence_add(p, own + 2 * rows);
-      for (size_t i = 0; i < rows; i++)
-        column[i] = own[rows + i] * per_um;
-      fg_evidence_add(p, column);
-    }
-    at += 1 + 3 * edge_fit->parts[part].bump_count;
+  for (size_t k = 0; k < edge_fit->part_count; k++) {
+    const fg_edge_fit_part *part = &edge_fit->parts[k];
+    for (size_t b = 0; b < part->bump_count && fg_evidence_has_room(p, FG_EVIDENCE_SCATTERS); b++)
+      for (int which = 0; which < FG_EVIDENCE_SCATTERS; which++) {
+        fill_scatter_column(jacobian + (at + 1 + 3 * b) * rows, rows, part->bumps[b].distance_mm,
+                            which, column);
+        fg_evidence_put_back(p, fg_evidence_add(p, column),
+                             scattering_um(part, b, which) - scattering_um(part, 0, which));
+      }
+    at += 1 + 3 * part->bump_count;
   }
   s->scatter.count = p->count - s->scatter.first;
   free(column);
@@ -203,5 +231,7 @@ fg_status fg_evidence_list_options(fg_context *ctx, const fg_effect_set *seed,
   FG_TRY(add_scatter(ctx, jacobian, s));
   FG_TRY(add_rivals(ctx, s));
   FG_TRY(add_effects(ctx, s));
+  for (const fg_effect *effect = fg_unnamed_effects; effect->id; effect++)
+    FG_TRY(add_shaped(ctx, effect, s));
   return add_seeds(ctx, seed, s);
 }

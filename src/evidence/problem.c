@@ -105,7 +105,7 @@ static void add_direction(fg_evidence_problem *p, const double *direction, const
 }
 
 /* Flat directions: of each part of several bumps the means of X, beta and R and their linear
- * trends; every other parameter alone. */
+ * trends over the bumps' numbers; every other parameter alone. */
 static fg_status find_flat_directions(fg_context *ctx, fg_evidence_problem *p,
                                       const double *jacobian) {
   const fg_edge_fit *edge_fit = p->edge_fit;
@@ -116,6 +116,7 @@ static fg_status find_flat_directions(fg_context *ctx, fg_evidence_problem *p,
   double *column = direction + parameters;
   for (size_t part = 0; part < edge_fit->part_count; part++) {
     size_t bumps = edge_fit->parts[part].bump_count;
+    int middle = bumps ? edge_fit->parts[part].bumps[bumps / 2].number : 0;
     direction[at] = 1;
     if (!edge_fit->parts[part].radius_known) add_direction(p, direction, jacobian, column);
     direction[at] = 0;
@@ -123,7 +124,7 @@ static fg_status find_flat_directions(fg_context *ctx, fg_evidence_problem *p,
       for (int trend = 0; trend < 2; trend++) {
         for (size_t b = 0; b < bumps; b++)
           direction[at + 1 + 3 * b + k] =
-              trend ? ((double)b - 0.5 * (double)(bumps - 1)) / (double)bumps : 1;
+              trend ? (double)(edge_fit->parts[part].bumps[b].number - middle) / (double)bumps : 1;
         add_direction(p, direction, jacobian, column);
         memset(direction, 0, parameters * sizeof *direction);
       }
@@ -198,6 +199,14 @@ size_t fg_evidence_add(fg_evidence_problem *p, const double *values) {
   take_flat_out(p, to, p->along + p->count * p->rank);
   p->right[p->count] = fg_dot_in_lanes(to, p->residual, p->rows);
   return p->count++;
+}
+
+void fg_evidence_put_back(fg_evidence_problem *p, size_t column, double amplitude) {
+  const double *values = p->values + column * p->rows;
+  for (size_t i = 0; i < p->rows; i++)
+    p->residual[i] -= amplitude * values[i];
+  for (size_t c = 0; c < p->count; c++)
+    p->right[c] = fg_dot_in_lanes(p->values + c * p->rows, p->residual, p->rows);
 }
 
 void fg_evidence_drop(fg_evidence_problem *p, size_t from) {

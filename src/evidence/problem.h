@@ -46,6 +46,8 @@ size_t fg_evidence_add(fg_evidence_problem *problem, const double *values);
 static inline bool fg_evidence_has_room(const fg_evidence_problem *problem, size_t columns) {
   return problem->count + columns <= FG_EVIDENCE_COLUMNS;
 }
+/* Measures a column's amplitude from another zero: it was `amplitude` above it. */
+void fg_evidence_put_back(fg_evidence_problem *problem, size_t column, double amplitude);
 /* Forgets the columns from one on. */
 void fg_evidence_drop(fg_evidence_problem *problem, size_t from);
 /* Fills `into` with the products of a column with columns [first, first + count). */

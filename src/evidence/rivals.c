@@ -153,6 +153,59 @@ static bool plane_variances(const fg_edge_fit *edge_fit, size_t length, double *
   return true;
 }
 
+/* Maps of the glass that one cause makes: a product of powers that moves x or y, a lens, a tilt of
+ * the glass about either axis. Each with the products of degree 1, which its middle makes, and with
+ * two that the middle of a lens makes. */
+enum { LINEAR = 4, PRODUCTS_FIRST = 2, PRODUCTS_LAST = 3, MAP_COLUMNS = LINEAR + 3 };
+#define MIDDLE_SHARE 0.3 /* of a lens: distance of its middle over the picture's half */
+
+static size_t add_map(const fg_point linear[LINEAR], fg_point one, fg_point second, fg_point third,
+                      fg_point *d) {
+  memcpy(d, linear, LINEAR * sizeof *d);
+  d[LINEAR] = one;
+  d[LINEAR + 1] = second;
+  d[LINEAR + 2] = third;
+  return MAP_COLUMNS;
+}
+
+static size_t maps_glass(const fg_field_frame *frame, fg_point at, fg_point *d) {
+  const line lx = line_of_axis(frame, 0), ly = line_of_axis(frame, 1);
+  const double half = fmax(lx.half, ly.half), x = (at.x - lx.middle) / half;
+  const double y = (at.y - ly.middle) / half;
+  const fg_point linear[LINEAR] = {{x, 0}, {0, x}, {y, 0}, {0, y}}, none = {0, 0};
+  size_t count = 0;
+  for (int degree = PRODUCTS_FIRST; degree <= PRODUCTS_LAST; degree++)
+    for (int i = 0; i <= degree; i++) {
+      double value = pow(x, i) * pow(y, degree - i);
+      count += add_map(linear, (fg_point){value, 0}, none, none, d + count);
+      count += add_map(linear, (fg_point){0, value}, none, none, d + count);
+    }
+  count += add_map(linear, (fg_point){x * (x * x + y * y), y * (x * x + y * y)},
+                   (fg_point){3 * x * x + y * y, 2 * x * y},
+                   (fg_point){2 * x * y, x * x + 3 * y * y}, d + count);
+  count += add_map(linear, (fg_point){x * x, x * y}, none, none, d + count);
+  return count + add_map(linear, (fg_point){x * y, y * y}, none, none, d + count);
+}
+
+static bool map_variances(const fg_edge_fit *edge_fit, size_t i, double *variance) {
+  (void)edge_fit;
+  for (int c = 0; c < MAP_COLUMNS; c++)
+    variance[c] = c <= LINEAR ? 1 : MIDDLE_SHARE * MIDDLE_SHARE;
+  return i == 0;
+}
+
+static size_t map_columns(const fg_edge_fit *edge_fit) {
+  (void)edge_fit;
+  return MAP_COLUMNS;
+}
+
+/* Powers of x that move x are the lens's, the square of y that moves y the carriage's. In the order
+ * of maps_glass. */
+static bool map_has_name(size_t k) {
+  enum { Y2_MOVES_Y = 1, X2_MOVES_X = 4, X3_MOVES_X = 12 };
+  return k == Y2_MOVES_Y || k == X2_MOVES_X || k == X3_MOVES_X;
+}
+
 /* ---- of the part ---- */
 
 static size_t along_foil(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row, double share,
@@ -291,21 +344,9 @@ static bool alike_variances(const fg_edge_fit *edge_fit, size_t i, double *varia
   return i == 0;
 }
 
-/* Products of degree 1 are scales and a shear; powers of x that move x are the lens's, the square
- * of y that moves y the carriage's. In the order of plane_glass. */
-static bool product_has_name(size_t k) {
-  enum { OF_DEGREE_1 = 4, Y2_MOVES_Y = 5, X2_MOVES_X = 8, X3_MOVES_X = 16 };
-  return k < OF_DEGREE_1 || k == Y2_MOVES_Y || k == X2_MOVES_X || k == X3_MOVES_X;
-}
-
 /* The first harmonic is an ovality. */
 static bool harmonic_has_name(size_t k) {
   return k == 0;
-}
-
-static size_t one_column(const fg_edge_fit *edge_fit) {
-  (void)edge_fit;
-  return 1;
 }
 
 static size_t two_columns(const fg_edge_fit *edge_fit) {
@@ -313,10 +354,10 @@ static size_t two_columns(const fg_edge_fit *edge_fit) {
   return 2;
 }
 
-const fg_effect *fg_rival_curve(const fg_rival *rival) {
+const fg_effect *fg_rival_curve(fg_effect_coordinate coordinate, const char *moves) {
   for (const fg_effect *effect = fg_effect_first(); effect; effect = fg_effect_next(effect))
-    if (fg_effect_is_free(effect) && effect->coordinate == rival->coordinate &&
-        (!rival->moves || !strcmp(effect->moves, rival->moves)))
+    if (fg_effect_is_free(effect) && effect->coordinate == coordinate &&
+        (!moves || !strcmp(effect->moves, moves)))
       return effect;
   return NULL;
 }
@@ -348,13 +389,13 @@ const fg_rival fg_rivals[] = {
      .glass = plane_glass,
      .variances = plane_variances,
      .loose = true},
-    {.name = "scan.xy of one product",
+    {.name = "scan.xy of one map",
      .coordinate = FG_EFFECT_Y,
      .moves = "x and y",
-     .glass = plane_glass,
-     .variances = alike_variances,
-     .stretch = one_column,
-     .has_name = product_has_name},
+     .glass = maps_glass,
+     .variances = map_variances,
+     .stretch = map_columns,
+     .has_name = map_has_name},
     {.name = "foil.s",
      .coordinate = FG_EFFECT_FOIL,
      .columns = over_foil,
@@ -368,6 +409,7 @@ const fg_rival fg_rivals[] = {
      .columns = on_ring,
      .variances = alike_variances,
      .stretch = two_columns,
+     .of_last = true,
      .has_name = harmonic_has_name},
     {.name = "foil.s, radial",
      .coordinate = FG_EFFECT_FOIL,
@@ -382,6 +424,7 @@ const fg_rival fg_rivals[] = {
      .columns = on_ring_radial,
      .variances = alike_variances,
      .stretch = two_columns,
+     .of_last = true,
      .has_name = harmonic_has_name},
     {.name = "bump.phi",
      .coordinate = FG_EFFECT_PHI,
@@ -395,7 +438,8 @@ const fg_rival fg_rivals[] = {
      .coordinate = FG_EFFECT_INDEX,
      .columns = over_each,
      .variances = one_variances,
-     .stretch = orders_of_bump},
+     .stretch = orders_of_bump,
+     .of_last = true},
     {.name = "edge.normal",
      .coordinate = FG_EFFECT_NORMAL,
      .columns = over_direction,

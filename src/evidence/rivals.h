@@ -24,9 +24,10 @@ typedef struct fg_rival {
   size_t (*glass)(const fg_field_frame *frame, fg_point at, fg_point *d);
   /* Fills the variances of the columns for length i; returns false beyond the last one. */
   bool (*variances)(const fg_edge_fit *edge_fit, size_t i, double *variance);
-  /* A rival of its own for every stretch of `stretch` columns of the rival before it in the table,
-   * one bump, one harmonic, one product of powers. NULL: the whole rival. */
+  /* A rival of its own for every stretch of `stretch` columns: one bump, one harmonic, one map of
+   * the glass. NULL: the whole rival. */
   size_t (*stretch)(const fg_edge_fit *edge_fit);
+  bool of_last;                     /* its columns are those of the row before it */
   bool (*has_name)(size_t stretch); /* a named effect is the same; NULL: none */
 } fg_rival;
 
@@ -38,7 +39,8 @@ extern const fg_rival fg_rivals[];
 size_t fg_rival_columns(const fg_rival *rival, const fg_edge_fit *edge_fit,
                         const fg_edge_fit_row *row, double *values);
 
-/* Returns the free curve that shows a rival in reports. */
-const fg_effect *fg_rival_curve(const fg_rival *rival);
+/* Returns the free curve that shows a rival in reports, by its coordinate and the thing moved
+ * (NULL: any). */
+const fg_effect *fg_rival_curve(fg_effect_coordinate coordinate, const char *moves);
 
 #endif

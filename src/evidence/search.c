@@ -7,6 +7,7 @@
 
 #include "core/memory.h"
 #include "evidence/options.h"
+#include "evidence/unnamed.h"
 
 /* Models that are extended in a round: of named effects alone, and with rivals if they are no
  * further than REACH from the best. */
@@ -19,13 +20,11 @@ enum { FINER = 9, FINER_LEVELS = 2, COPIES_MAX = 3 };
 #define AMPLITUDE_MIN_UM 0.03
 enum { AMPLITUDES = 11 };
 
-/* Scatter of bumps: shares of their radius, and um along the foil. */
-static const double radius_shares[] = {0.002, 0.004, 0.008, 0.016, 0.032};
-static const double along_um[] = {3, 10, 30, 100};
-enum {
-  SHARES = sizeof radius_shares / sizeof *radius_shares,
-  ALONGS = sizeof along_um / sizeof *along_um
-};
+/* Scatter of bumps that is tried: of their height, of their radius as thousandths of it, along the
+ * foil. */
+enum { SCATTERS_TRIED = 5 };
+static const double scatters[FG_EVIDENCE_SCATTERS][SCATTERS_TRIED] = {
+    {1, 3, 10, 30, 100}, {2, 4, 8, 16, 32}, {3, 10, 30, 100, 300}};
 
 static double add_logs(double a, double b) {
   return a > b ? a + log1p(exp(b - a)) : b + log1p(exp(a - b));
@@ -44,6 +43,11 @@ static double mean_radius_um(const fg_edge_fit *edge_fit) {
   return edge_fit->part_count ? 1000 * sum / (double)edge_fit->part_count : 0;
 }
 
+static double scatter_um(const fg_evidence_search *s, int which, int i) {
+  double unit = which == FG_EVIDENCE_RADIUS ? 1e-3 * mean_radius_um(s->problem.edge_fit) : 1;
+  return unit * scatters[which][i];
+}
+
 /* ---- one model ---- */
 
 static fg_status evaluate(fg_context *ctx, fg_evidence_search *s, fg_evidence_model *model) {
@@ -56,14 +60,12 @@ static fg_status evaluate(fg_context *ctx, fg_evidence_search *s, fg_evidence_mo
 
 /* Finds the scatter of the bumps at which the model is likeliest. */
 static fg_status find_scatter(fg_context *ctx, fg_evidence_search *s, fg_evidence_model *model) {
-  double radius = mean_radius_um(s->problem.edge_fit);
   fg_evidence_model best = *model;
-  if (!s->scatter.count) return evaluate(ctx, s, model);
   FG_TRY(evaluate(ctx, s, &best));
-  for (int which = 0; which < 2; which++) {
+  for (int which = 0; s->scatter.count && which < FG_EVIDENCE_SCATTERS; which++) {
     fg_evidence_model tried = best;
-    for (size_t i = 0; i < (size_t)(which ? ALONGS : SHARES); i++) {
-      tried.scatter_um[which] = which ? along_um[i] : radius * radius_shares[i];
+    for (int i = 0; i < SCATTERS_TRIED; i++) {
+      tried.scatter_um[which] = scatter_um(s, which, i);
       FG_TRY(evaluate(ctx, s, &tried));
       if (tried.evidence > best.evidence) best = tried;
     }
@@ -83,27 +85,35 @@ static void set_score(const fg_evidence_search *s, fg_evidence_model *model) {
 
 /* Best set of an option's columns beside a model. */
 typedef struct hit {
-  double evidence, mass; /* mass: ln of the evidence summed over shapes, less that of the best */
+  double evidence, mass; /* mass: ln of the evidence's mean over sets and sizes, less the best */
   size_t set;
+  int size; /* halvings of the row's */
 } hit;
 
 static fg_status score_option(fg_context *ctx, fg_evidence_search *s,
-                              const fg_evidence_factor *factor, size_t first, size_t sets,
-                              size_t each, const double *variance, hit *to) {
+                              const fg_evidence_factor *factor, const fg_evidence_sets *sets,
+                              const double *variance, hit *to) {
   double *evidence = NULL, sum = -INFINITY;
-  FG_TRY(fg_memory_allocate(ctx, sets, sizeof *evidence, (void **)&evidence));
-  fg_status status =
-      fg_evidence_score_sets(ctx, &s->problem, factor, first, sets, each, variance, evidence);
+  size_t count = sets->count * FG_EVIDENCE_SIZES;
+  FG_TRY(fg_memory_allocate(ctx, count, sizeof *evidence, (void **)&evidence));
+  fg_status status = fg_evidence_score_sets(ctx, &s->problem, factor, sets, variance, evidence);
   *to = (hit){.evidence = -INFINITY};
-  for (size_t i = 0; status == FG_OK && i < sets; i++) {
+  for (size_t i = 0; status == FG_OK && i < count; i++) {
     sum = add_logs(sum, evidence[i]);
     if (!(evidence[i] > to->evidence)) continue;
     to->evidence = evidence[i];
-    to->set = i;
+    to->set = i / FG_EVIDENCE_SIZES;
+    to->size = (int)(i % FG_EVIDENCE_SIZES);
   }
-  to->mass = sum - to->evidence;
+  to->mass = sum - to->evidence - log((double)count);
   free(evidence);
   return status;
+}
+
+static void set_size(fg_evidence_part *part, int size) {
+  fg_evidence_effect_variances(part->effect, part->count, part->variance);
+  for (size_t c = 0; c < part->count; c++)
+    part->variance[c] = ldexp(part->variance[c], -2 * size);
 }
 
 /* Moves a place to the best one between its neighbours; the columns of the best stay. */
@@ -112,7 +122,8 @@ static fg_status refine_place(fg_context *ctx, fg_evidence_search *s,
                               double low, double high, fg_evidence_part *part, double *evidence) {
   fg_evidence_problem *p = &s->problem;
   size_t from = p->count, each = part->count, first, count;
-  double best = part->shape[0];
+  double best = part->shape[0], variance[FG_EFFECT_COLUMNS_MAX];
+  fg_evidence_effect_variances(part->effect, each, variance);
   for (int level = 0; level < FINER_LEVELS && fg_evidence_has_room(p, (FINER + 1) * each);
        level++) {
     hit found;
@@ -120,11 +131,12 @@ static fg_status refine_place(fg_context *ctx, fg_evidence_search *s,
       double shape[FG_FIELD_SHAPES] = {low + (high - low) * (i + 1) / (FINER + 1)};
       FG_TRY(fg_evidence_add_effect(ctx, p, option->effect, shape, &first, &count));
     }
-    FG_TRY(score_option(ctx, s, factor, from, FINER, each, part->variance, &found));
+    FG_TRY(score_option(ctx, s, factor, &(fg_evidence_sets){from, FINER, each}, variance, &found));
     fg_evidence_drop(p, from);
     double step = (high - low) / (FINER + 1), at = low + step * (double)(found.set + 1);
     if (found.evidence > *evidence) {
       *evidence = found.evidence;
+      set_size(part, found.size);
       best = at;
     }
     low = best - step;
@@ -143,13 +155,15 @@ static fg_status fit_effect(fg_context *ctx, fg_evidence_search *s,
   hit found;
   *part = (fg_evidence_part){.effect = effect, .count = option->each};
   memcpy(part->shape, option->shape, sizeof part->shape);
-  fg_evidence_effect_variances(effect, option->each, part->variance);
-  FG_TRY(score_option(ctx, s, factor, option->first, option->sets, option->each, part->variance,
-                      &found));
+  const fg_evidence_sets sets = {option->first, option->sets, option->each};
+  set_size(part, 0);
+  FG_TRY(score_option(ctx, s, factor, &sets, part->variance, &found));
+  set_size(part, found.size);
   *evidence = found.evidence;
   part->first = option->first + found.set * option->each;
-  part->log_prior = log(FG_EVIDENCE_PRIOR) + found.mass - log((double)option->sets);
-  if (option->seeded) part->log_prior = log(FG_EVIDENCE_PRIOR) - log((double)effect->starts);
+  part->log_prior = log(FG_EVIDENCE_PRIOR) + found.mass;
+  if (option->seeded) part->log_prior -= log((double)effect->starts);
+  if (fg_effect_is_unnamed(effect)) part->log_prior -= log(FG_UNNAMED_EFFECTS);
   if (option->sets < 2) return FG_OK;
   size_t last = option->sets - 1, i = found.set;
   part->shape[0] = effect->start(frame, i, option->sets);
@@ -206,11 +220,16 @@ static bool holds_rival(const fg_evidence_model *model, const fg_evidence_option
   return false;
 }
 
+static bool bears_name(const fg_evidence_option *option) {
+  return option->effect && !fg_effect_is_unnamed(option->effect);
+}
+
 /* Ripples and steps may come several times, all others once, in one of their bases. */
 static bool may_join(const fg_evidence_model *model, const fg_evidence_option *option) {
   if (model->parts == FG_EVIDENCE_PARTS) return false;
-  if (option->rival) return model->parts - model->named < RIVALS_MAX && !holds_rival(model, option);
-  if (model->named == NAMED_MAX) return false;
+  if (!bears_name(option) && model->parts - model->named == RIVALS_MAX) return false;
+  if (option->rival) return !holds_rival(model, option);
+  if (bears_name(option) && model->named == NAMED_MAX) return false;
   if (option->effect->sought == FG_EFFECT_PLACED)
     return copies_of(model, option->effect) < COPIES_MAX;
   return !fg_evidence_holds(model, option->effect);
@@ -257,7 +276,7 @@ static fg_status extend_model(fg_context *ctx, fg_evidence_search *s,
                               : fit_effect(ctx, s, &factor, option, part, &model.evidence));
     s->stored++;
     model.part[model.parts++] = part;
-    model.named += !option->rival;
+    model.named += bears_name(option);
     set_score(s, &model);
     keep_model(s, &model);
   }
@@ -318,7 +337,9 @@ fg_status fg_evidence_search_run(fg_context *ctx, const fg_edge_fit *edge_fit,
   FG_TRY_EXIT(fg_memory_allocate(ctx, FG_EVIDENCE_STORE, sizeof *s->store, (void **)&s->store));
   FG_TRY_EXIT(fg_memory_allocate(ctx, FG_EVIDENCE_MODELS, sizeof *s->models, (void **)&s->models));
   FG_TRY_EXIT(fg_evidence_list_options(ctx, seed, jacobian, s));
-  fg_evidence_model none = {.scatter_um = {0.01 * mean_radius_um(edge_fit), 30}};
+  fg_evidence_model none = {.parts = 0};
+  for (int which = 0; which < FG_EVIDENCE_SCATTERS; which++)
+    none.scatter_um[which] = scatter_um(s, which, SCATTERS_TRIED / 2);
   FG_TRY_EXIT(find_scatter(ctx, s, &none));
   s->models[s->count++] = none;
   FG_TRY_EXIT(run_rounds(ctx, s));

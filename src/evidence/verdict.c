@@ -8,7 +8,7 @@
  * share of the whole evidence: with edges so sharp the error of linear columns decides. */
 #define LEAD       5.0
 #define LEAD_SHARE 3e-4
-#define CLEAN_P    0.01
+#define CLEAN_P    0.05
 /* Standard errors of the number that gives a polynomial its name; largest distance of its middle,
  * in picture sizes: else it is a lower one. */
 #define LEADING_SIGMAS 2.0
@@ -99,6 +99,7 @@ static fg_status list_ties(fg_context *ctx, fg_evidence_search *s, double floor,
     const fg_evidence_model *model = &s->models[m];
     bool bears = true, more = false;
     if (model->score < floor) break; /* sorted */
+    if (!model->parts) continue;     /* it was refuted */
     for (size_t k = 0; k < v->ties && !more; k++)
       more = includes(model, &v->tie[k]);
     if (more) continue;

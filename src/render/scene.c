@@ -331,6 +331,8 @@ fg_status fg_scene_build(const fg_place *place, fg_render_spec *spec) {
   fg_render_effects_resolve(&spec->effects, size_mm[0], size_mm[1]);
   FG_TRY(
       fg_jumps_build(place, &scanner->jumps, spec->sensor.pixel_mm, size_mm, &spec->effects.jumps));
+  for (size_t i = 0; i < scene->foil_count; i++)
+    FG_TRY(fg_measurand_build(place->ctx, spec, i));
   spec->sensor.width_px =
       fg_resampling_need((int64_t)spec->width_px, spec->pixel_mm[0] / spec->sensor.pixel_mm[0]);
   spec->sensor.height_px =
@@ -373,6 +375,27 @@ static fg_point inner_side(const fg_segment *segment, fg_point at) {
   return (fg_point){scale * (at.x - segment->x), scale * (at.y - segment->y)};
 }
 
+/* Point of the midline with the part's effects, and `edges_mm` more to its inner side. */
+static fg_point move_point(const fg_render_spec *spec, const fg_drawn_foil *drawn,
+                           const fg_segment *segment, double t_mm, double edges_mm) {
+  fg_point p = fg_segment_point(segment, t_mm), inner = inner_side(segment, p);
+  double w = fg_segment_bump_shift(&spec->effects, segment, t_mm) + edges_mm;
+  w -= fg_render_effects_shape(&spec->effects, FG_RENDER_EFFECT_NORMAL,
+                               fg_foil_psi(drawn, p.x, p.y), drawn->half_span_rad);
+  p.x += w * inner.x;
+  p.y += w * inner.y;
+  double dx = p.x - drawn->x, dy = p.y - drawn->y;
+  double radial = fg_render_effects_shape(&spec->effects, FG_RENDER_EFFECT_PART,
+                                          fg_foil_psi(drawn, p.x, p.y), drawn->half_span_rad);
+  double outward = radial / hypot(dx, dy);
+  return (fg_point){p.x + outward * dx, p.y + outward * dy};
+}
+
+fg_point fg_segment_part_point(const fg_render_spec *spec, const fg_drawn_foil *drawn,
+                               const fg_segment *segment, double t_mm) {
+  return move_point(spec, drawn, segment, t_mm, 0);
+}
+
 fg_status fg_render_midline(fg_context *ctx, const fg_render_spec *spec, size_t foil, double s_mm,
                             fg_point *point_px) {
   const fg_scene *scene = &spec->scene;
@@ -386,20 +409,11 @@ fg_status fg_render_midline(fg_context *ctx, const fg_render_spec *spec, size_t 
     i++;
   const fg_segment *segment = &scene->segments[i];
   double t = s_mm - segment->s_mm;
-  fg_point p = fg_segment_point(segment, t);
-  fg_point inner = inner_side(segment, p);
+  fg_point inner = inner_side(segment, fg_segment_point(segment, t));
   double shift[2];
   fg_render_effects_edges(&spec->effects, inner.x, inner.y, shift);
-  double w = fg_segment_bump_shift(&spec->effects, segment, t) + 0.5 * (shift[0] + shift[1]);
-  w -= fg_render_effects_shape(&spec->effects, FG_RENDER_EFFECT_NORMAL,
-                               fg_foil_psi(drawn, p.x, p.y), drawn->half_span_rad);
-  p.x += w * inner.x;
-  p.y += w * inner.y;
-  double dx = p.x - drawn->x, dy = p.y - drawn->y;
-  double radial = fg_render_effects_shape(&spec->effects, FG_RENDER_EFFECT_PART,
-                                          fg_foil_psi(drawn, p.x, p.y), drawn->half_span_rad);
-  double distance = hypot(dx, dy);
-  point_px->x = (p.x + radial * dx / distance) / spec->pixel_mm[0];
-  point_px->y = (p.y + radial * dy / distance) / spec->pixel_mm[1];
+  fg_point p = move_point(spec, drawn, segment, t, 0.5 * (shift[0] + shift[1]));
+  point_px->x = p.x / spec->pixel_mm[0];
+  point_px->y = p.y / spec->pixel_mm[1];
   return FG_OK;
 }

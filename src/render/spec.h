@@ -209,6 +209,11 @@ int fg_scene_max_bumps(const fg_render_spec *spec); /* of any foil, as designed 
 /* Point at distance t along a segment. */
 fg_point fg_segment_point(const fg_segment *segment, double t_mm);
 
+/* Point of the part as it is at distance t along a segment: with the part's effects, without those
+ * of the edges that a scanner makes. */
+fg_point fg_segment_part_point(const fg_render_spec *spec, const fg_drawn_foil *drawn,
+                               const fg_segment *segment, double t_mm);
+
 /* Direction of a place about O, from the foil's middle towards its free end. */
 double fg_foil_psi(const fg_drawn_foil *drawn, double x_mm, double y_mm);
 
@@ -231,6 +236,9 @@ fg_status fg_scene_append(fg_context *ctx, fg_scene *scene, size_t foil, double 
  * the origin, beams along x, their numbers along rising y). */
 fg_status fg_sheet_build(const fg_place *place, const fg_render_spec *spec,
                          const fg_foil_request *request, fg_scene *scene, size_t foil);
+
+/* Fills the measurand of one foil and its bumps (measurand.c). */
+fg_status fg_measurand_build(fg_context *ctx, fg_render_spec *spec, size_t foil);
 
 /* Returns X, theta and h of a bump as designed. */
 fg_render_bump fg_outline_nominal(const fg_render_design *design);

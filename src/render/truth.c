@@ -93,6 +93,30 @@ static const fg_member nominal_rows[] = {
 };
 static const fg_members nominal_members = FG_MEMBERS_DEFINED(nominal_rows, "nominal");
 
+/* The measurand: circles through the part as it is. */
+#define MEASURAND(json_name, field) FG_NUMBER(json_name, fg_render_measurand, field)
+#define MEASURAND_CENTRE            FG_RANGE("centre_px", fg_render_measurand, centre_px.x, centre_px.y)
+
+static const fg_member overall_measurand_rows[] = {
+    {MEASURAND("radius_mm", radius_mm), .words = "R0"},
+    {MEASURAND_CENTRE, .words = "x, y"},
+    {MEASURAND("form_error_um", form_error_um), .words = "peak to valley, of the lands"},
+};
+static const fg_members overall_measurand_members =
+    FG_MEMBERS_DEFINED(overall_measurand_rows, "overall_measurand");
+
+static const fg_member bump_measurand_rows[] = {
+    {MEASURAND("radius_mm", radius_mm), .words = "R"},
+    {MEASURAND("bump_angle_deg", bump_angle_deg), .words = "alpha"},
+    {MEASURAND("intersection_angle_deg", intersection_angle_deg), .words = "theta"},
+    {MEASURAND("centre_to_centre_mm", centre_to_centre_mm), .words = "X"},
+    {MEASURAND("height_mm", height_mm), .words = "h"},
+    {MEASURAND_CENTRE, .words = "x, y"},
+    {MEASURAND("form_error_um", form_error_um), .words = "peak to valley"},
+};
+static const fg_members bump_measurand_members =
+    FG_MEMBERS_DEFINED(bump_measurand_rows, "bump_measurand");
+
 /* Bumps. */
 FG_TRUE_VALUE(find_bump_index, fg_render_bump, o->index)
 FG_TRUE_CASE(is_crushed, fg_render_bump, o->crushed)
@@ -106,6 +130,9 @@ static const fg_member bump_rows[] = {
     {FG_NUMBER("height_mm", fg_render_bump, height_mm), .words = "h"},
     {FG_RANGE("centre_px", fg_render_bump, centre_px.x, centre_px.y), .words = "x, y"},
     {FG_FLAG("crushed", fg_render_bump, crushed), .present = is_crushed},
+    {FG_OBJECT("measurand", fg_render_bump, measurand, &bump_measurand_members),
+     .words = "of the least-squares circles through the bump and the lands as they are, with the "
+              "part's effects; the members beside it are of the ideal circles"},
 };
 static const fg_members bump_members = FG_MEMBERS_DEFINED(bump_rows, "bump");
 
@@ -183,6 +210,10 @@ static const fg_member foil_rows[] = {
      .words = "of the midline"},
     {FG_RANGE("overall_centre_px", fg_render_foil, overall_centre_px.x, overall_centre_px.y),
      .present = has_circle, .words = "x, y"},
+    {FG_OBJECT("measurand", fg_render_foil, measurand, &overall_measurand_members),
+     .present = has_circle,
+     .words = "of the least-squares circle through the lands as they are, with the part's effects "
+              "(ovality, spiral, curves); overall_radius_mm is of the ideal circle"},
     {FG_NUMBER("thickness_mm", fg_render_foil, thickness_mm), .words = "of the strip"},
     {FG_NUMBER("subtended_angle_deg", fg_render_foil, subtended_angle_deg), .present = is_plain_arc,
      .words = "of the arc"},

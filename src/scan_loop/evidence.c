@@ -8,7 +8,9 @@
 
 #include "core/memory.h"
 #include "effect_search/iterate.h"
+#include "evidence/unnamed.h"
 #include "evidence/verdict.h"
+#include "scan_loop/form_errors.h"
 #include "scan_loop/state.h"
 
 /* A fit of another set moves the geometry, and with it the columns: so often. */
@@ -20,7 +22,9 @@ enum { LINEARISATIONS = 2 };
 
 /* Returns the effect that shows a part in reports: a rival's is its free curve. */
 static const fg_effect *shown_as(const fg_evidence_part *part) {
-  return part->effect ? part->effect : fg_rival_curve(part->rival);
+  if (part->effect && !fg_effect_is_unnamed(part->effect)) return part->effect;
+  return part->effect ? fg_rival_curve(part->effect->coordinate, part->effect->moves)
+                      : fg_rival_curve(part->rival->coordinate, part->rival->moves);
 }
 
 /* ---- explanations in the form of the search ---- */
@@ -73,7 +77,7 @@ static void add_explanation(const fg_edge_fit *edge_fit, const fg_evidence_model
   for (size_t k = 0; k < model->parts; k++) {
     const fg_evidence_part *part = model->part[k];
     const fg_effect *effect = shown_as(part);
-    if (rivals_alone && part->effect) continue;
+    if (rivals_alone && effect == part->effect) continue;
     size_t e = effect ? find_candidate(edge_fit, to, effect, part->shape) : FG_CANDIDATES_MAX;
     if (e == FG_CANDIDATES_MAX) continue;
     one.mask |= 1u << e;
@@ -222,6 +226,7 @@ static fg_status weigh_once(fg_context *ctx, fg_scan_loop *loop, double *residua
   FG_TRY_EXIT(fg_evidence_decide(ctx, &search, &verdict));
   loop->misfit = loop->misfit || (verdict.ties && is_loose(&verdict.tie[0]));
   FG_TRY_EXIT(find_displacement(ctx, loop, &search));
+  FG_TRY_EXIT(fg_scan_loop_find_form_errors(ctx, loop, &search, &verdict));
   FG_TRY_EXIT(take_verdict(ctx, loop, &verdict, moved));
 exit:
   fg_evidence_search_close(&search);

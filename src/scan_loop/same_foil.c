@@ -78,10 +78,12 @@ static size_t numbers_of(const fg_edge_fit *edge_fit, const fg_effect_set *set) 
   return numbers;
 }
 
-/* By how much Schwarz's criterion prefers them. */
+/* By how much Schwarz's criterion prefers them; they must leave less, too: few numbers alone prove
+ * no second foil. */
 static double preference(const fg_scan_loop *loop, const apart *a) {
   double together = fmax(mean_square(&loop->edge_fit, loop->residual_after), NOTHING_UM2);
   double alone = fmax(mean_square(&a->edge_fit, a->residual_um), NOTHING_UM2);
+  if (alone >= together) return -INFINITY;
   double rows = (double)rows_that_count(&a->edge_fit) / a->explanations.integral;
   double more =
       (double)numbers_of(&a->edge_fit, &a->set) - (double)numbers_of(&loop->edge_fit, &loop->set);

@@ -238,6 +238,7 @@ static fg_status search_effects(fg_context *ctx, fg_scan_loop *loop) {
   FG_TRY(fg_scan_loop_keep_beneficial(ctx, loop));
   if (loop->tied) fg_scan_loop_put_ranges(loop);
   FG_TRY(search_bumps(ctx, loop));
+  FG_TRY(fg_scan_loop_put_form_errors(ctx, loop));
   FG_TRY(fg_search_width(ctx, &loop->edge_fit, &loop->set, &loop->width));
   loop->tone = fg_scan_loop_find_tone(loop, true);
   widen_scales(loop);
@@ -359,6 +360,7 @@ void fg_scan_loop_free(fg_scan_loop *loop) {
   for (size_t p = 0; loop->displacement_parts && p < loop->edge_fit.part_count; p++)
     free(loop->displacement_parts[p].bumps);
   free(loop->displacement_parts);
+  free(loop->form_errors);
   fg_edge_fit_free(&loop->edge_fit);
   fg_scan_loop_bumps_free(&loop->bumps);
   free(loop->before);

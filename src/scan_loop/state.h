@@ -37,6 +37,7 @@ struct fg_scan_loop {
   bool scanner_is_suspect;      /* an explanation holds what a scanner does */
   fg_displacement displacement; /* of the scanner, by evidence */
   fg_displacement_part *displacement_parts; /* owned; per part of the edge fit */
+  fg_form_error *form_errors; /* owned; per circle of the parts (circles.h); NULL: not found */
   double noise_floor_um;
   bool tied;
   bool scale_tied;                        /* in scale_uncertainty.c */
@@ -126,6 +127,9 @@ bool fg_scan_loop_is_unlikely(const fg_explanations *explanations, size_t explan
  * Call in their order, the one in force first. */
 fg_status fg_scan_loop_take_moves(fg_context *ctx, fg_scan_loop *loop, size_t explanation,
                                   const fg_joint_fit_result *fit, const fg_measurement *corrected);
+/* Writes the form errors into the foils of `after`; notes where they are ranges or unknown. */
+fg_status fg_scan_loop_put_form_errors(fg_context *ctx, fg_scan_loop *loop);
+
 /* Keeps in `after` only the corrections with a benefit (benefit.h). */
 fg_status fg_scan_loop_keep_beneficial(fg_context *ctx, fg_scan_loop *loop);
 

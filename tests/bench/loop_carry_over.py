@@ -117,8 +117,8 @@ def measure(program, folder, case, path, model):
     held = []
     for midline, centre, foil in pairs or []:
         for i, bump in pair_bumps(midline, centre, foil):
-            held.append(abs(bump["radius_mm"] - midline.radius[i]) <= 2 * bump["u_radius_mm"])
-            held.append(abs(bump["height_mm"] - midline.height[i]) <= 2 * bump["u_height_mm"])
+            held.append(abs(bump["radius_mm"] - midline.measurand.radius[i]) <= 2 * bump["u_radius_mm"])
+            held.append(abs(bump["height_mm"] - midline.measurand.height[i]) <= 2 * bump["u_height_mm"])
     return errors_um(pairs), float(np.mean(held)) if held else float("nan")
 
 

@@ -1,10 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A rendered foil's true midline, and how far a measured foil's circles lie from it."""
+"""A rendered foil's true midline, the measurand (least-squares circles through it as it is), and how far a measured
+foil's circles lie from it."""
+
+from dataclasses import dataclass
 
 import numpy as np
 
 # Of a bump's arc, where edges are measured; the rest runs into its fillets.
 ARC_SHARE = 0.85
+# Of an arc or land beside a fillet or a cut, where blur mixes the two.
+MARGIN_MM = 0.03
 
 
 def natural_spline(knots, at, period=0.0):
@@ -40,7 +45,8 @@ class Midline:
     from the arc's own centre), psi, u (bumps: -1 to 1 between the fillets; lands: NaN), bump (index
     from 0; lands: -1)."""
 
-    def __init__(self, foil, design, step_mm=0.1):
+    def __init__(self, foil, design, step_mm=0.1, margin_mm=None):
+        """margin_mm: arcs and lands are whole but for it at each end; None: arcs by ARC_SHARE."""
         self.count = design["bump_count"]
         overall, fillet = foil["overall_radius_mm"], design["fillet_radius_mm"]
         radius = np.array(foil["radius_mm"])
@@ -61,14 +67,16 @@ class Midline:
         for i in range(self.count):
             n = max(5, int(2 * arc[i] * radius[i] / step_mm))
             u = np.linspace(-ARC_SHARE, ARC_SHARE, n)
+            if margin_mm is not None:
+                u = (1 - margin_mm / (arc[i] * radius[i])) * (2 * np.arange(n) + 1 - n) / n
             angle = axis[i] + np.pi - u * arc[i]
             normal = np.stack([np.cos(angle), np.sin(angle)], axis=1)
             centre = distance[i] * np.array([np.cos(axis[i]), np.sin(axis[i])])
             pieces.append((centre + radius[i] * normal, normal, u, np.full(n, i)))
         edges = np.concatenate([[start], np.stack([axis - land, axis + land], axis=1).ravel(), [end]])
         for low, high in edges.reshape(-1, 2):
-            n = int((high - low) * overall / step_mm)
-            angle = np.linspace(low, high, n + 2)[1:-1]
+            n, margin = int((high - low) * overall / step_mm), (margin_mm or 0) / overall
+            angle = np.linspace(low + margin, high - margin, n + 2)[1:-1]
             normal = np.stack([np.cos(angle), np.sin(angle)], axis=1)
             pieces.append((overall * normal, normal, np.full(n, np.nan), np.full(n, -1)))
         self.xy, self.normal, self.u, self.bump = (np.concatenate(p) for p in zip(*pieces))
@@ -162,10 +170,45 @@ class Midline:
         return turned @ np.array([[c, s], [-s, c]])
 
 
+@dataclass
+class Measurand:
+    """Least-squares circles (ISO 12181) through bumps and lands as they are; form errors peak to valley."""
+
+    overall: float
+    radius: np.ndarray
+    height: np.ndarray
+    overall_form_um: float
+    form_um: np.ndarray
+
+
+def circle_through(points):
+    """(centre, radius, peak-to-valley deviation in um): Gauss-Newton on orthogonal distances."""
+    columns = np.column_stack([2 * points, np.ones(len(points))])
+    x, y, c = np.linalg.lstsq(columns, np.sum(points**2, axis=1), rcond=None)[0]
+    centre, radius = np.array([x, y]), float(np.sqrt(c + x * x + y * y))
+    for _ in range(10):
+        offset = points - centre
+        far = np.linalg.norm(offset, axis=1)
+        step = np.linalg.lstsq(np.column_stack([offset / far[:, None], np.ones(len(far))]), far - radius, rcond=None)[0]
+        centre, radius = centre + step[:2], radius + step[2]
+    return centre, float(radius), 1000 * float(np.ptp(np.linalg.norm(points - centre, axis=1)))
+
+
+def measurand_of(foil, design, deviation_um):
+    """deviation_um: midline to its shift along the normal."""
+    midline = Midline(foil, design, 0.02, MARGIN_MM)
+    points = midline.xy + midline.normal * (deviation_um(midline) / 1000)[:, None]
+    centre, overall, form = circle_through(points[midline.bump == -1])
+    bumps = [circle_through(points[midline.bump == i]) for i in range(midline.count)]
+    radius = np.array([b[1] for b in bumps])
+    height = overall - np.array([np.linalg.norm(b[0] - centre) for b in bumps]) + radius
+    return Measurand(overall, radius, height, form, np.array([b[2] for b in bumps]))
+
+
 def profile_error_um(midline, centre_mm, shift_um, foil, report):
     """rms distance of the true midline (its arcs moved by shift_um) from the circles of a measured foil
     and what a report (or None) claims to deviate from them; the foil's place and direction are left
-    free. A circle that was left as measured holds what circles take of the deviation already."""
+    free. The circles hold what circles take of the deviation already."""
     normal = midline.to_scan(midline.normal)
     points = midline.to_scan(midline.xy) + centre_mm + normal * shift_um[:, None] / 1000
     distance = np.full(len(points), np.nan)
@@ -185,10 +228,7 @@ def profile_error_um(midline, centre_mm, shift_um, foil, report):
     claimed, unsigned = 0, []
     if report:
         total, unsigned = midline.claimed_shift_um(report, sense)
-        moved = {c["quantity"]: c["moved"] for c in foil.get("corrections", [])}
-        names = {"bumps": "radius_mm", "lands": "overall_radius_mm"}
-        left = [which for which, name in names.items() if not moved.get(name, True)]
-        claimed, *unsigned = midline.beside_circles([total, *unsigned], left)
+        claimed, *unsigned = midline.beside_circles([total, *unsigned], ["bumps", "lands"])
     best = np.inf
     for signs in range(2 ** len(unsigned)):
         rest = distance * 1000 - claimed

@@ -96,10 +96,10 @@ def foil_errors(folder, scan, *options):
     run("measure", scan, "-o", report, *options)
     foil = lib.load(report)["foils"][0]
     truth = lib.load_truth(scan[:-4] + ".truth.json")
-    known = truth["bumps"]
+    known = [b["measurand"] for b in truth["bumps"]]
     radius = [1000 * (b["radius_mm"] - t["radius_mm"]) for b, t in zip(foil["bumps"], known)]
     height = [1000 * (b["height_mm"] - t["height_mm"]) for b, t in zip(foil["bumps"], known)]
-    return np.array(radius), np.array(height), 1000 * (foil["overall"]["radius_mm"] - truth["overall_radius_mm"])
+    return np.array(radius), np.array(height), 1000 * (foil["overall"]["radius_mm"] - truth["measurand"]["radius_mm"])
 
 
 def rms(values):

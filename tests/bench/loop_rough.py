@@ -194,7 +194,7 @@ def main():
     seeds = options.seed or SEEDS + [KEPT_ASIDE] * options.all
     for folder in filter(None, (options.out, options.pictures)):
         os.makedirs(folder, exist_ok=True)
-    results = Results(os.path.join(options.out, "loop_rough.csv"), options.fresh, "profile_floor_um")
+    results = Results(os.path.join(options.out, "loop_rough.csv"), options.fresh, "form_within")
     jobs = []
     for name in options.tier or TIERS:
         count = TIERS[name].count if options.cases is None else min(options.cases, TIERS[name].count)

@@ -48,7 +48,7 @@ def measures(rows, busy):
         moved = [r for r in fixed if corrected(r, [q])]
         inside = mean_of(moved, q + "_within_after")
         result[f"intervals of {q} after a correction that hold, %"] = ("within", inside, len(moved))
-    tied = [r for r in rows if is_scanner(r) and any(number(r, q + "_ranges") for q in QUANTITIES)]
+    tied = [r for r in rows if any(number(r, q + "_ranges") for q in QUANTITIES)]
     result["ranges of ties that hold the truth, %"] = ("ranges", ranges_held(tied), len(tied))
     lone = [r for r in rows if r["layout"] == "single"]
     turned = [r for r in rows if r["layout"] in ("90", "45")]

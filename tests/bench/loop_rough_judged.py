@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from loop_scans_report import QUANTITIES, is_scanner, number
+from loop_scans_report import QUANTITIES, number
 
 SLACK = 1.02  # an error that grew by less has not
 NOISE_TIMES = 1.2  # of the floor: an error below this is as good as it
@@ -47,13 +47,6 @@ def told(row):
     return number(row, "named") and not number(row, "tied") and not row["class"]
 
 
-def judged_by(row):
-    """Quantities that a report states: the circles that everything else stands on. Deviations of the part from them are
-    one statement with them, the midline; in a tie the report states no such deviation."""
-    said = not is_scanner(row) and row["wanted"] and not number(row, "tied")
-    return ("profile",) if said else QUANTITIES
-
-
 def with_floor(rows):
     return [r for r in rows if r["R_floor_um"]]
 
@@ -69,14 +62,14 @@ def grew(row, quantity, least):
 
 
 def worse(row, least):
-    return any(grew(row, q, least) for q in judged_by(row))
+    return any(grew(row, q, least) for q in QUANTITIES)
 
 
 def worse_than_noise(row, least):
     """And larger than the same scatter makes it without an effect: an error may be small by chance, and grow to its usual
     size without an effect."""
     beyond = lambda q: not row[q + "_floor_um"] or number(row, q + "_after_um") > NOISE_TIMES * number(row, q + "_floor_um")
-    return any(grew(row, q, least) and beyond(q) for q in judged_by(row))
+    return any(grew(row, q, least) and beyond(q) for q in QUANTITIES)
 
 
 def corrected(row, quantities=QUANTITIES):

@@ -10,7 +10,7 @@ from loop_rough_asked import asked, glance_lines, missed_figures_lines
 from loop_rough_judged import (claims, corrected, floors, is_curve, is_right, mean_of, over_floor, p_values, told, worse,
                                wrong)
 from loop_rough_plot import kolmogorov_smirnov, svg_of_p_values
-from loop_scans_report import QUANTITIES, is_scanner, markdown, number, share
+from loop_scans_report import QUANTITIES, form_error_lines, is_scanner, markdown, number, share
 
 NAMES = ["inputs", "failed", "claims %", "in class %", "exactly named %", "wrong, `found` %", "wrong, tied %",
          "unattributed %", "made worse %", "s", "most s"]  # fmt: skip
@@ -202,10 +202,9 @@ the thickness: 10 µm).
 
 In class: what is there was named, or is one of the explanations that the report says it cannot tell apart. Wrong: something
 is claimed, and what is there is not among the explanations. Told: exactly named, and nothing is tied with it. Floor: the same foils
-and scatter without the effect, measured. Worse: an error (R, h, R0; where the report says how the part
-deviates from its circles, that of the midline) is larger after than before, by more than 2 % and a tenth of the tier's median floor;
-beyond its noise: and larger than 1.2 times its floor. The midline: circles and what is said to deviate from them; a circle that was left
-as measured holds what circles take of the deviation already. Right place of curves: `unattributed` over the right coordinate, or over one that it is told to be as good as; seams also as their row.
+and scatter without the effect, measured. Errors of R, h and R0 are against the measurand: least-squares circles through the part as it
+is. Worse: an error is larger after than before, by more than 2 % and a tenth of the tier's median floor;
+beyond its noise: and larger than 1.2 times its floor. The midline: circles and what is said to deviate from them. Right place of curves: `unattributed` over the right coordinate, or over one that it is told to be as good as; seams also as their row.
 Seconds are {seconds}."""
 
 QUIET = "the clock's, or the processor's where those are less: other inputs are rendered and judged beside"
@@ -229,6 +228,7 @@ def write(folder, rows, tiers, apart, busy=False):
     lines += ["", "Distance of the true midline from what is reported, all effects; medians, µm.", "", *profile_lines(rows, tiers)]
     lines += ["", "## Intervals", "", "Inputs with an effect of the scanner where the dimension was corrected: values within U = 2 u of the",
               "truth, before → after, of how many inputs; and how many of the ranges that a tie gives hold the truth.", "", *interval_lines(rows, tiers)]  # fmt: skip
+    lines += ["", "Form errors of lands and bumps, peak to valley, against those of the part as it is:", "", *form_error_lines(rows)]
     lines += ["", "## p-values where nothing is there", "", "That no effect is needed (`p_value` of the report); uniform is right. "
               "Kolmogorov-Smirnov against uniform.", "", *p_lines(rows), "", "![sorted p-values](loop_rough.svg)"]  # fmt: skip
     lines += ["", "## Seed by seed", "", *seed_lines(rows, tiers)]

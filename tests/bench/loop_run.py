@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Renders one case, runs `foilgauge loop` on it, and sets the answer against the truth."""
+"""Renders one case, runs `foilgauge loop` on it, and sets the answer against the truth: the measurand, circles through
+the part as it is."""
 
 import csv
 import hashlib
@@ -13,7 +14,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
-from loop_foil import Midline, profile_error_um
+from loop_foil import Midline, measurand_of, profile_error_um
 
 MM_PER_PX = 25.4 / 4800
 NOT_MEASURED_UM = 1e3  # as bad as a millimetre
@@ -92,12 +93,15 @@ def measured_foils(program, folder, case, draw=render):
 
 
 def true_foils(case):
-    """(midline, O on the scan in mm, which scan) of every foil, scans in order."""
-    return [
-        (Midline(foil, case["design"]), np.array(foil["centre_mm"]), k)
-        for k, spec in enumerate(case["specs"])
-        for foil in spec["foils"]
-    ]
+    """(midline with its measurand, O on the scan in mm, which scan) of every foil, scans in order."""
+    foils = []
+    for k, spec in enumerate(case["specs"]):
+        for foil in spec["foils"]:
+            midline = Midline(foil, case["design"])
+            deviation_um = lambda m, effects=spec.get("effects", []): m.part_shift_um(effects)
+            midline.measurand = measurand_of(foil, case["design"], deviation_um)
+            foils.append((midline, np.array(foil["centre_mm"]), k))
+    return foils
 
 
 def pair_foils(case, measured):
@@ -135,9 +139,9 @@ def errors_um(pairs):
     radius, height, overall = [], [], []
     for midline, centre, foil in pairs:
         for i, bump in pair_bumps(midline, centre, foil):
-            radius.append(bump["radius_mm"] - midline.radius[i])
-            height.append(bump["height_mm"] - midline.height[i])
-        overall.append(foil["overall"]["radius_mm"] - midline.overall)
+            radius.append(bump["radius_mm"] - midline.measurand.radius[i])
+            height.append(bump["height_mm"] - midline.measurand.height[i])
+        overall.append(foil["overall"]["radius_mm"] - midline.measurand.overall)
     rms = lambda v: float(1000 * np.sqrt(np.mean(np.square(v))))
     return {"R": rms(radius), "h": rms(height), "R0": rms(overall)}
 
@@ -165,9 +169,9 @@ def ranges(pairs):
 
     for midline, centre, foil in pairs or []:
         for i, bump in pair_bumps(midline, centre, foil):
-            look("R", bump, "radius_range_mm", midline.radius[i])
-            look("h", bump, "height_range_mm", midline.height[i])
-        look("R0", foil["overall"], "radius_range_mm", midline.overall)
+            look("R", bump, "radius_range_mm", midline.measurand.radius[i])
+            look("h", bump, "height_range_mm", midline.measurand.height[i])
+        look("R0", foil["overall"], "radius_range_mm", midline.measurand.overall)
     return count
 
 
@@ -181,10 +185,32 @@ def within(pairs):
 
     for midline, centre, foil in pairs or []:
         for i, bump in pair_bumps(midline, centre, foil):
-            look("R", bump["radius_mm"], bump["u_radius_mm"], midline.radius[i])
-            look("h", bump["height_mm"], bump["u_height_mm"], midline.height[i])
+            look("R", bump["radius_mm"], bump["u_radius_mm"], midline.measurand.radius[i])
+            look("h", bump["height_mm"], bump["u_height_mm"], midline.measurand.height[i])
         overall = foil["overall"]
-        look("R0", overall["radius_mm"], overall["u_radius_mm"], midline.overall)
+        look("R0", overall["radius_mm"], overall["u_radius_mm"], midline.measurand.overall)
+    return count
+
+
+def form_errors(pairs):
+    """Form errors of lands and bumps: how many lie within U = 2 u, how many ranges, in place of a value, hold the truth:
+    {column: (held, stated)}."""
+    count = {"form_within": [0, 0], "form_ranges_hold": [0, 0]}
+
+    def look(circle, truth_um):
+        um = circle.get("form_error_um")
+        if um is not None:
+            count["form_within"][0] += abs(um - truth_um) <= 2 * circle["u_form_error_um"]
+            count["form_within"][1] += 1
+        elif "form_error_range_um" in circle:
+            low, high = circle["form_error_range_um"]
+            count["form_ranges_hold"][0] += low <= truth_um <= high
+            count["form_ranges_hold"][1] += 1
+
+    for midline, centre, foil in pairs or []:
+        look(foil["overall"], midline.measurand.overall_form_um)
+        for i, bump in pair_bumps(midline, centre, foil):
+            look(bump, midline.measurand.form_um[i])
     return count
 
 
@@ -235,6 +261,9 @@ def judge(case, report, code, seconds):
     for name, pairs in (("before", before), ("after", after)):
         for quantity, (held, count) in within(pairs).items():
             row[f"{quantity}_within_{name}"] = round(held / count, 4) if count else 0
+    for column, (held, stated) in form_errors(after).items():
+        row[column.replace("_hold", "").replace("_within", "_errors")] = stated
+        row[column] = held
     row["effects"] = json.dumps(case["effects"], separators=(",", ":"))
     return row
 

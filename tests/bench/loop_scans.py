@@ -81,7 +81,7 @@ def run_scans(program, options):
     for name in options.tier or TIERS:
         count = TIERS[name].count if options.cases is None else min(options.cases, TIERS[name].count)
         jobs += [{"tier": name, "index": k} for k in range(count)]
-    results = Results(os.path.join(options.out, "loop_scans.csv"), options.fresh, "profile_after_um")
+    results = Results(os.path.join(options.out, "loop_scans.csv"), options.fresh, "form_within")
     if not options.report_only:
         results.run(jobs, work, options.threads)
     loop_scans_report.write_scans(options.out, results.rows, TIERS, seed)

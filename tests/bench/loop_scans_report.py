@@ -18,7 +18,7 @@ def share(rows, test):
 
 
 def is_scanner(row):
-    """Nothing but the scanner is wrong: the circles have one truth."""
+    """Nothing but the scanner is wrong: there is an error to take out of dimensions."""
     ids = row["wanted"].split(" + ") if row["wanted"] else []
     return bool(ids) and all(i.startswith("scan.") or i in SCANNER_CURVES for i in ids)
 
@@ -96,7 +96,7 @@ def groups_of(rows, tiers):
 def range_lines(rows):
     result = []
     for name in sorted({r["tier"] for r in rows}):
-        own = [r for r in rows if r["tier"] == name and is_scanner(r)]
+        own = [r for r in rows if r["tier"] == name]
         cells = [name, sum(number(r, "R0_ranges") + number(r, "R_ranges") > 0 for r in own)]
         for q in QUANTITIES:
             stated = sum(number(r, q + "_ranges") for r in own)
@@ -111,15 +111,28 @@ def range_lines(rows):
 def within_lines(rows):
     result = []
     for name in sorted({r["tier"] for r in rows}):
-        own = [r for r in rows if r["tier"] == name and (is_scanner(r) or not r["wanted"])]
-        if not own:
-            continue
+        own = [r for r in rows if r["tier"] == name]
         cells = [name, len(own)]
         for q in QUANTITIES:
             mean = [100 * np.mean([number(r, f"{q}_within_{side}") for r in own]) for side in ("before", "after")]
             cells.append(f"{mean[0]:.0f} → {mean[1]:.0f}")
         result.append(cells)
     return markdown(["what", "cases"] + [f"{q} within U, %" for q in QUANTITIES], result)
+
+
+def form_error_lines(rows):
+    """Form errors of lands and bumps, by the kind of effect."""
+    kinds = [("nothing there", lambda r: not r["wanted"]), ("the scanner's effects", is_scanner),
+             ("the part's effects", lambda r: r["wanted"] and not is_scanner(r))]  # fmt: skip
+    table = []
+    for title, test in kinds:
+        own = [r for r in rows if test(r)]
+        total = lambda column: sum(number(r, column) for r in own)
+        hold = lambda held, of: f"{100 * total(held) / total(of):.1f}" if total(of) else "–"
+        if own:
+            table.append([title, len(own), f"{total('form_errors'):.0f}", hold("form_within", "form_errors"),
+                          f"{total('form_ranges'):.0f}", hold("form_ranges_hold", "form_ranges")])  # fmt: skip
+    return markdown(["what", "inputs", "form errors", "within U, %", "ranges in place of one", "hold %"], table)
 
 
 def clean_lines(rows):
@@ -174,9 +187,8 @@ def write_scans(folder, rows, tiers, seed):
     )
     lines += [
         "", "All effects: the midline. Distance of the true midline, deviations of the part included, from the measured",
-        "circles and what the report says deviates from them (rms over bumps and lands; place and direction left free). A",
-        "bump that is no circle has no one radius; this does not ask for one. Bumps count over the inner 85 % of their arcs,",
-        "where edges are measured.", "",
+        "circles and what the report says deviates from them (rms over bumps and lands; place and direction left free). Bumps",
+        "count over the inner 85 % of their arcs, where edges are measured.", "",
     ]  # fmt: skip
     lines += markdown(
         reduction_header(["profile"]),
@@ -184,8 +196,8 @@ def write_scans(folder, rows, tiers, seed):
     )
     lines += [
         "", "## Uncertainty", "",
-        "Clean inputs and effects of the scanner: how many values lie within U = 2 u of the truth, before and after.", "",
-        *within_lines(rows),
+        "How many values lie within U = 2 u of the truth, before and after: of the least-squares circles through the part as",
+        "it is.", "", *within_lines(rows), "", *form_error_lines(rows),
     ]  # fmt: skip
     lines += ["", *clean_lines(rows), "## Ties", "", *range_lines(rows)]
     lines += ["", "## Every case that was not in its class", "", *missed_lines(rows)]

@@ -23,10 +23,10 @@ def widths(case, report):
     foils = pair_foils(case, report["after"]["foils"])
     midline, _, foil = foils[0]
     overall = foil["overall"]
-    rows = {"R0": [(overall, "radius", midline.overall)], "R": [], "h": []}
+    rows = {"R0": [(overall, "radius", midline.measurand.overall)], "R": [], "h": []}
     for i, bump in pair_bumps(*foils[0]):
-        rows["R"].append((bump, "radius", midline.radius[i]))
-        rows["h"].append((bump, "height", midline.height[i]))
+        rows["R"].append((bump, "radius", midline.measurand.radius[i]))
+        rows["h"].append((bump, "height", midline.measurand.height[i]))
     result = {}
     for name, own in rows.items():
         span, held = [], []

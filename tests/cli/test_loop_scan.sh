@@ -49,7 +49,7 @@ import json
 
 def numbers(at):
     if isinstance(at, dict):
-        return [x for k in sorted(at) if k != "corrections" for x in numbers(at[k])]
+        return [x for k in sorted(at) if k != "corrections" and "form_error" not in k for x in numbers(at[k])]
     return [x for y in at for x in numbers(y)] if isinstance(at, list) else [at]
 
 r = json.load(open("oval.out"))

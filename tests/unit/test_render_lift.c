@@ -64,7 +64,7 @@ static void patterns_raise_the_bumps_they_name(void **state) {
   }
 }
 
-/* Off the middle it falls as (1 - u²)²; fillets, lands and the truth stay. */
+/* Off the middle it falls as (1 - u²)²; fillets, lands and the ideal circles stay. */
 static void crown_stays_at_its_ends(void **state) {
   (void)state;
   fg_context ctx = {0};
@@ -72,7 +72,8 @@ static void crown_stays_at_its_ends(void **state) {
   fg_render_spec *spec = parse(LIFT("\"amplitude_um\":6,\"bumps\":[5]"));
   const fg_render_foil *a = &fg_render_get_truth(plain)->foils[0];
   const fg_render_foil *b = &fg_render_get_truth(spec)->foils[0];
-  assert_memory_equal(a->bumps, b->bumps, 9 * sizeof *a->bumps);
+  for (size_t i = 0; i < 9; i++)
+    assert_memory_equal(&a->bumps[i], &b->bumps[i], offsetof(fg_render_bump, measurand));
   double first = NAN, last = NAN, middle = 0, largest = 0;
   fg_point p, q;
   for (int pass = 0; pass < 2; pass++)

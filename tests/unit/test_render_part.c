@@ -94,12 +94,78 @@ static void lip_decay_widens_the_first_bumps(void **state) {
   drop(&p);
 }
 
+static fg_render_foil load_truth(const char *json, fg_render_spec **spec) {
+  fg_context ctx = {0};
+  assert_ok(&ctx, fg_render_parse(&ctx, "spec.json", json, spec));
+  return fg_render_get_truth(*spec)->foils[0];
+}
+
+/* Of a nearly closed ring the least-squares circle is the ideal one, and an ovality of amplitude a
+ * deviates from it by 2 a, peak to valley. */
+static void ovality_of_a_ring_deviates_by_twice_its_amplitude(void **state) {
+  (void)state;
+  fg_render_spec *spec;
+  fg_render_foil foil =
+      load_truth("{\"schema\":\"foilgauge/render/1\",\"foils\":[{\"design\":{\"form\":\"arc\","
+                 "\"overall_radius_mm\":20,\"subtended_angle_deg\":350}}],\"effects\":[{\"id\":"
+                 "\"part.ovality\",\"amplitude_um\":12,\"phase_deg\":20}]}",
+                 &spec);
+  assert_near(foil.measurand.form_error_um, 24, 0.8);
+  assert_near(foil.measurand.radius_mm, 20, 3e-4);
+  assert_near(foil.overall_radius_mm, 20, 0);
+  fg_render_free(spec);
+}
+
+/* On a shallow arc (1 - u²)² is 8/15 - 16/21 P2 + 8/35 P4; the circle takes all but P4, which goes
+ * from -3/7 to 1. The arc's own curvature takes 0.045 of it, and its ends that are left out 0.066.
+ */
+static void crown_moves_the_measurand_of_bumps(void **state) {
+  (void)state;
+  fg_render_spec *spec;
+  fg_render_foil foil = load_truth("{\"schema\":\"foilgauge/render/1\",\"effects\":[{\"id\":"
+                                   "\"part.bump_crown\",\"amplitude_um\":10}]}",
+                                   &spec);
+  for (size_t b = 0; b < foil.bump_count; b++) {
+    const fg_render_measurand *circle = &foil.bumps[b].measurand;
+    assert_near(circle->form_error_um, 10 * 8.0 / 35 * 10 / 7 * 0.955 * 0.934, 0.1);
+    assert_true(circle->radius_mm < foil.bumps[b].radius_mm - 0.05);
+    assert_near(circle->height_mm,
+                foil.measurand.radius_mm - (circle->centre_to_centre_mm - circle->radius_mm),
+                1e-12);
+  }
+  assert_near(foil.measurand.form_error_um, 0, 1e-6);
+  assert_near(foil.measurand.radius_mm, foil.overall_radius_mm, 1e-9);
+  fg_render_free(spec);
+}
+
+/* The scanner deforms the picture, not the part. */
+static void scanner_leaves_the_measurand_ideal(void **state) {
+  (void)state;
+  fg_render_spec *spec;
+  fg_render_foil foil =
+      load_truth("{\"schema\":\"foilgauge/render/1\",\"effects\":[{\"id\":\"scan.scale_y\","
+                 "\"value\":0.001},{\"id\":\"free.edge.normal\",\"knots\":[[0,0],[120,5],[240,"
+                 "-5]]}]}",
+                 &spec);
+  assert_near(foil.measurand.radius_mm, foil.overall_radius_mm, 0);
+  assert_near(foil.measurand.form_error_um, 0, 0);
+  for (size_t b = 0; b < foil.bump_count; b++) {
+    assert_near(foil.bumps[b].measurand.radius_mm, foil.bumps[b].radius_mm, 0);
+    assert_near(foil.bumps[b].measurand.height_mm, foil.bumps[b].height_mm, 0);
+    assert_near(foil.bumps[b].measurand.form_error_um, 0, 0);
+  }
+  fg_render_free(spec);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(part_effects_move_the_crown),
       cmocka_unit_test(normal_ovality_moves_at_right_angles),
       cmocka_unit_test(spiral_lies_beside_the_plain_foil),
       cmocka_unit_test(lip_decay_widens_the_first_bumps),
+      cmocka_unit_test(ovality_of_a_ring_deviates_by_twice_its_amplitude),
+      cmocka_unit_test(crown_moves_the_measurand_of_bumps),
+      cmocka_unit_test(scanner_leaves_the_measurand_ideal),
   };
   return cmocka_run_group_tests_name("render part", tests, NULL, NULL);
 }

@@ -12,6 +12,9 @@
 #include "report/quantity_members.h"
 #include "report/verdict_members.h"
 
+#define FORM_ERROR_WORDS                                                                           \
+  "only in a loop's report: peak-to-valley deviation of the foil from this least-squares circle "  \
+  "(ISO 12181), by its own shape"
 #define RANGE_WORDS "lowest and highest over explanations that a loop could not tell apart"
 
 static const fg_judged *judged_of(const fg_subject *subject) {
@@ -56,6 +59,26 @@ RANGE_OF(find_disc_range, fg_disc, radius_range_mm)
                                   .options = FG_MEMBER_LEFT_OUT | FG_MEMBER_NEVER_NULL,            \
                                   .words = RANGE_WORDS
 
+/* Form errors: only in what a loop reports. */
+static bool has_form_error(const fg_form_error *error) {
+  return isnan(error->um) || error->u_um > 0;
+}
+#define FORM_ERROR_OF(function, range_function, object_, field)                                    \
+  static bool function(const fg_subject *subject) {                                                \
+    return has_form_error(&((const object_ *)subject->object)->field);                             \
+  }                                                                                                \
+  RANGE_OF(range_function, object_, field.range_um)
+FORM_ERROR_OF(has_bump_form_error, find_bump_deviation_range, fg_bump, form_error)
+FORM_ERROR_OF(has_overall_form_error, find_overall_deviation_range, fg_foil, overall.form_error)
+#define FORM_ERROR(object_, field, present_, range_function)                                       \
+  {FG_NUMBER("form_error_um", object_, field.um), .present = present_, .words = FORM_ERROR_WORDS}, \
+      {FG_NUMBER("u_form_error_um", object_, field.u_um), .present = present_}, {                  \
+    FG_NUMBERS_BY("form_error_range_um", range_function),                                          \
+        .lowest = 2, .highest = 2, .options = FG_MEMBER_LEFT_OUT | FG_MEMBER_NEVER_NULL,           \
+        .words = "where the edges do not tell the foil's deviation from the scanner's: lowest "    \
+                 "and highest, U included; form_error_um is null"                                  \
+  }
+
 /* A bump and a beam. */
 static const char *bump_flag_at(const fg_subject *subject, size_t i) {
   const fg_judged *judged = judged_of(subject);
@@ -93,6 +116,7 @@ static const fg_member bump_rows[] = {
     {COVARIANCE(fg_bump, covariance)},
     {RANGE("radius_range_mm", find_radius_range)},
     {RANGE("height_range_mm", find_height_range)},
+    FORM_ERROR(fg_bump, form_error, has_bump_form_error, find_bump_deviation_range),
 };
 static const fg_members bump_members = FG_MEMBERS_OF_FILE(bump_rows, "bump", "measure");
 
@@ -153,6 +177,7 @@ static const fg_member overall_rows[] = {
     {FG_SAME_BY(fg_overall_quantity_at)},
     {COVARIANCE(fg_foil, overall.covariance)},
     {RANGE("radius_range_mm", find_overall_range)},
+    FORM_ERROR(fg_foil, overall.form_error, has_overall_form_error, find_overall_deviation_range),
 };
 static const fg_members overall_members = FG_MEMBERS_OF_FILE(overall_rows, "overall", "measure");
 

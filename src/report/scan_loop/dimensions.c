@@ -193,6 +193,7 @@ static void put_foil_dimensions(FILE *out, const fg_scan_result *result, size_t 
   put_overall(out, b, a, result->corrected, tied);
   for (size_t from = 0; from < BUMP_QUANTITIES; from += BESIDE)
     put_bump_table(out, b, a, from, result->corrected, tied);
+  fg_scan_loop_page_form_errors(out, a);
 }
 
 static void put_disc_dimensions(FILE *out, const fg_scan_result *result, size_t scan) {

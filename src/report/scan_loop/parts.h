@@ -47,6 +47,16 @@ fg_status fg_scan_loop_residual_limit(fg_context *ctx, const fg_scan_result *res
 
 void fg_scan_loop_page_dimensions(FILE *out, const fg_scan_result *result);
 
+/* ---- form errors (form_errors.c) ---- */
+
+/* Returns false where none was looked for. */
+bool fg_has_form_error(const fg_form_error *error);
+/* Writes a form error in um: "10.35 ± 0.18", "below 0.05", or a range; "": none. */
+enum { FG_FORM_ERROR_WORDS = 48 };
+void fg_form_error_words(const fg_form_error *error, const char *plus_minus, char *words,
+                         size_t size);
+void fg_scan_loop_page_form_errors(FILE *out, const fg_foil *foil);
+
 /* ---- the bumps (bump_page.c) ---- */
 
 void fg_scan_loop_page_bumps(FILE *out, const fg_scan_result *result);

@@ -96,6 +96,15 @@ static void put_moved(FILE *out, const char *symbol, double before_mm, double af
   fputs(" mm", out);
 }
 
+/* ", form error 10.35 +- 0.18 um". */
+static void put_form_error(FILE *out, const fg_form_error *error) {
+  char words[FG_FORM_ERROR_WORDS];
+  fg_form_error_words(error, "+-", words, sizeof words);
+  if (words[0])
+    fprintf(out, ", form error %s%s", words,
+            error->u_um > 0 || error->range_um[1] > 0 ? " um" : "");
+}
+
 static void print_bump(FILE *out, const fg_bump *before, const fg_bump *after) {
   fprintf(out, "  bump %d:", before->number);
   if (!isfinite(before->radius_mm) || !isfinite(after->radius_mm)) {
@@ -105,6 +114,7 @@ static void print_bump(FILE *out, const fg_bump *before, const fg_bump *after) {
   put_moved(out, "R", before->radius_mm, after->radius_mm, after->u_radius_mm);
   fputc(',', out);
   put_moved(out, "h", before->height_mm, after->height_mm, after->u_height_mm);
+  put_form_error(out, &after->form_error);
   fputc('\n', out);
 }
 
@@ -118,6 +128,7 @@ static void put_foils(FILE *out, const fg_measurement *before, const fg_measurem
     }
     fprintf(out, "%s foil %d:", before->scan, b->number);
     put_moved(out, "R0", b->overall.radius_mm, a->overall.radius_mm, a->overall.u_radius_mm);
+    put_form_error(out, &a->overall.form_error);
     fputc('\n', out);
     for (size_t k = 0; k < b->bump_count && k < a->bump_count; k++)
       print_bump(out, &b->bumps[k], &a->bumps[k]);

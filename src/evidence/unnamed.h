@@ -1,0 +1,19 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Rivals with a shape: what a named effect beside others may be in truth.
+ *
+ * A sawtooth over one jump is a step with a slope, a chip that is mounted askew a step with two:
+ * sets of named effects explain them on one arc, and are no evidence for their names. A decay of
+ * x, or a wave of it, is as likely as the carriage's start and its ripple, which have names. */
+#ifndef FG_EVIDENCE_UNNAMED_H
+#define FG_EVIDENCE_UNNAMED_H
+
+#include "effect/effect.h"
+
+/* The rows, in the form of effects, which no report names; NULL-terminated by id. They are of one
+ * kind and share one prior probability. */
+enum { FG_UNNAMED_EFFECTS = 10 };
+extern const fg_effect fg_unnamed_effects[FG_UNNAMED_EFFECTS + 1];
+
+bool fg_effect_is_unnamed(const fg_effect *effect);
+
+#endif

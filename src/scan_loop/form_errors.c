@@ -1,0 +1,431 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Form error: the peak-to-valley deviation of the part from its least-squares circle, ISO 12181.
+ *
+ * Peaks of measured edges are peaks of noise. So the deviation is the one that the models hold for
+ * the part's: draws from the posterior of its columns, beside their circles, model by model, give
+ * the mean of the peak-to-valley deviation and its standard deviation. Effects too small for a
+ * model widen it. */
+#include "scan_loop/form_errors.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "effect/columns.h"
+#include "evidence/options.h"
+#include "foilgauge/report.h"
+#include "scan_loop/circles.h"
+#include "table_loop/engine_random.h"
+
+enum { DRAWS = 64, MODELS_MAX = 48 };
+/* Models of less weight, relative to the likeliest, change no mean; and none of a lower share of
+ * the whole extends a range. */
+#define WEIGHT_MIN 1e-3
+#define SHARE_MIN  0.01
+/* Weight of an explanation that the verdict lists, relative to the likeliest: at least this. */
+#define LISTED_MIN 0.1
+/* Share of the largest deviation that the smallest one must reach: else its cause is open. */
+#define OPEN_SHARE 0.5
+/* Share of a deviation that rows, which are means, lose. */
+#define SHAPE_SHARE 0.01
+#define SEED        1
+
+/* Deviations of the part under one model: columns at the rows of the circles. */
+typedef struct deviations {
+  size_t count;
+  double *columns;      /* owned; count × rows, beside the circles */
+  double *mean, *lower; /* owned; of the amplitudes, um: lower factor of their covariance */
+} deviations;
+
+/* Of one model on every circle. */
+typedef struct moments {
+  double weight, *mean, *square;
+  double *ends; /* growth over what the circles may be longer: as over as much at their ends */
+} moments;
+
+enum { MOMENTS = 3 };
+static moments moments_in(double *numbers, const fg_circles *c) {
+  return (moments){.mean = numbers, .square = numbers + c->count, .ends = numbers + 2 * c->count};
+}
+
+static void close_deviations(deviations *d) {
+  free(d->columns);
+  free(d->mean);
+  free(d->lower);
+  *d = (deviations){.count = 0};
+}
+
+static fg_status open_deviations(fg_context *ctx, const fg_circles *c, size_t count,
+                                 deviations *d) {
+  fg_status status = FG_OK;
+  *d = (deviations){.count = count};
+  FG_TRY_EXIT(fg_memory_allocate(ctx, count * c->rows + 1, sizeof(double), (void **)&d->columns));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, count + 1, sizeof(double), (void **)&d->mean));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, count * count + 1, sizeof(double), (void **)&d->lower));
+exit:
+  if (status != FG_OK) close_deviations(d);
+  return status;
+}
+
+/* Returns true for a part of a model that moves the strip's midline. */
+static bool is_of_part(const fg_evidence_part *part) {
+  if (part->effect) return part->effect->midline != NULL;
+  return part->rival->columns && part->rival->coordinate != FG_EFFECT_NORMAL;
+}
+
+/* Lower factor of a covariance; a number that is known exactly has zeros. */
+static void factorise_covariance(size_t n, double *a) {
+  for (size_t i = 0; i < n; i++)
+    for (size_t k = 0; k <= i; k++) {
+      double value = a[i * n + k];
+      for (size_t j = 0; j < k; j++)
+        value -= a[i * n + j] * a[k * n + j];
+      if (k < i)
+        a[i * n + k] = a[k * n + k] > 0 ? value / a[k * n + k] : 0;
+      else
+        a[i * n + i] = value > 1e-12 * fabs(a[i * n + i]) ? sqrt(value) : 0;
+    }
+}
+
+static void fill_rival_columns(const fg_circles *c, const fg_evidence_part *part, double *to) {
+  double values[FG_RIVAL_COLUMNS];
+  size_t skip = part->rival->stretch ? part->stretch * part->count : 0;
+  for (size_t i = 0; i < c->rows; i++) {
+    fg_rival_columns(part->rival, c->edge_fit, &c->edge_fit->rows[c->row[i]], values);
+    for (size_t k = 0; k < part->count; k++)
+      to[k * c->rows + i] = values[skip + k];
+  }
+}
+
+static fg_status fill_effect_columns(fg_context *ctx, const fg_circles *c,
+                                     const fg_evidence_part *part, double *to) {
+  size_t rows = c->edge_fit->row_count;
+  double *columns = NULL;
+  FG_TRY(fg_memory_allocate(ctx, rows, FG_EFFECT_COLUMNS_MAX * sizeof *columns, (void **)&columns));
+  fg_effect_columns(c->edge_fit, part->effect, part->shape, columns);
+  for (size_t k = 0; k < part->count; k++)
+    for (size_t i = 0; i < c->rows; i++)
+      to[k * c->rows + i] = columns[k * rows + c->row[i]];
+  free(columns);
+  return FG_OK;
+}
+
+/* Columns of one part of a model at the rows of the circles, beside them. */
+static fg_status fill_columns(fg_context *ctx, const fg_circles *c, const fg_evidence_part *part,
+                              double *to) {
+  if (part->effect)
+    FG_TRY(fill_effect_columns(ctx, c, part, to));
+  else
+    fill_rival_columns(c, part, to);
+  for (size_t k = 0; k < part->count; k++)
+    fg_circles_remove(c, to + k * c->rows);
+  return FG_OK;
+}
+
+static fg_status find_deviations(fg_context *ctx, fg_evidence_search *s, const fg_circles *c,
+                                 const fg_evidence_model *model, deviations *d) {
+  fg_evidence_posterior posterior;
+  size_t count = 0, *index = NULL;
+  fg_status status = FG_OK;
+  *d = (deviations){.count = 0};
+  for (size_t k = 0; k < model->parts; k++)
+    count += is_of_part(model->part[k]) ? model->part[k]->count : 0;
+  if (!count) return FG_OK;
+  FG_TRY(fg_evidence_find_posterior(ctx, s, model, &posterior));
+  FG_TRY_EXIT(open_deviations(ctx, c, count, d));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *index, (void **)&index));
+  size_t at = 0;
+  for (size_t k = 0; k < model->parts; k++) {
+    if (!is_of_part(model->part[k])) continue;
+    FG_TRY_EXIT(fill_columns(ctx, c, model->part[k], d->columns + at * c->rows));
+    for (size_t i = 0; i < model->part[k]->count; i++)
+      index[at++] = fg_evidence_first_of(s, model, k) + i;
+  }
+  for (size_t i = 0; i < count; i++) {
+    d->mean[i] = posterior.mean[index[i]];
+    for (size_t k = 0; k < count; k++)
+      d->lower[i * count + k] = posterior.covariance[index[i] * posterior.count + index[k]];
+  }
+  factorise_covariance(count, d->lower);
+exit:
+  if (status != FG_OK) close_deviations(d);
+  free(index);
+  fg_evidence_posterior_close(&posterior);
+  return status;
+}
+
+/* Adds mean and mean square of the peak-to-valley deviation over the draws. */
+static fg_status draw_moments(fg_context *ctx, const fg_circles *c, const deviations *d,
+                              moments *m) {
+  uint64_t state = SEED;
+  double *values = NULL, *normal;
+  if (!d->count) return FG_OK;
+  FG_TRY(fg_memory_allocate(ctx, c->rows + d->count, sizeof *values, (void **)&values));
+  normal = values + c->rows;
+  for (int draw = 0; draw < DRAWS; draw++) {
+    memset(values, 0, c->rows * sizeof *values);
+    for (size_t k = 0; k < d->count; k++)
+      normal[k] = fg_engine_random_normal(&state);
+    for (size_t k = 0; k < d->count; k++) {
+      const double *column = d->columns + k * c->rows;
+      double um = d->mean[k];
+      for (size_t i = 0; i <= k; i++)
+        um += d->lower[k * d->count + i] * normal[i];
+      for (size_t i = 0; i < c->rows; i++)
+        values[i] += um * column[i];
+    }
+    for (size_t k = 0; k < c->count; k++) {
+      double um = fg_circles_peak_to_valley(c, k, values);
+      double sure = fg_circles_sure_peak_to_valley(c, k, values);
+      m->mean[k] += um / DRAWS;
+      m->square[k] += um * um / DRAWS;
+      m->ends[k] += (sure > 0 ? um * fabs(um / sure - 1) : 0) / DRAWS;
+    }
+  }
+  free(values);
+  return FG_OK;
+}
+
+static fg_status find_moments(fg_context *ctx, fg_evidence_search *s, const fg_circles *c,
+                              const fg_evidence_model *model, moments *m) {
+  deviations d;
+  FG_TRY(find_deviations(ctx, s, c, model, &d));
+  fg_status status = draw_moments(ctx, c, &d, m);
+  close_deviations(&d);
+  return status;
+}
+
+/* ---- deviations too small for a model ---- */
+
+/* Returns true for an effect of the part that no model of weight shows. */
+static bool is_hidden(const fg_evidence_option *option, const fg_evidence_model *const *list,
+                      const double *weight, size_t models) {
+  if (!option->effect || !option->effect->midline || option->effect->start) return false;
+  for (size_t m = 0; m < models; m++)
+    if ((!m || weight[m] >= SHARE_MIN) && fg_evidence_holds(list[m], option->effect)) return false;
+  return true;
+}
+
+/* Widens by an effect of the part that the model lacks: mean square distance of the deviation with
+ * it from that without. */
+static fg_status widen_by_option(fg_context *ctx, fg_evidence_search *s, const fg_circles *c,
+                                 const fg_evidence_model *model, const fg_evidence_option *option,
+                                 moments *room, double *hidden) {
+  fg_evidence_part part = {.effect = option->effect, .first = option->first, .count = option->each};
+  fg_evidence_model with = *model;
+  moments own = moments_in(room->mean + MOMENTS * c->count, c);
+  fg_evidence_effect_variances(option->effect, option->each, part.variance);
+  with.part[with.parts++] = &part;
+  memset(own.mean, 0, MOMENTS * c->count * sizeof *own.mean);
+  FG_TRY(find_moments(ctx, s, c, &with, &own));
+  for (size_t k = 0; k < c->count; k++) {
+    double before = room->mean[k];
+    double square = own.square[k] - 2 * before * own.mean[k] + before * before;
+    hidden[k] = fmax(hidden[k], sqrt(fmax(0, square)));
+  }
+  return FG_OK;
+}
+
+/* Uncertainty by effects of the part that the models lack, whether or not they are worth one: a
+ * foil is not round because nothing was found. */
+static fg_status find_hidden(fg_context *ctx, fg_evidence_search *s, const fg_circles *c,
+                             const fg_evidence_model *const *list, const double *weight,
+                             size_t models, moments *room, double *hidden) {
+  const fg_evidence_model *model = list[0];
+  if (model->parts == FG_EVIDENCE_PARTS) return FG_OK;
+  FG_TRY(find_moments(ctx, s, c, model, room));
+  for (size_t o = 0; o < s->option_count; o++)
+    if (is_hidden(&s->options[o], list, weight, models))
+      FG_TRY(widen_by_option(ctx, s, c, model, &s->options[o], room, hidden));
+  return FG_OK;
+}
+
+/* ---- all models ---- */
+
+/* One circle over all models. Where one takes for the part's what another takes for the scanner's,
+ * there is a range and no value. */
+static fg_form_error combine_models(const moments *m, size_t models, size_t circle, double hidden) {
+  double mean = 0, square = 0, low = INFINITY, high = 0, smallest = INFINITY, largest = 0;
+  double within = 0, ends = 0;
+  for (size_t k = 0; k < models; k++) {
+    double own = m[k].mean[circle];
+    double of_end = hypot(m[k].ends[circle], SHAPE_SHARE * own);
+    double known = hypot(sqrt(fmax(0, m[k].square[circle] - own * own)), of_end);
+    double sd = hypot(known, hidden);
+    mean += m[k].weight * own;
+    ends += m[k].weight * of_end * of_end;
+    square += m[k].weight * m[k].square[circle];
+    if (m[k].weight < SHARE_MIN) continue;
+    smallest = fmin(smallest, own);
+    largest = fmax(largest, own);
+    within = fmax(within, FG_COVERAGE_FACTOR * known);
+    low = fmin(low, fmax(0, own - FG_COVERAGE_FACTOR * sd));
+    high = fmax(high, own + FG_COVERAGE_FACTOR * sd);
+  }
+  double u = sqrt(fmax(0, square - mean * mean) + ends + hidden * hidden);
+  if (largest - smallest > fmax(within, hidden) && smallest < OPEN_SHARE * largest)
+    return (fg_form_error){.um = NAN, .u_um = NAN, .range_um = {low, high}};
+  return (fg_form_error){.um = mean, .u_um = u};
+}
+
+static size_t list_models(const fg_evidence_search *s, const fg_evidence_verdict *verdict,
+                          const fg_evidence_model **list, double *weight) {
+  bool named = verdict->outcome == FG_EVIDENCE_FOUND || verdict->outcome == FG_EVIDENCE_TIED;
+  const fg_evidence_model *from = named ? verdict->tie : s->models;
+  size_t available = named ? verdict->ties : s->count, count = 0;
+  double top = -INFINITY, total = 0;
+  for (size_t m = 0; m < available; m++)
+    top = fmax(top, from[m].score);
+  for (size_t m = 0; m < available && count < MODELS_MAX; m++) {
+    double own = fmax(exp(from[m].score - top), named ? LISTED_MIN : 0);
+    if (own < WEIGHT_MIN) continue;
+    list[count] = &from[m];
+    weight[count++] = own;
+    total += own;
+  }
+  for (size_t m = 0; m < count; m++)
+    weight[m] /= total;
+  return count;
+}
+
+fg_status fg_scan_loop_find_form_errors(fg_context *ctx, fg_scan_loop *loop, fg_evidence_search *s,
+                                        const fg_evidence_verdict *verdict) {
+  const fg_evidence_model *list[MODELS_MAX];
+  double weight[MODELS_MAX], *numbers = NULL;
+  moments m[MODELS_MAX + 1];
+  fg_circles circles;
+  fg_status status = FG_OK;
+  size_t count = list_models(s, verdict, list, weight);
+  FG_TRY(fg_circles_open(ctx, &loop->edge_fit, &circles));
+  /* of every model, of the likeliest again, and of it with one effect more */
+  size_t each = MOMENTS * circles.count;
+  FG_TRY_EXIT(fg_memory_allocate(ctx, each * (count + 2) + circles.count, sizeof *numbers,
+                                 (void **)&numbers));
+  for (size_t k = 0; k <= count; k++) {
+    m[k] = moments_in(numbers + k * each, &circles);
+    m[k].weight = k < count ? weight[k] : 0;
+    if (k < count) FG_TRY_EXIT(find_moments(ctx, s, &circles, list[k], &m[k]));
+  }
+  double *hidden = numbers + (count + 2) * each;
+  FG_TRY_EXIT(find_hidden(ctx, s, &circles, list, weight, count, &m[count], hidden));
+  if (!loop->form_errors)
+    FG_TRY_EXIT(fg_memory_allocate(ctx, circles.count, sizeof *loop->form_errors,
+                                   (void **)&loop->form_errors));
+  for (size_t k = 0; k < circles.count; k++)
+    loop->form_errors[k] = circles.first[k + 1] == circles.first[k] ? (fg_form_error){.um = 0}
+                           : circles.cut[k] ? (fg_form_error){.um = NAN, .u_um = NAN}
+                                            : combine_models(m, count, k, hidden[k]);
+exit:
+  free(numbers);
+  fg_circles_close(&circles);
+  return status;
+}
+
+/* ---- the set that is fitted ---- */
+
+/* Finds the deviations by the effects of the part in force: coefficients with their uncertainties.
+ */
+static fg_status find_fitted(fg_context *ctx, const fg_circles *c, const fg_effect_set *set,
+                             moments *m) {
+  deviations d;
+  size_t count = 0, at = 0;
+  fg_status status = FG_OK;
+  for (size_t e = 0; e < set->count; e++)
+    count += set->effects[e].kind->midline ? set->effects[e].columns : 0;
+  FG_TRY(open_deviations(ctx, c, count, &d));
+  for (size_t e = 0; e < set->count; e++) {
+    const fg_effect_found *effect = &set->effects[e];
+    fg_evidence_part part = {.effect = effect->kind, .count = effect->columns};
+    memcpy(part.shape, effect->shape, sizeof part.shape);
+    if (!effect->kind->midline) continue;
+    FG_TRY_EXIT(fill_columns(ctx, c, &part, d.columns + at * c->rows));
+    for (size_t i = 0; i < effect->columns; i++, at++) {
+      d.mean[at] = effect->coefficient_um[i];
+      d.lower[at * count + at] = effect->u_coefficient_um[i];
+    }
+  }
+  FG_TRY_EXIT(draw_moments(ctx, c, &d, m));
+exit:
+  close_deviations(&d);
+  return status;
+}
+
+/* A model has few bumps of their own shape, the set that is fitted may have a curve over all of
+ * them: a larger deviation by it, beyond both uncertainties, is taken, and half of the difference
+ * counts to u. */
+static fg_status compare_with_set(fg_context *ctx, fg_scan_loop *loop) {
+  fg_circles circles;
+  double *numbers = NULL;
+  fg_status status = FG_OK;
+  FG_TRY(fg_circles_open(ctx, &loop->edge_fit, &circles));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, MOMENTS * circles.count, sizeof *numbers, (void **)&numbers));
+  moments m = moments_in(numbers, &circles);
+  FG_TRY_EXIT(find_fitted(ctx, &circles, &loop->set, &m));
+  for (size_t k = 0; k < circles.count; k++) {
+    fg_form_error *error = &loop->form_errors[k];
+    double own = m.mean[k], u = sqrt(fmax(0, m.square[k] - own * own) + m.ends[k] * m.ends[k]);
+    if (!(own - error->um > FG_COVERAGE_FACTOR * hypot(u, error->u_um))) continue;
+    *error = (fg_form_error){.um = own, .u_um = hypot(u, 0.5 * (own - error->um))};
+  }
+exit:
+  free(numbers);
+  fg_circles_close(&circles);
+  return status;
+}
+
+/* ---- into the foils ---- */
+
+/* Reasons why form errors have no value. */
+typedef struct reasons {
+  bool open, cut;
+} reasons;
+
+static void put_error(const fg_form_error *from, fg_form_error *to, reasons *why) {
+  *to = *from;
+  if (!isnan(from->um)) return;
+  *(from->range_um[1] > 0 ? &why->open : &why->cut) = true;
+}
+
+static void put_in_foil(const fg_edge_fit_part *part, const fg_form_error *errors, fg_foil *foil,
+                        reasons *why) {
+  put_error(&errors[0], &foil->overall.form_error, why);
+  for (size_t b = 0; b < foil->bump_count; b++)
+    for (size_t k = 0; k < part->bump_count; k++)
+      if (part->bumps[k].number == foil->bumps[b].number)
+        put_error(&errors[1 + k], &foil->bumps[b].form_error, why);
+}
+
+static fg_status note_reasons(fg_context *ctx, fg_scan_loop *loop, const reasons *why) {
+  if (why->open)
+    FG_TRY(fg_scan_loop_bumps_note(ctx, &loop->bumps,
+                                   "points: form errors are ranges: the edges cannot tell whether "
+                                   "the foil or the scanner deviates from circles; scan the same "
+                                   "foil again, turned by about 90 degrees"));
+  if (!why->cut) return FG_OK;
+  return fg_scan_loop_bumps_note(ctx, &loop->bumps,
+                                 "points: the form error of a bump is not stated: more than a "
+                                 "tenth of its arc is no circle at an end and passes for its "
+                                 "fillet; is fillet_radius_mm of the design right?");
+}
+
+fg_status fg_scan_loop_put_form_errors(fg_context *ctx, fg_scan_loop *loop) {
+  const fg_edge_fit *edge_fit = &loop->edge_fit;
+  reasons why = {false, false};
+  if (edge_fit->discs || edge_fit->coarse) return FG_OK;
+  if (!loop->form_errors)
+    return fg_scan_loop_bumps_note(
+        ctx, &loop->bumps,
+        "points: form errors are not stated: there are too many bumps to "
+        "weigh all causes; give fewer foils");
+  FG_TRY(compare_with_set(ctx, loop));
+  for (size_t v = 0; v < edge_fit->view_count; v++) {
+    const fg_edge_fit_view *view = &edge_fit->views[v];
+    size_t foil = (size_t)(view->foil - loop->before[view->scan].foils);
+    if (foil >= loop->after[view->scan].foil_count) continue;
+    put_in_foil(&edge_fit->parts[view->part],
+                loop->form_errors + fg_circles_of_part(edge_fit, view->part),
+                &loop->after[view->scan].foils[foil], &why);
+  }
+  return note_reasons(ctx, loop, &why);
+}
