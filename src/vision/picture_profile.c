@@ -21,6 +21,13 @@ static const fg_profile_bin *bin_at(const fg_profile_source *s, size_t i) {
   return &s->bins[s->way > 0 ? i : s->count - 1 - i];
 }
 
+/* Distance outwards of the last bin that has pixels; an empty bin has no place. */
+static double last_distance(const fg_profile_source *s) {
+  for (size_t i = s->count; i-- > 0;)
+    if (bin_at(s, i)->count > 0) return distance_outwards(s, bin_at(s, i));
+  return NAN;
+}
+
 /* Median value of the bins between two distances outwards. */
 static double level_between(const fg_profile_source *s, double from, double to) {
   double values[BINS_MAX];
@@ -49,9 +56,8 @@ static double find_crossing(const fg_profile_source *s, double inside, double ou
 }
 
 bool fg_edge_profile_make(const fg_profile_source *s, fg_edge_profile *profile) {
-  double last_px = distance_outwards(s, bin_at(s, s->count - 1));
   double inside = level_between(s, -s->plateau_px, s->plateau_px);
-  double outside = level_between(s, last_px - s->reach_px, INFINITY);
+  double outside = level_between(s, last_distance(s) - s->reach_px, INFINITY);
   double edge = find_crossing(s, inside, outside);
   if (!(fabs(outside - inside) > CONTRAST_MIN) || isnan(edge)) return false;
   double sums[FG_SHARES] = {0}, counts[FG_SHARES] = {0};

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Of an edge whose profile an end of the scale cuts, no edge place is claimed that it hides. */
+/* Profiles across an edge: levels where bins are empty, and of one that an end of the scale cuts no
+ * edge place that it hides. */
 #include <math.h>
 
 #include <gsl/gsl_cdf.h>
@@ -54,8 +55,37 @@ static void a_small_cut_adds_little_uncertainty(void **unused) {
   assert_true(u_px(0.05, 0, 1) < 0.6);
 }
 
+enum { BINS = 81 };
+
+/* Returns the profile of bins 0.25 px apart from -10 to 10 px, an edge at 4 px; `empty` of the
+ * outermost ones hold no pixel. */
+static fg_edge_profile stacked_edge(int way, int empty) {
+  fg_profile_bin bins[BINS] = {{0}};
+  for (int i = 0; i < BINS - empty; i++) {
+    double across = -10 + 0.25 * i;
+    double light = 180 - 150 * gsl_cdf_ugaussian_P((across - 4) / BLUR_PX);
+    bins[way > 0 ? i : BINS - 1 - i] = (fg_profile_bin){way * across, light, 20};
+  }
+  const fg_profile_source source = {
+      .bins = bins, .count = BINS, .way = way, .plateau_px = 1, .reach_px = 2.5, .background = 30};
+  fg_edge_profile profile = {0};
+  assert_true(fg_edge_profile_make(&source, &profile));
+  return profile;
+}
+
+static void empty_outer_bins_leave_the_outer_level(void **unused) {
+  (void)unused;
+  for (int way = -1; way <= 1; way += 2)
+    for (int empty = 0; empty <= 2; empty++) {
+      fg_edge_profile profile = stacked_edge(way, empty);
+      assert_near(profile.outside, 30, 0.5);
+      assert_near(profile.background, 0, 0.01);
+    }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(empty_outer_bins_leave_the_outer_level),
       cmocka_unit_test(u_of_a_cut_covers_the_edge_and_grows_with_the_cut),
       cmocka_unit_test(a_small_cut_adds_little_uncertainty),
   };
