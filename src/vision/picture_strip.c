@@ -122,19 +122,28 @@ typedef struct band_sums {
   double *sums, *counts;
 } band_sums;
 
+/* Adds a pixel that lies `out_px` outside of its edge, if it lies in that edge's band. */
+static void add_to_band(const fg_edge_work *work, const fg_band_pixel *p, int side, float out_px,
+                        band_sums *b) {
+  const fg_edge_station *s = &work->stations[p->station];
+  double d = (double)out_px - fg_band_from(fmax(work->blur_px[side], (double)s->blur_px[side]));
+  if (!(s->weight > 0) || d < 0 || d > FG_BAND_PX) return;
+  size_t at = 2 * ((size_t)p->station / BAND_STATIONS) + (size_t)side;
+  b->sums[at] += (double)p->value;
+  b->counts[at]++;
+}
+
+/* Most pixels lie on the material or in the blur of its edges: they are passed over first. */
 static void add_bands(const fg_edge_work *work, band_sums *b) {
+  float nearest = (float)fg_band_from(fmin(work->blur_px[0], work->blur_px[1]));
   for (size_t c = 0; c < work->chunk_count; c++)
     for (size_t i = 0; i < work->bands[c].count; i++) {
       const fg_band_pixel *p = &work->bands[c].pixels[i];
-      const fg_edge_station *s = &work->stations[p->station];
-      float left = s->edge_px[0] - p->across_px, right = p->across_px - s->edge_px[1];
+      const float *edge_px = work->stations[p->station].edge_px;
+      float left = edge_px[0] - p->across_px, right = p->across_px - edge_px[1];
       int side = right > left;
-      double blur = fmax(work->blur_px[side], (double)s->blur_px[side]);
-      double d = (double)(side ? right : left) - fg_band_from(blur);
-      if (!(s->weight > 0) || d < 0 || d > FG_BAND_PX) continue;
-      size_t at = 2 * ((size_t)p->station / BAND_STATIONS) + (size_t)side;
-      b->sums[at] += (double)p->value;
-      b->counts[at]++;
+      float out_px = side ? right : left;
+      if (out_px >= nearest) add_to_band(work, p, side, out_px, b);
     }
 }
 
