@@ -11,6 +11,7 @@
  * the width is useless. */
 #define WIDTH_MIN_MM 0.005
 #define WIDTH_MAX_MM 200.0
+#define LEAF_MAX_MM  10.0 /* the thickest leaf of a feeler gauge has 2 mm */
 #define U_SHARE_MAX  0.1
 
 static const char *const words[] = {"leaf", "pin", "ring", "hole"};
@@ -24,6 +25,9 @@ fg_status fg_gauge_check(fg_context *ctx, const char *name, const fg_gauge *gaug
   if (!(gauge->width_mm >= WIDTH_MIN_MM && gauge->width_mm <= WIDTH_MAX_MM))
     return fg_fail(ctx, FG_ERR_DATA, "%s: a width of %g mm; it must be from %g to %g mm", name,
                    gauge->width_mm, WIDTH_MIN_MM, WIDTH_MAX_MM);
+  if (gauge->kind == FG_GAUGE_LEAF && gauge->width_mm > LEAF_MAX_MM)
+    return fg_fail(ctx, FG_ERR_DATA, "%s: a leaf of %g mm: is it in mm? 100 µm is 0.1 mm", name,
+                   gauge->width_mm);
   if (!(gauge->u_mm > 0))
     return fg_fail(ctx, FG_ERR_DATA,
                    "%s: a standard uncertainty of %g mm; no width is known exactly: state it, as "

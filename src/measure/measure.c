@@ -211,22 +211,40 @@ static void refer_gauges(fg_measurement *m) {
   }
 }
 
-/* Notes the gauges when nothing else is odd. */
+/* Returns what happens where no gauge is used. */
+static const char *without_gauges(const fg_design *design) {
+  if (design->tone == FG_TONE_LINEAR || design->thickness_measured_mm > 0)
+    return "the other statement of the design stands";
+  return "widths keep the uncertainty of an unknown tone curve";
+}
+
+/* Notes the gauges when nothing else is odd, with the reason of the first that is not used. */
 static void note_gauges(fg_measurement *m) {
-  size_t found = 0, used = 0;
-  for (size_t i = 0; i < m->design.gauge_count; i++) {
+  const fg_gauge_reading *reading = NULL;
+  size_t found = 0, used = 0, count = m->design.gauge_count;
+  for (size_t i = 0; i < count; i++) {
     found += m->gauges[i].found;
     used += m->gauges[i].used;
+    if (!reading && !m->gauges[i].used) reading = &m->gauges[i];
   }
-  if (m->warning[0] || (used == m->design.gauge_count && !m->gauges_contradict)) return;
+  if (m->warning[0] || (!reading && !m->gauges_contradict)) return;
   if (m->gauges_contradict)
     snprintf(m->warning, sizeof m->warning,
              "the gauges on the glass contradict each other: uncertainties are wider for it");
   else
-    snprintf(m->warning, sizeof m->warning, "%zu of %zu stated gauges found, %zu used: %s", found,
-             m->design.gauge_count, used,
-             used ? "the others tell nothing"
-                  : "widths keep the uncertainty of an unknown tone curve");
+    fg_text_clip(m->warning, sizeof m->warning, "%zu of %zu stated gauges found, %zu used (%s): %s",
+                 found, count, used, reading->note,
+                 used ? "the others tell nothing" : without_gauges(&m->design));
+}
+
+/* Notes a stated thickness that the scan contradicts when nothing else is odd. */
+static void note_contradiction(fg_measurement *m) {
+  for (size_t i = 0; i < m->foil_count && !m->warning[0]; i++)
+    if (m->foils[i].flags & FG_FOIL_THICKNESS_CONTRADICTS)
+      snprintf(m->warning, sizeof m->warning,
+               "the scan shows a thickness of %.4f mm, and %.4f mm is stated as measured: one of "
+               "them is wrong, and u holds the difference",
+               m->foils[i].thickness_scan_mm, m->design.thickness_measured_mm);
 }
 
 /* Moves all edges to the level given by the gauges on the glass. */
@@ -293,6 +311,7 @@ fg_status fg_measure_scan(fg_context *ctx, const char *path, const fg_design *de
   unsigned flags = check_resolution(measurement);
   for (size_t i = 0; i < measurement->foil_count; i++)
     measurement->foils[i].flags |= flags;
+  note_contradiction(measurement);
   if (measurement->jpeg_quality) note_loss(measurement);
   if (measurement->colour_lines.apart) note_apart(measurement);
   fg_picture_gather(measurement);

@@ -8,6 +8,7 @@ each in three strengths, of three seeds, at two resolutions; every third part is
 where its foil or disc has a flag that the plain scan of the same part has not, or where it is withheld.
 
   driver.py build/foilgauge                          all of it
+  driver.py build/foilgauge --third                  every strength by one seed of three
   driver.py build/foilgauge --quick                  a sixth
   driver.py build/foilgauge --kinds unsharp,levels   single kinds
   driver.py build/foilgauge --show unsharp           and every value of them
@@ -50,7 +51,12 @@ def is_in_sample(kind_index, strength, seed, dpi_index, renderer_index):
     return is_in_third(kind_index, strength, seed) and (dpi_index + renderer_index + kind_index) % 2 == 0
 
 
-def cases_of(names, seeds, quick, parts):
+def is_asked(share, part, in_third, sample):
+    """Of the sixth, the third or all foils with a third of the pins."""
+    return sample or (share == "third" and in_third) or (share == "all" and (part == "foils" or in_third))
+
+
+def cases_of(names, seeds, share, parts):
     """Foils of every kind, and pins for a third of them. `sample`: of the sixth."""
     result = []
     for i, kind in enumerate(kinds.KINDS):
@@ -62,7 +68,7 @@ def cases_of(names, seeds, quick, parts):
                     for s, strength in enumerate(kinds.STRENGTHS):
                         for seed in range(seeds):
                             sample = is_in_sample(i, s, seed, d, r + (len(kind.renderers) == 1))
-                            if sample or (not quick and (part == "foils" or is_in_third(i, s, seed))):
+                            if is_asked(share, part, is_in_third(i, s, seed), sample):
                                 result.append({"kind": kind.name, "part": part, "renderer": renderer, "dpi": dpi,
                                                "seed": seed, "strength": strength, "sample": sample})  # fmt: skip
     return result
@@ -270,7 +276,9 @@ def read_options():
     parser.add_argument("--known-all", action="store_true", help="variants of all cases [of a sixth]")
     parser.add_argument("--seeds", type=int, default=3)
     parser.add_argument("--clean", type=int, default=200, help="plain scans")
-    parser.add_argument("--quick", action="store_true", help="a sixth of the cases, a quarter of the plain scans")
+    parser.add_argument("--third", action="store_const", dest="share", const="third", default="all", help="a third of the cases")
+    parser.add_argument("--quick", action="store_const", dest="share", const="sixth",
+                        help="a sixth of the cases, a quarter of the plain scans")  # fmt: skip
     parser.add_argument("--cache", help="folder where pictures are kept [none are]")
     parser.add_argument("--csv", help="every value")
     parser.add_argument("--jobs", type=int, default=2)
@@ -281,7 +289,7 @@ def read_options():
 def main():
     options = read_options()
     names = [n for n in (options.show or options.kinds).split(",") if n]
-    cases = cases_of(names, options.seeds, options.quick, options.parts.split(","))
+    cases = cases_of(names, options.seeds, options.share, options.parts.split(","))
     told = {"program": options.program, "renderer": options.renderer or options.program, "cache": options.cache,
             "known_all": options.known_all, "variants": variants_of(options.program, options.variants.split(","))}  # fmt: skip
     if options.cache:
@@ -289,7 +297,7 @@ def main():
     rows, missing = run(cases, told, options.jobs)
     if options.show:
         print(driver_report.every_value(rows))
-    clean, count = None, options.clean // 4 if options.quick else options.clean
+    clean, count = None, options.clean // 4 if options.share == "sixth" else options.clean
     if names in ([], ["plain"]) and count:
         import driver_clean  # it measures by this module
 

@@ -145,7 +145,7 @@ TEXT = """# Scans as drivers make them
 Foils of three bumps (strips of 100 µm, a third of them of 108.5 µm where the limit is 105) and pins of 2 to 8 mm (a third
 too large by 8.5 µm) are drawn by two renderers that share no code: `foilgauge render` and tests/bench/other_scanner.py with
 other_driver.py. Each kind comes in three strengths, of {seeds} seeds, at 2400 and 4800 dpi, pins for
-a third of that{quick}. A third of the scanners is
+a third of that{share}. A third of the scanners is
 ideal but for white noise, half have correlated noise, and a sixth edges that scatter by 0.05 px, too, which `rough_edge` says
 of the plain scan. t: thickness, C: clearance, d: diameter.
 
@@ -172,16 +172,20 @@ u 0.5 µm, beside the foil (`--gauge`). {which} of the cases above.
 {known}"""
 
 
+SHARE_WORDS = {"all": "", "third": " --third", "sixth": " --quick"}
+SHARES = {"all": "", "third": "; this page has one seed of three of every case", "sixth": " (a sixth of all cases)"}
+
+
 def page(rows, clean, missing, options):
     if not rows:
         return clean or "nothing to do\n"
     scan = [r for r in rows if r["variant"] == "scan"]
-    words = "".join([" --quick" if options.quick else "", f" --kinds {options.kinds}" if options.kinds else "",
+    words = "".join([SHARE_WORDS[options.share], f" --kinds {options.kinds}" if options.kinds else "",
                      f" --clean {options.clean}" if options.clean != 200 else "",
                      " --before OTHER_BUILD" if options.before else ""])  # fmt: skip
     text = TEXT.format(words=words, version=version_of(options.program), seeds=options.seeds, sentence=sentence(scan),
                        kinds=kinds_table(scan),
-                       quick=" (a sixth of all cases)" if options.quick else "", quantities=quantities_table(scan),
+                       share=SHARES[options.share], quantities=quantities_table(scan),
                        strengths=strengths_table(scan))  # fmt: skip
     if any(r["variant"] != "scan" for r in rows):
         text += KNOWN.format(known=known_table(rows), which="All" if options.known_all else "A sixth")

@@ -129,12 +129,13 @@ for disc in report["discs"]:
     true = round(disc["diameter_mm"])
     assert abs(disc["diameter_mm"] - true) < 2 * disc["u_diameter_mm"] and abs(disc["diameter_mm"] - true) < 0.0015, disc["diameter_mm"]
 P
+expect 65 'a leaf of 100 mm: is it in mm' "$program" measure none.png --gauge leaf:100:0.5
 checks - "$program" "$renderer" <<'P' || fail "gauges that tell nothing"
 from draw import *
 plain = scan("alone", [FOIL])["foils"][0]["thickness_mm"]
 missing = scan("missing", [FOIL], options=LEAF)
 assert not missing["gauges"][0]["found"] and "no straight strip" in missing["gauges"][0]["note"]
-assert missing["foils"][0]["thickness_mm"] == plain and "0 of 1 stated gauges found" in missing["said"]
+assert missing["foils"][0]["thickness_mm"] == plain and "0 of 1 stated gauges found, 0 used (no straight strip lies in the scan): widths keep" in missing["said"]
 assert "NOT FOUND" in open("missing.html").read()
 other = scan("other", [FOIL, leaf(0.15)], options=LEAF)
 assert not other["gauges"][0]["found"] and "reads 0.15" in other["gauges"][0]["note"] and other["specks"] == 1
