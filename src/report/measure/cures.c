@@ -9,7 +9,8 @@
 #define NOT_KNOWN " U holds a tone curve of the scanner that is not known."
 
 static const char micrometer[] =
-    "State the strip's thickness by a micrometer (thickness_measured)." NOT_KNOWN;
+    "Measure the strip's thickness by a micrometer and state it (--thickness-measured, or "
+    "thickness_measured in the design)." NOT_KNOWN;
 static const char gauge_diameter[] =
     "Lay a gauge of known diameter beside it (gauges), or state tone linear where the scanner's "
     "counts are proportional to the light." NOT_KNOWN;
