@@ -70,11 +70,14 @@ static void score_rest(const drawing *d, const double *y, double *work, double *
       isfinite(ratio) ? fg_engine_deviate(fmin(ratio, 1), 1, (double)workspace->dof) : NAN;
 }
 
+/* Draws of one seed. */
+enum { ONE_SEED = 8 };
+
 static fg_status draw_batch(fg_context *ctx, void *shared, size_t item) {
   const drawing *d = shared;
   const fg_score_workspace *workspace = d->workspace;
   size_t n = workspace->training->n, first = item * FG_ENGINE_BATCH, count = d->null->draws - first;
-  uint64_t seed = (d->null->seed + 1) * 0x5851f42d4c957f2du + item;
+  uint64_t seed = 0;
   fg_engine_score *score = NULL;
   double *y = NULL, *work = NULL;
   fg_status status = FG_OK;
@@ -83,8 +86,11 @@ static fg_status draw_batch(fg_context *ctx, void *shared, size_t item) {
   FG_TRY_EXIT(fg_memory_allocate(ctx, n, 4 * sizeof *work, (void **)&work));
   FG_TRY_EXIT(
       fg_memory_allocate(ctx, workspace->candidates + 1, count * sizeof *score, (void **)&score));
-  for (size_t b = 0; b < count; b++)
+  for (size_t b = 0; b < count; b++) {
+    if (b % ONE_SEED == 0)
+      seed = (d->null->seed + 1) * 0x5851f42d4c957f2du + (first + b) / ONE_SEED;
     draw_one(d, &seed, y + b * n);
+  }
   FG_TRY_EXIT(fg_score_workspace_score(ctx, workspace, count, y, score));
   for (size_t b = 0; b < count; b++) {
     double *z = d->z + (first + b) * d->kinds;

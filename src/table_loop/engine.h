@@ -14,7 +14,7 @@ enum {
   FG_ENGINE_SMALL_ROWS =
       600, /* limit of exact methods: all noise models, a drawn null, exact outliers */
   FG_ENGINE_NOISES = 32,
-  FG_ENGINE_BATCH = 8, /* draws scored together */
+  FG_ENGINE_BATCH = 40, /* draws scored together */
 };
 
 /* Smallest ratio of residual sums, with over without a candidate: an exact fit leaves rounding. */
@@ -145,7 +145,8 @@ typedef struct fg_score_workspace {
   fg_engine_noise noise[FG_ENGINE_NOISES];
   double weight[FG_ENGINE_NOISES]; /* exp(log terms / dof): noises are compared by rss × weight */
   size_t noises;
-  double rss[FG_ENGINE_NOISES]; /* of the training set's y without any candidate, whitened */
+  uint32_t near[FG_ENGINE_NOISES]; /* bit k: noise k is the same or next on the grid */
+  double rss[FG_ENGINE_NOISES];    /* of the training set's y without any candidate, whitened */
   double between_rss[FG_ENGINE_NOISES]; /* part of `rss` from differences between groups */
   double *gain;                         /* noises × versions: reduction of `rss` by each */
   fg_engine_span null[FG_ENGINE_NOISES];

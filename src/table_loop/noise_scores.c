@@ -14,6 +14,8 @@
 #define SMALLEST_SIZE 1e-12
 #define STEEPEST      1.5
 enum { NEWTON_STEPS = 6 };
+/* Of a step: the next one is its square. */
+#define CONVERGED 1e-5
 
 static fg_status open_spread(fg_context *ctx, const fg_engine_training *training,
                              const fg_loop_candidate *candidate, fg_engine_spread *spread) {
@@ -91,8 +93,10 @@ static double slope_likelihood(size_t n, const double *z, const double *size, do
     double det = cross[0] * cross[2] - cross[1] * cross[1];
     if (!(det > 0)) break;
     double move = (cross[0] * right[1] - cross[1] * right[0]) / det;
-    a += fmin(fmax((cross[2] * right[0] - cross[1] * right[1]) / det, -1), 1);
+    double shift = (cross[2] * right[0] - cross[1] * right[1]) / det;
+    a += fmin(fmax(shift, -1), 1);
     b += fmin(fmax(move, -STEEPEST), STEEPEST);
+    if (fabs(move) < CONVERGED && fabs(shift) < CONVERGED) break;
   }
   for (size_t i = 0; i < n; i++)
     value += 2 * (a + b * z[i] + size[i] * exp(-a - b * z[i]));

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/numerics.h"
 #include "table_loop/dots.h"
 #include "table_loop/engine.h"
 
@@ -17,14 +18,7 @@ static const double same_span = 1e-9, declared_span = 1e-24;
 static const double kept_min = 0.05 * 0.05;
 
 static double dot(size_t n, const double *a, const double *b) {
-  double sum[4] = {0};
-  size_t i = 0;
-  for (; i + 4 <= n; i += 4)
-    for (size_t k = 0; k < 4; k++)
-      sum[k] += a[i + k] * b[i + k];
-  for (; i < n; i++)
-    sum[0] += a[i] * b[i];
-  return sum[0] + sum[1] + sum[2] + sum[3];
+  return fg_dot_in_lanes(a, b, n);
 }
 
 /* Vectors of a basis that are taken out together where rows are many. */
@@ -48,13 +42,17 @@ static double project_many(size_t n, const double *basis, size_t rank, double *v
 
 double fg_engine_project_out(size_t n, const double *basis, size_t rank, double *v) {
   if (n > FG_ENGINE_SMALL_ROWS) return project_many(n, basis, rank, v, NULL);
-  for (int pass = 0; pass < 2; pass++)
+  double whole = dot(n, v, v), left = whole;
+  for (int pass = 0; pass < 2 && rank; pass++) {
     for (size_t k = 0; k < rank; k++) {
       double along = dot(n, basis + k * n, v);
       for (size_t i = 0; i < n; i++)
         v[i] -= along * basis[k * n + i];
     }
-  return dot(n, v, v);
+    left = dot(n, v, v);
+    if (left > whole / 2) break; /* nothing was cancelled */
+  }
+  return left;
 }
 
 size_t fg_engine_orthonormal(size_t n, const double *basis, size_t rank, const double *columns,

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/numerics.h"
 #include "core/parallel.h"
 #include "table_loop/between.h"
 #include "table_loop/score_many.h"
@@ -51,6 +52,23 @@ static void thin_noises(fg_score_workspace *workspace, size_t best) {
   workspace->noises = kept;
 }
 
+/* Returns true when no other noise model lies between two in either parameter. */
+static bool next_to(const fg_score_workspace *workspace, fg_engine_noise a, fg_engine_noise b) {
+  for (size_t k = 0; k < workspace->noises; k++) {
+    fg_engine_noise c = workspace->noise[k];
+    if ((c.rho - a.rho) * (c.rho - b.rho) < 0 || (c.lambda - a.lambda) * (c.lambda - b.lambda) < 0)
+      return false;
+  }
+  return true;
+}
+
+static void find_neighbours(fg_score_workspace *workspace) {
+  for (size_t j = 0; j < workspace->noises; j++)
+    for (size_t k = 0; k < workspace->noises; k++)
+      if (next_to(workspace, workspace->noise[j], workspace->noise[k]))
+        workspace->near[j] |= (uint32_t)1 << k;
+}
+
 /* Computes weights of the noise models by residual likelihood: with S the residual sum and f the
  * dof, f log S - 2 log|W| + log|X'W'WX|, so that S exp(terms / f) is comparable. */
 static fg_status weigh_noises(fg_context *ctx, fg_score_workspace *workspace) {
@@ -83,22 +101,18 @@ static fg_status weigh_noises(fg_context *ctx, fg_score_workspace *workspace) {
   return FG_OK;
 }
 
-/* Computes the version's columns, whitened, orthonormal beside the null: at most workspace->widest
- * × n. */
-static fg_status version_basis(fg_context *ctx, const fg_score_workspace *workspace, size_t v,
-                               size_t j, double *columns, double *unit) {
+/* Whitens the version's columns and makes them orthonormal beside the null: at most
+ * workspace->widest × n. */
+static void version_basis(const fg_score_workspace *workspace, size_t v, size_t j, double *columns,
+                          double *unit) {
   const fg_engine_training *training = workspace->training;
   fg_engine_version *version = &workspace->version[v];
   const fg_loop_candidate *candidate = &workspace->candidate[version->candidate];
   size_t n = training->n, count = fg_engine_candidate_columns(training->problem, candidate);
   double lengths[FG_LOOP_COLUMNS], whole = 0;
-  FG_TRY(fg_engine_gather(ctx, training, candidate, workspace->shape[v], columns));
-  version->between =
-      workspace->between_rank > 0 && fg_engine_constant_in_levels(training, columns, count);
   for (size_t k = 0; k < count; k++) {
     fg_engine_whiten(training, workspace->noise[j], columns + k * n);
-    for (size_t i = 0; i < n; i++)
-      whole += columns[k * n + i] * columns[k * n + i];
+    whole += fg_dot_in_lanes(columns + k * n, columns + k * n, n);
   }
   version->rank = fg_engine_orthonormal(n, workspace->null[j].basis, workspace->null[j].rank,
                                         columns, count, unit, lengths);
@@ -106,7 +120,6 @@ static fg_status version_basis(fg_context *ctx, const fg_score_workspace *worksp
   for (size_t k = 0; k < count; k++)
     version->length += lengths[k] / (double)count;
   version->share = whole > 0 ? version->length * (double)count / whole : 0;
-  return FG_OK;
 }
 
 /* Draws are scored in single precision. */
@@ -119,66 +132,92 @@ static void put_rows(size_t n, size_t width, size_t first, const double *columns
 
 typedef struct filling {
   fg_score_workspace *workspace;
-  size_t noise;
-  const double *residual;
+  const double *residual; /* noises × n */
 } filling;
 
 /* Versions that one thread makes at a time. */
 enum { VERSIONS_AT_ONCE = 16 };
 
-static fg_status fill_versions(fg_context *ctx, void *shared, size_t item) {
-  const filling *f = shared;
+/* Fills a version at every noise model; its members stay those of the first. `work` has room for
+ * three times its columns. */
+static fg_status fill_version(fg_context *ctx, const filling *f, size_t v, double *work) {
   fg_score_workspace *workspace = f->workspace;
   const fg_engine_training *training = workspace->training;
-  size_t n = training->n, each = n * workspace->widest;
+  fg_engine_version *version = &workspace->version[v];
+  const fg_loop_candidate *candidate = &workspace->candidate[version->candidate];
+  size_t n = training->n, count = fg_engine_candidate_columns(training->problem, candidate);
   size_t width = training->columns + workspace->columns + workspace->between_rank;
+  double *columns = work + n * workspace->widest, *unit = columns + n * workspace->widest;
+  FG_TRY(fg_engine_gather(ctx, training, candidate, workspace->shape[v], work));
+  version->between =
+      workspace->between_rank > 0 && fg_engine_constant_in_levels(training, work, count);
+  for (size_t j = workspace->noises; j-- > 0;) {
+    memcpy(columns, work, n * count * sizeof *work);
+    version_basis(workspace, v, j, columns, unit);
+    workspace->gain[j * workspace->versions + v] =
+        fg_engine_along(n, unit, version->rank, f->residual + j * n);
+    put_rows(n, width, training->columns + version->first, unit, version->rank, workspace->rows[j]);
+  }
+  return FG_OK;
+}
+
+static fg_status fill_versions(fg_context *ctx, void *shared, size_t item) {
+  const filling *f = shared;
+  const fg_score_workspace *workspace = f->workspace;
   size_t from = item * VERSIONS_AT_ONCE, to = from + VERSIONS_AT_ONCE;
   double *work = NULL;
+  FG_TRY(fg_memory_allocate(ctx, workspace->training->n * (workspace->widest + 1), 3 * sizeof *work,
+                            (void **)&work));
   fg_status status = FG_OK;
-  FG_TRY(fg_memory_allocate(ctx, each, 2 * sizeof *work, (void **)&work));
-  for (size_t v = from; status == FG_OK && v < to && v < workspace->versions; v++) {
-    const fg_engine_version *version = &workspace->version[v];
-    status = version_basis(ctx, workspace, v, f->noise, work, work + each);
-    if (status != FG_OK) break;
-    workspace->gain[f->noise * workspace->versions + v] =
-        fg_engine_along(n, work + each, version->rank, f->residual);
-    put_rows(n, width, training->columns + version->first, work + each, version->rank,
-             workspace->rows[f->noise]);
-  }
+  for (size_t v = from; status == FG_OK && v < to && v < workspace->versions; v++)
+    status = fill_version(ctx, f, v, work);
   free(work);
   return status;
 }
 
-static fg_status fill_noise(fg_context *ctx, fg_score_workspace *workspace, size_t j) {
+/* Fills what one noise model has without candidates; `residual` gets the whitened response beside
+ * the null. */
+static fg_status fill_null(fg_context *ctx, fg_score_workspace *workspace, size_t j,
+                           double *residual) {
   const fg_engine_training *training = workspace->training;
-  size_t n = training->n, rank = training->columns,
-         items = (workspace->versions + VERSIONS_AT_ONCE - 1) / VERSIONS_AT_ONCE;
-  bool few = n <= FG_ENGINE_SMALL_ROWS;
+  size_t n = training->n, rank = training->columns;
   fg_status status = FG_OK;
-  double *between = NULL, *residual = NULL;
+  double *between = NULL;
   fg_engine_span *null = &workspace->null[j];
   FG_TRY_EXIT(fg_engine_span_open(ctx, training, workspace->noise[j], 0, null));
   FG_TRY_EXIT(fg_engine_between_basis(ctx, training, workspace->noise[j], null, &between,
                                       &workspace->between_rank));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, n, sizeof *residual, (void **)&residual));
   memcpy(residual, training->y, n * sizeof *residual);
   fg_engine_whiten(training, workspace->noise[j], residual);
   workspace->rss[j] = fg_engine_project_out(n, null->basis, null->rank, residual);
   workspace->between_rss[j] = fg_engine_along(n, between, workspace->between_rank, residual);
-  size_t behind = rank + workspace->columns, width = behind + workspace->between_rank;
-  if (few)
+  if (n <= FG_ENGINE_SMALL_ROWS) {
+    size_t behind = rank + workspace->columns, width = behind + workspace->between_rank;
     FG_TRY_EXIT(fg_memory_allocate(ctx, n, width * sizeof *workspace->rows[j] + 1,
                                    (void **)&workspace->rows[j]));
-  if (few) put_rows(n, width, 0, null->basis, rank, workspace->rows[j]);
-  if (few) put_rows(n, width, behind, between, workspace->between_rank, workspace->rows[j]);
-  fg_score_workspace_tell(workspace, j, workspace->noises + 1);
-  filling f = {workspace, j, residual};
-  if (few)
+    put_rows(n, width, 0, null->basis, rank, workspace->rows[j]);
+    put_rows(n, width, behind, between, workspace->between_rank, workspace->rows[j]);
+  }
+exit:
+  free(between);
+  return status;
+}
+
+static fg_status fill_workspace(fg_context *ctx, fg_score_workspace *workspace) {
+  size_t n = workspace->training->n;
+  size_t items = (workspace->versions + VERSIONS_AT_ONCE - 1) / VERSIONS_AT_ONCE;
+  double *residual = NULL;
+  fg_status status = FG_OK;
+  FG_TRY(fg_memory_allocate(ctx, n, workspace->noises * sizeof *residual, (void **)&residual));
+  for (size_t j = workspace->noises; j-- > 0;)
+    FG_TRY_EXIT(fill_null(ctx, workspace, j, residual + j * n));
+  fg_score_workspace_tell(workspace, 0, 3);
+  filling f = {workspace, residual};
+  if (n <= FG_ENGINE_SMALL_ROWS)
     FG_TRY_EXIT(fg_parallel_run(ctx, 0, items, fill_versions, &f));
   else
     FG_TRY_EXIT(fg_score_workspace_fill_many(ctx, workspace, residual));
 exit:
-  free(between);
   free(residual);
   return status;
 }
@@ -193,11 +232,11 @@ fg_status fg_score_workspace_build(fg_context *ctx, const fg_engine_training *tr
   workspace->rank = training->columns;
   FG_TRY_EXIT(list_versions(ctx, workspace));
   FG_TRY_EXIT(weigh_noises(ctx, workspace));
+  find_neighbours(workspace);
   FG_TRY_EXIT(fg_memory_allocate(ctx, workspace->noises,
                                  (workspace->versions + 1) * sizeof *workspace->gain,
                                  (void **)&workspace->gain));
-  for (size_t j = workspace->noises; j-- > 0;)
-    FG_TRY_EXIT(fill_noise(ctx, workspace, j));
+  FG_TRY_EXIT(fill_workspace(ctx, workspace));
 exit:
   if (status != FG_OK) fg_score_workspace_free(workspace);
   return status;

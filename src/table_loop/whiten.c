@@ -27,11 +27,26 @@ static double level_size(const fg_engine_training *training, double rho, size_t 
   return sum;
 }
 
+/* As scale_level, for rows of equal scale: c is 1 at the first row, `weight` at the others. */
+static void scale_equal_level(size_t rows, double weight, double factor, double *y) {
+  double along = 0;
+  for (size_t i = 1; i < rows; i++)
+    along += y[i];
+  along = factor * (y[0] + weight * along);
+  y[0] += along;
+  for (size_t i = 1; i < rows; i++)
+    y[i] += weight * along;
+}
+
 /* y += factor × (part of y along c), for one group. */
 static void scale_level(const fg_engine_training *training, double rho, size_t block, double factor,
                         double *y) {
   size_t first = training->level_start[block], end = training->level_start[block + 1];
   double size = level_size(training, rho, block), along = 0;
+  if (!training->scale) {
+    scale_equal_level(end - first, sqrt((1 - rho) / (1 + rho)), factor / size, y + first);
+    return;
+  }
   for (size_t i = first; i < end; i++)
     along += level_weight(training, rho, first, i) * y[i];
   for (size_t i = first; i < end; i++)
