@@ -11,17 +11,17 @@
  *
  * Method:
  * 1. Noise is independent until a finding shows otherwise: serial correlation (first order, along a
- * series) and unequal spread are candidates like effects of the mean, and are in force once
- * claimed. Where groups share a level, the ratio lambda of its variance to the rows' is estimated
- * anew beside every candidate (residual likelihood: Patterson and Thompson 1971).
+ * series) and unequal spread are candidates, and are in force once claimed. Where groups share a
+ * level, the ratio lambda of its variance to the rows' is estimated anew beside every candidate
+ * (residual likelihood: Patterson and Thompson 1971).
  * 2. The score of a candidate of the mean is its reduction of the residual sum, whitened and with
  * every parameter of the declared model projected out. A candidate that is constant in groups
  * sharing a level is scored by the differences between groups. Correlation is scored by the product
  * of neighbours, spread by the likelihood of the residuals' sizes.
  * 3. All candidates share one null: residuals in another order (Freedman and Lane 1983), scored in
- * the same way. Each score is put on the scale of its own draws; p-values come from the maximum
- * over all (Westfall and Young 1993). The draws are the same in every run: no verdict depends on a
- * seed.
+ * the same way. Each score is put on the scale of its own draws; the maximum over a kind gives a
+ * p-value (Westfall and Young 1993), and kinds share the error rate by fixed weights. No verdict
+ * depends on a seed.
  * 4. Outlier rows are tested separately, against the tails of the other rows and against one heavy
  * tail of all rows.
  * 5. An effect that serial correlation may imitate is tested again beside correlation: the effect
@@ -41,6 +41,8 @@
 #include <stdio.h>
 
 #include "foilgauge/design.h"
+#include "foilgauge/loop_checked.h"
+#include "foilgauge/loop_kind.h"
 #include "foilgauge/status.h"
 #include "foilgauge/table.h"
 
@@ -218,7 +220,8 @@ typedef struct fg_loop_options {
                      sd */
   double minutes,
       mebibytes; /* limits of the search by estimate, beyond which it is FG_ERR_DATA; 0: no limit */
-  fg_loop_progress *progress; /* NULL: no progress report */
+  bool expected[FG_LOOP_KINDS]; /* kinds that get a larger share of the error rate */
+  fg_loop_progress *progress;   /* NULL: no progress report */
   void *progress_user;
 } fg_loop_options;
 
@@ -298,28 +301,6 @@ typedef struct fg_loop_advice {
   double runs; /* number at either setting that a power of 80 % needs; NaN: no number suffices */
 } fg_loop_advice;
 
-/* Residual tests, beside all effects sought by name: `clean` requires that none fails. */
-typedef enum fg_loop_check {
-  FG_LOOP_CHECK_REPEATS,  /* lack of fit: rows of the same declared settings, against the model's
-                             prediction of their means */
-  FG_LOOP_CHECK_SETTINGS, /* lack of fit of rows that agree in every recorded column */
-  FG_LOOP_CHECK_LAGS,     /* correlation at lags 2 to `lag`, all together */
-  FG_LOOP_CHECK_ONE_LAG,  /* correlation at the one lag where it is strongest */
-  FG_LOOP_CHECKS
-} fg_loop_check;
-
-typedef struct fg_loop_checked {
-  bool done, failed; /* not done: no row is repeated, or rows have no order or are too few */
-  double statistic;  /* F ratio; sum of squares of normal deviates; the largest of them */
-  double dof[2];     /* of an F ratio; of a sum of squares the first alone */
-  double p_value, level;
-  size_t lag;
-  double correlation; /* at FG_LOOP_CHECK_ONE_LAG */
-  double rms;         /* of the deviation tested, in the response's unit */
-  size_t worst[3];    /* one row of each of the settings with the largest deviations */
-  size_t worst_count;
-} fg_loop_checked;
-
 typedef enum fg_loop_outcome {
   FG_LOOP_CLEAN,
   FG_LOOP_EXPLAINED,
@@ -332,6 +313,7 @@ typedef struct fg_loop_result {
   fg_loop_noise noise;
   double noise_floor;
   double family_p; /* smallest p-value of the first step's whole family: uniform under the null */
+  double share[FG_LOOP_KINDS]; /* of each kind in the error rate */
   fg_loop_error before, after;
   double ratio_rms, ratio_held_out, ratio_interval[2]; /* after / before; 95 % block bootstrap */
   fg_loop_claim claim[FG_LOOP_CLAIMS];

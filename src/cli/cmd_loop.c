@@ -28,6 +28,7 @@ typedef struct loop_arguments {
   fg_output_set outputs;
   fg_loop_table_spec spec;
   double matters, minutes, mebibytes;
+  bool expected[FG_LOOP_KINDS];
   fg_loop_declaration *declared; /* owns the strings that came from --declared */
 } loop_arguments;
 
@@ -55,6 +56,7 @@ enum {
   OPTION_THREADS,
   OPTION_OFFSET,
   OPTION_FORMING_MODEL,
+  OPTION_EXPECT,
 };
 
 /* A lot's response where none is named. */
@@ -102,6 +104,10 @@ static const struct argp_option options[] = {
      0},
     {"matters", OPTION_MATTERS, "AMPLITUDE", 0,
      "An effect this small does not matter, in the response's unit (default: one noise sd)", 0},
+    {"expect", OPTION_EXPECT, "KIND", 0,
+     "Kind of effect that is likely: columns, interactions, curves, order, scatter, rows or "
+     "exchanges; half of the error rate is kept for it (may be repeated)",
+     0},
     {"minutes", OPTION_MINUTES, "N", 0,
      "Refuse a table whose search may take longer by estimate (default: @loop_minutes@)", 0},
     {"memory", OPTION_MEMORY, "MIB", 0,
@@ -143,6 +149,18 @@ static void parse_seed(struct argp_state *state, const char *text, uint64_t *see
   if (*end || end == text || *text == '-') argp_error(state, "--seed %s: a whole number", text);
 }
 
+static void parse_expected(struct argp_state *state, const char *text, bool *expected) {
+  size_t k = 0;
+  while (fg_loop_kind_words[k] && strcmp(fg_loop_kind_words[k], text) != 0)
+    k++;
+  if (!fg_loop_kind_words[k])
+    argp_error(state,
+               "--expect %s: columns, interactions, curves, order, scatter, rows or exchanges",
+               text);
+  else
+    expected[k] = true;
+}
+
 static void check_source(struct argp_state *state, const fg_loop_source_request *source) {
   int given = (source->table != NULL) + (source->lot != NULL) + (source->runs != NULL);
   if (!given) argp_error(state, "--table DATA.csv is missing");
@@ -181,6 +199,9 @@ static error_t parse_loop_table_option(int key, char *text, struct argp_state *s
   switch (key) {
   case OPTION_MATTERS:
     parse_loop_number(state, "matters", text, &arguments->matters);
+    return 0;
+  case OPTION_EXPECT:
+    parse_expected(state, text, arguments->expected);
     return 0;
   case OPTION_MINUTES:
     parse_loop_number(state, "minutes", text, &arguments->minutes);
@@ -252,13 +273,14 @@ static void show_progress(void *user, size_t found, double share) {
 static fg_status search_table(fg_context *ctx, const loop_arguments *arguments, const char *path,
                               const fg_loop_problem *problem, fg_loop_result *result) {
   fg_progress progress;
-  const fg_loop_options how = {.effects = fg_loop_table_effects(),
-                               .seed = arguments->spec.seed,
-                               .matters = arguments->matters,
-                               .minutes = arguments->minutes,
-                               .mebibytes = arguments->mebibytes,
-                               .progress = show_progress,
-                               .progress_user = &progress};
+  fg_loop_options how = {.effects = fg_loop_table_effects(),
+                         .seed = arguments->spec.seed,
+                         .matters = arguments->matters,
+                         .minutes = arguments->minutes,
+                         .mebibytes = arguments->mebibytes,
+                         .progress = show_progress,
+                         .progress_user = &progress};
+  memcpy(how.expected, arguments->expected, sizeof how.expected);
   fg_progress_begin(&progress, path);
   fg_status status = fg_loop_run(ctx, problem, &how, result);
   fg_progress_end(&progress);

@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Common null of all tests: residuals of the null model in another order (Freedman and Lane 1983),
- * which keeps their tails, scored as the data are. Scores of all kinds are put on one scale by
- * their own draws, so that their maximum is a fair statistic (Westfall and Young 1993). The
- * effective number of independent tests is estimated from the draws and extends p-values beyond
- * them. */
+ * which keeps their tails, scored as the data are. All scores are put on one scale by their own
+ * draws, so that their maximum over the candidates of a kind is a fair statistic (Westfall and
+ * Young 1993); family.c combines the kinds. */
 #include "table_loop/assess.h"
 
 #include <math.h>
@@ -21,8 +20,6 @@
 /* Minimum residual dof for permutations: below it a new order of the residuals is no new sample,
  * and normal numbers are drawn. */
 enum { PERMUTED_DOF = 12 };
-/* Share of the draws' maxima at whose quantile the number of tests is estimated. */
-#define LOOKS_AT 0.02
 /* Number of draws of a first pass, which decides when its p-value differs from the level by this
  * factor. */
 enum { FIRST_DRAWS = 399, UNCERTAINTY = 8 };
@@ -38,8 +35,9 @@ typedef struct drawing {
   fg_engine_noise noise;
   const double *white; /* n: the null's residual, each at its own variance */
   bool permuted;
-  size_t kinds; /* of scores: means, noises, the exchange */
-  double *z;    /* draws × kinds */
+  size_t scores;            /* of means, of noises, of the exchange */
+  const fg_loop_kind *kind; /* scores */
+  double *z;                /* draws × scores */
 } drawing;
 
 static void draw_one(const drawing *d, uint64_t *seed, double *y) {
@@ -93,7 +91,7 @@ static fg_status draw_batch(fg_context *ctx, void *shared, size_t item) {
   }
   FG_TRY_EXIT(fg_score_workspace_score(ctx, workspace, count, y, score));
   for (size_t b = 0; b < count; b++) {
-    double *z = d->z + (first + b) * d->kinds;
+    double *z = d->z + (first + b) * d->scores;
     for (size_t c = 0; c < workspace->candidates; c++)
       z[c] = score[b * workspace->candidates + c].z;
     score_rest(d, y + b * n, work, z);
@@ -105,7 +103,7 @@ exit:
   return status;
 }
 
-/* Location of one kind of score in its own draws. */
+/* Location of one score in its own draws. */
 typedef struct own_scale {
   double middle, spread;
 } own_scale;
@@ -117,10 +115,10 @@ static double quantile(const double *sorted, size_t count, double share) {
   return sorted[below] + (place - (double)below) * (sorted[below + 1] - sorted[below]);
 }
 
-static own_scale scale_of(const drawing *d, size_t kind, double *sorted) {
+static own_scale scale_of(const drawing *d, size_t at, double *sorted) {
   size_t count = 0, draws = d->null->draws;
   for (size_t b = 0; b < draws; b++)
-    if (isfinite(d->z[b * d->kinds + kind])) sorted[count++] = d->z[b * d->kinds + kind];
+    if (isfinite(d->z[b * d->scores + at])) sorted[count++] = d->z[b * d->scores + at];
   if (count < draws / 2) return (own_scale){NAN, NAN};
   fg_sort(sorted, count);
   own_scale scale = {quantile(sorted, count, 0.5), 0};
@@ -129,39 +127,35 @@ static own_scale scale_of(const drawing *d, size_t kind, double *sorted) {
   return scale;
 }
 
-/* Returns the number of independent tests whose maximum is as large as often as that of the draws.
- */
-static double count_tests(const drawing *d, const own_scale *scale, double *maxima) {
+/* The family of the draws: the maximum of each kind in each. */
+static fg_status fit_family(fg_context *ctx, const drawing *d, const own_scale *scale,
+                            fg_engine_family *family) {
   size_t draws = d->null->draws;
+  double *maxima = NULL;
+  FG_TRY(fg_memory_allocate(ctx, draws, FG_LOOP_KINDS * sizeof *maxima, (void **)&maxima));
   for (size_t b = 0; b < draws; b++) {
-    maxima[b] = -INFINITY;
-    for (size_t c = 0; c < d->kinds; c++) {
-      double z = (d->z[b * d->kinds + c] - scale[c].middle) / scale[c].spread;
-      if (z > maxima[b]) maxima[b] = z;
+    double *max = maxima + b * FG_LOOP_KINDS;
+    for (size_t k = 0; k < FG_LOOP_KINDS; k++)
+      max[k] = -INFINITY;
+    for (size_t c = 0; c < d->scores; c++) {
+      double z = (d->z[b * d->scores + c] - scale[c].middle) / scale[c].spread;
+      if (z > max[d->kind[c]]) max[d->kind[c]] = z;
     }
   }
-  fg_sort(maxima, draws);
-  double edge = gsl_cdf_ugaussian_Q(quantile(maxima, draws, 1 - LOOKS_AT));
-  return fmax(log1p(-LOOKS_AT) / log1p(-edge), 1);
-}
-
-static double over_all(double z, double tests) {
-  double p = -expm1(tests * log1p(-gsl_cdf_ugaussian_Q(z))) / FG_ENGINE_SHARE_OF_CANDIDATES;
-  return isfinite(z) ? fmin(p, 1) : 1;
-}
-
-static double critical_deviate(double accept_p, double tests) {
-  double one = -expm1(log1p(-accept_p * FG_ENGINE_SHARE_OF_CANDIDATES) / tests);
-  return gsl_cdf_ugaussian_Qinv(one);
+  fg_status status = fg_engine_family_fit(ctx, draws, maxima, family);
+  free(maxima);
+  return status;
 }
 
 static void take_critical(const fg_score_workspace *workspace, const fg_engine_null *null,
                           const own_scale *scale, fg_engine_judgement *judgement) {
-  double edge = critical_deviate(null->accept_p, judgement->tests);
+  double critical[FG_LOOP_KINDS];
+  for (size_t k = 0; k < FG_LOOP_KINDS; k++)
+    critical[k] = fg_engine_family_critical(&judgement->family, (fg_loop_kind)k, null->accept_p);
   for (size_t c = 0; c < judgement->means; c++) {
     if (!isfinite(judgement->z[c])) continue;
     const fg_engine_version *version = &workspace->version[judgement->score[c].version];
-    double k = fg_engine_version_dof(workspace, version);
+    double k = fg_engine_version_dof(workspace, version), edge = critical[judgement->kind[c]];
     judgement->z_critical[c] = scale ? scale[c].middle + edge * scale[c].spread : edge;
     judgement->f_critical[c] = fg_engine_deviate_to_f(
         judgement->z_critical[c], k, fg_engine_version_whole(workspace, version) - k);
@@ -175,14 +169,14 @@ static fg_status assess_drawn(fg_context *ctx, drawing *d, const double *raw,
   fg_status status = FG_OK;
   own_scale *scale = NULL;
   double *sorted = NULL;
-  FG_TRY_EXIT(fg_memory_allocate(ctx, draws, d->kinds * sizeof *d->z, (void **)&d->z));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, d->kinds, sizeof *scale, (void **)&scale));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, draws, d->scores * sizeof *d->z, (void **)&d->z));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, d->scores, sizeof *scale, (void **)&scale));
   FG_TRY_EXIT(fg_memory_allocate(ctx, draws, sizeof *sorted, (void **)&sorted));
   FG_TRY_EXIT(fg_parallel_run(ctx, 0, batches, draw_batch, d));
-  for (size_t c = 0; c < d->kinds; c++)
+  for (size_t c = 0; c < d->scores; c++)
     scale[c] = scale_of(d, c, sorted);
-  judgement->tests = count_tests(d, scale, sorted);
-  for (size_t c = 0; c < d->kinds; c++)
+  FG_TRY_EXIT(fit_family(ctx, d, scale, &judgement->family));
+  for (size_t c = 0; c < d->scores; c++)
     judgement->z[c] = (raw[c] - scale[c].middle) / scale[c].spread;
   take_critical(d->workspace, d->null, scale, judgement);
 exit:
@@ -193,10 +187,14 @@ exit:
   return status;
 }
 
+static double over_family(const fg_engine_judgement *judgement, size_t c) {
+  return fg_engine_family_p(&judgement->family, judgement->kind[c], judgement->z[c]);
+}
+
 static double smallest_p(const fg_engine_judgement *judgement) {
   double smallest = 1;
   for (size_t c = 0; c <= judgement->candidates; c++)
-    smallest = fmin(smallest, over_all(judgement->z[c], judgement->tests));
+    smallest = fmin(smallest, over_family(judgement, c));
   return smallest;
 }
 
@@ -227,7 +225,12 @@ exit:
 /* Assesses many rows: every version of every candidate counts as one test of a normal deviate. */
 static void assess_by_count(const fg_score_workspace *workspace, const fg_engine_null *null,
                             fg_engine_judgement *judgement) {
-  judgement->tests = (double)(workspace->versions + judgement->candidates - judgement->means);
+  double tests[FG_LOOP_KINDS] = {0};
+  for (size_t v = 0; v < workspace->versions; v++)
+    tests[judgement->kind[workspace->version[v].candidate]]++;
+  for (size_t c = judgement->means; c < judgement->candidates; c++)
+    tests[judgement->kind[c]]++;
+  fg_engine_family_count(tests, &judgement->family);
   take_critical(workspace, null, NULL, judgement);
 }
 
@@ -252,12 +255,23 @@ static fg_status allocate_assessment(fg_context *ctx, size_t means, size_t noise
   FG_TRY(fg_memory_allocate(ctx, all, size, (void **)&judgement->p));
   FG_TRY(fg_memory_allocate(ctx, all, size, (void **)&judgement->z_critical));
   FG_TRY(fg_memory_allocate(ctx, all, size, (void **)&judgement->f_critical));
+  FG_TRY(fg_memory_allocate(ctx, all, sizeof *judgement->kind, (void **)&judgement->kind));
   for (size_t c = 0; c < all; c++) {
     judgement->z[c] = judgement->z_critical[c] = NAN;
     judgement->f_critical[c] = INFINITY;
     judgement->p[c] = 1;
   }
   return FG_OK;
+}
+
+static void take_kinds(const fg_score_workspace *workspace, const fg_loop_candidate *noise,
+                       const fg_engine_null *null, fg_engine_judgement *judgement) {
+  const fg_loop_problem *problem = workspace->training->problem;
+  for (size_t c = 0; c < judgement->candidates; c++)
+    judgement->kind[c] = fg_loop_kind_of(
+        problem, c < judgement->means ? &workspace->candidate[c] : &noise[c - judgement->means]);
+  judgement->kind[judgement->candidates] = FG_LOOP_KIND_EXCHANGES;
+  memcpy(judgement->family.share, null->share, sizeof judgement->family.share);
 }
 
 /* Beside correlation the exchanges cost rows² a draw. */
@@ -306,6 +320,7 @@ fg_status fg_engine_judge(fg_context *ctx, const fg_score_workspace *workspace,
   fg_status status = FG_OK;
   bool few = training->n <= FG_ENGINE_SMALL_ROWS, exchanges = may_exchange(training);
   FG_TRY_EXIT(allocate_assessment(ctx, workspace->candidates, noises, judgement));
+  take_kinds(workspace, noise, null, judgement);
   if (workspace->dof < 2) goto exit;
   fg_score_workspace_score_data(workspace, judgement->score, &judgement->noise);
   fg_engine_noise at = workspace->noise[judgement->noise];
@@ -315,17 +330,23 @@ fg_status fg_engine_judge(fg_context *ctx, const fg_score_workspace *workspace,
   FG_TRY_EXIT(score_data(ctx, workspace, &noise_scores, exchanges ? &exchange : NULL, judgement));
   FG_TRY_EXIT(fg_memory_allocate(ctx, training->n, sizeof *white, (void **)&white));
   null_residual(training, at, span, white);
-  drawing d = {
-      workspace, &noise_scores, exchanges ? &exchange : NULL,   null,
-      at,        white,         workspace->dof >= PERMUTED_DOF, judgement->candidates + exchanges,
-      NULL};
+  drawing d = {workspace,
+               &noise_scores,
+               exchanges ? &exchange : NULL,
+               null,
+               at,
+               white,
+               workspace->dof >= PERMUTED_DOF,
+               judgement->candidates + exchanges,
+               judgement->kind,
+               NULL};
   if (few)
     FG_TRY_EXIT(assess_in_turns(ctx, &d, judgement));
   else
     assess_by_count(workspace, null, judgement);
   fg_score_workspace_tell(workspace, 3, 3);
   for (size_t c = 0; c <= judgement->candidates; c++)
-    judgement->p[c] = over_all(judgement->z[c], judgement->tests);
+    judgement->p[c] = over_family(judgement, c);
 exit:
   free(white);
   fg_engine_noise_scores_close(&noise_scores);
@@ -340,5 +361,7 @@ void fg_engine_judgement_free(fg_engine_judgement *judgement) {
   free(judgement->p);
   free(judgement->z_critical);
   free(judgement->f_critical);
+  free(judgement->kind);
+  fg_engine_family_free(&judgement->family);
   *judgement = (fg_engine_judgement){0};
 }

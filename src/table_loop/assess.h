@@ -3,19 +3,14 @@
 #ifndef FG_TABLE_LOOP_ASSESS_H
 #define FG_TABLE_LOOP_ASSESS_H
 
-#include "table_loop/engine.h"
-
-/* Shares of the level of false claims that candidates and outlier rows may use. They sum to more
- * than 1: outlier rows are tested against tails heavier than normal noise's, so under normal noise
- * they claim next to nothing (reports/loop_power.md). */
-#define FG_ENGINE_SHARE_OF_CANDIDATES 0.95
-#define FG_ENGINE_SHARE_OF_ROWS       0.9
+#include "table_loop/family.h"
 
 /* Draws of the null, and the level at which an effect is accepted. */
 typedef struct fg_engine_null {
   size_t draws;
   uint64_t seed;
   double accept_p;
+  const double *share; /* FG_LOOP_KINDS */
 } fg_engine_null;
 
 /* Scores and p-values of a step. Candidates of the mean come first, then those of the noise; the
@@ -23,14 +18,15 @@ typedef struct fg_engine_null {
 typedef struct fg_engine_judgement {
   size_t means, candidates;
   fg_engine_score *score; /* means */
+  fg_loop_kind *kind;     /* of each */
   double *z;              /* normal deviate of each, on one scale; NaN where it has no score */
   double *p;              /* p-value over the whole family */
   double *z_critical;     /* means: smallest raw deviate that is accepted; from draws */
   double *f_critical;     /* means: smallest F ratio that is accepted; infinity: none */
-  double tests;           /* effective number of independent tests */
-  size_t noise;           /* best noise of the null, index into the workspace's */
-  double exchange_ratio;  /* residual sum after / before */
-  size_t exchanged[2];    /* rows of the training set */
+  fg_engine_family family;
+  size_t noise;          /* best noise of the null, index into the workspace's */
+  double exchange_ratio; /* residual sum after / before */
+  size_t exchanged[2];   /* rows of the training set */
   bool has_exchange;
 } fg_engine_judgement;
 
@@ -52,17 +48,22 @@ typedef struct fg_engine_outlier {
       first; /* number of outliers (one where none is significant); the first of them */
   bool known;
   double ratio;   /* residual sum after over before, of the first row */
-  double p_value; /* over all rows, against the tails of the other rows, and of the whole group */
+  double p_value; /* over the family, against the tails of the other rows, and of the whole group */
   double apart_p; /* against the tails of the other rows alone */
   double size, normal_p; /* of the first: in sd of the others, and its p-value for normal noise */
   double f_critical;     /* of one row, with one dof */
   double length;         /* mean |M W e|² of a row */
 } fg_engine_outlier;
 
+/* Level of a test of outlier rows: over the family, of which they have a share. */
+typedef struct fg_engine_level {
+  double accept_p, share;
+} fg_engine_level;
+
 /* `null` is the training set's at that noise. */
 fg_status fg_engine_assess_outlier(fg_context *ctx, const fg_engine_training *training,
                                    fg_engine_noise noise, const fg_engine_span *null,
-                                   double accept_p, fg_engine_outlier *outlier);
+                                   fg_engine_level level, fg_engine_outlier *outlier);
 
 /* Exchange of two responses (exchange.c). */
 typedef struct fg_engine_exchange {

@@ -80,3 +80,38 @@ void fg_engine_candidate_name(const fg_loop_problem *problem, const fg_loop_cand
   else
     fg_text_clip(name, FG_LOOP_NAME, "%s(%s)", id, problem->coordinate[candidate->a].name);
 }
+
+const char *const fg_loop_kind_words[] = {"columns", "interactions", "curves",    "order",
+                                          "scatter", "rows",         "exchanges", NULL};
+
+/* Shares by what a table is recorded for: its columns first. A kind with many candidates pays for
+ * them with its own share (reports/loop_power.md). */
+static const double kind_share[FG_LOOP_KINDS] = {
+    [FG_LOOP_KIND_COLUMNS] = 0.3,    [FG_LOOP_KIND_INTERACTIONS] = 0.1,
+    [FG_LOOP_KIND_CURVES] = 0.08,    [FG_LOOP_KIND_ORDER] = 0.15,
+    [FG_LOOP_KIND_SCATTER] = 0.1,    [FG_LOOP_KIND_ROWS] = 0.2,
+    [FG_LOOP_KIND_EXCHANGES] = 0.07,
+};
+
+fg_loop_kind fg_loop_kind_of(const fg_loop_problem *problem, const fg_loop_candidate *candidate) {
+  const fg_loop_effect *effect = candidate->effect;
+  if (effect->outlier == FG_LOOP_WRONG_ROW) return FG_LOOP_KIND_ROWS;
+  if (effect->outlier == FG_LOOP_EXCHANGED_ROWS) return FG_LOOP_KIND_EXCHANGES;
+  if (effect->scatter == FG_LOOP_SPREAD) return FG_LOOP_KIND_SCATTER;
+  if (effect->pair) return FG_LOOP_KIND_INTERACTIONS;
+  bool order = problem->coordinate[candidate->a].roles & (FG_LOOP_ORDER | FG_LOOP_BUMP);
+  if (order || !strcmp(effect->frame, "order")) return FG_LOOP_KIND_ORDER;
+  return effect->unattributed || effect->stepwise || effect->cycle ? FG_LOOP_KIND_CURVES
+                                                                   : FG_LOOP_KIND_COLUMNS;
+}
+
+void fg_loop_kind_shares(const bool expected[FG_LOOP_KINDS], double share[FG_LOOP_KINDS]) {
+  double of_expected = 0;
+  for (size_t k = 0; k < FG_LOOP_KINDS; k++)
+    if (expected[k]) of_expected += kind_share[k];
+  for (size_t k = 0; k < FG_LOOP_KINDS; k++) {
+    share[k] = kind_share[k];
+    if (of_expected > 0) share[k] /= 2;
+    if (expected[k]) share[k] += kind_share[k] / of_expected / 2;
+  }
+}

@@ -241,7 +241,7 @@ static double normal_p(const outlier_rows *rows, double size) {
   return fmin((double)rows->n * beyond(size, INFINITY, dof), 1);
 }
 
-static void search_outliers(outlier_rows *rows, double accept_p, fg_engine_outlier *outlier) {
+static void search_outliers(outlier_rows *rows, fg_engine_level level, fg_engine_outlier *outlier) {
   const fg_engine_training *training = rows->training;
   fg_loop_candidate taken = outlier->candidate;
   double whole = rows->rss, alike = 1;
@@ -253,7 +253,7 @@ static void search_outliers(outlier_rows *rows, double accept_p, fg_engine_outli
     take_out(rows, worst);
     assess_rows(rows);
     taken.row[taken.rows++] = training->row[worst];
-    double p = fmin(row_p(rows, t, j) / FG_ENGINE_SHARE_OF_ROWS, 1);
+    double p = fmin(row_p(rows, t, j) / level.share, 1);
     alike = fmin(alike, tail_p(rows, j, 0));
     if (j == 1) {
       outlier->first = taken;
@@ -261,7 +261,7 @@ static void search_outliers(outlier_rows *rows, double accept_p, fg_engine_outli
       outlier->size = fabs(t) / sqrt(rows->rss / ((double)rows->n - (double)rows->rank));
       outlier->normal_p = normal_p(rows, outlier->size);
     }
-    if (j > 1 && !(p < accept_p && stands_apart(rows, t))) continue;
+    if (j > 1 && !(p < level.accept_p && stands_apart(rows, t))) continue;
     outlier->candidate = taken;
     outlier->ratio = rows->rss / whole;
     outlier->apart_p = p;
@@ -272,7 +272,7 @@ static void search_outliers(outlier_rows *rows, double accept_p, fg_engine_outli
 
 fg_status fg_engine_assess_outlier(fg_context *ctx, const fg_engine_training *training,
                                    fg_engine_noise noise, const fg_engine_span *null,
-                                   double accept_p, fg_engine_outlier *outlier) {
+                                   fg_engine_level level, fg_engine_outlier *outlier) {
   outlier_rows rows = {0};
   double sum = 0;
   fg_status status = FG_OK;
@@ -286,8 +286,8 @@ fg_status fg_engine_assess_outlier(fg_context *ctx, const fg_engine_training *tr
   for (size_t i = 0; i < rows.n; i++)
     sum += rows.kept[i];
   outlier->length = sum / (double)rows.n;
-  outlier->f_critical = critical_f(&rows, accept_p * FG_ENGINE_SHARE_OF_ROWS, accept_p);
-  search_outliers(&rows, accept_p, outlier);
+  outlier->f_critical = critical_f(&rows, level.accept_p * level.share, level.accept_p);
+  search_outliers(&rows, level, outlier);
 exit:
   close_rows(&rows);
   return status;

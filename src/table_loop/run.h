@@ -12,6 +12,7 @@ typedef struct fg_engine_run {
   const fg_loop_problem *problem; /* in the engine's units */
   const fg_engine_units *units;
   fg_loop_options options;
+  double share[FG_LOOP_KINDS]; /* of each kind in the error rate */
   fg_loop_result *result;
   bool *train;
   fg_loop_candidate *candidate; /* listed effects first, then curves, then those of the noise */

@@ -66,14 +66,16 @@ fg_status fg_engine_step_open(fg_context *ctx, fg_engine_run *run, const fg_engi
       (fg_engine_watch){run->options.progress, run->options.progress_user, run->result->claims};
   FG_TRY_EXIT(
       fg_score_workspace_build(ctx, &step->training, run->candidate, run->means, &step->workspace));
-  const fg_engine_null null = {draws, FIXED_SEED, run->options.accept_p};
+  const double *share = run->share;
+  const fg_engine_null null = {draws, FIXED_SEED, run->options.accept_p, share};
+  const fg_engine_level level = {null.accept_p, share[FG_LOOP_KIND_ROWS]};
   FG_TRY_EXIT(fg_engine_judge(ctx, &step->workspace, run->candidate + run->means,
                               run->candidates - run->means, &null, &step->judgement));
   fg_engine_noise noise = step->workspace.noise[step->judgement.noise];
   if (judged)
     FG_TRY_EXIT(fg_engine_assess_outlier(ctx, &step->training, noise,
-                                         &step->workspace.null[step->judgement.noise],
-                                         null.accept_p, &step->outlier));
+                                         &step->workspace.null[step->judgement.noise], level,
+                                         &step->outlier));
   FG_TRY_EXIT(fill_stands(ctx, run, step));
 exit:
   if (status != FG_OK) fg_engine_step_close(step);

@@ -37,6 +37,8 @@ static fg_status open_run(fg_context *ctx, const fg_engine_units *units,
   *run = (fg_engine_run){.problem = problem, .units = units, .options = *options, .result = result};
   run->options.matters = ldexp(options->matters, -units->response);
   if (!(run->options.accept_p > 0)) run->options.accept_p = FG_LOOP_ACCEPT_P;
+  fg_loop_kind_shares(options->expected, run->share);
+  memcpy(result->share, run->share, sizeof run->share);
   FG_TRY(fg_memory_allocate(ctx, rows, sizeof *run->train, (void **)&run->train));
   for (size_t i = 0; i < rows; i++)
     run->train[i] = !problem->held_out || !problem->held_out[i];

@@ -10,6 +10,7 @@
 #include "foilgauge/words.h"
 #include "report/table_loop/checks.h"
 #include "report/table_loop/claim_members.h"
+#include "report/table_loop/family_members.h"
 #include "report/table_loop/next.h"
 #include "report/table_loop/reading.h"
 
@@ -227,6 +228,9 @@ static const fg_member loop_rows[] = {
      .words = "standard deviation of a row's noise, in the response's unit"},
     {FG_NUMBER("family_p_value", loop_whole, result.family_p), .lowest = 0, .highest = 1,
      .words = "smallest p-value of all candidates of the first step"},
+    {FG_OBJECT("family_shares", loop_whole, result, &fg_loop_share_members),
+     .options = FG_MEMBER_ON_LINE,
+     .words = "of each kind of candidate in the error rate, whatever the number of its candidates"},
     {FG_GROUP("noise", &noise_members), .words = "scatter that the search assumed"},
     {FG_OBJECT("before", loop_whole, result.before, &error_members),
      .words = "error of the declared model, in the response's unit"},

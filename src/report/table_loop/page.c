@@ -13,6 +13,7 @@
 #include "page/table.h"
 #include "report/provenance.h"
 #include "report/table_loop/claim_members.h"
+#include "report/table_loop/family_members.h"
 #include "report/table_loop/next.h"
 #include "report/table_loop/plots.h"
 
@@ -107,13 +108,17 @@ static void put_candidates(FILE *out, const fg_loop_report *report) {
   const fg_loop_result *result = report->result;
   fg_subject subject = {report, report, 0};
   fg_member_columns claimed, rejected;
+  char shares[FG_LOOP_WORDS];
   if (!result->claims && !result->rejects) return;
   fg_member_columns_of(&fg_loop_claim_members, FG_ON_PAGE, &subject, &claimed);
   fg_member_columns_of(&fg_loop_rejected_members, FG_ON_PAGE, &subject, &rejected);
   fputs("<section class=\"long\"><h2>All that was looked for</h2><p class=\"soft key\">Absent: "
         "it would have shown at the size that matters. Inconclusive: only a larger one would "
-        "have. In the model already: the declared model takes it up.</p>",
+        "have. In the model already: the declared model takes it up. Of the error rate each kind "
+        "has its share, whatever the number of its candidates: ",
         out);
+  fg_loop_shares_words(result, shares);
+  fprintf(out, "%s.</p>", shares);
   fg_html_table_begin(out, &claimed);
   fg_html_table_rows(out);
   for (size_t i = 0; i < result->claims + result->rejects; i++) {
