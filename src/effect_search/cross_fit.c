@@ -89,7 +89,7 @@ static fg_status keep_single_bumps(fg_context *ctx, const cross_fit *c, fg_edge_
   return fg_joint_fit(ctx, others, set, NULL);
 }
 
-/* The search on the rows of all other folds. */
+/* The search on the rows of all other folds; of a set that it did not choose, its numbers. */
 static fg_status search_without(fg_context *ctx, const cross_fit *c, size_t fold,
                                 fg_effect_set *set) {
   const fg_edge_fit *edge_fit = c->edge_fit;
@@ -104,7 +104,8 @@ static fg_status search_without(fg_context *ctx, const cross_fit *c, size_t fold
   FG_TRY_EXIT(fg_edge_fit_subset(ctx, edge_fit, keep, &others));
   FG_TRY_EXIT(
       fg_memory_allocate(ctx, others.row_count, sizeof *residual_um, (void **)&residual_um));
-  FG_TRY_EXIT(fg_search_iterate_again(ctx, &request, set, residual_um));
+  FG_TRY_EXIT(c->barred ? fg_search_iterate_again(ctx, &request, set, residual_um)
+                        : fg_joint_fit(ctx, &others, set, residual_um));
   FG_TRY_EXIT(keep_single_bumps(ctx, c, &others, set));
 exit:
   free(keep);

@@ -21,7 +21,7 @@
 /* An amplitude that is more than its uncertainty (1 in 16 000 by chance). */
 #define THERE_SIGMAS 4.0
 /* Maximum number of rounds of search and fit. */
-enum { ROUNDS = 8, COARSE_ROUNDS = 2 };
+enum { ROUNDS = 8, PROPOSING_ROUNDS = 3, COARSE_ROUNDS = 2 };
 /* Maximum number of sets given up; further ones may recur. */
 enum { GIVEN_UP_MAX = 16 };
 
@@ -248,6 +248,10 @@ static fg_status run_turn(fg_context *ctx, fg_edge_fit *edge_fit, fg_search_requ
   return FG_OK;
 }
 
+static int max_rounds(const fg_edge_fit *edge_fit) {
+  return edge_fit->coarse ? COARSE_ROUNDS : edge_fit->proposes ? PROPOSING_ROUNDS : ROUNDS;
+}
+
 /* Search and fit in turns from a start without effects. */
 static fg_status iterate_from(fg_context *ctx, fg_edge_fit *edge_fit, fg_search_strategy how,
                               settling *at) {
@@ -259,7 +263,7 @@ static fg_status iterate_from(fg_context *ctx, fg_edge_fit *edge_fit, fg_search_
   double none = square_of(edge_fit, at->residual_um);
   round_end end[ROUNDS];
   bool hopeless = false;
-  for (int round = 0; round < (edge_fit->coarse ? COARSE_ROUNDS : ROUNDS); round++) {
+  for (int round = 0; round < max_rounds(edge_fit); round++) {
     const fg_effect_set in_force = at->set;
     fg_effect_set next;
     const fg_search_request request = {.tried = &tried,
@@ -315,7 +319,7 @@ static fg_status iterate_from_best(fg_context *ctx, fg_edge_fit *edge_fit, settl
   double *residual_um = geometry + numbers;
   fg_status status = FG_OK;
   for (size_t i = 0; i < policy->strategy_count; i++) {
-    if (i > 0 && edge_fit->coarse) break;
+    if (i > 0 && (edge_fit->coarse || edge_fit->proposes)) break;
     if (policy->strategies[i].two_curves && edge_fit->view_count < 2) continue;
     FG_TRY_EXIT(iterate_from(ctx, edge_fit, policy->strategies[i], at));
     double left = square_of(edge_fit, at->residual_um);

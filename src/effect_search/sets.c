@@ -250,7 +250,8 @@ static void try_curves_beside(const fg_search *s, const fg_search_baseline *y, u
 static fg_explanation try_free(const fg_search *s, const fg_search_baseline *y,
                                fg_explanation best) {
   unsigned free = fg_search_mask_of(s->out, true);
-  size_t max = s->columns.edge_fit->coarse ? 0 : s->policy->beside_curve;
+  const fg_edge_fit *edge_fit = s->columns.edge_fit;
+  size_t max = edge_fit->coarse || edge_fit->proposes ? 0 : s->policy->beside_curve;
   curve_trial trial = {best, isfinite(best.excess) ? fg_search_schwarz(s, &best) : INFINITY};
   for (size_t size = 0; size <= max && !s->policy->curves_alone_last; size++)
     try_curves_beside(s, y, free, size, &trial);

@@ -7,8 +7,7 @@
 #include "effect/set.h"
 #include "evidence/model.h"
 
-/* Prior probability of each cause, named or not: reports/loop_unlisted.md has the verdicts for
- * thrice as much and a third. */
+/* Prior probability of each cause, named or not: about one of them is expected in a scan. */
 #define FG_EVIDENCE_PRIOR 0.03
 
 /* Lists the options and adds their columns, those of the bumps' scatter first. */

@@ -15,6 +15,8 @@
  */
 #define EDGE_ERROR_UM   0.02
 #define LINEARITY_SHARE 0.004
+/* Share of it in the noise, squared, from which another linearisation pays. */
+#define LARGE_SHARE 0.1
 /* Length over which such errors are alike, mm. */
 #define ERROR_LENGTH_MM 0.3
 
@@ -51,11 +53,12 @@ static void find_noise_um(fg_evidence_problem *p, const double *residual_um) {
     square += row->weight * residual_um[p->row[k]] * residual_um[p->row[k]];
     weight += row->weight;
   }
-  double error2 = EDGE_ERROR_UM * EDGE_ERROR_UM +
-                  LINEARITY_SHARE * LINEARITY_SHARE * (weight > 0 ? square / weight : 0);
+  double linear2 = LINEARITY_SHARE * LINEARITY_SHARE * (weight > 0 ? square / weight : 0);
   double alike = fmax(1, sqrt(M_PI) * ERROR_LENGTH_MM / row_spacing_mm(p));
   double integral = s->share > 0 ? s->integral : 1;
-  p->noise_um = sqrt(s->row_um * s->row_um * integral * fmax(1, s->swell) + error2 * alike);
+  double error2 = (EDGE_ERROR_UM * EDGE_ERROR_UM + linear2) * alike;
+  p->noise_um = sqrt(s->row_um * s->row_um * integral * fmax(1, s->swell) + error2);
+  p->large = linear2 * alike > LARGE_SHARE * p->noise_um * p->noise_um;
 }
 
 static void whiten_rows(fg_evidence_problem *p, const double *values, double *out) {
@@ -158,7 +161,7 @@ static fg_status allocate_problem(fg_context *ctx, fg_evidence_problem *p) {
 }
 
 fg_status fg_evidence_open(fg_context *ctx, const fg_edge_fit *edge_fit, const double *residual_um,
-                           const double *jacobian, double misfit_um, fg_evidence_problem *p) {
+                           const double *jacobian, fg_evidence_problem *p) {
   *p = (fg_evidence_problem){.edge_fit = edge_fit};
   fg_status status = FG_OK;
   FG_TRY_EXIT(allocate_problem(ctx, p));
@@ -167,13 +170,32 @@ fg_status fg_evidence_open(fg_context *ctx, const fg_edge_fit *edge_fit, const d
       p->row[p->rows++] = i;
   FG_TRY_EXIT(fg_whitening_open(ctx, edge_fit, &p->whitening));
   find_noise_um(p, residual_um);
-  p->noise_um = fmax(p->noise_um, misfit_um);
   FG_TRY_EXIT(find_flat_directions(ctx, p, jacobian));
   whiten_rows(p, residual_um, p->residual);
   take_flat_out(p, p->residual, p->residual_along);
 exit:
   if (status != FG_OK) fg_evidence_close(p);
   return status;
+}
+
+void fg_evidence_rescale(fg_evidence_problem *p, double noise_um) {
+  double by = p->noise_um / noise_um;
+  for (size_t i = 0; i < p->count * p->rows; i++)
+    p->values[i] *= by;
+  for (size_t i = 0; i < p->count * p->rank; i++)
+    p->along[i] *= by;
+  for (size_t i = 0; i < p->rows; i++)
+    p->residual[i] *= by;
+  for (size_t k = 0; k < p->rank; k++)
+    p->residual_along[k] *= by;
+  for (size_t i = 0; i < p->rank * p->edge_fit->parameters; i++)
+    p->directions[i] /= by;
+  for (size_t c = 0; c < p->count; c++) {
+    p->right[c] *= by * by;
+    for (size_t k = 0; p->gram[c] && k < FG_EVIDENCE_COLUMNS; k++)
+      p->gram[c][k] *= by * by;
+  }
+  p->noise_um = noise_um;
 }
 
 void fg_evidence_close(fg_evidence_problem *p) {

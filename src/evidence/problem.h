@@ -16,6 +16,7 @@ typedef struct fg_evidence_problem {
   size_t rows, *row; /* rows in use */
   fg_whitening whitening;
   double noise_um;    /* standard deviation of a whitened smooth value */
+  bool large;         /* the residual is so large that linear columns err */
   double *basis;      /* owned; rank × rows: flat directions of the geometry, orthonormal */
   double *directions; /* owned; rank × parameters: those directions in the geometry's numbers */
   size_t rank;
@@ -34,11 +35,12 @@ typedef struct fg_evidence_problem {
 bool fg_evidence_fits(const fg_edge_fit *edge_fit);
 
 /* Opens a problem at the edge fit's geometry. `residual_um` has the effects put back; `jacobian` is
- * parameters × rows (fg_edge_fit_residual); `misfit_um`: residual that no model follows (0:
- * unknown). */
+ * parameters × rows (fg_edge_fit_residual). */
 fg_status fg_evidence_open(fg_context *ctx, const fg_edge_fit *edge_fit, const double *residual_um,
-                           const double *jacobian, double misfit_um, fg_evidence_problem *problem);
+                           const double *jacobian, fg_evidence_problem *problem);
 void fg_evidence_close(fg_evidence_problem *problem);
+/* Changes the noise of all rows. */
+void fg_evidence_rescale(fg_evidence_problem *problem, double noise_um);
 
 /* Appends a column, um along the normal per unit, one value per row of the edge fit; returns its
  * index. The caller has seen that there is room (fg_evidence_has_room). */

@@ -18,7 +18,9 @@ enum {
   DIRECTION_LAST = 9,
   BUMP_FIRST = 3,
   BUMP_ORDERS = 8,
-  PHI_ORDERS = 11
+  PHI_ORDERS = 20,
+  PERIOD_FIRST = 2, /* of patterns over the bumps' numbers */
+  PERIOD_LAST = 4
 };
 
 /* ---- over a line ---- */
@@ -336,6 +338,33 @@ static bool one_variances(const fg_edge_fit *edge_fit, size_t i, double *varianc
   return fill_each(edge_fit, 1, i, variance);
 }
 
+/* Every second, third or fourth bump alike: of every period all phases but one of the first. */
+static size_t over_pattern(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row,
+                           double *values) {
+  size_t count = 0;
+  (void)edge_fit;
+  for (int period = PERIOD_FIRST; period <= PERIOD_LAST; period++)
+    for (int phase = period == PERIOD_FIRST; phase < period; phase++, count += BUMP_ORDERS) {
+      memset(values + count, 0, BUMP_ORDERS * sizeof *values);
+      if (row->bump && row->bump % period == phase)
+        fg_midline_legendre(row, BUMP_FIRST, 1, BUMP_ORDERS, values + count);
+    }
+  return count;
+}
+
+static size_t orders_of_pattern(const fg_edge_fit *edge_fit) {
+  (void)edge_fit;
+  return BUMP_ORDERS;
+}
+
+static bool pattern_variances(const fg_edge_fit *edge_fit, size_t i, double *variance) {
+  static const double powers[] = {0, 1, 3};
+  (void)edge_fit;
+  if (i >= 3) return false;
+  fill_falling(BUMP_FIRST, BUMP_FIRST + BUMP_ORDERS - 1, 1, powers[i], variance);
+  return true;
+}
+
 /* ---- one part of a rival alone ---- */
 
 static bool alike_variances(const fg_edge_fit *edge_fit, size_t i, double *variance) {
@@ -440,6 +469,11 @@ const fg_rival fg_rivals[] = {
      .variances = one_variances,
      .stretch = orders_of_bump,
      .of_last = true},
+    {.name = "bump.each of a pattern",
+     .coordinate = FG_EFFECT_INDEX,
+     .columns = over_pattern,
+     .variances = pattern_variances,
+     .stretch = orders_of_pattern},
     {.name = "edge.normal",
      .coordinate = FG_EFFECT_NORMAL,
      .columns = over_direction,

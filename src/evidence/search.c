@@ -323,34 +323,39 @@ static fg_status run_rounds(fg_context *ctx, fg_evidence_search *s) {
       FG_TRY(extend_model(ctx, s, &model));
     }
     qsort(s->models + 1, s->count - 1, sizeof *s->models, compare_models);
-    if (parts > 1 && s->models[1].score <= before + 1) break;
+    if (parts && s->models[1].score <= before + 1) break;
   }
   return FG_OK;
 }
 
-fg_status fg_evidence_search_run(fg_context *ctx, const fg_edge_fit *edge_fit,
-                                 const fg_effect_set *seed, const double *residual_um,
-                                 const double *jacobian, double misfit_um, fg_evidence_search *s) {
+fg_status fg_evidence_search_open(fg_context *ctx, const fg_edge_fit *edge_fit,
+                                  const fg_effect_set *seed, const double *residual_um,
+                                  const double *jacobian, fg_evidence_search *s) {
   *s = (fg_evidence_search){.count = 0};
   fg_status status = FG_OK;
-  FG_TRY_EXIT(fg_evidence_open(ctx, edge_fit, residual_um, jacobian, misfit_um, &s->problem));
+  FG_TRY_EXIT(fg_evidence_open(ctx, edge_fit, residual_um, jacobian, &s->problem));
   FG_TRY_EXIT(fg_memory_allocate(ctx, FG_EVIDENCE_STORE, sizeof *s->store, (void **)&s->store));
   FG_TRY_EXIT(fg_memory_allocate(ctx, FG_EVIDENCE_MODELS, sizeof *s->models, (void **)&s->models));
   FG_TRY_EXIT(fg_evidence_list_options(ctx, seed, jacobian, s));
-  fg_evidence_model none = {.parts = 0};
-  for (int which = 0; which < FG_EVIDENCE_SCATTERS; which++)
-    none.scatter_um[which] = scatter_um(s, which, SCATTERS_TRIED / 2);
-  FG_TRY_EXIT(find_scatter(ctx, s, &none));
-  s->models[s->count++] = none;
-  FG_TRY_EXIT(run_rounds(ctx, s));
-  for (size_t m = 0; m < s->count && m < 24; m++) { /* every model with its own scatter */
-    FG_TRY_EXIT(find_scatter(ctx, s, &s->models[m]));
-    set_score(s, &s->models[m]);
-  }
-  qsort(s->models, s->count, sizeof *s->models, compare_models);
 exit:
   if (status != FG_OK) fg_evidence_search_close(s);
   return status;
+}
+
+fg_status fg_evidence_search_run(fg_context *ctx, fg_evidence_search *s) {
+  fg_evidence_model none = {.parts = 0};
+  s->count = s->stored = 0;
+  for (int which = 0; which < FG_EVIDENCE_SCATTERS; which++)
+    none.scatter_um[which] = scatter_um(s, which, SCATTERS_TRIED / 2);
+  FG_TRY(find_scatter(ctx, s, &none));
+  s->models[s->count++] = none;
+  FG_TRY(run_rounds(ctx, s));
+  for (size_t m = 0; m < s->count && m < 24; m++) { /* every model with its own scatter */
+    FG_TRY(find_scatter(ctx, s, &s->models[m]));
+    set_score(s, &s->models[m]);
+  }
+  qsort(s->models, s->count, sizeof *s->models, compare_models);
+  return FG_OK;
 }
 
 void fg_evidence_search_close(fg_evidence_search *s) {

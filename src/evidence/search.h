@@ -7,12 +7,13 @@
 #include "effect/set.h"
 #include "evidence/model.h"
 
-/* Searches beside the geometry of the edge fit. `seed`: effects whose shapes are tried, too; their
- * displacements are put back in `residual_um`. The models come sorted, best first. */
-fg_status fg_evidence_search_run(fg_context *ctx, const fg_edge_fit *edge_fit,
-                                 const fg_effect_set *seed, const double *residual_um,
-                                 const double *jacobian, double misfit_um,
-                                 fg_evidence_search *search);
+/* Opens a search beside the geometry of the edge fit. `seed`: effects whose shapes are tried, too;
+ * their displacements are put back in `residual_um`. */
+fg_status fg_evidence_search_open(fg_context *ctx, const fg_edge_fit *edge_fit,
+                                  const fg_effect_set *seed, const double *residual_um,
+                                  const double *jacobian, fg_evidence_search *search);
+/* Searches; again after a change of the noise. The models come sorted, best first. */
+fg_status fg_evidence_search_run(fg_context *ctx, fg_evidence_search *search);
 
 /* Returns the noise, um, that the best model's residual asks for: its mean square with its
  * correlation along the edge. Larger than the problem's, no model follows all of it. */

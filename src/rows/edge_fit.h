@@ -104,6 +104,7 @@ typedef struct fg_edge_fit {
   double psi_rad[2];    /* range of the rows' psi */
   size_t parameters;    /* of the geometry */
   bool coarse;          /* searches are fast (few starts) */
+  bool proposes;        /* the search proposes, evidence decides (scan_loop/evidence.c) */
   bool discs;           /* parts are discs: one circle each */
   size_t known_count;   /* number of parts of known radius */
   fg_scatter scatter;   /* as found last */

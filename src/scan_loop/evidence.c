@@ -197,17 +197,13 @@ void fg_scan_loop_take_displacement(const fg_scan_loop *loop, fg_joint_fit_resul
 static fg_status search_models(fg_context *ctx, fg_scan_loop *loop, const double *residual,
                                const double *jacobian, fg_evidence_search *search) {
   double misfit_um = 0;
-  for (int again = 0; again < 2; again++) {
-    FG_TRY(fg_evidence_search_run(ctx, &loop->edge_fit, &loop->set, residual, jacobian, misfit_um,
-                                  search));
-    if (again) break;
-    fg_status status = fg_evidence_find_misfit(ctx, search, &misfit_um);
-    loop->misfit = status == FG_OK && misfit_um > MISFIT_MIN * search->problem.noise_um;
-    if (status == FG_OK && !loop->misfit) break;
-    fg_evidence_search_close(search);
-    if (status != FG_OK) return status;
-  }
-  return FG_OK;
+  FG_TRY(fg_evidence_search_open(ctx, &loop->edge_fit, &loop->set, residual, jacobian, search));
+  FG_TRY(fg_evidence_search_run(ctx, search));
+  FG_TRY(fg_evidence_find_misfit(ctx, search, &misfit_um));
+  loop->misfit = misfit_um > MISFIT_MIN * search->problem.noise_um;
+  if (!loop->misfit) return FG_OK;
+  fg_evidence_rescale(&search->problem, misfit_um);
+  return fg_evidence_search_run(ctx, search);
 }
 
 static bool is_loose(const fg_evidence_model *model) {
@@ -222,12 +218,13 @@ static fg_status weigh_once(fg_context *ctx, fg_scan_loop *loop, double *residua
   fg_evidence_verdict verdict;
   fg_status status = FG_OK;
   FG_TRY(fg_search_put_back(ctx, &loop->edge_fit, &loop->set, residual, jacobian));
-  FG_TRY(search_models(ctx, loop, residual, jacobian, &search));
+  FG_TRY_EXIT(search_models(ctx, loop, residual, jacobian, &search));
   FG_TRY_EXIT(fg_evidence_decide(ctx, &search, &verdict));
   loop->misfit = loop->misfit || (verdict.ties && is_loose(&verdict.tie[0]));
   FG_TRY_EXIT(find_displacement(ctx, loop, &search));
   FG_TRY_EXIT(fg_scan_loop_find_form_errors(ctx, loop, &search, &verdict));
   FG_TRY_EXIT(take_verdict(ctx, loop, &verdict, moved));
+  *moved = *moved && search.problem.large;
 exit:
   fg_evidence_search_close(&search);
   return status;

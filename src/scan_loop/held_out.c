@@ -11,8 +11,9 @@ fg_status fg_scan_loop_find_held_out(fg_context *ctx, fg_scan_loop *loop) {
     before->held_out_rms = after->held_out_rms = before->rms;
     return FG_OK;
   }
-  FG_TRY(fg_search_cross_fit(ctx, &loop->edge_fit, &loop->set, &loop->explanations.barred,
-                             loop->options.threads, &loop->cross_fit));
+  const fg_search_bars *barred = loop->by_evidence ? NULL : &loop->explanations.barred;
+  FG_TRY(fg_search_cross_fit(ctx, &loop->edge_fit, &loop->set, barred, loop->options.threads,
+                             &loop->cross_fit));
   before->held_out_rms = loop->cross_fit.before_um;
   after->held_out_rms = loop->cross_fit.after_um;
   return FG_OK;
@@ -30,7 +31,7 @@ fg_status fg_scan_loop_say_held_out(fg_context *ctx, fg_scan_loop *loop) {
   if (!c->folds || c->gain > c->u_gain) return FG_OK;
   return fg_scan_loop_bumps_note(
       ctx, &loop->bumps,
-      "points: on %s that took no part in the search the error %s (%.3g um before, %.3g um after): "
+      "points: on %s that took no part in the fit the error %s (%.3g um before, %.3g um after): "
       "nothing confirms yet what was found; scan more, and keep a scan aside (--hold-out)",
       fg_scan_loop_fold_of(loop),
       c->gain > 0 ? "falls by less than its standard error" : "does not fall", c->before_um,

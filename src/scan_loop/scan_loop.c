@@ -7,6 +7,7 @@
 
 #include "core/memory.h"
 #include "core/spread.h"
+#include "evidence/problem.h"
 #include "scan_loop/result.h"
 #include "scan_loop/verdict.h"
 
@@ -72,6 +73,7 @@ static fg_status build_points(fg_context *ctx, fg_scan_loop *loop) {
   free(views);
   if (status != FG_OK) return status;
   loop->edge_fit.coarse = loop->options.coarse;
+  loop->edge_fit.proposes = !loop->options.coarse && fg_evidence_fits(&loop->edge_fit);
   if (loop->options.coarse) fg_edge_fit_find_frame(&loop->edge_fit);
   size_t rows = 0;
   for (size_t i = 0; i < loop->edge_fit.row_count; i++)

@@ -14,11 +14,11 @@ import os
 import shutil
 import subprocess
 import tempfile
-import time
 
 import numpy as np
 
 import loop_foreign_scans as scans
+from loop_run import run_timed
 
 FACTORS = [1.5, 3.0, 10.0]
 # Listed effects that name a cause rightly when they are found, fixed before the first run; every other name is wrong.
@@ -68,16 +68,12 @@ def draw_input(seed, index, folder):
     return row, paths, scans.measurand(line, points)
 
 
-def run_loop(program, paths, threads):
+def run_loop(program, paths, threads, dpi=scans.DPI):
     out = os.path.join(os.path.dirname(paths[0]), "loop.json")
     pair = ["--same-foil"] if len(paths) > 1 else []
-    begin = time.monotonic()
-    done = subprocess.run(
-        [program, "loop", *pair, *paths, "--dpi", str(scans.DPI), "--threads", str(threads), "-o", out],
-        capture_output=True, text=True, check=False)  # fmt: skip
-    seconds = time.monotonic() - begin
-    if done.returncode:
-        return None, done.stderr.strip()[-200:].replace("\n", " "), seconds
+    code, seconds = run_timed([program, "loop", *pair, *paths, "--dpi", str(dpi), "--threads", str(threads), "-o", out])
+    if code:
+        return None, f"exit code {code}", seconds
     with open(out, encoding="utf-8") as file:
         return json.load(file), "", seconds
 
@@ -99,14 +95,14 @@ def deviations(foils, truth):
     return {name: (1e3 * np.array(errors[name]), 1e3 * np.array(sizes[name])) for name in errors}
 
 
-def outcome(cause, claims, unattributed):
-    """wrong, right, unattributed, honest tie (one with an unnamed explanation in it), listed tie, or clean."""
-    allowed = ALLOWED.get(cause, set()) | ALLOWED_ALWAYS
+def outcome(allowed_names, claims, unattributed):
+    """allowed_names: of the cause. wrong, right, unattributed, honest tie (one with an unnamed explanation in it), listed tie, or clean."""
+    allowed = allowed_names | ALLOWED_ALWAYS
     found = [c["id"] for c in claims if c["verdict"] == "found"]
     tied = [c for c in claims if c["verdict"] == "tied" and c["id"] not in ALLOWED_ALWAYS]
     if any(name not in allowed for name in found):
         return "wrong"
-    if any(name in ALLOWED.get(cause, ()) for name in found):
+    if any(name in allowed_names for name in found):
         return "right"
     if unattributed:
         return "unattributed"
@@ -121,14 +117,15 @@ def rms(values):
     return float(np.sqrt(np.mean(np.square(values))))
 
 
-def judge(row, report, truth):
+def judge(row, report, truth, allowed=ALLOWED):
+    """allowed: names by cause."""
     claims, curve = report["claims"], report["unattributed"]
     row["verdict"] = report["verdict"]
     for verdict in ("found", "tied"):
         row[verdict] = "; ".join(c["id"] for c in claims if c["verdict"] == verdict)
     row["alias"] = "; ".join(name for c in claims if c["verdict"] == "tied" for name in c["alias_class"])[:300]
     row["unattributed"] = f"{curve['coordinate']} {curve.get('moves', '')}" if curve else ""
-    row["outcome"] = outcome(row["cause"], claims, curve)
+    row["outcome"] = outcome(allowed.get(row["cause"], set()), claims, curve)
     before, after = (deviations(report[side]["foils"], truth) for side in ("before", "after"))
     if before is None or after is None:
         row["verdict"] += ", a bump is missing"
@@ -203,42 +200,51 @@ def group_row(name, rows, noise):
     return "| " + " | ".join(map(str, cells)) + " |"
 
 
+HOW_JUDGED = (
+    "The truth is the measurand: least-squares circles through the part with its form, without its roughness. Errors are"
+    " medians of the inputs' rms.\nWorse: beyond the error before by more than 2 u of clean inputs. An honest tie holds an"
+    " unnamed explanation. s: seconds of the processor,\nwhile other work ran beside.\n"
+)
+LABELS = {False: " × oracle", True: ""}
 HEAD = (
     "| | inputs | wrong `found` | right | unattributed | honest tie | tie of listed ones | clean | errors | worse | "
     "more than twice | R0, um | R, um | h, um | inside 95 % R0 / R / h | s |\n|" + "---|" * 16
 )
 
 
-def write_page(path, rows, options):
+def write_page(path, rows, head, last=()):
+    """head, last: lines before and after the tables."""
     unlisted = [r for r in rows if r["cause"] != "clean"]
     groups = [("all causes", unlisted), ("clean inputs", [r for r in rows if r["cause"] == "clean"])]
-    labels = {"cause": "", "factor": " × oracle", "edge": " edges", "scans": " scan(s)", "side": ""}
+    labels = {"cause": "", "factor": LABELS[rows[0]["factor"].endswith("um")], "edge": " edges", "scans": " scan(s)", "side": ""}
     for column, label in labels.items():
         for value in sorted({r[column] for r in unlisted}, key=lambda v: (len(v) if column == "factor" else 0, v)):
             groups.append((f"{value}{label}", [r for r in unlisted if r[column] == value]))
-    wrong = [r for r in rows if r["outcome"] == "wrong"]
     lines = [
+        *head,
+        HEAD,
+        *[group_row(name, members, clean_noise(rows)) for name, members in groups],
+        "\n## Wrong `found`\n",
+        "| case | truth | size, um | edges | scans | found | R0, um | R, um | h, um |\n|" + "---|" * 9,
+    ]
+    for r in (r for r in rows if r["outcome"] == "wrong"):
+        moved = [f"{r[q + '_before']} → {r[q + '_after']}" for q in ("R0", "R", "h")]
+        cells = [r["case"], r["cause"], r["size_um"], r["edge"], r["scans"], r["found"], *moved]
+        lines.append("| " + " | ".join(map(str, cells)) + " |")
+    with open(path, "w", encoding="utf-8") as file:
+        file.write("\n".join([*lines, *last]) + "\n")
+
+
+def page_head(options, count):
+    return [
         "# The loop on causes that nobody has named, drawn by another rasteriser\n",
         "Ten causes that the list of effects does not have, on foils of uneven pitch whose R scatters by 0.5 to 2 %, at"
         f" {scans.DPI} dpi. An oracle knows the\ncause's shape and the noise; a cause is 1.5, 3 or 10 times the oracle's"
         f" 5 standard errors, {scans.CAP_UM:g} um at most. Every tenth input is clean.\nThe second scan of a pair is"
-        " turned by about 45 or 90 degrees. The truth is the measurand: least-squares circles through the part\nwith its"
-        " form, without its roughness. Errors are medians of the inputs' rms. Worse: beyond the error before by more"
-        " than 2 u of clean inputs.\nAn honest tie holds an unnamed explanation. A bump with a flat spot may be called `part.dent`;"
-        " every other name is wrong.\n"
-        "An input whose cause met the cap (`capped` in the CSV) shows less than its factor says.\n",
-        f"    /usr/bin/python3 tests/bench/loop_foreign.py build/foilgauge --cases {len(rows)} --seed {options.seed}\n",
-        HEAD,
-        *[group_row(name, members, clean_noise(rows)) for name, members in groups],
-        "\n## Wrong `found`\n",
-        "| case | truth | size, um | × oracle | edges | scans | found | R0, um | R, um | h, um |\n|" + "---|" * 10,
+        " turned by about 45 or 90 degrees. A bump with a flat spot may be called `part.dent`; every other name is wrong.\n"
+        "An input whose cause met the cap (`capped` in the CSV) shows less than its factor says.\n" + HOW_JUDGED,
+        f"    /usr/bin/python3 tests/bench/loop_foreign.py build/foilgauge --cases {count} --seed {options.seed}\n",
     ]
-    for r in wrong:
-        moved = [f"{r[q + '_before']} → {r[q + '_after']}" for q in ("R0", "R", "h")]
-        cells = [r["case"], r["cause"], r["size_um"], r["factor"], r["edge"], r["scans"], r["found"], *moved]
-        lines.append("| " + " | ".join(map(str, cells)) + " |")
-    with open(path, "w", encoding="utf-8") as file:
-        file.write("\n".join(lines) + "\n")
 
 
 def check_rasteriser(options):
@@ -272,6 +278,27 @@ def read_rows(path):
         return list(csv.DictReader(file))
 
 
+def rows_of(options):
+    return [r for r in read_rows(options.csv) if int(r["seed"]) == options.seed]
+
+
+def work_on_all(options, work):
+    """Inputs that the CSV holds are not run again."""
+    if options.fresh and os.path.exists(options.csv):
+        os.remove(options.csv)
+    done = {int(r["case"]) for r in rows_of(options)}
+    for index in [i for i in range(options.cases) if i not in done]:
+        row = work(index)
+        new = not os.path.exists(options.csv)
+        with open(options.csv, "a", newline="", encoding="utf-8") as file:
+            writer = csv.DictWriter(file, FIELDS, lineterminator="\n")
+            if new:
+                writer.writeheader()
+            writer.writerow(row)
+        told = [row.get(name) for name in ("cause", "factor", "edge", "scans", "outcome", "found")]
+        print(index, *told, flush=True)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program")
@@ -287,21 +314,9 @@ def main():
     if options.check:
         check_rasteriser(options)
         return
-    if options.fresh and os.path.exists(options.csv):
-        os.remove(options.csv)
-    done = {int(r["case"]) for r in read_rows(options.csv) if int(r["seed"]) == options.seed}
-    for index in [i for i in range(options.cases) if i not in done]:
-        row = run_case(options, index)
-        new = not os.path.exists(options.csv)
-        with open(options.csv, "a", newline="", encoding="utf-8") as file:
-            writer = csv.DictWriter(file, FIELDS, lineterminator="\n")
-            if new:
-                writer.writeheader()
-            writer.writerow(row)
-        told = [row.get(name) for name in ("cause", "factor", "edge", "scans", "outcome", "found")]
-        print(index, *told, flush=True)
-    rows = [r for r in read_rows(options.csv) if int(r["seed"]) == options.seed]
-    write_page(options.out, rows, options)
+    work_on_all(options, lambda index: run_case(options, index))
+    rows = rows_of(options)
+    write_page(options.out, rows, page_head(options, len(rows)))
 
 
 if __name__ == "__main__":

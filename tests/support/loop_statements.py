@@ -67,7 +67,7 @@ for name, title in (("rms", "rms"), ("robust_sd", "robust sd"), ("p95", "95th pe
 ratio = report["error_ratio"]
 aside = any(scan["hold_out"] for scan in report["inputs"])
 if aside or ratio["folds"]:
-    title = "scans kept aside" if aside else f"{ratio['fold_of']} that took no part in the search"
+    title = "scans kept aside" if aside else f"{ratio['fold_of']} that took no part in the fit"
     before, after = report["before"]["held_out_rms"], report["after"]["held_out_rms"]
     error_says(title, before, after)
 if "half_width" in report["before"]:

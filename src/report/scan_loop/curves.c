@@ -69,7 +69,13 @@ static void put_curve_line(FILE *out, const fg_scan_result *result,
   char title[64];
   snprintf(title, sizeof title, "%s, µm", moves_words(line));
   fputs("<figure>", out);
-  fg_plot at = fg_plot_open(out, &(fg_plot_frame){title, .width = 520, .height = 290, .left = 72, .right = 12, .x = (double[]){line->x[0], line->x[SAMPLES - 1]}, .y = range, .y_title = title, .x_title = line->coordinate == FG_SCAN_FOIL ? "angle from the foil's middle about O, °" : result->coordinate_title[line->coordinate]});
+  fg_plot at = fg_plot_open(
+      out, &(fg_plot_frame){title, .width = 520, .height = 290, .left = 72, .right = 12,
+                            .x = (double[]){line->x[0], line->x[SAMPLES - 1]}, .y = range,
+                            .y_title = title,
+                            .x_title = line->coordinate == FG_SCAN_FOIL
+                                           ? "angle from the foil's middle about O, °"
+                                           : result->coordinate_title[line->coordinate]});
   if (line->glass) put_reach(&at, result, line->coordinate);
   fg_plot_axes(&at);
   put_band(&at, line);

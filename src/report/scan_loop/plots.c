@@ -86,7 +86,11 @@ static void put_noise_band(const fg_plot *at, double noise_um) {
 static void put_residual_plot(FILE *out, const series *s, const double range[2], double limit_um,
                               const char *caption) {
   fprintf(out, "<figure><figcaption><b>%s</b></figcaption>", caption);
-  fg_plot at = fg_plot_open(out, &(fg_plot_frame){caption, .width = 520, .height = 264, .left = 70, .right = 10, .top = 12, .x = range, .y = (double[]){-limit_um, limit_um}, .y_title = "residual, µm", .x_title = s->result->coordinate_title[s->coordinate]});
+  fg_plot at = fg_plot_open(
+      out,
+      &(fg_plot_frame){caption, .width = 520, .height = 264, .left = 70, .right = 10, .top = 12,
+                       .x = range, .y = (double[]){-limit_um, limit_um}, .y_title = "residual, µm",
+                       .x_title = s->result->coordinate_title[s->coordinate]});
   put_noise_band(&at, s->result->noise_floor_um);
   fg_plot_axes(&at);
   for (size_t scan = 0; scan < s->result->scans; scan++)

@@ -82,8 +82,9 @@ static const fg_member side_rows[] = {
     {FG_NUMBER("held_out_rms", fg_scan_loop_error, held_out_rms),
      .words =
          "of scans kept aside; without, cross-fitted: bumps (discs; where a curve over a place was "
-         "found, short stretches of the edge) go round folds, the search is repeated without each, "
-         "and what it finds then is taken out of that fold, with the geometry fitted to all rows. "
+         "found, short stretches of the edge) go round folds, the effects are fitted without each "
+         "(of a plate the search is repeated), and are taken out of that fold, with the geometry "
+         "fitted to all rows. "
          "Before nothing but the geometry is fitted. Where nothing was found it is rms; null where "
          "bumps are too few",
      .column = is_held_out_apart, .page = {.rank = 2}},

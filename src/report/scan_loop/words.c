@@ -20,5 +20,5 @@ void fg_scan_loop_held_out_words(const fg_scan_result *result, char words[FG_HEL
   if (result->held_out == FG_SCAN_HELD_OUT_SCANS)
     fg_text_clip(words, FG_HELD_OUT_WORDS, "scans kept aside");
   if (result->held_out == FG_SCAN_HELD_OUT_FOLDS)
-    fg_text_clip(words, FG_HELD_OUT_WORDS, "%s that took no part in the search", result->fold_of);
+    fg_text_clip(words, FG_HELD_OUT_WORDS, "%s that took no part in the fit", result->fold_of);
 }
