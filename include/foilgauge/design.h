@@ -12,6 +12,7 @@
 
 #include "foilgauge/calibration.h"
 #include "foilgauge/gauge.h"
+#include "foilgauge/grid.h"
 #include "foilgauge/status.h"
 
 #ifdef __cplusplus
@@ -24,10 +25,11 @@ typedef enum fg_foil_kind {
   FG_FOIL_DISCS,      /* no foil: round holes and discs */
   FG_FOIL_ARC,        /* a plain strip, as a top foil: one circle from end to end, no bumps */
   FG_FOIL_CANTILEVER, /* a flat foil with beams cut out of it, measured before they are bent */
+  FG_FOIL_GRID,       /* no foil: a plate or board with marks on a square lattice */
 } fg_foil_kind;
 
 /* Up to the last kind: tables of kinds are held against it, so that new kinds stand at the end. */
-enum { FG_FOIL_KINDS = FG_FOIL_CANTILEVER + 1 };
+enum { FG_FOIL_KINDS = FG_FOIL_GRID + 1 };
 
 /* Returns true where foils of this kind have bumps: the design states `bumps`. */
 bool fg_foil_kind_has_bumps(fg_foil_kind kind);
@@ -110,12 +112,22 @@ typedef struct fg_design_discs {
   double u_diameters_mm; /* standard uncertainty of each of them; 0: not stated */
 } fg_design_discs;
 
+/* Marks of a grid. Without u_pitch_mm nothing is known of the board but its kind: it may be printed
+ * with a wrong scale, other along its two axes. */
+typedef struct fg_design_grid {
+  fg_mark_kind marks;
+  double pitch_mm;   /* from mark to mark; 0: not stated */
+  double u_pitch_mm; /* standard uncertainty of the pitch along each axis; 0: not stated */
+  double u_place_mm; /* of a mark's place on the lattice, along x and y, independent of others */
+} fg_design_grid;
+
 /* One of them. */
 typedef union fg_design_values {
   fg_design_bumps bumps; /* classical, sinusoidal */
   fg_design_arc arc;
   fg_design_beams beams; /* cantilever */
   fg_design_discs discs;
+  fg_design_grid grid;
 } fg_design_values;
 
 /* `kind` tells which member of the union is valid: reading another one is an error. Set `kind` with
@@ -135,6 +147,7 @@ typedef struct fg_design {
     fg_design_arc arc;
     fg_design_beams beams;
     fg_design_discs discs;
+    fg_design_grid grid;
     fg_design_values values;
   };
   size_t tolerance_count;

@@ -401,6 +401,7 @@ typedef struct fg_measurement {
   size_t foil_count;
   fg_disc *discs; /* owned; kind discs only */
   size_t disc_count;
+  fg_grid *grid;   /* owned; kind grid only, else NULL */
   size_t specks;   /* ignored objects: dust, scratches, other shapes */
   bool calibrated; /* u_ includes the uncertainty of the design's calibration */
 } fg_measurement;

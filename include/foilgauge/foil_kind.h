@@ -20,9 +20,10 @@ typedef enum fg_design_group {
   FG_DESIGN_BEAMS,
   FG_DESIGN_DISCS,
   FG_DESIGN_ARC,
+  FG_DESIGN_GRID,
 } fg_design_group;
 
-enum { FG_DESIGN_GROUPS = FG_DESIGN_ARC + 1 };
+enum { FG_DESIGN_GROUPS = FG_DESIGN_GRID + 1 };
 
 enum { FG_KIND_NEEDED_MAX = 4, FG_KIND_FOREIGN_MAX = 12 };
 
@@ -42,7 +43,8 @@ typedef struct fg_foil_traits {
   const char *why_no_station;
   const char *why_no_forming;
   const char *stiffness_note; /* how far the model of a bump's stiffness holds; NULL: it does */
-  bool is_foil;               /* else round features, without foils */
+  bool is_foil;               /* else round features or marks, without foils */
+  bool is_grid;               /* marks on a lattice */
   bool has_bumps, has_lip;    /* a lip at one end */
   bool is_plain_strip;        /* one circle from end to end, without numbered parts */
   bool lies_flat; /* its rims are several islands of the scan, and its thickness is not seen */

@@ -13,6 +13,7 @@
 #include "cli/output_set.h"
 #include "foilgauge/foil_kind.h"
 #include "foilgauge/forming.h"
+#include "foilgauge/grid_loop.h"
 #include "foilgauge/memory.h"
 #include "foilgauge/scan.h"
 #include "foilgauge/scan_loop.h"
@@ -24,6 +25,8 @@ enum {
   OPTION_DPI,
   OPTION_ALLOW_LOSSY,
   OPTION_SAME,
+  OPTION_SAME_PART,
+  OPTION_TURNED,
   OPTION_HOLD_OUT,
   OPTION_MODEL_OUT,
   OPTION_HTML,
@@ -51,6 +54,7 @@ typedef struct arguments {
   fg_cli_known known;
   fg_output_set outputs;
   fg_scan_loop_options options;
+  fg_grid_loop_options grid;
 } arguments;
 
 static const struct argp_option options[] = {
@@ -63,6 +67,12 @@ static const struct argp_option options[] = {
     {"same-foil", OPTION_SAME, NULL, 0,
      "The scans show the same foil, turned or shifted in between: what stays with the glass is the "
      "scanner, what turns is the part",
+     0},
+    {"same-part", OPTION_SAME_PART, NULL, 0,
+     "The same of grids: any number of scans of one plate or board", 0},
+    {"turned", OPTION_TURNED, "DEGREES", 0,
+     "Of grids with --same-part: how the board lies in every scan, as 0,90,180: multiples of 90 "
+     "against the first scan, clockwise as the scans show it (default: as the pictures show)",
      0},
     {"form-model", OPTION_FORMING_MODEL, "FORM.json", 0,
      "A report of `foilgauge forming -o` as the declared model of the bumps, in place of one "
@@ -140,6 +150,33 @@ static void parse_gaps(struct argp_state *state, const char *text, double gap_px
                text, GAP_MAX_PX, GAP_MAX_PX);
 }
 
+static void parse_turns(struct argp_state *state, const char *text, int turns[FG_GRID_SCANS]) {
+  const char *at = text;
+  for (size_t i = 0; i < FG_GRID_SCANS; i++) {
+    char *end;
+    long degrees = strtol(at, &end, 10);
+    if (end == at || degrees % 90 || (*end && *end != ','))
+      argp_error(state, "--turned %s: multiples of 90, one for each scan, with commas", text);
+    turns[i] = (int)(((degrees / 90) % 4 + 4) % 4);
+    if (!*end) return;
+    at = end + 1;
+  }
+}
+
+static error_t parse_grid_option(struct argp_state *state, int key, char *text) {
+  arguments *a = state->input;
+  switch (key) {
+  case OPTION_SAME_PART:
+    a->grid.same_part = true;
+    return 0;
+  case OPTION_TURNED:
+    parse_turns(state, text, a->grid.turns);
+    return 0;
+  default:
+    return fg_cli_parse_known(state, key, text, &a->known) ? 0 : ARGP_ERR_UNKNOWN;
+  }
+}
+
 static error_t parse_option(int key, char *text, struct argp_state *state) {
   arguments *a = state->input;
   switch (key) {
@@ -195,7 +232,7 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
       argp_error(state, "give a scan, or --table DATA.csv, --lot DIR, --doe RUNS.csv");
     return 0;
   default:
-    return fg_cli_parse_known(state, key, text, &a->known) ? 0 : ARGP_ERR_UNKNOWN;
+    return parse_grid_option(state, key, text);
   }
 }
 
@@ -249,6 +286,8 @@ static void note_pictures(const fg_scan_result *result) {
 
 static fg_status check_design(fg_context *ctx, const arguments *a, const fg_design *design) {
   const fg_foil_traits *kind = fg_foil_traits_of(design->kind);
+  if (a->grid.same_part)
+    return fg_fail(ctx, FG_ERR_USAGE, "--same-part is for grids; of foils it is --same-foil");
   if (!kind->is_foil && a->options.same_foil)
     return fg_fail(ctx, FG_ERR_USAGE,
                    "--same-foil is for foils: a disc does not show how far it was turned");
@@ -266,6 +305,37 @@ static fg_status read_forming(fg_context *ctx, const char *path,
   return fg_forming_prediction_load(ctx, path, *prediction);
 }
 
+typedef fg_status grid_writer(fg_context *ctx, const fg_grid_loop *loop, FILE *out);
+
+static fg_status write_grid_output(fg_context *ctx, void *user, size_t kind, FILE *out) {
+  static grid_writer *const each[FG_LOOP_OUTPUTS] = {
+      [FG_LOOP_HTML] = fg_grid_loop_write_html,
+      [FG_LOOP_MODEL] = fg_grid_loop_write_model,
+      [FG_LOOP_JSON] = fg_grid_loop_write_json,
+      [FG_LOOP_TEXT] = fg_grid_loop_write_text,
+  };
+  return each[kind](ctx, user, out);
+}
+
+static fg_status run_grids(fg_context *ctx, arguments *a, const fg_design *design) {
+  fg_grid_loop *loop = NULL;
+  if (a->held_out || a->forming_model)
+    return fg_fail(ctx, FG_ERR_USAGE,
+                   "--%s is not for grids: marks of every scan are held out in turn",
+                   a->held_out ? "hold-out" : "form-model");
+  a->grid.dpi = a->options.dpi;
+  a->grid.allow_lossy = a->options.allow_lossy;
+  a->grid.threads = a->options.threads;
+  a->grid.same_part |= a->options.same_foil;
+  a->grid.scanner = a->options.scanner;
+  a->grid.date = find_date(a);
+  FG_TRY(fg_output_set_open(ctx, &a->outputs));
+  fg_status status = fg_grid_loop_run(ctx, a->paths, a->count, design, &a->grid, &loop);
+  if (status == FG_OK) status = fg_output_set_write(ctx, &a->outputs, write_grid_output, loop);
+  fg_grid_loop_free(loop);
+  return status;
+}
+
 static fg_status run(fg_context *ctx, arguments *a, int *code) {
   fg_design design;
   fg_scan_loop *loop = NULL;
@@ -277,6 +347,7 @@ static fg_status run(fg_context *ctx, arguments *a, int *code) {
   FG_TRY_EXIT(fg_cli_apply_foil_kind(ctx, a->kind, &design));
   fg_cli_apply_known(&a->known, &design);
   FG_TRY_EXIT(fg_design_check(ctx, &design));
+  if (fg_foil_traits_of(design.kind)->is_grid) return run_grids(ctx, a, &design);
   FG_TRY_EXIT(check_design(ctx, a, &design));
   FG_TRY_EXIT(read_forming(ctx, a->forming_model, &prediction));
   FG_TRY_EXIT(fg_output_set_open(ctx, &a->outputs));
@@ -298,6 +369,8 @@ const struct argp fg_loop_parser = {options, parse_option, "SCAN...", doc, NULL,
 int fg_cmd_loop_scan(int argc, char **argv) {
   fg_context ctx = {0};
   arguments a = {.options = {.seed = FG_CLI_SEED}, .outputs.count = FG_LOOP_OUTPUTS};
+  for (size_t i = 0; i < FG_GRID_SCANS; i++)
+    a.grid.turns[i] = -1;
   /* in order: reports list the scans as they are given, held-out scans among the others */
   fg_status status = fg_cli_parse_in_order(&ctx, &fg_loop_parser, argc, argv, &a);
   if (status != FG_OK) return fg_cli_fail(&ctx, status);

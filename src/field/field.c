@@ -29,5 +29,9 @@ fg_point fg_field_at(const fg_field_list *list, fg_point nominal) {
       sum.y += field->amplitude_mm[c] * d[c].y;
     }
   }
+  if (list->map) {
+    fg_point smooth = fg_map_at(list->map, list->map_mm, nominal);
+    sum = (fg_point){sum.x + smooth.x, sum.y + smooth.y};
+  }
   return sum;
 }

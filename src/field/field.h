@@ -8,6 +8,7 @@
 
 #include <stddef.h>
 
+#include "field/map.h"
 #include "foilgauge/circle.h"
 
 enum { FG_FIELD_COLUMNS = 24, FG_FIELD_SHAPES = 2, FG_FIELDS_MAX = 8 };
@@ -39,7 +40,13 @@ typedef struct fg_field_list {
   fg_field_frame frame;
   fg_field fields[FG_FIELDS_MAX];
   size_t count;
+  const fg_map_frame *map; /* not owned; NULL: no map */
+  const double *map_mm;    /* not owned; its numbers, as in fg_field_map */
 } fg_field_list;
+
+static inline bool fg_field_list_is_empty(const fg_field_list *list) {
+  return !list->count && !list->map;
+}
 
 /* Returns d at a nominal position. */
 fg_point fg_field_at(const fg_field_list *list, fg_point nominal);

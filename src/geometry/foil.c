@@ -314,5 +314,7 @@ void fg_measurement_free(fg_measurement *measurement) {
     fg_disc_free(&measurement->discs[i]);
   free(measurement->foils);
   free(measurement->discs);
+  fg_grid_free(measurement->grid);
+  free(measurement->grid);
   memset(measurement, 0, sizeof *measurement);
 }

@@ -17,6 +17,7 @@ static const fg_foil_row *const kinds[] = {
     [FG_FOIL_DISCS] = &fg_foil_kind_discs,
     [FG_FOIL_ARC] = &fg_foil_kind_arc,
     [FG_FOIL_CANTILEVER] = &fg_foil_kind_cantilever,
+    [FG_FOIL_GRID] = &fg_foil_kind_grid,
 };
 static_assert(sizeof kinds / sizeof *kinds == FG_FOIL_KINDS, "every kind of foil has a row");
 

@@ -24,7 +24,7 @@ typedef struct fg_foil_row {
 const fg_foil_row *fg_foil_row_of(fg_foil_kind kind);
 
 extern const fg_foil_row fg_foil_kind_classical, fg_foil_kind_sinusoidal, fg_foil_kind_discs,
-    fg_foil_kind_arc, fg_foil_kind_cantilever;
+    fg_foil_kind_arc, fg_foil_kind_cantilever, fg_foil_kind_grid;
 
 /* Strips with bumps (foil.c). */
 fg_status fg_foil_lay_out_bumps(fg_context *ctx, const fg_design *design, unsigned threads,

@@ -12,6 +12,7 @@
 #include "report/die/members.h"
 #include "report/doe/members.h"
 #include "report/forming/members.h"
+#include "report/grid_loop/members.h"
 #include "report/load_test/members.h"
 #include "report/lot/members.h"
 #include "report/measure/members.h"
@@ -26,6 +27,7 @@ const fg_document *const fg_documents[] = {
     &fg_doe_document,
     &fg_forming_document,
     &fg_forming_fit_document,
+    &fg_grid_loop_document,
     &fg_index_document,
     &fg_load_document,
     &fg_loop_document,

@@ -102,6 +102,24 @@ static fg_status measure_disc(fg_context *ctx, const fg_disc *disc, const fg_mea
   return fg_disc_measure_again(ctx, again);
 }
 
+static fg_status measure_grid_again(fg_context *ctx, const fg_measurement *m,
+                                    const fg_measure_mover *mover, fg_measurement *again) {
+  const fg_grid *from = m->grid;
+  if (!from || !mover->flat) return FG_OK;
+  FG_TRY(fg_memory_allocate(ctx, 1, sizeof *again->grid, (void **)&again->grid));
+  fg_grid *to = again->grid;
+  *to = *from;
+  to->marks = NULL;
+  to->picture = NULL;
+  to->per_step = 0;
+  FG_TRY(fg_memory_allocate(ctx, from->count, sizeof *to->marks, (void **)&to->marks));
+  memcpy(to->marks, from->marks, from->count * sizeof *to->marks);
+  for (size_t i = 0; i < to->count; i++)
+    to->marks[i].at_mm = mover->flat(mover->user, from->marks[i].at_mm);
+  if (fg_grid_fit(to, m->dpi)) return FG_OK;
+  return fg_fail(ctx, FG_ERR_DATA, "%s: the marks lie on one line", m->scan);
+}
+
 fg_status fg_measure_again(fg_context *ctx, const fg_measurement *m, const fg_measure_mover *mover,
                            unsigned threads, fg_measurement *again) {
   *again = *m;
@@ -109,6 +127,7 @@ fg_status fg_measure_again(fg_context *ctx, const fg_measurement *m, const fg_me
   again->foil_count = 0;
   again->discs = NULL;
   again->disc_count = 0;
+  again->grid = NULL;
   fg_status status = FG_OK;
   FG_TRY_EXIT(fg_memory_allocate(ctx, m->foil_count, sizeof *m->foils, (void **)&again->foils));
   for (size_t f = 0; f < m->foil_count; f++) {
@@ -120,6 +139,7 @@ fg_status fg_measure_again(fg_context *ctx, const fg_measurement *m, const fg_me
     again->disc_count++;
     FG_TRY_EXIT(measure_disc(ctx, &m->discs[d], mover, &again->discs[d]));
   }
+  FG_TRY_EXIT(measure_grid_again(ctx, m, mover, again));
 exit:
   if (status != FG_OK) fg_measurement_free(again);
   return status;

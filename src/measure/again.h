@@ -9,7 +9,8 @@
 typedef struct fg_measure_mover {
   void (*strip)(const void *user, const fg_foil *foil, fg_strip *strip);
   fg_point (*point)(const void *user, const fg_disc *disc, fg_point at); /* of a disc */
-  fg_point (*flat)(const void *user, fg_point at); /* of a beam; NULL: beams cannot be moved */
+  fg_point (*flat)(const void *user,
+                   fg_point at); /* of a beam or mark; NULL: they cannot be moved */
   const void *user;
 } fg_measure_mover;
 

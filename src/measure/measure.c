@@ -14,6 +14,7 @@
 #include "measure/colour.h"
 #include "measure/discs.h"
 #include "measure/gauges.h"
+#include "measure/grids.h"
 #include "measure/level.h"
 #include "measure/picture_gather.h"
 #include "measure/reader.h"
@@ -111,14 +112,17 @@ static fg_status match_discs(fg_context *ctx, fg_measurement *m) {
   return status;
 }
 
-static fg_status measure_discs(fg_context *ctx, fg_scan *scan, const fg_measure_options *options,
-                               fg_measurement *m) {
+/* Discs or marks. */
+static fg_status measure_features(fg_context *ctx, fg_scan *scan, const fg_measure_options *options,
+                                  fg_measurement *m) {
   fg_budget budget = {.name = m->scan, .limit = memory_cap(options)};
   fg_tiles tiles = {0};
   FG_TRY(fg_budget_reserve(ctx, &budget, (size_t)fg_scan_get_info(scan)->memory_bytes));
   fg_status status = fg_reader_run(ctx, scan, keep_reading, NULL, &budget, &tiles, m->sha256);
-  if (status == FG_OK) status = fg_measure_discs(ctx, &tiles, options->threads, m);
-  if (status == FG_OK) status = match_discs(ctx, m);
+  bool is_grid = fg_foil_traits_of(m->design.kind)->is_grid;
+  if (status == FG_OK)
+    status = (is_grid ? fg_measure_grid : fg_measure_discs)(ctx, &tiles, options->threads, m);
+  if (status == FG_OK && !is_grid) status = match_discs(ctx, m);
   fg_tiles_free(&tiles);
   return status;
 }
@@ -304,7 +308,7 @@ fg_status fg_measure_scan(fg_context *ctx, const char *path, const fg_design *de
   if (fg_foil_traits_of(design->kind)->is_foil)
     FG_TRY_EXIT(measure_foils(ctx, scan, options, measurement));
   else
-    FG_TRY_EXIT(measure_discs(ctx, scan, options, measurement));
+    FG_TRY_EXIT(measure_features(ctx, scan, options, measurement));
   FG_TRY_EXIT(fg_colour_measure(ctx, scan, memory_cap(options), options->threads, measurement));
   FG_TRY_EXIT(refer_lengths(ctx, options->threads, measurement));
   FG_TRY_EXIT(use_gauges(ctx, options->threads, measurement));

@@ -27,7 +27,7 @@ typedef struct correction {
 static void correct_strip(const void *user, const fg_foil *foil, fg_strip *strip) {
   const correction *c = user;
   (void)foil;
-  if (c->fields && c->fields->count) fg_strip_move(strip, moved, c->fields);
+  if (c->fields && !fg_field_list_is_empty(c->fields)) fg_strip_move(strip, moved, c->fields);
   if (c->displacement) fg_strip_move(strip, displaced, c->displacement);
 }
 

@@ -173,7 +173,7 @@ fg_status fg_scanner_model_apply(fg_context *ctx, const fg_scanner_model *model,
   fg_status status = FG_OK;
   FG_TRY(fg_model_uncertainty_open(ctx, model, m, threads, &uncertainty));
   FG_TRY_EXIT(fg_scan_loop_correct(ctx, m, &model->fields, threads, &corrected));
-  if (model->fields.count || model->others)
+  if (!fg_field_list_is_empty(&model->fields) || model->others)
     FG_TRY_EXIT(keep_beneficial(ctx, m, &uncertainty, &corrected));
   FG_TRY_EXIT(fg_model_uncertainty_widen(ctx, &uncertainty, &corrected));
   flag_reach(&model->fields.frame, &corrected);

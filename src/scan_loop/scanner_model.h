@@ -10,8 +10,10 @@
 #include "scan_loop/scanner_model_tone.h"
 
 enum { FG_MODEL_DATE = 32 };
-/* Maximum number of amplitudes and shapes of all fields. */
-enum { FG_MODEL_NUMBERS_MAX = FG_FIELDS_MAX * (FG_FIELD_COLUMNS + FG_FIELD_SHAPES) };
+/* Maximum number of amplitudes and shapes of all fields, and of a map's modes. */
+enum {
+  FG_MODEL_NUMBERS_MAX = FG_FIELDS_MAX * (FG_FIELD_COLUMNS + FG_FIELD_SHAPES) + FG_MAP_MODES_MAX
+};
 
 struct fg_scanner_model {
   char sha256[65]; /* of the file */
@@ -24,10 +26,27 @@ struct fg_scanner_model {
   bool tied;
   fg_model_tone tone;
   fg_field_list fields;
+  fg_field_map map; /* owned; no knots: none */
   /* Corrections by the explanations tied with it. */
   fg_field_list other[FG_EXPLANATIONS_MAX];
   size_t others;
 };
+
+/* A scan that a model was found on. */
+typedef struct fg_scanner_model_input {
+  const char *path, *sha256;
+  bool hold_out;
+} fg_scanner_model_input;
+
+/* Writes the file; refuses a model that the reader would refuse. */
+fg_status fg_scanner_model_write(fg_context *ctx, const fg_scanner_model *model,
+                                 const fg_scanner_model_input *inputs, size_t count, FILE *out);
+
+/* FG_ERR_DATA for a picture that spoils edges in a way that no model describes. */
+fg_status fg_scanner_model_check_picture(fg_context *ctx, const fg_measurement *m);
+
+/* Date of a model, from seconds since 1970; "" for 0. */
+void fg_scanner_model_format_date(int64_t seconds, char text[FG_MODEL_DATE]);
 
 /* Makes a model of a loop's scanner effects; free with fg_scanner_model_free. */
 fg_status fg_scanner_model_of(fg_context *ctx, const fg_scan_loop *loop, fg_scanner_model **model);

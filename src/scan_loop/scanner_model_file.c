@@ -160,6 +160,57 @@ static fg_status read_others(fg_context *ctx, const cJSON *root, fg_scanner_mode
   return FG_OK;
 }
 
+static fg_status read_map_side(fg_context *ctx, const cJSON *map, const char *name, size_t *side) {
+  const cJSON *item = cJSON_GetObjectItemCaseSensitive(map, name);
+  double value = cJSON_IsNumber(item) ? item->valuedouble : NAN;
+  if (!(value >= FG_MAP_SIDE_MIN && value <= FG_MAP_SIDE_MAX && value == floor(value)))
+    return fg_fail(ctx, FG_ERR_DATA, "`map.%s` is %g; a whole number, %d to %d, is allowed", name,
+                   value, FG_MAP_SIDE_MIN, FG_MAP_SIDE_MAX);
+  *side = (size_t)value;
+  return FG_OK;
+}
+
+/* Displacements by a map are a scanner's as those by its effects are. */
+#define MAP_MAX_MM 20.0
+
+static fg_status read_map_numbers(fg_context *ctx, const cJSON *object, const char *before,
+                                  size_t numbers, double **mm) {
+  FG_TRY(fg_memory_allocate(ctx, numbers, sizeof **mm, (void **)mm));
+  FG_TRY(read_model_numbers(ctx, object, before, "d_mm", *mm, numbers));
+  for (size_t i = 0; i < numbers; i++)
+    if (!(fabs((*mm)[i]) <= MAP_MAX_MM))
+      return fg_fail(ctx, FG_ERR_DATA, "`%sd_mm[%zu]` is %g; -%g to %g mm is allowed", before, i,
+                     (*mm)[i], MAP_MAX_MM, MAP_MAX_MM);
+  return FG_OK;
+}
+
+static fg_status read_map(fg_context *ctx, const cJSON *root, fg_scanner_model *model) {
+  const cJSON *map = cJSON_GetObjectItemCaseSensitive(root, "map"), *mode;
+  if (!map || cJSON_IsNull(map)) return FG_OK;
+  fg_map_frame *frame = &model->map.frame;
+  for (int axis = 0; axis < 2; axis++) {
+    frame->low_mm[axis] = model->fields.frame.low_mm[axis];
+    frame->high_mm[axis] = model->fields.frame.high_mm[axis];
+  }
+  FG_TRY(read_map_side(ctx, map, "columns", &frame->side[0]));
+  FG_TRY(read_map_side(ctx, map, "rows", &frame->side[1]));
+  size_t numbers = 2 * fg_map_splines(frame);
+  FG_TRY(read_map_numbers(ctx, map, "map.", numbers, &model->map.mm));
+  const cJSON *modes = cJSON_GetObjectItemCaseSensitive(map, "modes");
+  if (!cJSON_IsArray(modes) || cJSON_GetArraySize(modes) > FG_MAP_MODES_MAX)
+    return fg_fail(ctx, FG_ERR_DATA, "`map.modes` must be an array of at most %d objects",
+                   FG_MAP_MODES_MAX);
+  cJSON_ArrayForEach(mode, modes) {
+    char before[48];
+    fg_text_clip(before, sizeof before, "map.modes[%zu].", model->map.mode_count);
+    FG_TRY(
+        read_map_numbers(ctx, mode, before, numbers, &model->map.modes[model->map.mode_count++]));
+  }
+  model->fields.map = frame;
+  model->fields.map_mm = model->map.mm;
+  return FG_OK;
+}
+
 static fg_status read_model(fg_context *ctx, const cJSON *root, fg_scanner_model *model) {
   const cJSON *schema = cJSON_GetObjectItemCaseSensitive(root, "schema");
   if (!cJSON_IsString(schema) || strcmp(schema->valuestring, "foilgauge/scan-model/1") != 0)
@@ -170,6 +221,7 @@ static fg_status read_model(fg_context *ctx, const cJSON *root, fg_scanner_model
   FG_TRY(read_origin(ctx, root, model));
   FG_TRY(read_place(ctx, root, model));
   FG_TRY(fg_model_tone_read(ctx, root, &model->tone));
+  FG_TRY(read_map(ctx, root, model));
   FG_TRY(
       read_fields(ctx, "fields", cJSON_GetObjectItemCaseSensitive(root, "fields"), &model->fields));
   return read_others(ctx, root, model);
@@ -198,7 +250,7 @@ fg_status fg_scanner_model_parse(fg_context *ctx, const char *path, const char *
     *model = made;
     return FG_OK;
   }
-  free(made);
+  fg_scanner_model_free(made);
   return read != FG_OK ? read : fg_fail(ctx, status, "%.200s: %.700s", path, inner.message);
 }
 
@@ -212,6 +264,7 @@ fg_status fg_scanner_model_load(fg_context *ctx, const char *path, fg_scanner_mo
 }
 
 void fg_scanner_model_free(fg_scanner_model *model) {
+  if (model) fg_field_map_free(&model->map);
   free(model);
 }
 
@@ -224,7 +277,7 @@ bool fg_scanner_model_is_tied(const fg_scanner_model *model) {
 }
 
 bool fg_scanner_model_is_empty(const fg_scanner_model *model) {
-  return model->fields.count == 0 && model->others == 0 && !model->tone.gauges;
+  return fg_field_list_is_empty(&model->fields) && model->others == 0 && !model->tone.gauges;
 }
 
 fg_status fg_scanner_model_check_scanner(fg_context *ctx, const fg_scanner_model *model,

@@ -96,6 +96,25 @@ static fg_status step_all(fg_context *ctx, const fg_field_list *fields, const fg
   return FG_OK;
 }
 
+/* Displaces the map by each of its modes. */
+static fg_status step_modes(fg_context *ctx, const fg_scanner_model *model, const fg_measurement *m,
+                            unsigned threads, fg_model_uncertainty *uncertainty) {
+  size_t numbers = 2 * fg_map_splines(&model->map.frame);
+  double *mm;
+  fg_field_list moved = model->fields;
+  if (!model->fields.map) return FG_OK;
+  FG_TRY(fg_memory_allocate(ctx, numbers, sizeof *mm, (void **)&mm));
+  fg_status status = FG_OK;
+  moved.map_mm = mm;
+  for (size_t k = 0; k < model->map.mode_count && status == FG_OK; k++) {
+    for (size_t i = 0; i < numbers; i++)
+      mm[i] = model->map.mm[i] + model->map.modes[k][i];
+    status = step_number(ctx, &moved, m, threads, uncertainty);
+  }
+  free(mm);
+  return status;
+}
+
 static fg_status explain(fg_context *ctx, const fg_field_list *fields, const fg_measurement *m,
                          unsigned threads, fg_model_uncertainty *uncertainty) {
   FG_TRY(fg_scan_loop_correct(ctx, m, fields, threads, &uncertainty->each[uncertainty->count]));
@@ -111,6 +130,7 @@ fg_status fg_model_uncertainty_open(fg_context *ctx, const fg_scanner_model *mod
   FG_TRY_EXIT(fg_benefits_open(ctx, m, &uncertainty->benefits));
   FG_TRY_EXIT(explain(ctx, &model->fields, m, threads, uncertainty));
   FG_TRY_EXIT(step_all(ctx, &model->fields, m, threads, uncertainty));
+  FG_TRY_EXIT(step_modes(ctx, model, m, threads, uncertainty));
   for (size_t k = 0; k < model->others; k++)
     FG_TRY_EXIT(explain(ctx, &model->other[k], m, threads, uncertainty));
 exit:

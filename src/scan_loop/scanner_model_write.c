@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Writer of a scanner's model file, "foilgauge/scan-model/1" (reports/schema); the reader is
  * scanner_model_file.c. */
+#include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
@@ -12,7 +13,7 @@
 
 /* ---- the model of a loop ---- */
 
-static void format_date(int64_t seconds, char text[FG_MODEL_DATE]) {
+void fg_scanner_model_format_date(int64_t seconds, char text[FG_MODEL_DATE]) {
   time_t at = (time_t)seconds;
   struct tm utc;
   text[0] = 0;
@@ -36,7 +37,7 @@ fg_status fg_scanner_model_of(fg_context *ctx, const fg_scan_loop *loop, fg_scan
   FG_TRY(fg_memory_allocate(ctx, 1, sizeof *made, (void **)&made));
   if (loop->options.scanner)
     fg_text_clip(made->scanner, sizeof made->scanner, "%s", loop->options.scanner);
-  format_date(loop->options.date, made->date);
+  fg_scanner_model_format_date(loop->options.date, made->date);
   const fg_measurement *first = &loop->before[0];
   for (int axis = 0; axis < 2; axis++) /* resolution stated by the scan */
     made->dpi[axis] = first->dpi[axis] * fg_calibration_factor(&first->design.calibration);
@@ -54,10 +55,11 @@ fg_status fg_scanner_model_of(fg_context *ctx, const fg_scan_loop *loop, fg_scan
 
 /* ---- the file ---- */
 
-/* Whole of every subject: a model, and the result that it is of. */
+/* Whole of every subject: a model, and the scans that it is of. */
 typedef struct made_model {
   const fg_scanner_model *model;
-  const fg_scan_result *result;
+  const fg_scanner_model_input *inputs;
+  size_t input_count;
 } made_model;
 
 /* A file of people may lack the member. */
@@ -89,28 +91,58 @@ static const fg_member other_rows[] = {
     {FG_ARRAY(NULL, fg_field_list, fields, count, &field_members), .highest = FG_FIELDS_MAX}};
 static const fg_members other_members = FG_MEMBERS(other_rows);
 
-static const char *find_input_path(const fg_subject *scan, char *buffer) {
-  (void)buffer;
-  return ((const fg_scan_result_scan *)scan->object)->before->scan;
-}
-
-static const char *find_input_sha256(const fg_subject *scan, char *buffer) {
-  (void)buffer;
-  return ((const fg_scan_result_scan *)scan->object)->before->sha256;
-}
-
 static const fg_member input_rows[] = {
-    {FG_TEXT_BY("path", find_input_path), .options = FG_MEMBER_NEVER_NULL},
-    {FG_TEXT_BY("sha256", find_input_sha256), .options = FG_MEMBER_NEVER_NULL,
+    {FG_STRING("path", fg_scanner_model_input, path), .options = FG_MEMBER_NEVER_NULL},
+    {FG_STRING("sha256", fg_scanner_model_input, sha256), .options = FG_MEMBER_NEVER_NULL,
      .pattern = "^[0-9a-f]{64}$"},
-    {FG_FLAG("hold_out", fg_scan_result_scan, hold_out), .words = "the scan only confirms"},
+    {FG_FLAG("hold_out", fg_scanner_model_input, hold_out), .words = "the scan only confirms"},
 };
 static const fg_members input_members = FG_MEMBERS(input_rows);
 
 static bool find_model_input(const fg_subject *list, size_t i, fg_subject *element) {
-  const fg_scan_result *result = ((const made_model *)list->whole)->result;
-  element->object = &result->scan[i];
-  return i < result->scans;
+  const made_model *made = list->whole;
+  element->object = &made->inputs[i];
+  return i < made->input_count;
+}
+
+static const double *list_map_numbers(const fg_subject *s, double *numbers, size_t *count) {
+  const fg_scanner_model *model = ((const made_model *)s->whole)->model;
+  (void)numbers;
+  *count = 2 * fg_map_splines(&model->map.frame);
+  return s->index ? model->map.modes[s->index - 1] : model->map.mm;
+}
+
+static const fg_member mode_rows[] = {
+    {FG_NUMBERS_BY("d_mm", list_map_numbers), .options = FG_MEMBER_NEVER_NULL,
+     .schema = "{\"type\": \"array\", \"items\": {\"type\": \"number\"}}",
+     .words = "as the map's"}};
+static const fg_members mode_members = FG_MEMBERS(mode_rows);
+
+/* Index 0 is the map itself. */
+static bool find_map_mode(const fg_subject *list, size_t i, fg_subject *element) {
+  const made_model *made = list->whole;
+  *element = (fg_subject){made->model, made, i + 1};
+  return i < made->model->map.mode_count;
+}
+
+static const fg_member map_rows[] = {
+    {FG_COUNT("columns", fg_scanner_model, map.frame.side[0]), .lowest = FG_MAP_SIDE_MIN,
+     .highest = FG_MAP_SIDE_MAX, .words = "cubic B-splines along x, evenly over region_mm"},
+    {FG_COUNT("rows", fg_scanner_model, map.frame.side[1]), .lowest = FG_MAP_SIDE_MIN,
+     .highest = FG_MAP_SIDE_MAX, .words = "along y"},
+    {FG_NUMBERS_BY("d_mm", list_map_numbers), .options = FG_MEMBER_NEVER_NULL,
+     .schema = "{\"type\": \"array\", \"items\": {\"type\": \"number\"}}",
+     .words = "displacement along x of every spline, row by row, then along y"},
+    {FG_LIST_BY("modes", find_map_mode, &mode_members), .options = FG_MEMBER_LIST_ON_LINE,
+     .highest = FG_MAP_MODES_MAX,
+     .words = "displacements that are independent of each other, each of one standard "
+              "uncertainty: those of the map and of the effects without u_amplitude_mm"},
+};
+static const fg_members map_members = FG_MEMBERS(map_rows);
+
+static fg_subject find_map_of_model(const fg_subject *s) {
+  const fg_scanner_model *model = s->object;
+  return (fg_subject){model->fields.map ? model : NULL, s->whole, 0};
 }
 
 static const double *list_corners(const double first[2], const double opposite[2], double *numbers,
@@ -177,6 +209,9 @@ static const fg_member model_rows[] = {
     {FG_PART("tone", find_model_tone, &fg_model_tone_members), .present = is_in_every_model,
      .words = "level of the scanner's edges, from discs of known diameter; null or absent: not "
               "known"},
+    {FG_PART("map", find_map_of_model, &map_members), .present = is_in_every_model,
+     .words = "smooth displacement of the bed beside the effects, from scans of grids; null or "
+              "absent: none"},
     {FG_FLAG("tied", fg_scanner_model, tied), .words = "other explanations did as well"},
     {FG_ARRAY("fields", fg_scanner_model, fields.fields, fields.count, &field_members),
      .highest = FG_FIELDS_MAX,
@@ -214,28 +249,40 @@ static fg_status check_readable(fg_context *ctx, const fg_scanner_model *model) 
                  inner.message);
 }
 
-/* Refuses pictures with findings that distort edges in a way that no model describes: the
- * distortion would be applied to every scan. Rows that jump are allowed: a step of the carriage is
- * an effect that the loop finds. So is a profile that no tone curve explains: it is the same for
- * all edges, and known diameters determine its level. */
-static fg_status check_pictures(fg_context *ctx, const fg_scan_loop *loop) {
+/* Distortions that no model describes would be applied to every scan. Rows that jump are allowed: a
+ * step of the carriage is an effect that the loop finds. So is a profile that no tone curve
+ * explains: it is the same for all edges, and known diameters determine its level. */
+fg_status fg_scanner_model_check_picture(fg_context *ctx, const fg_measurement *m) {
   const unsigned spoiling =
       FG_PICTURE_CLIPPED | FG_PICTURE_FEW_LEVELS | FG_PICTURE_SHADOW | FG_PICTURE_BLOCK_NOISE;
-  for (size_t i = 0; i < loop->scan_count; i++)
-    for (const fg_picture_words *words = fg_picture_finding_words(); words->name; words++)
-      if (loop->before[i].picture.findings & words->finding & spoiling)
-        return fg_fail(
-            ctx, FG_ERR_DATA,
-            "no model is written: %.120s: %s: %s A model of it would carry that to every "
-            "scan. %s",
-            loop->before[i].scan, words->name, words->meaning, words->cure);
+  for (const fg_picture_words *words = fg_picture_finding_words(); words->name; words++)
+    if (m->picture.findings & words->finding & spoiling)
+      return fg_fail(ctx, FG_ERR_DATA,
+                     "no model is written: %.120s: %s: %s A model of it would carry that to every "
+                     "scan. %s",
+                     m->scan, words->name, words->meaning, words->cure);
   return FG_OK;
 }
 
-fg_status fg_scan_loop_write_model(fg_context *ctx, const fg_scan_loop *loop, FILE *out) {
-  const made_model made = {loop->result.model, &loop->result};
-  FG_TRY(check_pictures(ctx, loop));
-  FG_TRY(check_readable(ctx, made.model));
+fg_status fg_scanner_model_write(fg_context *ctx, const fg_scanner_model *model,
+                                 const fg_scanner_model_input *inputs, size_t count, FILE *out) {
+  const made_model made = {model, inputs, count};
+  FG_TRY(check_readable(ctx, model));
   fg_document_json(out, &file_members, &made);
   return fg_stream_finish(ctx, out, "the model");
+}
+
+fg_status fg_scan_loop_write_model(fg_context *ctx, const fg_scan_loop *loop, FILE *out) {
+  fg_scanner_model_input *inputs;
+  FG_TRY(fg_memory_allocate(ctx, loop->scan_count, sizeof *inputs, (void **)&inputs));
+  fg_status status = FG_OK;
+  for (size_t i = 0; i < loop->scan_count; i++) {
+    inputs[i] =
+        (fg_scanner_model_input){loop->before[i].scan, loop->before[i].sha256, loop->hold_out[i]};
+    FG_TRY_EXIT(fg_scanner_model_check_picture(ctx, &loop->before[i]));
+  }
+  status = fg_scanner_model_write(ctx, loop->result.model, inputs, loop->scan_count, out);
+exit:
+  free(inputs);
+  return status;
 }

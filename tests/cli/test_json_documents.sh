@@ -31,6 +31,15 @@ expect 0 "" "$kept" design design.json -o nominal.json
 expect 0 "" "$kept" lot scans --design design.json -o lot
 expect 0 "" "$kept" lot --index lots.html -o lots.json lot
 expect 0 "" "$kept" loop scans/1.png --design design.json -o loop.json --model-out scanner.json
+python3 - >plate.json <<'P'
+import json
+discs = [{"centre_mm": [3 + 2.5 * i, 3 + 2.5 * j], "radius_mm": 0.5} for i in range(7) for j in range(5) if i + j]
+print(json.dumps({"schema": "foilgauge/render/1", "seed": 3, "scanner": {"dpi": 600}, "discs": discs}))
+P
+echo '{"schema": "foilgauge/design/1", "form": "grid", "marks": "dots", "pitch_mm": 2.5, "u_pitch_mm": 0.0005}' >grid.json
+expect 0 "" "$kept" render plate.json -o plate.png
+expect 0 "" "$kept" measure plate.png --design grid.json -o grid_measured.json
+expect 0 "" "$kept" loop plate.png --design grid.json -o grid_loop.json --model-out grid_scanner.json
 expect 0 "" "$kept" loop --table "$runs" --response springback_error_pct \
   --model '1 + pressure_bar + temperature_C + duration_h' -o table.json --model-out model.json
 expect 0 "" "$kept" doe "$runs" --response springback_error_pct --model 'temperature_C*duration_h' -o doe.json
@@ -41,7 +50,7 @@ expect 0 "" "$kept" stiffness "$samples/stiffness/bearings.csv" -o stiffness.jso
 printf '%s\n' temperature_C,duration_h,springback_error_pct 500,3,20 600,3,15 500,5,18 600,5,11 550,4,16 650,4,9 >runs.csv
 expect 0 "" "$kept" forming --fit runs.csv -o fit.json
 validate 0 ""
-grep -q '^| measure.schema.json | 1 |' stdout || fail "the report of a scan is not counted: $(cat stdout)"
+grep -q '^| measure.schema.json | 2 |' stdout || fail "the reports of scans are not counted: $(cat stdout)"
 
 # refuse WORDS DOCUMENT
 mkdir documents/made

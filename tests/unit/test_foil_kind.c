@@ -16,8 +16,9 @@
 #include "report/measure/foil_view.h"
 #include "support/test.h"
 
-static const fg_foil_kind all_kinds[FG_FOIL_KINDS] = {
-    FG_FOIL_CLASSICAL, FG_FOIL_SINUSOIDAL, FG_FOIL_DISCS, FG_FOIL_ARC, FG_FOIL_CANTILEVER};
+static const fg_foil_kind all_kinds[FG_FOIL_KINDS] = {FG_FOIL_CLASSICAL,  FG_FOIL_SINUSOIDAL,
+                                                      FG_FOIL_DISCS,      FG_FOIL_ARC,
+                                                      FG_FOIL_CANTILEVER, FG_FOIL_GRID};
 
 static void every_row_is_whole(void **state) {
   (void)state;
@@ -76,7 +77,8 @@ static size_t own_bytes(fg_design_group group) {
   static const size_t bytes[FG_DESIGN_GROUPS] = {[FG_DESIGN_BUMPS] = sizeof(fg_design_bumps),
                                                  [FG_DESIGN_BEAMS] = sizeof(fg_design_beams),
                                                  [FG_DESIGN_DISCS] = sizeof(fg_design_discs),
-                                                 [FG_DESIGN_ARC] = sizeof(fg_design_arc)};
+                                                 [FG_DESIGN_ARC] = sizeof(fg_design_arc),
+                                                 [FG_DESIGN_GRID] = sizeof(fg_design_grid)};
   return bytes[group];
 }
 
@@ -87,7 +89,8 @@ static const char *const design_texts[FG_FOIL_KINDS] = {
     [FG_FOIL_ARC] = "\"form\": \"arc\", \"overall_radius_mm\": 20, \"subtended_angle_deg\": 90, "
                     "\"thickness_mm\": 0.1",
     [FG_FOIL_CANTILEVER] = "\"form\": \"cantilever\", \"beam_length_mm\": 9, \"beam_width_mm\": 3, "
-                           "\"thickness_mm\": 0.1, \"sagitta_mm\": 1"};
+                           "\"thickness_mm\": 0.1, \"sagitta_mm\": 1",
+    [FG_FOIL_GRID] = "\"form\": \"grid\", \"marks\": \"crosses\", \"pitch_mm\": 2"};
 
 static fg_design design_of(fg_foil_kind kind) {
   fg_design design;

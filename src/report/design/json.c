@@ -23,10 +23,9 @@ typedef struct stated_design {
 
 static void *find_dimensions(const fg_member *member, void *object) {
   static bool (*const is_of[FG_DESIGN_GROUPS])(const fg_subject *) = {
-      [FG_DESIGN_BUMPS] = fg_design_is_of_bumps,
-      [FG_DESIGN_BEAMS] = fg_design_is_of_beams,
-      [FG_DESIGN_DISCS] = fg_design_is_of_discs,
-      [FG_DESIGN_ARC] = fg_design_is_of_arc,
+      [FG_DESIGN_BUMPS] = fg_design_is_of_bumps, [FG_DESIGN_BEAMS] = fg_design_is_of_beams,
+      [FG_DESIGN_DISCS] = fg_design_is_of_discs, [FG_DESIGN_ARC] = fg_design_is_of_arc,
+      [FG_DESIGN_GRID] = fg_design_is_of_grid,
   };
   for (int group = 0; group < FG_DESIGN_GROUPS; group++)
     if (member->present && member->present == is_of[group])

@@ -12,5 +12,6 @@ bool fg_design_is_of_bumps(const fg_subject *subject);
 bool fg_design_is_of_beams(const fg_subject *subject);
 bool fg_design_is_of_discs(const fg_subject *subject);
 bool fg_design_is_of_arc(const fg_subject *subject);
+bool fg_design_is_of_grid(const fg_subject *subject);
 
 #endif

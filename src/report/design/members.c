@@ -35,12 +35,16 @@ bool fg_design_is_of_arc(const fg_subject *subject) {
   return group_of(subject) == FG_DESIGN_ARC;
 }
 
+bool fg_design_is_of_grid(const fg_subject *subject) {
+  return group_of(subject) == FG_DESIGN_GRID;
+}
+
 static bool is_bent(const fg_subject *subject) {
   return fg_design_is_of_bumps(subject) || fg_design_is_of_arc(subject);
 }
 
-static bool is_not_of_discs(const fg_subject *subject) {
-  return !fg_design_is_of_discs(subject);
+static bool is_of_sheet(const fg_subject *subject) {
+  return !fg_design_is_of_discs(subject) && !fg_design_is_of_grid(subject);
 }
 
 static const char *kind_choice(size_t i) {
@@ -49,6 +53,10 @@ static const char *kind_choice(size_t i) {
 
 static const char *datum_choice(size_t i) {
   return i <= FG_DATUM_OUTER ? fg_datum_word((fg_datum)i) : NULL;
+}
+
+static const char *mark_choice(size_t i) {
+  return i < FG_MARK_KINDS ? fg_mark_kind_word((fg_mark_kind)i) : NULL;
 }
 
 static const char *gauge_choice(size_t i) {
@@ -105,7 +113,8 @@ static const fg_member design_rows[] = {
      .words =
          "\"classical\" (bumps, lands, a lip at one end), \"sinusoidal\" (long fillets, short "
          "lands, no lip), \"arc\" (a plain strip, as a top foil), \"cantilever\" (a flat foil with "
-         "beams cut out of it) or \"discs\" (no foil: round gauges)."},
+         "beams cut out of it), \"discs\" (no foil: round gauges) or \"grid\" (no foil: a plate or "
+         "board with marks on a square lattice)."},
     {FG_WORD("datum", fg_design, datum, NULL), .choice_at = datum_choice, .present = is_bent,
      .words = "Which line of the strip the lengths belong to: \"mid\", \"inner\" (the shaft's "
               "side) or \"outer\" (the sleeve's)."},
@@ -137,7 +146,7 @@ static const fg_member design_rows[] = {
     {FG_NUMBER("beam_width_mm", fg_design, beams.width_mm), .schema = LENGTH_SCHEMA,
      .present = fg_design_is_of_beams, .words = "w, of a beam."},
     {FG_NUMBER("thickness_mm", fg_design, thickness_mm), .schema = LENGTH_SCHEMA,
-     .present = is_not_of_discs, .words = "Of the strip, or of a cantilever's sheet."},
+     .present = is_of_sheet, .words = "Of the strip, or of a cantilever's sheet."},
     {FG_NUMBER("u_thickness_mm", fg_design, beams.u_thickness_mm), STATED,
      .present = fg_design_is_of_beams,
      .words = "Standard uncertainty of `thickness_mm`, which goes into that of the compliance; a "
@@ -166,6 +175,17 @@ static const fg_member design_rows[] = {
      .schema = "{\"type\": \"number\", \"minimum\": 0, \"maximum\": 0.1}",
      .words = "Standard uncertainty of each of these diameters; without it 0.0005 where the level "
               "of edges is told from them."},
+    {FG_WORD("marks", fg_design, grid.marks, NULL), .choice_at = mark_choice,
+     .present = fg_design_is_of_grid,
+     .words = "Of form \"grid\" alone, as the next three: \"dots\", \"chessboard\" (its corners), "
+              "\"crosses\" or \"lines\" (the graduation of a ruler, one axis)."},
+    {FG_NUMBER("pitch_mm", fg_design, grid.pitch_mm), STATED, .present = fg_design_is_of_grid,
+     .words = "From mark to mark; without it the scale stays unknown."},
+    {FG_NUMBER("u_pitch_mm", fg_design, grid.u_pitch_mm), STATED, .present = fg_design_is_of_grid,
+     .words = "Standard uncertainty of the pitch along each axis. Without it the board may have a "
+              "wrong scale, other along its two axes, as a printed one has."},
+    {FG_NUMBER("u_place_mm", fg_design, grid.u_place_mm), STATED, .present = fg_design_is_of_grid,
+     .words = "Standard uncertainty of the place of a mark on the lattice."},
     {FG_WORD("tone", fg_design, tone, tone_words), .present = is_tone_stated,
      .words = "\"linear\" says that the scanner's counts are proportional to the light, and you "
               "vouch for it: thickness, diameters and clearances then hold no unknown tone curve. "

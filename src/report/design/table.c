@@ -136,6 +136,12 @@ static void write_calibration(const fg_calibration *c, FILE *out) {
           k * terms.length[1]);
 }
 
+void fg_design_table_of_grid(const fg_design_report *report, FILE *out) {
+  const fg_design_grid *grid = &report->design->grid;
+  fprintf(out, "\n  grid of %s\n", fg_mark_kind_word(grid->marks));
+  if (grid->pitch_mm > 0) fg_design_put_row(out, "pitch", "", grid->pitch_mm, "mm");
+}
+
 void fg_design_table_of_discs(const fg_design_report *report, FILE *out) {
   const fg_design *design = report->design;
   fprintf(out, "\n  %zu known diameters\n", design->discs.count);

@@ -10,6 +10,7 @@
 #include "quantity/quantity_rows.h"
 #include "report/flag_names.h"
 #include "report/measure/foil_view.h"
+#include "report/measure/grid_members.h"
 
 static void put_names(FILE *out, const fg_quantity *quantity) {
   for (size_t k = 0; k < fg_quantity_width(quantity); k++) {
@@ -229,6 +230,7 @@ fg_status fg_report_write_points(fg_context *ctx, const fg_report *report, FILE 
       put_foil_points(out, i + 1, &measurement->foils[k]);
     for (size_t k = 0; measurement && k < measurement->disc_count; k++)
       put_disc_points(out, i + 1, &measurement->discs[k]);
+    if (measurement && measurement->grid) fg_csv_grid_points(out, i + 1, measurement->grid);
   }
   return fg_stream_finish(ctx, out, "the file of points");
 }

@@ -97,9 +97,30 @@ static const fg_foil_view discs = {
     .overlay = fg_overlay_of_bumps,
 };
 
+/* A scan of a grid has no foils, either; its values stand in an object of their own. */
+static const fg_foil_view grid = {
+    .parts = "marks",
+    .u_from = FG_EDGES_SAY,
+    .spread_over = "marks",
+    .legend = "Blue: the lattice that was fitted. Magenta: how far each mark lies from it, "
+              "magnified as the scale says.",
+    .overlay_note = FG_ARCS_NOTE,
+    .summary_heads = "",
+    .points_heading = "scan,column,row,x_mm,y_mm,u_um,residual_x_um,residual_y_um,used\n",
+    .lines = FG_QUANTITY_OF_DISC,
+    .members = &fg_foil_members,
+    .design_table = fg_design_table_of_grid,
+    .foil_heading = head_bumps,
+    .part_table = fg_part_table_of_bumps,
+    .page_heading = head_bumps_on_page,
+    .tiles = fg_tiles_of_bumps,
+    .details = fg_details_of_bumps,
+    .overlay = fg_overlay_of_bumps,
+};
+
 static const fg_foil_view *const views[] = {
     [FG_FOIL_CLASSICAL] = &bumps,      [FG_FOIL_SINUSOIDAL] = &bumps, [FG_FOIL_DISCS] = &discs,
-    [FG_FOIL_ARC] = &fg_foil_view_arc, [FG_FOIL_CANTILEVER] = &beams,
+    [FG_FOIL_ARC] = &fg_foil_view_arc, [FG_FOIL_CANTILEVER] = &beams, [FG_FOIL_GRID] = &grid,
 };
 static_assert(sizeof views / sizeof *views == FG_FOIL_KINDS, "every kind of foil has a view");
 

@@ -57,6 +57,7 @@ extern const fg_foil_view fg_foil_view_arc;
 
 void fg_design_table_of_bumps(const fg_design_report *report, FILE *out);
 void fg_design_table_of_beams(const fg_design_report *report, FILE *out);
+void fg_design_table_of_grid(const fg_design_report *report, FILE *out);
 void fg_design_table_of_discs(const fg_design_report *report, FILE *out);
 void fg_part_table_of_bumps(FILE *out, const fg_design *design, const fg_foil *foil);
 void fg_part_table_of_beams(FILE *out, const fg_design *design, const fg_foil *foil);

@@ -12,6 +12,7 @@
 #include "report/measure/colour_lines_report.h"
 #include "report/measure/foil_view.h"
 #include "report/measure/gauge_report.h"
+#include "report/measure/grid_members.h"
 #include "report/measure/picture_report.h"
 #include "report/measure/scan_model_words.h"
 #include "report/measure/uncertainty_budget.h"
@@ -143,8 +144,18 @@ static bool shows_flat_foils(const fg_subject *subject) {
   return has_members(subject, &fg_flat_foil_members);
 }
 
+static bool shows_grid(const fg_subject *subject) {
+  return fg_foil_traits_of(((const judged_scan *)subject->object)->kind)->is_grid;
+}
+
 static bool shows_discs(const fg_subject *subject) {
-  return !fg_foil_traits_of(((const judged_scan *)subject->object)->kind)->is_foil;
+  return !fg_foil_traits_of(((const judged_scan *)subject->object)->kind)->is_foil &&
+         !shows_grid(subject);
+}
+
+static fg_subject find_grid(const fg_subject *subject) {
+  const fg_measurement *m = ((const judged_scan *)subject->object)->measurement;
+  return (fg_subject){.object = m->grid, .whole = m};
 }
 
 static bool find_judged_foil(const fg_subject *list, size_t i, fg_subject *element) {
@@ -166,6 +177,8 @@ static const fg_member scan_value_rows[] = {
      .options = FG_MEMBER_EITHER},
     {FG_LIST_BY("discs", find_judged_disc, &fg_disc_members), .present = shows_discs,
      .words = "form discs only"},
+    {FG_PART("grid", find_grid, &fg_grid_members), .present = shows_grid,
+     .options = FG_MEMBER_NEVER_NULL, .words = "form grid only"},
 };
 static const fg_members scan_value_members = FG_MEMBERS(scan_value_rows);
 

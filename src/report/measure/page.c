@@ -10,6 +10,7 @@
 #include "report/measure/drawing.h"
 #include "report/measure/foil_view.h"
 #include "report/measure/gauge_report.h"
+#include "report/measure/grid_members.h"
 #include "report/measure/page_tables.h"
 #include "report/measure/picture_report.h"
 #include "report/measure/scan_model_words.h"
@@ -284,6 +285,21 @@ static fg_status put_discs(fg_context *ctx, FILE *out, const fg_report *report,
   return FG_OK;
 }
 
+static fg_status put_grid(fg_context *ctx, FILE *out, const fg_report *report,
+                          const fg_report_scan *scan, size_t number) {
+  const fg_measurement *measurement = scan->measurement;
+  fg_report_outcome outcome;
+  FG_TRY(fg_report_judge_scan(ctx, report->design, scan, &outcome));
+  put_section(out, &outcome, number);
+  fputs("<header><h1>A grid</h1><p>", out);
+  fg_html_text(out, fg_html_base_name(measurement->scan));
+  fputs("</p></header>\n", out);
+  fg_html_grid(out, measurement);
+  FG_TRY(put_facts(ctx, out, report->design, measurement));
+  fputs("</section>\n", out);
+  return FG_OK;
+}
+
 static void put_no_scan(FILE *out, const fg_report_scan *scan, size_t number) {
   const fg_report_outcome outcome = {.verdict = FG_VERDICT_NOT_MEASURED};
   put_section(out, &outcome, number);
@@ -304,6 +320,7 @@ static fg_status put_scan(fg_context *ctx, FILE *out, const fg_report *report,
     put_no_scan(out, scan, ++*number);
     return FG_OK;
   }
+  if (measurement->grid) return put_grid(ctx, out, report, scan, ++*number);
   if (!fg_foil_traits_of(report->design->kind)->is_foil)
     return put_discs(ctx, out, report, scan, ++*number);
   for (size_t i = 0; i < measurement->foil_count; i++)

@@ -88,7 +88,9 @@ static fg_status put_whole_scan(fg_context *ctx, FILE *out, const fg_report *rep
   const fg_foil_view *view = fg_foil_view_of(report->design->kind);
   if (view->summary) view->summary(out, report->design, NULL);
   fputs("<td class=\"words\">", out);
-  if (scan->measurement)
+  if (scan->measurement && scan->measurement->grid)
+    fprintf(out, "%zu marks", scan->measurement->grid->count);
+  else if (scan->measurement)
     fprintf(out, "%zu round features", scan->measurement->disc_count);
   else
     fg_html_text(out, scan->error);

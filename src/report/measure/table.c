@@ -12,6 +12,7 @@
 #include "report/measure/colour_lines_report.h"
 #include "report/measure/foil_view.h"
 #include "report/measure/gauge_report.h"
+#include "report/measure/grid_members.h"
 #include "report/measure/outcome_words.h"
 #include "report/measure/picture_report.h"
 #include "report/measure/scan_model_words.h"
@@ -279,6 +280,7 @@ static fg_status put_scan(fg_context *ctx, FILE *out, const fg_design *design,
   for (size_t i = 0; i < measurement->foil_count; i++)
     put_foil(out, design, &measurement->foils[i]);
   if (measurement->disc_count) put_discs(out, design, measurement);
+  if (measurement->grid) fg_text_grid(out, measurement);
   return FG_OK;
 }
 

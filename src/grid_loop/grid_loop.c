@@ -1,0 +1,203 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "foilgauge/grid_loop.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "grid_loop/grid_loop.h"
+
+/* Marks that are held out in turn, and from which number of marks on that is done. */
+enum { FOLDS = 5, MARKS_TO_HOLD_OUT = 40, DOF_MIN = 3 };
+/* A map must be more likely than none by this much. */
+#define MAP_LIKELIHOOD 4.0
+
+static fg_status measure_grids(fg_context *ctx, const char *const *paths, const fg_design *design,
+                               fg_grid_loop *loop) {
+  fg_measure_options options = {.dpi = loop->options.dpi,
+                                .allow_lossy = loop->options.allow_lossy,
+                                .threads = loop->options.threads};
+  for (size_t i = 0; i < loop->scan_count; i++)
+    FG_TRY(fg_measure_scan(ctx, paths[i], design, &options, &loop->measurements[i]));
+  const fg_measurement *first = &loop->measurements[0];
+  for (size_t i = 1; i < loop->scan_count; i++) {
+    const fg_measurement *m = &loop->measurements[i];
+    for (size_t k = 0; k < i; k++)
+      if (!strcmp(loop->measurements[k].sha256, m->sha256))
+        return fg_fail(ctx, FG_ERR_DATA, "%s and %s are the same scan: give each once", paths[k],
+                       paths[i]);
+    for (int axis = 0; axis < 2; axis++)
+      if (fabs(m->dpi[axis] / first->dpi[axis] - 1) > 1e-4)
+        return fg_fail(
+            ctx, FG_ERR_DATA,
+            "%s has %g dpi and %s has %g dpi: scans of one loop must have one resolution", paths[0],
+            first->dpi[axis], paths[i], m->dpi[axis]);
+  }
+  return FG_OK;
+}
+
+/* Likelihood with the present sizes. */
+static fg_status find_likelihood(fg_context *ctx, const grid_problem *problem, double *value) {
+  grid_solution solution;
+  FG_TRY(fg_grid_solve(ctx, problem, GRID_ALL_ROWS, &solution));
+  *value = solution.minus_log_likelihood;
+  fg_grid_solution_free(&solution);
+  return FG_OK;
+}
+
+/* Listed effects first, beside the boards alone; then the maps, and listed effects again beside
+ * them. */
+static fg_status build_model(fg_context *ctx, grid_problem *problem) {
+  bool map = problem->has_map, board_map = problem->has_board_map;
+  double without, with;
+  problem->has_map = problem->has_board_map = false;
+  fg_grid_begin_effects(problem);
+  FG_TRY(fg_grid_find_sizes(ctx, problem));
+  if (map) FG_TRY(fg_grid_add_effects(ctx, problem));
+  FG_TRY(fg_grid_find_sizes(ctx, problem));
+  if (!map) return FG_OK;
+  FG_TRY(find_likelihood(ctx, problem, &without));
+  grid_problem kept = *problem;
+  problem->has_map = true;
+  problem->has_board_map = board_map;
+  FG_TRY(fg_grid_find_sizes(ctx, problem));
+  FG_TRY(find_likelihood(ctx, problem, &with));
+  if (without - with < MAP_LIKELIHOOD) {
+    problem->has_map = problem->has_board_map = false;
+    problem->mark_sd = kept.mark_sd;
+    problem->board_sd = kept.board_sd;
+  }
+  FG_TRY(fg_grid_add_effects(ctx, problem));
+  FG_TRY(fg_grid_prune_effects(ctx, problem));
+  return fg_grid_find_sizes(ctx, problem);
+}
+
+/* A t law of few degrees of freedom is wider than a normal one: its sd. */
+static double find_widening(const grid_problem *problem) {
+  double used = 0;
+  grid_columns columns = fg_grid_columns(problem);
+  for (size_t i = 0; i < problem->row_count; i++)
+    used += problem->rows[i].used;
+  double dof = fmax(DOF_MIN, used - (double)columns.map);
+  return sqrt(dof / (dof - 2));
+}
+
+static fg_status close_grid_loop(fg_context *ctx, fg_grid_loop *loop) {
+  FG_TRY(fg_grid_problem_build(ctx, loop->measurements, loop->scan_count, &loop->options,
+                               &loop->problem));
+  FG_TRY(build_model(ctx, &loop->problem));
+  FG_TRY(fg_grid_solve(ctx, &loop->problem, GRID_ALL_ROWS, &loop->solution));
+  loop->widening = find_widening(&loop->problem);
+  FG_TRY(fg_grid_loop_tell(ctx, loop));
+  FG_TRY(fg_grid_loop_hold_out(ctx, loop));
+  fg_grid_loop_say(&loop->result);
+  return fg_grid_loop_make_model(ctx, loop);
+}
+
+fg_status fg_grid_loop_run(fg_context *ctx, const char *const *paths, size_t count,
+                           const fg_design *design, const fg_grid_loop_options *options,
+                           fg_grid_loop **result) {
+  fg_grid_loop *loop = NULL;
+  fg_status status = FG_OK;
+  *result = NULL;
+  FG_TRY(fg_memory_allocate(ctx, 1, sizeof *loop, (void **)&loop));
+  loop->options = *options;
+  loop->scan_count = count;
+  FG_TRY_EXIT(
+      fg_memory_allocate(ctx, count, sizeof *loop->measurements, (void **)&loop->measurements));
+  FG_TRY_EXIT(measure_grids(ctx, paths, design, loop));
+  FG_TRY_EXIT(close_grid_loop(ctx, loop));
+  *result = loop;
+exit:
+  if (status != FG_OK) fg_grid_loop_free(loop);
+  return status;
+}
+
+const fg_grid_loop_result *fg_grid_loop_result_of(const fg_grid_loop *loop) {
+  return &loop->result;
+}
+
+void fg_grid_loop_free(fg_grid_loop *loop) {
+  if (!loop) return;
+  for (size_t i = 0; loop->result.scan && i < loop->scan_count; i++)
+    free(loop->result.scan[i].residual_mm);
+  free(loop->result.scan);
+  free(loop->result.map);
+  fg_scanner_model_free(loop->model);
+  fg_grid_solution_free(&loop->solution);
+  fg_grid_problem_free(&loop->problem);
+  for (size_t i = 0; loop->measurements && i < loop->scan_count; i++)
+    fg_measurement_free(&loop->measurements[i]);
+  free(loop->measurements);
+  free(loop);
+}
+
+/* ---- marks held out ---- */
+
+/* The same model without what the loop found: poses, and the scale where no pitch is stated. */
+static grid_problem bare_problem(const grid_problem *problem) {
+  grid_problem bare = *problem;
+  bare.effects = 0;
+  bare.has_map = bare.has_board_map = false;
+  for (size_t i = 0; i < bare.board_count; i++)
+    bare.board[i].u_scale = 1e-9;
+  return bare;
+}
+
+/* Neighbours are in different folds. */
+static void hold_out_fold(grid_problem *problem, int fold) {
+  for (size_t i = 0; i < problem->row_count; i++) {
+    grid_row *row = &problem->rows[i];
+    double pitch = problem->board[row->board].pitch_mm;
+    long place = lround(row->place.x / pitch) + 2 * lround(row->place.y / pitch);
+    row->held_out = ((place % FOLDS) + FOLDS) % FOLDS == fold;
+  }
+}
+
+static fg_status add_held_out(fg_context *ctx, const grid_problem *problem, double *square) {
+  grid_solution solution;
+  FG_TRY(fg_grid_solve(ctx, problem, GRID_NOT_HELD_OUT, &solution));
+  for (size_t i = 0; i < problem->row_count; i++)
+    if (problem->rows[i].held_out && problem->rows[i].used)
+      *square += solution.residual[i] * solution.residual[i];
+  fg_grid_solution_free(&solution);
+  return FG_OK;
+}
+
+static double count_used(const grid_problem *problem) {
+  double used = 0;
+  for (size_t i = 0; i < problem->row_count; i++)
+    used += problem->rows[i].used;
+  return used;
+}
+
+static fg_status find_rms(fg_context *ctx, const grid_problem *problem, double *um) {
+  grid_solution solution;
+  double square = 0;
+  FG_TRY(fg_grid_solve(ctx, problem, GRID_ALL_ROWS, &solution));
+  for (size_t i = 0; i < problem->row_count; i++)
+    if (problem->rows[i].used) square += solution.residual[i] * solution.residual[i];
+  fg_grid_solution_free(&solution);
+  *um = 1000 * sqrt(square / count_used(problem));
+  return FG_OK;
+}
+
+fg_status fg_grid_loop_hold_out(fg_context *ctx, fg_grid_loop *loop) {
+  grid_problem *problem = &loop->problem;
+  fg_grid_loop_result *result = &loop->result;
+  double before = 0, after = 0;
+  grid_problem bare = bare_problem(problem);
+  FG_TRY(find_rms(ctx, &bare, &result->before_um));
+  FG_TRY(find_rms(ctx, problem, &result->after_um));
+  result->held_out_before_um = result->held_out_after_um = NAN;
+  if (result->marks < MARKS_TO_HOLD_OUT) return FG_OK;
+  for (int fold = 0; fold < FOLDS; fold++) {
+    hold_out_fold(problem, fold);
+    FG_TRY(add_held_out(ctx, &bare, &before));
+    FG_TRY(add_held_out(ctx, problem, &after));
+  }
+  result->held_out_before_um = 1000 * sqrt(before / count_used(problem));
+  result->held_out_after_um = 1000 * sqrt(after / count_used(problem));
+  return FG_OK;
+}

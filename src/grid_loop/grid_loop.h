@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* State of the loop on grids, shared by its files. */
+#ifndef FG_GRID_LOOP_GRID_LOOP_H
+#define FG_GRID_LOOP_GRID_LOOP_H
+
+#include "grid_loop/search.h"
+#include "scan_loop/scanner_model.h"
+
+struct fg_grid_loop {
+  fg_grid_loop_options options;
+  fg_measurement *measurements; /* owned; one per scan */
+  size_t scan_count;
+  grid_problem problem;
+  grid_solution solution;
+  double widening;         /* of standard uncertainties, for few degrees of freedom */
+  fg_scanner_model *model; /* owned */
+  fg_grid_loop_result result;
+};
+
+/* Fills the result from the final solution. */
+fg_status fg_grid_loop_tell(fg_context *ctx, fg_grid_loop *loop);
+/* Sentence and advice. */
+void fg_grid_loop_say(fg_grid_loop_result *result);
+/* rms of the marks of scans before and after, on marks that no fit saw. */
+fg_status fg_grid_loop_hold_out(fg_context *ctx, fg_grid_loop *loop);
+/* Makes the scanner's model: effects and map with their uncertainty. */
+fg_status fg_grid_loop_make_model(fg_context *ctx, fg_grid_loop *loop);
+
+/* Displacement of the scanner at a place by all columns of the solution: effects and map. Returns
+ * how many are not 0. */
+size_t fg_grid_displacement_columns(const grid_problem *problem, const grid_columns *columns,
+                                    fg_point at, size_t *index, fg_point *value);
+
+#endif

@@ -1,0 +1,282 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The scanner's model of a loop on grids. Its uncertainty is that of effects and map together: the
+ * principal modes of their covariance over the region, as maps. */
+#include <gsl/gsl_blas.h>
+#include <gsl/gsl_eigen.h>
+#include <gsl/gsl_linalg.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/file.h"
+#include "core/memory.h"
+#include "core/text.h"
+#include "grid_loop/grid_loop.h"
+
+/* Places of the region per spline and axis, at which displacements are compared; modes kept. */
+enum { PLACES_PER_SPLINE = 2, MODES_KEPT = 30, RANDOM_MODES = 4 };
+#define RIDGE 1e-9
+
+/* Places over a map's region. */
+typedef struct map_places {
+  fg_point *at; /* owned */
+  size_t count;
+} map_places;
+
+static fg_status list_map_places(fg_context *ctx, const fg_map_frame *frame, map_places *places) {
+  size_t nx = PLACES_PER_SPLINE * frame->side[0], ny = PLACES_PER_SPLINE * frame->side[1];
+  places->count = nx * ny;
+  FG_TRY(fg_memory_allocate(ctx, places->count, sizeof *places->at, (void **)&places->at));
+  for (size_t k = 0; k < places->count; k++) {
+    double x = (double)(k % nx) / (double)(nx - 1), y = (double)(k / nx) / (double)(ny - 1);
+    places->at[k] = (fg_point){frame->low_mm[0] + x * (frame->high_mm[0] - frame->low_mm[0]),
+                               frame->low_mm[1] + y * (frame->high_mm[1] - frame->low_mm[1])};
+  }
+  return FG_OK;
+}
+
+/* A ripple or step is no smooth displacement: its numbers keep their own uncertainty. */
+static bool is_smooth(const fg_effect *kind) {
+  return kind->sought != FG_EFFECT_PLACED;
+}
+
+typedef struct mode_work {
+  const fg_grid_loop *loop;
+  map_places places;
+  size_t first, count; /* columns of effects and map */
+  gsl_matrix *factor;  /* L of their covariance, without placed effects */
+  gsl_matrix *moves;   /* 2 places × count: displacement by L's columns */
+  gsl_matrix *splines; /* factored normal matrix of splines at the places */
+} mode_work;
+
+static void free_mode_work(mode_work *work) {
+  free(work->places.at);
+  gsl_matrix_free(work->factor);
+  gsl_matrix_free(work->moves);
+  gsl_matrix_free(work->splines);
+}
+
+static fg_status factor_covariance(fg_context *ctx, mode_work *work) {
+  const fg_grid_loop *loop = work->loop;
+  size_t n = work->count, at = 0;
+  work->factor = gsl_matrix_calloc(n, n);
+  if (!work->factor) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: %zu columns", n);
+  double widening = loop->widening * loop->widening;
+  for (size_t i = 0; i < n; i++)
+    for (size_t j = 0; j < n; j++)
+      gsl_matrix_set(
+          work->factor, i, j,
+          widening * gsl_matrix_get(loop->solution.covariance, work->first + i, work->first + j));
+  for (size_t e = 0; e < loop->problem.effects; e++) {
+    const fg_effect *kind = loop->problem.effect[e].kind;
+    for (size_t k = 0; k < kind->columns; k++, at++) {
+      if (is_smooth(kind)) continue;
+      for (size_t j = 0; j < n; j++) {
+        gsl_matrix_set(work->factor, at, j, 0);
+        gsl_matrix_set(work->factor, j, at, 0);
+      }
+    }
+  }
+  for (size_t i = 0; i < n; i++)
+    *gsl_matrix_ptr(work->factor, i, i) += 1e-16;
+  if (gsl_linalg_cholesky_decomp1(work->factor))
+    return fg_fail(ctx, FG_ERR_NUMERIC, "the map's covariance cannot be factored");
+  for (size_t i = 0; i < n; i++)
+    for (size_t j = i + 1; j < n; j++)
+      gsl_matrix_set(work->factor, i, j, 0);
+  return FG_OK;
+}
+
+static fg_status find_moves_of_columns(fg_context *ctx, mode_work *work) {
+  const fg_grid_loop *loop = work->loop;
+  size_t rows = 2 * work->places.count, index[GRID_ROW_MAX];
+  fg_point value[GRID_ROW_MAX];
+  gsl_matrix *columns = gsl_matrix_calloc(rows, work->count);
+  work->moves = gsl_matrix_calloc(rows, work->count);
+  if (!columns || !work->moves) {
+    gsl_matrix_free(columns);
+    return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: %zu columns", work->count);
+  }
+  for (size_t p = 0; p < work->places.count; p++) {
+    size_t n = fg_grid_displacement_columns(&loop->problem, &loop->solution.columns,
+                                            work->places.at[p], index, value);
+    for (size_t k = 0; k < n; k++) {
+      gsl_matrix_set(columns, 2 * p, index[k] - work->first, value[k].x);
+      gsl_matrix_set(columns, 2 * p + 1, index[k] - work->first, value[k].y);
+    }
+  }
+  gsl_blas_dgemm(CblasNoTrans, CblasNoTrans, 1, columns, work->factor, 0, work->moves);
+  gsl_matrix_free(columns);
+  return FG_OK;
+}
+
+static fg_status factor_splines(fg_context *ctx, const fg_map_frame *frame, mode_work *work) {
+  size_t n = fg_map_splines(frame);
+  fg_map_weight weights[FG_MAP_WEIGHTS];
+  work->splines = gsl_matrix_calloc(n, n);
+  if (!work->splines) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: %zu splines", n);
+  for (size_t p = 0; p < work->places.count; p++) {
+    fg_map_weigh(frame, work->places.at[p], weights);
+    for (int a = 0; a < FG_MAP_WEIGHTS; a++)
+      for (int b = 0; b < FG_MAP_WEIGHTS; b++)
+        *gsl_matrix_ptr(work->splines, weights[a].spline, weights[b].spline) +=
+            weights[a].value * weights[b].value;
+  }
+  for (size_t k = 0; k < n; k++)
+    *gsl_matrix_ptr(work->splines, k, k) += RIDGE;
+  if (gsl_linalg_cholesky_decomp1(work->splines))
+    return fg_fail(ctx, FG_ERR_NUMERIC, "the map's splines cannot be fitted");
+  return FG_OK;
+}
+
+/* Splines of a displacement that is given at the places (x and y by turns). */
+static void fit_splines(const fg_map_frame *frame, const mode_work *work, const double *moves,
+                        size_t component, double *mm) {
+  size_t n = fg_map_splines(frame);
+  fg_map_weight weights[FG_MAP_WEIGHTS];
+  gsl_vector_view right = gsl_vector_view_array(mm + component * n, n);
+  memset(mm + component * n, 0, n * sizeof *mm);
+  for (size_t p = 0; p < work->places.count; p++) {
+    fg_map_weigh(frame, work->places.at[p], weights);
+    for (int k = 0; k < FG_MAP_WEIGHTS; k++)
+      mm[component * n + weights[k].spline] += weights[k].value * moves[2 * p + component];
+  }
+  gsl_linalg_cholesky_svx(work->splines, &right.vector);
+}
+
+/* Appends a mode from displacements at the places. */
+static fg_status add_mode(fg_context *ctx, const mode_work *work, const double *moves,
+                          fg_field_map *map) {
+  double **mm = &map->modes[map->mode_count];
+  FG_TRY(fg_memory_allocate(ctx, 2 * fg_map_splines(&map->frame), sizeof **mm, (void **)mm));
+  map->mode_count++;
+  for (size_t component = 0; component < 2; component++)
+    fit_splines(&map->frame, work, moves, component, *mm);
+  return FG_OK;
+}
+
+/* Principal modes of the moves: eigenvectors of movesᵀ moves. The variance that the others leave is
+ * shared out over those kept. */
+static fg_status add_principal_modes(fg_context *ctx, const mode_work *work, fg_field_map *map) {
+  size_t n = work->count, kept = n < MODES_KEPT ? n : MODES_KEPT;
+  gsl_matrix *square = gsl_matrix_calloc(n, n), *vectors = gsl_matrix_calloc(n, n);
+  gsl_vector *values = gsl_vector_calloc(n), *mode = gsl_vector_calloc(2 * work->places.count);
+  gsl_eigen_symmv_workspace *space = gsl_eigen_symmv_alloc(n);
+  fg_status status = FG_OK;
+  double total = 0, shown = 0;
+  if (!square || !vectors || !values || !mode || !space) {
+    status = fg_fail(ctx, FG_ERR_MEMORY, "out of memory: %zu columns", n);
+    goto exit;
+  }
+  gsl_blas_dgemm(CblasTrans, CblasNoTrans, 1, work->moves, work->moves, 0, square);
+  gsl_eigen_symmv(square, values, vectors, space);
+  gsl_eigen_symmv_sort(values, vectors, GSL_EIGEN_SORT_VAL_DESC);
+  for (size_t k = 0; k < n; k++) {
+    total += fmax(0, gsl_vector_get(values, k));
+    if (k < kept) shown += fmax(0, gsl_vector_get(values, k));
+  }
+  for (size_t k = 0; k < kept; k++) {
+    gsl_vector_const_view vector = gsl_matrix_const_column(vectors, k);
+    gsl_blas_dgemv(CblasNoTrans, sqrt(total / shown), work->moves, &vector.vector, 0, mode);
+    FG_TRY_EXIT(add_mode(ctx, work, mode->data, map));
+  }
+exit:
+  gsl_matrix_free(square);
+  gsl_matrix_free(vectors);
+  gsl_vector_free(values);
+  gsl_vector_free(mode);
+  gsl_eigen_symmv_free(space);
+  return status;
+}
+
+/* The carriage's random part differs from scan to scan: cosines over its travel, of equal variance.
+ */
+static fg_status add_random_modes(fg_context *ctx, const mode_work *work, fg_field_map *map) {
+  double um = work->loop->result.carriage_um, *moves;
+  if (!(um > 0)) return FG_OK;
+  FG_TRY(fg_memory_allocate(ctx, 2 * work->places.count, sizeof *moves, (void **)&moves));
+  fg_status status = FG_OK;
+  for (int k = 1; k <= RANDOM_MODES && status == FG_OK; k++) {
+    for (size_t p = 0; p < work->places.count; p++) {
+      double v = (work->places.at[p].y - map->frame.low_mm[1]) /
+                 (map->frame.high_mm[1] - map->frame.low_mm[1]);
+      moves[2 * p] = 0;
+      moves[2 * p + 1] = um / 1000 * sqrt(2.0 / RANDOM_MODES) * cos(k * M_PI * v);
+    }
+    status = add_mode(ctx, work, moves, map);
+  }
+  free(moves);
+  return status;
+}
+
+static fg_status make_map(fg_context *ctx, fg_grid_loop *loop, fg_scanner_model *model) {
+  const grid_columns *columns = &loop->solution.columns;
+  fg_field_map *map = &model->map;
+  mode_work work = {
+      .loop = loop, .first = columns->effect, .count = columns->board_map - columns->effect};
+  fg_status status = FG_OK;
+  map->frame = loop->problem.map;
+  size_t numbers = 2 * fg_map_splines(&map->frame);
+  FG_TRY_EXIT(fg_memory_allocate(ctx, numbers, sizeof *map->mm, (void **)&map->mm));
+  for (size_t k = 0; k < numbers; k++)
+    map->mm[k] = gsl_vector_get(loop->solution.estimate, columns->map + k);
+  FG_TRY_EXIT(list_map_places(ctx, &map->frame, &work.places));
+  FG_TRY_EXIT(factor_covariance(ctx, &work));
+  FG_TRY_EXIT(find_moves_of_columns(ctx, &work));
+  FG_TRY_EXIT(factor_splines(ctx, &map->frame, &work));
+  FG_TRY_EXIT(add_principal_modes(ctx, &work, map));
+  FG_TRY_EXIT(add_random_modes(ctx, &work, map));
+  model->fields.map = &map->frame;
+  model->fields.map_mm = map->mm;
+exit:
+  free_mode_work(&work);
+  return status;
+}
+
+/* A tied value is in no model: it may be the board's. */
+static void make_fields(const fg_grid_loop *loop, fg_scanner_model *model) {
+  const grid_problem *problem = &loop->problem;
+  size_t at = loop->solution.columns.effect;
+  model->fields.frame = problem->frame;
+  for (size_t e = 0; e < problem->effects; e++) {
+    const grid_effect *effect = &problem->effect[e];
+    fg_field field = fg_effect_field(effect->kind);
+    bool tied = loop->result.claim[e].verdict == FG_GRID_TIED;
+    bool in_modes = problem->has_map && is_smooth(effect->kind);
+    for (size_t k = 0; k < effect->kind->columns; k++, at++) {
+      field.amplitude_mm[k] = gsl_vector_get(loop->solution.estimate, at);
+      field.u_amplitude_mm[k] =
+          in_modes ? 0 : loop->widening * sqrt(gsl_matrix_get(loop->solution.covariance, at, at));
+    }
+    if (effect->kind->shapes) field.shape[0] = effect->shape[0];
+    if (!tied && model->fields.count < FG_FIELDS_MAX)
+      model->fields.fields[model->fields.count++] = field;
+  }
+}
+
+fg_status fg_grid_loop_make_model(fg_context *ctx, fg_grid_loop *loop) {
+  const fg_measurement *first = &loop->measurements[0];
+  FG_TRY(fg_memory_allocate(ctx, 1, sizeof *loop->model, (void **)&loop->model));
+  fg_scanner_model *model = loop->model;
+  if (loop->options.scanner)
+    fg_text_clip(model->scanner, sizeof model->scanner, "%s", loop->options.scanner);
+  fg_scanner_model_format_date(loop->options.date, model->date);
+  for (int axis = 0; axis < 2; axis++)
+    model->dpi[axis] = first->dpi[axis] * fg_calibration_factor(&first->design.calibration);
+  model->scans = loop->scan_count;
+  make_fields(loop, model);
+  if (loop->problem.has_map && loop->result.axes_known) FG_TRY(make_map(ctx, loop, model));
+  return FG_OK;
+}
+
+fg_status fg_grid_loop_write_model(fg_context *ctx, const fg_grid_loop *loop, FILE *out) {
+  fg_scanner_model_input inputs[FG_GRID_SCANS];
+  if (!loop->result.axes_known)
+    return fg_fail(ctx, FG_ERR_DATA, "no model is written: %s", loop->result.advice);
+  for (size_t i = 0; i < loop->scan_count; i++) {
+    inputs[i] =
+        (fg_scanner_model_input){loop->measurements[i].scan, loop->measurements[i].sha256, false};
+    FG_TRY(fg_scanner_model_check_picture(ctx, &loop->measurements[i]));
+  }
+  return fg_scanner_model_write(ctx, loop->model, inputs, loop->scan_count, out);
+}

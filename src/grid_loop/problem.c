@@ -1,0 +1,264 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "grid_loop/problem.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+
+/* Prior sd of scale, ratio and shear of a board of which nothing is stated: printers err by some
+ * parts in a thousand. */
+#define U_PRINTED 0.01
+/* Spacing of the splines of a map, as a share of the region's longer side; marks per spline. */
+enum { MAP_INTERVALS = 10, MARKS_PER_SPLINE = 3 };
+
+grid_columns fg_grid_columns(const grid_problem *problem) {
+  grid_columns c = {0};
+  size_t effect_columns = 0;
+  for (size_t e = 0; e < problem->effects; e++)
+    effect_columns += problem->effect[e].kind->columns;
+  c.board = GRID_POSE * problem->scan_count;
+  c.effect = c.board + GRID_AFFINE * problem->board_count;
+  c.map = c.effect + effect_columns;
+  c.board_map = c.map + (problem->has_map ? 2 * fg_map_splines(&problem->map) : 0);
+  c.count = c.board_map + (problem->has_board_map ? 2 * fg_map_splines(&problem->board_map) : 0);
+  return c;
+}
+
+static size_t add_map_columns(const fg_map_frame *frame, size_t first, fg_point at,
+                              fg_point direction, size_t *index, double *value) {
+  fg_map_weight weights[FG_MAP_WEIGHTS];
+  size_t n = 0, splines = fg_map_splines(frame);
+  fg_map_weigh(frame, at, weights);
+  for (size_t k = 0; k < FG_MAP_WEIGHTS; k++) {
+    index[n] = first + weights[k].spline;
+    value[n++] = direction.x * weights[k].value;
+    index[n] = first + splines + weights[k].spline;
+    value[n++] = direction.y * weights[k].value;
+  }
+  return n;
+}
+
+size_t fg_grid_row_columns(const grid_problem *problem, const grid_columns *columns,
+                           const grid_row *row, size_t *index, double *value) {
+  size_t n = 0;
+  fg_point e = row->direction, p = row->place;
+  double turn = problem->pose[row->scan].turn_rad, c = cos(turn), s = sin(turn);
+  fg_point on_board = {e.x * c + e.y * s, e.y * c - e.x * s}; /* e in the board's frame */
+  const double pose[GRID_POSE] = {-e.x, -e.y, e.x * row->arm.y - e.y * row->arm.x};
+  const double affine[GRID_AFFINE] = {-(on_board.x * p.x + on_board.y * p.y),
+                                      -(on_board.x * p.x - on_board.y * p.y),
+                                      -(on_board.x * p.y + on_board.y * p.x)};
+  for (size_t k = 0; k < GRID_POSE; k++, n++) {
+    index[n] = columns->pose + GRID_POSE * row->scan + k;
+    value[n] = pose[k];
+  }
+  for (size_t k = 0; k < GRID_AFFINE; k++, n++) {
+    index[n] = columns->board + GRID_AFFINE * row->board + k;
+    value[n] = affine[k];
+  }
+  size_t at = columns->effect;
+  for (size_t f = 0; f < problem->effects; f++) {
+    const grid_effect *effect = &problem->effect[f];
+    fg_point d[FG_FIELD_COLUMNS];
+    effect->kind->glass(&problem->frame, effect->shape, row->at, d);
+    for (size_t k = 0; k < effect->kind->columns; k++, n++) {
+      index[n] = at++;
+      value[n] = e.x * d[k].x + e.y * d[k].y;
+    }
+  }
+  if (problem->has_map)
+    n += add_map_columns(&problem->map, columns->map, row->at, e, index + n, value + n);
+  if (problem->has_board_map)
+    n += add_map_columns(&problem->board_map, columns->board_map, p,
+                         (fg_point){-on_board.x, -on_board.y}, index + n, value + n);
+  return n;
+}
+
+/* ---- rows ---- */
+
+static fg_point turned_by(double turn, fg_point p) {
+  return (fg_point){p.x * cos(turn) - p.y * sin(turn), p.x * sin(turn) + p.y * cos(turn)};
+}
+
+/* The pose that lays the board's places nearest to the measured ones. */
+static void find_pose(const grid_problem *problem, size_t scan, const fg_grid *grid,
+                      grid_pose *pose) {
+  double n = 0, mean[4] = {0}, dot = 0, cross = 0;
+  double pitch = problem->board[problem->board_of[scan]].pitch_mm;
+  for (int pass = 0; pass < 2; pass++)
+    for (size_t i = 0; i < grid->count; i++) {
+      const fg_mark *m = &grid->marks[i];
+      int index[2];
+      if (!m->used) continue;
+      fg_grid_board_index(problem, scan, m, index);
+      double v[4] = {pitch * index[0], pitch * index[1], m->at_mm.x, m->at_mm.y};
+      if (pass == 0) {
+        n++;
+        for (int k = 0; k < 4; k++)
+          mean[k] += (v[k] - mean[k]) / n;
+        continue;
+      }
+      double px = v[0] - mean[0], py = v[1] - mean[1], x = v[2] - mean[2], y = v[3] - mean[3];
+      dot += px * x + py * y;
+      cross += px * y - py * x;
+    }
+  pose->turn_rad = atan2(cross, dot);
+  fg_point middle = turned_by(pose->turn_rad, (fg_point){mean[0], mean[1]});
+  pose->origin = (fg_point){mean[2] - middle.x, mean[3] - middle.y};
+}
+
+static fg_status add_scan_rows(const fg_grid *grid, size_t scan, grid_problem *problem) {
+  const grid_pose *pose = &problem->pose[scan];
+  double pitch = problem->board[problem->board_of[scan]].pitch_mm;
+  int components = grid->kind == FG_MARKS_LINES ? 1 : 2;
+  for (size_t i = 0; i < grid->count; i++) {
+    const fg_mark *m = &grid->marks[i];
+    int index[2];
+    if (!m->used) continue;
+    fg_grid_board_index(problem, scan, m, index);
+    fg_point place = {pitch * index[0], pitch * index[1]};
+    fg_point arm = turned_by(pose->turn_rad, place);
+    fg_point off = {pose->origin.x + arm.x - m->at_mm.x, pose->origin.y + arm.y - m->at_mm.y};
+    for (int k = 0; k < components; k++) {
+      fg_point e = turned_by(pose->turn_rad, (fg_point){k == 0, k == 1});
+      problem->rows[problem->row_count++] = (grid_row){.scan = scan,
+                                                       .board = problem->board_of[scan],
+                                                       .mark = i,
+                                                       .group = (size_t)k,
+                                                       .at = m->at_mm,
+                                                       .place = place,
+                                                       .direction = e,
+                                                       .value = e.x * off.x + e.y * off.y,
+                                                       .arm = arm,
+                                                       .used = true};
+    }
+  }
+  return FG_OK;
+}
+
+static int compare_rows(const void *a, const void *b) {
+  const grid_row *p = a, *q = b;
+  if (p->board != q->board) return p->board < q->board ? -1 : 1;
+  if (p->place.y != q->place.y) return p->place.y < q->place.y ? -1 : 1;
+  if (p->place.x != q->place.x) return p->place.x < q->place.x ? -1 : 1;
+  if (p->group != q->group) return p->group < q->group ? -1 : 1;
+  return p->scan < q->scan ? -1 : p->scan > q->scan;
+}
+
+static bool is_same_component(const grid_row *a, const grid_row *b) {
+  return a->board == b->board && a->place.x == b->place.x && a->place.y == b->place.y;
+}
+
+/* Rows of one component of one mark get one number. */
+static void number_groups(grid_problem *problem) {
+  qsort(problem->rows, problem->row_count, sizeof *problem->rows, compare_rows);
+  size_t group = 0, component = 0;
+  for (size_t i = 0; i < problem->row_count; i++) {
+    grid_row *row = &problem->rows[i];
+    size_t own = row->group;
+    if (i && !(is_same_component(row, row - 1) && own == component)) group++;
+    component = own;
+    row->group = group;
+  }
+  problem->group_count = problem->row_count ? group + 1 : 0;
+}
+
+/* ---- boards and region ---- */
+
+/* The stated pitch, or the first scan's geometric mean of both axes. */
+static double pitch_of(const fg_grid *grid, const fg_design_grid *design) {
+  double steps = grid->squares_per_step == 2 ? 2 : 1;
+  if (design->pitch_mm > 0) return steps * design->pitch_mm;
+  if (grid->kind == FG_MARKS_LINES)
+    return isfinite(grid->step_mm[0].value) ? grid->step_mm[0].value : grid->step_mm[1].value;
+  return sqrt(grid->step_mm[0].value * grid->step_mm[1].value);
+}
+
+static void find_boards(const fg_measurement *measurements, size_t count, bool same_part,
+                        grid_problem *problem) {
+  const fg_design_grid *design = problem->design;
+  bool known = design->pitch_mm > 0 && design->u_pitch_mm > 0;
+  problem->scale_known = known;
+  problem->board_count = same_part ? 1 : count;
+  for (size_t i = 0; i < count; i++) {
+    problem->board_of[i] = same_part ? 0 : i;
+    if (same_part && i) continue;
+    problem->board[i] =
+        (grid_board){.pitch_mm = pitch_of(measurements[i].grid, design),
+                     .u_scale = known ? design->u_pitch_mm / design->pitch_mm : U_PRINTED};
+  }
+}
+
+/* The region of all marks is that of the fields. */
+static void find_region(grid_problem *problem) {
+  fg_field_frame *frame = &problem->frame;
+  for (int axis = 0; axis < 2; axis++) {
+    double low = INFINITY, high = -INFINITY;
+    for (size_t i = 0; i < problem->row_count; i++) {
+      double at = fg_point_along(problem->rows[i].at, axis);
+      low = fmin(low, at);
+      high = fmax(high, at);
+    }
+    if (high - low < 1) low -= 0.5, high += 0.5; /* a ruler along the other axis */
+    frame->low_mm[axis] = frame->first_mm[axis] = low;
+    frame->high_mm[axis] = frame->last_mm[axis] = high;
+    frame->centre_mm[axis] = 0.5 * (low + high);
+  }
+  frame->knots = FG_FIELD_COLUMNS;
+}
+
+/* Splines over a box of marks; false where there are too few marks for a map. */
+static bool lay_map(const double low[2], const double high[2], double marks, fg_map_frame *frame) {
+  double size[2] = {high[0] - low[0], high[1] - low[1]}, longer = fmax(size[0], size[1]);
+  for (double intervals = MAP_INTERVALS; intervals >= 2; intervals--) {
+    for (int axis = 0; axis < 2; axis++) {
+      frame->low_mm[axis] = low[axis];
+      frame->high_mm[axis] = high[axis];
+      frame->side[axis] = 3 + (size_t)fmax(1, ceil(intervals * size[axis] / longer - 1e-9));
+    }
+    if (marks >= MARKS_PER_SPLINE * (double)fg_map_splines(frame)) return true;
+  }
+  return false;
+}
+
+static void lay_maps(grid_problem *problem) {
+  double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY}, marks = 0;
+  for (size_t i = 0; i < problem->row_count; i++) {
+    const grid_row *row = &problem->rows[i];
+    if (row->scan == 0) marks += 0.5;
+    if (row->board != 0) continue;
+    for (int axis = 0; axis < 2; axis++) {
+      low[axis] = fmin(low[axis], fg_point_along(row->place, axis));
+      high[axis] = fmax(high[axis], fg_point_along(row->place, axis));
+    }
+  }
+  problem->has_map = lay_map(problem->frame.low_mm, problem->frame.high_mm, marks, &problem->map);
+  problem->has_board_map =
+      problem->has_map && problem->turned && lay_map(low, high, marks, &problem->board_map);
+}
+
+fg_status fg_grid_problem_build(fg_context *ctx, const fg_measurement *measurements, size_t count,
+                                const fg_grid_loop_options *options, grid_problem *problem) {
+  size_t marks = 0;
+  *problem = (grid_problem){.design = &measurements[0].design.grid, .scan_count = count};
+  FG_TRY(fg_grid_match_scans(ctx, measurements, count, options, problem));
+  find_boards(measurements, count, options->same_part, problem);
+  for (size_t i = 0; i < count; i++)
+    marks += measurements[i].grid->count;
+  FG_TRY(fg_memory_allocate(ctx, 2 * marks, sizeof *problem->rows, (void **)&problem->rows));
+  for (size_t i = 0; i < count; i++) {
+    find_pose(problem, i, measurements[i].grid, &problem->pose[i]);
+    FG_TRY(add_scan_rows(measurements[i].grid, i, problem));
+  }
+  number_groups(problem);
+  find_region(problem);
+  lay_maps(problem);
+  return FG_OK;
+}
+
+void fg_grid_problem_free(grid_problem *problem) {
+  free(problem->rows);
+  *problem = (grid_problem){0};
+}

@@ -1,0 +1,280 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The result of a loop on grids, from its solution. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "core/memory.h"
+#include "core/text.h"
+#include "grid_loop/grid_loop.h"
+
+/* A value is found from this many standard uncertainties on. A posterior that is no narrower than
+ * this share of its prior has learnt nothing of its own. */
+#define FOUND_Z    3.0
+#define TIED_SHARE 0.3
+#define U_PRIOR    0.01
+/* Columns and rows of the reported map. */
+enum { MAP_SIDE_MAX = 15 };
+
+size_t fg_grid_displacement_columns(const grid_problem *problem, const grid_columns *columns,
+                                    fg_point at, size_t *index, fg_point *value) {
+  size_t n = 0, column = columns->effect;
+  for (size_t e = 0; e < problem->effects; e++) {
+    const grid_effect *effect = &problem->effect[e];
+    fg_point d[FG_FIELD_COLUMNS];
+    effect->kind->glass(&problem->frame, effect->shape, at, d);
+    for (size_t k = 0; k < effect->kind->columns; k++, n++) {
+      index[n] = column++;
+      value[n] = d[k];
+    }
+  }
+  if (!problem->has_map) return n;
+  fg_map_weight weights[FG_MAP_WEIGHTS];
+  fg_map_weigh(&problem->map, at, weights);
+  size_t splines = fg_map_splines(&problem->map);
+  for (size_t k = 0; k < FG_MAP_WEIGHTS; k++) {
+    index[n] = columns->map + weights[k].spline;
+    value[n++] = (fg_point){weights[k].value, 0};
+    index[n] = columns->map + splines + weights[k].spline;
+    value[n++] = (fg_point){0, weights[k].value};
+  }
+  return n;
+}
+
+static double covariance_at(const fg_grid_loop *loop, size_t a, size_t b) {
+  return loop->widening * loop->widening * gsl_matrix_get(loop->solution.covariance, a, b);
+}
+
+/* ---- claims ---- */
+
+static size_t effect_column(const fg_grid_loop *loop, size_t effect) {
+  size_t at = loop->solution.columns.effect;
+  for (size_t e = 0; e < effect; e++)
+    at += loop->problem.effect[e].kind->columns;
+  return at;
+}
+
+static fg_grid_claim *add_claim(fg_grid_loop_result *result, const char *id, const char *words) {
+  if (result->claims == FG_GRID_CLAIMS) return &result->claim[FG_GRID_CLAIMS - 1];
+  fg_grid_claim *claim = &result->claim[result->claims++];
+  *claim = (fg_grid_claim){.id = id, .words = words, .shape = NAN};
+  return claim;
+}
+
+static void judge_claim(fg_grid_claim *claim) {
+  claim->z = fabs(claim->value) / claim->u;
+  claim->verdict = claim->z >= FOUND_Z ? FG_GRID_FOUND : FG_GRID_ABSENT;
+}
+
+static void tell_effect(fg_grid_loop *loop, size_t e) {
+  const grid_effect *effect = &loop->problem.effect[e];
+  fg_grid_claim *claim = add_claim(&loop->result, effect->kind->id, effect->kind->words);
+  size_t at = effect_column(loop, e);
+  double a = gsl_vector_get(loop->solution.estimate, at), va = covariance_at(loop, at, at);
+  claim->ratio = effect->kind->numbers == FG_EFFECT_RATIO;
+  double unit = claim->ratio ? 1 / FG_FIELD_HALF_MM : 1000;
+  claim->value = unit * a;
+  claim->u = unit * sqrt(va);
+  if (effect->kind->shapes) claim->shape = effect->shape[0];
+  if (effect->kind->columns == 2) {
+    double b = gsl_vector_get(loop->solution.estimate, at + 1), size = hypot(a, b);
+    double vb = covariance_at(loop, at + 1, at + 1), ab = covariance_at(loop, at, at + 1);
+    claim->value = unit * size;
+    claim->u = unit * sqrt((a * a * va + b * b * vb + 2 * a * b * ab)) / size;
+  }
+  judge_claim(claim);
+}
+
+/* Ratio and shear of a board; x over y, so twice the half difference. */
+static void tell_board(fg_grid_loop *loop) {
+  static const char *const ids[2] = {"board.axis_ratio", "board.shear"};
+  static const char *const words[2] = {"a board that is longer along its columns than its rows",
+                                       "a board whose axes are not square"};
+  for (size_t k = 0; k < 2; k++) {
+    fg_grid_claim *claim = add_claim(&loop->result, ids[k], words[k]);
+    size_t at = loop->solution.columns.board + 1 + k;
+    claim->of_board = claim->ratio = true;
+    claim->value = 2 * gsl_vector_get(loop->solution.estimate, at);
+    claim->u = 2 * sqrt(covariance_at(loop, at, at));
+    judge_claim(claim);
+  }
+}
+
+/* A ratio or shear of the scanner that the data do not part from the board's: where their sum is
+ * told and they are not. `scale` of the sum: ratio q + 2h, shear q + 2k. */
+static void tie_with_board(fg_grid_loop *loop, fg_grid_claim *scanner, fg_grid_claim *board,
+                           size_t scanner_column, size_t board_column) {
+  double q = 1 / FG_FIELD_HALF_MM;
+  double variance = q * q * covariance_at(loop, scanner_column, scanner_column) +
+                    4 * covariance_at(loop, board_column, board_column) +
+                    4 * q * covariance_at(loop, scanner_column, board_column);
+  double sum = fabs(scanner->value + board->value), u = sqrt(fmax(0, variance));
+  if (scanner->u < TIED_SHARE * U_PRIOR || sum < FOUND_Z * u) return;
+  scanner->verdict = board->verdict = FG_GRID_TIED;
+  scanner->value = board->value = scanner->value + board->value;
+  scanner->u = board->u = u;
+  scanner->z = board->z = sum / u;
+  loop->result.tied = true;
+}
+
+static void tell_claims(fg_grid_loop *loop) {
+  fg_grid_loop_result *result = &loop->result;
+  const grid_columns *columns = &loop->solution.columns;
+  for (size_t e = 0; e < loop->problem.effects; e++)
+    tell_effect(loop, e);
+  size_t board = result->claims;
+  tell_board(loop);
+  result->axis_ratio = 1 + result->claim[0].value;
+  result->u_axis_ratio = result->claim[0].u;
+  result->board_ratio = 1 + result->claim[board].value;
+  result->u_board_ratio = result->claim[board].u;
+  for (size_t k = 0; k < 2; k++)
+    tie_with_board(loop, &result->claim[k], &result->claim[board + k], columns->effect + k,
+                   columns->board + 1 + k);
+}
+
+/* ---- the map ---- */
+
+static void tell_map_point(const fg_grid_loop *loop, fg_grid_map_point *point) {
+  size_t index[GRID_ROW_MAX];
+  fg_point value[GRID_ROW_MAX], d = {0, 0};
+  double xx = 0, yy = 0;
+  size_t n = fg_grid_displacement_columns(&loop->problem, &loop->solution.columns, point->at_mm,
+                                          index, value);
+  for (size_t a = 0; a < n; a++) {
+    double estimate = gsl_vector_get(loop->solution.estimate, index[a]);
+    d.x += estimate * value[a].x;
+    d.y += estimate * value[a].y;
+    for (size_t b = 0; b < n; b++) {
+      double c = covariance_at(loop, index[a], index[b]);
+      xx += c * value[a].x * value[b].x;
+      yy += c * value[a].y * value[b].y;
+    }
+  }
+  double random = isfinite(loop->result.carriage_um) ? loop->result.carriage_um : 0;
+  point->d_um = (fg_point){1000 * d.x, 1000 * d.y};
+  point->u_um =
+      (fg_point){hypot(1000 * sqrt(fmax(0, xx)), random), hypot(1000 * sqrt(fmax(0, yy)), random)};
+}
+
+static fg_status tell_map(fg_context *ctx, fg_grid_loop *loop) {
+  fg_grid_loop_result *result = &loop->result;
+  double size[2], u = 0;
+  for (int axis = 0; axis < 2; axis++)
+    size[axis] = result->high_mm[axis] - result->low_mm[axis];
+  double longer = fmax(size[0], size[1]);
+  result->map_columns = (size_t)fmax(2, ceil(MAP_SIDE_MAX * size[0] / longer));
+  result->map_rows = (size_t)fmax(2, ceil(MAP_SIDE_MAX * size[1] / longer));
+  size_t count = result->map_columns * result->map_rows;
+  FG_TRY(fg_memory_allocate(ctx, count, sizeof *result->map, (void **)&result->map));
+  for (size_t k = 0; k < count; k++) {
+    double i = (double)(k % result->map_columns), j = (double)(k / result->map_columns);
+    result->map[k].at_mm =
+        (fg_point){result->low_mm[0] + size[0] * i / (double)(result->map_columns - 1),
+                   result->low_mm[1] + size[1] * j / (double)(result->map_rows - 1)};
+    tell_map_point(loop, &result->map[k]);
+    u += 0.5 * (pow(result->map[k].u_um.x, 2) + pow(result->map[k].u_um.y, 2));
+  }
+  result->u_map_um = sqrt(u / (double)count);
+  return FG_OK;
+}
+
+static double rms_of_map(const fg_grid_loop *loop, const fg_map_frame *frame, size_t first) {
+  double square = 0, n = 0;
+  const double *mm = gsl_vector_const_ptr(loop->solution.estimate, first);
+  enum { SIDE = 30 };
+  for (int j = 0; j <= SIDE; j++)
+    for (int i = 0; i <= SIDE; i++, n += 2) {
+      fg_point at = {frame->low_mm[0] + (frame->high_mm[0] - frame->low_mm[0]) * i / (double)SIDE,
+                     frame->low_mm[1] + (frame->high_mm[1] - frame->low_mm[1]) * j / (double)SIDE};
+      fg_point d = fg_map_at(frame, mm, at);
+      square += d.x * d.x + d.y * d.y;
+    }
+  return 1000 * sqrt(square / n);
+}
+
+/* ---- scans ---- */
+
+static fg_status tell_scans(fg_context *ctx, fg_grid_loop *loop) {
+  fg_grid_loop_result *result = &loop->result;
+  FG_TRY(fg_memory_allocate(ctx, loop->scan_count, sizeof *result->scan, (void **)&result->scan));
+  for (size_t i = 0; i < loop->scan_count; i++) {
+    const fg_measurement *m = &loop->measurements[i];
+    fg_grid_scan *scan = &result->scan[i];
+    scan->measurement = m;
+    scan->turn_deg = 90 * loop->problem.turns[i];
+    FG_TRY(fg_memory_allocate(ctx, m->grid->count, sizeof *scan->residual_mm,
+                              (void **)&scan->residual_mm));
+    result->marks += m->grid->count;
+  }
+  for (size_t i = 0; i < loop->problem.row_count; i++) {
+    const grid_row *row = &loop->problem.rows[i];
+    fg_point *to = &result->scan[row->scan].residual_mm[row->mark];
+    /* Measured less corrected, as in a report of one scan. */
+    to->x -= row->direction.x * loop->solution.residual[i];
+    to->y -= row->direction.y * loop->solution.residual[i];
+  }
+  return FG_OK;
+}
+
+fg_status fg_grid_loop_tell(fg_context *ctx, fg_grid_loop *loop) {
+  const grid_problem *problem = &loop->problem;
+  fg_grid_loop_result *result = &loop->result;
+  result->scans = loop->scan_count;
+  result->boards = problem->board_count;
+  result->turned = problem->turned;
+  result->scale_known = problem->scale_known;
+  result->axes_known = problem->scale_known || problem->turned;
+  result->mark_um = 1000 * problem->mark_sd;
+  result->board_mark_um = problem->board_sd > 0 ? 1000 * problem->board_sd : NAN;
+  result->carriage_um = NAN;
+  for (int axis = 0; axis < 2; axis++) {
+    result->low_mm[axis] = problem->frame.low_mm[axis];
+    result->high_mm[axis] = problem->frame.high_mm[axis];
+  }
+  FG_TRY(tell_scans(ctx, loop));
+  tell_claims(loop);
+  if (problem->has_map)
+    result->map_um = rms_of_map(loop, &problem->map, loop->solution.columns.map);
+  if (problem->has_board_map)
+    result->board_map_um = rms_of_map(loop, &problem->board_map, loop->solution.columns.board_map);
+  return tell_map(ctx, loop);
+}
+
+/* ---- words ---- */
+
+void fg_grid_loop_say(fg_grid_loop_result *r) {
+  const fg_grid_claim *ratio = &r->claim[0];
+  if (r->tied && ratio->verdict == FG_GRID_TIED)
+    fg_text_clip(r->sentence, sizeof r->sentence,
+                 "A length along x reads %.3f ± %.3f %% longer than along y: scanner or board, one "
+                 "pose cannot tell.",
+                 100 * ratio->value, 200 * ratio->u);
+  else if (r->tied)
+    fg_text_clip(r->sentence, sizeof r->sentence,
+                 "The axes are not square: scanner or board, one pose cannot tell.");
+  else if (r->turned)
+    fg_text_clip(
+        r->sentence, sizeof r->sentence,
+        "The axes (x over y) differ by %.3f ± %.3f %% of the scanner, which stays with the "
+        "glass, and by %.3f ± %.3f %% of the board, which turns with it.",
+        100 * (r->axis_ratio - 1), 200 * r->u_axis_ratio, 100 * (r->board_ratio - 1),
+        200 * r->u_board_ratio);
+  else if (r->axes_known)
+    fg_text_clip(r->sentence, sizeof r->sentence,
+                 "Against the board as stated, the scanner's axes (x over y) differ by %.3f ± %.3f "
+                 "%%.",
+                 100 * (r->axis_ratio - 1), 200 * r->u_axis_ratio);
+  else
+    fg_text_clip(r->sentence, sizeof r->sentence,
+                 "No difference of the axes shows; one pose would not tell scanner and board "
+                 "apart.");
+  r->advice[0] = 0;
+  if (!r->axes_known)
+    fg_text_clip(r->advice, sizeof r->advice,
+                 "Scan the board again, turned by a quarter, and give all scans with --same-part; "
+                 "or state u_pitch_mm of a board that is known.");
+  else if (!r->scale_known)
+    fg_text_clip(r->advice, sizeof r->advice,
+                 "The scale of both axes together stays unknown: state pitch_mm and u_pitch_mm of "
+                 "a board that is known.");
+}

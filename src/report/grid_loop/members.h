@@ -1,0 +1,14 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef FG_REPORT_GRID_LOOP_MEMBERS_H
+#define FG_REPORT_GRID_LOOP_MEMBERS_H
+
+#include "core/member.h"
+#include "foilgauge/grid_loop.h"
+
+extern const fg_members fg_grid_claim_members;
+extern const fg_members fg_grid_scan_members;
+fg_member_element fg_grid_loop_find_claim, fg_grid_loop_find_scan; /* whole: the result */
+
+extern const fg_document fg_grid_loop_document;
+
+#endif
