@@ -39,7 +39,11 @@
  *   }
  *
  * Only the scale is needed. Without temperature and expansion, which go together, the part counts
- * as being at 20 °C, and U does not include it. */
+ * as being at 20 °C, and U does not include it.
+ *
+ * Two words take the object's place: "flatbed" is the default for a flatbed that nobody has
+ * calibrated, and "not needed: REASON" lets values be judged without any, with a reason that every
+ * report prints. */
 #ifndef FOILGAUGE_CALIBRATION_H
 #define FOILGAUGE_CALIBRATION_H
 
@@ -57,12 +61,25 @@ typedef struct fg_calibration {
   bool stated;          /* false: all of it is 0 */
   char certificate[64]; /* its name; "": none stated */
   char date[11];        /* of the certificate, "2026-03-14"; "": none stated */
+  char artefact[64];    /* the plate or gauge that the certificate is of; "": none stated */
+  char due[11];         /* the last day that it holds; "": none stated */
+  char not_needed[128]; /* reason why no calibration is needed; "": one is */
   bool per_axis;        /* the axes err independently; else alike, and u_scale[1] is u_scale[0] */
   double u_scale[2];    /* relative standard uncertainty of the pixel's pitch along x and y */
   bool has_temperature; /* false: the members below are 0 */
   double temperature_c, u_temperature_k; /* of the part during the scan */
   double expansion_per_k, u_expansion_per_k;
 } fg_calibration;
+
+/* A plate or gauge of known sizes, which lengths are traced to. */
+typedef struct fg_artefact {
+  char name[64], certificate[64];
+  char date[11], due[11]; /* of the certificate, and the last day that it holds; "": not stated */
+} fg_artefact;
+
+/* Returns the default for an unknown flatbed: 0.3 % of x and of y, each by itself. Published scales
+ * are off by up to 0.6 % across an A4 sheet, other for every scanner of a model. */
+fg_calibration fg_calibration_of_flatbed(void);
 
 /* FG_ERR_DATA when a value is no number or impossible; the message names the member. */
 fg_status fg_calibration_check(fg_context *ctx, const fg_calibration *calibration);

@@ -153,6 +153,12 @@ typedef struct fg_design {
   size_t tolerance_count;
   fg_tolerance tolerances[FG_TOLERANCES_MAX];
   fg_calibration calibration; /* of the scanner that measures it, and the part's temperature */
+  fg_artefact artefact;       /* of the known sizes in a design of gauges */
+  /* Scale of the scanner's model in use; never read from a design (fg_scanner_model_trace). */
+  struct {
+    bool known;
+    fg_artefact artefact;
+  } model_scale;
   size_t gauge_count;
   fg_gauge gauges[FG_GAUGES_MAX]; /* known widths that lie on the glass in the same scan */
 } fg_design;

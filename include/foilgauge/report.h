@@ -37,6 +37,11 @@ typedef enum fg_verdict {
 /* Returns the verdict on one value. */
 fg_verdict fg_judge_value(const fg_tolerance *tolerance, double value, double u);
 
+/* Returns the verdict on a value of a scan: "cannot_tell" also where nothing is known of the
+ * scanner's scale (traceability.h), but for a thickness that is stated as measured. */
+fg_verdict fg_judge_measured(const fg_design *design, const fg_tolerance *tolerance,
+                             const fg_quantity *row, double value, double u);
+
 /* Returns the verdict's word as JSON has it. */
 const char *fg_verdict_word(fg_verdict verdict);
 

@@ -92,16 +92,19 @@ const char *fg_scanner_model_sha256(const fg_scanner_model *model);
 bool fg_scanner_model_is_tied(const fg_scanner_model *model);
 /* Returns true when the model has neither effects nor an edge level and corrects nothing. */
 bool fg_scanner_model_is_empty(const fg_scanner_model *model);
+/* Notes in a design whose scale the model in use has: of gauges of known size, or none. */
+void fg_scanner_model_trace(const fg_scanner_model *model, fg_design *design);
 /* FG_ERR_DATA when the model is not of the named scanner; NULL: any scanner. */
 fg_status fg_scanner_model_check_scanner(fg_context *ctx, const fg_scanner_model *model,
                                          const char *path, const char *scanner);
 /* Corrects the edges of every foil and measures it again. Of R0, R and h, a value that the
  * correction does not improve keeps its measured value (`choice` of fg_foil). Every u_ includes the
  * model's uncertainty and, in a tie, the differences between the explanations. FG_ERR_DATA when the
- * model has another resolution, or a foil lies more than twice as far on the glass as the model's
- * region; `warning` (200 bytes, or NULL) gets a message when it lies outside the region at all.
- * Part effects belong to the model's own foil and are not applied. `correction` of every foil
- * records the changes; the model must outlive the measurement, whose reports refer to it. */
+ * model has another resolution, when a scan is younger than its artefact's due date, or a foil lies
+ * more than twice as far on the glass as the model's region; `warning` (200 bytes, or NULL) gets a
+ * message when it lies outside the region at all. Part effects belong to the model's own foil and
+ * are not applied. `correction` of every foil records the changes; the model must outlive the
+ * measurement, whose reports refer to it. */
 fg_status fg_scanner_model_apply(fg_context *ctx, const fg_scanner_model *model, fg_measurement *m,
                                  unsigned threads, char *warning);
 

@@ -346,6 +346,7 @@ static fg_status run(fg_context *ctx, arguments *a, int *code) {
   if (a->design_path) FG_TRY_EXIT(fg_design_load(ctx, a->design_path, &design));
   FG_TRY_EXIT(fg_cli_apply_foil_kind(ctx, a->kind, &design));
   fg_cli_apply_known(&a->known, &design);
+  FG_TRY_EXIT(fg_cli_apply_flatbed(ctx, a->known.flatbed, &design));
   FG_TRY_EXIT(fg_design_check(ctx, &design));
   if (fg_foil_traits_of(design.kind)->is_grid) return run_grids(ctx, a, &design);
   FG_TRY_EXIT(check_design(ctx, a, &design));

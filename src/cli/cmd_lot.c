@@ -8,6 +8,7 @@
 
 #include "cli/commands.h"
 #include "cli/facts.h"
+#include "cli/known.h"
 #include "foilgauge/file.h"
 #include "foilgauge/lot.h"
 #include "foilgauge/text.h"
@@ -38,6 +39,7 @@ typedef struct lot_arguments {
   bool allow_lossy, print_recipe, resume, dry_run, decimal_comma;
   fg_lot_shard shard;
   fg_lot_pages pages;
+  bool flatbed;
   const char *curve; /* reference curve; NULL: the recipe's */
   const char *dies[FG_LOT_DIES_MAX];
   size_t die_count;
@@ -52,6 +54,7 @@ static const struct argp_option options[] = {
     {"model", OPTION_MODEL, "FILE.json", 0,
      "Correct every scan by what `foilgauge loop --model-out` found of this scanner", 0},
     {"scanner", OPTION_SCANNER, "NAME", 0, "Refuse a model that is of another scanner", 0},
+    FG_CLI_FLATBED_ROW(0),
     {"name", OPTION_NAME, "TEXT", 0, "Of the lot (default: its folder's name)", 0},
     {"dpi", OPTION_DPI, "N", 0, "Resolution of the scans; overrules the files", 0},
     {"allow-lossy", OPTION_ALLOW_LOSSY, NULL, 0, FG_CLI_ALLOW_LOSSY, 0},
@@ -128,6 +131,9 @@ static error_t parse_lot_option(int key, char *text, struct argp_state *state) {
     break;
   case OPTION_SCANNER:
     arguments->scanner = text;
+    break;
+  case FG_CLI_FLATBED:
+    arguments->flatbed = true;
     break;
   case OPTION_NAME:
     arguments->name = text;
@@ -226,6 +232,7 @@ static fg_status load_settings(fg_context *ctx, const lot_arguments *arguments,
     return fg_fail(ctx, FG_ERR_USAGE, "--scanner says which scanner --model must be of: give one");
   if (arguments->model || arguments->scanner)
     FG_TRY(fg_lot_settings_load_model(ctx, model, arguments->scanner, settings));
+  FG_TRY(fg_cli_apply_flatbed(ctx, arguments->flatbed, &settings->design));
   FG_TRY(read_die_options(ctx, arguments, settings));
   if (arguments->curve) FG_TRY(fg_lot_settings_load_curve(ctx, arguments->curve, settings));
   if (arguments->jobs > 0) settings->jobs = (unsigned)arguments->jobs;
@@ -234,6 +241,7 @@ static fg_status load_settings(fg_context *ctx, const lot_arguments *arguments,
   FG_TRY(set_text(ctx, "name", arguments->name, settings->name, sizeof settings->name));
   FG_TRY(set_text(ctx, "group", arguments->group, settings->group_column,
                   sizeof settings->group_column));
+  fg_cli_note_scale(&settings->design);
   return fg_lot_settings_check(ctx, settings);
 }
 

@@ -231,6 +231,7 @@ static fg_status load_design(fg_context *ctx, measure_run *run) {
     FG_TRY(fg_design_load(ctx, run->arguments.design_path, &run->design));
   FG_TRY(fg_cli_apply_foil_kind(ctx, run->arguments.kind, &run->design));
   fg_cli_apply_known(&run->arguments.known, &run->design);
+  FG_TRY(fg_cli_apply_flatbed(ctx, run->arguments.known.flatbed, &run->design));
   FG_TRY(apply_gauges(ctx, &run->arguments, &run->design));
   FG_TRY(fg_design_check(ctx, &run->design));
   FG_TRY(fg_design_derive(ctx, &run->design, &run->nominal));
@@ -351,6 +352,7 @@ static fg_status load_model(fg_context *ctx, measure_run *run) {
   if (!path) return FG_OK;
   FG_TRY(fg_scanner_model_load(ctx, path, &run->model));
   FG_TRY(fg_scanner_model_check_scanner(ctx, run->model, path, run->arguments.scanner));
+  fg_scanner_model_trace(run->model, &run->design);
   if (fg_scanner_model_is_tied(run->model))
     fprintf(stderr,
             "foilgauge: note: %s: other explanations did as well when the model was found; every "
@@ -374,6 +376,7 @@ static fg_status measure_scans(fg_context *ctx, measure_run *run, int *code) {
   FG_TRY(load_design(ctx, run));
   note_not_judged(&run->design);
   FG_TRY(load_model(ctx, run));
+  fg_cli_note_scale(&run->design);
   FG_TRY(fg_output_set_open(ctx, &run->outputs));
   FG_TRY(measure_all(ctx, run));
   FG_TRY(outcome_code(ctx, run, code)); /* first: it can fail, and files that are written stay */

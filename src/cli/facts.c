@@ -20,7 +20,9 @@ const fg_exit_code fg_exit_codes[] = {
     {0, "all measured and within tolerance, or no tolerance is stated"},
     {1, "a limit is exceeded by more than U, or a bump is missing"},
     {2, "something could not be measured"},
-    {3, "cannot tell: a limit lies within U of a value, and nothing fails"},
+    {3,
+     "cannot tell: a limit lies within U of a value, or nothing is known of the scanner's scale, "
+     "and nothing fails"},
     {64, "the command line is wrong"},
     {65, "a file's content is wrong"},
     {71, "out of memory: nothing is said of the input; close other programs, or give it less at a "

@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "foilgauge/traceability.h"
+
 static void read_tone(struct argp_state *state, const char *text, fg_cli_known *known) {
   bool linear = !strcmp(text, "linear");
   if (!linear && strcmp(text, "unknown") != 0)
@@ -42,9 +44,30 @@ bool fg_cli_parse_known(struct argp_state *state, int key, const char *text, fg_
     read_tone(state, text, known);
   else if (key == FG_CLI_THICKNESS)
     read_thickness(state, text, known);
+  else if (key == FG_CLI_FLATBED)
+    known->flatbed = true;
   else
     return false;
   return true;
+}
+
+/* A calibration that the design states is better known. */
+fg_status fg_cli_apply_flatbed(fg_context *ctx, bool flatbed, fg_design *design) {
+  if (!flatbed) return FG_OK;
+  if (design->calibration.stated)
+    return fg_fail(ctx, FG_ERR_USAGE,
+                   "--flatbed is for a scanner of which nothing is known: the design states a "
+                   "calibration");
+  design->calibration = fg_calibration_of_flatbed();
+  return FG_OK;
+}
+
+void fg_cli_note_scale(const fg_design *design) {
+  if (design->tolerance_count && !fg_design_may_judge(design))
+    fprintf(
+        stderr,
+        "foilgauge: note: nothing is known of the scanner's scale, and no limit is judged. %s\n",
+        fg_traceability_cure);
 }
 
 void fg_cli_apply_known(const fg_cli_known *known, fg_design *design) {

@@ -13,9 +13,18 @@ typedef struct fg_cli_known {
   bool tone_given;
   fg_tone_statement tone;
   double thickness_mm, u_thickness_mm; /* 0: not given */
+  bool flatbed;
 } fg_cli_known;
 
-enum { FG_CLI_TONE = 0x7002, FG_CLI_THICKNESS = 0x7003 };
+enum { FG_CLI_TONE = 0x7002, FG_CLI_THICKNESS = 0x7003, FG_CLI_FLATBED = 0x7004 };
+
+#define FG_CLI_FLATBED_ROW(group)                                                                  \
+  {                                                                                                \
+    "flatbed", FG_CLI_FLATBED, NULL, 0,                                                            \
+        "Nothing is known of the scanner, a flatbed: every u holds 0.3 % of x and of y, so that "  \
+        "limits can be judged",                                                                    \
+        group                                                                                      \
+  }
 
 #define FG_CLI_KNOWN_ROWS(group)                                                                    \
   {"tone",                                                                                          \
@@ -25,7 +34,7 @@ enum { FG_CLI_TONE = 0x7002, FG_CLI_THICKNESS = 0x7003 };
    "linear: you vouch that the scanner's counts are proportional to the light; thickness and "      \
    "diameters then hold no unknown tone curve (default: unknown)",                                  \
    group},                                                                                          \
-  {                                                                                                 \
+      FG_CLI_FLATBED_ROW(group), {                                                                  \
     "thickness-measured", FG_CLI_THICKNESS, "MM±U", 0,                                              \
         "The strip's thickness by a micrometer and its standard uncertainty, as 0.1003±0.0005 or " \
         "0.1003:0.0005; clearances and stiffness use it, and the scan is held against it",          \
@@ -38,6 +47,12 @@ bool fg_cli_parse_known(struct argp_state *state, int key, const char *text, fg_
 /* Writes it into the design, and notes the overruled values on standard error. Check the design
  * afterwards. */
 void fg_cli_apply_known(const fg_cli_known *known, fg_design *design);
+
+/* Applies --flatbed; FG_ERR_USAGE where the design states a calibration. */
+fg_status fg_cli_apply_flatbed(fg_context *ctx, bool flatbed, fg_design *design);
+
+/* Notes on standard error that no limit of the design is judged, and what to do. */
+void fg_cli_note_scale(const fg_design *design);
 
 /* Applies --form, which overrules the design's kind; NULL leaves it. */
 fg_status fg_cli_apply_foil_kind(fg_context *ctx, const char *kind, fg_design *design);

@@ -33,6 +33,16 @@ static fg_status check_temperature(fg_context *ctx, const fg_calibration *c) {
   return check_u(ctx, "expansion", c->u_expansion_per_k, expansion_max_per_k, " per kelvin");
 }
 
+/* Standard uncertainty of an unknown flatbed's pitch along either axis. */
+#define FLATBED_U_SCALE 0.003
+
+fg_calibration fg_calibration_of_flatbed(void) {
+  return (fg_calibration){.stated = true,
+                          .certificate = "the default for an unknown flatbed",
+                          .per_axis = true,
+                          .u_scale = {FLATBED_U_SCALE, FLATBED_U_SCALE}};
+}
+
 fg_status fg_calibration_check(fg_context *ctx, const fg_calibration *c) {
   static const char *const axes[] = {"scale.x", "scale.y"};
   if (!c->stated) return FG_OK;

@@ -4,7 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/text.h"
 #include "foilgauge/measure.h"
+#include "foilgauge/traceability.h"
 #include "measure/again.h"
 #include "quantity/quantity_rows.h"
 
@@ -118,11 +120,21 @@ static fg_status find_source(fg_context *ctx, const fg_measurement *same, const 
   return FG_OK;
 }
 
+static fg_status check_due(fg_context *ctx, const fg_measurement *m) {
+  const fg_calibration *c = &m->design.calibration;
+  fg_artefact artefact = {{0}, {0}, {0}, {0}};
+  const char *name = c->artefact[0] ? c->artefact : c->certificate;
+  fg_text_clip(artefact.name, sizeof artefact.name, "%s", name[0] ? name : "the calibration");
+  memcpy(artefact.due, c->due, sizeof artefact.due);
+  return fg_artefact_check_due(ctx, m->scan, &artefact, m->date);
+}
+
 fg_status fg_measurement_calibrate(fg_context *ctx, unsigned threads, fg_measurement *m) {
   double stretch[FG_CALIBRATION_SOURCES][2];
   fg_measurement
       same; /* a partly omitted correction is not one of the edges: both states are measured */
   if (!m->design.calibration.stated || m->calibrated) return FG_OK;
+  FG_TRY(check_due(ctx, m));
   fg_calibration_sources(&m->design.calibration, stretch);
   FG_TRY(fg_measure_stretched(ctx, m, (const double[]){1, 1}, threads, &same));
   fg_status status = FG_OK;

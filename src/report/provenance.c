@@ -10,6 +10,7 @@
 #include "core/sha256.h"
 #include "core/text.h"
 #include "foilgauge/report.h"
+#include "foilgauge/traceability.h"
 #include "foilgauge/words.h"
 #include "page/page.h"
 #include "report/design/json.h"
@@ -104,6 +105,14 @@ static void put_calibration(FILE *out, const fg_calibration *c) {
   fputs("</dd>\n", out);
 }
 
+static void put_traceability(FILE *out, const fg_design *design) {
+  char sentence[FG_TRACEABILITY_SENTENCE];
+  fg_traceability_sentence(design, sentence, sizeof sentence);
+  fputs("<dt>Traced to</dt><dd>", out);
+  fg_html_text(out, sentence);
+  fputs("</dd>\n", out);
+}
+
 fg_status fg_html_provenance(fg_context *ctx, FILE *out, const fg_provenance *p) {
   fputs("<dt>Date</dt><dd>", out);
   fg_html_text(out, p->first[0] ? p->first : "not known");
@@ -123,6 +132,7 @@ fg_status fg_html_provenance(fg_context *ctx, FILE *out, const fg_provenance *p)
   } else if (p->of_scans || p->calibration) {
     put_calibration(out, p->design ? &p->design->calibration : NULL);
   }
+  if (p->of_scans && p->design) put_traceability(out, p->design);
   return FG_OK;
 }
 

@@ -8,6 +8,7 @@
 #include "core/memory.h"
 #include "core/text.h"
 #include "foilgauge/foil_kind.h"
+#include "foilgauge/traceability.h"
 #include "scan_loop/scanner_model.h"
 #include "scan_loop/state.h"
 
@@ -166,6 +167,8 @@ fg_status fg_scanner_model_apply(fg_context *ctx, const fg_scanner_model *model,
   const char *why_not = fg_foil_traits_of(m->design.kind)->why_no_model;
   if (why_not) return fg_fail(ctx, FG_ERR_USAGE, "%s: %s", m->scan, why_not);
   FG_TRY(check_place(ctx, model, m, warning));
+  FG_TRY(fg_artefact_check_due(ctx, model->path, &model->artefact, m->date));
+  fg_scanner_model_trace(model, &m->design);
   FG_TRY(fg_model_tone_apply(ctx, &model->tone, threads, m));
   if (!m->warning[0]) fg_text_clip(m->warning, sizeof m->warning, "%s", m->tone_note);
   fg_measurement corrected = {0};

@@ -23,6 +23,7 @@ struct fg_scanner_model {
   double dpi[2];
   size_t scans;           /* number of its scans; 0: not stated */
   size_t known_diameters; /* gauges among its scans; 0: its absolute scale is unknown */
+  fg_artefact artefact;   /* with these gauges; no name: none stated */
   bool tied;
   fg_model_tone tone;
   fg_field_list fields;

@@ -36,6 +36,12 @@ static fg_effect_found effect_of(const fg_field *field) {
   return effect;
 }
 
+void fg_scanner_model_trace(const fg_scanner_model *model, fg_design *design) {
+  design->model_scale.known = model->known_diameters > 0;
+  design->model_scale.artefact = (fg_artefact){{0}, {0}, {0}, {0}};
+  if (model->known_diameters) design->model_scale.artefact = model->artefact;
+}
+
 void fg_scanner_model_describe(const fg_scanner_model *model, fg_scanner_model_facts *facts) {
   const fg_field_frame *frame = &model->fields.frame;
   *facts = (fg_scanner_model_facts){.path = model->path,

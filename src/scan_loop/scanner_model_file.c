@@ -11,6 +11,7 @@
 #include "core/memory.h"
 #include "core/sha256.h"
 #include "core/text.h"
+#include "foilgauge/traceability.h"
 #include "scan_loop/scanner_model.h"
 
 enum { MODEL_BYTES_MAX = 1 << 20 };
@@ -125,6 +126,27 @@ static fg_status read_date(fg_context *ctx, const cJSON *root, fg_scanner_model 
   return FG_OK;
 }
 
+static fg_status read_artefact_text(fg_context *ctx, const cJSON *artefact, const char *name,
+                                    char *text, size_t size) {
+  const cJSON *item = cJSON_GetObjectItemCaseSensitive(artefact, name);
+  if (!item || cJSON_IsNull(item)) return FG_OK;
+  if (!cJSON_IsString(item) || strlen(item->valuestring) >= size)
+    return fg_fail(ctx, FG_ERR_DATA, "`artefact.%s` must be a text of at most %zu bytes", name,
+                   size - 1);
+  strcpy(text, item->valuestring);
+  return FG_OK;
+}
+
+static fg_status read_artefact(fg_context *ctx, const cJSON *root, fg_artefact *a) {
+  const cJSON *item = cJSON_GetObjectItemCaseSensitive(root, "artefact");
+  if (!item || cJSON_IsNull(item)) return FG_OK;
+  FG_TRY(read_artefact_text(ctx, item, "name", a->name, sizeof a->name));
+  FG_TRY(read_artefact_text(ctx, item, "certificate", a->certificate, sizeof a->certificate));
+  FG_TRY(read_artefact_text(ctx, item, "date", a->date, sizeof a->date));
+  FG_TRY(read_artefact_text(ctx, item, "due", a->due, sizeof a->due));
+  return fg_artefact_check(ctx, "artefact", a);
+}
+
 static fg_status read_origin(fg_context *ctx, const cJSON *root, fg_scanner_model *model) {
   enum { KNOWN_MAX = 1000000 };
   const cJSON *inputs = cJSON_GetObjectItemCaseSensitive(root, "inputs");
@@ -135,6 +157,7 @@ static fg_status read_origin(fg_context *ctx, const cJSON *root, fg_scanner_mode
                    "`known_diameters` is %g; how many gauges had one, 0 to %d, is allowed", count,
                    KNOWN_MAX);
   model->known_diameters = (size_t)count;
+  FG_TRY(read_artefact(ctx, root, &model->artefact));
   model->scans = cJSON_IsArray(inputs) ? (size_t)cJSON_GetArraySize(inputs) : 0;
   return read_date(ctx, root, model);
 }

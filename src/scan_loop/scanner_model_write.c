@@ -43,6 +43,7 @@ fg_status fg_scanner_model_of(fg_context *ctx, const fg_scan_loop *loop, fg_scan
     made->dpi[axis] = first->dpi[axis] * fg_calibration_factor(&first->design.calibration);
   made->scans = loop->scan_count;
   made->known_diameters = known_diameters(loop);
+  made->artefact = first->design.artefact;
   made->tone = loop->tone;
   fg_effect_set_fields(&loop->edge_fit, &loop->set, &made->fields);
   for (size_t k = 0; k < loop->tie_count; k++)
@@ -163,6 +164,21 @@ static const double *list_curve_region(const fg_subject *s, double *numbers, siz
   return list_corners(frame->first_mm, frame->last_mm, numbers, count);
 }
 
+static bool has_artefact(const fg_subject *s) {
+  return ((const fg_scanner_model *)s->object)->artefact.name[0];
+}
+
+#define UNLESS_EMPTY .options = FG_MEMBER_LEFT_OUT | FG_MEMBER_EMPTY_IS_NULL
+static const fg_member artefact_rows[] = {
+    {FG_TEXT("name", fg_artefact, name), .options = FG_MEMBER_NEVER_NULL, .words = "as marked"},
+    {FG_TEXT("certificate", fg_artefact, certificate), UNLESS_EMPTY, .words = "its number"},
+    {FG_TEXT("date", fg_artefact, date), UNLESS_EMPTY, .words = "of the certificate"},
+    {FG_TEXT("due", fg_artefact, due), UNLESS_EMPTY,
+     .words = "the last day that it holds: younger scans are refused"},
+};
+#undef UNLESS_EMPTY
+static const fg_members artefact_members = FG_MEMBERS(artefact_rows);
+
 static const char *const model_level_words[] = {"points", NULL};
 
 static int find_model_level(const fg_subject *s) {
@@ -206,6 +222,8 @@ static const fg_member model_rows[] = {
      .present = is_in_every_model,
      .words = "gauges of known diameter that hold its absolute scale; absent or 0: an error of "
               "scale equal in x and y is not corrected"},
+    {FG_OBJECT("artefact", fg_scanner_model, artefact, &artefact_members), .present = has_artefact,
+     .words = "the plate that these gauges are of, by the design's `artefact`; absent: not stated"},
     {FG_PART("tone", find_model_tone, &fg_model_tone_members), .present = is_in_every_model,
      .words = "level of the scanner's edges, from discs of known diameter; null or absent: not "
               "known"},

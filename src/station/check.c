@@ -8,6 +8,7 @@
 
 #include "core/text.h"
 #include "foilgauge/measure.h"
+#include "foilgauge/traceability.h"
 #include "station/check_fit.h"
 #include "station/check_state.h"
 #include "station/keep.h"
@@ -194,10 +195,23 @@ fg_status fg_station_check_health(fg_context *ctx, sqlite3 *connection,
   return FG_OK;
 }
 
+/* Returns true when limits cannot be judged, as the recipe says nothing of the scanner's scale. */
+static bool is_scale_unknown(const fg_inspection *station, char *why, size_t size) {
+  const fg_design *design = &station->settings->lot.design;
+  if (!design->tolerance_count || fg_design_may_judge(design)) return false;
+  fg_text_clip(
+      why, size,
+      "Nothing is known of the scanner's scale: give the recipe a model of a plate "
+      "(\"model\"), a \"calibration\", or \"calibration\": \"flatbed\", the default for an "
+      "unknown flatbed.");
+  return true;
+}
+
 bool fg_station_check_withholds(fg_inspection *station, char *why, size_t size) {
   fg_context inner;
   fg_station_health health;
   const fg_station_check *check = &station->settings->check;
+  if (is_scale_unknown(station, why, size)) return true;
   if (!check->withhold) return false;
   pthread_mutex_lock(&station->database.writing);
   fg_status status = fg_station_check_health(&inner, station->database.writer, check, &health);

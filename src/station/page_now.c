@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "foilgauge/traceability.h"
 #include "page/page.h"
 #include "quantity/quantity_rows.h"
 #include "station/news.h"
@@ -81,7 +82,14 @@ static void write_arrival(FILE *out, int64_t id, const char *words) {
   fprintf(out, " data-arrival=\"%lld\" data-words=\"%s\"", (long long)id, words);
 }
 
-static void write_newest_call(FILE *out, const card *newest) {
+/* Writes what the verdict rests on. */
+static void write_traceability(FILE *out, const fg_inspection *station, const card *newest) {
+  if (newest->foils)
+    fprintf(out, "<br>traced to: %s",
+            fg_traceability_words[fg_design_traceability(&station->settings->lot.design)]);
+}
+
+static void write_newest_call(FILE *out, const fg_inspection *station, const card *newest) {
   const fg_card_style look =
       fg_page_card_style(newest->kind, newest->verdict, newest->withheld[0] != '\0');
   fprintf(out, "<div class=\"call %s%s\" role=\"status\"", look.style,
@@ -91,6 +99,7 @@ static void write_newest_call(FILE *out, const card *newest) {
   fg_html_text(out, newest->path);
   fputs("<br>", out);
   fg_page_time(out, newest->at);
+  write_traceability(out, station, newest);
   fputs("</span></div>\n<p class=\"next\">", out);
   if (newest->message[0]) {
     fg_html_text(out, newest->path);
@@ -282,7 +291,7 @@ fg_status fg_page_now(fg_context *ctx, fg_inspection *station, sqlite3 *reader,
   FG_TRY(read_newest(ctx, reader, &newest));
   fputs(newest.foils > 1 ? "<section class=\"many\" data-live>\n" : "<section data-live>\n", out);
   bool arriving = write_stage(out, station);
-  if (newest.id && !arriving) write_newest_call(out, &newest);
+  if (newest.id && !arriving) write_newest_call(out, station, &newest);
   if (!newest.id && !arriving) write_ready(station, out);
   fputs("<div data-typing></div>\n", out);
   write_scan_button(station, out);

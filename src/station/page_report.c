@@ -44,10 +44,10 @@ static fg_status write_measured(fg_context *ctx, const fg_stored_foil *stored,
   if (!leave_one(&shown, measurement, stored->number))
     return fg_fail(ctx, FG_ERR_DATA, "the foil was not found in it again");
   const fg_report_scan scan = {.path = shown.scan, .measurement = &shown, .name = stored->serial};
-  const fg_report report = {.design = &stored->settings.design,
-                            .nominal = &shown.nominal,
-                            .scans = &scan,
-                            .scan_count = 1};
+  fg_design design = stored->settings.design;
+  design.model_scale = measurement->design.model_scale;
+  const fg_report report = {
+      .design = &design, .nominal = &shown.nominal, .scans = &scan, .scan_count = 1};
   return fg_report_write_html(ctx, &report, out);
 }
 

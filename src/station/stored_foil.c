@@ -33,11 +33,22 @@ static fg_status copy_all(fg_context *ctx, const fg_query *query, fg_stored_foil
   return FG_OK;
 }
 
+/* Notes what the scale of the model of then was traced to. */
+static fg_status trace_model(fg_context *ctx, fg_stored_foil *stored) {
+  fg_scanner_model *model = NULL;
+  if (!stored->model) return FG_OK;
+  FG_TRY(fg_scanner_model_parse(ctx, "the scanner's model of then", stored->model, &model));
+  fg_scanner_model_trace(model, &stored->settings.design);
+  fg_scanner_model_free(model);
+  return FG_OK;
+}
+
 /* Reads setup and record, as far as this program can. */
 static fg_status understand(fg_context *ctx, const char *recipe, const char *record,
                             fg_stored_foil *stored) {
   fg_lot_settings_default(&stored->settings);
   FG_TRY(fg_lot_settings_parse(ctx, "the recipe of then", recipe, &stored->settings));
+  FG_TRY(trace_model(ctx, stored));
   FG_TRY(fg_record_parse(ctx, record, &stored->record));
   for (size_t i = 0; i < stored->record.foil_count; i++)
     if (stored->record.foils[i].number == stored->number) stored->foil = &stored->record.foils[i];

@@ -304,12 +304,17 @@ def truth_of(spec):
     return {("thickness", 0): design["thickness_mm"], **truth, ("R0", 0): foil["overall_radius_mm"]}
 
 
+# Stated, as limits are judged where the scale is known. An older build reads it, too.
+RENDERED = {"certificate": "rendered", "scale": {"u_rel": 1e-8}}
+
+
 def design_of(spec):
     """With limits that good parts keep by LIMIT_MM and that a strip or pin too thick by 8.5 um does not."""
     if spec.get("discs"):
         nominal = spec["nominal_mm"]
         limits = {"diameter_mm": {"min": nominal - 0.002 - LIMIT_MM, "max": nominal + 0.002 + LIMIT_MM}}
-        return {"schema": "foilgauge/design/1", "name": "pins", "form": "discs", "tolerances": limits}
+        return {"schema": "foilgauge/design/1", "name": "pins", "form": "discs", "tolerances": limits,
+                "calibration": RENDERED}  # fmt: skip
     design = spec["foils"][0]["design"]
     truth = truth_of(spec)
     good = [v + design["thickness_mm"] - THICK_MM for (name, _), v in truth.items() if name == "clearance"]
@@ -317,7 +322,7 @@ def design_of(spec):
               "clearance_mm": {"min": min(good) - LIMIT_MM, "max": max(good) + LIMIT_MM}}  # fmt: skip
     return {"schema": "foilgauge/design/1", "name": "driver", "form": "classical", "datum": "mid",
             "sleeve_radius_mm": design["overall_radius_mm"], **design, "thickness_mm": THICK_MM,
-            "tolerances": limits}  # fmt: skip
+            "tolerances": limits, "calibration": RENDERED}  # fmt: skip
 
 
 # --- what a renderer is told ----------------------------------------------------------------

@@ -18,7 +18,7 @@ done
 recipe() { # NAME DESIGN
   printf '{"schema":"foilgauge/recipe/1","name":"%s","design":{"schema":"foilgauge/design/1",%s}}' "$1" "$2" >"$1.json"
 }
-round='"tolerances":{"circularity_mm":{"max":0.11}}'
+round='"calibration":"not needed: rendered","tolerances":{"circularity_mm":{"max":0.11}}'
 recipe thesis "$round"
 recipe tight "\"rotor_diameter_mm\":40.11,$round"
 cut -d, -f1-3 manifest.csv >foils.csv

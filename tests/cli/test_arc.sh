@@ -6,7 +6,7 @@ listened="stdout stderr"
 
 cat >design.json <<'J'
 {"schema": "foilgauge/design/1", "form": "arc", "overall_radius_mm": 15, "subtended_angle_deg": 40, "thickness_mm": 0.1,
- "tolerances": {"arc.subtended_angle_deg": {"min": 39, "max": 41}, "overall.radius_mm": {"max": 15.4}}}
+ "calibration": "not needed: the scan is rendered", "tolerances": {"arc.subtended_angle_deg": {"min": 39, "max": 41}, "overall.radius_mm": {"max": 15.4}}}
 J
 # strip NAME MORE: a scan of a strip whose foil has more members.
 strip() {

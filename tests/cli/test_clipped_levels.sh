@@ -4,7 +4,7 @@
 #   test_clipped_levels.sh PROGRAM
 . tests/support/cli.sh
 
-echo '{"schema": "foilgauge/design/1", "bump_count": 3, "tolerances": {"thickness_mm": {"min": 0.095, "max": 0.105}}}' >limits.json
+echo '{"schema": "foilgauge/design/1", "bump_count": 3, "calibration": "not needed: the scan is rendered", "tolerances": {"thickness_mm": {"min": 0.095, "max": 0.105}}}' >limits.json
 # clip BRIGHT(1, 0) LOW HIGH THICKNESS DPI: counts below LOW and beyond HIGH of 31 to 199 are cut off
 clip() {
   local levels='"background": 31, "contrast": 168'
@@ -34,7 +34,7 @@ done
 clip 1 150 255 0.108 4800
 
 # A pin of two levels: its threshold may lie anywhere, and the blur that turns it into length is hidden.
-echo '{"schema": "foilgauge/design/1", "form": "discs", "tolerances": {"diameter_mm": {"min": 0.996, "max": 1.004}}}' >pin.json
+echo '{"schema": "foilgauge/design/1", "form": "discs", "calibration": "not needed: the scan is rendered", "tolerances": {"diameter_mm": {"min": 0.996, "max": 1.004}}}' >pin.json
 for threshold in 60 180; do
   cat >bit.json <<J
 {"schema": "foilgauge/render/1", "seed": 3, "foils": [], "discs": [{"centre_mm": [2.5, 2.5], "radius_mm": 0.5}],

@@ -136,6 +136,6 @@ fail_allocations "render --truth" whole_truth $((stride < 5 ? 1 : stride / 5)) \
 
 "$program" design >/dev/null || fail "design"
 cat >"$work/design.json" <<'DESIGN'
-{"schema": "foilgauge/design/1", "name": "a", "bump_count": 9, "tolerances": {"radius_mm": {"min": 3.2, "max": 3.4}}}
+{"schema": "foilgauge/design/1", "name": "a", "bump_count": 9, "calibration": "not needed: the scan is rendered", "tolerances": {"radius_mm": {"min": 3.2, "max": 3.4}}}
 DESIGN
 fail_allocations design out_of_memory_or_whole 1 "$program" design "$work/design.json"

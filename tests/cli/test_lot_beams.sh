@@ -6,7 +6,7 @@ listened="stdout stderr"
 
 cat >design.json <<'J'
 {"schema": "foilgauge/design/1", "form": "cantilever", "beam_count": 4, "beam_length_mm": 4, "beam_width_mm": 1, "thickness_mm": 0.1,
- "sagitta_mm": 0.5, "clearance_mm": 0.1, "elastic_modulus_gpa": 214, "tolerances": {"compliance_error_pct": {"min": -9, "max": 9}}}
+ "sagitta_mm": 0.5, "clearance_mm": 0.1, "elastic_modulus_gpa": 214, "calibration": "not needed: the scan is rendered", "tolerances": {"compliance_error_pct": {"min": -9, "max": 9}}}
 J
 # sheet NAME SEED LONGER [BEAMS]: a foil whose beams are longer by so many um.
 mkdir lot

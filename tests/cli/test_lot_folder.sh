@@ -147,8 +147,8 @@ for line in 'K0004/1 03.02.2026/14:05:00' 'K0006/1 C7' 'K0009/1 die A, operator 
   grep -qF "$line" deep/er/traced/results.dfq || fail "results.dfq has no $line"
 done
 for part in '<InspectionStart>2026-02-03T14:05:00Z</InspectionStart>' '<InspectionStart>2026-02-04T00:00:00Z<' \
-  '<Attributes n="6"><AttributeStr name="die" value="A"/>' 'name="operator" value="Kim &quot;K&quot; &lt;b&gt;"/>' \
-  '<Attributes n="4"><AttributeStr name="die" value="B"/>' '<AttributeStr name="scan" value="scans/foil2.png"/>'; do
+  '<Attributes n="7"><AttributeStr name="die" value="A"/>' 'name="operator" value="Kim &quot;K&quot; &lt;b&gt;"/>' \
+  '<Attributes n="5"><AttributeStr name="die" value="B"/>' '<AttributeStr name="scan" value="scans/foil2.png"/>'; do
   grep -qF "$part" deep/er/traced/results.qif || fail "results.qif has no $part"
 done
 if command -v xmllint >/dev/null; then
@@ -158,7 +158,7 @@ fi
 
 # A bearing that the manifest names is a product: itself, judged, and its foils in order of the pads; others are alone.
 printf 'scan,foil,bearing,pad,die\nscans/foil1.png,f1,B<7>,2,A\nscans/foil2.png,f2,B<7>,1,B\nscans/foil3.png,f3,,,A\n' >built.csv
-sed 's/"resamples"/"pads": 2, "bumps_per_pad": 3, "resamples"/; s/"bump_count": 3/&, "tolerances": {"circularity_mm": {"max": 0.5}}/' recipe.json >built.json
+sed 's/"resamples"/"pads": 2, "bumps_per_pad": 3, "resamples"/; s/"bump_count": 3/&, "calibration": "not needed: rendered", "tolerances": {"circularity_mm": {"max": 0.5}}/' recipe.json >built.json
 expect 0 '1 bearing' timeout 60 "$program" lot built.csv --recipe built.json -o built
 if command -v xmllint >/dev/null; then
   xmllint --noout --schema "$root/tests/support/qif3_results.xsd" built/results.qif 2>xmllint.log ||
@@ -177,7 +177,8 @@ assert sets == [["B<7>", "f2", "f1"], ["f3"]], sets
 foil = {a.get("name"): a.get("value") for a in next(root.iter(q + "ActualComponentSet"))[1].iter(q + "AttributeStr")}
 with open("scans/foil2.png", "rb") as file:
     assert foil == {"foil": "f2", "bearing": "B<7>", "pad": "1", "die": "B", "scan": "scans/foil2.png",
-                    "scan_sha256": hashlib.sha256(file.read()).hexdigest()}, foil
+                    "scan_sha256": hashlib.sha256(file.read()).hexdigest(),
+                    "traceability": "none; no calibration is needed: rendered"}, foil
 names = {i.get("id"): i.findtext(q + "Name") for i in root.iter(q + "CharacteristicItems") for i in i}
 of = {c.get("id"): c.findtext(q + "SerialNumber") for c in root.iter(q + "ActualComponent")}
 got = {}

@@ -28,7 +28,7 @@ printf '{"schema":"foilgauge/render/1","foils":[{"design":{"bump_count":3},"rota
 (cat scans/a.png && echo b) >scans/b.png # other bytes: another scan
 touch -d '2025-03-04T12:00:00Z' scans/a.png
 touch -d '2025-03-06T12:00:00Z' scans/b.png
-echo '{"schema":"foilgauge/design/1","bump_count":3,"tolerances":{"height_mm":{"min":0.5,"max":0.6}}}' >design.json
+echo '{"schema":"foilgauge/design/1","bump_count":3,"calibration": "not needed: the scan is rendered", "tolerances":{"height_mm":{"min":0.5,"max":0.6}}}' >design.json
 "$program" lot scans -o model --design design.json --name 'Lot <b>&' 2>said || fail "lot: $(cat said)"
 [ "$(value model/lot.json 'r["date"]')" = "{'first': '2025-03-04', 'last': '2025-03-06', 'from': 'scans'}" ] ||
   fail "the date of the scans: $(value model/lot.json 'r["date"]')"

@@ -173,7 +173,7 @@ done
 cp scans/foil_1.png inbox
 cat >my_foil.json <<'D'
 {"schema": "foilgauge/design/1", "name": "gen2", "bump_count": 3, "bump_radius_mm": 3.32, "bump_angle_deg": 63.15,
- "overall_radius_mm": 20.73, "thickness_mm": 0.1, "tolerances": {"radius_mm": {"min": 3, "max": 4}}}
+ "overall_radius_mm": 20.73, "thickness_mm": 0.1, "calibration": "not needed: rendered", "tolerances": {"radius_mm": {"min": 3, "max": 4}}}
 D
 echo '{"schema": "foilgauge/design/1", "form": "discs", "diameters_mm": [2, 3, 4, 5]}' >plate.json
 cat >plate_spec.json <<'D'

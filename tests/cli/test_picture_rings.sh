@@ -9,7 +9,7 @@ renderer=${FOILGAUGE_RENDERER:-$program}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cat >"$work/design.json" <<'D'
-{"schema": "foilgauge/design/1", "bump_count": 5, "tolerances": {"height_mm": {"min": 1, "max": 9}}}
+{"schema": "foilgauge/design/1", "bump_count": 5, "calibration": "not needed: the scan is rendered", "tolerances": {"height_mm": {"min": 1, "max": 9}}}
 D
 for turn in -90 0 90 135; do
   printf '{"schema": "foilgauge/render/1", "seed": 2, "scanner": {"dpi": 1200}, "foils": [{"rotate_deg": %s,

@@ -46,7 +46,7 @@ cat >"$work/recipe.json" <<'R'
  "station": {"file_name": "{serial}", "check": {"design": "plate.json", "file_name": "check*", "every_h": 24,
    "scale_max_ppm": 500, "withhold": true}},
  "design": {"schema": "foilgauge/design/1", "bump_count": 2,
-            "tolerances": {"radius_mm": {"min": 0.1, "max": 90}}}}
+            "calibration": "not needed: the scan is rendered", "tolerances": {"radius_mm": {"min": 0.1, "max": 90}}}}
 R
 plate 1 "$work/in/check_1.png"
 once

@@ -40,7 +40,7 @@ cat >"$work/recipe.json" <<R
 {"schema": "foilgauge/recipe/1",
  "station": {"file_name": "{serial}_{lot}", "scan_command": "'$work/scan.sh' '{file}'"},
  "design": {"schema": "foilgauge/design/1", "bump_count": 2,
-            "tolerances": {"radius_mm": {"min": 0.1, "max": 3}}}}
+            "calibration": "not needed: the scan is rendered", "tolerances": {"radius_mm": {"min": 0.1, "max": 3}}}}
 R
 "$program" station "$folder" --recipe "$work/recipe.json" --port 0 >"$work/address" 2>"$work/err" &
 station=$!

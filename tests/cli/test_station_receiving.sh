@@ -22,7 +22,7 @@ done
 mkdir "$work/in"
 cat >"$work/recipe.json" <<'R'
 {"schema": "foilgauge/recipe/1", "station": {"file_name": "{lot}_{serial}", "receive_s": 4},
- "design": {"schema": "foilgauge/design/1", "bump_count": 2, "tolerances": {"radius_mm": {"min": 3, "max": 3.6}}}}
+ "design": {"schema": "foilgauge/design/1", "bump_count": 2, "calibration": "not needed: the scan is rendered", "tolerances": {"radius_mm": {"min": 3, "max": 3.6}}}}
 R
 "$program" station "$work/in" --recipe "$work/recipe.json" --port 0 >"$work/address" 2>"$work/err" &
 station=$!

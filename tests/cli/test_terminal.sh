@@ -24,7 +24,7 @@ render() { # NAME SEED
 mkdir scans
 render scans/a.png 1
 render scans/b.png 2
-echo '{"schema":"foilgauge/design/1","bump_count":3,"tolerances":{"radius_mm":{"max":3.4},"height_mm":{"min":0.1},"overall.radius_mm":{"max":20.5}}}' >design.json
+echo '{"schema":"foilgauge/design/1","bump_count":3,"calibration": "not needed: the scan is rendered", "tolerances":{"radius_mm":{"max":3.4},"height_mm":{"min":0.1},"overall.radius_mm":{"max":20.5}}}' >design.json
 
 # The table is shown whatever files are written besides, and once.
 for outputs in '-o a.json' '--html a.html' '-o a.json --html a.html --csv a.csv'; do

@@ -102,8 +102,8 @@ value thick.out 'r["foils"][0]["flags"]' | grep -q 'other_thickness' || fail "a 
 value design.out 'r["foils"][0]["flags"]' | grep -q 'thickness' && fail "a strip as designed has a flag"
 
 # Verdicts: a good strip never fails, a bad one never passes, whatever the driver does; what decides it is said.
-design ', "tolerances": {"thickness_mm": {"max": 0.105}}' limit.json
-design ', "tolerances": {"thickness_mm": {"max": 0.105}, "clearance_mm": {"min": 0.0755}}' both.json
+design ', "calibration": "not needed: the scan is rendered", "tolerances": {"thickness_mm": {"max": 0.105}}' limit.json
+design ', "calibration": "not needed: the scan is rendered", "tolerances": {"thickness_mm": {"max": 0.105}, "clearance_mm": {"min": 0.0755}}' both.json
 sharp='"unsharp_mask": {"amount_pct": 100, "radius_px": 1}'
 curve='"tone_curve": [[0, 0], [40, 12], [65, 38], [90, 78], [115, 125], [140, 175], [165, 213], [190, 236], [255, 255]]'
 posterised='"levels": 2, "threshold": 90'
@@ -120,11 +120,11 @@ for effect in sharp curve posterised; do
 done
 listened="stdout stderr"
 "$program" measure plain.png --design both.json -o both.out --html both.html
-value both.out '[j["cure"] for j in r["foils"][0]["judgements"] if j["verdict"] == "cannot_tell"][0]' | grep -q 'micrometer (thickness_measured)' ||
+value both.out '[j["cure"] for j in r["foils"][0]["judgements"] if j["verdict"] == "cannot_tell"][0]' | grep -q 'micrometer and state it' ||
   fail "no cure for a thickness that cannot be told"
-grep -q 'What decides it:</b> State the strip' both.html || fail "the page does not say what decides it"
+grep -q 'What decides it:</b> Measure the strip' both.html || fail "the page does not say what decides it"
 script -qec "'$program' measure plain.png --design both.json" /dev/null >both.txt 2>/dev/null
-grep -q 'What decides it: State the strip' both.txt || fail "the terminal does not say what decides it"
+grep -q 'What decides it: Measure the strip' both.txt || fail "the terminal does not say what decides it"
 expect 0 '' "$program" measure plain.png --design limit.json --thickness-measured 0.1:0.0005 -o decided.out
 expect 1 '' "$program" measure plain.png --design limit.json --thickness-measured 0.1085:0.0005 -o decided.out
 
@@ -133,7 +133,7 @@ cat >pin.json <<'J'
 {"schema": "foilgauge/render/1", "seed": 3, "discs": [{"centre_mm": [1.4, 1.5], "radius_mm": 1.0}], "scanner": {"dpi": 2400, "noise": 1}}
 J
 "$renderer" render pin.json -o pin.png || fail "render a pin"
-echo '{"schema": "foilgauge/design/1", "form": "discs", "tolerances": {"diameter_mm": {"max": 2.003}}}' >pins.json
+echo '{"schema": "foilgauge/design/1", "form": "discs", "calibration": "not needed: the scan is rendered", "tolerances": {"diameter_mm": {"max": 2.003}}}' >pins.json
 expect 3 '' "$program" measure pin.png --design pins.json -o pin.out
 value pin.out 'r["discs"][0]["judgements"][0]["cure"]' | grep -q 'gauge of known diameter' || fail "no cure for a diameter"
 expect 0 '' "$program" measure pin.png --design pins.json --tone linear -o pin.out

@@ -19,7 +19,7 @@ render short '{"design":{"bump_count":4}}'
 render wide '{"design":{"bump_count":5,"overall_radius_mm":60,"sleeve_radius_mm":60,"pitch_deg":5}}'
 
 design() { # COUNT TOLERANCES
-  echo "{\"schema\":\"foilgauge/design/1\",\"bump_count\":$1,\"tolerances\":{$2}}" >design.json
+  echo "{\"schema\":\"foilgauge/design/1\",\"bump_count\":$1,\"calibration\":\"not needed: the scan is rendered\",\"tolerances\":{$2}}" >design.json
 }
 
 # measure CODE SCAN OPTION...: a.json, a.csv and a.html of it.
@@ -143,7 +143,7 @@ holds a.json 'f["in_tolerance"] is False and f["verdict"] == r["verdict"] == "no
   'f["overall"]["radius_mm"] is f["overall"]["u_radius_mm"] is f["overall"]["rms_um"] is None' \
   'f["thickness_mm"] is f["rotation_deg"] is f["noise_um"] is f["orientation"] is None'
 says a.csv '^three.png,1,,[a-z_ ]*not_measured,,,,'
-says a.csv ',not_measured,,[0-9]'
+says a.csv ',not_measured,,none,[0-9]'
 valid measure.schema.json a.json
 
 [ -n "${FOILGAUGE_TEST_LONG-}" ] || exit $failed
@@ -214,7 +214,7 @@ says b.html 'Not judged here: circularity_mm'
 bearings() { # CODE VERDICT LIMITS
   rm -rf whole
   printf '{"schema":"foilgauge/recipe/1","pads":3,"bumps_per_pad":3,"resamples":100,"design":{"schema":"foilgauge/design/1",
-"bump_count":3,"tolerances":{%s}}}' "$3" >recipe.json
+"bump_count":3,"calibration":"not needed: the scan is rendered","tolerances":{%s}}}' "$3" >recipe.json
   printf 'scan,bearing\nthree.png,A1\nagain.png,A1\nthird.png,A1\n' >bearings.csv
   cp three.png third.png
   expect "$1" '1 bearing: ' "$program" lot bearings.csv --recipe recipe.json -o whole

@@ -31,7 +31,8 @@ static inline fg_design synthetic_design(void) {
                       .bumps.pitch_deg = 40.0 / 3,
                       .bumps.fillet_radius_mm = 0.35,
                       .thickness_mm = 0.1,
-                      .bumps.rotor_diameter_mm = 40.0};
+                      .bumps.rotor_diameter_mm = 40.0,
+                      .calibration.not_needed = "the foil is synthetic"};
   return design;
 }
 

@@ -20,6 +20,7 @@ static fg_design toleranced(const char *quantity, double lower, double upper) {
   fg_design design;
   fg_design_default(&design);
   design.tolerance_count = 1;
+  strcpy(design.calibration.not_needed, "the foils are made up");
   design.tolerances[0] = (fg_tolerance){.lower = lower, .upper = upper};
   strcpy(design.tolerances[0].quantity, quantity);
   return design;

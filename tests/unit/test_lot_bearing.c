@@ -135,6 +135,7 @@ static fg_lot toleranced(const char *const *cells, double lower) {
   fg_design design;
   fg_design_default(&design);
   design.tolerance_count = 1;
+  strcpy(design.calibration.not_needed, "the foils are made up");
   design.tolerances[0] = (fg_tolerance){"clearance_centred_min_mm", lower, INFINITY};
   fg_lot lot = made_lot(&design, 9, 9, cells ? ",bearing,pad" : "", cells);
   for (size_t i = 0; i < 9; i++)
@@ -222,6 +223,7 @@ static void no_bearing_is_no_pass(void **state) {
   fg_lot_analysis analysis;
   fg_design_default(&design);
   design.tolerance_count = 1;
+  strcpy(design.calibration.not_needed, "the foils are made up");
   design.tolerances[0] = (fg_tolerance){"circularity_mm", -INFINITY, 0.05};
   fg_lot lot = made_lot(&design, 1, 9, "", NULL);
   for (size_t k = 0; k < 9; k++)

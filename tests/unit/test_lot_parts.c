@@ -96,6 +96,7 @@ static void a_written_recipe_reads_back_equal(void **state) {
   settings.assembly.bearings = 0;
   settings.assembly.seed = 77;
   settings.design.tolerance_count = 1;
+  strcpy(settings.design.calibration.not_needed, "made up");
   settings.design.tolerances[0] = (fg_tolerance){"height_mm", 0.5, INFINITY};
   char *text, *second;
   assert_ok(&ctx, fg_lot_settings_format(&ctx, &settings, true, &text));
@@ -136,7 +137,8 @@ static void bad_recipes_say_why(void **state) {
       {"\"assembly\": {\"bearings\": 2.5}", "whole number"},
       {"\"assembly\": {\"seed\": -1}", "assembly.seed is -1"},
       {"\"assembly\": {\"seed\": null}", "assembly.seed must be a number"},
-      {"\"assembly\": {\"baerings\": 1}", "assembly.baerings is not known; there are bearings, seed, design_deviation_pct"},
+      {"\"assembly\": {\"baerings\": 1}",
+       "assembly.baerings is not known; there are bearings, seed, design_deviation_pct"},
       {"\"assembly\": {\"seed\": 1, \"seed\": 1}", "assembly.seed is given twice"},
   };
   for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {

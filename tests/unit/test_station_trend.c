@@ -40,6 +40,7 @@ static int start(void **state) {
   assert_non_null(mkdtemp(f->folder));
   assert_ok(&ctx, fg_station_settings_load(&ctx, NULL, NULL, &f->settings));
   f->settings.lot.design.tolerance_count = 1;
+  strcpy(f->settings.lot.design.calibration.not_needed, "made up");
   f->settings.lot.design.tolerances[0] = (fg_tolerance){"radius_mm", 3.3, 3.5};
   f->request = (fg_station_request){.folder = f->folder, .settings = &f->settings};
   f->station.request = &f->request;

@@ -45,7 +45,8 @@ fg_status fg_lot_settings_check(fg_context *ctx, const fg_lot_settings *settings
 }
 
 static void overrule_calibration(fg_lot_settings *settings) {
-  if (settings->calibration.stated) settings->design.calibration = settings->calibration;
+  if (settings->calibration.stated || settings->calibration.not_needed[0])
+    settings->design.calibration = settings->calibration;
 }
 
 static fg_status read_recipe(fg_context *ctx, const char *path, const cJSON *root,
@@ -79,6 +80,7 @@ fg_status fg_lot_settings_load_design(fg_context *ctx, const char *path,
   fg_design design;
   fg_design_default(&design);
   FG_TRY(fg_design_load(ctx, path, &design));
+  design.model_scale = settings->design.model_scale;
   settings->design = design;
   overrule_calibration(settings);
   return FG_OK;
@@ -98,6 +100,7 @@ fg_status fg_lot_settings_load_model(fg_context *ctx, const char *path, const ch
     status = fg_scanner_model_check_scanner(ctx, model, path, scanner);
     strcpy(settings->model, name);
     strcpy(settings->model_sha256, fg_scanner_model_sha256(model));
+    fg_scanner_model_trace(model, &settings->design);
   }
   if (model) fg_scanner_model_free(model);
   free(whole);

@@ -52,7 +52,16 @@ static bool is_elsewhere(const fg_subject *subject) {
 /* A calibration of the recipe; else the design's says the same. */
 static fg_subject find_calibration(const fg_subject *subject) {
   const fg_calibration *calibration = &text_of(subject)->settings.calibration;
-  return (fg_subject){.object = calibration->stated ? calibration : NULL};
+  return (fg_subject){.object =
+                          calibration->stated || calibration->not_needed[0] ? calibration : NULL};
+}
+
+static void write_recipe_calibration(fg_json *json, const char *name, const fg_subject *subject) {
+  const fg_calibration *calibration = find_calibration(subject).object;
+  if (calibration)
+    fg_calibration_write(json, name, calibration);
+  else
+    fg_json_string(json, name, NULL);
 }
 
 static const char *bandwidth_choice(size_t i) {
@@ -207,9 +216,10 @@ static const fg_member recipe_rows[] = {
     {FG_GROUP("assembly", &assembly_members), .options = FG_MEMBER_ON_LINE,
      .words = "Bearings drawn from the lot's foils."},
     {FG_PART("calibration", find_calibration, &fg_calibration_members),
-     .read = read_recipe_calibration, .present = is_with_jobs,
-     .schema = "{\"anyOf\": [" FG_REF("design.schema.json#/$defs/calibration") ", {\"type\": "
-                                                                               "\"null\"}]}",
+     .read = read_recipe_calibration, .write = write_recipe_calibration, .present = is_with_jobs,
+     .schema =
+         "{\"anyOf\": [" FG_REF("design.schema.json#/$defs/calibration") ", " FG_CALIBRATION_WORDS
+                                                                         ", {\"type\": \"null\"}]}",
      .words = "As in `foilgauge-design`(5), over that of the recipe's design."},
     {FG_OBJECT("design", fg_lot_settings, design, &fg_design_members), .read = read_recipe_design,
      .schema = "{\"anyOf\": [" FG_REF("design.schema.json") ", {\"type\": \"string\"}]}",

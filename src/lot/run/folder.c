@@ -98,6 +98,7 @@ static fg_status load_model_copy(fg_context *ctx, const char *folder, fg_lot *lo
   FG_TRY(fg_lot_path(ctx, folder, FG_LOT_MODEL_FILE, &path));
   fg_status status = fg_file_read_text(ctx, path, FG_LOT_MODEL_BYTES_MAX, &text);
   if (status == FG_OK) status = fg_scanner_model_parse(ctx, FG_LOT_MODEL_FILE, text, &lot->model);
+  if (status == FG_OK) fg_scanner_model_trace(lot->model, &lot->settings.design);
   free(path);
   free(text);
   return status;

@@ -180,6 +180,10 @@ static const fg_member calibration_rows[] = {
      .words = "Its name, as reports show it."},
     {FG_TEXT("date", fg_calibration, date), UNLESS_EMPTY, .pattern = "^[0-9.-]{10}$",
      .words = "Of the certificate, as 2026-03-14."},
+    {FG_TEXT("artefact", fg_calibration, artefact), UNLESS_EMPTY,
+     .words = "The plate or gauge that the certificate is of: reports then say \"plate\"."},
+    {FG_TEXT("due", fg_calibration, due), UNLESS_EMPTY, .pattern = "^[0-9.-]{10}$",
+     .words = "The last day that the certificate holds: younger scans are refused."},
     {FG_WRITTEN("scale", write_scale, SCALE_SCHEMA), .read = read_scale,
      .options = FG_MEMBER_EXACT | FG_MEMBER_REQUIRED,
      .words = "How well the pixel's pitch is known, relative: `u_rel`, or `U_rel` with its factor "
@@ -195,6 +199,48 @@ static const fg_member calibration_rows[] = {
 const fg_members fg_calibration_members =
     FG_MEMBERS_OF_FILE(calibration_rows, "calibration", "design");
 
+static fg_status check_day(const fg_reading *reading, const char *member, const char *day) {
+  if (!day[0] || (strlen(day) == 10 && !isnan(fg_date_days(day)))) return FG_OK;
+  return fg_reading_fail(reading, member, "'%s' is no date; write it as 2026-03-14", day);
+}
+
+static const char flatbed[] = "flatbed", not_needed[] = "not needed";
+
+/* "flatbed", or "not needed: REASON". */
+static fg_status read_calibration_word(const fg_reading *reading, const char *word,
+                                       fg_calibration *c) {
+  size_t length = sizeof not_needed - 1;
+  if (!strcmp(word, flatbed)) {
+    *c = fg_calibration_of_flatbed();
+    return FG_OK;
+  }
+  *c = (fg_calibration){.stated = false};
+  const char *reason = !strncmp(word, not_needed, length) ? word + length : NULL;
+  if (!reason || strspn(reason, ": ") == strlen(reason) || reason[0] != ':')
+    return fg_reading_fail(reading, NULL,
+                           "'%.40s' is neither an object nor \"flatbed\" nor \"not needed\" with "
+                           "its reason, as \"not needed: the scan is rendered\"",
+                           word);
+  reason += strspn(reason, ": ");
+  if (strlen(reason) >= sizeof c->not_needed)
+    return fg_reading_fail(reading, NULL, "the reason is too long; at most %zu bytes",
+                           sizeof c->not_needed - 1);
+  strcpy(c->not_needed, reason);
+  return FG_OK;
+}
+
+void fg_calibration_write(fg_json *json, const char *name, const fg_calibration *c) {
+  char word[sizeof not_needed + sizeof c->not_needed + 2];
+  const fg_member row = {
+      .name = name, .kind = FG_MEMBER_OBJECT, .members = &fg_calibration_members};
+  if (!c->not_needed[0]) {
+    fg_member_json(json, &row, &(fg_subject){.object = c});
+    return;
+  }
+  snprintf(word, sizeof word, "%s: %s", not_needed, c->not_needed);
+  fg_json_string(json, name, word);
+}
+
 fg_status fg_calibration_read(const fg_reading *reading, const fg_member *member, const cJSON *item,
                               void *object) {
   fg_calibration *calibration = (void *)((char *)object + member->offset);
@@ -206,9 +252,10 @@ fg_status fg_calibration_read(const fg_reading *reading, const fg_member *member
     *calibration = (fg_calibration){.stated = false};
     return FG_OK;
   }
+  if (cJSON_IsString(item)) return read_calibration_word(&inside, item->valuestring, calibration);
   FG_TRY(fg_object_read(&inside, &fg_calibration_members, item, &c));
-  if (c.date[0] && (strlen(c.date) != 10 || isnan(fg_date_days(c.date))))
-    return fg_reading_fail(&inside, "date", "'%s' is no date; write it as 2026-03-14", c.date);
+  FG_TRY(check_day(&inside, "date", c.date));
+  FG_TRY(check_day(&inside, "due", c.due));
   bool expansion = cJSON_GetObjectItemCaseSensitive(item, "expansion") != NULL;
   if (c.has_temperature != expansion)
     return fg_reading_fail(&inside, NULL, "%s is missing; temperature and expansion go together",

@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "foilgauge/foil_kind.h"
+#include "foilgauge/traceability.h"
 #include "foilgauge/words.h"
 #include "report/design/kind_members.h"
 
@@ -74,7 +75,43 @@ static bool is_thickness_measured(const fg_subject *subject) {
 }
 
 static bool is_calibration_stated(const fg_subject *subject) {
-  return ((const fg_design *)subject->object)->calibration.stated;
+  const fg_calibration *c = &((const fg_design *)subject->object)->calibration;
+  return c->stated || c->not_needed[0];
+}
+
+static void write_calibration(fg_json *json, const char *name, const fg_subject *subject) {
+  fg_calibration_write(json, name, &((const fg_design *)subject->object)->calibration);
+}
+
+static bool has_artefact(const fg_subject *subject) {
+  return ((const fg_design *)subject->object)->artefact.name[0];
+}
+
+#define UNLESS_EMPTY .options = FG_MEMBER_LEFT_OUT | FG_MEMBER_EMPTY_IS_NULL
+static const fg_member artefact_rows[] = {
+    {FG_TEXT("name", fg_artefact, name), .options = FG_MEMBER_REQUIRED,
+     .words = "How it is marked."},
+    {FG_TEXT("certificate", fg_artefact, certificate), UNLESS_EMPTY, .words = "Its number."},
+    {FG_TEXT("date", fg_artefact, date), UNLESS_EMPTY, .pattern = "^[0-9.-]{10}$",
+     .words = "Of the certificate, as 2026-03-14."},
+    {FG_TEXT("due", fg_artefact, due), UNLESS_EMPTY, .pattern = "^[0-9.-]{10}$",
+     .words = "The last day that it holds: a model of the artefact refuses younger scans."},
+};
+#undef UNLESS_EMPTY
+const fg_members fg_artefact_members = FG_MEMBERS_OF_FILE(artefact_rows, "artefact", "design");
+
+static fg_status read_artefact(const fg_reading *reading, const fg_member *member,
+                               const cJSON *item, void *object) {
+  const fg_reading inside = fg_reading_inside(reading, member->name);
+  fg_artefact artefact = {{0}, {0}, {0}, {0}};
+  fg_context words = {0};
+  FG_TRY(fg_object_read(&inside, &fg_artefact_members, item, &artefact));
+  fg_status status = fg_artefact_check(&words, "artefact", &artefact);
+  if (status != FG_OK)
+    return fg_fail(reading->ctx, status, "%s%s%.900s", reading->path ? reading->path : "",
+                   reading->path ? ": " : "", words.message);
+  *(fg_artefact *)(void *)((char *)object + member->offset) = artefact;
+  return FG_OK;
 }
 
 static const fg_member thickness_rows[] = {
@@ -199,9 +236,17 @@ static const fg_member design_rows[] = {
      .highest = FG_TOLERANCES_MAX,
      .words = "An object of quantities with \"min\", \"max\" or both; below."},
     {FG_OBJECT("calibration", fg_design, calibration, &fg_calibration_members),
-     .read = fg_calibration_read, .options = FG_MEMBER_NULLABLE, .present = is_calibration_stated,
+     .read = fg_calibration_read, .write = write_calibration, .present = is_calibration_stated,
+     .schema = "{\"anyOf\": [{\"$ref\": \"#/$defs/calibration\"}, " FG_CALIBRATION_WORDS
+               ", {\"type\": \"null\"}]}",
      .words = "What the statistics of a scan cannot know: how long a pixel is, how warm the part "
-              "was; below."},
+              "was; below. \"flatbed\" is the default for an unknown flatbed; \"not needed: "
+              "REASON\" lets values be judged without any."},
+    {FG_OBJECT("artefact", fg_design, artefact, &fg_artefact_members), .read = read_artefact,
+     .present = has_artefact,
+     .words = "What the known sizes of gauges are traced to: a plate's `name`, its `certificate`, "
+              "`date` and `due`. The scanner's model that `foilgauge loop` makes of it keeps them, "
+              "and reports then say \"plate\"."},
     {FG_ARRAY("gauges", fg_design, gauges, gauge_count, &fg_gauge_members),
      .options = FG_MEMBER_LEFT_OUT, .highest = FG_GAUGES_MAX,
      .words = "An array of gauges that lie on the glass in the same scan, as {\"kind\": \"leaf\", "

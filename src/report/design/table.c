@@ -113,7 +113,12 @@ static void write_tolerances(const fg_design *design, FILE *out) {
 static void write_calibration(const fg_calibration *c, FILE *out) {
   fputs("\ncalibration\n", out);
   if (!c->stated) {
-    fputs("  none is stated: U of what is measured holds statistics only\n", out);
+    if (c->not_needed[0])
+      fprintf(out, "  not needed: %s\n", c->not_needed);
+    else
+      fputs("  none is stated: U of what is measured holds statistics only, and no value is held "
+            "against a limit\n",
+            out);
     return;
   }
   const fg_calibration_budget terms = fg_calibration_terms(c);

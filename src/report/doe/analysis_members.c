@@ -88,6 +88,10 @@ static fg_subject find_calibration(const fg_subject *s) {
       .object = is_calibration_stated(s) ? &fg_doe_whole_at(s)->report->design->calibration : NULL};
 }
 
+static fg_subject find_design_of_runs(const fg_subject *s) {
+  return (fg_subject){.object = fg_doe_whole_at(s)->report->design};
+}
+
 static double find_u_calibration(const fg_subject *s) {
   return is_calibration_stated(s) ? fg_doe_whole_at(s)->report->u_calibration : NAN;
 }
@@ -234,6 +238,8 @@ static const fg_member analysis_rows[] = {
      .schema = FG_REF("design.schema.json#/$defs/calibration_used"),
      .words = "of the scanner, by the design that the scans were measured with; null: no scans, or "
               "none is stated"},
+    {FG_PART("traceability", find_design_of_runs, &fg_traceability_members),
+     .options = FG_MEMBER_NULLABLE, .words = "what lengths of the scans rest on; null: no scans"},
     {FG_NUMBER_BY("u_calibration", find_u_calibration),
      .words = "standard uncertainty of the level of all runs by the calibration: the same error in "
               "every scan, in no run's u and in no effect's interval"},

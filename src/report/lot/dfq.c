@@ -12,6 +12,7 @@
 #include "core/file.h"
 #include "core/json_writer.h"
 #include "core/text.h"
+#include "foilgauge/traceability.h"
 #include "foilgauge/words.h"
 #include "lot/run/date.h"
 #include "report/lot/characteristics.h"
@@ -174,6 +175,7 @@ fg_status fg_lot_write_dfq(fg_context *ctx, const fg_lot_analysis *analysis, FIL
   fg_characteristic *list;
   fg_measured_part *parts;
   size_t count, part_count;
+  char traced[FG_TRACEABILITY_SENTENCE];
   FG_TRY(fg_characteristics_list(ctx, analysis, &list, &count));
   fg_status status = fg_measured_parts_list(ctx, analysis, &parts, &part_count);
   if (status != FG_OK) {
@@ -184,6 +186,9 @@ fg_status fg_lot_write_dfq(fg_context *ctx, const fg_lot_analysis *analysis, FIL
   put_field_text(out, analysis->lot->settings.design.name);
   fputs("\r\nK1002 ", out);
   put_field_text(out, analysis->lot->settings.name);
+  fputs("\r\nK1900 traced to ", out);
+  fg_traceability_sentence(&analysis->lot->settings.design, traced, sizeof traced);
+  put_field_text(out, traced);
   fputs("\r\n", out);
   for (size_t i = 0; i < count; i++)
     put_characteristic(out, i + 1, fg_lot_words_of(analysis), &list[i]);

@@ -96,6 +96,10 @@ static fg_subject find_calibration(const fg_subject *subject) {
   return (fg_subject){.object = calibration->stated ? calibration : NULL};
 }
 
+static fg_subject find_lot_design(const fg_subject *subject) {
+  return (fg_subject){.object = &analysis_of(subject)->lot->settings.design};
+}
+
 static const fg_member provenance_rows[] = {
     {FG_SHA256("recipe_sha256", fg_lot, head.recipe_sha256)},
     {FG_SHA256("manifest_sha256", fg_lot, head.manifest_sha256)},
@@ -107,6 +111,7 @@ static const fg_member provenance_rows[] = {
      .options = FG_MEMBER_LEFT_OUT, .words = "the largest over the foils"},
     {FG_PART("calibration", find_calibration, &fg_calibration_used_members),
      .schema = FG_REF("design.schema.json#/$defs/calibration_used")},
+    {FG_TRACEABILITY(find_lot_design)},
     {FG_OBJECT("design", fg_lot, settings.design, &fg_design_members),
      .schema = FG_REF("design.schema.json")},
     {FG_OBJECT("nominal", fg_lot, nominal, &fg_nominal_members), .present = has_bumps,

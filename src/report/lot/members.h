@@ -19,5 +19,7 @@ extern const fg_document fg_lot_document;
 /* True of subjects whose lot has such parts: beams of a cantilever, bumps of every other kind. */
 bool fg_lot_has_beams(const fg_subject *subject);
 bool fg_lot_has_no_beams(const fg_subject *subject);
+/* An fg_traceability, by the subject's whole. */
+int fg_lot_traceability(const fg_subject *subject);
 
 #endif

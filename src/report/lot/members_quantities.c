@@ -3,6 +3,7 @@
  * gauge studies. */
 #include <math.h>
 
+#include "foilgauge/traceability.h"
 #include "foilgauge/words.h"
 #include "page/page.h"
 #include "report/lot/members.h"
@@ -18,6 +19,11 @@ static const fg_lot_quantity *quantity_of(const fg_subject *subject) {
 
 bool fg_lot_has_beams(const fg_subject *subject) {
   return ((const fg_lot_analysis *)subject->whole)->parts == FG_QUANTITY_OF_BEAM;
+}
+
+int fg_lot_traceability(const fg_subject *subject) {
+  const fg_lot_analysis *analysis = subject->whole;
+  return (int)fg_design_traceability(&analysis->lot->settings.design);
 }
 
 bool fg_lot_has_no_beams(const fg_subject *subject) {

@@ -8,6 +8,7 @@
 #include "foilgauge/distribution.h"
 #include "foilgauge/foil_kind.h"
 #include "foilgauge/report.h"
+#include "foilgauge/traceability.h"
 #include "foilgauge/words.h"
 #include "page/page.h"
 #include "page/tile.h"
@@ -214,6 +215,16 @@ static void put_causes(FILE *out, const fg_lot_analysis *analysis) {
   fputs("</ul>\n", out);
 }
 
+/* Says why no foil is judged by its values, and what to do. */
+static void put_unknown_scale(FILE *out, const fg_lot_analysis *analysis) {
+  const fg_design *design = &analysis->lot->settings.design;
+  if (!design->tolerance_count || fg_design_may_judge(design)) return;
+  fputs("<p class=\"next\"><b>Cannot tell, as nothing is known of the scanner&#39;s scale.</b> ",
+        out);
+  fg_html_text(out, fg_traceability_cure);
+  fputs("</p>\n", out);
+}
+
 void fg_lot_put_heading(FILE *out, const fg_lot_analysis *analysis) {
   fputs("<header><h1>", out);
   fg_html_text(out, analysis->lot->settings.name);
@@ -224,7 +235,9 @@ void fg_lot_put_heading(FILE *out, const fg_lot_analysis *analysis) {
           fg_plural(analysis->foil_count), analysis->lot->manifest.items,
           fg_plural(analysis->lot->manifest.items));
   fg_html_text(out, analysis->lot->settings.design.name);
-  fputs("</p></header>\n", out);
+  fprintf(out, " · traced to: %s</p></header>\n",
+          fg_traceability_words[fg_design_traceability(&analysis->lot->settings.design)]);
+  put_unknown_scale(out, analysis);
   put_causes(out, analysis);
 }
 

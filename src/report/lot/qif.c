@@ -14,6 +14,7 @@
 #include "core/file.h"
 #include "core/json_writer.h"
 #include "core/sha256.h"
+#include "foilgauge/traceability.h"
 #include "foilgauge/words.h"
 #include "lot/run/date.h"
 #include "page/page.h"
@@ -158,7 +159,9 @@ static const char *inspection_status(fg_verdict verdict) {
 static void put_qif_measurement(const qif *q, size_t id, size_t i, double value, double u) {
   const fg_characteristic *one = &q->list[i];
   const fg_tolerance *tolerance = one->tolerance;
-  fg_verdict verdict = tolerance ? fg_judge_value(tolerance, value, u) : FG_VERDICT_NONE;
+  fg_verdict verdict = tolerance ? fg_judge_measured(&q->analysis->lot->settings.design, tolerance,
+                                                     one->row, value, u)
+                                 : FG_VERDICT_NONE;
   fprintf(q->out,
           "<%sCharacteristicMeasurement id=\"%zu\"><Status><CharacteristicStatusEnum>%s"
           "</CharacteristicStatusEnum></Status><CharacteristicItemId>%zu</CharacteristicItemId>"
@@ -228,7 +231,8 @@ static void put_attribute(FILE *out, const char *name, const char *value) {
 /* Puts the cells of the manifest that are not empty, and the origin of the foil. */
 static void put_attributes(const qif *q, const fg_measured_part *part) {
   const fg_manifest *manifest = &q->analysis->lot->manifest;
-  size_t item = part->foil->item, count = 2;
+  char traced[FG_TRACEABILITY_SENTENCE];
+  size_t item = part->foil->item, count = 3;
   bool pad =
       part->bearing &&
       *fg_manifest_cell(manifest, item,
@@ -244,6 +248,8 @@ static void put_attributes(const qif *q, const fg_measured_part *part) {
   if (pad) put_attribute(q->out, "pad", number);
   put_attribute(q->out, "scan", fg_manifest_scan(manifest, item));
   put_attribute(q->out, "scan_sha256", q->analysis->lot->records[item].sha256);
+  fg_traceability_sentence(&q->analysis->lot->settings.design, traced, sizeof traced);
+  put_attribute(q->out, "traceability", traced);
   fputs("</Attributes>", q->out);
 }
 

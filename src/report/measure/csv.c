@@ -6,6 +6,7 @@
 #include "core/csv.h"
 #include "core/file.h"
 #include "core/json_writer.h"
+#include "foilgauge/traceability.h"
 #include "foilgauge/words.h"
 #include "quantity/quantity_rows.h"
 #include "report/flag_names.h"
@@ -40,7 +41,8 @@ typedef struct scan_lines {
 
 /* `foil` NULL: of a disc. */
 static void put_end(FILE *out, const scan_lines *scan, fg_verdict verdict, const fg_foil *foil) {
-  fprintf(out, ",%s,%s", fg_verdict_word(verdict), scan->measurement->model_sha256);
+  fprintf(out, ",%s,%s,%s", fg_verdict_word(verdict), scan->measurement->model_sha256,
+          fg_traceability_words[fg_design_traceability(scan->design)]);
   for (int i = 0; foil && i < 4; i++)
     fg_csv_put_number(out, foil->place_mm[i]);
   fputc('\n', out);
@@ -125,7 +127,7 @@ static void put_heading(FILE *out, fg_quantity_owner owner) {
         out);
   for (size_t i = 0; i < count; i++)
     put_names(out, &rows[i]);
-  fputs(",verdict,model_sha256", out);
+  fputs(",verdict,model_sha256,traceability", out);
   if (owner != FG_QUANTITY_OF_DISC) fputs(",foil_x_mm,foil_y_mm,foil_width_mm,foil_height_mm", out);
   fputc('\n', out);
 }

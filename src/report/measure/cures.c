@@ -2,6 +2,7 @@
 /* Cures of a verdict of "cannot tell", the cheapest first. */
 #include "report/measure/cures.h"
 #include "foilgauge/foil_kind.h"
+#include "foilgauge/traceability.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -24,6 +25,7 @@ static const char midline[] =
 const char *fg_cure_of(const fg_design *design, const fg_quantity *row) {
   const fg_foil_traits *kind = fg_foil_traits_of(design->kind);
   bool of_strip = kind->has_bumps || !strncmp(row->name, "thickness", 9);
+  if (!fg_design_may_judge(design)) return fg_traceability_cure;
   if (design->tone == FG_TONE_LINEAR) return NULL;
   if (row->uses & FG_QUANTITY_OF_DATUM && design->datum != FG_DATUM_MID) return midline;
   if (!(row->uses & FG_QUANTITY_BETWEEN_EDGES)) return NULL;

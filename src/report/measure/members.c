@@ -268,6 +268,7 @@ static const fg_member report_rows[] = {
     {FG_SCAN_MODEL("model", write_model)},
     {FG_WRITTEN("calibration", write_report_calibration,
                 FG_REF("design.schema.json#/$defs/calibration_used"))},
+    {FG_TRACEABILITY(find_design)},
     {FG_PART("design", find_design, &fg_design_members), .schema = FG_REF("design.schema.json"),
      .options = FG_MEMBER_NEVER_NULL},
     {FG_PART("nominal", find_nominal, &fg_nominal_members), .present = has_nominal,

@@ -5,6 +5,7 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "foilgauge/scan_loop.h"
+#include "foilgauge/traceability.h"
 #include "report/correction_words.h"
 #include "report/measure/colour_lines_report.h"
 #include "report/measure/drawing.h"
@@ -177,6 +178,11 @@ static void put_heading(FILE *out, const fg_report_scan *scan, const fg_foil *fo
   fputs("</h1>", out);
 }
 
+/* Of the headline: what a verdict rests on. */
+static void put_traceability(FILE *out, const fg_design *design) {
+  fprintf(out, " · traced to: %s", fg_traceability_words[fg_design_traceability(design)]);
+}
+
 static void put_judged(FILE *out, const fg_design *design, const fg_report_scan *scan,
                        const fg_foil *foil, const fg_decision *decision) {
   static const fg_verdict told[] = {FG_VERDICT_FAIL, FG_VERDICT_NOT_MEASURED, FG_VERDICT_UNDECIDED};
@@ -188,6 +194,7 @@ static void put_judged(FILE *out, const fg_design *design, const fg_report_scan 
   fputs("<p>", out);
   fg_html_text(out, fg_html_base_name(scan->measurement->scan));
   fg_foil_view_of(design->kind)->page_heading(foil, out);
+  put_traceability(out, design);
   fputs("</p></header>\n", out);
   fg_html_defect(out, design, foil);
   for (size_t i = 0; i < sizeof told / sizeof *told; i++)
@@ -268,6 +275,7 @@ static fg_status put_discs(fg_context *ctx, FILE *out, const fg_report *report,
   fg_html_verdict(out, outcome.verdict);
   fputs("<p>", out);
   fg_html_text(out, fg_html_base_name(measurement->scan));
+  put_traceability(out, report->design);
   fputs("</p></header>\n", out);
   FG_TRY(fg_html_disc_reasons(ctx, out, report->design, measurement));
   put_disc_findings(out, measurement);

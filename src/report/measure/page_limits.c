@@ -51,7 +51,7 @@ static void find_limit_range(const panel *p, double range[2]) {
     double u = fg_quantity_uncertainty(p->row, fg_foil_part_at(p->parts, i));
     double expanded = isfinite(u) ? FG_COVERAGE_FACTOR * u : 0;
     if (!isfinite(value)) continue;
-    bool fails = fg_judge_value(p->limit, value, u) == FG_VERDICT_FAIL;
+    bool fails = fg_judge_measured(p->design, p->limit, p->row, value, u) == FG_VERDICT_FAIL;
     from = fmin(from, fmin(fails ? INFINITY : value, fmax(max[0], value - expanded)));
     to = fmax(to, fmax(fails ? -INFINITY : value, fmin(max[1], value + expanded)));
   }
@@ -142,7 +142,7 @@ static void put_limit_value(const panel *p, size_t i) {
           "r=\"4.5\"/>\n",
           x, fg_plot_y(&p->at, fmax(p->at.y_low, value - expanded)),
           fg_plot_y(&p->at, fmin(p->at.y_high, value + expanded)), x, y);
-  put_verdict(p, fg_judge_value(p->limit, value, u), x, y);
+  put_verdict(p, fg_judge_measured(p->design, p->limit, p->row, value, u), x, y);
 }
 
 static void put_panel(FILE *out, const fg_design *design, const fg_foil *foil,

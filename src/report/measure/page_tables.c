@@ -43,8 +43,8 @@ static void put_part_cell(FILE *out, const fg_design *design, const fg_quantity 
   const fg_tolerance *tolerance = find_tolerance(design, row->name);
   fg_verdict verdict = FG_VERDICT_NONE;
   if (tolerance && judged)
-    verdict = fg_judge_value(tolerance, fg_quantity_value(row, object),
-                             fg_quantity_uncertainty(row, object));
+    verdict = fg_judge_measured(design, tolerance, row, fg_quantity_value(row, object),
+                                fg_quantity_uncertainty(row, object));
   fprintf(out, "<td class=\"%s\">", fg_verdict_word(verdict));
   put_quantity_value(out, row, object);
   fputs("</td>", out);

@@ -6,6 +6,7 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "core/utf8.h"
+#include "foilgauge/traceability.h"
 #include "foilgauge/words.h"
 #include "quantity/quantity_rows.h"
 #include "report/correction_words.h"
@@ -300,13 +301,19 @@ static fg_status put_outcome(fg_context *ctx, FILE *out, const fg_report *report
   if (outcome->not_measured)
     fprintf(out, "INCOMPLETE: %zu without a value.\n", outcome->not_measured);
   if (outcome->undecided) {
-    fprintf(out, "CANNOT TELL: a limit lies within ± of %zu value(s)", outcome->undecided);
+    fprintf(out,
+            fg_design_may_judge(design)
+                ? "CANNOT TELL: a limit lies within ± of %zu value(s)"
+                : "CANNOT TELL: the scanner's scale is not known, and %zu value(s) rest on it",
+            outcome->undecided);
     FG_TRY(fg_report_write_quantities(ctx, report, FG_VERDICT_UNDECIDED, out));
-    fputs(outcome->verdict == FG_VERDICT_UNDECIDED ? "; none is beyond a limit.\n" : ".\n", out);
+    bool none_beyond = outcome->verdict == FG_VERDICT_UNDECIDED && fg_design_may_judge(design);
+    fputs(none_beyond ? "; none is beyond a limit.\n" : ".\n", out);
     FG_TRY(fg_report_write_cures(ctx, report, out));
   }
   if (outcome->verdict == FG_VERDICT_PASS)
-    fputs("Within every tolerance, uncertainty included.\n", out);
+    fprintf(out, "Within every tolerance, uncertainty included. Traced to: %s.\n",
+            fg_traceability_words[fg_design_traceability(design)]);
   size_t of_bearing = fg_report_of_bearing(design, names, sizeof names);
   if (outcome->verdict == FG_VERDICT_NONE)
     fprintf(out, "The design states no tolerances%s: nothing is judged.\n",
@@ -314,6 +321,15 @@ static fg_status put_outcome(fg_context *ctx, FILE *out, const fg_report *report
   if (of_bearing)
     fprintf(out, "Not judged here: %s: of a bearing; `foilgauge lot` judges it.\n", names);
   return FG_OK;
+}
+
+/* Says what lengths rest on; where that is nothing, what to do, unless the cures have said it. */
+static void put_traceability(FILE *out, const fg_design *design, const fg_report_outcome *outcome) {
+  char sentence[FG_TRACEABILITY_SENTENCE];
+  fg_traceability_sentence(design, sentence, sizeof sentence);
+  bool is_said = fg_design_may_judge(design) || outcome->undecided;
+  fprintf(out, "Traced to: %s.\n", sentence);
+  if (!is_said) fprintf(out, "%s\n", fg_traceability_cure);
 }
 
 fg_status fg_report_write_table(fg_context *ctx, const fg_report *report, FILE *out) {
@@ -330,5 +346,6 @@ fg_status fg_report_write_table(fg_context *ctx, const fg_report *report, FILE *
   const char *note = fg_foil_view_of(report->design->kind)->table_note;
   if (note) fputs(note, out);
   fprintf(out, "± is U = 2 u (k = 2, about 95 %%).\n%s\n", scale);
+  put_traceability(out, report->design, &outcome);
   return fg_stream_finish(ctx, out, "the table");
 }

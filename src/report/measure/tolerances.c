@@ -9,6 +9,7 @@
 #include "core/memory.h"
 #include "foilgauge/foil_kind.h"
 #include "foilgauge/report.h"
+#include "foilgauge/traceability.h"
 #include "quantity/parts.h"
 #include "quantity/quantity_rows.h"
 #include "report/measure/cures.h"
@@ -73,10 +74,22 @@ static double severity_of(const fg_design *design, const fg_tolerance *tolerance
   return 1 - margin->inside / allowed_deviation(design, tolerance, row, margin->limit, u);
 }
 
+static bool is_by_micrometer(const fg_design *design, const fg_quantity *row) {
+  return design->thickness_measured_mm > 0 && !strcmp(row->name, "thickness_mm");
+}
+
+fg_verdict fg_judge_measured(const fg_design *design, const fg_tolerance *tolerance,
+                             const fg_quantity *row, double value, double u) {
+  fg_verdict verdict = fg_judge_value(tolerance, value, u);
+  bool decided = verdict == FG_VERDICT_PASS || verdict == FG_VERDICT_FAIL;
+  bool may_judge = fg_design_may_judge(design) || is_by_micrometer(design, row);
+  return decided && !may_judge ? FG_VERDICT_UNDECIDED : verdict;
+}
+
 static fg_judgement judge_quantity(const fg_design *design, const fg_tolerance *tolerance,
                                    const fg_quantity *row, const void *object, int number) {
   double value = fg_quantity_value(row, object), u = fg_quantity_uncertainty(row, object);
-  fg_verdict verdict = fg_judge_value(tolerance, value, u);
+  fg_verdict verdict = fg_judge_measured(design, tolerance, row, value, u);
   fg_margin margin = fg_margin_to(tolerance->lower, tolerance->upper, value);
   return (fg_judgement){.tolerance = tolerance,
                         .row = row,

@@ -160,6 +160,10 @@ static fg_subject find_calibration_of_scans(const fg_subject *s) {
   return (fg_subject){c->stated ? c : NULL, s->whole, 0};
 }
 
+static fg_subject find_design_of_scans(const fg_subject *s) {
+  return (fg_subject){&fg_scan_result_of(s)->scan[0].before->design, s->whole, 0};
+}
+
 static const char *advice_at(const fg_subject *s, size_t i) {
   const fg_scan_result *result = s->object;
   return i < result->advices ? result->advice[i] : NULL;
@@ -181,6 +185,7 @@ static const fg_member result_rows[] = {
      .words = "scans, in their order"},
     {FG_PART("calibration", find_calibration_of_scans, &fg_calibration_used_members),
      .words = "it is in u_ of the foils of before and after, and in nothing that the loop decides"},
+    {FG_TRACEABILITY(find_design_of_scans)},
     {FG_FLAG("same_foil", fg_scan_result, same_foil), .words = "all scans show the same foil"},
     {FG_NUMBER("p_value", fg_scan_result, p_value),
      .words = "that no effect is needed: all candidates together against the noise"},
