@@ -51,12 +51,14 @@ extern "C" {
 #endif
 
 enum {
-  FG_LOOP_SHAPES = 2,       /* maximum number of non-linear parameters of an effect */
-  FG_LOOP_COLUMNS = 32,     /* maximum number of linear columns of an effect */
-  FG_LOOP_CLAIMS = 6,       /* maximum number of effects in one report */
-  FG_LOOP_STARTS = 1024,    /* maximum number of start values of an effect's shape */
-  FG_LOOP_OUTLIER_ROWS = 8, /* maximum number of outlier rows in one claim */
-  FG_LOOP_ALIASES = 12,     /* maximum number of reported members of an alias class */
+  FG_LOOP_SHAPES = 2,                   /* maximum number of non-linear parameters of an effect */
+  FG_LOOP_COLUMNS = 32,                 /* maximum number of linear columns of an effect */
+  FG_LOOP_CLAIMS = 6,                   /* maximum number of effects in one report */
+  FG_LOOP_STARTS = 1024,                /* maximum number of start values of an effect's shape */
+  FG_LOOP_OUTLIER_ROWS = 8,             /* maximum number of outlier rows in one claim */
+  FG_LOOP_ALIASES = 12,                 /* maximum number of reported members of an alias class */
+  FG_LOOP_ORDERS = FG_LOOP_COLUMNS / 2, /* maximum number of orders of one cycle */
+  FG_LOOP_ORDER_MAX = 64,               /* highest order of a base period */
   FG_LOOP_NAME = 96,
 };
 
@@ -70,6 +72,7 @@ typedef enum fg_loop_role {
   FG_LOOP_SENSITIVITY = 32, /* a basis by itself: the response's change by one unit of a part's
                                parameter */
   FG_LOOP_LEVEL = 64,       /* the declared model's prediction of the response */
+  FG_LOOP_DIRECTION = 128,  /* two levels: the sense in which places were approached */
 } fg_loop_role;
 
 typedef struct fg_loop_coordinate {
@@ -84,6 +87,12 @@ typedef struct fg_loop_coordinate {
   unsigned roles;
   double kelvin_offset; /* value + kelvin_offset = kelvin */
   double low, high;     /* range over all rows; bases are scaled by it */
+  double spacing; /* of neighbouring places that tells a cycle: cycles shorter than twice of it are
+                     not sought */
+  bool even; /* all places lie on a grid of that spacing: shorter cycles look like longer ones */
+  double period; /* base period that is known: declared, or a turn of an angle; 0: none */
+  bool declared_period;
+  size_t order_max; /* highest order of that base that these places tell */
 } fg_loop_coordinate;
 
 struct fg_loop_problem;
@@ -127,6 +136,8 @@ typedef struct fg_loop_candidate {
   size_t a, b; /* coordinates; b = a for an effect of one */
   size_t rows; /* of outlier or exchanged responses */
   size_t row[FG_LOOP_OUTLIER_ROWS];
+  uint64_t orders; /* of a cycle: bit k - 1 for order k of the base period that is its shape; 0: the
+                      first alone */
 } fg_loop_candidate;
 
 typedef bool fg_loop_accepts(const fg_loop_problem *problem, size_t a, size_t b);
@@ -189,7 +200,8 @@ typedef struct fg_loop_effect {
   fg_loop_starts *starts;
   /* the shape is a place between rows: small steps cannot refine it */
   bool stepwise;
-  bool cycle;        /* the shape is a period, the columns are sine and cosine */
+  bool cycle;        /* the shape is a period, the columns are sine and cosine of its orders */
+  bool held;         /* the shape is known: an order of the coordinate's base period */
   bool from_zero;    /* the amplitude is the largest size, not half the range */
   bool own_levels;   /* every measured value has a level of its own: values between are unknown */
   bool slope;        /* its coefficient is half the change over its coordinate's range */
@@ -242,6 +254,14 @@ typedef struct fg_loop_alias {
   bool sum;
 } fg_loop_alias;
 
+/* Order of a cycle: amplitude cos(2 pi order x / base - phase), x of the column. */
+typedef struct fg_loop_order_fit {
+  size_t order;
+  double amplitude, amplitude_u;
+  double phase_deg, phase_u_deg;
+  double peak_at, peak_at_u; /* place of the peak nearest to the middle of the range */
+} fg_loop_order_fit;
+
 typedef struct fg_loop_claim {
   fg_loop_candidate candidate;
   char name[FG_LOOP_NAME]; /* "table.linear(humidity_pct)" */
@@ -249,6 +269,8 @@ typedef struct fg_loop_claim {
   size_t columns;
   double shape[FG_LOOP_SHAPES], shape_u[FG_LOOP_SHAPES];
   double coefficient[FG_LOOP_COLUMNS], coefficient_u[FG_LOOP_COLUMNS];
+  fg_loop_order_fit order[FG_LOOP_ORDERS];
+  size_t orders;      /* of a cycle */
   double amplitude;   /* half the range of the effect over the rows, response's unit */
   double amplitude_u; /* standard uncertainty */
   double interval[2]; /* 95 % */
@@ -343,6 +365,11 @@ fg_status fg_loop_run(fg_context *ctx, const fg_loop_problem *problem,
                       const fg_loop_options *options, fg_loop_result *result);
 void fg_loop_result_free(fg_loop_result *result);
 
+/* Returns true for order k of a cycle's base period. */
+static inline bool fg_loop_has_order(const fg_loop_candidate *cycle, size_t k) {
+  return cycle->orders ? cycle->orders >> (k - 1) & 1 : k == 1;
+}
+
 /* Returns true for a spread with an sd of its own for every level, false for a slope. */
 bool fg_loop_spread_by_levels(const fg_loop_problem *problem, const fg_loop_candidate *candidate);
 
@@ -369,6 +396,13 @@ double fg_loop_curve_at(const fg_loop_curve *curve, double value);
 /* Returns the effects of tables, of parts over bumps, and of heat treatment. */
 const fg_loop_effect *fg_loop_table_effects(void);
 
+/* Base period that is known of a column: 360 of an angle, the lead of a screw. */
+typedef struct fg_loop_known_period {
+  const char *column;
+  double period;
+} fg_loop_known_period;
+enum { FG_LOOP_PERIODS = 16 };
+
 typedef struct fg_loop_table_spec {
   const char *response; /* column */
   const char *model;    /* a formula, or "arc_length" */
@@ -379,6 +413,8 @@ typedef struct fg_loop_table_spec {
   const char *hold_out; /* "0.2", "COLUMN=VALUE"; "0" or NULL: no row is held out */
   const fg_design *design; /* arc_length only */
   uint64_t seed;
+  fg_loop_known_period period[FG_LOOP_PERIODS];
+  size_t periods;
 } fg_loop_table_spec;
 
 /* Declared model in a file: {"response", "model", "group", "order", "design": {...}}. Members
@@ -436,45 +472,6 @@ fg_status fg_loop_write_text(fg_context *ctx, const fg_loop_report *report, FILE
 fg_status fg_loop_sentence(fg_context *ctx, const fg_loop_report *report, char **text);
 /* Returns the assumed noise model in words. */
 const char *fg_loop_noise_model(const fg_loop_result *result);
-
-/* ---- the model file: declared model and the effects found ---- */
-
-typedef struct fg_loop_model fg_loop_model;
-
-/* "foilgauge/loop-model/1". */
-fg_status fg_loop_write_model(fg_context *ctx, const fg_loop_report *report, FILE *out);
-/* FG_ERR_DATA for a file that is no model. Free with fg_loop_model_free. */
-fg_status fg_loop_model_load(fg_context *ctx, const char *path, fg_loop_model **model);
-/* Subtracts the effects of the model from the response column of a table, so that an analysis with
- * the declared formula starts from the better model. Effects of single rows (outlier, exchanged
- * runs) belong to the model's own table and are not applied. A value outside the model's range, or
- * a level unknown to it, is FG_ERR_DATA with its row. */
-fg_status fg_loop_model_apply(fg_context *ctx, const fg_loop_model *model, fg_table *table);
-
-/* Effect that a model subtracted from a table. */
-typedef struct fg_loop_taken {
-  char id[FG_LOOP_NAME], words[4 * FG_LOOP_NAME]; /* "a trend with humidity" */
-  char sentence[10 * FG_LOOP_NAME]; /* with its effect on the response, in the file's own words; or
-                                       empty */
-  double amplitude, u_amplitude;    /* with standard uncertainty, as in the file; NaN: unknown */
-  size_t parameters;                /* number of parameters estimated for it */
-  double low, high;                 /* range of the subtracted effect over the rows */
-  bool applied;                     /* false: it belongs to rows of the model's own table */
-} fg_loop_taken;
-
-typedef struct fg_loop_takings {
-  fg_loop_taken *one;
-  size_t count;
-  double *change; /* rows: the subtracted sum */
-} fg_loop_takings;
-
-/* As fg_loop_model_apply, with a list of the subtracted effects. Free with fg_loop_takings_free. */
-fg_status fg_loop_model_take(fg_context *ctx, const fg_loop_model *model, fg_table *table,
-                             fg_loop_takings *takings);
-void fg_loop_takings_free(fg_loop_takings *takings);
-const char *fg_loop_model_response(const fg_loop_model *model);
-const char *fg_loop_model_formula(const fg_loop_model *model);
-void fg_loop_model_free(fg_loop_model *model);
 
 #ifdef __cplusplus
 }

@@ -11,7 +11,8 @@ extern "C" {
 #endif
 
 typedef enum fg_loop_kind {
-  FG_LOOP_KIND_COLUMNS,      /* levels, slopes and bends over a recorded column */
+  FG_LOOP_KIND_COLUMNS,      /* levels, slopes and bends over a recorded column, orders of a base
+                                period that is known of it */
   FG_LOOP_KIND_INTERACTIONS, /* of two recorded columns */
   FG_LOOP_KIND_CURVES,       /* steps, cycles and free curves over a column */
   FG_LOOP_KIND_ORDER,        /* everything over an order, correlation of neighbours included */

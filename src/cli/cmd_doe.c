@@ -11,7 +11,7 @@
 #include "cli/doe_kept_plan.h"
 #include "cli/facts.h"
 #include "cli/runs.h"
-#include "foilgauge/loop.h"
+#include "foilgauge/loop_model.h"
 #include "foilgauge/memory.h"
 #include "foilgauge/plan.h"
 #include "foilgauge/text.h"

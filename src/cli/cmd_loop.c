@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include <argp.h>
+#include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,6 +13,7 @@
 #include "cli/output_set.h"
 #include "cli/progress.h"
 #include "foilgauge/file.h"
+#include "foilgauge/loop_model.h"
 
 typedef fg_status loop_writer(fg_context *ctx, const fg_loop_report *report, FILE *out);
 
@@ -57,6 +59,7 @@ enum {
   OPTION_OFFSET,
   OPTION_FORMING_MODEL,
   OPTION_EXPECT,
+  OPTION_PERIOD,
 };
 
 /* A lot's response where none is named. */
@@ -95,6 +98,10 @@ static const struct argp_option options[] = {
     {"group", OPTION_GROUP, "COLUMN", 0, "Rows of a group share its level (foil)", 0},
     {"order", OPTION_ORDER, "COLUMN", 0,
      "Order of the rows, in groups of their rows (default: run, or bump)", 0},
+    {"period", OPTION_PERIOD, "COLUMN=P", 0,
+     "Base period that is known of a column (angle_deg=360, x_mm=2 of a screw's lead): its orders "
+     "1, 2, 3 ... are tried first (may be repeated; a turn is known of angles: angle_deg)",
+     0},
     {"design", OPTION_DESIGN, "FILE", 0, "The foil's design, for arc_length", 0},
     {"declared", OPTION_DECLARED, "FILE", 0,
      "JSON with response, model, group and design; options win over it", 0},
@@ -141,6 +148,18 @@ static void parse_loop_number(struct argp_state *state, const char *name, const 
   char *end;
   *value = strtod(text, &end);
   if (*end || end == text || !(*value > 0)) argp_error(state, "--%s %s: above 0", name, text);
+}
+
+/* COLUMN=P; the text, which argp owns, is cut at its last equals sign. */
+static void parse_period(struct argp_state *state, char *text, fg_loop_table_spec *spec) {
+  char *equals = strrchr(text, '=');
+  if (!equals || equals == text) argp_error(state, "--period %s: COLUMN=P, x_mm=2", text);
+  if (spec->periods == FG_LOOP_PERIODS) argp_error(state, "too many --period");
+  fg_loop_known_period *known = &spec->period[spec->periods++];
+  parse_loop_number(state, "period", equals + 1, &known->period);
+  if (!isfinite(known->period)) argp_error(state, "--period %s: a finite period", text);
+  *equals = '\0';
+  known->column = text;
 }
 
 static void parse_seed(struct argp_state *state, const char *text, uint64_t *seed) {
@@ -208,6 +227,9 @@ static error_t parse_loop_table_option(int key, char *text, struct argp_state *s
     return 0;
   case OPTION_MEMORY:
     parse_loop_number(state, "memory", text, &arguments->mebibytes);
+    return 0;
+  case OPTION_PERIOD:
+    parse_period(state, text, &arguments->spec);
     return 0;
   case OPTION_SEED:
     parse_seed(state, text, &arguments->spec.seed);

@@ -28,10 +28,15 @@ fg_loop_basis fg_basis_linear, fg_basis_quadratic, fg_basis_interaction, fg_basi
 fg_loop_starts fg_basis_threshold_starts;
 
 /* Over an order, in order_bases.c. */
-fg_loop_accepts fg_basis_accepts_drift, fg_basis_accepts_transient, fg_basis_accepts_lip,
-    fg_basis_accepts_periodic;
-fg_loop_basis fg_basis_decay, fg_basis_periodic;
-fg_loop_starts fg_basis_transient_starts, fg_basis_lip_starts, fg_basis_periodic_starts;
+fg_loop_accepts fg_basis_accepts_drift, fg_basis_accepts_transient, fg_basis_accepts_lip;
+fg_loop_basis fg_basis_decay;
+fg_loop_starts fg_basis_transient_starts, fg_basis_lip_starts;
+
+/* Of cycles, in cycle_bases.c: of any period, and of the orders of a known base. */
+fg_loop_accepts fg_basis_accepts_periodic, fg_basis_accepts_orders;
+fg_loop_columns fg_basis_periodic_columns;
+fg_loop_basis fg_basis_periodic;
+fg_loop_starts fg_basis_periodic_starts, fg_basis_order_starts;
 
 /* Of a heat treatment: physical laws of temperature and time, in heat_bases.c. */
 fg_loop_accepts fg_basis_accepts_temperature, fg_basis_accepts_duration, fg_basis_accepts_both;

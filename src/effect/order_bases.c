@@ -4,8 +4,6 @@
 
 #include "effect/bases.h"
 
-static const double two_pi = 6.28318530717958647692;
-
 bool fg_basis_accepts_drift(const fg_loop_problem *problem, size_t a, size_t b) {
   const fg_loop_coordinate *at = &problem->coordinate[a];
   (void)b;
@@ -44,30 +42,4 @@ size_t fg_basis_lip_starts(const fg_loop_problem *problem, const fg_loop_candida
   for (size_t i = 0; i < 4; i++)
     starts[i][0] = bumps[i];
   return 4;
-}
-
-bool fg_basis_accepts_periodic(const fg_loop_problem *problem, size_t a, size_t b) {
-  return fg_basis_accepts_drift(problem, a, b) && problem->coordinate[a].distinct >= 8;
-}
-
-void fg_basis_periodic(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
-                       const double *shape, double *columns) {
-  const fg_loop_coordinate *at = fg_basis_first(problem, candidate);
-  for (size_t i = 0; i < problem->rows; i++) {
-    double phase = two_pi * (at->value[i] - at->low) / shape[0];
-    columns[i] = sin(phase);
-    columns[problem->rows + i] = cos(phase);
-  }
-}
-
-/* From one cycle over the order to a period of two steps, half a cycle apart. */
-size_t fg_basis_periodic_starts(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
-                                double starts[FG_LOOP_STARTS][FG_LOOP_SHAPES]) {
-  const fg_loop_coordinate *at = fg_basis_first(problem, candidate);
-  double range = at->high - at->low;
-  double max = ((double)at->distinct - 1) / 2;
-  size_t count = 0;
-  for (double cycles = 1; cycles <= max && count < FG_LOOP_STARTS; cycles += 0.5)
-    starts[count++][0] = range / cycles;
-  return count;
 }

@@ -6,6 +6,7 @@
 #include <gsl/gsl_cdf.h>
 
 #include "table_loop/accept_claim.h"
+#include "table_loop/cycles.h"
 #include "table_loop/serial.h"
 #include "table_loop/step.h"
 
@@ -85,7 +86,9 @@ static fg_status right_basis(fg_context *ctx, const fg_engine_run *run, const fg
     if (fg_engine_is_curve(&run->candidate[c]) || !isfinite(step->stand[c].z) ||
         !(fg_engine_stand_p(run, step, c) < bar(run)) || step->stand[c].z <= best)
       continue;
-    FG_TRY(fg_engine_beside(ctx, &step->training, choice->noise, &step->stand[c],
+    fg_engine_stand listed;
+    fg_engine_cycle_with_others(run, step, c, &listed);
+    FG_TRY(fg_engine_beside(ctx, &step->training, choice->noise, &listed,
                             &step->stand[choice->curve], &p));
     if (p <= BESIDE_P) continue;
     best = step->stand[c].z;
@@ -99,16 +102,17 @@ static fg_status right_basis(fg_context *ctx, const fg_engine_run *run, const fg
  * true basis is not in the table. */
 static fg_status wrong_basis(fg_context *ctx, const fg_engine_run *run, const fg_engine_step *step,
                              basis_choice *choice) {
-  const fg_engine_stand *winner = &step->stand[choice->winner];
+  fg_engine_stand winner;
+  fg_engine_cycle_with_others(run, step, choice->winner, &winner);
   choice->wrong = false;
-  if (winner->candidate.effect->pair || run->has_curve) return FG_OK;
+  if (winner.candidate.effect->pair || run->has_curve) return FG_OK;
   double best = -INFINITY;
   for (size_t c = 0; c < run->means; c++) {
     double p;
-    if (!fg_engine_is_curve(&run->candidate[c]) || run->candidate[c].a != winner->candidate.a)
+    if (!fg_engine_is_curve(&run->candidate[c]) || run->candidate[c].a != winner.candidate.a)
       continue;
     if (!isfinite(step->stand[c].z)) continue;
-    FG_TRY(fg_engine_beside(ctx, &step->training, choice->noise, winner, &step->stand[c], &p));
+    FG_TRY(fg_engine_beside(ctx, &step->training, choice->noise, &winner, &step->stand[c], &p));
     if (p > BESIDE_P || !(fg_engine_stand_p(run, step, c) < run->options.accept_p)) continue;
     if (step->stand[c].z > best) {
       best = step->stand[c].z;
@@ -248,18 +252,23 @@ static bool outlier_first(const fg_engine_run *run, const fg_engine_step *step, 
   return found;
 }
 
+/* Drifts and cycles stand beside other effects of their coordinate. */
+static bool stands_beside_others(const fg_engine_run *run, const fg_loop_candidate *candidate) {
+  return candidate->effect->cycle || fg_engine_is_over_order(run->problem, candidate);
+}
+
 /* Handles a second basis over a claim's coordinate: two listed bases suggest one that is not
  * listed. A curve replaces the claim if one fits. */
 static fg_status second_basis(fg_context *ctx, fg_engine_run *run, const fg_engine_step *step,
                               size_t winner, bool *accepted) {
   const fg_loop_candidate *candidate = &step->stand[winner].candidate;
   size_t m = 0, best = run->means;
-  if (candidate->effect->pair || run->has_curve || !strcmp(candidate->effect->frame, "order"))
+  if (candidate->effect->pair || run->has_curve || stands_beside_others(run, candidate))
     return FG_OK;
   while (m < run->result->claims &&
          (run->set.candidate[m].effect->pair || fg_engine_is_outlier(&run->set.candidate[m]) ||
           fg_engine_is_noise(&run->set.candidate[m]) || run->set.candidate[m].a != candidate->a ||
-          !strcmp(run->set.candidate[m].effect->frame, "order")))
+          stands_beside_others(run, &run->set.candidate[m])))
     m++;
   if (m == run->result->claims) return FG_OK;
   fg_engine_run without = *run;
@@ -293,8 +302,9 @@ static fg_status prefer_recorded(fg_context *ctx, const fg_engine_run *run,
   for (size_t c = 0; c < run->means; c++) {
     const fg_loop_effect *effect = run->candidate[c].effect;
     double p;
-    if (effect->shapes || effect->unattributed || !strcmp(effect->frame, "order") ||
-        !(step->stand[c].z > best) || !(fg_engine_stand_p(run, step, c) < bar(run)))
+    if (effect->shapes || effect->unattributed ||
+        fg_engine_is_over_order(run->problem, &run->candidate[c]) || !(step->stand[c].z > best) ||
+        !(fg_engine_stand_p(run, step, c) < bar(run)))
       continue;
     FG_TRY(fg_engine_beside(ctx, &step->training, noise, &step->stand[c], searched, &p));
     if (p < FG_ENGINE_SHOWS && !fg_engine_nearly(run, step, c, *winner)) continue;
@@ -312,6 +322,7 @@ static fg_status decide_listed(fg_context *ctx, fg_engine_run *run, fg_engine_st
   FG_TRY(noise_beside(ctx, run, &step->stand[winner], &choice.noise));
   FG_TRY(refine_stand(ctx, run, choice.noise, &step->stand[winner]));
   FG_TRY(prefer_recorded(ctx, run, step, choice.noise, &choice.winner));
+  FG_TRY(fg_engine_prefer_base(ctx, run, step, choice.noise, &choice.winner));
   FG_TRY(wrong_basis(ctx, run, step, &choice));
   size_t stand = choice.wrong ? choice.curve : choice.winner;
   fg_engine_serial_word word;

@@ -278,6 +278,14 @@ static fg_status suggests_more(fg_context *ctx, alias_workspace *workspace,
   return FG_OK;
 }
 
+/* A wrong row, and a cycle over a column whose period was sought, would fill up what another effect
+ * leaves. */
+static bool may_be_summed(const fg_loop_problem *problem, const fg_loop_candidate *candidate) {
+  unsigned roles = problem->coordinate[candidate->a].roles;
+  if (fg_engine_is_outlier(candidate)) return false;
+  return !candidate->effect->cycle || roles & (FG_LOOP_ORDER | FG_LOOP_BUMP);
+}
+
 fg_status fg_engine_alias_class(fg_context *ctx, const fg_engine_training *training,
                                 fg_engine_noise noise, const fg_engine_stand *stand, size_t count,
                                 const fg_engine_stand *winner, fg_loop_claim *claim) {
@@ -295,7 +303,8 @@ fg_status fg_engine_alias_class(fg_context *ctx, const fg_engine_training *train
   for (size_t c = 0; c < count; c++)
     if (isfinite(stand[c].z) && !fg_engine_is_curve(&stand[c].candidate) &&
         !fg_engine_is_noise(&stand[c].candidate) && !far_behind(training, winner, &stand[c]) &&
-        !fg_engine_same_candidate(&stand[c].candidate, &winner->candidate))
+        !fg_engine_same_candidate(&stand[c].candidate, &winner->candidate) &&
+        !fg_engine_same_cycle(&stand[c].candidate, &winner->candidate))
       pool[listed++] = &stand[c];
   qsort(pool, listed, sizeof *pool, by_gain);
   for (size_t c = 0; c < listed; c++) {
@@ -306,7 +315,7 @@ fg_status fg_engine_alias_class(fg_context *ctx, const fg_engine_training *train
     if (test.gain < MIN_SHARE * gain) continue;
     if (!contains && test.p_value >= FG_ENGINE_SHOWS)
       add_alias(training->problem, pool[c], NULL, &test, gain, claim);
-    else if (!contains && !fg_engine_is_outlier(&pool[c]->candidate) && test.rank <= 2)
+    else if (!contains && test.rank <= 2 && may_be_summed(training->problem, &pool[c]->candidate))
       pool[pooled++] = pool[c];
   }
   FG_TRY_EXIT(find_pairs(ctx, &workspace, pool, pooled, winner, winner_fit, gain, rank, claim));

@@ -36,6 +36,10 @@ bool fg_engine_same_candidate(const fg_loop_candidate *a, const fg_loop_candidat
   return !a->rows || !memcmp(a->row, b->row, a->rows * sizeof *a->row);
 }
 
+bool fg_engine_same_cycle(const fg_loop_candidate *a, const fg_loop_candidate *b) {
+  return a->effect->cycle && b->effect->cycle && a->a == b->a;
+}
+
 static void name_rows(const fg_loop_candidate *candidate, char name[FG_LOOP_NAME]) {
   size_t used = (size_t)snprintf(name, FG_LOOP_NAME, "%s", candidate->effect->id);
   for (size_t k = 0; k < candidate->rows && used < FG_LOOP_NAME; k++, used = strlen(name))
@@ -101,8 +105,9 @@ fg_loop_kind fg_loop_kind_of(const fg_loop_problem *problem, const fg_loop_candi
   if (effect->pair) return FG_LOOP_KIND_INTERACTIONS;
   bool order = problem->coordinate[candidate->a].roles & (FG_LOOP_ORDER | FG_LOOP_BUMP);
   if (order || !strcmp(effect->frame, "order")) return FG_LOOP_KIND_ORDER;
-  return effect->unattributed || effect->stepwise || effect->cycle ? FG_LOOP_KIND_CURVES
-                                                                   : FG_LOOP_KIND_COLUMNS;
+  bool sought = effect->cycle && !effect->held;
+  return effect->unattributed || effect->stepwise || sought ? FG_LOOP_KIND_CURVES
+                                                            : FG_LOOP_KIND_COLUMNS;
 }
 
 void fg_loop_kind_shares(const bool expected[FG_LOOP_KINDS], double share[FG_LOOP_KINDS]) {

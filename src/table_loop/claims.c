@@ -8,6 +8,7 @@
 
 #include "core/memory.h"
 #include "table_loop/fit.h"
+#include "table_loop/order_fits.h"
 
 /* d(effect)/d(shape) at fixed coefficients: columns × n, where the shape may move by small steps.
  */
@@ -32,12 +33,17 @@ static fg_status shape_slope(fg_context *ctx, const fg_engine_training *training
   return status;
 }
 
+/* Returns the number of shapes that the fit has moved by small steps. */
+static size_t moved_shapes(const fg_loop_effect *effect) {
+  return effect->stepwise || effect->held ? 0 : effect->shapes;
+}
+
 /* The training's columns and, behind them, the slopes of all shapes. */
 static fg_status append_slopes(fg_context *ctx, fg_engine_training *training,
                                const fg_engine_set *set, const fg_engine_fit *fit) {
   size_t n = training->n, extra = 0, first = training->problem->parameters;
   for (size_t m = 0; m < set->count; m++)
-    if (!set->candidate[m].effect->stepwise) extra += set->candidate[m].effect->shapes;
+    extra += moved_shapes(set->candidate[m].effect);
   if (extra == 0) return FG_OK;
   double *x = NULL;
   FG_TRY(fg_memory_allocate(ctx, n, (training->columns + extra) * sizeof *x, (void **)&x));
@@ -46,7 +52,7 @@ static fg_status append_slopes(fg_context *ctx, fg_engine_training *training,
   training->x = x;
   for (size_t m = 0; m < set->count; m++) {
     const fg_loop_effect *effect = set->candidate[m].effect;
-    for (size_t d = 0; d < effect->shapes && !effect->stepwise; d++)
+    for (size_t d = 0; d < moved_shapes(effect); d++)
       FG_TRY(shape_slope(ctx, training, &set->candidate[m], set->shape[m], d, fit->beta + first,
                          x + n * training->columns++));
     if (!fg_engine_is_exchange(&set->candidate[m]) && !fg_engine_is_noise(&set->candidate[m]))
@@ -126,7 +132,7 @@ static void describe_claims(const fg_engine_training *training, const fg_engine_
   for (size_t m = 0; m < set->count; m++) {
     const fg_loop_candidate *candidate = &set->candidate[m];
     const fg_loop_effect *effect = candidate->effect;
-    size_t slopes = effect->stepwise ? 0 : effect->shapes;
+    size_t slopes = moved_shapes(effect);
     size_t count = fg_engine_candidate_columns(training->problem, candidate);
     double own = fg_engine_is_outlier(candidate) ? dof : dof_of(training, first, count, dof);
     double t = gsl_cdf_tdist_Qinv(0.025, own);
@@ -153,12 +159,15 @@ static void describe_claims(const fg_engine_training *training, const fg_engine_
         claim[m].amplitude = fabs(claim[m].coefficient[0]);
         claim[m].amplitude_u = claim[m].coefficient_u[0];
       }
+      const fg_engine_cycle_place place = {first, slope, slopes > 0, variance};
+      if (effect->cycle) fg_engine_describe_orders(training->problem, wide, &place, &claim[m]);
       first += count;
     }
     for (size_t d = 0; d < effect->shapes; d++)
       claim[m].shape_u[d] =
-          d < slopes ? sqrt(variance * wide->inverse[(slope + d) * wide->columns + slope + d])
-                     : NAN;
+          d < slopes     ? sqrt(variance * wide->inverse[(slope + d) * wide->columns + slope + d])
+          : effect->held ? 0
+                         : NAN;
     slope += slopes;
     claim[m].interval[0] = claim[m].amplitude - t * claim[m].amplitude_u;
     claim[m].interval[1] = claim[m].amplitude + t * claim[m].amplitude_u;

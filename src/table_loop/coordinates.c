@@ -10,7 +10,7 @@
 #include "core/text.h"
 #include "foilgauge/formula.h"
 #include "quantity/quantity_rows.h"
-#include "table_loop/parts.h"
+#include "table_loop/places.h"
 
 fg_loop_coordinate *fg_loop_table_coordinate(const fg_loop_problem *problem, const char *name) {
   for (size_t i = 0; i < problem->coordinates; i++)
@@ -51,24 +51,26 @@ void fg_loop_table_finish_coordinate(const fg_loop_problem *problem, fg_loop_coo
     double at_row = (double)k / FG_LOOP_COLUMNS * (double)(problem->rows - 1);
     at->quantile[k] = sorted[(size_t)(at_row + 0.5)];
   }
+  fg_loop_places_measure(sorted, problem->rows, at);
   free(sorted);
 }
 
-static bool ends_with(const char *name, const char *end) {
+bool fg_loop_table_name_ends(const char *name, const char *end) {
   size_t length = strlen(name), size = strlen(end);
-  return length > size && !strcmp(name + length - size, end);
+  return length > size && !strcasecmp(name + length - size, end);
 }
 
 /* Derives a column's roles from the unit in its name; without a unit it has none. */
 static void give_roles(fg_loop_coordinate *at) {
-  if (strcasestr(at->name, "temp") && ends_with(at->name, "_C")) {
+  if (strcasestr(at->name, "temp") && fg_loop_table_name_ends(at->name, "_C")) {
     at->roles |= FG_LOOP_TEMPERATURE;
     at->kelvin_offset = 273.15;
-  } else if (strcasestr(at->name, "temp") && ends_with(at->name, "_K")) {
+  } else if (strcasestr(at->name, "temp") && fg_loop_table_name_ends(at->name, "_K")) {
     at->roles |= FG_LOOP_TEMPERATURE;
   }
   if ((strcasestr(at->name, "duration") || strcasestr(at->name, "time")) &&
-      (ends_with(at->name, "_h") || ends_with(at->name, "_min") || ends_with(at->name, "_s")))
+      (fg_loop_table_name_ends(at->name, "_h") || fg_loop_table_name_ends(at->name, "_min") ||
+       fg_loop_table_name_ends(at->name, "_s")))
     at->roles |= FG_LOOP_DURATION;
 }
 

@@ -61,6 +61,8 @@ bool fg_engine_is_serial(const fg_loop_candidate *candidate);
 void fg_engine_candidate_name(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
                               char name[FG_LOOP_NAME]);
 bool fg_engine_same_candidate(const fg_loop_candidate *a, const fg_loop_candidate *b);
+/* Returns true for cycles over one column, whether their base period is known or not. */
+bool fg_engine_same_cycle(const fg_loop_candidate *a, const fg_loop_candidate *b);
 /* Writes the candidate's columns at the training set's rows: columns × n. */
 fg_status fg_engine_gather(fg_context *ctx, const fg_engine_training *training,
                            const fg_loop_candidate *candidate, const double *shape,

@@ -257,6 +257,8 @@ static fg_status parameters(fg_context *ctx, fg_engine_run *run, fg_engine_noise
     memcpy(claim->shape_u, fit[m].shape_u, sizeof fit[m].shape_u);
     memcpy(claim->coefficient, fit[m].coefficient, sizeof fit[m].coefficient);
     memcpy(claim->coefficient_u, fit[m].coefficient_u, sizeof fit[m].coefficient_u);
+    claim->orders = fit[m].orders;
+    memcpy(claim->order, fit[m].order, sizeof fit[m].order);
     claim->amplitude = fit[m].amplitude;
     claim->amplitude_u = fit[m].amplitude_u;
     memcpy(claim->interval, fit[m].interval, sizeof fit[m].interval);

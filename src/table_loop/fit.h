@@ -14,6 +14,10 @@ fg_status fg_engine_choose_noise(fg_context *ctx, const fg_engine_training *trai
 fg_status fg_engine_refine(fg_context *ctx, const fg_loop_problem *problem, const bool *keep,
                            fg_engine_noise noise, fg_engine_set *set);
 
+/* Computes the whitened residual sum of a set's fit. */
+fg_status fg_engine_residual_sum(fg_context *ctx, const fg_loop_problem *problem, const bool *keep,
+                                 fg_engine_noise noise, const fg_engine_set *set, double *rss);
+
 /* Computes residuals of the rows kept, each predicted without its own fold of groups; n numbers. */
 fg_status fg_engine_cross_validate(fg_context *ctx, const fg_loop_problem *problem,
                                    const bool *keep, const fg_engine_set *set,

@@ -10,7 +10,7 @@
 #include "core/json_read.h"
 #include "core/memory.h"
 #include "core/text.h"
-#include "foilgauge/loop.h"
+#include "foilgauge/loop_model.h"
 
 /* Coordinate as in the effect's own data: its range scales the basis. */
 typedef struct model_coordinate {
@@ -162,6 +162,17 @@ static fg_status fill_words(fg_context *ctx, const fg_loop_model *model, const f
   return FG_OK;
 }
 
+/* Returns the orders of a cycle as bits; 0 without any. */
+static uint64_t read_orders(const cJSON *json) {
+  const cJSON *order;
+  uint64_t orders = 0;
+  cJSON_ArrayForEach(order, cJSON_GetObjectItemCaseSensitive(json, "orders")) {
+    double k = cJSON_GetNumberValue(order);
+    if (k >= 1 && k <= FG_LOOP_ORDER_MAX) orders |= (uint64_t)1 << ((size_t)k - 1);
+  }
+  return orders;
+}
+
 /* Computes the response's change by an effect, at coordinates found in the table by name. */
 static fg_status apply_claim(fg_context *ctx, const fg_loop_model *model, const cJSON *json,
                              const fg_table *table, double *change) {
@@ -181,6 +192,7 @@ static fg_status apply_claim(fg_context *ctx, const fg_loop_model *model, const 
     effect++;
   if (!effect->id) goto exit; /* effects of single rows belong to their own table */
   claim.candidate.effect = effect;
+  claim.candidate.orders = read_orders(json);
   FG_TRY_EXIT(fg_memory_allocate(ctx, table->rows + 1, 3 * sizeof *values, (void **)&values));
   for (int k = 0; k < cJSON_GetArraySize(coordinates) && k < 2; k++) {
     model_coordinate from = {0};

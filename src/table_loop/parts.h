@@ -27,6 +27,8 @@ fg_status fg_loop_table_add_coordinate(fg_context *ctx, const fg_loop_table_stat
                                        fg_loop_coordinate **added);
 void fg_loop_table_finish_coordinate(const fg_loop_problem *problem, fg_loop_coordinate *at);
 fg_loop_coordinate *fg_loop_table_coordinate(const fg_loop_problem *problem, const char *name);
+/* Returns true for a name with something before that end, a unit, say. */
+bool fg_loop_table_name_ends(const char *name, const char *end);
 /* Records for the report a column that is no candidate, and the reason. */
 fg_status fg_loop_table_leave_out(fg_context *ctx, const fg_loop_table_state *build,
                                   const char *name, const char *why);

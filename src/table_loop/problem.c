@@ -8,7 +8,7 @@
 #include "core/memory.h"
 #include "core/text.h"
 #include "table_loop/engine.h"
-#include "table_loop/parts.h"
+#include "table_loop/places.h"
 
 static const char *const order_names[] = {"run", "order", "run_order", "experiment", "sequence"};
 static const char *const bump_names[] = {"bump", "bump_number", "bump_index"};
@@ -200,6 +200,7 @@ static fg_status build_all(fg_context *ctx, fg_loop_table_state *build) {
   problem->correlated = grouped ? rows >= 4 * problem->groups : rows >= 8;
   problem->exchangeable = true;
   FG_TRY(fg_loop_table_merge_codes(ctx, build));
+  FG_TRY(fg_loop_places_find_bases(ctx, build));
   FG_TRY(add_level(ctx, build));
   return fg_loop_table_hold_out(ctx, build);
 }

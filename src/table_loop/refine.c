@@ -9,8 +9,8 @@
 #include "table_loop/fit.h"
 #include "table_loop/step.h"
 
-static fg_status residual_sum(fg_context *ctx, const fg_loop_problem *problem, const bool *keep,
-                              fg_engine_noise noise, const fg_engine_set *set, double *rss) {
+fg_status fg_engine_residual_sum(fg_context *ctx, const fg_loop_problem *problem, const bool *keep,
+                                 fg_engine_noise noise, const fg_engine_set *set, double *rss) {
   fg_engine_training training;
   fg_engine_fit fit;
   FG_TRY(fg_engine_training_build(ctx, problem, keep, set, &training));
@@ -34,6 +34,17 @@ static void neighbours(const fg_loop_problem *problem, const fg_loop_candidate *
     if (start < value * 0.999 && start > *low) *low = start;
     if (start > value * 1.001 && start < *high) *high = start;
   }
+}
+
+/* Half a cycle of the highest order, over the range, on both sides. */
+static void cycle_neighbours(const fg_loop_coordinate *at, const fg_loop_candidate *candidate,
+                             double value, double *low, double *high) {
+  size_t highest = 1;
+  for (size_t k = 1; k <= FG_LOOP_ORDER_MAX; k++)
+    if (fg_loop_has_order(candidate, k)) highest = k;
+  double cycles = (at->high - at->low) / value, half = 0.5 / (double)highest;
+  *low = value * cycles / (cycles + half);
+  *high = value * cycles / fmax(cycles - half, cycles / 2);
 }
 
 /* One shape of one member of a set; the others are held. */
@@ -66,7 +77,7 @@ static fg_status on_all_rows(fg_context *ctx, moving *m, double *rss) {
 
 /* The residual sum at the shape that the set has now. */
 static fg_status residual_sum_at(fg_context *ctx, moving *m, double *rss) {
-  if (!m->many) return residual_sum(ctx, m->problem, m->keep, m->noise, m->set, rss);
+  if (!m->many) return fg_engine_residual_sum(ctx, m->problem, m->keep, m->noise, m->set, rss);
   if (!m->in_steps) return on_all_rows(ctx, m, rss);
   fg_engine_bins_gram(&m->bins, &m->set->candidate[m->member], m->set->shape[m->member], m->columns,
                       &m->gram);
@@ -110,15 +121,37 @@ static void close_many(moving *m) {
   free(m->gram.cross);
 }
 
+/* The sum over a cycle's base has many minima: the window closes around the deepest of a grid. */
+static fg_status close_in(fg_context *ctx, moving *m, size_t dimension, double *low, double *high) {
+  enum { GRID = 12 };
+  double *shape = &m->set->shape[m->member][dimension], start = *shape, best = INFINITY, sum;
+  double step = (*high - *low) / GRID, at = start;
+  for (size_t i = 1; i < GRID; i++) {
+    *shape = exp(*low + (double)i * step);
+    FG_TRY(residual_sum_at(ctx, m, &sum));
+    if (sum < best) at = *low + (double)i * step;
+    best = fmin(best, sum);
+  }
+  *shape = start;
+  *low = at - step;
+  *high = at + step;
+  return FG_OK;
+}
+
 /* Golden section in the logarithm; the result is used only if better than the start. */
 static fg_status move_one(fg_context *ctx, moving *m, size_t dimension) {
   static const double golden = 0.61803398874989485;
   double *shape = &m->set->shape[m->member][dimension], start = *shape, at_start, low, high;
   double value[2], at[2];
   FG_TRY(residual_sum_at(ctx, m, &at_start));
-  neighbours(m->problem, &m->set->candidate[m->member], dimension, start, &low, &high);
+  const fg_loop_candidate *candidate = &m->set->candidate[m->member];
+  if (candidate->effect->cycle)
+    cycle_neighbours(&m->problem->coordinate[candidate->a], candidate, start, &low, &high);
+  else
+    neighbours(m->problem, candidate, dimension, start, &low, &high);
   low = log(low);
   high = log(high);
+  if (candidate->orders) FG_TRY(close_in(ctx, m, dimension, &low, &high));
   for (int i = 0; i < 2; i++) {
     at[i] = i ? low + golden * (high - low) : high - golden * (high - low);
     *shape = exp(at[i]);
@@ -164,7 +197,7 @@ static fg_status move_member(fg_context *ctx, moving *m) {
 
 static bool is_movable(const fg_engine_set *set, size_t member) {
   const fg_loop_effect *effect = set->candidate[member].effect;
-  return effect->shapes && !effect->stepwise;
+  return effect->shapes && !effect->stepwise && !effect->held;
 }
 
 fg_status fg_engine_refine(fg_context *ctx, const fg_loop_problem *problem, const bool *keep,

@@ -6,7 +6,7 @@
 
 #include "core/memory.h"
 #include "core/text.h"
-#include "table_loop/step.h"
+#include "table_loop/cycles.h"
 
 static const double power_80 = 0.8416; /* normal quantile of a power of 80 % */
 
@@ -19,7 +19,9 @@ static double detectable(double f_critical, double k, double sd_white, double le
 
 static bool is_claimed(const fg_engine_run *run, const fg_loop_candidate *candidate) {
   for (size_t m = 0; m < run->result->claims; m++)
-    if (fg_engine_same_candidate(&run->result->claim[m].candidate, candidate)) return true;
+    if (fg_engine_same_candidate(&run->result->claim[m].candidate, candidate) ||
+        fg_engine_same_cycle(&run->result->claim[m].candidate, candidate))
+      return true;
   return false;
 }
 
@@ -80,10 +82,23 @@ static void describe_rows(const fg_engine_run *run, const fg_engine_step *step, 
   one->smallest_detectable /= sqrt(2.0);
 }
 
+/* Of a cycle over one column, of a known base and of any period, the likelier is listed. */
+static bool is_less_likely_cycle(const fg_engine_run *run, const fg_engine_step *step,
+                                 size_t stand) {
+  const fg_loop_candidate *own = &step->stand[stand].candidate;
+  for (size_t c = 0; own->effect && own->effect->cycle && c < run->means; c++) {
+    if (c == stand || !fg_engine_same_cycle(&run->candidate[c], own)) continue;
+    double p = fg_engine_stand_p(run, step, c), own_p = fg_engine_stand_p(run, step, stand);
+    if (p < own_p || (p == own_p && c < stand)) return true;
+  }
+  return false;
+}
+
 static void list_one(const fg_engine_run *run, const fg_engine_step *step, size_t stand,
                      double sd_white, const double *amplitude) {
   const fg_loop_candidate *candidate = &step->stand[stand].candidate;
   if (fg_engine_is_curve(candidate) || is_claimed(run, candidate)) return;
+  if (is_less_likely_cycle(run, step, stand)) return;
   if (stand >= run->candidates && !isfinite(step->stand[stand].z)) return;
   fg_loop_rejected *one = &run->result->rejected[run->result->rejects++];
   *one = (fg_loop_rejected){.candidate = *candidate, .smallest_detectable = NAN};

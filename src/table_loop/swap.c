@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "table_loop/cycles.h"
 #include "table_loop/serial.h"
 #include "table_loop/step.h"
 
@@ -48,7 +49,9 @@ fg_status fg_engine_swap(fg_context *ctx, fg_engine_run *run) {
     fg_engine_set others = run->set;
     fg_engine_step step;
     fg_loop_claim *claim = &run->result->claim[m];
-    if (fg_engine_is_outlier(&claim->candidate) || fg_engine_is_serial(&claim->candidate)) continue;
+    if (fg_engine_is_outlier(&claim->candidate) || fg_engine_is_serial(&claim->candidate) ||
+        fg_engine_has_orders(&claim->candidate))
+      continue;
     fg_engine_set_remove(&others, m);
     FG_TRY(fg_engine_step_open(ctx, run, &others, false, &step));
     size_t best = 0, own = 0;

@@ -7,8 +7,8 @@
 #include "core/memory.h"
 #include "core/text.h"
 #include "effect/table_effects.h"
+#include "table_loop/cycles.h"
 #include "table_loop/effort.h"
-#include "table_loop/run.h"
 
 static fg_status add_candidates(fg_context *ctx, fg_engine_run *run, const fg_loop_effect *effects,
                                 size_t *capacity) {
@@ -111,8 +111,10 @@ fg_status fg_engine_search(fg_context *ctx, fg_engine_run *run) {
     FG_TRY(fg_engine_fit_set(ctx, run->problem, run->train, &run->set, true, &run->noise, NULL,
                              NULL, &run->sd));
     FG_TRY(fg_engine_refine(ctx, run->problem, run->train, run->noise, &run->set));
+    FG_TRY(fg_engine_join_cycles(ctx, run));
   }
-  return fg_engine_swap(ctx, run);
+  FG_TRY(fg_engine_swap(ctx, run));
+  return fg_engine_join_cycles(ctx, run);
 }
 
 /* Notes that the shortest cycles are left out where rows are many. */
@@ -123,6 +125,7 @@ static fg_status note_cycles(fg_context *ctx, const fg_engine_run *run) {
     double starts[FG_LOOP_STARTS][FG_LOOP_SHAPES];
     if (!candidate->effect->cycle || at->distinct <= FG_LOOP_STARTS) continue;
     size_t count = candidate->effect->starts(run->problem, candidate, starts);
+    if (count < FG_LOOP_STARTS) continue;
     return fg_engine_note(ctx, run->result,
                           "Cycles over %s that are shorter than %.3g were not looked for.",
                           at->name, starts[count - 1][0]);

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "foilgauge/loop.h"
+#include "foilgauge/loop_model.h"
 #include "fuzz.h"
 
 /* Larger tables are only slower. */

@@ -6,7 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "foilgauge/loop.h"
+#include "foilgauge/loop_model.h"
 #include "support/random.h"
 #include "support/test.h"
 

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "foilgauge/loop.h"
+#include "foilgauge/loop_model.h"
 #include "support/random.h"
 #include "support/test.h"
 

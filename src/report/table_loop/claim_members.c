@@ -6,6 +6,7 @@
 
 #include "page/page.h"
 #include "report/table_loop/checks.h"
+#include "report/table_loop/cycle_words.h"
 #include "report/table_loop/reading.h"
 
 static const fg_loop_report *report_of(const fg_subject *subject) {
@@ -159,6 +160,15 @@ static int find_confirmation(const fg_subject *claim) {
   return held_out < 0 ? 0 : held_out + 1;
 }
 
+static bool is_cycle(const fg_subject *claim) {
+  return candidate_of(claim)->effect->cycle;
+}
+
+static int find_base_word(const fg_subject *claim) {
+  return candidate_of(claim)->effect->held;
+}
+
+static const char *const base_words[] = {"sought", "known", NULL};
 static const char *const levels[] = {"points", "bumps", "runs", NULL};
 static const char *const claimed[] = {"found", "tied", NULL};
 static const char *const confirmations[] = {"none kept aside", "not contradicted", "confirmed",
@@ -240,6 +250,11 @@ static const fg_member claim_rows[] = {
      .words = "coefficients, and the numbers of its shape"},
     {FG_WRITTEN("uncertainty", write_claim_parameters, NUMBERS_BY_NAME),
      .words = "their standard uncertainties"},
+    {FG_ARRAY("orders", fg_loop_claim, order, orders, &fg_loop_order_members), .present = is_cycle,
+     .words = "of a cycle"},
+    {FG_WORD_BY("base_period", find_base_word, base_words), .present = is_cycle,
+     .options = FG_MEMBER_NEVER_NULL,
+     .words = "known: declared, or a turn of an angle; sought: as uncertain as the rows leave it"},
     {FG_TEXTS_BY("row_names", row_name_at), .present = has_row_names,
      .words = "of a claim about single rows, where rows have names: foil and bump of a lot, run of "
               "a sheet"},

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* "foilgauge/loop-model/1": the declared model and the effects found, for the next analysis. */
 #include "core/file.h"
+#include "foilgauge/loop_model.h"
 #include "report/table_loop/claim_members.h"
 #include "report/table_loop/members.h"
 
@@ -72,6 +73,18 @@ static const double *list_shape(const fg_subject *subject, double *buffer, size_
   return claim->shape;
 }
 
+static bool is_cycle(const fg_subject *subject) {
+  return candidate_of_claim(subject)->effect->cycle;
+}
+
+static const double *list_orders(const fg_subject *subject, double *buffer, size_t *count) {
+  const fg_loop_claim *claim = subject->object;
+  for (size_t k = 0; k < claim->orders; k++)
+    buffer[k] = (double)claim->order[k].order;
+  *count = claim->orders;
+  return buffer;
+}
+
 static const fg_member effect_rows[] = {
     {FG_TEXT_BY("id", find_effect_id), .options = FG_MEMBER_NEVER_NULL, .words = "effect"},
     {FG_TEXT("name", fg_loop_claim, name), .words = "effect with its columns"},
@@ -81,6 +94,8 @@ static const fg_member effect_rows[] = {
      .words = "of its basis"},
     {FG_NUMBERS_BY("shape", list_shape), .options = FG_MEMBER_NEVER_NULL,
      .words = "a period, a place, a length"},
+    {FG_NUMBERS_BY("orders", list_orders), .present = is_cycle, .options = FG_MEMBER_NEVER_NULL,
+     .words = "of a cycle: sine and cosine of each are its coefficients"},
     {FG_TEXT_BY("sentence", fg_loop_find_sentence), .options = FG_MEMBER_NEVER_NULL,
      .words = "effect on the response, with U (95 %)"},
     {FG_NUMBER_U("amplitude", fg_loop_claim, amplitude, amplitude_u),

@@ -173,11 +173,17 @@ static void follow_mean(const fg_loop_report *report, size_t m, char text[FG_LOO
   else if (effect->stepwise)
     fg_text_clip(text, FG_LOOP_STEP, "Find out what changed at %s %.6g, and give it as a column.",
                  at->name, claim->shape[0]);
-  else if (effect->shapes && !strcmp(effect->shape_name[0], "period"))
+  else if (effect->cycle && order)
     fg_text_clip(text, FG_LOOP_STEP,
                  "Find out what returns every %.3g of %s (a shift, a tool, a season), and give it "
                  "as a column.",
                  claim->shape[0], at->name);
+  else if (effect->cycle)
+    fg_text_clip(text, FG_LOOP_STEP,
+                 "Find out what turns or repeats so often over %s (a shaft, a screw's lead, teeth, "
+                 "a scale's division): --model-out FILE keeps the cycle as it was found, and `doe "
+                 "--model FILE` takes it out.",
+                 at->name);
   else if (order)
     fg_text_clip(text, FG_LOOP_STEP,
                  "Find out what causes %s (wear, temperature, a new batch), give it as a column, "

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "core/text.h"
+#include "report/table_loop/cycle_words.h"
 #include "report/unit_words.h"
 #include "report/value_words.h"
 
@@ -160,6 +161,10 @@ static void read_swing(const reading *r) {
   char range[VALUE_WORDS];
   put_range(r, range);
   fg_text_clip(r->text, FG_LOOP_WORDS, "it swings by %s from peak to valley", range);
+  char orders[FG_LOOP_WORDS];
+  size_t used = strlen(r->text);
+  fg_loop_order_words(r->report, r->claim, widening(r->claim), orders, sizeof orders);
+  if (r->claim->orders > 1) fg_text_clip(r->text + used, FG_LOOP_WORDS - used, "; %s", orders);
 }
 
 /* c x y, both from -1 to 1: the change over x differs by 4 c between the ends of y. */

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/text.h"
+#include "report/table_loop/cycle_words.h"
 
 fg_loop_number fg_loop_number_text(const char *format, double value) {
   fg_loop_number out;
@@ -141,11 +142,13 @@ static void mean_statement(const fg_loop_report *report, const fg_loop_claim *cl
   const fg_loop_effect *effect = claim->candidate.effect;
   char place[FG_LOOP_NAME];
   fg_loop_candidate_words(report, &claim->candidate, text);
-  bool period = effect->shapes == 1 && !strcmp(effect->shape_name[0], "period");
-  bool at = effect->shapes == 1 && !strcmp(effect->shape_name[0], "at");
-  if (!period && !at) return;
-  fg_text_clip(place, sizeof place, period ? " that returns every %.3g" : " at %.6g",
-               claim->shape[0]);
+  if (effect->cycle) {
+    char period[FG_LOOP_WORDS];
+    fg_loop_period_words(report, claim, period, sizeof period);
+    append_words(text, period);
+  }
+  if (effect->shapes != 1 || strcmp(effect->shape_name[0], "at") != 0) return;
+  fg_text_clip(place, sizeof place, " at %.6g", claim->shape[0]);
   append_words(text, place);
 }
 

@@ -1,0 +1,85 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Bases of cycles: over an order, over a column of places, over a base period that is known. */
+#include <math.h>
+
+#include "effect/bases.h"
+
+static const double two_pi = 6.28318530717958647692;
+
+/* Fewer places than these do not show a cycle. */
+enum { PLACES = 8 };
+
+/* Least cycles over the range of a column: a cycle that is seen less often is a bend. An order, and
+ * an angle, which returns to its start, are sought from one cycle on. */
+#define CYCLES_OF_A_COLUMN 2.0
+
+/* Longest period of a known base, over the range. */
+#define LONGEST 1.34
+
+/* Distance of places by which the shortest cycle is known; of an order it is the mean one. */
+static double spacing_of(const fg_loop_coordinate *at) {
+  bool mean = fg_basis_is_sequence(at) || !(at->spacing > 0);
+  return mean ? (at->high - at->low) / ((double)at->distinct - 1) : at->spacing;
+}
+
+bool fg_basis_accepts_periodic(const fg_loop_problem *problem, size_t a, size_t b) {
+  const fg_loop_coordinate *at = &problem->coordinate[a];
+  (void)b;
+  return fg_basis_is_number(at) && !at->coded && at->distinct >= PLACES;
+}
+
+size_t fg_basis_periodic_columns(const fg_loop_problem *problem,
+                                 const fg_loop_candidate *candidate) {
+  size_t count = 0;
+  (void)problem;
+  for (size_t k = 1; k <= FG_LOOP_ORDER_MAX; k++)
+    count += fg_loop_has_order(candidate, k);
+  return 2 * count;
+}
+
+void fg_basis_periodic(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
+                       const double *shape, double *columns) {
+  const fg_loop_coordinate *at = fg_basis_first(problem, candidate);
+  for (size_t k = 1; k <= FG_LOOP_ORDER_MAX; k++) {
+    if (!fg_loop_has_order(candidate, k)) continue;
+    for (size_t i = 0; i < problem->rows; i++) {
+      double phase = two_pi * (double)k * (at->value[i] - at->low) / shape[0];
+      columns[i] = sin(phase);
+      columns[problem->rows + i] = cos(phase);
+    }
+    columns += 2 * problem->rows;
+  }
+}
+
+/* From few cycles over the range to a period of two places, half a cycle apart. */
+size_t fg_basis_periodic_starts(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
+                                double starts[FG_LOOP_STARTS][FG_LOOP_SHAPES]) {
+  const fg_loop_coordinate *at = fg_basis_first(problem, candidate);
+  double range = at->high - at->low;
+  double max = range / (2 * spacing_of(at)) * (1 + 1e-9);
+  bool returns = fg_basis_is_sequence(at) || at->period > 0;
+  size_t count = 0;
+  for (double cycles = returns ? 1 : CYCLES_OF_A_COLUMN; cycles <= max && count < FG_LOOP_STARTS;
+       cycles += 0.5)
+    starts[count++][0] = range / cycles;
+  return count;
+}
+
+static size_t lowest_order(const fg_loop_coordinate *at) {
+  return (size_t)fmax(ceil(at->period / (LONGEST * (at->high - at->low))), 1);
+}
+
+bool fg_basis_accepts_orders(const fg_loop_problem *problem, size_t a, size_t b) {
+  const fg_loop_coordinate *at = &problem->coordinate[a];
+  return fg_basis_accepts_periodic(problem, a, b) && at->period > 0 &&
+         lowest_order(at) <= at->order_max;
+}
+
+size_t fg_basis_order_starts(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
+                             double starts[FG_LOOP_STARTS][FG_LOOP_SHAPES]) {
+  const fg_loop_coordinate *at = fg_basis_first(problem, candidate);
+  size_t count = 0;
+  for (size_t k = lowest_order(at); k <= at->order_max; k++)
+    starts[count++][0] = at->period / (double)k;
+  return count;
+}

@@ -1,0 +1,83 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Cycles over a column in `foilgauge loop --table`: orders of one base are one effect, with amplitude and phase; a base is
+# known of angles, declared, or sought; places are even, uneven, or further apart than the period.
+. tests/support/cli.sh
+
+cat >made.py <<'P'
+import math, random
+rng = random.Random()
+def write(name, column, places, orders, base, slope=0.01, noise=0.2):
+    rng.seed(name)
+    rng.shuffle(places)
+    with open(name + ".csv", "w") as out:
+        out.write(f"{column},way,room_C,error_um\n")
+        for x in places:
+            way = rng.choice(("up", "down"))
+            y = 5 + slope * x + 0.4 * (way == "up") + rng.gauss(0, noise)
+            y += sum(a * math.cos(2 * math.pi * k * x / base - math.radians(p)) for k, a, p in orders)
+            out.write(f"{x:.4f},{way},{rng.gauss(20, 1):.2f},{y:.4f}\n")
+write("turn", "angle_deg", [5.0 * i for i in range(72)], ((1, 1.5, 40), (2, 0.6, 110), (5, 0.4, 300)), 360)
+write("screw", "x_mm", [rng.uniform(0, 60) for _ in range(90)], ((1, 0.8, 70), (2, 0.5, 200)), 5.3)
+write("strobe", "x_mm", [7.0 * i for i in range(48)], ((1, 0.8, 90),), 2.4)
+write("clean", "angle_deg", [7.5 * i for i in range(48)], (), 360)
+P
+python3 made.py
+
+look() { # look NAME COLUMN OPTIONS...
+  local name=$1 column=$2
+  shift 2
+  "$program" loop --table $name.csv --response error_um --model "1 + $column" "$@" -o $name.json --html $name.html --model-out $name.model.json || fail "$name: exit code"
+  valid loop.schema.json $name.json
+  valid loop_model.schema.json $name.model.json
+  value $name.json "next(i for i, c in enumerate(r['claims']) if c['id'] == 'table.periodic')" >at || fail "$name: no cycle"
+  at=$(cat at)
+}
+order() { # order NAME ORDER MEMBER
+  value "$1.json" "next(o['$3'] for o in r['claims'][$at]['orders'] if o['order'] == $2)"
+}
+
+look turn angle_deg
+[ "$(value turn.json "[o['order'] for o in r['claims'][$at]['orders']]")" = "[1, 2, 5]" ] || fail "orders of a turn: $(cat turn.json)"
+[ "$(value turn.json "r['claims'][$at]['base_period']")" = known ] || fail "the turn of an angle is not known"
+near "period" "$(value turn.json "r['claims'][$at]['parameters']['period']")" 360 0
+near "order 1" "$(order turn 1 amplitude)" 1.5 0.17
+near "order 2" "$(order turn 2 amplitude)" 0.6 0.1
+near "phase of 1" "$(order turn 1 phase_deg)" 40 6
+near "phase of 5" "$(order turn 5 phase_deg)" 300 20
+near "peak of 5" "$(order turn 5 peak_at)" 204 4
+value turn.json "[c['name'] for c in r['claims']]" | grep -q "table.factor(way)" || fail "the backlash is not seen"
+grep -q "that returns every 360°, in its orders 1, 2 and 5" turn.html || fail "the page does not name the orders"
+
+look screw x_mm
+near "lead" "$(value screw.json "r['claims'][$at]['parameters']['period']")" 5.3 0.02
+[ "$(value screw.json "[o['order'] for o in r['claims'][$at]['orders']]")" = "[1, 2]" ] || fail "orders of a screw"
+[ "$(value screw.json "r['claims'][$at]['base_period']")" = sought ] || fail "the lead was not sought"
+near "u of the lead" "$(value screw.json "r['claims'][$at]['uncertainty']['period']")" 0.008 0.005
+
+# A lead that is shorter than the places are apart: known, it is found by its own name.
+look strobe x_mm --period x_mm=2.4
+near "strobed amplitude" "$(order strobe 1 amplitude)" 0.8 0.12
+near "declared" "$(value strobe.json "r['claims'][$at]['parameters']['period']")" 2.4 0
+
+expect 0 "" "$program" loop --table clean.csv --response error_um --model "1 + angle_deg + way" -o clean.json
+[ "$(value clean.json "r['verdict']")" = clean ] || fail "a clean table is not clean"
+
+# The model file takes the cycle out of the table.
+"$program" doe turn.csv --response error_um --model turn.model.json -o doe.json || fail "doe --model"
+
+many=()
+for i in $(seq 17); do many+=(--period "x_mm=$i"); done
+refuse() {
+  expect 64 "$1" "$program" loop --table screw.csv --response error_um --model "1 + x_mm" "${@:2}" -o never.json
+}
+refuse "COLUMN=P" --period x_mm
+refuse "COLUMN=P" --period =3
+refuse "above 0" --period x_mm=-2
+refuse "above 0" --period x_mm=2mm
+refuse "no column of numbers" --period way=2
+refuse "no column of numbers" --period z=2
+refuse "tell no order" --period x_mm=1e9
+refuse "too many --period" "${many[@]}"
+[ -e never.json ] && fail "a refused period leaves an output file"
+exit $failed
