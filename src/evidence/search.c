@@ -13,6 +13,9 @@
  * further than REACH from the best. */
 enum { NAMED_FRONT = 4, RIVAL_FRONT = 3, NAMED_MAX = 4, RIVALS_MAX = 2, ROUNDS = 4 };
 #define REACH 60.0
+/* The likeliest models, of which every part is left out in turn; models that get their own scatter.
+ */
+enum { SHORTENED = 16, SCATTERED = 24 };
 /* Gain from which a place is refined; points of a finer grid, and how often. */
 #define REFINE_GAIN 6.0
 enum { FINER = 9, FINER_LEVELS = 2, COPIES_MAX = 3 };
@@ -328,6 +331,24 @@ static fg_status run_rounds(fg_context *ctx, fg_evidence_search *s) {
   return FG_OK;
 }
 
+/* Leaves out causes that became needless beside those added later. */
+static fg_status shorten_models(fg_context *ctx, fg_evidence_search *s) {
+  size_t count = s->count < SHORTENED ? s->count : SHORTENED;
+  for (size_t m = 1; m < count; m++)
+    for (size_t k = 0; s->models[m].parts > 1 && k < s->models[m].parts; k++) {
+      fg_evidence_model shorter = s->models[m];
+      const fg_effect *effect = shorter.part[k]->effect;
+      shorter.parts--;
+      shorter.named -= effect && !fg_effect_is_unnamed(effect);
+      memmove(shorter.part + k, shorter.part + k + 1, (shorter.parts - k) * sizeof *shorter.part);
+      FG_TRY(evaluate(ctx, s, &shorter));
+      set_score(s, &shorter);
+      keep_model(s, &shorter);
+    }
+  qsort(s->models + 1, s->count - 1, sizeof *s->models, compare_models);
+  return FG_OK;
+}
+
 fg_status fg_evidence_search_open(fg_context *ctx, const fg_edge_fit *edge_fit,
                                   const fg_effect_set *seed, const double *residual_um,
                                   const double *jacobian, fg_evidence_search *s) {
@@ -350,7 +371,8 @@ fg_status fg_evidence_search_run(fg_context *ctx, fg_evidence_search *s) {
   FG_TRY(find_scatter(ctx, s, &none));
   s->models[s->count++] = none;
   FG_TRY(run_rounds(ctx, s));
-  for (size_t m = 0; m < s->count && m < 24; m++) { /* every model with its own scatter */
+  FG_TRY(shorten_models(ctx, s));
+  for (size_t m = 0; m < s->count && m < SCATTERED; m++) {
     FG_TRY(find_scatter(ctx, s, &s->models[m]));
     set_score(s, &s->models[m]);
   }
