@@ -78,10 +78,11 @@ typedef struct fg_scanner_model_effect {
 } fg_scanner_model_effect;
 typedef struct fg_scanner_model_facts {
   const char *path, *sha256;
-  const char *scanner, *date;   /* NULL: not said */
-  size_t scans;                 /* number of scans behind it; 0: not stated */
-  size_t known_diameters;       /* gauges among its scans; 0: its absolute scale is unknown */
-  bool tied;                    /* other explanations fitted its scans as well */
+  const char *scanner, *date; /* NULL: not said */
+  size_t scans;               /* number of scans behind it; 0: not stated */
+  size_t known_diameters;     /* gauges among its scans */
+  size_t known_grids; /* scans of grids of known pitch; without either its scale is unknown */
+  bool tied;          /* other explanations fitted its scans as well */
   double low_mm[2], high_mm[2]; /* its region of the glass */
   fg_scanner_model_effect effect[FG_SCANNER_MODEL_EFFECTS];
   size_t effects;

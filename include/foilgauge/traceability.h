@@ -6,8 +6,8 @@
  * edges alone, and no limit can be judged. Every report says which of three states it is in:
  *   "none"    nothing is known of the scanner: verdicts are "cannot tell", unless the design says
  *             why no calibration is needed
- *   "stated"  by a number of the user: a calibration, or gauges of known diameter without a
- *             certificate behind a scanner's model
+ *   "stated"  by a number of the user: a calibration, or gauges of known size without a certificate
+ *             behind a scanner's model
  *   "plate"   by an artefact with its name, its certificate, its date and its due date */
 #ifndef FOILGAUGE_TRACEABILITY_H
 #define FOILGAUGE_TRACEABILITY_H

@@ -54,7 +54,7 @@ void fg_traceability_sentence(const fg_design *design, char *sentence, size_t si
   if (!artefact.name[0] && !artefact.certificate[0])
     append_fact(sentence, size, ": ",
                 design->calibration.stated ? "a calibration without a certificate"
-                                           : "gauges of known diameter, without a certificate");
+                                           : "gauges of known size, without a certificate");
   append_fact(sentence, size, " of ", artefact.date);
   append_fact(sentence, size, ", due ", artefact.due);
 }

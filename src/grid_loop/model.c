@@ -264,6 +264,8 @@ fg_status fg_grid_loop_make_model(fg_context *ctx, fg_grid_loop *loop) {
   for (int axis = 0; axis < 2; axis++)
     model->dpi[axis] = first->dpi[axis] * fg_calibration_factor(&first->design.calibration);
   model->scans = loop->scan_count;
+  model->known_grids = loop->result.scale_known ? loop->scan_count : 0;
+  model->artefact = first->design.artefact;
   make_fields(loop, model);
   if (loop->problem.has_map && loop->result.axes_known) FG_TRY(make_map(ctx, loop, model));
   return FG_OK;

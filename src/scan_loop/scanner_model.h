@@ -22,7 +22,8 @@ struct fg_scanner_model {
   char date[FG_MODEL_DATE]; /* of its newest scan; "": not stated */
   double dpi[2];
   size_t scans;           /* number of its scans; 0: not stated */
-  size_t known_diameters; /* gauges among its scans; 0: its absolute scale is unknown */
+  size_t known_diameters; /* gauges among its scans */
+  size_t known_grids;     /* scans of grids of known pitch; without either its scale is unknown */
   fg_artefact artefact;   /* with these gauges; no name: none stated */
   bool tied;
   fg_model_tone tone;

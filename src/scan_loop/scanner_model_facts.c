@@ -37,9 +37,9 @@ static fg_effect_found effect_of(const fg_field *field) {
 }
 
 void fg_scanner_model_trace(const fg_scanner_model *model, fg_design *design) {
-  design->model_scale.known = model->known_diameters > 0;
+  design->model_scale.known = model->known_diameters > 0 || model->known_grids > 0;
   design->model_scale.artefact = (fg_artefact){{0}, {0}, {0}, {0}};
-  if (model->known_diameters) design->model_scale.artefact = model->artefact;
+  if (design->model_scale.known) design->model_scale.artefact = model->artefact;
 }
 
 void fg_scanner_model_describe(const fg_scanner_model *model, fg_scanner_model_facts *facts) {
@@ -50,6 +50,7 @@ void fg_scanner_model_describe(const fg_scanner_model *model, fg_scanner_model_f
                                     .date = model->date[0] ? model->date : NULL,
                                     .scans = model->scans,
                                     .known_diameters = model->known_diameters,
+                                    .known_grids = model->known_grids,
                                     .tied = model->tied,
                                     .low_mm = {frame->low_mm[0], frame->low_mm[1]},
                                     .high_mm = {frame->high_mm[0], frame->high_mm[1]}};

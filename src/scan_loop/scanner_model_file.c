@@ -147,16 +147,22 @@ static fg_status read_artefact(fg_context *ctx, const cJSON *root, fg_artefact *
   return fg_artefact_check(ctx, "artefact", a);
 }
 
-static fg_status read_origin(fg_context *ctx, const cJSON *root, fg_scanner_model *model) {
+/* Reads a number of gauges; an absent one is 0. */
+static fg_status read_known(fg_context *ctx, const cJSON *root, const char *name, size_t *known) {
   enum { KNOWN_MAX = 1000000 };
-  const cJSON *inputs = cJSON_GetObjectItemCaseSensitive(root, "inputs");
-  const cJSON *known = cJSON_GetObjectItemCaseSensitive(root, "known_diameters");
-  double count = !known ? 0 : cJSON_IsNumber(known) ? known->valuedouble : NAN;
+  const cJSON *item = cJSON_GetObjectItemCaseSensitive(root, name);
+  double count = !item ? 0 : cJSON_IsNumber(item) ? item->valuedouble : NAN;
   if (!(count >= 0 && count <= KNOWN_MAX && count == floor(count)))
-    return fg_fail(ctx, FG_ERR_DATA,
-                   "`known_diameters` is %g; how many gauges had one, 0 to %d, is allowed", count,
-                   KNOWN_MAX);
-  model->known_diameters = (size_t)count;
+    return fg_fail(ctx, FG_ERR_DATA, "`%s` is %g; how many gauges had one, 0 to %d, is allowed",
+                   name, count, KNOWN_MAX);
+  *known = (size_t)count;
+  return FG_OK;
+}
+
+static fg_status read_origin(fg_context *ctx, const cJSON *root, fg_scanner_model *model) {
+  const cJSON *inputs = cJSON_GetObjectItemCaseSensitive(root, "inputs");
+  FG_TRY(read_known(ctx, root, "known_diameters", &model->known_diameters));
+  FG_TRY(read_known(ctx, root, "known_grids", &model->known_grids));
   FG_TRY(read_artefact(ctx, root, &model->artefact));
   model->scans = cJSON_IsArray(inputs) ? (size_t)cJSON_GetArraySize(inputs) : 0;
   return read_date(ctx, root, model);

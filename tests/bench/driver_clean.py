@@ -3,6 +3,7 @@
 
 import multiprocessing
 import os
+import shutil
 import subprocess
 import tempfile
 import time
@@ -14,6 +15,7 @@ import driver
 import driver_kinds as kinds
 
 TIMED, TURNS = 6, 9  # whole foils, and how often each is measured by either program
+COUNTED = 3  # of them, whose instructions are counted
 
 
 def clean_spec(index):
@@ -95,6 +97,23 @@ def wall_seconds(program, path, folder):
     return time.perf_counter() - start
 
 
+def instructions(program, path, folder):
+    """Executed by one thread: nothing else on the machine changes them."""
+    command = ["valgrind", "--tool=callgrind", f"--callgrind-out-file={folder}/calls", program, "measure", path, "-o",
+               os.path.join(folder, "t.json"), "--threads", "1"]  # fmt: skip
+    said = subprocess.run(command, capture_output=True, text=True).stderr
+    return int(next(line for line in said.splitlines() if "refs" in line).split()[-1].replace(",", ""))
+
+
+def instructions_row(program, before, folder):
+    counts = [[instructions(name, os.path.join(folder, f"{index}.png"), folder) for name in (before, program)]
+              for index in range(COUNTED)]  # fmt: skip
+    old, new = np.median(np.array(counts) / 1e6, axis=0)
+    ratios = [c[1] / c[0] for c in counts]
+    return ["instructions, one thread", f"{old:.0f} million", f"{new:.0f} million", f"{np.median(ratios):.3f}",
+            f"{min(ratios):.3f} to {max(ratios):.3f}"]  # fmt: skip
+
+
 def time_table(program, before, renderer):
     """Ratios are of neighbours in time, each program first in every second turn."""
     body = []
@@ -115,8 +134,10 @@ def time_table(program, before, renderer):
                     times.append([1000 * taken[before], 1000 * taken[program]])
             low, middle, high = np.percentile(ratios, [25, 50, 75])
             times = np.median(times, axis=0)
-            body.append([title, f"{times[0]:.0f}", f"{times[1]:.0f}", f"{middle:.3f}", f"{low:.3f} to {high:.3f}"])
-    return lib.table(["time of", "before ms", "now ms", "ratio, median", "quartiles"], body)
+            body.append([title, f"{times[0]:.0f} ms", f"{times[1]:.0f} ms", f"{middle:.3f}", f"{low:.3f} to {high:.3f}"])
+        if shutil.which("valgrind"):
+            body.append(instructions_row(program, before, folder))
+    return lib.table(["of", "before", "now", "ratio, median", "quartiles, of instructions the range"], body)
 
 
 TEXT = """{count} plain scans, of both renderers, at 2400 and 4800 dpi, of 8 and 16 bit, light on dark and dark on light, foils and

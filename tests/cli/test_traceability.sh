@@ -60,6 +60,14 @@ expect 0 '' "$program" measure $scan -d none.json --model traced_model.json -o t
 [ "$(value traced.out '"{state} {artefact} {certificate} {date} {due}".format(**r["traceability"])')" = \
   'plate GP <17> K 9 2026-03-14 2099-03-14' ] || fail "the plate's certificate is lost"
 grep -q 'plate: GP &lt;17&gt;, certificate K 9 of 2026-03-14, due 2099-03-14' traced.html || fail "the page"
+# A grid of known pitch holds the scale as known diameters do; foils alone do not.
+sed 's/"known_diameters": [0-9]*/"known_diameters": 0/' known_model.json >foils_model.json
+sed 's/"known_grids": 0/"known_grids": 1/' foils_model.json >grid_model.json
+expect 3 '' "$program" measure $scan -d none.json --model foils_model.json -o foils.out
+expect 0 '' "$program" measure $scan -d none.json --model grid_model.json -o grid.out
+[ "$(value grid.out 'r["traceability"]["state"] + " " + str(r["model"]["known_grids"])')" = 'stated 1' ] || fail "a grid of known pitch"
+sed 's/"known_grids": 0/"known_grids": -1/' foils_model.json >bad_model.json
+expect 65 'how many gauges' "$program" measure $scan -d none.json --model bad_model.json
 sed 's/2099-03-14/2026-03-20/' traced_model.json >due_model.json
 touch -d 2026-03-20T12:00Z $scan
 expect 0 '' "$program" measure $scan -d none.json --model due_model.json

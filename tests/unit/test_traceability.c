@@ -60,7 +60,7 @@ static void a_models_gauges_are_stated_or_a_plate(void **state) {
   char sentence[FG_TRACEABILITY_SENTENCE];
   design.model_scale.known = true;
   fg_traceability_sentence(&design, sentence, sizeof sentence);
-  assert_string_equal(sentence, "stated: gauges of known diameter, without a certificate");
+  assert_string_equal(sentence, "stated: gauges of known size, without a certificate");
   strcpy(design.model_scale.artefact.name, "GP-17");
   assert_int_equal(fg_design_traceability(&design), FG_TRACED_TO_PLATE);
 }

@@ -62,7 +62,10 @@ static void put_verdict_tiles(FILE *out, const fg_lot_analysis *analysis) {
       make_verdict_tile(judged ? "Foils, cannot tell" : NULL, undecided, FG_TILE_OPEN),
       make_verdict_tile(not_measured ? "Foils not measured" : NULL, not_measured, FG_TILE_OPEN),
   };
-  if (undecided) tiles[2].small = "a limit lies within ± U";
+  if (undecided)
+    tiles[2].small = fg_design_may_judge(&analysis->lot->settings.design)
+                         ? "a limit lies within ± U"
+                         : "the scanner's scale is not known";
   fg_html_tiles(out, "tiles", tiles, sizeof tiles / sizeof *tiles);
 }
 

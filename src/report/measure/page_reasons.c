@@ -2,6 +2,7 @@
 /* Reasons of a verdict: its values, their bumps, their limits. */
 #include <math.h>
 
+#include "foilgauge/traceability.h"
 #include "report/measure/cures.h"
 #include "report/measure/foil_parts.h"
 #include "report/measure/page_tables.h"
@@ -39,8 +40,10 @@ static size_t put_list(FILE *out, const fg_decision *decision, fg_verdict verdic
   return told;
 }
 
-/* Writes " What decides it: ..." */
+/* Writes " What decides it: ...", and before it a reason that no limit has. */
 static void put_cures(FILE *out, const fg_cures *cures) {
+  if (cures->count && cures->list[0] == fg_traceability_cure)
+    fputs(" Nothing is known of the scanner&#39;s scale, which lengths rest on.", out);
   for (size_t i = 0; i < cures->count; i++) {
     fputs(i ? " " : " <b>What decides it:</b> ", out);
     fg_html_text(out, cures->list[i]);

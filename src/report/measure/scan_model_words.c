@@ -93,6 +93,8 @@ static const fg_member model_rows[] = {
     {FG_COUNT("known_diameters", fg_scanner_model_facts, known_diameters),
      .words = "gauges of known diameter that hold its absolute scale; 0: an error of scale equal "
               "in x and y is not in any u_"},
+    {FG_COUNT("known_grids", fg_scanner_model_facts, known_grids),
+     .words = "scans of grids of known pitch that hold its absolute scale"},
     {FG_FLAG("tied", fg_scanner_model_facts, tied),
      .words = "other explanations did as well; every u_ holds them"},
     {FG_ARRAY("effects", fg_scanner_model_facts, effect, effects, &effect_members),
@@ -133,6 +135,10 @@ static void model_scale_words(const fg_scanner_model *model, char *words, size_t
         "The scanner's scale is that of %zu gauge%s of known diameter, which the model was "
         "found with; what these diameters are uncertain by is not in it.",
         facts.known_diameters, facts.known_diameters > 1 ? "s" : "");
+  else if (facts.known_grids)
+    fg_text_clip(words, size,
+                 "The scanner's scale is that of a grid of known pitch, which the model was found "
+                 "with.");
   else
     fg_text_clip(words, size,
                  "What the scanner's model corrects is in it. An error of scale that is equal in x "
