@@ -42,6 +42,7 @@
 
 #include "foilgauge/design.h"
 #include "foilgauge/loop_checked.h"
+#include "foilgauge/loop_influence.h"
 #include "foilgauge/loop_kind.h"
 #include "foilgauge/status.h"
 #include "foilgauge/table.h"
@@ -352,7 +353,9 @@ typedef struct fg_loop_result {
   fg_loop_advice advice[FG_LOOP_CLAIMS];
   size_t advices;
   double *parameter, *parameter_u; /* of the declared model, refitted with everything */
-  double *before_fit, *after_fit;  /* rows: residual before and after */
+  fg_loop_influence influence[FG_LOOP_INFLUENCES]; /* largest Cook's distance first */
+  size_t influences;
+  double *before_fit, *after_fit; /* rows: residual before and after */
   double *effect_fit; /* rows: contribution of the effects found, in the response's unit */
   char **note;
   size_t notes, note_capacity;

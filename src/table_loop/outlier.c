@@ -4,19 +4,20 @@
  * Rows are removed one after the other, the largest residual first; the outliers are all up to the
  * last one that the remaining rows do not explain (generalised extreme studentised deviates: Rosner
  * 1983), so that two do not hide each other. The tails of the remaining rows are unknown: the
- * probability of such a residual is that of Student's t, averaged over its dof with the posterior
- * weights from the remaining rows. In addition, outliers must be likelier than one heavy tail of
- * all rows: a likelihood ratio exceeds 1 / p by chance less often than p. */
+ * probability of such a residual is averaged over tails with the posterior weights from the
+ * remaining rows, and is smaller where the row has leverage (row_tails.h). In addition, outliers
+ * must be likelier than one heavy tail of all rows: a likelihood ratio exceeds 1 / p by chance less
+ * often than p. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include <gsl/gsl_cdf.h>
-#include <gsl/gsl_randist.h>
 
 #include "core/memory.h"
 #include "effect/table_effects.h"
 #include "table_loop/assess.h"
+#include "table_loop/row_tails.h"
 #include "table_loop/tails.h"
 
 /* Share of its own error in a row's residual, below which the model alone fits the row: it cannot
@@ -37,12 +38,6 @@ enum { ONE_IN = 6 };
  * those in 24 rows. */
 #define WRONG_ODDS 0.05
 
-/* Tails of measured tables (dof) with their prior probabilities, a choice (power and false claims
- * with heavy tails: reports/loop_power.md). The last is normal. */
-enum { TAILS = 5 };
-static const double tail_dof[TAILS] = {3, 4, 6, 10, INFINITY};
-static const double tail_before[TAILS] = {0.01, 0.03, 0.08, 0.18, 0.7};
-
 typedef struct outlier_rows {
   const fg_engine_training *training;
   fg_engine_noise noise;
@@ -53,7 +48,7 @@ typedef struct outlier_rows {
   double *t;     /* n: residual of a row over its own sd (not over the noise's) */
   double *kept;  /* n: |M W e|² */
   double *rest;  /* n: t of the rows that are left */
-  double taken[FG_LOOP_OUTLIER_ROWS + 1]; /* t of those taken out, before they were */
+  double taken[FG_LOOP_OUTLIER_ROWS + 1]; /* of those taken out: t before they were, as_tail */
   bool *out;
   double rss;
 } outlier_rows;
@@ -145,46 +140,27 @@ static void take_out(outlier_rows *rows, size_t i) {
   rows->rss = fg_engine_project_out(n, column, 1, rows->white);
 }
 
-/* Student's t of unit variance: probability beyond x on both sides, and density. */
-static double beyond(double x, double dof, double normal_dof) {
-  if (isinf(dof)) return 2 * gsl_cdf_tdist_Q(x, normal_dof);
-  return 2 * gsl_cdf_tdist_Q(x / sqrt((dof - 2) / dof), dof);
-}
-
-static double log_density(double x, double dof) {
-  if (isinf(dof)) return log(gsl_ran_ugaussian_pdf(x));
-  double unit = sqrt((dof - 2) / dof);
-  return log(gsl_ran_tdist_pdf(x / unit, dof) / unit);
-}
-
-/* Computes the posterior weight of each tail from the remaining rows; of removed rows only the fact
- * that they lie beyond is used. */
-static void weigh_tails(const outlier_rows *rows, size_t out, double sd, double weight[TAILS]) {
-  double max = -INFINITY, sum = 0, largest = 0;
-  for (size_t i = 0; i < rows->n; i++)
+/* Weighs the tails by the remaining rows; of removed rows only the fact that they lie beyond is
+ * used. */
+static void weigh_tails(const outlier_rows *rows, size_t out, double sd,
+                        double weight[FG_ENGINE_TAILS]) {
+  double largest = 0;
+  for (size_t i = 0; i < rows->n; i++) {
+    bool used = !rows->out[i] && rows->kept[i] > HELD_ALONE;
+    rows->rest[i] = used ? rows->t[i] / sd : NAN;
     if (!rows->out[i]) largest = fmax(largest, fabs(rows->t[i]) / sd);
-  for (size_t k = 0; k < TAILS; k++) {
-    weight[k] =
-        log(tail_before[k]) + (double)out * log(fmax(beyond(largest, tail_dof[k], 1e6), 1e-300));
-    for (size_t i = 0; i < rows->n; i++)
-      if (!rows->out[i] && rows->kept[i] > HELD_ALONE)
-        weight[k] += log_density(rows->t[i] / sd, tail_dof[k]);
-    max = fmax(max, weight[k]);
   }
-  for (size_t k = 0; k < TAILS; k++)
-    sum += weight[k] = exp(weight[k] - max);
-  for (size_t k = 0; k < TAILS; k++)
-    weight[k] /= sum;
+  const fg_engine_tail_rows others = {rows->n, rows->rest, rows->kept, largest, out};
+  fg_engine_tails_weigh(&others, weight);
 }
 
 /* Returns the p-value of a row at distance `t`, in sd of the noise, with `out` rows (itself among
- * them) removed. */
-static double row_p(const outlier_rows *rows, double t, size_t out) {
-  double dof = (double)rows->n - (double)rows->rank, weight[TAILS], p = 0;
-  double sd = sqrt(rows->rss / dof), size = fabs(t) / sd;
+ * them) removed. `own` is the share of its own error. */
+static double row_p(const outlier_rows *rows, double t, double own, size_t out) {
+  double dof = (double)rows->n - (double)rows->rank, weight[FG_ENGINE_TAILS];
+  double sd = sqrt(rows->rss / dof);
   weigh_tails(rows, out, sd, weight);
-  for (size_t k = 0; k < TAILS; k++)
-    p += weight[k] * beyond(size, tail_dof[k], dof);
+  double p = fg_engine_tails_beyond(weight, fabs(t) / sd, own, dof);
   double left = (double)(rows->n - out + 1);
   return -expm1(left * log1p(-fmin(p, 0.5)));
 }
@@ -204,20 +180,24 @@ static double tail_p(outlier_rows *rows, size_t taken, double size) {
 /* Returns the smallest F ratio of one row that is accepted; where rows are many their tails are the
  * observed ones. */
 static double critical_f(outlier_rows *rows, double level, double accept_p) {
-  double dof = (double)rows->n - (double)rows->rank, weight[TAILS], low = 1, high = 1e6;
+  double dof = (double)rows->n - (double)rows->rank, weight[FG_ENGINE_TAILS], low = 1, high = 1e6;
   double one = level / (double)rows->n, sd = sqrt(rows->rss / dof);
   bool few = rows->n <= FG_ENGINE_SMALL_ROWS;
   weigh_tails(rows, 0, sd, weight);
   for (int i = 0; i < 60; i++) {
-    double middle = sqrt(low * high), p = 0;
-    for (size_t k = 0; k < TAILS; k++)
-      p += weight[k] * beyond(middle, tail_dof[k], dof);
+    double middle = sqrt(low * high), p = fg_engine_tails_beyond(weight, middle, 1, dof);
     if (p > one || (few && tail_p(rows, 0, middle * sd) > accept_p))
       low = middle;
     else
       high = middle;
   }
   return high * high;
+}
+
+/* The t of a row without leverage that would be as rare a tail. */
+static double as_tail(const outlier_rows *rows, double t, double own) {
+  double sd = sqrt(rows->rss / ((double)rows->n - (double)rows->rank));
+  return sd > 0 ? sd * fg_engine_tails_equivalent(t / sd, own) : t;
 }
 
 static void sort_rows(fg_loop_candidate *candidate) {
@@ -238,7 +218,7 @@ static bool stands_apart(const outlier_rows *rows, double t) {
 /* Were the noise surely normal. */
 static double normal_p(const outlier_rows *rows, double size) {
   double dof = (double)rows->n - (double)rows->rank;
-  return fmin((double)rows->n * beyond(size, INFINITY, dof), 1);
+  return fmin((double)rows->n * 2 * gsl_cdf_tdist_Q(size, dof), 1);
 }
 
 static void search_outliers(outlier_rows *rows, fg_engine_level level, fg_engine_outlier *outlier) {
@@ -249,11 +229,12 @@ static void search_outliers(outlier_rows *rows, fg_engine_level level, fg_engine
   for (size_t j = 1; j <= (max ? max : 1); j++) {
     size_t worst = worst_row(rows);
     if (worst == rows->n || rows->rank + 3 >= rows->n) break;
-    double t = rows->taken[j - 1] = rows->t[worst];
+    double t = rows->t[worst], own = fmin(rows->kept[worst], 1);
     take_out(rows, worst);
     assess_rows(rows);
+    rows->taken[j - 1] = as_tail(rows, t, own);
     taken.row[taken.rows++] = training->row[worst];
-    double p = fmin(row_p(rows, t, j) / level.share, 1);
+    double p = fmin(row_p(rows, t, own, j) / level.share, 1);
     alike = fmin(alike, tail_p(rows, j, 0));
     if (j == 1) {
       outlier->first = taken;

@@ -131,6 +131,14 @@ void fg_engine_units_restore(const fg_engine_units *units, fg_loop_result *resul
     restore(&result->parameter[k], 1, exponent - units->column[k]);
     restore(&result->parameter_u[k], 1, exponent - units->column[k]);
   }
+  for (size_t i = 0; i < result->influences; i++) {
+    fg_loop_influence *influence = &result->influence[i];
+    int unit = exponent - units->column[influence->parameter];
+    bool constant = units->problem.origin != 0 && influence->parameter == units->problem.constant;
+    restore(&influence->change, 1, unit);
+    restore(&influence->without, 1, unit);
+    if (constant) influence->without += units->problem.origin;
+  }
   if (units->problem.origin != 0 && result->parameter)
     result->parameter[units->problem.constant] += units->problem.origin;
   restore(result->before_fit, rows, exponent);

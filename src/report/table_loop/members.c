@@ -2,6 +2,7 @@
 /* "foilgauge/loop/1" of tables: the document's rows. Rows of a table are numbered from its first
  * data row, 1. */
 #include "report/table_loop/members.h"
+#include "report/table_loop/influence_members.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -246,6 +247,11 @@ static const fg_member loop_rows[] = {
     {FG_GROUP("error_ratio", &ratio_members), .words = "error after over error before"},
     {FG_LIST_BY("declared_parameters", fg_loop_find_parameter, &fg_loop_parameter_members),
      .options = FG_MEMBER_ON_LINE | FG_MEMBER_ENDS_BELOW, .words = "of the declared model"},
+    {FG_ARRAY("influence", loop_whole, result.influence, result.influences,
+              &fg_loop_influence_members),
+     .highest = FG_LOOP_INFLUENCES,
+     .words = "rows that lead the fit beside everything found: Cook's distance beyond the median "
+              "of F; the largest first"},
     {FG_LIST("rejected", loop_whole, result.rejected, result.rejects, &fg_loop_rejected_members),
      .options = FG_MEMBER_ON_LINE | FG_MEMBER_ENDS_BELOW,
      .words = "candidates that are not claimed"},

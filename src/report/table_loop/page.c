@@ -14,6 +14,7 @@
 #include "report/provenance.h"
 #include "report/table_loop/claim_members.h"
 #include "report/table_loop/family_members.h"
+#include "report/table_loop/influence_members.h"
 #include "report/table_loop/next.h"
 #include "report/table_loop/plots.h"
 
@@ -134,11 +135,18 @@ static void put_candidates(FILE *out, const fg_loop_report *report) {
 
 static void put_notes(FILE *out, const fg_loop_report *report) {
   const fg_loop_result *result = report->result;
-  if (!result->notes && !report->problem->excluded && !report->said) return;
+  if (!result->notes && !report->problem->excluded && !report->said && !result->influences) return;
   fputs("<section><h2>What else to know</h2><ul>\n", out);
   if (report->said) {
     fputs("<li>", out);
     fg_html_text(out, report->said);
+    fputs("</li>\n", out);
+  }
+  for (size_t i = 0; i < result->influences; i++) {
+    char words[FG_LOOP_WORDS];
+    fg_loop_influence_words(report, &result->influence[i], words);
+    fputs("<li>", out);
+    fg_html_text(out, words);
     fputs("</li>\n", out);
   }
   for (size_t i = 0; i < result->notes; i++) {

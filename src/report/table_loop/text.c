@@ -9,6 +9,7 @@
 #include "foilgauge/loop.h"
 #include "report/table_loop/checks.h"
 #include "report/table_loop/claim_members.h"
+#include "report/table_loop/influence_members.h"
 #include "report/table_loop/next.h"
 #include "report/table_loop/reading.h"
 #include "report/table_loop/words.h"
@@ -246,9 +247,14 @@ static void print_claim(const fg_loop_report *report, const fg_loop_claim *claim
 
 static void write_notes(const fg_loop_report *report, FILE *out) {
   const fg_loop_result *result = report->result;
-  if (!report->problem->excluded && !report->said && !result->notes) return;
+  if (!report->problem->excluded && !report->said && !result->notes && !result->influences) return;
   fputc('\n', out);
   if (report->said) fg_write_wrapped(out, "note: ", "      ", report->said);
+  for (size_t i = 0; i < result->influences; i++) {
+    char words[FG_LOOP_WORDS];
+    fg_loop_influence_words(report, &result->influence[i], words);
+    fg_write_wrapped(out, "influence: ", "      ", words);
+  }
   for (size_t i = 0; i < result->notes; i++)
     fg_write_wrapped(out, "note: ", "      ", result->note[i]);
   if (report->problem->excluded)
