@@ -44,6 +44,7 @@
 #include "foilgauge/loop_checked.h"
 #include "foilgauge/loop_influence.h"
 #include "foilgauge/loop_kind.h"
+#include "foilgauge/loop_scale.h"
 #include "foilgauge/status.h"
 #include "foilgauge/table.h"
 
@@ -355,6 +356,7 @@ typedef struct fg_loop_result {
   double *parameter, *parameter_u; /* of the declared model, refitted with everything */
   fg_loop_influence influence[FG_LOOP_INFLUENCES]; /* largest Cook's distance first */
   size_t influences;
+  fg_loop_response_scale scale;
   double *before_fit, *after_fit; /* rows: residual before and after */
   double *effect_fit; /* rows: contribution of the effects found, in the response's unit */
   char **note;

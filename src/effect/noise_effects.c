@@ -90,3 +90,17 @@ static const fg_loop_effect noise_effects[] = {
 const fg_loop_effect *fg_loop_noise_effects(void) {
   return noise_effects;
 }
+
+static const fg_loop_effect scale_effect = {
+    .id = "table.response_scale",
+    .scatter = FG_LOOP_SPREAD,
+    .level = "runs",
+    .frame = "response",
+    .words = "a response whose effects add on another scale",
+    .columns = no_columns,
+    .basis = no_basis,
+};
+
+const fg_loop_effect *fg_loop_scale_effect(void) {
+  return &scale_effect;
+}

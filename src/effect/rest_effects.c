@@ -44,6 +44,15 @@ static const fg_loop_effect outlier_effects[] = {
      .words = "two responses that changed places",
      .columns = outlier_columns,
      .basis = outlier_basis},
+    {.id = "table.exchanged_columns",
+     .reads = FG_LOOP_READS_ROWS,
+     .outlier = FG_LOOP_WRONG_ROW,
+     .pair = true,
+     .level = "runs",
+     .frame = "row",
+     .words = "values in each other's column",
+     .columns = outlier_columns,
+     .basis = outlier_basis},
 };
 
 const fg_loop_effect *fg_loop_outlier_effects(void) {

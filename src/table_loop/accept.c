@@ -7,6 +7,7 @@
 
 #include "table_loop/accept_claim.h"
 #include "table_loop/cycles.h"
+#include "table_loop/exchange_columns.h"
 #include "table_loop/serial.h"
 #include "table_loop/step.h"
 
@@ -199,7 +200,11 @@ static fg_status take_claim(fg_context *ctx, fg_engine_run *run, const fg_engine
   fg_engine_describe_claim(run, step, winner, &claim);
   FG_TRY(noise_beside(ctx, run, &refined, &noise));
   FG_TRY(refine_stand(ctx, run, noise, &refined));
-  if (!fg_engine_is_outlier(&claim.candidate)) {
+  if (fg_engine_is_outlier(&claim.candidate)) {
+    FG_TRY(fg_engine_find_exchanged_columns(ctx, run, noise, &refined.candidate));
+    claim.candidate = refined.candidate;
+    fg_engine_candidate_name(run->problem, &claim.candidate, claim.name);
+  } else {
     bool passes, hinges;
     FG_TRY(hinges_on_a_row(ctx, run, step, noise, winner, &hinges));
     if (hinges) return FG_OK;

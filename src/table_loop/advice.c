@@ -8,7 +8,9 @@
 
 #include "core/memory.h"
 #include "core/text.h"
+#include "effect/table_effects.h"
 #include "table_loop/grid.h"
+#include "table_loop/response_scale.h"
 #include "table_loop/run.h"
 
 /* Normal quantiles of a power of 80 %, and of the surplus test of an alias (p = 0.002). */
@@ -334,12 +336,24 @@ exit:
   return status;
 }
 
+static void say_scale(const fg_engine_run *run, fg_loop_advice *advice) {
+  char name[FG_LOOP_NAME];
+  fg_loop_scale_name(run->result->scale.chosen, "the response", name, sizeof name);
+  fg_text_clip(advice->text, sizeof advice->text,
+               "Declare the model for %s, given as a column, and run again: on that scale this "
+               "does not show. Rows at settings with more extreme responses part both.",
+               name);
+  advice->runs = NAN;
+}
+
 static fg_status advise_one(fg_context *ctx, const fg_engine_run *run, size_t m,
                             fg_loop_advice *advice) {
   const fg_loop_claim *claim = &run->result->claim[m];
   const fg_loop_alias *nearest = &claim->alias[0];
-  if (fg_engine_is_outlier(&claim->candidate) ||
-      (!nearest->sum && fg_engine_is_outlier(&nearest->candidate)))
+  if (nearest->candidate.effect == fg_loop_scale_effect())
+    say_scale(run, advice);
+  else if (fg_engine_is_outlier(&claim->candidate) ||
+           (!nearest->sum && fg_engine_is_outlier(&nearest->candidate)))
     say_repeats(run->problem, claim, advice);
   else if (claim->candidate.effect->scatter == FG_LOOP_SPREAD)
     say_spread(run->problem, claim, advice);

@@ -76,6 +76,10 @@ void fg_engine_candidate_name(const fg_loop_problem *problem, const fg_loop_cand
   if (fg_engine_is_exchange(candidate))
     fg_text_clip(name, FG_LOOP_NAME, "%s(%zu, %zu)", id, candidate->row[0] + 1,
                  candidate->row[1] + 1);
+  else if (fg_engine_is_outlier(candidate) && candidate->effect->pair)
+    fg_text_clip(name, FG_LOOP_NAME, "%s(%.24s, %.24s, %zu)", id,
+                 problem->coordinate[candidate->a].name, problem->coordinate[candidate->b].name,
+                 candidate->row[0] + 1);
   else if (fg_engine_is_outlier(candidate))
     name_rows(candidate, name);
   else if (candidate->effect->pair)

@@ -11,6 +11,7 @@
 #include "table_loop/engine_random.h"
 #include "table_loop/grid.h"
 #include "table_loop/influence.h"
+#include "table_loop/response_scale.h"
 #include "table_loop/run.h"
 
 /* Upper limit of the reported noise floor, as a multiple of the rows' rms: strong correlation makes
@@ -317,6 +318,7 @@ fg_status fg_engine_finish(fg_context *ctx, fg_engine_run *run) {
     result->claim[m].held_out = confirmed;
   FG_TRY(parameters(ctx, run, noise));
   FG_TRY(fg_engine_find_influence(ctx, run, noise));
+  FG_TRY(fg_engine_profile_scale(ctx, run));
   run->noise = noise;
   run->sd = result->noise.sd;
   FG_TRY(fg_engine_check(ctx, run, noise));

@@ -116,10 +116,38 @@ static void the_probability_beyond_is_that_of_draws(void **state) {
   assert_true(fabs((double)beyond - count) < 4 * sqrt(count));
 }
 
+/* Of heights and weights of people, one pair in each other's column: the row does not fit the
+ * others, and does where they are put right. */
+static void two_values_in_each_other_s_column_are_an_exchange(void **state) {
+  double weight[ROWS], height[ROWS], said[ROWS];
+  const fg_loop_options options = {.effects = fg_loop_table_effects()};
+  const fg_loop_table_spec spec = {.response = "said", .model = "weight"};
+  uint64_t seed = 8;
+  outcome out = {0};
+  (void)state;
+  for (size_t i = 0; i < ROWS; i++) {
+    weight[i] = 45 + 120 * random_uniform(&seed);
+    height[i] = 100 + 0.5 * weight[i] + 10 * random_gaussian(&seed);
+    said[i] = weight[i] + 2 * random_gaussian(&seed);
+  }
+  weight[7] = 152;
+  height[7] = 110;
+  said[7] = 111;
+  assert_ok(&out.ctx, fg_table_add_numbers(&out.ctx, &out.table, "weight", weight, ROWS));
+  assert_ok(&out.ctx, fg_table_add_numbers(&out.ctx, &out.table, "height", height, ROWS));
+  assert_ok(&out.ctx, fg_table_add_numbers(&out.ctx, &out.table, "said", said, ROWS));
+  assert_ok(&out.ctx, fg_loop_table_problem_build(&out.ctx, &out.table, &spec, &out.problem));
+  assert_ok(&out.ctx, fg_loop_run(&out.ctx, &out.problem.problem, &options, &out.result));
+  assert_int_equal(out.result.claims, 1);
+  assert_string_equal(out.result.claim[0].name, "table.exchanged_columns(weight, height, 8)");
+  clear_outcome(&out);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_row_that_leads_the_slope_is_told_with_the_slope_without_it),
       cmocka_unit_test(rows_without_leverage_lead_nothing),
+      cmocka_unit_test(two_values_in_each_other_s_column_are_an_exchange),
       cmocka_unit_test(leverage_makes_a_tail_less_likely),
       cmocka_unit_test(the_probability_beyond_is_that_of_draws),
   };

@@ -3,6 +3,7 @@
  * data row, 1. */
 #include "report/table_loop/members.h"
 #include "report/table_loop/influence_members.h"
+#include "report/table_loop/scale_members.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -176,6 +177,12 @@ static const fg_member finding_rows[] = {
 };
 static const fg_members finding_members = FG_MEMBERS(finding_rows);
 
+static fg_subject find_scale(const fg_subject *subject) {
+  const fg_loop_response_scale *scale = &whole_of(subject)->result.scale;
+  bool told = scale->known && scale->chosen != 1;
+  return (fg_subject){.object = told ? scale : NULL, .whole = subject->whole};
+}
+
 static const fg_member advice_rows[] = {
     {FG_TEXT("advice", fg_loop_advice, text), .words = "measurement that tells explanations apart"},
     {FG_NUMBER("runs", fg_loop_advice, runs),
@@ -247,6 +254,9 @@ static const fg_member loop_rows[] = {
     {FG_GROUP("error_ratio", &ratio_members), .words = "error after over error before"},
     {FG_LIST_BY("declared_parameters", fg_loop_find_parameter, &fg_loop_parameter_members),
      .options = FG_MEMBER_ON_LINE | FG_MEMBER_ENDS_BELOW, .words = "of the declared model"},
+    {FG_PART("response_scale", find_scale, &fg_loop_scale_members),
+     .words =
+         "power of the response on which effects add; null: not known, or the response itself"},
     {FG_ARRAY("influence", loop_whole, result.influence, result.influences,
               &fg_loop_influence_members),
      .highest = FG_LOOP_INFLUENCES,

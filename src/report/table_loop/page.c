@@ -17,6 +17,7 @@
 #include "report/table_loop/influence_members.h"
 #include "report/table_loop/next.h"
 #include "report/table_loop/plots.h"
+#include "report/table_loop/scale_members.h"
 
 static const char style[] =
     "dl.facts{display:grid;grid-template-columns:max-content 1fr;gap:2px 16px;margin:0;"
@@ -133,27 +134,31 @@ static void put_candidates(FILE *out, const fg_loop_report *report) {
   fputs("</section>\n", out);
 }
 
+static void put_note(FILE *out, const char *words) {
+  fputs("<li>", out);
+  fg_html_text(out, words);
+  fputs("</li>\n", out);
+}
+
 static void put_notes(FILE *out, const fg_loop_report *report) {
   const fg_loop_result *result = report->result;
-  if (!result->notes && !report->problem->excluded && !report->said && !result->influences) return;
+  if (!result->notes && !report->problem->excluded && !report->said && !result->influences &&
+      !fg_loop_tells_scale(result))
+    return;
   fputs("<section><h2>What else to know</h2><ul>\n", out);
-  if (report->said) {
-    fputs("<li>", out);
-    fg_html_text(out, report->said);
-    fputs("</li>\n", out);
+  if (report->said) put_note(out, report->said);
+  if (fg_loop_tells_scale(result)) {
+    char words[FG_LOOP_WORDS];
+    fg_loop_scale_words(report, words);
+    put_note(out, words);
   }
   for (size_t i = 0; i < result->influences; i++) {
     char words[FG_LOOP_WORDS];
     fg_loop_influence_words(report, &result->influence[i], words);
-    fputs("<li>", out);
-    fg_html_text(out, words);
-    fputs("</li>\n", out);
+    put_note(out, words);
   }
-  for (size_t i = 0; i < result->notes; i++) {
-    fputs("<li>", out);
-    fg_html_text(out, result->note[i]);
-    fputs("</li>\n", out);
-  }
+  for (size_t i = 0; i < result->notes; i++)
+    put_note(out, result->note[i]);
   if (report->problem->excluded) {
     fputs("<li>Columns that are no candidates: ", out);
     fg_html_text(out, report->problem->excluded);

@@ -12,6 +12,7 @@
 #include "report/table_loop/influence_members.h"
 #include "report/table_loop/next.h"
 #include "report/table_loop/reading.h"
+#include "report/table_loop/scale_members.h"
 #include "report/table_loop/words.h"
 #include "report/value_words.h"
 
@@ -247,9 +248,16 @@ static void print_claim(const fg_loop_report *report, const fg_loop_claim *claim
 
 static void write_notes(const fg_loop_report *report, FILE *out) {
   const fg_loop_result *result = report->result;
-  if (!report->problem->excluded && !report->said && !result->notes && !result->influences) return;
+  if (!report->problem->excluded && !report->said && !result->notes && !result->influences &&
+      !fg_loop_tells_scale(result))
+    return;
   fputc('\n', out);
   if (report->said) fg_write_wrapped(out, "note: ", "      ", report->said);
+  if (fg_loop_tells_scale(result)) {
+    char words[FG_LOOP_WORDS];
+    fg_loop_scale_words(report, words);
+    fg_write_wrapped(out, "note: ", "      ", words);
+  }
   for (size_t i = 0; i < result->influences; i++) {
     char words[FG_LOOP_WORDS];
     fg_loop_influence_words(report, &result->influence[i], words);

@@ -49,11 +49,27 @@ void fg_loop_rows_words(const fg_loop_report *report, const fg_loop_candidate *c
   list_rows(report, candidate, text);
 }
 
+/* "weight and height": the columns that hold each other's value. */
+static void append_columns(const fg_loop_report *report, const fg_loop_candidate *candidate,
+                           char text[FG_LOOP_WORDS]) {
+  const fg_loop_coordinate *at = report->problem->problem.coordinate;
+  append_words(text, at[candidate->a].name);
+  append_words(text, " and ");
+  append_words(text, at[candidate->b].name);
+}
+
 static void outlier_words(const fg_loop_report *report, const fg_loop_candidate *candidate,
                           char text[FG_LOOP_WORDS]) {
   bool exchange = candidate->effect->outlier == FG_LOOP_EXCHANGED_ROWS;
   if (!exchange && !candidate->rows) {
     append_words(text, candidate->effect->words);
+    return;
+  }
+  if (candidate->effect->pair) {
+    append_words(text, "an exchange of ");
+    append_columns(report, candidate, text);
+    append_words(text, " in ");
+    list_rows(report, candidate, text);
     return;
   }
   append_words(text, exchange              ? "an exchange of "
@@ -95,6 +111,12 @@ void fg_loop_closeness_words(const fg_loop_alias *alias, char text[FG_LOOP_WORDS
 static void outlier_statement(const fg_loop_report *report, const fg_loop_candidate *candidate,
                               char text[FG_LOOP_WORDS]) {
   list_rows(report, candidate, text);
+  if (candidate->effect->pair) {
+    append_words(text, " has ");
+    append_columns(report, candidate, text);
+    append_words(text, " in each other's place");
+    return;
+  }
   append_words(text, candidate->effect->outlier == FG_LOOP_EXCHANGED_ROWS ? " changed places"
                      : candidate->rows > 1                                ? " are wrong"
                                                                           : " is wrong");
