@@ -185,6 +185,7 @@ typedef enum fg_loop_reads {
   FG_LOOP_READS_FADE,     /* between the first row and the last */
   FG_LOOP_READS_SWING,    /* between peak and valley */
   FG_LOOP_READS_SLOPES,   /* between slopes over one column, at both ends of the other */
+  FG_LOOP_READS_LOOP,     /* between two directions, in the middle of the range and at its ends */
   FG_LOOP_READS_ROWS,     /* between a row and its prediction by the others */
   FG_LOOP_READS_EXCHANGE, /* between two rows */
   FG_LOOP_READINGS

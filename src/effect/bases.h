@@ -38,6 +38,10 @@ fg_loop_columns fg_basis_periodic_columns;
 fg_loop_basis fg_basis_periodic;
 fg_loop_starts fg_basis_periodic_starts, fg_basis_order_starts;
 
+/* Of a reversal, in cycle_bases.c. */
+fg_loop_accepts fg_basis_accepts_hysteresis;
+fg_loop_basis fg_basis_hysteresis;
+
 /* Of a heat treatment: physical laws of temperature and time, in heat_bases.c. */
 fg_loop_accepts fg_basis_accepts_temperature, fg_basis_accepts_duration, fg_basis_accepts_both;
 fg_loop_basis fg_basis_arrhenius, fg_basis_larson_miller, fg_basis_log_time, fg_basis_jmak;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Bases of cycles: over an order, over a column of places, over a base period that is known. */
+/* Bases over places: cycles over an order, a column, a base period that is known; reversal. */
 #include <math.h>
 
 #include "effect/bases.h"
@@ -82,4 +82,41 @@ size_t fg_basis_order_starts(const fg_loop_problem *problem, const fg_loop_candi
   for (size_t k = lowest_order(at); k <= at->order_max; k++)
     starts[count++][0] = at->period / (double)k;
   return count;
+}
+
+/* Places that are approached from two directions show a backlash, the same at all of them, as
+ * levels of the direction; a hysteresis opens between the ends and closes there. */
+
+/* Fewer places than these show no curve. */
+enum { PLACES_OF_A_LOOP = 5 };
+
+static bool has_direction(const fg_loop_coordinate *at) {
+  return (at->roles & FG_LOOP_DIRECTION) != 0;
+}
+
+/* Places that are set, and so met again from the other side, or that the model declares. */
+static bool is_swept(const fg_loop_problem *problem, const fg_loop_coordinate *at) {
+  return at->roles & FG_LOOP_DECLARED || 4 * at->distinct <= 3 * problem->rows;
+}
+
+bool fg_basis_accepts_hysteresis(const fg_loop_problem *problem, size_t a, size_t b) {
+  const fg_loop_coordinate *place = &problem->coordinate[a];
+  return a != b && has_direction(&problem->coordinate[b]) && !has_direction(place) &&
+         fg_basis_is_number(place) && !(place->roles & FG_LOOP_ORDER) &&
+         place->distinct >= PLACES_OF_A_LOOP && is_swept(problem, place);
+}
+
+/* Half the difference of the directions at the ends, and in the middle: u² and 1 - u², u from -1 to
+ * 1. Both together contain the backlash. */
+void fg_basis_hysteresis(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
+                         const double *shape, double *columns) {
+  const fg_loop_coordinate *place = fg_basis_first(problem, candidate);
+  const fg_loop_coordinate *direction = &problem->coordinate[candidate->b];
+  (void)shape;
+  for (size_t i = 0; i < problem->rows; i++) {
+    double sense = direction->value[i] > (direction->low + direction->high) / 2 ? 1 : -1;
+    double u = (2 * place->value[i] - place->low - place->high) / (place->high - place->low);
+    columns[i] = sense * u * u;
+    columns[problem->rows + i] = sense * (1 - u * u);
+  }
 }

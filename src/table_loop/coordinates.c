@@ -60,8 +60,25 @@ bool fg_loop_table_name_ends(const char *name, const char *end) {
   return length > size && !strcasecmp(name + length - size, end);
 }
 
+/* Returns true for two levels that say from which side a place was approached. */
+static bool is_direction(const fg_loop_coordinate *at) {
+  static const char *const names[] = {"direction", "approach", "sense", "reversal", "stroke"};
+  static const char *const levels[] = {"up",  "down",   "forward", "backward",  "forth", "back",
+                                       "cw",  "ccw",    "loading", "unloading", "+",     "-",
+                                       "out", "return", "rising",  "falling"};
+  size_t known = 0;
+  if (at->levels ? at->levels != 2 : at->distinct != 2) return false;
+  for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+    if (strcasestr(at->name, names[i])) return true;
+  for (size_t k = 0; k < at->levels; k++)
+    for (size_t i = 0; i < sizeof levels / sizeof *levels; i++)
+      known += !strcasecmp(at->level_name[k], levels[i]);
+  return known == 2;
+}
+
 /* Derives a column's roles from the unit in its name; without a unit it has none. */
 static void give_roles(fg_loop_coordinate *at) {
+  if (is_direction(at)) at->roles |= FG_LOOP_DIRECTION;
   if (strcasestr(at->name, "temp") && fg_loop_table_name_ends(at->name, "_C")) {
     at->roles |= FG_LOOP_TEMPERATURE;
     at->kelvin_offset = 273.15;

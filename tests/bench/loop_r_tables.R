@@ -64,6 +64,14 @@ order_of <- function(column) c("--order", column)
 each <- function(id, columns) paste0(id, "(", columns, ")")
 rows_wrong <- function(...) paste0("table.outlier(", c(...), ")")
 
+# A series as a table without an order: rows in any order, the month's number of each.
+by_month <- function(y, name) {
+  d <- frame(month = as.numeric(stats::cycle(y)), year = floor(as.numeric(time(y)) + 1e-6), y = as.numeric(y))
+  names(d)[3] <- name
+  set.seed(5)
+  d[sample(nrow(d)), ]
+}
+
 # lone values
 case("hills", frame(race = seq_len(nrow(hills)), dist = hills$dist, climb = hills$climb, time = hills$time),
   "time ~ dist + climb", "Knock Hill (row 18) recorded an hour wrong", "Atkinson 1986; Venables and Ripley 2002, 6.3",
@@ -100,6 +108,10 @@ case("air_passengers", series(log(AirPassengers), "log_passengers"), "log_passen
   "Box and Jenkins 1976, series G", cycle(12, "reading"), "table.periodic(reading)", order_of("reading"))
 case("lung_deaths", series(ldeaths, "deaths"), "deaths ~ 1", "a cycle of a year", "Diggle 1990, A.3",
   cycle(12, "reading"), "table.periodic(reading)", order_of("reading"))
+case("nottem_month", by_month(nottem, "temperature_F"), "temperature_F ~ 1", "a cycle of twelve months over the month", "Anderson 1976, 8.2",
+  cycle(12, "month"), "table.periodic(month)", c("--period", "month=12"))
+case("lung_deaths_month", by_month(ldeaths, "deaths"), "deaths ~ 1", "a cycle of twelve months over the month", "Diggle 1990, A.3",
+  cycle(12, "month"), "table.periodic(month)", c("--period", "month=12"))
 case("lynx", series(log10(lynx), "log_lynx"), "log_lynx ~ 1", "a cycle of 9.6 years", "Elton and Nicholson 1942; Moran 1953",
   cycle(9.6, "reading"), "table.periodic(reading)", order_of("reading"))
 case("sunspots", series(sqrt(sunspot.year), "root_spots"), "root_spots ~ 1", "a cycle of 11 years", "Wolf 1852; Yule 1927",

@@ -20,6 +20,16 @@ def write(name, column, places, orders, base, slope=0.01, noise=0.2):
 write("turn", "angle_deg", [5.0 * i for i in range(72)], ((1, 1.5, 40), (2, 0.6, 110), (5, 0.4, 300)), 360)
 write("screw", "x_mm", [rng.uniform(0, 60) for _ in range(90)], ((1, 0.8, 70), (2, 0.5, 200)), 5.3)
 write("strobe", "x_mm", [7.0 * i for i in range(48)], ((1, 0.8, 90),), 2.4)
+def reverse(name, backlash, opening):
+    rng.seed(name)
+    with open(name + ".csv", "w") as out:
+        out.write("x_mm,direction,room_C,error_um\n")
+        for i in range(60):
+            x, sense = (i, 1) if i < 30 else (59 - i, -1)
+            half = sense / 2 * (backlash + opening * (1 - (x / 14.5 - 1) ** 2))
+            out.write(f"{x},{'up' if sense > 0 else 'down'},{rng.gauss(20, 1):.2f},{5 + 0.02 * x + half + rng.gauss(0, 0.15):.4f}\n")
+reverse("backlash", 0.5, 0)
+reverse("hysteresis", 0, 0.8)
 write("clean", "angle_deg", [7.5 * i for i in range(48)], (), 360)
 P
 python3 made.py
@@ -59,6 +69,17 @@ near "u of the lead" "$(value screw.json "r['claims'][$at]['uncertainty']['perio
 look strobe x_mm --period x_mm=2.4
 near "strobed amplitude" "$(order strobe 1 amplitude)" 0.8 0.12
 near "declared" "$(value strobe.json "r['claims'][$at]['parameters']['period']")" 2.4 0
+
+for name in backlash hysteresis; do
+  expect 0 "" "$program" loop --table $name.csv --response error_um --model "1 + x_mm" -o $name.json --html $name.html
+done
+[ "$(value backlash.json "[c['name'] for c in r['claims']]")" = "['table.factor(direction)']" ] || fail "backlash"
+[ "$(value hysteresis.json "[c['name'] for c in r['claims']]")" = "['table.hysteresis(x_mm, direction)']" ] || fail "hysteresis"
+near "opening" "$(value hysteresis.json "2 * r['claims'][0]['parameters']['coefficient_2']")" 0.8 0.17
+near "closing" "$(value hysteresis.json "2 * r['claims'][0]['parameters']['coefficient_1']")" 0 0.25
+value hysteresis.json "r['claims'][0]['sentence']" | grep -qE "in the middle of the range of x direction up reads 0.[0-9 ±.]+ µm higher than direction down, at its ends" ||
+  fail "the sentence of a hysteresis"
+grep -q "As measured, and as the model has it" hysteresis.html || fail "the page lacks the data with the fit"
 
 expect 0 "" "$program" loop --table clean.csv --response error_um --model "1 + angle_deg + way" -o clean.json
 [ "$(value clean.json "r['verdict']")" = clean ] || fail "a clean table is not clean"

@@ -131,7 +131,7 @@ static void put_marked(const fg_plot *at, const fg_loop_report *report,
 
 /* Half of a dash or bar, in pixels: levels must not touch. */
 static double half_dash(const fg_loop_panel *panel) {
-  return fmin(28, 0.36 * (RIGHT - LEFT) / (double)(panel->points ? panel->points : 1));
+  return fmin(28, fmax(1.5, 0.36 * (RIGHT - LEFT) / (double)(panel->points ? panel->points : 1)));
 }
 
 static void put_band(const fg_plot *at, const fg_loop_panel *panel) {
@@ -179,7 +179,9 @@ fg_status fg_loop_panel_put(fg_context *ctx, FILE *out, const fg_loop_report *re
   fg_plot at = fg_plot_open(out, &(fg_plot_frame){panel->caption, .width = WIDTH, .height = HEIGHT,
                                                   .left = LEFT, .right = WIDTH - RIGHT,
                                                   .bottom = HEIGHT - BOTTOM, .x = ends,
-                                                  .y = (double[]){-panel->limit, panel->limit}});
+
+                                                  .y = (double[]){panel->middle - panel->limit,
+                                                                  panel->middle + panel->limit}});
   put_axes(&at, x, report->spec->response);
   if (panel->band) put_band(&at, panel);
   if (panel->joined) put_joined(&at, problem, panel);

@@ -12,7 +12,7 @@ typedef struct fg_loop_point {
 typedef struct fg_loop_panel {
   const fg_loop_coordinate *at;
   const double *residual; /* rows */
-  double limit;           /* of the ordinate, both ways */
+  double middle, limit;   /* of the ordinate, and both ways from it */
   fg_loop_point *line;
   size_t points;
   bool dashes;                     /* a dash for each point of the line, not a curve */

@@ -10,6 +10,7 @@
 #include "core/spread.h"
 #include "core/text.h"
 #include "page/page.h"
+#include "report/table_loop/fitted.h"
 #include "report/table_loop/panel.h"
 #include "report/table_loop/words.h"
 
@@ -91,6 +92,29 @@ static fg_status draw_levels(fg_context *ctx, const fg_loop_problem *problem, co
   return FG_OK;
 }
 
+/* One direction up the places, the other back. */
+static fg_status draw_loop(fg_context *ctx, const fg_loop_problem *problem,
+                           const fg_loop_claim *claim, const double *effect, double mean,
+                           fg_loop_panel *panel) {
+  const fg_loop_coordinate *direction = &problem->coordinate[claim->candidate.b];
+  size_t up = 0;
+  FG_TRY(fg_memory_allocate(ctx, problem->rows, sizeof *panel->line, (void **)&panel->line));
+  for (int back = 0; back < 2; back++) {
+    for (size_t i = 0; i < problem->rows; i++)
+      if ((direction->value[i] == direction->low) == back)
+        panel->line[panel->points++] = (fg_loop_point){panel->at->value[i], effect[i] - mean};
+    if (!back) up = panel->points;
+  }
+  qsort(panel->line, up, sizeof *panel->line, by_x);
+  qsort(panel->line + up, panel->points - up, sizeof *panel->line, by_x);
+  for (size_t i = up, k = panel->points; i + 1 < k; i++) {
+    fg_loop_point other = panel->line[--k];
+    panel->line[k] = panel->line[i];
+    panel->line[i] = other;
+  }
+  return FG_OK;
+}
+
 static void set_limit(const fg_loop_problem *problem, fg_loop_panel *panel) {
   double size = 0;
   for (size_t i = 0; i < problem->rows; i++)
@@ -151,11 +175,14 @@ static fg_status put_mean_claim(fg_context *ctx, FILE *out, const fg_loop_report
   double mean = outlier ? 0 : fg_mean(work, rows);
   for (size_t i = 0; i < rows; i++)
     work[rows + i] = left[i] + work[i] - mean;
-  if (is_curve(problem, claim))
+  if (effect->reads == FG_LOOP_READS_LOOP)
+    FG_TRY_EXIT(draw_loop(ctx, problem, claim, work, mean, &panel));
+  else if (is_curve(problem, claim))
     FG_TRY_EXIT(draw_curve(ctx, problem, claim, mean, &panel));
   else if (!outlier)
     FG_TRY_EXIT(draw_levels(ctx, problem, work, mean, &panel));
   FG_TRY_EXIT(put_finding_and_residual(ctx, out, report, &panel, left));
+  FG_TRY_EXIT(fg_loop_fitted_put(ctx, out, report, panel.at, left));
 exit:
   free(panel.line);
   return status;

@@ -82,12 +82,24 @@ static void read_range(const reading *r) {
   fg_text_clip(r->text, FG_LOOP_WORDS, "by it the rows differ by up to %s", range);
 }
 
+/* "(0.099 ± 0.011 µm per %)"; over an order a row is no unit. */
+static void append_slope(const reading *r) {
+  const char *unit = fg_unit_of_name(r->a->name);
+  double factor = 2 / (r->a->high - r->a->low);
+  char slope[VALUE_WORDS];
+  size_t used = strlen(r->text);
+  if (r->a->roles & (FG_LOOP_ORDER | FG_LOOP_BUMP) || !*unit) return;
+  put_difference(r, factor * r->claim->coefficient[0], factor * r->claim->coefficient_u[0], slope);
+  fg_text_clip(r->text + used, FG_LOOP_WORDS - used, " (%s per %s)", slope, unit);
+}
+
 static void read_slope(const reading *r) {
   char range[VALUE_WORDS], ends[VALUE_WORDS];
   put_difference(r, 2 * r->claim->coefficient[0], 2 * r->claim->coefficient_u[0], range);
   put_ends(r->a, ends);
   fg_text_clip(r->text, FG_LOOP_WORDS, "it %s by %s %s",
                r->claim->coefficient[0] < 0 ? "falls" : "rises", range, ends);
+  append_slope(r);
 }
 
 /* y = c0 x + c1 (2 x² - 1), x from -1 to 1: turns at x = -c0 / (4 c1). */
@@ -222,6 +234,22 @@ static void read_cells(const reading *r) {
                c < 0 ? "lower" : "higher", y, x);
 }
 
+/* Levels of the direction are in ascending order: the second is the positive one. */
+static void read_loop(const reading *r) {
+  const double *c = r->claim->coefficient, *u = r->claim->coefficient_u;
+  char middle[VALUE_WORDS], ends[VALUE_WORDS], low[VALUE_WORDS], high[VALUE_WORDS],
+      name[FG_LOOP_NAME];
+  put_difference(r, 2 * c[1], 2 * u[1], middle);
+  put_difference(r, 2 * c[0], 2 * u[0], ends);
+  put_place(r->b, r->b->low, low);
+  put_place(r->b, r->b->high, high);
+  fg_name_words(r->a->name, name, sizeof name);
+  fg_text_clip(r->text, FG_LOOP_WORDS,
+               "in the middle of the range of %s %s reads %s %s than %s, at its ends %s %s", name,
+               high, middle, c[1] < 0 ? "lower" : "higher", low, ends,
+               c[0] < 0 ? "lower" : "higher");
+}
+
 static void read_slope_differs(const reading *r) {
   if (r->a->levels && r->b->levels)
     read_cells(r);
@@ -267,7 +295,8 @@ static void write_reading(const fg_loop_report *report, const fg_loop_claim *cla
       [FG_LOOP_READS_BEND] = read_bend,         [FG_LOOP_READS_LEVELS] = read_levels,
       [FG_LOOP_READS_STEP] = read_step,         [FG_LOOP_READS_FADE] = read_fade,
       [FG_LOOP_READS_SWING] = read_swing,       [FG_LOOP_READS_SLOPES] = read_slope_differs,
-      [FG_LOOP_READS_ROWS] = read_outlier_rows, [FG_LOOP_READS_EXCHANGE] = read_exchange,
+      [FG_LOOP_READS_LOOP] = read_loop,         [FG_LOOP_READS_ROWS] = read_outlier_rows,
+      [FG_LOOP_READS_EXCHANGE] = read_exchange,
   };
   const fg_loop_coordinate *at = report->problem->problem.coordinate;
   bool own = claim->candidate.effect->accepts != NULL;
