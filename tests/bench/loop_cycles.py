@@ -25,6 +25,7 @@ from scipy import stats
 ROWS = (40, 60, 72, 120, 240, 400, 1000, 2000)
 WAYS = ("orders", "physics")
 PLACES = ("even", "uneven", "repeated")
+CLEAR = 10  # standard errors of an order that is found whatever its noise: none is missed, so none is chosen for its luck
 HARMONICS = 400  # of the Fourier series of a physical error
 
 
@@ -93,8 +94,8 @@ def by_physics(rng, x, base, most):
 
 
 def oracle_sees(y, x, base, beside, orders, largest, searched):
-    """What is best possible: an F test of the largest order, its period known, beside all else that is true, at 1 % over as
-    many periods as were searched."""
+    """An F test of the largest order, its period known, beside all else that is true, at 1 % over as many periods as were
+    searched: the best that is possible."""
     wave = lambda k: [np.sin(2 * np.pi * k * x / base), np.cos(2 * np.pi * k * x / base)]
     others = sorted((k for k in orders if k != largest and orders[k] > 0), key=lambda k: -orders[k])[:6]
     null = np.column_stack([np.ones(len(x)), x, *beside, *[c for k in others for c in wave(k)]])
@@ -170,10 +171,10 @@ def judge(report, truth):
     near = [s for s in said if abs(s[0] / period - 1) < 0.02]
     extra = [s for s in said if not any(abs(s[0] / p - 1) < 0.03 and a > 0 for p, a in true.items())]
     tied = any(f"table.periodic({truth['column']})" in [a["name"] for a in c["alias_class"]] for c in report["claims"])
-    within = [abs(s[1] - a) <= s[2] for s in said for p, a in true.items() if abs(s[0] / p - 1) < 0.02]
+    pairs = [(a >= CLEAR * truth["unit"], abs(s[1] - a) <= s[2]) for s in said for p, a in true.items() if abs(s[0] / p - 1) < 0.02]
     return {"found": bool(near), "tied": tied, "off": abs(near[0][0] / period - 1) if near else None,
             "period_within": abs(near[0][0] - period) <= 2 * near[0][3] if near and near[0][3] else None,
-            "within": within, "extra": len(extra), "claims": [c["name"] for c in report["claims"]],
+            "within": [w for _, w in pairs], "within_clear": [w for clear, w in pairs if clear], "extra": len(extra), "claims": [c["name"] for c in report["claims"]],
             "curve": bool(report["unattributed"]), "verdict": report["verdict"]}
 
 
@@ -202,11 +203,12 @@ def line(name, done):
     """A row of the page's table."""
     found = [d for d in done if d["found"]]
     off = sorted(d["off"] for d in found if not d["known"])
-    within = [w for d in done for w in d["within"]]
+    within, clear = ([w for d in done for w in d[which]] for which in ("within", "within_clear"))
     bound = [d["period_within"] for d in found if d["period_within"] is not None]
     return [name, len(done), percent(sum(d["oracle"] for d in done), len(done)), percent(len(found), len(done)), percent(sum(d["found"] or d["tied"] for d in done), len(done)),
             f"{100 * statistics.median(off):.2f} %" if off else "–",
             percent(sum(o < 0.002 for o in off), len(off)), percent(sum(bound), len(bound)), percent(sum(within), len(within)),
+            percent(sum(clear), len(clear)),
             percent(sum(d["extra"] > 0 for d in done), len(done))]
 
 
@@ -218,7 +220,8 @@ def page(done, clean, arguments):
            f"    /usr/bin/python3 tests/bench/loop_cycles.py build/foilgauge --tables {arguments.tables} --clean {arguments.clean} "
            f"--seed {arguments.seed}", ""]
     head = ["tables", "number", "an oracle sees it", "largest order found", "found or tied", "sought period off, median", "off by less than 0.2 %",
-            "period within U", "amplitudes within U", "with an order that is none"]
+            "period within U", "amplitudes within U",
+            f"of orders of {CLEAR} standard errors or more", "with an order that is none"]
     out += ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
     groups = [("all", done)]
     groups += [(f"size {s:g}", [d for d in done if d["size"] == s]) for s in sorted({d["size"] for d in done})]
@@ -233,7 +236,10 @@ def page(done, clean, arguments):
     out += ["| " + " | ".join(str(c) for c in line(n, g)) + " |" for n, g in groups if g]
     claimed = [d for d in clean if d["claims"] or d["curve"]]
     cyclic = [d for d in clean if any(c.startswith("table.periodic") for c in d["claims"])]
-    out += ["", f"Clean tables: of {len(clean)} {len(claimed)} have a claim ({100 * len(claimed) / max(len(clean), 1):.1f} %), "
+    out += ["", "An order that is hardly seen is found where noise makes it larger: of those the amplitudes lie beyond U more often. A sought",
+            "period is as sharp as its rows let it be (u / P = sqrt(3) / pi / (its cycles × its size)): of 4 to 8 cycles 1.1 to",
+            "2.3 % at 6 standard errors, 0.3 to 0.7 % at 20; 0.2 % needs more turns, or a base that is known.", ""]
+    out += [f"Clean tables: of {len(clean)} {len(claimed)} have a claim ({100 * len(claimed) / max(len(clean), 1):.1f} %), "
             f"{len(cyclic)} of a cycle.", ""]
     return "\n".join(out)
 
