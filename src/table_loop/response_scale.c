@@ -13,6 +13,7 @@
 #include "core/memory.h"
 #include "core/text.h"
 #include "effect/table_effects.h"
+#include "table_loop/accept_claim.h"
 #include "table_loop/noise_scores.h"
 
 /* Smallest ratio of the largest to the smallest response: below it every power is a straight line.
@@ -24,6 +25,11 @@ enum { POWERS = 121, DOF_MIN = 8, ROWS_MAX = 5000 };
 #define POWER_STEP 0.05
 /* A claim does not show on the other scale when its test there has a larger p-value. */
 #define GONE_P 0.05
+/* A scale is claimed where its likelihood proves it and the sizes of the residuals, which tails
+ * hardly move, see the scatter as well. */
+#define SEEN_P 0.01
+/* Beside the row that lies farthest out it must stay likely. */
+#define HINGE_P 0.02
 static const double simple_powers[] = {1, 0, -1, 0.5, -0.5, 2, -2};
 
 typedef struct scale_fit {
@@ -57,10 +63,10 @@ static fg_engine_set set_without(const fg_engine_set *set, int keep) {
   return left;
 }
 
-static fg_status open_scale(fg_context *ctx, const fg_engine_run *run, int keep, scale_fit *f) {
-  fg_engine_set set = set_without(&run->set, keep);
+static fg_status open_scale_of(fg_context *ctx, const fg_engine_run *run, const fg_engine_set *set,
+                               scale_fit *f) {
   double sum = 0;
-  FG_TRY(fg_engine_training_build(ctx, run->problem, NULL, &set, &f->training));
+  FG_TRY(fg_engine_training_build(ctx, run->problem, NULL, set, &f->training));
   size_t n = f->training.n;
   FG_TRY(fg_memory_allocate(ctx, n, sizeof *f->response, (void **)&f->response));
   for (size_t i = 0; i < n; i++)
@@ -69,6 +75,11 @@ static fg_status open_scale(fg_context *ctx, const fg_engine_run *run, int keep,
   for (size_t i = 0; i < n; i++)
     f->response[i] /= f->mean;
   return FG_OK;
+}
+
+static fg_status open_scale(fg_context *ctx, const fg_engine_run *run, int keep, scale_fit *f) {
+  const fg_engine_set set = set_without(&run->set, keep);
+  return open_scale_of(ctx, run, &set, f);
 }
 
 static void close_scale(scale_fit *f) {
@@ -157,9 +168,8 @@ exit:
 }
 
 /* P-value of a scatter on another scale. */
-static fg_status spread_p(fg_context *ctx, const fg_engine_run *run, size_t m, double power,
-                          double *p) {
-  const fg_loop_candidate *candidate = &run->set.candidate[m];
+static fg_status spread_p(fg_context *ctx, const fg_engine_run *run,
+                          const fg_loop_candidate *candidate, double power, double *p) {
   scale_fit f = {0};
   fg_engine_span span = {0};
   fg_engine_noise_scores scores = {0};
@@ -177,6 +187,96 @@ exit:
   free(work);
   fg_engine_noise_scores_close(&scores);
   fg_engine_span_close(&span);
+  close_scale(&f);
+  return status;
+}
+
+/* The scatter that shows most by itself, and its p-value alone. */
+static fg_status choose_spread(fg_context *ctx, const fg_engine_run *run, size_t *best, double *p) {
+  *p = 1;
+  for (size_t c = run->means; c < run->candidates; c++) {
+    double own = 1;
+    if (run->candidate[c].effect->scatter != FG_LOOP_SPREAD) continue;
+    FG_TRY(spread_p(ctx, run, &run->candidate[c], 1, &own));
+    if (!(own < *p)) continue;
+    *p = own;
+    *best = c;
+  }
+  return FG_OK;
+}
+
+/* Adds the row that lies farthest from the others to a set. */
+static fg_status add_farthest_row(fg_context *ctx, scale_fit *f, fg_engine_set *set) {
+  const fg_engine_training *training = &f->training;
+  fg_loop_candidate row = {.effect = &fg_loop_outlier_effects()[0], .rows = 1};
+  fg_engine_span span = {0};
+  double *residual = NULL, farthest = 0;
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(fg_engine_span_open(ctx, training, (fg_engine_noise){0}, 0, &span));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, training->n, sizeof *residual, (void **)&residual));
+  put_scale(f, 1);
+  memcpy(residual, training->y, training->n * sizeof *residual);
+  fg_engine_project_out(training->n, span.basis, span.rank, residual);
+  for (size_t i = 0; i < training->n; i++) {
+    double size = fabs(residual[i]) / fg_engine_span_kept_sd(&span, i);
+    if (!(size > farthest)) continue;
+    farthest = size;
+    row.row[0] = training->row[i];
+  }
+  if (set->count <= FG_LOOP_CLAIMS) set->candidate[set->count++] = row;
+exit:
+  fg_engine_span_close(&span);
+  free(residual);
+  return status;
+}
+
+/* P-value of another scale over its kind, beside the row that lies farthest from the others. */
+static fg_status scale_p_beside_row(fg_context *ctx, const fg_engine_run *run, scale_fit *f,
+                                    double *p) {
+  fg_engine_set set = set_without(&run->set, -1);
+  fg_loop_response_scale scale = {.p_value = 1};
+  scale_fit beside = {0};
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(add_farthest_row(ctx, f, &set));
+  FG_TRY_EXIT(open_scale_of(ctx, run, &set, &beside));
+  FG_TRY_EXIT(profile(ctx, &beside, &scale));
+  *p = scale.p_value / run->share[FG_LOOP_KIND_SCATTER];
+exit:
+  close_scale(&beside);
+  return status;
+}
+
+static bool has_rival(const fg_engine_run *run) {
+  for (size_t m = 0; m < run->set.count; m++)
+    if (may_vanish(&run->set.candidate[m])) return true;
+  return false;
+}
+
+fg_status fg_engine_accept_scale(fg_context *ctx, fg_engine_run *run) {
+  fg_loop_response_scale scale = {0};
+  scale_fit f = {0};
+  size_t best = 0;
+  double alone = 1, beside = 1;
+  fg_status status = FG_OK;
+  if (!has_scale(run) || has_rival(run) || run->has_curve || run->result->claims == FG_LOOP_CLAIMS)
+    return FG_OK;
+  FG_TRY_EXIT(open_scale(ctx, run, -1, &f));
+  FG_TRY_EXIT(profile(ctx, &f, &scale));
+  double p = scale.p_value / run->share[FG_LOOP_KIND_SCATTER];
+  if (!scale.known || scale.chosen == 1 || !(p < run->options.accept_p)) goto exit;
+  FG_TRY_EXIT(choose_spread(ctx, run, &best, &alone));
+  FG_TRY_EXIT(scale_p_beside_row(ctx, run, &f, &beside));
+  if (!(alone < SEEN_P) || !(beside < HINGE_P)) goto exit;
+  const fg_engine_stand stand = {.candidate = run->candidate[best]};
+  fg_loop_claim claim = {.candidate = stand.candidate,
+                         .p_value = p,
+                         .retained_share = 1,
+                         .cv_gain = NAN,
+                         .cv_gain_se = NAN};
+  fg_engine_candidate_name(run->problem, &claim.candidate, claim.name);
+  fg_engine_take(run, &stand, &claim);
+  run->result->family_p = fmin(run->result->family_p, p);
+exit:
   close_scale(&f);
   return status;
 }
@@ -213,7 +313,7 @@ fg_status fg_engine_profile_scale(fg_context *ctx, fg_engine_run *run) {
     double p = 0;
     if (!may_vanish(candidate)) continue;
     FG_TRY_EXIT(candidate->effect->scatter == FG_LOOP_SPREAD
-                    ? spread_p(ctx, run, m, scale->chosen, &p)
+                    ? spread_p(ctx, run, candidate, scale->chosen, &p)
                     : interaction_p(ctx, run, m, scale->chosen, &p));
     if (!(p > GONE_P)) continue;
     scale->removes++;

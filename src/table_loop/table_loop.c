@@ -9,6 +9,7 @@
 #include "effect/table_effects.h"
 #include "table_loop/cycles.h"
 #include "table_loop/effort.h"
+#include "table_loop/response_scale.h"
 
 static fg_status add_candidates(fg_context *ctx, fg_engine_run *run, const fg_loop_effect *effects,
                                 size_t *capacity) {
@@ -144,6 +145,7 @@ fg_status fg_loop_run(fg_context *ctx, const fg_loop_problem *problem,
   FG_TRY_EXIT(check_rows(ctx, &run, &run.worth));
   if (run.worth) FG_TRY_EXIT(note_cycles(ctx, &run));
   if (run.worth) FG_TRY_EXIT(fg_engine_search(ctx, &run));
+  if (run.worth) FG_TRY_EXIT(fg_engine_accept_scale(ctx, &run));
   FG_TRY_EXIT(fg_engine_finish(ctx, &run));
   if (run.worth) FG_TRY_EXIT(fg_engine_list_rejected(ctx, &run));
   if (run.worth) FG_TRY_EXIT(fg_engine_advise(ctx, &run));

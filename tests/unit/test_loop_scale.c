@@ -17,7 +17,7 @@ typedef struct outcome {
 } outcome;
 
 /* Rates of drugs and doses add; the response is the rate, or the time. */
-static void search(bool times, uint64_t seed, outcome *out) {
+static void search(bool times, double wrong, uint64_t seed, outcome *out) {
   double drug[ROWS], dose[ROWS], y[ROWS];
   const fg_loop_options options = {.effects = fg_loop_table_effects()};
   const fg_loop_table_spec spec = {.response = "y", .model = "factor(drug) + factor(dose)"};
@@ -28,6 +28,7 @@ static void search(bool times, uint64_t seed, outcome *out) {
     double rate = 2.2 - 0.35 * drug[i] + 0.9 * dose[i] + 0.25 * random_gaussian(&seed);
     y[i] = times ? 1 / rate : rate;
   }
+  y[10] += wrong;
   assert_ok(&out->ctx, fg_table_add_numbers(&out->ctx, &out->table, "drug", drug, ROWS));
   assert_ok(&out->ctx, fg_table_add_numbers(&out->ctx, &out->table, "dose", dose, ROWS));
   assert_ok(&out->ctx, fg_table_add_numbers(&out->ctx, &out->table, "y", y, ROWS));
@@ -50,7 +51,7 @@ static bool is_tied_with_scale(const fg_loop_claim *claim) {
 static void times_whose_rates_add_are_tied_with_their_scale(void **state) {
   outcome out;
   (void)state;
-  search(true, 4, &out);
+  search(true, 0, 4, &out);
   const fg_loop_response_scale *scale = &out.result.scale;
   assert_true(scale->known && scale->chosen == -1 && scale->p_value < 1e-4);
   assert_true(scale->interval[0] < -1 && scale->interval[1] > -1 && scale->interval[1] < 0.5);
@@ -63,8 +64,19 @@ static void times_whose_rates_add_are_tied_with_their_scale(void **state) {
 static void rates_stay_as_they_are(void **state) {
   outcome out;
   (void)state;
-  search(false, 4, &out);
+  search(false, 0, 4, &out);
   assert_true(out.result.scale.known && out.result.scale.chosen == 1);
+  assert_int_equal(out.result.scale.removes, 0);
+  clear_outcome(&out);
+}
+
+/* Neither the search for scatter nor the scale may rest on it. */
+static void one_wrong_row_is_no_scale(void **state) {
+  outcome out;
+  (void)state;
+  search(false, 3, 6, &out);
+  for (size_t m = 0; m < out.result.claims; m++)
+    assert_string_not_equal(out.result.claim[m].candidate.effect->id, "table.spread");
   assert_int_equal(out.result.scale.removes, 0);
   clear_outcome(&out);
 }
@@ -73,6 +85,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(times_whose_rates_add_are_tied_with_their_scale),
       cmocka_unit_test(rates_stay_as_they_are),
+      cmocka_unit_test(one_wrong_row_is_no_scale),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
