@@ -37,6 +37,9 @@ typedef struct fg_scan_loop_options {
   /* Prediction of every bump, by number, that replaces the design's springback; NULL: the design's.
    * It must outlive the loop. */
   const struct fg_forming_prediction *forming;
+  /* Effects that are not looked for, by id, separated by commas; NULL: none. It must outlive the
+   * loop. */
+  const char *without;
 } fg_scan_loop_options;
 
 typedef struct fg_scan_loop fg_scan_loop; /* src/scan_loop/state.h */
@@ -44,7 +47,7 @@ typedef struct fg_scan_loop fg_scan_loop; /* src/scan_loop/state.h */
 /* Scan i only confirms when `hold_out[i]` is true; at least one scan must not be held out.
  * FG_ERR_DATA when the scans do not fit together (resolution; under same_foil scans of different
  * foils), or when `forming` does not predict a bump that they show. FG_ERR_NOT_MEASURED when no
- * foil of the design could be measured. */
+ * foil of the design could be measured. FG_ERR_USAGE when `without` names no listed effect. */
 fg_status fg_scan_loop_run(fg_context *ctx, const char *const *paths, const bool *hold_out,
                            size_t count, const fg_design *design,
                            const fg_scan_loop_options *options, fg_scan_loop **loop);

@@ -20,7 +20,7 @@ extern "C" {
 enum {
   FG_SCAN_RESULT_CLAIMS = 15,
   FG_SCAN_RESULT_EXPLANATIONS = 16,
-  FG_SCAN_RESULT_UNCLAIMED = 60,
+  FG_SCAN_RESULT_UNCLAIMED = 64,
   FG_SCAN_RESULT_PARAMETERS = 4,
   FG_SCAN_RESULT_ADVICE = 3,
   FG_SCAN_RESULT_WORDS = 512,
@@ -269,6 +269,7 @@ typedef struct fg_scan_result_bumps {
 typedef struct fg_scan_result {
   fg_loop_outcome verdict;
   bool same_foil, discs;
+  const char *without; /* effects that were not looked for; NULL: none */
   bool tied;       /* several explanations */
   bool named;      /* the effects are named: explanations differ at most in a basis */
   bool scale_tied; /* a scale that the edges cannot see would explain the part's stretch as well */

@@ -34,7 +34,8 @@ enum {
   OPTION_FORMING_MODEL,
   OPTION_COLOUR_GAP,
   OPTION_SEED,
-  OPTION_THREADS
+  OPTION_THREADS,
+  OPTION_WITHOUT
 };
 
 typedef fg_status scan_writer(fg_context *ctx, const fg_scan_loop *loop, FILE *out);
@@ -84,6 +85,10 @@ static const struct argp_option options[] = {
      "green "
      "one; BLUE: -RED, where it is not given. What the colour lines say of an effect of the "
      "carriage then has a size",
+     0},
+    {"without", OPTION_WITHOUT, "EFFECT[,EFFECT...]", 0,
+     "Effects that are not looked for, by name: such as one that this scanner cannot have. What "
+     "they would explain is then another's, or unattributed",
      0},
     {"hold-out", OPTION_HOLD_OUT, "SCAN", 0, "A scan that only confirms (may be repeated)", 0},
     {"output", 'o', "FILE", 0, "The report as JSON (-: standard output)", 0},
@@ -177,6 +182,27 @@ static error_t parse_grid_option(struct argp_state *state, int key, char *text) 
   }
 }
 
+/* Parses how the loop runs; returns false for another option. */
+static bool parse_run(int key, const char *text, struct argp_state *state,
+                      fg_scan_loop_options *run) {
+  switch (key) {
+  case OPTION_DPI:
+    run->dpi = parse_number(state, "dpi", text);
+    return true;
+  case OPTION_SEED:
+    run->seed = (uint64_t)parse_number(state, "seed", text);
+    return true;
+  case OPTION_THREADS:
+    run->threads = (unsigned)parse_number(state, "threads", text);
+    return true;
+  case OPTION_WITHOUT:
+    run->without = text;
+    return true;
+  default:
+    return false;
+  }
+}
+
 static error_t parse_option(int key, char *text, struct argp_state *state) {
   arguments *a = state->input;
   switch (key) {
@@ -188,9 +214,6 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
     return 0;
   case OPTION_FORMING_MODEL:
     a->forming_model = text;
-    return 0;
-  case OPTION_DPI:
-    a->options.dpi = parse_number(state, "dpi", text);
     return 0;
   case OPTION_ALLOW_LOSSY:
     a->options.allow_lossy = true;
@@ -215,12 +238,6 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
   case OPTION_COLOUR_GAP:
     parse_gaps(state, text, a->options.colour_gap_px);
     return 0;
-  case OPTION_SEED:
-    a->options.seed = (uint64_t)parse_number(state, "seed", text);
-    return 0;
-  case OPTION_THREADS:
-    a->options.threads = (unsigned)parse_number(state, "threads", text);
-    return 0;
   case 'o':
     a->outputs.path[FG_LOOP_JSON] = text;
     return 0;
@@ -232,7 +249,7 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
       argp_error(state, "give a scan, or --table DATA.csv, --lot DIR, --doe RUNS.csv");
     return 0;
   default:
-    return parse_grid_option(state, key, text);
+    return parse_run(key, text, state, &a->options) ? 0 : parse_grid_option(state, key, text);
   }
 }
 

@@ -25,11 +25,11 @@ const fg_effect fg_effect_powers[2] = {
 };
 
 static size_t midline_columns(const fg_edge_fit *edge_fit, const fg_effect *effect,
-                              double *columns) {
+                              const double *shape, double *columns) {
   double values[FG_FIELD_COLUMNS];
   size_t count = 0;
   for (size_t i = 0; i < edge_fit->row_count; i++) {
-    count = effect->midline(edge_fit, &edge_fit->rows[i], values);
+    count = effect->midline(edge_fit, &edge_fit->rows[i], shape, values);
     for (size_t c = 0; c < count; c++)
       columns[c * edge_fit->row_count + i] = values[c];
   }
@@ -40,7 +40,7 @@ static size_t midline_columns(const fg_edge_fit *edge_fit, const fg_effect *effe
 size_t fg_effect_columns(const fg_edge_fit *edge_fit, const fg_effect *effect, const double *shape,
                          double *columns) {
   if (effect->width) return 0;
-  if (effect->midline) return midline_columns(edge_fit, effect, columns);
+  if (effect->midline) return midline_columns(edge_fit, effect, shape, columns);
   fg_point at[FG_EDGE_FIT_PLACES], d[FG_FIELD_COLUMNS];
   size_t count = effect->columns, rows = edge_fit->row_count;
   for (size_t i = 0; i < rows; i++) {

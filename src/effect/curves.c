@@ -84,7 +84,9 @@ static void over_plane(const fg_field_frame *frame, const double *shape, fg_poin
       }
 }
 
-static size_t phi(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row, double *values) {
+static size_t phi(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row, const double *shape,
+                  double *values) {
+  (void)shape;
   size_t count = fg_midline_legendre(row, 3, 1, 16, values);
   count += fg_midline_stretch(edge_fit, row, 3, values + count);
   return count + fg_midline_stretch(edge_fit, row, 4, values + count);
@@ -127,7 +129,8 @@ static double pattern(int column, int k, int count) {
  * (leaning) of each; for up to as many bumps as columns: P4 of each; for more: patterns of P4. The
  * set of all effects uses the first half of the columns. */
 static size_t single_bumps(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row,
-                           double *values) {
+                           const double *shape, double *values) {
+  (void)shape;
   int first, last;
   for (int c = 0; c < FG_FIELD_COLUMNS; c++)
     values[c] = 0;
@@ -158,16 +161,22 @@ static size_t free_s(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row, do
   return FG_FIELD_COLUMNS;
 }
 
-static size_t foil(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row, double *values) {
+static size_t foil(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row, const double *shape,
+                   double *values) {
+  (void)shape;
   return free_s(edge_fit, row, fg_midline_along_normal(row), values);
 }
 
-static size_t foil_radial(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row, double *values) {
+static size_t foil_radial(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row,
+                          const double *shape, double *values) {
+  (void)shape;
   return free_s(edge_fit, row, fg_midline_along_radius(row), values);
 }
 
 /* Over the direction of the edge in the scan: error of the edge model. */
-static size_t normal(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row, double *values) {
+static size_t normal(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row, const double *shape,
+                     double *values) {
+  (void)shape;
   enum {
     HARMONICS = 8,
     OF_DISCS = 6

@@ -82,7 +82,7 @@ typedef enum fg_effect_on_discs {
 /* Computes the midline's deviation of every column at one row, along the row's normal; returns the
  * number of columns. */
 typedef size_t fg_effect_midline(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row,
-                                 double *values);
+                                 const double *shape, double *values);
 
 /* Returns the change of half the width at one row, um per um of amplitude. */
 typedef double fg_effect_width(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row);
@@ -90,10 +90,24 @@ typedef double fg_effect_width(const fg_edge_fit *edge_fit, const fg_edge_fit_ro
 /* Returns start i of `count` of the search for a shape. */
 typedef double fg_effect_start(const fg_field_frame *frame, size_t i, size_t count);
 
+/* Fills start i of `count` of the search for two shapes, and how far from it the best may lie. */
+typedef void fg_effect_grid(const fg_edge_fit *edge_fit, size_t i, size_t count,
+                            double shape[FG_FIELD_SHAPES], double reach[FG_FIELD_SHAPES]);
+
+/* Kinds of shapes. */
+typedef enum fg_effect_shape {
+  FG_EFFECT_PLACE,
+  FG_EFFECT_LENGTH,
+  FG_EFFECT_GROWTH, /* relative, per mm */
+} fg_effect_shape;
+
+/* Columns that have a prior size of their own; further ones have the last one's. */
+enum { FG_EFFECT_SIZES = 7 };
+
 typedef struct fg_effect {
   const char *id;
   const char *direction; /* of an effect with two bases: "normal", "radial"; else NULL */
-  bool second;           /* second basis of an effect: the first row stands for both */
+  bool second;           /* another basis of an effect: its first row stands for all */
   const char *words;     /* name for people */
   const char
       *says[2]; /* meaning of a positive and a negative amplitude; NULL: `words` are complete */
@@ -109,17 +123,24 @@ typedef struct fg_effect {
 
   size_t columns, shapes; /* linear, non-linear; of a part's effect the basis returns the columns */
   const char *shape_name[FG_FIELD_SHAPES], *shape_symbol[FG_FIELD_SHAPES]; /* mm; for people */
-  bool spans; /* the shape is a length, not a place */
+  fg_effect_shape shape_is[FG_FIELD_SHAPES];
   fg_field_basis *glass;
   fg_effect_midline *midline;
   fg_effect_width *width;
 
   int axis; /* of the scanner: axis of a polynomial's middle or of a sought place */
   fg_effect_polynomial polynomial;
-  fg_effect_start *start;
+  fg_effect_start *start; /* of one shape */
+  fg_effect_grid *grid;   /* of two */
   size_t starts;
-  bool jumps; /* the shape is a place where the picture jumps: it needs rows on both sides, rows
-                 across it do not count, and no derivative by it exists */
+  bool jumps; /* the first shape is a place where the picture jumps, a second one the pitch at which
+                 it does so again: it needs rows on both sides, rows across it do not count, and no
+                 derivative by it exists */
+  const char
+      *rival;     /* unnamed rival that is the same (evidence/rivals.h, evidence/unnamed.h), and */
+  size_t stretch; /* which of its stretches */
+  const char *extends; /* id of the effect that this one is with a number of 0; NULL: of none */
+  int lobes;           /* of a part's harmonic: its number; 0: an oval */
 
   fg_effect_coarse coarse;
   size_t rough[2];
@@ -131,6 +152,9 @@ typedef struct fg_effect {
                        colour sensor see it at different times */
   bool scales;      /* both axes alike: parts of known size determine it */
   fg_effect_ring ring;
+  double size_um[FG_EFFECT_SIZES]; /* standard deviation of each column's amplitude over scanners or
+                                      parts, from published or measured ones; 0: as the one before
+                                      it. Half of it, a quarter, ... are as likely */
 } fg_effect;
 
 /* Iterates over all rows in the order of search and report: the first one, and the one after
@@ -150,6 +174,9 @@ fg_field fg_effect_field(const fg_effect *effect);
 /* Returns true when two rows are one effect, in any of its bases. */
 bool fg_effect_same(const fg_effect *a, const fg_effect *b);
 
+/* Returns the distance of a place from the nearest jump, along the effect's axis. */
+double fg_effect_from_jump_mm(const fg_effect *effect, const double *shape, double along_mm);
+
 static inline bool fg_effect_is_free(const fg_effect *effect) {
   return effect->sought == FG_EFFECT_CURVE;
 }
@@ -159,9 +186,17 @@ const char *fg_effect_coordinate_name(fg_effect_coordinate coordinate);
 /* Coordinate with description and unit, for an axis. */
 const char *fg_effect_coordinate_title(fg_effect_coordinate coordinate);
 
-/* Returns true when an effect can be sought in the residuals of these rows. Not every effect leaves
- * a trace on a disc, and some traces are the same as the disc's own form error. */
+/* Returns true when an effect can be sought in the residuals of these rows, and is not left out.
+ * Not every effect leaves a trace on a disc, and some traces are the same as the disc's own form
+ * error.
+ */
 bool fg_effect_shows(const fg_edge_fit *edge_fit, const fg_effect *effect);
+
+/* Returns true when an effect is in a list of ids that are separated by commas (NULL: none). */
+bool fg_effect_is_listed(const char *ids, const fg_effect *effect);
+
+/* Refuses a list that holds something else than listed effects: FG_ERR_USAGE. */
+fg_status fg_effect_check_list(fg_context *ctx, const char *ids);
 
 /* Rows of the table by subject, for table.c; each list ends with id NULL. */
 extern const fg_effect fg_effects_scanner[], fg_effects_part[], fg_effects_curves[];

@@ -36,17 +36,19 @@ static number wave_number(const fg_effect_found *effect, size_t i) {
   double us = effect->u_coefficient_um[0], uc = effect->u_coefficient_um[1];
   if (i == 0) return (number){"amplitude_um", a, a > 0 ? hypot(s * us, c * uc) / a : hypot(us, uc)};
   if (i == 1) return (number){effect->kind->shape_name[0], effect->shape[0], effect->u_shape[0]};
-  if (i > 2) return (number){0};
+  if (i > effect->shapes + 1) return (number){0};
+  if (i > 2)
+    return (number){effect->kind->shape_name[i - 2], effect->shape[i - 2], effect->u_shape[i - 2]};
   return (number){"phase_deg", atan2(c, s) * 180 / M_PI,
                   a > 0 ? hypot(s * uc, c * us) / (a * a) * 180 / M_PI : NAN};
 }
 
-/* Of a cosine and a sine of twice the angle. */
+/* Of a cosine and a sine of n times the angle. */
 static number oval_phase(const fg_effect_found *effect) {
   const double *c = effect->coefficient_um, *u = effect->u_coefficient_um;
-  double square = c[0] * c[0] + c[1] * c[1];
-  return (number){"phase_deg", 0.5 * atan2(c[1], c[0]) * 180 / M_PI,
-                  0.5 * hypot(c[1] * u[0], c[0] * u[1]) / square * 180 / M_PI};
+  double square = c[0] * c[0] + c[1] * c[1], n = effect->kind->lobes ? effect->kind->lobes : 2;
+  return (number){"phase_deg", atan2(c[1], c[0]) / n * 180 / M_PI,
+                  hypot(c[1] * u[0], c[0] * u[1]) / square / n * 180 / M_PI};
 }
 
 static number number_of(const fg_effect_found *effect, size_t i) {
@@ -63,6 +65,7 @@ static number number_of(const fg_effect_found *effect, size_t i) {
     break;
   case FG_EFFECT_OVAL:
     if (i == 1) return oval_phase(effect);
+    if (i == 2 && kind->lobes) return (number){"lobes", kind->lobes, 0};
     /* fall through */
   case FG_EFFECT_AMPLITUDE:
   case FG_EFFECT_LED:

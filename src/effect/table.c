@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "effect/effect.h"
 
+#include <math.h>
 #include <string.h>
 
 static const fg_effect *const tables[] = {fg_effects_scanner, fg_effects_part, fg_effects_curves};
@@ -39,6 +40,11 @@ fg_field fg_effect_field(const fg_effect *effect) {
 
 bool fg_effect_same(const fg_effect *a, const fg_effect *b) {
   return a == b || !strcmp(a->id, b->id);
+}
+
+double fg_effect_from_jump_mm(const fg_effect *effect, const double *shape, double along_mm) {
+  double from = along_mm - shape[0];
+  return fabs(effect->shapes > 1 ? remainder(from, shape[1]) : from);
 }
 
 const char *fg_effect_coordinate_name(fg_effect_coordinate coordinate) {
@@ -83,5 +89,29 @@ static bool shows_on_discs(const fg_edge_fit *edge_fit, const fg_effect *effect)
 
 bool fg_effect_shows(const fg_edge_fit *edge_fit, const fg_effect *effect) {
   if (effect->sought == FG_EFFECT_OF_WIDTH) return false;
+  if (fg_effect_is_listed(edge_fit->left_out, effect)) return false;
   return edge_fit->discs ? shows_on_discs(edge_fit, effect) : !effect->off_foils;
+}
+
+bool fg_effect_is_listed(const char *ids, const fg_effect *effect) {
+  size_t length = strlen(effect->id);
+  for (const char *at = ids; at; at = strchr(at, ',')) {
+    at += *at == ',';
+    if (!strncmp(at, effect->id, length) && (at[length] == ',' || !at[length])) return true;
+  }
+  return false;
+}
+
+fg_status fg_effect_check_list(fg_context *ctx, const char *ids) {
+  for (const char *at = ids; at; at = strchr(at, ',')) {
+    at += *at == ',';
+    bool known = false;
+    for (const fg_effect *effect = fg_effect_first(); effect; effect = fg_effect_next(effect))
+      known = known || (!fg_effect_is_free(effect) && !strncmp(at, effect->id, strcspn(at, ",")) &&
+                        strcspn(at, ",") == strlen(effect->id));
+    if (!known)
+      return fg_fail(ctx, FG_ERR_USAGE, "no effect is called \"%.*s\"; one is, for example, %s",
+                     (int)strcspn(at, ","), at, fg_effect_first()->id);
+  }
+  return FG_OK;
 }

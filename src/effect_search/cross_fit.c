@@ -28,11 +28,12 @@ typedef struct cross_fit {
   bool cannot[FOLDS_MAX + 1]; /* too few rows, or a geometry that they do not determine */
 } cross_fit;
 
-/* A curve over places, or a jump at one, which a single disc or bump may be all that shows. */
+/* A curve over places, or a jump or dent at one, which a single disc or bump may be all that shows.
+ */
 static bool lives_at_places(const fg_effect_set *set) {
   for (size_t e = 0; e < set->count; e++) {
     const fg_effect *kind = set->effects[e].kind;
-    if (kind->jumps) return true;
+    if (kind->jumps || (kind->midline && kind->shapes)) return true;
     if (fg_effect_is_free(kind) && kind->coordinate != FG_EFFECT_PHI &&
         kind->coordinate != FG_EFFECT_NORMAL)
       return true;

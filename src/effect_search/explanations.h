@@ -10,7 +10,7 @@
 /* Differences between the searches on foils and on discs (policy.h). */
 typedef struct fg_search_policy fg_search_policy;
 
-enum { FG_CANDIDATES_MAX = 28, FG_EXPLANATIONS_MAX = 16, FG_SEARCH_BARRED_MAX = 24 };
+enum { FG_CANDIDATES_MAX = 31, FG_EXPLANATIONS_MAX = 16, FG_SEARCH_BARRED_MAX = 24 };
 
 /* Effect as it enters the search. Its shape is fixed, except the middle c of a polynomial, which
  * every set determines anew. */

@@ -81,7 +81,8 @@ void fg_search_drop_across_steps(fg_edge_fit *edge_fit, const fg_effect_set *set
   for (size_t e = 0; e < set->count; e++)
     for (size_t i = 0; i < edge_fit->row_count; i++)
       if (set->effects[e].kind->jumps &&
-          fabs(fg_point_along(edge_fit->rows[i].at, set->effects[e].kind->axis) -
-               set->effects[e].shape[0]) < half_mm)
+          fg_effect_from_jump_mm(set->effects[e].kind, set->effects[e].shape,
+                                 fg_point_along(edge_fit->rows[i].at, set->effects[e].kind->axis)) <
+              half_mm)
         edge_fit->rows[i].weight = 0;
 }

@@ -58,7 +58,7 @@ fg_status fg_search_add_other_steps(fg_context *ctx, fg_search *s, const fg_effe
       fg_search_columns_span(&s->columns, 0, s->free_end); /* geometry and known effects */
   for (size_t e = 0; e < known->count; e++) {
     const fg_effect_found *step = &known->effects[e];
-    if (!step->kind->jumps) continue;
+    if (!step->kind->jumps || !step->kind->start) continue;
     size_t places = 2 * step->kind->starts;
     double above = NAN, below = NAN, square = step->coefficient_um[0] * step->coefficient_um[0];
     for (size_t i = 0; i < places; i++) {

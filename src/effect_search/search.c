@@ -73,14 +73,14 @@ static fg_status add_smooth(fg_context *ctx, fg_search *s, const fg_effect_set *
   return FG_OK;
 }
 
-/* Ripples and steps that are in force. */
+/* Ripples, steps and effects that evidence alone asks for, which are in force. */
 static void add_known(fg_search *s, const fg_effect_set *known) {
   for (size_t e = 0; known && e < known->count; e++) {
     const fg_effect_found *from = &known->effects[e];
     fg_candidate effect = {.kind = from->kind};
     memcpy(effect.shape, from->shape, sizeof effect.shape);
-    if (from->kind->sought == FG_EFFECT_PLACED && s->out->candidate_count < FG_CANDIDATES_MAX)
-      fg_search_add(s, &effect);
+    bool is_kept = from->kind->sought == FG_EFFECT_PLACED || from->kind->by_evidence;
+    if (is_kept && s->out->candidate_count < FG_CANDIDATES_MAX) fg_search_add(s, &effect);
   }
 }
 

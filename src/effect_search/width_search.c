@@ -296,6 +296,7 @@ static void list_effects(const fg_edge_fit *edge_fit, fg_width_findings *finding
   if (edge_fit->discs) return;
   for (const fg_effect *kind = fg_effect_first(); kind; kind = fg_effect_next(kind)) {
     if (kind->sought != FG_EFFECT_OF_WIDTH || findings->count == FG_WIDTH_EFFECTS_MAX) continue;
+    if (fg_effect_is_listed(edge_fit->left_out, kind)) continue;
     findings->each[findings->count++] = (fg_width_effect){
         .effect = {.kind = kind, .columns = 1}, .p_value = 1, .smallest_um = INFINITY};
   }

@@ -49,7 +49,7 @@ typedef struct fg_evidence_scatter {
 } fg_evidence_scatter;
 
 /* State of a search over models: its problem, the options that a model can hold, and the models. */
-enum { FG_EVIDENCE_MODELS = 2400, FG_EVIDENCE_STORE = 2400 };
+enum { FG_EVIDENCE_MODELS = 2400, FG_EVIDENCE_STORE = 2560 };
 
 /* A named effect over its starting shapes, or a rival. */
 typedef struct fg_evidence_option {

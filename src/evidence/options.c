@@ -9,33 +9,28 @@
 #include "effect/columns.h"
 #include "evidence/unnamed.h"
 
-enum { OPTIONS_MAX = 160 };
-
-/* Standard deviations of amplitudes, um at FG_FIELD_HALF_MM, where the effect's row has none. */
-#define SIZE_UM 20.0
+enum { OPTIONS_MAX = 200 };
 
 static bool is_power(const fg_effect *effect) {
   return effect->polynomial != FG_EFFECT_NO_POLYNOMIAL;
 }
 
 void fg_evidence_effect_variances(const fg_effect *effect, size_t count, double *variance) {
-  static const double powers[] = {13, 20, 20}, bends[] = {5, 2, 1, 0.5, 3, 1, 0.5};
+  double size = 0;
   for (size_t c = 0; c < count; c++) {
-    double size = SIZE_UM;
-    if (effect->polynomial == FG_EFFECT_LINEAR)
-      size = 54; /* 3e-3 of 18 mm */
-    else if (effect->polynomial == FG_EFFECT_CUBIC && !c)
-      size = 7;
-    else if (is_power(effect) && c < 3)
-      size = powers[c];
-    else if (effect->bends && c < 7)
-      size = bends[c];
-    else if (effect->ring == FG_EFFECT_RING_OF_SCANNER)
-      size = 36;
-    else if (effect->sought == FG_EFFECT_PLACED)
-      size = effect->jumps ? 15 : 10;
+    if (c < FG_EFFECT_SIZES && effect->size_um[c] > 0) size = effect->size_um[c];
     variance[c] = size * size;
   }
+}
+
+void fg_evidence_find_start(const fg_edge_fit *edge_fit, const fg_effect *effect, size_t i,
+                            double shape[FG_FIELD_SHAPES], double reach[FG_FIELD_SHAPES]) {
+  memset(shape, 0, FG_FIELD_SHAPES * sizeof *shape);
+  memset(reach, 0, FG_FIELD_SHAPES * sizeof *reach);
+  if (effect->grid)
+    effect->grid(edge_fit, i, effect->starts, shape, reach);
+  else
+    shape[0] = effect->start(&edge_fit->frame, i, effect->starts);
 }
 
 fg_status fg_evidence_add_effect(fg_context *ctx, fg_evidence_problem *p, const fg_effect *effect,
@@ -61,14 +56,17 @@ static fg_evidence_option *new_option(fg_evidence_search *s) {
 /* An effect over its starting shapes. */
 static fg_status add_shaped(fg_context *ctx, const fg_effect *effect, fg_evidence_search *s) {
   fg_evidence_problem *p = &s->problem;
+  size_t columns = effect->columns ? effect->columns : 1;
+  if (!fg_evidence_has_room(p, effect->starts * columns + 300)) return FG_OK;
   fg_evidence_option *option = new_option(s);
-  if (!option || !fg_evidence_has_room(p, effect->starts * effect->columns + 300)) return FG_OK;
+  if (!option) return FG_OK;
   option->effect = effect;
   option->first = p->count;
   option->sets = effect->starts;
   for (size_t i = 0; i < effect->starts; i++) {
     size_t first;
-    double shape[FG_FIELD_SHAPES] = {effect->start(&p->edge_fit->frame, i, effect->starts)};
+    double shape[FG_FIELD_SHAPES], reach[FG_FIELD_SHAPES];
+    fg_evidence_find_start(p->edge_fit, effect, i, shape, reach);
     FG_TRY(fg_evidence_add_effect(ctx, p, effect, shape, &first, &option->each));
   }
   return FG_OK;
@@ -96,7 +94,7 @@ static fg_status add_effects(fg_context *ctx, fg_evidence_search *s) {
                                   &count));
   for (const fg_effect *effect = fg_effect_first(); effect; effect = fg_effect_next(effect)) {
     if (fg_effect_is_free(effect) || !fg_effect_shows(s->problem.edge_fit, effect)) continue;
-    if (effect->start)
+    if (effect->starts)
       FG_TRY(add_shaped(ctx, effect, s));
     else
       FG_TRY(add_plain(ctx, effect, powers, s));
@@ -107,7 +105,7 @@ static fg_status add_effects(fg_context *ctx, fg_evidence_search *s) {
 static fg_status add_seeds(fg_context *ctx, const fg_effect_set *seed, fg_evidence_search *s) {
   for (size_t e = 0; e < seed->count; e++) {
     const fg_effect_found *from = &seed->effects[e];
-    if (!from->kind->start) continue;
+    if (!from->kind->starts) continue;
     fg_evidence_option *option = new_option(s);
     if (!option) return FG_OK;
     option->effect = from->kind;
@@ -138,12 +136,22 @@ static fg_status add_rival_columns(fg_context *ctx, const fg_rival *rival, fg_ev
   return FG_OK;
 }
 
+/* Returns true for a rival, or a stretch of it, that an effect which is looked for has as its own.
+ */
+static bool has_name(const fg_edge_fit *edge_fit, const char *rival, size_t stretch) {
+  for (const fg_effect *effect = fg_effect_first(); effect; effect = fg_effect_next(effect))
+    if (effect->rival && !strcmp(effect->rival, rival) && effect->stretch == stretch &&
+        fg_effect_shows(edge_fit, effect))
+      return true;
+  return false;
+}
+
 static void add_stretches(const fg_rival *rival, const fg_evidence_sets *columns,
                           fg_evidence_search *s) {
   size_t width = rival->stretch(s->problem.edge_fit);
   size_t count = width ? columns->count * columns->each / width : 0;
   for (size_t k = 0; k < count; k++) {
-    if (rival->has_name && rival->has_name(k)) continue;
+    if (has_name(s->problem.edge_fit, rival->name, k)) continue;
     fg_evidence_option *option = new_option(s);
     if (!option) return;
     option->rival = rival;
@@ -232,6 +240,6 @@ fg_status fg_evidence_list_options(fg_context *ctx, const fg_effect_set *seed,
   FG_TRY(add_rivals(ctx, s));
   FG_TRY(add_effects(ctx, s));
   for (const fg_effect *effect = fg_unnamed_effects; effect->id; effect++)
-    FG_TRY(add_shaped(ctx, effect, s));
+    if (!has_name(s->problem.edge_fit, effect->id, 0)) FG_TRY(add_shaped(ctx, effect, s));
   return add_seeds(ctx, seed, s);
 }

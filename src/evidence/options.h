@@ -19,6 +19,11 @@ fg_status fg_evidence_add_effect(fg_context *ctx, fg_evidence_problem *problem,
                                  const fg_effect *effect, const double *shape, size_t *first,
                                  size_t *count);
 
+/* Fills start i of an effect's shapes and, of an effect with a grid, how far from it the best may
+ * lie. */
+void fg_evidence_find_start(const fg_edge_fit *edge_fit, const fg_effect *effect, size_t i,
+                            double shape[FG_FIELD_SHAPES], double reach[FG_FIELD_SHAPES]);
+
 /* Fills the prior variances of an effect's columns, um². */
 void fg_evidence_effect_variances(const fg_effect *effect, size_t count, double *variance);
 

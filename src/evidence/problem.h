@@ -9,7 +9,7 @@
 #include "effect/effect.h"
 #include "rows/scatter.h"
 
-enum { FG_EVIDENCE_COLUMNS = 3200 };
+enum { FG_EVIDENCE_COLUMNS = 5200 };
 
 typedef struct fg_evidence_problem {
   const fg_edge_fit *edge_fit;

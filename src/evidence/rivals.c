@@ -201,13 +201,6 @@ static size_t map_columns(const fg_edge_fit *edge_fit) {
   return MAP_COLUMNS;
 }
 
-/* Powers of x that move x are the lens's, the square of y that moves y the carriage's. In the order
- * of maps_glass. */
-static bool map_has_name(size_t k) {
-  enum { Y2_MOVES_Y = 1, X2_MOVES_X = 4, X3_MOVES_X = 12 };
-  return k == Y2_MOVES_Y || k == X2_MOVES_X || k == X3_MOVES_X;
-}
-
 /* ---- of the part ---- */
 
 static size_t along_foil(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row, double share,
@@ -373,11 +366,6 @@ static bool alike_variances(const fg_edge_fit *edge_fit, size_t i, double *varia
   return i == 0;
 }
 
-/* The first harmonic is an ovality. */
-static bool harmonic_has_name(size_t k) {
-  return k == 0;
-}
-
 static size_t two_columns(const fg_edge_fit *edge_fit) {
   (void)edge_fit;
   return 2;
@@ -423,8 +411,7 @@ const fg_rival fg_rivals[] = {
      .moves = "x and y",
      .glass = maps_glass,
      .variances = map_variances,
-     .stretch = map_columns,
-     .has_name = map_has_name},
+     .stretch = map_columns},
     {.name = "foil.s",
      .coordinate = FG_EFFECT_FOIL,
      .columns = over_foil,
@@ -438,8 +425,7 @@ const fg_rival fg_rivals[] = {
      .columns = on_ring,
      .variances = alike_variances,
      .stretch = two_columns,
-     .of_last = true,
-     .has_name = harmonic_has_name},
+     .of_last = true},
     {.name = "foil.s, radial",
      .coordinate = FG_EFFECT_FOIL,
      .columns = over_foil_radial,
@@ -453,8 +439,7 @@ const fg_rival fg_rivals[] = {
      .columns = on_ring_radial,
      .variances = alike_variances,
      .stretch = two_columns,
-     .of_last = true,
-     .has_name = harmonic_has_name},
+     .of_last = true},
     {.name = "bump.phi",
      .coordinate = FG_EFFECT_PHI,
      .columns = over_phi,

@@ -27,8 +27,7 @@ typedef struct fg_rival {
   /* A rival of its own for every stretch of `stretch` columns: one bump, one harmonic, one map of
    * the glass. NULL: the whole rival. */
   size_t (*stretch)(const fg_edge_fit *edge_fit);
-  bool of_last;                     /* its columns are those of the row before it */
-  bool (*has_name)(size_t stretch); /* a named effect is the same; NULL: none */
+  bool of_last; /* its columns are those of the row before it */
 } fg_rival;
 
 /* The rows; NULL-terminated by name. */

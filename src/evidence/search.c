@@ -18,7 +18,10 @@ enum { NAMED_FRONT = 4, RIVAL_FRONT = 3, NAMED_MAX = 4, RIVALS_MAX = 2, ROUNDS =
 enum { SHORTENED = 16, SCATTERED = 24 };
 /* Gain from which a place is refined; points of a finer grid, and how often. */
 #define REFINE_GAIN 6.0
-enum { FINER = 9, FINER_LEVELS = 2, COPIES_MAX = 3 };
+enum { FINER = 9, FINER_LEVELS = 2, FINER_LEVELS_OF_TWO = 4, COPIES_MAX = 3 };
+/* Share by which the range of two shapes shrinks to either side. */
+#define SHRINKS_OF_TWO 0.2
+
 /* Amplitudes of a rival, um: from the first one on by a factor of two each. */
 #define AMPLITUDE_MIN_UM 0.03
 enum { AMPLITUDES = 11 };
@@ -119,42 +122,97 @@ static void set_size(fg_evidence_part *part, int size) {
     part->variance[c] = ldexp(part->variance[c], -2 * size);
 }
 
-/* Moves a place to the best one between its neighbours; the columns of the best stay. */
-static fg_status refine_place(fg_context *ctx, fg_evidence_search *s,
-                              const fg_evidence_factor *factor, const fg_evidence_option *option,
-                              double low, double high, fg_evidence_part *part, double *evidence) {
+/* Range of the shapes that are tried around the best ones. */
+typedef struct shape_range {
+  double low[FG_FIELD_SHAPES], high[FG_FIELD_SHAPES];
+} shape_range;
+
+/* Directions of two shapes in which a better one is sought: either alone, both together. */
+static const double directions[][FG_FIELD_SHAPES] = {{1, 0}, {0, 1}, {1, 1}, {1, -1}};
+enum { DIRECTIONS = sizeof directions / sizeof *directions };
+
+/* Fills the shape at place `at`, 0 to 1, of a direction through the range. */
+static void move_shape(const fg_evidence_part *part, const shape_range *range,
+                       const double *direction, double at, double *shape) {
+  const double length_min = 0.1; /* of several shapes */
+  for (size_t k = 0; k < FG_FIELD_SHAPES; k++) {
+    double low = range->low[k], high = range->high[k], t = direction[k] < 0 ? 1 - at : at;
+    shape[k] = direction[k] == 0 ? part->shape[k] : low + (high - low) * t;
+    if (part->effect->shapes > 1 && part->effect->shape_is[k] == FG_EFFECT_LENGTH)
+      shape[k] = fmax(shape[k], length_min);
+  }
+}
+
+/* Moves the shapes along a direction to the best ones of the range. */
+static fg_status refine_along(fg_context *ctx, fg_evidence_search *s,
+                              const fg_evidence_factor *factor, const shape_range *range,
+                              const double *direction, fg_evidence_part *part, double *evidence) {
   fg_evidence_problem *p = &s->problem;
   size_t from = p->count, each = part->count, first, count;
-  double best = part->shape[0], variance[FG_EFFECT_COLUMNS_MAX];
+  double variance[FG_EFFECT_COLUMNS_MAX], shape[FG_FIELD_SHAPES];
+  hit found;
+  if (!fg_evidence_has_room(p, (FINER + 1) * each)) return FG_OK;
   fg_evidence_effect_variances(part->effect, each, variance);
-  for (int level = 0; level < FINER_LEVELS && fg_evidence_has_room(p, (FINER + 1) * each);
-       level++) {
-    hit found;
-    for (int i = 0; i < FINER; i++) {
-      double shape[FG_FIELD_SHAPES] = {low + (high - low) * (i + 1) / (FINER + 1)};
-      FG_TRY(fg_evidence_add_effect(ctx, p, option->effect, shape, &first, &count));
-    }
-    FG_TRY(score_option(ctx, s, factor, &(fg_evidence_sets){from, FINER, each}, variance, &found));
-    fg_evidence_drop(p, from);
-    double step = (high - low) / (FINER + 1), at = low + step * (double)(found.set + 1);
-    if (found.evidence > *evidence) {
-      *evidence = found.evidence;
-      set_size(part, found.size);
-      best = at;
-    }
-    low = best - step;
-    high = best + step;
+  for (int i = 0; i < FINER; i++) {
+    move_shape(part, range, direction, (i + 1.0) / (FINER + 1), shape);
+    FG_TRY(fg_evidence_add_effect(ctx, p, part->effect, shape, &first, &count));
   }
-  if (best == part->shape[0] || !fg_evidence_has_room(p, each)) return FG_OK;
-  part->shape[0] = best;
-  return fg_evidence_add_effect(ctx, p, option->effect, part->shape, &part->first, &count);
+  FG_TRY(score_option(ctx, s, factor, &(fg_evidence_sets){from, FINER, each}, variance, &found));
+  fg_evidence_drop(p, from);
+  if (!(found.evidence > *evidence)) return FG_OK;
+  *evidence = found.evidence;
+  set_size(part, found.size);
+  move_shape(part, range, direction, ((double)found.set + 1) / (FINER + 1), shape);
+  memcpy(part->shape, shape, sizeof shape);
+  return FG_OK;
+}
+
+/* The range shrinks around the best shapes; of two it does so slowly. */
+static void shrink_range(const fg_evidence_part *part, shape_range *range) {
+  for (size_t k = 0; k < FG_FIELD_SHAPES; k++) {
+    double share = part->effect->shapes > 1 ? SHRINKS_OF_TWO : 1.0 / (FINER + 1);
+    double reach = share * (range->high[k] - range->low[k]);
+    range->low[k] = part->shape[k] - reach;
+    range->high[k] = part->shape[k] + reach;
+  }
+}
+
+/* Moves the shapes to the best ones of their ranges; the columns of the best stay. */
+static fg_status refine_place(fg_context *ctx, fg_evidence_search *s,
+                              const fg_evidence_factor *factor, shape_range *range,
+                              fg_evidence_part *part, double *evidence) {
+  double before[FG_FIELD_SHAPES];
+  size_t shapes = part->effect->shapes, count;
+  memcpy(before, part->shape, sizeof before);
+  for (int level = 0; level < (shapes > 1 ? FINER_LEVELS_OF_TWO : FINER_LEVELS); level++) {
+    for (int k = 0; k < (shapes > 1 ? DIRECTIONS : 1); k++)
+      FG_TRY(refine_along(ctx, s, factor, range, directions[k], part, evidence));
+    shrink_range(part, range);
+  }
+  if (!memcmp(before, part->shape, sizeof before)) return FG_OK;
+  if (!fg_evidence_has_room(&s->problem, part->count)) return FG_OK;
+  return fg_evidence_add_effect(ctx, &s->problem, part->effect, part->shape, &part->first, &count);
+}
+
+/* Finds the range between the starts on both sides of start i; of a grid, its reach. */
+static void find_range(const fg_edge_fit *edge_fit, const fg_effect *effect, size_t i,
+                       fg_evidence_part *part, shape_range *range) {
+  double reach[FG_FIELD_SHAPES];
+  size_t last = effect->starts - 1;
+  fg_evidence_find_start(edge_fit, effect, i, part->shape, reach);
+  for (size_t k = 0; k < FG_FIELD_SHAPES; k++) {
+    range->low[k] = part->shape[k] - reach[k];
+    range->high[k] = part->shape[k] + reach[k];
+  }
+  if (effect->grid) return;
+  range->low[0] = effect->start(&edge_fit->frame, i ? i - 1 : 0, effect->starts);
+  range->high[0] = effect->start(&edge_fit->frame, i < last ? i + 1 : last, effect->starts);
 }
 
 static fg_status fit_effect(fg_context *ctx, fg_evidence_search *s,
                             const fg_evidence_factor *factor, const fg_evidence_option *option,
                             fg_evidence_part *part, double *evidence) {
   const fg_effect *effect = option->effect;
-  const fg_field_frame *frame = &s->problem.edge_fit->frame;
   hit found;
   *part = (fg_evidence_part){.effect = effect, .count = option->each};
   memcpy(part->shape, option->shape, sizeof part->shape);
@@ -168,11 +226,10 @@ static fg_status fit_effect(fg_context *ctx, fg_evidence_search *s,
   if (option->seeded) part->log_prior -= log((double)effect->starts);
   if (fg_effect_is_unnamed(effect)) part->log_prior -= log(FG_UNNAMED_EFFECTS);
   if (option->sets < 2) return FG_OK;
-  size_t last = option->sets - 1, i = found.set;
-  part->shape[0] = effect->start(frame, i, option->sets);
+  shape_range range;
+  find_range(s->problem.edge_fit, effect, found.set, part, &range);
   if (found.evidence < factor->evidence + REFINE_GAIN) return FG_OK;
-  return refine_place(ctx, s, factor, option, effect->start(frame, i ? i - 1 : 0, option->sets),
-                      effect->start(frame, i < last ? i + 1 : last, option->sets), part, evidence);
+  return refine_place(ctx, s, factor, &range, part, evidence);
 }
 
 /* Likeliest length and amplitude of a rival; the mass is over all. */

@@ -98,15 +98,19 @@ WAVE(x_waves_over_y, 1, 1, 0)
 #define LENGTH_ROW(name, over, thing, basis, count, from, tried)                                   \
   {                                                                                                \
     .id = name, .sought = FG_EFFECT_PLACED, .coordinate = (over) ? FG_EFFECT_Y : FG_EFFECT_X,      \
-    .moves = thing, .columns = count, .shapes = 1, .spans = true, .glass = basis, .axis = over,    \
-    .start = from, .starts = tried                                                                 \
+    .moves = thing, .columns = count, .shapes = 1, .shape_is = {FG_EFFECT_LENGTH}, .glass = basis, \
+    .axis = over, .start = from, .starts = tried, .size_um = {                                     \
+      10                                                                                           \
+    }                                                                                              \
   }
 
 #define ROW(name, over, thing, basis, from)                                                        \
   {                                                                                                \
     .id = name, .sought = FG_EFFECT_PLACED, .coordinate = (over) ? FG_EFFECT_Y : FG_EFFECT_X,      \
     .moves = thing, .columns = COLUMNS, .shapes = 1, .glass = basis, .axis = over, .start = from,  \
-    .starts = STARTS, .jumps = true                                                                \
+    .starts = STARTS, .jumps = true, .size_um = {                                                  \
+      15                                                                                           \
+    }                                                                                              \
   }
 
 const fg_effect fg_unnamed_effects[FG_UNNAMED_EFFECTS + 1] = {

@@ -3,6 +3,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <string.h>
 
 /* A cause leads by this factor (Kass and Raftery 1995: "very strong" from ln 150 on), and by a
  * share of the whole evidence: with edges so sharp the error of linear columns decides. */
@@ -55,6 +56,8 @@ static fg_status bears_names(fg_context *ctx, fg_evidence_search *s, const fg_ev
     if (!part->effect) continue;
     if (part->effect->polynomial)
       *bears = *bears && polynomial_bears_name(s, part, mean, covariance, n, &middle_mm[k]);
+    if (part->effect->extends && part->effect->numbers == FG_EFFECT_LED)
+      *bears = *bears && fabs(mean[0]) >= LEADING_SIGMAS * sqrt(covariance[0]);
     if (part->effect->bends) *bears = *bears && lowest_leads(&s->problem, part, mean);
   }
   fg_evidence_posterior_close(&posterior);
@@ -70,11 +73,20 @@ static bool holds_rival_of(const fg_evidence_model *model, const fg_evidence_par
   return false;
 }
 
+/* Returns true for an effect in a model, or one that is it with a number of 0. */
+static bool holds_or_extends(const fg_evidence_model *model, const fg_effect *effect) {
+  for (size_t k = 0; k < model->parts; k++) {
+    const fg_effect *own = model->part[k]->effect;
+    if (own && own->extends && !strcmp(own->extends, effect->id)) return true;
+  }
+  return fg_evidence_holds(model, effect);
+}
+
 /* Returns true when a model holds all causes of another. */
 static bool includes(const fg_evidence_model *model, const fg_evidence_model *other) {
   for (size_t k = 0; k < other->parts; k++) {
     const fg_evidence_part *part = other->part[k];
-    if (part->effect ? !fg_evidence_holds(model, part->effect) : !holds_rival_of(model, part))
+    if (part->effect ? !holds_or_extends(model, part->effect) : !holds_rival_of(model, part))
       return false;
   }
   return true;
@@ -111,7 +123,7 @@ static fg_status list_ties(fg_context *ctx, fg_evidence_search *s, double floor,
   for (size_t k = 0; k < v->ties; k++) {
     bool more = false;
     for (size_t i = 0; i < v->ties && !more; i++)
-      more = i != k && v->tie[i].parts < v->tie[k].parts && includes(&v->tie[k], &v->tie[i]);
+      more = i != k && includes(&v->tie[k], &v->tie[i]) && !includes(&v->tie[i], &v->tie[k]);
     if (more) continue;
     for (size_t i = 0; i < FG_EVIDENCE_PARTS; i++)
       v->middle_mm[kept][i] = v->middle_mm[k][i];
@@ -121,19 +133,21 @@ static fg_status list_ties(fg_context *ctx, fg_evidence_search *s, double floor,
   return FG_OK;
 }
 
-/* The score of the best set of named effects alone whose numbers bear their names; -INFINITY: none
- * is within the margin of the best model. */
+/* The score of the set of named effects alone whose numbers bear their names, of the fewest effects
+ * within the margin of the best model: what more would gain is too little to be told from errors of
+ * the columns. -INFINITY: there is none. */
 static fg_status find_best_named(fg_context *ctx, fg_evidence_search *s, double margin,
                                  double *score) {
   double middle_mm[FG_EVIDENCE_PARTS], top = s->models[0].score;
+  size_t fewest = FG_EVIDENCE_PARTS + 1;
   *score = -INFINITY;
   for (size_t m = 0; m < s->count && s->models[m].score >= top - margin; m++) {
     bool bears = false;
-    if (!fg_evidence_is_named(&s->models[m])) continue;
+    if (!fg_evidence_is_named(&s->models[m]) || s->models[m].parts >= fewest) continue;
     FG_TRY(bears_names(ctx, s, &s->models[m], middle_mm, &bears));
     if (!bears) continue;
     *score = s->models[m].score;
-    break;
+    fewest = s->models[m].parts;
   }
   return FG_OK;
 }

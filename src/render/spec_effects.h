@@ -16,12 +16,13 @@
 #include "render/lift.h"
 #include "render/members.h"
 
-enum { FG_RENDER_EFFECT_PARAMETERS_MAX = 4, FG_RENDER_EFFECTS_MAX = 16 };
+enum { FG_RENDER_EFFECT_PARAMETERS_MAX = 5, FG_RENDER_EFFECTS_MAX = 16 };
 
 typedef enum fg_render_effect_target {
   FG_RENDER_EFFECT_SCANNER, /* field(p, x_mm, y_mm, d) adds to d */
-  FG_RENDER_EFFECT_STEP, /* field(...) as for the scanner, but a jump at p[1] of the row's axis: it
-                            comes after the optics, so it is sharp in the picture and not blurred */
+  FG_RENDER_EFFECT_STEP, /* field(...) as for the scanner, but a jump at p[1] of the row's axis, and
+                            with `repeats` at every p[2] from there: it comes after the optics, so
+                            it is sharp in the picture and not blurred */
   FG_RENDER_EFFECT_PART, /* shape(p, psi_rad, ·): radial shift about O in mm, outwards positive; psi
                      is counted from the foil's middle, towards the free end */
   FG_RENDER_EFFECT_NORMAL, /* shift along the midline's normal: a part effect with member `along` */
@@ -38,7 +39,8 @@ typedef enum fg_render_effect_target {
 
 typedef struct fg_render_effect_parameter {
   const char *name;
-  double fallback; /* default; NaN: required; +inf: the middle of the picture, mm */
+  double fallback; /* default; NaN: required; +inf: the middle of the picture along the row's axis,
+                      mm; -inf: in y */
   double low, high;
 } fg_render_effect_parameter;
 
@@ -50,6 +52,7 @@ typedef struct fg_render_effect_row {
   double (*shape)(const double *p, double coordinate, double extent);
   int axis;                   /* 0 x, 1 y: axis of a fallback of +inf, or of a curve's coordinate */
   const fg_curve_axis *curve; /* NULL: none. With one, it replaces field or shape */
+  bool repeats;               /* of a step */
 } fg_render_effect_row;
 
 typedef struct fg_render_effect {

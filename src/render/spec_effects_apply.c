@@ -9,8 +9,10 @@ static const double pi = 3.14159265358979323846;
 void fg_render_effects_resolve(fg_render_effect_list *list, double width_mm, double height_mm) {
   for (size_t i = 0; i < list->count; i++)
     for (int k = 0; k < FG_RENDER_EFFECT_PARAMETERS_MAX; k++)
-      if (isinf(list->effects[i].p[k]))
-        list->effects[i].p[k] = 0.5 * (list->effects[i].row->axis ? height_mm : width_mm);
+      if (isinf(list->effects[i].p[k])) {
+        bool in_y = list->effects[i].p[k] < 0 || list->effects[i].row->axis;
+        list->effects[i].p[k] = 0.5 * (in_y ? height_mm : width_mm);
+      }
 }
 
 bool fg_render_effects_have(const fg_render_effect_list *list, fg_render_effect_target target) {
@@ -47,6 +49,7 @@ double fg_render_effects_next_step(const fg_render_effect_list *list, int axis, 
     const fg_render_effect *effect = &list->effects[i];
     double at = effect->p[1];
     if (effect->target != FG_RENDER_EFFECT_STEP || effect->row->axis != axis) continue;
+    if (effect->row->repeats) at += effect->p[2] * ceil((low_mm - at) / effect->p[2]);
     if (at >= low_mm && at < high_mm) next = fmin(next, at); /* fmin prefers the number to NaN */
   }
   return next;

@@ -105,6 +105,7 @@ typedef struct fg_edge_fit {
   size_t parameters;    /* of the geometry */
   bool coarse;          /* searches are fast (few starts) */
   bool proposes;        /* the search proposes, evidence decides (scan_loop/evidence.c) */
+  const char *left_out; /* ids of effects that no search looks for, with commas; NULL: none */
   bool discs;           /* parts are discs: one circle each */
   size_t known_count;   /* number of parts of known radius */
   fg_scatter scatter;   /* as found last */

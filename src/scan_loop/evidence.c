@@ -35,6 +35,12 @@ static bool is_used(const fg_explanations *explanations, size_t candidate) {
   return false;
 }
 
+static bool is_same_shape(const fg_effect *effect, const double *a, const double *b) {
+  for (size_t s = 0; effect->starts && s < effect->shapes; s++)
+    if (fabs(a[s] - b[s]) > SAME_SHAPE * fabs(b[s])) return false;
+  return true;
+}
+
 /* Returns the candidate of an effect with this shape, adds it, or puts it in the place of one that
  * no explanation has; FG_CANDIDATES_MAX: there is no room. */
 static size_t find_candidate(const fg_edge_fit *edge_fit, fg_explanations *to,
@@ -44,7 +50,7 @@ static size_t find_candidate(const fg_edge_fit *edge_fit, fg_explanations *to,
   for (size_t e = 0; e < to->candidate_count; e++) {
     const fg_candidate *one = &to->candidates[e];
     if (one->kind != effect) continue;
-    bool same = !effect->start || fabs(one->shape[0] - shape[0]) <= SAME_SHAPE * fabs(shape[0]);
+    bool same = is_same_shape(effect, one->shape, shape);
     if (same || !is_used(to, e)) at = e;
     if (same) break;
   }
@@ -56,16 +62,17 @@ static size_t find_candidate(const fg_edge_fit *edge_fit, fg_explanations *to,
   for (size_t e = 0; at == FG_CANDIDATES_MAX && e < to->candidate_count; e++)
     if (!is_used(to, e) && to->candidates[e].kind->sought == FG_EFFECT_PLACED) at = e;
   if (at == FG_CANDIDATES_MAX || to->candidates[at].kind == effect) {
-    if (at < FG_CANDIDATES_MAX && effect->start) to->candidates[at].shape[0] = shape[0];
+    for (size_t s = 0; at < FG_CANDIDATES_MAX && effect->starts && s < effect->shapes; s++)
+      to->candidates[at].shape[s] = shape[s];
     return at;
   }
-  to->candidates[at] =
-      (fg_candidate){.kind = effect,
-                     .polynomial = effect->polynomial,
-                     .columns = effect->midline ? effect->midline(edge_fit, edge_fit->rows, values)
-                                                : effect->columns,
-                     .shapes = effect->shapes,
-                     .shape = {shape[0]}};
+  to->candidates[at] = (fg_candidate){
+      .kind = effect,
+      .polynomial = effect->polynomial,
+      .columns = effect->midline ? effect->midline(edge_fit, edge_fit->rows, shape, values)
+                                 : effect->columns,
+      .shapes = effect->shapes,
+      .shape = {shape[0], shape[1]}};
   return at;
 }
 

@@ -10,8 +10,10 @@ static void put_unit(const fg_effect *kind, fg_scan_result_parameter *p) {
   static const struct {
     const char *name, *people, *unit;
     double factor;
-  } units[] = {
-      {"value", "q", "ppm", 1e6}, {"amplitude_um", "a", "µm", 1}, {"phase_deg", "φ", "°", 1}};
+  } units[] = {{"value", "q", "ppm", 1e6},
+               {"amplitude_um", "a", "µm", 1},
+               {"phase_deg", "φ", "°", 1},
+               {"lobes", "n", "", 1}};
   p->symbol = p->name;
   p->unit = "";
   p->told = p->value;
@@ -32,7 +34,7 @@ static void put_unit(const fg_effect *kind, fg_scan_result_parameter *p) {
   for (size_t s = 0; s < kind->shapes; s++)
     if (p->name == kind->shape_name[s]) {
       p->symbol = kind->shape_symbol[s];
-      p->unit = "mm";
+      p->unit = kind->shape_is[s] == FG_EFFECT_GROWTH ? "/mm" : kind->midline ? "°" : "mm";
     }
 }
 

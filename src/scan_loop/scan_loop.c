@@ -74,6 +74,7 @@ static fg_status build_points(fg_context *ctx, fg_scan_loop *loop) {
   if (status != FG_OK) return status;
   loop->edge_fit.coarse = loop->options.coarse;
   loop->edge_fit.proposes = !loop->options.coarse && fg_evidence_fits(&loop->edge_fit);
+  loop->edge_fit.left_out = loop->options.without;
   if (loop->options.coarse) fg_edge_fit_find_frame(&loop->edge_fit);
   size_t rows = 0;
   for (size_t i = 0; i < loop->edge_fit.row_count; i++)
@@ -143,6 +144,12 @@ static fg_status note_forming(fg_context *ctx, fg_scan_loop *loop) {
       loop->error_before.rms, explanations->p_value);
 }
 
+static fg_status say_without(fg_context *ctx, fg_scan_loop *loop) {
+  if (!loop->options.without) return FG_OK;
+  return fg_scan_loop_bumps_note(ctx, &loop->bumps, "not looked for: %.600s (--without)",
+                                 loop->options.without);
+}
+
 static fg_status say_lossy(fg_context *ctx, fg_scan_loop *loop) {
   for (size_t i = 0; i < loop->scan_count; i++)
     if (loop->before[i].jpeg_quality)
@@ -185,6 +192,7 @@ static fg_status search_bumps(fg_context *ctx, fg_scan_loop *loop) {
   FG_TRY(loop->edge_fit.discs ? note_forming(ctx, loop) : note_reach(ctx, loop));
   FG_TRY(fg_scan_loop_say_held_out(ctx, loop));
   FG_TRY(fg_scan_loop_say_left_out(ctx, loop));
+  FG_TRY(say_without(ctx, loop));
   FG_TRY(say_lossy(ctx, loop));
   FG_TRY(say_picture(ctx, loop));
   return fg_scan_loop_scale_uncertainty(ctx, loop);
@@ -252,6 +260,7 @@ static fg_status create_loop(fg_context *ctx, const bool *hold_out, size_t count
                              const fg_scan_loop_options *options, fg_scan_loop **out) {
   fg_scan_loop *loop = NULL;
   fg_status status = FG_OK;
+  FG_TRY(fg_effect_check_list(ctx, options->without));
   FG_TRY(fg_memory_allocate(ctx, 1, sizeof *loop, (void **)&loop));
   loop->options = *options;
   FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *loop->before, (void **)&loop->before));

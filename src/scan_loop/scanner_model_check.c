@@ -19,6 +19,7 @@
 /* No tooth of a gear or step of a motor is finer; a period longer than ten times the region is no
  * ripple. */
 #define PERIOD_MIN_MM 0.01
+#define GROWTH_MAX 10.0
 /* All effects together: share of the region's length that they stretch, shear or bend it by. */
 #define BEND_MAX 0.1
 /* Range of the option --dpi. */
@@ -65,14 +66,17 @@ fg_status fg_scanner_model_check_place(fg_context *ctx, const double dpi[2],
   return check_corners(ctx, "curve_mm", curve);
 }
 
-/* Finds the allowed ranges of an effect's shape, and of its uncertainty. */
-static void shape_ranges(const fg_field_frame *frame, const fg_field *field, range *place,
+/* Finds the allowed ranges of shape s of an effect, and of its uncertainty. */
+static void shape_ranges(const fg_field_frame *frame, const fg_field *field, size_t s, range *place,
                          range *u) {
   const fg_effect *kind = fg_effect_find(field->id);
   int axis = kind->axis;
   double low = frame->low_mm[axis], high = frame->high_mm[axis], length = high - low;
   *place = (range){low - PLACE_BEYOND * length, high + PLACE_BEYOND * length, "mm"};
-  if (kind->spans) *place = (range){PERIOD_MIN_MM, PLACE_BEYOND * length, "mm"};
+  if (kind->shape_is[s] == FG_EFFECT_LENGTH)
+    *place = (range){PERIOD_MIN_MM, PLACE_BEYOND * length, "mm"};
+  if (kind->shape_is[s] == FG_EFFECT_GROWTH)
+    *place = (range){-GROWTH_MAX, GROWTH_MAX, "per mm"};
   *u = (range){0, PLACE_BEYOND * length, "mm"};
 }
 
@@ -90,7 +94,7 @@ static fg_status check_field(fg_context *ctx, const char *member, size_t index,
   }
   for (size_t s = 0; s < field->shapes; s++) {
     range place, u;
-    shape_ranges(frame, field, &place, &u);
+    shape_ranges(frame, field, s, &place, &u);
     fg_text_clip(name, sizeof name, "%s.shape", one);
     FG_TRY(check_range(ctx, name, s, field->shape[s], place));
     fg_text_clip(name, sizeof name, "%s.u_shape", one);

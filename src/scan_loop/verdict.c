@@ -288,6 +288,7 @@ static fg_scan_held_out held_out_of(const fg_scan_loop *loop) {
 static void fill_numbers(const fg_scan_loop *loop, fg_scan_result *result) {
   result->verdict = loop->verdict;
   result->same_foil = loop->options.same_foil;
+  result->without = loop->options.without;
   result->discs = loop->edge_fit.discs;
   result->scale_tied = loop->scale_tied;
   result->noise_floor_um = loop->noise_floor_um;

@@ -13,6 +13,11 @@ SCANNER_EFFECTS = [
     "scan.carriage_start",
 ]  # fmt: skip
 PART_EFFECTS = ["part.ovality", "part.spiral", "part.bump_crown", "part.bump_skew", "part.thickness_taper"]
+# Effects that evidence alone looks for (tests/bench/loop_rows.py).
+EVIDENCE_EFFECTS = [
+    "scan.optical_quintic", "scan.keystone", "scan.yaw", "scan.ripple_growth", "scan.chip_tilt",
+    "scan.chip_gap", "part.lobes", "part.dent",
+]  # fmt: skip
 # Coordinate of a free-form curve, and the direction that it moves the picture in.
 CURVES = [
     ("scan.x", "x"), ("scan.y", "y"), ("foil.s", None), ("bump.phi", None), ("edge.normal", None),
@@ -91,6 +96,30 @@ def draw_place(rng, low, high):
     return float(low + (high - low) * rng.uniform(0.25, 0.75))
 
 
+def draw_evidence_effect(rng, kind, amplitude_um, half_mm, ranges_mm):
+    """Members of one of EVIDENCE_EFFECTS."""
+    (x, x_end), (y, y_end) = ranges_mm
+    phase = float(rng.uniform(-90, 90))
+    if kind == "scan.optical_quintic":
+        return {"amplitude_um": amplitude_um, "half_width_mm": half_mm, "centre_mm": draw_place(rng, x, x_end)}
+    if kind == "scan.keystone":
+        middle = {"x_mm": draw_place(rng, x, x_end), "y_mm": draw_place(rng, y, y_end)}
+        return {"amplitude_um": amplitude_um, "half_width_mm": half_mm, **middle}
+    if kind in ("scan.chip_tilt", "scan.chip_gap"):  # a tilted chip's ends lie above and below
+        size = amplitude_um * (2 if kind == "scan.chip_tilt" else 1)
+        return {"amplitude_um": size, "x_mm": draw_place(rng, x, x_end), "pitch_mm": float(rng.uniform(6, 14))}
+    if kind == "scan.yaw":
+        return {"amplitude_um": amplitude_um, "period_mm": log_uniform(rng, 6, 30), "phase_deg": 2 * phase}
+    if kind == "scan.ripple_growth":
+        growth = float(rng.choice([-1, 1]) / half_mm)
+        return {"amplitude_um": amplitude_um / 2, "period_mm": log_uniform(rng, 2, 8), "phase_deg": 2 * phase, "growth_per_mm": growth}
+    along = {"along": str(rng.choice(["radius", "normal"]))}
+    if kind == "part.lobes":
+        return {"amplitude_um": amplitude_um, "phase_deg": phase, "lobes": int(rng.integers(3, 6)), **along}
+    place = {"place_deg": float(rng.uniform(-50, 50)), "width_deg": log_uniform(rng, 0.8, 4)}
+    return {"amplitude_um": amplitude_um, **place, "along": "normal"}
+
+
 def draw_effect(rng, kind, half_mm, ranges_mm, size=None):
     """One effect, of 3 to 30 um at the foil's ends unless its size is given; ranges_mm: of x and of y,
     what every foil of the case crosses."""
@@ -115,6 +144,8 @@ def draw_effect(rng, kind, half_mm, ranges_mm, size=None):
         if oval:
             effect["phase_deg"] = float(rng.uniform(-90, 90))
         effect["along"] = str(rng.choice(["radius", "normal"]))
+    elif kind in EVIDENCE_EFFECTS:
+        effect.update(draw_evidence_effect(rng, kind, sign * size, half_mm, ranges_mm))
     elif kind == "part.thickness_taper":
         effect["thickness_change_um"] = sign * size
     elif kind.startswith("part."):

@@ -4,14 +4,14 @@
 . tests/support/loop.sh
 skip_when_slow
 
-# found NAME ID EFFECT: renders it, and the loop names it alone.
+# found NAME ID EFFECT [LIMIT OF R0] [OF R] [ROTATION]: renders it, and the loop names it alone; -: the part's own form is in its radii.
 found() {
-  render_foil "$1" 22 -70 "{\"id\":\"$2\",$3}" 2400
+  render_foil "$1" 22 "${6--70}" "{\"id\":\"$2\",$3}" 2400
   "$program" loop "$1.png" -o "$1.out" --html "$1.html" --model-out "$1.model" || fail "loop on $1"
   [ "$(value "$1.out" "[c['id'] + ' ' + c['verdict'] for c in r['claims']]")" = "['$2 found']" ] ||
     fail "$1: $(value "$1.out" "r['verdict'], [c['id'] + ' ' + c['verdict'] for c in r['claims']]")"
-  near "R0 after $1" "$(value "$1.out" "r['after']['foils'][0]['overall']['radius_mm']")" 20.95 "${4:-0.0002}"
-  near "R after $1" "$(value "$1.out" "r['after']['foils'][0]['bumps'][3]['radius_mm']")" 3.44 "${5:-0.001}"
+  [ "${4-}" = - ] || near "R0 after $1" "$(value "$1.out" "r['after']['foils'][0]['overall']['radius_mm']")" 20.95 "${4:-0.0002}"
+  [ "${5-}" = - ] || near "R after $1" "$(value "$1.out" "r['after']['foils'][0]['bumps'][3]['radius_mm']")" 3.44 "${5:-0.001}"
   valid loop_scan.schema.json "$1.out"
   "$program" measure "$1.png" --model "$1.model" >/dev/null || fail "the model of $1 is refused"
 }
@@ -22,7 +22,33 @@ near "the seam" "$(number seam amplitude_um)" 15 0.3
 near "place of the seam" "$(number seam x_mm)" 12.3 0.1
 grep -q "a seam between two chips" seam.html || fail "the page does not say what a seam is"
 
+found dent part.dent '"amplitude_um":12,"place_deg":-13.3,"width_deg":1.5,"along":"normal"' - -
+near "the dent" "$(number dent amplitude_um)" 12 0.5
+near "place of the dent" "$(number dent place_deg)" -13.3 0.1
+near "width of the dent" "$(number dent width_deg)" 1.5 0.1
+"$program" loop dent.png --without part.dent,scan.yaw -o without.out >/dev/null || [ $? = 2 ] || fail "loop without a dent"
+[ "$(value without.out "r['without'], 'part.dent' in str(r['claims']), 'not looked for: part.dent,scan.yaw' in str(r['notes'])")" = \
+  "('part.dent,scan.yaw', False, True)" ] || fail "a dent is found though it is left out"
+"$program" loop dent.png --without part.dint >refused.out 2>&1
+[ $? = 64 ] || fail "an effect that does not exist is left out"
+grep -q 'no effect is called "part.dint"' refused.out || fail "nothing says which effect does not exist"
+
 [ -z "${FOILGAUGE_TEST_BRIEF-}" ] || exit $failed
+
+found quintic scan.optical_quintic '"amplitude_um":25,"centre_mm":18'
+near "the quintic" "$(number quintic amplitude_um)" 25 0.5
+
+found yaw scan.yaw '"amplitude_um":8,"period_mm":12,"phase_deg":40'
+near "the yaw" "$(number yaw amplitude_um)" 8 0.2
+near "its period" "$(number yaw period_mm)" 12 0.1
+
+found growth scan.ripple_growth '"amplitude_um":6,"period_mm":7,"phase_deg":30,"growth_per_mm":0.05' 0.0002 0.001 10
+near "the growing ripple" "$(number growth amplitude_um)" 6 0.2
+near "its growth" "$(number growth growth_per_mm)" 0.05 0.003
+
+found tilt scan.chip_tilt '"amplitude_um":16,"x_mm":12.3,"pitch_mm":9.4' 0.0002 0.001 10
+near "the tilt" "$(number tilt amplitude_um)" 16 1
+near "the chips" "$(number tilt pitch_mm)" 9.4 0.1
 
 found start scan.carriage_start '"amplitude_um":20,"length_mm":5'
 near "the start" "$(number start amplitude_um)" 20 0.5

@@ -9,6 +9,8 @@
 #include "effect_search/policy.h"
 #include "effect_search/search.h"
 #include "effect_search/width_search.h"
+#include "evidence/options.h"
+#include "evidence/search.h"
 #include "foilgauge/render.h"
 #include "support/brief.h"
 #include "support/foil_rows.h"
@@ -22,9 +24,11 @@ static void put_effect(foil_rows *f, const fg_effect *effect) {
   const fg_field_frame *frame = &f->edge_fit.frame;
   const double amplitude_um = AMPLITUDE_UM;
   int axis = effect->axis;
-  double shape[FG_FIELD_SHAPES] = {frame->centre_mm[axis]};
-  if (effect->start) shape[0] = effect->start(frame, effect->starts * 2 / 3, effect->starts);
-  if (effect->jumps) shape[0] = 0.4 * frame->first_mm[axis] + 0.6 * frame->last_mm[axis];
+  double shape[FG_FIELD_SHAPES] = {frame->centre_mm[axis]}, reach[FG_FIELD_SHAPES];
+  if (effect->starts)
+    fg_evidence_find_start(&f->edge_fit, effect, effect->starts * 2 / 3, shape, reach);
+  if (effect->jumps && !effect->grid)
+    shape[0] = 0.4 * frame->first_mm[axis] + 0.6 * frame->last_mm[axis];
   foil_rows_put_noise(f, NOISE_UM);
   assert_true(foil_rows_add_effect(f, effect, shape, &amplitude_um, 1) > 0);
 }
@@ -53,7 +57,8 @@ static void the_search_knows_every_row(void **state) {
   for (const fg_effect *effect = fg_effect_first(); effect; effect = fg_effect_next(effect)) {
     fg_context ctx = {0};
     fg_explanations explanations;
-    if (effect->off_foils || fg_effect_is_free(effect) || effect->width || count++ % test_step(4))
+    if (effect->off_foils || fg_effect_is_free(effect) || effect->width || effect->by_evidence ||
+        count++ % test_step(4))
       continue;
     put_effect(&f, effect);
     const fg_search_request request = {.policy = fg_search_policy_of(&f.edge_fit),
@@ -68,6 +73,57 @@ static void the_search_knows_every_row(void **state) {
         fail_msg("the search does not know %s", curve->id);
   }
   foil_rows_close(&f);
+}
+
+static bool leads(const fg_evidence_search *search, const fg_effect *effect) {
+  const fg_evidence_model *best = &search->models[0];
+  return best->parts == 1 && best->part[0]->effect && fg_effect_same(best->part[0]->effect, effect);
+}
+
+static void look_by_evidence(foil_rows *f, const fg_effect *effect, bool wanted) {
+  fg_context ctx = {0};
+  fg_evidence_search search;
+  const fg_effect_set none = {.count = 0};
+  assert_ok(&ctx, fg_evidence_search_open(&ctx, &f->edge_fit, &none, f->residual_um, f->jacobian,
+                                          &search));
+  assert_ok(&ctx, fg_evidence_search_run(&ctx, &search));
+  if (leads(&search, effect) != wanted)
+    fail_msg("%s %s", effect->id, wanted ? "does not lead" : "is found though it is left out");
+  fg_evidence_search_close(&search);
+}
+
+static void evidence_knows_every_row_that_the_search_does_not(void **state) {
+  (void)state;
+  foil_rows f;
+  size_t count = 0;
+  foil_rows_open(&f);
+  for (const fg_effect *effect = fg_effect_first(); effect; effect = fg_effect_next(effect)) {
+    if (!effect->by_evidence || effect->second || fg_effect_is_free(effect)) continue;
+    if (count++ % test_step(8) % 3) continue; /* a third of them */
+    put_effect(&f, effect);
+    look_by_evidence(&f, effect, true);
+    if (count > 1) continue;
+    f.edge_fit.left_out = effect->id;
+    look_by_evidence(&f, effect, false);
+    f.edge_fit.left_out = NULL;
+  }
+  foil_rows_close(&f);
+}
+
+static void lists_of_effects_are_checked(void **state) {
+  (void)state;
+  fg_context ctx = {0};
+  const fg_effect *yaw = fg_effect_find("scan.yaw");
+  assert_ok(&ctx, fg_effect_check_list(&ctx, NULL));
+  assert_ok(&ctx, fg_effect_check_list(&ctx, "part.dent,scan.yaw"));
+  const char *wrong[] = {"",          "scan.yaw,",    "scan.ya",
+                         "scan.yaws", "free.scan.xy", "scan.yaw, part.dent"};
+  for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
+    assert_status(&ctx, fg_effect_check_list(&ctx, wrong[i]), FG_ERR_USAGE);
+  assert_true(fg_effect_is_listed("part.dent,scan.yaw", yaw));
+  assert_true(fg_effect_is_listed("scan.yaw,part.dent", yaw));
+  assert_false(fg_effect_is_listed("scan.yaw2", yaw));
+  assert_false(fg_effect_is_listed(NULL, yaw));
 }
 
 static void the_search_of_the_width_knows_every_row(void **state) {
@@ -110,8 +166,13 @@ static void every_effect_row_is_complete(void **state) {
       fail_msg("the amplitude of %s has no name for people", effect->id);
     if (effect->glass && !effect->columns) fail_msg("%s has no columns", effect->id);
     if (fg_effect_is_free(effect) && !effect->moves) fail_msg("%s: what does it move?", effect->id);
-    if (effect->shapes && !effect->start == !effect->polynomial)
+    if (effect->shapes && !effect->starts == !effect->polynomial)
       fail_msg("%s: where is its shape sought?", effect->id);
+    if ((effect->starts > 0) != (effect->start || effect->grid) ||
+        (effect->shapes > 1) != !!effect->grid)
+      fail_msg("%s: where do its shapes start?", effect->id);
+    if (!fg_effect_is_free(effect) && !effect->width && !(effect->size_um[0] > 0))
+      fail_msg("%s: how large is it?", effect->id);
     for (size_t s = 0; s < effect->shapes; s++)
       if (!effect->shape_name[s] || !effect->shape_symbol[s])
         fail_msg("shape %zu of %s has no name", s, effect->id);
@@ -127,8 +188,10 @@ static void the_renderer_knows_every_row(void **state) {
     fg_context ctx = {0};
     fg_render_spec *spec = NULL;
     char text[200];
-    int length = (int)strlen(effect->id) - (strstr(effect->id, ".d") ? 3 : 0);
-    if (effect->scales || effect->by_evidence)
+    const char *moved = strrchr(effect->id, '.');
+    bool says_moved = !strcmp(moved, ".dx") || !strcmp(moved, ".dy");
+    int length = (int)strlen(effect->id) - (says_moved ? 3 : 0);
+    if (effect->scales || !strcmp(effect->id, "free.scan.xy"))
       continue; /* of the absolute size: two resolutions render it; over two axes: none draws it */
     snprintf(text, sizeof text,
              "{\"schema\":\"foilgauge/render/1\",\"foils\":[{}],\"effects\":[{\"id\":\"%.*s\"}]}",
@@ -154,6 +217,8 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(every_effect_row_is_complete),
       cmocka_unit_test(the_search_knows_every_row),
+      cmocka_unit_test(evidence_knows_every_row_that_the_search_does_not),
+      cmocka_unit_test(lists_of_effects_are_checked),
       cmocka_unit_test(the_search_of_the_width_knows_every_row),
       cmocka_unit_test(the_renderer_knows_every_row),
       cmocka_unit_test(the_benchmark_draws_every_row),

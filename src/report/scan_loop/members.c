@@ -187,6 +187,8 @@ static const fg_member result_rows[] = {
      .words = "it is in u_ of the foils of before and after, and in nothing that the loop decides"},
     {FG_TRACEABILITY(find_design_of_scans)},
     {FG_FLAG("same_foil", fg_scan_result, same_foil), .words = "all scans show the same foil"},
+    {FG_STRING("without", fg_scan_result, without),
+     .words = "effects that were not looked for (--without), with commas; null: none"},
     {FG_NUMBER("p_value", fg_scan_result, p_value),
      .words = "that no effect is needed: all candidates together against the noise"},
     {FG_NUMBER("noise_floor", fg_scan_result, noise_floor_um),

@@ -36,6 +36,7 @@ static sources find_sources(const fg_scan_result *result) {
 static fg_status add_scans(fg_context *ctx, const fg_scan_result *result, char **command) {
   if (result->discs) FG_TRY(fg_text_append(ctx, command, " --form discs"));
   if (result->same_foil) FG_TRY(fg_text_append(ctx, command, " --same-foil"));
+  if (result->without) FG_TRY(fg_text_append(ctx, command, " --without %s", result->without));
   for (size_t i = 0; i < result->scans; i++) {
     if (result->scan[i].hold_out) FG_TRY(fg_text_append(ctx, command, " --hold-out"));
     FG_TRY(fg_text_append_word(ctx, command, result->scan[i].before->scan));
