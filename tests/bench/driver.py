@@ -272,6 +272,7 @@ def read_options():
     parser.add_argument("--kinds", default="", help="of " + ",".join(k.name for k in kinds.KINDS))
     parser.add_argument("--show", default="", help="as --kinds, and print every value")
     parser.add_argument("--parts", default="foils,discs")
+    parser.add_argument("--strengths", default=",".join(kinds.STRENGTHS))
     parser.add_argument("--variants", default="micrometer,leaf", help="beside the scan alone")
     parser.add_argument("--known-all", action="store_true", help="variants of all cases [of a sixth]")
     parser.add_argument("--seeds", type=int, default=3)
@@ -290,6 +291,7 @@ def main():
     options = read_options()
     names = [n for n in (options.show or options.kinds).split(",") if n]
     cases = cases_of(names, options.seeds, options.share, options.parts.split(","))
+    cases = [case for case in cases if case["strength"] in options.strengths.split(",")]
     told = {"program": options.program, "renderer": options.renderer or options.program, "cache": options.cache,
             "known_all": options.known_all, "variants": variants_of(options.program, options.variants.split(","))}  # fmt: skip
     if options.cache:
