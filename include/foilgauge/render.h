@@ -44,6 +44,11 @@
  *     centre_mm [x, y] of O [placed on shelves from the top]; repeat [1], rotate_step_deg [0]
  *   discs[]: centre_mm, radius_mm, hole [false], lobes [0], lobe_um, lobe_phase_deg:
  *     r = radius + lobe cos(lobes (phi - phase)); later ones lie on top
+ *   grids[]: marks "dots", "chessboard", "crosses" or "lines", centre_mm, pitch_mm [5], columns [10],
+ *     rows [10; of lines 1], mark_mm: a dot's diameter [half the pitch] or a stroke's width [0.08
+ *     pitches], length_mm of a cross's stroke [0.6 pitches] or a line [4], rotate_deg [0], missing
+ *     [[column, row], ...]; errors of the board's own: scale [0], ratio [0] of x over y, shear [0],
+ *     place_um [0]: sd of every mark's place. Columns and rows of a chessboard are its corners'
  *   scanner:
  *     dpi [4800] or [x, y], bits [8], background [30], contrast [175; negative: dark on light],
  *     gamma [1], blur_px [1.2] or [x, y] [at least 0.4, and that of the coarser axis in mm],
@@ -188,6 +193,13 @@ typedef struct fg_render_disc {
   bool hole;
 } fg_render_disc;
 
+/* A mark of a grid, at its true place. */
+typedef struct fg_render_mark {
+  size_t grid; /* from 1 */
+  int column, row;
+  fg_point centre_px;
+} fg_render_mark;
+
 /* Content of the picture; owned by the spec. */
 typedef struct fg_render_truth {
   int64_t width_px, height_px;
@@ -198,6 +210,8 @@ typedef struct fg_render_truth {
   size_t foil_count;
   const fg_render_disc *discs;
   size_t disc_count;
+  const fg_render_mark *marks;
+  size_t mark_count;
 } fg_render_truth;
 
 /* Receives a row of the picture: `pixels` are width_px × channels values of 8 bit, or of 16 bit in

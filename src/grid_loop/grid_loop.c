@@ -68,7 +68,10 @@ static fg_status build_model(fg_context *ctx, grid_problem *problem) {
     problem->mark_sd = kept.mark_sd;
     problem->board_sd = kept.board_sd;
   }
+  FG_TRY(fg_grid_refine_effects(ctx, problem));
+  FG_TRY(fg_grid_prune_effects(ctx, problem));
   FG_TRY(fg_grid_add_effects(ctx, problem));
+  FG_TRY(fg_grid_refine_effects(ctx, problem));
   FG_TRY(fg_grid_prune_effects(ctx, problem));
   return fg_grid_find_sizes(ctx, problem);
 }

@@ -10,7 +10,7 @@
 /* Chance that noise alone adds an effect, over all candidates; an effect stays where its square
  * over its variance exceeds this. */
 #define CHANCE    1e-3
-#define KEPT_CHI2 20.0
+#define KEPT_CHI2 30.0
 enum { REFINEMENTS = 24 };
 
 /* Ratio of the axes, then shear: the effects that one ring cannot tell from its own form. */
@@ -130,10 +130,13 @@ static void refine_shape(score_work *work, double low, double high, grid_effect 
   }
 }
 
-/* A ripple whose marks lie less than half a period apart could be another one. */
-static bool is_aliased(const grid_problem *problem, const grid_effect *candidate) {
+/* A ripple of which the marks show less than two places a period could be another one; one that is
+ * longer than half the region belongs to a map. */
+static bool is_no_ripple(const grid_problem *problem, const grid_effect *candidate) {
+  double length = problem->frame.high_mm[1] - problem->frame.low_mm[1];
   return candidate->kind->numbers == FG_EFFECT_WAVE &&
-         candidate->shape[0] < 2 * problem->board[0].pitch_mm;
+         (candidate->shape[0] < 2 * problem->board[0].pitch_mm ||
+          candidate->shape[0] > 0.5 * length);
 }
 
 /* Best candidate of one kind. */
@@ -143,7 +146,7 @@ static double search_kind(score_work *work, const fg_effect *kind, grid_effect *
   double score = -1;
   for (size_t i = 0; i < starts; i++) {
     grid_effect candidate = candidate_of(problem, kind, i);
-    if (is_aliased(problem, &candidate)) continue;
+    if (is_no_ripple(problem, &candidate)) continue;
     double own = score_candidate(work, &candidate);
     if (own <= score) continue;
     score = own;
@@ -222,6 +225,53 @@ double fg_grid_effect_chi2(const grid_problem *problem, const grid_solution *sol
   double bb = gsl_matrix_get(solution->covariance, at + 1, at + 1);
   double ab = gsl_matrix_get(solution->covariance, at, at + 1), det = aa * bb - ab * ab;
   return (bb * a * a - 2 * ab * a * b + aa * b * b) / det;
+}
+
+/* Start of the search for a shape that lies next to one in force. */
+static size_t nearest_start(const grid_problem *problem, const grid_effect *effect) {
+  size_t best = 0;
+  double min = INFINITY;
+  for (size_t i = 0; i < effect->kind->starts; i++) {
+    double off =
+        fabs(effect->kind->start(&problem->frame, i, effect->kind->starts) - effect->shape[0]);
+    if (off < min) min = off, best = i;
+  }
+  return best;
+}
+
+static fg_status refine_effect(fg_context *ctx, grid_problem *problem, size_t e) {
+  grid_effect kept = problem->effect[e];
+  grid_solution solution;
+  score_work work = {.problem = problem, .solution = &solution};
+  grid_problem without = *problem;
+  without.effects--;
+  memmove(&without.effect[e], &without.effect[e + 1],
+          (without.effects - e) * sizeof *without.effect);
+  work.problem = &without;
+  FG_TRY(fg_grid_solve(ctx, &without, GRID_ALL_ROWS, &solution));
+  fg_status status =
+      fg_memory_allocate(ctx, 2 * solution.columns.count, sizeof(double), (void **)&work.projected);
+  if (status == FG_OK) {
+    size_t at = nearest_start(problem, &kept), starts = kept.kind->starts;
+    double low = kept.kind->start(&problem->frame, at ? at - 1 : 0, starts);
+    double high = kept.kind->start(&problem->frame, at + 1 < starts ? at + 1 : at, starts);
+    work.variance = variance_of(&without, &solution);
+    double score = score_candidate(&work, &kept);
+    refine_shape(&work, low, high, &problem->effect[e], &score);
+  }
+  free(work.projected);
+  fg_grid_solution_free(&solution);
+  return status;
+}
+
+fg_status fg_grid_refine_effects(fg_context *ctx, grid_problem *problem) {
+  double kept = problem->board_sd;
+  fg_status status = FG_OK;
+  problem->board_sd = 0;
+  for (size_t e = fg_grid_own_effects(problem); e < problem->effects && status == FG_OK; e++)
+    if (problem->effect[e].kind->start) status = refine_effect(ctx, problem, e);
+  problem->board_sd = kept;
+  return status;
 }
 
 fg_status fg_grid_prune_effects(fg_context *ctx, grid_problem *problem) {

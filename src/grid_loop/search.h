@@ -13,6 +13,9 @@ void fg_grid_begin_effects(grid_problem *problem);
  * does by chance. */
 fg_status fg_grid_add_effects(fg_context *ctx, grid_problem *problem);
 
+/* Moves the shapes of added effects to the best places beside all others and the map. */
+fg_status fg_grid_refine_effects(fg_context *ctx, grid_problem *problem);
+
 /* Drops added effects that are not told beside all others and the map. */
 fg_status fg_grid_prune_effects(fg_context *ctx, grid_problem *problem);
 

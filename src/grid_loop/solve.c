@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "grid_loop/solve.h"
 
+#include <gsl/gsl_blas.h>
 #include <gsl/gsl_linalg.h>
 #include <math.h>
 #include <stdlib.h>
@@ -98,67 +99,147 @@ static void add_prior(const grid_problem *problem, const grid_columns *columns,
 
 /* ---- the rows ---- */
 
-typedef struct grid_sums {
+/* Sums over rows, without their variances: products of the columns with each other and with the
+ * values. */
+typedef struct grid_products {
   gsl_matrix *normal;
   gsl_vector *right;
-  double square, log_variance;
-  size_t rows;
+  double square;
+  size_t groups;
+} grid_products;
+
+/* Everything that a likelihood needs of the rows, whatever the sizes: sums over single rows, and,
+ * of groups of n rows, over the groups' sums. */
+typedef struct grid_sums {
+  grid_products single, of_groups[FG_GRID_SCANS + 1];
+  size_t columns, rows;
 } grid_sums;
+
+static void free_products(grid_products *products) {
+  gsl_matrix_free(products->normal);
+  gsl_vector_free(products->right);
+}
+
+static void free_grid_sums(grid_sums *sums) {
+  free_products(&sums->single);
+  for (size_t n = 0; n <= FG_GRID_SCANS; n++)
+    free_products(&sums->of_groups[n]);
+}
+
+static fg_status allocate_products(fg_context *ctx, size_t columns, grid_products *products) {
+  if (products->normal) return FG_OK;
+  products->normal = gsl_matrix_calloc(columns, columns);
+  products->right = gsl_vector_calloc(columns);
+  if (products->normal && products->right) return FG_OK;
+  return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: %zu columns", columns);
+}
 
 static bool learns_from(const grid_row *row, grid_rows_used rows) {
   return row->used && !(rows == GRID_NOT_HELD_OUT && row->held_out);
 }
 
-static void add_outer(grid_sums *sums, const size_t *index, const double *value, size_t count,
-                      double right, double weight) {
+static void add_outer(grid_products *products, const size_t *index, const double *value,
+                      size_t count, double right) {
   for (size_t a = 0; a < count; a++) {
-    double scaled = weight * value[a];
-    if (scaled == 0) continue;
-    *gsl_vector_ptr(sums->right, index[a]) += scaled * right;
-    double *row = gsl_matrix_ptr(sums->normal, index[a], 0);
+    if (value[a] == 0) continue;
+    *gsl_vector_ptr(products->right, index[a]) += value[a] * right;
+    double *row = gsl_matrix_ptr(products->normal, index[a], 0);
     for (size_t b = 0; b < count; b++)
-      row[index[b]] += scaled * value[b];
+      row[index[b]] += value[a] * value[b];
   }
-  sums->square += weight * right * right;
+  products->square += right * right;
+  products->groups++;
 }
 
-/* The rows of one component of one mark: they share the board's mark, of variance b², beside their
- * own, s². (s² I + b² 1 1ᵀ)⁻¹ = I / s² - 1 1ᵀ b² / (s² (s² + n b²)). */
-static void add_group(const grid_problem *problem, const grid_columns *columns, size_t first,
-                      size_t last, grid_rows_used rows, grid_sums *sums) {
-  size_t index[GRID_ROW_MAX], all[4 * GRID_ROW_MAX], n = 0, joined = 0;
-  double value[GRID_ROW_MAX], sum[4 * GRID_ROW_MAX], right = 0;
-  double s2 = problem->mark_sd * problem->mark_sd, b2 = problem->board_sd * problem->board_sd;
-  for (size_t i = first; i < last; i++) {
+/* The rows of one component of one mark, in all scans. */
+static fg_status add_group(fg_context *ctx, const grid_problem *problem,
+                           const grid_columns *columns, size_t first, size_t last,
+                           grid_rows_used rows, grid_sums *sums) {
+  enum { ALL_MAX = 8 * GRID_ROW_MAX };
+  size_t index[GRID_ROW_MAX], all[ALL_MAX], n = 0, joined = 0;
+  double value[GRID_ROW_MAX], sum[ALL_MAX], right = 0;
+  for (size_t i = first; i < last && joined + GRID_ROW_MAX <= ALL_MAX; i++) {
     if (!learns_from(&problem->rows[i], rows)) continue;
     size_t count = fg_grid_row_columns(problem, columns, &problem->rows[i], index, value);
-    add_outer(sums, index, value, count, problem->rows[i].value, 1 / s2);
+    add_outer(&sums->single, index, value, count, problem->rows[i].value);
     right += problem->rows[i].value;
     n++;
-    for (size_t k = 0; k < count && joined < 4 * GRID_ROW_MAX; k++, joined++) {
+    for (size_t k = 0; k < count; k++, joined++) {
       all[joined] = index[k];
       sum[joined] = value[k];
     }
   }
-  if (!n) return;
-  double total = s2 + (double)n * b2;
-  sums->log_variance += (double)(n - 1) * log(s2) + log(total);
   sums->rows += n;
-  if (b2 > 0) add_outer(sums, all, sum, joined, right, -b2 / (s2 * total));
+  if (!n) return FG_OK;
+  FG_TRY(allocate_products(ctx, sums->columns, &sums->of_groups[n]));
+  add_outer(&sums->of_groups[n], all, sum, joined, right);
+  return FG_OK;
 }
 
-static void add_rows(const grid_problem *problem, const grid_columns *columns, grid_rows_used rows,
-                     grid_sums *sums) {
+static fg_status add_rows(fg_context *ctx, const grid_problem *problem, const grid_columns *columns,
+                          grid_rows_used rows, grid_sums *sums) {
+  *sums = (grid_sums){.columns = columns->count};
+  FG_TRY(allocate_products(ctx, columns->count, &sums->single));
   for (size_t first = 0; first < problem->row_count;) {
     size_t last = first;
     while (last < problem->row_count && problem->rows[last].group == problem->rows[first].group)
       last++;
-    add_group(problem, columns, first, last, rows, sums);
+    FG_TRY(add_group(ctx, problem, columns, first, last, rows, sums));
     first = last;
   }
+  return FG_OK;
+}
+
+static void add_weighted(const grid_products *from, double weight, gsl_matrix *normal,
+                         gsl_vector *right, double *square) {
+  size_t n = normal->size1;
+  for (size_t i = 0; i < n; i++) {
+    double *to = gsl_matrix_ptr(normal, i, 0);
+    const double *row = gsl_matrix_const_ptr(from->normal, i, 0);
+    for (size_t j = 0; j <= i; j++)
+      to[j] += weight * row[j];
+    *gsl_vector_ptr(right, i) += weight * gsl_vector_get(from->right, i);
+  }
+  *square += weight * from->square;
+}
+
+/* Rows of a group of n share the board's mark, of variance b², beside their own, s²:
+ * (s² I + b² 1 1ᵀ)⁻¹ = I / s² - 1 1ᵀ b² / (s² (s² + n b²)). Returns the logarithm of the rows'
+ * variances. */
+static double weigh_rows(const grid_problem *problem, const grid_sums *sums, gsl_matrix *normal,
+                         gsl_vector *right, double *square) {
+  double s2 = problem->mark_sd * problem->mark_sd, b2 = problem->board_sd * problem->board_sd;
+  double logarithm = (double)sums->rows * log(s2);
+  *square = 0;
+  add_weighted(&sums->single, 1 / s2, normal, right, square);
+  for (size_t n = 1; n <= FG_GRID_SCANS && b2 > 0; n++) {
+    const grid_products *groups = &sums->of_groups[n];
+    double total = s2 + (double)n * b2;
+    if (!groups->groups) continue;
+    add_weighted(groups, -b2 / (s2 * total), normal, right, square);
+    logarithm += (double)groups->groups * log(total / s2);
+  }
+  return logarithm;
 }
 
 /* ---- solving ---- */
+
+/* Cholesky factor of the lower triangle, row by row; false: not positive definite. GSL's needs a
+ * fast BLAS to be fast. */
+static bool factor_rows(gsl_matrix *matrix) {
+  size_t n = matrix->size1;
+  for (size_t i = 0; i < n; i++) {
+    double *row = gsl_matrix_ptr(matrix, i, 0);
+    for (size_t j = 0; j < i; j++) {
+      const double *other = gsl_matrix_const_ptr(matrix, j, 0);
+      row[j] = (row[j] - fg_dot_in_lanes(row, other, j)) / other[j];
+    }
+    double left = row[i] - fg_dot_in_lanes(row, row, i);
+    if (!(left > 0)) return false;
+    row[i] = sqrt(left);
+  }
+  return true;
+}
 
 static double log_determinant(const gsl_matrix *factor) {
   double sum = 0;
@@ -170,6 +251,14 @@ static double log_determinant(const gsl_matrix *factor) {
 /* Number of a map's columns with a prior of its size. */
 static double map_rank(bool has, const fg_map_frame *frame) {
   return has ? 2 * ((double)fg_map_splines(frame) - 3) : 0;
+}
+
+static double size_terms(const grid_problem *problem) {
+  double sum = 0;
+  if (problem->has_map) sum += map_rank(true, &problem->map) * 2 * log(problem->map_size);
+  if (problem->has_board_map)
+    sum += map_rank(true, &problem->board_map) * 2 * log(problem->board_map_size);
+  return sum;
 }
 
 static fg_status fill_residual(fg_context *ctx, const grid_problem *problem,
@@ -188,53 +277,59 @@ static fg_status fill_residual(fg_context *ctx, const grid_problem *problem,
   return FG_OK;
 }
 
-static fg_status factor_and_solve(fg_context *ctx, const grid_problem *problem, grid_sums *sums,
-                                  grid_solution *solution) {
-  double dot = 0;
-  if (gsl_linalg_cholesky_decomp1(sums->normal))
-    return fg_fail(ctx, FG_ERR_NUMERIC, "the grids' model has no single solution");
-  gsl_linalg_cholesky_solve(sums->normal, sums->right, solution->estimate);
-  for (size_t k = 0; k < sums->right->size; k++)
-    dot += gsl_vector_get(sums->right, k) * gsl_vector_get(solution->estimate, k);
-  solution->minus_log_likelihood =
-      0.5 *
-      (log_determinant(sums->normal) + sums->log_variance + sums->square - dot +
-       map_rank(problem->has_map, &problem->map) * 2 * log(problem->map_size) +
-       map_rank(problem->has_board_map, &problem->board_map) * 2 * log(problem->board_map_size));
-  return FG_OK;
-}
-
-static fg_status allocate_solution(fg_context *ctx, size_t n, grid_sums *sums,
-                                   grid_solution *solution) {
-  fg_numerics_start();
-  solution->covariance = sums->normal = gsl_matrix_calloc(n, n);
-  solution->estimate = gsl_vector_calloc(n);
-  sums->right = gsl_vector_calloc(n);
-  if (sums->normal && solution->estimate && sums->right) return FG_OK;
-  return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: %zu columns", n);
-}
-
+/* Estimates under the problem's sizes; `solution` gets the factor in place of the covariance. */
 static fg_status solve_sums_of_grid(fg_context *ctx, const grid_problem *problem,
-                                    grid_rows_used rows, grid_solution *solution) {
-  grid_sums sums = {0};
+                                    const grid_sums *sums, grid_solution *solution) {
+  size_t n = sums->columns;
   fg_status status = FG_OK;
+  double square, dot = 0;
   *solution = (grid_solution){.columns = fg_grid_columns(problem)};
-  FG_TRY_EXIT(allocate_solution(ctx, solution->columns.count, &sums, solution));
-  add_rows(problem, &solution->columns, rows, &sums);
-  add_prior(problem, &solution->columns, sums.normal);
-  FG_TRY_EXIT(factor_and_solve(ctx, problem, &sums, solution));
+  gsl_vector *right = gsl_vector_calloc(n);
+  solution->covariance = gsl_matrix_calloc(n, n);
+  solution->estimate = gsl_vector_calloc(n);
+  if (!right || !solution->covariance || !solution->estimate) {
+    status = fg_fail(ctx, FG_ERR_MEMORY, "out of memory: %zu columns", n);
+    goto exit;
+  }
+  double logarithm = weigh_rows(problem, sums, solution->covariance, right, &square);
+  add_prior(problem, &solution->columns, solution->covariance);
+  if (!factor_rows(solution->covariance)) {
+    status = fg_fail(ctx, FG_ERR_NUMERIC, "the grids' model has no single solution");
+    goto exit;
+  }
+  gsl_vector_memcpy(solution->estimate, right);
+  gsl_blas_dtrsv(CblasLower, CblasNoTrans, CblasNonUnit, solution->covariance, solution->estimate);
+  gsl_blas_ddot(solution->estimate, solution->estimate, &dot);
+  gsl_blas_dtrsv(CblasLower, CblasTrans, CblasNonUnit, solution->covariance, solution->estimate);
+  solution->minus_log_likelihood = 0.5 * (log_determinant(solution->covariance) + logarithm +
+                                          square - dot + size_terms(problem));
 exit:
-  gsl_vector_free(sums.right);
+  gsl_vector_free(right);
   return status;
+}
+
+/* The inverse of a factored matrix, in its place, both triangles. */
+static void invert_factored(gsl_matrix *factor) {
+  size_t n = factor->size1;
+  for (size_t i = 0; i < n; i++)
+    for (size_t j = i + 1; j < n; j++)
+      gsl_matrix_set(factor, i, j, gsl_matrix_get(factor, j, i));
+  gsl_linalg_cholesky_invert(factor);
 }
 
 fg_status fg_grid_solve(fg_context *ctx, const grid_problem *problem, grid_rows_used rows,
                         grid_solution *solution) {
+  grid_columns columns = fg_grid_columns(problem);
+  grid_sums sums;
   fg_status status = FG_OK;
-  FG_TRY_EXIT(solve_sums_of_grid(ctx, problem, rows, solution));
-  gsl_linalg_cholesky_invert(solution->covariance);
+  *solution = (grid_solution){0};
+  fg_numerics_start();
+  FG_TRY_EXIT(add_rows(ctx, problem, &columns, rows, &sums));
+  FG_TRY_EXIT(solve_sums_of_grid(ctx, problem, &sums, solution));
+  invert_factored(solution->covariance);
   FG_TRY_EXIT(fill_residual(ctx, problem, solution));
 exit:
+  free_grid_sums(&sums);
   if (status != FG_OK) fg_grid_solution_free(solution);
   return status;
 }
@@ -248,38 +343,47 @@ void fg_grid_solution_free(grid_solution *solution) {
 
 /* ---- sizes ---- */
 
-enum { SIZE_ROUNDS = 3, SIZE_STEPS = 9, TURNS_OF_SIZES = 2 };
-#define SIZE_FACTOR 1.9
+enum { SIZE_STEPS = 12, TURNS_OF_SIZES = 2 };
+/* A size is sought in steps by the first factor, then about the best of three by a parabola. */
+#define SIZE_FACTOR 2.0
 #define SIZE_MIN_MM 1e-6
 #define OUTLIER_SD  6.0
 
-static fg_status likelihood_of(fg_context *ctx, const grid_problem *problem, double *minus_log) {
+static fg_status find_likelihood_of_size(fg_context *ctx, const grid_problem *problem,
+                                         const grid_sums *sums, double *minus_log) {
   grid_solution solution;
-  fg_status status = solve_sums_of_grid(ctx, problem, GRID_ALL_ROWS, &solution);
+  fg_status status = solve_sums_of_grid(ctx, problem, sums, &solution);
   *minus_log = solution.minus_log_likelihood;
   fg_grid_solution_free(&solution);
   if (status == FG_ERR_NUMERIC) *minus_log = INFINITY;
   return status == FG_ERR_NUMERIC ? FG_OK : status;
 }
 
-/* Moves one size to its most likely value: steps by a factor while they help, then a parabola's
- * half steps. */
-static fg_status improve_size(fg_context *ctx, grid_problem *problem, double *size) {
-  double best, factor = SIZE_FACTOR;
-  FG_TRY(likelihood_of(ctx, problem, &best));
-  for (int halving = 0; halving < 3; halving++, factor = sqrt(factor))
-    for (int way = -1; way <= 1; way += 2)
-      for (int step = 0; step < SIZE_STEPS; step++) {
-        double kept = *size, other;
-        *size = fmax(SIZE_MIN_MM, kept * (way > 0 ? factor : 1 / factor));
-        FG_TRY(likelihood_of(ctx, problem, &other));
-        if (other < best - 1e-3) {
-          best = other;
-          continue;
-        }
-        *size = kept;
-        break;
-      }
+/* Moves one size to its most likely value. */
+static fg_status improve_size(fg_context *ctx, grid_problem *problem, const grid_sums *sums,
+                              double *size) {
+  double at[3], value[3];
+  at[1] = *size;
+  FG_TRY(find_likelihood_of_size(ctx, problem, sums, &value[1]));
+  for (int side = 0; side < 3; side += 2) {
+    *size = at[side] = fmax(SIZE_MIN_MM, at[1] * (side ? SIZE_FACTOR : 1 / SIZE_FACTOR));
+    FG_TRY(find_likelihood_of_size(ctx, problem, sums, &value[side]));
+  }
+  for (int step = 0; step < SIZE_STEPS && fmin(value[0], value[2]) < value[1]; step++) {
+    int side = value[0] < value[2] ? 0 : 2; /* the next three, one step that way */
+    double factor = side ? SIZE_FACTOR : 1 / SIZE_FACTOR;
+    at[2 - side] = at[1];
+    value[2 - side] = value[1];
+    at[1] = at[side];
+    value[1] = value[side];
+    *size = at[side] = fmax(SIZE_MIN_MM, at[1] * factor);
+    if (at[side] == at[1]) break;
+    FG_TRY(find_likelihood_of_size(ctx, problem, sums, &value[side]));
+  }
+  *size = at[1];
+  double bend = value[0] - 2 * value[1] + value[2];
+  if (isfinite(bend) && bend > 0 && at[0] < at[1])
+    *size = at[1] * pow(SIZE_FACTOR, 0.5 * (value[0] - value[2]) / bend);
   return FG_OK;
 }
 
@@ -318,15 +422,28 @@ static fg_status drop_outliers_of_grid(fg_context *ctx, grid_problem *problem) {
   return FG_OK;
 }
 
+static fg_status improve_all_sizes(fg_context *ctx, grid_problem *problem, bool repeats) {
+  grid_columns columns = fg_grid_columns(problem);
+  grid_sums sums;
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(add_rows(ctx, problem, &columns, GRID_ALL_ROWS, &sums));
+  FG_TRY_EXIT(improve_size(ctx, problem, &sums, &problem->mark_sd));
+  if (repeats) FG_TRY_EXIT(improve_size(ctx, problem, &sums, &problem->board_sd));
+  if (problem->has_map) FG_TRY_EXIT(improve_size(ctx, problem, &sums, &problem->map_size));
+  if (problem->has_board_map)
+    FG_TRY_EXIT(improve_size(ctx, problem, &sums, &problem->board_map_size));
+exit:
+  free_grid_sums(&sums);
+  return status;
+}
+
 fg_status fg_grid_find_sizes(fg_context *ctx, grid_problem *problem) {
   bool repeats = has_repeats(problem);
   if (!(problem->mark_sd > 0)) FG_TRY(start_sizes(ctx, problem, repeats));
-  for (int round = 0; round < TURNS_OF_SIZES; round++) {
-    FG_TRY(improve_size(ctx, problem, &problem->mark_sd));
-    if (repeats) FG_TRY(improve_size(ctx, problem, &problem->board_sd));
-    if (problem->has_map) FG_TRY(improve_size(ctx, problem, &problem->map_size));
-    if (problem->has_board_map) FG_TRY(improve_size(ctx, problem, &problem->board_map_size));
-    if (round == 0) FG_TRY(drop_outliers_of_grid(ctx, problem));
+  fg_status status = FG_OK;
+  for (int round = 0; round < TURNS_OF_SIZES && status == FG_OK; round++) {
+    status = improve_all_sizes(ctx, problem, repeats);
+    if (status == FG_OK && round == 0) status = drop_outliers_of_grid(ctx, problem);
   }
-  return FG_OK;
+  return status;
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The result of a loop on grids, from its solution. */
+#include <gsl/gsl_blas.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -134,26 +135,76 @@ static void tell_claims(fg_grid_loop *loop) {
 
 /* ---- the map ---- */
 
-static void tell_map_point(const fg_grid_loop *loop, fg_grid_map_point *point) {
-  size_t index[GRID_ROW_MAX];
-  fg_point value[GRID_ROW_MAX], d = {0, 0};
-  double xx = 0, yy = 0;
-  size_t n = fg_grid_displacement_columns(&loop->problem, &loop->solution.columns, point->at_mm,
-                                          index, value);
-  for (size_t a = 0; a < n; a++) {
-    double estimate = gsl_vector_get(loop->solution.estimate, index[a]);
-    d.x += estimate * value[a].x;
-    d.y += estimate * value[a].y;
-    for (size_t b = 0; b < n; b++) {
-      double c = covariance_at(loop, index[a], index[b]);
-      xx += c * value[a].x * value[b].x;
-      yy += c * value[a].y * value[b].y;
+/* Displacement of all map points by every column (x and y by turns), less shift and turn, which are
+ * the poses', and less scale where nothing tells it: they have no meaning. */
+enum { GAUGES_MAX = 4 };
+
+static void remove_gauges(const fg_grid_loop_result *result, size_t count, gsl_matrix *moves) {
+  double middle[2] = {0.5 * (result->low_mm[0] + result->high_mm[0]),
+                      0.5 * (result->low_mm[1] + result->high_mm[1])};
+  int gauges = result->scale_known ? 3 : 4;
+  gsl_matrix *gauge = gsl_matrix_calloc((size_t)gauges, 2 * count);
+  for (size_t k = 0; gauge && k < 2 * count; k++) {
+    double x = result->map[k / 2].at_mm.x - middle[0], y = result->map[k / 2].at_mm.y - middle[1];
+    const double values[GAUGES_MAX] = {k % 2 ? 0 : 1, k % 2 ? 1 : 0, k % 2 ? x : -y, k % 2 ? y : x};
+    for (int g = 0; g < gauges; g++)
+      gsl_matrix_set(gauge, (size_t)g, k, values[g]);
+  }
+  /* The points lie evenly about the middle: the four are orthogonal. */
+  for (int g = 0; gauge && g < gauges; g++) {
+    gsl_vector_view row = gsl_matrix_row(gauge, (size_t)g);
+    double square;
+    gsl_blas_ddot(&row.vector, &row.vector, &square);
+    for (size_t c = 0; c < moves->size2; c++) {
+      gsl_vector_view column = gsl_matrix_column(moves, c);
+      double dot;
+      gsl_blas_ddot(&row.vector, &column.vector, &dot);
+      gsl_blas_daxpy(-dot / square, &row.vector, &column.vector);
     }
   }
-  double random = isfinite(loop->result.carriage_um) ? loop->result.carriage_um : 0;
-  point->d_um = (fg_point){1000 * d.x, 1000 * d.y};
-  point->u_um =
-      (fg_point){hypot(1000 * sqrt(fmax(0, xx)), random), hypot(1000 * sqrt(fmax(0, yy)), random)};
+  gsl_matrix_free(gauge);
+}
+
+/* Values and standard uncertainties of the map's points from their moves. */
+static fg_status tell_map_points(fg_context *ctx, fg_grid_loop *loop, size_t count) {
+  fg_grid_loop_result *result = &loop->result;
+  const grid_columns *columns = &loop->solution.columns;
+  size_t first = columns->effect, n = columns->board_map - first, index[GRID_ROW_MAX];
+  fg_point value[GRID_ROW_MAX];
+  gsl_matrix *moves = gsl_matrix_calloc(2 * count, n), *spread = gsl_matrix_calloc(2 * count, n);
+  if (!moves || !spread) {
+    gsl_matrix_free(moves);
+    gsl_matrix_free(spread);
+    return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: %zu columns", n);
+  }
+  for (size_t p = 0; p < count; p++) {
+    size_t own =
+        fg_grid_displacement_columns(&loop->problem, columns, result->map[p].at_mm, index, value);
+    for (size_t k = 0; k < own; k++) {
+      gsl_matrix_set(moves, 2 * p, index[k] - first, value[k].x);
+      gsl_matrix_set(moves, 2 * p + 1, index[k] - first, value[k].y);
+    }
+  }
+  remove_gauges(result, count, moves);
+  gsl_matrix_const_view own =
+      gsl_matrix_const_submatrix(loop->solution.covariance, first, first, n, n);
+  gsl_vector_const_view estimate = gsl_vector_const_subvector(loop->solution.estimate, first, n);
+  gsl_blas_dgemm(CblasNoTrans, CblasNoTrans, 1, moves, &own.matrix, 0, spread);
+  double random = isfinite(result->carriage_um) ? result->carriage_um : 0;
+  for (size_t k = 0; k < 2 * count; k++) {
+    gsl_vector_const_view move = gsl_matrix_const_row(moves, k),
+                          by = gsl_matrix_const_row(spread, k);
+    double d, variance;
+    gsl_blas_ddot(&move.vector, &estimate.vector, &d);
+    gsl_blas_ddot(&move.vector, &by.vector, &variance);
+    fg_grid_map_point *point = &result->map[k / 2];
+    double u = hypot(1000 * loop->widening * sqrt(fmax(0, variance)), k % 2 ? random : 0);
+    *(k % 2 ? &point->d_um.y : &point->d_um.x) = 1000 * d;
+    *(k % 2 ? &point->u_um.y : &point->u_um.x) = u;
+  }
+  gsl_matrix_free(moves);
+  gsl_matrix_free(spread);
+  return FG_OK;
 }
 
 static fg_status tell_map(fg_context *ctx, fg_grid_loop *loop) {
@@ -171,9 +222,10 @@ static fg_status tell_map(fg_context *ctx, fg_grid_loop *loop) {
     result->map[k].at_mm =
         (fg_point){result->low_mm[0] + size[0] * i / (double)(result->map_columns - 1),
                    result->low_mm[1] + size[1] * j / (double)(result->map_rows - 1)};
-    tell_map_point(loop, &result->map[k]);
-    u += 0.5 * (pow(result->map[k].u_um.x, 2) + pow(result->map[k].u_um.y, 2));
   }
+  FG_TRY(tell_map_points(ctx, loop, count));
+  for (size_t k = 0; k < count; k++)
+    u += 0.5 * (pow(result->map[k].u_um.x, 2) + pow(result->map[k].u_um.y, 2));
   result->u_map_um = sqrt(u / (double)count);
   return FG_OK;
 }
@@ -190,6 +242,49 @@ static double rms_of_map(const fg_grid_loop *loop, const fg_map_frame *frame, si
       square += d.x * d.x + d.y * d.y;
     }
   return 1000 * sqrt(square / n);
+}
+
+/* ---- the carriage ---- */
+
+/* Rows of marks that the carriage sees at one time: strips of the bed, as high as a lattice step.
+ */
+enum { STRIPS_MAX = 400, PER_STRIP_MIN = 4 };
+
+typedef struct strip_mean {
+  double sum, count;
+} strip_mean;
+
+/* Variance of the means of strips beyond that of their marks: what all marks of a strip share in
+ * one scan alone. Only scans of a pose that another scan repeats tell it; of others the map may
+ * hold it. */
+static double find_carriage(const fg_grid_loop *loop) {
+  static strip_mean empty;
+  const grid_problem *problem = &loop->problem;
+  double square = 0, expected = 0, strips = 0, pitch = problem->board[0].pitch_mm;
+  for (size_t scan = 0; scan < problem->scan_count; scan++) {
+    strip_mean means[STRIPS_MAX];
+    bool repeated = false;
+    for (size_t k = 0; k < STRIPS_MAX; k++)
+      means[k] = empty;
+    for (size_t other = 0; other < problem->scan_count; other++)
+      repeated |= other != scan && problem->board_of[other] == problem->board_of[scan] &&
+                  problem->turns[other] == problem->turns[scan];
+    for (size_t i = 0; repeated && i < problem->row_count; i++) {
+      const grid_row *row = &problem->rows[i];
+      double strip = (row->at.y - problem->frame.low_mm[1]) / pitch;
+      if (row->scan != scan || !row->used || fabs(row->direction.y) < 0.7) continue;
+      if (!(strip >= 0 && strip < STRIPS_MAX)) continue;
+      means[(size_t)strip].sum += loop->solution.residual[i] / row->direction.y;
+      means[(size_t)strip].count++;
+    }
+    for (size_t k = 0; k < STRIPS_MAX; k++) {
+      if (means[k].count < PER_STRIP_MIN) continue;
+      square += pow(means[k].sum / means[k].count, 2);
+      expected += (pow(problem->mark_sd, 2) + pow(problem->board_sd, 2)) / means[k].count;
+      strips++;
+    }
+  }
+  return strips > 0 ? 1000 * sqrt(fmax(0, square - expected) / strips) : NAN;
 }
 
 /* ---- scans ---- */
@@ -226,7 +321,7 @@ fg_status fg_grid_loop_tell(fg_context *ctx, fg_grid_loop *loop) {
   result->axes_known = problem->scale_known || problem->turned;
   result->mark_um = 1000 * problem->mark_sd;
   result->board_mark_um = problem->board_sd > 0 ? 1000 * problem->board_sd : NAN;
-  result->carriage_um = NAN;
+  result->carriage_um = find_carriage(loop);
   for (int axis = 0; axis < 2; axis++) {
     result->low_mm[axis] = problem->frame.low_mm[axis];
     result->high_mm[axis] = problem->frame.high_mm[axis];

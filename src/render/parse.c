@@ -18,6 +18,7 @@ static fg_status read_spec(const fg_place *place, const cJSON *root, fg_render_s
       FG_SPEC_OTHER("seed"),
       FG_SPEC_OTHER("foils"),
       FG_SPEC_OTHER("discs"),
+      FG_SPEC_OTHER("grids"),
       FG_SPEC_OTHER("scanner"),
       FG_SPEC_OTHER("effects"),
       FG_SPEC_OTHER("comment"),
@@ -35,11 +36,12 @@ static fg_status read_spec(const fg_place *place, const cJSON *root, fg_render_s
   FG_TRY(fg_spec_read_scanner(&scanner, fg_spec_member(root, "scanner"), &spec->scanner));
   FG_TRY(fg_render_effects_parse(place, fg_spec_member(root, "effects"), &spec->effects));
   FG_TRY(fg_spec_read_discs(place, fg_spec_member(root, "discs"), spec));
+  FG_TRY(fg_spec_read_grids(place, fg_spec_member(root, "grids"), spec));
   return fg_spec_read_foils(place, fg_spec_member(root, "foils"), spec);
 }
 
 static fg_status default_foil(fg_context *ctx, fg_render_spec *spec) {
-  if (spec->request_count || spec->disc_request_count) return FG_OK;
+  if (spec->request_count || spec->disc_request_count || spec->grid_request_count) return FG_OK;
   free(spec->requests);
   FG_TRY(fg_memory_allocate(ctx, 1, sizeof *spec->requests, (void **)&spec->requests));
   spec->requests[0] = fg_spec_default_foil();
@@ -84,6 +86,7 @@ void fg_render_free(fg_render_spec *spec) {
   if (!spec) return;
   free(spec->requests);
   free(spec->disc_requests);
+  free(spec->grid_requests);
   fg_scene_free(&spec->scene);
   free(spec);
 }

@@ -24,6 +24,7 @@ static inline const cJSON *fg_spec_member(const cJSON *object, const char *name)
 fg_foil_request fg_spec_default_foil(void);
 fg_status fg_spec_read_foils(const fg_place *place, const cJSON *array, fg_render_spec *spec);
 fg_status fg_spec_read_beams(const fg_place *place, const cJSON *foil, fg_foil_request *request);
+fg_status fg_spec_read_grids(const fg_place *place, const cJSON *array, fg_render_spec *spec);
 fg_status fg_spec_read_discs(const fg_place *place, const cJSON *array, fg_render_spec *spec);
 
 fg_scanner fg_spec_default_scanner(void);

@@ -355,8 +355,21 @@ static double disc_bands(const fg_sampler *sampler, const fg_shape *shape, const
   return value + (hole ? cover : 1 - value) * sum;
 }
 
+/* Share of a square; squares that meet in a corner add up. */
+static double square_value(const fg_sampler *sampler, const fg_shape *shape, double x, double y,
+                           double sd, double below) {
+  double cover = 1;
+  for (int k = 0; k < 2; k++) {
+    double across = (x - shape->x0) * shape->normal[k].x + (y - shape->y0) * shape->normal[k].y;
+    cover *= phi(sampler, (shape->half_mm[k] - across) / sd) +
+             phi(sampler, (shape->half_mm[k] + across) / sd) - 1;
+  }
+  return below + shape->value * cover;
+}
+
 static double shape_value(const fg_sampler *sampler, const fg_shape *shape, double x, double y,
                           double sd, double below) {
+  if (shape->half_mm[0] > 0) return square_value(sampler, shape, x, y, sd, below);
   double lx = shape->x1 - shape->x0, ly = shape->y1 - shape->y0, length2 = lx * lx + ly * ly;
   double dx = x - shape->x0, dy = y - shape->y0;
   if (length2 > 0) {

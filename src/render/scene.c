@@ -216,6 +216,14 @@ static fg_status build_discs(const fg_place *place, fg_render_spec *spec, box *a
   return FG_OK;
 }
 
+static fg_status build_grids(const fg_place *place, fg_render_spec *spec, box *all) {
+  double reach[2][2] = {{INFINITY, INFINITY}, {-INFINITY, -INFINITY}};
+  FG_TRY(fg_grids_build(place, spec, reach));
+  for (int end = 0; end < 2 && spec->grid_request_count; end++)
+    box_add(all, reach[end][0], reach[end][1], 0);
+  return FG_OK;
+}
+
 /* Sizes vary from half to one and a half, contrast from half to full. */
 static void scatter_litter(fg_render_spec *spec, const fg_litter *litter, fg_random_stream stream) {
   fg_random random;
@@ -317,11 +325,12 @@ fg_status fg_scene_build(const fg_place *place, fg_render_spec *spec) {
   FG_TRY(build_foils(place, spec, &all));
   size_t litter = (size_t)scanner->dust.count + (size_t)scanner->specks.count +
                   (size_t)scanner->scratches.count;
-  FG_TRY(fg_memory_allocate(place->ctx, spec->disc_request_count + litter, sizeof *scene->shapes,
-                            (void **)&scene->shapes));
+  FG_TRY(fg_memory_allocate(place->ctx, spec->disc_request_count + fg_grids_shapes(spec) + litter,
+                            sizeof *scene->shapes, (void **)&scene->shapes));
   FG_TRY(fg_memory_allocate(place->ctx, spec->disc_request_count, sizeof *scene->discs,
                             (void **)&scene->discs));
   FG_TRY(build_discs(place, spec, &all));
+  FG_TRY(build_grids(place, spec, &all));
   FG_TRY(fit_size(place, spec, &all));
   scatter_litter(spec, &scanner->dust, FG_STREAM_DUST);
   scatter_litter(spec, &scanner->specks, FG_STREAM_SPECKS);
@@ -345,7 +354,9 @@ fg_status fg_scene_build(const fg_place *place, fg_render_spec *spec) {
                                   .foils = scene->foils,
                                   .foil_count = scene->foil_count,
                                   .discs = scene->discs,
-                                  .disc_count = scene->disc_count};
+                                  .disc_count = scene->disc_count,
+                                  .marks = scene->marks,
+                                  .mark_count = scene->mark_count};
   return FG_OK;
 }
 
@@ -365,6 +376,7 @@ void fg_scene_free(fg_scene *scene) {
   free(scene->foils);
   free(scene->shapes);
   free(scene->discs);
+  free(scene->marks);
   memset(scene, 0, sizeof *scene);
 }
 

@@ -76,6 +76,26 @@ typedef struct fg_disc_request {
   double lobe_um, lobe_phase_deg; /* r = radius + lobe cos(lobes (phi - phase)) */
 } fg_disc_request;
 
+typedef enum fg_grid_marks {
+  FG_GRID_DOTS,
+  FG_GRID_CHESSBOARD,
+  FG_GRID_CROSSES,
+  FG_GRID_LINES
+} fg_grid_marks;
+
+enum { FG_GRID_MISSING_MAX = 64 };
+
+/* A plate or board. `ratio`, `shear` and `scale` are its own errors: x over y, angle of its axes,
+ * both axes; `place_um` the sd of its marks' places (not of a chessboard's corners). */
+typedef struct fg_grid_request {
+  fg_grid_marks marks;
+  double pitch_mm, mark_mm, length_mm; /* diameter or width of strokes; their length */
+  int columns, rows;
+  double centre_mm[2], rotate_deg, ratio, shear, scale, place_um;
+  int missing[FG_GRID_MISSING_MAX][2];
+  size_t missing_count;
+} fg_grid_request;
+
 /* Objects on the glass, drawn at random places. Contrast in DN, either sign. */
 typedef struct fg_litter {
   int count;
@@ -153,6 +173,8 @@ typedef struct fg_shape {
   double lobe_mm, lobe_phase_rad;
   float *roughness; /* outwards, mm, at equal angles from that of x; NULL: none */
   size_t roughness_count;
+  fg_point normal[2]; /* of a square: of its sides */
+  double half_mm[2];  /* distance of its sides from its middle; 0: no square */
 } fg_shape;
 
 typedef struct fg_scene {
@@ -165,6 +187,8 @@ typedef struct fg_scene {
   size_t shape_count;
   fg_render_disc *discs;
   size_t disc_count;
+  fg_render_mark *marks;
+  size_t mark_count;
 } fg_scene;
 
 /* Grid of the sensor; the finished picture's own, unless the driver resamples. */
@@ -182,6 +206,8 @@ struct fg_render_spec {
   size_t request_count;
   fg_disc_request *disc_requests;
   size_t disc_request_count;
+  fg_grid_request *grid_requests;
+  size_t grid_request_count;
   double pixel_mm[2]; /* of the finished picture */
   fg_sensor_grid sensor;
   fg_scene scene;
@@ -203,6 +229,12 @@ typedef enum fg_random_stream {
 /* Makes segments, shapes, size and truth of the requests. */
 fg_status fg_scene_build(const fg_place *place, fg_render_spec *spec);
 void fg_scene_free(fg_scene *scene);
+
+/* Numbers of shapes and marks of all grids; builds them behind the discs, and extends `reach`, the
+ * lowest and highest x and y of all drawings. */
+size_t fg_grids_shapes(const fg_render_spec *spec);
+size_t fg_grids_marks(const fg_render_spec *spec);
+fg_status fg_grids_build(const fg_place *place, fg_render_spec *spec, double reach[2][2]);
 
 int fg_scene_max_bumps(const fg_render_spec *spec); /* of any foil, as designed */
 

@@ -249,6 +249,19 @@ static const fg_member disc_rows[] = {
 };
 static const fg_members disc_members = FG_MEMBERS(disc_rows);
 
+static bool has_marks(const fg_subject *subject) {
+  return ((const fg_render_spec *)subject->object)->truth.mark_count > 0;
+}
+
+static const fg_member mark_rows[] = {
+    {FG_COUNT("grid", fg_render_mark, grid), .words = "from 1"},
+    {FG_INTEGER("column", fg_render_mark, column)},
+    {FG_INTEGER("row", fg_render_mark, row)},
+    {FG_RANGE("centre_px", fg_render_mark, centre_px.x, centre_px.y),
+     .words = "x, y, at its true place"},
+};
+static const fg_members mark_members = FG_MEMBERS(mark_rows);
+
 /* The scan. One number where both axes agree. */
 static void write_axes(fg_json *json, const char *name, const double value[2]) {
   if (value[0] == value[1])
@@ -386,6 +399,8 @@ static const fg_member truth_rows[] = {
      .present = has_many_foils, .words = "where there are several"},
     {FG_LIST("discs", fg_render_spec, truth.discs, truth.disc_count, &disc_members),
      .present = has_discs},
+    {FG_LIST("marks", fg_render_spec, truth.marks, truth.mark_count, &mark_members),
+     .present = has_marks, .options = FG_MEMBER_ON_LINE, .words = "of all grids"},
     {FG_GROUP("scan", &scan_members)},
     {FG_LIST_BY("effects", fg_truth_effect_at, &fg_truth_effect_members),
      .words = "under the names of the loop's reports; lost rows, stitches and seams last"},

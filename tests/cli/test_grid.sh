@@ -1,0 +1,67 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Grids: every kind of mark is rendered and measured; turned scans of a printed board tell scanner and board apart, one scan ties
+# them; the model of a known plate takes the scanner's error off a plate of pins.
+. tests/support/cli.sh
+skip_when_slow
+
+# spec FILE MARKS TURN SEED EFFECTS: a board of 3 mm, longer along its columns by 0.15 %, some marks missing.
+spec() {
+  cat >"$1" <<S
+{"schema": "foilgauge/render/1", "seed": $4, "scanner": {"dpi": 600}, "effects": [$5],
+ "grids": [{"marks": "$2", "centre_mm": [22, 22], "pitch_mm": 3, "columns": 12, "rows": 12, "rotate_deg": $3, "ratio": 0.0015,
+            "missing": [[0, 0], [1, 0], [0, 1]]}]}
+S
+}
+scale='{"id": "scan.scale_y", "value": 0.004}'
+
+# near WORDS VALUE WANTED TOLERANCE
+near() {
+  awk -v v="$2" -v w="$3" -v t="$4" 'BEGIN { d = v - w; exit !(d <= t && -d <= t) }' || fail "$1 is $2, not $3 +- $4"
+}
+# member FILE NAME: the first number of that name
+member() { sed -n "s/^ *\"$2\": \([-0-9.e]*\),*\$/\1/p" "$1" | head -n 1; }
+
+for marks in dots chessboard crosses lines; do
+  echo "{\"schema\": \"foilgauge/design/1\", \"form\": \"grid\", \"marks\": \"$marks\"}" >$marks.json
+  spec spec.json $marks 2 1 ""
+  expect 0 "" "$program" render spec.json -o $marks.png
+  expect 0 "" "$program" measure $marks.png --design $marks.json -o measured.json --points points.csv --html page.html
+  grep -q "magnified" page.html || fail "no map of the residuals of $marks on the page"
+  if [ $marks = lines ]; then
+    near "step of lines" "$(member measured.json step_x_mm)" 3.00225 0.0003
+  else
+    near "ratio of axes of $marks" "$(member measured.json axis_ratio)" 1.0015 0.0001
+    near "marks of $marks" "$(member measured.json mark_count)" 143 6
+  fi
+done
+
+# One pose: scanner or board. Turned: both, each with its own.
+spec a.json dots 1 2 "$scale"
+spec b.json dots 91 3 "$scale"
+expect 0 "" "$program" render a.json -o a.png
+expect 0 "" "$program" render b.json -o b.png
+expect 0 "" "$program" loop a.png --design dots.json -o one.json
+grep -q '"tied": true' one.json || fail "one scan of an unknown board is no tie"
+expect 65 "no model is written" "$program" loop a.png --design dots.json -o one.json --model-out none.json
+expect 0 "" "$program" loop --same-part a.png b.png --design dots.json -o pair.json --html pair.html
+near "the scanner's axis ratio" "$(member pair.json axis_ratio)" 1.004 0.0001
+near "the board's axis ratio" "$(member pair.json board_axis_ratio)" 1.0015 0.0001
+grep -q '"turn_deg": 90' pair.json || fail "the quarter turn is not read from the pictures"
+expect 0 "" "$program" loop --same-part a.png b.png --turned 0,90 --design dots.json -o said.json
+cmp -s pair.json said.json || fail "a turn that is said differs from the same that is found"
+expect 64 "multiples of 90" "$program" loop --same-part a.png b.png --turned 0,45 --design dots.json
+
+# A plate that is known tells the scale, too; its model corrects gauges.
+sed 's/"ratio": 0.0015/"ratio": 0/' a.json >plate.json
+expect 0 "" "$program" render plate.json -o plate.png
+echo '{"schema": "foilgauge/design/1", "form": "grid", "marks": "dots", "pitch_mm": 3, "u_pitch_mm": 0.00005}' >known.json
+expect 0 "" "$program" loop plate.png --design known.json -o known_loop.json --model-out scanner.json
+cat >pins.json <<S
+{"schema": "foilgauge/render/1", "seed": 8, "scanner": {"dpi": 600}, "effects": [$scale], "width_px": 1100, "height_px": 1100,
+ "discs": [{"centre_mm": [22, 14], "radius_mm": 5}, {"centre_mm": [22, 31], "radius_mm": 4}]}
+S
+expect 0 "" "$program" render pins.json -o pins.png
+expect 0 "" "$program" measure pins.png --form discs --tone linear --model scanner.json -o pins_corrected.json
+near "the radius through the map" "$(member pins_corrected.json radius_mm)" 5 0.0005
+exit $failed
