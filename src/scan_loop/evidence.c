@@ -219,6 +219,20 @@ static bool is_loose(const fg_evidence_model *model) {
   return false;
 }
 
+static bool is_of_part_alone(const fg_evidence_model *model) {
+  for (size_t k = 0; k < model->parts; k++)
+    if (model->part[k]->effect ? model->part[k]->effect->glass : model->part[k]->rival->glass)
+      return false;
+  return true;
+}
+
+/* Returns true where the edges do not tell whether the scanner or the foil does it. */
+static bool is_split_open(const fg_evidence_verdict *v) {
+  for (size_t k = 0; k < v->ties; k++)
+    if (is_of_part_alone(&v->tie[k])) return true;
+  return false;
+}
+
 static fg_status weigh_once(fg_context *ctx, fg_scan_loop *loop, double *residual, double *jacobian,
                             bool *moved) {
   fg_evidence_search search = {.count = 0};
@@ -227,7 +241,8 @@ static fg_status weigh_once(fg_context *ctx, fg_scan_loop *loop, double *residua
   FG_TRY(fg_search_put_back(ctx, &loop->edge_fit, &loop->set, residual, jacobian));
   FG_TRY_EXIT(search_models(ctx, loop, residual, jacobian, &search));
   FG_TRY_EXIT(fg_evidence_decide(ctx, &search, &verdict));
-  loop->misfit = loop->misfit || (verdict.ties && is_loose(&verdict.tie[0]));
+  loop->misfit =
+      loop->misfit || (verdict.ties && is_loose(&verdict.tie[0])) || is_split_open(&verdict);
   FG_TRY_EXIT(find_displacement(ctx, loop, &search));
   FG_TRY_EXIT(fg_scan_loop_find_form_errors(ctx, loop, &search, &verdict));
   FG_TRY_EXIT(take_verdict(ctx, loop, &verdict, moved));

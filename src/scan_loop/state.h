@@ -31,11 +31,11 @@ struct fg_scan_loop {
   fg_effect_set set;                        /* the winner, fitted */
   double *residual_before, *residual_after; /* um, per row of the edge fit */
   fg_scan_loop_error error_before, error_after;
-  fg_cross_fit cross_fit;       /* no folds: scans are held out, or no effect was found */
-  bool by_evidence;             /* evidence decided: the correction is its mean over all models */
-  bool misfit;                  /* no model follows all of the residual */
-  bool scanner_is_suspect;      /* an explanation holds what a scanner does */
-  fg_displacement displacement; /* of the scanner, by evidence */
+  fg_cross_fit cross_fit; /* no folds: scans are held out, or no effect was found */
+  bool by_evidence;       /* evidence decided: the correction is its mean over all models */
+  bool misfit; /* no model follows all of the residual, or the foil alone may be the cause */
+  bool scanner_is_suspect;                  /* an explanation holds what a scanner does */
+  fg_displacement displacement;             /* of the scanner, by evidence */
   fg_displacement_part *displacement_parts; /* owned; per part of the edge fit */
   fg_form_error *form_errors; /* owned; per circle of the parts (circles.h); NULL: not found */
   double noise_floor_um;

@@ -90,21 +90,16 @@ page aside.html a.png --hold-out other.png
 holds aside.html 'only confirms' 'On scans kept aside' 'class="held-out k1"'
 page tie.html faint.png -o tie.out
 holds tie.html 'tied: not named' 'What the data cannot tell apart' 'an oval foil' '--same-foil' '<th>range</th>'
-# Tied explanations: the dimensions move by the mean over all models, and the ranges hold the reported values.
+# An oval foil is among the tied explanations, so that the dimensions stay, and u and ranges hold what each would move.
 holds tie.html 'cannot tell apart'
 checks - <<'PYTHON' || fail "a tie moves what its explanations do not agree about, or does not say so"
 import json
 r = json.load(open("tie.out"))
 before, after = (r[side]["foils"][0] for side in ("before", "after"))
 choice = {c["quantity"]: c for c in after["corrections"]}
-# 2.6 times for a move that holds a free curve.
-for c in choice.values():
-    ratio = abs(c["move_mm"]) / c["u_move_mm"]
-    assert c["moved"] or ratio < 2.6, c
-    assert not c["moved"] or ratio > 1.4, c
-assert choice["overall_radius_mm"]["moved"], choice
+assert not any(c["moved"] for c in choice.values()), choice
 assert "corrections" not in before
-assert abs(after["overall"]["radius_mm"] - 20.95) < abs(before["overall"]["radius_mm"] - 20.95)
+assert after["overall"]["u_radius_mm"] > abs(choice["overall_radius_mm"]["move_mm"])
 for was, now in zip(before["bumps"], after["bumps"]):
     assert now["u_radius_mm"] > was["u_radius_mm"]
     assert (now["height_mm"] != was["height_mm"]) == choice["height_mm"]["moved"]
