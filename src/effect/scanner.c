@@ -123,11 +123,11 @@ static double chips_before(const double *shape, double x) {
   return floor((x - shape[0]) / shape[1]);
 }
 
-/* A staircase: behind every seam the picture is shifted by as much again. A single one among the
- * edges is a column's step. */
+/* A staircase: behind every seam the picture is shifted by as much again. Two among the
+ * edges are steps of columns: only three have a pitch. */
 static void chip_gap(const fg_field_frame *frame, const double *shape, fg_point at, fg_point *d) {
   double seams = chips_before(shape, frame->last_mm[0]) - chips_before(shape, frame->first_mm[0]);
-  d[0] = (fg_point){seams > 1 ? chips_before(shape, at.x) : 0, 0};
+  d[0] = (fg_point){seams > 2 ? chips_before(shape, at.x) : 0, 0};
 }
 
 /* Evenly in the logarithm. */

@@ -201,7 +201,7 @@ static fg_status find_moments(fg_context *ctx, fg_evidence_search *s, const fg_c
 /* Returns true for an effect of the part that no model of weight shows. */
 static bool is_hidden(const fg_evidence_option *option, const fg_evidence_model *const *list,
                       const double *weight, size_t models) {
-  if (!option->effect || !option->effect->midline || option->effect->by_evidence) return false;
+  if (!option->effect || !option->effect->midline || option->effect->starts) return false;
   for (size_t m = 0; m < models; m++)
     if ((!m || weight[m] >= SHARE_MIN) && fg_evidence_holds(list[m], option->effect)) return false;
   return true;
