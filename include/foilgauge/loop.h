@@ -222,6 +222,8 @@ typedef struct fg_loop_effect {
 
 /* Level of acceptance: p-value of an effect over everything that was tried. */
 #define FG_LOOP_ACCEPT_P 0.01
+/* Level up to which an effect that is not accepted is suspected. */
+#define FG_LOOP_SUSPECTED_P 0.1
 
 /* Reports progress: share of the present step, 0 to 1, and number of effects found before it. */
 typedef void fg_loop_progress(void *user, size_t found, double share);
@@ -331,7 +333,19 @@ typedef enum fg_loop_outcome {
   FG_LOOP_EXPLAINED,
   FG_LOOP_PARTLY,
   FG_LOOP_UNATTRIBUTED,
+  FG_LOOP_SUSPECTED, /* of tables: nothing is proven, and noise alone would hardly look so */
 } fg_loop_outcome;
+
+/* An effect that is suspected, not proven. */
+typedef struct fg_loop_suspect {
+  fg_loop_claim claim;       /* as a claim would state it; first: the whole of subjects */
+  double own_p;              /* p-value had nothing else been tried */
+  size_t more_rows;          /* to add, that decide with a power of 90 %; 0: no number would */
+  bool repeats;              /* they repeat the suspect's own rows */
+  char at[4 * FG_LOOP_NAME]; /* their settings in words; empty: as these rows */
+} fg_loop_suspect;
+
+enum { FG_LOOP_SUSPECTS = 5 };
 
 typedef struct fg_loop_result {
   fg_loop_outcome verdict;
@@ -350,6 +364,9 @@ typedef struct fg_loop_result {
   fg_loop_check failed;
   size_t *setting; /* rows: index of the settings, from 1, for the failed test of settings (0: held
                       out); or NULL */
+  fg_loop_suspect suspect[FG_LOOP_SUSPECTS]; /* the clearest first */
+  size_t suspects;
+  double *suspect_fit; /* rows: residual beside the first suspect */
   fg_loop_rejected *rejected;
   size_t rejects;
   fg_loop_advice advice[FG_LOOP_CLAIMS];

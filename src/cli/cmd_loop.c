@@ -133,7 +133,9 @@ static const struct argp_option options[] = {
 static const char doc[] =
     "Find what the residual of a declared model holds: which effect the model lacks, how sure that "
     "is, what it could be confused with, which measurement would tell.\v"
-    "Verdicts: clean (the model is enough, as far as the data can tell), explained (it is not; "
+    "Verdicts: clean (the model is enough, as far as the data can tell), suspected (something may "
+    "be missing, but is not proven: what it would be, and which rows would decide), explained (it "
+    "is not enough; "
     "what it lacks was found and lowers the error), partly explained (more is left, or no error "
     "falls), unattributed (it is not, and what it lacks has no name here). Each comes with what to "
     "do next.\n\n"
@@ -141,7 +143,7 @@ static const char doc[] =
     "bump's number. DATA.csv has commas, semicolons or tabs between the cells, decimal points or "
     "(not between commas) decimal commas. Without -o a table is printed on a terminal and JSON "
     "elsewhere.\n\n"
-    "@exit_partly@";
+    "@exit_loop@";
 
 static void parse_loop_number(struct argp_state *state, const char *name, const char *text,
                               double *value) {
@@ -313,7 +315,7 @@ static bool has_own_design(const loop_arguments *arguments) {
   return arguments->design_path || fg_loop_declaration_has_design(arguments->declared);
 }
 
-static fg_status run_loop(fg_context *ctx, loop_arguments *arguments, bool *failed) {
+static fg_status run_loop(fg_context *ctx, loop_arguments *arguments, int *code) {
   fg_status status = FG_OK;
   fg_loop_source source = {0};
   fg_design design;
@@ -341,7 +343,7 @@ static fg_status run_loop(fg_context *ctx, loop_arguments *arguments, bool *fail
                            .said = source.said};
   FG_TRY_EXIT(fg_output_set_write(ctx, &arguments->outputs, write_loop_table_output, &report));
 exit:
-  *failed = source.failed;
+  *code = source.failed ? 2 : result.verdict == FG_LOOP_SUSPECTED ? 3 : 0;
   fg_output_set_close(&arguments->outputs);
   fg_loop_result_free(&result);
   fg_loop_table_problem_free(&problem);
@@ -377,7 +379,7 @@ int fg_cmd_loop(int argc, char **argv) {
                               .mebibytes = FG_CLI_LOOP_MEBIBYTES};
   fg_status status = fg_cli_parse(&ctx, &fg_loop_table_parser, argc, argv, &arguments);
   if (status != FG_OK) return fg_cli_fail(&ctx, status);
-  bool failed = false;
-  status = run_loop(&ctx, &arguments, &failed);
-  return status == FG_OK ? 2 * failed : fg_cli_fail(&ctx, status);
+  int code = 0;
+  status = run_loop(&ctx, &arguments, &code);
+  return status == FG_OK ? code : fg_cli_fail(&ctx, status);
 }

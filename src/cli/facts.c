@@ -22,7 +22,7 @@ const fg_exit_code fg_exit_codes[] = {
     {2, "something could not be measured"},
     {3,
      "cannot tell: a limit lies within U of a value, or nothing is known of the scanner's scale, "
-     "and nothing fails"},
+     "and nothing fails; or an effect is suspected, not proven"},
     {64, "the command line is wrong"},
     {65, "a file's content is wrong"},
     {71, "out of memory: nothing is said of the input; close other programs, or give it less at a "
@@ -37,7 +37,8 @@ const fg_exit_code fg_exit_codes[] = {
 static const struct {
   const char *name;
   const char *codes; /* of those below 64; 0: done */
-} exit_kinds[] = {{"exit_judged", "123"}, {"exit_partly", "02"}, {"exit_done", "0"}};
+} exit_kinds[] = {
+    {"exit_judged", "123"}, {"exit_partly", "02"}, {"exit_loop", "023"}, {"exit_done", "0"}};
 
 bool fg_exit_codes_use(const char *kind, size_t length, const fg_exit_code *code) {
   for (size_t i = 0; i < sizeof exit_kinds / sizeof *exit_kinds; i++) {
@@ -65,6 +66,10 @@ static void write_exit_judged(FILE *out) {
 
 static void write_exit_partly(FILE *out) {
   write_exit("exit_partly", out);
+}
+
+static void write_exit_loop(FILE *out) {
+  write_exit("exit_loop", out);
 }
 
 static void write_exit_done(FILE *out) {
@@ -168,6 +173,7 @@ static void write_lot_model(FILE *out) {
 static const fg_fact facts[] = {
     {"exit_judged", write_exit_judged},
     {"exit_partly", write_exit_partly},
+    {"exit_loop", write_exit_loop},
     {"exit_done", write_exit_done},
     {"formats", write_formats},
     {"forms", fg_cli_write_foil_kinds},

@@ -20,6 +20,10 @@ enum { LATER_CLAIMS = 2 };
  * has absorbed part of it. */
 #define HINGE_P 0.02
 
+/* Share of the residual sum left, below which outlier rows are no matter of a scatter that changes:
+ * they make most of it. */
+#define HALF_OF_ALL 0.5
+
 typedef enum family {
   LISTED,
   CURVES,
@@ -245,7 +249,8 @@ static bool outlier_first(const fg_engine_run *run, const fg_engine_step *step, 
   size_t wrong = fg_engine_wrong_rows(run), exchange = fg_engine_exchanged_rows(run);
   bool found = false;
   if (isfinite(step->stand[wrong].z) && step->outlier.ratio <= ratio) {
-    bool of_exchange = step->outlier.apart_p < bar(run) && is_of_exchange(run, step);
+    bool of_exchange = step->outlier.apart_p < bar(run) && is_of_exchange(run, step) &&
+                       fg_engine_stand_p(run, step, exchange) < FG_LOOP_SUSPECTED_P;
     *winner = of_exchange ? exchange : wrong;
     if (of_exchange || step->outlier.p_value < bar(run)) return true;
   }
@@ -366,9 +371,10 @@ static fg_status decide(fg_context *ctx, fg_engine_run *run, fg_engine_step *ste
   bool listed = best_passing(run, step, LISTED, &winner);
   bool scatter = best_passing(run, step, NOISE, &noise);
   bool spread = scatter && !fg_engine_is_serial(&run->candidate[noise]);
-  if (outlier_first(run, step, listed, winner, &outlier) &&
-      !(scatter && step->judgement.p[noise] < fg_engine_stand_p(run, step, outlier)))
-    return take_claim(ctx, run, step, outlier, false, accepted);
+  bool rows_first = outlier_first(run, step, listed, winner, &outlier);
+  bool of_scatter = rows_first && scatter && step->outlier.ratio > HALF_OF_ALL &&
+                    step->judgement.p[noise] < fg_engine_stand_p(run, step, outlier);
+  if (rows_first && !of_scatter) return take_claim(ctx, run, step, outlier, false, accepted);
   if (spread && (!listed || step->stand[noise].z > step->stand[winner].z))
     return fg_engine_take_noise(ctx, run, step, noise, 1, accepted);
   if (listed) FG_TRY(decide_listed(ctx, run, step, winner, accepted));

@@ -91,58 +91,9 @@ static fg_status find_superfluous(fg_context *ctx, const fg_loop_problem *proble
   return FG_OK;
 }
 
-static bool is_monotone(const fg_loop_coordinate *at, size_t rows) {
-  size_t up = 0, down = 0;
-  for (size_t i = 1; i < rows; i++) {
-    up += at->value[i] > at->value[i - 1];
-    down += at->value[i] < at->value[i - 1];
-  }
-  return !at->levels && (up + 1 == rows || down + 1 == rows);
-}
-
-/* A name of time, or numbers in equal steps that the declared model does not use. */
-static bool is_of_order(const fg_loop_coordinate *at, size_t rows) {
-  static const char *const times[] = {"year", "month",  "week",    "day",  "date", "hour",
-                                      "time", "minute", "quarter", "read", "run",  "order"};
-  for (size_t i = 0; i < sizeof times / sizeof *times; i++)
-    if (strcasestr(at->name, times[i])) return true;
-  if (at->roles & FG_LOOP_DECLARED) return false;
-  double step = (at->value[rows - 1] - at->value[0]) / ((double)rows - 1);
-  for (size_t i = 1; i < rows; i++)
-    if (fabs(at->value[i] - at->value[i - 1] - step) > 1e-6 * fabs(step)) return false;
-  return true;
-}
-
-/* Levels each in one piece: rows were written by it, not as time went by. */
-static bool is_in_blocks(const fg_loop_coordinate *at, size_t rows) {
-  size_t pieces = 1;
-  for (size_t i = 1; i < rows; i++)
-    pieces += at->value[i] != at->value[i - 1];
-  return pieces == at->distinct && at->distinct >= 2 && at->distinct < rows;
-}
-
-/* Finds an order for rows without one: a column of time or of equally spaced numbers. Rows sorted
- * by a column have none, because neighbours are not related. */
-static void find_order(fg_loop_problem *problem) {
-  size_t last = problem->coordinates - 1, rows = problem->rows, order = last;
-  bool sorted = false;
-  if (!(problem->coordinate[last].roles & FG_LOOP_ORDER)) return;
-  for (size_t c = 0; c < last; c++) {
-    const fg_loop_coordinate *at = &problem->coordinate[c];
-    bool monotone = is_monotone(at, rows);
-    if (order == last && monotone && is_of_order(at, rows)) order = c;
-    sorted |= monotone || is_in_blocks(at, rows);
-  }
-  if (order < last)
-    problem->coordinate[order].roles |= FG_LOOP_ORDER;
-  else if (sorted)
-    problem->correlated = false;
-  if (order < last || sorted) fg_loop_table_drop(problem, last);
-}
-
 fg_status fg_loop_table_merge_codes(fg_context *ctx, const fg_loop_table_state *build) {
   fg_loop_problem *problem = &build->out->problem;
-  if (!build->order && !build->spec->group) find_order(problem);
+  if (!build->order && !build->spec->group) FG_TRY(fg_loop_table_find_order(ctx, build));
   for (size_t a = 0; a < problem->coordinates; a++)
     for (size_t b = a + 1; b < problem->coordinates; b++) {
       size_t gone;

@@ -246,27 +246,29 @@ static fg_status errors(fg_context *ctx, fg_engine_run *run, fg_engine_noise *no
   return bootstrap(ctx, run, result->ratio_interval);
 }
 
+void fg_engine_claim_take_fit(fg_loop_claim *claim, const fg_loop_claim *fit) {
+  claim->columns = fit->columns;
+  memcpy(claim->shape, fit->shape, sizeof fit->shape);
+  memcpy(claim->shape_u, fit->shape_u, sizeof fit->shape_u);
+  memcpy(claim->coefficient, fit->coefficient, sizeof fit->coefficient);
+  memcpy(claim->coefficient_u, fit->coefficient_u, sizeof fit->coefficient_u);
+  claim->orders = fit->orders;
+  memcpy(claim->order, fit->order, sizeof fit->order);
+  claim->amplitude = fit->amplitude;
+  claim->amplitude_u = fit->amplitude_u;
+  memcpy(claim->interval, fit->interval, sizeof fit->interval);
+  claim->noise_value = fit->noise_value;
+  claim->noise_value_u = fit->noise_value_u;
+}
+
 /* Fits the parameters to all rows: held-out rows have served their purpose. */
 static fg_status parameters(fg_context *ctx, fg_engine_run *run, fg_engine_noise noise) {
   fg_loop_result *result = run->result;
   fg_loop_claim fit[FG_LOOP_CLAIMS + 1] = {0};
   FG_TRY(fg_engine_fit_claims(ctx, run->problem, NULL, &run->set, noise, fit, result->parameter,
                               result->parameter_u));
-  for (size_t m = 0; m < result->claims; m++) {
-    fg_loop_claim *claim = &result->claim[m];
-    claim->columns = fit[m].columns;
-    memcpy(claim->shape, fit[m].shape, sizeof fit[m].shape);
-    memcpy(claim->shape_u, fit[m].shape_u, sizeof fit[m].shape_u);
-    memcpy(claim->coefficient, fit[m].coefficient, sizeof fit[m].coefficient);
-    memcpy(claim->coefficient_u, fit[m].coefficient_u, sizeof fit[m].coefficient_u);
-    claim->orders = fit[m].orders;
-    memcpy(claim->order, fit[m].order, sizeof fit[m].order);
-    claim->amplitude = fit[m].amplitude;
-    claim->amplitude_u = fit[m].amplitude_u;
-    memcpy(claim->interval, fit[m].interval, sizeof fit[m].interval);
-    claim->noise_value = fit[m].noise_value;
-    claim->noise_value_u = fit[m].noise_value_u;
-  }
+  for (size_t m = 0; m < result->claims; m++)
+    fg_engine_claim_take_fit(&result->claim[m], &fit[m]);
   return run->has_curve ? draw_curve(ctx, run, &fit[run->set.count - 1]) : FG_OK;
 }
 

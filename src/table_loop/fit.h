@@ -37,6 +37,9 @@ fg_status fg_engine_fit_set(fg_context *ctx, const fg_loop_problem *problem, con
                             const fg_engine_set *set, bool choose, fg_engine_noise *noise,
                             double *residual, double *effect, double *sd);
 
+/* Copies what a fit says of a claim: columns, shape, coefficients, amplitude, the noise's value. */
+void fg_engine_claim_take_fit(fg_loop_claim *claim, const fg_loop_claim *fit);
+
 /* Fits coefficients, amplitudes and uncertainties of the set's claims (one each, in order; the
  * curve at `curve` is left out) and of the declared parameters. */
 fg_status fg_engine_fit_claims(fg_context *ctx, const fg_loop_problem *problem, const bool *keep,

@@ -37,6 +37,9 @@ void fg_loop_table_drop(fg_loop_problem *problem, size_t coordinate);
 /* Keeps one of several columns with the same content; rows without an order of their own use a
  * column's order. */
 fg_status fg_loop_table_merge_codes(fg_context *ctx, const fg_loop_table_state *build);
+/* in order.c: chooses the order of rows for which none was declared; where there is none, the rows'
+ * number is no candidate. */
+fg_status fg_loop_table_find_order(fg_context *ctx, const fg_loop_table_state *build);
 /* in hold_out.c */
 fg_status fg_loop_table_hold_out(fg_context *ctx, const fg_loop_table_state *build);
 

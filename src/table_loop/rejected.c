@@ -7,6 +7,7 @@
 #include "core/memory.h"
 #include "core/text.h"
 #include "table_loop/cycles.h"
+#include "table_loop/suspect.h"
 
 static const double power_80 = 0.8416; /* normal quantile of a power of 80 % */
 
@@ -141,6 +142,8 @@ fg_status fg_engine_list_rejected(fg_context *ctx, fg_engine_run *run) {
   for (size_t s = 0; status == FG_OK && s < step.stands; s++)
     list_one(run, &step, s, sd_white, amplitude);
   if (status == FG_OK) status = note_tail(ctx, run, &step);
+  if (status == FG_OK && result->verdict == FG_LOOP_CLEAN)
+    status = fg_engine_list_suspects(ctx, run, &step);
   free(amplitude);
   fg_engine_step_close(&step);
   return status;

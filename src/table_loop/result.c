@@ -15,8 +15,8 @@ const char *fg_loop_verdict_word(fg_loop_verdict verdict) {
   return fg_loop_verdict_words[verdict];
 }
 
-const char *const fg_loop_outcome_words[] = {"clean", "explained", "partly explained",
-                                             "unattributed", NULL};
+const char *const fg_loop_outcome_words[] = {"clean",        "explained", "partly explained",
+                                             "unattributed", "suspected", NULL};
 
 const char *fg_loop_outcome_word(fg_loop_outcome outcome) {
   return fg_loop_outcome_words[outcome];
@@ -41,6 +41,7 @@ void fg_loop_result_free(fg_loop_result *result) {
   free(result->before_fit);
   free(result->after_fit);
   free(result->effect_fit);
+  free(result->suspect_fit);
   *result = (fg_loop_result){0};
 }
 

@@ -5,9 +5,13 @@
 
 /* Range of a wrong value, in sd of the others, to either side. */
 #define WILD 20
-/* Log odds of a further wrong value beside a first one: several values far out are typical of a
- * heavy tail. */
-#define FURTHER 1.2
+/* Log odds of a further wrong value beside a first one, of FURTHER_OF values: several values far
+ * out are typical of a heavy tail. Of more values they are more typical still: with some taken out,
+ * the others look normal. */
+#define FURTHER    1.2
+#define FURTHER_OF 24
+/* Log odds against a heavy tail of the others beside a wrong value: two departures at once. */
+#define BESIDE_TAIL 3.5
 /* The scale of a Student's t, by expectation and maximisation. */
 enum { SCALE_STEPS = 25 };
 #define SCALE_CONVERGED 1e-6
@@ -61,8 +65,11 @@ double fg_engine_wrong_over_tail(size_t rest, const double *value, size_t wrong,
   double squares = sum_of_squares(rest, value), all = squares + sum_of_squares(wrong, wrong_value);
   double sd = sqrt(squares / (double)rest), further = wrong > 1 ? (double)(wrong - 1) : 0;
   if (!(sd > 0)) return INFINITY;
-  double apart = normal_likelihood((double)rest, squares) - (double)wrong * log(2 * WILD * sd) -
-                 FURTHER * further;
+  double apart = normal_likelihood((double)rest, squares);
+  double odds = FURTHER + fmax(log((double)(rest + wrong) / FURTHER_OF), 0);
+  for (size_t k = 0; k < sizeof tail_dof / sizeof *tail_dof; k++)
+    apart = fmax(apart, t_likelihood(rest, value, 0, NULL, tail_dof[k], sd * sd) - BESIDE_TAIL);
+  apart -= (double)wrong * log(2 * WILD * sd) + odds * further;
   double alike = normal_likelihood((double)(rest + wrong), all);
   for (size_t k = 0; k < sizeof tail_dof / sizeof *tail_dof; k++)
     alike = fmax(alike, t_likelihood(rest, value, wrong, wrong_value, tail_dof[k], sd * sd));

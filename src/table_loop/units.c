@@ -120,6 +120,9 @@ void fg_engine_units_restore(const fg_engine_units *units, fg_loop_result *resul
   restore_error(&result->after, exponent);
   for (size_t m = 0; m < result->claims; m++)
     restore_claim(&result->claim[m], exponent);
+  for (size_t i = 0; i < result->suspects; i++)
+    restore_claim(&result->suspect[i].claim, exponent);
+  restore(result->suspect_fit, rows, exponent);
   for (size_t i = 0; i < result->curve.count; i++)
     restore(&result->curve.shape[i][1], 1, exponent);
   restore(&result->curve.rms, 1, exponent);

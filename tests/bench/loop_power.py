@@ -66,7 +66,7 @@ def ask(program, design, y):
         start = time.monotonic()
         try:
             done = subprocess.run(command, capture_output=True, timeout=SECONDS_AT_MOST)
-            report = json.loads(done.stdout) if done.returncode == 0 else None
+            report = json.loads(done.stdout) if done.returncode in (0, 3) else None
         except subprocess.TimeoutExpired:
             report = None
         return report, time.monotonic() - start

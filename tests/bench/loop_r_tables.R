@@ -53,12 +53,13 @@ series <- function(y, name = "value") {
   d
 }
 # model: declared, in the program's words; r: the same in R's where they differ. accepted: any one of them is right.
-case <- function(name, data, model, known, source, evidence, accepted = character(0), options = character(0), r = model) {
+# weak: one test of it cannot hold against everything that is tried; to be suspected is enough.
+case <- function(name, data, model, known, source, evidence, accepted = character(0), options = character(0), r = model, weak = FALSE) {
   response <- all.vars(as.formula(r))[1]
   write.csv(data, file.path(folder, paste0(name, ".csv")), row.names = FALSE, quote = FALSE)
   cases[[length(cases) + 1]] <<- list(
     table = name, response = response, model = model, known = known, source = source,
-    evidence = evidence(data, r), accepted = accepted, options = options, rows = nrow(data))
+    evidence = evidence(data, r), accepted = accepted, options = options, rows = nrow(data), weak = as.integer(weak))
 }
 order_of <- function(column) c("--order", column)
 each <- function(id, columns) paste0(id, "(", columns, ")")
@@ -209,6 +210,34 @@ case("orchard", frame(row = OrchardSprays$rowpos, column = OrchardSprays$colpos,
   "decrease ~ treatment", "the spread goes with the mean", "Finney 1947", spreads("treatment"), "table.spread(treatment)")
 case("poisons", frame(poison = words(poisons$poison, "P"), treat = as.character(poisons$treat), survival = poisons$time), "survival ~ poison * treat",
   "the spread goes with the mean", "Box and Cox 1964", spreads("poison"), each("table.spread", c("poison", "treat")))
+
+# weak: one test of them alone shows them, a search over everything cannot prove them
+case("npk", frame(block = words(npk$block, "B"), N = words(npk$N, "n"), P = words(npk$P, "p"), K = words(npk$K, "k"), yield = npk$yield), "yield ~ N * P * K",
+  "blocks differ", "Venables and Ripley 2002, 6.7", adds("block"), "table.factor(block)", weak = TRUE)
+case("genotype", frame(litter = words(genotype$Litter, "L"), mother = words(genotype$Mother, "M"), weight = genotype$Wt), "weight ~ litter",
+  "foster mothers differ", "Bailey 1953; Venables and Ripley 2002", adds("mother"), "table.factor(mother)", weak = TRUE)
+case("cabbages", frame(cultivar = as.character(cabbages$Cult), date = as.character(cabbages$Date), head_weight = cabbages$HeadWt), "head_weight ~ cultivar",
+  "planting dates differ", "Rawlings 1988", adds("date"), c("table.factor(date)", "table.interaction(cultivar, date)"), weak = TRUE)
+case("warp", frame(wool = as.character(warpbreaks$wool), tension = as.character(warpbreaks$tension), breaks = warpbreaks$breaks), "breaks ~ wool + tension",
+  "wool and tension interact; the spread goes with the mean", "Tippett 1950; Tukey 1977", adds("wool:tension"),
+  c("table.interaction(wool, tension)", each("table.spread", c("wool", "tension", "the level of breaks"))), weak = TRUE)
+case("gun", frame(team = words(as.character(Gun$Team), "T"), physique = as.character(Gun$Physique), method = as.character(Gun$Method), rounds = Gun$rounds),
+  "rounds ~ method", "teams differ", "Hicks 1964; Pinheiro and Bates 2000, 2", adds("team"), c("table.factor(team)", "table.factor(physique)"), weak = TRUE)
+case("swiss", frame(agriculture = swiss$Agriculture, education = swiss$Education, catholic = swiss$Catholic, infant_mortality = swiss$Infant.Mortality,
+  fertility = swiss$Fertility), "fertility ~ agriculture + education + catholic", "fertility goes with the mortality of infants", "Mosteller and Tukey 1977",
+  adds("infant_mortality"), "table.linear(infant_mortality)", weak = TRUE)
+case("morley", frame(row = seq_len(nrow(morley)), experiment = words(morley$Expt, "E"), speed = morley$Speed), "speed ~ 1",
+  "the five experiments differ; rows are sorted by them", "Michelson 1882; Weekes 1986", adds("experiment"), "table.factor(experiment)", weak = TRUE)
+
+# rows sorted or nested by columns: the row's number is no order
+case("coop", frame(row = seq_len(nrow(coop)), lab = as.character(coop$Lab), specimen = as.character(coop$Spc), batch = as.character(coop$Bat), conc = coop$Conc),
+  "conc ~ specimen", "laboratories differ", "Analytical Methods Committee 1987", adds("lab"), "table.factor(lab)")
+case("oats", frame(row = seq_len(nrow(oats)), block = as.character(oats$B), variety = gsub("\\.", "_", oats$V), nitrogen = as.character(oats$N), yield = oats$Y),
+  "yield ~ variety + nitrogen", "blocks differ", "Yates 1935; Venables and Ripley 2002, 10", adds("block"), "table.factor(block)")
+case("immer", frame(row = seq_len(nrow(immer)), place = as.character(immer$Loc), variety = as.character(immer$Var), yield_1931 = immer$Y1), "yield_1931 ~ variety",
+  "places differ", "Immer, Hayes and Powers 1934", adds("place"), "table.factor(place)")
+case("alfalfa", frame(row = seq_len(nrow(Alfalfa)), variety = as.character(Alfalfa$Variety), date = as.character(Alfalfa$Date), block = words(as.character(Alfalfa$Block), "B"),
+  yield = Alfalfa$Yield), "yield ~ variety + date", "blocks differ", "Snedecor and Cochran 1980, 16.15", adds("block"), "table.factor(block)")
 
 # nothing left
 case("feed_known", frame(feed = as.character(chickwts$feed), weight = chickwts$weight), "weight ~ feed", "nothing", "Snedecor 1948", nothing)

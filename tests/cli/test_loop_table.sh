@@ -19,7 +19,7 @@ model=(--response y --model "1 + T")
 expect 0 "copy: says the same as" "$program" loop --table t.csv "${model[@]}" -o - # one candidate
 expect 0 "fits every row" "$program" loop --table exact.csv "${model[@]}" -o -
 expect 0 '"verdict": "clean"' "$program" loop --table constant.csv --response y --model 1 -o -
-expect 0 '"verdict": "clean"' "$program" loop --table few.csv "${model[@]}" -o -
+expect 3 '"verdict": "suspected"' "$program" loop --table few.csv "${model[@]}" -o -
 expect 65 "no rows" "$program" loop --table header.csv "${model[@]}"
 expect 65 "row 3" "$program" loop --table word.csv "${model[@]}" -o never.json
 expect 65 "row 3" "$program" loop --table hole.csv "${model[@]}" -o never.json

@@ -74,7 +74,16 @@ static void load_runs(fixture *f, const runs_data *data) {
   f->spec.model = "1 + temperature_C + duration_h";
 }
 
+/* One clean table in ten is suspected, by the meaning of its p-value. */
+static void count_suspected(const fg_loop_result *result, size_t *suspected) {
+  assert_int_equal(result->claims, 0);
+  *suspected += result->verdict == FG_LOOP_SUSPECTED;
+  assert_true(result->verdict == FG_LOOP_CLEAN || result->verdict == FG_LOOP_SUSPECTED);
+  assert_int_equal(result->verdict == FG_LOOP_SUSPECTED, result->family_p <= FG_LOOP_SUSPECTED_P);
+}
+
 static void clean_runs_are_clean(void **state) {
+  size_t suspected = 0;
   (void)state;
   for (uint64_t seed = 1; seed <= 12; seed += test_step(4)) {
     fixture f;
@@ -82,11 +91,11 @@ static void clean_runs_are_clean(void **state) {
     make_runs(seed, &data);
     load_runs(&f, &data);
     run(&f);
-    assert_int_equal(f.result.verdict, FG_LOOP_CLEAN);
-    assert_int_equal(f.result.claims, 0);
+    count_suspected(&f.result, &suspected);
     assert_near(f.result.before.rms, f.result.after.rms, 0);
     clear(&f);
   }
+  assert_true(suspected <= 3);
 }
 
 static void a_trend_is_found_with_its_size(void **state) {
@@ -235,15 +244,17 @@ static void the_lip_decay_of_a_lot_is_found(void **state) {
 
 /* Foils differ by chance: 126 bumps are no 126 witnesses of a column that is constant in a foil. */
 static void foils_that_differ_by_chance_are_no_effect(void **state) {
+  size_t suspected = 0;
   (void)state;
   for (uint64_t seed = 91; seed <= 96; seed += test_step(3)) {
     fixture f;
     make_lot(&f, seed, 0, 0.05, 0);
     run(&f);
-    assert_int_equal(f.result.verdict, FG_LOOP_CLEAN);
+    count_suspected(&f.result, &suspected);
     assert_true(f.result.noise.lambda > 1);
     clear(&f);
   }
+  assert_true(suspected <= 2);
 }
 
 static void stretch_is_found_beside_arc_length(void **state) {

@@ -147,6 +147,7 @@ static const char *const outcome_words[] = {
     [FG_LOOP_EXPLAINED] = "explained",
     [FG_LOOP_PARTLY] = "partly explained",
     [FG_LOOP_UNATTRIBUTED] = "unattributed",
+    [FG_LOOP_SUSPECTED] = "suspected",
     NULL,
 };
 

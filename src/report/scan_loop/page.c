@@ -106,7 +106,7 @@ static fg_status put_next(fg_context *ctx, FILE *out, const fg_scan_result *resu
 
 static fg_status put_loop_head(fg_context *ctx, FILE *out, const fg_scan_result *result,
                                const char *sentence) {
-  static const char *const classes[] = {"clean", "explained", "partly", "unattributed"};
+  static const char *const classes[] = {"clean", "explained", "partly", "unattributed", "partly"};
   fprintf(out,
           "<section><header><h1>Closing the loop</h1>%s<span class=\"verdict loop-%s\">%s</span>"
           "</header>\n<p class=\"say\">",

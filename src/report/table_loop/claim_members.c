@@ -71,7 +71,7 @@ static const fg_member alias_rows[] = {
     {FG_NUMBER("loss", fg_loop_alias, loss),
      .words = "share of what the claim explains that it does not"},
 };
-static const fg_members alias_members = FG_MEMBERS(alias_rows);
+const fg_members fg_loop_alias_members = FG_MEMBERS(alias_rows);
 
 /* Claims. */
 static bool is_of_rows(const fg_subject *claim) {
@@ -272,7 +272,7 @@ static const fg_member claim_rows[] = {
      .words = "by which the error of left-out groups falls; null for single rows"},
     {FG_WORD_BY("kept_aside", find_confirmation, confirmations), .options = FG_MEMBER_NEVER_NULL,
      .words = "the effect on held-out rows"},
-    {FG_ARRAY("alias_class", fg_loop_claim, alias, aliases, &alias_members),
+    {FG_ARRAY("alias_class", fg_loop_claim, alias, aliases, &fg_loop_alias_members),
      .options = FG_MEMBER_ON_LINE | FG_MEMBER_ENDS_BELOW,
      .words = "effects that could take its place without a loss that the data show"},
     {FG_COUNT("aliases_not_listed", fg_loop_claim, aliases_unlisted), .words = "further ones"},

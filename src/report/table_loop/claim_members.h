@@ -12,6 +12,8 @@
 extern const fg_members fg_loop_claim_members, fg_loop_rejected_members, fg_loop_check_members;
 /* Of a row of the problem (size_t): its number in the table. */
 extern const fg_members fg_loop_row_members;
+/* Of an fg_loop_alias. */
+extern const fg_members fg_loop_alias_members;
 /* Of a parameter of the declared model, and of the list of them; of two doubles. */
 extern const fg_members fg_loop_parameter_members, fg_loop_point_members;
 fg_member_element fg_loop_find_parameter;

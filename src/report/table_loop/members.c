@@ -15,6 +15,7 @@
 #include "report/table_loop/family_members.h"
 #include "report/table_loop/next.h"
 #include "report/table_loop/reading.h"
+#include "report/table_loop/suspect_members.h"
 
 /* Finding that no listed effect explains: a curve, or that of a failed residual test. */
 typedef struct loop_finding {
@@ -244,6 +245,10 @@ static const fg_member loop_rows[] = {
      .words = "error of the declared model, in the response's unit"},
     {FG_ARRAY("claims", loop_whole, result.claim, result.claims, &fg_loop_claim_members),
      .lowest = 0, .highest = FG_LOOP_CLAIMS, .words = "effects found"},
+    {FG_LIST_BY("suspects", fg_loop_find_suspect, &fg_loop_suspect_members),
+     .options = FG_MEMBER_ENDS_BELOW, .highest = FG_LOOP_SUSPECTS,
+     .words = "effects that are suspected, not proven (p over everything up to 0.1), the clearest "
+              "first; only where nothing is claimed"},
     {FG_PART("unattributed", find_unattributed, &finding_members),
      .words = "deviation that no listed effect explains; null: none"},
     {FG_LIST_BY("battery", fg_loop_find_check, &fg_loop_check_members),

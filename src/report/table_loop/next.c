@@ -7,10 +7,11 @@
 
 #include "core/text.h"
 #include "report/table_loop/checks.h"
+#include "report/table_loop/suspect_members.h"
 
 const char *fg_loop_outcome_meaning(const fg_loop_result *result) {
   fg_loop_check check;
-  if (fg_loop_suspect(result) || fg_loop_suspects_residual(result, &check))
+  if (result->verdict == FG_LOOP_SUSPECTED || fg_loop_suspects_residual(result, &check))
     return "Something is suspected, nothing is proven.";
   if (result->verdict == FG_LOOP_CLEAN)
     return "The declared model is enough, as far as these data can tell.";
@@ -241,6 +242,22 @@ static void step_of_curve(const fg_loop_report *report, char text[FG_LOOP_STEP])
   append_step_words(text, ", give it as a column, and run again.");
 }
 
+static void step_of_suspect(const fg_loop_report *report, char text[FG_LOOP_STEP]) {
+  const fg_loop_suspect *suspect = &report->result->suspect[0];
+  char decides[FG_LOOP_WORDS];
+  fg_loop_suspect_decides(report, suspect, decides);
+  if (!suspect->more_rows)
+    fg_text_clip(text, FG_LOOP_STEP,
+                 "Change nothing yet. Look up how these rows were measured: %s would decide.",
+                 decides);
+  else
+    fg_text_clip(
+        text, FG_LOOP_STEP,
+        "Change nothing yet. Measure %s, and run the loop on all rows: if the effect is as "
+        "large as it looks, it is then proven nine times in ten.",
+        decides);
+}
+
 size_t fg_loop_next_count(const fg_loop_report *report) {
   const fg_loop_result *result = report->result;
   size_t count = result->claims + result->has_curve + result->fails;
@@ -258,7 +275,9 @@ void fg_loop_next_step(const fg_loop_report *report, size_t step, char text[FG_L
   } else if (result->fails) {
     fg_loop_failed_advice(report, words);
     fg_text_clip(text, FG_LOOP_STEP, "%s", words);
-  } else if (fg_loop_suspect(result) || fg_loop_suspects_residual(result, &check)) {
+  } else if (result->suspects) {
+    step_of_suspect(report, text);
+  } else if (fg_loop_suspects_residual(result, &check)) {
     fg_text_clip(text, FG_LOOP_STEP,
                  "Add rows, or measure again, and run the loop on all of them: these rows neither "
                  "prove what is suspected nor clear the model of it.");

@@ -248,8 +248,11 @@ exit:
 static fg_status put_claim_plots(fg_context *ctx, FILE *out, const fg_loop_report *report,
                                  const fg_loop_claim *claim, const double *left, double *work) {
   fg_loop_scatter scatter = claim->candidate.effect->scatter;
-  char words[FG_LOOP_WORDS];
-  fg_loop_claim_words(report, claim, words);
+  char words[FG_LOOP_WORDS + 16];
+  const char *suspected = report->result->suspects ? "Suspected: " : "";
+  size_t used = strlen(suspected);
+  fg_text_clip(words, sizeof words, "%s", suspected);
+  fg_loop_claim_words(report, claim, words + used);
   open_section(out, words, claim->name);
   FG_TRY(scatter == FG_LOOP_SERIAL   ? put_serial(ctx, out, report, claim, left)
          : scatter == FG_LOOP_SPREAD ? put_spread(ctx, out, report, claim, work)
@@ -365,6 +368,9 @@ fg_status fg_loop_plots_put(fg_context *ctx, FILE *out, const fg_loop_report *re
     FG_TRY_EXIT(put_unattributed(ctx, out, report, left, left + problem->rows));
   if (result->fails) FG_TRY_EXIT(put_failed(ctx, out, report, left, left + problem->rows));
   if (result->verdict == FG_LOOP_CLEAN) FG_TRY_EXIT(put_nothing(ctx, out, report));
+  if (result->suspects)
+    FG_TRY_EXIT(put_claim_plots(ctx, out, report, &result->suspect[0].claim, result->suspect_fit,
+                                left + problem->rows));
 exit:
   free(left);
   return status;

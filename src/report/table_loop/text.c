@@ -13,6 +13,7 @@
 #include "report/table_loop/next.h"
 #include "report/table_loop/reading.h"
 #include "report/table_loop/scale_members.h"
+#include "report/table_loop/suspect_members.h"
 #include "report/table_loop/words.h"
 #include "report/value_words.h"
 
@@ -97,18 +98,10 @@ static bool is_first(const fg_loop_result *result, size_t i) {
   return true;
 }
 
-/* Appends the suspect: noise, or a deviation that noise alone hardly makes. */
-static fg_status append_suspect(fg_context *ctx, const fg_loop_report *report, char **text) {
-  const fg_loop_rejected *suspect = fg_loop_suspect(report->result);
+/* Appends whether all is noise, or a residual test nearly fails. */
+static fg_status append_noise(fg_context *ctx, const fg_loop_report *report, char **text) {
   fg_loop_check check;
   char words[FG_LOOP_WORDS];
-  if (suspect) {
-    fg_loop_candidate_words(report, &suspect->candidate, words);
-    return fg_text_append(ctx, text,
-                          "is suspected to hold %s (%s): noise alone would look like this in %.2g "
-                          "%% of such tables, which neither proves it nor clears the model.",
-                          words, fg_loop_p_text(suspect->p_value).text, 100 * suspect->p_value);
-  }
   if (fg_loop_suspects_residual(report->result, &check)) {
     fg_loop_check_words(report, check, words);
     return fg_text_append(ctx, text, "may not be noise alone. Not sure: %s (%s)", words,
@@ -117,13 +110,26 @@ static fg_status append_suspect(fg_context *ctx, const fg_loop_report *report, c
   return fg_text_append(ctx, text, "is noise as far as these data can tell.");
 }
 
+/* Appends how many of the effects looked for would have shown at the size that matters. */
+static fg_status append_shown(fg_context *ctx, const fg_loop_result *result, char **text) {
+  size_t absent = 0, open = 0;
+  for (size_t i = 0; i < result->rejects; i++) {
+    absent += result->rejected[i].verdict == FG_LOOP_ABSENT;
+    open += result->rejected[i].verdict == FG_LOOP_INCONCLUSIVE;
+  }
+  if (!absent && !open) return FG_OK;
+  return fg_text_append(ctx, text,
+                        " At the size that matters %zu of %zu effects would have shown%s.", absent,
+                        absent + open, open ? "; the others only when larger (see the table)" : "");
+}
+
 /* Appends the effects sought without success, of which there was a candidate. */
 static fg_status append_clean(fg_context *ctx, const fg_loop_report *report, char **text) {
   const fg_loop_result *result = report->result;
   size_t said = 0;
   FG_TRY(fg_text_append(ctx, text, "Nothing is claimed: in %zu rows the residual (%.3g rms) ",
                         report->problem->problem.rows, result->before.rms));
-  FG_TRY(append_suspect(ctx, report, text));
+  FG_TRY(append_noise(ctx, report, text));
   for (size_t i = 0; i < result->rejects; i++)
     if (is_first(result, i))
       FG_TRY(fg_text_append(ctx, text, "%s%s", said++ ? ", " : " Looked for: ",
@@ -133,7 +139,8 @@ static fg_status append_clean(fg_context *ctx, const fg_loop_report *report, cha
     FG_TRY(fg_text_append(ctx, text, ", lack of fit where settings repeat"));
   if (said && result->check[FG_LOOP_CHECK_LAGS].done)
     FG_TRY(fg_text_append(ctx, text, ", rows further apart that are alike"));
-  return said ? fg_text_append(ctx, text, ".") : FG_OK;
+  if (said) FG_TRY(fg_text_append(ctx, text, "."));
+  return append_shown(ctx, result, text);
 }
 
 /* Appends the finding of the failed residual test. */
@@ -153,6 +160,7 @@ fg_status fg_loop_sentence(fg_context *ctx, const fg_loop_report *report, char *
   const fg_loop_result *result = report->result;
   *text = NULL;
   if (result->verdict == FG_LOOP_CLEAN) return append_clean(ctx, report, text);
+  if (result->verdict == FG_LOOP_SUSPECTED) return fg_loop_append_suspects(ctx, report, text);
   for (size_t i = 0; i < result->claims; i++)
     FG_TRY(append_claim(ctx, report, i, text));
   if (result->has_curve)
@@ -275,13 +283,17 @@ fg_status fg_loop_write_text(fg_context *ctx, const fg_loop_report *report, FILE
   FG_TRY(fg_loop_sentence(ctx, report, &sentence));
   fprintf(out, "%s: %s\n", report->path, fg_loop_outcome_word(result->verdict));
   fg_loop_check check;
-  if (result->verdict != FG_LOOP_CLEAN || fg_loop_suspect(result) ||
-      fg_loop_suspects_residual(result, &check))
+  if (result->verdict != FG_LOOP_CLEAN || fg_loop_suspects_residual(result, &check))
     fprintf(out, "%s\n", fg_loop_outcome_meaning(result));
   fputc('\n', out);
   fg_write_wrapped(out, "", "", sentence);
   free(sentence);
   write_next(report, out);
+  if (result->suspects) {
+    fputc('\n', out);
+    fg_members_terminal(out, "", &fg_loop_suspect_members, &(fg_subject){report, report, 0},
+                        fg_loop_find_suspect);
+  }
   if (result->claims) fputs("\nwhat was found\n", out);
   for (size_t i = 0; i < result->claims; i++)
     print_claim(report, &result->claim[i], out);

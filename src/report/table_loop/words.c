@@ -238,24 +238,12 @@ size_t fg_loop_error_rows(const fg_loop_report *report,
   return count;
 }
 
-/* Between proof and a p-value that noise alone reaches often. */
-#define SUSPECTED_P 0.1
-
 const char *fg_loop_check_answer(const fg_loop_checked *check) {
-  return check->failed ? "no" : check->p_value <= SUSPECTED_P ? "not sure" : "yes";
-}
-
-const fg_loop_rejected *fg_loop_suspect(const fg_loop_result *result) {
-  const fg_loop_rejected *suspect = NULL;
-  if (result->verdict != FG_LOOP_CLEAN) return NULL;
-  for (size_t i = 0; i < result->rejects; i++)
-    if (result->rejected[i].p_value <= (suspect ? suspect->p_value : SUSPECTED_P))
-      suspect = &result->rejected[i];
-  return suspect;
+  return check->failed ? "no" : check->p_value <= FG_LOOP_SUSPECTED_P ? "not sure" : "yes";
 }
 
 bool fg_loop_suspects_residual(const fg_loop_result *result, fg_loop_check *check) {
-  double min = SUSPECTED_P, tests = 0;
+  double min = FG_LOOP_SUSPECTED_P, tests = 0;
   bool suspected = false;
   for (size_t k = 0; k < FG_LOOP_CHECKS; k++)
     tests += result->check[k].done;

@@ -37,9 +37,8 @@ void fg_loop_claim_words(const fg_loop_report *report, const fg_loop_claim *clai
 /* Verdict of a residual test: "yes" for noise, "no", and "not sure" for a p-value that noise alone
  * reaches in one table of ten. */
 const char *fg_loop_check_answer(const fg_loop_checked *check);
-/* Suspects of a clean result: the candidate nearest to acceptance, and the residual test nearest to
- * failing, if noise alone comes as near in one table of ten at most. NULL, false: none. */
-const fg_loop_rejected *fg_loop_suspect(const fg_loop_result *result);
+/* Finds the residual test of a clean result nearest to failing, if noise alone comes as near in one
+ * table of ten at most. false: none. */
 bool fg_loop_suspects_residual(const fg_loop_result *result, fg_loop_check *check);
 /* Returns the verdict on a candidate that is not claimed. */
 const char *fg_loop_rejected_word(const fg_loop_rejected *rejected);

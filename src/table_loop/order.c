@@ -1,0 +1,114 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The order of rows for which none was declared. A column of time or of runs is one. The number of
+ * a row in its file is one, too, unless the file is sorted by a column: neighbours are then alike
+ * because they have the same level of it, and not because they were measured one after the other.
+ */
+#include <math.h>
+#include <string.h>
+#include <strings.h>
+
+#include "core/text.h"
+#include "table_loop/parts.h"
+
+static bool is_monotone(const fg_loop_coordinate *at, size_t rows) {
+  size_t up = 0, down = 0;
+  for (size_t i = 1; i < rows; i++) {
+    up += at->value[i] > at->value[i - 1];
+    down += at->value[i] < at->value[i - 1];
+  }
+  return !at->levels && (up + 1 == rows || down + 1 == rows);
+}
+
+static bool has_name_of_time(const fg_loop_coordinate *at) {
+  static const char *const times[] = {"year", "month", "week",     "day",     "date",
+                                      "hour", "time",  "minute",   "quarter", "read",
+                                      "run",  "order", "sequence", "trial"};
+  for (size_t i = 0; i < sizeof times / sizeof *times; i++)
+    if (strcasestr(at->name, times[i])) return true;
+  return false;
+}
+
+/* Numbers in equal steps that the declared model does not use. */
+static bool is_counted(const fg_loop_coordinate *at, size_t rows) {
+  if (at->roles & FG_LOOP_DECLARED) return false;
+  double step = (at->value[rows - 1] - at->value[0]) / ((double)rows - 1);
+  for (size_t i = 1; i < rows; i++)
+    if (fabs(at->value[i] - at->value[i - 1] - step) > 1e-6 * fabs(step)) return false;
+  return true;
+}
+
+/* 1, 2, 3 ... or 0, 1, 2 ...: a number that the file gives its rows. */
+static bool is_number_of_file(const fg_loop_coordinate *at, size_t rows) {
+  return (at->value[0] == 0 || at->value[0] == 1) &&
+         at->value[rows - 1] - at->value[0] == (double)rows - 1;
+}
+
+/* Levels each in one piece. */
+static bool is_in_blocks(const fg_loop_coordinate *at, size_t rows) {
+  size_t pieces = 1;
+  for (size_t i = 1; i < rows; i++)
+    pieces += at->value[i] != at->value[i - 1];
+  return pieces == at->distinct && at->distinct >= 2 && at->distinct < rows;
+}
+
+/* Days or shifts one after the other: rows in blocks of them are in order of time. */
+static bool is_time_in_blocks(const fg_loop_coordinate *at, size_t rows) {
+  if (!has_name_of_time(at) || !is_in_blocks(at, rows)) return false;
+  for (size_t i = 1; i < rows; i++)
+    if (!at->levels && at->value[i] < at->value[i - 1]) return false;
+  return true;
+}
+
+/* Columns that say something of the rows' order; SIZE_MAX: none. */
+typedef struct order_columns {
+  size_t time, counted, sorting;
+  bool chronological;
+} order_columns;
+
+static order_columns find_order_columns(const fg_loop_problem *problem, size_t columns) {
+  order_columns found = {SIZE_MAX, SIZE_MAX, SIZE_MAX, false};
+  size_t rows = problem->rows;
+  for (size_t c = 0; c < columns; c++) {
+    const fg_loop_coordinate *at = &problem->coordinate[c];
+    bool monotone = is_monotone(at, rows), counted = monotone && is_counted(at, rows);
+    found.chronological |= is_time_in_blocks(at, rows);
+    if (monotone && has_name_of_time(at) && found.time == SIZE_MAX) found.time = c;
+    if (counted && found.counted == SIZE_MAX) found.counted = c;
+    bool sorts = (monotone && !counted) || is_in_blocks(at, rows);
+    if (sorts && found.sorting == SIZE_MAX) found.sorting = c;
+  }
+  return found;
+}
+
+static fg_status leave_out_number(fg_context *ctx, const fg_loop_table_state *build,
+                                  const char *name, const char *sorting) {
+  char why[2 * FG_LOOP_NAME + 80];
+  fg_text_clip(why, sizeof why,
+               "the rows are sorted by %s, so their number is the file's and no order in time "
+               "(--order COLUMN declares one)",
+               sorting);
+  return fg_loop_table_leave_out(ctx, build, name, why);
+}
+
+fg_status fg_loop_table_find_order(fg_context *ctx, const fg_loop_table_state *build) {
+  fg_loop_problem *problem = &build->out->problem;
+  size_t last = problem->coordinates - 1;
+  if (!(problem->coordinate[last].roles & FG_LOOP_ORDER)) return FG_OK;
+  order_columns found = find_order_columns(problem, last);
+  bool sorted = found.sorting != SIZE_MAX && !found.chronological;
+  size_t order = found.time != SIZE_MAX ? found.time : sorted ? SIZE_MAX : found.counted;
+  if (order != SIZE_MAX) {
+    problem->coordinate[order].roles |= FG_LOOP_ORDER;
+    fg_loop_table_drop(problem, last);
+    return FG_OK;
+  }
+  if (!sorted) return FG_OK;
+  problem->correlated = false;
+  const char *sorting = problem->coordinate[found.sorting].name;
+  size_t counted = found.counted;
+  bool own = counted != SIZE_MAX && is_number_of_file(&problem->coordinate[counted], problem->rows);
+  FG_TRY(leave_out_number(ctx, build, own ? problem->coordinate[counted].name : "row", sorting));
+  fg_loop_table_drop(problem, last);
+  if (own) fg_loop_table_drop(problem, counted);
+  return FG_OK;
+}
