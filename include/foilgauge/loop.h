@@ -220,9 +220,8 @@ typedef struct fg_loop_effect {
                        NULL: no formula has it */
 } fg_loop_effect;
 
-/* Level of acceptance: p-value of an effect over everything that was tried. */
-#define FG_LOOP_ACCEPT_P 0.01
-/* Level up to which an effect that is not accepted is suspected. */
+/* P-values over everything that was tried, up to which an effect is accepted, or suspected. */
+#define FG_LOOP_ACCEPT_P    0.01
 #define FG_LOOP_SUSPECTED_P 0.1
 
 /* Reports progress: share of the present step, 0 to 1, and number of effects found before it. */
