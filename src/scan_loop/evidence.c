@@ -221,7 +221,8 @@ static bool is_loose(const fg_evidence_model *model) {
 
 static bool is_of_part_alone(const fg_evidence_model *model) {
   for (size_t k = 0; k < model->parts; k++)
-    if (model->part[k]->effect ? model->part[k]->effect->glass : model->part[k]->rival->glass)
+    if (model->part[k]->effect ? model->part[k]->effect->glass != NULL
+                               : model->part[k]->rival->glass != NULL)
       return false;
   return true;
 }

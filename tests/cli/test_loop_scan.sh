@@ -29,9 +29,9 @@ near period "$(value ripple.out "r['claims'][0]['parameters']['period_mm']")" 2.
 near R0 "$(value ripple.out "r['after']['foils'][0]['overall']['radius_mm']")" 20.95 0.0001
 near R "$(value ripple.out "r['after']['foils'][0]['bumps'][3]['radius_mm']")" 3.44 0.001
 
-# Two gaps between a sensor's chips are two steps, and nothing that the first step made needless; bumps of every third
+# Two steps at seams of the sensor are two steps, and nothing that the first one made needless; bumps of every third
 # number that stand out are a pattern that no effect is named for.
-render gaps 9 -80 '{"id":"scan.column_step","x_mm":15.2,"amplitude_um":9},{"id":"scan.column_step","x_mm":28.6,"amplitude_um":9}'
+render gaps 9 -80 '{"id":"scan.column_step","x_mm":15.2,"amplitude_um":9},{"id":"scan.column_step","x_mm":28.6,"amplitude_um":-6}'
 render every 8 -65 '{"id":"free.bump.index","amplitude_um":12,"every":3}'
 for name in gaps every; do "$program" loop $name.png -o $name.out || fail "loop on $name"; done
 [ "$(value gaps.out "[c['id'] for c in r['claims']]")" = "['scan.column_step', 'scan.column_step']" ] ||
