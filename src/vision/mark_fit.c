@@ -161,7 +161,8 @@ static void find_uncertainty(const fg_mark_model *model, const mark_samples *sam
   if (!fg_normal_solve(system, 0, step, inverse)) return;
   double variance = inverse[FG_MARK_X][FG_MARK_X];
   if (!model->one_axis) variance = 0.5 * (variance + inverse[FG_MARK_Y][FG_MARK_Y]);
-  fit->u_px = fit->residual * sqrt(variance * residual_integral(model, samples, fit->p));
+  /* Noise that neighbours share along a row, they share along a column, too. */
+  fit->u_px = fit->residual * sqrt(variance) * residual_integral(model, samples, fit->p);
 }
 
 static fg_status fit_once(fg_context *ctx, const fg_tiles *tiles, fg_mark_kind kind, bool fine,
