@@ -22,7 +22,7 @@ enum { DRAWS = 64, MODELS_MAX = 48 };
 /* Models of less weight, relative to the likeliest, change no mean; and none of a lower share of
  * the whole extends a range. */
 #define WEIGHT_MIN 1e-3
-#define SHARE_MIN  0.01
+#define SHARE_MIN  0.05
 /* Weight of an explanation that the verdict lists, relative to the likeliest: at least this. */
 #define LISTED_MIN 0.1
 /* Share of the largest deviation that the smallest one must reach: else its cause is open. */
