@@ -306,19 +306,22 @@ static fg_status prefer_recorded(fg_context *ctx, const fg_engine_run *run,
                                  const fg_engine_step *step, fg_engine_noise noise,
                                  size_t *winner) {
   const fg_engine_stand *searched = &step->stand[*winner];
-  size_t recorded = run->means;
+  size_t recorded = run->means, fewest = SIZE_MAX;
   double best = -INFINITY;
   if (!searched->candidate.effect->shapes) return FG_OK;
   for (size_t c = 0; c < run->means; c++) {
     const fg_loop_effect *effect = run->candidate[c].effect;
+    size_t columns = fg_engine_candidate_columns(run->problem, &run->candidate[c]);
+    bool better = columns < fewest || (columns == fewest && step->stand[c].z > best);
     double p;
     if (effect->shapes || effect->unattributed ||
-        fg_engine_is_over_order(run->problem, &run->candidate[c]) || !(step->stand[c].z > best) ||
+        fg_engine_is_over_order(run->problem, &run->candidate[c]) || !better ||
         !(fg_engine_stand_p(run, step, c) < bar(run)))
       continue;
     FG_TRY(fg_engine_beside(ctx, &step->training, noise, &step->stand[c], searched, &p));
     if (p < FG_ENGINE_SHOWS && !fg_engine_nearly(run, step, c, *winner)) continue;
     best = step->stand[c].z;
+    fewest = columns;
     recorded = c;
   }
   if (recorded < run->means) *winner = recorded;

@@ -36,15 +36,19 @@ static void neighbours(const fg_loop_problem *problem, const fg_loop_candidate *
   }
 }
 
-/* Half a cycle of the highest order, over the range, on both sides. */
+/* Half a cycle of the highest order, over the range, on both sides. On even places the shortest
+ * period, two places, stays: near it sine and cosine are collinear, and a beat of large amplitudes
+ * follows whatever the neighbours of an alternation do. */
 static void cycle_neighbours(const fg_loop_coordinate *at, const fg_loop_candidate *candidate,
                              double value, double *low, double *high) {
   size_t highest = 1;
   for (size_t k = 1; k <= FG_LOOP_ORDER_MAX; k++)
     if (fg_loop_has_order(candidate, k)) highest = k;
   double cycles = (at->high - at->low) / value, half = 0.5 / (double)highest;
-  *low = value * cycles / (cycles + half);
-  *high = value * cycles / fmax(cycles - half, cycles / 2);
+  double room =
+      at->even ? 0.5 * (at->high - at->low) / at->spacing / (double)highest - cycles : cycles;
+  *low = value * cycles / (cycles + fmin(half, fmax(room - half, 0)));
+  *high = value * cycles / fmax(cycles - (room < half ? 0 : half), cycles / 2);
 }
 
 /* One shape of one member of a set; the others are held. */
