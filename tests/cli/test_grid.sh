@@ -47,6 +47,12 @@ expect 65 "no model is written" "$program" loop a.png --design dots.json -o one.
 expect 0 "" "$program" loop --same-part a.png b.png --design dots.json -o pair.json --html pair.html
 near "the scanner's axis ratio" "$(member pair.json axis_ratio)" 1.004 0.0001
 near "the board's axis ratio" "$(member pair.json board_axis_ratio)" 1.0015 0.0001
+python3 -c "
+import json
+r = json.load(open('pair.json'))
+assert (r['domain'], r['verdict']) == ('scan', 'explained'), r['verdict']
+assert r['after']['held_out_rms'] < r['before']['held_out_rms'] / 10 and r['error_ratio']['rms'] < 0.1, (r['before'], r['after'])
+" || fail "the pair's loop has no verdict, or no smaller error"
 grep -q '"turn_deg": 90' pair.json || fail "the quarter turn is not read from the pictures"
 expect 0 "" "$program" loop --same-part a.png b.png --turned 0,90 --design dots.json -o said.json
 cmp -s pair.json said.json || fail "a turn that is said differs from the same that is found"

@@ -142,16 +142,60 @@ static const fg_member map_rows[] = {
 };
 static const fg_members map_members = FG_MEMBERS(map_rows);
 
-/* Errors. */
-static const fg_member error_rows[] = {
-    {FG_NUMBER("before", fg_grid_loop_result, before_um),
-     .words = "marks against their boards' lattices"},
-    {FG_NUMBER("after", fg_grid_loop_result, after_um), .words = "with everything found"},
-    {FG_NUMBER("held_out_before", fg_grid_loop_result, held_out_before_um),
+/* Errors: rms of the marks, each component. Names are those of the loop on edges. */
+static double find_rms_ratio_of_marks(const fg_subject *s) {
+  return result_of(s)->after_um / result_of(s)->before_um;
+}
+
+static double find_held_out_ratio_of_marks(const fg_subject *s) {
+  return result_of(s)->held_out_after_um / result_of(s)->held_out_before_um;
+}
+
+static const fg_member before_rows[] = {
+    {FG_NUMBER("rms", fg_grid_loop_result, before_um),
+     .words = "of the marks against their boards' lattices"},
+    {FG_NUMBER("held_out_rms", fg_grid_loop_result, held_out_before_um),
      .words = "the same on marks that the fit did not see, every fifth in turn; null: too few"},
-    {FG_NUMBER("held_out_after", fg_grid_loop_result, held_out_after_um)},
 };
-static const fg_members error_members = FG_MEMBERS(error_rows);
+static const fg_members before_members = FG_MEMBERS(before_rows);
+
+static const fg_member after_rows[] = {
+    {FG_NUMBER("rms", fg_grid_loop_result, after_um), .words = "with everything found"},
+    {FG_NUMBER("held_out_rms", fg_grid_loop_result, held_out_after_um)},
+};
+static const fg_members after_members = FG_MEMBERS(after_rows);
+
+static const fg_member ratio_rows[] = {
+    {FG_NUMBER_BY("rms", find_rms_ratio_of_marks)},
+    {FG_NUMBER_BY("held_out", find_held_out_ratio_of_marks)},
+};
+static const fg_members ratio_members = FG_MEMBERS(ratio_rows);
+
+/* Verdict. Indices of the words. */
+enum { CLEAN, EXPLAINED, PARTLY, UNATTRIBUTED };
+static const char *const outcome_words[] = {
+    [CLEAN] = "clean",
+    [EXPLAINED] = "explained",
+    [PARTLY] = "partly explained",
+    [UNATTRIBUTED] = "unattributed",
+    NULL,
+};
+static const char *const domain_words[] = {"scan", NULL};
+
+static int find_grid_domain(const fg_subject *s) {
+  (void)s;
+  return 0;
+}
+
+/* A map holds the part that no effect of the list explains. */
+static int find_grid_outcome(const fg_subject *s) {
+  const fg_grid_loop_result *r = result_of(s);
+  bool map = r->map_um > 0 || r->board_map_um > 0, named = false;
+  for (size_t i = 0; i < r->claims; i++)
+    named = named || r->claim[i].verdict != FG_GRID_ABSENT;
+  if (named) return map ? PARTLY : EXPLAINED;
+  return map ? UNATTRIBUTED : CLEAN;
+}
 
 static const fg_member noise_rows[] = {
     {FG_NUMBER("mark", fg_grid_loop_result, mark_um), .words = "of a mark in one scan, sd"},
@@ -205,6 +249,10 @@ bool fg_grid_loop_find_claim(const fg_subject *list, size_t i, fg_subject *eleme
 
 static const fg_member report_rows[] = {
     {FG_HEAD("foilgauge/grid-loop/1")},
+    {FG_WORD_BY("domain", find_grid_domain, domain_words), .options = FG_MEMBER_NEVER_NULL},
+    {FG_WORD_BY("verdict", find_grid_outcome, outcome_words), .options = FG_MEMBER_NEVER_NULL,
+     .words = "unattributed, and partly explained: a smooth map holds what no effect of the list "
+              "explains; a claim tells whether it is found or tied"},
     {FG_TEXT("summary", fg_grid_loop_result, sentence), .words = "one sentence"},
     {FG_TEXT("advice", fg_grid_loop_result, advice), .options = FG_MEMBER_EMPTY_IS_NULL,
      .words = "the measurement that would tell more; null: none is needed"},
@@ -225,7 +273,9 @@ static const fg_member report_rows[] = {
      .words = "of the first board, as it lies in the first scan"},
     {FG_LIST_BY("claims", fg_grid_loop_find_claim, &fg_grid_claim_members),
      .options = FG_MEMBER_ON_LINE},
-    {FG_GROUP("error_um", &error_members), .words = "rms along one axis"},
+    {FG_GROUP("before", &before_members), .words = "errors along one axis, um"},
+    {FG_GROUP("after", &after_members)},
+    {FG_GROUP("error_ratio", &ratio_members), .words = "after / before"},
     {FG_GROUP("noise_um", &noise_members)},
     {FG_NUMBERS_BY("region_mm", list_grid_region), .lowest = 4, .highest = 4,
      .options = FG_MEMBER_NEVER_NULL,
