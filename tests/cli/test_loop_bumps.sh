@@ -49,7 +49,9 @@ SPEC
   "$renderer" render "$1.json" -o "$1.png" --truth "$1.truth.json" || fail "render $1"
 }
 render_rough lone 33 '{"id":"free.bump.index","form":"crown","amplitude_um":36,"bumps":[4]}'
-"$program" loop lone.png -o lone.out || fail "loop on a rough scan of a foil with one bump that is raised"
+"$program" loop lone.png -o named.out || fail "loop on a rough scan of a foil with one bump that is raised"
+says named.out "claims == ['part.dent'] or not claims and curve['coordinate'] == 'bump.index'"
+"$program" loop lone.png --without part.dent -o lone.out || fail "loop on a raised bump, without dents"
 says lone.out "r['verdict'] == 'unattributed' and not claims and curve['coordinate'] == 'bump.index'"
 # Of the midline's scatter, 0.87 um over some 0.06 mm, a row's mean keeps the larger part.
 says lone.out "r['noise']['form'] == 'gaussian' and 0.55 < r['noise']['correlated_sd'] < 0.87 and 0.04 < r['noise']['range_mm'] < 0.08"
@@ -61,5 +63,5 @@ says seam.out "'scan.column_step' in claims + [m for c in r['claims'] for m in c
 valid loop_scan.schema.json seam.out
 fi
 
-for report in middle whole lone; do valid loop_scan.schema.json $report.out; done
+for report in middle whole named lone; do valid loop_scan.schema.json $report.out; done
 exit $failed
