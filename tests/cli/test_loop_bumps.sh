@@ -49,6 +49,7 @@ SPEC
   "$renderer" render "$1.json" -o "$1.png" --truth "$1.truth.json" || fail "render $1"
 }
 render_rough lone 33 '{"id":"free.bump.index","form":"crown","amplitude_um":36,"bumps":[4]}'
+cp lone.truth.json named.truth.json
 "$program" loop lone.png -o named.out || fail "loop on a rough scan of a foil with one bump that is raised"
 says named.out "claims == ['part.dent'] or not claims and curve['coordinate'] == 'bump.index'"
 "$program" loop lone.png --without part.dent -o lone.out || fail "loop on a raised bump, without dents"

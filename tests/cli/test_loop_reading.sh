@@ -95,12 +95,12 @@ P
 found=
 for seed in $(seq 1 40); do
   python3 suspected.py "$seed" 0.45 >s.csv
-  "$program" loop --table s.csv --response y --model x -o s.json --html s.html || fail "exit $?"
-  [ "$(value s.json '0.012 < r["family_p_value"] < 0.09 and r["verdict"] == "clean"')" = True ] && found=$seed && break
+  "$program" loop --table s.csv --response y --model x -o s.json --html s.html || [ $? = 3 ] || fail "exit $?"
+  [ "$(value s.json '0.012 < r["family_p_value"] < 0.09 and r["verdict"] == "suspected"')" = True ] && found=$seed && break
 done
 [ -n "$found" ] || fail "no table is suspected"
 terminal s "$program" loop --table s.csv --response y --model x
-grep -qE 'is suspected to hold .*\(p = 0\.0' s.txt || grep -q 'is suspected to hold' s.json || fail "nothing is suspected at $(value s.json 'r["family_p_value"]')"
+grep -q 'Suspected, not proven' s.txt || fail "nothing is suspected at $(value s.json 'r["family_p_value"]')"
 grep -q 'is noise as far' s.txt s.html s.json && fail "p = $(value s.json 'r["family_p_value"]') is called noise"
 grep -q 'Something is suspected, nothing is proven' s.html || fail "the page says that all is well"
 grep -q 'class="verdict clean"' s.html && fail "the page is green"
@@ -126,7 +126,7 @@ P
 found=
 for seed in $(seq 1 40); do
   python3 apart.py "$seed" >a.csv
-  "$program" loop --table a.csv --response y --model x -o a.json --html a.html || fail "exit $?"
+  "$program" loop --table a.csv --response y --model x -o a.json --html a.html || [ $? = 3 ] || fail "exit $?"
   [ "$(value a.json 'any(c["passed"] and 0.0004 < c["p_value"] < 0.09 for c in r["battery"])')" = True ] && found=$seed && break
 done
 [ -n "$found" ] || fail "no test is undecided"
