@@ -13,7 +13,7 @@ SCANNER_EFFECTS = [
     "scan.carriage_start",
 ]  # fmt: skip
 PART_EFFECTS = ["part.ovality", "part.spiral", "part.bump_crown", "part.bump_skew", "part.thickness_taper"]
-# Effects that evidence alone looks for (tests/bench/loop_rows.py).
+# Effects that evidence alone looks for.
 EVIDENCE_EFFECTS = [
     "scan.optical_quintic", "scan.keystone", "scan.yaw", "scan.ripple_growth", "scan.chip_tilt",
     "scan.chip_gap", "part.lobes", "part.dent",

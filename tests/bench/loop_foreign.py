@@ -68,10 +68,10 @@ def draw_input(seed, index, folder):
     return row, paths, scans.measurand(line, points)
 
 
-def run_loop(program, paths, threads, dpi=scans.DPI):
+def run_loop(program, paths, threads, dpi=scans.DPI, more=()):
     out = os.path.join(os.path.dirname(paths[0]), "loop.json")
     pair = ["--same-foil"] if len(paths) > 1 else []
-    code, seconds = run_timed([program, "loop", *pair, *paths, "--dpi", str(dpi), "--threads", str(threads), "-o", out])
+    code, seconds = run_timed([program, "loop", *pair, *paths, "--dpi", str(dpi), "--threads", str(threads), *more, "-o", out])
     if code:
         return None, f"exit code {code}", seconds
     with open(out, encoding="utf-8") as file:
