@@ -227,8 +227,9 @@ static const fg_members line_members = FG_MEMBERS_DEFINED(line_rows, "colour_lin
 static const char *const line_words[] = {"red", "blue", NULL};
 
 static bool find_line(const fg_subject *list, size_t i, fg_subject *element) {
+  if (i >= 2) return false;
   element->object = line_of(list->whole, 2 * i);
-  return i < 2;
+  return true;
 }
 
 static const char *line_name(const fg_subject *s) {
