@@ -15,7 +15,8 @@
  */
 #define EDGE_ERROR_UM   0.02
 #define LINEARITY_SHARE 0.004
-/* Share of it in the noise, squared, from which another linearisation pays. */
+/* Variance of the linearisation error over that of the noise, from which a second linearisation is
+ * worth its time. */
 #define LARGE_SHARE 0.1
 /* Length over which such errors are alike, mm. */
 #define ERROR_LENGTH_MM 0.3

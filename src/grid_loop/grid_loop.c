@@ -76,7 +76,7 @@ static fg_status build_model(fg_context *ctx, grid_problem *problem) {
   return fg_grid_find_sizes(ctx, problem);
 }
 
-/* A t law of few degrees of freedom is wider than a normal one: its sd. */
+/* Standard deviation of Student's t with `dof` degrees of freedom, over that of a normal law. */
 static double find_widening(const grid_problem *problem) {
   double used = 0;
   grid_columns columns = fg_grid_columns(problem);

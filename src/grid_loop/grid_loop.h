@@ -12,7 +12,7 @@ struct fg_grid_loop {
   size_t scan_count;
   grid_problem problem;
   grid_solution solution;
-  double widening;         /* of standard uncertainties, for few degrees of freedom */
+  double widening;         /* factor on standard uncertainties: Student's t at few dof */
   fg_scanner_model *model; /* owned */
   fg_grid_loop_result result;
 };

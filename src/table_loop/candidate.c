@@ -92,8 +92,8 @@ void fg_engine_candidate_name(const fg_loop_problem *problem, const fg_loop_cand
 const char *const fg_loop_kind_words[] = {"columns", "interactions", "curves",    "order",
                                           "scatter", "rows",         "exchanges", NULL};
 
-/* Shares by what a table is recorded for: its columns first. A kind with many candidates pays for
- * them with its own share (reports/loop_power.md). */
+/* Share of the error rate of every kind. Recorded columns have the largest: a table is kept for
+ * them. Many candidates of one kind cost that kind alone. */
 static const double kind_share[FG_LOOP_KINDS] = {
     [FG_LOOP_KIND_COLUMNS] = 0.3,    [FG_LOOP_KIND_INTERACTIONS] = 0.1,
     [FG_LOOP_KIND_CURVES] = 0.08,    [FG_LOOP_KIND_ORDER] = 0.15,

@@ -76,46 +76,32 @@ static const fg_foil_view beams = {
     .overlay = fg_overlay_of_beams,
 };
 
-/* A scan of discs has no foils: functions of foils are those of foils with bumps. */
+/* A scan of discs or of a grid has no foils: functions of foils are those of foils with bumps. */
+#define OF_SCANS_WITHOUT_FOILS                                                                     \
+  .u_from = FG_EDGES_SAY, .overlay_note = FG_ARCS_NOTE, .summary_heads = "",                       \
+  .lines = FG_QUANTITY_OF_DISC, .members = &fg_foil_members, .foil_heading = head_bumps,           \
+  .part_table = fg_part_table_of_bumps, .page_heading = head_bumps_on_page,                        \
+  .tiles = fg_tiles_of_bumps, .details = fg_details_of_bumps, .overlay = fg_overlay_of_bumps
+
 static const fg_foil_view discs = {
     .parts = "bumps",
-    .u_from = FG_EDGES_SAY,
     .spread_over = "bumps",
     .legend = "Orange: the circle that was fitted to each feature, with its number. Magenta: how "
               "far the edge lies from it. A red ring and value: beyond a limit.",
-    .overlay_note = FG_ARCS_NOTE,
-    .summary_heads = "",
     .points_heading = "scan,disc,point,x_mm,y_mm,residual_um\n",
-    .lines = FG_QUANTITY_OF_DISC,
-    .members = &fg_foil_members,
     .design_table = fg_design_table_of_discs,
-    .foil_heading = head_bumps,
-    .part_table = fg_part_table_of_bumps,
-    .page_heading = head_bumps_on_page,
-    .tiles = fg_tiles_of_bumps,
-    .details = fg_details_of_bumps,
-    .overlay = fg_overlay_of_bumps,
+    OF_SCANS_WITHOUT_FOILS,
 };
 
-/* A scan of a grid has no foils, either; its values stand in an object of their own. */
+/* Values of a grid stand in an object of their own. */
 static const fg_foil_view grid = {
     .parts = "marks",
-    .u_from = FG_EDGES_SAY,
     .spread_over = "marks",
     .legend = "Blue: the lattice that was fitted. Magenta: how far each mark lies from it, "
               "magnified as the scale says.",
-    .overlay_note = FG_ARCS_NOTE,
-    .summary_heads = "",
     .points_heading = "scan,column,row,x_mm,y_mm,u_um,residual_x_um,residual_y_um,used\n",
-    .lines = FG_QUANTITY_OF_DISC,
-    .members = &fg_foil_members,
     .design_table = fg_design_table_of_grid,
-    .foil_heading = head_bumps,
-    .part_table = fg_part_table_of_bumps,
-    .page_heading = head_bumps_on_page,
-    .tiles = fg_tiles_of_bumps,
-    .details = fg_details_of_bumps,
-    .overlay = fg_overlay_of_bumps,
+    OF_SCANS_WITHOUT_FOILS,
 };
 
 static const fg_foil_view *const views[] = {
