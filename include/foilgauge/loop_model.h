@@ -4,6 +4,7 @@
 #define FOILGAUGE_LOOP_MODEL_H
 
 #include "foilgauge/loop.h"
+#include "foilgauge/loop_table.h"
 
 #ifdef __cplusplus
 extern "C" {

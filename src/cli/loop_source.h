@@ -5,6 +5,7 @@
 
 #include "cli/output_set.h"
 #include "foilgauge/loop.h"
+#include "foilgauge/loop_table.h"
 #include "foilgauge/lot_table.h"
 #include "foilgauge/run_sheet.h"
 

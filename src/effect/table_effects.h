@@ -5,6 +5,7 @@
 #define FG_EFFECT_TABLE_EFFECTS_H
 
 #include "foilgauge/loop.h"
+#include "foilgauge/loop_table.h"
 
 /* Returns the effects of an outlier row and of two exchanged rows, in the order of fg_loop_outlier;
  * then that of an outlier row whose values lie in each other's column. */

@@ -19,6 +19,7 @@
 
 #include "foilgauge/forming.h"
 #include "foilgauge/loop.h"
+#include "foilgauge/loop_table.h"
 #include "foilgauge/measure.h"
 
 enum {

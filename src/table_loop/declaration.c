@@ -8,6 +8,7 @@
 #include "core/json_read.h"
 #include "core/memory.h"
 #include "foilgauge/loop.h"
+#include "foilgauge/loop_table.h"
 
 enum { DECLARED_BYTES_MAX = 1 << 20 };
 

@@ -4,6 +4,7 @@
 #define FG_TABLE_LOOP_PARTS_H
 
 #include "foilgauge/loop.h"
+#include "foilgauge/loop_table.h"
 
 /* Range of a column's largest magnitude in which squares neither over- nor underflow. */
 #define FG_LOOP_TABLE_SMALLEST 1e-304

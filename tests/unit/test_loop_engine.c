@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "foilgauge/loop.h"
+#include "foilgauge/loop_table.h"
 #include "support/brief.h"
 #include "support/random.h"
 #include "support/test.h"

@@ -6,6 +6,7 @@
 #include <gsl/gsl_cdf.h>
 
 #include "foilgauge/loop.h"
+#include "foilgauge/loop_table.h"
 #include "support/random.h"
 #include "support/test.h"
 #include "table_loop/row_tails.h"

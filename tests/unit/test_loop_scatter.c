@@ -8,6 +8,7 @@
 #include <gsl/gsl_cdf.h>
 
 #include "foilgauge/loop.h"
+#include "foilgauge/loop_table.h"
 #include "support/random.h"
 #include "support/test.h"
 #include "table_loop/tails.h"

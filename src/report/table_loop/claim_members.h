@@ -6,6 +6,7 @@
 
 #include "core/member.h"
 #include "foilgauge/loop.h"
+#include "foilgauge/loop_table.h"
 
 /* Of an fg_loop_claim, an fg_loop_rejected, an fg_loop_checked. Claims and rejected candidates have
  * the same columns of a page. */

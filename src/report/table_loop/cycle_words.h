@@ -5,6 +5,7 @@
 
 #include "core/member.h"
 #include "foilgauge/loop.h"
+#include "foilgauge/loop_table.h"
 
 /* " that returns every 90° (order 4 of 360°)", " ... every 2.003 ± 0.004 mm"; its orders where they
  * are several. */

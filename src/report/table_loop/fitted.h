@@ -3,6 +3,7 @@
 #define FG_REPORT_TABLE_LOOP_FITTED_H
 
 #include "foilgauge/loop.h"
+#include "foilgauge/loop_table.h"
 
 /* Draws the response as measured over a column, and the model with all effects found; `left` is the
  * residual of that model, of each row. */

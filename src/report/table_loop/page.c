@@ -9,6 +9,7 @@
 #include "core/memory.h"
 #include "core/text.h"
 #include "foilgauge/loop.h"
+#include "foilgauge/loop_table.h"
 #include "page/page.h"
 #include "page/table.h"
 #include "report/provenance.h"

@@ -4,6 +4,7 @@
 #define FG_REPORT_TABLE_LOOP_PANEL_H
 
 #include "foilgauge/loop.h"
+#include "foilgauge/loop_table.h"
 
 typedef struct fg_loop_point {
   double x, y;

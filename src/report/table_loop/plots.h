@@ -4,6 +4,7 @@
 #define FG_REPORT_TABLE_LOOP_PLOTS_H
 
 #include "foilgauge/loop.h"
+#include "foilgauge/loop_table.h"
 
 /* Writes a section per finding: curves as curves, levels as dashes, spread as a band, outlier rows
  * marked. */

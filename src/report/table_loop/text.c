@@ -7,6 +7,7 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "foilgauge/loop.h"
+#include "foilgauge/loop_table.h"
 #include "report/table_loop/checks.h"
 #include "report/table_loop/claim_members.h"
 #include "report/table_loop/influence_members.h"

@@ -4,6 +4,7 @@
 #define FG_REPORT_TABLE_LOOP_WORDS_H
 
 #include "foilgauge/loop.h"
+#include "foilgauge/loop_table.h"
 
 enum { FG_LOOP_WORDS = 480 };
 
