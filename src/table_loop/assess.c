@@ -36,7 +36,8 @@ typedef struct drawing {
   const fg_engine_exchange *exchange; /* NULL: none */
   const fg_engine_null *null;
   fg_engine_noise noise;
-  const double *white;          /* n: the null's residual, each at its own variance */
+  const double *white;          /* n: the null's residual of each row alone, of unit variance */
+  const double *own;            /* n: share of the row's own error in its residual's variance */
   double tail[FG_ENGINE_TAILS]; /* weights of the tails of that residual */
   bool permuted;
   size_t scores;            /* of means, of noises, of the exchange */
@@ -55,7 +56,7 @@ static void draw_one(const drawing *d, uint64_t *seed, double *y) {
     y[k] = y[i - 1];
     y[i - 1] = other;
   }
-  fg_engine_colour(training, d->noise, y);
+  fg_engine_colour_rows(training, d->noise, seed, y);
 }
 
 /* Scatter is drawn anew with the tails that the residuals have: in another order they would keep
@@ -66,7 +67,7 @@ static void score_noise(const drawing *d, const double *y, uint64_t *seed, doubl
   double *own = work + 3 * training->n;
   if (d->permuted && training->n <= REDRAWN_ROWS) {
     fg_engine_tails_draw(d->tail, training->n, seed, own);
-    fg_engine_colour(training, d->noise, own);
+    fg_engine_colour_rows(training, d->noise, seed, own);
     y = own;
   }
   fg_engine_noise_scores_of(d->noise_scores, y, work, z);
@@ -253,15 +254,33 @@ static void assess_by_count(const fg_score_workspace *workspace, const fg_engine
   take_critical(workspace, null, NULL, judgement);
 }
 
-/* Computes the null's residual, whitened, each over the share that its row keeps. */
+/* Returns the share of a row's own error in the variance of its residual beside its group's level;
+ * `unit` has room for n. */
+static double own_share(const fg_engine_training *training, fg_engine_noise noise,
+                        const fg_engine_span *null, size_t i, double *unit) {
+  size_t n = training->n;
+  if (!(noise.lambda > 0)) return null->kept[i];
+  memset(unit, 0, n * sizeof *unit);
+  unit[i] = 1;
+  fg_engine_whiten_levels(training, noise, unit);
+  return fg_engine_project_out(n, null->basis, null->rank, unit);
+}
+
+/* Computes the null's residual along every row's own error, over its sd: whitened rows of a group
+ * share their errors, and in another order a tail would be shrunk by the part that its neighbours
+ * had. `white` has room for 3 n: the residuals, the shares, and one row. */
 static void null_residual(const fg_engine_training *training, fg_engine_noise noise,
                           const fg_engine_span *null, double *white) {
   size_t n = training->n;
+  double *own = white + n;
   memcpy(white, training->y, n * sizeof *white);
   fg_engine_whiten(training, noise, white);
   fg_engine_project_out(n, null->basis, null->rank, white);
-  for (size_t i = 0; i < n; i++)
-    white[i] /= fg_engine_span_kept_sd(null, i);
+  fg_engine_whiten_levels(training, noise, white);
+  for (size_t i = 0; i < n; i++) {
+    own[i] = own_share(training, noise, null, i, white + 2 * n);
+    white[i] /= fg_engine_kept_sd(own[i]);
+  }
 }
 
 /* Weighs the tails of the null's residual. */
@@ -272,7 +291,7 @@ static void weigh_tails(const fg_engine_span *span, drawing *d) {
     square += d->white[i] * d->white[i] / (double)span->n;
   for (size_t i = 0; i < span->n; i++)
     size[i] = square > 0 ? d->white[i] / sqrt(square) : NAN;
-  const fg_engine_tail_rows rows = {.n = span->n, .size = size, .own = span->kept};
+  const fg_engine_tail_rows rows = {.n = span->n, .size = size, .own = d->own};
   fg_engine_tails_weigh(&rows, d->tail);
 }
 
@@ -359,8 +378,8 @@ fg_status fg_engine_judge(fg_context *ctx, const fg_score_workspace *workspace,
   FG_TRY_EXIT(fg_engine_noise_scores_open(ctx, training, at, span, noise, noises, &noise_scores));
   if (exchanges) FG_TRY_EXIT(fg_engine_exchange_open(ctx, training, at, span, &exchange));
   FG_TRY_EXIT(score_data(ctx, workspace, &noise_scores, exchanges ? &exchange : NULL, judgement));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, training->n, sizeof *white, (void **)&white));
-  null_residual(training, at, span, white);
+  FG_TRY_EXIT(fg_memory_allocate(ctx, training->n, 3 * sizeof *white, (void **)&white));
+  if (few) null_residual(training, at, span, white);
   drawing d = {
       .workspace = workspace,
       .noise_scores = &noise_scores,
@@ -368,11 +387,12 @@ fg_status fg_engine_judge(fg_context *ctx, const fg_score_workspace *workspace,
       .null = null,
       .noise = at,
       .white = white,
+      .own = white + training->n,
       .permuted = workspace->dof >= PERMUTED_DOF,
       .scores = judgement->candidates + exchanges,
       .kind = judgement->kind,
   };
-  weigh_tails(span, &d);
+  if (few) weigh_tails(span, &d);
   if (few)
     FG_TRY_EXIT(assess_in_turns(ctx, &d, judgement));
   else

@@ -79,6 +79,13 @@ fg_status fg_engine_estimate_scale(fg_context *ctx, fg_engine_training *training
 void fg_engine_whiten(const fg_engine_training *training, fg_engine_noise noise, double *y);
 /* y := W^-1 y: gives white numbers that covariance. */
 void fg_engine_colour(const fg_engine_training *training, fg_engine_noise noise, double *y);
+/* The levels' part of whitening alone, of what is white in series. */
+void fg_engine_whiten_levels(const fg_engine_training *training, fg_engine_noise noise, double *y);
+/* Makes independent errors of rows, of any sd, a response of the noise: adds a normal level to
+ * every group, then colours along series. A heavy tail stays with its row, where colouring spreads
+ * it over the group. */
+void fg_engine_colour_rows(const fg_engine_training *training, fg_engine_noise noise,
+                           uint64_t *seed, double *y);
 double fg_engine_log_det(const fg_engine_training *training,
                          fg_engine_noise noise); /* -2 log |W| */
 size_t fg_engine_noise_grid(const fg_engine_training *training,
@@ -101,7 +108,9 @@ typedef struct fg_engine_span {
 fg_status fg_engine_span_open(fg_context *ctx, const fg_engine_training *training,
                               fg_engine_noise noise, size_t more, fg_engine_span *span);
 void fg_engine_span_close(fg_engine_span *span);
-/* Returns the share of a row's sd that its residual keeps, for use as a divisor. */
+/* Returns the share of a row's sd that its residual keeps, for use as a divisor; of a share of its
+ * variance, or of a row of the span. */
+double fg_engine_kept_sd(double share);
 double fg_engine_span_kept_sd(const fg_engine_span *span, size_t i);
 /* Returns the squared length of y's part in the span of `count` orthonormal columns of n values. */
 double fg_engine_along(size_t n, const double *unit, size_t count, const double *y);

@@ -125,8 +125,12 @@ double fg_engine_along(size_t n, const double *unit, size_t count, const double 
   return sum;
 }
 
+double fg_engine_kept_sd(double share) {
+  return sqrt(fmax(share, kept_min));
+}
+
 double fg_engine_span_kept_sd(const fg_engine_span *span, size_t i) {
-  return sqrt(fmax(span->kept[i], kept_min));
+  return fg_engine_kept_sd(span->kept[i]);
 }
 
 /* X = Q R column by column; coefficients and (X'X)^-1 from R. */

@@ -9,6 +9,7 @@
 #include <math.h>
 
 #include "table_loop/engine.h"
+#include "table_loop/engine_random.h"
 
 /* c at one row of a group that begins at `first`. */
 static double level_weight(const fg_engine_training *training, double rho, size_t first, size_t i) {
@@ -70,6 +71,32 @@ void fg_engine_whiten(const fg_engine_training *training, fg_engine_noise noise,
       for (size_t i = training->start[b + 1] - 1; i > training->start[b]; i--)
         y[i] = (y[i] - noise.rho * y[i - 1]) / root;
   if (noise.lambda > 0) scale_levels(training, noise, y, false);
+}
+
+void fg_engine_whiten_levels(const fg_engine_training *training, fg_engine_noise noise, double *y) {
+  if (noise.lambda > 0) scale_levels(training, noise, y, false);
+}
+
+static void add_level(const fg_engine_training *training, double rho, size_t block, double level,
+                      double *y) {
+  size_t first = training->level_start[block], end = training->level_start[block + 1];
+  for (size_t i = first; i < end; i++)
+    y[i] += level * level_weight(training, rho, first, i);
+}
+
+static double rms(const double *y, size_t n) {
+  double square = 0;
+  for (size_t i = 0; i < n; i++)
+    square += y[i] * y[i] / (double)n;
+  return sqrt(square);
+}
+
+void fg_engine_colour_rows(const fg_engine_training *training, fg_engine_noise noise,
+                           uint64_t *seed, double *y) {
+  double sd = sqrt(noise.lambda) * rms(y, training->n);
+  for (size_t b = 0; noise.lambda > 0 && b < training->levels; b++)
+    add_level(training, noise.rho, b, sd * fg_engine_random_normal(seed), y);
+  fg_engine_colour(training, (fg_engine_noise){noise.rho, 0}, y);
 }
 
 void fg_engine_colour(const fg_engine_training *training, fg_engine_noise noise, double *y) {

@@ -9,6 +9,7 @@
 #include "effect/table_effects.h"
 #include "support/random.h"
 #include "support/test.h"
+#include "table_loop/assess.h"
 #include "table_loop/engine.h"
 
 enum { ROWS = 12, GROUPS = 3 };
@@ -208,6 +209,88 @@ static void effects_constant_within_groups_are_tested_between_groups(void **stat
   fg_engine_training_free(&training);
 }
 
+/* Rows of normal errors get the noise's covariance. */
+static void coloured_rows_have_the_covariance(void **state) {
+  enum { DRAWS = 4000 };
+  (void)state;
+  fg_loop_problem problem = make_problem();
+  fg_engine_training training;
+  uint64_t seed = 3;
+  assert_ok(&test_context,
+            fg_engine_training_build(&test_context, &problem, NULL, NULL, &training));
+  for (size_t m = 0; m < sizeof noises / sizeof *noises; m++) {
+    in_row("noises[%zu]", m);
+    double y[ROWS], sum[ROWS][ROWS] = {{0}}, own = 1 + noises[m].lambda;
+    for (size_t b = 0; b < DRAWS; b++) {
+      for (size_t i = 0; i < ROWS; i++)
+        y[i] = random_gaussian(&seed);
+      fg_engine_colour_rows(&training, noises[m], &seed, y);
+      for (size_t i = 0; i < ROWS; i++)
+        for (size_t k = 0; k < ROWS; k++)
+          sum[i][k] += y[i] * y[k] / DRAWS;
+    }
+    for (size_t i = 0; i < ROWS; i++)
+      for (size_t k = 0; k < ROWS; k++)
+        assert_near(sum[i][k], covariance(noises[m], i, k), 5 * own * sqrt(2.0 / DRAWS));
+  }
+  fg_engine_training_free(&training);
+}
+
+enum { FOILS = 14, BUMPS = 9, LOT = FOILS * BUMPS };
+
+/* P-value of the best exchange, over exchanges alone, in a lot whose bumps scatter by Student's t
+ * of 3 dof around the level of their foil. */
+static double exchange_p_of_clean_lot(uint64_t *seed) {
+  double y[LOT], one[LOT], level = 0, share[FG_LOOP_KINDS];
+  size_t foil[LOT];
+  for (size_t i = 0; i < LOT; i++) {
+    double squares = 0;
+    if (i % BUMPS == 0) level = random_gaussian(seed);
+    for (int k = 0; k < 3; k++)
+      squares += pow(random_gaussian(seed), 2);
+    y[i] = 0.01 * (level + random_gaussian(seed) / sqrt(squares));
+    one[i] = 1;
+    foil[i] = i / BUMPS;
+  }
+  fg_loop_problem problem = {.rows = LOT,
+                             .parameters = 1,
+                             .residual = y,
+                             .response = y,
+                             .jacobian = one,
+                             .group = foil,
+                             .groups = FOILS,
+                             .group_level = true,
+                             .series = foil,
+                             .exchangeable = true};
+  fg_loop_kind_shares((const bool[FG_LOOP_KINDS]){false}, share);
+  const fg_engine_null null = {399, 1, 0.01, share};
+  fg_engine_training training;
+  fg_score_workspace workspace = {0};
+  fg_engine_judgement judgement = {0};
+  assert_ok(&test_context,
+            fg_engine_training_build(&test_context, &problem, NULL, NULL, &training));
+  assert_ok(&test_context, fg_score_workspace_build(&test_context, &training, NULL, 0, &workspace));
+  assert_ok(&test_context, fg_engine_judge(&test_context, &workspace, NULL, 0, &null, &judgement));
+  double p = fg_engine_family_kind_p(&judgement.family, FG_LOOP_KIND_EXCHANGES,
+                                     judgement.z[judgement.candidates]);
+  fg_engine_judgement_free(&judgement);
+  fg_score_workspace_free(&workspace);
+  fg_engine_training_free(&training);
+  return p;
+}
+
+/* A tail beside group levels is as far out in the draws as in the data: were it shrunk or spread
+ * over its group, nearly a third of the tables would have such a p-value. */
+static void heavy_tails_in_groups_are_no_exchange(void **state) {
+  enum { TABLES = 60 };
+  (void)state;
+  uint64_t seed = 9;
+  size_t small = 0;
+  for (size_t t = 0; t < TABLES; t++)
+    small += exchange_p_of_clean_lot(&seed) < 0.05;
+  assert_true(small <= 9);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(whitening_undoes_the_covariance),
@@ -216,6 +299,8 @@ int main(void) {
       cmocka_unit_test(least_squares_solves_the_normal_equations),
       cmocka_unit_test(deviates_and_ratios_agree),
       cmocka_unit_test(effects_constant_within_groups_are_tested_between_groups),
+      cmocka_unit_test(coloured_rows_have_the_covariance),
+      cmocka_unit_test(heavy_tails_in_groups_are_no_exchange),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
