@@ -5,15 +5,13 @@
  *
  * - a problem is a residual with its Jacobian, the coordinates that effects may act on, the groups
  * drawn independently, and the order along which noise may be correlated;
- * - an effect is a row of a table: an id, the coordinates that it needs, its basis, its non-linear
- * parameters with their start values; a new effect is a new row;
+ * - an effect is a row of a table: an id, its coordinates, basis, and non-linear parameters;
  * - a candidate is an effect on given coordinates of a problem.
  *
- * Method:
- * 1. Noise is independent until a finding shows otherwise: serial correlation (first order, along a
- * series) and unequal spread are candidates, and are in force once claimed. Where groups share a
- * level, the ratio lambda of its variance to the rows' is estimated anew beside every candidate
- * (residual likelihood: Patterson and Thompson 1971).
+ * Method: 1. Noise is independent until a finding shows otherwise: serial correlation (first order,
+ * along a series), unequal spread and random levels (which group the rows) are candidates, and are
+ * in force once claimed. Where groups share a level, the ratio lambda of its variance to the rows'
+ * is estimated anew beside every candidate (residual likelihood: Patterson and Thompson 1971).
  * 2. The score of a candidate of the mean is its reduction of the residual sum, whitened and with
  * every parameter of the declared model projected out. A candidate that is constant in groups
  * sharing a level is scored by the differences between groups. Correlation is scored by the product
@@ -161,6 +159,7 @@ typedef enum fg_loop_scatter {
   FG_LOOP_OF_THE_MEAN,
   FG_LOOP_SERIAL, /* neighbours along the order are correlated */
   FG_LOOP_SPREAD, /* the sd varies; the basis is of its logarithm */
+  FG_LOOP_LEVELS, /* rows of a level of the column share a random part */
 } fg_loop_scatter;
 
 /* Effects over the bumps of foils that the loop on scans searches, in this order. */

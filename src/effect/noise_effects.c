@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Deviations from the declared noise: correlated neighbours, and unequal spread. */
+/* Deviations from the declared noise: correlated neighbours, unequal spread, random levels. */
 #include <math.h>
 #include <string.h>
 
@@ -64,6 +64,22 @@ static void spread_basis(const fg_loop_problem *problem, const fg_loop_candidate
     fg_basis_linear(problem, candidate, shape, columns);
 }
 
+/* Levels from which on one variance stands for all: fewer tell it badly, and their differences are
+ * of interest by themselves. */
+enum { RANDOM_LEVELS = 8 };
+/* Every second level has a second row, or most of the scatter within is unknown. */
+#define ROWS_A_RANDOM_LEVEL 1.5
+/* Limit of the indicators that are kept. */
+enum { RANDOM_CELLS = 4000000 };
+
+static bool accepts_levels(const fg_loop_problem *problem, size_t a, size_t b) {
+  const fg_loop_coordinate *at = &problem->coordinate[a];
+  (void)b;
+  if (problem->group_level || at->levels < RANDOM_LEVELS) return false;
+  return (double)problem->rows >= ROWS_A_RANDOM_LEVEL * (double)at->levels &&
+         problem->rows * at->levels <= RANDOM_CELLS;
+}
+
 static const fg_loop_effect noise_effects[] = {
     {.id = "table.serial_correlation",
      .sought = "neighbours that are alike",
@@ -83,6 +99,16 @@ static const fg_loop_effect noise_effects[] = {
      .accepts = accepts_spread,
      .columns = spread_columns,
      .basis = spread_basis,
+     .own_levels = true},
+    {.id = "table.random_levels",
+     .sought = "levels that scatter",
+     .scatter = FG_LOOP_LEVELS,
+     .level = "runs",
+     .frame = "column",
+     .words = "levels that scatter over",
+     .accepts = accepts_levels,
+     .columns = no_columns,
+     .basis = no_basis,
      .own_levels = true},
     {0},
 };

@@ -46,7 +46,8 @@ static bool best_passing(const fg_engine_run *run, const fg_engine_step *step, f
   for (size_t c = 0; c < run->candidates; c++) {
     double z = step->stand[c].z;
     if (family_of(&run->candidate[c]) != which || !isfinite(z)) continue;
-    if (which == NOISE && fg_engine_set_holds(&run->set, &run->candidate[c])) continue;
+    if (which == NOISE && !fg_engine_may_join_noise(run, c)) continue;
+    if (which == LISTED && fg_engine_is_random_factor(run, c)) continue;
     if (!(fg_engine_stand_p(run, step, c) < bar(run))) continue;
     if (found && z <= step->stand[*best].z) continue;
     *best = c;
@@ -249,10 +250,10 @@ static bool outlier_first(const fg_engine_run *run, const fg_engine_step *step, 
   size_t wrong = fg_engine_wrong_rows(run), exchange = fg_engine_exchanged_rows(run);
   bool found = false;
   if (isfinite(step->stand[wrong].z) && step->outlier.ratio <= ratio) {
-    bool of_exchange = step->outlier.apart_p < bar(run) && is_of_exchange(run, step) &&
-                       fg_engine_stand_p(run, step, exchange) < FG_LOOP_SUSPECTED_P;
+    bool of_exchange =
+        is_of_exchange(run, step) && fg_engine_stand_p(run, step, exchange) < FG_LOOP_SUSPECTED_P;
     *winner = of_exchange ? exchange : wrong;
-    if (of_exchange || step->outlier.p_value < bar(run)) return true;
+    if (step->outlier.p_value < bar(run)) return true;
   }
   if (isfinite(step->stand[exchange].z) && fg_engine_stand_p(run, step, exchange) < bar(run) &&
       step->judgement.exchange_ratio <= ratio) {

@@ -56,6 +56,51 @@ static fg_status tie_correlation(fg_context *ctx, const fg_engine_run *run,
   return FG_OK;
 }
 
+bool fg_engine_may_join_noise(const fg_engine_run *run, size_t candidate) {
+  const fg_loop_candidate *noise = &run->candidate[candidate];
+  if (fg_engine_set_holds(&run->set, noise)) return false;
+  for (size_t m = 0; m < run->set.count; m++) {
+    const fg_loop_candidate *held = &run->set.candidate[m];
+    bool series = fg_engine_is_serial(noise) || fg_engine_is_levels(noise);
+    if (series && (fg_engine_is_levels(held) || fg_engine_is_serial(held))) return false;
+  }
+  return true;
+}
+
+bool fg_engine_is_random_factor(const fg_engine_run *run, size_t candidate) {
+  const fg_loop_candidate *factor = &run->candidate[candidate];
+  if (factor->effect->reads != FG_LOOP_READS_LEVELS || fg_engine_is_noise(factor)) return false;
+  for (size_t c = run->means; c < run->candidates; c++)
+    if (fg_engine_is_levels(&run->candidate[c]) && run->candidate[c].a == factor->a)
+      return fg_engine_may_join_noise(run, c);
+  return false;
+}
+
+/* Effects of the mean beside which the levels need not scatter: at most as many as a class has
+ * room for, the best first. */
+static fg_status tie_levels(fg_context *ctx, const fg_engine_run *run, const fg_engine_step *step,
+                            size_t winner, fg_loop_claim *claim) {
+  enum { TRIED = 2 * FG_LOOP_ALIASES };
+  double below = INFINITY;
+  for (size_t tried = 0; tried < TRIED; tried++) {
+    size_t best = run->means;
+    for (size_t c = 0; c < run->means; c++)
+      if (step->stand[c].z < below && !fg_engine_is_curve(&run->candidate[c]) &&
+          run->candidate[c].a != claim->candidate.a &&
+          (best == run->means || step->stand[c].z > step->stand[best].z))
+        best = c;
+    if (best == run->means || !(fg_engine_stand_p(run, step, best) < FG_ENGINE_ALIAS_P)) break;
+    below = step->stand[best].z;
+    fg_engine_set with;
+    double z;
+    fg_engine_set_extend(run, &step->stand[best], &with);
+    FG_TRY(fg_engine_spread_beside(ctx, run, &with, &run->candidate[winner], &z));
+    if (!(gsl_cdf_ugaussian_Q(z) < FG_ENGINE_ALIAS_P))
+      fg_engine_add_alias(run->problem, &run->candidate[best], NAN, NAN, claim);
+  }
+  return FG_OK;
+}
+
 /* Other ways in which the scatter may change, beside which the winner's is not needed. */
 static fg_status tie_spread(fg_context *ctx, const fg_engine_run *run, const fg_engine_step *step,
                             size_t winner, fg_loop_claim *claim) {
@@ -63,6 +108,7 @@ static fg_status tie_spread(fg_context *ctx, const fg_engine_run *run, const fg_
     fg_engine_set with;
     double z;
     if (c == winner || fg_engine_is_serial(&run->candidate[c]) ||
+        fg_engine_is_levels(&run->candidate[c]) ||
         fg_engine_set_holds(&run->set, &run->candidate[c]) ||
         !(fg_engine_stand_p(run, step, c) < FG_ENGINE_ALIAS_P))
       continue;
@@ -82,6 +128,8 @@ fg_status fg_engine_take_noise(fg_context *ctx, fg_engine_run *run, const fg_eng
   claim.p_value = fmin(claim.p_value, p_value);
   if (fg_engine_is_serial(&claim.candidate))
     FG_TRY(tie_correlation(ctx, run, step, &claim));
+  else if (fg_engine_is_levels(&claim.candidate))
+    FG_TRY(tie_levels(ctx, run, step, winner, &claim));
   else
     FG_TRY(tie_spread(ctx, run, step, winner, &claim));
   fg_engine_take(run, &step->stand[winner], &claim);

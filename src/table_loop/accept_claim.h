@@ -12,6 +12,12 @@ void fg_engine_describe_claim(const fg_engine_run *run, const fg_engine_step *st
 void fg_engine_take(fg_engine_run *run, const fg_engine_stand *stand, fg_loop_claim *claim);
 /* Accepts correlation or unequal spread: a finding about the noise, which every later step uses. It
  * may be tied with an effect of the mean: `p_value` is that effect's, or 1. */
+/* Returns true for a candidate of the noise that is not in the set, nor excluded by one that is:
+ * one column's levels are random, and no correlation stands beside them. */
+bool fg_engine_may_join_noise(const fg_engine_run *run, size_t candidate);
+/* Returns true for fixed levels of a column whose random levels may be claimed instead. */
+bool fg_engine_is_random_factor(const fg_engine_run *run, size_t candidate);
+
 fg_status fg_engine_take_noise(fg_context *ctx, fg_engine_run *run, const fg_engine_step *step,
                                size_t winner, double p_value, bool *accepted);
 

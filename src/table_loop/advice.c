@@ -346,6 +346,16 @@ static void say_scale(const fg_engine_run *run, fg_loop_advice *advice) {
   advice->runs = NAN;
 }
 
+static void say_levels(const fg_loop_problem *problem, const fg_loop_claim *claim,
+                       fg_loop_advice *advice) {
+  const char *levels = problem->coordinate[claim->candidate.a].name;
+  fg_text_clip(advice->text, sizeof advice->text,
+               "Rows of one level of %s under different settings of the others, and of different "
+               "levels under the same, part them.",
+               levels);
+  advice->runs = NAN;
+}
+
 static fg_status advise_one(fg_context *ctx, const fg_engine_run *run, size_t m,
                             fg_loop_advice *advice) {
   const fg_loop_claim *claim = &run->result->claim[m];
@@ -357,6 +367,8 @@ static fg_status advise_one(fg_context *ctx, const fg_engine_run *run, size_t m,
     say_repeats(run->problem, claim, advice);
   else if (claim->candidate.effect->scatter == FG_LOOP_SPREAD)
     say_spread(run->problem, claim, advice);
+  else if (fg_engine_is_levels(&claim->candidate))
+    say_levels(run->problem, claim, advice);
   else if (fg_engine_is_noise(&claim->candidate) || fg_engine_is_noise(&nearest->candidate))
     advise_order(run->problem, claim, advice);
   else if (nearest->sum)

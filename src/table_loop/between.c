@@ -13,7 +13,9 @@ bool fg_engine_constant_in_levels(const fg_engine_training *training, const doub
   for (size_t k = 0; k < count; k++)
     for (size_t b = 0; b < training->levels; b++)
       for (size_t i = training->level_start[b] + 1; i < training->level_start[b + 1]; i++)
-        if (columns[k * training->n + i] != columns[k * training->n + i - 1]) return false;
+        if (columns[k * training->n + fg_engine_level_row(training, i)] !=
+            columns[k * training->n + fg_engine_level_row(training, i - 1)])
+          return false;
   return training->levels > 0;
 }
 
@@ -28,7 +30,7 @@ fg_status fg_engine_between_basis(fg_context *ctx, const fg_engine_training *tra
   FG_TRY(fg_memory_allocate(ctx, n, levels * sizeof *columns, (void **)&columns));
   for (size_t b = 0; b < levels; b++) {
     for (size_t i = training->level_start[b]; i < training->level_start[b + 1]; i++)
-      columns[b * n + i] = 1;
+      columns[b * n + fg_engine_level_row(training, i)] = 1;
     fg_engine_whiten(training, noise, columns + b * n);
   }
   fg_status status = fg_memory_allocate(ctx, n, levels * sizeof **between, (void **)between);

@@ -22,6 +22,10 @@ bool fg_engine_is_serial(const fg_loop_candidate *candidate) {
   return candidate->effect->scatter == FG_LOOP_SERIAL;
 }
 
+bool fg_engine_is_levels(const fg_loop_candidate *candidate) {
+  return candidate->effect->scatter == FG_LOOP_LEVELS;
+}
+
 bool fg_engine_is_curve(const fg_loop_candidate *candidate) {
   return candidate->effect->unattributed;
 }

@@ -7,6 +7,7 @@
 #include <gsl/gsl_cdf.h>
 
 #include "core/memory.h"
+#include "table_loop/between.h"
 #include "table_loop/fit.h"
 #include "table_loop/order_fits.h"
 
@@ -96,23 +97,42 @@ typedef struct noise_fit {
 /* Columns that are constant in groups are tested between groups, with as many fewer dof. */
 static double dof_of(const fg_engine_training *training, size_t first, size_t count, double dof) {
   if (!training->levels) return dof;
-  for (size_t k = first; k < first + count; k++)
-    for (size_t i = 1; i < training->n; i++)
-      if (training->group[i] == training->group[i - 1] &&
-          training->x[k * training->n + i] != training->x[k * training->n + i - 1])
-        return dof;
-  return fmax((double)training->groups - 1 - (double)count, 1);
+  if (!fg_engine_constant_in_levels(training, training->x + first * training->n, count)) return dof;
+  return fmax((double)training->levels - 1 - (double)count, 1);
+}
+
+/* Describes the sd of random levels: of a mean square between them, s² (1 + m lambda) with m rows
+ * in a level, less one within, each with its dof (Satterthwaite 1946). */
+static void describe_levels(const fg_engine_training *training, const noise_fit *noise, double dof,
+                            fg_loop_claim *claim) {
+  double levels = (double)training->levels, reciprocal = 0, within = noise->sd * noise->sd;
+  for (size_t b = 0; b < training->levels; b++)
+    reciprocal += 1 / (double)(training->level_start[b + 1] - training->level_start[b]) / levels;
+  double variance = within * noise->at.lambda, between = variance + within * reciprocal;
+  double between_dof = fmax(fmin(levels - 1, dof - 1), 1);
+  double u = sqrt(2 * (between * between / between_dof +
+                       pow(within * reciprocal, 2) / fmax(dof - between_dof, 1)));
+  double own = 2 * variance * variance / (u * u), sd = sqrt(variance);
+  claim->noise_value = claim->amplitude = sd;
+  claim->noise_value_u = claim->amplitude_u = sd > 0 ? u / (2 * sd) : NAN;
+  if (!(own > 0)) return;
+  claim->interval[0] = sd * sqrt(own / gsl_cdf_chisq_Qinv(0.025, own));
+  claim->interval[1] = sd * sqrt(own / gsl_cdf_chisq_Pinv(0.025, own));
 }
 
 /* Describes correlation, or the ratio of the rows' extreme sd; the amplitude is half their
  * difference in the response's unit. Uncertainties are asymptotic. */
-static void describe_noise(const fg_engine_training *training, const noise_fit *noise,
+static void describe_noise(const fg_engine_training *training, const noise_fit *noise, double dof,
                            fg_loop_claim *claim) {
   double n = (double)training->n, low = INFINITY, high = 0;
   claim->interval[0] = claim->interval[1] = claim->amplitude = claim->amplitude_u = NAN;
   if (fg_engine_is_serial(&claim->candidate)) {
     claim->noise_value = noise->at.rho;
     claim->noise_value_u = sqrt((1 - noise->at.rho * noise->at.rho) / n);
+    return;
+  }
+  if (fg_engine_is_levels(&claim->candidate)) {
+    describe_levels(training, noise, dof, claim);
     return;
   }
   for (size_t i = 0; i < training->n; i++) {
@@ -139,7 +159,7 @@ static void describe_claims(const fg_engine_training *training, const fg_engine_
     memcpy(claim[m].shape, set->shape[m], sizeof claim[m].shape);
     claim[m].candidate = *candidate;
     if (fg_engine_is_noise(candidate)) {
-      describe_noise(training, noise, &claim[m]);
+      describe_noise(training, noise, dof, &claim[m]);
       continue;
     }
     claim[m].columns = count;

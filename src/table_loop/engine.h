@@ -37,12 +37,18 @@ typedef struct fg_engine_training {
   size_t *group, groups;       /* renumbered */
   size_t *start, blocks;       /* per series: its first row, and n at the end */
   size_t *level_start, levels; /* per group that shares a level: its first row, and n at the end */
+  size_t *level_row;           /* n: rows in the order of random levels; NULL: as they are */
   double *y;                   /* n, with exchanged runs put back */
   double *scale;               /* n: sd of a row over the rms of all; NULL: equal */
   bool serial;                 /* neighbours in a series may be correlated */
   size_t columns;
   double *x; /* columns × n */
 } fg_engine_training;
+
+/* Returns the row at a place of the levels' order. */
+static inline size_t fg_engine_level_row(const fg_engine_training *training, size_t place) {
+  return training->level_row ? training->level_row[place] : place;
+}
 
 /* Builds a training set of the problem's rows where keep[row]; NULL: all. */
 fg_status fg_engine_training_build(fg_context *ctx, const fg_loop_problem *problem,
@@ -58,6 +64,7 @@ bool fg_engine_is_curve(const fg_loop_candidate *candidate);
 /* Returns true for a candidate of the scatter, false for one of the mean. */
 bool fg_engine_is_noise(const fg_loop_candidate *candidate);
 bool fg_engine_is_serial(const fg_loop_candidate *candidate);
+bool fg_engine_is_levels(const fg_loop_candidate *candidate);
 void fg_engine_candidate_name(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
                               char name[FG_LOOP_NAME]);
 bool fg_engine_same_candidate(const fg_loop_candidate *a, const fg_loop_candidate *b);
@@ -79,7 +86,7 @@ fg_status fg_engine_estimate_scale(fg_context *ctx, fg_engine_training *training
 void fg_engine_whiten(const fg_engine_training *training, fg_engine_noise noise, double *y);
 /* y := W^-1 y: gives white numbers that covariance. */
 void fg_engine_colour(const fg_engine_training *training, fg_engine_noise noise, double *y);
-/* The levels' part of whitening alone, of what is white in series. */
+/* The levels' part of whitening alone, of numbers that are white in series. */
 void fg_engine_whiten_levels(const fg_engine_training *training, fg_engine_noise noise, double *y);
 /* Makes independent errors of rows, of any sd, a response of the noise: adds a normal level to
  * every group, then colours along series. A heavy tail stays with its row, where colouring spreads

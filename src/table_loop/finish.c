@@ -272,11 +272,12 @@ static fg_status parameters(fg_context *ctx, fg_engine_run *run, fg_engine_noise
   return run->has_curve ? draw_curve(ctx, run, &fit[run->set.count - 1]) : FG_OK;
 }
 
-/* Returns true when an error can fall: effects of the spread alone do not change it. */
+/* Returns true when an error can fall: effects of the spread and random levels do not change it. */
 static bool may_lower(const fg_loop_result *result) {
   bool lowers = false;
   for (size_t m = 0; m < result->claims; m++)
-    lowers |= result->claim[m].candidate.effect->scatter != FG_LOOP_SPREAD;
+    lowers |= result->claim[m].candidate.effect->scatter != FG_LOOP_SPREAD &&
+              result->claim[m].candidate.effect->scatter != FG_LOOP_LEVELS;
   return lowers;
 }
 

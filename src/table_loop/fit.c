@@ -20,27 +20,35 @@ static fg_status criterion(fg_context *ctx, const fg_engine_training *training,
 
 #define RHO_MAX 0.985
 
-/* Between the points of the grid: steps that shrink, in rho and in the logarithm of lambda. */
+/* Takes a step again and again, as long as it gains. */
+static fg_status go_on(fg_context *ctx, const fg_engine_training *training, double rho_step,
+                       double lambda_factor, double *best, fg_engine_noise *noise) {
+  enum { STEPS = 40 };
+  for (int step = 0; step < STEPS; step++) {
+    double rho = fmax(fmin(noise->rho + rho_step, RHO_MAX), -RHO_MAX), value;
+    const fg_engine_noise tried = {rho, noise->lambda * lambda_factor};
+    FG_TRY(criterion(ctx, training, tried, &value));
+    if (!(value < *best)) break;
+    *best = value;
+    *noise = tried;
+  }
+  return FG_OK;
+}
+
+/* Between the points of the grid, and beyond its ends: steps that shrink, in rho and in the
+ * logarithm of lambda. */
 static fg_status polish(fg_context *ctx, const fg_engine_training *training, double best,
                         fg_engine_noise *noise) {
-  double rho_step = 0.1, lambda_step = 0.4;
-  for (int round = 0; round < 4; round++) {
-    const fg_engine_noise tries[] = {
-        {fmin(noise->rho + rho_step, RHO_MAX), noise->lambda},
-        {fmax(noise->rho - rho_step, -RHO_MAX), noise->lambda},
-        {noise->rho, noise->lambda * exp(lambda_step)},
-        {noise->rho, noise->lambda * exp(-lambda_step)},
-    };
-    for (size_t i = 0; i < 4; i++) {
-      double value;
-      if (i < 2 ? !training->serial : !training->levels) continue;
-      FG_TRY(criterion(ctx, training, tries[i], &value));
-      if (!(value < best)) continue;
-      best = value;
-      *noise = tries[i];
-    }
+  enum { ROUNDS = 4, FINE_ROUNDS = 8 };
+  double rho_step = 0.1, factor = exp(0.4);
+  int rounds = training->level_row ? FINE_ROUNDS : ROUNDS;
+  for (int round = 0; round < rounds; round++) {
+    for (int sign = 1; training->serial && sign >= -1; sign -= 2)
+      FG_TRY(go_on(ctx, training, sign * rho_step, 1, &best, noise));
+    for (int sign = 1; training->levels && sign >= -1; sign -= 2)
+      FG_TRY(go_on(ctx, training, 0, sign > 0 ? factor : 1 / factor, &best, noise));
     rho_step /= 2;
-    lambda_step /= 2;
+    factor = sqrt(factor);
   }
   return FG_OK;
 }

@@ -17,6 +17,27 @@ enum { NEWTON_STEPS = 6 };
 /* Of a step: the next one is its square. */
 #define CONVERGED 1e-5
 
+/* Whitened indicators of the levels beside the null's columns. */
+static fg_status open_levels(fg_context *ctx, const fg_engine_noise_scores *scores,
+                             const fg_loop_candidate *candidate, fg_engine_spread *spread) {
+  const fg_engine_training *training = scores->training;
+  const fg_loop_coordinate *at = &training->problem->coordinate[candidate->a];
+  size_t n = training->n;
+  double *columns = NULL;
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(fg_memory_allocate(ctx, n, at->levels * sizeof *columns, (void **)&columns));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, n, at->levels * sizeof *columns, (void **)&spread->unit));
+  for (size_t i = 0; i < n; i++)
+    columns[(size_t)at->value[training->row[i]] * n + i] = 1;
+  for (size_t k = 0; k < at->levels; k++)
+    fg_engine_whiten(training, scores->noise, columns + k * n);
+  spread->rank = fg_engine_orthonormal(n, scores->null->basis, scores->null->rank, columns,
+                                       at->levels, spread->unit, NULL);
+exit:
+  free(columns);
+  return status;
+}
+
 static fg_status open_spread(fg_context *ctx, const fg_engine_training *training,
                              const fg_loop_candidate *candidate, fg_engine_spread *spread) {
   size_t n = training->n, count = fg_engine_candidate_columns(training->problem, candidate);
@@ -50,7 +71,9 @@ fg_status fg_engine_noise_scores_open(fg_context *ctx, const fg_engine_training 
   FG_TRY_EXIT(
       fg_memory_allocate(ctx, candidates + 1, sizeof *scores->spread, (void **)&scores->spread));
   for (size_t c = 0; c < candidates; c++)
-    FG_TRY_EXIT(open_spread(ctx, training, &candidate[c], &scores->spread[c]));
+    FG_TRY_EXIT(fg_engine_is_levels(&candidate[c])
+                    ? open_levels(ctx, scores, &candidate[c], &scores->spread[c])
+                    : open_spread(ctx, training, &candidate[c], &scores->spread[c]));
 exit:
   if (status != FG_OK) fg_engine_noise_scores_close(scores);
   return status;
@@ -60,6 +83,7 @@ void fg_engine_noise_scores_close(fg_engine_noise_scores *scores) {
   for (size_t c = 0; scores->spread && c < scores->count; c++) {
     free(scores->spread[c].z);
     free(scores->spread[c].level);
+    free(scores->spread[c].unit);
   }
   free(scores->spread);
   *scores = (fg_engine_noise_scores){0};
@@ -128,6 +152,28 @@ static double spread_score(const fg_engine_training *training, const fg_engine_s
   return sqrt(fmax(null - with, 0) / SIZE_DISPERSION);
 }
 
+/* Wald's F ratio between the levels, exact for any number of rows in each: that their variance is 0
+ * (Seely and El-Bassiouni 1983). */
+static double levels_score(const fg_engine_noise_scores *scores, const fg_engine_spread *spread,
+                           const double *white) {
+  size_t n = scores->training->n, used = scores->null->rank + spread->rank;
+  double whole = 0;
+  for (size_t i = 0; i < n; i++)
+    whole += white[i] * white[i];
+  if (spread->rank == 0 || used + 2 > n || !(whole > 0)) return NAN;
+  double gain = fg_engine_along(n, spread->unit, spread->rank, white);
+  double ratio = fmin(fmax(1 - gain / whole, FG_ENGINE_RATIO_MIN), 1);
+  return fg_engine_deviate(ratio, (double)spread->rank, (double)(n - scores->null->rank));
+}
+
+static double score_of(const fg_engine_noise_scores *scores, size_t c, const double *white,
+                       const double *size) {
+  const fg_engine_spread *spread = &scores->spread[c];
+  if (spread->serial) return serial_score(scores->training, white);
+  if (spread->unit) return levels_score(scores, spread, white);
+  return spread_score(scores->training, spread, size);
+}
+
 void fg_engine_noise_scores_of(const fg_engine_noise_scores *scores, const double *y, double *work,
                                double *z) {
   const fg_engine_training *training = scores->training;
@@ -144,6 +190,5 @@ void fg_engine_noise_scores_of(const fg_engine_noise_scores *scores, const doubl
   for (size_t i = 0; mean > 0 && i < n; i++)
     size[i] /= mean;
   for (size_t c = 0; c < scores->count; c++)
-    z[c] = scores->spread[c].serial ? serial_score(training, white)
-                                    : spread_score(training, &scores->spread[c], size);
+    z[c] = score_of(scores, c, white, size);
 }

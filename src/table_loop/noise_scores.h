@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Scores of a residual's noise: serial correlation and unequal spread. */
+/* Scores of a residual's noise: serial correlation, unequal spread, random levels. */
 #ifndef FG_TABLE_LOOP_NOISE_SCORES_H
 #define FG_TABLE_LOOP_NOISE_SCORES_H
 
@@ -10,6 +10,8 @@ typedef struct fg_engine_spread {
   size_t columns;
   double *z;     /* n: standardised coordinate of a slope */
   size_t *level; /* n: index of a level, 0 .. columns */
+  double *unit;  /* of random levels: rank × n, orthonormal beside the null */
+  size_t rank;
 } fg_engine_spread;
 
 typedef struct fg_engine_noise_scores {

@@ -3,6 +3,7 @@
  * a row in its file is one, too, unless the file is sorted by a column: neighbours are then alike
  * because they have the same level of it, and not because they were measured one after the other.
  */
+#include <float.h>
 #include <math.h>
 #include <string.h>
 #include <strings.h>
@@ -32,15 +33,36 @@ static bool has_name_of_time(const fg_loop_coordinate *at) {
 static bool is_counted(const fg_loop_coordinate *at, size_t rows) {
   if (at->roles & FG_LOOP_DECLARED) return false;
   double step = (at->value[rows - 1] - at->value[0]) / ((double)rows - 1);
+  double rounding = 4 * DBL_EPSILON * fmax(fabs(at->low), fabs(at->high)); /* far from 0 */
   for (size_t i = 1; i < rows; i++)
-    if (fabs(at->value[i] - at->value[i - 1] - step) > 1e-6 * fabs(step)) return false;
+    if (fabs(at->value[i] - at->value[i - 1] - step) > 1e-6 * fabs(step) + rounding) return false;
   return true;
 }
 
-/* 1, 2, 3 ... or 0, 1, 2 ...: a number that the file gives its rows. */
-static bool is_number_of_file(const fg_loop_coordinate *at, size_t rows) {
-  return (at->value[0] == 0 || at->value[0] == 1) &&
-         at->value[rows - 1] - at->value[0] == (double)rows - 1;
+static bool begins_with_word(const char *name, const char *word) {
+  size_t length = strlen(word);
+  return !strncasecmp(name, word, length) && (name[length] == '_' || !name[length]);
+}
+
+/* A place or a setting by its name or the unit in it, from any origin and in any unit; all other
+ * numbers in equal steps through a sorted file are those that it gives its rows. */
+static bool is_named_as_measured(const fg_loop_coordinate *at) {
+  static const char *const units[] = {
+      "_mm",  "_um",  "_nm",  "_cm", "_m",  "_km", "_in", "_ft",  "_deg", "_rad",
+      "_rev", "_C",   "_K",   "_F",  "_kg", "_g",  "_mg", "_N",   "_kN",  "_Nm",
+      "_Pa",  "_kPa", "_V",   "_mV", "_A",  "_mA", "_W",  "_kW",  "_Hz",  "_kHz",
+      "_rpm", "_pct", "_ppm", "_l",  "_ml", "_J",  "_kJ", "_MPa", "_bar", "_turn"};
+  static const char *const words[] = {
+      "x",        "y",       "z",           "position",  "distance",     "place",
+      "angle",    "azimuth", "theta",       "depth",     "height",       "length",
+      "width",    "radius",  "level",       "frequency", "pressure",     "speed",
+      "velocity", "force",   "temperature", "humidity",  "voltage",      "current",
+      "dose",     "load",    "power",       "feed",      "concentration"};
+  for (size_t i = 0; i < sizeof units / sizeof *units; i++)
+    if (fg_loop_table_name_ends(at->name, units[i])) return true;
+  for (size_t i = 0; i < sizeof words / sizeof *words; i++)
+    if (begins_with_word(at->name, words[i])) return true;
+  return false;
 }
 
 /* Levels each in one piece. */
@@ -106,7 +128,7 @@ fg_status fg_loop_table_find_order(fg_context *ctx, const fg_loop_table_state *b
   problem->correlated = false;
   const char *sorting = problem->coordinate[found.sorting].name;
   size_t counted = found.counted;
-  bool own = counted != SIZE_MAX && is_number_of_file(&problem->coordinate[counted], problem->rows);
+  bool own = counted != SIZE_MAX && !is_named_as_measured(&problem->coordinate[counted]);
   FG_TRY(leave_out_number(ctx, build, own ? problem->coordinate[counted].name : "row", sorting));
   fg_loop_table_drop(problem, last);
   if (own) fg_loop_table_drop(problem, counted);

@@ -75,9 +75,9 @@ static fg_status fill_squares(fg_context *ctx, scale_workspace *workspace) {
   for (size_t b = 0; b < t->levels; b++) {
     double mean = 0, count = (double)(t->level_start[b + 1] - t->level_start[b]);
     for (size_t i = t->level_start[b]; i < t->level_start[b + 1]; i++)
-      mean += workspace->work[i] / count;
+      mean += workspace->work[fg_engine_level_row(t, i)] / count;
     for (size_t i = t->level_start[b]; i < t->level_start[b + 1]; i++)
-      workspace->work[i] -= mean;
+      workspace->work[fg_engine_level_row(t, i)] -= mean;
   }
   for (size_t i = 0; i < t->n; i++) {
     workspace->square[i] = workspace->work[i] * workspace->work[i];

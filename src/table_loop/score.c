@@ -36,8 +36,16 @@ double fg_engine_deviate_to_f(double z, double k, double nu) {
   return high < 0.99e9 ? high : INFINITY;
 }
 
+/* Rows within levels have dof of their own: where a candidate takes all, the levels' variance over
+ * theirs may be any. */
+static bool leaves_rows(const fg_score_workspace *workspace, const fg_engine_version *version) {
+  size_t between = workspace->between_rank;
+  return between == 0 || version->between || version->rank + between + 2 <= workspace->dof;
+}
+
 static bool can_be_scored(const fg_score_workspace *workspace, const fg_engine_version *version) {
   double min = version->between ? 1 : 2;
+  if (!leaves_rows(workspace, version)) return false;
   return version->rank > 0 && fg_engine_version_dof(workspace, version) + min <=
                                   fg_engine_version_whole(workspace, version);
 }

@@ -13,7 +13,8 @@ size_t fg_engine_serial_candidate(const fg_engine_run *run) {
   while (c < run->candidates && !fg_engine_is_serial(&run->candidate[c]))
     c++;
   for (size_t m = 0; m < run->set.count; m++)
-    if (fg_engine_is_serial(&run->set.candidate[m])) return run->candidates;
+    if (fg_engine_is_serial(&run->set.candidate[m]) || fg_engine_is_levels(&run->set.candidate[m]))
+      return run->candidates;
   return c;
 }
 

@@ -223,6 +223,7 @@ fg_status fg_engine_list_suspects(fg_context *ctx, fg_engine_run *run, const fg_
       double p = fg_engine_stand_p(run, step, s);
       bool later = p > above || (p == above && s > last);
       if (!isfinite(step->stand[s].z) || p > FG_LOOP_SUSPECTED_P || !later) continue;
+      if (s < run->means && fg_engine_is_random_factor(run, s)) continue;
       if (best == step->stands || p < fg_engine_stand_p(run, step, best)) best = s;
     }
     if (best == step->stands) break;

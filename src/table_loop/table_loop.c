@@ -21,7 +21,8 @@ static fg_status add_candidates(fg_context *ctx, fg_engine_run *run, const fg_lo
         if (!effect->accepts(problem, a, b)) continue;
         fg_loop_candidate candidate = {.effect = effect, .a = a, .b = b};
         size_t columns = fg_engine_candidate_columns(problem, &candidate);
-        bool none = columns == 0 && effect->scatter != FG_LOOP_SERIAL;
+        bool none =
+            columns == 0 && effect->scatter != FG_LOOP_SERIAL && effect->scatter != FG_LOOP_LEVELS;
         if (none || columns > FG_LOOP_COLUMNS) continue;
         FG_TRY(fg_memory_reserve(ctx, run->candidates + 1, sizeof *run->candidate, capacity,
                                  (void **)&run->candidate));

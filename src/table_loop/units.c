@@ -104,6 +104,10 @@ static void restore_claim(fg_loop_claim *claim, int exponent) {
     restore(&claim->order[k].amplitude, 1, exponent);
     restore(&claim->order[k].amplitude_u, 1, exponent);
   }
+  if (claim->candidate.effect && claim->candidate.effect->scatter == FG_LOOP_LEVELS) {
+    restore(&claim->noise_value, 1, exponent);
+    restore(&claim->noise_value_u, 1, exponent);
+  }
   restore(&claim->amplitude, 1, exponent);
   restore(&claim->amplitude_u, 1, exponent);
   restore(claim->interval, 2, exponent);

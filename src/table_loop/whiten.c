@@ -14,8 +14,8 @@
 /* c at one row of a group that begins at `first`. */
 static double level_weight(const fg_engine_training *training, double rho, size_t first, size_t i) {
   const double *scale = training->scale;
-  double own = scale ? 1 / scale[i] : 1;
-  if (i == first) return own;
+  double own = scale ? 1 / scale[fg_engine_level_row(training, i)] : 1;
+  if (i == first || training->level_row) return own;
   return (own - rho * (scale ? 1 / scale[i - 1] : 1)) / sqrt(1 - rho * rho);
 }
 
@@ -44,14 +44,15 @@ static void scale_level(const fg_engine_training *training, double rho, size_t b
                         double *y) {
   size_t first = training->level_start[block], end = training->level_start[block + 1];
   double size = level_size(training, rho, block), along = 0;
-  if (!training->scale) {
+  if (!training->scale && !training->level_row) {
     scale_equal_level(end - first, sqrt((1 - rho) / (1 + rho)), factor / size, y + first);
     return;
   }
   for (size_t i = first; i < end; i++)
-    along += level_weight(training, rho, first, i) * y[i];
+    along += level_weight(training, rho, first, i) * y[fg_engine_level_row(training, i)];
   for (size_t i = first; i < end; i++)
-    y[i] += factor * along / size * level_weight(training, rho, first, i);
+    y[fg_engine_level_row(training, i)] +=
+        factor * along / size * level_weight(training, rho, first, i);
 }
 
 static void scale_levels(const fg_engine_training *training, fg_engine_noise noise, double *y,
@@ -81,7 +82,7 @@ static void add_level(const fg_engine_training *training, double rho, size_t blo
                       double *y) {
   size_t first = training->level_start[block], end = training->level_start[block + 1];
   for (size_t i = first; i < end; i++)
-    y[i] += level * level_weight(training, rho, first, i);
+    y[fg_engine_level_row(training, i)] += level * level_weight(training, rho, first, i);
 }
 
 static double rms(const double *y, size_t n) {
@@ -123,16 +124,22 @@ double fg_engine_log_det(const fg_engine_training *training, fg_engine_noise noi
   return sum;
 }
 
+/* Ratios of variances that are tried; those of found levels may be any. */
+enum { LAMBDAS_OF_A_GROUP = 6 };
+
 /* Correlation only when it is in force: it is a finding like others. The grid is coarser where a
  * level is estimated too. */
 size_t fg_engine_noise_grid(const fg_engine_training *training,
                             fg_engine_noise grid[FG_ENGINE_NOISES]) {
   static const double alone[] = {-0.6, -0.3, 0, 0.2, 0.4, 0.55, 0.7, 0.8, 0.88, 0.94, 0.98};
   static const double beside_level[] = {-0.3, 0, 0.3, 0.6, 0.85}, none[] = {0};
-  static const double lambda[] = {0, 0.1, 0.3, 1, 3, 10};
+  static const double lambda[] = {0, 0.1, 0.3, 1, 3, 10, 30, 100, 300, 1000};
   const double *rho = none;
-  size_t rhos = 1, lambdas = training->levels ? sizeof lambda / sizeof *lambda : 1, count = 0;
-  if (training->serial) {
+  size_t rhos = 1, count = 0;
+  size_t lambdas = training->level_row ? sizeof lambda / sizeof *lambda
+                   : training->levels  ? LAMBDAS_OF_A_GROUP
+                                       : 1;
+  if (training->serial && !training->level_row) {
     rho = training->levels ? beside_level : alone;
     rhos = training->levels ? sizeof beside_level / sizeof *beside_level
                             : sizeof alone / sizeof *alone;

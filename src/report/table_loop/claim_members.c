@@ -131,7 +131,10 @@ static void write_claim_parameters(fg_json *json, const char *object, const fg_s
   for (size_t d = 0; d < effect->shapes; d++)
     fg_json_number(json, effect->shape_name[d], u ? claim->shape_u[d] : claim->shape[d]);
   if (effect->scatter != FG_LOOP_OF_THE_MEAN)
-    fg_json_number(json, effect->scatter == FG_LOOP_SERIAL ? "correlation" : "sd_ratio",
+    fg_json_number(json,
+                   effect->scatter == FG_LOOP_SERIAL   ? "correlation"
+                   : effect->scatter == FG_LOOP_LEVELS ? "level_sd"
+                                                       : "sd_ratio",
                    u ? claim->noise_value_u : claim->noise_value);
   if (isfinite(unit))
     fg_json_number(json, effect->from_zero ? "stretch" : "slope_per_unit", unit * coefficient[0]);

@@ -162,6 +162,17 @@ static void follow_spread(const fg_loop_report *report, const fg_loop_claim *cla
                  at->name);
 }
 
+static void follow_levels(const fg_loop_report *report, const fg_loop_claim *claim,
+                          char text[FG_LOOP_STEP]) {
+  const fg_loop_coordinate *at = &report->problem->problem.coordinate[claim->candidate.a];
+  fg_text_clip(
+      text, FG_LOOP_STEP,
+      "Judge what is the same in all rows of one %s by the %zu levels, not by the rows, as "
+      "the uncertainties here do; more levels of %s narrow them, more rows of one do not. "
+      "Look for what differs from level to level, and give it as a column.",
+      at->name, at->levels, at->name);
+}
+
 static void follow_mean(const fg_loop_report *report, size_t m, char text[FG_LOOP_STEP]) {
   const fg_loop_claim *claim = &report->result->claim[m];
   const fg_loop_effect *effect = claim->candidate.effect;
@@ -223,6 +234,8 @@ static void step_of_claim(const fg_loop_report *report, size_t m, char text[FG_L
     count_independent(report, claim, text);
   else if (effect->scatter == FG_LOOP_SPREAD)
     follow_spread(report, claim, text);
+  else if (effect->scatter == FG_LOOP_LEVELS)
+    follow_levels(report, claim, text);
   else
     follow_mean(report, m, text);
 }

@@ -245,6 +245,19 @@ exit:
   return status;
 }
 
+static fg_status put_levels(fg_context *ctx, FILE *out, const fg_loop_report *report,
+                            const fg_loop_claim *claim) {
+  const fg_loop_problem *problem = &report->problem->problem;
+  fg_loop_panel panel = {.at = &problem->coordinate[claim->candidate.a],
+                         .residual = report->result->after_fit,
+                         .caption = "What is left, and the mean of every level"};
+  fg_status status = draw_levels(ctx, problem, panel.residual, 0, &panel);
+  set_limit(problem, &panel);
+  if (status == FG_OK) status = fg_loop_panel_put(ctx, out, report, &panel);
+  free(panel.line);
+  return status;
+}
+
 static fg_status put_claim_plots(fg_context *ctx, FILE *out, const fg_loop_report *report,
                                  const fg_loop_claim *claim, const double *left, double *work) {
   fg_loop_scatter scatter = claim->candidate.effect->scatter;
@@ -256,6 +269,7 @@ static fg_status put_claim_plots(fg_context *ctx, FILE *out, const fg_loop_repor
   open_section(out, words, claim->name);
   FG_TRY(scatter == FG_LOOP_SERIAL   ? put_serial(ctx, out, report, claim, left)
          : scatter == FG_LOOP_SPREAD ? put_spread(ctx, out, report, claim, work)
+         : scatter == FG_LOOP_LEVELS ? put_levels(ctx, out, report, claim)
                                      : put_mean_claim(ctx, out, report, claim, left, work));
   close_section(report, out);
   return FG_OK;

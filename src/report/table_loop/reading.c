@@ -321,7 +321,9 @@ void fg_loop_claim_size(const fg_loop_report *report, const fg_loop_claim *claim
     return;
   }
   fg_text_clip(text, FG_LOOP_WORDS, "%s %s",
-               effect->scatter == FG_LOOP_SERIAL ? "correlation" : "ratio of the sd",
+               effect->scatter == FG_LOOP_SERIAL   ? "correlation"
+               : effect->scatter == FG_LOOP_LEVELS ? "sd from level to level"
+                                                   : "ratio of the sd",
                fg_loop_number_text("%.3g", claim->noise_value).text);
   size_t used = strlen(text);
   if (isfinite(claim->noise_value_u))

@@ -21,6 +21,9 @@
 const char *fg_loop_noise_model(const fg_loop_result *result) {
   bool serial = fg_loop_claims_scatter(result, FG_LOOP_SERIAL);
   bool spread = fg_loop_claims_scatter(result, FG_LOOP_SPREAD);
+  bool levels = fg_loop_claims_scatter(result, FG_LOOP_LEVELS);
+  if (levels)
+    return spread ? "sharing levels, of unequal size" : "independent within levels that scatter";
   return serial && spread ? "correlated along the order, of unequal size"
          : serial         ? "correlated along the order"
          : spread         ? "independent, of unequal size"

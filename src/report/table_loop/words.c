@@ -174,6 +174,29 @@ static void mean_statement(const fg_loop_report *report, const fg_loop_claim *cl
   append_words(text, place);
 }
 
+/* Returns a column of words each of whose levels holds whole levels of `at`; NULL: none. */
+static const fg_loop_coordinate *outer_of(const fg_loop_problem *problem,
+                                          const fg_loop_coordinate *at) {
+  for (size_t c = 0; c < problem->coordinates; c++) {
+    const fg_loop_coordinate *outer = &problem->coordinate[c];
+    bool holds = outer != at && outer->levels > 1 && outer->levels < at->levels;
+    for (size_t i = 0; holds && i < problem->rows; i++)
+      for (size_t k = 0; holds && k < i; k++)
+        holds = at->value[i] != at->value[k] || outer->value[i] == outer->value[k];
+    if (holds) return outer;
+  }
+  return NULL;
+}
+
+static void levels_statement(const fg_loop_report *report, const fg_loop_claim *claim,
+                             char text[FG_LOOP_WORDS]) {
+  const fg_loop_problem *problem = &report->problem->problem;
+  const fg_loop_coordinate *at = &problem->coordinate[claim->candidate.a];
+  const fg_loop_coordinate *outer = outer_of(problem, at);
+  fg_text_clip(text, FG_LOOP_WORDS, "the %zu levels of %s scatter%s%s", at->levels, at->name,
+               outer ? " within " : "", outer ? outer->name : "");
+}
+
 void fg_loop_claim_words(const fg_loop_report *report, const fg_loop_claim *claim,
                          char text[FG_LOOP_WORDS]) {
   const fg_loop_effect *effect = claim->candidate.effect;
@@ -185,6 +208,8 @@ void fg_loop_claim_words(const fg_loop_report *report, const fg_loop_claim *clai
     fg_text_clip(text, FG_LOOP_WORDS, "neighbouring %s are alike", fg_loop_row_words(at));
   else if (effect->scatter == FG_LOOP_SPREAD)
     spread_statement(report, claim, text);
+  else if (effect->scatter == FG_LOOP_LEVELS)
+    levels_statement(report, claim, text);
   else
     mean_statement(report, claim, text);
 }

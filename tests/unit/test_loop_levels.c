@@ -1,0 +1,147 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Random levels in the loop on tables: a column of many words is tested by one variance, and once
+ * found it groups the rows. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "foilgauge/loop.h"
+#include "support/random.h"
+#include "support/test.h"
+
+enum { WAFERS = 12, PLACES = 4, ROWS = WAFERS * PLACES };
+
+typedef struct outcome {
+  fg_context ctx;
+  fg_table table;
+  fg_loop_table_problem problem;
+  fg_loop_result result;
+} outcome;
+
+typedef struct wafer_rows {
+  double heat[ROWS], y[ROWS];
+  size_t wafer[ROWS];
+} wafer_rows;
+
+/* Rows of a wafer are not neighbours, and have one heat. */
+static wafer_rows make_rows(double level_sd, uint64_t seed) {
+  wafer_rows rows;
+  double level[WAFERS], heat[WAFERS];
+  for (size_t w = 0; w < WAFERS; w++) {
+    level[w] = level_sd * random_gaussian(&seed);
+    heat[w] = (double)(w * 7 % WAFERS) + 0.5 * random_uniform(&seed);
+  }
+  for (size_t i = 0; i < ROWS; i++) {
+    size_t w = i * 5 % WAFERS;
+    rows.wafer[i] = w;
+    rows.heat[i] = heat[w];
+    rows.y[i] = 0.02 * (3 + 0.1 * heat[w] + level[w] + 0.5 * random_gaussian(&seed));
+  }
+  return rows;
+}
+
+static void search(const wafer_rows *rows, const char *model, outcome *out) {
+  static char names[ROWS][8];
+  const char *name[ROWS];
+  const fg_loop_options options = {.effects = fg_loop_table_effects(), .seed = 1};
+  const fg_loop_table_spec spec = {.response = "y", .model = model, .seed = 1};
+  *out = (outcome){0};
+  for (size_t i = 0; i < ROWS; i++) {
+    snprintf(names[i], sizeof names[i], "W%zu", rows->wafer[i] + 1);
+    name[i] = names[i];
+  }
+  assert_ok(&out->ctx, fg_table_add_numbers(&out->ctx, &out->table, "heat", rows->heat, ROWS));
+  assert_ok(&out->ctx, fg_table_add_words(&out->ctx, &out->table, "wafer", name, ROWS));
+  assert_ok(&out->ctx, fg_table_add_numbers(&out->ctx, &out->table, "y", rows->y, ROWS));
+  assert_ok(&out->ctx, fg_loop_table_problem_build(&out->ctx, &out->table, &spec, &out->problem));
+  assert_ok(&out->ctx, fg_loop_run(&out->ctx, &out->problem.problem, &options, &out->result));
+}
+
+static void clear(outcome *out) {
+  fg_loop_result_free(&out->result);
+  fg_loop_table_problem_free(&out->problem);
+  fg_table_free(&out->table);
+}
+
+/* Mean squares of the rows within wafers, and between them beside a slope over heat, in rows; the
+ * heats' sum of squares over the rows. */
+typedef struct strata {
+  double within, between, heats;
+} strata;
+
+static strata find_strata(const wafer_rows *rows) {
+  double mean[WAFERS] = {0}, heat[WAFERS], all = 0, middle = 0, cross = 0, squares = 0;
+  strata found = {0};
+  for (size_t i = 0; i < ROWS; i++) {
+    mean[rows->wafer[i]] += rows->y[i] / PLACES;
+    heat[rows->wafer[i]] = rows->heat[i];
+    all += rows->y[i] / ROWS;
+    middle += rows->heat[i] / ROWS;
+  }
+  for (size_t i = 0; i < ROWS; i++)
+    found.within += pow(rows->y[i] - mean[rows->wafer[i]], 2) / (ROWS - WAFERS);
+  for (size_t w = 0; w < WAFERS; w++) {
+    cross += (heat[w] - middle) * (mean[w] - all);
+    squares += pow(heat[w] - middle, 2);
+  }
+  for (size_t w = 0; w < WAFERS; w++)
+    found.between +=
+        PLACES * pow(mean[w] - all - cross / squares * (heat[w] - middle), 2) / (WAFERS - 2);
+  found.heats = PLACES * squares;
+  return found;
+}
+
+/* In wafers of as many rows restricted likelihood is the analysis of variance. */
+static void levels_have_their_variance_and_the_slope_their_stratum(void **state) {
+  outcome out;
+  (void)state;
+  wafer_rows rows = make_rows(1.5, 7);
+  strata exact = find_strata(&rows);
+  search(&rows, "1 + heat", &out);
+  assert_int_equal(out.result.claims, 1);
+  const fg_loop_claim *claim = &out.result.claim[0];
+  double sd = sqrt((exact.between - exact.within) / PLACES);
+  assert_string_equal(claim->name, "table.random_levels(wafer)");
+  assert_near(claim->noise_value, sd, 0.01 * sd);
+  assert_near(claim->amplitude, sd, 0.01 * sd);
+  assert_true(claim->interval[0] < sd && claim->interval[1] > sd);
+  double u = sqrt(exact.between / exact.heats);
+  assert_near(out.result.parameter_u[1], u, 0.01 * u);
+  assert_near(out.result.noise.lambda, sd * sd / exact.within, 0.02 * sd * sd / exact.within);
+  clear(&out);
+}
+
+/* The column that is constant in wafers is tested between them: over rows alone, which repeat every
+ * wafer's level, it would be claimed in most of such tables. */
+static void what_is_constant_in_a_level_is_tested_between_levels(void **state) {
+  enum { TABLES = 12 };
+  size_t claimed = 0;
+  (void)state;
+  for (uint64_t seed = 0; seed < TABLES; seed++) {
+    outcome out;
+    wafer_rows rows = make_rows(1.5, 100 + seed);
+    search(&rows, "1", &out);
+    for (size_t m = 0; m < out.result.claims; m++)
+      claimed += strstr(out.result.claim[m].name, "heat") != NULL;
+    clear(&out);
+  }
+  assert_true(claimed <= 1);
+}
+
+static void levels_that_are_alike_are_no_finding(void **state) {
+  outcome out;
+  (void)state;
+  wafer_rows rows = make_rows(0, 9);
+  search(&rows, "1 + heat", &out);
+  assert_int_equal(out.result.claims, 0);
+  clear(&out);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(levels_have_their_variance_and_the_slope_their_stratum),
+      cmocka_unit_test(what_is_constant_in_a_level_is_tested_between_levels),
+      cmocka_unit_test(levels_that_are_alike_are_no_finding),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
