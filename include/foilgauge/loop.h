@@ -8,7 +8,8 @@
  * - an effect is a row of a table: an id, its coordinates, basis, and non-linear parameters;
  * - a candidate is an effect on given coordinates of a problem.
  *
- * Method: 1. Noise is independent until a finding shows otherwise: serial correlation (first order,
+ * Method:
+ * 1. Noise is independent until a finding shows otherwise: serial correlation (first order,
  * along a series), unequal spread and random levels (which group the rows) are candidates, and are
  * in force once claimed. Where groups share a level, the ratio lambda of its variance to the rows'
  * is estimated anew beside every candidate (residual likelihood: Patterson and Thompson 1971).

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "foilgauge/loop.h"
+#include "foilgauge/loop_table.h"
 #include "support/random.h"
 #include "support/test.h"
 
