@@ -8,7 +8,7 @@ program=$1
 stride=${2:-37}
 shim=$(dirname "$program")/tests/libfailing_malloc.so
 work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
+trap '[ "$BASHPID" != $$ ] || rm -rf "$work"' EXIT
 
 fail() {
   echo "test_failures: $*" >&2

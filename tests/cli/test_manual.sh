@@ -8,7 +8,7 @@ build=$(dirname "$fg")
 man=$build/man
 failed=0
 work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
+trap '[ "$BASHPID" != $$ ] || rm -rf "$work"' EXIT
 
 say() {
   echo "FAILED: $1"

@@ -7,7 +7,7 @@ set -euo pipefail
 program=$1
 renderer=${FOILGAUGE_RENDERER:-$program}
 work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
+trap '[ "$BASHPID" != $$ ] || rm -rf "$work"' EXIT
 fail() {
   echo "test_picture_levels: $*" >&2
   exit 1

@@ -7,7 +7,7 @@ set -euo pipefail
 program=$1
 renderer=${FOILGAUGE_RENDERER:-$program}
 work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
+trap '[ "$BASHPID" != $$ ] || rm -rf "$work"' EXIT
 cat >"$work/design.json" <<'D'
 {"schema": "foilgauge/design/1", "bump_count": 5, "calibration": "not needed: the scan is rendered", "tolerances": {"height_mm": {"min": 1, "max": 9}}}
 D

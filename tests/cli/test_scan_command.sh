@@ -8,7 +8,7 @@ program=$(realpath "$1")
 scan=$(dirname "$(realpath "$0")")/../../samples/station/scan.sh
 work=$(mktemp -d)
 station=
-trap '[ -z "$station" ] || kill "$station" 2>/dev/null || true; rm -rf "$work"' EXIT
+trap '[ "$BASHPID" != $$ ] || { [ -z "$station" ] || kill "$station" 2>/dev/null || true; rm -rf "$work"; }' EXIT
 fail() {
   echo "test_scan_command: $*" >&2
   exit 1

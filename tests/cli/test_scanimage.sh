@@ -7,7 +7,7 @@ set -euo pipefail
 program=$1
 command -v scanimage >/dev/null || { echo "skipped: sane-utils is not installed"; exit 77; }
 work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
+trap '[ "$BASHPID" != $$ ] || rm -rf "$work"' EXIT
 
 fail() {
   echo "test_scanimage: $*" >&2

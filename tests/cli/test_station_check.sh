@@ -9,7 +9,7 @@ program=$1
 renderer=${FOILGAUGE_RENDERER:-$program}
 work=$(mktemp -d)
 station=
-trap '[ -z "$station" ] || kill "$station" 2>/dev/null || true; rm -rf "$work"' EXIT
+trap '[ "$BASHPID" != $$ ] || { [ -z "$station" ] || kill "$station" 2>/dev/null || true; rm -rf "$work"; }' EXIT
 fail() {
   echo "test_station_check: $*" >&2
   exit 1

@@ -9,7 +9,8 @@ root=$PWD
 renderer=${FOILGAUGE_RENDERER-}
 [ -x "$renderer" ] || renderer=$program
 work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
+# A child that is killed before it runs its program runs this trap, too: the folder is its parent's.
+trap '[ "$BASHPID" != $$ ] || rm -rf "$work"' EXIT
 cd "$work" || exit 1
 failed=0
 
