@@ -40,6 +40,9 @@ typedef struct fg_scan_loop_options {
   /* Effects that are not looked for, by id, separated by commas; NULL: none. It must outlive the
    * loop. */
   const char *without;
+  /* Factors on the expectations before a scan is seen, for studies of how much hangs on them: on
+   * the sizes of causes and on their probabilities. 0: 1. */
+  double prior_size, prior_weight;
 } fg_scan_loop_options;
 
 typedef struct fg_scan_loop fg_scan_loop; /* src/scan_loop/state.h */

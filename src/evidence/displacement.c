@@ -8,9 +8,13 @@
 #include "core/memory.h"
 #include "core/numerics.h"
 #include "effect/columns.h"
+#include "evidence/verdict.h"
 
 /* Models of less weight than this, relative to the likeliest, change nothing. */
 #define WEIGHT_MIN 1e-3
+/* Weight of a model that the likeliest leads by FG_EVIDENCE_LEAD: models that a verdict does not
+ * tell apart have weight. */
+#define WEIGHT_AT_MARGIN 0.1
 /* Ridge of the bumps' own sizes where they are not bounded: their sum over the bumps lies in the
  * flat directions. */
 #define RIDGE 1e-9
@@ -211,24 +215,43 @@ static void fill_parts(const fg_edge_fit *edge_fit, size_t count, const double *
   }
 }
 
-fg_status fg_evidence_find_displacement(fg_context *ctx, fg_evidence_search *s, fg_displacement *d,
-                                        fg_displacement_part *parts) {
+/* Occam's window (Madigan and Raftery 1994): models that are not far less likely than the best, and
+ * include none that is likelier. */
+static size_t list_window(const fg_evidence_search *s, const fg_evidence_model **list, bool decided,
+                          double *weight) {
+  double per_nat = decided ? 1 : log(1 / WEIGHT_AT_MARGIN) / FG_EVIDENCE_LEAD, total = 0;
+  size_t count = 0;
+  for (size_t m = 0; m < s->count && count < MODELS_MAX; m++) {
+    const fg_evidence_model *model = &s->models[m];
+    double below = per_nat * (s->models[0].score - model->score);
+    bool more = false;
+    if (below > log(1 / WEIGHT_MIN)) break; /* sorted */
+    for (size_t k = 0; k < count && !more; k++)
+      more = fg_evidence_includes(model, list[k]);
+    if (more) continue;
+    list[count] = model;
+    total += weight[count++] = exp(-below);
+  }
+  for (size_t m = 0; m < count; m++)
+    weight[m] /= total;
+  return count;
+}
+
+fg_status fg_evidence_find_displacement(fg_context *ctx, fg_evidence_search *s, bool decided,
+                                        fg_displacement *d, fg_displacement_part *parts) {
   wanted w = {.count = 0};
-  double *mean = NULL, total = 0, top = s->models[0].score;
+  const fg_evidence_model *model[MODELS_MAX];
+  double *mean = NULL, weight[MODELS_MAX];
   fg_status status = FG_OK;
-  size_t models = 0;
+  size_t models = list_window(s, model, decided, weight);
   *d = (fg_displacement){.frame = s->problem.edge_fit->frame};
-  while (models < s->count && models < MODELS_MAX &&
-         s->models[models].score > top + log(WEIGHT_MIN))
-    total += exp(s->models[models++].score - top);
   FG_TRY_EXIT(open_wanted(ctx, s, &w));
   FG_TRY_EXIT(fg_memory_allocate(ctx, w.count * (w.count + 1) + 1, sizeof *mean, (void **)&mean));
   for (size_t m = 0; m < models; m++) {
     fg_evidence_posterior posterior;
-    double weight = exp(s->models[m].score - top) / total;
-    FG_TRY_EXIT(fg_evidence_find_posterior(ctx, s, &s->models[m], &posterior));
-    add_mean(s, &s->models[m], &posterior, weight, d);
-    status = add_moments(ctx, s, &w, &s->models[m], &posterior, weight, mean, mean + w.count);
+    FG_TRY_EXIT(fg_evidence_find_posterior(ctx, s, model[m], &posterior));
+    add_mean(s, model[m], &posterior, weight[m], d);
+    status = add_moments(ctx, s, &w, model[m], &posterior, weight[m], mean, mean + w.count);
     fg_evidence_posterior_close(&posterior);
     if (status != FG_OK) goto exit;
   }

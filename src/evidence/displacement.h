@@ -34,8 +34,10 @@ typedef struct fg_displacement_part {
   double overall;
 } fg_displacement_part;
 
-/* Fills the displacement and, per part of the edge fit, its covariance; `parts` are allocated. */
-fg_status fg_evidence_find_displacement(fg_context *ctx, fg_evidence_search *search,
+/* Fills the displacement and, per part of the edge fit, its covariance; `parts` are allocated.
+ * `decided`: the verdict is one set of causes. Else the models that it does not tell apart have
+ * weight, too. */
+fg_status fg_evidence_find_displacement(fg_context *ctx, fg_evidence_search *search, bool decided,
                                         fg_displacement *displacement, fg_displacement_part *parts);
 
 #endif

@@ -48,6 +48,12 @@ typedef struct fg_evidence_scatter {
   size_t first, count; /* columns; count 0: no bumps */
 } fg_evidence_scatter;
 
+/* Factors on the expectations before the rows are seen: on the sizes of amplitudes, and on the
+ * probability of each cause. 1 but where a study asks how much hangs on them. */
+typedef struct fg_evidence_prior {
+  double size, weight;
+} fg_evidence_prior;
+
 /* State of a search over models: its problem, the options that a model can hold, and the models. */
 enum { FG_EVIDENCE_MODELS = 2400, FG_EVIDENCE_STORE = 2560 };
 
@@ -63,6 +69,7 @@ typedef struct fg_evidence_option {
 
 typedef struct fg_evidence_search {
   fg_evidence_problem problem;
+  fg_evidence_prior prior;
   fg_evidence_scatter scatter;
   fg_evidence_part *store; /* owned; FG_EVIDENCE_STORE */
   size_t stored;

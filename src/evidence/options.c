@@ -15,10 +15,11 @@ static bool is_power(const fg_effect *effect) {
   return effect->polynomial != FG_EFFECT_NO_POLYNOMIAL;
 }
 
-void fg_evidence_effect_variances(const fg_effect *effect, size_t count, double *variance) {
+void fg_evidence_effect_variances(const fg_evidence_prior *prior, const fg_effect *effect,
+                                  size_t count, double *variance) {
   double size = 0;
   for (size_t c = 0; c < count; c++) {
-    if (c < FG_EFFECT_SIZES && effect->size_um[c] > 0) size = effect->size_um[c];
+    if (c < FG_EFFECT_SIZES && effect->size_um[c] > 0) size = prior->size * effect->size_um[c];
     variance[c] = size * size;
   }
 }

@@ -25,6 +25,7 @@ void fg_evidence_find_start(const fg_edge_fit *edge_fit, const fg_effect *effect
                             double shape[FG_FIELD_SHAPES], double reach[FG_FIELD_SHAPES]);
 
 /* Fills the prior variances of an effect's columns, um². */
-void fg_evidence_effect_variances(const fg_effect *effect, size_t count, double *variance);
+void fg_evidence_effect_variances(const fg_evidence_prior *prior, const fg_effect *effect,
+                                  size_t count, double *variance);
 
 #endif

@@ -19,6 +19,8 @@ enum {
   BUMP_FIRST = 3,
   BUMP_ORDERS = 8,
   PHI_ORDERS = 20,
+  LAND_FIRST = 1, /* of lands: their mean place is that of the bumps */
+  LAND_ORDERS = 12,
   PERIOD_FIRST = 2, /* of patterns over the bumps' numbers */
   PERIOD_LAST = 4
 };
@@ -284,6 +286,22 @@ static bool phi_variances(const fg_edge_fit *edge_fit, size_t i, double *varianc
   return true;
 }
 
+/* ---- of the lands, alike on all ---- */
+
+static size_t over_lands(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row, double *values) {
+  fg_edge_fit_row as_bump = *row;
+  (void)edge_fit;
+  as_bump.bump = !row->bump;
+  return fg_midline_legendre(&as_bump, LAND_FIRST, 1, LAND_ORDERS, values);
+}
+
+static bool land_variances(const fg_edge_fit *edge_fit, size_t i, double *variance) {
+  (void)edge_fit;
+  if (i >= 3) return false;
+  fill_falling(LAND_FIRST, LAND_FIRST + LAND_ORDERS - 1, 1, 1 + 2 * (double)i, variance);
+  return true;
+}
+
 /* ---- of single bumps ---- */
 
 static size_t count_bumps(const fg_edge_fit *edge_fit) {
@@ -444,6 +462,10 @@ const fg_rival fg_rivals[] = {
      .coordinate = FG_EFFECT_PHI,
      .columns = over_phi,
      .variances = phi_variances},
+    {.name = "land.phi",
+     .coordinate = FG_EFFECT_FOIL,
+     .columns = over_lands,
+     .variances = land_variances},
     {.name = "bump.each",
      .coordinate = FG_EFFECT_INDEX,
      .columns = over_each,

@@ -92,6 +92,7 @@ static void set_score(const fg_evidence_search *s, fg_evidence_model *model) {
 /* Best set of an option's columns beside a model. */
 typedef struct hit {
   double evidence, mass; /* mass: ln of the evidence's mean over sets and sizes, less the best */
+  double wide;           /* number of sets as likely as the best that have the sum of all */
   size_t set;
   int size; /* halvings of the row's */
 } hit;
@@ -112,24 +113,29 @@ static fg_status score_option(fg_context *ctx, fg_evidence_search *s,
     to->size = (int)(i % FG_EVIDENCE_SIZES);
   }
   to->mass = sum - to->evidence - log((double)count);
+  for (size_t i = (size_t)to->size; status == FG_OK && i < count; i += FG_EVIDENCE_SIZES)
+    to->wide += exp(evidence[i] - to->evidence);
   free(evidence);
   return status;
 }
 
-static void set_size(fg_evidence_part *part, int size) {
-  fg_evidence_effect_variances(part->effect, part->count, part->variance);
+static void set_size(const fg_evidence_search *s, fg_evidence_part *part, int size) {
+  fg_evidence_effect_variances(&s->prior, part->effect, part->count, part->variance);
   for (size_t c = 0; c < part->count; c++)
     part->variance[c] = ldexp(part->variance[c], -2 * size);
 }
 
-/* Range of the shapes that are tried around the best ones. */
-typedef struct shape_range {
-  double low[FG_FIELD_SHAPES], high[FG_FIELD_SHAPES];
-} shape_range;
-
 /* Directions of two shapes in which a better one is sought: either alone, both together. */
 static const double directions[][FG_FIELD_SHAPES] = {{1, 0}, {0, 1}, {1, 1}, {1, -1}};
 enum { DIRECTIONS = sizeof directions / sizeof *directions };
+
+/* Range of the shapes that are tried around the best ones. */
+typedef struct shape_range {
+  double low[FG_FIELD_SHAPES], high[FG_FIELD_SHAPES];
+  double cell;              /* distance of neighbouring starts over the range's width now */
+  double width[DIRECTIONS]; /* of the evidence's peak along a direction, in cells; 0: not known */
+  bool resolved[DIRECTIONS];
+} shape_range;
 
 /* Fills the shape at place `at`, 0 to 1, of a direction through the range. */
 static void move_shape(const fg_evidence_part *part, const shape_range *range,
@@ -143,25 +149,51 @@ static void move_shape(const fg_evidence_part *part, const shape_range *range,
   }
 }
 
+/* A peak narrower than the distance of the range's points is looked at again in the next range. */
+static void note_width(shape_range *range, int way, const hit *found, double evidence) {
+  const double resolved = 2;
+  double wide = found->wide * exp(fmin(0, found->evidence - evidence));
+  if (range->resolved[way]) return;
+  range->resolved[way] = wide >= resolved;
+  range->width[way] = wide / ((FINER + 1) * range->cell);
+}
+
+/* Returns the share of a cell that a peak fills, as ln, at most 0: starts are as likely over their
+ * cells, and a shape that must be just so is as much less likely. */
+static double log_share_of_cell(const fg_evidence_part *part, const shape_range *range) {
+  const double *w = range->width, correlation_max = 0.95;
+  if (part->effect->shapes < 2) return w[0] > 0 ? fmin(0, log(w[0])) : 0;
+  for (int k = 0; k < DIRECTIONS; k++)
+    if (!(w[k] > 0)) return 0;
+  double square[DIRECTIONS];
+  for (int k = 0; k < DIRECTIONS; k++)
+    square[k] = 1 / (w[k] * w[k]);
+  double correlation = 0.25 * (square[2] - square[3]) / sqrt(square[0] * square[1]);
+  correlation = fmax(-correlation_max, fmin(correlation_max, correlation));
+  return fmin(0, log(w[0] * w[1] / sqrt(1 - correlation * correlation)));
+}
+
 /* Moves the shapes along a direction to the best ones of the range. */
 static fg_status refine_along(fg_context *ctx, fg_evidence_search *s,
-                              const fg_evidence_factor *factor, const shape_range *range,
-                              const double *direction, fg_evidence_part *part, double *evidence) {
+                              const fg_evidence_factor *factor, shape_range *range, int way,
+                              fg_evidence_part *part, double *evidence) {
+  const double *direction = directions[way];
   fg_evidence_problem *p = &s->problem;
   size_t from = p->count, each = part->count, first, count;
   double variance[FG_EFFECT_COLUMNS_MAX], shape[FG_FIELD_SHAPES];
   hit found;
   if (!fg_evidence_has_room(p, (FINER + 1) * each)) return FG_OK;
-  fg_evidence_effect_variances(part->effect, each, variance);
+  fg_evidence_effect_variances(&s->prior, part->effect, each, variance);
   for (int i = 0; i < FINER; i++) {
     move_shape(part, range, direction, (i + 1.0) / (FINER + 1), shape);
     FG_TRY(fg_evidence_add_effect(ctx, p, part->effect, shape, &first, &count));
   }
   FG_TRY(score_option(ctx, s, factor, &(fg_evidence_sets){from, FINER, each}, variance, &found));
   fg_evidence_drop(p, from);
+  note_width(range, way, &found, *evidence);
   if (!(found.evidence > *evidence)) return FG_OK;
   *evidence = found.evidence;
-  set_size(part, found.size);
+  set_size(s, part, found.size);
   move_shape(part, range, direction, ((double)found.set + 1) / (FINER + 1), shape);
   memcpy(part->shape, shape, sizeof shape);
   return FG_OK;
@@ -175,6 +207,7 @@ static void shrink_range(const fg_evidence_part *part, shape_range *range) {
     range->low[k] = part->shape[k] - reach;
     range->high[k] = part->shape[k] + reach;
   }
+  range->cell /= part->effect->shapes > 1 ? 2 * SHRINKS_OF_TWO : 2.0 / (FINER + 1);
 }
 
 /* Moves the shapes to the best ones of their ranges; the columns of the best stay. */
@@ -186,9 +219,10 @@ static fg_status refine_place(fg_context *ctx, fg_evidence_search *s,
   memcpy(before, part->shape, sizeof before);
   for (int level = 0; level < (shapes > 1 ? FINER_LEVELS_OF_TWO : FINER_LEVELS); level++) {
     for (int k = 0; k < (shapes > 1 ? DIRECTIONS : 1); k++)
-      FG_TRY(refine_along(ctx, s, factor, range, directions[k], part, evidence));
+      FG_TRY(refine_along(ctx, s, factor, range, k, part, evidence));
     shrink_range(part, range);
   }
+  part->log_prior += log_share_of_cell(part, range);
   if (!memcmp(before, part->shape, sizeof before)) return FG_OK;
   if (!fg_evidence_has_room(&s->problem, part->count)) return FG_OK;
   return fg_evidence_add_effect(ctx, &s->problem, part->effect, part->shape, &part->first, &count);
@@ -199,6 +233,7 @@ static void find_range(const fg_edge_fit *edge_fit, const fg_effect *effect, siz
                        fg_evidence_part *part, shape_range *range) {
   double reach[FG_FIELD_SHAPES];
   size_t last = effect->starts - 1;
+  *range = (shape_range){.cell = 0.5};
   fg_evidence_find_start(edge_fit, effect, i, part->shape, reach);
   for (size_t k = 0; k < FG_FIELD_SHAPES; k++) {
     range->low[k] = part->shape[k] - reach[k];
@@ -217,12 +252,12 @@ static fg_status fit_effect(fg_context *ctx, fg_evidence_search *s,
   *part = (fg_evidence_part){.effect = effect, .count = option->each};
   memcpy(part->shape, option->shape, sizeof part->shape);
   const fg_evidence_sets sets = {option->first, option->sets, option->each};
-  set_size(part, 0);
+  set_size(s, part, 0);
   FG_TRY(score_option(ctx, s, factor, &sets, part->variance, &found));
-  set_size(part, found.size);
+  set_size(s, part, found.size);
   *evidence = found.evidence;
   part->first = option->first + found.set * option->each;
-  part->log_prior = log(FG_EVIDENCE_PRIOR) + found.mass;
+  part->log_prior = log(s->prior.weight * FG_EVIDENCE_PRIOR) + found.mass;
   if (option->seeded) part->log_prior -= log((double)effect->starts);
   if (fg_effect_is_unnamed(effect)) part->log_prior -= log(FG_UNNAMED_EFFECTS);
   if (option->sets < 2) return FG_OK;
@@ -247,7 +282,7 @@ static fg_status fit_rival(fg_context *ctx, fg_evidence_search *s, const fg_evid
   fg_status status = fg_evidence_beside(ctx, &s->problem, factor, option->first, n, gram, right);
   for (size_t l = 0; status == FG_OK && option->rival->variances(edge_fit, l, variance); l++)
     for (int a = 0; a < AMPLITUDES; a++) {
-      double size = ldexp(AMPLITUDE_MIN_UM, a);
+      double size = s->prior.size * ldexp(AMPLITUDE_MIN_UM, a);
       for (size_t c = 0; c < n; c++)
         scaled[c] = size * size * variance[c];
       double value = fg_evidence_of(n, gram, right, scaled, work);
@@ -258,7 +293,7 @@ static fg_status fit_rival(fg_context *ctx, fg_evidence_search *s, const fg_evid
       memcpy(part->variance, scaled, n * sizeof *scaled);
     }
   *evidence = factor->evidence + best;
-  part->log_prior = log(FG_EVIDENCE_PRIOR) + sum - best - log((double)tried);
+  part->log_prior = log(s->prior.weight * FG_EVIDENCE_PRIOR) + sum - best - log((double)tried);
   if (option->stretches) part->log_prior -= log((double)option->stretches);
   free(gram);
   return status;
@@ -408,8 +443,9 @@ static fg_status shorten_models(fg_context *ctx, fg_evidence_search *s) {
 
 fg_status fg_evidence_search_open(fg_context *ctx, const fg_edge_fit *edge_fit,
                                   const fg_effect_set *seed, const double *residual_um,
-                                  const double *jacobian, fg_evidence_search *s) {
-  *s = (fg_evidence_search){.count = 0};
+                                  const double *jacobian, const fg_evidence_prior *prior,
+                                  fg_evidence_search *s) {
+  *s = (fg_evidence_search){.prior = *prior};
   fg_status status = FG_OK;
   FG_TRY_EXIT(fg_evidence_open(ctx, edge_fit, residual_um, jacobian, &s->problem));
   FG_TRY_EXIT(fg_memory_allocate(ctx, FG_EVIDENCE_STORE, sizeof *s->store, (void **)&s->store));

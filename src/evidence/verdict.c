@@ -5,9 +5,8 @@
 #include <math.h>
 #include <string.h>
 
-/* A cause leads by this factor (Kass and Raftery 1995: "very strong" from ln 150 on), and by a
- * share of the whole evidence: with edges so sharp the error of linear columns decides. */
-#define LEAD       5.0
+/* Share of the whole evidence by which a cause leads, too: with edges so sharp the error of linear
+ * columns decides. */
 #define LEAD_SHARE 3e-4
 #define CLEAN_P    0.05
 /* Standard errors of the number that gives a polynomial its name; largest distance of its middle,
@@ -82,8 +81,7 @@ static bool holds_or_extends(const fg_evidence_model *model, const fg_effect *ef
   return fg_evidence_holds(model, effect);
 }
 
-/* Returns true when a model holds all causes of another. */
-static bool includes(const fg_evidence_model *model, const fg_evidence_model *other) {
+bool fg_evidence_includes(const fg_evidence_model *model, const fg_evidence_model *other) {
   for (size_t k = 0; k < other->parts; k++) {
     const fg_evidence_part *part = other->part[k];
     if (part->effect ? !holds_or_extends(model, part->effect) : !holds_rival_of(model, part))
@@ -113,7 +111,7 @@ static fg_status list_ties(fg_context *ctx, fg_evidence_search *s, double floor,
     if (model->score < floor) break; /* sorted */
     if (!model->parts) continue;     /* it was refuted */
     for (size_t k = 0; k < v->ties && !more; k++)
-      more = includes(model, &v->tie[k]);
+      more = fg_evidence_includes(model, &v->tie[k]);
     if (more) continue;
     FG_TRY(bears_names(ctx, s, model, v->middle_mm[v->ties], &bears));
     if (bears) v->tie[v->ties++] = *model;
@@ -123,7 +121,8 @@ static fg_status list_ties(fg_context *ctx, fg_evidence_search *s, double floor,
   for (size_t k = 0; k < v->ties; k++) {
     bool more = false;
     for (size_t i = 0; i < v->ties && !more; i++)
-      more = i != k && includes(&v->tie[k], &v->tie[i]) && !includes(&v->tie[i], &v->tie[k]);
+      more = i != k && fg_evidence_includes(&v->tie[k], &v->tie[i]) &&
+             !fg_evidence_includes(&v->tie[i], &v->tie[k]);
     if (more) continue;
     for (size_t i = 0; i < FG_EVIDENCE_PARTS; i++)
       v->middle_mm[kept][i] = v->middle_mm[k][i];
@@ -169,8 +168,8 @@ fg_status fg_evidence_decide(fg_context *ctx, fg_evidence_search *s, fg_evidence
   *v = (fg_evidence_verdict){.outcome = FG_EVIDENCE_CLEAN, .p_null = probability_of_none(s)};
   double top = s->models[0].score, named;
   if (v->p_null > CLEAN_P || !s->models[0].parts) return FG_OK;
-  FG_TRY(find_best_named(ctx, s, fmax(LEAD, LEAD_SHARE * top), &named));
-  FG_TRY(list_ties(ctx, s, isfinite(named) ? named - LEAD : top - LEAD, v));
+  FG_TRY(find_best_named(ctx, s, fmax(FG_EVIDENCE_LEAD, LEAD_SHARE * top), &named));
+  FG_TRY(list_ties(ctx, s, isfinite(named) ? named - FG_EVIDENCE_LEAD : top - FG_EVIDENCE_LEAD, v));
   if (!v->ties) take_likeliest_rivals(s, v);
   v->outcome = !isfinite(named) ? FG_EVIDENCE_UNATTRIBUTED
                : v->ties > 1    ? FG_EVIDENCE_TIED

@@ -5,6 +5,9 @@
 
 #include "evidence/posterior.h"
 
+/* A cause leads by this factor, ln (Kass and Raftery 1995: "very strong" from ln 150 on). */
+#define FG_EVIDENCE_LEAD 5.0
+
 enum { FG_EVIDENCE_TIES = 16 };
 
 typedef enum fg_evidence_outcome {
@@ -21,6 +24,9 @@ typedef struct fg_evidence_verdict {
   size_t ties;
   double p_null; /* posterior probability of no effect */
 } fg_evidence_verdict;
+
+/* Returns true when a model holds all causes of another. */
+bool fg_evidence_includes(const fg_evidence_model *model, const fg_evidence_model *other);
 
 fg_status fg_evidence_decide(fg_context *ctx, fg_evidence_search *search,
                              fg_evidence_verdict *verdict);

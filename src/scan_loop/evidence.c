@@ -166,8 +166,8 @@ static fg_status take_verdict(fg_context *ctx, fg_scan_loop *loop, const fg_evid
   return status;
 }
 
-static fg_status find_displacement(fg_context *ctx, fg_scan_loop *loop,
-                                   fg_evidence_search *search) {
+static fg_status find_displacement(fg_context *ctx, fg_scan_loop *loop, fg_evidence_search *search,
+                                   bool decided) {
   const fg_edge_fit *edge_fit = &loop->edge_fit;
   if (!loop->displacement_parts) {
     FG_TRY(fg_memory_allocate(ctx, edge_fit->part_count, sizeof *loop->displacement_parts,
@@ -177,7 +177,8 @@ static fg_status find_displacement(fg_context *ctx, fg_scan_loop *loop,
                                 sizeof *loop->displacement_parts[p].bumps,
                                 (void **)&loop->displacement_parts[p].bumps));
   }
-  return fg_evidence_find_displacement(ctx, search, &loop->displacement, loop->displacement_parts);
+  return fg_evidence_find_displacement(ctx, search, decided, &loop->displacement,
+                                       loop->displacement_parts);
 }
 
 /* Returns true when an explanation of the loop holds an effect or a curve of the scanner. */
@@ -203,8 +204,12 @@ void fg_scan_loop_take_displacement(const fg_scan_loop *loop, fg_joint_fit_resul
 /* A misfit of the best model is noise to all models: then the search is repeated with it. */
 static fg_status search_models(fg_context *ctx, fg_scan_loop *loop, const double *residual,
                                const double *jacobian, fg_evidence_search *search) {
+  const fg_scan_loop_options *options = &loop->options;
+  const fg_evidence_prior prior = {options->prior_size > 0 ? options->prior_size : 1,
+                                   options->prior_weight > 0 ? options->prior_weight : 1};
   double misfit_um = 0;
-  FG_TRY(fg_evidence_search_open(ctx, &loop->edge_fit, &loop->set, residual, jacobian, search));
+  FG_TRY(fg_evidence_search_open(ctx, &loop->edge_fit, &loop->set, residual, jacobian, &prior,
+                                 search));
   FG_TRY(fg_evidence_search_run(ctx, search));
   FG_TRY(fg_evidence_find_misfit(ctx, search, &misfit_um));
   loop->misfit = misfit_um > MISFIT_MIN * search->problem.noise_um;
@@ -244,7 +249,7 @@ static fg_status weigh_once(fg_context *ctx, fg_scan_loop *loop, double *residua
   FG_TRY_EXIT(fg_evidence_decide(ctx, &search, &verdict));
   loop->misfit =
       loop->misfit || (verdict.ties && is_loose(&verdict.tie[0])) || is_split_open(&verdict);
-  FG_TRY_EXIT(find_displacement(ctx, loop, &search));
+  FG_TRY_EXIT(find_displacement(ctx, loop, &search, verdict.outcome == FG_EVIDENCE_FOUND));
   FG_TRY_EXIT(fg_scan_loop_find_form_errors(ctx, loop, &search, &verdict));
   FG_TRY_EXIT(take_verdict(ctx, loop, &verdict, moved));
   *moved = *moved && search.problem.large;

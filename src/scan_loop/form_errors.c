@@ -19,8 +19,8 @@
 #include "table_loop/engine_random.h"
 
 enum { DRAWS = 64, MODELS_MAX = 48 };
-/* Models of less weight, relative to the likeliest, change no mean; and none of a lower share of
- * the whole extends a range. */
+/* Models of less weight, relative to the likeliest, change no mean; and a range leaves out what has
+ * no such share of the whole at either end. */
 #define WEIGHT_MIN 1e-3
 #define SHARE_MIN  0.05
 /* Weight of an explanation that the verdict lists, relative to the likeliest: at least this. */
@@ -215,7 +215,7 @@ static fg_status widen_by_option(fg_context *ctx, fg_evidence_search *s, const f
   fg_evidence_part part = {.effect = option->effect, .first = option->first, .count = option->each};
   fg_evidence_model with = *model;
   moments own = moments_in(room->mean + MOMENTS * c->count, c);
-  fg_evidence_effect_variances(option->effect, option->each, part.variance);
+  fg_evidence_effect_variances(&s->prior, option->effect, option->each, part.variance);
   with.part[with.parts++] = &part;
   memset(own.mean, 0, MOMENTS * c->count * sizeof *own.mean);
   FG_TRY(find_moments(ctx, s, c, &with, &own));
@@ -243,6 +243,17 @@ static fg_status find_hidden(fg_context *ctx, fg_evidence_search *s, const fg_ci
 
 /* ---- all models ---- */
 
+/* Returns true where the models of such values and smaller ones have a share, and those of larger
+ * ones: of many scanner's faults each may be unlikely, not one of them. */
+static bool is_in_range(const moments *m, size_t models, size_t circle, double value) {
+  double below = 0, above = 0;
+  for (size_t k = 0; k < models; k++) {
+    below += m[k].mean[circle] <= value ? m[k].weight : 0;
+    above += m[k].mean[circle] >= value ? m[k].weight : 0;
+  }
+  return below >= SHARE_MIN && above >= SHARE_MIN;
+}
+
 /* One circle over all models. Where one takes for the part's what another takes for the scanner's,
  * there is a range and no value. */
 static fg_form_error combine_models(const moments *m, size_t models, size_t circle, double hidden) {
@@ -256,7 +267,7 @@ static fg_form_error combine_models(const moments *m, size_t models, size_t circ
     mean += m[k].weight * own;
     ends += m[k].weight * of_end * of_end;
     square += m[k].weight * m[k].square[circle];
-    if (m[k].weight < SHARE_MIN) continue;
+    if (!is_in_range(m, models, circle, own)) continue;
     smallest = fmin(smallest, own);
     largest = fmax(largest, own);
     within = fmax(within, FG_COVERAGE_FACTOR * known);

@@ -14,12 +14,12 @@ import os
 import subprocess
 import tempfile
 
+import cv2
 import loop_foreign as foreign
 import numpy as np
 from loop_cases import GEN2
 from loop_foil import measurand_of
 from scipy import ndimage
-from skimage import io
 
 DPI = 2400
 MM = 25.4 / DPI
@@ -160,7 +160,8 @@ def make_scan(program, path, spec, kind, a, seed):
         d = deviations[kind](r, np.arctan2(y - oy, x - ox) - turn)
         return -d * (x - ox) / r, -d * (y - oy) / r
 
-    io.imsave(path + ".png", warp(io.imread(path + ".png"), fields.get(kind, deviate)), check_contrast=False)
+    picture = cv2.imread(path + ".png", cv2.IMREAD_GRAYSCALE)
+    cv2.imwrite(path + ".png", warp(picture, fields.get(kind, deviate)), [cv2.IMWRITE_PNG_COMPRESSION, 1])
 
 
 def truth_of_part(foil, kind, a, seed):

@@ -85,7 +85,7 @@ static void look_by_evidence(foil_rows *f, const fg_effect *effect, bool wanted)
   fg_evidence_search search;
   const fg_effect_set none = {.count = 0};
   assert_ok(&ctx, fg_evidence_search_open(&ctx, &f->edge_fit, &none, f->residual_um, f->jacobian,
-                                          &search));
+                                          &(fg_evidence_prior){1, 1}, &search));
   assert_ok(&ctx, fg_evidence_search_run(&ctx, &search));
   if (leads(&search, effect) != wanted)
     fail_msg("%s %s", effect->id, wanted ? "does not lead" : "is found though it is left out");
