@@ -3,18 +3,22 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "core/small_solve.h"
 
 /* The first rounds see every third pixel of the window, the last ones all that an edge's blur
  * reaches. */
 enum { COARSE_STEP = 3, COARSE_ROUNDS = 12, FINE_ROUNDS = 8, SAMPLES_MIN = 30 };
-#define EDGE_BLURS    4.5
-#define EDGE_BESIDE   2.0 /* px */
-#define BLUR_MIN      0.3
-#define BLUR_START    2.0
-#define STEP_END_PX   1e-4
-#define DAMPING_START 1e-3
+#define EDGE_BLURS  4.5
+#define EDGE_BESIDE 2.0 /* px */
+#define BLUR_MIN    0.3
+#define BLUR_START  2.0
+/* Steps are smaller by a tenth or more from round to round: what follows one of these is far below
+ * the noise. The first rounds need only lay the band of the last ones. */
+#define STEP_END_COARSE_PX 0.05
+#define STEP_END_PX        2e-4
+#define DAMPING_START      1e-3
 /* A mark deviates from its model by less than this share of its contrast, rms. */
 #define MISFIT_MAX 0.2
 /* Lags at which the residual's correlation is summed. */
@@ -45,6 +49,7 @@ static fg_status gather_samples(fg_context *ctx, const fg_tiles *tiles, fg_mark_
   int64_t x0 = llround(fit->p[FG_MARK_X] - reach), x1 = llround(fit->p[FG_MARK_X] + reach);
   int64_t y0 = llround(fit->p[FG_MARK_Y] - reach), y1 = llround(fit->p[FG_MARK_Y] + reach);
   double band = EDGE_BLURS * fit->p[FG_MARK_BLUR] + EDGE_BESIDE;
+  fg_mark_shape shape = fg_mark_shape_of(model, fit->p);
   if (2 * reach < 48) step = 1;
   size_t side = (size_t)((x1 - x0) / step + 1), rows = (size_t)((y1 - y0) / step + 1);
   FG_TRY(fg_memory_allocate(ctx, side * rows, sizeof *samples->list, (void **)&samples->list));
@@ -53,7 +58,7 @@ static fg_status gather_samples(fg_context *ctx, const fg_tiles *tiles, fg_mark_
     for (int64_t x = x0; x <= x1; x += step) {
       double dx = (double)x - fit->p[FG_MARK_X], dy = (double)y - fit->p[FG_MARK_Y];
       if (!is_in_window(fit, kind, dx, dy)) continue;
-      if (fine && model->edge_distance(fit->p, dx, dy) > band) continue;
+      if (fine && model->edge_distance(&shape, dx, dy) > band) continue;
       float value = fg_tiles_pixel(tiles, x, y);
       samples->wanted++;
       if (isfinite(value))
@@ -62,31 +67,19 @@ static fg_status gather_samples(fg_context *ctx, const fg_tiles *tiles, fg_mark_
   return FG_OK;
 }
 
-/* Normal equations about p; returns the sum of squares. */
-static double linearise(const fg_mark_model *model, const mark_samples *samples, const double *p,
-                        fg_normal_equations *system) {
+/* Normal equations about p. */
+static void linearise(const fg_mark_model *model, const mark_samples *samples, const double *p,
+                      fg_normal_equations *system) {
   double gradient[FG_MARK_PARAMETERS_MAX];
   static const double along[FG_MARK_PARAMETERS_MAX] = {[FG_MARK_Y] = 1};
+  fg_mark_shape shape = fg_mark_shape_of(model, p);
   fg_normal_clear(system, model->parameters);
   if (model->one_axis) fg_normal_add(system, along, 0, 1); /* no place along a line */
   for (size_t i = 0; i < samples->count; i++) {
     const mark_sample *s = &samples->list[i];
-    double value = model->value(p, s->x - p[FG_MARK_X], s->y - p[FG_MARK_Y], gradient);
+    double value = model->value(&shape, s->x - p[FG_MARK_X], s->y - p[FG_MARK_Y], gradient);
     fg_normal_add(system, gradient, (double)s->value - value, 1);
   }
-  return system->sum_squares;
-}
-
-static double sum_of_squares(const fg_mark_model *model, const mark_samples *samples,
-                             const double *p) {
-  double gradient[FG_MARK_PARAMETERS_MAX], sum = 0;
-  for (size_t i = 0; i < samples->count; i++) {
-    const mark_sample *s = &samples->list[i];
-    double off =
-        (double)s->value - model->value(p, s->x - p[FG_MARK_X], s->y - p[FG_MARK_Y], gradient);
-    sum += off * off;
-  }
-  return sum;
 }
 
 static bool is_sane(const fg_mark_fit *fit, const double *p) {
@@ -101,28 +94,29 @@ static void split_across(double angle, double *step) {
   step[FG_MARK_X] *= cos(angle);
 }
 
-/* Levenberg and Marquardt; returns false where it leads nowhere. */
-static bool descend(const fg_mark_model *model, const mark_samples *samples, int rounds,
+/* Levenberg and Marquardt, until a step is shorter than `end`; returns false where it leads
+ * nowhere. Most steps are taken, so each is linearised at once. */
+static bool descend(const fg_mark_model *model, const mark_samples *samples, int rounds, double end,
                     fg_mark_fit *fit, fg_normal_equations *system) {
   double damping = DAMPING_START, p[FG_MARK_PARAMETERS_MAX], step[FG_SMALL_MAX];
+  fg_normal_equations next;
   size_t n = model->parameters;
-  double square = linearise(model, samples, fit->p, system);
-  for (int round = 0; round < rounds; round++) {
+  linearise(model, samples, fit->p, system);
+  for (int round = 0; round < rounds && damping <= 1e6; round++) {
     if (!fg_normal_solve(system, damping, step, NULL)) return false;
     if (model->one_axis) split_across(fit->p[FG_MARK_SHAPE], step);
     for (size_t k = 0; k < n; k++)
       p[k] = fit->p[k] + step[k];
-    double next = is_sane(fit, p) ? sum_of_squares(model, samples, p) : INFINITY;
-    if (!(next <= square)) {
+    bool sane = is_sane(fit, p);
+    if (sane) linearise(model, samples, p, &next);
+    if (!sane || !(next.sum_squares <= system->sum_squares)) {
       damping = fmax(10 * damping, DAMPING_START);
-      if (damping > 1e6) return true;
       continue;
     }
-    for (size_t k = 0; k < n; k++)
-      fit->p[k] = p[k];
-    square = linearise(model, samples, fit->p, system);
+    memcpy(fit->p, p, n * sizeof *p);
+    *system = next;
     damping *= 0.05;
-    if (hypot(step[FG_MARK_X], step[FG_MARK_Y]) < STEP_END_PX) return true;
+    if (hypot(step[FG_MARK_X], step[FG_MARK_Y]) < end) return true;
   }
   return true;
 }
@@ -132,10 +126,11 @@ static double residual_integral(const fg_mark_model *model, const mark_samples *
                                 const double *p) {
   double product[LAGS + 1] = {0}, pairs[LAGS + 1] = {0}, before[LAGS + 1] = {0};
   double gradient[FG_MARK_PARAMETERS_MAX], sum = 1;
+  fg_mark_shape shape = fg_mark_shape_of(model, p);
   for (size_t i = 0; i < samples->count; i++) {
     const mark_sample *s = &samples->list[i];
     double off =
-        (double)s->value - model->value(p, s->x - p[FG_MARK_X], s->y - p[FG_MARK_Y], gradient);
+        (double)s->value - model->value(&shape, s->x - p[FG_MARK_X], s->y - p[FG_MARK_Y], gradient);
     before[i % (LAGS + 1)] = off;
     for (size_t lag = 0; lag <= LAGS && lag <= i; lag++) {
       const mark_sample *other = &samples->list[i - lag];
@@ -173,7 +168,8 @@ static fg_status fit_once(fg_context *ctx, const fg_tiles *tiles, fg_mark_kind k
   FG_TRY(gather_samples(ctx, tiles, kind, fit, fine, &samples));
   fit->share = samples.wanted ? (double)samples.count / (double)samples.wanted : 0;
   *found = samples.count >= SAMPLES_MIN &&
-           descend(model, &samples, fine ? FINE_ROUNDS : COARSE_ROUNDS, fit, &system);
+           descend(model, &samples, fine ? FINE_ROUNDS : COARSE_ROUNDS,
+                   fine ? STEP_END_PX : STEP_END_COARSE_PX, fit, &system);
   if (*found && fine) find_uncertainty(model, &samples, &system, fit);
   free(samples.list);
   return FG_OK;

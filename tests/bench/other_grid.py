@@ -41,6 +41,11 @@ class Field:
         c = self.size / 2
         return self.add(lambda x, y: (0 * x, a_um / 1e3 * ((x - c[0]) / c[0]) ** 2))
 
+    def chips(self, tilt_um, gap_um, pitch, first):
+        """A contact image sensor: chips along x that are tilted alike, and a gap behind each."""
+        chip = lambda x: (x - first) / pitch
+        return self.add(lambda x, y: (gap_um / 1e3 * np.floor(chip(x)), tilt_um / 1e3 * (chip(x) - np.floor(chip(x)) - 0.5)))
+
     def smooth(self, rms_um, waves, seed):
         """Random waves, none shorter than the longer side over `waves`."""
         rng = np.random.default_rng(seed)
@@ -129,19 +134,20 @@ def render(board, field, origin, turn_deg, size_px, dpi, blur_px=1.2, noise=2., 
     else:
         extent = size if board.kind == 'dots' else size[0]
         reach = int(np.ceil((extent + 6 * s) / mm)) + 2
+    # d is smooth over a mark but for a step or a seam, which is drawn at the mark's own side
+    e, around = 0.01, []
+    for ax, ay in ((0, 0), (e, 0), (-e, 0), (0, e), (0, -e)):
+        around.append(np.stack(field(mx + ax, my + ay)))
+    moves, slope_x, slope_y = around[0], (around[1] - around[2]) / (2 * e), (around[3] - around[4]) / (2 * e)
+    slope_y[:, np.abs(slope_y[1]) > 0.05] = 0
+    slope_x[:, np.abs(slope_x).max(0) > 0.05] = 0
     for k in range(len(tx)):
         i0, j0 = int(round(mx[k] / mm)), int(round(my[k] / mm))
         i1, i2, j1, j2 = max(0, i0 - reach), min(w, i0 + reach + 1), max(0, j0 - reach), min(h, j0 + reach + 1)
         if i1 >= i2 or j1 >= j2:
             continue
         x, y = np.meshgrid(np.arange(i1, i2) * mm, np.arange(j1, j2) * mm)
-        # d is smooth over a mark but for a step, which is drawn at the mark's own side
-        dx, dy = field(np.array([mx[k]]), np.array([my[k]]))
-        e = 0.01
-        gx = [(a - b) / (2 * e) for a, b in zip(field(np.array([mx[k] + e]), np.array([my[k]])), field(np.array([mx[k] - e]), np.array([my[k]])))]
-        gy = [(a - b) / (2 * e) for a, b in zip(field(np.array([mx[k]]), np.array([my[k] + e])), field(np.array([mx[k]]), np.array([my[k] - e])))]
-        if abs(gy[1][0]) > 0.05:
-            gy = [0 * gy[0], 0 * gy[1]]
+        (dx, dy), gx, gy = moves[:, k], slope_x[:, k], slope_y[:, k]
         ux = x + dx + gx[0] * (x - mx[k]) + gy[0] * (y - my[k]) - tx[k]
         uy = y + dy + gx[1] * (x - mx[k]) + gy[1] * (y - my[k]) - ty[k]
         u, v = ux * np.cos(t) + uy * np.sin(t), uy * np.cos(t) - ux * np.sin(t)

@@ -1,0 +1,194 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Maps of a scanner's bed against known truth, and foils measured through them.
+
+/usr/bin/python3 tests/bench/grid_maps.py build/foilgauge CASES.jsonl [--beds 50] [--first 0] [--out reports/grid_maps.md]
+
+Every bed is a scanner of its own: listed effects, keystone, bow, chips tilted and apart, a smooth random field. It scans a plate of
+known pitch once and a printed board twice, turned in between, ideal and rough; then a foil lies on it and is measured through the
+plate's model, and on a scanner without errors. Plates and boards are of a second renderer (other_grid.py), every fifth of them and all
+foils of the program's own; foils are warped by the bed's field. Cases that CASES.jsonl has are not made again; with --out the page is
+written of all of them. Needs numpy, scipy, scikit-image, pillow."""
+import argparse
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import time
+
+import numpy as np
+from PIL import Image
+from scipy import ndimage
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from grid import gauge_free, run, save, write_design  # noqa: E402
+from other_grid import Board, Field, render  # noqa: E402
+
+DPI, SIDE_MM, PITCH, COLUMNS, DOT_MM = 1200, 52.0, 2.4, 20, 0.6
+MM = 25.4 / DPI
+SIDE_PX = int(SIDE_MM / MM)
+U_PITCH = 2e-5  # mm
+KINDS = ('plate', 'board')
+
+
+def bed_of(seed):
+    """The scanner: its field, and what is in it."""
+    rng = np.random.default_rng([seed, 11])
+    field, parts = Field((SIDE_MM, SIDE_MM)), []
+    field.scale(rng.normal() * .003, rng.normal() * .003).shear(rng.normal() * .002)
+    field.smooth(rng.uniform(2, 12), 2.0, seed)
+    if seed % 2:
+        field.keystone(rng.normal() * 1e-5).bow(rng.normal() * 10)
+        parts.append('keystone')
+    if seed % 3 == 0:
+        field.ripple(rng.uniform(2, 6), rng.uniform(6, 15), rng.uniform(0, 6))
+        parts.append('ripple')
+    if seed % 4 == 2:
+        field.chips(rng.uniform(2, 6), rng.choice([-1, 1]) * rng.uniform(1, 4), rng.uniform(9, 14), rng.uniform(0, 9))
+        parts.append('chips')
+    if seed % 4 == 3:
+        field.step(rng.choice([-1, 1]) * rng.uniform(3, 15), rng.uniform(12, 40))
+        parts.append('step')
+    return field, parts
+
+
+def board_of(seed, kind):
+    rng = np.random.default_rng([seed, 12, KINDS.index(kind)])
+    if kind == 'plate':
+        board = Board('dots', PITCH, COLUMNS, COLUMNS, missing=[(0, 0), (1, 0), (0, 1)])
+        stretch = 1 + rng.normal(size=2) * U_PITCH / PITCH
+        board.x, board.y = board.x * stretch[0], board.y * stretch[1]
+        return board
+    bend = Field((COLUMNS * PITCH, COLUMNS * PITCH)).smooth(3, 1.5, seed + 500)
+    return Board('dots', PITCH, COLUMNS, COLUMNS, ratio=rng.normal() * .002, shear=rng.normal() * .001, mark_um=1.5, seed=seed,
+                 missing=[(0, 0), (1, 0), (0, 1)], bend=bend)
+
+
+def scan_plate(folder, board, field, seed, number, turn, rough, rng):
+    picture, _, _ = render(board, field, SIDE_MM / 2 + rng.uniform(-1, 1, 2), turn + rng.uniform(-1, 1), (SIDE_PX, SIDE_PX), DPI,
+                           size=DOT_MM, seed=100 * seed + number, rough=rough)
+    path = os.path.join(folder, 'plate%d.png' % number)
+    Image.fromarray(picture).save(path, dpi=(DPI, DPI), compress_level=1)
+    return path
+
+
+def judge_map(report, field, known):
+    points = np.array([[p['x_mm'], p['y_mm']] for p in report['map']])
+    told = np.array([[p['dx_um'], p['dy_um']] for p in report['map']])
+    u = np.array([[p['u_dx_um'], p['u_dy_um']] for p in report['map']])
+    true = 1000 * np.stack(field(points[:, 0], points[:, 1]), 1)
+    error = gauge_free(points, told - true, known)
+    found = [c['id'] for c in report['claims'] if c['verdict'] == 'found']
+    return {'before_um': np.sqrt((gauge_free(points, true, known) ** 2).mean()), 'after_um': np.sqrt((error ** 2).mean()),
+            'u_um': np.sqrt((u ** 2).mean()), 'coverage': (np.abs(error) < 2 * u).mean(), 'found': found}
+
+
+def warp(picture, field):
+    """What lies at a pixel's place plus the field of it is shown there."""
+    rows, columns = np.mgrid[0:picture.shape[0], 0:picture.shape[1]].astype(float)
+    dx, dy = field((columns * MM).ravel(), (rows * MM).ravel())
+    at = [rows.ravel() + dy / MM, columns.ravel() + dx / MM]
+    out = ndimage.map_coordinates(picture.astype(np.float32), at, order=3, mode='nearest').reshape(picture.shape)
+    return np.clip(np.rint(out), 0, 255).astype(np.uint8)
+
+
+def draw_foil(program, folder, seed, rough):
+    rng = np.random.default_rng([seed, 13])
+    foil = {'overall_radius_mm': 20.73 * (1 + rng.uniform(.002, .01)), 'rotate_deg': float(rng.uniform(-180, 180)),
+            'radius_mm': [float(3.32 * (1.015 + .01 * rng.standard_normal())) for _ in range(9)]}
+    scanner = {'dpi': DPI, 'blur_px': 1.2, 'noise': 2.0}
+    if rough:
+        scanner['rough'] = {'edge_roughness_um': 1.5, 'edge_common_um': 0.8, 'correlation_um': 60}
+    foil['centre_mm'] = [SIDE_MM / 2, SIDE_MM / 2]
+    spec = {'schema': 'foilgauge/render/1', 'seed': seed, 'width_px': SIDE_PX, 'height_px': SIDE_PX, 'foils': [foil], 'scanner': scanner}
+    path = os.path.join(folder, 'foil')
+    with open(path + '.json', 'w') as out:
+        json.dump(spec, out)
+    done, _ = run(program, 'render', path + '.json', '-o', path + '.png', '--truth', path + '.truth')
+    if done.returncode:
+        raise SystemExit(done.stderr)
+    truth = json.load(open(path + '.truth'))  # no form: its circles are the measurand
+    return path + '.png', truth
+
+
+def measure_foil(program, path, truth, *options):
+    out = path + '.report'
+    done, _ = run(program, 'measure', path, '-o', out, *options)
+    if done.returncode in (64, 65, 74):
+        return {'error': done.stderr.strip()[-200:]}
+    foil = json.load(open(out))['foils'][0]
+    errors = {'R0': [(1000 * (foil['overall']['radius_mm'] - truth['overall_radius_mm']), 1000 * foil['overall']['u_radius_mm'])],
+              'R': [], 'h': []}
+    for bump, r, h in [(b, t['radius_mm'], t['height_mm']) for b, t in zip(foil['bumps'], truth['bumps'])]:
+        errors['R'].append((1000 * (bump['radius_mm'] - r), 1000 * bump['u_radius_mm']))
+        errors['h'].append((1000 * (bump['height_mm'] - h), 1000 * bump['u_height_mm']))
+    return errors
+
+
+def foil_case(program, folder, field, seed, rough, model):
+    path, truth = draw_foil(program, folder, seed, rough)
+    warped = os.path.join(folder, 'warped.png')
+    save(warp(np.asarray(Image.open(path)), field), warped, DPI)
+    return {'perfect': measure_foil(program, path, truth), 'plain': measure_foil(program, warped, truth),
+            'map': measure_foil(program, warped, truth, '--model', model)}
+
+
+def one_case(program, seed, kind, rough, foils):
+    field, parts = bed_of(seed)
+    rng = np.random.default_rng([seed, 14, KINDS.index(kind), int(rough)])
+    case = {'seed': seed, 'kind': kind, 'rough': rough, 'parts': parts}
+    with tempfile.TemporaryDirectory() as folder:
+        board, known = board_of(seed, kind), kind == 'plate'
+        paths = [scan_plate(folder, board, field, seed, i, turn, rough, rng) for i, turn in enumerate([0] if known else [0, 90])]
+        stated = {'marks': 'dots', 'pitch_mm': PITCH}
+        if known:
+            stated['u_pitch_mm'] = U_PITCH
+        model = os.path.join(folder, 'model.json')
+        done, seconds = run(program, 'loop', *([] if known else ['--same-part']), *paths, '--design', write_design(folder, **stated),
+                            '-o', os.path.join(folder, 'o.json'), '--model-out', model)
+        if done.returncode or not os.path.exists(model):
+            case['error'] = done.stderr.strip()[-200:]
+            return case
+        case.update(judge_map(json.load(open(os.path.join(folder, 'o.json'))), field, known), seconds=seconds)
+        if known and foils:
+            case['foil'] = foil_case(program, folder, field, seed, rough, model)
+    return case
+
+
+def read_cases(path):
+    if not os.path.exists(path):
+        return []
+    with open(path) as text:
+        return [json.loads(line) for line in text]
+
+
+def work(options):
+    there = {(c['seed'], c['kind'], c['rough']) for c in read_cases(options.cases)}
+    for seed in range(options.first, options.first + options.beds):
+        for kind in KINDS:
+            for rough in (False, True):
+                if (seed, kind, rough) in there:
+                    continue
+                start = time.time()
+                case = one_case(options.program, seed, kind, rough, not options.no_foils)
+                case['wall'] = time.time() - start
+                with open(options.cases, 'a') as out:
+                    out.write(json.dumps(case) + '\n')
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument('program')
+    parser.add_argument('cases')
+    parser.add_argument('--beds', type=int, default=50)
+    parser.add_argument('--first', type=int, default=0)
+    parser.add_argument('--no-foils', action='store_true')
+    parser.add_argument('--out')
+    options = parser.parse_args()
+    options.program = os.path.abspath(options.program)
+    work(options)
+
+
+if __name__ == '__main__':
+    main()
