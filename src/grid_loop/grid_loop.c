@@ -73,7 +73,8 @@ static fg_status build_model(fg_context *ctx, grid_problem *problem) {
   FG_TRY(fg_grid_add_effects(ctx, problem));
   FG_TRY(fg_grid_refine_effects(ctx, problem));
   FG_TRY(fg_grid_prune_effects(ctx, problem));
-  return fg_grid_find_sizes(ctx, problem);
+  FG_TRY(fg_grid_find_sizes(ctx, problem));
+  return fg_grid_loosen_shapes(ctx, problem);
 }
 
 /* Standard deviation of Student's t with `dof` degrees of freedom, over that of a normal law. */

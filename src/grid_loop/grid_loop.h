@@ -26,6 +26,9 @@ fg_status fg_grid_loop_hold_out(fg_context *ctx, fg_grid_loop *loop);
 /* Makes the scanner's model: effects and map with their uncertainty. */
 fg_status fg_grid_loop_make_model(fg_context *ctx, fg_grid_loop *loop);
 
+/* Variance of the displacement at a place, mm², by jumps whose place the marks tell to a gap. */
+fg_point fg_grid_jump_variance(const fg_grid_loop *loop, fg_point at);
+
 /* Displacement of the scanner at a place by all columns of the solution: effects and map. Returns
  * how many are not 0. */
 size_t fg_grid_displacement_columns(const grid_problem *problem, const grid_columns *columns,

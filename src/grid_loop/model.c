@@ -68,9 +68,9 @@ static fg_status factor_covariance(fg_context *ctx, mode_work *work) {
           work->factor, i, j,
           widening * gsl_matrix_get(loop->solution.covariance, work->first + i, work->first + j));
   for (size_t e = 0; e < loop->problem.effects; e++) {
-    const fg_effect *kind = loop->problem.effect[e].kind;
-    for (size_t k = 0; k < kind->columns; k++, at++) {
-      if (is_smooth(kind)) continue;
+    size_t columns = fg_grid_effect_columns(&loop->problem.effect[e]);
+    for (size_t k = 0; k < columns; k++, at++) {
+      if (is_smooth(loop->problem.effect[e].kind)) continue;
       for (size_t j = 0; j < n; j++) {
         gsl_matrix_set(work->factor, at, j, 0);
         gsl_matrix_set(work->factor, j, at, 0);
@@ -233,6 +233,29 @@ exit:
   return status;
 }
 
+/* The u of each amplitude that moves the region, rms, by as much as all numbers of the effect
+ * together: amplitudes and a shape depend on each other. */
+static double u_of_effect(const fg_grid_loop *loop, const grid_effect *effect, size_t first) {
+  enum { STEPS = 40 };
+  const fg_field_frame *frame = &loop->problem.frame;
+  size_t own = effect->kind->columns, n = fg_grid_effect_columns(effect);
+  double variance = 0, unit = 0;
+  for (int i = 0; i <= STEPS; i++) {
+    fg_point d[FG_FIELD_COLUMNS];
+    double share = i / (double)STEPS;
+    fg_point at = {frame->low_mm[0] + share * (frame->high_mm[0] - frame->low_mm[0]),
+                   frame->low_mm[1] + share * (frame->high_mm[1] - frame->low_mm[1])};
+    fg_grid_effect_moves(effect, frame, at, d);
+    for (size_t a = 0; a < n; a++) {
+      if (a < own) unit += d[a].x * d[a].x + d[a].y * d[a].y;
+      for (size_t b = 0; b < n; b++)
+        variance += (d[a].x * d[b].x + d[a].y * d[b].y) *
+                    gsl_matrix_get(loop->solution.covariance, first + a, first + b);
+    }
+  }
+  return unit > 0 ? loop->widening * sqrt(fmax(0, variance) / unit) : 0;
+}
+
 /* A tied value is in no model: it may be the board's. */
 static void make_fields(const fg_grid_loop *loop, fg_scanner_model *model) {
   const grid_problem *problem = &loop->problem;
@@ -243,12 +266,13 @@ static void make_fields(const fg_grid_loop *loop, fg_scanner_model *model) {
     fg_field field = fg_effect_field(effect->kind);
     bool tied = loop->result.claim[e].verdict == FG_GRID_TIED;
     bool in_modes = problem->has_map && is_smooth(effect->kind);
-    for (size_t k = 0; k < effect->kind->columns; k++, at++) {
-      field.amplitude_mm[k] = gsl_vector_get(loop->solution.estimate, at);
-      field.u_amplitude_mm[k] =
-          in_modes ? 0 : loop->widening * sqrt(gsl_matrix_get(loop->solution.covariance, at, at));
+    double u = in_modes ? 0 : u_of_effect(loop, effect, at);
+    for (size_t k = 0; k < effect->kind->columns; k++) {
+      field.amplitude_mm[k] = gsl_vector_get(loop->solution.estimate, at + k);
+      field.u_amplitude_mm[k] = u;
     }
-    if (effect->kind->shapes) field.shape[0] = effect->shape[0];
+    memcpy(field.shape, effect->shape, sizeof field.shape);
+    at += fg_grid_effect_columns(effect);
     if (!tied && model->fields.count < FG_FIELDS_MAX)
       model->fields.fields[model->fields.count++] = field;
   }

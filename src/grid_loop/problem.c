@@ -13,11 +13,47 @@
 /* Spacing of the splines of a map, as a share of the region's longer side; marks per spline. */
 enum { MAP_INTERVALS = 10, MARKS_PER_SPLINE = 3 };
 
+/* Share of a shape over which its derivative is taken. */
+#define SHAPE_STEP 1e-4
+
+size_t fg_grid_effect_columns(const grid_effect *effect) {
+  return effect->kind->columns + (effect->loose ? effect->kind->shapes : 0);
+}
+
+static fg_point moved_by_shape(const grid_effect *effect, const fg_field_frame *frame,
+                               const double *shape, fg_point at) {
+  fg_point d[FG_FIELD_COLUMNS], sum = {0, 0};
+  effect->kind->glass(frame, shape, at, d);
+  for (size_t k = 0; k < effect->kind->columns; k++) {
+    sum.x += effect->amplitude_mm[k] * d[k].x;
+    sum.y += effect->amplitude_mm[k] * d[k].y;
+  }
+  return sum;
+}
+
+size_t fg_grid_effect_moves(const grid_effect *effect, const fg_field_frame *frame, fg_point at,
+                            fg_point d[FG_FIELD_COLUMNS]) {
+  size_t n = effect->kind->columns;
+  effect->kind->glass(frame, effect->shape, at, d);
+  for (size_t s = 0; effect->loose && s < effect->kind->shapes; s++) {
+    double low[FG_FIELD_SHAPES], high[FG_FIELD_SHAPES];
+    memcpy(low, effect->shape, sizeof low);
+    memcpy(high, effect->shape, sizeof high);
+    double step = SHAPE_STEP * fmax(fabs(effect->shape[s]), 1e-3);
+    low[s] -= step;
+    high[s] += step;
+    fg_point a = moved_by_shape(effect, frame, low, at);
+    fg_point b = moved_by_shape(effect, frame, high, at);
+    d[n++] = (fg_point){(b.x - a.x) / (2 * step), (b.y - a.y) / (2 * step)};
+  }
+  return n;
+}
+
 grid_columns fg_grid_columns(const grid_problem *problem) {
   grid_columns c = {0};
   size_t effect_columns = 0;
   for (size_t e = 0; e < problem->effects; e++)
-    effect_columns += problem->effect[e].kind->columns;
+    effect_columns += fg_grid_effect_columns(&problem->effect[e]);
   c.board = GRID_POSE * problem->scan_count;
   c.effect = c.board + GRID_AFFINE * problem->board_count;
   c.map = c.effect + effect_columns;
@@ -62,8 +98,8 @@ size_t fg_grid_row_columns(const grid_problem *problem, const grid_columns *colu
   for (size_t f = 0; f < problem->effects; f++) {
     const grid_effect *effect = &problem->effect[f];
     fg_point d[FG_FIELD_COLUMNS];
-    effect->kind->glass(&problem->frame, effect->shape, row->at, d);
-    for (size_t k = 0; k < effect->kind->columns; k++, n++) {
+    size_t own = fg_grid_effect_moves(effect, &problem->frame, row->at, d);
+    for (size_t k = 0; k < own; k++, n++) {
       index[n] = at++;
       value[n] = e.x * d[k].x + e.y * d[k].y;
     }

@@ -31,12 +31,22 @@ typedef struct grid_pose {
   double turn_rad;
 } grid_pose;
 
-/* An effect of the scanner in the model: columns with one shape. */
+enum { GRID_EFFECT_COLUMNS = 2, GRID_EFFECT_ALL = GRID_EFFECT_COLUMNS + FG_FIELD_SHAPES };
+
+/* An effect of the scanner in the model. Where its shape is `loose`, the displacement by a change
+ * of each shape, at `amplitude_mm`, is a column, too: the shape's uncertainty then is in all u. */
 typedef struct grid_effect {
   const fg_effect *kind;
   double shape[FG_FIELD_SHAPES];
-  double amplitude_mm[2], u_mm[2];
+  double amplitude_mm[GRID_EFFECT_COLUMNS];
+  bool loose;
 } grid_effect;
+
+/* Number of an effect's columns: the amplitudes, then the shapes that are loose. */
+size_t fg_grid_effect_columns(const grid_effect *effect);
+/* Displacement by every column of an effect for a unit of it; returns their number. */
+size_t fg_grid_effect_moves(const grid_effect *effect, const fg_field_frame *frame, fg_point at,
+                            fg_point d[FG_FIELD_COLUMNS]);
 
 typedef struct grid_board {
   double pitch_mm; /* of the first fit, or as stated */

@@ -5,13 +5,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/memory.h"
+#include "grid_loop/score.h"
+#include "rows/edge_fit.h"
 
 /* Chance that noise alone adds an effect, over all candidates; an effect stays where its square
  * over its variance exceeds this. */
 #define CHANCE    1e-3
 #define KEPT_CHI2 30.0
-enum { REFINEMENTS = 24 };
+/* Places on either side at which a shape is tried, and rounds of that, each closer. */
+enum { SCAN_PLACES = 5, SCAN_ROUNDS = 4, LOOSE_ROUNDS = 4 };
+/* A shape that a linear step moves by more than this share of it is not told well enough. */
+#define LOOSE_SHARE 0.2
 
 /* Ratio of the axes, then shear: the effects that one ring cannot tell from its own form. */
 void fg_grid_begin_effects(grid_problem *problem) {
@@ -31,103 +35,33 @@ static bool is_in_model(const grid_problem *problem, const fg_effect *kind) {
   return false;
 }
 
-/* Ripples and steps may occur more than once. */
+/* A name is not needed for what a map follows: of the effects that evidence alone asks for on
+ * foils, these are the ones with jumps or waves. Ripples and steps may occur more than once. */
 static bool is_candidate(const grid_problem *problem, const fg_effect *kind) {
-  if (!kind->glass || fg_effect_is_free(kind) || kind->scales || kind->by_evidence) return false;
-  if (kind->columns > 2 || kind->shapes > 1) return false;
+  if (!kind->glass || fg_effect_is_free(kind) || kind->scales) return false;
+  if (kind->columns > GRID_EFFECT_COLUMNS) return false;
+  if (kind->by_evidence && !kind->jumps && kind->numbers != FG_EFFECT_WAVE) return false;
   return kind->sought == FG_EFFECT_PLACED || !is_in_model(problem, kind);
 }
 
-/* Everything that scoring needs of the present model. */
-typedef struct score_work {
-  const grid_problem *problem;
-  const grid_solution *solution;
-  double variance;   /* of a row */
-  double *projected; /* owned; one per column of the model */
-} score_work;
-
-/* Products of the candidate's columns: with each other, with the residual, with the model. */
-static void project_candidate(score_work *work, const grid_effect *candidate, double own[2][2],
-                              double right[2], double *cross) {
-  const grid_problem *problem = work->problem;
-  size_t index[GRID_ROW_MAX], count = work->solution->columns.count;
-  double value[GRID_ROW_MAX];
-  memset(cross, 0, 2 * count * sizeof *cross);
-  memset(own, 0, 4 * sizeof(double));
-  right[0] = right[1] = 0;
-  for (size_t i = 0; i < problem->row_count; i++) {
-    const grid_row *row = &problem->rows[i];
-    fg_point d[FG_FIELD_COLUMNS];
-    double c[2] = {0};
-    if (!row->used) continue;
-    candidate->kind->glass(&problem->frame, candidate->shape, row->at, d);
-    for (size_t k = 0; k < candidate->kind->columns; k++)
-      c[k] = row->direction.x * d[k].x + row->direction.y * d[k].y;
-    if (c[0] == 0 && c[1] == 0) continue;
-    size_t n = fg_grid_row_columns(problem, &work->solution->columns, row, index, value);
-    for (int k = 0; k < 2; k++) {
-      right[k] += c[k] * work->solution->residual[i];
-      own[k][0] += c[k] * c[0];
-      own[k][1] += c[k] * c[1];
-      for (size_t j = 0; j < n; j++)
-        cross[(size_t)k * count + index[j]] += c[k] * value[j];
-    }
-  }
-}
-
-/* The sum of squares that a candidate takes from the residual beside the model, in variances. */
-static double score_candidate(score_work *work, const grid_effect *candidate) {
-  size_t count = work->solution->columns.count;
-  double own[2][2], right[2], *cross = work->projected;
-  project_candidate(work, candidate, own, right, cross);
-  double left[2][2], s2 = work->variance;
-  double mark2 = work->problem->mark_sd * work->problem->mark_sd;
-  for (int a = 0; a < 2; a++)
-    for (int b = 0; b < 2; b++) {
-      double taken = 0;
-      for (size_t i = 0; i < count; i++) {
-        const double *row = gsl_matrix_const_ptr(work->solution->covariance, i, 0);
-        double with = 0, ci = cross[(size_t)a * count + i];
-        if (ci == 0) continue;
-        for (size_t j = 0; j < count; j++)
-          with += row[j] * cross[(size_t)b * count + j];
-        taken += ci * with;
-      }
-      left[a][b] = own[a][b] - taken / mark2;
-    }
-  if (candidate->kind->columns == 1)
-    return left[0][0] > 1e-9 * own[0][0] ? right[0] * right[0] / (left[0][0] * s2) : 0;
-  double det = left[0][0] * left[1][1] - left[0][1] * left[1][0];
-  if (!(det > 1e-9 * own[0][0] * own[1][1])) return 0;
-  return (left[1][1] * right[0] * right[0] - 2 * left[0][1] * right[0] * right[1] +
-          left[0][0] * right[1] * right[1]) /
-         (det * s2);
-}
-
-static grid_effect candidate_of(const grid_problem *problem, const fg_effect *kind, size_t start) {
+/* A start of a candidate, and how far from it its shapes may lie. */
+static grid_effect candidate_of(const grid_problem *problem, const fg_effect *kind, size_t start,
+                                double reach[FG_FIELD_SHAPES]) {
+  const fg_field_frame *frame = &problem->frame;
   grid_effect candidate = {.kind = kind};
-  if (kind->polynomial != FG_EFFECT_NO_POLYNOMIAL)
-    candidate.shape[0] = problem->frame.centre_mm[kind->axis];
-  else if (kind->start)
-    candidate.shape[0] = kind->start(&problem->frame, start, kind->starts);
-  return candidate;
-}
-
-/* Moves the shape to the best place between its neighbours, by thirds. */
-static void refine_shape(score_work *work, double low, double high, grid_effect *best,
-                         double *score) {
-  for (int round = 0; round < REFINEMENTS; round++) {
-    grid_effect a = *best, b = *best;
-    a.shape[0] = low + 0.382 * (high - low);
-    b.shape[0] = high - 0.382 * (high - low);
-    double of_a = score_candidate(work, &a), of_b = score_candidate(work, &b);
-    if (of_a > *score) *best = a, *score = of_a;
-    if (of_b > *score) *best = b, *score = of_b;
-    if (of_a > of_b)
-      high = b.shape[0];
-    else
-      low = a.shape[0];
+  reach[0] = reach[1] = 0;
+  if (kind->polynomial != FG_EFFECT_NO_POLYNOMIAL) {
+    candidate.shape[0] = frame->centre_mm[kind->axis];
+  } else if (kind->grid) {
+    fg_edge_fit no_edges = {.frame = *frame};
+    kind->grid(&no_edges, start, kind->starts, candidate.shape, reach);
+  } else if (kind->start) {
+    candidate.shape[0] = kind->start(frame, start, kind->starts);
+    double before = kind->start(frame, start ? start - 1 : 0, kind->starts);
+    double after = kind->start(frame, start + 1 < kind->starts ? start + 1 : start, kind->starts);
+    reach[0] = fmax(fabs(after - candidate.shape[0]), fabs(before - candidate.shape[0]));
   }
+  return candidate;
 }
 
 /* A ripple of which the marks show less than two places a period could be another one; one that is
@@ -139,47 +73,67 @@ static bool is_no_ripple(const grid_problem *problem, const grid_effect *candida
           candidate->shape[0] > 0.5 * length);
 }
 
+/* Moves one shape to the best place of a few about it. Scores have jumps over the places of jumps,
+ * so no descent would do. */
+static void scan_shape(grid_score_work *work, size_t s, double reach, grid_effect *best,
+                       double *score) {
+  grid_effect about = *best;
+  for (int i = -SCAN_PLACES; i <= SCAN_PLACES; i++) {
+    grid_effect tried = about;
+    tried.shape[s] += reach * i / SCAN_PLACES;
+    if (!i || is_no_ripple(work->problem, &tried)) continue;
+    double own = fg_grid_score(work, &tried);
+    if (own > *score) *best = tried, *score = own;
+  }
+}
+
+/* Moves all shapes to the best place within their reach, closer from round to round. */
+static void refine_shapes(grid_score_work *work, const double reach[FG_FIELD_SHAPES],
+                          grid_effect *best, double *score) {
+  double share = 1;
+  for (int round = 0; round < SCAN_ROUNDS; round++, share /= SCAN_PLACES)
+    for (int again = 0; again < (best->kind->shapes > 1 ? 2 : 1); again++)
+      for (size_t s = 0; s < best->kind->shapes; s++)
+        if (reach[s] > 0) scan_shape(work, s, share * reach[s], best, score);
+}
+
 /* Best candidate of one kind. */
-static double search_kind(score_work *work, const fg_effect *kind, grid_effect *best) {
+static double search_kind(grid_score_work *work, const fg_effect *kind, grid_effect *best) {
   const grid_problem *problem = work->problem;
-  size_t starts = kind->start ? kind->starts : 1, at = 0;
-  double score = -1;
+  size_t starts = kind->start || kind->grid ? kind->starts : 1;
+  double score = -1, best_reach[FG_FIELD_SHAPES] = {0};
   for (size_t i = 0; i < starts; i++) {
-    grid_effect candidate = candidate_of(problem, kind, i);
+    double reach[FG_FIELD_SHAPES];
+    grid_effect candidate = candidate_of(problem, kind, i, reach);
     if (is_no_ripple(problem, &candidate)) continue;
-    double own = score_candidate(work, &candidate);
+    double own = fg_grid_score(work, &candidate);
     if (own <= score) continue;
     score = own;
     *best = candidate;
-    at = i;
+    memcpy(best_reach, reach, sizeof reach);
   }
-  if (!kind->start || score < 0) return score;
-  double low = kind->start(&problem->frame, at ? at - 1 : 0, starts);
-  double high = kind->start(&problem->frame, at + 1 < starts ? at + 1 : at, starts);
-  refine_shape(work, low, high, best, &score);
+  if (score > 0) refine_shapes(work, best_reach, best, &score);
   return score;
 }
 
-static double variance_of(const grid_problem *problem, const grid_solution *solution) {
-  double square = 0, n = 0;
-  for (size_t i = 0; i < problem->row_count; i++) {
-    if (!problem->rows[i].used) continue;
-    square += solution->residual[i] * solution->residual[i];
-    n++;
-  }
-  return square / fmax(1, n - (double)solution->columns.board_map);
+/* Numbers cost as in Schwarz's criterion, so that a kind that contains another one is taken only
+ * where its further numbers tell. */
+static double number_cost(const grid_problem *problem, const fg_effect *kind) {
+  return log((double)problem->row_count) * (double)(kind->columns + kind->shapes);
 }
 
 /* Best of all candidates: true when it stands out. */
-static bool find_best_effect(score_work *work, grid_effect *best) {
-  double max_score = -1, candidates = 0;
+static bool find_best_effect(grid_score_work *work, grid_effect *best) {
+  double max_score = -1, max_left = -INFINITY, candidates = 0;
   for (const fg_effect *kind = fg_effect_first(); kind; kind = fg_effect_next(kind)) {
     grid_effect own;
     if (!is_candidate(work->problem, kind)) continue;
-    candidates += kind->start ? (double)kind->starts : 1;
+    candidates += kind->start || kind->grid ? (double)kind->starts : 1;
     double score = search_kind(work, kind, &own);
-    if (score <= max_score) continue;
+    double left = score - number_cost(work->problem, kind);
+    if (score < 0 || left <= max_left) continue;
     max_score = score;
+    max_left = left;
     *best = own;
   }
   return max_score > 2 * log(candidates / CHANCE) + 2 * ((double)best->kind->columns - 1);
@@ -191,16 +145,14 @@ fg_status fg_grid_add_effects(fg_context *ctx, grid_problem *problem) {
   problem->board_sd = 0; /* rows count alone in scores */
   for (bool found = true; found && problem->effects < GRID_EFFECTS_MAX && status == FG_OK;) {
     grid_solution solution;
+    grid_score_work work;
     grid_effect best = {0};
     status = fg_grid_solve(ctx, problem, GRID_ALL_ROWS, &solution);
     if (status != FG_OK) break;
-    score_work work = {.problem = problem, .solution = &solution};
-    work.variance = variance_of(problem, &solution);
-    status = fg_memory_allocate(ctx, 2 * solution.columns.count, sizeof(double),
-                                (void **)&work.projected);
+    status = fg_grid_score_open(ctx, problem, &solution, &work);
     found = status == FG_OK && find_best_effect(&work, &best);
     if (found) problem->effect[problem->effects++] = best;
-    free(work.projected);
+    fg_grid_score_close(&work);
     fg_grid_solution_free(&solution);
   }
   problem->board_sd = kept;
@@ -211,7 +163,7 @@ static size_t first_column_of(const grid_problem *problem, const grid_solution *
                               size_t effect) {
   size_t at = solution->columns.effect;
   for (size_t e = 0; e < effect; e++)
-    at += problem->effect[e].kind->columns;
+    at += fg_grid_effect_columns(&problem->effect[e]);
   return at;
 }
 
@@ -227,39 +179,40 @@ double fg_grid_effect_chi2(const grid_problem *problem, const grid_solution *sol
   return (bb * a * a - 2 * ab * a * b + aa * b * b) / det;
 }
 
-/* Start of the search for a shape that lies next to one in force. */
-static size_t nearest_start(const grid_problem *problem, const grid_effect *effect) {
-  size_t best = 0;
+/* Start of the search for a shape that lies next to one in force, with its reach. */
+static void find_shape_reach(const grid_problem *problem, const grid_effect *effect,
+                             double reach[FG_FIELD_SHAPES]) {
   double min = INFINITY;
   for (size_t i = 0; i < effect->kind->starts; i++) {
-    double off =
-        fabs(effect->kind->start(&problem->frame, i, effect->kind->starts) - effect->shape[0]);
-    if (off < min) min = off, best = i;
+    double own[FG_FIELD_SHAPES];
+    grid_effect start = candidate_of(problem, effect->kind, i, own);
+    double off = fabs(start.shape[0] - effect->shape[0]) + fabs(start.shape[1] - effect->shape[1]);
+    if (off >= min) continue;
+    min = off;
+    memcpy(reach, own, sizeof own);
   }
-  return best;
 }
 
 static fg_status refine_effect(fg_context *ctx, grid_problem *problem, size_t e) {
-  grid_effect kept = problem->effect[e];
+  grid_effect *effect = &problem->effect[e];
   grid_solution solution;
-  score_work work = {.problem = problem, .solution = &solution};
+  grid_score_work work;
+  double reach[FG_FIELD_SHAPES] = {0};
   grid_problem without = *problem;
   without.effects--;
   memmove(&without.effect[e], &without.effect[e + 1],
           (without.effects - e) * sizeof *without.effect);
-  work.problem = &without;
   FG_TRY(fg_grid_solve(ctx, &without, GRID_ALL_ROWS, &solution));
-  fg_status status =
-      fg_memory_allocate(ctx, 2 * solution.columns.count, sizeof(double), (void **)&work.projected);
+  fg_status status = fg_grid_score_open(ctx, &without, &solution, &work);
   if (status == FG_OK) {
-    size_t at = nearest_start(problem, &kept), starts = kept.kind->starts;
-    double low = kept.kind->start(&problem->frame, at ? at - 1 : 0, starts);
-    double high = kept.kind->start(&problem->frame, at + 1 < starts ? at + 1 : at, starts);
-    work.variance = variance_of(&without, &solution);
-    double score = score_candidate(&work, &kept);
-    refine_shape(&work, low, high, &problem->effect[e], &score);
+    double score = fg_grid_score(&work, effect);
+    find_shape_reach(problem, effect, reach);
+    refine_shapes(&work, reach, effect, &score);
+    grid_effect best = *effect;
+    /* Two shapes have many maxima, and the first best one was found without the other effects. */
+    if (effect->kind->grid && search_kind(&work, effect->kind, &best) > score) *effect = best;
   }
-  free(work.projected);
+  fg_grid_score_close(&work);
   fg_grid_solution_free(&solution);
   return status;
 }
@@ -269,9 +222,55 @@ fg_status fg_grid_refine_effects(fg_context *ctx, grid_problem *problem) {
   fg_status status = FG_OK;
   problem->board_sd = 0;
   for (size_t e = fg_grid_own_effects(problem); e < problem->effects && status == FG_OK; e++)
-    if (problem->effect[e].kind->start) status = refine_effect(ctx, problem, e);
+    if (problem->effect[e].kind->start || problem->effect[e].kind->grid)
+      status = refine_effect(ctx, problem, e);
   problem->board_sd = kept;
   return status;
+}
+
+/* The place of a jump alone has no derivative, but the slope between jumps of one pitch has. The
+ * middle of a polynomial is a matter of the axes. */
+static bool can_be_loose(const fg_effect *kind) {
+  if (kind->jumps) return kind->shapes == 2;
+  return kind->shapes && kind->polynomial == FG_EFFECT_NO_POLYNOMIAL;
+}
+
+/* Moves a loose shape; false where it would leave its neighbourhood. */
+static bool move_effect(grid_effect *effect, const double *estimate) {
+  size_t own = effect->kind->columns, all = fg_grid_effect_columns(effect);
+  for (size_t k = own; k < all; k++)
+    if (fabs(estimate[k]) > LOOSE_SHARE * fabs(effect->shape[k - own])) return false;
+  for (size_t k = own; k < all; k++)
+    effect->shape[k - own] += estimate[k];
+  memcpy(effect->amplitude_mm, estimate, own * sizeof *estimate);
+  return true;
+}
+
+/* Moves loose shapes by what the solution says; `fixed` becomes true for those that do not
+ * converge.
+ */
+static void move_loose_shapes(grid_problem *problem, const grid_solution *solution, bool *fixed) {
+  size_t at = solution->columns.effect;
+  for (size_t e = 0; e < problem->effects; e++) {
+    grid_effect *effect = &problem->effect[e];
+    size_t all = fg_grid_effect_columns(effect);
+    if (effect->kind->columns <= GRID_EFFECT_COLUMNS)
+      fixed[e] |= !move_effect(effect, gsl_vector_const_ptr(solution->estimate, at));
+    at += all;
+  }
+}
+
+fg_status fg_grid_loosen_shapes(fg_context *ctx, grid_problem *problem) {
+  bool fixed[GRID_EFFECTS_MAX] = {false};
+  for (int round = 0; round < LOOSE_ROUNDS; round++) {
+    grid_solution solution;
+    FG_TRY(fg_grid_solve(ctx, problem, GRID_ALL_ROWS, &solution));
+    move_loose_shapes(problem, &solution, fixed);
+    fg_grid_solution_free(&solution);
+    for (size_t e = fg_grid_own_effects(problem); e < problem->effects; e++)
+      problem->effect[e].loose = can_be_loose(problem->effect[e].kind) && !fixed[e];
+  }
+  return FG_OK;
 }
 
 fg_status fg_grid_prune_effects(fg_context *ctx, grid_problem *problem) {

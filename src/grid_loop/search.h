@@ -16,6 +16,10 @@ fg_status fg_grid_add_effects(fg_context *ctx, grid_problem *problem);
 /* Moves the shapes of added effects to the best places beside all others and the map. */
 fg_status fg_grid_refine_effects(fg_context *ctx, grid_problem *problem);
 
+/* Puts the shapes of waves and lengths among the unknowns, about where they are: all uncertainties
+ * then hold theirs. */
+fg_status fg_grid_loosen_shapes(fg_context *ctx, grid_problem *problem);
+
 /* Drops added effects that are not told beside all others and the map. */
 fg_status fg_grid_prune_effects(fg_context *ctx, grid_problem *problem);
 

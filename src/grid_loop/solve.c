@@ -14,7 +14,11 @@
  * 18 mm; other effects by a millimetre. */
 #define U_RATIO_MM (0.01 * FG_FIELD_HALF_MM)
 #define U_OTHER_MM 1.0
-#define U_POSE     1e3
+/* Of a loose shape, which the search has found: a share of it. */
+#define U_SHAPE 0.1
+/* Of a pitch of jumps, which lie between marks. */
+#define U_JUMPS 0.02
+#define U_POSE  1e3
 /* A map has no straight part: that is scale, ratio, shear and pose. Weight of that. */
 #define STRAIGHT_WEIGHT 1e6
 
@@ -77,6 +81,19 @@ static bool is_ratio(const fg_effect *kind) {
   return kind->polynomial == FG_EFFECT_LINEAR || kind->numbers == FG_EFFECT_RATIO;
 }
 
+/* Returns the column behind the effect's. */
+static size_t add_effect_prior(const grid_effect *effect, size_t at, gsl_matrix *normal) {
+  size_t columns = fg_grid_effect_columns(effect);
+  for (size_t k = 0; k < columns; k++) {
+    double sd = is_ratio(effect->kind) ? U_RATIO_MM : U_OTHER_MM;
+    if (k >= effect->kind->columns)
+      sd = (effect->kind->jumps ? U_JUMPS : U_SHAPE) *
+           fmax(fabs(effect->shape[k - effect->kind->columns]), U_SHAPE);
+    add_diagonal(normal, at + k, sd);
+  }
+  return at + columns;
+}
+
 static void add_prior(const grid_problem *problem, const grid_columns *columns,
                       gsl_matrix *normal) {
   for (size_t k = columns->pose; k < columns->board; k++)
@@ -90,8 +107,7 @@ static void add_prior(const grid_problem *problem, const grid_columns *columns,
   }
   size_t at = columns->effect;
   for (size_t e = 0; e < problem->effects; e++)
-    for (size_t k = 0; k < problem->effect[e].kind->columns; k++)
-      add_diagonal(normal, at++, is_ratio(problem->effect[e].kind) ? U_RATIO_MM : U_OTHER_MM);
+    at = add_effect_prior(&problem->effect[e], at, normal);
   if (problem->has_map) add_map_prior(&problem->map, columns->map, problem->map_size, normal);
   if (problem->has_board_map)
     add_map_prior(&problem->board_map, columns->board_map, problem->board_map_size, normal);

@@ -22,8 +22,8 @@ size_t fg_grid_displacement_columns(const grid_problem *problem, const grid_colu
   for (size_t e = 0; e < problem->effects; e++) {
     const grid_effect *effect = &problem->effect[e];
     fg_point d[FG_FIELD_COLUMNS];
-    effect->kind->glass(&problem->frame, effect->shape, at, d);
-    for (size_t k = 0; k < effect->kind->columns; k++, n++) {
+    size_t own = fg_grid_effect_moves(effect, &problem->frame, at, d);
+    for (size_t k = 0; k < own; k++, n++) {
       index[n] = column++;
       value[n] = d[k];
     }
@@ -50,7 +50,7 @@ static double covariance_at(const fg_grid_loop *loop, size_t a, size_t b) {
 static size_t effect_column(const fg_grid_loop *loop, size_t effect) {
   size_t at = loop->solution.columns.effect;
   for (size_t e = 0; e < effect; e++)
-    at += loop->problem.effect[e].kind->columns;
+    at += fg_grid_effect_columns(&loop->problem.effect[e]);
   return at;
 }
 
@@ -198,7 +198,9 @@ static fg_status tell_map_points(fg_context *ctx, fg_grid_loop *loop, size_t cou
     gsl_blas_ddot(&move.vector, &estimate.vector, &d);
     gsl_blas_ddot(&move.vector, &by.vector, &variance);
     fg_grid_map_point *point = &result->map[k / 2];
-    double u = hypot(1000 * loop->widening * sqrt(fmax(0, variance)), k % 2 ? random : 0);
+    fg_point jump = fg_grid_jump_variance(loop, point->at_mm);
+    variance = loop->widening * loop->widening * fmax(0, variance) + (k % 2 ? jump.y : jump.x);
+    double u = hypot(1000 * sqrt(variance), k % 2 ? random : 0);
     *(k % 2 ? &point->d_um.y : &point->d_um.x) = 1000 * d;
     *(k % 2 ? &point->u_um.y : &point->u_um.x) = u;
   }

@@ -25,15 +25,14 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from grid import gauge_free, run, save, write_design  # noqa: E402
 from other_grid import Board, Field, render  # noqa: E402
 
-DPI, SIDE_MM, PITCH, COLUMNS, DOT_MM = 1200, 52.0, 2.4, 20, 0.6
-MM = 25.4 / DPI
-SIDE_PX = int(SIDE_MM / MM)
+SIDE_MM, PITCH, COLUMNS, DOT_MM = 52.0, 2.4, 20, 0.6
+MAP_DPI, FOIL_DPI = 600, 1200
 U_PITCH = 2e-5  # mm
 KINDS = ('plate', 'board')
 
 
 def bed_of(seed):
-    """The scanner: its field, and what is in it."""
+    """The scanner: its field, and the names of its parts."""
     rng = np.random.default_rng([seed, 11])
     field, parts = Field((SIDE_MM, SIDE_MM)), []
     field.scale(rng.normal() * .003, rng.normal() * .003).shear(rng.normal() * .002)
@@ -53,23 +52,24 @@ def bed_of(seed):
     return field, parts
 
 
-def board_of(seed, kind):
-    rng = np.random.default_rng([seed, 12, KINDS.index(kind)])
+def board_of(seed, kind, rough):
+    rng = np.random.default_rng([seed, 12, KINDS.index(kind), int(rough)])
     if kind == 'plate':
         board = Board('dots', PITCH, COLUMNS, COLUMNS, missing=[(0, 0), (1, 0), (0, 1)])
         stretch = 1 + rng.normal(size=2) * U_PITCH / PITCH
         board.x, board.y = board.x * stretch[0], board.y * stretch[1]
         return board
-    bend = Field((COLUMNS * PITCH, COLUMNS * PITCH)).smooth(3, 1.5, seed + 500)
-    return Board('dots', PITCH, COLUMNS, COLUMNS, ratio=rng.normal() * .002, shear=rng.normal() * .001, mark_um=1.5, seed=seed,
+    bend = Field((COLUMNS * PITCH, COLUMNS * PITCH)).smooth(3, 1.5, 2 * seed + rough + 500)
+    return Board('dots', PITCH, COLUMNS, COLUMNS, ratio=rng.normal() * .002, shear=rng.normal() * .001, mark_um=1.5, seed=2 * seed + rough,
                  missing=[(0, 0), (1, 0), (0, 1)], bend=bend)
 
 
-def scan_plate(folder, board, field, seed, number, turn, rough, rng):
-    picture, _, _ = render(board, field, SIDE_MM / 2 + rng.uniform(-1, 1, 2), turn + rng.uniform(-1, 1), (SIDE_PX, SIDE_PX), DPI,
-                           size=DOT_MM, seed=100 * seed + number, rough=rough)
+def scan_plate(folder, board, field, seed, number, turn, rough, rng, dpi):
+    side = int(SIDE_MM * dpi / 25.4)
+    picture, _, _ = render(board, field, SIDE_MM / 2 + rng.uniform(-1, 1, 2), turn + rng.uniform(-1, 1), (side, side), dpi, size=DOT_MM,
+                           seed=100 * seed + number, rough=rough)
     path = os.path.join(folder, 'plate%d.png' % number)
-    Image.fromarray(picture).save(path, dpi=(DPI, DPI), compress_level=1)
+    Image.fromarray(picture).save(path, dpi=(dpi, dpi), compress_level=1)
     return path
 
 
@@ -84,11 +84,11 @@ def judge_map(report, field, known):
             'u_um': np.sqrt((u ** 2).mean()), 'coverage': (np.abs(error) < 2 * u).mean(), 'found': found}
 
 
-def warp(picture, field):
-    """What lies at a pixel's place plus the field of it is shown there."""
+def warp(picture, field, mm):
+    """A pixel shows its place on the glass plus the field there."""
     rows, columns = np.mgrid[0:picture.shape[0], 0:picture.shape[1]].astype(float)
-    dx, dy = field((columns * MM).ravel(), (rows * MM).ravel())
-    at = [rows.ravel() + dy / MM, columns.ravel() + dx / MM]
+    dx, dy = field((columns * mm).ravel(), (rows * mm).ravel())
+    at = [rows.ravel() + dy / mm, columns.ravel() + dx / mm]
     out = ndimage.map_coordinates(picture.astype(np.float32), at, order=3, mode='nearest').reshape(picture.shape)
     return np.clip(np.rint(out), 0, 255).astype(np.uint8)
 
@@ -97,11 +97,11 @@ def draw_foil(program, folder, seed, rough):
     rng = np.random.default_rng([seed, 13])
     foil = {'overall_radius_mm': 20.73 * (1 + rng.uniform(.002, .01)), 'rotate_deg': float(rng.uniform(-180, 180)),
             'radius_mm': [float(3.32 * (1.015 + .01 * rng.standard_normal())) for _ in range(9)]}
-    scanner = {'dpi': DPI, 'blur_px': 1.2, 'noise': 2.0}
+    scanner = {'dpi': FOIL_DPI, 'blur_px': 1.2, 'noise': 2.0}
     if rough:
         scanner['rough'] = {'edge_roughness_um': 1.5, 'edge_common_um': 0.8, 'correlation_um': 60}
-    foil['centre_mm'] = [SIDE_MM / 2, SIDE_MM / 2]
-    spec = {'schema': 'foilgauge/render/1', 'seed': seed, 'width_px': SIDE_PX, 'height_px': SIDE_PX, 'foils': [foil], 'scanner': scanner}
+    foil['centre_mm'], side = [SIDE_MM / 2, SIDE_MM / 2], int(SIDE_MM * FOIL_DPI / 25.4)
+    spec = {'schema': 'foilgauge/render/1', 'seed': seed, 'width_px': side, 'height_px': side, 'foils': [foil], 'scanner': scanner}
     path = os.path.join(folder, 'foil')
     with open(path + '.json', 'w') as out:
         json.dump(spec, out)
@@ -129,29 +129,30 @@ def measure_foil(program, path, truth, *options):
 def foil_case(program, folder, field, seed, rough, model):
     path, truth = draw_foil(program, folder, seed, rough)
     warped = os.path.join(folder, 'warped.png')
-    save(warp(np.asarray(Image.open(path)), field), warped, DPI)
+    save(warp(np.asarray(Image.open(path)), field, 25.4 / FOIL_DPI), warped, FOIL_DPI)
     return {'perfect': measure_foil(program, path, truth), 'plain': measure_foil(program, warped, truth),
             'map': measure_foil(program, warped, truth, '--model', model)}
 
 
-def one_case(program, seed, kind, rough, foils):
+def one_case(program, seed, kind, rough, with_foil):
     field, parts = bed_of(seed)
     rng = np.random.default_rng([seed, 14, KINDS.index(kind), int(rough)])
-    case = {'seed': seed, 'kind': kind, 'rough': rough, 'parts': parts}
+    dpi = FOIL_DPI if with_foil else MAP_DPI
+    case = {'seed': seed, 'kind': kind, 'rough': rough, 'parts': parts, 'dpi': dpi}
     with tempfile.TemporaryDirectory() as folder:
-        board, known = board_of(seed, kind), kind == 'plate'
-        paths = [scan_plate(folder, board, field, seed, i, turn, rough, rng) for i, turn in enumerate([0] if known else [0, 90])]
+        board, known = board_of(seed, kind, rough), kind == 'plate'
+        paths = [scan_plate(folder, board, field, seed, i, turn, rough, rng, dpi) for i, turn in enumerate([0] if known else [0, 90])]
         stated = {'marks': 'dots', 'pitch_mm': PITCH}
         if known:
             stated['u_pitch_mm'] = U_PITCH
         model = os.path.join(folder, 'model.json')
-        done, seconds = run(program, 'loop', *([] if known else ['--same-part']), *paths, '--design', write_design(folder, **stated),
-                            '-o', os.path.join(folder, 'o.json'), '--model-out', model)
+        done, seconds = run(program, 'loop', *([] if known else ['--same-part', '--turned', '0,90']), *paths, '--design',
+                            write_design(folder, **stated), '-o', os.path.join(folder, 'o.json'), '--model-out', model)
         if done.returncode or not os.path.exists(model):
             case['error'] = done.stderr.strip()[-200:]
             return case
         case.update(judge_map(json.load(open(os.path.join(folder, 'o.json'))), field, known), seconds=seconds)
-        if known and foils:
+        if with_foil:
             case['foil'] = foil_case(program, folder, field, seed, rough, model)
     return case
 
@@ -164,17 +165,15 @@ def read_cases(path):
 
 
 def work(options):
-    there = {(c['seed'], c['kind'], c['rough']) for c in read_cases(options.cases)}
+    there = {(c['seed'], c['kind'], c['rough'], c['dpi']) for c in read_cases(options.cases)}
     for seed in range(options.first, options.first + options.beds):
-        for kind in KINDS:
-            for rough in (False, True):
-                if (seed, kind, rough) in there:
-                    continue
-                start = time.time()
-                case = one_case(options.program, seed, kind, rough, not options.no_foils)
-                case['wall'] = time.time() - start
-                with open(options.cases, 'a') as out:
-                    out.write(json.dumps(case) + '\n')
+        wanted = [('plate', rough, True) for rough in (False, True)] if options.foils else [(k, r, False) for k in KINDS for r in (False, True)]
+        for kind, rough, with_foil in wanted:
+            if (seed, kind, rough, FOIL_DPI if with_foil else MAP_DPI) in there:
+                continue
+            case = one_case(options.program, seed, kind, rough, with_foil)
+            with open(options.cases, 'a') as out:
+                out.write(json.dumps(case) + '\n')
 
 
 def main():
@@ -183,7 +182,7 @@ def main():
     parser.add_argument('cases')
     parser.add_argument('--beds', type=int, default=50)
     parser.add_argument('--first', type=int, default=0)
-    parser.add_argument('--no-foils', action='store_true')
+    parser.add_argument('--foils', action='store_true', help='plates at the resolution of foils, and a foil each')
     parser.add_argument('--out')
     options = parser.parse_args()
     options.program = os.path.abspath(options.program)

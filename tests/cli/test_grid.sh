@@ -70,4 +70,19 @@ S
 expect 0 "" "$program" render pins.json -o pins.png
 expect 0 "" "$program" measure pins.png --form discs --tone linear --model scanner.json -o pins_corrected.json
 near "the radius through the map" "$(member pins_corrected.json radius_mm)" 5 0.0005
+
+# Names are for displacements that no map follows: tilted chips with gaps, and a ripple whose period is as uncertain as the marks make it.
+spec chips.json dots 1.5 4 '{"id": "scan.chip_tilt", "amplitude_um": 12, "x_mm": 4, "pitch_mm": 10}, {"id": "scan.chip_gap",
+ "amplitude_um": 9, "x_mm": 4, "pitch_mm": 10}, {"id": "scan.carriage_ripple", "amplitude_um": 8, "period_mm": 8.5}'
+sed -i 's/"ratio": 0.0015/"ratio": 0, "mark_mm": 0.6/' chips.json
+expect 0 "" "$program" render chips.json -o chips.png
+expect 0 "" "$program" loop chips.png --design known.json -o chips_loop.json
+python3 -c "
+import json
+claims = {c['id']: c for c in json.load(open('chips_loop.json'))['claims'] if c['verdict'] == 'found'}
+for name, size in (('scan.chip_tilt', 12), ('scan.chip_gap', 9), ('scan.carriage_ripple', 8)):
+    assert name in claims, (name, list(claims))
+    assert abs(abs(claims[name]['amplitude_um']) - size) < 1.5, claims[name]  # marks that lie across a seam shrink it
+assert abs(claims['scan.carriage_ripple']['shape_mm'] - 8.5) < 0.05, claims['scan.carriage_ripple']
+" || fail "chips and a ripple are not named with their sizes"
 exit $failed
