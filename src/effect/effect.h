@@ -153,8 +153,9 @@ typedef struct fg_effect {
   bool scales;      /* both axes alike: parts of known size determine it */
   fg_effect_ring ring;
   double size_um[FG_EFFECT_SIZES]; /* standard deviation of each column's amplitude over scanners or
-                                      parts, from published or measured ones; 0: as the one before
+                                      parts; 0: as the one before
                                       it. Half of it, a quarter, ... are as likely */
+  const char *size_from;           /* source of these sizes; "assumed": none */
 } fg_effect;
 
 /* Iterates over all rows in the order of search and report: the first one, and the one after

@@ -116,7 +116,8 @@ static void dent_grid(const fg_edge_fit *edge_fit, size_t i, size_t count, doubl
   {                                                                                                \
     .id = "part.lobes", .direction = along, .second = is_second, .words = "a foil with lobes",     \
     .equation = "a cos n(ψ − ψ0), n = 3 to 5", .coordinate = FG_EFFECT_FOIL,                       \
-    .numbers = FG_EFFECT_OVAL, .by_evidence = true, .midline = function, .lobes = n, .size_um = {  \
+    .numbers = FG_EFFECT_OVAL, .by_evidence = true, .midline = function, .lobes = n,               \
+    .size_from = "0.1 % of R0; assumed", .size_um = {                                              \
       20                                                                                           \
     }                                                                                              \
   }
@@ -128,6 +129,7 @@ const fg_effect fg_effects_part[] = {
      .words = "an oval foil",
      .equation = "a cos 2(ψ − ψ0)",
      .size_um = {20},
+     .size_from = "0.1 % of R0; assumed",
      .coordinate = FG_EFFECT_FOIL,
      .numbers = FG_EFFECT_OVAL,
      .on_discs = FG_EFFECT_ON_ONE_DISC,
@@ -140,6 +142,7 @@ const fg_effect fg_effects_part[] = {
      .words = "an oval foil",
      .equation = "a cos 2(ψ − ψ0)",
      .size_um = {20},
+     .size_from = "0.1 % of R0; assumed",
      .coordinate = FG_EFFECT_FOIL,
      .numbers = FG_EFFECT_OVAL,
      .midline = ovality_radial},
@@ -148,6 +151,7 @@ const fg_effect fg_effects_part[] = {
      .words = "a spiral foil",
      .equation = "a (ψ/ψ_end)³",
      .size_um = {20},
+     .size_from = "0.1 % of R0; assumed",
      .coordinate = FG_EFFECT_FOIL,
      .midline = spiral},
     {.id = "part.spiral",
@@ -156,6 +160,7 @@ const fg_effect fg_effects_part[] = {
      .words = "a spiral foil",
      .equation = "a (ψ/ψ_end)³",
      .size_um = {20},
+     .size_from = "0.1 % of R0; assumed",
      .coordinate = FG_EFFECT_FOIL,
      .midline = spiral_radial},
     LOBES_ROW(3, "normal", false, lobes_3, "foil.ring of one harmonic"),
@@ -178,7 +183,8 @@ const fg_effect fg_effects_part[] = {
      .shape_is = {FG_EFFECT_PLACE, FG_EFFECT_LENGTH},
      .grid = dent_grid,
      .starts = DENT_WIDTHS * DENT_PLACES,
-     .size_um = {15}},
+     .size_um = {15},
+     .size_from = "as of a lost row; assumed"},
     {.id = "part.thickness_taper",
      .words = "a strip whose thickness changes along the foil",
      .says = {"the strip is thicker towards the free end",
@@ -196,7 +202,8 @@ const fg_effect fg_effects_part[] = {
      .numbers = FG_EFFECT_LED,
      .midline = crown,
      .bends = true,
-     .size_um = {5, 2, 1, 0.5, 3, 1, 0.5}},
+     .size_um = {5, 2, 1, 0.5, 3, 1, 0.5},
+     .size_from = "0.15 % of R, higher terms ever less; assumed"},
     {.id = "part.bump_skew",
      .words = "bumps that lean to one side",
      .equation = "odd in the place in the arc, led by a P3",
@@ -204,6 +211,7 @@ const fg_effect fg_effects_part[] = {
      .numbers = FG_EFFECT_LED,
      .midline = skew,
      .bends = true,
-     .size_um = {5, 2, 1, 0.5, 3, 1, 0.5}},
+     .size_um = {5, 2, 1, 0.5, 3, 1, 0.5},
+     .size_from = "0.15 % of R, higher terms ever less; assumed"},
     {.id = NULL},
 };

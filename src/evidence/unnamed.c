@@ -99,7 +99,8 @@ WAVE(x_waves_over_y, 1, 1, 0)
   {                                                                                                \
     .id = name, .sought = FG_EFFECT_PLACED, .coordinate = (over) ? FG_EFFECT_Y : FG_EFFECT_X,      \
     .moves = thing, .columns = count, .shapes = 1, .shape_is = {FG_EFFECT_LENGTH}, .glass = basis, \
-    .axis = over, .start = from, .starts = tried, .size_um = {                                     \
+    .axis = over, .start = from, .starts = tried, .size_from = "a pixel of 2400 dpi; assumed",     \
+    .size_um = {                                                                                   \
       10                                                                                           \
     }                                                                                              \
   }
@@ -108,7 +109,7 @@ WAVE(x_waves_over_y, 1, 1, 0)
   {                                                                                                \
     .id = name, .sought = FG_EFFECT_PLACED, .coordinate = (over) ? FG_EFFECT_Y : FG_EFFECT_X,      \
     .moves = thing, .columns = COLUMNS, .shapes = 1, .glass = basis, .axis = over, .start = from,  \
-    .starts = STARTS, .jumps = true, .size_um = {                                                  \
+    .starts = STARTS, .jumps = true, .size_from = "as of a lost row; assumed", .size_um = {        \
       15                                                                                           \
     }                                                                                              \
   }

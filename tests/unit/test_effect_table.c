@@ -173,6 +173,8 @@ static void every_effect_row_is_complete(void **state) {
       fail_msg("%s: where do its shapes start?", effect->id);
     if (!fg_effect_is_free(effect) && !effect->width && !(effect->size_um[0] > 0))
       fail_msg("%s: how large is it?", effect->id);
+    if (!(effect->size_um[0] > 0) != !effect->size_from)
+      fail_msg("%s: where is its size from?", effect->id);
     for (size_t s = 0; s < effect->shapes; s++)
       if (!effect->shape_name[s] || !effect->shape_symbol[s])
         fail_msg("shape %zu of %s has no name", s, effect->id);
