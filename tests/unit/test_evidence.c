@@ -1,0 +1,72 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Evidence of models: rivals that no name has, shapes that must be just so, expectations. */
+#include <math.h>
+#include <string.h>
+
+#include "evidence/options.h"
+#include "evidence/search.h"
+#include "support/foil_rows.h"
+#include "support/test.h"
+
+#define NOISE_UM 0.03
+
+static void search(foil_rows *f, const fg_evidence_prior *prior, fg_evidence_search *s) {
+  fg_context ctx = {0};
+  const fg_effect_set none = {.count = 0};
+  assert_ok(&ctx, fg_evidence_search_open(&ctx, &f->edge_fit, &none, f->residual_um, f->jacobian,
+                                          prior, s));
+  assert_ok(&ctx, fg_evidence_search_run(&ctx, s));
+}
+
+/* Every land bowed alike: three fields of the scanner at once could do it, at most. */
+static void lands_that_deviate_alike_are_of_the_part(void **state) {
+  (void)state;
+  foil_rows f;
+  fg_evidence_search s;
+  foil_rows_open(&f);
+  foil_rows_put_noise(&f, NOISE_UM);
+  for (size_t i = 0; i < f.edge_fit.row_count; i++) {
+    double t = f.edge_fit.rows[i].phi;
+    if (!f.edge_fit.rows[i].bump) f.residual_um[i] += t * (5 * t * t - 3);
+  }
+  search(&f, &(fg_evidence_prior){1, 1}, &s);
+  const fg_evidence_part *first = s.models[0].part[0];
+  if (s.models[0].parts != 1 || !first->rival || strcmp(first->rival->name, "land.phi"))
+    fail_msg("%zu parts, first %s", s.models[0].parts,
+             first->rival ? first->rival->name : first->effect->id);
+  fg_evidence_search_close(&s);
+  foil_rows_close(&f);
+}
+
+/* A sharp period is one of many: it costs more than the choice among the starts. Expectations move
+ * the score, and it alone, by their factor. */
+static void a_shape_that_must_be_just_so_costs_more_than_a_start(void **state) {
+  (void)state;
+  const fg_effect *ripple = fg_effect_find("scan.carriage_ripple");
+  const double um = 20, shape[FG_FIELD_SHAPES] = {2.31};
+  foil_rows f;
+  fg_evidence_search s;
+  double score[2];
+  foil_rows_open(&f);
+  foil_rows_put_noise(&f, NOISE_UM);
+  assert_true(foil_rows_add_effect(&f, ripple, shape, &um, 1) > 0);
+  for (int k = 0; k < 2; k++) {
+    search(&f, &(fg_evidence_prior){1, k ? 3 : 1}, &s);
+    const fg_evidence_part *part = s.models[0].part[0];
+    assert_true(s.models[0].parts == 1 && part->effect == ripple);
+    double starts = (double)ripple->starts * FG_EVIDENCE_SIZES;
+    assert_true(part->log_prior < log((k ? 3 : 1) * FG_EVIDENCE_PRIOR / starts));
+    score[k] = s.models[0].score;
+    fg_evidence_search_close(&s);
+  }
+  assert_true(fabs(score[1] - score[0] - log(3)) < 1e-6);
+  foil_rows_close(&f);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(lands_that_deviate_alike_are_of_the_part),
+      cmocka_unit_test(a_shape_that_must_be_just_so_costs_more_than_a_start),
+  };
+  return cmocka_run_group_tests_name("evidence", tests, NULL, NULL);
+}
