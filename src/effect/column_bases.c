@@ -44,11 +44,34 @@ static bool slopes_hold(const fg_loop_problem *problem, size_t levels) {
   return levels <= SLOPES && (levels <= 4 || problem->rows >= ROWS_A_SLOPE * levels);
 }
 
+/* Returns true when every level of `inner` lies in one of `outer`: then both together tell no more
+ * than it does alone. */
+static bool is_nested(const fg_loop_problem *problem, const fg_loop_coordinate *inner,
+                      const fg_loop_coordinate *outer) {
+  double of[FG_LOOP_COLUMNS + 2];
+  if (inner->levels > FG_LOOP_COLUMNS + 1) return false;
+  for (size_t k = 0; k < inner->levels; k++)
+    of[k] = -1;
+  for (size_t i = 0; i < problem->rows; i++) {
+    double *first = &of[(size_t)inner->value[i]];
+    if (*first >= 0 && *first != outer->value[i]) return false;
+    *first = outer->value[i];
+  }
+  return true;
+}
+
+/* Two factors that cross, of few enough combinations. */
+static bool factors_cross(const fg_loop_problem *problem, const fg_loop_coordinate *x,
+                          const fg_loop_coordinate *y) {
+  return (x->levels - 1) * (y->levels - 1) <= FG_LOOP_COLUMNS && !is_nested(problem, x, y) &&
+         !is_nested(problem, y, x);
+}
+
 /* Numbers with numbers; the difference in slope where one is a factor of few levels. */
 bool fg_basis_accepts_interaction(const fg_loop_problem *problem, size_t a, size_t b) {
   const fg_loop_coordinate *x = &problem->coordinate[a], *y = &problem->coordinate[b];
   if (a >= b || (x->roles | y->roles) & FG_LOOP_ORDER) return false;
-  if (x->levels && y->levels) return (x->levels - 1) * (y->levels - 1) <= FG_LOOP_COLUMNS;
+  if (x->levels && y->levels) return factors_cross(problem, x, y);
   if (x->levels) return fg_basis_is_number(y) && slopes_hold(problem, x->levels);
   if (y->levels) return fg_basis_is_number(x) && slopes_hold(problem, y->levels);
   return fg_basis_is_number(x) && fg_basis_is_number(y);

@@ -39,6 +39,7 @@ typedef struct drawing {
   const double *white;          /* n: the null's residual of each row alone, of unit variance */
   const double *own;            /* n: share of the row's own error in its residual's variance */
   double tail[FG_ENGINE_TAILS]; /* weights of the tails of that residual */
+  double sd;                    /* of the null's residual */
   bool permuted;
   size_t scores;            /* of means, of noises, of the exchange */
   const fg_loop_kind *kind; /* scores */
@@ -49,7 +50,7 @@ static void draw_one(const drawing *d, uint64_t *seed, double *y) {
   const fg_engine_training *training = d->workspace->training;
   size_t n = training->n;
   for (size_t i = 0; i < n; i++)
-    y[i] = d->permuted ? d->white[i] : fg_engine_random_normal(seed);
+    y[i] = d->permuted ? d->white[i] : d->sd * fg_engine_random_normal(seed);
   for (size_t i = n; d->permuted && i > 1; i--) {
     size_t k = (size_t)(fg_engine_random_uniform(seed) * (double)i);
     double other = y[k];
@@ -388,6 +389,7 @@ fg_status fg_engine_judge(fg_context *ctx, const fg_score_workspace *workspace,
       .noise = at,
       .white = white,
       .own = white + training->n,
+      .sd = sqrt(workspace->rss[judgement->noise] / (double)workspace->dof),
       .permuted = workspace->dof >= PERMUTED_DOF,
       .scores = judgement->candidates + exchanges,
       .kind = judgement->kind,

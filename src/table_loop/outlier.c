@@ -30,21 +30,19 @@ enum { ONE_IN = 6 };
  */
 #define GAP 1.5
 
-/* The p-value of a row against possible tails, over that of normal noise, is this or more: with the
- * tails' prior probabilities below, a row that normal noise reaches in one table of a hundred has
- * 0.05 and more. */
+/* The p-value of a row against possible tails is too high for normal noise, because heavy tails
+ * have a prior probability; it is divided by this and by the rows' share. By simulation (rows of 16
+ * to 200: tests/bench/loop_rows.c) 1 in 100 tables of normal noise or fewer then reach 0.1. */
 #define CAUTION 4.5
 
-/* Divisor of the likelihood ratio of outliers over a heavy tail, for every possible outlier row.
- * Chosen on tables of 24, 126 and 200 rows: with it 97 of 100 wrong values of 10 standard errors
- * are found in normal noise. A row is called wrong in 5 of 100 tables without one where the noise
- * is Student's t with 3 dof, in 3 with 4, in 1 where it is Laplace's (without it: all found; 11, 7
- * and 3 false). At 0.12 false ones are 4, 2 and none, and 87 of the wrong values are found, 64 of
- * those in 24 rows. */
-#define WRONG_ODDS 0.05
-/* Above the level of acceptance that p-value rises faster: with Student's t of 3 dof one table in
- * ten would have a suspected row else. */
-#define MILDER 0.5
+/* Logarithm of the likelihood ratio of outliers over a heavy tail at which their p-value is that of
+ * acceptance, and how fast it falls: chosen by simulation (tests/bench/loop_rows.c). Of tables
+ * whose noise is Student's t with 3 or 4 dof, and that hold no wrong row, 1 to 2 in 100 reach it,
+ * and 4 reach 0.1. No test that keeps this sees more than half of wrong values of 10 standard
+ * errors in 24 rows: two densities alone, t of 3 dof and normal, allow 45 of 100 at 1 in 100. In
+ * 126 rows nearly all are seen. */
+#define WRONG_RATIO 5.8
+#define WRONG_SLOPE 1.92
 
 typedef struct outlier_rows {
   const fg_engine_training *training;
@@ -173,8 +171,8 @@ static double row_p(const outlier_rows *rows, double t, double own, size_t out) 
   return -expm1(left * log1p(-fmin(p, 0.5)));
 }
 
-/* Returns the p-value against a heavy tail of all rows: the smallest of as many likelihood ratios
- * as there are possible outliers, for the first `taken` rows and one more of `size`. */
+/* Returns the p-value against a heavy tail of all rows, for the first `taken` rows and one more of
+ * `size`. */
 static double tail_p(outlier_rows *rows, size_t taken, double size) {
   size_t rest = 0;
   for (size_t i = 0; i < rows->n; i++)
@@ -182,8 +180,7 @@ static double tail_p(outlier_rows *rows, size_t taken, double size) {
   if (rest < 2) return 1;
   if (size > 0) rows->taken[taken++] = size;
   double ratio = fg_engine_wrong_over_tail(rest, rows->rest, taken, rows->taken);
-  double p = WRONG_ODDS * (double)rows->n * exp(-ratio);
-  return fmin(p > FG_LOOP_ACCEPT_P ? p * pow(p / FG_LOOP_ACCEPT_P, MILDER) : p, 1);
+  return fmin(FG_LOOP_ACCEPT_P * exp(WRONG_SLOPE * (WRONG_RATIO - ratio)), 1);
 }
 
 /* Returns the smallest F ratio of one row that is accepted; where rows are many their tails are the
@@ -244,7 +241,6 @@ static void search_outliers(outlier_rows *rows, fg_engine_level level, fg_engine
     rows->taken[j - 1] = as_tail(rows, t, own);
     taken.row[taken.rows++] = training->row[worst];
     double p = fmin(row_p(rows, t, own, j) / (CAUTION * level.share), 1);
-    alike = fmin(alike, tail_p(rows, j, 0));
     if (j == 1) {
       outlier->first = taken;
       outlier->known = true;
@@ -255,6 +251,7 @@ static void search_outliers(outlier_rows *rows, fg_engine_level level, fg_engine
     outlier->candidate = taken;
     outlier->ratio = rows->rss / whole;
     outlier->apart_p = p;
+    alike = tail_p(rows, j, 0);
   }
   outlier->p_value = fmax(outlier->apart_p, alike);
   sort_rows(&outlier->candidate);

@@ -68,18 +68,23 @@ def uniform(rows):
     return [" ".join(str(t) for t in tenths), f"{stats.kstest(p, 'uniform').pvalue:.2g}"]
 
 
+def suspected(rows):
+    own = sum(r["verdict"] == "suspected" for r in rows)
+    return f"{own}/{len(rows)} ({100 * own / len(rows):.1f} %)" if rows else "–"
+
+
 def clean(rows, tables):
     lines = []
     for kind in (k for k in tables.CLEAN if of(rows, kind=k)):
         own = of(rows, kind=kind)
         by = [share(of(own, design=d), "found") for d in tables.DESIGNS]
         lines.append([kind, share(own, "found"), percent(own, "found"), *by, share(own, "claimed"), share(own, "peer_claimed"),
-                      *uniform(own)])
+                      suspected(own), *uniform(own)])
     everything = ["all", share(rows, "found"), percent(rows, "found"),
                   *[share(of(rows, design=d), "found") for d in tables.DESIGNS], share(rows, "claimed"),
-                  share(rows, "peer_claimed"), *uniform(rows)]
+                  share(rows, "peer_claimed"), suspected(rows), *uniform(rows)]
     return table(["noise", "false claims", "share", *tables.DESIGNS, "any claim", "plain search: any claim",
-                  "family p-values by tenths", "uniform (KS)"], lines + [everything])
+                  "suspected, nothing claimed", "family p-values by tenths", "uniform (KS)"], lines + [everything])
 
 
 def summary(rows, tables):

@@ -10,7 +10,7 @@
 #include "support/random.h"
 #include "support/test.h"
 
-enum { WAFERS = 12, PLACES = 4, ROWS = WAFERS * PLACES };
+enum { WAFERS = 12, PLACES = 4, ROWS = WAFERS * PLACES, BATCHES = 3 };
 
 typedef struct outcome {
   fg_context ctx;
@@ -24,7 +24,8 @@ typedef struct wafer_rows {
   size_t wafer[ROWS];
 } wafer_rows;
 
-/* Rows of a wafer are not neighbours, and have one heat. */
+/* Rows of a wafer are not neighbours, and have one heat. Wafers lie in batches that are alike:
+ * their levels within batches are no interaction. */
 static wafer_rows make_rows(double level_sd, uint64_t seed) {
   wafer_rows rows;
   double level[WAFERS], heat[WAFERS];
@@ -42,16 +43,19 @@ static wafer_rows make_rows(double level_sd, uint64_t seed) {
 }
 
 static void search(const wafer_rows *rows, const char *model, outcome *out) {
-  static char names[ROWS][8];
-  const char *name[ROWS];
+  static char names[ROWS][8], batches[ROWS][8];
+  const char *name[ROWS], *batch[ROWS];
   const fg_loop_options options = {.effects = fg_loop_table_effects(), .seed = 1};
   const fg_loop_table_spec spec = {.response = "y", .model = model, .seed = 1};
   *out = (outcome){0};
   for (size_t i = 0; i < ROWS; i++) {
     snprintf(names[i], sizeof names[i], "W%zu", rows->wafer[i] + 1);
+    snprintf(batches[i], sizeof batches[i], "B%zu", rows->wafer[i] % BATCHES + 1);
     name[i] = names[i];
+    batch[i] = batches[i];
   }
   assert_ok(&out->ctx, fg_table_add_numbers(&out->ctx, &out->table, "heat", rows->heat, ROWS));
+  assert_ok(&out->ctx, fg_table_add_words(&out->ctx, &out->table, "batch", batch, ROWS));
   assert_ok(&out->ctx, fg_table_add_words(&out->ctx, &out->table, "wafer", name, ROWS));
   assert_ok(&out->ctx, fg_table_add_numbers(&out->ctx, &out->table, "y", rows->y, ROWS));
   assert_ok(&out->ctx, fg_loop_table_problem_build(&out->ctx, &out->table, &spec, &out->problem));
