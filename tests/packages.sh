@@ -11,8 +11,8 @@ FOILGAUGE_BENCH_PACKAGES="python3 python3-numpy python3-scipy python3-skimage py
 # Only the long tests need them: regression is compared with R's, and the loop is tried on tables that come with R.
 FOILGAUGE_R_PACKAGES="r-base-core r-cran-mass r-cran-lattice r-cran-boot r-cran-nlme"
 
-# Only long tests need it: a validator of JSON that is not the project's own.
-FOILGAUGE_SCHEMA_PACKAGES="python3 python3-jsonschema"
+# Only long tests need them: a validator of JSON and a reader of DXF that are not the project's own.
+FOILGAUGE_SCHEMA_PACKAGES="python3 python3-jsonschema python3-ezdxf"
 
 # Only long tests need them: the station and every page in a real browser.
 FOILGAUGE_BROWSER_PACKAGES="chromium chromium-driver python3-selenium poppler-utils"

@@ -247,7 +247,17 @@ static fg_status measure_die(fg_context *ctx, die_run *run, int *code) {
 const struct argp fg_die_parser = {
     options, parse_die_option, "[PROFILE...]", doc, NULL, fg_cli_fill, NULL};
 
+/* Traces of a die, or the next die from lots (cmd_die_next.c). */
+static bool is_about_lots(int argc, char **argv) {
+  static const char *const words[] = {"--target", "--lot", "--prior"};
+  for (int i = 1; i < argc; i++)
+    for (size_t w = 0; w < sizeof words / sizeof *words; w++)
+      if (!strncmp(argv[i], words[w], strlen(words[w]))) return true;
+  return false;
+}
+
 int fg_cmd_die(int argc, char **argv) {
+  if (is_about_lots(argc, argv)) return fg_cmd_die_next(argc, argv);
   fg_context ctx = {0};
   die_run run = {.outputs.count = OUT_COUNT,
                  .said.tip_um = NAN,

@@ -9,6 +9,7 @@
 #include "cli/commands.h"
 #include "cli/facts.h"
 #include "cli/known.h"
+#include "foilgauge/compensation.h"
 #include "foilgauge/file.h"
 #include "foilgauge/lot.h"
 #include "foilgauge/text.h"
@@ -30,6 +31,7 @@ enum {
   OPTION_CURVE,
   OPTION_INDEX,
   OPTION_CSV,
+  OPTION_EXPECTED,
 };
 
 typedef struct lot_arguments {
@@ -40,7 +42,8 @@ typedef struct lot_arguments {
   fg_lot_shard shard;
   fg_lot_pages pages;
   bool flatbed;
-  const char *curve; /* reference curve; NULL: the recipe's */
+  const char *curve;    /* reference curve; NULL: the recipe's */
+  const char *expected; /* prediction of `die --target`; NULL: none */
   const char *dies[FG_LOT_DIES_MAX];
   size_t die_count;
   char **paths; /* of argv */
@@ -62,6 +65,10 @@ static const struct argp_option options[] = {
     {"reference-curve", OPTION_CURVE, "FILE.csv", 0,
      "Draw this over the errors per bump: what a simulation or a die says; columns bump, "
      "radius_error_pct, intersection_angle_error_pct",
+     0},
+    {"expected", OPTION_EXPECTED, "FILE.json", 0,
+     "Hold the lot against this report of `foilgauge die --target`, whose die it comes from: "
+     "expected.json and expected.html in its folder",
      0},
     {"die", OPTION_DIE, "NAME=FILE.json", 0,
      "What `foilgauge die -o` measured of the die that the manifest's column `die` calls NAME: the "
@@ -144,6 +151,9 @@ static error_t parse_lot_option(int key, char *text, struct argp_state *state) {
   case OPTION_CURVE:
     arguments->curve = text;
     break;
+  case OPTION_EXPECTED:
+    arguments->expected = text;
+    break;
   case OPTION_DIE:
     if (!strchr(text, '=')) argp_error(state, "--die: '%s' is not NAME=FILE.json", text);
     if (arguments->die_count == FG_LOT_DIES_MAX)
@@ -188,6 +198,8 @@ static error_t parse_lot_option(int key, char *text, struct argp_state *state) {
     if (!arguments->print_recipe && !arguments->path_count) argp_error(state, "no PATH was given");
     if (!arguments->print_recipe && !arguments->folder && !arguments->index)
       argp_error(state, "give the lot's folder with -o DIR");
+    if (arguments->expected && (arguments->shard.count > 1 || arguments->index))
+      argp_error(state, "--expected is of a whole lot; give it to `foilgauge lot --resume`");
     if (arguments->csv && !arguments->index)
       argp_error(state, "--csv belongs to --index; a lot's tables are in its folder");
     break;
@@ -363,6 +375,20 @@ static fg_status make_index(fg_context *ctx, const lot_arguments *arguments, int
   return FG_OK;
 }
 
+/* Holds the reported lot against its prediction. */
+static fg_status hold_expected(fg_context *ctx, const lot_arguments *arguments) {
+  fg_expected_check check;
+  char sentence[1000];
+  FG_TRY(fg_expected_check_run(ctx, arguments->expected, arguments->folder, &check));
+  fg_expected_check_sentence(&check, sentence, sizeof sentence);
+  fg_status status = fg_expected_check_write(ctx, &check);
+  if (status == FG_OK)
+    fprintf(stderr, "%s\n%s%s%s/expected.html\n", sentence, check.loop_sentence,
+            check.loop_sentence[0] ? "\n" : "", arguments->folder);
+  fg_expected_check_free(&check);
+  return status;
+}
+
 static fg_status run_lot(fg_context *ctx, const lot_arguments *arguments, int *code) {
   fg_lot_settings settings;
   fg_lot_outcome outcome;
@@ -370,6 +396,7 @@ static fg_status run_lot(fg_context *ctx, const lot_arguments *arguments, int *c
   const char *const *paths = (const char *const *)arguments->paths;
   if (arguments->index) return make_index(ctx, arguments, code);
   FG_TRY(load_settings(ctx, arguments, &settings));
+  if (arguments->expected) FG_TRY(fg_expected_check_file(ctx, arguments->expected));
   if (arguments->print_recipe) return print_recipe(ctx, &settings);
   const fg_lot_request request = {.settings = &settings,
                                   .paths = paths,
@@ -411,6 +438,7 @@ static fg_status run_lot(fg_context *ctx, const lot_arguments *arguments, int *c
   if (outcome.not_drawn)
     fprintf(stderr, "foilgauge: note: %zu page%s could not be drawn; the first: %s\n",
             outcome.not_drawn, fg_plural(outcome.not_drawn), outcome.first_not_drawn);
+  if (arguments->expected && !arguments->dry_run) FG_TRY(hold_expected(ctx, arguments));
   if (arguments->dry_run)
     print_plan(&outcome);
   else

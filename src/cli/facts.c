@@ -7,6 +7,7 @@
 
 #include "cli/commands.h"
 #include "cli/known.h"
+#include "foilgauge/compensation.h"
 #include "foilgauge/die.h"
 #include "foilgauge/experiment.h"
 #include "foilgauge/load_test.h"
@@ -110,6 +111,10 @@ static void write_max_slope(FILE *out) {
   fprintf(out, "%g", FG_DIE_MAX_SLOPE_DEG);
 }
 
+static void write_max_move(FILE *out) {
+  fprintf(out, "%g", FG_COMPENSATION_MAX_MOVE_PCT);
+}
+
 static void write_load_threshold(FILE *out) {
   fprintf(out, "%g", FG_LOAD_THRESHOLD_N);
 }
@@ -183,6 +188,7 @@ static const fg_fact facts[] = {
     {"memory_cap_mib", write_memory_cap},
     {"confidence", write_confidence},
     {"max_slope_deg", write_max_slope},
+    {"max_move_pct", write_max_move},
     {"load_threshold_n", write_load_threshold},
     {"load_u_force_pct", write_load_u_force},
     {"load_u_displacement_pct", write_load_u_displacement},

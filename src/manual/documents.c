@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "compensation/members.h"
 #include "lot/input/recipe_members.h"
 #include "lots/members.h"
 #include "process/plan_file.h"
@@ -25,6 +26,7 @@ const fg_document *const fg_documents[] = {
     &fg_design_document,
     &fg_die_document,
     &fg_doe_document,
+    &fg_expected_document,
     &fg_forming_document,
     &fg_forming_fit_document,
     &fg_grid_loop_document,
@@ -33,6 +35,7 @@ const fg_document *const fg_documents[] = {
     &fg_loop_document,
     &fg_loop_model_document,
     &fg_lot_document,
+    &fg_next_die_document,
     &fg_nominal_document,
     &fg_plan_document,
     &fg_recipe_document,

@@ -29,6 +29,8 @@ expect 0 "" "$kept" measure scans/1.png --design design.json -o -
 python3 -c 'import json, sys; json.load(open(sys.argv[1]))' stdout || fail "a document that is kept does not reach its reader"
 expect 0 "" "$kept" design design.json -o nominal.json
 expect 0 "" "$kept" lot scans --design design.json -o lot
+expect 0 "" "$kept" die --target design.json --lot lot -o next.json
+expect 0 "" "$kept" lot scans --design design.json -o lot --resume --expected next.json
 expect 0 "" "$kept" lot --index lots.html -o lots.json lot
 expect 0 "" "$kept" loop scans/1.png --design design.json -o loop.json --model-out scanner.json
 python3 - >plate.json <<'P'

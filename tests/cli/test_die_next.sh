@@ -1,0 +1,145 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# `foilgauge die --target` and `foilgauge lot --expected`: the next die from lots of a made-up process whose springback is
+# known (support/formed_lots.py), the lot that comes of it, and refusals.
+. tests/support/cli.sh
+listened="stdout stderr"
+command -v python3 >/dev/null || { echo "skipped: no python3"; exit 77; }
+made() { python3 "$root/tests/support/formed_lots.py" "$program" "$@" --renderer "$renderer" --tolerance 3 >>said 2>&1 || fail "made $*: $(tail -3 said)"; }
+next() { "$program" die --target target.json "$@"; }
+echo '{"schema":"foilgauge/design/1","bump_count":9,"tolerances":{"radius_error_pct":{"min":-3,"max":3}}}' >target.json
+
+# One lot of 12 foils from a die as designed: bumps open by 5 % (in logarithms), the last three by up to 1.5 % more.
+made one --end 0.015 --columns coil
+expect 0 'no report of its die' next --lot one -o next.json --html next.html --table next.txt --dxf next.dxf \
+  --trace-concave concave.txt --trace-convex convex.txt --step-um 1
+valid next_die.schema.json next.json
+near "radius of bump 1" "$(value next.json 'r["die"]["bumps"][0]["radius_mm"]')" 3.1577 0.025
+near "radius of bump 9" "$(value next.json 'r["die"]["bumps"][8]["radius_mm"]')" 3.1107 0.03
+[ "$(value next.json 'all(abs(b["radius_mm"] * 1000 - round(b["radius_mm"] * 1000)) < 1e-6 for b in r["die"]["bumps"])')" = True ] ||
+  fail "radii are not in steps of 1 um"
+near "overall radius" "$(value next.json 'r["die"]["overall_radius_mm"]')" 20.524 0.05
+near "arc length" "$(value next.json 'r["die"]["bumps"][4]["radius_mm"] * r["die"]["bumps"][4]["bump_angle_deg"]')" 209.66 0.7
+near "expected radius" "$(value next.json 'r["expected"]["bumps"][4]["radius_mm"]["mean"]')" 3.32 0.004
+[ "$(value next.json 'r["expected"]["bumps"][4]["radius_mm"]["u_mean"] > r["die"]["bumps"][4]["u_radius_mm"]')" = True ] ||
+  fail "what lots differ by is not in the prediction"
+grep -q 'Cut bump radii' next.txt && grep -q 'Cut bump radii' next.html || fail "no sentence of the die"
+
+# The traces are those of the die: measured, they give its numbers.
+"$program" die concave.txt convex.txt -o traced.json 2>/dev/null || fail "the traces are not read"
+for i in 0 4 8; do
+  near "traced radius $i" "$(value traced.json "r['die']['bumps'][$i]['radius_mm']")" \
+    "$(value next.json "r['die']['bumps'][$i]['radius_mm']")" 2e-5
+  near "traced angle $i" "$(value traced.json "r['die']['bumps'][$i]['bump_angle_deg']")" \
+    "$(value next.json "r['die']['bumps'][$i]['bump_angle_deg']")" 2e-3
+done
+near "traced lands" "$(value traced.json "r['die']['overall']['radius_mm']")" \
+  "$(value next.json "r['die']['overall_radius_mm']")" 2e-5
+
+# The profile is whole: arcs of a layer join end to end, and the bumps are the die's.
+python3 - <<'P' || fail "the DXF"
+import json, math
+tags = open("next.dxf").read().split("\n")
+pairs = list(zip(tags[::2], tags[1::2]))
+assert pairs[-1] == ("0", "EOF"), pairs[-1]
+arcs, now = [], None
+for code, text in pairs:
+    if code == "0":
+        now = {} if text == "ARC" else None
+        arcs += [now] if now is not None else []
+    elif now is not None:
+        now[code] = text
+die = json.load(open("next.json"))["die"]
+for layer in ("DATUM", "CONCAVE", "CONVEX"):
+    ends = []
+    for arc in (a for a in arcs if a["8"] == layer):
+        x, y, r, low, high = (float(arc[code]) for code in ("10", "20", "40", "50", "51"))
+        ends.append(sorted((x + r * math.cos(math.radians(a)), y + r * math.sin(math.radians(a))) for a in (low, high)))
+    assert len(ends) == 37, len(ends)
+    gap = max(math.dist(a[1], b[0]) for a, b in zip(ends, ends[1:]))
+    assert gap < 2e-6, (layer, gap)
+radii = [float(a["40"]) for a in arcs if a["8"] == "DATUM"][2::4]
+assert all(abs(r - b["radius_mm"]) < 1e-6 for r, b in zip(radii, die["bumps"])), radii
+P
+cat >read_dxf.py <<'P'
+try:
+    import ezdxf
+except ImportError:
+    print("none")
+else:
+    drawing = ezdxf.readfile("next.dxf")
+    layers = sorted({arc.dxf.layer for arc in drawing.modelspace().query("ARC")})
+    print(len(drawing.modelspace().query("ARC")), *layers, len(drawing.audit().errors))
+P
+read=$(/usr/bin/python3 read_dxf.py)
+[ "$read" = none ] || [ "$read" = "111 CONCAVE CONVEX DATUM 0" ] || fail "ezdxf reads: $read"
+
+# The lot of that die is held against it; the law goes on with it, and the loop finds the missing term.
+made two --end 0.015 --columns coil --die next.json --seed 7 --expected next.json
+grep -q 'the prediction holds' said || fail "the prediction does not hold: $(cat said)"
+valid expected.schema.json two/expected.json
+near "error before" "$(value two/expected.json 'r["error_before_pct"]')" 5.9 0.5
+near "error after" "$(value two/expected.json 'r["error_after_pct"]')" 0.2 0.3
+[ "$(value two/expected.json 'r["values"], len(r["iterations"]), r["loop"]["verdict"], "bump" in r["loop"]["name"]')" = "(29, 2, 'explained', True)" ] ||
+  fail "the loop over both lots: $(value two/expected.json 'r["loop"]')"
+[ "$(value two/expected.json 'r["law"]["radius"]["u_springback_pct"] < r["law_before"]["radius"]["u_springback_pct"] / 1.4')" = True ] ||
+  fail "a second lot teaches nothing"
+grep -q 'Was the prediction right' two/expected.html || fail "no page"
+
+# The posterior of both by one report after the other is that from both at once.
+expect 0 '' next --prior two/expected.json -o by_prior.json
+expect 0 '' next --prior next.json --lot two -o by_lot.json
+expect 0 '' next --lot one --lot two --die next.json -o wrong_die.json # next.json for both: another law
+python3 - <<'P' || fail "sequential and joint laws differ"
+import json
+a, b, c = (json.load(open(name + ".json")) for name in ("by_prior", "by_lot", "wrong_die"))
+assert a["die"] == b["die"] and a["law"]["radius"] == b["law"]["radius"]
+assert c["law"]["radius"] != a["law"]["radius"]
+P
+# A lot that its die was not made for: off, and said so.
+made off --springback 0.09 --die next.json --seed 3 --expected next.json
+grep -q 'the prediction was wrong\|questionable' said || fail "a process that moved by 4 % is not noticed: $(tail -4 said)"
+[ "$(value off/expected.json 'r["inside"] < r["values"]')" = True ] || fail "all values of a moved process are inside"
+
+# One foil; other numbers of bumps; one radius for all.
+made single --foils 1
+expect 0 'tell no more of single bumps|lots differ' next --lot single -o single.json
+[ "$(value single.json 'r["die"]["bumps"][0]["u_radius_mm"]')" \> "$(value next.json 'r["die"]["bumps"][0]["u_radius_mm"]')" ] ||
+  fail "one foil is as sure as twelve"
+made seven --bumps 7 --template seven_template
+expect 0 'has 7 bumps, the target 9' next --lot seven -o nine.json
+[ "$(value nine.json 'r["die"]["bumps"][8]["u_radius_mm"] > r["die"]["bumps"][3]["u_radius_mm"]')" = True ] || fail "a bump never seen is as sure as one seen"
+expect 0 '' next --lot one --common -o common.json
+[ "$(value common.json 'len({b["radius_mm"] for b in r["die"]["bumps"]})')" = 1 ] || fail "--common: several radii"
+expect 0 '' "$program" die --target target.json --lot one --foils 100 -o hundred.json
+[ "$(value hundred.json 'r["expected"]["foils"]')" = 100 ] || fail "--foils"
+
+# Refused: no lot, no lot's folder, another strip, datum or kind, limits of the shop.
+expect 64 'name one with --lot' "$program" die --target target.json
+expect 64 'put --lot first' "$program" die --target target.json --die next.json --lot one
+expect 74 'nowhere' next --lot nowhere
+echo '{"schema":"foilgauge/design/1","bump_radius_mm":3.32,"bump_angle_deg":63.15,"overall_radius_mm":20.73,"thickness_mm":0.12}' >thick.json
+expect 65 'its strip has 0.1 mm, the target.s 0.12' "$program" die --target thick.json --lot one
+python3 -c "
+import json
+r = json.load(open('next.json')); r['target']['thickness_mm'] = 0.2; json.dump(r, open('thick_die.json', 'w'))
+r['target']['thickness_mm'], r['target']['datum'] = 0.1, 'outer'; json.dump(r, open('outer_die.json', 'w'))"
+expect 65 'thick_die.json: the die is of a strip of 0.2 mm' next --lot one --die thick_die.json
+expect 65 'datum is outer, the target.s is mid' next --lot one --die outer_die.json
+echo '{"schema":"foilgauge/design/1","datum":"inner"}' >inner.json
+expect 65 'measured for datum mid, the target has inner' "$program" die --target inner.json --lot one
+expect 65 'its foils are of form classical, the target.s of form arc' "$program" die --target "$root/samples/top_foil_design.json" --lot one
+expect 65 'is bent by no die' "$program" die --target "$root/samples/cantilever_design.json" --lot one
+expect 65 'beyond 2 %.*--max-move-pct' next --lot one --max-move-pct 2
+expect 65 'below the smallest radius that can be cut' next --lot one --min-radius-mm 3.2
+expect 65 'neither a report of' next --prior target.json
+expect 65 'neither a report of .foilgauge die -o' next --lot one --die target.json
+expect 65 'no report of .foilgauge die --target' "$program" lot one.csv -o two --resume --recipe template/recipe.json --expected traced.json
+expect 64 'of a whole lot' "$program" lot one.csv -o two --shard 1/2 --expected next.json
+python3 -c "
+import json
+r = json.load(open('next.json')); r['law']['sets'] = []; json.dump(r, open('empty.json', 'w'))
+r['law']['sets'] = 7; json.dump(r, open('number.json', 'w'))"
+expect 65 'law.sets: there is none' next --prior empty.json
+expect 65 'sets.*must be an array' next --prior number.json
+exit $failed
