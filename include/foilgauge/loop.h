@@ -234,7 +234,8 @@ typedef struct fg_loop_options {
   double minutes,
       mebibytes; /* limits of the search by estimate, beyond which it is FG_ERR_DATA; 0: no limit */
   bool expected[FG_LOOP_KINDS]; /* kinds that get a larger share of the error rate */
-  fg_loop_progress *progress;   /* NULL: no progress report */
+  bool search_once;           /* cross-fitted errors are the cross-validated: no search per fold */
+  fg_loop_progress *progress; /* NULL: no progress report */
   void *progress_user;
 } fg_loop_options;
 

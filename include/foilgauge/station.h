@@ -19,6 +19,8 @@ extern "C" {
 
 #define FG_STATION_DATABASE "foilgauge.sqlite"
 
+enum { FG_STATION_CONTEXTS = 8 }; /* maximum number of files that say more about foils */
+
 /* The scanner's check with a plate or ring of known diameters (`design`: a file of the kind
  * discs). */
 typedef struct fg_station_check {
@@ -32,7 +34,8 @@ typedef struct fg_station_check {
 typedef struct fg_station_settings {
   fg_lot_settings lot; /* of the whole recipe: design, model, dpi, run rules, bearings ... */
   /* Pattern of file names: text, `*` for anything, and {serial}, {lot}, {die}, {operator},
-   * {check}; without its ending. "{serial}" unless the recipe says otherwise. */
+   * {coil}, {oven}, {scanner}, {check}; without its ending. "{serial}" unless the recipe says
+   * otherwise. */
   char file_name[256];
   /* Run by /bin/sh in the folder when somebody presses Scan; {file} is the scan to write. It is
    * hidden until the command has ended well, then called station-DATE-TIME.png (.tif, .pnm where
@@ -55,6 +58,8 @@ typedef struct fg_station_request {
   const fg_station_settings *settings;
   bool once;               /* measure new files, and return */
   const char *export_path; /* export the database's lots as folders below this one, and return */
+  bool digest; /* write what changed, is suspected and was found to standard output, and return */
+  const char *digest_page; /* and as a page into this file; NULL: no page */
   bool decimal_comma;      /* in CSV of lots that are closed or exported (fg_csv_write) */
   double poll_s;      /* poll every `poll_s` seconds (network folders); 0: the system notifies */
   const char *listen; /* address; NULL: 127.0.0.1 */
@@ -62,6 +67,10 @@ typedef struct fg_station_request {
   const char *token;  /* needed by every request; NULL: none (loopback only) */
   const char *const *hosts; /* further host names that requests may use, with or without a port */
   size_t host_count;
+  /* CSV files with further columns of foils, by a column `serial` or `time`: candidates for causes.
+   */
+  const char *const *contexts;
+  size_t context_count;
   const char
       *origin; /* of a proxy in front of the pages, "https://scanner.example.com"; NULL: none */
   int end_descriptor; /* the station ends when it is readable, with FG_ERR_INTERRUPTED; 0: none */

@@ -22,14 +22,17 @@ enum {
   OPTION_TOKEN,
   OPTION_TOKEN_FILE,
   OPTION_HOST,
-  OPTION_ORIGIN
+  OPTION_ORIGIN,
+  OPTION_CONTEXT,
+  OPTION_DIGEST,
+  OPTION_DIGEST_PAGE
 };
 
 enum { HOSTS_MAX = 16, TOKEN_BYTES = 256 };
 
 typedef struct station_arguments {
   const char *recipe, *design;
-  const char *token_file, *hosts[HOSTS_MAX];
+  const char *token_file, *hosts[HOSTS_MAX], *contexts[FG_STATION_CONTEXTS];
   bool allow_lossy;
   fg_station_request request;
 } station_arguments;
@@ -42,6 +45,16 @@ static const struct argp_option options[] = {
     {"once", OPTION_ONCE, NULL, 0, "Measure what is new, and end", 1},
     {"export", OPTION_EXPORT, "DIR", 0,
      "Write every lot of the database as a folder, as `foilgauge lot` makes them, and end", 1},
+    {"digest", OPTION_DIGEST, NULL, 0,
+     "Write what changed, what is suspected and what was found, and end; also beside a station "
+     "that "
+     "runs",
+     1},
+    {"digest-page", OPTION_DIGEST_PAGE, "FILE", 0, "The same, and as a page into FILE", 1},
+    {"context", OPTION_CONTEXT, "FILE.csv", 0,
+     "Columns that say more about foils, by a column `serial` or `time` (repeatable): candidates "
+     "for the causes of a trend",
+     1},
     {"poll", OPTION_POLL, "S", 0,
      "Look into the folder every so many seconds (network folders, of whose files nobody tells)",
      2},
@@ -72,24 +85,40 @@ static const char doc[] =
     "FOLDER/" FG_STATION_DATABASE ". Scans are never changed.\n\n"
     "@exit_judged@ So with --once and --export; else 130, by which it is ended.";
 
+/* Options whose text is kept as it is. */
+static bool keep_text(int key, const char *text, station_arguments *arguments) {
+  fg_station_request *request = &arguments->request;
+  const struct {
+    int key;
+    const char **into;
+  } texts[] = {
+      {'d', &arguments->design},
+      {OPTION_RECIPE, &arguments->recipe},
+      {OPTION_EXPORT, &request->export_path},
+      {OPTION_LISTEN, &request->listen},
+      {OPTION_TOKEN, &request->token},
+      {OPTION_TOKEN_FILE, &arguments->token_file},
+      {OPTION_ORIGIN, &request->origin},
+      {OPTION_DIGEST_PAGE, &request->digest_page},
+  };
+  for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+    if (texts[i].key != key) continue;
+    *texts[i].into = text;
+    return true;
+  }
+  return false;
+}
+
 static error_t parse_station_option(int key, char *text, struct argp_state *state) {
   station_arguments *arguments = state->input;
   fg_station_request *request = &arguments->request;
+  if (keep_text(key, text, arguments)) return 0;
   switch (key) {
-  case 'd':
-    arguments->design = text;
-    break;
-  case OPTION_RECIPE:
-    arguments->recipe = text;
-    break;
   case OPTION_ALLOW_LOSSY:
     arguments->allow_lossy = true;
     break;
   case OPTION_ONCE:
     request->once = true;
-    break;
-  case OPTION_EXPORT:
-    request->export_path = text;
     break;
   case OPTION_POLL:
     request->poll_s = fg_cli_number(state, "poll", text, 0.1, 3600);
@@ -97,21 +126,17 @@ static error_t parse_station_option(int key, char *text, struct argp_state *stat
   case OPTION_PORT:
     request->port = (unsigned)fg_cli_number(state, "port", text, 0, 65535);
     break;
-  case OPTION_LISTEN:
-    request->listen = text;
-    break;
-  case OPTION_TOKEN:
-    request->token = text;
-    break;
-  case OPTION_TOKEN_FILE:
-    arguments->token_file = text;
-    break;
   case OPTION_HOST:
     if (request->host_count == HOSTS_MAX) argp_error(state, "--host: at most %d", HOSTS_MAX);
     arguments->hosts[request->host_count++] = text;
     break;
-  case OPTION_ORIGIN:
-    request->origin = text;
+  case OPTION_DIGEST:
+    request->digest = true;
+    break;
+  case OPTION_CONTEXT:
+    if (request->context_count == FG_STATION_CONTEXTS)
+      argp_error(state, "--context: at most %d", FG_STATION_CONTEXTS);
+    arguments->contexts[request->context_count++] = text;
     break;
   case FG_CLI_DECIMAL_COMMA:
     request->decimal_comma = true;
@@ -121,6 +146,7 @@ static error_t parse_station_option(int key, char *text, struct argp_state *stat
     request->folder = text;
     break;
   case ARGP_KEY_END:
+    request->digest |= request->digest_page != NULL;
     if (!request->folder) argp_error(state, "no FOLDER was given");
     if (request->token && arguments->token_file)
       argp_error(state, "--token and --token-file: one of them");
@@ -177,6 +203,7 @@ int fg_cmd_station(int argc, char **argv) {
     arguments.request.token = token;
   }
   arguments.request.hosts = arguments.hosts;
+  arguments.request.contexts = arguments.contexts;
   settings.lot.allow_lossy |= arguments.allow_lossy;
   arguments.request.settings = &settings;
   arguments.request.ready = print_address;
@@ -184,6 +211,7 @@ int fg_cmd_station(int argc, char **argv) {
   if (!arguments.request.export_path) arguments.request.end_descriptor = fg_interrupt_defer();
   status = fg_station_run(&ctx, &arguments.request, &outcome);
   if (status != FG_OK) return fg_cli_fail(&ctx, status);
+  if (arguments.request.digest) return 0;
   if (arguments.request.export_path) return fg_outcome_exit_code(&outcome.judged);
   if (!arguments.request.once) return 0;
   fprintf(stderr, "foilgauge: %zu measured, %zu known, %zu refused\n", outcome.measured,

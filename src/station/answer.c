@@ -28,6 +28,7 @@ static const route pages[] = {
     {"/foil", fg_page_foil, HTML, false, false},
     {"/report", fg_page_report, HTML, true, true},
     {"/trends", fg_page_trends, HTML, false, false},
+    {"/why", fg_page_why, HTML, false, false},
     {"/scanner", fg_page_scanner, HTML, false, false},
     {"/lots", fg_page_lots, HTML, false, false},
     {"/lot", fg_page_lot, HTML, true, false},
@@ -39,7 +40,8 @@ static const struct {
 } actions[] = {
     {"/correct", fg_action_correct},   {"/scan", fg_action_scan},
     {"/baseline", fg_action_baseline}, {"/close", fg_action_close},
-    {"/download", fg_action_download},
+    {"/download", fg_action_download}, {"/why", fg_action_why},
+    {"/accept", fg_action_accept},     {"/withdraw", fg_action_withdraw},
 };
 
 enum { PAGES = sizeof pages / sizeof *pages, ACTIONS = sizeof actions / sizeof *actions };

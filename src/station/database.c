@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <sys/stat.h>
 #include <time.h>
+#include <unistd.h>
 
 #include "core/date.h"
 #include "core/text.h"
@@ -86,6 +87,22 @@ static const char *const migrations[] = {
     "ALTER TABLE checks ADD COLUMN changes TEXT NOT NULL DEFAULT '';"
     "CREATE TABLE check_values (check_id INTEGER NOT NULL REFERENCES checks, name TEXT NOT NULL,"
     " value REAL, u REAL, PRIMARY KEY (check_id, name)) WITHOUT ROWID;",
+    /* Further data that foils have in common, and accepted causes: `name` is a column of foils or
+     * of a context, a point is a level of it, or a place of a piecewise linear curve over it
+     * (`time`: days since 1970, local time). A cause is withdrawn, never deleted: the trail keeps
+     * it. */
+    "ALTER TABLE foils ADD COLUMN coil TEXT NOT NULL DEFAULT '';"
+    "ALTER TABLE foils ADD COLUMN oven TEXT NOT NULL DEFAULT '';"
+    "ALTER TABLE foils ADD COLUMN scanner TEXT NOT NULL DEFAULT '';"
+    "CREATE TABLE causes (id INTEGER PRIMARY KEY AUTOINCREMENT, owner TEXT NOT NULL,"
+    " quantity TEXT NOT NULL, bump INTEGER NOT NULL, name TEXT NOT NULL, words TEXT NOT NULL,"
+    " value REAL NOT NULL, u REAL, since INTEGER NOT NULL, by TEXT NOT NULL, at INTEGER NOT NULL,"
+    " note TEXT NOT NULL, withdrawn_by TEXT NOT NULL DEFAULT '', withdrawn_at INTEGER NOT NULL "
+    "DEFAULT 0);"
+    "CREATE INDEX causes_by_quantity ON causes (owner, quantity, bump);"
+    "CREATE TABLE cause_points (cause INTEGER NOT NULL REFERENCES causes, number INTEGER NOT NULL,"
+    " level TEXT NOT NULL, x REAL, shift REAL NOT NULL, PRIMARY KEY (cause, number)) WITHOUT "
+    "ROWID;",
 };
 
 enum { VERSION = sizeof migrations / sizeof *migrations, BUSY_MS = 5000, IN_FILE_EVERY_S = 5 };
@@ -183,6 +200,31 @@ static fg_status open_both(fg_context *ctx, const char *folder, fg_station_datab
   FG_TRY(migrate(ctx, database));
   FG_TRY(open_connection(ctx, database->path, false, &database->reader));
   return find_file(ctx, database);
+}
+
+fg_status fg_station_database_open_reader(fg_context *ctx, const char *path, sqlite3 **reader) {
+  fg_status status = open_connection(ctx, path, false, reader);
+  if (status == FG_OK) return FG_OK;
+  sqlite3_close_v2(*reader);
+  *reader = NULL;
+  return status;
+}
+
+fg_status fg_station_database_check(fg_context *ctx, const char *path) {
+  fg_query query;
+  sqlite3 *reader;
+  if (access(path, R_OK) != 0)
+    return fg_fail(ctx, FG_ERR_IO, "%s: there is no database of a station", path);
+  FG_TRY(fg_station_database_open_reader(ctx, path, &reader));
+  fg_query_begin(reader, "PRAGMA user_version", &query);
+  int version = fg_query_row(&query) ? (int)fg_query_get_integer(&query, 0) : 0;
+  fg_status status = fg_query_end(ctx, &query, path);
+  sqlite3_close_v2(reader);
+  if (status != FG_OK || version == VERSION) return status;
+  return fg_fail(ctx, FG_ERR_DATA,
+                 "%s: the database has version %d, this program's have %d: start the station of "
+                 "this program once",
+                 path, version, VERSION);
 }
 
 fg_status fg_station_database_open(fg_context *ctx, const char *folder,

@@ -27,6 +27,13 @@ typedef struct fg_station_database {
  * database, or of a later program. */
 fg_status fg_station_database_open(fg_context *ctx, const char *folder,
                                    fg_station_database *database);
+/* FG_ERR_DATA or FG_ERR_IO unless there is a database of this program's version: a reader brings
+ * none up to date. */
+fg_status fg_station_database_check(fg_context *ctx, const char *path);
+
+/* Opens another connection that reads, for work that must not keep the pages waiting; the caller
+ * closes it. */
+fg_status fg_station_database_open_reader(fg_context *ctx, const char *path, sqlite3 **reader);
 /* Closes it; all data is then in the file itself, unless another program is reading it. An
  * all-zero one is accepted. */
 void fg_station_database_close(fg_station_database *database);

@@ -148,8 +148,8 @@ static fg_status insert_foil(fg_context *ctx, sqlite3 *writer, const fg_station_
     strcpy(serial, named->serial);
   find_reasons(&kept->settings->design, foil, reasons, sizeof reasons);
   fg_query_begin(writer,
-                 "INSERT INTO foils (scan, number, serial, lot, die, operator, verdict, reasons)"
-                 " VALUES (?, ?, ?, ?, ?, ?, ?, ?)",
+                 "INSERT INTO foils (scan, number, serial, lot, die, operator, verdict, reasons,"
+                 " coil, oven, scanner) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
                  &query);
   fg_query_integer(&query, scan);
   fg_query_integer(&query, foil->number);
@@ -159,6 +159,9 @@ static fg_status insert_foil(fg_context *ctx, sqlite3 *writer, const fg_station_
   fg_query_text(&query, named->operator_name);
   fg_query_text(&query, fg_verdict_word(verdict));
   fg_query_text(&query, reasons);
+  fg_query_text(&query, named->coil);
+  fg_query_text(&query, named->oven);
+  fg_query_text(&query, named->scanner);
   fg_query_row(&query);
   return fg_query_end(ctx, &query, "keeping a foil");
 }

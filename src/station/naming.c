@@ -10,9 +10,10 @@ static const struct {
   const char *name;
   size_t offset;
 } fields[] = {
-    {"serial", offsetof(fg_named, serial)}, {"lot", offsetof(fg_named, lot)},
-    {"die", offsetof(fg_named, die)},       {"operator", offsetof(fg_named, operator_name)},
-    {"check", offsetof(fg_named, check)},
+    {"serial", offsetof(fg_named, serial)},   {"lot", offsetof(fg_named, lot)},
+    {"die", offsetof(fg_named, die)},         {"operator", offsetof(fg_named, operator_name)},
+    {"coil", offsetof(fg_named, coil)},       {"oven", offsetof(fg_named, oven)},
+    {"scanner", offsetof(fg_named, scanner)}, {"check", offsetof(fg_named, check)},
 };
 
 enum { FIELDS = sizeof fields / sizeof *fields };
@@ -38,7 +39,7 @@ fg_status fg_naming_check(fg_context *ctx, const char *pattern) {
       if (field == FIELDS)
         return fg_fail(ctx, FG_ERR_DATA,
                        "file_name: '%.40s' begins no field; there are {serial}, {lot}, {die}, "
-                       "{operator}, {check}",
+                       "{operator}, {coil}, {oven}, {scanner}, {check}",
                        at);
       if (seen[field])
         return fg_fail(ctx, FG_ERR_DATA, "file_name: {%s} is there twice", fields[field].name);

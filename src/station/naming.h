@@ -11,6 +11,7 @@ enum { FG_NAMED_TEXT = 128 };
 
 typedef struct fg_named {
   char serial[FG_NAMED_TEXT], lot[FG_NAMED_TEXT], die[FG_NAMED_TEXT], operator_name[FG_NAMED_TEXT];
+  char coil[FG_NAMED_TEXT], oven[FG_NAMED_TEXT], scanner[FG_NAMED_TEXT];
   char check[FG_NAMED_TEXT]; /* not "": the scan is one of the scanner's check */
 } fg_named;
 

@@ -180,7 +180,11 @@ static void draw_check(const fg_plot *at, const check_row *row, double x, int ax
 static void draw_history(FILE *out, const history *all, int axis, double allowed) {
   double span = find_span(all, axis, allowed);
   fprintf(out, "<figure><h3>%s, %s</h3>\n", axes[axis].title, axes[axis].unit);
-  fg_plot at = fg_plot_frame_begin(out, &(fg_plot_frame){axes[axis].title, .width = 560, .height = 220, .left = 66, .top = 10, .bottom = 30, .x = (double[]){0.5, (double)all->count + 0.5}, .y = (double[]){-span, span}, .y_title = "", .ticks = FG_TICKS_OWN, .band = (double[]){-allowed, allowed}, .band_style = "allowed"});
+  fg_plot at = fg_plot_frame_begin(
+      out, &(fg_plot_frame){axes[axis].title, .width = 560, .height = 220, .left = 66, .top = 10,
+                            .bottom = 30, .x = (double[]){0.5, (double)all->count + 0.5},
+                            .y = (double[]){-span, span}, .y_title = "", .ticks = FG_TICKS_OWN,
+                            .band = (double[]){-allowed, allowed}, .band_style = "allowed"});
   fg_plot_level(&at, -allowed, "tolerance");
   fg_plot_level(&at, allowed, "tolerance");
   for (size_t i = 0; i < all->count; i++)

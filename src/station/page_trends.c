@@ -5,6 +5,7 @@
 #include "core/text.h"
 #include "page/page.h"
 #include "page/tile.h"
+#include "station/cause_keep.h"
 #include "station/trend.h"
 
 enum { NAME_BYTES = 140, NARROWEST = 10 };
@@ -69,18 +70,10 @@ static void write_range_html_form(const page *p) {
   const fg_trend *trend = p->trend;
   FILE *out = p->out;
   fputs("<form class=\"fields range\" method=\"get\" action=\"/trends\"><input type=\"hidden\" "
-        "name=\"q\" value=\"",
+        "name=\"by\" value=\"",
         out);
-  fg_trend_write_name(out, choice->owner, choice->row);
-  fputs("\">", out);
-  if (choice->bump)
-    fprintf(out, "<input type=\"hidden\" name=\"bump\" value=\"%d\">", choice->bump);
-  fputs("<input type=\"hidden\" name=\"lot\" value=\"", out);
-  fg_html_text(out, choice->lot);
-  fputs("\"><input type=\"hidden\" name=\"die\" value=\"", out);
-  fg_html_text(out, choice->die);
-  fprintf(out, "\"><input type=\"hidden\" name=\"by\" value=\"%s\">",
-          choice->by_lots ? "lots" : "");
+  fprintf(out, "%s\">", choice->by_lots ? "lots" : "");
+  fg_trend_write_hidden(out, choice);
   if (choice->newest)
     fprintf(out, "<input type=\"hidden\" name=\"newest\" value=\"%zu\">", choice->newest);
   else
@@ -218,6 +211,8 @@ static void write_withheld_reasons(const page *p) {
   fputs("<p class=\"next\">Not stated: ", out);
   if (!quantity->tolerance)
     fputs("the design has no tolerance for this quantity.", out);
+  else if (p->trend->shift)
+    fputs("accepted causes move the process within these foils: choose a range without them.", out);
   else if (p->choice->by_lots)
     fputs("it is a matter of single foils: choose \"Over: foils\".", out);
   else if (p->trend->count < STABLE_MIN)
@@ -244,7 +239,7 @@ static void write_capability(const page *p) {
   const fg_capability *capability = &quantity->capability;
   FILE *out = p->out;
   fputs("<h2>Capability</h2>\n", out);
-  if (p->choice->by_lots || !quantity->has_capability || !quantity->stable ||
+  if (p->choice->by_lots || !quantity->has_capability || !quantity->stable || p->trend->shift ||
       p->trend->count < STABLE_MIN) {
     write_withheld_reasons(p);
     return;
@@ -263,7 +258,15 @@ static void write_capability(const page *p) {
                                "of how many will be beyond.");
 }
 
-static void write_chart(const page *p) {
+/* The columns of the database are searched for a cause. */
+static void write_ask_why(const page *p) {
+  fputs("<form class=\"fields noprint\" method=\"post\" action=\"/why\">", p->out);
+  fg_page_csrf_token(p->station, p->out);
+  fg_trend_write_hidden(p->out, p->choice);
+  fputs("<button>Why?</button></form>\n", p->out);
+}
+
+static fg_status write_chart(fg_context *ctx, const page *p) {
   fg_trend_run runs[FG_TREND_RUNS];
   size_t all, count = fg_trend_runs(p->trend, runs, &all);
   write_controls(p);
@@ -272,7 +275,10 @@ static void write_chart(const page *p) {
   write_range_html_form(p);
   write_caption(p);
   write_runs(p, runs, count, all);
+  if (!p->choice->by_lots) write_ask_why(p);
+  FG_TRY(fg_page_causes(ctx, p->station, p->reader, p->choice, p->out));
   write_capability(p);
+  return FG_OK;
 }
 
 static void write_title(const page *p) {
@@ -287,10 +293,9 @@ static void write_title(const page *p) {
 
 static fg_status write_trend(fg_context *ctx, const page *p) {
   write_title(p);
-  FG_TRY(fg_trend_write_html_form(ctx, p->station, p->reader, p->trend, p->out));
-  if (p->trend->quantity.has_chart)
-    write_chart(p);
-  else if (p->choice->by_lots)
+  FG_TRY(fg_trend_write_html_form(ctx, p->station, p->reader, p->choice, p->out));
+  if (p->trend->quantity.has_chart) return write_chart(ctx, p);
+  if (p->choice->by_lots)
     fprintf(p->out,
             "<p class=\"next\">%zu %s: a chart of lots needs two, one of them with two foils at "
             "least.</p>\n",

@@ -36,10 +36,10 @@ static const fg_members check_members = FG_MEMBERS(check_rows);
 
 static const fg_member settings_rows[] = {
     {FG_TEXT("file_name", fg_station_settings, file_name),
-     .words =
-         "What a file's name says, without its ending: text, `*` for anything, `{serial}`, "
-         "`{lot}`, `{die}`, `{operator}`; such as `{lot}_{die}_{serial}`. A name of another form "
-         "is a serial number as a whole."},
+     .words = "What a file's name says, without its ending: text, `*` for anything, `{serial}`, "
+              "`{lot}`, `{die}`, `{operator}`, `{coil}`, `{oven}`, `{scanner}`; such as "
+              "`{lot}_{die}_{serial}`. A name of another form "
+              "is a serial number as a whole."},
     {FG_TEXT("scan_command", fg_station_settings, scan_command), .options = FG_MEMBER_ANY_TEXT,
      .words =
          "Puts a Scan button on the page: a command of the shell that writes the scan `{file}`. It "

@@ -66,6 +66,7 @@ typedef struct fg_inspection {
   char scan_warning[1000];            /* options of it that spoil scans; "": none is known */
   struct fg_station_scanner *scanner; /* of the last scan by command; NULL: none yet */
   fg_closing closing;
+  struct fg_why *why; /* search for causes (station/why.h); NULL: none was asked for */
   fg_recovery recovery;
   fg_arriving arriving;
   atomic_llong news;          /* station/news.h */

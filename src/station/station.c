@@ -5,14 +5,17 @@
 #include <sys/random.h>
 #include <unistd.h>
 
+#include "foilgauge/file.h"
 #include "foilgauge/foil_kind.h"
 #include "lot/run/folder_lock.h"
 #include "station/close.h"
+#include "station/digest.h"
 #include "station/export.h"
 #include "station/keep.h"
 #include "station/scan_options.h"
 #include "station/server.h"
 #include "station/watch.h"
+#include "station/why.h"
 
 static fg_status load_model(fg_context *ctx, fg_inspection *station) {
   const char *path = station->settings->lot.model;
@@ -61,6 +64,7 @@ static fg_status run_tasks(fg_context *ctx, fg_inspection *station) {
   FG_TRY(fg_station_keep_setup(ctx, &station->database, &station->settings->lot, &station->setup));
   if (request->once) return fg_station_watch(ctx, station, true);
   FG_TRY(make_csrf_token(ctx, station));
+  FG_TRY(fg_why_begin(ctx, station));
   inspect_scan_command(station);
   FG_TRY(fg_station_server_start(ctx, station));
   fg_status status = fg_station_watch(ctx, station, false);
@@ -68,9 +72,23 @@ static fg_status run_tasks(fg_context *ctx, fg_inspection *station) {
   return status;
 }
 
+static fg_status write_digest_page(fg_context *ctx, const fg_station_request *request, FILE *text) {
+  fg_output page;
+  if (!request->digest_page) return fg_station_digest(ctx, request, text, NULL);
+  FG_TRY(fg_output_open(ctx, request->digest_page, &page));
+  return fg_output_end(ctx, &page, fg_station_digest(ctx, request, text, page.stream));
+}
+
+static fg_status write_digest_files(fg_context *ctx, const fg_station_request *request) {
+  fg_output text;
+  FG_TRY(fg_output_open(ctx, NULL, &text));
+  return fg_output_end(ctx, &text, write_digest_page(ctx, request, text.stream));
+}
+
 fg_status fg_station_run(fg_context *ctx, const fg_station_request *request,
                          fg_station_outcome *outcome) {
   *outcome = (fg_station_outcome){.judged = {.verdict = FG_VERDICT_NONE}};
+  if (request->digest) return write_digest_files(ctx, request);
   fg_inspection *station = calloc(1, sizeof *station);
   if (!station) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a station");
   station->request = request;
@@ -83,6 +101,7 @@ fg_status fg_station_run(fg_context *ctx, const fg_station_request *request,
   atomic_init(&station->news, fg_station_now());
   fg_status status = run_tasks(ctx, station);
   fg_closing_end(&station->closing);
+  fg_why_end(station);
   fg_station_database_close(&station->database);
   if (station->model) fg_scanner_model_free(station->model);
   if (station->lock >= 0) close(station->lock);

@@ -133,6 +133,7 @@
     next = document.importNode(next, true);
     var focus = keepTyped(page, next), other = wordsOfCall(page) !== wordsOfCall(next);
     page.replaceWith(next);
+    live = next.querySelector('[data-live]');
     shown = next.dataset.news;
     known = next.dataset.at;
     heard = answered = sent;

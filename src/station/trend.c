@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "station/cause_keep.h"
 
 /* Values as they are read: one more of the point before, or the first of another. */
 typedef struct filling {
@@ -62,23 +63,13 @@ static const char of_lots[] =
     " SELECT first.id, first.id, mean.value FROM mean JOIN foils ON foils.id = mean.foil"
     " JOIN first ON first.lot = foils.lot WHERE" NAMED " ORDER BY first.id, mean.foil";
 
-static fg_status find_quantity(fg_context *ctx, sqlite3 *reader, const fg_trend_choice *choice,
-                               int64_t *id) {
-  fg_query query;
-  fg_query_begin(reader, "SELECT id FROM quantities WHERE owner = ? AND name = ?", &query);
-  fg_query_text(&query, choice->owner == FG_QUANTITY_OF_BUMP ? "bump" : "foil");
-  fg_query_text(&query, choice->row->name);
-  *id = fg_query_row(&query) ? fg_query_get_integer(&query, 0) : 0;
-  return fg_query_end(ctx, &query, "reading the quantities");
-}
-
 static fg_status read_values(fg_context *ctx, sqlite3 *reader, fg_trend *trend) {
   const fg_trend_choice *choice = trend->choice;
   filling at = {0};
   fg_query query;
   int64_t quantity;
   fg_status status = FG_OK;
-  FG_TRY(find_quantity(ctx, reader, choice, &quantity));
+  FG_TRY(fg_trend_find_quantity(ctx, reader, choice, &quantity));
   bool all = !choice->lot[0] && !choice->die[0];
   fg_query_begin(reader, choice->by_lots ? of_lots : all ? of_all : of_named, &query);
   bind(&query, quantity, choice);
@@ -158,15 +149,47 @@ static void judge_trend(const fg_lot_settings *settings, fg_lot_quantity *quanti
     quantity->has_capability = false;
 }
 
-static fg_status read_and_chart(fg_context *ctx, const fg_lot_settings *settings, sqlite3 *reader,
-                                fg_trend *trend) {
+static fg_status find_shifts(fg_context *ctx, const fg_station_request *request, sqlite3 *reader,
+                             fg_trend *trend) {
+  FG_TRY(fg_causes_read(ctx, reader, trend->choice, &trend->cause, &trend->causes));
+  const fg_shifted_points points = {.foil = trend->foil,
+                                    .count = trend->count,
+                                    .cause = {trend->cause, trend->choice->found},
+                                    .causes = {trend->causes, trend->choice->found_count}};
+  return fg_causes_find_shifts(ctx, request, reader, &points, &trend->shift);
+}
+
+static void shift_values(fg_trend *trend, double sign) {
+  double *value = trend->quantity.value;
+  for (size_t i = 0; trend->shift && i < trend->count; i++)
+    for (size_t k = 0; k < trend->quantity.size[i]; k++)
+      *value++ += sign * trend->shift[i];
+}
+
+/* Moves points and limits to where the causes have them: rules were applied about them. */
+static void shift_chart(fg_trend *trend) {
+  fg_chart *chart = &trend->quantity.chart;
+  for (size_t i = 0; trend->shift && i < chart->count; i++) {
+    chart->point[i].value += trend->shift[i];
+    chart->point[i].lower += trend->shift[i];
+    chart->point[i].upper += trend->shift[i];
+  }
+}
+
+static fg_status read_and_chart(fg_context *ctx, const fg_station_request *request,
+                                const fg_lot_settings *settings, sqlite3 *reader, fg_trend *trend) {
   FG_TRY(read_values(ctx, reader, trend));
   choose_points(trend);
   find_trend_spread(&trend->quantity);
   if (trend->choice->by_lots) return chart_lots(settings->run_rules, trend);
   if (!trend->count) return FG_OK;
+  FG_TRY(find_shifts(ctx, request, reader, trend));
+  shift_values(trend, -1);
   FG_TRY(fg_lot_chart_quantity(ctx, settings->run_rules, trend->count, &trend->quantity));
-  if (trend->quantity.stable) judge_trend(settings, &trend->quantity);
+  if (!trend->choice->taken_out) shift_chart(trend);
+  if (!trend->choice->taken_out) shift_values(trend, 1);
+  /* Between levels of a cause capability would be that of no state of the process. */
+  if (trend->quantity.stable && !trend->shift) judge_trend(settings, &trend->quantity);
   return FG_OK;
 }
 
@@ -177,7 +200,7 @@ fg_status fg_trend_read(fg_context *ctx, const fg_inspection *station, sqlite3 *
                       .quantity = {.row = choice->row,
                                    .owner = choice->owner,
                                    .tolerance = find_tolerance(&settings->design, choice->row)}};
-  fg_status status = read_and_chart(ctx, settings, reader, trend);
+  fg_status status = read_and_chart(ctx, station->request, settings, reader, trend);
   if (status != FG_OK) fg_trend_free(trend);
   return status;
 }
@@ -190,6 +213,8 @@ void fg_trend_free(fg_trend *trend) {
   fg_chart_free(&quantity->means);
   fg_chart_free(&quantity->deviations);
   free(trend->foil);
+  free(trend->shift);
+  fg_causes_free(trend->cause, trend->causes);
   *trend = (fg_trend){0};
 }
 

@@ -4,31 +4,7 @@
 #define FG_STATION_TREND_H
 
 #include "lot/statistics/analysis.h"
-#include "station/naming.h"
-#include "station/pages.h"
-
-/* The choice in the page's html form. Points are counted from the first of the selection, from
- * 1: their numbers stay when new foils come. */
-typedef struct fg_trend_choice {
-  fg_quantity_owner owner;
-  const fg_quantity *row;
-  int bump; /* 0: the mean over a foil's bumps, or the whole foil */
-  char lot[FG_NAMED_TEXT], die[FG_NAMED_TEXT]; /* "": any */
-  bool by_lots;
-  size_t newest;     /* points of the chart; 0: all */
-  size_t from, to;   /* points that are drawn; 0: not given */
-  bool of_the_drawn; /* the chart's limits come from the drawn points alone */
-} fg_trend_choice;
-
-/* FG_ERR_USAGE: there is no such quantity. */
-fg_status fg_trend_choose(fg_context *ctx, const fg_inspection *station, const fg_request *request,
-                          fg_trend_choice *choice);
-
-/* Writes the choice as a query, "?q=...", HTML-safe; with other points drawn, unless both are 0. */
-void fg_trend_write_link(FILE *out, const fg_trend_choice *choice, size_t from, size_t to);
-
-/* Writes "bump:height_mm", as the query has it. */
-void fg_trend_write_name(FILE *out, fg_quantity_owner owner, const fg_quantity *row);
+#include "station/trend_choice.h"
 
 /* The chart is of `count` points, behind `before` others, of `total`; [first, last] of them are
  * drawn. */
@@ -37,6 +13,9 @@ typedef struct fg_trend {
   fg_lot_quantity quantity; /* values and chart; `size` is that of each point */
   int64_t *foil;            /* of each point: the foil, or the lot's first; owned */
   size_t before, count, total, first, last;
+  double *shift; /* of each point by causes, about which limits are taken; NULL: there is none */
+  struct fg_cause *cause; /* accepted ones; owned */
+  size_t causes;
 } fg_trend;
 
 /* Reads the points. FG_OK also with none, or too few for a chart: then quantity.has_chart is
@@ -44,10 +23,6 @@ typedef struct fg_trend {
 fg_status fg_trend_read(fg_context *ctx, const fg_inspection *station, sqlite3 *reader,
                         const fg_trend_choice *choice, fg_trend *trend);
 void fg_trend_free(fg_trend *trend);
-
-/* Writes the html form of the choice. */
-fg_status fg_trend_write_html_form(fg_context *ctx, const fg_inspection *station, sqlite3 *reader,
-                                   const fg_trend *trend, FILE *out);
 
 /* Returns the chart: of individuals, or of the lots' means. */
 const fg_chart *fg_trend_chart(const fg_trend *trend);

@@ -6,7 +6,7 @@
 
 #include "page/page.h"
 #include "quantity/quantity_rows.h"
-#include "station/trend.h"
+#include "station/trend_choice.h"
 
 /* NEWEST: points of a chart by default: enough for limits, few enough that last year's changes
  * do not widen them. */
@@ -42,6 +42,26 @@ static void choose_first(const fg_design *design, fg_trend_choice *choice) {
       choice->row = row;
       return;
     }
+}
+
+bool fg_trend_choose_named(const char *name, size_t newest, fg_trend_choice *choice) {
+  *choice = (fg_trend_choice){.newest = newest};
+  for (size_t i = 0; i < OWNERS; i++) {
+    choice->owner = owners[i].owner;
+    choice->row = fg_quantity_find(choice->owner, name);
+    if (choice->row) return choice->row->kind != FG_QUANTITY_PAIR;
+  }
+  return false;
+}
+
+fg_status fg_trend_find_quantity(fg_context *ctx, sqlite3 *reader, const fg_trend_choice *choice,
+                                 int64_t *id) {
+  fg_query query;
+  fg_query_begin(reader, "SELECT id FROM quantities WHERE owner = ? AND name = ?", &query);
+  fg_query_text(&query, choice->owner == FG_QUANTITY_OF_BUMP ? "bump" : "foil");
+  fg_query_text(&query, choice->row->name);
+  *id = fg_query_row(&query) ? fg_query_get_integer(&query, 0) : 0;
+  return fg_query_end(ctx, &query, "reading the quantities");
 }
 
 static size_t read_count(const fg_request *request, const char *name) {
@@ -104,6 +124,27 @@ void fg_trend_write_link(FILE *out, const fg_trend_choice *choice, size_t from, 
     fputs("&amp;newest=all", out);
   if (choice->of_the_drawn) fputs("&amp;limits=drawn", out);
   if (from || to) fprintf(out, "&amp;from=%zu&amp;to=%zu", from, to);
+}
+
+void fg_trend_write_query(FILE *out, const char *page, const fg_trend_choice *choice) {
+  fprintf(out, "%s?q=", page);
+  fg_trend_write_name(out, choice->owner, choice->row);
+  if (choice->bump) fprintf(out, "&bump=%d", choice->bump);
+  if (choice->lot[0]) write_encoded((fputs("&lot=", out), out), choice->lot);
+  if (choice->die[0]) write_encoded((fputs("&die=", out), out), choice->die);
+}
+
+void fg_trend_write_hidden(FILE *out, const fg_trend_choice *choice) {
+  fputs("<input type=\"hidden\" name=\"q\" value=\"", out);
+  fg_trend_write_name(out, choice->owner, choice->row);
+  fputs("\">", out);
+  if (choice->bump)
+    fprintf(out, "<input type=\"hidden\" name=\"bump\" value=\"%d\">", choice->bump);
+  fputs("<input type=\"hidden\" name=\"lot\" value=\"", out);
+  fg_html_text(out, choice->lot);
+  fputs("\"><input type=\"hidden\" name=\"die\" value=\"", out);
+  fg_html_text(out, choice->die);
+  fputs("\">", out);
 }
 
 static void write_option(FILE *out, fg_quantity_owner owner, const fg_quantity *row,
@@ -184,9 +225,8 @@ static fg_status count_bumps(fg_context *ctx, sqlite3 *reader, int *bumps) {
 }
 
 fg_status fg_trend_write_html_form(fg_context *ctx, const fg_inspection *station, sqlite3 *reader,
-                                   const fg_trend *trend, FILE *out) {
+                                   const fg_trend_choice *choice, FILE *out) {
   int bumps;
-  const fg_trend_choice *choice = trend->choice;
   FG_TRY(count_bumps(ctx, reader, &bumps));
   fputs("<form class=\"fields\" method=\"get\" action=\"/trends\">", out);
   write_quantities(out, &station->settings->lot.design, choice);

@@ -7,6 +7,7 @@
 #include "core/select.h"
 #include "page/page.h"
 #include "page/plot_frame.h"
+#include "station/cause.h"
 #include "station/trend.h"
 
 enum { DOTS_MAX = 120, COLUMNS_MAX = 450, NAME_BYTES = 140, LABELS = 5 };
@@ -102,13 +103,24 @@ static void draw_zone(const drawing *d, double limit, bool above) {
           fg_plot_y(at, limit), at->right);
 }
 
+typedef enum chart_level { LEVEL_LOWER, LEVEL_CENTRE, LEVEL_UPPER } chart_level;
+
+/* Centre of the chart at a point: causes move it. */
+static double centre_at(const drawing *d, size_t point) {
+  bool moved = d->trend->shift && !d->trend->choice->taken_out;
+  return d->chart->centre + (moved ? d->trend->shift[point] : 0);
+}
+
 /* Steps where the limits follow the sizes of lots; where points are many, one in each column. */
-static void draw_limit(const drawing *d, bool upper) {
+static void draw_level(const drawing *d, const char *style, chart_level level) {
   const fg_trend *trend = d->trend;
   double before = NAN;
-  fprintf(d->at.out, "<path class=\"control\" d=\"");
+  fprintf(d->at.out, "<path class=\"%s\" d=\"", style);
   for (size_t i = trend->first; i <= trend->last; i++) {
-    double limit = upper ? d->chart->point[i].upper : d->chart->point[i].lower;
+    const fg_chart_point *point = &d->chart->point[i];
+    double limit = level == LEVEL_UPPER   ? point->upper
+                   : level == LEVEL_LOWER ? point->lower
+                                          : centre_at(d, i);
     double y = fg_plot_y(&d->at, limit), x = fg_plot_x(&d->at, place_of_point(d, i) - 0.5);
     bool differs = !(fabs(y - before) < 0.05);
     if (isnan(before))
@@ -209,6 +221,40 @@ static void draw_changes(const drawing *d) {
   }
 }
 
+/* The point with which a cause began; 0: before the chart, or never. */
+static size_t find_beginning(sqlite3 *reader, const fg_trend *trend, const fg_cause *cause) {
+  fg_query query;
+  fg_context unused;
+  size_t point = 0;
+  if (!cause->since) return 0;
+  fg_query_begin(reader,
+                 "SELECT min(foils.id) FROM scans JOIN foils ON foils.scan = scans.id WHERE at >= ?"
+                 " AND foils.id >= ?",
+                 &query);
+  fg_query_integer(&query, cause->since);
+  fg_query_integer(&query, trend->foil[0]);
+  int64_t foil =
+      fg_query_row(&query) && !fg_query_is_null(&query, 0) ? fg_query_get_integer(&query, 0) : 0;
+  if (fg_query_end(&unused, &query, "reading a time") != FG_OK || !foil) return 0;
+  while (point < trend->count && trend->foil[point] < foil)
+    point++;
+  return point;
+}
+
+/* Beginnings of causes, with the letters under which the words below speak of them. */
+static void draw_causes(const drawing *d) {
+  const fg_trend *trend = d->trend;
+  for (size_t k = 0; k < trend->causes; k++) {
+    size_t point = find_beginning(d->reader, trend, &trend->cause[k]);
+    if (point <= trend->first || point > trend->last) continue;
+    double x = fg_plot_x(&d->at, place_of_point(d, point) - 0.5);
+    fprintf(d->at.out,
+            "<path class=\"cause\" d=\"M%.1f %.1fV%.1f\"/><text class=\"cause\" x=\"%.1f\" "
+            "y=\"%.1f\">%c</text>\n",
+            x, d->at.top, d->at.bottom, x + 4, d->at.top + 14, (char)('a' + k % 26));
+  }
+}
+
 static size_t add_label(const drawing *d, fg_plot_label labels[LABELS], size_t count, double value,
                         const char *words, const char *style) {
   if (!isfinite(value)) return count;
@@ -223,7 +269,7 @@ static void draw_labels(const drawing *d) {
   const fg_chart_point *last = &d->chart->point[d->trend->last];
   count = add_label(d, labels, count, d->upper, "max", "start tolerance");
   count = add_label(d, labels, count, last->upper, "+3σ", "start control");
-  count = add_label(d, labels, count, d->chart->centre, "mean", "start");
+  count = add_label(d, labels, count, centre_at(d, d->trend->last), "mean", "start");
   count = add_label(d, labels, count, last->lower, "−3σ", "start control");
   count = add_label(d, labels, count, d->lower, "min", "start tolerance");
   fg_plot_labels(&d->at, labels, count, LABEL_GAP_PX);
@@ -235,10 +281,11 @@ static void draw_trend(const drawing *d, const fg_trend_run *runs, size_t run_co
   draw_zone(d, d->lower, false);
   draw_y_axis(d);
   draw_x_axis(d);
-  fg_plot_segment(&d->at, d->at.x_low, d->chart->centre, d->at.x_high, d->chart->centre, "thin");
-  draw_limit(d, true);
-  draw_limit(d, false);
+  draw_level(d, "thin", LEVEL_CENTRE);
+  draw_level(d, "control", LEVEL_UPPER);
+  draw_level(d, "control", LEVEL_LOWER);
   draw_changes(d);
+  draw_causes(d);
   draw_columns(d);
   draw_dots(d);
   draw_runs(d, runs, run_count);

@@ -233,7 +233,11 @@ static fg_status errors(fg_context *ctx, fg_engine_run *run, fg_engine_noise *no
   FG_TRY(cross_validated(ctx, run, &none, first, &result->before.cross_validated_rms));
   FG_TRY(cross_validated(ctx, run, &run->set, run->set.count ? *noise : first,
                          &result->after.cross_validated_rms));
-  if (isnan(result->before.held_out_rms) && run->set.count)
+  if (isnan(result->before.held_out_rms) && run->options.search_once) {
+    result->before.held_out_rms = result->before.cross_validated_rms;
+    result->after.held_out_rms = result->after.cross_validated_rms;
+    run->fell = result->after.held_out_rms < result->before.held_out_rms;
+  } else if (isnan(result->before.held_out_rms) && run->set.count)
     FG_TRY(fg_engine_cross_fit(ctx, run, &result->before.held_out_rms, &result->after.held_out_rms,
                                &run->fell));
   else if (isnan(result->before.held_out_rms))

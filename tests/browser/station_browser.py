@@ -436,7 +436,8 @@ def run_day(program, renderer, work):
     recipe = os.path.join(work, "recipe.json")
     with open(recipe, "w", encoding="utf-8") as file:
         json.dump({"schema": "foilgauge/recipe/1", "station": {"file_name": "{lot}_{serial}", "receive_s": RECEIVE_S},
-                   "design": {"schema": "foilgauge/design/1", "bump_count": 2, "tolerances": LIMITS}}, file)
+                   "design": {"schema": "foilgauge/design/1", "bump_count": 2, "tolerances": LIMITS,
+                              "calibration": "not needed: the scans are rendered"}}, file)
     with open(os.path.join(work, "errors"), "w", encoding="utf-8") as errors:
         station, browsers = Station(program, folder, recipe, errors), []
         try:
@@ -463,6 +464,34 @@ def run_day(program, renderer, work):
             station.end()
     print("browser: cards by themselves, barcode, search, report, zoom, lot, QIF, half-typed serial, two at once, phone, "
           "lost connection")
+
+
+def run_causes(program, work):
+    """A year with a cause: "Why?" is pressed, the cause accepted, the chart read."""
+    sys.path.insert(0, os.path.join(ROOT, "tests", "bench"))
+    import station_causes
+    station_causes.FOILGAUGE = program
+    bench, folder = station_causes.Bench(work, 1000), os.path.join(work, "year")
+    bench.year(5, {"scanner": {"S2": 0.006}}, keep=folder)
+    with open(os.path.join(work, "errors"), "w", encoding="utf-8") as errors:
+        station, browser = Station(program, folder, bench.recipe, errors), None
+        try:
+            browser = open_browser(work)
+            day = Day(browser, station, folder, work, program)
+            day.go("/trends?newest=all")
+            day.press(lambda: [b for b in browser.find_elements(By.CSS_SELECTOR, "button") if b.text == "Why?"])
+            wait(lambda: "with scanner" in day.text("ol.found") and "With the causes taken out" in day.text(), 120)
+            browser.find_element(By.CSS_SELECTOR, "ol.found input[name=note]").send_keys("glass cleaned")
+            browser.find_element(By.CSS_SELECTOR, "ol.found input[name=by]").send_keys("Ada", Keys.ENTER)
+            wait(lambda: "accepted by Ada" in day.text("ul.causes") and "glass cleaned" in day.text("ul.causes"))
+            limits = browser.execute_script("return document.querySelector('.wide path.control').getAttribute('d')")
+            expect(limits.count("V") > 10, "the limits do not follow the scanner: " + limits[:80])
+            day.quiet()
+        finally:
+            if browser:
+                browser.quit()
+            station.end()
+    print("browser: Why?, a cause accepted, limits about it")
 
 
 def run_pictures(program, folder, work):
@@ -517,6 +546,8 @@ def main():
             run_pictures(arguments.program, arguments.pictures, work)
         else:
             run_day(arguments.program, arguments.renderer or arguments.program, work)
+            os.mkdir(os.path.join(work, "causes"))
+            run_causes(arguments.program, os.path.join(work, "causes"))
 
 
 if __name__ == "__main__":

@@ -1,0 +1,189 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "station/why.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include "core/memory.h"
+#include "core/text.h"
+#include "station/cause_keep.h"
+#include "station/news.h"
+
+enum { GIVEN_WAY = 5 }; /* nice value: a third of the share of a measurement */
+
+static fg_status search_data(fg_context *ctx, const fg_station_request *request, sqlite3 *reader,
+                             const fg_trend_choice *choice, fg_cause_report *report) {
+  fg_station_contexts contexts;
+  fg_cause_data data = {0};
+  fg_cause *accepted = NULL;
+  size_t count = 0;
+  FG_TRY(fg_station_contexts_load(ctx, request, &contexts));
+  fg_status status = fg_cause_data_read(ctx, reader, &contexts, choice, &data);
+  if (status == FG_OK) status = fg_causes_read(ctx, reader, choice, &accepted, &count);
+  if (status == FG_OK) status = fg_cause_search(ctx, &data, accepted, count, report);
+  fg_causes_free(accepted, count);
+  fg_cause_data_free(&data);
+  fg_station_contexts_free(&contexts);
+  return status;
+}
+
+fg_status fg_why_search(fg_context *ctx, const fg_station_request *request, const char *database,
+                        const fg_trend_choice *choice, fg_cause_report *report) {
+  sqlite3 *reader;
+  FG_TRY(fg_station_database_open_reader(ctx, database, &reader));
+  fg_status status = search_data(ctx, request, reader, choice, report);
+  sqlite3_close_v2(reader);
+  return status;
+}
+
+/* Lowers the priority of this thread, and of those that it starts. It is not the lowest: on a busy
+ * machine the answer would never come. */
+static void give_way(void) {
+  setpriority(PRIO_PROCESS, (id_t)gettid(), GIVEN_WAY);
+}
+
+static void *run_why(void *user) {
+  fg_inspection *station = user;
+  fg_why *why = station->why;
+  fg_context ctx = {.message = ""};
+  fg_cause_report report = {0};
+  give_way();
+  fg_status status =
+      fg_why_search(&ctx, station->request, station->database.path, &why->choice, &report);
+  pthread_mutex_lock(&why->mutex);
+  fg_text_clip(why->error, sizeof why->error, "%s", status == FG_OK ? "" : ctx.message);
+  fg_cause_report_free(&why->report);
+  if (status == FG_OK) why->report = report;
+  why->at = fg_station_now();
+  why->running = false;
+  pthread_mutex_unlock(&why->mutex);
+  fg_station_notify(station);
+  return NULL;
+}
+
+/* The caller holds the mutex. */
+static fg_status start_why(fg_context *ctx, fg_inspection *station, const fg_trend_choice *choice) {
+  fg_why *why = station->why;
+  if (why->running)
+    return fg_fail(ctx, FG_ERR_DATA, "Another search for causes is running: wait until it ends.");
+  if (why->started) pthread_join(why->thread, NULL);
+  why->choice = *choice;
+  why->running = true;
+  why->started = pthread_create(&why->thread, NULL, run_why, station) == 0;
+  if (why->started) return FG_OK;
+  why->running = false;
+  return fg_fail(ctx, FG_ERR_MEMORY, "There is no thread for it now: try again.");
+}
+
+fg_status fg_why_begin(fg_context *ctx, fg_inspection *station) {
+  FG_TRY(fg_memory_allocate(ctx, 1, sizeof *station->why, (void **)&station->why));
+  pthread_mutex_init(&station->why->mutex, NULL);
+  return FG_OK;
+}
+
+void fg_why_end(fg_inspection *station) {
+  if (!station->why) return;
+  if (station->why->started) pthread_join(station->why->thread, NULL);
+  fg_cause_report_free(&station->why->report);
+  free(station->why);
+  station->why = NULL;
+}
+
+static void go_to_choice(const char *page, const fg_trend_choice *choice, fg_answer *answer) {
+  char *text = NULL;
+  size_t size;
+  FILE *out = open_memstream(&text, &size);
+  if (!out) return;
+  fg_trend_write_query(out, page, choice);
+  fclose(out);
+  fg_text_clip(answer->location, sizeof answer->location, "%s", text ? text : "/trends");
+  free(text);
+}
+
+fg_status fg_action_why(fg_context *ctx, fg_inspection *station, const fg_request *request,
+                        fg_answer *answer) {
+  fg_trend_choice choice;
+  FG_TRY(fg_trend_choose(ctx, station, request, &choice));
+  pthread_mutex_lock(&station->why->mutex);
+  fg_status status = start_why(ctx, station, &choice);
+  pthread_mutex_unlock(&station->why->mutex);
+  go_to_choice("/why", &choice, answer);
+  return status;
+}
+
+static bool is_same_choice(const fg_trend_choice *one, const fg_trend_choice *other) {
+  return one->row == other->row && one->owner == other->owner && one->bump == other->bump &&
+         !strcmp(one->lot, other->lot) && !strcmp(one->die, other->die);
+}
+
+/* A copy of a found cause, while the mutex is held. */
+static fg_status copy_cause(fg_context *ctx, const fg_why *why, const fg_trend_choice *choice,
+                            const fg_request *request, fg_cause *cause) {
+  char *end;
+  const char *number = fg_request_get(request, "cause");
+  size_t k = strtoul(number, &end, 10);
+  bool there = *number && !*end && !why->running && is_same_choice(&why->choice, choice) &&
+               k < why->report.causes &&
+               !strcmp(why->report.cause[k].words_of, fg_request_get(request, "words"));
+  if (!there)
+    return fg_fail(ctx, FG_ERR_DATA,
+                   "The search has been made again since this page was loaded: go back and load it "
+                   "again.");
+  *cause = why->report.cause[k];
+  size_t bytes = cause->points * sizeof *cause->point;
+  FG_TRY(fg_memory_allocate(ctx, cause->points, sizeof *cause->point, (void **)&cause->point));
+  memcpy(cause->point, why->report.cause[k].point, bytes);
+  return FG_OK;
+}
+
+static fg_status check_who(fg_context *ctx, const char *by) {
+  if (by[strspn(by, " ")]) return FG_OK;
+  return fg_fail(ctx, FG_ERR_DATA, "Who says so? Go back and fill in the name.");
+}
+
+fg_status fg_action_accept(fg_context *ctx, fg_inspection *station, const fg_request *request,
+                           fg_answer *answer) {
+  fg_trend_choice choice;
+  fg_cause cause = {0};
+  const char *by = fg_request_get(request, "by");
+  FG_TRY(check_who(ctx, by));
+  FG_TRY(fg_trend_choose(ctx, station, request, &choice));
+  pthread_mutex_lock(&station->why->mutex);
+  fg_status status = copy_cause(ctx, station->why, &choice, request, &cause);
+  pthread_mutex_unlock(&station->why->mutex);
+  FG_TRY(status);
+  status =
+      fg_cause_keep(ctx, &station->database, &choice, &cause, by, fg_request_get(request, "note"));
+  free(cause.point);
+  FG_TRY(status);
+  fg_station_notify(station);
+  go_to_choice("/trends", &choice, answer);
+  return FG_OK;
+}
+
+fg_status fg_action_withdraw(fg_context *ctx, fg_inspection *station, const fg_request *request,
+                             fg_answer *answer) {
+  fg_query query;
+  fg_trend_choice choice;
+  sqlite3 *writer = station->database.writer;
+  const char *by = fg_request_get(request, "by");
+  FG_TRY(check_who(ctx, by));
+  FG_TRY(fg_trend_choose(ctx, station, request, &choice));
+  FG_TRY(fg_station_database_begin(ctx, &station->database));
+  writer = station->database.writer;
+  fg_query_begin(writer,
+                 "UPDATE causes SET withdrawn_by = ?, withdrawn_at = ? WHERE id = ? AND"
+                 " withdrawn_at = 0",
+                 &query);
+  fg_query_text(&query, by);
+  fg_query_integer(&query, fg_station_now());
+  fg_query_integer(&query, strtoll(fg_request_get(request, "cause"), NULL, 10));
+  fg_query_row(&query);
+  FG_TRY(fg_station_database_end(ctx, &station->database,
+                                 fg_query_end(ctx, &query, "withdrawing a cause")));
+  fg_station_notify(station);
+  go_to_choice("/trends", &choice, answer);
+  return FG_OK;
+}
