@@ -10,6 +10,7 @@
 #include "foilgauge/compensation.h"
 #include "foilgauge/die.h"
 #include "foilgauge/experiment.h"
+#include "foilgauge/film.h"
 #include "foilgauge/load_test.h"
 #include "foilgauge/measure.h"
 #include "foilgauge/scan.h"
@@ -151,6 +152,20 @@ static void write_friction(FILE *out) {
   fprintf(out, "%g", fg_arch_material_default().friction);
 }
 
+#define FILM_FACT(name, format, field)                                                             \
+  static void write_film_##name(FILE *out) {                                                       \
+    fprintf(out, format, fg_film_options_default().field);                                         \
+  }
+FILM_FACT(load_deg, "%g", load_deg)
+FILM_FACT(loss_factor, "%g", loss_factor)
+FILM_FACT(pads, "%zu", pads)
+FILM_FACT(viscosity, "%g", viscosity_upa_s)
+FILM_FACT(ambient, "%g", ambient_kpa)
+FILM_FACT(speeds, "%zu", speeds)
+FILM_FACT(touching, "%g", touching_um)
+FILM_FACT(mesh_bump, "%zu", cells_per_bump)
+FILM_FACT(mesh_axial, "%zu", cells_axial)
+
 static void write_port(FILE *out) {
   fprintf(out, "%d", FG_CLI_STATION_PORT);
 }
@@ -198,6 +213,15 @@ static const fg_fact facts[] = {
     {"youngs_modulus_gpa", write_modulus},
     {"poisson_ratio", write_poisson},
     {"friction", write_friction},
+    {"film_load_deg", write_film_load_deg},
+    {"film_loss_factor", write_film_loss_factor},
+    {"film_pads", write_film_pads},
+    {"film_viscosity_upa_s", write_film_viscosity},
+    {"film_ambient_kpa", write_film_ambient},
+    {"film_speeds", write_film_speeds},
+    {"film_touching_um", write_film_touching},
+    {"film_mesh_bump", write_film_mesh_bump},
+    {"film_mesh_axial", write_film_mesh_axial},
     {"station_port", write_port},
     {"loop_minutes", write_minutes},
     {"loop_mebibytes", write_mebibytes},

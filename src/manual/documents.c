@@ -12,6 +12,7 @@
 #include "report/design/members.h"
 #include "report/die/members.h"
 #include "report/doe/members.h"
+#include "report/film/members.h"
 #include "report/forming/members.h"
 #include "report/grid_loop/members.h"
 #include "report/load_test/members.h"
@@ -27,6 +28,7 @@ const fg_document *const fg_documents[] = {
     &fg_die_document,
     &fg_doe_document,
     &fg_expected_document,
+    &fg_film_document,
     &fg_forming_document,
     &fg_forming_fit_document,
     &fg_grid_loop_document,

@@ -28,6 +28,7 @@ echo '{"schema": "foilgauge/design/1", "bump_count": 2}' >design.json
 expect 0 "" "$kept" measure scans/1.png --design design.json -o -
 python3 -c 'import json, sys; json.load(open(sys.argv[1]))' stdout || fail "a document that is kept does not reach its reader"
 expect 0 "" "$kept" design design.json -o nominal.json
+expect 0 "" "$kept" film --load 20 --speed 60000 --clearance 40 --mesh 2,2 --speeds 50000:60000:2 --shims=-5:5 --draws 2 -o film.json
 expect 0 "" "$kept" lot scans --design design.json -o lot
 expect 0 "" "$kept" die --target design.json --lot lot -o next.json
 expect 0 "" "$kept" lot scans --design design.json -o lot --resume --expected next.json

@@ -1,0 +1,172 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The gas film under a bearing's foils, and the stability of a rotor on it (thesis section 5.12).
+ *
+ * FILM. Isothermal compressible Reynolds equation on the unwrapped bearing, R = D/2:
+ *   d/dx (p h³ dp/dx) + d/dz (p h³ dp/dz) = 6 mu omega R d(p h)/dx + 12 mu d(p h)/dt,
+ * ambient pressure p_a at both ends and at every edge of a pad. Groups of the literature:
+ *   compressibility number  L = 6 mu omega (R / C)² / p_a
+ *   compliance              alpha = p_a s / (C K), s the bumps' pitch, K a bump's stiffness per
+ *                           width (foilgauge/stiffness.h)
+ *   loss factor             gamma: a bump's stiffness is K (1 + i gamma) while the rotor whirls
+ * C is the reference clearance. The clearance is linear from bump to bump and constant beyond the
+ * outer ones of a pad. The top foil does not bend along the axis (Kim and San Andrés 2006: the mean
+ * pressure over the length deflects it); along the rotation it is stiff between the bumps, or sags
+ * as a beam on them, held at its leading edge. Neither lifts off the bumps, the gas stays at one
+ * temperature, the axes are parallel.
+ *
+ * SIGNS. Directions as in foilgauge/bearing.h: 0 degrees at the first bump of pad 1, the rotor
+ * turns towards larger angles. The load is the force on the rotor; the attitude angle leads from
+ * the load to the displaced rotor, in the sense of rotation.
+ *
+ * ROTOR. Rigid, one half of its mass on each of two like bearings; rotor_mass_kg is the mass on one
+ * of them. Stiffness and damping at a whirl of nu times the speed are the film's first-order
+ * response (Lund 1968): force = -(K + i nu omega C) displacement. The rotor is on the border of
+ * stability where an eigenvalue of this impedance is real: then it is M (nu omega)², M the critical
+ * mass (Pan 1964), and every heavier rotor whirls. The threshold speed is the lowest at which the
+ * rotor's mass is critical.
+ */
+#ifndef FOILGAUGE_FILM_H
+#define FOILGAUGE_FILM_H
+
+#include <stdint.h>
+#include <stdio.h>
+
+#include "foilgauge/bearing.h"
+#include "foilgauge/design.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum fg_film_top {
+  FG_FILM_STIFF,   /* straight from bump to bump */
+  FG_FILM_SAGGING, /* a beam on the bumps */
+} fg_film_top;
+
+enum { FG_FILM_FREQUENCIES = 21, FG_FILM_SPEEDS_MAX = 200 };
+
+typedef struct fg_film_options {
+  double load_n, load_deg, speed_rpm; /* load_n, speed_rpm above 0 */
+  double rotor_mass_kg;               /* NaN: load / 9.80665 m/s² */
+  double length_mm;                   /* NaN: the rotor's diameter */
+  double clearance_um;                /* reference; NaN: the design's C_D */
+  double compliance;                  /* NaN: of the design's bumps */
+  const char *model;                  /* of a bump's stiffness, by its id; NULL: the arch */
+  fg_arch_material material;
+  double loss_factor;
+  double viscosity_upa_s, ambient_kpa;
+  size_t pads; /* 0: a closed ring of bumps, without edges */
+  size_t bumps_per_pad, first_bump;
+  double pitch_deg;
+  fg_film_top top;
+  double top_foil_mm;                   /* NaN: the design's; of a top foil that sags */
+  size_t cells_per_bump, cells_axial;   /* mesh: even; over half the length */
+  double touching_um;                   /* a thinner film touches */
+  double speed_low_rpm, speed_high_rpm; /* of the stability map */
+  size_t speeds;
+  const char *foils; /* report of measured foils, whose order is that of the pads */
+  size_t draws;      /* bearings with random shims; 0: none */
+  uint64_t seed;
+  double shim_low_pct, shim_high_pct; /* heights of shims, percent of the clearance */
+  unsigned jobs;                      /* threads; 0: all cores */
+} fg_film_options;
+
+/* Air at 25 degrees C; table 5.6's loss factor, three pads of seven bumps or of as many as the
+ * design has. */
+fg_film_options fg_film_options_default(void);
+
+/* A bearing: its places, clearances and bumps. */
+typedef struct fg_film_bearing {
+  size_t count;
+  double angle_deg[FG_BEARING_BUMPS_MAX], clearance_mm[FG_BEARING_BUMPS_MAX];
+  double shared_mm[FG_BEARING_BUMPS_MAX], own_mm[FG_BEARING_BUMPS_MAX]; /* u; 0: none */
+  double stiffness_n_mm2[FG_BEARING_BUMPS_MAX];
+} fg_film_bearing;
+
+typedef enum fg_film_outcome {
+  FG_FILM_SOLVED,
+  FG_FILM_TOUCHING, /* solved, with a film thinner than touching_um */
+  FG_FILM_UNSOLVED, /* no steady film was found at this load */
+} fg_film_outcome;
+extern const char *const fg_film_outcome_words[]; /* "solved", "touching", "unsolved", NULL */
+
+/* A bearing at one speed and load; NaN where unsolved. */
+typedef struct fg_film_result {
+  fg_film_outcome outcome;
+  double speed_rpm, compressibility;
+  double place_um[2];  /* of the rotor */
+  double eccentricity; /* over the reference clearance */
+  double attitude_deg;
+  double min_film_um, min_film_deg, max_pressure_kpa, power_w;
+  double critical_mass_kg;  /* infinite: stable at every mass */
+  double whirl_ratio;       /* of the whirl at the critical mass, over the speed */
+  double mass_over_perfect; /* critical mass over the perfect bearing's; NaN: not asked */
+} fg_film_result;
+
+/* Stiffness and damping at one frequency of whirl; xx, xy, yx, yy. */
+typedef struct fg_film_coefficients {
+  double whirl_ratio, frequency_hz;
+  double stiffness_n_um[4], damping_n_s_mm[4];
+} fg_film_coefficients;
+
+/* A line of nodes across the film. */
+typedef struct fg_film_column {
+  size_t pad;
+  double angle_deg, clearance_um, film_um, deflection_um;
+  double *pressure_kpa; /* from the middle to the end of the length */
+} fg_film_column;
+
+typedef struct fg_film_share {
+  size_t count;
+  double share, low, high; /* interval of 95 % (Clopper and Pearson) */
+} fg_film_share;
+
+enum { FG_FILM_QUANTILES = 5 };
+
+typedef struct fg_film_draws {
+  fg_film_result *result;
+  size_t count;
+  fg_film_share solved, touching, more_stable, less_stable; /* the latter two of those solved */
+  double quantile[FG_FILM_QUANTILES]; /* of the critical mass over the perfect bearing's: 5, 25, 50,
+                                         75, 95 % of those solved */
+} fg_film_draws;
+
+typedef struct fg_film_report {
+  fg_design design;
+  fg_film_options options;
+  char foils_path[512], foils_sha256[65];
+  double clearance_um, compliance, stiffness_n_mm2, length_mm, diameter_mm;
+  fg_film_bearing bearing;
+  fg_film_result perfect, at; /* of the design; of the bearing, the same without foils */
+  fg_film_coefficients frequency[FG_FILM_FREQUENCIES];
+  size_t frequencies; /* 0 where unsolved */
+  fg_film_result *speed;
+  size_t speeds;
+  double threshold_rpm; /* NaN: not within the speeds */
+  fg_film_column *column;
+  size_t columns, nodes; /* nodes of a column */
+  double *pressure_kpa;  /* of all columns; owned */
+  fg_film_draws draws;
+} fg_film_report;
+
+/* Solves. FG_ERR_DATA for a design without bumps or a bearing without clearance, FG_ERR_USAGE for
+ * options that contradict each other, FG_ERR_NUMERIC when the perfect bearing has no film at this
+ * load. */
+fg_status fg_film_run(fg_context *ctx, const fg_design *design, const fg_film_options *options,
+                      fg_film_report *report);
+void fg_film_report_free(fg_film_report *report);
+
+/* Solved, touching: 0. Unsolved: 2. */
+int fg_film_exit_code(const fg_film_report *report);
+
+fg_status fg_film_write_json(fg_context *ctx, const fg_film_report *report, FILE *out);
+fg_status fg_film_write_html(fg_context *ctx, const fg_film_report *report, FILE *out);
+fg_status fg_film_write_text(fg_context *ctx, const fg_film_report *report, FILE *out);
+/* Row per drawn bearing; per speed. */
+fg_status fg_film_write_draws(fg_context *ctx, const fg_film_report *report, FILE *out);
+fg_status fg_film_write_speeds(fg_context *ctx, const fg_film_report *report, FILE *out);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

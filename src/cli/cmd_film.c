@@ -1,0 +1,351 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include <argp.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/commands.h"
+#include "cli/facts.h"
+#include "cli/output_set.h"
+#include "foilgauge/film.h"
+
+enum { OUT_JSON, OUT_HTML, OUT_TEXT, OUT_SPEEDS, OUT_DRAWS, OUT_COUNT };
+
+typedef struct film_run {
+  const char *design_path;
+  fg_film_options options;
+  fg_output_set outputs;
+  fg_design design;
+  fg_film_report report;
+} film_run;
+
+enum {
+  OPTION_LOAD = 256,
+  OPTION_LOAD_ANGLE,
+  OPTION_SPEED,
+  OPTION_MASS,
+  OPTION_FOILS,
+  OPTION_LENGTH,
+  OPTION_CLEARANCE,
+  OPTION_COMPLIANCE,
+  OPTION_MODEL,
+  OPTION_LOSS,
+  OPTION_FRICTION,
+  OPTION_MODULUS,
+  OPTION_PADS,
+  OPTION_BUMPS,
+  OPTION_FIRST,
+  OPTION_PITCH,
+  OPTION_TOP,
+  OPTION_TOP_FOIL,
+  OPTION_VISCOSITY,
+  OPTION_AMBIENT,
+  OPTION_SPEEDS,
+  OPTION_SHIMS,
+  OPTION_DRAWS,
+  OPTION_SEED,
+  OPTION_JOBS,
+  OPTION_TOUCHING,
+  OPTION_MESH,
+  OPTION_HTML,
+  OPTION_TEXT,
+  OPTION_SPEEDS_OUT,
+  OPTION_DRAWS_OUT,
+};
+
+static const struct argp_option options[] = {
+    {NULL, 0, NULL, 0, "What the rotor asks (both are needed):", 1},
+    {"load", OPTION_LOAD, "N", 0, "Force on the rotor, on this bearing", 1},
+    {"speed", OPTION_SPEED, "RPM", 0, "Of the rotor", 1},
+    {"load-angle", OPTION_LOAD_ANGLE, "DEG", 0,
+     "Direction of the load from the first bump of pad 1, in the sense of rotation (default: "
+     "@film_load_deg@)",
+     1},
+    {"mass", OPTION_MASS, "KG", 0, "Of the rotor, on this bearing (default: the load's by gravity)",
+     1},
+    {NULL, 0, NULL, 0, "The bearing:", 2},
+    {"foils", OPTION_FOILS, "FILE.json", 0,
+     "A report of `foilgauge measure` whose foils are the pads in their order: their clearances in "
+     "place of the design's",
+     2},
+    {"length", OPTION_LENGTH, "MM", 0, "Of the bearing (default: the rotor's diameter)", 2},
+    {"clearance", OPTION_CLEARANCE, "UM", 0,
+     "C, which the film is referred to (default: the design's C_D)", 2},
+    {"compliance", OPTION_COMPLIANCE, "ALPHA", 0,
+     "p_a s / (C K), 0: rigid (default: of the design's bumps, by --model)", 2},
+    {"model", OPTION_MODEL, "NAME", 0,
+     "Of a bump's stiffness: arch, heshmat or link_spring (default: arch)", 2},
+    {"loss-factor", OPTION_LOSS, "GAMMA", 0,
+     "Of the bumps, as `foilgauge stiffness` measures it (default: @film_loss_factor@, thesis "
+     "table 5.6)",
+     2},
+    {"friction", OPTION_FRICTION, "MU", 0, "Of a bump's feet (default: @friction@)", 2},
+    {"elastic-modulus", OPTION_MODULUS, "GPA", 0, "Of the foils (default: @youngs_modulus_gpa@)",
+     2},
+    {"pads", OPTION_PADS, "N", 0,
+     "Foils around the bearing (default: @film_pads@); 0: a closed ring of bumps", 2},
+    {"bumps", OPTION_BUMPS, "N", 0, "Of each pad (default: the design's)", 2},
+    {"first-bump", OPTION_FIRST, "N", 0, "Of each foil, as measured (default: 1)", 2},
+    {"pitch", OPTION_PITCH, "DEG", 0, "From bump to bump (default: even around the bearing)", 2},
+    {"top-foil", OPTION_TOP, "KIND", 0,
+     "stiff between the bumps, or sagging as a beam on them (default: stiff)", 2},
+    {"top-foil-thickness", OPTION_TOP_FOIL, "MM", 0, "Of one that sags (default: the design's)", 2},
+    {"viscosity", OPTION_VISCOSITY, "UPAS", 0,
+     "Of the gas, micropascal seconds (default: @film_viscosity_upa_s@, air at 25 degrees C)", 2},
+    {"ambient", OPTION_AMBIENT, "KPA", 0, "Pressure around (default: @film_ambient_kpa@)", 2},
+    {NULL, 0, NULL, 0, "What is asked of it:", 3},
+    {"speeds", OPTION_SPEEDS, "LOW:HIGH[:N]", 0,
+     "Of the stability map, rpm (default: a quarter to four times the speed, @film_speeds@)", 3},
+    {"shims", OPTION_SHIMS, "LOW:HIGH", 0,
+     "Draw bearings as designed with random shims under their bumps, percent of the clearance: a "
+     "higher shim closes it",
+     3},
+    {"draws", OPTION_DRAWS, "N", 0, "Number of them (default with --shims: 1000)", 3},
+    {"seed", OPTION_SEED, "N", 0, "Of the draws (default: 1)", 3},
+    {"jobs", OPTION_JOBS, "N", 0, "Threads (default: one per core)", 3},
+    {"touching", OPTION_TOUCHING, "UM", 0,
+     "A film thinner than this touches (default: @film_touching_um@)", 3},
+    {"mesh", OPTION_MESH, "BUMP,AXIAL", 0,
+     "Cells per bump (even) and over half the length (default: @film_mesh_bump@,@film_mesh_axial@)",
+     3},
+    {NULL, 0, NULL, 0, "Output:", 4},
+    {"output", 'o', "FILE.json", 0, "Write the JSON report here (-: standard output)", 4},
+    {"html", OPTION_HTML, "FILE.html", 0, "One page to read and print", 4},
+    {"table", OPTION_TEXT, "FILE.txt", 0, "The table, as on a terminal", 4},
+    {"speeds-out", OPTION_SPEEDS_OUT, "FILE.csv", 0, "A row per speed", 4},
+    {"draws-out", OPTION_DRAWS_OUT, "FILE.csv", 0, "A row per drawn bearing", 4},
+    FG_CLI_DECIMAL_COMMA_ROW(4),
+    {0},
+};
+
+static const char doc[] =
+    "Ask what foils do to the rotor: gas film, load, stiffness and damping, and the mass and speed "
+    "from which on the rotor whirls."
+    "\v"
+    "DESIGN is a JSON file; without it the built-in Gen II foil carries the rotor. The film obeys "
+    "the compressible Reynolds equation, its foils give way by their compliance, and a small whirl "
+    "about the steady place gives stiffness and damping (thesis section 5.12).\n\n"
+    "  foilgauge film --load 5 --speed 60000 --clearance 80 --html film.html\n"
+    "  foilgauge film --load 5 --speed 60000 --foils bearing.json -o film.json\n"
+    "  foilgauge film --load 5 --speed 60000 --clearance 80 --shims=-7:7 --draws 1000\n\n"
+    "@exit_partly@";
+
+/* Two or three numbers by a mark; returns how many. */
+static int split_numbers(const char *text, char mark, double numbers[3]) {
+  int count = 0;
+  for (const char *c = text; count < 3; c++) {
+    char *end;
+    numbers[count] = strtod(c, &end);
+    if (end == c || !isfinite(numbers[count])) return 0;
+    count++;
+    if (!*end) return count;
+    if (*end != mark) return 0;
+    c = end;
+  }
+  return 0;
+}
+
+static void read_speeds(film_run *run, struct argp_state *state, const char *text) {
+  double n[3];
+  int count = split_numbers(text, ':', n);
+  if (count < 2 || !(n[0] > 0) || !(n[1] > n[0]))
+    argp_error(state, "--speeds: '%s' is not LOW:HIGH or LOW:HIGH:N, rpm", text);
+  if (count == 3 && !(n[2] >= 2 && n[2] <= FG_FILM_SPEEDS_MAX && n[2] == floor(n[2])))
+    argp_error(state, "--speeds: N must be a whole number from 2 to %d", FG_FILM_SPEEDS_MAX);
+  run->options.speed_low_rpm = n[0];
+  run->options.speed_high_rpm = n[1];
+  if (count == 3) run->options.speeds = (size_t)n[2];
+}
+
+static void read_shims(film_run *run, struct argp_state *state, const char *text) {
+  double n[3];
+  if (split_numbers(text, ':', n) != 2 || !(n[1] >= n[0]))
+    argp_error(state, "--shims: '%s' is not LOW:HIGH, percent of the clearance", text);
+  run->options.shim_low_pct = n[0];
+  run->options.shim_high_pct = n[1];
+}
+
+static void read_mesh(film_run *run, struct argp_state *state, const char *text) {
+  double n[3];
+  if (split_numbers(text, ',', n) != 2 || !(n[0] >= 2 && n[0] <= 64 && fmod(n[0], 2) == 0) ||
+      !(n[1] >= 2 && n[1] <= 64 && n[1] == floor(n[1])))
+    argp_error(state,
+               "--mesh: '%s' is not an even number of cells from 2 to 64 and one from 2 to "
+               "64, as 6,8",
+               text);
+  run->options.cells_per_bump = (size_t)n[0];
+  run->options.cells_axial = (size_t)n[1];
+}
+
+/* Options that are one number. */
+typedef struct number_option {
+  int key;
+  const char *name;
+  size_t offset;
+  double lowest, highest;
+} number_option;
+
+#define NUMBER(key, name, field, lowest, highest)                                                  \
+  { key, name, offsetof(fg_film_options, field), lowest, highest }
+static const number_option numbers[] = {
+    NUMBER(OPTION_LOAD, "load", load_n, 1e-9, 1e7),
+    NUMBER(OPTION_LOAD_ANGLE, "load-angle", load_deg, -720, 720),
+    NUMBER(OPTION_SPEED, "speed", speed_rpm, 1e-3, 1e8),
+    NUMBER(OPTION_MASS, "mass", rotor_mass_kg, 1e-9, 1e6),
+    NUMBER(OPTION_LENGTH, "length", length_mm, 1e-3, 1e5),
+    NUMBER(OPTION_CLEARANCE, "clearance", clearance_um, 1e-3, 1e5),
+    NUMBER(OPTION_COMPLIANCE, "compliance", compliance, 0, 1e6),
+    NUMBER(OPTION_LOSS, "loss-factor", loss_factor, 0, 10),
+    NUMBER(OPTION_FRICTION, "friction", material.friction, 0, 10),
+    NUMBER(OPTION_MODULUS, "elastic-modulus", material.youngs_modulus_gpa, 1e-3, 1e5),
+    NUMBER(OPTION_PITCH, "pitch", pitch_deg, 1e-3, 360),
+    NUMBER(OPTION_TOP_FOIL, "top-foil-thickness", top_foil_mm, 1e-6, 100),
+    NUMBER(OPTION_VISCOSITY, "viscosity", viscosity_upa_s, 1e-3, 1e6),
+    NUMBER(OPTION_AMBIENT, "ambient", ambient_kpa, 1e-3, 1e6),
+    NUMBER(OPTION_TOUCHING, "touching", touching_um, 0, 1e5),
+};
+
+static error_t parse_film_number(int key, const char *text, struct argp_state *state) {
+  film_run *run = state->input;
+  for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
+    if (numbers[i].key != key) continue;
+    double value =
+        fg_cli_number(state, numbers[i].name, text, numbers[i].lowest, numbers[i].highest);
+    memcpy((char *)&run->options + numbers[i].offset, &value, sizeof value);
+    return 0;
+  }
+  return ARGP_ERR_UNKNOWN;
+}
+
+static size_t read_count(struct argp_state *state, const char *name, const char *text,
+                         double lowest, double highest) {
+  double value = fg_cli_number(state, name, text, lowest, highest);
+  if (value != floor(value)) argp_error(state, "--%s: '%s' is no whole number", name, text);
+  return (size_t)value;
+}
+
+static error_t parse_film_count(int key, const char *text, struct argp_state *state) {
+  fg_film_options *o = &((film_run *)state->input)->options;
+  switch (key) {
+  case OPTION_PADS:
+    o->pads = read_count(state, "pads", text, 0, FG_BEARING_BUMPS_MAX);
+    return 0;
+  case OPTION_BUMPS:
+    o->bumps_per_pad = read_count(state, "bumps", text, 1, FG_BEARING_BUMPS_MAX);
+    return 0;
+  case OPTION_FIRST:
+    o->first_bump = read_count(state, "first-bump", text, 1, 1000);
+    return 0;
+  case OPTION_DRAWS:
+    o->draws = read_count(state, "draws", text, 1, 1e7);
+    return 0;
+  case OPTION_SEED:
+    o->seed = read_count(state, "seed", text, 0, 9007199254740992.0);
+    return 0;
+  case OPTION_JOBS:
+    o->jobs = (unsigned)read_count(state, "jobs", text, 1, 4096);
+    return 0;
+  default:
+    return parse_film_number(key, text, state);
+  }
+}
+
+static error_t parse_film_file(int key, char *text, struct argp_state *state) {
+  static const int keys[OUT_COUNT] = {'o', OPTION_HTML, OPTION_TEXT, OPTION_SPEEDS_OUT,
+                                      OPTION_DRAWS_OUT};
+  film_run *run = state->input;
+  for (int i = 0; i < OUT_COUNT; i++)
+    if (keys[i] == key) {
+      run->outputs.path[i] = text;
+      return 0;
+    }
+  return parse_film_count(key, text, state);
+}
+
+static void check_film_end(film_run *run, struct argp_state *state) {
+  fg_film_options *o = &run->options;
+  if (!isfinite(o->load_n) || !isfinite(o->speed_rpm))
+    argp_error(state, "a film needs --load N and --speed RPM");
+  bool shims = isfinite(o->shim_low_pct);
+  if (!shims && (o->draws || run->outputs.path[OUT_DRAWS]))
+    argp_error(state, "--draws and --draws-out need --shims LOW:HIGH");
+  if (shims && !o->draws) o->draws = 1000;
+  if (isfinite(o->compliance) && o->model)
+    argp_error(state, "--compliance states what --model would find: drop one");
+}
+
+static error_t parse_film_option(int key, char *text, struct argp_state *state) {
+  film_run *run = state->input;
+  switch (key) {
+  case OPTION_FOILS:
+    run->options.foils = text;
+    return 0;
+  case OPTION_MODEL:
+    run->options.model = text;
+    return 0;
+  case OPTION_TOP:
+    if (strcmp(text, "stiff") != 0 && strcmp(text, "sagging") != 0)
+      argp_error(state, "--top-foil: '%s' is neither stiff nor sagging", text);
+    run->options.top = strcmp(text, "stiff") != 0 ? FG_FILM_SAGGING : FG_FILM_STIFF;
+    return 0;
+  case OPTION_SPEEDS:
+    read_speeds(run, state, text);
+    return 0;
+  case OPTION_SHIMS:
+    read_shims(run, state, text);
+    return 0;
+  case OPTION_MESH:
+    read_mesh(run, state, text);
+    return 0;
+  case FG_CLI_DECIMAL_COMMA:
+    run->outputs.decimal_comma = true;
+    return 0;
+  case ARGP_KEY_ARG:
+    if (run->design_path) argp_error(state, "more than one DESIGN: %s", text);
+    run->design_path = text;
+    return 0;
+  case ARGP_KEY_END:
+    check_film_end(run, state);
+    return 0;
+  default:
+    return parse_film_file(key, text, state);
+  }
+}
+
+static fg_status write_film_output(fg_context *ctx, void *user, size_t kind, FILE *out) {
+  typedef fg_status writer(fg_context *, const fg_film_report *, FILE *);
+  static writer *const writers[OUT_COUNT] = {
+      [OUT_JSON] = fg_film_write_json,   [OUT_HTML] = fg_film_write_html,
+      [OUT_TEXT] = fg_film_write_text,   [OUT_SPEEDS] = fg_film_write_speeds,
+      [OUT_DRAWS] = fg_film_write_draws,
+  };
+  const film_run *run = user;
+  return writers[kind](ctx, &run->report, out);
+}
+
+static fg_status run_film(fg_context *ctx, film_run *run) {
+  const fg_input inputs[] = {{run->design_path, "the design"}, {run->options.foils, "the foils"}};
+  fg_output_set_choose_standard(&run->outputs, OUT_JSON, OUT_TEXT, false);
+  FG_TRY(fg_output_set_check(ctx, &run->outputs, inputs, sizeof inputs / sizeof *inputs));
+  fg_design_default(&run->design);
+  if (run->design_path) FG_TRY(fg_design_load(ctx, run->design_path, &run->design));
+  FG_TRY(fg_output_set_open(ctx, &run->outputs));
+  FG_TRY(fg_film_run(ctx, &run->design, &run->options, &run->report));
+  return fg_output_set_write(ctx, &run->outputs, write_film_output, run);
+}
+
+const struct argp fg_film_parser = {options, parse_film_option, "[DESIGN]", doc,
+                                    NULL,    fg_cli_fill,       NULL};
+
+int fg_cmd_film(int argc, char **argv) {
+  fg_context ctx = {0};
+  film_run run = {.outputs.count = OUT_COUNT,
+                  .outputs.csv = 1u << OUT_SPEEDS | 1u << OUT_DRAWS,
+                  .options = fg_film_options_default()};
+  fg_status status = fg_cli_parse(&ctx, &fg_film_parser, argc, argv, &run);
+  if (status == FG_OK) status = run_film(&ctx, &run);
+  int code = status == FG_OK ? fg_film_exit_code(&run.report) : fg_cli_fail(&ctx, status);
+  fg_output_set_close(&run.outputs);
+  fg_film_report_free(&run.report);
+  return code;
+}

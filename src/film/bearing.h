@@ -1,0 +1,52 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A bearing in its units, and the same without dimensions. */
+#ifndef FG_FILM_BEARING_H
+#define FG_FILM_BEARING_H
+
+#include "film/film.h"
+#include "foilgauge/film.h"
+
+/* Completes the report's clearance, compliance, stiffness, length and diameter, and fills the
+ * perfect bearing. */
+fg_status fg_film_describe(fg_context *ctx, fg_film_report *report, fg_film_bearing *perfect);
+
+/* Reads the foils of options.foils into the bearing, which is the perfect one on entry. */
+fg_status fg_film_read_foils(fg_context *ctx, fg_film_report *report, fg_film_bearing *bearing);
+
+fg_film_mesh fg_film_mesh_of(const fg_film_report *report);
+
+/* The case of a bearing under the options' load at a speed. */
+void fg_film_case_fill(const fg_film_report *report, const fg_film *film,
+                       const fg_film_bearing *bearing, double speed_rpm, fg_film_case *at);
+
+/* Unit of critical masses at a speed: p_a R² / (C omega²). */
+double fg_film_mass_unit_kg(const fg_film_report *report, double speed_rpm);
+/* p_a R². */
+double fg_film_load_unit_n(const fg_film_report *report);
+double fg_film_speed_rad_s(double speed_rpm);
+
+/* Mesh, case and state of one thread. */
+typedef struct fg_film_workspace {
+  fg_film film;
+  fg_film_case at, before;
+  fg_film_state state;
+} fg_film_workspace;
+fg_status fg_film_workspace_open(fg_context *ctx, const fg_film_report *report,
+                                 fg_film_workspace *workspace);
+void fg_film_workspace_close(fg_film_workspace *workspace);
+
+/* Solves a bearing at a speed from nothing, or on from the workspace's case `before` and state.
+ * What has no film is FG_OK with its outcome. `before` becomes the solved case. */
+typedef enum fg_film_start { FG_FILM_AFRESH, FG_FILM_ONWARD } fg_film_start;
+fg_status fg_film_solve_bearing(fg_context *ctx, const fg_film_report *report,
+                                fg_film_workspace *workspace, const fg_film_bearing *bearing,
+                                double speed_rpm, fg_film_start start, fg_film_result *result);
+
+/* Draws the random bearings; the state of the perfect one is the workspace's. */
+fg_status fg_film_draw(fg_context *ctx, fg_film_report *report, const fg_film_bearing *perfect,
+                       const fg_film_workspace *workspace);
+
+/* Fills the stability map and finds the threshold. */
+fg_status fg_film_map_speeds(fg_context *ctx, fg_film_report *report, fg_film_workspace *workspace);
+
+#endif

@@ -1,0 +1,115 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Bearings with random shims under their bumps: their films, and the stability of a rotor on them.
+ * Every draw has a random stream of its own, so that neither the number of draws nor that of
+ * threads changes any of them. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "core/parallel.h"
+#include "core/select.h"
+#include "film/bearing.h"
+#include "foilgauge/density.h"
+#include "foilgauge/memory.h"
+#include "lot/statistics/assembly.h"
+#include "table_loop/engine_random.h"
+
+enum { DRAWS_OF_A_TASK = 10 };
+static const double confidence = 0.95;
+
+/* Ratio that stands for a bearing that is stable at every mass, among sorted ratios. */
+static const double large = 1e100;
+
+typedef struct draw_task {
+  fg_film_report *report;
+  const fg_film_bearing *perfect;
+  const fg_film_workspace *solved; /* of the perfect bearing */
+} draw_task;
+
+/* Shims of heights between both ends, of equal probability: a higher one closes the clearance. */
+static void draw_shims(const fg_film_report *r, size_t draw, fg_film_bearing *bearing) {
+  uint64_t state = r->options.seed * 0xd1342543de82ef95u;
+  state = fg_engine_random_next(&state) ^ draw;
+  state = fg_engine_random_next(&state);
+  double low = r->options.shim_low_pct, high = r->options.shim_high_pct;
+  for (size_t i = 0; i < bearing->count; i++) {
+    double height_pct = low + (high - low) * fg_engine_random_uniform(&state);
+    bearing->clearance_mm[i] -= height_pct / 100 * r->clearance_um * 1e-3;
+  }
+}
+
+static fg_status solve_draw(fg_context *ctx, const draw_task *t, fg_film_workspace *workspace,
+                            size_t draw) {
+  fg_film_bearing bearing = *t->perfect;
+  fg_film_result *result = &t->report->draws.result[draw];
+  draw_shims(t->report, draw, &bearing);
+  fg_film_state_copy(&workspace->film, &t->solved->state, &workspace->state);
+  fg_film_case_copy(&t->solved->before, workspace->film.columns, &workspace->before);
+  FG_TRY(fg_film_solve_bearing(ctx, t->report, workspace, &bearing, t->report->options.speed_rpm,
+                               FG_FILM_ONWARD, result));
+  result->mass_over_perfect = result->critical_mass_kg / t->report->perfect.critical_mass_kg;
+  return FG_OK;
+}
+
+static fg_status solve_draws(fg_context *ctx, void *shared, size_t item) {
+  const draw_task *t = shared;
+  size_t end = (item + 1) * DRAWS_OF_A_TASK;
+  fg_film_workspace workspace;
+  FG_TRY(fg_film_workspace_open(ctx, t->report, &workspace));
+  fg_status status = FG_OK;
+  for (size_t i = item * DRAWS_OF_A_TASK; i < end && status == FG_OK; i++)
+    if (i < t->report->draws.count) status = solve_draw(ctx, t, &workspace, i);
+  fg_film_workspace_close(&workspace);
+  return status;
+}
+
+static void finish_share(fg_film_share *share, size_t of) {
+  share->share = of ? (double)share->count / (double)of : NAN;
+  share->low = share->high = NAN;
+  if (of)
+    fg_assembly_interval((double)share->count, (double)of, confidence, &share->low, &share->high);
+}
+
+static void count_draw(fg_film_draws *draws, const fg_film_result *result) {
+  if (result->outcome == FG_FILM_UNSOLVED) return;
+  draws->solved.count++;
+  draws->touching.count += result->outcome == FG_FILM_TOUCHING;
+  draws->more_stable.count += result->mass_over_perfect > 1;
+  draws->less_stable.count += result->mass_over_perfect < 1;
+}
+
+static fg_status finish_draws(fg_context *ctx, fg_film_draws *draws) {
+  void *block;
+  size_t known = 0;
+  FG_TRY(fg_memory_allocate(ctx, draws->count, sizeof(double), &block));
+  double *ratio = block;
+  for (size_t i = 0; i < draws->count; i++) {
+    count_draw(draws, &draws->result[i]);
+    double value = draws->result[i].mass_over_perfect;
+    if (!isnan(value)) ratio[known++] = fmin(value, large);
+  }
+  fg_sort(ratio, known);
+  for (size_t k = 0; k < FG_FILM_QUANTILES; k++)
+    draws->quantile[k] = known ? fg_sample_quantile(ratio, known, fg_assembly_probability[k]) : NAN;
+  for (size_t k = 0; k < FG_FILM_QUANTILES; k++)
+    if (draws->quantile[k] > large / 4) draws->quantile[k] = INFINITY;
+  free(ratio);
+  finish_share(&draws->solved, draws->count);
+  finish_share(&draws->touching, draws->count);
+  finish_share(&draws->more_stable, draws->solved.count);
+  finish_share(&draws->less_stable, draws->solved.count);
+  return FG_OK;
+}
+
+fg_status fg_film_draw(fg_context *ctx, fg_film_report *report, const fg_film_bearing *perfect,
+                       const fg_film_workspace *workspace) {
+  draw_task task = {report, perfect, workspace};
+  size_t count = report->options.draws;
+  void *block;
+  if (!count) return FG_OK;
+  FG_TRY(fg_memory_allocate(ctx, count, sizeof *report->draws.result, &block));
+  report->draws.result = block;
+  report->draws.count = count;
+  FG_TRY(fg_parallel_run(ctx, report->options.jobs, (count + DRAWS_OF_A_TASK - 1) / DRAWS_OF_A_TASK,
+                         solve_draws, &task));
+  return finish_draws(ctx, &report->draws);
+}

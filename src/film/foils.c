@@ -1,0 +1,79 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Measured foils of a bearing: a report of `foilgauge measure`, whose foils are the pads in their
+ * order. */
+#include <cjson/cJSON.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/file.h"
+#include "core/json_read.h"
+#include "core/sha256.h"
+#include "core/text.h"
+#include "film/bearing.h"
+
+enum { FOILS_BYTES_MAX = 1 << 28 };
+
+static double read_number(const cJSON *object, const char *name) {
+  const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, name);
+  return cJSON_IsNumber(item) ? item->valuedouble : NAN;
+}
+
+static const cJSON *find_foil_bump(const cJSON *foil, size_t number) {
+  const cJSON *bumps = cJSON_GetObjectItemCaseSensitive(foil, "bumps"), *bump;
+  cJSON_ArrayForEach(bump, bumps) {
+    if (read_number(bump, "number") == (double)number) return bump;
+  }
+  return NULL;
+}
+
+static fg_status read_pad(fg_context *ctx, const fg_film_report *r, const cJSON *foil, size_t pad,
+                          fg_film_bearing *bearing) {
+  size_t per_pad = r->options.bumps_per_pad;
+  for (size_t k = 0; k < per_pad; k++) {
+    size_t number = r->options.first_bump + k, at = pad * per_pad + k;
+    const cJSON *bump = find_foil_bump(foil, number);
+    double clearance = bump ? read_number(bump, "clearance_mm") : NAN;
+    double u = bump ? read_number(bump, "u_clearance_mm") : NAN;
+    if (!isfinite(clearance))
+      return fg_fail(ctx, FG_ERR_DATA, "%s: bump %zu of foil %zu has no clearance_mm",
+                     r->options.foils, number, pad + 1);
+    bearing->clearance_mm[at] = clearance;
+    bearing->own_mm[at] = isfinite(u) ? u : 0;
+  }
+  return FG_OK;
+}
+
+static fg_status take_foils(fg_context *ctx, const fg_film_report *r, const cJSON *root,
+                            fg_film_bearing *bearing) {
+  const cJSON *schema = cJSON_GetObjectItemCaseSensitive(root, "schema");
+  const cJSON *foils = cJSON_GetObjectItemCaseSensitive(root, "foils");
+  size_t pads = r->options.pads ? r->options.pads : 1;
+  if (!cJSON_IsString(schema) || strcmp(schema->valuestring, "foilgauge/measure/1") != 0)
+    return fg_fail(ctx, FG_ERR_DATA,
+                   "%s: not a report of `foilgauge measure` (foilgauge/measure/1)",
+                   r->options.foils);
+  size_t count = (size_t)cJSON_GetArraySize(foils);
+  if (count != pads)
+    return fg_fail(ctx, FG_ERR_DATA,
+                   "%s: %zu foils for a bearing of %zu pads; measure the foils of one bearing "
+                   "together, in the order of its pads",
+                   r->options.foils, count, pads);
+  for (size_t pad = 0; pad < pads; pad++)
+    FG_TRY(read_pad(ctx, r, cJSON_GetArrayItem(foils, (int)pad), pad, bearing));
+  return FG_OK;
+}
+
+fg_status fg_film_read_foils(fg_context *ctx, fg_film_report *r, fg_film_bearing *bearing) {
+  char *text = NULL;
+  cJSON *root = NULL;
+  fg_status status;
+  fg_text_clip(r->foils_path, sizeof r->foils_path, "%s", r->options.foils);
+  FG_TRY(fg_file_read_text(ctx, r->options.foils, FOILS_BYTES_MAX, &text));
+  fg_sha256_text(text, r->foils_sha256);
+  status = fg_json_read(ctx, r->options.foils, text, &root);
+  if (status == FG_OK) status = take_foils(ctx, r, root, bearing);
+  cJSON_Delete(root);
+  free(text);
+  return status;
+}

@@ -1,0 +1,114 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* `foilgauge film`: the perfect bearing, the one as measured, its field, coefficients and map. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "film/bearing.h"
+#include "foilgauge/memory.h"
+
+static const double deg_per_rad = 180 / 3.14159265358979323846;
+
+/* Ratios of whirl of the coefficients: a fifth to five times the speed, 1 in their middle. */
+static const double ratio_span = 5;
+
+static void put_coefficients(const fg_film_report *r, double ratio, double complex z[2][2],
+                             fg_film_coefficients *at) {
+  double speed = fg_film_speed_rad_s(r->options.speed_rpm);
+  double unit_n_um = fg_film_load_unit_n(r) / r->clearance_um;
+  at->whirl_ratio = ratio;
+  at->frequency_hz = ratio * r->options.speed_rpm / 60;
+  for (int k = 0; k < 4; k++) {
+    at->stiffness_n_um[k] = creal(z[k / 2][k % 2]) * unit_n_um;
+    at->damping_n_s_mm[k] = cimag(z[k / 2][k % 2]) * unit_n_um / (ratio * speed) * 1e3;
+  }
+}
+
+static fg_status find_coefficients(fg_context *ctx, fg_film_report *r,
+                                   fg_film_workspace *workspace) {
+  fg_film_assemble(ctx, &workspace->film, &workspace->at, &workspace->state);
+  for (int i = 0; i < FG_FILM_FREQUENCIES; i++) {
+    double share = 2. * i / (FG_FILM_FREQUENCIES - 1) - 1, ratio = pow(ratio_span, share);
+    double complex z[2][2];
+    FG_TRY(fg_film_impedance(ctx, &workspace->film, &workspace->at, ratio, z));
+    put_coefficients(r, ratio, z, &r->frequency[i]);
+  }
+  r->frequencies = FG_FILM_FREQUENCIES;
+  return FG_OK;
+}
+
+static fg_status keep_field(fg_context *ctx, fg_film_report *r, const fg_film_workspace *b) {
+  const fg_film *film = &b->film;
+  void *block;
+  FG_TRY(fg_memory_allocate(ctx, film->columns, sizeof *r->column, &block));
+  r->column = block;
+  r->columns = film->columns;
+  r->nodes = film->nodes;
+  FG_TRY(fg_memory_allocate(ctx, film->columns * film->nodes, sizeof(double), &block));
+  r->pressure_kpa = block;
+  for (size_t i = 0; i < film->columns; i++) {
+    double *pressure = r->pressure_kpa + i * film->nodes;
+    r->column[i] =
+        (fg_film_column){.pad = film->mesh.ring ? 1 : 1 + i / (film->mesh.cells + 1),
+                         .angle_deg = fg_film_angle_rad(&film->mesh, i) * deg_per_rad,
+                         .clearance_um = b->at.clearance[i] * r->clearance_um,
+                         .film_um = fg_film_thickness(film, &b->at, &b->state, i) * r->clearance_um,
+                         .deflection_um = b->state.deflection[i] * r->clearance_um,
+                         .pressure_kpa = pressure};
+    for (size_t j = 0; j < film->nodes; j++)
+      pressure[j] = b->state.pressure[i * film->nodes + j] * r->options.ambient_kpa;
+  }
+  return FG_OK;
+}
+
+static fg_status solve_perfect(fg_context *ctx, fg_film_report *r, fg_film_workspace *workspace,
+                               const fg_film_bearing *perfect) {
+  FG_TRY(fg_film_solve_bearing(ctx, r, workspace, perfect, r->options.speed_rpm, FG_FILM_AFRESH,
+                               &r->perfect));
+  if (r->perfect.outcome == FG_FILM_UNSOLVED)
+    return fg_fail(ctx, FG_ERR_NUMERIC,
+                   "the design's bearing has no film at %g N and %g rpm: lower the load, raise the "
+                   "speed, or state another clearance or compliance",
+                   r->options.load_n, r->options.speed_rpm);
+  r->perfect.mass_over_perfect = 1;
+  return FG_OK;
+}
+
+static fg_status run_bearings(fg_context *ctx, fg_film_report *r, fg_film_workspace *workspace) {
+  fg_film_bearing perfect = r->bearing;
+  FG_TRY(solve_perfect(ctx, r, workspace, &perfect));
+  FG_TRY(fg_film_draw(ctx, r, &perfect, workspace));
+  r->at = r->perfect;
+  if (r->options.foils) {
+    FG_TRY(fg_film_read_foils(ctx, r, &r->bearing));
+    FG_TRY(fg_film_solve_bearing(ctx, r, workspace, &r->bearing, r->options.speed_rpm,
+                                 FG_FILM_ONWARD, &r->at));
+    r->at.mass_over_perfect = r->at.critical_mass_kg / r->perfect.critical_mass_kg;
+  }
+  if (r->at.outcome == FG_FILM_UNSOLVED) return FG_OK;
+  FG_TRY(find_coefficients(ctx, r, workspace));
+  FG_TRY(keep_field(ctx, r, workspace));
+  return fg_film_map_speeds(ctx, r, workspace);
+}
+
+fg_status fg_film_run(fg_context *ctx, const fg_design *design, const fg_film_options *options,
+                      fg_film_report *report) {
+  fg_film_workspace workspace;
+  *report = (fg_film_report){.design = *design, .options = *options, .threshold_rpm = NAN};
+  FG_TRY(fg_film_describe(ctx, report, &report->bearing));
+  FG_TRY(fg_film_workspace_open(ctx, report, &workspace));
+  fg_status status = run_bearings(ctx, report, &workspace);
+  fg_film_workspace_close(&workspace);
+  return status;
+}
+
+void fg_film_report_free(fg_film_report *report) {
+  free(report->speed);
+  free(report->column);
+  free(report->pressure_kpa);
+  free(report->draws.result);
+  *report = (fg_film_report){.speeds = 0};
+}
+
+int fg_film_exit_code(const fg_film_report *report) {
+  return report->at.outcome == FG_FILM_UNSOLVED ? 2 : 0;
+}

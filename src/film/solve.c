@@ -1,0 +1,97 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A bearing at one speed: from its case to its numbers. */
+#include <math.h>
+#include <string.h>
+
+#include "film/bearing.h"
+
+static const double deg_per_rad = 180 / 3.14159265358979323846;
+
+fg_status fg_film_workspace_open(fg_context *ctx, const fg_film_report *report,
+                                 fg_film_workspace *workspace) {
+  const fg_film_mesh mesh = fg_film_mesh_of(report);
+  *workspace = (fg_film_workspace){.film = {.columns = 0}};
+  fg_status status =
+      fg_film_open(ctx, &mesh, report->options.top == FG_FILM_SAGGING, &workspace->film);
+  if (status == FG_OK) status = fg_film_case_open(ctx, workspace->film.columns, &workspace->at);
+  if (status == FG_OK) status = fg_film_case_open(ctx, workspace->film.columns, &workspace->before);
+  if (status == FG_OK) status = fg_film_state_open(ctx, &workspace->film, &workspace->state);
+  if (status != FG_OK) fg_film_workspace_close(workspace);
+  return status;
+}
+
+void fg_film_workspace_close(fg_film_workspace *workspace) {
+  fg_film_case_close(&workspace->at);
+  fg_film_case_close(&workspace->before);
+  fg_film_state_close(&workspace->state);
+  fg_film_close(&workspace->film);
+}
+
+static void find_extremes(const fg_film_report *r, const fg_film_workspace *b,
+                          fg_film_result *result) {
+  double thinnest = INFINITY, highest = 0;
+  size_t at = 0;
+  for (size_t i = 0; i < b->film.columns; i++) {
+    double thickness = fg_film_thickness(&b->film, &b->at, &b->state, i);
+    if (thickness < thinnest) thinnest = thickness, at = i;
+    for (size_t j = 0; j < b->film.nodes; j++)
+      highest = fmax(highest, b->state.pressure[i * b->film.nodes + j]);
+  }
+  result->min_film_um = thinnest * r->clearance_um;
+  result->min_film_deg =
+      remainder(fg_film_angle_rad(&b->film.mesh, at) * deg_per_rad - 180, 360) + 180;
+  result->max_pressure_kpa = highest * r->options.ambient_kpa;
+}
+
+/* Torque of the film times the speed, of a torque over mu omega R⁴ / C. */
+static double find_power(const fg_film_report *r, const fg_film_workspace *b, double speed_rpm) {
+  double speed = fg_film_speed_rad_s(speed_rpm), radius = r->diameter_mm * 1e-3 / 2;
+  double unit =
+      r->options.viscosity_upa_s * 1e-6 * speed * pow(radius, 4) / (r->clearance_um * 1e-6);
+  return unit * speed * fg_film_torque(&b->film, &b->at, &b->state);
+}
+
+static fg_status fill_result(fg_context *ctx, const fg_film_report *r, fg_film_workspace *b,
+                             fg_film_result *result) {
+  const double *place = b->state.place;
+  fg_film_threshold threshold;
+  for (int k = 0; k < 2; k++)
+    result->place_um[k] = place[k] * r->clearance_um;
+  result->eccentricity = hypot(place[0], place[1]);
+  result->attitude_deg =
+      remainder(atan2(place[1], place[0]) * deg_per_rad - r->options.load_deg, 360);
+  find_extremes(r, b, result);
+  result->power_w = find_power(r, b, result->speed_rpm);
+  result->outcome =
+      result->min_film_um < r->options.touching_um ? FG_FILM_TOUCHING : FG_FILM_SOLVED;
+  FG_TRY(fg_film_find_threshold(ctx, &b->film, &b->at, &b->state, &threshold));
+  result->critical_mass_kg = threshold.mass * fg_film_mass_unit_kg(r, result->speed_rpm);
+  result->whirl_ratio = threshold.ratio;
+  return FG_OK;
+}
+
+fg_status fg_film_solve_bearing(fg_context *ctx, const fg_film_report *report, fg_film_workspace *b,
+                                const fg_film_bearing *bearing, double speed_rpm,
+                                fg_film_start start, fg_film_result *result) {
+  *result = (fg_film_result){.outcome = FG_FILM_UNSOLVED,
+                             .speed_rpm = speed_rpm,
+                             .place_um = {NAN, NAN},
+                             .eccentricity = NAN,
+                             .attitude_deg = NAN,
+                             .min_film_um = NAN,
+                             .min_film_deg = NAN,
+                             .max_pressure_kpa = NAN,
+                             .power_w = NAN,
+                             .critical_mass_kg = NAN,
+                             .whirl_ratio = NAN,
+                             .mass_over_perfect = NAN};
+  fg_film_case_fill(report, &b->film, bearing, speed_rpm, &b->at);
+  result->compressibility = b->at.lambda;
+  fg_status status = start == FG_FILM_AFRESH
+                         ? fg_film_solve(ctx, &b->film, &b->at, &b->state)
+                         : fg_film_follow(ctx, &b->film, &b->before, &b->at, &b->state);
+  if (status == FG_ERR_NUMERIC) return FG_OK;
+  FG_TRY(status);
+  fg_film_case_copy(&b->at, b->film.columns, &b->before);
+  return fill_result(ctx, report, b, result);
+}

@@ -1,0 +1,138 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A rotor that whirls: impedance of the film, and the mass from which on it is unstable.
+ *
+ * A rigid rotor of mass M on this bearing moves as X exp(s tau): (M s² + Z(s)) X = 0 in units of
+ * the speed. On the border of stability s = i nu, so that M nu² is an eigenvalue of Z(nu), real and
+ * above 0 (Pan 1964: the film's equivalent stiffness, where its damping vanishes). Beyond it the
+ * rotor is heavier: the smallest such mass counts. */
+#include <math.h>
+
+#include "film/film.h"
+
+/* Ratios of whirl that are searched: gas films whirl near one half of the speed, foils with
+ * stiffness of their own below. */
+static const double ratio_low = 0.02, ratio_high = 1.5;
+enum { RATIOS = 14, REFINEMENTS = 20, ROOTS = 2 };
+static const double ratio_close = 1e-7;
+
+static void force_of_response(const fg_film *film, const double complex *vector,
+                              double complex force[2]) {
+  force[0] = force[1] = 0;
+  for (size_t i = 0; i < film->columns; i++) {
+    if (film->edge[i]) continue;
+    double complex sum = 0;
+    for (size_t j = 0; j < film->mesh.axial; j++)
+      sum += film->weight[j] * vector[film->base[i] + (int)j];
+    force[0] += 2 * film->step * sum * film->cosine[i];
+    force[1] += 2 * film->step * sum * film->sine[i];
+  }
+}
+
+/* Matrix of the response at exp(s tau): J + s T + i gamma S, S the springs of the bumps. */
+static fg_status respond(fg_context *ctx, fg_film *film, double loss, double complex s,
+                         double complex impedance[2][2]) {
+  size_t size = (size_t)film->sparse.size;
+  for (size_t k = 0; k < film->sparse.entries; k++)
+    film->whirl[k] = film->matrix[k] + s * film->time[k] + I * loss * film->lossy[k];
+  for (size_t l = 0; l < 2; l++)
+    for (size_t k = 0; k < size; k++)
+      film->response[l * size + k] = -film->shift[l][k] - s * film->shift_time[l][k];
+  FG_TRY(fg_sparse_factor_complex(ctx, &film->sparse, film->whirl));
+  FG_TRY(fg_sparse_solve_complex(ctx, &film->sparse, film->response, 2));
+  for (size_t l = 0; l < 2; l++) {
+    double complex force[2];
+    force_of_response(film, film->response + l * size, force);
+    impedance[0][l] = force[0];
+    impedance[1][l] = force[1];
+  }
+  return FG_OK;
+}
+
+fg_status fg_film_impedance(fg_context *ctx, fg_film *film, const fg_film_case *at, double ratio,
+                            double complex impedance[2][2]) {
+  return respond(ctx, film, at->loss, I * ratio, impedance);
+}
+
+static void find_eigenvalues(double complex z[2][2], double complex value[ROOTS]) {
+  double complex mean = (z[0][0] + z[1][1]) / 2;
+  double complex root = csqrt((z[0][0] - z[1][1]) * (z[0][0] - z[1][1]) / 4 + z[0][1] * z[1][0]);
+  value[0] = mean + root;
+  value[1] = mean - root;
+}
+
+/* Both eigenvalues at a ratio; `near` (may be NULL) keeps their order. */
+static fg_status eigenvalues_at(fg_context *ctx, fg_film *film, const fg_film_case *at,
+                                double ratio, const double complex *near,
+                                double complex value[ROOTS]) {
+  double complex z[2][2];
+  FG_TRY(fg_film_impedance(ctx, film, at, ratio, z));
+  find_eigenvalues(z, value);
+  if (!near) return FG_OK;
+  double kept = cabs(value[0] - near[0]) + cabs(value[1] - near[1]);
+  double turned = cabs(value[1] - near[0]) + cabs(value[0] - near[1]);
+  if (turned < kept) {
+    double complex other = value[0];
+    value[0] = value[1];
+    value[1] = other;
+  }
+  return FG_OK;
+}
+
+/* A stretch of ratios in which the imaginary part of eigenvalue `root` changes its sign. */
+typedef struct crossing {
+  double low, high;
+  double complex at_low[ROOTS], at_high[ROOTS];
+  int root;
+} crossing;
+
+/* Narrows it by false position (Illinois). */
+static fg_status refine_crossing(fg_context *ctx, fg_film *film, const fg_film_case *at,
+                                 crossing *c, fg_film_threshold *found) {
+  double complex middle[ROOTS] = {0};
+  double f_low = cimag(c->at_low[c->root]), f_high = cimag(c->at_high[c->root]), ratio = c->low;
+  int side = 0;
+  for (int i = 0; i < REFINEMENTS; i++) {
+    ratio = (c->low * f_high - c->high * f_low) / (f_high - f_low);
+    FG_TRY(eigenvalues_at(ctx, film, at, ratio, side > 0 ? c->at_high : c->at_low, middle));
+    double f = cimag(middle[c->root]);
+    bool above = (f > 0) == (f_high > 0);
+    double moved = above ? c->high - ratio : ratio - c->low;
+    if (above) {
+      c->high = ratio, f_high = f;
+      if (side == 1) f_low /= 2;
+    } else {
+      c->low = ratio, f_low = f;
+      if (side == -1) f_high /= 2;
+    }
+    side = above ? 1 : -1;
+    for (int k = 0; k < ROOTS; k++)
+      (above ? c->at_high : c->at_low)[k] = middle[k];
+    if (fabs(moved) < ratio_close * ratio || f == 0) break;
+  }
+  double stiffness = creal(middle[c->root]);
+  *found = (fg_film_threshold){stiffness > 0 ? stiffness / (ratio * ratio) : INFINITY, ratio};
+  return FG_OK;
+}
+
+fg_status fg_film_find_threshold(fg_context *ctx, fg_film *film, const fg_film_case *at,
+                                 const fg_film_state *state, fg_film_threshold *threshold) {
+  double complex before[ROOTS] = {0}, now[ROOTS];
+  double ratio_before = ratio_low;
+  *threshold = (fg_film_threshold){INFINITY, NAN};
+  fg_film_assemble(ctx, film, at, state);
+  for (int i = 0; i < RATIOS; i++) {
+    double ratio = ratio_low * pow(ratio_high / ratio_low, (double)i / (RATIOS - 1));
+    FG_TRY(eigenvalues_at(ctx, film, at, ratio, i ? before : NULL, now));
+    for (int k = 0; k < ROOTS && i; k++) {
+      if (!(cimag(before[k]) < 0 && cimag(now[k]) >= 0)) continue;
+      crossing c = {ratio_before, ratio, {before[0], before[1]}, {now[0], now[1]}, k};
+      fg_film_threshold found;
+      FG_TRY(refine_crossing(ctx, film, at, &c, &found));
+      if (found.mass < threshold->mass) *threshold = found;
+    }
+    ratio_before = ratio;
+    before[0] = now[0];
+    before[1] = now[1];
+  }
+  return FG_OK;
+}

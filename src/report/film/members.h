@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Members of the report of `foilgauge film`. */
+#ifndef FG_REPORT_FILM_MEMBERS_H
+#define FG_REPORT_FILM_MEMBERS_H
+
+#include "core/member.h"
+#include "foilgauge/film.h"
+
+/* Of an fg_film_result in an fg_film_report: also columns of tables and CSV. */
+extern const fg_members fg_film_result_members;
+/* The bearing, and beside it the perfect one where foils were measured; the speeds; the draws. */
+fg_member_element fg_film_bearing_at, fg_film_speed_at, fg_film_draw_at;
+
+/* Of an fg_film_share of the draws. */
+extern const fg_members fg_film_share_members;
+fg_member_element fg_film_share_at;
+
+extern const fg_document fg_film_document;
+
+/* "stable", "unstable", "stable at every mass" for the rotor of the report; NULL: not known. */
+const char *fg_film_stability_word(const fg_film_report *report, const fg_film_result *result);
+
+enum { FG_FILM_NOTES = 6, FG_FILM_NOTE = 400 };
+/* Writes what the reader must know of this run; returns the number of notes. */
+size_t fg_film_notes(const fg_film_report *report, char notes[FG_FILM_NOTES][FG_FILM_NOTE]);
+
+#endif

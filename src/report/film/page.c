@@ -1,0 +1,117 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The page of a film. */
+#include <math.h>
+#include <stdio.h>
+
+#include "core/file.h"
+#include "page/page.h"
+#include "page/table.h"
+#include "page/tile.h"
+#include "report/film/members.h"
+#include "report/film/plots.h"
+#include "report/provenance.h"
+
+static void put_film_tiles(FILE *out, const fg_film_report *r) {
+  const fg_film_result *at = &r->at;
+  const char *word = fg_film_stability_word(r, at);
+  bool always = isinf(at->critical_mass_kg);
+  const fg_tile tiles[] = {
+      {"Rotor", .text = word ? word : "–", .small = "of the stated mass, at this speed",
+       .look = !word                                             ? FG_TILE_OPEN
+               : at->critical_mass_kg > r->options.rotor_mass_kg ? FG_TILE_GOOD
+                                                                 : FG_TILE_BAD},
+      {always ? NULL : "Critical mass", .value = at->critical_mass_kg, .digits = 4, .unit = "kg",
+       .small = "on this bearing"},
+      {"Threshold speed", .value = r->threshold_rpm, .digits = 4, .unit = "rpm",
+       .small = "of this rotor under this load", .unknown = "none among the speeds"},
+      {"Thinnest film", .value = at->min_film_um, .digits = 3, .unit = "µm", .small = "under load"},
+      {"Eccentricity", .value = at->eccentricity, .digits = 3, .small = "over the clearance"},
+      {"Loss", .value = at->power_w, .digits = 3, .unit = "W", .small = "of the film's shear"},
+  };
+  fg_html_tiles(out, "tiles", tiles, sizeof tiles / sizeof *tiles);
+}
+
+static void put_summary(FILE *out, const fg_film_report *r) {
+  char notes[FG_FILM_NOTES][FG_FILM_NOTE];
+  const fg_film_options *o = &r->options;
+  fputs("<section>\n<header><h1>Gas film of ", out);
+  fg_html_text(out, r->design.name);
+  fprintf(out,
+          "</h1><p>%.4g N towards %g°, %.5g rpm, rotor %.4g kg; D %.4g mm, L %.4g mm, C %.4g µm, "
+          "compliance %.4g, loss factor %.3g</p></header>\n",
+          o->load_n, o->load_deg, o->speed_rpm, o->rotor_mass_kg, r->diameter_mm, r->length_mm,
+          r->clearance_um, r->compliance, o->loss_factor);
+  put_film_tiles(out, r);
+  fputs("<ul class=\"words\">\n", out);
+  size_t count = fg_film_notes(r, notes);
+  for (size_t i = 0; i < count; i++) {
+    fputs("<li>", out);
+    fg_html_text(out, notes[i]);
+    fputs("</li>\n", out);
+  }
+  fputs("</ul>\n", out);
+  fg_html_table(out, &fg_film_result_members, &(fg_subject){.object = r, .whole = r},
+                fg_film_bearing_at);
+  fputs("</section>\n", out);
+}
+
+static void put_field(FILE *out, const fg_film_report *r) {
+  fputs("<section>\n<h2 class=\"first\">The film</h2>\n<figure>", out);
+  fg_film_plot_field(out, r);
+  fprintf(out,
+          "<figcaption>Pressure of the unwrapped film: white is ambient, red above it, blue below; "
+          "the highest is %.4g kPa.</figcaption></figure>\n<figure>",
+          r->at.max_pressure_kpa);
+  fg_film_plot_thickness(out, r);
+  fputs("<figcaption>Film, clearance and the foil's deflection.</figcaption></figure>\n"
+        "</section>\n",
+        out);
+}
+
+static void put_stability(FILE *out, const fg_film_report *r) {
+  fputs("<section>\n<h2 class=\"first\">The rotor</h2>\n<figure>", out);
+  fg_film_plot_stability(out, r);
+  fputs("<figcaption>Critical mass over speed, under the same load; the line is the rotor's "
+        "mass.</figcaption></figure>\n<figure>",
+        out);
+  fg_film_plot_coefficients(out, r, false);
+  fputs("</figure>\n<figure>", out);
+  fg_film_plot_coefficients(out, r, true);
+  fputs("<figcaption>Stiffness and damping of the film over the frequency of whirl, at the stated "
+        "speed.</figcaption></figure>\n",
+        out);
+  fg_html_table(out, &fg_film_result_members, &(fg_subject){.object = r->speed, .whole = r},
+                fg_film_speed_at);
+  fputs("</section>\n", out);
+}
+
+static void put_draws(FILE *out, const fg_film_report *r) {
+  const fg_film_draws *d = &r->draws;
+  if (!d->count) return;
+  fprintf(out,
+          "<section>\n<h2 class=\"first\">Bearings with random shims</h2>\n<p>%zu bearings, shims "
+          "of %g to %g %% of the clearance under every bump.</p>\n",
+          d->count, r->options.shim_low_pct, r->options.shim_high_pct);
+  fg_html_table(out, &fg_film_share_members, &(fg_subject){.object = d, .whole = r},
+                fg_film_share_at);
+  fprintf(out,
+          "<p>Critical mass over the perfect bearing's: %.3g at 5 %%, %.3g at "
+          "25 %%, %.3g in the middle, %.3g at 75 %%, %.3g at 95 %% of those solved.</p>\n"
+          "</section>\n",
+          d->quantile[0], d->quantile[1], d->quantile[2], d->quantile[3], d->quantile[4]);
+}
+
+fg_status fg_film_write_html(fg_context *ctx, const fg_film_report *r, FILE *out) {
+  char title[120];
+  fg_provenance from = {.design = &r->design};
+  snprintf(title, sizeof title, "Gas film of %s", r->design.name);
+  fg_html_begin(out, title);
+  put_summary(out, r);
+  if (r->columns) put_field(out, r);
+  if (r->speeds) put_stability(out, r);
+  put_draws(out, r);
+  if (r->options.foils) fg_provenance_take_file(&from, r->options.foils);
+  FG_TRY(fg_html_provenance_section(ctx, out, &from));
+  fg_html_end(out);
+  return fg_stream_finish(ctx, out, "the page");
+}

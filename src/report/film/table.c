@@ -1,0 +1,54 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A film for the terminal. */
+#include <math.h>
+
+#include "core/file.h"
+#include "report/film/members.h"
+
+enum { LINE = 96 };
+
+/* Writes words broken between words. */
+static void put_note(FILE *out, const char *text) {
+  int column = 0;
+  fputs("\n  ", out);
+  for (const char *c = text; *c; c++) {
+    bool turn = *c == ' ' && column > LINE - 14;
+    fputs(turn ? "\n  " : (char[]){*c, '\0'}, out);
+    column = turn ? 0 : column + 1;
+  }
+  fputc('\n', out);
+}
+
+static void put_conditions(FILE *out, const fg_film_report *r) {
+  const fg_film_options *o = &r->options;
+  fprintf(out, "design %s; %.4g N towards %g degrees, %.5g rpm, rotor %.4g kg\n", r->design.name,
+          o->load_n, o->load_deg, o->speed_rpm, o->rotor_mass_kg);
+  fprintf(out, "D %.4g mm, L %.4g mm, C %.4g um; compliance %.4g, loss factor %.3g\n\n",
+          r->diameter_mm, r->length_mm, r->clearance_um, r->compliance, o->loss_factor);
+}
+
+static void put_draws(FILE *out, const fg_film_report *r) {
+  const fg_film_draws *d = &r->draws;
+  if (!d->count) return;
+  fprintf(out, "\n%zu bearings, shims of %g to %g %% of the clearance, seed %llu\n", d->count,
+          r->options.shim_low_pct, r->options.shim_high_pct, (unsigned long long)r->options.seed);
+  fg_members_terminal(out, "  ", &fg_film_share_members, &(fg_subject){.object = d, .whole = r},
+                      fg_film_share_at);
+  fprintf(out,
+          "  critical mass over the perfect bearing's, 5 to 95 %%: %.3g  %.3g  %.3g  %.3g  "
+          "%.3g\n",
+          d->quantile[0], d->quantile[1], d->quantile[2], d->quantile[3], d->quantile[4]);
+}
+
+fg_status fg_film_write_text(fg_context *ctx, const fg_film_report *r, FILE *out) {
+  char notes[FG_FILM_NOTES][FG_FILM_NOTE];
+  put_conditions(out, r);
+  fg_members_terminal(out, "  ", &fg_film_result_members, &(fg_subject){.object = r, .whole = r},
+                      fg_film_bearing_at);
+  if (isfinite(r->threshold_rpm)) fprintf(out, "\n  threshold speed  %.5g rpm\n", r->threshold_rpm);
+  put_draws(out, r);
+  size_t count = fg_film_notes(r, notes);
+  for (size_t i = 0; i < count; i++)
+    put_note(out, notes[i]);
+  return fg_stream_finish(ctx, out, "the table");
+}

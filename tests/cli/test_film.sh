@@ -1,0 +1,81 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# `foilgauge film`: its outputs, measured foils, random shims, bad input. Its numbers: unit/test_film.c.
+. tests/support/cli.sh
+listened="stdout stderr"
+fast="--load 20 --speed 60000 --clearance 40 --compliance 0.67 --mesh 2,4"
+
+echo '{"schema": "foilgauge/design/1", "name": "<b>&"}' >design.json
+expect 0 "" "$program" film design.json $fast --speeds 30000:90000:4 --shims=-7:7 --draws 25 -o film.json --html film.html --table film.txt \
+  --speeds-out speeds.csv --draws-out draws.csv
+grep -q '&lt;b&gt;&amp;' film.html && ! grep -q '<b>&' film.html || fail "a name is not made harmless"
+for words in 'Critical mass' 'Pressure of the unwrapped film' 'random shims' 'stiffness, N/µm' '<dt>Program</dt>'; do
+  grep -q "$words" film.html || fail "the page lacks $words"
+done
+[ "$(wc -l <speeds.csv)" = 5 ] && [ "$(wc -l <draws.csv)" = 26 ] || fail "rows of the tables"
+valid film.schema.json film.json
+
+# The field balances the load: pressure over the film against 20 N towards 270 degrees.
+checks - film.json <<'END' || fail "the report"
+import json, math, sys
+r = json.load(open(sys.argv[1]))
+c, force = r["conditions"], [0, 0]
+step, dz = math.radians(r["field"][1]["angle_deg"] - r["field"][0]["angle_deg"]), c["length_mm"] / 8
+for column in r["field"]:
+    p = [x - c["ambient_kpa"] for x in column["pressure_kpa"]]
+    mean = dz * (p[0] / 2 + sum(p[1:-1]) + p[-1] / 2) * 2 * c["diameter_mm"] / 2 * step * 1e-3
+    force[0] += mean * math.cos(math.radians(column["angle_deg"]))
+    force[1] += mean * math.sin(math.radians(column["angle_deg"]))
+    assert abs(column["clearance_um"] - 40) < 1e-9
+assert abs(force[0]) < 1e-4 and abs(force[1] + 20) < 1e-4, force
+assert min(x["film_um"] for x in r["field"]) == r["bearing"]["min_film_um"]
+d = r["draws"]
+assert d["solved"]["count"] == 25 and d["more_stable"]["count"] + d["less_stable"]["count"] == 25, d
+assert 0.1 < d["mass_over_perfect"]["at_5_pct"] < 1 < d["mass_over_perfect"]["at_75_pct"], d
+assert r["coefficients"][10]["whirl_ratio"] == 1
+END
+
+# Draws hang on their seed and number alone, and shims of no height are the perfect bearing.
+expect 0 "" "$program" film design.json $fast --speeds 30000:90000:2 --shims=-7:7 --draws 12 --jobs 1 -o few.json --draws-out few.csv
+[ "$(head -n 13 draws.csv)" = "$(cat few.csv)" ] || fail "draws hang on their number or on the threads"
+expect 0 "" "$program" film $fast --speeds 30000:90000:2 --shims 0:0 --draws 1 -o none.json
+near "no deviation" "$(value none.json "r['draws']['mass_over_perfect']['median']")" 1 1e-7
+
+# Foils as measured: those of the design's clearance are the design's, a closed one lowers the film.
+foils() {
+  python3 - "$1" <<'END'
+import json, sys
+bumps = [[{"number": k + 1, "clearance_mm": 0.04} for k in range(9)] for pad in range(3)]
+for bump in bumps[2]: bump["clearance_mm"] += float(sys.argv[1])
+print(json.dumps({"schema": "foilgauge/measure/1", "foils": [{"bumps": b} for b in bumps]}))
+END
+}
+foils 0 >same.json && foils -0.01 >close.json
+expect 0 "as measured" "$program" film $fast --speeds 30000:90000:2 --foils same.json -o as_designed.json --table -
+expect 0 "" "$program" film $fast --speeds 30000:90000:2 --foils close.json -o as_measured.json
+near "foils as designed" "$(value as_designed.json "r['bearing']['critical_mass_kg'] / r['perfect']['critical_mass_kg']")" 1 1e-7
+[ "$(value as_measured.json "r['bearing']['min_film_um'] < r['perfect']['min_film_um'] - 1")" = True ] || fail "a closed pad"
+valid film.schema.json as_measured.json
+
+# A load beyond the film, and a touching one.
+expect 65 "no film at" "$program" film --load 5000 --speed 3000 --clearance 40 --compliance 0 --mesh 2,4
+expect 0 "touching" "$program" film $fast --speeds 30000:90000:2 --touching 100 --table -
+
+# Bad input.
+while IFS='|' read -r code words options; do
+  expect "$code" "$words" "$program" film $options
+done <<'END'
+64|needs --load N and --speed|--load 5
+64|not LOW:HIGH|--load 5 --speed 60000 --shims 7
+64|need --shims|--load 5 --speed 60000 --draws 7
+64|even number|--load 5 --speed 60000 --mesh 3,4
+64|neither stiff nor|--load 5 --speed 60000 --top-foil soft
+64|no model of|--load 5 --speed 60000 --clearance 80 --model own
+64|do not fit|--load 5 --speed 60000 --clearance 80 --pitch 20
+64|states none|--load 5 --speed 60000 --clearance 80 --top-foil sagging
+64|has at most 96|--load 5 --speed 60000 --clearance 80 --pads 20
+END
+expect 65 "not a report of .foilgauge measure" "$program" film $fast --foils film.json
+expect 65 "2 foils for a bearing of 3 pads" "$program" film $fast --foils <(sed 's/{"bumps": .*\({"bumps"\)/{"bumps": [] }, \1/' same.json)
+expect 65 "needs a design with bumps" "$program" film "$root/samples/top_foil_design.json" $fast
+exit $failed
