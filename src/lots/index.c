@@ -54,6 +54,7 @@ static fg_status read_lots(fg_context *ctx, fg_index *index) {
     FG_TRY(fg_index_read_lot(ctx, lot));
     if (lot->problem) continue;
     FG_TRY(fg_index_read_foils(ctx, index, lot));
+    FG_TRY(fg_index_read_prediction(ctx, lot));
     if (lot->foils_unknown)
       FG_TRY(fg_text_append(ctx, &index->notes,
                             "%s; without them there is no density and no test of this lot\n",

@@ -41,6 +41,14 @@ typedef struct fg_index_spread {
   fg_density density;
 } fg_index_spread;
 
+/* A lot against the prediction of its die, from its expected.json. */
+typedef struct fg_index_prediction {
+  bool known;
+  double error_before_pct, error_after_pct, p_value;
+  double springback_pct, u_springback_pct; /* of the law with this lot */
+  size_t inside, values;
+} fg_index_prediction;
+
 typedef struct fg_index_lot {
   const char *folder; /* as given */
   char *name;
@@ -66,6 +74,7 @@ typedef struct fg_index_lot {
   double *ratio;           /* radius of every bump over the design's; owned */
   size_t *ratio_foil, ratios;
   fg_index_spread spread;
+  fg_index_prediction prediction;
 } fg_index_lot;
 
 /* Scale of a quantity. */
@@ -151,6 +160,9 @@ fg_status fg_index_read_lot(fg_context *ctx, fg_index_lot *lot);
 /* Reads foils.csv and bumps.csv or beams.csv; a defect becomes `foils_unknown`. */
 fg_status fg_index_read_foils(fg_context *ctx, fg_index *index, fg_index_lot *lot);
 
+/* Reads expected.json, where there is one. */
+fg_status fg_index_read_prediction(fg_context *ctx, fg_index_lot *lot);
+
 /* Sorts the lots, and finds their designs and axes. */
 fg_status fg_index_arrange(fg_context *ctx, fg_index *index);
 fg_status fg_index_spreads(fg_context *ctx, fg_index *index);
@@ -195,6 +207,7 @@ fg_status fg_index_write_page(fg_context *ctx, const fg_index *index, FILE *out)
 /* Sections of the page. */
 void fg_index_put_pairs(FILE *out, const fg_index *index);
 void fg_index_put_dies(FILE *out, const fg_index *index);
+void fg_index_put_predictions(FILE *out, const fg_index *index);
 
 /* Cells of the table of lots, which a lot is the object of. */
 void fg_index_put_lot_link(FILE *out, const fg_subject *lot);

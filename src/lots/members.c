@@ -204,6 +204,11 @@ static bool has_coils(const fg_subject *list) {
   return false;
 }
 
+static fg_subject find_lot_prediction(const fg_subject *subject) {
+  const fg_index_prediction *prediction = &((const fg_index_lot *)subject->object)->prediction;
+  return (fg_subject){.object = prediction->known ? prediction : NULL, .whole = subject->whole};
+}
+
 static const fg_member read_rows[] = {
     {FG_COUNT_BY("number", find_number), .options = FG_MEMBER_NOT_IN_JSON,
      .words = "in order of date, by which every figure is numbered",
@@ -232,6 +237,9 @@ static const fg_member read_rows[] = {
      .words = "why there are no values foil by foil"},
     {FG_OBJECT("radius_over_design", fg_index_lot, spread, &spread_members),
      .options = FG_MEMBER_ON_LINE, .words = SPREAD_WORDS},
+    {FG_PART("prediction", find_lot_prediction, &fg_index_prediction_members),
+     .options = FG_MEMBER_ON_LINE | FG_MEMBER_NULLABLE,
+     .words = "its die's, held by `foilgauge lot --expected`; null: none"},
     {FG_MAP_BY("quantities", find_stat_of_lot, stat_key, &stat_members),
      .options = FG_MEMBER_ON_LINE, .words = "by their names"},
 };

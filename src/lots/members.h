@@ -12,7 +12,7 @@ extern const fg_document fg_index_document;
 extern const fg_members fg_index_lot_members, fg_index_lot_spread_members,
     fg_index_die_spread_members, fg_index_pair_members, fg_index_die_pair_members;
 
-extern const fg_members fg_index_comparison_members;
+extern const fg_members fg_index_comparison_members, fg_index_prediction_members;
 
 /* Words of fg_index_scale, in its order. */
 extern const char *const fg_index_scale_words[];

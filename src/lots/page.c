@@ -277,6 +277,7 @@ fg_status fg_index_write_page(fg_context *ctx, const fg_index *index, FILE *out)
   fg_html_begin(out, "Lots");
   put_index_first_screen(out, index);
   put_unread(out, index);
+  fg_index_put_predictions(out, index);
   put_densities(out, index);
   put_axis_figures(out, index);
   fg_index_put_pairs(out, index);

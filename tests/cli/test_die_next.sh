@@ -86,6 +86,12 @@ near "error after" "$(value two/expected.json 'r["error_after_pct"]')" 0.2 0.3
   fail "a second lot teaches nothing"
 grep -q 'Was the prediction right' two/expected.html || fail "no page"
 
+# The index of lots has the history.
+expect 0 '' "$program" lot --index lots.html -o lots.json one two
+[ "$(value lots.json '[lot["prediction"] and lot["prediction"]["values"] for lot in r["lots"]]')" = "[None, 29]" ] || fail "the index has no history"
+grep -q 'whether their predictions were right' lots.html || fail "the page over lots has no history"
+valid lot_index.schema.json lots.json
+
 # The posterior of both by one report after the other is that from both at once.
 expect 0 '' next --prior two/expected.json -o by_prior.json
 expect 0 '' next --prior next.json --lot two -o by_lot.json

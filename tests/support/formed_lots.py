@@ -44,8 +44,8 @@ class Template:
                 "scanner": {"dpi": 600}}
         (self.folder / "spec.json").write_text(json.dumps(spec))
         (self.folder / "recipe.json").write_text(json.dumps(self.recipe))
-        run(renderer or program, "render", self.folder / "spec.json", "-o", self.folder / "scan.png")
         if not (self.folder / "lot" / "results.jsonl").exists():
+            run(renderer or program, "render", self.folder / "spec.json", "-o", self.folder / "scan.png")
             run(program, "lot", self.folder / "scan.png", "-o", self.folder / "lot", "--recipe", self.folder / "recipe.json",
                 "--pages", "none")
         lines = (self.folder / "lot" / "results.jsonl").read_text().splitlines()
