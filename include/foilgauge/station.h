@@ -58,6 +58,7 @@ typedef struct fg_station_request {
   const fg_station_settings *settings;
   bool once;               /* measure new files, and return */
   const char *export_path; /* export the database's lots as folders below this one, and return */
+  const char *orders;      /* CSV file, or folder of such, of an ERP's orders; NULL: none */
   bool digest; /* write what changed, is suspected and was found to standard output, and return */
   const char *digest_page; /* and as a page into this file; NULL: no page */
   bool decimal_comma;      /* in CSV of lots that are closed or exported (fg_csv_write) */

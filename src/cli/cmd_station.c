@@ -25,7 +25,8 @@ enum {
   OPTION_ORIGIN,
   OPTION_CONTEXT,
   OPTION_DIGEST,
-  OPTION_DIGEST_PAGE
+  OPTION_DIGEST_PAGE,
+  OPTION_ORDERS
 };
 
 enum { HOSTS_MAX = 16, TOKEN_BYTES = 256 };
@@ -51,6 +52,11 @@ static const struct argp_option options[] = {
      "runs",
      1},
     {"digest-page", OPTION_DIGEST_PAGE, "FILE", 0, "The same, and as a page into FILE", 1},
+    {"orders", OPTION_ORDERS, "PATH", 0,
+     "Orders that an ERP writes: a CSV file, or a folder of them, with columns order, part, lot, "
+     "die, "
+     "coil, operator, pieces",
+     1},
     {"context", OPTION_CONTEXT, "FILE.csv", 0,
      "Columns that say more about foils, by a column `serial` or `time` (repeatable): candidates "
      "for the causes of a trend",
@@ -100,6 +106,7 @@ static bool keep_text(int key, const char *text, station_arguments *arguments) {
       {OPTION_TOKEN_FILE, &arguments->token_file},
       {OPTION_ORIGIN, &request->origin},
       {OPTION_DIGEST_PAGE, &request->digest_page},
+      {OPTION_ORDERS, &request->orders},
   };
   for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
     if (texts[i].key != key) continue;

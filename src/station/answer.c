@@ -31,6 +31,7 @@ static const route pages[] = {
     {"/why", fg_page_why, HTML, false, false},
     {"/scanner", fg_page_scanner, HTML, false, false},
     {"/lots", fg_page_lots, HTML, false, false},
+    {"/orders", fg_page_orders, HTML, false, false},
     {"/lot", fg_page_lot, HTML, true, false},
 };
 
@@ -38,10 +39,11 @@ static const struct {
   const char *path;
   fg_action *act;
 } actions[] = {
-    {"/correct", fg_action_correct},   {"/scan", fg_action_scan},
-    {"/baseline", fg_action_baseline}, {"/close", fg_action_close},
-    {"/download", fg_action_download}, {"/why", fg_action_why},
-    {"/accept", fg_action_accept},     {"/withdraw", fg_action_withdraw},
+    {"/correct", fg_action_correct},         {"/scan", fg_action_scan},
+    {"/baseline", fg_action_baseline},       {"/close", fg_action_close},
+    {"/download", fg_action_download},       {"/order", fg_action_order},
+    {"/order-close", fg_action_order_close}, {"/why", fg_action_why},
+    {"/accept", fg_action_accept},           {"/withdraw", fg_action_withdraw},
 };
 
 enum { PAGES = sizeof pages / sizeof *pages, ACTIONS = sizeof actions / sizeof *actions };

@@ -103,6 +103,18 @@ static const char *const migrations[] = {
     "CREATE TABLE cause_points (cause INTEGER NOT NULL REFERENCES causes, number INTEGER NOT NULL,"
     " level TEXT NOT NULL, x REAL, shift REAL NOT NULL, PRIMARY KEY (cause, number)) WITHOUT "
     "ROWID;",
+    /* Orders; the open one is that which was opened last. Dispositions of foils that did not pass:
+     * the newest of a foil is in force. */
+    "CREATE TABLE orders (id INTEGER PRIMARY KEY AUTOINCREMENT, number TEXT NOT NULL UNIQUE,"
+    " part TEXT NOT NULL, lot TEXT NOT NULL, die TEXT NOT NULL, coil TEXT NOT NULL,"
+    " operator TEXT NOT NULL, pieces INTEGER NOT NULL, opened_at INTEGER NOT NULL,"
+    " closed_at INTEGER NOT NULL DEFAULT 0, closed_by TEXT NOT NULL DEFAULT '');"
+    "ALTER TABLE foils ADD COLUMN order_id INTEGER NOT NULL DEFAULT 0;"
+    "CREATE INDEX foils_by_order ON foils (order_id) WHERE order_id <> 0;"
+    "CREATE TABLE dispositions (id INTEGER PRIMARY KEY AUTOINCREMENT, foil INTEGER NOT NULL"
+    " REFERENCES foils, kind TEXT NOT NULL, reason TEXT NOT NULL, note TEXT NOT NULL,"
+    " by TEXT NOT NULL, at INTEGER NOT NULL);"
+    "CREATE INDEX dispositions_by_foil ON dispositions (foil);",
 };
 
 enum { VERSION = sizeof migrations / sizeof *migrations, BUSY_MS = 5000, IN_FILE_EVERY_S = 5 };

@@ -21,6 +21,7 @@ static const struct {
     {FG_TAB_TRENDS, "/trends", "Trends"},
     {FG_TAB_SCANNER, "/scanner", "Scanner"},
     {FG_TAB_LOTS, "/lots", "Lots"},
+    {FG_TAB_ORDERS, "/orders", "Orders"},
 };
 
 void fg_page_time(FILE *out, int64_t at) {

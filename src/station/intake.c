@@ -19,6 +19,7 @@
 #include "station/keep.h"
 #include "station/lot_content.h"
 #include "station/news.h"
+#include "station/orders.h"
 #include "station/picture.h"
 #include "station/scan_command.h"
 #include "station/stored_name.h"
@@ -170,12 +171,15 @@ static fg_status keep_new(fg_context *ctx, intake *at, const fg_measurement *mea
   fg_report_outcome outcome;
   int64_t scan;
   char why[WORDS];
+  int64_t order;
   bool withheld = fg_station_check_withholds(station, why, sizeof why);
+  FG_TRY(fg_order_apply(ctx, station, fg_station_is_scanned(at->name), &at->named, &order));
   FG_TRY(fg_station_lot_note(ctx, &station->database, at->named.lot, at->words, WORDS));
   note_lossy(measurement, at->words);
   const fg_station_scan kept = {.file = at->file,
                                 .source = fg_station_is_scanned(at->name) ? "scanner" : "folder",
                                 .named = &at->named,
+                                .order = order,
                                 .settings = &station->settings->lot,
                                 .setup = station->setup,
                                 .measurement = measurement,

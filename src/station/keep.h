@@ -62,6 +62,7 @@ typedef struct fg_station_scan {
   fg_station_file file;
   const char *source; /* "folder" or "scanner" */
   const fg_named *named;
+  int64_t order; /* 0: none */
   const fg_lot_settings *settings;
   int64_t setup;
   const fg_measurement *measurement;

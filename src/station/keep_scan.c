@@ -149,7 +149,7 @@ static fg_status insert_foil(fg_context *ctx, sqlite3 *writer, const fg_station_
   find_reasons(&kept->settings->design, foil, reasons, sizeof reasons);
   fg_query_begin(writer,
                  "INSERT INTO foils (scan, number, serial, lot, die, operator, verdict, reasons,"
-                 " coil, oven, scanner) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+                 " coil, oven, scanner, order_id) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
                  &query);
   fg_query_integer(&query, scan);
   fg_query_integer(&query, foil->number);
@@ -162,6 +162,7 @@ static fg_status insert_foil(fg_context *ctx, sqlite3 *writer, const fg_station_
   fg_query_text(&query, named->coil);
   fg_query_text(&query, named->oven);
   fg_query_text(&query, named->scanner);
+  fg_query_integer(&query, kept->order);
   fg_query_row(&query);
   return fg_query_end(ctx, &query, "keeping a foil");
 }

@@ -8,6 +8,7 @@
 #include "page/page.h"
 #include "quantity/quantity_rows.h"
 #include "station/news.h"
+#include "station/orders.h"
 #include "station/pages.h"
 #include "station/scan_command.h"
 #include "station/values.h"
@@ -293,6 +294,7 @@ fg_status fg_page_now(fg_context *ctx, fg_inspection *station, sqlite3 *reader,
   bool arriving = write_stage(out, station);
   if (newest.id && !arriving) write_newest_call(out, station, &newest);
   if (!newest.id && !arriving) write_ready(station, out);
+  FG_TRY(fg_order_write_progress(ctx, reader, out));
   fputs("<div data-typing></div>\n", out);
   write_scan_button(station, out);
   if (newest.id && arriving) write_before(out, &newest);

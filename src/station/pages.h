@@ -10,10 +10,12 @@ typedef enum fg_tab {
   FG_TAB_HISTORY,
   FG_TAB_TRENDS,
   FG_TAB_SCANNER,
-  FG_TAB_LOTS
+  FG_TAB_LOTS,
+  FG_TAB_ORDERS
 } fg_tab;
 
-fg_page_writer fg_page_now, fg_page_history, fg_page_trends, fg_page_scanner, fg_page_lots;
+fg_page_writer fg_page_now, fg_page_history, fg_page_trends, fg_page_scanner, fg_page_lots,
+    fg_page_orders;
 fg_page_writer fg_page_why;    /* causes of a trend: a search, its answer */
 fg_page_writer fg_page_foil;   /* one foil: its values, its trail, its form */
 fg_page_writer fg_page_report; /* its whole report, measured again from the scan */
@@ -56,6 +58,8 @@ fg_action fg_action_correct;  /* serial, lot, die, operator of a foil; leaves a 
 fg_action fg_action_scan;     /* runs the recipe's scan_command */
 fg_action fg_action_baseline; /* makes the newest check the baseline of later ones */
 fg_action fg_action_close;    /* a lot: writes its folder and report */
+fg_action fg_action_order;    /* opens an order */
+fg_action fg_action_order_close;
 fg_action fg_action_why;      /* searches for causes of a trend */
 fg_action fg_action_accept;   /* a cause: limits are taken about it from then on */
 fg_action fg_action_withdraw; /* an accepted cause; it stays in the trail */

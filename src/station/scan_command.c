@@ -19,13 +19,21 @@
 #include "core/text.h"
 #include "station/keep.h"
 #include "station/news.h"
+#include "station/orders.h"
 #include "station/pages.h"
 
 extern char **environ;
 
 /* SCAN_SECONDS: a bed at 4800 dpi takes a slow scanner some four minutes. TAIL_BYTES of the
  * command's output are read; OUTPUT_BYTES go on the card. */
-enum { SCAN_SECONDS = 900, TAIL_BYTES = 4096, OUTPUT_BYTES = 400, TURN_MS = 250, NAME_BYTES = 64 };
+enum {
+  SCAN_SECONDS = 900,
+  TAIL_BYTES = 4096,
+  OUTPUT_BYTES = 400,
+  TURN_MS = 250,
+  NAME_BYTES = 96,
+  ORDER_BYTES = 40
+};
 
 #define PREFIX       "station-"
 #define CHECK_PREFIX "station-check-"
@@ -56,7 +64,8 @@ bool fg_station_is_scanned_check(const char *name) {
 }
 
 bool fg_station_is_scanned(const char *name) {
-  return matches_pattern(name, PREFIX "00000000-000000-000.") || fg_station_is_scanned_check(name);
+  return matches_pattern(name, PREFIX "00000000-000000-000.") ||
+         matches_pattern(name, PREFIX "00000000-000000-000-") || fg_station_is_scanned_check(name);
 }
 
 /* Returns the file's ending that a scanner's program requires. */
@@ -65,16 +74,28 @@ static const char *ending_for(const char *command) {
   return strcasestr(command, "pnm") ? "pnm" : "png";
 }
 
+/* Part of the file's name for the open order; "": none is open. */
+static void find_order_part(fg_inspection *station, char order[ORDER_BYTES]) {
+  fg_context unused;
+  fg_order open;
+  pthread_mutex_lock(&station->database.reading);
+  bool read = fg_order_read_open(&unused, station->database.reader, &open) == FG_OK;
+  pthread_mutex_unlock(&station->database.reading);
+  if (read) fg_order_file_part(&open, order, ORDER_BYTES);
+}
+
 /* While it is written it is hidden from the watch. Both names hold nothing that a shell would see
  * anything in, quoted by the recipe or not. */
 static void choose_names(scanner *at) {
   struct timespec now;
   struct tm local = {0};
-  char stamp[40] = "";
+  char stamp[40] = "", order[ORDER_BYTES] = "";
+  if (!at->check) find_order_part(at->station, order);
   clock_gettime(CLOCK_REALTIME, &now);
   if (localtime_r(&now.tv_sec, &local)) strftime(stamp, 20, "%Y%m%d-%H%M%S", &local);
-  snprintf(at->final, sizeof at->final, "%s%s-%03d.%s", at->check ? CHECK_PREFIX : PREFIX, stamp,
-           (int)(now.tv_nsec / 1000000), ending_for(at->station->settings->scan_command));
+  snprintf(at->final, sizeof at->final, "%s%s-%03d%s%s.%s", at->check ? CHECK_PREFIX : PREFIX,
+           stamp, (int)(now.tv_nsec / 1000000), order[0] ? "-" : "", order,
+           ending_for(at->station->settings->scan_command));
   fg_text_clip(at->hidden, sizeof at->hidden, ".%s", at->final);
 }
 

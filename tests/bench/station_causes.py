@@ -130,7 +130,7 @@ def write_year(path, shop, rng, shift, whole):
             line[at["record"]] = None
         out["scans"].append(line)
         out["foils"].append((i + 1, i + 1, 1, f"{i + 1:06d}", row["lot"], row["die"], row["operator"], "pass", "",
-                             row["coil"], row["oven"], row["scanner"]))
+                             row["coil"], row["oven"], row["scanner"], 0))
         of_bump = {bump: rng.gauss(0, BUMP) for bump in bumps}
         out["bumps"] += [(i + 1, bump, "pass", "") for bump in bumps]
         out["measured"] += [(quantity, i + 1, bump, value if value is None else value * (1 + moved + of_bump.get(bump, 0)), u)

@@ -117,7 +117,7 @@ def fill(path, scans, checks, limits, seed):
         row[at["path"]], row[at["at"]], row[at["verdict"]] = name, begin + i * MINUTE_MS, verdict
         out["scans"].append(row)
         foil = first_foil + i
-        out["foils"].append((foil, first_id + i, 1, serial, lot, die, "filler", verdict, "", "", "", ""))
+        out["foils"].append((foil, first_id + i, 1, serial, lot, die, "filler", verdict, "", "", "", "", 0))
         of_bump = {bump: worst([j[0] for j in judged if j[3] == bump]) for bump in bumps}
         out["bumps"] += [(foil, bump, of_bump[bump], "") for bump in bumps]
         out["measured"] += [(quantity, foil, bump, value, u) for quantity, bump, value, u in values]

@@ -6,7 +6,7 @@ come; two browsers at once; History, a report, a chart that is zoomed by draggin
 a phone; a station that is killed. Ends with an error at the first thing that is not as said.
 
     tests/browser/station_browser.py PROGRAM [--renderer PROGRAM]
-    tests/browser/station_browser.py PROGRAM --pictures FOLDER      draws the five tabs instead
+    tests/browser/station_browser.py PROGRAM --pictures FOLDER      draws the tabs instead
 
 Needs Debian's chromium, chromium-driver and python3-selenium; without them the exit code is 77."""
 
@@ -35,7 +35,7 @@ except ImportError:
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 TABS = (("now", "/"), ("history", "/history"), ("trends", "/trends?newest=all"), ("scanner", "/scanner"),
-        ("lots", "/lots"))
+        ("lots", "/lots"), ("orders", "/orders"))
 WIDTH = 1280
 TALLEST = {"now": 1000, "history": 900}  # px of a picture; the rest below is more of the same
 TALLEST_OTHERS = 1280
@@ -495,7 +495,7 @@ def run_causes(program, work):
 
 
 def run_pictures(program, folder, work):
-    """The five tabs of a station with 300 foils and three that are really scanned, the newest of them bad."""
+    """The tabs of a station with 300 foils and three that are really scanned, the newest of them bad."""
     filled = os.path.join(work, "scans")
     recipe = os.path.join(ROOT, "samples", "station", "recipe.json")
     fill = os.path.join(ROOT, "tests", "bench", "station_fill.py")

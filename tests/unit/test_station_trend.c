@@ -81,7 +81,7 @@ static void add_foil(fixture *f, int id, const char *lot, const char *die, doubl
   run_sql(f,
           "INSERT INTO scans (id, sha256, setup, path, source, at, verdict) VALUES (%d, '%d', 1, "
           "'%d.png', 'folder', %d, 'pass');"
-          "INSERT INTO foils VALUES (%d, %d, 1, 'S%04d', '%s', '%s', '', 'pass', '', '', '', '')",
+          "INSERT INTO foils VALUES (%d, %d, 1, 'S%04d', '%s', '%s', '', 'pass', '', '', '', '', 0)",
           id, id, id, id, id, id, id, lot, die);
   for (int bump = 1; bump <= BUMPS; bump++)
     run_sql(f,

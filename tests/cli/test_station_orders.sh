@@ -1,0 +1,86 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Orders: opened by number from an ERP's file, by hand, and refused where nobody knows them; scans that come belong to the
+# open one; progress; the Scan button names its file by it.
+# Usage: test_station_orders.sh PROGRAM
+set -euo pipefail
+. "$(dirname "$0")/../support/checks.sh"
+program=$1
+renderer=${FOILGAUGE_RENDERER:-$program}
+work=$(mktemp -d)
+station=
+trap '[ -z "$station" ] || kill "$station" 2>/dev/null || true; rm -rf "$work"' EXIT
+fail() {
+  echo "test_station_orders: $*" >&2
+  exit 1
+}
+mkdir "$work/scans" "$work/erp"
+for seed in 1 2 3 4 5; do
+  radius=3.32
+  [ "$seed" != 2 ] || radius=3.4
+  printf '{"schema": "foilgauge/render/1", "seed": %s, "scanner": {"dpi": 1200}, "foils": [{"rotate_deg": -90,
+    "design": {"bump_count": 2, "bump_radius_mm": %s}}]}' "$seed" "$radius" >"$work/spec.json"
+  "$renderer" render "$work/spec.json" -o "$work/$seed.png"
+done
+printf 'Order;Batch;Tool;Material;Quantity\n4711;L7;B;K7;40\n4712;L8;A;K8;2\n' >"$work/erp/today.csv"
+printf 'not a table' >"$work/erp/readme.txt"
+cat >"$work/recipe.json" <<R
+{"schema": "foilgauge/recipe/1",
+ "station": {"file_name": "{serial}", "scan_command": "cp $work/5.png {file}"},
+ "design": {"schema": "foilgauge/design/1", "bump_count": 2, "calibration": "not needed: the scan is rendered",
+            "tolerances": {"radius_mm": {"min": 3.3, "max": 3.34}}}}
+R
+"$program" station "$work/scans" --recipe "$work/recipe.json" --orders "$work/erp" --port 0 >"$work/address" 2>"$work/err" &
+station=$!
+checks - "$work" >&2 <<'PY' || fail "orders: $(cat "$work/err")"
+import os, re, shutil, sqlite3, sys, urllib.error, urllib.parse, urllib.request
+work = sys.argv[1]
+base = wait_until(lambda: open(work + "/address").read().strip())
+def get(path):
+    return urllib.request.urlopen(base + path.lstrip("/")).read().decode()
+token = re.search('name="form" value="([0-9a-f]+)"', get("/orders")).group(1)
+def post(path, **fields):
+    data = urllib.parse.urlencode({"form": token, **fields}).encode()
+    try:
+        with urllib.request.urlopen(base + path.lstrip("/"), data) as answer:
+            return answer.geturl(), answer.read().decode()
+    except urllib.error.HTTPError as error:
+        return str(error.code), error.read().decode()
+database = sqlite3.connect(work + "/scans/foilgauge.sqlite")
+def foils():
+    return database.execute("SELECT serial, lot, die, coil, order_id FROM foils ORDER BY id").fetchall()
+def drop(seed, name):
+    count = len(foils())
+    shutil.copy(f"{work}/{seed}.png", f"{work}/scans/.new")
+    os.rename(f"{work}/scans/.new", f"{work}/scans/{name}.png")
+    wait_until(lambda: len(foils()) > count)
+
+drop(1, "before")
+assert foils() == [("before", "", "", "", 0)], foils()
+where, page = post("/order", number="<9>")
+assert "unknown=" in where and "Nobody knows the order <b>&lt;9&gt;</b>" in page, where
+assert post("/order", number=" ")[0] == "422"
+where, page = post("/order", number="4711")
+assert 'href="/orders">Order 4711</a>: <b>0 of 40</b>, 0 failed' in page, page
+drop(2, "F1")
+drop(3, "F2")
+assert foils()[1:] == [("F1", "L7", "B", "K7", 1), ("F2", "L7", "B", "K7", 1)], foils()
+assert "<b>2 of 40</b>, 1 failed" in get("/"), get("/")
+drop(4, "F1")  # measured again: it passes now
+assert "<b>2 of 40</b>, 0 failed" in get("/"), get("/")
+post("/scan")
+wait_until(lambda: len(foils()) == 5)
+assert foils()[4][:2] == ("4711-004", "L7"), foils()
+assert [name for name in os.listdir(work + "/scans") if re.fullmatch(r"station-\d{8}-\d{6}-\d{3}-4711\.png", name)]
+# By hand, beside the first; its fields win; then none is open.
+post("/order", number="X 1", lot="L9", die="C", pieces="3")
+assert "Order X 1</a>: <b>0 of 3</b>" in get("/")
+assert post("/order-close", order="2", by="")[0] == "422"
+post("/order-close", order="2", by="Ada")
+assert "Order 4711</a>: <b>3 of 40</b>" in get("/"), get("/")
+post("/order-close", order="1", by="Ada")
+assert "Order" not in re.sub("<nav>.*?</nav>", "", get("/"), flags=re.S)
+page = get("/orders")
+assert "3 of 40" in page and "Ada" in page, page
+print("orders: ERP, by hand, progress, Scan")
+PY
