@@ -5,6 +5,9 @@
 
 #include "foilgauge/loop.h"
 
+/* A period of two places has no sine: the rounding that remains of it is no column. */
+#define FG_BASIS_ROUNDING 1e-9
+
 /* Returns true for a number, not a word, with more than one value. */
 bool fg_basis_is_number(const fg_loop_coordinate *at);
 /* Returns true for an order in time or place, along which neighbours are related. */

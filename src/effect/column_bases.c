@@ -189,6 +189,10 @@ static size_t keep_places(const fg_loop_problem *problem, const fg_loop_coordina
   return count;
 }
 
+/* Share of the range by which a threshold keeps off a value on its grid: rounding, which differs
+ * from unit to unit, would else say on which side the value is. */
+#define BEFORE_A_VALUE 1e-7
+
 /* Between neighbouring values; where there are many, spread over the range. */
 size_t fg_basis_threshold_starts(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
                                  double starts[FG_LOOP_STARTS][FG_LOOP_SHAPES]) {
@@ -200,7 +204,8 @@ size_t fg_basis_threshold_starts(const fg_loop_problem *problem, const fg_loop_c
       place[places++] = (at->few[i - 1] + at->few[i]) / 2;
   else
     for (size_t i = 1; i <= THRESHOLDS; i++)
-      place[places++] = at->low + (at->high - at->low) * (double)i / (THRESHOLDS + 1);
+      place[places++] =
+          at->low + (at->high - at->low) * ((double)i / (THRESHOLDS + 1) - BEFORE_A_VALUE);
   return keep_places(problem, at, place, places, starts);
 }
 

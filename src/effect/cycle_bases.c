@@ -13,9 +13,6 @@ enum { PLACES = 8 };
  * an angle, which returns to its start, are sought from one cycle on. */
 #define CYCLES_OF_A_COLUMN 2.0
 
-/* A period of two places has no sine: what rounding leaves of it is no column. */
-#define ROUNDING 1e-9
-
 /* Longest period of a known base, over the range. */
 #define LONGEST 1.34
 
@@ -48,7 +45,7 @@ void fg_basis_periodic(const fg_loop_problem *problem, const fg_loop_candidate *
     for (size_t i = 0; i < problem->rows; i++) {
       double phase = two_pi * (double)k * (at->value[i] - at->low) / shape[0];
       double sine = sin(phase);
-      columns[i] = fabs(sine) < ROUNDING ? 0 : sine;
+      columns[i] = fabs(sine) < FG_BASIS_ROUNDING ? 0 : sine;
       columns[problem->rows + i] = cos(phase);
     }
     columns += 2 * problem->rows;

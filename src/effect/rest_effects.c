@@ -140,7 +140,8 @@ static void wave_basis(const fg_loop_problem *problem, const fg_loop_candidate *
   const fg_loop_coordinate *at = &problem->coordinate[candidate->a];
   for (size_t i = 0; i < problem->rows; i++) {
     double phase = two_pi * (at->value[i] - at->low) / shape[0];
-    columns[i] = sin(phase);
+    double sine = sin(phase);
+    columns[i] = fabs(sine) < FG_BASIS_ROUNDING ? 0 : sine;
     columns[problem->rows + i] = cos(phase);
   }
 }
