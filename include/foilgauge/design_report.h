@@ -32,6 +32,16 @@ fg_status fg_design_write_curve(fg_context *ctx, const fg_design_report *report,
 /* One self-contained page, with the stiffness of a bump. FG_ERR_DATA for a form without bumps. */
 fg_status fg_design_write_html(fg_context *ctx, const fg_design_report *report, FILE *out);
 
+/* Sheet of a board, with the margins that printers leave. */
+typedef struct fg_board_sheet {
+  double width_mm, height_mm;
+} fg_board_sheet;
+
+/* A board of a design of form "grid", as SVG in mm: as many marks as the sheet holds, of the pitch
+ * as stated, or 5 mm. FG_ERR_DATA for another form, or a sheet without room. */
+fg_status fg_design_write_board(fg_context *ctx, const fg_design *design,
+                                const fg_board_sheet *size, FILE *out);
+
 #ifdef __cplusplus
 }
 #endif

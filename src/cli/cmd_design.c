@@ -2,6 +2,8 @@
 #include <argp.h>
 #include <stdbool.h>
 #include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
 
 #include "cli/commands.h"
 #include "cli/facts.h"
@@ -15,6 +17,7 @@ typedef struct design_arguments {
   const char *design_path; /* NULL: built in */
   fg_output_set outputs;
   bool json, curve;
+  fg_board_sheet sheet;
   fg_arch_material material;
 } design_arguments;
 
@@ -22,12 +25,18 @@ enum {
   OPTION_JSON = 256,
   OPTION_CURVE,
   OPTION_HTML,
+  OPTION_SVG,
+  OPTION_SHEET,
   OPTION_MODULUS,
   OPTION_POISSON,
   OPTION_FRICTION
 };
 
-enum { OUT_DATA, OUT_HTML, OUTPUTS };
+#define BOARD_PITCH_MM 5.0
+#define A4_WIDTH_MM    210.0
+#define A4_HEIGHT_MM   297.0
+
+enum { OUT_DATA, OUT_HTML, OUT_SVG, OUTPUTS };
 
 static const struct argp_option options[] = {
     {"json", OPTION_JSON, NULL, 0, "Write JSON (as -o does)", 0},
@@ -41,6 +50,10 @@ static const struct argp_option options[] = {
      "One page to read and print, with the stiffness of a bump by three models and its map over "
      "radius and angle",
      0},
+    {"svg", OPTION_SVG, "FILE.svg", 0, "Of form grid: a board to print, with its numbers, in mm",
+     0},
+    {"sheet", OPTION_SHEET, "WIDTHxHEIGHT", 0, "Of the board's sheet, mm (default: A4, 210x297)",
+     0},
     {"youngs-modulus-gpa", OPTION_MODULUS, "E", 0,
      "Of the strip, for the stiffness (default: @youngs_modulus_gpa@)", 1},
     {"poisson-ratio", OPTION_POISSON, "NU", 0, "Likewise (default: @poisson_ratio@)", 1},
@@ -52,7 +65,8 @@ static const struct argp_option options[] = {
 static const char doc[] =
     "Check a design and show what follows from it.\v"
     "DESIGN is a JSON file (\"schema\": \"foilgauge/design/1\"); without it the built-in Gen II "
-    "foil is shown. Lengths belong to the design's datum line.\n\n"
+    "foil is shown. The word `grid` alone is a board of dots of 5 mm pitch. Lengths belong to the "
+    "design's datum line.\n\n"
     "The curve takes each bump radius through eq 5.6 and 5.7 (constant arc length, crown in place) "
     "to height and clearance. clearance_error is (C_D - C) / C_D (eq 5.9); clearance_change_pct is "
     "100 (C - C_D) / C_D, as the thesis plots it.\n\n"
@@ -71,6 +85,17 @@ static error_t parse_design_number(const char *name, const char *text, double lo
   return 0;
 }
 
+static error_t parse_sheet(const char *text, fg_board_sheet *sheet, struct argp_state *state) {
+  char *end, *after = NULL;
+  sheet->width_mm = strtod(text, &end);
+  if (end != text && *end == 'x') sheet->height_mm = strtod(end + 1, &after);
+  bool whole = after && after != end + 1 && !*after;
+  if (!whole || !(sheet->width_mm >= 10 && sheet->width_mm <= 2000) ||
+      !(sheet->height_mm >= 10 && sheet->height_mm <= 2000))
+    argp_error(state, "--sheet %s: it must be two numbers from 10 to 2000, like 210x297", text);
+  return 0;
+}
+
 static error_t parse_design_option(int key, char *text, struct argp_state *state) {
   design_arguments *arguments = state->input;
   switch (key) {
@@ -86,6 +111,11 @@ static error_t parse_design_option(int key, char *text, struct argp_state *state
   case OPTION_HTML:
     arguments->outputs.path[OUT_HTML] = text;
     break;
+  case OPTION_SVG:
+    arguments->outputs.path[OUT_SVG] = text;
+    break;
+  case OPTION_SHEET:
+    return parse_sheet(text, &arguments->sheet, state);
   /* The bounds are those of a recipe. */
   case OPTION_MODULUS:
     return parse_design_number("youngs-modulus-gpa", text, 1e-3, 1e4,
@@ -122,9 +152,25 @@ static fg_status write_view(fg_context *ctx, void *user, size_t kind, FILE *out)
   const fg_design_report report = {&view->design, &view->nominal, &view->arguments->material,
                                    view->arguments->design_path};
   if (kind == OUT_HTML) return fg_design_write_html(ctx, &report, out);
+  if (kind == OUT_SVG)
+    return fg_design_write_board(ctx, &view->design, &view->arguments->sheet, out);
   if (view->arguments->curve) return fg_design_write_curve(ctx, &report, out);
   return view->arguments->json ? fg_design_write_json(ctx, &report, out)
                                : fg_design_write_table(ctx, &report, out);
+}
+
+/* The design of a path, or of the word `grid` where no such file is. */
+static fg_status load_shown_design(fg_context *ctx, const design_arguments *arguments,
+                                   fg_design *design) {
+  const char *path = arguments->design_path;
+  fg_design_default(design);
+  if (!path) return FG_OK;
+  if (strcmp(path, "grid") != 0 || access(path, F_OK) == 0)
+    return fg_design_load(ctx, path, design);
+  FG_TRY(fg_design_become(ctx, FG_FOIL_GRID, design));
+  snprintf(design->name, sizeof design->name, "board");
+  design->grid.pitch_mm = BOARD_PITCH_MM;
+  return FG_OK;
 }
 
 static fg_status show_design(fg_context *ctx, design_arguments *arguments) {
@@ -135,8 +181,7 @@ static fg_status show_design(fg_context *ctx, design_arguments *arguments) {
   else if (arguments->json || arguments->curve || !fg_output_set_has_standard(&arguments->outputs))
     arguments->outputs.path[OUT_DATA] = "-";
   FG_TRY(fg_output_set_check(ctx, &arguments->outputs, &input, 1));
-  fg_design_default(&view.design);
-  if (arguments->design_path) FG_TRY(fg_design_load(ctx, arguments->design_path, &view.design));
+  FG_TRY(load_shown_design(ctx, arguments, &view.design));
   FG_TRY(fg_design_derive(ctx, &view.design, &view.nominal));
   if (arguments->curve && !fg_foil_kind_has_bumps(view.design.kind))
     return fg_fail(ctx, FG_ERR_DATA, "%s: form \"%s\" has no bumps, so there is no curve",
@@ -154,7 +199,9 @@ const struct argp fg_design_parser = {options, parse_design_option, "[DESIGN]", 
 
 int fg_cmd_design(int argc, char **argv) {
   fg_context ctx = {0};
-  design_arguments arguments = {.outputs.count = OUTPUTS, .material = fg_arch_material_default()};
+  design_arguments arguments = {.outputs.count = OUTPUTS,
+                                .sheet = {A4_WIDTH_MM, A4_HEIGHT_MM},
+                                .material = fg_arch_material_default()};
   fg_status parsed = fg_cli_parse(&ctx, &fg_design_parser, argc, argv, &arguments);
   if (parsed != FG_OK) return fg_cli_fail(&ctx, parsed);
   fg_status status = show_design(&ctx, &arguments);

@@ -25,16 +25,17 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from grid import gauge_free, run, save, write_design  # noqa: E402
 from other_grid import Board, Field, render  # noqa: E402
 
-SIDE_MM, PITCH, COLUMNS, DOT_MM = 52.0, 2.4, 20, 0.6
+PITCH, DOT_MM = 2.4, 0.6
 MAP_DPI, FOIL_DPI = 600, 1200
+SIDE_MM, COLUMNS = {MAP_DPI: 42.0, FOIL_DPI: 52.0}, {MAP_DPI: 16, FOIL_DPI: 20}  # a foil is 42 mm wide
 U_PITCH = 2e-5  # mm
 KINDS = ('plate', 'board')
 
 
-def bed_of(seed):
+def bed_of(seed, dpi):
     """The scanner: its field, and the names of its parts."""
     rng = np.random.default_rng([seed, 11])
-    field, parts = Field((SIDE_MM, SIDE_MM)), []
+    field, parts = Field((SIDE_MM[dpi], SIDE_MM[dpi])), []
     field.scale(rng.normal() * .003, rng.normal() * .003).shear(rng.normal() * .002)
     field.smooth(rng.uniform(2, 12), 2.0, seed)
     if seed % 2:
@@ -47,26 +48,27 @@ def bed_of(seed):
         field.chips(rng.uniform(2, 6), rng.choice([-1, 1]) * rng.uniform(1, 4), rng.uniform(9, 14), rng.uniform(0, 9))
         parts.append('chips')
     if seed % 4 == 3:
-        field.step(rng.choice([-1, 1]) * rng.uniform(3, 15), rng.uniform(12, 40))
+        field.step(rng.choice([-1, 1]) * rng.uniform(3, 15), rng.uniform(.25, .75) * SIDE_MM[dpi])
         parts.append('step')
     return field, parts
 
 
-def board_of(seed, kind, rough):
+def board_of(seed, kind, rough, dpi):
     rng = np.random.default_rng([seed, 12, KINDS.index(kind), int(rough)])
+    columns = COLUMNS[dpi]
     if kind == 'plate':
-        board = Board('dots', PITCH, COLUMNS, COLUMNS, missing=[(0, 0), (1, 0), (0, 1)])
+        board = Board('dots', PITCH, columns, columns, missing=[(0, 0), (1, 0), (0, 1)])
         stretch = 1 + rng.normal(size=2) * U_PITCH / PITCH
         board.x, board.y = board.x * stretch[0], board.y * stretch[1]
         return board
-    bend = Field((COLUMNS * PITCH, COLUMNS * PITCH)).smooth(3, 1.5, 2 * seed + rough + 500)
-    return Board('dots', PITCH, COLUMNS, COLUMNS, ratio=rng.normal() * .002, shear=rng.normal() * .001, mark_um=1.5, seed=2 * seed + rough,
+    bend = Field((columns * PITCH, columns * PITCH)).smooth(3, 1.5, 2 * seed + rough + 500)
+    return Board('dots', PITCH, columns, columns, ratio=rng.normal() * .002, shear=rng.normal() * .001, mark_um=1.5, seed=2 * seed + rough,
                  missing=[(0, 0), (1, 0), (0, 1)], bend=bend)
 
 
 def scan_plate(folder, board, field, seed, number, turn, rough, rng, dpi):
-    side = int(SIDE_MM * dpi / 25.4)
-    picture, _, _ = render(board, field, SIDE_MM / 2 + rng.uniform(-1, 1, 2), turn + rng.uniform(-1, 1), (side, side), dpi, size=DOT_MM,
+    side = int(SIDE_MM[dpi] * dpi / 25.4)
+    picture, _, _ = render(board, field, SIDE_MM[dpi] / 2 + rng.uniform(-1, 1, 2), turn + rng.uniform(-1, 1), (side, side), dpi, size=DOT_MM,
                            seed=100 * seed + number, rough=rough)
     path = os.path.join(folder, 'plate%d.png' % number)
     Image.fromarray(picture).save(path, dpi=(dpi, dpi), compress_level=1)
@@ -100,7 +102,8 @@ def draw_foil(program, folder, seed, rough):
     scanner = {'dpi': FOIL_DPI, 'blur_px': 1.2, 'noise': 2.0}
     if rough:
         scanner['rough'] = {'edge_roughness_um': 1.5, 'edge_common_um': 0.8, 'correlation_um': 60}
-    foil['centre_mm'], side = [SIDE_MM / 2, SIDE_MM / 2], int(SIDE_MM * FOIL_DPI / 25.4)
+    size = SIDE_MM[FOIL_DPI]
+    foil['centre_mm'], side = [size / 2, size / 2], int(size * FOIL_DPI / 25.4)
     spec = {'schema': 'foilgauge/render/1', 'seed': seed, 'width_px': side, 'height_px': side, 'foils': [foil], 'scanner': scanner}
     path = os.path.join(folder, 'foil')
     with open(path + '.json', 'w') as out:
@@ -135,12 +138,12 @@ def foil_case(program, folder, field, seed, rough, model):
 
 
 def one_case(program, seed, kind, rough, with_foil):
-    field, parts = bed_of(seed)
-    rng = np.random.default_rng([seed, 14, KINDS.index(kind), int(rough)])
     dpi = FOIL_DPI if with_foil else MAP_DPI
+    field, parts = bed_of(seed, dpi)
+    rng = np.random.default_rng([seed, 14, KINDS.index(kind), int(rough)])
     case = {'seed': seed, 'kind': kind, 'rough': rough, 'parts': parts, 'dpi': dpi}
     with tempfile.TemporaryDirectory() as folder:
-        board, known = board_of(seed, kind, rough), kind == 'plate'
+        board, known = board_of(seed, kind, rough, dpi), kind == 'plate'
         paths = [scan_plate(folder, board, field, seed, i, turn, rough, rng, dpi) for i, turn in enumerate([0] if known else [0, 90])]
         stated = {'marks': 'dots', 'pitch_mm': PITCH}
         if known:

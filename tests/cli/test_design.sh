@@ -22,6 +22,39 @@ echo '{"schema": "foilgauge/design/1", "form": "discs", "diameters_mm": [4]}' >"
 expect 0 "4.000000 mm" "$program" design "$work/discs.json"
 expect 65 "there is no curve" "$program" design --curve "$work/discs.json"
 
+# A board to print: as many marks as the sheet holds, at the stated pitch, with their numbers; three of a corner are left out.
+expect 0 "" "$program" design grid --svg "$work/board.svg"
+echo '{"schema": "foilgauge/design/1", "form": "grid", "marks": "chessboard", "pitch_mm": 4}' >"$work/squares.json"
+expect 0 "" "$program" design "$work/squares.json" --svg "$work/squares.svg" --sheet 120x90
+for marks in crosses lines; do
+  echo "{\"schema\": \"foilgauge/design/1\", \"form\": \"grid\", \"marks\": \"$marks\", \"pitch_mm\": 2}" >"$work/$marks.json"
+  expect 0 "" "$program" design "$work/$marks.json" --svg "$work/$marks.svg" --sheet 100x60
+done
+python3 - "$work" <<'P' || fail "the boards are not as stated"
+import re, sys
+import xml.etree.ElementTree as tree
+SVG = '{http://www.w3.org/2000/svg}'
+def board(name):
+    root = tree.parse('%s/%s.svg' % (sys.argv[1], name)).getroot()
+    return root, root.find(SVG + "g[@id='marks']")
+root, marks = board('board')
+assert (root.get('width'), root.get('viewBox')) == ('210mm', '0 0 210 297'), root.attrib
+dots = [(float(c.get('cx')), float(c.get('cy'))) for c in marks]
+assert len(dots) == 37 * 54 - 3, len(dots)
+steps = {(round((x - 15) / 5, 6), round((y - 16) / 5, 6)) for x, y in dots}
+assert steps == {(i, j) for i in range(37) for j in range(54) if i + j > 1}, sorted(steps)[:5]
+words = [t.text for t in root.iter(SVG + 'text')]
+assert '35' in words and '50' in words and any('pitch 5 mm, 37 × 54' in w for w in words), words
+_, marks = board('squares')
+squares = re.findall(r'M([-0-9.]+) ([-0-9.]+)h4.0000v4.0000h-4.0000z', marks[0].get('d'))
+assert len(squares) == (24 * 16) // 2 and all(abs((float(x) - float(squares[0][0])) % 4) < 1e-6 for x, _ in squares), len(squares)
+assert len(board('crosses')[1]) == 2 * (37 * 17 - 3) and len(board('lines')[1]) == 37, (len(board('crosses')[1]), len(board('lines')[1]))
+P
+expect 65 "needs a design of form" "$program" design --svg "$work/never.svg"
+expect 65 "no room for" "$program" design grid --svg "$work/never.svg" --sheet 30x30
+expect 64 "like 210x297" "$program" design grid --svg "$work/never.svg" --sheet 210
+[ -e "$work/never.svg" ] && fail "a refused board leaves a file"
+
 # Stiffness: three models in the table, the JSON and the page; the numbers that a user gives count.
 expect 0 "Heshmat, Walowit and Anno" "$program" design
 expect 64 "it must be a number from 0 to 10" "$program" design --friction -1
