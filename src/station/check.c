@@ -92,10 +92,11 @@ static void put_state_words(const check_result *check, int64_t baseline_at, char
     fg_text_clip(words, size, "CHANGED since the baseline of %s: %s; %s", day, check->changes,
                  judged);
   } else if (check->baseline)
-    fg_text_clip(words + used, size - used, "; the baseline of tone, sharpening and blur");
+    fg_text_clip(words + used, size - used, "; the baseline of %s",
+                 check->fit.is_grid ? "scale, shear and blur" : "tone, sharpening and blur");
   else if (baseline_at)
-    fg_text_clip(words + used, size - used, "; tone, sharpening and blur as in the baseline of %s",
-                 day);
+    fg_text_clip(words + used, size - used, "; %s as in the baseline of %s",
+                 check->fit.is_grid ? "scale, shear and blur" : "tone, sharpening and blur", day);
 }
 
 /* Judges scale and shear against the allowed deviation, the picture's state against its
@@ -136,7 +137,8 @@ fg_status fg_station_measure_check(fg_context *ctx, fg_inspection *station, cons
       failure = fg_measure_scan(&inner, path, &station->check_design, &options, &measurement);
   if (failure == FG_ERR_MEMORY) return fg_fail(ctx, failure, "%s", inner.message);
   if (failure == FG_OK) {
-    failure = fg_check_fit_plate(&inner, &station->check_design, &measurement, &check.fit);
+    failure = (measurement.grid ? fg_check_fit_grid : fg_check_fit_plate)(
+        &inner, &station->check_design, &measurement, &check.fit);
     if (failure != FG_OK) fg_measurement_free(&measurement);
   }
   if (failure != FG_OK) {
@@ -221,8 +223,8 @@ bool fg_station_check_withholds(fg_inspection *station, char *why, size_t size) 
       why, size, "%s",
       status != FG_OK  ? inner.message
       : health.changed ? "The scanner's check shows another tone, sharpening or blur than its "
-                         "baseline: set the driver as it was, scan the plate, and then this foil "
-                         "again."
+                         "baseline, or a grid another scale: set the driver as it was, scan the "
+                         "plate, and then this foil again."
       : health.failed  ? "The last check of the scanner failed: check it again, or have it "
                          "seen to, and then scan this foil again."
       : health.clock_back

@@ -2,6 +2,7 @@
 #include "station/check_fit.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "core/small_solve.h"
 #include "core/text.h"
@@ -168,7 +169,7 @@ fg_status fg_check_fit_plate(fg_context *ctx, const fg_design *design,
                              const fg_measurement *measurement, fg_check_fit *fit) {
   enum { DISCS_MAX = 256 };
   says discs[DISCS_MAX];
-  *fit = (fg_check_fit){0};
+  *fit = (fg_check_fit){.largest_um = NAN, .u_largest_um = NAN, .blur_um = NAN, .u_blur_um = NAN};
   for (size_t i = 0; i < measurement->disc_count && fit->discs < DISCS_MAX; i++) {
     const fg_disc *disc = &measurement->discs[i];
     double diameter = known_diameter(design, disc);
@@ -183,16 +184,47 @@ fg_status fg_check_fit_plate(fg_context *ctx, const fg_design *design,
   return FG_OK;
 }
 
+/* The lattice has scale and shear of the scan; the largest residual shows what neither explains. */
+fg_status fg_check_fit_grid(fg_context *ctx, const fg_design *design,
+                            const fg_measurement *measurement, fg_check_fit *fit) {
+  const fg_grid *grid = measurement->grid;
+  *fit = (fg_check_fit){.is_grid = true, .level_um = NAN, .u_level_um = NAN};
+  if (!isfinite(grid->step_mm[0].value) || !isfinite(grid->step_mm[1].value))
+    return fg_fail(ctx, FG_ERR_NOT_MEASURED,
+                   "lines show one axis: a check needs dots, a chessboard or crosses");
+  /* Corners of one polarity lie two squares apart. */
+  double pitch = design->grid.pitch_mm * (grid->squares_per_step == 2 ? 2 : 1);
+  double u_pitch = design->grid.u_pitch_mm / design->grid.pitch_mm;
+  for (int axis = 0; axis < 2; axis++) {
+    fit->scale[axis] = grid->step_mm[axis].value / pitch - 1;
+    fit->u_scale[axis] = hypot(grid->step_mm[axis].u / pitch, u_pitch);
+  }
+  fit->discs = grid->used;
+  fit->shear = grid->shear.value;
+  fit->u_shear = hypot(grid->shear.u, u_pitch);
+  fit->largest_um = grid->largest_um;
+  fit->u_largest_um = grid->mark_u_um;
+  fit->blur_um = grid->blur_um;
+  fit->u_blur_um = 0;
+  return FG_OK;
+}
+
 void fg_check_fit_judge(fg_check_fit *fit, double scale_max_ppm, char *words, size_t size) {
   double worst = 0;
   for (int k = 0; k < 2; k++)
     worst = fmax(worst, 1e6 * (fabs(fit->scale[k]) + 2 * fit->u_scale[k]));
   worst = fmax(worst, 1e6 * (fabs(fit->shear) + 2 * fit->u_shear));
   fit->passes = worst <= scale_max_ppm;
+  size_t used;
   fg_text_clip(words, size,
-               "scanner %s: %zu disc%s, x %+.0f ± %.0f ppm, y %+.0f ± %.0f ppm, shear %+.0f ± %.0f "
+               "scanner %s: %zu %s%s, x %+.0f ± %.0f ppm, y %+.0f ± %.0f ppm, shear %+.0f ± %.0f "
                "µrad; allowed %.0f",
-               fit->passes ? "in order" : "out of order", fit->discs, fg_plural(fit->discs),
-               1e6 * fit->scale[0], 2e6 * fit->u_scale[0], 1e6 * fit->scale[1],
-               2e6 * fit->u_scale[1], 1e6 * fit->shear, 2e6 * fit->u_shear, scale_max_ppm);
+               fit->passes ? "in order" : "out of order", fit->discs,
+               fit->is_grid ? "mark" : "disc", fg_plural(fit->discs), 1e6 * fit->scale[0],
+               2e6 * fit->u_scale[0], 1e6 * fit->scale[1], 2e6 * fit->u_scale[1], 1e6 * fit->shear,
+               2e6 * fit->u_shear, scale_max_ppm);
+  used = strlen(words);
+  if (fit->is_grid)
+    fg_text_clip(words + used, size - used, "; largest residual of a mark %.1f µm",
+                 fit->largest_um);
 }

@@ -48,30 +48,72 @@ static double get_noise_along_y(const fg_disc *disc) {
   return disc->picture.noise_correlation[1];
 }
 
+static double get_level(const fg_check_fit *fit, double *u) {
+  *u = fit->u_level_um;
+  return fit->level_um;
+}
+
+static double get_blur_of_marks(const fg_check_fit *fit, double *u) {
+  *u = fit->u_blur_um;
+  return fit->blur_um;
+}
+
+/* A value of grids alone: discs are held against their limits, not against a baseline. */
+static double get_of_grid(const fg_check_fit *fit, double value, double u_value, double *u) {
+  *u = fit->is_grid ? u_value : NAN;
+  return fit->is_grid ? value : NAN;
+}
+
+static double get_scale_x(const fg_check_fit *fit, double *u) {
+  return get_of_grid(fit, 1e6 * fit->scale[0], 1e6 * fit->u_scale[0], u);
+}
+
+static double get_scale_y(const fg_check_fit *fit, double *u) {
+  return get_of_grid(fit, 1e6 * fit->scale[1], 1e6 * fit->u_scale[1], u);
+}
+
+static double get_shear(const fg_check_fit *fit, double *u) {
+  return get_of_grid(fit, 1e6 * fit->shear, 1e6 * fit->u_shear, u);
+}
+
+static double get_largest(const fg_check_fit *fit, double *u) {
+  return get_of_grid(fit, fit->largest_um, fit->u_largest_um, u);
+}
+
 /* Smallest changes that matter: those that move the thickness of a strip by 0.5 µm at 2400 dpi
  * and a blur of 1 px. A level q of the contrast moves it by 2 q sqrt(2 pi) px: 0.01 does.
  * Overshoot equals as much level; the middle of a power of the light moves by 0.35 per unit of
  * gamma; an S moves a thin strip's edges by a fifth of its slope's change. A blur that changes
- * by a tenth, and noise by half or in its correlation, show another focus, filter or resolution. */
+ * by a tenth, and noise by half or in its correlation, show another focus, filter or resolution. A
+ * scale or shear of 50 ppm moves a radius of 20 mm by 1 µm; a residual of 2 µm is a foil's place on
+ * such a scanner. */
 const fg_check_quantity fg_check_quantities[FG_CHECK_QUANTITIES] = {
     {"level_um", "edges of bright parts, outwards", "µm", 2, 0.25, 0, NULL, NULL,
-     "tone curve, contrast, brightness", 0},
+     "tone curve, contrast, brightness", 0, get_level},
     {"blur_um", "blur", "µm", 2, 0, 0.1, get_blur, NULL,
-     "sharpening, dirty glass, focus, interpolation", 0},
+     "sharpening, dirty glass, focus, interpolation", 0, get_blur_of_marks},
     {"uneven_blur", "blur along its longest axis over across", "", 3, 0.1, 0, get_uneven_blur, NULL,
-     "interpolation, carriage", FG_PICTURE_UNEVEN_BLUR},
-    {"overshoot", "overshoot", "", 3, 0.01, 0, get_overshoot, NULL, "sharpening", 0},
-    {"undershoot", "undershoot", "", 3, 0.01, 0, get_undershoot, NULL, "sharpening", 0},
-    {"gamma", "gamma", "", 3, 0.03, 0, get_gamma, get_u_gamma, "gamma", 0},
+     "interpolation, carriage", FG_PICTURE_UNEVEN_BLUR, NULL},
+    {"overshoot", "overshoot", "", 3, 0.01, 0, get_overshoot, NULL, "sharpening", 0, NULL},
+    {"undershoot", "undershoot", "", 3, 0.01, 0, get_undershoot, NULL, "sharpening", 0, NULL},
+    {"gamma", "gamma", "", 3, 0.03, 0, get_gamma, get_u_gamma, "gamma", 0, NULL},
     {"tone_s", "S-shape of the tone curve", "", 3, 0.05, 0, get_tone_s, NULL,
-     "contrast, tone curve", 0},
-    {"sharpen_amount", "unsharp mask", "", 3, 0.05, 0, get_sharpen_amount, NULL, "sharpening", 0},
-    {"noise", "noise", "counts", 2, 0.1, 0.5, get_noise, NULL, "noise reduction, lamp, contrast",
-     0},
+     "contrast, tone curve", 0, NULL},
+    {"sharpen_amount", "unsharp mask", "", 3, 0.05, 0, get_sharpen_amount, NULL, "sharpening", 0,
+     NULL},
+    {"noise", "noise", "counts", 2, 0.1, 0.5, get_noise, NULL, "noise reduction, lamp, contrast", 0,
+     NULL},
     {"noise_correlation_x", "correlation of the noise along x", "", 2, 0.1, 0, get_noise_along_x,
-     NULL, "noise reduction, interpolation", FG_PICTURE_CORRELATED_NOISE},
+     NULL, "noise reduction, interpolation", FG_PICTURE_CORRELATED_NOISE, NULL},
     {"noise_correlation_y", "correlation of the noise along y", "", 2, 0.1, 0, get_noise_along_y,
-     NULL, "noise reduction, interpolation", FG_PICTURE_CORRELATED_NOISE},
+     NULL, "noise reduction, interpolation", FG_PICTURE_CORRELATED_NOISE, NULL},
+    {"scale_x_ppm", "scale along x", "ppm", 0, 50, 0, NULL, NULL, "temperature, optics", 0,
+     get_scale_x},
+    {"scale_y_ppm", "scale along y", "ppm", 0, 50, 0, NULL, NULL, "temperature, carriage", 0,
+     get_scale_y},
+    {"shear_urad", "shear", "µrad", 0, 50, 0, NULL, NULL, "carriage, rails", 0, get_shear},
+    {"largest_um", "largest residual of a mark", "µm", 1, 2, 0.3, NULL, NULL,
+     "carriage, rows lost, dirt", 0, get_largest},
 };
 
 /* Mean over the discs, and their standard deviation: not that of the mean, as discs show how much
@@ -105,10 +147,9 @@ void fg_check_state_find(const fg_measurement *measurement, const fg_check_fit *
       double unused;
       find_mean(measurement, row->of_disc, &state->value[k], &state->u[k]);
       if (row->u_of_disc) find_mean(measurement, row->u_of_disc, &state->u[k], &unused);
-    } else {
-      state->value[k] = fit->level_um;
-      state->u[k] = fit->u_level_um;
     }
+    if (row->of_fit && !(row->of_disc && isfinite(state->value[k])))
+      state->value[k] = row->of_fit(fit, &state->u[k]);
   }
 }
 

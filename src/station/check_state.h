@@ -13,14 +13,15 @@ typedef struct fg_check_quantity {
   const char *words, *unit;           /* for people */
   int decimals;                       /* of its values on pages */
   double smallest_change, share;      /* that matters: in its unit, or as a share of the baseline */
-  double (*of_disc)(const fg_disc *); /* NULL: of all discs together */
+  double (*of_disc)(const fg_disc *); /* NULL: of all discs together, or of a grid alone */
   double (*u_of_disc)(
       const fg_disc *); /* u where all discs share one estimate; NULL: u is their scatter */
   const char *cause;    /* setting of driver or scanner that changes it */
   unsigned findings;    /* findings of the same change by a threshold, without an uncertainty */
+  double (*of_fit)(const fg_check_fit *, double *u); /* where no disc has it */
 } fg_check_quantity;
 
-enum { FG_CHECK_QUANTITIES = 11 };
+enum { FG_CHECK_QUANTITIES = 15 };
 extern const fg_check_quantity fg_check_quantities[FG_CHECK_QUANTITIES];
 
 /* Values in the order of fg_check_quantities; NaN: not known. u covers the variation over the

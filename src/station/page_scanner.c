@@ -18,7 +18,7 @@ enum { DRAWN = 60, LISTED = 10, HISTORY_MAX = 400, WORDS = 1000 };
 
 typedef struct check_row {
   int64_t at;
-  double value[3], u[3]; /* scale x, scale y, shear; ppm and µrad */
+  double value[4], u[4]; /* scale x, scale y, shear; ppm and µrad; largest residual, µm */
   bool passed;
   char path[160], words[WORDS];
 } check_row;
@@ -30,27 +30,35 @@ typedef struct history {
 
 static const struct {
   const char *title, *short_title, *unit;
+  bool judged;  /* against the allowed deviation */
+  double scale; /* from the database to the unit */
+  int decimals;
 } axes[] = {
-    {"Scale along x (across the carriage's way)", "scale x", "ppm"},
-    {"Scale along y (the carriage's way)", "scale y", "ppm"},
-    {"Shear: how far the axes are from 90°", "shear", "µrad"},
+    {"Scale along x (across the carriage's way)", "scale x", "ppm", true, 1e6, 0},
+    {"Scale along y (the carriage's way)", "scale y", "ppm", true, 1e6, 0},
+    {"Shear: how far the axes are from 90°", "shear", "µrad", true, 1e6, 0},
+    {"Largest residual of a grid's mark beside scale and shear", "residual", "µm", false, 1, 1},
 };
-enum { AXES = sizeof axes / sizeof *axes };
+enum { AXES = sizeof axes / sizeof *axes, LARGEST_COLUMN = 11 };
 
 static fg_status read_history(fg_context *ctx, sqlite3 *reader, size_t max, history *all) {
   fg_query query;
   all->count = 0;
-  fg_query_begin(reader,
-                 "SELECT at, scale_x, u_scale_x, scale_y, u_scale_y, shear, u_shear, verdict, path,"
-                 " words, changes FROM checks ORDER BY id DESC LIMIT ?",
-                 &query);
+  fg_query_begin(
+      reader,
+      "SELECT at, scale_x, u_scale_x, scale_y, u_scale_y, shear, u_shear, verdict, path,"
+      " words, changes, largest.value, largest.u FROM checks LEFT JOIN check_values AS largest"
+      " ON largest.check_id = checks.id AND largest.name = 'largest_um'"
+      " ORDER BY id DESC LIMIT ?",
+      &query);
   fg_query_integer(&query, (int64_t)max);
   while (all->count < max && fg_query_row(&query)) {
     check_row *row = &all->row[all->count++];
     row->at = fg_query_get_integer(&query, 0);
     for (int k = 0; k < AXES; k++) {
-      row->value[k] = 1e6 * fg_query_get_number(&query, 1 + 2 * k);
-      row->u[k] = 1e6 * fg_query_get_number(&query, 2 + 2 * k);
+      int column = axes[k].judged ? 1 + 2 * k : LARGEST_COLUMN;
+      row->value[k] = axes[k].scale * fg_query_get_number(&query, column);
+      row->u[k] = axes[k].scale * fg_query_get_number(&query, column + 1);
     }
     row->passed =
         !strcmp(fg_query_get_text(&query, 7), "pass") && !fg_query_get_text(&query, 10)[0];
@@ -92,12 +100,12 @@ static void write_next(FILE *out, const fg_station_check *check, const fg_statio
           "say how old that check is. Set the clock, and check the scanner. ",
           out);
   if (health->changed)
-    fputs(
-        "The plate shows another tone, sharpening or blur than the baseline: set the driver as it "
-        "was (man foilgauge-scanning), clean the glass and the plate, and check again. A change "
-        "that is meant can be taken as the new baseline below, where scale and shear are as "
-        "allowed. ",
-        out);
+    fputs("The plate shows another tone, sharpening or blur than the baseline, or a grid another "
+          "scale: set the driver as it was (man foilgauge-scanning), clean the glass and the "
+          "plate, and check again. A change "
+          "that is meant can be taken as the new baseline below, where scale and shear are as "
+          "allowed. ",
+          out);
   else if (health->failed)
     fputs("Clean the glass and the plate, let the scanner warm up, and check it again. If it fails "
           "again, have it seen to, or measure a model of it anew. ",
@@ -123,8 +131,9 @@ static void write_next(FILE *out, const fg_station_check *check, const fg_statio
 }
 
 /* Rounded, and 0 without the sign that it comes from. */
-static double whole(double value) {
-  return round(value) + 0.0;
+static double rounded(double value, int decimals) {
+  double unit = decimals ? 10 : 1;
+  return round(unit * value) / unit + 0.0;
 }
 
 /* Writes the newest values of each axis, against the first that is drawn. */
@@ -133,11 +142,15 @@ static void write_tiles(FILE *out, const history *all, double allowed) {
   fputs("<dl class=\"tiles\">", out);
   for (int k = 0; k < AXES; k++) {
     char text[120], since[80] = "";
-    snprintf(text, sizeof text, "%+.0f ± %.0f %s<small>allowed ± %.0f</small>",
-             whole(last->value[k]), 2 * last->u[k], axes[k].unit, allowed);
-    if (all->count > 1)
+    if (!isfinite(last->value[k])) continue;
+    int used = snprintf(text, sizeof text, "%+.*f ± %.*f %s", axes[k].decimals,
+                        rounded(last->value[k], axes[k].decimals), axes[k].decimals, 2 * last->u[k],
+                        axes[k].unit);
+    if (axes[k].judged)
+      snprintf(text + used, sizeof text - (size_t)used, "<small>allowed ± %.0f</small>", allowed);
+    if (all->count > 1 && axes[k].judged)
       snprintf(since, sizeof since, "%+.0f ± %.0f since the first that is drawn",
-               whole(last->value[k] - first->value[k]), 2 * hypot(last->u[k], first->u[k]));
+               rounded(last->value[k] - first->value[k], 0), 2 * hypot(last->u[k], first->u[k]));
     fg_html_tile(out, &(fg_tile){axes[k].short_title, .text = text, .small = since});
   }
   fputs("</dl>\n", out);
@@ -149,9 +162,10 @@ static const check_row *in_order(const history *all, size_t i) {
 }
 
 static double find_span(const history *all, int axis, double allowed) {
-  double range[2] = {-allowed, allowed};
+  double range[2] = {axes[axis].judged ? -allowed : 0, axes[axis].judged ? allowed : 0};
   for (size_t i = 0; i < all->count; i++)
-    fg_range_add(range, fabs(all->row[i].value[axis]), 2 * all->row[i].u[axis]);
+    if (isfinite(all->row[i].value[axis]))
+      fg_range_add(range, fabs(all->row[i].value[axis]), 2 * all->row[i].u[axis]);
   return 1.12 * range[1];
 }
 
@@ -174,19 +188,22 @@ static void draw_check(const fg_plot *at, const check_row *row, double x, int ax
   fg_html_text(at->out, row->path);
   fputs(", ", at->out);
   fg_page_time(at->out, row->at);
-  fprintf(at->out, ": %+.0f ± %.0f %s</title></circle>\n", value, reach, axes[axis].unit);
+  fprintf(at->out, ": %+.*f ± %.*f %s</title></circle>\n", axes[axis].decimals, value,
+          axes[axis].decimals, reach, axes[axis].unit);
 }
 
 static void draw_history(FILE *out, const history *all, int axis, double allowed) {
-  double span = find_span(all, axis, allowed);
+  double span = find_span(all, axis, allowed), low = axes[axis].judged ? -span : 0;
+  if (!(span > 0)) return; /* no grid was scanned */
+  if (!axes[axis].judged) allowed = 0;
   fprintf(out, "<figure><h3>%s, %s</h3>\n", axes[axis].title, axes[axis].unit);
   fg_plot at = fg_plot_frame_begin(
       out, &(fg_plot_frame){axes[axis].title, .width = 560, .height = 220, .left = 66, .top = 10,
                             .bottom = 30, .x = (double[]){0.5, (double)all->count + 0.5},
-                            .y = (double[]){-span, span}, .y_title = "", .ticks = FG_TICKS_OWN,
+                            .y = (double[]){low, span}, .y_title = "", .ticks = FG_TICKS_OWN,
                             .band = (double[]){-allowed, allowed}, .band_style = "allowed"});
-  fg_plot_level(&at, -allowed, "tolerance");
-  fg_plot_level(&at, allowed, "tolerance");
+  for (int side = -1; side <= 1 && axes[axis].judged; side += 2)
+    fg_plot_level(&at, side * allowed, "tolerance");
   for (size_t i = 0; i < all->count; i++)
     draw_check(&at, in_order(all, i), (double)i + 1, axis);
   draw_day(&at, all, 0, "start");
@@ -274,8 +291,9 @@ fg_status fg_page_scanner(fg_context *ctx, fg_inspection *station, sqlite3 *read
   fputs("<section data-live>\n<h1>Scanner</h1>\n", out);
   write_button(station, out);
   if (!check->design[0])
-    fputs("<p class=\"next\">The recipe asks for no checks. With a plate or a ring of known "
-          "diameters the station shows how far the scanner's scale and its axes are off, reminds "
+    fputs("<p class=\"next\">The recipe asks for no checks. With a grid of known pitch, a "
+          "plate or a ring of known diameters the station shows how far the scanner's scale and "
+          "its axes are off, reminds "
           "of it, and withholds verdicts where it must: <code>station.check</code> in the recipe "
           "(man foilgauge-recipe).</p>\n",
           out);

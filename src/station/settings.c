@@ -18,7 +18,8 @@ static fg_status read_check(const fg_reading *reading, const fg_member *member, 
 static const fg_member check_rows[] = {
     {FG_TEXT("design", fg_station_settings, check.design), .options = FG_MEMBER_ANY_TEXT,
      .words = "The plate or ring: the path of a design of form \"discs\" with its calibrated "
-              "`diameters_mm`. Discs of different sizes make a check sharper: they tell the "
+              "`diameters_mm`, or of a grid with `pitch_mm` and `u_pitch_mm`. Discs of different "
+              "sizes make a check sharper: they tell the "
               "scanner's scale from the level at which edges are taken, and so show a tone curve."},
     {FG_TEXT("file_name", fg_station_settings, check.file_name),
      .words = "How scans of it are called, as above."},

@@ -28,9 +28,15 @@ static fg_status load_check(fg_context *ctx, fg_inspection *station) {
   if (!path[0]) return FG_OK;
   fg_design_default(&station->check_design);
   FG_TRY(fg_design_load(ctx, path, &station->check_design));
-  if (fg_foil_traits_of(station->check_design.kind)->is_foil || !station->check_design.discs.count)
+  const fg_design *design = &station->check_design;
+  const fg_foil_traits *kind = fg_foil_traits_of(design->kind);
+  bool grid = kind->is_grid && design->grid.u_pitch_mm > 0;
+  bool discs = !kind->is_foil && !kind->is_grid && design->discs.count;
+  if (!grid && !discs)
     return fg_fail(ctx, FG_ERR_DATA,
-                   "%.300s: a check needs a design of the form \"discs\" with diameters_mm", path);
+                   "%.300s: a check needs a design of the form \"discs\" with diameters_mm, or "
+                   "\"grid\" with pitch_mm and u_pitch_mm",
+                   path);
   station->check_design_known = true;
   return FG_OK;
 }

@@ -179,6 +179,76 @@ def work(options):
                 out.write(json.dumps(case) + '\n')
 
 
+def rms(values):
+    return np.sqrt(np.mean(np.square(values)))
+
+
+def write_maps(cases, out):
+    print('## Maps\n\n| scans | picture | beds | refused | before, µm | after, µm | u, µm | coverage of 2 u, % | s, median |\n'
+          '|---|---|---:|---:|---:|---:|---:|---:|---:|', file=out)
+    words = {'plate': 'plate of known pitch, one scan', 'board': 'printed board, two scans, turned by 90°'}
+    for kind in KINDS:
+        for rough in (False, True):
+            every = [c for c in cases if c['kind'] == kind and c['rough'] == rough and c['dpi'] == MAP_DPI]
+            good = [c for c in every if 'error' not in c]
+            if good:
+                print('| %s | %s | %d | %d | %.1f | %.3f | %.3f | %.1f | %.1f |' % (
+                    words[kind], 'rough' if rough else 'ideal', len(every), len(every) - len(good), rms([c['before_um'] for c in good]),
+                    rms([c['after_um'] for c in good]), rms([c['u_um'] for c in good]), 100 * np.mean([c['coverage'] for c in good]),
+                    np.median([c['seconds'] for c in good])), file=out)
+
+
+def write_parts(cases, out):
+    names = {'ripple': ('scan.carriage_ripple', 'scan.ripple_growth'), 'step': ('scan.row_step',), 'chips': ('scan.chip_tilt', 'scan.chip_gap')}
+    good = [c for c in cases if 'error' not in c and c['dpi'] == MAP_DPI]
+    print('\n| beds with | maps | named | named on beds without | after, µm | coverage, % |\n|---|---:|---:|---:|---:|---:|', file=out)
+    for part, ids in names.items():
+        there = [c for c in good if part in c['parts']]
+        other = [c for c in good if part not in c['parts']]
+        if there:
+            print('| %s | %d | %d | %d of %d | %.3f | %.1f |' % (
+                part, len(there), sum(any(i in c['found'] for i in ids) for c in there), sum(any(i in c['found'] for i in ids) for c in other),
+                len(other), rms([c['after_um'] for c in there]), 100 * np.mean([c['coverage'] for c in there])), file=out)
+    smooth = [c for c in good if not c['parts'] or c['parts'] == ['keystone']]
+    print('| smooth fields alone | %d | – | – | %.3f | %.1f |' % (
+        len(smooth), rms([c['after_um'] for c in smooth]), 100 * np.mean([c['coverage'] for c in smooth])), file=out)
+
+
+def write_foils(cases, out):
+    foils = [c for c in cases if 'foil' in c and all('error' not in c['foil'][k] for k in c['foil'])]
+    if not foils:
+        return
+    print('\n## Foils through the map\n\nrms errors, µm, of the foil on a scanner without errors, on the bed without a model, and through '
+          'the model of one scan of the\nplate; coverage of 2 u. The ratio is that of the map to the scanner without errors.\n\n'
+          '| edges | value | foils | no errors | coverage, % | bed, no model | coverage, % | through the map | coverage, % | ratio |\n'
+          '|---|---|---:|---:|---:|---:|---:|---:|---:|---:|', file=out)
+    for rough in (False, True):
+        own = [c['foil'] for c in foils if c['rough'] == rough]
+        for value in ('R0', 'R', 'h'):
+            cells, last = [], {}
+            for how in ('perfect', 'plain', 'map'):
+                pairs = np.array([e for f in own for e in f[how][value]])
+                last[how] = rms(pairs[:, 0])
+                cells += ['%.3f' % last[how], '%.1f' % (100 * (np.abs(pairs[:, 0]) < 2 * pairs[:, 1]).mean())]
+            print('| %s | %s | %d | %s | %.2f |' % ('rough' if rough else 'ideal', value, len(own), ' | '.join(cells),
+                                                   last['map'] / last['perfect']), file=out)
+
+
+def write_page(cases, path):
+    with open(path, 'w') as out:
+        print('# Maps of a bed, and foils through them\n\n`/usr/bin/python3 tests/bench/grid_maps.py build/foilgauge maps.jsonl --beds 50`, '
+              'the same with `foils.jsonl --beds 20 --first 100 --foils`, then\n`cat maps.jsonl foils.jsonl >all.jsonl` and '
+              '`tests/bench/grid_maps.py build/foilgauge all.jsonl --beds 0 --out reports/grid_maps.md` make this page.\nBeds are %g mm wide '
+              '(%g with a foil, at %d dpi), dots lie %g mm apart, %d dpi. Every bed has a wrong scale of each axis, a shear and\nsmooth '
+              'random waves of 2 to 12 µm; half of them a keystone and a bow, a third a ripple, a quarter tilted chips with gaps, a '
+              'quarter\na step of rows. A plate has the error of its stated pitch; a printed board a ratio, a shear, a bend of 3 µm and '
+              'marks of 1.5 µm.\nErrors are those of `map`, less shift and turn (and scale where no pitch is known), along one axis, rms '
+              'over all beds.\n' % (SIDE_MM[MAP_DPI], SIDE_MM[FOIL_DPI], FOIL_DPI, PITCH, MAP_DPI), file=out)
+        write_maps(cases, out)
+        write_parts(cases, out)
+        write_foils(cases, out)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('program')
@@ -190,6 +260,8 @@ def main():
     options = parser.parse_args()
     options.program = os.path.abspath(options.program)
     work(options)
+    if options.out:
+        write_page(read_cases(options.cases), options.out)
 
 
 if __name__ == '__main__':

@@ -10,6 +10,7 @@
 #include "foilgauge/measure.h"
 #include "foilgauge/render.h"
 #include "station/check_fit.h"
+#include "station/check_state.h"
 #include "support/brief.h"
 #include "support/test.h"
 
@@ -211,8 +212,57 @@ static void a_plate_of_other_diameters_is_refused(void **state) {
   assert_has(ctx.message, "none of 1 discs");
 }
 
+static void a_grid_shows_scale_shear_and_its_largest_residual(void **state) {
+  fg_design design;
+  fg_grid grid = {.kind = FG_MARKS_DOTS,
+                  .used = 100,
+                  .step_mm = {{5.002, 0.0001}, {4.999, 0.0001}},
+                  .shear = {3e-4, 1e-5},
+                  .largest_um = 4.5,
+                  .mark_u_um = 0.3,
+                  .blur_um = 40};
+  fg_measurement measurement = {.grid = &grid};
+  fg_context ctx = {0};
+  fg_check_fit fit;
+  fg_check_state baseline, now;
+  char words[600];
+  (void)state;
+  fg_design_default(&design);
+  assert_int_equal(fg_design_become(NULL, FG_FOIL_GRID, &design), FG_OK);
+  design.grid.pitch_mm = 5;
+  design.grid.u_pitch_mm = 0.0002;
+  assert_ok(&ctx, fg_check_fit_grid(&ctx, &design, &measurement, &fit));
+  assert_float_equal(fit.scale[0], 4e-4, 1e-12);
+  assert_float_equal(fit.scale[1], -2e-4, 1e-12);
+  assert_float_equal(fit.u_scale[0], hypot(0.0001, 0.0002) / 5, 1e-12);
+  assert_float_equal(fit.shear, 3e-4, 1e-12);
+  fg_check_fit_judge(&fit, 600, words, sizeof words);
+  assert_has(words, "in order: 100 marks");
+  assert_has(words, "largest residual of a mark 4.5 µm");
+  fg_check_state_find(&measurement, &fit, &baseline);
+  grid.step_mm[1].value += 0.0002; /* 40 ppm: within what matters */
+  assert_ok(&ctx, fg_check_fit_grid(&ctx, &design, &measurement, &fit));
+  fg_check_state_find(&measurement, &fit, &now);
+  assert_int_equal(fg_check_state_compare(&now, &baseline, words, sizeof words), 0);
+  grid.step_mm[1].value += 0.001;
+  grid.largest_um = 9;
+  assert_ok(&ctx, fg_check_fit_grid(&ctx, &design, &measurement, &fit));
+  fg_check_state_find(&measurement, &fit, &now);
+  assert_int_equal(fg_check_state_compare(&now, &baseline, words, sizeof words), 2);
+  assert_has(words, "scale along y");
+  assert_has(words, "largest residual");
+  /* Corners two squares apart are the same scale. */
+  grid.squares_per_step = 2;
+  grid.step_mm[0].value = 2 * 5.002;
+  assert_ok(&ctx, fg_check_fit_grid(&ctx, &design, &measurement, &fit));
+  assert_float_equal(fit.scale[0], 4e-4, 1e-12);
+  grid.step_mm[1].value = NAN;
+  assert_int_equal(fg_check_fit_grid(&ctx, &design, &measurement, &fit), FG_ERR_NOT_MEASURED);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_grid_shows_scale_shear_and_its_largest_residual),
       cmocka_unit_test(scale_and_shear_are_found),
       cmocka_unit_test(a_good_scanner_is_not_blamed),
       cmocka_unit_test(a_tone_curve_is_in_the_uncertainty),
