@@ -64,8 +64,10 @@ typedef struct fg_film_options {
   double touching_um;                   /* a thinner film touches */
   double speed_low_rpm, speed_high_rpm; /* of the stability map */
   size_t speeds;
-  const char *foils; /* report of measured foils, whose order is that of the pads */
-  size_t draws;      /* bearings with random shims; 0: none */
+  /* A report of measured foils, whose order is that of the pads; or the folder of a lot, whose
+   * foils `draws` bearings are drawn from. NULL: as designed. */
+  const char *foils;
+  size_t draws; /* bearings with random shims, or of a lot; 0: none */
   uint64_t seed;
   double shim_low_pct, shim_high_pct; /* heights of shims, percent of the clearance */
   unsigned jobs;                      /* threads; 0: all cores */
@@ -79,7 +81,6 @@ fg_film_options fg_film_options_default(void);
 typedef struct fg_film_bearing {
   size_t count;
   double angle_deg[FG_BEARING_BUMPS_MAX], clearance_mm[FG_BEARING_BUMPS_MAX];
-  double shared_mm[FG_BEARING_BUMPS_MAX], own_mm[FG_BEARING_BUMPS_MAX]; /* u; 0: none */
   double stiffness_n_mm2[FG_BEARING_BUMPS_MAX];
 } fg_film_bearing;
 
@@ -126,6 +127,7 @@ enum { FG_FILM_QUANTILES = 5 };
 typedef struct fg_film_draws {
   fg_film_result *result;
   size_t count;
+  size_t foils, left_out; /* of a lot: in stock, and others; 0: random shims */
   fg_film_share solved, touching, more_stable, less_stable; /* the latter two of those solved */
   double quantile[FG_FILM_QUANTILES]; /* of the critical mass over the perfect bearing's: 5, 25, 50,
                                          75, 95 % of those solved */
@@ -155,6 +157,9 @@ typedef struct fg_film_report {
 fg_status fg_film_run(fg_context *ctx, const fg_design *design, const fg_film_options *options,
                       fg_film_report *report);
 void fg_film_report_free(fg_film_report *report);
+
+/* True where `foils` is the folder of a lot. */
+bool fg_film_draws_from_lot(const fg_film_options *options);
 
 /* Solved, touching: 0. Unsolved: 2. */
 int fg_film_exit_code(const fg_film_report *report);

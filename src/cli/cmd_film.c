@@ -64,9 +64,9 @@ static const struct argp_option options[] = {
     {"mass", OPTION_MASS, "KG", 0, "Of the rotor, on this bearing (default: the load's by gravity)",
      1},
     {NULL, 0, NULL, 0, "The bearing:", 2},
-    {"foils", OPTION_FOILS, "FILE.json", 0,
+    {"foils", OPTION_FOILS, "PATH", 0,
      "A report of `foilgauge measure` whose foils are the pads in their order: their clearances in "
-     "place of the design's",
+     "place of the design's. Or the folder of a lot: bearings are drawn from its foils",
      2},
     {"length", OPTION_LENGTH, "MM", 0, "Of the bearing (default: the rotor's diameter)", 2},
     {"clearance", OPTION_CLEARANCE, "UM", 0,
@@ -100,7 +100,8 @@ static const struct argp_option options[] = {
      "Draw bearings as designed with random shims under their bumps, percent of the clearance: a "
      "higher shim closes it",
      3},
-    {"draws", OPTION_DRAWS, "N", 0, "Number of them (default with --shims: 1000)", 3},
+    {"draws", OPTION_DRAWS, "N", 0,
+     "Number of drawn bearings, of shims or of a lot (default: 1000)", 3},
     {"seed", OPTION_SEED, "N", 0, "Of the draws (default: 1)", 3},
     {"jobs", OPTION_JOBS, "N", 0, "Threads (default: one per core)", 3},
     {"touching", OPTION_TOUCHING, "UM", 0,
@@ -266,10 +267,13 @@ static void check_film_end(film_run *run, struct argp_state *state) {
   fg_film_options *o = &run->options;
   if (!isfinite(o->load_n) || !isfinite(o->speed_rpm))
     argp_error(state, "a film needs --load N and --speed RPM");
-  bool shims = isfinite(o->shim_low_pct);
-  if (!shims && (o->draws || run->outputs.path[OUT_DRAWS]))
-    argp_error(state, "--draws and --draws-out need --shims LOW:HIGH");
-  if (shims && !o->draws) o->draws = 1000;
+  bool shims = isfinite(o->shim_low_pct), lot = fg_film_draws_from_lot(o);
+  if (!shims && !lot && (o->draws || run->outputs.path[OUT_DRAWS]))
+    argp_error(state,
+               "--draws and --draws-out need --shims LOW:HIGH, or --foils with a lot's folder");
+  if (shims && lot)
+    argp_error(state, "--shims and a lot's foils: bearings are drawn of one of them");
+  if ((shims || lot) && !o->draws) o->draws = 1000;
   if (isfinite(o->compliance) && o->model)
     argp_error(state, "--compliance states what --model would find: drop one");
 }

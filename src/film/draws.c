@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Bearings with random shims under their bumps: their films, and the stability of a rotor on them.
- * Every draw has a random stream of its own, so that neither the number of draws nor that of
- * threads changes any of them. */
+/* Bearings with random shims under their bumps, or of foils of a lot: their films, and the
+ * stability of a rotor on them. Every draw has a random stream of its own, so that neither the
+ * number of draws nor that of threads changes any of them. */
 #include <math.h>
 #include <stdlib.h>
 
 #include "core/parallel.h"
 #include "core/select.h"
-#include "film/bearing.h"
+#include "film/stock.h"
 #include "foilgauge/density.h"
 #include "foilgauge/memory.h"
 #include "lot/statistics/assembly.h"
@@ -23,6 +23,7 @@ typedef struct draw_task {
   fg_film_report *report;
   const fg_film_bearing *perfect;
   const fg_film_workspace *solved; /* of the perfect bearing */
+  const fg_film_stock *stock;      /* NULL: random shims */
 } draw_task;
 
 /* Shims of heights between both ends, of equal probability: a higher one closes the clearance. */
@@ -37,11 +38,26 @@ static void draw_shims(const fg_film_report *r, size_t draw, fg_film_bearing *be
   }
 }
 
+/* Foils of the stock, picked as a lot's assembly picks them. */
+static void draw_foils(const fg_film_report *r, const fg_film_stock *stock, size_t draw,
+                       fg_film_bearing *bearing) {
+  size_t foil[FG_BEARING_BUMPS_MAX], pads = r->options.pads ? r->options.pads : 1;
+  fg_assembly_pick(r->options.seed, draw, stock->foils, pads, foil);
+  for (size_t i = 0; i < bearing->count; i++) {
+    size_t from = foil[i / stock->places] * stock->places + i % stock->places;
+    bearing->clearance_mm[i] = stock->clearance_mm[from];
+    bearing->stiffness_n_mm2[i] *= stock->stiffness[from];
+  }
+}
+
 static fg_status solve_draw(fg_context *ctx, const draw_task *t, fg_film_workspace *workspace,
                             size_t draw) {
   fg_film_bearing bearing = *t->perfect;
   fg_film_result *result = &t->report->draws.result[draw];
-  draw_shims(t->report, draw, &bearing);
+  if (t->stock)
+    draw_foils(t->report, t->stock, draw, &bearing);
+  else
+    draw_shims(t->report, draw, &bearing);
   fg_film_state_copy(&workspace->film, &t->solved->state, &workspace->state);
   fg_film_case_copy(&t->solved->before, workspace->film.columns, &workspace->before);
   FG_TRY(fg_film_solve_bearing(ctx, t->report, workspace, &bearing, t->report->options.speed_rpm,
@@ -100,16 +116,29 @@ static fg_status finish_draws(fg_context *ctx, fg_film_draws *draws) {
   return FG_OK;
 }
 
-fg_status fg_film_draw(fg_context *ctx, fg_film_report *report, const fg_film_bearing *perfect,
-                       const fg_film_workspace *workspace) {
-  draw_task task = {report, perfect, workspace};
+static fg_status draw_all(fg_context *ctx, draw_task *task) {
+  fg_film_report *report = task->report;
   size_t count = report->options.draws;
   void *block;
-  if (!count) return FG_OK;
   FG_TRY(fg_memory_allocate(ctx, count, sizeof *report->draws.result, &block));
   report->draws.result = block;
   report->draws.count = count;
   FG_TRY(fg_parallel_run(ctx, report->options.jobs, (count + DRAWS_OF_A_TASK - 1) / DRAWS_OF_A_TASK,
-                         solve_draws, &task));
+                         solve_draws, task));
   return finish_draws(ctx, &report->draws);
+}
+
+fg_status fg_film_draw(fg_context *ctx, fg_film_report *report, const fg_film_bearing *perfect,
+                       const fg_film_workspace *solved) {
+  fg_film_stock stock;
+  draw_task task = {.report = report, .perfect = perfect, .solved = solved};
+  if (!report->options.draws) return FG_OK;
+  if (!fg_film_draws_from_lot(&report->options)) return draw_all(ctx, &task);
+  FG_TRY(fg_film_stock_read(ctx, report, &stock));
+  task.stock = &stock;
+  report->draws.foils = stock.foils;
+  report->draws.left_out = stock.left_out;
+  fg_status status = draw_all(ctx, &task);
+  fg_film_stock_free(&stock);
+  return status;
 }

@@ -33,13 +33,12 @@ static fg_status read_pad(fg_context *ctx, const fg_film_report *r, const cJSON 
   for (size_t k = 0; k < per_pad; k++) {
     size_t number = r->options.first_bump + k, at = pad * per_pad + k;
     const cJSON *bump = find_foil_bump(foil, number);
-    double clearance = bump ? read_number(bump, "clearance_mm") : NAN;
-    double u = bump ? read_number(bump, "u_clearance_mm") : NAN;
+    double clearance = bump ? read_number(bump, "clearance_fitted_mm") : NAN;
+    if (!isfinite(clearance) && bump) clearance = read_number(bump, "clearance_mm");
     if (!isfinite(clearance))
       return fg_fail(ctx, FG_ERR_DATA, "%s: bump %zu of foil %zu has no clearance_mm",
                      r->options.foils, number, pad + 1);
     bearing->clearance_mm[at] = clearance;
-    bearing->own_mm[at] = isfinite(u) ? u : 0;
   }
   return FG_OK;
 }

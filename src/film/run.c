@@ -78,7 +78,7 @@ static fg_status run_bearings(fg_context *ctx, fg_film_report *r, fg_film_worksp
   FG_TRY(solve_perfect(ctx, r, workspace, &perfect));
   FG_TRY(fg_film_draw(ctx, r, &perfect, workspace));
   r->at = r->perfect;
-  if (r->options.foils) {
+  if (r->options.foils && !fg_film_draws_from_lot(&r->options)) {
     FG_TRY(fg_film_read_foils(ctx, r, &r->bearing));
     FG_TRY(fg_film_solve_bearing(ctx, r, workspace, &r->bearing, r->options.speed_rpm,
                                  FG_FILM_ONWARD, &r->at));

@@ -9,7 +9,7 @@ echo '{"schema": "foilgauge/design/1", "name": "<b>&"}' >design.json
 expect 0 "" "$program" film design.json $fast --speeds 30000:90000:4 --shims=-7:7 --draws 25 -o film.json --html film.html --table film.txt \
   --speeds-out speeds.csv --draws-out draws.csv
 grep -q '&lt;b&gt;&amp;' film.html && ! grep -q '<b>&' film.html || fail "a name is not made harmless"
-for words in 'Critical mass' 'Pressure of the unwrapped film' 'random shims' 'stiffness, N/µm' '<dt>Program</dt>'; do
+for words in 'Critical mass' 'Pressure of the unwrapped film' 'shims of -7 to 7' 'stiffness, N/µm' '<dt>Program</dt>'; do
   grep -q "$words" film.html || fail "the page lacks $words"
 done
 [ "$(wc -l <speeds.csv)" = 5 ] && [ "$(wc -l <draws.csv)" = 26 ] || fail "rows of the tables"
@@ -56,6 +56,27 @@ expect 0 "" "$program" film $fast --speeds 30000:90000:2 --foils close.json -o a
 near "foils as designed" "$(value as_designed.json "r['bearing']['critical_mass_kg'] / r['perfect']['critical_mass_kg']")" 1 1e-7
 [ "$(value as_measured.json "r['bearing']['min_film_um'] < r['perfect']['min_film_um'] - 1")" = True ] || fail "a closed pad"
 valid film.schema.json as_measured.json
+
+# A lot's foils: the clearance fitted into the sleeve; a failed, a crushed and a short foil stay out, and a part's second scan.
+mkdir lot
+python3 - <<'END'
+foils = open("lot/foils.csv", "w")
+bumps = open("lot/bumps.csv", "w")
+print("foil,scan,foil_number,verdict", file=foils)
+print("foil,scan,foil_number,bump,flags,normalised_stiffness,clearance_mm,clearance_fitted_mm", file=bumps)
+for i, (part, verdict, flag, count) in enumerate([("a", "pass", "", 9), ("b", "pass", "", 9), ("c", "no_tolerance", "", 9), ("d", "fail", "", 9),
+                                                  ("e", "pass", "crushed", 9), ("f", "pass", "", 8), ("a", "pass", "", 9)]):
+    print(f"{part},s{i}.png,1,{verdict}", file=foils)
+    for k in range(count):
+        print(f"{part},s{i}.png,1,{k + 1},{flag},1,0.9,0.04", file=bumps)
+END
+expect 0 "6 bearings of 3 different foils each, drawn from 3 \(4 left out\), seed 1" "$program" film $fast --speeds 30000:90000:2 --foils lot --draws 6 \
+  -o lot.json --table -
+near "a lot as designed" "$(value lot.json "r['draws']['mass_over_perfect']['at_5_pct']")" 1 1e-7
+near "a lot as designed" "$(value lot.json "r['draws']['mass_over_perfect']['at_95_pct']")" 1 1e-7
+valid film.schema.json lot.json
+expect 64 "of one of them" "$program" film $fast --foils lot --shims 0:1
+expect 65 "3 foils can be built in, a bearing takes 4" "$program" film $fast --foils lot --pads 4
 
 # A load beyond the film, and a touching one.
 expect 65 "no film at" "$program" film --load 5000 --speed 3000 --clearance 40 --compliance 0 --mesh 2,4

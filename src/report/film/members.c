@@ -44,7 +44,7 @@ static const char *find_result_name(const fg_subject *s, char *buffer) {
   (void)buffer;
   const fg_film_report *report = report_of(s);
   if (s->object == &report->perfect) return "as designed";
-  return report->options.foils ? "as measured" : "as designed";
+  return report->options.foils && !report->draws.foils ? "as measured" : "as designed";
 }
 
 static double find_draw_number(const fg_subject *s) {
@@ -115,7 +115,7 @@ const fg_members fg_film_result_members = FG_MEMBERS_DEFINED(result_rows, "resul
 bool fg_film_bearing_at(const fg_subject *list, size_t i, fg_subject *element) {
   const fg_film_report *report = report_of(list);
   element->object = i ? &report->perfect : &report->at;
-  return i < (report->options.foils ? 2 : 1);
+  return i < (report->options.foils && !report->draws.foils ? 2 : 1);
 }
 
 bool fg_film_speed_at(const fg_subject *list, size_t i, fg_subject *element) {
@@ -213,7 +213,12 @@ static const fg_member quantile_rows[] = {
 static const fg_members quantile_members = FG_MEMBERS(quantile_rows);
 
 static const fg_member draws_rows[] = {
-    {FG_COUNT("count", fg_film_draws, count), .words = "of bearings with random shims"},
+    {FG_COUNT("count", fg_film_draws, count), .words = "of bearings"},
+    {FG_COUNT("foils", fg_film_draws, foils),
+     .words = "of a lot, that they are drawn from; 0: random shims"},
+    {FG_COUNT("foils_left_out", fg_film_draws, left_out),
+     .words = "of the lot: failed, not measured, crushed, without a clearance at a place, or "
+              "scanned again"},
     {FG_OBJECT("solved", fg_film_draws, solved, &fg_film_share_members),
      .options = FG_MEMBER_ON_LINE, .words = "with a steady film, touching or not"},
     {FG_OBJECT("touching", fg_film_draws, touching, &fg_film_share_members),
@@ -294,7 +299,7 @@ static const fg_member report_rows[] = {
     {FG_OBJECT("design", fg_film_report, design, &fg_design_members),
      .schema = FG_REF("design.schema.json")},
     {FG_GROUP("foils", &foils_members), .present = has_foils, .options = FG_MEMBER_ON_LINE,
-     .words = "report whose foils are the pads"},
+     .words = "report whose foils are the pads, or folder of a lot with its bumps.csv"},
     {FG_GROUP("conditions", &option_members), .words = "as stated, or by default"},
     {FG_OBJECT("bearing", fg_film_report, at, &fg_film_result_members),
      .words = "as measured; without foils as designed"},
@@ -307,7 +312,7 @@ static const fg_member report_rows[] = {
     {FG_LIST("speeds", fg_film_report, speed, speeds, &fg_film_result_members),
      .options = FG_MEMBER_ON_LINE, .words = "the same bearing under the same load"},
     {FG_OBJECT("draws", fg_film_report, draws, &draws_members), .present = has_draws,
-     .words = "bearings as designed, with random shims under their bumps"},
+     .words = "bearings of the lot's foils, or as designed with random shims"},
     {FG_LIST("field", fg_film_report, column, columns, &column_members),
      .options = FG_MEMBER_ON_LINE, .words = "the film of the bearing, unwrapped"},
     {FG_WRITTEN("notes", write_film_notes,

@@ -17,6 +17,9 @@ fg_member_element fg_film_share_at;
 
 extern const fg_document fg_film_document;
 
+/* Describes the draws: "1000 bearings of 3 different foils each, drawn from 40". */
+void fg_film_draws_words(const fg_film_report *report, char *text, size_t size);
+
 /* "stable", "unstable", "stable at every mass" for the rotor of the report; NULL: not known. */
 const char *fg_film_stability_word(const fg_film_report *report, const fg_film_result *result);
 

@@ -87,11 +87,10 @@ static void put_stability(FILE *out, const fg_film_report *r) {
 
 static void put_draws(FILE *out, const fg_film_report *r) {
   const fg_film_draws *d = &r->draws;
+  char words[200];
   if (!d->count) return;
-  fprintf(out,
-          "<section>\n<h2 class=\"first\">Bearings with random shims</h2>\n<p>%zu bearings, shims "
-          "of %g to %g %% of the clearance under every bump.</p>\n",
-          d->count, r->options.shim_low_pct, r->options.shim_high_pct);
+  fg_film_draws_words(r, words, sizeof words);
+  fprintf(out, "<section>\n<h2 class=\"first\">Drawn bearings</h2>\n<p>%s.</p>\n", words);
   fg_html_table(out, &fg_film_share_members, &(fg_subject){.object = d, .whole = r},
                 fg_film_share_at);
   fprintf(out,
@@ -110,7 +109,7 @@ fg_status fg_film_write_html(fg_context *ctx, const fg_film_report *r, FILE *out
   if (r->columns) put_field(out, r);
   if (r->speeds) put_stability(out, r);
   put_draws(out, r);
-  if (r->options.foils) fg_provenance_take_file(&from, r->options.foils);
+  if (r->options.foils && !r->draws.foils) fg_provenance_take_file(&from, r->options.foils);
   FG_TRY(fg_html_provenance_section(ctx, out, &from));
   fg_html_end(out);
   return fg_stream_finish(ctx, out, "the page");

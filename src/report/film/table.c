@@ -29,9 +29,10 @@ static void put_conditions(FILE *out, const fg_film_report *r) {
 
 static void put_draws(FILE *out, const fg_film_report *r) {
   const fg_film_draws *d = &r->draws;
+  char words[200];
   if (!d->count) return;
-  fprintf(out, "\n%zu bearings, shims of %g to %g %% of the clearance, seed %llu\n", d->count,
-          r->options.shim_low_pct, r->options.shim_high_pct, (unsigned long long)r->options.seed);
+  fg_film_draws_words(r, words, sizeof words);
+  fprintf(out, "\n%s\n", words);
   fg_members_terminal(out, "  ", &fg_film_share_members, &(fg_subject){.object = d, .whole = r},
                       fg_film_share_at);
   fprintf(out,

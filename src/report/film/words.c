@@ -18,6 +18,20 @@ static void note_threshold(const fg_film_report *r, char *note) {
         o->speed_low_rpm, o->speed_high_rpm, o->rotor_mass_kg);
 }
 
+void fg_film_draws_words(const fg_film_report *r, char *text, size_t size) {
+  const fg_film_draws *d = &r->draws;
+  if (d->foils)
+    snprintf(text, size,
+             "%zu bearings of %zu different foils each, drawn from %zu (%zu left out), seed %llu",
+             d->count, r->options.pads ? r->options.pads : 1, d->foils, d->left_out,
+             (unsigned long long)r->options.seed);
+  else
+    snprintf(text, size,
+             "%zu bearings, shims of %g to %g %% of the clearance under every bump, seed %llu",
+             d->count, r->options.shim_low_pct, r->options.shim_high_pct,
+             (unsigned long long)r->options.seed);
+}
+
 size_t fg_film_notes(const fg_film_report *r, char notes[FG_FILM_NOTES][FG_FILM_NOTE]) {
   const fg_film_options *o = &r->options;
   size_t count = 0;
