@@ -44,6 +44,7 @@ typedef struct fg_station_settings {
   /* Time after its last change in which an incomplete file may still grow; then the station reports
    * the missing part. */
   double receive_s;
+  char reasons[1024]; /* codes that a disposition's field proposes, between commas */
   fg_station_check check;
 } fg_station_settings;
 

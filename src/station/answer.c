@@ -39,11 +39,12 @@ static const struct {
   const char *path;
   fg_action *act;
 } actions[] = {
-    {"/correct", fg_action_correct},         {"/scan", fg_action_scan},
-    {"/baseline", fg_action_baseline},       {"/close", fg_action_close},
-    {"/download", fg_action_download},       {"/order", fg_action_order},
-    {"/order-close", fg_action_order_close}, {"/why", fg_action_why},
-    {"/accept", fg_action_accept},           {"/withdraw", fg_action_withdraw},
+    {"/correct", fg_action_correct},   {"/scan", fg_action_scan},
+    {"/baseline", fg_action_baseline}, {"/close", fg_action_close},
+    {"/download", fg_action_download}, {"/dispose", fg_action_dispose},
+    {"/order", fg_action_order},       {"/order-close", fg_action_order_close},
+    {"/why", fg_action_why},           {"/accept", fg_action_accept},
+    {"/withdraw", fg_action_withdraw},
 };
 
 enum { PAGES = sizeof pages / sizeof *pages, ACTIONS = sizeof actions / sizeof *actions };

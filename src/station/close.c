@@ -7,6 +7,7 @@
 
 #include "core/text.h"
 #include "foilgauge/words.h"
+#include "station/disposition.h"
 #include "station/export.h"
 #include "station/lot_folder.h"
 #include "station/pages.h"
@@ -103,6 +104,22 @@ static fg_status start_closing(fg_context *ctx, fg_inspection *station, const ch
   return status;
 }
 
+/* A lot with foils whose fate nobody has said is closed only by who says so. */
+static fg_status check_open(fg_context *ctx, fg_inspection *station, const fg_request *request) {
+  int64_t open;
+  fg_station_database *database = &station->database;
+  pthread_mutex_lock(&database->reading);
+  fg_status status =
+      fg_disposition_count_open(ctx, database->reader, fg_request_get(request, "lot"), &open);
+  pthread_mutex_unlock(&database->reading);
+  FG_TRY(status);
+  if (!open || strtoll(fg_request_get(request, "open"), NULL, 10) >= open) return FG_OK;
+  return fg_fail(ctx, FG_ERR_DATA,
+                 "%lld foil%s of the lot without disposition: go back, and say their fate, or tick "
+                 "that the lot is closed with them.",
+                 (long long)open, fg_plural((size_t)open));
+}
+
 static fg_status check_lot(fg_context *ctx, fg_inspection *station, const char *lot) {
   fg_query query;
   fg_station_database *database = &station->database;
@@ -124,6 +141,7 @@ fg_status fg_action_close(fg_context *ctx, fg_inspection *station, const fg_requ
   if (!by[strspn(by, " ")])
     return fg_fail(ctx, FG_ERR_DATA, "Who closes the lot? Go back and fill in the name.");
   FG_TRY(check_lot(ctx, station, lot));
+  FG_TRY(check_open(ctx, station, request));
   FG_TRY(start_closing(ctx, station, lot, by));
   for (int i = 0; i < WAITS && is_running(&station->closing); i++)
     nanosleep(&pause, NULL);

@@ -13,7 +13,7 @@ typedef struct fg_lot_scan {
   size_t of; /* foils of the scan, whatever lot they belong to */
   int *numbers;
   size_t count, capacity; /* of the lot's foils among them */
-  char *serial, *die, *operator_name;
+  char *serial, *die, *operator_name, *disposition;
 } fg_lot_scan;
 
 /* A foil that had to be scanned again (not measured, undecided or without a verdict) counts with
@@ -37,7 +37,8 @@ typedef struct fg_lot_content {
 #define FG_LOT_STATE(name)                                                                         \
   "(SELECT count(*) || ' ' || total(h.id) FROM foils AS h WHERE h.lot = " name ") || ' ' ||"       \
   " (SELECT coalesce(max(c.id), 0) FROM foils AS h JOIN corrections AS c ON c.foil = h.id"         \
-  " WHERE h.lot = " name ")"
+  " WHERE h.lot = " name ") || coalesce(' ' || (SELECT max(d.id) FROM foils AS h JOIN"             \
+  " dispositions AS d ON d.foil = h.id WHERE h.lot = " name "), '')"
 
 /* Reads a lot. FG_ERR_USAGE: there is no such lot. The call alone may use `reader` meanwhile. */
 fg_status fg_lot_content_read(fg_context *ctx, sqlite3 *reader, const char *lot,

@@ -5,6 +5,7 @@
 
 #include "page/page.h"
 #include "page/table.h"
+#include "station/disposition.h"
 #include "station/pages.h"
 #include "station/stored_foil.h"
 #include "station/values.h"
@@ -90,11 +91,14 @@ static fg_status write_trail(fg_context *ctx, sqlite3 *reader, const fg_stored_f
   fg_member_columns columns;
   bool any = false;
   fg_member_columns_of(&change_members, FG_ON_PAGE, &(fg_subject){0}, &columns);
-  fg_query_begin(reader,
-                 "SELECT at, by, field, before, after FROM corrections WHERE foil = ? ORDER BY id",
-                 &query);
+  fg_query_begin(
+      reader,
+      "SELECT at, by, field, before, after FROM corrections WHERE foil = ?1 UNION ALL"
+      " SELECT at, by, 'disposition', '', kind || iif(reason = '', '', ', ' || reason) ||"
+      " iif(note = '', '', ': ' || note) FROM dispositions WHERE foil = ?1 ORDER BY at",
+      &query);
   fg_query_integer(&query, stored->id);
-  fputs("<h2>Corrections</h2>\n", out);
+  fputs("<h2>Corrections and dispositions</h2>\n", out);
   while (fg_query_row(&query)) {
     if (!any) fg_html_table_begin(out, &columns), fg_html_table_rows(out);
     any = true;
@@ -126,6 +130,7 @@ static fg_status write_foil(fg_context *ctx, fg_inspection *station, sqlite3 *re
   FG_TRY(fg_page_crushed(ctx, reader, stored->id, out));
   FG_TRY(fg_page_deciding(ctx, reader, stored->id, out));
   FG_TRY(fg_page_same_serial(ctx, reader, stored->id, out));
+  FG_TRY(fg_disposition_write_html_form(ctx, station, reader, stored->id, out));
   FG_TRY(write_picture(ctx, reader, stored, out));
   fprintf(out,
           "<p class=\"noprint\"><a class=\"button\" href=\"/report?foil=%lld\">The whole "

@@ -6,11 +6,12 @@
 #include <time.h>
 
 #include "page/page.h"
+#include "station/disposition.h"
 #include "station/pages.h"
 #include "station/values.h"
 
 /* PAGE_FOILS: foils on one sheet of paper. SUGGESTED: lots and dies that a field proposes. */
-enum { PAGE_FOILS = 40, PAGES_MAX = 1000000, SUGGESTED = 200, WHERE_BYTES = 1024 };
+enum { PAGE_FOILS = 40, PAGES_MAX = 1000000, SUGGESTED = 200, WHERE_BYTES = 2048 };
 
 static const struct {
   const char *word, *name;
@@ -20,6 +21,7 @@ static const struct {
     {"cannot_tell", "SCAN AGAIN: cannot tell"},
     {"not_measured", "SCAN AGAIN: not measured"},
     {"no_tolerance", "MEASURED"},
+    {"open", "without disposition"},
 };
 
 enum { VERDICTS = sizeof verdicts / sizeof *verdicts };
@@ -28,6 +30,7 @@ enum { VERDICTS = sizeof verdicts / sizeof *verdicts };
 typedef struct search {
   const char *serial, *lot, *die, *from, *to, *verdict;
   int64_t from_ms, to_ms; /* -1: open */
+  bool open;              /* foils without disposition alone */
   long page;              /* from 1 */
   char where[WHERE_BYTES];
 } search;
@@ -76,7 +79,8 @@ static void read_search(const fg_request *request, search *at) {
   if (at->die[0]) add_condition(at, "die = ? COLLATE NOCASE");
   if (at->from_ms >= 0) add_condition(at, "at >= ?");
   if (at->to_ms >= 0) add_condition(at, "at < ?");
-  if (at->verdict[0]) add_condition(at, "foils.verdict = ?");
+  at->open = !strcmp(at->verdict, "open");
+  if (at->verdict[0]) add_condition(at, at->open ? FG_FOIL_IS_OPEN : "foils.verdict = ?");
 }
 
 /* The values of the conditions, in their order. */
@@ -86,7 +90,7 @@ static void bind(const search *at, fg_query *query) {
   if (at->die[0]) fg_query_text(query, at->die);
   if (at->from_ms >= 0) fg_query_integer(query, at->from_ms);
   if (at->to_ms >= 0) fg_query_integer(query, at->to_ms);
-  if (at->verdict[0]) fg_query_text(query, at->verdict);
+  if (at->verdict[0] && !at->open) fg_query_text(query, at->verdict);
 }
 
 static fg_status count_found(fg_context *ctx, sqlite3 *reader, const search *at, int64_t *count) {

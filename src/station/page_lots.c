@@ -6,6 +6,7 @@
 #include "core/text.h"
 #include "page/page.h"
 #include "page/table.h"
+#include "station/disposition.h"
 #include "station/lot_content.h"
 #include "station/pages.h"
 
@@ -217,6 +218,7 @@ static fg_status write_refused(fg_context *ctx, sqlite3 *reader, FILE *out) {
 static fg_status write_question(fg_context *ctx, const fg_inspection *station, sqlite3 *reader,
                                 const char *lot, FILE *out) {
   fg_query query;
+  int64_t open;
   fg_member_columns columns;
   fg_member_columns_of(&count_members, FG_ON_PAGE, &(fg_subject){0}, &columns);
   fg_query_begin(reader,
@@ -237,11 +239,18 @@ static fg_status write_question(fg_context *ctx, const fg_inspection *station, s
         out);
   FG_TRY(fg_query_end(ctx, &query, "reading the lot"));
   FG_TRY(write_refused(ctx, reader, out));
+  FG_TRY(fg_disposition_count_open(ctx, reader, lot, &open));
   fputs("<form class=\"fields\" method=\"post\" action=\"/close\">", out);
   fg_page_csrf_token(station, out);
   fputs("<input type=\"hidden\" name=\"lot\" value=\"", out);
   fg_html_text(out, lot);
-  fputs("\"><label>Closed by<input name=\"by\" maxlength=\"127\" autocomplete=\"off\" required "
+  fputs("\">", out);
+  if (open)
+    fprintf(out,
+            "<label class=\"tick\"><input type=\"checkbox\" name=\"open\" value=\"%lld\" required> "
+            "with %lld foil%s without disposition</label>",
+            (long long)open, (long long)open, fg_plural((size_t)open));
+  fputs("<label>Closed by<input name=\"by\" maxlength=\"127\" autocomplete=\"off\" required "
         "data-focus></label><button>Close the lot</button> <a href=\"/lots\">Not yet</a></form>\n"
         "</section>\n",
         out);

@@ -7,6 +7,7 @@
 #include "foilgauge/traceability.h"
 #include "page/page.h"
 #include "quantity/quantity_rows.h"
+#include "station/disposition.h"
 #include "station/news.h"
 #include "station/orders.h"
 #include "station/pages.h"
@@ -295,6 +296,7 @@ fg_status fg_page_now(fg_context *ctx, fg_inspection *station, sqlite3 *reader,
   if (newest.id && !arriving) write_newest_call(out, station, &newest);
   if (!newest.id && !arriving) write_ready(station, out);
   FG_TRY(fg_order_write_progress(ctx, reader, out));
+  FG_TRY(fg_disposition_write_open(ctx, reader, out));
   fputs("<div data-typing></div>\n", out);
   write_scan_button(station, out);
   if (newest.id && arriving) write_before(out, &newest);

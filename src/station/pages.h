@@ -58,6 +58,7 @@ fg_action fg_action_correct;  /* serial, lot, die, operator of a foil; leaves a 
 fg_action fg_action_scan;     /* runs the recipe's scan_command */
 fg_action fg_action_baseline; /* makes the newest check the baseline of later ones */
 fg_action fg_action_close;    /* a lot: writes its folder and report */
+fg_action fg_action_dispose;  /* says the fate of a foil that did not pass */
 fg_action fg_action_order;    /* opens an order */
 fg_action fg_action_order_close;
 fg_action fg_action_why;      /* searches for causes of a trend */

@@ -53,6 +53,9 @@ static const fg_member settings_rows[] = {
          "Seconds that a scan which is not whole may pause: the page says RECEIVING until nothing "
          "has come for so long, and then what is missing. Scanners wait for their carriage, "
          "networks for lost packets."},
+    {FG_TEXT("reasons", fg_station_settings, reasons), .options = FG_MEMBER_ANY_TEXT,
+     .words = "Reason codes for the disposition of foils that did not pass, between commas: "
+              "\"S1 scratch, B2 burr, C3 crushed\"."},
     {FG_GROUP("check", &check_members), .read = read_check,
      .words = "An object with the members that follow: when the scanner has to prove itself by "
               "known diameters. With a `scan_command` the Scanner tab has a button for it."},

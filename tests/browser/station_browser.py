@@ -413,7 +413,8 @@ class Day:
         expect("No lot is open" not in self.text(), "no lot is open")
         self.follow("Close …")
         expect(self.browser.switch_to.active_element.get_attribute("name") == "by", "who closes has no focus")
-        ActionChains(self.browser).send_keys("Ada", Keys.ENTER).perform()
+        self.press(lambda: self.browser.find_elements(By.CSS_SELECTOR, "input[name=open]"))
+        self.one("input[name=by]").send_keys("Ada", Keys.ENTER)
         wait(lambda: "closed" in self.text() and "by Ada" in self.text())
         expect("FAIL" in self.text("ul.cards li"), "a lot with a bad foil did not fail: " + self.text("ul.cards li"))
         self.press(lambda: self.browser.find_elements(By.CSS_SELECTOR, "button[value='results.qif']"))
@@ -518,6 +519,8 @@ def run_pictures(program, folder, work):
                 os.rename(scan, scan.replace(".L006", "L006"))
                 wait(lambda name=f"{300 + seed:06d}": name in day.text(".call"))
             day.go("/lots?close=1&lot=L006")
+            for tick in browser.find_elements(By.CSS_SELECTOR, "input[name=open]"):
+                tick.click()
             day.one("input[name=by]").send_keys("Ada", Keys.ENTER)
             wait(lambda: "by Ada" in day.text())
             for name, path in TABS:

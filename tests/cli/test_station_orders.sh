@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Orders: opened by number from an ERP's file, by hand, and refused where nobody knows them; scans that come belong to the
+# Orders and dispositions. Orders: opened by number from an ERP's file, by hand, and refused where nobody knows them; scans that come belong to the
 # open one; progress; the Scan button names its file by it.
 # Usage: test_station_orders.sh PROGRAM
 set -euo pipefail
@@ -15,9 +15,9 @@ fail() {
   exit 1
 }
 mkdir "$work/scans" "$work/erp"
-for seed in 1 2 3 4 5; do
+for seed in 1 2 3 4 5 6; do
   radius=3.32
-  [ "$seed" != 2 ] || radius=3.4
+  case $seed in 2 | 6) radius=3.4 ;; esac
   printf '{"schema": "foilgauge/render/1", "seed": %s, "scanner": {"dpi": 1200}, "foils": [{"rotate_deg": -90,
     "design": {"bump_count": 2, "bump_radius_mm": %s}}]}' "$seed" "$radius" >"$work/spec.json"
   "$renderer" render "$work/spec.json" -o "$work/$seed.png"
@@ -26,7 +26,7 @@ printf 'Order;Batch;Tool;Material;Quantity\n4711;L7;B;K7;40\n4712;L8;A;K8;2\n' >
 printf 'not a table' >"$work/erp/readme.txt"
 cat >"$work/recipe.json" <<R
 {"schema": "foilgauge/recipe/1",
- "station": {"file_name": "{serial}", "scan_command": "cp $work/5.png {file}"},
+ "station": {"file_name": "{serial}", "scan_command": "cp $work/5.png {file}", "reasons": "S1 scratch, B2 burr"},
  "design": {"schema": "foilgauge/design/1", "bump_count": 2, "calibration": "not needed: the scan is rendered",
             "tolerances": {"radius_mm": {"min": 3.3, "max": 3.34}}}}
 R
@@ -82,5 +82,28 @@ post("/order-close", order="1", by="Ada")
 assert "Order" not in re.sub("<nav>.*?</nav>", "", get("/"), flags=re.S)
 page = get("/orders")
 assert "3 of 40" in page and "Ada" in page, page
-print("orders: ERP, by hand, progress, Scan")
+
+# Dispositions: F1 passed when it was measured again; the foil of another radius is open until somebody says its fate.
+drop(6, "F9")
+foil = database.execute("SELECT id FROM foils WHERE serial = 'F9'").fetchone()[0]
+assert "<b>1</b> without disposition" in get("/"), get("/")
+assert "F9" in get("/history?verdict=open") and "F2" not in get("/history?verdict=open")
+database.execute("UPDATE foils SET lot = 'L9' WHERE id = ?", (foil,)), database.commit()
+assert 'value="S1 scratch"' in get(f"/foil?id={foil}") and "No disposition yet" in get(f"/foil?id={foil}")
+assert "No disposition yet" not in get("/foil?id=1")
+assert "with 1 foil without disposition" in get("/lots?close=1&lot=L9")
+assert post("/close", lot="L9", by="Ada")[0] == "422"
+assert post("/dispose", foil=str(foil), kind="scrap", by=" ")[0] == "422"
+assert post("/dispose", foil=str(foil), kind="eat", by="Ada")[0] == "422"
+assert post("/dispose", foil="1", kind="scrap", by="Ada")[0] == "404"
+post("/dispose", foil=str(foil), kind="again", by="Ada")
+assert "<b>1</b> without disposition" in get("/")
+where, page = post("/dispose", foil=str(foil), kind="scrap", reason="S1 scratch", note="<deep>", by="Ada")
+assert "<b>Scrap</b>, S1 scratch: &lt;deep&gt; (Ada" in page and "scrap, S1 scratch: &lt;deep&gt;" in page, page
+assert "without disposition" not in get("/") and "without disposition" not in get("/lots?close=1&lot=L9")
+assert post("/close", lot="L9", by="Ada")[0].endswith("/lots")
+wait_until(lambda: os.path.exists(work + "/scans/lots/L9/lot.json"))
+manifest = open(work + "/scans/lots/L9/manifest.csv").read()
+assert "disposition" in manifest.splitlines()[0] and manifest.splitlines()[1].rstrip().endswith("scrap"), manifest
+print("orders: ERP, by hand, progress, Scan; dispositions")
 PY

@@ -19,7 +19,7 @@ typedef struct client {
 } client;
 
 static void *close_again_and_again(void *user) {
-  static const char fields[] = "form=0123456789abcdef0123456789abcdef&lot=L1&by=me";
+  static const char fields[] = "form=0123456789abcdef0123456789abcdef&lot=L1&by=me&open=1";
   client *at = user;
   for (int i = 0; i < ROUNDS; i++) {
     fg_answer answer;
