@@ -324,6 +324,7 @@ fg_status fg_engine_finish(fg_context *ctx, fg_engine_run *run) {
   for (size_t m = 0; m < result->claims; m++)
     result->claim[m].held_out = confirmed;
   FG_TRY(parameters(ctx, run, noise));
+  FG_TRY(fg_engine_note_levels(ctx, run));
   FG_TRY(fg_engine_find_influence(ctx, run, noise));
   FG_TRY(fg_engine_profile_scale(ctx, run));
   run->noise = noise;

@@ -37,8 +37,8 @@ enum { ONE_IN = 6 };
 
 /* Logarithm of the likelihood ratio of outliers over a heavy tail at which their p-value is that of
  * acceptance, and how fast it falls: chosen by simulation (tests/bench/loop_rows.c). Of tables
- * whose noise is Student's t with 3 or 4 dof, and that hold no wrong row, 1 to 2 in 100 reach it,
- * and 4 reach 0.1. No test that keeps this sees more than half of wrong values of 10 standard
+ * whose noise is Student's t with 3 or 4 dof, and that hold no wrong row, 2 in 100 reach it,
+ * and 5 reach 0.1. No test that keeps this sees more than half of wrong values of 10 standard
  * errors in 24 rows: two densities alone, t of 3 dof and normal, allow 45 of 100 at 1 in 100. In
  * 126 rows nearly all are seen. */
 #define WRONG_RATIO 5.8

@@ -78,7 +78,7 @@ int main(int argc, char **argv) {
       "How often a row is called wrong (p < 0.01 over everything) or suspected (p < 0.1) in tables "
       "without a wrong one, by the tail of their noise, and how often the wrong one is found in "
       "normal noise; %zu tables each, a constant and a slope declared. The constants of the test "
-      "are chosen by it: with t of 3 dof 1 to 2 in 100 are called wrong.\n\n"
+      "are chosen by it: with t of 3 or 4 dof about 2 in 100 are called wrong.\n\n"
       "    build/bench/loop_rows %zu %" PRIu64 " >reports/loop_rows.md\n\n",
       tables, tables, seed);
   printf("| rows | noise | p < 0.01 | p < 0.1 |\n|---|---|---|---|\n");

@@ -112,6 +112,9 @@ static void levels_have_their_variance_and_the_slope_their_stratum(void **state)
   assert_true(claim->interval[0] < sd && claim->interval[1] > sd);
   double u = sqrt(exact.between / exact.heats);
   assert_near(out.result.parameter_u[1], u, 0.01 * u);
+  assert_true(out.result.notes > 0);
+  assert_has(out.result.note[0], "Before the levels of wafer were found");
+  assert_has(out.result.note[0], "had a standard uncertainty of");
   assert_near(out.result.noise.lambda, sd * sd / exact.within, 0.02 * sd * sd / exact.within);
   clear(&out);
 }
