@@ -3,7 +3,7 @@
 # and the way a step is run and told.
 
 FOILGAUGE_PACKAGES="build-essential cmake pkg-config libpng-dev libisal-dev libtiff-dev libjpeg-dev libgsl-dev libcjson-dev nettle-dev libcsv-dev
-libopencv-core-dev libopencv-imgproc-dev libsuitesparse-dev libsqlite3-dev libmicrohttpd-dev libcmocka-dev"
+libopencv-core-dev libopencv-imgproc-dev libsuitesparse-dev libsundials-dev libsqlite3-dev libmicrohttpd-dev libcmocka-dev"
 
 # Only the comparisons need these: what a user would write in Python instead.
 FOILGAUGE_BENCH_PACKAGES="python3 python3-numpy python3-scipy python3-skimage python3-opencv"

@@ -43,7 +43,7 @@ typedef enum fg_film_top {
   FG_FILM_SAGGING, /* a beam on the bumps */
 } fg_film_top;
 
-enum { FG_FILM_FREQUENCIES = 21, FG_FILM_SPEEDS_MAX = 200 };
+enum { FG_FILM_FREQUENCIES = 21, FG_FILM_SPEEDS_MAX = 200, FG_FILM_TURNS_MAX = 10000 };
 
 typedef struct fg_film_options {
   double load_n, load_deg, speed_rpm; /* load_n, speed_rpm above 0 */
@@ -71,6 +71,7 @@ typedef struct fg_film_options {
   uint64_t seed;
   double shim_low_pct, shim_high_pct; /* heights of shims, percent of the clearance */
   unsigned jobs;                      /* threads; 0: all cores */
+  size_t orbit_turns;                 /* of the orbit in time; 0: none */
 } fg_film_options;
 
 /* Air at 25 degrees C; table 5.6's loss factor, three pads of seven bumps or of as many as the
@@ -133,6 +134,30 @@ typedef struct fg_film_draws {
                                          75, 95 % of those solved */
 } fg_film_draws;
 
+/* A place of the rotor's orbit. */
+typedef struct fg_film_orbit_place {
+  double turn, place_um[2], min_film_um;
+} fg_film_orbit_place;
+
+typedef enum fg_film_fate {
+  FG_FILM_DECAYS,
+  FG_FILM_GROWS,
+  FG_FILM_CYCLES,  /* the amplitude stays */
+  FG_FILM_TOUCHES, /* the film ends before the turns do */
+} fg_film_fate;
+extern const char *const fg_film_fate_words[]; /* "decays", "grows", ..., NULL */
+
+/* The rotor's orbit in time about its steady place, after a pulse of 2 % of the load during the
+ * first turn. The loss factor has no equation in time: viscous bumps lose as much at the whirl of
+ * the critical mass. */
+typedef struct fg_film_orbit {
+  fg_film_orbit_place *point;
+  size_t count; /* 0: not asked */
+  fg_film_fate fate;
+  double growth_per_turn; /* logarithm of the amplitude; NaN: not known */
+  double whirl_ratio;
+} fg_film_orbit;
+
 typedef struct fg_film_report {
   fg_design design;
   fg_film_options options;
@@ -149,6 +174,7 @@ typedef struct fg_film_report {
   size_t columns, nodes; /* nodes of a column */
   double *pressure_kpa;  /* of all columns; owned */
   fg_film_draws draws;
+  fg_film_orbit orbit;
 } fg_film_report;
 
 /* Solves. FG_ERR_DATA for a design without bumps or a bearing without clearance, FG_ERR_USAGE for
@@ -167,8 +193,9 @@ int fg_film_exit_code(const fg_film_report *report);
 fg_status fg_film_write_json(fg_context *ctx, const fg_film_report *report, FILE *out);
 fg_status fg_film_write_html(fg_context *ctx, const fg_film_report *report, FILE *out);
 fg_status fg_film_write_text(fg_context *ctx, const fg_film_report *report, FILE *out);
-/* Row per drawn bearing; per speed. */
+/* Row per drawn bearing; per speed; per place of the orbit. */
 fg_status fg_film_write_draws(fg_context *ctx, const fg_film_report *report, FILE *out);
+fg_status fg_film_write_orbit(fg_context *ctx, const fg_film_report *report, FILE *out);
 fg_status fg_film_write_speeds(fg_context *ctx, const fg_film_report *report, FILE *out);
 
 #ifdef __cplusplus

@@ -9,7 +9,7 @@
 #include "cli/output_set.h"
 #include "foilgauge/film.h"
 
-enum { OUT_JSON, OUT_HTML, OUT_TEXT, OUT_SPEEDS, OUT_DRAWS, OUT_COUNT };
+enum { OUT_JSON, OUT_HTML, OUT_TEXT, OUT_SPEEDS, OUT_DRAWS, OUT_ORBIT, OUT_COUNT };
 
 typedef struct film_run {
   const char *design_path;
@@ -51,6 +51,8 @@ enum {
   OPTION_TEXT,
   OPTION_SPEEDS_OUT,
   OPTION_DRAWS_OUT,
+  OPTION_ORBIT,
+  OPTION_ORBIT_OUT,
 };
 
 static const struct argp_option options[] = {
@@ -96,6 +98,8 @@ static const struct argp_option options[] = {
     {NULL, 0, NULL, 0, "What is asked of it:", 3},
     {"speeds", OPTION_SPEEDS, "LOW:HIGH[:N]", 0,
      "Of the stability map, rpm (default: a quarter to four times the speed, @film_speeds@)", 3},
+    {"orbit", OPTION_ORBIT, "TURNS", 0,
+     "Integrate film and rotor in time over so many turns, after a small pulse of load", 3},
     {"shims", OPTION_SHIMS, "LOW:HIGH", 0,
      "Draw bearings as designed with random shims under their bumps, percent of the clearance: a "
      "higher shim closes it",
@@ -115,6 +119,7 @@ static const struct argp_option options[] = {
     {"table", OPTION_TEXT, "FILE.txt", 0, "The table, as on a terminal", 4},
     {"speeds-out", OPTION_SPEEDS_OUT, "FILE.csv", 0, "A row per speed", 4},
     {"draws-out", OPTION_DRAWS_OUT, "FILE.csv", 0, "A row per drawn bearing", 4},
+    {"orbit-out", OPTION_ORBIT_OUT, "FILE.csv", 0, "Places of the orbit", 4},
     FG_CLI_DECIMAL_COMMA_ROW(4),
     {0},
 };
@@ -240,6 +245,9 @@ static error_t parse_film_count(int key, const char *text, struct argp_state *st
   case OPTION_DRAWS:
     o->draws = read_count(state, "draws", text, 1, 1e7);
     return 0;
+  case OPTION_ORBIT:
+    o->orbit_turns = read_count(state, "orbit", text, 4, FG_FILM_TURNS_MAX);
+    return 0;
   case OPTION_SEED:
     o->seed = read_count(state, "seed", text, 0, 9007199254740992.0);
     return 0;
@@ -252,8 +260,8 @@ static error_t parse_film_count(int key, const char *text, struct argp_state *st
 }
 
 static error_t parse_film_file(int key, char *text, struct argp_state *state) {
-  static const int keys[OUT_COUNT] = {'o', OPTION_HTML, OPTION_TEXT, OPTION_SPEEDS_OUT,
-                                      OPTION_DRAWS_OUT};
+  static const int keys[OUT_COUNT] = {
+      'o', OPTION_HTML, OPTION_TEXT, OPTION_SPEEDS_OUT, OPTION_DRAWS_OUT, OPTION_ORBIT_OUT};
   film_run *run = state->input;
   for (int i = 0; i < OUT_COUNT; i++)
     if (keys[i] == key) {
@@ -274,6 +282,8 @@ static void check_film_end(film_run *run, struct argp_state *state) {
   if (shims && lot)
     argp_error(state, "--shims and a lot's foils: bearings are drawn of one of them");
   if ((shims || lot) && !o->draws) o->draws = 1000;
+  if (run->outputs.path[OUT_ORBIT] && !o->orbit_turns)
+    argp_error(state, "--orbit-out needs --orbit TURNS");
   if (isfinite(o->compliance) && o->model)
     argp_error(state, "--compliance states what --model would find: drop one");
 }
@@ -321,7 +331,7 @@ static fg_status write_film_output(fg_context *ctx, void *user, size_t kind, FIL
   static writer *const writers[OUT_COUNT] = {
       [OUT_JSON] = fg_film_write_json,   [OUT_HTML] = fg_film_write_html,
       [OUT_TEXT] = fg_film_write_text,   [OUT_SPEEDS] = fg_film_write_speeds,
-      [OUT_DRAWS] = fg_film_write_draws,
+      [OUT_DRAWS] = fg_film_write_draws, [OUT_ORBIT] = fg_film_write_orbit,
   };
   const film_run *run = user;
   return writers[kind](ctx, &run->report, out);
@@ -344,7 +354,7 @@ const struct argp fg_film_parser = {options, parse_film_option, "[DESIGN]", doc,
 int fg_cmd_film(int argc, char **argv) {
   fg_context ctx = {0};
   film_run run = {.outputs.count = OUT_COUNT,
-                  .outputs.csv = 1u << OUT_SPEEDS | 1u << OUT_DRAWS,
+                  .outputs.csv = 1u << OUT_SPEEDS | 1u << OUT_DRAWS | 1u << OUT_ORBIT,
                   .options = fg_film_options_default()};
   fg_status status = fg_cli_parse(&ctx, &fg_film_parser, argc, argv, &run);
   if (status == FG_OK) status = run_film(&ctx, &run);

@@ -26,7 +26,7 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME foilgauge-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "foilgauge (= ${PROJECT_VERSION})")
 # Of programs that link the static library.
-set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "libpng-dev, libtiff-dev, libjpeg-dev, libisal-dev, libgsl-dev, libcjson-dev, nettle-dev, libcsv-dev, libsuitesparse-dev, libsqlite3-dev, libmicrohttpd-dev")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "libpng-dev, libtiff-dev, libjpeg-dev, libisal-dev, libgsl-dev, libcjson-dev, nettle-dev, libcsv-dev, libsuitesparse-dev, libsundials-dev, libsqlite3-dev, libmicrohttpd-dev")
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION
     "Headers, the static library, and what pkg-config and CMake need\nto build against foilgauge.")
 include(CPack)

@@ -46,6 +46,10 @@ fg_status fg_film_solve_bearing(fg_context *ctx, const fg_film_report *report,
 fg_status fg_film_draw(fg_context *ctx, fg_film_report *report, const fg_film_bearing *perfect,
                        const fg_film_workspace *workspace);
 
+/* Integrates the orbit of the workspace's solved bearing, where the options ask for one. */
+fg_status fg_film_follow_orbit(fg_context *ctx, fg_film_report *report,
+                               fg_film_workspace *workspace);
+
 /* Fills the stability map and finds the threshold. */
 fg_status fg_film_map_speeds(fg_context *ctx, fg_film_report *report, fg_film_workspace *workspace);
 

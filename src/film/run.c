@@ -87,6 +87,7 @@ static fg_status run_bearings(fg_context *ctx, fg_film_report *r, fg_film_worksp
   if (r->at.outcome == FG_FILM_UNSOLVED) return FG_OK;
   FG_TRY(find_coefficients(ctx, r, workspace));
   FG_TRY(keep_field(ctx, r, workspace));
+  FG_TRY(fg_film_follow_orbit(ctx, r, workspace));
   return fg_film_map_speeds(ctx, r, workspace);
 }
 
@@ -106,6 +107,7 @@ void fg_film_report_free(fg_film_report *report) {
   free(report->column);
   free(report->pressure_kpa);
   free(report->draws.result);
+  free(report->orbit.point);
   *report = (fg_film_report){.speeds = 0};
 }
 

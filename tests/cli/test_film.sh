@@ -78,6 +78,14 @@ valid film.schema.json lot.json
 expect 64 "of one of them" "$program" film $fast --foils lot --shims 0:1
 expect 65 "3 foils can be built in, a bearing takes 4" "$program" film $fast --foils lot --pads 4
 
+# The orbit of a rotor just below its critical mass, and one far above.
+light=$(value film.json "0.9 * r['perfect']['critical_mass_kg']")
+expect 0 "orbit in time: decays" "$program" film $fast --speeds 30000:90000:2 --mass "$light" --orbit 20 --orbit-out orbit.csv --table - --html orbit.html -o orbit.json
+[ "$(wc -l <orbit.csv)" = 642 ] && grep -q 'Orbit of the rotor' orbit.html || fail "the orbit"
+valid film.schema.json orbit.json
+expect 0 "orbit in time: (grows|touches)" "$program" film $fast --speeds 30000:90000:2 --mass 2 --orbit 20 --table -
+expect 64 "needs --orbit" "$program" film $fast --orbit-out orbit.csv
+
 # A load beyond the film, and a touching one.
 expect 65 "no film at" "$program" film --load 5000 --speed 3000 --clearance 40 --compliance 0 --mesh 2,4
 expect 0 "touching" "$program" film $fast --speeds 30000:90000:2 --touching 100 --table -

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "film/film.h"
+#include "film/orbit.h"
 #include "support/test.h"
 
 static const double pi = 3.14159265358979323846;
@@ -282,6 +283,37 @@ static void eigenvalues_have_the_same_threshold(void **unused) {
   close_bearing(&b);
 }
 
+/* In time the amplitude decays below the critical mass and grows above, at the same whirl. */
+static void orbits_in_time_have_the_same_threshold(void **unused) {
+  (void)unused;
+  enum { TURNS = 40, POINTS = 32 };
+  static fg_film_orbit_point points[TURNS * POINTS + 1];
+  for (int lossy = 0; lossy < 2; lossy++) {
+    bearing b;
+    fg_film_threshold found;
+    const fg_film_mesh mesh = pads_of(3, 14, 4);
+    open_bearing(&b, &mesh, 1, 0.67);
+    b.at.loss = lossy ? 0.14 : 0;
+    balance(&b, 0.5, 0);
+    assert_int_equal(fg_film_find_threshold(&b.ctx, &b.film, &b.at, &b.state, &found), FG_OK);
+    for (int above = 0; above < 2; above++) {
+      const fg_film_orbit_plan plan = {.mass = found.mass * (above ? 1.03 : 0.97),
+                                       .loss_ratio = found.ratio,
+                                       .pulse = 0.01,
+                                       .turns = TURNS,
+                                       .points_per_turn = POINTS};
+      size_t count;
+      assert_int_equal(
+          fg_film_integrate_orbit(&b.ctx, &b.film, &b.at, &b.state, &plan, points, &count), FG_OK);
+      assert_int_equal(count, TURNS * POINTS + 1);
+      fg_film_orbit_growth growth = fg_film_measure_orbit(points, count);
+      assert_true(above ? growth.per_turn > 5e-3 : growth.per_turn < -5e-3);
+      assert_ratio(growth.ratio, found.ratio, 0.03);
+    }
+    close_bearing(&b);
+  }
+}
+
 /* A top foil that is far stiffer than its bumps deflects as a whole; a soft one more between the
  * bumps than on them. */
 static void top_foil_sags_between_bumps(void **unused) {
@@ -320,6 +352,7 @@ int main(void) {
       cmocka_unit_test(stiffness_is_the_forces_derivative),
       cmocka_unit_test(turning_pattern_and_load_turns_the_rotor),
       cmocka_unit_test(eigenvalues_have_the_same_threshold),
+      cmocka_unit_test(orbits_in_time_have_the_same_threshold),
       cmocka_unit_test(top_foil_sags_between_bumps),
   };
   return cmocka_run_group_tests_name("film", tests, NULL, NULL);

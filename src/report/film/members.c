@@ -238,6 +238,45 @@ static bool has_draws(const fg_subject *s) {
   return report_of(s)->draws.count > 0;
 }
 
+/* ---- the orbit ---- */
+
+static const fg_member place_rows[] = {
+    {FG_NUMBER("turn", fg_film_orbit_place, turn), .words = "of the rotor", .csv = {.rank = 1}},
+    {FG_NUMBER("x_um", fg_film_orbit_place, place_um[0]), .words = "towards 0 degrees",
+     .csv = {.rank = 2}},
+    {FG_NUMBER("y_um", fg_film_orbit_place, place_um[1]), .words = "towards 90 degrees",
+     .csv = {.rank = 3}},
+    {FG_NUMBER("min_film_um", fg_film_orbit_place, min_film_um), .words = "thinnest film",
+     .csv = {.rank = 4}},
+};
+static const fg_members place_members = FG_MEMBERS(place_rows);
+
+static bool find_orbit_place(const fg_subject *list, size_t i, fg_subject *element) {
+  element->object = &report_of(list)->orbit.point[i];
+  return i < report_of(list)->orbit.count;
+}
+
+static const fg_member orbit_rows[] = {
+    {FG_WORD("fate", fg_film_orbit, fate, fg_film_fate_words),
+     .words = "touches: the film ends before the turns do"},
+    {FG_NUMBER("growth_per_turn", fg_film_orbit, growth_per_turn),
+     .words = "logarithm of the amplitude per turn of the rotor"},
+    {FG_NUMBER("whirl_ratio", fg_film_orbit, whirl_ratio), .words = "whirl over speed"},
+    {FG_LIST("places", fg_film_orbit, point, count, &place_members), .options = FG_MEMBER_ON_LINE,
+     .words = "of the rotor, in equal times"},
+};
+static const fg_members orbit_members = FG_MEMBERS(orbit_rows);
+
+static bool has_orbit(const fg_subject *s) {
+  return report_of(s)->orbit.count > 0;
+}
+
+fg_status fg_film_write_orbit(fg_context *ctx, const fg_film_report *report, FILE *out) {
+  fg_members_csv(out, &place_members, &(fg_subject){.object = report, .whole = report},
+                 find_orbit_place);
+  return fg_stream_finish(ctx, out, "the orbit");
+}
+
 /* ---- the report ---- */
 
 static const char *const top_words[] = {
@@ -313,6 +352,8 @@ static const fg_member report_rows[] = {
      .options = FG_MEMBER_ON_LINE, .words = "the same bearing under the same load"},
     {FG_OBJECT("draws", fg_film_report, draws, &draws_members), .present = has_draws,
      .words = "bearings of the lot's foils, or as designed with random shims"},
+    {FG_OBJECT("orbit", fg_film_report, orbit, &orbit_members), .present = has_orbit,
+     .words = "of the rotor in time, after a pulse of 2 % of the load during the first turn"},
     {FG_LIST("field", fg_film_report, column, columns, &column_members),
      .options = FG_MEMBER_ON_LINE, .words = "the film of the bearing, unwrapped"},
     {FG_WRITTEN("notes", write_film_notes,

@@ -85,6 +85,18 @@ static void put_stability(FILE *out, const fg_film_report *r) {
   fputs("</section>\n", out);
 }
 
+static void put_orbit(FILE *out, const fg_film_report *r) {
+  if (!r->orbit.count) return;
+  fprintf(out, "<section>\n<h2 class=\"first\">The orbit in time: %s</h2>\n<figure>",
+          fg_film_fate_words[r->orbit.fate]);
+  fg_film_plot_orbit(out, r);
+  fprintf(out,
+          "<figcaption>%.0f turns of the rotor after a pulse of 2 %% of the load; the dot is its "
+          "steady place. The amplitude grows by exp(%.3g) a turn, at %.3g of the speed."
+          "</figcaption></figure>\n</section>\n",
+          r->orbit.point[r->orbit.count - 1].turn, r->orbit.growth_per_turn, r->orbit.whirl_ratio);
+}
+
 static void put_draws(FILE *out, const fg_film_report *r) {
   const fg_film_draws *d = &r->draws;
   char words[200];
@@ -108,6 +120,7 @@ fg_status fg_film_write_html(fg_context *ctx, const fg_film_report *r, FILE *out
   put_summary(out, r);
   if (r->columns) put_field(out, r);
   if (r->speeds) put_stability(out, r);
+  put_orbit(out, r);
   put_draws(out, r);
   if (r->options.foils && !r->draws.foils) fg_provenance_take_file(&from, r->options.foils);
   FG_TRY(fg_html_provenance_section(ctx, out, &from));

@@ -173,3 +173,25 @@ void fg_film_plot_coefficients(FILE *out, const fg_film_report *r, bool damping)
   }
   fg_plot_end(&at);
 }
+
+void fg_film_plot_orbit(FILE *out, const fg_film_report *r) {
+  const fg_film_orbit *orbit = &r->orbit;
+  double x[2] = {INFINITY, -INFINITY}, y[2] = {INFINITY, -INFINITY};
+  for (size_t i = 0; i < orbit->count; i++) {
+    fg_range_add(x, orbit->point[i].place_um[0], 0);
+    fg_range_add(y, orbit->point[i].place_um[1], 0);
+  }
+  fg_range_pad(x, 0.08, 1e-6);
+  fg_range_pad(y, 0.08, 1e-6);
+  fg_plot at = fg_plot_frame_begin(out, &(fg_plot_frame){"Orbit of the rotor", .width = 600,
+                                                         .height = 480, .left = 90, .x = x, .y = y,
+                                                         .y_title = "towards 90 degrees, µm",
+                                                         .x_title = "towards 0 degrees, µm"});
+  fputs("<path class=\"thin\" d=\"", out);
+  for (size_t i = 0; i < orbit->count; i++)
+    fprintf(out, "%c%.1f %.1f", i ? 'L' : 'M', fg_plot_x(&at, orbit->point[i].place_um[0]),
+            fg_plot_y(&at, orbit->point[i].place_um[1]));
+  fputs("\"/>\n", out);
+  fg_plot_dot(&at, orbit->point[0].place_um[0], orbit->point[0].place_um[1], 4, "s2");
+  fg_plot_end(&at);
+}

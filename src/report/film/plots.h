@@ -9,5 +9,6 @@ void fg_film_plot_field(FILE *out, const fg_film_report *report); /* pressure, u
 void fg_film_plot_thickness(FILE *out, const fg_film_report *report);
 void fg_film_plot_stability(FILE *out, const fg_film_report *report); /* critical mass over speed */
 void fg_film_plot_coefficients(FILE *out, const fg_film_report *report, bool damping);
+void fg_film_plot_orbit(FILE *out, const fg_film_report *report);
 
 #endif

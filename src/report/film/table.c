@@ -47,6 +47,9 @@ fg_status fg_film_write_text(fg_context *ctx, const fg_film_report *r, FILE *out
   fg_members_terminal(out, "  ", &fg_film_result_members, &(fg_subject){.object = r, .whole = r},
                       fg_film_bearing_at);
   if (isfinite(r->threshold_rpm)) fprintf(out, "\n  threshold speed  %.5g rpm\n", r->threshold_rpm);
+  if (r->orbit.count)
+    fprintf(out, "\n  orbit in time: %s; exp(%.3g) a turn, whirl at %.3g of the speed\n",
+            fg_film_fate_words[r->orbit.fate], r->orbit.growth_per_turn, r->orbit.whirl_ratio);
   put_draws(out, r);
   size_t count = fg_film_notes(r, notes);
   for (size_t i = 0; i < count; i++)
