@@ -34,6 +34,7 @@ enum {
   FG_COMPENSATION_BUMPS = 64, /* maximum of a foil */
   FG_COMPENSATION_SETS = 24,  /* maximum over all lots */
   FG_COMPENSATION_NOTES = 24,
+  FG_COMPENSATION_SETTINGS = 28, /* of a heat treatment */
 };
 
 /* Quantities that springback changes, each by itself. */
@@ -86,7 +87,8 @@ typedef struct fg_formed_data {
 } fg_formed_data;
 
 typedef struct fg_formed_set {
-  char lot[128], die[64], folder[1024], sha256[65], date[16];
+  char lot[128], die[64], folder[1024], date[16];
+  char sha256[65], scans_sha256[65]; /* of results.jsonl; of the sums of its scans */
   fg_die_origin origin;
   size_t foils;
   fg_formed_data of[FG_FORMED];
@@ -141,6 +143,24 @@ typedef struct fg_compensation_lot {
   const char *die; /* report of its die; NULL: its recipe's, or as designed */
 } fg_compensation_lot;
 
+/* An experiment that tells how springback depends on the heat treatment. */
+typedef struct fg_setting_request {
+  const char *runs;     /* table of the runs; NULL: none */
+  const char *response; /* springback error, percent: of the overall radius, or of bumps */
+  const char *formula;
+  const char *setting; /* of the lots: "temperature_C=650, duration_h=5" */
+} fg_setting_request;
+
+/* A heat treatment with the die that it asks for. */
+typedef struct fg_setting_trade {
+  char text[160];
+  double first, second;  /* values of the first two factors; NaN: there is none */
+  double share, u_share; /* springback over that of the lots' setting */
+  double springback_pct; /* of the bump radius (of a plain strip: of its radius); NaN: not told */
+  double u_next_pct;     /* of the mean of the next lot's foils, with what lots differ by */
+  double radius_mm, overall_radius_mm; /* of the die, mean over its bumps */
+} fg_setting_trade;
+
 typedef struct fg_compensation_request {
   const char *target; /* design; NULL: that of the last lot */
   const char *prior;  /* earlier report, whose sets come first; NULL: none */
@@ -151,6 +171,7 @@ typedef struct fg_compensation_request {
   double min_radius_mm; /* smallest bump radius that it can cut; 0: any */
   double max_move_pct;  /* largest step from the present die */
   size_t foils;         /* of the next lot; 0: as many as in the last */
+  fg_setting_request experiment;
 } fg_compensation_request;
 
 #define FG_COMPENSATION_MAX_MOVE_PCT 15.0
@@ -165,6 +186,10 @@ typedef struct fg_next_die {
   fg_die_dimensions present, die; /* of the last set; to be cut */
   double step_share;              /* of the step that the last lot alone asks for, as taken */
   fg_expected_lot expected;
+  char doe_path[1024], doe_sha256[65];                /* "": no experiment */
+  char factor[2][64];                                 /* names of its first two factors */
+  fg_setting_trade setting[FG_COMPENSATION_SETTINGS]; /* that of the lots first */
+  size_t settings, chosen;                            /* chosen: of the smallest u_next_pct */
   char note[FG_COMPENSATION_NOTES][400];
   size_t notes;
   struct fg_formed_laws *laws; /* private; owned */

@@ -30,6 +30,10 @@ enum {
   OPTION_MIN_RADIUS,
   OPTION_MAX_MOVE,
   OPTION_FOILS,
+  OPTION_DOE,
+  OPTION_DOE_MODEL,
+  OPTION_RESPONSE,
+  OPTION_SETTING,
   OPTION_HTML,
   OPTION_TABLE,
   OPTION_DXF,
@@ -57,6 +61,16 @@ static const struct argp_option options[] = {
     {"max-move-pct", OPTION_MAX_MOVE, "PCT", 0,
      "Largest step from the present die (default: @max_move_pct@)", 2},
     {"foils", OPTION_FOILS, "N", 0, "Foils of the next lot (default: as many as in the last)", 2},
+    {"doe", OPTION_DOE, "RUNS.csv", 0,
+     "Choose the heat treatment together with the die: runs of an experiment, as `foilgauge doe` "
+     "reads them",
+     2},
+    {"doe-model", OPTION_DOE_MODEL, "FORMULA", 0, "Their model (default: temperature_C*duration_h)",
+     2},
+    {"response", OPTION_RESPONSE, "COLUMN", 0,
+     "Their springback error in percent (default: springback_error_pct)", 2},
+    {"setting", OPTION_SETTING, "SETTING", 0,
+     "Heat treatment of the lots: 'temperature_C=650, duration_h=5'", 2},
     {"output", 'o', "FILE.json", 0, "Write the JSON report here (-: standard output)", 3},
     {"html", OPTION_HTML, "FILE.html", 0, "One page to read and print", 3},
     {"table", OPTION_TABLE, "FILE.txt", 0, "The table, as on a terminal", 3},
@@ -97,60 +111,77 @@ static void name_lots_die(next_run *run, const char *path, struct argp_state *st
     run->lots[run->dies_from++].die = path;
 }
 
-static bool keep_next_output(next_run *run, int key, const char *text) {
-  static const struct {
+/* Options whose text is kept as it is. */
+static const char **find_text_option(next_run *run, int key) {
+  fg_compensation_request *request = &run->request;
+  const struct {
     int key;
-    size_t kind;
-  } rows[] = {{'o', OUT_JSON},       {OPTION_HTML, OUT_HTML},       {OPTION_TABLE, OUT_TABLE},
-              {OPTION_DXF, OUT_DXF}, {OPTION_CONCAVE, OUT_CONCAVE}, {OPTION_CONVEX, OUT_CONVEX}};
+    const char **text;
+  } rows[] = {
+      {OPTION_TARGET, &request->target},
+      {OPTION_PRIOR, &request->prior},
+      {OPTION_DOE, &request->experiment.runs},
+      {OPTION_DOE_MODEL, &request->experiment.formula},
+      {OPTION_RESPONSE, &request->experiment.response},
+      {OPTION_SETTING, &request->experiment.setting},
+      {'o', &run->outputs.path[OUT_JSON]},
+      {OPTION_HTML, &run->outputs.path[OUT_HTML]},
+      {OPTION_TABLE, &run->outputs.path[OUT_TABLE]},
+      {OPTION_DXF, &run->outputs.path[OUT_DXF]},
+      {OPTION_CONCAVE, &run->outputs.path[OUT_CONCAVE]},
+      {OPTION_CONVEX, &run->outputs.path[OUT_CONVEX]},
+  };
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
-    if (rows[i].key == key) run->outputs.path[rows[i].kind] = text;
-  return key == 'o' || (key >= OPTION_HTML && key <= OPTION_CONVEX);
+    if (rows[i].key == key) return rows[i].text;
+  return NULL;
+}
+
+static void check_next_end(const next_run *run, const struct argp_state *state) {
+  if (!run->request.lot_count && !run->request.prior)
+    argp_error(state, "a die is found from lots: name one with --lot");
+  if (!run->request.experiment.runs != !run->request.experiment.setting)
+    argp_error(state, "--doe needs the --setting of the lots, and --setting the runs of --doe");
 }
 
 static error_t parse_next_option(int key, char *text, struct argp_state *state) {
   next_run *run = state->input;
+  const char **kept = find_text_option(run, key);
+  if (kept) *kept = text;
   switch (key) {
-  case OPTION_TARGET:
-    run->request.target = text;
-    return 0;
   case OPTION_LOT:
     add_next_lot(run, text, state);
-    return 0;
+    break;
   case OPTION_DIE:
     name_lots_die(run, text, state);
-    return 0;
-  case OPTION_PRIOR:
-    run->request.prior = text;
-    return 0;
+    break;
   case OPTION_COMMON:
     run->request.common = true;
-    return 0;
+    break;
   case OPTION_STEP:
     run->request.step_um = fg_cli_number(state, "step-um", text, 0, 1000);
-    return 0;
+    break;
   case OPTION_MIN_RADIUS:
     run->request.min_radius_mm = fg_cli_number(state, "min-radius-mm", text, 0, 1e3);
-    return 0;
+    break;
   case OPTION_MAX_MOVE:
     run->request.max_move_pct = fg_cli_number(state, "max-move-pct", text, 0.01, 100);
-    return 0;
+    break;
   case OPTION_FOILS:
     run->request.foils = (size_t)fg_cli_number(state, "foils", text, 1, 1e6);
-    return 0;
+    break;
   case OPTION_TIP:
     run->tip_um = fg_cli_number(state, "tip-um", text, 0, 1000);
-    return 0;
+    break;
   case ARGP_KEY_ARG:
     argp_error(state, "'%s': a lot's folder is named with --lot", text);
-    return 0;
+    break;
   case ARGP_KEY_END:
-    if (!run->request.lot_count && !run->request.prior)
-      argp_error(state, "a die is found from lots: name one with --lot");
-    return 0;
+    check_next_end(run, state);
+    break;
   default:
-    return keep_next_output(run, key, text) ? 0 : ARGP_ERR_UNKNOWN;
+    return kept ? 0 : ARGP_ERR_UNKNOWN;
   }
+  return 0;
 }
 
 static fg_status write_next_output(fg_context *ctx, void *user, size_t kind, FILE *out) {
@@ -171,7 +202,8 @@ static fg_status write_next_output(fg_context *ctx, void *user, size_t kind, FIL
 
 static fg_status find_next_die(fg_context *ctx, next_run *run) {
   const fg_input inputs[] = {{run->request.target, "the target"},
-                             {run->request.prior, "the earlier report"}};
+                             {run->request.prior, "the earlier report"},
+                             {run->request.experiment.runs, "the runs"}};
   fg_output_set_choose_standard(&run->outputs, OUT_JSON, OUT_TABLE, false);
   FG_TRY(fg_output_set_check(ctx, &run->outputs, inputs, sizeof inputs / sizeof *inputs));
   for (size_t i = 0; i < run->request.lot_count; i++)
@@ -189,7 +221,10 @@ const struct argp fg_die_next_parser = {options, parse_next_option, "",  doc,
 
 int fg_cmd_die_next(int argc, char **argv) {
   fg_context ctx = {0};
-  next_run run = {.outputs.count = OUT_COUNT, .tip_um = 2};
+  next_run run = {.outputs.count = OUT_COUNT,
+                  .tip_um = 2,
+                  .request.experiment = {.response = "springback_error_pct",
+                                         .formula = "temperature_C*duration_h"}};
   fg_status status = fg_cli_parse_in_order(&ctx, &fg_die_next_parser, argc, argv, &run);
   if (status == FG_OK) status = find_next_die(&ctx, &run);
   fg_output_set_close(&run.outputs);

@@ -253,6 +253,11 @@ static fg_status hold_lot(fg_context *ctx, const fg_formed_lot *lot, fg_expected
   fg_status status = FG_OK;
   FG_TRY_EXIT(
       fg_compensation_check_lot(ctx, lot->folder, &lot->lot.settings.design, &check->next.target));
+  for (size_t i = 0; i < check->next.law->sets; i++)
+    if (!strcmp(check->next.law->set[i].scans_sha256, lot->scans_sha256))
+      FG_TRY_EXIT(fg_fail(ctx, FG_ERR_DATA,
+                          "%s: the prediction rests on this lot, which cannot test it",
+                          lot->folder));
   FG_TRY_EXIT(fg_formed_sets_add(ctx, lot, &check->next.die, FG_DIE_AS_CUT, check->bumps, &sets));
   check->foils = check->next.expected.foils = sets.set[0].foils;
   FG_TRY_EXIT(fg_expected_lot_find(ctx, NULL, &check->next));

@@ -80,6 +80,8 @@ static const fg_member set_rows[] = {
      SHOWN_WORDS(2, "die as")},
     {FG_TEXT("folder", fg_formed_set, folder), .options = FG_MEMBER_ANY_TEXT, .words = "as named"},
     {FG_TEXT("sha256", fg_formed_set, sha256), .words = "of its results.jsonl"},
+    {FG_TEXT("scans_sha256", fg_formed_set, scans_sha256),
+     .words = "of the sums of its scans: a copy of the lot has the same"},
     {FG_TEXT("date", fg_formed_set, date), .words = "of its first scan; empty: not known"},
     {FG_COUNT("foils", fg_formed_set, foils), .lowest = 1, .highest = 1e9,
      .words = "measured foils of that die", SHOWN(3, "foils", 0)},
@@ -304,6 +306,42 @@ static const fg_member expected_rows[] = {
 };
 static const fg_members expected_members = FG_MEMBERS(expected_rows);
 
+/* ---- the heat treatment ---- */
+
+static double is_chosen(const fg_subject *subject) {
+  const fg_next_die *next = subject->whole;
+  return subject->object == &next->setting[next->chosen];
+}
+
+static const char *look_at_setting(const fg_subject *subject) {
+  return is_chosen(subject) > 0 ? "on" : NULL;
+}
+
+static const fg_member trade_rows[] = {
+    {FG_TEXT("setting", fg_setting_trade, text), .words = "of the heat treatment",
+     SHOWN_WORDS(1, "setting")},
+    {FG_FLAG_BY("chosen", is_chosen), .words = "its u_next_pct is the smallest"},
+    {FG_NUMBER_U("share", fg_setting_trade, share, u_share),
+     .words = "springback over that of the lots' setting", SHOWN(2, "springback,\nshare", 3)},
+    {FG_NUMBER("springback_pct", fg_setting_trade, springback_pct),
+     .words = "100 ln(formed / die); null: the experiment does not tell it",
+     SHOWN(3, "springback,\n%", 2)},
+    {FG_NUMBER("radius_mm", fg_setting_trade, radius_mm),
+     .words = "of the die, mean over its bumps", SHOWN(4, "die R,\nmm", 4)},
+    {FG_NUMBER("overall_radius_mm", fg_setting_trade, overall_radius_mm), .words = "of the die",
+     SHOWN(5, "die R0,\nmm", 4)},
+    {FG_NUMBER("u_next_pct", fg_setting_trade, u_next_pct),
+     .words = "standard uncertainty of the next lot's mean radius",
+     SHOWN(6, "u of the lot,\n%", 2)},
+};
+const fg_members fg_setting_trade_members = FG_MEMBERS_LOOKED_AT(trade_rows, look_at_setting);
+
+bool fg_setting_trade_at(const fg_subject *list, size_t i, fg_subject *element) {
+  const fg_next_die *next = list->whole;
+  element->object = &next->setting[i];
+  return i < next->settings;
+}
+
 /* ---- the report ---- */
 
 static const char *find_next_sentence(const fg_subject *subject, char *buffer) {
@@ -340,6 +378,13 @@ static const fg_member report_rows[] = {
      .words = "of the last set"},
     {FG_OBJECT("expected", fg_next_die, expected, &expected_members),
      .words = "the lot that comes of the die"},
+    {FG_TEXT("experiment", fg_next_die, doe_path),
+     .options = FG_MEMBER_EMPTY_IS_NULL | FG_MEMBER_ANY_TEXT, .words = "its runs"},
+    {FG_TEXT("experiment_sha256", fg_next_die, doe_sha256), .options = FG_MEMBER_EMPTY_IS_NULL,
+     .words = "of that file"},
+    {FG_ARRAY("settings", fg_next_die, setting, settings, &fg_setting_trade_members),
+     .options = FG_MEMBER_ON_LINE,
+     .words = "heat treatments with their dies, that of the lots first; the die above is of that"},
     {FG_POINTED("law", fg_next_die, law, &fg_law_members), .words = "springback, from all lots"},
     {FG_TEXTS_BY("notes", find_next_note), .words = "limits of what the lots tell"},
 };

@@ -6,6 +6,7 @@
 
 #include "compensation/expected.h"
 #include "compensation/inputs.h"
+#include "compensation/setting.h"
 #include "compensation/springback.h"
 #include "core/memory.h"
 
@@ -215,6 +216,7 @@ fg_status fg_next_die_find(fg_context *ctx, const fg_compensation_request *reque
   next->expected.foils =
       request->foils ? request->foils : next->law->set[next->law->sets - 1].foils;
   FG_TRY_EXIT(fg_expected_lot_find(ctx, &inputs.sets, next));
+  if (request->experiment.runs) FG_TRY_EXIT(fg_setting_trade_find(ctx, &request->experiment, next));
 exit:
   fg_formed_sets_free(&inputs.sets);
   if (status != FG_OK) fg_next_die_free(next);

@@ -83,6 +83,27 @@ static void put_expected_shares(FILE *out, const fg_next_die *next, const fg_sub
         out);
 }
 
+static void put_trade(FILE *out, const fg_next_die *next, const fg_subject *list) {
+  char sentence[600];
+  if (!next->settings) return;
+  fg_setting_sentence(next, sentence, sizeof sentence);
+  fputs("<section class=\"part\">\n<h1>Die and heat treatment together</h1>\n<ul "
+        "class=\"words\"><li>",
+        out);
+  fg_html_text(out, sentence);
+  fputs("</li></ul>\n<figure>", out);
+  fg_next_die_plot_settings(next, out);
+  fputs("<figcaption>Square: the lots&#39; setting; diamond: the setting of the smallest u. A bake "
+        "that springs back less needs a smaller step of the die, but rests on the experiment; half "
+        "of the change is in u, for bumps need not follow its response. A gap: the experiment does "
+        "not tell the springback there from none.</figcaption></figure>\n",
+        out);
+  fg_html_table(out, &fg_setting_trade_members, list, fg_setting_trade_at);
+  fputs("<p class=\"note\">The die above is of the lots&#39; setting. A lot of another setting "
+        "begins a law of its own.</p>\n</section>\n",
+        out);
+}
+
 static void put_law(FILE *out, const fg_subject *list) {
   fputs("<section class=\"part\">\n<h1>What the lots show of the springback</h1>\n", out);
   fg_html_table(out, &fg_formed_law_members, list, fg_formed_law_at);
@@ -109,6 +130,7 @@ fg_status fg_next_die_write_html(fg_context *ctx, const fg_next_die *next, FILE 
       out);
   put_bumps(out, next, &list);
   put_expected_shares(out, next, &list);
+  put_trade(out, next, &list);
   put_law(out, &list);
   FG_TRY(fg_html_provenance_section(ctx, out, &from));
   fg_html_end(out);

@@ -41,7 +41,7 @@ static fg_status put_profile(fg_context *ctx, const fg_plot *at, const fg_die_di
 
 fg_status fg_next_die_plot_profile(fg_context *ctx, const fg_next_die *next, FILE *out) {
   const fg_die_dimensions foil = expected_foil(next), *dies[] = {&next->present, &next->die, &foil};
-  static const char *const styles[] = {"hint", "s1", "s2"};
+  static const char *const styles[] = {"s4", "s1", "s2"};
   double half_turn =
       next->die.bumps ? fmin(M_PI / 2, 0.5 * (double)next->die.bumps * foil.pitch_deg / 180 * M_PI)
                       : M_PI / 2;
@@ -58,7 +58,7 @@ fg_status fg_next_die_plot_profile(fg_context *ctx, const fg_next_die *next, FIL
                             .bottom = PROFILE_EDGE, .x = x, .y = y});
   for (size_t i = 0; i < sizeof dies / sizeof *dies; i++)
     FG_TRY(put_profile(ctx, &at, dies[i], dies[i]->overall_radius_mm, styles[i]));
-  fg_plot_key(&at, 60, "hint", "die now");
+  fg_plot_key(&at, 60, "s4", "die now");
   fg_plot_key(&at, 260, "s1", "next die");
   fg_plot_key(&at, 460, "s2", "expected foil");
   fg_plot_end(&at);
@@ -77,8 +77,8 @@ static void put_radii(const fg_plot *at, const fg_next_die *next) {
     int number = (int)i + 1;
     const fg_expected_value *lot = &next->expected.bump[i].radius_mm;
     double formed = formed_radius(next, number), middle = 0.5 * (lot->low + lot->high);
-    fg_plot_shape(at, number - 0.15, next->present.bump[i].radius_mm, 4, FG_SHAPE_SQUARE, "hint");
-    if (isfinite(formed)) fg_plot_shape(at, number - 0.05, formed, 4, FG_SHAPE_DIAMOND, "k3");
+    fg_plot_dot(at, number - 0.15, next->present.bump[i].radius_mm, 4, "s4");
+    if (isfinite(formed)) fg_plot_dot(at, number - 0.05, formed, 4, "s3");
     fg_plot_interval(at, number + 0.05, 0, next->die.bump[i].radius_mm,
                      2 * next->die.bump[i].u_radius_mm, "s1");
     fg_plot_interval(at, number + 0.15, 0, middle, 0.5 * (lot->high - lot->low), "s2");
@@ -105,10 +105,75 @@ void fg_next_die_plot_radii(const fg_next_die *next, FILE *out) {
   fg_plot_x_title(&at, "bump");
   fg_plot_level(&at, next->target.bumps.radius_mm, "land");
   put_radii(&at, next);
-  fg_plot_key(&at, 90, "k3", "last foils, mean");
-  fg_plot_key(&at, 270, "hint", "die now");
+  fg_plot_key(&at, 90, "s3", "last foils, mean");
+  fg_plot_key(&at, 270, "s4", "die now");
   fg_plot_key(&at, 390, "s1", "next die ± U");
   fg_plot_key(&at, 550, "s2", "next lot's mean, 95 %");
-  fg_plot_text(&at, x[1] - 0.05, next->target.bumps.radius_mm, "x end", "target");
   fg_plot_end(&at);
+}
+
+enum { SETTING_LINES = 3 };
+
+/* The settings of one value of the second factor, in order: a stretch of the list behind the first.
+ */
+static size_t line_of_settings(const fg_next_die *next, size_t line, size_t *first) {
+  size_t count = 0;
+  double level = NAN;
+  *first = 0;
+  for (size_t i = 1, lines = 0; i < next->settings; i++) {
+    bool other = i == 1 || (isfinite(next->setting[i].second) && next->setting[i].second != level);
+    lines += other;
+    level = next->setting[i].second;
+    if (lines == line + 1 && other) *first = i;
+    count += lines == line + 1;
+  }
+  return count;
+}
+
+/* One value of the trade over all settings, with room around it. */
+static void plot_trade(const fg_next_die *next, const char *title,
+                       double (*value)(const fg_setting_trade *), FILE *out) {
+  static const char *const styles[SETTING_LINES] = {"s1", "s2", "s3"};
+  double x[2] = {INFINITY, -INFINITY}, y[2] = {INFINITY, -INFINITY};
+  for (size_t i = 0; i < next->settings; i++) {
+    fg_range_add(x, next->setting[i].first, 0);
+    fg_range_add(y, value(&next->setting[i]), 0);
+  }
+  fg_range_pad(x, 0.03, 0);
+  fg_range_pad_by_size(y, 0.1);
+  fg_plot at = fg_plot_frame_begin(
+      out, &(fg_plot_frame){title, .height = 260, .left = 80, .top = 34, .x = x, .y = y,
+                            .y_title = title, .x_title = next->factor[0]});
+  for (size_t line = 0; line < SETTING_LINES; line++) {
+    double at_x[FG_COMPENSATION_SETTINGS], at_y[FG_COMPENSATION_SETTINGS];
+    char words[100];
+    size_t first, count = line_of_settings(next, line, &first);
+    for (size_t i = 0; i < count; i++) {
+      at_x[i] = next->setting[first + i].first;
+      at_y[i] = value(&next->setting[first + i]);
+    }
+    if (!count) continue;
+    fg_plot_line(&at, at_x, at_y, count, styles[line]);
+    snprintf(words, sizeof words, "%s %.4g", next->factor[1], next->setting[first].second);
+    if (isfinite(next->setting[first].second))
+      fg_plot_key(&at, 90 + 220 * (double)line, styles[line], words);
+  }
+  fg_plot_shape(&at, next->setting[0].first, value(&next->setting[0]), 6, FG_SHAPE_SQUARE, "s4");
+  fg_plot_shape(&at, next->setting[next->chosen].first, value(&next->setting[next->chosen]), 6,
+                FG_SHAPE_DIAMOND, "k3");
+  fg_plot_end(&at);
+}
+
+static double trade_radius(const fg_setting_trade *trade) {
+  double radius = isfinite(trade->radius_mm) ? trade->radius_mm : trade->overall_radius_mm;
+  return isfinite(trade->u_next_pct) ? radius : NAN;
+}
+
+static double trade_u(const fg_setting_trade *trade) {
+  return trade->u_next_pct;
+}
+
+void fg_next_die_plot_settings(const fg_next_die *next, FILE *out) {
+  plot_trade(next, "radius of the die, mm", trade_radius, out);
+  plot_trade(next, "u of the next lot's mean, %", trade_u, out);
 }

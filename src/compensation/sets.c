@@ -31,6 +31,17 @@ static fg_status read_lot_texts(fg_context *ctx, const char *folder, char *text[
   return FG_OK;
 }
 
+/* Sums the scans: a copy of the lot under another name has the same. */
+static fg_status sum_scans(fg_context *ctx, fg_formed_lot *lot) {
+  char *sums = NULL;
+  fg_status status = FG_OK;
+  for (size_t i = 0; i < lot->lot.manifest.items && status == FG_OK; i++)
+    status = fg_text_append(ctx, &sums, "%s\n", lot->lot.records[i].sha256);
+  if (status == FG_OK) fg_sha256_text(sums ? sums : "", lot->scans_sha256);
+  free(sums);
+  return status;
+}
+
 fg_status fg_formed_lot_read(fg_context *ctx, const char *folder, fg_formed_lot *lot) {
   char *text[LOT_TEXTS] = {NULL};
   fg_lot_date date;
@@ -43,6 +54,7 @@ fg_status fg_formed_lot_read(fg_context *ctx, const char *folder, fg_formed_lot 
   FG_TRY_EXIT(fg_lot_settings_parse(ctx, folder, text[RECIPE_TEXT], &lot->lot.settings));
   FG_TRY_EXIT(fg_manifest_parse(ctx, folder, text[MANIFEST_TEXT], "", &lot->lot.manifest));
   FG_TRY_EXIT(fg_lot_load(ctx, folder, &lot->lot));
+  FG_TRY_EXIT(sum_scans(ctx, lot));
   fg_lot_date_find(&lot->lot, &date);
   fg_text_clip(lot->date, sizeof lot->date, "%s", date.first);
 exit:
@@ -198,6 +210,7 @@ static fg_status add_set(fg_context *ctx, const fg_formed_lot *lot, const char *
   fg_text_clip(set->folder, sizeof set->folder, "%s", lot->folder);
   fg_text_clip(set->date, sizeof set->date, "%s", lot->date);
   memcpy(set->sha256, lot->sha256, sizeof set->sha256);
+  memcpy(set->scans_sha256, lot->scans_sha256, sizeof set->scans_sha256);
   for (int q = 0; q < FG_FORMED; q++)
     summarise_set(sets->foil + first, set->foils, die, bumps, (fg_formed)q, &set->of[q]);
   return FG_OK;
@@ -222,11 +235,22 @@ static bool is_named_before(const fg_manifest *manifest, size_t column, size_t i
   return false;
 }
 
+/* A lot that has taught a law neither teaches it again nor tests it. */
+static fg_status check_new_lot(fg_context *ctx, const fg_formed_lot *lot,
+                               const fg_formed_sets *sets) {
+  for (size_t i = 0; i < sets->count; i++)
+    if (!strcmp(sets->set[i].scans_sha256, lot->scans_sha256))
+      return fg_fail(ctx, FG_ERR_DATA, "%s: the same scans as lot %s, which counts already",
+                     lot->folder, sets->set[i].lot);
+  return FG_OK;
+}
+
 fg_status fg_formed_sets_add(fg_context *ctx, const fg_formed_lot *lot,
                              const fg_die_dimensions *die, fg_die_origin origin, size_t bumps,
                              fg_formed_sets *sets) {
   const fg_manifest *manifest = &lot->lot.manifest;
   size_t column = fg_manifest_column(manifest, lot->lot.settings.die_column), before = sets->count;
+  FG_TRY(check_new_lot(ctx, lot, sets));
   if (origin != FG_DIE_AS_DESIGNED || column == FG_NO_COLUMN)
     FG_TRY(add_set(ctx, lot, NULL, die, origin, bumps, sets));
   else

@@ -16,7 +16,7 @@ typedef struct fg_formed_foil {
 /* A lot in memory with its die. */
 typedef struct fg_formed_lot {
   fg_lot lot;
-  char folder[1024], sha256[65], date[16];
+  char folder[1024], sha256[65], scans_sha256[65], date[16];
 } fg_formed_lot;
 
 /* FG_ERR_DATA: the folder holds no whole lot. */

@@ -20,8 +20,8 @@ static size_t foil_state(const fg_state_space *space, size_t set) {
   return set_state(space, space->sets) + set;
 }
 
-static void list_state_rows(const fg_formed_set *sets, fg_formed formed, const fg_springback_fit *fit,
-                      fg_state_space *space) {
+static void list_state_rows(const fg_formed_set *sets, fg_formed formed,
+                            const fg_springback_fit *fit, fg_state_space *space) {
   for (size_t s = 0; s < space->sets; s++) {
     const fg_formed_data *data = &sets[s].of[formed];
     space->set_foils[s] = fmax(1, (double)sets[s].foils);

@@ -74,6 +74,30 @@ static void put_expected_shares(const fg_next_die *next, const fg_subject *list,
             100 * expected->assembled_high);
 }
 
+void fg_setting_sentence(const fg_next_die *next, char *text, size_t size) {
+  const fg_setting_trade *own = &next->setting[0], *best = &next->setting[next->chosen];
+  if (next->chosen == 0)
+    snprintf(
+        text, size,
+        "Keep the heat treatment (%s): no other lets the next lot be foretold better, u %.2f %%.",
+        own->text, own->u_next_pct);
+  else
+    snprintf(text, size,
+             "At %s springback is %.2f of that at %s: with a die of %.4f mm the next lot's mean is "
+             "known to u = %.2f %%, in place of %.2f %%.",
+             best->text, best->share, own->text,
+             next->die.bumps ? best->radius_mm : best->overall_radius_mm, best->u_next_pct,
+             own->u_next_pct);
+}
+
+static void put_settings(const fg_next_die *next, const fg_subject *list, FILE *out) {
+  char sentence[600];
+  if (!next->settings) return;
+  fg_setting_sentence(next, sentence, sizeof sentence);
+  fprintf(out, "\ndie and heat treatment: %s\n", sentence);
+  fg_members_terminal(out, "  ", &fg_setting_trade_members, list, fg_setting_trade_at);
+}
+
 fg_status fg_next_die_write_table(fg_context *ctx, const fg_next_die *next, FILE *out) {
   char sentence[FG_MEMBER_TEXT_MAX];
   const fg_subject list = {.object = next, .whole = next};
@@ -86,6 +110,7 @@ fg_status fg_next_die_write_table(fg_context *ctx, const fg_next_die *next, FILE
   }
   put_whole(next, out);
   put_expected_shares(next, &list, out);
+  put_settings(next, &list, out);
   fputs("\nspringback learnt\n", out);
   fg_members_terminal(out, "  ", &fg_formed_law_members, &list, fg_formed_law_at);
   fputs("\nfrom\n", out);

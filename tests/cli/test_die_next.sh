@@ -115,10 +115,44 @@ expect 0 'tell no more of single bumps|lots differ' next --lot single -o single.
 made seven --bumps 7 --template seven_template
 expect 0 'has 7 bumps, the target 9' next --lot seven -o nine.json
 [ "$(value nine.json 'r["die"]["bumps"][8]["u_radius_mm"] > r["die"]["bumps"][3]["u_radius_mm"]')" = True ] || fail "a bump never seen is as sure as one seen"
-expect 0 '' next --lot one --common -o common.json
+expect 0 '' next --lot one --common --foils 100 -o common.json
+[ "$(value common.json 'r["expected"]["foils"]')" = 100 ] || fail "--foils"
 [ "$(value common.json 'len({b["radius_mm"] for b in r["die"]["bumps"]})')" = 1 ] || fail "--common: several radii"
-expect 0 '' "$program" die --target target.json --lot one --foils 100 -o hundred.json
-[ "$(value hundred.json 'r["expected"]["foils"]')" = 100 ] || fail "--foils"
+
+# Die and heat treatment together: an experiment that tells springback well moves the setting, one that does not keeps it.
+python3 - <<'P'
+import random
+rng = random.Random(1)
+for name, sd in (("good", 0.02), ("poor", 3.0)):
+    with open(f"{name}.csv", "w") as out:
+        out.write("temperature_C,duration_h,springback_error_pct\n")
+        for t in (500, 550, 600, 650, 700):
+            for d in (3, 5, 3, 5):
+                out.write(f"{t},{d},{-(8 - 0.02 * (t - 500) - 0.2 * (d - 3)) + rng.gauss(0, sd):.4f}\n")
+P
+for name in good poor; do
+  expect 0 '' next --lot one --doe $name.csv --setting 'temperature_C=550, duration_h=5' -o $name.json --html $name.html --table $name.txt
+  grep -q 'heat treatment' $name.txt && grep -q 'Die and heat treatment together' $name.html || fail "$name: no trade"
+done
+valid next_die.schema.json good.json
+near "springback at the warmest" "$(value good.json '[s for s in r["settings"] if s["setting"] == "temperature_C=700, duration_h=5"][0]["share"]')" 0.548 0.02
+[ "$(value good.json '[s["setting"] for s in r["settings"] if s["chosen"]][0] != r["settings"][0]["setting"]')" = True ] || fail "a good experiment is not used"
+[ "$(value poor.json 'r["settings"][0]["chosen"], r["settings"][0]["share"]')" = "(True, 1)" ] || fail "a poor experiment moves the setting"
+expect 64 'needs the --setting' next --lot one --doe good.csv
+expect 64 "'duration_h' has no value" next --lot one --doe good.csv --setting 'temperature_C=550'
+
+# A plain strip has a mandrel.
+for i in 1 2 3; do
+  printf '{"schema":"foilgauge/render/1","seed":%d,"foils":[{"design":{"form":"arc","overall_radius_mm":20.73,"subtended_angle_deg":110,
+"thickness_mm":0.1},"overall_radius_mm":21.%d4,"rotate_deg":-90}],"scanner":{"dpi":600}}' $i $i >strip.json
+  "$renderer" render strip.json -o strip$i.png || fail "render"
+done
+sed 's/"flatbed"/"not needed: rendered"/' "$root/samples/top_foil_design.json" >strip_design.json
+"$program" lot strip?.png -o strips --design strip_design.json --pages none >said 2>&1 || [ $? -le 3 ] || fail "strips: $(cat said)"
+expect 0 'Cut the mandrel' "$program" die --target strip_design.json --lot strips -o mandrel.json --html mandrel.html --dxf mandrel.dxf --table -
+near "mandrel" "$(value mandrel.json 'r["die"]["overall_radius_mm"]')" "$(python3 -c 'print(20.73 ** 2 / 21.24)')" 0.03
+[ "$(value mandrel.json 'r["die"]["bumps"]')" = "[]" ] || fail "a mandrel with bumps"
+valid next_die.schema.json mandrel.json
 
 # Refused: no lot, no lot's folder, another strip, datum or kind, limits of the shop.
 expect 64 'name one with --lot' "$program" die --target target.json
@@ -146,6 +180,10 @@ python3 -c "
 import json
 r = json.load(open('next.json')); r['law']['sets'] = []; json.dump(r, open('empty.json', 'w'))
 r['law']['sets'] = 7; json.dump(r, open('number.json', 'w'))"
+expect 65 'the same scans as lot one, which counts already' next --lot one --lot one
+expect 65 'the same scans as lot two' next --prior two/expected.json --lot two
+cp -r one again
+expect 65 'rests on this lot, which cannot test it' "$program" lot one.csv -o again --resume --recipe template/recipe.json --expected next.json
 expect 65 'law.sets: there is none' next --prior empty.json
 expect 65 'sets.*must be an array' next --prior number.json
 exit $failed

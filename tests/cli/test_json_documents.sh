@@ -30,8 +30,9 @@ python3 -c 'import json, sys; json.load(open(sys.argv[1]))' stdout || fail "a do
 expect 0 "" "$kept" design design.json -o nominal.json
 expect 0 "" "$kept" film --load 20 --speed 60000 --clearance 40 --mesh 2,2 --speeds 50000:60000:2 --shims=-5:5 --draws 2 -o film.json
 expect 0 "" "$kept" lot scans --design design.json -o lot
-expect 0 "" "$kept" die --target design.json --lot lot -o next.json
-expect 0 "" "$kept" lot scans --design design.json -o lot --resume --expected next.json
+expect 0 "" "$kept" lot scans/1.png --design design.json -o lot1
+expect 0 "" "$kept" die --target design.json --lot lot1 -o next.json
+expect 0 "" "$kept" lot scans/2.png --design design.json -o lot2 --expected next.json
 expect 0 "" "$kept" lot --index lots.html -o lots.json lot
 expect 0 "" "$kept" loop scans/1.png --design design.json -o loop.json --model-out scanner.json
 python3 - >plate.json <<'P'

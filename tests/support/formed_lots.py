@@ -91,7 +91,7 @@ class Template:
         manifest.write_text("\n".join(rows) + "\n")
         lines = [seal({key: value for key, value in self.head.items() if key != "checksum"})]
         for scan, foil in zip(columns["scan"], foils):
-            record = {"scan": scan, "sha256": hashlib.sha256(f"{folder}{scan}".encode()).hexdigest(), "date": "2026-01-01",
+            record = {"scan": scan, "sha256": hashlib.sha256(scan.encode()).hexdigest(), "date": "2026-01-01",
                       "measured_with": self.record["measured_with"], "error": None, "foils": [foil]}
             lines.append(seal(record))
         (folder / "results.jsonl").write_text("".join(lines))
