@@ -158,6 +158,7 @@ static void join_styles(void) {
   fputs(fg_page_style, out);
   fputs(fg_station_style, out);
   fputs(fg_trend_style, out);
+  fputs(fg_station_dark_style, out);
   fclose(out);
 }
 

@@ -299,10 +299,22 @@ static bool is_awaited(const intake *at, fg_card card) {
   return at->writer == FG_WRITER_WRITES;
 }
 
+/* A file that the station itself reads may lie beside the scans. */
+static bool is_own_input(const fg_station_request *request, const struct stat *file) {
+  struct stat own;
+  for (size_t i = 0; i <= request->context_count; i++) {
+    const char *path = i < request->context_count ? request->contexts[i] : request->orders;
+    if (path && stat(path, &own) == 0 && own.st_dev == file->st_dev && own.st_ino == file->st_ino)
+      return true;
+  }
+  return false;
+}
+
 static fg_status inspect_scan(fg_context *ctx, intake *at) {
   struct stat now;
   bool done;
   if (stat(at->path, &now) != 0 || !S_ISREG(now.st_mode)) return FG_OK; /* gone, or no file */
+  if (is_own_input(at->station->request, &now)) return FG_OK;
   at->file.bytes = now.st_size;
   at->file.modified_ns = (int64_t)now.st_mtim.tv_sec * 1000000000 + now.st_mtim.tv_nsec;
   FG_TRY(fg_station_file_is_done(ctx, &at->station->database, &at->file, &done));

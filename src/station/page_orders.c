@@ -114,16 +114,18 @@ static void write_order_line(const fg_query *query, FILE *out) {
 
 static fg_status list_orders(fg_context *ctx, sqlite3 *reader, FILE *out) {
   fg_query query;
+  size_t count = 0;
   fg_query_begin(reader,
                  "SELECT number, part, lot, pieces, opened_at, closed_at, closed_by, (SELECT"
                  " count(DISTINCT serial) FROM foils WHERE order_id = orders.id) FROM orders ORDER"
                  " BY id DESC LIMIT ?",
                  &query);
   fg_query_integer(&query, ORDERS_SHOWN);
-  fputs("<h2>Orders</h2>\n<ul class=\"causes\">", out);
-  while (fg_query_row(&query))
+  for (; fg_query_row(&query); count++) {
+    if (!count) fputs("<h2>Newest orders</h2>\n<ul class=\"causes\">", out);
     write_order_line(&query, out);
-  fputs("</ul>\n", out);
+  }
+  if (count) fputs("</ul>\n", out);
   return fg_query_end(ctx, &query, "reading the orders");
 }
 

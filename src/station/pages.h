@@ -47,6 +47,7 @@ fg_card_style fg_page_card_style(const char *kind, const char *verdict, bool wit
 /* Returns the styles of the reports and the station's own. */
 const char *fg_station_style_text(void);
 extern const char fg_station_style[];  /* station.css */
+extern const char fg_station_dark_style[]; /* dark.css */
 extern const char fg_station_script[]; /* station.js */
 extern const char fg_station_icon[];   /* SVG */
 

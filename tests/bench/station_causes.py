@@ -210,10 +210,21 @@ def score_year(text, causes):
     return marks, wrong, found, rest
 
 
+def years_until(years, seconds):
+    """Numbers of years, one at least, until the time is used up."""
+    begin = time.monotonic()
+    for year in range(years):
+        if year and time.monotonic() - begin > seconds:
+            return
+        yield year
+
+
 def kind_rows(bench, years, seed, causes, undeclared):
+    done = 0
     counts = {column: {"found": 0, "tied": 0, "missed": 0} for column in causes}
     told, wrong, tied_wrong = 0, [], 0
-    for year in range(years):
+    for year in years:
+        done += 1
         text, _ = bench.year(seed + year, causes, undeclared)
         marks, others, found, rest = score_year(text, causes)
         for column, mark in marks.items():
@@ -226,13 +237,13 @@ def kind_rows(bench, years, seed, causes, undeclared):
             tied_wrong += tied
             if not tied:
                 wrong.append(name)
-    return counts, told, wrong, tied_wrong
+    return counts, told, wrong, tied_wrong, done
 
 
 def collinear_row(bench, years, seed):
     """Coil K7 moves the radius, and die B is on the press with it and never else."""
     marks = {"tied": 0, "named alone": 0, "missed": 0}
-    for year in range(years):
+    for year in years:
         found, _ = read_findings(bench.year(seed + year, {"coil": CAUSES["coil"]}, collinear=True)[0])
         of_pair = [tied for name, tied, _ in found if name in ("coil", "die")]
         marks["missed" if not of_pair else "tied" if of_pair[0] else "named alone"] += 1
@@ -240,12 +251,13 @@ def collinear_row(bench, years, seed):
 
 
 def clean_rows(bench, years, seed):
-    claims = []
-    for year in range(years):
+    claims, done = [], 0
+    for year in years:
+        done += 1
         found, _ = read_findings(bench.year(seed + year, {})[0])
         if found:
             claims.append((seed + year, [words for _, _, words in found]))
-    return claims
+    return claims, done
 
 
 def ask(base, path, fields=None):
@@ -260,9 +272,9 @@ def time_intake(bench, seed):
     bench.year(seed, CAUSES, whole=True, keep=folder)
     spec = os.path.join(bench.work, "spec.json")
     scans = []
-    for i in range(12):
+    for i in range(8):
         with open(spec, "w", encoding="utf-8") as file:
-            json.dump({"schema": "foilgauge/render/1", "seed": i + 1, "scanner": {"dpi": 1200}, "foils": [{"rotate_deg": -90}]}, file)
+            json.dump({"schema": "foilgauge/render/1", "seed": i + 1, "scanner": {"dpi": 600}, "foils": [{"rotate_deg": -90}]}, file)
         scans.append(os.path.join(bench.work, f"scan{i}.png"))
         subprocess.run([FOILGAUGE, "render", spec, "-o", scans[-1]], check=True)
     station = subprocess.Popen([FOILGAUGE, "station", folder, "--recipe", bench.recipe, "--context",
@@ -281,10 +293,10 @@ def time_intake(bench, seed):
                 time.sleep(0.005)
             return time.monotonic() - begin
 
-        alone = [arrive(i) for i in range(4)]
+        alone = [arrive(i) for i in range(3)]
         begin = time.monotonic()
         ask(base, "/why", {"form": token, "q": "bump:radius_mm"})
-        meanwhile, i = [], 4
+        meanwhile, i = [], 3
         while "Searching for causes" in ask(base, "/why?q=bump:radius_mm"):
             if i < len(scans):
                 meanwhile.append(arrive(i))
@@ -309,32 +321,35 @@ Planted: coil K7 +0.41 %, die B +0.30 %, scanner S2 +0.15 %, operator Cem +0.20 
 Rows are written into the database as the station writes them; `--digest` searches it.
 
 """)
+    minute = 60 * arguments.minutes
+    alone, meanwhile, seconds = time_intake(bench, arguments.seed + 5000)
+    out.write(f"""## Time
+
+"Why?" with {arguments.foils} foils and scans that arrive meanwhile: {seconds:.1f} s. Scans of 600 dpi from the end of their file to the page Now:
+longest {max(alone):.2f} s of {len(alone)} without a search, longest {max(meanwhile, default=float('nan')):.2f} s of {len(meanwhile)} beside it.
+Load average {load_average():.1f} on 2 cores: above 1 others were at work and times are longer than they need be.
+
+""")
     for undeclared in (False, True):
-        counts, told, wrong, tied_wrong = kind_rows(bench, arguments.years, arguments.seed, CAUSES, undeclared)
-        out.write(f"## {arguments.years} years with five causes{' and one that no column has' if undeclared else ''}\n\n"
+        counts, told, wrong, tied_wrong, done = kind_rows(bench, years_until(arguments.years, 0.2 * minute), arguments.seed, CAUSES,
+                                                          undeclared)
+        out.write(f"## {done} years with five causes{' and one that no column has' if undeclared else ''}\n\n"
                   "| cause | found | tied | missed |\n|---|---|---|---|\n")
         for column, marks in counts.items():
             out.write(f"| {column} | {marks['found']} | {marks['tied']} | {marks['missed']} |\n")
         if undeclared:
-            out.write(f"| none has it (told over time) | {told} | | {arguments.years - told} |\n")
+            out.write(f"| none has it (told over time) | {told} | | {done - told} |\n")
         out.write(f"\nOther columns named as causes: {len(wrong)} alone{' (' + ', '.join(sorted(set(wrong))) + ')' if wrong else ''}, "
                   f"{tied_wrong} in a tie.\n\n")
         out.flush()
-    marks = collinear_row(bench, arguments.years, arguments.seed + 1000)
-    out.write(f"## {arguments.years} years in which coil K7 and die B are on the same foils\n\nThe coil alone moves the radius: "
+    marks = collinear_row(bench, years_until(arguments.years, 0.1 * minute), arguments.seed + 1000)
+    out.write(f"## {sum(marks.values())} years in which coil K7 and die B are on the same foils\n\nThe coil alone moves the radius: "
               + ", ".join(f"{count} {mark}" for mark, count in marks.items()) + ".\n\n")
-    claims = clean_rows(bench, arguments.clean, arguments.seed + 2000)
-    out.write(f"## {arguments.clean} years without a cause\n\nYears with a claim: {len(claims)} ({100 * len(claims) / max(1, arguments.clean):.1f} %).\n")
+    out.flush()
+    claims, done = clean_rows(bench, years_until(arguments.clean, 0.4 * minute), arguments.seed + 2000)
+    out.write(f"## {done} years without a cause\n\nYears with a claim: {len(claims)} ({100 * len(claims) / done:.1f} %).\n")
     for seed, words in claims:
         out.write(f"\n- seed {seed}: {'; '.join(words)}\n")
-    alone, meanwhile, seconds = time_intake(bench, arguments.seed + 5000)
-    out.write(f"""
-## Time
-
-"Why?" with {arguments.foils} foils and scans that arrive meanwhile: {seconds:.1f} s. Scans of 1200 dpi from the end of their file to the page Now:
-longest {max(alone):.2f} s of {len(alone)} without a search, longest {max(meanwhile, default=float('nan')):.2f} s of {len(meanwhile)} beside it.
-Load average {load_average():.1f} on 2 cores: above 1 others were at work and times are longer than they need be.
-""")
 
 
 def main():
@@ -342,6 +357,7 @@ def main():
     parser.add_argument("--years", type=int, default=20, help="of each kind with causes")
     parser.add_argument("--clean", type=int, default=100)
     parser.add_argument("--foils", type=int, default=5000)
+    parser.add_argument("--minutes", type=float, default=60, help="fewer years where they take longer")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--show", action="store_true", help="print what was found, and write no page")
     parser.add_argument("-o", "--output", default=os.path.join(ROOT, "reports", "station_causes.md"))

@@ -3,7 +3,7 @@
 """A day at the inspection station in a real browser, headless: an empty folder, a good foil, a bad one,
 a scan that is half written, a file that is no scan; a barcode; a serial number that is half typed while results
 come; two browsers at once; History, a report, a chart that is zoomed by dragging, a lot that is closed and downloaded;
-a phone; a station that is killed. Ends with an error at the first thing that is not as said.
+a phone; a station that is killed; a cause that is found and accepted; dark pages, large letters, the keyboard alone. Ends with an error at the first thing that is not as said.
 
     tests/browser/station_browser.py PROGRAM [--renderer PROGRAM]
     tests/browser/station_browser.py PROGRAM --pictures FOLDER      draws the tabs instead
@@ -69,6 +69,40 @@ def wait(what, seconds=WAIT_S):
 def expect(true, words):
     if not true:
         raise AssertionError(words)
+
+
+CONTRAST_MIN = 4.5  # WCAG 2.1, AA
+# Texts of the page whose contrast to what lies behind them is below the limit. Pictures of scans have outlined letters.
+LOW_CONTRAST = """
+function parse(text) {
+  var n = (text.match(/[\\d.]+/g) || [0, 0, 0, 0]).map(Number);
+  return [n[0], n[1], n[2], n.length > 3 ? n[3] : 1];
+}
+function luminance(c) {
+  return [0.2126, 0.7152, 0.0722].reduce(function (sum, weight, i) {
+    var v = c[i] / 255;
+    return sum + weight * (v <= 0.04045 ? v / 12.92 : Math.pow((v + 0.055) / 1.055, 2.4));
+  }, 0);
+}
+function ground(element) {
+  for (; element; element = element.parentElement) {
+    var c = parse(getComputedStyle(element).backgroundColor);
+    if (c[3] > 0.5) return c;
+  }
+  return matchMedia('(prefers-color-scheme: dark)').matches ? [18, 18, 18, 1] : [255, 255, 255, 1];
+}
+var low = [], walk = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT), node;
+while ((node = walk.nextNode())) {
+  var at = node.parentElement, box = at.getBoundingClientRect();
+  if (!node.data.trim() || !box.width || at.closest('.picture, script, style, datalist, title, [disabled]')) continue;
+  var style = getComputedStyle(at);
+  if (style.visibility === 'hidden' || style.display === 'none') continue;
+  var one = luminance(parse(at.closest('svg') ? style.fill : style.color)), other = luminance(ground(at));
+  var ratio = (Math.max(one, other) + 0.05) / (Math.min(one, other) + 0.05);
+  if (ratio < arguments[0]) low.push(ratio.toFixed(2) + ' ' + at.tagName + '.' + (at.className.baseVal || at.className) + ' ' + node.data.trim().slice(0, 30));
+}
+return low;
+"""
 
 
 class Station:
@@ -423,6 +457,43 @@ class Day:
         expect(root.tag.endswith("}QIFDocument"), f"no QIF: {root.tag}")
         expect("SN-4711" in xml.etree.ElementTree.tostring(root, encoding="unicode"), "the QIF lacks the serial")
 
+    def legible(self, paths):
+        """Every text has its contrast in light and in dark pages; with letters of double size nothing is cut off."""
+        for scheme in ("light", "dark"):
+            self.browser.execute_cdp_cmd("Emulation.setEmulatedMedia",
+                                         {"features": [{"name": "prefers-color-scheme", "value": scheme}]})
+            for path in paths:
+                self.go(path)
+                wait(lambda: not self.browser.find_elements(By.CSS_SELECTOR, "html.unconfirmed"))
+                low = self.browser.execute_script(LOW_CONTRAST, CONTRAST_MIN)
+                expect(not low, f"{scheme}, {path}: contrast below {CONTRAST_MIN}: {low}")
+        self.browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": []})
+        for path in paths:
+            self.go(path)
+            size = self.browser.execute_script("var s=document.querySelector('main p, main label');"
+                                               "return s?parseFloat(getComputedStyle(s).fontSize):0")
+            self.browser.execute_script("document.documentElement.style.fontSize='200%'")
+            large, wide = self.browser.execute_script(
+                "var s=document.querySelector('main p, main label');return [s?parseFloat(getComputedStyle(s).fontSize):0,"
+                "document.documentElement.scrollWidth]")
+            expect(large > 1.9 * size or not size, f"{path}: letters do not follow the browser's: {size}, {large} px")
+            expect(wide <= WIDTH, f"{path} with large letters is {wide} px wide")
+
+    def reachable(self):
+        """Tab alone reaches every tab of the page and the form's button, and each shows that it has the focus."""
+        self.go("/trends")
+        reached = []
+        for _ in range(40):
+            ActionChains(self.browser).send_keys(Keys.TAB).perform()
+            reached.append(self.browser.execute_script(
+                "var a=document.activeElement,s=getComputedStyle(a);"
+                "return [a.tagName,a.textContent.trim(),s.outlineStyle!=='none'&&parseFloat(s.outlineWidth)>=2]"))
+        names = {name for _, name, _ in reached}
+        for name in ("Now", "History", "Trends", "Scanner", "Lots", "Orders"):
+            expect(name in names, f"Tab does not reach {name}: {names}")
+        expect(any(tag == "BUTTON" for tag, _, _ in reached), "Tab does not reach a button")
+        expect(all(shown for tag, _, shown in reached if tag in ("A", "BUTTON", "INPUT", "SELECT")), f"a focus does not show: {reached}")
+
     def quiet(self):
         """Nothing that the page did was refused by the browser."""
         said = [entry["message"] for entry in self.browser.get_log("browser") if entry["level"] == "SEVERE"
@@ -485,6 +556,9 @@ def run_causes(program, work):
             browser.find_element(By.CSS_SELECTOR, "ol.found input[name=note]").send_keys("glass cleaned")
             browser.find_element(By.CSS_SELECTOR, "ol.found input[name=by]").send_keys("Ada", Keys.ENTER)
             wait(lambda: "accepted by Ada" in day.text("ul.causes") and "glass cleaned" in day.text("ul.causes"))
+            day.legible([path for _, path in TABS] + ["/why?q=bump:radius_mm", "/foil?id=2", "/lots?close=1&lot=L01"])
+            day.reachable()
+            day.go("/trends?newest=all")
             limits = browser.execute_script("return document.querySelector('.wide path.control').getAttribute('d')")
             expect(limits.count("V") > 10, "the limits do not follow the scanner: " + limits[:80])
             day.quiet()

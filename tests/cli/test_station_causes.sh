@@ -59,7 +59,7 @@ for content, words in (("time,t\n2026-13-01,1\n", "is no time"), ("day,t\n1,1\n"
     assert words in said.stdout + said.stderr, (content, said)
 
 # The page: asked, found, accepted, drawn, withdrawn.
-running = subprocess.Popen(station + ["--port", "0"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+running = subprocess.Popen(station + ["--context", os.path.join(folder, "temperature.csv"), "--port", "0"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
 try:
     base = running.stdout.readline().strip()
     def get(path):
@@ -70,6 +70,8 @@ try:
             return 200, station_causes.ask(base, path, {"form": token, "q": "bump:radius_mm", **fields})
         except urllib.error.HTTPError as error:
             return error.code, error.read().decode()
+    time.sleep(0.5)
+    assert "temperature.csv" not in get("/"), "a context is no scan"
     post("/why")
     for _ in range(600):
         answer = get("/why?q=bump:radius_mm")
