@@ -72,6 +72,7 @@ typedef struct fg_film_options {
   double shim_low_pct, shim_high_pct; /* heights of shims, percent of the clearance */
   unsigned jobs;                      /* threads; 0: all cores */
   size_t orbit_turns;                 /* of the orbit in time; 0: none */
+  bool sensitivity;                   /* of the critical mass, over the shape of the bumps */
 } fg_film_options;
 
 /* Air at 25 degrees C; table 5.6's loss factor, three pads of seven bumps or of as many as the
@@ -134,6 +135,26 @@ typedef struct fg_film_draws {
                                          75, 95 % of those solved */
 } fg_film_draws;
 
+/* Sensitivity of the critical mass to a parameter of the design's bumps. */
+typedef enum fg_film_parameter {
+  FG_FILM_RADIUS,
+  FG_FILM_ANGLE,
+  FG_FILM_RADIUS_AT_ARC, /* as springback changes it */
+  FG_FILM_THICKNESS,
+  FG_FILM_PARAMETERS
+} fg_film_parameter;
+extern const char *const fg_film_parameter_words[];
+
+typedef struct fg_film_sensitivity {
+  fg_film_parameter parameter;
+  /* Per percent of the parameter, of all bumps alike. */
+  double clearance_um_per_pct, stiffness_pct_per_pct, mass_pct_per_pct;
+  /* Bearings whose bumps scatter by one percent (standard deviation), independently: those solved
+   * of 200, and their critical mass over the perfect bearing's, quantiles as of draws. */
+  fg_film_share solved;
+  double quantile[FG_FILM_QUANTILES];
+} fg_film_sensitivity;
+
 /* A place of the rotor's orbit. */
 typedef struct fg_film_orbit_place {
   double turn, place_um[2], min_film_um;
@@ -175,6 +196,8 @@ typedef struct fg_film_report {
   double *pressure_kpa;  /* of all columns; owned */
   fg_film_draws draws;
   fg_film_orbit orbit;
+  fg_film_sensitivity sensitivity[FG_FILM_PARAMETERS];
+  size_t sensitivities; /* 0: not asked */
 } fg_film_report;
 
 /* Solves. FG_ERR_DATA for a design without bumps or a bearing without clearance, FG_ERR_USAGE for

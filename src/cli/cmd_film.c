@@ -52,6 +52,7 @@ enum {
   OPTION_SPEEDS_OUT,
   OPTION_DRAWS_OUT,
   OPTION_ORBIT,
+  OPTION_SENSITIVITY,
   OPTION_ORBIT_OUT,
 };
 
@@ -100,6 +101,10 @@ static const struct argp_option options[] = {
      "Of the stability map, rpm (default: a quarter to four times the speed, @film_speeds@)", 3},
     {"orbit", OPTION_ORBIT, "TURNS", 0,
      "Integrate film and rotor in time over so many turns, after a small pulse of load", 3},
+    {"sensitivity", OPTION_SENSITIVITY, NULL, 0,
+     "Change of the critical mass with radius, angle and thickness of the bumps, their mean and "
+     "their scatter",
+     3},
     {"shims", OPTION_SHIMS, "LOW:HIGH", 0,
      "Draw bearings as designed with random shims under their bumps, percent of the clearance: a "
      "higher shim closes it",
@@ -310,6 +315,9 @@ static error_t parse_film_option(int key, char *text, struct argp_state *state) 
     return 0;
   case OPTION_MESH:
     read_mesh(run, state, text);
+    return 0;
+  case OPTION_SENSITIVITY:
+    run->options.sensitivity = true;
     return 0;
   case FG_CLI_DECIMAL_COMMA:
     run->outputs.decimal_comma = true;

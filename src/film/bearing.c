@@ -55,7 +55,7 @@ double fg_film_mass_unit_kg(const fg_film_report *report, double speed_rpm) {
   return fg_film_load_unit_n(report) / (report->clearance_um * 1e-6 * speed * speed);
 }
 
-static const fg_stiffness_model *find_model(const char *id) {
+const fg_stiffness_model *fg_film_stiffness_model(const char *id) {
   const fg_stiffness_model *models = fg_stiffness_models();
   if (!id) return models;
   for (int i = 0; i < FG_STIFFNESS_MODELS; i++)
@@ -74,7 +74,7 @@ static fg_status find_stiffness(fg_context *ctx, fg_film_report *r) {
     r->stiffness_n_mm2 = scale / o->compliance; /* infinite: a rigid bearing */
     return FG_OK;
   }
-  const fg_stiffness_model *model = find_model(o->model);
+  const fg_stiffness_model *model = fg_film_stiffness_model(o->model);
   if (!model)
     return fg_fail(ctx, FG_ERR_USAGE, "no model of a bump's stiffness is called '%s'", o->model);
   const fg_design_bumps *bumps = &r->design.bumps;

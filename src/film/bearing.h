@@ -5,6 +5,7 @@
 
 #include "film/film.h"
 #include "foilgauge/film.h"
+#include "foilgauge/stiffness.h"
 
 /* Completes the report's clearance, compliance, stiffness, length and diameter, and fills the
  * perfect bearing. */
@@ -45,6 +46,21 @@ fg_status fg_film_solve_bearing(fg_context *ctx, const fg_film_report *report,
 /* Draws the random bearings; the state of the perfect one is the workspace's. */
 fg_status fg_film_draw(fg_context *ctx, fg_film_report *report, const fg_film_bearing *perfect,
                        const fg_film_workspace *workspace);
+
+/* NULL for an unknown id. */
+const fg_stiffness_model *fg_film_stiffness_model(const char *id);
+
+/* Fills the sensitivities of the critical mass, where the options ask; the workspace's state is
+ * that of the perfect bearing, before and after. */
+fg_status fg_film_find_sensitivities(fg_context *ctx, fg_film_report *report,
+                                     const fg_film_bearing *perfect, fg_film_workspace *workspace);
+/* Changes a bump's parameter by percents. */
+void fg_film_change_bump(const fg_film_sensitivity *sensitivity, double pct, size_t bump,
+                         fg_film_bearing *bearing);
+/* Draws bearings whose parameter scatters by one percent from bump to bump. */
+fg_status fg_film_draw_scatter(fg_context *ctx, fg_film_report *report,
+                               const fg_film_bearing *perfect, const fg_film_workspace *solved,
+                               fg_film_sensitivity *scatter);
 
 /* Integrates the orbit of the workspace's solved bearing, where the options ask for one. */
 fg_status fg_film_follow_orbit(fg_context *ctx, fg_film_report *report,

@@ -13,7 +13,7 @@
 #include "lot/statistics/assembly.h"
 #include "table_loop/engine_random.h"
 
-enum { DRAWS_OF_A_TASK = 10 };
+enum { DRAWS_OF_A_TASK = 10, SCATTER_DRAWS = 200 };
 static const double confidence = 0.95;
 
 /* Ratio that stands for a bearing that is stable at every mass, among sorted ratios. */
@@ -23,14 +23,28 @@ typedef struct draw_task {
   fg_film_report *report;
   const fg_film_bearing *perfect;
   const fg_film_workspace *solved; /* of the perfect bearing */
-  const fg_film_stock *stock;      /* NULL: random shims */
+  const fg_film_stock *stock;      /* NULL: random shims, or */
+  const fg_film_sensitivity *scatter;
+  fg_film_draws *draws;
 } draw_task;
+
+static uint64_t seed_draw(const fg_film_report *r, uint64_t purpose, size_t draw) {
+  uint64_t state = r->options.seed * 0xd1342543de82ef95u + purpose;
+  state = fg_engine_random_next(&state) ^ draw;
+  return fg_engine_random_next(&state);
+}
+
+/* A scatter of one percent, normal. */
+static void draw_scatter(const fg_film_report *r, const fg_film_sensitivity *scatter, size_t draw,
+                         fg_film_bearing *bearing) {
+  uint64_t state = seed_draw(r, 1 + (uint64_t)scatter->parameter, draw);
+  for (size_t i = 0; i < bearing->count; i++)
+    fg_film_change_bump(scatter, fg_engine_random_normal(&state), i, bearing);
+}
 
 /* Shims of heights between both ends, of equal probability: a higher one closes the clearance. */
 static void draw_shims(const fg_film_report *r, size_t draw, fg_film_bearing *bearing) {
-  uint64_t state = r->options.seed * 0xd1342543de82ef95u;
-  state = fg_engine_random_next(&state) ^ draw;
-  state = fg_engine_random_next(&state);
+  uint64_t state = seed_draw(r, 0, draw);
   double low = r->options.shim_low_pct, high = r->options.shim_high_pct;
   for (size_t i = 0; i < bearing->count; i++) {
     double height_pct = low + (high - low) * fg_engine_random_uniform(&state);
@@ -53,9 +67,11 @@ static void draw_foils(const fg_film_report *r, const fg_film_stock *stock, size
 static fg_status solve_draw(fg_context *ctx, const draw_task *t, fg_film_workspace *workspace,
                             size_t draw) {
   fg_film_bearing bearing = *t->perfect;
-  fg_film_result *result = &t->report->draws.result[draw];
+  fg_film_result *result = &t->draws->result[draw];
   if (t->stock)
     draw_foils(t->report, t->stock, draw, &bearing);
+  else if (t->scatter)
+    draw_scatter(t->report, t->scatter, draw, &bearing);
   else
     draw_shims(t->report, draw, &bearing);
   fg_film_state_copy(&workspace->film, &t->solved->state, &workspace->state);
@@ -73,7 +89,7 @@ static fg_status solve_draws(fg_context *ctx, void *shared, size_t item) {
   FG_TRY(fg_film_workspace_open(ctx, t->report, &workspace));
   fg_status status = FG_OK;
   for (size_t i = item * DRAWS_OF_A_TASK; i < end && status == FG_OK; i++)
-    if (i < t->report->draws.count) status = solve_draw(ctx, t, &workspace, i);
+    if (i < t->draws->count) status = solve_draw(ctx, t, &workspace, i);
   fg_film_workspace_close(&workspace);
   return status;
 }
@@ -116,29 +132,44 @@ static fg_status finish_draws(fg_context *ctx, fg_film_draws *draws) {
   return FG_OK;
 }
 
-static fg_status draw_all(fg_context *ctx, draw_task *task) {
-  fg_film_report *report = task->report;
-  size_t count = report->options.draws;
+static fg_status draw_all(fg_context *ctx, draw_task *task, size_t count) {
+  fg_film_draws *draws = task->draws;
   void *block;
-  FG_TRY(fg_memory_allocate(ctx, count, sizeof *report->draws.result, &block));
-  report->draws.result = block;
-  report->draws.count = count;
-  FG_TRY(fg_parallel_run(ctx, report->options.jobs, (count + DRAWS_OF_A_TASK - 1) / DRAWS_OF_A_TASK,
-                         solve_draws, task));
-  return finish_draws(ctx, &report->draws);
+  FG_TRY(fg_memory_allocate(ctx, count, sizeof *draws->result, &block));
+  draws->result = block;
+  draws->count = count;
+  FG_TRY(fg_parallel_run(ctx, task->report->options.jobs,
+                         (count + DRAWS_OF_A_TASK - 1) / DRAWS_OF_A_TASK, solve_draws, task));
+  return finish_draws(ctx, draws);
+}
+
+fg_status fg_film_draw_scatter(fg_context *ctx, fg_film_report *report,
+                               const fg_film_bearing *perfect, const fg_film_workspace *solved,
+                               fg_film_sensitivity *scatter) {
+  fg_film_draws draws = {.count = 0};
+  draw_task task = {
+      .report = report, .perfect = perfect, .solved = solved, .scatter = scatter, .draws = &draws};
+  fg_status status = draw_all(ctx, &task, SCATTER_DRAWS);
+  scatter->solved = draws.solved;
+  for (size_t k = 0; k < FG_FILM_QUANTILES; k++)
+    scatter->quantile[k] = draws.quantile[k];
+  free(draws.result);
+  return status;
 }
 
 fg_status fg_film_draw(fg_context *ctx, fg_film_report *report, const fg_film_bearing *perfect,
                        const fg_film_workspace *solved) {
   fg_film_stock stock;
-  draw_task task = {.report = report, .perfect = perfect, .solved = solved};
-  if (!report->options.draws) return FG_OK;
-  if (!fg_film_draws_from_lot(&report->options)) return draw_all(ctx, &task);
+  size_t count = report->options.draws;
+  draw_task task = {
+      .report = report, .perfect = perfect, .solved = solved, .draws = &report->draws};
+  if (!count) return FG_OK;
+  if (!fg_film_draws_from_lot(&report->options)) return draw_all(ctx, &task, count);
   FG_TRY(fg_film_stock_read(ctx, report, &stock));
   task.stock = &stock;
   report->draws.foils = stock.foils;
   report->draws.left_out = stock.left_out;
-  fg_status status = draw_all(ctx, &task);
+  fg_status status = draw_all(ctx, &task, count);
   fg_film_stock_free(&stock);
   return status;
 }

@@ -76,6 +76,7 @@ static fg_status solve_perfect(fg_context *ctx, fg_film_report *r, fg_film_works
 static fg_status run_bearings(fg_context *ctx, fg_film_report *r, fg_film_workspace *workspace) {
   fg_film_bearing perfect = r->bearing;
   FG_TRY(solve_perfect(ctx, r, workspace, &perfect));
+  FG_TRY(fg_film_find_sensitivities(ctx, r, &perfect, workspace));
   FG_TRY(fg_film_draw(ctx, r, &perfect, workspace));
   r->at = r->perfect;
   if (r->options.foils && !fg_film_draws_from_lot(&r->options)) {

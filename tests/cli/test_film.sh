@@ -86,6 +86,12 @@ valid film.schema.json orbit.json
 expect 0 "orbit in time: (grows|touches)" "$program" film $fast --speeds 30000:90000:2 --mass 2 --orbit 20 --table -
 expect 64 "needs --orbit" "$program" film $fast --orbit-out orbit.csv
 
+# Sensitivities: the clearance falls by the thickness; the stiffness rises with its cube.
+expect 0 "constant arc length" "$program" film $fast --speeds 30000:90000:2 --sensitivity -o worth.json --table - --html worth.html
+valid film.schema.json worth.json
+near "clearance by thickness" "$(value worth.json "r['sensitivities'][3]['clearance_um_per_pct']")" -1 0.1
+near "stiffness by thickness" "$(value worth.json "r['sensitivities'][3]['stiffness_pct_per_pct']")" 3 0.05
+
 # A load beyond the film, and a touching one.
 expect 65 "no film at" "$program" film --load 5000 --speed 3000 --clearance 40 --compliance 0 --mesh 2,4
 expect 0 "touching" "$program" film $fast --speeds 30000:90000:2 --touching 100 --table -

@@ -238,6 +238,42 @@ static bool has_draws(const fg_subject *s) {
   return report_of(s)->draws.count > 0;
 }
 
+/* ---- sensitivities ---- */
+
+#define SENSITIVITY(name, field, heading_)                                                         \
+  FG_NUMBER(name, fg_film_sensitivity, field), .heading = (heading_),                              \
+                                               .page = {.rank = 2, .digits = 3},                   \
+                                               .terminal = {.rank = 2, .digits = 3}
+
+static const fg_member sensitivity_rows[] = {
+    {FG_WORD("parameter", fg_film_sensitivity, parameter, fg_film_parameter_words),
+     .words = "of the design's bumps", .heading = "of", .page = {.rank = 1},
+     .terminal = {.rank = 1}},
+    {SENSITIVITY("clearance_um_per_pct", clearance_um_per_pct, "clearance,\nµm/%"),
+     .words = "change of the clearance for one percent more, of all bumps"},
+    {SENSITIVITY("stiffness_pct_per_pct", stiffness_pct_per_pct, "stiffness,\n%/%"),
+     .words = "of a bump, likewise"},
+    {SENSITIVITY("mass_pct_per_pct", mass_pct_per_pct, "critical\nmass, %/%"),
+     .words = "of the critical mass, likewise"},
+    {FG_OBJECT("scatter_solved", fg_film_sensitivity, solved, &fg_film_share_members),
+     .options = FG_MEMBER_ON_LINE,
+     .words = "of 200 bearings whose bumps scatter by one percent (standard deviation)"},
+    {SENSITIVITY("scatter_at_5_pct", quantile[0], "scatter 1 %:\n5 %"),
+     .words = "5 % quantile of their critical mass over the perfect bearing's"},
+    {SENSITIVITY("scatter_median", quantile[2], "median"), .words = "their median"},
+    {SENSITIVITY("scatter_at_95_pct", quantile[4], "95 %"), .words = "their 95 % quantile"},
+};
+const fg_members fg_film_sensitivity_members = FG_MEMBERS(sensitivity_rows);
+
+bool fg_film_sensitivity_at(const fg_subject *list, size_t i, fg_subject *element) {
+  element->object = &report_of(list)->sensitivity[i];
+  return i < report_of(list)->sensitivities;
+}
+
+static bool has_sensitivities(const fg_subject *s) {
+  return report_of(s)->sensitivities > 0;
+}
+
 /* ---- the orbit ---- */
 
 static const fg_member place_rows[] = {
@@ -352,6 +388,10 @@ static const fg_member report_rows[] = {
      .options = FG_MEMBER_ON_LINE, .words = "the same bearing under the same load"},
     {FG_OBJECT("draws", fg_film_report, draws, &draws_members), .present = has_draws,
      .words = "bearings of the lot's foils, or as designed with random shims"},
+    {FG_ARRAY("sensitivities", fg_film_report, sensitivity, sensitivities,
+              &fg_film_sensitivity_members),
+     .present = has_sensitivities,
+     .words = "of the critical mass over the shape of the bumps, about the design"},
     {FG_OBJECT("orbit", fg_film_report, orbit, &orbit_members), .present = has_orbit,
      .words = "of the rotor in time, after a pulse of 2 % of the load during the first turn"},
     {FG_LIST("field", fg_film_report, column, columns, &column_members),

@@ -17,6 +17,10 @@ fg_member_element fg_film_share_at;
 
 extern const fg_document fg_film_document;
 
+/* Of an fg_film_sensitivity. */
+extern const fg_members fg_film_sensitivity_members;
+fg_member_element fg_film_sensitivity_at;
+
 /* Describes the draws: "1000 bearings of 3 different foils each, drawn from 40". */
 void fg_film_draws_words(const fg_film_report *report, char *text, size_t size);
 

@@ -85,6 +85,17 @@ static void put_stability(FILE *out, const fg_film_report *r) {
   fputs("</section>\n", out);
 }
 
+static void put_sensitivities(FILE *out, const fg_film_report *r) {
+  if (!r->sensitivities) return;
+  fputs("<section>\n<h2 class=\"first\">Worth of the bumps' shape</h2>\n<p>Per percent of all "
+        "bumps alike; and the critical mass over the perfect bearing's where bumps scatter by one "
+        "percent.</p>\n",
+        out);
+  fg_html_table(out, &fg_film_sensitivity_members, &(fg_subject){.object = r, .whole = r},
+                fg_film_sensitivity_at);
+  fputs("</section>\n", out);
+}
+
 static void put_orbit(FILE *out, const fg_film_report *r) {
   if (!r->orbit.count) return;
   fprintf(out, "<section>\n<h2 class=\"first\">The orbit in time: %s</h2>\n<figure>",
@@ -121,6 +132,7 @@ fg_status fg_film_write_html(fg_context *ctx, const fg_film_report *r, FILE *out
   if (r->columns) put_field(out, r);
   if (r->speeds) put_stability(out, r);
   put_orbit(out, r);
+  put_sensitivities(out, r);
   put_draws(out, r);
   if (r->options.foils && !r->draws.foils) fg_provenance_take_file(&from, r->options.foils);
   FG_TRY(fg_html_provenance_section(ctx, out, &from));

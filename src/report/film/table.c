@@ -27,6 +27,13 @@ static void put_conditions(FILE *out, const fg_film_report *r) {
           r->diameter_mm, r->length_mm, r->clearance_um, r->compliance, o->loss_factor);
 }
 
+static void put_sensitivities(FILE *out, const fg_film_report *r) {
+  if (!r->sensitivities) return;
+  fputs("\nper percent of the design's bumps, and where they scatter by one percent\n", out);
+  fg_members_terminal(out, "  ", &fg_film_sensitivity_members,
+                      &(fg_subject){.object = r, .whole = r}, fg_film_sensitivity_at);
+}
+
 static void put_draws(FILE *out, const fg_film_report *r) {
   const fg_film_draws *d = &r->draws;
   char words[200];
@@ -50,6 +57,7 @@ fg_status fg_film_write_text(fg_context *ctx, const fg_film_report *r, FILE *out
   if (r->orbit.count)
     fprintf(out, "\n  orbit in time: %s; exp(%.3g) a turn, whirl at %.3g of the speed\n",
             fg_film_fate_words[r->orbit.fate], r->orbit.growth_per_turn, r->orbit.whirl_ratio);
+  put_sensitivities(out, r);
   put_draws(out, r);
   size_t count = fg_film_notes(r, notes);
   for (size_t i = 0; i < count; i++)
