@@ -186,6 +186,8 @@ typedef struct fg_lot_request {
   void *user;
 } fg_lot_request;
 
+enum { FG_LOT_TRACED = 400 };
+
 typedef struct fg_lot_outcome {
   fg_report_outcome judged; /* judgement of all foils, scans, bearings; fg_outcome_exit_code */
   size_t scans, to_measure, measured, failed, kept; /* scans; failed: could not be measured */
@@ -195,7 +197,8 @@ typedef struct fg_lot_outcome {
   size_t not_drawn; /* pages that could not be drawn: the scan could not be read again */
   char first_not_drawn[512];
   size_t foils, foils_by_verdict[FG_VERDICT_NONE + 1];
-  bool bearings_judged; /* the design states tolerances of a bearing */
+  char traced[FG_LOT_TRACED]; /* the verdicts' basis: a state of traceability, with its reason */
+  bool bearings_judged;       /* the design states tolerances of a bearing */
   size_t bearings, bearings_by_verdict[FG_VERDICT_NONE + 1];
   char assembly[4][400]; /* drawn bearings in words, last the limits of their evidence; "": none
                             drawn */

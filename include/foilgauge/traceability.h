@@ -27,6 +27,11 @@ typedef enum fg_traceability {
 /* "none", "stated", "plate"; NULL behind the last. */
 extern const char *const fg_traceability_words[];
 
+/* Words of a table's cell: the states, and "not needed" where limits are judged without one; NULL
+ * behind the last. A cell's number. */
+extern const char *const fg_traceability_cells[];
+int fg_design_traceability_cell(const fg_design *design);
+
 /* Cheapest ways to know a scanner's scale, in a sentence for people. */
 extern const char fg_traceability_cure[];
 

@@ -312,6 +312,8 @@ int fg_cli_lot_summary(const fg_lot_outcome *outcome, const char *folder) {
   if (by[FG_VERDICT_NOT_MEASURED] || outcome->failed)
     fprintf(stderr, "; not measured: %zu foil%s, %zu scan%s", by[FG_VERDICT_NOT_MEASURED],
             fg_plural(by[FG_VERDICT_NOT_MEASURED]), outcome->failed, fg_plural(outcome->failed));
+  if (by[FG_VERDICT_PASS] || by[FG_VERDICT_FAIL])
+    fprintf(stderr, "\nTraced to: %s", outcome->traced);
   fputc('\n', stderr);
   if (outcome->bearings_judged) print_bearings(outcome);
   for (size_t i = 0; i < sizeof outcome->assembly / sizeof *outcome->assembly; i++)

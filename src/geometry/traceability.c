@@ -9,6 +9,9 @@
 
 const char *const fg_traceability_words[] = {"none", "stated", "plate", NULL};
 
+const char *const fg_traceability_cells[] = {"none", "stated", "plate", "not needed", NULL};
+enum { CELL_NOT_NEEDED = 3 };
+
 const char fg_traceability_cure[] =
     "Scan a plate of known sizes for a model (--model), state a calibration, or take --flatbed.";
 
@@ -27,6 +30,12 @@ fg_artefact fg_design_traced_to(const fg_design *design) {
 fg_traceability fg_design_traceability(const fg_design *design) {
   if (!design->calibration.stated && !design->model_scale.known) return FG_TRACED_TO_NONE;
   return fg_design_traced_to(design).name[0] ? FG_TRACED_TO_PLATE : FG_TRACED_TO_STATED;
+}
+
+int fg_design_traceability_cell(const fg_design *design) {
+  fg_traceability state = fg_design_traceability(design);
+  bool needless = state == FG_TRACED_TO_NONE && design->calibration.not_needed[0];
+  return needless ? CELL_NOT_NEEDED : (int)state;
 }
 
 bool fg_design_may_judge(const fg_design *design) {

@@ -44,7 +44,11 @@ size_t fg_grid_effect_moves(const grid_effect *effect, const fg_field_frame *fra
     high[s] += step;
     fg_point a = moved_by_shape(effect, frame, low, at);
     fg_point b = moved_by_shape(effect, frame, high, at);
-    d[n++] = (fg_point){(b.x - a.x) / (2 * step), (b.y - a.y) / (2 * step)};
+    /* No slope leads across a jump. */
+    bool across =
+        effect->kind->jumps && hypot(b.x - a.x, b.y - a.y) > 0.5 * fabs(effect->amplitude_mm[0]);
+    double weight = across ? 0 : 1 / (2 * step);
+    d[n++] = (fg_point){weight * (b.x - a.x), weight * (b.y - a.y)};
   }
   return n;
 }

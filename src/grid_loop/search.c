@@ -240,7 +240,7 @@ static bool move_effect(grid_effect *effect, const double *estimate) {
   size_t own = effect->kind->columns, all = fg_grid_effect_columns(effect);
   for (size_t k = own; k < all; k++)
     if (fabs(estimate[k]) > LOOSE_SHARE * fabs(effect->shape[k - own])) return false;
-  for (size_t k = own; k < all; k++)
+  for (size_t k = own; k < all && !effect->kind->jumps; k++) /* marks would change sides */
     effect->shape[k - own] += estimate[k];
   memcpy(effect->amplitude_mm, estimate, own * sizeof *estimate);
   return true;

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Grids against known truth: tests/bench/grid.py build/foilgauge reports/grid.md [MAPS] writes the page.
+"""Grids against known truth: tests/bench/grid.py build/foilgauge reports/grid.md writes the page.
+Maps of a bed: grid_maps.py.
 
 Pictures are of a second renderer (other_grid.py), which shares no code with the program. Needs numpy, scipy, opencv, pillow."""
 import json
@@ -116,61 +117,6 @@ def gauge_free(points, moves, known):
     return np.stack([v[:len(x)], v[len(x):]], 1)
 
 
-def one_map(program, folder, seed, known, rough):
-    rng = np.random.default_rng(seed)
-    dpi, size = 600, 120
-    field = Field((size, size)).scale(rng.normal() * .003, rng.normal() * .003).shear(rng.normal() * .002)
-    field.smooth(rng.uniform(2, 12), 2.0, seed)
-    if seed % 2:
-        field.keystone(rng.normal() * 5e-6).bow(rng.normal() * 10)
-    if seed % 3 == 0:
-        field.ripple(rng.uniform(2, 6), rng.uniform(12, 30), rng.uniform(0, 6))
-    u_pitch = 2e-5
-    if known:
-        board = Board('dots', 5.0, 20, 20, ratio=0, missing=[(0, 0), (1, 0), (0, 1)])
-        stretch = 1 + rng.normal(size=2) * u_pitch / 5
-        board.x, board.y = board.x * stretch[0], board.y * stretch[1]
-    else:
-        board = Board('dots', 5.0, 20, 20, ratio=rng.normal() * .002, shear=rng.normal() * .001, mark_um=1.5, seed=seed,
-                      missing=[(0, 0), (1, 0), (0, 1)], bend=Field((95, 95)).smooth(3, 1.5, seed + 500))
-    paths = []
-    for i, turn in enumerate([0] if known else [0, 90]):
-        picture, _, _ = render(board, field, 60 + rng.uniform(-3, 3, 2), turn + rng.uniform(-1, 1), (2835, 2835), dpi, size=1.2,
-                               seed=10 * seed + i, rough=rough)
-        paths.append(os.path.join(folder, 'map%d.png' % i))
-        save(picture, paths[-1], dpi)
-    stated = {'marks': 'dots', 'pitch_mm': 5}
-    if known:
-        stated['u_pitch_mm'] = u_pitch
-    done, seconds = run(program, 'loop', *([] if known else ['--same-part']), *paths, '--design', write_design(folder, **stated),
-                        '-o', os.path.join(folder, 'o.json'))
-    if done.returncode:
-        return None
-    report = json.load(open(os.path.join(folder, 'o.json')))
-    points = np.array([[p['x_mm'], p['y_mm']] for p in report['map']])
-    told = np.array([[p['dx_um'], p['dy_um']] for p in report['map']])
-    u = np.array([[p['u_dx_um'], p['u_dy_um']] for p in report['map']])
-    true = 1000 * np.stack(field(points[:, 0], points[:, 1]), 1)
-    error = gauge_free(points, told - true, known)
-    ripples = [c for c in report['claims'] if c['id'] == 'scan.carriage_ripple' and c['verdict'] == 'found']
-    return (np.sqrt((gauge_free(points, true, known) ** 2).mean()), np.sqrt((error ** 2).mean()), 100 * (np.abs(error) < 2 * u).mean(),
-            seconds, seed % 3 == 0, len(ripples) > 0, len(report['claims']))
-
-
-def maps(program, folder, count):
-    rows = []
-    for known in (True, False):
-        for rough in (False, True):
-            cases = [one_map(program, folder, seed, known, rough) for seed in range(count)]
-            good = np.array([c for c in cases if c is not None], float)
-            rows.append(('plate of known pitch, one scan' if known else 'printed board, two scans turned by 90°',
-                         'rough' if rough else 'ideal', len(cases), len(cases) - len(good), np.sqrt((good[:, 0] ** 2).mean()),
-                         np.sqrt((good[:, 1] ** 2).mean()), good[:, 2].mean(), np.median(good[:, 3]),
-                         '%d of %d' % ((good[:, 4] * good[:, 5]).sum(), good[:, 4].sum()),
-                         '%d of %d' % (((1 - good[:, 4]) * good[:, 5]).sum(), (1 - good[:, 4]).sum())))
-    return rows
-
-
 def a4_time(program, folder):
     dpi = 1200
     board = Board('dots', 5.0, 40, 57)
@@ -189,11 +135,12 @@ def a4_time(program, folder):
 
 
 def main():
-    program, page, count = os.path.abspath(sys.argv[1]), sys.argv[2], int(sys.argv[3]) if len(sys.argv) > 3 else 50
+    program, page = os.path.abspath(sys.argv[1]), sys.argv[2]
     with tempfile.TemporaryDirectory() as folder, open(page + '.part', 'w', buffering=1) as out:
-        print('# Grids\n\n`/usr/bin/python3 tests/bench/grid.py build/foilgauge reports/grid.md %d` writes this page. Pictures are of a '
+        print('# Grids\n\n`/usr/bin/python3 tests/bench/grid.py build/foilgauge reports/grid.md` writes this page. Pictures are of a '
               'second renderer\n(`tests/bench/other_grid.py`), which shares no code with the program: 8 bit, noise 2 of 175 counts of '
-              'contrast, blur 1.2 px;\nrough ones have correlated noise of twice the size, shading and a one-sided blur.\n' % count, file=out)
+              'contrast, blur 1.2 px;\nrough ones have correlated noise of twice the size, shading and a one-sided blur. Maps of a bed, '
+              'and foils through them: [grid_maps.md](grid_maps.md).\n', file=out)
         print('## Marks\n\nrms error of a mark along one axis, px at 1200 dpi, less the mean over the marks; the bound is that of '
               'Cramér and Rao for\nthe pixels of the mark (of a corner within 48 px); coverage of 2 u.\n', file=out)
         print('| marks | pitch, mm | picture | found | error, px | bound, px | error / bound | coverage, % | peer | its error, px | times '
@@ -203,20 +150,6 @@ def main():
                 k, pitch, how, found, there, rms, '%.5f' % bound if bound == bound else '–',
                 '%.2f' % (rms / bound) if bound == bound else '–', cover, peer, '%.5f' % peer_rms if peer_rms == peer_rms else '–',
                 '%.1f' % (peer_rms / rms) if peer_rms == peer_rms else '–'), file=out, flush=True)
-        if not count:  # marks alone
-            os.rename(page + '.part', page)
-            return
-        print('\n## Maps\n\nA bed of 95 × 95 mm at 600 dpi under a wrong scale of each axis, a shear, smooth random waves of 2 to 12 µm, '
-              'of every second\nscanner a keystone and a bow, of every third a ripple. A known plate has the error of its stated pitch; '
-              'a printed board its own\nratio, shear, bend of 3 µm and marks of 1.5 µm. Errors are those of `map`, less shift and turn '
-              '(and scale where no pitch is known),\nalong one axis, rms over all beds; coverage of 2 u.\n', file=out)
-        print('| scans | picture | beds | refused | before, µm | after, µm | coverage, % | s, median | ripple found where there is one | '
-              'where there is none |\n|---|---|---:|---:|---:|---:|---:|---:|---:|---:|', file=out)
-        for row in maps(program, folder, count):
-            print('| %s | %s | %d | %d | %.2f | %.3f | %.1f | %.1f | %s | %s |' % row, file=out, flush=True)
-        if count < 10:  # a trial
-            os.rename(page + '.part', page)
-            return
         wall, cpu, found, there = a4_time(program, folder)
         print('\n## Time\n\n`measure` of an A4 bed at 1200 dpi (139 Mpx, %d dots of 5 mm pitch, %d found): %.1f s of wall time, %.1f s '
               'of processor time, best of\nthree, on a machine of two cores that was busy with other work.' % (there, found, wall, cpu), file=out)

@@ -17,6 +17,7 @@ import sys
 import tempfile
 import time
 
+import cv2
 import numpy as np
 from PIL import Image
 from scipy import ndimage
@@ -75,15 +76,61 @@ def scan_plate(folder, board, field, seed, number, turn, rough, rng, dpi):
     return path
 
 
+def gauge_weighted(points, moves, u, known):
+    """Less shift and turn, and scale where no pitch is known, by weights 1 / u²: a place beside a seam has a large u."""
+    middle = 0.5 * (points.min(0) + points.max(0))
+    x, y = (points - middle).T
+    n, zero = np.ones_like(x), np.zeros_like(x)
+    columns = [np.r_[n, zero], np.r_[zero, n], np.r_[-y, x]] + ([] if known else [np.r_[x, y]])
+    a, v, w = np.stack(columns, 1), np.r_[moves[:, 0], moves[:, 1]], 1 / np.r_[u[:, 0], u[:, 1]]
+    v = v - a @ np.linalg.lstsq(a * w[:, None], v * w, rcond=None)[0]
+    return np.stack([v[:len(x)], v[len(x):]], 1)
+
+
 def judge_map(report, field, known):
     points = np.array([[p['x_mm'], p['y_mm']] for p in report['map']])
     told = np.array([[p['dx_um'], p['dy_um']] for p in report['map']])
     u = np.array([[p['u_dx_um'], p['u_dy_um']] for p in report['map']])
     true = 1000 * np.stack(field(points[:, 0], points[:, 1]), 1)
-    error = gauge_free(points, told - true, known)
+    error = gauge_weighted(points, told - true, u, known)
     found = [c['id'] for c in report['claims'] if c['verdict'] == 'found']
     return {'before_um': np.sqrt((gauge_free(points, true, known) ** 2).mean()), 'after_um': np.sqrt((error ** 2).mean()),
             'u_um': np.sqrt((u ** 2).mean()), 'coverage': (np.abs(error) < 2 * u).mean(), 'found': found}
+
+
+def turned(points, known, wanted):
+    """Shift, turn (and scale where no pitch is known) that lay the points on the wanted ones; the residual."""
+    a, b = points - points.mean(0), wanted - wanted.mean(0)
+    turn = (a[:, 0] + 1j * a[:, 1]).conj() @ (b[:, 0] + 1j * b[:, 1])
+    scale = 1 if known else abs(turn) / (a ** 2).sum()
+    c, s = scale * turn.real / abs(turn), scale * turn.imag / abs(turn)
+    return a @ np.array([[c, s], [-s, c]]) - b
+
+
+def opencv_map(report, field, known, dpi):
+    """calibrateCamera on the same marks, in its best model: the map's error, um, and its time. The camera stands a metre away."""
+    points = np.array([[p['x_mm'], p['y_mm']] for p in report['map']])
+    true, mm = points + np.stack(field(points[:, 0], points[:, 1]), 1), 25.4 / dpi
+    lattices, places = [], []
+    for grid, scan in zip(report['grids'], report['inputs']):
+        index = np.array([[m['column'], m['row'], 0] for m in grid['marks']], np.float32)
+        lattices.append(index * PITCH)
+        places.append(np.array([[m['x_mm'], m['y_mm']] for m in grid['marks']], np.float32)[:, None] / np.float32(mm))
+    side = int(2 * places[0].mean())
+    camera = np.array([[1000 / mm, 0, side / 2], [0, 1000 / mm, side / 2], [0, 0, 1.]])
+    best, start = np.inf, time.time()
+    for more in (0, cv2.CALIB_RATIONAL_MODEL, cv2.CALIB_THIN_PRISM_MODEL, cv2.CALIB_RATIONAL_MODEL | cv2.CALIB_THIN_PRISM_MODEL):
+        flags = cv2.CALIB_USE_INTRINSIC_GUESS | cv2.CALIB_FIX_PRINCIPAL_POINT | more
+        try:
+            _, k, distortion, turns, shifts = cv2.calibrateCamera(lattices, places, (side, side), camera.copy(), None, flags=flags)
+        except cv2.error:
+            continue
+        rays = cv2.undistortPoints(points[:, None] / mm, k, distortion)[:, 0]
+        rays, r = np.c_[rays, np.ones(len(rays))], cv2.Rodrigues(turns[0])[0]
+        origin, along = -r.T @ shifts[0][:, 0], rays @ r  # of the board's frame, whose plane is z = 0
+        board = origin[:2] - origin[2] / along[:, 2:] * along[:, :2]
+        best = min(best, 1000 * np.sqrt((turned(board, known, true) ** 2).mean()))
+    return {'opencv_um': best, 'opencv_s': (time.time() - start) / 4}
 
 
 def warp(picture, field, mm):
@@ -137,7 +184,7 @@ def foil_case(program, folder, field, seed, rough, model):
             'map': measure_foil(program, warped, truth, '--model', model)}
 
 
-def one_case(program, seed, kind, rough, with_foil):
+def one_case(program, seed, kind, rough, with_foil, peer):
     dpi = FOIL_DPI if with_foil else MAP_DPI
     field, parts = bed_of(seed, dpi)
     rng = np.random.default_rng([seed, 14, KINDS.index(kind), int(rough)])
@@ -155,6 +202,8 @@ def one_case(program, seed, kind, rough, with_foil):
             case['error'] = done.stderr.strip()[-200:]
             return case
         case.update(judge_map(json.load(open(os.path.join(folder, 'o.json'))), field, known), seconds=seconds)
+        if peer:
+            case['peer'] = opencv_map(json.load(open(os.path.join(folder, 'o.json'))), field, known, dpi)
         if with_foil:
             case['foil'] = foil_case(program, folder, field, seed, rough, model)
     return case
@@ -174,7 +223,7 @@ def work(options):
         for kind, rough, with_foil in wanted:
             if (seed, kind, rough, FOIL_DPI if with_foil else MAP_DPI) in there:
                 continue
-            case = one_case(options.program, seed, kind, rough, with_foil)
+            case = one_case(options.program, seed, kind, rough, with_foil, options.peer)
             with open(options.cases, 'a') as out:
                 out.write(json.dumps(case) + '\n')
 
@@ -189,7 +238,7 @@ def write_maps(cases, out):
     words = {'plate': 'plate of known pitch, one scan', 'board': 'printed board, two scans, turned by 90°'}
     for kind in KINDS:
         for rough in (False, True):
-            every = [c for c in cases if c['kind'] == kind and c['rough'] == rough and c['dpi'] == MAP_DPI]
+            every = [c for c in cases if c['kind'] == kind and c['rough'] == rough and c['dpi'] == MAP_DPI and 'peer' not in c]
             good = [c for c in every if 'error' not in c]
             if good:
                 print('| %s | %s | %d | %d | %.1f | %.3f | %.3f | %.1f | %.1f |' % (
@@ -200,7 +249,7 @@ def write_maps(cases, out):
 
 def write_parts(cases, out):
     names = {'ripple': ('scan.carriage_ripple', 'scan.ripple_growth'), 'step': ('scan.row_step',), 'chips': ('scan.chip_tilt', 'scan.chip_gap')}
-    good = [c for c in cases if 'error' not in c and c['dpi'] == MAP_DPI]
+    good = [c for c in cases if 'error' not in c and c['dpi'] == MAP_DPI and 'peer' not in c]
     print('\n| beds with | maps | named | named on beds without | after, µm | coverage, % |\n|---|---:|---:|---:|---:|---:|', file=out)
     for part, ids in names.items():
         there = [c for c in good if part in c['parts']]
@@ -212,6 +261,24 @@ def write_parts(cases, out):
     smooth = [c for c in good if not c['parts'] or c['parts'] == ['keystone']]
     print('| smooth fields alone | %d | – | – | %.3f | %.1f |' % (
         len(smooth), rms([c['after_um'] for c in smooth]), 100 * np.mean([c['coverage'] for c in smooth])), file=out)
+
+
+def write_peer(cases, out):
+    good = [c for c in cases if 'peer' in c and np.isfinite(c['peer']['opencv_um'])]
+    if not good:
+        return
+    print("\n## OpenCV on the same marks\n\n`calibrateCamera` gets the marks that the program found, and its best distortion model of four "
+          '(5 numbers, rational, thin prism, both).\nIt is made for lenses; a scanner has a carriage.\n\n'
+          '| scans | picture | maps | before, µm | program, µm | OpenCV, µm | times larger | OpenCV, s |\n|---|---|---:|---:|---:|---:|---:|---:|',
+          file=out)
+    for kind in KINDS:
+        for rough in (False, True):
+            own = [c for c in good if c['kind'] == kind and c['rough'] == rough]
+            if own:
+                after, peer = rms([c['after_um'] for c in own]), rms([c['peer']['opencv_um'] for c in own])
+                print('| %s | %s | %d | %.1f | %.3f | %.2f | %.0f | %.2f |' % (
+                    kind, 'rough' if rough else 'ideal', len(own), rms([c['before_um'] for c in own]), after, peer, peer / after,
+                    np.median([c['peer']['opencv_s'] for c in own])), file=out)
 
 
 def write_foils(cases, out):
@@ -237,16 +304,17 @@ def write_foils(cases, out):
 def write_page(cases, path):
     with open(path, 'w') as out:
         print('# Maps of a bed, and foils through them\n\n`/usr/bin/python3 tests/bench/grid_maps.py build/foilgauge maps.jsonl --beds 50`, '
-              'the same with `foils.jsonl --beds 20 --first 100 --foils`, then\n`cat maps.jsonl foils.jsonl >all.jsonl` and '
+              'the same with `foils.jsonl --beds 20 --first 100 --foils`\nand with `peers.jsonl --beds 8 --first 200 --peer`, then `cat maps.jsonl foils.jsonl peers.jsonl >all.jsonl` and\n'
               '`tests/bench/grid_maps.py build/foilgauge all.jsonl --beds 0 --out reports/grid_maps.md` make this page.\nBeds are %g mm wide '
               '(%g with a foil, at %d dpi), dots lie %g mm apart, %d dpi. Every bed has a wrong scale of each axis, a shear and\nsmooth '
               'random waves of 2 to 12 µm; half of them a keystone and a bow, a third a ripple, a quarter tilted chips with gaps, a '
               'quarter\na step of rows. A plate has the error of its stated pitch; a printed board a ratio, a shear, a bend of 3 µm and '
-              'marks of 1.5 µm.\nErrors are those of `map`, less shift and turn (and scale where no pitch is known), along one axis, rms '
-              'over all beds.\n' % (SIDE_MM[MAP_DPI], SIDE_MM[FOIL_DPI], FOIL_DPI, PITCH, MAP_DPI), file=out)
+              'marks of 1.5 µm.\nErrors are those of `map`, less shift and turn (and scale where no pitch is known; by weights 1 / u²), along '
+              'one axis, rms over all beds.\n' % (SIDE_MM[MAP_DPI], SIDE_MM[FOIL_DPI], FOIL_DPI, PITCH, MAP_DPI), file=out)
         write_maps(cases, out)
         write_parts(cases, out)
         write_foils(cases, out)
+        write_peer(cases, out)
 
 
 def main():
@@ -256,6 +324,7 @@ def main():
     parser.add_argument('--beds', type=int, default=50)
     parser.add_argument('--first', type=int, default=0)
     parser.add_argument('--foils', action='store_true', help='plates at the resolution of foils, and a foil each')
+    parser.add_argument('--peer', action='store_true', help="OpenCV's calibrateCamera on the same marks")
     parser.add_argument('--out')
     options = parser.parse_args()
     options.program = os.path.abspath(options.program)

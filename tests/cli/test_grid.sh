@@ -74,7 +74,7 @@ near "the radius through the map" "$(member pins_corrected.json radius_mm)" 5 0.
 # Names are for displacements that no map follows: tilted chips with gaps, and a ripple whose period is as uncertain as the marks make it.
 spec chips.json dots 1.5 4 '{"id": "scan.chip_tilt", "amplitude_um": 12, "x_mm": 4, "pitch_mm": 10}, {"id": "scan.chip_gap",
  "amplitude_um": 9, "x_mm": 4, "pitch_mm": 10}, {"id": "scan.carriage_ripple", "amplitude_um": 8, "period_mm": 8.5}'
-sed -i 's/"ratio": 0.0015/"ratio": 0, "mark_mm": 0.6/' chips.json
+sed -i 's/"ratio": 0.0015/"ratio": 0, "mark_mm": 0.35/' chips.json
 expect 0 "" "$program" render chips.json -o chips.png
 expect 0 "" "$program" loop chips.png --design known.json -o chips_loop.json
 python3 -c "

@@ -80,7 +80,7 @@ static void put_failed_scan(FILE *out, const fg_lot *lot, size_t item) {
   put_manifest_cells(out, &lot->manifest, item);
   fprintf(out, ",,,not_measured,%s,", lot->records[item].repeat_of ? "repeated_scan" : "");
   put_csv_text(out, lot->records[item].error);
-  fprintf(out, ",%s", fg_traceability_words[fg_design_traceability(&lot->settings.design)]);
+  fprintf(out, ",%s", fg_traceability_cells[fg_design_traceability_cell(&lot->settings.design)]);
   for (size_t i = 0; i < rows; i++)
     if (row[i].kind != FG_QUANTITY_PAIR) fputs(fg_quantity_has_u(&row[i]) ? ",," : ",", out);
   fputc('\n', out);
@@ -151,7 +151,7 @@ static const fg_member part_rows[] = {
     {FG_NUMBER_U("radius_error_to_die_pct", part_line, to_die.error_pct, to_die.u_error_pct),
      .csv = {.rank = 1}, .column = lot_has_dies},
     {FG_WORD("verdict", part_line, verdict, fg_verdict_words), .csv = {.rank = 1}},
-    {FG_WORD_BY("traceability", fg_lot_traceability, fg_traceability_words), .csv = {.rank = 1}},
+    {FG_WORD_BY("traceability", fg_lot_traceability, fg_traceability_cells), .csv = {.rank = 1}},
 };
 static const fg_members part_members = FG_MEMBERS(part_rows);
 

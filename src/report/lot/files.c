@@ -6,6 +6,7 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "foilgauge/foil_kind.h"
+#include "foilgauge/traceability.h"
 #include "lot/run/date.h"
 #include "report/lot/files.h"
 #include "report/lot/foil_pages.h"
@@ -68,6 +69,8 @@ static void fill_lot_outcome(const fg_lot_analysis *analysis, fg_lot_outcome *ou
   outcome->exceeded = analysis->exceeded;
   for (int i = 0; i <= FG_VERDICT_NONE; i++)
     outcome->foils_by_verdict[i] = analysis->by_verdict[i];
+  fg_traceability_sentence(&analysis->lot->settings.design, outcome->traced,
+                           sizeof outcome->traced);
   outcome->bearings = analysis->bearing_count;
   outcome->bearings_judged = fg_report_of_bearing(&analysis->lot->settings.design, NULL, 0) > 0;
   const char *no_date;

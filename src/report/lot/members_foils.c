@@ -86,7 +86,7 @@ static const fg_member foil_rows[] = {
     {FG_WORD("verdict", fg_lot_foil, verdict, fg_verdict_words), .options = FG_MEMBER_NOT_IN_JSON,
      .csv = {.rank = 3}},
     {FG_TEXT_BY("error", find_error), .options = FG_MEMBER_NOT_IN_JSON, .csv = {.rank = 5}},
-    {FG_WORD_BY("traceability", fg_lot_traceability, fg_traceability_words),
+    {FG_WORD_BY("traceability", fg_lot_traceability, fg_traceability_cells),
      .options = FG_MEMBER_NOT_IN_JSON, .csv = {.rank = 6}},
     {FG_TEXT_BY("defect", find_defect), .words = "what rejects the foil whatever its values are"},
     {FG_NUMBER_BY("bump_radius_median_mm", find_bump_median_of_foil), .options = FG_MEMBER_LEFT_OUT,

@@ -23,7 +23,7 @@ bool fg_lot_has_beams(const fg_subject *subject) {
 
 int fg_lot_traceability(const fg_subject *subject) {
   const fg_lot_analysis *analysis = subject->whole;
-  return (int)fg_design_traceability(&analysis->lot->settings.design);
+  return fg_design_traceability_cell(&analysis->lot->settings.design);
 }
 
 bool fg_lot_has_no_beams(const fg_subject *subject) {

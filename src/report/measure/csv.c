@@ -42,7 +42,7 @@ typedef struct scan_lines {
 /* `foil` NULL: of a disc. */
 static void put_end(FILE *out, const scan_lines *scan, fg_verdict verdict, const fg_foil *foil) {
   fprintf(out, ",%s,%s,%s", fg_verdict_word(verdict), scan->measurement->model_sha256,
-          fg_traceability_words[fg_design_traceability(scan->design)]);
+          fg_traceability_cells[fg_design_traceability_cell(scan->design)]);
   for (int i = 0; foil && i < 4; i++)
     fg_csv_put_number(out, foil->place_mm[i]);
   fputc('\n', out);
