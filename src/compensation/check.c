@@ -45,13 +45,14 @@ static fg_status read_target(fg_context *ctx, const char *path, fg_expected_chec
 }
 
 static size_t count_predicted_bumps(const fg_springback_law *law, const fg_design *target) {
-  size_t bumps = 0;
+  int highest = 0;
   if (!fg_foil_traits_of(target->kind)->has_bumps) return 0;
   if (target->bumps.count) return target->bumps.count;
   for (size_t i = 0; i < law->sets; i++)
-    if (law->set[i].of[FG_FORMED_RADIUS].places > bumps)
-      bumps = law->set[i].of[FG_FORMED_RADIUS].places;
-  return bumps;
+    for (size_t k = 0; k < law->set[i].of[FG_FORMED_RADIUS].places; k++)
+      if (law->set[i].of[FG_FORMED_RADIUS].place[k].number > highest)
+        highest = law->set[i].of[FG_FORMED_RADIUS].place[k].number;
+  return (size_t)highest;
 }
 
 /* Reads the prediction: sets, die, target; finds its law again. */

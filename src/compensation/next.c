@@ -162,8 +162,8 @@ static void note_step(fg_next_die *next) {
   next->step_share = next->common ? NAN : find_step_share(next);
   if (next->step_share < 0.9)
     fg_next_die_note(next,
-                     "The die follows the bumps' own deviations to %.0f %%: %zu foil%s of %s "
-                     "tell no more of single bumps, as they scatter",
+                     "The die follows the bumps' own deviations to %.0f %%: more is not proven by "
+                     "the scatter of %zu foil%s of %s",
                      100 * fmax(0, next->step_share), last->foils, last->foils == 1 ? "" : "s",
                      last->lot);
   if (next->law->sets == 1)

@@ -45,7 +45,7 @@ void fg_springback_fit_free(fg_springback_fit *fit);
 /* Describes the law in numbers. */
 void fg_springback_describe(const fg_springback_fit *fit, fg_formed_law *law);
 
-/* Mean of ln(formed / die) at a place for a die of the size `log_die`, without the next set. */
+/* Mean of ln(formed / die) of the next set at a place, for a die of the size `log_die`. */
 double fg_springback_mean(const fg_springback_fit *fit, size_t place, double log_die);
 /* ln of the die's size that lands the mean on the target. */
 double fg_springback_invert(const fg_springback_fit *fit, size_t place);

@@ -283,14 +283,14 @@ void fg_springback_fit_free(fg_springback_fit *fit) {
   *fit = (fg_springback_fit){.places = 0};
 }
 
-/* Gradient of ln(formed / die) at a place by the states. */
-static void fill_gradient(const fg_springback_fit *fit, size_t place, double log_die, bool with_set,
+/* Gradient of ln(formed / die) of the next set at a place by the states. */
+static void fill_gradient(const fg_springback_fit *fit, size_t place, double log_die,
                           double *gradient) {
   memset(gradient, 0, fit->states * sizeof *gradient);
   gradient[FG_STATE_COMMON] = 1;
   gradient[FG_STATE_EXPONENT] = log_die - fit->reference;
   gradient[FG_STATE_BUMP + place] = 1;
-  if (with_set) gradient[fit->states - 1] = 1;
+  gradient[fit->states - 1] = 1;
 }
 
 static double dot_states(const double *a, const double *b, size_t count) {
@@ -302,7 +302,7 @@ static double dot_states(const double *a, const double *b, size_t count) {
 
 double fg_springback_mean(const fg_springback_fit *fit, size_t place, double log_die) {
   double gradient[FG_COMPENSATION_BUMPS + 3];
-  fill_gradient(fit, place, log_die, true, gradient);
+  fill_gradient(fit, place, log_die, gradient);
   return dot_states(gradient, fit->state_mean, fit->states);
 }
 
@@ -328,23 +328,29 @@ static double variance_of_states(const fg_springback_fit *fit, const double *gra
   return sum;
 }
 
+/* The next set's own step is new; what a drift has brought until now is the law's. */
 double fg_springback_u(const fg_springback_fit *fit, size_t place, double log_die, bool with_set) {
   double gradient[FG_COMPENSATION_BUMPS + 3];
-  fill_gradient(fit, place, log_die, with_set, gradient);
-  return sqrt(variance_of_states(fit, gradient));
+  fill_gradient(fit, place, log_die, gradient);
+  double variance = variance_of_states(fit, gradient);
+  for (size_t i = 0; i < fit->points && !with_set; i++)
+    variance -= fit->point[i].weight * fit->point[i].sizes.set * fit->point[i].sizes.set;
+  return sqrt(fmax(0, variance));
 }
 
 void fg_springback_describe(const fg_springback_fit *fit, fg_formed_law *law) {
-  double gradient[FG_COMPENSATION_BUMPS + 3] = {0};
+  double gradient[FG_COMPENSATION_BUMPS + 3] = {0}, steps = 0;
   *law = (fg_formed_law){.exponent = fit->state_mean[FG_STATE_EXPONENT]};
   gradient[FG_STATE_EXPONENT] = 1;
   law->u_exponent = sqrt(variance_of_states(fit, gradient));
   gradient[FG_STATE_EXPONENT] = 0;
-  gradient[FG_STATE_COMMON] = 1;
+  gradient[FG_STATE_COMMON] = gradient[fit->states - 1] = 1;
   for (size_t i = 0; i < fit->places; i++)
     gradient[FG_STATE_BUMP + i] = 1 / (double)fit->places;
+  for (size_t i = 0; i < fit->points; i++)
+    steps += fit->point[i].weight * fit->point[i].sizes.set * fit->point[i].sizes.set;
   law->springback_pct = 100 * dot_states(gradient, fit->state_mean, fit->states);
-  law->u_springback_pct = 100 * sqrt(variance_of_states(fit, gradient));
+  law->u_springback_pct = 100 * sqrt(fmax(0, variance_of_states(fit, gradient) - steps));
   for (size_t i = 0; i < fit->points; i++) {
     const fg_springback_point *point = &fit->point[i];
     law->bump_sd_pct += 100 * point->weight * point->sizes.bump;

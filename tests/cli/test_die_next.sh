@@ -109,7 +109,7 @@ grep -q 'the prediction was wrong\|questionable' said || fail "a process that mo
 
 # One foil; other numbers of bumps; one radius for all.
 made single --foils 1
-expect 0 'tell no more of single bumps|lots differ' next --lot single -o single.json
+expect 0 'more is not proven by the scatter of 1 foil of single' next --lot single -o single.json
 [ "$(value single.json 'r["die"]["bumps"][0]["u_radius_mm"]')" \> "$(value next.json 'r["die"]["bumps"][0]["u_radius_mm"]')" ] ||
   fail "one foil is as sure as twelve"
 made seven --bumps 7 --template seven_template
