@@ -67,6 +67,9 @@ typedef struct fg_film_options {
   /* A report of measured foils, whose order is that of the pads; or the folder of a lot, whose
    * foils `draws` bearings are drawn from. NULL: as designed. */
   const char *foils;
+  /* Measured profile of the bore, CSV with angle_deg and radius_mm: its radius less the design's
+   * sleeve_radius_mm is added to the clearance. NULL: round, as designed. */
+  const char *bore;
   size_t draws; /* bearings with random shims, or of a lot; 0: none */
   uint64_t seed;
   double shim_low_pct, shim_high_pct; /* heights of shims, percent of the clearance */
@@ -191,6 +194,11 @@ typedef struct fg_film_report {
   fg_film_result *speed;
   size_t speeds;
   double threshold_rpm; /* NaN: not within the speeds */
+  /* Largest load at this speed, and lowest speed under this load, with a film of touching_um at
+   * least; NaN: not found, or it touches already. */
+  double load_capacity_n, lift_off_rpm;
+  char bore_path[512], bore_sha256[65];
+  double bore_shift_mm[FG_BEARING_BUMPS_MAX]; /* at the bearing's places */
   fg_film_column *column;
   size_t columns, nodes; /* nodes of a column */
   double *pressure_kpa;  /* of all columns; owned */
@@ -206,6 +214,9 @@ typedef struct fg_film_report {
 fg_status fg_film_run(fg_context *ctx, const fg_design *design, const fg_film_options *options,
                       fg_film_report *report);
 void fg_film_report_free(fg_film_report *report);
+
+/* True where foils of one bearing, or its bore, are measured. */
+bool fg_film_is_measured(const fg_film_options *options);
 
 /* True where `foils` is the folder of a lot. */
 bool fg_film_draws_from_lot(const fg_film_options *options);

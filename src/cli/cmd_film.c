@@ -52,6 +52,7 @@ enum {
   OPTION_SPEEDS_OUT,
   OPTION_DRAWS_OUT,
   OPTION_ORBIT,
+  OPTION_BORE,
   OPTION_SENSITIVITY,
   OPTION_ORBIT_OUT,
 };
@@ -70,6 +71,10 @@ static const struct argp_option options[] = {
     {"foils", OPTION_FOILS, "PATH", 0,
      "A report of `foilgauge measure` whose foils are the pads in their order: their clearances in "
      "place of the design's. Or the folder of a lot: bearings are drawn from its foils",
+     2},
+    {"bore", OPTION_BORE, "FILE.csv", 0,
+     "The bore's measured profile: columns angle_deg and radius_mm; its radius less the design's "
+     "sleeve radius is added to the clearance",
      2},
     {"length", OPTION_LENGTH, "MM", 0, "Of the bearing (default: the rotor's diameter)", 2},
     {"clearance", OPTION_CLEARANCE, "UM", 0,
@@ -299,6 +304,9 @@ static error_t parse_film_option(int key, char *text, struct argp_state *state) 
   case OPTION_FOILS:
     run->options.foils = text;
     return 0;
+  case OPTION_BORE:
+    run->options.bore = text;
+    return 0;
   case OPTION_MODEL:
     run->options.model = text;
     return 0;
@@ -346,7 +354,9 @@ static fg_status write_film_output(fg_context *ctx, void *user, size_t kind, FIL
 }
 
 static fg_status run_film(fg_context *ctx, film_run *run) {
-  const fg_input inputs[] = {{run->design_path, "the design"}, {run->options.foils, "the foils"}};
+  const fg_input inputs[] = {{run->design_path, "the design"},
+                             {run->options.foils, "the foils"},
+                             {run->options.bore, "the bore"}};
   fg_output_set_choose_standard(&run->outputs, OUT_JSON, OUT_TEXT, false);
   FG_TRY(fg_output_set_check(ctx, &run->outputs, inputs, sizeof inputs / sizeof *inputs));
   fg_design_default(&run->design);

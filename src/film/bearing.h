@@ -62,6 +62,14 @@ fg_status fg_film_draw_scatter(fg_context *ctx, fg_film_report *report,
                                const fg_film_bearing *perfect, const fg_film_workspace *solved,
                                fg_film_sensitivity *scatter);
 
+/* Finds the largest load and the lift-off speed of the bearing, which is solved. */
+fg_status fg_film_find_capacity(fg_context *ctx, fg_film_report *report,
+                                fg_film_workspace *workspace);
+
+/* Reads the bore's profile, where there is one; adds it to the clearances. */
+fg_status fg_film_read_bore(fg_context *ctx, fg_film_report *report);
+void fg_film_add_bore(const fg_film_report *report, fg_film_bearing *bearing);
+
 /* Integrates the orbit of the workspace's solved bearing, where the options ask for one. */
 fg_status fg_film_follow_orbit(fg_context *ctx, fg_film_report *report,
                                fg_film_workspace *workspace);

@@ -74,6 +74,7 @@ static fg_status solve_draw(fg_context *ctx, const draw_task *t, fg_film_workspa
     draw_scatter(t->report, t->scatter, draw, &bearing);
   else
     draw_shims(t->report, draw, &bearing);
+  if (!t->scatter) fg_film_add_bore(t->report, &bearing);
   fg_film_state_copy(&workspace->film, &t->solved->state, &workspace->state);
   fg_film_case_copy(&t->solved->before, workspace->film.columns, &workspace->before);
   FG_TRY(fg_film_solve_bearing(ctx, t->report, workspace, &bearing, t->report->options.speed_rpm,

@@ -73,14 +73,21 @@ static fg_status solve_perfect(fg_context *ctx, fg_film_report *r, fg_film_works
   return FG_OK;
 }
 
+bool fg_film_is_measured(const fg_film_options *options) {
+  return options->bore || (options->foils && !fg_film_draws_from_lot(options));
+}
+
 static fg_status run_bearings(fg_context *ctx, fg_film_report *r, fg_film_workspace *workspace) {
   fg_film_bearing perfect = r->bearing;
   FG_TRY(solve_perfect(ctx, r, workspace, &perfect));
+  FG_TRY(fg_film_read_bore(ctx, r));
   FG_TRY(fg_film_find_sensitivities(ctx, r, &perfect, workspace));
   FG_TRY(fg_film_draw(ctx, r, &perfect, workspace));
   r->at = r->perfect;
-  if (r->options.foils && !fg_film_draws_from_lot(&r->options)) {
-    FG_TRY(fg_film_read_foils(ctx, r, &r->bearing));
+  if (fg_film_is_measured(&r->options)) {
+    if (r->options.foils && !fg_film_draws_from_lot(&r->options))
+      FG_TRY(fg_film_read_foils(ctx, r, &r->bearing));
+    fg_film_add_bore(r, &r->bearing);
     FG_TRY(fg_film_solve_bearing(ctx, r, workspace, &r->bearing, r->options.speed_rpm,
                                  FG_FILM_ONWARD, &r->at));
     r->at.mass_over_perfect = r->at.critical_mass_kg / r->perfect.critical_mass_kg;
@@ -89,13 +96,18 @@ static fg_status run_bearings(fg_context *ctx, fg_film_report *r, fg_film_worksp
   FG_TRY(find_coefficients(ctx, r, workspace));
   FG_TRY(keep_field(ctx, r, workspace));
   FG_TRY(fg_film_follow_orbit(ctx, r, workspace));
-  return fg_film_map_speeds(ctx, r, workspace);
+  FG_TRY(fg_film_map_speeds(ctx, r, workspace));
+  return fg_film_find_capacity(ctx, r, workspace);
 }
 
 fg_status fg_film_run(fg_context *ctx, const fg_design *design, const fg_film_options *options,
                       fg_film_report *report) {
   fg_film_workspace workspace;
-  *report = (fg_film_report){.design = *design, .options = *options, .threshold_rpm = NAN};
+  *report = (fg_film_report){.design = *design,
+                             .options = *options,
+                             .threshold_rpm = NAN,
+                             .load_capacity_n = NAN,
+                             .lift_off_rpm = NAN};
   FG_TRY(fg_film_describe(ctx, report, &report->bearing));
   FG_TRY(fg_film_workspace_open(ctx, report, &workspace));
   fg_status status = run_bearings(ctx, report, &workspace);

@@ -92,6 +92,18 @@ valid film.schema.json worth.json
 near "clearance by thickness" "$(value worth.json "r['sensitivities'][3]['clearance_um_per_pct']")" -1 0.1
 near "stiffness by thickness" "$(value worth.json "r['sensitivities'][3]['stiffness_pct_per_pct']")" 3 0.05
 
+# A bore: one of the design's radius changes nothing, an oval one closes the clearance at 0 and 180 degrees.
+printf 'angle_deg,radius_mm\n0,20.73\n180,20.73\n' >round.csv
+awk 'BEGIN {print "angle_deg,radius_mm"; for (a = 350; a >= 0; a -= 10) printf "%d,%.6f\n", a, 20.73 - 0.004 * cos(2 * a * 3.14159265 / 180)}' >oval.csv
+expect 0 "lift-off" "$program" film $fast --speeds 30000:90000:2 --bore round.csv -o round.json --table -
+near "a round bore" "$(value round.json "r['bearing']['critical_mass_kg'] / r['perfect']['critical_mass_kg']")" 1 1e-7
+expect 0 "load capacity" "$program" film $fast --speeds 30000:90000:2 --bore oval.csv -o oval.json --table -
+near "an oval bore" "$(value oval.json "[c['clearance_um'] for c in r['field'] if abs(c['angle_deg']) < 1e-6][0]")" 36 1e-3
+valid film.schema.json oval.json
+printf 'angle_deg,radius_mm\n0,41\n' >wide.csv
+expect 65 "not that of a bore" "$program" film $fast --bore wide.csv
+[ "$(value oval.json "20 < r['load_capacity_n'] and r['lift_off_rpm'] < 60000")" = True ] || fail "limits of the load and the speed"
+
 # A load beyond the film, and a touching one.
 expect 65 "no film at" "$program" film --load 5000 --speed 3000 --clearance 40 --compliance 0 --mesh 2,4
 expect 0 "touching" "$program" film $fast --speeds 30000:90000:2 --touching 100 --table -

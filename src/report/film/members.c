@@ -44,7 +44,7 @@ static const char *find_result_name(const fg_subject *s, char *buffer) {
   (void)buffer;
   const fg_film_report *report = report_of(s);
   if (s->object == &report->perfect) return "as designed";
-  return report->options.foils && !report->draws.foils ? "as measured" : "as designed";
+  return fg_film_is_measured(&report->options) ? "as measured" : "as designed";
 }
 
 static double find_draw_number(const fg_subject *s) {
@@ -115,7 +115,7 @@ const fg_members fg_film_result_members = FG_MEMBERS_DEFINED(result_rows, "resul
 bool fg_film_bearing_at(const fg_subject *list, size_t i, fg_subject *element) {
   const fg_film_report *report = report_of(list);
   element->object = i ? &report->perfect : &report->at;
-  return i < (report->options.foils && !report->draws.foils ? 2 : 1);
+  return i < (fg_film_is_measured(&report->options) ? 2 : 1);
 }
 
 bool fg_film_speed_at(const fg_subject *list, size_t i, fg_subject *element) {
@@ -360,6 +360,16 @@ static bool has_foils(const fg_subject *s) {
   return report_of(s)->options.foils != NULL;
 }
 
+static const fg_member bore_rows[] = {
+    {FG_TEXT("path", fg_film_report, bore_path)},
+    {FG_SHA256("sha256", fg_film_report, bore_sha256)},
+};
+static const fg_members bore_members = FG_MEMBERS(bore_rows);
+
+static bool has_bore(const fg_subject *s) {
+  return report_of(s)->options.bore != NULL;
+}
+
 static void write_film_notes(fg_json *json, const char *name, const fg_subject *s) {
   char notes[FG_FILM_NOTES][FG_FILM_NOTE];
   size_t count = fg_film_notes(report_of(s), notes);
@@ -375,6 +385,8 @@ static const fg_member report_rows[] = {
      .schema = FG_REF("design.schema.json")},
     {FG_GROUP("foils", &foils_members), .present = has_foils, .options = FG_MEMBER_ON_LINE,
      .words = "report whose foils are the pads, or folder of a lot with its bumps.csv"},
+    {FG_GROUP("bore", &bore_members), .present = has_bore, .options = FG_MEMBER_ON_LINE,
+     .words = "its measured profile, which shifts the clearance"},
     {FG_GROUP("conditions", &option_members), .words = "as stated, or by default"},
     {FG_OBJECT("bearing", fg_film_report, at, &fg_film_result_members),
      .words = "as measured; without foils as designed"},
@@ -382,6 +394,10 @@ static const fg_member report_rows[] = {
      .words = "as designed"},
     {FG_NUMBER("threshold_rpm", fg_film_report, threshold_rpm),
      .words = "lowest speed at which the rotor's mass is critical; null: none among the speeds"},
+    {FG_NUMBER("load_capacity_n", fg_film_report, load_capacity_n),
+     .words = "largest load at this speed with a film of touching_um at least"},
+    {FG_NUMBER("lift_off_rpm", fg_film_report, lift_off_rpm),
+     .words = "lowest speed under this load with such a film"},
     {FG_ARRAY("coefficients", fg_film_report, frequency, frequencies, &coefficient_members),
      .options = FG_MEMBER_ON_LINE, .words = "stiffness and damping of the film over the whirl"},
     {FG_LIST("speeds", fg_film_report, speed, speeds, &fg_film_result_members),

@@ -26,6 +26,10 @@ static void put_film_tiles(FILE *out, const fg_film_report *r) {
        .small = "of this rotor under this load", .unknown = "none among the speeds"},
       {"Thinnest film", .value = at->min_film_um, .digits = 3, .unit = "µm", .small = "under load"},
       {"Eccentricity", .value = at->eccentricity, .digits = 3, .small = "over the clearance"},
+      {"Load capacity", .value = r->load_capacity_n, .digits = 3, .unit = "N",
+       .small = "at this speed, for a film that does not touch"},
+      {"Lift-off", .value = r->lift_off_rpm, .digits = 3, .unit = "rpm",
+       .small = "under this load"},
       {"Loss", .value = at->power_w, .digits = 3, .unit = "W", .small = "of the film's shear"},
   };
   fg_html_tiles(out, "tiles", tiles, sizeof tiles / sizeof *tiles);
@@ -135,6 +139,7 @@ fg_status fg_film_write_html(fg_context *ctx, const fg_film_report *r, FILE *out
   put_sensitivities(out, r);
   put_draws(out, r);
   if (r->options.foils && !r->draws.foils) fg_provenance_take_file(&from, r->options.foils);
+  if (r->options.bore) fg_provenance_take_file(&from, r->options.bore);
   FG_TRY(fg_html_provenance_section(ctx, out, &from));
   fg_html_end(out);
   return fg_stream_finish(ctx, out, "the page");

@@ -54,6 +54,10 @@ fg_status fg_film_write_text(fg_context *ctx, const fg_film_report *r, FILE *out
   fg_members_terminal(out, "  ", &fg_film_result_members, &(fg_subject){.object = r, .whole = r},
                       fg_film_bearing_at);
   if (isfinite(r->threshold_rpm)) fprintf(out, "\n  threshold speed  %.5g rpm\n", r->threshold_rpm);
+  if (isfinite(r->load_capacity_n))
+    fprintf(out, "  load capacity    %.4g N at this speed\n", r->load_capacity_n);
+  if (isfinite(r->lift_off_rpm))
+    fprintf(out, "  lift-off         %.4g rpm under this load\n", r->lift_off_rpm);
   if (r->orbit.count)
     fprintf(out, "\n  orbit in time: %s; exp(%.3g) a turn, whirl at %.3g of the speed\n",
             fg_film_fate_words[r->orbit.fate], r->orbit.growth_per_turn, r->orbit.whirl_ratio);
