@@ -38,6 +38,18 @@ fg_status fg_disposition_write_open(fg_context *ctx, sqlite3 *reader, FILE *out)
   return FG_OK;
 }
 
+fg_status fg_disposition_write_link(fg_context *ctx, sqlite3 *reader, int64_t foil, FILE *out) {
+  fg_query query;
+  fg_query_begin(reader, "SELECT 1 FROM foils WHERE id = ? AND " FG_FOIL_IS_OPEN, &query);
+  fg_query_integer(&query, foil);
+  if (fg_query_row(&query))
+    fprintf(out,
+            "<p class=\"noprint\"><a class=\"button\" href=\"/foil?id=%lld#fate\">Scrap, rework, "
+            "concession …</a></p>\n",
+            (long long)foil);
+  return fg_query_end(ctx, &query, "reading a foil");
+}
+
 /* Reason codes of the recipe: between commas. */
 static void write_reasons(const char *reasons, FILE *out) {
   char reason[REASON_BYTES];
@@ -59,7 +71,7 @@ static void write_reasons(const char *reasons, FILE *out) {
 }
 
 static void write_kinds(const fg_inspection *station, int64_t foil, FILE *out) {
-  fputs("<form class=\"fields noprint\" method=\"post\" action=\"/dispose\">", out);
+  fputs("<form id=\"fate\" class=\"fields noprint\" method=\"post\" action=\"/dispose\">", out);
   fg_page_csrf_token(station, out);
   fprintf(out, "<input type=\"hidden\" name=\"foil\" value=\"%lld\">", (long long)foil);
   write_reasons(station->settings->reasons, out);

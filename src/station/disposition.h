@@ -20,6 +20,10 @@ fg_status fg_disposition_count_open(fg_context *ctx, sqlite3 *connection, const 
 /* Writes "3 without disposition" with a link; nothing where none is open. */
 fg_status fg_disposition_write_open(fg_context *ctx, sqlite3 *reader, FILE *out);
 
+/* Writes a link to the form of an open foil: on Now a half-typed one would go with the next result.
+ */
+fg_status fg_disposition_write_link(fg_context *ctx, sqlite3 *reader, int64_t foil, FILE *out);
+
 /* Writes the html form of a foil that did not pass, with its disposition in force; nothing for
  * another. */
 fg_status fg_disposition_write_html_form(fg_context *ctx, const fg_inspection *station,

@@ -166,6 +166,7 @@ static fg_status write_foil(fg_context *ctx, fg_inspection *station, sqlite3 *re
   fputs(withheld ? "<div class=\"withheld\">" : "<div>", out);
   FG_TRY(fg_page_deciding(ctx, reader, id, out));
   fputs("</div>\n", out);
+  FG_TRY(fg_disposition_write_link(ctx, reader, id, out));
   const fg_foil_html_form html_form = {.back = "/", .focus = focus};
   fg_page_foil_html_form(station, foil, &html_form, out);
   FG_TRY(fg_page_same_serial(ctx, reader, id, out));

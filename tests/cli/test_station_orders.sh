@@ -86,7 +86,7 @@ assert "3 of 40" in page and "Ada" in page, page
 # Dispositions: F1 passed when it was measured again; the foil of another radius is open until somebody says its fate.
 drop(6, "F9")
 foil = database.execute("SELECT id FROM foils WHERE serial = 'F9'").fetchone()[0]
-assert "<b>1</b> without disposition" in get("/"), get("/")
+assert "<b>1</b> without disposition" in get("/") and f'href="/foil?id={foil}#fate"' in get("/"), get("/")
 assert "F9" in get("/history?verdict=open") and "F2" not in get("/history?verdict=open")
 database.execute("UPDATE foils SET lot = 'L9' WHERE id = ?", (foil,)), database.commit()
 assert 'value="S1 scratch"' in get(f"/foil?id={foil}") and "No disposition yet" in get(f"/foil?id={foil}")
@@ -100,7 +100,7 @@ post("/dispose", foil=str(foil), kind="again", by="Ada")
 assert "<b>1</b> without disposition" in get("/")
 where, page = post("/dispose", foil=str(foil), kind="scrap", reason="S1 scratch", note="<deep>", by="Ada")
 assert "<b>Scrap</b>, S1 scratch: &lt;deep&gt; (Ada" in page and "scrap, S1 scratch: &lt;deep&gt;" in page, page
-assert "without disposition" not in get("/") and "without disposition" not in get("/lots?close=1&lot=L9")
+assert "without disposition" not in get("/") and "#fate" not in get("/") and "without disposition" not in get("/lots?close=1&lot=L9")
 assert post("/close", lot="L9", by="Ada")[0].endswith("/lots")
 wait_until(lambda: os.path.exists(work + "/scans/lots/L9/lot.json"))
 manifest = open(work + "/scans/lots/L9/manifest.csv").read()
