@@ -92,7 +92,7 @@ def one_lot(program, name, make, design, work, dpi):
     }
 
 
-def main(program, out, dpi="2400"):
+def main(program, out, dpi="1200"):
     program = str(pathlib.Path(program).resolve())
     with tempfile.TemporaryDirectory() as folder:
         work = pathlib.Path(folder)
