@@ -93,9 +93,9 @@ static void choose_names(scanner *at) {
   if (!at->check) find_order_part(at->station, order);
   clock_gettime(CLOCK_REALTIME, &now);
   if (localtime_r(&now.tv_sec, &local)) strftime(stamp, 20, "%Y%m%d-%H%M%S", &local);
-  snprintf(at->final, sizeof at->final, "%s%s-%03d%s%s.%s", at->check ? CHECK_PREFIX : PREFIX,
-           stamp, (int)(now.tv_nsec / 1000000), order[0] ? "-" : "", order,
-           ending_for(at->station->settings->scan_command));
+  fg_text_clip(at->final, sizeof at->final, "%s%s-%03d%s%s.%s", at->check ? CHECK_PREFIX : PREFIX,
+               stamp, (int)(now.tv_nsec / 1000000), order[0] ? "-" : "", order,
+               ending_for(at->station->settings->scan_command));
   fg_text_clip(at->hidden, sizeof at->hidden, ".%s", at->final);
 }
 
