@@ -114,11 +114,14 @@ typedef struct fg_design_discs {
 
 /* Marks of a grid. Without u_pitch_mm nothing is known of the board but its kind: it may be printed
  * with a wrong scale, other along its two axes. */
+enum { FG_CERTIFICATE_PATH = 1024 };
+
 typedef struct fg_design_grid {
   fg_mark_kind marks;
   double pitch_mm;   /* from mark to mark; 0: not stated */
   double u_pitch_mm; /* standard uncertainty of the pitch along each axis; 0: not stated */
   double u_place_mm; /* of a mark's place on the lattice, along x and y, independent of others */
+  char certificate[FG_CERTIFICATE_PATH]; /* CSV with the place of each mark; "": none */
 } fg_design_grid;
 
 /* One of them. */

@@ -124,6 +124,7 @@ static const stated_member stated_members[] = {
     NUMBER(FG_DESIGN_DISCS, fg_design_discs, "diameters_mm", u_diameters_mm),
     NUMBER(FG_DESIGN_GRID, fg_design_grid, "u_pitch_mm", u_pitch_mm),
     NUMBER(FG_DESIGN_GRID, fg_design_grid, "u_place_mm", u_place_mm),
+    NUMBER(FG_DESIGN_GRID, fg_design_grid, "certificate", certificate),
     NUMBER(FG_DESIGN_ARC, fg_design_arc, "subtended_angle_deg", subtended_angle_deg),
 };
 #undef NUMBER

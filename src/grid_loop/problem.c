@@ -122,6 +122,40 @@ static fg_point turned_by(double turn, fg_point p) {
   return (fg_point){p.x * cos(turn) - p.y * sin(turn), p.x * sin(turn) + p.y * cos(turn)};
 }
 
+/* Place of a mark on its board, by the certificate or the lattice; false where a certificate has
+ * none. */
+static bool find_board_place(const grid_problem *problem, double pitch, const int index[2],
+                             fg_point *place) {
+  if (problem->certificate.columns)
+    return fg_grid_certificate_at(&problem->certificate, index, place);
+  *place = (fg_point){pitch * index[0], pitch * index[1]};
+  return true;
+}
+
+/* A scan's marks are those of the certificate where the first and the last columns and rows are
+ * seen, and lie as in the table. */
+static fg_status check_certificate(fg_context *ctx, const fg_measurement *m,
+                                   const fg_grid_certificate *certificate) {
+  const fg_grid *grid = m->grid;
+  int rows = grid->kind == FG_MARKS_LINES ? 1 : grid->rows;
+  if (grid->columns == certificate->columns && rows == certificate->rows) return FG_OK;
+  return fg_fail(ctx, FG_ERR_DATA,
+                 "%s shows %d columns and %d rows of marks, the certificate has %d and %d: lay the "
+                 "whole plate on the glass, its columns along x as in the table",
+                 m->scan, grid->columns, rows, certificate->columns, certificate->rows);
+}
+
+static fg_status read_certificate(fg_context *ctx, const fg_measurement *measurements, size_t count,
+                                  bool same_part, grid_problem *problem) {
+  const char *path = problem->design->certificate;
+  if (!path[0]) return FG_OK;
+  FG_TRY(fg_grid_certificate_load(ctx, path, problem->design->marks == FG_MARKS_LINES,
+                                  &problem->certificate));
+  for (size_t i = 0; i < (same_part ? 1 : count); i++)
+    FG_TRY(check_certificate(ctx, &measurements[i], &problem->certificate));
+  return FG_OK;
+}
+
 /* The pose that lays the board's places nearest to the measured ones. */
 static void find_pose(const grid_problem *problem, size_t scan, const fg_grid *grid,
                       grid_pose *pose) {
@@ -133,7 +167,9 @@ static void find_pose(const grid_problem *problem, size_t scan, const fg_grid *g
       int index[2];
       if (!m->used) continue;
       fg_grid_board_index(problem, scan, m, index);
-      double v[4] = {pitch * index[0], pitch * index[1], m->at_mm.x, m->at_mm.y};
+      fg_point place;
+      if (!find_board_place(problem, pitch, index, &place)) continue;
+      double v[4] = {place.x, place.y, m->at_mm.x, m->at_mm.y};
       if (pass == 0) {
         n++;
         for (int k = 0; k < 4; k++)
@@ -158,7 +194,8 @@ static fg_status add_scan_rows(const fg_grid *grid, size_t scan, grid_problem *p
     int index[2];
     if (!m->used) continue;
     fg_grid_board_index(problem, scan, m, index);
-    fg_point place = {pitch * index[0], pitch * index[1]};
+    fg_point place;
+    if (!find_board_place(problem, pitch, index, &place)) continue;
     fg_point arm = turned_by(pose->turn_rad, place);
     fg_point off = {pose->origin.x + arm.x - m->at_mm.x, pose->origin.y + arm.y - m->at_mm.y};
     for (int k = 0; k < components; k++) {
@@ -219,15 +256,16 @@ static double pitch_of(const fg_grid *grid, const fg_design_grid *design) {
 static void find_boards(const fg_measurement *measurements, size_t count, bool same_part,
                         grid_problem *problem) {
   const fg_design_grid *design = problem->design;
-  bool known = design->pitch_mm > 0 && design->u_pitch_mm > 0;
+  bool certified = problem->certificate.columns > 0;
+  bool known = certified || (design->pitch_mm > 0 && design->u_pitch_mm > 0);
+  double u_known = certified ? problem->certificate.u_scale : design->u_pitch_mm / design->pitch_mm;
   problem->scale_known = known;
   problem->board_count = same_part ? 1 : count;
   for (size_t i = 0; i < count; i++) {
     problem->board_of[i] = same_part ? 0 : i;
     if (same_part && i) continue;
-    problem->board[i] =
-        (grid_board){.pitch_mm = pitch_of(measurements[i].grid, design),
-                     .u_scale = known ? design->u_pitch_mm / design->pitch_mm : U_PRINTED};
+    problem->board[i] = (grid_board){.pitch_mm = pitch_of(measurements[i].grid, design),
+                                     .u_scale = known ? u_known : U_PRINTED};
   }
 }
 
@@ -284,6 +322,7 @@ fg_status fg_grid_problem_build(fg_context *ctx, const fg_measurement *measureme
   size_t marks = 0;
   *problem = (grid_problem){.design = &measurements[0].design.grid, .scan_count = count};
   FG_TRY(fg_grid_match_scans(ctx, measurements, count, options, problem));
+  FG_TRY(read_certificate(ctx, measurements, count, options->same_part, problem));
   find_boards(measurements, count, options->same_part, problem);
   for (size_t i = 0; i < count; i++)
     marks += measurements[i].grid->count;
@@ -300,5 +339,6 @@ fg_status fg_grid_problem_build(fg_context *ctx, const fg_measurement *measureme
 
 void fg_grid_problem_free(grid_problem *problem) {
   free(problem->rows);
+  fg_grid_certificate_free(&problem->certificate);
   *problem = (grid_problem){0};
 }

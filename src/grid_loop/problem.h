@@ -12,6 +12,7 @@
 #include "effect/effect.h"
 #include "field/map.h"
 #include "foilgauge/grid_loop.h"
+#include "grid_loop/certificate.h"
 
 enum { GRID_EFFECTS_MAX = FG_FIELDS_MAX, GRID_POSE = 3, GRID_AFFINE = 3, GRID_ROW_MAX = 128 };
 
@@ -55,7 +56,8 @@ typedef struct grid_board {
 
 typedef struct grid_problem {
   const fg_design_grid *design;
-  grid_row *rows; /* owned; by group */
+  fg_grid_certificate certificate; /* owned; no columns: none */
+  grid_row *rows;                  /* owned; by group */
   size_t row_count, group_count;
   size_t scan_count, board_count;
   grid_pose pose[FG_GRID_SCANS];

@@ -71,6 +71,32 @@ expect 0 "" "$program" render pins.json -o pins.png
 expect 0 "" "$program" measure pins.png --form discs --tone linear --model scanner.json -o pins_corrected.json
 near "the radius through the map" "$(member pins_corrected.json radius_mm)" 5 0.0005
 
+# A certificate has the place of each mark: the plate's own errors, which a lattice takes for the scanner's, are none of it.
+sed 's/"missing": .*]]/"place_um": 8/' a.json >odd.json
+expect 0 "" "$program" render odd.json -o odd.png --truth odd.truth
+python3 - <<'P'
+import json
+import random
+random.seed(1)
+truth, spec = json.load(open('odd.truth')), json.load(open('odd.json'))
+mm = 25.4 / 600
+import math
+with open('plate.csv', 'w') as out:
+    out.write('column,row,x_mm,y_mm,u_um\n')
+    for m in truth['grids'][0]['marks'] if 'grids' in truth else truth['marks']:
+        x, y = (v * mm for v in m['centre_px'])
+        out.write('%d,%d,%.6f,%.6f,0.1\n' % (m['column'], m['row'], x, y))
+P
+echo '{"schema": "foilgauge/design/1", "form": "grid", "marks": "dots", "certificate": "plate.csv"}' >certified.json
+expect 0 "" "$program" loop odd.png --design certified.json -o certified_loop.json --model-out certified_model.json
+near "the scale by a certificate" "$(member certified_loop.json axis_ratio)" 1.004 0.00003
+near "the marks by a certificate" "$(python3 -c "import json; print(json.load(open('certified_loop.json'))['after']['rms'])")" 0.3 0.3
+head -n 100 plate.csv >short.csv
+sed 's/plate.csv/short.csv/' certified.json >short.json
+expect 65 "lay the whole plate on the glass" "$program" loop odd.png --design short.json -o never.json
+echo 'column,row,x_mm,y_mm,u_um' >short.csv; echo '0,0,0,0,0' >>short.csv
+expect 65 "u_um is 0; it must be positive" "$program" loop odd.png --design short.json -o never.json
+
 # Names are for displacements that no map follows: tilted chips with gaps, and a ripple whose period is as uncertain as the marks make it.
 spec chips.json dots 1.5 4 '{"id": "scan.chip_tilt", "amplitude_um": 12, "x_mm": 4, "pitch_mm": 10}, {"id": "scan.chip_gap",
  "amplitude_um": 9, "x_mm": 4, "pitch_mm": 10}, {"id": "scan.carriage_ripple", "amplitude_um": 8, "period_mm": 8.5}'

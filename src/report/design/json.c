@@ -120,11 +120,25 @@ fg_status fg_design_parse(fg_context *ctx, const char *path, const char *json, f
   return status;
 }
 
+/* A relative path begins at the design's folder. */
+static fg_status place_certificate(fg_context *ctx, const char *path, fg_design *design) {
+  char *certificate = design->grid.certificate, whole[FG_CERTIFICATE_PATH];
+  const char *slash = strrchr(path, '/');
+  if (!certificate[0] || certificate[0] == '/' || !slash) return FG_OK;
+  int length = snprintf(whole, sizeof whole, "%.*s%s", (int)(slash - path + 1), path, certificate);
+  if (length >= (int)sizeof whole)
+    return fg_fail(ctx, FG_ERR_DATA, "%.200s: the certificate's path is too long", path);
+  strcpy(certificate, whole);
+  return FG_OK;
+}
+
 fg_status fg_design_load(fg_context *ctx, const char *path, fg_design *design) {
   char *text = NULL;
   FG_TRY(fg_file_read_text(ctx, path, DESIGN_BYTES_MAX, &text));
   fg_status status = fg_design_parse(ctx, path, text, design);
   free(text);
+  if (status == FG_OK && fg_foil_traits_of(design->kind)->is_grid)
+    status = place_certificate(ctx, path, design);
   return status;
 }
 

@@ -214,7 +214,7 @@ static const fg_member design_rows[] = {
               "of edges is told from them."},
     {FG_WORD("marks", fg_design, grid.marks, NULL), .choice_at = mark_choice,
      .present = fg_design_is_of_grid,
-     .words = "Of form \"grid\" alone, as the next three: \"dots\", \"chessboard\" (its corners), "
+     .words = "Of form \"grid\" alone, as the next four: \"dots\", \"chessboard\" (its corners), "
               "\"crosses\" or \"lines\" (the graduation of a ruler, one axis)."},
     {FG_NUMBER("pitch_mm", fg_design, grid.pitch_mm), STATED, .present = fg_design_is_of_grid,
      .words = "From mark to mark; without it the scale stays unknown."},
@@ -223,6 +223,12 @@ static const fg_member design_rows[] = {
               "wrong scale, other along its two axes, as a printed one has."},
     {FG_NUMBER("u_place_mm", fg_design, grid.u_place_mm), STATED, .present = fg_design_is_of_grid,
      .words = "Standard uncertainty of the place of a mark on the lattice."},
+    {FG_TEXT("certificate", fg_design, grid.certificate),
+     .options = FG_MEMBER_LEFT_OUT | FG_MEMBER_EMPTY_IS_NULL, .present = fg_design_is_of_grid,
+     .words = "Path of a CSV with the calibrated place of each mark: `column`, `row`, `x_mm`, "
+              "`y_mm` and its standard uncertainty `u_um`, x along the columns and y down along "
+              "the rows as a scan shows them (lines: `column`, `x_mm`, `u_um`). A relative path "
+              "begins at the design's folder. The loop takes the places in place of a lattice's."},
     {FG_WORD("tone", fg_design, tone, tone_words), .present = is_tone_stated,
      .words = "\"linear\" says that the scanner's counts are proportional to the light, and you "
               "vouch for it: thickness, diameters and clearances then hold no unknown tone curve. "
