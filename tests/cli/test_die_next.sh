@@ -3,6 +3,7 @@
 # `foilgauge die --target` and `foilgauge lot --expected`: the next die from lots of a made-up process whose springback is
 # known (support/formed_lots.py), the lot that comes of it, and refusals.
 . tests/support/cli.sh
+skip_when_slow
 listened="stdout stderr"
 command -v python3 >/dev/null || { echo "skipped: no python3"; exit 77; }
 made() { python3 "$root/tests/support/formed_lots.py" "$program" "$@" --renderer "$renderer" --tolerance 3 >>said 2>&1 || fail "made $*: $(tail -3 said)"; }
@@ -13,7 +14,6 @@ echo '{"schema":"foilgauge/design/1","bump_count":9,"tolerances":{"radius_error_
 made one --end 0.015 --columns coil
 expect 0 'no report of its die' next --lot one -o next.json --html next.html --table next.txt --dxf next.dxf \
   --trace-concave concave.txt --trace-convex convex.txt --step-um 1
-valid next_die.schema.json next.json
 near "radius of bump 1" "$(value next.json 'r["die"]["bumps"][0]["radius_mm"]')" 3.1577 0.025
 near "radius of bump 9" "$(value next.json 'r["die"]["bumps"][8]["radius_mm"]')" 3.1107 0.03
 [ "$(value next.json 'all(abs(b["radius_mm"] * 1000 - round(b["radius_mm"] * 1000)) < 1e-6 for b in r["die"]["bumps"])')" = True ] ||
@@ -27,7 +27,7 @@ grep -q 'Cut bump radii' next.txt && grep -q 'Cut bump radii' next.html || fail 
 
 # The traces are those of the die: measured, they give its numbers.
 "$program" die concave.txt convex.txt -o traced.json 2>/dev/null || fail "the traces are not read"
-for i in 0 4 8; do
+for i in 0 8; do
   near "traced radius $i" "$(value traced.json "r['die']['bumps'][$i]['radius_mm']")" \
     "$(value next.json "r['die']['bumps'][$i]['radius_mm']")" 2e-5
   near "traced angle $i" "$(value traced.json "r['die']['bumps'][$i]['bump_angle_deg']")" \
@@ -134,7 +134,6 @@ for name in good poor; do
   expect 0 '' next --lot one --doe $name.csv --setting 'temperature_C=550, duration_h=5' -o $name.json --html $name.html --table $name.txt
   grep -q 'heat treatment' $name.txt && grep -q 'Die and heat treatment together' $name.html || fail "$name: no trade"
 done
-valid next_die.schema.json good.json
 near "springback at the warmest" "$(value good.json '[s for s in r["settings"] if s["setting"] == "temperature_C=700, duration_h=5"][0]["share"]')" 0.548 0.02
 [ "$(value good.json '[s["setting"] for s in r["settings"] if s["chosen"]][0] != r["settings"][0]["setting"]')" = True ] || fail "a good experiment is not used"
 [ "$(value poor.json 'r["settings"][0]["chosen"], r["settings"][0]["share"]')" = "(True, 1)" ] || fail "a poor experiment moves the setting"
@@ -152,7 +151,7 @@ sed 's/"flatbed"/"not needed: rendered"/' "$root/samples/top_foil_design.json" >
 expect 0 'Cut the mandrel' "$program" die --target strip_design.json --lot strips -o mandrel.json --html mandrel.html --dxf mandrel.dxf --table -
 near "mandrel" "$(value mandrel.json 'r["die"]["overall_radius_mm"]')" "$(python3 -c 'print(20.73 ** 2 / 21.24)')" 0.03
 [ "$(value mandrel.json 'r["die"]["bumps"]')" = "[]" ] || fail "a mandrel with bumps"
-valid next_die.schema.json mandrel.json
+valid next_die.schema.json next.json good.json mandrel.json
 
 # Refused: no lot, no lot's folder, another strip, datum or kind, limits of the shop.
 expect 64 'name one with --lot' "$program" die --target target.json
