@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""reports/thesis/rotor.md: random shims in table 5.6's bearing (thesis section 5.12), by `foilgauge film`.
+"""Random shims in table 5.6's bearing (thesis section 5.12), by `foilgauge film`: writes reports/thesis/rotor.md to
+standard output.
 
     python3 tests/bench/rotor.py build/foilgauge [DRAWS] > reports/thesis/rotor.md
 """
@@ -12,8 +13,29 @@ import tempfile
 
 BEARING = ["--clearance", "80", "--compliance", "0.67", "--loss-factor", "0.14", "--mesh", "4,6"]
 DESIGNS = {"classical": "-50:150", "sinusoidal": "-50:50", "cantilever": "-7:7"}
-LOADS, SPEEDS = (2, 5, 10), (30000, 60000, 120000)
-PADS = {"three pads of seven": ["--pads", "3", "--bumps", "7"], "a closed ring of 21": ["--pads", "0", "--bumps", "21"]}
+WORDS = """
+# Random shims, and the rotor (section 5.12)
+
+`python3 tests/bench/rotor.py build/foilgauge > reports/thesis/rotor.md` writes this page. The bearing of table 5.6: D 40 mm, L/D 1, C 80 um, compliance 0.67,
+loss factor 0.14, air at 101.325 kPa; three pads of seven bumps, 17.14 degrees apart, the load towards 270 degrees. Under every bump a shim of random height,
+of equal probability within the thesis's limits: classical -50 to +150 % of the clearance, sinusoidal -50 to +50 %, cantilever -7 to +7 %; a higher shim closes
+the clearance. Seed 1; `s`: seconds of one processor for all bearings of the row.
+
+The thesis has 311 (classical), 552 (sinusoidal) and 979 (cantilever) of 1000 solved, nearly all of them more stable than the perfect bearing, and a threshold of
+the cantilever's that hardly changed. It does not print load, speeds, the shape between shims, the sign of a shim's height, the law of the heights, or when a
+bearing counts as converged: **its counts cannot be held against these**, its order and its sentences can.
+
+- The order is the thesis's under every load and speed: fewest classical bearings have a film, most sinusoidal ones, nearly every cantilever one.
+- Nearly all that have a film are more stable than the perfect bearing: all classical ones, 97 % of the sinusoidal ones or more, and most cantilever ones.
+- **That the cantilever's threshold hardly changes is not found here.** A round bearing under a light load whirls near one half of the speed at almost no mass, and
+  what is not round raises that at once: by 7 % the median critical mass is a multiple. The critical mass of the perfect bearing is below a hundred grams in all
+  nine cases; a rotor of the load's own weight is unstable on all of them.
+- Bearings without a film are those whose rotor meets a bump, or the edge of a pad, which does not yield in the model, before the film carries it.
+- A film in time has the threshold of the frequency domain within 0.1 %. The mesh of 4,6 is 2.1 % from the finest for the critical mass.
+"""
+
+LOADS, SPEEDS = {2: 1, 5: 1, 10: 0.3}, (30000, 60000, 120000)  # loads with their share of the bearings
+PADS = ["--pads", "3", "--bumps", "7"]
 
 
 def film(program, *options):
@@ -49,13 +71,13 @@ HEAD = ("| shims | load, N | speed, 1000 rpm | solved | touching | more stable |
         "|---|---|---|---|---|---|---|---|---|---|---|")
 
 
-def draw_table(program, pads, loads, speeds, draws, kept):
+def draw_table(program, draws, kept):
     print(HEAD)
-    for load in loads:
-        for speed in speeds:
+    for load, part in LOADS.items():
+        for speed in SPEEDS:
             for name, shims in DESIGNS.items():
-                report, seconds = film(program, *BEARING, *pads, "--load", load, "--speed", speed, "--speeds",
-                                       f"{speed}:{speed * 1.01}:2", f"--shims={shims}", "--draws", draws, "--jobs", 1)
+                report, seconds = film(program, *BEARING, *PADS, "--load", load, "--speed", speed, "--speeds",
+                                       f"{speed}:{speed * 1.01}:2", f"--shims={shims}", "--draws", round(part * draws), "--jobs", 1)
                 kept[name, load, speed] = report
                 print(draw_row(name, load, speed, report, seconds), flush=True)
 
@@ -74,26 +96,38 @@ def perfect_table(kept):
 def mesh_table(program):
     print("| cells per bump, over half the length | e / C | critical mass, g |\n|---|---|---|")
     for mesh in ("2,4", "4,6", "6,8", "8,10", "12,16", "16,24"):
-        report, _ = film(program, *BEARING[:-2], *PADS["three pads of seven"], "--load", 5, "--speed", 60000, "--speeds",
+        report, _ = film(program, *BEARING[:-2], *PADS, "--load", 5, "--speed", 60000, "--speeds",
                          "60000:61000:2", "--mesh", mesh)
         p = report["perfect"]
         print(f"| {mesh} | {p['eccentricity_ratio']:.5f} | {1e3 * p['critical_mass_kg']:.5f} |")
 
 
+def orbit_table(program):
+    """Growth of the orbit in time of rotors beside the critical mass, and where it is zero."""
+    print("| load, N | speed, 1000 rpm | critical mass, g | growth a turn at 0.97 | at 1.03 | critical mass in time, g | differs by |\n"
+          "|---|---|---|---|---|---|---|")
+    for load, speed in ((5, 60000), (10, 30000), (10, 60000)):
+        common = [*BEARING[:-1], "2,4", *PADS, "--load", load, "--speed", speed, "--speeds", f"{speed}:{speed * 1.01}:2"]
+        mass = film(program, *common)[0]["perfect"]["critical_mass_kg"]
+        growth = [film(program, *common, "--mass", mass * share, "--orbit", 60)[0]["orbit"]["growth_per_turn"]
+                  for share in (0.97, 1.03)]
+        zero = 0.97 - 0.06 * growth[0] / (growth[1] - growth[0])
+        print(f"| {load} | {speed // 1000} | {1e3 * mass:.5g} | {growth[0]:.5f} | {growth[1]:.5f} | {1e3 * mass * zero:.5g} | "
+              f"{100 * (zero - 1):+.2f} % |", flush=True)
+
+
 def main():
     program, draws = sys.argv[1], int(sys.argv[2]) if len(sys.argv) > 2 else 1000
-    kept, ring = {}, {}
-    print(open(os.path.join(os.path.dirname(__file__), "rotor.head.md")).read().replace("DRAWS", str(draws)))
-    print("## The mesh\n")
+    kept = {}
+    print(WORDS.strip())
+    print("\n## The mesh\n\n5 N, 60 000 rpm, without shims:\n")
     mesh_table(program)
-    print(f"\n## Random shims, three pads of seven, {draws} bearings a row\n")
-    draw_table(program, PADS["three pads of seven"], LOADS, SPEEDS, draws, kept)
+    print("\n## The threshold in time\n\nFilm and rotor integrated together over 60 turns (mesh 2,4):\n")
+    orbit_table(program)
+    print(f"\n## Random shims\n\n{draws} bearings a row under 2 and 5 N, three tenths of them under 10 N.\n")
+    draw_table(program, draws, kept)
     print("\nThe bearing without shims:\n")
     perfect_table(kept)
-    print(f"\n## The same in a closed ring of 21 shims, {draws} bearings a row\n")
-    draw_table(program, PADS["a closed ring of 21"], (5,), SPEEDS, draws, ring)
-    print("\nThe ring without shims:\n")
-    perfect_table(ring)
 
 
 main()

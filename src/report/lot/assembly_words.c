@@ -30,7 +30,7 @@ static const char *format_percent(double share, char text[16]) {
 
 const char fg_assembly_scope[] =
     "This is geometry: clearances of the bearings at rest. It is no rotordynamic simulation: what "
-    "bearings of such spread do at speed (thesis 5.12) it does not say.";
+    "bearings of such spread do at speed (thesis 5.12) `foilgauge film --foils` says.";
 
 static void state_how_many(const fg_lot_assembly *assembly, char *text, size_t size) {
   const fg_assembly_share *share = &assembly->drawn.assembled;
