@@ -94,6 +94,13 @@ typedef struct noise_fit {
   double sd;
 } noise_fit;
 
+/* Single rows are taken out or exchanged, and the scatter weighs rows: none of them is fitted by
+ * columns that could be constant in groups. */
+static bool has_columns(const fg_loop_candidate *candidate) {
+  return !fg_engine_is_outlier(candidate) && !fg_engine_is_exchange(candidate) &&
+         !fg_engine_is_noise(candidate);
+}
+
 /* Columns that are constant in groups are tested between groups, with as many fewer dof. */
 static double dof_of(const fg_engine_training *training, size_t first, size_t count, double dof) {
   if (!training->levels) return dof;
@@ -154,7 +161,7 @@ static void describe_claims(const fg_engine_training *training, const fg_engine_
     const fg_loop_effect *effect = candidate->effect;
     size_t slopes = moved_shapes(effect);
     size_t count = fg_engine_candidate_columns(training->problem, candidate);
-    double own = fg_engine_is_outlier(candidate) ? dof : dof_of(training, first, count, dof);
+    double own = has_columns(candidate) ? dof_of(training, first, count, dof) : dof;
     double t = gsl_cdf_tdist_Qinv(0.025, own);
     memcpy(claim[m].shape, set->shape[m], sizeof claim[m].shape);
     claim[m].candidate = *candidate;

@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The list of reports says of which commit each page is, and which are old; what is made once is not made again.
+# The list of reports says of which commit each page is, and which are old; a page is not made twice of one commit.
 . tests/support/cli.sh
 skip_when_slow
 command -v git >/dev/null || exit 77

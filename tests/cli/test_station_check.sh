@@ -128,15 +128,7 @@ sed 's/2400/1200/' "$work/spec.json" >"$work/coarse.json"
 "$renderer" render "$work/coarse.json" -o "$work/in/check_1200.png"
 once
 [ "$(newest "baseline || changes")" = 1 ] || fail "at 1200 dpi: $(newest "baseline, changes")"
-python3 - "$work/in/foilgauge.sqlite" <<'P'
-import sqlite3, sys
-database = sqlite3.connect(sys.argv[1])
-database.execute("DROP TABLE check_values")
-for column in "dpi", "findings", "baseline", "changes":
-    database.execute(f"ALTER TABLE checks DROP COLUMN {column}")
-database.execute("PRAGMA user_version = 2")
-database.commit()
-P
+python3 tests/support/older_database.py "$work/in/foilgauge.sqlite" 2
 count=$(ask "SELECT count(*) FROM checks")
 plate 14 "$work/in/check_migrated.png" "$plain, \"gamma\": 1.8"
 once

@@ -51,17 +51,7 @@ checks "$work/read.py" "$work/in" || fail "the database, read by Python"
   fail "the database, read by sqlite3"
 
 # A database of version 1 has the bytes themselves.
-python3 - "$work/in/foilgauge.sqlite" <<'PY'
-import sqlite3, sys
-database = sqlite3.connect(sys.argv[1])
-for table in "scans", "files", "arrivals":
-    database.execute(f"UPDATE {table} SET path = CAST(x'6279746573FFC32E706E67' AS TEXT) WHERE path = 'bytes/FF/C3.png'")
-database.execute("DROP TABLE check_values") # of version 3
-for column in "dpi", "findings", "baseline", "changes":
-    database.execute(f"ALTER TABLE checks DROP COLUMN {column}")
-database.execute("PRAGMA user_version = 1")
-database.commit()
-PY
+python3 tests/support/older_database.py "$work/in/foilgauge.sqlite" 1
 ! checks "$work/read.py" "$work/in" 2>/dev/null || fail "a database of version 1 reads as one of today"
 : >"$work/said"
 "$program" station "$work/in" $recipe --once 2>"$work/said" || fail "the second time: exit code $?"
