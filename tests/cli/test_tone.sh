@@ -4,6 +4,7 @@
 # because of what a scanner's driver does to the tone.
 #   test_tone.sh PROGRAM
 . tests/support/cli.sh
+skip_when_slow # the gauges' tests see the same code
 
 # strip NAME THICKNESS SCANNER [DPI]
 strip() {
