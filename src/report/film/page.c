@@ -22,14 +22,13 @@ static void put_film_tiles(FILE *out, const fg_film_report *r) {
                                                                  : FG_TILE_BAD},
       {always ? NULL : "Critical mass", .value = at->critical_mass_kg, .digits = 4, .unit = "kg",
        .small = "on this bearing"},
-      {"Threshold speed", .value = r->threshold_rpm, .digits = 4, .unit = "rpm",
+      {"Threshold speed", .value = r->threshold_rpm, .unit = "rpm",
        .small = "of this rotor under this load", .unknown = "none among the speeds"},
       {"Thinnest film", .value = at->min_film_um, .digits = 3, .unit = "µm", .small = "under load"},
       {"Eccentricity", .value = at->eccentricity, .digits = 3, .small = "over the clearance"},
       {"Load capacity", .value = r->load_capacity_n, .digits = 3, .unit = "N",
        .small = "at this speed, for a film that does not touch"},
-      {"Lift-off", .value = r->lift_off_rpm, .digits = 3, .unit = "rpm",
-       .small = "under this load"},
+      {"Lift-off", .value = r->lift_off_rpm, .unit = "rpm", .small = "under this load"},
       {"Loss", .value = at->power_w, .digits = 3, .unit = "W", .small = "of the film's shear"},
   };
   fg_html_tiles(out, "tiles", tiles, sizeof tiles / sizeof *tiles);
@@ -41,7 +40,7 @@ static void put_summary(FILE *out, const fg_film_report *r) {
   fputs("<section>\n<header><h1>Gas film of ", out);
   fg_html_text(out, r->design.name);
   fprintf(out,
-          "</h1><p>%.4g N towards %g°, %.5g rpm, rotor %.4g kg; D %.4g mm, L %.4g mm, C %.4g µm, "
+          "</h1><p>%.4g N towards %g°, %.0f rpm, rotor %.4g kg; D %.4g mm, L %.4g mm, C %.4g µm, "
           "compliance %.4g, loss factor %.3g</p></header>\n",
           o->load_n, o->load_deg, o->speed_rpm, o->rotor_mass_kg, r->diameter_mm, r->length_mm,
           r->clearance_um, r->compliance, o->loss_factor);

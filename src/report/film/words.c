@@ -9,12 +9,12 @@ static void note_threshold(const fg_film_report *r, char *note) {
   const fg_film_options *o = &r->options;
   if (isfinite(r->threshold_rpm))
     snprintf(note, FG_FILM_NOTE,
-             "The rotor of %.4g kg on this bearing whirls from %.4g rpm on, under this load.",
+             "The rotor of %.4g kg on this bearing whirls from %.0f rpm on, under this load.",
              o->rotor_mass_kg, r->threshold_rpm);
   else
     snprintf(
         note, FG_FILM_NOTE,
-        "Between %.4g and %.4g rpm the rotor of %.4g kg does not pass from stable to unstable.",
+        "Between %.0f and %.0f rpm the rotor of %.4g kg does not pass from stable to unstable.",
         o->speed_low_rpm, o->speed_high_rpm, o->rotor_mass_kg);
 }
 
