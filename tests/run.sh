@@ -10,7 +10,7 @@ usage() {
 usage: tests/run.sh [--quick | --long | --help]
 
   (nothing)  builds foilgauge twice, for release in build/ and with sanitizers and warnings as errors in build-sanitize/,
-             and runs every test in both: some seven minutes on two cores
+             and runs every test in both: some fifteen minutes on two cores
   --quick    builds for release alone and runs the tests that are labelled `quick`: less than a minute after the build.
              Every room's unit tests and a script for each command are among them
   --long     as without an option, and before that the benchmarks of accuracy, speed and beds, the rendered experiments,
