@@ -37,7 +37,7 @@ fg_status fg_film_workspace_open(fg_context *ctx, const fg_film_report *report,
 void fg_film_workspace_close(fg_film_workspace *workspace);
 
 /* Solves a bearing at a speed from nothing, or on from the workspace's case `before` and state.
- * What has no film is FG_OK with its outcome. `before` becomes the solved case. */
+ * A bearing without a film is FG_OK with its outcome. `before` becomes the solved case. */
 typedef enum fg_film_start { FG_FILM_AFRESH, FG_FILM_ONWARD } fg_film_start;
 fg_status fg_film_solve_bearing(fg_context *ctx, const fg_film_report *report,
                                 fg_film_workspace *workspace, const fg_film_bearing *bearing,

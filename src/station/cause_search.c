@@ -14,6 +14,7 @@
 
 #include "core/date.h"
 #include "core/memory.h"
+#include "core/select.h"
 #include "core/text.h"
 #include "effect/table_effects.h"
 #include "station/cause_rows.h"
@@ -115,11 +116,6 @@ static fg_status find_level_shifts(fg_context *ctx, const fg_loop_problem *probl
   return status;
 }
 
-static int compare_numbers(const void *a, const void *b) {
-  double one = *(const double *)a, other = *(const double *)b;
-  return (one > other) - (one < other);
-}
-
 /* The curve at FAR of the rows' places, evenly chosen of the sorted ones: a step stays between two
  * neighbours. */
 static fg_status find_curve_shifts(fg_context *ctx, const fg_loop_problem *problem,
@@ -131,7 +127,7 @@ static fg_status find_curve_shifts(fg_context *ctx, const fg_loop_problem *probl
   FG_TRY_EXIT(fg_memory_allocate(ctx, problem->rows, sizeof *place, (void **)&place));
   FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *cause->point, (void **)&cause->point));
   memcpy(place, at->value, problem->rows * sizeof *place);
-  qsort(place, problem->rows, sizeof *place, compare_numbers);
+  fg_sort(place, problem->rows);
   for (size_t k = 0; k < count; k++)
     chosen[k] = place[count > 1 ? k * (problem->rows - 1) / (count - 1) : 0];
   FG_TRY_EXIT(fg_loop_claim_curve(ctx, problem, claim, chosen, count, effect));
@@ -334,7 +330,7 @@ fg_status fg_cause_search(fg_context *ctx, const fg_cause_data *data, const fg_c
                                             : search_foils(ctx, data, value, report);
   report->after = find_sd(value, data->foils, &unused);
   free(value);
-  if (report->causes) qsort(report->cause, report->causes, sizeof *report->cause, compare_causes);
+  fg_sort_items(report->cause, report->causes, sizeof *report->cause, compare_causes);
   fg_text_clip(report->note + strlen(report->note), FG_CAUSE_WORDS - strlen(report->note), "%s%s",
                report->note[0] && data->left_out[0] ? "; " : "", data->left_out);
   report->seconds = fg_clock_seconds() - begin;
