@@ -8,6 +8,7 @@
 
 #include "compensation/springback_state.h"
 #include "core/memory.h"
+#include "core/numerics.h"
 #include "core/select.h"
 
 /* Priors of a quantity, logarithms. `mean_sd`: the thesis's experiments opened foils by 2 to 20 %;
@@ -293,17 +294,10 @@ static void fill_gradient(const fg_springback_fit *fit, size_t place, double log
   gradient[fit->states - 1] = 1;
 }
 
-static double dot_states(const double *a, const double *b, size_t count) {
-  double sum = 0;
-  for (size_t i = 0; i < count; i++)
-    sum += a[i] * b[i];
-  return sum;
-}
-
 double fg_springback_mean(const fg_springback_fit *fit, size_t place, double log_die) {
   double gradient[FG_COMPENSATION_BUMPS + 3];
   fill_gradient(fit, place, log_die, gradient);
-  return dot_states(gradient, fit->state_mean, fit->states);
+  return fg_dot(gradient, fit->state_mean, fit->states);
 }
 
 double fg_springback_invert(const fg_springback_fit *fit, size_t place) {
@@ -313,10 +307,10 @@ double fg_springback_invert(const fg_springback_fit *fit, size_t place) {
 
 /* Variance of a linear form: within the points, and of their means. */
 static double variance_of_states(const fg_springback_fit *fit, const double *gradient) {
-  double sum = 0, mean = dot_states(gradient, fit->state_mean, fit->states);
+  double sum = 0, mean = fg_dot(gradient, fit->state_mean, fit->states);
   for (size_t i = 0; i < fit->points; i++) {
     const fg_springback_point *point = &fit->point[i];
-    double step = dot_states(gradient, point->mean, fit->states) - mean, within = 0;
+    double step = fg_dot(gradient, point->mean, fit->states) - mean, within = 0;
     for (size_t column = 0; column < fit->states; column++) {
       double part = 0;
       for (size_t row = column; row < fit->states; row++)
@@ -349,7 +343,7 @@ void fg_springback_describe(const fg_springback_fit *fit, fg_formed_law *law) {
     gradient[FG_STATE_BUMP + i] = 1 / (double)fit->places;
   for (size_t i = 0; i < fit->points; i++)
     steps += fit->point[i].weight * fit->point[i].sizes.set * fit->point[i].sizes.set;
-  law->springback_pct = 100 * dot_states(gradient, fit->state_mean, fit->states);
+  law->springback_pct = 100 * fg_dot(gradient, fit->state_mean, fit->states);
   law->u_springback_pct = 100 * sqrt(fmax(0, variance_of_states(fit, gradient) - steps));
   for (size_t i = 0; i < fit->points; i++) {
     const fg_springback_point *point = &fit->point[i];
