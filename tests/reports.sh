@@ -12,8 +12,9 @@ usage: tests/reports.sh [--again] [NAME...] | --list | --check | --help
 
   NAME     makes the pages with NAME in theirs; without one, all of them: that takes many hours
   --again  also those that stand in reports/made.csv with the present commit; without it, a run that was interrupted goes on
-  --list   writes the column `made` of reports/README.md anew, and makes nothing
-  --check  ends with 1 where a page's sources have changed much since it was made, and its row does not say so
+  --list   writes the columns `made`, `figure` and `goal` of reports/README.md anew, and makes nothing
+  --check  ends with 1 where a page's sources have changed much since it was made, and its row does not say so; and where its
+           figure is not found (reports/figures.csv says where it stands in the page), or is another than in its row
 
 Times are measured alone, other pages are made two at a time. What a command says goes to build/reports/.
 U

@@ -6,8 +6,9 @@ usage: reports.py [--again] [NAME...] | --list | --check
 
 NAME is a part of a page's name; without one, every page is made. A page that stands in reports/made.csv with the present commit is not
 made again (--again: it is): an interrupted run goes on where it ended. Commands of a section whose numbers are times run alone, the
-others in pairs. What a command says goes to build/reports/. --list writes the column `made` anew; --check ends with 1 where a page is
-old by its sources and the column does not say so.
+others in pairs. What a command says goes to build/reports/. --list writes the columns `made`, `figure` and `goal` anew; --check ends with 1
+where a page is old by its sources and the column does not say so, where a row of reports/figures.csv finds nothing in its page, and where
+the figure in the list is not the page's.
 """
 
 import concurrent.futures
@@ -19,9 +20,12 @@ import subprocess
 import sys
 import time
 
+import report_figures
+
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-LIST = os.path.join(ROOT, 'reports', 'README.md')
-MADE = os.path.join(ROOT, 'reports', 'made.csv')
+REPORTS = os.path.join(ROOT, 'reports')
+LIST = os.path.join(REPORTS, 'README.md')
+MADE = os.path.join(REPORTS, 'made.csv')
 LOGS = os.path.join(ROOT, 'build', 'reports')
 OLD = 0.10  # share of the lines of a page's rooms that have changed since it was made
 INPUT = re.compile(r'\b([A-Z][A-Z_]{2,}(\.[a-z]+)?|[A-Z]\.png)\b')  # SCAN.png, FOLDER: what the caller has to bring
@@ -109,22 +113,23 @@ def row_of(page, text):
     return next(line for line in text.splitlines() if '](%s)' % page.name in line or line.startswith('| `%s`' % page.name))
 
 
-def listed(text, made):
-    """The list with the column `made` as it should be."""
+def listed(text, made, figures):
+    """The list with the columns `made`, `figure` and `goal` as they should be."""
     by_name = {page.name: page for page in pages(text)}
     lines, inside = [], False
     for line in text.splitlines():
         row = cells(line) if line.startswith('|') else []
         if row[:1] == ['page'] and 'command' in row:
             inside = True
-            line = '| page | what it shows | command | made |'
+            line = '| page | what it shows | command | made | figure | goal |'
         elif inside and row and set(row[0]) <= set('-:'):
-            line = '|---|---|---|---|'
+            line = '|---|---|---|---|---|---|'
         elif inside and row:
             name = re.search(r'\]\(([^)]+)\)|^`([^`]+)`', row[0])
             page = by_name.get(name.group(1) or name.group(2)) if name else None
-            line = '| %s | %s |' % (' | '.join(row[:3]), said_of(page, made) if page else '')
-            line = line.replace('|  |', '| |')
+            said, goals, _ = report_figures.columns(figures.get(page.name, []) if page else [], REPORTS)
+            line = '| %s |' % ' | '.join(row[:3] + [said_of(page, made) if page else '', said, goals])
+            line = line.replace('|  |', '| |').replace('|  |', '| |')
         else:
             inside = inside and not line.startswith('## ')
         lines.append(line)
@@ -174,17 +179,39 @@ def make_all(wanted, made, again):
     return failed
 
 
+def figures_wrong(text, figures):
+    """Faults of the figures in the list: rows of figures.csv without a page or that find nothing, cells that the page does not say."""
+    wrong, by_name = [], {page.name: page for page in pages(text)}
+    for name, rows in figures.items():
+        if name not in by_name:
+            wrong.append('reports/figures.csv: %s is no page of reports/README.md' % name)
+            continue
+        said, goals, missing = report_figures.columns(rows, REPORTS)
+        wrong += ['reports/' + one for one in missing]
+        if not missing and cells(row_of(by_name[name], text))[4:6] != [said, goals]:
+            wrong.append('reports/%s says "%s", and its row in reports/README.md does not: tests/reports.sh --list' % (name, said))
+    return wrong
+
+
+def check(text, made, figures):
+    """Faults of the list, printed: 1 where there are some, 77 where there is no history to compare with."""
+    wrong = figures_wrong(text, figures)
+    known = git('rev-parse', 'HEAD') is not None
+    for page in pages(text) if known else []:
+        if '**old**' in said_of(page, made) and '**old**' not in row_of(page, text):
+            wrong.append('reports/%s: its sources have changed, and its row does not say **old**: tests/reports.sh %s, or --list' %
+                         (page.name, page.name))
+    for one in wrong:
+        print(one)
+    return 1 if wrong else 0 if known else 77
+
+
 def main():
     with open(LIST, encoding='utf-8') as stream:
         text = stream.read()
-    made, arguments = read_made(), sys.argv[1:]
+    made, figures, arguments = read_made(), report_figures.read(REPORTS), sys.argv[1:]
     if arguments == ['--check']:
-        if git('rev-parse', 'HEAD') is None:
-            return 77
-        unsaid = [page.name for page in pages(text) if '**old**' in said_of(page, made) and '**old**' not in row_of(page, text)]
-        for name in unsaid:
-            print('reports/%s: its sources have changed, and its row does not say **old**: tests/reports.sh %s, or --list' % (name, name))
-        return 1 if unsaid else 0
+        return check(text, made, figures)
     failed = 0
     if arguments != ['--list']:
         names = [word for word in arguments if word != '--again']
@@ -194,9 +221,13 @@ def main():
             return 64
         failed = make_all(wanted, made, '--again' in arguments)
     with open(LIST + '.tmp', 'w', encoding='utf-8') as stream:
-        stream.write(listed(text, made))
+        text = listed(text, made, figures)
+        stream.write(text)
     os.replace(LIST + '.tmp', LIST)
-    return 1 if failed else 0
+    wrong = figures_wrong(text, figures)
+    for one in wrong:
+        print(one)
+    return 1 if failed or wrong else 0
 
 
 if __name__ == '__main__':
