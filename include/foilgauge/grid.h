@@ -62,6 +62,10 @@ typedef struct fg_grid {
   double largest_um;        /* residual of a used mark */
   double mark_u_um;         /* root mean square u of a mark */
   double blur_um;           /* median */
+  /* Through a scanner's model: rms of the residuals without it, and of the part of their
+   * uncertainty that the model has. */
+  bool corrected;
+  double uncorrected_rms_um, u_model_um;
   /* The board in its own frame, by which scans of it are told apart when it is turned: gray levels
    * from 1, 0 beyond the scan; it begins one step before the first mark. */
   unsigned char *picture; /* owned; (columns + 1) per_step × (rows + 1) per_step */
@@ -71,6 +75,17 @@ typedef struct fg_grid {
 /* Fits the lattice to the marks, whose columns, rows, places and u_mm are set, and fills everything
  * that follows. False: the marks lie on one line. */
 bool fg_grid_fit(fg_grid *grid, const double dpi[2]);
+
+/* Differences of a lattice from another fit of the same marks: of step x, step y, ratio and shear,
+ * and the mean square of the marks' residuals along one axis. */
+typedef struct fg_grid_moves {
+  double step_mm[2], axis_ratio, shear, residual_mm2;
+} fg_grid_moves;
+
+fg_grid_moves fg_grid_find_moves(const fg_grid *grid, const fg_grid *other);
+
+/* Adds the squares of moves, each times `share`², to the variances of a lattice's numbers. */
+void fg_grid_widen(fg_grid *grid, const fg_grid_moves *moves, double share);
 
 void fg_grid_free(fg_grid *grid); /* frees its members; NULL is fine */
 

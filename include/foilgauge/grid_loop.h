@@ -27,7 +27,8 @@ typedef struct fg_grid_loop_options {
   /* Quarter turns of every scan's board against the first scan's, from x towards y; -1: found by
    * what the pictures show. */
   int turns[FG_GRID_SCANS];
-  const char *scanner; /* as in fg_scan_loop_options */
+  bool hold_out[FG_GRID_SCANS]; /* scans that only confirm; one at least must be none */
+  const char *scanner;          /* as in fg_scan_loop_options */
   int64_t date;
 } fg_grid_loop_options;
 
@@ -59,8 +60,17 @@ typedef struct fg_grid_scan {
   fg_point *residual_mm; /* owned; of every mark after all corrections; NaN: not used */
 } fg_grid_scan;
 
+/* A scan that only confirms: errors of its marks, without and with the model of the others. */
+typedef struct fg_grid_held_out {
+  const fg_measurement *measurement;
+  int turn_deg;
+  double before_um, after_um; /* rms along one axis, of its marks in the region */
+} fg_grid_held_out;
+
 typedef struct fg_grid_loop_result {
-  fg_grid_scan *scan; /* owned */
+  fg_grid_scan *scan;         /* owned */
+  fg_grid_held_out *held_out; /* owned */
+  size_t held_out_scans;
   size_t scans, boards, marks;
   bool turned; /* scans of one board, turned by a quarter: scanner and board are told apart */
   bool scale_known, axes_known; /* by the boards' stated pitch, or (the axes) by turned scans */
@@ -76,9 +86,9 @@ typedef struct fg_grid_loop_result {
   double u_map_um;                   /* rms of its standard uncertainty */
   double board_map_um;               /* of the first board's own; 0: none */
   double before_um, after_um;        /* rms of all marks, each component */
-  double held_out_before_um, held_out_after_um;
-  double low_mm[2], high_mm[2]; /* region */
-  fg_grid_map_point *map;       /* owned; row by row */
+  double held_out_before_um, held_out_after_um; /* of scans held out, else of marks in turn */
+  double low_mm[2], high_mm[2];                 /* region */
+  fg_grid_map_point *map;                       /* owned; row by row */
   size_t map_columns, map_rows;
   char sentence[FG_GRID_WORDS], advice[FG_GRID_WORDS];
 } fg_grid_loop_result;

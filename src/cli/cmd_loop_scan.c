@@ -322,6 +322,8 @@ static fg_status read_forming(fg_context *ctx, const char *path,
   return fg_forming_prediction_load(ctx, path, *prediction);
 }
 
+_Static_assert((int)SCANS_MAX == (int)FG_GRID_SCANS, "every scan may be held out");
+
 typedef fg_status grid_writer(fg_context *ctx, const fg_grid_loop *loop, FILE *out);
 
 static fg_status write_grid_output(fg_context *ctx, void *user, size_t kind, FILE *out) {
@@ -336,16 +338,15 @@ static fg_status write_grid_output(fg_context *ctx, void *user, size_t kind, FIL
 
 static fg_status run_grids(fg_context *ctx, arguments *a, const fg_design *design) {
   fg_grid_loop *loop = NULL;
-  if (a->held_out || a->forming_model)
-    return fg_fail(ctx, FG_ERR_USAGE,
-                   "--%s is not for grids: marks of every scan are held out in turn",
-                   a->held_out ? "hold-out" : "form-model");
+  if (a->forming_model)
+    return fg_fail(ctx, FG_ERR_USAGE, "--form-model is of the bumps of foils: grids have none");
   a->grid.dpi = a->options.dpi;
   a->grid.allow_lossy = a->options.allow_lossy;
   a->grid.threads = a->options.threads;
   a->grid.same_part |= a->options.same_foil;
   a->grid.scanner = a->options.scanner;
   a->grid.date = find_date(a);
+  memcpy(a->grid.hold_out, a->hold_out, sizeof a->hold_out);
   FG_TRY(fg_output_set_open(ctx, &a->outputs));
   fg_status status = fg_grid_loop_run(ctx, a->paths, a->count, design, &a->grid, &loop);
   if (status == FG_OK) status = fg_output_set_write(ctx, &a->outputs, write_grid_output, loop);

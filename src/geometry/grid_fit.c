@@ -245,3 +245,38 @@ bool fg_grid_fit(fg_grid *grid, const double dpi[2]) {
   grid->rotation_deg = atan2(fit.column[1], fit.column[0]) * 180 / M_PI;
   return true;
 }
+
+/* ---- uncertainty by what moves all marks ---- */
+
+fg_grid_moves fg_grid_find_moves(const fg_grid *grid, const fg_grid *other) {
+  fg_grid_moves moves = {.axis_ratio = other->axis_ratio.value - grid->axis_ratio.value,
+                         .shear = other->shear.value - grid->shear.value};
+  double square = 0, count = 0;
+  for (int axis = 0; axis < AXES; axis++)
+    moves.step_mm[axis] = other->step_mm[axis].value - grid->step_mm[axis].value;
+  for (size_t i = 0; i < grid->count && i < other->count; i++) {
+    const fg_mark *a = &grid->marks[i], *b = &other->marks[i];
+    if (!a->used || !b->used) continue;
+    double x = b->residual_mm.x - a->residual_mm.x, y = b->residual_mm.y - a->residual_mm.y;
+    square += x * x + y * y;
+    count += grid->kind == FG_MARKS_LINES ? 1 : 2;
+  }
+  moves.residual_mm2 = count > 0 ? square / count : 0;
+  return moves;
+}
+
+static void widen_lattice_value(fg_grid_value *value, double move) {
+  value->u = hypot(value->u, move);
+}
+
+void fg_grid_widen(fg_grid *grid, const fg_grid_moves *moves, double share) {
+  for (int axis = 0; axis < AXES; axis++) {
+    double move = share * moves->step_mm[axis];
+    fg_grid_value *mm = &grid->step_mm[axis], *px = &grid->step_px[axis];
+    widen_lattice_value(px, move * px->value / mm->value);
+    widen_lattice_value(mm, move);
+  }
+  widen_lattice_value(&grid->axis_ratio, share * moves->axis_ratio);
+  widen_lattice_value(&grid->shear, share * moves->shear);
+  grid->u_model_um = hypot(grid->u_model_um, 1000 * share * sqrt(moves->residual_mm2));
+}

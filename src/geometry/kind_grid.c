@@ -34,8 +34,6 @@ const fg_foil_row fg_foil_kind_grid = {
             .needed = {"marks"},
             .why_no_thickness_measured = "belongs to strips; form is \"grid\"",
             .why_no_gauges = "belong to foils and discs; form is \"grid\"",
-            .why_no_model = "a grid is what a scanner's model is found with: it is measured "
-                            "without one",
             .why_no_station = "form is grid: the station measures foils",
             .why_no_forming = "form \"grid\" has no strip that is bent",
             .is_grid = true,

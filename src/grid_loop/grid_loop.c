@@ -8,32 +8,40 @@
 #include "core/memory.h"
 #include "grid_loop/grid_loop.h"
 
-/* Marks that are held out in turn, and from which number of marks on that is done. */
-enum { FOLDS = 5, MARKS_TO_HOLD_OUT = 40, DOF_MIN = 3 };
+enum { DOF_MIN = 3 };
 /* A map must be more likely than none by this much. */
 #define MAP_LIKELIHOOD 4.0
 
-static fg_status measure_grids(fg_context *ctx, const char *const *paths, const fg_design *design,
-                               fg_grid_loop *loop) {
+/* Checks a scan against those before it. */
+static fg_status check_scan_of_grid(fg_context *ctx, const fg_measurement *all, size_t i) {
+  const fg_measurement *first = &all[0], *m = &all[i];
+  for (size_t k = 0; k < i; k++)
+    if (!strcmp(all[k].sha256, m->sha256))
+      return fg_fail(ctx, FG_ERR_DATA, "%s and %s are the same scan: give each once", all[k].scan,
+                     m->scan);
+  for (int axis = 0; axis < 2; axis++)
+    if (fabs(m->dpi[axis] / first->dpi[axis] - 1) > 1e-4)
+      return fg_fail(ctx, FG_ERR_DATA,
+                     "%s has %g dpi and %s has %g dpi: scans of one loop must have one resolution",
+                     first->scan, first->dpi[axis], m->scan, m->dpi[axis]);
+  return FG_OK;
+}
+
+/* Measures the scans that the loop learns from, then those that only confirm; the turns follow. */
+static fg_status measure_grids(fg_context *ctx, const char *const *paths, size_t count,
+                               const fg_design *design, fg_grid_loop *loop) {
   fg_measure_options options = {.dpi = loop->options.dpi,
                                 .allow_lossy = loop->options.allow_lossy,
                                 .threads = loop->options.threads};
-  for (size_t i = 0; i < loop->scan_count; i++)
-    FG_TRY(fg_measure_scan(ctx, paths[i], design, &options, &loop->measurements[i]));
-  const fg_measurement *first = &loop->measurements[0];
-  for (size_t i = 1; i < loop->scan_count; i++) {
-    const fg_measurement *m = &loop->measurements[i];
-    for (size_t k = 0; k < i; k++)
-      if (!strcmp(loop->measurements[k].sha256, m->sha256))
-        return fg_fail(ctx, FG_ERR_DATA, "%s and %s are the same scan: give each once", paths[k],
-                       paths[i]);
-    for (int axis = 0; axis < 2; axis++)
-      if (fabs(m->dpi[axis] / first->dpi[axis] - 1) > 1e-4)
-        return fg_fail(
-            ctx, FG_ERR_DATA,
-            "%s has %g dpi and %s has %g dpi: scans of one loop must have one resolution", paths[0],
-            first->dpi[axis], paths[i], m->dpi[axis]);
-  }
+  const fg_grid_loop_options given = loop->options;
+  size_t at = 0;
+  for (int held_out = 0; held_out < 2; held_out++)
+    for (size_t i = 0; i < count; i++) {
+      if (given.hold_out[i] != (held_out != 0)) continue;
+      FG_TRY(fg_measure_scan(ctx, paths[i], design, &options, &loop->measurements[at]));
+      FG_TRY(check_scan_of_grid(ctx, loop->measurements, at));
+      loop->options.turns[at++] = given.turns[i];
+    }
   return FG_OK;
 }
 
@@ -107,10 +115,12 @@ fg_status fg_grid_loop_run(fg_context *ctx, const char *const *paths, size_t cou
   *result = NULL;
   FG_TRY(fg_memory_allocate(ctx, 1, sizeof *loop, (void **)&loop));
   loop->options = *options;
-  loop->scan_count = count;
+  for (size_t i = 0; i < count; i++)
+    loop->held_out_count += options->hold_out[i];
+  loop->scan_count = count - loop->held_out_count;
   FG_TRY_EXIT(
       fg_memory_allocate(ctx, count, sizeof *loop->measurements, (void **)&loop->measurements));
-  FG_TRY_EXIT(measure_grids(ctx, paths, design, loop));
+  FG_TRY_EXIT(measure_grids(ctx, paths, count, design, loop));
   FG_TRY_EXIT(close_grid_loop(ctx, loop));
   *result = loop;
 exit:
@@ -128,80 +138,12 @@ void fg_grid_loop_free(fg_grid_loop *loop) {
     free(loop->result.scan[i].residual_mm);
   free(loop->result.scan);
   free(loop->result.map);
+  free(loop->result.held_out);
   fg_scanner_model_free(loop->model);
   fg_grid_solution_free(&loop->solution);
   fg_grid_problem_free(&loop->problem);
-  for (size_t i = 0; loop->measurements && i < loop->scan_count; i++)
+  for (size_t i = 0; loop->measurements && i < loop->scan_count + loop->held_out_count; i++)
     fg_measurement_free(&loop->measurements[i]);
   free(loop->measurements);
   free(loop);
-}
-
-/* ---- marks held out ---- */
-
-/* The same model without what the loop found: poses, and the scale where no pitch is stated. */
-static grid_problem bare_problem(const grid_problem *problem) {
-  grid_problem bare = *problem;
-  bare.effects = 0;
-  bare.has_map = bare.has_board_map = false;
-  for (size_t i = 0; i < bare.board_count; i++)
-    bare.board[i].u_scale = 1e-9;
-  return bare;
-}
-
-/* Neighbours are in different folds. */
-static void hold_out_fold(grid_problem *problem, int fold) {
-  for (size_t i = 0; i < problem->row_count; i++) {
-    grid_row *row = &problem->rows[i];
-    double pitch = problem->board[row->board].pitch_mm;
-    long place = lround(row->place.x / pitch) + 2 * lround(row->place.y / pitch);
-    row->held_out = ((place % FOLDS) + FOLDS) % FOLDS == fold;
-  }
-}
-
-static fg_status add_held_out(fg_context *ctx, const grid_problem *problem, double *square) {
-  grid_solution solution;
-  FG_TRY(fg_grid_solve(ctx, problem, GRID_NOT_HELD_OUT, &solution));
-  for (size_t i = 0; i < problem->row_count; i++)
-    if (problem->rows[i].held_out && problem->rows[i].used)
-      *square += solution.residual[i] * solution.residual[i];
-  fg_grid_solution_free(&solution);
-  return FG_OK;
-}
-
-static double count_used(const grid_problem *problem) {
-  double used = 0;
-  for (size_t i = 0; i < problem->row_count; i++)
-    used += problem->rows[i].used;
-  return used;
-}
-
-static fg_status find_rms(fg_context *ctx, const grid_problem *problem, double *um) {
-  grid_solution solution;
-  double square = 0;
-  FG_TRY(fg_grid_solve(ctx, problem, GRID_ALL_ROWS, &solution));
-  for (size_t i = 0; i < problem->row_count; i++)
-    if (problem->rows[i].used) square += solution.residual[i] * solution.residual[i];
-  fg_grid_solution_free(&solution);
-  *um = 1000 * sqrt(square / count_used(problem));
-  return FG_OK;
-}
-
-fg_status fg_grid_loop_hold_out(fg_context *ctx, fg_grid_loop *loop) {
-  grid_problem *problem = &loop->problem;
-  fg_grid_loop_result *result = &loop->result;
-  double before = 0, after = 0;
-  grid_problem bare = bare_problem(problem);
-  FG_TRY(find_rms(ctx, &bare, &result->before_um));
-  FG_TRY(find_rms(ctx, problem, &result->after_um));
-  result->held_out_before_um = result->held_out_after_um = NAN;
-  if (result->marks < MARKS_TO_HOLD_OUT) return FG_OK;
-  for (int fold = 0; fold < FOLDS; fold++) {
-    hold_out_fold(problem, fold);
-    FG_TRY(add_held_out(ctx, &bare, &before));
-    FG_TRY(add_held_out(ctx, problem, &after));
-  }
-  result->held_out_before_um = 1000 * sqrt(before / count_used(problem));
-  result->held_out_after_um = 1000 * sqrt(after / count_used(problem));
-  return FG_OK;
 }

@@ -8,8 +8,8 @@
 
 struct fg_grid_loop {
   fg_grid_loop_options options;
-  fg_measurement *measurements; /* owned; one per scan */
-  size_t scan_count;
+  fg_measurement *measurements; /* owned; of the scans that the loop learns from, then held out */
+  size_t scan_count, held_out_count;
   grid_problem problem;
   grid_solution solution;
   double widening;         /* factor on standard uncertainties: Student's t at few dof */
@@ -21,7 +21,7 @@ struct fg_grid_loop {
 fg_status fg_grid_loop_tell(fg_context *ctx, fg_grid_loop *loop);
 /* Sentence and advice. */
 void fg_grid_loop_say(fg_grid_loop_result *result);
-/* rms of the marks of scans before and after, on marks that no fit saw. */
+/* rms of the marks before and after, and on marks that no fit saw: of scans held out, if any. */
 fg_status fg_grid_loop_hold_out(fg_context *ctx, fg_grid_loop *loop);
 /* Makes the scanner's model: effects and map with their uncertainty. */
 fg_status fg_grid_loop_make_model(fg_context *ctx, fg_grid_loop *loop);

@@ -299,10 +299,11 @@ fg_status fg_grid_loop_write_model(fg_context *ctx, const fg_grid_loop *loop, FI
   fg_scanner_model_input inputs[FG_GRID_SCANS];
   if (!loop->result.axes_known)
     return fg_fail(ctx, FG_ERR_DATA, "no model is written: %s", loop->result.advice);
-  for (size_t i = 0; i < loop->scan_count; i++) {
-    inputs[i] =
-        (fg_scanner_model_input){loop->measurements[i].scan, loop->measurements[i].sha256, false};
-    FG_TRY(fg_scanner_model_check_picture(ctx, &loop->measurements[i]));
+  size_t count = loop->scan_count + loop->held_out_count;
+  for (size_t i = 0; i < count; i++) {
+    const fg_measurement *m = &loop->measurements[i];
+    inputs[i] = (fg_scanner_model_input){m->scan, m->sha256, i >= loop->scan_count};
+    FG_TRY(fg_scanner_model_check_picture(ctx, m));
   }
-  return fg_scanner_model_write(ctx, loop->model, inputs, loop->scan_count, out);
+  return fg_scanner_model_write(ctx, loop->model, inputs, count, out);
 }

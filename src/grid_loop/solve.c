@@ -424,7 +424,8 @@ static fg_status start_sizes(fg_context *ctx, grid_problem *problem, bool repeat
     problem->mark_sd = fmax(SIZE_MIN_MM, fg_robust_sd(sizes, problem->row_count));
   free(sizes);
   fg_grid_solution_free(&solution);
-  problem->board_sd = repeats ? problem->mark_sd : 0;
+  /* Without a mark that is seen twice the board's part is the stated one. */
+  problem->board_sd = repeats ? problem->mark_sd : problem->design->u_place_mm;
   return status;
 }
 

@@ -24,6 +24,10 @@ fg_status fg_grid_solve(fg_context *ctx, const grid_problem *problem, grid_rows_
                         grid_solution *solution);
 void fg_grid_solution_free(grid_solution *solution);
 
+/* The carriage's random part along its way, um, from scan to scan; NaN: no scan repeats the pose of
+ * another. */
+double fg_grid_find_carriage(const grid_problem *problem, const grid_solution *solution);
+
 /* Finds the sizes of noise and maps, and drops outliers; the problem gets them. */
 fg_status fg_grid_find_sizes(fg_context *ctx, grid_problem *problem);
 

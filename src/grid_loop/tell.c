@@ -246,49 +246,6 @@ static double rms_of_map(const fg_grid_loop *loop, const fg_map_frame *frame, si
   return 1000 * sqrt(square / n);
 }
 
-/* ---- the carriage ---- */
-
-/* Rows of marks that the carriage sees at one time: strips of the bed, as high as a lattice step.
- */
-enum { STRIPS_MAX = 400, PER_STRIP_MIN = 4 };
-
-typedef struct strip_mean {
-  double sum, count;
-} strip_mean;
-
-/* Variance of the means of strips beyond that of their marks: what all marks of a strip share in
- * one scan alone. Only scans of a pose that another scan repeats tell it; of others the map may
- * hold it. */
-static double find_carriage(const fg_grid_loop *loop) {
-  static strip_mean empty;
-  const grid_problem *problem = &loop->problem;
-  double square = 0, expected = 0, strips = 0, pitch = problem->board[0].pitch_mm;
-  for (size_t scan = 0; scan < problem->scan_count; scan++) {
-    strip_mean means[STRIPS_MAX];
-    bool repeated = false;
-    for (size_t k = 0; k < STRIPS_MAX; k++)
-      means[k] = empty;
-    for (size_t other = 0; other < problem->scan_count; other++)
-      repeated |= other != scan && problem->board_of[other] == problem->board_of[scan] &&
-                  problem->turns[other] == problem->turns[scan];
-    for (size_t i = 0; repeated && i < problem->row_count; i++) {
-      const grid_row *row = &problem->rows[i];
-      double strip = (row->at.y - problem->frame.low_mm[1]) / pitch;
-      if (row->scan != scan || !row->used || fabs(row->direction.y) < 0.7) continue;
-      if (!(strip >= 0 && strip < STRIPS_MAX)) continue;
-      means[(size_t)strip].sum += loop->solution.residual[i] / row->direction.y;
-      means[(size_t)strip].count++;
-    }
-    for (size_t k = 0; k < STRIPS_MAX; k++) {
-      if (means[k].count < PER_STRIP_MIN) continue;
-      square += pow(means[k].sum / means[k].count, 2);
-      expected += (pow(problem->mark_sd, 2) + pow(problem->board_sd, 2)) / means[k].count;
-      strips++;
-    }
-  }
-  return strips > 0 ? 1000 * sqrt(fmax(0, square - expected) / strips) : NAN;
-}
-
 /* ---- scans ---- */
 
 static fg_status tell_scans(fg_context *ctx, fg_grid_loop *loop) {
@@ -323,7 +280,7 @@ fg_status fg_grid_loop_tell(fg_context *ctx, fg_grid_loop *loop) {
   result->axes_known = problem->scale_known || problem->turned;
   result->mark_um = 1000 * problem->mark_sd;
   result->board_mark_um = problem->board_sd > 0 ? 1000 * problem->board_sd : NAN;
-  result->carriage_um = find_carriage(loop);
+  result->carriage_um = fg_grid_find_carriage(problem, &loop->solution);
   for (int axis = 0; axis < 2; axis++) {
     result->low_mm[axis] = problem->frame.low_mm[axis];
     result->high_mm[axis] = problem->frame.high_mm[axis];

@@ -116,6 +116,11 @@ static fg_status find_source(fg_context *ctx, const fg_measurement *same, const 
   const double factor[2] = {1 + stretch[0] / share, 1 + stretch[1] / share};
   FG_TRY(fg_measure_stretched(ctx, m, factor, threads, &other));
   add_all_moves(same, &other, share, source, m);
+  if (m->grid) {
+    fg_grid_moves by_stretch = fg_grid_find_moves(same->grid, other.grid);
+    by_stretch.residual_mm2 = 0; /* that is of a scanner's model */
+    fg_grid_widen(m->grid, &by_stretch, share);
+  }
   fg_measurement_free(&other);
   return FG_OK;
 }

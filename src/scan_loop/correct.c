@@ -38,9 +38,14 @@ static fg_point correct_point(const void *user, const fg_disc *disc, fg_point at
   return c->displacement ? displaced(c->displacement, at) : at;
 }
 
+static fg_point correct_mark(const void *user, fg_point at) {
+  return correct_point(user, NULL, at);
+}
+
 static fg_status correct_measurement(fg_context *ctx, const fg_measurement *m, const correction *c,
                                      unsigned threads, fg_measurement *corrected) {
-  const fg_measure_mover mover = {.strip = correct_strip, .point = correct_point, .user = c};
+  const fg_measure_mover mover = {
+      .strip = correct_strip, .point = correct_point, .flat = correct_mark, .user = c};
   return fg_measure_again(ctx, m, &mover, threads, corrected);
 }
 

@@ -34,6 +34,11 @@ static double disc_reach(const fg_field_frame *frame, const fg_disc *disc) {
   return reach_of(frame, (double[]){c.x - r, c.y - r}, (double[]){c.x + r, c.y + r});
 }
 
+static double mark_reach(const fg_field_frame *frame, const fg_mark *mark) {
+  const double at[2] = {mark->at_mm.x, mark->at_mm.y};
+  return reach_of(frame, at, at);
+}
+
 /* Returns the reach of the farthest part; of a scan without parts, of its picture. */
 static double find_reach(const fg_field_frame *frame, const fg_measurement *m) {
   double reach = 0;
@@ -41,7 +46,9 @@ static double find_reach(const fg_field_frame *frame, const fg_measurement *m) {
     reach = fmax(reach, foil_reach(frame, &m->foils[f]));
   for (size_t d = 0; d < m->disc_count; d++)
     reach = fmax(reach, disc_reach(frame, &m->discs[d]));
-  if (m->foil_count || m->disc_count) return reach;
+  for (size_t k = 0; m->grid && k < m->grid->count; k++)
+    reach = fmax(reach, mark_reach(frame, &m->grid->marks[k]));
+  if (m->foil_count || m->disc_count || m->grid) return reach;
   double size[2] = {(double)m->width_px * 25.4 / m->dpi[0],
                     (double)m->height_px * 25.4 / m->dpi[1]};
   return reach_of(frame, frame->low_mm, size);
@@ -65,10 +72,11 @@ static fg_status check_place(fg_context *ctx, const fg_scanner_model *model,
           m->scan, m->dpi[axis] * factor, model->dpi[axis]);
   double reach = find_reach(frame, m);
   if (reach > reach_refused)
-    return fg_fail(ctx, FG_ERR_DATA,
-                   "%s: a foil lies %.1f times as far on the glass as the %.0f x %.0f mm that the "
-                   "model was found in; find a model on scans that reach as far",
-                   m->scan, reach, width, height);
+    return fg_fail(
+        ctx, FG_ERR_DATA,
+        "%s: the part lies %.1f times as far on the glass as the %.0f x %.0f mm that the "
+        "model was found in; find a model on scans that reach as far",
+        m->scan, reach, width, height);
   if (warning && reach > reach_warned)
     snprintf(warning, 200,
              "%.80s: the scan reaches beyond the %.0f x %.0f mm the model was found in", m->scan,
@@ -140,6 +148,12 @@ static void replace(fg_measurement *m, fg_measurement *corrected) {
     fg_disc_free(&m->discs[d]);
   free(m->foils);
   free(m->discs);
+  if (m->grid) {
+    corrected->grid->corrected = true;
+    corrected->grid->uncorrected_rms_um = m->grid->rms_um;
+    fg_grid_free(m->grid);
+    free(m->grid);
+  }
   *m = *corrected;
 }
 

@@ -71,6 +71,7 @@ typedef struct fg_model_uncertainty {
   double *step[FG_MODEL_NUMBERS_MAX]; /* owned: displacement of every value by the uncertainty of
                                          one of the model's numbers */
   size_t steps;
+  fg_grid_moves grid_step[FG_MODEL_NUMBERS_MAX]; /* of a grid's lattice, by the same */
   fg_benefits benefits;
 } fg_model_uncertainty;
 

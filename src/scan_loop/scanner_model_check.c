@@ -19,7 +19,7 @@
 /* No tooth of a gear or step of a motor is finer; a period longer than ten times the region is no
  * ripple. */
 #define PERIOD_MIN_MM 0.01
-#define GROWTH_MAX 10.0
+#define GROWTH_MAX    10.0
 /* All effects together: share of the region's length that they stretch, shear or bend it by. */
 #define BEND_MAX 0.1
 /* Range of the option --dpi. */
@@ -75,8 +75,7 @@ static void shape_ranges(const fg_field_frame *frame, const fg_field *field, siz
   *place = (range){low - PLACE_BEYOND * length, high + PLACE_BEYOND * length, "mm"};
   if (kind->shape_is[s] == FG_EFFECT_LENGTH)
     *place = (range){PERIOD_MIN_MM, PLACE_BEYOND * length, "mm"};
-  if (kind->shape_is[s] == FG_EFFECT_GROWTH)
-    *place = (range){-GROWTH_MAX, GROWTH_MAX, "per mm"};
+  if (kind->shape_is[s] == FG_EFFECT_GROWTH) *place = (range){-GROWTH_MAX, GROWTH_MAX, "per mm"};
   *u = (range){0, PLACE_BEYOND * length, "mm"};
 }
 

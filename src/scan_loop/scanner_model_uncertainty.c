@@ -80,6 +80,9 @@ static fg_status step_number(fg_context *ctx, const fg_field_list *fields, const
   fg_benefits_add_step(&uncertainty->benefits, &uncertainty->each[0], &other);
   fg_status status =
       find_moves(ctx, &uncertainty->each[0], &other, &uncertainty->step[uncertainty->steps]);
+  if (other.grid && uncertainty->each[0].grid)
+    uncertainty->grid_step[uncertainty->steps] =
+        fg_grid_find_moves(uncertainty->each[0].grid, other.grid);
   fg_measurement_free(&other);
   if (status == FG_OK) uncertainty->steps++;
   return status;
@@ -147,8 +150,20 @@ void fg_model_uncertainty_close(fg_model_uncertainty *uncertainty) {
   *uncertainty = (fg_model_uncertainty){.count = 0};
 }
 
+/* Widens a grid's lattice by all numbers of the model, and by the explanations tied with it. */
+static void widen_grid(const fg_model_uncertainty *uncertainty, fg_grid *grid) {
+  const fg_grid kept = *grid;
+  for (size_t k = 0; k < uncertainty->steps; k++)
+    fg_grid_widen(grid, &uncertainty->grid_step[k], 1);
+  for (size_t k = 1; k < uncertainty->count; k++) {
+    const fg_grid_moves by_tie = fg_grid_find_moves(&kept, uncertainty->each[k].grid);
+    fg_grid_widen(grid, &by_tie, 1 / sqrt((double)uncertainty->count));
+  }
+}
+
 fg_status fg_model_uncertainty_widen(fg_context *ctx, const fg_model_uncertainty *uncertainty,
                                      fg_measurement *kept) {
+  if (kept->grid) widen_grid(uncertainty, kept->grid);
   for (size_t k = 0; k < uncertainty->steps; k++)
     add_moves(kept, uncertainty->step[k], 1);
   for (size_t k = 0; k < uncertainty->count; k++) {

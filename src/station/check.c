@@ -8,6 +8,7 @@
 
 #include "core/text.h"
 #include "foilgauge/measure.h"
+#include "foilgauge/scan_loop.h"
 #include "foilgauge/traceability.h"
 #include "station/check_fit.h"
 #include "station/check_state.h"
@@ -99,6 +100,15 @@ static void put_state_words(const check_result *check, int64_t baseline_at, char
                  check->fit.is_grid ? "scale, shear and blur" : "tone, sharpening and blur", day);
 }
 
+/* A grid is held against its pitch through the recipe's model, as foils are measured. */
+static fg_status fit_check(fg_context *ctx, const fg_inspection *station, fg_measurement *m,
+                           fg_check_fit *fit) {
+  char warning[200];
+  if (!m->grid) return fg_check_fit_plate(ctx, &station->check_design, m, fit);
+  if (station->model) FG_TRY(fg_scanner_model_apply(ctx, station->model, m, 0, warning));
+  return fg_check_fit_grid(ctx, &station->check_design, m, fit);
+}
+
 /* Judges scale and shear against the allowed deviation, the picture's state against its
  * baseline. */
 static fg_status judge_check(fg_context *ctx, fg_inspection *station,
@@ -137,8 +147,7 @@ fg_status fg_station_measure_check(fg_context *ctx, fg_inspection *station, cons
       failure = fg_measure_scan(&inner, path, &station->check_design, &options, &measurement);
   if (failure == FG_ERR_MEMORY) return fg_fail(ctx, failure, "%s", inner.message);
   if (failure == FG_OK) {
-    failure = (measurement.grid ? fg_check_fit_grid : fg_check_fit_plate)(
-        &inner, &station->check_design, &measurement, &check.fit);
+    failure = fit_check(&inner, station, &measurement, &check.fit);
     if (failure != FG_OK) fg_measurement_free(&measurement);
   }
   if (failure != FG_OK) {

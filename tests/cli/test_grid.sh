@@ -58,6 +58,27 @@ expect 0 "" "$program" loop --same-part a.png b.png --turned 0,90 --design dots.
 cmp -s pair.json said.json || fail "a turn that is said differs from the same that is found"
 expect 64 "multiples of 90" "$program" loop --same-part a.png b.png --turned 0,45 --design dots.json
 
+# A scan that only confirms: its marks err by the scanner and the board before, and by their noise after.
+spec c.json dots 182 9 "$scale"
+expect 0 "" "$program" render c.json -o c.png
+expect 0 "" "$program" loop --same-part a.png --hold-out c.png b.png --design dots.json -o confirmed.json --html confirmed.html
+python3 - <<'P' || fail "the scan held out has no error of its own, before and after"
+import json
+r, pair = json.load(open('confirmed.json')), json.load(open('pair.json'))
+held, = r['held_out']
+assert (held['path'], held['turn_deg'], held['marks']) == ('c.png', 180, 141), held
+assert held['after_um'] < 1.5 * pair['noise_um']['mark'] and held['before_um'] > 20 * held['after_um'], held
+assert (r['before']['held_out_rms'], r['after']['held_out_rms']) == (held['before_um'], held['after_um'])
+assert r['claims'] == pair['claims']  # it took no part
+P
+grep -q "scan held out" confirmed.html && grep -q "marks of the scans held out" confirmed.html || fail "the page does not list the scan held out"
+# A board that has changed is not confirmed.
+sed 's/"ratio": 0.0015/"ratio": 0.004/' c.json >changed.json
+expect 0 "" "$program" render changed.json -o changed.png
+expect 0 "" "$program" loop --same-part a.png b.png --hold-out changed.png --design dots.json -o changed_loop.json
+python3 -c "import json; assert json.load(open('changed_loop.json'))['held_out'][0]['after_um'] > 5" || fail "a board that has changed is confirmed"
+expect 64 "give a scan" "$program" loop --hold-out a.png --design dots.json
+
 # A plate that is known tells the scale, too; its model corrects gauges.
 sed 's/"ratio": 0.0015/"ratio": 0/' a.json >plate.json
 expect 0 "" "$program" render plate.json -o plate.png
@@ -70,6 +91,24 @@ S
 expect 0 "" "$program" render pins.json -o pins.png
 expect 0 "" "$program" measure pins.png --form discs --tone linear --model scanner.json -o pins_corrected.json
 near "the radius through the map" "$(member pins_corrected.json radius_mm)" 5 0.0005
+
+# The model corrects a board, too: the scanner's ratio goes, the board's own stays, and U holds what the model leaves open.
+expect 0 "" "$program" measure a.png --design dots.json --model scanner.json -o board_corrected.json --html board_corrected.html
+expect 0 "" "$program" measure a.png --design dots.json -o board_raw.json
+python3 - <<'P' || fail "a board through the model"
+import json
+grid = lambda name: json.load(open(name))['grid']
+raw, own = grid('board_raw.json'), grid('board_corrected.json')
+assert abs(raw['axis_ratio'] - 1.0055) < 1e-4, raw['axis_ratio']
+assert abs(own['axis_ratio'] - 1.0015) < 3 * own['u_axis_ratio'] < 1e-4, (own['axis_ratio'], own['u_axis_ratio'])
+assert abs(own['step_x_mm'] - 3 * 1.00075) < 3 * own['u_step_x_mm'], (own['step_x_mm'], own['u_step_x_mm'])
+assert own['u_step_x_mm'] > raw['u_step_x_mm'] and own['u_model_um'] > 0 and own['uncorrected_rms_um'] == raw['rms_um']
+assert 'u_model_um' not in raw
+P
+grep -q "without the scanner's model it were" board_corrected.html || fail "the page does not say what the model takes off a board"
+sed 's/"dpi": 600/"dpi": 300/' a.json >coarse.json
+expect 0 "" "$program" render coarse.json -o coarse.png
+expect 65 "find a model at this resolution" "$program" measure coarse.png --design dots.json --model scanner.json -o never.json
 
 # A certificate has the place of each mark: the plate's own errors, which a lattice takes for the scanner's, are none of it.
 sed 's/"missing": .*]]/"place_um": 8/' a.json >odd.json

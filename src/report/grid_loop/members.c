@@ -42,6 +42,44 @@ static const fg_member input_rows[] = {
 };
 const fg_members fg_grid_scan_members = FG_MEMBERS(input_rows);
 
+/* Scans held out. */
+static const char *find_held_out_path(const fg_subject *s, char *buffer) {
+  (void)buffer;
+  return ((const fg_grid_held_out *)s->object)->measurement->scan;
+}
+
+static const char *find_held_out_sha256(const fg_subject *s, char *buffer) {
+  (void)buffer;
+  return ((const fg_grid_held_out *)s->object)->measurement->sha256;
+}
+
+static double count_held_out_marks(const fg_subject *s) {
+  return (double)((const fg_grid_held_out *)s->object)->measurement->grid->count;
+}
+
+bool fg_grid_loop_find_held_out(const fg_subject *list, size_t i, fg_subject *element) {
+  const fg_grid_loop_result *r = result_of(list);
+  element->object = &r->held_out[i];
+  return i < r->held_out_scans;
+}
+
+static const fg_member held_out_rows[] = {
+    {FG_TEXT_BY("path", find_held_out_path), .options = FG_MEMBER_NEVER_NULL,
+     .page = {.rank = 1, .heading = "scan held out"}},
+    {FG_TEXT_BY("sha256", find_held_out_sha256), .options = FG_MEMBER_NEVER_NULL,
+     .pattern = FG_SHA256_PATTERN},
+    {FG_INTEGER("turn_deg", fg_grid_held_out, turn_deg),
+     .page = {.rank = 1, .heading = "turned, °"}},
+    {FG_COUNT_BY("marks", count_held_out_marks), .page = {.rank = 1, .heading = "marks"}},
+    {FG_NUMBER("before_um", fg_grid_held_out, before_um),
+     .words = "rms of its marks in the region, with a pose of its own alone",
+     .page = {.rank = 2, .heading = "before,\nµm", .decimals = 2}},
+    {FG_NUMBER("after_um", fg_grid_held_out, after_um),
+     .words = "the same with everything that was found on the other scans",
+     .page = {.rank = 2, .heading = "after,\nµm", .decimals = 2}},
+};
+const fg_members fg_grid_held_out_members = FG_MEMBERS(held_out_rows);
+
 /* Claims. */
 static const char *const verdict_words[] = {
     [FG_GRID_FOUND] = "found", [FG_GRID_TIED] = "tied", [FG_GRID_ABSENT] = "absent", NULL};
@@ -155,7 +193,9 @@ static const fg_member before_rows[] = {
     {FG_NUMBER("rms", fg_grid_loop_result, before_um),
      .words = "of the marks against their boards' lattices"},
     {FG_NUMBER("held_out_rms", fg_grid_loop_result, held_out_before_um),
-     .words = "the same on marks that the fit did not see, every fifth in turn; null: too few"},
+     .words =
+         "the same on marks that the fit did not see: of the scans of `held_out`, or every fifth "
+         "mark in turn; null: too few"},
 };
 static const fg_members before_members = FG_MEMBERS(before_rows);
 
@@ -257,6 +297,8 @@ static const fg_member report_rows[] = {
     {FG_TEXT("advice", fg_grid_loop_result, advice), .options = FG_MEMBER_EMPTY_IS_NULL,
      .words = "the measurement that would tell more; null: none is needed"},
     {FG_LIST_BY("inputs", fg_grid_loop_find_scan, &fg_grid_scan_members), .lowest = 1},
+    {FG_LIST_BY("held_out", fg_grid_loop_find_held_out, &fg_grid_held_out_members),
+     .words = "scans that only confirm (--hold-out); without any, marks are held out in turn"},
     {FG_PART("design", find_grid_design, &fg_design_members),
      .schema = FG_REF("design.schema.json"), .options = FG_MEMBER_NEVER_NULL},
     {FG_COUNT("boards", fg_grid_loop_result, boards)},

@@ -7,7 +7,9 @@
 
 extern const fg_members fg_grid_claim_members;
 extern const fg_members fg_grid_scan_members;
-fg_member_element fg_grid_loop_find_claim, fg_grid_loop_find_scan; /* whole: the result */
+extern const fg_members fg_grid_held_out_members;
+/* whole: the result */
+fg_member_element fg_grid_loop_find_claim, fg_grid_loop_find_scan, fg_grid_loop_find_held_out;
 
 extern const fg_document fg_grid_loop_document;
 

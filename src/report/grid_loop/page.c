@@ -15,8 +15,9 @@ static void put_errors(FILE *out, const fg_grid_loop_result *r) {
   fprintf(out, "Marks lie %.2f µm rms from their lattice before, %.2f after", r->before_um,
           r->after_um);
   if (isfinite(r->held_out_after_um))
-    fprintf(out, "; held-out marks %.2f before, %.2f after", r->held_out_before_um,
-            r->held_out_after_um);
+    fprintf(out, "; %s %.2f before, %.2f after",
+            r->held_out_scans ? "marks of the scans held out" : "held-out marks",
+            r->held_out_before_um, r->held_out_after_um);
   fputs(".\n", out);
 }
 
@@ -108,6 +109,8 @@ fg_status fg_grid_loop_write_html(fg_context *ctx, const fg_grid_loop *loop, FIL
   fputs("<h2>What is left</h2>\n<p>", out);
   put_errors(out, r);
   fputs("</p>\n", out);
+  if (r->held_out_scans)
+    fg_html_table(out, &fg_grid_held_out_members, &list, fg_grid_loop_find_held_out);
   for (size_t i = 0; i < r->scans; i++)
     put_scan_residuals(out, &r->scan[i]);
   fputs("<h2>Scans</h2>\n", out);

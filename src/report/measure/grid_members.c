@@ -23,6 +23,10 @@ static bool is_chessboard(const fg_subject *subject) {
   return ((const fg_grid *)subject->object)->kind == FG_MARKS_CHESSBOARD;
 }
 
+static bool is_corrected(const fg_subject *subject) {
+  return ((const fg_grid *)subject->object)->corrected;
+}
+
 static double find_mark_x(const fg_subject *subject) {
   return ((const fg_mark *)subject->object)->at_mm.x;
 }
@@ -80,6 +84,10 @@ static const fg_member value_rows[] = {
      .words = "of the columns' direction, from x towards y"},
     {FG_NUMBER("rms_um", fg_grid, rms_um),
      .words = "of the marks' distances from the fitted lattice, along one axis"},
+    {FG_NUMBER("uncorrected_rms_um", fg_grid, uncorrected_rms_um), .present = is_corrected,
+     .words = "the same without the scanner's model"},
+    {FG_NUMBER("u_model_um", fg_grid, u_model_um), .present = is_corrected,
+     .words = "standard uncertainty of these distances by the scanner's model, root mean square"},
     {FG_NUMBER("largest_um", fg_grid, largest_um)},
     {FG_NUMBER("mark_u_um", fg_grid, mark_u_um),
      .words = "standard uncertainty of a mark's place by the picture's noise, root mean square"},
@@ -128,6 +136,9 @@ static void put_grid_words(FILE *out, const fg_grid *grid, const char *between) 
           "marks lie %.2f µm rms from the lattice, at most %.2f; by the picture's noise it were "
           "%.2f",
           grid->rms_um, grid->largest_um, grid->mark_u_um);
+  if (grid->corrected)
+    fprintf(out, "%swithout the scanner's model it were %.2f µm rms; the model leaves U = %.2f µm",
+            between, grid->uncorrected_rms_um, 2 * grid->u_model_um);
 }
 
 void fg_text_grid(FILE *out, const fg_measurement *measurement) {
