@@ -4,6 +4,7 @@
 # and a report states its traceability in the same words on every page.
 #   test_calibration.sh PROGRAM
 . tests/support/cli.sh
+skip_when_slow # test_traceability.sh sees the same code
 
 for turn in 0 40 75; do
   cat >r.json <<J

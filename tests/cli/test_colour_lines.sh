@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The channels of a colour scan against each other: distances, the flag, the profile along y, and scans that have no such.
 . tests/support/cli.sh
+skip_when_slow # test_loop_scan.sh and the tests of pictures see the same code
 
 # draw NAME LINES [EFFECTS]: a coarse foil with those colour lines.
 draw() {

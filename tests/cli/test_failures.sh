@@ -5,7 +5,7 @@
 # Usage: test_failures.sh PROGRAM [STRIDE]; with a stride of 1 every allocation fails once.
 set -euo pipefail
 program=$1
-stride=${2:-37}
+stride=${2:-71}
 shim=$(dirname "$program")/tests/libfailing_malloc.so
 work=$(mktemp -d)
 trap '[ "$BASHPID" != $$ ] || rm -rf "$work"' EXIT

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The loop on a scan of a foil of which single bumps deviate: told as that, not as steps of the carriage.
 . tests/support/loop.sh
+skip_when_slow # test_loop_scan.sh sees the same search
 
 # says REPORT EXPRESSION: of a report r, its curve and its claims.
 says() {

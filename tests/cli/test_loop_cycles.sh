@@ -3,6 +3,7 @@
 # Cycles over a column in `foilgauge loop --table`: orders of one base are one effect, with amplitude and phase; a base is
 # known of angles, declared, or sought; places are even, uneven, or further apart than the period.
 . tests/support/cli.sh
+skip_when_slow # test_loop_table.sh sees the same search
 
 cat >made.py <<'P'
 import math, random

@@ -3,6 +3,7 @@
 # The loop on scans states the form error of lands and bumps, right within U against the truth of renders,
 # and a range where the edges do not tell the foil's deviation from the scanner's.
 . tests/support/loop.sh
+skip_when_slow # other loops on scans see the same code
 
 rough='"rough":{"edge_roughness_um":1.2,"edge_common_um":0.6,"correlation_um":40},'
 # draw NAME SEED ROTATION EFFECTS [MEMBERS OF THE SCANNER]
@@ -76,16 +77,16 @@ draw turned 9 -60 '{"id":"part.spiral","amplitude_um":4}' "$rough"
 cp spiral.truth.json pair.truth.json
 judged pair 1 value --same-foil spiral.png turned.png
 
-brief && exit $failed # the same code on other foils
-
-draw oval_rough 8 -80 "$oval" "$rough"
-judged oval_rough 2 open
+if [ -n "${FOILGAUGE_TEST_LONG-}" ]; then
+  draw oval_rough 8 -80 "$oval" "$rough"
+  judged oval_rough 2 open
+  draw crown 7 30 '{"id":"part.bump_crown","amplitude_um":6}'
+  judged crown 1 value
+fi
 draw clean 8 -80 '' "$rough"
 judged clean 2 value
 on_terminal clean
 grep -q 'foil 1: R0 .*, form error below [0-9.]* um$' clean.txt || fail "a clean foil has no upper limit: $(grep R0 clean.txt)"
-draw crown 7 30 '{"id":"part.bump_crown","amplitude_um":6}'
-judged crown 1 value
 draw shear 7 45 '{"id":"scan.shear","value":0.001}'
 judged shear 1 value
 

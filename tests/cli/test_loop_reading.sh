@@ -3,6 +3,7 @@
 # A finding of `foilgauge loop --table` is stated as a difference that its reader can check, with U in the unit of the
 # response; a p-value between proven and common is neither proof nor all clear.
 . tests/support/cli.sh
+skip_when_slow # test_loop_table.sh sees the same search and reports
 
 # One effect in each table, of a size that is known: response in um, scatter 0.15.
 cat >made.py <<'P'
@@ -67,7 +68,6 @@ for where, said in (("summary", report["summary"]), ("terminal", text), ("page",
 assert any(re.search(pattern, c["sentence"]) for c in json.load(open(name + ".model.json"))["claims"])
 P
 }
-if ! brief; then
 reads factor x 'operator B reads # µm higher than operator A' 0.5
 reads levels x 'die M reads # µm higher than die N, the lowest of 4' 1.2
 reads drift x 'it rises by # µm from the first run to the last' 0.7
@@ -76,7 +76,6 @@ reads trend x 'it falls by # µm from humidity 30 % to 60 %' 0.9
 reads step x 'beyond it the response is # µm higher' 0.8
 reads cycle x 'it swings by # µm from peak to valley' 0.8
 reads bend x '°C, and # µm higher at t 700 °C' 2.6667
-fi
 reads product 't_C + d_h' 'the change from t 500 °C to 600 °C is # µm higher at d 5 h than at d 3 h' 1.6
 reads slopes 't_C + die' 'the change from t 500 °C to 600 °C is # µm higher for die L than for die K' 1.2
 reads cells 'operator + die' 'operator B over operator A is # µm higher for die L than for die K' 0.6

@@ -123,7 +123,7 @@ same one both
 # Sanitizers make every run many times slower: fewer cases of the same.
 kills=6 limits="1 3 8 16 32" shards="1 2 7 20"
 [ -z "${FOILGAUGE_TEST_LONG-}" ] || { kills=12 limits="1 2 3 5 8 12 16 24 32"; }
-brief && { kills=3 limits="1 5 16" shards="1 20"; }
+brief && { kills=1 limits="1 16" shards=20; }
 for i in $(seq "${FOILGAUGE_KILLS:-$kills}"); do
   rm -rf killed
   for again in 1 2; do

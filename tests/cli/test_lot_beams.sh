@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # A lot of cantilevers: statistics and files name beams; records keep them; who cannot do with them says so.
 . tests/support/cli.sh
+skip_when_slow # test_lot.sh and test_beams.sh see the same code
 listened="stdout stderr"
 
 cat >design.json <<'J'

@@ -3,6 +3,7 @@
 # `foilgauge stiffness`: the gap that lies under a clearance, against known truth of foils of several laws with play
 # operators; bearings that press their rotor have none; a lot's rigid travel against the gap, whatever the threshold.
 . tests/support/cli.sh
+skip_when_slow # the other tests of load tests see the same code
 listened="stdout stderr"
 run() { expect "$1" "$2" "$program" stiffness "${@:3}"; }
 

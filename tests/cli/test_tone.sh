@@ -109,7 +109,7 @@ sharp='"unsharp_mask": {"amount_pct": 100, "radius_px": 1}'
 curve='"tone_curve": [[0, 0], [40, 12], [65, 38], [90, 78], [115, 125], [140, 175], [165, 213], [190, 236], [255, 255]]'
 posterised='"levels": 2, "threshold": 90'
 for effect in sharp curve posterised; do
-  for dpi in 2400 4800; do
+  for dpi in ${FOILGAUGE_TEST_LONG:+4800} 2400; do
     for um in 100 108.5; do
       strip s "$(python3 -c "print($um / 1000)")" "${!effect}" $dpi
       "$program" measure s.png --design limit.json -o s.out
