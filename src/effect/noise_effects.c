@@ -72,10 +72,20 @@ enum { RANDOM_LEVELS = 8 };
 /* Limit of the indicators that are kept. */
 enum { RANDOM_CELLS = 4000000 };
 
+/* Levels of groups: rows of a group have one, and every second level a second group. */
+static bool holds_groups(const fg_loop_problem *problem, const fg_loop_coordinate *at) {
+  for (size_t i = 1; i < problem->rows; i++)
+    if (problem->group[i] == problem->group[i - 1] && at->value[i] != at->value[i - 1])
+      return false;
+  return (double)problem->groups >= ROWS_A_RANDOM_LEVEL * (double)at->levels &&
+         problem->rows * problem->groups <= RANDOM_CELLS;
+}
+
 static bool accepts_levels(const fg_loop_problem *problem, size_t a, size_t b) {
   const fg_loop_coordinate *at = &problem->coordinate[a];
   (void)b;
-  if (problem->group_level || at->levels < RANDOM_LEVELS) return false;
+  if (at->levels < RANDOM_LEVELS) return false;
+  if (problem->group_level) return holds_groups(problem, at);
   return (double)problem->rows >= ROWS_A_RANDOM_LEVEL * (double)at->levels &&
          problem->rows * at->levels <= RANDOM_CELLS;
 }

@@ -329,6 +329,21 @@ static fg_status prefer_recorded(fg_context *ctx, const fg_engine_run *run,
   return FG_OK;
 }
 
+/* Refines what may be a simpler form of the winner: on the grid of its start values a cycle leaves
+ * levels of its places something to explain. */
+static fg_status refine_simpler(fg_context *ctx, const fg_engine_run *run, fg_engine_noise noise,
+                                size_t winner, fg_engine_step *step) {
+  const fg_loop_candidate *whole = &step->stand[winner].candidate;
+  if (whole->effect->shapes || whole->effect->pair) return FG_OK;
+  for (size_t c = 0; c < run->means; c++) {
+    const fg_loop_candidate *part = &run->candidate[c];
+    if (part->a == whole->a && part->effect->shapes && !part->effect->pair &&
+        fg_engine_stand_p(run, step, c) < bar(run))
+      FG_TRY(refine_stand(ctx, run, noise, &step->stand[c]));
+  }
+  return FG_OK;
+}
+
 /* Accepts the listed winner, or the effect that replaces it. */
 static fg_status decide_listed(fg_context *ctx, fg_engine_run *run, fg_engine_step *step,
                                size_t winner, bool *accepted) {
@@ -340,7 +355,8 @@ static fg_status decide_listed(fg_context *ctx, fg_engine_run *run, fg_engine_st
   FG_TRY(wrong_basis(ctx, run, step, &choice));
   size_t stand = choice.wrong ? choice.curve : choice.winner;
   fg_engine_serial_word word;
-  FG_TRY(fg_engine_weigh_serial(ctx, run, &step->stand[stand], stand, &word));
+  FG_TRY(
+      fg_engine_weigh_serial(ctx, run, &step->stand[stand], stand, run->options.accept_p, &word));
   size_t serial = fg_engine_serial_candidate(run);
   if (word == FG_ENGINE_EITHER) {
     bool effect;
@@ -353,6 +369,7 @@ static fg_status decide_listed(fg_context *ctx, fg_engine_run *run, fg_engine_st
                                 accepted);
   if (choice.wrong) FG_TRY(accept_best_curve(ctx, run, step, choice.curve, accepted));
   if (choice.wrong && *accepted) return FG_OK;
+  FG_TRY(refine_simpler(ctx, run, choice.noise, choice.winner, step));
   FG_TRY(fg_engine_simplify(ctx, &step->training, choice.noise, step->stand, run->means,
                             choice.winner, &choice.winner));
   FG_TRY(second_basis(ctx, run, step, choice.winner, accepted));
@@ -363,7 +380,8 @@ static fg_status decide_listed(fg_context *ctx, fg_engine_run *run, fg_engine_st
 static fg_status decide_curve(fg_context *ctx, fg_engine_run *run, fg_engine_step *step,
                               size_t curve, bool *accepted) {
   fg_engine_serial_word word;
-  FG_TRY(fg_engine_weigh_serial(ctx, run, &step->stand[curve], curve, &word));
+  FG_TRY(
+      fg_engine_weigh_serial(ctx, run, &step->stand[curve], curve, run->options.accept_p, &word));
   if (word != FG_ENGINE_EFFECT)
     return fg_engine_take_noise(ctx, run, step, fg_engine_serial_candidate(run),
                                 fg_engine_stand_p(run, step, curve), accepted);

@@ -56,15 +56,29 @@ static fg_status tie_correlation(fg_context *ctx, const fg_engine_run *run,
   return FG_OK;
 }
 
+/* Two columns of random levels stand beside each other where one lies within the other; within the
+ * problem's groups there is none. */
+static bool nests(const fg_engine_run *run, const fg_loop_candidate *levels,
+                  const fg_loop_candidate *held) {
+  if (!fg_engine_is_levels(levels) || !fg_engine_is_levels(held) || run->problem->group_level)
+    return false;
+  return fg_engine_is_nested(run->problem, levels->a, held->a) ||
+         fg_engine_is_nested(run->problem, held->a, levels->a);
+}
+
 bool fg_engine_may_join_noise(const fg_engine_run *run, size_t candidate) {
   const fg_loop_candidate *noise = &run->candidate[candidate];
+  size_t levels = fg_engine_is_levels(noise);
   if (fg_engine_set_holds(&run->set, noise)) return false;
   for (size_t m = 0; m < run->set.count; m++) {
     const fg_loop_candidate *held = &run->set.candidate[m];
     bool series = fg_engine_is_serial(noise) || fg_engine_is_levels(noise);
-    if (series && (fg_engine_is_levels(held) || fg_engine_is_serial(held))) return false;
+    levels += fg_engine_is_levels(held);
+    if (series && (fg_engine_is_levels(held) || fg_engine_is_serial(held)) &&
+        !nests(run, noise, held))
+      return false;
   }
-  return true;
+  return levels <= 2;
 }
 
 bool fg_engine_is_random_factor(const fg_engine_run *run, size_t candidate) {

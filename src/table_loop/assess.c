@@ -16,7 +16,9 @@
 #include "core/select.h"
 #include "table_loop/engine_random.h"
 #include "table_loop/noise_scores.h"
+#include "table_loop/null_residual.h"
 #include "table_loop/row_tails.h"
+#include "table_loop/tails.h"
 
 /* Minimum residual dof for permutations: below it a new order of the residuals is no new sample,
  * and normal numbers are drawn. */
@@ -255,35 +257,6 @@ static void assess_by_count(const fg_score_workspace *workspace, const fg_engine
   take_critical(workspace, null, NULL, judgement);
 }
 
-/* Returns the share of a row's own error in the variance of its residual beside its group's level;
- * `unit` has room for n. */
-static double own_share(const fg_engine_training *training, fg_engine_noise noise,
-                        const fg_engine_span *null, size_t i, double *unit) {
-  size_t n = training->n;
-  if (!(noise.lambda > 0)) return null->kept[i];
-  memset(unit, 0, n * sizeof *unit);
-  unit[i] = 1;
-  fg_engine_whiten_levels(training, noise, unit);
-  return fg_engine_project_out(n, null->basis, null->rank, unit);
-}
-
-/* Computes the null's residual along every row's own error, over its sd: whitened rows of a group
- * share their errors, and in another order a tail would be shrunk by the part that its neighbours
- * had. `white` has room for 3 n: the residuals, the shares, and one row. */
-static void null_residual(const fg_engine_training *training, fg_engine_noise noise,
-                          const fg_engine_span *null, double *white) {
-  size_t n = training->n;
-  double *own = white + n;
-  memcpy(white, training->y, n * sizeof *white);
-  fg_engine_whiten(training, noise, white);
-  fg_engine_project_out(n, null->basis, null->rank, white);
-  fg_engine_whiten_levels(training, noise, white);
-  for (size_t i = 0; i < n; i++) {
-    own[i] = own_share(training, noise, null, i, white + 2 * n);
-    white[i] /= fg_engine_kept_sd(own[i]);
-  }
-}
-
 /* Weighs the tails of the null's residual. */
 static void weigh_tails(const fg_engine_span *span, drawing *d) {
   double square = 0, size[REDRAWN_ROWS];
@@ -361,6 +334,28 @@ static fg_status score_data(fg_context *ctx, const fg_score_workspace *workspace
   return FG_OK;
 }
 
+/* The p-value of the exchange by likelihood, against one tail of all rows: a ratio above 1 / p
+ * comes by chance less often than p. The draws hold the two rows as they are, which a fixed model
+ * would nearly always find to fit in each other's places somewhere. */
+static fg_status exchange_likelihood(fg_context *ctx, const drawing *d,
+                                     fg_engine_judgement *judgement) {
+  const fg_engine_training *training = d->workspace->training;
+  size_t n = training->n, *pair = judgement->exchanged;
+  double *y = NULL;
+  FG_TRY(fg_memory_allocate(ctx, n, 4 * sizeof *y, (void **)&y));
+  double change = fg_engine_response(training, pair[1]) - fg_engine_response(training, pair[0]);
+  memcpy(y, training->y, n * sizeof *y);
+  y[pair[0]] += change;
+  y[pair[1]] -= change;
+  fg_engine_null_residual(training, d->noise, &d->workspace->null[judgement->noise], y, y + n);
+  double pairs = (double)n * ((double)n - 1) / 2;
+  double ratio = fg_engine_exchanged_over_tail(n, d->white, y + n) - log(pairs);
+  double *p = &judgement->p[judgement->candidates];
+  *p = fmin(*p, fmin(exp(-ratio) / d->null->share[FG_LOOP_KIND_EXCHANGES], 1));
+  free(y);
+  return FG_OK;
+}
+
 fg_status fg_engine_judge(fg_context *ctx, const fg_score_workspace *workspace,
                           const fg_loop_candidate *noise, size_t noises, const fg_engine_null *null,
                           fg_engine_judgement *judgement) {
@@ -380,7 +375,7 @@ fg_status fg_engine_judge(fg_context *ctx, const fg_score_workspace *workspace,
   if (exchanges) FG_TRY_EXIT(fg_engine_exchange_open(ctx, training, at, span, &exchange));
   FG_TRY_EXIT(score_data(ctx, workspace, &noise_scores, exchanges ? &exchange : NULL, judgement));
   FG_TRY_EXIT(fg_memory_allocate(ctx, training->n, 3 * sizeof *white, (void **)&white));
-  if (few) null_residual(training, at, span, white);
+  if (few) fg_engine_null_residual(training, at, span, training->y, white);
   drawing d = {
       .workspace = workspace,
       .noise_scores = &noise_scores,
@@ -402,6 +397,7 @@ fg_status fg_engine_judge(fg_context *ctx, const fg_score_workspace *workspace,
   fg_score_workspace_tell(workspace, 3, 3);
   for (size_t c = 0; c <= judgement->candidates; c++)
     judgement->p[c] = over_family(judgement, c);
+  if (few && judgement->has_exchange) FG_TRY_EXIT(exchange_likelihood(ctx, &d, judgement));
 exit:
   free(white);
   fg_engine_noise_scores_close(&noise_scores);

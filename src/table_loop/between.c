@@ -19,6 +19,21 @@ bool fg_engine_constant_in_levels(const fg_engine_training *training, const doub
   return training->levels > 0;
 }
 
+bool fg_engine_constant_in_outer_levels(const fg_engine_training *training, const double *columns,
+                                        size_t count) {
+  if (!training->outers || !fg_engine_constant_in_levels(training, columns, count)) return false;
+  for (size_t k = 0; k < count; k++)
+    for (size_t o = 0; o < training->outers; o++)
+      for (size_t b = training->outer_start[o] + 1; b < training->outer_start[o + 1]; b++) {
+        size_t one = training->level_start[training->outer_block[b]];
+        size_t other = training->level_start[training->outer_block[b - 1]];
+        if (columns[k * training->n + fg_engine_level_row(training, one)] !=
+            columns[k * training->n + fg_engine_level_row(training, other)])
+          return false;
+      }
+  return true;
+}
+
 fg_status fg_engine_between_basis(fg_context *ctx, const fg_engine_training *training,
                                   fg_engine_noise noise, const fg_engine_span *null,
                                   double **between, size_t *between_rank) {

@@ -10,6 +10,10 @@
 bool fg_engine_constant_in_levels(const fg_engine_training *training, const double *columns,
                                   size_t count);
 
+/* The same in outer levels. */
+bool fg_engine_constant_in_outer_levels(const fg_engine_training *training, const double *columns,
+                                        size_t count);
+
 /* Finds orthonormal whitened columns of the differences between groups, beside the null's span:
  * *between_rank × n, the caller's to free. None (NULL, 0) when groups share no level, or are so
  * many that their dof equal the rows'. */

@@ -103,22 +103,57 @@ static bool has_columns(const fg_loop_candidate *candidate) {
 
 /* Columns that are constant in groups are tested between groups, with as many fewer dof. */
 static double dof_of(const fg_engine_training *training, size_t first, size_t count, double dof) {
-  if (!training->levels) return dof;
-  if (!fg_engine_constant_in_levels(training, training->x + first * training->n, count)) return dof;
-  return fmax((double)training->levels - 1 - (double)count, 1);
+  const double *x = training->x + first * training->n;
+  if (!training->levels || !fg_engine_constant_in_levels(training, x, count)) return dof;
+  double levels = (double)training->levels, outers = (double)training->outers;
+  if (fg_engine_constant_in_outer_levels(training, x, count))
+    levels = outers;
+  else if (training->outers)
+    levels -= outers - 1;
+  return fmax(levels - 1 - (double)count, 1);
 }
 
-/* Describes the sd of random levels: of a mean square between them, s² (1 + m lambda) with m rows
- * in a level, less one within, each with its dof (Satterthwaite 1946). */
+/* Variance of the mean of a group's rows beside its level, over their own variance, on average. */
+static double mean_of_rows(const fg_engine_training *training) {
+  double sum = 0;
+  for (size_t b = 0; b < training->levels; b++)
+    sum += 1 / (double)(training->level_start[b + 1] - training->level_start[b]);
+  return sum / (double)training->levels;
+}
+
+/* Variance of the weighted mean of an outer level's groups, in the same unit, on average. */
+static double mean_of_groups(const fg_engine_training *training, double lambda) {
+  double sum = 0;
+  for (size_t o = 0; o < training->outers; o++) {
+    double weight = 0;
+    for (size_t k = training->outer_start[o]; k < training->outer_start[o + 1]; k++) {
+      const size_t *start = training->level_start + training->outer_block[k];
+      weight += 1 / (lambda + 1 / (double)(start[1] - start[0]));
+    }
+    sum += 1 / weight;
+  }
+  return sum / (double)training->outers;
+}
+
+/* Describes the sd of random levels: of a mean square between them less one of what lies within,
+ * each with its dof (Satterthwaite 1946). */
 static void describe_levels(const fg_engine_training *training, const noise_fit *noise, double dof,
                             fg_loop_claim *claim) {
-  double levels = (double)training->levels, reciprocal = 0, within = noise->sd * noise->sd;
-  for (size_t b = 0; b < training->levels; b++)
-    reciprocal += 1 / (double)(training->level_start[b + 1] - training->level_start[b]) / levels;
-  double variance = within * noise->at.lambda, between = variance + within * reciprocal;
-  double between_dof = fmax(fmin(levels - 1, dof - 1), 1);
-  double u = sqrt(2 * (between * between / between_dof +
-                       pow(within * reciprocal, 2) / fmax(dof - between_dof, 1)));
+  double row = noise->sd * noise->sd, levels = (double)training->levels;
+  double within_dof = dof - levels + 1, between_dof = levels - 1;
+  double variance = row * noise->at.lambda, within = row * mean_of_rows(training);
+  bool outer = training->outers && fg_engine_is_outer_levels(training, &claim->candidate);
+  if (outer) {
+    variance = row * noise->at.outer;
+    within = row * mean_of_groups(training, noise->at.lambda);
+    between_dof = (double)training->outers - 1;
+    within_dof = levels - (double)training->outers;
+  } else if (training->outers) {
+    between_dof = levels - (double)training->outers;
+  }
+  between_dof = fmax(fmin(between_dof, dof - 1), 1);
+  double u =
+      sqrt(2 * (pow(variance + within, 2) / between_dof + within * within / fmax(within_dof, 1)));
   double own = 2 * variance * variance / (u * u), sd = sqrt(variance);
   claim->noise_value = claim->amplitude = sd;
   claim->noise_value_u = claim->amplitude_u = sd > 0 ? u / (2 * sd) : NAN;

@@ -156,7 +156,8 @@ static fg_status add_column(fg_context *ctx, const fg_loop_table_state *build,
   if (spec->group && !strcmp(column->name, spec->group)) roles = FG_LOOP_ORDER;
   if (build->order && !strcmp(column->name, build->order))
     roles = spec->group ? FG_LOOP_BUMP : FG_LOOP_ORDER;
-  bool recur = 2 * problem->rows >= 3 * column->word_count && !spec->group; /* as random levels */
+  size_t members = spec->group ? problem->groups : problem->rows;
+  bool recur = 2 * members >= 3 * column->word_count; /* as random levels */
   if (words && column->word_count > FG_LOOP_COLUMNS && !roles && !recur)
     return fg_loop_table_leave_out(ctx, build, column->name, "more levels than an effect may have");
   FG_TRY(fg_loop_table_add_coordinate(ctx, build, column->name, roles, &at));

@@ -20,9 +20,16 @@ enum {
 /* Smallest ratio of residual sums, with over without a candidate: an exact fit leaves rounding. */
 #define FG_ENGINE_RATIO_MIN 1e-12
 
+/* Of neighbours the correlation; over the variance of a row's own error that of the level of its
+ * group, and of the outer level that holds the group. */
 typedef struct fg_engine_noise {
-  double rho, lambda;
+  double rho, lambda, outer;
 } fg_engine_noise;
+
+/* Returns true when rows do not share errors. */
+static inline bool fg_engine_independent(fg_engine_noise noise) {
+  return noise.rho == 0 && noise.lambda == 0 && noise.outer == 0;
+}
 
 /* Effects accepted so far, the curve among them. */
 typedef struct fg_engine_set {
@@ -38,9 +45,12 @@ typedef struct fg_engine_training {
   size_t *start, blocks;       /* per series: its first row, and n at the end */
   size_t *level_start, levels; /* per group that shares a level: its first row, and n at the end */
   size_t *level_row;           /* n: rows in the order of random levels; NULL: as they are */
-  double *y;                   /* n, with exchanged runs put back */
-  double *scale;               /* n: sd of a row over the rms of all; NULL: equal */
-  bool serial;                 /* neighbours in a series may be correlated */
+  size_t outer_at;             /* coordinate of the outer levels */
+  size_t *outer_block, *outer_start, outers; /* per outer level of the groups: its first place in
+                                                outer_block, and `levels` at the end; NULL: none */
+  double *y;                                 /* n, with exchanged runs put back */
+  double *scale;                             /* n: sd of a row over the rms of all; NULL: equal */
+  bool serial;                               /* neighbours in a series may be correlated */
   size_t columns;
   double *x; /* columns × n */
 } fg_engine_training;
@@ -49,6 +59,17 @@ typedef struct fg_engine_training {
 static inline size_t fg_engine_level_row(const fg_engine_training *training, size_t place) {
   return training->level_row ? training->level_row[place] : place;
 }
+
+/* Groups the rows by the random levels of a set, the outer ones of two nested columns beside
+ * (strata.c). */
+fg_status fg_engine_group_by_levels(fg_context *ctx, const fg_engine_set *set,
+                                    fg_engine_training *training);
+/* Returns true when rows of one level of `inner` have one level of `outer`, and outer levels are
+ * fewer; SIZE_MAX: the problem's groups. */
+bool fg_engine_is_nested(const fg_loop_problem *problem, size_t inner, size_t outer);
+
+/* Returns true for the levels that are the training set's outer ones. */
+bool fg_engine_is_outer_levels(const fg_engine_training *training, const fg_loop_candidate *levels);
 
 /* Builds a training set of the problem's rows where keep[row]; NULL: all. */
 fg_status fg_engine_training_build(fg_context *ctx, const fg_loop_problem *problem,
@@ -81,13 +102,15 @@ fg_status fg_engine_estimate_scale(fg_context *ctx, fg_engine_training *training
                                    const fg_engine_set *set);
 
 /* y := W y. W'W is the inverse of the rows' covariance in units of their mean variance. That
- * covariance has the rows' scale, correlation rho^|i - j| in a series, and lambda more between rows
- * of a group. */
+ * covariance has the rows' scale, correlation rho^|i - j| in a series, lambda more between rows
+ * of a group, and outer more between rows of an outer level. */
 void fg_engine_whiten(const fg_engine_training *training, fg_engine_noise noise, double *y);
 /* y := W^-1 y: gives white numbers that covariance. */
 void fg_engine_colour(const fg_engine_training *training, fg_engine_noise noise, double *y);
-/* The levels' part of whitening alone, of numbers that are white in series. */
+/* The levels' part of whitening alone, of numbers that are white in series; and its transpose. */
 void fg_engine_whiten_levels(const fg_engine_training *training, fg_engine_noise noise, double *y);
+void fg_engine_whiten_levels_back(const fg_engine_training *training, fg_engine_noise noise,
+                                  double *y);
 /* Makes independent errors of rows, of any sd, a response of the noise: adds a normal level to
  * every group, then colours along series. A heavy tail stays with its row, where colouring spreads
  * it over the group. */

@@ -55,7 +55,7 @@ fg_status fg_engine_exchange_open(fg_context *ctx, const fg_engine_training *tra
   fg_status status = FG_OK;
   *exchange = (fg_engine_exchange){.training = training, .noise = noise, .null = null, .n = n};
   FG_TRY_EXIT(fg_memory_allocate(ctx, n, sizeof *exchange->a, (void **)&exchange->mean));
-  if (noise.rho != 0 || noise.lambda > 0) {
+  if (!fg_engine_independent(noise)) {
     FG_TRY_EXIT(fg_memory_allocate(ctx, n, n * sizeof *exchange->a, (void **)&exchange->a));
     FG_TRY_EXIT(fill_products(ctx, exchange));
   }

@@ -217,7 +217,7 @@ static fg_status innovations(fg_context *ctx, const fg_engine_run *run, fg_engin
 static fg_status errors(fg_context *ctx, fg_engine_run *run, fg_engine_noise *noise) {
   fg_loop_result *result = run->result;
   fg_engine_set none = {0};
-  fg_engine_noise first = {0, 0}; /* as its owner would fit it */
+  fg_engine_noise first = {0}; /* as its owner would fit it */
   FG_TRY(fg_engine_fit_set(ctx, run->problem, run->train, &none, false, &first, result->before_fit,
                            NULL, NULL));
   FG_TRY(fg_engine_fit_set(ctx, run->problem, run->train, &run->set, true, noise, result->after_fit,
@@ -324,7 +324,7 @@ fg_status fg_engine_finish(fg_context *ctx, fg_engine_run *run) {
   for (size_t m = 0; m < result->claims; m++)
     result->claim[m].held_out = confirmed;
   FG_TRY(parameters(ctx, run, noise));
-  FG_TRY(fg_engine_note_levels(ctx, run));
+  FG_TRY(fg_engine_note_levels(ctx, run, noise));
   FG_TRY(fg_engine_find_influence(ctx, run, noise));
   FG_TRY(fg_engine_profile_scale(ctx, run));
   run->noise = noise;

@@ -20,13 +20,13 @@ static fg_status criterion(fg_context *ctx, const fg_engine_training *training,
 
 #define RHO_MAX 0.985
 
-/* Takes a step again and again, as long as it gains. */
-static fg_status go_on(fg_context *ctx, const fg_engine_training *training, double rho_step,
-                       double lambda_factor, double *best, fg_engine_noise *noise) {
+/* Takes a step again and again, as long as it gains: of rho to add, of the others a factor. */
+static fg_status go_on(fg_context *ctx, const fg_engine_training *training, fg_engine_noise move,
+                       double *best, fg_engine_noise *noise) {
   enum { STEPS = 40 };
   for (int step = 0; step < STEPS; step++) {
-    double rho = fmax(fmin(noise->rho + rho_step, RHO_MAX), -RHO_MAX), value;
-    const fg_engine_noise tried = {rho, noise->lambda * lambda_factor};
+    double rho = fmax(fmin(noise->rho + move.rho, RHO_MAX), -RHO_MAX), value;
+    const fg_engine_noise tried = {rho, noise->lambda * move.lambda, noise->outer * move.outer};
     FG_TRY(criterion(ctx, training, tried, &value));
     if (!(value < *best)) break;
     *best = value;
@@ -35,18 +35,39 @@ static fg_status go_on(fg_context *ctx, const fg_engine_training *training, doub
   return FG_OK;
 }
 
+/* A variance between 0 and the grid's next value: factors do not leave 0. */
+static fg_status leave_zero(fg_context *ctx, const fg_engine_training *training, double *best,
+                            fg_engine_noise *noise) {
+  const double small = 0.05;
+  for (int outer = 0; outer <= 1; outer++) {
+    fg_engine_noise tried = *noise;
+    double *at = outer ? &tried.outer : &tried.lambda, value;
+    if (*at > 0) continue;
+    *at = small;
+    FG_TRY(criterion(ctx, training, tried, &value));
+    if (!(value < *best)) continue;
+    *best = value;
+    *noise = tried;
+  }
+  return FG_OK;
+}
+
 /* Between the points of the grid, and beyond its ends: steps that shrink, in rho and in the
- * logarithm of lambda. */
+ * logarithms of the variances. */
 static fg_status polish(fg_context *ctx, const fg_engine_training *training, double best,
                         fg_engine_noise *noise) {
   enum { ROUNDS = 4, FINE_ROUNDS = 8 };
   double rho_step = 0.1, factor = exp(0.4);
-  int rounds = training->level_row ? FINE_ROUNDS : ROUNDS;
+  if (training->outers) FG_TRY(leave_zero(ctx, training, &best, noise));
+  int rounds = training->level_row || training->outers ? FINE_ROUNDS : ROUNDS;
   for (int round = 0; round < rounds; round++) {
     for (int sign = 1; training->serial && sign >= -1; sign -= 2)
-      FG_TRY(go_on(ctx, training, sign * rho_step, 1, &best, noise));
-    for (int sign = 1; training->levels && sign >= -1; sign -= 2)
-      FG_TRY(go_on(ctx, training, 0, sign > 0 ? factor : 1 / factor, &best, noise));
+      FG_TRY(go_on(ctx, training, (fg_engine_noise){sign * rho_step, 1, 1}, &best, noise));
+    for (int sign = 1; training->levels && sign >= -1; sign -= 2) {
+      double by = sign > 0 ? factor : 1 / factor;
+      FG_TRY(go_on(ctx, training, (fg_engine_noise){0, by, 1}, &best, noise));
+      if (training->outers) FG_TRY(go_on(ctx, training, (fg_engine_noise){0, 1, by}, &best, noise));
+    }
     rho_step /= 2;
     factor = sqrt(factor);
   }
@@ -170,7 +191,7 @@ fg_status fg_engine_fit_set(fg_context *ctx, const fg_loop_problem *problem, con
   if (residual) fg_engine_fit_residual(&all, &fit, residual);
   if (effect) add_effects(&all, &fit, effect);
   double dof = training.n > fit.rank ? (double)(training.n - fit.rank) : NAN;
-  if (sd) *sd = sqrt(fit.rss / dof * (1 + noise->lambda));
+  if (sd) *sd = sqrt(fit.rss / dof * (1 + noise->lambda + noise->outer));
 exit:
   fg_engine_fit_free(&fit);
   fg_engine_training_free(&training);

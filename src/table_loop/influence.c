@@ -115,8 +115,7 @@ static void keep_influence(fg_loop_result *result, const fg_loop_influence *infl
 fg_status fg_engine_find_influence(fg_context *ctx, fg_engine_run *run, fg_engine_noise noise) {
   influence_fit f = {0};
   fg_status status = FG_OK;
-  if (noise.rho != 0 || noise.lambda > 0 || !run->worth || !run->problem->parameter_name)
-    return FG_OK;
+  if (!fg_engine_independent(noise) || !run->worth || !run->problem->parameter_name) return FG_OK;
   FG_TRY_EXIT(open_fit(ctx, run, noise, &f));
   if (!(f.dof > 1) || !(f.fit.rss > 0) || !f.fit.rank) goto exit;
   double limit = gsl_cdf_fdist_Pinv(0.5, (double)f.fit.rank, f.dof);

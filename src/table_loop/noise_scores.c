@@ -7,6 +7,7 @@
 
 #include "core/memory.h"
 #include "effect/table_effects.h"
+#include "table_loop/between.h"
 
 /* Variance over squared mean of a normal residual's size (pi / 2 - 1); an exponential one has 1. */
 #define SIZE_DISPERSION 0.5707963267948966
@@ -17,24 +18,41 @@ enum { NEWTON_STEPS = 6 };
 /* Of a step: the next one is its square. */
 #define CONVERGED 1e-5
 
+/* Levels of a candidate that lie within the groups have their variance in them: the groups are
+ * fixed. Levels that hold the groups are tested between groups. */
+static fg_status open_stratum(fg_context *ctx, const fg_engine_noise_scores *scores,
+                              const double *columns, size_t count, fg_engine_spread *spread) {
+  const fg_engine_training *training = scores->training;
+  if (!training->levels) return FG_OK;
+  spread->between = fg_engine_constant_in_levels(training, columns, count);
+  return fg_engine_between_basis(ctx, training, scores->noise, scores->null, &spread->stratum,
+                                 &spread->stratum_rank);
+}
+
 /* Whitened indicators of the levels beside the null's columns. */
 static fg_status open_levels(fg_context *ctx, const fg_engine_noise_scores *scores,
                              const fg_loop_candidate *candidate, fg_engine_spread *spread) {
   const fg_engine_training *training = scores->training;
   const fg_loop_coordinate *at = &training->problem->coordinate[candidate->a];
-  size_t n = training->n;
-  double *columns = NULL;
+  size_t n = training->n, rank = scores->null->rank;
+  double *columns = NULL, *basis = NULL;
   fg_status status = FG_OK;
   FG_TRY_EXIT(fg_memory_allocate(ctx, n, at->levels * sizeof *columns, (void **)&columns));
   FG_TRY_EXIT(fg_memory_allocate(ctx, n, at->levels * sizeof *columns, (void **)&spread->unit));
   for (size_t i = 0; i < n; i++)
     columns[(size_t)at->value[training->row[i]] * n + i] = 1;
+  FG_TRY_EXIT(open_stratum(ctx, scores, columns, at->levels, spread));
   for (size_t k = 0; k < at->levels; k++)
     fg_engine_whiten(training, scores->noise, columns + k * n);
-  spread->rank = fg_engine_orthonormal(n, scores->null->basis, scores->null->rank, columns,
-                                       at->levels, spread->unit, NULL);
+  size_t fixed = spread->between ? 0 : spread->stratum_rank;
+  FG_TRY_EXIT(fg_memory_allocate(ctx, n, (rank + fixed + 1) * sizeof *basis, (void **)&basis));
+  memcpy(basis, scores->null->basis, n * rank * sizeof *basis);
+  if (fixed) memcpy(basis + rank * n, spread->stratum, n * fixed * sizeof *basis);
+  spread->rank =
+      fg_engine_orthonormal(n, basis, rank + fixed, columns, at->levels, spread->unit, NULL);
 exit:
   free(columns);
+  free(basis);
   return status;
 }
 
@@ -84,6 +102,7 @@ void fg_engine_noise_scores_close(fg_engine_noise_scores *scores) {
     free(scores->spread[c].z);
     free(scores->spread[c].level);
     free(scores->spread[c].unit);
+    free(scores->spread[c].stratum);
   }
   free(scores->spread);
   *scores = (fg_engine_noise_scores){0};
@@ -156,14 +175,16 @@ static double spread_score(const fg_engine_training *training, const fg_engine_s
  * (Seely and El-Bassiouni 1983). */
 static double levels_score(const fg_engine_noise_scores *scores, const fg_engine_spread *spread,
                            const double *white) {
-  size_t n = scores->training->n, used = scores->null->rank + spread->rank;
-  double whole = 0;
+  size_t n = scores->training->n, dof = n - scores->null->rank;
+  double along = fg_engine_along(n, spread->stratum, spread->stratum_rank, white), whole = 0;
   for (size_t i = 0; i < n; i++)
     whole += white[i] * white[i];
-  if (spread->rank == 0 || used + 2 > n || !(whole > 0)) return NAN;
+  whole = spread->between ? along : whole - along;
+  dof = spread->between ? spread->stratum_rank : dof - spread->stratum_rank;
+  if (spread->rank == 0 || spread->rank + 2 > dof || !(whole > 0)) return NAN;
   double gain = fg_engine_along(n, spread->unit, spread->rank, white);
   double ratio = fmin(fmax(1 - gain / whole, FG_ENGINE_RATIO_MIN), 1);
-  return fg_engine_deviate(ratio, (double)spread->rank, (double)(n - scores->null->rank));
+  return fg_engine_deviate(ratio, (double)spread->rank, (double)dof);
 }
 
 static double score_of(const fg_engine_noise_scores *scores, size_t c, const double *white,

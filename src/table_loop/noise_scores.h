@@ -12,6 +12,10 @@ typedef struct fg_engine_spread {
   size_t *level; /* n: index of a level, 0 .. columns */
   double *unit;  /* of random levels: rank × n, orthonormal beside the null */
   size_t rank;
+  bool between; /* of levels that hold groups: tested between these */
+  double
+      *stratum; /* the groups' differences, or the levels that hold the candidate's: NULL: none */
+  size_t stratum_rank;
 } fg_engine_spread;
 
 typedef struct fg_engine_noise_scores {

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The order of rows for which none was declared. A column of time or of runs is one. The number of
- * a row in its file is one, too, unless the file is sorted by a column: neighbours are then alike
- * because they have the same level of it, and not because they were measured one after the other.
- */
+ * a row in its file is one, too, unless the file is sorted by a column, or gathered by one, so that
+ * neighbours are alike in it: they may then be alike in the response because of their levels, and
+ * not because they were measured one after the other. */
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -81,14 +81,68 @@ static bool is_time_in_blocks(const fg_loop_coordinate *at, size_t rows) {
   return true;
 }
 
+/* Deviate of neighbours that are alike, from which on rows are not in a random order: one in 10^4
+ * random orders. */
+#define ALIKE 3.72
+
+/* Returns true when neighbours have the same level oftener than in a random order: the number of
+ * pieces against its mean and variance (Mood 1940). */
+static bool has_few_pieces(const fg_loop_coordinate *at, size_t rows) {
+  double n = (double)rows, squares = 0, cubes = 0, pieces = 1;
+  for (size_t k = 0; k < at->levels; k++) {
+    double count = 0;
+    for (size_t i = 0; i < rows; i++)
+      count += at->value[i] == (double)k;
+    squares += count * count;
+    cubes += count * count * count;
+  }
+  for (size_t i = 1; i < rows; i++)
+    pieces += at->value[i] != at->value[i - 1];
+  double mean = (n * (n + 1) - squares) / n;
+  double variance =
+      (squares * (squares + n * (n + 1)) - 2 * n * cubes - n * n * n) / (n * n * (n - 1));
+  return variance > 0 && pieces < mean - ALIKE * sqrt(variance);
+}
+
+/* Rank of a row's value, the mean one of equal values. */
+static double rank_of(const fg_loop_coordinate *at, size_t rows, size_t row) {
+  double rank = 0.5;
+  for (size_t i = 0; i < rows; i++)
+    rank += at->value[i] < at->value[row] ? 1 : at->value[i] == at->value[row] ? 0.5 : 0;
+  return rank;
+}
+
+/* Rows whose ranks are compared: a part of many is as good, and the work goes by their square. */
+enum { RANKED = 2000 };
+
+/* Returns true when neighbours have closer values than in a random order: von Neumann's ratio of
+ * ranks (Bartels 1982). */
+static bool has_close_neighbours(const fg_loop_coordinate *at, size_t rows) {
+  size_t used = rows < RANKED ? rows : RANKED;
+  double n = (double)used, middle = (n + 1) / 2, steps = 0, whole = 0, before = 0;
+  for (size_t i = 0; i < used; i++) {
+    double rank = rank_of(at, used, i);
+    if (i > 0) steps += (rank - before) * (rank - before);
+    whole += (rank - middle) * (rank - middle);
+    before = rank;
+  }
+  double variance = 4 * (n - 2) * (5 * n * n - 2 * n - 9) / (5 * n * (n + 1) * (n - 1) * (n - 1));
+  return whole > 0 && steps / whole < 2 - ALIKE * sqrt(variance);
+}
+
+/* Rows gathered by a column, as lots or places come together. */
+static bool gathers(const fg_loop_coordinate *at, size_t rows) {
+  return at->levels ? has_few_pieces(at, rows) : has_close_neighbours(at, rows);
+}
+
 /* Columns that say something of the rows' order; SIZE_MAX: none. */
 typedef struct order_columns {
-  size_t time, counted, sorting;
+  size_t time, counted, sorting, gathering;
   bool chronological;
 } order_columns;
 
 static order_columns find_order_columns(const fg_loop_problem *problem, size_t columns) {
-  order_columns found = {SIZE_MAX, SIZE_MAX, SIZE_MAX, false};
+  order_columns found = {SIZE_MAX, SIZE_MAX, SIZE_MAX, SIZE_MAX, false};
   size_t rows = problem->rows;
   for (size_t c = 0; c < columns; c++) {
     const fg_loop_coordinate *at = &problem->coordinate[c];
@@ -98,17 +152,25 @@ static order_columns find_order_columns(const fg_loop_problem *problem, size_t c
     if (counted && found.counted == SIZE_MAX) found.counted = c;
     bool sorts = (monotone && !counted) || is_in_blocks(at, rows);
     if (sorts && found.sorting == SIZE_MAX) found.sorting = c;
+    if (!counted && found.gathering == SIZE_MAX && gathers(at, rows)) found.gathering = c;
   }
   return found;
 }
 
 static fg_status leave_out_number(fg_context *ctx, const fg_loop_table_state *build,
-                                  const char *name, const char *sorting) {
-  char why[2 * FG_LOOP_NAME + 80];
-  fg_text_clip(why, sizeof why,
-               "the rows are sorted by %s, so their number is the file's and no order in time "
-               "(--order COLUMN declares one)",
-               sorting);
+                                  const char *name, const order_columns *found) {
+  char why[2 * FG_LOOP_NAME + 160];
+  const fg_loop_coordinate *at = build->out->problem.coordinate;
+  if (found->sorting != SIZE_MAX)
+    fg_text_clip(why, sizeof why,
+                 "the rows are sorted by %s, so their number is the file's and no order in time "
+                 "(--order COLUMN declares one)",
+                 at[found->sorting].name);
+  else
+    fg_text_clip(why, sizeof why,
+                 "neighbouring rows are alike in %s, so their number may be the file's and no "
+                 "order in time (--order COLUMN declares one)",
+                 at[found->gathering].name);
   return fg_loop_table_leave_out(ctx, build, name, why);
 }
 
@@ -117,7 +179,7 @@ fg_status fg_loop_table_find_order(fg_context *ctx, const fg_loop_table_state *b
   size_t last = problem->coordinates - 1;
   if (!(problem->coordinate[last].roles & FG_LOOP_ORDER)) return FG_OK;
   order_columns found = find_order_columns(problem, last);
-  bool sorted = found.sorting != SIZE_MAX && !found.chronological;
+  bool sorted = (found.sorting != SIZE_MAX || found.gathering != SIZE_MAX) && !found.chronological;
   size_t order = found.time != SIZE_MAX ? found.time : sorted ? SIZE_MAX : found.counted;
   if (order != SIZE_MAX) {
     problem->coordinate[order].roles |= FG_LOOP_ORDER;
@@ -126,10 +188,9 @@ fg_status fg_loop_table_find_order(fg_context *ctx, const fg_loop_table_state *b
   }
   if (!sorted) return FG_OK;
   problem->correlated = false;
-  const char *sorting = problem->coordinate[found.sorting].name;
   size_t counted = found.counted;
   bool own = counted != SIZE_MAX && !is_named_as_measured(&problem->coordinate[counted]);
-  FG_TRY(leave_out_number(ctx, build, own ? problem->coordinate[counted].name : "row", sorting));
+  FG_TRY(leave_out_number(ctx, build, own ? problem->coordinate[counted].name : "row", &found));
   fg_loop_table_drop(problem, last);
   if (own) fg_loop_table_drop(problem, counted);
   return FG_OK;

@@ -86,7 +86,7 @@ static void close_rows(outlier_rows *rows) {
 }
 
 static bool whole_covariance(const outlier_rows *rows) {
-  return rows->n <= FG_ENGINE_SMALL_ROWS && (rows->noise.rho != 0 || rows->noise.lambda > 0);
+  return rows->n <= FG_ENGINE_SMALL_ROWS && !fg_engine_independent(rows->noise);
 }
 
 static void fill_unit(const outlier_rows *rows, size_t i) {

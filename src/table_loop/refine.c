@@ -110,8 +110,8 @@ static fg_status open_many(fg_context *ctx, moving *m) {
   memcpy(residual, m->training.y, n * size);
   fg_engine_whiten(&m->training, m->noise, residual);
   m->rss = fg_engine_project_out(n, m->null.basis, rank, residual);
-  m->in_steps = m->noise.rho == 0 && m->noise.lambda == 0 && !candidate->effect->pair &&
-                at->high > at->low && n > STEPS;
+  m->in_steps = fg_engine_independent(m->noise) && !candidate->effect->pair && at->high > at->low &&
+                n > STEPS;
   if (!m->in_steps) return FG_OK;
   return fg_engine_bins_open(ctx, &m->training, candidate->a, STEPS, m->vectors, rank, &m->bins);
 }

@@ -44,7 +44,7 @@ fg_status fg_engine_advise(fg_context *ctx, fg_engine_run *run);
 /* Fills the result's checks beside the whole set (residual_tests.c). */
 fg_status fg_engine_check(fg_context *ctx, const fg_engine_run *run, fg_engine_noise noise);
 /* Notes the declared uncertainty that random levels change most, before and after. */
-fg_status fg_engine_note_levels(fg_context *ctx, fg_engine_run *run);
+fg_status fg_engine_note_levels(fg_context *ctx, fg_engine_run *run, fg_engine_noise noise);
 fg_status fg_engine_finish(fg_context *ctx, fg_engine_run *run);
 fg_status fg_engine_note(fg_context *ctx, fg_loop_result *result, const char *format, ...)
     __attribute__((format(printf, 3, 4)));

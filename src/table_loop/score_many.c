@@ -37,7 +37,7 @@ static bool in_steps(const many *m, size_t c) {
   const fg_engine_noise noise = m->workspace->noise[0];
   if (m->first[c + 1] - m->first[c] < 2 || candidate->effect->pair || !(at->high > at->low))
     return false;
-  return noise.lambda == 0 && (noise.rho == 0 || at->roles & FG_LOOP_ORDER);
+  return noise.lambda == 0 && noise.outer == 0 && (noise.rho == 0 || at->roles & FG_LOOP_ORDER);
 }
 
 static double half_cycles(const fg_loop_coordinate *at, double period) {

@@ -56,10 +56,26 @@ static void thin_noises(fg_score_workspace *workspace, size_t best) {
 static bool next_to(const fg_score_workspace *workspace, fg_engine_noise a, fg_engine_noise b) {
   for (size_t k = 0; k < workspace->noises; k++) {
     fg_engine_noise c = workspace->noise[k];
-    if ((c.rho - a.rho) * (c.rho - b.rho) < 0 || (c.lambda - a.lambda) * (c.lambda - b.lambda) < 0)
+    if ((c.rho - a.rho) * (c.rho - b.rho) < 0 ||
+        (c.lambda - a.lambda) * (c.lambda - b.lambda) < 0 ||
+        (c.outer - a.outer) * (c.outer - b.outer) < 0)
       return false;
   }
   return true;
+}
+
+/* Thins two strata's models to the null's best and its neighbours. */
+static void thin_strata(fg_score_workspace *workspace, size_t best) {
+  bool near[FG_ENGINE_NOISES];
+  size_t kept = 0;
+  for (size_t j = 0; j < workspace->noises; j++)
+    near[j] = next_to(workspace, workspace->noise[j], workspace->noise[best]);
+  for (size_t j = 0; j < workspace->noises; j++) {
+    if (!near[j]) continue;
+    workspace->noise[kept] = workspace->noise[j];
+    workspace->weight[kept++] = workspace->weight[j];
+  }
+  workspace->noises = kept;
 }
 
 static void find_neighbours(fg_score_workspace *workspace) {
@@ -93,6 +109,7 @@ static fg_status weigh_noises(fg_context *ctx, fg_score_workspace *workspace) {
     if (sums[j] * workspace->weight[j] < sums[chosen] * workspace->weight[chosen]) chosen = j;
   if (training->n <= FG_ENGINE_SMALL_ROWS) {
     if (training->serial && !training->levels) thin_noises(workspace, chosen);
+    if (training->outers) thin_strata(workspace, chosen);
     return FG_OK;
   }
   workspace->noise[0] = workspace->noise[chosen];

@@ -71,7 +71,7 @@ exit:
 }
 
 fg_status fg_engine_weigh_serial(fg_context *ctx, fg_engine_run *run, const fg_engine_stand *effect,
-                                 size_t candidate, fg_engine_serial_word *word) {
+                                 size_t candidate, double level, fg_engine_serial_word *word) {
   size_t serial = fg_engine_serial_candidate(run);
   double alone, beside;
   *word = FG_ENGINE_EFFECT;
@@ -87,7 +87,7 @@ fg_status fg_engine_weigh_serial(fg_context *ctx, fg_engine_run *run, const fg_e
   FG_TRY(fg_engine_step_open(ctx, run, &correlated, false, &step));
   double p = fg_engine_stand_p(run, &step, candidate);
   fg_engine_step_close(&step);
-  if (p < run->options.accept_p) return FG_OK;
+  if (p < level) return FG_OK;
   *word = beside > FG_ENGINE_SERIAL_NEEDED ? FG_ENGINE_CORRELATION : FG_ENGINE_EITHER;
   return FG_OK;
 }

@@ -29,9 +29,10 @@ typedef enum fg_engine_serial_word {
   FG_ENGINE_EITHER,      /* undecided by the data */
 } fg_engine_serial_word;
 
-/* Weighs an effect of the mean (a stand of the step) against correlation. */
+/* Weighs an effect of the mean (a stand of the step) against correlation, beside which it is
+ * significant at that level or not. */
 fg_status fg_engine_weigh_serial(fg_context *ctx, fg_engine_run *run, const fg_engine_stand *effect,
-                                 size_t candidate, fg_engine_serial_word *word);
+                                 size_t candidate, double level, fg_engine_serial_word *word);
 
 /* Tests whether the effect alone is likelier than correlation alone, with a penalty per parameter.
  */

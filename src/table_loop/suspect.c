@@ -14,6 +14,7 @@
 #include "core/memory.h"
 #include "core/text.h"
 #include "table_loop/accept_claim.h"
+#include "table_loop/serial.h"
 
 /* Power with which the advised rows decide, and its normal quantile. */
 static const double wanted_power = 0.9, power_90 = 1.2816;
@@ -182,12 +183,28 @@ exit:
   return status;
 }
 
+/* Neighbours that are alike look like many effects: where a suspect would be none beside their
+ * correlation, the correlation is in its class. */
+static fg_status tie_correlation(fg_context *ctx, const suspects *of, size_t stand,
+                                 fg_loop_claim *claim) {
+  fg_engine_run *run = of->run;
+  fg_engine_serial_word word;
+  if (stand >= run->means) return FG_OK;
+  FG_TRY(
+      fg_engine_weigh_serial(ctx, run, &of->step->stand[stand], stand, FG_LOOP_SUSPECTED_P, &word));
+  if (word != FG_ENGINE_EFFECT)
+    fg_engine_add_alias(run->problem, &run->candidate[fg_engine_serial_candidate(run)], NAN, NAN,
+                        claim);
+  return FG_OK;
+}
+
 static fg_status describe(fg_context *ctx, suspects *of, size_t stand, fg_loop_suspect *suspect) {
   const fg_engine_step *step = of->step;
   *suspect = (fg_loop_suspect){.own_p = NAN};
   of->noise = step->workspace.noise[step->judgement.noise];
   fg_engine_describe_claim(of->run, step, stand, &suspect->claim);
   suspect->own_p = find_own_p(of, stand);
+  FG_TRY(tie_correlation(ctx, of, stand, &suspect->claim));
   if (!fg_engine_is_noise(&suspect->claim.candidate))
     FG_TRY(fg_engine_alias_class(ctx, &step->training, of->noise, step->stand, step->stands,
                                  &step->stand[stand], &suspect->claim));

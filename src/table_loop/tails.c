@@ -61,6 +61,22 @@ static double t_likelihood(size_t rest, const double *value, size_t wrong,
              (log_terms(rest, value, dof, scale) + log_terms(wrong, wrong_value, dof, scale));
 }
 
+/* The largest log likelihood of a Student's t at its best scale, of any tail. */
+static double best_tail(size_t count, const double *value) {
+  double best = -INFINITY, scale = sum_of_squares(count, value) / (double)count;
+  for (size_t k = 0; k < sizeof tail_dof / sizeof *tail_dof; k++)
+    best = fmax(best, t_likelihood(count, value, 0, NULL, tail_dof[k], scale));
+  return best;
+}
+
+double fg_engine_exchanged_over_tail(size_t count, const double *measured, const double *put_back) {
+  double before = sum_of_squares(count, measured), after = sum_of_squares(count, put_back);
+  if (!(after > 0)) return INFINITY;
+  double apart =
+      fmax(normal_likelihood((double)count, after), best_tail(count, put_back) - BESIDE_TAIL);
+  return apart - fmax(normal_likelihood((double)count, before), best_tail(count, measured));
+}
+
 double fg_engine_wrong_over_tail(size_t rest, const double *value, size_t wrong,
                                  const double *wrong_value) {
   double squares = sum_of_squares(rest, value), all = squares + sum_of_squares(wrong, wrong_value);

@@ -11,4 +11,8 @@
 double fg_engine_wrong_over_tail(size_t rest, const double *value, size_t wrong,
                                  const double *wrong_value);
 
+/* Returns the log likelihood ratio of rows with two of them exchanged back over rows as they were
+ * measured, each at its best scale and tail. */
+double fg_engine_exchanged_over_tail(size_t count, const double *measured, const double *put_back);
+
 #endif

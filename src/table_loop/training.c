@@ -50,37 +50,6 @@ static fg_status number_rows(fg_context *ctx, fg_engine_training *training) {
   return FG_OK;
 }
 
-typedef struct level_key {
-  double level;
-  size_t row;
-} level_key;
-
-static int by_level(const void *a, const void *b) {
-  const level_key *x = a, *y = b;
-  if (x->level != y->level) return x->level < y->level ? -1 : 1;
-  return (x->row > y->row) - (x->row < y->row);
-}
-
-/* Random levels of a column group the rows, wherever they stand. */
-static fg_status group_by_levels(fg_context *ctx, fg_engine_training *training, size_t coordinate) {
-  const fg_loop_coordinate *at = &training->problem->coordinate[coordinate];
-  level_key *key = NULL;
-  size_t n = training->n;
-  FG_TRY(fg_memory_allocate(ctx, n, sizeof *training->level_row, (void **)&training->level_row));
-  FG_TRY(fg_memory_allocate(ctx, n, sizeof *key, (void **)&key));
-  for (size_t i = 0; i < n; i++)
-    key[i] = (level_key){at->value[training->row[i]], i};
-  qsort(key, n, sizeof *key, by_level);
-  training->levels = 0;
-  for (size_t i = 0; i < n; i++) {
-    training->level_row[i] = key[i].row;
-    if (i == 0 || key[i].level != key[i - 1].level) training->level_start[training->levels++] = i;
-  }
-  training->level_start[training->levels] = n;
-  free(key);
-  return FG_OK;
-}
-
 static void put_back(fg_engine_training *training, const fg_loop_candidate *exchange) {
   const double *response = training->problem->response;
   double change = response[exchange->row[1]] - response[exchange->row[0]];
@@ -101,8 +70,6 @@ static fg_status fill_null_columns(fg_context *ctx, fg_engine_training *training
     training->y[i] = problem->residual[training->row[i]];
   for (size_t c = 0; set && c < set->count; c++) {
     training->serial |= fg_engine_is_serial(&set->candidate[c]);
-    if (fg_engine_is_levels(&set->candidate[c]))
-      FG_TRY(group_by_levels(ctx, training, set->candidate[c].a));
     if (fg_engine_is_noise(&set->candidate[c])) continue;
     if (fg_engine_is_exchange(&set->candidate[c])) {
       put_back(training, &set->candidate[c]);
@@ -125,6 +92,7 @@ fg_status fg_engine_training_build(fg_context *ctx, const fg_loop_problem *probl
   for (size_t i = 0, k = 0; i < problem->rows; i++)
     if (!keep || keep[i]) training->row[k++] = i;
   FG_TRY_EXIT(number_rows(ctx, training));
+  if (set) FG_TRY_EXIT(fg_engine_group_by_levels(ctx, set, training));
   FG_TRY_EXIT(fill_null_columns(ctx, training, set));
   FG_TRY_EXIT(fg_engine_estimate_scale(ctx, training, set));
 exit:
@@ -139,6 +107,8 @@ void fg_engine_training_free(fg_engine_training *training) {
   free(training->start);
   free(training->level_start);
   free(training->level_row);
+  free(training->outer_block);
+  free(training->outer_start);
   free(training->y);
   free(training->x);
   *training = (fg_engine_training){0};

@@ -5,7 +5,10 @@
  * A series of unit variance has covariance R with R_ij = rho^|i-j|. L = (v_t - rho v_t-1) /
  * sqrt(1 - rho²) makes it white. A shared level adds lambda 1 1'; with c = L 1 the covariance is
  * then I + lambda c c', whose inverse root removes (1 - 1/sqrt(1 + lambda c'c)) of the part along
- * c. In groups, rows of a group are one series. */
+ * c. In groups, rows of a group are one series.
+ *
+ * An outer level d of several groups comes behind: whitened by its groups it is W d, again c over
+ * sqrt(1 + lambda c'c), and one more such root removes it. */
 #include <math.h>
 
 #include "table_loop/engine.h"
@@ -63,6 +66,53 @@ static void scale_levels(const fg_engine_training *training, fg_engine_noise noi
   }
 }
 
+/* Factor by which whitening in its group has shortened c. */
+static double outer_share(const fg_engine_training *training, fg_engine_noise noise, size_t block) {
+  return 1 / sqrt(1 + noise.lambda * level_size(training, noise.rho, block));
+}
+
+static double outer_size(const fg_engine_training *training, fg_engine_noise noise, size_t outer) {
+  double sum = 0;
+  for (size_t k = training->outer_start[outer]; k < training->outer_start[outer + 1]; k++) {
+    size_t block = training->outer_block[k];
+    sum += level_size(training, noise.rho, block) * pow(outer_share(training, noise, block), 2);
+  }
+  return sum;
+}
+
+/* The part of y along c in one group. */
+static double along_level(const fg_engine_training *training, double rho, size_t block,
+                          const double *y) {
+  size_t first = training->level_start[block], end = training->level_start[block + 1];
+  double along = 0;
+  for (size_t i = first; i < end; i++)
+    along += level_weight(training, rho, first, i) * y[fg_engine_level_row(training, i)];
+  return along;
+}
+
+static void add_level(const fg_engine_training *training, double rho, size_t block, double level,
+                      double *y) {
+  size_t first = training->level_start[block], end = training->level_start[block + 1];
+  for (size_t i = first; i < end; i++)
+    y[fg_engine_level_row(training, i)] += level * level_weight(training, rho, first, i);
+}
+
+static void scale_outer_levels(const fg_engine_training *training, fg_engine_noise noise, double *y,
+                               bool inverse) {
+  for (size_t o = 0; o < training->outers; o++) {
+    double size = outer_size(training, noise, o), root = sqrt(1 + noise.outer * size), along = 0;
+    for (size_t k = training->outer_start[o]; k < training->outer_start[o + 1]; k++) {
+      size_t block = training->outer_block[k];
+      along += outer_share(training, noise, block) * along_level(training, noise.rho, block, y);
+    }
+    along *= ((inverse ? root : 1 / root) - 1) / size;
+    for (size_t k = training->outer_start[o]; k < training->outer_start[o + 1]; k++) {
+      size_t block = training->outer_block[k];
+      add_level(training, noise.rho, block, along * outer_share(training, noise, block), y);
+    }
+  }
+}
+
 void fg_engine_whiten(const fg_engine_training *training, fg_engine_noise noise, double *y) {
   double root = sqrt(1 - noise.rho * noise.rho);
   for (size_t i = 0; training->scale && i < training->n; i++)
@@ -71,18 +121,18 @@ void fg_engine_whiten(const fg_engine_training *training, fg_engine_noise noise,
     for (size_t b = 0; b < training->blocks; b++)
       for (size_t i = training->start[b + 1] - 1; i > training->start[b]; i--)
         y[i] = (y[i] - noise.rho * y[i - 1]) / root;
-  if (noise.lambda > 0) scale_levels(training, noise, y, false);
+  fg_engine_whiten_levels(training, noise, y);
 }
 
 void fg_engine_whiten_levels(const fg_engine_training *training, fg_engine_noise noise, double *y) {
   if (noise.lambda > 0) scale_levels(training, noise, y, false);
+  if (noise.outer > 0) scale_outer_levels(training, noise, y, false);
 }
 
-static void add_level(const fg_engine_training *training, double rho, size_t block, double level,
-                      double *y) {
-  size_t first = training->level_start[block], end = training->level_start[block + 1];
-  for (size_t i = first; i < end; i++)
-    y[fg_engine_level_row(training, i)] += level * level_weight(training, rho, first, i);
+void fg_engine_whiten_levels_back(const fg_engine_training *training, fg_engine_noise noise,
+                                  double *y) {
+  if (noise.outer > 0) scale_outer_levels(training, noise, y, false);
+  if (noise.lambda > 0) scale_levels(training, noise, y, false);
 }
 
 static double rms(const double *y, size_t n) {
@@ -94,14 +144,21 @@ static double rms(const double *y, size_t n) {
 
 void fg_engine_colour_rows(const fg_engine_training *training, fg_engine_noise noise,
                            uint64_t *seed, double *y) {
-  double sd = sqrt(noise.lambda) * rms(y, training->n);
+  double row = rms(y, training->n), sd = sqrt(noise.lambda) * row;
+  double outer_sd = sqrt(noise.outer) * row;
   for (size_t b = 0; noise.lambda > 0 && b < training->levels; b++)
     add_level(training, noise.rho, b, sd * fg_engine_random_normal(seed), y);
-  fg_engine_colour(training, (fg_engine_noise){noise.rho, 0}, y);
+  for (size_t o = 0; noise.outer > 0 && o < training->outers; o++) {
+    double level = outer_sd * fg_engine_random_normal(seed);
+    for (size_t k = training->outer_start[o]; k < training->outer_start[o + 1]; k++)
+      add_level(training, noise.rho, training->outer_block[k], level, y);
+  }
+  fg_engine_colour(training, (fg_engine_noise){.rho = noise.rho}, y);
 }
 
 void fg_engine_colour(const fg_engine_training *training, fg_engine_noise noise, double *y) {
   double root = sqrt(1 - noise.rho * noise.rho);
+  if (noise.outer > 0) scale_outer_levels(training, noise, y, true);
   if (noise.lambda > 0) scale_levels(training, noise, y, true);
   if (noise.rho != 0)
     for (size_t b = 0; b < training->blocks; b++)
@@ -121,11 +178,23 @@ double fg_engine_log_det(const fg_engine_training *training, fg_engine_noise noi
   for (size_t b = 0; noise.lambda > 0 && b < training->levels; b++) {
     sum += log1p(noise.lambda * level_size(training, noise.rho, b));
   }
+  for (size_t o = 0; noise.outer > 0 && o < training->outers; o++)
+    sum += log1p(noise.outer * outer_size(training, noise, o));
   return sum;
 }
 
 /* Ratios of variances that are tried; those of found levels may be any. */
 enum { LAMBDAS_OF_A_GROUP = 6 };
+
+/* Two strata: few of either, which the choice then polishes. */
+static size_t nested_grid(fg_engine_noise grid[FG_ENGINE_NOISES]) {
+  static const double lambda[] = {0, 0.3, 1.5, 8, 60}, outer[] = {0, 0.1, 0.5, 2.5, 12, 80};
+  size_t count = 0;
+  for (size_t i = 0; i < sizeof lambda / sizeof *lambda; i++)
+    for (size_t j = 0; j < sizeof outer / sizeof *outer; j++)
+      grid[count++] = (fg_engine_noise){.lambda = lambda[i], .outer = outer[j]};
+  return count;
+}
 
 /* Correlation only when it is in force: it is a finding like others. The grid is coarser where a
  * level is estimated too. */
@@ -136,6 +205,7 @@ size_t fg_engine_noise_grid(const fg_engine_training *training,
   static const double lambda[] = {0, 0.1, 0.3, 1, 3, 10, 30, 100, 300, 1000};
   const double *rho = none;
   size_t rhos = 1, count = 0;
+  if (training->outers) return nested_grid(grid);
   size_t lambdas = training->level_row ? sizeof lambda / sizeof *lambda
                    : training->levels  ? LAMBDAS_OF_A_GROUP
                                        : 1;
@@ -146,6 +216,6 @@ size_t fg_engine_noise_grid(const fg_engine_training *training,
   }
   for (size_t i = 0; i < rhos; i++)
     for (size_t j = 0; j < lambdas; j++)
-      grid[count++] = (fg_engine_noise){rho[i], lambda[j]};
+      grid[count++] = (fg_engine_noise){.rho = rho[i], .lambda = lambda[j]};
   return count;
 }

@@ -26,7 +26,7 @@ from loop_names import curve_over, member, members
 from loop_power_report import summary
 
 FIELDS = ["design", "kind", "size", "table", "seed", "verdict", "found", "claimed", "exact", "wrong", "truth", "claims",
-          "alias_class", "unattributed", "family_p", "ratio_cross_validated", "peer_claimed", "peer_found", "peer", "oracle_z", "seconds"]
+          "alias_class", "unattributed", "suspects", "family_p", "ratio_cross_validated", "peer_claimed", "peer_found", "peer", "oracle_z", "seconds"]
 SECONDS_AT_MOST = 300
 
 
@@ -120,6 +120,7 @@ def judge(report, truth):
 def said_words(report, said, curve):
     return {"verdict": report["verdict"], "claims": " | ".join(n[0] for n in said), "unattributed": curve,
             "alias_class": " | ".join("; ".join(n[1:]) for n in said),
+            "suspects": " | ".join("; ".join([s["name"]] + [a["name"] for a in s["alias_class"]]) for s in report.get("suspects", [])),
             "family_p": smallest_p(report), "ratio_cross_validated": report["error_ratio"].get("cross_validated", "")}
 
 
@@ -133,7 +134,7 @@ def smallest_p(report):
     return min(p) if p else ""
 
 
-ALLOWED = {"unequal_spread": "table.spread", "correlated": "table.serial_correlation"}
+ALLOWED = tables.ALLOWED
 
 
 def judge_clean(report, kind):
@@ -149,7 +150,7 @@ def judge_clean(report, kind):
 
 def blank():
     return {"verdict": "failed", "found": 0, "claimed": 0, "exact": 0, "wrong": 0, "claims": "", "unattributed": "",
-            "alias_class": "", "family_p": "", "ratio_cross_validated": ""}
+            "alias_class": "", "suspects": "", "family_p": "", "ratio_cross_validated": ""}
 
 
 # ---- one table ----

@@ -148,6 +148,9 @@ def interaction_numbers(rng, d):
     return Truth([("table.interaction", [a, b])], centred(d.columns[a]) * centred(d.columns[b]))
 
 
+LEVELS_OF_A_COLUMN = ("table.factor", "table.group_offset", "table.random_levels")
+
+
 def by_level(rng, words):
     levels = sorted(set(words))
     while True:
@@ -170,7 +173,7 @@ def factor(rng, d):
 
 def group_offset(rng, d):
     c = pick(rng, BLOCKS, d)
-    return Truth([(i, [c]) for i in ("table.factor", "table.group_offset")], by_level(rng, d.words[c]))
+    return Truth([(i, [c]) for i in LEVELS_OF_A_COLUMN], by_level(rng, d.words[c]))
 
 
 def threshold(rng, d):
@@ -232,6 +235,8 @@ MEANS = {f.__name__: f for f in (linear, quadratic, interaction_numbers, interac
                                  threshold, drift, step, transient, cycle_long, cycle_short, outlier, curve)}
 SCATTERS = ["spread", "serial_correlation"]
 KINDS = list(MEANS) + ["masked_outliers", "exchanged_runs"] + SCATTERS
+# Right names of noise that is not white: no false claim, and no false suspicion.
+ALLOWED = {"unequal_spread": "table.spread", "correlated": "table.serial_correlation"}
 CLEAN = ["white", "t4", "t3", "laplace", "unequal_spread", "group_levels", "correlated"]
 
 

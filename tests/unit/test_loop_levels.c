@@ -145,11 +145,152 @@ static void levels_that_are_alike_are_no_finding(void **state) {
   clear(&out);
 }
 
+/* ---- two strata ---- */
+
+enum { OUTER = 10, CASKS = 3, SAMPLES = 2, NESTED = OUTER * CASKS * SAMPLES };
+
+typedef struct nested_rows {
+  double heat[NESTED], y[NESTED];
+  char batch[NESTED][8], cask[NESTED][12];
+} nested_rows;
+
+/* Samples of casks of batches; the heat is one of a batch. */
+static nested_rows make_nested(double batch_sd, double cask_sd, uint64_t seed) {
+  nested_rows rows;
+  size_t i = 0;
+  for (size_t b = 0; b < OUTER; b++) {
+    double of_batch = batch_sd * random_gaussian(&seed), heat = random_uniform(&seed);
+    for (size_t c = 0; c < CASKS; c++) {
+      double of_cask = cask_sd * random_gaussian(&seed);
+      for (size_t s = 0; s < SAMPLES; s++, i++) {
+        snprintf(rows.batch[i], sizeof rows.batch[i], "B%zu", b + 1);
+        snprintf(rows.cask[i], sizeof rows.cask[i], "B%zuC%zu", b + 1, c + 1);
+        rows.heat[i] = heat;
+        rows.y[i] = 7 + heat + of_batch + of_cask + random_gaussian(&seed);
+      }
+    }
+  }
+  return rows;
+}
+
+static void search_nested(const nested_rows *rows, const char *group, outcome *out) {
+  const char *batch[NESTED], *cask[NESTED];
+  const fg_loop_options options = {.effects = fg_loop_table_effects(), .seed = 1};
+  const fg_loop_table_spec spec = {.response = "y", .model = "1 + heat", .group = group, .seed = 1};
+  *out = (outcome){0};
+  for (size_t i = 0; i < NESTED; i++) {
+    batch[i] = rows->batch[i];
+    cask[i] = rows->cask[i];
+  }
+  assert_ok(&out->ctx, fg_table_add_words(&out->ctx, &out->table, "batch", batch, NESTED));
+  assert_ok(&out->ctx, fg_table_add_words(&out->ctx, &out->table, "cask", cask, NESTED));
+  assert_ok(&out->ctx, fg_table_add_numbers(&out->ctx, &out->table, "heat", rows->heat, NESTED));
+  assert_ok(&out->ctx, fg_table_add_numbers(&out->ctx, &out->table, "y", rows->y, NESTED));
+  assert_ok(&out->ctx, fg_loop_table_problem_build(&out->ctx, &out->table, &spec, &out->problem));
+  assert_ok(&out->ctx, fg_loop_run(&out->ctx, &out->problem.problem, &options, &out->result));
+}
+
+/* Variances of batches beside the slope over heat, of casks within them, and of samples, by the
+ * analysis of variance; u of the slope. */
+typedef struct nested_truth {
+  double batch, cask, sample, slope_u;
+} nested_truth;
+
+static nested_truth analyse(const nested_rows *rows) {
+  enum { OF_BATCH = CASKS * SAMPLES };
+  double batch[OUTER] = {0}, all = 0, middle = 0, cross = 0, squares = 0, within = 0, between = 0,
+         batches = 0;
+  for (size_t i = 0; i < NESTED; i++) {
+    batch[i / OF_BATCH] += rows->y[i] / OF_BATCH;
+    all += rows->y[i] / NESTED;
+    middle += rows->heat[i] / NESTED;
+  }
+  for (size_t i = 0; i < NESTED; i += SAMPLES) {
+    double mean = (rows->y[i] + rows->y[i + 1]) / 2;
+    within += pow(rows->y[i] - rows->y[i + 1], 2) / 2 / (OUTER * CASKS);
+    between += SAMPLES * pow(mean - batch[i / OF_BATCH], 2) / (OUTER * (CASKS - 1));
+  }
+  for (size_t b = 0; b < OUTER; b++) {
+    double heat = rows->heat[b * OF_BATCH] - middle;
+    cross += heat * (batch[b] - all);
+    squares += heat * heat;
+  }
+  for (size_t b = 0; b < OUTER; b++) {
+    double heat = rows->heat[b * OF_BATCH] - middle;
+    batches += OF_BATCH * pow(batch[b] - all - cross / squares * heat, 2) / (OUTER - 2);
+  }
+  return (nested_truth){(batches - between) / OF_BATCH, (between - within) / SAMPLES, within,
+                        sqrt(batches / OF_BATCH / squares)};
+}
+
+static const fg_loop_claim *claim_named(const fg_loop_result *result, const char *name) {
+  for (size_t m = 0; m < result->claims; m++)
+    if (!strcmp(result->claim[m].name, name)) return &result->claim[m];
+  return NULL;
+}
+
+/* In equal numbers restricted likelihood is the analysis of variance, with two strata as well. */
+static void casks_in_batches_have_a_variance_each(void **state) {
+  outcome out;
+  (void)state;
+  nested_rows rows = make_nested(3, 2, 5);
+  nested_truth exact = analyse(&rows);
+  search_nested(&rows, NULL, &out);
+  assert_int_equal(out.result.claims, 2);
+  const fg_loop_claim *batch = claim_named(&out.result, "table.random_levels(batch)");
+  const fg_loop_claim *cask = claim_named(&out.result, "table.random_levels(cask)");
+  assert_non_null(batch);
+  assert_non_null(cask);
+  assert_near(batch->noise_value, sqrt(exact.batch), 0.01 * sqrt(exact.batch));
+  assert_near(cask->noise_value, sqrt(exact.cask), 0.01 * sqrt(exact.cask));
+  assert_true(batch->interval[0] < 3 && batch->interval[1] > 3);
+  assert_true(cask->interval[0] < 2 && cask->interval[1] > 2);
+  assert_near(out.result.parameter_u[1], exact.slope_u, 0.01 * exact.slope_u);
+  assert_has(out.result.note[0], "cask within batch: of the variance that is left");
+  clear(&out);
+}
+
+/* The same where the casks were declared as groups, and the batches were not. */
+static void batches_are_found_beside_declared_groups(void **state) {
+  outcome out;
+  (void)state;
+  nested_rows rows = make_nested(3, 2, 5);
+  nested_truth exact = analyse(&rows);
+  search_nested(&rows, "cask", &out);
+  assert_int_equal(out.result.claims, 1);
+  const fg_loop_claim *batch = claim_named(&out.result, "table.random_levels(batch)");
+  assert_non_null(batch);
+  assert_near(batch->noise_value, sqrt(exact.batch), 0.01 * sqrt(exact.batch));
+  assert_near(out.result.parameter_u[1], exact.slope_u, 0.01 * exact.slope_u);
+  assert_has(out.result.note[0], "groups within batch");
+  clear(&out);
+}
+
+/* Casks that scatter give batches' means a scatter of their own, which is no finding. */
+static void batches_that_are_alike_are_no_finding(void **state) {
+  enum { TABLES = 3 };
+  size_t claimed = 0, casks = 0;
+  (void)state;
+  for (uint64_t seed = 0; seed < TABLES; seed++) {
+    outcome out;
+    nested_rows rows = make_nested(0, 3, 40 + seed);
+    search_nested(&rows, NULL, &out);
+    claimed += claim_named(&out.result, "table.random_levels(batch)") != NULL;
+    casks += claim_named(&out.result, "table.random_levels(cask)") != NULL;
+    clear(&out);
+  }
+  assert_int_equal(claimed, 0);
+  assert_int_equal(casks, TABLES);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(levels_have_their_variance_and_the_slope_their_stratum),
       cmocka_unit_test(what_is_constant_in_a_level_is_tested_between_levels),
       cmocka_unit_test(levels_that_are_alike_are_no_finding),
+      cmocka_unit_test(casks_in_batches_have_a_variance_each),
+      cmocka_unit_test(batches_are_found_beside_declared_groups),
+      cmocka_unit_test(batches_that_are_alike_are_no_finding),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

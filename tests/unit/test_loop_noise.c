@@ -40,7 +40,11 @@ static double covariance(fg_engine_noise noise, size_t i, size_t k) {
   return pow(noise.rho, fabs((double)i - (double)k)) + noise.lambda;
 }
 
-static const fg_engine_noise noises[] = {{0, 0}, {0.6, 0}, {0, 2}, {0.3, 0.7}, {0.85, 10}};
+static const fg_engine_noise noises[] = {{.rho = 0},
+                                         {.rho = 0.6},
+                                         {.lambda = 2},
+                                         {.rho = 0.3, .lambda = 0.7},
+                                         {.rho = 0.85, .lambda = 10}};
 
 /* W C W' = 1, column by column: W applied to C, then to the transpose. */
 static void whitening_undoes_the_covariance(void **state) {
