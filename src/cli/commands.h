@@ -49,9 +49,10 @@ fg_command_run fg_cmd_die;
 fg_command_run fg_cmd_die_next; /* `die --target` */
 fg_command_run fg_cmd_stiffness;
 fg_command_run fg_cmd_film;
+fg_command_run fg_cmd_scanner;
 fg_command_run fg_cmd_station;
 
-extern const struct argp fg_forming_parser, fg_film_parser;
+extern const struct argp fg_forming_parser, fg_film_parser, fg_scanner_parser;
 extern const struct argp fg_measure_parser, fg_doe_parser, fg_doe_plan_parser, fg_design_parser,
     fg_render_parser, fg_loop_parser, fg_loop_table_parser, fg_lot_parser, fg_merge_parser,
     fg_die_parser, fg_die_next_parser, fg_stiffness_parser, fg_station_parser;

@@ -9,7 +9,7 @@
 
 #include "foilgauge/circle.h"
 
-enum { FG_MAP_SIDE_MIN = 4, FG_MAP_SIDE_MAX = 24, FG_MAP_WEIGHTS = 16, FG_MAP_MODES_MAX = 40 };
+enum { FG_MAP_SIDE_MIN = 4, FG_MAP_SIDE_MAX = 24, FG_MAP_WEIGHTS = 16, FG_MAP_MODES_MAX = 64 };
 
 /* Knots over a region. */
 typedef struct fg_map_frame {

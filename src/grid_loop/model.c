@@ -5,6 +5,7 @@
 #include <gsl/gsl_eigen.h>
 #include <gsl/gsl_linalg.h>
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -14,7 +15,9 @@
 #include "grid_loop/grid_loop.h"
 
 /* Places of the region per spline and axis, at which displacements are compared; modes kept. */
-enum { PLACES_PER_SPLINE = 2, MODES_KEPT = 30, RANDOM_MODES = 4 };
+enum { PLACES_PER_SPLINE = 2, MODES_KEPT = 30, REST_MODES = 16, RANDOM_MODES = 4 };
+_Static_assert((int)MODES_KEPT + (int)REST_MODES + (int)RANDOM_MODES <= (int)FG_MAP_MODES_MAX,
+               "a model that is written can be read");
 #define RIDGE 1e-9
 
 /* Places over a map's region. */
@@ -155,34 +158,57 @@ static fg_status add_mode(fg_context *ctx, const mode_work *work, const double *
   return FG_OK;
 }
 
-/* Principal modes of the moves: eigenvectors of movesᵀ moves. The variance that the others leave is
- * shared out over those kept. */
+/* Sign of a mode in a mixture, which looks random: the last bit of splitmix64 (Steele 2014). */
+static double sign_of_mode(size_t mode, size_t mixture) {
+  uint64_t bits =
+      (mode + 1) * UINT64_C(0x9E3779B97F4A7C15) + mixture * UINT64_C(0xD1B54A32D192ED03);
+  bits = (bits ^ (bits >> 30)) * UINT64_C(0xBF58476D1CE4E5B9);
+  bits = (bits ^ (bits >> 27)) * UINT64_C(0x94D049BB133111EB);
+  return (bits >> 63) ? 1 : -1;
+}
+
+/* Columns of `mixtures`: the first `kept` vectors one by one; the others, which are short waves and
+ * many, in mixtures with random signs. Whatever is measured, the squares of its moves by mixtures
+ * have the expectation that those by the vectors have (Hutchinson 1989). */
+static void mix_modes(const gsl_matrix *vectors, size_t kept, gsl_matrix *mixtures) {
+  size_t n = vectors->size2, mixed = mixtures->size2 - kept;
+  for (size_t k = 0; k < n; k++) {
+    gsl_vector_const_view vector = gsl_matrix_const_column(vectors, k);
+    for (size_t m = k < kept ? k : kept; m < (k < kept ? k + 1 : mixtures->size2); m++) {
+      double weight = k < kept ? 1 : sign_of_mode(k, m) / sqrt((double)mixed);
+      gsl_vector_view mixture = gsl_matrix_column(mixtures, m);
+      gsl_blas_daxpy(weight, &vector.vector, &mixture.vector);
+    }
+  }
+}
+
+/* Modes of the moves: the eigenvectors of movesᵀ moves with the largest variance, and mixtures of
+ * the others. */
 static fg_status add_principal_modes(fg_context *ctx, const mode_work *work, fg_field_map *map) {
   size_t n = work->count, kept = n < MODES_KEPT ? n : MODES_KEPT;
+  size_t modes = n > kept ? kept + REST_MODES : kept;
   gsl_matrix *square = gsl_matrix_calloc(n, n), *vectors = gsl_matrix_calloc(n, n);
+  gsl_matrix *mixtures = gsl_matrix_calloc(n, modes);
   gsl_vector *values = gsl_vector_calloc(n), *mode = gsl_vector_calloc(2 * work->places.count);
   gsl_eigen_symmv_workspace *space = gsl_eigen_symmv_alloc(n);
   fg_status status = FG_OK;
-  double total = 0, shown = 0;
-  if (!square || !vectors || !values || !mode || !space) {
+  if (!square || !vectors || !mixtures || !values || !mode || !space) {
     status = fg_fail(ctx, FG_ERR_MEMORY, "out of memory: %zu columns", n);
     goto exit;
   }
   gsl_blas_dgemm(CblasTrans, CblasNoTrans, 1, work->moves, work->moves, 0, square);
   gsl_eigen_symmv(square, values, vectors, space);
   gsl_eigen_symmv_sort(values, vectors, GSL_EIGEN_SORT_VAL_DESC);
-  for (size_t k = 0; k < n; k++) {
-    total += fmax(0, gsl_vector_get(values, k));
-    if (k < kept) shown += fmax(0, gsl_vector_get(values, k));
-  }
-  for (size_t k = 0; k < kept; k++) {
-    gsl_vector_const_view vector = gsl_matrix_const_column(vectors, k);
-    gsl_blas_dgemv(CblasNoTrans, sqrt(total / shown), work->moves, &vector.vector, 0, mode);
+  mix_modes(vectors, kept, mixtures);
+  for (size_t k = 0; k < modes; k++) {
+    gsl_vector_const_view mixture = gsl_matrix_const_column(mixtures, k);
+    gsl_blas_dgemv(CblasNoTrans, 1, work->moves, &mixture.vector, 0, mode);
     FG_TRY_EXIT(add_mode(ctx, work, mode->data, map));
   }
 exit:
   gsl_matrix_free(square);
   gsl_matrix_free(vectors);
+  gsl_matrix_free(mixtures);
   gsl_vector_free(values);
   gsl_vector_free(mode);
   gsl_eigen_symmv_free(space);

@@ -19,6 +19,7 @@
 #include "report/lot/members.h"
 #include "report/measure/members.h"
 #include "report/scan_loop/members.h"
+#include "report/scanner_change/members.h"
 #include "report/table_loop/members.h"
 #include "scan_loop/scanner_model.h"
 #include "station/settings.h"
@@ -43,6 +44,7 @@ const fg_document *const fg_documents[] = {
     &fg_recipe_document,
     &fg_render_truth_document,
     &fg_scan_loop_document,
+    &fg_scanner_change_document,
     &fg_scanner_model_document,
     &fg_station_settings_document,
     &fg_measure_document,
