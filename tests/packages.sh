@@ -3,13 +3,16 @@
 # and the way a step is run and told.
 
 FOILGAUGE_PACKAGES="build-essential cmake pkg-config libpng-dev libisal-dev libtiff-dev libjpeg-dev libgsl-dev libcjson-dev nettle-dev libcsv-dev
-libopencv-core-dev libopencv-imgproc-dev libsuitesparse-dev libsundials-dev libsqlite3-dev libmicrohttpd-dev libcmocka-dev"
+libopencv-core-dev libopencv-imgproc-dev libsuitesparse-dev libsundials-dev libsqlite3-dev libmicrohttpd-dev libcurl4-openssl-dev libcmocka-dev"
 
 # Only the comparisons need these: what a user would write in Python instead.
 FOILGAUGE_BENCH_PACKAGES="python3 python3-numpy python3-scipy python3-skimage python3-opencv"
 
 # Only the long tests need them: regression is compared with R's, and the loop is tried on tables that come with R.
 FOILGAUGE_R_PACKAGES="r-base-core r-cran-mass r-cran-lattice r-cran-boot r-cran-nlme"
+
+# Only long tests need them, and builds with MQTT and PostgreSQL: without them a station has neither.
+FOILGAUGE_SHOP_PACKAGES="libmosquitto-dev mosquitto libpq-dev postgresql"
 
 # Only long tests need them: a validator of JSON and a reader of DXF that are not the project's own.
 FOILGAUGE_SCHEMA_PACKAGES="python3 python3-jsonschema python3-ezdxf"

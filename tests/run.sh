@@ -62,7 +62,7 @@ if [ $tier = long ]; then
   build/bench/split_plots >reports/split_plots.md
   python3 tests/bench/split_plots_r.py build/foilgauge 150 || [ $? = 77 ]
   tests/bench/thesis.sh
-  install_missing $FOILGAUGE_R_PACKAGES $FOILGAUGE_BROWSER_PACKAGES $FOILGAUGE_SCHEMA_PACKAGES
+  install_missing $FOILGAUGE_R_PACKAGES $FOILGAUGE_BROWSER_PACKAGES $FOILGAUGE_SCHEMA_PACKAGES $FOILGAUGE_SHOP_PACKAGES
   tests/bench/json_documents.sh
   tests/bench/differential_r.sh 300 reports/differential_r.csv
   python3 tests/bench/loop_measured.py build/foilgauge

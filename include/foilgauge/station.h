@@ -31,6 +31,24 @@ typedef struct fg_station_check {
   bool withhold;        /* an overdue or failed check withholds verdicts */
 } fg_station_check;
 
+enum { FG_STATION_DESTINATIONS = 8 }; /* maximum number of a recipe */
+
+/* Form in which a part is passed on. */
+typedef enum fg_part_format {
+  FG_PART_JSON,
+  FG_PART_CSV,       /* a line of the foil */
+  FG_PART_BUMPS_CSV, /* a line per bump or beam */
+  FG_PART_DFQ,
+  FG_PART_QIF
+} fg_part_format;
+
+/* Receiver of every part, as it is measured, corrected and disposed. */
+typedef struct fg_station_destination {
+  char to[1024];         /* folder (relative to the recipe), http://…, https://…, mqtt://… */
+  char token_file[1024]; /* path, relative to the recipe: what the receiver must be told; "" */
+  fg_part_format format;
+} fg_station_destination;
+
 typedef struct fg_station_settings {
   fg_lot_settings lot; /* of the whole recipe: design, model, dpi, run rules, bearings ... */
   /* Pattern of file names: text, `*` for anything, and {serial}, {lot}, {die}, {operator},
@@ -46,6 +64,8 @@ typedef struct fg_station_settings {
   double receive_s;
   char reasons[1024]; /* codes that a disposition's field proposes, between commas */
   fg_station_check check;
+  fg_station_destination pass_on[FG_STATION_DESTINATIONS];
+  size_t pass_on_count;
 } fg_station_settings;
 
 /* A recipe of lots with a member `station` {"file_name", "scan_command", "check": {"design",
@@ -66,7 +86,10 @@ typedef struct fg_station_request {
   double poll_s;      /* poll every `poll_s` seconds (network folders); 0: the system notifies */
   const char *listen; /* address; NULL: 127.0.0.1 */
   unsigned port;      /* 0: any free port */
-  const char *token;  /* needed by every request; NULL: none (loopback only) */
+  const char *name;   /* of the station, for receivers of parts; NULL: the machine's */
+  const char *hub;    /* address of a hub that gets all parts; NULL: none */
+  const char *hub_token_file;
+  const char *token;        /* needed by every request; NULL: none (loopback only) */
   const char *const *hosts; /* further host names that requests may use, with or without a port */
   size_t host_count;
   /* CSV files with further columns of foils, by a column `serial` or `time`: candidates for causes.

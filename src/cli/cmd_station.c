@@ -26,7 +26,10 @@ enum {
   OPTION_CONTEXT,
   OPTION_DIGEST,
   OPTION_DIGEST_PAGE,
-  OPTION_ORDERS
+  OPTION_ORDERS,
+  OPTION_NAME,
+  OPTION_HUB,
+  OPTION_HUB_TOKEN_FILE
 };
 
 enum { HOSTS_MAX = 16, TOKEN_BYTES = 256 };
@@ -60,6 +63,11 @@ static const struct argp_option options[] = {
     {"context", OPTION_CONTEXT, "FILE.csv", 0,
      "Columns that say more about foils, by a column `serial` or `time` (repeatable): candidates "
      "for the causes of a trend",
+     1},
+    {"name", OPTION_NAME, "TEXT", 0,
+     "Of the station, for receivers of its parts (default: the machine's)", 1},
+    {"hub", OPTION_HUB, "URL", 0, "Pass all parts on to a hub, as http://hub.example.com:8318", 1},
+    {"hub-token-file", OPTION_HUB_TOKEN_FILE, "FILE", 0, "The hub's token: the first line of FILE",
      1},
     {"poll", OPTION_POLL, "S", 0,
      "Look into the folder every so many seconds (network folders, of whose files nobody tells)",
@@ -107,6 +115,9 @@ static bool keep_text(int key, const char *text, station_arguments *arguments) {
       {OPTION_ORIGIN, &request->origin},
       {OPTION_DIGEST_PAGE, &request->digest_page},
       {OPTION_ORDERS, &request->orders},
+      {OPTION_NAME, &request->name},
+      {OPTION_HUB, &request->hub},
+      {OPTION_HUB_TOKEN_FILE, &request->hub_token_file},
   };
   for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
     if (texts[i].key != key) continue;

@@ -40,6 +40,8 @@ const fg_document *const fg_documents[] = {
     &fg_lot_document,
     &fg_next_die_document,
     &fg_nominal_document,
+    &fg_outbox_document,
+    &fg_part_document,
     &fg_plan_document,
     &fg_recipe_document,
     &fg_render_truth_document,

@@ -8,6 +8,7 @@
 #include "core/text.h"
 #include "page/page.h"
 #include "station/news.h"
+#include "station/outbox/outbox.h"
 #include "station/pages.h"
 #include "station/reach.h"
 #include "station/trend.h"
@@ -21,6 +22,7 @@ typedef struct route {
 } route;
 
 #define HTML "text/html; charset=utf-8"
+#define CSV  "text/csv; charset=utf-8"
 
 static const route pages[] = {
     {"/", fg_page_now, HTML, false, false},
@@ -33,6 +35,12 @@ static const route pages[] = {
     {"/lots", fg_page_lots, HTML, false, false},
     {"/orders", fg_page_orders, HTML, false, false},
     {"/lot", fg_page_lot, HTML, true, false},
+    {"/found/foils.csv", fg_page_found, CSV, false, true},
+    {"/found/bumps.csv", fg_page_found, CSV, false, true},
+    {"/found/results.dfq", fg_page_found, "text/plain; charset=utf-8", false, true},
+    {"/found/results.qif", fg_page_found, "application/xml", false, true},
+    {"/outbox", fg_page_outbox, HTML, false, false},
+    {"/api/outbox", fg_page_outbox_api, "application/json", false, false},
 };
 
 static const struct {

@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "station/keep.h"
 #include "station/news.h"
 #include "station/pages.h"
 
@@ -146,10 +147,13 @@ static fg_status change(fg_context *ctx, sqlite3 *writer, fg_identity_change *as
   if (!asked->by[0])
     snprintf(asked->by, sizeof asked->by, "%s",
              asked->asked[OPERATOR] ? asked->after[OPERATOR] : asked->before[OPERATOR]);
-  for (size_t i = 0; i < FG_IDENTITY_FIELDS; i++)
-    if (asked->asked[i] && strcmp(asked->before[i], asked->after[i]) != 0)
-      FG_TRY(set_field(ctx, writer, asked, i));
-  return FG_OK;
+  bool changed = false;
+  for (size_t i = 0; i < FG_IDENTITY_FIELDS; i++) {
+    if (!asked->asked[i] || !strcmp(asked->before[i], asked->after[i])) continue;
+    FG_TRY(set_field(ctx, writer, asked, i));
+    changed = true;
+  }
+  return changed ? fg_event_keep(ctx, writer, asked->foil, FG_EVENT_CORRECTED) : FG_OK;
 }
 
 fg_status fg_action_correct(fg_context *ctx, fg_inspection *station, const fg_request *request,

@@ -118,6 +118,22 @@ static const char *const migrations[] = {
     /* Foils that did not pass are few: this index finds the open ones. */
     "CREATE INDEX foils_not_passed ON foils (id) WHERE verdict IN ('fail', 'cannot_tell',"
     " 'not_measured');",
+    /* Everything that befell a foil, in order, with its names of then; receivers get one after the
+     * other. `passed`: the last event that arrived; `prepared`: one that lies in a folder under a
+     * hidden name. The identity, with the event's number, is a part's key for receivers. */
+    "CREATE TABLE identity (id TEXT NOT NULL);"
+    "INSERT INTO identity VALUES (lower(hex(randomblob(16))));"
+    "CREATE TABLE events (id INTEGER PRIMARY KEY AUTOINCREMENT, at INTEGER NOT NULL,"
+    " kind TEXT NOT NULL, foil INTEGER NOT NULL REFERENCES foils, serial TEXT NOT NULL,"
+    " lot TEXT NOT NULL, die TEXT NOT NULL, operator TEXT NOT NULL,"
+    " disposition INTEGER NOT NULL DEFAULT 0);"
+    "INSERT INTO events (at, kind, foil, serial, lot, die, operator, disposition)"
+    " SELECT scans.at, 'measured', foils.id, serial, lot, die, operator,"
+    " coalesce((SELECT max(id) FROM dispositions WHERE foil = foils.id), 0)"
+    " FROM foils JOIN scans ON scans.id = scan ORDER BY foils.id;"
+    "CREATE TABLE destinations (name TEXT PRIMARY KEY, passed INTEGER NOT NULL,"
+    " prepared INTEGER NOT NULL DEFAULT 0, passed_at INTEGER NOT NULL DEFAULT 0,"
+    " count INTEGER NOT NULL DEFAULT 0) WITHOUT ROWID;",
 };
 
 enum { VERSION = sizeof migrations / sizeof *migrations, BUSY_MS = 5000, IN_FILE_EVERY_S = 5 };

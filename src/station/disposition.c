@@ -6,6 +6,7 @@
 
 #include "core/text.h"
 #include "page/page.h"
+#include "station/keep.h"
 #include "station/news.h"
 
 static const struct {
@@ -138,7 +139,7 @@ static fg_status insert_disposition(fg_context *ctx, sqlite3 *writer, const fg_r
   fg_query_integer(&query, foil);
   fg_query_row(&query);
   FG_TRY(fg_query_end(ctx, &query, "keeping a disposition"));
-  if (sqlite3_changes(writer) == 1) return FG_OK;
+  if (sqlite3_changes(writer) == 1) return fg_event_keep(ctx, writer, foil, FG_EVENT_DISPOSED);
   return fg_fail(ctx, FG_ERR_USAGE, "There is no such foil that did not pass.");
 }
 

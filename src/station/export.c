@@ -64,25 +64,25 @@ static fg_status read_database(fg_context *ctx, export *at, const char *lot, cha
 }
 
 /* A recipe may name columns that only somebody's manifest has. */
-static void keep_column(const export *at, char *column, const char *usual) {
-  if (fg_manifest_column(&at->manifest, column) == FG_NO_COLUMN) strcpy(column, usual);
+static void keep_column(const fg_manifest *manifest, char *column, const char *usual) {
+  if (fg_manifest_column(manifest, column) == FG_NO_COLUMN) strcpy(column, usual);
 }
 
-static void keep_columns(export *at) {
+void fg_station_keep_columns(const fg_manifest *manifest, fg_lot_settings *settings) {
   fg_lot_settings usual;
   fg_lot_settings_default(&usual);
-  keep_column(at, at->settings.group_column, usual.group_column);
-  keep_column(at, at->settings.part_column, usual.part_column);
-  keep_column(at, at->settings.operator_column, usual.operator_column);
-  keep_column(at, at->settings.bearing_column, usual.bearing_column);
-  keep_column(at, at->settings.pad_column, usual.pad_column);
+  keep_column(manifest, settings->group_column, usual.group_column);
+  keep_column(manifest, settings->part_column, usual.part_column);
+  keep_column(manifest, settings->operator_column, usual.operator_column);
+  keep_column(manifest, settings->bearing_column, usual.bearing_column);
+  keep_column(manifest, settings->pad_column, usual.pad_column);
 }
 
 static fg_status use_setup(fg_context *ctx, export *at, const char *lot, const char *recipe) {
   fg_lot_settings_default(&at->settings);
   FG_TRY(fg_lot_settings_parse(ctx, "the setup in the database", recipe, &at->settings));
   if (*lot) fg_text_clip(at->settings.name, sizeof at->settings.name, "%s", lot);
-  keep_columns(at);
+  fg_station_keep_columns(&at->manifest, &at->settings);
   if (!at->model_text) return FG_OK;
   strcpy(at->settings.model, FG_LOT_MODEL_FILE);
   return fg_scanner_model_parse(ctx, FG_LOT_MODEL_FILE, at->model_text, &at->model);

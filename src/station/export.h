@@ -4,6 +4,7 @@
 #ifndef FG_STATION_EXPORT_H
 #define FG_STATION_EXPORT_H
 
+#include "lot/input/manifest.h"
 #include "station/state.h"
 
 /* Result of exporting a lot. */
@@ -24,5 +25,8 @@ fg_status fg_station_export(fg_context *ctx, fg_inspection *station, const char 
  * scan. Earlier results in it are replaced. Any thread. FG_ERR_USAGE: no such lot. */
 fg_status fg_station_export_lot(fg_context *ctx, fg_inspection *station, const char *lot,
                                 const char *folder, fg_exported_lot *exported);
+
+/* Replaces columns that the recipe names and the manifest lacks by the usual ones. */
+void fg_station_keep_columns(const fg_manifest *manifest, fg_lot_settings *settings);
 
 #endif

@@ -199,3 +199,18 @@ fg_status fg_station_keep_card(fg_context *ctx, fg_station_database *database,
   return fg_station_database_end(ctx, database,
                                  fg_station_insert_card(ctx, database, file, card, message, scan));
 }
+
+fg_status fg_event_keep(fg_context *ctx, sqlite3 *writer, int64_t foil, const char *kind) {
+  fg_query query;
+  fg_query_begin(writer,
+                 "INSERT INTO events (at, kind, foil, serial, lot, die, operator, disposition)"
+                 " SELECT ?, ?, id, serial, lot, die, operator,"
+                 " coalesce((SELECT max(id) FROM dispositions WHERE foil = foils.id), 0)"
+                 " FROM foils WHERE id = ?",
+                 &query);
+  fg_query_integer(&query, fg_station_now());
+  fg_query_text(&query, kind);
+  fg_query_integer(&query, foil);
+  fg_query_row(&query);
+  return fg_query_end(ctx, &query, "keeping an event");
+}

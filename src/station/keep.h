@@ -76,6 +76,14 @@ fg_status fg_station_keep_scan(fg_context *ctx, fg_station_database *database,
                                const fg_station_scan *kept, int64_t *scan,
                                fg_report_outcome *outcome);
 
+#define FG_EVENT_MEASURED  "measured"
+#define FG_EVENT_CORRECTED "corrected"
+#define FG_EVENT_DISPOSED  "disposed"
+
+/* Keeps that something befell a foil, with its names of now, inside the transaction of that:
+ * receivers get one event after the other (station/outbox/outbox.h). */
+fg_status fg_event_keep(fg_context *ctx, sqlite3 *writer, int64_t foil, const char *kind);
+
 /* The row of a card, inside a transaction of its caller. */
 fg_status fg_station_insert_card(fg_context *ctx, fg_station_database *database,
                                  const fg_station_file *file, fg_card card, const char *message,

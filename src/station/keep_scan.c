@@ -181,7 +181,7 @@ static fg_status keep_foil(fg_context *ctx, sqlite3 *writer, const fg_station_sc
   for (size_t i = 0; measured && i < foil->bump_count && status == FG_OK; i++)
     status = keep_bump(ctx, writer, design, foil, &foil->bumps[i], id);
   fg_decision_free(&decision);
-  return status;
+  return status == FG_OK ? fg_event_keep(ctx, writer, id, FG_EVENT_MEASURED) : status;
 }
 
 static fg_status format_record(fg_context *ctx, const fg_station_scan *kept, char **line) {

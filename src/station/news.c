@@ -8,6 +8,7 @@
 void fg_station_notify(fg_inspection *station) {
   atomic_fetch_add(&station->news, 1);
   if (station->wake) station->wake(station->server);
+  if (station->pass_on) station->pass_on(station);
 }
 
 long long fg_station_news(fg_inspection *station) {

@@ -5,8 +5,10 @@
 #include <string.h>
 #include <time.h>
 
+#include "core/memory.h"
 #include "page/page.h"
 #include "station/disposition.h"
+#include "station/outbox/part.h"
 #include "station/pages.h"
 #include "station/values.h"
 
@@ -215,15 +217,19 @@ static void write_encoded(FILE *out, const char *name, const char *value) {
   fputs("&amp;", out);
 }
 
-static void write_link(const search *at, long page, const char *relation, const char *words,
-                       FILE *out) {
-  fprintf(out, "<a class=\"button\" rel=\"%s\" href=\"/history?", relation);
+static void write_search_fields(const search *at, FILE *out) {
   write_encoded(out, "serial", at->serial);
   write_encoded(out, "lot", at->lot);
   write_encoded(out, "die", at->die);
   write_encoded(out, "from", at->from_ms >= 0 ? at->from : "");
   write_encoded(out, "to", at->to_ms >= 0 ? at->to : "");
   write_encoded(out, "verdict", at->verdict);
+}
+
+static void write_link(const search *at, long page, const char *relation, const char *words,
+                       FILE *out) {
+  fprintf(out, "<a class=\"button\" rel=\"%s\" href=\"/history?", relation);
+  write_search_fields(at, out);
   fprintf(out, "page=%ld\">%s</a>", page, words);
 }
 
@@ -235,6 +241,98 @@ static void write_paging(const search *at, int64_t found, FILE *out) {
     fprintf(out, "<span>page %ld of %ld</span>", at->page < pages ? at->page : pages, pages);
   if (at->page < pages) write_link(at, at->page + 1, "next", "Older →", out);
   fputs("</p>\n", out);
+}
+
+/* Files of all foils of a search. */
+static const struct {
+  const char *path, *words;
+  fg_part_format format;
+} files[] = {
+    {"/found/foils.csv", "CSV of foils", FG_PART_CSV},
+    {"/found/bumps.csv", "CSV of bumps", FG_PART_BUMPS_CSV},
+    {"/found/results.dfq", "DFQ", FG_PART_DFQ},
+    {"/found/results.qif", "QIF", FG_PART_QIF},
+};
+enum { FILES = sizeof files / sizeof *files, FOUND_MAX = 2000 };
+
+static void write_file_links(const search *at, FILE *out) {
+  fputs("<p class=\"paging noprint\">", out);
+  for (size_t i = 0; i < FILES; i++) {
+    fprintf(out, "<a class=\"button plain\" download href=\"%s?", files[i].path);
+    write_search_fields(at, out);
+    fprintf(out, "page=1\">%s</a>", files[i].words);
+  }
+  fputs("</p>\n", out);
+}
+
+static fg_status load_found(fg_context *ctx, const fg_inspection *station, sqlite3 *reader,
+                            const search *at, fg_part **parts, size_t *count) {
+  fg_query query;
+  char sql[WHERE_BYTES + 200], name[FG_PART_NAME];
+  fg_status status = FG_OK;
+  fg_part_station_name(station->request, name);
+  snprintf(sql, sizeof sql,
+           "SELECT foils.id FROM foils JOIN scans ON scans.id = scan%s ORDER BY foils.id LIMIT ?",
+           at->where);
+  fg_query_begin(reader, sql, &query);
+  bind(at, &query);
+  fg_query_integer(&query, FOUND_MAX);
+  while (status == FG_OK && fg_query_row(&query)) {
+    status = fg_part_load_foil(ctx, reader, name, fg_query_get_integer(&query, 0), &parts[*count]);
+    *count += status == FG_OK;
+  }
+  fg_status ended = fg_query_end(status == FG_OK ? ctx : NULL, &query, "searching foils");
+  return status == FG_OK ? ended : status;
+}
+
+static fg_status write_found_file(fg_context *ctx, const fg_inspection *station, sqlite3 *reader,
+                                  const search *at, fg_part_format format, FILE *out) {
+  void *block;
+  size_t count = 0, size;
+  char *body;
+  FG_TRY(fg_memory_allocate(ctx, FOUND_MAX, sizeof(fg_part *), &block));
+  fg_part **parts = block;
+  fg_status status = load_found(ctx, station, reader, at, parts, &count);
+  if (status == FG_OK)
+    status =
+        fg_parts_format(ctx, parts, count, format, station->request->decimal_comma, &body, &size);
+  if (status == FG_OK) {
+    fwrite(body, 1, size, out);
+    free(body);
+  }
+  while (count)
+    fg_part_free(parts[--count]);
+  free(parts);
+  return status;
+}
+
+static fg_status write_found(fg_context *ctx, const fg_inspection *station, sqlite3 *reader,
+                             const fg_request *request, FILE *out) {
+  search at;
+  int64_t found;
+  size_t i = 0;
+  while (i + 1 < FILES && strcmp(request->path, files[i].path) != 0)
+    i++;
+  read_search(request, &at);
+  FG_TRY(count_found(ctx, reader, &at, &found));
+  if (!found) return fg_fail(ctx, FG_ERR_DATA, "No foil is found: there is nothing to write.");
+  if (found > FOUND_MAX)
+    return fg_fail(ctx, FG_ERR_DATA,
+                   "%lld foils are found, and a file takes at most %d: search for fewer, or close "
+                   "their lots.",
+                   (long long)found, FOUND_MAX);
+  return write_found_file(ctx, station, reader, &at, files[i].format, out);
+}
+
+/* Reads by a connection of its own: many foils take seconds. */
+fg_status fg_page_found(fg_context *ctx, fg_inspection *station, sqlite3 *reader,
+                        const fg_request *request, FILE *out) {
+  sqlite3 *own;
+  (void)reader;
+  FG_TRY(fg_station_database_open_reader(ctx, station->database.path, &own));
+  fg_status status = write_found(ctx, station, own, request, out);
+  sqlite3_close_v2(own);
+  return status;
 }
 
 fg_status fg_page_history(fg_context *ctx, fg_inspection *station, sqlite3 *reader,
@@ -252,6 +350,7 @@ fg_status fg_page_history(fg_context *ctx, fg_inspection *station, sqlite3 *read
           at.where[0] ? " found" : "");
   if (found) FG_TRY(write_rows(ctx, reader, &at, out));
   write_paging(&at, found, out);
+  if (found) write_file_links(&at, out);
   fputs("</section>\n", out);
   fg_page_end(out);
   return FG_OK;

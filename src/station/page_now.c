@@ -10,6 +10,7 @@
 #include "station/disposition.h"
 #include "station/news.h"
 #include "station/orders.h"
+#include "station/outbox/outbox.h"
 #include "station/pages.h"
 #include "station/scan_command.h"
 #include "station/values.h"
@@ -298,6 +299,7 @@ fg_status fg_page_now(fg_context *ctx, fg_inspection *station, sqlite3 *reader,
   if (!newest.id && !arriving) write_ready(station, out);
   FG_TRY(fg_order_write_progress(ctx, reader, out));
   FG_TRY(fg_disposition_write_open(ctx, reader, out));
+  FG_TRY(fg_outbox_write_line(ctx, station, reader, out));
   fputs("<div data-typing></div>\n", out);
   write_scan_button(station, out);
   if (newest.id && arriving) write_before(out, &newest);

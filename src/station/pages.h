@@ -19,6 +19,7 @@ fg_page_writer fg_page_now, fg_page_history, fg_page_trends, fg_page_scanner, fg
 fg_page_writer fg_page_why;    /* causes of a trend: a search, its answer */
 fg_page_writer fg_page_foil;   /* one foil: its values, its trail, its form */
 fg_page_writer fg_page_report; /* its whole report, measured again from the scan */
+fg_page_writer fg_page_found;  /* all foils of a search as CSV, DFQ or QIF */
 fg_page_writer fg_page_lot;    /* the report of a closed lot, from its folder */
 
 /* Writes a page from its doctype to <main>, with the tabs and, where it is due, the scanner's
@@ -46,10 +47,10 @@ fg_card_style fg_page_card_style(const char *kind, const char *verdict, bool wit
 
 /* Returns the styles of the reports and the station's own. */
 const char *fg_station_style_text(void);
-extern const char fg_station_style[];  /* station.css */
+extern const char fg_station_style[];      /* station.css */
 extern const char fg_station_dark_style[]; /* dark.css */
-extern const char fg_station_script[]; /* station.js */
-extern const char fg_station_icon[];   /* SVG */
+extern const char fg_station_script[];     /* station.js */
+extern const char fg_station_icon[];       /* SVG */
 
 /* An action of an html form: the answer redirects the browser, or carries a file. */
 typedef fg_status fg_action(fg_context *ctx, fg_inspection *station, const fg_request *request,

@@ -8,6 +8,7 @@
 #include "foilgauge/foil_kind.h"
 #include "foilgauge/station.h"
 #include "station/naming.h"
+#include "station/outbox/transport.h"
 #include "station/settings.h"
 
 enum { RECIPE_BYTES_MAX = 1 << 20 };
@@ -35,6 +36,22 @@ static const fg_member check_rows[] = {
 };
 static const fg_members check_members = FG_MEMBERS(check_rows);
 
+static const char *const format_words[] = {"json", "csv", "bumps_csv", "dfq", "qif", NULL};
+
+static const fg_member destination_rows[] = {
+    {FG_TEXT("to", fg_station_destination, to), .options = FG_MEMBER_REQUIRED | FG_MEMBER_ANY_TEXT,
+     .words = "A folder, in which a file appears for each part; an address (`http://`, `https://`) "
+              "that it is posted to; a topic (`mqtt://HOST:PORT/TOPIC`, `mqtt://USER@HOST/TOPIC`) "
+              "of a broker."},
+    {FG_WORD("format", fg_station_destination, format, format_words),
+     .words = "json: all of the part; csv: a line of the foil; bumps_csv: a line per bump or beam; "
+              "dfq (Q-DAS), qif (QIF 3.0)."},
+    {FG_TEXT("token_file", fg_station_destination, token_file), .options = FG_MEMBER_ANY_TEXT,
+     .words = "A file whose first line is sent as `Authorization: Bearer`, or as the broker's "
+              "password."},
+};
+static const fg_members destination_members = FG_MEMBERS(destination_rows);
+
 static const fg_member settings_rows[] = {
     {FG_TEXT("file_name", fg_station_settings, file_name),
      .words = "What a file's name says, without its ending: text, `*` for anything, `{serial}`, "
@@ -56,6 +73,10 @@ static const fg_member settings_rows[] = {
     {FG_TEXT("reasons", fg_station_settings, reasons), .options = FG_MEMBER_ANY_TEXT,
      .words = "Reason codes for the disposition of foils that did not pass, between commas: "
               "\"S1 scratch, B2 burr, C3 crushed\"."},
+    {FG_ARRAY("pass_on", fg_station_settings, pass_on, pass_on_count, &destination_members),
+     .highest = FG_STATION_DESTINATIONS,
+     .words = "Receivers of every part as it is measured, corrected or disposed, up to 8: objects "
+              "with the members that follow (PASSING ON in foilgauge-station(1))."},
     {FG_GROUP("check", &check_members), .read = read_check,
      .words = "An object with the members that follow: when the scanner has to prove itself by "
               "known diameters. With a `scan_command` the Scanner tab has a button for it."},
@@ -77,18 +98,34 @@ static fg_status read_station(fg_context *ctx, const cJSON *object, fg_station_s
   FG_TRY(fg_object_read(&reading, &settings_members, object, settings));
   if (settings->scan_command[0] && !strstr(settings->scan_command, "{file}"))
     return fg_fail(ctx, FG_ERR_DATA, "scan_command: {file}, the scan to write, is not in it");
+  for (size_t i = 0; i < settings->pass_on_count; i++)
+    FG_TRY(fg_transport_check(ctx, settings->pass_on[i].to));
   return fg_naming_check(ctx, settings->file_name);
 }
 
-/* Relative to the recipe, as all of its paths. */
-static fg_status place_check(fg_context *ctx, const char *recipe, fg_station_check *check) {
-  char whole[sizeof check->design];
+enum { PATH_BYTES = 1024 };
+
+/* Makes a path relative to the recipe one of the working folder. */
+static fg_status place_path(fg_context *ctx, const char *recipe, const char *member,
+                            char path[PATH_BYTES]) {
+  char whole[PATH_BYTES];
   const char *slash = strrchr(recipe, '/');
-  if (!check->design[0] || check->design[0] == '/' || !slash) return FG_OK;
-  if (snprintf(whole, sizeof whole, "%.*s%s", (int)(slash - recipe + 1), recipe, check->design) >=
+  if (!path[0] || path[0] == '/' || !slash) return FG_OK;
+  if (snprintf(whole, sizeof whole, "%.*s%s", (int)(slash - recipe + 1), recipe, path) >=
       (int)sizeof whole)
-    return fg_fail(ctx, FG_ERR_DATA, "%.200s: check: the design's path is too long", recipe);
-  strcpy(check->design, whole);
+    return fg_fail(ctx, FG_ERR_DATA, "%.200s: %s: the path is too long", recipe, member);
+  strcpy(path, whole);
+  return FG_OK;
+}
+
+static fg_status place_paths(fg_context *ctx, const char *recipe, fg_station_settings *settings) {
+  FG_TRY(place_path(ctx, recipe, "check", settings->check.design));
+  for (size_t i = 0; i < settings->pass_on_count; i++) {
+    fg_station_destination *destination = &settings->pass_on[i];
+    if (!strstr(destination->to, "://"))
+      FG_TRY(place_path(ctx, recipe, "pass_on", destination->to));
+    FG_TRY(place_path(ctx, recipe, "pass_on", destination->token_file));
+  }
   return FG_OK;
 }
 
@@ -105,7 +142,7 @@ static fg_status load_station(fg_context *ctx, const char *recipe, fg_station_se
   cJSON_Delete(root);
   if (status != FG_OK)
     return fg_fail(ctx, status, "%.200s: station: %.700s", recipe, inner.message);
-  return place_check(ctx, recipe, &settings->check);
+  return place_paths(ctx, recipe, settings);
 }
 
 static void set_usual(fg_station_settings *settings) {

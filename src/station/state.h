@@ -27,6 +27,8 @@ typedef struct fg_recovery {
   char crowd[200];  /* warning of a folder with very many files; "": there is none */
 } fg_recovery;
 
+typedef struct fg_outbox fg_outbox;
+
 /* Stage of the newest file before it has a card. */
 typedef enum fg_stage {
   FG_STAGE_NONE,
@@ -49,7 +51,8 @@ typedef enum fg_reach {
   FG_REACH_ANY      /* others, at every address */
 } fg_reach;
 
-typedef struct fg_inspection {
+typedef struct fg_inspection fg_inspection;
+struct fg_inspection {
   const fg_station_request *request;
   const fg_station_settings *settings;
   fg_station_outcome *outcome;
@@ -66,12 +69,14 @@ typedef struct fg_inspection {
   char scan_warning[1000];            /* options of it that spoil scans; "": none is known */
   struct fg_station_scanner *scanner; /* of the last scan by command; NULL: none yet */
   fg_closing closing;
-  struct fg_why *why; /* search for causes (station/why.h); NULL: none was asked for */
+  struct fg_outbox *outbox; /* station/outbox/outbox.h; NULL: nothing is passed on */
+  struct fg_why *why;       /* search for causes (station/why.h); NULL: none was asked for */
   fg_recovery recovery;
   fg_arriving arriving;
   atomic_llong news;          /* station/news.h */
   void (*wake)(void *server); /* called on news; NULL: no page waits */
   void *server;
-} fg_inspection;
+  void (*pass_on)(struct fg_inspection *station); /* called on news; NULL: there is no receiver */
+};
 
 #endif

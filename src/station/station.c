@@ -12,6 +12,7 @@
 #include "station/digest.h"
 #include "station/export.h"
 #include "station/keep.h"
+#include "station/outbox/outbox.h"
 #include "station/scan_options.h"
 #include "station/server.h"
 #include "station/watch.h"
@@ -68,10 +69,14 @@ static fg_status run_tasks(fg_context *ctx, fg_inspection *station) {
   FG_TRY(fg_station_database_open(ctx, request->folder, &station->database));
   if (request->export_path) return fg_station_export(ctx, station, request->export_path);
   FG_TRY(fg_station_keep_setup(ctx, &station->database, &station->settings->lot, &station->setup));
-  if (request->once) return fg_station_watch(ctx, station, true);
+  if (request->once) {
+    FG_TRY(fg_station_watch(ctx, station, true));
+    return fg_outbox_flush(ctx, station);
+  }
   FG_TRY(make_csrf_token(ctx, station));
   FG_TRY(fg_why_begin(ctx, station));
   inspect_scan_command(station);
+  FG_TRY(fg_outbox_begin(ctx, station));
   FG_TRY(fg_station_server_start(ctx, station));
   fg_status status = fg_station_watch(ctx, station, false);
   fg_station_server_stop(station);
@@ -108,6 +113,7 @@ fg_status fg_station_run(fg_context *ctx, const fg_station_request *request,
   fg_status status = run_tasks(ctx, station);
   fg_closing_end(&station->closing);
   fg_why_end(station);
+  fg_outbox_end(station);
   fg_station_database_close(&station->database);
   if (station->model) fg_scanner_model_free(station->model);
   if (station->lock >= 0) close(station->lock);

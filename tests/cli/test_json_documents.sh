@@ -53,6 +53,20 @@ expect 0 "" "$kept" forming --temperature 650 --time 5 -o form.json --material-o
 expect 0 "" "$kept" stiffness "$samples/stiffness/bearings.csv" -o stiffness.json
 printf '%s\n' temperature_C,duration_h,springback_error_pct 500,3,20 600,3,15 500,5,18 600,5,11 550,4,16 650,4,9 >runs.csv
 expect 0 "" "$kept" forming --fit runs.csv -o fit.json
+mkdir parts
+echo '{"schema": "foilgauge/recipe/1", "station": {"pass_on": [{"to": "parts"}]}, "design": {"schema": "foilgauge/design/1", "bump_count": 2}}' >recipe.json
+checks - "$kept" <<'P' || fail "the station passes nothing on"
+import os, subprocess, sys, urllib.request
+station = subprocess.Popen([sys.argv[1], "station", "scans", "--recipe", "recipe.json", "--port", "0"],
+                           stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+try:
+    base = station.stdout.readline().strip()
+    wait_until(lambda: len([name for name in os.listdir("parts") if name.endswith(".json") and name[0] != "."]) == 2)
+    urllib.request.urlopen(base + "api/outbox").read()
+finally:
+    station.terminate()
+    station.wait()
+P
 validate 0 ""
 grep -q '^| measure.schema.json | 2 |' stdout || fail "the reports of scans are not counted: $(cat stdout)"
 
