@@ -88,10 +88,10 @@ static bool decode_strip(fg_tiff *r, fg_tiff_worker *w, uint64_t part) {
   uint64_t first = part * r->rows_per_strip, left = r->height - (r->row + first);
   size_t size = (size_t)(left < r->rows_per_strip ? left : r->rows_per_strip) * r->row_bytes;
   uint32_t strip = (uint32_t)((r->row + first) / r->rows_per_strip);
-  return came_through(
-      w,
-      TIFFReadEncodedStrip(w->handle->tiff, strip, r->batch + first * r->row_bytes, (tmsize_t)size),
-      size);
+  return came_through(w,
+                      fg_libtiff.ReadEncodedStrip(w->handle->tiff, strip,
+                                                  r->batch + first * r->row_bytes, (tmsize_t)size),
+                      size);
 }
 
 /* Puts a tile's rows beside those of the tiles around it. */
@@ -99,7 +99,7 @@ static bool decode_tile(fg_tiff *r, fg_tiff_worker *w, uint64_t part) {
   uint64_t x = part * r->tile_width;
   size_t pixel_bits = (size_t)(r->bits * r->channels), bytes = r->tile_width * pixel_bits / 8;
   size_t tile_row = bytes, from = (size_t)x * pixel_bits / 8;
-  tmsize_t got = TIFFReadTile(w->handle->tiff, w->tile, (uint32_t)x, (uint32_t)r->row, 0, 0);
+  tmsize_t got = fg_libtiff.ReadTile(w->handle->tiff, w->tile, (uint32_t)x, (uint32_t)r->row, 0, 0);
   if (!came_through(w, got, r->tile_bytes)) return false;
   if (from + bytes > r->row_bytes) bytes = r->row_bytes - from;
   for (size_t y = 0; y < r->tile_height; y++)

@@ -58,6 +58,7 @@ static fg_status refuse_tag(fg_context *ctx, const fg_tiff *r, const char *what,
 
 static fg_status open_tiff(fg_context *ctx, fg_tiff *r) {
   r->main.source = r->source;
+  FG_TRY(fg_tiff_library_load(ctx));
   if (fg_tiff_handle_open(&r->main)) return FG_OK;
   if (!r->main.words[0]) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: libtiff's reader");
   return fg_tiff_fail(ctx, r, r->main.words);
@@ -65,14 +66,14 @@ static fg_status open_tiff(fg_context *ctx, fg_tiff *r) {
 
 static fg_status check_compression(fg_context *ctx, fg_tiff *r, const fg_scan_options *options,
                                    double *ratio) {
-  TIFFGetFieldDefaulted(r->main.tiff, TIFFTAG_COMPRESSION, &r->compression);
+  fg_libtiff.GetFieldDefaulted(r->main.tiff, TIFFTAG_COMPRESSION, &r->compression);
   for (size_t i = 0; i < sizeof compressions / sizeof compressions[0]; i++) {
     if (compressions[i].code != r->compression) continue;
     if (compressions[i].lossy && !options->allow_lossy)
       return fg_format_refuse_lossy(ctx, r->source->name, compressions[i].name);
     *ratio = compressions[i].ratio;
     r->main.strict = compressions[i].strict;
-    if (TIFFIsCODECConfigured(r->compression)) return FG_OK;
+    if (fg_libtiff.IsCODECConfigured(r->compression)) return FG_OK;
   }
   return refuse_tag(ctx, r, "an unknown compression", r->compression);
 }
@@ -85,11 +86,12 @@ static fg_status find_quality(fg_context *ctx, const fg_tiff *r, fg_scan_header 
   uint32_t length = 0;
   const uint8_t *tables = NULL;
   if (r->compression != COMPRESSION_JPEG) return FG_OK;
-  bool found = TIFFGetField(r->main.tiff, TIFFTAG_JPEGTABLES, &length, &tables) && tables &&
+  bool found = fg_libtiff.GetField(r->main.tiff, TIFFTAG_JPEGTABLES, &length, &tables) && tables &&
                fg_jpeg_find_table(tables, length, zigzag);
   if (!found) {
-    tmsize_t got = TIFFIsTiled(r->main.tiff) ? TIFFReadRawTile(r->main.tiff, 0, head, sizeof head)
-                                             : TIFFReadRawStrip(r->main.tiff, 0, head, sizeof head);
+    tmsize_t got = fg_libtiff.IsTiled(r->main.tiff)
+                       ? fg_libtiff.ReadRawTile(r->main.tiff, 0, head, sizeof head)
+                       : fg_libtiff.ReadRawStrip(r->main.tiff, 0, head, sizeof head);
     found = got > 0 && fg_jpeg_find_table(head, (size_t)got, zigzag);
   }
   if (!found) return fg_tiff_fail(ctx, r, "its JPEG has no quantization table");
@@ -100,12 +102,12 @@ static fg_status find_quality(fg_context *ctx, const fg_tiff *r, fg_scan_header 
 static fg_status check_samples(fg_context *ctx, fg_tiff *r) {
   uint16_t bits = 1, channels = 1, format = SAMPLEFORMAT_UINT, planar = PLANARCONFIG_CONTIG;
   uint32_t width = 0, height = 0;
-  TIFFGetField(r->main.tiff, TIFFTAG_IMAGEWIDTH, &width);
-  TIFFGetField(r->main.tiff, TIFFTAG_IMAGELENGTH, &height);
-  TIFFGetFieldDefaulted(r->main.tiff, TIFFTAG_BITSPERSAMPLE, &bits);
-  TIFFGetFieldDefaulted(r->main.tiff, TIFFTAG_SAMPLESPERPIXEL, &channels);
-  TIFFGetFieldDefaulted(r->main.tiff, TIFFTAG_SAMPLEFORMAT, &format);
-  TIFFGetFieldDefaulted(r->main.tiff, TIFFTAG_PLANARCONFIG, &planar);
+  fg_libtiff.GetField(r->main.tiff, TIFFTAG_IMAGEWIDTH, &width);
+  fg_libtiff.GetField(r->main.tiff, TIFFTAG_IMAGELENGTH, &height);
+  fg_libtiff.GetFieldDefaulted(r->main.tiff, TIFFTAG_BITSPERSAMPLE, &bits);
+  fg_libtiff.GetFieldDefaulted(r->main.tiff, TIFFTAG_SAMPLESPERPIXEL, &channels);
+  fg_libtiff.GetFieldDefaulted(r->main.tiff, TIFFTAG_SAMPLEFORMAT, &format);
+  fg_libtiff.GetFieldDefaulted(r->main.tiff, TIFFTAG_PLANARCONFIG, &planar);
   if (width == 0 || height == 0) return fg_tiff_fail(ctx, r, "its width or height is zero");
   if (bits != 1 && bits != 2 && bits != 4 && bits != 8 && bits != 16)
     return refuse_tag(ctx, r, "samples of odd size", bits);
@@ -124,7 +126,7 @@ static fg_status check_samples(fg_context *ctx, fg_tiff *r) {
 static fg_status copy_palette(fg_context *ctx, fg_tiff *r, fg_scan_header *header) {
   uint16_t *red, *green, *blue;
   if (r->bits > 8 || r->channels > 1 ||
-      !TIFFGetField(r->main.tiff, TIFFTAG_COLORMAP, &red, &green, &blue))
+      !fg_libtiff.GetField(r->main.tiff, TIFFTAG_COLORMAP, &red, &green, &blue))
     return fg_tiff_fail(ctx, r, "its palette is missing");
   header->has_palette = true;
   header->palette_size = (size_t)1 << r->bits;
@@ -136,7 +138,7 @@ static fg_status copy_palette(fg_context *ctx, fg_tiff *r, fg_scan_header *heade
 
 static fg_status check_colours(fg_context *ctx, fg_tiff *r, fg_scan_header *header) {
   uint16_t photometric = PHOTOMETRIC_MINISBLACK;
-  if (!TIFFGetField(r->main.tiff, TIFFTAG_PHOTOMETRIC, &photometric))
+  if (!fg_libtiff.GetField(r->main.tiff, TIFFTAG_PHOTOMETRIC, &photometric))
     photometric = r->channels >= 3 ? PHOTOMETRIC_RGB : PHOTOMETRIC_MINISBLACK;
   switch (photometric) {
   case PHOTOMETRIC_MINISWHITE:
@@ -148,7 +150,7 @@ static fg_status check_colours(fg_context *ctx, fg_tiff *r, fg_scan_header *head
     return copy_palette(ctx, r, header);
   case PHOTOMETRIC_YCBCR:
     if (r->compression != COMPRESSION_JPEG) break;
-    TIFFSetField(r->main.tiff, TIFFTAG_JPEGCOLORMODE, JPEGCOLORMODE_RGB);
+    fg_libtiff.SetField(r->main.tiff, TIFFTAG_JPEGCOLORMODE, JPEGCOLORMODE_RGB);
     header->colour = true;
     return FG_OK;
   case PHOTOMETRIC_RGB:
@@ -170,10 +172,10 @@ static void fill_resolution(const fg_tiff *r, fg_scan_header *header) {
   uint16_t unit = RESUNIT_INCH;
   header->dpi[0] = header->dpi[1] = NAN;
   header->no_dpi = "no XResolution and YResolution";
-  if (!TIFFGetField(r->main.tiff, TIFFTAG_XRESOLUTION, &x) ||
-      !TIFFGetField(r->main.tiff, TIFFTAG_YRESOLUTION, &y))
+  if (!fg_libtiff.GetField(r->main.tiff, TIFFTAG_XRESOLUTION, &x) ||
+      !fg_libtiff.GetField(r->main.tiff, TIFFTAG_YRESOLUTION, &y))
     return;
-  TIFFGetFieldDefaulted(r->main.tiff, TIFFTAG_RESOLUTIONUNIT, &unit);
+  fg_libtiff.GetFieldDefaulted(r->main.tiff, TIFFTAG_RESOLUTIONUNIT, &unit);
   header->no_dpi = "its ResolutionUnit is none";
   if (unit != RESUNIT_INCH && unit != RESUNIT_CENTIMETER) return;
   header->no_dpi = NULL;
@@ -185,12 +187,12 @@ static void fill_resolution(const fg_tiff *r, fg_scan_header *header) {
 
 static void note_oddities(const fg_tiff *r, fg_scan_header *header) {
   uint16_t orientation = ORIENTATION_TOPLEFT;
-  TIFFGetFieldDefaulted(r->main.tiff, TIFFTAG_ORIENTATION, &orientation);
+  fg_libtiff.GetFieldDefaulted(r->main.tiff, TIFFTAG_ORIENTATION, &orientation);
   if (orientation != ORIENTATION_TOPLEFT)
     snprintf(header->warning, sizeof header->warning,
              "its orientation tag (%u) is left alone: positions are those of the rows as stored",
              orientation);
-  else if (!TIFFLastDirectory(r->main.tiff))
+  else if (!fg_libtiff.LastDirectory(r->main.tiff))
     snprintf(header->warning, sizeof header->warning,
              "it holds more than one image: only the first is read");
 }

@@ -63,21 +63,21 @@ static int on_warning(TIFF *tiff, void *user, const char *module, const char *fo
 }
 
 bool fg_tiff_handle_open(fg_tiff_handle *h) {
-  TIFFOpenOptions *options = TIFFOpenOptionsAlloc();
+  TIFFOpenOptions *options = fg_libtiff.OpenOptionsAlloc();
   if (!options) return false;
-  TIFFOpenOptionsSetMaxSingleMemAlloc(options, ALLOCATION_MAX);
-  TIFFOpenOptionsSetErrorHandlerExtR(options, on_error, h);
-  TIFFOpenOptionsSetWarningHandlerExtR(options, on_warning, h);
+  fg_libtiff.OpenOptionsSetMaxSingleMemAlloc(options, ALLOCATION_MAX);
+  fg_libtiff.OpenOptionsSetErrorHandlerExtR(options, on_error, h);
+  fg_libtiff.OpenOptionsSetWarningHandlerExtR(options, on_warning, h);
   /* m: no mapping; c: strips as they are. */
-  h->tiff = TIFFClientOpenExt(h->source->name, "rmc", h, on_read, on_write, on_seek, on_close,
-                              on_size, NULL, NULL, options);
-  TIFFOpenOptionsFree(options);
+  h->tiff = fg_libtiff.ClientOpenExt(h->source->name, "rmc", h, on_read, on_write, on_seek,
+                                     on_close, on_size, NULL, NULL, options);
+  fg_libtiff.OpenOptionsFree(options);
   if (!h->tiff && !h->words[0]) snprintf(h->words, sizeof h->words, "it cannot be decoded");
   return h->tiff;
 }
 
 void fg_tiff_handle_close(fg_tiff_handle *h) {
-  if (h->tiff) TIFFClose(h->tiff);
+  if (h->tiff) fg_libtiff.Close(h->tiff);
   h->tiff = NULL;
 }
 

@@ -3,10 +3,9 @@
 #ifndef FG_SCAN_TIFF_READER_H
 #define FG_SCAN_TIFF_READER_H
 
-#include <tiffio.h>
-
 #include "scan/header.h"
 #include "scan/source.h"
+#include "scan/tiff_library.h"
 
 /* libtiff's view of the file. Several handles read one file at once, each from a thread of its own.
  */

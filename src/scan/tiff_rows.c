@@ -39,10 +39,10 @@ static fg_status read_plane_row(fg_context *ctx, fg_tiff *r, uint64_t plane, uin
   size_t bytes = plane_row_bytes(r);
   uint16_t fill_order = FILLORDER_MSB2LSB;
   FG_TRY(read_at(ctx, r, row_offset(r, plane, r->row), out, bytes));
-  TIFFGetFieldDefaulted(r->main.tiff, TIFFTAG_FILLORDER, &fill_order);
-  if (fill_order == FILLORDER_LSB2MSB) TIFFReverseBits(out, (tmsize_t)bytes);
-  if (r->bits == 16 && TIFFIsByteSwapped(r->main.tiff))
-    TIFFSwabArrayOfShort((uint16_t *)(void *)out, (tmsize_t)(bytes / 2));
+  fg_libtiff.GetFieldDefaulted(r->main.tiff, TIFFTAG_FILLORDER, &fill_order);
+  if (fill_order == FILLORDER_LSB2MSB) fg_libtiff.ReverseBits(out, (tmsize_t)bytes);
+  if (r->bits == 16 && fg_libtiff.IsByteSwapped(r->main.tiff))
+    fg_libtiff.SwabArrayOfShort((uint16_t *)(void *)out, (tmsize_t)(bytes / 2));
   return FG_OK;
 }
 
@@ -58,15 +58,16 @@ static fg_status fetch_direct(fg_context *ctx, fg_tiff *r, uint8_t *row) {
 }
 
 static fg_status fetch_scanline(fg_context *ctx, fg_tiff *r, uint8_t *row) {
-  if (TIFFReadScanline(r->main.tiff, row, (uint32_t)r->row, 0) == 1 && !r->main.complained)
+  if (fg_libtiff.ReadScanline(r->main.tiff, row, (uint32_t)r->row, 0) == 1 && !r->main.complained)
     return FG_OK;
   return fg_tiff_fail(ctx, r, r->main.words);
 }
 
 static fg_status plan_tiles(fg_context *ctx, fg_tiff *r, fg_scan_header *header) {
-  TIFFGetField(r->main.tiff, TIFFTAG_TILEWIDTH, &r->tile_width);
-  TIFFGetField(r->main.tiff, TIFFTAG_TILELENGTH, &r->tile_height);
-  uint64_t size = TIFFTileSize64(r->main.tiff), pixel_bits = (uint64_t)(r->bits * r->channels);
+  fg_libtiff.GetField(r->main.tiff, TIFFTAG_TILEWIDTH, &r->tile_width);
+  fg_libtiff.GetField(r->main.tiff, TIFFTAG_TILELENGTH, &r->tile_height);
+  uint64_t size = fg_libtiff.TileSize64(r->main.tiff),
+           pixel_bits = (uint64_t)(r->bits * r->channels);
   if (r->separate) return fg_tiff_fail(ctx, r, "its colours lie in separate tiles");
   if (r->tile_width == 0 || r->tile_height == 0 || r->tile_width % 8 || size == 0 ||
       size > TILE_BYTES_MAX || r->tile_width > TILE_BYTES_MAX || r->tile_height > TILE_BYTES_MAX ||
@@ -110,12 +111,12 @@ static void note_counts(const fg_tiff *r, const uint64_t *counts, fg_scan_header
 static fg_status plan_direct(fg_context *ctx, fg_tiff *r, fg_scan_header *header) {
   uint64_t planes = r->separate ? (uint64_t)r->channels : 1, *counts = NULL;
   uint64_t strips = (r->height + r->rows_per_strip - 1) / r->rows_per_strip * planes;
-  r->strip_count = TIFFNumberOfStrips(r->main.tiff);
-  if (strips != r->strip_count || !TIFFGetField(r->main.tiff, TIFFTAG_STRIPOFFSETS, &r->offsets) ||
-      !r->offsets)
+  r->strip_count = fg_libtiff.NumberOfStrips(r->main.tiff);
+  if (strips != r->strip_count ||
+      !fg_libtiff.GetField(r->main.tiff, TIFFTAG_STRIPOFFSETS, &r->offsets) || !r->offsets)
     return fg_tiff_fail(ctx, r, "its strips have no usable offsets");
   FG_TRY(check_offsets(ctx, r, planes));
-  if (!r->separate && TIFFGetField(r->main.tiff, TIFFTAG_STRIPBYTECOUNTS, &counts) && counts)
+  if (!r->separate && fg_libtiff.GetField(r->main.tiff, TIFFTAG_STRIPBYTECOUNTS, &counts) && counts)
     note_counts(r, counts, header);
   r->fetch = fetch_direct;
   return FG_OK;
@@ -124,11 +125,11 @@ static fg_status plan_direct(fg_context *ctx, fg_tiff *r, fg_scan_header *header
 static fg_status plan_scanlines(fg_context *ctx, fg_tiff *r, fg_scan_header *header) {
   uint64_t *counts = NULL, largest = 0;
   if (r->separate) return fg_tiff_fail(ctx, r, "its colours lie in separate compressed planes");
-  if (TIFFScanlineSize64(r->main.tiff) != r->row_bytes)
+  if (fg_libtiff.ScanlineSize64(r->main.tiff) != r->row_bytes)
     return fg_tiff_fail(ctx, r, "its rows have no sensible size");
-  if (!TIFFGetField(r->main.tiff, TIFFTAG_STRIPBYTECOUNTS, &counts) || !counts)
+  if (!fg_libtiff.GetField(r->main.tiff, TIFFTAG_STRIPBYTECOUNTS, &counts) || !counts)
     return fg_tiff_fail(ctx, r, "its strips have no usable byte counts");
-  for (uint32_t strip = 0; strip < TIFFNumberOfStrips(r->main.tiff); strip++)
+  for (uint32_t strip = 0; strip < fg_libtiff.NumberOfStrips(r->main.tiff); strip++)
     if (counts[strip] > largest) largest = counts[strip];
   if (largest > r->source->size) largest = r->source->size;
   bool together = fg_tiff_plan_strips(r);
@@ -140,8 +141,8 @@ static fg_status plan_scanlines(fg_context *ctx, fg_tiff *r, fg_scan_header *hea
 fg_status fg_tiff_plan_rows(fg_context *ctx, fg_tiff *r, fg_scan_header *header) {
   uint32_t rows_per_strip = 0;
   r->row_bytes = ((size_t)r->width * (size_t)(r->bits * r->channels) + 7) / 8;
-  if (TIFFIsTiled(r->main.tiff)) return plan_tiles(ctx, r, header);
-  TIFFGetFieldDefaulted(r->main.tiff, TIFFTAG_ROWSPERSTRIP, &rows_per_strip);
+  if (fg_libtiff.IsTiled(r->main.tiff)) return plan_tiles(ctx, r, header);
+  fg_libtiff.GetFieldDefaulted(r->main.tiff, TIFFTAG_ROWSPERSTRIP, &rows_per_strip);
   r->rows_per_strip = rows_per_strip < r->height ? rows_per_strip : r->height;
   if (rows_per_strip == 0) return fg_tiff_fail(ctx, r, "its strips have no rows");
   return r->compression == COMPRESSION_NONE ? plan_direct(ctx, r, header)

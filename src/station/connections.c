@@ -16,7 +16,7 @@ enum { SECONDS = 15, BYTES_PER_S = 16384, TICK_MS = 500, FILES = 64 };
 fg_client fg_connection_client(struct MHD_Connection *connection) {
   fg_client client = {{0}};
   const union MHD_ConnectionInfo *info =
-      MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CLIENT_ADDRESS);
+      fg_microhttpd.get_connection_info(connection, MHD_CONNECTION_INFO_CLIENT_ADDRESS);
   if (!info || !info->client_addr) return client;
   if (info->client_addr->sa_family == AF_INET) {
     const struct sockaddr_in *address = (const void *)info->client_addr;
@@ -96,7 +96,7 @@ static fg_connection *find_connection(fg_connections *all,
 
 static void add_connection(fg_connections *all, struct MHD_Connection *connection) {
   const union MHD_ConnectionInfo *info =
-      MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CONNECTION_FD);
+      fg_microhttpd.get_connection_info(connection, MHD_CONNECTION_INFO_CONNECTION_FD);
   if (!info) return;
   const fg_connection new = {.connection = connection,
                              .socket = info->connect_fd,

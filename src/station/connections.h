@@ -11,7 +11,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include <microhttpd.h>
+#include "station/http_library.h"
 
 /* FG_CONNECTIONS_OF_ONE: a browser opens six, a proxy has those of all its browsers. */
 enum { FG_CONNECTIONS = 256, FG_CONNECTIONS_OF_ONE = 48 };

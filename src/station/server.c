@@ -2,7 +2,6 @@
 #include "station/server.h"
 
 #include <errno.h>
-#include <microhttpd.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/socket.h>
@@ -69,13 +68,14 @@ static call *begin_call(struct MHD_Connection *connection, const char *method) {
   if (!at) return NULL;
   fg_request *request = &at->request;
   request->post = !strcmp(method, "POST");
-  request->host = MHD_lookup_connection_value(connection, MHD_HEADER_KIND, "Host");
-  request->origin = MHD_lookup_connection_value(connection, MHD_HEADER_KIND, "Origin");
-  request->site = MHD_lookup_connection_value(connection, MHD_HEADER_KIND, "Sec-Fetch-Site");
-  request->cookie = MHD_lookup_connection_value(connection, MHD_HEADER_KIND, "Cookie");
-  request->last_event =
-      read_header_number(MHD_lookup_connection_value(connection, MHD_HEADER_KIND, "Last-Event-ID"));
-  MHD_get_connection_values(connection, MHD_GET_ARGUMENT_KIND, read_query_field, at);
+  request->host = fg_microhttpd.lookup_connection_value(connection, MHD_HEADER_KIND, "Host");
+  request->origin = fg_microhttpd.lookup_connection_value(connection, MHD_HEADER_KIND, "Origin");
+  request->site =
+      fg_microhttpd.lookup_connection_value(connection, MHD_HEADER_KIND, "Sec-Fetch-Site");
+  request->cookie = fg_microhttpd.lookup_connection_value(connection, MHD_HEADER_KIND, "Cookie");
+  request->last_event = read_header_number(
+      fg_microhttpd.lookup_connection_value(connection, MHD_HEADER_KIND, "Last-Event-ID"));
+  fg_microhttpd.get_connection_values(connection, MHD_GET_ARGUMENT_KIND, read_query_field, at);
   return at;
 }
 
@@ -100,21 +100,22 @@ static void add_headers(struct MHD_Response *response, const fg_answer *answer) 
           : "default-src 'none'; style-src 'self'; script-src 'self'; connect-src 'self'; "
             "img-src 'self' data:; form-action 'self'; base-uri 'none'; frame-ancestors 'none'";
   char saved[200];
-  MHD_add_response_header(response, "Content-Security-Policy", policy);
-  MHD_add_response_header(response, "X-Content-Type-Options", "nosniff");
-  MHD_add_response_header(response, "Referrer-Policy", "same-origin");
-  MHD_add_response_header(response, "Cache-Control", "no-store");
-  if (answer->type) MHD_add_response_header(response, "Content-Type", answer->type);
-  if (answer->location[0]) MHD_add_response_header(response, "Location", answer->location);
-  if (answer->cookie[0]) MHD_add_response_header(response, "Set-Cookie", answer->cookie);
+  fg_microhttpd.add_response_header(response, "Content-Security-Policy", policy);
+  fg_microhttpd.add_response_header(response, "X-Content-Type-Options", "nosniff");
+  fg_microhttpd.add_response_header(response, "Referrer-Policy", "same-origin");
+  fg_microhttpd.add_response_header(response, "Cache-Control", "no-store");
+  if (answer->type) fg_microhttpd.add_response_header(response, "Content-Type", answer->type);
+  if (answer->location[0])
+    fg_microhttpd.add_response_header(response, "Location", answer->location);
+  if (answer->cookie[0]) fg_microhttpd.add_response_header(response, "Set-Cookie", answer->cookie);
   if (!answer->download[0]) return;
   snprintf(saved, sizeof saved, "attachment; filename=\"%s\"", answer->download);
-  MHD_add_response_header(response, "Content-Disposition", saved);
+  fg_microhttpd.add_response_header(response, "Content-Disposition", saved);
 }
 
 static enum MHD_Result send_answer(server *at, struct MHD_Connection *connection,
                                    fg_answer *answer) {
-  struct MHD_Response *response = MHD_create_response_from_buffer(
+  struct MHD_Response *response = fg_microhttpd.create_response_from_buffer(
       answer->body ? answer->size : 0, answer->body ? answer->body : "",
       answer->body ? MHD_RESPMEM_MUST_FREE : MHD_RESPMEM_PERSISTENT);
   if (!response) {
@@ -123,9 +124,9 @@ static enum MHD_Result send_answer(server *at, struct MHD_Connection *connection
   }
   add_headers(response, answer);
   fg_connections_sending(&at->connections, connection, answer->body ? answer->size : 0);
-  enum MHD_Result result =
-      MHD_queue_response(connection, (unsigned)(answer->code ? answer->code : 500), response);
-  MHD_destroy_response(response);
+  enum MHD_Result result = fg_microhttpd.queue_response(
+      connection, (unsigned)(answer->code ? answer->code : 500), response);
+  fg_microhttpd.destroy_response(response);
   return result;
 }
 
@@ -154,7 +155,7 @@ static size_t find_longest_waiting(const server *at) {
 /* It is answered, and asks again. */
 static void make_room(server *at) {
   size_t place = find_longest_waiting(at), behind = --at->waiters - place;
-  MHD_resume_connection(at->waiting[place].connection);
+  fg_microhttpd.resume_connection(at->waiting[place].connection);
   memmove(&at->waiting[place], &at->waiting[place + 1], behind * sizeof *at->waiting);
 }
 
@@ -169,7 +170,7 @@ static waiting wait_for_news(server *at, struct MHD_Connection *connection, unsi
     result = NEWS_CAME;
   } else {
     if (at->waiters == WAITING_MAX) make_room(at);
-    MHD_suspend_connection(connection);
+    fg_microhttpd.suspend_connection(connection);
     at->waiting[at->waiters++] = (waiter){connection, fg_connection_client(connection)};
   }
   pthread_mutex_unlock(&at->mutex);
@@ -181,7 +182,7 @@ static void resume_all(void *user) {
   pthread_mutex_lock(&at->mutex);
   at->news++;
   for (size_t i = 0; i < at->waiters; i++)
-    MHD_resume_connection(at->waiting[i].connection);
+    fg_microhttpd.resume_connection(at->waiting[i].connection);
   at->waiters = 0;
   pthread_mutex_unlock(&at->mutex);
 }
@@ -214,8 +215,8 @@ static enum MHD_Result answer_call(server *at, struct MHD_Connection *connection
 /* Begins a request; refuses unknown methods and bodies that are too long before they come. */
 static enum MHD_Result begin(server *at, struct MHD_Connection *connection, const char *method,
                              void **place) {
-  const char *length =
-      MHD_lookup_connection_value(connection, MHD_HEADER_KIND, MHD_HTTP_HEADER_CONTENT_LENGTH);
+  const char *length = fg_microhttpd.lookup_connection_value(connection, MHD_HEADER_KIND,
+                                                             MHD_HTTP_HEADER_CONTENT_LENGTH);
   if (strcmp(method, "GET") != 0 && strcmp(method, "HEAD") != 0 && strcmp(method, "POST") != 0)
     return refuse_request(at, connection, 405, "GET and POST are answered.\n");
   if (length && (strlen(length) > 9 || read_header_number(length) > FG_BODY_MAX))
@@ -262,7 +263,7 @@ static unsigned flags_of(const struct sockaddr_storage *address, fg_reach reach)
 static fg_status start_daemon(fg_context *ctx, server *at, const struct sockaddr_storage *address) {
   const fg_station_request *request = at->station->request;
   errno = 0;
-  at->daemon = MHD_start_daemon(
+  at->daemon = fg_microhttpd.start_daemon(
       flags_of(address, at->station->reach), 0, NULL, NULL, handle_request, at,
       MHD_OPTION_SOCK_ADDR, address, MHD_OPTION_NOTIFY_COMPLETED, end_call, at,
       MHD_OPTION_NOTIFY_CONNECTION, fg_connections_notify, &at->connections,
@@ -281,6 +282,7 @@ fg_status fg_station_server_start(fg_context *ctx, fg_inspection *station) {
   void *block;
   const fg_station_request *request = station->request;
   FG_TRY(fg_reach_find(ctx, request, &address, &station->reach));
+  FG_TRY(fg_http_library_load(ctx));
   FG_TRY(fg_memory_allocate(ctx, 1, sizeof(server), &block));
   server *at = block;
   at->station = station;
@@ -293,7 +295,8 @@ fg_status fg_station_server_start(fg_context *ctx, fg_inspection *station) {
     free(at);
     return status;
   }
-  const union MHD_DaemonInfo *info = MHD_get_daemon_info(at->daemon, MHD_DAEMON_INFO_BIND_PORT);
+  const union MHD_DaemonInfo *info =
+      fg_microhttpd.get_daemon_info(at->daemon, MHD_DAEMON_INFO_BIND_PORT);
   fg_reach_write(&address, info ? info->port : request->port, station->host, sizeof station->host);
   station->server = at;
   station->wake = resume_all;
@@ -307,7 +310,7 @@ void fg_station_server_stop(fg_inspection *station) {
   at->closing = true;
   pthread_mutex_unlock(&at->mutex);
   resume_all(at);
-  MHD_stop_daemon(at->daemon);
+  fg_microhttpd.stop_daemon(at->daemon);
   fg_station_scan_stop(station);
   station->wake = NULL;
   station->server = NULL;

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A POST for each part, over one connection that stays open. 2xx means that the receiver has it. */
 #include <curl/curl.h>
-#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/library.h"
 #include "core/text.h"
 #include "station/outbox/transport.h"
 
@@ -27,19 +27,17 @@ static const char *const names[] = {
     "curl_easy_getinfo", "curl_easy_cleanup",   "curl_easy_strerror",
     "curl_slist_append", "curl_slist_free_all", "curl_global_init"};
 
-static pthread_mutex_t loading = PTHREAD_MUTEX_INITIALIZER;
-
-static fg_status load_curl(fg_context *ctx) {
-  fg_status status = FG_OK;
-  pthread_mutex_lock(&loading);
-  if (!curl.global_init) {
-    status = fg_library_load(ctx, "libcurl.so.4", "libcurl4", names, sizeof names / sizeof *names,
-                             &curl);
-    if (status == FG_OK) curl.global_init(CURL_GLOBAL_DEFAULT);
-  }
-  pthread_mutex_unlock(&loading);
-  return status;
+static void start_curl(void) {
+  curl.global_init(CURL_GLOBAL_DEFAULT);
 }
+
+static fg_library libcurl = {.file = "libcurl.so.4",
+                             .package = "libcurl4",
+                             .names = names,
+                             .count = sizeof names / sizeof *names,
+                             .functions = &curl,
+                             .start = start_curl,
+                             .mutex = PTHREAD_MUTEX_INITIALIZER};
 
 typedef struct http {
   CURL *handle;
@@ -90,7 +88,7 @@ static void set_options(http *at) {
 
 static fg_status open_http(fg_context *ctx, const char *to, const char *token,
                            const atomic_bool *closing, void **way) {
-  FG_TRY(load_curl(ctx));
+  FG_TRY(fg_library_load(ctx, &libcurl));
   http *at = calloc(1, sizeof *at);
   if (!at) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: an address");
   at->closing = closing;

@@ -5,11 +5,11 @@
 
 #ifdef FOILGAUGE_MQTT
 #include <mosquitto.h>
-#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "core/date.h"
+#include "core/library.h"
 #include "core/text.h"
 
 enum { PORT = 1883, KEEP_ALIVE_S = 60, TURN_MS = 100, QOS = 1, HOST_BYTES = 256 };
@@ -47,19 +47,17 @@ static const char *const names[] = {"mosquitto_connack_string",
                                     "mosquitto_strerror",
                                     "mosquitto_username_pw_set"};
 
-static pthread_mutex_t loading = PTHREAD_MUTEX_INITIALIZER;
-
-static fg_status load_mosquitto(fg_context *ctx) {
-  fg_status status = FG_OK;
-  pthread_mutex_lock(&loading);
-  if (!broker.lib_init) {
-    status = fg_library_load(ctx, "libmosquitto.so.1", "libmosquitto1", names,
-                             sizeof names / sizeof *names, &broker);
-    if (status == FG_OK) broker.lib_init();
-  }
-  pthread_mutex_unlock(&loading);
-  return status;
+static void start_mosquitto(void) {
+  broker.lib_init();
 }
+
+static fg_library libmosquitto = {.file = "libmosquitto.so.1",
+                                  .package = "libmosquitto1",
+                                  .names = names,
+                                  .count = sizeof names / sizeof *names,
+                                  .functions = &broker,
+                                  .start = start_mosquitto,
+                                  .mutex = PTHREAD_MUTEX_INITIALIZER};
 
 typedef struct mqtt {
   struct mosquitto *client;
@@ -131,7 +129,7 @@ static fg_status make_client(fg_context *ctx, const char *to, const char *token,
 
 static fg_status open_mqtt(fg_context *ctx, const char *to, const char *token,
                            const atomic_bool *closing, void **way) {
-  FG_TRY(load_mosquitto(ctx));
+  FG_TRY(fg_library_load(ctx, &libmosquitto));
   mqtt *at = calloc(1, sizeof *at);
   if (!at) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a topic");
   at->closing = closing;

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "station/outbox/transport.h"
 
-#include <dlfcn.h>
 #include <string.h>
 
 fg_status fg_transport_find(fg_context *ctx, const char *to, const fg_transport **transport) {
@@ -33,19 +32,4 @@ fg_status fg_transport_check(fg_context *ctx, const char *to) {
   const fg_transport *transport;
   FG_TRY(fg_transport_find(ctx, to, &transport));
   return transport == &fg_transport_mqtt ? check_topic(ctx, to) : FG_OK;
-}
-
-fg_status fg_library_load(fg_context *ctx, const char *file, const char *package,
-                          const char *const *names, size_t count, void *functions) {
-  void *library = dlopen(file, RTLD_NOW | RTLD_LOCAL);
-  if (!library)
-    return fg_fail(ctx, FG_ERR_IO, "%s cannot be loaded: install %s (Debian, Ubuntu)", file,
-                   package);
-  for (size_t i = 0; i < count; i++) {
-    void *function = dlsym(library, names[i]);
-    if (!function)
-      return fg_fail(ctx, FG_ERR_IO, "%s has no %s: update %s", file, names[i], package);
-    memcpy((char *)functions + i * sizeof function, &function, sizeof function);
-  }
-  return FG_OK;
 }

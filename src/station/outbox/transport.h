@@ -33,12 +33,6 @@ typedef struct fg_transport {
 fg_status fg_transport_find(fg_context *ctx, const char *to, const fg_transport **transport);
 fg_status fg_transport_check(fg_context *ctx, const char *to);
 
-/* Loads a shared library that few runs need, as it takes longer than to open a scan: fills a struct
- * of function pointers in the order of `names`. It stays loaded. FG_ERR_IO with the Debian package
- * to install. Calls for one struct must not overlap. */
-fg_status fg_library_load(fg_context *ctx, const char *file, const char *package,
-                          const char *const *names, size_t count, void *functions);
-
 extern const fg_transport fg_transport_folder, fg_transport_http, fg_transport_https,
     fg_transport_mqtt;
 

@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Shared libraries that most runs can do without: with the libraries that they need themselves they
+ * take longer to load than a table takes to fit, so they are loaded when they are first used. */
+#ifndef FG_CORE_LIBRARY_H
+#define FG_CORE_LIBRARY_H
+
+#include <pthread.h>
+#include <stdbool.h>
+
+#include "foilgauge/status.h"
+
+typedef struct fg_library {
+  const char *file;    /* its name to the loader (SONAME) */
+  const char *package; /* of Debian */
+  const char *const *names;
+  size_t count;
+  void *functions;     /* array or struct of `count` pointers, in the order of `names` */
+  void (*start)(void); /* called once, when they are found; NULL: nothing to do */
+  pthread_mutex_t mutex;
+  bool loaded;
+} fg_library;
+
+/* Loads a library and finds its functions, once; by any thread. FG_ERR_IO: it is not installed, or
+ * too old. */
+fg_status fg_library_load(fg_context *ctx, fg_library *library);
+
+#endif

@@ -1,0 +1,20 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "scan/tiff_library.h"
+
+#include "core/library.h"
+
+fg_tiff_library fg_libtiff;
+
+#define NAME(name) "TIFF" #name,
+static const char *const names[] = {FG_TIFF_FUNCTIONS(NAME)};
+
+static fg_library library = {.file = FOILGAUGE_TIFF_FILE,
+                             .package = "libtiff6",
+                             .names = names,
+                             .count = sizeof names / sizeof *names,
+                             .functions = &fg_libtiff,
+                             .mutex = PTHREAD_MUTEX_INITIALIZER};
+
+fg_status fg_tiff_library_load(fg_context *ctx) {
+  return fg_library_load(ctx, &library);
+}
