@@ -39,7 +39,9 @@
  *   }
  *
  * Only the scale is needed. Without temperature and expansion, which go together, the part counts
- * as being at 20 °C, and U does not include it.
+ * as being at 20 °C, and U does not include it. Where a scanner's model has the scale, temperature
+ * and expansion may stand alone; where the model also says how warm the scanner was, the difference
+ * is in U.
  *
  * Two words take the object's place: "flatbed" is the default for a flatbed that nobody has
  * calibrated, and "not needed: REASON" lets values be judged without any, with a reason that every
@@ -69,7 +71,20 @@ typedef struct fg_calibration {
   bool has_temperature; /* false: the members below are 0 */
   double temperature_c, u_temperature_k; /* of the part during the scan */
   double expansion_per_k, u_expansion_per_k;
+  bool scale_by_model; /* no scale is stated, only temperature and expansion */
+  /* Relative uncertainty of the scanner's own expansion since its model was made; never read, but
+   * found (fg_scanner_model_trace). */
+  double u_bed;
 } fg_calibration;
+
+static inline bool fg_calibration_has_scale(const fg_calibration *calibration) {
+  return calibration->stated && !calibration->scale_by_model;
+}
+
+/* Standard uncertainty, relative, of a scanner's pitch at one temperature that is known at another.
+ * Its bed, belt and sensor expand by no more than aluminium does, 23e-6 per K, and by any share of
+ * that: a rectangular distribution (GUM 4.3.7). The temperatures may be uncertain. */
+double fg_calibration_bed(double kelvin, double u_kelvin);
 
 /* A plate or gauge of known sizes, which lengths are traced to. */
 typedef struct fg_artefact {
@@ -87,10 +102,10 @@ fg_status fg_calibration_check(fg_context *ctx, const fg_calibration *calibratio
 /* L20 / L; 1 without a temperature. */
 double fg_calibration_factor(const fg_calibration *calibration);
 
-/* Relative standard uncertainties of a length by temperature and by expansion, and of a length
- * along one axis by all of it. */
+/* Relative standard uncertainties of a length by temperature, by expansion and by the scanner's own
+ * expansion, and of a length along one axis by all of it. */
 typedef struct fg_calibration_budget {
-  double scale[2], temperature, expansion;
+  double scale[2], temperature, expansion, bed;
   double length[2];
 } fg_calibration_budget;
 

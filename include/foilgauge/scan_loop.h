@@ -87,8 +87,9 @@ typedef struct fg_scanner_model_facts {
   const char *scanner, *date; /* NULL: not said */
   size_t scans;               /* number of scans behind it; 0: not stated */
   size_t known_diameters;     /* gauges among its scans */
-  size_t known_grids; /* scans of grids of known pitch; without either its scale is unknown */
-  bool tied;          /* other explanations fitted its scans as well */
+  size_t known_grids;   /* scans of grids of known pitch; without either its scale is unknown */
+  bool tied;            /* other explanations fitted its scans as well */
+  double temperature_c; /* of the scanner then; NaN: not stated */
   double low_mm[2], high_mm[2]; /* its region of the glass */
   fg_scanner_model_effect effect[FG_SCANNER_MODEL_EFFECTS];
   size_t effects;
@@ -99,7 +100,8 @@ const char *fg_scanner_model_sha256(const fg_scanner_model *model);
 bool fg_scanner_model_is_tied(const fg_scanner_model *model);
 /* Returns true when the model has neither effects nor an edge level and corrects nothing. */
 bool fg_scanner_model_is_empty(const fg_scanner_model *model);
-/* Notes in a design whose scale the model in use has: of gauges of known size, or none. */
+/* Notes in a design whose scale the model in use has: of gauges of known size, or none; and what
+ * the scanner's own expansion since then leaves uncertain, where both temperatures are stated. */
 void fg_scanner_model_trace(const fg_scanner_model *model, fg_design *design);
 /* FG_ERR_DATA when the model is not of the named scanner; NULL: any scanner. */
 fg_status fg_scanner_model_check_scanner(fg_context *ctx, const fg_scanner_model *model,

@@ -46,7 +46,7 @@ fg_calibration fg_calibration_of_flatbed(void) {
 fg_status fg_calibration_check(fg_context *ctx, const fg_calibration *c) {
   static const char *const axes[] = {"scale.x", "scale.y"};
   if (!c->stated) return FG_OK;
-  if (c->u_scale[0] == 0 && c->u_scale[1] == 0)
+  if (!c->scale_by_model && c->u_scale[0] == 0 && c->u_scale[1] == 0)
     return fg_fail(
         ctx, FG_ERR_DATA,
         "calibration.scale: an uncertainty of 0; no scale is known exactly: state it, as "
@@ -61,15 +61,24 @@ double fg_calibration_factor(const fg_calibration *c) {
   return 1 - c->expansion_per_k * (c->temperature_c - FG_REFERENCE_TEMPERATURE_C);
 }
 
+/* Aluminium's, per K; the standard deviation of a rectangle is its half width over √3. */
+#define BED_EXPANSION_PER_K 23e-6
+
+double fg_calibration_bed(double kelvin, double u_kelvin) {
+  return BED_EXPANSION_PER_K / sqrt(3) * hypot(kelvin, u_kelvin);
+}
+
 fg_calibration_budget fg_calibration_terms(const fg_calibration *c) {
   fg_calibration_budget terms = {
       .scale = {c->u_scale[0], c->u_scale[1]},
       .temperature = fabs(c->expansion_per_k) * c->u_temperature_k,
       .expansion = c->has_temperature
                        ? fabs(c->temperature_c - FG_REFERENCE_TEMPERATURE_C) * c->u_expansion_per_k
-                       : 0};
+                       : 0,
+      .bed = c->u_bed};
   for (int axis = 0; axis < 2; axis++)
-    terms.length[axis] = hypot(terms.scale[axis], hypot(terms.temperature, terms.expansion));
+    terms.length[axis] =
+        hypot(hypot(terms.scale[axis], terms.bed), hypot(terms.temperature, terms.expansion));
   return terms;
 }
 
@@ -77,7 +86,7 @@ fg_calibration_budget fg_calibration_terms(const fg_calibration *c) {
  * its Cholesky root, column by column. */
 void fg_calibration_sources(const fg_calibration *c, double stretch[FG_CALIBRATION_SOURCES][2]) {
   fg_calibration_budget terms = fg_calibration_terms(c);
-  double heat = hypot(terms.temperature, terms.expansion), x = terms.length[0];
+  double heat = hypot(hypot(terms.temperature, terms.expansion), terms.bed), x = terms.length[0];
   double common = c->per_axis ? heat * heat : x * x;
   memset(stretch, 0, sizeof(double[FG_CALIBRATION_SOURCES][2]));
   stretch[0][0] = x;

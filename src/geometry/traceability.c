@@ -18,7 +18,7 @@ const char fg_traceability_cure[] =
 fg_artefact fg_design_traced_to(const fg_design *design) {
   const fg_calibration *c = &design->calibration;
   fg_artefact artefact = design->model_scale.artefact;
-  if (c->stated && (c->artefact[0] || !artefact.name[0])) {
+  if (fg_calibration_has_scale(c) && (c->artefact[0] || !artefact.name[0])) {
     memcpy(artefact.name, c->artefact, sizeof artefact.name);
     memcpy(artefact.certificate, c->certificate, sizeof artefact.certificate);
     memcpy(artefact.date, c->date, sizeof artefact.date);
@@ -28,7 +28,8 @@ fg_artefact fg_design_traced_to(const fg_design *design) {
 }
 
 fg_traceability fg_design_traceability(const fg_design *design) {
-  if (!design->calibration.stated && !design->model_scale.known) return FG_TRACED_TO_NONE;
+  if (!fg_calibration_has_scale(&design->calibration) && !design->model_scale.known)
+    return FG_TRACED_TO_NONE;
   return fg_design_traced_to(design).name[0] ? FG_TRACED_TO_PLATE : FG_TRACED_TO_STATED;
 }
 
@@ -62,8 +63,9 @@ void fg_traceability_sentence(const fg_design *design, char *sentence, size_t si
   append_fact(sentence, size, artefact.name[0] ? ", certificate " : ": ", artefact.certificate);
   if (!artefact.name[0] && !artefact.certificate[0])
     append_fact(sentence, size, ": ",
-                design->calibration.stated ? "a calibration without a certificate"
-                                           : "gauges of known size, without a certificate");
+                fg_calibration_has_scale(&design->calibration)
+                    ? "a calibration without a certificate"
+                    : "gauges of known size, without a certificate");
   append_fact(sentence, size, " of ", artefact.date);
   append_fact(sentence, size, ", due ", artefact.due);
 }

@@ -259,6 +259,9 @@ static void find_boards(const fg_measurement *measurements, size_t count, bool s
   bool certified = problem->certificate.columns > 0;
   bool known = certified || (design->pitch_mm > 0 && design->u_pitch_mm > 0);
   double u_known = certified ? problem->certificate.u_scale : design->u_pitch_mm / design->pitch_mm;
+  /* Marks are referred to 20 °C, as a plate's pitch is: by its temperature and expansion. */
+  const fg_calibration_budget heat = fg_calibration_terms(&measurements[0].design.calibration);
+  u_known = hypot(u_known, hypot(heat.temperature, heat.expansion));
   problem->scale_known = known;
   problem->board_count = same_part ? 1 : count;
   for (size_t i = 0; i < count; i++) {

@@ -38,7 +38,7 @@ static double per_level(const fg_gauge_reading *reading) {
 
 static double u_scale(const fg_design *design) {
   const fg_calibration *c = &design->calibration;
-  return c->stated ? fmax(c->u_scale[0], c->u_scale[1]) : SCALE_UNKNOWN;
+  return fg_calibration_has_scale(c) ? fmax(c->u_scale[0], c->u_scale[1]) : SCALE_UNKNOWN;
 }
 
 /* Findings that allow an edge's shift beyond all tone curves. */

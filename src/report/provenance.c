@@ -79,10 +79,13 @@ static void put_pct(FILE *out, const fg_calibration *c) {
     fputs(" (U = 2 u); the part is taken to be at 20 °C", out);
     return;
   }
-  fprintf(out, " (U = 2 u; of it the pitch %.2g", k * terms.scale[0]);
+  fputs(" (U = 2 u; of it ", out);
+  if (!c->scale_by_model) fprintf(out, "the pitch %.2g", k * terms.scale[0]);
   if (c->per_axis) fprintf(out, " and %.2g", k * terms.scale[1]);
+  if (!c->scale_by_model) fputs(" %, ", out);
+  if (terms.bed > 0) fprintf(out, "the scanner's own expansion %.2g %%, ", k * terms.bed);
   fprintf(out,
-          " %%, the temperature %.2g %%, the expansion %.2g %%); scanned at %g °C, lengths are "
+          "the temperature %.2g %%, the expansion %.2g %%); scanned at %g °C, lengths are "
           "those at 20 °C",
           k * terms.temperature, k * terms.expansion, c->temperature_c);
 }

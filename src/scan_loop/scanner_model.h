@@ -25,6 +25,7 @@ struct fg_scanner_model {
   size_t known_diameters; /* gauges among its scans */
   size_t known_grids;     /* scans of grids of known pitch; without either its scale is unknown */
   fg_artefact artefact;   /* with these gauges; no name: none stated */
+  double temperature_c, u_temperature_k; /* of the plate, and so the scanner; NaN: not stated */
   bool tied;
   fg_model_tone tone;
   fg_field_list fields;
@@ -49,6 +50,9 @@ fg_status fg_scanner_model_check_picture(fg_context *ctx, const fg_measurement *
 
 /* Date of a model, from seconds since 1970; "" for 0. */
 void fg_scanner_model_format_date(int64_t seconds, char text[FG_MODEL_DATE]);
+
+/* Takes the temperature that a design states of the part. */
+void fg_scanner_model_take_temperature(const fg_calibration *calibration, fg_scanner_model *model);
 
 /* Makes a model of a loop's scanner effects; free with fg_scanner_model_free. */
 fg_status fg_scanner_model_of(fg_context *ctx, const fg_scan_loop *loop, fg_scanner_model **model);

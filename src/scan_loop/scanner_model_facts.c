@@ -40,6 +40,11 @@ void fg_scanner_model_trace(const fg_scanner_model *model, fg_design *design) {
   design->model_scale.known = model->known_diameters > 0 || model->known_grids > 0;
   design->model_scale.artefact = (fg_artefact){{0}, {0}, {0}, {0}};
   if (design->model_scale.known) design->model_scale.artefact = model->artefact;
+  fg_calibration *c = &design->calibration;
+  bool both = c->stated && c->has_temperature && isfinite(model->temperature_c);
+  c->u_bed = both ? fg_calibration_bed(c->temperature_c - model->temperature_c,
+                                       hypot(c->u_temperature_k, model->u_temperature_k))
+                  : 0;
 }
 
 void fg_scanner_model_describe(const fg_scanner_model *model, fg_scanner_model_facts *facts) {
@@ -52,6 +57,7 @@ void fg_scanner_model_describe(const fg_scanner_model *model, fg_scanner_model_f
                                     .known_diameters = model->known_diameters,
                                     .known_grids = model->known_grids,
                                     .tied = model->tied,
+                                    .temperature_c = model->temperature_c,
                                     .low_mm = {frame->low_mm[0], frame->low_mm[1]},
                                     .high_mm = {frame->high_mm[0], frame->high_mm[1]}};
   for (size_t i = 0; i < model->fields.count; i++) {

@@ -159,11 +159,31 @@ static fg_status read_known(fg_context *ctx, const cJSON *root, const char *name
   return FG_OK;
 }
 
+/* Reads a temperature in its range; an absent one is NaN. */
+static fg_status read_temperature_of(fg_context *ctx, const cJSON *root, const char *name,
+                                     double lowest, double highest, double *value) {
+  const cJSON *item = cJSON_GetObjectItemCaseSensitive(root, name);
+  *value = NAN;
+  if (!item || cJSON_IsNull(item)) return FG_OK;
+  *value = cJSON_IsNumber(item) ? item->valuedouble : NAN;
+  if (*value >= lowest && *value <= highest) return FG_OK;
+  return fg_fail(ctx, FG_ERR_DATA, "`%s` is %g; a number, %g to %g, is allowed", name, *value,
+                 lowest, highest);
+}
+
+static fg_status read_heat(fg_context *ctx, const cJSON *root, fg_scanner_model *model) {
+  FG_TRY(read_temperature_of(ctx, root, "temperature_C", 0, 60, &model->temperature_c));
+  FG_TRY(read_temperature_of(ctx, root, "u_temperature_K", 0, 20, &model->u_temperature_k));
+  if (isnan(model->u_temperature_k)) model->u_temperature_k = 0;
+  return FG_OK;
+}
+
 static fg_status read_origin(fg_context *ctx, const cJSON *root, fg_scanner_model *model) {
   const cJSON *inputs = cJSON_GetObjectItemCaseSensitive(root, "inputs");
   FG_TRY(read_known(ctx, root, "known_diameters", &model->known_diameters));
   FG_TRY(read_known(ctx, root, "known_grids", &model->known_grids));
   FG_TRY(read_artefact(ctx, root, &model->artefact));
+  FG_TRY(read_heat(ctx, root, model));
   model->scans = cJSON_IsArray(inputs) ? (size_t)cJSON_GetArraySize(inputs) : 0;
   return read_date(ctx, root, model);
 }

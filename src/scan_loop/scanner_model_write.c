@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Writer of a scanner's model file, "foilgauge/scan-model/1" (reports/schema); the reader is
  * scanner_model_file.c. */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -32,6 +33,12 @@ static size_t known_diameters(const fg_scan_loop *loop) {
   return 0;
 }
 
+void fg_scanner_model_take_temperature(const fg_calibration *calibration, fg_scanner_model *model) {
+  bool known = calibration->stated && calibration->has_temperature;
+  model->temperature_c = known ? calibration->temperature_c : NAN;
+  model->u_temperature_k = known ? calibration->u_temperature_k : NAN;
+}
+
 fg_status fg_scanner_model_of(fg_context *ctx, const fg_scan_loop *loop, fg_scanner_model **model) {
   fg_scanner_model *made = NULL;
   FG_TRY(fg_memory_allocate(ctx, 1, sizeof *made, (void **)&made));
@@ -44,6 +51,7 @@ fg_status fg_scanner_model_of(fg_context *ctx, const fg_scan_loop *loop, fg_scan
   made->scans = loop->scan_count;
   made->known_diameters = known_diameters(loop);
   made->artefact = first->design.artefact;
+  fg_scanner_model_take_temperature(&first->design.calibration, made);
   made->tone = loop->tone;
   fg_effect_set_fields(&loop->edge_fit, &loop->set, &made->fields);
   for (size_t k = 0; k < loop->tie_count; k++)
@@ -227,6 +235,11 @@ static const fg_member model_rows[] = {
               "scale equal in x and y is not corrected"},
     {FG_OBJECT("artefact", fg_scanner_model, artefact, &artefact_members), .present = has_artefact,
      .words = "the plate that these gauges are of, by the design's `artefact`; absent: not stated"},
+    {FG_NUMBER("temperature_C", fg_scanner_model, temperature_c), .options = FG_MEMBER_LEFT_OUT,
+     .words = "of the plate while it was scanned, by the design's calibration, and so of the "
+              "scanner; absent: not stated"},
+    {FG_NUMBER("u_temperature_K", fg_scanner_model, u_temperature_k), .options = FG_MEMBER_LEFT_OUT,
+     .words = "its standard uncertainty"},
     {FG_PART("tone", find_model_tone, &fg_model_tone_members), .present = is_in_every_model,
      .words = "level of the scanner's edges, from discs of known diameter; null or absent: not "
               "known"},

@@ -148,6 +148,10 @@ static void write_expansion(fg_json *json, const char *name, const fg_subject *s
   write_stated(json, name, &expansion_members, c->expansion_per_k, c->u_expansion_per_k);
 }
 
+static bool has_scale(const fg_subject *subject) {
+  return fg_calibration_has_scale(subject->object);
+}
+
 static bool has_temperature(const fg_subject *subject) {
   return ((const fg_calibration *)subject->object)->has_temperature;
 }
@@ -184,10 +188,11 @@ static const fg_member calibration_rows[] = {
      .words = "The plate or gauge that the certificate is of: reports then say \"plate\"."},
     {FG_TEXT("due", fg_calibration, due), UNLESS_EMPTY, .pattern = "^[0-9.-]{10}$",
      .words = "The last day that the certificate holds: younger scans are refused."},
-    {FG_WRITTEN("scale", write_scale, SCALE_SCHEMA), .read = read_scale,
-     .options = FG_MEMBER_EXACT | FG_MEMBER_REQUIRED,
+    {FG_WRITTEN("scale", write_scale, SCALE_SCHEMA), .read = read_scale, .options = FG_MEMBER_EXACT,
+     .present = has_scale,
      .words = "How well the pixel's pitch is known, relative: `u_rel`, or `U_rel` with its factor "
-              "`k`; of both axes alike, or of `x` and `y` each by itself."},
+              "`k`; of both axes alike, or of `x` and `y` each by itself. Temperature and "
+              "expansion may stand without it, where a scanner's model has the scale."},
     {FG_WRITTEN("temperature", write_temperature, TEMPERATURE_SCHEMA), .read = read_temperature,
      .options = FG_MEMBER_EXACT, .present = has_temperature,
      .words = "Of the part while it was scanned: `value_C` with `u_K`, or `U_K` and `k`."},
@@ -196,8 +201,13 @@ static const fg_member calibration_rows[] = {
      .words = "Of the foil: `value_per_K` with `u_per_K`, or `U_per_K` and `k`; where the scale "
               "was taken from a reference part at the same temperature, less that part's."},
 };
-const fg_members fg_calibration_members =
-    FG_MEMBERS_OF_FILE(calibration_rows, "calibration", "design");
+const fg_members fg_calibration_members = {
+    .rows = calibration_rows,
+    .count = sizeof calibration_rows / sizeof *calibration_rows,
+    .definition = "calibration",
+    .file = "design",
+    .limits = "\"anyOf\": [{\"required\": [\"scale\"]}, {\"required\": [\"temperature\"]}]",
+};
 
 static fg_status check_day(const fg_reading *reading, const char *member, const char *day) {
   if (!day[0] || (strlen(day) == 10 && !isnan(fg_date_days(day)))) return FG_OK;
@@ -260,6 +270,11 @@ fg_status fg_calibration_read(const fg_reading *reading, const fg_member *member
   if (c.has_temperature != expansion)
     return fg_reading_fail(&inside, NULL, "%s is missing; temperature and expansion go together",
                            expansion ? "temperature" : "expansion");
+  c.scale_by_model = cJSON_GetObjectItemCaseSensitive(item, "scale") == NULL;
+  if (c.scale_by_model && !c.has_temperature)
+    return fg_reading_fail(&inside, NULL,
+                           "scale is missing; without it temperature and expansion "
+                           "are needed, and a scanner's model has the scale");
   fg_status status = fg_calibration_check(&words, &c);
   if (status != FG_OK)
     return fg_fail(reading->ctx, status, "%s%s%.900s", reading->path ? reading->path : "",
@@ -297,6 +312,10 @@ static double find_u_by_expansion(const fg_subject *subject) {
   return fg_calibration_terms(subject->object).expansion;
 }
 
+static double find_u_by_bed(const fg_subject *subject) {
+  return fg_calibration_terms(subject->object).bed;
+}
+
 #define AXES_SCHEMA                                                                                \
   "{\"type\": \"array\", \"items\": " POSITIVE ", \"minItems\": 2, \"maxItems\": 2}"
 #define KNOWN .options = FG_MEMBER_NEVER_NULL | FG_MEMBER_NOT_NEGATIVE
@@ -305,6 +324,8 @@ static const fg_member u_rel_rows[] = {
      .words = "by the pixel's pitch, along x and y"},
     {FG_NUMBER_BY("temperature", find_u_by_temperature), KNOWN, .words = "by the part's"},
     {FG_NUMBER_BY("expansion", find_u_by_expansion), KNOWN, .words = "by the part's"},
+    {FG_NUMBER_BY("bed", find_u_by_bed), KNOWN,
+     .words = "by the scanner's own expansion between the temperatures of its model and the part"},
     {FG_NUMBERS_BY("length", find_u_length), .schema = AXES_SCHEMA,
      .words = "all of them, along x and y"},
 };

@@ -126,8 +126,11 @@ static void write_calibration(const fg_calibration *c, FILE *out) {
   if (c->certificate[0] || c->date[0])
     fprintf(out, "  %s%s%s\n", c->certificate, c->certificate[0] && c->date[0] ? " of " : "",
             c->date);
-  fprintf(out, "  scale, U = 2 u                      x %.3g %%, y %.3g %%%s\n", k * terms.scale[0],
-          k * terms.scale[1], c->per_axis ? "" : " (one error of both)");
+  if (c->scale_by_model)
+    fputs("  scale                               that of the scanner's model\n", out);
+  else
+    fprintf(out, "  scale, U = 2 u                      x %.3g %%, y %.3g %%%s\n",
+            k * terms.scale[0], k * terms.scale[1], c->per_axis ? "" : " (one error of both)");
   if (c->has_temperature) {
     fprintf(out, "  scanned at                          %g C, U %.3g K: %.3g %% of a length\n",
             c->temperature_c, FG_COVERAGE_FACTOR * c->u_temperature_k, k * terms.temperature);

@@ -95,6 +95,8 @@ static const fg_member model_rows[] = {
               "in x and y is not in any u_"},
     {FG_COUNT("known_grids", fg_scanner_model_facts, known_grids),
      .words = "scans of grids of known pitch that hold its absolute scale"},
+    {FG_NUMBER("temperature_C", fg_scanner_model_facts, temperature_c),
+     .words = "of the scanner when it was found; null: not said"},
     {FG_FLAG("tied", fg_scanner_model_facts, tied),
      .words = "other explanations did as well; every u_ holds them"},
     {FG_ARRAY("effects", fg_scanner_model_facts, effect, effects, &effect_members),
@@ -148,7 +150,7 @@ static void model_scale_words(const fg_scanner_model *model, char *words, size_t
 void fg_scale_words(const fg_scanner_model *model, const fg_calibration *calibration, char *words,
                     size_t size) {
   char scale[FG_SCALE_WORDS] = "The scanner's own error of scale is not in it.";
-  if (calibration->stated) {
+  if (fg_calibration_has_scale(calibration)) {
     fg_calibration_budget terms = fg_calibration_terms(calibration);
     double max = fmax(terms.length[0], terms.length[1]);
     fg_text_clip(words, size,
@@ -159,7 +161,12 @@ void fg_scale_words(const fg_scanner_model *model, const fg_calibration *calibra
     return;
   }
   if (model) model_scale_words(model, scale, sizeof scale);
-  fg_text_clip(words, size, "No calibration is stated: U holds statistics only. %s", scale);
+  if (calibration->stated)
+    fg_text_clip(words, size,
+                 "It includes the uncertainty of the temperature: %.2g %% of a length. %s",
+                 100 * FG_COVERAGE_FACTOR * fg_calibration_terms(calibration).length[0], scale);
+  else
+    fg_text_clip(words, size, "No calibration is stated: U holds statistics only. %s", scale);
 }
 
 /* "left.json, of the scanner 'left desk', 2026-03-14, found on 2 scans". The caller frees. */
@@ -171,6 +178,8 @@ static fg_status title_of(fg_context *ctx, const fg_scanner_model *model, char *
   FG_TRY(fg_text_append(ctx, text, "%s", slash ? slash + 1 : facts.path));
   if (facts.scanner) FG_TRY(fg_text_append(ctx, text, ", of the scanner '%s'", facts.scanner));
   if (facts.date) FG_TRY(fg_text_append(ctx, text, ", of %.10s", facts.date));
+  if (isfinite(facts.temperature_c))
+    FG_TRY(fg_text_append(ctx, text, ", at %g °C", facts.temperature_c));
   if (facts.scans)
     FG_TRY(fg_text_append(ctx, text, ", found on %zu scan%s", facts.scans,
                           facts.scans > 1 ? "s" : ""));
