@@ -20,6 +20,9 @@ FOILGAUGE_SCHEMA_PACKAGES="python3 python3-jsonschema python3-ezdxf"
 # Only long tests need them: the station and every page in a real browser.
 FOILGAUGE_BROWSER_PACKAGES="chromium chromium-driver python3-selenium poppler-utils"
 
+# Only the long test of the packages needs these: a Debian of nothing else to install them on, and its checker.
+FOILGAUGE_CHROOT_PACKAGES="mmdebstrap lintian"
+
 # step TEXT COMMAND...: one line per step; what the command says is shown only when it fails.
 step() {
   local text=$1 log

@@ -2,21 +2,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The packages for Debian: installed on a root that holds nothing else, used from there, removed without a trace.
 set -u
-if [ -n "${FOILGAUGE_TEST_BRIEF:-}" ] || [ -z "${FOILGAUGE_TEST_LONG:-}" ]; then
-  echo "skipped: packages are made of a build without sanitizers, where FOILGAUGE_TEST_LONG is set"
-  exit 77
-fi
-for tool in cpack dpkg dpkg-deb dpkg-shlibdeps; do
-  command -v $tool >/dev/null || { echo "skipped: no $tool"; exit 77; }
-done
-[ "$(id -u)" -eq 0 ] || { echo "skipped: dpkg installs for root only"; exit 77; }
+. tests/support/package.sh
+need cpack dpkg dpkg-deb dpkg-shlibdeps
 . tests/support/cli.sh
-
-# The packages as they are made, but for the compression, which takes longer than all the rest.
-cpack --config "$(dirname "$program")/CPackConfig.cmake" -B "$work/made" -D CPACK_DEBIAN_COMPRESSION_TYPE=gzip \
-  -D CPACK_DEBIAN_PACKAGE_MAINTAINER="A Packager <packager@debian.org>" \
-  >"$work/log" 2>&1 || fail "cpack: $(tail -n 5 "$work/log")"
-deb=$(ls "$work"/made/foilgauge_*.deb) dev=$(ls "$work"/made/foilgauge-dev_*.deb)
+make_packages
 
 field() { dpkg-deb -f "$1" "$2"; }
 version=$("$program" version | cut -d' ' -f2)
