@@ -10,7 +10,7 @@
 
 /* Folds of whole groups, in turn over their order, and draws of their nulls: few suffice, because a
  * fold's search decides nothing but its own prediction. */
-enum { FOLDS = 5, DRAWS = 249 };
+enum { FOLDS = 5, DRAWS = 119 };
 /* Number of folds for many rows: fewer suffice, and each costs a search. */
 enum { MANY_ROWS = 20000, FOLDS_OF_MANY = 2 };
 

@@ -14,7 +14,7 @@ enum {
   FG_ENGINE_SMALL_ROWS =
       600, /* limit of exact methods: all noise models, a drawn null, exact outliers */
   FG_ENGINE_NOISES = 32,
-  FG_ENGINE_BATCH = 40, /* draws scored together */
+  FG_ENGINE_BATCH = 48, /* draws scored together */
 };
 
 /* Smallest ratio of residual sums, with over without a candidate: an exact fit leaves rounding. */

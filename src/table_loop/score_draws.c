@@ -12,7 +12,7 @@
 #include "core/memory.h"
 
 /* Draws scored in one pass over the columns. */
-enum { LANES = 8 };
+enum { LANES = 16 };
 
 typedef struct draw_pool {
   const fg_score_workspace *workspace;
