@@ -8,6 +8,7 @@
 #include "core/memory.h"
 #include "effect/table_effects.h"
 #include "table_loop/between.h"
+#include "table_loop/spread_likelihood.h"
 
 /* Variance over squared mean of a normal residual's size (pi / 2 - 1); an exponential one has 1. */
 #define SIZE_DISPERSION 0.5707963267948966
@@ -187,12 +188,20 @@ static double levels_score(const fg_engine_noise_scores *scores, const fg_engine
   return fg_engine_deviate(ratio, (double)spread->rank, (double)dof);
 }
 
-static double score_of(const fg_engine_noise_scores *scores, size_t c, const double *white,
-                       const double *size) {
+static bool has_few_rows(const fg_engine_noise_scores *scores) {
+  return scores->training->n <= FG_ENGINE_SPREAD_ROWS && !scores->training->scale &&
+         fg_engine_independent(scores->noise);
+}
+
+static double score_of(const fg_engine_noise_scores *scores, size_t c, const double *y,
+                       const double *white, const double *size) {
   const fg_engine_spread *spread = &scores->spread[c];
   if (spread->serial) return serial_score(scores->training, white);
   if (spread->unit) return levels_score(scores, spread, white);
-  return spread_score(scores->training, spread, size);
+  double z = spread_score(scores->training, spread, size);
+  if (!isfinite(z) || !has_few_rows(scores)) return z;
+  const fg_engine_spread_rows rows = {spread->level, spread->z};
+  return sqrt(fg_engine_spread_gain(scores->null, rows, y));
 }
 
 void fg_engine_noise_scores_of(const fg_engine_noise_scores *scores, const double *y, double *work,
@@ -211,5 +220,5 @@ void fg_engine_noise_scores_of(const fg_engine_noise_scores *scores, const doubl
   for (size_t i = 0; mean > 0 && i < n; i++)
     size[i] /= mean;
   for (size_t c = 0; c < scores->count; c++)
-    z[c] = score_of(scores, c, white, size);
+    z[c] = score_of(scores, c, y, white, size);
 }
