@@ -63,6 +63,7 @@ typedef struct fg_station_settings {
    * the missing part. */
   double receive_s;
   char reasons[1024]; /* codes that a disposition's field proposes, between commas */
+  char language[16];  /* of the pages: "de"; "": as the browser asks */
   fg_station_check check;
   fg_station_destination pass_on[FG_STATION_DESTINATIONS];
   size_t pass_on_count;

@@ -175,6 +175,7 @@ struct fg_member {
   const char *(*look)(const fg_subject *); /* class of its cell: a verdict; NULL: none */
   const char *label; /* written before its cell where a narrow page has no heading; NULL: none */
   void (*markup)(FILE *out, const fg_subject *); /* writes the page's cell; NULL: its text does */
+  bool named; /* its text is a name that people gave: a page leaves it as it is in every language */
 };
 
 #define FG_MEMBERS(rows_)                      FG_MEMBERS_OF_FILE(rows_, NULL, NULL)

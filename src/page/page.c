@@ -34,6 +34,13 @@ void fg_html_text(FILE *out, const char *text) {
   }
 }
 
+void fg_html_name(FILE *out, const char *text) {
+  if (!*text) return;
+  fputs("<span translate=\"no\">", out);
+  fg_html_text(out, text);
+  fputs("</span>", out);
+}
+
 /* A page is one file: it fetches nothing, runs nothing, and sends nothing, whatever a name in it
  * says. Styles are inline, pictures are data. */
 void fg_html_head(FILE *out, const char *title) {

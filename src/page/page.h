@@ -14,4 +14,8 @@ void fg_html_end(FILE *out);
 /* Writes text with <, >, &, quotes and stray bytes made harmless. */
 void fg_html_text(FILE *out, const char *text);
 
+/* Writes a text that people gave, as a serial number or a file's name: in every language as it is.
+ */
+void fg_html_name(FILE *out, const char *text);
+
 #endif

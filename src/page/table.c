@@ -39,6 +39,7 @@ static void put_cell(FILE *out, const fg_member *column, const fg_subject *eleme
   if (column->page.words && !look) look = "words";
   fputs("<td", out);
   if (look && *look) fprintf(out, " class=\"%s\"", look);
+  if (column->named) fputs(" translate=\"no\"", out);
   if (column->label) fprintf(out, " data-name=\"%s\"", column->label);
   fputc('>', out);
   if (column->markup) {

@@ -62,7 +62,7 @@ static fg_status put_design(fg_context *ctx, FILE *out, const fg_design *design,
     return FG_OK;
   }
   FG_TRY(sum_design(ctx, design, sum));
-  fg_html_text(out, design->name);
+  fg_html_name(out, design->name);
   fprintf(out, " (%s), SHA-256 %.12s…</dd>\n", fg_foil_kind_word(design->kind), sum);
   return FG_OK;
 }

@@ -6,6 +6,8 @@
 #include <string.h>
 
 #include "core/text.h"
+#include "foilgauge/file.h"
+#include "language/language.h"
 #include "page/page.h"
 #include "station/news.h"
 #include "station/outbox/outbox.h"
@@ -215,6 +217,7 @@ static void answer_heartbeat(fg_inspection *station, fg_answer *answer) {
   fg_page_time(out, fg_station_now());
   fputc('\n', out);
   fclose(out);
+  answer->in_language = true;
 }
 
 static bool give_fixed(fg_inspection *station, const fg_request *request, fg_answer *answer) {
@@ -235,8 +238,47 @@ static bool give_fixed(fg_inspection *station, const fg_request *request, fg_ans
   return true;
 }
 
-void fg_station_answer(fg_inspection *station, const fg_request *request, fg_answer *answer) {
-  *answer = (fg_answer){0};
+static fg_status write_page_in(const fg_language *language, const fg_answer *answer, FILE *out) {
+  fg_language_write_html(language, answer->body, answer->size, out, NULL);
+  return FG_OK;
+}
+
+static fg_status copy_body(fg_context *ctx, void *answer, FILE *out) {
+  const fg_answer *written = answer;
+  (void)ctx;
+  fwrite(written->body, 1, written->size, out);
+  return FG_OK;
+}
+
+static bool begins_with(const fg_answer *answer, const char *text) {
+  return answer->size >= strlen(text) && !memcmp(answer->body, text, strlen(text));
+}
+
+/* Pages are written in English, tables with decimal points: one that has commas already begins with
+ * a byte order mark. */
+static void give_language(const fg_language *language, fg_answer *answer) {
+  char *text = NULL;
+  size_t size = 0;
+  fg_context ctx = {.message = ""};
+  bool page =
+      answer->in_language || (answer->type && !strcmp(answer->type, HTML) && !answer->download[0]);
+  bool table = answer->type && !strncmp(answer->type, "text/csv", 8) &&
+               fg_language_decimal(language) == ',' && !begins_with(answer, "\xef\xbb\xbf");
+  FILE *out = (page || table) && answer->body ? open_memstream(&text, &size) : NULL;
+  if (!out) return;
+  fg_status status = page ? write_page_in(language, answer, out)
+                          : fg_csv_write(&ctx, true, copy_body, answer, out);
+  if (fclose(out) != 0 || status != FG_OK) {
+    free(text);
+    return;
+  }
+  free(answer->body);
+  answer->body = text;
+  answer->size = size;
+  answer->language = fg_language_tag(language);
+}
+
+static void write_answer(fg_inspection *station, const fg_request *request, fg_answer *answer) {
   if (!may_ask(station, request, answer)) return;
   if (!request->post && give_fixed(station, request, answer)) return;
   for (size_t i = 0; i < PAGES && !request->post; i++)
@@ -250,4 +292,12 @@ void fg_station_answer(fg_inspection *station, const fg_request *request, fg_ans
       return;
     }
   write_error_page(answer, 404, "There is no such page.");
+}
+
+void fg_station_answer(fg_inspection *station, const fg_request *request, fg_answer *answer) {
+  const char *named = station->settings->language;
+  const fg_language *language = fg_languages_choose(station->languages, named, request->languages);
+  *answer = (fg_answer){0};
+  write_answer(station, request, answer);
+  if (language) give_language(language, answer);
 }

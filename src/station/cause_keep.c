@@ -194,14 +194,14 @@ static void write_accepted(const fg_inspection *station, const fg_trend_choice *
   fprintf(out, ": %+.4g, U %.2g", fg_query_get_number(query, 2), 2 * fg_query_get_number(query, 3));
   fg_html_text((fputc(' ', out), out), choice->row->unit);
   fputs("; accepted by ", out);
-  fg_html_text(out, fg_query_get_text(query, 4));
+  fg_html_name(out, fg_query_get_text(query, 4));
   fputs(", ", out);
   fg_page_time(out, fg_query_get_integer(query, 5));
   if (fg_query_get_text(query, 8)[0])
-    fg_html_text((fputs(": ", out), out), fg_query_get_text(query, 8));
+    fg_html_name((fputs(": ", out), out), fg_query_get_text(query, 8));
   if (withdrawn) {
     fputs("; withdrawn by ", out);
-    fg_html_text(out, fg_query_get_text(query, 7));
+    fg_html_name(out, fg_query_get_text(query, 7));
     fputs(", ", out);
     fg_page_time(out, fg_query_get_integer(query, 6));
   } else {

@@ -96,10 +96,10 @@ static void write_in_force(const fg_query *query, FILE *out) {
   fg_html_text(out, kind_words(fg_query_get_text(query, 1)));
   fputs("</b>", out);
   if (fg_query_get_text(query, 2)[0])
-    fg_html_text((fputs(", ", out), out), fg_query_get_text(query, 2));
+    fg_html_name((fputs(", ", out), out), fg_query_get_text(query, 2));
   if (fg_query_get_text(query, 3)[0])
-    fg_html_text((fputs(": ", out), out), fg_query_get_text(query, 3));
-  fg_html_text((fputs(" (", out), out), fg_query_get_text(query, 4));
+    fg_html_name((fputs(": ", out), out), fg_query_get_text(query, 3));
+  fg_html_name((fputs(" (", out), out), fg_query_get_text(query, 4));
   fputs(", ", out);
   fg_page_time(out, fg_query_get_integer(query, 5));
   fputs(")</p>\n", out);

@@ -199,7 +199,7 @@ fg_status fg_order_write_progress(fg_context *ctx, sqlite3 *reader, FILE *out) {
   FG_TRY(fg_order_read_open(ctx, reader, &order));
   if (!order.id) return FG_OK;
   fputs("<p class=\"order\"><a href=\"/orders\">Order ", out);
-  fg_html_text(out, order.number);
+  fg_html_name(out, order.number);
   fprintf(out, "</a>: <b>%lld", (long long)order.measured);
   if (order.pieces) fprintf(out, " of %lld", (long long)order.pieces);
   fprintf(out, "</b>, %lld failed", (long long)order.failed);

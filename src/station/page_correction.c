@@ -11,7 +11,7 @@
 
 static void write_conflict_cell(FILE *out, const char *name, const char *text) {
   fprintf(out, "<td class=\"text\" data-name=\"%s\">", name);
-  fg_html_text(out, text[0] ? text : "–");
+  fg_html_name(out, text[0] ? text : "–");
   fputs("</td>", out);
 }
 
@@ -28,7 +28,10 @@ static fg_status write_last_change(fg_context *ctx, sqlite3 *reader, int64_t foi
   fputs("<td data-name=\"by\">", out);
   if (fg_query_row(&query)) {
     const char *by = fg_query_get_text(&query, 0);
-    fg_html_text(out, by[0] ? by : "no name given");
+    if (by[0])
+      fg_html_name(out, by);
+    else
+      fputs("no name given", out);
     fputs(", ", out);
     fg_page_time(out, fg_query_get_integer(&query, 1));
   }
@@ -75,11 +78,11 @@ static fg_status write_owners(fg_context *ctx, sqlite3 *reader, const fg_identit
     fprintf(out, "<li><span class=\"tag %s\">%s</span> <a href=\"/foil?id=%lld\">",
             fg_page_verdict_class(verdict, withheld), fg_page_verdict_words(verdict, withheld),
             (long long)fg_query_get_integer(&query, 0));
-    fg_html_text(out, asked->after[0]);
+    fg_html_name(out, asked->after[0]);
     fputs("</a><span>", out);
-    fg_html_text(out, fg_query_get_text(&query, 5));
+    fg_html_name(out, fg_query_get_text(&query, 5));
     if (*lot) fputs(", lot ", out);
-    fg_html_text(out, lot);
+    fg_html_name(out, lot);
     fputs("</span><span class=\"note\">", out);
     fg_page_time(out, fg_query_get_integer(&query, 4));
     fputs("</span></li>\n", out);
@@ -113,10 +116,10 @@ static fg_status write_conflict_page(fg_context *ctx, fg_inspection *station,
   for (size_t i = 0; i < FG_IDENTITY_FIELDS; i++)
     overtaken = overtaken || asked->overtaken[i];
   fprintf(out, "<section>\n<h1>Foil <a href=\"/foil?id=%lld\">", (long long)asked->foil);
-  fg_html_text(out, asked->before[0]);
+  fg_html_name(out, asked->before[0]);
   fputs("</a>", out);
   fputs(asked->owned ? ": another foil has the serial number " : " was changed meanwhile", out);
-  if (asked->owned) fg_html_text(out, asked->after[0]);
+  if (asked->owned) fg_html_name(out, asked->after[0]);
   fputs("</h1>\n", out);
   if (overtaken) FG_TRY(write_overtaken(ctx, reader, asked, out));
   if (asked->owned) FG_TRY(write_owners(ctx, reader, asked, out));

@@ -13,7 +13,7 @@
 static void write_fact(FILE *out, const char *title, const char *text) {
   if (!text || !text[0]) return;
   fprintf(out, "<dt>%s</dt><dd>", title);
-  fg_html_text(out, text);
+  fg_html_name(out, text);
   fputs("</dd>\n", out);
 }
 
@@ -22,7 +22,7 @@ static void write_foil_call(const fg_stored_foil *stored, FILE *out) {
   fprintf(out, "<div class=\"call small %s\"><b>%s</b><span>",
           fg_page_verdict_class(stored->verdict, withheld),
           fg_page_verdict_words(stored->verdict, withheld));
-  fg_html_text(out, stored->serial);
+  fg_html_name(out, stored->serial);
   fputs("<br>", out);
   fg_page_time(out, stored->at);
   fputs("</span></div>\n", out);
@@ -48,7 +48,8 @@ static fg_status write_picture(fg_context *ctx, sqlite3 *reader, const fg_stored
 static fg_status write_facts(fg_context *ctx, const fg_stored_foil *stored, FILE *out) {
   fputs("<h2>Where it comes from</h2>\n<dl class=\"facts\">\n", out);
   write_fact(out, "Scan", stored->path);
-  write_fact(out, "From", !strcmp(stored->source, "scanner") ? "the Scan button" : "the folder");
+  fprintf(out, "<dt>From</dt><dd>%s</dd>\n",
+          !strcmp(stored->source, "scanner") ? "the Scan button" : "the folder");
   write_fact(out, "Lot", stored->lot);
   write_fact(out, "Die", stored->die);
   write_fact(out, "Operator", stored->operator_name);
@@ -58,30 +59,48 @@ static fg_status write_facts(fg_context *ctx, const fg_stored_foil *stored, FILE
   return FG_OK;
 }
 
-/* A change: the row of a query. */
-enum { CHANGE_AT, CHANGE_BY, CHANGE_FIELD, CHANGE_BEFORE, CHANGE_AFTER };
+/* A change: the row of a query. Of a disposition the last column has its kind. */
+enum { CHANGE_AT, CHANGE_BY, CHANGE_FIELD, CHANGE_BEFORE, CHANGE_AFTER, CHANGE_KIND };
 
 static void write_change_time(FILE *out, const fg_subject *change) {
   fg_page_time(out, fg_query_get_integer(change->object, CHANGE_AT));
 }
 
-#define CHANGE_TEXT(function, column, unknown)                                                     \
-  static const char *function(const fg_subject *change, char *buffer) {                            \
-    const char *text = fg_query_get_text(change->object, column);                                  \
-    (void)buffer;                                                                                  \
-    return text[0] ? text : (unknown);                                                             \
-  }
-CHANGE_TEXT(find_author, CHANGE_BY, "no name given")
-CHANGE_TEXT(find_field, CHANGE_FIELD, "–")
-CHANGE_TEXT(find_before, CHANGE_BEFORE, "–")
-CHANGE_TEXT(find_after, CHANGE_AFTER, "–")
+static void write_author(FILE *out, const fg_subject *change) {
+  const char *by = fg_query_get_text(change->object, CHANGE_BY);
+  if (by[0])
+    fg_html_name(out, by);
+  else
+    fputs("no name given", out);
+}
 
+static void write_field(FILE *out, const fg_subject *change) {
+  fg_html_text(out, fg_query_get_text(change->object, CHANGE_FIELD));
+}
+
+static void write_before(FILE *out, const fg_subject *change) {
+  const char *text = fg_query_get_text(change->object, CHANGE_BEFORE);
+  fg_html_name(out, text[0] ? text : "–");
+}
+
+static void write_after(FILE *out, const fg_subject *change) {
+  const char *text = fg_query_get_text(change->object, CHANGE_AFTER);
+  const char *kind = fg_query_get_text(change->object, CHANGE_KIND);
+  fg_html_text(out, kind);
+  if (kind[0] && text[0]) fputs(", ", out);
+  fg_html_name(out, text[0] || kind[0] ? text : "–");
+}
+
+#define CHANGE(name_, write_, ...)                                                                 \
+  {                                                                                                \
+    FG_TEXT_BY(name_, NULL), .markup = (write_), .page = {.rank = 1, __VA_ARGS__ }                 \
+  }
 static const fg_member change_rows[] = {
-    {FG_TEXT_BY("at", NULL), .markup = write_change_time, .page = {.rank = 1, .heading = "When"}},
-    {FG_TEXT_BY("by", find_author), .page = {.rank = 1, .heading = "Who", .words = true}},
-    {FG_TEXT_BY("field", find_field), .page = {.rank = 1, .heading = "What", .words = true}},
-    {FG_TEXT_BY("before", find_before), .page = {.rank = 1, .heading = "Before", .words = true}},
-    {FG_TEXT_BY("after", find_after), .page = {.rank = 1, .heading = "After", .words = true}},
+    CHANGE("at", write_change_time, .heading = "When"),
+    CHANGE("by", write_author, .heading = "Who", .words = true),
+    CHANGE("field", write_field, .heading = "What", .words = true),
+    CHANGE("before", write_before, .heading = "Before", .words = true),
+    CHANGE("after", write_after, .heading = "After", .words = true),
 };
 static const fg_members change_members = {change_rows, 5, .frame = "left"};
 
@@ -93,9 +112,9 @@ static fg_status write_trail(fg_context *ctx, sqlite3 *reader, const fg_stored_f
   fg_member_columns_of(&change_members, FG_ON_PAGE, &(fg_subject){0}, &columns);
   fg_query_begin(
       reader,
-      "SELECT at, by, field, before, after FROM corrections WHERE foil = ?1 UNION ALL"
-      " SELECT at, by, 'disposition', '', kind || iif(reason = '', '', ', ' || reason) ||"
-      " iif(note = '', '', ': ' || note) FROM dispositions WHERE foil = ?1 ORDER BY at",
+      "SELECT at, by, field, before, after, '' FROM corrections WHERE foil = ?1 UNION ALL"
+      " SELECT at, by, 'disposition', '', reason || iif(reason = '' OR note = '', '', ': ') ||"
+      " note, kind FROM dispositions WHERE foil = ?1 ORDER BY at",
       &query);
   fg_query_integer(&query, stored->id);
   fputs("<h2>Corrections and dispositions</h2>\n", out);

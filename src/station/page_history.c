@@ -158,7 +158,7 @@ static void write_found_cell(FILE *out, const char *style, const char *name, con
   fprintf(out, "<td class=\"text%s\"", style);
   if (text[0]) fprintf(out, " data-name=\"%s\"", name);
   fputc('>', out);
-  fg_html_text(out, text);
+  fg_html_name(out, text);
   fputs("</td>", out);
 }
 
@@ -167,7 +167,7 @@ static void write_found_row(const fg_query *at, FILE *out) {
   const char *verdict = fg_query_get_text(at, 6);
   bool withheld = !fg_query_is_null(at, 7);
   fprintf(out, "<tr><td><a href=\"/foil?id=%lld\">", id);
-  fg_html_text(out, fg_query_get_text(at, 1));
+  fg_html_name(out, fg_query_get_text(at, 1));
   fprintf(out, "</a></td><td><span class=\"tag %s\">%s</span></td><td>",
           fg_page_verdict_class(verdict, withheld), fg_page_verdict_words(verdict, withheld));
   fg_page_time(out, fg_query_get_integer(at, 5));

@@ -13,7 +13,10 @@
 enum { LOTS_SHOWN = 25, LOTS_MAX = 1000000 };
 
 static void write_lot_name(FILE *out, const char *lot) {
-  fg_html_text(out, *lot ? lot : "without lot");
+  if (*lot)
+    fg_html_name(out, lot);
+  else
+    fputs("without lot", out);
 }
 
 /* Writes text encoded as a value in a link. */
@@ -165,7 +168,7 @@ static void write_closed_lot(const fg_inspection *station, FILE *out, const fg_q
   fputs("</span><span class=\"note\">closed ", out);
   fg_page_time(out, fg_query_get_integer(row, CLOSED_AT));
   fputs(" by ", out);
-  fg_html_text(out, fg_query_get_text(row, CLOSED_BY));
+  fg_html_name(out, fg_query_get_text(row, CLOSED_BY));
   if (before) fprintf(out, ", %lld time%s before", before, fg_plural((size_t)before));
   fputs("</span>", out);
   if (fg_query_get_integer(row, CLOSED_CHANGED)) {
@@ -227,9 +230,9 @@ static fg_status write_question(fg_context *ctx, const fg_inspection *station, s
                  " WHERE f.lot = ? AND NOT " FG_LOT_REPLACED,
                  &query);
   fg_query_text(&query, lot);
-  fputs("<section><h2 class=\"first\">Close the lot ", out);
+  fputs("<section><h2 class=\"first\">Close this lot? ", out);
   write_lot_name(out, lot);
-  fputs("?</h2>\n", out);
+  fputs("</h2>\n", out);
   fg_html_table_begin(out, &columns);
   fg_html_table_rows(out);
   if (fg_query_row(&query)) write_lot_row(out, &columns, &query);

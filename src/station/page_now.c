@@ -99,13 +99,13 @@ static void write_newest_call(FILE *out, const fg_inspection *station, const car
           strlen(look.words) > LARGE_LETTERS ? " long" : "");
   write_arrival(out, newest->id, look.words);
   fprintf(out, "><b>%s</b><span>", look.words);
-  fg_html_text(out, newest->path);
+  fg_html_name(out, newest->path);
   fputs("<br>", out);
   fg_page_time(out, newest->at);
   write_traceability(out, station, newest);
   fputs("</span></div>\n<p class=\"next\">", out);
   if (newest->message[0]) {
-    fg_html_text(out, newest->path);
+    fg_html_name(out, newest->path);
     fputc(' ', out);
     fg_html_text(out, newest->message);
     fputs(". ", out);
@@ -125,7 +125,7 @@ static bool write_stage(FILE *out, fg_inspection *station) {
   fprintf(out, "<div class=\"call long none\" role=\"status\"><b>%s</b><span>",
           arriving.stage == FG_STAGE_NONE ? "SCANNING" : words[arriving.stage]);
   if (arriving.stage != FG_STAGE_NONE) {
-    fg_html_text(out, arriving.file);
+    fg_html_name(out, arriving.file);
     fputs("<br>since ", out);
     fg_page_time(out, arriving.since);
   }
@@ -153,7 +153,7 @@ static fg_status write_foil(fg_context *ctx, fg_inspection *station, sqlite3 *re
   int64_t id = fg_query_get_integer(foil, 0);
   bool withheld = !fg_query_is_null(foil, 7);
   fprintf(out, "<h2 id=\"foil%lld\">Foil <a href=\"/foil?id=%lld\">", (long long)id, (long long)id);
-  fg_html_text(out, fg_query_get_text(foil, 1));
+  fg_html_name(out, fg_query_get_text(foil, 1));
   fprintf(out, "</a> <span class=\"tag %s\">%s</span></h2>\n",
           fg_page_verdict_class(fg_query_get_text(foil, 5), withheld),
           fg_page_verdict_words(fg_query_get_text(foil, 5), withheld));
@@ -187,7 +187,7 @@ static fg_status write_overview(fg_context *ctx, sqlite3 *reader, const card *ne
     const char *verdict = fg_query_get_text(&foils, 2);
     fprintf(out, "<a class=\"tag %s\" href=\"#foil%lld\">",
             fg_page_verdict_class(verdict, withheld), (long long)fg_query_get_integer(&foils, 0));
-    fg_html_text(out, fg_query_get_text(&foils, 1));
+    fg_html_name(out, fg_query_get_text(&foils, 1));
     fprintf(out, " %s</a> ", fg_page_verdict_words(verdict, withheld));
   }
   fputs("</p>\n", out);
@@ -246,7 +246,7 @@ static fg_status write_cards(fg_context *ctx, sqlite3 *reader, int64_t newest, F
     fprintf(out, "><span class=\"tag %s\">%s</span><span>", look.style, look.words);
     if (!fg_query_is_null(&query, 6))
       fprintf(out, "<a href=\"/foil?id=%lld\">", (long long)fg_query_get_integer(&query, 6));
-    fg_html_text(out, fg_query_get_text(&query, 1));
+    fg_html_name(out, fg_query_get_text(&query, 1));
     fputs(fg_query_is_null(&query, 6) ? " " : "</a> ", out);
     fg_html_text(out, fg_query_get_text(&query, 3));
     fputs("</span><span class=\"note\">", out);
@@ -260,7 +260,7 @@ static fg_status write_cards(fg_context *ctx, sqlite3 *reader, int64_t newest, F
 static void write_ready(const fg_inspection *station, FILE *out) {
   fputs("<div class=\"call none\"><b>READY</b><span>Put a foil on the glass and scan it into ",
         out);
-  fg_html_text(out, station->request->folder);
+  fg_html_name(out, station->request->folder);
   fputs("</span></div>\n", out);
 }
 
@@ -279,7 +279,7 @@ static void write_before(FILE *out, const card *newest) {
   fputs("<p class=\"note\"", out);
   write_arrival(out, newest->id, look.words);
   fputs(">Before it: ", out);
-  fg_html_text(out, newest->path);
+  fg_html_name(out, newest->path);
   fprintf(out, " %s, ", look.words);
   fg_page_time(out, newest->at);
   fputs(newest->message[0] ? ": " : "", out);

@@ -70,7 +70,7 @@ static void write_open_order(const fg_inspection *station, const fg_order *order
   const char *const values[] = {order->part, order->lot, order->die, order->coil,
                                 order->operator_name};
   fputs("<h2 class=\"first\">Open: ", out);
-  fg_html_text(out, order->number);
+  fg_html_name(out, order->number);
   fputs("</h2>\n<p class=\"next\">", out);
   fprintf(out, "<b>%lld", (long long)order->measured);
   if (order->pieces) fprintf(out, " of %lld", (long long)order->pieces);
@@ -78,7 +78,7 @@ static void write_open_order(const fg_inspection *station, const fg_order *order
   for (size_t i = 0; i < ORDER_FIELDS; i++) {
     if (!values[i][0]) continue;
     fprintf(out, " %s ", order_fields[i].label);
-    fg_html_text(out, values[i]);
+    fg_html_name(out, values[i]);
     fputc('.', out);
   }
   fputs("</p>\n<form class=\"fields\" method=\"post\" action=\"/order-close\">", out);
@@ -93,12 +93,12 @@ static void write_open_order(const fg_inspection *station, const fg_order *order
 
 static void write_order_line(const fg_query *query, FILE *out) {
   fputs("<li><b>", out);
-  fg_html_text(out, fg_query_get_text(query, 0));
+  fg_html_name(out, fg_query_get_text(query, 0));
   fputs("</b>", out);
   if (fg_query_get_text(query, 2)[0])
-    fg_html_text((fputs(", lot ", out), out), fg_query_get_text(query, 2));
+    fg_html_name((fputs(", lot ", out), out), fg_query_get_text(query, 2));
   if (fg_query_get_text(query, 1)[0])
-    fg_html_text((fputs(", part ", out), out), fg_query_get_text(query, 1));
+    fg_html_name((fputs(", part ", out), out), fg_query_get_text(query, 1));
   fprintf(out, ": %lld", (long long)fg_query_get_integer(query, 7));
   if (fg_query_get_integer(query, 3))
     fprintf(out, " of %lld", (long long)fg_query_get_integer(query, 3));
@@ -107,7 +107,7 @@ static void write_order_line(const fg_query *query, FILE *out) {
   if (fg_query_get_integer(query, 5)) {
     fputs(", closed ", out);
     fg_page_time(out, fg_query_get_integer(query, 5));
-    fg_html_text((fputs(" by ", out), out), fg_query_get_text(query, 6));
+    fg_html_name((fputs(" by ", out), out), fg_query_get_text(query, 6));
   }
   fputs("</li>\n", out);
 }
@@ -139,7 +139,7 @@ fg_status fg_page_orders(fg_context *ctx, fg_inspection *station, sqlite3 *reade
   if (order.id) write_open_order(station, &order, out);
   if (unknown[0]) {
     fputs("<p class=\"next\" role=\"alert\">Nobody knows the order <b>", out);
-    fg_html_text(out, unknown);
+    fg_html_name(out, unknown);
     fputs("</b>: fill in its lot to open it by hand.</p>\n", out);
   }
   FG_TRY(write_opening(ctx, station, reader, unknown, out));

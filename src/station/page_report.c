@@ -78,11 +78,11 @@ static fg_status measure_again(fg_context *ctx, const char *folder, const fg_sto
 
 static fg_status write_facts(fg_context *ctx, const fg_stored_foil *stored, FILE *out) {
   fputs("<h2>Where it comes from</h2>\n<dl class=\"facts\">\n<dt>Scan</dt><dd>", out);
-  fg_html_text(out, stored->path);
+  fg_html_name(out, stored->path);
   fputs("</dd>\n<dt>Measured</dt><dd>", out);
   fg_page_time(out, stored->at);
   fputs("</dd>\n<dt>SHA-256</dt><dd>", out);
-  fg_html_text(out, stored->sha256);
+  fg_html_name(out, stored->sha256);
   fputs("</dd>\n", out);
   FG_TRY(fg_stored_foil_write_provenance(ctx, stored, out));
   fputs("</dl>\n", out);
@@ -93,7 +93,7 @@ static fg_status write_record(fg_context *ctx, const fg_stored_foil *stored, con
                               FILE *out) {
   fg_html_begin(out, stored->serial);
   fputs("<section>\n<header><h1>Foil ", out);
-  fg_html_text(out, stored->serial);
+  fg_html_name(out, stored->serial);
   fputs("</h1>", out);
   if (stored->foil) FG_TRY(fg_stored_foil_write_verdict(ctx, stored, out));
   fputs("</header>\n<p class=\"corrected\"><b>From the record.</b> It cannot be measured again: ",

@@ -118,7 +118,7 @@ static void write_next(FILE *out, const fg_station_check *check, const fg_statio
           out);
   if (!health->failed && !health->changed) {
     fputs("<b>", out);
-    fg_html_text(out, check->file_name);
+    fg_html_name(out, check->file_name);
     fputs("</b>. ", out);
   }
   if (check->withhold)
@@ -218,7 +218,7 @@ static void write_list(FILE *out, const history *all) {
     const check_row *row = &all->row[i];
     fprintf(out, "<li><span class=\"tag %s\">%s</span><span>", row->passed ? "pass" : "fail",
             row->passed ? "PASSED" : "FAILED");
-    fg_html_text(out, row->path);
+    fg_html_name(out, row->path);
     fputs("</span><span class=\"note\">", out);
     fg_page_time(out, row->at);
     fputs("</span><span class=\"note\">", out);

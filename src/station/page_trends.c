@@ -115,7 +115,7 @@ static void write_point(const page *p, size_t point) {
   fg_trend_name(p->reader, p->trend, point, name, sizeof name);
   if (!p->choice->by_lots)
     fprintf(p->out, "<a href=\"/foil?id=%lld\">", (long long)p->trend->foil[point]);
-  fg_html_text(p->out, name);
+  fg_html_name(p->out, name);
   fprintf(p->out, "%s (no. %zu)", p->choice->by_lots ? "" : "</a>",
           fg_trend_number(p->trend, point));
 }
@@ -286,8 +286,8 @@ static void write_title(const page *p) {
   fputs("<h1>", p->out);
   if (choice->bump) fprintf(p->out, "Bump %d: ", choice->bump);
   fg_html_text(p->out, choice->row->words);
-  if (choice->lot[0]) fg_html_text((fputs(", lot ", p->out), p->out), choice->lot);
-  if (choice->die[0]) fg_html_text((fputs(", die ", p->out), p->out), choice->die);
+  if (choice->lot[0]) fg_html_name((fputs(", lot ", p->out), p->out), choice->lot);
+  if (choice->die[0]) fg_html_name((fputs(", die ", p->out), p->out), choice->die);
   fputs("</h1>\n", p->out);
 }
 

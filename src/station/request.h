@@ -25,17 +25,20 @@ typedef struct fg_request {
   fg_field field[FG_FIELDS_MAX];
   size_t fields;
   const char *host, *origin, *site, *cookie; /* headers; NULL: absent. site: Sec-Fetch-Site */
+  const char *languages;                     /* Accept-Language; NULL: absent */
   long long last_event;                      /* Last-Event-ID; -1: none */
 } fg_request;
 
 typedef struct fg_answer {
-  int code;           /* of HTTP */
-  const char *type;   /* "text/html; charset=utf-8" */
-  char location[256]; /* of a redirection; "": none */
-  char cookie[128];   /* to set; "": none */
-  char download[160]; /* name of a file to save; "": to be shown */
-  bool own_style;     /* a report of its own: its styles are inline */
-  bool wait;          /* there is no event yet: call again when there is one */
+  int code;             /* of HTTP */
+  const char *type;     /* "text/html; charset=utf-8" */
+  char location[256];   /* of a redirection; "": none */
+  char cookie[128];     /* to set; "": none */
+  char download[160];   /* name of a file to save; "": to be shown */
+  bool own_style;       /* a report of its own: its styles are inline */
+  bool in_language;     /* a text that is translated as pages are */
+  const char *language; /* "de": of a page that is not English; NULL */
+  bool wait;            /* there is no event yet: call again when there is one */
   char *body;
   size_t size;
 } fg_answer;

@@ -73,6 +73,8 @@ static call *begin_call(struct MHD_Connection *connection, const char *method) {
   request->site =
       fg_microhttpd.lookup_connection_value(connection, MHD_HEADER_KIND, "Sec-Fetch-Site");
   request->cookie = fg_microhttpd.lookup_connection_value(connection, MHD_HEADER_KIND, "Cookie");
+  request->languages =
+      fg_microhttpd.lookup_connection_value(connection, MHD_HEADER_KIND, "Accept-Language");
   request->last_event = read_header_number(
       fg_microhttpd.lookup_connection_value(connection, MHD_HEADER_KIND, "Last-Event-ID"));
   fg_microhttpd.get_connection_values(connection, MHD_GET_ARGUMENT_KIND, read_query_field, at);
@@ -105,6 +107,8 @@ static void add_headers(struct MHD_Response *response, const fg_answer *answer) 
   fg_microhttpd.add_response_header(response, "Referrer-Policy", "same-origin");
   fg_microhttpd.add_response_header(response, "Cache-Control", "no-store");
   if (answer->type) fg_microhttpd.add_response_header(response, "Content-Type", answer->type);
+  if (answer->language)
+    fg_microhttpd.add_response_header(response, "Content-Language", answer->language);
   if (answer->location[0])
     fg_microhttpd.add_response_header(response, "Location", answer->location);
   if (answer->cookie[0]) fg_microhttpd.add_response_header(response, "Set-Cookie", answer->cookie);

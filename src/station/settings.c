@@ -7,6 +7,7 @@
 #include "core/json_read.h"
 #include "foilgauge/foil_kind.h"
 #include "foilgauge/station.h"
+#include "language/language.h"
 #include "station/naming.h"
 #include "station/outbox/transport.h"
 #include "station/settings.h"
@@ -77,6 +78,9 @@ static const fg_member settings_rows[] = {
      .highest = FG_STATION_DESTINATIONS,
      .words = "Receivers of every part as it is measured, corrected or disposed, up to 8: objects "
               "with the members that follow (PASSING ON in foilgauge-station(1))."},
+    {FG_TEXT("language", fg_station_settings, language),
+     .words = "Language of the pages: `en` or `de`. Without it each browser gets the one that it "
+              "prefers."},
     {FG_GROUP("check", &check_members), .read = read_check,
      .words = "An object with the members that follow: when the scanner has to prove itself by "
               "known diameters. With a `scan_command` the Scanner tab has a button for it."},
@@ -100,6 +104,8 @@ static fg_status read_station(fg_context *ctx, const cJSON *object, fg_station_s
     return fg_fail(ctx, FG_ERR_DATA, "scan_command: {file}, the scan to write, is not in it");
   for (size_t i = 0; i < settings->pass_on_count; i++)
     FG_TRY(fg_transport_check(ctx, settings->pass_on[i].to));
+  if (settings->language[0] && !fg_language_is_known(settings->language))
+    return fg_fail(ctx, FG_ERR_DATA, "language: there are no pages in \"%s\"", settings->language);
   return fg_naming_check(ctx, settings->file_name);
 }
 

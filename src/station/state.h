@@ -7,6 +7,7 @@
 
 #include "foilgauge/scan_loop.h"
 #include "foilgauge/station.h"
+#include "language/language.h"
 #include "station/database.h"
 
 enum { FG_CSRF_TOKEN = 33 };
@@ -71,6 +72,7 @@ struct fg_inspection {
   fg_closing closing;
   struct fg_outbox *outbox; /* station/outbox/outbox.h; NULL: nothing is passed on */
   struct fg_why *why;       /* search for causes (station/why.h); NULL: none was asked for */
+  fg_languages *languages;  /* of the pages; NULL: English alone */
   fg_recovery recovery;
   fg_arriving arriving;
   atomic_llong news;          /* station/news.h */

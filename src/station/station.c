@@ -74,6 +74,7 @@ static fg_status run_tasks(fg_context *ctx, fg_inspection *station) {
     return fg_outbox_flush(ctx, station);
   }
   FG_TRY(make_csrf_token(ctx, station));
+  FG_TRY(fg_languages_open(ctx, &station->languages));
   FG_TRY(fg_why_begin(ctx, station));
   inspect_scan_command(station);
   FG_TRY(fg_outbox_begin(ctx, station));
@@ -83,17 +84,67 @@ static fg_status run_tasks(fg_context *ctx, fg_inspection *station) {
   return status;
 }
 
-static fg_status write_digest_page(fg_context *ctx, const fg_station_request *request, FILE *text) {
+/* A digest in memory, its text and its page. */
+typedef struct written_digest {
+  char *text, *page;
+  size_t text_size, page_size;
+} written_digest;
+
+static fg_status write_digest(fg_context *ctx, const fg_station_request *request,
+                              written_digest *digest) {
+  FILE *text = open_memstream(&digest->text, &digest->text_size);
+  FILE *page = open_memstream(&digest->page, &digest->page_size);
+  fg_status status = text && page ? fg_station_digest(ctx, request, text, page)
+                                  : fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a digest");
+  bool broken = (text && fclose(text) != 0) | (page && fclose(page) != 0);
+  return broken && status == FG_OK ? fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a digest")
+                                   : status;
+}
+
+/* A line of the text is a text without markup. */
+static void put_digest_text(const fg_language *language, char *text, FILE *out) {
+  for (char *line = text, *next; line; line = next) {
+    next = strchr(line, '\n');
+    if (next) *next++ = '\0';
+    if (language)
+      fg_language_write_text(language, line, out, NULL);
+    else
+      fputs(line, out);
+    if (next) fputc('\n', out);
+  }
+}
+
+static fg_status put_digest_page(fg_context *ctx, const char *path, const fg_language *language,
+                                 const written_digest *digest) {
   fg_output page;
-  if (!request->digest_page) return fg_station_digest(ctx, request, text, NULL);
-  FG_TRY(fg_output_open(ctx, request->digest_page, &page));
-  return fg_output_end(ctx, &page, fg_station_digest(ctx, request, text, page.stream));
+  FG_TRY(fg_output_open(ctx, path, &page));
+  if (language)
+    fg_language_write_html(language, digest->page, digest->page_size, page.stream, NULL);
+  else
+    fwrite(digest->page, 1, digest->page_size, page.stream);
+  return fg_output_end(ctx, &page, FG_OK);
+}
+
+/* The digest is in the recipe's language, else in English. */
+static fg_status put_digest(fg_context *ctx, const fg_station_request *request, FILE *text) {
+  written_digest digest = {.text = NULL};
+  fg_languages *languages = NULL;
+  fg_status status = fg_languages_open(ctx, &languages);
+  if (status == FG_OK) status = write_digest(ctx, request, &digest);
+  const fg_language *language = fg_languages_choose(languages, request->settings->language, NULL);
+  if (status == FG_OK) put_digest_text(language, digest.text, text);
+  if (status == FG_OK && request->digest_page)
+    status = put_digest_page(ctx, request->digest_page, language, &digest);
+  fg_languages_close(languages);
+  free(digest.text);
+  free(digest.page);
+  return status;
 }
 
 static fg_status write_digest_files(fg_context *ctx, const fg_station_request *request) {
   fg_output text;
   FG_TRY(fg_output_open(ctx, NULL, &text));
-  return fg_output_end(ctx, &text, write_digest_page(ctx, request, text.stream));
+  return fg_output_end(ctx, &text, put_digest(ctx, request, text.stream));
 }
 
 fg_status fg_station_run(fg_context *ctx, const fg_station_request *request,
@@ -115,6 +166,7 @@ fg_status fg_station_run(fg_context *ctx, const fg_station_request *request,
   fg_why_end(station);
   fg_outbox_end(station);
   fg_station_database_close(&station->database);
+  fg_languages_close(station->languages);
   if (station->model) fg_scanner_model_free(station->model);
   if (station->lock >= 0) close(station->lock);
   free(station);

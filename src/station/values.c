@@ -152,7 +152,7 @@ fg_status fg_page_same_serial(fg_context *ctx, sqlite3 *reader, int64_t foil, FI
       fprintf(out, "</a> <span class=\"tag %s\">%s</span>",
               fg_page_verdict_class(verdict, withheld), fg_page_verdict_words(verdict, withheld));
       if (*lot) fputs(" in lot ", out);
-      fg_html_text(out, lot);
+      fg_html_name(out, lot);
     }
   }
   if (count) fputs(count > SHOWN ? " and older ones.</p>\n" : ".</p>\n", out);
@@ -188,7 +188,7 @@ static void write_buttons(const fg_foil_html_form *html_form, FILE *out) {
   fputs("<button class=\"plain\" name=\"also\" value=\"", out);
   fg_html_text(out, html_form->also);
   fputs("\">The same foil: keep ", out);
-  fg_html_text(out, html_form->also);
+  fg_html_name(out, html_form->also);
   fputs("</button>", out);
 }
 

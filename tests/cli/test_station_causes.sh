@@ -69,7 +69,7 @@ try:
         try:
             return 200, station_causes.ask(base, path, {"form": token, "q": "bump:radius_mm", **fields})
         except urllib.error.HTTPError as error:
-            return error.code, error.read().decode()
+            return error.code, plain(error.read().decode())
     time.sleep(0.5)
     assert "temperature.csv" not in get("/"), "a context is no scan"
     post("/why")

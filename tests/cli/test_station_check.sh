@@ -94,7 +94,7 @@ station=$!
 checks - "$work" <<'P' || fail "accepting: $(cat "$work/err")"
 import re, sys, time, urllib.error, urllib.parse, urllib.request
 base = wait_until(lambda: open(sys.argv[1] + "/address").read().strip())
-page = lambda: urllib.request.urlopen(base + "scanner").read().decode()
+page = lambda: plain(urllib.request.urlopen(base + "scanner").read().decode())
 # An earlier check is in the page's history as CHANGED: only the newest one can be accepted.
 wait_until(lambda: 'name="form"' in page())
 text = page()

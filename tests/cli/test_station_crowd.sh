@@ -42,7 +42,7 @@ first=$(($(ms) - began))
 began=$(ms)
 checks - "$(cat "$work/address")" <<'PY' || fail "the page does not say that there are very many files"
 import sys, urllib.request
-page = urllib.request.urlopen(sys.argv[1]).read().decode()
+page = plain(urllib.request.urlopen(sys.argv[1]).read().decode())
 assert "Very many files" in page, page
 PY
 page=$(($(ms) - began))

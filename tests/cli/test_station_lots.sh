@@ -149,7 +149,7 @@ draw 6 "$work/in/L 1-late2.png"
 checks - "$work" >&2 <<'PY' || fail "late: $(cat "$work/err")"
 import re, sys, time, urllib.parse, urllib.request
 base = open(sys.argv[1] + "/address").read().strip()
-get = lambda path: urllib.request.urlopen(base + path).read().decode()
+get = lambda path: plain(urllib.request.urlopen(base + path).read().decode())
 wait_until(lambda: "L 1-late2.png" in get(""))
 assert "comes after its lot &#39;L 1&#39; was closed by Ann" in get("").replace("'", "&#39;"), get("")
 lots = get("lots")

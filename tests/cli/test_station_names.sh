@@ -62,7 +62,7 @@ checks "$work/read.py" "$work/in" || fail "the database of version 1, read by Py
 start "$work/in" $recipe
 checks - "$(cat "$work/address")" <<'PY' || fail "a report"
 import re, sys, urllib.request
-ask = lambda path: urllib.request.urlopen(sys.argv[1] + path).read().decode()
+ask = lambda path: plain(urllib.request.urlopen(sys.argv[1] + path).read().decode())
 for foil in 1, 2, 3:
     page = ask("report?foil=%d" % foil)
     assert "Residual along the foil" in page and "From the record" not in page, page[:3000]

@@ -37,15 +37,15 @@ import os, re, shutil, sqlite3, sys, urllib.error, urllib.parse, urllib.request
 work = sys.argv[1]
 base = wait_until(lambda: open(work + "/address").read().strip())
 def get(path):
-    return urllib.request.urlopen(base + path.lstrip("/")).read().decode()
+    return plain(urllib.request.urlopen(base + path.lstrip("/")).read().decode())
 token = re.search('name="form" value="([0-9a-f]+)"', get("/orders")).group(1)
 def post(path, **fields):
     data = urllib.parse.urlencode({"form": token, **fields}).encode()
     try:
         with urllib.request.urlopen(base + path.lstrip("/"), data) as answer:
-            return answer.geturl(), answer.read().decode()
+            return answer.geturl(), plain(answer.read().decode())
     except urllib.error.HTTPError as error:
-        return str(error.code), error.read().decode()
+        return str(error.code), plain(error.read().decode())
 database = sqlite3.connect(work + "/scans/foilgauge.sqlite")
 def foils():
     return database.execute("SELECT serial, lot, die, coil, order_id FROM foils ORDER BY id").fetchall()

@@ -53,9 +53,9 @@ def ask(path, fields=None, **headers):
     request = urllib.request.Request(base + path.lstrip("/"), data, headers)
     try:
         with urllib.request.urlopen(request) as answer:
-            return answer.status, answer.read().decode()
+            return answer.status, plain(answer.read().decode())
     except urllib.error.HTTPError as error:
-        return error.code, error.read().decode()
+        return error.code, plain(error.read().decode())
 def page(path="/"):
     code, body = ask(path)
     assert code == 200, (path, code, body)

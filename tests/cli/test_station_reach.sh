@@ -123,9 +123,9 @@ def ask(path, fields=None, **headers):
     data = urllib.parse.urlencode(fields).encode() if fields else None
     try:
         with opener.open(urllib.request.Request(base + path, data, headers), timeout=10) as answer:
-            return answer.status, answer.read().decode()
+            return answer.status, plain(answer.read().decode())
     except urllib.error.HTTPError as error:
-        return error.code, error.read().decode()
+        return error.code, plain(error.read().decode())
 assert ask("/")[0] == 401
 code, page = ask("/?token=" + token)
 assert code == 200 and "foilgauge" in page, (code, page)

@@ -33,7 +33,7 @@ folder = work + "/in/"
 RECEIVE_S = 4
 base = wait_until(lambda: open(work + "/address").read().strip()).rstrip("/")
 def page(path="/"):
-    return urllib.request.urlopen(base + path).read().decode()
+    return plain(urllib.request.urlopen(base + path).read().decode())
 def call():
     found = re.search(r'<div class="call [^>]*><b>(.*?)</b><span>(.*?)<br>', page())
     return found.groups() if found else ("", "")

@@ -15,6 +15,7 @@ import tempfile
 from collections import Counter, namedtuple
 
 import functions
+import languages
 import rooms
 import words
 import writers
@@ -44,6 +45,7 @@ RULES = (
     Rule('hand-table', 'tables of a page written by hand', writers.hand_tables),
     Rule('layers', 'includes against the floors of src/README.md', rooms.layers),
     Rule('circles', 'circles of files', rooms.circles),
+    Rule('missing-words', 'sentences of the station\'s pages that a language of src/language has no words for', languages.missing_words),
     Rule('document-name', 'files and functions that README, src/README.md or CONTRIBUTING.md name and that do not exist',
          words.document_names),
 )

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "station/news.h"
+#include "support/page_names.h"
 #include "support/station_fixture.h"
 #include "support/test.h"
 
@@ -49,6 +50,7 @@ static int ask(const char *path, const char *fields, bool post) {
   free(page);
   page = calloc(1, answer.size + 1);
   if (answer.body) memcpy(page, answer.body, answer.size);
+  page_without_name_marks(page);
   free(answer.body);
   strcpy(location, answer.location);
   return answer.code;

@@ -9,6 +9,7 @@
 #include "station/answer.h"
 #include "station/check.h"
 #include "station/scan_command.h"
+#include "support/page_names.h"
 #include "support/test.h"
 
 enum { BUMPS = 3 };
@@ -78,11 +79,12 @@ static double draw(fixture *f) {
 
 static void add_foil(fixture *f, int id, const char *lot, const char *die, double radius,
                      double scatter) {
-  run_sql(f,
-          "INSERT INTO scans (id, sha256, setup, path, source, at, verdict) VALUES (%d, '%d', 1, "
-          "'%d.png', 'folder', %d, 'pass');"
-          "INSERT INTO foils VALUES (%d, %d, 1, 'S%04d', '%s', '%s', '', 'pass', '', '', '', '', 0)",
-          id, id, id, id, id, id, id, lot, die);
+  run_sql(
+      f,
+      "INSERT INTO scans (id, sha256, setup, path, source, at, verdict) VALUES (%d, '%d', 1, "
+      "'%d.png', 'folder', %d, 'pass');"
+      "INSERT INTO foils VALUES (%d, %d, 1, 'S%04d', '%s', '%s', '', 'pass', '', '', '', '', 0)",
+      id, id, id, id, id, id, id, lot, die);
   for (int bump = 1; bump <= BUMPS; bump++)
     run_sql(f,
             "INSERT INTO bumps VALUES (%d, %d, 'pass', '');"
@@ -109,7 +111,7 @@ static const char *get(fixture *f, const char *path, const char *query, int code
   memcpy(text, answer.body, answer.size);
   text[answer.size] = '\0';
   free(answer.body);
-  return text;
+  return page_without_name_marks(text);
 }
 
 static size_t count(const char *text, const char *part) {

@@ -204,7 +204,7 @@ static const fg_member foil_columns[] = {
     CELL("foil", show_listed_foil, .page = {.rank = 1}, .look = look_at_path,
          .column = is_foil_list),
     CELL("scan", show_scan, .page = {.rank = 1, .words = true}, .look = look_at_path),
-    {FG_TEXT_BY("die", find_die_cell), .heading = "die", .page = {.rank = 1},
+    {FG_TEXT_BY("die", find_die_cell), .named = true, .heading = "die", .page = {.rank = 1},
      .column = has_die_column},
     {FG_TEXT_BY("verdict", find_verdict_words), .heading = "verdict", .page = {.rank = 1},
      .look = look_at_verdict},

@@ -142,7 +142,8 @@ static fg_status put_lot_provenance(fg_context *ctx, FILE *out, const fg_lot_ana
   fg_provenance_take_date(&from, analysis->date.last);
   fprintf(out,
           "<section class=\"part\">\n<h1>Where it comes from</h1>\n<dl "
-          "class=\"facts\"><dt>Recipe, SHA-256</dt><dd>%s</dd><dt>Manifest, SHA-256</dt><dd>%s"
+          "class=\"facts\"><dt>Recipe, SHA-256</dt><dd translate=\"no\">%s</dd><dt>Manifest, "
+          "SHA-256</dt><dd translate=\"no\">%s"
           "</dd>\n",
           lot->head.recipe_sha256, lot->head.manifest_sha256);
   FG_TRY(fg_html_provenance(ctx, out, &from));

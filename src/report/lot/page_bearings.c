@@ -14,7 +14,7 @@ enum { POLAR_MAX = 30, BEARING_ROWS_MAX = 200, UM_PER_MM = 1000 };
 
 static void put_bearing_name(FILE *out, const fg_lot_bearing *bearing) {
   if (bearing->name)
-    fg_html_text(out, bearing->name);
+    fg_html_name(out, bearing->name);
   else
     fprintf(out, "%zu", bearing->number);
 }

@@ -91,7 +91,7 @@ static void put_die_sentences(FILE *out, const fg_lot_dies *dies) {
   for (size_t i = 0; i < dies->count; i++) {
     const fg_lot_die_sum *sum = &dies->sum[i];
     fputs("<li>Die ", out);
-    fg_html_text(out, sum->die->name);
+    fg_html_name(out, sum->die->name);
     fprintf(
         out,
         ": its foils' radii are off the design's by %+.2f %%, of which the die itself has %+.3f ± "
@@ -105,9 +105,9 @@ static void put_die_sentences(FILE *out, const fg_lot_dies *dies) {
   }
   if (dies->count == 2) {
     fputs("<li>The radii of the foils of die ", out);
-    fg_html_text(out, dies->sum[1].die->name);
+    fg_html_name(out, dies->sum[1].die->name);
     fputs(" and of die ", out);
-    fg_html_text(out, dies->sum[0].die->name);
+    fg_html_name(out, dies->sum[0].die->name);
     fprintf(out, " differ by %+.3f %%; the dies differ by %+.3f %%, which is %.0f %% of it.</li>\n",
             dies->foils_differ_pct, dies->dies_differ_pct, dies->explained_difference_pct);
   }

@@ -186,11 +186,11 @@ void fg_lot_put_cause(FILE *out, const fg_lot_analysis *analysis, const fg_lot_q
   const char *separator = "";
   if (cause->column == FG_NO_COLUMN) return;
   fputs(" come from the groups of the column <b>", out);
-  fg_html_text(out, analysis->lot->manifest.name[cause->column]);
+  fg_html_name(out, analysis->lot->manifest.name[cause->column]);
   fprintf(out, "</b>%s: ", cause->in_turn ? ", whose foils lie in turn" : "");
   for (size_t g = 0; g < cause->groups; g++) {
     fputs(separator, out);
-    fg_html_text(out, cause->name[g]);
+    fg_html_name(out, cause->name[g]);
     fputs(" has a mean of ", out);
     fg_lot_put_value(out, quantity->row, cause->mean[g]);
     fprintf(out, " %s", quantity->row->unit);
@@ -230,14 +230,14 @@ static void put_unknown_scale(FILE *out, const fg_lot_analysis *analysis) {
 
 void fg_lot_put_heading(FILE *out, const fg_lot_analysis *analysis) {
   fputs("<header><h1>", out);
-  fg_html_text(out, analysis->lot->settings.name);
+  fg_html_name(out, analysis->lot->settings.name);
   fputs("</h1>", out);
   fg_html_outcome(out, &analysis->outcome);
   put_process(out, &analysis->process);
   fprintf(out, "<p>%zu foil%s of %zu scan%s, design ", analysis->foil_count,
           fg_plural(analysis->foil_count), analysis->lot->manifest.items,
           fg_plural(analysis->lot->manifest.items));
-  fg_html_text(out, analysis->lot->settings.design.name);
+  fg_html_name(out, analysis->lot->settings.design.name);
   fprintf(out, " · traced to: %s</p></header>\n",
           fg_traceability_words[fg_design_traceability(&analysis->lot->settings.design)]);
   put_unknown_scale(out, analysis);

@@ -56,9 +56,9 @@ static void put_group_row(FILE *out, const fg_lot_analysis *analysis,
                           const fg_lot_difference *one) {
   const fg_comparison *c = &one->comparison;
   fprintf(out, "<tr><td class=\"words\">%s</td><td class=\"words\">", one->quantity->row->words);
-  fg_html_text(out, one->a);
+  fg_html_name(out, one->a);
   fputs(" against ", out);
-  fg_html_text(out, one->b);
+  fg_html_name(out, one->b);
   fprintf(out, "</td><td>%zu<br>%zu</td><td>%.6g<br>%.6g</td><td>%.4g<i>%.4g … %.4g</i></td>",
           one->foils_a, one->foils_b, one->mean_a, one->mean_b, c->difference, c->low, c->high);
   put_p_value(out, analysis, one, FG_LOT_TEST_MEANS);

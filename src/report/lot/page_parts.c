@@ -59,7 +59,7 @@ void fg_lot_put_scan(FILE *out, const fg_lot_analysis *analysis, size_t item) {
     put_relative_path(out, folder, file);
     fputs("\">", out);
   }
-  fg_html_text(out, slash && slash[1] ? slash + 1 : scan);
+  fg_html_name(out, slash && slash[1] ? slash + 1 : scan);
   if (file) fputs("</a>", out);
   free(file);
   free(folder);
@@ -86,7 +86,7 @@ void fg_lot_put_foil_link(FILE *out, const fg_lot_analysis *analysis, const fg_l
 }
 
 void fg_lot_put_label(FILE *out, const fg_lot_analysis *analysis, const fg_lot_foil *foil) {
-  fg_html_text(out, fg_manifest_label(&analysis->lot->manifest, foil->item));
+  fg_html_name(out, fg_manifest_label(&analysis->lot->manifest, foil->item));
   if (analysis->lot->records[foil->item].foil_count > 1)
     fprintf(out, ", foil %d", foil->foil->number);
 }

@@ -157,9 +157,12 @@ static size_t find_next_foil(const fg_lot_quantity *quantity, size_t foil) {
 
 /* Begins a mark that links to its foil and names it under a pointer. */
 static bool begin_mark(const fg_plot *plot, const fg_lot_analysis *analysis, size_t foil) {
-  if (!fg_lot_begin_foil_link(plot->out, analysis, &analysis->foils[foil])) return false;
-  fputs("<title>", plot->out);
-  fg_lot_put_label(plot->out, analysis, &analysis->foils[foil]);
+  const fg_lot_foil *marked = &analysis->foils[foil];
+  if (!fg_lot_begin_foil_link(plot->out, analysis, marked)) return false;
+  bool several = analysis->lot->records[marked->item].foil_count > 1;
+  fputs(several ? "<title>" : "<title translate=\"no\">", plot->out);
+  fg_html_text(plot->out, fg_manifest_label(&analysis->lot->manifest, marked->item));
+  if (several) fprintf(plot->out, ", foil %d", marked->foil->number);
   fputs("</title>", plot->out);
   return true;
 }

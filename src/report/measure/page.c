@@ -43,7 +43,7 @@ static void put_disc_findings(FILE *out, const fg_measurement *measurement) {
 static fg_status put_facts(fg_context *ctx, FILE *out, const fg_design *design,
                            const fg_measurement *measurement) {
   fputs("<h2>Where it comes from</h2>\n<dl class=\"facts\">\n<dt>Scan</dt><dd>", out);
-  fg_html_text(out, measurement->scan);
+  fg_html_name(out, measurement->scan);
   fprintf(out, "</dd>\n<dt>Pixels</dt><dd>%lld × %lld, %d bit</dd>\n",
           (long long)measurement->width_px, (long long)measurement->height_px,
           measurement->bit_depth);
@@ -52,7 +52,7 @@ static fg_status put_facts(fg_context *ctx, FILE *out, const fg_design *design,
     fprintf(out, " (the file says %.8g × %.8g)", measurement->dpi_file[0],
             measurement->dpi_file[1]);
   fputs("</dd>\n<dt>SHA-256</dt><dd>", out);
-  fg_html_text(out, measurement->sha256);
+  fg_html_name(out, measurement->sha256);
   fputs("</dd>\n", out);
   fg_provenance from = {.design = design, .of_scans = true, .model = measurement->model};
   fg_provenance_take_date(&from, measurement->date);
@@ -172,7 +172,7 @@ static void put_section(FILE *out, const fg_report_outcome *outcome, size_t numb
 static void put_heading(FILE *out, const fg_report_scan *scan, const fg_foil *foil) {
   fputs("<header><h1>Foil ", out);
   if (scan->name)
-    fg_html_text(out, scan->name);
+    fg_html_name(out, scan->name);
   else
     fprintf(out, "%d", foil->number);
   fputs("</h1>", out);
@@ -192,7 +192,7 @@ static void put_judged(FILE *out, const fg_design *design, const fg_report_scan 
   else
     fg_html_outcome(out, &decision->outcome);
   fputs("<p>", out);
-  fg_html_text(out, fg_html_base_name(scan->measurement->scan));
+  fg_html_name(out, fg_html_base_name(scan->measurement->scan));
   fg_foil_view_of(design->kind)->page_heading(foil, out);
   put_traceability(out, design);
   fputs("</p></header>\n", out);
@@ -274,7 +274,7 @@ static fg_status put_discs(fg_context *ctx, FILE *out, const fg_report *report,
           fg_plural(measurement->disc_count));
   fg_html_verdict(out, outcome.verdict);
   fputs("<p>", out);
-  fg_html_text(out, fg_html_base_name(measurement->scan));
+  fg_html_name(out, fg_html_base_name(measurement->scan));
   put_traceability(out, report->design);
   fputs("</p></header>\n", out);
   FG_TRY(fg_html_disc_reasons(ctx, out, report->design, measurement));
@@ -300,7 +300,7 @@ static fg_status put_grid(fg_context *ctx, FILE *out, const fg_report *report,
   FG_TRY(fg_report_judge_scan(ctx, report->design, scan, &outcome));
   put_section(out, &outcome, number);
   fputs("<header><h1>A grid</h1><p>", out);
-  fg_html_text(out, fg_html_base_name(measurement->scan));
+  fg_html_name(out, fg_html_base_name(measurement->scan));
   fputs("</p></header>\n", out);
   fg_html_grid(out, measurement);
   FG_TRY(put_facts(ctx, out, report->design, measurement));
@@ -312,7 +312,7 @@ static void put_no_scan(FILE *out, const fg_report_scan *scan, size_t number) {
   const fg_report_outcome outcome = {.verdict = FG_VERDICT_NOT_MEASURED};
   put_section(out, &outcome, number);
   fputs("<header><h1>", out);
-  fg_html_text(out, fg_html_base_name(scan->path));
+  fg_html_name(out, fg_html_base_name(scan->path));
   fputs("</h1>", out);
   fg_html_verdict(out, FG_VERDICT_NOT_MEASURED);
   fputs("</header>\n<p class=\"next\"><b>Why it is not measured:</b> ", out);

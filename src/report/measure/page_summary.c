@@ -30,7 +30,7 @@ static void put_verdict_cell(FILE *out, fg_verdict verdict, const char *words) {
 
 static void put_link(FILE *out, size_t section, const char *scan) {
   fprintf(out, "<tr><td><a href=\"#part%zu\">%zu</a></td><td class=\"words\">", section, section);
-  fg_html_text(out, fg_html_base_name(scan));
+  fg_html_name(out, fg_html_base_name(scan));
   fputs("</td>", out);
 }
 

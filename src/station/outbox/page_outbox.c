@@ -16,10 +16,10 @@ typedef struct outbox_state {
 } outbox_state;
 
 static const fg_member receiver_rows[] = {
-    {FG_TEXT("to", fg_outbox_receiver, to), .heading = "Receiver",
+    {FG_TEXT("to", fg_outbox_receiver, to), .named = true, .heading = "Receiver",
      .page = {.rank = 1, .words = true}},
     {FG_STRING("format", fg_outbox_receiver, format), .options = FG_MEMBER_NEVER_NULL,
-     .heading = "As", .page = {.rank = 2}},
+     .named = true, .heading = "As", .page = {.rank = 2}},
     {FG_COUNT("passed", fg_outbox_receiver, passed), .words = "parts that it got", .heading = "Got",
      .page = {.rank = 3}},
     {FG_COUNT("waiting", fg_outbox_receiver, waiting), .words = "parts that it will get",
