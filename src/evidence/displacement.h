@@ -4,7 +4,7 @@
 #ifndef FG_EVIDENCE_DISPLACEMENT_H
 #define FG_EVIDENCE_DISPLACEMENT_H
 
-#include "evidence/posterior.h"
+#include "evidence/shift.h"
 
 enum { FG_DISPLACEMENT_EFFECTS = 24, FG_DISPLACEMENT_RIVALS = 8 };
 
@@ -26,13 +26,6 @@ typedef struct fg_displacement {
 
 /* Returns the displacement of a place on the glass, mm. */
 fg_point fg_displacement_at(const fg_displacement *displacement, fg_point at);
-
-/* Covariance that the scanner's amplitudes add to the geometry, mm²: of part p, (X, R, R0) of every
- * bump, and R0 alone. */
-typedef struct fg_displacement_part {
-  double (*bumps)[3][3]; /* owned */
-  double overall;
-} fg_displacement_part;
 
 /* Fills the displacement and, per part of the edge fit, its covariance; `parts` are allocated.
  * `decided`: the verdict is one set of causes. Else the models that it does not tell apart have

@@ -7,6 +7,7 @@
 #ifndef FG_EVIDENCE_MODEL_H
 #define FG_EVIDENCE_MODEL_H
 
+#include "effect/set.h"
 #include "evidence/problem.h"
 #include "evidence/rivals.h"
 
@@ -70,6 +71,7 @@ typedef struct fg_evidence_option {
 typedef struct fg_evidence_search {
   fg_evidence_problem problem;
   fg_evidence_prior prior;
+  const fg_effect_set *seed; /* the set that another search proposes */
   fg_evidence_scatter scatter;
   fg_evidence_part *store; /* owned; FG_EVIDENCE_STORE */
   size_t stored;

@@ -166,6 +166,7 @@ static void add_stretches(const fg_rival *rival, const fg_evidence_sets *columns
 static fg_status add_rivals(fg_context *ctx, fg_evidence_search *s) {
   fg_evidence_sets columns = {0};
   for (const fg_rival *rival = fg_rivals; rival->name; rival++) {
+    if (!fg_rival_shows(rival, s->problem.edge_fit)) continue;
     if (!rival->of_last) {
       columns.count = 1;
       FG_TRY(add_rival_columns(ctx, rival, &s->problem, &columns.first, &columns.each));
@@ -234,13 +235,50 @@ static fg_status add_scatter(fg_context *ctx, const double *jacobian, fg_evidenc
   return FG_OK;
 }
 
+/* ---- the own form of every disc ---- */
+
+enum { FORM_ERROR_FIRST = 2, FORM_ERROR_COLUMNS = 150 };
+
+/* Harmonics of one disc's form, from FORM_ERROR_FIRST on, that all discs have room for. */
+static size_t form_error_harmonics(const fg_edge_fit *edge_fit) {
+  size_t max = 6, fit = FORM_ERROR_COLUMNS / (2 * edge_fit->part_count);
+  fit -= fit % FG_EVIDENCE_SCATTERS;
+  return fit < FG_EVIDENCE_SCATTERS ? FG_EVIDENCE_SCATTERS : fit < max ? fit : max;
+}
+
+/* Harmonics in groups of one variance: a third of them each. */
+static fg_status add_form_errors(fg_context *ctx, fg_evidence_search *s) {
+  fg_evidence_problem *p = &s->problem;
+  const fg_edge_fit *edge_fit = p->edge_fit;
+  size_t harmonics = form_error_harmonics(edge_fit), each = harmonics / FG_EVIDENCE_SCATTERS;
+  double *column = NULL;
+  s->scatter.first = p->count;
+  FG_TRY(fg_memory_allocate(ctx, edge_fit->row_count, sizeof *column, (void **)&column));
+  for (size_t part = 0; part < edge_fit->part_count; part++)
+    for (size_t k = 0; k < 2 * each; k++)
+      for (size_t which = 0; which < FG_EVIDENCE_SCATTERS; which++) {
+        double order = (double)(FORM_ERROR_FIRST + which * each + k / 2);
+        for (size_t i = 0; i < edge_fit->row_count; i++) {
+          const fg_edge_fit_row *row = &edge_fit->rows[i];
+          double turn = order * row->normal_rad;
+          column[i] = row->part != part ? 0 : k % 2 ? sin(turn) : cos(turn);
+        }
+        fg_evidence_add(p, column);
+      }
+  s->scatter.count = p->count - s->scatter.first;
+  free(column);
+  return FG_OK;
+}
+
 fg_status fg_evidence_list_options(fg_context *ctx, const fg_effect_set *seed,
                                    const double *jacobian, fg_evidence_search *s) {
   FG_TRY(fg_memory_allocate(ctx, OPTIONS_MAX, sizeof *s->options, (void **)&s->options));
-  FG_TRY(add_scatter(ctx, jacobian, s));
+  FG_TRY(s->problem.edge_fit->discs ? add_form_errors(ctx, s) : add_scatter(ctx, jacobian, s));
   FG_TRY(add_rivals(ctx, s));
   FG_TRY(add_effects(ctx, s));
   for (const fg_effect *effect = fg_unnamed_effects; effect->id; effect++)
-    if (!has_name(s->problem.edge_fit, effect->id, 0)) FG_TRY(add_shaped(ctx, effect, s));
+    if (!has_name(s->problem.edge_fit, effect->id, 0) &&
+        fg_unnamed_shows(effect, s->problem.edge_fit))
+      FG_TRY(add_shaped(ctx, effect, s));
   return add_seeds(ctx, seed, s);
 }

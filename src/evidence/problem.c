@@ -21,14 +21,18 @@
 /* Length over which such errors are alike, mm. */
 #define ERROR_LENGTH_MM 0.3
 
-/* Bumps of up to six foils; rows of as many. */
-enum { BUMPS_MAX = 60, ROWS_MAX = 8000 };
+/* Bumps of up to six foils; rows of as many. Discs: fewer show their own forms alone. */
+enum { BUMPS_MAX = 60, ROWS_MAX = 8000, DISCS_MIN = 3, DISCS_MAX = 40 };
 
 bool fg_evidence_fits(const fg_edge_fit *edge_fit) {
   size_t bumps = 0;
   for (size_t p = 0; p < edge_fit->part_count; p++)
     bumps += edge_fit->parts[p].bump_count;
-  return !edge_fit->discs && bumps && bumps <= BUMPS_MAX && edge_fit->row_count <= ROWS_MAX;
+  if (edge_fit->row_count > ROWS_MAX) return false;
+  if (edge_fit->discs) /* of known size, the level of all edges is one more unknown */
+    return !edge_fit->known_count && edge_fit->part_count >= DISCS_MIN &&
+           edge_fit->part_count <= DISCS_MAX;
+  return bumps && bumps <= BUMPS_MAX;
 }
 
 /* Mean distance of neighbouring rows in use along their arcs, mm. */

@@ -5,11 +5,8 @@
 #include <string.h>
 
 #include "effect/midline.h"
+#include "evidence/line.h"
 
-/* Sines of a Hilbert-space Gaussian process (Solin and Särkkä 2020) on a domain wider than the rows
- * by REACH; and polynomials for waves longer than the domain. */
-enum { SINES = 36, LONG = 4, LINE_COLUMNS = SINES + LONG };
-#define REACH 1.3
 /* Highest total degree of a field over both axes; harmonics of a ring, from 2 on; of the edge's
  * direction; polynomials of a bump, from 3 on. */
 enum {
@@ -25,60 +22,21 @@ enum {
   PERIOD_LAST = 4
 };
 
-/* ---- over a line ---- */
+/* Products of degree 1, each of which moves x or y. */
+enum { LINEAR = 4 };
 
-typedef struct line {
-  double middle, half;
-} line;
-
-static double wave_number(const line *l, size_t j) {
-  return M_PI * (double)(j + 1) / (2 * REACH * l->half);
+/* Scales and shears have names, which discs show apart; on a foil its circles follow them. */
+static void leave_out_linear(const fg_edge_fit *edge_fit, size_t count, double *variance) {
+  if (edge_fit->discs) memset(variance, 0, count * sizeof *variance);
 }
 
-static void fill_line(const line *l, double at, double *values) {
-  double reach = REACH * l->half, u = fmax(-REACH, fmin(REACH, (at - l->middle) / l->half));
-  double angle = wave_number(l, 0) * (u * l->half + reach), s = sin(angle), c2 = 2 * cos(angle);
-  double before = 0, now = s, norm = 1 / sqrt(reach);
-  for (size_t j = 0; j < SINES; j++) {
-    values[j] = norm * now;
-    double next = c2 * now - before;
-    before = now;
-    now = next;
-  }
-  double *p = values + SINES;
-  p[0] = u;
-  p[1] = (3 * u * u - 1) / 2;
-  p[2] = u * (5 * u * u - 3) / 2;
-  p[3] = ((35 * u * u - 30) * u * u + 3) / 8;
+static fg_line line_of_axis(const fg_field_frame *frame, int axis) {
+  return fg_line_over(frame->first_mm[axis], frame->last_mm[axis]);
 }
 
-/* Spectrum of a Matérn process of order 3/2; polynomials vary less the shorter the length is. */
-static void fill_line_variances(const line *l, double length, double *variance) {
-  static const double power[LONG] = {0, 1, 2, 4}, size[LONG] = {0.5, 0.25, 0.125, 0.06};
-  double k = sqrt(3) / length;
-  for (size_t j = 0; j < SINES; j++) {
-    double w = wave_number(l, j);
-    variance[j] = 4 * k * k * k / ((k * k + w * w) * (k * k + w * w));
-  }
-  for (size_t j = 0; j < LONG; j++)
-    variance[SINES + j] = size[j] * fmin(1, pow(length / l->half, power[j]));
-}
-
-static line line_of_axis(const fg_field_frame *frame, int axis) {
-  double low = frame->first_mm[axis], high = frame->last_mm[axis];
-  return (line){0.5 * (low + high), fmax(0.5005 * (high - low), 1e-3)};
-}
-
-static line line_of_foil(const fg_edge_fit *edge_fit) {
+static fg_line line_of_foil(const fg_edge_fit *edge_fit) {
   double radius = edge_fit->parts[0].overall_radius_mm;
-  double low = edge_fit->psi_rad[0] * radius, high = edge_fit->psi_rad[1] * radius;
-  return (line){0.5 * (low + high), fmax(0.5005 * (high - low), 1e-3)};
-}
-
-static bool line_variances(const line *l, double first, size_t i, double *variance) {
-  if (i >= 5) return false;
-  fill_line_variances(l, ldexp(first, (int)i), variance);
-  return true;
+  return fg_line_over(edge_fit->psi_rad[0] * radius, edge_fit->psi_rad[1] * radius);
 }
 
 /* ---- of the scanner ---- */
@@ -100,12 +58,12 @@ size_t fg_rival_columns(const fg_rival *rival, const fg_edge_fit *edge_fit,
 
 #define OVER_LINE(name, over, moved_x, moved_y)                                                    \
   static size_t name##_glass(const fg_field_frame *frame, fg_point at, fg_point *d) {              \
-    double values[LINE_COLUMNS];                                                                   \
-    const line l = line_of_axis(frame, over);                                                      \
-    fill_line(&l, fg_point_along(at, over), values);                                               \
-    for (size_t c = 0; c < LINE_COLUMNS; c++)                                                      \
+    double values[FG_LINE_COLUMNS];                                                                \
+    const fg_line l = line_of_axis(frame, over);                                                   \
+    fg_line_fill(&l, fg_point_along(at, over), values);                                            \
+    for (size_t c = 0; c < FG_LINE_COLUMNS; c++)                                                   \
       d[c] = (fg_point){(moved_x)*values[c], (moved_y)*values[c]};                                 \
-    return LINE_COLUMNS;                                                                           \
+    return FG_LINE_COLUMNS;                                                                        \
   }
 OVER_LINE(x_over_x, 0, 1, 0)
 OVER_LINE(y_over_x, 0, 0, 1)
@@ -113,13 +71,17 @@ OVER_LINE(x_over_y, 1, 1, 0)
 OVER_LINE(y_over_y, 1, 0, 1)
 
 static bool x_variances(const fg_edge_fit *edge_fit, size_t i, double *variance) {
-  const line l = line_of_axis(&edge_fit->frame, 0);
-  return line_variances(&l, 1, i, variance);
+  const fg_line l = line_of_axis(&edge_fit->frame, 0);
+  if (!fg_line_variances(&l, 1, i, variance)) return false;
+  leave_out_linear(edge_fit, 1, variance + FG_LINE_SINES);
+  return true;
 }
 
 static bool y_variances(const fg_edge_fit *edge_fit, size_t i, double *variance) {
-  const line l = line_of_axis(&edge_fit->frame, 1);
-  return line_variances(&l, 1, i, variance);
+  const fg_line l = line_of_axis(&edge_fit->frame, 1);
+  if (!fg_line_variances(&l, 1, i, variance)) return false;
+  leave_out_linear(edge_fit, 1, variance + FG_LINE_SINES);
+  return true;
 }
 
 static void fill_legendre(double u, size_t count, double *values) {
@@ -132,7 +94,7 @@ static void fill_legendre(double u, size_t count, double *values) {
 
 /* Products of Legendre polynomials by total degree, 1 to DEGREE; each moves x, then y. */
 static size_t plane_glass(const fg_field_frame *frame, fg_point at, fg_point *d) {
-  const line x = line_of_axis(frame, 0), y = line_of_axis(frame, 1);
+  const fg_line x = line_of_axis(frame, 0), y = line_of_axis(frame, 1);
   double px[DEGREE + 1], py[DEGREE + 1];
   fill_legendre((at.x - x.middle) / x.half, DEGREE + 1, px);
   fill_legendre((at.y - y.middle) / y.half, DEGREE + 1, py);
@@ -148,19 +110,19 @@ static size_t plane_glass(const fg_field_frame *frame, fg_point at, fg_point *d)
 
 static bool plane_variances(const fg_edge_fit *edge_fit, size_t length, double *variance) {
   static const double falls[] = {0.1, 0.2, 0.35, 0.5, 0.65, 0.8};
-  (void)edge_fit;
   if (length >= sizeof falls / sizeof *falls) return false;
   size_t count = 0;
   for (int degree = 1; degree <= DEGREE; degree++)
     for (int i = 0; i < 2 * (degree + 1); i++)
       variance[count++] = pow(falls[length], 2 * (degree - 1)) / (degree + 1);
+  leave_out_linear(edge_fit, LINEAR, variance);
   return true;
 }
 
 /* Maps of the glass that one cause makes: a product of powers that moves x or y, a lens, a tilt of
  * the glass about either axis. Each with the products of degree 1, which its middle makes, and with
  * two that the middle of a lens makes. */
-enum { LINEAR = 4, PRODUCTS_FIRST = 2, PRODUCTS_LAST = 3, MAP_COLUMNS = LINEAR + 3 };
+enum { PRODUCTS_FIRST = 2, PRODUCTS_LAST = 3, MAP_COLUMNS = LINEAR + 3 };
 #define MIDDLE_SHARE 0.3 /* of a lens: distance of its middle over the picture's half */
 
 static size_t add_map(const fg_point linear[LINEAR], fg_point one, fg_point second, fg_point third,
@@ -173,7 +135,7 @@ static size_t add_map(const fg_point linear[LINEAR], fg_point one, fg_point seco
 }
 
 static size_t maps_glass(const fg_field_frame *frame, fg_point at, fg_point *d) {
-  const line lx = line_of_axis(frame, 0), ly = line_of_axis(frame, 1);
+  const fg_line lx = line_of_axis(frame, 0), ly = line_of_axis(frame, 1);
   const double half = fmax(lx.half, ly.half), x = (at.x - lx.middle) / half;
   const double y = (at.y - ly.middle) / half;
   const fg_point linear[LINEAR] = {{x, 0}, {0, x}, {y, 0}, {0, y}}, none = {0, 0};
@@ -192,9 +154,9 @@ static size_t maps_glass(const fg_field_frame *frame, fg_point at, fg_point *d) 
 }
 
 static bool map_variances(const fg_edge_fit *edge_fit, size_t i, double *variance) {
-  (void)edge_fit;
   for (int c = 0; c < MAP_COLUMNS; c++)
     variance[c] = c <= LINEAR ? 1 : MIDDLE_SHARE * MIDDLE_SHARE;
+  leave_out_linear(edge_fit, LINEAR, variance);
   return i == 0;
 }
 
@@ -207,11 +169,11 @@ static size_t map_columns(const fg_edge_fit *edge_fit) {
 
 static size_t along_foil(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row, double share,
                          double *values) {
-  const line l = line_of_foil(edge_fit);
-  fill_line(&l, row->psi * edge_fit->parts[0].overall_radius_mm, values);
-  for (size_t c = 0; c < LINE_COLUMNS; c++)
+  const fg_line l = line_of_foil(edge_fit);
+  fg_line_fill(&l, row->psi * edge_fit->parts[0].overall_radius_mm, values);
+  for (size_t c = 0; c < FG_LINE_COLUMNS; c++)
     values[c] *= share;
-  return LINE_COLUMNS;
+  return FG_LINE_COLUMNS;
 }
 
 static size_t over_foil(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row, double *values) {
@@ -224,8 +186,8 @@ static size_t over_foil_radial(const fg_edge_fit *edge_fit, const fg_edge_fit_ro
 }
 
 static bool foil_variances(const fg_edge_fit *edge_fit, size_t i, double *variance) {
-  const line l = line_of_foil(edge_fit);
-  return line_variances(&l, 1.5, i, variance);
+  const fg_line l = line_of_foil(edge_fit);
+  return fg_line_variances(&l, 1.5, i, variance);
 }
 
 static size_t harmonics(double angle, int last, double size, double *values) {
@@ -387,6 +349,10 @@ static bool alike_variances(const fg_edge_fit *edge_fit, size_t i, double *varia
 static size_t two_columns(const fg_edge_fit *edge_fit) {
   (void)edge_fit;
   return 2;
+}
+
+bool fg_rival_shows(const fg_rival *rival, const fg_edge_fit *edge_fit) {
+  return !edge_fit->discs || rival->glass || rival->coordinate == FG_EFFECT_NORMAL;
 }
 
 const fg_effect *fg_rival_curve(fg_effect_coordinate coordinate, const char *moves) {

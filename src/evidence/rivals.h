@@ -33,6 +33,9 @@ typedef struct fg_rival {
 /* The rows; NULL-terminated by name. */
 extern const fg_rival fg_rivals[];
 
+/* Returns false on discs for rivals of foils: each disc's own form is no rival, but noise. */
+bool fg_rival_shows(const fg_rival *rival, const fg_edge_fit *edge_fit);
+
 /* Fills all columns of one row, um along its normal per unit; returns their number. What moves the
  * glass moves the midline as fg_effect_columns has it. */
 size_t fg_rival_columns(const fg_rival *rival, const fg_edge_fit *edge_fit,

@@ -5,7 +5,7 @@
 
 /* Starts of the search for a shape: they are refined where an effect shows. Half a cycle over the
  * picture lies between two periods. */
-enum { STARTS = 24, PERIODS = 48, COLUMNS = 3 };
+enum { STARTS = 24, PERIODS = 48, BROKEN_NUMBERS = 3 };
 
 static double start_along(const fg_field_frame *frame, int axis, size_t i, size_t count) {
   double low = frame->low_mm[axis], high = frame->high_mm[axis];
@@ -31,9 +31,9 @@ static void fill_broken_line(const fg_field_frame *frame, int axis, double place
 
 #define BROKEN_LINE(name, over, moved_x, moved_y)                                                  \
   static void name(const fg_field_frame *frame, const double *shape, fg_point at, fg_point *d) {   \
-    double values[COLUMNS];                                                                        \
+    double values[BROKEN_NUMBERS];                                                                 \
     fill_broken_line(frame, over, shape[0], at, values);                                           \
-    for (int c = 0; c < COLUMNS; c++)                                                              \
+    for (int c = 0; c < BROKEN_NUMBERS; c++)                                                       \
       d[c] = (fg_point){(moved_x)*values[c], (moved_y)*values[c]};                                 \
   }
 BROKEN_LINE(x_broken_over_x, 0, 1, 0)
@@ -108,8 +108,9 @@ WAVE(x_waves_over_y, 1, 1, 0)
 #define ROW(name, over, thing, basis, from)                                                        \
   {                                                                                                \
     .id = name, .sought = FG_EFFECT_PLACED, .coordinate = (over) ? FG_EFFECT_Y : FG_EFFECT_X,      \
-    .moves = thing, .columns = COLUMNS, .shapes = 1, .glass = basis, .axis = over, .start = from,  \
-    .starts = STARTS, .jumps = true, .size_from = "as of a lost row; assumed", .size_um = {        \
+    .moves = thing, .columns = BROKEN_NUMBERS, .shapes = 1, .glass = basis, .axis = over,          \
+    .start = from, .starts = STARTS, .jumps = true, .size_from = "as of a lost row; assumed",      \
+    .size_um = {                                                                                   \
       15                                                                                           \
     }                                                                                              \
   }
@@ -127,6 +128,10 @@ const fg_effect fg_unnamed_effects[FG_UNNAMED_EFFECTS + 1] = {
     LENGTH_ROW("scan.y.dx as a wave", 1, "x", x_waves_over_y, 2, period_in_y, PERIODS),
     {.id = NULL},
 };
+
+bool fg_unnamed_shows(const fg_effect *effect, const fg_edge_fit *edge_fit) {
+  return !edge_fit->discs || effect->columns != BROKEN_NUMBERS;
+}
 
 bool fg_effect_is_unnamed(const fg_effect *effect) {
   for (const fg_effect *one = fg_unnamed_effects; one->id; one++)

@@ -55,24 +55,43 @@ fg_status fg_scan_loop_correct(fg_context *ctx, const fg_measurement *m,
   return correct_measurement(ctx, m, &(correction){.fields = fields}, threads, corrected);
 }
 
+/* Widens a foil's uncertainties by a covariance of its part's circles. */
+static void widen_foil(const fg_measurement *m, const fg_edge_fit_part *part,
+                       double (*const bumps)[3][3], double overall, fg_foil *foil) {
+  double share = foil->overall.u_springback_error_pct / foil->overall.u_radius_mm;
+  for (size_t b = 0; b < foil->bump_count; b++)
+    for (size_t k = 0; k < part->bump_count; k++)
+      if (part->bumps[k].number == foil->bumps[b].number)
+        fg_bump_widen(&m->design, &m->nominal, &foil->overall, bumps[k], &foil->bumps[b]);
+  foil->overall.u_radius_mm = hypot(foil->overall.u_radius_mm, sqrt(overall));
+  foil->overall.u_springback_error_pct = share * foil->overall.u_radius_mm;
+}
+
 /* Widens the foils' uncertainties by those of the scanner's effects: the correction is not known
  * exactly. */
 static void widen_by_effects(const fg_joint_fit_result *fit, const fg_measurement *before,
                              fg_measurement *after) {
   const fg_edge_fit *edge_fit = fit->edge_fit;
   for (size_t v = 0; v < edge_fit->view_count; v++) {
-    const fg_edge_fit_part *part = &edge_fit->parts[edge_fit->views[v].part];
-    const fg_joint_fit_part *adds = &fit->parts[edge_fit->views[v].part];
-    if (edge_fit->views[v].measurement != before || edge_fit->views[v].disc) continue;
-    fg_foil *foil = &after->foils[edge_fit->views[v].foil - before->foils];
-    double share = foil->overall.u_springback_error_pct / foil->overall.u_radius_mm;
-    for (size_t b = 0; b < foil->bump_count; b++)
-      for (size_t k = 0; k < part->bump_count; k++)
-        if (part->bumps[k].number == foil->bumps[b].number)
-          fg_bump_widen(&after->design, &after->nominal, &foil->overall, adds->bumps[k],
-                        &foil->bumps[b]);
-    foil->overall.u_radius_mm = hypot(foil->overall.u_radius_mm, sqrt(adds->overall));
-    foil->overall.u_springback_error_pct = share * foil->overall.u_radius_mm;
+    const fg_edge_fit_view *view = &edge_fit->views[v];
+    const fg_joint_fit_part *adds = &fit->parts[view->part];
+    if (view->measurement != before || view->disc) continue;
+    widen_foil(after, &edge_fit->parts[view->part], adds->bumps, adds->overall,
+               &after->foils[view->foil - before->foils]);
+  }
+}
+
+void fg_scan_loop_widen_by_unseen(fg_scan_loop *loop) {
+  const fg_edge_fit *edge_fit = &loop->edge_fit;
+  if (loop->beside_foil_field && loop->scanner_is_suspect) return; /* it has decided already */
+  for (size_t v = 0; loop->unseen_parts && v < edge_fit->view_count; v++) {
+    const fg_edge_fit_view *view = &edge_fit->views[v];
+    if (!view->foil) continue;
+    const fg_displacement_part *adds = &loop->unseen_parts[view->part];
+    fg_measurement *after = &loop->after[view->scan];
+    fg_foil *foil = &after->foils[view->foil - loop->before[view->scan].foils];
+    if (foil->flags & FG_FOIL_NOT_MEASURED) continue;
+    widen_foil(after, &edge_fit->parts[view->part], adds->bumps, adds->overall, foil);
   }
 }
 

@@ -104,7 +104,7 @@ static void take_noise(fg_scan_loop *loop, const fg_joint_fit_result *fit, size_
     fg_benefit *benefit = &benefits->foil[one->foil - before->foils];
     add_foil_noise(part, adds, one->foil, scale, benefit);
     benefit->misfit = benefit->misfit || scale > 1 || (loop->by_evidence && loop->misfit);
-    benefit->curve = benefit->curve || curve;
+    benefit->curve = benefit->curve || curve || loop->beside_foil_field;
     benefit->mean = loop->by_evidence;
   } else {
     add_disc_noise(part, adds, (size_t)(one->disc - before->discs), scale, &benefits->discs);

@@ -9,7 +9,9 @@
 #include "core/memory.h"
 #include "effect_search/iterate.h"
 #include "evidence/unnamed.h"
+#include "evidence/unseen.h"
 #include "evidence/verdict.h"
+#include "rows/scatter.h"
 #include "scan_loop/form_errors.h"
 #include "scan_loop/state.h"
 
@@ -166,17 +168,21 @@ static fg_status take_verdict(fg_context *ctx, fg_scan_loop *loop, const fg_evid
   return status;
 }
 
+static fg_status open_parts(fg_context *ctx, const fg_edge_fit *edge_fit,
+                            fg_displacement_part **parts) {
+  if (*parts) return FG_OK;
+  FG_TRY(fg_memory_allocate(ctx, edge_fit->part_count, sizeof **parts, (void **)parts));
+  for (size_t p = 0; p < edge_fit->part_count; p++)
+    FG_TRY(fg_memory_allocate(ctx, edge_fit->parts[p].bump_count, sizeof *(*parts)[p].bumps,
+                              (void **)&(*parts)[p].bumps));
+  return FG_OK;
+}
+
 static fg_status find_displacement(fg_context *ctx, fg_scan_loop *loop, fg_evidence_search *search,
                                    bool decided) {
-  const fg_edge_fit *edge_fit = &loop->edge_fit;
-  if (!loop->displacement_parts) {
-    FG_TRY(fg_memory_allocate(ctx, edge_fit->part_count, sizeof *loop->displacement_parts,
-                              (void **)&loop->displacement_parts));
-    for (size_t p = 0; p < edge_fit->part_count; p++)
-      FG_TRY(fg_memory_allocate(ctx, edge_fit->parts[p].bump_count,
-                                sizeof *loop->displacement_parts[p].bumps,
-                                (void **)&loop->displacement_parts[p].bumps));
-  }
+  FG_TRY(open_parts(ctx, &loop->edge_fit, &loop->displacement_parts));
+  FG_TRY(open_parts(ctx, &loop->edge_fit, &loop->unseen_parts));
+  if (!loop->edge_fit.discs) FG_TRY(fg_evidence_find_unseen(ctx, search, loop->unseen_parts));
   return fg_evidence_find_displacement(ctx, search, decided, &loop->displacement,
                                        loop->displacement_parts);
 }
@@ -188,17 +194,38 @@ static bool holds_scanner(const fg_explanations *explanations) {
   return false;
 }
 
+static void add_spread(const fg_displacement_part *from, size_t bumps, fg_joint_fit_part *to) {
+  to->overall += from->overall;
+  for (size_t b = 0; b < bumps; b++)
+    for (int i = 0; i < 3; i++)
+      for (int k = 0; k < 3; k++)
+        to->bumps[b][i][k] += from->bumps[b][i][k];
+}
+
 void fg_scan_loop_take_displacement(const fg_scan_loop *loop, fg_joint_fit_result *fit) {
   const fg_edge_fit *edge_fit = &loop->edge_fit;
   for (size_t p = 0; p < edge_fit->part_count; p++) {
-    const fg_displacement_part *from = &loop->displacement_parts[p];
-    fit->parts[p].overall = loop->scanner_is_suspect ? from->overall : 0;
-    for (size_t b = 0; b < edge_fit->parts[p].bump_count; b++)
-      if (loop->scanner_is_suspect)
-        memcpy(fit->parts[p].bumps[b], from->bumps[b], sizeof from->bumps[b]);
-      else
-        memset(fit->parts[p].bumps[b], 0, sizeof from->bumps[b]);
+    size_t bumps = edge_fit->parts[p].bump_count;
+    fit->parts[p].overall = 0;
+    memset(fit->parts[p].bumps, 0, bumps * sizeof *fit->parts[p].bumps);
+    if (!loop->scanner_is_suspect) continue;
+    add_spread(&loop->displacement_parts[p], bumps, &fit->parts[p]);
+    if (loop->beside_foil_field) add_spread(&loop->unseen_parts[p], bumps, &fit->parts[p]);
   }
+}
+
+/* On discs the search gives every disc's form to the noise, which evidence holds apart: its noise
+ * is that of the edge beside them. */
+static fg_status open_search(fg_context *ctx, fg_scan_loop *loop, const double *residual,
+                             const double *jacobian, const fg_evidence_prior *prior,
+                             fg_evidence_search *search) {
+  fg_edge_fit *edge_fit = &loop->edge_fit;
+  const fg_scatter before = edge_fit->scatter;
+  if (edge_fit->discs) FG_TRY(fg_edge_fit_find_scatter(ctx, edge_fit, loop->residual_after));
+  fg_status status =
+      fg_evidence_search_open(ctx, edge_fit, &loop->set, residual, jacobian, prior, search);
+  edge_fit->scatter = before;
+  return status;
 }
 
 /* A misfit of the best model is noise to all models: then the search is repeated with it. */
@@ -208,8 +235,7 @@ static fg_status search_models(fg_context *ctx, fg_scan_loop *loop, const double
   const fg_evidence_prior prior = {options->prior_size > 0 ? options->prior_size : 1,
                                    options->prior_weight > 0 ? options->prior_weight : 1};
   double misfit_um = 0;
-  FG_TRY(fg_evidence_search_open(ctx, &loop->edge_fit, &loop->set, residual, jacobian, &prior,
-                                 search));
+  FG_TRY(open_search(ctx, loop, residual, jacobian, &prior, search));
   FG_TRY(fg_evidence_search_run(ctx, search));
   FG_TRY(fg_evidence_find_misfit(ctx, search, &misfit_um));
   loop->misfit = misfit_um > MISFIT_MIN * search->problem.noise_um;
@@ -232,10 +258,30 @@ static bool is_of_part_alone(const fg_evidence_model *model) {
   return true;
 }
 
+/* Returns true for a model with a free form of the whole foil. */
+static bool holds_foil_field(const fg_evidence_model *model) {
+  for (size_t k = 0; k < model->parts; k++) {
+    const fg_rival *rival = model->part[k]->rival;
+    if (rival && !rival->glass && rival->coordinate == FG_EFFECT_FOIL) return true;
+  }
+  return false;
+}
+
+static bool is_seen_once(const fg_edge_fit *edge_fit) {
+  return edge_fit->view_count == edge_fit->part_count;
+}
+
 /* Returns true where the edges do not tell whether the scanner or the foil does it. */
 static bool is_split_open(const fg_evidence_verdict *v) {
   for (size_t k = 0; k < v->ties; k++)
     if (is_of_part_alone(&v->tie[k])) return true;
+  return false;
+}
+
+/* Returns true where one scan shows the scanner beside a free form of the foil. */
+static bool is_beside_foil_field(const fg_edge_fit *edge_fit, const fg_evidence_verdict *v) {
+  for (size_t k = 0; k < v->ties; k++)
+    if (is_seen_once(edge_fit) && holds_foil_field(&v->tie[k])) return true;
   return false;
 }
 
@@ -249,6 +295,7 @@ static fg_status weigh_once(fg_context *ctx, fg_scan_loop *loop, double *residua
   FG_TRY_EXIT(fg_evidence_decide(ctx, &search, &verdict));
   loop->misfit =
       loop->misfit || (verdict.ties && is_loose(&verdict.tie[0])) || is_split_open(&verdict);
+  loop->beside_foil_field = is_beside_foil_field(&loop->edge_fit, &verdict);
   FG_TRY_EXIT(find_displacement(ctx, loop, &search, verdict.outcome == FG_EVIDENCE_FOUND));
   FG_TRY_EXIT(fg_scan_loop_find_form_errors(ctx, loop, &search, &verdict));
   FG_TRY_EXIT(take_verdict(ctx, loop, &verdict, moved));

@@ -246,6 +246,7 @@ static fg_status search_effects(fg_context *ctx, fg_scan_loop *loop) {
   FG_TRY(correct_by_winner(ctx, loop));
   if (loop->tied) FG_TRY(fg_scan_loop_find_ranges(ctx, loop));
   FG_TRY(fg_scan_loop_keep_beneficial(ctx, loop));
+  fg_scan_loop_widen_by_unseen(loop);
   if (loop->tied) fg_scan_loop_put_ranges(loop);
   FG_TRY(search_bumps(ctx, loop));
   FG_TRY(fg_scan_loop_put_form_errors(ctx, loop));
@@ -352,6 +353,12 @@ const fg_scan_result *fg_scan_loop_result(const fg_scan_loop *loop) {
   return &loop->result;
 }
 
+static void free_parts(const fg_scan_loop *loop, fg_displacement_part *parts) {
+  for (size_t p = 0; parts && p < loop->edge_fit.part_count; p++)
+    free(parts[p].bumps);
+  free(parts);
+}
+
 void fg_scan_loop_free(fg_scan_loop *loop) {
   if (!loop) return;
   size_t foils = 0;
@@ -368,9 +375,8 @@ void fg_scan_loop_free(fg_scan_loop *loop) {
     if (loop->after) fg_measurement_free(&loop->after[i]);
   }
   fg_scan_result_free(&loop->result);
-  for (size_t p = 0; loop->displacement_parts && p < loop->edge_fit.part_count; p++)
-    free(loop->displacement_parts[p].bumps);
-  free(loop->displacement_parts);
+  free_parts(loop, loop->displacement_parts);
+  free_parts(loop, loop->unseen_parts);
   free(loop->form_errors);
   fg_edge_fit_free(&loop->edge_fit);
   fg_scan_loop_bumps_free(&loop->bumps);

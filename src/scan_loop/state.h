@@ -34,9 +34,11 @@ struct fg_scan_loop {
   fg_cross_fit cross_fit; /* no folds: scans are held out, or no effect was found */
   bool by_evidence;       /* evidence decided: the correction is its mean over all models */
   bool misfit; /* no model follows all of the residual, or the foil alone may be the cause */
+  bool beside_foil_field; /* one scan: the scanner's share is seen beside a free form of the foil */
   bool scanner_is_suspect;                  /* an explanation holds what a scanner does */
   fg_displacement displacement;             /* of the scanner, by evidence */
   fg_displacement_part *displacement_parts; /* owned; per part of the edge fit */
+  fg_displacement_part *unseen_parts;       /* owned; likewise: by what the scanner may do unseen */
   fg_form_error *form_errors; /* owned; per circle of the parts (circles.h); NULL: not found */
   double noise_floor_um;
   bool tied;
@@ -129,6 +131,9 @@ fg_status fg_scan_loop_take_moves(fg_context *ctx, fg_scan_loop *loop, size_t ex
                                   const fg_joint_fit_result *fit, const fg_measurement *corrected);
 /* Writes the form errors into the foils of `after`; notes where they are ranges or unknown. */
 fg_status fg_scan_loop_put_form_errors(fg_context *ctx, fg_scan_loop *loop);
+
+/* Widens the uncertainties of `after` by what the scanner may do unseen. */
+void fg_scan_loop_widen_by_unseen(fg_scan_loop *loop);
 
 /* Keeps in `after` only the corrections with a benefit (benefit.h). */
 fg_status fg_scan_loop_keep_beneficial(fg_context *ctx, fg_scan_loop *loop);

@@ -282,7 +282,7 @@ def rows_of(options):
     return [r for r in read_rows(options.csv) if int(r["seed"]) == options.seed]
 
 
-def work_on_all(options, work):
+def work_on_all(options, work, fields=FIELDS):
     """Inputs that the CSV holds are not run again."""
     if options.fresh and os.path.exists(options.csv):
         os.remove(options.csv)
@@ -291,11 +291,11 @@ def work_on_all(options, work):
         row = work(index)
         new = not os.path.exists(options.csv)
         with open(options.csv, "a", newline="", encoding="utf-8") as file:
-            writer = csv.DictWriter(file, FIELDS, lineterminator="\n")
+            writer = csv.DictWriter(file, fields, lineterminator="\n")
             if new:
                 writer.writeheader()
             writer.writerow(row)
-        told = [row.get(name) for name in ("cause", "factor", "edge", "scans", "outcome", "found")]
+        told = [row.get(name) for name in ("cause", "size_um", "edge", "scans", "outcome", "found")]
         print(index, *told, flush=True)
 
 

@@ -4,7 +4,7 @@
 or any deviation of a part, measured by the program; judged and told as in loop_foreign.py. A row that is a kind itself is
 left out of that kind's inputs.
 
-/usr/bin/python3 tests/bench/loop_unlisted.py build/foilgauge [--cases 40] [--seed 1] [--threads 1] [--fresh]
+/usr/bin/python3 tests/bench/loop_unlisted.py build/foilgauge [--cases 40] [--seed 1] [--threads 1] [--late] [--fresh]
     [--csv reports/loop_unlisted.csv] [--out reports/loop_unlisted.md]
 The warp knows nothing of the program: true place = nominal place + field, by cubic splines over the picture."""
 
@@ -124,6 +124,39 @@ def part_deviations(rng, a):
     }
 
 
+def late_fields(rng, width, height, a):
+    """Kinds that were invented when every limit of the program stood."""
+    cx, cy, sign, stop = width / 2, height / 2, rng.choice([-1, 1]), rng.uniform(0.2, 0.8) * height
+    drop, size = rng.uniform(0.25, 0.75, 2) * (width, height), rng.uniform(0.12, 0.3) * width
+    period, phase = float(np.exp(rng.uniform(np.log(2), np.log(6)))), rng.uniform(0, 6.28)
+
+    def lens_drop(x, y):
+        u, v = (x - drop[0]) / size, (y - drop[1]) / size
+        near = 1.6 * a * sign * np.exp(-(u * u + v * v) / 2)
+        return near * u, near * v
+
+    return {
+        "hiccup": lambda x, y: (0 * x, 2 * a * sign * np.where(y > stop, np.exp(-np.abs(y - stop) / 2.5), 0)),
+        "lens_drop": lens_drop,
+        "jitter": lambda x, y: (a * np.sin(2 * np.pi * y / period + phase) * np.sin(np.pi * y / height) ** 2, 0 * y),
+        "rolling_skew": lambda x, y: (0 * x, 1.5 * a * sign * (x - cx) / cx * np.sin(np.pi * (y / height - 0.1 * phase)) ** 2),
+    }
+
+
+def late_deviations(rng, a):
+    sign, fold, pitch = rng.choice([-1, 1]), rng.uniform(-0.7, 0.7), np.radians(40 / 3)
+    inner = lambda r: np.clip((20.85 - r) / 0.2, 0, 1)
+    about = lambda t: np.angle(np.exp(1j * t))
+
+    def twist(r, t):
+        """Bumps lean more and more along the foil."""
+        k = np.clip(np.rint(about(t) / pitch), -4, 4)
+        u = np.clip((about(t) - k * pitch) / (0.35 * pitch), -1, 1)
+        return a * sign * (k + 5) / 5 * (u - u**3) * 2.6 * inner(r)
+
+    return {"twist": twist, "kink": lambda r, t: 2 * a * sign * np.abs(about(t) - fold)}
+
+
 def warp(picture, displace):
     """Pixels near edges show what lies at their place plus `displace` of it, mm."""
     coarse = picture[::4, ::4].astype(np.float32)
@@ -139,6 +172,13 @@ def warp(picture, displace):
 
 
 KINDS = [*scanner_fields(np.random.default_rng(0), 40, 40, 1), *part_deviations(np.random.default_rng(0), 1)]
+LATE_KINDS = [*late_fields(np.random.default_rng(0), 40, 40, 1), *late_deviations(np.random.default_rng(0), 1)]
+
+
+def causes(rng, a):
+    """(fields of the scanner, deviations of the part) by kind, of one scanner and one part."""
+    fields, deviations = scanner_fields(rng, 38, 38, a), part_deviations(rng, a)
+    return {**fields, **late_fields(rng, 38, 38, a)}, {**deviations, **late_deviations(rng, a)}
 
 
 def make_scan(program, path, spec, kind, a, seed):
@@ -149,7 +189,7 @@ def make_scan(program, path, spec, kind, a, seed):
         truth = json.load(text)
     ox, oy = (v * MM for v in truth["overall_centre_px"])
     rng = np.random.default_rng(seed)  # the same scanner, or part, for both scans of a pair
-    fields, deviations = scanner_fields(rng, 38, 38, a), part_deviations(rng, a)
+    fields, deviations = causes(rng, a)
     turn = np.radians(spec["foils"][0]["rotate_deg"])
 
     if kind == "clean":
@@ -168,7 +208,7 @@ def truth_of_part(foil, kind, a, seed):
     """R0, R and h of the measurand, mm: circles through the part as it is. The scanner's fields leave it as it was drawn."""
 
     def deviate_um(midline):
-        deviations = part_deviations(after_fields(seed, a), a)
+        deviations = causes(np.random.default_rng(seed), a)[1]
         if kind not in deviations:
             return np.zeros(len(midline.xy))
         return 1000 * deviations[kind](np.linalg.norm(midline.xy, axis=1), midline.mirror * midline.psi) * midline.radial_share()
@@ -177,31 +217,25 @@ def truth_of_part(foil, kind, a, seed):
     return measurand.overall, measurand.radius, measurand.height
 
 
-def after_fields(seed, a):
-    """The random numbers of a cause, once its scanner's fields are drawn."""
-    rng = np.random.default_rng(seed)
-    scanner_fields(rng, 38, 38, a)
-    return rng
-
-
-def plan(seed, index):
+def plan(seed, index, kinds=None):
     """Every tenth input is clean; the kinds take turns, each through its combinations in an order of its own."""
     combinations = [(um, edge, count) for um in SIZES_UM for edge in ("ideal", "rough") for count in (1, 2)]
     if index % EVERY_CLEAN == EVERY_CLEAN - 1:
         return "clean", 0, ("ideal", "rough")[index // 10 % 2], 1 + index // 20 % 2
-    turn, kind = divmod(index - index // EVERY_CLEAN, len(KINDS))
+    kinds = kinds or KINDS
+    turn, kind = divmod(index - index // EVERY_CLEAN, len(kinds))
     order = np.random.default_rng([seed, 78, kind]).permutation(len(combinations))
-    return KINDS[kind], *combinations[order[turn % len(combinations)]]
+    return kinds[kind], *combinations[order[turn % len(combinations)]]
 
 
-def draw_input(program, seed, index, folder):
-    kind, um, edge, count = plan(seed, index)
+def draw_input(program, seed, index, folder, kinds=None):
+    kind, um, edge, count = plan(seed, index, kinds)
     rng, of_cause = np.random.default_rng([seed, index]), [seed, index, 1]
     foil, turn = draw_foil(rng), float(rng.choice([45, 90]))
     turns, paths = [0.0, turn][:count], [os.path.join(folder, f"s{k}") for k in range(count)]
     for path, angle in zip(paths, turns):
         make_scan(program, path, draw_spec(rng, foil, angle, edge == "rough"), kind, um / 1000, of_cause)
-    side = "clean" if kind == "clean" else "part" if kind in part_deviations(rng, 1) else "scanner"
+    side = "clean" if kind == "clean" else "part" if kind in causes(rng, 1)[1] else "scanner"
     row = {"case": index, "seed": seed, "cause": kind, "side": side, "factor": f"{um} um", "size_um": um, "edge": edge,
            "scans": count, "turn_deg": turn if count == 2 else ""}  # fmt: skip
     return row, [p + ".png" for p in paths], truth_of_part(foil, kind, um / 1000, of_cause)
@@ -209,7 +243,7 @@ def draw_input(program, seed, index, folder):
 
 def run_case(options, index):
     with tempfile.TemporaryDirectory() as folder:
-        row, paths, truth = draw_input(options.program, options.seed, index, folder)
+        row, paths, truth = draw_input(options.program, options.seed, index, folder, LATE_KINDS if options.late else KINDS)
         own = ["--without", OWN_ROW[row["cause"]]] if row["cause"] in OWN_ROW else []
         report, error, seconds = foreign.run_loop(options.program, paths, options.threads, DPI, own)
     row["seconds"] = f"{seconds:.2f}"
@@ -224,12 +258,14 @@ def page_head(options, count):
     return [
         "# The loop on causes that no row names\n",
         f"Renders without an effect, {DPI} dpi, that are warped by a field of the scanner or a deviation of the part, of"
-        f" {len(KINDS)} kinds; radii scatter\nby 0.5 to 2 %. Sizes are {', '.join(map(str, SIZES_UM))} um. Every tenth input is"
+        f" {len(LATE_KINDS if options.late else KINDS)} kinds"
+        f"{', invented when every limit of the program stood' if options.late else ''}; radii scatter\nby 0.5 to 2 %. Sizes are {', '.join(map(str, SIZES_UM))} um. Every tenth input is"
         " clean. The second scan of a pair is turned by 45 or 90 degrees. A kind that has a row\nin the list is measured without it"
         " (`--without`). Right: a cause that is listed effects cut into pieces is called by them (a stair is row\nsteps,"
         " gaps of chips are column steps, belts are ripples, a burr is a dent).\n"
         + foreign.HOW_JUDGED,
-        f"    /usr/bin/python3 tests/bench/loop_unlisted.py build/foilgauge --cases {count} --seed {options.seed}\n",
+        f"    /usr/bin/python3 tests/bench/loop_unlisted.py build/foilgauge --cases {count} --seed {options.seed}"
+        f"{' --late --csv reports/loop_unlisted_late.csv --out reports/loop_unlisted_late.md' if options.late else ''}\n",
     ]
 
 
@@ -241,6 +277,7 @@ def main():
     parser.add_argument("--threads", type=int, default=1)
     parser.add_argument("--csv", default="reports/loop_unlisted.csv")
     parser.add_argument("--out", default="reports/loop_unlisted.md")
+    parser.add_argument("--late", action="store_true", help="the kinds that were invented last")
     parser.add_argument("--fresh", action="store_true", help="forget the inputs that the CSV has")
     options = parser.parse_args()
     options.program = os.path.abspath(options.program)

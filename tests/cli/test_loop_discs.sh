@@ -113,6 +113,13 @@ grep -q 'scale is that of 12 gauges of known diameter' absolute.html || fail "th
 grep -q 'error of scale is not in it\|without a known diameter' absolute.html && fail "the page says that the scale is not known"
 grep -q 'without a known diameter' relative.html || fail "the page does not say that the scale is not known"
 
+# A keystone, which is no effect of plates by name: a map of the picture, and no quadratic of the carriage.
+plate keystone 8 '{"id":"scan.keystone","amplitude_um":12}'
+"$program" loop keystone.png --form discs -o keystone.out || fail "loop on a plate with a keystone"
+[ "$(value keystone.out "r['verdict'], [c['id'] for c in r['claims']], r['unattributed']['moves']")" = "('unattributed', [], 'x and y')" ] ||
+  fail "a keystone is called $(value keystone.out "(r['verdict'], [c['id'] for c in r['claims']])")"
+near "radius after a keystone" "$(error_of keystone.out after)" 0 0.1
+
 # One ring: an oval and a scale with a shear are one and the same.
 pins='[7,7,6]'
 plate ring 3 '{"id":"scan.scale_y","value":0.001}'
@@ -123,7 +130,7 @@ plate ring 3 '{"id":"scan.scale_y","value":0.001}'
   fail "the ring's range does not hold its radius"
 
 # Pins that are oval, each in its own direction, are no scanner.
-reports="all known ring"
+reports="all known ring keystone"
 if [ -n "${FOILGAUGE_TEST_LONG-}" ]; then
 reports="$reports clean oval"
 pins='[1.2,1.6,1],[5.0,2.2,1.5],[10.1,2.9,2],[16.2,3.2,2.5],[23.1,3.6,3],[29.8,2.9,2.25],[2.1,9.4,1.25],[7.2,10.1,2.75],[13.9,11.3,3],[20.8,12.0,2.5],[26.9,12.9,1.75],[6.2,16.9,1.5]'

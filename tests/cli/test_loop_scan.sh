@@ -61,14 +61,18 @@ render oval_b 6 15 '{"id":"part.ovality","amplitude_um":12,"phase_deg":20}'
 cat >same.py <<'PYTHON'
 import json
 
+# Unseen causes of the scanner are in u, and in nothing else.
+def is_of_u(key):
+    return key.startswith("u_") or "covariance" in key or key.endswith("_limits") or key == "judgements"
+
 def numbers(at):
     if isinstance(at, dict):
-        return [x for k in sorted(at) if k != "corrections" and "form_error" not in k for x in numbers(at[k])]
+        return [x for k in sorted(at) if k != "corrections" and "form_error" not in k and not is_of_u(k) for x in numbers(at[k])]
     return [x for y in at for x in numbers(y)] if isinstance(at, list) else [at]
 
 r = json.load(open("oval.out"))
 before, after = numbers(r["before"]["foils"]), numbers(r["after"]["foils"])
-assert len(before) == len(after) > 100
+assert len(before) == len(after) > 60, len(after)
 for x, y in zip(before, after):
     assert x == y or abs(x - y) <= 1e-8 * abs(x), (x, y)
 assert r["error_ratio"]["rms"] < 0.1, r["error_ratio"]

@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Evidence of models: rivals that no name has, shapes that must be just so, expectations. */
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "evidence/options.h"
 #include "evidence/search.h"
+#include "evidence/unseen.h"
 #include "support/foil_rows.h"
 #include "support/test.h"
 
@@ -63,9 +65,41 @@ static void a_shape_that_must_be_just_so_costs_more_than_a_start(void **state) {
   foil_rows_close(&f);
 }
 
+/* Standard uncertainty of R0, um, that is left by what the scanner may do unseen. */
+static double unseen_um(foil_rows *f) {
+  fg_context ctx = {0};
+  fg_evidence_search s;
+  const fg_edge_fit *edge_fit = &f->edge_fit;
+  fg_displacement_part part = {.bumps = calloc(edge_fit->parts[0].bump_count, sizeof *part.bumps)};
+  search(f, &(fg_evidence_prior){1, 1}, &s);
+  assert_ok(&ctx, fg_evidence_find_unseen(&ctx, &s, &part));
+  for (size_t b = 0; b < edge_fit->parts[0].bump_count; b++)
+    for (int i = 0; i < 3; i++)
+      assert_true(part.bumps[b][i][i] >= 0);
+  free(part.bumps);
+  fg_evidence_search_close(&s);
+  return 1000 * sqrt(part.overall);
+}
+
+/* The noisier the edges, the larger a map of the glass that they do not refute. */
+static void what_edges_do_not_show_is_bounded_by_them(void **state) {
+  (void)state;
+  double um[2];
+  for (int k = 0; k < 2; k++) {
+    foil_rows f;
+    foil_rows_open(&f);
+    foil_rows_put_noise(&f, k ? 10 * NOISE_UM : NOISE_UM);
+    um[k] = unseen_um(&f);
+    foil_rows_close(&f);
+  }
+  if (!(um[0] > 0 && um[0] < 0.5 && um[1] > 4 * um[0] && um[1] < 20))
+    fail_msg("u of R0, um: %g, %g with ten times the noise", um[0], um[1]);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(lands_that_deviate_alike_are_of_the_part),
+      cmocka_unit_test(what_edges_do_not_show_is_bounded_by_them),
       cmocka_unit_test(a_shape_that_must_be_just_so_costs_more_than_a_start),
   };
   return cmocka_run_group_tests_name("evidence", tests, NULL, NULL);

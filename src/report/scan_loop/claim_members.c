@@ -296,7 +296,8 @@ bool fg_scan_find_rejected(const fg_subject *list, size_t i, fg_subject *element
 static const char *const coordinate_words[] = {"scan.x",     "scan.y",      "foil.s", "bump.phi",
                                                "bump.index", "edge.normal", NULL};
 static const char *const moves_words[] = {
-    "x", "y", "along the normal", "along the radius", "bump_radius_mm", "bump_angle_deg", NULL};
+    "x", "y", "x and y", "along the normal", "along the radius", "bump_radius_mm", "bump_angle_deg",
+    NULL};
 
 static const fg_member curve_rows[] = {
     {FG_STRING("coordinate", fg_scan_result_claim, coordinate_name), .choices = coordinate_words,

@@ -1,0 +1,20 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* One option beside a model: its likeliest shape, length and size. `evidence` is that of the model
+ * with it, `part->log_prior` has what the choice among all of them costs. */
+#ifndef FG_EVIDENCE_FIT_H
+#define FG_EVIDENCE_FIT_H
+
+#include "evidence/options.h"
+
+fg_status fg_evidence_fit_effect(fg_context *ctx, fg_evidence_search *search,
+                                 const fg_evidence_factor *factor, const fg_evidence_option *option,
+                                 fg_evidence_part *part, double *evidence);
+fg_status fg_evidence_fit_rival(fg_context *ctx, fg_evidence_search *search,
+                                const fg_evidence_factor *factor, const fg_evidence_option *option,
+                                fg_evidence_part *part, double *evidence);
+
+/* Amplitudes that are tried of a rival: number i, um. */
+enum { FG_EVIDENCE_AMPLITUDES = 11 };
+double fg_evidence_amplitude_um(const fg_evidence_prior *prior, int i);
+
+#endif
