@@ -21,6 +21,10 @@ enum { COARSE_STEP = 3, COARSE_ROUNDS = 12, FINE_ROUNDS = 8, SAMPLES_MIN = 30 };
 #define DAMPING_START      1e-3
 /* A mark deviates from its model by less than this share of its contrast, rms. */
 #define MISFIT_MAX 0.2
+/* An end of a stroke leaves a thousandth of the contrast at this many blurs; arms are sought up to
+ * this many windows' radii. */
+#define END_BLURS   3.0
+#define ARM_LONGEST 2.0
 /* Lags at which the residual's correlation is summed. */
 enum { LAGS = 4 };
 
@@ -175,10 +179,34 @@ static fg_status fit_once(fg_context *ctx, const fg_tiles *tiles, fg_mark_kind k
   return FG_OK;
 }
 
+/* Length of a cross's arm in a direction, to where its end has half of the contrast. */
+static double find_arm_px(const fg_tiles *tiles, const fg_mark_fit *fit, double angle) {
+  double longest = ARM_LONGEST * fit->reach_px, half = 0.5 * fabs(fit->p[FG_MARK_CONTRAST]);
+  for (double along = 0.5 * fit->reach_px; along < longest; along += 0.5) {
+    double value = fg_tiles_pixel(tiles, llround(fit->p[FG_MARK_X] + along * cos(angle)),
+                                  llround(fit->p[FG_MARK_Y] + along * sin(angle)));
+    if (!(fabs(value - fit->p[FG_MARK_LEVEL]) > half)) return along;
+  }
+  return 0; /* no end: an arm that meets the next mark's */
+}
+
+/* The model's strokes have no ends: the window may reach as far as no blur of an end does. */
+static void widen_cross(const fg_tiles *tiles, fg_mark_fit *fit) {
+  double shortest = INFINITY;
+  for (int arm = 0; arm < 4; arm++) {
+    double along = fit->p[FG_MARK_SHAPE + (arm & 1)] + M_PI_2 + (arm & 2 ? M_PI : 0);
+    shortest = fmin(shortest, find_arm_px(tiles, fit, along));
+  }
+  double w = fit->p[FG_MARK_SHAPE + 2], end = shortest - END_BLURS * fit->p[FG_MARK_BLUR];
+  /* At the border of the stroke a circle about the cross lies nearer to the end. */
+  fit->reach_px = fmax(fit->reach_px, sqrt(fmax(0, end * end - w * w)));
+}
+
 fg_status fg_mark_fit_run(fg_context *ctx, const fg_tiles *tiles, fg_mark_kind kind,
                           fg_mark_fit *fit, bool *found) {
   if (!(fit->p[FG_MARK_BLUR] > 0)) fit->p[FG_MARK_BLUR] = BLUR_START;
   FG_TRY(fit_once(ctx, tiles, kind, false, fit, found));
+  if (*found && kind == FG_MARKS_CROSSES) widen_cross(tiles, fit);
   if (*found) FG_TRY(fit_once(ctx, tiles, kind, true, fit, found));
   *found =
       *found && isfinite(fit->u_px) && fit->residual < MISFIT_MAX * fabs(fit->p[FG_MARK_CONTRAST]);
