@@ -75,6 +75,8 @@ typedef struct fg_film_options {
   double shim_low_pct, shim_high_pct; /* heights of shims, percent of the clearance */
   unsigned jobs;                      /* threads; 0: all cores */
   size_t orbit_turns;                 /* of the orbit in time; 0: none */
+  double within_pct;                  /* change of the threshold speed that a tolerance on the
+                                         clearance is asked for; NaN: none is */
   bool sensitivity;                   /* of the critical mass, over the shape of the bumps */
 } fg_film_options;
 
@@ -96,6 +98,15 @@ typedef enum fg_film_outcome {
 } fg_film_outcome;
 extern const char *const fg_film_outcome_words[]; /* "solved", "touching", "unsolved", NULL */
 
+/* A bearing's threshold speed against the perfect one's less and plus within_pct. */
+typedef enum fg_film_side {
+  FG_FILM_NOT_ASKED,
+  FG_FILM_NO_FILM, /* or one that touches, at one of both speeds */
+  FG_FILM_BELOW,
+  FG_FILM_WITHIN,
+  FG_FILM_ABOVE,
+} fg_film_side;
+
 /* A bearing at one speed and load; NaN where unsolved. */
 typedef struct fg_film_result {
   fg_film_outcome outcome;
@@ -107,6 +118,7 @@ typedef struct fg_film_result {
   double critical_mass_kg;  /* infinite: stable at every mass */
   double whirl_ratio;       /* of the whirl at the critical mass, over the speed */
   double mass_over_perfect; /* critical mass over the perfect bearing's; NaN: not asked */
+  fg_film_side side;
 } fg_film_result;
 
 /* Stiffness and damping at one frequency of whirl; xx, xy, yx, yy. */
@@ -134,6 +146,8 @@ typedef struct fg_film_draws {
   size_t count;
   size_t foils, left_out; /* of a lot: in stock, and others; 0: random shims */
   fg_film_share solved, touching, more_stable, less_stable; /* the latter two of those solved */
+  /* Of all: with a threshold speed within within_pct of the perfect bearing's; lower by no more. */
+  fg_film_share within, not_lower;
   double quantile[FG_FILM_QUANTILES]; /* of the critical mass over the perfect bearing's: 5, 25, 50,
                                          75, 95 % of those solved */
 } fg_film_draws;
@@ -157,6 +171,28 @@ typedef struct fg_film_sensitivity {
   fg_film_share solved;
   double quantile[FG_FILM_QUANTILES];
 } fg_film_sensitivity;
+
+/* The widest tolerance that is tried, of the reference clearance. */
+#define FG_FILM_WIDEST_SHARE 0.5
+
+/* Tolerances on the clearance that keep the threshold speed within within_pct of the perfect
+ * bearing's; infinite: all that were tried keep it. */
+typedef struct fg_film_tolerance {
+  bool asked;
+  double threshold_rpm; /* of the perfect bearing; NaN: none among the speeds, nor the others */
+  /* ± at every bump by itself (uniform): 95 of 100 bearings keep it; are lower by no more. */
+  double each_um, each_not_lower_um;
+  double alike_um[2]; /* all bumps alike: how much closer, how much wider */
+} fg_film_tolerance;
+
+/* Standard uncertainties of a measured bearing's results by those of its clearances, by drawing:
+ * every bump errs by itself, the thickness with all. */
+typedef struct fg_film_uncertainty {
+  size_t draws; /* 0: nothing was measured, or without u */
+  fg_film_share solved;
+  double eccentricity, min_film_um, max_pressure_kpa, power_w, critical_mass_kg, whirl_ratio;
+  double mass_low_kg, mass_high_kg; /* interval of 95 % of the critical mass */
+} fg_film_uncertainty;
 
 /* A place of the rotor's orbit. */
 typedef struct fg_film_orbit_place {
@@ -188,6 +224,10 @@ typedef struct fg_film_report {
   char foils_path[512], foils_sha256[65];
   double clearance_um, compliance, stiffness_n_mm2, length_mm, diameter_mm;
   fg_film_bearing bearing;
+  /* Standard uncertainties of its clearances: own, and shared by all bumps; 0: as designed. */
+  double u_own_mm[FG_BEARING_BUMPS_MAX], u_shared_mm[FG_BEARING_BUMPS_MAX];
+  fg_film_uncertainty u;
+  fg_film_tolerance tolerance;
   fg_film_result perfect, at; /* of the design; of the bearing, the same without foils */
   fg_film_coefficients frequency[FG_FILM_FREQUENCIES];
   size_t frequencies; /* 0 where unsolved */

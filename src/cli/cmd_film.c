@@ -55,6 +55,7 @@ enum {
   OPTION_BORE,
   OPTION_SENSITIVITY,
   OPTION_ORBIT_OUT,
+  OPTION_WITHIN,
 };
 
 static const struct argp_option options[] = {
@@ -109,6 +110,10 @@ static const struct argp_option options[] = {
     {"sensitivity", OPTION_SENSITIVITY, NULL, 0,
      "Change of the critical mass with radius, angle and thickness of the bumps, their mean and "
      "their scatter",
+     3},
+    {"within", OPTION_WITHIN, "PERCENT", 0,
+     "The tolerance on the clearance that keeps the threshold speed within PERCENT of that as "
+     "designed, and the share of drawn bearings that keep it",
      3},
     {"shims", OPTION_SHIMS, "LOW:HIGH", 0,
      "Draw bearings as designed with random shims under their bumps, percent of the clearance: a "
@@ -218,6 +223,7 @@ static const number_option numbers[] = {
     NUMBER(OPTION_TOP_FOIL, "top-foil-thickness", top_foil_mm, 1e-6, 100),
     NUMBER(OPTION_VISCOSITY, "viscosity", viscosity_upa_s, 1e-3, 1e6),
     NUMBER(OPTION_AMBIENT, "ambient", ambient_kpa, 1e-3, 1e6),
+    NUMBER(OPTION_WITHIN, "within", within_pct, 0.1, 100),
     NUMBER(OPTION_TOUCHING, "touching", touching_um, 0, 1e5),
 };
 

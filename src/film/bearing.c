@@ -33,6 +33,7 @@ fg_film_options fg_film_options_default(void) {
                            .cells_per_bump = 6,
                            .cells_axial = 8,
                            .touching_um = 1,
+                           .within_pct = NAN,
                            .speed_low_rpm = NAN,
                            .speed_high_rpm = NAN,
                            .speeds = 25,

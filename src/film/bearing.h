@@ -62,6 +62,33 @@ fg_status fg_film_draw_scatter(fg_context *ctx, fg_film_report *report,
                                const fg_film_bearing *perfect, const fg_film_workspace *solved,
                                fg_film_sensitivity *scatter);
 
+/* Draws bearings whose clearances differ from the perfect one's by up to `spread_mm`, each bump by
+ * itself (uniform), or from the measured one's by their uncertainties. The result's array is the
+ * caller's to free. */
+fg_status fg_film_draw_spread(fg_context *ctx, fg_film_report *report,
+                              const fg_film_bearing *perfect, const fg_film_workspace *solved,
+                              double spread_mm, size_t count, fg_film_draws *draws);
+fg_status fg_film_draw_measured(fg_context *ctx, fg_film_report *report,
+                                const fg_film_workspace *solved, size_t count,
+                                fg_film_draws *draws);
+
+/* Finds the perfect bearing's threshold speed and the tolerances on the clearance, where the
+ * options ask; the workspace's state is that of the perfect bearing, before and after. */
+fg_status fg_film_find_tolerance(fg_context *ctx, fg_film_report *report,
+                                 const fg_film_bearing *perfect, fg_film_workspace *workspace);
+/* Finds on which side a bearing's threshold speed lies, on from the workspace's state. */
+fg_status fg_film_find_side(fg_context *ctx, const fg_film_report *report,
+                            fg_film_workspace *workspace, const fg_film_bearing *bearing,
+                            fg_film_side *side);
+/* Threshold speed of a bearing among the options' speeds; NaN: none. */
+fg_status fg_film_find_threshold_speed(fg_context *ctx, const fg_film_report *report,
+                                       fg_film_workspace *workspace, const fg_film_bearing *bearing,
+                                       double *rpm);
+
+/* Finds the uncertainties of the measured bearing's results; the workspace's state is its own. */
+fg_status fg_film_find_uncertainty(fg_context *ctx, fg_film_report *report,
+                                   const fg_film_workspace *workspace);
+
 /* Finds the largest load and the lift-off speed of the bearing, which is solved. */
 fg_status fg_film_find_capacity(fg_context *ctx, fg_film_report *report,
                                 fg_film_workspace *workspace);

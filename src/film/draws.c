@@ -25,8 +25,18 @@ typedef struct draw_task {
   const fg_film_workspace *solved; /* of the perfect bearing */
   const fg_film_stock *stock;      /* NULL: random shims, or */
   const fg_film_sensitivity *scatter;
+  double spread_mm; /* of a tolerance, or */
+  bool measured;    /* the clearances' uncertainties */
   fg_film_draws *draws;
 } draw_task;
+
+/* Streams of random numbers: of shims, of a scatter of every parameter, and of these. */
+enum {
+  STREAM_SHIMS,
+  STREAM_SCATTER,
+  STREAM_SPREAD = STREAM_SCATTER + FG_FILM_PARAMETERS,
+  STREAM_MEASURED
+};
 
 static uint64_t seed_draw(const fg_film_report *r, uint64_t purpose, size_t draw) {
   uint64_t state = r->options.seed * 0xd1342543de82ef95u + purpose;
@@ -37,19 +47,34 @@ static uint64_t seed_draw(const fg_film_report *r, uint64_t purpose, size_t draw
 /* A scatter of one percent, normal. */
 static void draw_scatter(const fg_film_report *r, const fg_film_sensitivity *scatter, size_t draw,
                          fg_film_bearing *bearing) {
-  uint64_t state = seed_draw(r, 1 + (uint64_t)scatter->parameter, draw);
+  uint64_t state = seed_draw(r, STREAM_SCATTER + (uint64_t)scatter->parameter, draw);
   for (size_t i = 0; i < bearing->count; i++)
     fg_film_change_bump(scatter, fg_engine_random_normal(&state), i, bearing);
 }
 
 /* Shims of heights between both ends, of equal probability: a higher one closes the clearance. */
 static void draw_shims(const fg_film_report *r, size_t draw, fg_film_bearing *bearing) {
-  uint64_t state = seed_draw(r, 0, draw);
+  uint64_t state = seed_draw(r, STREAM_SHIMS, draw);
   double low = r->options.shim_low_pct, high = r->options.shim_high_pct;
   for (size_t i = 0; i < bearing->count; i++) {
     double height_pct = low + (high - low) * fg_engine_random_uniform(&state);
     bearing->clearance_mm[i] -= height_pct / 100 * r->clearance_um * 1e-3;
   }
+}
+
+static void draw_spread(const fg_film_report *r, double spread_mm, size_t draw,
+                        fg_film_bearing *bearing) {
+  uint64_t state = seed_draw(r, STREAM_SPREAD, draw);
+  for (size_t i = 0; i < bearing->count; i++)
+    bearing->clearance_mm[i] += spread_mm * (2 * fg_engine_random_uniform(&state) - 1);
+}
+
+static void draw_measured(const fg_film_report *r, size_t draw, fg_film_bearing *bearing) {
+  uint64_t state = seed_draw(r, STREAM_MEASURED, draw);
+  double common = fg_engine_random_normal(&state);
+  for (size_t i = 0; i < bearing->count; i++)
+    bearing->clearance_mm[i] +=
+        r->u_shared_mm[i] * common + r->u_own_mm[i] * fg_engine_random_normal(&state);
 }
 
 /* Foils of the stock, picked as a lot's assembly picks them. */
@@ -64,23 +89,42 @@ static void draw_foils(const fg_film_report *r, const fg_film_stock *stock, size
   }
 }
 
+/* Of a tolerance's trial only the side of the threshold is asked. */
+static fg_status solve_drawn(fg_context *ctx, const draw_task *t, fg_film_workspace *workspace,
+                             const fg_film_bearing *bearing, fg_film_result *result) {
+  const fg_film_report *r = t->report;
+  fg_film_side side = FG_FILM_NOT_ASKED;
+  bool asked = isfinite(r->tolerance.threshold_rpm) && !t->scatter && !t->measured;
+  *result = (fg_film_result){.outcome = FG_FILM_UNSOLVED, .mass_over_perfect = NAN};
+  if (!(t->spread_mm > 0)) {
+    FG_TRY(fg_film_solve_bearing(ctx, r, workspace, bearing, r->options.speed_rpm, FG_FILM_ONWARD,
+                                 result));
+    result->mass_over_perfect = result->critical_mass_kg / r->perfect.critical_mass_kg;
+  }
+  if (asked) FG_TRY(fg_film_find_side(ctx, r, workspace, bearing, &side));
+  result->side = side;
+  return FG_OK;
+}
+
 static fg_status solve_draw(fg_context *ctx, const draw_task *t, fg_film_workspace *workspace,
                             size_t draw) {
   fg_film_bearing bearing = *t->perfect;
   fg_film_result *result = &t->draws->result[draw];
+  bool varied = t->scatter || t->spread_mm > 0 || t->measured;
   if (t->stock)
     draw_foils(t->report, t->stock, draw, &bearing);
+  else if (t->measured)
+    draw_measured(t->report, draw, &bearing);
+  else if (t->spread_mm > 0)
+    draw_spread(t->report, t->spread_mm, draw, &bearing);
   else if (t->scatter)
     draw_scatter(t->report, t->scatter, draw, &bearing);
   else
     draw_shims(t->report, draw, &bearing);
-  if (!t->scatter) fg_film_add_bore(t->report, &bearing);
+  if (!varied) fg_film_add_bore(t->report, &bearing);
   fg_film_state_copy(&workspace->film, &t->solved->state, &workspace->state);
   fg_film_case_copy(&t->solved->before, workspace->film.columns, &workspace->before);
-  FG_TRY(fg_film_solve_bearing(ctx, t->report, workspace, &bearing, t->report->options.speed_rpm,
-                               FG_FILM_ONWARD, result));
-  result->mass_over_perfect = result->critical_mass_kg / t->report->perfect.critical_mass_kg;
-  return FG_OK;
+  return solve_drawn(ctx, t, workspace, &bearing, result);
 }
 
 static fg_status solve_draws(fg_context *ctx, void *shared, size_t item) {
@@ -103,6 +147,8 @@ static void finish_share(fg_film_share *share, size_t of) {
 }
 
 static void count_draw(fg_film_draws *draws, const fg_film_result *result) {
+  draws->within.count += result->side == FG_FILM_WITHIN;
+  draws->not_lower.count += result->side == FG_FILM_WITHIN || result->side == FG_FILM_ABOVE;
   if (result->outcome == FG_FILM_UNSOLVED) return;
   draws->solved.count++;
   draws->touching.count += result->outcome == FG_FILM_TOUCHING;
@@ -128,6 +174,8 @@ static fg_status finish_draws(fg_context *ctx, fg_film_draws *draws) {
   free(ratio);
   finish_share(&draws->solved, draws->count);
   finish_share(&draws->touching, draws->count);
+  finish_share(&draws->within, draws->count);
+  finish_share(&draws->not_lower, draws->count);
   finish_share(&draws->more_stable, draws->solved.count);
   finish_share(&draws->less_stable, draws->solved.count);
   return FG_OK;
@@ -156,6 +204,30 @@ fg_status fg_film_draw_scatter(fg_context *ctx, fg_film_report *report,
     scatter->quantile[k] = draws.quantile[k];
   free(draws.result);
   return status;
+}
+
+fg_status fg_film_draw_spread(fg_context *ctx, fg_film_report *report,
+                              const fg_film_bearing *perfect, const fg_film_workspace *solved,
+                              double spread_mm, size_t count, fg_film_draws *draws) {
+  draw_task task = {.report = report,
+                    .perfect = perfect,
+                    .solved = solved,
+                    .spread_mm = spread_mm,
+                    .draws = draws};
+  *draws = (fg_film_draws){.count = 0};
+  return draw_all(ctx, &task, count);
+}
+
+fg_status fg_film_draw_measured(fg_context *ctx, fg_film_report *report,
+                                const fg_film_workspace *solved, size_t count,
+                                fg_film_draws *draws) {
+  draw_task task = {.report = report,
+                    .perfect = &report->bearing,
+                    .solved = solved,
+                    .measured = true,
+                    .draws = draws};
+  *draws = (fg_film_draws){.count = 0};
+  return draw_all(ctx, &task, count);
 }
 
 fg_status fg_film_draw(fg_context *ctx, fg_film_report *report, const fg_film_bearing *perfect,

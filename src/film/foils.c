@@ -27,23 +27,36 @@ static const cJSON *find_foil_bump(const cJSON *foil, size_t number) {
   return NULL;
 }
 
-static fg_status read_pad(fg_context *ctx, const fg_film_report *r, const cJSON *foil, size_t pad,
+/* Splits the u of a clearance: the strip's thickness is that of all bumps, the rest a bump's own.
+ */
+static void take_u(fg_film_report *r, const cJSON *foil, const cJSON *bump, const char *name,
+                   size_t at) {
+  double u = read_number(bump, name), shared = read_number(foil, "u_thickness_mm");
+  if (!(u > 0)) return;
+  shared = shared > 0 ? fmin(u, shared) : 0;
+  r->u_shared_mm[at] = shared;
+  r->u_own_mm[at] = sqrt((u - shared) * (u + shared));
+}
+
+static fg_status read_pad(fg_context *ctx, fg_film_report *r, const cJSON *foil, size_t pad,
                           fg_film_bearing *bearing) {
   size_t per_pad = r->options.bumps_per_pad;
   for (size_t k = 0; k < per_pad; k++) {
     size_t number = r->options.first_bump + k, at = pad * per_pad + k;
     const cJSON *bump = find_foil_bump(foil, number);
     double clearance = bump ? read_number(bump, "clearance_fitted_mm") : NAN;
-    if (!isfinite(clearance) && bump) clearance = read_number(bump, "clearance_mm");
+    bool fitted = isfinite(clearance);
+    if (!fitted && bump) clearance = read_number(bump, "clearance_mm");
     if (!isfinite(clearance))
       return fg_fail(ctx, FG_ERR_DATA, "%s: bump %zu of foil %zu has no clearance_mm",
                      r->options.foils, number, pad + 1);
     bearing->clearance_mm[at] = clearance;
+    take_u(r, foil, bump, fitted ? "u_clearance_fitted_mm" : "u_clearance_mm", at);
   }
   return FG_OK;
 }
 
-static fg_status take_foils(fg_context *ctx, const fg_film_report *r, const cJSON *root,
+static fg_status take_foils(fg_context *ctx, fg_film_report *r, const cJSON *root,
                             fg_film_bearing *bearing) {
   const cJSON *schema = cJSON_GetObjectItemCaseSensitive(root, "schema");
   const cJSON *foils = cJSON_GetObjectItemCaseSensitive(root, "foils");

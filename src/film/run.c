@@ -82,6 +82,7 @@ static fg_status run_bearings(fg_context *ctx, fg_film_report *r, fg_film_worksp
   FG_TRY(solve_perfect(ctx, r, workspace, &perfect));
   FG_TRY(fg_film_read_bore(ctx, r));
   FG_TRY(fg_film_find_sensitivities(ctx, r, &perfect, workspace));
+  FG_TRY(fg_film_find_tolerance(ctx, r, &perfect, workspace));
   FG_TRY(fg_film_draw(ctx, r, &perfect, workspace));
   r->at = r->perfect;
   if (fg_film_is_measured(&r->options)) {
@@ -91,6 +92,7 @@ static fg_status run_bearings(fg_context *ctx, fg_film_report *r, fg_film_worksp
     FG_TRY(fg_film_solve_bearing(ctx, r, workspace, &r->bearing, r->options.speed_rpm,
                                  FG_FILM_ONWARD, &r->at));
     r->at.mass_over_perfect = r->at.critical_mass_kg / r->perfect.critical_mass_kg;
+    if (r->at.outcome != FG_FILM_UNSOLVED) FG_TRY(fg_film_find_uncertainty(ctx, r, workspace));
   }
   if (r->at.outcome == FG_FILM_UNSOLVED) return FG_OK;
   FG_TRY(find_coefficients(ctx, r, workspace));

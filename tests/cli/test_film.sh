@@ -108,6 +108,54 @@ expect 65 "not that of a bore" "$program" film $fast --bore wide.csv
 expect 65 "no film at" "$program" film --load 5000 --speed 3000 --clearance 40 --compliance 0 --mesh 2,4
 expect 0 "touching" "$program" film $fast --speeds 30000:90000:2 --touching 100 --table -
 
+# The u of foils goes into the film's: of a thickness that all bumps share as two films beside it differ, and none without a u.
+uniform() { # uniform CLEARANCE_MM U_MM U_THICKNESS_MM
+  python3 - "$@" <<'END'
+import json, sys
+c, u, t = map(float, sys.argv[1:])
+bumps = [{"number": k + 1, "clearance_mm": c, "u_clearance_mm": u} for k in range(9)]
+print(json.dumps({"schema": "foilgauge/measure/1", "foils": [{"u_thickness_mm": t, "bumps": bumps}] * 3}))
+END
+}
+uniform 0.04 0.0004 0.0004 >shared.json && uniform 0.0404 0 0 >above.json && uniform 0.0396 0 0 >below.json && uniform 0.04 0.0004 0 >own.json
+for foils in shared above below own; do
+  expect 0 "" "$program" film $fast --speeds 30000:90000:2 --foils $foils.json -o $foils.film
+  valid film.schema.json $foils.film
+done
+checks - shared.film above.film below.film own.film <<'END' || fail "u of the film"
+import json, sys
+shared, above, below, own = (json.load(open(n)) for n in sys.argv[1:])
+assert "uncertainty" not in above
+for name, tolerance in (("min_film_um", 0.25), ("eccentricity_ratio", 0.25), ("critical_mass_kg", 0.35)):
+    slope = abs(above["bearing"][name] - below["bearing"][name]) / 2
+    assert abs(shared["uncertainty"]["u_" + name] / slope - 1) < tolerance, (name, shared["uncertainty"], slope)
+assert 0 < own["uncertainty"]["u_eccentricity_ratio"] != shared["uncertainty"]["u_eccentricity_ratio"]
+low, high = shared["uncertainty"]["critical_mass_95_kg"]
+assert low < shared["bearing"]["critical_mass_kg"] < high
+END
+
+# A tolerance on the clearance by the threshold speed: all bumps alike keep it within, and three tenths more do not.
+rotor="--load 20 --speed 30000 --clearance 32 --compliance 0.67 --mass 0.3 --speeds 8000:40000:12 --mesh 2,4"
+expect 0 "threshold speed \([0-9]* rpm as designed\) stays" "$program" film $rotor --within 10 --shims=-1:1 --draws 10 -o within.json --table -
+valid film.schema.json within.json
+for side in closer wider; do
+  for share in 1 1.3; do
+    sign=$([ $side = closer ] && echo - || echo +)
+    uniform "$(value within.json "(32 $sign $share * r['tolerance']['alike_${side}_um']) / 1000")" 0 0 >moved.json
+    expect 0 "" "$program" film $rotor --foils moved.json -o moved.film
+    kept=$(value moved.film "abs(r['threshold_rpm'] / $(value within.json "r['tolerance']['threshold_rpm']") - 1) <= 0.1")
+    [ $kept = $([ $share = 1 ] && echo True || echo False) ] || fail "the threshold of bumps that are $side by $share of the tolerance: $kept"
+  done
+done
+checks - within.json <<'END' || fail "tolerances"
+import json, sys
+r = json.load(open(sys.argv[1]))
+t, d = r["tolerance"], r["draws"]
+assert 0 < t["each_um"] <= t["each_not_lower_um"] < t["alike_closer_um"], t
+assert d["within"]["count"] <= d["not_lower"]["count"] <= 10, d
+END
+expect 0 "No tolerance on the clearance is told" "$program" film $rotor --speeds 30000:40000:2 --within 10 --table -
+
 # Bad input.
 while IFS='|' read -r code words options; do
   expect "$code" "$words" "$program" film $options

@@ -166,6 +166,8 @@ static const char *find_share_name(const fg_subject *s, char *buffer) {
   const fg_film_draws *draws = &report_of(s)->draws;
   if (s->object == &draws->solved) return "solved";
   if (s->object == &draws->touching) return "touching";
+  if (s->object == &draws->within) return "threshold within the asked percentage";
+  if (s->object == &draws->not_lower) return "threshold lower by no more than that";
   return s->object == &draws->more_stable ? "more stable, of those solved"
                                           : "less stable, of those solved";
 }
@@ -196,11 +198,25 @@ const fg_members fg_film_share_members = FG_MEMBERS_DEFINED(share_rows, "share")
 
 bool fg_film_share_at(const fg_subject *list, size_t i, fg_subject *element) {
   const fg_film_draws *draws = &report_of(list)->draws;
-  const fg_film_share *const shares[] = {&draws->solved, &draws->touching, &draws->more_stable,
-                                         &draws->less_stable};
-  if (i >= sizeof shares / sizeof *shares) return false;
+  const fg_film_share *const shares[] = {&draws->solved,      &draws->touching, &draws->more_stable,
+                                         &draws->less_stable, &draws->within,   &draws->not_lower};
+  if (i >= (isfinite(report_of(list)->tolerance.threshold_rpm) ? 6 : 4)) return false;
   element->object = shares[i];
   return true;
+}
+
+/* ---- tolerance and uncertainty ---- */
+
+static bool has_tolerance(const fg_subject *s) {
+  return report_of(s)->tolerance.asked;
+}
+
+static bool knows_threshold(const fg_subject *s) {
+  return isfinite(report_of(s)->tolerance.threshold_rpm);
+}
+
+static bool has_uncertainty(const fg_subject *s) {
+  return report_of(s)->u.draws > 0;
 }
 
 static const fg_member quantile_rows[] = {
@@ -228,6 +244,13 @@ static const fg_member draws_rows[] = {
      .words = "of those solved: critical mass above the perfect bearing's"},
     {FG_OBJECT("less_stable", fg_film_draws, less_stable, &fg_film_share_members),
      .options = FG_MEMBER_ON_LINE, .words = "of those solved: below"},
+    {FG_OBJECT("within", fg_film_draws, within, &fg_film_share_members),
+     .options = FG_MEMBER_ON_LINE, .present = knows_threshold,
+     .words = "of all: with a threshold speed within the asked percentage of the perfect "
+              "bearing's, and a film that does not touch there"},
+    {FG_OBJECT("not_lower", fg_film_draws, not_lower, &fg_film_share_members),
+     .options = FG_MEMBER_ON_LINE, .present = knows_threshold,
+     .words = "of all: the same, or with a higher one"},
     {FG_GROUP("mass_over_perfect", &quantile_members), .options = FG_MEMBER_ON_LINE,
      .words = "quantiles over those solved of the critical mass over the perfect bearing's; null "
               "where such bearings are stable at every mass"},
@@ -239,36 +262,6 @@ static bool has_draws(const fg_subject *s) {
 }
 
 /* ---- sensitivities ---- */
-
-#define SENSITIVITY(name, field, heading_)                                                         \
-  FG_NUMBER(name, fg_film_sensitivity, field), .heading = (heading_),                              \
-                                               .page = {.rank = 2, .digits = 3},                   \
-                                               .terminal = {.rank = 2, .digits = 3}
-
-static const fg_member sensitivity_rows[] = {
-    {FG_WORD("parameter", fg_film_sensitivity, parameter, fg_film_parameter_words),
-     .words = "of the design's bumps", .heading = "of", .page = {.rank = 1},
-     .terminal = {.rank = 1}},
-    {SENSITIVITY("clearance_um_per_pct", clearance_um_per_pct, "clearance,\nµm/%"),
-     .words = "change of the clearance for one percent more, of all bumps"},
-    {SENSITIVITY("stiffness_pct_per_pct", stiffness_pct_per_pct, "stiffness,\n%/%"),
-     .words = "of a bump, likewise"},
-    {SENSITIVITY("mass_pct_per_pct", mass_pct_per_pct, "critical\nmass, %/%"),
-     .words = "of the critical mass, likewise"},
-    {FG_OBJECT("scatter_solved", fg_film_sensitivity, solved, &fg_film_share_members),
-     .options = FG_MEMBER_ON_LINE,
-     .words = "of 200 bearings whose bumps scatter by one percent (standard deviation)"},
-    {SENSITIVITY("scatter_at_5_pct", quantile[0], "scatter 1 %:\n5 %"),
-     .words = "5 % quantile of their critical mass over the perfect bearing's"},
-    {SENSITIVITY("scatter_median", quantile[2], "median"), .words = "their median"},
-    {SENSITIVITY("scatter_at_95_pct", quantile[4], "95 %"), .words = "their 95 % quantile"},
-};
-const fg_members fg_film_sensitivity_members = FG_MEMBERS(sensitivity_rows);
-
-bool fg_film_sensitivity_at(const fg_subject *list, size_t i, fg_subject *element) {
-  element->object = &report_of(list)->sensitivity[i];
-  return i < report_of(list)->sensitivities;
-}
 
 static bool has_sensitivities(const fg_subject *s) {
   return report_of(s)->sensitivities > 0;
@@ -408,6 +401,10 @@ static const fg_member report_rows[] = {
               &fg_film_sensitivity_members),
      .present = has_sensitivities,
      .words = "of the critical mass over the shape of the bumps, about the design"},
+    {FG_OBJECT("uncertainty", fg_film_report, u, &fg_film_uncertainty_members),
+     .present = has_uncertainty, .words = "of the bearing as measured, by that of its clearances"},
+    {FG_OBJECT("tolerance", fg_film_report, tolerance, &fg_film_tolerance_members),
+     .present = has_tolerance, .words = "on the clearance, that keeps the threshold speed"},
     {FG_OBJECT("orbit", fg_film_report, orbit, &orbit_members), .present = has_orbit,
      .words = "of the rotor in time, after a pulse of 2 % of the load during the first turn"},
     {FG_LIST("field", fg_film_report, column, columns, &column_members),

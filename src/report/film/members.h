@@ -15,6 +15,9 @@ fg_member_element fg_film_bearing_at, fg_film_speed_at, fg_film_draw_at;
 extern const fg_members fg_film_share_members;
 fg_member_element fg_film_share_at;
 
+/* Of an fg_film_tolerance and an fg_film_uncertainty. */
+extern const fg_members fg_film_tolerance_members, fg_film_uncertainty_members;
+
 extern const fg_document fg_film_document;
 
 /* Of an fg_film_sensitivity. */
@@ -23,6 +26,9 @@ fg_member_element fg_film_sensitivity_at;
 
 /* Describes the draws: "1000 bearings of 3 different foils each, drawn from 40". */
 void fg_film_draws_words(const fg_film_report *report, char *text, size_t size);
+
+/* Says which tolerance on the clearance keeps the threshold speed. */
+void fg_film_tolerance_words(const fg_film_report *report, char *text, size_t size);
 
 /* "stable", "unstable", "stable at every mass" for the rotor of the report; NULL: not known. */
 const char *fg_film_stability_word(const fg_film_report *report, const fg_film_result *result);

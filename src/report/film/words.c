@@ -32,6 +32,46 @@ void fg_film_draws_words(const fg_film_report *r, char *text, size_t size) {
              (unsigned long long)r->options.seed);
 }
 
+/* "3.1 um (8 %)"; the widest or none of those that were tried. */
+static void put_tolerance(const fg_film_report *r, double um, char *text, size_t size) {
+  if (isinf(um))
+    snprintf(text, size, "more than %.3g um", FG_FILM_WIDEST_SHARE * r->clearance_um);
+  else if (um == 0)
+    snprintf(text, size, "nothing that was tried");
+  else
+    snprintf(text, size, "%.2g um (%.2g %%)", um, 100 * um / r->clearance_um);
+}
+
+void fg_film_tolerance_words(const fg_film_report *r, char *text, size_t size) {
+  char each[60], lower[60], closer[60], wider[60];
+  const fg_film_tolerance *t = &r->tolerance;
+  if (isnan(t->threshold_rpm)) {
+    snprintf(text, size,
+             "No tolerance on the clearance is told: as designed the rotor has no threshold speed "
+             "between %.0f and %.0f rpm.",
+             r->options.speed_low_rpm, r->options.speed_high_rpm);
+    return;
+  }
+  put_tolerance(r, t->each_um, each, sizeof each);
+  put_tolerance(r, t->each_not_lower_um, lower, sizeof lower);
+  put_tolerance(r, t->alike_um[0], closer, sizeof closer);
+  put_tolerance(r, t->alike_um[1], wider, sizeof wider);
+  snprintf(text, size,
+           "The threshold speed (%.0f rpm as designed) stays within %g %% in 95 of 100 bearings "
+           "whose clearance keeps ± %s at every bump by itself, and falls by no more than that "
+           "with ± %s. All bumps alike may be closer by %s or wider by %s.",
+           t->threshold_rpm, r->options.within_pct, each, lower, closer, wider);
+}
+
+static void note_uncertainty(const fg_film_report *r, char *note) {
+  const fg_film_uncertainty *u = &r->u;
+  snprintf(
+      note, FG_FILM_NOTE,
+      "The clearances' u makes U (2 u) of the thinnest film %.2g um, of the eccentricity %.2g, "
+      "of the critical mass %.2g kg (%zu draws, %zu solved).",
+      2 * u->min_film_um, 2 * u->eccentricity, 2 * u->critical_mass_kg, u->draws, u->solved.count);
+}
+
 size_t fg_film_notes(const fg_film_report *r, char notes[FG_FILM_NOTES][FG_FILM_NOTE]) {
   const fg_film_options *o = &r->options;
   size_t count = 0;
@@ -47,6 +87,8 @@ size_t fg_film_notes(const fg_film_report *r, char notes[FG_FILM_NOTES][FG_FILM_
              "The film is thinner than %.3g um: surfaces touch, and what is said of stability "
              "does not hold.",
              o->touching_um);
+  if (r->u.draws) note_uncertainty(r, notes[count++]);
+  if (r->tolerance.asked) fg_film_tolerance_words(r, notes[count++], FG_FILM_NOTE);
   if (o->pads == 0)
     snprintf(notes[count++], FG_FILM_NOTE,
              "A closed ring without edges of pads: no such bearing "

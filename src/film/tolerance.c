@@ -1,0 +1,114 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Tolerances on the clearance that keep the threshold speed: of every bump by itself, by drawn
+ * bearings, and of all bumps alike.
+ *
+ * A bearing's threshold speed is not solved for. Below it the critical mass is above the rotor's:
+ * the first speed at which that is so, from the upper end of the interval downwards, tells its
+ * side.
+ */
+#include <math.h>
+#include <stdlib.h>
+
+#include "film/bearing.h"
+
+/* Bearings of a trial, the share of them that must keep it, and steps to a tolerance. */
+enum { TRIAL_DRAWS = 40, DOUBLINGS = 8, REFINEMENTS = 2 };
+/* Steps of the speed over the interval. */
+enum { SIDE_STEPS = 4 };
+static const double share_kept = 0.95;
+
+fg_status fg_film_find_side(fg_context *ctx, const fg_film_report *r, fg_film_workspace *workspace,
+                            const fg_film_bearing *bearing, fg_film_side *side) {
+  *side = FG_FILM_NO_FILM;
+  for (int i = 0; i <= SIDE_STEPS; i++) { /* from the thicker film */
+    fg_film_result at;
+    double share = r->options.within_pct / 100 * (1 - 2. * i / SIDE_STEPS);
+    double rpm = r->tolerance.threshold_rpm * (1 + share);
+    FG_TRY(fg_film_solve_bearing(ctx, r, workspace, bearing, rpm, FG_FILM_ONWARD, &at));
+    if (at.outcome != FG_FILM_SOLVED) return FG_OK;
+    if (!(at.critical_mass_kg > r->options.rotor_mass_kg)) continue;
+    *side = i ? FG_FILM_WITHIN : FG_FILM_ABOVE;
+    return FG_OK;
+  }
+  *side = FG_FILM_BELOW;
+  return FG_OK;
+}
+
+/* A kind of tolerance that is tried. */
+typedef struct tolerance_trial {
+  fg_film_report *report;
+  const fg_film_bearing *perfect;
+  fg_film_workspace *workspace;
+  double sign;    /* of all bumps alike; 0: of every bump by itself */
+  bool not_lower; /* of that: a higher threshold is kept, too */
+} tolerance_trial;
+
+static fg_status try_alike(fg_context *ctx, const tolerance_trial *t, double um, bool *kept) {
+  fg_film_bearing moved = *t->perfect;
+  fg_film_side side;
+  for (size_t i = 0; i < moved.count; i++)
+    moved.clearance_mm[i] += t->sign * um * 1e-3;
+  FG_TRY(fg_film_find_side(ctx, t->report, t->workspace, &moved, &side));
+  *kept = side == FG_FILM_WITHIN;
+  return FG_OK;
+}
+
+static fg_status try_tolerance(fg_context *ctx, const tolerance_trial *t, double um, bool *kept) {
+  fg_film_draws draws;
+  if (t->sign != 0) return try_alike(ctx, t, um, kept);
+  fg_status status =
+      fg_film_draw_spread(ctx, t->report, t->perfect, t->workspace, um * 1e-3, TRIAL_DRAWS, &draws);
+  const fg_film_share *share = t->not_lower ? &draws.not_lower : &draws.within;
+  *kept = status == FG_OK && share->share >= share_kept;
+  free(draws.result);
+  return status;
+}
+
+/* The widest tolerance up to which all keep it: from a narrow one doubled until one does not (large
+ * scatter may raise a threshold that small scatter lowers), then between the last two. The draws of
+ * all trials are the same. 0: the narrowest does not. */
+static fg_status find_widest(fg_context *ctx, const tolerance_trial *t, double *um) {
+  double widest = FG_FILM_WIDEST_SHARE * t->report->clearance_um;
+  double low = 0, high = ldexp(widest, -DOUBLINGS);
+  bool kept = true;
+  while (high <= widest && kept) {
+    FG_TRY(try_tolerance(ctx, t, high, &kept));
+    if (kept) low = high;
+    if (kept) high *= 2;
+  }
+  for (int i = 0; i < REFINEMENTS && !kept && low > 0; i++) {
+    double middle = 0.5 * (low + high);
+    FG_TRY(try_tolerance(ctx, t, middle, &kept));
+    *(kept ? &low : &high) = middle;
+    kept = false;
+  }
+  *um = kept ? INFINITY : low;
+  return FG_OK;
+}
+
+static fg_status find_tolerances(fg_context *ctx, fg_film_report *r, const fg_film_bearing *perfect,
+                                 fg_film_workspace *workspace) {
+  fg_film_tolerance *tolerance = &r->tolerance;
+  for (int each = 0; each < 2; each++)
+    FG_TRY(find_widest(ctx, &(tolerance_trial){r, perfect, workspace, 0, each == 1},
+                       each ? &tolerance->each_not_lower_um : &tolerance->each_um));
+  for (int side = 0; side < 2; side++)
+    FG_TRY(find_widest(ctx, &(tolerance_trial){r, perfect, workspace, side ? 1 : -1, false},
+                       &tolerance->alike_um[side]));
+  return FG_OK;
+}
+
+fg_status fg_film_find_tolerance(fg_context *ctx, fg_film_report *r, const fg_film_bearing *perfect,
+                                 fg_film_workspace *workspace) {
+  fg_film_result unused;
+  fg_film_start start = FG_FILM_AFRESH;
+  r->tolerance = (fg_film_tolerance){false, NAN, NAN, NAN, {NAN, NAN}};
+  if (isnan(r->options.within_pct)) return FG_OK;
+  r->tolerance.asked = true;
+  FG_TRY(fg_film_find_threshold_speed(ctx, r, workspace, perfect, &r->tolerance.threshold_rpm));
+  /* Back to the perfect bearing, for those who go on from it. */
+  FG_TRY(fg_film_solve_bearing(ctx, r, workspace, perfect, r->options.speed_rpm, start, &unused));
+  if (isnan(r->tolerance.threshold_rpm)) return FG_OK;
+  FG_TRY(find_tolerances(ctx, r, perfect, workspace));
+  return fg_film_solve_bearing(ctx, r, workspace, perfect, r->options.speed_rpm, start, &unused);
+}
