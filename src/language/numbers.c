@@ -40,7 +40,11 @@ size_t fg_time_length(const char *text) {
   if (!date) return 0;
   size_t minutes = layout_length(text + date, " 00:00") + layout_length(text + date, "T00:00");
   if (!minutes && isalnum((unsigned char)text[date])) return 0;
-  return date + minutes + (minutes ? layout_length(text + date + minutes, ":00") : 0);
+  size_t length = date + minutes;
+  if (minutes) length += layout_length(text + length, ":00");
+  if (minutes)
+    length += layout_length(text + length, " +00:00") + layout_length(text + length, " -00:00");
+  return length;
 }
 
 static void write_time(const fg_language *language, const char *text, size_t length, FILE *out) {

@@ -7,6 +7,10 @@
 
 static void put_column_heading(FILE *out, const fg_member *column) {
   const char *heading = fg_member_heading(column, FG_ON_PAGE);
+  if (!*heading && !column->words) {
+    fputs("<td></td>", out);
+    return;
+  }
   fputs(column->page.words ? "<th class=\"w\"" : "<th", out);
   if (column->words) {
     fputs(" title=\"", out);

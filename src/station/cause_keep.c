@@ -196,14 +196,14 @@ static void write_accepted(const fg_inspection *station, const fg_trend_choice *
   fputs("; accepted by ", out);
   fg_html_name(out, fg_query_get_text(query, 4));
   fputs(", ", out);
-  fg_page_time(out, fg_query_get_integer(query, 5));
+  fg_page_time_zoned(out, fg_query_get_integer(query, 5));
   if (fg_query_get_text(query, 8)[0])
     fg_html_name((fputs(": ", out), out), fg_query_get_text(query, 8));
   if (withdrawn) {
     fputs("; withdrawn by ", out);
     fg_html_name(out, fg_query_get_text(query, 7));
     fputs(", ", out);
-    fg_page_time(out, fg_query_get_integer(query, 6));
+    fg_page_time_zoned(out, fg_query_get_integer(query, 6));
   } else {
     write_withdrawal(station, choice, fg_query_get_integer(query, 0), out);
   }

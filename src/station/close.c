@@ -10,6 +10,7 @@
 #include "station/disposition.h"
 #include "station/export.h"
 #include "station/lot_folder.h"
+#include "station/news.h"
 #include "station/pages.h"
 
 /* The answer waits WAITS times WAIT_MS for a lot to be closed, then states that it goes on. */
@@ -63,6 +64,7 @@ static void *run_closing(void *user) {
   fg_text_clip(closing->error, sizeof closing->error, "%s", status == FG_OK ? "" : ctx.message);
   closing->running = false;
   pthread_mutex_unlock(&closing->mutex);
+  fg_station_notify(station);
   return NULL;
 }
 

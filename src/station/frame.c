@@ -33,6 +33,15 @@ void fg_page_time(FILE *out, int64_t at) {
   fputs(text, out);
 }
 
+void fg_page_time_zoned(FILE *out, int64_t at) {
+  time_t seconds = (time_t)(at / 1000);
+  struct tm local;
+  char zone[8];
+  fg_page_time(out, at);
+  if (localtime_r(&seconds, &local) && strftime(zone, sizeof zone, "%z", &local) == 5)
+    fprintf(out, " %.3s:%s", zone, zone + 3);
+}
+
 void fg_page_csrf_token(const fg_inspection *station, FILE *out) {
   fprintf(out, "<input type=\"hidden\" name=\"form\" value=\"%s\">", station->csrf_token);
 }
@@ -69,7 +78,7 @@ fg_card_style fg_page_card_style(const char *kind, const char *verdict, bool wit
 }
 
 static void write_tabs(FILE *out, fg_tab here) {
-  fputs("<nav>", out);
+  fputs("<nav aria-label=\"Pages of the station\">", out);
   for (size_t i = 0; i < sizeof tabs / sizeof *tabs; i++)
     fprintf(out, "<a href=\"%s\"%s accesskey=\"%zu\">%s</a>", tabs[i].path,
             tabs[i].tab == here ? " aria-current=\"page\"" : "", i + 1, tabs[i].name);
@@ -110,6 +119,22 @@ static fg_status write_banner(fg_context *ctx, const fg_inspection *station, sql
   return FG_OK;
 }
 
+/* Words of the page's script, and the line in which it tells a screen reader of news: a region that
+ * lives as long as the page. In the words % is a time or a number. */
+static void write_script_words(FILE *out) {
+  static const char *const words[][2] = {
+      {"lost", "No connection to the station. This page shows what was known at %; what came later "
+               "is not here."},
+      {"stale", "The station cannot show its newest result now. This page shows what was known at "
+                "%; what came later is not here."},
+      {"newer", "% newer:"},
+      {"drop", "Drop"},
+  };
+  for (size_t i = 0; i < sizeof words / sizeof *words; i++)
+    fprintf(out, "<p hidden data-word=\"%s\">%s</p>\n", words[i][0], words[i][1]);
+  fputs("<p id=\"heard\" role=\"status\"></p>\n", out);
+}
+
 /* Seen until the page's script has heard of the station: without a script, always. */
 static void write_silent(FILE *out) {
   fputs("<p id=\"silent\" role=\"alert\">This page shows what was known at ", out);
@@ -132,11 +157,16 @@ fg_status fg_page_begin(fg_context *ctx, fg_inspection *station, sqlite3 *reader
         out);
   write_tabs(out, tab);
   write_silent(out);
+  write_script_words(out);
   fprintf(out, "<main data-news=\"%lld\" data-form=\"%s\" data-at=\"", news, station->csrf_token);
   fg_page_time(out, fg_station_now());
   fputs("\">\n", out);
   write_recovery(station, out);
   return write_banner(ctx, station, reader, out);
+}
+
+void fg_page_heading(FILE *out, const char *words) {
+  fprintf(out, "<h1 class=\"unseen\">%s</h1>\n", words);
 }
 
 void fg_page_end(FILE *out) {

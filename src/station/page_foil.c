@@ -144,6 +144,7 @@ static fg_status write_foil_html_form(fg_context *ctx, const fg_inspection *stat
 static fg_status write_foil(fg_context *ctx, fg_inspection *station, sqlite3 *reader,
                             const fg_stored_foil *stored, FILE *out) {
   FG_TRY(fg_page_begin(ctx, station, reader, out, FG_TAB_HISTORY, stored->serial));
+  fg_page_heading(out, "Foil");
   fputs("<section>\n", out);
   write_foil_call(stored, out);
   FG_TRY(fg_page_crushed(ctx, reader, stored->id, out));

@@ -344,6 +344,7 @@ fg_status fg_page_history(fg_context *ctx, fg_inspection *station, sqlite3 *read
   long pages = (long)((found + PAGE_FOILS - 1) / PAGE_FOILS);
   if (at.page > pages) at.page = pages > 0 ? pages : 1;
   FG_TRY(fg_page_begin(ctx, station, reader, out, FG_TAB_HISTORY, "History"));
+  fg_page_heading(out, "History");
   fputs("<section>\n", out);
   FG_TRY(write_search_html_form(ctx, reader, &at, out));
   fprintf(out, "<p class=\"note\">%lld %s%s</p>\n", (long long)found, found == 1 ? "foil" : "foils",

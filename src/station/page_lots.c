@@ -265,7 +265,7 @@ static void write_closing(fg_inspection *station, FILE *out) {
   fg_closing *closing = &station->closing;
   pthread_mutex_lock(&closing->mutex);
   if (closing->running)
-    fputs("<meta http-equiv=\"refresh\" content=\"2\"><p class=\"banner\" role=\"status\">The lot ",
+    fputs("<p class=\"banner\" role=\"status\" data-live>The lot ",
           out);
   else if (closing->error[0])
     fputs("<p class=\"banner\" role=\"alert\">The lot ", out);
@@ -281,6 +281,7 @@ static void write_closing(fg_inspection *station, FILE *out) {
 fg_status fg_page_lots(fg_context *ctx, fg_inspection *station, sqlite3 *reader,
                        const fg_request *request, FILE *out) {
   FG_TRY(fg_page_begin(ctx, station, reader, out, FG_TAB_LOTS, "Lots"));
+  fg_page_heading(out, "Lots");
   write_closing(station, out);
   if (fg_request_get(request, "close")[0])
     FG_TRY(write_question(ctx, station, reader, fg_request_get(request, "lot"), out));

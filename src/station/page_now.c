@@ -95,7 +95,7 @@ static void write_traceability(FILE *out, const fg_inspection *station, const ca
 static void write_newest_call(FILE *out, const fg_inspection *station, const card *newest) {
   const fg_card_style look =
       fg_page_card_style(newest->kind, newest->verdict, newest->withheld[0] != '\0');
-  fprintf(out, "<div class=\"call %s%s\" role=\"status\"", look.style,
+  fprintf(out, "<div class=\"call %s%s\"", look.style,
           strlen(look.words) > LARGE_LETTERS ? " long" : "");
   write_arrival(out, newest->id, look.words);
   fprintf(out, "><b>%s</b><span>", look.words);
@@ -122,7 +122,7 @@ static bool write_stage(FILE *out, fg_inspection *station) {
   fg_station_read_stage(station, &arriving);
   bool scanning = atomic_load(&station->scanning);
   if (arriving.stage == FG_STAGE_NONE && !scanning) return false;
-  fprintf(out, "<div class=\"call long none\" role=\"status\"><b>%s</b><span>",
+  fprintf(out, "<div class=\"call long none\"><b>%s</b><span>",
           arriving.stage == FG_STAGE_NONE ? "SCANNING" : words[arriving.stage]);
   if (arriving.stage != FG_STAGE_NONE) {
     fg_html_name(out, arriving.file);
@@ -292,6 +292,7 @@ fg_status fg_page_now(fg_context *ctx, fg_inspection *station, sqlite3 *reader,
   card newest;
   (void)request;
   FG_TRY(fg_page_begin(ctx, station, reader, out, FG_TAB_NOW, "Now"));
+  fg_page_heading(out, "Now");
   FG_TRY(read_newest(ctx, reader, &newest));
   fputs(newest.foils > 1 ? "<section class=\"many\" data-live>\n" : "<section data-live>\n", out);
   bool arriving = write_stage(out, station);

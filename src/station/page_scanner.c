@@ -196,7 +196,7 @@ static void draw_history(FILE *out, const history *all, int axis, double allowed
   double span = find_span(all, axis, allowed), low = axes[axis].judged ? -span : 0;
   if (!(span > 0)) return; /* no grid was scanned */
   if (!axes[axis].judged) allowed = 0;
-  fprintf(out, "<figure><h3>%s, %s</h3>\n", axes[axis].title, axes[axis].unit);
+  fprintf(out, "<figure><h2>%s, %s</h2>\n", axes[axis].title, axes[axis].unit);
   fg_plot at = fg_plot_frame_begin(
       out, &(fg_plot_frame){axes[axis].title, .width = 560, .height = 220, .left = 66, .top = 10,
                             .bottom = 30, .x = (double[]){0.5, (double)all->count + 0.5},

@@ -142,11 +142,11 @@ static void write_caption(const page *p) {
   fprintf(p->out, "<p class=\"note\">%zu %s, from ", trend->count, things(p->choice));
   write_point(p, 0);
   fputs(", ", p->out);
-  fg_page_time(p->out, time_of(p, 0));
+  fg_page_time_zoned(p->out, time_of(p, 0));
   fputs(", to ", p->out);
   write_point(p, trend->count - 1);
   fputs(", ", p->out);
-  fg_page_time(p->out, time_of(p, trend->count - 1));
+  fg_page_time_zoned(p->out, time_of(p, trend->count - 1));
   if (p->choice->by_lots)
     fprintf(p->out,
             ". Dashed blue: the chart's limits, three sigma of a lot's mean from the mean, by what "

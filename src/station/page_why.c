@@ -118,7 +118,7 @@ static fg_status write_result(fg_context *ctx, const why_page *p) {
           "<p class=\"note\">%zu foils of %zu day%s and %zu lot%s; searched in %.1f s, until ",
           report->foils, report->days, report->days == 1 ? "" : "s", report->lots,
           report->lots == 1 ? "" : "s", report->seconds);
-  fg_page_time(p->out, p->why->at);
+  fg_page_time_zoned(p->out, p->why->at);
   fputs(".</p>\n", p->out);
   write_found(p);
   write_errors(p);
@@ -154,6 +154,11 @@ static fg_status write_why(fg_context *ctx, const why_page *p) {
     write_line(p->out, "No answer:", p->why->error);
   else if (ours && p->why->at)
     FG_TRY(write_result(ctx, p));
+  if (!ours || !p->why->at)
+    fputs(
+        "<p class=\"note\">Searches die, coil, oven, operator, scanner, program and time for what "
+        "moved this quantity.</p>\n",
+        p->out);
   write_ask(p, ours && p->why->at ? "Search again" : "Why?");
   return FG_OK;
 }

@@ -27,9 +27,13 @@ fg_page_writer fg_page_lot;    /* the report of a closed lot, from its folder */
 fg_status fg_page_begin(fg_context *ctx, fg_inspection *station, sqlite3 *reader, FILE *out,
                         fg_tab tab, const char *title);
 void fg_page_end(FILE *out);
+/* Writes the heading of a page that shows none: screen readers find it by that. */
+void fg_page_heading(FILE *out, const char *words);
 
 /* Writes "2026-03-01 14:02:33", local time. */
 void fg_page_time(FILE *out, int64_t at);
+/* Writes it with its offset from UTC: "2026-03-01 14:02:33 +01:00". */
+void fg_page_time_zoned(FILE *out, int64_t at);
 
 /* Writes the hidden field of every html form, which protects it from other sites (CSRF). */
 void fg_page_csrf_token(const fg_inspection *station, FILE *out);

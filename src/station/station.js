@@ -18,9 +18,14 @@
     return age >= 0 && age < LOST_MS; /* a clock that was set back gives no age */
   }
 
+  /* Words stand in the page, in its language. */
+  function wordOf(name, value) {
+    var place = document.querySelector('[data-word=' + name + ']');
+    return place ? place.textContent.replace('%', value) : '';
+  }
+
   function sayLost(answers) {
-    var words = (answers ? 'The station cannot show its newest result now. ' : 'No connection to the station. ') +
-      'This page shows what was known at ' + known + '; what came later is not here.';
+    var words = wordOf(answers ? 'stale' : 'lost', known);
     if (silent.textContent !== words) silent.textContent = words; /* a screen reader says it once */
   }
 
@@ -81,7 +86,7 @@
     whose.innerHTML = (heading ? heading.innerHTML : '') + ' <span class="newer"></span>';
     drop.type = 'reset';
     drop.className = 'plain';
-    drop.textContent = 'Drop';
+    drop.textContent = wordOf('drop');
     form.appendChild(drop);
     form.addEventListener('reset', function () { setTimeout(load, 0); });
     panel.append(whose, form);
@@ -92,7 +97,7 @@
     var words = Array.prototype.filter.call(next.querySelectorAll('[data-arrival]'), function (card) {
       return +card.dataset.arrival > +panel.dataset.after;
     }).map(function (card) { return card.dataset.words; });
-    panel.querySelector('.newer').textContent = words.length ? words.length + ' newer: ' + words.join(', ') : '';
+    panel.querySelector('.newer').textContent = words.length ? wordOf('newer', words.length) + ' ' + words.join(', ') : '';
   }
 
   /* Keeps a half-typed form with its foil, also when newer ones fill the page. True: it has the
@@ -121,6 +126,13 @@
     };
   }
 
+  /* A screen reader speaks the new verdict, its file and the next step. */
+  function tell(page) {
+    var heard = document.getElementById('heard');
+    if (heard) heard.textContent = Array.prototype.map.call(page.querySelectorAll('.call > *, .call + .next'),
+      function (part) { return part.innerText || part.textContent; }).join('. ');
+  }
+
   function wordsOfCall(page) {
     var call = page.querySelector('.call');
     return call ? call.textContent : '';
@@ -134,10 +146,14 @@
     var focus = keepTyped(page, next), other = wordsOfCall(page) !== wordsOfCall(next);
     page.replaceWith(next);
     live = next.querySelector('[data-live]');
+    openScrolls();
     shown = next.dataset.news;
     known = next.dataset.at;
     heard = answered = sent;
-    if (other) window.scrollTo(0, 0);
+    if (other) {
+      window.scrollTo(0, 0);
+      tell(next);
+    }
     if (focus) focus();
     else takeFocus();
   }
@@ -153,6 +169,13 @@
       loading = false;
       if (again) load();
       again = false;
+    });
+  }
+
+  /* Boxes that scroll take the focus, so that keys scroll them. */
+  function openScrolls() {
+    document.querySelectorAll('.scroll').forEach(function (box) {
+      if (box.scrollWidth > box.clientWidth) box.tabIndex = 0;
     });
   }
 
@@ -193,6 +216,7 @@
 
   if (live && window.EventSource) listen();
   takeFocus();
+  openScrolls();
   document.addEventListener('keydown', turnPages);
   window.addEventListener('pageshow', wakeUp);
   document.addEventListener('visibilitychange', wakeUp);

@@ -64,6 +64,80 @@
     });
   });
 
+  /* Quantities: a search over their names, and favourites that this browser keeps and lists first. */
+  (function () {
+    var KEY = 'foilgauge.favourites', list = document.querySelector('select[name=q]');
+    var search = document.querySelector('[data-search]'), star = document.querySelector('[data-star]');
+    if (!list || !search || !star) return;
+    var first = list.querySelector('optgroup'), chosen = list.value;
+
+    function read() {
+      try {
+        return JSON.parse(localStorage.getItem(KEY) || '[]');
+      } catch (error) {
+        return []; /* a browser that keeps nothing has no favourites */
+      }
+    }
+
+    function write(names) {
+      try {
+        localStorage.setItem(KEY, JSON.stringify(names));
+      } catch (error) {
+        star.hidden = true;
+      }
+    }
+
+    function optionsOf(name) {
+      return Array.prototype.filter.call(list.options, function (option) {
+        return option.value === name && option.parentElement !== first;
+      });
+    }
+
+    function show() {
+      var names = read(), value = list.value, starred = names.indexOf(value) >= 0;
+      first.textContent = '';
+      names.forEach(function (name) {
+        optionsOf(name).slice(0, 1).forEach(function (option) { first.appendChild(option.cloneNode(true)); });
+      });
+      first.hidden = !first.children.length;
+      list.value = value;
+      star.setAttribute('aria-pressed', starred);
+      star.textContent = starred ? '★' : '☆';
+    }
+
+    function find() {
+      var words = search.value.toLowerCase().split(/\s+/), found = null;
+      Array.prototype.forEach.call(list.options, function (option) {
+        var text = option.textContent.toLowerCase();
+        option.hidden = option.disabled = !words.every(function (word) { return text.indexOf(word) >= 0; });
+        if (!option.hidden && !found) found = option;
+      });
+      list.querySelectorAll('optgroup').forEach(function (group) {
+        group.hidden = !group.querySelector('option:not([hidden])');
+      });
+      list.value = search.value && found ? found.value : chosen;
+    }
+
+    document.querySelectorAll('[data-script]').forEach(function (element) { element.hidden = false; });
+    search.addEventListener('input', function () {
+      find();
+      show();
+      if (search.value) find();
+    });
+    list.addEventListener('change', function () {
+      chosen = list.value;
+      show();
+    });
+    star.addEventListener('click', function () {
+      var names = read(), at = names.indexOf(list.value);
+      if (at >= 0) names.splice(at, 1);
+      else names.push(list.value);
+      write(names);
+      show();
+    });
+    show();
+  })();
+
   document.addEventListener('keydown', function (event) {
     if (event.ctrlKey || event.altKey || event.metaKey || /INPUT|SELECT|TEXTAREA/.test(event.target.tagName)) return;
     var key = event.key === '=' ? '+' : event.key;

@@ -181,12 +181,19 @@ static void write_group(FILE *out, const char *label, const fg_design *design,
 }
 
 static void write_quantities(FILE *out, const fg_design *design, const fg_trend_choice *choice) {
-  fputs("<label>Quantity<select name=\"q\">", out);
+  /* The page's script shows the search and the star, and fills the first group. */
+  fputs("<label hidden data-script>Search quantities<input type=\"search\" data-search "
+        "autocomplete=\"off\"></label><label>Quantity<select name=\"q\"><optgroup "
+        "label=\"favourites\" hidden></optgroup>",
+        out);
   if (design->tolerance_count)
     write_group(out, "with a tolerance", design, FG_QUANTITY_OF_BUMP, true, choice);
   write_group(out, "of the bumps", design, FG_QUANTITY_OF_BUMP, false, choice);
   write_group(out, "of the foil", design, FG_QUANTITY_OF_FOIL, false, choice);
-  fputs("</select></label>", out);
+  fputs("</select></label><button type=\"button\" class=\"plain\" hidden data-script data-star "
+        "aria-pressed=\"false\" aria-label=\"Favourite\" title=\"Favourite: it stands first in the "
+        "list, in this browser\">☆</button>",
+        out);
 }
 
 static void write_bumps(FILE *out, const fg_trend_choice *choice, int bumps) {

@@ -3,16 +3,9 @@
 # Scanning: samples/station/scan.sh sets every option that a scanner has, by its driver's own list,
 # and no other; the station names options of its scan_command that spoil a scan, and none else.
 # Usage: test_scan_command.sh PROGRAM
-set -euo pipefail
-program=$(realpath "$1")
+name=test_scan_command
+. "$(dirname "$0")/../support/station.sh"
 scan=$(dirname "$(realpath "$0")")/../../samples/station/scan.sh
-work=$(mktemp -d)
-station=
-trap '[ "$BASHPID" != $$ ] || { [ -z "$station" ] || kill "$station" 2>/dev/null || true; rm -rf "$work"; }' EXIT
-fail() {
-  echo "test_scan_command: $*" >&2
-  exit 1
-}
 real=$(command -v scanimage || true)
 
 # Drivers as they list their options; some have them only in gray. The arguments of each scan are noted.

@@ -3,17 +3,8 @@
 # The scanner's check measures tone, sharpening and blur: with a driver that changes one of them foils
 # get no verdict, until the driver is as it was or the change is accepted; what scatters is no change.
 # Usage: test_station_check.sh PROGRAM
-set -euo pipefail
-. "$(dirname "$0")/../support/checks.sh"
-program=$1
-renderer=${FOILGAUGE_RENDERER:-$program}
-work=$(mktemp -d)
-station=
-trap '[ "$BASHPID" != $$ ] || { [ -z "$station" ] || kill "$station" 2>/dev/null || true; rm -rf "$work"; }' EXIT
-fail() {
-  echo "test_station_check: $*" >&2
-  exit 1
-}
+name=test_station_check
+. "$(dirname "$0")/../support/station.sh"
 plain='"blur_px": 1.2'
 # plate SEED FILE [SCANNER'S MEMBERS]: laid elsewhere each time
 plate() {

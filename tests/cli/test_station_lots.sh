@@ -3,18 +3,8 @@
 # Lots of a station: --export writes the same as `lot` would have made of the same scans, to the
 # byte; a lot is closed in the browser, and nothing but its report can be had there.
 # Usage: test_station_lots.sh PROGRAM
-set -euo pipefail
-. "$(dirname "$0")/../support/checks.sh"
-program=$1
-renderer=${FOILGAUGE_RENDERER:-$program}
-work=$(mktemp -d)
-station=
-trap '[ "$BASHPID" != $$ ] || { [ -z "$station" ] || kill "$station" 2>/dev/null || true; rm -rf "$work"; }' EXIT
-
-fail() {
-  echo "test_station_lots: $*" >&2
-  exit 1
-}
+name=test_station_lots
+. "$(dirname "$0")/../support/station.sh"
 said() {
   grep -qF -- "$2" "$1" || fail "$3: '$2' is not in: $(cat "$1")"
 }

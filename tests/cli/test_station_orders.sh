@@ -3,17 +3,8 @@
 # Orders and dispositions. Orders: opened by number from an ERP's file, by hand, and refused where nobody knows them; scans that come belong to the
 # open one; progress; the Scan button names its file by it.
 # Usage: test_station_orders.sh PROGRAM
-set -euo pipefail
-. "$(dirname "$0")/../support/checks.sh"
-program=$1
-renderer=${FOILGAUGE_RENDERER:-$program}
-work=$(mktemp -d)
-station=
-trap '[ -z "$station" ] || kill "$station" 2>/dev/null || true; rm -rf "$work"' EXIT
-fail() {
-  echo "test_station_orders: $*" >&2
-  exit 1
-}
+name=test_station_orders
+. "$(dirname "$0")/../support/station.sh"
 mkdir "$work/scans" "$work/erp"
 for seed in 1 2 3 4 5 6; do
   radius=3.32
@@ -79,7 +70,7 @@ assert post("/order-close", order="2", by="")[0] == "422"
 post("/order-close", order="2", by="Ada")
 assert "Order 4711</a>: <b>3 of 40</b>" in get("/"), get("/")
 post("/order-close", order="1", by="Ada")
-assert "Order" not in re.sub("<nav>.*?</nav>", "", get("/"), flags=re.S)
+assert "Order" not in re.sub("<nav.*?</nav>", "", get("/"), flags=re.S)
 page = get("/orders")
 assert "3 of 40" in page and "Ada" in page, page
 

@@ -3,22 +3,8 @@
 # Pages of a running station: bad bumps are marked, news is told, the scan command runs beside the
 # pages and its failures are cards, a report is measured again only from the same scan.
 # Usage: test_station_pages.sh PROGRAM
-set -euo pipefail
-. "$(dirname "$0")/../support/checks.sh"
-program=$1
-renderer=${FOILGAUGE_RENDERER:-$program}
-work=$(mktemp -d)
-station=
-trap '[ "$BASHPID" != $$ ] || { [ -z "$station" ] || kill "$station" 2>/dev/null || true; rm -rf "$work"; }' EXIT
-fail() {
-  echo "test_station_pages: $*" >&2
-  exit 1
-}
-draw() { # SEED FILE
-  printf '{"schema": "foilgauge/render/1", "seed": %s, "scanner": {"dpi": 1200},
-    "foils": [{"rotate_deg": -90, "design": {"bump_count": 2}}]}' "$1" >"$work/spec.json"
-  "$renderer" render "$work/spec.json" -o "$2"
-}
+name=test_station_pages
+. "$(dirname "$0")/../support/station.sh"
 # A folder's name that no shell must take for more than a name.
 folder="$work/in ';touch pwned;' \$(touch pwned)"
 mkdir "$folder"

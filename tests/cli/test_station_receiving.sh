@@ -3,17 +3,8 @@
 # A writer that pauses is waited for: RECEIVING, no card; when nothing more comes, the error. A scan
 # that comes again under the serial number of another foil is no measurement of that foil.
 # Usage: test_station_receiving.sh PROGRAM
-set -euo pipefail
-. "$(dirname "$0")/../support/checks.sh"
-program=$1
-renderer=${FOILGAUGE_RENDERER:-$program}
-work=$(mktemp -d)
-station=
-trap '[ "$BASHPID" != $$ ] || { [ -z "$station" ] || kill "$station" 2>/dev/null || true; rm -rf "$work"; }' EXIT
-fail() {
-  echo "test_station_receiving: $*" >&2
-  exit 1
-}
+name=test_station_receiving
+. "$(dirname "$0")/../support/station.sh"
 for seed in 1 2 3; do
   printf '{"schema": "foilgauge/render/1", "seed": %s, "scanner": {"dpi": 1200},
     "foils": [{"rotate_deg": -90, "design": {"bump_count": 2}}]}' $seed >"$work/spec.json"

@@ -98,7 +98,7 @@ static void put_table_head(FILE *out, const fg_design *design, const table_rows 
             columns[i]->unit);
     limits = limits || find_tolerance(design, columns[i]->name);
   }
-  fputs("<th></th></tr></thead>\n<tbody>\n", out);
+  fputs("<td></td></tr></thead>\n<tbody>\n", out);
   if (!limits) return;
   fputs("<tr class=\"limits\"><td>tolerance</td>", out);
   for (size_t i = 0; i < count; i++) {
