@@ -90,6 +90,8 @@ typedef struct fg_station_request {
   const char *name;   /* of the station, for receivers of parts; NULL: the machine's */
   const char *hub;    /* address of a hub that gets all parts; NULL: none */
   const char *hub_token_file;
+  const char *users;        /* file of users with roles and tokens; NULL: who may ask may do all */
+  const char *user_header;  /* header by which a proxy names the user; NULL: none */
   const char *token;        /* needed by every request; NULL: none (loopback only) */
   const char *const *hosts; /* further host names that requests may use, with or without a port */
   size_t host_count;
@@ -112,6 +114,11 @@ typedef struct fg_station_outcome {
       refused;              /* files: scans measured; seen before; no scan, not whole, unreadable */
   fg_report_outcome judged; /* of the scans that were measured */
 } fg_station_outcome;
+
+/* Runs a hub, which shows the parts of stations that send them there: its database is a file of
+ * SQLite, or "postgresql://…". Of `pages` counts all about addresses, tokens and the end; with
+ * an `export_path` the parts are written there as CSV, and nothing is served. */
+fg_status fg_hub_run(fg_context *ctx, const char *database, const fg_station_request *pages);
 
 /* Runs the station. FG_ERR_IO: another station runs in the folder, the database cannot be
  * written, the address is taken. Without `once` and `export_path` it runs until `end_descriptor`

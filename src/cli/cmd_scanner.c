@@ -29,7 +29,8 @@ static const struct argp_option options[] = {
 static const char doc[] =
     "Compare two models of one scanner, an older and a newer one: has it changed? Scale, ratio of "
     "axes, shear, and the largest difference over the bed, each with its U."
-    "\vThe models are those of `foilgauge loop --model-out`. A change that shows is a limit that is "
+    "\vThe models are those of `foilgauge loop --model-out`. A change that shows is a limit that "
+    "is "
     "exceeded, unless --limit says how large a difference matters.\n\n"
     "@exit_judged@";
 

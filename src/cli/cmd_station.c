@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include <argp.h>
-#include <errno.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -8,6 +7,7 @@
 #include "cli/commands.h"
 #include "cli/facts.h"
 #include "cli/interrupt.h"
+#include "cli/pages_options.h"
 #include "foilgauge/station.h"
 #include "foilgauge/text.h"
 
@@ -17,12 +17,6 @@ enum {
   OPTION_ONCE,
   OPTION_EXPORT,
   OPTION_POLL,
-  OPTION_LISTEN,
-  OPTION_PORT,
-  OPTION_TOKEN,
-  OPTION_TOKEN_FILE,
-  OPTION_HOST,
-  OPTION_ORIGIN,
   OPTION_CONTEXT,
   OPTION_DIGEST,
   OPTION_DIGEST_PAGE,
@@ -32,13 +26,11 @@ enum {
   OPTION_HUB_TOKEN_FILE
 };
 
-enum { HOSTS_MAX = 16, TOKEN_BYTES = 256 };
-
 typedef struct station_arguments {
   const char *recipe, *design;
-  const char *token_file, *hosts[HOSTS_MAX], *contexts[FG_STATION_CONTEXTS];
+  const char *contexts[FG_STATION_CONTEXTS];
   bool allow_lossy;
-  fg_station_request request;
+  fg_cli_pages pages;
 } station_arguments;
 
 static const struct argp_option options[] = {
@@ -72,21 +64,7 @@ static const struct argp_option options[] = {
     {"poll", OPTION_POLL, "S", 0,
      "Look into the folder every so many seconds (network folders, of whose files nobody tells)",
      2},
-    {"port", OPTION_PORT, "N", 0, "Of the pages (default: @station_port@; 0: one that is free)", 2},
-    {"listen", OPTION_LISTEN, "ADDRESS", 0,
-     "Serve the pages to other machines, at all addresses with 0.0.0.0 or ::; needs a token "
-     "(default: this machine alone)",
-     2},
-    {"host", OPTION_HOST, "NAME", 0,
-     "Answer under this name, too (repeatable); beside the machine's own names and addresses", 2},
-    {"origin", OPTION_ORIGIN, "URL", 0,
-     "What browsers open where a proxy with TLS stands before the pages, as "
-     "https://scanner.example.com; needs a token",
-     2},
-    {"token-file", OPTION_TOKEN_FILE, "FILE", 0,
-     "What a browser must know: the first line of FILE, at least 16 characters", 2},
-    {"token", OPTION_TOKEN, "TEXT", 0,
-     "The same on the command line, where every user of the machine can read it", 2},
+    FG_CLI_PAGES_ROWS(2, "Of the pages (default: @station_port@; 0: one that is free)"),
     FG_CLI_DECIMAL_COMMA_ROW(2),
     {0},
 };
@@ -101,7 +79,7 @@ static const char doc[] =
 
 /* Options whose text is kept as it is. */
 static bool keep_text(int key, const char *text, station_arguments *arguments) {
-  fg_station_request *request = &arguments->request;
+  fg_station_request *request = &arguments->pages.request;
   const struct {
     int key;
     const char **into;
@@ -109,10 +87,6 @@ static bool keep_text(int key, const char *text, station_arguments *arguments) {
       {'d', &arguments->design},
       {OPTION_RECIPE, &arguments->recipe},
       {OPTION_EXPORT, &request->export_path},
-      {OPTION_LISTEN, &request->listen},
-      {OPTION_TOKEN, &request->token},
-      {OPTION_TOKEN_FILE, &arguments->token_file},
-      {OPTION_ORIGIN, &request->origin},
       {OPTION_DIGEST_PAGE, &request->digest_page},
       {OPTION_ORDERS, &request->orders},
       {OPTION_NAME, &request->name},
@@ -129,7 +103,7 @@ static bool keep_text(int key, const char *text, station_arguments *arguments) {
 
 static error_t parse_station_option(int key, char *text, struct argp_state *state) {
   station_arguments *arguments = state->input;
-  fg_station_request *request = &arguments->request;
+  fg_station_request *request = &arguments->pages.request;
   if (keep_text(key, text, arguments)) return 0;
   switch (key) {
   case OPTION_ALLOW_LOSSY:
@@ -140,13 +114,6 @@ static error_t parse_station_option(int key, char *text, struct argp_state *stat
     break;
   case OPTION_POLL:
     request->poll_s = fg_cli_number(state, "poll", text, 0.1, 3600);
-    break;
-  case OPTION_PORT:
-    request->port = (unsigned)fg_cli_number(state, "port", text, 0, 65535);
-    break;
-  case OPTION_HOST:
-    if (request->host_count == HOSTS_MAX) argp_error(state, "--host: at most %d", HOSTS_MAX);
-    arguments->hosts[request->host_count++] = text;
     break;
   case OPTION_DIGEST:
     request->digest = true;
@@ -166,29 +133,11 @@ static error_t parse_station_option(int key, char *text, struct argp_state *stat
   case ARGP_KEY_END:
     request->digest |= request->digest_page != NULL;
     if (!request->folder) argp_error(state, "no FOLDER was given");
-    if (request->token && arguments->token_file)
-      argp_error(state, "--token and --token-file: one of them");
-    break;
+    return fg_cli_pages_option(key, text, state, &arguments->pages);
   default:
-    return ARGP_ERR_UNKNOWN;
+    return fg_cli_pages_option(key, text, state, &arguments->pages);
   }
   return 0;
-}
-
-static fg_status read_token(fg_context *ctx, const char *path, char token[TOKEN_BYTES]) {
-  FILE *file = fopen(path, "re");
-  if (!file) return fg_fail(ctx, FG_ERR_IO, "%s: cannot be opened: %s", path, strerror(errno));
-  char *line = fgets(token, TOKEN_BYTES, file);
-  fclose(file);
-  if (!line) return fg_fail(ctx, FG_ERR_DATA, "%s: there is no token in it", path);
-  token[strcspn(token, " \t\r\n")] = '\0';
-  return FG_OK;
-}
-
-static void print_address(void *user, const char *address) {
-  (void)user;
-  printf("%s\n", address);
-  fflush(stdout);
 }
 
 /* A line per file, whatever bytes its name has: a line break in a name would pass for a line of the
@@ -208,30 +157,25 @@ const struct argp fg_station_parser = {options, parse_station_option, "FOLDER", 
 int fg_cmd_station(int argc, char **argv) {
   static fg_station_settings settings;
   fg_context ctx = {0};
-  station_arguments arguments = {.request = {.port = FG_CLI_STATION_PORT}};
+  station_arguments arguments = {.pages.request = {.port = FG_CLI_STATION_PORT}};
   fg_station_outcome outcome;
-  char token[TOKEN_BYTES];
   fg_status status = fg_cli_parse(&ctx, &fg_station_parser, argc, argv, &arguments);
   if (status != FG_OK) return fg_cli_fail(&ctx, status);
   status = fg_station_settings_load(&ctx, arguments.recipe, arguments.design, &settings);
   if (status != FG_OK) return fg_cli_fail(&ctx, status);
-  if (arguments.token_file) {
-    status = read_token(&ctx, arguments.token_file, token);
-    if (status != FG_OK) return fg_cli_fail(&ctx, status);
-    arguments.request.token = token;
-  }
-  arguments.request.hosts = arguments.hosts;
-  arguments.request.contexts = arguments.contexts;
-  settings.lot.allow_lossy |= arguments.allow_lossy;
-  arguments.request.settings = &settings;
-  arguments.request.ready = print_address;
-  arguments.request.looked_at = print_file;
-  if (!arguments.request.export_path) arguments.request.end_descriptor = fg_interrupt_defer();
-  status = fg_station_run(&ctx, &arguments.request, &outcome);
+  status = fg_cli_pages_end(&ctx, &arguments.pages);
   if (status != FG_OK) return fg_cli_fail(&ctx, status);
-  if (arguments.request.digest) return 0;
-  if (arguments.request.export_path) return fg_outcome_exit_code(&outcome.judged);
-  if (!arguments.request.once) return 0;
+  fg_station_request *request = &arguments.pages.request;
+  request->contexts = arguments.contexts;
+  settings.lot.allow_lossy |= arguments.allow_lossy;
+  request->settings = &settings;
+  request->looked_at = print_file;
+  if (!request->export_path) request->end_descriptor = fg_interrupt_defer();
+  status = fg_station_run(&ctx, request, &outcome);
+  if (status != FG_OK) return fg_cli_fail(&ctx, status);
+  if (request->digest) return 0;
+  if (request->export_path) return fg_outcome_exit_code(&outcome.judged);
+  if (!request->once) return 0;
   fprintf(stderr, "foilgauge: %zu measured, %zu known, %zu refused\n", outcome.measured,
           outcome.known, outcome.refused);
   return fg_outcome_exit_code(&outcome.judged);

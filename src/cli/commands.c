@@ -69,5 +69,10 @@ const fg_command fg_commands[] = {
      fg_cmd_station,
      "watch a folder of scans, keep results, show them in a browser",
      {{"station", &fg_station_parser, NULL}}},
+    {"hub",
+     NULL,
+     fg_cmd_hub,
+     "show the parts of several stations",
+     {{"hub", &fg_hub_parser, NULL}}},
     {NULL, NULL, NULL, NULL, {{NULL, NULL, NULL}}},
 };

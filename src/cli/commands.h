@@ -51,11 +51,12 @@ fg_command_run fg_cmd_stiffness;
 fg_command_run fg_cmd_film;
 fg_command_run fg_cmd_scanner;
 fg_command_run fg_cmd_station;
+fg_command_run fg_cmd_hub;
 
 extern const struct argp fg_forming_parser, fg_film_parser, fg_scanner_parser;
 extern const struct argp fg_measure_parser, fg_doe_parser, fg_doe_plan_parser, fg_design_parser,
     fg_render_parser, fg_loop_parser, fg_loop_table_parser, fg_lot_parser, fg_merge_parser,
-    fg_die_parser, fg_die_next_parser, fg_stiffness_parser, fg_station_parser;
+    fg_die_parser, fg_die_next_parser, fg_stiffness_parser, fg_station_parser, fg_hub_parser;
 
 /* Reads the command line into `input`. A wrong one ends the program (argp, exit code 64), and so
  * does --help, wherever it stands; FG_ERR_MEMORY when argp has no memory, which it says by its

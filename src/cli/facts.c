@@ -170,6 +170,10 @@ static void write_port(FILE *out) {
   fprintf(out, "%d", FG_CLI_STATION_PORT);
 }
 
+static void write_hub_port(FILE *out) {
+  fprintf(out, "%d", FG_CLI_HUB_PORT);
+}
+
 static void write_minutes(FILE *out) {
   fprintf(out, "%d", FG_CLI_LOOP_MINUTES);
 }
@@ -223,6 +227,7 @@ static const fg_fact facts[] = {
     {"film_mesh_bump", write_film_mesh_bump},
     {"film_mesh_axial", write_film_mesh_axial},
     {"station_port", write_port},
+    {"hub_port", write_hub_port},
     {"loop_minutes", write_minutes},
     {"loop_mebibytes", write_mebibytes},
     {"seed", write_seed},

@@ -11,6 +11,7 @@
 /* Defaults that are the command line's own; those of the library stand in its headers. */
 enum {
   FG_CLI_STATION_PORT = 8317,
+  FG_CLI_HUB_PORT = 8318,
   FG_CLI_LOOP_MINUTES = 10, /* longest estimated search that is not refused */
   FG_CLI_LOOP_MEBIBYTES = 512,
   FG_CLI_SEED = 1,

@@ -122,6 +122,10 @@ static fg_status read_flag(const fg_reading *reading, const fg_member *member, c
 
 static fg_status read_text(const fg_reading *reading, const fg_member *member, const cJSON *item,
                            void *place) {
+  if (may_be_null(member) && cJSON_IsNull(item)) {
+    *(char *)place = '\0';
+    return FG_OK;
+  }
   if (!cJSON_IsString(item))
     return fg_reading_fail(reading, member->name, "must be a text in quotes");
   const char *text = item->valuestring;

@@ -33,6 +33,7 @@ const fg_document *const fg_documents[] = {
     &fg_forming_document,
     &fg_forming_fit_document,
     &fg_grid_loop_document,
+    &fg_hub_document,
     &fg_index_document,
     &fg_load_document,
     &fg_loop_document,

@@ -5,14 +5,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/text.h"
 #include "foilgauge/file.h"
 #include "language/language.h"
-#include "page/page.h"
+#include "station/access.h"
 #include "station/news.h"
 #include "station/outbox/outbox.h"
 #include "station/pages.h"
-#include "station/reach.h"
 #include "station/trend.h"
 
 typedef struct route {
@@ -48,31 +46,22 @@ static const route pages[] = {
 static const struct {
   const char *path;
   fg_action *act;
+  fg_role role; /* that it takes where the station knows users */
 } actions[] = {
-    {"/correct", fg_action_correct},   {"/scan", fg_action_scan},
-    {"/baseline", fg_action_baseline}, {"/close", fg_action_close},
-    {"/download", fg_action_download}, {"/dispose", fg_action_dispose},
-    {"/order", fg_action_order},       {"/order-close", fg_action_order_close},
-    {"/why", fg_action_why},           {"/accept", fg_action_accept},
-    {"/withdraw", fg_action_withdraw},
+    {"/correct", fg_action_correct, FG_ROLE_OPERATOR},
+    {"/scan", fg_action_scan, FG_ROLE_OPERATOR},
+    {"/baseline", fg_action_baseline, FG_ROLE_QUALITY},
+    {"/close", fg_action_close, FG_ROLE_QUALITY},
+    {"/download", fg_action_download, FG_ROLE_OPERATOR},
+    {"/dispose", fg_action_dispose, FG_ROLE_OPERATOR},
+    {"/order", fg_action_order, FG_ROLE_OPERATOR},
+    {"/order-close", fg_action_order_close, FG_ROLE_OPERATOR},
+    {"/why", fg_action_why, FG_ROLE_OPERATOR},
+    {"/accept", fg_action_accept, FG_ROLE_QUALITY},
+    {"/withdraw", fg_action_withdraw, FG_ROLE_QUALITY},
 };
 
 enum { PAGES = sizeof pages / sizeof *pages, ACTIONS = sizeof actions / sizeof *actions };
-
-/* Answers with a page that states the error. */
-static void write_error_page(fg_answer *answer, int code, const char *words) {
-  free(answer->body);
-  *answer = (fg_answer){.code = code, .type = HTML};
-  FILE *out = open_memstream(&answer->body, &answer->size);
-  if (!out) return;
-  fputs("<!doctype html>\n<html lang=\"en\"><meta charset=\"utf-8\"><meta name=\"viewport\" "
-        "content=\"width=device-width,initial-scale=1\"><title>foilgauge</title>"
-        "<link rel=\"stylesheet\" href=\"/style.css\"><main><section><h1>",
-        out);
-  fg_html_text(out, words);
-  fputs("</h1><p><a href=\"/\">Back to the newest result</a></p></section></main></html>\n", out);
-  fclose(out);
-}
 
 static int code_of(fg_status status) {
   switch (status) {
@@ -87,84 +76,12 @@ static int code_of(fg_status status) {
   }
 }
 
-/* Takes as long for a wrong one as for the right one. */
-static bool same_secret(const char *given, const char *secret) {
-  size_t length = strlen(secret), other = strlen(given);
-  unsigned differs = length != other;
-  for (size_t i = 0; i < length; i++)
-    differs |= (unsigned char)secret[i] ^ (unsigned char)given[other ? i % other : 0];
-  return !differs;
-}
-
-static bool has_cookie(const fg_request *request, const char *token) {
-  static const char name[] = "foilgauge=";
-  const char *at = request->cookie ? request->cookie : "";
-  while (*at) {
-    at += strspn(at, "; ");
-    size_t length = strcspn(at, ";");
-    char value[FG_TOKEN_MAX + 1] = "";
-    if (!strncmp(at, name, sizeof name - 1) && length - (sizeof name - 1) <= FG_TOKEN_MAX)
-      memcpy(value, at + sizeof name - 1, length - (sizeof name - 1));
-    if (value[0] && same_secret(value, token)) return true;
-    at += length;
-  }
-  return false;
-}
-
-static bool has_our_csrf_token(const fg_inspection *station, const fg_request *request) {
-  if (request->origin && !fg_reach_is_origin(station, request->host, request->origin)) return false;
-  if (request->site && strcmp(request->site, "same-origin") != 0 &&
-      strcmp(request->site, "none") != 0)
-    return false;
-  return same_secret(fg_request_get(request, "form"), station->csrf_token);
-}
-
-static bool is_page(const char *path) {
-  for (size_t i = 0; i < PAGES; i++)
-    if (!strcmp(path, pages[i].path)) return true;
-  return false;
-}
-
-/* False with the answer when the request goes no further. */
-static bool may_ask(const fg_inspection *station, const fg_request *request, fg_answer *answer) {
-  const char *token = station->request->token, *origin = station->request->origin;
-  if (!fg_reach_is_host(station, request->host)) {
-    write_error_page(
-        answer, 421,
-        "This address is not the station's: use one that it printed, or start it with --host for "
-        "another name.");
-    return false;
-  }
-  if (token && !has_cookie(request, token)) {
-    if (!request->post && same_secret(fg_request_get(request, "token"), token)) {
-      write_error_page(answer, 303, "");
-      /* Redirects to a page of this station alone: any other path may lead elsewhere
-       * ("//elsewhere"). */
-      strcpy(answer->location, is_page(request->path) ? request->path : "/");
-      snprintf(answer->cookie, sizeof answer->cookie,
-               "foilgauge=%s; HttpOnly; SameSite=Strict; Path=/%s", token,
-               origin && !strncmp(origin, "https:", 6) ? "; Secure" : "");
-      return false;
-    }
-    write_error_page(answer, 401,
-                     "Open the address that the station printed: it carries the token.");
-    return false;
-  }
-  if (request->post && !has_our_csrf_token(station, request)) {
-    write_error_page(
-        answer, 403,
-        "This form is not from this station as it runs now: go back and load the page again.");
-    return false;
-  }
-  return true;
-}
-
 static void write_route_page(fg_inspection *station, const fg_request *request, const route *page,
                              fg_answer *answer) {
   fg_context ctx = {.message = ""};
   FILE *out = open_memstream(&answer->body, &answer->size);
   if (!out) {
-    write_error_page(answer, 500, "out of memory");
+    fg_access_refuse(answer, 500, "out of memory");
     return;
   }
   if (!page->slow) pthread_mutex_lock(&station->database.reading);
@@ -176,7 +93,7 @@ static void write_route_page(fg_inspection *station, const fg_request *request, 
                         .own_style = page->own_style,
                         .body = answer->body,
                         .size = answer->size};
-  if (status != FG_OK) write_error_page(answer, code_of(status), ctx.message);
+  if (status != FG_OK) fg_access_refuse(answer, code_of(status), ctx.message);
 }
 
 static void give_text(fg_answer *answer, const char *type, const char *text) {
@@ -189,9 +106,11 @@ static void give_text(fg_answer *answer, const char *type, const char *text) {
 static void act(fg_inspection *station, const fg_request *request, fg_action *action,
                 fg_answer *answer) {
   fg_context ctx = {.message = ""};
+  fg_request signed_request = *request;
   *answer = (fg_answer){.code = 303, .type = HTML};
-  fg_status status = action(&ctx, station, request, answer);
-  if (status != FG_OK) write_error_page(answer, code_of(status), ctx.message);
+  fg_access_sign(station, &signed_request);
+  fg_status status = action(&ctx, station, &signed_request, answer);
+  if (status != FG_OK) fg_access_refuse(answer, code_of(status), ctx.message);
 }
 
 /* The count of news, for pages that wait for more. The reply ends the connection: the browser asks
@@ -220,7 +139,8 @@ static void answer_heartbeat(fg_inspection *station, fg_answer *answer) {
   answer->in_language = true;
 }
 
-static bool give_fixed(fg_inspection *station, const fg_request *request, fg_answer *answer) {
+bool fg_station_give_fixed(const fg_request *request, fg_answer *answer) {
+  if (request->post) return false;
   if (!strcmp(request->path, "/style.css"))
     give_text(answer, "text/css; charset=utf-8", fg_station_style_text());
   else if (!strcmp(request->path, "/icon.svg") || !strcmp(request->path, "/favicon.ico"))
@@ -229,7 +149,15 @@ static bool give_fixed(fg_inspection *station, const fg_request *request, fg_ans
     give_text(answer, "text/javascript; charset=utf-8", fg_station_script);
   else if (!strcmp(request->path, "/trends.js"))
     give_text(answer, "text/javascript; charset=utf-8", fg_trend_script);
-  else if (!strcmp(request->path, "/events"))
+  else
+    return false;
+  return true;
+}
+
+/* Answers a page's questions in the background. */
+static bool give_news(fg_inspection *station, const fg_request *request, fg_answer *answer) {
+  if (request->post) return false;
+  if (!strcmp(request->path, "/events"))
     answer_events(station, request, answer);
   else if (!strcmp(request->path, "/alive"))
     answer_heartbeat(station, answer);
@@ -279,8 +207,8 @@ static void give_language(const fg_language *language, fg_answer *answer) {
 }
 
 static void write_answer(fg_inspection *station, const fg_request *request, fg_answer *answer) {
-  if (!may_ask(station, request, answer)) return;
-  if (!request->post && give_fixed(station, request, answer)) return;
+  if (!fg_access_allows(station, request, answer)) return;
+  if (fg_station_give_fixed(request, answer) || give_news(station, request, answer)) return;
   for (size_t i = 0; i < PAGES && !request->post; i++)
     if (!strcmp(request->path, pages[i].path)) {
       write_route_page(station, request, &pages[i], answer);
@@ -288,10 +216,11 @@ static void write_answer(fg_inspection *station, const fg_request *request, fg_a
     }
   for (size_t i = 0; i < ACTIONS && request->post; i++)
     if (!strcmp(request->path, actions[i].path)) {
-      act(station, request, actions[i].act, answer);
+      if (fg_access_has_role(station, request, actions[i].role, answer))
+        act(station, request, actions[i].act, answer);
       return;
     }
-  write_error_page(answer, 404, "There is no such page.");
+  fg_access_refuse(answer, 404, "There is no such page.");
 }
 
 void fg_station_answer(fg_inspection *station, const fg_request *request, fg_answer *answer) {

@@ -8,4 +8,7 @@
 /* Answers a request, always; the caller frees the body. */
 void fg_station_answer(fg_inspection *station, const fg_request *request, fg_answer *answer);
 
+/* Answers a request for a style, a script or the icon; false: it is none. */
+bool fg_station_give_fixed(const fg_request *request, fg_answer *answer);
+
 #endif

@@ -6,6 +6,7 @@
 
 #include "core/text.h"
 #include "page/page.h"
+#include "station/access.h"
 #include "station/keep.h"
 #include "station/news.h"
 
@@ -151,6 +152,9 @@ fg_status fg_action_dispose(fg_context *ctx, fg_inspection *station, const fg_re
     return fg_fail(ctx, FG_ERR_DATA, "Who decides? Go back and fill in the name.");
   if (kind_words(kind) == kind)
     return fg_fail(ctx, FG_ERR_DATA, "Scrap, rework, concession or measure again? Go back.");
+  const fg_user *user = fg_access_user(station, request);
+  if (user && user->role < FG_ROLE_QUALITY && !strcmp(kind, "concession"))
+    return fg_fail(ctx, FG_ERR_DATA, "A concession takes the role quality.");
   FG_TRY(fg_station_database_begin(ctx, &station->database));
   FG_TRY(fg_station_database_end(ctx, &station->database,
                                  insert_disposition(ctx, station->database.writer, request, foil)));

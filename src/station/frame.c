@@ -42,6 +42,16 @@ void fg_page_time_zoned(FILE *out, int64_t at) {
     fprintf(out, " %.3s:%s", zone, zone + 3);
 }
 
+void fg_page_parameter(FILE *out, const char *name, const char *value) {
+  fprintf(out, "%s=", name);
+  for (; *value; value++) {
+    unsigned char c = (unsigned char)*value;
+    bool plain = (c >= '0' && c <= '9') || ((c | 0x20) >= 'a' && (c | 0x20) <= 'z') || c == '-';
+    fprintf(out, plain ? "%c" : "%%%02X", c);
+  }
+  fputs("&amp;", out);
+}
+
 void fg_page_csrf_token(const fg_inspection *station, FILE *out) {
   fprintf(out, "<input type=\"hidden\" name=\"form\" value=\"%s\">", station->csrf_token);
 }

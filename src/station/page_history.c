@@ -206,24 +206,13 @@ static fg_status write_rows(fg_context *ctx, sqlite3 *reader, const search *at, 
   return fg_query_end(ctx, &query, "searching foils");
 }
 
-/* Writes a name and its value encoded for an address. */
-static void write_encoded(FILE *out, const char *name, const char *value) {
-  fprintf(out, "%s=", name);
-  for (; *value; value++) {
-    unsigned char c = (unsigned char)*value;
-    bool plain = (c >= '0' && c <= '9') || ((c | 0x20) >= 'a' && (c | 0x20) <= 'z') || c == '-';
-    fprintf(out, plain ? "%c" : "%%%02X", c);
-  }
-  fputs("&amp;", out);
-}
-
 static void write_search_fields(const search *at, FILE *out) {
-  write_encoded(out, "serial", at->serial);
-  write_encoded(out, "lot", at->lot);
-  write_encoded(out, "die", at->die);
-  write_encoded(out, "from", at->from_ms >= 0 ? at->from : "");
-  write_encoded(out, "to", at->to_ms >= 0 ? at->to : "");
-  write_encoded(out, "verdict", at->verdict);
+  fg_page_parameter(out, "serial", at->serial);
+  fg_page_parameter(out, "lot", at->lot);
+  fg_page_parameter(out, "die", at->die);
+  fg_page_parameter(out, "from", at->from_ms >= 0 ? at->from : "");
+  fg_page_parameter(out, "to", at->to_ms >= 0 ? at->to : "");
+  fg_page_parameter(out, "verdict", at->verdict);
 }
 
 static void write_link(const search *at, long page, const char *relation, const char *words,

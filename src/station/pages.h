@@ -35,6 +35,9 @@ void fg_page_time(FILE *out, int64_t at);
 /* Writes it with its offset from UTC: "2026-03-01 14:02:33 +01:00". */
 void fg_page_time_zoned(FILE *out, int64_t at);
 
+/* Writes "name=value&amp;" encoded for an address. */
+void fg_page_parameter(FILE *out, const char *name, const char *value);
+
 /* Writes the hidden field of every html form, which protects it from other sites (CSRF). */
 void fg_page_csrf_token(const fg_inspection *station, FILE *out);
 

@@ -105,7 +105,7 @@ static fg_status check_names(fg_context *ctx, const fg_station_request *request)
     return fg_fail(ctx, FG_ERR_USAGE,
                    "--origin: '%.100s' is none, as https://scanner.example.com, without a path",
                    request->origin);
-  if (!request->token)
+  if (!request->token && !request->users)
     return fg_fail(ctx, FG_ERR_USAGE,
                    "--origin: others can reach the station by a proxy: give --token-file with at "
                    "least %d characters",
@@ -120,7 +120,7 @@ fg_status fg_reach_find(fg_context *ctx, const fg_station_request *request,
     return fg_fail(ctx, FG_ERR_USAGE,
                    "--listen: '%.60s' is no address, as 192.168.1.20 or ::", text);
   *reach = find_reach(address);
-  if (*reach != FG_REACH_LOCAL && !request->token)
+  if (*reach != FG_REACH_LOCAL && !request->token && !request->users)
     return fg_fail(ctx, FG_ERR_USAGE,
                    "--listen %s: others can reach this address: give --token-file with at least "
                    "%d characters",

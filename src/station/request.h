@@ -11,6 +11,7 @@
 /* FG_TOKEN_MAX: of --token; it fits into a cookie. */
 enum { FG_TOKEN_MIN = 16, FG_TOKEN_MAX = 64 };
 enum { FG_FIELDS_MAX = 32, FG_FIELD_BYTES = 1024, FG_BODY_MAX = 1 << 16 };
+enum { FG_API_BODY_MAX = 1 << 22 }; /* of a part that a station posts to a hub */
 
 /* A name and its value, from a query or a form; decoded, valid UTF-8, without control characters.
  */
@@ -26,6 +27,8 @@ typedef struct fg_request {
   size_t fields;
   const char *host, *origin, *site, *cookie; /* headers; NULL: absent. site: Sec-Fetch-Site */
   const char *languages;                     /* Accept-Language; NULL: absent */
+  const char *authorization, *user;          /* headers; user: of --user-header; NULL: absent */
+  const char *body;                          /* of a POST to /api/; else NULL */
   long long last_event;                      /* Last-Event-ID; -1: none */
 } fg_request;
 

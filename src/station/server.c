@@ -7,7 +7,7 @@
 #include <sys/socket.h>
 
 #include "core/memory.h"
-#include "station/answer.h"
+#include "station/access.h"
 #include "station/connections.h"
 #include "station/reach.h"
 #include "station/scan_command.h"
@@ -63,7 +63,8 @@ static long long read_header_number(const char *text) {
   return text && end != text && !*end && number >= 0 ? number : -1;
 }
 
-static call *begin_call(struct MHD_Connection *connection, const char *method) {
+static call *begin_call(struct MHD_Connection *connection, const char *method,
+                        const char *user_header) {
   call *at = calloc(1, sizeof *at);
   if (!at) return NULL;
   fg_request *request = &at->request;
@@ -75,6 +76,11 @@ static call *begin_call(struct MHD_Connection *connection, const char *method) {
   request->cookie = fg_microhttpd.lookup_connection_value(connection, MHD_HEADER_KIND, "Cookie");
   request->languages =
       fg_microhttpd.lookup_connection_value(connection, MHD_HEADER_KIND, "Accept-Language");
+  request->authorization =
+      fg_microhttpd.lookup_connection_value(connection, MHD_HEADER_KIND, "Authorization");
+  if (user_header)
+    request->user =
+        fg_microhttpd.lookup_connection_value(connection, MHD_HEADER_KIND, user_header);
   request->last_event = read_header_number(
       fg_microhttpd.lookup_connection_value(connection, MHD_HEADER_KIND, "Last-Event-ID"));
   fg_microhttpd.get_connection_values(connection, MHD_GET_ARGUMENT_KIND, read_query_field, at);
@@ -82,13 +88,14 @@ static call *begin_call(struct MHD_Connection *connection, const char *method) {
 }
 
 /* False: too much. */
-static bool receive_body(call *at, const char *bytes, size_t size) {
-  if (at->size + size > FG_BODY_MAX) return false;
-  char *grown = realloc(at->body, at->size + size);
+static bool receive_body(call *at, const char *bytes, size_t size, size_t max) {
+  if (at->size + size > max) return false;
+  char *grown = realloc(at->body, at->size + size + 1);
   if (!grown) return false;
   memcpy(grown + at->size, bytes, size);
   at->body = grown;
   at->size += size;
+  at->body[at->size] = '\0';
   return true;
 }
 
@@ -201,31 +208,39 @@ static unsigned long count_news(server *at) {
 static enum MHD_Result answer_call(server *at, struct MHD_Connection *connection, call *asked) {
   fg_answer answer;
   fg_connections_asked(&at->connections, connection);
-  if (asked->request.post && !fg_request_read_fields(&asked->request, asked->body, asked->size))
+  if (fg_access_is_api(asked->request.path))
+    asked->request.body = asked->body ? asked->body : "";
+  else if (asked->request.post &&
+           !fg_request_read_fields(&asked->request, asked->body, asked->size))
     asked->broken = true;
   if (asked->broken) return refuse_request(at, connection, 400, "The fields cannot be read.\n");
   unsigned long seen = count_news(at);
-  fg_station_answer(at->station, &asked->request, &answer);
+  at->station->answer(at->station, &asked->request, &answer);
   if (answer.wait && !asked->waited) {
     waiting result = wait_for_news(at, connection, seen);
     asked->waited = true;
     if (result != CLOSING) free(answer.body);
     if (result == WAITS) return MHD_YES;
-    if (result == NEWS_CAME) fg_station_answer(at->station, &asked->request, &answer);
+    if (result == NEWS_CAME) at->station->answer(at->station, &asked->request, &answer);
   }
   return send_answer(at, connection, &answer);
 }
 
+/* A hub alone takes large bodies: the parts of its stations. */
+static size_t body_max(const server *at, const char *path) {
+  return at->station->hub && fg_access_is_api(path) ? FG_API_BODY_MAX : FG_BODY_MAX;
+}
+
 /* Begins a request; refuses unknown methods and bodies that are too long before they come. */
 static enum MHD_Result begin(server *at, struct MHD_Connection *connection, const char *method,
-                             void **place) {
+                             const char *path, void **place) {
   const char *length = fg_microhttpd.lookup_connection_value(connection, MHD_HEADER_KIND,
                                                              MHD_HTTP_HEADER_CONTENT_LENGTH);
   if (strcmp(method, "GET") != 0 && strcmp(method, "HEAD") != 0 && strcmp(method, "POST") != 0)
     return refuse_request(at, connection, 405, "GET and POST are answered.\n");
-  if (length && (strlen(length) > 9 || read_header_number(length) > FG_BODY_MAX))
+  if (length && (strlen(length) > 9 || read_header_number(length) > (long long)body_max(at, path)))
     return refuse_request(at, connection, 413, "The form is too long.\n");
-  *place = begin_call(connection, method);
+  *place = begin_call(connection, method, at->station->request->user_header);
   return *place ? MHD_YES : MHD_NO;
 }
 
@@ -235,9 +250,9 @@ static enum MHD_Result handle_request(void *user, struct MHD_Connection *connect
   server *at = user;
   call *asked = *place;
   (void)version;
-  if (!asked) return begin(at, connection, method, place);
+  if (!asked) return begin(at, connection, method, path, place);
   if (*size) {
-    bool taken = receive_body(asked, bytes, *size);
+    bool taken = receive_body(asked, bytes, *size, body_max(at, path));
     *size = 0;
     return taken ? MHD_YES : MHD_NO;
   }

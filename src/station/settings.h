@@ -8,7 +8,8 @@
 
 extern const fg_document fg_station_settings_document;
 
-/* A part as it is passed on, and the state of that (station/outbox/). */
-extern const fg_document fg_part_document, fg_outbox_document;
+/* A part as it is passed on, the state of that (station/outbox/), and parts of stations
+ * (station/hub/). */
+extern const fg_document fg_part_document, fg_outbox_document, fg_hub_document;
 
 #endif

@@ -29,6 +29,14 @@ typedef struct fg_recovery {
 } fg_recovery;
 
 typedef struct fg_outbox fg_outbox;
+struct fg_request; /* station/request.h */
+struct fg_answer;
+
+/* Users that the station knows; 0: it knows none. */
+typedef struct fg_users {
+  struct fg_user *list;
+  size_t count;
+} fg_users;
 
 /* Stage of the newest file before it has a card. */
 typedef enum fg_stage {
@@ -70,6 +78,7 @@ struct fg_inspection {
   char scan_warning[1000];            /* options of it that spoil scans; "": none is known */
   struct fg_station_scanner *scanner; /* of the last scan by command; NULL: none yet */
   fg_closing closing;
+  fg_users users;           /* station/access.h */
   struct fg_outbox *outbox; /* station/outbox/outbox.h; NULL: nothing is passed on */
   struct fg_why *why;       /* search for causes (station/why.h); NULL: none was asked for */
   fg_languages *languages;  /* of the pages; NULL: English alone */
@@ -78,6 +87,9 @@ struct fg_inspection {
   atomic_llong news;          /* station/news.h */
   void (*wake)(void *server); /* called on news; NULL: no page waits */
   void *server;
+  void (*answer)(struct fg_inspection *station, const struct fg_request *request,
+                 struct fg_answer *answer);
+  void *hub;                                      /* whose pages these are; NULL: a station's */
   void (*pass_on)(struct fg_inspection *station); /* called on news; NULL: there is no receiver */
 };
 

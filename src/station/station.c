@@ -8,6 +8,8 @@
 #include "foilgauge/file.h"
 #include "foilgauge/foil_kind.h"
 #include "lot/run/folder_lock.h"
+#include "station/access.h"
+#include "station/answer.h"
 #include "station/close.h"
 #include "station/digest.h"
 #include "station/export.h"
@@ -63,6 +65,7 @@ static void inspect_scan_command(fg_inspection *station) {
 
 static fg_status run_tasks(fg_context *ctx, fg_inspection *station) {
   const fg_station_request *request = station->request;
+  FG_TRY(fg_users_load(ctx, request->users, &station->users));
   FG_TRY(load_model(ctx, station));
   FG_TRY(load_check(ctx, station));
   FG_TRY(fg_folder_lock(ctx, request->folder, &station->lock));
@@ -157,6 +160,7 @@ fg_status fg_station_run(fg_context *ctx, const fg_station_request *request,
   station->settings = request->settings;
   station->outcome = outcome;
   station->lock = -1;
+  station->answer = fg_station_answer;
   pthread_mutex_init(&station->closing.mutex, NULL);
   pthread_mutex_init(&station->recovery.mutex, NULL);
   pthread_mutex_init(&station->arriving.mutex, NULL);
@@ -169,6 +173,7 @@ fg_status fg_station_run(fg_context *ctx, const fg_station_request *request,
   fg_languages_close(station->languages);
   if (station->model) fg_scanner_model_free(station->model);
   if (station->lock >= 0) close(station->lock);
+  free(station->users.list);
   free(station);
   return status;
 }

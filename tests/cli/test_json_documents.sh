@@ -53,7 +53,8 @@ expect 0 "" "$kept" forming --temperature 650 --time 5 -o form.json --material-o
 expect 0 "" "$kept" stiffness "$samples/stiffness/bearings.csv" -o stiffness.json
 printf '%s\n' temperature_C,duration_h,springback_error_pct 500,3,20 600,3,15 500,5,18 600,5,11 550,4,16 650,4,9 >runs.csv
 expect 0 "" "$kept" forming --fit runs.csv -o fit.json
-mkdir parts
+mkdir parts hubbed
+cp scans/1.png hubbed
 echo '{"schema": "foilgauge/recipe/1", "station": {"pass_on": [{"to": "parts"}]}, "design": {"schema": "foilgauge/design/1", "bump_count": 2}}' >recipe.json
 checks - "$kept" <<'P' || fail "the station passes nothing on"
 import os, subprocess, sys, urllib.request
@@ -63,6 +64,12 @@ try:
     base = station.stdout.readline().strip()
     wait_until(lambda: len([name for name in os.listdir("parts") if name.endswith(".json") and name[0] != "."]) == 2)
     urllib.request.urlopen(base + "api/outbox").read()
+    hub = subprocess.Popen([sys.argv[1], "hub", "--database", "hub.sqlite", "--port", "0"], stdout=subprocess.PIPE, text=True)
+    address = hub.stdout.readline().strip()
+    subprocess.run([sys.argv[1], "station", "hubbed", "--recipe", "recipe.json", "--once", "--hub", address], stderr=subprocess.DEVNULL)
+    assert b'"serial"' in urllib.request.urlopen(address + "api/parts").read()
+    hub.terminate()
+    hub.wait()
 finally:
     station.terminate()
     station.wait()

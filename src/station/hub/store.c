@@ -1,0 +1,71 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "station/hub/store.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* An event is there once: its source and number are its key. A part is the newest event of its
+ * foil. */
+static const char *const tables[] = {
+    "CREATE TABLE IF NOT EXISTS hub_events (source TEXT NOT NULL, event BIGINT NOT NULL,"
+    " received_at TEXT NOT NULL, body TEXT NOT NULL, PRIMARY KEY (source, event))",
+    "CREATE TABLE IF NOT EXISTS hub_parts (source TEXT NOT NULL, foil BIGINT NOT NULL,"
+    " event BIGINT NOT NULL, station TEXT NOT NULL, at TEXT NOT NULL, measured_at TEXT NOT NULL,"
+    " serial TEXT NOT NULL, lot TEXT NOT NULL, die TEXT NOT NULL, operator TEXT NOT NULL,"
+    " verdict TEXT NOT NULL, withheld TEXT NOT NULL, disposition TEXT NOT NULL,"
+    " PRIMARY KEY (source, foil))",
+    "CREATE TABLE IF NOT EXISTS hub_stations (source TEXT PRIMARY KEY, station TEXT NOT NULL,"
+    " received_at TEXT NOT NULL)",
+    "CREATE INDEX IF NOT EXISTS hub_parts_by_time ON hub_parts (measured_at)",
+    "CREATE INDEX IF NOT EXISTS hub_parts_by_serial ON hub_parts (serial)",
+    "CREATE INDEX IF NOT EXISTS hub_parts_by_lot ON hub_parts (lot)",
+};
+
+fg_status fg_hub_store_open(fg_context *ctx, const char *database, fg_hub_store *store) {
+  bool is_url = !strncmp(database, "postgresql://", 13) || !strncmp(database, "postgres://", 11);
+  *store = (fg_hub_store){.kind = is_url ? &fg_hub_postgresql : &fg_hub_sqlite};
+  if (!store->kind->open)
+    return fg_fail(ctx, FG_ERR_USAGE,
+                   "this build has no PostgreSQL: build it where libpq-dev is installed");
+  FG_TRY(store->kind->open(ctx, database, &store->connection));
+  for (size_t i = 0; i < sizeof tables / sizeof *tables; i++)
+    FG_TRY(fg_hub_store_run(ctx, store, tables[i], NULL, 0, NULL));
+  return FG_OK;
+}
+
+void fg_hub_store_close(fg_hub_store *store) {
+  if (store->connection) store->kind->close(store->connection);
+  store->connection = NULL;
+}
+
+fg_status fg_hub_store_run(fg_context *ctx, fg_hub_store *store, const char *sql,
+                           const char *const *values, size_t count, fg_hub_rows *rows) {
+  if (rows) *rows = (fg_hub_rows){0};
+  fg_status status = store->kind->run(ctx, store->connection, sql, values, count, rows);
+  if (status != FG_OK && rows) fg_hub_rows_free(rows);
+  return status;
+}
+
+const char *fg_hub_cell(const fg_hub_rows *rows, size_t row, size_t column) {
+  const char *text = rows->cell[row * rows->columns + column];
+  return text ? text : "";
+}
+
+fg_status fg_hub_rows_add(fg_context *ctx, fg_hub_rows *rows, char ***cells) {
+  size_t used = rows->rows * rows->columns;
+  char **grown = realloc(rows->cell, (used + rows->columns + 1) * sizeof *grown);
+  if (!grown) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: rows of the hub");
+  rows->cell = grown;
+  *cells = grown + used;
+  for (size_t i = 0; i < rows->columns; i++)
+    (*cells)[i] = NULL;
+  rows->rows++;
+  return FG_OK;
+}
+
+void fg_hub_rows_free(fg_hub_rows *rows) {
+  for (size_t i = 0; i < rows->rows * rows->columns; i++)
+    free(rows->cell[i]);
+  free(rows->cell);
+  *rows = (fg_hub_rows){0};
+}
