@@ -182,9 +182,7 @@ static bool begins_with(const fg_answer *answer, const char *text) {
   return answer->size >= strlen(text) && !memcmp(answer->body, text, strlen(text));
 }
 
-/* Pages are written in English, tables with decimal points: one that has commas already begins with
- * a byte order mark. */
-static void give_language(const fg_language *language, fg_answer *answer) {
+void fg_station_give_language(const fg_language *language, fg_answer *answer) {
   char *text = NULL;
   size_t size = 0;
   fg_context ctx = {.message = ""};
@@ -228,5 +226,5 @@ void fg_station_answer(fg_inspection *station, const fg_request *request, fg_ans
   const fg_language *language = fg_languages_choose(station->languages, named, request->languages);
   *answer = (fg_answer){0};
   write_answer(station, request, answer);
-  if (language) give_language(language, answer);
+  if (language) fg_station_give_language(language, answer);
 }

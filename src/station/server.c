@@ -79,8 +79,7 @@ static call *begin_call(struct MHD_Connection *connection, const char *method,
   request->authorization =
       fg_microhttpd.lookup_connection_value(connection, MHD_HEADER_KIND, "Authorization");
   if (user_header)
-    request->user =
-        fg_microhttpd.lookup_connection_value(connection, MHD_HEADER_KIND, user_header);
+    request->user = fg_microhttpd.lookup_connection_value(connection, MHD_HEADER_KIND, user_header);
   request->last_event = read_header_number(
       fg_microhttpd.lookup_connection_value(connection, MHD_HEADER_KIND, "Last-Event-ID"));
   fg_microhttpd.get_connection_values(connection, MHD_GET_ARGUMENT_KIND, read_query_field, at);

@@ -104,9 +104,8 @@ static void give_part(fg_hub *hub, const fg_request *request, fg_answer *answer)
     give_body(answer, 200, "application/json", body, strlen(body));
 }
 
-void fg_hub_answer(fg_inspection *server, const fg_request *request, fg_answer *answer) {
+static void answer_in_english(fg_inspection *server, const fg_request *request, fg_answer *answer) {
   fg_hub *hub = hub_of(server);
-  *answer = (fg_answer){0};
   if (!fg_access_allows(server, request, answer)) return;
   if (request->post && !strcmp(request->path, "/api/parts")) {
     take_part(hub, request, answer);
@@ -123,6 +122,13 @@ void fg_hub_answer(fg_inspection *server, const fg_request *request, fg_answer *
       return;
     }
   give_words(answer, 404, "There is no such page.\n");
+}
+
+void fg_hub_answer(fg_inspection *server, const fg_request *request, fg_answer *answer) {
+  const fg_language *language = fg_languages_choose(server->languages, NULL, request->languages);
+  *answer = (fg_answer){0};
+  answer_in_english(server, request, answer);
+  if (language) fg_station_give_language(language, answer);
 }
 
 /* Writes the newest parts as a file. */
@@ -153,6 +159,7 @@ static fg_status serve_hub(fg_context *ctx, fg_hub *hub, const char *database) {
   FG_TRY(fg_hub_store_open(ctx, database, &hub->store));
   const char *path = hub->server.request->export_path;
   if (path) return export_parts(ctx, hub, path);
+  FG_TRY(fg_languages_open(ctx, &hub->server.languages));
   FG_TRY(fg_station_server_start(ctx, &hub->server));
   fg_status status = wait_for_end(ctx, hub->server.request->end_descriptor);
   fg_station_server_stop(&hub->server);
@@ -169,6 +176,7 @@ fg_status fg_hub_run(fg_context *ctx, const char *database, const fg_station_req
   atomic_init(&hub->server.news, 0);
   fg_status status = serve_hub(ctx, hub, database);
   fg_hub_store_close(&hub->store);
+  fg_languages_close(hub->server.languages);
   free(hub->server.users.list);
   free(hub);
   return status;
