@@ -49,6 +49,13 @@ typedef struct fg_station_destination {
   fg_part_format format;
 } fg_station_destination;
 
+/* Backups of the database, without stopping the station. */
+typedef struct fg_station_backup {
+  char folder[1024]; /* path, relative to the recipe; "": none are made */
+  double every_h;
+  double keep_days; /* older ones are removed, but never the newest; 0: none is */
+} fg_station_backup;
+
 typedef struct fg_station_settings {
   fg_lot_settings lot; /* of the whole recipe: design, model, dpi, run rules, bearings ... */
   /* Pattern of file names: text, `*` for anything, and {serial}, {lot}, {die}, {operator},
@@ -67,6 +74,7 @@ typedef struct fg_station_settings {
   fg_station_check check;
   fg_station_destination pass_on[FG_STATION_DESTINATIONS];
   size_t pass_on_count;
+  fg_station_backup backup;
 } fg_station_settings;
 
 /* A recipe of lots with a member `station` {"file_name", "scan_command", "check": {"design",
@@ -90,6 +98,8 @@ typedef struct fg_station_request {
   const char *name;   /* of the station, for receivers of parts; NULL: the machine's */
   const char *hub;    /* address of a hub that gets all parts; NULL: none */
   const char *hub_token_file;
+  const char *backup_path;  /* write a backup of the database there, and return */
+  const char *restore_path; /* put this backup in the place of the database, and return */
   const char *users;        /* file of users with roles and tokens; NULL: who may ask may do all */
   const char *user_header;  /* header by which a proxy names the user; NULL: none */
   const char *token;        /* needed by every request; NULL: none (loopback only) */

@@ -22,6 +22,8 @@ enum {
   OPTION_DIGEST_PAGE,
   OPTION_ORDERS,
   OPTION_NAME,
+  OPTION_BACKUP,
+  OPTION_RESTORE,
   OPTION_HUB,
   OPTION_HUB_TOKEN_FILE
 };
@@ -56,6 +58,10 @@ static const struct argp_option options[] = {
      "Columns that say more about foils, by a column `serial` or `time` (repeatable): candidates "
      "for the causes of a trend",
      1},
+    {"backup", OPTION_BACKUP, "FILE", 0,
+     "Write a copy of the database, and end; also beside a station that runs", 1},
+    {"restore", OPTION_RESTORE, "FILE", 0,
+     "Put a backup in the place of the database, which stays beside it, and end", 1},
     {"name", OPTION_NAME, "TEXT", 0,
      "Of the station, for receivers of its parts (default: the machine's)", 1},
     {"hub", OPTION_HUB, "URL", 0, "Pass all parts on to a hub, as http://hub.example.com:8318", 1},
@@ -90,6 +96,8 @@ static bool keep_text(int key, const char *text, station_arguments *arguments) {
       {OPTION_DIGEST_PAGE, &request->digest_page},
       {OPTION_ORDERS, &request->orders},
       {OPTION_NAME, &request->name},
+      {OPTION_BACKUP, &request->backup_path},
+      {OPTION_RESTORE, &request->restore_path},
       {OPTION_HUB, &request->hub},
       {OPTION_HUB_TOKEN_FILE, &request->hub_token_file},
   };
@@ -170,10 +178,11 @@ int fg_cmd_station(int argc, char **argv) {
   settings.lot.allow_lossy |= arguments.allow_lossy;
   request->settings = &settings;
   request->looked_at = print_file;
-  if (!request->export_path) request->end_descriptor = fg_interrupt_defer();
+  if (!request->export_path && !request->backup_path && !request->restore_path)
+    request->end_descriptor = fg_interrupt_defer();
   status = fg_station_run(&ctx, request, &outcome);
   if (status != FG_OK) return fg_cli_fail(&ctx, status);
-  if (request->digest) return 0;
+  if (request->digest || request->backup_path || request->restore_path) return 0;
   if (request->export_path) return fg_outcome_exit_code(&outcome.judged);
   if (!request->once) return 0;
   fprintf(stderr, "foilgauge: %zu measured, %zu known, %zu refused\n", outcome.measured,

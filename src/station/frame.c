@@ -104,6 +104,11 @@ static void write_recovery(fg_inspection *station, FILE *out) {
     fg_html_text(out, recovery->words);
     fputs("</p>\n", out);
   }
+  if (recovery->backup[0]) {
+    fputs("<p class=\"banner\" role=\"alert\"><b>No backup.</b> ", out);
+    fg_html_text(out, recovery->backup);
+    fputs("</p>\n", out);
+  }
   if (recovery->crowd[0]) {
     fputs("<p class=\"banner\"><b>Very many files.</b> ", out);
     fg_html_text(out, recovery->crowd);

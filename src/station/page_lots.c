@@ -265,8 +265,7 @@ static void write_closing(fg_inspection *station, FILE *out) {
   fg_closing *closing = &station->closing;
   pthread_mutex_lock(&closing->mutex);
   if (closing->running)
-    fputs("<p class=\"banner\" role=\"status\" data-live>The lot ",
-          out);
+    fputs("<p class=\"banner\" role=\"status\" data-live>The lot ", out);
   else if (closing->error[0])
     fputs("<p class=\"banner\" role=\"alert\">The lot ", out);
   if (closing->running || closing->error[0]) {

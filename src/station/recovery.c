@@ -26,6 +26,19 @@ void fg_station_set_recovery(fg_inspection *station, const char *words) {
   fg_station_notify(station);
 }
 
+void fg_station_set_backup_failure(fg_inspection *station, const char *words) {
+  fg_recovery *recovery = &station->recovery;
+  const fg_station_request *request = station->request;
+  pthread_mutex_lock(&recovery->mutex);
+  bool changed = strncmp(recovery->backup, words, sizeof recovery->backup - 1) != 0;
+  if (changed) fg_text_clip(recovery->backup, sizeof recovery->backup, "%s", words);
+  pthread_mutex_unlock(&recovery->mutex);
+  if (!changed) return;
+  if (request->looked_at)
+    request->looked_at(request->user, "backup:", *words ? words : "is made again");
+  fg_station_notify(station);
+}
+
 void fg_station_note_files(fg_inspection *station, size_t files, double seconds) {
   fg_recovery *recovery = &station->recovery;
   const fg_station_request *request = station->request;

@@ -9,6 +9,9 @@
  * too. */
 void fg_station_set_recovery(fg_inspection *station, const char *words);
 
+/* Sets the words of a failed backup; "": it is over. Told as above. */
+void fg_station_set_backup_failure(fg_inspection *station, const char *words);
+
 /* Largest number of files that a folder holds without a warning, and of new ones listed at once. */
 enum { FG_STATION_FILES = 100000 };
 

@@ -53,6 +53,16 @@ static const fg_member destination_rows[] = {
 };
 static const fg_members destination_members = FG_MEMBERS(destination_rows);
 
+static const fg_member backup_rows[] = {
+    {FG_TEXT("folder", fg_station_settings, backup.folder), .options = FG_MEMBER_ANY_TEXT,
+     .words = "Where backups go, best on another disk: `foilgauge-DATE-TIME.sqlite`."},
+    {FG_NUMBER("every_h", fg_station_settings, backup.every_h), .lowest = 0.01, .highest = 1e4,
+     .words = "Hours from one to the next."},
+    {FG_NUMBER("keep_days", fg_station_settings, backup.keep_days), .lowest = 0, .highest = 1e5,
+     .words = "Older ones are removed, but never the newest; 0: none is."},
+};
+static const fg_members backup_members = FG_MEMBERS(backup_rows);
+
 static const fg_member settings_rows[] = {
     {FG_TEXT("file_name", fg_station_settings, file_name),
      .words = "What a file's name says, without its ending: text, `*` for anything, `{serial}`, "
@@ -81,6 +91,9 @@ static const fg_member settings_rows[] = {
     {FG_TEXT("language", fg_station_settings, language),
      .words = "Language of the pages: `en` or `de`. Without it each browser gets the one that it "
               "prefers."},
+    {FG_GROUP("backup", &backup_members),
+     .words = "An object with the members that follow: copies of the database, made while the "
+              "station runs."},
     {FG_GROUP("check", &check_members), .read = read_check,
      .words = "An object with the members that follow: when the scanner has to prove itself by "
               "known diameters. With a `scan_command` the Scanner tab has a button for it."},
@@ -126,6 +139,7 @@ static fg_status place_path(fg_context *ctx, const char *recipe, const char *mem
 
 static fg_status place_paths(fg_context *ctx, const char *recipe, fg_station_settings *settings) {
   FG_TRY(place_path(ctx, recipe, "check", settings->check.design));
+  FG_TRY(place_path(ctx, recipe, "backup", settings->backup.folder));
   for (size_t i = 0; i < settings->pass_on_count; i++) {
     fg_station_destination *destination = &settings->pass_on[i];
     if (!strstr(destination->to, "://"))
@@ -154,6 +168,7 @@ static fg_status load_station(fg_context *ctx, const char *recipe, fg_station_se
 static void set_usual(fg_station_settings *settings) {
   *settings = (fg_station_settings){.file_name = "{serial}",
                                     .receive_s = 20,
+                                    .backup = {.every_h = 24, .keep_days = 14},
                                     .check = {.file_name = "check*", .scale_max_ppm = 500}};
   fg_lot_settings_default(&settings->lot);
 }

@@ -25,6 +25,7 @@ typedef struct fg_closing {
 typedef struct fg_recovery {
   pthread_mutex_t mutex;
   char words[1000]; /* "": all is well */
+  char backup[500]; /* failure of the last backup; "": there is none */
   char crowd[200];  /* warning of a folder with very many files; "": there is none */
 } fg_recovery;
 
@@ -78,6 +79,7 @@ struct fg_inspection {
   char scan_warning[1000];            /* options of it that spoil scans; "": none is known */
   struct fg_station_scanner *scanner; /* of the last scan by command; NULL: none yet */
   fg_closing closing;
+  struct fg_backup *backup; /* station/backup.h; NULL: the recipe asks for none */
   fg_users users;           /* station/access.h */
   struct fg_outbox *outbox; /* station/outbox/outbox.h; NULL: nothing is passed on */
   struct fg_why *why;       /* search for causes (station/why.h); NULL: none was asked for */

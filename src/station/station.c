@@ -10,6 +10,7 @@
 #include "lot/run/folder_lock.h"
 #include "station/access.h"
 #include "station/answer.h"
+#include "station/backup.h"
 #include "station/close.h"
 #include "station/digest.h"
 #include "station/export.h"
@@ -81,6 +82,7 @@ static fg_status run_tasks(fg_context *ctx, fg_inspection *station) {
   FG_TRY(fg_why_begin(ctx, station));
   inspect_scan_command(station);
   FG_TRY(fg_outbox_begin(ctx, station));
+  FG_TRY(fg_backup_begin(ctx, station));
   FG_TRY(fg_station_server_start(ctx, station));
   fg_status status = fg_station_watch(ctx, station, false);
   fg_station_server_stop(station);
@@ -153,6 +155,8 @@ static fg_status write_digest_files(fg_context *ctx, const fg_station_request *r
 fg_status fg_station_run(fg_context *ctx, const fg_station_request *request,
                          fg_station_outcome *outcome) {
   *outcome = (fg_station_outcome){.judged = {.verdict = FG_VERDICT_NONE}};
+  if (request->backup_path) return fg_backup_write(ctx, request->folder, request->backup_path);
+  if (request->restore_path) return fg_backup_restore(ctx, request->folder, request->restore_path);
   if (request->digest) return write_digest_files(ctx, request);
   fg_inspection *station = calloc(1, sizeof *station);
   if (!station) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a station");
@@ -169,6 +173,7 @@ fg_status fg_station_run(fg_context *ctx, const fg_station_request *request,
   fg_closing_end(&station->closing);
   fg_why_end(station);
   fg_outbox_end(station);
+  fg_backup_end(station);
   fg_station_database_close(&station->database);
   fg_languages_close(station->languages);
   if (station->model) fg_scanner_model_free(station->model);
