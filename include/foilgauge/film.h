@@ -67,6 +67,7 @@ typedef struct fg_film_options {
   /* A report of measured foils, whose order is that of the pads; or the folder of a lot, whose
    * foils `draws` bearings are drawn from. NULL: as designed. */
   const char *foils;
+  const struct fg_film_stock *stock; /* such foils in memory, in place of a folder; NULL: none */
   /* Measured profile of the bore, CSV with angle_deg and radius_mm: its radius less the design's
    * sleeve_radius_mm is added to the clearance. NULL: round, as designed. */
   const char *bore;

@@ -108,6 +108,14 @@ typedef struct fg_lot_settings {
                                     them */
   } assembly;
   fg_arch_material material; /* youngs_modulus_gpa, poisson_ratio, friction */
+  /* Gas film of drawn bearings, "film" in a recipe (foilgauge/film.h); load_n 0: not asked. */
+  struct {
+    double load_n, load_deg, speed_rpm;
+    double rotor_mass_kg; /* 0: the load's by gravity */
+    double loss_factor, within_pct;
+    size_t bearings, cells_per_bump, cells_axial;
+    uint64_t seed;
+  } film;
 } fg_lot_settings;
 
 void fg_lot_settings_default(fg_lot_settings *settings);

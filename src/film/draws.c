@@ -238,6 +238,12 @@ fg_status fg_film_draw(fg_context *ctx, fg_film_report *report, const fg_film_be
       .report = report, .perfect = perfect, .solved = solved, .draws = &report->draws};
   if (!count) return FG_OK;
   if (!fg_film_draws_from_lot(&report->options)) return draw_all(ctx, &task, count);
+  if (report->options.stock) {
+    task.stock = report->options.stock;
+    report->draws.foils = task.stock->foils;
+    report->draws.left_out = task.stock->left_out;
+    return draw_all(ctx, &task, count);
+  }
   FG_TRY(fg_film_stock_read(ctx, report, &stock));
   task.stock = &stock;
   report->draws.foils = stock.foils;

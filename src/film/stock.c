@@ -12,6 +12,7 @@
 
 bool fg_film_draws_from_lot(const fg_film_options *options) {
   struct stat found;
+  if (options->stock) return true;
   return options->foils && stat(options->foils, &found) == 0 && S_ISDIR(found.st_mode);
 }
 

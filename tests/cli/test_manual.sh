@@ -49,7 +49,7 @@ plain "$man/foilgauge-recipe.5" >"$work/page"
   sort -u >"$work/keys"
 plain "$man/foilgauge-design.5" >>"$work/page"
 while read -r key; do
-  grep -qE "^\\\\?f?B?(assembly\.|station\.(check\.)?)?$key\$" "$work/page" ||
+  grep -qE "^\\\\?f?B?(assembly\.|film\.|station\.(check\.)?)?$key\$" "$work/page" ||
     say "the recipe's member $key is in no page"
 done <"$work/keys"
 # Objects in objects: what the reader says that there is, is in the page.

@@ -31,6 +31,20 @@ static fg_status check_layout(fg_context *ctx, const fg_bearing_layout *layout) 
   return FG_OK;
 }
 
+static fg_status check_film(fg_context *ctx, const fg_lot_settings *settings) {
+  if (!(settings->film.load_n > 0)) return FG_OK;
+  if (!(settings->film.speed_rpm > 0))
+    return fg_fail(ctx, FG_ERR_DATA,
+                   "film.speed_rpm is missing: a film needs load_n and speed_rpm");
+  if (settings->film.cells_per_bump % 2)
+    return fg_fail(ctx, FG_ERR_DATA, "film.cells_per_bump is %zu; it must be even",
+                   settings->film.cells_per_bump);
+  const fg_foil_traits *kind = fg_foil_traits_of(settings->design.kind);
+  if (kind->group != FG_DESIGN_BUMPS)
+    return fg_fail(ctx, FG_ERR_DATA, "film: needs foils with bumps; design.form is %s", kind->name);
+  return FG_OK;
+}
+
 fg_status fg_lot_settings_check(fg_context *ctx, const fg_lot_settings *settings) {
   const fg_reading reading = {.ctx = ctx, .between = " "};
   FG_TRY(fg_object_check(&reading, &fg_recipe_members, settings));
@@ -39,6 +53,7 @@ fg_status fg_lot_settings_check(fg_context *ctx, const fg_lot_settings *settings
   if (!kind->is_foil)
     return fg_fail(ctx, FG_ERR_DATA, "design.form is %s; a lot is made of foils", kind->name);
   FG_TRY(fg_design_check(ctx, &settings->design));
+  FG_TRY(check_film(ctx, settings));
   FG_TRY(fg_lot_dies_check(ctx, settings));
   FG_TRY(fg_reference_curve_check(ctx, settings));
   return fg_report_check_tolerances(ctx, &settings->design);

@@ -138,6 +138,34 @@ static const fg_member assembly_rows[] = {
 };
 static const fg_members assembly_members = FG_MEMBERS(assembly_rows);
 
+static bool has_film(const fg_subject *subject) {
+  return is_with_jobs(subject) || text_of(subject)->settings.film.load_n > 0;
+}
+
+static const fg_member film_rows[] = {
+    {FG_NUMBER("load_n", fg_lot_settings, film.load_n), .lowest = 0, .highest = 1e7,
+     .words = "Force on the rotor, on one bearing; 0: no film is asked for."},
+    {FG_NUMBER("load_deg", fg_lot_settings, film.load_deg), .lowest = -720, .highest = 720,
+     .words = "Its direction, from the first bump of pad 1 in the sense of rotation."},
+    {FG_NUMBER("speed_rpm", fg_lot_settings, film.speed_rpm), .lowest = 0, .highest = 1e8,
+     .words = "Of the rotor; needed with a load."},
+    {FG_NUMBER("rotor_mass_kg", fg_lot_settings, film.rotor_mass_kg), .lowest = 0, .highest = 1e6,
+     .words = "On this bearing; 0: the load's, by gravity."},
+    {FG_NUMBER("loss_factor", fg_lot_settings, film.loss_factor), .lowest = 0, .highest = 10,
+     .words = "Of the bumps, as `foilgauge stiffness` measures it."},
+    {FG_NUMBER("within_pct", fg_lot_settings, film.within_pct), .lowest = 0.1, .highest = 100,
+     .words = "Change of the threshold speed that a tolerance on the clearance is told for."},
+    {FG_COUNT("bearings", fg_lot_settings, film.bearings), .lowest = 1, .highest = 100000,
+     .words = "Drawn from the lot's foils, as `assembly` draws them."},
+    {FG_SEED("seed", fg_lot_settings, film.seed), .lowest = 0, .highest = SEED_MAX,
+     .words = "Of the draws."},
+    {FG_COUNT("cells_per_bump", fg_lot_settings, film.cells_per_bump), .lowest = 2, .highest = 64,
+     .words = "Of the film's mesh, an even number."},
+    {FG_COUNT("cells_axial", fg_lot_settings, film.cells_axial), .lowest = 2, .highest = 64,
+     .words = "Of the mesh, over half the length."},
+};
+static const fg_members film_members = FG_MEMBERS(film_rows);
+
 #define OPEN .options = FG_MEMBER_EMPTY_IS_NULL /* null, kept as 0: the design decides */
 static const fg_member recipe_rows[] = {
     {FG_HEAD("foilgauge/recipe/1")},
@@ -215,6 +243,9 @@ static const fg_member recipe_rows[] = {
               "points."},
     {FG_GROUP("assembly", &assembly_members), .options = FG_MEMBER_ON_LINE,
      .words = "Bearings drawn from the lot's foils."},
+    {FG_GROUP("film", &film_members), .options = FG_MEMBER_ON_LINE, .present = has_film,
+     .words = "The gas film of bearings drawn from the lot's foils, and the rotor's threshold "
+              "speed, as `foilgauge film` finds them."},
     {FG_PART("calibration", find_calibration, &fg_calibration_members),
      .read = read_recipe_calibration, .write = write_recipe_calibration, .present = is_with_jobs,
      .schema =
@@ -266,6 +297,13 @@ void fg_lot_settings_default(fg_lot_settings *settings) {
       .material = fg_arch_material_default(),
       /* Thesis chapter 5: ± 7 % of the clearance, 4.6 of 65.5 um. */
       .assembly = {.bearings = 1000, .seed = 1, .design_deviation_pct = 7},
+      .film = {.load_deg = 270,
+               .loss_factor = 0.14, /* thesis table 5.6 */
+               .within_pct = 10,
+               .bearings = 200,
+               .seed = 1,
+               .cells_per_bump = 6,
+               .cells_axial = 8},
   };
   fg_design_default(&settings->design);
 }

@@ -309,6 +309,10 @@ typedef struct fg_lot_analysis {
   fg_lot_unplaced unplaced;
   size_t bearings_by_verdict[FG_VERDICT_NONE + 1];
   fg_lot_assembly assembly;
+  /* Film of bearings drawn from the stock (film/lot_film.h, who frees it); NULL: not asked, or
+   * `film_why` says why there is none. */
+  struct fg_film_report *film;
+  char film_why[300];
   /* Local clearance relative to the design's, percent: of free foils, and of foils fitted into the
    * sleeve. */
   fg_lot_spread clearance_pct, clearance_fitted_pct;

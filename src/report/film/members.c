@@ -414,6 +414,22 @@ static const fg_member report_rows[] = {
 };
 static const fg_members report_members = FG_MEMBERS(report_rows);
 
+/* Of a lot's foils the field and the coefficients, which are the design's, are left out. */
+static const fg_member of_lot_rows[] = {
+    {FG_GROUP("conditions", &option_members), .words = "of the recipe, or by default"},
+    {FG_OBJECT("perfect", fg_film_report, perfect, &fg_film_result_members),
+     .words = "the bearing as designed"},
+    {FG_NUMBER("threshold_rpm", fg_film_report, threshold_rpm),
+     .words = "of that: lowest speed at which the rotor's mass is critical; null: none among the "
+              "speeds"},
+    {FG_OBJECT("tolerance", fg_film_report, tolerance, &fg_film_tolerance_members),
+     .present = has_tolerance, .words = "on the clearance, that keeps the threshold speed"},
+    {FG_OBJECT("draws", fg_film_report, draws, &draws_members), .present = has_draws,
+     .words = "bearings of the lot's foils"},
+};
+const fg_members fg_film_of_lot_members = FG_MEMBERS_OF_FILE(of_lot_rows, "of_lot", "film");
+static const fg_members *const film_descriptions[] = {&fg_film_of_lot_members, NULL};
+
 const fg_document fg_film_document = {
     .file = "film",
     .title = "foilgauge film report",
@@ -422,6 +438,7 @@ const fg_document fg_film_document = {
                    "rotation. null is a value that is not known.",
     .made_by = "`foilgauge film -o`",
     .members = &report_members,
+    .describes = film_descriptions,
 };
 
 fg_status fg_film_write_json(fg_context *ctx, const fg_film_report *report, FILE *out) {

@@ -18,6 +18,9 @@ fg_member_element fg_film_share_at;
 /* Of an fg_film_tolerance and an fg_film_uncertainty. */
 extern const fg_members fg_film_tolerance_members, fg_film_uncertainty_members;
 
+/* Of an fg_film_report in a lot's report; whole: the film. */
+extern const fg_members fg_film_of_lot_members;
+
 extern const fg_document fg_film_document;
 
 /* Of an fg_film_sensitivity. */

@@ -5,6 +5,7 @@
 
 #include "core/file.h"
 #include "core/text.h"
+#include "film/lot_film.h"
 #include "foilgauge/foil_kind.h"
 #include "foilgauge/traceability.h"
 #include "lot/run/date.h"
@@ -89,12 +90,14 @@ fg_status fg_lot_write_report(fg_context *ctx, const char *folder, const fg_lot 
   FG_TRY(fg_lot_analyse(ctx, lot, &analysis));
   analysis.folder = folder;
   char **pages = NULL;
-  fg_status status = fg_lot_pages_find(ctx, folder, lot, &pages);
+  fg_status status = fg_lot_film_find(ctx, &analysis);
+  if (status == FG_OK) status = fg_lot_pages_find(ctx, folder, lot, &pages);
   analysis.pages = pages;
   for (size_t i = 0; i < sizeof files / sizeof files[0] && status == FG_OK; i++)
     status = write_report_file(ctx, folder, i, &analysis);
   if (status == FG_OK) fill_lot_outcome(&analysis, outcome);
   fg_lot_pages_free(lot, pages);
+  fg_lot_film_free(&analysis);
   fg_lot_analysis_free(&analysis);
   return status;
 }

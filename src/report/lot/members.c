@@ -8,6 +8,7 @@
 #include "foilgauge/foil_kind.h"
 #include "lot/input/reference_curve.h"
 #include "report/design/members.h"
+#include "report/film/members.h"
 #include "report/lot/files.h"
 #include "report/lot/parts_members.h"
 #include "report/measure/scan_model_words.h"
@@ -217,6 +218,18 @@ static bool has_assembly(const fg_subject *subject) {
   return has_bumps(subject) && analysis_of(subject)->assembly.asked;
 }
 
+static bool has_film(const fg_subject *subject) {
+  return analysis_of(subject)->lot->settings.film.load_n > 0;
+}
+
+/* The film's rows take the film for the whole. */
+static void write_film(fg_json *json, const char *name, const fg_subject *subject) {
+  const fg_film_report *film = analysis_of(subject)->film;
+  const fg_member row = {
+      .name = name, .kind = FG_MEMBER_OBJECT, .pointed = true, .members = &fg_film_of_lot_members};
+  fg_member_json(json, &row, &(fg_subject){.object = &film, .whole = film});
+}
+
 static const fg_member analysis_rows[] = {
     {FG_HEAD("foilgauge/lot/1")},
     OF_LOT(&name_members),
@@ -250,6 +263,10 @@ static const fg_member analysis_rows[] = {
     {FG_OBJECT("assembly", fg_lot_analysis, assembly, &fg_lot_assembly_members),
      .present = has_assembly,
      .words = "bearings drawn from the foils that can be built in: recipe's assembly"},
+    {FG_GROUP("film", &fg_film_of_lot_members), .write = write_film, .options = FG_MEMBER_NULLABLE,
+     .present = has_film,
+     .words = "gas film of such bearings, and the rotor's threshold: recipe's film; null: none was "
+              "found"},
     {FG_LIST("comparisons", fg_lot_analysis, differences, difference_count,
              &fg_lot_difference_members),
      .words = "groups against each other"},

@@ -170,6 +170,7 @@ fg_status fg_lot_write_page(fg_context *ctx, const fg_lot_analysis *analysis, FI
     fg_lot_put_stiffness(out, analysis);
     fg_lot_put_bearings(out, analysis);
     fg_lot_put_assembly(out, analysis);
+    fg_lot_put_film(out, analysis);
   } else if (analysis->parts == FG_QUANTITY_OF_BEAM) {
     fg_lot_put_beams(out, analysis);
   } else {

@@ -58,6 +58,7 @@ void fg_lot_put_beams(FILE *out, const fg_lot_analysis *analysis); /* for cantil
 void fg_lot_put_stiffness(FILE *out, const fg_lot_analysis *analysis);
 void fg_lot_put_bearings(FILE *out, const fg_lot_analysis *analysis);
 void fg_lot_put_assembly(FILE *out, const fg_lot_analysis *analysis);
+void fg_lot_put_film(FILE *out, const fg_lot_analysis *analysis);
 void fg_lot_put_comparisons(FILE *out, const fg_lot_analysis *analysis);
 void fg_lot_put_gauge(FILE *out, const fg_lot_analysis *analysis);
 
