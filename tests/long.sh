@@ -44,16 +44,21 @@ long_names() { long_parts | sed -n 's/^\([a-z-]*\): .*/\1/p'; }
 # long_commands PART: its commands, a line each.
 long_commands() { long_parts | awk -v part="$1" '/^[a-z-]+: / { inside = $1 == part ":" } /^  / && inside { sub(/^ +/, ""); print }'; }
 
-# run_long PART...: one after the other, two hours each at most; goes on after one that fails, and says at last which did.
+# run_long PART...: one after the other, two hours each at most; goes on after one that fails, and says at last which did. A
+# command has a process group of its own, by which it is ended when the run is.
 run_long() {
-  local part command began code failed=()
+  local part command began code running= failed=()
   export FOILGAUGE_TEST_LONG=1 FOILGAUGE_RENDERER=$PWD/build/foilgauge
   mkdir -p build/long
+  trap '[ -z "$running" ] || kill "$running" 2>/dev/null; exit 130' INT TERM HUP
   for part in "$@"; do
     began=$SECONDS code=0
     echo "part $part: $(date +%H:%M), what it says is in build/long/$part.log"
     while read -r command; do
-      timeout 120m bash -c "$command" </dev/null >>"build/long/$part.log.new" 2>&1 || code=$?
+      timeout 120m bash -c "$command" </dev/null >>"build/long/$part.log.new" 2>&1 &
+      running=$!
+      wait $running || code=$?
+      running=
       [ $code = 0 ] || [ $code = 77 ] || break
       [ $code = 0 ] || echo "skipped: $command"
       code=0
@@ -62,5 +67,6 @@ run_long() {
     [ $code = 0 ] || failed+=("$part")
     echo "part $part: $([ $code = 0 ] && echo passed || echo "FAILED (exit code $code of: $command)") in $(((SECONDS - began + 59) / 60)) min"
   done
+  trap - INT TERM HUP
   [ ${#failed[@]} = 0 ] || { echo "parts that failed: ${failed[*]}"; return 1; }
 }
