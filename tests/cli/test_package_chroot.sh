@@ -52,6 +52,26 @@ expect 0 "critical" inside foilgauge film --load 5 --speed 60000
 mkdir "$system/tmp/shop"
 cp "$root/samples/gen2_foil.png" "$system/tmp/shop/"
 expect 0 "1 measured" inside foilgauge station /tmp/shop --once
+# Libraries that the program loads itself: of TIFFs (an empty one of 300 by 300 px), and of the station's pages.
+python3 - "$system/tmp/empty.tif" <<'PY'
+import struct, sys
+tags = [(256, 3, 300), (257, 3, 300), (258, 3, 8), (259, 3, 1), (262, 3, 1), (273, 4, 200), (277, 3, 1), (278, 3, 300),
+        (279, 4, 90000), (282, 5, 180), (283, 5, 180), (296, 3, 2)]
+head = struct.pack("<2sHIH", b"II", 42, 8, len(tags))
+head += b"".join(struct.pack("<HHII", tag, kind, 1, value) for tag, kind, value in tags) + bytes(4)
+open(sys.argv[1], "wb").write(head.ljust(180, b"\0") + struct.pack("<II", 600, 1).ljust(20, b"\0") + b"\xc8" * 90000)
+PY
+expect 65 "no foil in the picture" inside foilgauge measure /tmp/empty.tif
+inside timeout -s INT 60 foilgauge station /tmp/shop --port 0 >"$work/address" 2>"$work/said" &
+station=$!
+for ((i = 0; i < 300; i++)); do
+  grep -q http "$work/address" && break
+  sleep 0.1
+done
+python3 -c 'import sys, urllib.request
+page = urllib.request.urlopen(open(sys.argv[1]).read().strip()).read().decode()
+assert "gen2_foil" in page, page[:500]' "$work/address" || fail "no page of the station: $(head -n 3 "$work/said")"
+wait $station
 expect 0 "FOILGAUGE-MEASURE\(1\)" inside man -P cat foilgauge-measure
 expect 0 "gas film" inside man -P cat foilgauge-film
 
