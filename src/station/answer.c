@@ -29,6 +29,7 @@ static const route pages[] = {
     {"/history", fg_page_history, HTML, false, false},
     {"/foil", fg_page_foil, HTML, false, false},
     {"/report", fg_page_report, HTML, true, true},
+    {"/picture", fg_page_picture, HTML, true, true},
     {"/trends", fg_page_trends, HTML, false, false},
     {"/why", fg_page_why, HTML, false, false},
     {"/scanner", fg_page_scanner, HTML, false, false},

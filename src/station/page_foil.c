@@ -41,7 +41,10 @@ static fg_status write_picture(fg_context *ctx, sqlite3 *reader, const fg_stored
   if (fg_query_row(&query))
     fprintf(out, "<figure class=\"scroll\">%s</figure>\n", fg_query_get_text(&query, 0));
   else
-    fputs("<p class=\"note\">Its picture is in the whole report.</p>\n", out);
+    fprintf(out,
+            "<p class=\"note\"><a href=\"/picture?foil=%lld\">Draw its picture from the "
+            "scan</a></p>\n",
+            (long long)stored->id);
   return fg_query_end(ctx, &query, "reading a picture");
 }
 

@@ -9,6 +9,7 @@
 #include "foilgauge/measure.h"
 #include "foilgauge/scan_loop.h"
 #include "page/page.h"
+#include "report/foil_html.h"
 #include "station/pages.h"
 #include "station/stored_foil.h"
 #include "station/stored_name.h"
@@ -38,6 +39,25 @@ static bool leave_one(fg_measurement *shown, const fg_measurement *measurement, 
   return false;
 }
 
+/* Writes a page of a foil that was measured again. */
+typedef fg_status measured_writer(fg_context *ctx, const fg_stored_foil *stored,
+                                  const fg_measurement *measurement, FILE *out);
+
+static fg_status write_picture_page(fg_context *ctx, const fg_stored_foil *stored,
+                                    const fg_measurement *measurement, FILE *out) {
+  fg_measurement shown;
+  if (!leave_one(&shown, measurement, stored->number))
+    return fg_fail(ctx, FG_ERR_DATA, "the foil was not found in it again");
+  fg_html_begin(out, stored->serial);
+  fputs("<section>\n<header><h1>Foil ", out);
+  fg_html_name(out, stored->serial);
+  fputs("</h1></header>\n<figure class=\"scroll\">", out);
+  fg_status status = fg_html_picture(ctx, out, &shown, &shown.foils[0], 0);
+  fputs("</figure>\n</section>\n", out);
+  fg_html_end(out);
+  return status;
+}
+
 static fg_status write_measured(fg_context *ctx, const fg_stored_foil *stored,
                                 const fg_measurement *measurement, FILE *out) {
   fg_measurement shown;
@@ -54,7 +74,7 @@ static fg_status write_measured(fg_context *ctx, const fg_stored_foil *stored,
 /* FG_ERR_DATA, FG_ERR_IO: the scan is no longer the one that was measured; the message has the
  * reason. */
 static fg_status measure_again(fg_context *ctx, const char *folder, const fg_stored_foil *stored,
-                               FILE *out) {
+                               measured_writer *write, FILE *out) {
   char *path = NULL, sum[65];
   fg_scanner_model *model = NULL;
   fg_measurement measurement;
@@ -70,7 +90,7 @@ static fg_status measure_again(fg_context *ctx, const char *folder, const fg_sto
   if (status != FG_OK) return status;
   status = apply_model(ctx, stored, &model, &measurement);
   if (status == FG_OK) status = fg_measurement_calibrate(ctx, 0, &measurement);
-  if (status == FG_OK) status = write_measured(ctx, stored, &measurement, out);
+  if (status == FG_OK) status = write(ctx, stored, &measurement, out);
   fg_measurement_free(&measurement);
   if (model) fg_scanner_model_free(model);
   return status;
@@ -111,12 +131,12 @@ static fg_status write_record(fg_context *ctx, const fg_stored_foil *stored, con
 
 /* Writes into memory first: a report that fails half-way is not shown. */
 static fg_status try_again(fg_context *ctx, const char *folder, const fg_stored_foil *stored,
-                           FILE *out, char why[WHY_BYTES]) {
+                           measured_writer *write, FILE *out, char why[WHY_BYTES]) {
   char *page = NULL;
   size_t size = 0;
   FILE *into = open_memstream(&page, &size);
   if (!into) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a report");
-  fg_status status = measure_again(ctx, folder, stored, into);
+  fg_status status = measure_again(ctx, folder, stored, write, into);
   if (fclose(into) != 0 && status == FG_OK)
     status = fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a report");
   if (status == FG_OK)
@@ -127,13 +147,13 @@ static fg_status try_again(fg_context *ctx, const char *folder, const fg_stored_
   return status;
 }
 
-static fg_status write_report(fg_context *ctx, const char *folder, const fg_stored_foil *stored,
-                              FILE *out) {
+static fg_status write_again(fg_context *ctx, const char *folder, const fg_stored_foil *stored,
+                             measured_writer *write, FILE *out) {
   char why[WHY_BYTES];
   if (pthread_mutex_trylock(&measuring) != 0)
     return fg_fail(ctx, FG_ERR_INTERRUPTED,
                    "Another report is being measured: load this page again in a moment.");
-  fg_status status = stored->readable ? try_again(ctx, folder, stored, out, why)
+  fg_status status = stored->readable ? try_again(ctx, folder, stored, write, out, why)
                                       : fg_fail(ctx, FG_ERR_DATA, "%s", stored->problem);
   pthread_mutex_unlock(&measuring);
   if (status == FG_OK || status == FG_ERR_MEMORY) return status;
@@ -141,16 +161,28 @@ static fg_status write_report(fg_context *ctx, const char *folder, const fg_stor
   return write_record(ctx, stored, why, out);
 }
 
-fg_status fg_page_report(fg_context *ctx, fg_inspection *station, sqlite3 *reader,
-                         const fg_request *request, FILE *out) {
+static fg_status write_foil_again(fg_context *ctx, fg_inspection *station,
+                                  const fg_request *request, measured_writer *write, FILE *out) {
   fg_stored_foil *stored;
-  (void)reader; /* may be another one by the time that it is ours */
   pthread_mutex_lock(&station->database.reading);
   fg_status status =
       fg_stored_foil_load(ctx, station->database.reader, fg_request_get(request, "foil"), &stored);
   pthread_mutex_unlock(&station->database.reading);
   if (status != FG_OK) return status;
-  status = write_report(ctx, station->request->folder, stored, out);
+  status = write_again(ctx, station->request->folder, stored, write, out);
   fg_stored_foil_free(stored);
   return status;
+}
+
+/* The reader may be another one by the time that it is ours. */
+fg_status fg_page_report(fg_context *ctx, fg_inspection *station, sqlite3 *reader,
+                         const fg_request *request, FILE *out) {
+  (void)reader;
+  return write_foil_again(ctx, station, request, write_measured, out);
+}
+
+fg_status fg_page_picture(fg_context *ctx, fg_inspection *station, sqlite3 *reader,
+                          const fg_request *request, FILE *out) {
+  (void)reader;
+  return write_foil_again(ctx, station, request, write_picture_page, out);
 }

@@ -16,11 +16,12 @@ typedef enum fg_tab {
 
 fg_page_writer fg_page_now, fg_page_history, fg_page_trends, fg_page_scanner, fg_page_lots,
     fg_page_orders;
-fg_page_writer fg_page_why;    /* causes of a trend: a search, its answer */
-fg_page_writer fg_page_foil;   /* one foil: its values, its trail, its form */
-fg_page_writer fg_page_report; /* its whole report, measured again from the scan */
-fg_page_writer fg_page_found;  /* all foils of a search as CSV, DFQ or QIF */
-fg_page_writer fg_page_lot;    /* the report of a closed lot, from its folder */
+fg_page_writer fg_page_why;     /* causes of a trend: a search, its answer */
+fg_page_writer fg_page_foil;    /* one foil: its values, its trail, its form */
+fg_page_writer fg_page_picture; /* its picture, drawn anew from the scan */
+fg_page_writer fg_page_report;  /* its whole report, measured again from the scan */
+fg_page_writer fg_page_found;   /* all foils of a search as CSV, DFQ or QIF */
+fg_page_writer fg_page_lot;     /* the report of a closed lot, from its folder */
 
 /* Writes a page from its doctype to <main>, with the tabs and, where it is due, the scanner's
  * banner. */

@@ -7,7 +7,7 @@
 #include "report/foil_html.h"
 
 /* Pictures that are kept, of some 150 KB each; that of an older foil is drawn from its scan. */
-enum { PICTURES_KEPT = 400 };
+enum { PICTURES_KEPT = 40 };
 
 static fg_status draw_picture(fg_context *ctx, const fg_measurement *measurement,
                               const fg_foil *foil, char **html) {

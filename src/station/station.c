@@ -73,9 +73,11 @@ static fg_status run_tasks(fg_context *ctx, fg_inspection *station) {
   FG_TRY(fg_station_database_open(ctx, request->folder, &station->database));
   if (request->export_path) return fg_station_export(ctx, station, request->export_path);
   FG_TRY(fg_station_keep_setup(ctx, &station->database, &station->settings->lot, &station->setup));
+  FG_TRY(fg_outbox_open(ctx, station));
   if (request->once) {
     FG_TRY(fg_station_watch(ctx, station, true));
-    return fg_outbox_flush(ctx, station);
+    fg_outbox_flush(station);
+    return FG_OK;
   }
   FG_TRY(make_csrf_token(ctx, station));
   FG_TRY(fg_languages_open(ctx, &station->languages));

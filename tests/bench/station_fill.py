@@ -23,6 +23,7 @@ ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)
 FOILGAUGE = os.path.join(ROOT, "build", "foilgauge")
 MINUTE_MS = 60_000
 FOILS_OF_LOT = 60
+CHUNK = 5000  # scans that are held in memory
 # Spread of foils, and of bumps within a foil, as a share of the value (or absolute where it is about 0).
 SPREAD = {
     "radius_mm": (0.004, 0.006), "height_mm": (0.004, 0.006), "height_fitted_mm": (0.004, 0.006),
@@ -90,6 +91,14 @@ def deciding(rows, quantities, limits):
     return judged
 
 
+def empty(database, out):
+    """Writes the rows of all tables."""
+    out["measured"].sort(key=lambda row: row[:3])
+    for table, rows in out.items():
+        insert(database, table, rows)
+        rows.clear()
+
+
 def fill(path, scans, checks, limits, seed):
     rng = random.Random(seed)
     database = sqlite3.connect(path)
@@ -124,9 +133,9 @@ def fill(path, scans, checks, limits, seed):
         out["deciding"] += [(foil, rank, j[2], j[3], j[4], j[5], j[6], j[7], j[0]) for rank, j in enumerate(judged[:3])]
         out["arrivals"].append((first_card + i, begin + i * MINUTE_MS, name, "measured", "", first_id + i, 0))
         out["files"].append((name, 1, 1, first_card + i))
-    out["measured"].sort(key=lambda row: row[:3])
-    for table, rows in out.items():
-        insert(database, table, rows)
+        if len(out["scans"]) == CHUNK:
+            empty(database, out)
+    empty(database, out)
     fill_checks(database, rng, checks, begin, scans * MINUTE_MS)
     database.commit()
     database.execute("PRAGMA wal_checkpoint(TRUNCATE)")

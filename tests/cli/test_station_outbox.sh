@@ -212,6 +212,12 @@ try:
     assert len(arrived) == before + 1 and json.loads(seen[arrived[-1]])["serial"] == "F4"
     events = [json.loads(seen[key])["event"] for key in dict.fromkeys(arrived)]
     assert events == list(range(1, len(events) + 1)), events
+    # So does the first run of a folder.
+    os.mkdir(work + "/first")
+    shutil.copy(f"{work}/1.png", f"{work}/first/E1.png")
+    before = len(arrived)
+    subprocess.run([program, "station", work + "/first", "--recipe", work + "/recipe.json", "--once"], stderr=subprocess.DEVNULL)
+    assert len(arrived) == before + 1 and json.loads(seen[arrived[-1]])["serial"] == "E1"
 finally:
     for process in behave["station"], broker, listener:
         if process and process.poll() is None:

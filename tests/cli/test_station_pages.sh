@@ -94,8 +94,15 @@ again = page("/report?foil=1")
 radius = re.search(r"<tr><td>1</td><td class=\"fail\">([0-9.]+)", again)[1]
 assert "Residual along the foil" in again and "From the record" not in again
 assert radius in page("/foil?id=1")
+# A picture that is not kept any more is drawn from the scan.
+database = sqlite3.connect(folder + "/foilgauge.sqlite")
+database.execute("DELETE FROM pictures WHERE foil = 1")
+database.commit()
+assert "/picture?foil=1" in page("/foil?id=1") and "<figure" not in page("/foil?id=1")
+assert re.search('<figure class="scroll">.{50000}', page("/picture?foil=1"), re.S)
 open(folder + "/A_1.png", "ab").write(b"x")
 changed = page("/report?foil=1")
+assert "another file" in page("/picture?foil=1")
 assert "From the record" in changed and "another file" in changed and radius in changed
 os.remove(folder + "/A_1.png")
 gone = page("/report?foil=1")

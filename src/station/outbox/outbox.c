@@ -132,8 +132,9 @@ static void *run_lane(void *user) {
   return NULL;
 }
 
-static bool has_receivers(const fg_inspection *station) {
-  return station->settings->pass_on_count || station->request->hub;
+fg_status fg_outbox_open(fg_context *ctx, fg_inspection *station) {
+  bool needed = station->settings->pass_on_count || station->request->hub;
+  return needed ? make_outbox(ctx, station) : FG_OK;
 }
 
 static void wake_lanes(fg_inspection *station) {
@@ -145,10 +146,9 @@ static void wake_lanes(fg_inspection *station) {
 }
 
 fg_status fg_outbox_begin(fg_context *ctx, fg_inspection *station) {
-  if (!has_receivers(station)) return FG_OK;
-  FG_TRY(make_outbox(ctx, station));
-  station->pass_on = wake_lanes;
   fg_outbox *outbox = station->outbox;
+  if (!outbox) return FG_OK;
+  station->pass_on = wake_lanes;
   for (size_t i = 0; i < outbox->count; i++) {
     fg_lane *lane = &outbox->lanes[i];
     lane->started = pthread_create(&lane->thread, NULL, run_lane, lane) == 0;
@@ -166,12 +166,10 @@ static void flush_lane(fg_outbox *outbox, fg_lane *lane) {
   note_result(outbox, lane, status, inner.message);
 }
 
-fg_status fg_outbox_flush(fg_context *ctx, fg_inspection *station) {
-  if (!has_receivers(station)) return FG_OK;
-  if (!station->outbox) FG_TRY(make_outbox(ctx, station));
-  for (size_t i = 0; i < station->outbox->count; i++)
-    flush_lane(station->outbox, &station->outbox->lanes[i]);
-  return FG_OK;
+void fg_outbox_flush(fg_inspection *station) {
+  fg_outbox *outbox = station->outbox;
+  for (size_t i = 0; outbox && i < outbox->count; i++)
+    flush_lane(outbox, &outbox->lanes[i]);
 }
 
 void fg_outbox_end(fg_inspection *station) {

@@ -10,11 +10,13 @@
 #include "core/member.h"
 #include "station/request.h"
 
-/* Begins passing on; parts of later events alone, to a receiver that is new. Without receivers
- * there is nothing to do. */
+/* Finds the receivers: a new one gets parts of later events alone, so it comes before them. Without
+ * receivers there is nothing to do. */
+fg_status fg_outbox_open(fg_context *ctx, fg_inspection *station);
+/* Begins passing on. */
 fg_status fg_outbox_begin(fg_context *ctx, fg_inspection *station);
 /* Passes on what waits, until a receiver has all or fails: of a station that ends at once. */
-fg_status fg_outbox_flush(fg_context *ctx, fg_inspection *station);
+void fg_outbox_flush(fg_inspection *station);
 void fg_outbox_end(fg_inspection *station);
 
 /* State of a receiver. */
