@@ -74,15 +74,32 @@ static void whiten_rows(fg_evidence_problem *p, const double *values, double *ou
     out[k] = p->white[p->row[k]];
 }
 
+static fg_evidence_span span_of(const double *values, size_t rows) {
+  fg_evidence_span span = {0, rows};
+  while (span.first < rows && values[span.first] == 0)
+    span.first++;
+  while (span.last > span.first && values[span.last - 1] == 0)
+    span.last--;
+  return span;
+}
+
+static double dot_in_spans(const double *a, fg_evidence_span of_a, const double *b,
+                           fg_evidence_span of_b) {
+  size_t first = of_a.first > of_b.first ? of_a.first : of_b.first;
+  size_t last = of_a.last < of_b.last ? of_a.last : of_b.last;
+  return first < last ? fg_dot_in_lanes(a + first, b + first, last - first) : 0;
+}
+
 /* Removes the flat directions; `along` gets the parts along them. */
 static void take_flat_out(const fg_evidence_problem *p, double *v, double *along) {
   memset(along, 0, p->rank * sizeof *along);
   for (int twice = 0; twice < 2; twice++)
     for (size_t k = 0; k < p->rank; k++) {
       const double *b = p->basis + k * p->rows;
-      double d = fg_dot_in_lanes(b, v, p->rows);
+      const fg_evidence_span span = p->basis_span[k];
+      double d = fg_dot_in_lanes(b + span.first, v + span.first, span.last - span.first);
       along[k] += d;
-      for (size_t i = 0; i < p->rows; i++)
+      for (size_t i = span.first; i < span.last; i++)
         v[i] -= d * b[i];
     }
 }
@@ -109,6 +126,7 @@ static void add_direction(fg_evidence_problem *p, const double *direction, const
     to[i] /= sqrt(left);
   for (size_t a = 0; a < parameters; a++)
     numbers[a] /= sqrt(left);
+  p->basis_span[p->rank] = span_of(to, p->rows);
   p->rank++;
 }
 
@@ -154,6 +172,8 @@ static fg_status allocate_problem(fg_context *ctx, fg_evidence_problem *p) {
   FG_TRY(fg_memory_allocate(ctx, rows * parameters, sizeof *p->basis, (void **)&p->basis));
   FG_TRY(fg_memory_allocate(ctx, parameters * parameters, sizeof *p->directions,
                             (void **)&p->directions));
+  FG_TRY(fg_memory_allocate(ctx, parameters, sizeof *p->basis_span, (void **)&p->basis_span));
+  FG_TRY(fg_memory_allocate(ctx, FG_EVIDENCE_COLUMNS, sizeof *p->span, (void **)&p->span));
   FG_TRY(
       fg_memory_allocate(ctx, parameters, sizeof *p->residual_along, (void **)&p->residual_along));
   FG_TRY(fg_memory_allocate(ctx, rows, sizeof *p->residual, (void **)&p->residual));
@@ -215,6 +235,8 @@ void fg_evidence_close(fg_evidence_problem *p) {
   free(p->residual);
   free(p->values);
   free(p->along);
+  free(p->basis_span);
+  free(p->span);
   free(p->right);
   free(p->gram);
   *p = (fg_evidence_problem){.edge_fit = NULL};
@@ -224,6 +246,7 @@ size_t fg_evidence_add(fg_evidence_problem *p, const double *values) {
   double *to = p->values + p->count * p->rows;
   whiten_rows(p, values, to);
   take_flat_out(p, to, p->along + p->count * p->rank);
+  p->span[p->count] = span_of(to, p->rows);
   p->right[p->count] = fg_dot_in_lanes(to, p->residual, p->rows);
   return p->count++;
 }
@@ -258,7 +281,8 @@ void fg_evidence_products(fg_evidence_problem *p, size_t column, size_t first, s
   for (size_t c = first; c < first + count; c++) {
     double value = known ? known[c] : NAN;
     if (isnan(value) && p->gram[c]) value = p->gram[c][column];
-    if (isnan(value)) value = fg_dot_in_lanes(own, p->values + c * p->rows, p->rows);
+    if (isnan(value))
+      value = dot_in_spans(own, p->span[column], p->values + c * p->rows, p->span[c]);
     if (known) known[c] = value;
     into[c - first] = value;
   }

@@ -11,13 +11,19 @@
 
 enum { FG_EVIDENCE_COLUMNS = 5200 };
 
+/* Rows [first, last) outside of which a column is 0: it may move one bump or one disc. */
+typedef struct fg_evidence_span {
+  size_t first, last;
+} fg_evidence_span;
+
 typedef struct fg_evidence_problem {
   const fg_edge_fit *edge_fit;
   size_t rows, *row; /* rows in use */
   fg_whitening whitening;
-  double noise_um;    /* standard deviation of a whitened smooth value */
-  bool large;         /* the residual is so large that linear columns err */
-  double *basis;      /* owned; rank × rows: flat directions of the geometry, orthonormal */
+  double noise_um; /* standard deviation of a whitened smooth value */
+  bool large;      /* the residual is so large that linear columns err */
+  double *basis;   /* owned; rank × rows: flat directions of the geometry, orthonormal */
+  fg_evidence_span *basis_span, *span; /* owned; of the basis, of the columns */
   double *directions; /* owned; rank × parameters: those directions in the geometry's numbers */
   size_t rank;
   double *residual;
