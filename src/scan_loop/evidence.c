@@ -108,7 +108,7 @@ static void put_verdict(const fg_edge_fit *edge_fit, const fg_evidence_verdict *
   if (v->outcome == FG_EVIDENCE_CLEAN) {
     to->each[0] = (fg_explanation){.mask = 0};
     to->count = to->total = 1;
-    to->p_value = fmax(to->p_value, v->p_null);
+    if (!edge_fit->discs) to->p_value = fmax(to->p_value, v->p_null); /* a disc's form is noise */
     return;
   }
   for (size_t k = 0; k < v->ties; k++)
