@@ -56,6 +56,14 @@ typedef struct fg_station_backup {
   double keep_days; /* older ones are removed, but never the newest; 0: none is */
 } fg_station_backup;
 
+enum { FG_STATION_PARTS = 16 }; /* maximum number of parts with a recipe of their own */
+
+/* A part that orders name, and the recipe by which its scans are measured and judged. */
+typedef struct fg_station_part {
+  char part[128];
+  char recipe[1024]; /* path, relative to the station's recipe */
+} fg_station_part;
+
 typedef struct fg_station_settings {
   fg_lot_settings lot; /* of the whole recipe: design, model, dpi, run rules, bearings ... */
   /* Pattern of file names: text, `*` for anything, and {serial}, {lot}, {die}, {operator},
@@ -72,6 +80,8 @@ typedef struct fg_station_settings {
   char reasons[1024]; /* codes that a disposition's field proposes, between commas */
   char language[16];  /* of the pages: "de"; "": as the browser asks */
   fg_station_check check;
+  fg_station_part parts[FG_STATION_PARTS];
+  size_t part_count;
   fg_station_destination pass_on[FG_STATION_DESTINATIONS];
   size_t pass_on_count;
   fg_station_backup backup;

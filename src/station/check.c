@@ -207,8 +207,7 @@ fg_status fg_station_check_health(fg_context *ctx, sqlite3 *connection,
 }
 
 /* Returns true when limits cannot be judged, as the recipe says nothing of the scanner's scale. */
-static bool is_scale_unknown(const fg_inspection *station, char *why, size_t size) {
-  const fg_design *design = &station->settings->lot.design;
+static bool is_scale_unknown(const fg_design *design, char *why, size_t size) {
   if (!design->tolerance_count || fg_design_may_judge(design)) return false;
   fg_text_clip(
       why, size,
@@ -218,11 +217,12 @@ static bool is_scale_unknown(const fg_inspection *station, char *why, size_t siz
   return true;
 }
 
-bool fg_station_check_withholds(fg_inspection *station, char *why, size_t size) {
+bool fg_station_check_withholds(fg_inspection *station, const fg_design *design, char *why,
+                                size_t size) {
   fg_context inner;
   fg_station_health health;
   const fg_station_check *check = &station->settings->check;
-  if (is_scale_unknown(station, why, size)) return true;
+  if (is_scale_unknown(design, why, size)) return true;
   if (!check->withhold) return false;
   pthread_mutex_lock(&station->database.writing);
   fg_status status = fg_station_check_health(&inner, station->database.writer, check, &health);

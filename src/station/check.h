@@ -23,6 +23,7 @@ fg_status fg_station_check_health(fg_context *ctx, sqlite3 *connection,
                                   const fg_station_check *check, fg_station_health *health);
 
 /* True when scans get no verdict because of the check; the reason goes into the words. */
-bool fg_station_check_withholds(fg_inspection *station, char *why, size_t size);
+bool fg_station_check_withholds(fg_inspection *station, const fg_design *design, char *why,
+                                size_t size);
 
 #endif

@@ -19,7 +19,7 @@
 #include "station/keep.h"
 #include "station/lot_content.h"
 #include "station/news.h"
-#include "station/orders.h"
+#include "station/part_recipes.h"
 #include "station/picture.h"
 #include "station/scan_command.h"
 #include "station/stored_name.h"
@@ -36,10 +36,12 @@ typedef struct intake {
   double arrived;
   char words[WORDS]; /* of its card */
   fg_writer writer;
-  bool scan;   /* or the beginning of one */
-  bool sure;   /* that it is whole, as a look at its ends tells */
-  bool later;  /* it has to be looked at again */
-  bool silent; /* nothing is new: no card */
+  fg_order order;    /* that is open as the scan comes */
+  fg_part_recipe by; /* recipe by which it is measured */
+  bool scan;         /* or the beginning of one */
+  bool sure;         /* that it is whole, as a look at its ends tells */
+  bool later;        /* it has to be looked at again */
+  bool silent;       /* nothing is new: no card */
 } intake;
 
 static bool read_ends(const char *path, uint8_t head[HEAD_BYTES], size_t *length,
@@ -171,17 +173,17 @@ static fg_status keep_new(fg_context *ctx, intake *at, const fg_measurement *mea
   fg_report_outcome outcome;
   int64_t scan;
   char why[WORDS];
-  int64_t order;
-  bool withheld = fg_station_check_withholds(station, why, sizeof why);
-  FG_TRY(fg_order_apply(ctx, station, fg_station_is_scanned(at->name), &at->named, &order));
+  bool withheld = fg_station_check_withholds(station, &at->by.lot->design, why, sizeof why);
+  bool by_button = fg_station_is_scanned(at->name);
+  FG_TRY(fg_order_apply(ctx, station, &at->order, by_button, &at->named));
   FG_TRY(fg_station_lot_note(ctx, &station->database, at->named.lot, at->words, WORDS));
   note_lossy(measurement, at->words);
   const fg_station_scan kept = {.file = at->file,
-                                .source = fg_station_is_scanned(at->name) ? "scanner" : "folder",
+                                .source = by_button ? "scanner" : "folder",
                                 .named = &at->named,
-                                .order = order,
-                                .settings = &station->settings->lot,
-                                .setup = station->setup,
+                                .order = at->order.id,
+                                .settings = at->by.lot,
+                                .setup = at->by.setup,
                                 .measurement = measurement,
                                 .seconds = fg_clock_seconds() - at->arrived,
                                 .withheld = withheld ? why : NULL,
@@ -232,13 +234,15 @@ static bool is_readable(const char *path) {
 
 /* Memory that ran out is the station's trouble, not the scan's. */
 static fg_status measure_file(fg_context *ctx, intake *at) {
-  const fg_lot_settings *settings = &at->station->settings->lot;
+  FG_TRY(fg_order_of_scan(ctx, at->station, &at->order));
+  at->by = fg_part_recipe_of(at->station, &at->order);
+  const fg_lot_settings *settings = at->by.lot;
   const fg_measure_options options = {
       .dpi = settings->dpi, .allow_lossy = settings->allow_lossy, .only_file = true};
   fg_context inner = {.message = ""};
   fg_measurement measurement;
   fg_status failure = fg_measure_scan(&inner, at->path, &settings->design, &options, &measurement);
-  if (failure == FG_OK) failure = fg_station_correct(&inner, at->station->model, 0, &measurement);
+  if (failure == FG_OK) failure = fg_station_correct(&inner, at->by.model, 0, &measurement);
   if (failure == FG_ERR_MEMORY) return fg_fail(ctx, failure, "%s", inner.message);
   at->later = !is_unchanged(at) || (failure == FG_ERR_DATA && !at->sure &&
                                     at->writer != FG_WRITER_GONE && !is_readable(at->path));

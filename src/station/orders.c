@@ -158,30 +158,30 @@ static fg_status count_scans(fg_context *ctx, sqlite3 *connection, int64_t id, i
   return fg_query_end(ctx, &query, "counting the scans of an order");
 }
 
-static fg_status apply_order(fg_context *ctx, sqlite3 *connection, bool by_button, fg_named *named,
-                             int64_t *id) {
-  fg_order order;
-  int64_t count;
-  FG_TRY(fg_order_read_open(ctx, connection, &order));
-  *id = order.id;
-  if (!order.id) return FG_OK;
-  fill_field(named->lot, order.lot);
-  fill_field(named->die, order.die);
-  fill_field(named->coil, order.coil);
-  fill_field(named->operator_name, order.operator_name);
-  if (!by_button) return FG_OK;
-  FG_TRY(count_scans(ctx, connection, order.id, &count));
-  fg_text_clip(named->serial, FG_NAMED_TEXT, "%.100s-%03lld", order.number, (long long)count + 1);
-  return FG_OK;
-}
-
-fg_status fg_order_apply(fg_context *ctx, fg_inspection *station, bool by_button, fg_named *named,
-                         int64_t *id) {
+fg_status fg_order_of_scan(fg_context *ctx, fg_inspection *station, fg_order *order) {
   fg_station_database *database = &station->database;
   pthread_mutex_lock(&database->writing);
-  fg_status status = apply_order(ctx, database->writer, by_button, named, id);
+  fg_status status = fg_order_read_open(ctx, database->writer, order);
   pthread_mutex_unlock(&database->writing);
   return status;
+}
+
+fg_status fg_order_apply(fg_context *ctx, fg_inspection *station, const fg_order *order,
+                         bool by_button, fg_named *named) {
+  fg_station_database *database = &station->database;
+  int64_t count;
+  if (!order->id) return FG_OK;
+  fill_field(named->lot, order->lot);
+  fill_field(named->die, order->die);
+  fill_field(named->coil, order->coil);
+  fill_field(named->operator_name, order->operator_name);
+  if (!by_button) return FG_OK;
+  pthread_mutex_lock(&database->writing);
+  fg_status status = count_scans(ctx, database->writer, order->id, &count);
+  pthread_mutex_unlock(&database->writing);
+  FG_TRY(status);
+  fg_text_clip(named->serial, FG_NAMED_TEXT, "%.100s-%03lld", order->number, (long long)count + 1);
+  return FG_OK;
 }
 
 void fg_order_file_part(const fg_order *order, char *text, size_t size) {

@@ -23,10 +23,12 @@ fg_status fg_order_read_open(fg_context *ctx, sqlite3 *connection, fg_order *ord
 fg_status fg_order_find(fg_context *ctx, sqlite3 *connection, const fg_station_request *request,
                         const char *number, fg_order *order);
 
-/* Fills the fields that a file's name leaves empty by the open order; a scan of the Scan button
- * gets the next serial number of it. Returns the order's id by *id. */
-fg_status fg_order_apply(fg_context *ctx, fg_inspection *station, bool by_button, fg_named *named,
-                         int64_t *id);
+/* Reads the order that is open as a scan comes: all of the scan belongs to it. */
+fg_status fg_order_of_scan(fg_context *ctx, fg_inspection *station, fg_order *order);
+/* Fills the fields that a file's name leaves empty by the order; a scan of the Scan button gets the
+ * next serial number of it. */
+fg_status fg_order_apply(fg_context *ctx, fg_inspection *station, const fg_order *order,
+                         bool by_button, fg_named *named);
 
 /* Number as a part of a file's name: letters, digits, `-` and `_` of it. */
 void fg_order_file_part(const fg_order *order, char *text, size_t size);

@@ -12,6 +12,7 @@
 #include "station/orders.h"
 #include "station/outbox/outbox.h"
 #include "station/pages.h"
+#include "station/part_recipes.h"
 #include "station/scan_command.h"
 #include "station/values.h"
 
@@ -20,7 +21,7 @@ enum { CARDS = 12, WORDS = 700, LARGE_LETTERS = 10 };
 
 /* The newest arrival. */
 typedef struct card {
-  int64_t id, at, scan, foils;
+  int64_t id, at, scan, foils, setup;
   char path[512], kind[24], message[WORDS], verdict[24], withheld[WORDS];
 } card;
 
@@ -34,7 +35,8 @@ static fg_status read_newest(fg_context *ctx, sqlite3 *reader, card *newest) {
   fg_query_begin(
       reader,
       "SELECT arrivals.id, arrivals.at, arrivals.path, kind, message, scan, scans.verdict,"
-      " scans.withheld, (SELECT count(*) FROM foils WHERE foils.scan = arrivals.scan)"
+      " scans.withheld, (SELECT count(*) FROM foils WHERE foils.scan = arrivals.scan),"
+      " scans.setup"
       " FROM arrivals LEFT JOIN scans ON scans.id = scan"
       " WHERE superseded = 0 ORDER BY arrivals.id DESC LIMIT 1",
       &query);
@@ -48,6 +50,7 @@ static fg_status read_newest(fg_context *ctx, sqlite3 *reader, card *newest) {
     copy(&query, 6, newest->verdict, sizeof newest->verdict);
     copy(&query, 7, newest->withheld, sizeof newest->withheld);
     newest->foils = fg_query_get_integer(&query, 8);
+    newest->setup = fg_query_get_integer(&query, 9);
   }
   return fg_query_end(ctx, &query, "reading the cards");
 }
@@ -89,7 +92,8 @@ static void write_arrival(FILE *out, int64_t id, const char *words) {
 static void write_traceability(FILE *out, const fg_inspection *station, const card *newest) {
   if (newest->foils)
     fprintf(out, "<br>traced to: %s",
-            fg_traceability_words[fg_design_traceability(&station->settings->lot.design)]);
+            fg_traceability_words[fg_design_traceability(
+                &fg_part_recipe_of_setup(station, newest->setup).lot->design)]);
 }
 
 static void write_newest_call(FILE *out, const fg_inspection *station, const card *newest) {

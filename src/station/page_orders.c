@@ -6,8 +6,8 @@
 #include "core/text.h"
 #include "page/page.h"
 #include "station/news.h"
-#include "station/orders.h"
 #include "station/pages.h"
+#include "station/part_recipes.h"
 
 enum { ORDERS_SHOWN = 30 };
 
@@ -79,6 +79,11 @@ static void write_open_order(const fg_inspection *station, const fg_order *order
     if (!values[i][0]) continue;
     fprintf(out, " %s ", order_fields[i].label);
     fg_html_name(out, values[i]);
+    fputc('.', out);
+  }
+  if (station->settings->part_count) {
+    fputs(" Design ", out);
+    fg_html_name(out, fg_part_recipe_of(station, order).lot->design.name);
     fputc('.', out);
   }
   fputs("</p>\n<form class=\"fields\" method=\"post\" action=\"/order-close\">", out);

@@ -9,8 +9,8 @@
 
 #include "core/text.h"
 #include "lot/run/folder_lock.h"
-#include "station/keep.h"
 #include "station/news.h"
+#include "station/part_recipes.h"
 
 void fg_station_set_recovery(fg_inspection *station, const char *words) {
   fg_recovery *recovery = &station->recovery;
@@ -87,5 +87,5 @@ fg_status fg_station_ensure_folder(fg_context *ctx, fg_inspection *station) {
   if (!has_lock(station)) FG_TRY(acquire_lock(ctx, station));
   if (fg_station_database_is_there(database)) return FG_OK;
   FG_TRY(fg_station_database_reopen(ctx, folder, database));
-  return fg_station_keep_setup(ctx, database, &station->settings->lot, &station->setup);
+  return fg_part_recipes_keep_setups(ctx, station);
 }

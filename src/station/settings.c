@@ -63,6 +63,14 @@ static const fg_member backup_rows[] = {
 };
 static const fg_members backup_members = FG_MEMBERS(backup_rows);
 
+static const fg_member part_rows[] = {
+    {FG_TEXT("part", fg_station_part, part), .options = FG_MEMBER_REQUIRED | FG_MEMBER_ANY_TEXT,
+     .words = "As orders name it."},
+    {FG_TEXT("recipe", fg_station_part, recipe), .options = FG_MEMBER_REQUIRED | FG_MEMBER_ANY_TEXT,
+     .words = "Path of its recipe: design, tolerances, calibration and model are taken from it."},
+};
+static const fg_members part_members = FG_MEMBERS(part_rows);
+
 static const fg_member settings_rows[] = {
     {FG_TEXT("file_name", fg_station_settings, file_name),
      .words = "What a file's name says, without its ending: text, `*` for anything, `{serial}`, "
@@ -88,6 +96,11 @@ static const fg_member settings_rows[] = {
      .highest = FG_STATION_DESTINATIONS,
      .words = "Receivers of every part as it is measured, corrected or disposed, up to 8: objects "
               "with the members that follow (PASSING ON in foilgauge-station(1))."},
+    {FG_ARRAY("parts", fg_station_settings, parts, part_count, &part_members),
+     .highest = FG_STATION_PARTS,
+     .words =
+         "Parts with a recipe of their own, up to 16: while an order of the part is open, scans "
+         "are measured and judged by it; all others by this recipe."},
     {FG_TEXT("language", fg_station_settings, language),
      .words = "Language of the pages: `en` or `de`. Without it each browser gets the one that it "
               "prefers."},
@@ -140,6 +153,8 @@ static fg_status place_path(fg_context *ctx, const char *recipe, const char *mem
 static fg_status place_paths(fg_context *ctx, const char *recipe, fg_station_settings *settings) {
   FG_TRY(place_path(ctx, recipe, "check", settings->check.design));
   FG_TRY(place_path(ctx, recipe, "backup", settings->backup.folder));
+  for (size_t i = 0; i < settings->part_count; i++)
+    FG_TRY(place_path(ctx, recipe, "parts", settings->parts[i].recipe));
   for (size_t i = 0; i < settings->pass_on_count; i++) {
     fg_station_destination *destination = &settings->pass_on[i];
     if (!strstr(destination->to, "://"))

@@ -16,6 +16,7 @@
 #include "station/export.h"
 #include "station/keep.h"
 #include "station/outbox/outbox.h"
+#include "station/part_recipes.h"
 #include "station/scan_options.h"
 #include "station/server.h"
 #include "station/watch.h"
@@ -69,10 +70,11 @@ static fg_status run_tasks(fg_context *ctx, fg_inspection *station) {
   FG_TRY(fg_users_load(ctx, request->users, &station->users));
   FG_TRY(load_model(ctx, station));
   FG_TRY(load_check(ctx, station));
+  FG_TRY(fg_part_recipes_open(ctx, station));
   FG_TRY(fg_folder_lock(ctx, request->folder, &station->lock));
   FG_TRY(fg_station_database_open(ctx, request->folder, &station->database));
   if (request->export_path) return fg_station_export(ctx, station, request->export_path);
-  FG_TRY(fg_station_keep_setup(ctx, &station->database, &station->settings->lot, &station->setup));
+  FG_TRY(fg_part_recipes_keep_setups(ctx, station));
   FG_TRY(fg_outbox_open(ctx, station));
   if (request->once) {
     FG_TRY(fg_station_watch(ctx, station, true));
@@ -178,6 +180,7 @@ fg_status fg_station_run(fg_context *ctx, const fg_station_request *request,
   fg_backup_end(station);
   fg_station_database_close(&station->database);
   fg_languages_close(station->languages);
+  fg_part_recipes_close(station);
   if (station->model) fg_scanner_model_free(station->model);
   if (station->lock >= 0) close(station->lock);
   free(station->users.list);

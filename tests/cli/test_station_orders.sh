@@ -6,9 +6,9 @@
 name=test_station_orders
 . "$(dirname "$0")/../support/station.sh"
 mkdir "$work/scans" "$work/erp"
-for seed in 1 2 3 4 5 6; do
+for seed in 1 2 3 4 5 6 7 8; do
   radius=3.32
-  case $seed in 2 | 6) radius=3.4 ;; esac
+  case $seed in 2 | 6 | 7 | 8) radius=3.4 ;; esac
   printf '{"schema": "foilgauge/render/1", "seed": %s, "scanner": {"dpi": 1200}, "foils": [{"rotate_deg": -90,
     "design": {"bump_count": 2, "bump_radius_mm": %s}}]}' "$seed" "$radius" >"$work/spec.json"
   "$renderer" render "$work/spec.json" -o "$work/$seed.png"
@@ -17,10 +17,12 @@ printf 'Order;Batch;Tool;Material;Quantity\n4711;L7;B;K7;40\n4712;L8;A;K8;2\n' >
 printf 'not a table' >"$work/erp/readme.txt"
 cat >"$work/recipe.json" <<R
 {"schema": "foilgauge/recipe/1",
- "station": {"file_name": "{serial}", "scan_command": "cp $work/5.png {file}", "reasons": "S1 scratch, B2 burr"},
+ "station": {"file_name": "{serial}", "scan_command": "cp $work/5.png {file}", "reasons": "S1 scratch, B2 burr",
+             "parts": [{"part": "Wide", "recipe": "wide.json"}]},
  "design": {"schema": "foilgauge/design/1", "bump_count": 2, "calibration": "not needed: the scan is rendered",
             "tolerances": {"radius_mm": {"min": 3.3, "max": 3.34}}}}
 R
+sed 's/"min": 3.3, "max": 3.34/"min": 3.38, "max": 3.42/; /"station"/,/"parts"/d' "$work/recipe.json" >"$work/wide.json"
 "$program" station "$work/scans" --recipe "$work/recipe.json" --orders "$work/erp" --port 0 >"$work/address" 2>"$work/err" &
 station=$!
 checks - "$work" >&2 <<'PY' || fail "orders: $(cat "$work/err")"
@@ -96,5 +98,17 @@ assert post("/close", lot="L9", by="Ada")[0].endswith("/lots")
 wait_until(lambda: os.path.exists(work + "/scans/lots/L9/lot.json"))
 manifest = open(work + "/scans/lots/L9/manifest.csv").read()
 assert "disposition" in manifest.splitlines()[0] and manifest.splitlines()[1].rstrip().endswith("scrap"), manifest
-print("orders: ERP, by hand, progress, Scan; dispositions")
+
+# The part of an order chooses the recipe by which its scans are measured and judged; without an order the station's own does.
+post("/order", number="W1", part="wide", lot="L10", pieces="1")
+assert " Design gen2-classical." in get("/orders"), get("/orders")
+drop(7, "G1")
+post("/order-close", order=str(database.execute("SELECT id FROM orders WHERE number = 'W1'").fetchone()[0]), by="Ada")
+drop(8, "G2")
+judged = database.execute("SELECT serial, foils.verdict, setup FROM foils JOIN scans ON scans.id = scan WHERE serial IN ('G1', 'G2') ORDER BY 1").fetchall()
+assert [row[:2] for row in judged] == [("G1", "pass"), ("G2", "fail")] and judged[0][2] != judged[1][2], judged
+post("/close", lot="L10", by="Ada")
+wait_until(lambda: os.path.exists(work + "/scans/lots/L10/lot.json"))
+assert "3.42" in open(work + "/scans/lots/L10/lot.json").read()
+print("orders: ERP, by hand, progress, Scan; dispositions; several recipes")
 PY

@@ -284,21 +284,25 @@ static void a_check_is_due_and_done_and_due_again(void **state) {
   f->station.check_design_known = true;
   assert_has(get(f, "/scanner", "", 200), "Scan the plate</button>");
   assert_has(get(f, "/", "", 200), "The scanner was never checked.</b> No foil gets a verdict");
-  assert_true(fg_station_check_withholds(&f->station, why, sizeof why));
+  assert_true(
+      fg_station_check_withholds(&f->station, &f->station.settings->lot.design, why, sizeof why));
   add_check(f, 1, fg_station_now() - HOUR_MS, 1e-4, "pass");
   assert_has(get(f, "/scanner", "", 200), "<b>IN ORDER</b>");
   assert_has_not(get(f, "/", "", 200), "class=\"banner\"");
-  assert_false(fg_station_check_withholds(&f->station, why, sizeof why));
+  assert_false(
+      fg_station_check_withholds(&f->station, &f->station.settings->lot.design, why, sizeof why));
   run_sql(f, "UPDATE checks SET at = %lld", (long long)(fg_station_now() - 13 * HOUR_MS));
   assert_has(get(f, "/scanner", "", 200), "<b>CHECK DUE</b>");
   for (int i = 0; i < 5; i++) {
     static const char *const paths[] = {"/", "/history", "/trends", "/scanner", "/lots"};
     assert_has(get(f, paths[i], "", 200), "<b>The scanner's check is due.</b>");
   }
-  assert_true(fg_station_check_withholds(&f->station, why, sizeof why));
+  assert_true(
+      fg_station_check_withholds(&f->station, &f->station.settings->lot.design, why, sizeof why));
   assert_has(why, "scan the plate, and then this foil again");
   f->settings.check.withhold = false;
-  assert_false(fg_station_check_withholds(&f->station, why, sizeof why));
+  assert_false(
+      fg_station_check_withholds(&f->station, &f->station.settings->lot.design, why, sizeof why));
 }
 
 static void a_failed_check_and_a_clock_set_back_withhold(void **state) {
@@ -313,14 +317,16 @@ static void a_failed_check_and_a_clock_set_back_withhold(void **state) {
   assert_has(page, "<small>+300 ± 28 since the first that is drawn</small>");
   assert_int_equal(count(page, "class=\"signal\""), 3);
   assert_has_not(page, "<in>");
-  assert_true(fg_station_check_withholds(&f->station, why, sizeof why));
+  assert_true(
+      fg_station_check_withholds(&f->station, &f->station.settings->lot.design, why, sizeof why));
   assert_has(why, "The last check of the scanner failed");
   add_check(f, 3, fg_station_now() + 48 * HOUR_MS, 1e-4, "pass");
   page = get(f, "/scanner", "", 200);
   assert_has(page, "<b>CHECK DUE</b>");
   assert_has(page, "it was set back, so nobody can say how old that check is");
   assert_has(get(f, "/", "", 200), "The clock was set back");
-  assert_true(fg_station_check_withholds(&f->station, why, sizeof why));
+  assert_true(
+      fg_station_check_withholds(&f->station, &f->station.settings->lot.design, why, sizeof why));
   assert_has(why, "The clock was set back");
 }
 
@@ -357,11 +363,13 @@ static void a_changed_picture_withholds_until_it_is_accepted(void **state) {
   assert_has(page, "Tone, sharpening and blur at 2400 dpi");
   assert_has(page, "This check is the baseline");
   assert_has_not(page, "as the new baseline");
-  assert_false(fg_station_check_withholds(&f->station, why, sizeof why));
+  assert_false(
+      fg_station_check_withholds(&f->station, &f->station.settings->lot.design, why, sizeof why));
   add_check(f, 2, fg_station_now() - HOUR_MS, 1e-4, "pass");
   set_state(f, 2, -1.33, 11.1);
   run_sql(f, "UPDATE checks SET changes = 'edges' WHERE id = 2");
-  assert_true(fg_station_check_withholds(&f->station, why, sizeof why));
+  assert_true(
+      fg_station_check_withholds(&f->station, &f->station.settings->lot.design, why, sizeof why));
   assert_has(why, "another tone, sharpening or blur than its baseline");
   page = get(f, "/scanner", "", 200);
   assert_has(page, "<b>CHANGED</b>");
@@ -372,9 +380,11 @@ static void a_changed_picture_withholds_until_it_is_accepted(void **state) {
   assert_has(get(f, "/", "", 200),
              "The scanner's tone, sharpening or blur has changed.</b> No foil");
   press(f, "/baseline", "id=1", 404);
-  assert_true(fg_station_check_withholds(&f->station, why, sizeof why));
+  assert_true(
+      fg_station_check_withholds(&f->station, &f->station.settings->lot.design, why, sizeof why));
   press(f, "/baseline", "id=2", 303);
-  assert_false(fg_station_check_withholds(&f->station, why, sizeof why));
+  assert_false(
+      fg_station_check_withholds(&f->station, &f->station.settings->lot.design, why, sizeof why));
   assert_has(get(f, "/scanner", "", 200), "<b>IN ORDER</b>");
 }
 
