@@ -72,6 +72,9 @@ typedef struct fg_film_options {
    * sleeve_radius_mm is added to the clearance. NULL: round, as designed. */
   const char *bore;
   size_t draws; /* bearings with random shims, or of a lot; 0: none */
+  /* File of drawn bearings that are solved, which a run goes on from and adds to; NULL: none. */
+  const char *keep;
+  size_t shard, shards; /* only draws shard - 1, shard - 1 + shards, ...; shards 0: all */
   uint64_t seed;
   double shim_low_pct, shim_high_pct; /* heights of shims, percent of the clearance */
   unsigned jobs;                      /* threads; 0: all cores */
@@ -120,6 +123,7 @@ typedef struct fg_film_result {
   double whirl_ratio;       /* of the whirl at the critical mass, over the speed */
   double mass_over_perfect; /* critical mass over the perfect bearing's; NaN: not asked */
   fg_film_side side;
+  size_t draw; /* its number, from 1; 0: no drawn bearing */
 } fg_film_result;
 
 /* Stiffness and damping at one frequency of whirl; xx, xy, yx, yy. */
@@ -144,7 +148,8 @@ enum { FG_FILM_QUANTILES = 5 };
 
 typedef struct fg_film_draws {
   fg_film_result *result;
-  size_t count;
+  size_t count, asked;    /* fewer are there than asked for where this is a part of them */
+  size_t kept;            /* of an earlier run */
   size_t foils, left_out; /* of a lot: in stock, and others; 0: random shims */
   fg_film_share solved, touching, more_stable, less_stable; /* the latter two of those solved */
   /* Of all: with a threshold speed within within_pct of the perfect bearing's; lower by no more. */

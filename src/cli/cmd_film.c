@@ -56,6 +56,8 @@ enum {
   OPTION_SENSITIVITY,
   OPTION_ORBIT_OUT,
   OPTION_WITHIN,
+  OPTION_KEEP,
+  OPTION_SHARD,
 };
 
 static const struct argp_option options[] = {
@@ -121,6 +123,11 @@ static const struct argp_option options[] = {
      3},
     {"draws", OPTION_DRAWS, "N", 0,
      "Number of drawn bearings, of shims or of a lot (default: 1000)", 3},
+    {"keep", OPTION_KEEP, "FILE", 0,
+     "Keep drawn bearings here as they are solved, and go on from those that are there: a run that "
+     "was killed loses none; files of parts may be joined by cat",
+     3},
+    {"shard", OPTION_SHARD, "I/N", 0, "Only part I of N of the draws; needs --keep", 3},
     {"seed", OPTION_SEED, "N", 0, "Of the draws (default: 1)", 3},
     {"jobs", OPTION_JOBS, "N", 0, "Threads (default: one per core)", 3},
     {"touching", OPTION_TOUCHING, "UM", 0,
@@ -298,10 +305,21 @@ static void check_film_end(film_run *run, struct argp_state *state) {
   if (shims && lot)
     argp_error(state, "--shims and a lot's foils: bearings are drawn of one of them");
   if ((shims || lot) && !o->draws) o->draws = 1000;
+  if (o->shards && !o->keep) argp_error(state, "--shard needs --keep FILE");
+  if (o->keep && !o->draws) argp_error(state, "--keep is of drawn bearings: --shims, or a lot");
   if (run->outputs.path[OUT_ORBIT] && !o->orbit_turns)
     argp_error(state, "--orbit-out needs --orbit TURNS");
   if (isfinite(o->compliance) && o->model)
     argp_error(state, "--compliance states what --model would find: drop one");
+}
+
+static void read_film_shard(film_run *run, struct argp_state *state, const char *text) {
+  double n[3];
+  if (split_numbers(text, '/', n) != 2 || !(n[0] >= 1 && n[0] <= n[1] && n[1] <= 1e6) ||
+      n[0] != floor(n[0]) || n[1] != floor(n[1]))
+    argp_error(state, "--shard: '%s' is not I/N with I from 1 to N", text);
+  run->options.shard = (size_t)n[0];
+  run->options.shards = (size_t)n[1];
 }
 
 static error_t parse_film_option(int key, char *text, struct argp_state *state) {
@@ -312,6 +330,12 @@ static error_t parse_film_option(int key, char *text, struct argp_state *state) 
     return 0;
   case OPTION_BORE:
     run->options.bore = text;
+    return 0;
+  case OPTION_KEEP:
+    run->options.keep = text;
+    return 0;
+  case OPTION_SHARD:
+    read_film_shard(run, state, text);
     return 0;
   case OPTION_MODEL:
     run->options.model = text;

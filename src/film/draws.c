@@ -7,6 +7,7 @@
 
 #include "core/parallel.h"
 #include "core/select.h"
+#include "film/kept.h"
 #include "film/stock.h"
 #include "foilgauge/density.h"
 #include "foilgauge/memory.h"
@@ -28,6 +29,7 @@ typedef struct draw_task {
   double spread_mm; /* of a tolerance, or */
   bool measured;    /* the clearances' uncertainties */
   fg_film_draws *draws;
+  fg_film_kept *kept; /* NULL: none, and no shard */
 } draw_task;
 
 /* Streams of random numbers: of shims, of a scatter of every parameter, and of these. */
@@ -127,14 +129,25 @@ static fg_status solve_draw(fg_context *ctx, const draw_task *t, fg_film_workspa
   return solve_drawn(ctx, t, workspace, &bearing, result);
 }
 
+/* Kept of an earlier run, or of another shard. */
+static bool is_elsewhere(const draw_task *t, size_t draw) {
+  const fg_film_options *o = &t->report->options;
+  if (!t->kept) return false;
+  return t->kept->known[draw] || (o->shards && draw % o->shards != o->shard - 1);
+}
+
 static fg_status solve_draws(fg_context *ctx, void *shared, size_t item) {
   const draw_task *t = shared;
   size_t end = (item + 1) * DRAWS_OF_A_TASK;
   fg_film_workspace workspace;
   FG_TRY(fg_film_workspace_open(ctx, t->report, &workspace));
   fg_status status = FG_OK;
-  for (size_t i = item * DRAWS_OF_A_TASK; i < end && status == FG_OK; i++)
-    if (i < t->draws->count) status = solve_draw(ctx, t, &workspace, i);
+  for (size_t i = item * DRAWS_OF_A_TASK; i < end && status == FG_OK; i++) {
+    if (i >= t->draws->count || is_elsewhere(t, i)) continue;
+    status = solve_draw(ctx, t, &workspace, i);
+    t->draws->result[i].draw = i + 1;
+    if (status == FG_OK && t->kept) status = fg_film_kept_add(ctx, t->kept, &t->draws->result[i]);
+  }
   fg_film_workspace_close(&workspace);
   return status;
 }
@@ -181,15 +194,48 @@ static fg_status finish_draws(fg_context *ctx, fg_film_draws *draws) {
   return FG_OK;
 }
 
-static fg_status draw_all(fg_context *ctx, draw_task *task, size_t count) {
-  fg_film_draws *draws = task->draws;
+static fg_status allocate_draws(fg_context *ctx, size_t count, fg_film_draws *draws) {
   void *block;
   FG_TRY(fg_memory_allocate(ctx, count, sizeof *draws->result, &block));
   draws->result = block;
-  draws->count = count;
-  FG_TRY(fg_parallel_run(ctx, task->report->options.jobs,
-                         (count + DRAWS_OF_A_TASK - 1) / DRAWS_OF_A_TASK, solve_draws, task));
-  return finish_draws(ctx, draws);
+  draws->count = draws->asked = count;
+  return FG_OK;
+}
+
+static fg_status solve_all_draws(fg_context *ctx, draw_task *task) {
+  return fg_parallel_run(ctx, task->report->options.jobs,
+                         (task->draws->count + DRAWS_OF_A_TASK - 1) / DRAWS_OF_A_TASK, solve_draws,
+                         task);
+}
+
+static fg_status draw_all(fg_context *ctx, draw_task *task, size_t count) {
+  FG_TRY(allocate_draws(ctx, count, task->draws));
+  FG_TRY(solve_all_draws(ctx, task));
+  return finish_draws(ctx, task->draws);
+}
+
+/* Leaves out draws that are not there. */
+static void drop_missing(fg_film_draws *draws) {
+  size_t there = 0;
+  for (size_t i = 0; i < draws->count; i++)
+    if (draws->result[i].draw) draws->result[there++] = draws->result[i];
+  draws->count = there;
+}
+
+/* The same with draws of an earlier run, and as a part of them. */
+static fg_status draw_with_kept(fg_context *ctx, draw_task *task, size_t count) {
+  fg_film_kept kept;
+  fg_context inner;
+  FG_TRY(allocate_draws(ctx, count, task->draws));
+  FG_TRY(fg_film_kept_open(ctx, task->report, task->perfect, task->stock, task->draws, &kept));
+  task->kept = &kept;
+  fg_status status = solve_all_draws(ctx, task);
+  fg_status closed = fg_film_kept_close(&inner, &kept);
+  task->kept = NULL;
+  if (status == FG_OK && closed != FG_OK) return fg_fail(ctx, closed, "%s", inner.message);
+  FG_TRY(status);
+  drop_missing(task->draws);
+  return finish_draws(ctx, task->draws);
 }
 
 fg_status fg_film_draw_scatter(fg_context *ctx, fg_film_report *report,
@@ -237,18 +283,18 @@ fg_status fg_film_draw(fg_context *ctx, fg_film_report *report, const fg_film_be
   draw_task task = {
       .report = report, .perfect = perfect, .solved = solved, .draws = &report->draws};
   if (!count) return FG_OK;
-  if (!fg_film_draws_from_lot(&report->options)) return draw_all(ctx, &task, count);
+  if (!fg_film_draws_from_lot(&report->options)) return draw_with_kept(ctx, &task, count);
   if (report->options.stock) {
     task.stock = report->options.stock;
     report->draws.foils = task.stock->foils;
     report->draws.left_out = task.stock->left_out;
-    return draw_all(ctx, &task, count);
+    return draw_with_kept(ctx, &task, count);
   }
   FG_TRY(fg_film_stock_read(ctx, report, &stock));
   task.stock = &stock;
   report->draws.foils = stock.foils;
   report->draws.left_out = stock.left_out;
-  fg_status status = draw_all(ctx, &task, count);
+  fg_status status = draw_with_kept(ctx, &task, count);
   fg_film_stock_free(&stock);
   return status;
 }

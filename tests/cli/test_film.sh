@@ -41,6 +41,41 @@ expect 0 "" "$program" film design.json $fast --speeds 30000:90000:2 --shims=-7:
 expect 0 "" "$program" film $fast --speeds 30000:90000:2 --shims 0:0 --draws 1 -o none.json
 near "no deviation" "$(value none.json "r['draws']['mass_over_perfect']['median']")" 1 1e-7
 
+# Draws that are kept: a run goes on from them, whatever line a kill has cut off; shards joined by cat are the whole; of other settings
+# they are refused.
+draws="design.json $fast --speeds 30000:90000:2 --shims=-7:7"
+expect 0 "" "$program" film $draws --draws 5 --keep kept -o five.json
+[ "$(grep -c '^[0-9]' kept)" = 5 ] || fail "five draws are not kept"
+truncate -s -20 kept
+expect 0 "" "$program" film $draws --draws 12 --keep kept -o twelve.json --draws-out twelve.csv
+[ "$(grep -c '^[0-9]' kept)" = 13 ] || fail "kept draws were solved again, or the cut one was not"
+cmp -s few.csv twelve.csv || fail "draws that were kept differ from those that are solved at once"
+for shard in 1 2; do
+  expect 0 "" "$program" film $draws --draws 12 --keep part$shard --shard $shard/2 -o part$shard.json --table part$shard.txt
+done
+grep -q '6 bearings, shims .*; 6 more are asked for, and not here' part2.txt || fail "a shard does not say that it is a part"
+cat part1 part2 >joined
+expect 0 "" "$program" film $draws --draws 12 --keep joined --jobs 1 -o joined.json --draws-out joined.csv
+cmp -s few.csv joined.csv || fail "joined shards differ from the whole"
+[ "$(grep -c '^[0-9]' joined)" = 12 ] || fail "joined draws were solved again"
+for other in "--seed 2" "--load 21" "--shims=-7:8" "--mesh 4,4"; do
+  expect 65 "draws of another bearing" "$program" film $draws --draws 12 --keep kept $other
+done
+expect 65 "no file that" "$program" film $draws --draws 12 --keep design.json
+expect 64 "shard needs --keep" "$program" film $draws --draws 12 --shard 1/2
+
+# The job array: here a queue that runs every task at once.
+mkdir queue
+cat >queue/sbatch <<'END'
+#!/bin/bash
+for word; do case $word in --array=*) last=${word#--array=1-} ;; --wrap=*) task=${word#--wrap=} ;; esac; done
+for ((i = 1; i <= ${last:-1}; i++)); do SLURM_ARRAY_TASK_ID=$i SLURM_CPUS_PER_TASK=1 bash -c "$task" >&2 || exit 1; done
+echo 7
+END
+chmod +x queue/sbatch
+PATH=$PWD/queue:$PATH FOILGAUGE=$program "$root/samples/slurm/film.sh" array 2 $draws --draws 12 >said 2>&1 || fail "the job array: $(cat said)"
+cmp -s few.csv array/draws.csv && [ -s array/film.html ] || fail "a job array makes other draws"
+
 # Foils as measured: those of the design's clearance are the design's, a closed one lowers the film.
 foils() {
   python3 - "$1" <<'END'

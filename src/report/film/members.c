@@ -48,11 +48,8 @@ static const char *find_result_name(const fg_subject *s, char *buffer) {
 }
 
 static double find_draw_number(const fg_subject *s) {
-  const fg_film_draws *draws = &report_of(s)->draws;
-  const fg_film_result *result = s->object;
-  return result >= draws->result && result < draws->result + draws->count
-             ? (double)(result - draws->result) + 1
-             : NAN;
+  size_t draw = ((const fg_film_result *)s->object)->draw;
+  return draw ? (double)draw : NAN;
 }
 
 static bool lists_draws(const fg_subject *list) {
@@ -230,6 +227,8 @@ static const fg_members quantile_members = FG_MEMBERS(quantile_rows);
 
 static const fg_member draws_rows[] = {
     {FG_COUNT("count", fg_film_draws, count), .words = "of bearings"},
+    {FG_COUNT("asked", fg_film_draws, asked),
+     .words = "for; more than count where this is a part of them (--shard)"},
     {FG_COUNT("foils", fg_film_draws, foils),
      .words = "of a lot, that they are drawn from; 0: random shims"},
     {FG_COUNT("foils_left_out", fg_film_draws, left_out),

@@ -2,6 +2,7 @@
 /* Notes of a film's report: its result in words, and its limits. */
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "report/film/members.h"
 
@@ -18,6 +19,14 @@ static void note_threshold(const fg_film_report *r, char *note) {
         o->speed_low_rpm, o->speed_high_rpm, o->rotor_mass_kg);
 }
 
+/* Behind the words on draws: those that are not there. */
+static void add_missing_draws(const fg_film_draws *d, char *text, size_t size) {
+  size_t used = strlen(text);
+  if (d->count < d->asked)
+    snprintf(text + used, size - used, "; %zu more are asked for, and not here",
+             d->asked - d->count);
+}
+
 void fg_film_draws_words(const fg_film_report *r, char *text, size_t size) {
   const fg_film_draws *d = &r->draws;
   if (d->foils)
@@ -30,6 +39,7 @@ void fg_film_draws_words(const fg_film_report *r, char *text, size_t size) {
              "%zu bearings, shims of %g to %g %% of the clearance under every bump, seed %llu",
              d->count, r->options.shim_low_pct, r->options.shim_high_pct,
              (unsigned long long)r->options.seed);
+  add_missing_draws(d, text, size);
 }
 
 /* "3.1 um (8 %)"; the widest or none of those that were tried. */
