@@ -134,6 +134,9 @@ static const char *const migrations[] = {
     "CREATE TABLE destinations (name TEXT PRIMARY KEY, passed INTEGER NOT NULL,"
     " prepared INTEGER NOT NULL DEFAULT 0, passed_at INTEGER NOT NULL DEFAULT 0,"
     " count INTEGER NOT NULL DEFAULT 0) WITHOUT ROWID;",
+    /* Actions of known users. */
+    "CREATE TABLE trail (id INTEGER PRIMARY KEY AUTOINCREMENT, at INTEGER NOT NULL,"
+    " user TEXT NOT NULL, action TEXT NOT NULL, subject TEXT NOT NULL, refused TEXT NOT NULL);",
 };
 
 enum { VERSION = sizeof migrations / sizeof *migrations, BUSY_MS = 5000, IN_FILE_EVERY_S = 5 };

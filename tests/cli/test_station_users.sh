@@ -58,6 +58,12 @@ assert one("SELECT count(*) FROM dispositions") == [(0,)]
 assert ask("/dispose", token=kim, foil="1", kind="concession", by="Ada")[0] == 303
 assert ask("/dispose", user="Proxied", foil="1", kind="scrap", by="Ada")[0] == 303
 assert one("SELECT kind, by FROM dispositions") == [("concession", "Kim"), ("scrap", "Proxied")]
+# The trail has all of it, the refused too.
+trail = one("SELECT user, action, subject, refused <> '' FROM trail ORDER BY id")
+assert trail == [("Ada", "correct", "foil 1, serial F2", 0), ("Ada", "dispose", "foil 1, kind concession", 1), ("Ada", "close", "", 1),
+                 ("Kim", "dispose", "foil 1, kind concession", 0), ("Proxied", "dispose", "foil 1, kind scrap", 0)], trail
+page = ask("/trail", token=kim)[1]
+assert page.count("<tr>") >= 5 and "foil 1, kind concession" in page, page
 PY
 stop INT
 echo "$name: three users, two roles refused, each named"

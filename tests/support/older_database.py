@@ -8,7 +8,7 @@ database = sqlite3.connect(sys.argv[1])
 version = int(sys.argv[2])
 for index in 'foils_not_passed', 'foils_by_order':
     database.execute('DROP INDEX ' + index)
-for table in 'events', 'destinations', 'identity', 'dispositions', 'orders', 'cause_points', 'causes', 'check_values':
+for table in 'trail', 'events', 'destinations', 'identity', 'dispositions', 'orders', 'cause_points', 'causes', 'check_values':
     database.execute('DROP TABLE ' + table)
 for column in 'coil', 'oven', 'scanner', 'order_id':
     database.execute('ALTER TABLE foils DROP COLUMN ' + column)

@@ -103,6 +103,8 @@ fg_status fg_outbox_write_line(fg_context *ctx, fg_inspection *station, sqlite3 
   if (waiting)
     fprintf(out, "<p class=\"order\"><a href=\"/outbox\"><b>%zu</b> not passed on yet</a></p>\n",
             waiting);
+  else if (state.count)
+    fputs("<p class=\"note\"><a href=\"/outbox\">Parts are passed on</a></p>\n", out);
   free(state.receivers);
   return FG_OK;
 }
