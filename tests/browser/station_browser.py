@@ -108,8 +108,8 @@ return low;
 class Station:
     """A station that runs, and its address."""
 
-    def __init__(self, program, folder, recipe, errors):
-        self.command = [program, "station", folder, "--recipe", recipe]
+    def __init__(self, program, folder, recipe, errors, *options):
+        self.command = [program, "station", folder, "--recipe", recipe, *options]
         self.errors = errors
         self.start("0")
 
