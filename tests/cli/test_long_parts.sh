@@ -47,11 +47,11 @@ grep -q '^part one: passed' said && grep -q '^part two: FAILED (exit code 3 of: 
   grep -q '^skipped: exit 77' said && [ "$(tail -n 1 said)" = "parts that failed: two" ] || fail "parts: $(cat said)"
 [ "$(cat build/long/one.log build/long/two.log build/long/three.log | paste -sd ' ')" = "first third before later" ] || fail "logs of the parts"
 run_long one >said || fail "a part alone"
-long_parts() { printf 'slow: a\n  sleep 97.5 & sleep 97.25\n'; }
+long_parts() { printf 'slow: a\n  sleep 97 & echo $! >child; sleep 98\n'; }
 (run_long slow) >said &
-for ((i = 0; i < 100; i++)); do pgrep -fx 'sleep 97.25' >/dev/null && break || sleep 0.1; done
+for ((i = 0; i < 100; i++)); do [ -s child ] && break || sleep 0.1; done
 kill %1
 wait %1 && fail "a run that was ended is a success"
-for ((i = 0; i < 50; i++)); do pgrep -fx 'sleep 97.(25|5)' >/dev/null || break; sleep 0.1; done
-pgrep -fx 'sleep 97.(25|5)' >left && fail "a run that was ended goes on: $(cat left)"
+for ((i = 0; i < 50; i++)); do kill -0 "$(cat child)" 2>/dev/null || break; sleep 0.1; done
+! kill -0 "$(cat child)" 2>/dev/null || fail "a run that was ended goes on"
 exit $failed
