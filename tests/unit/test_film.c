@@ -125,6 +125,28 @@ static void fast_bearing_keeps_pressure_times_thickness(void **unused) {
   close_bearing(&b);
 }
 
+/* A gas bearing of finite length and compressibility number at a small eccentricity e (Ausman's
+ * first-order perturbation, 1957): P - 1 = e Re(A exp(i theta)),
+ *   A = i L / (1 + i L) (1 - cosh(k z) / cosh(k l)), k² = 1 + i L, l the half length over R. */
+static void light_gas_bearing_is_ausmans(void **unused) {
+  (void)unused;
+  static const double lambdas[] = {0.1, 0.5, 2, 10, 40}, halves[] = {0.5, 1, 2}, e = 1e-3;
+  for (size_t i = 0; i < sizeof lambdas / sizeof *lambdas; i++)
+    for (size_t j = 0; j < sizeof halves / sizeof *halves; j++) {
+      bearing b;
+      double complex il = I * lambdas[i], k = csqrt(1 + il) * halves[j];
+      double complex mean = 2 * halves[j] * il / (1 + il) * (1 - ctanh(k) / k);
+      double size = pi * e * cabs(mean), force[2];
+      const fg_film_mesh mesh = ring_of(192, 32, halves[j]);
+      open_bearing(&b, &mesh, lambdas[i], 0);
+      hold_at(&b, e, 0);
+      fg_film_force(&b.film, &b.state, force);
+      assert_near(force[0], pi * e * creal(mean), 4e-3 * size);
+      assert_near(force[1], -pi * e * cimag(mean), 4e-3 * size);
+      close_bearing(&b);
+    }
+}
+
 static void light_rotors_whirl_at_half_the_speed(void **unused) {
   (void)unused;
   bearing b;
@@ -347,6 +369,7 @@ int main(void) {
       cmocka_unit_test(short_bearing_is_ocvirks),
       cmocka_unit_test(long_bearing_is_sommerfelds),
       cmocka_unit_test(fast_bearing_keeps_pressure_times_thickness),
+      cmocka_unit_test(light_gas_bearing_is_ausmans),
       cmocka_unit_test(light_rotors_whirl_at_half_the_speed),
       cmocka_unit_test(mesh_has_second_order),
       cmocka_unit_test(stiffness_is_the_forces_derivative),
