@@ -142,7 +142,8 @@ def main():
               'contrast, blur 1.2 px;\nrough ones have correlated noise of twice the size, shading and a one-sided blur. Maps of a bed, '
               'and foils through them: [grid_maps.md](grid_maps.md).\n', file=out)
         print('## Marks\n\nrms error of a mark along one axis, px at 1200 dpi, less the mean over the marks; the bound is that of '
-              'Cramér and Rao for\nthe pixels of the mark (of a corner within 48 px); coverage of 2 u.\n', file=out)
+              'Cramér and Rao for\nthe pixels of the mark (of a corner within 48 px); coverage of 2 u. A peer whose error is less than three '
+              'bounds cannot\nbe beaten by three: the dots are at their bound.\n', file=out)
         print('| marks | pitch, mm | picture | found | error, px | bound, px | error / bound | coverage, % | peer | its error, px | times '
               'larger |\n|---|---:|---|---:|---:|---:|---:|---:|---|---:|---:|', file=out)
         for k, pitch, how, found, there, rms, bound, cover, peer, peer_rms in marks(program, folder):
