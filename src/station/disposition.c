@@ -22,9 +22,11 @@ fg_status fg_disposition_count_open(fg_context *ctx, sqlite3 *connection, const 
                                     int64_t *count) {
   fg_query query;
   fg_query_begin(connection,
-                 "SELECT count(*) FROM foils WHERE (?1 IS NULL OR lot = ?1) AND " FG_FOIL_IS_OPEN,
+                 "SELECT count(*) FROM (SELECT 1 FROM foils WHERE (?1 IS NULL OR lot = ?1) "
+                 "AND " FG_FOIL_IS_OPEN " LIMIT CASE WHEN ?1 IS NULL THEN ?2 ELSE -1 END)",
                  &query);
   fg_query_text(&query, lot);
+  fg_query_integer(&query, FG_OPEN_COUNTED);
   *count = fg_query_row(&query) ? fg_query_get_integer(&query, 0) : 0;
   return fg_query_end(ctx, &query, "counting open foils");
 }
@@ -34,9 +36,9 @@ fg_status fg_disposition_write_open(fg_context *ctx, sqlite3 *reader, FILE *out)
   FG_TRY(fg_disposition_count_open(ctx, reader, NULL, &count));
   if (count)
     fprintf(out,
-            "<p class=\"order\"><a href=\"/history?verdict=open\"><b>%lld</b> without "
+            "<p class=\"order\"><a href=\"/history?verdict=open\"><b>%lld%s</b> without "
             "disposition</a></p>\n",
-            (long long)count);
+            (long long)count, count == FG_OPEN_COUNTED ? "+" : "");
   return FG_OK;
 }
 

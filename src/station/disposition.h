@@ -13,7 +13,8 @@
   " coalesce((SELECT kind FROM dispositions AS d WHERE d.foil = foils.id ORDER BY d.id DESC"       \
   " LIMIT 1), 'again') = 'again')"
 
-/* Counts the open foils of a lot; NULL: of all. */
+enum { FG_OPEN_COUNTED = 1000 };
+/* Counts the open foils of a lot; NULL: of all, up to FG_OPEN_COUNTED, as every page Now asks. */
 fg_status fg_disposition_count_open(fg_context *ctx, sqlite3 *connection, const char *lot,
                                     int64_t *count);
 

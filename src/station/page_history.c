@@ -12,7 +12,8 @@
 #include "station/pages.h"
 #include "station/values.h"
 
-/* PAGE_FOILS: foils on one sheet of paper. SUGGESTED: lots and dies that a field proposes. */
+/* PAGE_FOILS: foils on one sheet of paper. SUGGESTED: lots and dies that a field proposes, of the
+ * newest 5000 foils. */
 enum { PAGE_FOILS = 40, PAGES_MAX = 1000000, SUGGESTED = 200, WHERE_BYTES = 2048 };
 
 static const struct {
@@ -98,8 +99,9 @@ static void bind(const search *at, fg_query *query) {
 static fg_status count_found(fg_context *ctx, sqlite3 *reader, const search *at, int64_t *count) {
   fg_query query;
   char sql[WHERE_BYTES + 200];
-  snprintf(sql, sizeof sql, "SELECT count(*) FROM foils JOIN scans ON scans.id = scan%s",
-           at->where);
+  bool timed = at->from_ms >= 0 || at->to_ms >= 0; /* times are those of scans */
+  snprintf(sql, sizeof sql, "SELECT count(*) FROM foils%s%s",
+           timed ? " JOIN scans ON scans.id = scan" : "", at->where);
   fg_query_begin(reader, sql, &query);
   bind(at, &query);
   *count = fg_query_row(&query) ? fg_query_get_integer(&query, 0) : 0;
@@ -145,12 +147,12 @@ static fg_status write_search_html_form(fg_context *ctx, sqlite3 *reader, const 
             strcmp(verdicts[i].word, at->verdict) ? "" : " selected", verdicts[i].name);
   fputs("</select></label><button>Search</button><a href=\"/history\">All</a></form>\n", out);
   FG_TRY(write_suggestions(ctx, reader, "lots",
-                           "SELECT lot FROM foils WHERE lot <> '' GROUP BY lot"
-                           " ORDER BY max(id) DESC LIMIT ?",
+                           "SELECT lot FROM (SELECT id, lot FROM foils ORDER BY id DESC LIMIT 5000)"
+                           " WHERE lot <> '' GROUP BY lot ORDER BY max(id) DESC LIMIT ?",
                            out));
   return write_suggestions(ctx, reader, "dies",
-                           "SELECT die FROM foils WHERE die <> '' GROUP BY die"
-                           " ORDER BY max(id) DESC LIMIT ?",
+                           "SELECT die FROM (SELECT id, die FROM foils ORDER BY id DESC LIMIT 5000)"
+                           " WHERE die <> '' GROUP BY die ORDER BY max(id) DESC LIMIT ?",
                            out);
 }
 
