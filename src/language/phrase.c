@@ -225,9 +225,8 @@ static char *translate_sentences(search *at, const char *text) {
   return NULL;
 }
 
-/* "(lot 7)," has the entry of "lot 7". */
-static char *translate_inside_marks(search *at, const char *text) {
-  static const char marks[] = " ,;:.()";
+/* "lot 7," and "(lot 7)," have the entry of "lot 7". */
+static char *translate_inside(search *at, const char *text, const char *marks) {
   size_t head = strspn(text, marks), length = strlen(text);
   while (length > head && strchr(marks, text[length - 1]))
     length--;
@@ -236,6 +235,11 @@ static char *translate_inside_marks(search *at, const char *text) {
   char *inside = translate_part(at, text + head, length - head);
   return inside ? join_parts(join_parts(strndup(text, head), "", inside), "", strdup(text + length))
                 : NULL;
+}
+
+static char *translate_inside_marks(search *at, const char *text) {
+  char *translated = translate_inside(at, text, " ,;:.");
+  return translated ? translated : translate_inside(at, text, " ,;:.()");
 }
 
 static char *translate_deeper(search *at, const char *text) {

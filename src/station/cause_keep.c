@@ -189,7 +189,7 @@ static void write_accepted(const fg_inspection *station, const fg_trend_choice *
                            const fg_query *query, char letter, FILE *out) {
   bool withdrawn = fg_query_get_integer(query, 6) != 0;
   fputs("<li>", out);
-  if (!withdrawn) fprintf(out, "<b>%c</b> ", letter);
+  if (!withdrawn) fprintf(out, "<b translate=\"no\">%c</b> ", letter);
   fg_html_text(out, fg_query_get_text(query, 1));
   fprintf(out, ": %+.4g, U %.2g", fg_query_get_number(query, 2), 2 * fg_query_get_number(query, 3));
   fg_html_text((fputc(' ', out), out), choice->row->unit);

@@ -15,6 +15,11 @@ radius() { # SEED RADIUS FILE
 }
 radius 1 3.32 "$work/1.png"
 radius 2 3.4 "$work/2.png"
+printf '{"schema": "foilgauge/render/1", "seed": 3, "scanner": {"dpi": 300}, "foils": [{"rotate_deg": -90,
+  "design": {"bump_count": 2}, "crushed": [{"bump": 2, "height_factor": 0.4}]}]}' >"$work/spec.json"
+"$renderer" render "$work/spec.json" -o "$work/3.png"
+printf '{"schema": "foilgauge/render/1", "seed": 4, "scanner": {"dpi": 1200}, "foils": [{"rotate_deg": -90, "design": {"bump_count": 1}}]}' >"$work/spec.json"
+"$renderer" render "$work/spec.json" -o "$work/4.png"
 cat >"$work/recipe.json" <<'R'
 {"schema": "foilgauge/recipe/1",
  "station": {"file_name": "{lot}_{serial}", "receive_s": 0.4, "reasons": "S1 scratch"},
@@ -87,7 +92,11 @@ drop("7_half.png", text=open(work + "/1.png", "rb").read()[:2000])
 keep("/")
 drop("notes.txt", text=b"no scan\n")
 keep("/")
-for path in ("/foil?id=1", "/foil?id=2", "/report?foil=1", "/report?foil=2", "/trends?by=lots", "/why?q=bump:radius_mm", "/history?verdict=open",
+drop("7_crushed.png", work + "/3.png")
+keep("/")
+drop("7_other.png", work + "/4.png")
+keep("/")
+for path in ("/foil?id=1", "/foil?id=2", "/foil?id=3", "/foil?id=4", "/report?foil=1", "/report?foil=2", "/report?foil=3", "/trends?by=lots", "/why?q=bump:radius_mm", "/history?verdict=open",
              "/history?serial=nobody", "/lots?close=1&lot=7", "/orders", "/trends?q=foil:overall.radius_mm"):
     keep(path)
 keep("/correct", dict(foil=1, back="/foil", was_serial="other", serial="SN", was_lot="", lot="The Lot", was_die="", die="", was_operator="",

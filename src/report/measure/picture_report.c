@@ -62,7 +62,8 @@ void fg_text_picture_state(FILE *out, const fg_measurement *measurement) {
 static void put_settings(FILE *out, const fg_picture_words *words) {
   const char *const names[] = {"SANE", "TWAIN", "WIA"};
   const char *const settings[] = {words->sane, words->twain, words->wia};
-  const char *before = "<br><span class=\"note\">";
+  const char *before =
+      "<br><span class=\"note\" translate=\"no\">"; /* options, as drivers spell them */
   for (int i = 0; i < 3; i++) {
     if (!settings[i][0]) continue;
     fprintf(out, "%s%s: ", before, names[i]);
