@@ -130,7 +130,8 @@ stop TERM
 sed 's/"station": {/"station": {"language": "de", /' "$work/recipe.json" >"$work/german.json"
 start "$work/scans" --recipe "$work/german.json"
 address=$(cat "$work/address")
-curl -s -H 'Accept-Language: en' "$address" | grep -q '<html lang="de"' || fail "the recipe's language"
+curl -s -H 'Accept-Language: en' -o "$work/now.html" "$address" || fail "no page"
+grep -q '<html lang="de"' "$work/now.html" || fail "the recipe's language"
 stop TERM
 sed 's/"language": "de"/"language": "xx"/' "$work/german.json" >"$work/unknown.json"
 if "$program" station "$work/scans" --recipe "$work/unknown.json" --once 2>"$work/said"; then fail "an unknown language"; fi
