@@ -100,15 +100,16 @@ static void take_noise(fg_scan_loop *loop, const fg_joint_fit_result *fit, size_
   const fg_joint_fit_part *adds = &fit->parts[one->part];
   const fg_measurement *before = &loop->before[one->scan];
   fg_benefits *benefits = &loop->benefits[one->scan];
-  if (one->foil) {
-    fg_benefit *benefit = &benefits->foil[one->foil - before->foils];
+  fg_benefit *benefit = one->foil ? &benefits->foil[one->foil - before->foils] : &benefits->discs;
+  if (one->foil)
     add_foil_noise(part, adds, one->foil, scale, benefit);
-    benefit->misfit = benefit->misfit || scale > 1 || (loop->by_evidence && loop->misfit);
-    benefit->curve = benefit->curve || curve || loop->beside_foil_field;
-    benefit->mean = loop->by_evidence;
-  } else {
-    add_disc_noise(part, adds, (size_t)(one->disc - before->discs), scale, &benefits->discs);
-  }
+  else
+    add_disc_noise(part, adds, (size_t)(one->disc - before->discs), scale, benefit);
+  benefit->misfit =
+      benefit->misfit || (one->foil && scale > 1) || (loop->by_evidence && loop->misfit);
+  benefit->curve =
+      benefit->curve || ((one->foil || loop->by_evidence) && curve) || loop->beside_foil_field;
+  benefit->mean = loop->by_evidence;
 }
 
 /* Effects of the part move no dimension: where no explanation holds one of the scanner, nothing is

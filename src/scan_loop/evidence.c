@@ -285,6 +285,12 @@ static bool is_beside_foil_field(const fg_edge_fit *edge_fit, const fg_evidence_
   return false;
 }
 
+/* Returns true where the mean displacement is not to be trusted beside the rows that it was seen
+ * at; discs show their whole rings. */
+static bool leaves_more(const fg_scan_loop *loop, const fg_evidence_verdict *v) {
+  return loop->misfit || (v->ties && is_loose(&v->tie[0]));
+}
+
 static fg_status weigh_once(fg_context *ctx, fg_scan_loop *loop, double *residual, double *jacobian,
                             bool *moved) {
   fg_evidence_search search = {.count = 0};
@@ -293,8 +299,7 @@ static fg_status weigh_once(fg_context *ctx, fg_scan_loop *loop, double *residua
   FG_TRY(fg_search_put_back(ctx, &loop->edge_fit, &loop->set, residual, jacobian));
   FG_TRY_EXIT(search_models(ctx, loop, residual, jacobian, &search));
   FG_TRY_EXIT(fg_evidence_decide(ctx, &search, &verdict));
-  loop->misfit =
-      loop->misfit || (verdict.ties && is_loose(&verdict.tie[0])) || is_split_open(&verdict);
+  loop->misfit = is_split_open(&verdict) || (!loop->edge_fit.discs && leaves_more(loop, &verdict));
   loop->beside_foil_field = is_beside_foil_field(&loop->edge_fit, &verdict);
   FG_TRY_EXIT(find_displacement(ctx, loop, &search, verdict.outcome == FG_EVIDENCE_FOUND));
   FG_TRY_EXIT(fg_scan_loop_find_form_errors(ctx, loop, &search, &verdict));
