@@ -100,7 +100,8 @@ def summary(rows, tables):
     tables_a_cell, clean_a_cell = (1 + max((int(r["table"]) for r in part), default=-1) for part in (effects, unlike))
     sizes = ",".join(str(s) for s in sorted({int(r["size"]) for r in effects}))
     sizes = f"--sizes {sizes} " if effects and sizes != "4,6,8,10" else ""
-    out = ["# Power of the loop on tables, against an oracle", "",
+    title = "Power of the loop on tables, against an oracle" if effects else "Clean tables in the loop"
+    out = [f"# {title}", "",
            f"{len(effects)} tables with one effect, {len(unlike)} clean ones. `/usr/bin/python3 tests/bench/loop_power.py build/foilgauge "
            f"{sizes}--tables {tables_a_cell} --clean {clean_a_cell}` "
            f"(seeds {', '.join(sorted({r['seed'] for r in rows}, key=int))}; "

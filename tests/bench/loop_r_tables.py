@@ -71,7 +71,7 @@ def page(done, seeds):
            f"({100 * right / max(len(holds), 1):.0f} %); of {len(weak)} that are weak (one test alone shows them, "
            f"nothing can prove them against everything that is tried) {named} are claimed, or suspected with the right cause first or second; "
            f"of {len(clean)} that hold nothing beyond the declared model {quiet} have nothing claimed, and {accused} are suspected.",
-           "", "    python3 tests/bench/loop_r_tables.py build/foilgauge      # needs Rscript with MASS, boot, nlme, lattice", "",
+           "", f"    python3 tests/bench/loop_r_tables.py build/foilgauge --seeds {seeds}      # needs Rscript with MASS, boot, nlme, lattice", "",
            "Seen in R: the known effect beside the declared model, by `lm` alone, as it would be tested if one knew where to look.", ""]
     head = ["table", "rows", "declared", "known", "source", "seen in R", "found", "of its class: known", "error before → after",
             "cross-fitted", "verdict", "suspected (p)", "right?"] + ([f"answers of {seeds} seeds"] if seeds > 1 else [])
