@@ -29,6 +29,10 @@ fg_status fg_grid_loop_make_model(fg_context *ctx, fg_grid_loop *loop);
 /* Variance of the displacement at a place, mm², by jumps whose place the marks tell to a gap. */
 fg_point fg_grid_jump_variance(const fg_grid_loop *loop, fg_point at);
 
+/* Standard uncertainty of the place of a jump, mm: anywhere between two marks (GUM 4.3.7). 0: the
+ * effect has no jump. */
+double fg_grid_jump_u_mm(const grid_problem *problem, const grid_effect *effect);
+
 /* Displacement of the scanner at a place by all columns of the solution: effects and map. Returns
  * how many are not 0. */
 size_t fg_grid_displacement_columns(const grid_problem *problem, const grid_columns *columns,

@@ -56,3 +56,12 @@ fg_point fg_grid_jump_variance(const fg_grid_loop *loop, fg_point at) {
   }
   return variance;
 }
+
+double fg_grid_jump_u_mm(const grid_problem *problem, const grid_effect *effect) {
+  int axis = effect->kind->axis;
+  double jump = nearest_jump(effect, problem->frame.centre_mm[axis]), gap = 0;
+  if (!effect->kind->jumps) return 0;
+  for (double side = -1; side <= 1; side += 2)
+    gap += gap_beside(problem, axis, jump, side);
+  return isfinite(gap) ? gap / sqrt(12) : 0;
+}

@@ -298,6 +298,7 @@ static void make_fields(const fg_grid_loop *loop, fg_scanner_model *model) {
       field.u_amplitude_mm[k] = u;
     }
     memcpy(field.shape, effect->shape, sizeof field.shape);
+    field.u_shape[0] = fg_grid_jump_u_mm(problem, effect);
     at += fg_grid_effect_columns(effect);
     if (!tied && model->fields.count < FG_FIELDS_MAX)
       model->fields.fields[model->fields.count++] = field;

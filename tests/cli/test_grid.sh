@@ -141,7 +141,7 @@ spec chips.json dots 1.5 4 '{"id": "scan.chip_tilt", "amplitude_um": 12, "x_mm":
  "amplitude_um": 9, "x_mm": 4, "pitch_mm": 10}, {"id": "scan.carriage_ripple", "amplitude_um": 8, "period_mm": 8.5}'
 sed -i 's/"ratio": 0.0015/"ratio": 0, "mark_mm": 0.35/' chips.json
 expect 0 "" "$program" render chips.json -o chips.png
-expect 0 "" "$program" loop chips.png --design known.json -o chips_loop.json
+expect 0 "" "$program" loop chips.png --design known.json -o chips_loop.json --model-out chips_model.json
 python3 -c "
 import json
 claims = {c['id']: c for c in json.load(open('chips_loop.json'))['claims'] if c['verdict'] == 'found'}
@@ -150,4 +150,12 @@ for name, size in (('scan.chip_tilt', 12), ('scan.chip_gap', 9), ('scan.carriage
     assert abs(abs(claims[name]['amplitude_um']) - size) < 1.5, claims[name]  # marks that lie across a seam shrink it
 assert abs(claims['scan.carriage_ripple']['shape_mm'] - 8.5) < 0.05, claims['scan.carriage_ripple']
 " || fail "chips and a ripple are not named with their sizes"
+# A seam lies anywhere between two marks of 3 mm: so does it in the model, and what lies there has that in its u.
+python3 -c "
+import json
+places = {f['id']: f['u_shape'] for f in json.load(open('chips_model.json'))['fields'] if f['id'].startswith('scan.c')}
+for name in ('scan.chip_tilt', 'scan.chip_gap'):
+    assert 0.5 < places[name][0] < 1.1, places
+assert places['scan.carriage_ripple'][0] == 0, places
+" || fail "the model does not say how well the place of a seam is known"
 exit $failed
