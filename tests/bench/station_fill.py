@@ -24,6 +24,7 @@ FOILGAUGE = os.path.join(ROOT, "build", "foilgauge")
 MINUTE_MS = 60_000
 FOILS_OF_LOT = 60
 CHUNK = 5000  # scans that are held in memory
+DRAWN = 200  # scans with values of their own; those beyond are copies of them, which SQLite makes
 # Spread of foils, and of bumps within a foil, as a share of the value (or absolute where it is about 0).
 SPREAD = {
     "radius_mm": (0.004, 0.006), "height_mm": (0.004, 0.006), "height_fitted_mm": (0.004, 0.006),
@@ -99,10 +100,29 @@ def empty(database, out):
         rows.clear()
 
 
+def copy_scans(database, count, drawn, first_scan, first_foil):
+    """Copies the drawn scans, in their order, until there are `count`: later ones, with serial numbers of their own."""
+    marks = {"scan": first_scan, "foil": first_foil}
+    for done in range(drawn, count, drawn):
+        marks.update(shift=done, last=min(drawn, count - done), ms=done * MINUTE_MS)
+        for table, owner, values in (
+                ("scans", "scan", {"id": "id + :shift", "sha256": "lower(hex(randomblob(32)))", "at": "at + :ms",
+                                   "path": "printf('L000_C_%06d.png', id + :shift)"}),
+                ("foils", "foil", {"id": "id + :shift", "scan": "scan + :shift", "serial": "printf('%06d', serial + :shift)",
+                                   "lot": "printf('L%04d', substr(lot, 2) + :shift / 60)"}),
+                ("bumps", "foil", {"foil": "foil + :shift"}), ("measured", "foil", {"foil": "foil + :shift"}),
+                ("deciding", "foil", {"foil": "foil + :shift"})):
+            names = columns(database, table)
+            key = "id" if "id" in values else "foil"
+            database.execute(f"INSERT INTO {table} SELECT {', '.join(values.get(n, n) for n in names)} FROM {table} "
+                             f"WHERE {key} BETWEEN :{owner} AND :{owner} + :last - 1", marks)
+
+
 def fill(path, scans, checks, limits, seed):
     rng = random.Random(seed)
     database = sqlite3.connect(path)
-    database.execute("PRAGMA synchronous = OFF")
+    for pragma in "synchronous = OFF", "journal_mode = OFF", "cache_size = -1000000":
+        database.execute("PRAGMA " + pragma)
     scan = database.execute("SELECT * FROM scans ORDER BY id LIMIT 1").fetchone()
     at = {name: i for i, name in enumerate(columns(database, "scans"))}
     quantities = {row[0]: (row[1], row[2]) for row in database.execute("SELECT id, owner, name FROM quantities")}
@@ -113,6 +133,7 @@ def fill(path, scans, checks, limits, seed):
     first_card = database.execute("SELECT max(id) FROM arrivals").fetchone()[0] + 1
     begin = int(time.time() * 1000) - scans * MINUTE_MS
     out = {table: [] for table in ("scans", "foils", "bumps", "measured", "deciding", "arrivals", "files")}
+    total, scans = scans, min(scans, DRAWN)
     for i in range(scans):
         die, lot, serial = "AB"[i % 2], f"L{i // FOILS_OF_LOT + 1:03d}", f"{i + 1:06d}"
         name = f"{lot}_{die}_{serial}.png"
@@ -136,6 +157,7 @@ def fill(path, scans, checks, limits, seed):
         if len(out["scans"]) == CHUNK:
             empty(database, out)
     empty(database, out)
+    copy_scans(database, total, scans, first_id, first_foil)
     fill_checks(database, rng, checks, begin, scans * MINUTE_MS)
     database.commit()
     database.execute("PRAGMA wal_checkpoint(TRUNCATE)")

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""An hour of ten stations with a scan a second at one hub, in less time: 36,000 parts, posted as stations post them (each
+"""An hour of ten stations with a scan a second at one hub: 36,000 parts, as fast as the hub takes them, posted as stations post them (each
 station its own connection, one part after the other), while the hub is killed now and then; then the hub's own time for a
 page. In SQLite and, where it is installed, in PostgreSQL. Writes a section of reports/station.md.
 
@@ -26,12 +26,12 @@ import benchlib
 HEADING = "## Ten stations at a hub\n"
 
 
-def read_section(path):
+def read_section(path, heading=HEADING):
     """The section as it stands in the page, for who writes the others; "" where there is none."""
     if not os.path.exists(path):
         return ""
     with open(path, encoding="utf-8") as file:
-        section = file.read().partition(HEADING)
+        section = file.read().partition(heading)
     text = section[2].partition("\n## ")[0]
     return "\n" + section[1] + text.rstrip("\n") + "\n" if section[1] else ""
 
@@ -165,22 +165,29 @@ def measure_postgresql(folder, part, options):
         as_postgres([f"{programs[-1]}/pg_ctl", "-D", f"{folder}/pg", "-m", "fast", "stop"])
 
 
+def replace_section(path, heading, section):
+    """Puts the section where it was, else before the last one."""
+    before = ""
+    if os.path.exists(path):
+        with open(path, encoding="utf-8") as file:
+            before = file.read()
+    old = read_section(path, heading)
+    head, attacked, rest = (before.replace(old, "") if old else before).partition("\n## What does not stop it\n")
+    with open(path, "w", encoding="utf-8") as out:
+        out.write(head.rstrip("\n") + "\n\n" + "\n".join(section).rstrip("\n") + "\n" + attacked + rest)
+
+
 def write(path, options, rows):
     names = ["database", "parts", "sent again", "kept", "s", "parts/s", "median, ms", "999 of 1000, ms", "page, ms", "longest, ms"]
     section = [
         HEADING,
         f"`tests/bench/station_hub.py` writes this section. {benchlib.program_version()} on {benchlib.machine()}; load average "
-        f"{os.getloadavg()[0]:.1f}. An hour of {options.stations} stations with a scan a second, in less time: each posts {options.parts} parts as "
-        f"fast as the hub takes them, one after the other; the hub is killed {options.kills} times meanwhile. An hour needs {options.stations} parts/s. "
+        f"{os.getloadavg()[0]:.1f}. {options.parts / 60:.0f} minutes of {options.stations} stations with a scan a second, in less time: each posts {options.parts} parts as "
+        f"fast as the hub takes them, one after the other; the hub is killed {options.kills} times meanwhile. They need {options.stations} parts/s. "
         "Afterwards its page, 15 times.\n",
         benchlib.table(names, rows),
     ]
-    before = open(path, encoding="utf-8").read() if os.path.exists(path) else ""
-    old = read_section(path)
-    text = before.replace(old, "") if old else before
-    head, attacked, rest = text.partition("\n## What does not stop it\n")
-    with open(path, "w", encoding="utf-8") as out:
-        out.write(head.rstrip("\n") + "\n\n" + "\n".join(section).rstrip("\n") + "\n" + attacked + rest)
+    replace_section(path, HEADING, section)
 
 
 def main():

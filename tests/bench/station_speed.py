@@ -20,6 +20,7 @@ import zlib
 import benchlib
 import station_attacked
 import station_hub
+import station_many
 
 RECIPE = os.path.join(benchlib.ROOT, "samples", "station", "recipe.json")
 FILL = os.path.join(benchlib.ROOT, "tests", "bench", "station_fill.py")
@@ -162,18 +163,6 @@ def journal_mib(folder):
     return sum(os.path.getsize(path) for path in glob.glob(f"{folder}/foilgauge.sqlite-wal")) / 2**20
 
 
-def with_many(scans):
-    """Pages and size of a database of many scans; the last 40 foils have pictures in one that a station has filled."""
-    with tempfile.TemporaryDirectory() as folder:
-        watched = os.path.join(folder, "station")
-        filled = fill(watched, scans)
-        station = Station(watched, RECIPE)
-        pages = time_pages(station)
-        start_s = station.start_s
-        station.close()
-        return filled, start_s, pages, os.path.getsize(f"{watched}/foilgauge.sqlite") / scans / 1e3
-
-
 def fill(folder, scans):
     start = time.monotonic()
     subprocess.run([sys.executable, FILL, folder, "--scans", str(scans), "--recipe", RECIPE], check=True,
@@ -181,9 +170,8 @@ def fill(folder, scans):
     return time.monotonic() - start
 
 
-def write(path, options, filled, starts, pages, waits, requests, day, many):
+def write(path, options, filled, starts, pages, waits, requests, day):
     samples, seconds, megapixels = day
-    many_filled, many_start, many_pages, many_kb = many
     load = os.getloadavg()[0]
     ms = sorted(1e3 * w for w in waits)
     lines = [
@@ -198,10 +186,6 @@ def write(path, options, filled, starts, pages, waits, requests, day, many):
         f"until the first page is there: median {1e3 * statistics.median(starts):.0f} ms, longest {1e3 * max(starts):.0f} ms of {len(starts)}. "
         f"Each page {ROUNDS} times:\n",
         benchlib.table(["page", "path", "median, ms", "longest, ms", "size, kB"], pages),
-        f"## With {options.many} scans in the database\n",
-        f"Made likewise in {many_filled:.0f} s: {many_kb:.1f} kB for each foil, besides the pictures of the newest 40 foils, some 150 kB each. Start, "
-        f"until the first page is there: {1e3 * many_start:.0f} ms. Each page {ROUNDS} times:\n",
-        benchlib.table(["page", "path", "median, ms", "longest, ms", "size, kB"], many_pages),
         f"## Memory over {options.requests} requests\n",
         "All pages of the table in turn, the style and a page that is not there.\n",
         benchlib.table(["requests", "resident, MiB", "open files"], [[i, f"{m:.1f}", f] for i, m, f in requests]),
@@ -210,7 +194,7 @@ def write(path, options, filled, starts, pages, waits, requests, day, many):
         benchlib.table(["scans", "resident, MiB", "open files", "database, MiB", "journal, MiB"],
                        [[i, f"{m:.1f}", f, f"{d:.1f}", f"{j:.1f}"] for i, m, f, d, j in samples]),
     ]
-    others = station_hub.read_section(path) + station_attacked.read_section(path)
+    others = station_hub.read_section(path, station_many.HEADING) + station_hub.read_section(path) + station_attacked.read_section(path)
     with open(path, "w", encoding="utf-8") as out:
         out.write("\n".join(lines) + others)
 
@@ -218,7 +202,6 @@ def write(path, options, filled, starts, pages, waits, requests, day, many):
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--scans", type=int, default=5000)
-    parser.add_argument("--many", type=int, default=100000)
     parser.add_argument("--requests", type=int, default=5000)
     parser.add_argument("--day", type=int, default=1440)
     parser.add_argument("--arrivals", type=int, default=10)
@@ -241,10 +224,8 @@ def main():
         waits = arrivals(watched, options.arrivals)
         print(waits, flush=True)
         shutil.rmtree(watched)
-    many = with_many(options.many)
-    print(many, flush=True)
     day = a_day(options.day)
-    write(options.o, options, filled, starts, pages, waits, requests, day, many)
+    write(options.o, options, filled, starts, pages, waits, requests, day)
 
 
 if __name__ == "__main__":
