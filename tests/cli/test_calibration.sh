@@ -103,11 +103,11 @@ expect 0 '' "$program" lot --index index.html lot bare
 for page in plain.html scale.html lot/index.html index.html; do
   grep -q "<dt>Date</dt><dd>$(date -u -r $scan +%F)" "$page" || fail "$page: no date"
   grep -q '<dt>Program</dt><dd>foilgauge ' "$page" || fail "$page: no program"
-  grep -q '<dt>Design</dt><dd>d (classical), SHA-256 ' "$page" || fail "$page: no design"
+  grep -q '<dt>Design</dt><dd>\(<[^>]*>\)\?d\(</[a-z]*>\)\? (classical), SHA-256 ' "$page" || fail "$page: no design"
   grep -q '<dt>Calibration</dt><dd>' "$page" || fail "$page: no calibration"
 done
 expect 0 '' "$program" design plain.json --html design.html -o design.out
-grep -q '<dt>Design</dt><dd>d (classical), SHA-256 ' design.html || fail "design.html: no design"
+grep -q '<dt>Design</dt><dd>\(<[^>]*>\)\?d\(</[a-z]*>\)\? (classical), SHA-256 ' design.html || fail "design.html: no design"
 
 # A design says its calibration; without one, that there is none.
 for d in scale warm plain; do
